@@ -1,0 +1,22 @@
+# Every package from outside, found once. scripts/setup installs them on Debian.
+find_package(PkgConfig REQUIRED)
+find_package(Threads REQUIRED)
+# Debian 12's CMake file for it names folders of packages that it does not depend on.
+pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO)
+find_package(glfw3 REQUIRED)
+find_package(glslang REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
+pkg_check_modules(egl REQUIRED IMPORTED_TARGET egl)
+pkg_check_modules(tinygltf REQUIRED IMPORTED_TARGET tinygltf)
+find_package(glm QUIET)
+if(NOT TARGET glm::glm)
+  # Debian 12's glm installs a pkg-config file only.
+  pkg_check_modules(glm REQUIRED IMPORTED_TARGET glm)
+  add_library(glm::glm ALIAS PkgConfig::glm)
+endif()
+if(GNOMON_TESTS)
+  find_package(GTest REQUIRED)
+endif()

@@ -1,0 +1,26 @@
+# gnomon_layer(NAME): settings common to the target gnomon_NAME, which must exist, and its alias gnomon::NAME.
+#
+# A layer's only include folder is its own, and it reaches another layer's headers only by linking it. So
+# `#include "draw_pass.hh"` in source/gpu does not compile: the arrows of doc/architecture.md are one-way by construction.
+function(gnomon_layer NAME)
+  set(TARGET gnomon_${NAME})
+  add_library(gnomon::${NAME} ALIAS ${TARGET})
+  set_target_properties(${TARGET} PROPERTIES EXPORT_NAME ${NAME})
+  target_include_directories(${TARGET} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
+  gnomon_compile_settings(${TARGET})
+  # Every public header compiles alone.
+  file(GLOB HEADERS CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.hh)
+  set_target_properties(${TARGET} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)
+  target_sources(${TARGET} PUBLIC FILE_SET HEADERS BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR} FILES ${HEADERS})
+endfunction()
+
+function(gnomon_compile_settings TARGET)
+  target_compile_features(${TARGET} PUBLIC cxx_std_20)
+  set_target_properties(${TARGET} PROPERTIES CXX_EXTENSIONS OFF)
+  target_compile_options(${TARGET} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+    -Wnon-virtual-dtor -Woverloaded-virtual $<$<BOOL:${GNOMON_WERROR}>:-Werror>)
+  if(GNOMON_SANITIZE)
+    target_compile_options(${TARGET} PUBLIC -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+    target_link_options(${TARGET} PUBLIC -fsanitize=address,undefined)
+  endif()
+endfunction()

@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: MIT
+#include "shared/draw_view_shared.h"
+#include "shared/slots_shared.h"
+
+layout(std140, binding = VIEW_BLOCK_SLOT) uniform view_block
+{
+  ViewData view;
+};

@@ -1,0 +1,4 @@
+#version 450 core
+// SPDX-License-Identifier: MIT
+
+void main() {}

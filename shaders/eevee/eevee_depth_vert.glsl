@@ -1,0 +1,12 @@
+#version 450 core
+// SPDX-License-Identifier: MIT
+#include "draw/draw_object_lib.glsl"
+#include "draw/draw_view_lib.glsl"
+
+// The lit pass tests for equal depth, so both compute the position alike.
+invariant gl_Position;
+
+void main()
+{
+  gl_Position = view.clip_from_world * vertex_position_ws();
+}

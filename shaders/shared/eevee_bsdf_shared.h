@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#ifndef EEVEE_BSDF_SHARED_H
+#define EEVEE_BSDF_SHARED_H
+
+#include "shared/shared_types.h"
+
+SHARED_BEGIN
+
+SHARED_CONSTANT float PI = 3.14159265358979f;
+SHARED_CONSTANT float INV_PI = 0.318309886183791f;
+
+/** Below it the lobe of a lamp without size is narrower than floats resolve. */
+SHARED_CONSTANT float ALPHA_MIN = 1e-3f;
+
+/** GGX distribution of normals, 1/sr (Walter et al. 2007, eq. 33). */
+SHARED_FUNCTION float ggx_distribution(float cos_h, float alpha)
+{
+  float a2 = alpha * alpha;
+  // 1 - cos² + a²·cos² as a sum: no cancellation where both are small.
+  float t = (1.0f - cos_h) * (1.0f + cos_h) + a2 * cos_h * cos_h;
+  return a2 / (PI * t * t);
+}
+
+/** Smith's masking of one direction, divided by twice its cosine: G1 = 2·cos / (cos + √(a² + (1 - a²)·cos²)). */
+SHARED_FUNCTION float ggx_masking_over_2cos(float cosine, float alpha)
+{
+  float a2 = alpha * alpha;
+  return 1.0f / (cosine + sqrt(a2 + (1.0f - a2) * cosine * cosine));
+}
+
+/**
+ * D·G1(l)·G1(v) / (4·cos(l)·cos(v)): the microfacet lobe without Fresnel, 1/sr. Masking and shadowing are separable, as in
+ * Cycles. Cosines in (0, 1].
+ */
+SHARED_FUNCTION float ggx_lobe(float cos_l, float cos_v, float cos_h, float alpha)
+{
+  return ggx_distribution(cos_h, alpha) * ggx_masking_over_2cos(cos_l, alpha) * ggx_masking_over_2cos(cos_v, alpha);
+}
+
+/** Schlick's approximation (1994). */
+SHARED_FUNCTION vec3 fresnel_schlick(vec3 f0, float f90, float cosine)
+{
+  float m = clamp(1.0f - cosine, 0.0f, 1.0f);
+  float m2 = m * m;
+  return f0 + (vec3(f90) - f0) * (m2 * m2 * m);
+}
+
+SHARED_END
+
+#endif

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#ifndef EEVEE_LIGHT_SHARED_H
+#define EEVEE_LIGHT_SHARED_H
+
+#include "shared/shared_types.h"
+
+SHARED_BEGIN
+
+/** LightData::kind. */
+#define LIGHT_POINT 0
+#define LIGHT_SUN 1
+#define LIGHT_SPOT 2
+#define LIGHT_HEMI 3
+
+/** LightData::shadow_kind. */
+#define SHADOW_NONE 0
+#define SHADOW_CUBE 1
+#define SHADOW_MAP 2
+
+/** What a lamp is to the shaders: an entry of `light_block`. */
+struct LightData {
+  /** World space, metres. Unused by sun and hemi. */
+  vec3 position_ws;
+  /** LIGHT_… */
+  int kind;
+  /** Linear; irradiance (sun, hemi) or radiant intensity (point, spot). */
+  vec3 color;
+  /** Square of the lamp's radius, m². 0: a point. */
+  float radius_sq;
+  /** Unit vector along which the lamp shines. */
+  vec3 forward_ws;
+  /** 1 / range², 1/m². 0: no limit. */
+  float range_inv_sq;
+  /** Spot: cosine of half the opening angle. */
+  float spot_cos_outer;
+  /** Spot: 1 / ((1 - spot_cos_outer) · blend), finite. */
+  float spot_inv_width;
+  /** SHADOW_… */
+  int shadow_kind;
+  /** Index in the array of shadow_kind in `shadow_block`; -1: none. */
+  int shadow_index;
+};
+SHARED_ASSERT_SIZE(LightData, 64)
+
+/** As many as the smallest promised uniform block holds beside the count. */
+#define LIGHT_MAX 255
+
+struct LightBlock {
+  int light_count;
+  int _pad0;
+  int _pad1;
+  int _pad2;
+  LightData lights[LIGHT_MAX];
+};
+SHARED_ASSERT_SIZE(LightBlock, 16 + LIGHT_MAX * 64)
+#ifdef __cplusplus
+static_assert(LIGHT_MAX == (UNIFORM_BLOCK_BYTES_MAX - 16) / sizeof(LightData));
+#endif
+
+/** Blends below this share of 1 - cos are hard edges: the inverse stays finite. */
+SHARED_CONSTANT float SPOT_WIDTH_MIN = 1e-6f;
+
+/** Value for LightData::spot_inv_width. \a blend in [0, 1]. */
+SHARED_FUNCTION float spot_inv_width(float cos_outer, float blend)
+{
+  return 1.0f / max((1.0f - cos_outer) * blend, SPOT_WIDTH_MIN);
+}
+
+/**
+ * Transmission of a spot's cone, in [0, 1]: smoothstep over the soft edge. \a cos_angle: cosine between the lamp's
+ * forward and the direction to the receiver. 0 on the cone and outside, monotone, finite for every cosine in [-1, 1].
+ */
+SHARED_FUNCTION float spot_mask(float cos_angle, float cos_outer, float inv_width)
+{
+  float t = clamp((cos_angle - cos_outer) * inv_width, 0.0f, 1.0f);
+  return t * t * (3.0f - 2.0f * t);
+}
+
+/**
+ * Fall-off of a point or spot lamp, 1/m²: 1 / (d² + r²), the disk of radius r turned to the receiver, with the
+ * window of KHR_lights_punctual at its range. Finite at d = 0.
+ */
+SHARED_FUNCTION float distance_falloff(float distance_sq, float radius_sq, float range_inv_sq)
+{
+  float ratio = distance_sq * range_inv_sq;
+  float window = max(1.0f - ratio * ratio, 0.0f);
+  return window / max(distance_sq + radius_sq, 1e-12f);
+}
+
+/** Share of a uniform sky above a horizon that is turned away from the sky's axis: (1 + cos) / 2. */
+SHARED_FUNCTION float hemi_irradiance(float cos_angle)
+{
+  return 0.5f + 0.5f * cos_angle;
+}
+
+SHARED_END
+
+#endif

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include "cli.hh"
+
+#include "scene_gltf.hh"
+
+#include <fmt/format.h>
+
+namespace gnomon::cli {
+
+static const char *to_string(scene::LampKind kind)
+{
+  switch (kind) {
+    case scene::LampKind::Point: return "point";
+    case scene::LampKind::Sun: return "sun";
+    case scene::LampKind::Spot: return "spot";
+    case scene::LampKind::Hemi: return "hemi";
+    case scene::LampKind::Area: return "area";
+  }
+  return "?";
+}
+
+static const char *unit(scene::LampKind kind)
+{
+  switch (kind) {
+    case scene::LampKind::Point:
+    case scene::LampKind::Spot: return "W/sr";
+    case scene::LampKind::Sun:
+    case scene::LampKind::Hemi: return "W/m²";
+    case scene::LampKind::Area: return "W";
+  }
+  return "?";
+}
+
+static void print_info(const scene::Scene &scene)
+{
+  std::size_t triangles = 0;
+  for (const scene::Object &object : scene.objects) {
+    triangles += scene.meshes[object.mesh].indices.size() / 3;
+  }
+  fmt::print("{}\n", scene.path);
+  fmt::print("  {} objects of {} meshes, {} triangles as placed, {} materials\n", scene.objects.size(),
+             scene.meshes.size(), triangles, scene.materials.size());
+  const scene::Bounds bounds = scene.bounds();
+  if (!bounds.is_empty()) {
+    fmt::print("  bounds ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g}) m\n", bounds.min.x, bounds.min.y, bounds.min.z,
+               bounds.max.x, bounds.max.y, bounds.max.z);
+  }
+  for (const scene::Camera &camera : scene.cameras) {
+    fmt::print("  camera '{}', {}{}\n", camera.name,
+               camera.kind == scene::CameraKind::Perspective ? "perspective" : "orthographic",
+               scene.is_camera_default ? " (made up)" : "");
+  }
+  for (const scene::Lamp &lamp : scene.lamps) {
+    fmt::print("  lamp '{}', {}, {:g} {}{}\n", lamp.name, to_string(lamp.kind), lamp.intensity, unit(lamp.kind),
+               scene.is_lamp_default ? " (made up)" : "");
+  }
+}
+
+void add_info(CLI::App &app, int &status)
+{
+  CLI::App *command = app.add_subcommand("info", "What a scene holds");
+  auto path = std::make_shared<std::string>();
+  command->add_option("scene", *path, "glTF 2.0 file")->required();
+  command->callback([path, &status] {
+    const scene::Scene scene = scene::import_gltf(*path);
+    for (const std::string &warning : scene.warnings) {
+      fmt::print(stderr, "gnomon: warning: {}\n", warning);
+    }
+    print_info(scene);
+    status = STATUS_DONE;
+  });
+}
+
+}  // namespace gnomon::cli

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include "cli.hh"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace gnomon::cli {
+
+/** Part of the promise, not of the program yet. */
+static void add_unbuilt(CLI::App &app)
+{
+  static constexpr std::array<std::array<const char *, 2>, 5> UNBUILT = {
+      {{"report", "Error against run time"},
+       {"stability", "Stiff and extreme cases"},
+       {"shaders", "Check, list and reflect shaders"},
+       {"bench", "Benchmarks"},
+       {"view", "A window on a scene"}}};
+  for (const auto &[name, purpose] : UNBUILT) {
+    CLI::App *command = app.add_subcommand(name, fmt::format("{} (not built yet)", purpose));
+    command->allow_extras();
+    command->callback([name = name] { throw UsageError(fmt::format("'{}' is not built yet", name)); });
+  }
+}
+
+static int run(int argc, char **argv)
+{
+  CLI::App app("gnomon " GNOMON_VERSION ": lights a glTF scene with an EEVEE-style draw-manager engine", "gnomon");
+  app.set_version_flag("--version", "gnomon " GNOMON_VERSION);
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+  int status = STATUS_DONE;
+  add_render(app, status);
+  add_info(app, status);
+  add_unbuilt(app);
+  try {
+    app.parse(argc, argv);
+    return status;
+  }
+  catch (const CLI::ParseError &error) {
+    // Help and version are no errors.
+    return app.exit(error) == 0 ? STATUS_DONE : STATUS_USAGE;
+  }
+  catch (const UsageError &error) {
+    fmt::print(stderr, "gnomon: {}\n", error.what());
+    return STATUS_USAGE;
+  }
+  catch (const std::exception &error) {
+    fmt::print(stderr, "gnomon: {}\n", error.what());
+    return STATUS_FAILED;
+  }
+}
+
+}  // namespace gnomon::cli
+
+int main(int argc, char **argv)
+{
+  return gnomon::cli::run(argc, argv);
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "cli_output.hh"
+
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <unistd.h>
+
+namespace gnomon::cli {
+
+namespace fs = std::filesystem;
+
+void write_atomically(const fs::path &path, const std::function<void(const fs::path &beside)> &write)
+{
+  // The extension stays last: it tells the writer the format.
+  const fs::path beside =
+      path.parent_path() / fmt::format(".{}.{}{}", path.stem().string(), getpid(), path.extension().string());
+  try {
+    write(beside);
+    fs::rename(beside, path);
+  }
+  catch (const fs::filesystem_error &error) {
+    std::error_code ignored;
+    fs::remove(beside, ignored);
+    throw std::runtime_error(fmt::format("{}: {}", path.string(), error.code().message()));
+  }
+  catch (...) {
+    std::error_code ignored;
+    fs::remove(beside, ignored);
+    throw;
+  }
+}
+
+static void write_image(const fs::path &path, glm::ivec2 size_px, OIIO::TypeDesc type, const void *pixels,
+                        const Metadata &metadata)
+{
+  OIIO::ImageSpec spec(size_px.x, size_px.y, 3, type);
+  spec["Software"] = "gnomon " GNOMON_VERSION;
+  for (const auto &[name, value] : metadata) {
+    spec[name] = value;
+  }
+  write_atomically(path, [&](const fs::path &beside) {
+    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(beside.string());
+    if (!output || !output->open(beside.string(), spec)) {
+      throw std::runtime_error(
+          fmt::format("{}: cannot be written: {}", path.string(), output ? output->geterror() : OIIO::geterror()));
+    }
+    // Four channels a pixel in memory, and rows from the bottom: strides walk both.
+    const auto pixel_bytes = OIIO::stride_t(4 * type.size());
+    const OIIO::stride_t row_bytes = pixel_bytes * size_px.x;
+    const auto *top = static_cast<const char *>(pixels) + row_bytes * (size_px.y - 1);
+    if (!output->write_image(type, top, pixel_bytes, -row_bytes) || !output->close()) {
+      throw std::runtime_error(fmt::format("{}: cannot be written: {}", path.string(), output->geterror()));
+    }
+  });
+}
+
+void write_exr(const fs::path &path, glm::ivec2 size_px, std::span<const float> rgba, const Metadata &metadata)
+{
+  write_image(path, size_px, OIIO::TypeDesc::FLOAT, rgba.data(), metadata);
+}
+
+void write_png(const fs::path &path, glm::ivec2 size_px, std::span<const std::uint8_t> rgba, const Metadata &metadata)
+{
+  write_image(path, size_px, OIIO::TypeDesc::UINT8, rgba.data(), metadata);
+}
+
+}  // namespace gnomon::cli

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <glm/vec2.hpp>
+
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gnomon::cli {
+
+/**
+ * Let \a write make a file beside \a path, then rename it to \a path: there is the whole file or none.
+ * What \a write throws passes through, and leaves nothing behind.
+ *
+ * \throws std::runtime_error naming \a path where it cannot be made.
+ */
+void write_atomically(const std::filesystem::path &path,
+                      const std::function<void(const std::filesystem::path &beside)> &write);
+
+/** Names and values for an image's header. */
+using Metadata = std::vector<std::pair<std::string, std::string>>;
+
+/** RGB, 32-bit float, rows from the bottom, four floats a pixel of which the last is dropped. */
+void write_exr(const std::filesystem::path &path, glm::ivec2 size_px, std::span<const float> rgba,
+               const Metadata &metadata);
+/** RGB, 8 bits, rows from the bottom, four bytes a pixel of which the last is dropped. */
+void write_png(const std::filesystem::path &path, glm::ivec2 size_px, std::span<const std::uint8_t> rgba,
+               const Metadata &metadata);
+
+}  // namespace gnomon::cli

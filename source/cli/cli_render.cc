@@ -1,0 +1,416 @@
+// SPDX-License-Identifier: MIT
+#include "cli.hh"
+
+#include "cli_output.hh"
+
+#include "eevee_camera.hh"
+#include "eevee_engine.hh"
+#include "eevee_film.hh"
+#include "scene_gltf.hh"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <unistd.h>
+
+namespace gnomon::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start)
+{
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+struct RenderOptions {
+  std::string scene;
+  std::string output;
+  std::string size = "960x540";
+  std::string camera;
+  int samples = 16;
+  std::string frames;
+  int repeat = 1;
+  std::string shadow = "hard";
+  int shadow_size = 0;
+  std::string aov;
+  std::string view = "standard";
+  float exposure = 0.0F;
+  std::string backend = "gl";
+  bool is_explained = false;
+  std::string json;
+  bool is_strict = false;
+  std::uint32_t seed = 0;
+};
+
+/** What was measured, for people and for --json. */
+struct RenderResult {
+  std::string device;
+  double import_seconds = 0.0;
+  double device_seconds = 0.0;
+  double sync_seconds = 0.0;
+  std::vector<double> frame_seconds;
+  std::vector<std::vector<eevee::StepTime>> frame_steps;
+  std::vector<eevee::ShadowCounters> frame_shadows;
+  double output_seconds = 0.0;
+  double total_seconds = 0.0;
+  std::size_t non_finite_count = 0;
+  gpu::Counters counters;
+  eevee::Report report;
+};
+
+glm::ivec2 parse_size(const std::string &text)
+{
+  glm::ivec2 size{0};
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%c", &size.x, &size.y, &rest) != 2 || size.x < 1 || size.y < 1) {
+    throw UsageError(fmt::format("--size '{}' is not WIDTHxHEIGHT in pixels", text));
+  }
+  return size;
+}
+
+bool is_png(const fs::path &path)
+{
+  return path.extension() == ".png";
+}
+
+void check_options(const RenderOptions &options)
+{
+  const auto unbuilt = [](const std::string &what) { throw UsageError(what + " is not built yet"); };
+  if (!options.frames.empty()) {
+    unbuilt("--frames");
+  }
+  if (!options.aov.empty()) {
+    unbuilt("--aov");
+  }
+  if (options.shadow == "pcf" || options.shadow == "esm") {
+    unbuilt("--shadow " + options.shadow);
+  }
+  if (options.output.empty() && options.backend == "gl") {
+    throw UsageError("-o OUT.exr or -o OUT.png is required");
+  }
+  const fs::path output = options.output;
+  if (!options.output.empty() && !is_png(output) && output.extension() != ".exr") {
+    throw UsageError(fmt::format("-o '{}' ends in neither .exr nor .png", options.output));
+  }
+}
+
+/** Before any work: a picture that could not be stored is not worth rendering. */
+void check_folder(const fs::path &path)
+{
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (!path.empty() && (!fs::is_directory(folder) || access(folder.c_str(), W_OK) != 0)) {
+    throw std::runtime_error(fmt::format("{}: the folder does not exist or cannot be written to", path.string()));
+  }
+}
+
+const scene::Camera &find_camera(const scene::Scene &scene, const std::string &name)
+{
+  std::vector<std::string> names;
+  for (const scene::Camera &camera : scene.cameras) {
+    if (name.empty() || camera.name == name) {
+      return camera;
+    }
+    names.push_back(camera.name);
+  }
+  throw std::runtime_error(fmt::format("{}: no camera '{}'; it has: {}", scene.path, name, fmt::join(names, ", ")));
+}
+
+eevee::Settings engine_settings(const RenderOptions &options)
+{
+  eevee::Settings settings;
+  settings.shadow.method = options.shadow == "none" ? eevee::ShadowMethod::None : eevee::ShadowMethod::Hard;
+  if (options.shadow_size > 0) {
+    settings.shadow.cube_size_px = options.shadow_size;
+    settings.shadow.map_size_px = options.shadow_size;
+  }
+  settings.sample_count = options.samples;
+  settings.has_display = !options.output.empty() && is_png(options.output);
+  settings.view_transform = options.view == "raw" ? eevee::ViewTransform::Raw : eevee::ViewTransform::Standard;
+  settings.exposure = options.exposure;
+  settings.is_timed = !options.json.empty() || options.is_explained;
+  return settings;
+}
+
+/** Channels of \a rgba that are NaN or infinite; the first such pixel goes to \a first. */
+std::size_t count_non_finite(std::span<const float> rgba, std::size_t &first)
+{
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < rgba.size(); i++) {
+    if (!std::isfinite(rgba[i])) {
+      first = count == 0 ? i / 4 : first;
+      count++;
+    }
+  }
+  return count;
+}
+
+template<typename T> std::vector<T> read_as(gpu::Device &device, const gpu::Texture &texture)
+{
+  const std::vector<std::byte> bytes = device.read(texture);
+  std::vector<T> values(bytes.size() / sizeof(T));
+  std::memcpy(values.data(), bytes.data(), bytes.size());
+  return values;
+}
+
+nlohmann::json to_json(const RenderOptions &options, const scene::Scene &scene, const scene::Camera &camera,
+                       const RenderResult &result)
+{
+  nlohmann::json frames = nlohmann::json::array();
+  for (std::size_t i = 0; i < result.frame_seconds.size(); i++) {
+    nlohmann::json steps = nlohmann::json::object();
+    for (const eevee::StepTime &step : result.frame_steps[i]) {
+      steps[step.step] = step.seconds;
+    }
+    frames.push_back({{"seconds", result.frame_seconds[i]},
+                      {"step_seconds", steps},
+                      {"lamps_updated", result.frame_shadows[i].lamps_updated},
+                      {"faces_drawn", result.frame_shadows[i].faces_drawn}});
+  }
+  nlohmann::json made = nlohmann::json::array();
+  nlohmann::json left_out = nlohmann::json::array();
+  for (const eevee::FramePart &part : result.report.parts) {
+    (part.is_made ? made : left_out).push_back({{"what", part.what}, {"why", part.why}});
+  }
+  std::vector<std::string> warnings = scene.warnings;
+  warnings.insert(warnings.end(), result.report.warnings.begin(), result.report.warnings.end());
+  const gpu::Counters &c = result.counters;
+  return {{"program", "gnomon " GNOMON_VERSION},
+          {"scene", options.scene},
+          {"output", options.output},
+          {"camera", camera.name},
+          {"size", options.size},
+          {"samples", options.samples},
+          {"seed", options.seed},
+          {"device", result.device},
+          {"import_seconds", result.import_seconds},
+          {"device_seconds", result.device_seconds},
+          {"sync_seconds", result.sync_seconds},
+          {"frame_seconds", result.frame_seconds},
+          {"frames", frames},
+          {"output_seconds", result.output_seconds},
+          {"total_seconds", result.total_seconds},
+          {"non_finite", result.non_finite_count},
+          {"counters",
+           {{"passes", c.passes},
+            {"draws", c.draws},
+            {"instances", c.instances},
+            {"triangles", c.triangles},
+            {"shader_binds", c.shader_binds},
+            {"shaders_made", c.shaders_made},
+            {"textures_made", c.textures_made},
+            {"upload_bytes", c.upload_bytes}}},
+          {"made", made},
+          {"left_out", left_out},
+          {"limits", result.report.limits},
+          {"warnings", warnings}};
+}
+
+void print_explanation(const RenderResult &result)
+{
+  for (const bool is_made : {true, false}) {
+    fmt::print("{}\n", is_made ? "made" : "left out");
+    for (const eevee::FramePart &part : result.report.parts) {
+      if (part.is_made == is_made) {
+        fmt::print("  {:22} {}\n", part.what, part.why);
+      }
+    }
+  }
+  fmt::print("device time of the last frame\n");
+  for (const eevee::StepTime &step : result.frame_steps.back()) {
+    fmt::print("  {:22} {:.2f} ms\n", step.step, 1e3 * step.seconds);
+  }
+}
+
+void print_summary(const RenderOptions &options, const RenderResult &result)
+{
+  fmt::print("{}\n", result.device);
+  fmt::print("import {:.1f} ms, device {:.1f} ms, set-up {:.1f} ms, first frame {:.1f} ms", 1e3 * result.import_seconds,
+             1e3 * result.device_seconds, 1e3 * result.sync_seconds, 1e3 * result.frame_seconds.front());
+  if (result.frame_seconds.size() > 1) {
+    std::vector<double> warm(result.frame_seconds.begin() + 1, result.frame_seconds.end());
+    std::ranges::sort(warm);
+    fmt::print(", warm frame {:.1f} ms (median of {})", 1e3 * warm[warm.size() / 2], warm.size());
+  }
+  fmt::print(", output {:.1f} ms, all {:.1f} ms\n", 1e3 * result.output_seconds, 1e3 * result.total_seconds);
+  std::vector<std::string> made;
+  for (const eevee::FramePart &part : result.report.parts) {
+    if (part.is_made) {
+      made.push_back(part.what);
+    }
+  }
+  fmt::print("made: {}\n", fmt::join(made, ", "));
+  if (!options.output.empty() && options.backend == "gl") {
+    fmt::print("{}\n", fs::absolute(options.output).lexically_normal().string());
+  }
+}
+
+void show_progress(int done, int count)
+{
+  if (count > 1 && isatty(STDERR_FILENO)) {
+    fmt::print(stderr, "\r{}/{} samples{}", done, count, done == count ? "\r\033[K" : "");
+  }
+}
+
+void render_frames(const RenderOptions &options, const scene::Camera &camera, eevee::Engine &engine,
+                   draw::Viewport &viewport, RenderResult &result)
+{
+  const std::array<draw::Engine *, 1> engines = {&engine};
+  eevee::ShadowCounters before;
+  for (int frame = 0; frame < options.repeat; frame++) {
+    const Clock::time_point start = Clock::now();
+    for (int i = 0; i < options.samples; i++) {
+      const glm::vec2 offset_px = eevee::film_offset_px(i, options.samples, options.seed);
+      viewport.draw(engines, eevee::view_of(camera, viewport.size_px(), offset_px));
+      show_progress(i + 1, options.samples);
+    }
+    viewport.device().finish();
+    result.frame_seconds.push_back(seconds_since(start));
+    result.frame_steps.push_back(engine.take_step_times(viewport));
+    const eevee::ShadowCounters now = engine.report(viewport).shadow_counters;
+    result.frame_shadows.push_back(
+        {now.lamps_updated - before.lamps_updated, now.faces_drawn - before.faces_drawn});
+    before = now;
+  }
+}
+
+/** \return STATUS_DONE or STATUS_NON_FINITE; then nothing is written. */
+int write_picture(const RenderOptions &options, const scene::Camera &camera, eevee::Engine &engine,
+                  draw::Viewport &viewport, RenderResult &result)
+{
+  const glm::ivec2 size_px = viewport.size_px();
+  const std::vector<float> radiance = read_as<float>(viewport.device(), engine.radiance(viewport));
+  std::size_t first = 0;
+  result.non_finite_count = count_non_finite(radiance, first);
+  if (result.non_finite_count > 0) {
+    fmt::print(stderr, "gnomon: {}: {} values of the picture are not finite, the first at pixel ({}, {}); not written\n",
+               options.scene, result.non_finite_count, first % std::size_t(size_px.x),
+               std::size_t(size_px.y) - 1 - first / std::size_t(size_px.x));
+    return STATUS_NON_FINITE;
+  }
+  Metadata metadata = {{"gnomon:scene", options.scene},
+                       {"gnomon:camera", camera.name},
+                       {"gnomon:samples", std::to_string(options.samples)},
+                       {"gnomon:seed", std::to_string(options.seed)},
+                       {"gnomon:device", result.device}};
+  if (is_png(options.output)) {
+    metadata.emplace_back("gnomon:units", fmt::format("display-referred, {}", options.view));
+    write_png(options.output, size_px, read_as<std::uint8_t>(viewport.device(), engine.display(viewport)), metadata);
+  }
+  else {
+    metadata.emplace_back("gnomon:units", "scene-linear radiance, W/(sr m^2)");
+    write_exr(options.output, size_px, radiance, metadata);
+  }
+  return STATUS_DONE;
+}
+
+int render(const RenderOptions &options)
+{
+  const Clock::time_point start = Clock::now();
+  check_options(options);
+  const glm::ivec2 size_px = parse_size(options.size);
+  check_folder(options.output);
+  check_folder(options.json);
+  RenderResult result;
+
+  const scene::Scene scene = scene::import_gltf(options.scene);
+  const scene::Camera &camera = find_camera(scene, options.camera);
+  for (const std::string &warning : scene.warnings) {
+    fmt::print(stderr, "gnomon: warning: {}\n", warning);
+  }
+  result.import_seconds = seconds_since(start);
+
+  const Clock::time_point device_start = Clock::now();
+  const std::unique_ptr<gpu::Device> device =
+      options.backend == "null" ? gpu::create_null_device() : gpu::create_gl_device();
+  result.device = device->description();
+  result.device_seconds = seconds_since(device_start);
+
+  const Clock::time_point sync_start = Clock::now();
+  eevee::Engine engine(scene, engine_settings(options));
+  draw::Viewport viewport(*device, size_px);
+  const std::array<draw::Engine *, 1> engines = {&engine};
+  viewport.sync(engines, eevee::object_refs(scene));
+  result.report = engine.report(viewport);
+  for (const std::string &warning : result.report.warnings) {
+    fmt::print(stderr, "gnomon: warning: {}\n", warning);
+  }
+  for (const std::string &limit : result.report.limits) {
+    fmt::print(stderr, "gnomon: limit: {}\n", limit);
+  }
+  result.sync_seconds = seconds_since(sync_start);
+
+  render_frames(options, camera, engine, viewport, result);
+
+  const Clock::time_point output_start = Clock::now();
+  int status = STATUS_DONE;
+  if (options.backend == "gl") {
+    status = write_picture(options, camera, engine, viewport, result);
+  }
+  else {
+    fmt::print(stderr, "gnomon: the null backend draws nothing: no picture is written\n");
+  }
+  result.counters = device->counters();
+  result.output_seconds = seconds_since(output_start);
+  result.total_seconds = seconds_since(start);
+  if (!options.json.empty()) {
+    write_atomically(options.json, [&](const fs::path &beside) {
+      std::ofstream file(beside);
+      file << to_json(options, scene, camera, result).dump(2) << "\n";
+      if (!file.flush()) {
+        throw std::runtime_error(fmt::format("{}: cannot be written", options.json));
+      }
+    });
+  }
+  if (status == STATUS_DONE) {
+    print_summary(options, result);
+    if (options.is_explained) {
+      print_explanation(result);
+    }
+  }
+  return status == STATUS_DONE && options.is_strict && !result.report.limits.empty() ? int(STATUS_LIMIT) : status;
+}
+
+}  // namespace
+
+void add_render(CLI::App &app, int &status)
+{
+  auto o = std::make_shared<RenderOptions>();
+  CLI::App *command = app.add_subcommand("render", "Light a scene and write the picture");
+  command->add_option("scene", o->scene, "glTF 2.0 file")->required();
+  command->add_option("-o,--output", o->output, "OUT.exr: scene-linear floats; OUT.png: through the view transform");
+  command->add_option("--size", o->size, "WIDTHxHEIGHT, pixels")->capture_default_str();
+  command->add_option("--camera", o->camera, "Name of a camera; otherwise the first");
+  command->add_option("--samples", o->samples, "Samples a pixel")->capture_default_str()->check(CLI::Range(1, 65536));
+  command->add_option("--frames", o->frames, "A-B: frames of an animation (not built yet)");
+  command->add_option("--repeat", o->repeat, "Render this often, and print the time of each")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000));
+  command->add_option("--shadow", o->shadow, "none, hard (pcf and esm are not built yet)")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"none", "hard", "pcf", "esm"}));
+  command->add_option("--shadow-size", o->shadow_size, "Edge of every shadow layer, pixels (default: cubes 1024, maps 2048)")
+      ->check(CLI::Range(1, 16384));
+  command->add_option("--aov", o->aov, "Further layers to write (not built yet)");
+  command->add_option("--view", o->view, "View transform of a PNG: standard, raw")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"standard", "raw"}));
+  command->add_option("--exposure", o->exposure, "Stops, for a PNG")->capture_default_str()->check(CLI::Range(-64.0, 64.0));
+  command->add_option("--backend", o->backend, "gl, or null: record only, without a driver")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"gl", "null"}));
+  command->add_flag("--explain", o->is_explained, "Print what the frame is made of, and what was left out");
+  command->add_option("--json", o->json, "Write times, counters, limits, what was made and left out");
+  command->add_flag("--strict", o->is_strict, "End with status 4 where a limit was hit");
+  command->add_option("--seed", o->seed, "Another arrangement of the samples")->capture_default_str();
+  command->callback([o, &status] { status = render(*o); });
+}
+
+}  // namespace gnomon::cli

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "draw_view.hh"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace gnomon::draw {
+
+class Viewport;
+
+/** One object of the host's, as far as the draw manager needs to know it. */
+struct ObjectRef {
+  /** In the host's list; an engine that reads the host's scene finds the rest there. */
+  std::uint32_t index = 0;
+  glm::mat4 world_from_object{1.0F};
+  CullingVolume volume;
+};
+
+/**
+ * A way to draw a scene. What belongs to one viewport is kept in Viewport::engine_data.
+ *
+ * Call order, by Viewport::sync: init, cache_init, cache_populate for each object, cache_finish; then, by
+ * Viewport::draw, draw_scene as often as wanted, until the scene changes.
+ */
+class Engine {
+ public:
+  virtual ~Engine() = default;
+
+  [[nodiscard]] virtual std::string_view name() const = 0;
+  /** Make or check what does not depend on the objects. */
+  virtual void init(Viewport &viewport) = 0;
+  /** Begin recording passes. */
+  virtual void cache_init(Viewport &viewport) = 0;
+  virtual void cache_populate(Viewport &viewport, const ObjectRef &object) = 0;
+  /** All objects are known. */
+  virtual void cache_finish(Viewport &viewport) = 0;
+  virtual void draw_scene(Viewport &viewport, const View &view) = 0;
+};
+
+/** How to make an engine; a host registers those it wants, with the scene they are to read. */
+struct EngineType {
+  std::string name;
+  std::function<std::unique_ptr<Engine>()> create;
+};
+
+class EngineRegistry {
+ public:
+  /** \throws gpu::Error where the name is taken; nothing changes then. */
+  void add(EngineType type);
+  /** \throws gpu::Error naming the registered engines where \a name is none of them. */
+  [[nodiscard]] std::unique_ptr<Engine> create(std::string_view name) const;
+  [[nodiscard]] std::vector<std::string> names() const;
+
+ private:
+  std::vector<EngineType> types_;
+};
+
+/** What an engine keeps with something of the host's, a lamp say, from frame to frame. */
+template<typename T> class EngineDataMap {
+ public:
+  /** Default-constructed at the first ask; the reference holds until remove_from or clear. */
+  T &get(std::uint32_t host_index)
+  {
+    return data_[host_index];
+  }
+  /** Forget what belongs to indices from \a host_count on: the host has no more. */
+  void remove_from(std::uint32_t host_count)
+  {
+    std::erase_if(data_, [&](const auto &entry) { return entry.first >= host_count; });
+  }
+  [[nodiscard]] std::size_t size() const
+  {
+    return data_.size();
+  }
+
+ private:
+  std::unordered_map<std::uint32_t, T> data_;
+};
+
+}  // namespace gnomon::draw

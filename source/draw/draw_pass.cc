@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+#include "draw_pass.hh"
+
+#include <algorithm>
+
+namespace gnomon::draw {
+
+void InstanceCall::add(ObjectIndex object, std::uint32_t value)
+{
+  instances_.push_back({object, value});
+}
+
+void InstanceCall::add_empty()
+{
+  instances_.push_back({object_, std::uint32_t(instances_.size())});
+}
+
+void InstanceCall::clear()
+{
+  instances_.clear();
+}
+
+ShadingGroup::ShadingGroup(const gpu::Shader &shader, ObjectBuffer *objects)
+    : shader_(shader), objects_(objects), constants_(shader.interface().push_constant_size_bytes)
+{
+}
+
+template<typename Value> void ShadingGroup::bind(gpu::BindingKind kind, std::string_view name, const Value &value)
+{
+  const gpu::ShaderInterface::Binding *found = shader_.interface().find(kind, name);
+  if (!found) {
+    return;
+  }
+  // Bound again, the later one holds.
+  const auto same = std::ranges::find_if(
+      bindings_, [&](const Binding &binding) { return binding.kind == kind && binding.slot == found->slot; });
+  if (same != bindings_.end()) {
+    same->value = value;
+  }
+  else {
+    bindings_.push_back({kind, found->slot, std::string(name), value});
+  }
+}
+
+void ShadingGroup::bind_uniform(std::string_view name, const gpu::Buffer &block)
+{
+  bind(gpu::BindingKind::UniformBlock, name, gpu::BufferRange{block.id()});
+}
+
+void ShadingGroup::bind_uniform_ref(std::string_view name, const gpu::BufferRange *block)
+{
+  bind(gpu::BindingKind::UniformBlock, name, block);
+}
+
+void ShadingGroup::bind_storage(std::string_view name, const gpu::Buffer &block)
+{
+  bind(gpu::BindingKind::StorageBlock, name, gpu::BufferRange{block.id()});
+}
+
+void ShadingGroup::bind_storage_ref(std::string_view name, const gpu::BufferRange *block)
+{
+  bind(gpu::BindingKind::StorageBlock, name, block);
+}
+
+void ShadingGroup::bind_texture(std::string_view name, const gpu::Texture &texture, const gpu::Sampler &sampler)
+{
+  bind(gpu::BindingKind::Texture, name, TextureBinding{texture.id(), sampler.id()});
+}
+
+void ShadingGroup::bind_texture_ref(std::string_view name, const TextureBinding *binding)
+{
+  bind(gpu::BindingKind::Texture, name, binding);
+}
+
+const gpu::ShaderInterface::Member *ShadingGroup::constant_member(std::string_view name, std::size_t size) const
+{
+  const gpu::ShaderInterface::Member *member = shader_.interface().find_push_constant(name);
+  GNOMON_ASSERT(!member || size <= member->size_bytes, "constant '{}' of shader '{}' takes {} bytes, not {}", name,
+                shader_.name(), member->size_bytes, size);
+  return member;
+}
+
+void ShadingGroup::call(const gpu::Batch &batch, const glm::mat4 &world_from_object)
+{
+  GNOMON_ASSERT(objects_, "a call with a matrix, in a pass without an object buffer (shader '{}')", shader_.name());
+  call(batch, objects_->add(world_from_object));
+}
+
+void ShadingGroup::call(const gpu::Batch &batch, ObjectIndex object)
+{
+  calls_.push_back({batch.range(), object, 1, {}});
+}
+
+void ShadingGroup::call(const gpu::Batch &batch, ObjectIndex object, const CullingVolume &volume)
+{
+  calls_.push_back({batch.range(), object, 1, volume});
+}
+
+void ShadingGroup::call_instances(const gpu::Batch &batch, std::uint32_t count, ObjectIndex object)
+{
+  calls_.push_back({batch.range(), object, count, {}});
+}
+
+InstanceCall &ShadingGroup::instances(const gpu::Batch &batch, ObjectIndex object)
+{
+  instance_calls_.push_back(InstanceCall(batch.range(), object));
+  return instance_calls_.back();
+}
+
+void ShadingGroup::call_procedural(std::uint32_t triangle_count, std::uint32_t instance_count)
+{
+  procedural_calls_.push_back({triangle_count, instance_count});
+}
+
+void ShadingGroup::record_bindings(gpu::CommandList &list) const
+{
+  for (const Binding &binding : bindings_) {
+    if (binding.kind == gpu::BindingKind::Texture) {
+      const auto *reference = std::get_if<const TextureBinding *>(&binding.value);
+      const TextureBinding &value = reference ? **reference : std::get<TextureBinding>(binding.value);
+      list.bind_texture(binding.slot, value.texture, value.sampler);
+      continue;
+    }
+    const auto *reference = std::get_if<const gpu::BufferRange *>(&binding.value);
+    const gpu::BufferRange &value = reference ? **reference : std::get<gpu::BufferRange>(binding.value);
+    if (binding.kind == gpu::BindingKind::UniformBlock) {
+      list.bind_uniform(binding.slot, value);
+    }
+    else {
+      list.bind_storage(binding.slot, value);
+    }
+  }
+  if (!constants_.empty()) {
+    std::vector<std::byte> constants = constants_;
+    for (const ConstantRef &reference : constant_refs_) {
+      std::memcpy(constants.data() + reference.offset_bytes, reference.value, reference.size_bytes);
+    }
+    list.push_constants(shader_.interface().push_constant_slot, constants);
+  }
+}
+
+void ShadingGroup::record_calls(const View &view, gpu::CommandList &list) const
+{
+  const std::size_t first_draw = list.draws.size();
+  list.instances.reserve(list.instances.size() + calls_.size());
+  std::uint32_t open_index = ~0U;  // First index of the batch that the last draw repeats.
+  for (const Call &call : calls_) {
+    if (!view.touches(call.volume)) {
+      continue;
+    }
+    const auto first_instance = std::uint32_t(list.instances.size());
+    for (std::uint32_t i = 0; i < call.instance_count; i++) {
+      list.instances.push_back({call.object, i});
+    }
+    if (call.batch.first_index == open_index) {
+      list.draws.back().instance_count += call.instance_count;
+    }
+    else {
+      list.draws.push_back({call.batch.index_count, call.instance_count, call.batch.first_index,
+                            call.batch.base_vertex, first_instance});
+      open_index = call.batch.first_index;
+    }
+  }
+  for (const InstanceCall &call : instance_calls_) {
+    if (!call.instances_.empty()) {
+      list.draws.push_back({call.batch_.index_count, std::uint32_t(call.instances_.size()), call.batch_.first_index,
+                            call.batch_.base_vertex, std::uint32_t(list.instances.size())});
+      list.instances.insert(list.instances.end(), call.instances_.begin(), call.instances_.end());
+    }
+  }
+  if (list.draws.size() > first_draw) {
+    list.draw(std::uint32_t(first_draw), std::uint32_t(list.draws.size() - first_draw));
+  }
+  for (const ProceduralCall &call : procedural_calls_) {
+    list.draw_procedural(call.triangle_count * 3, call.instance_count);
+  }
+}
+
+Pass::Pass(std::string name, gpu::State state, ObjectBuffer *objects)
+    : name_(std::move(name)), state_(state), objects_(objects)
+{
+}
+
+ShadingGroup &Pass::group(const gpu::Shader &shader)
+{
+  groups_.push_back(ShadingGroup(shader, objects_));
+  return groups_.back();
+}
+
+void Pass::clear()
+{
+  groups_.clear();
+}
+
+void Pass::record(const View &view, gpu::CommandList &list) const
+{
+  for (const ShadingGroup &group : groups_) {
+    list.set_shader(group.shader_.id());
+    list.set_state(state_ | group.state_);
+    group.record_bindings(list);
+    group.record_calls(view, list);
+  }
+}
+
+std::string Pass::serialize(const gpu::Device &device) const
+{
+  std::string text = fmt::format("{} [{}]\n", name_, gpu::to_string(state_));
+  const auto batch_text = [](const gpu::BatchRange &batch) {
+    return fmt::format("{} triangles from {}", batch.index_count / 3, batch.first_index);
+  };
+  for (const ShadingGroup &group : groups_) {
+    text += fmt::format("  group {}", group.shader_.name());
+    text += group.state_ == gpu::State::None ? "\n" : fmt::format(" [{}]\n", gpu::to_string(group.state_));
+    for (const ShadingGroup::Binding &binding : group.bindings_) {
+      text += fmt::format("    {} {} -> {}", gpu::to_string(binding.kind), binding.name, binding.slot);
+      if (binding.is_reference()) {
+        text += " by reference\n";
+      }
+      else if (const auto *range = std::get_if<gpu::BufferRange>(&binding.value)) {
+        text += fmt::format(" = {}\n", device.name_of(gpu::ResourceKind::Buffer, range->buffer));
+      }
+      else {
+        text += fmt::format(" = {}\n", device.name_of(gpu::ResourceKind::Texture,
+                                                      std::get<TextureBinding>(binding.value).texture));
+      }
+    }
+    for (const ShadingGroup::ConstantNote &note : group.constant_notes_) {
+      text += fmt::format("    constant {}{}\n", note.name, note.is_reference ? " by reference" : "");
+    }
+    for (const ShadingGroup::Call &call : group.calls_) {
+      text += fmt::format("    call {}, object {}", batch_text(call.batch), call.object);
+      text += call.instance_count == 1 ? "" : fmt::format(" x{}", call.instance_count);
+      text += call.volume.radius < 0.0F ? "\n" : ", culled\n";
+    }
+    for (const InstanceCall &call : group.instance_calls_) {
+      text += fmt::format("    instances {} x{}\n", batch_text(call.batch_), call.instances_.size());
+    }
+    for (const ShadingGroup::ProceduralCall &call : group.procedural_calls_) {
+      text += fmt::format("    procedural {} triangles x{}\n", call.triangle_count, call.instance_count);
+    }
+  }
+  return text;
+}
+
+}  // namespace gnomon::draw

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "draw_objects.hh"
+#include "draw_view.hh"
+
+#include "gpu_device.hh"
+
+#include <cstring>
+#include <deque>
+#include <string>
+#include <variant>
+
+/**
+ * Pass > ShadingGroup > call.
+ *
+ * A pass is recorded once, as plain data, on any thread, and drawn as often as wanted, each time for a View, by
+ * Pass::record, which appends to a gpu::CommandList. Names are resolved when they are bound, never when drawn.
+ * Each binding is **by value** (copied now) or **by reference** (`_ref`: a pointer is kept, and what it points to is
+ * read at each record, so that one pass draws one lamp after another).
+ */
+namespace gnomon::draw {
+
+/** What is bound to a texture slot. */
+struct TextureBinding {
+  gpu::ResourceId texture = 0;
+  gpu::ResourceId sampler = 0;
+};
+
+/** A call's instances that are not known yet when it is recorded. Lives as long as its pass. */
+class InstanceCall {
+ public:
+  /** One more instance: an object, and a value for the shader to interpret. */
+  void add(ObjectIndex object, std::uint32_t value = 0);
+  /** One more, with the call's own object and its ordinal as the value: a cube face. */
+  void add_empty();
+  void clear();
+
+ private:
+  friend class ShadingGroup;
+  friend class Pass;
+  InstanceCall(const gpu::BatchRange &batch, ObjectIndex object) : batch_(batch), object_(object) {}
+
+  gpu::BatchRange batch_;
+  ObjectIndex object_;
+  std::vector<gpu::DrawInstance> instances_;
+};
+
+/**
+ * Calls that share a shader and bindings. Made by Pass::group; lives as long as its pass. The shader must live
+ * until the last record; what is bound by value until the last submission.
+ *
+ * A name that the shader does not read is no error and binds nothing: the compiler may have dropped it.
+ */
+class ShadingGroup {
+ public:
+  void bind_uniform(std::string_view name, const gpu::Buffer &block);
+  void bind_uniform_ref(std::string_view name, const gpu::BufferRange *block);
+  void bind_storage(std::string_view name, const gpu::Buffer &block);
+  void bind_storage_ref(std::string_view name, const gpu::BufferRange *block);
+  void bind_texture(std::string_view name, const gpu::Texture &texture, const gpu::Sampler &sampler);
+  void bind_texture_ref(std::string_view name, const TextureBinding *binding);
+
+  /** A member of the push-constant block. \pre T is as large as the member: int, float, vectors, matrices. */
+  template<typename T> void constant(std::string_view name, const T &value)
+  {
+    if (const auto *member = constant_member(name, sizeof(T))) {
+      std::memcpy(constants_.data() + member->offset_bytes, &value, sizeof(T));
+      constant_notes_.push_back({std::string(name), false});
+    }
+  }
+  template<typename T> void constant_ref(std::string_view name, const T *value)
+  {
+    if (const auto *member = constant_member(name, sizeof(T))) {
+      constant_refs_.push_back({member->offset_bytes, sizeof(T), value});
+      constant_notes_.push_back({std::string(name), true});
+    }
+  }
+
+  /** Bits in addition to the pass's. */
+  void state_enable(gpu::State state)
+  {
+    state_ = state_ | state;
+  }
+
+  /** Draw the batch once, with a matrix. \pre the pass has an ObjectBuffer. */
+  void call(const gpu::Batch &batch, const glm::mat4 &world_from_object);
+  /** The same with the matrix of an object that is in the buffer already. */
+  void call(const gpu::Batch &batch, ObjectIndex object = OBJECT_IDENTITY);
+  /** Left out for views that do not touch \a volume. */
+  void call(const gpu::Batch &batch, ObjectIndex object, const CullingVolume &volume);
+  /** \a count instances of one object; their values are 0 to count - 1. */
+  void call_instances(const gpu::Batch &batch, std::uint32_t count, ObjectIndex object = OBJECT_IDENTITY);
+  /** Instances to be added until the pass is recorded, and changed between records. */
+  InstanceCall &instances(const gpu::Batch &batch, ObjectIndex object = OBJECT_IDENTITY);
+  /** \a count triangles whose vertices the shader makes up. */
+  void call_procedural(std::uint32_t triangle_count = 1, std::uint32_t instance_count = 1);
+
+ private:
+  friend class Pass;
+
+  struct Binding {
+    gpu::BindingKind kind;
+    int slot;
+    std::string name;
+    std::variant<gpu::BufferRange, TextureBinding, const gpu::BufferRange *, const TextureBinding *> value;
+    [[nodiscard]] bool is_reference() const
+    {
+      return value.index() >= 2;
+    }
+  };
+  struct ConstantRef {
+    std::uint32_t offset_bytes;
+    std::size_t size_bytes;
+    const void *value;
+  };
+  struct ConstantNote {
+    std::string name;
+    bool is_reference;
+  };
+  /** What is drawn: no more than a draw costs. */
+  struct Call {
+    gpu::BatchRange batch;
+    ObjectIndex object = OBJECT_IDENTITY;
+    std::uint32_t instance_count = 1;
+    CullingVolume volume;
+  };
+  struct ProceduralCall {
+    std::uint32_t triangle_count;
+    std::uint32_t instance_count;
+  };
+
+  ShadingGroup(const gpu::Shader &shader, ObjectBuffer *objects);
+
+  template<typename Value>
+  void bind(gpu::BindingKind kind, std::string_view name, const Value &value);
+  [[nodiscard]] const gpu::ShaderInterface::Member *constant_member(std::string_view name, std::size_t size) const;
+  void record_bindings(gpu::CommandList &list) const;
+  void record_calls(const View &view, gpu::CommandList &list) const;
+
+  const gpu::Shader &shader_;
+  ObjectBuffer *objects_;
+  gpu::State state_ = gpu::State::None;
+  std::vector<Binding> bindings_;
+  std::vector<std::byte> constants_;
+  std::vector<ConstantRef> constant_refs_;
+  std::vector<ConstantNote> constant_notes_;
+  std::vector<Call> calls_;
+  /** Deque: the caller holds references. */
+  std::deque<InstanceCall> instance_calls_;
+  std::vector<ProceduralCall> procedural_calls_;
+};
+
+class Pass {
+ public:
+  /** \a objects: where calls with a matrix put it; nullptr where there are none. Must outlive the pass. */
+  Pass(std::string name, gpu::State state, ObjectBuffer *objects = nullptr);
+
+  /** A new group, drawn after those before it. */
+  ShadingGroup &group(const gpu::Shader &shader);
+  /** Forget groups and calls; the name and state stay. */
+  void clear();
+
+  /** Append what \a view sees of the pass: to be called between begin_pass and end_pass of \a list. */
+  void record(const View &view, gpu::CommandList &list) const;
+
+  [[nodiscard]] const std::string &name() const
+  {
+    return name_;
+  }
+  [[nodiscard]] bool is_empty() const
+  {
+    return groups_.empty();
+  }
+  /** What was recorded, as text; resources by the names \a device has for them. The same on every backend. */
+  [[nodiscard]] std::string serialize(const gpu::Device &device) const;
+
+ private:
+  std::string name_;
+  gpu::State state_;
+  ObjectBuffer *objects_;
+  std::deque<ShadingGroup> groups_;
+};
+
+}  // namespace gnomon::draw

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "draw_view.hh"
+
+#include "gpu_error.hh"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gnomon::draw {
+
+View::View(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view)
+    : view_from_world_(view_from_world),
+      clip_from_view_(clip_from_view),
+      clip_from_world_(clip_from_view * view_from_world)
+{
+  const glm::mat4 rows = glm::transpose(clip_from_world_);
+  // Gribb and Hartmann 2001, with z in [0, w] reversed: near is z <= w, far z >= 0.
+  frustum_planes_ws_ = {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1],
+                        rows[3] - rows[1], rows[3] - rows[2], rows[2]};
+  for (glm::vec4 &plane : frustum_planes_ws_) {
+    const float length = glm::length(glm::vec3(plane));
+    plane = length > 0.0F ? plane / length : glm::vec4(0.0F, 0.0F, 0.0F, 1.0F);
+  }
+}
+
+bool View::touches(const CullingVolume &volume) const
+{
+  return volume.radius < 0.0F || std::ranges::all_of(frustum_planes_ws_, [&](const glm::vec4 &plane) {
+           return glm::dot(glm::vec3(plane), volume.center_ws) + plane.w >= -volume.radius;
+         });
+}
+
+glm::mat4 perspective(float half_width, float half_height, float near, float far)
+{
+  GNOMON_ASSERT(half_width > 0.0F && half_height > 0.0F && near > 0.0F && far > near,
+                "half size {}x{}, near {}, far {}", half_width, half_height, near, far);
+  glm::mat4 clip_from_view(0.0F);
+  clip_from_view[0][0] = 1.0F / half_width;
+  clip_from_view[1][1] = 1.0F / half_height;
+  clip_from_view[2][3] = -1.0F;
+  // z_clip = a · z_view + b with z_clip / w = 1 at near, 0 at far; for far → infinity a → 0, b → near.
+  const double n = near;
+  const double f = far;
+  clip_from_view[2][2] = std::isinf(far) ? 0.0F : float(n / (f - n));
+  clip_from_view[3][2] = std::isinf(far) ? near : float(n * f / (f - n));
+  return clip_from_view;
+}
+
+glm::mat4 orthographic(float half_width, float half_height, float near, float far)
+{
+  GNOMON_ASSERT(half_width > 0.0F && half_height > 0.0F && far > near, "half size {}x{}, near {}, far {}", half_width,
+                half_height, near, far);
+  glm::mat4 clip_from_view(1.0F);
+  clip_from_view[0][0] = 1.0F / half_width;
+  clip_from_view[1][1] = 1.0F / half_height;
+  const double depth = double(far) - double(near);
+  clip_from_view[2][2] = float(1.0 / depth);
+  clip_from_view[3][2] = float(double(far) / depth);
+  return clip_from_view;
+}
+
+}  // namespace gnomon::draw

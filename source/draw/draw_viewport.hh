@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "draw_engine.hh"
+#include "draw_objects.hh"
+
+#include "gpu_device.hh"
+
+#include <map>
+#include <span>
+
+namespace gnomon::draw {
+
+/** Base of what an engine keeps in a viewport: its framebuffer, texture, pass and storage lists (`fbl txl psl stl`). */
+struct EngineViewportData {
+  virtual ~EngineViewportData() = default;
+};
+
+/**
+ * One picture of a scene on a device: its size, the objects' matrices, the depth that all engines share, and what each
+ * engine keeps for it. Must go before its device.
+ */
+class Viewport {
+ public:
+  /** \pre size_px at least 1x1. \throws gpu::Error where the device cannot hold it. */
+  Viewport(gpu::Device &device, glm::ivec2 size_px);
+
+  /** Let \a engines record \a objects; to be called again when any of them changed. */
+  void sync(std::span<Engine *const> engines, std::span<const ObjectRef> objects);
+  /** Let \a engines draw what they recorded, in order. */
+  void draw(std::span<Engine *const> engines, const View &view);
+
+  [[nodiscard]] gpu::Device &device() const
+  {
+    return device_;
+  }
+  [[nodiscard]] glm::ivec2 size_px() const
+  {
+    return size_px_;
+  }
+  [[nodiscard]] ObjectBuffer &objects()
+  {
+    return objects_;
+  }
+  /** The depth of the picture, for engines to attach to their framebuffers. */
+  [[nodiscard]] const gpu::Texture &depth_texture() const
+  {
+    return depth_texture_;
+  }
+
+  /** Made by the first ask of \a engine; lives as long as the viewport. \pre always asked with the same Data. */
+  template<typename Data> Data &engine_data(const Engine &engine)
+  {
+    std::unique_ptr<EngineViewportData> &data = engine_data_[&engine];
+    if (!data) {
+      data = std::make_unique<Data>();
+    }
+    return static_cast<Data &>(*data);
+  }
+
+ private:
+  gpu::Device &device_;
+  glm::ivec2 size_px_;
+  ObjectBuffer objects_;
+  gpu::Texture depth_texture_;
+  std::map<const Engine *, std::unique_ptr<EngineViewportData>> engine_data_;
+};
+
+}  // namespace gnomon::draw

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_camera.hh"
+
+#include <glm/matrix.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace gnomon::eevee {
+
+draw::View view_of(const scene::Camera &camera, glm::ivec2 size_px, glm::vec2 offset_px)
+{
+  const bool is_perspective = camera.kind == scene::CameraKind::Perspective;
+  const float image_aspect = float(size_px.x) / float(size_px.y);
+  float half_height = is_perspective ? std::tan(0.5F * camera.vertical_angle) : camera.half_height;
+  const float frame_aspect = !is_perspective       ? camera.half_width / camera.half_height :
+                             camera.aspect > 0.0F ? camera.aspect :
+                                                    image_aspect;
+  if (image_aspect < frame_aspect) {
+    half_height *= frame_aspect / image_aspect;
+  }
+  const float half_width = half_height * image_aspect;
+  const float far = camera.far > 0.0F ? camera.far : std::numeric_limits<float>::infinity();
+  glm::mat4 clip_from_view;
+  if (is_perspective) {
+    clip_from_view = draw::perspective(half_width, half_height, camera.near, far);
+  }
+  else {
+    // A parallel view of endless depth has no finite matrix; this one has a million times its width.
+    const float depth = 1e6F * half_width;
+    clip_from_view = draw::orthographic(half_width, half_height, camera.near, std::min(far, camera.near + depth));
+  }
+  // Moving the picture by a part of w moves it by the same part of a pixel everywhere.
+  const glm::vec2 offset_clip = 2.0F * offset_px / glm::vec2(size_px);
+  for (int column = 0; column < 4; column++) {
+    clip_from_view[column][0] += offset_clip.x * clip_from_view[column][3];
+    clip_from_view[column][1] += offset_clip.y * clip_from_view[column][3];
+  }
+  return {glm::mat4(glm::inverse(glm::dmat4(camera.world_from_camera))), clip_from_view};
+}
+
+}  // namespace gnomon::eevee

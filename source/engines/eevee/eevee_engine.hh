@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "eevee_features.hh"
+#include "eevee_shaders.hh"
+#include "eevee_shadows.hh"
+
+#include "draw_engine.hh"
+#include "draw_viewport.hh"
+#include "eevee_tonemap_shared.h"
+
+namespace gnomon::eevee {
+
+enum class ViewTransform { Standard = VIEW_TRANSFORM_STANDARD, Raw = VIEW_TRANSFORM_RAW };
+
+struct Settings {
+  ShadowSettings shadow;
+  /** Samples a pixel that one picture is the mean of, at least 1. */
+  int sample_count = 1;
+  /** Make the picture that a display shows, beside the radiance. */
+  bool has_display = false;
+  ViewTransform view_transform = ViewTransform::Standard;
+  /** Stops: radiance is multiplied by 2 to this before the view transform. */
+  float exposure = 0.0F;
+  /** Measure each step on the device. */
+  bool is_timed = false;
+};
+
+/** Seconds that the device spent on a step of the frame, summed over the samples of a picture. */
+struct StepTime {
+  std::string step;
+  double seconds = 0.0;
+};
+
+/** What one viewport's picture is made of, for people and scripts to read. */
+struct Report {
+  std::vector<std::string> warnings;
+  std::vector<std::string> limits;
+  std::vector<FramePart> parts;
+  ShadowCounters shadow_counters;
+};
+
+/**
+ * Lights a scene with its lamps and their shadow maps. The frame: shadows, depth prepass, culled prepass, lit pass;
+ * then the sum of samples and the display's picture, where asked for.
+ *
+ * One picture is `sample_count` calls of draw_scene (through draw::Viewport::draw), each with a view that
+ * eevee::view_of moved by eevee::film_offset_px.
+ */
+class Engine final : public draw::Engine {
+ public:
+  /** \a scene must outlive the engine; after a change of it, draw::Viewport::sync. */
+  Engine(const scene::Scene &scene, const Settings &settings) : scene_(scene), settings_(settings) {}
+
+  [[nodiscard]] std::string_view name() const override
+  {
+    return "eevee";
+  }
+  void init(draw::Viewport &viewport) override;
+  void cache_init(draw::Viewport &viewport) override;
+  void cache_populate(draw::Viewport &viewport, const draw::ObjectRef &object) override;
+  void cache_finish(draw::Viewport &viewport) override;
+  void draw_scene(draw::Viewport &viewport, const draw::View &view) override;
+
+  /** The scene-linear picture, RGBA32F: a mean once all samples are drawn. */
+  [[nodiscard]] const gpu::Texture &radiance(draw::Viewport &viewport) const;
+  /** The display's picture, RGBA8. \pre Settings::has_display; all samples are drawn. */
+  [[nodiscard]] const gpu::Texture &display(draw::Viewport &viewport) const;
+  /** Of the samples drawn since the last call; waits for the device. Empty unless Settings::is_timed. */
+  [[nodiscard]] std::vector<StepTime> take_step_times(draw::Viewport &viewport) const;
+  [[nodiscard]] Report report(draw::Viewport &viewport) const;
+  /** The recorded passes as text. */
+  [[nodiscard]] std::string serialize_passes(draw::Viewport &viewport) const;
+
+ private:
+  const scene::Scene &scene_;
+  Settings settings_;
+};
+
+/** For a host's registry; engines that it creates read \a scene, which must outlive them. */
+[[nodiscard]] draw::EngineType engine_type(const scene::Scene &scene, const Settings &settings);
+
+/** The objects of a scene as the draw manager takes them, culling volumes included. */
+[[nodiscard]] std::vector<draw::ObjectRef> object_refs(const scene::Scene &scene);
+
+}  // namespace gnomon::eevee

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "scene.hh"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace gnomon::eevee {
+
+/** What a frame may need. The scene decides which; programs, passes and targets follow. */
+enum class Feature : std::uint32_t {
+  None = 0,
+  /** Any light at all. */
+  Light = 1U << 0,
+  /** Point or spot lamps. */
+  Punctual = 1U << 1,
+  Hemi = 1U << 2,
+  Specular = 1U << 3,
+  ShadowCube = 1U << 4,
+  ShadowMap = 1U << 5,
+};
+
+constexpr Feature operator|(Feature a, Feature b)
+{
+  return Feature(std::uint32_t(a) | std::uint32_t(b));
+}
+constexpr Feature operator&(Feature a, Feature b)
+{
+  return Feature(std::uint32_t(a) & std::uint32_t(b));
+}
+constexpr bool has(Feature mask, Feature bit)
+{
+  return (mask & bit) != Feature::None;
+}
+
+/** Something a frame consists of, or was spared, and who asked for it or why nobody did. */
+struct FramePart {
+  std::string what;
+  bool is_made = false;
+  std::string why;
+};
+
+}  // namespace gnomon::eevee

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "eevee_features.hh"
+
+#include "eevee_light_shared.h"
+#include "scene.hh"
+
+namespace gnomon::eevee {
+
+/** A lamp's entry of `light_block`, without a shadow: shadow set-up fills that in. \pre not an area lamp. */
+[[nodiscard]] shared::LightData light_data(const scene::Lamp &lamp);
+
+/** The lamps of a scene as the shaders read them. */
+struct Lamps {
+  shared::LightBlock light_block{};
+  /** For each light of the block, its lamp's index in the scene. */
+  std::vector<std::uint32_t> scene_index;
+  /** Features that the lamps ask for; shadows not among them. */
+  Feature features = Feature::None;
+  /** One for each lamp, or property of one, that is not drawn yet. */
+  std::vector<std::string> warnings;
+  /** Lamps past LIGHT_MAX, named. */
+  std::vector<std::string> limits;
+};
+
+/** Lamps that give no light (black, intensity 0) take no room. */
+[[nodiscard]] Lamps make_lamps(const scene::Scene &scene);
+
+}  // namespace gnomon::eevee

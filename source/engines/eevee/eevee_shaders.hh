@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "eevee_features.hh"
+
+#include "gpu_device.hh"
+
+#include <map>
+#include <span>
+
+namespace gnomon::eevee {
+
+enum class ShaderId { Depth, Shadow, Lit, Film, Tonemap };
+
+/** A program of the engine as data: what the engine, the checker and the tests read. */
+struct ShaderDeclaration {
+  ShaderId id;
+  std::string_view name;
+  std::string_view vertex_path;
+  std::string_view fragment_path;
+  /** The features it has variants for; others make no difference to it. */
+  Feature features;
+  /** Why it exists. */
+  std::string_view purpose;
+};
+
+/** All of them, one a ShaderId, in order. */
+[[nodiscard]] std::span<const ShaderDeclaration> shader_declarations();
+
+/** The variants of \a declaration that a scene can ask for: impossible and equivalent masks are left out. */
+[[nodiscard]] std::vector<Feature> shader_variants(const ShaderDeclaration &declaration);
+
+/** One variant, ready for gpu::Device::create_shader. */
+[[nodiscard]] gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature features);
+
+/** Programs made when first asked for, and kept. Must go before its device. */
+class ShaderCache {
+ public:
+  /** Features that the program has no variant for are ignored. \throws gpu::Error where it does not compile. */
+  const gpu::Shader &get(gpu::Device &device, ShaderId id, Feature features = Feature::None);
+  [[nodiscard]] std::size_t size() const
+  {
+    return shaders_.size();
+  }
+
+ private:
+  std::map<std::pair<ShaderId, Feature>, gpu::Shader> shaders_;
+};
+
+}  // namespace gnomon::eevee

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: MIT
+#include "gpu_device.hh"
+
+#include <algorithm>
+#include <bit>
+
+namespace gnomon::gpu {
+
+Device::Device(const Limits &limits, MessageSink sink)
+    : limits_(limits), sink_(std::move(sink)), link_(std::make_shared<DeviceLink>(DeviceLink{this}))
+{
+  for (std::vector<Slot> &slots : slots_) {
+    slots.push_back({"none", false, {}});
+  }
+}
+
+Device::~Device() = default;
+
+void Device::free_live_resources()
+{
+  for (const std::string &resource : live_resources()) {
+    message(fmt::format("{} is destroyed with its device; its owner should go first", resource));
+  }
+  for (std::size_t kind = 0; kind < KIND_COUNT; kind++) {
+    for (ResourceId id = 1; id < slots_[kind].size(); id++) {
+      if (slots_[kind][id].is_live) {
+        release(ResourceKind(kind), id);
+      }
+    }
+  }
+  link_->device = nullptr;
+}
+
+void Device::message(std::string_view text) const
+{
+  if (sink_) {
+    sink_(text);
+  }
+  else {
+    fmt::print(stderr, "gnomon: {}\n", text);
+  }
+}
+
+template<typename Create> Resource Device::make(ResourceKind kind, const std::string &name, Create &&create)
+{
+  std::vector<Slot> &slots = slots_[std::size_t(kind)];
+  std::vector<ResourceId> &free_ids = free_ids_[std::size_t(kind)];
+  if (free_ids.empty()) {
+    free_ids.push_back(ResourceId(slots.size()));
+    slots.emplace_back();
+  }
+  const ResourceId id = free_ids.back();
+  slots[id].name = name;
+  create(id);
+  slots[id].is_live = true;
+  free_ids.pop_back();
+  return {link_, kind, id};
+}
+
+void Device::release(ResourceKind kind, ResourceId id)
+{
+  Slot &slot = slots_[std::size_t(kind)][id];
+  slot.is_live = false;
+  free_ids_[std::size_t(kind)].push_back(id);
+  if (kind == ResourceKind::Batch) {
+    vertices_.free(std::uint32_t(slot.range.base_vertex), slot.range.vertex_count);
+    indices_.free(slot.range.first_index, slot.range.index_count);
+  }
+  else {
+    resource_destroy(kind, id);
+  }
+}
+
+Texture Device::create_texture(const TextureDesc &desc)
+{
+  const auto in_range = [&](std::string_view what, int value, int max) {
+    if (value < 1 || value > max) {
+      throw Error("texture '{}': {} is {}, and this device takes 1 to {}", desc.name, what, value, max);
+    }
+  };
+  const bool is_cube = desc.kind == TextureKind::Cube || desc.kind == TextureKind::CubeArray;
+  const bool is_array = desc.kind == TextureKind::Array || desc.kind == TextureKind::CubeArray;
+  in_range("width", desc.width, limits_.texture_size_max);
+  in_range("height", desc.height, limits_.texture_size_max);
+  in_range("layer count", desc.layers, !is_array ? 1 : limits_.array_layers_max / (is_cube ? 6 : 1));
+  in_range("mip level count", desc.mip_levels, int(std::bit_width(unsigned(std::max(desc.width, desc.height)))));
+  if (is_cube && desc.width != desc.height) {
+    throw Error("texture '{}': a cube's faces are square, not {}x{}", desc.name, desc.width, desc.height);
+  }
+  Resource resource = make(ResourceKind::Texture, desc.name, [&](ResourceId id) { texture_create(id, desc); });
+  counters_.textures_made++;
+  return {std::move(resource), desc};
+}
+
+Sampler Device::create_sampler(const SamplerDesc &desc)
+{
+  return Sampler(make(ResourceKind::Sampler, desc.name, [&](ResourceId id) { sampler_create(id, desc); }));
+}
+
+Framebuffer Device::create_framebuffer(const FramebufferDesc &desc)
+{
+  if (int(desc.colors.size()) > limits_.color_attachment_max) {
+    throw Error("framebuffer '{}': {} colour attachments, and this device takes {}", desc.name, desc.colors.size(),
+                limits_.color_attachment_max);
+  }
+  std::vector<Attachment> attachments = desc.colors;
+  if (desc.depth.texture) {
+    attachments.push_back(desc.depth);
+  }
+  if (attachments.empty()) {
+    throw Error("framebuffer '{}': nothing to draw into", desc.name);
+  }
+  glm::ivec2 size_px{0};
+  for (const Attachment &attachment : attachments) {
+    GNOMON_ASSERT(attachment.texture && *attachment.texture, "framebuffer '{}'", desc.name);
+    const TextureDesc &texture = attachment.texture->desc();
+    const bool is_depth_attachment = &attachment == &attachments.back() && desc.depth.texture;
+    if (is_depth(texture.format) != is_depth_attachment) {
+      throw Error("framebuffer '{}': texture '{}' of format {} cannot be its {} attachment", desc.name, texture.name,
+                  to_string(texture.format), is_depth_attachment ? "depth" : "colour");
+    }
+    if (attachment.layer < ALL_LAYERS || attachment.layer >= texture.layer_count()) {
+      throw Error("framebuffer '{}': texture '{}' has no layer {}", desc.name, texture.name, attachment.layer);
+    }
+    if (attachment.mip_level < 0 || attachment.mip_level >= texture.mip_levels) {
+      throw Error("framebuffer '{}': texture '{}' has no mip level {}", desc.name, texture.name, attachment.mip_level);
+    }
+    const glm::ivec2 size{std::max(texture.width >> attachment.mip_level, 1),
+                          std::max(texture.height >> attachment.mip_level, 1)};
+    if (size_px != glm::ivec2(0) && size != size_px) {
+      throw Error("framebuffer '{}': texture '{}' is {}x{}, another attachment {}x{}", desc.name, texture.name, size.x,
+                  size.y, size_px.x, size_px.y);
+    }
+    size_px = size;
+  }
+  return {make(ResourceKind::Framebuffer, desc.name, [&](ResourceId id) { framebuffer_create(id, desc); }), size_px};
+}
+
+Buffer Device::create_buffer(const BufferDesc &desc)
+{
+  const std::size_t max =
+      desc.kind == BufferKind::Uniform ? limits_.uniform_block_bytes_max : limits_.storage_block_bytes_max;
+  if (desc.size_bytes == 0 || desc.size_bytes > max) {
+    throw Error("buffer '{}': {} bytes, and this device takes 1 to {}", desc.name, desc.size_bytes, max);
+  }
+  return {make(ResourceKind::Buffer, desc.name, [&](ResourceId id) { buffer_create(id, desc); }), desc};
+}
+
+Batch Device::create_batch(const BatchDesc &desc)
+{
+  constexpr std::size_t COUNT_MAX = std::size_t(1) << 28U;
+  if (desc.positions.size() > COUNT_MAX || desc.indices.size() > COUNT_MAX) {
+    throw Error("batch '{}': {} vertices and {} indices, and a batch takes {} of each", desc.name,
+                desc.positions.size(), desc.indices.size(), COUNT_MAX);
+  }
+  GNOMON_ASSERT(desc.normals.empty() || desc.normals.size() == desc.positions.size(), "batch '{}': {} normals, {} positions",
+                desc.name, desc.normals.size(), desc.positions.size());
+  GNOMON_ASSERT(std::ranges::all_of(desc.indices, [&](auto index) { return index < desc.positions.size(); }),
+                "batch '{}': an index reaches past its {} vertices", desc.name, desc.positions.size());
+  BatchRange range;
+  range.vertex_count = std::uint32_t(desc.positions.size());
+  range.index_count = std::uint32_t(desc.indices.size());
+  range.base_vertex = std::int32_t(vertices_.allocate(range.vertex_count));
+  range.first_index = indices_.allocate(range.index_count);
+  Resource resource = make(ResourceKind::Batch, desc.name, [&](ResourceId id) {
+    slots_[std::size_t(ResourceKind::Batch)][id].range = range;
+    try {
+      batch_create(desc, range, vertices_.capacity(), indices_.capacity());
+    }
+    catch (...) {
+      vertices_.free(std::uint32_t(range.base_vertex), range.vertex_count);
+      indices_.free(range.first_index, range.index_count);
+      throw;
+    }
+  });
+  counters_.upload_bytes += desc.positions.size_bytes() + desc.normals.size_bytes() + desc.indices.size_bytes();
+  return {std::move(resource), range};
+}
+
+Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files)
+{
+  const std::vector<ShaderSource> stages = preprocess(desc, files);
+  ShaderInterface interface = reflect(desc.name, stages);
+  Resource resource = make(ResourceKind::Shader, desc.name, [&](ResourceId id) { shader_create(id, desc, stages); });
+  counters_.shaders_made++;
+  return {std::move(resource), desc.name, std::move(interface)};
+}
+
+TimerQuery Device::create_timer_query(std::string name)
+{
+  return TimerQuery(make(ResourceKind::TimerQuery, name, [&](ResourceId id) { timer_query_create(id, name); }));
+}
+
+void Device::update(const Buffer &buffer, std::size_t offset_bytes, std::span<const std::byte> bytes)
+{
+  GNOMON_ASSERT(offset_bytes + bytes.size() <= buffer.size_bytes(), "buffer '{}': {} bytes at {} do not fit into {}",
+                name_of(ResourceKind::Buffer, buffer.id()), bytes.size(), offset_bytes, buffer.size_bytes());
+  counters_.upload_bytes += bytes.size();
+  buffer_update(buffer.id(), offset_bytes, bytes);
+}
+
+static std::size_t layer_size_bytes(const TextureDesc &desc)
+{
+  return std::size_t(desc.width) * std::size_t(desc.height) * std::size_t(texel_size_bytes(desc.format));
+}
+
+void Device::upload(const Texture &texture, int layer, std::span<const std::byte> texels)
+{
+  const TextureDesc &desc = texture.desc();
+  GNOMON_ASSERT(layer >= 0 && layer < desc.layer_count() && texels.size() == layer_size_bytes(desc),
+                "texture '{}': {} bytes to layer {}", desc.name, texels.size(), layer);
+  counters_.upload_bytes += texels.size();
+  texture_upload(texture, layer, texels);
+}
+
+std::vector<std::byte> Device::read(const Texture &texture, int layer)
+{
+  const TextureDesc &desc = texture.desc();
+  GNOMON_ASSERT(texture && layer >= 0 && layer < desc.layer_count(), "texture '{}' has no layer {}", desc.name, layer);
+  std::vector<std::byte> texels(layer_size_bytes(desc));
+  texture_read(texture, layer, texels);
+  return texels;
+}
+
+void Device::submit(const CommandList &list)
+{
+  list_submit(list);
+  count(list);
+}
+
+void Device::count(const CommandList &list)
+{
+  for (const Command &command : list.commands()) {
+    switch (command.kind) {
+      case CommandKind::BeginPass: counters_.passes++; break;
+      case CommandKind::SetShader: counters_.shader_binds++; break;
+      case CommandKind::Draw:
+        for (std::uint32_t i = command.first; i < command.first + command.count; i++) {
+          const DrawIndirect &draw = list.draws[i];
+          counters_.draws++;
+          counters_.instances += draw.instance_count;
+          counters_.triangles += std::uint64_t(draw.index_count / 3) * draw.instance_count;
+        }
+        break;
+      case CommandKind::DrawProcedural:
+        counters_.draws++;
+        counters_.instances += command.count;
+        counters_.triangles += std::uint64_t(command.first / 3) * command.count;
+        break;
+      case CommandKind::Update: counters_.upload_bytes += command.count; break;
+      default: break;
+    }
+  }
+  counters_.upload_bytes +=
+      list.draws.size() * sizeof(DrawIndirect) + list.instances.size() * sizeof(DrawInstance);
+}
+
+const std::string &Device::name_of(ResourceKind kind, ResourceId id) const
+{
+  const std::vector<Slot> &slots = slots_[std::size_t(kind)];
+  return slots[id < slots.size() ? id : 0].name;
+}
+
+std::vector<std::string> Device::live_resources() const
+{
+  std::vector<std::string> names;
+  for (std::size_t kind = 0; kind < KIND_COUNT; kind++) {
+    for (const Slot &slot : slots_[kind]) {
+      if (slot.is_live) {
+        names.push_back(fmt::format("{} '{}'", to_string(ResourceKind(kind)), slot.name));
+      }
+    }
+  }
+  return names;
+}
+
+}  // namespace gnomon::gpu

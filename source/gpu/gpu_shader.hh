@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gpu_resource.hh"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gnomon::gpu {
+
+/** Gives the text of a shader file by its path below `shaders/`; nothing where there is no such file. */
+using ShaderFiles = std::function<std::optional<std::string_view>(std::string_view path)>;
+
+/** A shader as data. */
+struct ShaderDesc {
+  std::string name;
+  /** Paths below `shaders/`. Geometry may be empty. Each begins with `#version 450 core`. */
+  std::string vertex_path;
+  std::string geometry_path;
+  std::string fragment_path;
+  /** "NAME" or "NAME value", defined in every stage. */
+  std::vector<std::string> defines;
+};
+
+enum class BindingKind : std::uint8_t { UniformBlock, StorageBlock, Texture };
+
+[[nodiscard]] std::string_view to_string(BindingKind kind);
+
+/** The block of small per-group values; see ShaderInterface::push_constant_members. */
+inline constexpr std::string_view PUSH_CONSTANT_BLOCK = "push_constant_block";
+
+/** What a shader reads, by name: reflected by glslang, so that it is the same whatever the driver. */
+struct ShaderInterface {
+  struct Binding {
+    /** Of the block, not of an instance of it; of the sampler. */
+    std::string name;
+    BindingKind kind = BindingKind::UniformBlock;
+    /** `layout(binding = …)`. */
+    int slot = 0;
+    /** Blocks: std140 size. Textures: 0. */
+    std::uint32_t size_bytes = 0;
+  };
+  struct Member {
+    std::string name;
+    std::uint32_t offset_bytes = 0;
+    /** Up to the next member: padding included. */
+    std::uint32_t size_bytes = 0;
+  };
+  /** Sorted by kind, then slot. The push-constant block is not among them. */
+  std::vector<Binding> bindings;
+  /** Members of the block PUSH_CONSTANT_BLOCK. */
+  std::vector<Member> push_constant_members;
+  /** 0: the shader has none. */
+  std::uint32_t push_constant_size_bytes = 0;
+  /** The uniform slot that stands for push constants where the API has none. */
+  int push_constant_slot = 0;
+
+  /** nullptr: the shader reads no such thing. */
+  [[nodiscard]] const Binding *find(BindingKind kind, std::string_view name) const;
+  [[nodiscard]] const Member *find_push_constant(std::string_view name) const;
+};
+
+/** A linked program. */
+class Shader : public Resource {
+ public:
+  Shader() = default;
+  [[nodiscard]] const std::string &name() const
+  {
+    return name_;
+  }
+  [[nodiscard]] const ShaderInterface &interface() const
+  {
+    return interface_;
+  }
+
+ private:
+  friend class Device;
+  Shader(Resource resource, std::string name, ShaderInterface interface)
+      : Resource(std::move(resource)), name_(std::move(name)), interface_(std::move(interface))
+  {
+  }
+  std::string name_;
+  ShaderInterface interface_;
+};
+
+enum class ShaderStage : std::uint8_t { Vertex, Geometry, Fragment };
+
+[[nodiscard]] std::string_view to_string(ShaderStage stage);
+
+/** One stage with its includes in place: what glslang and the driver both compile. */
+struct ShaderSource {
+  ShaderStage stage = ShaderStage::Vertex;
+  std::string text;
+  /** Source string number in `#line` → path. */
+  std::vector<std::string> files;
+
+  /** \a log with `N:LINE` at the start of a message replaced by `FILE:LINE`. */
+  [[nodiscard]] std::string name_files(std::string_view log) const;
+};
+
+/**
+ * Put includes and defines in place. `#include "PATH"` takes a path below `shaders/` and is done once a stage,
+ * so that headers need no guard and a cycle ends.
+ *
+ * \throws Error naming file and line of an include that does not exist, or the file where there is no `#version`.
+ */
+[[nodiscard]] std::vector<ShaderSource> preprocess(const ShaderDesc &desc, const ShaderFiles &files);
+
+/**
+ * Compile and link with glslang for OpenGL 4.5 and read the interface.
+ *
+ * \throws Error with glslang's message, files named; also for a slot that two bindings of one kind share.
+ */
+[[nodiscard]] ShaderInterface reflect(std::string_view name, const std::vector<ShaderSource> &stages);
+
+}  // namespace gnomon::gpu

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include "gpu_texture.hh"
+
+#include <algorithm>
+
+namespace gnomon::gpu {
+
+bool is_depth(Format format)
+{
+  return format == Format::Depth32F;
+}
+
+int texel_size_bytes(Format format)
+{
+  switch (format) {
+    case Format::R16F: return 2;
+    case Format::RGBA8:
+    case Format::R32F:
+    case Format::Depth32F: return 4;
+    case Format::RGBA16F: return 8;
+    case Format::RGBA32F: return 16;
+  }
+  return 0;
+}
+
+std::string_view to_string(Format format)
+{
+  switch (format) {
+    case Format::RGBA8: return "RGBA8";
+    case Format::RGBA16F: return "RGBA16F";
+    case Format::RGBA32F: return "RGBA32F";
+    case Format::R16F: return "R16F";
+    case Format::R32F: return "R32F";
+    case Format::Depth32F: return "Depth32F";
+  }
+  return "?";
+}
+
+std::size_t TextureDesc::size_bytes() const
+{
+  std::size_t texels = 0;
+  for (int level = 0; level < mip_levels; level++) {
+    texels += std::size_t(std::max(width >> level, 1)) * std::size_t(std::max(height >> level, 1));
+  }
+  return texels * std::size_t(layer_count()) * std::size_t(texel_size_bytes(format));
+}
+
+}  // namespace gnomon::gpu

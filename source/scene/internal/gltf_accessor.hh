@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "internal/gltf_file.hh"
+
+#include <glm/vec3.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+/** Internal to source/scene. */
+namespace gnomon::scene::gltf {
+
+/**
+ * Reads the elements of one accessor where they lie. Nothing is allocated that the file's own size does not
+ * bound, and once constructed no element can lie outside its buffer.
+ */
+class AccessorReader {
+ public:
+  /** \throws Fault that names the accessor, when its elements are not all there or not of \a type (TINYGLTF_TYPE_*). */
+  AccessorReader(const File &file, int accessor_index, int type);
+
+  [[nodiscard]] std::size_t count() const
+  {
+    return accessor_.count;
+  }
+  /** No element has bytes of its own: all are zero. */
+  [[nodiscard]] bool is_all_zero() const
+  {
+    return bytes_.empty() && sparse_indices_.empty();
+  }
+  /** Element of a VEC3, normalised if the accessor says so; may be non-finite. \pre index < count(). */
+  [[nodiscard]] glm::vec3 vec3(std::size_t index) const;
+  /** Element of a SCALAR of unsigned integers. \pre index < count(), and is_unsigned(). */
+  [[nodiscard]] std::uint32_t integer(std::size_t index) const;
+  [[nodiscard]] bool is_unsigned() const;
+
+ private:
+  const tinygltf::Accessor &accessor_;
+  std::string what_;
+  std::size_t element_size_ = 0;
+  std::size_t stride_ = 0;
+  /** From the first element on; empty: zeros. */
+  std::span<const unsigned char> bytes_;
+  /** Ascending. */
+  std::vector<std::uint32_t> sparse_indices_;
+  std::span<const unsigned char> sparse_values_;
+
+  void read_sparse(const File &file);
+  /** nullptr: zeros. */
+  [[nodiscard]] const unsigned char *element(std::size_t index) const;
+  [[nodiscard]] float component(const unsigned char *bytes) const;
+};
+
+}  // namespace gnomon::scene::gltf

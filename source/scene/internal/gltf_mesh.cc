@@ -1,0 +1,394 @@
+// SPDX-License-Identifier: MIT
+#include "internal/gltf_mesh.hh"
+
+#include "internal/gltf_accessor.hh"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace gnomon::scene::gltf {
+
+namespace {
+
+/**
+ * Many primitives may name the same few bytes, so the size of the file does not limit the work in it. This does:
+ * vertices and indices that are read, of all primitives together.
+ */
+constexpr std::uint64_t element_count_max = std::uint64_t(1) << 28U;
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+/** Counts of what was wrong with a primitive's triangles, and the words for them. */
+struct Losses {
+  std::uint64_t out_of_range = 0;
+  std::uint64_t non_finite = 0;
+  std::uint64_t flat = 0;
+  std::uint64_t incomplete = 0;
+  std::uint64_t bad_normals = 0;
+
+  bool operator==(const Losses &) const = default;
+
+  void report(Warnings &warnings, const std::string &what) const
+  {
+    const auto add = [&](std::uint64_t count, const char *reason) {
+      if (count > 0) {
+        warnings.add_counted(what, count, reason);
+      }
+    };
+    add(out_of_range, "triangle left out: a vertex index is out of range");
+    add(non_finite, "triangle left out: a position is not finite or beyond 1e12 m");
+    add(flat, "triangle left out: it has no area");
+    add(incomplete, "vertex left over at the end: it makes no triangle");
+    add(bad_normals, "normal replaced by that of a face: it was zero or not finite");
+  }
+};
+
+bool is_position(const glm::vec3 &position)
+{
+  const glm::vec3 size = glm::abs(position);
+  // False for NaN too.
+  return size.x <= coordinate_max && size.y <= coordinate_max && size.z <= coordinate_max;
+}
+
+/** Twice the area times the unit normal; in double, where no product of floats vanishes or overflows. */
+glm::dvec3 area_vector(const glm::vec3 &a, const glm::vec3 &b, const glm::vec3 &c)
+{
+  const glm::dvec3 origin(a);
+  return glm::cross(glm::dvec3(b) - origin, glm::dvec3(c) - origin);
+}
+
+/** \a vector must have a length; one so small or large that its square leaves double's range is no trouble. */
+glm::vec3 unit(const glm::dvec3 &vector)
+{
+  const glm::dvec3 size = glm::abs(vector);
+  return glm::vec3(glm::normalize(vector / std::max({size.x, size.y, size.z})));
+}
+
+/** The triangles of a list, strip or fan of \a count vertices, as places in it, with the winding glTF gives them. */
+std::vector<Triangle> triangles_of(int mode, std::uint32_t count, Losses &losses)
+{
+  std::vector<Triangle> triangles;
+  const std::uint32_t triangle_count = mode == TINYGLTF_MODE_TRIANGLES ? count / 3 : count < 3 ? 0 : count - 2;
+  const std::uint32_t used_count = mode == TINYGLTF_MODE_TRIANGLES ? 3 * triangle_count
+                                   : triangle_count > 0            ? count
+                                                                   : 0;
+  losses.incomplete = count - used_count;
+  triangles.reserve(triangle_count);
+  for (std::uint32_t i = 0; i < triangle_count; i++) {
+    switch (mode) {
+      case TINYGLTF_MODE_TRIANGLE_STRIP:
+        // Every other triangle is turned round, so that all face the same way.
+        triangles.push_back({i, i + 1 + i % 2, i + 2 - i % 2});
+        break;
+      case TINYGLTF_MODE_TRIANGLE_FAN:
+        triangles.push_back({i + 1, i + 2, 0});
+        break;
+      default:
+        triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+  }
+  return triangles;
+}
+
+std::uint32_t vertex_count(std::size_t count)
+{
+  if (count > std::numeric_limits<std::uint32_t>::max()) {
+    throw Fault("count", "is too large");
+  }
+  return static_cast<std::uint32_t>(count);
+}
+
+/** One primitive on its way to a Mesh. */
+class PrimitiveReader {
+ public:
+  PrimitiveReader(const File &file, const tinygltf::Primitive &primitive, std::string what, Warnings &warnings)
+      : primitive_(primitive),
+        what_(std::move(what)),
+        warnings_(warnings),
+        positions_(file, position_accessor(), vec3_type)
+  {
+    if (positions_.is_all_zero()) {
+      throw Fault("POSITION", compression().empty() ? "holds no data" : "is compressed by " + compression());
+    }
+    if (primitive.indices >= 0) {
+      indices_.emplace(file, primitive.indices, TINYGLTF_TYPE_SCALAR);
+      if (!indices_->is_unsigned()) {
+        throw Fault("indices", "are not unsigned integers");
+      }
+      if (indices_->is_all_zero() && !compression().empty()) {
+        throw Fault("indices", "are compressed by " + compression());
+      }
+    }
+    open_normals(file);
+  }
+
+  [[nodiscard]] std::uint64_t element_count() const
+  {
+    return positions_.count() + (indices_ ? indices_->count() : 0);
+  }
+
+  /** Positions, normals, indices and bounds. Without triangles where none can be kept. */
+  Mesh read()
+  {
+    std::vector<Triangle> triangles = kept_triangles();
+    Mesh mesh;
+    if (normals_) {
+      share_vertices(triangles, mesh);
+    } else {
+      unshare_vertices(triangles, mesh);
+    }
+    for (const glm::vec3 &position : mesh.positions) {
+      mesh.bounds.extend(position);
+    }
+    if (triangles.empty() && losses_ == Losses{}) {
+      throw Fault("POSITION", "makes no triangle");
+    }
+    losses_.report(warnings_, what_);
+    return mesh;
+  }
+
+ private:
+  static constexpr int vec3_type = TINYGLTF_TYPE_VEC3;
+  const tinygltf::Primitive &primitive_;
+  std::string what_;
+  Warnings &warnings_;
+  AccessorReader positions_;
+  std::optional<AccessorReader> normals_;
+  /** None: the vertices in their order. */
+  std::optional<AccessorReader> indices_;
+  Losses losses_;
+
+  [[nodiscard]] int position_accessor() const
+  {
+    const auto found = primitive_.attributes.find("POSITION");
+    if (found == primitive_.attributes.end()) {
+      throw Fault("POSITION", "is missing");
+    }
+    return found->second;
+  }
+
+  /** The extension that holds the data instead of the accessors; empty when none does. */
+  [[nodiscard]] std::string compression() const
+  {
+    for (const auto &[name, content] : primitive_.extensions) {
+      if (name.find("compression") != name.npos) {
+        return printable(name);
+      }
+    }
+    return {};
+  }
+
+  /** Normals that cannot be read are no reason to lose the surface. */
+  void open_normals(const File &file)
+  {
+    const auto found = primitive_.attributes.find("NORMAL");
+    if (found == primitive_.attributes.end()) {
+      return;
+    }
+    try {
+      normals_.emplace(file, found->second, vec3_type);
+      if (normals_->count() != positions_.count()) {
+        throw Fault("NORMAL", "count differs from that of POSITION");
+      }
+    } catch (const Fault &fault) {
+      normals_.reset();
+      warnings_.add(what_, std::string("flat normals made instead: ") + fault.what());
+    }
+  }
+
+  /** The triangles that can be drawn, as vertex indices. */
+  std::vector<Triangle> kept_triangles()
+  {
+    const std::uint32_t count = vertex_count(indices_ ? indices_->count() : positions_.count());
+    std::vector<Triangle> triangles = triangles_of(primitive_.mode, count, losses_);
+    const auto is_lost = [this](Triangle &triangle) {
+      if (indices_) {
+        std::transform(triangle.begin(), triangle.end(), triangle.begin(),
+                       [this](std::uint32_t place) { return indices_->integer(place); });
+      }
+      return is_left_out(triangle);
+    };
+    // In order, so not std::remove_if: its predicate must not modify.
+    std::size_t kept = 0;
+    for (Triangle &triangle : triangles) {
+      if (!is_lost(triangle)) {
+        triangles[kept++] = triangle;
+      }
+    }
+    triangles.resize(kept);
+    return triangles;
+  }
+
+  bool is_left_out(const Triangle &triangle)
+  {
+    if (std::any_of(triangle.begin(), triangle.end(), [this](std::uint32_t v) { return v >= positions_.count(); })) {
+      losses_.out_of_range++;
+      return true;
+    }
+    const auto [a, b, c] = triangle;
+    if (primitive_.mode != TINYGLTF_MODE_TRIANGLES && (a == b || b == c || c == a)) {
+      // The usual way to join strips: no loss.
+      return true;
+    }
+    const std::array corners{positions_.vec3(a), positions_.vec3(b), positions_.vec3(c)};
+    if (!std::all_of(corners.begin(), corners.end(), is_position)) {
+      losses_.non_finite++;
+      return true;
+    }
+    if (area_vector(corners[0], corners[1], corners[2]) == glm::dvec3(0.0)) {
+      losses_.flat++;
+      return true;
+    }
+    return false;
+  }
+
+  /** Keep the file's vertices, in their order, less those that no triangle uses. */
+  void share_vertices(const std::vector<Triangle> &triangles, Mesh &mesh)
+  {
+    constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> new_index(positions_.count(), unused);
+    for (const Triangle &triangle : triangles) {
+      for (const std::uint32_t vertex : triangle) {
+        new_index[vertex] = 0;
+      }
+    }
+    for (std::size_t vertex = 0; vertex < new_index.size(); vertex++) {
+      if (new_index[vertex] != unused) {
+        new_index[vertex] = static_cast<std::uint32_t>(mesh.positions.size());
+        mesh.positions.push_back(positions_.vec3(vertex));
+        mesh.normals.push_back(unit_or_zero(normals_->vec3(vertex)));
+      }
+    }
+    mesh.indices.reserve(3 * triangles.size());
+    for (const Triangle &triangle : triangles) {
+      for (const std::uint32_t vertex : triangle) {
+        mesh.indices.push_back(new_index[vertex]);
+      }
+    }
+    replace_zero_normals(mesh);
+  }
+
+  /** glTF asks for flat normals where a file has none, so no two triangles can share a vertex. */
+  void unshare_vertices(const std::vector<Triangle> &triangles, Mesh &mesh) const
+  {
+    const std::size_t count = 3 * triangles.size();
+    mesh.positions.reserve(count);
+    mesh.normals.reserve(count);
+    mesh.indices.reserve(count);
+    for (const Triangle &triangle : triangles) {
+      for (const std::uint32_t vertex : triangle) {
+        mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+        mesh.positions.push_back(positions_.vec3(vertex));
+      }
+      const glm::vec3 *corners = mesh.positions.data() + mesh.positions.size() - 3;
+      mesh.normals.insert(mesh.normals.end(), 3, unit(area_vector(corners[0], corners[1], corners[2])));
+    }
+  }
+
+  static glm::vec3 unit_or_zero(const glm::vec3 &normal)
+  {
+    const bool is_usable =
+        std::isfinite(normal.x) && std::isfinite(normal.y) && std::isfinite(normal.z) && normal != glm::vec3(0.0F);
+    return is_usable ? unit(normal) : glm::vec3(0.0F);
+  }
+
+  void replace_zero_normals(Mesh &mesh)
+  {
+    for (std::size_t i = 0; i < mesh.indices.size(); i++) {
+      glm::vec3 &normal = mesh.normals[mesh.indices[i]];
+      if (normal == glm::vec3(0.0F)) {
+        const std::uint32_t *corners = mesh.indices.data() + i / 3 * 3;
+        normal = unit(area_vector(mesh.positions[corners[0]], mesh.positions[corners[1]], mesh.positions[corners[2]]));
+        losses_.bad_normals++;
+      }
+    }
+  }
+};
+
+bool is_drawn(int mode)
+{
+  return mode == TINYGLTF_MODE_TRIANGLES || mode == TINYGLTF_MODE_TRIANGLE_STRIP || mode == TINYGLTF_MODE_TRIANGLE_FAN;
+}
+
+std::string mode_reason(int mode)
+{
+  if (mode > TINYGLTF_MODE_TRIANGLE_FAN) {
+    return "primitive left out: mode " + std::to_string(mode) + " is unknown";
+  }
+  return mode == TINYGLTF_MODE_POINTS ? "primitive left out: points are not drawn"
+                                      : "primitive left out: lines are not drawn";
+}
+
+}  // namespace
+
+MeshImporter::MeshImporter(const File &file, Warnings &warnings, Scene &scene)
+    : file_(file), warnings_(warnings), scene_(scene), materials_(file, warnings, scene.materials)
+{
+}
+
+const std::vector<std::uint32_t> &MeshImporter::meshes_of(int gltf_mesh)
+{
+  const auto [place, is_new] = meshes_of_.try_emplace(gltf_mesh);
+  if (is_new) {
+    const std::size_t count = file_.model.meshes[gltf_mesh].primitives.size();
+    for (std::size_t i = 0; i < count; i++) {
+      import_primitive(gltf_mesh, i, place->second);
+    }
+  }
+  return place->second;
+}
+
+void MeshImporter::spend(std::uint64_t element_count)
+{
+  // No overflow: an accessor's count is bounded by the size of a file.
+  element_count_ += element_count;
+  if (element_count_ > element_count_max) {
+    throw std::length_error("scene: has more than " + std::to_string(element_count_max) + " vertices and indices");
+  }
+}
+
+void MeshImporter::import_primitive(int gltf_mesh, std::size_t primitive_index, std::vector<std::uint32_t> &meshes)
+{
+  const tinygltf::Mesh &source = file_.model.meshes[gltf_mesh];
+  const tinygltf::Primitive &primitive = source.primitives[primitive_index];
+  const std::string what = label("mesh", source.name, static_cast<std::size_t>(gltf_mesh));
+  primitive_count_++;
+  if (!is_drawn(primitive.mode)) {
+    warnings_.add_counted(what, 1, mode_reason(primitive.mode));
+    return;
+  }
+  Mesh mesh;
+  try {
+    PrimitiveReader reader(file_, primitive, what, warnings_);
+    spend(reader.element_count());
+    mesh = reader.read();
+  } catch (const Fault &fault) {
+    warnings_.add_counted(what, 1, std::string("primitive left out: ") + fault.what());
+    return;
+  }
+  if (mesh.indices.empty()) {
+    // What was lost has been reported.
+    return;
+  }
+  mesh.name = source.name.empty() ? "mesh " + std::to_string(gltf_mesh) : source.name;
+  if (source.primitives.size() > 1) {
+    mesh.name += '[' + std::to_string(primitive_index) + ']';
+  }
+  if (!primitive.targets.empty()) {
+    warnings_.add(what, "morph targets are not applied");
+  }
+  mesh.material = materials_.index_of(primitive.material);
+  meshes.push_back(static_cast<std::uint32_t>(scene_.meshes.size()));
+  scene_.meshes.push_back(std::move(mesh));
+}
+
+}  // namespace gnomon::scene::gltf

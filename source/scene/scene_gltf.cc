@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: MIT
+#include "scene_gltf.hh"
+
+#include "internal/gltf_file.hh"
+#include "internal/gltf_lamp.hh"
+#include "internal/gltf_mesh.hh"
+#include "internal/gltf_report.hh"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace gnomon::scene {
+
+namespace {
+
+using gltf::Fault;
+using gltf::File;
+using gltf::label;
+using gltf::Warnings;
+
+/** A mesh of many primitives on many nodes multiplies; the size of the file does not limit that. */
+constexpr std::size_t object_count_max = std::size_t(1) << 22U;
+
+/** What a file may require without our losing anything by not knowing it. */
+constexpr std::array<std::string_view, 10> harmless_extensions{
+    "KHR_lights_punctual",   "KHR_materials_specular", "KHR_materials_emissive_strength", "KHR_materials_ior",
+    "KHR_mesh_quantization", "KHR_materials_variants", "KHR_texture_transform",           "KHR_texture_basisu",
+    "EXT_texture_webp",      "KHR_xmp_json_ld",
+};
+
+/** "extension 'a', 'b'", of those the file requires and we do not know; empty for none. */
+std::string unknown_required_extensions(const File &file)
+{
+  std::string names;
+  for (const std::string &name : file.model.extensionsRequired) {
+    if (std::find(harmless_extensions.begin(), harmless_extensions.end(), name) == harmless_extensions.end()) {
+      names += (names.empty() ? "" : ", ") + gltf::printable(name);
+    }
+  }
+  return names;
+}
+
+glm::dvec3 vec3_or(const std::vector<double> &values, const glm::dvec3 &fallback)
+{
+  return values.empty() ? fallback : glm::dvec3(values[0], values[1], values[2]);
+}
+
+glm::dmat4 matrix_of(const tinygltf::Node &node, const std::string &what, Warnings &warnings)
+{
+  glm::dmat4 matrix(1.0);
+  if (!node.matrix.empty()) {
+    for (int i = 0; i < 16; i++) {
+      matrix[i / 4][i % 4] = node.matrix[i];
+    }
+    if (matrix[0][3] != 0.0 || matrix[1][3] != 0.0 || matrix[2][3] != 0.0 || matrix[3][3] != 1.0) {
+      warnings.add(what, "the last row of its matrix is not 0 0 0 1 and is not used");
+      matrix[0][3] = matrix[1][3] = matrix[2][3] = 0.0;
+      matrix[3][3] = 1.0;
+    }
+    return matrix;
+  }
+  if (!node.rotation.empty()) {
+    const std::vector<double> &r = node.rotation;
+    const double length = std::hypot(std::hypot(r[0], r[1]), std::hypot(r[2], r[3]));
+    if (length > 0.0 && std::isfinite(length)) {
+      matrix = glm::mat4_cast(glm::dquat(r[3] / length, r[0] / length, r[1] / length, r[2] / length));
+    } else {
+      warnings.add(what, "its rotation has no length and is not used");
+    }
+  }
+  const glm::dvec3 scale = vec3_or(node.scale, glm::dvec3(1.0));
+  for (int axis = 0; axis < 3; axis++) {
+    matrix[axis] *= scale[axis];
+  }
+  matrix[3] = glm::dvec4(vec3_or(node.translation, glm::dvec3(0.0)), 1.0);
+  return matrix;
+}
+
+/** Whether the matrix and the world around it can be kept in float. False for NaN. */
+bool is_usable(const glm::dmat4 &world)
+{
+  for (int column = 0; column < 4; column++) {
+    for (int row = 0; row < 3; row++) {
+      if (!(std::abs(world[column][row]) <= gltf::coordinate_max)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool is_usable(const Bounds &bounds)
+{
+  const glm::vec3 reach = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
+  return reach.x <= gltf::coordinate_max && reach.y <= gltf::coordinate_max && reach.z <= gltf::coordinate_max;
+}
+
+class Importer {
+ public:
+  explicit Importer(const File &file) : file_(file), meshes_(file, warnings_, scene_) {}
+
+  Scene import()
+  {
+    warn_about_file();
+    const std::vector<int> roots = scene_roots();
+    visit_nodes(roots);
+    check_anything_kept();
+    add_defaults();
+    scene_.warnings = warnings_.messages();
+    return std::move(scene_);
+  }
+
+ private:
+  const File &file_;
+  Warnings warnings_;
+  Scene scene_;
+  gltf::MeshImporter meshes_;
+  std::size_t lost_node_count_ = 0;
+
+  [[nodiscard]] std::string node_label(int node) const
+  {
+    return label("node", file_.model.nodes[node].name, static_cast<std::size_t>(node));
+  }
+
+  void warn_about_file()
+  {
+    if (const std::string names = unknown_required_extensions(file_); !names.empty()) {
+      warnings_.add("extensionsRequired", names + " is not known: what needs it is left out");
+    }
+    if (file_.has_animations) {
+      warnings_.add("animations", "are not played: the scene stands as its nodes say");
+    }
+  }
+
+  /** Where each node hangs, -1 for a root. \throws Fault if the nodes are not trees. */
+  [[nodiscard]] std::vector<int> parents() const
+  {
+    const std::vector<tinygltf::Node> &nodes = file_.model.nodes;
+    std::vector<int> parent(nodes.size(), -1);
+    for (std::size_t i = 0; i < nodes.size(); i++) {
+      for (const int child : nodes[i].children) {
+        if (parent[child] >= 0) {
+          throw Fault(node_label(child),
+                      "has two parents, " + node_label(parent[child]) + " and " + node_label(static_cast<int>(i)));
+        }
+        parent[child] = static_cast<int>(i);
+      }
+    }
+    // With one parent each, what no root leads to is on a ring or hangs from one.
+    std::vector<int> reached;
+    for (std::size_t i = 0; i < nodes.size(); i++) {
+      if (parent[i] < 0) {
+        reached.push_back(static_cast<int>(i));
+      }
+    }
+    std::vector<bool> is_reached(nodes.size(), false);
+    for (std::size_t i = 0; i < reached.size(); i++) {
+      is_reached[reached[i]] = true;
+      const std::vector<int> &children = nodes[reached[i]].children;
+      reached.insert(reached.end(), children.begin(), children.end());
+    }
+    const auto lost = std::find(is_reached.begin(), is_reached.end(), false);
+    if (lost != is_reached.end()) {
+      throw Fault(node_label(static_cast<int>(lost - is_reached.begin())), "is its own ancestor, or hangs from one");
+    }
+    return parent;
+  }
+
+  /** The roots of the default scene, or of the first, or of the file. */
+  [[nodiscard]] std::vector<int> scene_roots() const
+  {
+    const std::vector<int> parent = parents();
+    std::vector<int> roots;
+    if (file_.model.scenes.empty()) {
+      for (std::size_t i = 0; i < parent.size(); i++) {
+        if (parent[i] < 0) {
+          roots.push_back(static_cast<int>(i));
+        }
+      }
+      return roots;
+    }
+    roots = file_.model.scenes[std::max(file_.model.defaultScene, 0)].nodes;
+    std::vector<bool> is_listed(parent.size(), false);
+    for (const int root : roots) {
+      if (parent[root] >= 0) {
+        throw Fault(node_label(root), "is a root of the scene, but also a child of " + node_label(parent[root]));
+      }
+      if (is_listed[root]) {
+        throw Fault(node_label(root), "is twice a root of the scene");
+      }
+      is_listed[root] = true;
+    }
+    return roots;
+  }
+
+  /** Depth first, children in their order; with a stack of our own, since a file can be deeper than the program's. */
+  void visit_nodes(const std::vector<int> &roots)
+  {
+    struct Visit {
+      int node;
+      glm::dmat4 world_from_parent;
+    };
+    std::vector<Visit> stack;
+    const auto push = [&stack](const std::vector<int> &nodes, const glm::dmat4 &world) {
+      std::for_each(nodes.rbegin(), nodes.rend(), [&](int node) { stack.push_back({node, world}); });
+    };
+    push(roots, glm::dmat4(1.0));
+    while (!stack.empty()) {
+      const Visit visit = stack.back();
+      stack.pop_back();
+      const tinygltf::Node &node = file_.model.nodes[visit.node];
+      const glm::dmat4 world = visit.world_from_parent * matrix_of(node, node_label(visit.node), warnings_);
+      import_node(visit.node, world);
+      push(node.children, world);
+    }
+  }
+
+  void import_node(int index, const glm::dmat4 &world)
+  {
+    if (!is_usable(world)) {
+      warnings_.add_counted(node_label(index), 1, "left out: its matrix is not finite or reaches beyond 1e12 m");
+      lost_node_count_++;
+      return;
+    }
+    import_objects(index, world);
+    if (std::optional<Lamp> lamp = gltf::lamp_on(file_, index, world, warnings_)) {
+      scene_.lamps.push_back(std::move(*lamp));
+    }
+    if (std::optional<Camera> camera = gltf::camera_on(file_, index, world, warnings_)) {
+      scene_.cameras.push_back(std::move(*camera));
+    }
+  }
+
+  void import_objects(int index, const glm::dmat4 &world)
+  {
+    const tinygltf::Node &node = file_.model.nodes[index];
+    if (node.mesh < 0) {
+      return;
+    }
+    if (node.skin >= 0) {
+      warnings_.add_counted(node_label(index), 1, "its skin is not applied");
+    }
+    if (node.extensions.count("EXT_mesh_gpu_instancing") > 0) {
+      warnings_.add(node_label(index), "EXT_mesh_gpu_instancing is not drawn: one instance stands at the node");
+    }
+    Object object;
+    object.name = node.name.empty() ? "node " + std::to_string(index) : node.name;
+    object.world_from_object = glm::mat4(world);
+    for (const std::uint32_t mesh : meshes_.meshes_of(node.mesh)) {
+      object.mesh = mesh;
+      if (!is_usable(transformed(scene_.meshes[mesh].bounds, object.world_from_object))) {
+        warnings_.add_counted(node_label(index), 1, "object left out: it reaches beyond 1e12 m");
+        continue;
+      }
+      if (scene_.objects.size() == object_count_max) {
+        throw Fault("scene", "has more than " + std::to_string(object_count_max) + " objects");
+      }
+      scene_.objects.push_back(object);
+    }
+  }
+
+  /** A file with nothing to draw in it is a scene; one of which nothing can be drawn is not. */
+  void check_anything_kept()
+  {
+    if (!scene_.objects.empty()) {
+      return;
+    }
+    if (meshes_.primitive_count() == 0 && lost_node_count_ == 0) {
+      warnings_.add("scene", "has nothing to draw");
+      return;
+    }
+    const std::string names = unknown_required_extensions(file_);
+    throw Fault("scene", "nothing in it can be drawn" + (names.empty() ? "" : ", and it requires " + names) + ": " +
+                             warnings_.messages().back());
+  }
+
+  void add_defaults()
+  {
+    if (scene_.cameras.empty()) {
+      scene_.is_camera_default = true;
+      scene_.cameras.push_back(gltf::default_camera(scene_.bounds()));
+      warnings_.add("scene", "has no camera: one was added that frames all of it, taking +Y for up");
+    }
+    if (scene_.lamps.empty()) {
+      scene_.is_lamp_default = true;
+      scene_.lamps.push_back(gltf::default_sun(scene_.cameras.front()));
+      warnings_.add("scene", "has no lamp: a sun of 3.14 W/m2 was added, over the shoulder of camera '" +
+                                 gltf::printable(scene_.cameras.front().name) + '\'');
+    }
+  }
+};
+
+}  // namespace
+
+Scene import_gltf(const std::filesystem::path &path)
+{
+  const auto failed = [&path](std::string_view reason) {
+    return ImportError(path.string() + ": " + std::string(reason));
+  };
+  try {
+    const File file = gltf::load_file(path);
+    Scene scene = Importer(file).import();
+    scene.path = path.string();
+    return scene;
+  } catch (const Fault &fault) {
+    throw failed(fault.what());
+  } catch (const std::bad_alloc &) {
+    throw failed("there is not enough memory for it");
+  } catch (const std::exception &error) {
+    // The libraries below throw what they like.
+    throw failed(gltf::printable(error.what()));
+  }
+}
+
+}  // namespace gnomon::scene
