@@ -1,19 +1,30 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// Adds one sample of the picture to the sum, by blending.
+// Adds one sample of the picture to the sum, by blending: the samples of the pixel and its neighbours, weighted by the
+// pixel filter.
 #include "shared/slots_shared.h"
 
 layout(binding = RADIANCE_SLOT) uniform sampler2D radiance_texture;
 
 PUSH_CONSTANT_LAYOUT uniform push_constant_block
 {
-  /** 1 / number of samples. */
-  float sample_weight;
+  /** Left, middle, right; and below, middle, above. */
+  vec4 column_weights;
+  vec4 row_weights;
 };
 
 layout(location = 0) out vec4 sum;
 
 void main()
 {
-  sum = texelFetch(radiance_texture, ivec2(gl_FragCoord.xy), 0) * sample_weight;
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  ivec2 last = textureSize(radiance_texture, 0) - 1;
+  sum = vec4(0.0);
+  for (int y = 0; y < 3; y++) {
+    for (int x = 0; x < 3; x++) {
+      // Beyond the edge of the picture, its last pixels stand again.
+      ivec2 neighbour = clamp(pixel + ivec2(x, y) - 1, ivec2(0), last);
+      sum += texelFetch(radiance_texture, neighbour, 0) * (column_weights[x] * row_weights[y]);
+    }
+  }
 }

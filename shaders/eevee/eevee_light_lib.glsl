@@ -19,7 +19,7 @@ float light_visibility(LightData light, Surface surface, vec3 to_light)
 {
 #ifdef USE_SHADOW_CUBE
   if (light.shadow_kind == SHADOW_CUBE) {
-    return shadow_cube_visibility(light.shadow_index, surface, light.position_ws);
+    return shadow_cube_visibility(light.shadow_index, surface, light, to_light);
   }
 #endif
 #ifdef USE_SHADOW_MAP

@@ -18,15 +18,16 @@ struct ShadowCubeData {
 };
 SHARED_ASSERT_SIZE(ShadowCubeData, 16)
 
-/** One view of a spot or a sun, in a layer of `shadow_maps`. */
+/** One view of a spot or a sun, in a layer of `shadow_maps`. The map's axis is the lamp's LightData::forward_ws. */
 struct ShadowMapData {
   /** texcomat · clip_from_world: after division by w, xy in [0, 1] inside the map and z the reversed depth. */
   mat4 texco_from_world;
   /** Longer edge of a texel, metres, where w = 1 (a sun's w is 1 everywhere). */
   float texel_size;
   int layer;
+  /** Error of stored depths where w = 1, metres; it grows with w². \see DEPTH_ROUNDING */
+  float rounding;
   int _pad0;
-  int _pad1;
 };
 SHARED_ASSERT_SIZE(ShadowMapData, 80)
 
@@ -81,20 +82,51 @@ SHARED_FUNCTION vec3 cube_face_project(int face, vec3 v)
   }
 }
 
+/** Of a depth where rasterisation has rounded it, relative to the largest depth of the triangle. */
+SHARED_CONSTANT float DEPTH_ROUNDING = 1.2e-7f;
+
+/** Share of a texel by which a receiver is lifted besides: where facets meet, the plane of one ends within a texel. */
+SHARED_CONSTANT float LIFT_TEXELS = 0.1f;
+
 /**
- * How far to lift a receiver off its plane, metres, so that no texel of the filter sees the plane itself in front.
+ * How far to lift a receiver off its plane, metres, so that rounding does not put the plane in front of itself. The
+ * slope of the plane is not its business: each texel is compared with the plane's own depth there.
  *
- * A texel whose centre lies within r = filter_radius · texel of the lookup, across the light, holds a depth of the
- * receiver's plane up to r · tan(θ) nearer to the light; lifting the receiver by h along its normal brings it h / cos(θ)
- * nearer. So h = r · sin(θ), bounded at every angle. The second term covers rounding, in proportion to the
- * largest coordinate at work.
- *
- * \a texel: edge of a texel at the receiver, metres. \a cos_angle: between the plane's normal and the light.
+ * \a texel: edge of a texel at the receiver, metres. \a rounding: error of depths there, metres. \a magnitude: the largest
+ * world coordinate at work.
  */
-SHARED_FUNCTION float shadow_lift(float texel, float filter_radius, float cos_angle, float magnitude)
+SHARED_FUNCTION float shadow_lift(float texel, float rounding, float magnitude)
 {
-  float sin_angle = sqrt(max(1.0f - cos_angle * cos_angle, 0.0f));
-  return filter_radius * texel * sin_angle + 2e-6f * magnitude;
+  return LIFT_TEXELS * texel + rounding + 1e-6f * magnitude;
+}
+
+/**
+ * Depth of a plane at the four texels around a lookup, in the order of textureGather: (0, 1), (1, 1), (1, 0), (0, 0).
+ *
+ * \a depth: at the lookup. \a slope: change of depth a texel, across and up; depth is affine over a map for
+ * planes, in perspective too. \a fraction: of the lookup between the texel centres, in [0, 1).
+ */
+SHARED_FUNCTION vec4 plane_depths(float depth, vec2 slope, vec2 fraction)
+{
+  vec2 low = -fraction;
+  vec2 high = vec2(1.0f) - fraction;
+  return vec4(depth) + slope.x * vec4(low.x, high.x, high.x, low.x) + slope.y * vec4(high.y, high.y, low.y, low.y);
+}
+
+/**
+ * Bilinear share of the four texels, in the order of textureGather, that let light through to a receiver:
+ * those whose stored depth is not nearer than the receiver's (reversed: not greater).
+ */
+SHARED_FUNCTION float gathered_visibility(vec4 stored, vec4 receiver, vec2 fraction)
+{
+  vec4 lit = step(stored, receiver);
+  return mix(mix(lit.w, lit.z, fraction.x), mix(lit.x, lit.y, fraction.x), fraction.y);
+}
+
+/** A quotient for slopes: 0 where the plane is seen edge-on and has none. */
+SHARED_FUNCTION float slope_quotient(float numerator, float denominator)
+{
+  return abs(denominator) > 1e-30f ? numerator / denominator : 0.0f;
 }
 
 SHARED_END

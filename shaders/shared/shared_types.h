@@ -29,6 +29,7 @@ using glm::mix;
 using glm::normalize;
 using glm::pow;
 using glm::sqrt;
+using glm::step;
 using glm::vec2;
 using glm::vec3;
 using glm::vec4;

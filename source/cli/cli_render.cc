@@ -5,7 +5,6 @@
 
 #include "eevee_camera.hh"
 #include "eevee_engine.hh"
-#include "eevee_film.hh"
 #include "scene_gltf.hh"
 
 #include <fmt/format.h>
@@ -132,6 +131,7 @@ eevee::Settings engine_settings(const RenderOptions &options)
     settings.shadow.map_size_px = options.shadow_size;
   }
   settings.sample_count = options.samples;
+  settings.seed = options.seed;
   settings.has_display = !options.output.empty() && is_png(options.output);
   settings.view_transform = options.view == "raw" ? eevee::ViewTransform::Raw : eevee::ViewTransform::Standard;
   settings.exposure = options.exposure;
@@ -263,12 +263,12 @@ void render_frames(const RenderOptions &options, const scene::Camera &camera, ee
                    draw::Viewport &viewport, RenderResult &result)
 {
   const std::array<draw::Engine *, 1> engines = {&engine};
+  const draw::View view = eevee::view_of(camera, viewport.size_px());
   eevee::ShadowCounters before;
   for (int frame = 0; frame < options.repeat; frame++) {
     const Clock::time_point start = Clock::now();
     for (int i = 0; i < options.samples; i++) {
-      const glm::vec2 offset_px = eevee::film_offset_px(i, options.samples, options.seed);
-      viewport.draw(engines, eevee::view_of(camera, viewport.size_px(), offset_px));
+      viewport.draw(engines, view);
       show_progress(i + 1, options.samples);
     }
     viewport.device().finish();

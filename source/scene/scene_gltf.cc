@@ -37,16 +37,16 @@ constexpr std::array<std::string_view, 10> harmless_extensions{
     "EXT_texture_webp",      "KHR_xmp_json_ld",
 };
 
-/** "extension 'a', 'b'", of those the file requires and we do not know; empty for none. */
+/** The names of those that the file requires and we do not know; empty for none. */
 std::string unknown_required_extensions(const File &file)
 {
   std::string names;
   for (const std::string &name : file.model.extensionsRequired) {
     if (std::find(harmless_extensions.begin(), harmless_extensions.end(), name) == harmless_extensions.end()) {
-      names += (names.empty() ? "" : ", ") + gltf::printable(name);
+      names += (names.empty() ? "" : ", ") + name;
     }
   }
-  return names;
+  return gltf::printable(names);
 }
 
 glm::dvec3 vec3_or(const std::vector<double> &values, const glm::dvec3 &fallback)

@@ -376,10 +376,12 @@ TEST(GltfImport, ObjectsAreLimited)
 TEST(GltfImport, NamesCannotBreakAMessage)
 {
   GltfBuilder builder = triangle_scene();
-  builder.light({{"type", "point"}}, {{"gnomon_radius", -1}}, {{"name", "a\nb" + std::string(1000, 'x')}});
+  builder.light({{"type", "point"}}, {{"gnomon_radius", -1}}, {{"name", "a\nb" + std::string(999, 'x')}});
   const std::string error = import_error(builder);
   EXPECT_HAS(error, "lamp 'a?bxxx");
   EXPECT_LT(error.size(), 200U);
+  EXPECT_HAS(error_after([](json &d) { d["nodes"][0]["name"] = std::string(1025, 'x'); }),
+             "nodes[0].name: is longer than 1024 bytes");
 }
 
 // ---- Whatever comes ----

@@ -8,7 +8,7 @@
 
 namespace gnomon::eevee {
 
-draw::View view_of(const scene::Camera &camera, glm::ivec2 size_px, glm::vec2 offset_px)
+draw::View view_of(const scene::Camera &camera, glm::ivec2 size_px)
 {
   const bool is_perspective = camera.kind == scene::CameraKind::Perspective;
   const float image_aspect = float(size_px.x) / float(size_px.y);
@@ -30,13 +30,19 @@ draw::View view_of(const scene::Camera &camera, glm::ivec2 size_px, glm::vec2 of
     const float depth = 1e6F * half_width;
     clip_from_view = draw::orthographic(half_width, half_height, camera.near, std::min(far, camera.near + depth));
   }
-  // Moving the picture by a part of w moves it by the same part of a pixel everywhere.
-  const glm::vec2 offset_clip = 2.0F * offset_px / glm::vec2(size_px);
+  return {glm::mat4(glm::inverse(glm::dmat4(camera.world_from_camera))), clip_from_view};
+}
+
+draw::View with_sample_offset(const draw::View &view, glm::vec2 offset_px, glm::ivec2 size_px)
+{
+  // The picture moves the other way, by the same part of w everywhere.
+  const glm::vec2 offset_clip = -2.0F * offset_px / glm::vec2(size_px);
+  glm::mat4 clip_from_view = view.clip_from_view();
   for (int column = 0; column < 4; column++) {
     clip_from_view[column][0] += offset_clip.x * clip_from_view[column][3];
     clip_from_view[column][1] += offset_clip.y * clip_from_view[column][3];
   }
-  return {glm::mat4(glm::inverse(glm::dmat4(camera.world_from_camera))), clip_from_view};
+  return {view.view_from_world(), clip_from_view};
 }
 
 }  // namespace gnomon::eevee

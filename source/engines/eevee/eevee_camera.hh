@@ -11,9 +11,10 @@ namespace gnomon::eevee {
 /**
  * What \a camera sees in an image of \a size_px. Where the image's aspect differs from the camera's own, the camera's
  * frame is in the middle and wholly visible.
- *
- * \a offset_px moves the image by a part of a pixel, right and up, for antialiasing.
  */
-[[nodiscard]] draw::View view_of(const scene::Camera &camera, glm::ivec2 size_px, glm::vec2 offset_px = {});
+[[nodiscard]] draw::View view_of(const scene::Camera &camera, glm::ivec2 size_px);
+
+/** \a view with its samples moved from the middle of the pixels to \a offset_px from it, right and up. */
+[[nodiscard]] draw::View with_sample_offset(const draw::View &view, glm::vec2 offset_px, glm::ivec2 size_px);
 
 }  // namespace gnomon::eevee

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_engine.hh"
 
+#include "eevee_camera.hh"
+#include "eevee_film.hh"
 #include "eevee_lamps.hh"
 #include "eevee_materials.hh"
 
@@ -26,7 +28,7 @@ struct FramebufferList {
 
 struct TextureList {
   gpu::Texture radiance;
-  /** Mean of the samples; made for more than one. */
+  /** Sum of the weighted samples. */
   gpu::Texture film;
   gpu::Texture display;
   gpu::Sampler nearest;
@@ -34,7 +36,7 @@ struct TextureList {
 
 struct PassList {
   explicit PassList(draw::ObjectBuffer &objects)
-      : shadow_pass("shadow_pass", State::WriteDepth | State::DepthNearerEqual | State::DepthClamp, &objects),
+      : shadow_pass("shadow_pass", State::WriteDepth | State::DepthNearerEqual, &objects),
         depth_pass("depth_pass", State::WriteDepth | State::DepthNearerEqual, &objects),
         depth_pass_cull("depth_pass_cull", State::WriteDepth | State::DepthNearerEqual | State::CullBack, &objects),
         pass("pass", State::WriteColor | State::DepthEqual, &objects),
@@ -71,6 +73,9 @@ struct StorageList {
   Groups depth_cull;
   Groups lit;
   draw::ShadingGroup *shadow = nullptr;
+  /** Of the sample being drawn; the film pass reads it by reference. */
+  glm::vec4 film_columns{0.0F};
+  glm::vec4 film_rows{0.0F};
 };
 
 struct Timing {
@@ -168,12 +173,7 @@ void Engine::init(draw::Viewport &viewport)
     fbl.main_fb = device.create_framebuffer(
         {.name = "main_fb", .colors = {{&txl.radiance}}, .depth = {&viewport.depth_texture()}});
     stl.view_block = device.create_buffer({"view_block", gpu::BufferKind::Uniform, sizeof(shared::ViewData)});
-  }
-  const bool reads_pictures = settings_.sample_count > 1 || settings_.has_display;
-  if (reads_pictures && !txl.nearest) {
     txl.nearest = device.create_sampler({.name = "nearest"});
-  }
-  if (settings_.sample_count > 1 && !txl.film) {
     txl.film = picture(device, "film", gpu::Format::RGBA32F, viewport.size_px());
     fbl.film_fb = device.create_framebuffer({.name = "film_fb", .colors = {{&txl.film}}, .depth = {}});
   }
@@ -214,15 +214,14 @@ void Engine::cache_init(draw::Viewport &viewport)
     device.update(stl.material_block, 0, bytes);
   }
 
-  if (settings_.sample_count > 1) {
-    draw::ShadingGroup &film = data.psl->film_pass.group(stl.shaders.get(device, ShaderId::Film));
-    film.bind_texture("radiance_texture", data.txl.radiance, data.txl.nearest);
-    film.constant("sample_weight", 1.0F / float(settings_.sample_count));
-    film.call_procedural();
-  }
+  draw::ShadingGroup &film = data.psl->film_pass.group(stl.shaders.get(device, ShaderId::Film));
+  film.bind_texture("radiance_texture", data.txl.radiance, data.txl.nearest);
+  film.constant_ref("column_weights", &stl.film_columns);
+  film.constant_ref("row_weights", &stl.film_rows);
+  film.call_procedural();
   if (settings_.has_display) {
     draw::ShadingGroup &tonemap = data.psl->tonemap.group(stl.shaders.get(device, ShaderId::Tonemap));
-    tonemap.bind_texture("radiance_texture", radiance(viewport), data.txl.nearest);
+    tonemap.bind_texture("radiance_texture", data.txl.film, data.txl.nearest);
     tonemap.constant("view_transform", int(settings_.view_transform));
     tonemap.constant("exposure_scale", std::exp2(settings_.exposure));
     tonemap.call_procedural();
@@ -282,8 +281,10 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
   Data &data = viewport.engine_data<Data>(*this);
   auto &[fbl, txl, psl, stl, timing, samples_drawn] = data;
   gpu::Device &device = viewport.device();
+  const glm::vec2 offset_px = film_offset_px(samples_drawn, settings_.sample_count, settings_.seed);
+  const draw::View sample_view = with_sample_offset(view, offset_px, viewport.size_px());
   stl.object_block = {viewport.objects().buffer().id()};
-  device.update(stl.view_block, view_data(view));
+  device.update(stl.view_block, view_data(sample_view));
 
   gpu::CommandList list;
   const auto submit_step = [&](const char *name) {
@@ -297,27 +298,29 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
   submit_step("shadows");
 
   list.begin_pass("depth_prepass", fbl.depth_fb, {});
-  psl->depth_pass.record(view, list);
-  psl->depth_pass_cull.record(view, list);
+  psl->depth_pass.record(sample_view, list);
+  psl->depth_pass_cull.record(sample_view, list);
   list.end_pass();
   submit_step("depth_prepass");
 
   list.begin_pass("lit", fbl.main_fb, {.depth_load = gpu::LoadAction::Load});
-  psl->pass.record(view, list);
+  psl->pass.record(sample_view, list);
   list.end_pass();
   submit_step("lit");
 
+  const FilmWeights weights = film_weights(samples_drawn, settings_.sample_count, settings_.seed);
+  stl.film_columns = glm::vec4(weights.columns, 0.0F);
+  stl.film_rows = glm::vec4(weights.rows, 0.0F);
   const bool is_first = samples_drawn == 0;
+  list.begin_pass("film", fbl.film_fb, {.color_load = is_first ? gpu::LoadAction::Clear : gpu::LoadAction::Load});
+  psl->film_pass.record(sample_view, list);
+  list.end_pass();
+  submit_step("film");
+
   samples_drawn = (samples_drawn + 1) % settings_.sample_count;
-  if (!psl->film_pass.is_empty()) {
-    list.begin_pass("film", fbl.film_fb, {.color_load = is_first ? gpu::LoadAction::Clear : gpu::LoadAction::Load});
-    psl->film_pass.record(view, list);
-    list.end_pass();
-    submit_step("film");
-  }
   if (!psl->tonemap.is_empty() && samples_drawn == 0) {
     list.begin_pass("tonemap", fbl.display_fb, {.color_load = gpu::LoadAction::DontCare});
-    psl->tonemap.record(view, list);
+    psl->tonemap.record(sample_view, list);
     list.end_pass();
     submit_step("tonemap");
   }
@@ -325,8 +328,7 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
 
 const gpu::Texture &Engine::radiance(draw::Viewport &viewport) const
 {
-  const Data &data = viewport.engine_data<Data>(*this);
-  return settings_.sample_count > 1 ? data.txl.film : data.txl.radiance;
+  return viewport.engine_data<Data>(*this).txl.film;
 }
 
 const gpu::Texture &Engine::display(draw::Viewport &viewport) const
@@ -387,7 +389,7 @@ Report Engine::report(draw::Viewport &viewport) const
        "no object with a one-sided material");
   part("specular in eevee_lit", has(f, Feature::Specular), "a material reflects",
        has(f, Feature::Light) ? "every material is Lambertian" : "no lamp gives light");
-  part("film", bool(data.txl.film), fmt::format("{} samples a pixel", settings_.sample_count), "one sample a pixel");
+  part("film", true, fmt::format("{} samples a pixel", settings_.sample_count), "");
   part("tonemap", bool(data.txl.display), "a display picture was asked for", "only radiance was asked for");
   part("programs", stl.shaders.size() > 0, fmt::format("{} programs", stl.shaders.size()), "nothing to draw");
   return report;

@@ -17,6 +17,8 @@ struct Settings {
   ShadowSettings shadow;
   /** Samples a pixel that one picture is the mean of, at least 1. */
   int sample_count = 1;
+  /** Another arrangement of the samples. */
+  std::uint32_t seed = 0;
   /** Make the picture that a display shows, beside the radiance. */
   bool has_display = false;
   ViewTransform view_transform = ViewTransform::Standard;
@@ -42,10 +44,10 @@ struct Report {
 
 /**
  * Lights a scene with its lamps and their shadow maps. The frame: shadows, depth prepass, culled prepass, lit pass;
- * then the sum of samples and the display's picture, where asked for.
+ * then the film, where samples are summed under the pixel filter, and the display's picture, where asked for.
  *
- * One picture is `sample_count` calls of draw_scene (through draw::Viewport::draw), each with a view that
- * eevee::view_of moved by eevee::film_offset_px.
+ * One picture is `sample_count` calls of draw_scene (through draw::Viewport::draw) with one view; the engine moves
+ * its samples within the pixels.
  */
 class Engine final : public draw::Engine {
  public:

@@ -2,24 +2,31 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include <cstdint>
 
 namespace gnomon::eevee {
 
-/** Width of the pixel filter where it has fallen to nothing, pixels: Blackman-Harris of 1.5 px in Cycles' and EEVEE's terms. */
+/** Width over which the pixel filter falls to nothing, pixels: Blackman-Harris of 1.5 px in Cycles' and EEVEE's terms. */
 inline constexpr double FILTER_SUPPORT_PX = 3.0;
 
-/** Share of the filter's weight at or left of \a x_px from its centre; 0 to 1 over ± half the support. Closed form. */
-[[nodiscard]] double filter_cdf(double x_px);
-
-/** The offset below which \a share of the weight lies: samples there, all of weight 1, amount to the filter. */
-[[nodiscard]] double filter_inverse_cdf(double share);
+/** Blackman-Harris (Harris 1978): 1 in the middle, 0 from half the support on. */
+[[nodiscard]] double filter_weight(double distance_px);
 
 /**
- * Where in (and around) the pixel the \a index-th of \a count samples lies, from its centre, pixels.
- * One sample is at the centre. More are spread evenly over the filter's weight; another \a seed shifts them.
+ * Where in each pixel the \a index-th of \a count samples lies, from its centre, in [-0.5, 0.5) pixels. One sample is
+ * at the centre. More are a lattice that fills the square evenly; another \a seed shifts it.
  */
 [[nodiscard]] glm::vec2 film_offset_px(int index, int count, std::uint32_t seed);
+
+/** Weights of one sample's three columns and three rows of pixels around a pixel, so that all samples' sum to 1. */
+struct FilmWeights {
+  glm::vec3 columns{0.0F};
+  glm::vec3 rows{0.0F};
+};
+
+/** \see film_offset_px. A pixel is the filter's mean of all samples that lie within its support, its neighbours' too. */
+[[nodiscard]] FilmWeights film_weights(int index, int count, std::uint32_t seed);
 
 }  // namespace gnomon::eevee

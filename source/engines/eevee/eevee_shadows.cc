@@ -24,10 +24,28 @@ const std::array<glm::mat4, 6> cubefacemat = {
 
 const glm::mat4 texcomat({0.5F, 0, 0, 0}, {0, 0.5F, 0, 0}, {0, 0, 1, 0}, {0.5F, 0.5F, 0, 1});
 
-float lamp_near(const scene::Bounds &bounds)
+static scene::Bounds union_of(const std::vector<scene::Bounds> &boxes)
 {
-  // Reversed float depth keeps its precision however near this is; it must only be above 0.
-  return bounds.is_empty() ? 1e-3F : std::clamp(1e-5F * bounds.radius(), 1e-6F, 1e3F);
+  scene::Bounds all;
+  for (const scene::Bounds &box : boxes) {
+    all.extend(box);
+  }
+  return all;
+}
+
+float lamp_near(const glm::vec3 &position_ws, const std::vector<scene::Bounds> &casters_ws)
+{
+  constexpr float NEAR_MIN = 1e-6F;
+  if (casters_ws.empty()) {
+    return NEAR_MIN;
+  }
+  float nearest = std::numeric_limits<float>::max();
+  for (const scene::Bounds &box : casters_ws) {
+    nearest = std::min(nearest, glm::distance(position_ws, glm::clamp(position_ws, box.min, box.max)));
+  }
+  // Along a face's axis what is at this distance is nearer, by up to the square root of 3.
+  const float floor = 2e-4F * union_of(casters_ws).radius();
+  return std::max({0.5F * nearest, floor, NEAR_MIN});
 }
 
 std::array<draw::View, 6> shadow_cube_views(const glm::vec3 &position_ws, float near)
@@ -80,6 +98,24 @@ LampBox box_in(const glm::dmat3 &lamp_from_world, const scene::Bounds &bounds)
   return box;
 }
 
+/**
+ * Whether a caster may darken any receiver. One that is flat along an axis cannot where all receivers are on its lit
+ * side: the ground of most scenes, which would stretch the map over everything.
+ */
+bool can_darken(const scene::Bounds &caster, const scene::Bounds &receivers, const glm::vec3 &forward_ws)
+{
+  for (int axis = 0; axis < 3; axis++) {
+    const float tolerance = 1e-5F * receivers.radius();
+    const bool is_flat = caster.max[axis] - caster.min[axis] <= tolerance;
+    const bool is_below = forward_ws[axis] < 0.0F && receivers.min[axis] >= caster.min[axis] - tolerance;
+    const bool is_above = forward_ws[axis] > 0.0F && receivers.max[axis] <= caster.max[axis] + tolerance;
+    if (is_flat && (is_below || is_above)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 std::optional<SunFit> fit_sun(const scene::Lamp &lamp, const std::vector<glm::dvec3> &receivers_ws,
@@ -87,8 +123,11 @@ std::optional<SunFit> fit_sun(const scene::Lamp &lamp, const std::vector<glm::dv
 {
   // Directions only: a sun is nowhere.
   const glm::dmat3 from_world = glm::transpose(glm::dmat3(lamp.world_from_lamp));
+  const glm::vec3 forward_ws = -glm::vec3(lamp.world_from_lamp[2]);
+  scene::Bounds receiver_bounds;
   LampBox receivers;
   for (const glm::dvec3 &point : receivers_ws) {
+    receiver_bounds.extend(glm::vec3(point));
     receivers.extend(from_world * point);
   }
   LampBox casters;
@@ -97,7 +136,7 @@ std::optional<SunFit> fit_sun(const scene::Lamp &lamp, const std::vector<glm::dv
     const bool overlaps = box.min.x <= receivers.max.x && box.max.x >= receivers.min.x &&
                           box.min.y <= receivers.max.y && box.max.y >= receivers.min.y &&
                           box.max.z >= receivers.min.z;
-    if (overlaps) {
+    if (overlaps && can_darken(caster, receiver_bounds, forward_ws)) {
       casters.extend(box.min);
       casters.extend(box.max);
     }
@@ -219,8 +258,7 @@ void Shadows::place_render_blocks(gpu::Device &device)
     return;
   }
   if (!sampler_) {
-    sampler_ = device.create_sampler(
-        {.name = "shadow_sampler", .filter = gpu::Filter::Linear, .is_depth_comparison = true});
+    sampler_ = device.create_sampler({.name = "shadow_sampler"});
     shadow_block_buffer_ =
         device.create_buffer({"shadow_block", gpu::BufferKind::Uniform, sizeof(shared::ShadowBlock)});
   }
@@ -232,14 +270,11 @@ void Shadows::place_render_blocks(gpu::Device &device)
 
 void Shadows::finish(const scene::Scene &scene)
 {
-  scene_bounds_ = {};
-  for (const scene::Bounds &caster : casters_ws_) {
-    scene_bounds_.extend(caster);
-  }
-  const float near = lamp_near(scene_bounds_);
   for (std::size_t i = 0; i < cubes_.slots.size(); i++) {
     Slot &slot = cubes_.slots[i];
-    const auto views = shadow_cube_views(glm::vec3(scene.lamps[slot.lamp].world_from_lamp[3]), near);
+    const glm::vec3 position_ws(scene.lamps[slot.lamp].world_from_lamp[3]);
+    const float near = lamp_near(position_ws, casters_ws_);
+    const auto views = shadow_cube_views(position_ws, near);
     slot.views.assign(views.begin(), views.end());
     shadow_block_.cubes[i] = {near, 2.0F / float(settings_.cube_size_px), 6 * int(i), 0};
   }
@@ -247,6 +282,7 @@ void Shadows::finish(const scene::Scene &scene)
     Slot &slot = maps_.slots[i];
     const scene::Lamp &lamp = scene.lamps[slot.lamp];
     if (lamp.kind == scene::LampKind::Spot) {
+      const float near = lamp_near(glm::vec3(lamp.world_from_lamp[3]), casters_ws_);
       slot.views = {shadow_spot_view(lamp, near, settings_.map_size_px)};
       write_map_data(slot, int(i));
     }
@@ -262,6 +298,9 @@ void Shadows::write_map_data(const Slot &slot, int index)
   const float half_size = 1.0F / std::min(view.clip_from_view()[0][0], view.clip_from_view()[1][1]);
   data.texel_size = 2.0F * half_size / float(settings_.map_size_px);
   data.layer = index;
+  // Reversed: near / w where w is a distance, and (far - z) / (far - near) for a sun.
+  const glm::mat4 &projection = view.clip_from_view();
+  data.rounding = shared::DEPTH_ROUNDING / (view.is_perspective() ? projection[3][2] : projection[2][2]);
 }
 
 /** A fit holds for other views as long as it covers them, and is not much larger than they need. */
@@ -288,7 +327,7 @@ void Shadows::fit_suns(const draw::View &view)
       continue;
     }
     if (receivers.empty()) {
-      receivers = visible_corners(view, scene_bounds_);
+      receivers = visible_corners(view, union_of(casters_ws_));
     }
     std::optional<SunFit> fit = fit_sun(lamp, receivers, casters_ws_, settings_.map_size_px);
     if (!slot.views.empty() && still_fits(slot.sun, fit)) {

@@ -32,8 +32,12 @@ struct ShadowSettings {
 /** Spots wider than this (half the opening, radians) look into a cube: a plane would stretch too far. */
 inline constexpr float SPOT_MAP_ANGLE_MAX = 1.2F;
 
-/** Distance of the near plane of a lamp in a scene of this size; casters before it are clamped to it. Metres. */
-[[nodiscard]] float lamp_near(const scene::Bounds &bounds);
+/**
+ * Distance of the near plane of a lamp, metres: what is nearer casts no shadow. As far as the nearest caster's box
+ * allows, because depths lose precision with the square of distance / near; where the lamp is inside of a box, a
+ * small part of the scene's size.
+ */
+[[nodiscard]] float lamp_near(const glm::vec3 &position_ws, const std::vector<scene::Bounds> &casters_ws);
 
 /** The six views of a cube around \a position_ws. */
 [[nodiscard]] std::array<draw::View, 6> shadow_cube_views(const glm::vec3 &position_ws, float near);
@@ -159,7 +163,6 @@ class Shadows {
 
   const scene::Scene *scene_ = nullptr;
   ShadowSettings settings_;
-  scene::Bounds scene_bounds_;
   std::vector<scene::Bounds> casters_ws_;
   Array cubes_;
   Array maps_;

@@ -22,6 +22,8 @@ namespace {
 using nlohmann::json;
 using Names = std::initializer_list<std::string_view>;
 
+constexpr std::size_t name_size_max = 1024;
+
 enum class Kind { Index, Indices, Size, Number, Numbers, Boolean, String };
 
 /** A property that the import reads. */
@@ -259,6 +261,10 @@ void Checker::check_value(const Place &place, json &value, const Property &prope
     case Kind::String:
       if (!value.is_string()) {
         fail(place, value, "a string");
+      }
+      // Names are copied to every object.
+      if (property.key == "name" && value.get_ref<const std::string &>().size() > name_size_max) {
+        throw Fault(place.text(), "is longer than " + std::to_string(name_size_max) + " bytes");
       }
       break;
   }
