@@ -4,6 +4,7 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
+#include <cmath>
 #include <stdexcept>
 #include <unistd.h>
 
@@ -30,6 +31,22 @@ void write_atomically(const fs::path &path, const std::function<void(const fs::p
     fs::remove(beside, ignored);
     throw;
   }
+}
+
+NonFinite find_non_finite(glm::ivec2 size_px, std::span<const float> rgba)
+{
+  NonFinite found;
+  const auto width = std::size_t(size_px.x);
+  // From the upper row on, so that the first is the one a viewer meets first.
+  for (int y = 0; y < size_px.y; y++) {
+    const std::span<const float> row = rgba.subspan(std::size_t(size_px.y - 1 - y) * width * 4, width * 4);
+    for (std::size_t i = 0; i < row.size(); i++) {
+      if (!std::isfinite(row[i]) && found.count++ == 0) {
+        found.first_px = {int(i / 4), y};
+      }
+    }
+  }
+  return found;
 }
 
 static void write_image(const fs::path &path, glm::ivec2 size_px, OIIO::TypeDesc type, const void *pixels,

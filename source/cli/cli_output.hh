@@ -3,6 +3,7 @@
 
 #include <glm/vec2.hpp>
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -20,6 +21,17 @@ namespace gnomon::cli {
  */
 void write_atomically(const std::filesystem::path &path,
                       const std::function<void(const std::filesystem::path &beside)> &write);
+
+/** What is wrong with a picture's numbers. */
+struct NonFinite {
+  /** Channels that are NaN or infinite. */
+  std::size_t count = 0;
+  /** The first such pixel, from the upper left; meaningless while count is 0. */
+  glm::ivec2 first_px{0};
+};
+
+/** \a rgba: four floats a pixel, rows from the bottom. */
+[[nodiscard]] NonFinite find_non_finite(glm::ivec2 size_px, std::span<const float> rgba);
 
 /** Names and values for an image's header. */
 using Metadata = std::vector<std::pair<std::string, std::string>>;

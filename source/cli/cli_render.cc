@@ -139,19 +139,6 @@ eevee::Settings engine_settings(const RenderOptions &options)
   return settings;
 }
 
-/** Channels of \a rgba that are NaN or infinite; the first such pixel goes to \a first. */
-std::size_t count_non_finite(std::span<const float> rgba, std::size_t &first)
-{
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < rgba.size(); i++) {
-    if (!std::isfinite(rgba[i])) {
-      first = count == 0 ? i / 4 : first;
-      count++;
-    }
-  }
-  return count;
-}
-
 template<typename T> std::vector<T> read_as(gpu::Device &device, const gpu::Texture &texture)
 {
   const std::vector<std::byte> bytes = device.read(texture);
@@ -287,12 +274,11 @@ int write_picture(const RenderOptions &options, const scene::Camera &camera, eev
 {
   const glm::ivec2 size_px = viewport.size_px();
   const std::vector<float> radiance = read_as<float>(viewport.device(), engine.radiance(viewport));
-  std::size_t first = 0;
-  result.non_finite_count = count_non_finite(radiance, first);
-  if (result.non_finite_count > 0) {
+  const NonFinite non_finite = find_non_finite(size_px, radiance);
+  result.non_finite_count = non_finite.count;
+  if (non_finite.count > 0) {
     fmt::print(stderr, "gnomon: {}: {} values of the picture are not finite, the first at pixel ({}, {}); not written\n",
-               options.scene, result.non_finite_count, first % std::size_t(size_px.x),
-               std::size_t(size_px.y) - 1 - first / std::size_t(size_px.x));
+               options.scene, non_finite.count, non_finite.first_px.x, non_finite.first_px.y);
     return STATUS_NON_FINITE;
   }
   Metadata metadata = {{"gnomon:scene", options.scene},

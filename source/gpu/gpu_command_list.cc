@@ -62,8 +62,8 @@ void CommandList::draw_procedural(std::uint32_t vertex_count, std::uint32_t inst
 
 void CommandList::update(const Buffer &buffer, std::size_t offset_bytes, std::span<const std::byte> bytes)
 {
-  GNOMON_ASSERT(offset_bytes + bytes.size() <= buffer.size_bytes(), "{} bytes at {} do not fit into {}", bytes.size(),
-                offset_bytes, buffer.size_bytes());
+  GNOMON_ASSERT(buffer && offset_bytes + bytes.size() <= buffer.size_bytes(), "{} bytes at {} do not fit into {}",
+                bytes.size(), offset_bytes, buffer.size_bytes());
   commands_.push_back({CommandKind::Update, std::uint32_t(offset_bytes), buffer.id(), append_bytes(bytes),
                        std::uint32_t(bytes.size())});
 }

@@ -193,8 +193,9 @@ TimerQuery Device::create_timer_query(std::string name)
 
 void Device::update(const Buffer &buffer, std::size_t offset_bytes, std::span<const std::byte> bytes)
 {
-  GNOMON_ASSERT(offset_bytes + bytes.size() <= buffer.size_bytes(), "buffer '{}': {} bytes at {} do not fit into {}",
-                name_of(ResourceKind::Buffer, buffer.id()), bytes.size(), offset_bytes, buffer.size_bytes());
+  GNOMON_ASSERT(buffer && offset_bytes + bytes.size() <= buffer.size_bytes(),
+                "buffer '{}': {} bytes at {} do not fit into {}", name_of(ResourceKind::Buffer, buffer.id()),
+                bytes.size(), offset_bytes, buffer.size_bytes());
   counters_.upload_bytes += bytes.size();
   buffer_update(buffer.id(), offset_bytes, bytes);
 }
@@ -207,7 +208,7 @@ static std::size_t layer_size_bytes(const TextureDesc &desc)
 void Device::upload(const Texture &texture, int layer, std::span<const std::byte> texels)
 {
   const TextureDesc &desc = texture.desc();
-  GNOMON_ASSERT(layer >= 0 && layer < desc.layer_count() && texels.size() == layer_size_bytes(desc),
+  GNOMON_ASSERT(texture && layer >= 0 && layer < desc.layer_count() && texels.size() == layer_size_bytes(desc),
                 "texture '{}': {} bytes to layer {}", desc.name, texels.size(), layer);
   counters_.upload_bytes += texels.size();
   texture_upload(texture, layer, texels);

@@ -179,7 +179,7 @@ struct GlDeviceDesc {
 #else
   bool is_debug = true;
 #endif
-  MessageSink sink;
+  MessageSink sink{};
 };
 
 /**

@@ -95,6 +95,9 @@ class Preprocessor {
     }
     for (std::string line; std::getline(lines, line);) {
       number++;
+      if (line.ends_with('\r')) {
+        line.pop_back();
+      }
       append_line(line, path, number, file);
     }
   }

@@ -33,6 +33,13 @@ inline constexpr std::string_view PUSH_CONSTANT_BLOCK = "push_constant_block";
 
 /** What a shader reads, by name: reflected by glslang, so that it is the same whatever the driver. */
 struct ShaderInterface {
+  struct Member {
+    /** Of a block's member, arrays and structs resolved: `lights[0].color`. */
+    std::string name;
+    std::uint32_t offset_bytes = 0;
+    /** Up to the next member: padding included. */
+    std::uint32_t size_bytes = 0;
+  };
   struct Binding {
     /** Of the block, not of an instance of it; of the sampler. */
     std::string name;
@@ -41,12 +48,8 @@ struct ShaderInterface {
     int slot = 0;
     /** Blocks: std140 size. Textures: 0. */
     std::uint32_t size_bytes = 0;
-  };
-  struct Member {
-    std::string name;
-    std::uint32_t offset_bytes = 0;
-    /** Up to the next member: padding included. */
-    std::uint32_t size_bytes = 0;
+    /** Blocks: by offset; of an array, the first element only. */
+    std::vector<Member> members;
   };
   /** Sorted by kind, then slot. The push-constant block is not among them. */
   std::vector<Binding> bindings;

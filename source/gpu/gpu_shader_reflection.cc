@@ -40,41 +40,71 @@ EShLanguage language(ShaderStage stage)
   return EShLangVertex;
 }
 
+/** Whether \a name goes through an array's second element or a later one. */
+bool is_later_element(std::string_view name)
+{
+  for (std::size_t i = name.find('['); i != std::string_view::npos; i = name.find('[', i + 1)) {
+    if (name.substr(i, 3) != "[0]") {
+      return true;
+    }
+  }
+  return false;
+}
+
+/** Members of the block that \a variables name by \a block_index, in order. */
+template<typename Get>
+std::vector<ShaderInterface::Member> members_of(const glslang::TObjectReflection &block, int block_index, int count,
+                                                Get &&variable)
+{
+  std::vector<ShaderInterface::Member> members;
+  const std::string prefix = block.name + ".";
+  for (int i = 0; i < count; i++) {
+    const glslang::TObjectReflection &member = variable(i);
+    if (member.index == block_index && member.offset >= 0) {
+      const bool has_prefix = member.name.starts_with(prefix);
+      members.push_back({member.name.substr(has_prefix ? prefix.size() : 0), std::uint32_t(member.offset), 0});
+    }
+  }
+  std::ranges::stable_sort(members, {}, &ShaderInterface::Member::offset_bytes);
+  for (std::size_t i = 0; i < members.size(); i++) {
+    const std::uint32_t end = i + 1 == members.size() ? std::uint32_t(block.size) : members[i + 1].offset_bytes;
+    members[i].size_bytes = end - members[i].offset_bytes;
+  }
+  std::erase_if(members, [](const ShaderInterface::Member &member) { return is_later_element(member.name); });
+  return members;
+}
+
 ShaderInterface interface_of(glslang::TProgram &program)
 {
   ShaderInterface interface;
-  int push_constant_block = -1;
+  const int variable_count = program.getNumUniformVariables();
+  const auto variable = [&](int i) -> const glslang::TObjectReflection & { return program.getUniform(i); };
   for (int i = 0; i < program.getNumUniformBlocks(); i++) {
     const glslang::TObjectReflection &block = program.getUniformBlock(i);
+    std::vector<ShaderInterface::Member> members = members_of(block, i, variable_count, variable);
     if (block.name == PUSH_CONSTANT_BLOCK) {
-      push_constant_block = i;
       interface.push_constant_slot = block.getBinding();
       interface.push_constant_size_bytes = std::uint32_t(block.size);
+      interface.push_constant_members = std::move(members);
       continue;
     }
-    interface.bindings.push_back({block.name, BindingKind::UniformBlock, block.getBinding(), std::uint32_t(block.size)});
+    interface.bindings.push_back({block.name, BindingKind::UniformBlock, block.getBinding(), std::uint32_t(block.size),
+                                  std::move(members)});
   }
   for (int i = 0; i < program.getNumBufferBlocks(); i++) {
     const glslang::TObjectReflection &block = program.getBufferBlock(i);
-    interface.bindings.push_back({block.name, BindingKind::StorageBlock, block.getBinding(), std::uint32_t(block.size)});
+    interface.bindings.push_back(
+        {block.name, BindingKind::StorageBlock, block.getBinding(), std::uint32_t(block.size),
+         members_of(block, i, program.getNumBufferVariables(), [&](int j) -> const glslang::TObjectReflection & {
+           return program.getBufferVariable(j);
+         })});
   }
-  for (int i = 0; i < program.getNumUniformVariables(); i++) {
-    const glslang::TObjectReflection &uniform = program.getUniform(i);
-    if (uniform.index == -1 && uniform.getBinding() >= 0) {
-      interface.bindings.push_back({uniform.name, BindingKind::Texture, uniform.getBinding(), 0});
+  for (int i = 0; i < variable_count; i++) {
+    const glslang::TObjectReflection &uniform = variable(i);
+    // Outside of blocks stand textures, and plain uniforms, which have no slot either: check_slots refuses those.
+    if (uniform.index == -1) {
+      interface.bindings.push_back({uniform.name, BindingKind::Texture, uniform.getBinding(), 0, {}});
     }
-    else if (uniform.index >= 0 && uniform.index == push_constant_block) {
-      // The instance's name stands before the member's.
-      const std::string name = uniform.name.substr(uniform.name.rfind('.') + 1);
-      interface.push_constant_members.push_back({name, std::uint32_t(uniform.offset), 0});
-    }
-  }
-  std::ranges::sort(interface.push_constant_members, {}, &ShaderInterface::Member::offset_bytes);
-  for (std::size_t i = 0; i < interface.push_constant_members.size(); i++) {
-    const bool is_last = i + 1 == interface.push_constant_members.size();
-    const std::uint32_t end =
-        is_last ? interface.push_constant_size_bytes : interface.push_constant_members[i + 1].offset_bytes;
-    interface.push_constant_members[i].size_bytes = end - interface.push_constant_members[i].offset_bytes;
   }
   std::ranges::sort(interface.bindings, [](const auto &a, const auto &b) {
     return std::tie(a.kind, a.slot, a.name) < std::tie(b.kind, b.slot, b.name);
@@ -84,11 +114,20 @@ ShaderInterface interface_of(glslang::TProgram &program)
 
 void check_slots(std::string_view name, const ShaderInterface &interface)
 {
-  for (std::size_t i = 1; i < interface.bindings.size(); i++) {
-    const ShaderInterface::Binding &a = interface.bindings[i - 1];
+  for (std::size_t i = 0; i < interface.bindings.size(); i++) {
     const ShaderInterface::Binding &b = interface.bindings[i];
-    if (a.kind == b.kind && a.slot == b.slot) {
-      throw Error("shader '{}': {} '{}' and '{}' share slot {}", name, to_string(a.kind), a.name, b.name, a.slot);
+    if (b.slot < 0) {
+      throw Error("shader '{}': {} '{}' has no layout(binding = …)", name, to_string(b.kind), b.name);
+    }
+    if (i > 0 && interface.bindings[i - 1].kind == b.kind && interface.bindings[i - 1].slot == b.slot) {
+      throw Error("shader '{}': {} '{}' and '{}' share slot {}", name, to_string(b.kind),
+                  interface.bindings[i - 1].name, b.name, b.slot);
+    }
+    if (interface.push_constant_size_bytes > 0 && b.kind == BindingKind::UniformBlock &&
+        b.slot == interface.push_constant_slot)
+    {
+      throw Error("shader '{}': {} '{}' and '{}' share slot {}", name, to_string(b.kind), PUSH_CONSTANT_BLOCK, b.name,
+                  b.slot);
     }
   }
 }
@@ -116,7 +155,7 @@ ShaderInterface reflect(std::string_view name, const std::vector<ShaderSource> &
   if (!program.link(MESSAGES)) {
     throw Error("shader '{}' does not link:\n{}", name, program.getInfoLog());
   }
-  program.buildReflection(EShReflectionSeparateBuffers | EShReflectionAllBlockVariables);
+  program.buildReflection(EShReflectionSeparateBuffers | EShReflectionAllBlockVariables | EShReflectionStrictArraySuffix);
   ShaderInterface interface = interface_of(program);
   check_slots(name, interface);
   return interface;

@@ -76,6 +76,7 @@ struct StorageList {
   /** Of the sample being drawn; the film pass reads it by reference. */
   glm::vec4 film_columns{0.0F};
   glm::vec4 film_rows{0.0F};
+  double film_weight_sum = 0.0;
 };
 
 struct Timing {
@@ -214,6 +215,7 @@ void Engine::cache_init(draw::Viewport &viewport)
     device.update(stl.material_block, 0, bytes);
   }
 
+  stl.film_weight_sum = film_weight_sum(settings_.sample_count, settings_.seed);
   draw::ShadingGroup &film = data.psl->film_pass.group(stl.shaders.get(device, ShaderId::Film));
   film.bind_texture("radiance_texture", data.txl.radiance, data.txl.nearest);
   film.constant_ref("column_weights", &stl.film_columns);
@@ -308,7 +310,8 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
   list.end_pass();
   submit_step("lit");
 
-  const FilmWeights weights = film_weights(samples_drawn, settings_.sample_count, settings_.seed);
+  const FilmWeights weights =
+      film_weights(samples_drawn, settings_.sample_count, settings_.seed, stl.film_weight_sum);
   stl.film_columns = glm::vec4(weights.columns, 0.0F);
   stl.film_rows = glm::vec4(weights.rows, 0.0F);
   const bool is_first = samples_drawn == 0;

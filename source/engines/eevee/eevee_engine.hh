@@ -14,7 +14,7 @@ namespace gnomon::eevee {
 enum class ViewTransform { Standard = VIEW_TRANSFORM_STANDARD, Raw = VIEW_TRANSFORM_RAW };
 
 struct Settings {
-  ShadowSettings shadow;
+  ShadowSettings shadow{};
   /** Samples a pixel that one picture is the mean of, at least 1. */
   int sample_count = 1;
   /** Another arrangement of the samples. */

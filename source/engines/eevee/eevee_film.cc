@@ -43,15 +43,20 @@ double sum(const glm::dvec3 &weights)
 
 }  // namespace
 
-FilmWeights film_weights(int index, int count, std::uint32_t seed)
+double film_weight_sum(int count, std::uint32_t seed)
 {
   double total = 0.0;
   for (int i = 0; i < count; i++) {
     const glm::vec2 offset_px = film_offset_px(i, count, seed);
     total += sum(axis_weights(offset_px.x)) * sum(axis_weights(offset_px.y));
   }
+  return total;
+}
+
+FilmWeights film_weights(int index, int count, std::uint32_t seed, double weight_sum)
+{
   const glm::vec2 offset_px = film_offset_px(index, count, seed);
-  return {glm::vec3(axis_weights(offset_px.x) / total), glm::vec3(axis_weights(offset_px.y))};
+  return {glm::vec3(axis_weights(offset_px.x) / weight_sum), glm::vec3(axis_weights(offset_px.y))};
 }
 
 }  // namespace gnomon::eevee

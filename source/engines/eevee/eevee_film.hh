@@ -20,13 +20,19 @@ inline constexpr double FILTER_SUPPORT_PX = 3.0;
  */
 [[nodiscard]] glm::vec2 film_offset_px(int index, int count, std::uint32_t seed);
 
-/** Weights of one sample's three columns and three rows of pixels around a pixel, so that all samples' sum to 1. */
+/** Weights of one sample's three columns and three rows of pixels around a pixel. */
 struct FilmWeights {
   glm::vec3 columns{0.0F};
   glm::vec3 rows{0.0F};
 };
 
-/** \see film_offset_px. A pixel is the filter's mean of all samples that lie within its support, its neighbours' too. */
-[[nodiscard]] FilmWeights film_weights(int index, int count, std::uint32_t seed);
+/** What the weights of all \a count samples amount to, before they are divided by it. */
+[[nodiscard]] double film_weight_sum(int count, std::uint32_t seed);
+
+/**
+ * \see film_offset_px. A pixel is the filter's mean of all samples that lie within its support, its neighbours' too:
+ * the weights of all samples sum to 1. \a weight_sum: film_weight_sum of the same count and seed.
+ */
+[[nodiscard]] FilmWeights film_weights(int index, int count, std::uint32_t seed, double weight_sum);
 
 }  // namespace gnomon::eevee

@@ -178,6 +178,7 @@ void Shadows::sync(gpu::Device &device, const scene::Scene &scene, Lamps &lamps,
   scene_ = &scene;
   settings_ = settings;
   casters_ws_.clear();
+  fitted_clip_from_world_.reset();
   limits_.clear();
   cubes_.slots.clear();
   maps_.slots.clear();
@@ -311,14 +312,16 @@ static bool still_fits(const std::optional<SunFit> &old, const std::optional<Sun
   }
   constexpr double AREA_RATIO_MAX = 1.5;
   const auto area = [](const SunFit &fit) { return (fit.max.x - fit.min.x) * (fit.max.y - fit.min.y); };
-  // Antialiasing moves the view by parts of a pixel, and the margin of the fit has room for that.
-  const glm::dvec3 slack = 2e-3 * (needed->max - needed->min);
-  return glm::all(glm::lessThanEqual(old->min, needed->min + slack)) &&
-         glm::all(glm::greaterThanEqual(old->max, needed->max - slack)) && area(*old) <= AREA_RATIO_MAX * area(*needed);
+  return glm::all(glm::lessThanEqual(old->min, needed->min)) &&
+         glm::all(glm::greaterThanEqual(old->max, needed->max)) && area(*old) <= AREA_RATIO_MAX * area(*needed);
 }
 
 void Shadows::fit_suns(const draw::View &view)
 {
+  if (fitted_clip_from_world_ == view.clip_from_world()) {
+    return;
+  }
+  fitted_clip_from_world_ = view.clip_from_world();
   std::vector<glm::dvec3> receivers;
   for (std::size_t i = 0; i < maps_.slots.size(); i++) {
     Slot &slot = maps_.slots[i];

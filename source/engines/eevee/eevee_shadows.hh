@@ -164,6 +164,8 @@ class Shadows {
   const scene::Scene *scene_ = nullptr;
   ShadowSettings settings_;
   std::vector<scene::Bounds> casters_ws_;
+  /** What the suns were last fitted to. */
+  std::optional<glm::mat4> fitted_clip_from_world_;
   Array cubes_;
   Array maps_;
   gpu::Sampler sampler_;

@@ -44,6 +44,11 @@ GLenum gl_target(TextureKind kind)
   return GL_TEXTURE_2D;
 }
 
+GLenum gl_target(BufferKind kind)
+{
+  return kind == BufferKind::Uniform ? GL_UNIFORM_BUFFER : GL_SHADER_STORAGE_BUFFER;
+}
+
 /** Vertex inputs. */
 enum AttributeLocation : GLuint { POSITION = ATTRIBUTE_POSITION,
   NORMAL = ATTRIBUTE_NORMAL,
@@ -245,7 +250,11 @@ class GlDevice final : public Device {
   {
     GLuint buffer = 0;
     glCreateBuffers(1, &buffer);
-    glNamedBufferData(buffer, GLsizeiptr(desc.size_bytes), nullptr, GL_DYNAMIC_DRAW);
+    // Not by name: Mesa's rasteriser holds updates back until earlier draws are done only where it knows the target.
+    const GLenum target = gl_target(desc.kind);
+    glBindBuffer(target, buffer);
+    glBufferData(target, GLsizeiptr(desc.size_bytes), nullptr, GL_DYNAMIC_DRAW);
+    glBindBuffer(target, 0);
     label(GL_BUFFER, buffer, desc.name);
     buffers_[id] = {buffer, desc.size_bytes};
     check_or_destroy(ResourceKind::Buffer, id, fmt::format("buffer '{}'", desc.name));
@@ -580,8 +589,8 @@ void GlDevice::list_submit(const CommandList &list)
       case CommandKind::BindStorage: {
         const GlBuffer &buffer = buffers_.at(command.id);
         const std::size_t size = command.count > 0 ? command.count : buffer.size_bytes - command.first;
-        const GLenum target = command.kind == CommandKind::BindUniform ? GL_UNIFORM_BUFFER : GL_SHADER_STORAGE_BUFFER;
-        glBindBufferRange(target, command.slot, buffer.name, GLintptr(command.first), GLsizeiptr(size));
+        const auto kind = command.kind == CommandKind::BindUniform ? BufferKind::Uniform : BufferKind::Storage;
+        glBindBufferRange(gl_target(kind), command.slot, buffer.name, GLintptr(command.first), GLsizeiptr(size));
         break;
       }
       case CommandKind::BindTexture:

@@ -80,7 +80,7 @@ struct Range {
   }
   [[nodiscard]] std::string text() const
   {
-    return (is_min_included ? "from " : "above ") + gltf::text(min) + (max >= large ? " on" : " to " + gltf::text(max));
+    return (is_min_included ? "from " : "above ") + gltf::text(min) + " to " + gltf::text(max);
   }
 };
 

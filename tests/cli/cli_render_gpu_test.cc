@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// `gnomon render` on the driver.
+#include "cli_process.hh"
+#include "gpu_device_fixture.hh"
+
+#include <nlohmann/json.hpp>
+
+#include <OpenImageIO/imageio.h>
+
+namespace gnomon {
+namespace {
+
+using test::example;
+using test::Finished;
+
+class CliRenderTest : public test::ProgramTest {
+ protected:
+  void SetUp() override
+  {
+    if (!test::testing_gl_device()) {
+      GTEST_SKIP() << "no device to render with";
+    }
+  }
+};
+
+TEST_F(CliRenderTest, WritesAPictureWithItsMetadata)
+{
+  const Finished finished = run("render " + example("plaza") + " -o out.exr --size 64x36 --samples 2 --seed 3");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const auto input = OIIO::ImageInput::open((folder / "out.exr").string());
+  ASSERT_TRUE(input);
+  EXPECT_EQ(input->spec().width, 64);
+  EXPECT_EQ(input->spec().height, 36);
+  EXPECT_EQ(input->spec().format, OIIO::TypeDesc::FLOAT);
+  EXPECT_EQ(input->spec().get_string_attribute("gnomon:camera"), "camera");
+  EXPECT_EQ(input->spec().get_string_attribute("gnomon:samples"), "2");
+  EXPECT_EQ(input->spec().get_string_attribute("gnomon:seed"), "3");
+  EXPECT_EQ(input->spec().get_string_attribute("gnomon:units"), "scene-linear radiance, W/(sr m^2)");
+  EXPECT_EQ(file_count(), 1U) << "nothing but the picture is left";
+  EXPECT_NE(finished.out.find((folder / "out.exr").string()), std::string::npos) << "where it is: " << finished.out;
+}
+
+TEST_F(CliRenderTest, ThePngIsTheRightWayUp)
+{
+  ASSERT_EQ(run("render " + example("plaza") + " -o out.png --size 64x36").status, 0);
+  const auto input = OIIO::ImageInput::open((folder / "out.png").string());
+  ASSERT_TRUE(input);
+  std::vector<unsigned char> pixels(std::size_t(64) * 36 * 3);
+  ASSERT_TRUE(input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, pixels.data()));
+  // Beyond the ground's far corner, in the upper left, there is nothing; in the lower left there is ground.
+  EXPECT_EQ(int(pixels[0]), 0);
+  EXPECT_GT(int(pixels[std::size_t(64) * 35 * 3]), 50);
+}
+
+TEST_F(CliRenderTest, EqualSeedsGiveEqualPictures)
+{
+  for (const std::string name : {"a", "b"}) {
+    ASSERT_EQ(run("render " + example("spots") + " -o " + name + ".exr --size 48x27 --samples 3 --seed 4").status, 0);
+  }
+  const auto pixels = [&](const std::string &name) {
+    std::vector<float> values(std::size_t(48) * 27 * 3);
+    OIIO::ImageInput::open((folder / name).string())->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, values.data());
+    return values;
+  };
+  EXPECT_EQ(pixels("a.exr"), pixels("b.exr"));
+}
+
+TEST_F(CliRenderTest, TheBrightestLampThatIsLetInIsFinite)
+{
+  write("bright.gltf", R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual"],
+    "extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","intensity":1e12}]}},
+    "buffers":[{"uri":"data:application/octet-stream;base64,AACAvwAAAAAAAIA/AACAPwAAAAAAAIA/AAAAAAAAAAAAAIC/","byteLength":36}],
+    "bufferViews":[{"buffer":0,"byteLength":36}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[-1,0,-1],"max":[1,0,1]}],
+    "materials":[{"doubleSided":true}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
+    "nodes":[{"mesh":0},{"translation":[0,1e-7,0],"extensions":{"KHR_lights_punctual":{"light":0}}}],
+    "scenes":[{"nodes":[0,1]}],"scene":0})");
+  const Finished finished = run("render bright.gltf -o out.exr --size 32x32 --json run.json");
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_EQ(nlohmann::json::parse(read("run.json"))["non_finite"], 0);
+}
+
+TEST_F(CliRenderTest, WithoutAnyDriverTheAttemptsAreNamed)
+{
+  const std::string hide = "env -u DISPLAY -u WAYLAND_DISPLAY __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent '" GNOMON_PROGRAM "' ";
+  const std::string command = "cd '" + folder.string() + "' && " + hide + "render " + example("plaza") +
+                              " -o out.png 2> stderr.txt";
+  const int status = std::system(command.c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  const std::string err = read("stderr.txt");
+  for (const char *way : {"EGL surfaceless", "EGL device", "hidden window"}) {
+    EXPECT_NE(err.find(way), std::string::npos) << err;
+  }
+}
+
+/** Every model of Debian's assimp-testmodels, the malformed ones included. */
+TEST_F(CliRenderTest, TestModelsAreRenderedOrRefusedWithAMessage)
+{
+  const std::filesystem::path models = "/usr/share/assimp/models";
+  if (!std::filesystem::exists(models)) {
+    ASSERT_EQ(std::getenv("CI"), nullptr) << "assimp-testmodels is not installed";
+    GTEST_SKIP() << "assimp-testmodels is not installed";
+  }
+  int rendered = 0;
+  for (const char *kind : {"glTF", "glTF2"}) {
+    for (const auto &entry : std::filesystem::recursive_directory_iterator(models / kind)) {
+      if (entry.path().extension() != ".gltf" && entry.path().extension() != ".glb") {
+        continue;
+      }
+      const std::string file = "'" + entry.path().string() + "'";
+      for (const std::string &command : {"info " + file, "render " + file + " -o out.png --size 64x36 --samples 2"}) {
+        const Finished finished = run(command);
+        EXPECT_TRUE(finished.status == 0 || finished.status == 1) << command << ": " << finished.status << finished.err;
+        if (finished.status == 1) {
+          EXPECT_NE(finished.err.find(entry.path().filename().string()), std::string::npos) << finished.err;
+        }
+        rendered += finished.status == 0;
+      }
+    }
+  }
+  EXPECT_GT(rendered, 40);
+}
+
+}  // namespace
+}  // namespace gnomon

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+// The command line's promise, as far as it needs no driver.
+#include "cli_output.hh"
+#include "cli_process.hh"
+
+#include <nlohmann/json.hpp>
+
+#include <OpenImageIO/imageio.h>
+
+#include <limits>
+
+namespace gnomon {
+namespace {
+
+using test::example;
+using test::Finished;
+
+class CliTest : public test::ProgramTest {};
+
+TEST_F(CliTest, HelpAndVersionAreDone)
+{
+  EXPECT_EQ(run("--help").status, 0);
+  EXPECT_EQ(run("render --help").status, 0);
+  EXPECT_EQ(run("--version").out, "gnomon 0.1.0\n");
+}
+
+TEST_F(CliTest, WrongUsageEndsWithTwoAndSaysWhy)
+{
+  for (const std::string arguments :
+       {"", "paint", "render", "render x.glb", "render x.glb -o x.jpg", "render x.glb -o x.png --size 64",
+        "render x.glb -o x.png --size 0x9", "render x.glb -o x.png --size 64x64x", "render x.glb -o x.png --samples 0",
+        "render x.glb -o x.png --samples many", "render x.glb -o x.png --shadow soft", "render x.glb -o x.png --what",
+        "render x.glb -o x.png --backend vulkan", "render x.glb -o x.png --shadow-size -4"})
+  {
+    const Finished finished = run(arguments);
+    EXPECT_EQ(finished.status, 2) << arguments;
+    EXPECT_FALSE(finished.err.empty()) << arguments;
+  }
+}
+
+TEST_F(CliTest, WhatIsNotBuiltEndsWithTwoAndSaysSo)
+{
+  for (const std::string arguments :
+       {"report a.glb -o d", "stability -o d", "shaders check", "bench", "view a.glb", "render a.glb -o a.png --frames 1-3",
+        "render a.glb -o a.png --aov depth", "render a.glb -o a.png --shadow esm", "render a.glb -o a.png --shadow pcf"})
+  {
+    const Finished finished = run(arguments);
+    EXPECT_EQ(finished.status, 2) << arguments;
+    EXPECT_NE(finished.err.find("not built yet"), std::string::npos) << arguments << ": " << finished.err;
+  }
+}
+
+TEST_F(CliTest, AMissingSceneEndsWithOneAndIsNamed)
+{
+  for (const std::string command : {"info nowhere.glb", "render nowhere.glb -o out.png --backend null"}) {
+    const Finished finished = run(command);
+    EXPECT_EQ(finished.status, 1);
+    EXPECT_NE(finished.err.find("nowhere.glb"), std::string::npos) << finished.err;
+    EXPECT_EQ(std::count(finished.err.begin(), finished.err.end(), '\n'), 1) << finished.err;
+  }
+}
+
+TEST_F(CliTest, AMissingFolderIsFoundBeforeTheWork)
+{
+  const Finished finished = run("render " + example("plaza") + " -o nowhere/out.png");
+  EXPECT_EQ(finished.status, 1);
+  EXPECT_NE(finished.err.find("nowhere/out.png"), std::string::npos) << finished.err;
+}
+
+TEST_F(CliTest, AnUnknownCameraIsAnErrorThatNamesThoseThereAre)
+{
+  const Finished finished = run("render " + example("plaza") + " --backend null --camera side");
+  EXPECT_EQ(finished.status, 1);
+  EXPECT_NE(finished.err.find("no camera 'side'; it has: camera"), std::string::npos) << finished.err;
+}
+
+TEST_F(CliTest, InfoTellsWhatAnExampleHolds)
+{
+  const Finished finished = run("info " + example("plaza"));
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  // shared/tools/reference_scene.py: a ground and 14 objects; 420 W over 4π sr, and 2 W/m².
+  EXPECT_NE(finished.out.find("15 objects of 15 meshes"), std::string::npos) << finished.out;
+  EXPECT_NE(finished.out.find("lamp 'POINT', point, 33.4225 W/sr"), std::string::npos) << finished.out;
+  EXPECT_NE(finished.out.find("lamp 'SUN', sun, 2 W/m²"), std::string::npos) << finished.out;
+}
+
+TEST_F(CliTest, TheNullBackendWritesNoPictureAndSaysSo)
+{
+  const Finished finished = run("render " + example("plaza") + " -o out.png --backend null --size 32x32 --samples 2");
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_NE(finished.err.find("no picture is written"), std::string::npos);
+  EXPECT_EQ(file_count(), 0U);
+}
+
+TEST_F(CliTest, JsonHoldsTimesCountersAndWhatWasMade)
+{
+  const Finished finished =
+      run("render " + example("room") + " --backend null --size 64x32 --samples 2 --repeat 3 --json run.json");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const nlohmann::json json = nlohmann::json::parse(read("run.json"));
+  EXPECT_EQ(json["frame_seconds"].size(), 3U);
+  for (const nlohmann::json &seconds : json["frame_seconds"]) {
+    EXPECT_GE(seconds.get<double>(), 0.0);
+  }
+  // Four point lamps, all six faces each, in the first frame alone.
+  EXPECT_EQ(json["frames"][0]["lamps_updated"], 4);
+  EXPECT_EQ(json["frames"][0]["faces_drawn"], 24);
+  EXPECT_EQ(json["frames"][1]["lamps_updated"], 0);
+  EXPECT_EQ(json["limits"].size(), 0U);
+  EXPECT_EQ(json["non_finite"], 0);
+  EXPECT_GT(json["counters"]["draws"].get<int>(), 0);
+  for (const char *list : {"made", "left_out"}) {
+    EXPECT_FALSE(json[list].empty());
+    for (const nlohmann::json &part : json[list]) {
+      EXPECT_FALSE(part["what"].get<std::string>().empty());
+      EXPECT_FALSE(part["why"].get<std::string>().empty());
+    }
+  }
+}
+
+/** glTF with a point lamp and nothing else, \a count times. */
+std::string lamps_gltf(int count)
+{
+  nlohmann::json nodes = nlohmann::json::array();
+  nlohmann::json roots = nlohmann::json::array();
+  for (int i = 0; i < count; i++) {
+    nodes.push_back({{"name", "lamp" + std::to_string(i)},
+                     {"translation", {0.1 * i, 1.0, 0.0}},
+                     {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    roots.push_back(i);
+  }
+  const nlohmann::json gltf = {
+      {"asset", {{"version", "2.0"}}},
+      {"extensionsUsed", {"KHR_lights_punctual"}},
+      {"extensions", {{"KHR_lights_punctual", {{"lights", {{{"type", "point"}, {"intensity", 683}}}}}}}},
+      {"nodes", nodes},
+      {"scenes", {{{"nodes", roots}}}},
+      {"scene", 0}};
+  return gltf.dump();
+}
+
+TEST_F(CliTest, ALimitIsNamedAndFailsOnlyWhenStrict)
+{
+  write("lamps.gltf", lamps_gltf(300));
+  const std::string render = "render lamps.gltf --backend null --size 8x8 --shadow-size 16";
+  const Finished lax = run(render);
+  EXPECT_EQ(lax.status, 0) << lax.err;
+  EXPECT_NE(lax.err.find("limit: 45 of 300 lamps give no light"), std::string::npos) << lax.err;
+  EXPECT_NE(lax.err.find("'lamp299'"), std::string::npos);
+  const Finished strict = run(render + " --strict");
+  EXPECT_EQ(strict.status, 4) << strict.err;
+}
+
+TEST_F(CliTest, ExplainSaysWhatWasLeftOutAndWhy)
+{
+  const Finished finished = run("render " + example("plaza") + " --backend null --size 8x8 --explain");
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_NE(finished.out.find("left out\n"), std::string::npos) << finished.out;
+  EXPECT_NE(finished.out.find("every material is Lambertian"), std::string::npos) << finished.out;
+}
+
+TEST_F(CliTest, AFileIsThereWholeOrNotAtAll)
+{
+  const std::filesystem::path path = folder / "file.txt";
+  EXPECT_THROW(cli::write_atomically(path,
+                                     [](const std::filesystem::path &beside) {
+                                       std::ofstream(beside) << "half";
+                                       throw std::runtime_error("full disk");
+                                     }),
+               std::runtime_error);
+  EXPECT_EQ(file_count(), 0U);
+  cli::write_atomically(path, [](const std::filesystem::path &beside) { std::ofstream(beside) << "whole"; });
+  EXPECT_EQ(read("file.txt"), "whole");
+  // A failure leaves the older file as it was.
+  EXPECT_THROW(cli::write_atomically(path, [](const std::filesystem::path &) { throw std::runtime_error("no"); }),
+               std::runtime_error);
+  EXPECT_EQ(read("file.txt"), "whole");
+  EXPECT_EQ(file_count(), 1U);
+}
+
+TEST_F(CliTest, EveryNonFiniteValueIsCountedAndTheFirstFound)
+{
+  std::vector<float> rgba(std::size_t(3) * 2 * 4, 1e30F);
+  EXPECT_EQ(cli::find_non_finite({3, 2}, rgba).count, 0U);
+  // Rows from the bottom: the second row in memory is the upper one.
+  rgba[4] = std::numeric_limits<float>::infinity();
+  rgba[4 * 5 + 2] = std::numeric_limits<float>::quiet_NaN();
+  rgba[4 * 5 + 3] = -std::numeric_limits<float>::infinity();
+  const cli::NonFinite found = cli::find_non_finite({3, 2}, rgba);
+  EXPECT_EQ(found.count, 3U);
+  EXPECT_EQ(found.first_px, glm::ivec2(2, 0));
+}
+
+TEST_F(CliTest, ExrKeepsFloatsRowsAndMetadata)
+{
+  // Two pixels wide, two high, from the bottom: the first value of each pixel tells it.
+  const std::vector<float> rgba = {1e-6F, 0, 0, 9, 2, 0, 0, 9, 3, 0, 0, 9, 65536.5F, 7, 8, 9};
+  const std::filesystem::path path = folder / "image.exr";
+  cli::write_exr(path, {2, 2}, rgba, {{"gnomon:seed", "5"}});
+  const auto input = OIIO::ImageInput::open(path.string());
+  ASSERT_TRUE(input) << OIIO::geterror();
+  EXPECT_EQ(input->spec().nchannels, 3);
+  EXPECT_EQ(input->spec().format, OIIO::TypeDesc::FLOAT);
+  EXPECT_EQ(input->spec().get_string_attribute("gnomon:seed"), "5");
+  EXPECT_EQ(input->spec().get_string_attribute("Software"), "gnomon 0.1.0");
+  std::vector<float> read(12);
+  ASSERT_TRUE(input->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, read.data()));
+  EXPECT_EQ(read, (std::vector<float>{3, 0, 0, 65536.5F, 7, 8, 1e-6F, 0, 0, 2, 0, 0}));
+}
+
+}  // namespace
+}  // namespace gnomon

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_camera.hh"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace gnomon::eevee {
+namespace {
+
+glm::vec3 ndc(const draw::View &view, const glm::vec3 &position_ws)
+{
+  const glm::vec4 clip = view.clip_from_world() * glm::vec4(position_ws, 1.0F);
+  return glm::vec3(clip) / clip.w;
+}
+
+TEST(CameraView, PutsTheFrameEdgeAtTheImageEdge)
+{
+  scene::Camera camera;
+  camera.vertical_angle = 1.0F;
+  camera.near = 0.5F;
+  camera.far = 100.0F;
+  const draw::View view = view_of(camera, {200, 100});
+  const float half_height = std::tan(0.5F);
+  EXPECT_NEAR(ndc(view, {0, half_height * 3.0F, -3.0F}).y, 1.0F, 1e-6F);
+  EXPECT_NEAR(ndc(view, {half_height * 2.0F * 3.0F, 0, -3.0F}).x, 1.0F, 1e-6F);
+  EXPECT_NEAR(ndc(view, {0, 0, -0.5F}).z, 1.0F, 1e-6F);
+  EXPECT_NEAR(ndc(view, {0, 0, -100.0F}).z, 0.0F, 1e-6F);
+}
+
+TEST(CameraView, WithoutFarPlaneReachesInfinity)
+{
+  scene::Camera camera;
+  const draw::View view = view_of(camera, {64, 64});
+  const float depth = ndc(view, {0, 0, -1e9F}).z;
+  EXPECT_GT(depth, 0.0F);
+  EXPECT_NEAR(depth, camera.near / 1e9F, 1e-12F);
+}
+
+TEST(CameraView, KeepsTheWholeFrameWhateverTheImage)
+{
+  scene::Camera camera;
+  camera.vertical_angle = 0.8F;
+  camera.aspect = 1.5F;
+  const float half_height = std::tan(0.4F);
+  for (const glm::ivec2 size : {glm::ivec2(150, 100), glm::ivec2(400, 100), glm::ivec2(100, 400), glm::ivec2(1, 9)}) {
+    const glm::vec3 corner = ndc(view_of(camera, size), {1.5F * half_height, half_height, -1.0F});
+    EXPECT_LE(corner.x, 1.0F + 1e-6F);
+    EXPECT_LE(corner.y, 1.0F + 1e-6F);
+    EXPECT_NEAR(std::max(corner.x, corner.y), 1.0F, 1e-6F) << size.x << "x" << size.y;
+  }
+}
+
+TEST(CameraView, OrthographicKeepsSizeAtEveryDistance)
+{
+  scene::Camera camera;
+  camera.kind = scene::CameraKind::Orthographic;
+  camera.half_width = 4.0F;
+  camera.half_height = 2.0F;
+  camera.near = 0.0F;
+  camera.far = 50.0F;
+  const draw::View view = view_of(camera, {200, 100});
+  EXPECT_FALSE(view.is_perspective());
+  for (const float z : {-1.0F, -10.0F, -49.0F}) {
+    EXPECT_NEAR(ndc(view, {4, 2, z}).x, 1.0F, 1e-6F);
+    EXPECT_NEAR(ndc(view, {4, 2, z}).y, 1.0F, 1e-6F);
+    EXPECT_NEAR(ndc(view, {0, 0, z}).z, 1.0F + z / 50.0F, 1e-6F);
+  }
+}
+
+TEST(CameraView, StaysFiniteForExtremeCameras)
+{
+  for (const float angle : {1e-6F, 3.1415925F}) {
+    for (const float near : {1e-6F, 1e9F}) {
+      for (const scene::CameraKind kind : {scene::CameraKind::Perspective, scene::CameraKind::Orthographic}) {
+        for (const float far : {0.0F, std::nextafter(near, 1e30F)}) {
+          scene::Camera camera;
+          camera.kind = kind;
+          camera.vertical_angle = angle;
+          camera.near = near;
+          camera.far = far;
+          const draw::View view = view_of(camera, {16384, 1});
+          for (int i = 0; i < 16; i++) {
+            EXPECT_TRUE(std::isfinite(view.clip_from_world()[i / 4][i % 4])) << angle << " " << near << " " << far;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(SampleOffset, MovesThePictureByPartsOfAPixelAtEveryDistance)
+{
+  scene::Camera camera;
+  const glm::ivec2 size{320, 200};
+  const draw::View view = view_of(camera, size);
+  const draw::View moved = with_sample_offset(view, {0.25F, -0.5F}, size);
+  for (const float z : {-0.2F, -3.0F, -1e4F}) {
+    const glm::vec3 point{0.1F * z, 0.2F * z, z};
+    const glm::vec2 shift_px = 0.5F * glm::vec2(size) * glm::vec2(ndc(moved, point) - ndc(view, point));
+    // The sample moves right, so what it sees moves left.
+    EXPECT_NEAR(shift_px.x, -0.25F, 1e-3F);
+    EXPECT_NEAR(shift_px.y, 0.5F, 1e-3F);
+  }
+}
+
+}  // namespace
+}  // namespace gnomon::eevee

@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: MIT
+// Light and shadow against closed forms, on the driver.
+#include "eevee_test_scene.hh"
+#include "gpu_device_fixture.hh"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace gnomon::eevee {
+namespace {
+
+using test::Picture;
+using test::Renderer;
+
+constexpr float PI = std::numbers::pi_v<float>;
+
+class EngineGpuTest : public test::GpuDeviceTest {
+ protected:
+  /** A square of half size \a half at \a center, facing \a normal. */
+  void add_square(const glm::vec3 &center, const glm::vec3 &normal, float half, std::uint32_t mesh)
+  {
+    const glm::vec3 up = std::abs(glm::normalize(normal).y) < 0.9F ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
+    const glm::mat4 world_from_square =
+        glm::inverse(glm::lookAt(center, center - normal, up)) * glm::scale(glm::mat4(1.0F), glm::vec3(half));
+    test::add_object(scene, mesh, world_from_square);
+  }
+  Picture render(const scene::Camera &camera, const Settings &settings = {}, glm::ivec2 size_px = {64, 64})
+  {
+    Renderer renderer(*device, scene, size_px, settings);
+    const Picture picture = renderer.picture(camera);
+    EXPECT_EQ(picture.non_finite_count(), 0U);
+    return picture;
+  }
+
+  scene::Scene scene;
+  std::uint32_t square = test::add_square_mesh(scene, test::add_material(scene, {0.8F, 0.4F, 0.2F}));
+  scene::Camera above = test::camera_at({0, 0, 5}, {0, 0, 0}, 0.2F);
+};
+
+TEST_F(EngineGpuTest, SunIsAlbedoOverPiTimesCosine)
+{
+  add_square({0, 0, 0}, {0, 0, 1}, 10.0F, square);
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {0, std::sin(0.7F), -std::cos(0.7F)}, 3.0F);
+  const glm::vec4 pixel = render(above).middle();
+  const float expected = 3.0F * std::cos(0.7F) / PI;
+  EXPECT_NEAR(pixel.r, 0.8F * expected, 1e-5F);
+  EXPECT_NEAR(pixel.g, 0.4F * expected, 1e-5F);
+  EXPECT_NEAR(pixel.b, 0.2F * expected, 1e-5F);
+}
+
+TEST_F(EngineGpuTest, PointFallsWithTheSquareOfTheDistance)
+{
+  add_square({0, 0, 0}, {0, 0, 1}, 10.0F, square);
+  scene::Lamp &lamp = test::add_lamp(scene, scene::LampKind::Point, {1, 0, 2}, {0, 0, -1}, 50.0F);
+  // The centre of the pixel right and above of the middle.
+  const float half_pixel = 5.0F * std::tan(0.1F) / 64.0F;
+  const glm::vec3 to_lamp = glm::vec3(1, 0, 2) - glm::vec3(half_pixel, half_pixel, 0);
+  const float d2 = glm::dot(to_lamp, to_lamp);
+  const float cosine = 2.0F / std::sqrt(d2);
+  EXPECT_NEAR(render(above).middle().r, 0.8F / PI * 50.0F * cosine / d2, 2e-3F);
+  lamp.radius = 0.5F;
+  EXPECT_NEAR(render(above).middle().r, 0.8F / PI * 50.0F * cosine / (d2 + 0.25F), 2e-3F);
+}
+
+TEST_F(EngineGpuTest, SpotIsMaskedByItsCone)
+{
+  add_square({0, 0, 0}, {0, 0, 1}, 10.0F, square);
+  scene::Lamp &lamp = test::add_lamp(scene, scene::LampKind::Spot, {0, 0, 4}, {0, 0, -1}, 50.0F);
+  lamp.spot_outer_angle = 0.3F;
+  lamp.spot_blend = 0.0F;
+  const scene::Camera wide = test::camera_at({0, 0, 5}, {0, 0, 0}, 1.0F);
+  const Picture picture = render(wide, {}, {128, 128});
+  const float plain = 0.8F / PI * 50.0F / 16.0F;
+  EXPECT_NEAR(picture.middle().r, plain, 2e-2F * plain);
+  const float pixel_m = 2.0F * 5.0F * std::tan(0.5F) / 128.0F;
+  const auto edge_px = int(4.0F * std::tan(0.3F) / pixel_m);
+  EXPECT_GT(picture.at(64 + edge_px - 3, 64).r, 0.5F * plain);
+  EXPECT_EQ(picture.at(64 + edge_px + 3, 64).r, 0.0F);
+}
+
+TEST_F(EngineGpuTest, HemiLightsByTheTiltedSky)
+{
+  for (const float tilt : {0.0F, 1.0F, 3.0F}) {
+    scene.objects.clear();
+    scene.lamps.clear();
+    add_square({0, 0, 0}, {0, 0, 1}, 10.0F, square);
+    test::add_lamp(scene, scene::LampKind::Hemi, {}, {std::sin(tilt), 0, -std::cos(tilt)}, 2.0F);
+    EXPECT_NEAR(render(above).middle().r, 0.8F / PI * 2.0F * (0.5F + 0.5F * std::cos(tilt)), 1e-5F) << tilt;
+  }
+}
+
+TEST_F(EngineGpuTest, LightsAddUp)
+{
+  add_square({0, 0, 0}, {0, 0, 1}, 10.0F, square);
+  for (int i = 0; i < LIGHT_MAX; i++) {
+    test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, 0.1F);
+  }
+  EXPECT_NEAR(render(above, {.shadow = {.method = ShadowMethod::None}}).middle().r, 0.8F / PI * 0.1F * LIGHT_MAX, 1e-3F);
+}
+
+TEST_F(EngineGpuTest, EmissionIsSeenWithoutLamps)
+{
+  scene.materials[0].emissive = {1, 2, 3};
+  add_square({0, 0, 0}, {0, 0, 1}, 10.0F, square);
+  const glm::vec4 pixel = render(above).middle();
+  EXPECT_FLOAT_EQ(pixel.r, 1.0F);
+  EXPECT_FLOAT_EQ(pixel.g, 2.0F);
+  EXPECT_FLOAT_EQ(pixel.b, 3.0F);
+}
+
+TEST_F(EngineGpuTest, BothSidesOfATwoSidedSurfaceAreLitFromTheirSide)
+{
+  add_square({0, 0, 0}, {0, 0, -1}, 10.0F, square);
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, 1.0F);
+  EXPECT_NEAR(render(above).middle().r, 0.8F / PI, 1e-5F);
+}
+
+TEST_F(EngineGpuTest, TheBackOfAOneSidedSurfaceIsNotSeen)
+{
+  scene.materials[0].is_double_sided = false;
+  add_square({0, 0, 0}, {0, 0, -1}, 10.0F, square);
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, 1.0F);
+  EXPECT_EQ(render(above).middle().r, 0.0F);
+}
+
+// hazards.md: negative, sheared and singular object matrices.
+TEST_F(EngineGpuTest, MirroredObjectsAreLitAsTheirImage)
+{
+  scene.materials[0].is_double_sided = false;
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0.5F, -1}, 1.0F);
+  test::add_object(scene, square, glm::scale(glm::mat4(1.0F), glm::vec3(10, 10, 1)));
+  const glm::vec4 plain = render(above).middle();
+  scene.objects.clear();
+  test::add_object(scene, square, glm::scale(glm::mat4(1.0F), glm::vec3(-10, 10, 1)));
+  EXPECT_EQ(render(above).middle(), plain);
+}
+
+TEST_F(EngineGpuTest, SingularMatricesGiveFinitePictures)
+{
+  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 1}, {0, 0, -1}, 1.0F);
+  test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 1}, {0, 0, -1}, 1.0F);
+  for (const glm::vec3 &scale : {glm::vec3(0, 1, 1), glm::vec3(0), glm::vec3(1, 1, 0)}) {
+    test::add_object(scene, square, glm::scale(glm::mat4(1.0F), scale));
+  }
+  render(above);
+}
+
+TEST_F(EngineGpuTest, LampsInAndOnSurfacesGiveFinitePictures)
+{
+  add_square({0, 0, 0}, {0, 0, 1}, 10.0F, square);
+  const float half_pixel = 5.0F * std::tan(0.1F) / 64.0F;
+  test::add_lamp(scene, scene::LampKind::Point, {half_pixel, half_pixel, 0}, {0, 0, -1}, 1.0F);
+  test::add_lamp(scene, scene::LampKind::Spot, {0, 0, 0}, {1, 0, 0}, 1.0F).spot_outer_angle = 1.5707F;
+  test::add_lamp(scene, scene::LampKind::Spot, {0, 0, 0}, {1, 0, 0}, 1.0F).spot_outer_angle = 1e-4F;
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {1, 0, 0}, 1.0F);
+  render(above);
+}
+
+TEST_F(EngineGpuTest, SmoothMetalIsFinite)
+{
+  scene.materials[0].metallic = 1.0F;
+  scene.materials[0].roughness = 0.0F;
+  add_square({0, 0, 0}, {0, 0, 1}, 10.0F, square);
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, 1.0F);
+  EXPECT_GT(render(above).middle().r, 1.0F) << "the mirror image of the sun";
+}
+
+/** Where a lamp at height 4 puts the shadow of a square of half size 1 at height 2: half size 2 on the ground. */
+class ShadowGpuTest : public EngineGpuTest {
+ protected:
+  /** Share of ground pixels that differ from the truth by more than half the light, farther than \a margin m from its edge. */
+  int wrong_pixels(scene::LampKind kind, float edge_m, float margin_m)
+  {
+    scene.objects.clear();
+    scene.lamps.clear();
+    add_square({0, 0, 0}, {0, 0, 1}, 20.0F, square);
+    add_square({0, 0, 2}, {0, 0, 1}, 1.0F, square);
+    test::add_lamp(scene, kind, {0, 0, 4}, {0, 0, -1}, 20.0F).spot_outer_angle = 1.0F;
+    // From below the square's height, so that it hides none of the ground.
+    scene::Camera camera = test::camera_at({0, 0, 1.9F}, {0, 0, 0}, 2.6F);
+    const Picture lit = render(camera, {.shadow = {.method = ShadowMethod::None}}, {256, 256});
+    const Picture shadowed = render(camera, {}, {256, 256});
+    int wrong = 0;
+    for (int y = 0; y < 256; y++) {
+      for (int x = 0; x < 256; x++) {
+        const float half_m = 1.9F * std::tan(1.3F);
+        const glm::vec2 p = ((glm::vec2(x, y) + 0.5F) / 128.0F - 1.0F) * half_m;
+        const float from_middle = std::max(std::abs(p.x), std::abs(p.y));
+        if (std::abs(from_middle - edge_m) < margin_m || lit.at(x, y).r <= 0.0F) {
+          continue;
+        }
+        const float visibility = shadowed.at(x, y).r / lit.at(x, y).r;
+        wrong += std::abs(visibility - (from_middle < edge_m ? 0.0F : 1.0F)) > 1e-3F;
+      }
+    }
+    return wrong;
+  }
+  // Two pixels of 2·1.9·tan(1.3) / 256 = 5.3 cm, which the filter spreads the edge over, and a texel.
+  static constexpr float MARGIN_M = 0.12F;
+};
+
+TEST_F(ShadowGpuTest, PointMatchesTheClosedForm)
+{
+  EXPECT_EQ(wrong_pixels(scene::LampKind::Point, 2.0F, MARGIN_M), 0);
+}
+
+TEST_F(ShadowGpuTest, SpotMatchesTheClosedForm)
+{
+  EXPECT_EQ(wrong_pixels(scene::LampKind::Spot, 2.0F, MARGIN_M), 0);
+}
+
+TEST_F(ShadowGpuTest, SunMatchesTheClosedForm)
+{
+  EXPECT_EQ(wrong_pixels(scene::LampKind::Sun, 1.0F, MARGIN_M), 0);
+}
+
+// hazards.md: the second lamp's layers overlapped the first's.
+TEST_F(ShadowGpuTest, EachOfTwoPointLampsHasItsOwnShadow)
+{
+  add_square({0, 0, 0}, {0, 0, 1}, 20.0F, square);
+  add_square({0, 0, 2}, {0, 0, 1}, 0.5F, square);
+  test::add_lamp(scene, scene::LampKind::Point, {-2, 0, 4}, {0, 0, -1}, 20.0F).color = {1, 0, 0};
+  test::add_lamp(scene, scene::LampKind::Point, {2, 0, 4}, {0, 0, -1}, 20.0F).color = {0, 1, 0};
+  const scene::Camera camera = test::camera_at({0, -8, 1.5F}, {0, 0, 0}, 0.8F);
+  const Picture picture = render(camera, {}, {256, 256});
+  // The left lamp's shadow falls to the right, around x = 2, and there is no red; the right one's around -2.
+  const auto at = [&](const glm::vec3 &p) {
+    const glm::vec4 clip = view_of(camera, {256, 256}).clip_from_world() * glm::vec4(p, 1.0F);
+    const glm::vec2 px = (glm::vec2(clip) / clip.w * 0.5F + 0.5F) * 256.0F;
+    return picture.at(int(px.x), int(px.y));
+  };
+  EXPECT_EQ(at({2, 0, 0}).r, 0.0F);
+  EXPECT_GT(at({2, 0, 0}).g, 0.0F);
+  EXPECT_EQ(at({-2, 0, 0}).g, 0.0F);
+  EXPECT_GT(at({-2, 0, 0}).r, 0.0F);
+}
+
+TEST_F(ShadowGpuTest, APlaneDoesNotDarkenItselfAtAnyAngle)
+{
+  for (const scene::LampKind kind : {scene::LampKind::Sun, scene::LampKind::Point, scene::LampKind::Spot}) {
+    for (const float degrees : {0.5F, 1.0F, 3.0F, 10.0F, 30.0F, 45.0F, 60.0F, 89.0F, 90.0F}) {
+      scene.objects.clear();
+      scene.lamps.clear();
+      const float elevation = degrees * PI / 180.0F;
+      const glm::vec3 to_lamp(std::cos(elevation) * 0.6F, std::cos(elevation) * 0.8F, std::sin(elevation));
+      add_square({0, 0, 0}, {0, 0, 1}, 4.0F, square);
+      // Without something above, the sun would need no map at all; its shadow falls away from the picture.
+      add_square({-3.9F, -3.9F, 3}, {1, 1, 0}, 0.1F, square);
+      test::add_lamp(scene, kind, 6.0F * to_lamp, -to_lamp, 10.0F).spot_outer_angle = 0.6F;
+      const scene::Camera camera = test::camera_at({1, -2, 5}, {0, 0, 0}, 0.3F);
+      const Picture lit = render(camera, {.shadow = {.method = ShadowMethod::None}});
+      const Picture shadowed = render(camera);
+      int dark = 0;
+      for (std::size_t i = 0; i < lit.pixels.size(); i++) {
+        dark += shadowed.pixels[i].r < 0.999F * lit.pixels[i].r;
+      }
+      EXPECT_EQ(dark, 0) << "lamp kind " << int(kind) << " at " << degrees << "°";
+    }
+  }
+}
+
+// hazards.md: a shadow map's edge bled outside; outside is lit.
+TEST_F(ShadowGpuTest, OutsideOfTheSunsMapIsLit)
+{
+  add_square({0, 0, 0}, {0, 0, 1}, 20.0F, square);
+  add_square({0, 0, 1}, {0, 0, 1}, 0.2F, square);
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0.3F, -1}, 1.0F);
+  const scene::Camera camera = test::camera_at({0, -10, 8}, {0, 0, 0}, 0.9F);
+  const Picture lit = render(camera, {.shadow = {.method = ShadowMethod::None}});
+  const Picture shadowed = render(camera);
+  int dark = 0;
+  for (std::size_t i = 0; i < lit.pixels.size(); i++) {
+    dark += shadowed.pixels[i].r < 0.999F * lit.pixels[i].r;
+  }
+  EXPECT_GT(dark, 0);
+  EXPECT_LT(dark, 20) << "of 4096 pixels, for a square of 0.4 m on a ground of 40 m";
+}
+
+TEST_F(ShadowGpuTest, SamplesConvergeToASmoothEdge)
+{
+  add_square({0, 0, 0}, {0, 0, 1}, 20.0F, square);
+  add_square({0, 0, 2}, {0.2F, 0.1F, 1}, 1.0F, square);
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {0.5F, 0.3F, -1}, 1.0F);
+  const scene::Camera camera = test::camera_at({0, -6, 5}, {0, 0, 0}, 0.8F);
+  const auto rmse = [](const Picture &a, const Picture &b) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.pixels.size(); i++) {
+      const glm::vec3 d(a.pixels[i] - b.pixels[i]);
+      sum += double(glm::dot(d, d)) / 3.0;
+    }
+    return std::sqrt(sum / double(a.pixels.size()));
+  };
+  const Picture truth = render(camera, {.sample_count = 256});
+  const double error_1 = rmse(render(camera, {.sample_count = 1}), truth);
+  const double error_16 = rmse(render(camera, {.sample_count = 16}), truth);
+  EXPECT_LT(error_16, 0.25 * error_1);
+}
+
+TEST_F(EngineGpuTest, RecordsTheSamePassesAsTheNullBackend)
+{
+  add_square({0, 0, 0}, {0, 0, 1}, 10.0F, square);
+  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 2}, {0, 0, -1}, 1.0F);
+  test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 2}, {0, 0, -1}, 1.0F);
+  const Settings settings{.has_display = true};
+  Renderer gl(*device, scene, {16, 16}, settings);
+  const auto null_device = gpu::create_null_device();
+  Renderer null(*null_device, scene, {16, 16}, settings);
+  EXPECT_EQ(gl.engine.serialize_passes(gl.viewport), null.engine.serialize_passes(null.viewport));
+}
+
+TEST_F(EngineGpuTest, EveryVariantIsAcceptedByTheDriver)
+{
+  ShaderCache cache;
+  for (const ShaderDeclaration &declaration : shader_declarations()) {
+    for (const Feature features : shader_variants(declaration)) {
+      EXPECT_NO_THROW(cache.get(*device, declaration.id, features)) << declaration.name << std::uint32_t(features);
+    }
+  }
+}
+
+TEST_F(EngineGpuTest, DisplayIsTheViewTransformOfTheRadiance)
+{
+  scene.materials[0].emissive = {0.5F, 0.001F, 4.0F};
+  add_square({0, 0, 0}, {0, 0, 1}, 10.0F, square);
+  for (const ViewTransform transform : {ViewTransform::Standard, ViewTransform::Raw}) {
+    Renderer renderer(*device, scene, {8, 8},
+                      {.has_display = true, .view_transform = transform, .exposure = -1.0F});
+    renderer.draw(above);
+    const std::vector<std::byte> pixels = device->read(renderer.engine.display(renderer.viewport));
+    const auto encoded = [&](double linear) {
+      const double v = std::clamp(linear, 0.0, 1.0);
+      const double srgb = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055;
+      return 255.0 * (transform == ViewTransform::Raw ? v : srgb);
+    };
+    // Within rounding: half a step of 255, and a little for the driver's pow.
+    EXPECT_NEAR(double(pixels[0]), encoded(0.25), 0.6);
+    EXPECT_NEAR(double(pixels[1]), encoded(0.0005), 0.6);
+    EXPECT_EQ(int(pixels[2]), 255);
+    EXPECT_EQ(int(pixels[3]), 255);
+  }
+}
+
+TEST_F(EngineGpuTest, StepTimesAreMeasured)
+{
+  add_square({0, 0, 0}, {0, 0, 1}, 10.0F, square);
+  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 2}, {0, 0, -1}, 1.0F);
+  Renderer renderer(*device, scene, {64, 64}, {.is_timed = true});
+  renderer.draw(above);
+  std::vector<std::string> names;
+  for (const StepTime &step : renderer.engine.take_step_times(renderer.viewport)) {
+    names.push_back(step.step);
+    EXPECT_GE(step.seconds, 0.0);
+    EXPECT_LT(step.seconds, 60.0);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"shadows", "depth_prepass", "lit", "film"}));
+}
+
+}  // namespace
+}  // namespace gnomon::eevee

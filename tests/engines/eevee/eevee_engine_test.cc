@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_test_scene.hh"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace gnomon::eevee {
+namespace {
+
+using test::Renderer;
+
+class EngineTest : public testing::Test {
+ protected:
+  EngineTest()
+  {
+    mesh = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(0.5F)));
+    test::add_object(scene, mesh, glm::mat4(1.0F));
+  }
+  static bool is_made(const Report &report, const std::string &what)
+  {
+    const auto part = std::ranges::find(report.parts, what, &FramePart::what);
+    EXPECT_NE(part, report.parts.end()) << what;
+    EXPECT_FALSE(part->why.empty()) << what;
+    return part->is_made;
+  }
+
+  std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  scene::Scene scene;
+  std::uint32_t mesh = 0;
+  scene::Camera camera = test::camera_at({0, 0, 4}, {0, 0, 0});
+};
+
+TEST_F(EngineTest, MakesNothingForALampThatIsNotThere)
+{
+  Renderer renderer(*device, scene, {16, 16});
+  renderer.draw(camera);
+  const Report report = renderer.engine.report(renderer.viewport);
+  for (const char *what : {"light_block", "shadow_cubes", "shadow_maps", "shadow_pass", "depth_pass_cull",
+                           "specular in eevee_lit", "tonemap"})
+  {
+    EXPECT_FALSE(is_made(report, what)) << what;
+  }
+  // depth, radiance, film; the programs depth, lit and film.
+  EXPECT_EQ(device->counters().textures_made, 3U);
+  EXPECT_EQ(device->counters().shaders_made, 3U);
+  EXPECT_EQ(device->counters().passes, 3U);
+  for (const std::string &resource : device->live_resources()) {
+    EXPECT_EQ(resource.find("shadow"), std::string::npos) << resource;
+    EXPECT_EQ(resource.find("light_block"), std::string::npos) << resource;
+  }
+}
+
+TEST_F(EngineTest, MakesWhatTheSceneAsksFor)
+{
+  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 2}, {0, 0, -1}, 1.0F);
+  test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 2}, {0, 0, -1}, 1.0F);
+  scene.materials.push_back({});
+  scene.meshes.push_back(scene.meshes[0]);
+  scene.meshes[1].material = 1;
+  test::add_object(scene, 1, glm::mat4(1.0F));
+  Settings settings;
+  settings.has_display = true;
+  settings.shadow.cube_size_px = 32;
+  settings.shadow.map_size_px = 32;
+  Renderer renderer(*device, scene, {16, 16}, settings);
+  renderer.draw(camera);
+  const Report report = renderer.engine.report(renderer.viewport);
+  for (const char *what : {"light_block", "shadow_cubes", "shadow_maps", "shadow_pass", "depth_pass",
+                           "depth_pass_cull", "specular in eevee_lit", "film", "tonemap"})
+  {
+    EXPECT_TRUE(is_made(report, what)) << what;
+  }
+  // Six faces and a map, prepass, lit, film, tonemap.
+  EXPECT_EQ(device->counters().passes, 11U);
+}
+
+TEST_F(EngineTest, DrawsShadowsOnceForAStillScene)
+{
+  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 2}, {0, 0, -1}, 1.0F);
+  test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 2}, {0, 0.2F, -1}, 1.0F);
+  test::add_object(scene, mesh, glm::translate(glm::mat4(1.0F), glm::vec3(0, 0, 1)));
+  Settings settings;
+  settings.sample_count = 8;
+  settings.shadow.cube_size_px = 32;
+  settings.shadow.map_size_px = 32;
+  Renderer renderer(*device, scene, {16, 16}, settings);
+  renderer.draw(camera);
+  EXPECT_EQ(renderer.engine.report(renderer.viewport).shadow_counters.lamps_updated, 2U);
+  renderer.draw(camera);
+  EXPECT_EQ(renderer.engine.report(renderer.viewport).shadow_counters.lamps_updated, 2U);
+}
+
+TEST_F(EngineTest, MeshesAreUploadedOnceHoweverManyObjectsShareThem)
+{
+  for (int i = 0; i < 50; i++) {
+    test::add_object(scene, mesh, glm::translate(glm::mat4(1.0F), glm::vec3(0.01F * float(i), 0, 0)));
+  }
+  Renderer renderer(*device, scene, {16, 16});
+  renderer.draw(camera);
+  const std::vector<std::string> live = device->live_resources();
+  EXPECT_EQ(std::ranges::count(live, "batch 'square'"), 1);
+  // One instanced draw each in prepass and lit pass, and the film's triangle.
+  EXPECT_EQ(device->counters().draws, 3U);
+  EXPECT_EQ(device->counters().instances, 51U + 51U + 1U);
+}
+
+TEST_F(EngineTest, LeavesOutWhatTheCameraDoesNotSee)
+{
+  test::add_object(scene, mesh, glm::translate(glm::mat4(1.0F), glm::vec3(100, 0, 0)));
+  test::add_object(scene, mesh, glm::translate(glm::mat4(1.0F), glm::vec3(0, 0, 10)));
+  Renderer renderer(*device, scene, {16, 16});
+  renderer.draw(camera);
+  EXPECT_EQ(device->counters().instances, 1U + 1U + 1U);
+}
+
+TEST_F(EngineTest, AnEmptySceneIsDrawn)
+{
+  scene = {};
+  Renderer renderer(*device, scene, {16, 16});
+  renderer.draw(camera);
+  EXPECT_EQ(device->counters().instances, 1U) << "the film's triangle alone";
+}
+
+TEST_F(EngineTest, TwoViewportsKeepTheirOwn)
+{
+  Renderer first(*device, scene, {16, 16});
+  Renderer second(*device, scene, {32, 8});
+  first.draw(camera);
+  second.draw(camera);
+  EXPECT_EQ(first.engine.radiance(first.viewport).desc().width, 16);
+  EXPECT_EQ(second.engine.radiance(second.viewport).desc().width, 32);
+}
+
+TEST_F(EngineTest, IsMadeByTheRegistry)
+{
+  draw::EngineRegistry registry;
+  registry.add(engine_type(scene, {}));
+  EXPECT_EQ(registry.create("eevee")->name(), "eevee");
+}
+
+TEST_F(EngineTest, LeavesNothingBehind)
+{
+  {
+    test::add_lamp(scene, scene::LampKind::Point, {0, 0, 2}, {0, 0, -1}, 1.0F);
+    Renderer renderer(*device, scene, {16, 16}, {.has_display = true, .is_timed = true});
+    renderer.draw(camera);
+    EXPECT_FALSE(device->live_resources().empty());
+  }
+  EXPECT_EQ(device->live_resources(), std::vector<std::string>());
+}
+
+TEST_F(EngineTest, PassesPrintWhatWasRecorded)
+{
+  test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 2}, {0, 0, -1}, 1.0F);
+  Renderer renderer(*device, scene, {16, 16}, {.shadow = {.map_size_px = 16}});
+  const std::string text = renderer.engine.serialize_passes(renderer.viewport);
+  EXPECT_NE(text.find("shadow_pass [write_depth depth_nearer_equal]\n  group eevee_shadow\n"), std::string::npos);
+  EXPECT_NE(text.find("    uniform shadow_render_block -> 12 by reference\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("    constant shadow_face by reference\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("    uniform light_block -> 10 = light_block\n"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace gnomon::eevee

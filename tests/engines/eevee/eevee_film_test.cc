@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_film.hh"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace gnomon::eevee {
+namespace {
+
+TEST(FilmFilter, FallsFromOneToNothingAtItsSupport)
+{
+  EXPECT_NEAR(filter_weight(0.0), 1.0, 1e-12);
+  EXPECT_EQ(filter_weight(0.5 * FILTER_SUPPORT_PX), 0.0);
+  EXPECT_LT(filter_weight(0.4999 * FILTER_SUPPORT_PX), 1e-4);
+  for (double x = 0.0; x < 1.49; x += 0.01) {
+    EXPECT_GT(filter_weight(x), filter_weight(x + 0.01));
+    EXPECT_EQ(filter_weight(x), filter_weight(-x));
+  }
+}
+
+TEST(FilmOffset, OneSampleIsInTheMiddle)
+{
+  EXPECT_EQ(film_offset_px(0, 1, 7), glm::vec2(0.0F));
+}
+
+TEST(FilmOffset, SamplesFillThePixelEvenly)
+{
+  for (const std::uint32_t seed : {0U, 1U, 99U}) {
+    constexpr int COUNT = 64;
+    std::vector<int> columns(8);
+    std::vector<int> rows(8);
+    for (int i = 0; i < COUNT; i++) {
+      const glm::vec2 offset = film_offset_px(i, COUNT, seed);
+      ASSERT_GE(offset.x, -0.5F);
+      ASSERT_LE(offset.x, 0.5F);
+      ASSERT_GE(offset.y, -0.5F);
+      ASSERT_LE(offset.y, 0.5F);
+      columns[std::min(std::size_t((offset.x + 0.5F) * 8.0F), std::size_t(7))]++;
+      rows[std::min(std::size_t((offset.y + 0.5F) * 8.0F), std::size_t(7))]++;
+    }
+    for (int i = 0; i < 8; i++) {
+      EXPECT_NEAR(columns[std::size_t(i)], COUNT / 8, 1) << "seed " << seed;
+      EXPECT_NEAR(rows[std::size_t(i)], COUNT / 8, 2) << "seed " << seed;
+    }
+  }
+}
+
+TEST(FilmOffset, SeedsMoveTheSamples)
+{
+  EXPECT_NE(film_offset_px(0, 16, 1), film_offset_px(0, 16, 2));
+}
+
+/** What a pixel in a field of \a radiance(x, y) comes to, as the film pass computes it. */
+template<typename Radiance> double filmed(int count, std::uint32_t seed, Radiance &&radiance)
+{
+  const double weight_sum = film_weight_sum(count, seed);
+  double sum = 0.0;
+  for (int i = 0; i < count; i++) {
+    const glm::vec2 offset = film_offset_px(i, count, seed);
+    const FilmWeights weights = film_weights(i, count, seed, weight_sum);
+    for (int y = 0; y < 3; y++) {
+      for (int x = 0; x < 3; x++) {
+        sum += double(weights.columns[x]) * double(weights.rows[y]) *
+               radiance(double(x - 1) + double(offset.x), double(y - 1) + double(offset.y));
+      }
+    }
+  }
+  return sum;
+}
+
+TEST(FilmWeights, KeepAnEvenPictureAsItIs)
+{
+  for (const int count : {1, 2, 5, 16, 64, 1000}) {
+    EXPECT_NEAR(filmed(count, 3, [](double, double) { return 1.0; }), 1.0, 1e-5) << count << " samples";
+  }
+}
+
+/** The filter's mean of a function, by a fine grid. */
+template<typename Radiance> double filtered(Radiance &&radiance)
+{
+  constexpr int N = 600;
+  double sum = 0.0;
+  double weights = 0.0;
+  for (int j = 0; j < N; j++) {
+    for (int i = 0; i < N; i++) {
+      const double x = ((i + 0.5) / N - 0.5) * FILTER_SUPPORT_PX;
+      const double y = ((j + 0.5) / N - 0.5) * FILTER_SUPPORT_PX;
+      const double weight = filter_weight(x) * filter_weight(y);
+      sum += weight * radiance(x, y);
+      weights += weight;
+    }
+  }
+  return sum / weights;
+}
+
+TEST(FilmWeights, ConvergeToTheFilterAtAnEdge)
+{
+  const auto edge = [](double x, double y) { return 0.8 * x + 0.6 * y > 0.23 ? 1.0 : 0.0; };
+  const double truth = filtered(edge);
+  const double error_16 = std::abs(filmed(16, 0, edge) - truth);
+  const double error_1024 = std::abs(filmed(1024, 0, edge) - truth);
+  EXPECT_LT(error_16, 0.05);
+  EXPECT_LT(error_1024, 0.002);
+}
+
+TEST(FilmWeights, ConvergeToTheFilterOfASlope)
+{
+  // Of even functions the filter leaves the mean, of odd ones nothing.
+  const auto slope = [](double x, double y) { return x + 2.0 * y; };
+  EXPECT_NEAR(filmed(256, 0, slope), 0.0, 2e-2);
+}
+
+}  // namespace
+}  // namespace gnomon::eevee

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_lamps.hh"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace gnomon::eevee {
+namespace {
+
+scene::Lamp lamp_of(scene::LampKind kind)
+{
+  scene::Lamp lamp;
+  lamp.name = "lamp";
+  lamp.kind = kind;
+  lamp.world_from_lamp = glm::translate(glm::mat4(1.0F), glm::vec3(1, 2, 3));
+  lamp.color = {1.0F, 0.5F, 0.25F};
+  lamp.intensity = 8.0F;
+  return lamp;
+}
+
+TEST(LightData, ShinesAlongTheLampsMinusZ)
+{
+  scene::Lamp lamp = lamp_of(scene::LampKind::Spot);
+  lamp.world_from_lamp = lamp.world_from_lamp * glm::rotate(glm::mat4(1.0F), 0.5F * 3.14159265F, glm::vec3(1, 0, 0));
+  const shared::LightData light = light_data(lamp);
+  // -Z turned by 90° around X is +Y.
+  EXPECT_NEAR(glm::distance(light.forward_ws, glm::vec3(0, 1, 0)), 0.0F, 1e-6F);
+  EXPECT_EQ(light.position_ws, glm::vec3(1, 2, 3));
+  EXPECT_EQ(light.color, glm::vec3(8, 4, 2));
+}
+
+// hazards.md: a lamp with no shadow was looked up at index -1.
+TEST(LightData, HasNoShadowUntilItIsGivenOne)
+{
+  const shared::LightData light = light_data(lamp_of(scene::LampKind::Point));
+  EXPECT_EQ(light.shadow_kind, SHADOW_NONE);
+  EXPECT_EQ(light.shadow_index, -1);
+}
+
+// hazards.md: spot mask with z = 0, blend 0, size 180°.
+TEST(SpotMask, IsFiniteAndMonotoneForEveryAngleAndBlend)
+{
+  for (int degrees = 0; degrees <= 180; degrees += 3) {
+    const float cos_outer = std::cos(float(degrees) * 0.5F * float(std::numbers::pi) / 180.0F);
+    for (const float blend : {0.0F, 1e-6F, 0.01F, 0.5F, 1.0F}) {
+      const float inv_width = shared::spot_inv_width(cos_outer, blend);
+      ASSERT_TRUE(std::isfinite(inv_width));
+      float before = 0.0F;
+      for (int i = 0; i <= 2000; i++) {
+        const float cos_angle = -1.0F + float(i) / 1000.0F;
+        const float mask = shared::spot_mask(cos_angle, cos_outer, inv_width);
+        ASSERT_TRUE(mask >= 0.0F && mask <= 1.0F);
+        ASSERT_GE(mask, before) << degrees << "° blend " << blend;
+        if (cos_angle <= cos_outer) {
+          ASSERT_EQ(mask, 0.0F);
+        }
+        before = mask;
+      }
+      if (degrees > 10) {
+        EXPECT_EQ(before, 1.0F) << "on the axis, " << degrees << "° blend " << blend;
+      }
+    }
+  }
+}
+
+TEST(SpotMask, EqualsItsFormula)
+{
+  const float cos_outer = std::cos(0.45F);
+  const float inv_width = shared::spot_inv_width(cos_outer, 0.25F);
+  for (const float angle : {0.0F, 0.3F, 0.38F, 0.4F, 0.43F, 0.46F}) {
+    const double t =
+        std::clamp((std::cos(double(angle)) - double(cos_outer)) / ((1.0 - double(cos_outer)) * 0.25), 0.0, 1.0);
+    EXPECT_NEAR(shared::spot_mask(std::cos(angle), cos_outer, inv_width), t * t * (3.0 - 2.0 * t), 1e-5);
+  }
+}
+
+TEST(DistanceFalloff, IsInverseSquareWithTheDisksRadius)
+{
+  EXPECT_FLOAT_EQ(shared::distance_falloff(4.0F, 0.0F, 0.0F), 0.25F);
+  EXPECT_FLOAT_EQ(shared::distance_falloff(4.0F, 1.0F, 0.0F), 0.2F);
+  EXPECT_TRUE(std::isfinite(shared::distance_falloff(0.0F, 0.0F, 0.0F)));
+}
+
+TEST(DistanceFalloff, EndsAtTheRange)
+{
+  const float range_inv_sq = 1.0F / 9.0F;
+  EXPECT_EQ(shared::distance_falloff(9.0F, 0.0F, range_inv_sq), 0.0F);
+  EXPECT_EQ(shared::distance_falloff(100.0F, 0.0F, range_inv_sq), 0.0F);
+  // KHR_lights_punctual: 1 - (d / range)⁴ over d².
+  EXPECT_FLOAT_EQ(shared::distance_falloff(4.0F, 0.0F, range_inv_sq), (1.0F - 16.0F / 81.0F) / 4.0F);
+}
+
+TEST(HemiIrradiance, IsTheShareOfTheSkyAboveTheHorizon)
+{
+  // Cosine-weighted share of a half-space of directions seen from a plane tilted by t, by quadrature.
+  for (const double tilt : {0.0, 0.7, std::numbers::pi / 2.0, 2.5, std::numbers::pi}) {
+    constexpr int N = 700;
+    double sum = 0.0;
+    for (int i = 0; i < N; i++) {
+      for (int j = 0; j < N; j++) {
+        const double z = (i + 0.5) / N;
+        const double phi = 2.0 * std::numbers::pi * (j + 0.5) / N;
+        const double x = std::sqrt(1.0 - z * z) * std::cos(phi);
+        sum += std::max(0.0, x * std::sin(tilt) + z * std::cos(tilt)) * 2.0 / (double(N) * N);
+      }
+    }
+    EXPECT_NEAR(shared::hemi_irradiance(float(std::cos(tilt))), sum, 2e-3) << tilt;
+  }
+}
+
+TEST(Lamps, AreaLampsAreNamedAndLeftOut)
+{
+  scene::Scene scene;
+  scene.lamps = {lamp_of(scene::LampKind::Area), lamp_of(scene::LampKind::Sun)};
+  const Lamps lamps = make_lamps(scene);
+  EXPECT_EQ(lamps.light_block.light_count, 1);
+  EXPECT_EQ(lamps.scene_index, std::vector<std::uint32_t>{1});
+  ASSERT_EQ(lamps.warnings.size(), 1U);
+  EXPECT_NE(lamps.warnings[0].find("'lamp': area lamps are not drawn"), std::string::npos);
+}
+
+TEST(Lamps, SizedLampsAreDrawnAndWarnedOf)
+{
+  scene::Scene scene;
+  scene.lamps = {lamp_of(scene::LampKind::Point), lamp_of(scene::LampKind::Sun)};
+  scene.lamps[0].radius = 0.5F;
+  scene.lamps[1].angle = 0.1F;
+  const Lamps lamps = make_lamps(scene);
+  EXPECT_EQ(lamps.light_block.light_count, 2);
+  EXPECT_EQ(lamps.warnings.size(), 2U);
+  EXPECT_FLOAT_EQ(lamps.light_block.lights[0].radius_sq, 0.25F);
+}
+
+TEST(Lamps, BlackLampsTakeNoRoom)
+{
+  scene::Scene scene;
+  scene.lamps = {lamp_of(scene::LampKind::Sun), lamp_of(scene::LampKind::Point)};
+  scene.lamps[0].intensity = 0.0F;
+  scene.lamps[1].color = glm::vec3(0.0F);
+  const Lamps lamps = make_lamps(scene);
+  EXPECT_EQ(lamps.light_block.light_count, 0);
+  EXPECT_EQ(lamps.features, Feature::None);
+}
+
+TEST(Lamps, FeaturesAreThoseOfTheKinds)
+{
+  scene::Scene scene;
+  scene.lamps = {lamp_of(scene::LampKind::Sun)};
+  EXPECT_EQ(make_lamps(scene).features, Feature::Light);
+  scene.lamps = {lamp_of(scene::LampKind::Hemi)};
+  EXPECT_EQ(make_lamps(scene).features, Feature::Light | Feature::Hemi);
+  scene.lamps = {lamp_of(scene::LampKind::Spot)};
+  EXPECT_EQ(make_lamps(scene).features, Feature::Light | Feature::Punctual);
+}
+
+// hazards.md: the lamp past the maximum was written out of range, or dropped without a word.
+TEST(Lamps, TheOneTooManyIsNamedAndTheRestUnchanged)
+{
+  scene::Scene scene;
+  for (int i = 0; i <= LIGHT_MAX; i++) {
+    scene.lamps.push_back(lamp_of(scene::LampKind::Point));
+    scene.lamps.back().name = "lamp" + std::to_string(i);
+    scene.lamps.back().intensity = float(i + 1);
+  }
+  const Lamps lamps = make_lamps(scene);
+  EXPECT_EQ(lamps.light_block.light_count, LIGHT_MAX);
+  for (int i = 0; i < LIGHT_MAX; i++) {
+    EXPECT_EQ(lamps.light_block.lights[i].color.r, float(i + 1));
+  }
+  ASSERT_EQ(lamps.limits.size(), 1U);
+  EXPECT_NE(lamps.limits[0].find("'lamp255'"), std::string::npos) << lamps.limits[0];
+  EXPECT_EQ(lamps.limits[0].find("'lamp254'"), std::string::npos);
+
+  scene.lamps.pop_back();
+  EXPECT_TRUE(make_lamps(scene).limits.empty());
+}
+
+}  // namespace
+}  // namespace gnomon::eevee

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: MIT
+#include "gpu/gpu_testing.hh"
+
+#include <numeric>
+
+namespace gnomon::gpu {
+namespace {
+
+using test::error_of;
+using test::expect_contains;
+
+constexpr Limits SMALL = {
+    .texture_size_max = 64,
+    .array_layers_max = 13,
+    .uniform_block_bytes_max = 256,
+    .storage_block_bytes_max = 1024,
+    .color_attachment_max = 2,
+    .uniform_offset_alignment = 16,
+};
+
+/** \a action is an error that says all \a parts, and leaves \a device as it was. */
+template <typename Action>
+void expect_refused(Device &device, Action &&action, std::initializer_list<std::string_view> parts)
+{
+  const std::vector<std::string> live_before = device.live_resources();
+  const Counters before = device.counters();
+  const std::string message = error_of(action);
+  EXPECT_FALSE(message.empty()) << "nothing thrown";
+  for (const std::string_view part : parts) {
+    expect_contains(message, part);
+  }
+  EXPECT_EQ(device.live_resources(), live_before);
+  EXPECT_EQ(device.counters().textures_made, before.textures_made);
+  EXPECT_EQ(device.counters().shaders_made, before.shaders_made);
+  EXPECT_EQ(device.counters().upload_bytes, before.upload_bytes);
+}
+
+void expect_texture_refused(const TextureDesc &desc, std::initializer_list<std::string_view> parts)
+{
+  const auto device = create_null_device(SMALL);
+  expect_refused(
+      *device, [&] { static_cast<void>(device->create_texture(desc)); }, parts);
+}
+
+TEST(Device, RefusesTexturesPastItsLimitsByName)
+{
+  expect_texture_refused({.name = "wide", .width = 65}, {"texture 'wide'", "width is 65", "1 to 64"});
+  expect_texture_refused({.name = "high", .height = 65}, {"texture 'high'", "height is 65", "1 to 64"});
+  expect_texture_refused({.name = "none", .width = 0}, {"texture 'none'", "width is 0"});
+  expect_texture_refused({.name = "less", .height = -1}, {"texture 'less'", "height is -1"});
+  expect_texture_refused({.name = "flat", .layers = 2}, {"texture 'flat'", "layer count is 2", "1 to 1"});
+  expect_texture_refused({.name = "deep", .kind = TextureKind::Array, .layers = 14},
+                         {"texture 'deep'", "layer count is 14", "1 to 13"});
+  expect_texture_refused({.name = "cubes", .kind = TextureKind::CubeArray, .layers = 3},
+                         {"texture 'cubes'", "layer count is 3", "1 to 2"});
+  expect_texture_refused({.name = "cube", .kind = TextureKind::Cube, .layers = 6},
+                         {"texture 'cube'", "layer count is 6", "1 to 1"});
+  expect_texture_refused({.name = "brick", .kind = TextureKind::Cube, .width = 8, .height = 4},
+                         {"texture 'brick'", "8x4"});
+  expect_texture_refused({.name = "mips", .width = 16, .height = 4, .mip_levels = 6},
+                         {"texture 'mips'", "mip level count is 6", "1 to 5"});
+}
+
+TEST(Device, TakesTexturesAtItsLimits)
+{
+  const auto device = create_null_device(SMALL);
+  const Texture flat = device->create_texture({.name = "flat", .width = 64, .height = 64, .mip_levels = 7});
+  const Texture array = device->create_texture({.name = "array", .kind = TextureKind::Array, .layers = 13});
+  const Texture cubes = device->create_texture({.name = "cubes", .kind = TextureKind::CubeArray, .layers = 2});
+  EXPECT_EQ(device->counters().textures_made, 3U);
+  EXPECT_EQ(cubes.desc().layer_count(), 12);
+}
+
+TEST(Device, RefusesBuffersPastItsLimitsByName)
+{
+  const auto device = create_null_device(SMALL);
+  const auto make = [&](BufferKind kind, std::size_t size_bytes) {
+    return [&device, kind, size_bytes] { static_cast<void>(device->create_buffer({"block", kind, size_bytes})); };
+  };
+  expect_refused(*device, make(BufferKind::Uniform, 257), {"buffer 'block'", "257 bytes", "1 to 256"});
+  expect_refused(*device, make(BufferKind::Storage, 1025), {"buffer 'block'", "1025 bytes", "1 to 1024"});
+  expect_refused(*device, make(BufferKind::Uniform, 0), {"buffer 'block'", "0 bytes"});
+  EXPECT_TRUE(device->create_buffer({"block", BufferKind::Uniform, 256}));
+  EXPECT_TRUE(device->create_buffer({"block", BufferKind::Storage, 1024}));
+}
+
+TEST(Device, RefusesFramebuffersThatDoNotFitByName)
+{
+  const auto device = create_null_device(SMALL);
+  const Texture color = device->create_texture({.name = "color", .width = 8, .height = 4, .mip_levels = 2});
+  const Texture small = device->create_texture({.name = "small", .width = 4, .height = 2});
+  const Texture array =
+      device->create_texture({.name = "array", .kind = TextureKind::Array, .width = 8, .height = 4, .layers = 3});
+  const Texture cube = device->create_texture({.name = "cube", .kind = TextureKind::Cube, .width = 8, .height = 8});
+  const Texture depth = device->create_texture({.name = "depth", .format = Format::Depth32F, .width = 8, .height = 4});
+  const auto make = [&](std::vector<Attachment> colors, Attachment depth_attachment = {}) {
+    return [&device, colors, depth_attachment] {
+      static_cast<void>(device->create_framebuffer({"target", colors, depth_attachment}));
+    };
+  };
+  expect_refused(*device, make({{&color}, {&color}, {&color}}), {"framebuffer 'target'", "3 colour", "takes 2"});
+  expect_refused(*device, make({}), {"framebuffer 'target'", "nothing"});
+  expect_refused(*device, make({{&depth}}), {"framebuffer 'target'", "'depth'", "Depth32F", "colour"});
+  expect_refused(*device, make({}, {&color}), {"framebuffer 'target'", "'color'", "RGBA8", "depth"});
+  expect_refused(*device, make({{&color}, {&small}}), {"framebuffer 'target'", "'small'", "4x2", "8x4"});
+  expect_refused(*device, make({{&small}}, {&depth}), {"framebuffer 'target'", "'depth'", "8x4", "4x2"});
+  expect_refused(*device, make({{&color, 1}}), {"framebuffer 'target'", "'color'", "layer 1"});
+  expect_refused(*device, make({{&array, 3}}), {"framebuffer 'target'", "'array'", "layer 3"});
+  expect_refused(*device, make({{&array, -2}}), {"framebuffer 'target'", "'array'", "layer -2"});
+  expect_refused(*device, make({{&cube, 6}}), {"framebuffer 'target'", "'cube'", "layer 6"});
+  expect_refused(*device, make({{&color, 0, 2}}), {"framebuffer 'target'", "'color'", "mip level 2"});
+  expect_refused(*device, make({{&color, 0, -1}}), {"framebuffer 'target'", "'color'", "mip level -1"});
+  // The same level sizes: fits.
+  const Framebuffer fits = device->create_framebuffer({"fits", {{&color, 0, 1}, {&small}}, {}});
+  EXPECT_EQ(fits.size_px(), glm::ivec2(4, 2));
+  EXPECT_EQ(device->create_framebuffer({"depth", {}, {&depth}}).size_px(), glm::ivec2(8, 4));
+  EXPECT_TRUE(device->create_framebuffer({"cube", {{&cube, 5}}, {}}));
+  EXPECT_TRUE(device->create_framebuffer({"all", {{&array, ALL_LAYERS}}, {}}));
+}
+
+TEST(Device, RefusalKeepsTheIdForTheNext)
+{
+  const auto device = create_null_device(SMALL);
+  EXPECT_THROW(static_cast<void>(device->create_buffer({.name = "big", .size_bytes = 4096})), Error);
+  const Buffer buffer = device->create_buffer({.name = "fits", .size_bytes = 16});
+  EXPECT_EQ(buffer.id(), 1U);
+  EXPECT_EQ(device->name_of(ResourceKind::Buffer, 1), "fits");
+}
+
+TEST(Device, RefusesAShaderThatIsNoneAndMakesNothing)
+{
+  const auto device = create_null_device();
+  const test::ShaderTexts texts{{{"v", "#version 450 core\nvoid main() { gl_Position = nothing; }\n"},
+                                 {"f", "#version 450 core\nvoid main() {}\n"}}};
+  expect_refused(*device,
+                 [&] {
+                   static_cast<void>(device->create_shader({"odd", "v", "", "f", {}}, texts.files()));
+                 },
+                 {"shader 'odd'", "vertex", "v:2", "nothing"});
+}
+
+TEST(Device, BatchesStandApartInThePool)
+{
+  const auto device = create_null_device();
+  std::vector<glm::vec3> positions(5);
+  std::vector<std::uint32_t> indices = {0, 1, 2, 2, 3, 4};
+  const Batch a = device->create_batch({"a", positions, {}, indices});
+  const Batch b = device->create_batch({"b", positions, positions, indices});
+  EXPECT_EQ(a.range().vertex_count, 5U);
+  EXPECT_EQ(a.range().index_count, 6U);
+  EXPECT_EQ(a.range().base_vertex, 0);
+  EXPECT_EQ(b.range().base_vertex, 5);
+  EXPECT_EQ(b.range().first_index, 6U);
+}
+
+TEST(Device, BatchPlaceIsFreedWithTheBatch)
+{
+  const auto device = create_null_device();
+  const std::vector<glm::vec3> positions(300);
+  std::vector<std::uint32_t> indices(300);
+  std::iota(indices.begin(), indices.end(), 0U);
+  Batch a = device->create_batch({"a", positions, {}, indices});
+  const Batch b = device->create_batch({"b", positions, {}, indices});
+  a = Batch();
+  const Batch c = device->create_batch({"c", positions, {}, indices});
+  EXPECT_EQ(c.range().base_vertex, 0);
+  EXPECT_EQ(c.range().first_index, 0U);
+  EXPECT_EQ(b.range().base_vertex, 300);
+}
+
+TEST(Counters, HoldWhatWasAskedFor)
+{
+  const auto device = create_null_device();
+  const Texture texture = device->create_texture({.name = "t", .width = 2, .height = 2});
+  const Framebuffer framebuffer = device->create_framebuffer({"f", {{&texture}}, {}});
+  const Shader shader = test::make_shader(*device, "s", test::CLIP_SPACE_VERT, test::COLOR_FRAG);
+  const Buffer buffer = device->create_buffer({.name = "b", .size_bytes = 64});
+  std::vector<glm::vec3> positions(4);
+  const std::vector<std::uint32_t> indices = {0, 1, 2, 2, 3, 0};
+  const Batch quad = device->create_batch({"quad", positions, positions, indices});
+  EXPECT_EQ(device->counters().textures_made, 1U);
+  EXPECT_EQ(device->counters().shaders_made, 1U);
+  std::uint64_t bytes = 4 * 12 + 4 * 12 + 6 * 4;
+  EXPECT_EQ(device->counters().upload_bytes, bytes);
+  device->update(buffer, glm::vec4(0));
+  device->upload(texture, 0, std::vector<std::byte>(16));
+  bytes += 16 + 16;
+  EXPECT_EQ(device->counters().upload_bytes, bytes);
+
+  CommandList list;
+  const glm::vec4 value(1);
+  list.update(buffer, 16, std::as_bytes(std::span(&value, 1)));
+  list.begin_pass("one", framebuffer, {});
+  list.set_shader(shader.id());
+  test::append_draw(list, quad, 3);
+  test::append_draw(list, quad, 1);
+  list.end_pass();
+  list.begin_pass("two", framebuffer, {});
+  list.set_shader(shader.id());
+  list.draw_procedural(6, 5);
+  list.end_pass();
+  for (std::uint64_t times = 1; times <= 2; times++) {
+    device->submit(list);
+    const Counters &counters = device->counters();
+    EXPECT_EQ(counters.passes, 2 * times);
+    EXPECT_EQ(counters.shader_binds, 2 * times);
+    EXPECT_EQ(counters.draws, 3 * times);
+    EXPECT_EQ(counters.instances, (3 + 1 + 5) * times);
+    EXPECT_EQ(counters.triangles, (2 * 3 + 2 * 1 + 2 * 5) * times);
+    const std::uint64_t submitted = 16 + 2 * sizeof(DrawIndirect) + 4 * sizeof(DrawInstance);
+    EXPECT_EQ(counters.upload_bytes, bytes + submitted * times);
+  }
+}
+
+TEST(NullDevice, ReadsZerosAndTakesNoTime)
+{
+  const auto device = create_null_device();
+  const Texture texture = device->create_texture({.name = "t", .format = Format::RGBA16F, .width = 3, .height = 5});
+  const std::vector<std::byte> texels = device->read(texture);
+  EXPECT_EQ(texels, std::vector<std::byte>(3 * 5 * 8));
+  const TimerQuery timer = device->create_timer_query("t");
+  device->time_begin(timer);
+  device->time_end(timer);
+  EXPECT_FALSE(device->elapsed_seconds(timer));
+  EXPECT_FALSE(device->description().empty());
+}
+
+using DeviceDeathTest = testing::Test;
+
+TEST(DeviceDeathTest, BrokenContractsAreAssertionsWithValues)
+{
+  const auto device = create_null_device();
+  const Texture texture = device->create_texture({.name = "picture", .width = 2, .height = 2});
+  Buffer buffer = device->create_buffer({.name = "block", .size_bytes = 16});
+  EXPECT_DEATH(device->update(buffer, 8, std::vector<std::byte>(16)), "block.*16 bytes at 8.*16");
+  EXPECT_DEATH(device->upload(texture, 0, std::vector<std::byte>(15)), "picture.*15 bytes");
+  EXPECT_DEATH(static_cast<void>(device->read(texture, 1)), "picture.*layer 1");
+  const std::vector<glm::vec3> positions(3);
+  const std::vector<std::uint32_t> indices = {0, 1, 3};
+  EXPECT_DEATH(static_cast<void>(device->create_batch({"mesh", positions, {}, indices})), "mesh.*3 vertices");
+  EXPECT_DEATH(static_cast<void>(device->create_batch({"mesh", positions, std::span(positions).first(2), {}})),
+               "mesh.*2 normals, 3 positions");
+  const Buffer moved = std::move(buffer);
+  // NOLINTNEXTLINE(bugprone-use-after-move): what is asked here.
+  EXPECT_DEATH(device->update(buffer, 0, std::vector<std::byte>(16)), "assertion");
+}
+
+TEST(TextureDesc, SizeIsOfAllLevelsAndLayers)
+{
+  EXPECT_EQ((TextureDesc{.name = "t", .format = Format::RGBA8, .width = 5, .height = 3}.size_bytes()), 60U);
+  EXPECT_EQ((TextureDesc{
+                .name = "t", .kind = TextureKind::Array, .format = Format::R16F, .width = 4, .height = 2, .layers = 3}
+                 .size_bytes()),
+            48U);
+  // 8x2, 4x1, 2x1, 1x1 of 16 bytes.
+  EXPECT_EQ(
+      (TextureDesc{.name = "t", .format = Format::RGBA32F, .width = 8, .height = 2, .mip_levels = 4}.size_bytes()),
+      (16U + 4U + 2U + 1U) * 16U);
+  EXPECT_EQ(
+      (TextureDesc{
+          .name = "t", .kind = TextureKind::CubeArray, .format = Format::Depth32F, .width = 2, .height = 2, .layers = 2}
+           .size_bytes()),
+      4U * 4U * 12U);
+}
+
+TEST(Format, TexelsAreAsLargeAsTheirChannels)
+{
+  EXPECT_EQ(texel_size_bytes(Format::RGBA8), 4);
+  EXPECT_EQ(texel_size_bytes(Format::RGBA16F), 8);
+  EXPECT_EQ(texel_size_bytes(Format::RGBA32F), 16);
+  EXPECT_EQ(texel_size_bytes(Format::R16F), 2);
+  EXPECT_EQ(texel_size_bytes(Format::R32F), 4);
+  EXPECT_EQ(texel_size_bytes(Format::Depth32F), 4);
+  EXPECT_TRUE(is_depth(Format::Depth32F));
+  EXPECT_FALSE(is_depth(Format::R32F));
+}
+
+}  // namespace
+}  // namespace gnomon::gpu

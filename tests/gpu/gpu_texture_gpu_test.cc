@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: MIT
+#include "gpu/gpu_testing.hh"
+#include "gpu_device_fixture.hh"
+
+#include "eevee_shadow_shared.h"
+
+#include <cmath>
+#include <random>
+
+namespace gnomon::gpu {
+namespace {
+
+using test::append_draw;
+using test::make_shader;
+
+class TextureGpu : public test::GpuDeviceTest {
+ protected:
+  /** The GLSL \a expression, a vec4, for each of \a inputs; \a sampler_type `picture` is bound. */
+  std::vector<glm::vec4> evaluated(const std::string &sampler_type, const std::string &expression,
+                                   const std::vector<glm::vec4> &inputs, const Texture &texture, const Sampler &sampler)
+  {
+    const Texture result =
+        device->create_texture({.name = "result", .format = Format::RGBA32F, .width = int(inputs.size()), .height = 1});
+    const Framebuffer framebuffer = device->create_framebuffer({"result", {{&result}}, {}});
+    const Buffer store = device->create_buffer({"input_block", BufferKind::Storage, inputs.size() * sizeof(glm::vec4)});
+    device->update(store, 0, std::as_bytes(std::span(inputs)));
+    const Shader shader =
+        make_shader(*device, "evaluate", test::CLIP_SPACE_VERT,
+                    "layout(binding = 16) uniform " + sampler_type +
+                        " picture;\n"
+                        "layout(std140, binding = 0) readonly buffer input_block { vec4 inputs[]; };\n"
+                        "layout(location = 0) out vec4 result;\n"
+                        "void main()\n{\n  vec4 v = inputs[int(gl_FragCoord.x)];\n  result = " +
+                        expression + ";\n}\n");
+    const Batch full = test::full_triangle(*device, 0.5F);
+    CommandList list;
+    list.begin_pass("evaluate", framebuffer, {});
+    list.set_shader(shader.id());
+    list.set_state(State::WriteColor);
+    list.bind_storage(0, {store.id()});
+    list.bind_texture(16, texture.id(), sampler.id());
+    append_draw(list, full);
+    list.end_pass();
+    device->submit(list);
+    return test::texels<glm::vec4>(*device, result);
+  }
+
+  template <typename T>
+  void upload(const Texture &texture, int layer, const std::vector<T> &values)
+  {
+    device->upload(texture, layer, std::as_bytes(std::span(values)));
+  }
+};
+
+TEST_F(TextureGpu, UploadComesBackAsItWas)
+{
+  std::mt19937 random(5);
+  for (const Format format :
+       {Format::RGBA8, Format::RGBA16F, Format::RGBA32F, Format::R16F, Format::R32F, Format::Depth32F}) {
+    for (const TextureKind kind : {TextureKind::Flat, TextureKind::Array, TextureKind::Cube, TextureKind::CubeArray}) {
+      SCOPED_TRACE(fmt::format("{} kind {}", to_string(format), int(kind)));
+      const bool is_cube = kind == TextureKind::Cube || kind == TextureKind::CubeArray;
+      const Texture texture = device->create_texture({.name = "round trip",
+                                                      .kind = kind,
+                                                      .format = format,
+                                                      .width = 7,
+                                                      .height = is_cube ? 7 : 5,
+                                                      .layers = kind == TextureKind::Array       ? 3
+                                                                : kind == TextureKind::CubeArray ? 2
+                                                                                                 : 1});
+      std::vector<std::vector<std::byte>> layers;
+      for (int layer = 0; layer < texture.desc().layer_count(); layer++) {
+        const std::size_t texel_count = std::size_t(7 * texture.desc().height);
+        std::vector<std::byte> bytes;
+        const auto append = [&](const auto &value) {
+          const auto *first = reinterpret_cast<const std::byte *>(&value);
+          bytes.insert(bytes.end(), first, first + sizeof(value));
+        };
+        std::uniform_real_distribution<float> uniform(0, 1);
+        for (std::size_t i = 0; i < texel_count * std::size_t(gpu::texel_size_bytes(format)); i++) {
+          switch (format) {
+            case Format::RGBA8:
+              append(std::byte(random()));
+              break;
+            case Format::RGBA16F:
+            case Format::R16F:
+              append(glm::packHalf1x16(uniform(random) * 100));
+              i += 1;
+              break;
+            default:
+              append(uniform(random));
+              i += 3;
+              break;
+          }
+        }
+        device->upload(texture, layer, bytes);
+        layers.push_back(std::move(bytes));
+      }
+      for (int layer = 0; layer < texture.desc().layer_count(); layer++) {
+        EXPECT_EQ(device->read(texture, layer), layers[std::size_t(layer)]) << "layer " << layer;
+      }
+    }
+  }
+}
+
+TEST_F(TextureGpu, RowsStandFromTheBottom)
+{
+  const Texture texture = device->create_texture({.name = "rows", .format = Format::R32F, .width = 1, .height = 2});
+  upload<float>(texture, 0, {1, 2});
+  const Sampler nearest = device->create_sampler({.name = "nearest"});
+  const auto values =
+      evaluated("sampler2D", "texture(picture, v.xy)", {{0.5F, 0.25F, 0, 0}, {0.5F, 0.75F, 0, 0}}, texture, nearest);
+  EXPECT_EQ(values[0].r, 1);
+  EXPECT_EQ(values[1].r, 2);
+}
+
+TEST_F(TextureGpu, FilterIsTheNearestOrTheBlend)
+{
+  const Texture texture = device->create_texture({.name = "ramp", .format = Format::R32F, .width = 4, .height = 1});
+  upload<float>(texture, 0, {0, 1, 2, 3});
+  const std::vector<glm::vec4> inputs = {{0.375F, 0.5F, 0, 0}, {0.45F, 0.5F, 0, 0}, {0.5F, 0.5F, 0, 0}};
+  const Sampler nearest = device->create_sampler({.name = "nearest"});
+  const Sampler linear = device->create_sampler({.name = "linear", .filter = Filter::Linear});
+  const auto steps = evaluated("sampler2D", "texture(picture, v.xy)", inputs, texture, nearest);
+  EXPECT_EQ(steps[0].r, 1);
+  EXPECT_EQ(steps[1].r, 1);
+  const auto ramp = evaluated("sampler2D", "texture(picture, v.xy)", inputs, texture, linear);
+  for (std::size_t i = 0; i < inputs.size(); i++) {
+    // Texel centres are at halves; weights have eight bits at least.
+    EXPECT_NEAR(ramp[i].r, inputs[i].x * 4 - 0.5F, 1.0F / 256);
+  }
+}
+
+TEST_F(TextureGpu, WrapClampsOrRepeats)
+{
+  const Texture texture = device->create_texture({.name = "ramp", .format = Format::R32F, .width = 4, .height = 1});
+  upload<float>(texture, 0, {0, 1, 2, 3});
+  const std::vector<glm::vec4> inputs = {{-0.4F, 0.5F, 0, 0}, {1.4F, 0.5F, 0, 0}};
+  const Sampler clamp = device->create_sampler({.name = "clamp"});
+  const Sampler repeat = device->create_sampler({.name = "repeat", .wrap = Wrap::Repeat});
+  const auto clamped = evaluated("sampler2D", "texture(picture, v.xy)", inputs, texture, clamp);
+  EXPECT_EQ(clamped[0].r, 0);
+  EXPECT_EQ(clamped[1].r, 3);
+  const auto repeated = evaluated("sampler2D", "texture(picture, v.xy)", inputs, texture, repeat);
+  EXPECT_EQ(repeated[0].r, 2);
+  EXPECT_EQ(repeated[1].r, 1);
+}
+
+TEST_F(TextureGpu, DepthComparisonIsLitWhereTheReferenceIsNearerOrAsNear)
+{
+  const Texture texture = device->create_texture({.name = "map", .format = Format::Depth32F, .width = 2, .height = 2});
+  upload<float>(texture, 0, {0.5F, 0.5F, 0.5F, 0.5F});
+  const Sampler sampler = device->create_sampler({.name = "shadow", .is_depth_comparison = true});
+  const auto values = evaluated("sampler2DShadow", "vec4(texture(picture, v.xyz))",
+                                {{0.25F, 0.25F, 0.25F, 0},
+                                 {0.25F, 0.25F, std::nextafter(0.5F, 0.0F), 0},
+                                 {0.25F, 0.25F, 0.5F, 0},
+                                 {0.25F, 0.25F, std::nextafter(0.5F, 1.0F), 0},
+                                 {0.25F, 0.25F, 1, 0}},
+                                texture, sampler);
+  const std::array<float, 5> expected = {0, 0, 1, 1, 1};
+  for (std::size_t i = 0; i < expected.size(); i++) {
+    EXPECT_EQ(values[i].r, expected[i]) << i;
+  }
+}
+
+TEST_F(TextureGpu, LinearDepthComparisonBlendsFourAnswers)
+{
+  const Texture texture = device->create_texture({.name = "map", .format = Format::Depth32F, .width = 2, .height = 2});
+  // The reference 0.5 is behind the first alone.
+  upload<float>(texture, 0, {0.75F, 0.25F, 0.25F, 0.25F});
+  const Sampler sampler =
+      device->create_sampler({.name = "shadow", .filter = Filter::Linear, .is_depth_comparison = true});
+  const auto values =
+      evaluated("sampler2DShadow", "vec4(texture(picture, v.xyz))",
+                {{0.25F, 0.25F, 0.5F, 0}, {0.5F, 0.5F, 0.5F, 0}, {0.5F, 0.25F, 0.5F, 0}, {0.75F, 0.75F, 0.5F, 0}},
+                texture, sampler);
+  const std::array<float, 4> expected = {0, 0.75F, 0.5F, 1};
+  for (std::size_t i = 0; i < expected.size(); i++) {
+    EXPECT_NEAR(values[i].r, expected[i], 1.0F / 256) << i;
+  }
+}
+
+TEST_F(TextureGpu, DepthComparisonOfAnArrayNamesTheLayer)
+{
+  const Texture texture = device->create_texture(
+      {.name = "maps", .kind = TextureKind::Array, .format = Format::Depth32F, .width = 2, .height = 2, .layers = 3});
+  for (int layer = 0; layer < 3; layer++) {
+    upload(texture, layer, std::vector<float>(4, 0.25F * float(layer + 1)));
+  }
+  const Sampler sampler = device->create_sampler({.name = "shadow", .is_depth_comparison = true});
+  const auto values =
+      evaluated("sampler2DArrayShadow", "vec4(texture(picture, v))",
+                {{0.5F, 0.5F, 0, 0.6F}, {0.5F, 0.5F, 1, 0.6F}, {0.5F, 0.5F, 2, 0.6F}}, texture, sampler);
+  EXPECT_EQ(values[0].r, 1);
+  EXPECT_EQ(values[1].r, 1);
+  EXPECT_EQ(values[2].r, 0);
+}
+
+/** Texel of a face that a direction meets, by the shared functions that shadows look up with. */
+struct CubeTexel {
+  int face;
+  int x;
+  int y;
+};
+
+CubeTexel cube_texel(const glm::vec3 &direction, int size)
+{
+  const int face = shared::cube_face(direction);
+  const glm::vec3 projected = shared::cube_face_project(face, direction);
+  const glm::vec2 texco = glm::vec2(projected) / projected.z * 0.5F + 0.5F;
+  return {face, int(texco.x * float(size)), int(texco.y * float(size))};
+}
+
+TEST_F(TextureGpu, CubeIsSampledByFaceAsTheSharedFunctionsSay)
+{
+  constexpr int SIZE = 4;
+  constexpr int CUBES = 2;
+  const Texture cube = device->create_texture(
+      {.name = "cube", .kind = TextureKind::Cube, .format = Format::R32F, .width = SIZE, .height = SIZE});
+  const Texture cubes = device->create_texture({.name = "cubes",
+                                                .kind = TextureKind::CubeArray,
+                                                .format = Format::R32F,
+                                                .width = SIZE,
+                                                .height = SIZE,
+                                                .layers = CUBES});
+  const auto code = [](int layer, int x, int y) { return float((layer * SIZE + y) * SIZE + x); };
+  for (int layer = 0; layer < 6 * CUBES; layer++) {
+    std::vector<float> values;
+    for (int y = 0; y < SIZE; y++) {
+      for (int x = 0; x < SIZE; x++) {
+        values.push_back(code(layer, x, y));
+      }
+    }
+    upload(cubes, layer, values);
+    if (layer < 6) {
+      upload(cube, layer, values);
+    }
+  }
+  // Directions away from texel borders: there, both answers are right.
+  std::mt19937 random(11);
+  std::normal_distribution<float> normal;
+  std::vector<glm::vec4> inputs = {{1, 0.1F, 0.2F, 0},  {-1, 0.1F, 0.2F, 1}, {0.1F, 1, 0.2F, 0},
+                                   {0.1F, -1, 0.2F, 1}, {0.1F, 0.2F, 1, 0},  {0.1F, 0.2F, -1, 1}};
+  while (inputs.size() < 500) {
+    const glm::vec3 v(normal(random), normal(random), normal(random));
+    const glm::vec3 projected = shared::cube_face_project(shared::cube_face(v), v);
+    const glm::vec2 position = (glm::vec2(projected) / projected.z * 0.5F + 0.5F) * float(SIZE);
+    const glm::vec2 to_border = glm::abs(position - glm::round(position));
+    if (std::min(to_border.x, to_border.y) > 0.01F) {
+      inputs.emplace_back(v, float(inputs.size() % CUBES));
+    }
+  }
+  const Sampler nearest = device->create_sampler({.name = "nearest"});
+  const auto of_cube = evaluated("samplerCube", "texture(picture, v.xyz)", inputs, cube, nearest);
+  const auto of_cubes = evaluated("samplerCubeArray", "texture(picture, v)", inputs, cubes, nearest);
+  for (std::size_t i = 0; i < inputs.size(); i++) {
+    const CubeTexel texel = cube_texel(glm::vec3(inputs[i]), SIZE);
+    EXPECT_EQ(of_cube[i].r, code(texel.face, texel.x, texel.y)) << i;
+    EXPECT_EQ(of_cubes[i].r, code(6 * int(inputs[i].w) + texel.face, texel.x, texel.y)) << i;
+  }
+}
+
+TEST_F(TextureGpu, CubeIsSeamlessAcrossItsEdges)
+{
+  const Texture cube = device->create_texture(
+      {.name = "cube", .kind = TextureKind::Cube, .format = Format::R32F, .width = 4, .height = 4});
+  for (int face = 0; face < 6; face++) {
+    upload(cube, face, std::vector<float>(16, face == 0 ? 1.0F : 0.0F));
+  }
+  const Sampler linear = device->create_sampler({.name = "linear", .filter = Filter::Linear});
+  const auto values = evaluated("samplerCube", "texture(picture, v.xyz)",
+                                {{1, 0.99999F, 0.1F, 0}, {0.99999F, 1, 0.1F, 0}, {1, 0.1F, 0.1F, 0}}, cube, linear);
+  // On the edge between +X and another face: half of each, from both sides.
+  EXPECT_NEAR(values[0].r, 0.5F, 0.02F);
+  EXPECT_NEAR(values[1].r, 0.5F, 0.02F);
+  EXPECT_EQ(values[2].r, 1);
+}
+
+}  // namespace
+}  // namespace gnomon::gpu
