@@ -7,9 +7,11 @@
 #  include "eevee/eevee_light_lib.glsl"
 #endif
 
+layout(location = 2) flat in uint surface_material;
+#ifdef USE_LIGHT
 layout(location = 0) in vec3 surface_position_ws;
 layout(location = 1) in vec3 surface_normal_ws;
-layout(location = 2) flat in uint surface_material;
+#endif
 
 layout(location = 0) out vec4 radiance;
 
@@ -18,6 +20,7 @@ layout(std140, binding = MATERIAL_BLOCK_SLOT) readonly buffer material_block
   MaterialData materials[];
 };
 
+#ifdef USE_LIGHT
 /** \a fallback for a zero vector. */
 vec3 normalized(vec3 v, vec3 fallback)
 {
@@ -38,6 +41,7 @@ Surface make_surface()
   surface.normal_ws = gl_FrontFacing ? normal_ws : -normal_ws;
   return surface;
 }
+#endif
 
 void main()
 {

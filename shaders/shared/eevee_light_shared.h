@@ -53,9 +53,7 @@ struct LightBlock {
   LightData lights[LIGHT_MAX];
 };
 SHARED_ASSERT_SIZE(LightBlock, 16 + LIGHT_MAX * 64)
-#ifdef __cplusplus
-static_assert(LIGHT_MAX == (UNIFORM_BLOCK_BYTES_MAX - 16) / sizeof(LightData));
-#endif
+SHARED_ASSERT(LIGHT_MAX == (UNIFORM_BLOCK_BYTES_MAX - 16) / sizeof(LightData))
 
 /** Blends below this share of 1 - cos are hard edges: the inverse stays finite. */
 SHARED_CONSTANT float SPOT_WIDTH_MIN = 1e-6f;

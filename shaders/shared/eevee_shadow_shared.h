@@ -41,10 +41,7 @@ struct ShadowBlock {
   ShadowMapData maps[SHADOW_MAP_MAX];
 };
 SHARED_ASSERT_SIZE(ShadowBlock, SHADOW_CUBE_MAX * 16 + SHADOW_MAP_MAX * 80)
-#ifdef __cplusplus
-static_assert(SHADOW_MAP_MAX ==
-              (UNIFORM_BLOCK_BYTES_MAX - SHADOW_CUBE_MAX * sizeof(ShadowCubeData)) / sizeof(ShadowMapData));
-#endif
+SHARED_ASSERT(UNIFORM_BLOCK_BYTES_MAX - sizeof(ShadowBlock) < sizeof(ShadowMapData))
 
 /** `shadow_render_block`: what the casters are drawn with, one lamp at a time. */
 struct ShadowRenderBlock {

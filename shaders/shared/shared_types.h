@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What lets a header be C++ and GLSL: types, functions and asserts under one name. Included first by each *_shared.h.
 // Float literals carry an `f`. Members of a block are vec4, mat4, or a vec3 and a scalar that fills its row.
+//
+// With SHARED_DOUBLE defined before, C++ sees everything in double instead, in gnomon::shared_double: what a function gives
+// without its roundings. Literals keep their float values, and stand beside scalars only: `vec2(0.5f) * v`. `float`
+// is a macro from here on, so include everything else earlier.
 #ifndef SHARED_TYPES_H
 #define SHARED_TYPES_H
 
@@ -17,12 +21,29 @@
 #  include <cstddef>
 #  include <cstdint>
 
-namespace gnomon::shared {
+#  ifdef SHARED_DOUBLE
+#    define float double
+#    define SHARED_NAMESPACE gnomon::shared_double
+#    define SHARED_ASSERT(CONDITION)
+#  else
+#    define SHARED_NAMESPACE gnomon::shared
+#    define SHARED_ASSERT(CONDITION) static_assert(CONDITION);
+#  endif
+
+namespace SHARED_NAMESPACE {
 using uint = std::uint32_t;
+using ivec2 = glm::ivec2;
+using vec2 = glm::vec<2, float>;
+using vec3 = glm::vec<3, float>;
+using vec4 = glm::vec<4, float>;
+using mat4 = glm::mat<4, 4, float>;
 using glm::abs;
+using glm::atan;
 using glm::clamp;
+using glm::cross;
 using glm::dot;
-using glm::mat4;
+using glm::exp;
+using glm::log;
 using glm::max;
 using glm::min;
 using glm::mix;
@@ -30,23 +51,36 @@ using glm::normalize;
 using glm::pow;
 using glm::sqrt;
 using glm::step;
-using glm::vec2;
-using glm::vec3;
-using glm::vec4;
-}  // namespace gnomon::shared
+#  ifdef SHARED_DOUBLE
+// GLM's are templates, to which a double and a float literal are no match.
+inline double clamp(double x, double low, double high)
+{
+  return glm::clamp(x, low, high);
+}
+inline double max(double x, double y)
+{
+  return glm::max(x, y);
+}
+inline double min(double x, double y)
+{
+  return glm::min(x, y);
+}
+#  endif
+}  // namespace SHARED_NAMESPACE
 
-#  define SHARED_BEGIN namespace gnomon::shared {
+#  define SHARED_BEGIN namespace SHARED_NAMESPACE {
 #  define SHARED_END }
 #  define SHARED_FUNCTION inline
 #  define SHARED_CONSTANT inline constexpr
 /** std140 gives `TYPE` this size, and so does C++; a test compares each offset. */
 #  define SHARED_ASSERT_SIZE(TYPE, SIZE_BYTES) \
-    static_assert(sizeof(TYPE) == (SIZE_BYTES) && (SIZE_BYTES) % 16 == 0, #TYPE " is not laid out as std140");
+    SHARED_ASSERT(sizeof(TYPE) == (SIZE_BYTES) && (SIZE_BYTES) % 16 == 0)
 #else
 #  define SHARED_BEGIN
 #  define SHARED_END
 #  define SHARED_FUNCTION
 #  define SHARED_CONSTANT const
+#  define SHARED_ASSERT(CONDITION)
 #  define SHARED_ASSERT_SIZE(TYPE, SIZE_BYTES)
 #endif
 

@@ -27,5 +27,6 @@ struct UsageError : std::runtime_error {
 /** A subcommand adds itself to \a app, and leaves its status in \a status when run. */
 void add_render(CLI::App &app, int &status);
 void add_info(CLI::App &app, int &status);
+void add_shaders(CLI::App &app, int &status);
 
 }  // namespace gnomon::cli

@@ -10,10 +10,9 @@ namespace gnomon::cli {
 /** Part of the promise, not of the program yet. */
 static void add_unbuilt(CLI::App &app)
 {
-  static constexpr std::array<std::array<const char *, 2>, 5> UNBUILT = {
+  static constexpr std::array<std::array<const char *, 2>, 4> UNBUILT = {
       {{"report", "Error against run time"},
        {"stability", "Stiff and extreme cases"},
-       {"shaders", "Check, list and reflect shaders"},
        {"bench", "Benchmarks"},
        {"view", "A window on a scene"}}};
   for (const auto &[name, purpose] : UNBUILT) {
@@ -32,6 +31,7 @@ static int run(int argc, char **argv)
   int status = STATUS_DONE;
   add_render(app, status);
   add_info(app, status);
+  add_shaders(app, status);
   add_unbuilt(app);
   try {
     app.parse(argc, argv);

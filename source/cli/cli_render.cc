@@ -192,6 +192,7 @@ nlohmann::json to_json(const RenderOptions &options, const scene::Scene &scene, 
             {"triangles", c.triangles},
             {"shader_binds", c.shader_binds},
             {"shaders_made", c.shaders_made},
+            {"shaders_from_cache", c.shaders_from_cache},
             {"textures_made", c.textures_made},
             {"upload_bytes", c.upload_bytes}}},
           {"made", made},
@@ -315,7 +316,9 @@ int render(const RenderOptions &options)
 
   const Clock::time_point device_start = Clock::now();
   const std::unique_ptr<gpu::Device> device =
-      options.backend == "null" ? gpu::create_null_device() : gpu::create_gl_device();
+      options.backend == "null" ?
+          gpu::create_null_device() :
+          gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()});
   result.device = device->description();
   result.device_seconds = seconds_since(device_start);
 

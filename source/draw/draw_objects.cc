@@ -61,7 +61,10 @@ void ObjectBuffer::upload(gpu::Device &device)
 {
   const auto bytes = std::as_bytes(std::span(objects_));
   if (!buffer_ || buffer_.size_bytes() < bytes.size()) {
-    buffer_ = device.create_buffer({"object_block", gpu::BufferKind::Storage, std::bit_ceil(bytes.size())});
+    // Room to grow, as far as the device goes.
+    const std::size_t limit = device.limits().storage_block_bytes_max;
+    const std::size_t size = std::max(bytes.size(), std::min(std::bit_ceil(bytes.size()), limit));
+    buffer_ = device.create_buffer({"object_block", gpu::BufferKind::Storage, size});
     is_dirty_ = true;
   }
   if (std::exchange(is_dirty_, false)) {

@@ -21,7 +21,7 @@ void InstanceCall::clear()
 }
 
 ShadingGroup::ShadingGroup(const gpu::Shader &shader, ObjectBuffer *objects)
-    : shader_(shader), objects_(objects), constants_(shader.interface().push_constant_size_bytes)
+    : shader_(shader), objects_(objects), constant_bytes_(shader.interface().push_constant_size_bytes)
 {
 }
 
@@ -72,12 +72,22 @@ void ShadingGroup::bind_texture_ref(std::string_view name, const TextureBinding 
   bind(gpu::BindingKind::Texture, name, binding);
 }
 
-const gpu::ShaderInterface::Member *ShadingGroup::constant_member(std::string_view name, std::size_t size) const
+ShadingGroup::Constant *ShadingGroup::constant_entry(std::string_view name, std::size_t size_bytes)
 {
   const gpu::ShaderInterface::Member *member = shader_.interface().find_push_constant(name);
-  GNOMON_ASSERT(!member || size <= member->size_bytes, "constant '{}' of shader '{}' takes {} bytes, not {}", name,
-                shader_.name(), member->size_bytes, size);
-  return member;
+  if (!member) {
+    return nullptr;
+  }
+  GNOMON_ASSERT(size_bytes <= member->size_bytes, "constant '{}' of shader '{}' takes {} bytes, not {}", name,
+                shader_.name(), member->size_bytes, size_bytes);
+  // Given again, the later one holds.
+  const auto same = std::ranges::find(constants_, member->offset_bytes, &Constant::offset_bytes);
+  if (same != constants_.end()) {
+    same->size_bytes = size_bytes;
+    return &*same;
+  }
+  constants_.push_back({std::string(name), member->offset_bytes, size_bytes});
+  return &constants_.back();
 }
 
 void ShadingGroup::call(const gpu::Batch &batch, const glm::mat4 &world_from_object)
@@ -130,10 +140,12 @@ void ShadingGroup::record_bindings(gpu::CommandList &list) const
       list.bind_storage(binding.slot, value);
     }
   }
-  if (!constants_.empty()) {
-    std::vector<std::byte> constants = constants_;
-    for (const ConstantRef &reference : constant_refs_) {
-      std::memcpy(constants.data() + reference.offset_bytes, reference.value, reference.size_bytes);
+  if (!constant_bytes_.empty()) {
+    std::vector<std::byte> constants = constant_bytes_;
+    for (const Constant &constant : constants_) {
+      if (constant.reference) {
+        std::memcpy(constants.data() + constant.offset_bytes, constant.reference, constant.size_bytes);
+      }
     }
     list.push_constants(shader_.interface().push_constant_slot, constants);
   }
@@ -143,7 +155,7 @@ void ShadingGroup::record_calls(const View &view, gpu::CommandList &list) const
 {
   const std::size_t first_draw = list.draws.size();
   list.instances.reserve(list.instances.size() + calls_.size());
-  std::uint32_t open_index = ~0U;  // First index of the batch that the last draw repeats.
+  bool has_draw = false;  // The last of list.draws is this group's: the same batch again makes it longer.
   for (const Call &call : calls_) {
     if (!view.touches(call.volume)) {
       continue;
@@ -152,13 +164,16 @@ void ShadingGroup::record_calls(const View &view, gpu::CommandList &list) const
     for (std::uint32_t i = 0; i < call.instance_count; i++) {
       list.instances.push_back({call.object, i});
     }
-    if (call.batch.first_index == open_index) {
+    // An empty batch begins where the next one does: the count tells them apart.
+    if (has_draw && list.draws.back().first_index == call.batch.first_index &&
+        list.draws.back().index_count == call.batch.index_count)
+    {
       list.draws.back().instance_count += call.instance_count;
     }
     else {
       list.draws.push_back({call.batch.index_count, call.instance_count, call.batch.first_index,
                             call.batch.base_vertex, first_instance});
-      open_index = call.batch.first_index;
+      has_draw = true;
     }
   }
   for (const InstanceCall &call : instance_calls_) {
@@ -224,8 +239,8 @@ std::string Pass::serialize(const gpu::Device &device) const
                                                       std::get<TextureBinding>(binding.value).texture));
       }
     }
-    for (const ShadingGroup::ConstantNote &note : group.constant_notes_) {
-      text += fmt::format("    constant {}{}\n", note.name, note.is_reference ? " by reference" : "");
+    for (const ShadingGroup::Constant &constant : group.constants_) {
+      text += fmt::format("    constant {}{}\n", constant.name, constant.reference ? " by reference" : "");
     }
     for (const ShadingGroup::Call &call : group.calls_) {
       text += fmt::format("    call {}, object {}", batch_text(call.batch), call.object);

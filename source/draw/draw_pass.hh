@@ -64,16 +64,15 @@ class ShadingGroup {
   /** A member of the push-constant block. \pre T is as large as the member: int, float, vectors, matrices. */
   template<typename T> void constant(std::string_view name, const T &value)
   {
-    if (const auto *member = constant_member(name, sizeof(T))) {
-      std::memcpy(constants_.data() + member->offset_bytes, &value, sizeof(T));
-      constant_notes_.push_back({std::string(name), false});
+    if (Constant *constant = constant_entry(name, sizeof(T))) {
+      constant->reference = nullptr;
+      std::memcpy(constant_bytes_.data() + constant->offset_bytes, &value, sizeof(T));
     }
   }
   template<typename T> void constant_ref(std::string_view name, const T *value)
   {
-    if (const auto *member = constant_member(name, sizeof(T))) {
-      constant_refs_.push_back({member->offset_bytes, sizeof(T), value});
-      constant_notes_.push_back({std::string(name), true});
+    if (Constant *constant = constant_entry(name, sizeof(T))) {
+      constant->reference = value;
     }
   }
 
@@ -109,14 +108,12 @@ class ShadingGroup {
       return value.index() >= 2;
     }
   };
-  struct ConstantRef {
+  struct Constant {
+    std::string name;
     std::uint32_t offset_bytes;
     std::size_t size_bytes;
-    const void *value;
-  };
-  struct ConstantNote {
-    std::string name;
-    bool is_reference;
+    /** nullptr: by value, in constant_bytes_. */
+    const void *reference = nullptr;
   };
   /** What is drawn: no more than a draw costs. */
   struct Call {
@@ -134,7 +131,8 @@ class ShadingGroup {
 
   template<typename Value>
   void bind(gpu::BindingKind kind, std::string_view name, const Value &value);
-  [[nodiscard]] const gpu::ShaderInterface::Member *constant_member(std::string_view name, std::size_t size) const;
+  /** Of the name, made at the first ask; nullptr where the shader has none. */
+  [[nodiscard]] Constant *constant_entry(std::string_view name, std::size_t size_bytes);
   void record_bindings(gpu::CommandList &list) const;
   void record_calls(const View &view, gpu::CommandList &list) const;
 
@@ -142,9 +140,9 @@ class ShadingGroup {
   ObjectBuffer *objects_;
   gpu::State state_ = gpu::State::None;
   std::vector<Binding> bindings_;
-  std::vector<std::byte> constants_;
-  std::vector<ConstantRef> constant_refs_;
-  std::vector<ConstantNote> constant_notes_;
+  std::vector<Constant> constants_;
+  /** The whole push-constant block. */
+  std::vector<std::byte> constant_bytes_;
   std::vector<Call> calls_;
   /** Deque: the caller holds references. */
   std::deque<InstanceCall> instance_calls_;

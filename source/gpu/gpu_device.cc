@@ -6,8 +6,11 @@
 
 namespace gnomon::gpu {
 
-Device::Device(const Limits &limits, MessageSink sink)
-    : limits_(limits), sink_(std::move(sink)), link_(std::make_shared<DeviceLink>(DeviceLink{this}))
+Device::Device(const Limits &limits, MessageSink sink, std::filesystem::path shader_cache_folder)
+    : limits_(limits),
+      sink_(std::move(sink)),
+      shader_cache_(std::move(shader_cache_folder)),
+      link_(std::make_shared<DeviceLink>(DeviceLink{this}))
 {
   for (std::vector<Slot> &slots : slots_) {
     slots.push_back({"none", false, {}});
@@ -180,10 +183,26 @@ Batch Device::create_batch(const BatchDesc &desc)
 Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files)
 {
   const std::vector<ShaderSource> stages = preprocess(desc, files);
-  ShaderInterface interface = reflect(desc.name, stages);
-  Resource resource = make(ResourceKind::Shader, desc.name, [&](ResourceId id) { shader_create(id, desc, stages); });
+  const std::string key = ShaderDiskCache::key_of(stages, description());
+  std::optional<CachedShader> cached = shader_cache_.load(key);
+  const bool is_cached = cached.has_value();
+  if (!cached) {
+    cached = CachedShader{.interface = reflect(desc.name, stages)};
+  }
+  bool is_loaded = false;
+  Resource resource = make(ResourceKind::Shader, desc.name, [&](ResourceId id) {
+    is_loaded = is_cached && shader_load(id, desc, *cached);
+    if (!is_loaded) {
+      shader_create(id, desc, stages);
+    }
+  });
+  if (!is_loaded) {
+    shader_binary(resource.id(), *cached);
+    shader_cache_.store(key, *cached);
+  }
   counters_.shaders_made++;
-  return {std::move(resource), desc.name, std::move(interface)};
+  counters_.shaders_from_cache += is_cached;
+  return {std::move(resource), desc.name, std::move(cached->interface)};
 }
 
 TimerQuery Device::create_timer_query(std::string name)

@@ -8,6 +8,7 @@
 #include "gpu_framebuffer.hh"
 #include "gpu_range_allocator.hh"
 #include "gpu_shader.hh"
+#include "gpu_shader_cache.hh"
 #include "gpu_texture.hh"
 
 #include <array>
@@ -34,6 +35,8 @@ struct Counters {
   std::uint64_t triangles = 0;
   std::uint64_t shader_binds = 0;
   std::uint64_t shaders_made = 0;
+  /** Of shaders_made, those that the disk cache spared glslang. */
+  std::uint64_t shaders_from_cache = 0;
   std::uint64_t textures_made = 0;
   /** Bytes written to buffers, batches and textures. */
   std::uint64_t upload_bytes = 0;
@@ -114,7 +117,8 @@ class Device {
   [[nodiscard]] std::vector<std::string> live_resources() const;
 
  protected:
-  Device(const Limits &limits, MessageSink sink);
+  /** \a shader_cache_folder: see ShaderDiskCache. */
+  Device(const Limits &limits, MessageSink sink, std::filesystem::path shader_cache_folder = {});
 
   /** To be called by the most derived destructor, while it can still free. */
   void free_live_resources();
@@ -128,6 +132,13 @@ class Device {
   virtual void batch_create(const BatchDesc &desc, const BatchRange &range, std::uint32_t vertex_capacity,
                             std::uint32_t index_capacity) = 0;
   virtual void shader_create(ResourceId id, const ShaderDesc &desc, const std::vector<ShaderSource> &stages) = 0;
+  /** Make the program of what shader_binary gave once. false: the driver does not take it, and nothing was made. */
+  virtual bool shader_load(ResourceId /*id*/, const ShaderDesc & /*desc*/, const CachedShader & /*cached*/)
+  {
+    return false;
+  }
+  /** Fill in the driver's form of the program, where it gives one. */
+  virtual void shader_binary(ResourceId /*id*/, CachedShader & /*cached*/) {}
   virtual void timer_query_create(ResourceId id, const std::string &name) = 0;
   virtual void resource_destroy(ResourceKind kind, ResourceId id) = 0;
   virtual void buffer_update(ResourceId id, std::size_t offset_bytes, std::span<const std::byte> bytes) = 0;
@@ -155,6 +166,7 @@ class Device {
 
   Limits limits_;
   MessageSink sink_;
+  ShaderDiskCache shader_cache_;
   std::shared_ptr<DeviceLink> link_;
   /** Index 0 is never live. */
   std::array<std::vector<Slot>, KIND_COUNT> slots_;
@@ -165,7 +177,7 @@ class Device {
 
 /** What a context is made from. */
 enum class ContextKind {
-  /** EGL without a surface, else an EGL device, else a hidden window. */
+  /** EGL without a surface, else an EGL device, else a hidden window. No other context may be current on the thread. */
   Headless,
   /** The context that is current on this thread; it stays the host's. */
   Host,
@@ -180,6 +192,8 @@ struct GlDeviceDesc {
   bool is_debug = true;
 #endif
   MessageSink sink{};
+  /** Where compiled shaders are kept from one start to the next; empty: nowhere. \see ShaderDiskCache */
+  std::filesystem::path shader_cache_folder{};
 };
 
 /**

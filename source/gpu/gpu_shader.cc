@@ -65,41 +65,53 @@ namespace {
 /** Expands one stage. */
 class Preprocessor {
  public:
-  Preprocessor(const ShaderDesc &desc, const ShaderFiles &files, ShaderStage stage)
-      : desc_(desc), files_(files), source_{stage, {}, {}}
+  Preprocessor(const ShaderDesc &desc, const ShaderFiles &files, const IncludePath &include_path, ShaderStage stage)
+      : desc_(desc), files_(files), include_path_(include_path), source_{stage, {}, {}}
   {
   }
 
   ShaderSource run(const std::string &path)
   {
-    append_file(path, fmt::format("shader '{}'", desc_.name));
+    append_file(path, {}, 0);
     if (!has_version_) {
-      throw Error("{}: shader '{}': a stage begins with '#version 450 core'", path, desc_.name);
+      throw SourceError(path, 1, fmt::format("shader '{}': a stage begins with '#version 450 core'", desc_.name));
     }
     return std::move(source_);
   }
 
  private:
-  void append_file(const std::string &path, const std::string &who)
+  void append_file(const std::string &path, const std::string &includer, int includer_line)
   {
     const std::optional<std::string_view> text = files_(path);
     if (!text) {
-      throw Error("{}: no shader file '{}'", who, path);
+      if (includer.empty()) {
+        throw Error("shader '{}': no shader file '{}'", desc_.name, path);
+      }
+      throw SourceError(includer, includer_line, fmt::format("no shader file '{}'", path));
     }
-    const std::size_t file = source_.files.size();
-    source_.files.push_back(path);
-    std::istringstream lines{std::string(*text)};
-    int number = 0;
-    if (file > 0) {
+    const auto known = std::ranges::find(source_.files, path);
+    const auto file = std::size_t(known - source_.files.begin());
+    if (known == source_.files.end()) {
+      source_.files.push_back(path);
+    }
+    std::istringstream stream{std::string(*text)};
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(stream, line);) {
+      lines.push_back(line.ends_with('\r') ? line.substr(0, line.size() - 1) : line);
+    }
+    const std::size_t outer_branches = branches_.size();
+    const std::size_t guard = include_guard(lines);
+    if (!includer.empty()) {
       append_position(1, file);
     }
-    for (std::string line; std::getline(lines, line);) {
-      number++;
-      if (line.ends_with('\r')) {
-        line.pop_back();
-      }
-      append_line(line, path, number, file);
+    open_files_.push_back(path);
+    for (std::size_t i = 0; i < lines.size(); i++) {
+      follow_branch(lines[i], i == guard);
+      append_line(lines[i], path, int(i) + 1, file);
     }
+    open_files_.pop_back();
+    // What a file leaves open is the compiler's to report.
+    branches_.resize(outer_branches);
   }
 
   void append_line(const std::string &line, const std::string &path, int number, std::size_t file)
@@ -109,10 +121,8 @@ class Preprocessor {
     static const std::regex ONCE(R"(^\s*#\s*pragma\s+once\b.*)");
     std::smatch match;
     if (std::regex_match(line, match, INCLUDE)) {
-      const std::string included = match[1];
-      if (std::ranges::find(source_.files, included) == source_.files.end()) {
-        append_file(included, fmt::format("{}:{}", path, number));
-      }
+      const std::string named = match[1];
+      append_include(include_path_ ? include_path_(named, path) : named, path, number);
       append_position(number + 1, file);
     }
     else if (std::regex_match(line, VERSION)) {
@@ -128,25 +138,111 @@ class Preprocessor {
     }
   }
 
+  void append_include(const std::string &path, const std::string &includer, int number)
+  {
+    if (std::ranges::find(open_files_, path) != open_files_.end() || is_included(path)) {
+      return;
+    }
+    // Only the compiler knows whether an earlier `#include`, in some other branch, was an active one.
+    const std::size_t index = std::size_t(std::ranges::find(source_.files, path) - source_.files.begin());
+    source_.text += fmt::format("#ifndef GNOMON_INCLUDED_{0}\n#define GNOMON_INCLUDED_{0}\n", index);
+    append_file(path, includer, number);
+    source_.text += "#endif\n";
+    included_.emplace_back(path, open_branches());
+  }
+
+  /** Whether the file stands before here, in branches that all hold here too. */
+  bool is_included(const std::string &path) const
+  {
+    const std::vector<int> here = open_branches();
+    return std::ranges::any_of(included_, [&](const auto &earlier) {
+      const auto &[name, branches] = earlier;
+      return name == path && branches.size() <= here.size() &&
+             std::equal(branches.begin(), branches.end(), here.begin());
+    });
+  }
+
+  std::vector<int> open_branches() const
+  {
+    std::vector<int> branches = branches_;
+    std::erase(branches, ALWAYS);
+    return branches;
+  }
+
+  static std::string directive(const std::string &line)
+  {
+    static const std::regex DIRECTIVE(R"(^\s*#\s*(\w+).*)");
+    std::smatch match;
+    return std::regex_match(line, match, DIRECTIVE) ? match[1].str() : std::string();
+  }
+
+  /** Line of an `#ifndef X` that holds always, because `#define X` follows it; past the end where there is none. */
+  static std::size_t include_guard(const std::vector<std::string> &lines)
+  {
+    static const std::regex GUARD(R"(^\s*#\s*(ifndef|define)\s+(\w+)\s*(//.*)?$)");
+    const auto next = [&](std::size_t i) {
+      while (i < lines.size() && directive(lines[i]).empty()) {
+        i++;
+      }
+      return i;
+    };
+    const std::size_t first = next(0);
+    const std::size_t second = first < lines.size() ? next(first + 1) : first;
+    std::smatch ifndef;
+    std::smatch define;
+    if (second < lines.size() && std::regex_match(lines[first], ifndef, GUARD) &&
+        std::regex_match(lines[second], define, GUARD) && ifndef[1] == "ifndef" && define[1] == "define" &&
+        ifndef[2] == define[2])
+    {
+      return first;
+    }
+    return lines.size();
+  }
+
+  /** Keeps the stack of open branches, each with a number of its own. */
+  void follow_branch(const std::string &line, bool is_include_guard)
+  {
+    const std::string name = directive(line);
+    if (name == "if" || name == "ifdef" || name == "ifndef") {
+      branches_.push_back(is_include_guard ? ALWAYS : ++branch_count_);
+    }
+    else if ((name == "elif" || name == "else") && !branches_.empty()) {
+      branches_.back() = ++branch_count_;
+    }
+    else if (name == "endif" && !branches_.empty()) {
+      branches_.pop_back();
+    }
+  }
+
   void append_position(int next_line, std::size_t file)
   {
     source_.text += fmt::format("#line {} {}\n", next_line, file);
   }
 
+  /** In branches_: a file's include guard. */
+  static constexpr int ALWAYS = 0;
+
   const ShaderDesc &desc_;
   const ShaderFiles &files_;
+  const IncludePath &include_path_;
   ShaderSource source_;
+  /** Being expanded, outermost first. */
+  std::vector<std::string> open_files_;
+  std::vector<std::pair<std::string, std::vector<int>>> included_;
+  std::vector<int> branches_;
+  int branch_count_ = 0;
   bool has_version_ = false;
 };
 
 }  // namespace
 
-std::vector<ShaderSource> preprocess(const ShaderDesc &desc, const ShaderFiles &files)
+std::vector<ShaderSource> preprocess(const ShaderDesc &desc, const ShaderFiles &files,
+                                     const IncludePath &include_path)
 {
   std::vector<ShaderSource> stages;
   const auto add = [&](ShaderStage stage, const std::string &path) {
     if (!path.empty()) {
-      stages.push_back(Preprocessor(desc, files, stage).run(path));
+      stages.push_back(Preprocessor(desc, files, include_path, stage).run(path));
     }
   };
   add(ShaderStage::Vertex, desc.vertex_path);

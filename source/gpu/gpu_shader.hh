@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gpu_error.hh"
 #include "gpu_resource.hh"
 
 #include <functional>
@@ -12,6 +13,9 @@ namespace gnomon::gpu {
 
 /** Gives the text of a shader file by its path below `shaders/`; nothing where there is no such file. */
 using ShaderFiles = std::function<std::optional<std::string_view>(std::string_view path)>;
+
+/** The path that `#include "NAMED"` in the file \a includer means. */
+using IncludePath = std::function<std::string(std::string_view named, std::string_view includer)>;
 
 /** A shader as data. */
 struct ShaderDesc {
@@ -103,13 +107,29 @@ struct ShaderSource {
   [[nodiscard]] std::string name_files(std::string_view log) const;
 };
 
+/** A mistake in a shader file; the message begins with `FILE:LINE: `. */
+struct SourceError : Error {
+  SourceError(std::string source_file, int source_line, std::string_view reason)
+      : Error("{}:{}: {}", source_file, source_line, reason),
+        file(std::move(source_file)),
+        line(source_line),
+        text(reason)
+  {
+  }
+  std::string file;
+  int line;
+  std::string text;
+};
+
 /**
- * Put includes and defines in place. `#include "PATH"` takes a path below `shaders/` and is done once a stage,
- * so that headers need no guard and a cycle ends.
+ * Put includes and defines in place. Without \a include_path, `#include "PATH"` takes a path below `shaders/`. A file is
+ * seen once a stage, so that headers need no guard and a cycle ends.
  *
- * \throws Error naming file and line of an include that does not exist, or the file where there is no `#version`.
+ * \throws SourceError for an include that does not exist and for a stage without `#version`; Error for a stage's file
+ * that does not exist.
  */
-[[nodiscard]] std::vector<ShaderSource> preprocess(const ShaderDesc &desc, const ShaderFiles &files);
+[[nodiscard]] std::vector<ShaderSource> preprocess(const ShaderDesc &desc, const ShaderFiles &files,
+                                                   const IncludePath &include_path = {});
 
 /**
  * Compile and link with glslang for OpenGL 4.5 and read the interface.

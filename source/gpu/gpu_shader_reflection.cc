@@ -2,43 +2,14 @@
 #include "gpu_shader.hh"
 
 #include "gpu_error.hh"
-
-#include <glslang/Public/ResourceLimits.h>
-#include <glslang/Public/ShaderLang.h>
+#include "internal/gpu_glslang.hh"
 
 #include <algorithm>
-#include <memory>
 #include <tuple>
 
 namespace gnomon::gpu {
 
 namespace {
-
-/** glslang's process-wide tables; made at the first use, as they take a moment. */
-void initialize_glslang()
-{
-  struct Process {
-    Process()
-    {
-      glslang::InitializeProcess();
-    }
-    ~Process()
-    {
-      glslang::FinalizeProcess();
-    }
-  };
-  static const Process PROCESS;
-}
-
-EShLanguage language(ShaderStage stage)
-{
-  switch (stage) {
-    case ShaderStage::Vertex: return EShLangVertex;
-    case ShaderStage::Geometry: return EShLangGeometry;
-    case ShaderStage::Fragment: return EShLangFragment;
-  }
-  return EShLangVertex;
-}
 
 /** Whether \a name goes through an array's second element or a later one. */
 bool is_later_element(std::string_view name)
@@ -74,8 +45,17 @@ std::vector<ShaderInterface::Member> members_of(const glslang::TObjectReflection
   return members;
 }
 
+/** glslang ends a block at its last member; std140, and drivers, at the end of that member's row of 16 bytes. */
+std::uint32_t std140_size(const glslang::TObjectReflection &block)
+{
+  return (std::uint32_t(block.size) + 15U) / 16U * 16U;
+}
+
+}  // namespace
+
 ShaderInterface interface_of(glslang::TProgram &program)
 {
+  program.buildReflection(EShReflectionSeparateBuffers | EShReflectionAllBlockVariables | EShReflectionStrictArraySuffix);
   ShaderInterface interface;
   const int variable_count = program.getNumUniformVariables();
   const auto variable = [&](int i) -> const glslang::TObjectReflection & { return program.getUniform(i); };
@@ -84,11 +64,11 @@ ShaderInterface interface_of(glslang::TProgram &program)
     std::vector<ShaderInterface::Member> members = members_of(block, i, variable_count, variable);
     if (block.name == PUSH_CONSTANT_BLOCK) {
       interface.push_constant_slot = block.getBinding();
-      interface.push_constant_size_bytes = std::uint32_t(block.size);
+      interface.push_constant_size_bytes = std140_size(block);
       interface.push_constant_members = std::move(members);
       continue;
     }
-    interface.bindings.push_back({block.name, BindingKind::UniformBlock, block.getBinding(), std::uint32_t(block.size),
+    interface.bindings.push_back({block.name, BindingKind::UniformBlock, block.getBinding(), std140_size(block),
                                   std::move(members)});
   }
   for (int i = 0; i < program.getNumBufferBlocks(); i++) {
@@ -111,6 +91,8 @@ ShaderInterface interface_of(glslang::TProgram &program)
   });
   return interface;
 }
+
+namespace {
 
 void check_slots(std::string_view name, const ShaderInterface &interface)
 {
@@ -136,27 +118,16 @@ void check_slots(std::string_view name, const ShaderInterface &interface)
 
 ShaderInterface reflect(std::string_view name, const std::vector<ShaderSource> &stages)
 {
-  initialize_glslang();
-  constexpr int GLSL_VERSION = 450;
-  constexpr EShMessages MESSAGES = EShMsgDefault;
-  std::vector<std::unique_ptr<glslang::TShader>> shaders;
-  glslang::TProgram program;
+  GlslangProgram glslang;
   for (const ShaderSource &stage : stages) {
-    auto &shader = *shaders.emplace_back(std::make_unique<glslang::TShader>(language(stage.stage)));
-    const char *text = stage.text.c_str();
-    shader.setStrings(&text, 1);
-    shader.setEnvInput(glslang::EShSourceGlsl, language(stage.stage), glslang::EShClientOpenGL, GLSL_VERSION);
-    shader.setEnvClient(glslang::EShClientOpenGL, glslang::EShTargetOpenGL_450);
-    if (!shader.parse(GetDefaultResources(), GLSL_VERSION, false, MESSAGES)) {
-      throw Error("shader '{}', {} stage:\n{}", name, to_string(stage.stage), stage.name_files(shader.getInfoLog()));
+    if (!glslang.add(stage, GlslangTarget::OpenGl)) {
+      throw Error("shader '{}', {} stage:\n{}", name, to_string(stage.stage), stage.name_files(glslang.log()));
     }
-    program.addShader(&shader);
   }
-  if (!program.link(MESSAGES)) {
-    throw Error("shader '{}' does not link:\n{}", name, program.getInfoLog());
+  if (!glslang.link()) {
+    throw Error("shader '{}' does not link:\n{}", name, glslang.log());
   }
-  program.buildReflection(EShReflectionSeparateBuffers | EShReflectionAllBlockVariables | EShReflectionStrictArraySuffix);
-  ShaderInterface interface = interface_of(program);
+  ShaderInterface interface = interface_of(glslang.program());
   check_slots(name, interface);
   return interface;
 }

@@ -95,6 +95,45 @@ TEST_F(CliRenderTest, WithoutAnyDriverTheAttemptsAreNamed)
   }
 }
 
+TEST_F(CliRenderTest, TheShaderCacheChangesNoPictureWhateverIsInIt)
+{
+  setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
+  const auto from_cache = [&] {
+    const Finished finished = run("render " + example("plaza") + " -o out.exr --size 32x18 --samples 1 --json run.json");
+    EXPECT_EQ(finished.status, 0) << finished.err;
+    return nlohmann::json::parse(read("run.json"))["counters"]["shaders_from_cache"].get<int>();
+  };
+  const auto pixels = [&] {
+    std::vector<float> values(std::size_t(32) * 18 * 3);
+    OIIO::ImageInput::open((folder / "out.exr").string())->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, values.data());
+    return values;
+  };
+  EXPECT_EQ(from_cache(), 0);
+  const std::vector<float> cold = pixels();
+  EXPECT_EQ(from_cache(), 4) << "depth, shadow, lit and film";
+  EXPECT_EQ(pixels(), cold);
+
+  const std::filesystem::path cache = folder / "cache" / "gnomon";
+  for (const auto &entry : std::filesystem::directory_iterator(cache)) {
+    std::ofstream(entry.path()) << "garbage";
+  }
+  EXPECT_EQ(from_cache(), 0);
+  EXPECT_EQ(pixels(), cold);
+  EXPECT_EQ(from_cache(), 4) << "garbage was replaced";
+
+  // Root may write anywhere, so that a file in the folder's place stands for no permission.
+  for (const std::filesystem::perms mode : {std::filesystem::perms::none, std::filesystem::perms::owner_read}) {
+    std::filesystem::permissions(cache, mode);
+    from_cache();
+    EXPECT_EQ(pixels(), cold);
+    std::filesystem::permissions(cache, std::filesystem::perms::owner_all);
+  }
+  std::filesystem::remove_all(cache);
+  std::ofstream(cache) << "in the way";
+  EXPECT_EQ(from_cache(), 0);
+  EXPECT_EQ(pixels(), cold);
+}
+
 /** Every model of Debian's assimp-testmodels, the malformed ones included. */
 TEST_F(CliRenderTest, TestModelsAreRenderedOrRefusedWithAMessage)
 {

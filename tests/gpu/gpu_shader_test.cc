@@ -130,7 +130,7 @@ TEST(Preprocess, PragmaOnceIsLeftOutAndItsLineKept)
 {
   const ShaderTexts texts{{{"main", VERSION + "#include \"lib\"\n"}, {"lib", "#pragma once\nbroken_here\n"}}};
   EXPECT_EQ(count_of(preprocessed(texts), "pragma"), 0U);
-  expect_contains(preprocessed(texts), "#line 1 1\n\nbroken_here\n#line 3 0\n");
+  expect_contains(preprocessed(texts), "#line 1 1\n\nbroken_here\n#endif\n#line 3 0\n");
 }
 
 /** Line \a line of \a path is at fault, says the message of compiling \a vertex. */
@@ -234,7 +234,7 @@ void main() { color = texture(sky, view.position) * texture(shadow_maps, vec4(0)
     EXPECT_EQ(binding.name, expected[i].name);
     EXPECT_EQ(binding.kind, expected[i].kind) << binding.name;
     EXPECT_EQ(binding.slot, expected[i].slot) << binding.name;
-    EXPECT_EQ((binding.size_bytes + 15) / 16 * 16, expected[i].size_bytes) << binding.name;
+    EXPECT_EQ(binding.size_bytes, expected[i].size_bytes) << binding.name;
     EXPECT_EQ(interface.find(binding.kind, binding.name), &binding);
   }
   EXPECT_EQ(interface.find(BindingKind::Texture, "view_block"), nullptr) << "kinds are apart";
@@ -266,7 +266,8 @@ TEST(Reflect, KeepsPushConstantsApartWithOffsetsOfTheirMembers)
     EXPECT_EQ(interface.find_push_constant("face")->size_bytes, 4U);
     EXPECT_EQ(interface.find_push_constant("matrix")->size_bytes, 64U);
     EXPECT_EQ(interface.find_push_constant("lost"), nullptr);
-    EXPECT_GE(interface.push_constant_size_bytes, 104U);
+    // The vec2 ends at 104, its row at 112: what a driver demands to be bound.
+    EXPECT_EQ(interface.push_constant_size_bytes, 112U);
   }
 }
 

@@ -353,6 +353,11 @@ std::vector<StepTime> Engine::take_step_times(draw::Viewport &viewport) const
   return times;
 }
 
+std::vector<std::string> Engine::reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files) const
+{
+  return viewport.engine_data<Data>(*this).stl.shaders.reload(viewport.device(), std::move(files));
+}
+
 std::string Engine::serialize_passes(draw::Viewport &viewport) const
 {
   const Data &data = viewport.engine_data<Data>(*this);

@@ -71,6 +71,8 @@ class Engine final : public draw::Engine {
   /** Of the samples drawn since the last call; waits for the device. Empty unless Settings::is_timed. */
   [[nodiscard]] std::vector<StepTime> take_step_times(draw::Viewport &viewport) const;
   [[nodiscard]] Report report(draw::Viewport &viewport) const;
+  /** For long-running hosts, when a shader file was edited: ShaderCache::reload; then draw::Viewport::sync. */
+  std::vector<std::string> reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files) const;
   /** The recorded passes as text. */
   [[nodiscard]] std::string serialize_passes(draw::Viewport &viewport) const;
 

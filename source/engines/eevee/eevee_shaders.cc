@@ -1,25 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_shaders.hh"
 
-#include "shader_files.hh"
-
 #include <array>
 
 namespace gnomon::eevee {
 
 namespace {
 
-struct FeatureDefine {
-  Feature feature;
-  const char *name;
-};
-
-constexpr std::array<FeatureDefine, 6> FEATURE_DEFINES = {{{Feature::Light, "USE_LIGHT"},
-                                                          {Feature::Punctual, "USE_PUNCTUAL"},
-                                                          {Feature::Hemi, "USE_HEMI"},
-                                                          {Feature::Specular, "USE_SPECULAR"},
-                                                          {Feature::ShadowCube, "USE_SHADOW_CUBE"},
-                                                          {Feature::ShadowMap, "USE_SHADOW_MAP"}}};
+constexpr std::array<FeatureDefine, 6> FEATURE_DEFINES = {
+    {{Feature::Light, "USE_LIGHT", "something shines"},
+     {Feature::Punctual, "USE_PUNCTUAL", "a point or spot lamp shines"},
+     {Feature::Hemi, "USE_HEMI", "a hemi lamp shines"},
+     {Feature::Specular, "USE_SPECULAR", "a material reflects specularly"},
+     {Feature::ShadowCube, "USE_SHADOW_CUBE", "a point lamp or a wide spot casts shadows"},
+     {Feature::ShadowMap, "USE_SHADOW_MAP", "a sun or a spot casts shadows"}}};
 
 constexpr Feature LIT_FEATURES = Feature::Light | Feature::Punctual | Feature::Hemi | Feature::Specular |
                                  Feature::ShadowCube | Feature::ShadowMap;
@@ -50,6 +44,11 @@ bool is_possible(Feature features)
 
 }  // namespace
 
+std::span<const FeatureDefine> feature_defines()
+{
+  return FEATURE_DEFINES;
+}
+
 std::span<const ShaderDeclaration> shader_declarations()
 {
   return DECLARATIONS;
@@ -75,7 +74,7 @@ gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature featur
   desc.fragment_path = declaration.fragment_path;
   for (const FeatureDefine &define : FEATURE_DEFINES) {
     if (has(features & declaration.features, define.feature)) {
-      desc.defines.emplace_back(define.name);
+      desc.defines.emplace_back(define.define);
     }
   }
   return desc;
@@ -89,7 +88,22 @@ const gpu::Shader &ShaderCache::get(gpu::Device &device, ShaderId id, Feature fe
   if (found != shaders_.end()) {
     return found->second;
   }
-  return shaders_[key] = device.create_shader(shader_desc(declaration, key.second), shaders::file);
+  return shaders_[key] = device.create_shader(shader_desc(declaration, key.second), files_);
+}
+
+std::vector<std::string> ShaderCache::reload(gpu::Device &device, gpu::ShaderFiles files)
+{
+  files_ = std::move(files);
+  std::vector<std::string> failures;
+  for (auto &[key, shader] : shaders_) {
+    try {
+      shader = device.create_shader(shader_desc(DECLARATIONS.at(std::size_t(key.first)), key.second), files_);
+    }
+    catch (const gpu::Error &error) {
+      failures.emplace_back(error.what());
+    }
+  }
+  return failures;
 }
 
 }  // namespace gnomon::eevee

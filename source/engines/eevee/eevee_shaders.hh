@@ -4,6 +4,7 @@
 #include "eevee_features.hh"
 
 #include "gpu_device.hh"
+#include "shader_files.hh"
 
 #include <map>
 #include <span>
@@ -24,6 +25,17 @@ struct ShaderDeclaration {
   std::string_view purpose;
 };
 
+/** A feature as the shaders see it. */
+struct FeatureDefine {
+  Feature feature;
+  const char *define;
+  /** When a scene asks for it. */
+  std::string_view purpose;
+};
+
+/** All of them, one a Feature, from the lowest bit. */
+[[nodiscard]] std::span<const FeatureDefine> feature_defines();
+
 /** All of them, one a ShaderId, in order. */
 [[nodiscard]] std::span<const ShaderDeclaration> shader_declarations();
 
@@ -38,12 +50,21 @@ class ShaderCache {
  public:
   /** Features that the program has no variant for are ignored. \throws gpu::Error where it does not compile. */
   const gpu::Shader &get(gpu::Device &device, ShaderId id, Feature features = Feature::None);
+  /**
+   * Compile all that were made again, from \a files, and from now on. A program that does not compile stays as it was.
+   * Passes recorded before must be recorded again.
+   *
+   * \return why, of each program that stayed: file, line and reason.
+   */
+  std::vector<std::string> reload(gpu::Device &device, gpu::ShaderFiles files);
   [[nodiscard]] std::size_t size() const
   {
     return shaders_.size();
   }
 
  private:
+  /** Those that the program was built with, until reload gives others. */
+  gpu::ShaderFiles files_ = shaders::file;
   std::map<std::pair<ShaderId, Feature>, gpu::Shader> shaders_;
 };
 

@@ -75,10 +75,9 @@ Limits query_limits()
 class GlDevice final : public Device {
  public:
   GlDevice(std::unique_ptr<GlContext> context, const GlDeviceDesc &desc)
-      : Device(query_limits(), desc.sink), context_(std::move(context)), is_debug_(desc.is_debug)
+      : Device(query_limits(), desc.sink, desc.shader_cache_folder), context_(std::move(context)), is_debug_(desc.is_debug && context_)
   {
-    // The host's context has a message callback of the host's.
-    if (is_debug_ && context_) {
+    if (is_debug_) {
       glEnable(GL_DEBUG_OUTPUT);
       glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
       glDebugMessageCallback(&GlDevice::receive_message, this);
@@ -107,7 +106,7 @@ class GlDevice final : public Device {
     glDeleteBuffers(GLsizei(pool_.size()), pool_.data());
     glDeleteVertexArrays(1, &vertex_array_);
     glDeleteVertexArrays(1, &empty_vertex_array_);
-    if (is_debug_ && context_) {
+    if (is_debug_) {
       glDebugMessageCallback(nullptr, nullptr);
     }
   }
@@ -330,6 +329,7 @@ class GlDevice final : public Device {
         failed(fmt::format("the driver rejects the {} stage:\n{}", to_string(stage.stage), stage.name_files(log)));
       }
     }
+    glProgramParameteri(program, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
     glLinkProgram(program);
     GLint is_linked = 0;
     glGetProgramiv(program, GL_LINK_STATUS, &is_linked);
@@ -342,6 +342,36 @@ class GlDevice final : public Device {
     }
     label(GL_PROGRAM, program, desc.name);
     programs_[id] = program;
+  }
+
+  bool shader_load(ResourceId id, const ShaderDesc &desc, const CachedShader &cached) override
+  {
+    if (cached.binary.empty()) {
+      return false;
+    }
+    const GLuint program = glCreateProgram();
+    glProgramBinary(program, cached.binary_format, cached.binary.data(), GLsizei(cached.binary.size()));
+    GLint is_linked = 0;
+    glGetProgramiv(program, GL_LINK_STATUS, &is_linked);
+    if (!is_linked) {
+      // An older driver's, say: no error of the caller's.
+      glDeleteProgram(program);
+      driver_errors_.clear();
+      return false;
+    }
+    label(GL_PROGRAM, program, desc.name);
+    programs_[id] = program;
+    return true;
+  }
+
+  void shader_binary(ResourceId id, CachedShader &cached) override
+  {
+    GLint size = 0;
+    glGetProgramiv(programs_.at(id), GL_PROGRAM_BINARY_LENGTH, &size);
+    cached.binary.resize(std::size_t(size));
+    if (size > 0) {
+      glGetProgramBinary(programs_.at(id), size, nullptr, &cached.binary_format, cached.binary.data());
+    }
   }
 
   void timer_query_create(ResourceId id, const std::string & /*name*/) override
@@ -372,6 +402,12 @@ class GlDevice final : public Device {
     const TextureDesc &desc = texture.desc();
     const GlFormat format = gl_format(desc.format);
     const GLuint name = textures_.at(texture.id());
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    for (const GLenum parameter : {GL_UNPACK_SWAP_BYTES, GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_ROWS,
+                                   GL_UNPACK_SKIP_PIXELS, GL_UNPACK_IMAGE_HEIGHT, GL_UNPACK_SKIP_IMAGES})
+    {
+      glPixelStorei(parameter, 0);
+    }
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     if (desc.kind == TextureKind::Flat) {
       glTextureSubImage2D(name, 0, 0, 0, desc.width, desc.height, format.format, format.type, texels.data());
@@ -387,6 +423,12 @@ class GlDevice final : public Device {
   {
     const TextureDesc &desc = texture.desc();
     const GlFormat format = gl_format(desc.format);
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    for (const GLenum parameter : {GL_PACK_SWAP_BYTES, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS, GL_PACK_SKIP_PIXELS,
+                                   GL_PACK_IMAGE_HEIGHT, GL_PACK_SKIP_IMAGES})
+    {
+      glPixelStorei(parameter, 0);
+    }
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glGetTextureSubImage(textures_.at(texture.id()), 0, 0, 0, layer, desc.width, desc.height, 1, format.format,
                          format.type, GLsizei(texels.size()), texels.data());
@@ -399,7 +441,7 @@ class GlDevice final : public Device {
   void begin_pass(const CommandList::PassInfo &pass);
   void end_pass();
   void set_state(State state);
-  void restore_defaults();
+  void restore_defaults(const CommandList &list);
 
   static GLenum gl_stage(ShaderStage stage)
   {
@@ -439,6 +481,7 @@ class GlDevice final : public Device {
   };
 
   std::unique_ptr<GlContext> context_;
+  /** Driver errors come as messages; never in a host's context, whose messages go to the host. */
   bool is_debug_;
   std::vector<std::string> driver_errors_;
 
@@ -570,11 +613,14 @@ void GlDevice::list_submit(const CommandList &list)
 {
   upload_streams(list);
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-  for (const GLenum capability : {GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_POLYGON_OFFSET_FILL, GL_FRAMEBUFFER_SRGB,
-                                  GL_RASTERIZER_DISCARD, GL_PRIMITIVE_RESTART, GL_SAMPLE_ALPHA_TO_COVERAGE})
+  for (const GLenum capability :
+       {GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_POLYGON_OFFSET_FILL, GL_FRAMEBUFFER_SRGB, GL_RASTERIZER_DISCARD,
+        GL_PRIMITIVE_RESTART, GL_SAMPLE_ALPHA_TO_COVERAGE, GL_COLOR_LOGIC_OP})
   {
     glDisable(capability);
   }
+  glDepthRange(0.0, 1.0);
+  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, streams_[INDIRECT_STREAM]);
 
@@ -618,14 +664,27 @@ void GlDevice::list_submit(const CommandList &list)
     }
   }
   if (!context_) {
-    restore_defaults();
+    restore_defaults(list);
   }
   check("submit");
 }
 
 /** The host finds what was touched here at GL's initial values. */
-void GlDevice::restore_defaults()
+void GlDevice::restore_defaults(const CommandList &list)
 {
+  for (const Command &command : list.commands()) {
+    switch (command.kind) {
+      case CommandKind::BindUniform:
+      case CommandKind::PushConstants: glBindBufferBase(GL_UNIFORM_BUFFER, command.slot, 0); break;
+      case CommandKind::BindStorage: glBindBufferBase(GL_SHADER_STORAGE_BUFFER, command.slot, 0); break;
+      case CommandKind::BindTexture:
+        // A sampler that stays would overrule the parameters of the host's textures.
+        glBindTextureUnit(command.slot, 0);
+        glBindSampler(command.slot, 0);
+        break;
+      default: break;
+    }
+  }
   glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
   set_state(State::WriteColor | State::WriteDepth);
   glDisable(GL_DEPTH_TEST);
@@ -644,6 +703,10 @@ std::unique_ptr<Device> create_gl_device(const GlDeviceDesc &desc)
 {
   std::unique_ptr<GlContext> context;
   if (desc.context == ContextKind::Headless) {
+    // It would lose its place to the new one, and then draw, and free, in the wrong context.
+    if (has_current_context()) {
+      throw Error("a context is current on this thread already, of another device or of a host");
+    }
     context = create_headless_context(desc.is_debug);
   }
   else if (!has_current_context()) {

@@ -2,6 +2,7 @@
 // Light and shadow against closed forms, on the driver.
 #include "eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
+#include "shader_files.hh"
 
 #include <gtest/gtest.h>
 
@@ -317,6 +318,37 @@ TEST_F(EngineGpuTest, EveryVariantIsAcceptedByTheDriver)
       EXPECT_NO_THROW(cache.get(*device, declaration.id, features)) << declaration.name << std::uint32_t(features);
     }
   }
+}
+
+TEST_F(EngineGpuTest, AnEditedShaderIsReloadedAndABadEditKeepsTheLastGoodOne)
+{
+  scene.materials[0].emissive = {1, 1, 1};
+  add_square({0, 0, 0}, {0, 0, 1}, 10.0F, square);
+  Renderer renderer(*device, scene, {8, 8});
+  ASSERT_FLOAT_EQ(renderer.picture(above).middle().r, 1.0F);
+
+  const std::string path = "eevee/eevee_lit_frag.glsl";
+  const std::string original(*shaders::file(path));
+  std::string edited = original;
+  const std::string line = "radiance = vec4(sum, 1.0);";
+  ASSERT_NE(edited.find(line), std::string::npos);
+  const auto reload = [&](const std::string &replacement) {
+    edited = original;
+    edited.replace(edited.find(line), line.size(), replacement);
+    const auto failures = renderer.engine.reload_shaders(
+        renderer.viewport,
+        [&](std::string_view file) { return file == path ? std::optional<std::string_view>(edited) : shaders::file(file); });
+    renderer.sync();
+    return failures;
+  };
+  EXPECT_EQ(reload("radiance = vec4(sum * 2.0, 1.0);"), std::vector<std::string>());
+  EXPECT_FLOAT_EQ(renderer.picture(above).middle().r, 2.0F);
+
+  const std::vector<std::string> failures = reload("radiance = vec4(sum * 3.0, 1.0) oops;");
+  ASSERT_EQ(failures.size(), 1U);
+  const auto line_number = std::count(original.begin(), original.begin() + std::ptrdiff_t(original.find(line)), '\n') + 1;
+  EXPECT_NE(failures[0].find(path + ":" + std::to_string(line_number)), std::string::npos) << failures[0];
+  EXPECT_FLOAT_EQ(renderer.picture(above).middle().r, 2.0F);
 }
 
 TEST_F(EngineGpuTest, DisplayIsTheViewTransformOfTheRadiance)

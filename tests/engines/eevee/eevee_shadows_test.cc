@@ -339,6 +339,19 @@ TEST_F(ShadowsTest, AreDrawnOnceWhileNothingChanges)
   EXPECT_EQ(shadows.counters().lamps_updated, 2U);
 }
 
+TEST_F(ShadowsTest, OfASunAreDrawnAgainWhenTheViewSeesMore)
+{
+  add_lamp(scene::LampKind::Sun, "sun");
+  sync();
+  shadows.add_caster(box_at({40, 0, -3}, 1.0F));
+  update();
+  ASSERT_EQ(shadows.counters().lamps_updated, 1U);
+  const draw::View turned(glm::rotate(glm::mat4(1.0F), 1.0F, glm::vec3(0, 1, 0)), view.clip_from_view());
+  gpu::CommandList list;
+  shadows.update(*device, turned, draw::Pass("casters", gpu::State::WriteDepth), list);
+  EXPECT_EQ(shadows.counters().lamps_updated, 2U);
+}
+
 TEST_F(ShadowsTest, OffMeansNothingIsMade)
 {
   add_lamp(scene::LampKind::Point, "point");

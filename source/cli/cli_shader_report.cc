@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "cli_shader_report.hh"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+namespace gnomon::cli {
+
+namespace {
+
+using nlohmann::json;
+
+/** Messages that say the same of the same line. */
+struct Group {
+  const gpu::CheckMessage *first = nullptr;
+  std::vector<const gpu::CheckMessage *> all;
+};
+
+std::vector<Group> groups_of(const ShaderReport &report)
+{
+  using Key = std::tuple<std::string_view, int, gpu::Severity, std::string_view, std::string_view>;
+  std::map<Key, Group> groups;
+  for (const gpu::CheckMessage &message : report.messages) {
+    Group &group = groups[Key(message.file, message.line, message.severity, message.rule, message.text)];
+    group.first = group.first == nullptr ? &message : group.first;
+    group.all.push_back(&message);
+  }
+  std::vector<Group> list;
+  for (auto &[key, group] : groups) {
+    list.push_back(std::move(group));
+  }
+  return list;
+}
+
+std::string join(const std::set<std::string> &words, std::string_view separator)
+{
+  return fmt::format("{}", fmt::join(words, separator));
+}
+
+/** Which shaders and variants a message is about. */
+std::string where(const Group &group)
+{
+  std::set<std::string> shaders;
+  std::set<std::string> targets;
+  std::set<std::pair<std::string, std::string>> variants;
+  for (const gpu::CheckMessage *message : group.all) {
+    shaders.insert(message->shader);
+    variants.emplace(message->shader, message->variant);
+    targets.emplace(to_string(message->target));
+  }
+  std::string what = join(shaders, ", ");
+  if (variants.size() > 1) {
+    what += fmt::format(", {} variants", variants.size());
+  }
+  else if (!group.first->variant.empty()) {
+    what += " " + group.first->variant;
+  }
+  return fmt::format("{}; {}", what, join(targets, ", "));
+}
+
+std::size_t count(const std::vector<Group> &groups, gpu::Severity severity)
+{
+  return std::size_t(
+      std::ranges::count_if(groups, [&](const Group &group) { return group.first->severity == severity; }));
+}
+
+/** \a path as a part of a URI. */
+std::string uri(std::string_view path)
+{
+  std::string text;
+  for (const char c : path) {
+    const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || std::string_view("/._-~").find(c) != std::string_view::npos;
+    text += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return path.starts_with('/') ? "file://" + text : text;
+}
+
+/** A source file need not be UTF-8; what comes from it is made so. */
+std::string dump(const json &document)
+{
+  return document.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+bool ShaderReport::has_errors() const
+{
+  return std::ranges::any_of(messages, [](const auto &message) { return message.severity == gpu::Severity::Error; });
+}
+
+std::string to_text(const ShaderReport &report)
+{
+  const std::vector<Group> groups = groups_of(report);
+  std::string text;
+  for (const Group &group : groups) {
+    const gpu::CheckMessage &m = *group.first;
+    text += fmt::format("{}:{}: {}: {} [{}] ({})\n", m.file, m.line, to_string(m.severity), m.text, m.rule, where(group));
+  }
+  std::set<std::string> targets;
+  for (const gpu::CheckTarget target : report.targets) {
+    targets.emplace(to_string(target));
+  }
+  text += fmt::format("{} programs, {} variants, {}: {} errors, {} warnings, {:.2f} s\n", report.program_count,
+                      report.variant_count, join(targets, " and "), count(groups, gpu::Severity::Error),
+                      count(groups, gpu::Severity::Warning), report.seconds);
+  return text;
+}
+
+std::string to_json(const ShaderReport &report)
+{
+  const std::vector<Group> groups = groups_of(report);
+  json messages = json::array();
+  for (const Group &group : groups) {
+    json places = json::array();
+    for (const gpu::CheckMessage *m : group.all) {
+      places.push_back({{"shader", m->shader}, {"variant", m->variant}, {"target", to_string(m->target)}});
+    }
+    const gpu::CheckMessage &m = *group.first;
+    messages.push_back({{"severity", to_string(m.severity)},
+                        {"file", m.file},
+                        {"line", m.line},
+                        {"text", m.text},
+                        {"rule", m.rule},
+                        {"where", std::move(places)}});
+  }
+  return dump({{"programs", report.program_count},
+               {"variants", report.variant_count},
+               {"errors", count(groups, gpu::Severity::Error)},
+               {"warnings", count(groups, gpu::Severity::Warning)},
+               {"seconds", report.seconds},
+               {"messages", std::move(messages)}});
+}
+
+std::string to_sarif(const ShaderReport &report)
+{
+  json rules = json::array();
+  for (const gpu::CheckRule &rule : gpu::check_rules()) {
+    rules.push_back({{"id", rule.name}, {"shortDescription", {{"text", rule.purpose}}}});
+  }
+  json results = json::array();
+  for (const Group &group : groups_of(report)) {
+    const gpu::CheckMessage &m = *group.first;
+    const json location = {{"physicalLocation",
+                            {{"artifactLocation", {{"uri", uri(m.file)}}}, {"region", {{"startLine", m.line}}}}}};
+    results.push_back({{"ruleId", m.rule},
+                       {"level", to_string(m.severity)},
+                       {"message", {{"text", fmt::format("{} ({})", m.text, where(group))}}},
+                       {"locations", json::array({location})}});
+  }
+  const json driver = {{"name", "gnomon shaders check"}, {"version", GNOMON_VERSION}, {"rules", std::move(rules)}};
+  return dump({{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"},
+               {"version", "2.1.0"},
+               {"runs", json::array({json{{"tool", {{"driver", driver}}}, {"results", std::move(results)}}})}});
+}
+
+}  // namespace gnomon::cli

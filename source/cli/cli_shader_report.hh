@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gpu_shader_check.hh"
+
+namespace gnomon::cli {
+
+/** The outcome of a check of several shaders. */
+struct ShaderReport {
+  std::vector<gpu::CheckMessage> messages;
+  std::size_t program_count = 0;
+  std::size_t variant_count = 0;
+  std::vector<gpu::CheckTarget> targets;
+  double seconds = 0.0;
+
+  [[nodiscard]] bool has_errors() const;
+};
+
+/** `FILE:LINE: error: TEXT [RULE] (WHERE)`, one line for all variants that agree, then a summary. */
+[[nodiscard]] std::string to_text(const ShaderReport &report);
+[[nodiscard]] std::string to_json(const ShaderReport &report);
+/** SARIF 2.1.0, which code hosts and editors read. */
+[[nodiscard]] std::string to_sarif(const ShaderReport &report);
+
+}  // namespace gnomon::cli

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include "gpu_shader_cache.hh"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <xxhash.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <unistd.h>
+
+namespace gnomon::gpu {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/** Of the file's form; another number's files are not read. */
+constexpr std::string_view magic = "gnomon shader 1\n";
+
+std::uint64_t checksum(std::span<const std::uint8_t> bytes)
+{
+  return XXH3_64bits(bytes.data(), bytes.size());
+}
+
+nlohmann::json to_json(const ShaderInterface::Member &member)
+{
+  return {member.name, member.offset_bytes, member.size_bytes};
+}
+
+nlohmann::json to_json(const std::vector<ShaderInterface::Member> &members)
+{
+  nlohmann::json json = nlohmann::json::array();
+  for (const ShaderInterface::Member &member : members) {
+    json.push_back(to_json(member));
+  }
+  return json;
+}
+
+std::vector<ShaderInterface::Member> members_from(const nlohmann::json &json)
+{
+  std::vector<ShaderInterface::Member> members;
+  for (const nlohmann::json &member : json) {
+    members.push_back({member.at(0), member.at(1), member.at(2)});
+  }
+  return members;
+}
+
+nlohmann::json to_json(const CachedShader &shader)
+{
+  nlohmann::json bindings = nlohmann::json::array();
+  for (const ShaderInterface::Binding &binding : shader.interface.bindings) {
+    bindings.push_back(
+        {binding.name, int(binding.kind), binding.slot, binding.size_bytes, to_json(binding.members)});
+  }
+  const auto *bytes = reinterpret_cast<const std::uint8_t *>(shader.binary.data());
+  return {{"bindings", bindings},
+          {"push_members", to_json(shader.interface.push_constant_members)},
+          {"push_size", shader.interface.push_constant_size_bytes},
+          {"push_slot", shader.interface.push_constant_slot},
+          {"binary_format", shader.binary_format},
+          {"binary", nlohmann::json::binary(std::vector<std::uint8_t>(bytes, bytes + shader.binary.size()))}};
+}
+
+CachedShader from_json(const nlohmann::json &json)
+{
+  CachedShader shader;
+  for (const nlohmann::json &binding : json.at("bindings")) {
+    shader.interface.bindings.push_back({binding.at(0), BindingKind(binding.at(1).get<int>()), binding.at(2),
+                                         binding.at(3), members_from(binding.at(4))});
+  }
+  shader.interface.push_constant_members = members_from(json.at("push_members"));
+  shader.interface.push_constant_size_bytes = json.at("push_size");
+  shader.interface.push_constant_slot = json.at("push_slot");
+  shader.binary_format = json.at("binary_format");
+  const auto &binary = json.at("binary").get_binary();
+  const auto *bytes = reinterpret_cast<const std::byte *>(binary.data());
+  shader.binary.assign(bytes, bytes + binary.size());
+  return shader;
+}
+
+}  // namespace
+
+std::string ShaderDiskCache::key_of(const std::vector<ShaderSource> &stages, std::string_view driver)
+{
+  std::string text = fmt::format("{}\n", driver);
+  for (const ShaderSource &stage : stages) {
+    text += fmt::format("{} {}\n{}\n", to_string(stage.stage), stage.text.size(), stage.text);
+  }
+  const XXH128_hash_t hash = XXH3_128bits(text.data(), text.size());
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
+std::optional<CachedShader> ShaderDiskCache::load(const std::string &key) const
+{
+  if (folder_.empty()) {
+    return std::nullopt;
+  }
+  std::ifstream file(folder_ / key, std::ios::binary);
+  const std::vector<char> content{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const std::size_t head_size = magic.size() + sizeof(std::uint64_t);
+  if (!file || content.size() < head_size || std::string_view(content.data(), magic.size()) != magic) {
+    return std::nullopt;
+  }
+  std::uint64_t expected = 0;
+  std::memcpy(&expected, content.data() + magic.size(), sizeof(expected));
+  const std::span body(reinterpret_cast<const std::uint8_t *>(content.data()) + head_size, content.size() - head_size);
+  if (checksum(body) != expected) {
+    return std::nullopt;
+  }
+  try {
+    return from_json(nlohmann::json::from_cbor(body.begin(), body.end()));
+  }
+  catch (const nlohmann::json::exception &) {
+    return std::nullopt;
+  }
+}
+
+void ShaderDiskCache::store(const std::string &key, const CachedShader &shader) const
+{
+  if (folder_.empty()) {
+    return;
+  }
+  const std::vector<std::uint8_t> body = nlohmann::json::to_cbor(to_json(shader));
+  const std::uint64_t sum = checksum(body);
+  std::error_code failed;
+  fs::create_directories(folder_, failed);
+  // Written beside and renamed: another program that starts meanwhile finds a whole file or none.
+  const fs::path beside = folder_ / fmt::format("{}.{}", key, getpid());
+  std::ofstream file(beside, std::ios::binary);
+  file.write(magic.data(), std::streamsize(magic.size()));
+  file.write(reinterpret_cast<const char *>(&sum), sizeof(sum));
+  file.write(reinterpret_cast<const char *>(body.data()), std::streamsize(body.size()));
+  file.close();
+  if (file) {
+    fs::rename(beside, folder_ / key, failed);
+  }
+  if (!file || failed) {
+    fs::remove(beside, failed);
+  }
+}
+
+fs::path default_shader_cache_folder()
+{
+  const char *cache = std::getenv("XDG_CACHE_HOME");
+  if (cache && *cache) {
+    return fs::path(cache) / "gnomon";
+  }
+  const char *home = std::getenv("HOME");
+  return home && *home ? fs::path(home) / ".cache" / "gnomon" : fs::path();
+}
+
+}  // namespace gnomon::gpu

@@ -1,0 +1,420 @@
+// SPDX-License-Identifier: MIT
+#include "draw/draw_pass_fixture.hh"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace gnomon::draw {
+namespace {
+
+using test::dump;
+using test::make_shader;
+
+TEST(Pass, SerializesEveryKindOfBindingAndCall)
+{
+  const auto device = gpu::create_null_device();
+  const test::EverythingPass everything(*device);
+  EXPECT_EQ(everything.pass.serialize(*device), test::EverythingPass::TEXT);
+}
+
+TEST(Pass, RecordsWhatItHoldsInOrder)
+{
+  const auto device = gpu::create_null_device();
+  test::EverythingPass everything(*device);
+  everything.face = 0x01020304;
+  gpu::CommandList list;
+  everything.pass.record(View(), list);
+  EXPECT_EQ(list.serialize(*device),
+            "  shader everything\n"
+            "  state write_color depth_nearer_equal cull_back blend_add\n"
+            "  storage object_block -> 0\n"
+            "  uniform view -> 9\n"
+            "  uniform light -> 10 [256, 272)\n"
+            "  storage materials -> 1\n"
+            "  storage materials -> 2 [0, 16)\n"
+            "  texture hdr linear -> 16\n"
+            "  texture hdr linear -> 17\n"
+            "  push_constants 32 bytes\n"
+            "  draw 2 triangles x2, instances from 0\n"
+            "  draw 1 triangles x5, instances from 2\n"
+            "  draw 2 triangles x6, instances from 7\n"
+            "  draw_procedural 6 vertices x3\n"
+            "  shader everything\n"
+            "  state write_color depth_nearer_equal\n"
+            "  push_constants 32 bytes\n");
+  // color at 0, face at 16, bias at 20.
+  struct {
+    glm::vec4 color;
+    int face;
+    float bias;
+  } constants{};
+  std::memcpy(&constants, list.bytes().data(), sizeof(constants));
+  EXPECT_EQ(constants.color, glm::vec4(1));
+  EXPECT_EQ(constants.face, 0x01020304);
+  EXPECT_EQ(constants.bias, 0) << "what was never given is zero";
+}
+
+TEST(Pass, ClearForgetsGroupsAndKeepsTheRest)
+{
+  const auto device = gpu::create_null_device();
+  test::EverythingPass everything(*device);
+  EXPECT_FALSE(everything.pass.is_empty());
+  everything.pass.clear();
+  EXPECT_TRUE(everything.pass.is_empty());
+  EXPECT_EQ(everything.pass.serialize(*device), "everything [write_color depth_nearer_equal]\n");
+  gpu::CommandList list;
+  everything.pass.record(View(), list);
+  EXPECT_TRUE(list.commands().empty());
+}
+
+/** A group over the shader that reads one of each kind. */
+class ShadingGroupTest : public testing::Test {
+ protected:
+  /** Records \a pass before and after \a change; whether that made a difference. */
+  template <typename Change>
+  bool is_changed_by(Change &&change)
+  {
+    gpu::CommandList before;
+    pass.record(View(), before);
+    change();
+    gpu::CommandList after;
+    pass.record(View(), after);
+    return dump(before) != dump(after);
+  }
+  std::string recorded()
+  {
+    gpu::CommandList list;
+    pass.record(view, list);
+    return list.serialize(*device);
+  }
+
+  std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  gpu::Shader shader = make_shader(*device, "everything", test::EVERYTHING_VERT, test::EVERYTHING_FRAG);
+  gpu::Buffer block = device->create_buffer({.name = "block", .size_bytes = 512});
+  gpu::Buffer other = device->create_buffer({.name = "other", .size_bytes = 512});
+  gpu::Buffer store = device->create_buffer({"store", gpu::BufferKind::Storage, 512});
+  gpu::Texture picture = device->create_texture({.name = "picture"});
+  gpu::Texture mask = device->create_texture({.name = "mask"});
+  gpu::Sampler sampler = device->create_sampler({.name = "nearest"});
+  gpu::Sampler linear = device->create_sampler({.name = "linear"});
+  gpu::Batch a = test::full_triangle(*device, 0.5F, "a");
+  gpu::Batch b = test::full_triangle(*device, 0.5F, "b");
+  ObjectBuffer objects;
+  View view;
+  Pass pass{"pass", gpu::State::WriteColor, &objects};
+  ShadingGroup &group = pass.group(shader);
+};
+
+TEST_F(ShadingGroupTest, UniformByReferenceIsReadAtEachRecord)
+{
+  gpu::BufferRange range{block.id(), 0, 16};
+  group.bind_uniform_ref("light_block", &range);
+  EXPECT_TRUE(is_changed_by([&] { range.offset_bytes = 256; }));
+  EXPECT_TRUE(is_changed_by([&] { range.buffer = other.id(); }));
+  EXPECT_FALSE(is_changed_by([] {}));
+}
+
+TEST_F(ShadingGroupTest, UniformByValueIsThatOfItsBinding)
+{
+  group.bind_uniform("light_block", block);
+  EXPECT_FALSE(is_changed_by([&] { std::swap(block, other); }));
+}
+
+TEST_F(ShadingGroupTest, StorageByReferenceIsReadAtEachRecord)
+{
+  gpu::BufferRange range{store.id(), 0, 16};
+  group.bind_storage_ref("material_block", &range);
+  EXPECT_TRUE(is_changed_by([&] { range.size_bytes = 32; }));
+}
+
+TEST_F(ShadingGroupTest, TextureByReferenceIsReadAtEachRecord)
+{
+  TextureBinding binding{picture.id(), sampler.id()};
+  group.bind_texture_ref("picture", &binding);
+  EXPECT_TRUE(is_changed_by([&] { binding.texture = mask.id(); }));
+  EXPECT_TRUE(is_changed_by([&] { binding.sampler = linear.id(); }));
+}
+
+TEST_F(ShadingGroupTest, TextureByValueIsThatOfItsBinding)
+{
+  group.bind_texture("picture", picture, sampler);
+  EXPECT_FALSE(is_changed_by([&] {
+    std::swap(picture, mask);
+    std::swap(sampler, linear);
+  }));
+}
+
+TEST_F(ShadingGroupTest, ConstantByReferenceIsReadAtEachRecordAndByValueIsNot)
+{
+  int face = 1;
+  glm::vec4 color(1);
+  group.constant_ref("face", &face);
+  group.constant("color", color);
+  EXPECT_TRUE(is_changed_by([&] { face = 2; }));
+  EXPECT_FALSE(is_changed_by([&] { color = glm::vec4(2); }));
+}
+
+TEST_F(ShadingGroupTest, UnknownNamesBindNothing)
+{
+  const std::string before = pass.serialize(*device);
+  const gpu::BufferRange range{block.id()};
+  const TextureBinding binding{picture.id(), sampler.id()};
+  const double large = 1;
+  group.bind_uniform("lost", block);
+  group.bind_uniform_ref("lost", &range);
+  group.bind_storage("lost", store);
+  group.bind_storage_ref("lost", &range);
+  group.bind_texture("lost", picture, sampler);
+  group.bind_texture_ref("lost", &binding);
+  group.constant("lost", 1);
+  group.constant_ref("lost", &large);
+  // The right name of another kind.
+  group.bind_uniform("material_block", block);
+  group.bind_storage("light_block", store);
+  group.bind_texture("light_block", picture, sampler);
+  group.constant("picture", 1);
+  EXPECT_EQ(pass.serialize(*device), before);
+  EXPECT_EQ(recorded(), "  shader everything\n  state write_color\n  push_constants 32 bytes\n");
+}
+
+TEST_F(ShadingGroupTest, BoundAgainTheLaterHolds)
+{
+  const gpu::BufferRange range{block.id(), 256, 16};
+  const TextureBinding binding{mask.id(), linear.id()};
+  group.bind_uniform("light_block", other);
+  group.bind_uniform_ref("light_block", &range);
+  group.bind_texture_ref("picture", &binding);
+  group.bind_texture("picture", picture, sampler);
+  EXPECT_EQ(recorded(),
+            "  shader everything\n"
+            "  state write_color\n"
+            "  uniform block -> 10 [256, 272)\n"
+            "  texture picture nearest -> 16\n"
+            "  push_constants 32 bytes\n");
+  EXPECT_EQ(pass.serialize(*device),
+            "pass [write_color]\n"
+            "  group everything\n"
+            "    uniform light_block -> 10 by reference\n"
+            "    texture picture -> 16 = picture\n");
+}
+
+TEST_F(ShadingGroupTest, ConstantGivenAgainTheLaterHolds)
+{
+  const int referenced = 7;
+  const auto face = [&] {
+    gpu::CommandList list;
+    pass.record(View(), list);
+    int value = 0;
+    std::memcpy(&value, list.bytes().data() + 16, sizeof(value));
+    return value;
+  };
+  group.constant("face", 1);
+  EXPECT_EQ(face(), 1);
+  group.constant_ref("face", &referenced);
+  EXPECT_EQ(face(), 7);
+  group.constant("face", 3);
+  EXPECT_EQ(face(), 3);
+  EXPECT_EQ(pass.serialize(*device), "pass [write_color]\n  group everything\n    constant face\n");
+}
+
+using ShadingGroupDeathTest = ShadingGroupTest;
+
+TEST_F(ShadingGroupDeathTest, ConstantLargerThanItsMemberIsAnAssertion)
+{
+  EXPECT_DEATH(group.constant("face", glm::vec4(1)), "'face'.*'everything'.*4 bytes, not 16");
+}
+
+TEST_F(ShadingGroupDeathTest, MatrixWithoutAnObjectBufferIsAnAssertion)
+{
+  Pass plain("plain", gpu::State::None);
+  EXPECT_DEATH(plain.group(shader).call(a, glm::mat4(1)), "'everything'");
+}
+
+/** Each draw with its batch's first index and its instances. */
+std::string drawn(const Pass &pass, const View &view)
+{
+  gpu::CommandList list;
+  pass.record(view, list);
+  std::string text;
+  for (const gpu::DrawIndirect &draw : list.draws) {
+    text += fmt::format("{}:", draw.first_index / 3 == 0 ? "a" : "b");
+    for (std::uint32_t i = 0; i < draw.instance_count; i++) {
+      const gpu::DrawInstance &instance = list.instances[draw.first_instance + i];
+      text += fmt::format(" {}/{}", instance.object, instance.value);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+TEST_F(ShadingGroupTest, ConsecutiveCallsOfABatchAreOneDrawAndTheOrderHolds)
+{
+  group.call(a, 10);
+  group.call(a, 11);
+  group.call(b, 12);
+  group.call(a, 13);
+  group.call(a, 14);
+  group.call_instances(a, 2, 15);
+  EXPECT_EQ(drawn(pass, view),
+            "a: 10/0 11/0\n"
+            "b: 12/0\n"
+            "a: 13/0 14/0 15/0 15/1\n");
+}
+
+TEST_F(ShadingGroupTest, DrawsOfAGroupAreOneCommand)
+{
+  for (ObjectIndex i = 0; i < 10; i++) {
+    group.call(i % 2 == 0 ? a : b, i);
+  }
+  group.instances(a).add(1);
+  gpu::CommandList list;
+  // Behind what another pass has recorded.
+  list.draws.resize(3);
+  list.instances.resize(5);
+  pass.record(view, list);
+  const gpu::Command &draw = list.commands().back();
+  EXPECT_EQ(draw.kind, gpu::CommandKind::Draw);
+  EXPECT_EQ(draw.first, 3U);
+  EXPECT_EQ(draw.count, 11U);
+  EXPECT_EQ(list.draws[3].first_instance, 5U);
+  EXPECT_EQ(list.draws[13].first_instance, 15U);
+}
+
+TEST_F(ShadingGroupTest, CallsOfDifferentGroupsAreNotJoined)
+{
+  ShadingGroup &second = pass.group(shader);
+  group.call(a, 1);
+  second.call(a, 2);
+  EXPECT_EQ(drawn(pass, view), "a: 1/0\na: 2/0\n");
+}
+
+TEST_F(ShadingGroupTest, CallOfAnEmptyBatchDoesNotSwallowTheNext)
+{
+  // An empty batch takes no room: the next one stands in the same place.
+  const gpu::Batch empty = device->create_batch({.name = "empty", .positions = {}, .normals = {}, .indices = {}});
+  const gpu::Batch next = test::full_triangle(*device, 0.5F);
+  ASSERT_EQ(empty.range().first_index, next.range().first_index);
+  for (const bool is_empty_first : {true, false}) {
+    pass.clear();
+    ShadingGroup &calls = pass.group(shader);
+    calls.call(is_empty_first ? empty : next, 1);
+    calls.call(is_empty_first ? next : empty, 1);
+    gpu::CommandList list;
+    pass.record(view, list);
+    std::uint32_t index_count = 0;
+    for (const gpu::DrawIndirect &draw : list.draws) {
+      index_count += draw.index_count * draw.instance_count;
+    }
+    EXPECT_EQ(index_count, 3U);
+  }
+}
+
+TEST_F(ShadingGroupTest, InstancesOfACallAreNumbered)
+{
+  group.call_instances(a, 5, 3);
+  group.call_instances(b, 0, 3);
+  EXPECT_EQ(drawn(pass, view).substr(0, 24), "a: 3/0 3/1 3/2 3/3 3/4\nb");
+}
+
+TEST_F(ShadingGroupTest, EmptyInstancesAreTheSixFacesOfACube)
+{
+  // As the shadow cubes of seed 000: six empty instances of one object.
+  InstanceCall &faces = group.instances(a, 4);
+  for (int i = 0; i < 6; i++) {
+    faces.add_empty();
+  }
+  EXPECT_EQ(drawn(pass, view), "a: 4/0 4/1 4/2 4/3 4/4 4/5\n");
+}
+
+TEST_F(ShadingGroupTest, InstancesChangeBetweenRecords)
+{
+  InstanceCall &instances = group.instances(a, 4);
+  EXPECT_EQ(drawn(pass, view), "") << "none are no draw";
+  instances.add(8, 3);
+  instances.add(9);
+  instances.add_empty();
+  EXPECT_EQ(drawn(pass, view), "a: 8/3 9/0 4/2\n");
+  instances.clear();
+  EXPECT_EQ(drawn(pass, view), "");
+  // Held while more are made.
+  std::vector<InstanceCall *> more;
+  for (int i = 0; i < 100; i++) {
+    more.push_back(&group.instances(b));
+  }
+  instances.add(1);
+  more[0]->add(2);
+  EXPECT_EQ(drawn(pass, view), "a: 1/0\nb: 2/0\n");
+}
+
+TEST_F(ShadingGroupTest, MatrixOfACallIsInTheObjectBuffer)
+{
+  const glm::mat4 matrix(3);
+  group.call(a, matrix);
+  group.call(a, matrix);
+  EXPECT_EQ(objects.size(), 3U);
+  EXPECT_EQ(drawn(pass, view), "a: 1/0 2/0\n");
+}
+
+TEST_F(ShadingGroupTest, CallOutsideTheViewIsLeftOut)
+{
+  view = View(glm::mat4(1), perspective(1, 1, 1, 100));
+  group.call(a, 1, {{0, 0, -10}, 1});
+  group.call(a, 2, {{0, 0, 10}, 1});
+  group.call(a, 3, {{0, 0, -10}, 1});
+  group.call(b, 4, {{500, 0, -10}, 1});
+  group.call(a, 5, {{500, 0, -10}, -1});
+  // Across what is left out, the same batch is still one draw.
+  EXPECT_EQ(drawn(pass, view), "a: 1/0 3/0 5/0\n");
+  EXPECT_EQ(
+      drawn(pass, View(glm::lookAt(glm::vec3(0), glm::vec3(0, 0, 1), glm::vec3(0, 1, 0)), perspective(1, 1, 1, 100))),
+      "a: 2/0 5/0\n");
+}
+
+TEST_F(ShadingGroupTest, ProceduralNeedsNoBatch)
+{
+  group.call_procedural();
+  group.call_procedural(4, 2);
+  EXPECT_EQ(recorded(),
+            "  shader everything\n"
+            "  state write_color\n"
+            "  push_constants 32 bytes\n"
+            "  draw_procedural 3 vertices x1\n"
+            "  draw_procedural 12 vertices x2\n");
+}
+
+TEST(Pass, RecordsOnOneThreadAndIsSubmittedOnAnother)
+{
+  const auto device = gpu::create_null_device();
+  const test::EverythingPass everything(*device);
+  const gpu::Framebuffer framebuffer = device->create_framebuffer({"target", {{&everything.picture}}, {}});
+  const auto record = [&](gpu::CommandList &list) {
+    list.begin_pass("pass", framebuffer, {});
+    for (int i = 0; i < 100; i++) {
+      everything.pass.record(View(), list);
+    }
+    list.end_pass();
+  };
+  gpu::CommandList here;
+  record(here);
+  // Several at once read one pass.
+  std::array<gpu::CommandList, 4> lists;
+  std::vector<std::thread> threads;
+  for (gpu::CommandList &list : lists) {
+    threads.emplace_back([&] { record(list); });
+  }
+  for (std::thread &thread : threads) {
+    thread.join();
+  }
+  for (const gpu::CommandList &list : lists) {
+    EXPECT_EQ(dump(list), dump(here));
+    device->submit(list);
+  }
+  EXPECT_EQ(device->counters().passes, 4U);
+  EXPECT_EQ(device->counters().instances, 4U * 100U * (2 + 5 + 6 + 3));
+}
+
+}  // namespace
+}  // namespace gnomon::draw

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: MIT
+// What glslang says of a shader's blocks, what the driver says, and what C++ writes into them.
+#include "eevee_shaders.hh"
+
+#include "draw_object_shared.h"
+#include "draw_view_shared.h"
+#include "eevee_light_shared.h"
+#include "eevee_material_shared.h"
+#include "eevee_shadow_shared.h"
+#include "gpu_device_fixture.hh"
+#include "shader_files.hh"
+
+#include <epoxy/gl.h>
+
+#include <fmt/ranges.h>
+
+#include <array>
+#include <map>
+#include <set>
+
+namespace gnomon::eevee {
+namespace {
+
+using gpu::BindingKind;
+using Offsets = std::map<std::string, int>;
+
+/** A variant compiled by the driver of the current context, from the text that glslang is given. */
+class DriverProgram {
+ public:
+  explicit DriverProgram(const std::vector<gpu::ShaderSource> &stages) : program_(glCreateProgram())
+  {
+    for (const gpu::ShaderSource &stage : stages) {
+      const GLenum kind = stage.stage == gpu::ShaderStage::Vertex     ? GL_VERTEX_SHADER
+                          : stage.stage == gpu::ShaderStage::Geometry ? GL_GEOMETRY_SHADER
+                                                                      : GL_FRAGMENT_SHADER;
+      const GLuint shader = glCreateShader(kind);
+      const char *text = stage.text.c_str();
+      glShaderSource(shader, 1, &text, nullptr);
+      glCompileShader(shader);
+      std::array<char, 2048> log = {};
+      glGetShaderInfoLog(shader, log.size(), nullptr, log.data());
+      log_ += stage.name_files(log.data());
+      glAttachShader(program_, shader);
+      glDeleteShader(shader);
+    }
+    glLinkProgram(program_);
+    std::array<char, 2048> log = {};
+    glGetProgramInfoLog(program_, log.size(), nullptr, log.data());
+    log_ += log.data();
+  }
+  DriverProgram(const DriverProgram &) = delete;
+  DriverProgram &operator=(const DriverProgram &) = delete;
+  ~DriverProgram()
+  {
+    glDeleteProgram(program_);
+  }
+
+  [[nodiscard]] bool is_linked() const
+  {
+    GLint status = 0;
+    glGetProgramiv(program_, GL_LINK_STATUS, &status);
+    return status != 0;
+  }
+  [[nodiscard]] const std::string &log() const
+  {
+    return log_;
+  }
+
+  struct Block {
+    int slot = 0;
+    int size_bytes = 0;
+    Offsets offsets;
+  };
+  /** By name. */
+  [[nodiscard]] std::map<std::string, Block> blocks(BindingKind kind) const
+  {
+    const bool is_uniform = kind == BindingKind::UniformBlock;
+    const GLenum block_interface = is_uniform ? GL_UNIFORM_BLOCK : GL_SHADER_STORAGE_BLOCK;
+    const GLenum member_interface = is_uniform ? GL_UNIFORM : GL_BUFFER_VARIABLE;
+    std::map<std::string, Block> blocks;
+    GLint count = 0;
+    glGetProgramInterfaceiv(program_, block_interface, GL_ACTIVE_RESOURCES, &count);
+    for (GLuint i = 0; i < GLuint(count); i++) {
+      const std::string name = name_of(block_interface, i);
+      Block &block = blocks[name];
+      block.slot = property(block_interface, i, GL_BUFFER_BINDING);
+      block.size_bytes = property(block_interface, i, GL_BUFFER_DATA_SIZE);
+      std::vector<GLint> members(std::size_t(property(block_interface, i, GL_NUM_ACTIVE_VARIABLES)));
+      const GLenum active = GL_ACTIVE_VARIABLES;
+      glGetProgramResourceiv(program_, block_interface, i, 1, &active, GLsizei(members.size()), nullptr, members.data());
+      for (const GLint member : members) {
+        const std::string member_name = reflected_name(name, name_of(member_interface, GLuint(member)));
+        if (!member_name.empty()) {
+          block.offsets[member_name] = property(member_interface, GLuint(member), GL_OFFSET);
+        }
+      }
+    }
+    return blocks;
+  }
+
+  /** The texture slots by name of sampler. */
+  [[nodiscard]] std::map<std::string, int> textures() const
+  {
+    std::map<std::string, int> textures;
+    GLint count = 0;
+    glGetProgramInterfaceiv(program_, GL_UNIFORM, GL_ACTIVE_RESOURCES, &count);
+    for (GLuint i = 0; i < GLuint(count); i++) {
+      const GLint location = property(GL_UNIFORM, i, GL_LOCATION);
+      if (location >= 0) {
+        GLint slot = -1;
+        glGetUniformiv(program_, location, &slot);
+        textures[name_of(GL_UNIFORM, i)] = slot;
+      }
+    }
+    return textures;
+  }
+
+ private:
+  [[nodiscard]] GLint property(GLenum interface, GLuint index, GLenum property) const
+  {
+    GLint value = 0;
+    glGetProgramResourceiv(program_, interface, index, 1, &property, 1, nullptr, &value);
+    return value;
+  }
+  [[nodiscard]] std::string name_of(GLenum interface, GLuint index) const
+  {
+    std::array<char, 256> name = {};
+    glGetProgramResourceName(program_, interface, index, name.size(), nullptr, name.data());
+    return name.data();
+  }
+  /** A member's name as gpu::ShaderInterface has it; empty for what is not in an array's first element. */
+  static std::string reflected_name(const std::string &block, std::string name)
+  {
+    if (name.starts_with(block + ".")) {
+      name.erase(0, block.size() + 1);
+    }
+    if (name.ends_with("[0]")) {
+      name.resize(name.size() - 3);
+    }
+    for (std::size_t i = name.find('['); i != std::string::npos; i = name.find('[', i + 1)) {
+      if (name.substr(i, 3) != "[0]") {
+        return {};
+      }
+    }
+    return name;
+  }
+
+  GLuint program_;
+  std::string log_;
+};
+
+Offsets offsets_of(const std::vector<gpu::ShaderInterface::Member> &members)
+{
+  Offsets offsets;
+  for (const gpu::ShaderInterface::Member &member : members) {
+    offsets[member.name] = int(member.offset_bytes);
+  }
+  return offsets;
+}
+
+class DriverAgreement : public test::GpuDeviceTest {
+ protected:
+  /** Calls \a check for every variant, with both views of it. */
+  template <typename Check>
+  void for_each_variant(Check &&check)
+  {
+    for (const ShaderDeclaration &declaration : shader_declarations()) {
+      for (const Feature features : shader_variants(declaration)) {
+        const gpu::ShaderDesc desc = shader_desc(declaration, features);
+        SCOPED_TRACE(fmt::format("{} {}", desc.name, fmt::join(desc.defines, " ")));
+        const std::vector<gpu::ShaderSource> stages = gpu::preprocess(desc, shaders::file);
+        gpu::ShaderInterface interface;
+        ASSERT_NO_THROW(interface = gpu::reflect(desc.name, stages)) << "glslang";
+        const DriverProgram program(stages);
+        ASSERT_TRUE(program.is_linked()) << device->description() << ":\n" << program.log();
+        check(interface, program);
+      }
+    }
+  }
+};
+
+TEST_F(DriverAgreement, EveryVariantIsAcceptedByBothWithoutAWord)
+{
+  int count = 0;
+  for_each_variant([&](const gpu::ShaderInterface & /*interface*/, const DriverProgram &program) {
+    EXPECT_EQ(program.log(), "");
+    count++;
+  });
+  RecordProperty("variants", count);
+  EXPECT_GE(count, int(shader_declarations().size()));
+}
+
+TEST_F(DriverAgreement, BlocksHaveTheSameSlotSizeAndOffsets)
+{
+  std::set<std::string> declared;
+  std::set<std::string> compared;
+  const auto compare = [&](const std::string &name, int slot, std::uint32_t size_bytes, const Offsets &offsets,
+                           const std::map<std::string, DriverProgram::Block> &blocks) {
+    declared.insert(name);
+    const auto found = blocks.find(name);
+    if (found == blocks.end()) {
+      // Of no use to this variant; another one must use it.
+      return;
+    }
+    compared.insert(name);
+    EXPECT_EQ(found->second.slot, slot) << name;
+    EXPECT_EQ(found->second.size_bytes, int(size_bytes)) << name;
+    EXPECT_EQ(found->second.offsets, offsets) << name;
+  };
+  for_each_variant([&](const gpu::ShaderInterface &interface, const DriverProgram &program) {
+    std::set<std::string> names;
+    for (const BindingKind kind : {BindingKind::UniformBlock, BindingKind::StorageBlock}) {
+      const auto blocks = program.blocks(kind);
+      if (kind == BindingKind::UniformBlock && interface.push_constant_size_bytes > 0) {
+        compare(std::string(gpu::PUSH_CONSTANT_BLOCK), interface.push_constant_slot, interface.push_constant_size_bytes,
+                offsets_of(interface.push_constant_members), blocks);
+        names.emplace(gpu::PUSH_CONSTANT_BLOCK);
+      }
+      for (const gpu::ShaderInterface::Binding &binding : interface.bindings) {
+        if (binding.kind == kind) {
+          compare(binding.name, binding.slot, binding.size_bytes, offsets_of(binding.members), blocks);
+          names.insert(binding.name);
+        }
+      }
+      for (const auto &[name, block] : blocks) {
+        EXPECT_TRUE(names.contains(name)) << "the driver alone knows " << name;
+      }
+    }
+  });
+  EXPECT_EQ(compared, declared);
+}
+
+TEST_F(DriverAgreement, TexturesHaveTheSameSlot)
+{
+  int count = 0;
+  for_each_variant([&](const gpu::ShaderInterface &interface, const DriverProgram &program) {
+    for (const auto &[name, slot] : program.textures()) {
+      const gpu::ShaderInterface::Binding *binding = interface.find(BindingKind::Texture, name);
+      ASSERT_NE(binding, nullptr) << name;
+      EXPECT_EQ(binding->slot, slot) << name;
+      count++;
+    }
+  });
+  EXPECT_GT(count, 0);
+}
+
+TEST_F(DriverAgreement, BlocksAreAsLargeAsInCpp)
+{
+  using namespace shared;
+  const std::map<std::string, std::size_t> sizes = {
+      {"view_block", sizeof(ViewData)},         {"object_block", sizeof(ObjectData)}, {"material_block", sizeof(MaterialData)},
+      {"light_block", sizeof(LightBlock)},      {"shadow_block", sizeof(ShadowBlock)},
+      {"shadow_render_block", sizeof(ShadowRenderBlock)}};
+  std::set<std::string> seen;
+  for_each_variant([&](const gpu::ShaderInterface & /*interface*/, const DriverProgram &program) {
+    for (const BindingKind kind : {BindingKind::UniformBlock, BindingKind::StorageBlock}) {
+      for (const auto &[name, block] : program.blocks(kind)) {
+        const auto size = sizes.find(name);
+        if (size != sizes.end()) {
+          // Arrays without a size count as one element.
+          EXPECT_EQ(std::size_t(block.size_bytes), size->second) << name;
+          seen.insert(name);
+        }
+        else {
+          EXPECT_EQ(name, gpu::PUSH_CONSTANT_BLOCK) << "no struct of C++ is compared with it";
+        }
+      }
+    }
+  });
+  EXPECT_EQ(seen.size(), sizes.size());
+}
+
+}  // namespace
+}  // namespace gnomon::eevee

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_light_shared.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace gnomon::shared {
+namespace {
+
+// hazards.md: spot mask with z = 0, blend 0, size 180°.
+TEST(SpotMask, IsFiniteAndMonotoneForEveryAngleAndBlend)
+{
+  for (int degrees = 0; degrees <= 180; degrees += 3) {
+    const float cos_outer = std::cos(float(degrees) * 0.5F * float(std::numbers::pi) / 180.0F);
+    for (const float blend : {0.0F, 1e-6F, 0.01F, 0.5F, 1.0F}) {
+      const float inv_width = spot_inv_width(cos_outer, blend);
+      ASSERT_TRUE(std::isfinite(inv_width));
+      float before = 0.0F;
+      for (int i = 0; i <= 2000; i++) {
+        const float cos_angle = -1.0F + float(i) / 1000.0F;
+        const float mask = spot_mask(cos_angle, cos_outer, inv_width);
+        ASSERT_TRUE(mask >= 0.0F && mask <= 1.0F);
+        ASSERT_GE(mask, before) << degrees << "° blend " << blend;
+        if (cos_angle <= cos_outer) {
+          ASSERT_EQ(mask, 0.0F);
+        }
+        before = mask;
+      }
+      if (degrees > 10) {
+        EXPECT_EQ(before, 1.0F) << "on the axis, " << degrees << "° blend " << blend;
+      }
+    }
+  }
+}
+
+TEST(DistanceFalloff, IsInverseSquareWithTheDisksRadius)
+{
+  EXPECT_FLOAT_EQ(distance_falloff(4.0F, 0.0F, 0.0F), 0.25F);
+  EXPECT_FLOAT_EQ(distance_falloff(4.0F, 1.0F, 0.0F), 0.2F);
+  EXPECT_TRUE(std::isfinite(distance_falloff(0.0F, 0.0F, 0.0F)));
+}
+
+TEST(DistanceFalloff, EndsAtTheRange)
+{
+  const float range_inv_sq = 1.0F / 9.0F;
+  EXPECT_EQ(distance_falloff(9.0F, 0.0F, range_inv_sq), 0.0F);
+  EXPECT_EQ(distance_falloff(100.0F, 0.0F, range_inv_sq), 0.0F);
+  // KHR_lights_punctual: 1 - (d / range)⁴ over d².
+  EXPECT_FLOAT_EQ(distance_falloff(4.0F, 0.0F, range_inv_sq), (1.0F - 16.0F / 81.0F) / 4.0F);
+}
+
+TEST(HemiIrradiance, IsTheShareOfTheSkyAboveTheHorizon)
+{
+  // Cosine-weighted share of a half-space of directions seen from a plane tilted by t, by quadrature.
+  for (const double tilt : {0.0, 0.7, std::numbers::pi / 2.0, 2.5, std::numbers::pi}) {
+    constexpr int N = 700;
+    double sum = 0.0;
+    for (int i = 0; i < N; i++) {
+      for (int j = 0; j < N; j++) {
+        const double z = (i + 0.5) / N;
+        const double phi = 2.0 * std::numbers::pi * (j + 0.5) / N;
+        const double x = std::sqrt(1.0 - z * z) * std::cos(phi);
+        sum += std::max(0.0, x * std::sin(tilt) + z * std::cos(tilt)) * 2.0 / (double(N) * N);
+      }
+    }
+    EXPECT_NEAR(hemi_irradiance(float(std::cos(tilt))), sum, 2e-3) << tilt;
+  }
+}
+
+}  // namespace
+}  // namespace gnomon::shared

@@ -1,0 +1,674 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "eevee_depth_shared.h"
+#include "eevee_tonemap_shared.h"
+#include "shared_functions.hh"
+
+namespace gnomon::test {
+
+namespace {
+
+using glm::dvec2;
+using glm::dvec3;
+using glm::dvec4;
+using In = Arguments<float>;
+using Exact = Arguments<double>;
+
+/** The same numbers in every run. */
+class Random {
+ public:
+  float uniform(double low, double high)
+  {
+    return float(low + (high - low) * unit());
+  }
+  /** Each power of ten as often as the next. \pre low above 0. */
+  float log_uniform(double low, double high)
+  {
+    return float(low * std::pow(high / low, unit()));
+  }
+  glm::vec3 box(double half)
+  {
+    return {uniform(-half, half), uniform(-half, half), uniform(-half, half)};
+  }
+  glm::vec3 direction()
+  {
+    for (;;) {
+      const glm::vec3 v = box(1.0);
+      const float length = glm::length(v);
+      if (length > 0.01F && length <= 1.0F) {
+        return v / length;
+      }
+    }
+  }
+  template <typename T, std::size_t N>
+  T one_of(const std::array<T, N> &values)
+  {
+    return values[engine_() % N];
+  }
+
+ private:
+  double unit()
+  {
+    return double(engine_()) / double(std::mt19937::max());
+  }
+  std::mt19937 engine_{17};
+};
+
+dvec4 one(double value)
+{
+  return {value, 0, 0, 0};
+}
+
+/** \a count times what \a make makes. */
+template <typename Make>
+std::vector<In> many(int count, Make &&make)
+{
+  std::vector<In> arguments;
+  arguments.reserve(std::size_t(count));
+  Random random;
+  for (int i = 0; i < count; i++) {
+    arguments.push_back(make(random));
+  }
+  return arguments;
+}
+
+/** Cosines in [low, 1], dense at both ends. */
+std::vector<float> cosines(float low)
+{
+  std::vector<float> values;
+  for (int i = 0; i <= 64; i++) {
+    values.push_back(low + (1.0F - low) * float(i) / 64.0F);
+  }
+  for (int i = 7; i <= 24; i++) {
+    values.push_back(1.0F - std::ldexp(1.0F, -i));
+    values.push_back(low + std::ldexp(1.0F, -i));
+  }
+  return values;
+}
+
+constexpr std::array<float, 7> ALPHAS = {1e-3F, 2e-3F, 0.01F, 0.0625F, 0.3F, 0.7225F, 1.0F};
+
+/** Ends, middles of edges, corners of a cube, ties, zeros of both signs. */
+std::vector<glm::vec3> special_directions()
+{
+  std::vector<glm::vec3> directions;
+  const std::array<float, 6> steps = {-1.0F, -0.5F, -0.0F, 0.0F, 0.5F, 1.0F};
+  for (const float x : steps) {
+    for (const float y : steps) {
+      for (const float z : steps) {
+        if (x != 0.0F || y != 0.0F || z != 0.0F) {
+          directions.emplace_back(x, y, z);
+        }
+      }
+    }
+  }
+  return directions;
+}
+
+std::vector<In> direction_arguments()
+{
+  std::vector<In> arguments = many(20000, [](Random &random) {
+    return In{.a = glm::vec4(random.direction() * random.log_uniform(1e-9, 1e9), 0)};
+  });
+  for (const glm::vec3 &v : special_directions()) {
+    arguments.push_back({.a = glm::vec4(v, 0)});
+  }
+  return arguments;
+}
+
+/** Mirrored on the diamond's edge of the quadrant that \a p is in. */
+dvec2 folded(dvec2 p)
+{
+  const dvec2 sign(p.x < 0.0 ? -1.0 : 1.0, p.y < 0.0 ? -1.0 : 1.0);
+  return p - (glm::dot(sign, p) - 1.0) * sign;
+}
+
+// --- truths
+
+/** Of two triangles that share a diagonal (van Oosterom and Strackee 1983, eq. 8): long doubles bear its cancellations. */
+double solid_angle(const Exact &in)
+{
+  using Vector = glm::vec<3, long double>;
+  const Vector center(in.a);
+  const Vector right(in.b);
+  const Vector up(in.c);
+  const auto triangle = [](const Vector &a, const Vector &b, const Vector &c) {
+    const long double volume = std::abs(glm::dot(a, glm::cross(b - a, c - a)));
+    const long double la = glm::length(a);
+    const long double lb = glm::length(b);
+    const long double lc = glm::length(c);
+    return 2.0L * std::atan2(volume, la * lb * lc + glm::dot(a, b) * lc + glm::dot(a, c) * lb + glm::dot(b, c) * la);
+  };
+  const Vector a = center - right - up;
+  const Vector c = center + right + up;
+  return double(triangle(a, center + right - up, c) + triangle(a, c, center - right + up));
+}
+
+double distance_to_segment(const dvec3 &from, const dvec3 &to)
+{
+  const dvec3 along = to - from;
+  const double t = -glm::dot(from, along) / std::max(glm::dot(along, along), 1e-30);
+  return glm::length(from + std::clamp(t, 0.0, 1.0) * along);
+}
+
+/** How much the angle changes where the corners move by their own size: what a rounding of them is relative to. */
+double solid_angle_condition(const Exact &in)
+{
+  const dvec3 center(in.a);
+  const dvec3 right(in.b);
+  const dvec3 up(in.c);
+  const std::array<dvec3, 4> corners = {center - right - up, center + right - up, center + right + up, center - right + up};
+  double rim = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < 4; i++) {
+    rim = std::min(rim, distance_to_segment(corners[i], corners[(i + 1) % 4]));
+  }
+  // Its gradient is the field of a current along the rim (Biot and Savart): that of a long wire from near, and at most
+  // the rim's length over the square of its distance.
+  const double size = glm::length(right) + glm::length(up);
+  return (glm::length(center) + size) * std::min(2.0 / rim, 4.0 * size / (rim * rim));
+}
+
+double ggx_distribution(double c, double alpha)
+{
+  const double t = c * c * (alpha * alpha - 1.0) + 1.0;
+  return alpha * alpha / (std::numbers::pi * t * t);
+}
+
+double ggx_masking(double c, double alpha)
+{
+  // Walter et al. 2007, eq. 34, with the tangent.
+  return 2.0 / (1.0 + std::sqrt(1.0 + alpha * alpha * (1.0 - c * c) / (c * c)));
+}
+
+double srgb(double linear)
+{
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+}
+
+/** Columns of OpenGL 4.5 core, table 8.19: which components, and with which sign, are sc, tc and ma of a face. */
+dvec3 cube_coordinates(int face, dvec3 v)
+{
+  struct Row {
+    int sc, tc, ma;
+    double sc_sign, tc_sign, ma_sign;
+  };
+  constexpr std::array<Row, 6> ROWS = {{{2, 1, 0, -1, -1, 1},
+                                        {2, 1, 0, 1, -1, -1},
+                                        {0, 2, 1, 1, 1, 1},
+                                        {0, 2, 1, 1, -1, -1},
+                                        {0, 1, 2, 1, -1, 1},
+                                        {0, 1, 2, -1, -1, -1}}};
+  const Row &row = ROWS[std::size_t(face)];
+  return {row.sc_sign * v[row.sc], row.tc_sign * v[row.tc], row.ma_sign * v[row.ma]};
+}
+
+std::vector<In> depth_arguments(bool is_distance)
+{
+  std::vector<In> arguments = many(30000, [&](Random &random) {
+    const int projection = random.one_of(std::array{PROJECTION_PERSPECTIVE, PROJECTION_PERSPECTIVE_INFINITE,
+                                                    PROJECTION_ORTHOGRAPHIC});
+    const float near = random.log_uniform(1e-4, 1e2);
+    const float far = near * (1.0F + random.log_uniform(1e-3, 1e9));
+    const float share = random.uniform(0, 1);
+    float x = share;
+    if (is_distance) {
+      // From half the near plane's distance to beyond the far one.
+      x = random.one_of(std::array{near, far, near + share * (far - near), random.log_uniform(0.5 * near, 2.0 * far)});
+    }
+    else {
+      x = random.one_of(std::array{0.0F, 1.0F, share, random.log_uniform(1e-12, 1.0)});
+    }
+    return In{.a = glm::vec4(x, near, far, float(projection))};
+  });
+  return arguments;
+}
+
+/** Where \a texel lies on the map that goes on outside: by the reflection of the plane's points, not of indices. */
+dvec2 continued_texel(dvec2 texel, double size)
+{
+  dvec2 p = (texel + 0.5) / size * 2.0 - 1.0;
+  for (int axis = 0; axis < 2; axis++) {
+    if (std::abs(p[axis]) > 1.0) {
+      // A point beyond the edge is the one as far within, on the other side of the edge's middle.
+      p[axis] = std::copysign(2.0, p[axis]) - p[axis];
+      p[1 - axis] = -p[1 - axis];
+    }
+  }
+  return glm::floor((p + 1.0) * 0.5 * size);
+}
+
+std::vector<Sweep> make_sweeps()
+{
+  std::vector<Sweep> sweeps;
+
+  // Products and sums of rounded terms: a few roundings. The magnitude holds both dot products, whose terms may cancel.
+  sweeps.push_back({"line_plane_distance",
+                    many(20000,
+                         [](Random &random) {
+                           const glm::vec3 point = random.box(100.0);
+                           return In{glm::vec4(random.box(100.0), point.x), glm::vec4(random.direction(), point.y),
+                                     glm::vec4(random.direction(), point.z)};
+                         }),
+                    [](const Exact &in) {
+                      const dvec3 n(in.c);
+                      const dvec3 p(in.a.w, in.b.w, in.c.w);
+                      return one(glm::dot(n, p - dvec3(in.a)) / glm::dot(n, dvec3(in.b)));
+                    },
+                    [](const Exact &in) {
+                      const dvec3 n(in.c);
+                      const dvec3 to_plane = dvec3(in.a.w, in.b.w, in.c.w) - dvec3(in.a);
+                      const double rise = std::abs(glm::dot(n, dvec3(in.b)));
+                      const double t = std::abs(glm::dot(n, to_plane)) / rise;
+                      return one((glm::length(to_plane) + t) / rise);
+                    },
+                    1e-6, 3, 3});
+
+  sweeps.push_back({"rectangle_solid_angle",
+                    [] {
+                      std::vector<In> arguments = many(40000, [](Random &random) {
+                        // Along axes, so that edges are at right angles to the last bit, or turned, where they are to 1e-7.
+                        glm::vec3 x(1, 0, 0);
+                        glm::vec3 y(0, 1, 0);
+                        if (random.uniform(0, 1) < 0.5F) {
+                          x = random.direction();
+                          y = glm::normalize(glm::cross(x, random.direction()));
+                        }
+                        const glm::vec3 z = glm::cross(x, y);
+                        const float scale = random.log_uniform(1e-4, 1e5);
+                        const float width = scale * random.log_uniform(1e-3, 1.0);
+                        const float height = scale * random.log_uniform(1e-3, 1.0);
+                        const float reach = random.log_uniform(0.1, 1e3);
+                        const glm::vec3 center = x * (width * reach * random.uniform(-1, 1)) +
+                                                 y * (height * reach * random.uniform(-1, 1)) +
+                                                 z * (scale * random.log_uniform(1e-6, 1e3));
+                        return In{glm::vec4(center, 0), glm::vec4(x * width, 0), glm::vec4(y * height, 0)};
+                      });
+                      return arguments;
+                    }(),
+                    [](const Exact &in) { return one(solid_angle(in)); },
+                    [](const Exact &in) { return one(solid_angle(in) + solid_angle_condition(in)); }, 2, 8, 8});
+
+  // Sums of positive terms only: relative errors of a few roundings.
+  {
+    std::vector<In> arguments;
+    for (const float c : cosines(0.0F)) {
+      for (const float alpha : ALPHAS) {
+        arguments.push_back({.a = {c, alpha, 0, 0}});
+      }
+    }
+    sweeps.push_back({"ggx_distribution", arguments,
+                      [](const Exact &in) { return one(ggx_distribution(in.a.x, in.a.y)); },
+                      [](const Exact &in) { return one(ggx_distribution(in.a.x, in.a.y)); }, 1, 8, 8});
+  }
+  {
+    std::vector<In> arguments;
+    for (const float c : cosines(1e-6F)) {
+      for (const float alpha : ALPHAS) {
+        arguments.push_back({.a = {c, alpha, 0, 0}});
+      }
+    }
+    const auto truth = [](const Exact &in) { return one(ggx_masking(in.a.x, in.a.y) / (2.0 * in.a.x)); };
+    sweeps.push_back({"ggx_masking_over_2cos", arguments, truth, truth, 1, 8, 8});
+  }
+  {
+    const auto truth = [](const Exact &in) {
+      const double alpha = in.a.w;
+      return one(ggx_distribution(in.a.z, alpha) * ggx_masking(in.a.x, alpha) * ggx_masking(in.a.y, alpha) /
+                 (4.0 * in.a.x * in.a.y));
+    };
+    sweeps.push_back({"ggx_lobe",
+                      many(20000,
+                           [](Random &random) {
+                             const std::array<float, 3> c = {random.uniform(0, 1), random.log_uniform(1e-4, 1),
+                                                             1.0F - random.log_uniform(1e-7, 1)};
+                             return In{.a = {std::max(c[0], 1e-4F), c[1], c[2], random.one_of(ALPHAS)}};
+                           }),
+                      truth, truth, 1, 16, 16});
+  }
+  sweeps.push_back({"fresnel_schlick",
+                    many(20000,
+                         [](Random &random) {
+                           const glm::vec3 f0(random.uniform(0, 1), random.uniform(0, 1), random.one_of(std::array{0.0F, 1.0F}));
+                           return In{glm::vec4(f0, random.one_of(std::array{0.0F, 0.5F, 1.0F})),
+                                     glm::vec4(random.uniform(-0.1, 1.1))};
+                         }),
+                    [](const Exact &in) {
+                      const double share = std::pow(1.0 - std::clamp(in.b.x, 0.0, 1.0), 5.0);
+                      return dvec4(dvec3(in.a) * (1.0 - share) + in.a.w * share, 0);
+                    },
+                    [](const Exact &in) { return dvec4(dvec3(in.a) + in.a.w, 0); }, 1e-6, 4, 4});
+
+  sweeps.push_back({"depth_of_distance", depth_arguments(true),
+                    [](const Exact &in) {
+                      const long double d = in.a.x;
+                      const long double n = in.a.y;
+                      const long double f = in.a.z;
+                      switch (int(in.a.w)) {
+                        case PROJECTION_PERSPECTIVE: return one(double(n * (f - d) / (d * (f - n))));
+                        case PROJECTION_PERSPECTIVE_INFINITE: return one(double(n / d));
+                        default: return one(double((f - d) / (f - n)));
+                      }
+                    },
+                    [](const Exact &in) {
+                      const double d = in.a.x;
+                      const double n = in.a.y;
+                      const double f = in.a.z;
+                      switch (int(in.a.w)) {
+                        case PROJECTION_PERSPECTIVE: return one(std::abs(n * (f - d) / (d * (f - n))));
+                        case PROJECTION_PERSPECTIVE_INFINITE: return one(n / d);
+                        default: return one(std::abs((f - d) / (f - n)));
+                      }
+                    },
+                    1e-6, 4, 4});
+  sweeps.push_back({"distance_of_depth", depth_arguments(false),
+                    [](const Exact &in) {
+                      const long double depth = in.a.x;
+                      const long double n = in.a.y;
+                      const long double f = in.a.z;
+                      switch (int(in.a.w)) {
+                        case PROJECTION_PERSPECTIVE: return one(double(1.0L / (depth * (1.0L / n - 1.0L / f) + 1.0L / f)));
+                        case PROJECTION_PERSPECTIVE_INFINITE: return one(double(n / std::max(depth, 1e-30L)));
+                        default: return one(double(depth * n + (1.0L - depth) * f));
+                      }
+                    },
+                    [](const Exact &in) {
+                      const double depth = in.a.x;
+                      const double n = in.a.y;
+                      const double f = in.a.z;
+                      switch (int(in.a.w)) {
+                        case PROJECTION_PERSPECTIVE: return one(1.0 / (depth * (1.0 / n - 1.0 / f) + 1.0 / f));
+                        case PROJECTION_PERSPECTIVE_INFINITE: return one(n / std::max(depth, 1e-30));
+                        default: return one(f);
+                      }
+                    },
+                    1, 5, 5});
+
+  sweeps.push_back({"log_sum",
+                    many(30000,
+                         [](Random &random) {
+                           // Four distances, spread from nothing to 1e30 m around one up to 1 km away.
+                           const float base = random.log_uniform(1e-3, 1e3);
+                           const float spread = random.one_of(std::array{
+                               0.0F, random.log_uniform(1e-4, 1e3), random.log_uniform(1e-4, 1e3), random.log_uniform(1.0, 1e30)});
+                           In in;
+                           for (int i = 0; i < 4; i++) {
+                             in.a[i] = base + spread * random.uniform(0, 1);
+                             in.c[i] = random.one_of(std::array{0.25F, 0.03125F});
+                           }
+                           in.b.x = random.log_uniform(0.01, 1e4);
+                           return in;
+                         }),
+                    [](const Exact &in) {
+                      const long double exponent = in.b.x;
+                      const double highest = std::max({in.a.x, in.a.y, in.a.z, in.a.w});
+                      long double sum = 0.0L;
+                      for (int i = 0; i < 4; i++) {
+                        sum += in.c[i] * std::exp(exponent * (static_cast<long double>(in.a[i]) - highest));
+                      }
+                      return one(double(highest + std::log(sum) / exponent));
+                    },
+                    [](const Exact &in) {
+                      return one(std::max({in.a.x, in.a.y, in.a.z, in.a.w}) + 1.0 / in.b.x);
+                    },
+                    1e-6, 8, 8});
+  sweeps.push_back({"esm_visibility",
+                    many(30000,
+                         [](Random &random) {
+                           const float distance = random.log_uniform(1e-3, 1e3);
+                           const float exponent = random.log_uniform(0.01, 1e4);
+                           const float stored = random.one_of(std::array{
+                               distance, distance - random.log_uniform(1e-3, 80.0) / exponent, random.log_uniform(1e-3, 1e3), 1e30F});
+                           return In{.a = {exponent, stored, distance, 0}};
+                         }),
+                    [](const Exact &in) { return one(std::min(1.0, std::exp(in.a.x * (in.a.y - in.a.z)))); },
+                    [](const Exact &in) {
+                      // An exponent that is off by a rounding changes the power by as much as the exponent is large. The
+                      // least magnitude is that of numbers that a driver may flush to 0.
+                      const double exponent = std::min(in.a.x * (in.a.y - in.a.z), 0.0);
+                      return one(std::exp(exponent) * (1.0 - exponent) + 1e-30);
+                    },
+                    1e-6, 2, 2});
+
+  {
+    std::vector<In> widths;
+    std::vector<In> masks;
+    for (int degrees = 0; degrees <= 180; degrees += 4) {
+      const float cos_outer = std::cos(float(degrees) * 0.5F * float(std::numbers::pi) / 180.0F);
+      for (const float blend : {0.0F, 1e-6F, 0.01F, 0.5F, 1.0F}) {
+        widths.push_back({.a = {cos_outer, blend, 0, 0}});
+        for (const float c : cosines(-1.0F)) {
+          masks.push_back({.a = {c, cos_outer, blend, 0}});
+        }
+        for (int i = 0; i <= 64; i++) {
+          masks.push_back({.a = {cos_outer + (1.0F - cos_outer) * blend * float(i) / 60.0F, cos_outer, blend, 0}});
+        }
+      }
+    }
+    const auto inv_width = [](const Exact &in) { return one(1.0 / std::max((1.0 - in.a.x) * in.a.y, 1e-6)); };
+    sweeps.push_back({"spot_inv_width", widths, inv_width, inv_width, 1, 4, 4});
+    const auto mask = [](const Exact &in) {
+      const double width = std::max((1.0 - in.a.y) * in.a.z, 1e-6);
+      const double t = std::clamp((in.a.x - in.a.y) / width, 0.0, 1.0);
+      return one(t * t * (3.0 - 2.0 * t));
+    };
+    sweeps.push_back({"spot_mask", masks, mask, mask, 1, 8, 8});
+  }
+  sweeps.push_back({"distance_falloff",
+                    many(20000,
+                         [](Random &random) {
+                           const float distance_sq = random.one_of(std::array{0.0F, random.log_uniform(1e-12, 1e12)});
+                           const float radius_sq = random.one_of(std::array{0.0F, random.log_uniform(1e-8, 1e4)});
+                           const float range = random.one_of(std::array{0.0F, random.log_uniform(1e-8, 1e8)});
+                           return In{.a = {distance_sq, radius_sq, range, 0}};
+                         }),
+                    [](const Exact &in) {
+                      const double window = 1.0 - std::pow(in.a.x * in.a.z, 2.0);
+                      return one(std::max(window, 0.0) / std::max(in.a.x + in.a.y, 1e-12));
+                    },
+                    [](const Exact &in) {
+                      // Where the window closes, a difference of two numbers near 1.
+                      const double window = 1.0 - std::pow(in.a.x * in.a.z, 2.0);
+                      return one(window < -1e-6 ? 0.0 : 1.0 / std::max(in.a.x + in.a.y, 1e-12));
+                    },
+                    1, 4, 4});
+  sweeps.push_back({"hemi_irradiance",
+                    many(2000, [](Random &random) { return In{.a = glm::vec4(random.uniform(-1, 1))}; }),
+                    [](const Exact &in) { return one((1.0 + in.a.x) / 2.0); },
+                    [](const Exact &) { return one(1.0); }, 1e-6, 1, 1});
+
+  sweeps.push_back({"octahedral_from_direction", direction_arguments(),
+                    [](const Exact &in) {
+                      const dvec3 v = dvec3(in.a) / (std::abs(in.a.x) + std::abs(in.a.y) + std::abs(in.a.z));
+                      const dvec2 p = v.z < 0.0 ? folded(dvec2(v)) : dvec2(v);
+                      return dvec4((p + 1.0) / 2.0, 0, 0);
+                    },
+                    [](const Exact &) { return dvec4(1, 1, 0, 0); }, 1e-6, 2, 2});
+  sweeps.push_back({"octahedral_to_direction",
+                    [] {
+                      std::vector<In> arguments = many(20000, [](Random &random) {
+                        return In{.a = {random.uniform(0, 1), random.uniform(0, 1), 0, 0}};
+                      });
+                      for (int y = 0; y <= 32; y++) {
+                        for (int x = 0; x <= 32; x++) {
+                          arguments.push_back({.a = {float(x) / 32.0F, float(y) / 32.0F, 0, 0}});
+                        }
+                      }
+                      return arguments;
+                    }(),
+                    [](const Exact &in) {
+                      const dvec2 p = dvec2(in.a) * 2.0 - 1.0;
+                      const double z = 1.0 - std::abs(p.x) - std::abs(p.y);
+                      return dvec4(glm::normalize(dvec3(z < 0.0 ? folded(p) : p, z)), 0);
+                    },
+                    [](const Exact &) { return dvec4(1, 1, 1, 0); }, 1e-6, 3, 3});
+  {
+    std::vector<In> arguments;
+    for (const int size : {1, 2, 3, 8, 17}) {
+      for (int y = -size; y < 2 * size; y++) {
+        for (int x = -size; x < 2 * size; x++) {
+          arguments.push_back({.a = {x, y, size, 0}});
+        }
+      }
+    }
+    // Integers.
+    sweeps.push_back({"octahedral_texel", arguments,
+                      [](const Exact &in) { return dvec4(continued_texel(dvec2(in.a), in.a.z), 0, 0); },
+                      [](const Exact &) { return dvec4(1, 1, 0, 0); }, 0, 0, 0});
+  }
+
+  // Components chosen and negated: exact.
+  sweeps.push_back({"cube_face", direction_arguments(),
+                    [](const Exact &in) {
+                      int face = 0;
+                      for (int i = 0; i < 6; i++) {
+                        const double along = i % 2 == 0 ? in.a[i / 2] : -in.a[i / 2];
+                        const double largest = face % 2 == 0 ? in.a[face / 2] : -in.a[face / 2];
+                        face = along > largest ? i : face;
+                      }
+                      // Ties go to the earlier axis, whichever its sign.
+                      for (int axis = 2; axis >= 0; axis--) {
+                        if (std::abs(in.a[axis]) == std::abs(in.a[face / 2])) {
+                          face = 2 * axis + (in.a[axis] < 0.0 ? 1 : 0);
+                        }
+                      }
+                      return one(face);
+                    },
+                    [](const Exact &) { return one(1.0); }, 0, 0, 0});
+  sweeps.push_back({"cube_face_project",
+                    many(6000,
+                         [](Random &random) {
+                           return In{.a = glm::vec4(random.box(1e6), random.one_of(std::array{0, 1, 2, 3, 4, 5}))};
+                         }),
+                    [](const Exact &in) { return dvec4(cube_coordinates(int(in.a.w), dvec3(in.a)), 0); },
+                    [](const Exact &) { return dvec4(1, 1, 1, 0); }, 0, 0, 0});
+  sweeps.push_back({"shadow_lift",
+                    many(5000,
+                         [](Random &random) {
+                           return In{.a = {random.log_uniform(1e-6, 1e3), random.log_uniform(1e-9, 1.0),
+                                           random.log_uniform(1e-3, 1e6), 0}};
+                         }),
+                    [](const Exact &in) { return one(in.a.x / 10.0 + in.a.y + in.a.z / 1e6); },
+                    [](const Exact &in) { return one(in.a.x / 10.0 + in.a.y + in.a.z / 1e6); }, 1, 4, 4});
+  sweeps.push_back({"plane_depths",
+                    many(10000,
+                         [](Random &random) {
+                           return In{{random.uniform(0, 1), random.uniform(-1, 1), random.uniform(-1, 1), 0},
+                                     {random.uniform(0, 0.9999), random.uniform(0, 0.9999), 0, 0}};
+                         }),
+                    [](const Exact &in) {
+                      // The plane's depth at a texel's centre, from the lookup's.
+                      const auto at = [&](double x, double y) {
+                        return in.a.x + in.a.y * (x - in.b.x) + in.a.z * (y - in.b.y);
+                      };
+                      return dvec4(at(0, 1), at(1, 1), at(1, 0), at(0, 0));
+                    },
+                    [](const Exact &in) { return dvec4(in.a.x + std::abs(in.a.y) + std::abs(in.a.z)); }, 1e-6, 3, 3});
+  sweeps.push_back({"gathered_visibility",
+                    many(10000,
+                         [](Random &random) {
+                           // Few levels, so that many are equal.
+                           const std::array<float, 3> levels = {0.25F, 0.5F, 0.75F};
+                           In in;
+                           for (int i = 0; i < 4; i++) {
+                             in.a[i] = random.one_of(levels);
+                             in.b[i] = random.one_of(levels);
+                           }
+                           in.c = {random.uniform(0, 1), random.uniform(0, 1), 0, 0};
+                           return in;
+                         }),
+                    [](const Exact &in) {
+                      const dvec2 f(in.c);
+                      const dvec4 weights((1 - f.x) * f.y, f.x * f.y, f.x * (1 - f.y), (1 - f.x) * (1 - f.y));
+                      double lit = 0.0;
+                      for (int i = 0; i < 4; i++) {
+                        lit += in.a[i] <= in.b[i] ? weights[i] : 0.0;
+                      }
+                      return one(lit);
+                    },
+                    [](const Exact &) { return one(1.0); }, 1e-6, 2, 2});
+  {
+    std::vector<In> arguments = many(5000, [](Random &random) {
+      const float sign = random.one_of(std::array{-1.0F, 1.0F});
+      return In{.a = {random.uniform(-10, 10), sign * random.log_uniform(1e-36, 1e10), 0, 0}};
+    });
+    arguments.push_back({.a = {1, 0, 0, 0}});
+    arguments.push_back({.a = {0, 0, 0, 0}});
+    arguments.push_back({.a = {1, -0.0F, 0, 0}});
+    const auto truth = [](const Exact &in) { return one(std::abs(in.a.y) > double(1e-30F) ? in.a.x / in.a.y : 0.0); };
+    sweeps.push_back({"slope_quotient", arguments, truth, truth, 1e-6, 1, 4});
+  }
+
+  {
+    std::vector<In> arguments;
+    for (int i = 0; i <= 4096; i++) {
+      arguments.push_back({.a = glm::vec4(float(i) / 4096.0F)});
+    }
+    for (int i = -50; i <= 50; i++) {
+      arguments.push_back({.a = glm::vec4(0.0031308F + float(i) * 1e-7F)});
+    }
+    // Literals are floats.
+    sweeps.push_back({"srgb_encoded", arguments, [](const Exact &in) { return one(srgb(in.a.x)); },
+                      [](const Exact &) { return one(1.0); }, 1, 2, 16});
+    sweeps.push_back({"view_transformed",
+                      many(10000,
+                           [](Random &random) {
+                             return In{.a = glm::vec4(glm::vec3(1.0F) + random.box(2.0),
+                                                      random.one_of(std::array{VIEW_TRANSFORM_STANDARD, VIEW_TRANSFORM_RAW}))};
+                           }),
+                      [](const Exact &in) {
+                        dvec3 clipped = glm::clamp(dvec3(in.a), 0.0, 1.0);
+                        if (int(in.a.w) == VIEW_TRANSFORM_STANDARD) {
+                          clipped = {srgb(clipped.x), srgb(clipped.y), srgb(clipped.z)};
+                        }
+                        return dvec4(clipped, 0);
+                      },
+                      [](const Exact &) { return dvec4(1, 1, 1, 0); }, 1, 2, 16});
+  }
+  return sweeps;
+}
+
+}  // namespace
+
+const std::vector<Sweep> &sweeps()
+{
+  static const std::vector<Sweep> SWEEPS = make_sweeps();
+  return SWEEPS;
+}
+
+Deviation deviation(const Sweep &sweep, std::span<const dvec4> results)
+{
+  Deviation worst;
+  for (std::size_t i = 0; i < sweep.arguments.size(); i++) {
+    const Exact in = in_double(sweep.arguments[i]);
+    const dvec4 truth = sweep.closed_form(in);
+    const dvec4 magnitude = sweep.magnitude(in);
+    for (int k = 0; k < 4; k++) {
+      const double difference = std::abs(results[i][k] - truth[k]);
+      double epsilons = difference / (double(std::numeric_limits<float>::epsilon()) * magnitude[k]);
+      if (difference == 0.0) {
+        epsilons = 0.0;
+      }
+      else if (!std::isfinite(epsilons)) {
+        epsilons = std::numeric_limits<double>::infinity();
+      }
+      if (epsilons > worst.epsilons) {
+        const auto text = [](const dvec4 &v) { return fmt::format("({:.9g} {:.9g} {:.9g} {:.9g})", v.x, v.y, v.z, v.w); };
+        worst = {epsilons, fmt::format("a {} b {} c {}: {} instead of {}", text(in.a), text(in.b), text(in.c),
+                                       text(results[i]), text(truth))};
+      }
+    }
+  }
+  return worst;
+}
+
+}  // namespace gnomon::test

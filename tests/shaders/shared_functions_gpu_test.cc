@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "gpu/gpu_testing.hh"
+#include "gpu_device_fixture.hh"
+#include "shared_functions.hh"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gnomon::test {
+namespace {
+
+/** A pixel for each of a sweep's arguments. */
+class SharedFunctionGpu : public GpuDeviceTest, public testing::WithParamInterface<std::size_t> {
+ protected:
+  static constexpr int WIDTH = 256;
+
+  static const Sweep &sweep()
+  {
+    return sweeps()[GetParam()];
+  }
+
+  /** What the driver makes of \a expression, of the vectors a, b and c. */
+  std::vector<glm::dvec4> results(std::string_view expression) const
+  {
+    const auto count = sweep().arguments.size();
+    const int height = int((count + WIDTH - 1) / WIDTH);
+    const ShaderTexts texts{{{"frag", fragment_text(expression)}}};
+    const gpu::Shader shader =
+        device->create_shader({std::string(sweep().name), "draw/draw_fullscreen_vert.glsl", "", "frag", {}}, texts.files());
+
+    std::vector<Arguments<float>> arguments = sweep().arguments;
+    arguments.resize(std::size_t(WIDTH) * std::size_t(height));
+    const auto bytes = std::as_bytes(std::span(arguments));
+    const gpu::Buffer buffer = device->create_buffer({"argument_block", gpu::BufferKind::Storage, bytes.size()});
+    device->update(buffer, 0, bytes);
+
+    const gpu::Texture picture =
+        device->create_texture({.name = "results", .format = gpu::Format::RGBA32F, .width = WIDTH, .height = height});
+    const gpu::Framebuffer framebuffer = device->create_framebuffer({"results", {{&picture}}, {}});
+    gpu::CommandList list;
+    list.begin_pass("evaluate", framebuffer, {});
+    list.set_shader(shader.id());
+    list.set_state(gpu::State::WriteColor);
+    list.bind_storage(shader.interface().find(gpu::BindingKind::StorageBlock, "argument_block")->slot, {buffer.id()});
+    list.draw_procedural(3, 1);
+    list.end_pass();
+    device->submit(list);
+    std::vector<glm::dvec4> values;
+    for (const glm::vec4 &texel : texels<glm::vec4>(*device, picture)) {
+      values.emplace_back(texel);
+    }
+    values.resize(count);
+    return values;
+  }
+
+ private:
+  static std::string fragment_text(std::string_view expression)
+  {
+    std::string text = "#version 450 core\n";
+    for (const std::string_view path : shaders::paths()) {
+      if (path.starts_with("shared/eevee_")) {
+        text += fmt::format("#include \"{}\"\n", path);
+      }
+    }
+    return text + fmt::format(R"(
+#include "shared/slots_shared.h"
+layout(std140, binding = OBJECT_BLOCK_SLOT) readonly buffer argument_block
+{{
+  vec4 values[];
+}};
+layout(location = 0) out vec4 result;
+void main()
+{{
+  int first = 3 * (int(gl_FragCoord.y) * {} + int(gl_FragCoord.x));
+  vec4 a = values[first];
+  vec4 b = values[first + 1];
+  vec4 c = values[first + 2];
+  result = {};
+}}
+)",
+                              WIDTH, expression);
+  }
+};
+
+TEST_P(SharedFunctionGpu, EqualsItsClosedForm)
+{
+  const auto functions = functions_in_float();
+  const auto function = std::ranges::find(functions, sweep().name, &CompiledFunction<float>::name);
+  ASSERT_NE(function, functions.end());
+  const std::vector<glm::dvec4> values = results(function->expression);
+  const Deviation worst = deviation(sweep(), values);
+  RecordProperty("epsilons", fmt::format("{:.3g}", worst.epsilons));
+  EXPECT_LE(worst.epsilons, sweep().driver_epsilons) << worst.where;
+
+  // And so C++'s results, which are as near to the truth, cannot be farther off than both together. For the record:
+  double difference = 0.0;
+  for (std::size_t i = 0; i < values.size(); i++) {
+    const Arguments<float> &in = sweep().arguments[i];
+    const glm::dvec4 distance = glm::abs(values[i] - glm::dvec4(function->call(in)));
+    const glm::dvec4 magnitude = sweep().magnitude(in_double(in));
+    for (int k = 0; k < 4; k++) {
+      difference = std::max(difference, distance[k] == 0.0 ? 0.0 : distance[k] / magnitude[k] / 0x1p-23);
+    }
+  }
+  RecordProperty("epsilons_from_cpp", fmt::format("{:.3g}", difference));
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, SharedFunctionGpu, testing::Range(std::size_t(0), sweeps().size()),
+                         [](const auto &test) { return std::string(sweeps()[test.param].name); });
+
+}  // namespace
+}  // namespace gnomon::test
