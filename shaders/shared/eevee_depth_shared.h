@@ -23,12 +23,13 @@ SHARED_CONSTANT float DEPTH_DIVISOR_MIN = 1e-30f;
  */
 SHARED_FUNCTION float depth_of_distance(float distance, float near, float far, int projection)
 {
+  float from_far = (far - distance) / max(far - near, DEPTH_DIVISOR_MIN);
   if (projection == PROJECTION_ORTHOGRAPHIC) {
-    return (far - distance) / (far - near);
+    return from_far;
   }
   // near·far / (far - near) · (1 / distance - 1 / far), as a product that is 1 and 0 where it must be.
   float infinite = near / max(distance, DEPTH_DIVISOR_MIN);
-  return projection == PROJECTION_PERSPECTIVE_INFINITE ? infinite : infinite * ((far - distance) / (far - near));
+  return projection == PROJECTION_PERSPECTIVE_INFINITE ? infinite : infinite * from_far;
 }
 
 /**

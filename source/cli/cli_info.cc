@@ -56,7 +56,7 @@ static void print_info(const scene::Scene &scene)
   }
 }
 
-void add_info(CLI::App &app, int &status)
+void add_info(CLI::App &app, Status &status)
 {
   CLI::App *command = app.add_subcommand("info", "What a scene holds");
   auto path = std::make_shared<std::string>();
@@ -67,7 +67,7 @@ void add_info(CLI::App &app, int &status)
       fmt::print(stderr, "gnomon: warning: {}\n", warning);
     }
     print_info(scene);
-    status = STATUS_DONE;
+    status = Status::Done;
   });
 }
 

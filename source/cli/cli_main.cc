@@ -10,25 +10,25 @@ namespace gnomon::cli {
 /** Part of the promise, not of the program yet. */
 static void add_unbuilt(CLI::App &app)
 {
-  static constexpr std::array<std::array<const char *, 2>, 4> UNBUILT = {
+  static constexpr std::array<std::array<const char *, 2>, 4> unbuilt = {
       {{"report", "Error against run time"},
        {"stability", "Stiff and extreme cases"},
        {"bench", "Benchmarks"},
        {"view", "A window on a scene"}}};
-  for (const auto &[name, purpose] : UNBUILT) {
+  for (const auto &[name, purpose] : unbuilt) {
     CLI::App *command = app.add_subcommand(name, fmt::format("{} (not built yet)", purpose));
     command->allow_extras();
     command->callback([name = name] { throw UsageError(fmt::format("'{}' is not built yet", name)); });
   }
 }
 
-static int run(int argc, char **argv)
+static Status run(int argc, char **argv)
 {
   CLI::App app("gnomon " GNOMON_VERSION ": lights a glTF scene with an EEVEE-style draw-manager engine", "gnomon");
   app.set_version_flag("--version", "gnomon " GNOMON_VERSION);
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
-  int status = STATUS_DONE;
+  Status status = Status::Done;
   add_render(app, status);
   add_info(app, status);
   add_shaders(app, status);
@@ -39,15 +39,15 @@ static int run(int argc, char **argv)
   }
   catch (const CLI::ParseError &error) {
     // Help and version are no errors.
-    return app.exit(error) == 0 ? STATUS_DONE : STATUS_USAGE;
+    return app.exit(error) == 0 ? Status::Done : Status::Usage;
   }
   catch (const UsageError &error) {
     fmt::print(stderr, "gnomon: {}\n", error.what());
-    return STATUS_USAGE;
+    return Status::Usage;
   }
   catch (const std::exception &error) {
     fmt::print(stderr, "gnomon: {}\n", error.what());
-    return STATUS_FAILED;
+    return Status::Failed;
   }
 }
 
@@ -55,5 +55,5 @@ static int run(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-  return gnomon::cli::run(argc, argv);
+  return int(gnomon::cli::run(argc, argv));
 }

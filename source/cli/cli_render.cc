@@ -269,8 +269,8 @@ void render_frames(const RenderOptions &options, const scene::Camera &camera, ee
   }
 }
 
-/** \return STATUS_DONE or STATUS_NON_FINITE; then nothing is written. */
-int write_picture(const RenderOptions &options, const scene::Camera &camera, eevee::Engine &engine,
+/** \return Status::Done or Status::NonFinite; then nothing is written. */
+Status write_picture(const RenderOptions &options, const scene::Camera &camera, eevee::Engine &engine,
                   draw::Viewport &viewport, RenderResult &result)
 {
   const glm::ivec2 size_px = viewport.size_px();
@@ -280,7 +280,7 @@ int write_picture(const RenderOptions &options, const scene::Camera &camera, eev
   if (non_finite.count > 0) {
     fmt::print(stderr, "gnomon: {}: {} values of the picture are not finite, the first at pixel ({}, {}); not written\n",
                options.scene, non_finite.count, non_finite.first_px.x, non_finite.first_px.y);
-    return STATUS_NON_FINITE;
+    return Status::NonFinite;
   }
   Metadata metadata = {{"gnomon:scene", options.scene},
                        {"gnomon:camera", camera.name},
@@ -295,10 +295,10 @@ int write_picture(const RenderOptions &options, const scene::Camera &camera, eev
     metadata.emplace_back("gnomon:units", "scene-linear radiance, W/(sr m^2)");
     write_exr(options.output, size_px, radiance, metadata);
   }
-  return STATUS_DONE;
+  return Status::Done;
 }
 
-int render(const RenderOptions &options)
+Status render(const RenderOptions &options)
 {
   const Clock::time_point start = Clock::now();
   check_options(options);
@@ -339,7 +339,7 @@ int render(const RenderOptions &options)
   render_frames(options, camera, engine, viewport, result);
 
   const Clock::time_point output_start = Clock::now();
-  int status = STATUS_DONE;
+  Status status = Status::Done;
   if (options.backend == "gl") {
     status = write_picture(options, camera, engine, viewport, result);
   }
@@ -358,18 +358,18 @@ int render(const RenderOptions &options)
       }
     });
   }
-  if (status == STATUS_DONE) {
+  if (status == Status::Done) {
     print_summary(options, result);
     if (options.is_explained) {
       print_explanation(result);
     }
   }
-  return status == STATUS_DONE && options.is_strict && !result.report.limits.empty() ? int(STATUS_LIMIT) : status;
+  return status == Status::Done && options.is_strict && !result.report.limits.empty() ? Status::Limit : status;
 }
 
 }  // namespace
 
-void add_render(CLI::App &app, int &status)
+void add_render(CLI::App &app, Status &status)
 {
   auto o = std::make_shared<RenderOptions>();
   CLI::App *command = app.add_subcommand("render", "Light a scene and write the picture");

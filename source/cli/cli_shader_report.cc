@@ -55,8 +55,7 @@ std::string where(const Group &group)
   std::string what = join(shaders, ", ");
   if (variants.size() > 1) {
     what += fmt::format(", {} variants", variants.size());
-  }
-  else if (!group.first->variant.empty()) {
+  } else if (!group.first->variant.empty()) {
     what += " " + group.first->variant;
   }
   return fmt::format("{}; {}", what, join(targets, ", "));
@@ -73,7 +72,8 @@ std::string uri(std::string_view path)
 {
   std::string text;
   for (const char c : path) {
-    const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || std::string_view("/._-~").find(c) != std::string_view::npos;
+    const bool is_plain =
+        std::isalnum(static_cast<unsigned char>(c)) != 0 || std::string_view("/._-~").find(c) != std::string_view::npos;
     text += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
   }
   return path.starts_with('/') ? "file://" + text : text;
@@ -98,7 +98,8 @@ std::string to_text(const ShaderReport &report)
   std::string text;
   for (const Group &group : groups) {
     const gpu::CheckMessage &m = *group.first;
-    text += fmt::format("{}:{}: {}: {} [{}] ({})\n", m.file, m.line, to_string(m.severity), m.text, m.rule, where(group));
+    text +=
+        fmt::format("{}:{}: {}: {} [{}] ({})\n", m.file, m.line, to_string(m.severity), m.text, m.rule, where(group));
   }
   std::set<std::string> targets;
   for (const gpu::CheckTarget target : report.targets) {
@@ -144,8 +145,8 @@ std::string to_sarif(const ShaderReport &report)
   json results = json::array();
   for (const Group &group : groups_of(report)) {
     const gpu::CheckMessage &m = *group.first;
-    const json location = {{"physicalLocation",
-                            {{"artifactLocation", {{"uri", uri(m.file)}}}, {"region", {{"startLine", m.line}}}}}};
+    const json location = {
+        {"physicalLocation", {{"artifactLocation", {{"uri", uri(m.file)}}}, {"region", {{"startLine", m.line}}}}}};
     results.push_back({{"ruleId", m.rule},
                        {"level", to_string(m.severity)},
                        {"message", {{"text", fmt::format("{} ({})", m.text, where(group))}}},

@@ -11,11 +11,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <unistd.h>
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <thread>
-#include <unistd.h>
 
 namespace gnomon::cli {
 
@@ -162,11 +162,13 @@ ShaderReport check_engine(const CheckArguments &arguments)
 
 gpu::ShaderStage required_stage(const std::string &file, const std::string &stage_name)
 {
-  const std::optional<gpu::ShaderStage> stage = stage_of(stage_name.empty() ? fs::path(file) : fs::path("." + stage_name));
+  const std::optional<gpu::ShaderStage> stage =
+      stage_of(stage_name.empty() ? fs::path(file) : fs::path("." + stage_name));
   if (!stage) {
-    throw UsageError(fmt::format("{}: its name ends in none of .vert, _vert.glsl, .geom, _geom.glsl, .frag, _frag.glsl; "
-                                 "--stage vert|geom|frag says what it is",
-                                 file));
+    throw UsageError(
+        fmt::format("{}: its name ends in none of .vert, _vert.glsl, .geom, _geom.glsl, .frag, _frag.glsl; "
+                    "--stage vert|geom|frag says what it is",
+                    file));
   }
   return *stage;
 }
@@ -174,9 +176,12 @@ gpu::ShaderStage required_stage(const std::string &file, const std::string &stag
 std::string &path_of(gpu::ShaderDesc &desc, gpu::ShaderStage stage)
 {
   switch (stage) {
-    case gpu::ShaderStage::Vertex: return desc.vertex_path;
-    case gpu::ShaderStage::Geometry: return desc.geometry_path;
-    case gpu::ShaderStage::Fragment: break;
+    case gpu::ShaderStage::Vertex:
+      return desc.vertex_path;
+    case gpu::ShaderStage::Geometry:
+      return desc.geometry_path;
+    case gpu::ShaderStage::Fragment:
+      break;
   }
   return desc.fragment_path;
 }
@@ -217,21 +222,20 @@ ShaderReport check_files(const CheckArguments &arguments)
   return report;
 }
 
-int check(const CheckArguments &arguments)
+Status check(const CheckArguments &arguments)
 {
   if (!arguments.files.empty() && !arguments.shaders.empty()) {
     throw UsageError("--shaders is for the engine's shaders, FILES for others: not both");
   }
   if (arguments.files.empty() &&
-      !(arguments.include_folders.empty() && arguments.defines.empty() && arguments.stage.empty()))
-  {
+      !(arguments.include_folders.empty() && arguments.defines.empty() && arguments.stage.empty())) {
     throw UsageError("-I, -D and --stage are for FILES");
   }
   const ShaderReport report = arguments.files.empty() ? check_engine(arguments) : check_files(arguments);
   fmt::print("{}", arguments.format == "json"    ? to_json(report)
                    : arguments.format == "sarif" ? to_sarif(report)
                                                  : to_text(report));
-  return report.has_errors() ? STATUS_FAILED : STATUS_DONE;
+  return report.has_errors() ? Status::Failed : Status::Done;
 }
 
 void print_list()
@@ -276,9 +280,8 @@ gpu::ShaderDesc find_variant(const ReflectArguments &arguments)
   if (!arguments.variant) {
     return std::ranges::max(variants, {}, [](const Variant &variant) { return variant.desc.defines.size(); }).desc;
   }
-  const auto found = std::ranges::find_if(variants, [&](const Variant &variant) {
-    return sorted(defines_of(variant.desc)) == sorted(*arguments.variant);
-  });
+  const auto found = std::ranges::find_if(
+      variants, [&](const Variant &variant) { return sorted(defines_of(variant.desc)) == sorted(*arguments.variant); });
   if (found == variants.end()) {
     throw std::runtime_error(fmt::format("program '{}' has no variant '{}'; 'gnomon shaders list' names them",
                                          arguments.program, *arguments.variant));
@@ -390,12 +393,14 @@ std::vector<gpu::BlockComparison> compare_engine_blocks(const gpu::ShaderFiles &
   return comparisons;
 }
 
-int layout(const std::string &folder)
+Status layout(const std::string &folder)
 {
   const EngineFiles files(folder);
-  const auto offset = [](std::optional<std::size_t> bytes) { return bytes ? std::to_string(*bytes) : std::string("-"); };
+  const auto offset = [](std::optional<std::size_t> bytes) {
+    return bytes ? std::to_string(*bytes) : std::string("-");
+  };
   const std::vector<gpu::BlockComparison> comparisons = compare_engine_blocks(files.files());
-  int status = STATUS_DONE;
+  Status status = Status::Done;
   for (const gpu::BlockComparison &comparison : comparisons) {
     fmt::print("{}: {} bytes in C++, {} in GLSL\n     C++   GLSL\n", comparison.block, comparison.cpp_size_bytes,
                comparison.glsl_size_bytes);
@@ -407,19 +412,19 @@ int layout(const std::string &folder)
   for (const gpu::BlockComparison &comparison : comparisons) {
     for (const gpu::BlockDifference &difference : gpu::differences(comparison)) {
       fmt::print("{}:{}: error: {} [layout]\n", files.shown(difference.file), difference.line, difference.text);
-      status = STATUS_FAILED;
+      status = Status::Failed;
     }
   }
   for (const gpu::BlockLayout &block : eevee::block_layouts()) {
     if (std::ranges::find(comparisons, block.name, &gpu::BlockComparison::block) == comparisons.end()) {
       fmt::print("error: block '{}' is read by no shader [layout]\n", block.name);
-      status = STATUS_FAILED;
+      status = Status::Failed;
     }
   }
   return status;
 }
 
-void add_check(CLI::App &shaders, int &status)
+void add_check(CLI::App &shaders, Status &status)
 {
   CLI::App *command = shaders.add_subcommand("check", "Look for mistakes, without running anything");
   auto a = std::make_shared<CheckArguments>();
@@ -439,29 +444,31 @@ void add_check(CLI::App &shaders, int &status)
   command->callback([a, &status] { status = check(*a); });
 }
 
-void add_reflect(CLI::App &shaders, int &status)
+void add_reflect(CLI::App &shaders, Status &status)
 {
   CLI::App *command = shaders.add_subcommand("reflect", "What a program reads, and where it is");
   auto a = std::make_shared<ReflectArguments>();
   command->add_option("program", a->program, "As 'shaders list' names it")->required();
   command->add_option("--variant", a->variant, "Its defines; otherwise the variant with most");
-  command->add_option("--format", a->format, "text, json")->capture_default_str()->check(CLI::IsMember({"text", "json"}));
+  command->add_option("--format", a->format, "text, json")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"text", "json"}));
   command->add_option("--shaders", a->shaders, "Folder to read the engine's shaders from, instead of the program");
   command->callback([a, &status] {
     reflect(*a);
-    status = STATUS_DONE;
+    status = Status::Done;
   });
 }
 
 }  // namespace
 
-void add_shaders(CLI::App &app, int &status)
+void add_shaders(CLI::App &app, Status &status)
 {
   CLI::App *command = app.add_subcommand("shaders", "Check, list and reflect shaders");
   command->require_subcommand(1);
   command->add_subcommand("list", "Every program and variant, and why it exists")->callback([&status] {
     print_list();
-    status = STATUS_DONE;
+    status = Status::Done;
   });
   add_check(*command, status);
   add_reflect(*command, status);

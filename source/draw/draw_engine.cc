@@ -4,8 +4,15 @@
 #include "gpu_error.hh"
 
 #include <algorithm>
+#include <atomic>
 
 namespace gnomon::draw {
+
+Engine::Engine()
+{
+  static std::atomic<std::uint64_t> next = 1;
+  id_ = next++;
+}
 
 void EngineRegistry::add(EngineType type)
 {

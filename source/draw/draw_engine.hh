@@ -30,7 +30,16 @@ struct ObjectRef {
  */
 class Engine {
  public:
+  Engine();
+  Engine(const Engine &) = delete;
+  Engine &operator=(const Engine &) = delete;
   virtual ~Engine() = default;
+
+  /** Of this engine alone, in this process: its address may be another's later. */
+  [[nodiscard]] std::uint64_t id() const
+  {
+    return id_;
+  }
 
   [[nodiscard]] virtual std::string_view name() const = 0;
   /** Make or check what does not depend on the objects. */
@@ -41,6 +50,9 @@ class Engine {
   /** All objects are known. */
   virtual void cache_finish(Viewport &viewport) = 0;
   virtual void draw_scene(Viewport &viewport, const View &view) = 0;
+
+ private:
+  std::uint64_t id_;
 };
 
 /** How to make an engine; a host registers those it wants, with the scene they are to read. */
@@ -64,7 +76,7 @@ class EngineRegistry {
 /** What an engine keeps with something of the host's, a lamp say, from frame to frame. */
 template<typename T> class EngineDataMap {
  public:
-  /** Default-constructed at the first ask; the reference holds until remove_from or clear. */
+  /** Default-constructed at the first ask; the reference holds until remove_from. */
   T &get(std::uint32_t host_index)
   {
     return data_[host_index];

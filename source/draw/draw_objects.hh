@@ -15,7 +15,7 @@ namespace gnomon::draw {
 using ObjectIndex = std::uint32_t;
 
 /** The identity matrix; what calls without a matrix of their own use. */
-inline constexpr ObjectIndex OBJECT_IDENTITY = 0;
+inline constexpr ObjectIndex object_identity = 0;
 
 /** The matrices of everything that is drawn, shared by all passes of a viewport: `object_block` in GLSL. */
 class ObjectBuffer {

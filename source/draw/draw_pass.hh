@@ -47,7 +47,7 @@ class InstanceCall {
 };
 
 /**
- * Calls that share a shader and bindings. Made by Pass::group; lives as long as its pass. The shader must live
+ * Calls that share a shader and bindings. Drawn in this order: calls, instances, procedural calls. Made by Pass::group; lives as long as its pass. The shader must live
  * until the last record; what is bound by value until the last submission.
  *
  * A name that the shader does not read is no error and binds nothing: the compiler may have dropped it.
@@ -85,13 +85,13 @@ class ShadingGroup {
   /** Draw the batch once, with a matrix. \pre the pass has an ObjectBuffer. */
   void call(const gpu::Batch &batch, const glm::mat4 &world_from_object);
   /** The same with the matrix of an object that is in the buffer already. */
-  void call(const gpu::Batch &batch, ObjectIndex object = OBJECT_IDENTITY);
+  void call(const gpu::Batch &batch, ObjectIndex object = object_identity);
   /** Left out for views that do not touch \a volume. */
   void call(const gpu::Batch &batch, ObjectIndex object, const CullingVolume &volume);
   /** \a count instances of one object; their values are 0 to count - 1. */
-  void call_instances(const gpu::Batch &batch, std::uint32_t count, ObjectIndex object = OBJECT_IDENTITY);
+  void call_instances(const gpu::Batch &batch, std::uint32_t count, ObjectIndex object = object_identity);
   /** Instances to be added until the pass is recorded, and changed between records. */
-  InstanceCall &instances(const gpu::Batch &batch, ObjectIndex object = OBJECT_IDENTITY);
+  InstanceCall &instances(const gpu::Batch &batch, ObjectIndex object = object_identity);
   /** \a count triangles whose vertices the shader makes up. */
   void call_procedural(std::uint32_t triangle_count = 1, std::uint32_t instance_count = 1);
 
@@ -118,7 +118,7 @@ class ShadingGroup {
   /** What is drawn: no more than a draw costs. */
   struct Call {
     gpu::BatchRange batch;
-    ObjectIndex object = OBJECT_IDENTITY;
+    ObjectIndex object = object_identity;
     std::uint32_t instance_count = 1;
     CullingVolume volume;
   };

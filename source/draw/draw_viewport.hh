@@ -51,7 +51,7 @@ class Viewport {
   /** Made by the first ask of \a engine; lives as long as the viewport. \pre always asked with the same Data. */
   template<typename Data> Data &engine_data(const Engine &engine)
   {
-    std::unique_ptr<EngineViewportData> &data = engine_data_[&engine];
+    std::unique_ptr<EngineViewportData> &data = engine_data_[engine.id()];
     if (!data) {
       data = std::make_unique<Data>();
     }
@@ -63,7 +63,7 @@ class Viewport {
   glm::ivec2 size_px_;
   ObjectBuffer objects_;
   gpu::Texture depth_texture_;
-  std::map<const Engine *, std::unique_ptr<EngineViewportData>> engine_data_;
+  std::map<std::uint64_t, std::unique_ptr<EngineViewportData>> engine_data_;
 };
 
 }  // namespace gnomon::draw

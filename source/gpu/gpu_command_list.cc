@@ -120,7 +120,9 @@ std::string CommandList::serialize(const Device &device) const
       case CommandKind::BindStorage:
         text += fmt::format("  {} {} -> {}", command.kind == CommandKind::BindUniform ? "uniform" : "storage",
                             name(ResourceKind::Buffer, command.id), command.slot);
-        text += command.count > 0 ? fmt::format(" [{}, {})\n", command.first, command.first + command.count) : "\n";
+        text += command.count > 0 ? fmt::format(" [{}, {})\n", command.first, command.first + command.count) :
+                command.first > 0 ? fmt::format(" [{}, end)\n", command.first) :
+                                    "\n";
         break;
       case CommandKind::BindTexture:
         text += fmt::format("  texture {} {} -> {}\n", name(ResourceKind::Texture, command.id),

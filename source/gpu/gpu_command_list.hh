@@ -69,7 +69,7 @@ class CommandList {
   void bind_uniform(int slot, const BufferRange &range);
   void bind_storage(int slot, const BufferRange &range);
   void bind_texture(int slot, ResourceId texture, ResourceId sampler);
-  /** For the block PUSH_CONSTANT_BLOCK of the shader set before, at its slot. Copies \a bytes. */
+  /** For the block push_constant_block_name of the shader set before, at its slot. Copies \a bytes. */
   void push_constants(int slot, std::span<const std::byte> bytes);
   /** `draws()[first, first + count)`, with the shader, state and bindings set before. */
   void draw(std::uint32_t first, std::uint32_t count);

@@ -24,7 +24,7 @@ void Device::free_live_resources()
   for (const std::string &resource : live_resources()) {
     message(fmt::format("{} is destroyed with its device; its owner should go first", resource));
   }
-  for (std::size_t kind = 0; kind < KIND_COUNT; kind++) {
+  for (std::size_t kind = 0; kind < kind_count; kind++) {
     for (ResourceId id = 1; id < slots_[kind].size(); id++) {
       if (slots_[kind][id].is_live) {
         release(ResourceKind(kind), id);
@@ -122,7 +122,7 @@ Framebuffer Device::create_framebuffer(const FramebufferDesc &desc)
       throw Error("framebuffer '{}': texture '{}' of format {} cannot be its {} attachment", desc.name, texture.name,
                   to_string(texture.format), is_depth_attachment ? "depth" : "colour");
     }
-    if (attachment.layer < ALL_LAYERS || attachment.layer >= texture.layer_count()) {
+    if (attachment.layer < all_layers || attachment.layer >= texture.layer_count()) {
       throw Error("framebuffer '{}': texture '{}' has no layer {}", desc.name, texture.name, attachment.layer);
     }
     if (attachment.mip_level < 0 || attachment.mip_level >= texture.mip_levels) {
@@ -151,10 +151,10 @@ Buffer Device::create_buffer(const BufferDesc &desc)
 
 Batch Device::create_batch(const BatchDesc &desc)
 {
-  constexpr std::size_t COUNT_MAX = std::size_t(1) << 28U;
-  if (desc.positions.size() > COUNT_MAX || desc.indices.size() > COUNT_MAX) {
+  constexpr std::size_t count_max = std::size_t(1) << 28U;
+  if (desc.positions.size() > count_max || desc.indices.size() > count_max) {
     throw Error("batch '{}': {} vertices and {} indices, and a batch takes {} of each", desc.name,
-                desc.positions.size(), desc.indices.size(), COUNT_MAX);
+                desc.positions.size(), desc.indices.size(), count_max);
   }
   GNOMON_ASSERT(desc.normals.empty() || desc.normals.size() == desc.positions.size(), "batch '{}': {} normals, {} positions",
                 desc.name, desc.normals.size(), desc.positions.size());
@@ -284,7 +284,7 @@ const std::string &Device::name_of(ResourceKind kind, ResourceId id) const
 std::vector<std::string> Device::live_resources() const
 {
   std::vector<std::string> names;
-  for (std::size_t kind = 0; kind < KIND_COUNT; kind++) {
+  for (std::size_t kind = 0; kind < kind_count; kind++) {
     for (const Slot &slot : slots_[kind]) {
       if (slot.is_live) {
         names.push_back(fmt::format("{} '{}'", to_string(ResourceKind(kind)), slot.name));

@@ -157,7 +157,7 @@ class Device {
     /** Batches only. */
     BatchRange range;
   };
-  static constexpr std::size_t KIND_COUNT = std::size_t(ResourceKind::TimerQuery) + 1;
+  static constexpr std::size_t kind_count = std::size_t(ResourceKind::TimerQuery) + 1;
 
   /** Takes an id for \a name, calls \a create with it, and gives the id back where that throws. */
   template<typename Create> Resource make(ResourceKind kind, const std::string &name, Create &&create);
@@ -169,8 +169,8 @@ class Device {
   ShaderDiskCache shader_cache_;
   std::shared_ptr<DeviceLink> link_;
   /** Index 0 is never live. */
-  std::array<std::vector<Slot>, KIND_COUNT> slots_;
-  std::array<std::vector<ResourceId>, KIND_COUNT> free_ids_;
+  std::array<std::vector<Slot>, kind_count> slots_;
+  std::array<std::vector<ResourceId>, kind_count> free_ids_;
   RangeAllocator vertices_;
   RangeAllocator indices_;
 };

@@ -11,12 +11,12 @@
 namespace gnomon::gpu {
 
 /** Every layer of the texture; the shader says which by `gl_Layer`. */
-inline constexpr int ALL_LAYERS = -1;
+inline constexpr int all_layers = -1;
 
 struct Attachment {
   /** nullptr: none. Must outlive the framebuffer. */
   const Texture *texture = nullptr;
-  /** One slice, or ALL_LAYERS. */
+  /** One slice, or all_layers. */
   int layer = 0;
   int mip_level = 0;
 };

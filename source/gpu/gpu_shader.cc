@@ -12,9 +12,12 @@ namespace gnomon::gpu {
 std::string_view to_string(ShaderStage stage)
 {
   switch (stage) {
-    case ShaderStage::Vertex: return "vertex";
-    case ShaderStage::Geometry: return "geometry";
-    case ShaderStage::Fragment: return "fragment";
+    case ShaderStage::Vertex:
+      return "vertex";
+    case ShaderStage::Geometry:
+      return "geometry";
+    case ShaderStage::Fragment:
+      return "fragment";
   }
   return "?";
 }
@@ -22,9 +25,12 @@ std::string_view to_string(ShaderStage stage)
 std::string_view to_string(BindingKind kind)
 {
   switch (kind) {
-    case BindingKind::UniformBlock: return "uniform";
-    case BindingKind::StorageBlock: return "storage";
-    case BindingKind::Texture: return "texture";
+    case BindingKind::UniformBlock:
+      return "uniform";
+    case BindingKind::StorageBlock:
+      return "storage";
+    case BindingKind::Texture:
+      return "texture";
   }
   return "?";
 }
@@ -44,12 +50,12 @@ const ShaderInterface::Member *ShaderInterface::find_push_constant(std::string_v
 std::string ShaderSource::name_files(std::string_view log) const
 {
   // glslang writes "ERROR: 2:15: …", Mesa "2:15(3): error: …".
-  static const std::regex POSITION(R"((^|ERROR: |WARNING: )(\d+):(\d+))");
+  static const std::regex position(R"((^|ERROR: |WARNING: )(\d+):(\d+))");
   std::istringstream lines{std::string(log)};
   std::string named;
   for (std::string line; std::getline(lines, line);) {
     std::smatch match;
-    if (std::regex_search(line, match, POSITION)) {
+    if (std::regex_search(line, match, position)) {
       const std::size_t file = std::stoul(match[2]);
       if (file < files.size()) {
         line = match.prefix().str() + match[1].str() + files[file] + ":" + match[3].str() + match.suffix().str();
@@ -106,8 +112,11 @@ class Preprocessor {
     }
     open_files_.push_back(path);
     for (std::size_t i = 0; i < lines.size(); i++) {
-      follow_branch(lines[i], i == guard);
+      const bool is_position_lost = follow_branch(lines[i], i == guard);
       append_line(lines[i], path, int(i) + 1, file);
+      if (is_position_lost) {
+        append_position(int(i) + 2, file);
+      }
     }
     open_files_.pop_back();
     // What a file leaves open is the compiler's to report.
@@ -116,25 +125,23 @@ class Preprocessor {
 
   void append_line(const std::string &line, const std::string &path, int number, std::size_t file)
   {
-    static const std::regex INCLUDE(R"rx(^\s*#\s*include\s+"([^"]+)"\s*(//.*)?$)rx");
-    static const std::regex VERSION(R"(^\s*#\s*version\b.*)");
-    static const std::regex ONCE(R"(^\s*#\s*pragma\s+once\b.*)");
+    static const std::regex include_line(R"rx(^\s*#\s*include\s+"([^"]+)"\s*(//.*)?$)rx");
+    static const std::regex version_line(R"(^\s*#\s*version\b.*)");
+    static const std::regex once_line(R"(^\s*#\s*pragma\s+once\b.*)");
     std::smatch match;
-    if (std::regex_match(line, match, INCLUDE)) {
+    if (std::regex_match(line, match, include_line)) {
       const std::string named = match[1];
       append_include(include_path_ ? include_path_(named, path) : named, path, number);
       append_position(number + 1, file);
-    }
-    else if (std::regex_match(line, VERSION)) {
+    } else if (std::regex_match(line, version_line)) {
       has_version_ = true;
       source_.text += line + "\n";
       for (const std::string &define : desc_.defines) {
         source_.text += "#define " + define + "\n";
       }
       append_position(number + 1, file);
-    }
-    else {
-      source_.text += (std::regex_match(line, ONCE) ? "" : line) + "\n";
+    } else {
+      source_.text += (std::regex_match(line, once_line) ? "" : line) + "\n";
     }
   }
 
@@ -144,7 +151,10 @@ class Preprocessor {
       return;
     }
     // Only the compiler knows whether an earlier `#include`, in some other branch, was an active one.
-    const std::size_t index = std::size_t(std::ranges::find(source_.files, path) - source_.files.begin());
+    const auto index = std::ranges::find(source_.files, path) - source_.files.begin();
+    for (Branch &branch : branches_) {
+      branch.has_include = true;
+    }
     source_.text += fmt::format("#ifndef GNOMON_INCLUDED_{0}\n#define GNOMON_INCLUDED_{0}\n", index);
     append_file(path, includer, number);
     source_.text += "#endif\n";
@@ -164,9 +174,13 @@ class Preprocessor {
 
   std::vector<int> open_branches() const
   {
-    std::vector<int> branches = branches_;
-    std::erase(branches, ALWAYS);
-    return branches;
+    std::vector<int> numbers;
+    for (const Branch &branch : branches_) {
+      if (!branch.is_always) {
+        numbers.push_back(branch.number);
+      }
+    }
+    return numbers;
   }
 
   static std::string directive(const std::string &line)
@@ -192,26 +206,31 @@ class Preprocessor {
     std::smatch define;
     if (second < lines.size() && std::regex_match(lines[first], ifndef, GUARD) &&
         std::regex_match(lines[second], define, GUARD) && ifndef[1] == "ifndef" && define[1] == "define" &&
-        ifndef[2] == define[2])
-    {
+        ifndef[2] == define[2]) {
       return first;
     }
     return lines.size();
   }
 
-  /** Keeps the stack of open branches, each with a number of its own. */
-  void follow_branch(const std::string &line, bool is_include_guard)
+  /**
+   * Keep the stack of open branches. True: \a line ends one that holds an include, so that the lines after it are
+   * miscounted where the branch is not taken, `#line` and all.
+   */
+  bool follow_branch(const std::string &line, bool is_include_guard)
   {
     const std::string name = directive(line);
     if (name == "if" || name == "ifdef" || name == "ifndef") {
-      branches_.push_back(is_include_guard ? ALWAYS : ++branch_count_);
+      branches_.push_back({++branch_count_, is_include_guard});
+    } else if ((name == "elif" || name == "else" || name == "endif") && !branches_.empty()) {
+      const bool had_include = branches_.back().has_include;
+      if (name == "endif") {
+        branches_.pop_back();
+      } else {
+        branches_.back().number = ++branch_count_;
+      }
+      return had_include;
     }
-    else if ((name == "elif" || name == "else") && !branches_.empty()) {
-      branches_.back() = ++branch_count_;
-    }
-    else if (name == "endif" && !branches_.empty()) {
-      branches_.pop_back();
-    }
+    return false;
   }
 
   void append_position(int next_line, std::size_t file)
@@ -219,8 +238,15 @@ class Preprocessor {
     source_.text += fmt::format("#line {} {}\n", next_line, file);
   }
 
-  /** In branches_: a file's include guard. */
-  static constexpr int ALWAYS = 0;
+  /** From an #if, #elif or #else to the next of them or the #endif. */
+  struct Branch {
+    /** No other has it. */
+    int number = 0;
+    /** A file's include guard. */
+    bool is_always = false;
+    /** In it, or in an earlier branch of the same #if. */
+    bool has_include = false;
+  };
 
   const ShaderDesc &desc_;
   const ShaderFiles &files_;
@@ -229,15 +255,14 @@ class Preprocessor {
   /** Being expanded, outermost first. */
   std::vector<std::string> open_files_;
   std::vector<std::pair<std::string, std::vector<int>>> included_;
-  std::vector<int> branches_;
+  std::vector<Branch> branches_;
   int branch_count_ = 0;
   bool has_version_ = false;
 };
 
 }  // namespace
 
-std::vector<ShaderSource> preprocess(const ShaderDesc &desc, const ShaderFiles &files,
-                                     const IncludePath &include_path)
+std::vector<ShaderSource> preprocess(const ShaderDesc &desc, const ShaderFiles &files, const IncludePath &include_path)
 {
   std::vector<ShaderSource> stages;
   const auto add = [&](ShaderStage stage, const std::string &path) {

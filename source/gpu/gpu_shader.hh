@@ -33,7 +33,7 @@ enum class BindingKind : std::uint8_t { UniformBlock, StorageBlock, Texture };
 [[nodiscard]] std::string_view to_string(BindingKind kind);
 
 /** The block of small per-group values; see ShaderInterface::push_constant_members. */
-inline constexpr std::string_view PUSH_CONSTANT_BLOCK = "push_constant_block";
+inline constexpr std::string_view push_constant_block_name = "push_constant_block";
 
 /** What a shader reads, by name: reflected by glslang, so that it is the same whatever the driver. */
 struct ShaderInterface {
@@ -57,7 +57,7 @@ struct ShaderInterface {
   };
   /** Sorted by kind, then slot. The push-constant block is not among them. */
   std::vector<Binding> bindings;
-  /** Members of the block PUSH_CONSTANT_BLOCK. */
+  /** Members of the block push_constant_block_name. */
   std::vector<Member> push_constant_members;
   /** 0: the shader has none. */
   std::uint32_t push_constant_size_bytes = 0;
@@ -122,8 +122,8 @@ struct SourceError : Error {
 };
 
 /**
- * Put includes and defines in place. Without \a include_path, `#include "PATH"` takes a path below `shaders/`. A file is
- * seen once a stage, so that headers need no guard and a cycle ends.
+ * Put includes and defines in place. Without \a include_path, `#include "PATH"` takes a path below `shaders/`. A file
+ * is seen once a stage, so that headers need no guard and a cycle ends.
  *
  * \throws SourceError for an include that does not exist and for a stage without `#version`; Error for a stage's file
  * that does not exist.

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <unistd.h>
 
 namespace gnomon::gpu {
@@ -99,7 +99,10 @@ std::optional<CachedShader> ShaderDiskCache::load(const std::string &key) const
     return std::nullopt;
   }
   std::ifstream file(folder_ / key, std::ios::binary);
-  const std::vector<char> content{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  // Through a stream's operator: reading what is no file would throw from an iterator.
+  std::ostringstream whole;
+  whole << file.rdbuf();
+  const std::string content = whole.str();
   const std::size_t head_size = magic.size() + sizeof(std::uint64_t);
   if (!file || content.size() < head_size || std::string_view(content.data(), magic.size()) != magic) {
     return std::nullopt;

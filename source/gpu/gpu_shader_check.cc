@@ -28,9 +28,9 @@ std::string_view to_string(Severity severity)
 namespace {
 
 /** What no device promises for a uniform block, though many take it. */
-constexpr std::uint32_t UNIFORM_BLOCK_BYTES_LIMIT = 65536;
+constexpr std::uint32_t uniform_block_bytes_limit = 65536;
 
-constexpr std::array<CheckRule, 16> RULES = {{
+constexpr std::array<CheckRule, 16> rules = {{
     {"include", "a file that is included, or named as a stage, exists"},
     {"compile", "glslang accepts the stage"},
     {"link", "glslang accepts the stages together"},
@@ -130,14 +130,13 @@ BlockComparison compare(const Compilation &compilation, const ShaderInterface::B
     if (std::ranges::find(block.members, cpp.name, &BlockMember::name) != block.members.end()) {
       continue;
     }
-    const auto sibling = std::ranges::find_if(block.members, [&](const BlockMember &member) {
-      return parent_of(member.name) == parent_of(cpp.name);
-    });
+    const auto sibling = std::ranges::find_if(
+        block.members, [&](const BlockMember &member) { return parent_of(member.name) == parent_of(cpp.name); });
     BlockComparison::Field field;
     field.structure = sibling == block.members.end() ? "" : sibling->structure;
-    const SourcePosition position =
-        field.structure.empty() ? block.position
-                                : compilation.lines[found.stage].find_declaration(field.structure, "struct");
+    const SourcePosition position = field.structure.empty()
+                                        ? block.position
+                                        : compilation.lines[found.stage].find_declaration(field.structure, "struct");
     field.name = cpp.name;
     field.cpp_offset_bytes = cpp.offset_bytes;
     field.file = compilation.file(found.stage, position);
@@ -173,7 +172,8 @@ class Checker {
  private:
   void add(Severity severity, std::string_view rule, std::string file, int line, std::string text)
   {
-    messages_.push_back({severity, std::move(file), line, std::move(text), rule, desc_.name, variant_, options_.target});
+    messages_.push_back(
+        {severity, std::move(file), line, std::move(text), rule, desc_.name, variant_, options_.target});
   }
   void add(Severity severity, std::string_view rule, std::size_t stage, SourcePosition position, std::string text)
   {
@@ -188,12 +188,10 @@ class Checker {
   {
     try {
       c_.sources = preprocess(desc_, files_, options_.include_path);
-    }
-    catch (const SourceError &error) {
+    } catch (const SourceError &error) {
       add(Severity::Error, "include", error.file, error.line, error.text);
       return false;
-    }
-    catch (const Error &error) {
+    } catch (const Error &error) {
       const std::string &file = !desc_.vertex_path.empty()     ? desc_.vertex_path
                                 : !desc_.geometry_path.empty() ? desc_.geometry_path
                                                                : desc_.fragment_path;
@@ -225,13 +223,34 @@ class Checker {
   /** `ERROR: FILE:LINE: TEXT`, FILE a number. */
   void add_compile_log(std::size_t stage, std::string_view log)
   {
-    static const std::regex MESSAGE(R"(^(ERROR|WARNING): (\d+):(\d+): (.*?)\s*$)");
+    static const std::regex message_pattern(R"(^(ERROR|WARNING): (\d+):(\d+): (.*?)\s*$)");
+    // What follows from having stopped at the message before.
+    static const std::regex aftermath_pattern(R"(^'' : (compilation terminated|missing #endif))");
+    // Vulkan has precisions, OpenGL none; nobody here wrote any.
+    static const std::regex precision_pattern(R"(\bhighp )");
+    struct Entry {
+      Severity severity;
+      SourcePosition position;
+      std::string text;
+      bool is_aftermath;
+    };
+    std::vector<Entry> entries;
     std::istringstream lines{std::string(log)};
     for (std::string line; std::getline(lines, line);) {
       std::smatch match;
-      if (std::regex_match(line, match, MESSAGE)) {
-        add(match[1] == "ERROR" ? Severity::Error : Severity::Warning, "compile", stage,
-            {std::stoul(match[2]), std::stoi(match[3])}, match[4]);
+      if (std::regex_match(line, match, message_pattern)) {
+        const std::string text = match[4];
+        entries.push_back({match[1] == "ERROR" ? Severity::Error : Severity::Warning,
+                           {std::stoul(match[2]), std::stoi(match[3])},
+                           std::regex_replace(text, precision_pattern, ""),
+                           std::regex_search(text, aftermath_pattern)});
+      }
+    }
+    const bool has_cause = std::ranges::any_of(
+        entries, [](const Entry &entry) { return entry.severity == Severity::Error && !entry.is_aftermath; });
+    for (Entry &entry : entries) {
+      if (!has_cause || !entry.is_aftermath) {
+        add(entry.severity, "compile", stage, entry.position, std::move(entry.text));
       }
     }
   }
@@ -259,17 +278,16 @@ class Checker {
   /** `ERROR: Linking STAGE stage: TEXT`, then indented lines that begin with the name at fault. */
   void add_link_log(const std::string &log)
   {
-    static const std::regex MESSAGE(R"(^ERROR: (.*?)\s*$)");
-    static const std::regex NAME(R"(^\s+(\w+)\b.*)");
+    static const std::regex message_pattern(R"(^ERROR: (.*?)\s*$)");
+    static const std::regex name_pattern(R"(^\s+(\w+)\b.*)");
     std::istringstream lines(log);
     std::vector<std::pair<std::string, std::string>> errors;
     for (std::string line; std::getline(lines, line);) {
       std::smatch match;
-      if (std::regex_match(line, match, MESSAGE)) {
+      if (std::regex_match(line, match, message_pattern)) {
         errors.emplace_back(match[1], "");
-      }
-      else if (!errors.empty() && !line.empty()) {
-        if (errors.back().second.empty() && std::regex_match(line, match, NAME)) {
+      } else if (!errors.empty() && !line.empty()) {
+        if (errors.back().second.empty() && std::regex_match(line, match, name_pattern)) {
           errors.back().second = match[1];
         }
         errors.back().first += " " + line.substr(std::min(line.find_first_not_of(' '), line.size()));
@@ -299,7 +317,7 @@ class Checker {
     };
     std::vector<Slot> known;
     const auto take = [&](std::size_t stage, BindingKind kind, const Declaration &declaration) {
-      const bool is_push_constant = declaration.name == PUSH_CONSTANT_BLOCK && declaration.slot < 0;
+      const bool is_push_constant = declaration.name == push_constant_block_name && declaration.slot < 0;
       if (declaration.slot < 0 && !is_push_constant) {
         add(Severity::Error, "slot", stage, declaration.position,
             fmt::format("{} '{}' has no layout(binding = …)", to_string(kind), declaration.name));
@@ -359,7 +377,8 @@ class Checker {
         if (output == outputs.end()) {
           if (input.is_used) {
             add(Severity::Error, "missing-varying", i, input.position,
-                fmt::format("input '{}', location {}, is no output of the {} stage", input.name, input.location, before));
+                fmt::format("input '{}', location {}, is no output of the {} stage", input.name, input.location,
+                            before));
           }
           continue;
         }
@@ -367,14 +386,13 @@ class Checker {
         const std::string read = interface_type(input, is_arrayed);
         if (output->location == input.location && written != read && !input.type->isStruct()) {
           add(Severity::Error, "varying-type", i, input.position,
-              fmt::format("input '{}', location {}, is {}, and the {} stage writes {}", input.name, input.location, read,
-                          before, written));
+              fmt::format("input '{}', location {}, is {}, and the {} stage writes {}", input.name, input.location,
+                          read, before, written));
         }
       }
       for (const Declaration &output : outputs) {
         if (std::ranges::none_of(c_.facts[i].inputs,
-                                 [&](const Declaration &input) { return input.is_used && match(output, input); }))
-        {
+                                 [&](const Declaration &input) { return input.is_used && match(output, input); })) {
           add(Severity::Warning, "unread-output", i - 1, output.position,
               fmt::format("output '{}' is not read by the {} stage", output.name, to_string(c_.sources[i].stage)));
         }
@@ -423,8 +441,7 @@ class Checker {
         for (const BlockDifference &difference : differences(compare(c_, binding, *found, *layout))) {
           add(Severity::Error, "layout", difference.file, difference.line, difference.text);
         }
-      }
-      else if (!options_.blocks.empty()) {
+      } else if (!options_.blocks.empty()) {
         add(Severity::Error, "layout", found->stage, found->declaration->position,
             fmt::format("block '{}' is not in the table of C++ blocks", binding.name));
       }
@@ -436,10 +453,10 @@ class Checker {
     if (binding.size_bytes <= std::uint32_t(UNIFORM_BLOCK_BYTES_MAX)) {
       return;
     }
-    const bool is_error = options_.is_block_size_strict || binding.size_bytes > UNIFORM_BLOCK_BYTES_LIMIT;
+    const bool is_error = options_.is_block_size_strict || binding.size_bytes > uniform_block_bytes_limit;
     add(is_error ? Severity::Error : Severity::Warning, "block-size", found.stage, found.declaration->position,
         fmt::format("block '{}' takes {} bytes; every device takes {}, many {}, few more", binding.name,
-                    binding.size_bytes, UNIFORM_BLOCK_BYTES_MAX, UNIFORM_BLOCK_BYTES_LIMIT));
+                    binding.size_bytes, UNIFORM_BLOCK_BYTES_MAX, uniform_block_bytes_limit));
   }
 
   void check_spirv()
@@ -500,7 +517,7 @@ std::vector<StageVariable> variables(const std::vector<Declaration> &declaration
 
 std::span<const CheckRule> check_rules()
 {
-  return RULES;
+  return rules;
 }
 
 std::vector<CheckMessage> check_shader(const ShaderDesc &desc, const ShaderFiles &files, const CheckOptions &options)
@@ -529,16 +546,13 @@ std::vector<BlockDifference> differences(const BlockComparison &comparison)
   std::vector<BlockDifference> missing;
   std::vector<BlockDifference> moved;
   for (const BlockComparison::Field &field : comparison.fields) {
-    const std::string where =
-        field.structure.empty() ? std::string() : fmt::format(" of struct '{}'", field.structure);
+    const std::string where = field.structure.empty() ? std::string() : fmt::format(" of struct '{}'", field.structure);
     const std::string what = fmt::format("field '{}'{} in block '{}'", field.name, where, comparison.block);
     if (!field.cpp_offset_bytes) {
       missing.push_back({field.file, field.line, what + " is not in C++"});
-    }
-    else if (!field.glsl_offset_bytes) {
+    } else if (!field.glsl_offset_bytes) {
       missing.push_back({field.file, field.line, what + " is in C++ only"});
-    }
-    else if (*field.cpp_offset_bytes != *field.glsl_offset_bytes) {
+    } else if (*field.cpp_offset_bytes != *field.glsl_offset_bytes) {
       moved.push_back({field.file, field.line,
                        fmt::format("{} is at byte {}, in C++ at byte {}", what, *field.glsl_offset_bytes,
                                    *field.cpp_offset_bytes)});

@@ -70,8 +70,8 @@ struct CheckOptions {
 };
 
 /**
- * Compile each stage of \a desc to SPIR-V, validate, link, and look for what compilers let pass. A single stage, too, may be
- * checked: leave the others' paths empty.
+ * Compile each stage of \a desc to SPIR-V, validate, link, and look for what compilers let pass. A single stage, too,
+ * may be checked: leave the others' paths empty.
  *
  * Never throws for a mistake in the shader. May run on several threads at once if \a files may.
  * \return empty: nothing to complain about. Sorted by file and line.

@@ -23,7 +23,7 @@ bool is_later_element(std::string_view name)
 }
 
 /** Members of the block that \a variables name by \a block_index, in order. */
-template<typename Get>
+template <typename Get>
 std::vector<ShaderInterface::Member> members_of(const glslang::TObjectReflection &block, int block_index, int count,
                                                 Get &&variable)
 {
@@ -55,29 +55,29 @@ std::uint32_t std140_size(const glslang::TObjectReflection &block)
 
 ShaderInterface interface_of(glslang::TProgram &program)
 {
-  program.buildReflection(EShReflectionSeparateBuffers | EShReflectionAllBlockVariables | EShReflectionStrictArraySuffix);
+  program.buildReflection(EShReflectionSeparateBuffers | EShReflectionAllBlockVariables |
+                          EShReflectionStrictArraySuffix);
   ShaderInterface interface;
   const int variable_count = program.getNumUniformVariables();
   const auto variable = [&](int i) -> const glslang::TObjectReflection & { return program.getUniform(i); };
   for (int i = 0; i < program.getNumUniformBlocks(); i++) {
     const glslang::TObjectReflection &block = program.getUniformBlock(i);
     std::vector<ShaderInterface::Member> members = members_of(block, i, variable_count, variable);
-    if (block.name == PUSH_CONSTANT_BLOCK) {
+    if (block.name == push_constant_block_name) {
       interface.push_constant_slot = block.getBinding();
       interface.push_constant_size_bytes = std140_size(block);
       interface.push_constant_members = std::move(members);
       continue;
     }
-    interface.bindings.push_back({block.name, BindingKind::UniformBlock, block.getBinding(), std140_size(block),
-                                  std::move(members)});
+    interface.bindings.push_back(
+        {block.name, BindingKind::UniformBlock, block.getBinding(), std140_size(block), std::move(members)});
   }
   for (int i = 0; i < program.getNumBufferBlocks(); i++) {
     const glslang::TObjectReflection &block = program.getBufferBlock(i);
     interface.bindings.push_back(
         {block.name, BindingKind::StorageBlock, block.getBinding(), std::uint32_t(block.size),
-         members_of(block, i, program.getNumBufferVariables(), [&](int j) -> const glslang::TObjectReflection & {
-           return program.getBufferVariable(j);
-         })});
+         members_of(block, i, program.getNumBufferVariables(),
+                    [&](int j) -> const glslang::TObjectReflection & { return program.getBufferVariable(j); })});
   }
   for (int i = 0; i < variable_count; i++) {
     const glslang::TObjectReflection &uniform = variable(i);
@@ -106,9 +106,8 @@ void check_slots(std::string_view name, const ShaderInterface &interface)
                   interface.bindings[i - 1].name, b.name, b.slot);
     }
     if (interface.push_constant_size_bytes > 0 && b.kind == BindingKind::UniformBlock &&
-        b.slot == interface.push_constant_slot)
-    {
-      throw Error("shader '{}': {} '{}' and '{}' share slot {}", name, to_string(b.kind), PUSH_CONSTANT_BLOCK, b.name,
+        b.slot == interface.push_constant_slot) {
+      throw Error("shader '{}': {} '{}' and '{}' share slot {}", name, to_string(b.kind), push_constant_block_name, b.name,
                   b.slot);
     }
   }

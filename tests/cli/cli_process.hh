@@ -30,7 +30,7 @@ class ProgramTest : public testing::Test {
     std::string pattern = (std::filesystem::temp_directory_path() / "gnomon.XXXXXX").string();
     folder = mkdtemp(pattern.data());
     // Not the user's: compiled shaders stay with the build.
-    setenv("XDG_CACHE_HOME", (std::filesystem::current_path() / "cache").c_str(), 1);
+    setenv("XDG_CACHE_HOME", (std::filesystem::path(GNOMON_PROGRAM).parent_path() / "cache").c_str(), 1);
   }
   ~ProgramTest() override
   {

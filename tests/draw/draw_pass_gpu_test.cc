@@ -239,7 +239,7 @@ TEST_F(PassGpu, OnePassDrawsTheSixFacesOfOneLampAfterAnother)
                                                      .width = 2,
                                                      .height = 2,
                                                      .layers = 6 * LAMPS});
-  const gpu::Framebuffer layers = device->create_framebuffer({"cubes", {{&cubes, gpu::ALL_LAYERS}}, {}});
+  const gpu::Framebuffer layers = device->create_framebuffer({"cubes", {{&cubes, gpu::all_layers}}, {}});
   const gpu::Shader shader = make_shader(*device, "cube", R"(
 #extension GL_ARB_shader_viewport_layer_array : require
 layout(location = ATTRIBUTE_POSITION) in vec3 position;

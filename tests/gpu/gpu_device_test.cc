@@ -115,7 +115,7 @@ TEST(Device, RefusesFramebuffersThatDoNotFitByName)
   EXPECT_EQ(fits.size_px(), glm::ivec2(4, 2));
   EXPECT_EQ(device->create_framebuffer({"depth", {}, {&depth}}).size_px(), glm::ivec2(8, 4));
   EXPECT_TRUE(device->create_framebuffer({"cube", {{&cube, 5}}, {}}));
-  EXPECT_TRUE(device->create_framebuffer({"all", {{&array, ALL_LAYERS}}, {}}));
+  EXPECT_TRUE(device->create_framebuffer({"all", {{&array, all_layers}}, {}}));
 }
 
 TEST(Device, RefusalKeepsTheIdForTheNext)

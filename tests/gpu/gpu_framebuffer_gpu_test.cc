@@ -154,7 +154,7 @@ TEST_F(RenderPassGpu, LayerIsOneSliceAndAllLayersAreAll)
       const auto value = [](int layer) { return 1.0F / float(layer + 2); };
       const int layer_count = texture.desc().layer_count();
       // Backwards, so that a clear of all layers by mistake shows.
-      run_pass(framebuffer_of(ALL_LAYERS), {.clear_color = glm::vec4(0.75F), .clear_depth = 0.75F});
+      run_pass(framebuffer_of(all_layers), {.clear_color = glm::vec4(0.75F), .clear_depth = 0.75F});
       for (int layer = 0; layer < layer_count; layer++) {
         expect_all(texture, layer, {0.75F, 0, 0, 0});
       }
@@ -178,7 +178,7 @@ TEST_F(RenderPassGpu, LayerOfADrawIsGlLayer)
                                                 .width = 4,
                                                 .height = 4,
                                                 .layers = 2});
-  const Framebuffer framebuffer = device->create_framebuffer({"all", {{&texture, ALL_LAYERS}}, {&depth, ALL_LAYERS}});
+  const Framebuffer framebuffer = device->create_framebuffer({"all", {{&texture, all_layers}}, {&depth, all_layers}});
   const std::string fragment = R"(
 layout(location = 0) flat in uint value;
 layout(location = 0) out float result;
@@ -270,7 +270,7 @@ TEST_F(RenderPassGpu, MixOfLayeredAndOtherAttachmentsIsAnErrorByName)
   const Texture flat = device->create_texture({.name = "flat", .width = 4, .height = 4});
   const std::vector<std::string> before = device->live_resources();
   const std::string message = test::error_of([&] {
-    static_cast<void>(device->create_framebuffer({"mixed", {{&layers, ALL_LAYERS}, {&flat}}, {}}));
+    static_cast<void>(device->create_framebuffer({"mixed", {{&layers, all_layers}, {&flat}}, {}}));
   });
   test::expect_contains(message, "framebuffer 'mixed'");
   EXPECT_EQ(device->live_resources(), before);

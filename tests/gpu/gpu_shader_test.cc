@@ -80,6 +80,36 @@ TEST(Preprocess, CycleOfIncludesEnds)
   EXPECT_LT(text.find("b text"), text.find("a text"));
 }
 
+TEST(Preprocess, AnIncludeInABranchThatIsNotTakenDoesNotTakeTheFileFromOthers)
+{
+  const ShaderTexts texts{
+      {{"lib", "float value = 1.0;\n"}, {"guarded", "#ifndef GUARDED\n#define GUARDED\n#include \"lib\"\n#endif\n"}}};
+  for (const std::string branch :
+       {"#ifdef NEVER\n#include \"lib\"\n#endif\n", "#ifdef NEVER\n#include \"guarded\"\n#endif\n",
+        "#if 1\n#else\n#include \"lib\"\n#endif\n", "#if 1\n#include \"lib\"\n#endif\n", ""}) {
+    EXPECT_EQ(error_of([&] {
+                reflected(VERSION + branch +
+                              "#include \"guarded\"\n#include \"lib\"\nvoid main() { gl_Position.x = value; }\n",
+                          EMPTY_MAIN, texts);
+              }),
+              "")
+        << branch;
+  }
+}
+
+TEST(Preprocess, HeadersThatIncludeAllBeforeThemStandOnceEach)
+{
+  ShaderTexts texts{{{"main", VERSION + "#include \"h15\"\n"}}};
+  for (int i = 0; i < 16; i++) {
+    std::string text = fmt::format("#ifndef H{0}\n#define H{0}\n", i);
+    for (int j = i - 1; j >= 0; j--) {
+      text += fmt::format("#include \"h{}\"\n", j);
+    }
+    texts.texts[fmt::format("h{}", i)] = text + "header text\n#endif\n";
+  }
+  EXPECT_EQ(count_of(preprocessed(texts), "header text"), 16U);
+}
+
 TEST(Preprocess, MissingIncludeNamesFileAndLine)
 {
   const ShaderTexts texts{{{"main", VERSION + "\n#include \"lib\"\n"}, {"lib", "one\ntwo\n#include \"lost\"\n"}}};
@@ -157,6 +187,15 @@ TEST(Reflect, ErrorNamesFileAndLineThroughNestedIncludes)
   expect_error_at(VERSION + wrong + "#include \"outer\"\nvoid main() {}\n", fine, "vert:2");
   expect_error_at(VERSION + "#include \"outer\"\n#include \"outer\"\n#include \"inner\"\n" + wrong + "void main() {}\n",
                   fine, "vert:5");
+}
+
+TEST(Reflect, ErrorNamesTheLineBehindAnIncludeThatIsNotTaken)
+{
+  const ShaderTexts texts{{{"lib", "float a;\nfloat b;\nfloat c;\n"}}};
+  const std::string wrong = "float f_wrong = undeclared_name;\nvoid main() {}\n";
+  expect_error_at(VERSION + "#ifdef NEVER\n#include \"lib\"\n#endif\n" + wrong, texts, "vert:5");
+  expect_error_at(VERSION + "#ifdef NEVER\n#include \"lib\"\n#else\n" + wrong + "#endif\n", texts, "vert:5");
+  expect_error_at(VERSION + "#if 0\n#if 1\n#include \"lib\"\n#endif\n#elif 1\n" + wrong + "#endif\n", texts, "vert:7");
 }
 
 TEST(Reflect, ErrorNamesTheLineBehindDefines)

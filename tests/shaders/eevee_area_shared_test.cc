@@ -26,7 +26,8 @@ TEST(RectangleSolidAngle, OfACubesFaceIsASixthOfAll)
 
 TEST(RectangleSolidAngle, IsTheSumOfItsParts)
 {
-  for (const vec3 &center : {vec3(0.1F, 0.2F, 0.3F), vec3(3, -2, 1), vec3(0, 0, 1e-3F), vec3(1, 0.5F, 1e-4F), vec3(9, 9, 9)}) {
+  for (const vec3 &center :
+       {vec3(0.1F, 0.2F, 0.3F), vec3(3, -2, 1), vec3(0, 0, 1e-3F), vec3(1, 0.5F, 1e-4F), vec3(9, 9, 9)}) {
     double sum = 0.0;
     for (const float i : {-0.5F, 0.5F}) {
       for (const float j : {-0.5F, 0.5F}) {
@@ -129,8 +130,8 @@ TEST(RectangleSolidAngle, NaivelyIsNoNumberEdgeOnAndNoiseFarAway)
   EXPECT_NEAR(naive_solid_angle(corners(Z)), 4.0 * PI / 6.0, 1e-5) << "a fair copy where nothing is degenerate";
   EXPECT_TRUE(std::isnan(naive_solid_angle(corners({1, 1, 0})))) << "a corner in the eye";
   EXPECT_TRUE(std::isnan(naive_solid_angle({vec3(-1, 0, 1), vec3(1, 0, 1), vec3(1, 0, 1), vec3(-1, 0, 1)})));
-  const double far_away = 4.0 / 1e6;
-  EXPECT_GT(std::abs(naive_solid_angle(corners({0, 0, 1e3F})) / far_away - 1.0), 0.05);
+  const double far_away = 4.0 / 1e8;
+  EXPECT_GT(std::abs(naive_solid_angle(corners({0, 0, 1e4F})) / far_away - 1.0), 0.5);
 }
 
 TEST(LinePlaneDistance, IsThatOfThePointOnThePlane)

@@ -10,7 +10,8 @@ namespace gnomon::shared {
 namespace {
 
 /** Integral of f(cos θ) · cos θ over the hemisphere, by the midpoint rule in sin² θ, refined where f peaks. */
-template<typename F> double hemisphere_integral(F &&f)
+template <typename F>
+double hemisphere_integral(F &&f)
 {
   constexpr int N = 400000;
   double sum = 0.0;

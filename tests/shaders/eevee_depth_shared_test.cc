@@ -21,12 +21,14 @@ TEST(DepthOfDistance, IsThatOfTheViewsMatrix)
         const glm::mat4 clip_from_view =
             kind == PROJECTION_ORTHOGRAPHIC
                 ? draw::orthographic(1, 1, near, far)
-                : draw::perspective(1, 1, near, kind == PROJECTION_PERSPECTIVE ? far : std::numeric_limits<float>::infinity());
+                : draw::perspective(1, 1, near,
+                                    kind == PROJECTION_PERSPECTIVE ? far : std::numeric_limits<float>::infinity());
         for (int i = 0; i <= 100; i++) {
           const float distance = near + (far - near) * float(i * i) / 1e4F;
           const glm::vec4 clip = clip_from_view * glm::vec4(0, 0, -distance, 1);
           // The matrix adds two numbers as large as far / (far - near), at most 3 here, before it divides.
-          EXPECT_NEAR(depth_of_distance(distance, near, far, kind), clip.z / clip.w, 4e-7F) << near << " " << far << " " << kind;
+          EXPECT_NEAR(depth_of_distance(distance, near, far, kind), clip.z / clip.w, 4e-7F)
+              << near << " " << far << " " << kind;
         }
       }
     }
@@ -40,7 +42,9 @@ TEST(DepthOfDistance, IsOneAtTheNearPlaneAndZeroAtTheFar)
       for (const int kind : KINDS) {
         EXPECT_EQ(depth_of_distance(near, near, far, kind), 1.0F);
         EXPECT_EQ(depth_of_distance(far, near, far, kind), kind == PROJECTION_PERSPECTIVE_INFINITE ? near / far : 0.0F);
-        EXPECT_FLOAT_EQ(distance_of_depth(1.0F, near, far, kind), near + (kind == PROJECTION_ORTHOGRAPHIC ? far - near - (far - near) : 0.0F));
+        // In parallel projection a difference of distances as large as the far plane's.
+        const float tolerance = 3e-7F * (kind == PROJECTION_ORTHOGRAPHIC ? far : near);
+        EXPECT_NEAR(distance_of_depth(1.0F, near, far, kind), near, tolerance);
       }
       EXPECT_FLOAT_EQ(distance_of_depth(0.0F, near, far, PROJECTION_PERSPECTIVE), far);
       EXPECT_EQ(distance_of_depth(0.0F, near, far, PROJECTION_ORTHOGRAPHIC), far);

@@ -40,7 +40,7 @@ std::vector<float> taps(float base, float spread, unsigned seed)
   std::mt19937 random(seed);
   std::vector<float> values;
   for (int i = 0; i < TAPS; i++) {
-    values.push_back(base + spread * float(random()) / float(std::mt19937::max()));
+    values.push_back(base + spread * (float(random()) / float(std::mt19937::max())));
   }
   return values;
 }
@@ -98,7 +98,8 @@ TEST(LogSum, OfEqualValuesIsTheirs)
   }
 }
 
-/** A tap more, as in the seed: the running value is subtracted, not the larger one, and the exponent is not in the sum. */
+/** A tap more, as in the seed: the running value is subtracted, not the larger one, and the exponent is not in the sum.
+ */
 float naive_sum(float weight_x, float x, float weight_y, float y)
 {
   return x + std::log(weight_x + weight_y * std::exp(y - x));
@@ -120,7 +121,9 @@ TEST(LogSum, NaivelyIsInfiniteFrom89MetresOfSpread)
 // hazards.md: exp(5 d) is infinite in floats beyond 17.74 m.
 TEST(EsmVisibility, NaivelyIsInfiniteFrom18MetresAndOursIsNot)
 {
-  const auto naive = [](float stored, float distance) { return std::min(1.0F, std::exp(-5.0F * distance) * std::exp(5.0F * stored)); };
+  const auto naive = [](float stored, float distance) {
+    return std::min(1.0F, std::exp(-5.0F * distance) * std::exp(5.0F * stored));
+  };
   EXPECT_TRUE(std::isfinite(std::exp(5.0F * 17.74F)));
   EXPECT_EQ(std::exp(5.0F * 17.75F), std::numeric_limits<float>::infinity());
   EXPECT_NEAR(naive(17.0F, 17.2F), std::exp(-1.0F), 1e-4F);

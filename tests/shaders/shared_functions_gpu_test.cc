@@ -27,8 +27,8 @@ class SharedFunctionGpu : public GpuDeviceTest, public testing::WithParamInterfa
     const auto count = sweep().arguments.size();
     const int height = int((count + WIDTH - 1) / WIDTH);
     const ShaderTexts texts{{{"frag", fragment_text(expression)}}};
-    const gpu::Shader shader =
-        device->create_shader({std::string(sweep().name), "draw/draw_fullscreen_vert.glsl", "", "frag", {}}, texts.files());
+    const gpu::Shader shader = device->create_shader(
+        {std::string(sweep().name), "draw/draw_fullscreen_vert.glsl", "", "frag", {}}, texts.files());
 
     std::vector<Arguments<float>> arguments = sweep().arguments;
     arguments.resize(std::size_t(WIDTH) * std::size_t(height));

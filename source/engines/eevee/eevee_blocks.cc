@@ -16,7 +16,7 @@ namespace {
 using namespace shared;
 using Field = gpu::BlockLayout::Field;
 
-constexpr auto VIEW_BLOCK_FIELDS = std::to_array<Field>({
+constexpr auto view_fields = std::to_array<Field>({
     {"view.clip_from_world", offsetof(ViewData, clip_from_world)},
     {"view.position_ws", offsetof(ViewData, position_ws)},
     {"view.is_perspective", offsetof(ViewData, is_perspective)},
@@ -24,7 +24,7 @@ constexpr auto VIEW_BLOCK_FIELDS = std::to_array<Field>({
     {"view._pad0", offsetof(ViewData, _pad0)},
 });
 
-constexpr auto OBJECT_BLOCK_FIELDS = std::to_array<Field>({
+constexpr auto object_fields = std::to_array<Field>({
     {"objects[0].world_from_object", offsetof(ObjectData, world_from_object)},
     {"objects[0].normal_x", offsetof(ObjectData, normal_x)},
     {"objects[0].normal_y", offsetof(ObjectData, normal_y)},
@@ -32,7 +32,7 @@ constexpr auto OBJECT_BLOCK_FIELDS = std::to_array<Field>({
     {"objects[0].value", offsetof(ObjectData, value)},
 });
 
-constexpr auto MATERIAL_BLOCK_FIELDS = std::to_array<Field>({
+constexpr auto material_fields = std::to_array<Field>({
     {"materials[0].diffuse", offsetof(MaterialData, diffuse)},
     {"materials[0].alpha", offsetof(MaterialData, alpha)},
     {"materials[0].specular_f0", offsetof(MaterialData, specular_f0)},
@@ -41,55 +41,55 @@ constexpr auto MATERIAL_BLOCK_FIELDS = std::to_array<Field>({
     {"materials[0]._pad0", offsetof(MaterialData, _pad0)},
 });
 
-constexpr std::size_t LIGHTS = offsetof(LightBlock, lights);
-constexpr auto LIGHT_BLOCK_FIELDS = std::to_array<Field>({
+constexpr std::size_t lights_offset = offsetof(LightBlock, lights);
+constexpr auto light_fields = std::to_array<Field>({
     {"light_data.light_count", offsetof(LightBlock, light_count)},
     {"light_data._pad0", offsetof(LightBlock, _pad0)},
     {"light_data._pad1", offsetof(LightBlock, _pad1)},
     {"light_data._pad2", offsetof(LightBlock, _pad2)},
-    {"light_data.lights[0].position_ws", LIGHTS + offsetof(LightData, position_ws)},
-    {"light_data.lights[0].kind", LIGHTS + offsetof(LightData, kind)},
-    {"light_data.lights[0].color", LIGHTS + offsetof(LightData, color)},
-    {"light_data.lights[0].radius_sq", LIGHTS + offsetof(LightData, radius_sq)},
-    {"light_data.lights[0].forward_ws", LIGHTS + offsetof(LightData, forward_ws)},
-    {"light_data.lights[0].range_inv_sq", LIGHTS + offsetof(LightData, range_inv_sq)},
-    {"light_data.lights[0].spot_cos_outer", LIGHTS + offsetof(LightData, spot_cos_outer)},
-    {"light_data.lights[0].spot_inv_width", LIGHTS + offsetof(LightData, spot_inv_width)},
-    {"light_data.lights[0].shadow_kind", LIGHTS + offsetof(LightData, shadow_kind)},
-    {"light_data.lights[0].shadow_index", LIGHTS + offsetof(LightData, shadow_index)},
+    {"light_data.lights[0].position_ws", lights_offset + offsetof(LightData, position_ws)},
+    {"light_data.lights[0].kind", lights_offset + offsetof(LightData, kind)},
+    {"light_data.lights[0].color", lights_offset + offsetof(LightData, color)},
+    {"light_data.lights[0].radius_sq", lights_offset + offsetof(LightData, radius_sq)},
+    {"light_data.lights[0].forward_ws", lights_offset + offsetof(LightData, forward_ws)},
+    {"light_data.lights[0].range_inv_sq", lights_offset + offsetof(LightData, range_inv_sq)},
+    {"light_data.lights[0].spot_cos_outer", lights_offset + offsetof(LightData, spot_cos_outer)},
+    {"light_data.lights[0].spot_inv_width", lights_offset + offsetof(LightData, spot_inv_width)},
+    {"light_data.lights[0].shadow_kind", lights_offset + offsetof(LightData, shadow_kind)},
+    {"light_data.lights[0].shadow_index", lights_offset + offsetof(LightData, shadow_index)},
 });
 
-constexpr std::size_t MAPS = offsetof(ShadowBlock, maps);
-constexpr auto SHADOW_BLOCK_FIELDS = std::to_array<Field>({
+constexpr std::size_t maps_offset = offsetof(ShadowBlock, maps);
+constexpr auto shadow_fields = std::to_array<Field>({
     {"shadow.cubes[0].near", offsetof(ShadowCubeData, near)},
     {"shadow.cubes[0].texel_size", offsetof(ShadowCubeData, texel_size)},
     {"shadow.cubes[0].layer", offsetof(ShadowCubeData, layer)},
     {"shadow.cubes[0]._pad0", offsetof(ShadowCubeData, _pad0)},
-    {"shadow.maps[0].texco_from_world", MAPS + offsetof(ShadowMapData, texco_from_world)},
-    {"shadow.maps[0].texel_size", MAPS + offsetof(ShadowMapData, texel_size)},
-    {"shadow.maps[0].layer", MAPS + offsetof(ShadowMapData, layer)},
-    {"shadow.maps[0].rounding", MAPS + offsetof(ShadowMapData, rounding)},
-    {"shadow.maps[0]._pad0", MAPS + offsetof(ShadowMapData, _pad0)},
+    {"shadow.maps[0].texco_from_world", maps_offset + offsetof(ShadowMapData, texco_from_world)},
+    {"shadow.maps[0].texel_size", maps_offset + offsetof(ShadowMapData, texel_size)},
+    {"shadow.maps[0].layer", maps_offset + offsetof(ShadowMapData, layer)},
+    {"shadow.maps[0].rounding", maps_offset + offsetof(ShadowMapData, rounding)},
+    {"shadow.maps[0]._pad0", maps_offset + offsetof(ShadowMapData, _pad0)},
 });
 
-constexpr auto SHADOW_RENDER_BLOCK_FIELDS = std::to_array<Field>({
+constexpr auto shadow_render_fields = std::to_array<Field>({
     {"shadow_render.clip_from_world", offsetof(ShadowRenderBlock, clip_from_world)},
 });
 
-constexpr std::array<gpu::BlockLayout, 6> LAYOUTS = {{
-    {"view_block", sizeof(ViewData), VIEW_BLOCK_FIELDS},
-    {"object_block", sizeof(ObjectData), OBJECT_BLOCK_FIELDS},
-    {"material_block", sizeof(MaterialData), MATERIAL_BLOCK_FIELDS},
-    {"light_block", sizeof(LightBlock), LIGHT_BLOCK_FIELDS},
-    {"shadow_block", sizeof(ShadowBlock), SHADOW_BLOCK_FIELDS},
-    {"shadow_render_block", sizeof(ShadowRenderBlock), SHADOW_RENDER_BLOCK_FIELDS},
+constexpr std::array<gpu::BlockLayout, 6> layouts = {{
+    {"view_block", sizeof(ViewData), view_fields},
+    {"object_block", sizeof(ObjectData), object_fields},
+    {"material_block", sizeof(MaterialData), material_fields},
+    {"light_block", sizeof(LightBlock), light_fields},
+    {"shadow_block", sizeof(ShadowBlock), shadow_fields},
+    {"shadow_render_block", sizeof(ShadowRenderBlock), shadow_render_fields},
 }};
 
 }  // namespace
 
 std::span<const gpu::BlockLayout> block_layouts()
 {
-  return LAYOUTS;
+  return layouts;
 }
 
 }  // namespace gnomon::eevee

@@ -14,9 +14,9 @@ draw::View view_of(const scene::Camera &camera, glm::ivec2 size_px)
   const bool is_perspective = camera.kind == scene::CameraKind::Perspective;
   const float image_aspect = float(size_px.x) / float(size_px.y);
   // A float just below pi has a tangent on the other side of infinity.
-  constexpr float ANGLE_MAX = 3.1415F;
+  constexpr float angle_max = 3.1415F;
   float half_height =
-      is_perspective ? std::tan(0.5F * std::min(camera.vertical_angle, ANGLE_MAX)) : camera.half_height;
+      is_perspective ? std::tan(0.5F * std::min(camera.vertical_angle, angle_max)) : camera.half_height;
   const float frame_aspect = !is_perspective       ? camera.half_width / camera.half_height :
                              camera.aspect > 0.0F ? camera.aspect :
                                                     image_aspect;
@@ -24,15 +24,15 @@ draw::View view_of(const scene::Camera &camera, glm::ivec2 size_px)
     half_height *= frame_aspect / image_aspect;
   }
   const float half_width = half_height * image_aspect;
-  constexpr float INFINITE = std::numeric_limits<float>::infinity();
-  const float far = camera.far > camera.near ? camera.far : INFINITE;
+  constexpr float infinite = std::numeric_limits<float>::infinity();
+  const float far = camera.far > camera.near ? camera.far : infinite;
   glm::mat4 clip_from_view;
   if (is_perspective) {
     clip_from_view = draw::perspective(half_width, half_height, camera.near, far);
   }
   else {
     // A parallel view of endless depth has no finite matrix; this one has a million times its width.
-    const float depth_max = std::max(camera.near + 1e6F * half_width, std::nextafter(camera.near, INFINITE));
+    const float depth_max = std::max(camera.near + 1e6F * half_width, std::nextafter(camera.near, infinite));
     clip_from_view = draw::orthographic(half_width, half_height, camera.near, std::min(far, depth_max));
   }
   return {glm::mat4(glm::inverse(glm::dmat4(camera.world_from_camera))), clip_from_view};

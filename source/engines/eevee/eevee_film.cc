@@ -8,10 +8,10 @@ namespace gnomon::eevee {
 
 double filter_weight(double distance_px)
 {
-  if (std::abs(distance_px) >= 0.5 * FILTER_SUPPORT_PX) {
+  if (std::abs(distance_px) >= 0.5 * filter_support_px) {
     return 0.0;
   }
-  const double a = 2.0 * std::numbers::pi * distance_px / FILTER_SUPPORT_PX;
+  const double a = 2.0 * std::numbers::pi * distance_px / filter_support_px;
   return 0.35875 + 0.48829 * std::cos(a) + 0.14128 * std::cos(2.0 * a) + 0.01168 * std::cos(3.0 * a);
 }
 
@@ -21,11 +21,11 @@ glm::vec2 film_offset_px(int index, int count, std::uint32_t seed)
     return {0.0F, 0.0F};
   }
   // A lattice of rank 1 by the golden ratio; a seed moves it around the unit square.
-  constexpr double GOLDEN = 0.6180339887498949;
+  constexpr double golden = 0.6180339887498949;
   const double shift_x = double(seed * 2654435761U) / 4294967296.0;
   const double shift_y = double(seed * 2246822519U) / 4294967296.0;
   const auto fraction = [](double value) { return value - std::floor(value); };
-  return {float(fraction((index + 0.5) / count + shift_x) - 0.5), float(fraction(index * GOLDEN + shift_y) - 0.5)};
+  return {float(fraction((index + 0.5) / count + shift_x) - 0.5), float(fraction(index * golden + shift_y) - 0.5)};
 }
 
 namespace {

@@ -9,7 +9,7 @@
 namespace gnomon::eevee {
 
 /** Width over which the pixel filter falls to nothing, pixels: Blackman-Harris of 1.5 px in Cycles' and EEVEE's terms. */
-inline constexpr double FILTER_SUPPORT_PX = 3.0;
+inline constexpr double filter_support_px = 3.0;
 
 /** Blackman-Harris (Harris 1978): 1 in the middle, 0 from half the support on. */
 [[nodiscard]] double filter_weight(double distance_px);

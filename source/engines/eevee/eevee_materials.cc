@@ -10,9 +10,9 @@ namespace gnomon::eevee {
 shared::MaterialData material_data(const scene::Material &material)
 {
   // glTF 2.0, appendix B, and KHR_materials_specular; 0.04 is a dielectric of index 1.5.
-  constexpr float DIELECTRIC_F0 = 0.04F;
+  constexpr float dielectric_f0 = 0.04F;
   const glm::vec3 dielectric =
-      glm::min(DIELECTRIC_F0 * material.specular_color, glm::vec3(1.0F)) * material.specular;
+      glm::min(dielectric_f0 * material.specular_color, glm::vec3(1.0F)) * material.specular;
   shared::MaterialData data{};
   data.diffuse = material.base_color * (1.0F - material.metallic);
   data.alpha = std::max(material.roughness * material.roughness, shared::ALPHA_MIN);

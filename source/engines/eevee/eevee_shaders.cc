@@ -7,7 +7,7 @@ namespace gnomon::eevee {
 
 namespace {
 
-constexpr std::array<FeatureDefine, 6> FEATURE_DEFINES = {
+constexpr std::array<FeatureDefine, 6> feature_table = {
     {{Feature::Light, "USE_LIGHT", "something shines"},
      {Feature::Punctual, "USE_PUNCTUAL", "a point or spot lamp shines"},
      {Feature::Hemi, "USE_HEMI", "a hemi lamp shines"},
@@ -15,15 +15,15 @@ constexpr std::array<FeatureDefine, 6> FEATURE_DEFINES = {
      {Feature::ShadowCube, "USE_SHADOW_CUBE", "a point lamp or a wide spot casts shadows"},
      {Feature::ShadowMap, "USE_SHADOW_MAP", "a sun or a spot casts shadows"}}};
 
-constexpr Feature LIT_FEATURES = Feature::Light | Feature::Punctual | Feature::Hemi | Feature::Specular |
-                                 Feature::ShadowCube | Feature::ShadowMap;
+constexpr Feature lit_features =
+    Feature::Light | Feature::Punctual | Feature::Hemi | Feature::Specular | Feature::ShadowCube | Feature::ShadowMap;
 
-constexpr std::array<ShaderDeclaration, 5> DECLARATIONS = {{
+constexpr std::array<ShaderDeclaration, 5> declarations = {{
     {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "eevee/eevee_depth_frag.glsl", Feature::None,
      "depth of what is seen, so that each pixel is lit once"},
     {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "eevee/eevee_depth_frag.glsl", Feature::None,
      "depth of what a lamp sees"},
-    {ShaderId::Lit, "eevee_lit", "eevee/eevee_lit_vert.glsl", "eevee/eevee_lit_frag.glsl", LIT_FEATURES,
+    {ShaderId::Lit, "eevee_lit", "eevee/eevee_lit_vert.glsl", "eevee/eevee_lit_frag.glsl", lit_features,
      "light that surfaces send to the viewer"},
     {ShaderId::Film, "eevee_film", "draw/draw_fullscreen_vert.glsl", "eevee/eevee_film_frag.glsl", Feature::None,
      "sum of several samples a pixel"},
@@ -46,18 +46,18 @@ bool is_possible(Feature features)
 
 std::span<const FeatureDefine> feature_defines()
 {
-  return FEATURE_DEFINES;
+  return feature_table;
 }
 
 std::span<const ShaderDeclaration> shader_declarations()
 {
-  return DECLARATIONS;
+  return declarations;
 }
 
 std::vector<Feature> shader_variants(const ShaderDeclaration &declaration)
 {
   std::vector<Feature> variants;
-  for (std::uint32_t mask = 0; mask < 1U << FEATURE_DEFINES.size(); mask++) {
+  for (std::uint32_t mask = 0; mask < 1U << feature_table.size(); mask++) {
     const auto features = Feature(mask);
     if ((features & declaration.features) == features && is_possible(features)) {
       variants.push_back(features);
@@ -72,7 +72,7 @@ gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature featur
   desc.name = declaration.name;
   desc.vertex_path = declaration.vertex_path;
   desc.fragment_path = declaration.fragment_path;
-  for (const FeatureDefine &define : FEATURE_DEFINES) {
+  for (const FeatureDefine &define : feature_table) {
     if (has(features & declaration.features, define.feature)) {
       desc.defines.emplace_back(define.define);
     }
@@ -82,7 +82,7 @@ gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature featur
 
 const gpu::Shader &ShaderCache::get(gpu::Device &device, ShaderId id, Feature features)
 {
-  const ShaderDeclaration &declaration = DECLARATIONS.at(std::size_t(id));
+  const ShaderDeclaration &declaration = declarations.at(std::size_t(id));
   const std::pair key(id, has(features, Feature::Light) ? features & declaration.features : Feature::None);
   const auto found = shaders_.find(key);
   if (found != shaders_.end()) {
@@ -97,9 +97,8 @@ std::vector<std::string> ShaderCache::reload(gpu::Device &device, gpu::ShaderFil
   std::vector<std::string> failures;
   for (auto &[key, shader] : shaders_) {
     try {
-      shader = device.create_shader(shader_desc(DECLARATIONS.at(std::size_t(key.first)), key.second), files_);
-    }
-    catch (const gpu::Error &error) {
+      shader = device.create_shader(shader_desc(declarations.at(std::size_t(key.first)), key.second), files_);
+    } catch (const gpu::Error &error) {
       failures.emplace_back(error.what());
     }
   }

@@ -35,9 +35,9 @@ static scene::Bounds union_of(const std::vector<scene::Bounds> &boxes)
 
 float lamp_near(const glm::vec3 &position_ws, const std::vector<scene::Bounds> &casters_ws)
 {
-  constexpr float NEAR_MIN = 1e-6F;
+  constexpr float near_min = 1e-6F;
   if (casters_ws.empty()) {
-    return NEAR_MIN;
+    return near_min;
   }
   float nearest = std::numeric_limits<float>::max();
   for (const scene::Bounds &box : casters_ws) {
@@ -45,7 +45,7 @@ float lamp_near(const glm::vec3 &position_ws, const std::vector<scene::Bounds> &
   }
   // Along a face's axis what is at this distance is nearer, by up to the square root of 3.
   const float floor = 2e-4F * union_of(casters_ws).radius();
-  return std::max({0.5F * nearest, floor, NEAR_MIN});
+  return std::max({0.5F * nearest, floor, near_min});
 }
 
 std::array<draw::View, 6> shadow_cube_views(const glm::vec3 &position_ws, float near)
@@ -170,7 +170,7 @@ std::optional<SunFit> fit_sun(const scene::Lamp &lamp, const std::vector<glm::dv
 static bool wants_cube(const scene::Lamp &lamp)
 {
   return lamp.kind == scene::LampKind::Point ||
-         (lamp.kind == scene::LampKind::Spot && lamp.spot_outer_angle > SPOT_MAP_ANGLE_MAX);
+         (lamp.kind == scene::LampKind::Spot && lamp.spot_outer_angle > spot_map_angle_max);
 }
 
 void Shadows::sync(gpu::Device &device, const scene::Scene &scene, Lamps &lamps, const ShadowSettings &settings)
@@ -310,10 +310,10 @@ static bool still_fits(const std::optional<SunFit> &old, const std::optional<Sun
   if (!old || !needed) {
     return !old && !needed;
   }
-  constexpr double AREA_RATIO_MAX = 1.5;
+  constexpr double area_ratio_max = 1.5;
   const auto area = [](const SunFit &fit) { return (fit.max.x - fit.min.x) * (fit.max.y - fit.min.y); };
   return glm::all(glm::lessThanEqual(old->min, needed->min)) &&
-         glm::all(glm::greaterThanEqual(old->max, needed->max)) && area(*old) <= AREA_RATIO_MAX * area(*needed);
+         glm::all(glm::greaterThanEqual(old->max, needed->max)) && area(*old) <= area_ratio_max * area(*needed);
 }
 
 void Shadows::fit_suns(const draw::View &view)

@@ -30,7 +30,7 @@ struct ShadowSettings {
 };
 
 /** Spots wider than this (half the opening, radians) look into a cube: a plane would stretch too far. */
-inline constexpr float SPOT_MAP_ANGLE_MAX = 1.2F;
+inline constexpr float spot_map_angle_max = 1.2F;
 
 /**
  * Distance of the near plane of a lamp, metres: what is nearer casts no shadow. As far as the nearest caster's box
@@ -42,7 +42,7 @@ inline constexpr float SPOT_MAP_ANGLE_MAX = 1.2F;
 /** The six views of a cube around \a position_ws. */
 [[nodiscard]] std::array<draw::View, 6> shadow_cube_views(const glm::vec3 &position_ws, float near);
 
-/** The view of a spot, with a texel around its cone. \pre its angle at most SPOT_MAP_ANGLE_MAX */
+/** The view of a spot, with a texel around its cone. \pre its angle at most spot_map_angle_max */
 [[nodiscard]] draw::View shadow_spot_view(const scene::Lamp &lamp, float near, int size_px);
 
 /** A sun's view, and what it was fitted to. */

@@ -49,12 +49,6 @@ GLenum gl_target(BufferKind kind)
   return kind == BufferKind::Uniform ? GL_UNIFORM_BUFFER : GL_SHADER_STORAGE_BUFFER;
 }
 
-/** Vertex inputs. */
-enum AttributeLocation : GLuint { POSITION = ATTRIBUTE_POSITION,
-  NORMAL = ATTRIBUTE_NORMAL,
-  DRAW_INSTANCE = ATTRIBUTE_DRAW_INSTANCE
- };
-
 Limits query_limits()
 {
   const auto get = [](GLenum name) {
@@ -84,17 +78,17 @@ class GlDevice final : public Device {
     }
     glCreateVertexArrays(1, &vertex_array_);
     glCreateBuffers(GLsizei(streams_.size()), streams_.data());
-    glEnableVertexArrayAttrib(vertex_array_, POSITION);
-    glVertexArrayAttribFormat(vertex_array_, POSITION, 3, GL_FLOAT, GL_FALSE, 0);
-    glVertexArrayAttribBinding(vertex_array_, POSITION, POSITION);
-    glEnableVertexArrayAttrib(vertex_array_, NORMAL);
-    glVertexArrayAttribFormat(vertex_array_, NORMAL, 3, GL_FLOAT, GL_FALSE, 0);
-    glVertexArrayAttribBinding(vertex_array_, NORMAL, NORMAL);
-    glEnableVertexArrayAttrib(vertex_array_, DRAW_INSTANCE);
-    glVertexArrayAttribIFormat(vertex_array_, DRAW_INSTANCE, 2, GL_UNSIGNED_INT, 0);
-    glVertexArrayAttribBinding(vertex_array_, DRAW_INSTANCE, DRAW_INSTANCE);
-    glVertexArrayBindingDivisor(vertex_array_, DRAW_INSTANCE, 1);
-    glVertexArrayVertexBuffer(vertex_array_, DRAW_INSTANCE, streams_[INSTANCE_STREAM], 0, sizeof(DrawInstance));
+    glEnableVertexArrayAttrib(vertex_array_, ATTRIBUTE_POSITION);
+    glVertexArrayAttribFormat(vertex_array_, ATTRIBUTE_POSITION, 3, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayAttribBinding(vertex_array_, ATTRIBUTE_POSITION, ATTRIBUTE_POSITION);
+    glEnableVertexArrayAttrib(vertex_array_, ATTRIBUTE_NORMAL);
+    glVertexArrayAttribFormat(vertex_array_, ATTRIBUTE_NORMAL, 3, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayAttribBinding(vertex_array_, ATTRIBUTE_NORMAL, ATTRIBUTE_NORMAL);
+    glEnableVertexArrayAttrib(vertex_array_, ATTRIBUTE_DRAW_INSTANCE);
+    glVertexArrayAttribIFormat(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, 2, GL_UNSIGNED_INT, 0);
+    glVertexArrayAttribBinding(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, ATTRIBUTE_DRAW_INSTANCE);
+    glVertexArrayBindingDivisor(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, 1);
+    glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, streams_[InstanceStream], 0, sizeof(DrawInstance));
     // Procedural draws need a vertex array too, and must not read the batches'.
     glCreateVertexArrays(1, &empty_vertex_array_);
   }
@@ -143,8 +137,8 @@ class GlDevice final : public Device {
   }
 
  private:
-  enum Stream { INSTANCE_STREAM, INDIRECT_STREAM, PUSH_STREAM, STREAM_COUNT };
-  enum Pool { POSITION_POOL, NORMAL_POOL, INDEX_POOL, POOL_COUNT };
+  enum Stream { InstanceStream, IndirectStream, PushStream, StreamCount };
+  enum Pool { PositionPool, NormalPool, IndexPool, PoolCount };
 
   static void GLAPIENTRY receive_message(GLenum /*source*/, GLenum type, GLuint /*id*/, GLenum severity,
                                          GLsizei /*length*/, const GLchar *text, const void *user)
@@ -217,7 +211,7 @@ class GlDevice final : public Device {
     glCreateFramebuffers(1, &framebuffer);
     const auto attach = [&](GLenum point, const Attachment &attachment) {
       const GLuint texture = textures_.at(attachment.texture->id());
-      if (attachment.layer == ALL_LAYERS || attachment.texture->desc().kind == TextureKind::Flat) {
+      if (attachment.layer == all_layers || attachment.texture->desc().kind == TextureKind::Flat) {
         glNamedFramebufferTexture(framebuffer, point, texture, attachment.mip_level);
       }
       else {
@@ -275,29 +269,29 @@ class GlDevice final : public Device {
   void batch_create(const BatchDesc &desc, const BatchRange &range, std::uint32_t vertex_capacity,
                     std::uint32_t index_capacity) override
   {
-    constexpr std::size_t VERTEX_BYTES = sizeof(glm::vec3);
+    constexpr std::size_t vertex_bytes = sizeof(glm::vec3);
     if (vertex_capacity > vertex_capacity_) {
-      grow(POSITION_POOL, vertex_capacity_ * VERTEX_BYTES, vertex_capacity * VERTEX_BYTES);
-      grow(NORMAL_POOL, vertex_capacity_ * VERTEX_BYTES, vertex_capacity * VERTEX_BYTES);
-      glVertexArrayVertexBuffer(vertex_array_, POSITION, pool_[POSITION_POOL], 0, VERTEX_BYTES);
-      glVertexArrayVertexBuffer(vertex_array_, NORMAL, pool_[NORMAL_POOL], 0, VERTEX_BYTES);
+      grow(PositionPool, vertex_capacity_ * vertex_bytes, vertex_capacity * vertex_bytes);
+      grow(NormalPool, vertex_capacity_ * vertex_bytes, vertex_capacity * vertex_bytes);
+      glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_POSITION, pool_[PositionPool], 0, vertex_bytes);
+      glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_NORMAL, pool_[NormalPool], 0, vertex_bytes);
       vertex_capacity_ = vertex_capacity;
     }
     if (index_capacity > index_capacity_) {
-      grow(INDEX_POOL, index_capacity_ * sizeof(std::uint32_t), index_capacity * sizeof(std::uint32_t));
-      glVertexArrayElementBuffer(vertex_array_, pool_[INDEX_POOL]);
+      grow(IndexPool, index_capacity_ * sizeof(std::uint32_t), index_capacity * sizeof(std::uint32_t));
+      glVertexArrayElementBuffer(vertex_array_, pool_[IndexPool]);
       index_capacity_ = index_capacity;
     }
-    const auto offset = GLintptr(range.base_vertex) * GLintptr(VERTEX_BYTES);
-    glNamedBufferSubData(pool_[POSITION_POOL], offset, GLsizeiptr(desc.positions.size_bytes()), desc.positions.data());
+    const auto offset = GLintptr(range.base_vertex) * GLintptr(vertex_bytes);
+    glNamedBufferSubData(pool_[PositionPool], offset, GLsizeiptr(desc.positions.size_bytes()), desc.positions.data());
     if (desc.normals.empty()) {
       const std::vector<glm::vec3> zeros(desc.positions.size(), glm::vec3(0.0F));
-      glNamedBufferSubData(pool_[NORMAL_POOL], offset, GLsizeiptr(zeros.size() * VERTEX_BYTES), zeros.data());
+      glNamedBufferSubData(pool_[NormalPool], offset, GLsizeiptr(zeros.size() * vertex_bytes), zeros.data());
     }
     else {
-      glNamedBufferSubData(pool_[NORMAL_POOL], offset, GLsizeiptr(desc.normals.size_bytes()), desc.normals.data());
+      glNamedBufferSubData(pool_[NormalPool], offset, GLsizeiptr(desc.normals.size_bytes()), desc.normals.data());
     }
-    glNamedBufferSubData(pool_[INDEX_POOL], GLintptr(range.first_index * sizeof(std::uint32_t)),
+    glNamedBufferSubData(pool_[IndexPool], GLintptr(range.first_index * sizeof(std::uint32_t)),
                          GLsizeiptr(desc.indices.size_bytes()), desc.indices.data());
     check(fmt::format("batch '{}'", desc.name));
   }
@@ -494,10 +488,10 @@ class GlDevice final : public Device {
 
   GLuint vertex_array_ = 0;
   GLuint empty_vertex_array_ = 0;
-  std::array<GLuint, POOL_COUNT> pool_{};
+  std::array<GLuint, PoolCount> pool_{};
   std::size_t vertex_capacity_ = 0;
   std::size_t index_capacity_ = 0;
-  std::array<GLuint, STREAM_COUNT> streams_{};
+  std::array<GLuint, StreamCount> streams_{};
 
   /** The pass between begin_pass and end_pass. */
   const CommandList::PassInfo *pass_ = nullptr;
@@ -517,8 +511,8 @@ void GlDevice::upload_streams(const CommandList &list)
       glNamedBufferData(streams_[stream], GLsizeiptr(bytes), data, GL_STREAM_DRAW);
     }
   };
-  upload(INSTANCE_STREAM, list.instances.size() * sizeof(DrawInstance), list.instances.data());
-  upload(INDIRECT_STREAM, list.draws.size() * sizeof(DrawIndirect), list.draws.data());
+  upload(InstanceStream, list.instances.size() * sizeof(DrawInstance), list.instances.data());
+  upload(IndirectStream, list.draws.size() * sizeof(DrawIndirect), list.draws.data());
   std::vector<std::byte> push;
   for (const Command &command : list.commands()) {
     if (command.kind == CommandKind::PushConstants) {
@@ -528,7 +522,7 @@ void GlDevice::upload_streams(const CommandList &list)
       push.resize(end);
     }
   }
-  upload(PUSH_STREAM, push.size(), push.data());
+  upload(PushStream, push.size(), push.data());
 }
 
 void GlDevice::begin_pass(const CommandList::PassInfo &pass)
@@ -622,7 +616,7 @@ void GlDevice::list_submit(const CommandList &list)
   glDepthRange(0.0, 1.0);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
-  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, streams_[INDIRECT_STREAM]);
+  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, streams_[IndirectStream]);
 
   std::size_t push_offset = 0;
   for (const Command &command : list.commands()) {
@@ -644,7 +638,7 @@ void GlDevice::list_submit(const CommandList &list)
         glBindSampler(command.slot, samplers_.at(command.first));
         break;
       case CommandKind::PushConstants:
-        glBindBufferRange(GL_UNIFORM_BUFFER, command.slot, streams_[PUSH_STREAM], GLintptr(push_offset),
+        glBindBufferRange(GL_UNIFORM_BUFFER, command.slot, streams_[PushStream], GLintptr(push_offset),
                           GLsizeiptr(command.count));
         push_offset += push_stride(limits(), command.count);
         break;
@@ -712,10 +706,10 @@ std::unique_ptr<Device> create_gl_device(const GlDeviceDesc &desc)
   else if (!has_current_context()) {
     throw Error("no OpenGL context of the host's is current on this thread");
   }
-  constexpr int VERSION = 45;
+  constexpr int version_needed = 45;
   const int version = epoxy_gl_version();
-  if (version < VERSION) {
-    throw Error("OpenGL {}.{} is needed, and the {} context has {}.{}", VERSION / 10, VERSION % 10,
+  if (version < version_needed) {
+    throw Error("OpenGL {}.{} is needed, and the {} context has {}.{}", version_needed / 10, version_needed % 10,
                 context ? "headless" : "host's", version / 10, version % 10);
   }
   return std::make_unique<GlDevice>(std::move(context), desc);

@@ -7,8 +7,8 @@ namespace gnomon::gpu {
 
 namespace {
 
-constexpr int GLSL_VERSION = 450;
-constexpr EShMessages MESSAGES = EShMsgDefault;
+constexpr int glsl_version = 450;
+constexpr EShMessages messages = EShMsgDefault;
 
 /** glslang's process-wide tables; made at the first use, as they take a moment. */
 void initialize_glslang()
@@ -23,7 +23,7 @@ void initialize_glslang()
       glslang::FinalizeProcess();
     }
   };
-  static const Process PROCESS;
+  static const Process process;
 }
 
 }  // namespace
@@ -31,9 +31,12 @@ void initialize_glslang()
 EShLanguage glslang_language(ShaderStage stage)
 {
   switch (stage) {
-    case ShaderStage::Vertex: return EShLangVertex;
-    case ShaderStage::Geometry: return EShLangGeometry;
-    case ShaderStage::Fragment: return EShLangFragment;
+    case ShaderStage::Vertex:
+      return EShLangVertex;
+    case ShaderStage::Geometry:
+      return EShLangGeometry;
+    case ShaderStage::Fragment:
+      return EShLangFragment;
   }
   return EShLangVertex;
 }
@@ -51,21 +54,21 @@ bool GlslangProgram::add(const ShaderSource &source, GlslangTarget target)
   const char *text = source.text.c_str();
   shader.setStrings(&text, 1);
   if (target == GlslangTarget::VulkanSpirv) {
-    constexpr int VULKAN_DIALECT = 100;
-    shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, VULKAN_DIALECT);
+    constexpr int vulkan_dialect = 100;
+    shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, vulkan_dialect);
     shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_2);
     shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_5);
-  }
-  else {
-    constexpr int OPENGL_DIALECT = 100;
+  } else {
+    constexpr int opengl_dialect = 100;
     const bool is_spirv = target == GlslangTarget::OpenGlSpirv;
-    shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientOpenGL, is_spirv ? OPENGL_DIALECT : GLSL_VERSION);
+    shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientOpenGL,
+                       is_spirv ? opengl_dialect : glsl_version);
     shader.setEnvClient(glslang::EShClientOpenGL, glslang::EShTargetOpenGL_450);
     if (is_spirv) {
       shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_0);
     }
   }
-  const bool is_done = shader.parse(GetDefaultResources(), GLSL_VERSION, false, MESSAGES);
+  const bool is_done = shader.parse(GetDefaultResources(), glsl_version, false, messages);
   log_ = shader.getInfoLog();
   program_->addShader(&shader);
   return is_done;
@@ -73,7 +76,7 @@ bool GlslangProgram::add(const ShaderSource &source, GlslangTarget target)
 
 bool GlslangProgram::link()
 {
-  const bool is_done = program_->link(MESSAGES);
+  const bool is_done = program_->link(messages);
   log_ = program_->getInfoLog();
   return is_done;
 }

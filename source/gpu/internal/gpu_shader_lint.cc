@@ -52,15 +52,12 @@ std::string without_comments(std::string_view line, bool &is_in_comment)
         is_in_comment = false;
         i++;
       }
-    }
-    else if (two == "/*") {
+    } else if (two == "/*") {
       is_in_comment = true;
       i++;
-    }
-    else if (two == "//") {
+    } else if (two == "//") {
       break;
-    }
-    else {
+    } else {
       code += line[i];
     }
   }
@@ -81,13 +78,13 @@ std::string text_of(const glslang::TString &text)
 
 SourceLines::SourceLines(const ShaderSource &source)
 {
-  static const std::regex POSITION(R"(^#line (\d+) (\d+)$)");
+  static const std::regex position_pattern(R"(^#line (\d+) (\d+)$)");
   std::istringstream stream(source.text);
   SourcePosition position;
   bool is_in_comment = false;
   for (std::string text; std::getline(stream, text);) {
     std::smatch match;
-    if (std::regex_match(text, match, POSITION)) {
+    if (std::regex_match(text, match, position_pattern)) {
       position = {std::stoul(match[2]), std::stoi(match[1])};
       continue;
     }
@@ -124,24 +121,23 @@ namespace {
 /** \a is_arrayed: one element a vertex, which is not a part of the type. */
 std::string type_name(const TType &type, bool is_arrayed = false)
 {
-  static const std::map<glslang::TBasicType, std::pair<const char *, const char *>> NAMES = {
-      {glslang::EbtFloat, {"float", ""}}, {glslang::EbtDouble, {"double", "d"}}, {glslang::EbtInt, {"int", "i"}},
-      {glslang::EbtUint, {"uint", "u"}},  {glslang::EbtBool, {"bool", "b"}}};
-  const auto found = NAMES.find(type.getBasicType());
+  static const std::map<glslang::TBasicType, std::pair<const char *, const char *>> names = {
+      {glslang::EbtFloat, {"float", ""}},
+      {glslang::EbtDouble, {"double", "d"}},
+      {glslang::EbtInt, {"int", "i"}},
+      {glslang::EbtUint, {"uint", "u"}},
+      {glslang::EbtBool, {"bool", "b"}}};
+  const auto found = names.find(type.getBasicType());
   std::string name;
   if (type.isStruct()) {
     name = text_of(type.getTypeName());
-  }
-  else if (found == NAMES.end()) {
+  } else if (found == names.end()) {
     name = "sampler";
-  }
-  else if (type.isMatrix()) {
+  } else if (type.isMatrix()) {
     name = fmt::format("{}mat{}x{}", found->second.second, type.getMatrixCols(), type.getMatrixRows());
-  }
-  else if (type.getVectorSize() > 1) {
+  } else if (type.getVectorSize() > 1) {
     name = fmt::format("{}vec{}", found->second.second, type.getVectorSize());
-  }
-  else {
+  } else {
     name = found->second.first;
   }
   const int dimension_count = type.isArray() ? type.getArraySizes()->getNumDims() : 0;
@@ -194,8 +190,10 @@ bool is_assignment(TOperator op)
     case glslang::EOpPostIncrement:
     case glslang::EOpPostDecrement:
     case glslang::EOpPreIncrement:
-    case glslang::EOpPreDecrement: return true;
-    default: return op >= glslang::EOpAddAssign && op <= glslang::EOpRightShiftAssign;
+    case glslang::EOpPreDecrement:
+      return true;
+    default:
+      return op >= glslang::EOpAddAssign && op <= glslang::EOpRightShiftAssign;
   }
 }
 
@@ -359,10 +357,12 @@ bool is_share(const TIntermTyped *node)
     case glslang::EOpClamp:
     case glslang::EOpFract:
     case glslang::EOpSmoothStep:
-    case glslang::EOpStep: return true;
+    case glslang::EOpStep:
+      return true;
     case glslang::EOpMul:
       return is_share(node->getAsBinaryNode()->getLeft()) && is_share(node->getAsBinaryNode()->getRight());
-    default: return false;
+    default:
+      return false;
   }
 }
 
@@ -370,8 +370,8 @@ bool is_share(const TIntermTyped *node)
 bool is_rest_of_one(const FunctionFacts &facts, TIntermTyped *node)
 {
   const auto *binary = node->getAsBinaryNode();
-  return binary != nullptr && binary->getOp() == glslang::EOpSub && binary->getLeft()->getAsConstantUnion() != nullptr &&
-         is_share(facts.resolved(binary->getRight()));
+  return binary != nullptr && binary->getOp() == glslang::EOpSub &&
+         binary->getLeft()->getAsConstantUnion() != nullptr && is_share(facts.resolved(binary->getRight()));
 }
 
 /** Why \a op may fail on \a argument, where that can be told from the expression; else nothing. */
@@ -390,33 +390,46 @@ std::string danger(const FunctionFacts &facts, TOperator op, TIntermTyped *argum
   const bool is_length = source == glslang::EOpLength || source == glslang::EOpDistance;
   switch (op) {
     case glslang::EOpAcos:
-    case glslang::EOpAsin: return is_dot ? "by rounding a scalar product may lie beyond [-1, 1]" : "";
+    case glslang::EOpAsin:
+      return is_dot ? "by rounding a scalar product may lie beyond [-1, 1]" : "";
     case glslang::EOpSqrt:
     case glslang::EOpPow:
       return (is_difference && !is_rest_of_one(facts, value)) || (is_dot && !is_square) ? "it may be below 0" : "";
     case glslang::EOpInverseSqrt:
     case glslang::EOpLog:
-    case glslang::EOpLog2: return is_difference || is_dot || is_length ? "it may be 0 or below" : "";
+    case glslang::EOpLog2:
+      return is_difference || is_dot || is_length ? "it may be 0 or below" : "";
     case glslang::EOpNormalize:
       return is_difference || source == glslang::EOpCross ? "it may be the zero vector" : "";
     case glslang::EOpDiv:
-    case glslang::EOpDivAssign: return is_difference || is_dot || is_length ? "it may be 0" : "";
-    default: return {};
+    case glslang::EOpDivAssign:
+      return is_difference || is_dot || is_length ? "it may be 0" : "";
+    default:
+      return {};
   }
 }
 
 std::string_view operator_name(TOperator op)
 {
   switch (op) {
-    case glslang::EOpAcos: return "acos of";
-    case glslang::EOpAsin: return "asin of";
-    case glslang::EOpSqrt: return "sqrt of";
-    case glslang::EOpPow: return "pow of";
-    case glslang::EOpInverseSqrt: return "inversesqrt of";
-    case glslang::EOpLog: return "log of";
-    case glslang::EOpLog2: return "log2 of";
-    case glslang::EOpNormalize: return "normalize of";
-    default: return "division by";
+    case glslang::EOpAcos:
+      return "acos of";
+    case glslang::EOpAsin:
+      return "asin of";
+    case glslang::EOpSqrt:
+      return "sqrt of";
+    case glslang::EOpPow:
+      return "pow of";
+    case glslang::EOpInverseSqrt:
+      return "inversesqrt of";
+    case glslang::EOpLog:
+      return "log of";
+    case glslang::EOpLog2:
+      return "log2 of";
+    case glslang::EOpNormalize:
+      return "normalize of";
+    default:
+      return "division by";
   }
 }
 
@@ -465,11 +478,11 @@ class LoopSteps : public TIntermTraverser {
       case glslang::EOpEqual:
       case glslang::EOpNotEqual:
         return std::ranges::any_of(sides, [&](TIntermTyped *side) {
-          return is_assignment(operator_of(side)) || std::ranges::any_of(paths_of(side), [&](const std::string &read) {
-                   return stepped_.contains(read);
-                 });
+          return is_assignment(operator_of(side)) ||
+                 std::ranges::any_of(paths_of(side), [&](const std::string &read) { return stepped_.contains(read); });
         });
-      default: return false;
+      default:
+        return false;
     }
   }
 
@@ -512,7 +525,8 @@ class FunctionLint : public TIntermTraverser {
       // A loop itself has no position.
       const TIntermNode *known = loop->getTest() != nullptr ? loop->getTest() : loop->getBody();
       const glslang::TSourceLoc loc = loop->getLoc().line > 0 || known == nullptr ? loop->getLoc() : known->getLoc();
-      add("unbounded-loop", loc, "nothing bounds the loop: no comparison in its condition has a side that the loop steps");
+      add("unbounded-loop", loc,
+          "nothing bounds the loop: no comparison in its condition has a side that the loop steps");
     }
     return true;
   }
@@ -535,14 +549,12 @@ class FunctionLint : public TIntermTraverser {
     TIntermTyped *operand = unary->getOperand();
     const TIntermSymbol *symbol = root_symbol(operand);
     if (unary->getOp() < glslang::EOpConvInt8ToBool || unary->getOp() > glslang::EOpConvDoubleToFloat ||
-        symbol == nullptr || symbol->getType().getBasicType() != glslang::EbtBlock)
-    {
+        symbol == nullptr || symbol->getType().getBasicType() != glslang::EbtBlock) {
       return;
     }
     const auto *parent = getParentNode() == nullptr ? nullptr : getParentNode()->getAsAggregate();
     if (parent != nullptr && parent->getOp() > glslang::EOpConstructGuardStart &&
-        parent->getOp() < glslang::EOpConstructGuardEnd)
-    {
+        parent->getOp() < glslang::EOpConstructGuardEnd) {
       return;
     }
     const std::string start = first_name(operand);
@@ -552,9 +564,9 @@ class FunctionLint : public TIntermTraverser {
     if (at == std::string_view::npos || find_word(line, start, at + 1) != std::string_view::npos) {
       return;
     }
-    static const std::regex CONSTRUCTOR(R"(\b(bool|u?int|float|double|[biud]?vec[234])\s*\(\s*$)");
+    static const std::regex constructor(R"(\b(bool|u?int|float|double|[biud]?vec[234])\s*\(\s*$)");
     const std::string before(line.substr(0, at));
-    if (!std::regex_search(before, CONSTRUCTOR)) {
+    if (!std::regex_search(before, constructor)) {
       add("implicit-conversion", symbol->getLoc(),
           fmt::format("a block's member of type {} becomes {} implicitly: say {}(…)", type_name(operand->getType()),
                       type_name(unary->getType()), type_name(unary->getType())));
@@ -610,8 +622,7 @@ class StageReader : public TIntermTraverser {
     if (aggregate->getOp() == glslang::EOpFunction) {
       functions.push_back(aggregate);
       function_ = text_of(aggregate->getName());
-    }
-    else if (aggregate->getOp() == glslang::EOpFunctionCall) {
+    } else if (aggregate->getOp() == glslang::EOpFunctionCall) {
       calls[function_].insert(text_of(aggregate->getName()));
     }
     return true;
@@ -656,20 +667,17 @@ void check_array(const TType &type, const BlockMember &member, bool is_std140, s
                         fmt::format("'{}': a matrix with {} rows takes 16 bytes a column in a block; C++ has {}",
                                     member.name, type.getMatrixRows(), 4 * type.getMatrixRows()),
                         type.getMatrixRows() == 3});
-  }
-  else if (type.isArray() && type.isVector() && type.getVectorSize() == 3) {
-    findings.push_back({"block-array", member.position,
-                        fmt::format("'{}': an array of vec3 takes 16 bytes an element in a block; C++ has 12", member.name),
-                        true});
-  }
-  else if (type.isArray() && is_std140 && !type.isMatrix() && type.getVectorSize() < 4 &&
-           type.getBasicType() != glslang::EbtDouble)
-  {
-    findings.push_back({"block-array", member.position,
-                        fmt::format("'{}': an array of {} takes 16 bytes an element in a std140 block; C++ has {}",
-                                    member.name, type.getVectorSize() == 1 ? "scalars" : "vec2",
-                                    4 * type.getVectorSize()),
-                        false});
+  } else if (type.isArray() && type.isVector() && type.getVectorSize() == 3) {
+    findings.push_back(
+        {"block-array", member.position,
+         fmt::format("'{}': an array of vec3 takes 16 bytes an element in a block; C++ has 12", member.name), true});
+  } else if (type.isArray() && is_std140 && !type.isMatrix() && type.getVectorSize() < 4 &&
+             type.getBasicType() != glslang::EbtDouble) {
+    findings.push_back(
+        {"block-array", member.position,
+         fmt::format("'{}': an array of {} takes 16 bytes an element in a std140 block; C++ has {}", member.name,
+                     type.getVectorSize() == 1 ? "scalars" : "vec2", 4 * type.getVectorSize()),
+         false});
   }
 }
 
@@ -719,18 +727,16 @@ void add_declaration(const TIntermSymbol &symbol, const StageReader &reader, con
     declaration.position = lines.find_declaration(declaration.name, is_buffer ? "buffer" : "uniform");
     if (is_block) {
       add_members(type, "", "", qualifier.layoutPacking == glslang::ElpStd140, declaration, facts.findings);
-      if (qualifier.isPushConstant() || declaration.name == PUSH_CONSTANT_BLOCK) {
+      if (qualifier.isPushConstant() || declaration.name == push_constant_block_name) {
         facts.has_push_constants = true;
         // Which slot it stands in is the target's affair.
         declaration.slot = qualifier.isPushConstant() ? -1 : declaration.slot;
       }
       (is_buffer ? facts.storage_blocks : facts.uniform_blocks).push_back(std::move(declaration));
-    }
-    else if (type.containsOpaque()) {
+    } else if (type.containsOpaque()) {
       facts.textures.push_back(std::move(declaration));
     }
-  }
-  else if (qualifier.isPipeInput() || qualifier.isPipeOutput()) {
+  } else if (qualifier.isPipeInput() || qualifier.isPipeOutput()) {
     declaration.position = lines.find_declaration(declaration.name, qualifier.isPipeInput() ? "in" : "out");
     declaration.location_count = location_count(type, language);
     (qualifier.isPipeInput() ? facts.inputs : facts.outputs).push_back(std::move(declaration));
@@ -760,8 +766,8 @@ StageFacts read_stage(const TIntermediate &tree, const SourceLines &lines)
     FunctionLint(function, lines, facts.findings);
   }
   std::erase_if(facts.findings, [&](const LintFinding &finding) {
-    return !finding.is_error && lines.line(finding.position).find(fmt::format("shader-check: {}", finding.rule)) !=
-                                    std::string_view::npos;
+    return !finding.is_error &&
+           lines.line(finding.position).find(fmt::format("shader-check: {}", finding.rule)) != std::string_view::npos;
   });
   return facts;
 }

@@ -79,7 +79,8 @@ struct StageFacts {
   std::vector<LintFinding> findings;
 };
 
-/** GLSL's name of the type. \a is_arrayed: an element a vertex, as a geometry shader's inputs have, is not a part of it. */
+/** GLSL's name of the type. \a is_arrayed: an element a vertex, as a geometry shader's inputs have, is not a part of
+ * it. */
 [[nodiscard]] std::string interface_type(const Declaration &declaration, bool is_arrayed);
 
 /** After linking, which drops functions that nothing calls; before it they count, too. */

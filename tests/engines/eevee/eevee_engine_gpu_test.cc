@@ -198,22 +198,22 @@ class ShadowGpuTest : public EngineGpuTest {
     return wrong;
   }
   // Two pixels of 2·1.9·tan(1.3) / 256 = 5.3 cm, which the filter spreads the edge over, and a texel.
-  static constexpr float MARGIN_M = 0.12F;
+  static constexpr float margin_m = 0.12F;
 };
 
 TEST_F(ShadowGpuTest, PointMatchesTheClosedForm)
 {
-  EXPECT_EQ(wrong_pixels(scene::LampKind::Point, 2.0F, MARGIN_M), 0);
+  EXPECT_EQ(wrong_pixels(scene::LampKind::Point, 2.0F, margin_m), 0);
 }
 
 TEST_F(ShadowGpuTest, SpotMatchesTheClosedForm)
 {
-  EXPECT_EQ(wrong_pixels(scene::LampKind::Spot, 2.0F, MARGIN_M), 0);
+  EXPECT_EQ(wrong_pixels(scene::LampKind::Spot, 2.0F, margin_m), 0);
 }
 
 TEST_F(ShadowGpuTest, SunMatchesTheClosedForm)
 {
-  EXPECT_EQ(wrong_pixels(scene::LampKind::Sun, 1.0F, MARGIN_M), 0);
+  EXPECT_EQ(wrong_pixels(scene::LampKind::Sun, 1.0F, margin_m), 0);
 }
 
 // hazards.md: the second lamp's layers overlapped the first's.

@@ -12,8 +12,8 @@ namespace {
 TEST(FilmFilter, FallsFromOneToNothingAtItsSupport)
 {
   EXPECT_NEAR(filter_weight(0.0), 1.0, 1e-12);
-  EXPECT_EQ(filter_weight(0.5 * FILTER_SUPPORT_PX), 0.0);
-  EXPECT_LT(filter_weight(0.4999 * FILTER_SUPPORT_PX), 1e-4);
+  EXPECT_EQ(filter_weight(0.5 * filter_support_px), 0.0);
+  EXPECT_LT(filter_weight(0.4999 * filter_support_px), 1e-4);
   for (double x = 0.0; x < 1.49; x += 0.01) {
     EXPECT_GT(filter_weight(x), filter_weight(x + 0.01));
     EXPECT_EQ(filter_weight(x), filter_weight(-x));
@@ -85,8 +85,8 @@ template<typename Radiance> double filtered(Radiance &&radiance)
   double weights = 0.0;
   for (int j = 0; j < N; j++) {
     for (int i = 0; i < N; i++) {
-      const double x = ((i + 0.5) / N - 0.5) * FILTER_SUPPORT_PX;
-      const double y = ((j + 0.5) / N - 0.5) * FILTER_SUPPORT_PX;
+      const double x = ((i + 0.5) / N - 0.5) * filter_support_px;
+      const double y = ((j + 0.5) / N - 0.5) * filter_support_px;
       const double weight = filter_weight(x) * filter_weight(y);
       sum += weight * radiance(x, y);
       weights += weight;

@@ -5,9 +5,6 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include <cmath>
-#include <numbers>
-
 namespace gnomon::eevee {
 namespace {
 

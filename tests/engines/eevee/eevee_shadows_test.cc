@@ -52,23 +52,6 @@ TEST(CubeFace, ProjectsAsItsMatrixDoes)
   }
 }
 
-TEST(CubeFace, IsOpenGlsFaceAndCoordinate)
-{
-  // OpenGL 4.5 core, table 8.19: major axis → sc, tc, ma.
-  for (const glm::vec3 &r : random_directions(1000)) {
-    const int face = shared::cube_face(r);
-    const std::array<glm::vec3, 6> sc_tc_ma = {
-        glm::vec3(-r.z, -r.y, r.x), glm::vec3(r.z, -r.y, r.x), glm::vec3(r.x, r.z, r.y),
-        glm::vec3(r.x, -r.z, r.y),  glm::vec3(r.x, -r.y, r.z), glm::vec3(-r.x, -r.y, r.z)};
-    const glm::vec3 row = sc_tc_ma[std::size_t(face)];
-    EXPECT_EQ(std::abs(row.z), std::max({std::abs(r.x), std::abs(r.y), std::abs(r.z)}));
-    const glm::vec3 p = shared::cube_face_project(face, r);
-    EXPECT_FLOAT_EQ(p.x / p.z, row.x / std::abs(row.z));
-    EXPECT_FLOAT_EQ(p.y / p.z, row.y / std::abs(row.z));
-    EXPECT_GT(p.z, 0.0F);
-  }
-}
-
 TEST(ShadowCubeViews, SeeEveryDirectionInTheirFace)
 {
   const glm::vec3 lamp(3, -2, 1);
@@ -215,7 +198,7 @@ TEST(SunFit, IsTheSameAtEveryScale)
 
 TEST(SpotView, HoldsItsCone)
 {
-  for (const float angle : {1e-3F, 0.2F, 0.8F, SPOT_MAP_ANGLE_MAX}) {
+  for (const float angle : {1e-3F, 0.2F, 0.8F, spot_map_angle_max}) {
     scene::Lamp lamp;
     lamp.kind = scene::LampKind::Spot;
     lamp.spot_outer_angle = angle;
@@ -224,35 +207,6 @@ TEST(SpotView, HoldsItsCone)
     EXPECT_LT(clip.x / clip.w, 1.0F) << "half the opening " << angle;
     EXPECT_GT(clip.x / clip.w, 0.9F);
   }
-}
-
-TEST(ShadowLift, GrowsWithTexelAndRounding)
-{
-  EXPECT_GT(shared::shadow_lift(0.1F, 0.0F, 0.0F), 0.0F);
-  EXPECT_GT(shared::shadow_lift(0.1F, 0.1F, 0.0F), shared::shadow_lift(0.1F, 0.0F, 0.0F));
-  EXPECT_LT(shared::shadow_lift(0.1F, 0.0F, 0.0F), 0.1F) << "less than a texel: no gap at contact";
-}
-
-TEST(PlaneDepths, LieOnThePlane)
-{
-  // depth = 0.3 + 0.01·x - 0.02·y texels, at the lookup (10.25, 20.75): texel centres (10, 20) to (11, 21) around it.
-  const auto depth = [](float x, float y) { return 0.3F + 0.01F * x - 0.02F * y; };
-  const glm::vec4 depths = shared::plane_depths(depth(10.25F, 20.75F), {0.01F, -0.02F}, {0.25F, 0.75F});
-  EXPECT_NEAR(depths.x, depth(10, 21), 1e-6F);
-  EXPECT_NEAR(depths.y, depth(11, 21), 1e-6F);
-  EXPECT_NEAR(depths.z, depth(11, 20), 1e-6F);
-  EXPECT_NEAR(depths.w, depth(10, 20), 1e-6F);
-}
-
-TEST(GatheredVisibility, IsTheBilinearShareOfLitTexels)
-{
-  const glm::vec4 receiver(0.5F);
-  EXPECT_EQ(shared::gathered_visibility(glm::vec4(0.4F), receiver, {0.3F, 0.6F}), 1.0F);
-  EXPECT_EQ(shared::gathered_visibility(glm::vec4(0.6F), receiver, {0.3F, 0.6F}), 0.0F);
-  // Equally near is lit: reversed depth, greater or equal.
-  EXPECT_EQ(shared::gathered_visibility(receiver, receiver, {0.3F, 0.6F}), 1.0F);
-  // Only the right upper texel (second of the gather) lets light through: 0.3 · 0.6.
-  EXPECT_FLOAT_EQ(shared::gathered_visibility({0.6F, 0.4F, 0.6F, 0.6F}, receiver, {0.3F, 0.6F}), 0.18F);
 }
 
 /** Shadows of a few lamps on a null device. */

@@ -1,0 +1,402 @@
+// SPDX-License-Identifier: MIT
+// `gnomon shaders`: mistakes planted in a copy of the engine's shaders, and shaders of a user's own.
+#include "cli_process.hh"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <functional>
+
+namespace gnomon {
+namespace {
+
+using test::Finished;
+
+/** Line, from 1, of the first that holds \a part; 0: none. */
+int line_of(const std::string &text, const std::string &part)
+{
+  const std::size_t at = text.find(part);
+  return at == std::string::npos ? 0 : int(std::count(text.begin(), text.begin() + std::ptrdiff_t(at), '\n')) + 1;
+}
+
+std::size_t count_of(const std::string &text, const std::string &part)
+{
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+    count++;
+  }
+  return count;
+}
+
+class ShadersTest : public test::ProgramTest {
+ protected:
+  /** The engine's shaders, to be broken. */
+  void copy_tree()
+  {
+    std::filesystem::copy(GNOMON_SOURCE "/shaders", folder / "tree", std::filesystem::copy_options::recursive);
+  }
+  void replace(const std::string &file, const std::string &from, const std::string &to)
+  {
+    std::string text = read("tree/" + file);
+    ASSERT_EQ(count_of(text, from), 1U) << file << " holds this once no more, so plant something else: " << from;
+    text.replace(text.find(from), from.size(), to);
+    write("tree/" + file, text);
+  }
+  /** \a path below the test's folder. */
+  void write_file(const std::string &path, const std::string &text)
+  {
+    std::filesystem::create_directories((folder / path).parent_path());
+    write(path, text);
+  }
+};
+
+TEST_F(ShadersTest, ListNamesEveryProgramWithItsVariantsAndPurpose)
+{
+  const Finished finished = run("shaders list");
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  for (const char *part :
+       {"eevee_depth: depth of what is seen", "eevee_lit: ", "USE_LIGHT USE_PUNCTUAL USE_SHADOW_CUBE\n",
+        "USE_HEMI: where a hemi lamp shines", "5 programs, 29 variants\n"}) {
+    EXPECT_NE(finished.out.find(part), std::string::npos) << part << " is not in:\n" << finished.out;
+  }
+  EXPECT_EQ(finished.out.find("USE_LIGHT USE_SHADOW_CUBE\n"), std::string::npos) << "cubes are for punctual lamps";
+}
+
+TEST_F(ShadersTest, TheEnginesOwnShadersAreClean)
+{
+  const Finished finished = run("shaders check");
+  EXPECT_EQ(finished.status, 0);
+  EXPECT_EQ(finished.out.find("5 programs, 29 variants, OpenGL 4.5 and Vulkan 1.2: 0 errors, 0 warnings, "), 0U)
+      << finished.out;
+  EXPECT_EQ(finished.err, "") << "no progress bar in a pipe";
+}
+
+TEST_F(ShadersTest, NeedNoDisplayDriverOrHome)
+{
+  copy_tree();
+  const std::string program =
+      "env -i '" GNOMON_PROGRAM "' shaders check --shaders '" + (folder / "tree").string() + "'";
+  EXPECT_EQ(std::system((program + " > /dev/null 2>&1").c_str()), 0);
+}
+
+struct Planted {
+  const char *name;
+  struct Edit {
+    const char *file;
+    const char *from;
+    const char *to;
+  };
+  std::vector<Edit> edits;
+  /** Where the message must point: the line that holds \a at_text after the edits. */
+  const char *at_file;
+  const char *at_text;
+  const char *message;
+  /** Errors in all: a mistake is reported once, not once a variant. */
+  std::size_t error_count = 1;
+};
+
+void PrintTo(const Planted &planted, std::ostream *stream)
+{
+  *stream << planted.name;
+}
+
+class PlantedMistake : public ShadersTest, public testing::WithParamInterface<Planted> {};
+
+TEST_P(PlantedMistake, IsReportedWithFileAndLine)
+{
+  const Planted &planted = GetParam();
+  copy_tree();
+  for (const Planted::Edit &edit : planted.edits) {
+    ASSERT_NO_FATAL_FAILURE(replace(edit.file, edit.from, edit.to));
+  }
+  const int line = line_of(read(std::string("tree/") + planted.at_file), planted.at_text);
+  ASSERT_GT(line, 0);
+  const Finished finished = run("shaders check --shaders tree");
+  EXPECT_EQ(finished.status, 1);
+  EXPECT_EQ(count_of(finished.out, ": error: "), planted.error_count) << finished.out;
+  const std::string start = "tree/" + std::string(planted.at_file) + ":" + std::to_string(line) + ": error: ";
+  const std::size_t at = finished.out.find(start);
+  ASSERT_NE(at, std::string::npos) << start << " is not in:\n" << finished.out;
+  const std::string message = finished.out.substr(at, finished.out.find('\n', at) - at);
+  EXPECT_NE(message.find(planted.message), std::string::npos) << message;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Twelve, PlantedMistake,
+    testing::Values(
+        Planted{"SyntaxInIncludeOfInclude",
+                {{"shared/draw_view_shared.h", "struct ViewData {", "const float planted = ;\nstruct ViewData {"}},
+                "shared/draw_view_shared.h",
+                "const float planted",
+                "syntax error"},
+        Planted{
+            "TypeMismatch",
+            {{"eevee/eevee_tonemap_frag.glsl", "void main()\n{\n", "void main()\n{\n  vec2 planted = vec3(1.0);\n"}},
+            "eevee/eevee_tonemap_frag.glsl",
+            "vec2 planted",
+            "cannot convert"},
+        Planted{"MissingVarying",
+                {{"eevee/eevee_lit_vert.glsl", "layout(location = 0) out vec3 surface_position_ws;\n", ""},
+                 {"eevee/eevee_lit_vert.glsl", "  surface_position_ws = position_ws.xyz;\n", ""}},
+                "eevee/eevee_lit_frag.glsl",
+                "in vec3 surface_position_ws;",
+                "is no output of the vertex stage [missing-varying]"},
+        Planted{"FieldInGlslOnly",
+                {{"shared/eevee_light_shared.h", "  int shadow_index;\n", "  int shadow_index;\n  vec4 planted;\n"}},
+                "shared/eevee_light_shared.h",
+                "vec4 planted",
+                "of struct 'LightData' in block 'light_block' is not in C++ [layout]",
+                // The block no longer fits, either.
+                2},
+        Planted{"PaddingRemoved",
+                {{"shared/draw_view_shared.h", "  float _pad0;\n", ""}},
+                "shared/draw_view_shared.h",
+                "struct ViewData",
+                "field 'view._pad0' of struct 'ViewData' in block 'view_block' is in C++ only [layout]"},
+        Planted{"FieldsReordered",
+                {{"shared/eevee_light_shared.h", "float spot_cos_outer;", "float planted;"},
+                 {"shared/eevee_light_shared.h", "float spot_inv_width;", "float spot_cos_outer;"},
+                 {"shared/eevee_light_shared.h", "float planted;", "float spot_inv_width;"}},
+                "shared/eevee_light_shared.h",
+                "float spot_inv_width;",
+                "of struct 'LightData' in block 'light_block' is at byte 64, in C++ at byte 68 [layout]",
+                2},
+        Planted{"Vec3ArrayInBlock",
+                {{"eevee/eevee_film_frag.glsl", "  vec4 row_weights;\n", "  vec4 row_weights;\n  vec3 planted[3];\n"}},
+                "eevee/eevee_film_frag.glsl",
+                "vec3 planted[3]",
+                "'planted': an array of vec3 takes 16 bytes an element"},
+        Planted{
+            "SlotUsedTwice",
+            {{"eevee/eevee_tonemap_frag.glsl", "layout(location = 0) out vec4 display;\n",
+              "layout(location = 0) out vec4 display;\nlayout(binding = RADIANCE_SLOT) uniform sampler2D planted;\n"},
+             {"eevee/eevee_tonemap_frag.glsl", "= texelFetch(radiance_texture,",
+              "= texelFetch(planted, ivec2(0), 0) + texelFetch(radiance_texture,"}},
+            "eevee/eevee_tonemap_frag.glsl",
+            "uniform sampler2D planted",
+            "has slot 18, as texture 'radiance_texture' has [slot]"},
+        Planted{"OneFeatureBitOnly",
+                {{"eevee/eevee_light_lib.glsl", "  if (light.kind == LIGHT_HEMI) {\n",
+                  "  if (light.kind == LIGHT_HEMI) {\n    float planted = undeclared_name;\n"}},
+                "eevee/eevee_light_lib.glsl",
+                "float planted",
+                "'undeclared_name' : undeclared identifier [compile] (eevee_lit, 12 variants; OpenGL 4.5, Vulkan 1.2)"},
+        Planted{"VulkanOnly",
+                {{"eevee/eevee_tonemap_frag.glsl", "layout(location = 0) out vec4 display;\n",
+                  "layout(location = 0) out vec4 display;\nlayout(location = 5) uniform float planted;\n"},
+                 {"eevee/eevee_tonemap_frag.glsl", "radiance.rgb * exposure_scale", "radiance.rgb * planted"}},
+                "eevee/eevee_tonemap_frag.glsl",
+                "uniform float planted",
+                "(eevee_tonemap; Vulkan 1.2)"},
+        Planted{"BlockTooLarge",
+                {{"shared/eevee_light_shared.h", "#define LIGHT_MAX 255\n", "#define LIGHT_MAX 256\n"}},
+                "eevee/eevee_light_lib.glsl",
+                "uniform light_block",
+                "block 'light_block' takes 16400 bytes; every device takes 16384",
+                // C++ has fewer lights, too.
+                2},
+        Planted{"Recursion",
+                {{"shared/eevee_tonemap_shared.h", "SHARED_END",
+                  "float planted(float x)\n{\n  return x < 1.0 ? x : planted(x - 1.0);\n}\nSHARED_END"},
+                 {"eevee/eevee_tonemap_frag.glsl", "radiance.rgb * exposure_scale",
+                  "radiance.rgb * planted(exposure_scale)"}},
+                "shared/eevee_tonemap_shared.h",
+                "float planted(float x)",
+                "function 'planted' calls itself"}),
+    [](const auto &test) { return test.param.name; });
+
+TEST_F(ShadersTest, AVulkanOnlyMistakePassesForOpenGl)
+{
+  copy_tree();
+  replace("eevee/eevee_tonemap_frag.glsl", "layout(location = 0) out vec4 display;\n",
+          "layout(location = 0) out vec4 display;\nlayout(location = 5) uniform float planted;\n");
+  replace("eevee/eevee_tonemap_frag.glsl", "radiance.rgb * exposure_scale", "radiance.rgb * planted");
+  EXPECT_EQ(run("shaders check --shaders tree --target vulkan").status, 1);
+  // The push constants have lost a reader of one member, which is nothing to complain about.
+  const Finished opengl = run("shaders check --shaders tree --target opengl");
+  EXPECT_EQ(opengl.status, 0) << opengl.out;
+}
+
+TEST_F(ShadersTest, LayoutStandsSideBySideAndAgrees)
+{
+  const Finished finished = run("shaders layout");
+  EXPECT_EQ(finished.status, 0) << finished.out << finished.err;
+  // std140 by hand: four vec4 of matrix, a vec3, then an int in its row.
+  EXPECT_NE(finished.out.find("      64     64  view.position_ws\n      76     76  view.is_perspective\n"),
+            std::string::npos)
+      << finished.out;
+  for (const char *block :
+       {"view_block", "object_block", "material_block", "light_block", "shadow_block", "shadow_render_block"}) {
+    EXPECT_NE(finished.out.find(std::string(block) + ": "), std::string::npos) << block;
+  }
+}
+
+TEST_F(ShadersTest, LayoutNamesStructAndFieldThatDiffer)
+{
+  copy_tree();
+  replace("shared/eevee_material_shared.h", "  float _pad0;\n", "  float planted;\n");
+  const int line = line_of(read("tree/shared/eevee_material_shared.h"), "planted");
+  const Finished finished = run("shaders layout --shaders tree");
+  EXPECT_EQ(finished.status, 1);
+  EXPECT_NE(finished.out.find("     -     44  materials[0].planted  <-- differs"), std::string::npos) << finished.out;
+  EXPECT_NE(finished.out.find("tree/shared/eevee_material_shared.h:" + std::to_string(line) +
+                              ": error: field 'materials[0].planted' of struct 'MaterialData'"),
+            std::string::npos)
+      << finished.out;
+}
+
+TEST_F(ShadersTest, ReflectTellsBlocksTexturesAndStageVariables)
+{
+  const Finished finished = run("shaders reflect eevee_lit --variant 'USE_SHADOW_MAP USE_LIGHT' --format json");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const nlohmann::json json = nlohmann::json::parse(finished.out);
+  const auto find = [&](const char *list, const std::string &name) {
+    for (const nlohmann::json &entry : json[list]) {
+      if (entry["name"] == name) {
+        return entry;
+      }
+    }
+    ADD_FAILURE() << list << " holds no " << name << ": " << finished.out;
+    return nlohmann::json();
+  };
+  const nlohmann::json view = find("bindings", "view_block");
+  EXPECT_EQ(view["kind"], "uniform");
+  EXPECT_EQ(view["size"], 96);
+  EXPECT_EQ(view["members"][1], nlohmann::json({{"name", "view.position_ws"}, {"offset", 64}, {"size", 12}}));
+  EXPECT_EQ(find("bindings", "shadow_maps")["kind"], "texture");
+  EXPECT_EQ(find("inputs", "normal")["type"], "vec3");
+  EXPECT_EQ(find("inputs", "draw_instance")["type"], "uvec2");
+  EXPECT_EQ(find("outputs", "radiance"), nlohmann::json({{"name", "radiance"}, {"type", "vec4"}, {"location", 0}}));
+
+  const Finished text = run("shaders reflect eevee_tonemap");
+  EXPECT_NE(text.out.find("push constants, slot 8, 16 bytes"), std::string::npos) << text.out;
+  EXPECT_EQ(run("shaders reflect eevee_lit --variant USE_SHADOW_CUBE").status, 1) << "no such variant";
+  EXPECT_EQ(run("shaders reflect eevee_paint").status, 1);
+}
+
+const std::string VERSION = "#version 450 core\n";
+
+TEST_F(ShadersTest, AUsersShaderIsCheckedFromAnyFolderWithItsIncludesAndDefines)
+{
+  write_file("user/shaders/sky.frag", VERSION +
+                                          "#include \"lib/near.glsl\"\n#include \"far.glsl\"\n"
+                                          "layout(location = 0) out vec4 color;\n"
+                                          "void main() { color = vec4(near_value(), far_value(), COUNT, 1.0); }\n");
+  write_file("user/shaders/lib/near.glsl", "#include \"beside.glsl\"\nfloat near_value() { return beside; }\n");
+  write_file("user/shaders/lib/beside.glsl", "const float beside = 1.0;\n");
+  write_file("user/more/far.glsl",
+             "#ifdef BROKEN\nfloat broken = nothing;\n#endif\nfloat far_value() { return 2.0; }\n");
+  // As if somewhere else altogether.
+  const std::string check = "shaders check user/shaders/sky.frag ";
+  const Finished fine = run(check + "-I user/more -D COUNT=3");
+  EXPECT_EQ(fine.status, 0) << fine.out << fine.err;
+  EXPECT_EQ(fine.out.find("1 programs, 1 variants, OpenGL 4.5 and Vulkan 1.2: 0 errors"), 0U) << fine.out;
+
+  const Finished no_folder = run(check + "-D COUNT=3");
+  EXPECT_EQ(no_folder.status, 1);
+  EXPECT_EQ(no_folder.out.find("user/shaders/sky.frag:3: error: no shader file 'user/shaders/far.glsl' [include]"), 0U)
+      << no_folder.out;
+  const Finished no_define = run(check + "-I user/more");
+  EXPECT_EQ(no_define.status, 1);
+  EXPECT_EQ(no_define.out.find("user/shaders/sky.frag:5: error: 'COUNT'"), 0U) << no_define.out;
+  const Finished broken = run(check + "-I user/more -D COUNT=3 -D BROKEN");
+  EXPECT_EQ(broken.status, 1);
+  EXPECT_EQ(broken.out.find("user/more/far.glsl:2: error: 'nothing' : undeclared identifier"), 0U) << broken.out;
+}
+
+TEST_F(ShadersTest, FilesOfOneNameAreLinked)
+{
+  write_file("user/a_vert.glsl", VERSION + "void main() { gl_Position = vec4(0.0); }\n");
+  write_file("user/a_frag.glsl", VERSION +
+                                     "layout(location = 0) in vec2 uv;\nlayout(location = 0) out vec4 color;\n"
+                                     "void main() { color = vec4(uv, 0.0, 1.0); }\n");
+  EXPECT_EQ(run("shaders check user/a_frag.glsl").status, 0) << "alone it may be right";
+  const Finished finished = run("shaders check user/a_vert.glsl user/a_frag.glsl --target vulkan");
+  EXPECT_EQ(finished.status, 1);
+  EXPECT_EQ(finished.out.find("user/a_frag.glsl:2: error: input 'uv', location 0, is no output of the vertex stage"),
+            0U)
+      << finished.out;
+}
+
+TEST_F(ShadersTest, AStageThatTheNameDoesNotTellIsAskedFor)
+{
+  write_file("user/plain.glsl", VERSION + "void main() {}\n");
+  const Finished asked = run("shaders check user/plain.glsl");
+  EXPECT_EQ(asked.status, 2);
+  EXPECT_NE(asked.err.find("--stage"), std::string::npos) << asked.err;
+  EXPECT_EQ(run("shaders check user/plain.glsl --stage frag").status, 0);
+}
+
+TEST_F(ShadersTest, WarningsDoNotFail)
+{
+  write_file("a.frag", VERSION +
+                           "layout(location = 0) in vec3 a;\nlayout(location = 0) out float angle;\n"
+                           "void main() { angle = acos(dot(a, a.zyx)); }\n");
+  const Finished finished = run("shaders check a.frag");
+  EXPECT_EQ(finished.status, 0);
+  EXPECT_EQ(finished.out.find("a.frag:4: warning: acos of an unguarded value"), 0U) << finished.out;
+}
+
+TEST_F(ShadersTest, JsonHoldsTheMessageWithItsVariants)
+{
+  copy_tree();
+  replace("eevee/eevee_light_lib.glsl", "  if (light.kind == LIGHT_HEMI) {\n",
+          "  if (light.kind == LIGHT_HEMI) {\n    float planted = undeclared_name;\n");
+  const Finished finished = run("shaders check --shaders tree --format json");
+  EXPECT_EQ(finished.status, 1);
+  const nlohmann::json json = nlohmann::json::parse(finished.out);
+  EXPECT_EQ(json["variants"], 29);
+  EXPECT_EQ(json["errors"], 1);
+  ASSERT_EQ(json["messages"].size(), 1U);
+  const nlohmann::json &message = json["messages"][0];
+  EXPECT_EQ(message["severity"], "error");
+  EXPECT_EQ(message["file"], "tree/eevee/eevee_light_lib.glsl");
+  EXPECT_EQ(message["line"], line_of(read("tree/eevee/eevee_light_lib.glsl"), "planted"));
+  EXPECT_EQ(message["rule"], "compile");
+  EXPECT_EQ(message["where"].size(), 24U) << "twelve variants, two targets";
+  for (const nlohmann::json &where : message["where"]) {
+    EXPECT_NE(where["variant"].get<std::string>().find("USE_HEMI"), std::string::npos);
+  }
+}
+
+TEST_F(ShadersTest, SarifHoldsRulesAndThePlace)
+{
+  write_file("with space/a.frag", VERSION + "void main() { return 1; }\n");
+  const Finished finished = run("shaders check 'with space/a.frag' --format sarif");
+  EXPECT_EQ(finished.status, 1);
+  const nlohmann::json json = nlohmann::json::parse(finished.out);
+  EXPECT_EQ(json["version"], "2.1.0");
+  const nlohmann::json &run = json["runs"][0];
+  ASSERT_EQ(run["results"].size(), 1U);
+  const nlohmann::json &result = run["results"][0];
+  EXPECT_EQ(result["level"], "error");
+  EXPECT_NE(result["message"]["text"].get<std::string>().find("void function cannot return a value"),
+            std::string::npos);
+  const nlohmann::json &place = result["locations"][0]["physicalLocation"];
+  EXPECT_EQ(place["artifactLocation"]["uri"], "with%20space/a.frag");
+  EXPECT_EQ(place["region"]["startLine"], 2);
+  const nlohmann::json &rules = run["tool"]["driver"]["rules"];
+  EXPECT_TRUE(std::ranges::any_of(rules, [&](const nlohmann::json &rule) { return rule["id"] == result["ruleId"]; }));
+}
+
+TEST_F(ShadersTest, WrongUsageEndsWithTwoAndWhatIsMissingWithOne)
+{
+  for (const std::string arguments :
+       {"shaders", "shaders paint", "shaders check --format xml", "shaders check --target metal", "shaders check -D A",
+        "shaders check a.frag --shaders tree", "shaders check a.frag -D =1", "shaders reflect"}) {
+    const Finished finished = run(arguments);
+    EXPECT_EQ(finished.status, 2) << arguments;
+    EXPECT_FALSE(finished.err.empty()) << arguments;
+  }
+  const Finished folder_missing = run("shaders check --shaders nowhere");
+  EXPECT_EQ(folder_missing.status, 1);
+  EXPECT_NE(folder_missing.err.find("nowhere"), std::string::npos);
+  const Finished file_missing = run("shaders check nowhere.frag");
+  EXPECT_EQ(file_missing.status, 1);
+  EXPECT_EQ(file_missing.out.find("nowhere.frag:1: error: "), 0U) << file_missing.out;
+  std::filesystem::create_directory(folder / "empty");
+  EXPECT_EQ(run("shaders check --shaders empty").status, 1);
+}
+
+}  // namespace
+}  // namespace gnomon
