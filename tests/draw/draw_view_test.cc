@@ -15,7 +15,7 @@
 namespace gnomon::draw {
 namespace {
 
-constexpr float infinite = std::numeric_limits<float>::infinity();
+constexpr float infinity = std::numeric_limits<float>::infinity();
 
 glm::vec3 ndc(const glm::mat4 &clip_from_view, const glm::vec3 &position_vs)
 {
@@ -30,7 +30,7 @@ TEST(Perspective, NearIsOneAndFarIsZero)
     EXPECT_NEAR(ndc(matrix, {0, 0, -near}).z, 1, 2e-7F * far / (far - near));
     EXPECT_NEAR(ndc(matrix, {0, 0, -far}).z, 0, 2e-7F * far / (far - near));
   }
-  const glm::mat4 matrix = perspective(1, 1, 0.25F, infinite);
+  const glm::mat4 matrix = perspective(1, 1, 0.25F, infinity);
   EXPECT_EQ(ndc(matrix, {0, 0, -0.25F}).z, 1);
   EXPECT_EQ(ndc(matrix, {0, 0, -1e30F}).z, 0.25F / 1e30F);
 }
@@ -38,7 +38,7 @@ TEST(Perspective, NearIsOneAndFarIsZero)
 TEST(Perspective, MatchesItsClosedForm)
 {
   const float near = 0.5F;
-  for (const float far : {30.0F, infinite}) {
+  for (const float far : {30.0F, infinity}) {
     const glm::mat4 matrix = perspective(0.75F, 0.5F, near, far);
     for (const double distance : {0.5, 0.7, 1.0, 5.0, 29.0}) {
       const double depth = std::isinf(far) ? near / distance : near * (far - distance) / (distance * (far - near));
@@ -53,12 +53,12 @@ TEST(Perspective, MatchesItsClosedForm)
 
 TEST(Perspective, FarPlaneAtInfinityIsTheLimit)
 {
-  const glm::mat4 infinite = perspective(1, 1, 0.1F, infinite);
+  const glm::mat4 endless = perspective(1, 1, 0.1F, infinity);
   const glm::mat4 distant = perspective(1, 1, 0.1F, 1e30F);
   for (int column = 0; column < 4; column++) {
     for (int row = 0; row < 4; row++) {
-      EXPECT_NEAR(infinite[column][row], distant[column][row], 1e-8F);
-      EXPECT_TRUE(std::isfinite(infinite[column][row]));
+      EXPECT_NEAR(endless[column][row], distant[column][row], 1e-8F);
+      EXPECT_TRUE(std::isfinite(endless[column][row]));
     }
   }
 }
@@ -130,7 +130,7 @@ TEST(View, PlanesOfAPerspectiveAreTheClosedForm)
   // |x| <= w·d and |y| <= h·d, near <= d <= far, where d = -z is the distance.
   const float w = 0.75F;
   const float h = 0.5F;
-  for (const float far : {40.0F, infinite}) {
+  for (const float far : {40.0F, infinity}) {
     const auto planes = View(glm::mat4(1), perspective(w, h, 0.5F, far)).frustum_planes_ws();
     const float side = 1 / std::sqrt(1 + w * w);
     const float up = 1 / std::sqrt(1 + h * h);
@@ -172,7 +172,7 @@ std::vector<View> random_views(std::mt19937 &random, int count)
         views.emplace_back(view_from_world, perspective(uniform(random), uniform(random), near, near + 20));
         break;
       case 1:
-        views.emplace_back(view_from_world, perspective(uniform(random), uniform(random), near, infinite));
+        views.emplace_back(view_from_world, perspective(uniform(random), uniform(random), near, infinity));
         break;
       default:
         views.emplace_back(view_from_world, orthographic(4 * uniform(random), 4 * uniform(random), near, near + 20));
@@ -238,7 +238,7 @@ TEST(View, CullsWhatIsBehindAPlaneByMoreThanItsRadius)
 
 TEST(View, FarAtInfinityCullsNothingInFront)
 {
-  const View view(glm::mat4(1), perspective(1, 1, 1, infinite));
+  const View view(glm::mat4(1), perspective(1, 1, 1, infinity));
   EXPECT_TRUE(view.touches({{0, 0, -1e20F}, 1}));
   EXPECT_FALSE(view.touches({{0, 0, 1e3F}, 1}));
 }

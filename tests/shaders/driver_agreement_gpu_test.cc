@@ -209,8 +209,8 @@ TEST_F(DriverAgreement, BlocksHaveTheSameSlotSizeAndOffsets)
     for (const BindingKind kind : {BindingKind::UniformBlock, BindingKind::StorageBlock}) {
       const auto blocks = program.blocks(kind);
       if (kind == BindingKind::UniformBlock && interface.push_constant_size_bytes > 0) {
-        compare(std::string(gpu::push_constant_block_name), interface.push_constant_slot, interface.push_constant_size_bytes,
-                offsets_of(interface.push_constant_members), blocks);
+        compare(std::string(gpu::push_constant_block_name), interface.push_constant_slot,
+                interface.push_constant_size_bytes, offsets_of(interface.push_constant_members), blocks);
         names.emplace(gpu::push_constant_block_name);
       }
       for (const gpu::ShaderInterface::Binding &binding : interface.bindings) {

@@ -13,13 +13,13 @@ namespace {
 template <typename F>
 double hemisphere_integral(F &&f)
 {
-  constexpr int N = 400000;
+  constexpr int count = 400000;
   double sum = 0.0;
-  for (int i = 0; i < N; i++) {
+  for (int i = 0; i < count; i++) {
     // t = s⁴ puts most points near the pole.
-    const double s = (i + 0.5) / N;
+    const double s = (i + 0.5) / count;
     const double sin_sq = s * s * s * s;
-    sum += f(std::sqrt(1.0 - sin_sq)) * 4.0 * s * s * s / N;
+    sum += f(std::sqrt(1.0 - sin_sq)) * 4.0 * s * s * s / count;
   }
   return std::numbers::pi * sum;
 }
@@ -42,16 +42,16 @@ TEST(GgxLobe, IsReciprocal)
 TEST(GgxLobe, ReflectsNoMoreThanItReceives)
 {
   // Directional albedo by quadrature over the light's directions, for a viewer at cos_v.
-  constexpr int N = 512;
+  constexpr int count = 512;
   for (const float alpha : {0.1F, 0.4F, 1.0F}) {
     for (const double cos_v : {0.1, 0.5, 0.95}) {
       const double sin_v = std::sqrt(1.0 - cos_v * cos_v);
       double albedo = 0.0;
-      for (int i = 0; i < N; i++) {
-        for (int j = 0; j < N; j++) {
-          const double cos_l = (i + 0.5) / N;
+      for (int i = 0; i < count; i++) {
+        for (int j = 0; j < count; j++) {
+          const double cos_l = (i + 0.5) / count;
           const double sin_l = std::sqrt(1.0 - cos_l * cos_l);
-          const double phi = 2.0 * std::numbers::pi * (j + 0.5) / N;
+          const double phi = 2.0 * std::numbers::pi * (j + 0.5) / count;
           const double x = sin_l * std::cos(phi) + sin_v;
           const double y = sin_l * std::sin(phi);
           const double z = cos_l + cos_v;
@@ -59,7 +59,7 @@ TEST(GgxLobe, ReflectsNoMoreThanItReceives)
           albedo += double(ggx_lobe(float(cos_l), float(cos_v), float(cos_h), alpha)) * cos_l;
         }
       }
-      albedo *= 2.0 * std::numbers::pi / (N * N);
+      albedo *= 2.0 * std::numbers::pi / (count * count);
       EXPECT_LE(albedo, 1.01) << "alpha " << alpha << ", cos " << cos_v;
       EXPECT_GE(albedo, 0.2);
     }

@@ -11,13 +11,13 @@
 namespace gnomon::shared {
 namespace {
 
-constexpr int KINDS[] = {PROJECTION_PERSPECTIVE, PROJECTION_PERSPECTIVE_INFINITE, PROJECTION_ORTHOGRAPHIC};
+constexpr int kinds[] = {PROJECTION_PERSPECTIVE, PROJECTION_PERSPECTIVE_INFINITE, PROJECTION_ORTHOGRAPHIC};
 
 TEST(DepthOfDistance, IsThatOfTheViewsMatrix)
 {
   for (const float near : {1e-3F, 0.1F, 2.0F}) {
     for (const float far : {3.0F, 100.0F, 1e5F}) {
-      for (const int kind : KINDS) {
+      for (const int kind : kinds) {
         const glm::mat4 clip_from_view =
             kind == PROJECTION_ORTHOGRAPHIC
                 ? draw::orthographic(1, 1, near, far)
@@ -39,7 +39,7 @@ TEST(DepthOfDistance, IsOneAtTheNearPlaneAndZeroAtTheFar)
 {
   for (const float near : {1e-4F, 0.3F, 7.0F}) {
     for (const float far : {7.5F, 1e3F, 1e7F}) {
-      for (const int kind : KINDS) {
+      for (const int kind : kinds) {
         EXPECT_EQ(depth_of_distance(near, near, far, kind), 1.0F);
         EXPECT_EQ(depth_of_distance(far, near, far, kind), kind == PROJECTION_PERSPECTIVE_INFINITE ? near / far : 0.0F);
         // In parallel projection a difference of distances as large as the far plane's.
@@ -56,7 +56,7 @@ TEST(DepthOfDistance, FallsWithDistanceAndComesBack)
 {
   const float near = 0.01F;
   const float far = 1e4F;
-  for (const int kind : KINDS) {
+  for (const int kind : kinds) {
     float before = std::numeric_limits<float>::infinity();
     for (float distance = near; distance < far; distance *= 1.01F) {
       const float depth = depth_of_distance(distance, near, far, kind);

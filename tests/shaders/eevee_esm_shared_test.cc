@@ -13,7 +13,7 @@ namespace gnomon::shared {
 namespace {
 
 /** As many as the prefilter takes. */
-constexpr int TAPS = 32;
+constexpr int tap_count = 32;
 
 float filtered(const std::vector<float> &values, float exponent)
 {
@@ -39,7 +39,7 @@ std::vector<float> taps(float base, float spread, unsigned seed)
 {
   std::mt19937 random(seed);
   std::vector<float> values;
-  for (int i = 0; i < TAPS; i++) {
+  for (int i = 0; i < tap_count; i++) {
     values.push_back(base + spread * (float(random()) / float(std::mt19937::max())));
   }
   return values;
@@ -94,7 +94,7 @@ TEST(LogSum, IsTheSameInAnyOrderAndAtAnyDistance)
 TEST(LogSum, OfEqualValuesIsTheirs)
 {
   for (const float value : {0.0F, 1e-3F, 17.0F, 1e6F, 1e30F}) {
-    EXPECT_EQ(filtered(std::vector<float>(TAPS, value), 80.0F), value);
+    EXPECT_EQ(filtered(std::vector<float>(tap_count, value), 80.0F), value);
   }
 }
 
@@ -108,7 +108,7 @@ float naive_sum(float weight_x, float x, float weight_y, float y)
 // hazards.md: what the tests above would see.
 TEST(LogSum, NaivelyIsInfiniteFrom89MetresOfSpread)
 {
-  const float weight = 1.0F / TAPS;
+  const float weight = 1.0F / tap_count;
   EXPECT_TRUE(std::isfinite(naive_sum(weight, 1.0F, weight, 1.0F + 88.0F)));
   const float lost = naive_sum(weight, 1.0F, weight, 1.0F + 89.0F);
   EXPECT_EQ(lost, std::numeric_limits<float>::infinity());

@@ -56,14 +56,14 @@ TEST(HemiIrradiance, IsTheShareOfTheSkyAboveTheHorizon)
 {
   // Cosine-weighted share of a half-space of directions seen from a plane tilted by t, by quadrature.
   for (const double tilt : {0.0, 0.7, std::numbers::pi / 2.0, 2.5, std::numbers::pi}) {
-    constexpr int N = 700;
+    constexpr int count = 700;
     double sum = 0.0;
-    for (int i = 0; i < N; i++) {
-      for (int j = 0; j < N; j++) {
-        const double z = (i + 0.5) / N;
-        const double phi = 2.0 * std::numbers::pi * (j + 0.5) / N;
+    for (int i = 0; i < count; i++) {
+      for (int j = 0; j < count; j++) {
+        const double z = (i + 0.5) / count;
+        const double phi = 2.0 * std::numbers::pi * (j + 0.5) / count;
         const double x = std::sqrt(1.0 - z * z) * std::cos(phi);
-        sum += std::max(0.0, x * std::sin(tilt) + z * std::cos(tilt)) * 2.0 / (double(N) * N);
+        sum += std::max(0.0, x * std::sin(tilt) + z * std::cos(tilt)) * 2.0 / (double(count) * count);
       }
     }
     EXPECT_NEAR(hemi_irradiance(float(std::cos(tilt))), sum, 2e-3) << tilt;

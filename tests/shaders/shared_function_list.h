@@ -20,7 +20,7 @@ namespace SHARED_NAMESPACE {
      return __VA_ARGS__; \
    }},
 
-inline constexpr gnomon::test::CompiledFunction<float> FUNCTIONS[] = {
+inline constexpr gnomon::test::CompiledFunction<float> compiled_functions[] = {
   FUNCTION(line_plane_distance, vec4(line_plane_distance(vec3(a), vec3(b), vec3(a.w, b.w, c.w), vec3(c)), 0, 0, 0))
   FUNCTION(rectangle_solid_angle, vec4(rectangle_solid_angle(vec3(a), vec3(b), vec3(c)), 0, 0, 0))
 

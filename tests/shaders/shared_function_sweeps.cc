@@ -97,7 +97,7 @@ std::vector<float> cosines(float low)
   return values;
 }
 
-constexpr std::array<float, 7> ALPHAS = {1e-3F, 2e-3F, 0.01F, 0.0625F, 0.3F, 0.7225F, 1.0F};
+constexpr std::array<float, 7> alphas = {1e-3F, 2e-3F, 0.01F, 0.0625F, 0.3F, 0.7225F, 1.0F};
 
 /** Ends, middles of edges, corners of a cube, ties, zeros of both signs. */
 std::vector<glm::vec3> special_directions()
@@ -204,13 +204,13 @@ dvec3 cube_coordinates(int face, dvec3 v)
     int sc, tc, ma;
     double sc_sign, tc_sign, ma_sign;
   };
-  constexpr std::array<Row, 6> ROWS = {{{2, 1, 0, -1, -1, 1},
+  constexpr std::array<Row, 6> rows = {{{2, 1, 0, -1, -1, 1},
                                         {2, 1, 0, 1, -1, -1},
                                         {0, 2, 1, 1, 1, 1},
                                         {0, 2, 1, 1, -1, -1},
                                         {0, 1, 2, 1, -1, 1},
                                         {0, 1, 2, -1, -1, -1}}};
-  const Row &row = ROWS[std::size_t(face)];
+  const Row &row = rows[std::size_t(face)];
   return {row.sc_sign * v[row.sc], row.tc_sign * v[row.tc], row.ma_sign * v[row.ma]};
 }
 
@@ -310,7 +310,7 @@ std::vector<Sweep> make_sweeps()
   {
     std::vector<In> arguments;
     for (const float c : cosines(0.0F)) {
-      for (const float alpha : ALPHAS) {
+      for (const float alpha : alphas) {
         arguments.push_back({.a = {c, alpha, 0, 0}});
       }
     }
@@ -321,7 +321,7 @@ std::vector<Sweep> make_sweeps()
   {
     std::vector<In> arguments;
     for (const float c : cosines(1e-6F)) {
-      for (const float alpha : ALPHAS) {
+      for (const float alpha : alphas) {
         arguments.push_back({.a = {c, alpha, 0, 0}});
       }
     }
@@ -339,7 +339,7 @@ std::vector<Sweep> make_sweeps()
                            [](Random &random) {
                              const std::array<float, 3> c = {random.uniform(0, 1), random.log_uniform(1e-4, 1),
                                                              1.0F - random.log_uniform(1e-7, 1)};
-                             return In{.a = {std::max(c[0], 1e-4F), c[1], c[2], random.one_of(ALPHAS)}};
+                             return In{.a = {std::max(c[0], 1e-4F), c[1], c[2], random.one_of(alphas)}};
                            }),
                       truth, truth, 0.5, 6, 16});
   }
@@ -664,8 +664,8 @@ std::vector<Sweep> make_sweeps()
 
 const std::vector<Sweep> &sweeps()
 {
-  static const std::vector<Sweep> SWEEPS = make_sweeps();
-  return SWEEPS;
+  static const std::vector<Sweep> all = make_sweeps();
+  return all;
 }
 
 Deviation deviation(const Sweep &sweep, std::span<const dvec4> results)

@@ -9,7 +9,7 @@ namespace gnomon::test {
 
 std::span<const CompiledFunction<double>> functions_in_double()
 {
-  return shared_double::FUNCTIONS;
+  return shared_double::compiled_functions;
 }
 
 }  // namespace gnomon::test

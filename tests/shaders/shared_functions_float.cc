@@ -8,7 +8,7 @@ namespace gnomon::test {
 
 std::span<const CompiledFunction<float>> functions_in_float()
 {
-  return shared::FUNCTIONS;
+  return shared::compiled_functions;
 }
 
 }  // namespace gnomon::test

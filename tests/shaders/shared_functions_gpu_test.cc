@@ -14,7 +14,7 @@ namespace {
 /** A pixel for each of a sweep's arguments. */
 class SharedFunctionGpu : public GpuDeviceTest, public testing::WithParamInterface<std::size_t> {
  protected:
-  static constexpr int WIDTH = 256;
+  static constexpr int width_px = 256;
 
   static const Sweep &sweep()
   {
@@ -25,19 +25,19 @@ class SharedFunctionGpu : public GpuDeviceTest, public testing::WithParamInterfa
   std::vector<glm::dvec4> results(std::string_view expression) const
   {
     const auto count = sweep().arguments.size();
-    const int height = int((count + WIDTH - 1) / WIDTH);
+    const int height = int((count + width_px - 1) / width_px);
     const ShaderTexts texts{{{"frag", fragment_text(expression)}}};
     const gpu::Shader shader = device->create_shader(
         {std::string(sweep().name), "draw/draw_fullscreen_vert.glsl", "", "frag", {}}, texts.files());
 
     std::vector<Arguments<float>> arguments = sweep().arguments;
-    arguments.resize(std::size_t(WIDTH) * std::size_t(height));
+    arguments.resize(std::size_t(width_px) * std::size_t(height));
     const auto bytes = std::as_bytes(std::span(arguments));
     const gpu::Buffer buffer = device->create_buffer({"argument_block", gpu::BufferKind::Storage, bytes.size()});
     device->update(buffer, 0, bytes);
 
-    const gpu::Texture picture =
-        device->create_texture({.name = "results", .format = gpu::Format::RGBA32F, .width = WIDTH, .height = height});
+    const gpu::Texture picture = device->create_texture(
+        {.name = "results", .format = gpu::Format::RGBA32F, .width = width_px, .height = height});
     const gpu::Framebuffer framebuffer = device->create_framebuffer({"results", {{&picture}}, {}});
     gpu::CommandList list;
     list.begin_pass("evaluate", framebuffer, {});
@@ -80,7 +80,7 @@ void main()
   result = {};
 }}
 )",
-                              WIDTH, expression);
+                              width_px, expression);
   }
 };
 
