@@ -17,11 +17,13 @@ inline std::unique_ptr<gpu::Device> testing_gl_device()
 {
   try {
     return gpu::create_gl_device({.is_debug = true});
-  } catch (const gpu::Error &error) {
+  }
+  catch (const gpu::Error &error) {
     const char *ci = std::getenv("CI");
     if (ci && *ci) {
       ADD_FAILURE() << "CI is set and there is no GPU device: " << error.what();
-    } else {
+    }
+    else {
       [&] { GTEST_SKIP() << error.what(); }();
     }
     return nullptr;

@@ -10,11 +10,10 @@ namespace gnomon::cli {
 /** Part of the promise, not of the program yet. */
 static void add_unbuilt(CLI::App &app)
 {
-  static constexpr std::array<std::array<const char *, 2>, 4> unbuilt = {
-      {{"report", "Error against run time"},
-       {"stability", "Stiff and extreme cases"},
-       {"bench", "Benchmarks"},
-       {"view", "A window on a scene"}}};
+  static constexpr std::array<std::array<const char *, 2>, 4> unbuilt = {{{"report", "Error against run time"},
+                                                                          {"stability", "Stiff and extreme cases"},
+                                                                          {"bench", "Benchmarks"},
+                                                                          {"view", "A window on a scene"}}};
   for (const auto &[name, purpose] : unbuilt) {
     CLI::App *command = app.add_subcommand(name, fmt::format("{} (not built yet)", purpose));
     command->allow_extras();

@@ -4,9 +4,9 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
+#include <unistd.h>
 #include <cmath>
 #include <stdexcept>
-#include <unistd.h>
 
 namespace gnomon::cli {
 

@@ -10,11 +10,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <unistd.h>
 #include <chrono>
 #include <cmath>
 #include <fstream>
 #include <optional>
-#include <unistd.h>
 
 namespace gnomon::cli {
 
@@ -139,7 +139,8 @@ eevee::Settings engine_settings(const RenderOptions &options)
   return settings;
 }
 
-template<typename T> std::vector<T> read_as(gpu::Device &device, const gpu::Texture &texture)
+template <typename T>
+std::vector<T> read_as(gpu::Device &device, const gpu::Texture &texture)
 {
   const std::vector<std::byte> bytes = device.read(texture);
   std::vector<T> values(bytes.size() / sizeof(T));
@@ -263,22 +264,22 @@ void render_frames(const RenderOptions &options, const scene::Camera &camera, ee
     result.frame_seconds.push_back(seconds_since(start));
     result.frame_steps.push_back(engine.take_step_times(viewport));
     const eevee::ShadowCounters now = engine.report(viewport).shadow_counters;
-    result.frame_shadows.push_back(
-        {now.lamps_updated - before.lamps_updated, now.faces_drawn - before.faces_drawn});
+    result.frame_shadows.push_back({now.lamps_updated - before.lamps_updated, now.faces_drawn - before.faces_drawn});
     before = now;
   }
 }
 
 /** \return Status::Done or Status::NonFinite; then nothing is written. */
 Status write_picture(const RenderOptions &options, const scene::Camera &camera, eevee::Engine &engine,
-                  draw::Viewport &viewport, RenderResult &result)
+                     draw::Viewport &viewport, RenderResult &result)
 {
   const glm::ivec2 size_px = viewport.size_px();
   const std::vector<float> radiance = read_as<float>(viewport.device(), engine.radiance(viewport));
   const NonFinite non_finite = find_non_finite(size_px, radiance);
   result.non_finite_count = non_finite.count;
   if (non_finite.count > 0) {
-    fmt::print(stderr, "gnomon: {}: {} values of the picture are not finite, the first at pixel ({}, {}); not written\n",
+    fmt::print(stderr,
+               "gnomon: {}: {} values of the picture are not finite, the first at pixel ({}, {}); not written\n",
                options.scene, non_finite.count, non_finite.first_px.x, non_finite.first_px.y);
     return Status::NonFinite;
   }
@@ -316,9 +317,8 @@ Status render(const RenderOptions &options)
 
   const Clock::time_point device_start = Clock::now();
   const std::unique_ptr<gpu::Device> device =
-      options.backend == "null" ?
-          gpu::create_null_device() :
-          gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()});
+      options.backend == "null" ? gpu::create_null_device()
+                                : gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()});
   result.device = device->description();
   result.device_seconds = seconds_since(device_start);
 
@@ -385,13 +385,17 @@ void add_render(CLI::App &app, Status &status)
   command->add_option("--shadow", o->shadow, "none, hard (pcf and esm are not built yet)")
       ->capture_default_str()
       ->check(CLI::IsMember({"none", "hard", "pcf", "esm"}));
-  command->add_option("--shadow-size", o->shadow_size, "Edge of every shadow layer, pixels (default: cubes 1024, maps 2048)")
+  command
+      ->add_option("--shadow-size", o->shadow_size,
+                   "Edge of every shadow layer, pixels (default: cubes 1024, maps 2048)")
       ->check(CLI::Range(1, 16384));
   command->add_option("--aov", o->aov, "Further layers to write (not built yet)");
   command->add_option("--view", o->view, "View transform of a PNG: standard, raw")
       ->capture_default_str()
       ->check(CLI::IsMember({"standard", "raw"}));
-  command->add_option("--exposure", o->exposure, "Stops, for a PNG")->capture_default_str()->check(CLI::Range(-64.0, 64.0));
+  command->add_option("--exposure", o->exposure, "Stops, for a PNG")
+      ->capture_default_str()
+      ->check(CLI::Range(-64.0, 64.0));
   command->add_option("--backend", o->backend, "gl, or null: record only, without a driver")
       ->capture_default_str()
       ->check(CLI::IsMember({"gl", "null"}));

@@ -55,7 +55,8 @@ std::string where(const Group &group)
   std::string what = join(shaders, ", ");
   if (variants.size() > 1) {
     what += fmt::format(", {} variants", variants.size());
-  } else if (!group.first->variant.empty()) {
+  }
+  else if (!group.first->variant.empty()) {
     what += " " + group.first->variant;
   }
   return fmt::format("{}; {}", what, join(targets, ", "));

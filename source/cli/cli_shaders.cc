@@ -176,12 +176,9 @@ gpu::ShaderStage required_stage(const std::string &file, const std::string &stag
 std::string &path_of(gpu::ShaderDesc &desc, gpu::ShaderStage stage)
 {
   switch (stage) {
-    case gpu::ShaderStage::Vertex:
-      return desc.vertex_path;
-    case gpu::ShaderStage::Geometry:
-      return desc.geometry_path;
-    case gpu::ShaderStage::Fragment:
-      break;
+    case gpu::ShaderStage::Vertex: return desc.vertex_path;
+    case gpu::ShaderStage::Geometry: return desc.geometry_path;
+    case gpu::ShaderStage::Fragment: break;
   }
   return desc.fragment_path;
 }

@@ -74,7 +74,8 @@ class EngineRegistry {
 };
 
 /** What an engine keeps with something of the host's, a lamp say, from frame to frame. */
-template<typename T> class EngineDataMap {
+template <typename T>
+class EngineDataMap {
  public:
   /** Default-constructed at the first ask; the reference holds until remove_from. */
   T &get(std::uint32_t host_index)

@@ -25,7 +25,8 @@ ShadingGroup::ShadingGroup(const gpu::Shader &shader, ObjectBuffer *objects)
 {
 }
 
-template<typename Value> void ShadingGroup::bind(gpu::BindingKind kind, std::string_view name, const Value &value)
+template <typename Value>
+void ShadingGroup::bind(gpu::BindingKind kind, std::string_view name, const Value &value)
 {
   const gpu::ShaderInterface::Binding *found = shader_.interface().find(kind, name);
   if (!found) {
@@ -166,13 +167,12 @@ void ShadingGroup::record_calls(const View &view, gpu::CommandList &list) const
     }
     // An empty batch begins where the next one does: the count tells them apart.
     if (has_draw && list.draws.back().first_index == call.batch.first_index &&
-        list.draws.back().index_count == call.batch.index_count)
-    {
+        list.draws.back().index_count == call.batch.index_count) {
       list.draws.back().instance_count += call.instance_count;
     }
     else {
-      list.draws.push_back({call.batch.index_count, call.instance_count, call.batch.first_index,
-                            call.batch.base_vertex, first_instance});
+      list.draws.push_back({call.batch.index_count, call.instance_count, call.batch.first_index, call.batch.base_vertex,
+                            first_instance});
       has_draw = true;
     }
   }
@@ -235,8 +235,8 @@ std::string Pass::serialize(const gpu::Device &device) const
         text += fmt::format(" = {}\n", device.name_of(gpu::ResourceKind::Buffer, range->buffer));
       }
       else {
-        text += fmt::format(" = {}\n", device.name_of(gpu::ResourceKind::Texture,
-                                                      std::get<TextureBinding>(binding.value).texture));
+        text += fmt::format(
+            " = {}\n", device.name_of(gpu::ResourceKind::Texture, std::get<TextureBinding>(binding.value).texture));
       }
     }
     for (const ShadingGroup::Constant &constant : group.constants_) {

@@ -47,8 +47,9 @@ class InstanceCall {
 };
 
 /**
- * Calls that share a shader and bindings. Drawn in this order: calls, instances, procedural calls. Made by Pass::group; lives as long as its pass. The shader must live
- * until the last record; what is bound by value until the last submission.
+ * Calls that share a shader and bindings. Drawn in this order: calls, instances, procedural calls. Made by Pass::group;
+ * lives as long as its pass. The shader must live until the last record; what is bound by value until the last
+ * submission.
  *
  * A name that the shader does not read is no error and binds nothing: the compiler may have dropped it.
  */
@@ -62,14 +63,16 @@ class ShadingGroup {
   void bind_texture_ref(std::string_view name, const TextureBinding *binding);
 
   /** A member of the push-constant block. \pre T is as large as the member: int, float, vectors, matrices. */
-  template<typename T> void constant(std::string_view name, const T &value)
+  template <typename T>
+  void constant(std::string_view name, const T &value)
   {
     if (Constant *constant = constant_entry(name, sizeof(T))) {
       constant->reference = nullptr;
       std::memcpy(constant_bytes_.data() + constant->offset_bytes, &value, sizeof(T));
     }
   }
-  template<typename T> void constant_ref(std::string_view name, const T *value)
+  template <typename T>
+  void constant_ref(std::string_view name, const T *value)
   {
     if (Constant *constant = constant_entry(name, sizeof(T))) {
       constant->reference = value;
@@ -129,7 +132,7 @@ class ShadingGroup {
 
   ShadingGroup(const gpu::Shader &shader, ObjectBuffer *objects);
 
-  template<typename Value>
+  template <typename Value>
   void bind(gpu::BindingKind kind, std::string_view name, const Value &value);
   /** Of the name, made at the first ask; nullptr where the shader has none. */
   [[nodiscard]] Constant *constant_entry(std::string_view name, std::size_t size_bytes);

@@ -49,7 +49,8 @@ class Viewport {
   }
 
   /** Made by the first ask of \a engine; lives as long as the viewport. \pre always asked with the same Data. */
-  template<typename Data> Data &engine_data(const Engine &engine)
+  template <typename Data>
+  Data &engine_data(const Engine &engine)
   {
     std::unique_ptr<EngineViewportData> &data = engine_data_[engine.id()];
     if (!data) {

@@ -40,14 +40,13 @@ void CommandList::bind_storage(int slot, const BufferRange &range)
 
 void CommandList::bind_texture(int slot, ResourceId texture, ResourceId sampler)
 {
-  commands_.push_back(
-      {.kind = CommandKind::BindTexture, .slot = std::uint32_t(slot), .id = texture, .first = sampler});
+  commands_.push_back({.kind = CommandKind::BindTexture, .slot = std::uint32_t(slot), .id = texture, .first = sampler});
 }
 
 void CommandList::push_constants(int slot, std::span<const std::byte> bytes)
 {
-  commands_.push_back({CommandKind::PushConstants, std::uint32_t(slot), 0, append_bytes(bytes),
-                       std::uint32_t(bytes.size())});
+  commands_.push_back(
+      {CommandKind::PushConstants, std::uint32_t(slot), 0, append_bytes(bytes), std::uint32_t(bytes.size())});
 }
 
 void CommandList::draw(std::uint32_t first, std::uint32_t count)
@@ -120,9 +119,9 @@ std::string CommandList::serialize(const Device &device) const
       case CommandKind::BindStorage:
         text += fmt::format("  {} {} -> {}", command.kind == CommandKind::BindUniform ? "uniform" : "storage",
                             name(ResourceKind::Buffer, command.id), command.slot);
-        text += command.count > 0 ? fmt::format(" [{}, {})\n", command.first, command.first + command.count) :
-                command.first > 0 ? fmt::format(" [{}, end)\n", command.first) :
-                                    "\n";
+        text += command.count > 0   ? fmt::format(" [{}, {})\n", command.first, command.first + command.count)
+                : command.first > 0 ? fmt::format(" [{}, end)\n", command.first)
+                                    : "\n";
         break;
       case CommandKind::BindTexture:
         text += fmt::format("  texture {} {} -> {}\n", name(ResourceKind::Texture, command.id),

@@ -44,7 +44,8 @@ void Device::message(std::string_view text) const
   }
 }
 
-template<typename Create> Resource Device::make(ResourceKind kind, const std::string &name, Create &&create)
+template <typename Create>
+Resource Device::make(ResourceKind kind, const std::string &name, Create &&create)
 {
   std::vector<Slot> &slots = slots_[std::size_t(kind)];
   std::vector<ResourceId> &free_ids = free_ids_[std::size_t(kind)];
@@ -156,8 +157,8 @@ Batch Device::create_batch(const BatchDesc &desc)
     throw Error("batch '{}': {} vertices and {} indices, and a batch takes {} of each", desc.name,
                 desc.positions.size(), desc.indices.size(), count_max);
   }
-  GNOMON_ASSERT(desc.normals.empty() || desc.normals.size() == desc.positions.size(), "batch '{}': {} normals, {} positions",
-                desc.name, desc.normals.size(), desc.positions.size());
+  GNOMON_ASSERT(desc.normals.empty() || desc.normals.size() == desc.positions.size(),
+                "batch '{}': {} normals, {} positions", desc.name, desc.normals.size(), desc.positions.size());
   GNOMON_ASSERT(std::ranges::all_of(desc.indices, [&](auto index) { return index < desc.positions.size(); }),
                 "batch '{}': an index reaches past its {} vertices", desc.name, desc.positions.size());
   BatchRange range;
@@ -271,8 +272,7 @@ void Device::count(const CommandList &list)
       default: break;
     }
   }
-  counters_.upload_bytes +=
-      list.draws.size() * sizeof(DrawIndirect) + list.instances.size() * sizeof(DrawInstance);
+  counters_.upload_bytes += list.draws.size() * sizeof(DrawIndirect) + list.instances.size() * sizeof(DrawInstance);
 }
 
 const std::string &Device::name_of(ResourceKind kind, ResourceId id) const

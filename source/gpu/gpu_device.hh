@@ -78,7 +78,7 @@ class Device {
 
   /** Write now: before anything submitted later. */
   void update(const Buffer &buffer, std::size_t offset_bytes, std::span<const std::byte> bytes);
-  template<typename T>
+  template <typename T>
   void update(const Buffer &buffer, const T &value)
   {
     update(buffer, 0, std::as_bytes(std::span(&value, 1)));
@@ -160,7 +160,8 @@ class Device {
   static constexpr std::size_t kind_count = std::size_t(ResourceKind::TimerQuery) + 1;
 
   /** Takes an id for \a name, calls \a create with it, and gives the id back where that throws. */
-  template<typename Create> Resource make(ResourceKind kind, const std::string &name, Create &&create);
+  template <typename Create>
+  Resource make(ResourceKind kind, const std::string &name, Create &&create);
   void release(ResourceKind kind, ResourceId id);
   void count(const CommandList &list);
 

@@ -15,7 +15,7 @@ namespace gnomon::gpu {
 struct Error : std::runtime_error {
   using std::runtime_error::runtime_error;
 
-  template<typename... Args>
+  template <typename... Args>
   explicit Error(fmt::format_string<Args...> format, Args &&...args)
       : std::runtime_error(fmt::format(format, std::forward<Args>(args)...))
   {

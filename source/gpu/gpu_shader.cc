@@ -12,12 +12,9 @@ namespace gnomon::gpu {
 std::string_view to_string(ShaderStage stage)
 {
   switch (stage) {
-    case ShaderStage::Vertex:
-      return "vertex";
-    case ShaderStage::Geometry:
-      return "geometry";
-    case ShaderStage::Fragment:
-      return "fragment";
+    case ShaderStage::Vertex: return "vertex";
+    case ShaderStage::Geometry: return "geometry";
+    case ShaderStage::Fragment: return "fragment";
   }
   return "?";
 }
@@ -25,12 +22,9 @@ std::string_view to_string(ShaderStage stage)
 std::string_view to_string(BindingKind kind)
 {
   switch (kind) {
-    case BindingKind::UniformBlock:
-      return "uniform";
-    case BindingKind::StorageBlock:
-      return "storage";
-    case BindingKind::Texture:
-      return "texture";
+    case BindingKind::UniformBlock: return "uniform";
+    case BindingKind::StorageBlock: return "storage";
+    case BindingKind::Texture: return "texture";
   }
   return "?";
 }
@@ -133,14 +127,16 @@ class Preprocessor {
       const std::string named = match[1];
       append_include(include_path_ ? include_path_(named, path) : named, path, number);
       append_position(number + 1, file);
-    } else if (std::regex_match(line, version_line)) {
+    }
+    else if (std::regex_match(line, version_line)) {
       has_version_ = true;
       source_.text += line + "\n";
       for (const std::string &define : desc_.defines) {
         source_.text += "#define " + define + "\n";
       }
       append_position(number + 1, file);
-    } else {
+    }
+    else {
       source_.text += (std::regex_match(line, once_line) ? "" : line) + "\n";
     }
   }
@@ -221,11 +217,13 @@ class Preprocessor {
     const std::string name = directive(line);
     if (name == "if" || name == "ifdef" || name == "ifndef") {
       branches_.push_back({++branch_count_, is_include_guard});
-    } else if ((name == "elif" || name == "else" || name == "endif") && !branches_.empty()) {
+    }
+    else if ((name == "elif" || name == "else" || name == "endif") && !branches_.empty()) {
       const bool had_include = branches_.back().has_include;
       if (name == "endif") {
         branches_.pop_back();
-      } else {
+      }
+      else {
         branches_.back().number = ++branch_count_;
       }
       return had_include;

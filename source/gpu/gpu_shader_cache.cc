@@ -2,14 +2,14 @@
 #include "gpu_shader_cache.hh"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <xxhash.h>
+#include <nlohmann/json.hpp>
 
+#include <unistd.h>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <sstream>
-#include <unistd.h>
 
 namespace gnomon::gpu {
 
@@ -52,8 +52,7 @@ nlohmann::json to_json(const CachedShader &shader)
 {
   nlohmann::json bindings = nlohmann::json::array();
   for (const ShaderInterface::Binding &binding : shader.interface.bindings) {
-    bindings.push_back(
-        {binding.name, int(binding.kind), binding.slot, binding.size_bytes, to_json(binding.members)});
+    bindings.push_back({binding.name, int(binding.kind), binding.slot, binding.size_bytes, to_json(binding.members)});
   }
   const auto *bytes = reinterpret_cast<const std::uint8_t *>(shader.binary.data());
   return {{"bindings", bindings},

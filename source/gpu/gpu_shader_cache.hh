@@ -10,15 +10,16 @@ namespace gnomon::gpu {
 
 /** What compiling a shader came to, without compiling it again. */
 struct CachedShader {
-  ShaderInterface interface{};
+  ShaderInterface interface {
+  };
   /** The driver's own name for the form of `binary`; 0 with an empty binary: the driver gave none. */
   std::uint32_t binary_format = 0;
   std::vector<std::byte> binary{};
 };
 
 /**
- * Compiled shaders on disk, a file each. A file that is missing, cut off, changed or another version's is no entry; one that
- * cannot be written is not written. So nothing about the folder can change a picture or end a program.
+ * Compiled shaders on disk, a file each. A file that is missing, cut off, changed or another version's is no entry; one
+ * that cannot be written is not written. So nothing about the folder can change a picture or end a program.
  */
 class ShaderDiskCache {
  public:

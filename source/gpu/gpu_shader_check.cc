@@ -188,10 +188,12 @@ class Checker {
   {
     try {
       c_.sources = preprocess(desc_, files_, options_.include_path);
-    } catch (const SourceError &error) {
+    }
+    catch (const SourceError &error) {
       add(Severity::Error, "include", error.file, error.line, error.text);
       return false;
-    } catch (const Error &error) {
+    }
+    catch (const Error &error) {
       const std::string &file = !desc_.vertex_path.empty()     ? desc_.vertex_path
                                 : !desc_.geometry_path.empty() ? desc_.geometry_path
                                                                : desc_.fragment_path;
@@ -286,7 +288,8 @@ class Checker {
       std::smatch match;
       if (std::regex_match(line, match, message_pattern)) {
         errors.emplace_back(match[1], "");
-      } else if (!errors.empty() && !line.empty()) {
+      }
+      else if (!errors.empty() && !line.empty()) {
         if (errors.back().second.empty() && std::regex_match(line, match, name_pattern)) {
           errors.back().second = match[1];
         }
@@ -441,7 +444,8 @@ class Checker {
         for (const BlockDifference &difference : differences(compare(c_, binding, *found, *layout))) {
           add(Severity::Error, "layout", difference.file, difference.line, difference.text);
         }
-      } else if (!options_.blocks.empty()) {
+      }
+      else if (!options_.blocks.empty()) {
         add(Severity::Error, "layout", found->stage, found->declaration->position,
             fmt::format("block '{}' is not in the table of C++ blocks", binding.name));
       }
@@ -550,9 +554,11 @@ std::vector<BlockDifference> differences(const BlockComparison &comparison)
     const std::string what = fmt::format("field '{}'{} in block '{}'", field.name, where, comparison.block);
     if (!field.cpp_offset_bytes) {
       missing.push_back({field.file, field.line, what + " is not in C++"});
-    } else if (!field.glsl_offset_bytes) {
+    }
+    else if (!field.glsl_offset_bytes) {
       missing.push_back({field.file, field.line, what + " is in C++ only"});
-    } else if (*field.cpp_offset_bytes != *field.glsl_offset_bytes) {
+    }
+    else if (*field.cpp_offset_bytes != *field.glsl_offset_bytes) {
       moved.push_back({field.file, field.line,
                        fmt::format("{} is at byte {}, in C++ at byte {}", what, *field.glsl_offset_bytes,
                                    *field.cpp_offset_bytes)});

@@ -107,8 +107,8 @@ void check_slots(std::string_view name, const ShaderInterface &interface)
     }
     if (interface.push_constant_size_bytes > 0 && b.kind == BindingKind::UniformBlock &&
         b.slot == interface.push_constant_slot) {
-      throw Error("shader '{}': {} '{}' and '{}' share slot {}", name, to_string(b.kind), push_constant_block_name, b.name,
-                  b.slot);
+      throw Error("shader '{}': {} '{}' and '{}' share slot {}", name, to_string(b.kind), push_constant_block_name,
+                  b.name, b.slot);
     }
   }
 }

@@ -73,7 +73,8 @@ glm::dmat4 matrix_of(const tinygltf::Node &node, const std::string &what, Warnin
     const double length = std::hypot(std::hypot(r[0], r[1]), std::hypot(r[2], r[3]));
     if (length > 0.0 && std::isfinite(length)) {
       matrix = glm::mat4_cast(glm::dquat(r[3] / length, r[0] / length, r[1] / length, r[2] / length));
-    } else {
+    }
+    else {
       warnings.add(what, "its rotation has no length and is not used");
     }
   }
@@ -311,11 +312,14 @@ Scene import_gltf(const std::filesystem::path &path)
     Scene scene = Importer(file).import();
     scene.path = path.string();
     return scene;
-  } catch (const Fault &fault) {
+  }
+  catch (const Fault &fault) {
     throw failed(fault.what());
-  } catch (const std::bad_alloc &) {
+  }
+  catch (const std::bad_alloc &) {
     throw failed("there is not enough memory for it");
-  } catch (const std::exception &error) {
+  }
+  catch (const std::exception &error) {
     // The libraries below throw what they like.
     throw failed(gltf::printable(error.what()));
   }

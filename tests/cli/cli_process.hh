@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/wait.h>
+#include <unistd.h>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -10,8 +12,6 @@
 #include <fstream>
 #include <sstream>
 #include <string>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace gnomon::test {
 
@@ -40,8 +40,8 @@ class ProgramTest : public testing::Test {
   /** \a arguments as a shell reads them. */
   Finished run(const std::string &arguments)
   {
-    const std::string command = "cd '" + folder.string() + "' && '" GNOMON_PROGRAM "' " + arguments +
-                                " > stdout.txt 2> stderr.txt < /dev/null";
+    const std::string command =
+        "cd '" + folder.string() + "' && '" GNOMON_PROGRAM "' " + arguments + " > stdout.txt 2> stderr.txt < /dev/null";
     const int status = std::system(command.c_str());
     Finished finished;
     finished.status = WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);

@@ -83,9 +83,10 @@ TEST_F(CliRenderTest, TheBrightestLampThatIsLetInIsFinite)
 
 TEST_F(CliRenderTest, WithoutAnyDriverTheAttemptsAreNamed)
 {
-  const std::string hide = "env -u DISPLAY -u WAYLAND_DISPLAY __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent '" GNOMON_PROGRAM "' ";
-  const std::string command = "cd '" + folder.string() + "' && " + hide + "render " + example("plaza") +
-                              " -o out.png 2> stderr.txt";
+  const std::string hide =
+      "env -u DISPLAY -u WAYLAND_DISPLAY __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent '" GNOMON_PROGRAM "' ";
+  const std::string command =
+      "cd '" + folder.string() + "' && " + hide + "render " + example("plaza") + " -o out.png 2> stderr.txt";
   const int status = std::system(command.c_str());
   ASSERT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 1);
@@ -99,7 +100,8 @@ TEST_F(CliRenderTest, TheShaderCacheChangesNoPictureWhateverIsInIt)
 {
   setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
   const auto from_cache = [&] {
-    const Finished finished = run("render " + example("plaza") + " -o out.exr --size 32x18 --samples 1 --json run.json");
+    const Finished finished =
+        run("render " + example("plaza") + " -o out.exr --size 32x18 --samples 1 --json run.json");
     EXPECT_EQ(finished.status, 0) << finished.err;
     return nlohmann::json::parse(read("run.json"))["counters"]["shaders_from_cache"].get<int>();
   };

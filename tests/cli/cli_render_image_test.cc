@@ -69,8 +69,7 @@ TEST_P(ReferenceTest, ErrorIsBelowBlenderEevees)
   OIIO::ImageBuf truth(std::string(GNOMON_TEST_DATA) + "/scenes/" + c.reference);
   ASSERT_TRUE(truth.read(0, 0, true, OIIO::TypeDesc::FLOAT)) << truth.geterror();
   const glm::ivec2 size_px{truth.spec().width, truth.spec().height};
-  const scene::Scene scene =
-      scene::import_gltf(std::string(GNOMON_SOURCE) + "/examples/scenes/" + c.scene + ".glb");
+  const scene::Scene scene = scene::import_gltf(std::string(GNOMON_SOURCE) + "/examples/scenes/" + c.scene + ".glb");
   const std::vector<float> rgb = render(*device, scene, size_px, c.samples);
   ASSERT_TRUE(std::ranges::all_of(rgb, [](float value) { return std::isfinite(value); }));
 
@@ -98,7 +97,8 @@ TEST_P(ReferenceTest, ErrorIsBelowBlenderEevees)
   EXPECT_LE(outliers / pixel_count, c.outliers_max);
   if (HasFailure()) {
     const auto folder = std::filesystem::current_path();
-    OIIO::ImageBuf ours(OIIO::ImageSpec(size_px.x, size_px.y, 3, OIIO::TypeDesc::FLOAT), const_cast<float *>(rgb.data()));
+    OIIO::ImageBuf ours(OIIO::ImageSpec(size_px.x, size_px.y, 3, OIIO::TypeDesc::FLOAT),
+                        const_cast<float *>(rgb.data()));
     const std::string stem = (folder / fmt::format("{}-{}", c.scene, c.samples)).string();
     ours.write(stem + ".exr");
     OIIO::ImageBufAlgo::mul(difference, 20.0F).write(stem + ".difference-x20.png");

@@ -30,8 +30,7 @@ TEST_F(CliTest, WrongUsageEndsWithTwoAndSaysWhy)
        {"", "paint", "render", "render x.glb", "render x.glb -o x.jpg", "render x.glb -o x.png --size 64",
         "render x.glb -o x.png --size 0x9", "render x.glb -o x.png --size 64x64x", "render x.glb -o x.png --samples 0",
         "render x.glb -o x.png --samples many", "render x.glb -o x.png --shadow soft", "render x.glb -o x.png --what",
-        "render x.glb -o x.png --backend vulkan", "render x.glb -o x.png --shadow-size -4"})
-  {
+        "render x.glb -o x.png --backend vulkan", "render x.glb -o x.png --shadow-size -4"}) {
     const Finished finished = run(arguments);
     EXPECT_EQ(finished.status, 2) << arguments;
     EXPECT_FALSE(finished.err.empty()) << arguments;
@@ -40,10 +39,9 @@ TEST_F(CliTest, WrongUsageEndsWithTwoAndSaysWhy)
 
 TEST_F(CliTest, WhatIsNotBuiltEndsWithTwoAndSaysSo)
 {
-  for (const std::string arguments :
-       {"report a.glb -o d", "stability -o d", "bench", "view a.glb", "render a.glb -o a.png --frames 1-3",
-        "render a.glb -o a.png --aov depth", "render a.glb -o a.png --shadow esm", "render a.glb -o a.png --shadow pcf"})
-  {
+  for (const std::string arguments : {"report a.glb -o d", "stability -o d", "bench", "view a.glb",
+                                      "render a.glb -o a.png --frames 1-3", "render a.glb -o a.png --aov depth",
+                                      "render a.glb -o a.png --shadow esm", "render a.glb -o a.png --shadow pcf"}) {
     const Finished finished = run(arguments);
     EXPECT_EQ(finished.status, 2) << arguments;
     EXPECT_NE(finished.err.find("not built yet"), std::string::npos) << arguments << ": " << finished.err;

@@ -171,9 +171,7 @@ std::vector<View> random_views(std::mt19937 &random, int count)
       case 0:
         views.emplace_back(view_from_world, perspective(uniform(random), uniform(random), near, near + 20));
         break;
-      case 1:
-        views.emplace_back(view_from_world, perspective(uniform(random), uniform(random), near, infinity));
-        break;
+      case 1: views.emplace_back(view_from_world, perspective(uniform(random), uniform(random), near, infinity)); break;
       default:
         views.emplace_back(view_from_world, orthographic(4 * uniform(random), 4 * uniform(random), near, near + 20));
         break;

@@ -298,7 +298,8 @@ TEST_F(HostContextGpu, StateOfTheHostDoesNotReachThePicture)
     hostility.set();
     try {
       EXPECT_EQ(small_picture(*device), SMALL_PICTURE);
-    } catch (const Error &error) {
+    }
+    catch (const Error &error) {
       ADD_FAILURE() << error.what();
     }
     hostility.unset();

@@ -63,14 +63,16 @@ TEST(RangeAllocator, RandomSequenceFollowsAFirstFitModel)
         if (expected >= 0) {
           ASSERT_EQ(first, expected) << "step " << step << ", seed " << seed;
           ASSERT_EQ(allocator.capacity(), capacity_before) << "grown although there was room";
-        } else {
+        }
+        else {
           ASSERT_GT(allocator.capacity(), capacity_before);
           ASSERT_TRUE(std::has_single_bit(allocator.capacity()));
         }
         ASSERT_LE(first + count, allocator.capacity());
         model.set(first, count, step);
         live.push_back({first, count});
-      } else {
+      }
+      else {
         const std::size_t i = random() % live.size();
         allocator.free(live[i].first, live[i].count);
         model.set(live[i].first, live[i].count, 0);

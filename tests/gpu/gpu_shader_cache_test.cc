@@ -18,9 +18,12 @@ class ShaderDiskCacheTest : public testing::Test {
   {
     std::string pattern = (fs::temp_directory_path() / "gnomon_cache.XXXXXX").string();
     folder = mkdtemp(pattern.data());
-    shader.interface.bindings = {
-        {"light_block", BindingKind::UniformBlock, 10, 16336, {{"light_data.light_count", 0, 4}, {"light_data.lights[0].color", 32, 12}}},
-        {"shadow_maps", BindingKind::Texture, 17, 0, {}}};
+    shader.interface.bindings = {{"light_block",
+                                  BindingKind::UniformBlock,
+                                  10,
+                                  16336,
+                                  {{"light_data.light_count", 0, 4}, {"light_data.lights[0].color", 32, 12}}},
+                                 {"shadow_maps", BindingKind::Texture, 17, 0, {}}};
     shader.interface.push_constant_members = {{"shadow_face", 0, 4}};
     shader.interface.push_constant_size_bytes = 4;
     shader.interface.push_constant_slot = 8;
@@ -122,8 +125,10 @@ TEST(ShaderDiskCacheKey, DependsOnAllThatTheResultDoes)
   EXPECT_EQ(key, ShaderDiskCache::key_of(stages, "driver 1"));
   EXPECT_NE(key, ShaderDiskCache::key_of(stages, "driver 2"));
   EXPECT_NE(key, ShaderDiskCache::key_of({stages[0]}, "driver 1"));
-  EXPECT_NE(key, ShaderDiskCache::key_of({{ShaderStage::Vertex, "b", {}}, {ShaderStage::Fragment, "a", {}}}, "driver 1"));
-  EXPECT_NE(key, ShaderDiskCache::key_of({{ShaderStage::Vertex, "ab", {}}, {ShaderStage::Fragment, "", {}}}, "driver 1"));
+  EXPECT_NE(key,
+            ShaderDiskCache::key_of({{ShaderStage::Vertex, "b", {}}, {ShaderStage::Fragment, "a", {}}}, "driver 1"));
+  EXPECT_NE(key,
+            ShaderDiskCache::key_of({{ShaderStage::Vertex, "ab", {}}, {ShaderStage::Fragment, "", {}}}, "driver 1"));
 }
 
 }  // namespace

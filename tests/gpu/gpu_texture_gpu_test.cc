@@ -79,9 +79,7 @@ TEST_F(TextureGpu, UploadComesBackAsItWas)
         std::uniform_real_distribution<float> uniform(0, 1);
         for (std::size_t i = 0; i < texel_count * std::size_t(gpu::texel_size_bytes(format)); i++) {
           switch (format) {
-            case Format::RGBA8:
-              append(std::byte(random()));
-              break;
+            case Format::RGBA8: append(std::byte(random())); break;
             case Format::RGBA16F:
             case Format::R16F:
               append(glm::packHalf1x16(uniform(random) * 100));

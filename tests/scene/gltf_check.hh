@@ -134,7 +134,8 @@ inline std::string import_error(const std::string &content, const std::string &n
   const std::filesystem::path path = folder.write(name, content);
   try {
     (void)scene::import_gltf(path);
-  } catch (const scene::ImportError &error) {
+  }
+  catch (const scene::ImportError &error) {
     const std::string message = error.what();
     const std::string prefix = path.string() + ": ";
     EXPECT_EQ(message.rfind(prefix, 0), 0U) << message;

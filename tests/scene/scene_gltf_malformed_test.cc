@@ -18,7 +18,8 @@ TEST(GltfDoor, MissingFileIsNamed)
   try {
     (void)scene::import_gltf(folder.path() / "nowhere.glb");
     FAIL();
-  } catch (const scene::ImportError &error) {
+  }
+  catch (const scene::ImportError &error) {
     EXPECT_HAS(std::string(error.what()), "nowhere.glb: file: there is no such file");
   }
 }
@@ -436,20 +437,15 @@ std::string mutated(const std::string &original, std::mt19937 &random)
   for (std::size_t i = 0; i < change_count; i++) {
     const std::size_t at = below(result.size());
     switch (below(4)) {
-      case 0:
-        result[at] = static_cast<char>(below(256));
-        break;
-      case 1:
-        result[at] = static_cast<char>(result[at] ^ static_cast<char>(1U << below(8)));
-        break;
+      case 0: result[at] = static_cast<char>(below(256)); break;
+      case 1: result[at] = static_cast<char>(result[at] ^ static_cast<char>(1U << below(8))); break;
       case 2: {
         // Digits become other digits, so that the JSON stays whole more often.
         constexpr std::string_view characters = "0123456789-.e\"[]{},:";
         result[at] = characters[below(characters.size())];
         break;
       }
-      default:
-        result.erase(at, 1 + below(8));
+      default: result.erase(at, 1 + below(8));
     }
     if (result.empty()) {
       break;
@@ -468,7 +464,8 @@ void expect_survives(const std::string &original, const std::string &name, int c
     try {
       expect_valid(scene::import_gltf(path));
       kept++;
-    } catch (const scene::ImportError &) {
+    }
+    catch (const scene::ImportError &) {
     }
     if (::testing::Test::HasFailure()) {
       // Left for whoever looks into it.
@@ -541,7 +538,8 @@ TEST(GltfFuzz, OddValuesAnywhereImportOrFailCleanly)
     try {
       expect_valid(scene::import_gltf(path));
       kept++;
-    } catch (const scene::ImportError &) {
+    }
+    catch (const scene::ImportError &) {
     }
     ASSERT_FALSE(::testing::Test::HasFailure()) << builder.document.dump();
   }
@@ -568,7 +566,8 @@ TEST(GltfModels, AssimpsImportOrSayWhyNot)
       try {
         expect_valid(scene::import_gltf(entry.path()));
         ok_count++;
-      } catch (const scene::ImportError &error) {
+      }
+      catch (const scene::ImportError &error) {
         EXPECT_HAS(std::string(error.what()), entry.path().string() + ": ");
         error_count++;
       }

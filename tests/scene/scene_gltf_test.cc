@@ -799,7 +799,8 @@ TEST(GltfLamp, BadValuesAreErrorsThatNameLampKeyAndValue)
   const json point = {{"type", "point"}};
   const json sun = {{"type", "directional"}};
   const json spot = {{"type", "spot"}, {"spot", json::object()}};
-  EXPECT_HAS(lamp_error(point, {{"gnomon_radius", -1}}), "lamp 'lamp': gnomon_radius is -1, and must be from 0 to 1e+12");
+  EXPECT_HAS(lamp_error(point, {{"gnomon_radius", -1}}),
+             "lamp 'lamp': gnomon_radius is -1, and must be from 0 to 1e+12");
   EXPECT_HAS(lamp_error(point, {{"gnomon_radius", "big"}}),
              "lamp 'lamp': gnomon_radius is 'big', and must be a number");
   EXPECT_HAS(lamp_error(point, {{"gnomon_radius", true}}), "gnomon_radius is true");

@@ -172,6 +172,10 @@ TEST(OctahedralTexel, OutsideIsTheNeighbourOnTheSphere)
         const ivec2 texel = octahedral_texel(outside, size);
         EXPECT_TRUE(texel.x >= 0 && texel.x < size && texel.y >= 0 && texel.y < size);
         EXPECT_LE(angle(direction(inside), direction(texel)), widest * 1.0001F) << outside.x << " " << outside.y;
+        // The edge lies on a plane of symmetry, over which the map goes on.
+        vec3 mirrored = direction(inside);
+        mirrored[inside.x == outside.x ? 0 : 1] *= -1.0F;
+        EXPECT_LE(angle(mirrored, direction(texel)), 5e-7F) << outside.x << " " << outside.y;
       }
     }
   }

@@ -180,6 +180,9 @@ double solid_angle_condition(const Exact &in)
   return (glm::length(center) + size) * std::min(2.0 / rim, 4.0 * size / (rim * rim));
 }
 
+/** Where parallels are said to meet. */
+constexpr double line_far = 1e16F;
+
 double ggx_distribution(double c, double alpha)
 {
   const double t = c * c * (alpha * alpha - 1.0) + 1.0;
@@ -224,9 +227,11 @@ std::vector<In> depth_arguments(bool is_distance)
     const float share = random.uniform(0, 1);
     float x = share;
     if (is_distance) {
-      // From half the near plane's distance to beyond the far one.
-      x = random.one_of(std::array{near, far, near + share * (far - near), random.log_uniform(0.5 * near, 2.0 * far)});
-    } else {
+      // From behind the eye to beyond the far plane.
+      x = random.one_of(std::array{near, far, near + share * (far - near), random.log_uniform(0.5 * near, 2.0 * far),
+                                   0.0F, -share * near});
+    }
+    else {
       x = random.one_of(std::array{0.0F, 1.0F, share, random.log_uniform(1e-12, 1.0)});
     }
     return In{.a = glm::vec4(x, near, far, float(projection))};
@@ -262,18 +267,29 @@ std::vector<Sweep> make_sweeps()
                     many(20000,
                          [](Random &random) {
                            const glm::vec3 point = random.box(100.0);
-                           return In{glm::vec4(random.box(100.0), point.x), glm::vec4(random.direction(), point.y),
-                                     glm::vec4(random.direction(), point.z)};
+                           In in{glm::vec4(random.box(100.0), point.x), glm::vec4(random.direction(), point.y),
+                                 glm::vec4(random.direction(), point.z)};
+                           if (random.uniform(0, 1) < 0.05F) {
+                             // Parallel, or nearly; at times in the plane.
+                             in.c = {0, 0, 1, point.z};
+                             in.b.z = random.one_of(std::array{0.0F, -0.0F, 1e-30F, -1e-30F, 1e-12F});
+                             in.a.z = random.one_of(std::array{in.a.z, point.z});
+                           }
+                           return in;
                          }),
                     [](const Exact &in) {
                       const dvec3 n(in.c);
-                      const dvec3 p(in.a.w, in.b.w, in.c.w);
-                      return one(glm::dot(n, p - dvec3(in.a)) / glm::dot(n, dvec3(in.b)));
+                      const double height = glm::dot(n, dvec3(in.a.w, in.b.w, in.c.w) - dvec3(in.a));
+                      const double rise = glm::dot(n, dvec3(in.b));
+                      if (std::abs(height) >= line_far * std::abs(rise)) {
+                        return one((height < 0.0) == (rise < 0.0) ? line_far : -line_far);
+                      }
+                      return one(height / rise);
                     },
                     [](const Exact &in) {
                       const dvec3 n(in.c);
                       const dvec3 to_plane = dvec3(in.a.w, in.b.w, in.c.w) - dvec3(in.a);
-                      const double rise = std::abs(glm::dot(n, dvec3(in.b)));
+                      const double rise = std::max(std::abs(glm::dot(n, dvec3(in.b))), 1e-30);
                       const double t = std::abs(glm::dot(n, to_plane)) / rise;
                       return one((glm::length(to_plane) + t) / rise);
                     },
@@ -359,29 +375,26 @@ std::vector<Sweep> make_sweeps()
 
   sweeps.push_back({"depth_of_distance", depth_arguments(true),
                     [](const Exact &in) {
+                      // In front of the eye by no less.
                       const long double d = in.a.x;
+                      const long double in_front = std::max(d, static_cast<long double>(1e-30F));
                       const long double n = in.a.y;
                       const long double f = in.a.z;
                       switch (int(in.a.w)) {
-                        case PROJECTION_PERSPECTIVE:
-                          return one(double(n * (f - d) / (d * (f - n))));
-                        case PROJECTION_PERSPECTIVE_INFINITE:
-                          return one(double(n / d));
-                        default:
-                          return one(double((f - d) / (f - n)));
+                        case PROJECTION_PERSPECTIVE: return one(double(n * (f - d) / (in_front * (f - n))));
+                        case PROJECTION_PERSPECTIVE_INFINITE: return one(double(n / in_front));
+                        default: return one(double((f - d) / (f - n)));
                       }
                     },
                     [](const Exact &in) {
                       const double d = in.a.x;
+                      const double in_front = std::max(d, 1e-30);
                       const double n = in.a.y;
                       const double f = in.a.z;
                       switch (int(in.a.w)) {
-                        case PROJECTION_PERSPECTIVE:
-                          return one(std::abs(n * (f - d) / (d * (f - n))));
-                        case PROJECTION_PERSPECTIVE_INFINITE:
-                          return one(n / d);
-                        default:
-                          return one(std::abs((f - d) / (f - n)));
+                        case PROJECTION_PERSPECTIVE: return one(std::abs(n * (f - d) / (in_front * (f - n))));
+                        case PROJECTION_PERSPECTIVE_INFINITE: return one(n / in_front);
+                        default: return one(std::abs((f - d) / (f - n)));
                       }
                     },
                     1e-6, 3, 6});
@@ -393,10 +406,8 @@ std::vector<Sweep> make_sweeps()
                       switch (int(in.a.w)) {
                         case PROJECTION_PERSPECTIVE:
                           return one(double(1.0L / (depth * (1.0L / n - 1.0L / f) + 1.0L / f)));
-                        case PROJECTION_PERSPECTIVE_INFINITE:
-                          return one(double(n / std::max(depth, 1e-30L)));
-                        default:
-                          return one(double(depth * n + (1.0L - depth) * f));
+                        case PROJECTION_PERSPECTIVE_INFINITE: return one(double(n / std::max(depth, 1e-30L)));
+                        default: return one(double(depth * n + (1.0L - depth) * f));
                       }
                     },
                     [](const Exact &in) {
@@ -404,12 +415,9 @@ std::vector<Sweep> make_sweeps()
                       const double n = in.a.y;
                       const double f = in.a.z;
                       switch (int(in.a.w)) {
-                        case PROJECTION_PERSPECTIVE:
-                          return one(1.0 / (depth * (1.0 / n - 1.0 / f) + 1.0 / f));
-                        case PROJECTION_PERSPECTIVE_INFINITE:
-                          return one(n / std::max(depth, 1e-30));
-                        default:
-                          return one(f);
+                        case PROJECTION_PERSPECTIVE: return one(1.0 / (depth * (1.0 / n - 1.0 / f) + 1.0 / f));
+                        case PROJECTION_PERSPECTIVE_INFINITE: return one(n / std::max(depth, 1e-30));
+                        default: return one(f);
                       }
                     },
                     0.5, 3, 6});
@@ -680,7 +688,8 @@ Deviation deviation(const Sweep &sweep, std::span<const dvec4> results)
       double epsilons = difference / (double(std::numeric_limits<float>::epsilon()) * magnitude[k]);
       if (difference == 0.0) {
         epsilons = 0.0;
-      } else if (!std::isfinite(epsilons)) {
+      }
+      else if (!std::isfinite(epsilons)) {
         epsilons = std::numeric_limits<double>::infinity();
       }
       if (epsilons > worst.epsilons) {

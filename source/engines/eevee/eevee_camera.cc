@@ -15,11 +15,10 @@ draw::View view_of(const scene::Camera &camera, glm::ivec2 size_px)
   const float image_aspect = float(size_px.x) / float(size_px.y);
   // A float just below pi has a tangent on the other side of infinity.
   constexpr float angle_max = 3.1415F;
-  float half_height =
-      is_perspective ? std::tan(0.5F * std::min(camera.vertical_angle, angle_max)) : camera.half_height;
-  const float frame_aspect = !is_perspective       ? camera.half_width / camera.half_height :
-                             camera.aspect > 0.0F ? camera.aspect :
-                                                    image_aspect;
+  float half_height = is_perspective ? std::tan(0.5F * std::min(camera.vertical_angle, angle_max)) : camera.half_height;
+  const float frame_aspect = !is_perspective        ? camera.half_width / camera.half_height
+                             : camera.aspect > 0.0F ? camera.aspect
+                                                    : image_aspect;
   if (image_aspect < frame_aspect) {
     half_height *= frame_aspect / image_aspect;
   }

@@ -99,7 +99,7 @@ struct Data final : draw::EngineViewportData {
 };
 
 /** The device's time for what \a work submits, added to the step's. */
-template<typename Work>
+template <typename Work>
 void timed(bool is_timed, gpu::Device &device, Timing &timing, const char *name, Work &&work)
 {
   if (!is_timed) {
@@ -310,8 +310,7 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
   list.end_pass();
   submit_step("lit");
 
-  const FilmWeights weights =
-      film_weights(samples_drawn, settings_.sample_count, settings_.seed, stl.film_weight_sum);
+  const FilmWeights weights = film_weights(samples_drawn, settings_.sample_count, settings_.seed, stl.film_weight_sum);
   stl.film_columns = glm::vec4(weights.columns, 0.0F);
   stl.film_rows = glm::vec4(weights.rows, 0.0F);
   const bool is_first = samples_drawn == 0;
@@ -363,8 +362,7 @@ std::string Engine::serialize_passes(draw::Viewport &viewport) const
   const Data &data = viewport.engine_data<Data>(*this);
   std::string text;
   for (const draw::Pass *pass : {&data.psl->shadow_pass, &data.psl->depth_pass, &data.psl->depth_pass_cull,
-                                 &data.psl->pass, &data.psl->film_pass, &data.psl->tonemap})
-  {
+                                 &data.psl->pass, &data.psl->film_pass, &data.psl->tonemap}) {
     text += pass->serialize(viewport.device());
   }
   return text;
@@ -387,8 +385,8 @@ Report Engine::report(draw::Viewport &viewport) const
   const std::string no_shadow = settings_.shadow.method == ShadowMethod::None ? "shadows are off" : "no such lamp";
   part("light_block", has(f, Feature::Light), fmt::format("{} lights", stl.lamps.light_block.light_count),
        "no lamp gives light");
-  part("shadow_cubes", has(f, Feature::ShadowCube), fmt::format("{} point lamps or wide spots", stl.shadows.cube_count()),
-       no_shadow);
+  part("shadow_cubes", has(f, Feature::ShadowCube),
+       fmt::format("{} point lamps or wide spots", stl.shadows.cube_count()), no_shadow);
   part("shadow_maps", has(f, Feature::ShadowMap), fmt::format("{} suns or spots", stl.shadows.map_count()), no_shadow);
   part("shadow_pass", !data.psl->shadow_pass.is_empty(), "casters for the lamps' shadows",
        has(f, Feature::ShadowCube | Feature::ShadowMap) ? "no caster" : "no shadow");

@@ -8,7 +8,8 @@
 
 namespace gnomon::eevee {
 
-/** Width over which the pixel filter falls to nothing, pixels: Blackman-Harris of 1.5 px in Cycles' and EEVEE's terms. */
+/** Width over which the pixel filter falls to nothing, pixels: Blackman-Harris of 1.5 px in Cycles' and EEVEE's terms.
+ */
 inline constexpr double filter_support_px = 3.0;
 
 /** Blackman-Harris (Harris 1978): 1 in the middle, 0 from half the support on. */

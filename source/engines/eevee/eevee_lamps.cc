@@ -30,14 +30,12 @@ bool gives_light(const scene::Lamp &lamp)
 void warn_of_size(const scene::Lamp &lamp, std::vector<std::string> &warnings)
 {
   if (lamp.radius > 0.0F) {
-    warnings.push_back(
-        fmt::format("lamp '{}': penumbrae are not drawn yet; its radius of {:g} m softens no shadow", lamp.name,
-                    lamp.radius));
+    warnings.push_back(fmt::format("lamp '{}': penumbrae are not drawn yet; its radius of {:g} m softens no shadow",
+                                   lamp.name, lamp.radius));
   }
   if (lamp.angle > 0.0F) {
-    warnings.push_back(
-        fmt::format("lamp '{}': penumbrae are not drawn yet; its angle of {:g} rad softens no shadow", lamp.name,
-                    lamp.angle));
+    warnings.push_back(fmt::format("lamp '{}': penumbrae are not drawn yet; its angle of {:g} rad softens no shadow",
+                                   lamp.name, lamp.angle));
   }
 }
 

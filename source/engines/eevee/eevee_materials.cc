@@ -11,13 +11,13 @@ shared::MaterialData material_data(const scene::Material &material)
 {
   // glTF 2.0, appendix B, and KHR_materials_specular; 0.04 is a dielectric of index 1.5.
   constexpr float dielectric_f0 = 0.04F;
-  const glm::vec3 dielectric =
-      glm::min(dielectric_f0 * material.specular_color, glm::vec3(1.0F)) * material.specular;
+  const glm::vec3 dielectric = glm::min(dielectric_f0 * material.specular_color, glm::vec3(1.0F)) * material.specular;
   shared::MaterialData data{};
   data.diffuse = material.base_color * (1.0F - material.metallic);
   data.alpha = std::max(material.roughness * material.roughness, shared::ALPHA_MIN);
   data.specular_f0 = glm::mix(dielectric, material.base_color, material.metallic);
-  // Grazing reflection fades with f0 below 2 %, so that black specular is Lambertian (Lagarde and de Rousiers 2014, 3.2).
+  // Grazing reflection fades with f0 below 2 %, so that black specular is Lambertian (Lagarde and de Rousiers
+  // 2014, 3.2).
   const float strongest = std::max({data.specular_f0.r, data.specular_f0.g, data.specular_f0.b});
   data.specular_f90 = std::min(50.0F * strongest, 1.0F);
   data.emissive = material.emissive;

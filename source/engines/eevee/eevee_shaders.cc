@@ -98,7 +98,8 @@ std::vector<std::string> ShaderCache::reload(gpu::Device &device, gpu::ShaderFil
   for (auto &[key, shader] : shaders_) {
     try {
       shader = device.create_shader(shader_desc(declarations.at(std::size_t(key.first)), key.second), files_);
-    } catch (const gpu::Error &error) {
+    }
+    catch (const gpu::Error &error) {
       failures.emplace_back(error.what());
     }
   }

@@ -69,8 +69,7 @@ draw::View shadow_spot_view(const scene::Lamp &lamp, float near, int size_px)
 {
   const float cone = std::tan(lamp.spot_outer_angle);
   const float half_size = std::max(cone * float(size_px) / float(std::max(size_px - 2, 1)), 1e-4F);
-  return {lamp_from_world(lamp),
-          draw::perspective(half_size, half_size, near, std::numeric_limits<float>::infinity())};
+  return {lamp_from_world(lamp), draw::perspective(half_size, half_size, near, std::numeric_limits<float>::infinity())};
 }
 
 namespace {
@@ -134,8 +133,7 @@ std::optional<SunFit> fit_sun(const scene::Lamp &lamp, const std::vector<glm::dv
   for (const scene::Bounds &caster : casters_ws) {
     const LampBox box = box_in(from_world, caster);
     const bool overlaps = box.min.x <= receivers.max.x && box.max.x >= receivers.min.x &&
-                          box.min.y <= receivers.max.y && box.max.y >= receivers.min.y &&
-                          box.max.z >= receivers.min.z;
+                          box.min.y <= receivers.max.y && box.max.y >= receivers.min.y && box.max.z >= receivers.min.z;
     if (overlaps && can_darken(caster, receiver_bounds, forward_ws)) {
       casters.extend(box.min);
       casters.extend(box.max);

@@ -22,8 +22,7 @@ std::vector<Polygon> box_faces(const scene::Bounds &bounds)
   }
   std::vector<Polygon> faces;
   for (const auto &face : {std::array{0, 1, 3, 2}, std::array{4, 5, 7, 6}, std::array{0, 1, 5, 4},
-                           std::array{2, 3, 7, 6}, std::array{0, 2, 6, 4}, std::array{1, 3, 7, 5}})
-  {
+                           std::array{2, 3, 7, 6}, std::array{0, 2, 6, 4}, std::array{1, 3, 7, 5}}) {
     Polygon polygon;
     for (const int corner : face) {
       polygon.push_back(corners[std::size_t(corner)]);

@@ -76,8 +76,7 @@ std::unique_ptr<GlContext> create_on(EGLDisplay display, const std::string &way,
   EGLConfig config = EGL_NO_CONFIG_KHR;
   EGLint config_count = 0;
   if (!has_extension(display, "EGL_KHR_no_config_context") &&
-      (!eglChooseConfig(display, config_wanted.data(), &config, 1, &config_count) || config_count == 0))
-  {
+      (!eglChooseConfig(display, config_wanted.data(), &config, 1, &config_count) || config_count == 0)) {
     return failed("no config for OpenGL");
   }
   const std::array<EGLint, 9> wanted = {EGL_CONTEXT_MAJOR_VERSION,
@@ -100,7 +99,8 @@ std::unique_ptr<GlContext> create_on(EGLDisplay display, const std::string &way,
   return std::make_unique<EglContext>(display, context, way);
 }
 
-template<typename Function> Function egl_function(const char *name)
+template <typename Function>
+Function egl_function(const char *name)
 {
   return reinterpret_cast<Function>(eglGetProcAddress(name));
 }
@@ -129,8 +129,7 @@ std::unique_ptr<GlContext> create_on_device(bool is_debug, Attempts &attempts)
   for (EGLint i = 0; i < count; i++) {
     const std::string way = fmt::format("EGL device {}", i);
     if (auto context = create_on(get_display(EGL_PLATFORM_DEVICE_EXT, devices[std::size_t(i)], nullptr), way, is_debug,
-                                 attempts))
-    {
+                                 attempts)) {
       return context;
     }
   }

@@ -69,7 +69,9 @@ Limits query_limits()
 class GlDevice final : public Device {
  public:
   GlDevice(std::unique_ptr<GlContext> context, const GlDeviceDesc &desc)
-      : Device(query_limits(), desc.sink, desc.shader_cache_folder), context_(std::move(context)), is_debug_(desc.is_debug && context_)
+      : Device(query_limits(), desc.sink, desc.shader_cache_folder),
+        context_(std::move(context)),
+        is_debug_(desc.is_debug && context_)
   {
     if (is_debug_) {
       glEnable(GL_DEBUG_OUTPUT);
@@ -88,7 +90,8 @@ class GlDevice final : public Device {
     glVertexArrayAttribIFormat(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, 2, GL_UNSIGNED_INT, 0);
     glVertexArrayAttribBinding(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, ATTRIBUTE_DRAW_INSTANCE);
     glVertexArrayBindingDivisor(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, 1);
-    glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, streams_[InstanceStream], 0, sizeof(DrawInstance));
+    glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, streams_[InstanceStream], 0,
+                              sizeof(DrawInstance));
     // Procedural draws need a vertex array too, and must not read the batches'.
     glCreateVertexArrays(1, &empty_vertex_array_);
   }
@@ -173,9 +176,7 @@ class GlDevice final : public Device {
     const GLenum internal = gl_format(desc.format).internal;
     switch (desc.kind) {
       case TextureKind::Flat:
-      case TextureKind::Cube:
-        glTextureStorage2D(texture, desc.mip_levels, internal, desc.width, desc.height);
-        break;
+      case TextureKind::Cube: glTextureStorage2D(texture, desc.mip_levels, internal, desc.width, desc.height); break;
       case TextureKind::Array:
       case TextureKind::CubeArray:
         glTextureStorage3D(texture, desc.mip_levels, internal, desc.width, desc.height, desc.layer_count());
@@ -398,8 +399,7 @@ class GlDevice final : public Device {
     const GLuint name = textures_.at(texture.id());
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     for (const GLenum parameter : {GL_UNPACK_SWAP_BYTES, GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_ROWS,
-                                   GL_UNPACK_SKIP_PIXELS, GL_UNPACK_IMAGE_HEIGHT, GL_UNPACK_SKIP_IMAGES})
-    {
+                                   GL_UNPACK_SKIP_PIXELS, GL_UNPACK_IMAGE_HEIGHT, GL_UNPACK_SKIP_IMAGES}) {
       glPixelStorei(parameter, 0);
     }
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -419,8 +419,7 @@ class GlDevice final : public Device {
     const GlFormat format = gl_format(desc.format);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     for (const GLenum parameter : {GL_PACK_SWAP_BYTES, GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS, GL_PACK_SKIP_PIXELS,
-                                   GL_PACK_IMAGE_HEIGHT, GL_PACK_SKIP_IMAGES})
-    {
+                                   GL_PACK_IMAGE_HEIGHT, GL_PACK_SKIP_IMAGES}) {
       glPixelStorei(parameter, 0);
     }
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
@@ -609,8 +608,7 @@ void GlDevice::list_submit(const CommandList &list)
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   for (const GLenum capability :
        {GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_POLYGON_OFFSET_FILL, GL_FRAMEBUFFER_SRGB, GL_RASTERIZER_DISCARD,
-        GL_PRIMITIVE_RESTART, GL_SAMPLE_ALPHA_TO_COVERAGE, GL_COLOR_LOGIC_OP})
-  {
+        GL_PRIMITIVE_RESTART, GL_SAMPLE_ALPHA_TO_COVERAGE, GL_COLOR_LOGIC_OP}) {
     glDisable(capability);
   }
   glDepthRange(0.0, 1.0);

@@ -31,12 +31,9 @@ void initialize_glslang()
 EShLanguage glslang_language(ShaderStage stage)
 {
   switch (stage) {
-    case ShaderStage::Vertex:
-      return EShLangVertex;
-    case ShaderStage::Geometry:
-      return EShLangGeometry;
-    case ShaderStage::Fragment:
-      return EShLangFragment;
+    case ShaderStage::Vertex: return EShLangVertex;
+    case ShaderStage::Geometry: return EShLangGeometry;
+    case ShaderStage::Fragment: return EShLangFragment;
   }
   return EShLangVertex;
 }
@@ -58,7 +55,8 @@ bool GlslangProgram::add(const ShaderSource &source, GlslangTarget target)
     shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, vulkan_dialect);
     shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_2);
     shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_5);
-  } else {
+  }
+  else {
     constexpr int opengl_dialect = 100;
     const bool is_spirv = target == GlslangTarget::OpenGlSpirv;
     shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientOpenGL,

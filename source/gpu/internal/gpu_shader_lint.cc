@@ -52,12 +52,15 @@ std::string without_comments(std::string_view line, bool &is_in_comment)
         is_in_comment = false;
         i++;
       }
-    } else if (two == "/*") {
+    }
+    else if (two == "/*") {
       is_in_comment = true;
       i++;
-    } else if (two == "//") {
+    }
+    else if (two == "//") {
       break;
-    } else {
+    }
+    else {
       code += line[i];
     }
   }
@@ -131,13 +134,17 @@ std::string type_name(const TType &type, bool is_arrayed = false)
   std::string name;
   if (type.isStruct()) {
     name = text_of(type.getTypeName());
-  } else if (found == names.end()) {
+  }
+  else if (found == names.end()) {
     name = "sampler";
-  } else if (type.isMatrix()) {
+  }
+  else if (type.isMatrix()) {
     name = fmt::format("{}mat{}x{}", found->second.second, type.getMatrixCols(), type.getMatrixRows());
-  } else if (type.getVectorSize() > 1) {
+  }
+  else if (type.getVectorSize() > 1) {
     name = fmt::format("{}vec{}", found->second.second, type.getVectorSize());
-  } else {
+  }
+  else {
     name = found->second.first;
   }
   const int dimension_count = type.isArray() ? type.getArraySizes()->getNumDims() : 0;
@@ -190,10 +197,8 @@ bool is_assignment(TOperator op)
     case glslang::EOpPostIncrement:
     case glslang::EOpPostDecrement:
     case glslang::EOpPreIncrement:
-    case glslang::EOpPreDecrement:
-      return true;
-    default:
-      return op >= glslang::EOpAddAssign && op <= glslang::EOpRightShiftAssign;
+    case glslang::EOpPreDecrement: return true;
+    default: return op >= glslang::EOpAddAssign && op <= glslang::EOpRightShiftAssign;
   }
 }
 
@@ -357,12 +362,10 @@ bool is_share(const TIntermTyped *node)
     case glslang::EOpClamp:
     case glslang::EOpFract:
     case glslang::EOpSmoothStep:
-    case glslang::EOpStep:
-      return true;
+    case glslang::EOpStep: return true;
     case glslang::EOpMul:
       return is_share(node->getAsBinaryNode()->getLeft()) && is_share(node->getAsBinaryNode()->getRight());
-    default:
-      return false;
+    default: return false;
   }
 }
 
@@ -390,46 +393,32 @@ std::string danger(const FunctionFacts &facts, TOperator op, TIntermTyped *argum
   const bool is_length = source == glslang::EOpLength || source == glslang::EOpDistance;
   switch (op) {
     case glslang::EOpAcos:
-    case glslang::EOpAsin:
-      return is_dot ? "by rounding a scalar product may lie beyond [-1, 1]" : "";
+    case glslang::EOpAsin: return is_dot ? "by rounding a scalar product may lie beyond [-1, 1]" : "";
     case glslang::EOpSqrt:
     case glslang::EOpPow:
       return (is_difference && !is_rest_of_one(facts, value)) || (is_dot && !is_square) ? "it may be below 0" : "";
     case glslang::EOpInverseSqrt:
     case glslang::EOpLog:
-    case glslang::EOpLog2:
-      return is_difference || is_dot || is_length ? "it may be 0 or below" : "";
-    case glslang::EOpNormalize:
-      return is_difference || source == glslang::EOpCross ? "it may be the zero vector" : "";
+    case glslang::EOpLog2: return is_difference || is_dot || is_length ? "it may be 0 or below" : "";
+    case glslang::EOpNormalize: return is_difference || source == glslang::EOpCross ? "it may be the zero vector" : "";
     case glslang::EOpDiv:
-    case glslang::EOpDivAssign:
-      return is_difference || is_dot || is_length ? "it may be 0" : "";
-    default:
-      return {};
+    case glslang::EOpDivAssign: return is_difference || is_dot || is_length ? "it may be 0" : "";
+    default: return {};
   }
 }
 
 std::string_view operator_name(TOperator op)
 {
   switch (op) {
-    case glslang::EOpAcos:
-      return "acos of";
-    case glslang::EOpAsin:
-      return "asin of";
-    case glslang::EOpSqrt:
-      return "sqrt of";
-    case glslang::EOpPow:
-      return "pow of";
-    case glslang::EOpInverseSqrt:
-      return "inversesqrt of";
-    case glslang::EOpLog:
-      return "log of";
-    case glslang::EOpLog2:
-      return "log2 of";
-    case glslang::EOpNormalize:
-      return "normalize of";
-    default:
-      return "division by";
+    case glslang::EOpAcos: return "acos of";
+    case glslang::EOpAsin: return "asin of";
+    case glslang::EOpSqrt: return "sqrt of";
+    case glslang::EOpPow: return "pow of";
+    case glslang::EOpInverseSqrt: return "inversesqrt of";
+    case glslang::EOpLog: return "log of";
+    case glslang::EOpLog2: return "log2 of";
+    case glslang::EOpNormalize: return "normalize of";
+    default: return "division by";
   }
 }
 
@@ -469,8 +458,7 @@ class LoopSteps : public TIntermTraverser {
     // A test with a step of its own, `i-- > 0`, or one that calls a function, is taken for what it looks like.
     const std::vector<TIntermTyped *> sides = arguments_of(test);
     switch (operator_of(test)) {
-      case glslang::EOpLogicalAnd:
-        return std::ranges::any_of(sides, [&](TIntermTyped *side) { return bound(side); });
+      case glslang::EOpLogicalAnd: return std::ranges::any_of(sides, [&](TIntermTyped *side) { return bound(side); });
       case glslang::EOpLessThan:
       case glslang::EOpGreaterThan:
       case glslang::EOpLessThanEqual:
@@ -481,8 +469,7 @@ class LoopSteps : public TIntermTraverser {
           return is_assignment(operator_of(side)) ||
                  std::ranges::any_of(paths_of(side), [&](const std::string &read) { return stepped_.contains(read); });
         });
-      default:
-        return false;
+      default: return false;
     }
   }
 
@@ -622,7 +609,8 @@ class StageReader : public TIntermTraverser {
     if (aggregate->getOp() == glslang::EOpFunction) {
       functions.push_back(aggregate);
       function_ = text_of(aggregate->getName());
-    } else if (aggregate->getOp() == glslang::EOpFunctionCall) {
+    }
+    else if (aggregate->getOp() == glslang::EOpFunctionCall) {
       calls[function_].insert(text_of(aggregate->getName()));
     }
     return true;
@@ -667,12 +655,14 @@ void check_array(const TType &type, const BlockMember &member, bool is_std140, s
                         fmt::format("'{}': a matrix with {} rows takes 16 bytes a column in a block; C++ has {}",
                                     member.name, type.getMatrixRows(), 4 * type.getMatrixRows()),
                         type.getMatrixRows() == 3});
-  } else if (type.isArray() && type.isVector() && type.getVectorSize() == 3) {
+  }
+  else if (type.isArray() && type.isVector() && type.getVectorSize() == 3) {
     findings.push_back(
         {"block-array", member.position,
          fmt::format("'{}': an array of vec3 takes 16 bytes an element in a block; C++ has 12", member.name), true});
-  } else if (type.isArray() && is_std140 && !type.isMatrix() && type.getVectorSize() < 4 &&
-             type.getBasicType() != glslang::EbtDouble) {
+  }
+  else if (type.isArray() && is_std140 && !type.isMatrix() && type.getVectorSize() < 4 &&
+           type.getBasicType() != glslang::EbtDouble) {
     findings.push_back(
         {"block-array", member.position,
          fmt::format("'{}': an array of {} takes 16 bytes an element in a std140 block; C++ has {}", member.name,
@@ -733,10 +723,12 @@ void add_declaration(const TIntermSymbol &symbol, const StageReader &reader, con
         declaration.slot = qualifier.isPushConstant() ? -1 : declaration.slot;
       }
       (is_buffer ? facts.storage_blocks : facts.uniform_blocks).push_back(std::move(declaration));
-    } else if (type.containsOpaque()) {
+    }
+    else if (type.containsOpaque()) {
       facts.textures.push_back(std::move(declaration));
     }
-  } else if (qualifier.isPipeInput() || qualifier.isPipeOutput()) {
+  }
+  else if (qualifier.isPipeInput() || qualifier.isPipeOutput()) {
     declaration.position = lines.find_declaration(declaration.name, qualifier.isPipeInput() ? "in" : "out");
     declaration.location_count = location_count(type, language);
     (qualifier.isPipeInput() ? facts.inputs : facts.outputs).push_back(std::move(declaration));

@@ -18,16 +18,12 @@ std::size_t component_size(int component_type)
 {
   switch (component_type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return 1;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
     case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return 2;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT:
-      return 4;
-    default:
-      return 0;
+    case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
+    default: return 0;
   }
 }
 
@@ -97,7 +93,8 @@ AccessorReader::AccessorReader(const File &file, int accessor_index, int type)
       throw Fault(what_, "runs past the end of bufferView " + std::to_string(accessor_.bufferView) + ": count is " +
                              std::to_string(accessor_.count));
     }
-  } else if (accessor_.count > empty_count_max) {
+  }
+  else if (accessor_.count > empty_count_max) {
     throw Fault(what_, "count " + std::to_string(accessor_.count) + " is too large for an accessor without bufferView");
   }
   if (accessor_.sparse.isSparse) {
@@ -148,18 +145,12 @@ const unsigned char *AccessorReader::element(std::size_t index) const
 float AccessorReader::component(const unsigned char *bytes) const
 {
   switch (accessor_.componentType) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-      return from_integer<std::int8_t>(bytes, accessor_.normalized);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return from_integer<std::uint8_t>(bytes, accessor_.normalized);
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-      return from_integer<std::int16_t>(bytes, accessor_.normalized);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return from_integer<std::uint16_t>(bytes, accessor_.normalized);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-      return from_integer<std::uint32_t>(bytes, accessor_.normalized);
-    default:
-      return loaded<float>(bytes);
+    case TINYGLTF_COMPONENT_TYPE_BYTE: return from_integer<std::int8_t>(bytes, accessor_.normalized);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return from_integer<std::uint8_t>(bytes, accessor_.normalized);
+    case TINYGLTF_COMPONENT_TYPE_SHORT: return from_integer<std::int16_t>(bytes, accessor_.normalized);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return from_integer<std::uint16_t>(bytes, accessor_.normalized);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return from_integer<std::uint32_t>(bytes, accessor_.normalized);
+    default: return loaded<float>(bytes);
   }
 }
 
@@ -187,12 +178,9 @@ std::uint32_t AccessorReader::integer(std::size_t index) const
     return 0;
   }
   switch (element_size_) {
-    case 1:
-      return loaded<std::uint8_t>(bytes);
-    case 2:
-      return loaded<std::uint16_t>(bytes);
-    default:
-      return loaded<std::uint32_t>(bytes);
+    case 1: return loaded<std::uint8_t>(bytes);
+    case 2: return loaded<std::uint16_t>(bytes);
+    default: return loaded<std::uint32_t>(bytes);
   }
 }
 

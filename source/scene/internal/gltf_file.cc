@@ -102,7 +102,8 @@ Chunks split_glb(ByteSpan bytes)
     const ByteSpan content = bytes.subspan(offset, chunk_size);
     if (type == json_type && chunks.json.empty()) {
       chunks.json = content;
-    } else if (type == binary_type && chunks.binary.empty()) {
+    }
+    else if (type == binary_type && chunks.binary.empty()) {
       chunks.binary = content;
     }
     offset += chunk_size;
@@ -117,7 +118,8 @@ json parse_json(ByteSpan bytes)
 {
   try {
     return json::parse(bytes.begin(), bytes.end());
-  } catch (const json::exception &error) {
+  }
+  catch (const json::exception &error) {
     // "[json.exception.parse_error.101] parse error at ...": the identifier says nothing to a user.
     const std::string_view message = error.what();
     const std::size_t prefix_end = message.find("] ");
@@ -167,9 +169,11 @@ class BufferLoader {
     if (uri != buffer.end()) {
       const auto &uri_text = uri->get_ref<const std::string &>();
       bytes = uri_text.rfind("data:", 0) == 0 ? from_data_uri(what, uri_text) : from_file(what, uri_text);
-    } else if (index == 0 && !binary_chunk_.empty()) {
+    }
+    else if (index == 0 && !binary_chunk_.empty()) {
       bytes = binary_chunk_;
-    } else {
+    }
+    else {
       // Legal: an extension that we do not read fills it.
       file_.buffers.emplace_back();
       return;

@@ -136,7 +136,8 @@ class LampReader {
     const std::string shape = string("gnomon_shape", "rectangle");
     if (shape == "disk" || shape == "ellipse") {
       lamp_.area_shape = AreaShape::Ellipse;
-    } else if (shape != "square" && shape != "rectangle") {
+    }
+    else if (shape != "square" && shape != "rectangle") {
       fail("gnomon_shape", '\'' + printable(shape) + '\'', "'square', 'rectangle', 'disk' or 'ellipse'");
     }
     lamp_.area_size_x = number("gnomon_size_x", 1.0, length_range);
@@ -276,7 +277,8 @@ class LampReader {
       const auto extra = std::find_if(known.begin(), known.end(), [&](const Extra &e) { return e.key == key; });
       if (extra == known.end()) {
         warnings_.add(what_, "extra '" + printable(key) + "' is unknown");
-      } else if (std::find(extra->kinds.begin(), extra->kinds.end(), lamp_.kind) == extra->kinds.end()) {
+      }
+      else if (std::find(extra->kinds.begin(), extra->kinds.end(), lamp_.kind) == extra->kinds.end()) {
         warnings_.add(what_, "extra '" + key + "' does not apply to this kind of lamp");
       }
     }
@@ -347,9 +349,11 @@ glm::dmat4 frame_of(const glm::dmat4 &world)
   glm::dvec3 y;
   if (const auto across = direction_across(y_given, z)) {
     y = *across;
-  } else if (const auto x_across = direction_across(x_given, z)) {
+  }
+  else if (const auto x_across = direction_across(x_given, z)) {
     y = glm::cross(z, *x_across);
-  } else {
+  }
+  else {
     y = any_across(z);
   }
   const glm::dvec3 x = glm::cross(y, z);
@@ -391,7 +395,8 @@ std::optional<Camera> camera_on(const File &file, int node_index, const glm::dma
     camera.aspect = narrowed(source.perspective.aspectRatio);
     camera.near = narrowed(source.perspective.znear);
     camera.far = narrowed(source.perspective.zfar);
-  } else {
+  }
+  else {
     camera.kind = CameraKind::Orthographic;
     camera.half_width = narrowed(source.orthographic.xmag);
     camera.half_height = narrowed(source.orthographic.ymag);

@@ -119,9 +119,11 @@ class MaterialReader {
     result_.alpha_cutoff = clamped("alphaCutoff", source_.alphaCutoff, 1.0);
     if (source_.alphaMode == "MASK") {
       result_.alpha_mode = AlphaMode::Mask;
-    } else if (source_.alphaMode == "BLEND") {
+    }
+    else if (source_.alphaMode == "BLEND") {
       result_.alpha_mode = AlphaMode::Blend;
-    } else if (source_.alphaMode != "OPAQUE") {
+    }
+    else if (source_.alphaMode != "OPAQUE") {
       warnings_.add(what_, "alphaMode '" + printable(source_.alphaMode) + "' is unknown, taken for OPAQUE");
     }
     if (result_.alpha_mode != AlphaMode::Opaque) {
@@ -180,7 +182,8 @@ std::uint32_t MaterialImporter::index_of(int gltf_material)
   const auto [place, is_new] = index_of_.try_emplace(gltf_material, static_cast<std::uint32_t>(materials_.size()));
   if (is_new && gltf_material < 0) {
     materials_.emplace_back().name = "default";
-  } else if (is_new) {
+  }
+  else if (is_new) {
     const tinygltf::Material &source = file_.model.materials[gltf_material];
     materials_.push_back(MaterialReader(source, static_cast<std::size_t>(gltf_material), warnings_).read());
   }

@@ -89,11 +89,8 @@ std::vector<Triangle> triangles_of(int mode, std::uint32_t count, Losses &losses
         // Every other triangle is turned round, so that all face the same way.
         triangles.push_back({i, i + 1 + i % 2, i + 2 - i % 2});
         break;
-      case TINYGLTF_MODE_TRIANGLE_FAN:
-        triangles.push_back({i + 1, i + 2, 0});
-        break;
-      default:
-        triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+      case TINYGLTF_MODE_TRIANGLE_FAN: triangles.push_back({i + 1, i + 2, 0}); break;
+      default: triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
   }
   return triangles;
@@ -143,7 +140,8 @@ class PrimitiveReader {
     Mesh mesh;
     if (normals_) {
       share_vertices(triangles, mesh);
-    } else {
+    }
+    else {
       unshare_vertices(triangles, mesh);
     }
     for (const glm::vec3 &position : mesh.positions) {
@@ -199,7 +197,8 @@ class PrimitiveReader {
       if (normals_->count() != positions_.count()) {
         throw Fault("NORMAL", "count differs from that of POSITION");
       }
-    } catch (const Fault &fault) {
+    }
+    catch (const Fault &fault) {
       normals_.reset();
       warnings_.add(what_, std::string("flat normals made instead: ") + fault.what());
     }
@@ -371,7 +370,8 @@ void MeshImporter::import_primitive(int gltf_mesh, std::size_t primitive_index, 
     PrimitiveReader reader(file_, primitive, what, warnings_);
     spend(reader.element_count());
     mesh = reader.read();
-  } catch (const Fault &fault) {
+  }
+  catch (const Fault &fault) {
     warnings_.add_counted(what, 1, std::string("primitive left out: ") + fault.what());
     return;
   }

@@ -223,9 +223,7 @@ void Checker::check_value(const Place &place, json &value, const Property &prope
            std::all_of(value.begin(), value.end(), [](const json &element) { return element.is_number(); });
   };
   switch (property.kind) {
-    case Kind::Index:
-      check_index(place, value, property.array);
-      break;
+    case Kind::Index: check_index(place, value, property.array); break;
     case Kind::Indices:
       if (!value.is_array()) {
         fail(place, value, "an array of indices");

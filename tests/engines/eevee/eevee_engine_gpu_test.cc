@@ -97,7 +97,8 @@ TEST_F(EngineGpuTest, LightsAddUp)
   for (int i = 0; i < LIGHT_MAX; i++) {
     test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, 0.1F);
   }
-  EXPECT_NEAR(render(above, {.shadow = {.method = ShadowMethod::None}}).middle().r, 0.8F / PI * 0.1F * LIGHT_MAX, 1e-3F);
+  EXPECT_NEAR(render(above, {.shadow = {.method = ShadowMethod::None}}).middle().r, 0.8F / PI * 0.1F * LIGHT_MAX,
+              1e-3F);
 }
 
 TEST_F(EngineGpuTest, EmissionIsSeenWithoutLamps)
@@ -335,9 +336,9 @@ TEST_F(EngineGpuTest, AnEditedShaderIsReloadedAndABadEditKeepsTheLastGoodOne)
   const auto reload = [&](const std::string &replacement) {
     edited = original;
     edited.replace(edited.find(line), line.size(), replacement);
-    const auto failures = renderer.engine.reload_shaders(
-        renderer.viewport,
-        [&](std::string_view file) { return file == path ? std::optional<std::string_view>(edited) : shaders::file(file); });
+    const auto failures = renderer.engine.reload_shaders(renderer.viewport, [&](std::string_view file) {
+      return file == path ? std::optional<std::string_view>(edited) : shaders::file(file);
+    });
     renderer.sync();
     return failures;
   };
@@ -346,7 +347,8 @@ TEST_F(EngineGpuTest, AnEditedShaderIsReloadedAndABadEditKeepsTheLastGoodOne)
 
   const std::vector<std::string> failures = reload("radiance = vec4(sum * 3.0, 1.0) oops;");
   ASSERT_EQ(failures.size(), 1U);
-  const auto line_number = std::count(original.begin(), original.begin() + std::ptrdiff_t(original.find(line)), '\n') + 1;
+  const auto line_number =
+      std::count(original.begin(), original.begin() + std::ptrdiff_t(original.find(line)), '\n') + 1;
   EXPECT_NE(failures[0].find(path + ":" + std::to_string(line_number)), std::string::npos) << failures[0];
   EXPECT_FLOAT_EQ(renderer.picture(above).middle().r, 2.0F);
 }
@@ -356,8 +358,7 @@ TEST_F(EngineGpuTest, DisplayIsTheViewTransformOfTheRadiance)
   scene.materials[0].emissive = {0.5F, 0.001F, 4.0F};
   add_square({0, 0, 0}, {0, 0, 1}, 10.0F, square);
   for (const ViewTransform transform : {ViewTransform::Standard, ViewTransform::Raw}) {
-    Renderer renderer(*device, scene, {8, 8},
-                      {.has_display = true, .view_transform = transform, .exposure = -1.0F});
+    Renderer renderer(*device, scene, {8, 8}, {.has_display = true, .view_transform = transform, .exposure = -1.0F});
     renderer.draw(above);
     const std::vector<std::byte> pixels = device->read(renderer.engine.display(renderer.viewport));
     const auto encoded = [&](double linear) {

@@ -37,8 +37,7 @@ TEST_F(EngineTest, MakesNothingForALampThatIsNotThere)
   renderer.draw(camera);
   const Report report = renderer.engine.report(renderer.viewport);
   for (const char *what : {"light_block", "shadow_cubes", "shadow_maps", "shadow_pass", "depth_pass_cull",
-                           "specular in eevee_lit", "tonemap"})
-  {
+                           "specular in eevee_lit", "tonemap"}) {
     EXPECT_FALSE(is_made(report, what)) << what;
   }
   // depth, radiance, film; the programs depth, lit and film.
@@ -66,9 +65,8 @@ TEST_F(EngineTest, MakesWhatTheSceneAsksFor)
   Renderer renderer(*device, scene, {16, 16}, settings);
   renderer.draw(camera);
   const Report report = renderer.engine.report(renderer.viewport);
-  for (const char *what : {"light_block", "shadow_cubes", "shadow_maps", "shadow_pass", "depth_pass",
-                           "depth_pass_cull", "specular in eevee_lit", "film", "tonemap"})
-  {
+  for (const char *what : {"light_block", "shadow_cubes", "shadow_maps", "shadow_pass", "depth_pass", "depth_pass_cull",
+                           "specular in eevee_lit", "film", "tonemap"}) {
     EXPECT_TRUE(is_made(report, what)) << what;
   }
   // Six faces and a map, prepass, lit, film, tonemap.

@@ -53,7 +53,8 @@ TEST(FilmOffset, SeedsMoveTheSamples)
 }
 
 /** What a pixel in a field of \a radiance(x, y) comes to, as the film pass computes it. */
-template<typename Radiance> double filmed(int count, std::uint32_t seed, Radiance &&radiance)
+template <typename Radiance>
+double filmed(int count, std::uint32_t seed, Radiance &&radiance)
 {
   const double weight_sum = film_weight_sum(count, seed);
   double sum = 0.0;
@@ -78,7 +79,8 @@ TEST(FilmWeights, KeepAnEvenPictureAsItIs)
 }
 
 /** The filter's mean of a function, by a fine grid. */
-template<typename Radiance> double filtered(Radiance &&radiance)
+template <typename Radiance>
+double filtered(Radiance &&radiance)
 {
   constexpr int N = 600;
   double sum = 0.0;

@@ -94,8 +94,8 @@ scene::Lamp sun_along(const glm::vec3 &forward)
   lamp.kind = scene::LampKind::Sun;
   const glm::vec3 z = -glm::normalize(forward);
   const glm::vec3 x = glm::normalize(glm::cross(std::abs(z.y) < 0.9F ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0), z));
-  lamp.world_from_lamp = glm::mat4(glm::vec4(x, 0), glm::vec4(glm::cross(z, x), 0), glm::vec4(z, 0),
-                                   glm::vec4(0, 0, 0, 1));
+  lamp.world_from_lamp =
+      glm::mat4(glm::vec4(x, 0), glm::vec4(glm::cross(z, x), 0), glm::vec4(z, 0), glm::vec4(0, 0, 0, 1));
   return lamp;
 }
 
@@ -127,11 +127,9 @@ TEST(SunFit, HoldsEveryCasterOfAVisibleReceiver)
     // A ray from a visible receiver towards the sun that meets a caster: caster point and receiver both in the map.
     for (int i = 0; i < 4000; i++) {
       const glm::vec3 caster = casters[std::size_t(i) % 12].center() + 0.49F * point();
-      const glm::vec3 receiver =
-          caster - glm::vec3(lamp.world_from_lamp[2]) * (6.0F * std::abs(unit(random)));
+      const glm::vec3 receiver = caster - glm::vec3(lamp.world_from_lamp[2]) * (6.0F * std::abs(unit(random)));
       const bool is_seen = glm::all(glm::greaterThanEqual(receiver, all.min)) &&
-                           glm::all(glm::lessThanEqual(receiver, all.max)) &&
-                           view.touches({receiver, 0.0F});
+                           glm::all(glm::lessThanEqual(receiver, all.max)) && view.touches({receiver, 0.0F});
       if (is_seen) {
         ASSERT_TRUE(fit) << "trial " << trial;
         for (const glm::vec3 &p : {caster, receiver}) {
@@ -185,9 +183,9 @@ TEST(SunFit, OfASinglePointIsFinite)
 TEST(SunFit, IsTheSameAtEveryScale)
 {
   for (const float scale : {1e-4F, 1.0F, 1e5F}) {
-    const std::optional<SunFit> fit =
-        fit_sun(sun_along({0.2F, -1, 0.1F}), {glm::dvec3(-2, 0, -2) * double(scale), glm::dvec3(2, 1, 2) * double(scale)},
-                {box_at(glm::vec3(0, 0.5F * scale, 0), 0.5F * scale)}, 512);
+    const std::optional<SunFit> fit = fit_sun(
+        sun_along({0.2F, -1, 0.1F}), {glm::dvec3(-2, 0, -2) * double(scale), glm::dvec3(2, 1, 2) * double(scale)},
+        {box_at(glm::vec3(0, 0.5F * scale, 0), 0.5F * scale)}, 512);
     ASSERT_TRUE(fit);
     EXPECT_NEAR((fit->max.x - fit->min.x) / double(scale), 1.1, 0.5);
     const glm::vec4 clip = fit->view.clip_from_world() * glm::vec4(0, scale, 0, 1);
@@ -266,8 +264,8 @@ TEST_F(ShadowsTest, TheSecondCubeBeginsAtLayerSix)
   sync();
   const std::string text = update();
   for (int layer = 0; layer < 12; layer++) {
-    const std::string expected = fmt::format("begin shadow of {}, face {} -> shadow_cubes {} ", layer < 6 ? "a" : "b",
-                                             layer % 6, layer);
+    const std::string expected =
+        fmt::format("begin shadow of {}, face {} -> shadow_cubes {} ", layer < 6 ? "a" : "b", layer % 6, layer);
     EXPECT_NE(text.find(expected), std::string::npos) << expected << "\n" << text;
   }
 }

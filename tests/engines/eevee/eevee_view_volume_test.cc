@@ -33,10 +33,10 @@ TEST(VisibleCorners, HoldEveryPointThatIsInBoxAndFrustum)
     bounds.extend(3.0F * point());
     bounds.extend(3.0F * point());
     const bool is_infinite = trial % 3 == 0;
-    const draw::View view(glm::lookAt(4.0F * point(), point(), glm::vec3(0, 1, 0.1F)),
-                          trial % 2 ? draw::perspective(0.4F, 0.3F, 0.1F,
-                                                        is_infinite ? std::numeric_limits<float>::infinity() : 6.0F) :
-                                      draw::orthographic(1.5F, 1.0F, 0.1F, 6.0F));
+    const draw::View view(
+        glm::lookAt(4.0F * point(), point(), glm::vec3(0, 1, 0.1F)),
+        trial % 2 ? draw::perspective(0.4F, 0.3F, 0.1F, is_infinite ? std::numeric_limits<float>::infinity() : 6.0F)
+                  : draw::orthographic(1.5F, 1.0F, 0.1F, 6.0F));
     const std::vector<glm::dvec3> corners = visible_corners(view, bounds);
     scene::Bounds hull;
     for (const glm::dvec3 &corner : corners) {
