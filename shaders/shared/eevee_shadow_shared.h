@@ -116,7 +116,8 @@ SHARED_FUNCTION vec4 plane_depths(float depth, vec2 slope, vec2 fraction)
  */
 SHARED_FUNCTION float gathered_visibility(vec4 stored, vec4 receiver, vec2 fraction)
 {
-  vec4 lit = step(stored, receiver);
+  // Behind the far end a receiver is as far as what was cleared: nothing cast there.
+  vec4 lit = step(stored, max(receiver, vec4(0.0f)));
   return mix(mix(lit.w, lit.z, fraction.x), mix(lit.x, lit.y, fraction.x), fraction.y);
 }
 

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <unistd.h>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -68,8 +69,11 @@ struct RenderResult {
 glm::ivec2 parse_size(const std::string &text)
 {
   glm::ivec2 size{0};
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%c", &size.x, &size.y, &rest) != 2 || size.x < 1 || size.y < 1) {
+  const char *end = text.data() + text.size();
+  const auto [after_width, width_error] = std::from_chars(text.data(), end, size.x);
+  const bool has_x = width_error == std::errc() && after_width != end && *after_width == 'x';
+  const auto [after_height, height_error] = std::from_chars(has_x ? after_width + 1 : end, end, size.y);
+  if (!has_x || height_error != std::errc() || after_height != end || size.x < 1 || size.y < 1) {
     throw UsageError(fmt::format("--size '{}' is not WIDTHxHEIGHT in pixels", text));
   }
   return size;
@@ -91,6 +95,9 @@ void check_options(const RenderOptions &options)
   }
   if (options.shadow == "pcf" || options.shadow == "esm") {
     unbuilt("--shadow " + options.shadow);
+  }
+  if (!std::isfinite(options.exposure)) {
+    throw UsageError(fmt::format("--exposure {} is not a number of stops", options.exposure));
   }
   if (options.output.empty() && options.backend == "gl") {
     throw UsageError("-o OUT.exr or -o OUT.png is required");

@@ -28,8 +28,12 @@ View::View(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view)
 
 bool View::touches(const CullingVolume &volume) const
 {
+  // Far from the origin the products round by more than small spheres measure.
+  const float slack =
+      1e-6F * (std::abs(volume.center_ws.x) + std::abs(volume.center_ws.y) + std::abs(volume.center_ws.z));
   return volume.radius < 0.0F || std::ranges::all_of(frustum_planes_ws_, [&](const glm::vec4 &plane) {
-           return glm::dot(glm::vec3(plane), volume.center_ws) + plane.w >= -volume.radius;
+           const float height = glm::dot(glm::vec3(plane), volume.center_ws) + plane.w;
+           return height >= -volume.radius - slack - 1e-6F * std::abs(plane.w);
          });
 }
 

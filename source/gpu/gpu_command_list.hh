@@ -71,7 +71,7 @@ class CommandList {
   void bind_texture(int slot, ResourceId texture, ResourceId sampler);
   /** For the block push_constant_block_name of the shader set before, at its slot. Copies \a bytes. */
   void push_constants(int slot, std::span<const std::byte> bytes);
-  /** `draws()[first, first + count)`, with the shader, state and bindings set before. */
+  /** `draws[first, first + count)`, with the shader, state and bindings set before. */
   void draw(std::uint32_t first, std::uint32_t count);
   /** \a vertex_count vertices without attributes. */
   void draw_procedural(std::uint32_t vertex_count, std::uint32_t instance_count);

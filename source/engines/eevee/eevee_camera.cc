@@ -32,7 +32,7 @@ draw::View view_of(const scene::Camera &camera, glm::ivec2 size_px)
   else {
     // A parallel view of endless depth has no finite matrix; this one has a million times its width.
     const float depth_max = std::max(camera.near + 1e6F * half_width, std::nextafter(camera.near, infinite));
-    clip_from_view = draw::orthographic(half_width, half_height, camera.near, std::min(far, depth_max));
+    clip_from_view = draw::orthographic(half_width, half_height, camera.near, std::isinf(far) ? depth_max : far);
   }
   return {glm::mat4(glm::inverse(glm::dmat4(camera.world_from_camera))), clip_from_view};
 }

@@ -72,6 +72,7 @@ struct StorageList {
   Groups depth;
   Groups depth_cull;
   Groups lit;
+  Groups lit_cull;
   draw::ShadingGroup *shadow = nullptr;
   /** Of the sample being drawn; the film pass reads it by reference. */
   glm::vec4 film_columns{0.0F};
@@ -191,7 +192,7 @@ void Engine::cache_init(draw::Viewport &viewport)
   StorageList &stl = data.stl;
   data.psl = std::make_unique<PassList>(viewport.objects());
   data.samples_drawn = 0;
-  stl.depth = stl.depth_cull = stl.lit = {};
+  stl.depth = stl.depth_cull = stl.lit = stl.lit_cull = {};
   stl.shadow = nullptr;
   stl.batches.clear();
   stl.batches.resize(scene_.meshes.size());
@@ -241,11 +242,12 @@ void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectRef &obj
   const draw::ObjectIndex index = viewport.objects().add(object.world_from_object, mesh.material);
   const bool is_mirrored = draw::is_mirrored(object.world_from_object);
 
-  const auto call = [&](Groups &groups, draw::Pass &pass, const gpu::Shader &shader) {
+  const auto call = [&](Groups &groups, draw::Pass &pass, const gpu::Shader &shader, State state) {
     draw::ShadingGroup *&group = is_mirrored ? groups.mirrored : groups.straight;
     if (!group) {
       group = &pass.group(shader);
       bind_lit(*group, stl);
+      group->state_enable(state);
       if (is_mirrored) {
         group->state_enable(State::FrontClockwise);
       }
@@ -253,13 +255,16 @@ void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectRef &obj
     group->call(batch, index, object.volume);
   };
   const gpu::Shader &depth_shader = stl.shaders.get(device, ShaderId::Depth);
+  const gpu::Shader &lit_shader = stl.shaders.get(device, ShaderId::Lit, stl.features);
   if (material.is_double_sided) {
-    call(stl.depth, data.psl->depth_pass, depth_shader);
+    call(stl.depth, data.psl->depth_pass, depth_shader, State::None);
+    call(stl.lit, data.psl->pass, lit_shader, State::None);
   }
   else {
-    call(stl.depth_cull, data.psl->depth_pass_cull, depth_shader);
+    call(stl.depth_cull, data.psl->depth_pass_cull, depth_shader, State::None);
+    // At the same depth as the front of another face, the back must not be drawn over it.
+    call(stl.lit_cull, data.psl->pass, lit_shader, State::CullBack);
   }
-  call(stl.lit, data.psl->pass, stl.shaders.get(device, ShaderId::Lit, stl.features));
 
   if (has(stl.features, Feature::ShadowCube | Feature::ShadowMap)) {
     if (!stl.shadow) {

@@ -40,12 +40,16 @@ float lamp_near(const glm::vec3 &position_ws, const std::vector<scene::Bounds> &
     return near_min;
   }
   float nearest = std::numeric_limits<float>::max();
+  float smallest_around = std::numeric_limits<float>::max();
   for (const scene::Bounds &box : casters_ws) {
-    nearest = std::min(nearest, glm::distance(position_ws, glm::clamp(position_ws, box.min, box.max)));
+    const float distance = glm::distance(position_ws, glm::clamp(position_ws, box.min, box.max));
+    nearest = std::min(nearest, distance);
+    if (distance == 0.0F) {
+      smallest_around = std::min(smallest_around, box.radius());
+    }
   }
   // Along a face's axis what is at this distance is nearer, by up to the square root of 3.
-  const float floor = 2e-4F * union_of(casters_ws).radius();
-  return std::max({0.5F * nearest, floor, near_min});
+  return std::max(nearest > 0.0F ? 0.5F * nearest : 2e-4F * smallest_around, near_min);
 }
 
 std::array<draw::View, 6> shadow_cube_views(const glm::vec3 &position_ws, float near)
@@ -104,8 +108,10 @@ LampBox box_in(const glm::dmat3 &lamp_from_world, const scene::Bounds &bounds)
 bool can_darken(const scene::Bounds &caster, const scene::Bounds &receivers, const glm::vec3 &forward_ws)
 {
   for (int axis = 0; axis < 3; axis++) {
-    const float tolerance = 1e-5F * receivers.radius();
-    const bool is_flat = caster.max[axis] - caster.min[axis] <= tolerance;
+    // Flat to rounding: what is thin in a wide scene still casts.
+    const float own_tolerance = 1e-6F * std::max(std::abs(caster.min[axis]), std::abs(caster.max[axis]));
+    const float tolerance = own_tolerance + 1e-7F * receivers.radius();
+    const bool is_flat = caster.max[axis] - caster.min[axis] <= own_tolerance;
     const bool is_below = forward_ws[axis] < 0.0F && receivers.min[axis] >= caster.min[axis] - tolerance;
     const bool is_above = forward_ws[axis] > 0.0F && receivers.max[axis] <= caster.max[axis] + tolerance;
     if (is_flat && (is_below || is_above)) {

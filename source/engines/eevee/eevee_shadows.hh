@@ -34,8 +34,8 @@ inline constexpr float spot_map_angle_max = 1.2F;
 
 /**
  * Distance of the near plane of a lamp, metres: what is nearer casts no shadow. As far as the nearest caster's box
- * allows, because depths lose precision with the square of distance / near; where the lamp is inside of a box, a
- * small part of the scene's size.
+ * allows, because depths lose precision with the square of distance / near; where the lamp is inside of boxes, a
+ * small part of the smallest one's size.
  */
 [[nodiscard]] float lamp_near(const glm::vec3 &position_ws, const std::vector<scene::Bounds> &casters_ws);
 

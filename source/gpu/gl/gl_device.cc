@@ -423,8 +423,16 @@ class GlDevice final : public Device {
       glPixelStorei(parameter, 0);
     }
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glGetTextureSubImage(textures_.at(texture.id()), 0, 0, 0, layer, desc.width, desc.height, 1, format.format,
-                         format.type, GLsizei(texels.size()), texels.data());
+    // In bands of rows, because GL counts the bytes of a read in 32 bits.
+    constexpr std::size_t band_bytes_max = std::size_t(1) << 30U;
+    const std::size_t row_bytes = texels.size() / std::size_t(desc.height);
+    const int band_rows = int(std::max<std::size_t>(band_bytes_max / row_bytes, 1));
+    for (int y = 0; y < desc.height; y += band_rows) {
+      const int rows = std::min(band_rows, desc.height - y);
+      const auto band = texels.subspan(std::size_t(y) * row_bytes, std::size_t(rows) * row_bytes);
+      glGetTextureSubImage(textures_.at(texture.id()), 0, 0, y, layer, desc.width, rows, 1, format.format, format.type,
+                           GLsizei(band.size()), band.data());
+    }
     glPixelStorei(GL_PACK_ALIGNMENT, 4);
     check(fmt::format("texture '{}'", desc.name));
   }
@@ -528,7 +536,8 @@ void GlDevice::begin_pass(const CommandList::PassInfo &pass)
 {
   const GlFramebuffer &framebuffer = framebuffers_.at(pass.framebuffer);
   if (is_debug_) {
-    glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, GLsizei(pass.name.size()), pass.name.data());
+    glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, GLsizei(std::min<std::size_t>(pass.name.size(), 255)),
+                     pass.name.data());
   }
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer.name);
   glViewport(0, 0, framebuffer.size_px.x, framebuffer.size_px.y);

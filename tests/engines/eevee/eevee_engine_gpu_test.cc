@@ -126,6 +126,24 @@ TEST_F(EngineGpuTest, TheBackOfAOneSidedSurfaceIsNotSeen)
   EXPECT_EQ(render(above).middle().r, 0.0F);
 }
 
+TEST_F(EngineGpuTest, OfTwoOneSidedSurfacesBackToBackTheFrontIsSeen)
+{
+  scene.materials[0].is_double_sided = false;
+  const std::uint32_t green = test::add_square_mesh(scene, test::add_material(scene, {0, 1, 0}));
+  scene.materials[1].is_double_sided = false;
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, 1.0F);
+  for (const bool is_front_first : {true, false}) {
+    scene.objects.clear();
+    for (const bool is_front : {is_front_first, !is_front_first}) {
+      // Half a turn around Y keeps the vertices in the plane and shows the back.
+      const glm::mat4 turn = glm::rotate(glm::mat4(1.0F), is_front ? 0.0F : PI, glm::vec3(0, 1, 0));
+      test::add_object(scene, is_front ? square : green, turn);
+    }
+    const glm::vec4 pixel = render(above, {.shadow = {.method = ShadowMethod::None}}).middle();
+    EXPECT_NEAR(pixel.r, 0.8F / PI, 1e-4F) << "the red front " << (is_front_first ? "first" : "last");
+  }
+}
+
 // hazards.md: negative, sheared and singular object matrices.
 TEST_F(EngineGpuTest, MirroredObjectsAreLitAsTheirImage)
 {
@@ -259,6 +277,43 @@ TEST_F(ShadowGpuTest, APlaneDoesNotDarkenItselfAtAnyAngle)
       }
       EXPECT_EQ(dark, 0) << "lamp kind " << int(kind) << " at " << degrees << "°";
     }
+  }
+}
+
+TEST_F(ShadowGpuTest, ABareGroundIsLitWhateverTheLampsHeight)
+{
+  for (const float half : {1.0F, 5.0F, 50.0F}) {
+    for (const scene::LampKind kind : {scene::LampKind::Sun, scene::LampKind::Point}) {
+      for (const float height : {0.02F, 0.5F, 3.0F}) {
+        scene.objects.clear();
+        scene.lamps.clear();
+        add_square({0, 0, 0}, {0, 0, 1}, half, square);
+        test::add_lamp(scene, kind, {0, 0, height}, {0.3F, 0.1F, -1}, 1.0F);
+        const scene::Camera camera = test::camera_at({0.5F * half, -half, half}, {0, 0, 0}, 0.9F);
+        const Picture lit = render(camera, {.shadow = {.method = ShadowMethod::None}});
+        const Picture shadowed = render(camera, {.shadow = {.cube_size_px = 64}});
+        int dark = 0;
+        for (std::size_t i = 0; i < lit.pixels.size(); i++) {
+          dark += shadowed.pixels[i].r < 0.999F * lit.pixels[i].r;
+        }
+        EXPECT_EQ(dark, 0) << "lamp kind " << int(kind) << " at " << height << " m over a ground of " << half;
+      }
+    }
+  }
+}
+
+TEST_F(ShadowGpuTest, SmallThingsCastInWideScenes)
+{
+  for (const scene::LampKind kind : {scene::LampKind::Sun, scene::LampKind::Point}) {
+    scene.objects.clear();
+    scene.lamps.clear();
+    add_square({0, 0, 0}, {0, 0, 1}, 20000.0F, square);
+    add_square({0, 0, 1}, {0, 0, 1}, 0.5F, square);
+    test::add_lamp(scene, kind, {0, 0, 2}, {0, 0, -1}, 1.0F);
+    // Looks under the small square, at the middle of its shadow.
+    const scene::Camera camera = test::camera_at({0, -2, 0.9F}, {0, 0, 0}, 0.05F);
+    EXPECT_EQ(render(camera).middle().r, 0.0F) << "lamp kind " << int(kind);
+    EXPECT_GT(render(camera, {.shadow = {.method = ShadowMethod::None}}).middle().r, 0.0F);
   }
 }
 
