@@ -49,6 +49,8 @@ float shadow_cube_visibility(int index, Surface surface, LightData light, vec3 t
   float w = largest(surface.position_ws - light.position_ws);
   float magnitude = largest(surface.position_ws) + largest(light.position_ws);
   float lift = shadow_lift(cube.texel_size * w, DEPTH_ROUNDING / cube.near * w * w, magnitude);
+  // Not past the lamp: from behind, the plane would look turned round.
+  lift = min(lift, 0.5 * abs(dot(surface.geometric_normal_ws, surface.position_ws - light.position_ws)));
   vec3 from_light = lifted_position(surface, to_light, lift) - light.position_ws;
   int face = cube_face(from_light);
   vec3 p = cube_face_project(face, from_light);
