@@ -28,4 +28,11 @@
 #  define PUSH_CONSTANT_LAYOUT layout(std140, binding = PUSH_CONSTANT_SLOT)
 #endif
 
+/** Before `const int NAME = VALUE;`: chosen when the pipeline is made where the API can, otherwise by the defines. */
+#ifdef VULKAN
+#  define SPECIALIZATION_CONSTANT(ID) layout(constant_id = ID)
+#else
+#  define SPECIALIZATION_CONSTANT(ID)
+#endif
+
 #endif

@@ -126,6 +126,11 @@ Framebuffer Device::create_framebuffer(const FramebufferDesc &desc)
     if (attachment.layer < all_layers || attachment.layer >= texture.layer_count()) {
       throw Error("framebuffer '{}': texture '{}' has no layer {}", desc.name, texture.name, attachment.layer);
     }
+    if (attachment.layer_count < 1 || attachment.layer + attachment.layer_count > texture.layer_count() ||
+        (attachment.layer == all_layers && attachment.layer_count > 1)) {
+      throw Error("framebuffer '{}': texture '{}' has no {} layers from {} on", desc.name, texture.name,
+                  attachment.layer_count, attachment.layer);
+    }
     if (attachment.mip_level < 0 || attachment.mip_level >= texture.mip_levels) {
       throw Error("framebuffer '{}': texture '{}' has no mip level {}", desc.name, texture.name, attachment.mip_level);
     }

@@ -24,6 +24,8 @@ struct Limits {
   std::size_t storage_block_bytes_max = std::size_t(1) << 27U;
   int color_attachment_max = 8;
   std::uint32_t uniform_offset_alignment = 256;
+  /** Vertex shaders may write `gl_Layer` (GL_ARB_shader_viewport_layer_array). */
+  bool has_vertex_layer = true;
 };
 
 /** What a device has been asked for since it was made. */

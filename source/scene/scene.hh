@@ -76,6 +76,8 @@ struct Mesh {
   std::uint32_t material = 0;
   /** Object space, never empty. */
   Bounds bounds;
+  /** For who changes the rest after a sync: another number, so that engines take the mesh anew. */
+  std::uint64_t revision = 0;
 };
 
 /** A mesh placed in the world. Several objects may share a mesh. */
@@ -125,6 +127,8 @@ struct Lamp {
   /** Area: full edge lengths or diameters, metres, above 0. */
   float area_size_x = 1.0F;
   float area_size_y = 1.0F;
+
+  bool operator==(const Lamp &) const = default;
 };
 
 enum class CameraKind { Perspective, Orthographic };

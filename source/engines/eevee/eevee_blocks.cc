@@ -62,14 +62,22 @@ constexpr auto light_fields = std::to_array<Field>({
 constexpr std::size_t maps_offset = offsetof(ShadowBlock, maps);
 constexpr auto shadow_fields = std::to_array<Field>({
     {"shadow.cubes[0].near", offsetof(ShadowCubeData, near)},
+    {"shadow.cubes[0].far", offsetof(ShadowCubeData, far)},
     {"shadow.cubes[0].texel_size", offsetof(ShadowCubeData, texel_size)},
+    {"shadow.cubes[0].bias", offsetof(ShadowCubeData, bias)},
     {"shadow.cubes[0].layer", offsetof(ShadowCubeData, layer)},
-    {"shadow.cubes[0]._pad0", offsetof(ShadowCubeData, _pad0)},
+    {"shadow.cubes[0].face_mask", offsetof(ShadowCubeData, face_mask)},
+    {"shadow.cubes[0].filter_kind", offsetof(ShadowCubeData, filter_kind)},
+    {"shadow.cubes[0].size_px", offsetof(ShadowCubeData, size_px)},
     {"shadow.maps[0].texco_from_world", maps_offset + offsetof(ShadowMapData, texco_from_world)},
     {"shadow.maps[0].texel_size", maps_offset + offsetof(ShadowMapData, texel_size)},
-    {"shadow.maps[0].layer", maps_offset + offsetof(ShadowMapData, layer)},
     {"shadow.maps[0].rounding", maps_offset + offsetof(ShadowMapData, rounding)},
-    {"shadow.maps[0]._pad0", maps_offset + offsetof(ShadowMapData, _pad0)},
+    {"shadow.maps[0].far", maps_offset + offsetof(ShadowMapData, far)},
+    {"shadow.maps[0].bias", maps_offset + offsetof(ShadowMapData, bias)},
+    {"shadow.maps[0].layer", maps_offset + offsetof(ShadowMapData, layer)},
+    {"shadow.maps[0].cascade_count", maps_offset + offsetof(ShadowMapData, cascade_count)},
+    {"shadow.maps[0].filter_kind", maps_offset + offsetof(ShadowMapData, filter_kind)},
+    {"shadow.maps[0].size_px", maps_offset + offsetof(ShadowMapData, size_px)},
 });
 
 constexpr auto shadow_render_fields = std::to_array<Field>({

@@ -63,6 +63,7 @@ Limits query_limits()
   limits.storage_block_bytes_max = std::size_t(get(GL_MAX_SHADER_STORAGE_BLOCK_SIZE));
   limits.color_attachment_max = get(GL_MAX_COLOR_ATTACHMENTS);
   limits.uniform_offset_alignment = std::uint32_t(get(GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT));
+  limits.has_vertex_layer = epoxy_has_gl_extension("GL_ARB_shader_viewport_layer_array");
   return limits;
 }
 
@@ -210,9 +211,18 @@ class GlDevice final : public Device {
   {
     GLuint framebuffer = 0;
     glCreateFramebuffers(1, &framebuffer);
+    std::vector<GLuint> views;
     const auto attach = [&](GLenum point, const Attachment &attachment) {
       const GLuint texture = textures_.at(attachment.texture->id());
-      if (attachment.layer == all_layers || attachment.texture->desc().kind == TextureKind::Flat) {
+      if (attachment.layer_count > 1) {
+        GLuint &view = views.emplace_back();
+        glGenTextures(1, &view);
+        const TextureDesc &texture_desc = attachment.texture->desc();
+        glTextureView(view, GL_TEXTURE_2D_ARRAY, texture, gl_format(texture_desc.format).internal, 0,
+                      GLuint(texture_desc.mip_levels), GLuint(attachment.layer), GLuint(attachment.layer_count));
+        glNamedFramebufferTexture(framebuffer, point, view, attachment.mip_level);
+      }
+      else if (attachment.layer == all_layers || attachment.texture->desc().kind == TextureKind::Flat) {
         glNamedFramebufferTexture(framebuffer, point, texture, attachment.mip_level);
       }
       else {
@@ -229,7 +239,7 @@ class GlDevice final : public Device {
       attach(GL_DEPTH_ATTACHMENT, desc.depth);
     }
     label(GL_FRAMEBUFFER, framebuffer, desc.name);
-    framebuffers_[id] = {framebuffer, int(desc.colors.size()), desc.depth.texture != nullptr, {}};
+    framebuffers_[id] = {framebuffer, int(desc.colors.size()), desc.depth.texture != nullptr, {}, std::move(views)};
     const Attachment &any = desc.colors.empty() ? desc.depth : desc.colors.front();
     framebuffers_[id].size_px = {std::max(any.texture->desc().width >> any.mip_level, 1),
                                  std::max(any.texture->desc().height >> any.mip_level, 1)};
@@ -379,7 +389,12 @@ class GlDevice final : public Device {
     switch (kind) {
       case ResourceKind::Texture: glDeleteTextures(1, &textures_.at(id)); break;
       case ResourceKind::Sampler: glDeleteSamplers(1, &samplers_.at(id)); break;
-      case ResourceKind::Framebuffer: glDeleteFramebuffers(1, &framebuffers_.at(id).name); break;
+      case ResourceKind::Framebuffer: {
+        const GlFramebuffer &framebuffer = framebuffers_.at(id);
+        glDeleteFramebuffers(1, &framebuffer.name);
+        glDeleteTextures(GLsizei(framebuffer.views.size()), framebuffer.views.data());
+        break;
+      }
       case ResourceKind::Buffer: glDeleteBuffers(1, &buffers_.at(id).name); break;
       case ResourceKind::Shader: glDeleteProgram(programs_.at(id)); break;
       case ResourceKind::TimerQuery: glDeleteQueries(2, timers_.at(id).data()); break;
@@ -475,6 +490,8 @@ class GlDevice final : public Device {
     int color_count = 0;
     bool has_depth = false;
     glm::ivec2 size_px{0};
+    /** Of attachments that are some layers of a texture. */
+    std::vector<GLuint> views;
   };
   struct GlBuffer {
     GLuint name = 0;
@@ -540,7 +557,9 @@ void GlDevice::begin_pass(const CommandList::PassInfo &pass)
                      pass.name.data());
   }
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer.name);
-  glViewport(0, 0, framebuffer.size_px.x, framebuffer.size_px.y);
+  const glm::ivec2 viewport_px =
+      pass.actions.viewport_px == glm::ivec2(0) ? framebuffer.size_px : pass.actions.viewport_px;
+  glViewport(0, 0, viewport_px.x, viewport_px.y);
   // Clears obey the write masks.
   set_state(State::WriteColor | State::WriteDepth);
   std::vector<GLenum> lost;
