@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -128,6 +129,29 @@ enum class LampKind { Point, Sun, Spot, Hemi, Area };
 
 enum class AreaShape { Rectangle, Ellipse };
 
+enum class ShadowKind { None, Hard, Pcf, Esm };
+
+enum class EsmFormat { Half, Float };
+
+/** What a lamp asks of its shadow; what is absent is left to whoever draws it. */
+struct LampShadow {
+  std::optional<ShadowKind> kind;
+  /** Texels along an edge of the depth map or of a cube's face, 1 to 16384. */
+  std::optional<int> size;
+  /** Of exponential shadows, 1/m, 0.01 to 1e4. */
+  std::optional<float> exponent;
+  /** Scales the bias that is derived from the texel; 0 to 100, and 1 leaves it. */
+  std::optional<float> bias;
+  /** Casters nearer or farther than these are not drawn, metres, above 0; where both are there, end > start. */
+  std::optional<float> clip_start;
+  std::optional<float> clip_end;
+  /** Half the opening angle of the kernel that exponential shadows are filtered with, radians, 0 to π/4. */
+  std::optional<float> filter_radius;
+  /** Texels along an edge of the octahedral layer of exponential shadows, 1 to 16384. */
+  std::optional<int> esm_size;
+  std::optional<EsmFormat> esm_format;
+};
+
 /**
  * A lamp in radiometric units: glTF's photometric ones divided by 683 lm/W.
  * It looks along its local -Z.
@@ -162,6 +186,8 @@ struct Lamp {
   /** Area: full edge lengths or diameters, metres, above 0. */
   float area_size_x = 1.0F;
   float area_size_y = 1.0F;
+  /** Point, spot and sun. */
+  LampShadow shadow;
 };
 
 enum class CameraKind { Perspective, Orthographic };
