@@ -7,6 +7,7 @@
 #define ATTRIBUTE_POSITION 0
 #define ATTRIBUTE_NORMAL 1
 #define ATTRIBUTE_DRAW_INSTANCE 2
+#define ATTRIBUTE_UV 3
 
 #define OBJECT_BLOCK_SLOT 0
 #define MATERIAL_BLOCK_SLOT 1
@@ -20,6 +21,7 @@
 #define SHADOW_CUBES_SLOT 16
 #define SHADOW_MAPS_SLOT 17
 #define RADIANCE_SLOT 18
+#define BASE_COLOR_SLOT 24
 
 /** Declares the block of small per-group values: push constants where the API has them. */
 #ifdef VULKAN

@@ -164,6 +164,8 @@ Batch Device::create_batch(const BatchDesc &desc)
   }
   GNOMON_ASSERT(desc.normals.empty() || desc.normals.size() == desc.positions.size(),
                 "batch '{}': {} normals, {} positions", desc.name, desc.normals.size(), desc.positions.size());
+  GNOMON_ASSERT(desc.uvs.empty() || desc.uvs.size() == desc.positions.size(), "batch '{}': {} uvs, {} positions",
+                desc.name, desc.uvs.size(), desc.positions.size());
   GNOMON_ASSERT(std::ranges::all_of(desc.indices, [&](auto index) { return index < desc.positions.size(); }),
                 "batch '{}': an index reaches past its {} vertices", desc.name, desc.positions.size());
   BatchRange range;
@@ -182,7 +184,8 @@ Batch Device::create_batch(const BatchDesc &desc)
       throw;
     }
   });
-  counters_.upload_bytes += desc.positions.size_bytes() + desc.normals.size_bytes() + desc.indices.size_bytes();
+  counters_.upload_bytes +=
+      desc.positions.size_bytes() + desc.normals.size_bytes() + desc.indices.size_bytes() + desc.uvs.size_bytes();
   return {std::move(resource), range};
 }
 
@@ -237,6 +240,13 @@ void Device::upload(const Texture &texture, int layer, std::span<const std::byte
                 "texture '{}': {} bytes to layer {}", desc.name, texels.size(), layer);
   counters_.upload_bytes += texels.size();
   texture_upload(texture, layer, texels);
+}
+
+void Device::generate_mipmaps(const Texture &texture)
+{
+  GNOMON_ASSERT(texture && !is_depth(texture.desc().format), "texture '{}' of format {}", texture.desc().name,
+                to_string(texture.desc().format));
+  mipmaps_generate(texture);
 }
 
 std::vector<std::byte> Device::read(const Texture &texture, int layer)

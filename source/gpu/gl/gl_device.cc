@@ -24,6 +24,7 @@ GlFormat gl_format(Format format)
 {
   switch (format) {
     case Format::RGBA8: return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
+    case Format::SRGB8A8: return {GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE};
     case Format::RGBA16F: return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT};
     case Format::RGBA32F: return {GL_RGBA32F, GL_RGBA, GL_FLOAT};
     case Format::R16F: return {GL_R16F, GL_RED, GL_HALF_FLOAT};
@@ -42,6 +43,27 @@ GLenum gl_target(TextureKind kind)
     case TextureKind::CubeArray: return GL_TEXTURE_CUBE_MAP_ARRAY;
   }
   return GL_TEXTURE_2D;
+}
+
+GLint gl_wrap(Wrap wrap)
+{
+  switch (wrap) {
+    case Wrap::ClampToEdge: return GL_CLAMP_TO_EDGE;
+    case Wrap::Repeat: return GL_REPEAT;
+    case Wrap::MirroredRepeat: return GL_MIRRORED_REPEAT;
+  }
+  return GL_CLAMP_TO_EDGE;
+}
+
+GLint gl_min_filter(Filter filter, MipFilter mip)
+{
+  const bool is_linear = filter == Filter::Linear;
+  switch (mip) {
+    case MipFilter::None: return is_linear ? GL_LINEAR : GL_NEAREST;
+    case MipFilter::Nearest: return is_linear ? GL_LINEAR_MIPMAP_NEAREST : GL_NEAREST_MIPMAP_NEAREST;
+    case MipFilter::Linear: return is_linear ? GL_LINEAR_MIPMAP_LINEAR : GL_NEAREST_MIPMAP_LINEAR;
+  }
+  return GL_NEAREST;
 }
 
 GLenum gl_target(BufferKind kind)
@@ -87,6 +109,9 @@ class GlDevice final : public Device {
     glEnableVertexArrayAttrib(vertex_array_, ATTRIBUTE_NORMAL);
     glVertexArrayAttribFormat(vertex_array_, ATTRIBUTE_NORMAL, 3, GL_FLOAT, GL_FALSE, 0);
     glVertexArrayAttribBinding(vertex_array_, ATTRIBUTE_NORMAL, ATTRIBUTE_NORMAL);
+    // Enabled with the first batch that has them.
+    glVertexArrayAttribFormat(vertex_array_, ATTRIBUTE_UV, 2, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayAttribBinding(vertex_array_, ATTRIBUTE_UV, ATTRIBUTE_UV);
     glEnableVertexArrayAttrib(vertex_array_, ATTRIBUTE_DRAW_INSTANCE);
     glVertexArrayAttribIFormat(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, 2, GL_UNSIGNED_INT, 0);
     glVertexArrayAttribBinding(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, ATTRIBUTE_DRAW_INSTANCE);
@@ -142,7 +167,7 @@ class GlDevice final : public Device {
 
  private:
   enum Stream { InstanceStream, IndirectStream, PushStream, StreamCount };
-  enum Pool { PositionPool, NormalPool, IndexPool, PoolCount };
+  enum Pool { PositionPool, NormalPool, UvPool, IndexPool, PoolCount };
 
   static void GLAPIENTRY receive_message(GLenum /*source*/, GLenum type, GLuint /*id*/, GLenum severity,
                                          GLsizei /*length*/, const GLchar *text, const void *user)
@@ -192,13 +217,11 @@ class GlDevice final : public Device {
   {
     GLuint sampler = 0;
     glCreateSamplers(1, &sampler);
-    const GLint filter = desc.filter == Filter::Linear ? GL_LINEAR : GL_NEAREST;
-    const GLint wrap = desc.wrap == Wrap::Repeat ? GL_REPEAT : GL_CLAMP_TO_EDGE;
-    glSamplerParameteri(sampler, GL_TEXTURE_MIN_FILTER, filter);
-    glSamplerParameteri(sampler, GL_TEXTURE_MAG_FILTER, filter);
-    for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
-      glSamplerParameteri(sampler, axis, wrap);
-    }
+    glSamplerParameteri(sampler, GL_TEXTURE_MIN_FILTER, gl_min_filter(desc.minified.value_or(desc.filter), desc.mip));
+    glSamplerParameteri(sampler, GL_TEXTURE_MAG_FILTER, desc.filter == Filter::Linear ? GL_LINEAR : GL_NEAREST);
+    glSamplerParameteri(sampler, GL_TEXTURE_WRAP_S, gl_wrap(desc.wrap_u));
+    glSamplerParameteri(sampler, GL_TEXTURE_WRAP_T, gl_wrap(desc.wrap_v));
+    glSamplerParameteri(sampler, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
     if (desc.is_depth_comparison) {
       glSamplerParameteri(sampler, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
       glSamplerParameteri(sampler, GL_TEXTURE_COMPARE_FUNC, GL_GEQUAL);
@@ -288,6 +311,9 @@ class GlDevice final : public Device {
       glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_NORMAL, pool_[NormalPool], 0, vertex_bytes);
       vertex_capacity_ = vertex_capacity;
     }
+    if (!desc.uvs.empty()) {
+      upload_uvs(desc, range);
+    }
     if (index_capacity > index_capacity_) {
       grow(IndexPool, index_capacity_ * sizeof(std::uint32_t), index_capacity * sizeof(std::uint32_t));
       glVertexArrayElementBuffer(vertex_array_, pool_[IndexPool]);
@@ -305,6 +331,20 @@ class GlDevice final : public Device {
     glNamedBufferSubData(pool_[IndexPool], GLintptr(range.first_index * sizeof(std::uint32_t)),
                          GLsizeiptr(desc.indices.size_bytes()), desc.indices.data());
     check(fmt::format("batch '{}'", desc.name));
+  }
+
+  /** Their pool is made for the first batch that has some, and grows only with those: each at its base vertex. */
+  void upload_uvs(const BatchDesc &desc, const BatchRange &range)
+  {
+    constexpr std::size_t uv_bytes = sizeof(glm::vec2);
+    if (vertex_capacity_ > uv_capacity_) {
+      grow(UvPool, uv_capacity_ * uv_bytes, vertex_capacity_ * uv_bytes);
+      glEnableVertexArrayAttrib(vertex_array_, ATTRIBUTE_UV);
+      glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_UV, pool_[UvPool], 0, uv_bytes);
+      uv_capacity_ = vertex_capacity_;
+    }
+    glNamedBufferSubData(pool_[UvPool], GLintptr(range.base_vertex) * GLintptr(uv_bytes),
+                         GLsizeiptr(desc.uvs.size_bytes()), desc.uvs.data());
   }
 
   void shader_create(ResourceId id, const ShaderDesc &desc, const std::vector<ShaderSource> &stages) override
@@ -428,6 +468,12 @@ class GlDevice final : public Device {
     check(fmt::format("texture '{}'", desc.name));
   }
 
+  void mipmaps_generate(const Texture &texture) override
+  {
+    glGenerateTextureMipmap(textures_.at(texture.id()));
+    check(fmt::format("texture '{}'", texture.desc().name));
+  }
+
   void texture_read(const Texture &texture, int layer, std::span<std::byte> texels) override
   {
     const TextureDesc &desc = texture.desc();
@@ -514,6 +560,7 @@ class GlDevice final : public Device {
   GLuint empty_vertex_array_ = 0;
   std::array<GLuint, PoolCount> pool_{};
   std::size_t vertex_capacity_ = 0;
+  std::size_t uv_capacity_ = 0;
   std::size_t index_capacity_ = 0;
   std::array<GLuint, StreamCount> streams_{};
 

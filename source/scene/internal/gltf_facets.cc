@@ -78,6 +78,9 @@ std::size_t flatten_facets(Mesh &mesh)
       mesh.indices[i] = std::uint32_t(mesh.positions.size());
       mesh.positions.push_back(mesh.positions[vertex]);
       mesh.normals.emplace_back(glm::normalize(area));
+      if (!mesh.uvs.empty()) {
+        mesh.uvs.push_back(mesh.uvs[vertex]);
+      }
       parent.push_back(std::uint32_t(parent.size()));
     }
   }
