@@ -11,7 +11,7 @@
 
 namespace gnomon::eevee {
 
-enum class ShaderId { Depth, Shadow, Lit, Film, Tonemap };
+enum class ShaderId { Depth, Shadow, Lit, Film, Tonemap, EsmDistance, EsmDisk4, EsmDisk32, EsmSeparable };
 
 /** A program of the engine as data: what the engine, the checker and the tests read. */
 struct ShaderDeclaration {
@@ -23,6 +23,8 @@ struct ShaderDeclaration {
   Feature features;
   /** Why it exists. */
   std::string_view purpose;
+  /** "NAME value", defined in each variant; empty: none. */
+  std::string_view define{};
 };
 
 /** A feature as the shaders see it. */
