@@ -17,10 +17,14 @@
 #define LIGHT_BLOCK_SLOT 10
 #define SHADOW_BLOCK_SLOT 11
 #define SHADOW_RENDER_BLOCK_SLOT 12
+#define ESM_BLOCK_SLOT 13
 
 #define SHADOW_CUBES_SLOT 16
 #define SHADOW_MAPS_SLOT 17
 #define RADIANCE_SLOT 18
+#define SHADOW_ESM_SLOT 19
+#define SHADOW_ESM_HALF_SLOT 20
+#define ESM_SOURCE_SLOT 21
 #define BASE_COLOR_SLOT 24
 
 /** Declares the block of small per-group values: push constants where the API has them. */

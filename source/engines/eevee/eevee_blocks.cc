@@ -3,6 +3,7 @@
 
 #include "draw_object_shared.h"
 #include "draw_view_shared.h"
+#include "eevee_esm_shared.h"
 #include "eevee_light_shared.h"
 #include "eevee_material_shared.h"
 #include "eevee_shadow_shared.h"
@@ -84,13 +85,25 @@ constexpr auto shadow_render_fields = std::to_array<Field>({
     {"shadow_render.clip_from_world", offsetof(ShadowRenderBlock, clip_from_world)},
 });
 
-constexpr std::array<gpu::BlockLayout, 6> layouts = {{
+constexpr auto esm_fields = std::to_array<Field>({
+    {"esm.lamps[0].exponent", offsetof(EsmData, exponent)},
+    {"esm.lamps[0].bias", offsetof(EsmData, bias)},
+    {"esm.lamps[0].range", offsetof(EsmData, range)},
+    {"esm.lamps[0].filter_angle", offsetof(EsmData, filter_angle)},
+    {"esm.lamps[0].size", offsetof(EsmData, size)},
+    {"esm.lamps[0].layer", offsetof(EsmData, layer)},
+    {"esm.lamps[0].format", offsetof(EsmData, format)},
+    {"esm.lamps[0]._pad0", offsetof(EsmData, _pad0)},
+});
+
+constexpr std::array<gpu::BlockLayout, 7> layouts = {{
     {"view_block", sizeof(ViewData), view_fields},
     {"object_block", sizeof(ObjectData), object_fields},
     {"material_block", sizeof(MaterialData), material_fields},
     {"light_block", sizeof(LightBlock), light_fields},
     {"shadow_block", sizeof(ShadowBlock), shadow_fields},
     {"shadow_render_block", sizeof(ShadowRenderBlock), shadow_render_fields},
+    {"esm_block", sizeof(EsmBlock), esm_fields},
 }};
 
 }  // namespace

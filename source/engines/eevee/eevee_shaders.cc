@@ -21,7 +21,7 @@ constexpr std::array<FeatureDefine, 7> feature_table = {
 constexpr Feature lit_features = Feature::Light | Feature::Punctual | Feature::Hemi | Feature::Specular |
                                  Feature::ShadowCube | Feature::ShadowMap | Feature::ShadowPcf;
 
-constexpr std::array<ShaderDeclaration, 7> declarations = {{
+constexpr std::array<ShaderDeclaration, 11> declarations = {{
     {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl", Feature::None,
      "depth of what is seen, so that each pixel is lit once"},
     {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_depth_frag.glsl", Feature::None,
@@ -37,6 +37,14 @@ constexpr std::array<ShaderDeclaration, 7> declarations = {{
      "sum of several samples a pixel"},
     {ShaderId::Tonemap, "eevee_tonemap", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_tonemap_frag.glsl",
      Feature::None, "radiance as a display shows it"},
+    {ShaderId::EsmDistance, "eevee_esm_distance", "draw/draw_fullscreen_vert.glsl", "",
+     "eevee/eevee_esm_distance_frag.glsl", Feature::None, "distances from a lamp on an octahedral map"},
+    {ShaderId::EsmDisk4, "eevee_esm_disk4", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_esm_disk_frag.glsl",
+     Feature::None, "exponential shadow map of four taps", "ESM_TAPS 4"},
+    {ShaderId::EsmDisk32, "eevee_esm_disk32", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_esm_disk_frag.glsl",
+     Feature::None, "exponential shadow map of 32 taps", "ESM_TAPS 32"},
+    {ShaderId::EsmSeparable, "eevee_esm_separable", "draw/draw_fullscreen_vert.glsl", "",
+     "eevee/eevee_esm_separable_frag.glsl", Feature::None, "exponential shadow map of a Gaussian in two passes"},
 }};
 
 /** Whether a scene can ask for this mask, and no smaller mask gives the same program. */
@@ -82,6 +90,9 @@ gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature featur
   desc.vertex_path = declaration.vertex_path;
   desc.geometry_path = declaration.geometry_path;
   desc.fragment_path = declaration.fragment_path;
+  if (!declaration.define.empty()) {
+    desc.defines.emplace_back(declaration.define);
+  }
   for (const FeatureDefine &define : feature_table) {
     if (has(features & declaration.features, define.feature)) {
       desc.defines.emplace_back(define.define);

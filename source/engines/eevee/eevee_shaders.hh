@@ -11,7 +11,19 @@
 
 namespace gnomon::eevee {
 
-enum class ShaderId { Depth, Shadow, ShadowLayered, ShadowGeometry, Lit, Film, Tonemap };
+enum class ShaderId {
+  Depth,
+  Shadow,
+  ShadowLayered,
+  ShadowGeometry,
+  Lit,
+  Film,
+  Tonemap,
+  EsmDistance,
+  EsmDisk4,
+  EsmDisk32,
+  EsmSeparable,
+};
 
 /** A program of the engine as data: what the engine, the checker and the tests read. */
 struct ShaderDeclaration {
@@ -25,6 +37,8 @@ struct ShaderDeclaration {
   Feature features;
   /** Why it exists. */
   std::string_view purpose;
+  /** "NAME value", defined in each variant; empty: none. */
+  std::string_view define{};
 };
 
 /** A feature as the shaders see it. */
