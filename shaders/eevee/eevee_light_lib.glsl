@@ -9,6 +9,9 @@
 #  define USE_SHADOW
 #  include "eevee/eevee_shadow_lib.glsl"
 #endif
+#ifdef USE_SHADOW_ESM
+#  include "eevee/eevee_esm_lib.glsl"
+#endif
 
 layout(std140, binding = LIGHT_BLOCK_SLOT) uniform light_block
 {
@@ -25,6 +28,12 @@ float light_visibility(LightData light, Surface surface, vec3 to_light)
 #ifdef USE_SHADOW_MAP
   if (light.shadow_kind == SHADOW_MAP) {
     return shadow_map_visibility(light.shadow_index, surface, to_light);
+  }
+#endif
+#ifdef USE_SHADOW_ESM
+  if (light.shadow_kind == SHADOW_ESM) {
+    return shadow_esm_visibility(light.shadow_index, surface.position_ws - light.position_ws,
+                                 surface.geometric_normal_ws);
   }
 #endif
   return 1.0;

@@ -16,6 +16,7 @@ SHARED_BEGIN
 #define SHADOW_NONE 0
 #define SHADOW_CUBE 1
 #define SHADOW_MAP 2
+#define SHADOW_ESM 3
 
 /** What a lamp is to the shaders: an entry of `light_block`. */
 struct LightData {

@@ -42,6 +42,7 @@ struct RenderOptions {
   std::string shadow = "hard";
   int shadow_size = 0;
   std::string pcf = "3x3";
+  std::string esm = "32";
   int cascades = 0;
   std::string cube_pass = "best";
   std::string casters = "all";
@@ -99,9 +100,6 @@ void check_options(const RenderOptions &options)
   if (!options.aov.empty()) {
     unbuilt("--aov");
   }
-  if (options.shadow == "esm") {
-    unbuilt("--shadow " + options.shadow);
-  }
   if (!std::isfinite(options.exposure)) {
     throw UsageError(fmt::format("--exposure {} is not a number of stops", options.exposure));
   }
@@ -153,8 +151,12 @@ eevee::PcfKernel parse_pcf(const std::string &text)
 
 eevee::ShadowSettings shadow_settings(const RenderOptions &options)
 {
-  static const std::map<std::string, eevee::ShadowMethod> methods = {
-      {"none", eevee::ShadowMethod::None}, {"hard", eevee::ShadowMethod::Hard}, {"pcf", eevee::ShadowMethod::Pcf}};
+  static const std::map<std::string, scene::ShadowKind> kinds = {{"none", scene::ShadowKind::None},
+                                                                 {"hard", scene::ShadowKind::Hard},
+                                                                 {"pcf", scene::ShadowKind::Pcf},
+                                                                 {"esm", scene::ShadowKind::Esm}};
+  static const std::map<std::string, eevee::EsmKernel> kernels = {
+      {"4", eevee::EsmKernel::Disk4}, {"32", eevee::EsmKernel::Disk32}, {"separable", eevee::EsmKernel::Separable}};
   static const std::map<std::string, eevee::LayerPass> passes = {{"best", eevee::LayerPass::Best},
                                                                  {"six", eevee::LayerPass::Single},
                                                                  {"geometry", eevee::LayerPass::Geometry},
@@ -162,7 +164,8 @@ eevee::ShadowSettings shadow_settings(const RenderOptions &options)
   static const std::map<std::string, eevee::CasterFaces> faces = {
       {"all", eevee::CasterFaces::All}, {"front", eevee::CasterFaces::Front}, {"back", eevee::CasterFaces::Back}};
   eevee::ShadowSettings settings;
-  settings.method = methods.at(options.shadow);
+  settings.kind = kinds.at(options.shadow);
+  settings.esm.kernel = kernels.at(options.esm);
   settings.pcf = parse_pcf(options.pcf);
   settings.cascades.count = options.cascades;
   settings.layer_pass = passes.at(options.cube_pass);
@@ -434,7 +437,9 @@ void add_render(CLI::App &app, Status &status)
   command->add_option("--repeat", o->repeat, "Render this often, and print the time of each")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));
-  command->add_option("--shadow", o->shadow, "none, hard, pcf (esm is not built yet)")
+  command
+      ->add_option("--shadow", o->shadow,
+                   "none, hard, pcf, esm, where a lamp's gnomon_shadow says nothing; none is for all")
       ->capture_default_str()
       ->check(CLI::IsMember({"none", "hard", "pcf", "esm"}));
   command
@@ -443,6 +448,9 @@ void add_render(CLI::App &app, Status &status)
       ->check(CLI::Range(1, 16384));
   command->add_option("--pcf", o->pcf, "Kernel of --shadow pcf: 1, 3x3, 5x5, or disk:N for N lookups on a disk")
       ->capture_default_str();
+  command->add_option("--esm", o->esm, "Taps that --shadow esm is filtered with: 4, 32, or separable")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"4", "32", "separable"}));
   command
       ->add_option("--cascades", o->cascades, "Maps a sun; 0: as many as its texels need to be no larger than pixels")
       ->capture_default_str()

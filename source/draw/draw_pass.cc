@@ -207,11 +207,11 @@ void Pass::clear()
   groups_.clear();
 }
 
-void Pass::record(const View &view, gpu::CommandList &list) const
+void Pass::record(const View &view, gpu::CommandList &list, gpu::State without) const
 {
   for (const ShadingGroup &group : groups_) {
     list.set_shader(group.shader_.id());
-    list.set_state(state_ | group.state_);
+    list.set_state(gpu::without(state_ | group.state_, without));
     group.record_bindings(list);
     group.record_calls(view, list);
   }

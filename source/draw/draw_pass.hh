@@ -162,8 +162,11 @@ class Pass {
   /** Forget groups and calls; the name and state stay. */
   void clear();
 
-  /** Append what \a view sees of the pass: to be called between begin_pass and end_pass of \a list. */
-  void record(const View &view, gpu::CommandList &list) const;
+  /**
+   * Append what \a view sees of the pass: to be called between begin_pass and end_pass of \a list. State bits in
+   * \a without are left off this time.
+   */
+  void record(const View &view, gpu::CommandList &list, gpu::State without = gpu::State::None) const;
 
   [[nodiscard]] const std::string &name() const
   {

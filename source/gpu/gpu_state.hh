@@ -29,6 +29,10 @@ constexpr State operator|(State a, State b)
 {
   return State(std::uint32_t(a) | std::uint32_t(b));
 }
+constexpr State without(State mask, State bits)
+{
+  return State(std::uint32_t(mask) & ~std::uint32_t(bits));
+}
 constexpr bool has(State mask, State bit)
 {
   return (std::uint32_t(mask) & std::uint32_t(bit)) != 0;

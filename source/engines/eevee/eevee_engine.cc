@@ -196,13 +196,7 @@ void bind_lit(draw::ShadingGroup &group, StorageList &stl)
   group.bind_storage_ref("object_block", &stl.object_block);
   group.bind_storage("material_block", stl.material_block);
   group.bind_uniform("light_block", stl.light_block);
-  group.bind_uniform("shadow_block", stl.shadows.block());
-  if (has(stl.features, Feature::ShadowCube)) {
-    group.bind_texture_ref("shadow_cubes", stl.shadows.cubes_binding());
-  }
-  if (has(stl.features, Feature::ShadowMap)) {
-    group.bind_texture_ref("shadow_maps", stl.shadows.maps_binding());
-  }
+  stl.shadows.bind(group);
 }
 
 }  // namespace
@@ -242,7 +236,7 @@ void Engine::cache_init(draw::Viewport &viewport)
   stl.batches.resize(scene_.meshes.size());
 
   stl.lamps = make_lamps(scene_);
-  stl.shadows.sync(device, scene_, stl.lamps, settings_.shadow);
+  stl.shadows.sync(device, stl.shaders, scene_, stl.lamps, settings_.shadow);
   const std::vector<shared::MaterialData> materials = make_materials(scene_);
   stl.features = stl.lamps.features | stl.shadows.features();
   if (has(stl.features, Feature::Light)) {
@@ -310,7 +304,7 @@ void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectRef &obj
     call(stl.lit_cull, data.psl->pass, lit_shader, State::CullBack);
   }
 
-  if (has(stl.features, Feature::ShadowCube | Feature::ShadowMap)) {
+  if (has(stl.features, any_shadow)) {
     draw::InstanceCall *&instances = stl.caster_calls[scene_.objects[object.index].mesh][is_mirrored ? 1 : 0];
     if (!instances) {
       instances = &caster_group(device, stl, data.psl->shadow_pass, settings_.shadow.caster_faces,
@@ -424,6 +418,7 @@ Report Engine::report(draw::Viewport &viewport) const
   const StorageList &stl = data.stl;
   Report report;
   report.warnings = stl.lamps.warnings;
+  report.warnings.insert(report.warnings.end(), stl.shadows.warnings().begin(), stl.shadows.warnings().end());
   report.limits = stl.lamps.limits;
   report.limits.insert(report.limits.end(), stl.shadows.limits().begin(), stl.shadows.limits().end());
   report.shadow_counters = stl.shadows.counters();
@@ -432,14 +427,16 @@ Report Engine::report(draw::Viewport &viewport) const
     report.parts.push_back({std::move(what), is_made, is_made ? std::move(why) : std::move(why_not)});
   };
   const Feature f = stl.features;
-  const std::string no_shadow = settings_.shadow.method == ShadowMethod::None ? "shadows are off" : "no such lamp";
+  const std::string no_shadow = settings_.shadow.kind == scene::ShadowKind::None ? "shadows are off" : "no such lamp";
   part("light_block", has(f, Feature::Light), fmt::format("{} lights", stl.lamps.light_block.light_count),
        "no lamp gives light");
   part("shadow_cubes", has(f, Feature::ShadowCube),
        fmt::format("{} point lamps or wide spots", stl.shadows.cube_count()), no_shadow);
   part("shadow_maps", has(f, Feature::ShadowMap), fmt::format("{} suns or spots", stl.shadows.map_count()), no_shadow);
+  part("shadow_esm", has(f, Feature::ShadowEsm),
+       fmt::format("{} point lamps or spots", stl.shadows.octahedral().size()), no_shadow);
   part("shadow_pass", !data.psl->shadow_pass.is_empty(), "casters for the lamps' shadows",
-       has(f, Feature::ShadowCube | Feature::ShadowMap) ? "no caster" : "no shadow");
+       has(f, any_shadow) ? "no caster" : "no shadow");
   part("depth_pass", !data.psl->depth_pass.is_empty(), "two-sided materials", "no object with a two-sided material");
   part("depth_pass_cull", !data.psl->depth_pass_cull.is_empty(), "one-sided materials",
        "no object with a one-sided material");

@@ -22,6 +22,8 @@ enum class Feature : std::uint32_t {
   ShadowMap = 1U << 5,
   /** Percentage-closer filtering of them. */
   ShadowPcf = 1U << 6,
+  /** Octahedral exponential shadow maps. */
+  ShadowEsm = 1U << 7,
 };
 
 constexpr Feature operator|(Feature a, Feature b)
@@ -36,6 +38,9 @@ constexpr bool has(Feature mask, Feature bit)
 {
   return (mask & bit) != Feature::None;
 }
+
+/** Something is drawn from a lamp. */
+inline constexpr Feature any_shadow = Feature::ShadowCube | Feature::ShadowMap | Feature::ShadowEsm;
 
 /** The texels that percentage-closer filtering reads. */
 struct PcfKernel {

@@ -9,17 +9,18 @@ namespace gnomon::eevee {
 
 namespace {
 
-constexpr std::array<FeatureDefine, 7> feature_table = {
+constexpr std::array<FeatureDefine, 8> feature_table = {
     {{Feature::Light, "USE_LIGHT", "something shines"},
      {Feature::Punctual, "USE_PUNCTUAL", "a point or spot lamp shines"},
      {Feature::Hemi, "USE_HEMI", "a hemi lamp shines"},
      {Feature::Specular, "USE_SPECULAR", "a material reflects specularly"},
      {Feature::ShadowCube, "USE_SHADOW_CUBE", "a point lamp or a wide spot casts shadows"},
      {Feature::ShadowMap, "USE_SHADOW_MAP", "a sun or a spot casts shadows"},
-     {Feature::ShadowPcf, "USE_SHADOW_PCF", "a shadow is filtered by percentage-closer lookups"}}};
+     {Feature::ShadowPcf, "USE_SHADOW_PCF", "a shadow is filtered by percentage-closer lookups"},
+     {Feature::ShadowEsm, "USE_SHADOW_ESM", "a point lamp or a spot casts exponential shadows"}}};
 
 constexpr Feature lit_features = Feature::Light | Feature::Punctual | Feature::Hemi | Feature::Specular |
-                                 Feature::ShadowCube | Feature::ShadowMap | Feature::ShadowPcf;
+                                 Feature::ShadowCube | Feature::ShadowMap | Feature::ShadowPcf | Feature::ShadowEsm;
 
 constexpr std::array<ShaderDeclaration, 11> declarations = {{
     {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl", Feature::None,
@@ -54,8 +55,8 @@ bool is_possible(Feature features)
   if (!has_light) {
     return features == Feature::None;
   }
-  // Cubes are for point lamps and wide spots; what is filtered is a shadow.
-  return (has(features, Feature::Punctual) || !has(features, Feature::ShadowCube)) &&
+  // Cubes and exponential maps are for point lamps and spots; what is filtered is a cube or a map.
+  return (has(features, Feature::Punctual) || !has(features, Feature::ShadowCube | Feature::ShadowEsm)) &&
          (has(features, Feature::ShadowCube | Feature::ShadowMap) || !has(features, Feature::ShadowPcf));
 }
 

@@ -47,7 +47,16 @@ draw::View shadow_spot_view(const scene::Lamp &lamp, float near, int size_px)
   return {lamp_from_world, draw::perspective(half_size, half_size, near, std::numeric_limits<float>::infinity())};
 }
 
-/** Whether \a lamp throws a shadow into six faces, rather than into one map. */
+scene::ShadowKind shadow_kind(const scene::Lamp &lamp, const ShadowSettings &settings)
+{
+  if (settings.kind == scene::ShadowKind::None || lamp.kind == scene::LampKind::Hemi) {
+    return scene::ShadowKind::None;
+  }
+  const scene::ShadowKind kind = lamp.shadow.kind.value_or(settings.kind);
+  return kind == scene::ShadowKind::Esm && lamp.kind == scene::LampKind::Sun ? scene::ShadowKind::Pcf : kind;
+}
+
+/** Whether \a lamp throws a hard or PCF shadow into six faces, rather than into one map. */
 static bool wants_cube(const scene::Lamp &lamp)
 {
   return lamp.kind == scene::LampKind::Point ||
@@ -65,31 +74,37 @@ static LayerPass best_layer_pass(LayerPass asked, const gpu::Limits &limits)
   return limits.has_vertex_layer ? LayerPass::Layered : LayerPass::Geometry;
 }
 
-void Shadows::sync(gpu::Device &device, const scene::Scene &scene, Lamps &lamps, const ShadowSettings &settings)
+void Shadows::sync(gpu::Device &device, ShaderCache &shaders, const scene::Scene &scene, Lamps &lamps,
+                   const ShadowSettings &settings)
 {
   layer_pass_ = best_layer_pass(settings.layer_pass, device.limits());
   casters_before_ = std::exchange(casters_, {});
   seen_clip_from_world_.reset();
+  warnings_.clear();
   limits_.clear();
-  std::vector<Slot> cubes_before = std::exchange(cubes_.slots, {});
-  std::vector<Slot> maps_before = std::exchange(maps_.slots, {});
-  if (settings.caster_faces != settings_.caster_faces) {
-    cubes_before.clear();
-    maps_before.clear();
+  std::array<std::vector<Slot>, 3> before;
+  for (std::size_t i = 0; i < 3; i++) {
+    before[i] = std::exchange(arrays()[i]->slots, {});
+    if (settings.caster_faces != settings_.caster_faces) {
+      before[i].clear();
+    }
   }
   settings_ = settings;
   place_slots(device.limits(), scene, lamps);
-  keep_drawn(cubes_, std::move(cubes_before));
-  keep_drawn(maps_, std::move(maps_before));
-  if (!sampler_ && !(cubes_.slots.empty() && maps_.slots.empty())) {
+  for (std::size_t i = 0; i < 3; i++) {
+    keep_drawn(*arrays()[i], std::move(before[i]));
+  }
+  if (!sampler_ && !(cubes_.slots.empty() && maps_.slots.empty() && distance_cube_.slots.empty())) {
     sampler_ = device.create_sampler({.name = "shadow_sampler"});
     shadow_block_buffer_ =
         device.create_buffer({"shadow_block", gpu::BufferKind::Uniform, sizeof(shared::ShadowBlock)});
   }
   create_layers(device, cubes_, 6 * int(cubes_.slots.size()));
+  create_layers(device, distance_cube_, distance_cube_.slots.empty() ? 0 : 6);
   if (maps_.slots.empty()) {
     create_layers(device, maps_, 0);
   }
+  place_octahedral(device, shaders, scene);
   place_render_blocks(device);
 }
 
@@ -100,83 +115,151 @@ void Shadows::place_slots(const gpu::Limits &device_limits, const scene::Scene &
   const int map_max = std::min(SHADOW_MAP_MAX, device_limits.array_layers_max);
   int entry_count = 0;
   std::vector<std::string> lost;
-  std::vector<int> lights;
   for (int i = 0; i < lamps.light_block.light_count; i++) {
     const scene::Lamp &lamp = scene.lamps[lamps.scene_index[std::size_t(i)]];
-    if (lamp.kind == scene::LampKind::Hemi || settings_.method == ShadowMethod::None) {
-      continue;
-    }
-    const bool is_cube = wants_cube(lamp);
-    const bool is_sun = lamp.kind == scene::LampKind::Sun;
     Slot slot;
     slot.lamp = lamp;
     slot.light = i;
-    slot.size_px = std::min(is_cube ? settings_.cube_size_px : settings_.map_size_px, device_limits.texture_size_max);
-    slot.layer_count_max = is_cube                        ? 6
-                           : !is_sun                      ? 1
-                           : settings_.cascades.count > 0 ? settings_.cascades.count
-                                                          : cascade_count_max;
-    slot.range = lamp.range > 0.0F && !is_sun ? lamp.range : std::numeric_limits<float>::infinity();
-    Array &array = is_cube ? cubes_ : maps_;
-    if (is_cube ? int(array.slots.size()) == cube_max : entry_count + slot.layer_count_max > map_max) {
+    slot.kind = shadow_kind(lamp, settings_);
+    if (slot.kind == scene::ShadowKind::None) {
+      continue;
+    }
+    warn_of_idle_wishes(lamp);
+    const bool is_sun = lamp.kind == scene::LampKind::Sun;
+    const bool is_esm = slot.kind == scene::ShadowKind::Esm;
+    const bool is_cube = !is_esm && wants_cube(lamp);
+    Array &array = is_esm ? distance_cube_ : is_cube ? cubes_ : maps_;
+    const int count = int(array.slots.size());
+    const int cascades = settings_.cascades.count > 0 ? settings_.cascades.count : cascade_count_max;
+    slot.layer_count_max = is_esm || is_cube ? 6 : is_sun ? cascades : 1;
+    const bool is_full = is_esm    ? count == ESM_MAX
+                         : is_cube ? count == cube_max
+                                   : entry_count + slot.layer_count_max > map_max;
+    if (is_full) {
       lost.push_back(lamp.name);
       continue;
     }
-    slot.entry = is_cube ? int(array.slots.size()) : entry_count;
+    const int size_px = is_esm    ? esm_cube_size_px(lamp.shadow.esm_size.value_or(settings_.esm.size_px))
+                        : is_cube ? settings_.cube_size_px
+                                  : settings_.map_size_px;
+    slot.size_px = std::clamp(lamp.shadow.size.value_or(size_px), 1, device_limits.texture_size_max);
+    slot.range = std::numeric_limits<float>::infinity();
+    if (!is_sun) {
+      slot.range = std::min(lamp.range > 0.0F ? lamp.range : slot.range, lamp.shadow.clip_end.value_or(slot.range));
+    }
+    slot.entry = is_esm || is_cube ? count : entry_count;
     slot.first_layer = is_cube ? 6 * slot.entry : 0;
-    entry_count += is_cube ? 0 : slot.layer_count_max;
+    entry_count += is_esm || is_cube ? 0 : slot.layer_count_max;
     shared::LightData &light = lamps.light_block.lights[i];
-    light.shadow_kind = is_cube ? SHADOW_CUBE : SHADOW_MAP;
+    light.shadow_kind = is_esm ? SHADOW_ESM : is_cube ? SHADOW_CUBE : SHADOW_MAP;
     light.shadow_index = slot.entry;
     array.slots.push_back(std::move(slot));
   }
   if (!lost.empty()) {
-    limits_.push_back(fmt::format("{} lamps lost their shadow, as {} cubes and {} maps are the most: '{}'", lost.size(),
-                                  cube_max, map_max, fmt::join(lost, "', '")));
+    limits_.push_back(
+        fmt::format("{} lamps lost their shadow, as {} cubes, {} maps and {} exponential maps are the most: '{}'",
+                    lost.size(), cube_max, map_max, ESM_MAX, fmt::join(lost, "', '")));
   }
   fit_memory(lamps);
+}
+
+void Shadows::warn_of_idle_wishes(const scene::Lamp &lamp)
+{
+  if (lamp.kind != scene::LampKind::Sun) {
+    return;
+  }
+  if (lamp.shadow.kind.value_or(settings_.kind) == scene::ShadowKind::Esm) {
+    warnings_.push_back(
+        fmt::format("lamp '{}': exponential shadows are for point lamps and spots; it has pcf", lamp.name));
+  }
+  if (lamp.shadow.clip_start || lamp.shadow.clip_end) {
+    warnings_.push_back(
+        fmt::format("lamp '{}': a sun is at no distance; clip_start and clip_end do nothing", lamp.name));
+  }
+}
+
+/** Octahedral layers for the lamps that have exponential shadows. */
+void Shadows::place_octahedral(gpu::Device &device, ShaderCache &shaders, const scene::Scene &scene)
+{
+  const scene::Bounds bounds_ws = scene.bounds();
+  std::vector<EsmLamp> esm_lamps;
+  for (const Slot &slot : distance_cube_.slots) {
+    const glm::vec3 position_ws(slot.lamp.world_from_lamp[3]);
+    const glm::vec3 reach = glm::max(glm::abs(bounds_ws.min - position_ws), glm::abs(bounds_ws.max - position_ws));
+    const scene::LampShadow &wishes = slot.lamp.shadow;
+    EsmLamp &lamp = esm_lamps.emplace_back();
+    lamp.name = slot.lamp.name;
+    // Without a range of its own, nothing that it could darken is farther than the scene.
+    lamp.range = std::isinf(slot.range) ? std::clamp(1.01F * glm::length(reach), 1e-6F, 1e30F) : slot.range;
+    lamp.settings = settings_.esm;
+    lamp.settings.exponent = wishes.exponent ? wishes.exponent : lamp.settings.exponent;
+    lamp.settings.bias = wishes.bias.value_or(lamp.settings.bias);
+    lamp.settings.filter_angle = wishes.filter_radius ? wishes.filter_radius : lamp.settings.filter_angle;
+    lamp.settings.size_px = octahedral_size_px(slot);
+    if (wishes.esm_format) {
+      lamp.settings.format = *wishes.esm_format == scene::EsmFormat::Half ? EsmFormat::Half : EsmFormat::Float;
+    }
+  }
+  if (octahedral_.sync(device, shaders, esm_lamps)) {
+    for (Slot &slot : distance_cube_.slots) {
+      slot.drawn = slot.settled = 0;
+    }
+  }
+  limits_.insert(limits_.end(), octahedral_.limits().begin(), octahedral_.limits().end());
+}
+
+int Shadows::octahedral_size_px(const Slot &slot) const
+{
+  const int asked = slot.lamp.shadow.esm_size.value_or(settings_.esm.size_px);
+  return std::max(int(float(asked) * memory_scale_), std::min(asked, 4));
 }
 
 std::size_t Shadows::bytes_needed() const
 {
   std::size_t bytes = 0;
-  for (const Array *array : {&cubes_, &maps_}) {
+  for (const Array *array : {&cubes_, &maps_, &distance_cube_}) {
     std::size_t edge = 0;
     std::size_t layers = 0;
     for (const Slot &slot : array->slots) {
       edge = std::max(edge, std::size_t(slot.size_px));
       layers += std::size_t(slot.layer_count_max);
     }
+    // The cube on the way to octahedral layers is one for all.
+    layers = array == &distance_cube_ ? std::min<std::size_t>(layers, 6) : layers;
     bytes += edge * edge * layers * sizeof(float);
+  }
+  for (const Slot &slot : distance_cube_.slots) {
+    const auto edge = std::size_t(octahedral_size_px(slot));
+    bytes += edge * edge * sizeof(float);
   }
   return bytes;
 }
 
 void Shadows::fit_memory(Lamps &lamps)
 {
+  memory_scale_ = 1.0F;
   const std::size_t most = settings_.memory_bytes_max;
   const std::size_t needed = bytes_needed();
   if (needed <= most) {
     return;
   }
   constexpr int size_px_min = 16;
-  const double scale = std::sqrt(double(most) / double(needed));
+  memory_scale_ = float(std::sqrt(double(most) / double(needed)));
   std::size_t lowered = 0;
-  for (Array *array : {&cubes_, &maps_}) {
+  for (Array *array : arrays()) {
     for (Slot &slot : array->slots) {
-      const int size_px = std::max(int(slot.size_px * scale), std::min(size_px_min, slot.size_px));
-      lowered += size_px < slot.size_px ? 1 : 0;
-      slot.size_px = size_px;
+      slot.size_px = std::max(int(float(slot.size_px) * memory_scale_), std::min(size_px_min, slot.size_px));
+      lowered++;
     }
   }
   limits_.push_back(
       fmt::format("the shadows of {} lamps need {:.1f} MiB, and may take {:.1f}: their sizes are lowered to {:.0f} %",
-                  lowered, double(needed) / 0x1p20, double(most) / 0x1p20, 100.0 * scale));
+                  lowered, double(needed) / 0x1p20, double(most) / 0x1p20, 100.0F * memory_scale_));
   std::vector<std::string> lost;
   while (bytes_needed() > most) {
-    Array &array =
-        maps_.slots.empty() || (!cubes_.slots.empty() && cubes_.slots.back().light > maps_.slots.back().light) ? cubes_
-                                                                                                               : maps_;
+    // The last light of all goes first.
+    const auto last_light = [](const Array *array) { return array->slots.empty() ? -1 : array->slots.back().light; };
+    Array &array = *std::ranges::max(arrays(), {}, last_light);
     shared::LightData &light = lamps.light_block.lights[array.slots.back().light];
     light.shadow_kind = SHADOW_NONE;
     light.shadow_index = -1;
@@ -240,7 +323,7 @@ void Shadows::place_render_blocks(gpu::Device &device)
   const std::uint32_t alignment = device.limits().uniform_offset_alignment;
   const auto stride = std::uint32_t((sizeof(shared::ShadowRenderBlock) + alignment - 1) / alignment * alignment);
   std::uint32_t size = 0;
-  for (Array *array : {&cubes_, &maps_}) {
+  for (Array *array : arrays()) {
     for (Slot &slot : array->slots) {
       slot.render_offset_bytes = size;
       size += stride;
@@ -260,7 +343,7 @@ void Shadows::finish()
   }
   const std::vector<scene::Bounds> changed = changed_bounds(casters_before_, casters_);
   casters_before_.clear();
-  for (Array *array : {&cubes_, &maps_}) {
+  for (Array *array : arrays()) {
     for (Slot &slot : array->slots) {
       const glm::vec3 position_ws(slot.lamp.world_from_lamp[3]);
       const bool is_sun = slot.lamp.kind == scene::LampKind::Sun;
@@ -272,8 +355,8 @@ void Shadows::finish()
       if (slot.settled != 0 || is_sun) {
         continue;
       }
-      slot.near = lamp_near(position_ws, slot.range, casters_);
-      if (array == &cubes_) {
+      slot.near = slot.lamp.shadow.clip_start.value_or(lamp_near(position_ws, slot.range, casters_));
+      if (slot.layer_count_max == 6) {
         const auto views = shadow_cube_views(position_ws, slot.near, slot.size_px);
         slot.views.assign(views.begin(), views.end());
       }
@@ -286,16 +369,19 @@ void Shadows::finish()
   std::ranges::for_each(maps_.slots, [this](const Slot &slot) { write_map_data(slot); });
 }
 
+/** ShadowCubeData::far and ShadowMapData::far where a shadow has no end. */
+static constexpr float far_none = std::numeric_limits<float>::max();
+
 void Shadows::write_cube_data(const Slot &slot)
 {
   shared::ShadowCubeData &data = shadow_block_.cubes[slot.entry];
   data.near = slot.near;
-  data.far = std::numeric_limits<float>::max();
+  data.far = slot.lamp.shadow.clip_end.value_or(far_none);
   data.texel_size = 2.0F / (float(slot.size_px) * shared::cube_uv_scale(float(slot.size_px)));
-  data.bias = 1.0F;
+  data.bias = slot.lamp.shadow.bias.value_or(1.0F);
   data.layer = slot.first_layer;
   data.face_mask = int(slot.drawn);
-  data.filter_kind = settings_.method == ShadowMethod::Pcf ? SHADOW_FILTER_PCF : SHADOW_FILTER_HARD;
+  data.filter_kind = slot.kind == scene::ShadowKind::Pcf ? SHADOW_FILTER_PCF : SHADOW_FILTER_HARD;
   data.size_px = slot.size_px;
   is_block_dirty_ = true;
 }
@@ -310,11 +396,11 @@ void Shadows::write_map_data(const Slot &slot)
     data.texel_size = 2.0F / (float(slot.size_px) * std::min(projection[0][0], projection[1][1]));
     // Reversed: near / w where w is a distance, and (far - z) / (far - near) for a sun.
     data.rounding = shared::DEPTH_ROUNDING / (view.is_perspective() ? projection[3][2] : projection[2][2]);
-    data.far = std::numeric_limits<float>::max();
-    data.bias = 1.0F;
+    data.far = view.is_perspective() ? slot.lamp.shadow.clip_end.value_or(far_none) : far_none;
+    data.bias = slot.lamp.shadow.bias.value_or(1.0F);
     data.layer = slot.first_layer + int(i);
     data.cascade_count = slot.drawn == 0 ? 0 : int(slot.views.size() - i);
-    data.filter_kind = settings_.method == ShadowMethod::Pcf ? SHADOW_FILTER_PCF : SHADOW_FILTER_HARD;
+    data.filter_kind = slot.kind == scene::ShadowKind::Pcf ? SHADOW_FILTER_PCF : SHADOW_FILTER_HARD;
     data.size_px = slot.size_px;
   }
   if (slot.views.empty()) {
@@ -387,7 +473,7 @@ void Shadows::update_slot(gpu::Device &device, Slot &slot, Array &array, std::ui
   if (missing == 0) {
     return;
   }
-  const bool is_cube = &array == &cubes_;
+  const bool is_cube = &array != &maps_;
   std::vector<std::uint32_t> masks;
   masks.reserve(casters_.size());
   std::uint32_t with_casters = 0;
@@ -413,7 +499,8 @@ void Shadows::update_slot(gpu::Device &device, Slot &slot, Array &array, std::ui
         counters_.caster_draws++;
       }
     }
-    pass.record(slot.views.front(), list);
+    // What is nearer than the near plane is drawn on it, unless the lamp asks for it to be left out.
+    pass.record(slot.views.front(), list, slot.lamp.shadow.clip_start ? gpu::State::DepthClamp : gpu::State::None);
   };
   const auto name = [&](std::string_view what) { return fmt::format("shadow of {}, {}", slot.lamp.name, what); };
   const gpu::PassActions clear{.viewport_px = glm::ivec2(slot.size_px)};
@@ -444,11 +531,16 @@ void Shadows::update_slot(gpu::Device &device, Slot &slot, Array &array, std::ui
   }
   slot.drawn |= drawn;
   slot.settled |= missing;
-  if (is_cube) {
+  if (&array == &cubes_) {
     write_cube_data(slot);
   }
-  else {
+  else if (&array == &maps_) {
     write_map_data(slot);
+  }
+  else {
+    octahedral_.record(
+        list, std::size_t(slot.entry),
+        {array.texture, slot.first_layer, slot.near, slot.drawn, shared::cube_uv_scale(float(slot.size_px))});
   }
   if (drawn == 0) {
     return;
@@ -497,6 +589,10 @@ void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_si
   for (Slot &slot : maps_.slots) {
     update_slot(device, slot, maps_, ~0U, pass, list);
   }
+  // The filter looks around corners, so that all faces are wanted; and the cube is the next lamp's then.
+  for (Slot &slot : distance_cube_.slots) {
+    update_slot(device, slot, distance_cube_, ~0U, pass, list);
+  }
   if (std::exchange(is_block_dirty_, false) && shadow_block_buffer_) {
     device.update(shadow_block_buffer_, shadow_block_);
   }
@@ -504,10 +600,26 @@ void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_si
 
 Feature Shadows::features() const
 {
-  const bool has_shadow = !cubes_.slots.empty() || !maps_.slots.empty();
-  return (cubes_.slots.empty() ? Feature::None : Feature::ShadowCube) |
-         (maps_.slots.empty() ? Feature::None : Feature::ShadowMap) |
-         (has_shadow && settings_.method == ShadowMethod::Pcf ? Feature::ShadowPcf : Feature::None);
+  Feature features = Feature::None;
+  for (const Array *array : {&cubes_, &maps_}) {
+    for (const Slot &slot : array->slots) {
+      features = features | (array == &cubes_ ? Feature::ShadowCube : Feature::ShadowMap) |
+                 (slot.kind == scene::ShadowKind::Pcf ? Feature::ShadowPcf : Feature::None);
+    }
+  }
+  return features | (octahedral_.size() > 0 ? Feature::ShadowEsm : Feature::None);
+}
+
+void Shadows::bind(draw::ShadingGroup &group) const
+{
+  if (!cubes_.slots.empty() || !maps_.slots.empty()) {
+    group.bind_uniform("shadow_block", shadow_block_buffer_);
+    group.bind_texture_ref("shadow_cubes", &cubes_.binding);
+    group.bind_texture_ref("shadow_maps", &maps_.binding);
+  }
+  if (octahedral_.size() > 0) {
+    octahedral_.bind(group);
+  }
 }
 
 }  // namespace gnomon::eevee

@@ -3,6 +3,7 @@
 
 #include "eevee_casters.hh"
 #include "eevee_lamps.hh"
+#include "eevee_octahedral.hh"
 #include "eevee_sun_fit.hh"
 
 #include "draw_pass.hh"
@@ -19,14 +20,6 @@ extern const std::array<glm::mat4, 6> cubefacemat;
 /** From clip space to texture coordinates: xy from [-1, 1] to [0, 1]; the depth is in [0, 1] already. */
 extern const glm::mat4 texcomat;
 
-enum class ShadowMethod {
-  None,
-  /** The bilinear blend of the four texels around a lookup. */
-  Hard,
-  /** Percentage-closer filtering: the mean of several such. */
-  Pcf,
-};
-
 /** How the layers of a lamp are drawn; the texels are the same. */
 enum class LayerPass {
   /** The best that the device has. */
@@ -42,12 +35,16 @@ enum class LayerPass {
 /** Which sides of closed objects throw the shadow; two-sided materials always throw it with both. */
 enum class CasterFaces { All, Front, Back };
 
+/** A lamp's own wishes (scene::LampShadow) go before the settings of the same name, except that None is none at all. */
 struct ShadowSettings {
-  ShadowMethod method = ShadowMethod::Hard;
+  /** Hard: the bilinear blend of the four texels around a lookup. Pcf: the mean of several such. */
+  scene::ShadowKind kind = scene::ShadowKind::Hard;
   /** Edge of a cube face and of a map, pixels, at least 1. */
   int cube_size_px = 1024;
   int map_size_px = 2048;
   PcfKernel pcf{};
+  /** Of Esm; for point lamps and spots. */
+  EsmSettings esm{};
   CascadeSettings cascades{};
   LayerPass layer_pass = LayerPass::Best;
   CasterFaces caster_faces = CasterFaces::All;
@@ -57,6 +54,9 @@ struct ShadowSettings {
 
 /** Spots wider than this (half the opening, radians) look into a cube: a plane would stretch too far. */
 inline constexpr float spot_map_angle_max = 1.2F;
+
+/** What a lamp asks for, or else \a settings have; a sun that asks for Esm has Pcf. */
+[[nodiscard]] scene::ShadowKind shadow_kind(const scene::Lamp &lamp, const ShadowSettings &settings);
 
 /** The six views of a cube around \a position_ws, each with a border of CUBE_BORDER_TEXELS. */
 [[nodiscard]] std::array<draw::View, 6> shadow_cube_views(const glm::vec3 &position_ws, float near, int size_px);
@@ -84,8 +84,12 @@ struct ShadowCounters {
  */
 class Shadows {
  public:
-  /** Give each light of \a lamps that casts a shadow its place. Writes shadow_kind and shadow_index of its entry. */
-  void sync(gpu::Device &device, const scene::Scene &scene, Lamps &lamps, const ShadowSettings &settings);
+  /**
+   * Give each light of \a lamps that casts a shadow its place. Writes shadow_kind and shadow_index of its entry.
+   * \throws gpu::Error naming lamp and setting where a setting is out of range.
+   */
+  void sync(gpu::Device &device, ShaderCache &shaders, const scene::Scene &scene, Lamps &lamps,
+            const ShadowSettings &settings);
   void add_caster(const Caster &caster)
   {
     casters_.push_back(caster);
@@ -113,15 +117,8 @@ class Shadows {
 
   /** The shadows' features as far as lamps have them; valid after sync. */
   [[nodiscard]] Feature features() const;
-  /** To be bound by reference, as `shadow_cubes` and `shadow_maps`; valid where features() says so. */
-  [[nodiscard]] const draw::TextureBinding *cubes_binding() const
-  {
-    return &cubes_.binding;
-  }
-  [[nodiscard]] const draw::TextureBinding *maps_binding() const
-  {
-    return &maps_.binding;
-  }
+  /** Everything that lookups read, for a group whose shader has features(). */
+  void bind(draw::ShadingGroup &group) const;
   [[nodiscard]] const gpu::Texture &cubes() const
   {
     return cubes_.texture;
@@ -131,14 +128,15 @@ class Shadows {
   {
     return maps_.texture;
   }
-  [[nodiscard]] const gpu::Buffer &block() const
-  {
-    return shadow_block_buffer_;
-  }
   /** What the shaders read of it. */
   [[nodiscard]] const shared::ShadowBlock &block_data() const
   {
     return shadow_block_;
+  }
+  /** Of lamps whose wishes cannot be met, and what they get instead. */
+  [[nodiscard]] const std::vector<std::string> &warnings() const
+  {
+    return warnings_;
   }
   /** Lamps that lost their shadow, and sizes that were lowered, with the limit. */
   [[nodiscard]] const std::vector<std::string> &limits() const
@@ -157,6 +155,10 @@ class Shadows {
   {
     return maps_.slots.size();
   }
+  [[nodiscard]] const OctahedralStore &octahedral() const
+  {
+    return octahedral_;
+  }
 
  private:
   /** What a lamp has in an array. */
@@ -165,6 +167,7 @@ class Shadows {
     scene::Lamp lamp;
     /** In light_block. */
     int light = 0;
+    scene::ShadowKind kind = scene::ShadowKind::Hard;
     int size_px = 0;
     /** In shadow_block: the first of `layer_count_max`. */
     int entry = 0;
@@ -198,6 +201,13 @@ class Shadows {
   };
 
   void place_slots(const gpu::Limits &device_limits, const scene::Scene &scene, Lamps &lamps);
+  [[nodiscard]] std::array<Array *, 3> arrays()
+  {
+    return {&cubes_, &maps_, &distance_cube_};
+  }
+  void warn_of_idle_wishes(const scene::Lamp &lamp);
+  void place_octahedral(gpu::Device &device, ShaderCache &shaders, const scene::Scene &scene);
+  [[nodiscard]] int octahedral_size_px(const Slot &slot) const;
   void keep_drawn(Array &array, std::vector<Slot> before);
   void create_layers(gpu::Device &device, Array &array, int layers);
   void place_render_blocks(gpu::Device &device);
@@ -212,6 +222,8 @@ class Shadows {
                    gpu::CommandList &list);
 
   ShadowSettings settings_;
+  /** By which sizes were lowered to fit the memory. */
+  float memory_scale_ = 1.0F;
   LayerPass layer_pass_ = LayerPass::Single;
   std::vector<Caster> casters_;
   /** Of the last sync. */
@@ -222,12 +234,16 @@ class Shadows {
   VisibleRange visible_;
   Array cubes_{"shadow_cubes", {}, {}, {}, {}};
   Array maps_{"shadow_maps", {}, {}, {}, {}};
+  /** Lamps with exponential shadows; their layers are one cube that each is drawn into on its way to octahedral_. */
+  Array distance_cube_{"shadow_distance_cube", {}, {}, {}, {}};
+  OctahedralStore octahedral_;
   gpu::Sampler sampler_;
   shared::ShadowBlock shadow_block_{};
   gpu::Buffer shadow_block_buffer_;
   gpu::Buffer render_buffer_;
   bool is_block_dirty_ = true;
   gpu::BufferRange render_block_range_;
+  std::vector<std::string> warnings_;
   std::vector<std::string> limits_;
   ShadowCounters counters_;
 };

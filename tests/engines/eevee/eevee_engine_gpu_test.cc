@@ -97,7 +97,7 @@ TEST_F(EngineGpuTest, LightsAddUp)
   for (int i = 0; i < LIGHT_MAX; i++) {
     test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, 0.1F);
   }
-  EXPECT_NEAR(render(above, {.shadow = {.method = ShadowMethod::None}}).middle().r, 0.8F / PI * 0.1F * LIGHT_MAX,
+  EXPECT_NEAR(render(above, {.shadow = {.kind = scene::ShadowKind::None}}).middle().r, 0.8F / PI * 0.1F * LIGHT_MAX,
               1e-3F);
 }
 
@@ -139,7 +139,7 @@ TEST_F(EngineGpuTest, OfTwoOneSidedSurfacesBackToBackTheFrontIsSeen)
       const glm::mat4 turn = glm::rotate(glm::mat4(1.0F), is_front ? 0.0F : PI, glm::vec3(0, 1, 0));
       test::add_object(scene, is_front ? square : green, turn);
     }
-    const glm::vec4 pixel = render(above, {.shadow = {.method = ShadowMethod::None}}).middle();
+    const glm::vec4 pixel = render(above, {.shadow = {.kind = scene::ShadowKind::None}}).middle();
     EXPECT_NEAR(pixel.r, 0.8F / PI, 1e-4F) << "the red front " << (is_front_first ? "first" : "last");
   }
 }
@@ -199,7 +199,7 @@ class ShadowGpuTest : public EngineGpuTest {
     test::add_lamp(scene, kind, {0, 0, 4}, {0, 0, -1}, 20.0F).spot_outer_angle = 1.0F;
     // From below the square's height, so that it hides none of the ground.
     scene::Camera camera = test::camera_at({0, 0, 1.9F}, {0, 0, 0}, 2.6F);
-    const Picture lit = render(camera, {.shadow = {.method = ShadowMethod::None}}, {256, 256});
+    const Picture lit = render(camera, {.shadow = {.kind = scene::ShadowKind::None}}, {256, 256});
     const Picture shadowed = render(camera, {}, {256, 256});
     int wrong = 0;
     for (int y = 0; y < 256; y++) {
@@ -269,7 +269,7 @@ TEST_F(ShadowGpuTest, APlaneDoesNotDarkenItselfAtAnyAngle)
       add_square({-3.9F, -3.9F, 3}, {1, 1, 0}, 0.1F, square);
       test::add_lamp(scene, kind, 6.0F * to_lamp, -to_lamp, 10.0F).spot_outer_angle = 0.6F;
       const scene::Camera camera = test::camera_at({1, -2, 5}, {0, 0, 0}, 0.3F);
-      const Picture lit = render(camera, {.shadow = {.method = ShadowMethod::None}});
+      const Picture lit = render(camera, {.shadow = {.kind = scene::ShadowKind::None}});
       const Picture shadowed = render(camera);
       int dark = 0;
       for (std::size_t i = 0; i < lit.pixels.size(); i++) {
@@ -290,7 +290,7 @@ TEST_F(ShadowGpuTest, ABareGroundIsLitWhateverTheLampsHeight)
         add_square({0, 0, 0}, {0, 0, 1}, half, square);
         test::add_lamp(scene, kind, {0, 0, height}, {0.3F, 0.1F, -1}, 1.0F);
         const scene::Camera camera = test::camera_at({0.5F * half, -half, half}, {0, 0, 0}, 0.9F);
-        const Picture lit = render(camera, {.shadow = {.method = ShadowMethod::None}});
+        const Picture lit = render(camera, {.shadow = {.kind = scene::ShadowKind::None}});
         const Picture shadowed = render(camera, {.shadow = {.cube_size_px = 64}});
         int dark = 0;
         for (std::size_t i = 0; i < lit.pixels.size(); i++) {
@@ -313,7 +313,7 @@ TEST_F(ShadowGpuTest, SmallThingsCastInWideScenes)
     // Looks under the small square, at the middle of its shadow.
     const scene::Camera camera = test::camera_at({0, -2, 0.9F}, {0, 0, 0}, 0.05F);
     EXPECT_EQ(render(camera).middle().r, 0.0F) << "lamp kind " << int(kind);
-    EXPECT_GT(render(camera, {.shadow = {.method = ShadowMethod::None}}).middle().r, 0.0F);
+    EXPECT_GT(render(camera, {.shadow = {.kind = scene::ShadowKind::None}}).middle().r, 0.0F);
   }
 }
 
@@ -324,7 +324,7 @@ TEST_F(ShadowGpuTest, OutsideOfTheSunsMapIsLit)
   add_square({0, 0, 1}, {0, 0, 1}, 0.2F, square);
   test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0.3F, -1}, 1.0F);
   const scene::Camera camera = test::camera_at({0, -10, 8}, {0, 0, 0}, 0.9F);
-  const Picture lit = render(camera, {.shadow = {.method = ShadowMethod::None}});
+  const Picture lit = render(camera, {.shadow = {.kind = scene::ShadowKind::None}});
   const Picture shadowed = render(camera);
   int dark = 0;
   for (std::size_t i = 0; i < lit.pixels.size(); i++) {

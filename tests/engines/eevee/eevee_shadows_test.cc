@@ -118,7 +118,7 @@ class ShadowsTest : public testing::Test {
   void sync(const ShadowSettings &asked = {})
   {
     lamps = make_lamps(scene);
-    shadows.sync(*device, scene, lamps, asked);
+    shadows.sync(*device, shaders, scene, lamps, asked);
     pass.clear();
     draw::InstanceCall &instances = pass.group(shader).instances(batch);
     for (std::size_t i = 0; i < casters.size(); i++) {
@@ -294,7 +294,7 @@ TEST_F(ShadowsTest, OfASunAreDrawnAgainWhenTheViewSeesMore)
 TEST_F(ShadowsTest, OffMeansNothingIsMade)
 {
   add_lamp(scene::LampKind::Point, "point");
-  sync({.method = ShadowMethod::None});
+  sync({.kind = scene::ShadowKind::None});
   EXPECT_EQ(shadows.features(), Feature::None);
   EXPECT_FALSE(shadows.cubes());
   EXPECT_EQ(update(), "");
@@ -338,15 +338,15 @@ TEST_F(ShadowsTest, ThoseThatLoseTheirsAreNamed)
 
 TEST_F(ShadowsTest, RespectTheDevicesLayers)
 {
-  device = gpu::create_null_device({.array_layers_max = 13});
+  const std::unique_ptr<gpu::Device> device = gpu::create_null_device({.array_layers_max = 13});
   for (int i = 0; i < 3; i++) {
     add_lamp(scene::LampKind::Point, "point" + std::to_string(i));
   }
   lamps = make_lamps(scene);
-  shadows.sync(*device, scene, lamps, {.cube_size_px = 16});
-  EXPECT_EQ(shadows.cube_count(), 2U);
-  EXPECT_NE(shadows.limits().at(0).find("'point2'"), std::string::npos);
-  shadows = {};
+  Shadows few;
+  few.sync(*device, shaders, scene, lamps, {.cube_size_px = 16});
+  EXPECT_EQ(few.cube_count(), 2U);
+  EXPECT_NE(few.limits().at(0).find("'point2'"), std::string::npos);
 }
 
 TEST_F(ShadowsTest, FortyThreeCubesInARoomKeepTheirs)
@@ -361,11 +361,12 @@ TEST_F(ShadowsTest, FortyThreeCubesInARoomKeepTheirs)
 
 TEST_F(ShadowsTest, WithoutVertexLayersTheGeometryShaderChooses)
 {
-  device = gpu::create_null_device({.has_vertex_layer = false});
+  const std::unique_ptr<gpu::Device> device = gpu::create_null_device({.has_vertex_layer = false});
   lamps = make_lamps(scene);
-  EXPECT_THROW(shadows.sync(*device, scene, lamps, {.layer_pass = LayerPass::Layered}), gpu::Error);
-  shadows.sync(*device, scene, lamps, {});
-  EXPECT_EQ(shadows.layer_pass(), LayerPass::Geometry) << "the next best";
+  Shadows plain;
+  EXPECT_THROW(plain.sync(*device, shaders, scene, lamps, {.layer_pass = LayerPass::Layered}), gpu::Error);
+  plain.sync(*device, shaders, scene, lamps, {});
+  EXPECT_EQ(plain.layer_pass(), LayerPass::Geometry) << "the next best";
 }
 
 }  // namespace
