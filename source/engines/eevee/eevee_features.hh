@@ -20,6 +20,10 @@ enum class Feature : std::uint32_t {
   Specular = 1U << 3,
   ShadowCube = 1U << 4,
   ShadowMap = 1U << 5,
+  /** Of the material: its base colour is looked up. */
+  BaseColorTexture = 1U << 6,
+  /** Of the material: its texture's alpha cuts some of it out. */
+  AlphaMask = 1U << 7,
 };
 
 constexpr Feature operator|(Feature a, Feature b)
