@@ -1,4 +1,14 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
+#ifdef USE_ALPHA_MASK
+#  include "eevee/eevee_base_color_lib.glsl"
+#endif
 
-void main() {}
+void main()
+{
+#ifdef USE_ALPHA_MASK
+  if (is_cut_out(materials[surface_material].mask_cutoff)) {
+    discard;
+  }
+#endif
+}

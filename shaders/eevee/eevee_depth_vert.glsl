@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "draw/draw_object_lib.glsl"
 #include "draw/draw_view_lib.glsl"
+#ifdef USE_ALPHA_MASK
+#  include "eevee/eevee_base_color_vert_lib.glsl"
+#endif
 
 // The lit pass tests for equal depth, so both compute the position alike.
 invariant gl_Position;
@@ -9,4 +12,7 @@ invariant gl_Position;
 void main()
 {
   gl_Position = view.clip_from_world * vertex_position_ws();
+#ifdef USE_ALPHA_MASK
+  hand_on_base_color();
+#endif
 }

@@ -1,24 +1,21 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
 #include "draw/draw_view_lib.glsl"
+#include "eevee/eevee_material_lib.glsl"
 #include "eevee/eevee_surface_lib.glsl"
-#include "shared/eevee_material_shared.h"
+#ifdef USE_BASE_COLOR_TEXTURE
+#  include "eevee/eevee_base_color_lib.glsl"
+#endif
 #ifdef USE_LIGHT
 #  include "eevee/eevee_light_lib.glsl"
 #endif
 
-layout(location = 2) flat in uint surface_material;
 #ifdef USE_LIGHT
 layout(location = 0) in vec3 surface_position_ws;
 layout(location = 1) in vec3 surface_normal_ws;
 #endif
 
 layout(location = 0) out vec4 radiance;
-
-layout(std140, binding = MATERIAL_BLOCK_SLOT) readonly buffer material_block
-{
-  MaterialData materials[];
-};
 
 #ifdef USE_LIGHT
 /** \a fallback for a zero vector. */
@@ -46,6 +43,9 @@ Surface make_surface()
 void main()
 {
   MaterialData material = materials[surface_material];
+#ifdef USE_BASE_COLOR_TEXTURE
+  material = tinted(material, base_color_tint());
+#endif
   vec3 sum = material.emissive;
 #ifdef USE_LIGHT
   Surface surface = make_surface();
@@ -54,4 +54,10 @@ void main()
   }
 #endif
   radiance = vec4(sum, 1.0);
+#ifdef USE_BASE_COLOR_TEXTURE
+  // The depth of another surface may be the same.
+  if (is_cut_out(material.mask_cutoff)) {
+    discard;
+  }
+#endif
 }

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "draw/draw_object_lib.glsl"
 #include "draw/draw_view_lib.glsl"
-
+#ifdef USE_BASE_COLOR_TEXTURE
+#  include "eevee/eevee_base_color_vert_lib.glsl"
+#else
 layout(location = 2) flat out uint surface_material;
+#endif
 #ifdef USE_LIGHT
 layout(location = ATTRIBUTE_NORMAL) in vec3 normal;
 
@@ -18,7 +21,11 @@ void main()
   ObjectData object = objects[draw_instance.x];
   vec4 position_ws = vertex_position_ws();
   gl_Position = view.clip_from_world * position_ws;
+#ifdef USE_BASE_COLOR_TEXTURE
+  hand_on_base_color();
+#else
   surface_material = object.value;
+#endif
 #ifdef USE_LIGHT
   surface_position_ws = position_ws.xyz;
   vec3 normal_ws = object.normal_x.xyz * normal.x + object.normal_y.xyz * normal.y + object.normal_z * normal.z;

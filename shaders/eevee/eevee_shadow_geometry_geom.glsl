@@ -5,12 +5,24 @@ layout(triangles) in;
 layout(triangle_strip, max_vertices = 3) out;
 
 layout(location = 0) flat in int caster_layer[];
+#ifdef USE_ALPHA_MASK
+// What eevee_base_color_vert_lib.glsl hands on, under names that leave its own to the fragment shader.
+layout(location = 2) flat in uint caster_material[];
+layout(location = 3) in vec2 caster_uv[];
+
+layout(location = 2) flat out uint surface_material;
+layout(location = 3) out vec2 surface_uv;
+#endif
 
 void main()
 {
   for (int i = 0; i < 3; i++) {
     gl_Position = gl_in[i].gl_Position;
     gl_Layer = caster_layer[0];
+#ifdef USE_ALPHA_MASK
+    surface_material = caster_material[i];
+    surface_uv = caster_uv[i];
+#endif
     EmitVertex();
   }
   EndPrimitive();

@@ -7,6 +7,6 @@ layout(location = 0) flat out int caster_layer;
 
 void main()
 {
-  gl_Position = caster_position_cs();
+  place_caster();
   caster_layer = int(draw_instance.y);
 }

@@ -6,6 +6,6 @@
 
 void main()
 {
-  gl_Position = caster_position_cs();
+  place_caster();
   gl_Layer = int(draw_instance.y);
 }

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Where a caster's vertex is in the face, or cascade, that its instance names.
+// For vertex shaders: a caster in the face, or cascade, that its instance names.
 #include "draw/draw_object_lib.glsl"
 #include "shared/eevee_shadow_shared.h"
+#ifdef USE_ALPHA_MASK
+#  include "eevee/eevee_base_color_vert_lib.glsl"
+#endif
 
 layout(std140, binding = SHADOW_RENDER_BLOCK_SLOT) uniform shadow_render_block
 {
   ShadowRenderBlock shadow_render;
 };
 
-vec4 caster_position_cs()
+void place_caster()
 {
-  return shadow_render.clip_from_world[draw_instance.y] * vertex_position_ws();
+  gl_Position = shadow_render.clip_from_world[draw_instance.y] * vertex_position_ws();
+#ifdef USE_ALPHA_MASK
+  hand_on_base_color();
+#endif
 }

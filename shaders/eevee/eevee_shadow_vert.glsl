@@ -5,5 +5,5 @@
 
 void main()
 {
-  gl_Position = caster_position_cs();
+  place_caster();
 }

@@ -39,6 +39,8 @@ constexpr auto material_fields = std::to_array<Field>({
     {"materials[0].specular_f0", offsetof(MaterialData, specular_f0)},
     {"materials[0].specular_f90", offsetof(MaterialData, specular_f90)},
     {"materials[0].emissive", offsetof(MaterialData, emissive)},
+    {"materials[0].mask_cutoff", offsetof(MaterialData, mask_cutoff)},
+    {"materials[0].metal_f0", offsetof(MaterialData, metal_f0)},
     {"materials[0]._pad0", offsetof(MaterialData, _pad0)},
 });
 

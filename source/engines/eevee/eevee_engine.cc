@@ -5,6 +5,7 @@
 #include "eevee_film.hh"
 #include "eevee_lamps.hh"
 #include "eevee_materials.hh"
+#include "eevee_textures.hh"
 
 #include "draw_view_shared.h"
 
@@ -12,6 +13,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
 
 namespace gnomon::eevee {
 
@@ -52,11 +55,8 @@ struct PassList {
   draw::Pass tonemap;
 };
 
-/** A pass's groups for either winding; made when the first object needs them. */
-struct Groups {
-  draw::ShadingGroup *straight = nullptr;
-  draw::ShadingGroup *mirrored = nullptr;
-};
+/** What calls of one group have in common: pass, state beside the pass's, texture (-1: none). */
+using GroupKey = std::tuple<const draw::Pass *, State, std::int32_t>;
 
 struct StorageList {
   Lamps lamps;
@@ -69,13 +69,9 @@ struct StorageList {
   gpu::Buffer light_block;
   gpu::Buffer material_block;
   gpu::BufferRange object_block;
-  Groups depth;
-  Groups depth_cull;
-  Groups lit;
-  Groups lit_cull;
-  /** Of casters whose sides both throw shadows, and of those that CasterFaces is about. */
-  Groups shadow;
-  Groups shadow_cull;
+  Textures textures;
+  /** Made when the first object needs them. */
+  std::map<GroupKey, draw::ShadingGroup *> groups;
   /** One a mesh of the scene and winding; empty until a caster uses it. */
   std::vector<std::array<draw::InstanceCall *, 2>> caster_calls;
   /** Of the sample being drawn; the film pass reads it by reference. */
@@ -146,7 +142,7 @@ const gpu::Batch &batch_of(gpu::Device &device, StorageList &stl, const scene::S
   gpu::Batch &batch = stl.batches[mesh_index];
   if (!batch) {
     const scene::Mesh &mesh = scene.meshes[mesh_index];
-    batch = device.create_batch({mesh.name, mesh.positions, mesh.normals, mesh.indices});
+    batch = device.create_batch({mesh.name, mesh.positions, mesh.normals, mesh.indices, mesh.uvs});
   }
   return batch;
 }
@@ -160,23 +156,13 @@ ShaderId shadow_shader(LayerPass layer_pass)
   }
 }
 
-draw::ShadingGroup &caster_group(gpu::Device &device, StorageList &stl, draw::Pass &pass, CasterFaces faces,
-                                 bool is_double_sided, bool is_mirrored)
+State culled_state(CasterFaces faces)
 {
-  const bool is_culled = faces != CasterFaces::All && !is_double_sided;
-  Groups &groups = is_culled ? stl.shadow_cull : stl.shadow;
-  // Without culling the winding makes no difference.
-  draw::ShadingGroup *&group = is_culled && is_mirrored ? groups.mirrored : groups.straight;
-  if (!group) {
-    group = &pass.group(stl.shaders.get(device, shadow_shader(stl.shadows.layer_pass())));
-    group->bind_storage_ref("object_block", &stl.object_block);
-    group->bind_uniform_ref("shadow_render_block", stl.shadows.render_block());
-    if (is_culled) {
-      group->state_enable(faces == CasterFaces::Front ? State::CullBack : State::CullFront);
-      group->state_enable(is_mirrored ? State::FrontClockwise : State::None);
-    }
+  switch (faces) {
+    case CasterFaces::Front: return State::CullBack;
+    case CasterFaces::Back: return State::CullFront;
+    default: return State::None;
   }
-  return *group;
 }
 
 /** What makes a caster's shadow, as plain numbers. */
@@ -229,7 +215,8 @@ void Engine::cache_init(draw::Viewport &viewport)
   StorageList &stl = data.stl;
   data.psl = std::make_unique<PassList>(viewport.objects());
   data.samples_drawn = 0;
-  stl.depth = stl.depth_cull = stl.lit = stl.lit_cull = stl.shadow = stl.shadow_cull = {};
+  stl.groups.clear();
+  stl.textures.clear();
   stl.caster_calls.assign(scene_.meshes.size(), {});
   stl.shaders.set_pcf(settings_.shadow.pcf);
   stl.batches.clear();
@@ -276,43 +263,67 @@ void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectRef &obj
   gpu::Device &device = viewport.device();
   const scene::Mesh &mesh = scene_.meshes[scene_.objects[object.index].mesh];
   const scene::Material &material = scene_.materials[mesh.material];
+  if (!is_seen(material)) {
+    return;
+  }
   const gpu::Batch &batch = batch_of(device, stl, scene_, scene_.objects[object.index].mesh);
   const draw::ObjectIndex index = viewport.objects().add(object.world_from_object, mesh.material);
-  const bool is_mirrored = draw::is_mirrored(object.world_from_object);
+  const State winding = draw::is_mirrored(object.world_from_object) ? State::FrontClockwise : State::None;
+  const bool has_mask = is_masked(material);
+  const bool is_lit_textured = material.base_color_texture >= 0 && (has_mask || has(stl.features, Feature::Light));
 
-  const auto call = [&](Groups &groups, draw::Pass &pass, const gpu::Shader &shader, State state) {
-    draw::ShadingGroup *&group = is_mirrored ? groups.mirrored : groups.straight;
+  /** The group of a pass; \a bind fills in a new one. */
+  const auto group_of = [&](draw::Pass &pass, const gpu::Shader &shader, State state, bool is_textured,
+                            const auto &bind) -> draw::ShadingGroup & {
+    const std::int32_t texture = is_textured ? material.base_color_texture : -1;
+    draw::ShadingGroup *&group = stl.groups[{&pass, state, texture}];
     if (!group) {
       group = &pass.group(shader);
-      bind_lit(*group, stl);
       group->state_enable(state);
-      if (is_mirrored) {
-        group->state_enable(State::FrontClockwise);
+      bind(*group);
+      if (is_textured) {
+        const auto [image, sampler] = stl.textures.get(device, scene_, std::size_t(texture));
+        group->bind_texture("base_color_texture", image, sampler);
       }
     }
-    group->call(batch, index, object.volume);
+    return *group;
   };
-  const gpu::Shader &depth_shader = stl.shaders.get(device, ShaderId::Depth);
-  const gpu::Shader &lit_shader = stl.shaders.get(device, ShaderId::Lit, stl.features);
+  const auto call = [&](draw::Pass &pass, const gpu::Shader &shader, State state, bool is_textured) {
+    const auto bind = [&stl](draw::ShadingGroup &group) { bind_lit(group, stl); };
+    group_of(pass, shader, state | winding, is_textured, bind).call(batch, index, object.volume);
+  };
+  const Feature mask = has_mask ? Feature::AlphaMask : Feature::None;
+  const gpu::Shader &depth_shader = stl.shaders.get(device, ShaderId::Depth, mask);
+  const gpu::Shader &lit_shader = stl.shaders.get(
+      device, ShaderId::Lit, stl.features | (is_lit_textured ? Feature::BaseColorTexture : Feature::None));
   if (material.is_double_sided) {
-    call(stl.depth, data.psl->depth_pass, depth_shader, State::None);
-    call(stl.lit, data.psl->pass, lit_shader, State::None);
+    call(data.psl->depth_pass, depth_shader, State::None, has_mask);
+    call(data.psl->pass, lit_shader, State::None, is_lit_textured);
   }
   else {
-    call(stl.depth_cull, data.psl->depth_pass_cull, depth_shader, State::None);
+    call(data.psl->depth_pass_cull, depth_shader, State::None, has_mask);
     // At the same depth as the front of another face, the back must not be drawn over it.
-    call(stl.lit_cull, data.psl->pass, lit_shader, State::CullBack);
+    call(data.psl->pass, lit_shader, State::CullBack, is_lit_textured);
   }
 
   if (has(stl.features, any_shadow)) {
-    draw::InstanceCall *&instances = stl.caster_calls[scene_.objects[object.index].mesh][is_mirrored ? 1 : 0];
+    const std::uint32_t mesh_index = scene_.objects[object.index].mesh;
+    draw::InstanceCall *&instances = stl.caster_calls[mesh_index][winding == State::None ? 0 : 1];
     if (!instances) {
-      instances = &caster_group(device, stl, data.psl->shadow_pass, settings_.shadow.caster_faces,
-                                material.is_double_sided, is_mirrored)
-                       .instances(batch);
+      const auto bind = [&stl](draw::ShadingGroup &group) {
+        group.bind_storage_ref("object_block", &stl.object_block);
+        group.bind_storage("material_block", stl.material_block);
+        group.bind_uniform_ref("shadow_render_block", stl.shadows.render_block());
+      };
+      const ShaderId id = shadow_shader(stl.shadows.layer_pass());
+      const State faces = material.is_double_sided ? State::None : culled_state(settings_.shadow.caster_faces);
+      // Without culling the winding makes no difference.
+      const State state = faces == State::None ? State::None : faces | winding;
+      instances =
+          &group_of(data.psl->shadow_pass, stl.shaders.get(device, id, mask), state, has_mask, bind).instances(batch);
     }
     stl.shadows.add_caster({scene::transformed(mesh.bounds, object.world_from_object), index, instances,
-                            caster_fingerprint(object, scene_.objects[object.index].mesh, mesh.revision)});
+                            caster_fingerprint(object, mesh_index, mesh.revision)});
   }
 }
 
@@ -440,6 +451,9 @@ Report Engine::report(draw::Viewport &viewport) const
   part("depth_pass", !data.psl->depth_pass.is_empty(), "two-sided materials", "no object with a two-sided material");
   part("depth_pass_cull", !data.psl->depth_pass_cull.is_empty(), "one-sided materials",
        "no object with a one-sided material");
+  part("base colour textures", stl.textures.image_count() > 0,
+       fmt::format("{} images that materials look up", stl.textures.image_count()),
+       "no lit or cut out material has one");
   part("specular in eevee_lit", has(f, Feature::Specular), "a material reflects",
        has(f, Feature::Light) ? "every material is Lambertian" : "no lamp gives light");
   part("film", true, fmt::format("{} samples a pixel", settings_.sample_count), "");

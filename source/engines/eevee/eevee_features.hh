@@ -24,6 +24,10 @@ enum class Feature : std::uint32_t {
   ShadowPcf = 1U << 6,
   /** Octahedral exponential shadow maps. */
   ShadowEsm = 1U << 7,
+  /** Of the material: its base colour is looked up. */
+  BaseColorTexture = 1U << 8,
+  /** Of the material: its texture's alpha cuts some of it out. */
+  AlphaMask = 1U << 9,
 };
 
 constexpr Feature operator|(Feature a, Feature b)

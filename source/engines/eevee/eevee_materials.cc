@@ -7,6 +7,17 @@
 
 namespace gnomon::eevee {
 
+bool is_seen(const scene::Material &material)
+{
+  return material.alpha_mode != scene::AlphaMode::Mask || material.alpha >= material.alpha_cutoff;
+}
+
+bool is_masked(const scene::Material &material)
+{
+  return material.alpha_mode == scene::AlphaMode::Mask && material.base_color_texture >= 0 && is_seen(material) &&
+         material.alpha_cutoff > 0.0F;
+}
+
 shared::MaterialData material_data(const scene::Material &material)
 {
   // glTF 2.0, appendix B, and KHR_materials_specular; 0.04 is a dielectric of index 1.5.
@@ -16,11 +27,12 @@ shared::MaterialData material_data(const scene::Material &material)
   data.diffuse = material.base_color * (1.0F - material.metallic);
   data.alpha = std::max(material.roughness * material.roughness, shared::ALPHA_MIN);
   data.specular_f0 = glm::mix(dielectric, material.base_color, material.metallic);
-  // Grazing reflection fades with f0 below 2 %, so that black specular is Lambertian (Lagarde and de Rousiers
-  // 2014, 3.2).
-  const float strongest = std::max({data.specular_f0.r, data.specular_f0.g, data.specular_f0.b});
-  data.specular_f90 = std::min(50.0F * strongest, 1.0F);
+  data.specular_f90 = shared::grazing_reflection(data.specular_f0);
   data.emissive = material.emissive;
+  data.metal_f0 = material.base_color * material.metallic;
+  if (is_masked(material)) {
+    data.mask_cutoff = material.alpha_cutoff / material.alpha;
+  }
   return data;
 }
 

@@ -7,6 +7,12 @@
 
 namespace gnomon::eevee {
 
+/** Whether any of it can be above the cutoff; a texture's alpha is at most 1. */
+[[nodiscard]] bool is_seen(const scene::Material &material);
+
+/** Whether a texture may cut some of it out: it takes a lookup to tell. */
+[[nodiscard]] bool is_masked(const scene::Material &material);
+
 [[nodiscard]] shared::MaterialData material_data(const scene::Material &material);
 
 /** One entry a material of the scene, in its order. */

@@ -9,7 +9,7 @@ namespace gnomon::eevee {
 
 namespace {
 
-constexpr std::array<FeatureDefine, 8> feature_table = {
+constexpr std::array<FeatureDefine, 10> feature_table = {
     {{Feature::Light, "USE_LIGHT", "something shines"},
      {Feature::Punctual, "USE_PUNCTUAL", "a point or spot lamp shines"},
      {Feature::Hemi, "USE_HEMI", "a hemi lamp shines"},
@@ -17,23 +17,27 @@ constexpr std::array<FeatureDefine, 8> feature_table = {
      {Feature::ShadowCube, "USE_SHADOW_CUBE", "a point lamp or a wide spot casts shadows"},
      {Feature::ShadowMap, "USE_SHADOW_MAP", "a sun or a spot casts shadows"},
      {Feature::ShadowPcf, "USE_SHADOW_PCF", "a shadow is filtered by percentage-closer lookups"},
-     {Feature::ShadowEsm, "USE_SHADOW_ESM", "a point lamp or a spot casts exponential shadows"}}};
+     {Feature::ShadowEsm, "USE_SHADOW_ESM", "a point lamp or a spot casts exponential shadows"},
+     {Feature::BaseColorTexture, "USE_BASE_COLOR_TEXTURE", "a material's base colour has a texture"},
+     {Feature::AlphaMask, "USE_ALPHA_MASK", "a texture's alpha cuts a material out"}}};
 
-constexpr Feature lit_features = Feature::Light | Feature::Punctual | Feature::Hemi | Feature::Specular |
-                                 Feature::ShadowCube | Feature::ShadowMap | Feature::ShadowPcf | Feature::ShadowEsm;
+/** Those that say nothing without light. */
+constexpr Feature light_features = Feature::Light | Feature::Punctual | Feature::Hemi | Feature::Specular |
+                                   Feature::ShadowCube | Feature::ShadowMap | Feature::ShadowPcf | Feature::ShadowEsm;
+constexpr Feature material_features = Feature::BaseColorTexture | Feature::AlphaMask;
 
 constexpr std::array<ShaderDeclaration, 11> declarations = {{
-    {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl", Feature::None,
-     "depth of what is seen, so that each pixel is lit once"},
-    {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_depth_frag.glsl", Feature::None,
-     "depth of what a lamp sees, a layer a pass"},
+    {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
+     Feature::AlphaMask, "depth of what is seen, so that each pixel is lit once"},
+    {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
+     Feature::AlphaMask, "depth of what a lamp sees, a layer a pass"},
     {ShaderId::ShadowLayered, "eevee_shadow_layered", "eevee/eevee_shadow_layered_vert.glsl", "",
-     "eevee/eevee_depth_frag.glsl", Feature::None, "depth of what a lamp sees, all layers in one pass"},
+     "eevee/eevee_depth_frag.glsl", Feature::AlphaMask, "depth of what a lamp sees, all layers in one pass"},
     {ShaderId::ShadowGeometry, "eevee_shadow_geometry", "eevee/eevee_shadow_geometry_vert.glsl",
-     "eevee/eevee_shadow_geometry_geom.glsl", "eevee/eevee_depth_frag.glsl", Feature::None,
+     "eevee/eevee_shadow_geometry_geom.glsl", "eevee/eevee_depth_frag.glsl", Feature::AlphaMask,
      "the same where vertex shaders cannot choose a layer"},
-    {ShaderId::Lit, "eevee_lit", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_lit_frag.glsl", lit_features,
-     "light that surfaces send to the viewer"},
+    {ShaderId::Lit, "eevee_lit", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_lit_frag.glsl",
+     light_features | Feature::BaseColorTexture, "light that surfaces send to the viewer"},
     {ShaderId::Film, "eevee_film", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_film_frag.glsl", Feature::None,
      "sum of several samples a pixel"},
     {ShaderId::Tonemap, "eevee_tonemap", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_tonemap_frag.glsl",
@@ -51,9 +55,8 @@ constexpr std::array<ShaderDeclaration, 11> declarations = {{
 /** Whether a scene can ask for this mask, and no smaller mask gives the same program. */
 bool is_possible(Feature features)
 {
-  const bool has_light = has(features, Feature::Light);
-  if (!has_light) {
-    return features == Feature::None;
+  if (!has(features, Feature::Light)) {
+    return (features & light_features) == Feature::None;
   }
   // Cubes and exponential maps are for point lamps and spots; what is filtered is a cube or a map.
   return (has(features, Feature::Punctual) || !has(features, Feature::ShadowCube | Feature::ShadowEsm)) &&
@@ -117,7 +120,8 @@ void ShaderCache::set_pcf(const PcfKernel &pcf)
 const gpu::Shader &ShaderCache::get(gpu::Device &device, ShaderId id, Feature features)
 {
   const ShaderDeclaration &declaration = declarations.at(std::size_t(id));
-  const std::pair key(id, has(features, Feature::Light) ? features & declaration.features : Feature::None);
+  const Feature reachable = has(features, Feature::Light) ? features : features & material_features;
+  const std::pair key(id, reachable & declaration.features);
   const auto found = shaders_.find(key);
   if (found != shaders_.end()) {
     return found->second;

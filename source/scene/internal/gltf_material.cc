@@ -135,7 +135,7 @@ class MaterialReader {
     else if (source_.alphaMode != "OPAQUE") {
       warnings_.add(what_, "alphaMode '" + printable(source_.alphaMode) + "' is unknown, taken for OPAQUE");
     }
-    if (result_.alpha_mode != AlphaMode::Opaque) {
+    if (result_.alpha_mode == AlphaMode::Blend) {
       warnings_.add(what_, "alphaMode " + source_.alphaMode + " is drawn opaque for now");
     }
   }

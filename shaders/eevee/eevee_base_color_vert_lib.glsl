@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// For vertex shaders: what eevee_base_color_lib.glsl looks up in the fragment shader.
+#include "draw/draw_object_lib.glsl"
+
+layout(location = ATTRIBUTE_UV) in vec2 uv;
+
+layout(location = 2) flat out uint surface_material;
+layout(location = 3) out vec2 surface_uv;
+
+void hand_on_base_color()
+{
+  surface_material = objects[draw_instance.x].value;
+  surface_uv = uv;
+}
