@@ -11,7 +11,7 @@ SHARED_BEGIN
 /** EsmData::format: what the array that holds the lamp's layer stores. */
 /** Metres, in 32 bits. */
 #define ESM_FLOAT 0
-/** 16 bits: the range is laid over [-1, 1]. */
+/** 16 bits: the range is laid over [-1, 1] in equal steps. */
 #define ESM_HALF 1
 
 /** One lamp's octahedral layer, an entry of `esm_block`. */
@@ -87,10 +87,16 @@ SHARED_FUNCTION float esm_visibility(float exponent, float stored, float distanc
   return exp(min(exponent * (stored - distance), 0.0f));
 }
 
-/** What a layer of ESM_… \a format holds for \a distance in [0, \a range], metres. */
+/** Steps from -1 to 0 that a half has everywhere in [-1, 1]: 11 bits. */
+SHARED_CONSTANT float ESM_HALF_STEPS = 2048.0f;
+
+/**
+ * What a layer of ESM_… \a format holds for \a distance in [0, \a range], metres. Halves are rounded here to what they hold exactly,
+ * because drivers may cut them off instead.
+ */
 SHARED_FUNCTION float esm_encoded(float distance, float range, int format)
 {
-  return format == ESM_HALF ? 2.0f * (distance / range) - 1.0f : distance;
+  return format == ESM_HALF ? floor(2.0f * ESM_HALF_STEPS * (distance / range) + 0.5f) / ESM_HALF_STEPS - 1.0f : distance;
 }
 
 /** The inverse. */
@@ -99,13 +105,10 @@ SHARED_FUNCTION float esm_decoded(float stored, float range, int format)
   return format == ESM_HALF ? (0.5f * stored + 0.5f) * range : stored;
 }
 
-/** Of the range, what halves round a distance by: half an ulp of what is in [0.5, 1) is 2^-12, of a map twice as wide as the range. */
-SHARED_CONSTANT float ESM_HALF_ROUNDING = 1.220703125e-4f;
-
-/** Largest error of distances that the format makes, metres. Roundings of floats are esm_bias' business. */
+/** Largest error of distances that the format makes, metres: half a step. Roundings of floats are esm_bias' business. */
 SHARED_FUNCTION float esm_format_error(float range, int format)
 {
-  return format == ESM_HALF ? ESM_HALF_ROUNDING * range : 0.0f;
+  return format == ESM_HALF ? range * (0.25f / ESM_HALF_STEPS) : 0.0f;
 }
 
 /**

@@ -44,6 +44,7 @@ using glm::cos;
 using glm::cross;
 using glm::dot;
 using glm::exp;
+using glm::floor;
 using glm::log;
 using glm::max;
 using glm::min;

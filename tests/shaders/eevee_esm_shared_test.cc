@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_esm_shared.h"
+#include "eevee_octahedral_shared.h"
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/packing.hpp>
 
 #include <gtest/gtest.h>
 
@@ -130,6 +134,119 @@ TEST(EsmVisibility, NaivelyIsInfiniteFrom18MetresAndOursIsNot)
   EXPECT_EQ(naive(18.0F, 18.2F), 1.0F) << "lit in the shadow";
   // 18.2 - 18 is off by a rounding of 18, a millionth, which the exponent multiplies.
   EXPECT_NEAR(esm_visibility(5.0F, 18.0F, 18.2F), std::exp(-1.0F), 4e-6F);
+}
+
+// hazards.md: exp(5 d) is infinite in halves beyond 2.2 m.
+TEST(EsmVisibility, NaivelyIsInfiniteInHalvesFromThreeMetres)
+{
+  const auto half = [](float value) { return glm::unpackHalf1x16(glm::packHalf1x16(value)); };
+  EXPECT_TRUE(std::isfinite(half(std::exp(5.0F * 2.2F))));
+  EXPECT_EQ(half(std::exp(5.0F * 2.3F)), std::numeric_limits<float>::infinity());
+  for (const float distance : {2.2F, 2.3F, 1e3F, 1e30F}) {
+    EXPECT_TRUE(std::isfinite(half(esm_encoded(distance, distance, ESM_HALF))));
+  }
+}
+
+// hazards.md: with fp16 storage of linear distance, half an ulp is 1.6 cm at 40 m; with c = 80 that is a 249 % error.
+TEST(EsmFormat, ErrorIsThatOfHalfAStepAndHalfOfWhatLinearHalvesHave)
+{
+  const float linear_error = std::ldexp(0.5F, 5 - 10);
+  EXPECT_NEAR(linear_error, 0.016F, 4e-4F);
+  EXPECT_NEAR(std::exp(80.0F * linear_error) - 1.0F, 2.49F, 0.01F);
+  const float range = 64.0F;
+  EXPECT_FLOAT_EQ(esm_format_error(range, ESM_HALF), 0.5F * linear_error);
+  float worst = 0.0F;
+  for (int i = 0; i <= 100000; i++) {
+    const float distance = range * float(i) / 100000.0F;
+    const float encoded = esm_encoded(distance, range, ESM_HALF);
+    ASSERT_EQ(glm::unpackHalf1x16(glm::packHalf1x16(encoded)), encoded) << "a half holds it, however a driver rounds";
+    worst = std::max(worst, std::abs(esm_decoded(encoded, range, ESM_HALF) - distance));
+  }
+  EXPECT_LE(worst, esm_format_error(range, ESM_HALF) * 1.001F);
+  EXPECT_GE(worst, esm_format_error(range, ESM_HALF) * 0.99F);
+  EXPECT_EQ(esm_decoded(esm_encoded(range, range, ESM_HALF), range, ESM_HALF), range) << "far is far";
+  EXPECT_EQ(esm_format_error(range, ESM_FLOAT), 0.0F);
+}
+
+TEST(EsmDisk, PointsHaveTheDisksMoments)
+{
+  for (const int count : {4, 32}) {
+    glm::dvec2 mean(0.0);
+    double xx = 0.0;
+    double yy = 0.0;
+    double xy = 0.0;
+    for (int i = 0; i < count; i++) {
+      const glm::dvec2 p(esm_disk_point(i, count));
+      EXPECT_LE(glm::length(p), 1.0);
+      mean += p / double(count);
+      xx += p.x * p.x / count;
+      yy += p.y * p.y / count;
+      xy += p.x * p.y / count;
+    }
+    EXPECT_NEAR(glm::length(mean), 0.0, 1e-7);
+    EXPECT_NEAR(xx, 0.25, 1e-6);
+    EXPECT_NEAR(yy, 0.25, 1e-6);
+    EXPECT_NEAR(xy, 0.0, 1e-6);
+  }
+}
+
+// hazards.md: with a tangent frame from an un-normalised octahedral vector the blur's angle varies by up to √3 over the
+// map.
+TEST(EsmCone, HasOneAngleAllOverTheMapAndNaivelyHasNot)
+{
+  constexpr float angle = 0.01F;
+  const float versine = 2.0F * std::pow(std::sin(0.5F * angle), 2.0F);
+  float low = 1.0F;
+  float high = 0.0F;
+  for (int y = 0; y <= 48; y++) {
+    for (int x = 0; x <= 48; x++) {
+      const vec3 axis = octahedral_to_direction(vec2(float(x), float(y)) / 48.0F);
+      for (int i = 0; i < 8; i++) {
+        const vec2 point(std::cos(float(i)), std::sin(float(i)));
+        const vec3 direction = esm_cone_direction(axis, point, versine);
+        ASSERT_NEAR(glm::length(direction), 1.0F, 3e-7F);
+        ASSERT_NEAR(glm::length(glm::cross(axis, direction)), std::sin(angle), 3e-7F);
+      }
+      // The seed's: a fixed offset from a vector whose length is 1 / √3 to 1.
+      const float length = 1.0F / (std::abs(axis.x) + std::abs(axis.y) + std::abs(axis.z));
+      const float naive = std::atan(angle / length);
+      low = std::min(low, naive);
+      high = std::max(high, naive);
+    }
+  }
+  EXPECT_NEAR(high / low, std::sqrt(3.0F), 1e-3F);
+}
+
+TEST(EsmCone, OfNoOpeningIsItsAxis)
+{
+  for (const vec3 axis : {vec3(0, 0, 1), vec3(0, 0, -1), vec3(0.6F, 0, -0.8F)}) {
+    EXPECT_EQ(esm_cone_direction(axis, vec2(0.5F, -0.5F), 0.0F), axis);
+  }
+}
+
+TEST(EsmBias, IsFiniteAndGrowsWithDistanceTiltAndTexel)
+{
+  float before = 0.0F;
+  for (int degrees = 0; degrees <= 90; degrees++) {
+    const float cosine = std::cos(float(degrees) * 0.017453292F);
+    const float bias = esm_bias(10.0F, cosine, 0.01F, 0.0F);
+    ASSERT_TRUE(bias >= before && bias <= 10.0F * 0.01F * ESM_TANGENT_MAX * 1.001F) << degrees;
+    EXPECT_EQ(bias, esm_bias(10.0F, -cosine, 0.01F, 0.0F)) << "either side of the plane";
+    EXPECT_GT(esm_bias(11.0F, cosine, 0.01F, 0.0F), bias);
+    EXPECT_GT(esm_bias(10.0F, cosine, 0.01F, 0.1F), bias);
+    before = bias;
+  }
+}
+
+TEST(EsmGathered, BlendsVisibilitiesAndNotDistances)
+{
+  // A near texel beside one without a caster: lit by the share of the second, and not dark nearly up to its middle.
+  const vec4 stored(100.0F, 100.0F, 100.0F, 1.0F);
+  for (const float fraction : {0.0F, 0.25F, 0.75F, 1.0F}) {
+    EXPECT_NEAR(esm_gathered_visibility(10.0F, stored, 50.0F, vec2(fraction, 0.0F)), fraction, 1e-6F);
+    const float blended = 1.0F + fraction * 99.0F;
+    EXPECT_TRUE(fraction != 0.25F || esm_visibility(10.0F, blended, 50.0F) == 0.0F) << "what a linear sampler gives";
+  }
 }
 
 TEST(EsmVisibility, IsOneInFrontAndFallsBehind)

@@ -101,6 +101,36 @@ TEST(Octahedral, RoundTripOfTexelsIsWithinRounding)
   }
 }
 
+TEST(Octahedral, DirectionToTexelAndBackIsWithinATexel)
+{
+  std::mt19937 random(8);
+  std::normal_distribution<float> normal;
+  for (const int size : {64, 512}) {
+    for (int i = 0; i < 20000; i++) {
+      const vec3 v = glm::normalize(vec3(normal(random), normal(random), normal(random)));
+      const vec2 uv = octahedral_from_direction(v);
+      const ivec2 texel = glm::clamp(ivec2(uv * float(size)), ivec2(0), ivec2(size - 1));
+      const vec3 back = octahedral_to_direction((vec2(texel) + 0.5F) / float(size));
+      // The longest way through the largest texel, halved, is 0.93 of the edge of a square as large.
+      ASSERT_LE(angle(v, back), octahedral_texel_angle(back, size)) << size;
+    }
+  }
+}
+
+TEST(OctahedralTexelWeight, SumsToTheSphere)
+{
+  constexpr int size = 64;
+  double sum = 0.0;
+  for (int y = 0; y < size; y++) {
+    for (int x = 0; x < size; x++) {
+      const float a =
+          octahedral_texel_angle(octahedral_to_direction((vec2(float(x), float(y)) + 0.5F) / float(size)), size);
+      sum += double(a) * double(a);
+    }
+  }
+  EXPECT_NEAR(sum, 4.0 * 3.14159265, 1e-3 * 12.57);
+}
+
 TEST(Octahedral, OfNoVectorIsPlusZ)
 {
   EXPECT_EQ(octahedral_from_direction(vec3(0.0F)), vec2(0.5F));

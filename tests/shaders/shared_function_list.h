@@ -35,6 +35,14 @@ inline constexpr gnomon::test::CompiledFunction<float> compiled_functions[] = {
   FUNCTION(log_sum, vec4(log_sum_value(log_sum_add(log_sum_add(log_sum_add(log_sum_begin(
       a.x, c.x), b.x, a.y, c.y), b.x, a.z, c.z), b.x, a.w, c.w), b.x), 0, 0, 0))
   FUNCTION(esm_visibility, vec4(esm_visibility(a.x, a.y, a.z), 0, 0, 0))
+  FUNCTION(esm_encoded, vec4(esm_encoded(a.x, a.y, int(a.z)), 0, 0, 0))
+  FUNCTION(esm_decoded, vec4(esm_decoded(a.x, a.y, int(a.z)), 0, 0, 0))
+  FUNCTION(esm_format_error, vec4(esm_format_error(a.x, int(a.y)), 0, 0, 0))
+  FUNCTION(esm_visibility_error, vec4(esm_visibility_error(a.x, a.y), 0, 0, 0))
+  FUNCTION(esm_disk_point, vec4(esm_disk_point(int(a.x), int(a.y)), 0, 0))
+  FUNCTION(esm_cone_direction, vec4(esm_cone_direction(vec3(a), vec2(b), b.z), 0))
+  FUNCTION(esm_bias, vec4(esm_bias(a.x, a.y, a.z, a.w), 0, 0, 0))
+  FUNCTION(esm_gathered_visibility, vec4(esm_gathered_visibility(c.x, a, b.x, vec2(b.y, b.z)), 0, 0, 0))
 
   FUNCTION(spot_inv_width, vec4(spot_inv_width(a.x, a.y), 0, 0, 0))
   FUNCTION(spot_mask, vec4(spot_mask(a.x, a.y, spot_inv_width(a.y, a.z)), 0, 0, 0))
@@ -43,6 +51,8 @@ inline constexpr gnomon::test::CompiledFunction<float> compiled_functions[] = {
 
   FUNCTION(octahedral_from_direction, vec4(octahedral_from_direction(vec3(a)), 0, 0))
   FUNCTION(octahedral_to_direction, vec4(octahedral_to_direction(vec2(a)), 0))
+  FUNCTION(octahedral_texel_weight, vec4(octahedral_texel_weight(vec3(a)), 0, 0, 0))
+  FUNCTION(octahedral_texel_angle, vec4(octahedral_texel_angle(vec3(a), int(a.w)), 0, 0, 0))
   FUNCTION(octahedral_texel, vec4(vec2(octahedral_texel(ivec2(vec2(a)), int(a.z))), 0, 0))
 
   FUNCTION(cube_face, vec4(cube_face(vec3(a)), 0, 0, 0))

@@ -2,6 +2,7 @@
 #include "shared_functions.hh"
 
 #include "eevee_depth_shared.h"
+#include "eevee_esm_shared.h"
 #include "eevee_tonemap_shared.h"
 
 #include <fmt/format.h>
@@ -471,6 +472,119 @@ std::vector<Sweep> make_sweeps()
                     1e-6, 2, 8});
 
   {
+    std::vector<In> encoded;
+    std::vector<In> decoded;
+    for (const float range : {1e-3F, 1.0F, 37.5F, 1e6F}) {
+      for (const int format : {ESM_FLOAT, ESM_HALF}) {
+        // Away from where a rounding decides which step is next: steps of 1/4096, and a bit.
+        for (int i = 0; i <= 4096; i += 3) {
+          encoded.push_back({.a = {range * (float(i) + 0.25F) / 4096.25F, range, format, 0}});
+          decoded.push_back({.a = {float(i) / 2048.0F - 1.0F, range, format, 0}});
+        }
+      }
+    }
+    sweeps.push_back({"esm_encoded", encoded,
+                      [](const Exact &in) {
+                        return one(in.a.z == ESM_HALF ? std::round(4096.0 * in.a.x / in.a.y) / 2048.0 - 1.0 : in.a.x);
+                      },
+                      [](const Exact &in) { return one(in.a.z == ESM_HALF ? 1.0 : in.a.x); }, 1e-6, 0, 0});
+    sweeps.push_back({"esm_decoded", decoded,
+                      [](const Exact &in) { return one(in.a.z == ESM_HALF ? (1.0 + in.a.x) / 2.0 * in.a.y : in.a.x); },
+                      [](const Exact &in) { return one(in.a.y + 1.0); }, 1e-6, 1, 1});
+    sweeps.push_back({"esm_format_error",
+                      many(1000,
+                           [](Random &random) {
+                             const float format = random.one_of(std::array{0.0F, 1.0F});
+                             return In{.a = {random.log_uniform(1e-3, 1e6), format, 0, 0}};
+                           }),
+                      [](const Exact &in) { return one(in.a.y == ESM_HALF ? in.a.x / 8192.0 : 0.0); },
+                      [](const Exact &in) { return one(in.a.x); }, 1e-6, 0, 1});
+    sweeps.push_back({"esm_visibility_error",
+                      many(10000,
+                           [](Random &random) {
+                             return In{.a = {random.log_uniform(0.01, 1e4), random.log_uniform(1e-7, 10.0), 0, 0}};
+                           }),
+                      [](const Exact &in) { return one(-std::expm1(-in.a.x * in.a.y)); },
+                      [](const Exact &) { return one(1.0); }, 1e-6, 1, 4});
+    std::vector<In> points;
+    for (const int count : {1, 4, 8, 32, 64}) {
+      for (int i = 0; i < count; i++) {
+        points.push_back({.a = {i, count, 0, 0}});
+      }
+    }
+    sweeps.push_back({"esm_disk_point", points,
+                      [](const Exact &in) {
+                        const int ring = int(in.a.x) / 4;
+                        const double radius = in.a.y == 1.0 ? 0.0 : std::sqrt((ring + 0.5) * 4.0 / in.a.y);
+                        const double golden = std::numbers::pi * (3.0 - std::sqrt(5.0));
+                        const double angle = ring * golden + (int(in.a.x) % 4) * std::numbers::pi / 2.0;
+                        return dvec4(radius * std::cos(angle), radius * std::sin(angle), 0, 0);
+                      },
+                      // The golden angle is rounded, and drivers' sines are not for large angles.
+                      [](const Exact &in) { return dvec4(1, 1, 0, 0) * (1.0 + in.a.x / 4.0); }, 2, 3, 20});
+    sweeps.push_back({"esm_cone_direction",
+                      many(20000,
+                           [](Random &random) {
+                             const float angle = random.uniform(0, 2.0 * std::numbers::pi);
+                             const float radius = random.uniform(0, 1);
+                             return In{.a = glm::vec4(random.direction(), 0),
+                                       .b = {radius * std::cos(angle), radius * std::sin(angle),
+                                             random.one_of(std::array{0.0F, 1e-3F, 0.12F, 1.0F}), 0}};
+                           }),
+                      [](const Exact &in) {
+                        // The turn that takes the nearer of +Z and -Z to the axis.
+                        const dvec3 n = dvec3(in.a);
+                        const double side = n.z >= 0.0 ? 1.0 : -1.0;
+                        const double scale = 1.0 / (1.0 + std::abs(n.z));
+                        const dvec3 x(1.0 - n.x * n.x * scale, -n.x * n.y * scale, -side * n.x);
+                        const dvec3 y(-side * n.x * n.y * scale, side * (1.0 - n.y * n.y * scale), -n.y);
+                        const double r2 = in.b.x * in.b.x + in.b.y * in.b.y;
+                        const double cosine = 1.0 - in.b.z * r2;
+                        const double sine_a_radius = std::sqrt(in.b.z * (1.0 + cosine));
+                        return dvec4(cosine * n + sine_a_radius * (in.b.x * x + in.b.y * y), 0);
+                      },
+                      [](const Exact &) { return dvec4(1, 1, 1, 0); }, 4, 8, 16});
+    sweeps.push_back({"esm_bias",
+                      many(20000,
+                           [](Random &random) {
+                             return In{.a = {random.log_uniform(1e-3, 1e3), random.uniform(-1, 1),
+                                             random.log_uniform(1e-4, 0.1), random.log_uniform(1e-6, 1e-2)}};
+                           }),
+                      [](const Exact &in) {
+                        const double tangent = std::min(std::tan(std::acos(std::abs(in.a.y))), 10.0);
+                        return one(in.a.x * (in.a.z * tangent + 4e-7) + in.a.w);
+                      },
+                      [](const Exact &in) {
+                        // The tangent of a cosine near 1 is the root of a small difference.
+                        const double tangent = std::tan(std::acos(std::abs(in.a.y)));
+                        return one(in.a.x * in.a.z * (std::min(tangent, 10.0) + 1.0 / std::max(tangent, 1e-3)) +
+                                   in.a.x * 1e-6 + in.a.w);
+                      },
+                      1, 4, 8});
+    sweeps.push_back({"esm_gathered_visibility",
+                      many(20000,
+                           [](Random &random) {
+                             In in;
+                             in.c.x = random.log_uniform(0.01, 100.0);
+                             in.b = {random.uniform(1, 10), random.uniform(0, 1), random.uniform(0, 1), 0};
+                             for (int i = 0; i < 4; i++) {
+                               in.a[i] = in.b.x - random.uniform(-3, 3) / in.c.x;
+                             }
+                             return in;
+                           }),
+                      [](const Exact &in) {
+                        const auto visible = [&](int i) {
+                          return std::min(1.0, std::exp(in.c.x * (in.a[i] - in.b.x)));
+                        };
+                        const double u = in.b.y;
+                        const double v = in.b.z;
+                        return one((1.0 - v) * ((1.0 - u) * visible(3) + u * visible(2)) +
+                                   v * ((1.0 - u) * visible(0) + u * visible(1)));
+                      },
+                      [](const Exact &in) { return one(1.0 + in.c.x * in.b.x); }, 1e-6, 3, 6});
+  }
+
+  {
     std::vector<In> widths;
     std::vector<In> masks;
     for (int degrees = 0; degrees <= 180; degrees += 4) {
@@ -516,6 +630,24 @@ std::vector<Sweep> make_sweeps()
       {"hemi_irradiance", many(2000, [](Random &random) { return In{.a = glm::vec4(random.uniform(-1, 1))}; }),
        [](const Exact &in) { return one((1.0 + in.a.x) / 2.0); }, [](const Exact &) { return one(1.0); }, 1e-6, 1, 1});
 
+  sweeps.push_back({"octahedral_texel_weight",
+                    many(5000, [](Random &random) { return In{.a = glm::vec4(random.direction(), 0)}; }),
+                    [](const Exact &in) {
+                      // 1 / r³ of the point of the octahedron in that direction.
+                      const dvec3 point = dvec3(in.a) / (std::abs(in.a.x) + std::abs(in.a.y) + std::abs(in.a.z));
+                      return one(std::pow(glm::length(point) / glm::length(dvec3(in.a)), -3.0));
+                    },
+                    [](const Exact &) { return one(5.2); }, 1e-6, 4, 6});
+  sweeps.push_back({"octahedral_texel_angle",
+                    many(5000,
+                         [](Random &random) {
+                           const float size = random.one_of(std::array{4.0F, 100.0F, 512.0F});
+                           return In{.a = glm::vec4(random.direction(), size)};
+                         }),
+                    [](const Exact &in) {
+                      return one(2.0 / in.a.w * std::pow(std::abs(in.a.x) + std::abs(in.a.y) + std::abs(in.a.z), 1.5));
+                    },
+                    [](const Exact &in) { return one(4.56 / in.a.w); }, 1e-6, 2, 4});
   sweeps.push_back({"octahedral_from_direction", direction_arguments(),
                     [](const Exact &in) {
                       const dvec3 v = dvec3(in.a) / (std::abs(in.a.x) + std::abs(in.a.y) + std::abs(in.a.z));

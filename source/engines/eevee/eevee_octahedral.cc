@@ -18,7 +18,7 @@ float esm_filter_angle(int size_px)
 
 float esm_exponent(float filter_angle, float range)
 {
-  constexpr float spread_at_half_range = 2.0F;
+  constexpr float spread_at_half_range = 0.5F;
   return std::clamp(spread_at_half_range / std::max(0.5F * filter_angle * range, 1e-30F), 0.01F, 1e4F);
 }
 

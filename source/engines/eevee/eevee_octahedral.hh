@@ -15,8 +15,10 @@ enum class EsmKernel {
   /** Cones of one solid angle, sampled by 4 and by 32 taps; the cost is taps × texels. */
   Disk4,
   Disk32,
-  /** A Gaussian along rows, then along columns, as wide as the disk: for wide filters. Its solid angle is the same
-     everywhere, its shape is not: where the map is sheared, one axis of it is up to √3 times the other. */
+  /**
+   * A Gaussian along rows, then along columns, with the disk's variance: for wide filters. Its shape follows the map's
+   * texels: its angle is 0.88 to 1.23 of the disk's over the map.
+   */
   Separable,
 };
 
@@ -41,7 +43,8 @@ struct EsmSettings {
   /** Edge of the map, texels, 4 to 8192. */
   int size_px = 512;
   EsmFormat format = EsmFormat::Auto;
-  EsmKernel kernel = EsmKernel::Disk32;
+  /** Over the derived angle four taps are as good as 32, in a quarter of the time. */
+  EsmKernel kernel = EsmKernel::Disk4;
 };
 
 /** Two texels of mean solid angle, radians: what hides the texels, and no more. */
@@ -49,12 +52,13 @@ struct EsmSettings {
 
 /**
  * 1/m. Over a cone of half opening a, a plane tilted by 45° spreads over ± a·d at distance d, and the filter's weights
- * over exp(± c·a·d): a c that is larger makes the farthest tap win, and shadows shrink by the radius; a smaller one
- * lets light through behind near casters, over 1 / c. So c·a·d is kept at a constant at half the range.
+ * over exp(± c·a·d). With a larger exponent c the farthest tap wins, and shadows shrink by the cone; with a smaller one
+ * light comes through behind near casters, over a length of 1 / c. c·a·d is 0.5 at half the range, which a sweep found
+ * (doc/decisions/0005).
  */
 [[nodiscard]] float esm_exponent(float filter_angle, float range);
 
-/** Edge of the cube's faces that serves a map of \a size_px, pixels: doc/decisions/0006. */
+/** Edge of the cube's faces that serves a map of \a size_px, pixels: doc/decisions/0005. */
 [[nodiscard]] int esm_cube_size_px(int size_px);
 
 /** A lamp that wants a layer. */
@@ -133,7 +137,7 @@ class OctahedralStore {
 
  private:
   struct Slot {
-    EsmKernel kernel = EsmKernel::Disk32;
+    EsmKernel kernel = EsmKernel::Disk4;
     bool operator==(const Slot &) const = default;
   };
   /** Layers of one format, as large as the largest. */

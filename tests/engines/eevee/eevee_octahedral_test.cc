@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_octahedral.hh"
+
+#include "gpu/gpu_testing.hh"
+
+#include <cmath>
+#include <limits>
+
+namespace gnomon::eevee {
+namespace {
+
+EsmLamp lamp(const std::string &name, float range, const EsmSettings &settings = {})
+{
+  return {name, range, settings};
+}
+
+class OctahedralStoreTest : public testing::Test {
+ protected:
+  std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  ShaderCache shaders;
+  OctahedralStore store;
+};
+
+TEST_F(OctahedralStoreTest, MakesOnlyWhatIsAskedFor)
+{
+  EXPECT_FALSE(store.sync(*device, shaders, {}));
+  EXPECT_EQ(device->live_resources().size(), 0U);
+  const EsmSettings settings{.size_px = 64, .format = EsmFormat::Float, .kernel = EsmKernel::Disk4};
+  EXPECT_TRUE(store.sync(*device, shaders, {{lamp("a", 10.0F, settings)}}));
+  EXPECT_EQ(store.size_bytes(), 66U * 66U * 4U);
+  EXPECT_EQ(shaders.size(), 1U);
+  EXPECT_EQ(store.texture(0).desc().format, gpu::Format::R32F);
+  store.sync(*device, shaders, {});
+  EXPECT_EQ(store.size_bytes(), 0U);
+}
+
+TEST_F(OctahedralStoreTest, SaysWhetherLayersMustBeRecordedAgain)
+{
+  std::vector<EsmLamp> lamps = {lamp("a", 10.0F), lamp("b", 20.0F)};
+  EXPECT_TRUE(store.sync(*device, shaders, lamps));
+  EXPECT_FALSE(store.sync(*device, shaders, lamps));
+  lamps[1].settings.exponent = 3.0F;
+  EXPECT_TRUE(store.sync(*device, shaders, lamps));
+  lamps[1].settings.kernel = EsmKernel::Separable;
+  EXPECT_TRUE(store.sync(*device, shaders, lamps));
+  EXPECT_FALSE(store.sync(*device, shaders, lamps));
+  lamps.pop_back();
+  EXPECT_TRUE(store.sync(*device, shaders, lamps));
+}
+
+// hazards.md: more lamps than slots, the lamp past the maximum is dropped silently.
+TEST_F(OctahedralStoreTest, LampsPastTheLimitAreNamedAndTheOthersUnchanged)
+{
+  std::vector<EsmLamp> lamps;
+  for (int i = 0; i < ESM_MAX + 2; i++) {
+    lamps.push_back(lamp("lamp " + std::to_string(i), 10.0F, {.size_px = 4}));
+  }
+  store.sync(*device, shaders, lamps);
+  EXPECT_EQ(store.size(), std::size_t(ESM_MAX));
+  ASSERT_EQ(store.limits().size(), 1U);
+  EXPECT_EQ(store.limits()[0],
+            "2 lamps lost their shadow, as 255 octahedral layers are the most: 'lamp 255', 'lamp 256'");
+  EXPECT_EQ(store.data(ESM_MAX - 1).layer, ESM_MAX - 1);
+
+  const auto small = gpu::create_null_device({.array_layers_max = 3});
+  ShaderCache small_shaders;
+  OctahedralStore small_store;
+  small_store.sync(*small, small_shaders, std::span(lamps).first(4));
+  EXPECT_EQ(small_store.size(), 3U);
+  test::expect_contains(small_store.limits().at(0), "'lamp 3'");
+}
+
+// hazards.md: fp16 storage of linear distance: format chosen by range and exponent, error reported.
+TEST_F(OctahedralStoreTest, FormatFollowsRangeAndExponentAndItsErrorIsReported)
+{
+  const auto with = [](float exponent, EsmFormat format) {
+    return EsmSettings{.exponent = exponent, .size_px = 64, .format = format};
+  };
+  store.sync(
+      *device, shaders,
+      {{lamp("near", 10.0F, with(5.0F, EsmFormat::Auto)), lamp("far", 40.0F, with(80.0F, EsmFormat::Auto)),
+        lamp("forced", 40.0F, with(80.0F, EsmFormat::Half)), lamp("asked", 1e3F, with(1e4F, EsmFormat::Float))}});
+  EXPECT_EQ(store.data(0).format, ESM_HALF);
+  EXPECT_EQ(store.data(1).format, ESM_FLOAT);
+  EXPECT_EQ(store.data(2).format, ESM_HALF);
+  EXPECT_EQ(store.data(3).format, ESM_FLOAT);
+  // Layers are counted by array.
+  EXPECT_EQ(store.data(1).layer, 0);
+  EXPECT_EQ(store.data(2).layer, 1);
+  ASSERT_EQ(store.limits().size(), 1U);
+  // 1 - exp(-80 · 40 / 8192).
+  EXPECT_EQ(
+      store.limits()[0],
+      "lamp 'forced': 16 bits round its shadow by up to 0.32 at an exponent of 80/m over 40 m; 32 bits would not");
+}
+
+TEST_F(OctahedralStoreTest, DerivedSettingsScaleWithTheScene)
+{
+  for (const float range : {0.1F, 1.0F, 20.0F, 1e3F}) {
+    store.sync(*device, shaders, {{lamp("a", range, {.size_px = 256})}});
+    const shared::EsmData &data = store.data(0);
+    EXPECT_FLOAT_EQ(data.filter_angle, 2.0F * std::sqrt(4.0F * 3.14159265F) / 256.0F);
+    EXPECT_NEAR(data.exponent * data.range, 1.0F / data.filter_angle, 1e-3F) << "the scene's unit makes no difference";
+  }
+}
+
+TEST_F(OctahedralStoreTest, BadSettingsAreRefusedByNameAndLeaveTheStoreAsItWas)
+{
+  store.sync(*device, shaders, {{lamp("good", 10.0F)}});
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const auto refused = [&](const EsmLamp &bad, std::string_view part) {
+    const std::string message = test::error_of([&] { store.sync(*device, shaders, {{lamp("good", 10.0F), bad}}); });
+    test::expect_contains(message, "lamp 'bad'");
+    test::expect_contains(message, part);
+    EXPECT_EQ(store.size(), 1U);
+  };
+  for (const float range : {0.0F, -1.0F, nan, infinity}) {
+    refused(lamp("bad", range), "range");
+  }
+  for (const float exponent : {0.0F, 0.009F, 1.1e4F, nan}) {
+    refused(lamp("bad", 10.0F, {.exponent = exponent}), "exponent");
+  }
+  for (const float angle : {-0.1F, 0.6F, nan}) {
+    refused(lamp("bad", 10.0F, {.filter_angle = angle}), "filter angle");
+  }
+  for (const int size : {0, 3, 8193}) {
+    refused(lamp("bad", 10.0F, {.size_px = size}), "size");
+  }
+  for (const float bias : {-1.0F, nan, infinity}) {
+    refused(lamp("bad", 10.0F, {.bias = bias}), "bias");
+  }
+}
+
+}  // namespace
+}  // namespace gnomon::eevee
