@@ -36,8 +36,10 @@ TEST_P(CyclesTest, DifferenceIsWithinCyclesNoise)
   const scene::Scene scene = scene::import_gltf(std::string(GNOMON_SOURCE) + "/examples/scenes/" + c.scene + ".glb");
   const reference::Tracer tracer(scene);
   const int samples = std::getenv("R_SAMPLES") ? atoi(std::getenv("R_SAMPLES")) : 2;
-  const reference::Picture a = direct_light(tracer, scene.cameras.front(), size_px, {.sample_count = samples, .seed = 1});
-  const reference::Picture b = direct_light(tracer, scene.cameras.front(), size_px, {.sample_count = samples, .seed = 2});
+  const reference::Picture a =
+      direct_light(tracer, scene.cameras.front(), size_px, {.sample_count = samples, .seed = 1});
+  const reference::Picture b =
+      direct_light(tracer, scene.cameras.front(), size_px, {.sample_count = samples, .seed = 2});
   double product = 0.0;
   double own = 0.0;
   double sum = 0.0;
@@ -63,7 +65,8 @@ TEST_P(CyclesTest, DifferenceIsWithinCyclesNoise)
     }
   }
   const double n = 3.0 * size_px.x * size_px.y;
-  fmt::print("{}: rmse without own noise {:.6f} (cycles' noise {}), own noise of the mean {:.6f}, plain rmse {:.6f}\n", c.scene, std::sqrt(std::max(0.0, product / n)), c.noise, std::sqrt(own / n / 4), std::sqrt(sum / n));
+  fmt::print("{}: rmse without own noise {:.6f} (cycles' noise {}), own noise of the mean {:.6f}, plain rmse {:.6f}\n",
+             c.scene, std::sqrt(std::max(0.0, product / n)), c.noise, std::sqrt(own / n / 4), std::sqrt(sum / n));
   difference.write(fmt::format("/tmp/r_{}_diff.png", c.scene));
   ours.write(fmt::format("/tmp/r_{}.exr", c.scene));
 }
