@@ -2,9 +2,11 @@
 #pragma once
 
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +42,35 @@ struct Bounds {
 /** The box around \a bounds after a transform; empty stays empty. */
 [[nodiscard]] Bounds transformed(const Bounds &bounds, const glm::mat4 &target_from_source);
 
+/** Texels of a base colour, each four bytes: red, green and blue encoded as sRGB, and linear alpha, not multiplied in.
+ */
+struct Image {
+  std::string name;
+  /** Both above 0. */
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  /** 4 · width · height; rows from the top, which is where v is 0. */
+  std::vector<std::uint8_t> texels;
+};
+
+enum class TextureWrap { Repeat, MirroredRepeat, ClampToEdge };
+
+enum class TextureFilter { Nearest, Linear };
+
+/** Between which levels of a minified texture; None: the full size only. */
+enum class MipFilter { None, Nearest, Linear };
+
+/** How an image is looked up. */
+struct Texture {
+  /** Index in Scene::images. */
+  std::uint32_t image = 0;
+  TextureWrap wrap_u = TextureWrap::Repeat;
+  TextureWrap wrap_v = TextureWrap::Repeat;
+  TextureFilter magnified = TextureFilter::Linear;
+  TextureFilter minified = TextureFilter::Linear;
+  MipFilter mip = MipFilter::Linear;
+};
+
 enum class AlphaMode { Opaque, Mask, Blend };
 
 /** Metallic-roughness surface of glTF 2.0 with KHR_materials_specular. All factors in [0, 1]. */
@@ -47,6 +78,8 @@ struct Material {
   std::string name;
   glm::vec3 base_color{1.0F};
   float alpha = 1.0F;
+  /** Index in Scene::textures of what base_color and alpha are multiplied with, at Mesh::uvs. -1: none. */
+  std::int32_t base_color_texture = -1;
   float metallic = 1.0F;
   /** Perceptual; GGX alpha is its square. */
   float roughness = 1.0F;
@@ -70,6 +103,11 @@ struct Mesh {
   std::vector<glm::vec3> positions;
   /** Unit vectors, object space, one a position. */
   std::vector<glm::vec3> normals;
+  /**
+   * Where its material's base colour texture is looked up, one a position; (0, 0) is the outer corner of the image's
+   * first texel. The material's texture transform is in them. Empty where the material has no texture.
+   */
+  std::vector<glm::vec2> uvs;
   /** Three a triangle, each below positions.size(). */
   std::vector<std::uint32_t> indices;
   /** Index in Scene::materials, always valid. */
@@ -90,6 +128,29 @@ struct Object {
 enum class LampKind { Point, Sun, Spot, Hemi, Area };
 
 enum class AreaShape { Rectangle, Ellipse };
+
+enum class ShadowKind { None, Hard, Pcf, Esm };
+
+enum class EsmFormat { Half, Float };
+
+/** What a lamp asks of its shadow; what is absent is left to whoever draws it. */
+struct LampShadow {
+  std::optional<ShadowKind> kind;
+  /** Texels along an edge of the depth map or of a cube's face, 1 to 16384. */
+  std::optional<int> size;
+  /** Of exponential shadows, 1/m, 0.01 to 1e4. */
+  std::optional<float> exponent;
+  /** Scales the bias that is derived from the texel; 0 to 100, and 1 leaves it. */
+  std::optional<float> bias;
+  /** Casters nearer or farther than these are not drawn, metres, above 0; where both are there, end > start. */
+  std::optional<float> clip_start;
+  std::optional<float> clip_end;
+  /** Half the opening angle of the kernel that exponential shadows are filtered with, radians, 0 to π/4. */
+  std::optional<float> filter_radius;
+  /** Texels along an edge of the octahedral layer of exponential shadows, 1 to 16384. */
+  std::optional<int> esm_size;
+  std::optional<EsmFormat> esm_format;
+};
 
 /**
  * A lamp in radiometric units: glTF's photometric ones divided by 683 lm/W.
@@ -125,6 +186,8 @@ struct Lamp {
   /** Area: full edge lengths or diameters, metres, above 0. */
   float area_size_x = 1.0F;
   float area_size_y = 1.0F;
+  /** Point, spot and sun. */
+  LampShadow shadow;
 };
 
 enum class CameraKind { Perspective, Orthographic };
@@ -152,6 +215,9 @@ struct Scene {
   std::string path;
   std::vector<Mesh> meshes;
   std::vector<Material> materials;
+  /** Only what some material looks up. */
+  std::vector<Texture> textures;
+  std::vector<Image> images;
   std::vector<Object> objects;
   std::vector<Lamp> lamps;
   /** At least one after import; the first is the default. */

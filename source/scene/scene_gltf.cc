@@ -31,10 +31,9 @@ using gltf::Warnings;
 constexpr std::size_t object_count_max = std::size_t(1) << 22U;
 
 /** What a file may require without our losing anything by not knowing it. */
-constexpr std::array<std::string_view, 10> harmless_extensions{
+constexpr std::array<std::string_view, 8> harmless_extensions{
     "KHR_lights_punctual",   "KHR_materials_specular", "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_mesh_quantization", "KHR_materials_variants", "KHR_texture_transform",           "KHR_texture_basisu",
-    "EXT_texture_webp",      "KHR_xmp_json_ld",
+    "KHR_mesh_quantization", "KHR_materials_variants", "KHR_texture_transform",           "KHR_xmp_json_ld",
 };
 
 /** The names of those that the file requires and we do not know; empty for none. */

@@ -48,7 +48,11 @@ inline void expect_valid(const scene::Mesh &mesh, std::size_t material_count)
   EXPECT_EQ(mesh.indices.size() % 3, 0U);
   EXPECT_LT(*std::max_element(mesh.indices.begin(), mesh.indices.end()), mesh.positions.size());
   EXPECT_FALSE(mesh.bounds.is_empty());
+  EXPECT_TRUE(mesh.uvs.empty() || mesh.uvs.size() == mesh.positions.size());
   std::size_t bad_count = 0;
+  for (const glm::vec2 &uv : mesh.uvs) {
+    bad_count += !std::isfinite(uv.x) || !std::isfinite(uv.y);
+  }
   for (std::size_t i = 0; i < mesh.positions.size(); i++) {
     const bool is_inside = glm::min(mesh.bounds.min, mesh.positions[i]) == mesh.bounds.min &&
                            glm::max(mesh.bounds.max, mesh.positions[i]) == mesh.bounds.max;
@@ -96,8 +100,19 @@ inline void expect_valid(const scene::Scene &scene)
 {
   for (const scene::Mesh &mesh : scene.meshes) {
     expect_valid(mesh, scene.materials.size());
+    EXPECT_EQ(mesh.uvs.empty(), scene.materials[mesh.material].base_color_texture < 0);
   }
-  std::for_each(scene.materials.begin(), scene.materials.end(), [](const auto &material) { expect_valid(material); });
+  for (const scene::Material &material : scene.materials) {
+    expect_valid(material);
+    EXPECT_TRUE(material.base_color_texture >= -1 && material.base_color_texture < int(scene.textures.size()));
+  }
+  for (const scene::Texture &texture : scene.textures) {
+    EXPECT_LT(texture.image, scene.images.size());
+  }
+  for (const scene::Image &image : scene.images) {
+    EXPECT_TRUE(image.width > 0 && image.height > 0);
+    EXPECT_EQ(image.texels.size(), std::size_t(4) * image.width * image.height);
+  }
   for (const scene::Object &object : scene.objects) {
     EXPECT_LT(object.mesh, scene.meshes.size());
     expect_finite(object.world_from_object);

@@ -86,7 +86,7 @@ TEST(GltfImport, KeepsThePathAsGiven)
   EXPECT_EQ(scene::import_gltf(path).path, path.string());
 }
 
-TEST(GltfImport, NeverLooksAtImages)
+TEST(GltfImport, NeverLooksAtImagesThatNothingWears)
 {
   GltfBuilder builder = triangle_scene();
   builder.document["images"] = {
@@ -604,17 +604,17 @@ TEST(GltfMaterial, AlphaModesAreReadAndNamed)
 TEST(GltfMaterial, TexturesAreNamedOnceEach)
 {
   const json slot = {{"index", 0}};
-  const auto [one, one_scene] = import_material({{"pbrMetallicRoughness", {{"baseColorTexture", slot}}}});
-  EXPECT_WARNING(one_scene, "material 'paint': baseColorTexture is not drawn yet");
+  const auto [one, one_scene] = import_material({{"normalTexture", slot}});
+  EXPECT_WARNING(one_scene, "material 'paint': normalTexture is not drawn yet");
   const auto [all, all_scene] = import_material(
-      {{"pbrMetallicRoughness", {{"baseColorTexture", slot}, {"metallicRoughnessTexture", slot}}},
+      {{"pbrMetallicRoughness", {{"metallicRoughnessTexture", slot}}},
        {"normalTexture", slot},
        {"occlusionTexture", slot},
        {"emissiveTexture", slot},
        {"extensions", {{"KHR_materials_specular", {{"specularTexture", slot}, {"specularColorTexture", slot}}}}}});
   EXPECT_WARNING(all_scene,
-                 "material 'paint': baseColorTexture, metallicRoughnessTexture, normalTexture, occlusionTexture, "
-                 "emissiveTexture, specularTexture, specularColorTexture are not drawn yet");
+                 "material 'paint': metallicRoughnessTexture, normalTexture, occlusionTexture, emissiveTexture, "
+                 "specularTexture, specularColorTexture are not drawn yet");
 }
 
 TEST(GltfMaterial, ForeignModelsAreNamed)
@@ -696,6 +696,41 @@ TEST(GltfLamp, ExtrasOfPointSpotAndSun)
   EXPECT_EQ(import_lamp({{"type", "directional"}}, {{"gnomon_angle", 0.1}}).angle, 0.1F);
 }
 
+TEST(GltfLamp, ShadowExtrasAreAbsentOrRead)
+{
+  const json point = {{"type", "point"}};
+  const scene::LampShadow none = import_lamp(point).shadow;
+  EXPECT_FALSE(none.kind || none.size || none.exponent || none.bias || none.clip_start || none.clip_end ||
+               none.filter_radius || none.esm_size || none.esm_format);
+  // Whole numbers as Blender writes them, both ways.
+  const scene::LampShadow all = import_lamp(point, {{"gnomon_shadow", "esm"},
+                                                    {"gnomon_shadow_size", 1024},
+                                                    {"gnomon_exponent", 80},
+                                                    {"gnomon_bias", 0.5},
+                                                    {"gnomon_clip_start", 0.25},
+                                                    {"gnomon_clip_end", 40.0},
+                                                    {"gnomon_filter_radius", 45},
+                                                    {"gnomon_esm_size", 512.0},
+                                                    {"gnomon_esm_format", "16f"}})
+                                    .shadow;
+  EXPECT_EQ(all.kind, scene::ShadowKind::Esm);
+  EXPECT_EQ(all.size, 1024);
+  EXPECT_EQ(all.exponent, 80.0F);
+  EXPECT_EQ(all.bias, 0.5F);
+  EXPECT_EQ(all.clip_start, 0.25F);
+  EXPECT_EQ(all.clip_end, 40.0F);
+  ASSERT_TRUE(all.filter_radius);
+  EXPECT_FLOAT_EQ(*all.filter_radius, float(pi / 4));
+  EXPECT_EQ(all.esm_size, 512);
+  EXPECT_EQ(all.esm_format, scene::EsmFormat::Half);
+  const auto kind = [&](const char *word) { return import_lamp(point, {{"gnomon_shadow", word}}).shadow.kind; };
+  EXPECT_EQ(kind("none"), scene::ShadowKind::None);
+  EXPECT_EQ(kind("hard"), scene::ShadowKind::Hard);
+  EXPECT_EQ(kind("pcf"), scene::ShadowKind::Pcf);
+  EXPECT_EQ(import_lamp(point, {{"gnomon_esm_format", "32f"}}).shadow.esm_format, scene::EsmFormat::Float);
+  EXPECT_EQ(import_lamp({{"type", "directional"}}, {{"gnomon_shadow", "pcf"}}).shadow.kind, scene::ShadowKind::Pcf);
+}
+
 TEST(GltfLamp, HemiIsADirectionalLightThatSaysSo)
 {
   const Lamp lamp = import_lamp({{"type", "directional"}, {"intensity", 683}}, {{"gnomon_lamp", "hemi"}});
@@ -747,10 +782,12 @@ TEST(GltfLamp, IdleExtrasAreNamed)
 {
   GltfBuilder builder = triangle_scene();
   builder.light({{"type", "directional"}}, {{"gnomon_raduis", 1}, {"gnomon_radius", 1}});
+  builder.light({{"type", "directional"}}, {{"gnomon_lamp", "hemi"}, {"gnomon_bias", 1}}, {{"name", "sky"}});
   builder.node({{"name", "plain"}, {"extras", {{"gnomon_power", 1}}}});
   const Scene scene = import(builder);
   EXPECT_WARNING(scene, "lamp 'lamp': extra 'gnomon_raduis' is unknown");
   EXPECT_WARNING(scene, "lamp 'lamp': extra 'gnomon_radius' does not apply");
+  EXPECT_WARNING(scene, "lamp 'sky': extra 'gnomon_bias' does not apply");
   EXPECT_WARNING(scene, "node 'plain': extra 'gnomon_power' has no effect");
 }
 
@@ -810,6 +847,19 @@ TEST(GltfLamp, BadValuesAreErrorsThatNameLampKeyAndValue)
   EXPECT_HAS(lamp_error(point, {{"gnomon_radius", 1e300}}), "gnomon_radius is 1e+300");
   // A whole number of more than 32 bits is not cut.
   EXPECT_HAS(lamp_error(point, {{"gnomon_radius", 4294967296000000001}}), "gnomon_radius is 4.29497e+18");
+  EXPECT_HAS(lamp_error(point, {{"gnomon_shadow", "soft"}}),
+             "lamp 'lamp': gnomon_shadow is 'soft', and must be 'none', 'hard', 'pcf' or 'esm'");
+  EXPECT_HAS(lamp_error(point, {{"gnomon_shadow", 1}}), "gnomon_shadow is 1, and must be a string");
+  EXPECT_HAS(lamp_error(point, {{"gnomon_esm_format", "8"}}), "gnomon_esm_format is '8', and must be '16f' or '32f'");
+  EXPECT_HAS(lamp_error(point, {{"gnomon_shadow_size", 0}}), "gnomon_shadow_size is 0, and must be from 1 to 16384");
+  EXPECT_HAS(lamp_error(sun, {{"gnomon_shadow_size", 16385}}), "gnomon_shadow_size is 16385");
+  EXPECT_HAS(lamp_error(point, {{"gnomon_esm_size", 1.5}}), "gnomon_esm_size is 1.5, and must be a whole number");
+  EXPECT_HAS(lamp_error(point, {{"gnomon_exponent", 0}}), "gnomon_exponent is 0, and must be from 0.01 to 10000");
+  EXPECT_HAS(lamp_error(point, {{"gnomon_bias", -1}}), "gnomon_bias is -1, and must be from 0 to 100");
+  EXPECT_HAS(lamp_error(point, {{"gnomon_clip_start", 0}}), "gnomon_clip_start is 0");
+  EXPECT_HAS(lamp_error(point, {{"gnomon_clip_start", 2}, {"gnomon_clip_end", 2}}),
+             "gnomon_clip_end is 2, and must be above gnomon_clip_start, 2");
+  EXPECT_HAS(lamp_error(point, {{"gnomon_filter_radius", 46}}), "gnomon_filter_radius is 46, and must be from 0 to 45");
   EXPECT_HAS(lamp_error(sun, {{"gnomon_angle", 4}}), "gnomon_angle is 4, and must be from 0 to 3.14159");
   EXPECT_HAS(lamp_error(spot, {{"gnomon_spot_blend", 1.5}}), "gnomon_spot_blend is 1.5, and must be from 0 to 1");
   EXPECT_HAS(lamp_error(sun, {{"gnomon_lamp", "moon"}}), "gnomon_lamp is 'moon', and must be 'hemi'");

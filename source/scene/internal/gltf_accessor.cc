@@ -43,7 +43,20 @@ float from_integer(const unsigned char *bytes, bool is_normalized)
   return is_normalized ? std::max(value / static_cast<float>(std::numeric_limits<T>::max()), -1.0F) : value;
 }
 
-/** The bytes of \a view from \a offset on. */
+/** Whether \a count elements, each \a stride after the last, lie within \a size bytes. */
+bool fits(std::size_t size, std::size_t count, std::size_t stride, std::size_t element_size)
+{
+  return count == 0 || (size >= element_size && count - 1 <= (size - element_size) / stride);
+}
+
+/** How many components an element has. */
+std::size_t width_of(int type)
+{
+  return type == TINYGLTF_TYPE_SCALAR ? 1 : type == TINYGLTF_TYPE_VEC2 ? 2 : 3;
+}
+
+}  // namespace
+
 std::span<const unsigned char> view_bytes(const File &file, int view_index, std::size_t offset, const std::string &what)
 {
   const tinygltf::BufferView &view = file.model.bufferViews[view_index];
@@ -61,14 +74,6 @@ std::span<const unsigned char> view_bytes(const File &file, int view_index, std:
   return buffer.subspan(view.byteOffset + offset, view.byteLength - offset);
 }
 
-/** Whether \a count elements, each \a stride after the last, lie within \a size bytes. */
-bool fits(std::size_t size, std::size_t count, std::size_t stride, std::size_t element_size)
-{
-  return count == 0 || (size >= element_size && count - 1 <= (size - element_size) / stride);
-}
-
-}  // namespace
-
 AccessorReader::AccessorReader(const File &file, int accessor_index, int type)
     : accessor_(file.model.accessors[accessor_index]), what_("accessor " + std::to_string(accessor_index))
 {
@@ -77,9 +82,11 @@ AccessorReader::AccessorReader(const File &file, int accessor_index, int type)
     throw Fault(what_, "componentType " + std::to_string(accessor_.componentType) + " is not one of glTF 2.0");
   }
   if (accessor_.type != type) {
-    throw Fault(what_, type == TINYGLTF_TYPE_SCALAR ? "must be a SCALAR" : "must be a VEC3");
+    throw Fault(what_, type == TINYGLTF_TYPE_SCALAR ? "must be a SCALAR"
+                       : type == TINYGLTF_TYPE_VEC2 ? "must be a VEC2"
+                                                    : "must be a VEC3");
   }
-  element_size_ = size * (type == TINYGLTF_TYPE_SCALAR ? 1 : 3);
+  element_size_ = size * width_of(type);
   stride_ = element_size_;
   if (accessor_.bufferView >= 0) {
     const std::size_t byte_stride = file.model.bufferViews[accessor_.bufferView].byteStride;
@@ -162,6 +169,15 @@ glm::vec3 AccessorReader::vec3(std::size_t index) const
   }
   const std::size_t size = element_size_ / 3;
   return {component(bytes), component(bytes + size), component(bytes + 2 * size)};
+}
+
+glm::vec2 AccessorReader::vec2(std::size_t index) const
+{
+  const unsigned char *bytes = element(index);
+  if (bytes == nullptr) {
+    return glm::vec2(0.0F);
+  }
+  return {component(bytes), component(bytes + element_size_ / 2)};
 }
 
 bool AccessorReader::is_unsigned() const

@@ -3,6 +3,7 @@
 
 #include "internal/gltf_file.hh"
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstddef>
@@ -14,6 +15,14 @@
 
 /** Internal to source/scene. */
 namespace gnomon::scene::gltf {
+
+/**
+ * The bytes of a buffer view from \a offset on.
+ *
+ * \throws Fault that names \a what, when they are not all there.
+ */
+[[nodiscard]] std::span<const unsigned char> view_bytes(const File &file, int view_index, std::size_t offset,
+                                                        const std::string &what);
 
 /**
  * Reads the elements of one accessor where they lie. Nothing is allocated that the file's own size does not
@@ -35,6 +44,8 @@ class AccessorReader {
   }
   /** Element of a VEC3, normalised if the accessor says so; may be non-finite. \pre index < count(). */
   [[nodiscard]] glm::vec3 vec3(std::size_t index) const;
+  /** The same of a VEC2. */
+  [[nodiscard]] glm::vec2 vec2(std::size_t index) const;
   /** Element of a SCALAR of unsigned integers. \pre index < count(), and is_unsigned(). */
   [[nodiscard]] std::uint32_t integer(std::size_t index) const;
   [[nodiscard]] bool is_unsigned() const;

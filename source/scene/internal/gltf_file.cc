@@ -153,12 +153,48 @@ std::string percent_decoded(std::string_view uri)
   return result;
 }
 
+bool is_data_uri(const std::string &uri)
+{
+  return uri.rfind("data:", 0) == 0;
+}
+
+Bytes bytes_of_data_uri(const std::string &what, const std::string &uri)
+{
+  const std::size_t comma = uri.find(',');
+  constexpr std::string_view suffix = ";base64";
+  if (comma == uri.npos || comma < suffix.size() || uri.compare(comma - suffix.size(), suffix.size(), suffix) != 0) {
+    throw Fault(what, "its data URI is not base64");
+  }
+  // tinygltf knows a few media types only, and the type does not matter here.
+  const std::string known = "data:application/octet-stream;base64," + uri.substr(comma + 1);
+  Bytes bytes;
+  std::string media_type;
+  if (comma + 1 < uri.size() && !tinygltf::DecodeDataURI(&bytes, media_type, known, 0, false)) {
+    throw Fault(what, "its data URI cannot be decoded");
+  }
+  return bytes;
+}
+
+/** A file that \a uri names, and how messages name it. */
+struct FileBeside {
+  std::filesystem::path path;
+  std::string what;
+};
+
+FileBeside file_beside(const std::filesystem::path &folder, const std::string &what, const std::string &uri)
+{
+  const std::string name = percent_decoded(uri);
+  const std::string what_file = what + " '" + printable(name) + "'";
+  if (name.empty() || name.find('\0') != name.npos || name.find("://") != name.npos ||
+      std::filesystem::path(name).is_absolute()) {
+    throw Fault(what_file, "is not a file beside the scene");
+  }
+  return {folder / name, what_file};
+}
+
 class BufferLoader {
  public:
-  BufferLoader(File &file, const std::filesystem::path &folder, ByteSpan binary_chunk)
-      : file_(file), folder_(folder), binary_chunk_(binary_chunk)
-  {
-  }
+  BufferLoader(File &file, ByteSpan binary_chunk) : file_(file), binary_chunk_(binary_chunk) {}
 
   void load(const json &buffer)
   {
@@ -168,7 +204,7 @@ class BufferLoader {
     const auto uri = buffer.find("uri");
     if (uri != buffer.end()) {
       const auto &uri_text = uri->get_ref<const std::string &>();
-      bytes = uri_text.rfind("data:", 0) == 0 ? from_data_uri(what, uri_text) : from_file(what, uri_text);
+      bytes = is_data_uri(uri_text) ? store(bytes_of_data_uri(what, uri_text)) : from_file(what, uri_text);
     }
     else if (index == 0 && !binary_chunk_.empty()) {
       bytes = binary_chunk_;
@@ -188,7 +224,6 @@ class BufferLoader {
 
  private:
   File &file_;
-  const std::filesystem::path &folder_;
   ByteSpan binary_chunk_;
   /** A file that many buffers name is read once. */
   std::map<std::filesystem::path, ByteSpan> read_;
@@ -198,32 +233,9 @@ class BufferLoader {
     return file_.storage.emplace_back(std::move(bytes));
   }
 
-  ByteSpan from_data_uri(const std::string &what, const std::string &uri)
-  {
-    const std::size_t comma = uri.find(',');
-    constexpr std::string_view suffix = ";base64";
-    if (comma == uri.npos || comma < suffix.size() || uri.compare(comma - suffix.size(), suffix.size(), suffix) != 0) {
-      throw Fault(what, "its data URI is not base64");
-    }
-    // tinygltf knows a few media types only, and the type does not matter here.
-    const std::string known = "data:application/octet-stream;base64," + uri.substr(comma + 1);
-    Bytes bytes;
-    std::string media_type;
-    if (comma + 1 < uri.size() && !tinygltf::DecodeDataURI(&bytes, media_type, known, 0, false)) {
-      throw Fault(what, "its data URI cannot be decoded");
-    }
-    return store(std::move(bytes));
-  }
-
   ByteSpan from_file(const std::string &what, const std::string &uri)
   {
-    const std::string name = percent_decoded(uri);
-    const std::string what_file = what + " '" + printable(name) + "'";
-    if (name.empty() || name.find('\0') != name.npos || name.find("://") != name.npos ||
-        std::filesystem::path(name).is_absolute()) {
-      throw Fault(what_file, "is not a file beside the scene");
-    }
-    const std::filesystem::path path = folder_ / name;
+    const auto [path, what_file] = file_beside(file_.folder, what, uri);
     std::error_code error;
     std::filesystem::path key = std::filesystem::canonical(path, error);
     if (error) {
@@ -297,8 +309,8 @@ File load_file(const std::filesystem::path &path)
   file.has_animations = animations != document.end() && !animations->empty();
   check_document(document);
 
-  const std::filesystem::path folder = path.parent_path();
-  BufferLoader buffer_loader(file, folder, chunks.binary);
+  file.folder = path.parent_path();
+  BufferLoader buffer_loader(file, chunks.binary);
   if (document.contains("buffers")) {
     for (const json &buffer : document["buffers"]) {
       buffer_loader.load(buffer);
@@ -306,8 +318,25 @@ File load_file(const std::filesystem::path &path)
     // tinygltf would read them once more, and with fewer checks.
     document.erase("buffers");
   }
+  if (document.contains("images")) {
+    for (const json &image : document["images"]) {
+      file.images.push_back({image.value("name", ""), image.value("uri", ""), image.value("bufferView", -1)});
+    }
+    // tinygltf would read them all.
+    document.erase("images");
+  }
   file.model = model_from(document);
   return file;
+}
+
+std::vector<unsigned char> bytes_of_uri(const std::filesystem::path &folder, const std::string &what,
+                                        const std::string &uri)
+{
+  if (is_data_uri(uri)) {
+    return bytes_of_data_uri(what, uri);
+  }
+  const FileBeside file = file_beside(folder, what, uri);
+  return read_bytes(file.path, file.what);
 }
 
 }  // namespace gnomon::scene::gltf

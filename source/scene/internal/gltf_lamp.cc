@@ -122,6 +122,9 @@ class LampReader {
     if (lamp_.kind == LampKind::Spot) {
       read_cone(light.spot);
     }
+    if (lamp_.kind != LampKind::Hemi) {
+      read_shadow(lamp_.shadow);
+    }
     warn_idle_extras();
     return lamp_;
   }
@@ -211,6 +214,59 @@ class LampReader {
     return value.Get<std::string>();
   }
 
+  /** One of \a words, as its place among them is in \a Word; nothing where the key is absent. */
+  template <typename Word>
+  std::optional<Word> word(const char *key, std::initializer_list<std::string_view> words) const
+  {
+    if (!has(key)) {
+      return std::nullopt;
+    }
+    const std::string value = string(key, "");
+    const auto *const found = std::find(words.begin(), words.end(), value);
+    if (found == words.end()) {
+      std::string wanted;
+      for (const std::string_view &each : words) {
+        wanted += &each == words.begin() ? "" : &each == words.end() - 1 ? " or " : ", ";
+        wanted += '\'' + std::string(each) + '\'';
+      }
+      fail(key, '\'' + printable(value) + '\'', wanted);
+    }
+    return static_cast<Word>(found - words.begin());
+  }
+
+  std::optional<float> number_if_any(const char *key, const Range &range) const
+  {
+    return has(key) ? std::optional(number(key, 0.0, range)) : std::nullopt;
+  }
+
+  /** Blender writes a property's whole numbers as floats too. */
+  std::optional<int> texels(const char *key) const
+  {
+    const std::optional<float> value = number_if_any(key, {1.0, 16384.0});
+    if (value && *value != std::floor(*value)) {
+      fail(key, text(*value), "a whole number");
+    }
+    return value ? std::optional(static_cast<int>(*value)) : std::nullopt;
+  }
+
+  void read_shadow(LampShadow &shadow) const
+  {
+    shadow.kind = word<ShadowKind>("gnomon_shadow", {"none", "hard", "pcf", "esm"});
+    shadow.size = texels("gnomon_shadow_size");
+    shadow.exponent = number_if_any("gnomon_exponent", {0.01, 1e4});
+    shadow.bias = number_if_any("gnomon_bias", {0.0, 100.0});
+    shadow.clip_start = number_if_any("gnomon_clip_start", length_range);
+    shadow.clip_end = number_if_any("gnomon_clip_end", length_range);
+    if (shadow.clip_start && shadow.clip_end && *shadow.clip_end <= *shadow.clip_start) {
+      fail("gnomon_clip_end", text(*shadow.clip_end), "above gnomon_clip_start, " + text(*shadow.clip_start));
+    }
+    if (const std::optional<float> degrees = number_if_any("gnomon_filter_radius", {0.0, 45.0})) {
+      shadow.filter_radius = static_cast<float>(*degrees * pi / 180.0);
+    }
+    shadow.esm_size = texels("gnomon_esm_size");
+    shadow.esm_format = word<EsmFormat>("gnomon_esm_format", {"16f", "32f"});
+  }
+
   [[nodiscard]] LampKind punctual_kind(const std::string &type) const
   {
     if (type != "directional" && type != "point" && type != "spot") {
@@ -262,7 +318,8 @@ class LampReader {
   /** A misspelt or misplaced extra would otherwise be looked for in the picture. */
   void warn_idle_extras() const
   {
-    static const std::array<Extra, 9> known{{
+    static const std::initializer_list<LampKind> casts_shadow{LampKind::Point, LampKind::Sun, LampKind::Spot};
+    static const std::array<Extra, 18> known{{
         {"gnomon_radius", {LampKind::Point, LampKind::Spot}},
         {"gnomon_angle", {LampKind::Sun}},
         {"gnomon_spot_blend", {LampKind::Spot}},
@@ -272,6 +329,15 @@ class LampReader {
         {"gnomon_size_y", {LampKind::Area}},
         {"gnomon_power", {LampKind::Area}},
         {"gnomon_color", {LampKind::Area}},
+        {"gnomon_shadow", casts_shadow},
+        {"gnomon_shadow_size", casts_shadow},
+        {"gnomon_exponent", casts_shadow},
+        {"gnomon_bias", casts_shadow},
+        {"gnomon_clip_start", casts_shadow},
+        {"gnomon_clip_end", casts_shadow},
+        {"gnomon_filter_radius", casts_shadow},
+        {"gnomon_esm_size", casts_shadow},
+        {"gnomon_esm_format", casts_shadow},
     }};
     for (const std::string &key : extras_.Keys()) {
       const auto extra = std::find_if(known.begin(), known.end(), [&](const Extra &e) { return e.key == key; });

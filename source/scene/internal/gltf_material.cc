@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -15,8 +16,8 @@ namespace {
 /** Reads one material; every message names it. */
 class MaterialReader {
  public:
-  MaterialReader(const tinygltf::Material &source, std::size_t index, Warnings &warnings)
-      : source_(source), what_(label("material", source.name, index)), warnings_(warnings)
+  MaterialReader(const tinygltf::Material &source, std::size_t index, TextureImporter &textures, Warnings &warnings)
+      : source_(source), what_(label("material", source.name, index)), textures_(textures), warnings_(warnings)
   {
     result_.name = source.name.empty() ? "material " + std::to_string(index) : source.name;
   }
@@ -27,17 +28,25 @@ class MaterialReader {
     read_specular();
     read_emissive();
     read_alpha();
+    read_base_color_texture();
     result_.is_double_sided = source_.doubleSided;
     warn_textures();
     warn_extensions();
     return result_;
   }
 
+  [[nodiscard]] const TextureCoordinates &texture_coordinates() const
+  {
+    return texture_coordinates_;
+  }
+
  private:
   const tinygltf::Material &source_;
   std::string what_;
+  TextureImporter &textures_;
   Warnings &warnings_;
   Material result_;
+  TextureCoordinates texture_coordinates_;
 
   float clamped(const char *factor, double value, double max)
   {
@@ -131,6 +140,37 @@ class MaterialReader {
     }
   }
 
+  void read_base_color_texture()
+  {
+    const tinygltf::TextureInfo &slot = source_.pbrMetallicRoughness.baseColorTexture;
+    if (slot.index < 0) {
+      return;
+    }
+    try {
+      texture_coordinates_.set = slot.texCoord;
+      if (const auto found = slot.extensions.find("KHR_texture_transform"); found != slot.extensions.end()) {
+        read_texture_transform(found->second);
+      }
+      result_.base_color_texture = textures_.index_of(slot.index);
+    }
+    catch (const Fault &fault) {
+      warnings_.add(what_, std::string("its baseColorFactor is drawn without a texture: ") + fault.what());
+    }
+  }
+
+  void read_texture_transform(const tinygltf::Value &transform)
+  {
+    const auto vec2 = [&transform](const char *key, const glm::dvec2 &fallback) {
+      return transform.Has(key) ? glm::dvec2(transform.Get(key).Get(0).GetNumberAsDouble(),
+                                             transform.Get(key).Get(1).GetNumberAsDouble())
+                                : fallback;
+    };
+    texture_coordinates_.set = static_cast<int>(number(transform, "texCoord", texture_coordinates_.set));
+    texture_coordinates_.offset = vec2("offset", glm::dvec2(0.0));
+    texture_coordinates_.rotation = number(transform, "rotation", 0.0);
+    texture_coordinates_.scale = vec2("scale", glm::dvec2(1.0));
+  }
+
   void warn_textures()
   {
     std::string slots;
@@ -139,7 +179,6 @@ class MaterialReader {
         slots += slots.empty() ? name : std::string(", ") + name;
       }
     };
-    add_slot(source_.pbrMetallicRoughness.baseColorTexture.index >= 0, "baseColorTexture");
     add_slot(source_.pbrMetallicRoughness.metallicRoughnessTexture.index >= 0, "metallicRoughnessTexture");
     add_slot(source_.normalTexture.index >= 0, "normalTexture");
     add_slot(source_.occlusionTexture.index >= 0, "occlusionTexture");
@@ -172,8 +211,17 @@ class MaterialReader {
 
 }  // namespace
 
-MaterialImporter::MaterialImporter(const File &file, Warnings &warnings, std::vector<Material> &materials)
-    : file_(file), warnings_(warnings), materials_(materials)
+glm::vec2 TextureCoordinates::transformed(const glm::vec2 &uv) const
+{
+  const glm::dvec2 scaled = scale * glm::dvec2(uv);
+  const double sine = std::sin(rotation);
+  const double cosine = std::cos(rotation);
+  // v runs down the image, which turns the sense of the angle.
+  return glm::vec2(offset + glm::dvec2(cosine * scaled.x + sine * scaled.y, cosine * scaled.y - sine * scaled.x));
+}
+
+MaterialImporter::MaterialImporter(const File &file, Warnings &warnings, Scene &scene)
+    : file_(file), warnings_(warnings), materials_(scene.materials), textures_(file, warnings, scene)
 {
 }
 
@@ -182,10 +230,13 @@ std::uint32_t MaterialImporter::index_of(int gltf_material)
   const auto [place, is_new] = index_of_.try_emplace(gltf_material, static_cast<std::uint32_t>(materials_.size()));
   if (is_new && gltf_material < 0) {
     materials_.emplace_back().name = "default";
+    texture_coordinates_.emplace_back();
   }
   else if (is_new) {
     const tinygltf::Material &source = file_.model.materials[gltf_material];
-    materials_.push_back(MaterialReader(source, static_cast<std::size_t>(gltf_material), warnings_).read());
+    MaterialReader reader(source, static_cast<std::size_t>(gltf_material), textures_, warnings_);
+    materials_.push_back(reader.read());
+    texture_coordinates_.push_back(reader.texture_coordinates());
   }
   return place->second;
 }

@@ -3,7 +3,10 @@
 
 #include "internal/gltf_file.hh"
 #include "internal/gltf_report.hh"
+#include "internal/gltf_texture.hh"
 #include "scene.hh"
+
+#include <glm/vec2.hpp>
 
 #include <cstdint>
 #include <map>
@@ -12,19 +15,41 @@
 /** Internal to source/scene. */
 namespace gnomon::scene::gltf {
 
+/** Where a material looks its base colour up: a set of texture coordinates of the mesh, and what is done to them. */
+struct TextureCoordinates {
+  /** n of TEXCOORD_n. */
+  int set = 0;
+  glm::dvec2 offset{0.0};
+  /** Radians, counter-clockwise to who looks at the image. */
+  double rotation = 0.0;
+  glm::dvec2 scale{1.0};
+
+  /** Scaled, turned, then moved, as KHR_texture_transform says. */
+  [[nodiscard]] glm::vec2 transformed(const glm::vec2 &uv) const;
+};
+
 /** Appends materials to a scene, each at its first use: what nothing wears is neither kept nor warned about. */
 class MaterialImporter {
  public:
   /** Keeps references. */
-  MaterialImporter(const File &file, Warnings &warnings, std::vector<Material> &materials);
+  MaterialImporter(const File &file, Warnings &warnings, Scene &scene);
 
   /** Index in the scene's materials for that of the file; -1 is glTF's default material. */
   [[nodiscard]] std::uint32_t index_of(int gltf_material);
+
+  /** Of the scene's material \a index, which came from here. */
+  [[nodiscard]] const TextureCoordinates &texture_coordinates(std::uint32_t index) const
+  {
+    return texture_coordinates_[index];
+  }
 
  private:
   const File &file_;
   Warnings &warnings_;
   std::vector<Material> &materials_;
+  TextureImporter textures_;
+  /** One a material. */
+  std::vector<TextureCoordinates> texture_coordinates_;
   std::map<int, std::uint32_t> index_of_;
 };
 

@@ -34,6 +34,7 @@ struct Losses {
   std::uint64_t flat = 0;
   std::uint64_t incomplete = 0;
   std::uint64_t bad_normals = 0;
+  std::uint64_t bad_uvs = 0;
 
   bool operator==(const Losses &) const = default;
 
@@ -49,8 +50,18 @@ struct Losses {
     add(flat, "triangle left out: it has no area");
     add(incomplete, "vertex left over at the end: it makes no triangle");
     add(bad_normals, "normal replaced by that of a face: it was zero or not finite");
+    add(bad_uvs, "texture coordinate replaced by 0: it was not finite or beyond 1e6");
   }
 };
+
+/** A float tells texels apart no more beyond it. */
+constexpr float uv_max = 1e6F;
+
+bool is_uv(const glm::vec2 &uv)
+{
+  // False for NaN too.
+  return std::abs(uv.x) <= uv_max && std::abs(uv.y) <= uv_max;
+}
 
 bool is_position(const glm::vec3 &position)
 {
@@ -108,7 +119,8 @@ std::uint32_t vertex_count(std::size_t count)
 class PrimitiveReader {
  public:
   PrimitiveReader(const File &file, const tinygltf::Primitive &primitive, std::string what, Warnings &warnings)
-      : primitive_(primitive),
+      : file_(file),
+        primitive_(primitive),
         what_(std::move(what)),
         warnings_(warnings),
         positions_(file, position_accessor(), vec3_type)
@@ -154,8 +166,37 @@ class PrimitiveReader {
     return mesh;
   }
 
+  /** Texture coordinates for a mesh that read() has given; all 0 where the primitive has none that can be read. */
+  std::vector<glm::vec2> read_uvs(const TextureCoordinates &coordinates)
+  {
+    std::vector<glm::vec2> uvs(file_vertices_.size(), glm::vec2(0.0F));
+    const std::string attribute = "TEXCOORD_" + std::to_string(coordinates.set);
+    try {
+      const auto found = primitive_.attributes.find(attribute);
+      if (found == primitive_.attributes.end()) {
+        throw Fault(attribute, "is missing");
+      }
+      const AccessorReader reader(file_, found->second, TINYGLTF_TYPE_VEC2);
+      if (reader.count() != positions_.count()) {
+        throw Fault(attribute, "count differs from that of POSITION");
+      }
+      Losses losses;
+      for (std::size_t i = 0; i < uvs.size(); i++) {
+        const glm::vec2 uv = coordinates.transformed(reader.vec2(file_vertices_[i]));
+        losses.bad_uvs += is_uv(uv) ? 0 : 1;
+        uvs[i] = is_uv(uv) ? uv : glm::vec2(0.0F);
+      }
+      losses.report(warnings_, what_);
+    }
+    catch (const Fault &fault) {
+      warnings_.add(what_, std::string("its texture is drawn as the colour of one corner: ") + fault.what());
+    }
+    return uvs;
+  }
+
  private:
   static constexpr int vec3_type = TINYGLTF_TYPE_VEC3;
+  const File &file_;
   const tinygltf::Primitive &primitive_;
   std::string what_;
   Warnings &warnings_;
@@ -164,6 +205,8 @@ class PrimitiveReader {
   /** None: the vertices in their order. */
   std::optional<AccessorReader> indices_;
   Losses losses_;
+  /** Which vertex of the file each of the mesh was. */
+  std::vector<std::uint32_t> file_vertices_;
 
   [[nodiscard]] int position_accessor() const
   {
@@ -263,6 +306,7 @@ class PrimitiveReader {
     for (std::size_t vertex = 0; vertex < new_index.size(); vertex++) {
       if (new_index[vertex] != unused) {
         new_index[vertex] = static_cast<std::uint32_t>(mesh.positions.size());
+        file_vertices_.push_back(static_cast<std::uint32_t>(vertex));
         mesh.positions.push_back(positions_.vec3(vertex));
         mesh.normals.push_back(unit_or_zero(normals_->vec3(vertex)));
       }
@@ -277,7 +321,7 @@ class PrimitiveReader {
   }
 
   /** glTF asks for flat normals where a file has none, so no two triangles can share a vertex. */
-  void unshare_vertices(const std::vector<Triangle> &triangles, Mesh &mesh) const
+  void unshare_vertices(const std::vector<Triangle> &triangles, Mesh &mesh)
   {
     const std::size_t count = 3 * triangles.size();
     mesh.positions.reserve(count);
@@ -286,6 +330,7 @@ class PrimitiveReader {
     for (const Triangle &triangle : triangles) {
       for (const std::uint32_t vertex : triangle) {
         mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+        file_vertices_.push_back(vertex);
         mesh.positions.push_back(positions_.vec3(vertex));
       }
       const glm::vec3 *corners = mesh.positions.data() + mesh.positions.size() - 3;
@@ -330,7 +375,7 @@ std::string mode_reason(int mode)
 }  // namespace
 
 MeshImporter::MeshImporter(const File &file, Warnings &warnings, Scene &scene)
-    : file_(file), warnings_(warnings), scene_(scene), materials_(file, warnings, scene.materials)
+    : file_(file), warnings_(warnings), scene_(scene), materials_(file, warnings, scene)
 {
 }
 
@@ -370,6 +415,12 @@ void MeshImporter::import_primitive(int gltf_mesh, std::size_t primitive_index, 
     PrimitiveReader reader(file_, primitive, what, warnings_);
     spend(reader.element_count());
     mesh = reader.read();
+    if (!mesh.indices.empty()) {
+      mesh.material = materials_.index_of(primitive.material);
+      if (scene_.materials[mesh.material].base_color_texture >= 0) {
+        mesh.uvs = reader.read_uvs(materials_.texture_coordinates(mesh.material));
+      }
+    }
   }
   catch (const Fault &fault) {
     warnings_.add_counted(what, 1, std::string("primitive left out: ") + fault.what());
@@ -386,7 +437,6 @@ void MeshImporter::import_primitive(int gltf_mesh, std::size_t primitive_index, 
   if (!primitive.targets.empty()) {
     warnings_.add(what, "morph targets are not applied");
   }
-  mesh.material = materials_.index_of(primitive.material);
   meshes.push_back(static_cast<std::uint32_t>(scene_.meshes.size()));
   scene_.meshes.push_back(std::move(mesh));
 }

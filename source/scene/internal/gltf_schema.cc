@@ -14,6 +14,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace gnomon::scene::gltf {
 
@@ -59,6 +60,8 @@ constexpr std::array attribute_properties{
     Property{"POSITION", Kind::Index, "accessors"},
     Property{"NORMAL", Kind::Index, "accessors"},
 };
+/** Followed by the number of the set. */
+constexpr std::string_view texture_coordinate_prefix = "TEXCOORD_";
 constexpr std::array accessor_properties{
     Property{"name", Kind::String},        Property{"bufferView", Kind::Index, "bufferViews"},
     Property{"byteOffset", Kind::Size},    Property{"componentType", Kind::Size},
@@ -89,7 +92,25 @@ constexpr std::array roughness_properties{
     Property{"metallicFactor", Kind::Number},
     Property{"roughnessFactor", Kind::Number},
 };
-constexpr std::array texture_properties{Property{"index", Kind::Index}};
+constexpr std::array slot_properties{Property{"index", Kind::Index}};
+constexpr std::array base_color_slot_properties{Property{"index", Kind::Index}, Property{"texCoord", Kind::Index}};
+constexpr std::array texture_transform_properties{
+    Property{"offset", Kind::Numbers, {}, 2},
+    Property{"rotation", Kind::Number},
+    Property{"scale", Kind::Numbers, {}, 2},
+    Property{"texCoord", Kind::Index},
+};
+/** Of textures and images most are not read, so that their indices are the reader's to check. */
+constexpr std::array texture_properties{Property{"name", Kind::String}, Property{"sampler", Kind::Index},
+                                        Property{"source", Kind::Index}};
+constexpr std::array sampler_properties{
+    Property{"magFilter", Kind::Index},
+    Property{"minFilter", Kind::Index},
+    Property{"wrapS", Kind::Index},
+    Property{"wrapT", Kind::Index},
+};
+constexpr std::array image_properties{Property{"name", Kind::String}, Property{"uri", Kind::String},
+                                      Property{"bufferView", Kind::Index}};
 constexpr std::array specular_properties{
     Property{"specularFactor", Kind::Number},
     Property{"specularColorFactor", Kind::Numbers, {}, 3},
@@ -175,6 +196,8 @@ class Checker {
   void check_node(const Place &place, json &node) const;
   void check_mesh(const Place &place, json &mesh) const;
   void check_accessor(const Place &place, json &accessor) const;
+  void check_attributes(const Place &place, json &attributes) const;
+  void check_base_color_slot(const Place &outer, json &roughness) const;
   void check_material(const Place &place, json &material) const;
   void check_camera(const Place &place, json &camera) const;
   void check_light(const Place &place, json &light) const;
@@ -382,15 +405,29 @@ void Checker::check_mesh(const Place &place, json &mesh) const
     const Place primitive_place{&place, "primitives", i};
     json &primitive = (*primitives)[i];
     check_object(primitive_place, primitive, primitive_properties, {"attributes", "extensions", "targets"});
-    if (check_member(primitive_place, primitive, "attributes", attribute_properties) == nullptr) {
+    json *attributes = member(primitive, "attributes");
+    if (attributes == nullptr) {
       throw Fault(primitive_place.text(), "has no attributes");
     }
+    check_attributes({&primitive_place, "attributes"}, *attributes);
     empty_unknown_extensions(primitive_place, primitive, {});
     if (json *targets = member(primitive, "targets")) {
       // That there are some is all that is said of them.
       *targets = json::array({json::object()});
     }
   }
+}
+
+void Checker::check_attributes(const Place &place, json &attributes) const
+{
+  check_is_object(place, attributes);
+  std::vector<Property> properties(attribute_properties.begin(), attribute_properties.end());
+  for (const auto &[key, value] : attributes.items()) {
+    if (key.rfind(texture_coordinate_prefix, 0) == 0) {
+      properties.push_back({key, Kind::Index, "accessors"});
+    }
+  }
+  check_object(place, attributes, properties);
 }
 
 void Checker::check_accessor(const Place &place, json &accessor) const
@@ -408,18 +445,32 @@ void Checker::check_accessor(const Place &place, json &accessor) const
   }
 }
 
+void Checker::check_base_color_slot(const Place &outer, json &roughness) const
+{
+  constexpr std::string_view key = "baseColorTexture";
+  json *slot = check_member(outer, roughness, key, base_color_slot_properties, {"extensions"});
+  if (slot == nullptr) {
+    return;
+  }
+  const Place place{&outer, key};
+  empty_unknown_extensions(place, *slot, {"KHR_texture_transform"});
+  if (json *extensions = member(*slot, "extensions")) {
+    check_member({&place, "extensions"}, *extensions, "KHR_texture_transform", texture_transform_properties);
+  }
+}
+
 void Checker::check_material(const Place &place, json &material) const
 {
   check_object(place, material, material_properties,
                {"pbrMetallicRoughness", "normalTexture", "occlusionTexture", "emissiveTexture", "extensions"});
   for (const std::string_view slot : {"normalTexture", "occlusionTexture", "emissiveTexture"}) {
-    check_member(place, material, slot, texture_properties);
+    check_member(place, material, slot, slot_properties);
   }
   if (json *roughness = check_member(place, material, "pbrMetallicRoughness", roughness_properties,
                                      {"baseColorTexture", "metallicRoughnessTexture"})) {
     const Place roughness_place{&place, "pbrMetallicRoughness"};
-    check_member(roughness_place, *roughness, "baseColorTexture", texture_properties);
-    check_member(roughness_place, *roughness, "metallicRoughnessTexture", texture_properties);
+    check_base_color_slot(roughness_place, *roughness);
+    check_member(roughness_place, *roughness, "metallicRoughnessTexture", slot_properties);
   }
   empty_unknown_extensions(place, material,
                            {"KHR_materials_specular", "KHR_materials_emissive_strength", "KHR_materials_ior"});
@@ -428,8 +479,8 @@ void Checker::check_material(const Place &place, json &material) const
     if (json *specular = check_member(extensions_place, *extensions, "KHR_materials_specular", specular_properties,
                                       {"specularTexture", "specularColorTexture"})) {
       const Place specular_place{&extensions_place, "KHR_materials_specular"};
-      check_member(specular_place, *specular, "specularTexture", texture_properties);
-      check_member(specular_place, *specular, "specularColorTexture", texture_properties);
+      check_member(specular_place, *specular, "specularTexture", slot_properties);
+      check_member(specular_place, *specular, "specularColorTexture", slot_properties);
     }
     check_member(extensions_place, *extensions, "KHR_materials_emissive_strength", emissive_strength_properties);
     check_member(extensions_place, *extensions, "KHR_materials_ior", ior_properties);
@@ -479,7 +530,7 @@ void Checker::check_all()
   }
   check_asset();
   for (const std::string_view key : {"scenes", "nodes", "meshes", "skins", "accessors", "bufferViews", "buffers",
-                                     "materials", "cameras", "extensionsRequired"}) {
+                                     "materials", "cameras", "textures", "samplers", "images", "extensionsRequired"}) {
     if (const json *array = member(document_, key)) {
       if (!array->is_array()) {
         fail({nullptr, key}, *array, "an array");
@@ -492,7 +543,7 @@ void Checker::check_all()
   const Place root{nullptr, ""};
   check_object(root, document_, properties,
                {"asset", "scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "materials", "cameras",
-                "extensions", "extensionsRequired"});
+                "textures", "samplers", "images", "extensions", "extensionsRequired"});
   check_lights();
 
   const auto check_plain = [this](std::span<const Property> element_properties) {
@@ -507,6 +558,9 @@ void Checker::check_all()
   check_array("materials", [this](const Place &place, json &value) { check_material(place, value); });
   check_array("cameras", [this](const Place &place, json &value) { check_camera(place, value); });
   check_array("bufferViews", check_plain(buffer_view_properties));
+  check_array("textures", check_plain(texture_properties));
+  check_array("samplers", check_plain(sampler_properties));
+  check_array("images", check_plain(image_properties));
   check_array("extensionsRequired", [](const Place &place, const json &value) {
     if (!value.is_string()) {
       fail(place, value, "a string");

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "internal/gltf_texture.hh"
+
+#include "internal/gltf_accessor.hh"
+#include "internal/gltf_image.hh"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gnomon::scene::gltf {
+
+namespace {
+
+/** A few kilobytes can be compressed out of millions of texels, so the size of a file does not limit them. */
+constexpr std::uint64_t texel_count_max = std::uint64_t(1) << 27U;
+
+/** Reads one sampler; what glTF does not know is taken for what it has without a sampler. */
+class SamplerReader {
+ public:
+  SamplerReader(std::string what, Warnings &warnings) : what_(std::move(what)), warnings_(warnings) {}
+
+  void read(const tinygltf::Sampler &sampler, Texture &texture)
+  {
+    texture.wrap_u = wrap("wrapS", sampler.wrapS);
+    texture.wrap_v = wrap("wrapT", sampler.wrapT);
+    read_filters(sampler, texture);
+  }
+
+ private:
+  std::string what_;
+  Warnings &warnings_;
+
+  void warn_unknown(const char *key, int value)
+  {
+    warnings_.add(what_, std::string(key) + ' ' + std::to_string(value) + " is unknown and not used");
+  }
+
+  TextureWrap wrap(const char *key, int value)
+  {
+    switch (value) {
+      case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE: return TextureWrap::ClampToEdge;
+      case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT: return TextureWrap::MirroredRepeat;
+      case TINYGLTF_TEXTURE_WRAP_REPEAT: return TextureWrap::Repeat;
+      default: warn_unknown(key, value); return TextureWrap::Repeat;
+    }
+  }
+
+  void read_filters(const tinygltf::Sampler &sampler, Texture &texture)
+  {
+    switch (sampler.magFilter) {
+      case TINYGLTF_TEXTURE_FILTER_NEAREST: texture.magnified = TextureFilter::Nearest; break;
+      case TINYGLTF_TEXTURE_FILTER_LINEAR:
+      case absent: break;
+      default: warn_unknown("magFilter", sampler.magFilter);
+    }
+    const auto set = [&texture](TextureFilter filter, MipFilter mip) {
+      texture.minified = filter;
+      texture.mip = mip;
+    };
+    switch (sampler.minFilter) {
+      case TINYGLTF_TEXTURE_FILTER_NEAREST: set(TextureFilter::Nearest, MipFilter::None); break;
+      case TINYGLTF_TEXTURE_FILTER_LINEAR: set(TextureFilter::Linear, MipFilter::None); break;
+      case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST: set(TextureFilter::Nearest, MipFilter::Nearest); break;
+      case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_NEAREST: set(TextureFilter::Linear, MipFilter::Nearest); break;
+      case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR: set(TextureFilter::Nearest, MipFilter::Linear); break;
+      case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR:
+      case absent: break;
+      default: warn_unknown("minFilter", sampler.minFilter);
+    }
+  }
+
+  /** tinygltf's word for a filter that the file leaves to us. */
+  static constexpr int absent = -1;
+};
+
+/** \throws Fault that names \a what, when the file has no element \a index. */
+template <typename Elements>
+const auto &element(const Elements &elements, int index, const std::string &what)
+{
+  if (index < 0 || static_cast<std::size_t>(index) >= elements.size()) {
+    throw Fault(what, index < 0 ? "is missing"
+                                : "index " + std::to_string(index) + " is out of range: the file has " +
+                                      std::to_string(elements.size()));
+  }
+  return elements[static_cast<std::size_t>(index)];
+}
+
+}  // namespace
+
+TextureImporter::TextureImporter(const File &file, Warnings &warnings, Scene &scene)
+    : file_(file), warnings_(warnings), scene_(scene)
+{
+}
+
+std::int32_t TextureImporter::index_of(int gltf_texture)
+{
+  if (const auto found = index_of_.find(gltf_texture); found != index_of_.end()) {
+    return found->second;
+  }
+  const tinygltf::Texture &source = element(file_.model.textures, gltf_texture, "texture");
+  const std::string what = label("texture", source.name, static_cast<std::size_t>(gltf_texture));
+  element(file_.images, source.source, what + ": source");
+  Texture texture;
+  if (source.sampler >= 0) {
+    SamplerReader(what, warnings_).read(element(file_.model.samplers, source.sampler, what + ": sampler"), texture);
+  }
+  texture.image = image_of(source.source);
+  const auto index = static_cast<std::int32_t>(scene_.textures.size());
+  scene_.textures.push_back(texture);
+  index_of_.emplace(gltf_texture, index);
+  return index;
+}
+
+std::uint32_t TextureImporter::image_of(int gltf_image)
+{
+  const ImageSource &source = file_.images[gltf_image];
+  const auto [place, is_new] = image_of_.try_emplace({source.uri, source.buffer_view});
+  if (is_new) {
+    try {
+      place->second = import_image(gltf_image);
+    }
+    catch (const Fault &fault) {
+      place->second = fault;
+    }
+  }
+  if (const Fault *fault = std::get_if<Fault>(&place->second)) {
+    throw Fault(*fault);
+  }
+  return std::get<std::uint32_t>(place->second);
+}
+
+std::uint32_t TextureImporter::import_image(int gltf_image)
+{
+  const ImageSource &source = file_.images[gltf_image];
+  const std::string what = label("image", source.name, static_cast<std::size_t>(gltf_image));
+  std::vector<unsigned char> storage;
+  std::span<const unsigned char> bytes;
+  if (!source.uri.empty()) {
+    bytes = storage = bytes_of_uri(file_.folder, what, source.uri);
+  }
+  else {
+    element(file_.model.bufferViews, source.buffer_view, what + ": bufferView");
+    bytes = view_bytes(file_, source.buffer_view, 0, what);
+  }
+  Image image = decoded_image(bytes, what, texel_count_max - texel_count_);
+  image.name = source.name.empty() ? "image " + std::to_string(gltf_image) : source.name;
+  texel_count_ += std::uint64_t(image.width) * image.height;
+  scene_.images.push_back(std::move(image));
+  return static_cast<std::uint32_t>(scene_.images.size() - 1);
+}
+
+}  // namespace gnomon::scene::gltf
