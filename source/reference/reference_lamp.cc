@@ -158,6 +158,11 @@ LampSample sample_lamp(const scene::Lamp &lamp, const glm::dvec3 &position_ws, c
   return sample_sun(lamp, u);
 }
 
+bool casts_shadow(const scene::Lamp &lamp)
+{
+  return lamp.kind != scene::LampKind::Hemi && lamp.shadow.kind != scene::ShadowKind::None;
+}
+
 LightPoint lamp_center(const scene::Lamp &lamp)
 {
   if (lamp.kind == scene::LampKind::Sun || lamp.kind == scene::LampKind::Hemi) {

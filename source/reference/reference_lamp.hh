@@ -32,6 +32,9 @@ struct LampSample {
  */
 [[nodiscard]] LampSample sample_lamp(const scene::Lamp &lamp, const glm::dvec3 &position_ws, const glm::dvec2 &u);
 
+/** false for a hemi lamp, and for one that asks for no shadow. */
+[[nodiscard]] bool casts_shadow(const scene::Lamp &lamp);
+
 /** The middle of a lamp. */
 [[nodiscard]] LightPoint lamp_center(const scene::Lamp &lamp);
 

@@ -81,7 +81,6 @@ class CameraRays {
 struct Renderer {
   const Tracer &tracer;
   CameraRays rays;
-  std::vector<Bsdf> bsdfs;
   const DirectLightSettings &settings;
 
   [[nodiscard]] glm::dvec3 radiance(const Ray &ray, int sample, std::uint64_t pixel_key) const;
@@ -104,7 +103,7 @@ glm::dvec3 Renderer::lit_by(const scene::Lamp &lamp, const Receiver &receiver, c
     return glm::dvec3(0.0);
   }
   const glm::dvec3 scattered = reflected(bsdf, normal, view, sample.to_light_ws);
-  if (scattered == glm::dvec3(0.0) || !is_visible(tracer, receiver, sample.point)) {
+  if (scattered == glm::dvec3(0.0) || (casts_shadow(lamp) && !is_visible(tracer, receiver, sample.point))) {
     return glm::dvec3(0.0);
   }
   return scattered * color * sample.irradiance;
@@ -121,10 +120,12 @@ glm::dvec3 Renderer::radiance(const Ray &ray, int sample, std::uint64_t pixel_ke
   const double side = glm::dot(surface.geometric_normal_ws, view) < 0.0 ? -1.0 : 1.0;
   const Receiver receiver{surface.position_ws, side * surface.geometric_normal_ws, surface.error_m};
   const scene::Scene &scene = tracer.scene();
-  glm::dvec3 sum(scene.materials[surface.material].emissive);
+  const scene::Material &material = scene.materials[surface.material];
+  const Bsdf bsdf = make_bsdf(material, surface.base_color);
+  glm::dvec3 sum(material.emissive);
   for (std::size_t i = 0; i < scene.lamps.size(); i++) {
     const glm::dvec2 u = even_point(sample, mixed(pixel_key + i));
-    sum += lit_by(scene.lamps[i], receiver, side * surface.shading_normal_ws, view, bsdfs[surface.material], u);
+    sum += lit_by(scene.lamps[i], receiver, side * surface.shading_normal_ws, view, bsdf, u);
   }
   return sum;
 }
@@ -173,10 +174,7 @@ Picture direct_light(const Tracer &tracer, const scene::Camera &camera, glm::ive
     throw std::invalid_argument(fmt::format("direct light: a picture of {}x{} with {} samples has none", size_px.x,
                                             size_px.y, settings.sample_count));
   }
-  Renderer renderer{tracer, CameraRays(camera, size_px), {}, settings};
-  for (const scene::Material &material : tracer.scene().materials) {
-    renderer.bsdfs.push_back(make_bsdf(material));
-  }
+  const Renderer renderer{tracer, CameraRays(camera, size_px), settings};
   Picture picture{size_px, std::vector<glm::vec4>(std::size_t(size_px.x) * std::size_t(size_px.y))};
   // The ring of neighbours around a tile is rendered again: a part in sixteen of it.
   constexpr int tile_px = 64;

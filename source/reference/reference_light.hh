@@ -35,7 +35,7 @@ struct Picture {
  * Frame, clip distances, pixel filter, units and materials are those of `doc/conventions.md`. Each pixel is the
  * filter's weighted mean of all samples within 1.5 pixels of its centre. Normals are interpolated; a lamp behind the
  * triangle gives no light, whatever the interpolated normal says. Backs of one-sided materials are looked through, yet
- * they cast shadows. Hemi lamps cast none.
+ * they cast shadows. Hemi lamps, and those that ask for none, cast none.
  *
  * \throws std::invalid_argument for a size or a number of samples below 1.
  */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "reference_tracer.hh"
 
+#include "internal/reference_texture.hh"
 #include "internal/reference_triangle.hh"
 
 #include <embree3/rtcore.h>
@@ -101,6 +102,8 @@ struct Tracer::Tree {
   {
     return scene.materials[mesh_of(triangle).material];
   }
+  /** Linear RGB and alpha, texture and factors. */
+  [[nodiscard]] glm::dvec4 base_color_at(const Triangle &triangle, const glm::dvec3 &weights) const;
   /** false where the material is masked and cut out. */
   [[nodiscard]] bool is_opaque_at(const Triangle &triangle, const glm::dvec3 &weights) const;
 
@@ -140,10 +143,26 @@ void Tracer::Tree::fail(const std::string &reason) const
   throw std::runtime_error(fmt::format("{}: no ray tracing: {}", scene.path, reason));
 }
 
-bool Tracer::Tree::is_opaque_at(const Triangle &triangle, const glm::dvec3 & /*weights*/) const
+glm::dvec4 Tracer::Tree::base_color_at(const Triangle &triangle, const glm::dvec3 &weights) const
 {
   const scene::Material &material = material_of(triangle);
-  return material.alpha_mode != scene::AlphaMode::Mask || material.alpha >= material.alpha_cutoff;
+  const glm::dvec4 factor(material.base_color, material.alpha);
+  const scene::Mesh &mesh = mesh_of(triangle);
+  if (material.base_color_texture < 0 || mesh.uvs.empty()) {
+    return factor;
+  }
+  glm::dvec2 uv(0.0);
+  for (std::size_t i = 0; i < 3; i++) {
+    uv += weights[int(i)] * glm::dvec2(mesh.uvs[triangle.vertices[i]]);
+  }
+  return factor * texture_at(scene, scene.textures[std::size_t(material.base_color_texture)], uv);
+}
+
+bool Tracer::Tree::is_opaque_at(const Triangle &triangle, const glm::dvec3 &weights) const
+{
+  const scene::Material &material = material_of(triangle);
+  return material.alpha_mode != scene::AlphaMode::Mask ||
+         base_color_at(triangle, weights).a >= double(material.alpha_cutoff);
 }
 
 void Tracer::Tree::add_object(std::uint32_t index)
@@ -389,6 +408,7 @@ Surface Tracer::surface_at(const Hit &hit) const
   Surface surface;
   surface.object = triangle.object;
   surface.material = mesh.material;
+  surface.base_color = glm::dvec3(tree_->base_color_at(triangle, hit.weights));
   surface.geometric_normal_ws = plane.normal / plane.normal_length;
   const Corners &corners = triangle.corners;
   surface.error_m =

@@ -47,6 +47,8 @@ struct Surface {
   std::uint32_t object = 0;
   /** Index in Scene::materials. */
   std::uint32_t material = 0;
+  /** Linear; the material's, and its texture's at its full size. */
+  glm::dvec3 base_color{1.0};
 };
 
 /** A point of a lamp, where a shadow ray ends. */

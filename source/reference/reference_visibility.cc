@@ -69,7 +69,7 @@ bool is_visible(const Tracer &tracer, const Receiver &receiver, const LightPoint
 
 bool is_visible(const Tracer &tracer, const Receiver &receiver, const scene::Lamp &lamp)
 {
-  return lamp.kind == scene::LampKind::Hemi || is_visible(tracer, receiver, lamp_center(lamp));
+  return !casts_shadow(lamp) || is_visible(tracer, receiver, lamp_center(lamp));
 }
 
 bool is_facing(const Receiver &receiver, const scene::Lamp &lamp)
@@ -80,7 +80,7 @@ bool is_facing(const Receiver &receiver, const scene::Lamp &lamp)
 Estimate visibility(const Tracer &tracer, const Receiver &receiver, const scene::Lamp &lamp, int sample_count,
                     std::uint64_t seed)
 {
-  if (!has_size(lamp)) {
+  if (!has_size(lamp) || !casts_shadow(lamp)) {
     return {is_visible(tracer, receiver, lamp) ? 1.0 : 0.0, 0.0};
   }
   return mean_over_square(sample_count, seed, [&](const glm::dvec2 &u) {
@@ -98,8 +98,10 @@ Estimate irradiance(const Tracer &tracer, const Receiver &receiver, const scene:
   const auto value = [&](const glm::dvec2 &u) {
     const LampSample sample = sample_lamp(lamp, receiver.position_ws, u);
     const double cosine = glm::dot(receiver.normal_ws, sample.to_light_ws);
-    const bool is_lit = cosine > 0.0 && sample.irradiance > 0.0 && is_visible(tracer, receiver, sample.point);
-    return is_lit ? sample.irradiance * cosine : 0.0;
+    if (!(cosine > 0.0) || (casts_shadow(lamp) && !is_visible(tracer, receiver, sample.point))) {
+      return 0.0;
+    }
+    return sample.irradiance * cosine;
   };
   if (!has_size(lamp)) {
     return {value({0.5, 0.5}), 0.0};

@@ -238,5 +238,55 @@ TEST(Tracer, MaskedMaterialBelowItsCutoffIsNotThere)
   }
 }
 
+TEST(Tracer, MaskIsCutWhereTheInterpolatedAlphaIsTheCutoff)
+{
+  // Two texels, alpha 0 and 1, over a square of u from 0 to 1: alpha is 2u - 1/2 between the centres.
+  for (const float cutoff : {0.25F, 0.5F, 0.875F}) {
+    for (const auto &[wrap, shift] :
+         {std::pair(scene::TextureWrap::ClampToEdge, 0.0F), std::pair(scene::TextureWrap::Repeat, -3.0F),
+          std::pair(scene::TextureWrap::MirroredRepeat, 4.0F)}) {
+      scene::Scene scene;
+      test::add_material(scene, glm::vec3(1.0F));
+      scene.materials[0].alpha_mode = scene::AlphaMode::Mask;
+      scene.materials[0].alpha_cutoff = cutoff;
+      scene.materials[0].base_color_texture = 0;
+      scene.images.push_back({"alpha", 2, 1, {255, 255, 255, 0, 0, 0, 0, 255}});
+      scene.textures.push_back({.wrap_u = wrap});
+      add_rectangle(scene, {0, 0}, {1, 1});
+      for (const glm::vec3 &position : scene.meshes[0].positions) {
+        scene.meshes[0].uvs.emplace_back(position.x + shift, position.y);
+      }
+      const Tracer tracer(scene);
+      const double edge = 0.25 + 0.5 * double(cutoff);
+      for (const double x : {edge - 1e-9, edge + 1e-9}) {
+        EXPECT_EQ(tracer.closest({{x, 0.5, 1}, {0, 0, -1}}, Faces::All).has_value(), x > edge)
+            << cutoff << ' ' << shift;
+        EXPECT_EQ(tracer.is_blocked({x, 0.5, -1}, 0.0, {{x, 0.5, 1}, false}), x > edge) << cutoff << ' ' << shift;
+      }
+    }
+  }
+}
+
+TEST(Tracer, BaseColorIsDecodedBeforeItIsInterpolated)
+{
+  scene::Scene scene;
+  test::add_material(scene, {0.5F, 1.0F, 1.0F});
+  scene.materials[0].base_color_texture = 0;
+  scene.images.push_back({"grey", 2, 1, {255, 0, 188, 255, 0, 0, 188, 255}});
+  scene.textures.push_back({});
+  add_rectangle(scene, {0, 0}, {1, 1});
+  for (const glm::vec3 &position : scene.meshes[0].positions) {
+    scene.meshes[0].uvs.emplace_back(position.x, position.y);
+  }
+  const Tracer tracer(scene);
+  const std::optional<Hit> hit = tracer.closest({{0.5, 0.5, 1}, {0, 0, -1}}, Faces::All);
+  ASSERT_TRUE(hit);
+  const glm::dvec3 color = tracer.surface_at(*hit).base_color;
+  EXPECT_NEAR(color.r, 0.25, 1e-12);
+  EXPECT_NEAR(color.g, 0.0, 1e-12);
+  // 188 is sRGB's middle grey: 0.5029.
+  EXPECT_NEAR(color.b, 0.5029, 1e-4);
+}
+
 }  // namespace
 }  // namespace gnomon::reference

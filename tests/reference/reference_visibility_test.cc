@@ -166,6 +166,9 @@ TEST(Visibility, ASurfaceHidesWhatIsBehindIt)
   EXPECT_FALSE(is_visible(tracer, receiver_at({1, 2, 0}, up), lamp_at(LampKind::Point, {0, 0, -1})));
   EXPECT_TRUE(is_visible(tracer, receiver_at({1, 2, 0}, -up), lamp_at(LampKind::Point, {0, 0, -1})));
   EXPECT_TRUE(is_visible(tracer, receiver_at({1, 2, 0}, up), lamp_at(LampKind::Hemi, {0, 0, 0})));
+  scene::Lamp unshadowed = lamp_at(LampKind::Point, {0, 0, -1});
+  unshadowed.shadow.kind = scene::ShadowKind::None;
+  EXPECT_TRUE(is_visible(tracer, receiver_at({1, 2, 0}, up), unshadowed));
 }
 
 TEST(Visibility, FloatPositionsAreMovedBackOntoTheirSurface)
@@ -236,8 +239,8 @@ void expect_irradiance(const scene::Lamp &lamp, double expected)
   const scene::Scene scene;
   const Tracer tracer(scene);
   const Estimate estimate = irradiance(tracer, receiver_at({0, 0, 0}, up), lamp, 20000, 1);
-  // A millionth for floats in the lamp.
-  EXPECT_NEAR(estimate.mean, expected, 4.0 * estimate.standard_error + 1e-6 * expected);
+  // The lamp's axis is of floats, and a spot's edge is steep against it.
+  EXPECT_NEAR(estimate.mean, expected, 4.0 * estimate.standard_error + 1e-5 * expected);
   EXPECT_LE(estimate.standard_error, 0.02 * expected);
 }
 

@@ -10,10 +10,9 @@
 
 namespace gnomon::reference {
 
-Bsdf make_bsdf(const scene::Material &material)
+Bsdf make_bsdf(const scene::Material &material, const glm::dvec3 &base_color)
 {
   const double metallic = material.metallic;
-  const glm::dvec3 base_color(material.base_color);
   const glm::dvec3 dielectric =
       glm::min(0.04 * glm::dvec3(material.specular_color), glm::dvec3(1.0)) * double(material.specular);
   Bsdf bsdf;

@@ -15,7 +15,8 @@ struct Bsdf {
   double f90 = 0.0;
 };
 
-[[nodiscard]] Bsdf make_bsdf(const scene::Material &material);
+/** \a base_color: the material's, with its texture. */
+[[nodiscard]] Bsdf make_bsdf(const scene::Material &material, const glm::dvec3 &base_color);
 
 /** Scattered from \a to_light to \a view, 1/sr, times the cosine of the light. All unit vectors. Finite. */
 [[nodiscard]] glm::dvec3 reflected(const Bsdf &bsdf, const glm::dvec3 &normal, const glm::dvec3 &view,
