@@ -17,6 +17,15 @@ layout(binding = SHADOW_CUBES_SLOT) uniform sampler2DArray shadow_cubes;
 layout(binding = SHADOW_MAPS_SLOT) uniform sampler2DArray shadow_maps;
 #endif
 
+#ifdef USE_SHADOW_PCF
+/** Edge of the kernel's square, texels, odd; 0: a disk. */
+SPECIALIZATION_CONSTANT(0) const int PCF_WIDTH = SHADOW_PCF_WIDTH;
+/** Lookups on the disk. */
+SPECIALIZATION_CONSTANT(1) const int PCF_TAPS = SHADOW_PCF_TAPS;
+/** Radius of the disk, texels: with the texels around a lookup it stays within CUBE_BORDER_TEXELS. */
+const float PCF_DISK_RADIUS = 2.0;
+#endif
+
 float largest(vec3 v)
 {
   vec3 a = abs(v);
@@ -30,15 +39,70 @@ vec3 lifted_position(Surface surface, vec3 to_light, float lift)
   return surface.position_ws + normal_ws * (dot(normal_ws, to_light) < 0.0 ? -lift : lift);
 }
 
-/** \a slope: change of the receiver's depth over the whole map, across and up. */
-float map_visibility(sampler2DArray depths, vec2 uv, int layer, float depth, vec2 slope)
+/** How far from a lookup its kernel reads, texels. */
+float kernel_reach(int filter_kind)
 {
-  vec2 size = vec2(textureSize(depths, 0).xy);
-  vec2 texel = uv * size - 0.5;
-  vec2 fraction = fract(texel);
-  // At the corner that the four texels share, so that rounding cannot choose others.
-  vec4 stored = textureGather(depths, vec3((floor(texel) + 1.0) / size, float(layer)));
-  return gathered_visibility(stored, plane_depths(depth, slope / size, fraction), fraction);
+#ifdef USE_SHADOW_PCF
+  if (filter_kind == SHADOW_FILTER_PCF) {
+    return PCF_WIDTH > 0 ? 0.5 * float(PCF_WIDTH + 1) : PCF_DISK_RADIUS + 1.0;
+  }
+#endif
+  return 1.0;
+}
+
+/** A plane in a shadow, around a lookup. */
+struct ReceiverPlane {
+  /** Where the lookup is; texel centres are at whole numbers. */
+  vec2 texel;
+  /** Depth there. */
+  float depth;
+  /** Change of depth a texel, across and up. */
+  vec2 slope;
+};
+
+/** Which of the four texels from \a corner on are lit, weighted. \a size_px: of the shadow within its layer. */
+float four_texels(sampler2DArray depths, int layer, int size_px, ReceiverPlane plane, vec2 corner, vec2 columns, vec2 rows)
+{
+  corner = clamp(corner, vec2(0.0), vec2(max(size_px - 2, 0)));
+  // At the corner that the four share, so that rounding cannot choose others.
+  vec4 stored = textureGather(depths, vec3((corner + 1.0) / vec2(textureSize(depths, 0).xy), float(layer)));
+  return weighted_texels(texels_lit(stored, plane_depths(plane.depth, plane.slope, corner - plane.texel)), columns, rows);
+}
+
+/** The bilinear blend of the four texels around \a texel. */
+float bilinear_texels(sampler2DArray depths, int layer, int size_px, ReceiverPlane plane, vec2 texel)
+{
+  vec2 corner = floor(texel);
+  vec2 fraction = texel - corner;
+  return four_texels(depths, layer, size_px, plane, corner, vec2(1.0 - fraction.x, fraction.x),
+                     vec2(1.0 - fraction.y, fraction.y));
+}
+
+float filtered_visibility(sampler2DArray depths, int layer, int size_px, int filter_kind, ReceiverPlane plane)
+{
+#ifdef USE_SHADOW_PCF
+  if (filter_kind == SHADOW_FILTER_PCF) {
+    float sum = 0.0;
+    if (PCF_WIDTH > 0) {
+      // A square of PCF_WIDTH texels around the lookup covers one more each way, of which the outer ones in part.
+      vec2 first = floor(plane.texel) - float((PCF_WIDTH - 1) / 2);
+      vec2 fraction = fract(plane.texel);
+      for (int y = 0; y < PCF_WIDTH; y += 2) {
+        vec2 rows = vec2(y == 0 ? 1.0 - fraction.y : 1.0, y == PCF_WIDTH - 1 ? fraction.y : 1.0);
+        for (int x = 0; x < PCF_WIDTH; x += 2) {
+          vec2 columns = vec2(x == 0 ? 1.0 - fraction.x : 1.0, x == PCF_WIDTH - 1 ? fraction.x : 1.0);
+          sum += four_texels(depths, layer, size_px, plane, first + vec2(x, y), columns, rows);
+        }
+      }
+      return sum / float(PCF_WIDTH * PCF_WIDTH);
+    }
+    for (int i = 0; i < PCF_TAPS; i++) {
+      sum += bilinear_texels(depths, layer, size_px, plane, plane.texel + PCF_DISK_RADIUS * vogel_disk(i, PCF_TAPS));
+    }
+    return sum / float(PCF_TAPS);
+  }
+#endif
+  return bilinear_texels(depths, layer, size_px, plane, plane.texel);
 }
 
 #ifdef USE_SHADOW_CUBE
@@ -46,38 +110,52 @@ float shadow_cube_visibility(int index, Surface surface, LightData light, vec3 t
 {
   ShadowCubeData cube = shadow.cubes[index];
   // Distance along the axis of the receiver's face.
-  float w = largest(surface.position_ws - light.position_ws);
-  float magnitude = largest(surface.position_ws) + largest(light.position_ws);
-  float lift = shadow_lift(cube.texel_size * w, DEPTH_ROUNDING / cube.near * w * w, magnitude);
-  // Not past the lamp: from behind, the plane would look turned round.
-  lift = min(lift, 0.5 * abs(dot(surface.geometric_normal_ws, surface.position_ws - light.position_ws)));
-  vec3 from_light = lifted_position(surface, to_light, lift) - light.position_ws;
-  int face = cube_face(from_light);
-  vec3 p = cube_face_project(face, from_light);
-  if (p.z <= cube.near) {
-    // Nearer than the near plane nothing casts.
+  vec3 from_light = surface.position_ws - light.position_ws;
+  float w = largest(from_light);
+  if (w > cube.far) {
     return 1.0;
   }
-  // A plane n · p = c has 1 / z = (n.x · x/z + n.y · y/z + n.z) / c; texture coordinates are half of x/z.
+  float magnitude = largest(surface.position_ws) + largest(light.position_ws);
+  float lift = cube.bias * shadow_lift(cube.texel_size * w, kernel_reach(cube.filter_kind),
+                                       DEPTH_ROUNDING / cube.near * w * w, magnitude);
+  // Not past the lamp: from behind, the plane would look turned round.
+  lift = min(lift, 0.5 * abs(dot(surface.geometric_normal_ws, from_light)));
+  from_light = lifted_position(surface, to_light, lift) - light.position_ws;
+  int face = cube_face(from_light);
+  vec3 p = cube_face_project(face, from_light);
+  if ((cube.face_mask >> face & 1) == 0 || p.z <= 0.0) {
+    return 1.0;
+  }
+  // A plane n · p = c has 1 / z = (n.x · x/z + n.y · y/z + n.z) / c.
   vec3 n = cube_face_project(face, surface.geometric_normal_ws);
-  float scale = slope_quotient(2.0 * cube.near, dot(n, p));
-  return map_visibility(shadow_cubes, p.xy / p.z * 0.5 + 0.5, cube.layer + face, cube.near / p.z, n.xy * scale);
+  float size = float(cube.size_px);
+  ReceiverPlane plane;
+  plane.texel = (p.xy / p.z * (0.5 * cube_uv_scale(size)) + 0.5) * size - 0.5;
+  plane.depth = cube.near / p.z;
+  plane.slope = n.xy * (slope_quotient(cube.near, dot(n, p)) * cube.texel_size);
+  return filtered_visibility(shadow_cubes, cube.layer + face, cube.size_px, cube.filter_kind, plane);
 }
 #endif
 
 #ifdef USE_SHADOW_MAP
-float shadow_map_visibility(int index, Surface surface, vec3 to_light)
+/** Share of a map's half width over which a cascade fades into the next. */
+const float CASCADE_FADE = 0.1;
+
+/** \a coverage: 0 where the map says nothing of the receiver, 1 where it is not near the map's edge. */
+float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, out float coverage)
 {
-  ShadowMapData map = shadow.maps[index];
+  coverage = 0.0;
   float w = (map.texco_from_world * vec4(surface.position_ws, 1.0)).w;
-  float lift = shadow_lift(map.texel_size * w, map.rounding * w * w, largest(surface.position_ws) + abs(w));
+  float lift = map.bias * shadow_lift(map.texel_size * w, kernel_reach(map.filter_kind), map.rounding * w * w,
+                                      largest(surface.position_ws) + abs(w));
   vec4 texco = map.texco_from_world * vec4(lifted_position(surface, to_light, lift), 1.0);
-  if (texco.w <= 0.0) {
+  if (texco.w <= 0.0 || w > map.far) {
     return 1.0;
   }
   texco.xyz /= texco.w;
-  // Outside of the map nothing casts.
-  if (any(lessThan(texco.xy, vec2(0.0))) || any(greaterThan(texco.xy, vec2(1.0)))) {
+  vec2 from_edge = min(texco.xy, 1.0 - texco.xy);
+  coverage = clamp(min(from_edge.x, from_edge.y) / (0.5 * CASCADE_FADE), 0.0, 1.0);
+  if (coverage <= 0.0) {
     return 1.0;
   }
   // Two directions on the receiver's plane, as the map sees them: d(q / w) = (dq - q / w · dw) / w.
@@ -85,8 +163,30 @@ float shadow_map_visibility(int index, Surface surface, vec3 to_light)
   vec3 tangent = normalize(abs(n.z) < 0.9 ? vec3(n.y, -n.x, 0.0) : vec3(0.0, n.z, -n.y));
   vec4 along = map.texco_from_world * vec4(tangent, 0.0);
   vec4 across = map.texco_from_world * vec4(cross(n, tangent), 0.0);
-  vec3 plane = cross(along.xyz - texco.xyz * along.w, across.xyz - texco.xyz * across.w);
-  vec2 slope = vec2(slope_quotient(-plane.x, plane.z), slope_quotient(-plane.y, plane.z));
-  return map_visibility(shadow_maps, texco.xy, map.layer, texco.z, slope);
+  vec3 normal = cross(along.xyz - texco.xyz * along.w, across.xyz - texco.xyz * across.w);
+  float size = float(map.size_px);
+  ReceiverPlane plane;
+  plane.texel = texco.xy * size - 0.5;
+  plane.depth = texco.z;
+  plane.slope = vec2(slope_quotient(-normal.x, normal.z), slope_quotient(-normal.y, normal.z)) / size;
+  return filtered_visibility(shadow_maps, map.layer, map.size_px, map.filter_kind, plane);
+}
+
+/** \a first: the finest map of the light. */
+float shadow_map_visibility(int first, Surface surface, vec3 to_light)
+{
+  int count = shadow.maps[first].cascade_count;
+  float visibility = 0.0;
+  // What no finer cascade has decided; outside of all nothing casts.
+  float open = 1.0;
+  for (int i = 0; i < count && open > 0.0; i++) {
+    float coverage;
+    float lit = one_map_visibility(shadow.maps[first + i], surface, to_light, coverage);
+    // The last one has nothing to fade into.
+    float share = i == count - 1 ? step(1e-30, coverage) : coverage;
+    visibility += open * share * lit;
+    open *= 1.0 - share;
+  }
+  return visibility + open;
 }
 #endif

@@ -37,6 +37,22 @@ SHARED_FUNCTION vec3 octahedral_to_direction(vec2 uv)
 }
 
 /**
+ * Solid angle of a texel around \a direction, in those of the texels on the axes: 1 there, to 3√3 on the diagonals. On the
+ * octahedron all texels are equal; r from the middle, they are seen under 1 / r³ of that. \a direction: unit vector.
+ */
+SHARED_FUNCTION float octahedral_texel_weight(vec3 direction)
+{
+  float inverse = abs(direction.x) + abs(direction.y) + abs(direction.z);
+  return inverse * inverse * inverse;
+}
+
+/** Edge of a square as large as a texel of a map of \a size², radians: between 2 / size and 4.56 / size. \a direction: unit vector. */
+SHARED_FUNCTION float octahedral_texel_angle(vec3 direction, int size)
+{
+  return 2.0f / float(size) * sqrt(octahedral_texel_weight(direction));
+}
+
+/**
  * The texel of a map of \a size² that continues it at \a texel, up to a whole map outside: what a border around the map holds.
  * Past an edge the map goes on turned by 180° around that edge's middle; past a corner, from the opposite corner.
  */

@@ -40,6 +40,7 @@ using mat4 = glm::mat<4, 4, float>;
 using glm::abs;
 using glm::atan;
 using glm::clamp;
+using glm::cos;
 using glm::cross;
 using glm::dot;
 using glm::exp;
@@ -49,6 +50,7 @@ using glm::min;
 using glm::mix;
 using glm::normalize;
 using glm::pow;
+using glm::sin;
 using glm::sqrt;
 using glm::step;
 #  ifdef SHARED_DOUBLE

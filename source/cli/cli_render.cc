@@ -15,6 +15,7 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <optional>
 
 namespace gnomon::cli {
@@ -40,6 +41,11 @@ struct RenderOptions {
   int repeat = 1;
   std::string shadow = "hard";
   int shadow_size = 0;
+  std::string pcf = "3x3";
+  int cascades = 0;
+  std::string cube_pass = "best";
+  std::string casters = "all";
+  int shadow_memory = 1024;
   std::string aov;
   std::string view = "standard";
   float exposure = 0.0F;
@@ -93,7 +99,7 @@ void check_options(const RenderOptions &options)
   if (!options.aov.empty()) {
     unbuilt("--aov");
   }
-  if (options.shadow == "pcf" || options.shadow == "esm") {
+  if (options.shadow == "esm") {
     unbuilt("--shadow " + options.shadow);
   }
   if (!std::isfinite(options.exposure)) {
@@ -129,14 +135,50 @@ const scene::Camera &find_camera(const scene::Scene &scene, const std::string &n
   throw std::runtime_error(fmt::format("{}: no camera '{}'; it has: {}", scene.path, name, fmt::join(names, ", ")));
 }
 
+eevee::PcfKernel parse_pcf(const std::string &text)
+{
+  if (text == "1" || text == "3x3" || text == "5x5") {
+    return {.width = text[0] - '0', .taps = 0};
+  }
+  constexpr std::string_view disk = "disk:";
+  int taps = 0;
+  const bool is_disk = text.rfind(disk, 0) == 0;
+  const char *end = text.data() + text.size();
+  const auto [after, error] = std::from_chars(text.data() + (is_disk ? disk.size() : text.size()), end, taps);
+  if (!is_disk || error != std::errc() || after != end || taps < 1 || taps > 64) {
+    throw UsageError(fmt::format("--pcf '{}' is none of 1, 3x3, 5x5 and disk:N with N from 1 to 64", text));
+  }
+  return {.width = 0, .taps = taps};
+}
+
+eevee::ShadowSettings shadow_settings(const RenderOptions &options)
+{
+  static const std::map<std::string, eevee::ShadowMethod> methods = {
+      {"none", eevee::ShadowMethod::None}, {"hard", eevee::ShadowMethod::Hard}, {"pcf", eevee::ShadowMethod::Pcf}};
+  static const std::map<std::string, eevee::LayerPass> passes = {{"best", eevee::LayerPass::Best},
+                                                                 {"six", eevee::LayerPass::Single},
+                                                                 {"geometry", eevee::LayerPass::Geometry},
+                                                                 {"layered", eevee::LayerPass::Layered}};
+  static const std::map<std::string, eevee::CasterFaces> faces = {
+      {"all", eevee::CasterFaces::All}, {"front", eevee::CasterFaces::Front}, {"back", eevee::CasterFaces::Back}};
+  eevee::ShadowSettings settings;
+  settings.method = methods.at(options.shadow);
+  settings.pcf = parse_pcf(options.pcf);
+  settings.cascades.count = options.cascades;
+  settings.layer_pass = passes.at(options.cube_pass);
+  settings.caster_faces = faces.at(options.casters);
+  settings.memory_bytes_max = std::size_t(options.shadow_memory) << 20U;
+  if (options.shadow_size > 0) {
+    settings.cube_size_px = options.shadow_size;
+    settings.map_size_px = options.shadow_size;
+  }
+  return settings;
+}
+
 eevee::Settings engine_settings(const RenderOptions &options)
 {
   eevee::Settings settings;
-  settings.shadow.method = options.shadow == "none" ? eevee::ShadowMethod::None : eevee::ShadowMethod::Hard;
-  if (options.shadow_size > 0) {
-    settings.shadow.cube_size_px = options.shadow_size;
-    settings.shadow.map_size_px = options.shadow_size;
-  }
+  settings.shadow = shadow_settings(options);
   settings.sample_count = options.samples;
   settings.seed = options.seed;
   settings.has_display = !options.output.empty() && is_png(options.output);
@@ -167,7 +209,9 @@ nlohmann::json to_json(const RenderOptions &options, const scene::Scene &scene, 
     frames.push_back({{"seconds", result.frame_seconds[i]},
                       {"step_seconds", steps},
                       {"lamps_updated", result.frame_shadows[i].lamps_updated},
-                      {"faces_drawn", result.frame_shadows[i].faces_drawn}});
+                      {"faces_drawn", result.frame_shadows[i].faces_drawn},
+                      {"faces_skipped", result.frame_shadows[i].faces_skipped},
+                      {"caster_draws", result.frame_shadows[i].caster_draws}});
   }
   nlohmann::json made = nlohmann::json::array();
   nlohmann::json left_out = nlohmann::json::array();
@@ -271,7 +315,8 @@ void render_frames(const RenderOptions &options, const scene::Camera &camera, ee
     result.frame_seconds.push_back(seconds_since(start));
     result.frame_steps.push_back(engine.take_step_times(viewport));
     const eevee::ShadowCounters now = engine.report(viewport).shadow_counters;
-    result.frame_shadows.push_back({now.lamps_updated - before.lamps_updated, now.faces_drawn - before.faces_drawn});
+    result.frame_shadows.push_back({now.lamps_updated - before.lamps_updated, now.faces_drawn - before.faces_drawn,
+                                    now.faces_skipped - before.faces_skipped, now.caster_draws - before.caster_draws});
     before = now;
   }
 }
@@ -389,13 +434,30 @@ void add_render(CLI::App &app, Status &status)
   command->add_option("--repeat", o->repeat, "Render this often, and print the time of each")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));
-  command->add_option("--shadow", o->shadow, "none, hard (pcf and esm are not built yet)")
+  command->add_option("--shadow", o->shadow, "none, hard, pcf (esm is not built yet)")
       ->capture_default_str()
       ->check(CLI::IsMember({"none", "hard", "pcf", "esm"}));
   command
       ->add_option("--shadow-size", o->shadow_size,
                    "Edge of every shadow layer, pixels (default: cubes 1024, maps 2048)")
       ->check(CLI::Range(1, 16384));
+  command->add_option("--pcf", o->pcf, "Kernel of --shadow pcf: 1, 3x3, 5x5, or disk:N for N lookups on a disk")
+      ->capture_default_str();
+  command
+      ->add_option("--cascades", o->cascades, "Maps a sun; 0: as many as its texels need to be no larger than pixels")
+      ->capture_default_str()
+      ->check(CLI::Range(0, eevee::cascade_count_max));
+  command
+      ->add_option("--cube-pass", o->cube_pass,
+                   "How the layers of a lamp are drawn: six (a pass each), geometry or layered (one pass), best")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"best", "six", "geometry", "layered"}));
+  command->add_option("--casters", o->casters, "Sides of one-sided materials that throw shadows: all, front, back")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"all", "front", "back"}));
+  command->add_option("--shadow-memory", o->shadow_memory, "MiB that shadow layers may take; sizes are lowered to fit")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1 << 20));
   command->add_option("--aov", o->aov, "Further layers to write (not built yet)");
   command->add_option("--view", o->view, "View transform of a PNG: standard, raw")
       ->capture_default_str()

@@ -3,6 +3,7 @@
 
 #include "gpu_resource.hh"
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <span>
@@ -21,6 +22,8 @@ struct BatchDesc {
   std::span<const glm::vec3> normals;
   /** Three a triangle, each below positions.size(). */
   std::span<const std::uint32_t> indices;
+  /** As many as positions, or none: then no shader may read them. */
+  std::span<const glm::vec2> uvs{};
 };
 
 /** Where a batch stands in its device's buffers: what an indexed draw needs. */

@@ -110,6 +110,9 @@ std::string CommandList::serialize(const Device &device) const
         text += fmt::format("begin {} -> {} color {}/{} depth {}/{}\n", pass.name,
                             name(ResourceKind::Framebuffer, command.id), to_string(a.color_load),
                             to_string(a.color_store), to_string(a.depth_load), to_string(a.depth_store));
+        if (a.viewport_px != glm::ivec2(0)) {
+          text.insert(text.size() - 1, fmt::format(" viewport {}x{}", a.viewport_px.x, a.viewport_px.y));
+        }
         break;
       }
       case CommandKind::EndPass: text += "end\n"; break;

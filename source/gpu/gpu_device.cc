@@ -126,6 +126,11 @@ Framebuffer Device::create_framebuffer(const FramebufferDesc &desc)
     if (attachment.layer < all_layers || attachment.layer >= texture.layer_count()) {
       throw Error("framebuffer '{}': texture '{}' has no layer {}", desc.name, texture.name, attachment.layer);
     }
+    if (attachment.layer_count < 1 || attachment.layer + attachment.layer_count > texture.layer_count() ||
+        (attachment.layer == all_layers && attachment.layer_count > 1)) {
+      throw Error("framebuffer '{}': texture '{}' has no {} layers from {} on", desc.name, texture.name,
+                  attachment.layer_count, attachment.layer);
+    }
     if (attachment.mip_level < 0 || attachment.mip_level >= texture.mip_levels) {
       throw Error("framebuffer '{}': texture '{}' has no mip level {}", desc.name, texture.name, attachment.mip_level);
     }
@@ -159,6 +164,8 @@ Batch Device::create_batch(const BatchDesc &desc)
   }
   GNOMON_ASSERT(desc.normals.empty() || desc.normals.size() == desc.positions.size(),
                 "batch '{}': {} normals, {} positions", desc.name, desc.normals.size(), desc.positions.size());
+  GNOMON_ASSERT(desc.uvs.empty() || desc.uvs.size() == desc.positions.size(), "batch '{}': {} uvs, {} positions",
+                desc.name, desc.uvs.size(), desc.positions.size());
   GNOMON_ASSERT(std::ranges::all_of(desc.indices, [&](auto index) { return index < desc.positions.size(); }),
                 "batch '{}': an index reaches past its {} vertices", desc.name, desc.positions.size());
   BatchRange range;
@@ -177,7 +184,8 @@ Batch Device::create_batch(const BatchDesc &desc)
       throw;
     }
   });
-  counters_.upload_bytes += desc.positions.size_bytes() + desc.normals.size_bytes() + desc.indices.size_bytes();
+  counters_.upload_bytes +=
+      desc.positions.size_bytes() + desc.normals.size_bytes() + desc.indices.size_bytes() + desc.uvs.size_bytes();
   return {std::move(resource), range};
 }
 
@@ -232,6 +240,13 @@ void Device::upload(const Texture &texture, int layer, std::span<const std::byte
                 "texture '{}': {} bytes to layer {}", desc.name, texels.size(), layer);
   counters_.upload_bytes += texels.size();
   texture_upload(texture, layer, texels);
+}
+
+void Device::generate_mipmaps(const Texture &texture)
+{
+  GNOMON_ASSERT(texture && !is_depth(texture.desc().format), "texture '{}' of format {}", texture.desc().name,
+                to_string(texture.desc().format));
+  mipmaps_generate(texture);
 }
 
 std::vector<std::byte> Device::read(const Texture &texture, int layer)

@@ -24,6 +24,8 @@ struct Limits {
   std::size_t storage_block_bytes_max = std::size_t(1) << 27U;
   int color_attachment_max = 8;
   std::uint32_t uniform_offset_alignment = 256;
+  /** Vertex shaders may write `gl_Layer` (GL_ARB_shader_viewport_layer_array). */
+  bool has_vertex_layer = true;
 };
 
 /** What a device has been asked for since it was made. */
@@ -85,6 +87,8 @@ class Device {
   }
   /** \a texels: one layer of level 0, rows from the bottom, tightly packed. */
   void upload(const Texture &texture, int layer, std::span<const std::byte> texels);
+  /** Fill the levels above 0 from it, each texel the mean of those below it: of light, where the format is encoded. */
+  void generate_mipmaps(const Texture &texture);
 
   /** Do the work of \a list. In debug builds, \throws Error where the driver reports one. */
   void submit(const CommandList &list);
@@ -143,6 +147,7 @@ class Device {
   virtual void resource_destroy(ResourceKind kind, ResourceId id) = 0;
   virtual void buffer_update(ResourceId id, std::size_t offset_bytes, std::span<const std::byte> bytes) = 0;
   virtual void texture_upload(const Texture &texture, int layer, std::span<const std::byte> texels) = 0;
+  virtual void mipmaps_generate(const Texture &texture) = 0;
   virtual void texture_read(const Texture &texture, int layer, std::span<std::byte> texels) = 0;
   virtual void list_submit(const CommandList &list) = 0;
 

@@ -19,6 +19,8 @@ struct Attachment {
   /** One slice, or all_layers. */
   int layer = 0;
   int mip_level = 0;
+  /** More than 1: this many from `layer` on, and `gl_Layer` 0 is `layer`; passes clear these and no others. */
+  int layer_count = 1;
 };
 
 struct FramebufferDesc {
@@ -62,6 +64,8 @@ struct PassActions {
   StoreAction depth_store = StoreAction::Store;
   /** Reversed depth: 0 is far. */
   float clear_depth = 0.0F;
+  /** Draw into the lower left corner of this size; clears and invalidations are of the whole. 0: all of it. */
+  glm::ivec2 viewport_px{0};
 };
 
 }  // namespace gnomon::gpu

@@ -15,6 +15,7 @@ int texel_size_bytes(Format format)
   switch (format) {
     case Format::R16F: return 2;
     case Format::RGBA8:
+    case Format::SRGB8A8:
     case Format::R32F:
     case Format::Depth32F: return 4;
     case Format::RGBA16F: return 8;
@@ -27,6 +28,7 @@ std::string_view to_string(Format format)
 {
   switch (format) {
     case Format::RGBA8: return "RGBA8";
+    case Format::SRGB8A8: return "SRGB8A8";
     case Format::RGBA16F: return "RGBA16F";
     case Format::RGBA32F: return "RGBA32F";
     case Format::R16F: return "R16F";

@@ -4,6 +4,7 @@
 #include "gpu_resource.hh"
 
 #include <array>
+#include <optional>
 #include <string>
 
 namespace gnomon::gpu {
@@ -12,6 +13,8 @@ namespace gnomon::gpu {
 enum class Format : std::uint8_t {
   /** Display-referred colour, [0, 1]. */
   RGBA8,
+  /** Colour encoded as sRGB, which a lookup decodes before it filters, and linear alpha. */
+  SRGB8A8,
   /** Scene-linear radiance where half floats are enough: largest value 65504. */
   RGBA16F,
   RGBA32F,
@@ -64,12 +67,18 @@ class Texture : public Resource {
 };
 
 enum class Filter : std::uint8_t { Nearest, Linear };
-enum class Wrap : std::uint8_t { ClampToEdge, Repeat };
+enum class Wrap : std::uint8_t { ClampToEdge, Repeat, MirroredRepeat };
+/** Between the levels of a mip chain; None: level 0 only. */
+enum class MipFilter : std::uint8_t { None, Nearest, Linear };
 
 struct SamplerDesc {
   std::string name;
   Filter filter = Filter::Nearest;
-  Wrap wrap = Wrap::ClampToEdge;
+  /** Where texels are smaller than pixels; absent: as `filter`. */
+  std::optional<Filter> minified{};
+  MipFilter mip = MipFilter::None;
+  Wrap wrap_u = Wrap::ClampToEdge;
+  Wrap wrap_v = Wrap::ClampToEdge;
   /**
    * For `sampler…Shadow`: the lookup gives 1 where the reference is nearer than or as near as the stored depth
    * (reversed: greater or equal), and with Filter::Linear the blend of four such answers.

@@ -114,6 +114,8 @@ struct Mesh {
   std::uint32_t material = 0;
   /** Object space, never empty. */
   Bounds bounds;
+  /** For who changes the rest after a sync: another number, so that engines take the mesh anew. */
+  std::uint64_t revision = 0;
 };
 
 /** A mesh placed in the world. Several objects may share a mesh. */
@@ -150,6 +152,8 @@ struct LampShadow {
   /** Texels along an edge of the octahedral layer of exponential shadows, 1 to 16384. */
   std::optional<int> esm_size;
   std::optional<EsmFormat> esm_format;
+
+  bool operator==(const LampShadow &) const = default;
 };
 
 /**
@@ -188,6 +192,8 @@ struct Lamp {
   float area_size_y = 1.0F;
   /** Point, spot and sun. */
   LampShadow shadow;
+
+  bool operator==(const Lamp &) const = default;
 };
 
 enum class CameraKind { Perspective, Orthographic };

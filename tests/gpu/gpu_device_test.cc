@@ -177,10 +177,11 @@ TEST(Counters, HoldWhatWasAskedFor)
   const Buffer buffer = device->create_buffer({.name = "b", .size_bytes = 64});
   std::vector<glm::vec3> positions(4);
   const std::vector<std::uint32_t> indices = {0, 1, 2, 2, 3, 0};
-  const Batch quad = device->create_batch({"quad", positions, positions, indices});
+  const std::vector<glm::vec2> uvs(4);
+  const Batch quad = device->create_batch({"quad", positions, positions, indices, uvs});
   EXPECT_EQ(device->counters().textures_made, 1U);
   EXPECT_EQ(device->counters().shaders_made, 1U);
-  std::uint64_t bytes = 4 * 12 + 4 * 12 + 6 * 4;
+  std::uint64_t bytes = 4 * 12 + 4 * 12 + 6 * 4 + 4 * 8;
   EXPECT_EQ(device->counters().upload_bytes, bytes);
   device->update(buffer, glm::vec4(0));
   device->upload(texture, 0, std::vector<std::byte>(16));
@@ -238,6 +239,8 @@ TEST(DeviceDeathTest, BrokenContractsAreAssertionsWithValues)
   const std::vector<glm::vec3> positions(3);
   const std::vector<std::uint32_t> indices = {0, 1, 3};
   EXPECT_DEATH(static_cast<void>(device->create_batch({"mesh", positions, {}, indices})), "mesh.*3 vertices");
+  const std::vector<glm::vec2> uvs(2);
+  EXPECT_DEATH(static_cast<void>(device->create_batch({"mesh", positions, {}, {}, uvs})), "mesh.*2 uvs, 3 positions");
   EXPECT_DEATH(static_cast<void>(device->create_batch({"mesh", positions, std::span(positions).first(2), {}})),
                "mesh.*2 normals, 3 positions");
   const Buffer moved = std::move(buffer);
@@ -266,6 +269,7 @@ TEST(TextureDesc, SizeIsOfAllLevelsAndLayers)
 TEST(Format, TexelsAreAsLargeAsTheirChannels)
 {
   EXPECT_EQ(texel_size_bytes(Format::RGBA8), 4);
+  EXPECT_EQ(texel_size_bytes(Format::SRGB8A8), 4);
   EXPECT_EQ(texel_size_bytes(Format::RGBA16F), 8);
   EXPECT_EQ(texel_size_bytes(Format::RGBA32F), 16);
   EXPECT_EQ(texel_size_bytes(Format::R16F), 2);

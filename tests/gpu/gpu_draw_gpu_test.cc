@@ -413,6 +413,43 @@ void main()
   EXPECT_EQ(drawn(), glm::vec4(0, 0, 0, 1));
 }
 
+TEST_F(DrawGpu, UvsReachTheShaderWhereverTheirBatchStandsInThePool)
+{
+  const Shader shader = make_shader(*device, "uv", R"(
+layout(location = ATTRIBUTE_POSITION) in vec3 position;
+layout(location = ATTRIBUTE_UV) in vec2 uv;
+layout(location = 0) flat out vec2 color;
+void main()
+{
+  gl_Position = vec4(position, 1);
+  color = uv;
+})",
+                                    R"(
+layout(location = 0) flat in vec2 color;
+layout(location = 0) out vec4 result;
+void main()
+{
+  result = vec4(color, 0, 1);
+})");
+  // Batches without any in between, and enough of both that the pool grows several times.
+  std::vector<Batch> batches;
+  std::vector<Batch> others;
+  const std::array<std::uint32_t, 3> indices = {0, 1, 2};
+  for (int i = 0; i < 40; i++) {
+    others.push_back(test::full_triangle(*device, 0.5F));
+    const std::array<glm::vec3, 3> positions = {glm::vec3(-1, -1, 0), glm::vec3(3, -1, 0), glm::vec3(-1, 3, 0)};
+    const std::vector<glm::vec2> uvs(3, glm::vec2(float(i), 0.5F));
+    batches.push_back(device->create_batch({"uv", positions, {}, indices, uvs}));
+  }
+  for (std::size_t i = 0; i < batches.size(); i++) {
+    CommandList list;
+    begin(list, shader);
+    append_draw(list, batches[i]);
+    list.end_pass();
+    EXPECT_EQ(submitted(list)[at(1, 1)], glm::vec4(float(i), 0.5F, 0, 1));
+  }
+}
+
 TEST_F(DrawGpu, EmptyBatchAndEmptyListDrawNothing)
 {
   const Shader shader = make_shader(*device, "instance", test::CLIP_SPACE_VERT, INSTANCE_FRAG);

@@ -135,7 +135,8 @@ inline std::vector<glm::vec4> decoded_texels(gpu::Device &device, const gpu::Tex
       return value;
     };
     switch (texture.desc().format) {
-      case gpu::Format::RGBA8: values.push_back(glm::unpackUnorm4x8(as(std::uint32_t()))); break;
+      case gpu::Format::RGBA8:
+      case gpu::Format::SRGB8A8: values.push_back(glm::unpackUnorm4x8(as(std::uint32_t()))); break;
       case gpu::Format::RGBA16F: values.push_back(glm::unpackHalf4x16(as(std::uint64_t()))); break;
       case gpu::Format::RGBA32F: values.push_back(as(glm::vec4())); break;
       case gpu::Format::R16F: values.emplace_back(glm::unpackHalf1x16(as(std::uint16_t())), 0, 0, 0); break;

@@ -55,8 +55,8 @@ class TextureGpu : public test::GpuDeviceTest {
 TEST_F(TextureGpu, UploadComesBackAsItWas)
 {
   std::mt19937 random(5);
-  for (const Format format :
-       {Format::RGBA8, Format::RGBA16F, Format::RGBA32F, Format::R16F, Format::R32F, Format::Depth32F}) {
+  for (const Format format : {Format::RGBA8, Format::SRGB8A8, Format::RGBA16F, Format::RGBA32F, Format::R16F,
+                              Format::R32F, Format::Depth32F}) {
     for (const TextureKind kind : {TextureKind::Flat, TextureKind::Array, TextureKind::Cube, TextureKind::CubeArray}) {
       SCOPED_TRACE(fmt::format("{} kind {}", to_string(format), int(kind)));
       const bool is_cube = kind == TextureKind::Cube || kind == TextureKind::CubeArray;
@@ -79,7 +79,8 @@ TEST_F(TextureGpu, UploadComesBackAsItWas)
         std::uniform_real_distribution<float> uniform(0, 1);
         for (std::size_t i = 0; i < texel_count * std::size_t(gpu::texel_size_bytes(format)); i++) {
           switch (format) {
-            case Format::RGBA8: append(std::byte(random())); break;
+            case Format::RGBA8:
+            case Format::SRGB8A8: append(std::byte(random())); break;
             case Format::RGBA16F:
             case Format::R16F:
               append(glm::packHalf1x16(uniform(random) * 100));
@@ -129,13 +130,99 @@ TEST_F(TextureGpu, FilterIsTheNearestOrTheBlend)
   }
 }
 
+/** sRGB, IEC 61966-2-1. */
+float srgb_decoded(float encoded)
+{
+  return encoded <= 0.04045F ? encoded / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
+}
+
+TEST_F(TextureGpu, SrgbIsDecodedBeforeItIsFilteredAndItsAlphaIsLinear)
+{
+  const Texture texture = device->create_texture({.name = "srgb", .format = Format::SRGB8A8, .width = 2, .height = 1});
+  upload<std::uint8_t>(texture, 0, {10, 100, 200, 51, 250, 100, 0, 255});
+  const Sampler linear = device->create_sampler({.name = "linear", .filter = Filter::Linear});
+  const auto values =
+      evaluated("sampler2D", "texture(picture, v.xy)", {{0.25F, 0.5F, 0, 0}, {0.5F, 0.5F, 0, 0}}, texture, linear);
+  // GL allows a decoded value an error of half a step of eight bits.
+  const float tolerance = 0.5F / 255;
+  EXPECT_NEAR(values[0].r, srgb_decoded(10 / 255.0F), tolerance);
+  EXPECT_NEAR(values[0].g, srgb_decoded(100 / 255.0F), tolerance);
+  EXPECT_NEAR(values[0].b, srgb_decoded(200 / 255.0F), tolerance);
+  EXPECT_NEAR(values[0].a, 0.2F, tolerance);
+  EXPECT_NEAR(values[1].r, 0.5F * (srgb_decoded(10 / 255.0F) + srgb_decoded(250 / 255.0F)), tolerance);
+  EXPECT_NEAR(values[1].a, 0.6F, tolerance);
+}
+
+TEST_F(TextureGpu, MipmapsAreMeansOfLight)
+{
+  const Texture texture =
+      device->create_texture({.name = "checks", .format = Format::SRGB8A8, .width = 4, .height = 4, .mip_levels = 3});
+  std::vector<std::uint8_t> texels;
+  for (int i = 0; i < 16; i++) {
+    const std::uint8_t value = (i + i / 4) % 2 == 0 ? 255 : 0;
+    texels.insert(texels.end(), {value, value, value, value});
+  }
+  upload(texture, 0, texels);
+  device->generate_mipmaps(texture);
+  const Sampler sampler = device->create_sampler({.name = "mip", .mip = MipFilter::Nearest});
+  const auto values = evaluated("sampler2D", "textureLod(picture, v.xy, v.z)",
+                                {{0.25F, 0.25F, 1, 0}, {0.75F, 0.25F, 1, 0}, {0.5F, 0.5F, 2, 0}}, texture, sampler);
+  for (const glm::vec4 &value : values) {
+    // Half of the light, which encoded is 188 of 255; half of the code would be a fifth of the light.
+    EXPECT_NEAR(value.r, 0.5F, 0.005F);
+    EXPECT_NEAR(value.a, 0.5F, 0.005F);
+  }
+}
+
+TEST_F(TextureGpu, MipFilterChoosesAndBlendsLevels)
+{
+  const Texture texture =
+      device->create_texture({.name = "step", .format = Format::R32F, .width = 2, .height = 1, .mip_levels = 2});
+  upload<float>(texture, 0, {0, 1});
+  device->generate_mipmaps(texture);
+  const std::vector<glm::vec4> inputs = {{0.25F, 0.5F, 0.75F, 0}};
+  const auto value = [&](const SamplerDesc &desc) {
+    const Sampler sampler = device->create_sampler(desc);
+    return evaluated("sampler2D", "textureLod(picture, v.xy, v.z)", inputs, texture, sampler)[0].r;
+  };
+  EXPECT_EQ(value({.name = "none"}), 0.0F);
+  EXPECT_EQ(value({.name = "nearest", .mip = MipFilter::Nearest}), 0.5F);
+  EXPECT_NEAR(value({.name = "linear", .mip = MipFilter::Linear}), 0.375F, 1.0F / 256);
+}
+
+TEST_F(TextureGpu, MinifiedFilterIsItsOwn)
+{
+  const Texture texture = device->create_texture({.name = "ramp", .format = Format::R32F, .width = 4, .height = 1});
+  upload<float>(texture, 0, {0, 1, 2, 3});
+  const Sampler sampler = device->create_sampler({.name = "s", .minified = Filter::Linear});
+  // The same place seen larger, and smaller, than its texels.
+  const auto values = evaluated("sampler2D", "textureGrad(picture, v.xy, vec2(v.z, 0), vec2(0, v.z))",
+                                {{0.45F, 0.5F, 0.01F, 0}, {0.45F, 0.5F, 4, 0}}, texture, sampler);
+  EXPECT_EQ(values[0].r, 1);
+  EXPECT_NEAR(values[1].r, 1.3F, 1.0F / 256);
+}
+
+TEST_F(TextureGpu, MirroredRepeatTurnsEverySecondTimeOneAxisAlone)
+{
+  const Texture texture = device->create_texture({.name = "ramp", .format = Format::R32F, .width = 4, .height = 2});
+  upload<float>(texture, 0, {0, 1, 2, 3, 10, 11, 12, 13});
+  const Sampler sampler = device->create_sampler({.name = "mirror", .wrap_u = Wrap::MirroredRepeat});
+  const auto values =
+      evaluated("sampler2D", "texture(picture, v.xy)",
+                {{-0.1F, 0.2F, 0, 0}, {1.1F, 0.2F, 0, 0}, {2.1F, 0.2F, 0, 0}, {0.1F, 1.2F, 0, 0}}, texture, sampler);
+  EXPECT_EQ(values[0].r, 0);
+  EXPECT_EQ(values[1].r, 3);
+  EXPECT_EQ(values[2].r, 0);
+  EXPECT_EQ(values[3].r, 10);
+}
+
 TEST_F(TextureGpu, WrapClampsOrRepeats)
 {
   const Texture texture = device->create_texture({.name = "ramp", .format = Format::R32F, .width = 4, .height = 1});
   upload<float>(texture, 0, {0, 1, 2, 3});
   const std::vector<glm::vec4> inputs = {{-0.4F, 0.5F, 0, 0}, {1.4F, 0.5F, 0, 0}};
   const Sampler clamp = device->create_sampler({.name = "clamp"});
-  const Sampler repeat = device->create_sampler({.name = "repeat", .wrap = Wrap::Repeat});
+  const Sampler repeat = device->create_sampler({.name = "repeat", .wrap_u = Wrap::Repeat});
   const auto clamped = evaluated("sampler2D", "texture(picture, v.xy)", inputs, texture, clamp);
   EXPECT_EQ(clamped[0].r, 0);
   EXPECT_EQ(clamped[1].r, 3);

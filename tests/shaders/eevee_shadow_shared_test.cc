@@ -6,22 +6,43 @@
 namespace gnomon::shared {
 namespace {
 
-TEST(ShadowLift, GrowsWithTexelAndRounding)
+TEST(ShadowLift, GrowsWithTexelKernelAndRounding)
 {
-  EXPECT_GT(shadow_lift(0.1F, 0.0F, 0.0F), 0.0F);
-  EXPECT_GT(shadow_lift(0.1F, 0.1F, 0.0F), shadow_lift(0.1F, 0.0F, 0.0F));
-  EXPECT_LT(shadow_lift(0.1F, 0.0F, 0.0F), 0.1F) << "less than a texel: no gap at contact";
+  EXPECT_GT(shadow_lift(0.1F, 1.0F, 0.0F, 0.0F), 0.0F);
+  EXPECT_GT(shadow_lift(0.1F, 1.0F, 0.1F, 0.0F), shadow_lift(0.1F, 1.0F, 0.0F, 0.0F));
+  EXPECT_GT(shadow_lift(0.1F, 3.0F, 0.0F, 0.0F), shadow_lift(0.1F, 1.0F, 0.0F, 0.0F));
+  EXPECT_LT(shadow_lift(0.1F, 3.0F, 0.0F, 0.0F), 0.1F) << "less than a texel: no gap at contact";
 }
 
-TEST(GatheredVisibility, IsTheBilinearShareOfLitTexels)
+TEST(TexelsLit, AreThoseThatAreNotNearer)
 {
   const vec4 receiver(0.5F);
-  EXPECT_EQ(gathered_visibility(vec4(0.4F), receiver, {0.3F, 0.6F}), 1.0F);
-  EXPECT_EQ(gathered_visibility(vec4(0.6F), receiver, {0.3F, 0.6F}), 0.0F);
+  EXPECT_EQ(texels_lit(vec4(0.4F), receiver), vec4(1.0F));
+  EXPECT_EQ(texels_lit(vec4(0.6F), receiver), vec4(0.0F));
   // Equally near is lit: reversed depth, greater or equal.
-  EXPECT_EQ(gathered_visibility(receiver, receiver, {0.3F, 0.6F}), 1.0F);
-  // Only the right upper texel (second of the gather) lets light through: 0.3 · 0.6.
-  EXPECT_FLOAT_EQ(gathered_visibility({0.6F, 0.4F, 0.6F, 0.6F}, receiver, {0.3F, 0.6F}), 0.18F);
+  EXPECT_EQ(texels_lit(receiver, receiver), vec4(1.0F));
+}
+
+TEST(WeightedTexels, TakeThoseOfTheGathersOrder)
+{
+  // Only the right upper texel (second of the gather) lets light through: 0.3 of the columns, 0.6 of the rows.
+  EXPECT_FLOAT_EQ(weighted_texels({0, 1, 0, 0}, {0.7F, 0.3F}, {0.4F, 0.6F}), 0.18F);
+}
+
+TEST(VogelDisk, CoversTheDiskEvenly)
+{
+  // Mean of the squared radius over a disk of radius 1 is a half; the mean position its middle.
+  vec2 mean(0.0F);
+  float mean_square = 0.0F;
+  constexpr int count = 32;
+  for (int i = 0; i < count; i++) {
+    const vec2 tap = vogel_disk(i, count);
+    EXPECT_LT(dot(tap, tap), 1.0F);
+    mean += tap / float(count);
+    mean_square += dot(tap, tap) / float(count);
+  }
+  EXPECT_NEAR(mean_square, 0.5F, 1e-5F);
+  EXPECT_LT(dot(mean, mean), 1e-3F);
 }
 
 TEST(CubeFace, LooksAlongItsLargestComponent)

@@ -47,9 +47,12 @@ inline constexpr gnomon::test::CompiledFunction<float> compiled_functions[] = {
 
   FUNCTION(cube_face, vec4(cube_face(vec3(a)), 0, 0, 0))
   FUNCTION(cube_face_project, vec4(cube_face_project(int(a.w), vec3(a)), 0))
-  FUNCTION(shadow_lift, vec4(shadow_lift(a.x, a.y, a.z), 0, 0, 0))
+  FUNCTION(cube_uv_scale, vec4(cube_uv_scale(a.x), 0, 0, 0))
+  FUNCTION(shadow_lift, vec4(shadow_lift(a.x, a.y, a.z, a.w), 0, 0, 0))
   FUNCTION(plane_depths, plane_depths(a.x, vec2(a.y, a.z), vec2(b)))
-  FUNCTION(gathered_visibility, vec4(gathered_visibility(a, b, vec2(c)), 0, 0, 0))
+  FUNCTION(texels_lit, texels_lit(a, b))
+  FUNCTION(weighted_texels, vec4(weighted_texels(a, vec2(b), vec2(b.z, b.w)), 0, 0, 0))
+  FUNCTION(vogel_disk, vec4(vogel_disk(int(a.x), int(a.y)), 0, 0))
   FUNCTION(slope_quotient, vec4(slope_quotient(a.x, a.y), 0, 0, 0))
 
   FUNCTION(srgb_encoded, vec4(srgb_encoded(a.x), 0, 0, 0))

@@ -581,51 +581,81 @@ std::vector<Sweep> make_sweeps()
                          }),
                     [](const Exact &in) { return dvec4(cube_coordinates(int(in.a.w), dvec3(in.a)), 0); },
                     [](const Exact &) { return dvec4(1, 1, 1, 0); }, 0, 0, 0});
+  sweeps.push_back({"cube_uv_scale",
+                    many(2000,
+                         [](Random &random) {
+                           return In{.a = {std::floor(random.log_uniform(1, 16384)), 0, 0, 0}};
+                         }),
+                    // Three texels of the border on each side, of small faces an eighth.
+                    [](const Exact &in) { return one(in.a.x < 24.0 ? 0.75 : (in.a.x - 6.0) / in.a.x); },
+                    [](const Exact &) { return one(1.0); }, 0.5, 1, 2});
   sweeps.push_back({"shadow_lift",
                     many(5000,
                          [](Random &random) {
-                           return In{.a = {random.log_uniform(1e-6, 1e3), random.log_uniform(1e-9, 1.0),
-                                           random.log_uniform(1e-3, 1e6), 0}};
+                           return In{.a = {random.log_uniform(1e-6, 1e3), random.uniform(1, 3),
+                                           random.log_uniform(1e-9, 1.0), random.log_uniform(1e-3, 1e6)}};
                          }),
-                    [](const Exact &in) { return one(in.a.x / 10.0 + in.a.y + in.a.z / 1e6); },
-                    [](const Exact &in) { return one(in.a.x / 10.0 + in.a.y + in.a.z / 1e6); }, 0.5, 2, 3});
-  sweeps.push_back({"plane_depths",
+                    [](const Exact &in) { return one(in.a.x * in.a.y / 10.0 + in.a.z + in.a.w / 1e6); },
+                    [](const Exact &in) { return one(in.a.x * in.a.y / 10.0 + in.a.z + in.a.w / 1e6); }, 0.5, 2, 3});
+  sweeps.push_back(
+      {"plane_depths",
+       many(10000,
+            [](Random &random) {
+              return In{{random.uniform(0, 1), random.uniform(-1, 1), random.uniform(-1, 1), 0},
+                        {random.uniform(-4, 3), random.uniform(-4, 3), 0, 0}};
+            }),
+       [](const Exact &in) {
+         // The plane's depth at a texel's centre, from the lookup's.
+         const auto at = [&](double x, double y) { return in.a.x + in.a.y * (x + in.b.x) + in.a.z * (y + in.b.y); };
+         return dvec4(at(0, 1), at(1, 1), at(1, 0), at(0, 0));
+       },
+       [](const Exact &in) { return dvec4(in.a.x + 5.0 * std::abs(in.a.y) + 5.0 * std::abs(in.a.z)); }, 1e-6, 2, 2});
+  sweeps.push_back({"texels_lit",
                     many(10000,
                          [](Random &random) {
-                           return In{{random.uniform(0, 1), random.uniform(-1, 1), random.uniform(-1, 1), 0},
-                                     {random.uniform(0, 0.9999), random.uniform(0, 0.9999), 0, 0}};
-                         }),
-                    [](const Exact &in) {
-                      // The plane's depth at a texel's centre, from the lookup's.
-                      const auto at = [&](double x, double y) {
-                        return in.a.x + in.a.y * (x - in.b.x) + in.a.z * (y - in.b.y);
-                      };
-                      return dvec4(at(0, 1), at(1, 1), at(1, 0), at(0, 0));
-                    },
-                    [](const Exact &in) { return dvec4(in.a.x + std::abs(in.a.y) + std::abs(in.a.z)); }, 1e-6, 2, 2});
-  sweeps.push_back({"gathered_visibility",
-                    many(10000,
-                         [](Random &random) {
-                           // Few levels, so that many are equal.
-                           const std::array<float, 3> levels = {0.25F, 0.5F, 0.75F};
+                           // Few levels, so that many are equal; a receiver may be behind the far end.
+                           const std::array<float, 4> levels = {0.0F, 0.25F, 0.5F, 0.75F};
                            In in;
                            for (int i = 0; i < 4; i++) {
                              in.a[i] = random.one_of(levels);
-                             in.b[i] = random.one_of(levels);
+                             in.b[i] = random.one_of(levels) - 0.25F;
                            }
-                           in.c = {random.uniform(0, 1), random.uniform(0, 1), 0, 0};
                            return in;
                          }),
                     [](const Exact &in) {
-                      const dvec2 f(in.c);
-                      const dvec4 weights((1 - f.x) * f.y, f.x * f.y, f.x * (1 - f.y), (1 - f.x) * (1 - f.y));
-                      double lit = 0.0;
+                      dvec4 lit(0.0);
                       for (int i = 0; i < 4; i++) {
-                        lit += in.a[i] <= in.b[i] ? weights[i] : 0.0;
+                        lit[i] = in.a[i] <= std::max(in.b[i], 0.0) ? 1.0 : 0.0;
                       }
-                      return one(lit);
+                      return lit;
                     },
-                    [](const Exact &) { return one(1.0); }, 1e-6, 2, 2});
+                    [](const Exact &) { return dvec4(1.0); }, 0, 0, 0});
+  sweeps.push_back({"weighted_texels",
+                    many(10000,
+                         [](Random &random) {
+                           const auto unit = [&] { return random.uniform(0, 1); };
+                           return In{{unit(), unit(), unit(), unit()}, {unit(), unit(), unit(), unit()}};
+                         }),
+                    [](const Exact &in) {
+                      // textureGather's order: (0, 1), (1, 1), (1, 0), (0, 0); columns in xy, rows in zw.
+                      return one(in.a.x * in.b.x * in.b.w + in.a.y * in.b.y * in.b.w + in.a.z * in.b.y * in.b.z +
+                                 in.a.w * in.b.x * in.b.z);
+                    },
+                    [](const Exact &) { return one(4.0); }, 1e-6, 2, 2});
+  sweeps.push_back({"vogel_disk",
+                    many(3000,
+                         [](Random &random) {
+                           const float count = std::floor(random.uniform(1, 64.9));
+                           return In{.a = {std::floor(random.uniform(0, count - 0.01)), count, 0, 0}};
+                         }),
+                    [](const Exact &in) {
+                      // The golden angle: 2 pi (1 - 1 / golden ratio).
+                      const double angle = in.a.x * std::numbers::pi * (3.0 - std::sqrt(5.0));
+                      const double radius = std::sqrt((in.a.x + 0.5) / in.a.y);
+                      return dvec4(radius * std::cos(angle), radius * std::sin(angle), 0, 0);
+                    },
+                    // The angle's constant has seven digits; drivers' sines are good to 1e-5 or so.
+                    [](const Exact &in) { return dvec4(1, 1, 0, 0) * (10.0 + in.a.x); }, 1e-4, 100, 400});
   {
     std::vector<In> arguments = many(5000, [](Random &random) {
       const float sign = random.one_of(std::array{-1.0F, 1.0F});

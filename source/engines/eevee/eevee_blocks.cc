@@ -3,6 +3,7 @@
 
 #include "draw_object_shared.h"
 #include "draw_view_shared.h"
+#include "eevee_esm_shared.h"
 #include "eevee_light_shared.h"
 #include "eevee_material_shared.h"
 #include "eevee_shadow_shared.h"
@@ -62,27 +63,47 @@ constexpr auto light_fields = std::to_array<Field>({
 constexpr std::size_t maps_offset = offsetof(ShadowBlock, maps);
 constexpr auto shadow_fields = std::to_array<Field>({
     {"shadow.cubes[0].near", offsetof(ShadowCubeData, near)},
+    {"shadow.cubes[0].far", offsetof(ShadowCubeData, far)},
     {"shadow.cubes[0].texel_size", offsetof(ShadowCubeData, texel_size)},
+    {"shadow.cubes[0].bias", offsetof(ShadowCubeData, bias)},
     {"shadow.cubes[0].layer", offsetof(ShadowCubeData, layer)},
-    {"shadow.cubes[0]._pad0", offsetof(ShadowCubeData, _pad0)},
+    {"shadow.cubes[0].face_mask", offsetof(ShadowCubeData, face_mask)},
+    {"shadow.cubes[0].filter_kind", offsetof(ShadowCubeData, filter_kind)},
+    {"shadow.cubes[0].size_px", offsetof(ShadowCubeData, size_px)},
     {"shadow.maps[0].texco_from_world", maps_offset + offsetof(ShadowMapData, texco_from_world)},
     {"shadow.maps[0].texel_size", maps_offset + offsetof(ShadowMapData, texel_size)},
-    {"shadow.maps[0].layer", maps_offset + offsetof(ShadowMapData, layer)},
     {"shadow.maps[0].rounding", maps_offset + offsetof(ShadowMapData, rounding)},
-    {"shadow.maps[0]._pad0", maps_offset + offsetof(ShadowMapData, _pad0)},
+    {"shadow.maps[0].far", maps_offset + offsetof(ShadowMapData, far)},
+    {"shadow.maps[0].bias", maps_offset + offsetof(ShadowMapData, bias)},
+    {"shadow.maps[0].layer", maps_offset + offsetof(ShadowMapData, layer)},
+    {"shadow.maps[0].cascade_count", maps_offset + offsetof(ShadowMapData, cascade_count)},
+    {"shadow.maps[0].filter_kind", maps_offset + offsetof(ShadowMapData, filter_kind)},
+    {"shadow.maps[0].size_px", maps_offset + offsetof(ShadowMapData, size_px)},
 });
 
 constexpr auto shadow_render_fields = std::to_array<Field>({
     {"shadow_render.clip_from_world", offsetof(ShadowRenderBlock, clip_from_world)},
 });
 
-constexpr std::array<gpu::BlockLayout, 6> layouts = {{
+constexpr auto esm_fields = std::to_array<Field>({
+    {"esm.lamps[0].exponent", offsetof(EsmData, exponent)},
+    {"esm.lamps[0].bias", offsetof(EsmData, bias)},
+    {"esm.lamps[0].range", offsetof(EsmData, range)},
+    {"esm.lamps[0].filter_angle", offsetof(EsmData, filter_angle)},
+    {"esm.lamps[0].size", offsetof(EsmData, size)},
+    {"esm.lamps[0].layer", offsetof(EsmData, layer)},
+    {"esm.lamps[0].format", offsetof(EsmData, format)},
+    {"esm.lamps[0]._pad0", offsetof(EsmData, _pad0)},
+});
+
+constexpr std::array<gpu::BlockLayout, 7> layouts = {{
     {"view_block", sizeof(ViewData), view_fields},
     {"object_block", sizeof(ObjectData), object_fields},
     {"material_block", sizeof(MaterialData), material_fields},
     {"light_block", sizeof(LightBlock), light_fields},
     {"shadow_block", sizeof(ShadowBlock), shadow_fields},
     {"shadow_render_block", sizeof(ShadowRenderBlock), shadow_render_fields},
+    {"esm_block", sizeof(EsmBlock), esm_fields},
 }};
 
 }  // namespace

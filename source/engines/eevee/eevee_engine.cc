@@ -36,7 +36,7 @@ struct TextureList {
 
 struct PassList {
   explicit PassList(draw::ObjectBuffer &objects)
-      : shadow_pass("shadow_pass", State::WriteDepth | State::DepthNearerEqual, &objects),
+      : shadow_pass("shadow_pass", State::WriteDepth | State::DepthNearerEqual | State::DepthClamp, &objects),
         depth_pass("depth_pass", State::WriteDepth | State::DepthNearerEqual, &objects),
         depth_pass_cull("depth_pass_cull", State::WriteDepth | State::DepthNearerEqual | State::CullBack, &objects),
         pass("pass", State::WriteColor | State::DepthEqual, &objects),
@@ -73,7 +73,11 @@ struct StorageList {
   Groups depth_cull;
   Groups lit;
   Groups lit_cull;
-  draw::ShadingGroup *shadow = nullptr;
+  /** Of casters whose sides both throw shadows, and of those that CasterFaces is about. */
+  Groups shadow;
+  Groups shadow_cull;
+  /** One a mesh of the scene and winding; empty until a caster uses it. */
+  std::vector<std::array<draw::InstanceCall *, 2>> caster_calls;
   /** Of the sample being drawn; the film pass reads it by reference. */
   glm::vec4 film_columns{0.0F};
   glm::vec4 film_rows{0.0F};
@@ -147,6 +151,45 @@ const gpu::Batch &batch_of(gpu::Device &device, StorageList &stl, const scene::S
   return batch;
 }
 
+ShaderId shadow_shader(LayerPass layer_pass)
+{
+  switch (layer_pass) {
+    case LayerPass::Layered: return ShaderId::ShadowLayered;
+    case LayerPass::Geometry: return ShaderId::ShadowGeometry;
+    default: return ShaderId::Shadow;
+  }
+}
+
+draw::ShadingGroup &caster_group(gpu::Device &device, StorageList &stl, draw::Pass &pass, CasterFaces faces,
+                                 bool is_double_sided, bool is_mirrored)
+{
+  const bool is_culled = faces != CasterFaces::All && !is_double_sided;
+  Groups &groups = is_culled ? stl.shadow_cull : stl.shadow;
+  // Without culling the winding makes no difference.
+  draw::ShadingGroup *&group = is_culled && is_mirrored ? groups.mirrored : groups.straight;
+  if (!group) {
+    group = &pass.group(stl.shaders.get(device, shadow_shader(stl.shadows.layer_pass())));
+    group->bind_storage_ref("object_block", &stl.object_block);
+    group->bind_uniform_ref("shadow_render_block", stl.shadows.render_block());
+    if (is_culled) {
+      group->state_enable(faces == CasterFaces::Front ? State::CullBack : State::CullFront);
+      group->state_enable(is_mirrored ? State::FrontClockwise : State::None);
+    }
+  }
+  return *group;
+}
+
+/** What makes a caster's shadow, as plain numbers. */
+std::uint64_t caster_fingerprint(const draw::ObjectRef &object, std::uint32_t mesh, std::uint64_t revision)
+{
+  struct {
+    glm::mat4 world_from_object;
+    std::uint64_t mesh;
+    std::uint64_t revision;
+  } const key = {object.world_from_object, mesh, revision};
+  return fingerprint_of(std::as_bytes(std::span(&key, 1)));
+}
+
 void bind_lit(draw::ShadingGroup &group, StorageList &stl)
 {
   group.bind_uniform("view_block", stl.view_block);
@@ -155,10 +198,10 @@ void bind_lit(draw::ShadingGroup &group, StorageList &stl)
   group.bind_uniform("light_block", stl.light_block);
   group.bind_uniform("shadow_block", stl.shadows.block());
   if (has(stl.features, Feature::ShadowCube)) {
-    group.bind_texture("shadow_cubes", stl.shadows.cubes(), stl.shadows.sampler());
+    group.bind_texture_ref("shadow_cubes", stl.shadows.cubes_binding());
   }
   if (has(stl.features, Feature::ShadowMap)) {
-    group.bind_texture("shadow_maps", stl.shadows.maps(), stl.shadows.sampler());
+    group.bind_texture_ref("shadow_maps", stl.shadows.maps_binding());
   }
 }
 
@@ -192,8 +235,9 @@ void Engine::cache_init(draw::Viewport &viewport)
   StorageList &stl = data.stl;
   data.psl = std::make_unique<PassList>(viewport.objects());
   data.samples_drawn = 0;
-  stl.depth = stl.depth_cull = stl.lit = stl.lit_cull = {};
-  stl.shadow = nullptr;
+  stl.depth = stl.depth_cull = stl.lit = stl.lit_cull = stl.shadow = stl.shadow_cull = {};
+  stl.caster_calls.assign(scene_.meshes.size(), {});
+  stl.shaders.set_pcf(settings_.shadow.pcf);
   stl.batches.clear();
   stl.batches.resize(scene_.meshes.size());
 
@@ -267,20 +311,20 @@ void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectRef &obj
   }
 
   if (has(stl.features, Feature::ShadowCube | Feature::ShadowMap)) {
-    if (!stl.shadow) {
-      stl.shadow = &data.psl->shadow_pass.group(stl.shaders.get(device, ShaderId::Shadow));
-      stl.shadow->bind_storage_ref("object_block", &stl.object_block);
-      stl.shadow->bind_uniform_ref("shadow_render_block", stl.shadows.render_block());
-      stl.shadow->constant_ref("shadow_face", stl.shadows.render_face());
+    draw::InstanceCall *&instances = stl.caster_calls[scene_.objects[object.index].mesh][is_mirrored ? 1 : 0];
+    if (!instances) {
+      instances = &caster_group(device, stl, data.psl->shadow_pass, settings_.shadow.caster_faces,
+                                material.is_double_sided, is_mirrored)
+                       .instances(batch);
     }
-    stl.shadow->call(batch, index, object.volume);
-    stl.shadows.add_caster(scene::transformed(mesh.bounds, object.world_from_object));
+    stl.shadows.add_caster({scene::transformed(mesh.bounds, object.world_from_object), index, instances,
+                            caster_fingerprint(object, scene_.objects[object.index].mesh, mesh.revision)});
   }
 }
 
 void Engine::cache_finish(draw::Viewport &viewport)
 {
-  viewport.engine_data<Data>(*this).stl.shadows.finish(scene_);
+  viewport.engine_data<Data>(*this).stl.shadows.finish();
 }
 
 void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
@@ -301,7 +345,8 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
     list.clear();
   };
 
-  stl.shadows.update(device, view, psl->shadow_pass, list);
+  const float pixel_size = 2.0F / (view.clip_from_view()[1][1] * float(viewport.size_px().y));
+  stl.shadows.update(device, view, pixel_size, psl->shadow_pass, list);
   submit_step("shadows");
 
   list.begin_pass("depth_prepass", fbl.depth_fb, {});

@@ -20,6 +20,8 @@ enum class Feature : std::uint32_t {
   Specular = 1U << 3,
   ShadowCube = 1U << 4,
   ShadowMap = 1U << 5,
+  /** Percentage-closer filtering of them. */
+  ShadowPcf = 1U << 6,
 };
 
 constexpr Feature operator|(Feature a, Feature b)
@@ -34,6 +36,16 @@ constexpr bool has(Feature mask, Feature bit)
 {
   return (mask & bit) != Feature::None;
 }
+
+/** The texels that percentage-closer filtering reads. */
+struct PcfKernel {
+  /** Edge of a square of texels: 1, 3 or 5; 0: a disk of radius 2 instead. */
+  int width = 3;
+  /** Lookups on the disk, 1 to 64. */
+  int taps = 16;
+
+  bool operator==(const PcfKernel &) const = default;
+};
 
 /** Something a frame consists of, or was spared, and who asked for it or why nobody did. */
 struct FramePart {

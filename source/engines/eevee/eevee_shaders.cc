@@ -1,34 +1,50 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_shaders.hh"
 
+#include <fmt/format.h>
+
 #include <array>
 
 namespace gnomon::eevee {
 
 namespace {
 
-constexpr std::array<FeatureDefine, 6> feature_table = {
+constexpr std::array<FeatureDefine, 7> feature_table = {
     {{Feature::Light, "USE_LIGHT", "something shines"},
      {Feature::Punctual, "USE_PUNCTUAL", "a point or spot lamp shines"},
      {Feature::Hemi, "USE_HEMI", "a hemi lamp shines"},
      {Feature::Specular, "USE_SPECULAR", "a material reflects specularly"},
      {Feature::ShadowCube, "USE_SHADOW_CUBE", "a point lamp or a wide spot casts shadows"},
-     {Feature::ShadowMap, "USE_SHADOW_MAP", "a sun or a spot casts shadows"}}};
+     {Feature::ShadowMap, "USE_SHADOW_MAP", "a sun or a spot casts shadows"},
+     {Feature::ShadowPcf, "USE_SHADOW_PCF", "a shadow is filtered by percentage-closer lookups"}}};
 
-constexpr Feature lit_features =
-    Feature::Light | Feature::Punctual | Feature::Hemi | Feature::Specular | Feature::ShadowCube | Feature::ShadowMap;
+constexpr Feature lit_features = Feature::Light | Feature::Punctual | Feature::Hemi | Feature::Specular |
+                                 Feature::ShadowCube | Feature::ShadowMap | Feature::ShadowPcf;
 
-constexpr std::array<ShaderDeclaration, 5> declarations = {{
-    {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "eevee/eevee_depth_frag.glsl", Feature::None,
+constexpr std::array<ShaderDeclaration, 11> declarations = {{
+    {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl", Feature::None,
      "depth of what is seen, so that each pixel is lit once"},
-    {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "eevee/eevee_depth_frag.glsl", Feature::None,
-     "depth of what a lamp sees"},
-    {ShaderId::Lit, "eevee_lit", "eevee/eevee_lit_vert.glsl", "eevee/eevee_lit_frag.glsl", lit_features,
+    {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_depth_frag.glsl", Feature::None,
+     "depth of what a lamp sees, a layer a pass"},
+    {ShaderId::ShadowLayered, "eevee_shadow_layered", "eevee/eevee_shadow_layered_vert.glsl", "",
+     "eevee/eevee_depth_frag.glsl", Feature::None, "depth of what a lamp sees, all layers in one pass"},
+    {ShaderId::ShadowGeometry, "eevee_shadow_geometry", "eevee/eevee_shadow_geometry_vert.glsl",
+     "eevee/eevee_shadow_geometry_geom.glsl", "eevee/eevee_depth_frag.glsl", Feature::None,
+     "the same where vertex shaders cannot choose a layer"},
+    {ShaderId::Lit, "eevee_lit", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_lit_frag.glsl", lit_features,
      "light that surfaces send to the viewer"},
-    {ShaderId::Film, "eevee_film", "draw/draw_fullscreen_vert.glsl", "eevee/eevee_film_frag.glsl", Feature::None,
+    {ShaderId::Film, "eevee_film", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_film_frag.glsl", Feature::None,
      "sum of several samples a pixel"},
-    {ShaderId::Tonemap, "eevee_tonemap", "draw/draw_fullscreen_vert.glsl", "eevee/eevee_tonemap_frag.glsl",
+    {ShaderId::Tonemap, "eevee_tonemap", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_tonemap_frag.glsl",
      Feature::None, "radiance as a display shows it"},
+    {ShaderId::EsmDistance, "eevee_esm_distance", "draw/draw_fullscreen_vert.glsl", "",
+     "eevee/eevee_esm_distance_frag.glsl", Feature::None, "distances from a lamp on an octahedral map"},
+    {ShaderId::EsmDisk4, "eevee_esm_disk4", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_esm_disk_frag.glsl",
+     Feature::None, "exponential shadow map of four taps", "ESM_TAPS 4"},
+    {ShaderId::EsmDisk32, "eevee_esm_disk32", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_esm_disk_frag.glsl",
+     Feature::None, "exponential shadow map of 32 taps", "ESM_TAPS 32"},
+    {ShaderId::EsmSeparable, "eevee_esm_separable", "draw/draw_fullscreen_vert.glsl", "",
+     "eevee/eevee_esm_separable_frag.glsl", Feature::None, "exponential shadow map of a Gaussian in two passes"},
 }};
 
 /** Whether a scene can ask for this mask, and no smaller mask gives the same program. */
@@ -38,8 +54,9 @@ bool is_possible(Feature features)
   if (!has_light) {
     return features == Feature::None;
   }
-  // Cubes are for point lamps and wide spots.
-  return has(features, Feature::Punctual) || !has(features, Feature::ShadowCube);
+  // Cubes are for point lamps and wide spots; what is filtered is a shadow.
+  return (has(features, Feature::Punctual) || !has(features, Feature::ShadowCube)) &&
+         (has(features, Feature::ShadowCube | Feature::ShadowMap) || !has(features, Feature::ShadowPcf));
 }
 
 }  // namespace
@@ -66,18 +83,34 @@ std::vector<Feature> shader_variants(const ShaderDeclaration &declaration)
   return variants;
 }
 
-gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature features)
+gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature features, const PcfKernel &pcf)
 {
   gpu::ShaderDesc desc;
   desc.name = declaration.name;
   desc.vertex_path = declaration.vertex_path;
+  desc.geometry_path = declaration.geometry_path;
   desc.fragment_path = declaration.fragment_path;
+  if (!declaration.define.empty()) {
+    desc.defines.emplace_back(declaration.define);
+  }
   for (const FeatureDefine &define : feature_table) {
     if (has(features & declaration.features, define.feature)) {
       desc.defines.emplace_back(define.define);
     }
   }
+  if (has(features & declaration.features, Feature::ShadowPcf)) {
+    desc.defines.push_back(fmt::format("SHADOW_PCF_WIDTH {}", pcf.width));
+    desc.defines.push_back(fmt::format("SHADOW_PCF_TAPS {}", pcf.taps));
+  }
   return desc;
+}
+
+void ShaderCache::set_pcf(const PcfKernel &pcf)
+{
+  if (pcf_ != pcf) {
+    std::erase_if(shaders_, [](const auto &entry) { return has(entry.first.second, Feature::ShadowPcf); });
+    pcf_ = pcf;
+  }
 }
 
 const gpu::Shader &ShaderCache::get(gpu::Device &device, ShaderId id, Feature features)
@@ -88,7 +121,7 @@ const gpu::Shader &ShaderCache::get(gpu::Device &device, ShaderId id, Feature fe
   if (found != shaders_.end()) {
     return found->second;
   }
-  return shaders_[key] = device.create_shader(shader_desc(declaration, key.second), files_);
+  return shaders_[key] = device.create_shader(shader_desc(declaration, key.second, pcf_), files_);
 }
 
 std::vector<std::string> ShaderCache::reload(gpu::Device &device, gpu::ShaderFiles files)
@@ -97,7 +130,7 @@ std::vector<std::string> ShaderCache::reload(gpu::Device &device, gpu::ShaderFil
   std::vector<std::string> failures;
   for (auto &[key, shader] : shaders_) {
     try {
-      shader = device.create_shader(shader_desc(declarations.at(std::size_t(key.first)), key.second), files_);
+      shader = device.create_shader(shader_desc(declarations.at(std::size_t(key.first)), key.second, pcf_), files_);
     }
     catch (const gpu::Error &error) {
       failures.emplace_back(error.what());

@@ -11,18 +11,34 @@
 
 namespace gnomon::eevee {
 
-enum class ShaderId { Depth, Shadow, Lit, Film, Tonemap };
+enum class ShaderId {
+  Depth,
+  Shadow,
+  ShadowLayered,
+  ShadowGeometry,
+  Lit,
+  Film,
+  Tonemap,
+  EsmDistance,
+  EsmDisk4,
+  EsmDisk32,
+  EsmSeparable,
+};
 
 /** A program of the engine as data: what the engine, the checker and the tests read. */
 struct ShaderDeclaration {
   ShaderId id;
   std::string_view name;
   std::string_view vertex_path;
+  /** Empty: none. */
+  std::string_view geometry_path;
   std::string_view fragment_path;
   /** The features it has variants for; others make no difference to it. */
   Feature features;
   /** Why it exists. */
   std::string_view purpose;
+  /** "NAME value", defined in each variant; empty: none. */
+  std::string_view define{};
 };
 
 /** A feature as the shaders see it. */
@@ -42,12 +58,15 @@ struct FeatureDefine {
 /** The variants of \a declaration that a scene can ask for: impossible and equivalent masks are left out. */
 [[nodiscard]] std::vector<Feature> shader_variants(const ShaderDeclaration &declaration);
 
-/** One variant, ready for gpu::Device::create_shader. */
-[[nodiscard]] gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature features);
+/** One variant, ready for gpu::Device::create_shader. \a pcf: of Feature::ShadowPcf. */
+[[nodiscard]] gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature features,
+                                          const PcfKernel &pcf = {});
 
 /** Programs made when first asked for, and kept. Must go before its device. */
 class ShaderCache {
  public:
+  /** Programs of another kernel are forgotten. */
+  void set_pcf(const PcfKernel &pcf);
   /** Features that the program has no variant for are ignored. \throws gpu::Error where it does not compile. */
   const gpu::Shader &get(gpu::Device &device, ShaderId id, Feature features = Feature::None);
   /**
@@ -65,6 +84,7 @@ class ShaderCache {
  private:
   /** Those that the program was built with, until reload gives others. */
   gpu::ShaderFiles files_ = shaders::file;
+  PcfKernel pcf_;
   std::map<std::pair<ShaderId, Feature>, gpu::Shader> shaders_;
 };
 

@@ -7,6 +7,7 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -24,37 +25,11 @@ const std::array<glm::mat4, 6> cubefacemat = {
 
 const glm::mat4 texcomat({0.5F, 0, 0, 0}, {0, 0.5F, 0, 0}, {0, 0, 1, 0}, {0.5F, 0.5F, 0, 1});
 
-static scene::Bounds union_of(const std::vector<scene::Bounds> &boxes)
+std::array<draw::View, 6> shadow_cube_views(const glm::vec3 &position_ws, float near, int size_px)
 {
-  scene::Bounds all;
-  for (const scene::Bounds &box : boxes) {
-    all.extend(box);
-  }
-  return all;
-}
-
-float lamp_near(const glm::vec3 &position_ws, const std::vector<scene::Bounds> &casters_ws)
-{
-  constexpr float near_min = 1e-6F;
-  if (casters_ws.empty()) {
-    return near_min;
-  }
-  float nearest = std::numeric_limits<float>::max();
-  float smallest_around = std::numeric_limits<float>::max();
-  for (const scene::Bounds &box : casters_ws) {
-    const float distance = glm::distance(position_ws, glm::clamp(position_ws, box.min, box.max));
-    nearest = std::min(nearest, distance);
-    if (distance == 0.0F) {
-      smallest_around = std::min(smallest_around, box.radius());
-    }
-  }
-  // Along a face's axis what is at this distance is nearer, by up to the square root of 3.
-  return std::max(nearest > 0.0F ? 0.5F * nearest : 2e-4F * smallest_around, near_min);
-}
-
-std::array<draw::View, 6> shadow_cube_views(const glm::vec3 &position_ws, float near)
-{
-  const glm::mat4 clip_from_face = draw::perspective(1.0F, 1.0F, near, std::numeric_limits<float>::infinity());
+  const float half_size = 1.0F / shared::cube_uv_scale(float(size_px));
+  const glm::mat4 clip_from_face =
+      draw::perspective(half_size, half_size, near, std::numeric_limits<float>::infinity());
   glm::mat4 lamp_from_world(1.0F);
   lamp_from_world[3] = glm::vec4(-position_ws, 1.0F);
   std::array<draw::View, 6> views;
@@ -64,110 +39,12 @@ std::array<draw::View, 6> shadow_cube_views(const glm::vec3 &position_ws, float 
   return views;
 }
 
-static glm::mat4 lamp_from_world(const scene::Lamp &lamp)
-{
-  return glm::mat4(glm::inverse(glm::dmat4(lamp.world_from_lamp)));
-}
-
 draw::View shadow_spot_view(const scene::Lamp &lamp, float near, int size_px)
 {
-  const float cone = std::tan(lamp.spot_outer_angle);
-  const float half_size = std::max(cone * float(size_px) / float(std::max(size_px - 2, 1)), 1e-4F);
-  return {lamp_from_world(lamp), draw::perspective(half_size, half_size, near, std::numeric_limits<float>::infinity())};
-}
-
-namespace {
-
-/** A box in double, in a lamp's axes. */
-struct LampBox {
-  glm::dvec3 min{std::numeric_limits<double>::infinity()};
-  glm::dvec3 max{-std::numeric_limits<double>::infinity()};
-
-  void extend(const glm::dvec3 &point)
-  {
-    min = glm::min(min, point);
-    max = glm::max(max, point);
-  }
-};
-
-LampBox box_in(const glm::dmat3 &lamp_from_world, const scene::Bounds &bounds)
-{
-  LampBox box;
-  for (int i = 0; i < 8; i++) {
-    box.extend(lamp_from_world * glm::dvec3((i & 1) ? bounds.max.x : bounds.min.x,
-                                            (i & 2) ? bounds.max.y : bounds.min.y,
-                                            (i & 4) ? bounds.max.z : bounds.min.z));
-  }
-  return box;
-}
-
-/**
- * Whether a caster may darken any receiver. One that is flat along an axis cannot where all receivers are on its lit
- * side: the ground of most scenes, which would stretch the map over everything.
- */
-bool can_darken(const scene::Bounds &caster, const scene::Bounds &receivers, const glm::vec3 &forward_ws)
-{
-  for (int axis = 0; axis < 3; axis++) {
-    // Flat to rounding: what is thin in a wide scene still casts.
-    const float own_tolerance = 1e-6F * std::max(std::abs(caster.min[axis]), std::abs(caster.max[axis]));
-    const float tolerance = own_tolerance + 1e-7F * receivers.radius();
-    const bool is_flat = caster.max[axis] - caster.min[axis] <= own_tolerance;
-    const bool is_below = forward_ws[axis] < 0.0F && receivers.min[axis] >= caster.min[axis] - tolerance;
-    const bool is_above = forward_ws[axis] > 0.0F && receivers.max[axis] <= caster.max[axis] + tolerance;
-    if (is_flat && (is_below || is_above)) {
-      return false;
-    }
-  }
-  return true;
-}
-
-}  // namespace
-
-std::optional<SunFit> fit_sun(const scene::Lamp &lamp, const std::vector<glm::dvec3> &receivers_ws,
-                              const std::vector<scene::Bounds> &casters_ws, int size_px)
-{
-  // Directions only: a sun is nowhere.
-  const glm::dmat3 from_world = glm::transpose(glm::dmat3(lamp.world_from_lamp));
-  const glm::vec3 forward_ws = -glm::vec3(lamp.world_from_lamp[2]);
-  scene::Bounds receiver_bounds;
-  LampBox receivers;
-  for (const glm::dvec3 &point : receivers_ws) {
-    receiver_bounds.extend(glm::vec3(point));
-    receivers.extend(from_world * point);
-  }
-  LampBox casters;
-  for (const scene::Bounds &caster : casters_ws) {
-    const LampBox box = box_in(from_world, caster);
-    const bool overlaps = box.min.x <= receivers.max.x && box.max.x >= receivers.min.x &&
-                          box.min.y <= receivers.max.y && box.max.y >= receivers.min.y && box.max.z >= receivers.min.z;
-    if (overlaps && can_darken(caster, receiver_bounds, forward_ws)) {
-      casters.extend(box.min);
-      casters.extend(box.max);
-    }
-  }
-  SunFit fit;
-  fit.min = glm::max(receivers.min, casters.min);
-  fit.max = glm::min(receivers.max, casters.max);
-  // The lamp shines along -Z: what darkens is above, up to the highest caster.
-  fit.max.z = casters.max.z;
-  fit.min.z = receivers.min.z;
-  if (receivers_ws.empty() || !(fit.min.x <= fit.max.x && fit.min.y <= fit.max.y)) {
-    return std::nullopt;
-  }
-  // Two texels around, so that the filter finds what is outside; and never an empty box.
-  const glm::dvec3 extent = fit.max - fit.min;
-  const double size = std::max({extent.x, extent.y, extent.z, 1e-6});
-  const glm::dvec2 margin = glm::max(glm::dvec2(extent) * (2.0 / size_px), glm::dvec2(1e-4 * size));
-  fit.min -= glm::dvec3(margin, 1e-3 * size);
-  fit.max += glm::dvec3(margin, 1e-3 * size);
-
-  const glm::dvec3 center = 0.5 * (fit.min + fit.max);
-  const glm::dvec3 half = 0.5 * (fit.max - fit.min);
-  glm::dmat4 view_from_world(from_world);
-  view_from_world[3] = glm::dvec4(-center, 1.0);
-  fit.view = draw::View(glm::mat4(view_from_world),
-                        draw::orthographic(float(half.x), float(half.y), float(-half.z), float(half.z)));
-  return fit;
+  const float border = std::min(2.0F * float(CUBE_BORDER_TEXELS) / float(size_px), 0.5F);
+  const float half_size = std::max(std::tan(lamp.spot_outer_angle) / (1.0F - border), 1e-4F);
+  const glm::mat4 lamp_from_world(glm::inverse(glm::dmat4(lamp.world_from_lamp)));
+  return {lamp_from_world, draw::perspective(half_size, half_size, near, std::numeric_limits<float>::infinity())};
 }
 
 /** Whether \a lamp throws a shadow into six faces, rather than into one map. */
@@ -177,74 +54,184 @@ static bool wants_cube(const scene::Lamp &lamp)
          (lamp.kind == scene::LampKind::Spot && lamp.spot_outer_angle > spot_map_angle_max);
 }
 
+static LayerPass best_layer_pass(LayerPass asked, const gpu::Limits &limits)
+{
+  if (asked == LayerPass::Layered && !limits.has_vertex_layer) {
+    throw gpu::Error("the layered shadow pass needs GL_ARB_shader_viewport_layer_array, which this device lacks");
+  }
+  if (asked != LayerPass::Best) {
+    return asked;
+  }
+  return limits.has_vertex_layer ? LayerPass::Layered : LayerPass::Geometry;
+}
+
 void Shadows::sync(gpu::Device &device, const scene::Scene &scene, Lamps &lamps, const ShadowSettings &settings)
 {
-  scene_ = &scene;
-  settings_ = settings;
-  casters_ws_.clear();
-  fitted_clip_from_world_.reset();
+  layer_pass_ = best_layer_pass(settings.layer_pass, device.limits());
+  casters_before_ = std::exchange(casters_, {});
+  seen_clip_from_world_.reset();
   limits_.clear();
-  cubes_.slots.clear();
-  maps_.slots.clear();
-  if (settings.method == ShadowMethod::None) {
-    return;
+  std::vector<Slot> cubes_before = std::exchange(cubes_.slots, {});
+  std::vector<Slot> maps_before = std::exchange(maps_.slots, {});
+  if (settings.caster_faces != settings_.caster_faces) {
+    cubes_before.clear();
+    maps_before.clear();
   }
-  const auto bytes = [](int size_px, int layers) {
-    return std::size_t(size_px) * std::size_t(size_px) * sizeof(float) * std::size_t(layers);
-  };
-  const int cube_max = std::min(SHADOW_CUBE_MAX, device.limits().array_layers_max / 6);
-  const int map_max = std::min(SHADOW_MAP_MAX, device.limits().array_layers_max);
-  std::size_t memory = 0;
-  std::vector<std::string> lost;
-  for (int i = 0; i < lamps.light_block.light_count; i++) {
-    const std::uint32_t lamp_index = lamps.scene_index[std::size_t(i)];
-    const scene::Lamp &lamp = scene.lamps[lamp_index];
-    if (lamp.kind == scene::LampKind::Hemi) {
-      continue;
-    }
-    const bool is_cube = wants_cube(lamp);
-    Array &array = is_cube ? cubes_ : maps_;
-    const std::size_t needed = is_cube ? bytes(settings.cube_size_px, 6) : bytes(settings.map_size_px, 1);
-    if (int(array.slots.size()) == (is_cube ? cube_max : map_max) || memory + needed > settings.memory_bytes_max) {
-      lost.push_back(lamp.name);
-      continue;
-    }
-    memory += needed;
-    shared::LightData &light = lamps.light_block.lights[i];
-    light.shadow_kind = is_cube ? SHADOW_CUBE : SHADOW_MAP;
-    light.shadow_index = int(array.slots.size());
-    array.slots.push_back({.lamp = lamp_index, .views = {}, .sun = {}});
+  settings_ = settings;
+  place_slots(device.limits(), scene, lamps);
+  keep_drawn(cubes_, std::move(cubes_before));
+  keep_drawn(maps_, std::move(maps_before));
+  if (!sampler_ && !(cubes_.slots.empty() && maps_.slots.empty())) {
+    sampler_ = device.create_sampler({.name = "shadow_sampler"});
+    shadow_block_buffer_ =
+        device.create_buffer({"shadow_block", gpu::BufferKind::Uniform, sizeof(shared::ShadowBlock)});
   }
-  if (!lost.empty()) {
-    limits_.push_back(fmt::format("{} lamps lost their shadow, as {} cubes, {} maps and {} MiB are the most: '{}'",
-                                  lost.size(), cube_max, map_max, settings.memory_bytes_max >> 20U,
-                                  fmt::join(lost, "', '")));
+  create_layers(device, cubes_, 6 * int(cubes_.slots.size()));
+  if (maps_.slots.empty()) {
+    create_layers(device, maps_, 0);
   }
-  create_layers(device, cubes_, "shadow_cubes", settings.cube_size_px, 6);
-  create_layers(device, maps_, "shadow_maps", settings.map_size_px, 1);
   place_render_blocks(device);
 }
 
-void Shadows::create_layers(gpu::Device &device, Array &array, std::string_view name, int size_px, int layers_a_slot)
+/** Which lamps have a shadow, and of what size; those that lose it are named. */
+void Shadows::place_slots(const gpu::Limits &device_limits, const scene::Scene &scene, Lamps &lamps)
 {
-  const int layers = int(array.slots.size()) * layers_a_slot;
+  const int cube_max = std::min(SHADOW_CUBE_MAX, device_limits.array_layers_max / 6);
+  const int map_max = std::min(SHADOW_MAP_MAX, device_limits.array_layers_max);
+  int entry_count = 0;
+  std::vector<std::string> lost;
+  std::vector<int> lights;
+  for (int i = 0; i < lamps.light_block.light_count; i++) {
+    const scene::Lamp &lamp = scene.lamps[lamps.scene_index[std::size_t(i)]];
+    if (lamp.kind == scene::LampKind::Hemi || settings_.method == ShadowMethod::None) {
+      continue;
+    }
+    const bool is_cube = wants_cube(lamp);
+    const bool is_sun = lamp.kind == scene::LampKind::Sun;
+    Slot slot;
+    slot.lamp = lamp;
+    slot.light = i;
+    slot.size_px = std::min(is_cube ? settings_.cube_size_px : settings_.map_size_px, device_limits.texture_size_max);
+    slot.layer_count_max = is_cube                        ? 6
+                           : !is_sun                      ? 1
+                           : settings_.cascades.count > 0 ? settings_.cascades.count
+                                                          : cascade_count_max;
+    slot.range = lamp.range > 0.0F && !is_sun ? lamp.range : std::numeric_limits<float>::infinity();
+    Array &array = is_cube ? cubes_ : maps_;
+    if (is_cube ? int(array.slots.size()) == cube_max : entry_count + slot.layer_count_max > map_max) {
+      lost.push_back(lamp.name);
+      continue;
+    }
+    slot.entry = is_cube ? int(array.slots.size()) : entry_count;
+    slot.first_layer = is_cube ? 6 * slot.entry : 0;
+    entry_count += is_cube ? 0 : slot.layer_count_max;
+    shared::LightData &light = lamps.light_block.lights[i];
+    light.shadow_kind = is_cube ? SHADOW_CUBE : SHADOW_MAP;
+    light.shadow_index = slot.entry;
+    array.slots.push_back(std::move(slot));
+  }
+  if (!lost.empty()) {
+    limits_.push_back(fmt::format("{} lamps lost their shadow, as {} cubes and {} maps are the most: '{}'", lost.size(),
+                                  cube_max, map_max, fmt::join(lost, "', '")));
+  }
+  fit_memory(lamps);
+}
+
+std::size_t Shadows::bytes_needed() const
+{
+  std::size_t bytes = 0;
+  for (const Array *array : {&cubes_, &maps_}) {
+    std::size_t edge = 0;
+    std::size_t layers = 0;
+    for (const Slot &slot : array->slots) {
+      edge = std::max(edge, std::size_t(slot.size_px));
+      layers += std::size_t(slot.layer_count_max);
+    }
+    bytes += edge * edge * layers * sizeof(float);
+  }
+  return bytes;
+}
+
+void Shadows::fit_memory(Lamps &lamps)
+{
+  const std::size_t most = settings_.memory_bytes_max;
+  const std::size_t needed = bytes_needed();
+  if (needed <= most) {
+    return;
+  }
+  constexpr int size_px_min = 16;
+  const double scale = std::sqrt(double(most) / double(needed));
+  std::size_t lowered = 0;
+  for (Array *array : {&cubes_, &maps_}) {
+    for (Slot &slot : array->slots) {
+      const int size_px = std::max(int(slot.size_px * scale), std::min(size_px_min, slot.size_px));
+      lowered += size_px < slot.size_px ? 1 : 0;
+      slot.size_px = size_px;
+    }
+  }
+  limits_.push_back(
+      fmt::format("the shadows of {} lamps need {:.1f} MiB, and may take {:.1f}: their sizes are lowered to {:.0f} %",
+                  lowered, double(needed) / 0x1p20, double(most) / 0x1p20, 100.0 * scale));
+  std::vector<std::string> lost;
+  while (bytes_needed() > most) {
+    Array &array =
+        maps_.slots.empty() || (!cubes_.slots.empty() && cubes_.slots.back().light > maps_.slots.back().light) ? cubes_
+                                                                                                               : maps_;
+    shared::LightData &light = lamps.light_block.lights[array.slots.back().light];
+    light.shadow_kind = SHADOW_NONE;
+    light.shadow_index = -1;
+    lost.push_back(array.slots.back().lamp.name);
+    array.slots.pop_back();
+  }
+  if (!lost.empty()) {
+    limits_.push_back(fmt::format("{} lamps lost their shadow, as {:.1f} MiB hold no more of {} texels: '{}'",
+                                  lost.size(), double(most) / 0x1p20, size_px_min, fmt::join(lost, "', '")));
+  }
+}
+
+/** What stands in the same place, of the same lamp and size, has not lost its texels. */
+void Shadows::keep_drawn(Array &array, std::vector<Slot> before)
+{
+  for (std::size_t i = 0; i < std::min(array.slots.size(), before.size()); i++) {
+    Slot &slot = array.slots[i];
+    Slot &old = before[i];
+    if (slot.lamp == old.lamp && slot.size_px == old.size_px && slot.entry == old.entry &&
+        slot.layer_count_max == old.layer_count_max) {
+      old.light = slot.light;
+      slot = std::move(old);
+    }
+  }
+}
+
+void Shadows::create_layers(gpu::Device &device, Array &array, int layers)
+{
+  int size_px = 0;
+  for (const Slot &slot : array.slots) {
+    size_px = std::max(size_px, slot.size_px);
+  }
   if (array.texture && array.texture.desc().width == size_px && array.texture.desc().layers == layers) {
     return;
   }
   array.framebuffers.clear();
   array.texture = {};
+  array.binding = {};
+  for (Slot &slot : array.slots) {
+    slot.framebuffer = {};
+    slot.drawn = slot.settled = 0;
+  }
   if (layers == 0) {
     return;
   }
-  array.texture = device.create_texture({.name = std::string(name),
+  array.texture = device.create_texture({.name = std::string(array.name),
                                          .kind = gpu::TextureKind::Array,
                                          .format = gpu::Format::Depth32F,
                                          .width = size_px,
                                          .height = size_px,
                                          .layers = layers});
+  array.binding = {array.texture.id(), sampler_.id()};
   for (int layer = 0; layer < layers; layer++) {
     array.framebuffers.push_back(device.create_framebuffer(
-        {.name = fmt::format("{} {}", name, layer), .colors = {}, .depth = {&array.texture, layer}}));
+        {.name = fmt::format("{} {}", array.name, layer), .colors = {}, .depth = {&array.texture, layer}}));
   }
 }
 
@@ -259,131 +246,256 @@ void Shadows::place_render_blocks(gpu::Device &device)
       size += stride;
     }
   }
-  if (size == 0) {
-    return;
-  }
-  if (!sampler_) {
-    sampler_ = device.create_sampler({.name = "shadow_sampler"});
-    shadow_block_buffer_ =
-        device.create_buffer({"shadow_block", gpu::BufferKind::Uniform, sizeof(shared::ShadowBlock)});
-  }
-  if (!render_buffer_ || render_buffer_.size_bytes() != size) {
+  if (size > 0 && (!render_buffer_ || render_buffer_.size_bytes() != size)) {
     // A buffer of many blocks may be larger than one block may be, so it is made as storage.
     render_buffer_ = device.create_buffer({"shadow_render_block", gpu::BufferKind::Storage, size});
   }
 }
 
-void Shadows::finish(const scene::Scene &scene)
+void Shadows::finish()
 {
-  for (std::size_t i = 0; i < cubes_.slots.size(); i++) {
-    Slot &slot = cubes_.slots[i];
-    const glm::vec3 position_ws(scene.lamps[slot.lamp].world_from_lamp[3]);
-    const float near = lamp_near(position_ws, casters_ws_);
-    const auto views = shadow_cube_views(position_ws, near);
-    slot.views.assign(views.begin(), views.end());
-    shadow_block_.cubes[i] = {near, 2.0F / float(settings_.cube_size_px), 6 * int(i), 0};
+  caster_bounds_ws_ = {};
+  for (const Caster &caster : casters_) {
+    caster_bounds_ws_.extend(caster.bounds_ws);
   }
-  for (std::size_t i = 0; i < maps_.slots.size(); i++) {
-    Slot &slot = maps_.slots[i];
-    const scene::Lamp &lamp = scene.lamps[slot.lamp];
-    if (lamp.kind == scene::LampKind::Spot) {
-      const float near = lamp_near(glm::vec3(lamp.world_from_lamp[3]), casters_ws_);
-      slot.views = {shadow_spot_view(lamp, near, settings_.map_size_px)};
-      write_map_data(slot, int(i));
+  const std::vector<scene::Bounds> changed = changed_bounds(casters_before_, casters_);
+  casters_before_.clear();
+  for (Array *array : {&cubes_, &maps_}) {
+    for (Slot &slot : array->slots) {
+      const glm::vec3 position_ws(slot.lamp.world_from_lamp[3]);
+      const bool is_sun = slot.lamp.kind == scene::LampKind::Sun;
+      const bool is_changed = std::ranges::any_of(
+          changed, [&](const scene::Bounds &box) { return is_sun || distance_to(box, position_ws) <= slot.range; });
+      if (is_changed) {
+        slot.drawn = slot.settled = 0;
+      }
+      if (slot.settled != 0 || is_sun) {
+        continue;
+      }
+      slot.near = lamp_near(position_ws, slot.range, casters_);
+      if (array == &cubes_) {
+        const auto views = shadow_cube_views(position_ws, slot.near, slot.size_px);
+        slot.views.assign(views.begin(), views.end());
+      }
+      else {
+        slot.views = {shadow_spot_view(slot.lamp, slot.near, slot.size_px)};
+      }
     }
+  }
+  std::ranges::for_each(cubes_.slots, [this](const Slot &slot) { write_cube_data(slot); });
+  std::ranges::for_each(maps_.slots, [this](const Slot &slot) { write_map_data(slot); });
+}
+
+void Shadows::write_cube_data(const Slot &slot)
+{
+  shared::ShadowCubeData &data = shadow_block_.cubes[slot.entry];
+  data.near = slot.near;
+  data.far = std::numeric_limits<float>::max();
+  data.texel_size = 2.0F / (float(slot.size_px) * shared::cube_uv_scale(float(slot.size_px)));
+  data.bias = 1.0F;
+  data.layer = slot.first_layer;
+  data.face_mask = int(slot.drawn);
+  data.filter_kind = settings_.method == ShadowMethod::Pcf ? SHADOW_FILTER_PCF : SHADOW_FILTER_HARD;
+  data.size_px = slot.size_px;
+  is_block_dirty_ = true;
+}
+
+void Shadows::write_map_data(const Slot &slot)
+{
+  for (std::size_t i = 0; i < slot.views.size(); i++) {
+    shared::ShadowMapData &data = shadow_block_.maps[std::size_t(slot.entry) + i];
+    const draw::View &view = slot.views[i];
+    const glm::mat4 &projection = view.clip_from_view();
+    data.texco_from_world = texcomat * view.clip_from_world();
+    data.texel_size = 2.0F / (float(slot.size_px) * std::min(projection[0][0], projection[1][1]));
+    // Reversed: near / w where w is a distance, and (far - z) / (far - near) for a sun.
+    data.rounding = shared::DEPTH_ROUNDING / (view.is_perspective() ? projection[3][2] : projection[2][2]);
+    data.far = std::numeric_limits<float>::max();
+    data.bias = 1.0F;
+    data.layer = slot.first_layer + int(i);
+    data.cascade_count = slot.drawn == 0 ? 0 : int(slot.views.size() - i);
+    data.filter_kind = settings_.method == ShadowMethod::Pcf ? SHADOW_FILTER_PCF : SHADOW_FILTER_HARD;
+    data.size_px = slot.size_px;
+  }
+  if (slot.views.empty()) {
+    // No map: everything is lit.
+    shadow_block_.maps[slot.entry].cascade_count = 0;
   }
   is_block_dirty_ = true;
 }
 
-void Shadows::write_map_data(const Slot &slot, int index)
+void Shadows::fit_suns(gpu::Device &device, const draw::View &view, float pixel_size)
 {
-  shared::ShadowMapData &data = shadow_block_.maps[index];
-  const draw::View &view = slot.views.front();
-  data.texco_from_world = texcomat * view.clip_from_world();
-  const float half_size = 1.0F / std::min(view.clip_from_view()[0][0], view.clip_from_view()[1][1]);
-  data.texel_size = 2.0F * half_size / float(settings_.map_size_px);
-  data.layer = index;
-  // Reversed: near / w where w is a distance, and (far - z) / (far - near) for a sun.
-  const glm::mat4 &projection = view.clip_from_view();
-  data.rounding = shared::DEPTH_ROUNDING / (view.is_perspective() ? projection[3][2] : projection[2][2]);
-}
-
-/** A fit holds for other views as long as it covers them, and is not much larger than they need. */
-static bool still_fits(const std::optional<SunFit> &old, const std::optional<SunFit> &needed)
-{
-  if (!old || !needed) {
-    return !old && !needed;
+  int layers = 0;
+  for (Slot &slot : maps_.slots) {
+    if (slot.lamp.kind == scene::LampKind::Sun) {
+      const std::vector<SunFit> fits =
+          fit_sun(slot.lamp, view, visible_, casters_, slot.size_px, settings_.cascades, pixel_size);
+      if (fits.size() != slot.fits.size()) {
+        slot.settled = 0;
+      }
+      slot.fits.resize(fits.size());
+      slot.views.resize(fits.size());
+      for (std::size_t i = 0; i < fits.size(); i++) {
+        if ((slot.settled >> i & 1U) == 0 || !still_fits(slot.fits[i], fits[i])) {
+          slot.fits[i] = fits[i];
+          slot.views[i] = fits[i].view;
+          slot.settled &= ~(1U << i);
+        }
+      }
+      slot.drawn &= slot.settled;
+      write_map_data(slot);
+    }
+    if (slot.first_layer != layers) {
+      slot.first_layer = layers;
+      slot.framebuffer = {};
+      slot.drawn = slot.settled = 0;
+    }
+    if (slot.framebuffer && slot.framebuffer_layers != int(slot.views.size())) {
+      slot.framebuffer = {};
+    }
+    layers += int(slot.views.size());
   }
-  constexpr double area_ratio_max = 1.5;
-  const auto area = [](const SunFit &fit) { return (fit.max.x - fit.min.x) * (fit.max.y - fit.min.y); };
-  return glm::all(glm::lessThanEqual(old->min, needed->min)) &&
-         glm::all(glm::greaterThanEqual(old->max, needed->max)) && area(*old) <= area_ratio_max * area(*needed);
+  // Room that a wider view needed stays, for the next one.
+  const int layers_now = maps_.texture ? maps_.texture.desc().layers : 0;
+  create_layers(device, maps_, maps_.slots.empty() ? 0 : std::max({layers, layers_now, 1}));
 }
 
-void Shadows::fit_suns(const draw::View &view)
+std::uint32_t Shadows::touched_layers(const Slot &slot, const Caster &caster) const
 {
-  if (fitted_clip_from_world_ == view.clip_from_world()) {
+  const glm::vec3 center_ws = caster.bounds_ws.center();
+  const float radius = caster.bounds_ws.radius();
+  const glm::vec3 position_ws(slot.lamp.world_from_lamp[3]);
+  if (!std::isinf(slot.range) && distance_to(caster.bounds_ws, position_ws) > slot.range) {
+    return 0;
+  }
+  if (slot.views.size() == 6) {
+    return cube_face_mask(center_ws - position_ws, radius, 1.0F / shared::cube_uv_scale(float(slot.size_px)));
+  }
+  std::uint32_t mask = 0;
+  for (std::size_t i = 0; i < slot.views.size(); i++) {
+    mask |= slot.views[i].touches({center_ws, radius}) ? 1U << i : 0U;
+  }
+  return mask;
+}
+
+void Shadows::update_slot(gpu::Device &device, Slot &slot, Array &array, std::uint32_t wanted, const draw::Pass &pass,
+                          gpu::CommandList &list)
+{
+  const std::uint32_t all = (1U << slot.views.size()) - 1U;
+  const std::uint32_t missing = wanted & all & ~slot.settled;
+  if (missing == 0) {
     return;
   }
-  fitted_clip_from_world_ = view.clip_from_world();
-  std::vector<glm::dvec3> receivers;
-  for (std::size_t i = 0; i < maps_.slots.size(); i++) {
-    Slot &slot = maps_.slots[i];
-    const scene::Lamp &lamp = scene_->lamps[slot.lamp];
-    if (lamp.kind != scene::LampKind::Sun) {
-      continue;
-    }
-    if (receivers.empty()) {
-      receivers = visible_corners(view, union_of(casters_ws_));
-    }
-    std::optional<SunFit> fit = fit_sun(lamp, receivers, casters_ws_, settings_.map_size_px);
-    if (!slot.views.empty() && still_fits(slot.sun, fit)) {
-      continue;
-    }
-    slot.sun = std::move(fit);
-    // A view of nothing: its layer is cleared, and everything is lit.
-    slot.views = {slot.sun ? slot.sun->view : draw::View(glm::mat4(1.0F), glm::mat4(1.0F))};
-    slot.is_up_to_date = false;
-    write_map_data(slot, int(i));
-    is_block_dirty_ = true;
+  const bool is_cube = &array == &cubes_;
+  std::vector<std::uint32_t> masks;
+  masks.reserve(casters_.size());
+  std::uint32_t with_casters = 0;
+  for (const Caster &caster : casters_) {
+    masks.push_back(touched_layers(slot, caster) & missing);
+    with_casters |= masks.back();
   }
-}
 
-void Shadows::record_slot(Slot &slot, Array &array, int first_layer, const draw::Pass &pass, gpu::CommandList &list)
-{
   shared::ShadowRenderBlock block{};
-  for (std::size_t face = 0; face < slot.views.size(); face++) {
-    block.clip_from_world[face] = slot.views[face].clip_from_world();
+  for (std::size_t i = 0; i < slot.views.size(); i++) {
+    block.clip_from_world[i] = slot.views[i].clip_from_world();
   }
   list.update(render_buffer_, slot.render_offset_bytes, std::as_bytes(std::span(&block, 1)));
   render_block_range_ = {render_buffer_.id(), slot.render_offset_bytes, sizeof(block)};
-  const scene::Lamp &lamp = scene_->lamps[slot.lamp];
-  for (render_face_ = 0; render_face_ < int(slot.views.size()); render_face_++) {
-    list.begin_pass(fmt::format("shadow of {}, face {}", lamp.name, render_face_),
-                    array.framebuffers[std::size_t(first_layer + render_face_)], {});
-    // A sun that darkens nothing has no view to draw.
-    if (lamp.kind != scene::LampKind::Sun || slot.sun) {
-      pass.record(slot.views[std::size_t(render_face_)], list);
+
+  const auto record_instances = [&](std::uint32_t layers) {
+    for (const Caster &caster : casters_) {
+      caster.instances->clear();
+    }
+    for (std::size_t i = 0; i < casters_.size(); i++) {
+      for (std::uint32_t rest = masks[i] & layers; rest != 0; rest &= rest - 1) {
+        casters_[i].instances->add(casters_[i].object, std::uint32_t(std::countr_zero(rest)));
+        counters_.caster_draws++;
+      }
+    }
+    pass.record(slot.views.front(), list);
+  };
+  const auto name = [&](std::string_view what) { return fmt::format("shadow of {}, {}", slot.lamp.name, what); };
+  const gpu::PassActions clear{.viewport_px = glm::ivec2(slot.size_px)};
+  gpu::PassActions keep = clear;
+  keep.depth_load = gpu::LoadAction::Load;
+  // What has no caster is not looked up, but for a cascade among others: that has to be empty.
+  const std::uint32_t drawn = slot.fits.empty() ? with_casters : missing;
+  for (std::uint32_t rest = drawn; rest != 0; rest &= rest - 1) {
+    const int layer = std::countr_zero(rest);
+    list.begin_pass(name(fmt::format("{} {}", is_cube ? "face" : "map", layer)),
+                    array.framebuffers[std::size_t(slot.first_layer + layer)], clear);
+    if (layer_pass_ == LayerPass::Single) {
+      record_instances(1U << layer);
     }
     list.end_pass();
-    counters_.faces_drawn++;
   }
-  slot.is_up_to_date = true;
+  if (layer_pass_ != LayerPass::Single && with_casters != 0) {
+    if (!slot.framebuffer) {
+      slot.framebuffer = device.create_framebuffer(
+          {.name = fmt::format("{} of {}", array.name, slot.lamp.name),
+           .colors = {},
+           .depth = {.texture = &array.texture, .layer = slot.first_layer, .layer_count = int(slot.views.size())}});
+      slot.framebuffer_layers = int(slot.views.size());
+    }
+    list.begin_pass(name("all layers"), slot.framebuffer, keep);
+    record_instances(missing);
+    list.end_pass();
+  }
+  slot.drawn |= drawn;
+  slot.settled |= missing;
+  if (is_cube) {
+    write_cube_data(slot);
+  }
+  else {
+    write_map_data(slot);
+  }
+  if (drawn == 0) {
+    return;
+  }
   counters_.lamps_updated++;
+  counters_.faces_drawn += std::uint64_t(std::popcount(drawn));
+  counters_.faces_skipped += std::uint64_t(std::popcount(all & ~drawn));
 }
 
-void Shadows::update(gpu::Device &device, const draw::View &view, const draw::Pass &pass, gpu::CommandList &list)
+/** Faces that something visible may look up: those on whose side of a plane through the lamp any of it is. */
+std::uint32_t Shadows::looked_up_faces(const Slot &slot) const
 {
-  fit_suns(view);
-  for (std::size_t i = 0; i < cubes_.slots.size(); i++) {
-    if (!cubes_.slots[i].is_up_to_date) {
-      record_slot(cubes_.slots[i], cubes_, 6 * int(i), pass, list);
+  const glm::dvec3 position_ws(slot.lamp.world_from_lamp[3]);
+  // Bit i of each: some corner is within the i-th of the four planes that bound a face.
+  std::array<std::uint32_t, 6> within{};
+  for (const glm::dvec3 &corner : visible_.corners) {
+    const glm::dvec3 v = corner - position_ws;
+    const double slack = 1e-5 * (std::abs(v.x) + std::abs(v.y) + std::abs(v.z));
+    for (std::size_t face = 0; face < 6; face++) {
+      const std::size_t axis = face / 2;
+      const double along = (face % 2 == 0 ? v[int(axis)] : -v[int(axis)]) + slack;
+      const double a = v[int((axis + 1) % 3)];
+      const double b = v[int((axis + 2) % 3)];
+      within[face] |=
+          (along >= a ? 1U : 0U) | (along >= -a ? 2U : 0U) | (along >= b ? 4U : 0U) | (along >= -b ? 8U : 0U);
     }
   }
-  for (std::size_t i = 0; i < maps_.slots.size(); i++) {
-    if (!maps_.slots[i].is_up_to_date) {
-      record_slot(maps_.slots[i], maps_, int(i), pass, list);
-    }
+  std::uint32_t faces = 0;
+  for (std::size_t face = 0; face < 6; face++) {
+    faces |= within[face] == 15U ? 1U << face : 0U;
+  }
+  return faces;
+}
+
+void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
+                     gpu::CommandList &list)
+{
+  if (seen_clip_from_world_ != view.clip_from_world()) {
+    seen_clip_from_world_ = view.clip_from_world();
+    visible_ = visible_range(view, visible_corners(view, caster_bounds_ws_));
+    fit_suns(device, view, pixel_size);
+  }
+  for (Slot &slot : cubes_.slots) {
+    update_slot(device, slot, cubes_, looked_up_faces(slot), pass, list);
+  }
+  for (Slot &slot : maps_.slots) {
+    update_slot(device, slot, maps_, ~0U, pass, list);
   }
   if (std::exchange(is_block_dirty_, false) && shadow_block_buffer_) {
     device.update(shadow_block_buffer_, shadow_block_);
@@ -392,8 +504,10 @@ void Shadows::update(gpu::Device &device, const draw::View &view, const draw::Pa
 
 Feature Shadows::features() const
 {
+  const bool has_shadow = !cubes_.slots.empty() || !maps_.slots.empty();
   return (cubes_.slots.empty() ? Feature::None : Feature::ShadowCube) |
-         (maps_.slots.empty() ? Feature::None : Feature::ShadowMap);
+         (maps_.slots.empty() ? Feature::None : Feature::ShadowMap) |
+         (has_shadow && settings_.method == ShadowMethod::Pcf ? Feature::ShadowPcf : Feature::None);
 }
 
 }  // namespace gnomon::eevee

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "eevee_casters.hh"
 #include "eevee_lamps.hh"
+#include "eevee_sun_fit.hh"
 
 #include "draw_pass.hh"
-#include "draw_viewport.hh"
 #include "eevee_shadow_shared.h"
 
 #include <array>
@@ -18,107 +19,128 @@ extern const std::array<glm::mat4, 6> cubefacemat;
 /** From clip space to texture coordinates: xy from [-1, 1] to [0, 1]; the depth is in [0, 1] already. */
 extern const glm::mat4 texcomat;
 
-enum class ShadowMethod { None, Hard };
+enum class ShadowMethod {
+  None,
+  /** The bilinear blend of the four texels around a lookup. */
+  Hard,
+  /** Percentage-closer filtering: the mean of several such. */
+  Pcf,
+};
+
+/** How the layers of a lamp are drawn; the texels are the same. */
+enum class LayerPass {
+  /** The best that the device has. */
+  Best,
+  /** A pass for each layer. */
+  Single,
+  /** One pass: the geometry shader chooses each triangle's layer. */
+  Geometry,
+  /** One pass: the vertex shader chooses it. */
+  Layered,
+};
+
+/** Which sides of closed objects throw the shadow; two-sided materials always throw it with both. */
+enum class CasterFaces { All, Front, Back };
 
 struct ShadowSettings {
   ShadowMethod method = ShadowMethod::Hard;
   /** Edge of a cube face and of a map, pixels, at least 1. */
   int cube_size_px = 1024;
   int map_size_px = 2048;
-  /** Lamps past it lose their shadow and are named. */
+  PcfKernel pcf{};
+  CascadeSettings cascades{};
+  LayerPass layer_pass = LayerPass::Best;
+  CasterFaces caster_faces = CasterFaces::All;
+  /** Sizes are lowered evenly to stay within it; lamps that do not fit even so lose their shadow and are named. */
   std::size_t memory_bytes_max = std::size_t(1) << 30U;
 };
 
 /** Spots wider than this (half the opening, radians) look into a cube: a plane would stretch too far. */
 inline constexpr float spot_map_angle_max = 1.2F;
 
-/**
- * Distance of the near plane of a lamp, metres: what is nearer casts no shadow. As far as the nearest caster's box
- * allows, because depths lose precision with the square of distance / near; where the lamp is inside of boxes, a
- * small part of the smallest one's size.
- */
-[[nodiscard]] float lamp_near(const glm::vec3 &position_ws, const std::vector<scene::Bounds> &casters_ws);
+/** The six views of a cube around \a position_ws, each with a border of CUBE_BORDER_TEXELS. */
+[[nodiscard]] std::array<draw::View, 6> shadow_cube_views(const glm::vec3 &position_ws, float near, int size_px);
 
-/** The six views of a cube around \a position_ws. */
-[[nodiscard]] std::array<draw::View, 6> shadow_cube_views(const glm::vec3 &position_ws, float near);
-
-/** The view of a spot, with a texel around its cone. \pre its angle at most spot_map_angle_max */
+/** The view of a spot, with room for a filter's kernel around its cone. \pre its angle at most spot_map_angle_max */
 [[nodiscard]] draw::View shadow_spot_view(const scene::Lamp &lamp, float near, int size_px);
-
-/** A sun's view, and what it was fitted to. */
-struct SunFit {
-  draw::View view;
-  /** In the lamp's axes, metres: the rectangle across and the range along the light. */
-  glm::dvec3 min;
-  glm::dvec3 max;
-};
-
-/**
- * The smallest view of a sun that holds each caster that can darken what is visible: across the light, where
- * receivers and casters overlap; along it, from the first caster to the last receiver.
- *
- * \a receivers_ws: corners of what is visible. \return nothing where no caster can darken any of it.
- */
-[[nodiscard]] std::optional<SunFit> fit_sun(const scene::Lamp &lamp, const std::vector<glm::dvec3> &receivers_ws,
-                                            const std::vector<scene::Bounds> &casters_ws, int size_px);
 
 /** Counts since the shadows were made. */
 struct ShadowCounters {
+  /** Lamps of which any layer was drawn. */
   std::uint64_t lamps_updated = 0;
-  /** Layers rendered: faces of cubes, and maps. */
+  /** Layers drawn: faces of cubes, maps, cascades. */
   std::uint64_t faces_drawn = 0;
+  /** Layers of updated lamps that were not: no caster in them, or nothing visible looks there. */
+  std::uint64_t faces_skipped = 0;
+  /** Instances of casters drawn, one for each layer that a caster touches. */
+  std::uint64_t caster_draws = 0;
 };
 
 /**
- * Shadow maps of a scene's lamps in one viewport: which lamp has which layer, and whether it is up to date.
+ * Shadow maps of a scene's lamps in one viewport: which lamp has which layers, and which of them are up to date.
  *
- * Order: sync, then casters into pass(), then update for each view.
+ * Order: sync, then casters, finish, then update for each view. What the last sync drew stays where neither the lamp
+ * nor its settings nor a caster in its range changed.
  */
 class Shadows {
  public:
-  /** Give each light of \a lamps that casts a shadow its layers. Writes shadow_kind and shadow_index of its entry. */
+  /** Give each light of \a lamps that casts a shadow its place. Writes shadow_kind and shadow_index of its entry. */
   void sync(gpu::Device &device, const scene::Scene &scene, Lamps &lamps, const ShadowSettings &settings);
-  /** Box of a caster, world space. */
-  void add_caster(const scene::Bounds &bounds)
+  void add_caster(const Caster &caster)
   {
-    casters_ws_.push_back(bounds);
+    casters_.push_back(caster);
   }
-  /** Set-up of what does not depend on the view; after the last caster. */
-  void finish(const scene::Scene &scene);
+  /** After the last caster. */
+  void finish();
 
-  /** Fit to what \a view sees, and record what is not up to date into \a list with \a pass. */
-  void update(gpu::Device &device, const draw::View &view, const draw::Pass &pass, gpu::CommandList &list);
+  /**
+   * Fit to what \a view sees and record into \a list what is not up to date. \a pass draws the casters' instances,
+   * \a pixel_size: see fit_sun.
+   */
+  void update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
+              gpu::CommandList &list);
 
-  /** To be bound by reference in the pass that draws casters: `shadow_render_block` and `shadow_face`. */
+  /** To be bound by reference in the pass that draws casters, as `shadow_render_block`. */
   [[nodiscard]] const gpu::BufferRange *render_block() const
   {
     return &render_block_range_;
   }
-  [[nodiscard]] const int *render_face() const
+  /** Which of LayerPass's ways the pass that draws casters must have its shader for; never Best. */
+  [[nodiscard]] LayerPass layer_pass() const
   {
-    return &render_face_;
+    return layer_pass_;
   }
 
-  /** Feature::ShadowCube and Feature::ShadowMap as far as lamps have them; valid after sync. */
+  /** The shadows' features as far as lamps have them; valid after sync. */
   [[nodiscard]] Feature features() const;
-  /** Valid where features() says so. */
+  /** To be bound by reference, as `shadow_cubes` and `shadow_maps`; valid where features() says so. */
+  [[nodiscard]] const draw::TextureBinding *cubes_binding() const
+  {
+    return &cubes_.binding;
+  }
+  [[nodiscard]] const draw::TextureBinding *maps_binding() const
+  {
+    return &maps_.binding;
+  }
   [[nodiscard]] const gpu::Texture &cubes() const
   {
     return cubes_.texture;
   }
+  /** Made by the first update: it takes a view to know how many there are. */
   [[nodiscard]] const gpu::Texture &maps() const
   {
     return maps_.texture;
-  }
-  [[nodiscard]] const gpu::Sampler &sampler() const
-  {
-    return sampler_;
   }
   [[nodiscard]] const gpu::Buffer &block() const
   {
     return shadow_block_buffer_;
   }
-  /** Lamps that lost their shadow, named, with the limit. */
+  /** What the shaders read of it. */
+  [[nodiscard]] const shared::ShadowBlock &block_data() const
+  {
+    return shadow_block_;
+  }
+  /** Lamps that lost their shadow, and sizes that were lowered, with the limit. */
   [[nodiscard]] const std::vector<std::string> &limits() const
   {
     return limits_;
@@ -139,42 +161,73 @@ class Shadows {
  private:
   /** What a lamp has in an array. */
   struct Slot {
-    std::uint32_t lamp = 0;
+    /** The lamp as it was when its layers were drawn. */
+    scene::Lamp lamp;
+    /** In light_block. */
+    int light = 0;
+    int size_px = 0;
+    /** In shadow_block: the first of `layer_count_max`. */
+    int entry = 0;
+    int layer_count_max = 0;
+    int first_layer = 0;
+    /** Lamps farther from a caster than this are not darkened by it, metres; infinite: none is. */
+    float range = 0.0F;
+    float near = 0.0F;
+    /** One a layer. */
     std::vector<draw::View> views;
-    /** Suns: what the view was fitted to; nothing while no caster matters. */
-    std::optional<SunFit> sun;
+    /** Suns: what views were fitted to; empty while no caster matters. */
+    std::vector<SunFit> fits;
+    /** All layers of the slot, for passes whose shader chooses one. */
+    gpu::Framebuffer framebuffer;
     /** Where its ShadowRenderBlock stands in the buffer. */
     std::uint32_t render_offset_bytes = 0;
-    bool is_up_to_date = false;
+    int framebuffer_layers = 0;
+    /** Bit a layer: it was drawn, and still is what it should be. */
+    std::uint32_t drawn = 0;
+    /** The same, and those that have nothing in them to draw. */
+    std::uint32_t settled = 0;
   };
   /** Layers of one size, and who has them. */
   struct Array {
+    std::string_view name;
     gpu::Texture texture;
+    draw::TextureBinding binding;
     /** One a layer. */
     std::vector<gpu::Framebuffer> framebuffers;
     std::vector<Slot> slots;
   };
 
-  void create_layers(gpu::Device &device, Array &array, std::string_view name, int size_px, int layers_a_slot);
+  void place_slots(const gpu::Limits &device_limits, const scene::Scene &scene, Lamps &lamps);
+  void keep_drawn(Array &array, std::vector<Slot> before);
+  void create_layers(gpu::Device &device, Array &array, int layers);
   void place_render_blocks(gpu::Device &device);
-  void fit_suns(const draw::View &view);
-  void write_map_data(const Slot &slot, int index);
-  void record_slot(Slot &slot, Array &array, int first_layer, const draw::Pass &pass, gpu::CommandList &list);
+  [[nodiscard]] std::size_t bytes_needed() const;
+  void fit_memory(Lamps &lamps);
+  void fit_suns(gpu::Device &device, const draw::View &view, float pixel_size);
+  void write_cube_data(const Slot &slot);
+  void write_map_data(const Slot &slot);
+  [[nodiscard]] std::uint32_t looked_up_faces(const Slot &slot) const;
+  [[nodiscard]] std::uint32_t touched_layers(const Slot &slot, const Caster &caster) const;
+  void update_slot(gpu::Device &device, Slot &slot, Array &array, std::uint32_t wanted, const draw::Pass &pass,
+                   gpu::CommandList &list);
 
-  const scene::Scene *scene_ = nullptr;
   ShadowSettings settings_;
-  std::vector<scene::Bounds> casters_ws_;
-  /** What the suns were last fitted to. */
-  std::optional<glm::mat4> fitted_clip_from_world_;
-  Array cubes_;
-  Array maps_;
+  LayerPass layer_pass_ = LayerPass::Single;
+  std::vector<Caster> casters_;
+  /** Of the last sync. */
+  std::vector<Caster> casters_before_;
+  scene::Bounds caster_bounds_ws_;
+  /** What visible_ is of. */
+  std::optional<glm::mat4> seen_clip_from_world_;
+  VisibleRange visible_;
+  Array cubes_{"shadow_cubes", {}, {}, {}, {}};
+  Array maps_{"shadow_maps", {}, {}, {}, {}};
   gpu::Sampler sampler_;
   shared::ShadowBlock shadow_block_{};
   gpu::Buffer shadow_block_buffer_;
   gpu::Buffer render_buffer_;
   bool is_block_dirty_ = true;
   gpu::BufferRange render_block_range_;
-  int render_face_ = 0;
   std::vector<std::string> limits_;
   ShadowCounters counters_;
 };

@@ -24,6 +24,7 @@ GlFormat gl_format(Format format)
 {
   switch (format) {
     case Format::RGBA8: return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
+    case Format::SRGB8A8: return {GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE};
     case Format::RGBA16F: return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT};
     case Format::RGBA32F: return {GL_RGBA32F, GL_RGBA, GL_FLOAT};
     case Format::R16F: return {GL_R16F, GL_RED, GL_HALF_FLOAT};
@@ -42,6 +43,27 @@ GLenum gl_target(TextureKind kind)
     case TextureKind::CubeArray: return GL_TEXTURE_CUBE_MAP_ARRAY;
   }
   return GL_TEXTURE_2D;
+}
+
+GLint gl_wrap(Wrap wrap)
+{
+  switch (wrap) {
+    case Wrap::ClampToEdge: return GL_CLAMP_TO_EDGE;
+    case Wrap::Repeat: return GL_REPEAT;
+    case Wrap::MirroredRepeat: return GL_MIRRORED_REPEAT;
+  }
+  return GL_CLAMP_TO_EDGE;
+}
+
+GLint gl_min_filter(Filter filter, MipFilter mip)
+{
+  const bool is_linear = filter == Filter::Linear;
+  switch (mip) {
+    case MipFilter::None: return is_linear ? GL_LINEAR : GL_NEAREST;
+    case MipFilter::Nearest: return is_linear ? GL_LINEAR_MIPMAP_NEAREST : GL_NEAREST_MIPMAP_NEAREST;
+    case MipFilter::Linear: return is_linear ? GL_LINEAR_MIPMAP_LINEAR : GL_NEAREST_MIPMAP_LINEAR;
+  }
+  return GL_NEAREST;
 }
 
 GLenum gl_target(BufferKind kind)
@@ -63,6 +85,7 @@ Limits query_limits()
   limits.storage_block_bytes_max = std::size_t(get(GL_MAX_SHADER_STORAGE_BLOCK_SIZE));
   limits.color_attachment_max = get(GL_MAX_COLOR_ATTACHMENTS);
   limits.uniform_offset_alignment = std::uint32_t(get(GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT));
+  limits.has_vertex_layer = epoxy_has_gl_extension("GL_ARB_shader_viewport_layer_array");
   return limits;
 }
 
@@ -86,6 +109,9 @@ class GlDevice final : public Device {
     glEnableVertexArrayAttrib(vertex_array_, ATTRIBUTE_NORMAL);
     glVertexArrayAttribFormat(vertex_array_, ATTRIBUTE_NORMAL, 3, GL_FLOAT, GL_FALSE, 0);
     glVertexArrayAttribBinding(vertex_array_, ATTRIBUTE_NORMAL, ATTRIBUTE_NORMAL);
+    // Enabled with the first batch that has them.
+    glVertexArrayAttribFormat(vertex_array_, ATTRIBUTE_UV, 2, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayAttribBinding(vertex_array_, ATTRIBUTE_UV, ATTRIBUTE_UV);
     glEnableVertexArrayAttrib(vertex_array_, ATTRIBUTE_DRAW_INSTANCE);
     glVertexArrayAttribIFormat(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, 2, GL_UNSIGNED_INT, 0);
     glVertexArrayAttribBinding(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, ATTRIBUTE_DRAW_INSTANCE);
@@ -141,7 +167,7 @@ class GlDevice final : public Device {
 
  private:
   enum Stream { InstanceStream, IndirectStream, PushStream, StreamCount };
-  enum Pool { PositionPool, NormalPool, IndexPool, PoolCount };
+  enum Pool { PositionPool, NormalPool, UvPool, IndexPool, PoolCount };
 
   static void GLAPIENTRY receive_message(GLenum /*source*/, GLenum type, GLuint /*id*/, GLenum severity,
                                          GLsizei /*length*/, const GLchar *text, const void *user)
@@ -191,13 +217,11 @@ class GlDevice final : public Device {
   {
     GLuint sampler = 0;
     glCreateSamplers(1, &sampler);
-    const GLint filter = desc.filter == Filter::Linear ? GL_LINEAR : GL_NEAREST;
-    const GLint wrap = desc.wrap == Wrap::Repeat ? GL_REPEAT : GL_CLAMP_TO_EDGE;
-    glSamplerParameteri(sampler, GL_TEXTURE_MIN_FILTER, filter);
-    glSamplerParameteri(sampler, GL_TEXTURE_MAG_FILTER, filter);
-    for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
-      glSamplerParameteri(sampler, axis, wrap);
-    }
+    glSamplerParameteri(sampler, GL_TEXTURE_MIN_FILTER, gl_min_filter(desc.minified.value_or(desc.filter), desc.mip));
+    glSamplerParameteri(sampler, GL_TEXTURE_MAG_FILTER, desc.filter == Filter::Linear ? GL_LINEAR : GL_NEAREST);
+    glSamplerParameteri(sampler, GL_TEXTURE_WRAP_S, gl_wrap(desc.wrap_u));
+    glSamplerParameteri(sampler, GL_TEXTURE_WRAP_T, gl_wrap(desc.wrap_v));
+    glSamplerParameteri(sampler, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
     if (desc.is_depth_comparison) {
       glSamplerParameteri(sampler, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
       glSamplerParameteri(sampler, GL_TEXTURE_COMPARE_FUNC, GL_GEQUAL);
@@ -210,9 +234,18 @@ class GlDevice final : public Device {
   {
     GLuint framebuffer = 0;
     glCreateFramebuffers(1, &framebuffer);
+    std::vector<GLuint> views;
     const auto attach = [&](GLenum point, const Attachment &attachment) {
       const GLuint texture = textures_.at(attachment.texture->id());
-      if (attachment.layer == all_layers || attachment.texture->desc().kind == TextureKind::Flat) {
+      if (attachment.layer_count > 1) {
+        GLuint &view = views.emplace_back();
+        glGenTextures(1, &view);
+        const TextureDesc &texture_desc = attachment.texture->desc();
+        glTextureView(view, GL_TEXTURE_2D_ARRAY, texture, gl_format(texture_desc.format).internal, 0,
+                      GLuint(texture_desc.mip_levels), GLuint(attachment.layer), GLuint(attachment.layer_count));
+        glNamedFramebufferTexture(framebuffer, point, view, attachment.mip_level);
+      }
+      else if (attachment.layer == all_layers || attachment.texture->desc().kind == TextureKind::Flat) {
         glNamedFramebufferTexture(framebuffer, point, texture, attachment.mip_level);
       }
       else {
@@ -229,7 +262,7 @@ class GlDevice final : public Device {
       attach(GL_DEPTH_ATTACHMENT, desc.depth);
     }
     label(GL_FRAMEBUFFER, framebuffer, desc.name);
-    framebuffers_[id] = {framebuffer, int(desc.colors.size()), desc.depth.texture != nullptr, {}};
+    framebuffers_[id] = {framebuffer, int(desc.colors.size()), desc.depth.texture != nullptr, {}, std::move(views)};
     const Attachment &any = desc.colors.empty() ? desc.depth : desc.colors.front();
     framebuffers_[id].size_px = {std::max(any.texture->desc().width >> any.mip_level, 1),
                                  std::max(any.texture->desc().height >> any.mip_level, 1)};
@@ -278,6 +311,9 @@ class GlDevice final : public Device {
       glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_NORMAL, pool_[NormalPool], 0, vertex_bytes);
       vertex_capacity_ = vertex_capacity;
     }
+    if (!desc.uvs.empty()) {
+      upload_uvs(desc, range);
+    }
     if (index_capacity > index_capacity_) {
       grow(IndexPool, index_capacity_ * sizeof(std::uint32_t), index_capacity * sizeof(std::uint32_t));
       glVertexArrayElementBuffer(vertex_array_, pool_[IndexPool]);
@@ -295,6 +331,20 @@ class GlDevice final : public Device {
     glNamedBufferSubData(pool_[IndexPool], GLintptr(range.first_index * sizeof(std::uint32_t)),
                          GLsizeiptr(desc.indices.size_bytes()), desc.indices.data());
     check(fmt::format("batch '{}'", desc.name));
+  }
+
+  /** Their pool is made for the first batch that has some, and grows only with those: each at its base vertex. */
+  void upload_uvs(const BatchDesc &desc, const BatchRange &range)
+  {
+    constexpr std::size_t uv_bytes = sizeof(glm::vec2);
+    if (vertex_capacity_ > uv_capacity_) {
+      grow(UvPool, uv_capacity_ * uv_bytes, vertex_capacity_ * uv_bytes);
+      glEnableVertexArrayAttrib(vertex_array_, ATTRIBUTE_UV);
+      glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_UV, pool_[UvPool], 0, uv_bytes);
+      uv_capacity_ = vertex_capacity_;
+    }
+    glNamedBufferSubData(pool_[UvPool], GLintptr(range.base_vertex) * GLintptr(uv_bytes),
+                         GLsizeiptr(desc.uvs.size_bytes()), desc.uvs.data());
   }
 
   void shader_create(ResourceId id, const ShaderDesc &desc, const std::vector<ShaderSource> &stages) override
@@ -379,7 +429,12 @@ class GlDevice final : public Device {
     switch (kind) {
       case ResourceKind::Texture: glDeleteTextures(1, &textures_.at(id)); break;
       case ResourceKind::Sampler: glDeleteSamplers(1, &samplers_.at(id)); break;
-      case ResourceKind::Framebuffer: glDeleteFramebuffers(1, &framebuffers_.at(id).name); break;
+      case ResourceKind::Framebuffer: {
+        const GlFramebuffer &framebuffer = framebuffers_.at(id);
+        glDeleteFramebuffers(1, &framebuffer.name);
+        glDeleteTextures(GLsizei(framebuffer.views.size()), framebuffer.views.data());
+        break;
+      }
       case ResourceKind::Buffer: glDeleteBuffers(1, &buffers_.at(id).name); break;
       case ResourceKind::Shader: glDeleteProgram(programs_.at(id)); break;
       case ResourceKind::TimerQuery: glDeleteQueries(2, timers_.at(id).data()); break;
@@ -411,6 +466,12 @@ class GlDevice final : public Device {
     }
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     check(fmt::format("texture '{}'", desc.name));
+  }
+
+  void mipmaps_generate(const Texture &texture) override
+  {
+    glGenerateTextureMipmap(textures_.at(texture.id()));
+    check(fmt::format("texture '{}'", texture.desc().name));
   }
 
   void texture_read(const Texture &texture, int layer, std::span<std::byte> texels) override
@@ -475,6 +536,8 @@ class GlDevice final : public Device {
     int color_count = 0;
     bool has_depth = false;
     glm::ivec2 size_px{0};
+    /** Of attachments that are some layers of a texture. */
+    std::vector<GLuint> views;
   };
   struct GlBuffer {
     GLuint name = 0;
@@ -497,6 +560,7 @@ class GlDevice final : public Device {
   GLuint empty_vertex_array_ = 0;
   std::array<GLuint, PoolCount> pool_{};
   std::size_t vertex_capacity_ = 0;
+  std::size_t uv_capacity_ = 0;
   std::size_t index_capacity_ = 0;
   std::array<GLuint, StreamCount> streams_{};
 
@@ -540,7 +604,9 @@ void GlDevice::begin_pass(const CommandList::PassInfo &pass)
                      pass.name.data());
   }
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer.name);
-  glViewport(0, 0, framebuffer.size_px.x, framebuffer.size_px.y);
+  const glm::ivec2 viewport_px =
+      pass.actions.viewport_px == glm::ivec2(0) ? framebuffer.size_px : pass.actions.viewport_px;
+  glViewport(0, 0, viewport_px.x, viewport_px.y);
   // Clears obey the write masks.
   set_state(State::WriteColor | State::WriteDepth);
   std::vector<GLenum> lost;

@@ -2,6 +2,7 @@
 #include "internal/gltf_mesh.hh"
 
 #include "internal/gltf_accessor.hh"
+#include "internal/gltf_facets.hh"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -430,6 +431,7 @@ void MeshImporter::import_primitive(int gltf_mesh, std::size_t primitive_index, 
     // What was lost has been reported.
     return;
   }
+  flatten_facets(mesh);
   mesh.name = source.name.empty() ? "mesh " + std::to_string(gltf_mesh) : source.name;
   if (source.primitives.size() > 1) {
     mesh.name += '[' + std::to_string(primitive_index) + ']';

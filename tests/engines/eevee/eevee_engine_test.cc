@@ -69,8 +69,9 @@ TEST_F(EngineTest, MakesWhatTheSceneAsksFor)
                            "specular in eevee_lit", "film", "tonemap"}) {
     EXPECT_TRUE(is_made(report, what)) << what;
   }
-  // Six faces and a map, prepass, lit, film, tonemap.
-  EXPECT_EQ(device->counters().passes, 11U);
+  // The square is in one face of the point lamp, and flat to the sun: a face cleared and drawn; prepass, lit, film,
+  // tonemap.
+  EXPECT_EQ(device->counters().passes, 6U);
 }
 
 TEST_F(EngineTest, DrawsShadowsOnceForAStillScene)
@@ -153,9 +154,9 @@ TEST_F(EngineTest, PassesPrintWhatWasRecorded)
   test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 2}, {0, 0, -1}, 1.0F);
   Renderer renderer(*device, scene, {16, 16}, {.shadow = {.map_size_px = 16}});
   const std::string text = renderer.engine.serialize_passes(renderer.viewport);
-  EXPECT_NE(text.find("shadow_pass [write_depth depth_nearer_equal]\n  group eevee_shadow\n"), std::string::npos);
+  EXPECT_NE(text.find("shadow_pass [write_depth depth_nearer_equal depth_clamp]\n  group eevee_shadow_layered\n"),
+            std::string::npos);
   EXPECT_NE(text.find("    uniform shadow_render_block -> 12 by reference\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("    constant shadow_face by reference\n"), std::string::npos) << text;
   EXPECT_NE(text.find("    uniform light_block -> 10 = light_block\n"), std::string::npos) << text;
 }
 

@@ -1,0 +1,33 @@
+#version 450 core
+// SPDX-License-Identifier: MIT
+// A layer, filtered over cones of one solid angle: each texel looks into the cube in some directions around its own.
+#include "eevee/eevee_esm_cube_lib.glsl"
+
+#ifdef VULKAN
+layout(constant_id = 0) const int tap_count = ESM_TAPS;
+#else
+const int tap_count = ESM_TAPS;
+#endif
+
+layout(location = 0) out float stored;
+
+void main()
+{
+  EsmData data = esm.lamps[lamp];
+  ivec2 texel = ivec2(gl_FragCoord.xy) - ESM_BORDER;
+  if (max(texel.x, texel.y) >= data.size + ESM_BORDER) {
+    discard;
+  }
+  vec3 axis = map_direction(texel, data.size);
+  float sine = sin(0.5 * data.filter_angle);
+  float versine = 2.0 * sine * sine;
+  float weight = 1.0 / float(tap_count);
+  vec3 direction = esm_cone_direction(axis, esm_disk_point(0, tap_count), versine);
+  LogSum sum = log_sum_begin(cube_distance(direction, data.range), weight);
+  for (int i = 1; i < tap_count; i++) {
+    direction = esm_cone_direction(axis, esm_disk_point(i, tap_count), versine);
+    sum = log_sum_add(sum, data.exponent, cube_distance(direction, data.range), weight);
+  }
+  float filtered = clamp(log_sum_value(sum, data.exponent), 0.0, data.range);
+  stored = esm_encoded(filtered, data.range, data.format);
+}

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// Visibility of a lamp, 1 lit and 0 in shadow, from its octahedral layer.
+#include "eevee/eevee_esm_block_lib.glsl"
+#include "shared/eevee_octahedral_shared.h"
+
+/** Both are bound; of a lamp's layer, EsmData::format says which holds it. */
+layout(binding = SHADOW_ESM_SLOT) uniform sampler2DArray shadow_esm;
+layout(binding = SHADOW_ESM_HALF_SLOT) uniform sampler2DArray shadow_esm_half;
+
+/** The four texels around \a uv of the map, metres, and where between them it lies. */
+vec4 esm_gathered(sampler2DArray layers, EsmData data, vec2 uv, out vec2 fraction)
+{
+  vec2 texel = uv * float(data.size) + (float(ESM_BORDER) - 0.5);
+  vec2 low = floor(texel);
+  fraction = texel - low;
+  // At the corner that the four texels share, so that rounding cannot choose others.
+  vec2 corner = (low + 1.0) / vec2(textureSize(layers, 0).xy);
+  return textureGather(layers, vec3(corner, float(data.layer)));
+}
+
+/**
+ * Visibility in [0, 1], whatever it is given; 1 at the lamp itself.
+ *
+ * index: in `esm_block`. from_light_ws: from the lamp to the receiver, metres. normal_ws: unit normal of the receiver's plane,
+ * on either side.
+ */
+float shadow_esm_visibility(int index, vec3 from_light_ws, vec3 normal_ws)
+{
+  EsmData data = esm.lamps[index];
+  // The length without squares that overflow or vanish.
+  vec3 v = clamp(from_light_ws, -1e30, 1e30);
+  float largest = max(max(abs(v.x), abs(v.y)), abs(v.z));
+  v /= max(largest, 1e-30);
+  float norm = sqrt(dot(v, v));
+  vec3 direction = v / max(norm, 1e-30);
+  // What is beyond the range is where nothing was drawn is.
+  float distance = min(largest * norm, data.range);
+  float bias = esm_bias(distance, dot(normal_ws, direction), octahedral_texel_angle(direction, data.size),
+                        esm_format_error(data.range, data.format));
+  vec2 uv = octahedral_from_direction(v);
+  vec2 fraction;
+  vec4 stored = data.format == ESM_HALF ? esm_gathered(shadow_esm_half, data, uv, fraction) :
+                                          esm_gathered(shadow_esm, data, uv, fraction);
+  stored = vec4(esm_decoded(stored.x, data.range, data.format), esm_decoded(stored.y, data.range, data.format),
+                esm_decoded(stored.z, data.range, data.format), esm_decoded(stored.w, data.range, data.format));
+  float visibility = esm_gathered_visibility(data.exponent, stored, distance - data.bias * bias, fraction);
+  // A comparison with what is no number is false.
+  return visibility >= 0.0 ? min(visibility, 1.0) : 1.0;
+}

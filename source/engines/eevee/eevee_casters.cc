@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_casters.hh"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+namespace gnomon::eevee {
+
+std::uint64_t fingerprint_of(std::span<const std::byte> bytes)
+{
+  return std::hash<std::string_view>{}({reinterpret_cast<const char *>(bytes.data()), bytes.size()});
+}
+
+std::vector<scene::Bounds> changed_bounds(const std::vector<Caster> &before, const std::vector<Caster> &after)
+{
+  const auto sorted = [](const std::vector<Caster> &casters) {
+    std::vector<const Caster *> pointers;
+    pointers.reserve(casters.size());
+    for (const Caster &caster : casters) {
+      pointers.push_back(&caster);
+    }
+    std::ranges::sort(pointers, {}, &Caster::fingerprint);
+    return pointers;
+  };
+  std::vector<const Caster *> changed;
+  std::ranges::set_symmetric_difference(sorted(before), sorted(after), std::back_inserter(changed), {},
+                                        &Caster::fingerprint, &Caster::fingerprint);
+  std::vector<scene::Bounds> bounds;
+  bounds.reserve(changed.size());
+  for (const Caster *caster : changed) {
+    bounds.push_back(caster->bounds_ws);
+  }
+  return bounds;
+}
+
+float distance_to(const scene::Bounds &box, const glm::vec3 &position_ws)
+{
+  return glm::distance(position_ws, glm::clamp(position_ws, box.min, box.max));
+}
+
+float lamp_near(const glm::vec3 &position_ws, float range, const std::vector<Caster> &casters)
+{
+  constexpr float near_min = 1e-6F;
+  float nearest = range;
+  float smallest_around = std::numeric_limits<float>::max();
+  for (const Caster &caster : casters) {
+    const float distance = distance_to(caster.bounds_ws, position_ws);
+    nearest = std::min(nearest, distance);
+    if (distance == 0.0F) {
+      smallest_around = std::min(smallest_around, caster.bounds_ws.radius());
+    }
+  }
+  if (std::isinf(nearest)) {
+    return near_min;
+  }
+  // Along a face's axis what is at this distance is nearer, by up to the square root of 3.
+  return std::max(nearest > 0.0F ? 0.5F * nearest : 2e-4F * smallest_around, near_min);
+}
+
+std::uint32_t cube_face_mask(const glm::vec3 &center, float radius, float half_size)
+{
+  const glm::vec3 size = glm::abs(center);
+  // Distance to the plane through the lamp and a face's edge, times the length of (half_size, 1); rounding is inside
+  // the last factor.
+  const float slack = radius * std::sqrt(half_size * half_size + 1.0F) + 1e-5F * (size.x + size.y + size.z);
+  const glm::vec3 across(std::max(size.y, size.z), std::max(size.x, size.z), std::max(size.x, size.y));
+  std::uint32_t mask = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    const float along = half_size * center[axis];
+    mask |= along + slack >= across[axis] ? 1U << (2 * axis) : 0U;
+    mask |= slack - along >= across[axis] ? 2U << (2 * axis) : 0U;
+  }
+  return mask;
+}
+
+}  // namespace gnomon::eevee

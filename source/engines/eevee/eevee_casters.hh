@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "draw_pass.hh"
+#include "scene.hh"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace gnomon::eevee {
+
+/** Something that throws shadows. */
+struct Caster {
+  scene::Bounds bounds_ws;
+  draw::ObjectIndex object = draw::object_identity;
+  /** The call of its mesh in the pass that draws casters; lives as long as that pass. */
+  draw::InstanceCall *instances = nullptr;
+  /** Of its shape and place: another number, another shadow. */
+  std::uint64_t fingerprint = 0;
+};
+
+/** Of plain numbers; for Caster::fingerprint. */
+[[nodiscard]] std::uint64_t fingerprint_of(std::span<const std::byte> bytes);
+
+/**
+ * Boxes of what is in one list and not in the other, by fingerprint: where shadows are no longer what they were. Of a
+ * caster that moved, both its old box and its new one.
+ */
+[[nodiscard]] std::vector<scene::Bounds> changed_bounds(const std::vector<Caster> &before,
+                                                        const std::vector<Caster> &after);
+
+/** Distance of the nearest point of a box, metres; 0 inside. */
+[[nodiscard]] float distance_to(const scene::Bounds &box, const glm::vec3 &position_ws);
+
+/**
+ * Distance of the near plane of a lamp, metres, for the best precision: depths lose it with the square of distance /
+ * near. As far as the nearest caster's box allows; where the lamp is inside of boxes, a small part of the smallest
+ * one's size. What is nearer is drawn at the near plane, and not lost.
+ *
+ * \a range: what is farther casts nothing, metres.
+ */
+[[nodiscard]] float lamp_near(const glm::vec3 &position_ws, float range, const std::vector<Caster> &casters);
+
+/**
+ * The faces of a cube that a sphere touches, bit i for face i; never one too few.
+ *
+ * \a center: from the lamp, metres. \a half_size: of a face at distance 1, at least 1.
+ */
+[[nodiscard]] std::uint32_t cube_face_mask(const glm::vec3 &center, float radius, float half_size);
+
+}  // namespace gnomon::eevee

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_octahedral.hh"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+namespace gnomon::eevee {
+
+float esm_filter_angle(int size_px)
+{
+  const float mean_texel_angle = std::sqrt(4.0F * std::numbers::pi_v<float>) / float(size_px);
+  return std::min(2.0F * mean_texel_angle, 0.5F);
+}
+
+float esm_exponent(float filter_angle, float range)
+{
+  constexpr float spread_at_half_range = 2.0F;
+  return std::clamp(spread_at_half_range / std::max(0.5F * filter_angle * range, 1e-30F), 0.01F, 1e4F);
+}
+
+int esm_cube_size_px(int size_px)
+{
+  return size_px / 2;
+}
+
+namespace {
+
+/** \throws gpu::Error unless \a value is in [low, high]; false for what is no number. */
+template <typename T>
+void check_range(const EsmLamp &lamp, const char *setting, T value, T low, T high, const char *unit)
+{
+  if (!(value >= low && value <= high)) {
+    throw gpu::Error("lamp '{}': {} {}{} of its shadow is not in [{}, {}]", lamp.name, setting, value, unit, low, high);
+  }
+}
+
+/** All but the layer. \throws gpu::Error */
+shared::EsmData make_data(const EsmLamp &lamp)
+{
+  const EsmSettings &settings = lamp.settings;
+  check_range(lamp, "range", lamp.range, 1e-6F, 1e30F, " m");
+  check_range(lamp, "size", settings.size_px, 4, 8192, " px");
+  const float filter_angle = settings.filter_angle.value_or(esm_filter_angle(settings.size_px));
+  check_range(lamp, "filter angle", filter_angle, 0.0F, 0.5F, " rad");
+  const float exponent = settings.exponent.value_or(esm_exponent(filter_angle, lamp.range));
+  check_range(lamp, "exponent", exponent, 0.01F, 1e4F, "/m");
+  check_range(lamp, "bias", settings.bias, 0.0F, 1e3F, "");
+
+  shared::EsmData data{};
+  data.exponent = exponent;
+  data.bias = settings.bias;
+  data.range = lamp.range;
+  data.filter_angle = filter_angle;
+  data.size = settings.size_px;
+  const float half_error = shared::esm_visibility_error(exponent, shared::esm_format_error(lamp.range, ESM_HALF));
+  const bool is_half =
+      settings.format == EsmFormat::Half || (settings.format == EsmFormat::Auto && half_error <= esm_half_error_max);
+  data.format = is_half ? ESM_HALF : ESM_FLOAT;
+  return data;
+}
+
+}  // namespace
+
+bool OctahedralStore::sync(gpu::Device &device, ShaderCache &shaders, std::span<const EsmLamp> lamps)
+{
+  const std::size_t most = std::size_t(std::min(ESM_MAX, device.limits().array_layers_max));
+  shared::EsmBlock block{};
+  std::vector<Slot> slots;
+  std::vector<std::string> limits;
+  std::vector<std::string> lost;
+  std::array<int, 2> layers{};
+  std::array<int, 2> sizes{};
+  int scratch_size = 0;
+  for (const EsmLamp &lamp : lamps) {
+    shared::EsmData data = make_data(lamp);
+    if (slots.size() == most) {
+      lost.push_back(lamp.name);
+      continue;
+    }
+    const auto format = std::size_t(data.format);
+    data.layer = layers[format]++;
+    sizes[format] = std::max(sizes[format], data.size + 2 * ESM_BORDER);
+    if (lamp.settings.kernel == EsmKernel::Separable) {
+      scratch_size = std::max(scratch_size, data.size);
+    }
+    const float error = shared::esm_visibility_error(data.exponent, shared::esm_format_error(data.range, data.format));
+    if (error > esm_half_error_max) {
+      limits.push_back(
+          fmt::format("lamp '{}': 16 bits round its shadow by up to {:.2g} at an exponent of {:.4g}/m over "
+                      "{:.4g} m; 32 bits would not",
+                      lamp.name, error, data.exponent, data.range));
+    }
+    block.lamps[slots.size()] = data;
+    slots.push_back({lamp.settings.kernel});
+  }
+  if (!lost.empty()) {
+    limits.push_back(fmt::format("{} lamps lost their shadow, as {} octahedral layers are the most: '{}'", lost.size(),
+                                 most, fmt::join(lost, "', '")));
+  }
+
+  bool is_new = false;
+  for (const int format : {ESM_FLOAT, ESM_HALF}) {
+    is_new |= create_array(device, format, sizes[std::size_t(format)], layers[std::size_t(format)]);
+  }
+  create_scratch(device, scratch_size);
+  is_new |= slots != slots_ || std::memcmp(&block, &block_, sizeof(block)) != 0;
+  block_ = block;
+  slots_ = std::move(slots);
+  limits_ = std::move(limits);
+  if (!slots_.empty()) {
+    if (!block_buffer_) {
+      sampler_ = device.create_sampler({.name = "esm_sampler"});
+      block_buffer_ = device.create_buffer({"esm_block", gpu::BufferKind::Uniform, sizeof(shared::EsmBlock)});
+    }
+    device.update(block_buffer_, block_);
+  }
+  record_passes(device, shaders);
+  return is_new;
+}
+
+bool OctahedralStore::create_array(gpu::Device &device, int format, int size_px, int layers)
+{
+  Array &array = arrays_[std::size_t(format)];
+  const std::string name = format == ESM_HALF ? "shadow_esm_half" : "shadow_esm";
+  if (array.texture ? array.texture.desc().width == size_px && array.texture.desc().layers == layers : layers == 0) {
+    return false;
+  }
+  Array made;
+  if (layers > 0) {
+    made.texture = device.create_texture({.name = name,
+                                          .kind = gpu::TextureKind::Array,
+                                          .format = format == ESM_HALF ? gpu::Format::R16F : gpu::Format::R32F,
+                                          .width = size_px,
+                                          .height = size_px,
+                                          .layers = layers});
+  }
+  for (int layer = 0; layer < layers; layer++) {
+    made.framebuffers.push_back(device.create_framebuffer(
+        {.name = fmt::format("{} {}", name, layer), .colors = {{&made.texture, layer}}, .depth = {}}));
+  }
+  array = std::move(made);
+  return layers > 0;
+}
+
+void OctahedralStore::create_scratch(gpu::Device &device, int size_px)
+{
+  if (scratch_[0].texture ? scratch_[0].texture.desc().width == size_px : size_px == 0) {
+    return;
+  }
+  scratch_ = {};
+  if (size_px == 0) {
+    return;
+  }
+  for (Scratch &scratch : scratch_) {
+    const std::string name = &scratch == scratch_.data() ? "esm_distance" : "esm_rows";
+    scratch.texture =
+        device.create_texture({.name = name, .format = gpu::Format::R32F, .width = size_px, .height = size_px});
+    scratch.framebuffer = device.create_framebuffer({.name = name, .colors = {{&scratch.texture}}, .depth = {}});
+  }
+}
+
+void OctahedralStore::record_passes(gpu::Device &device, ShaderCache &shaders)
+{
+  const auto has_kernel = [&](EsmKernel kernel) { return std::ranges::count(slots_, kernel, &Slot::kernel) > 0; };
+  const auto group_of = [&](draw::Pass &pass, ShaderId id, bool is_needed) {
+    pass.clear();
+    if (!is_needed) {
+      return;
+    }
+    draw::ShadingGroup &group = pass.group(shaders.get(device, id));
+    group.bind_uniform("esm_block", block_buffer_);
+    group.bind_texture_ref("shadow_cubes", &recorded_.cube);
+    group.bind_texture_ref("esm_source", &recorded_.source);
+    group.constant_ref("lamp", &recorded_.lamp);
+    group.constant_ref("first_layer", &recorded_.first_layer);
+    group.constant_ref("face_mask", &recorded_.face_mask);
+    group.constant_ref("near", &recorded_.near);
+    group.constant_ref("uv_scale", &recorded_.uv_scale);
+    group.constant_ref("axis", &recorded_.axis);
+    group.call_procedural();
+  };
+  group_of(disk4_, ShaderId::EsmDisk4, has_kernel(EsmKernel::Disk4));
+  group_of(disk32_, ShaderId::EsmDisk32, has_kernel(EsmKernel::Disk32));
+  group_of(distance_, ShaderId::EsmDistance, has_kernel(EsmKernel::Separable));
+  group_of(separable_, ShaderId::EsmSeparable, has_kernel(EsmKernel::Separable));
+}
+
+void OctahedralStore::record(gpu::CommandList &list, std::size_t index, const EsmCube &cube)
+{
+  GNOMON_ASSERT(index < slots_.size(), "octahedral layer {} of {}", index, slots_.size());
+  GNOMON_ASSERT(cube.near > 0.0F && cube.uv_scale > 0.0F && cube.uv_scale <= 1.0F, "near {}, uv_scale {}", cube.near,
+                cube.uv_scale);
+  const shared::EsmData &data = block_.lamps[index];
+  recorded_.lamp = int(index);
+  recorded_.first_layer = cube.first_layer;
+  recorded_.face_mask = int(cube.face_mask);
+  recorded_.near = cube.near;
+  recorded_.uv_scale = cube.uv_scale;
+  recorded_.cube = {cube.texture.id(), sampler_.id()};
+
+  // Cleared to far, as the layer stores it: a smaller map leaves a part of it.
+  const auto record_into = [&](const draw::Pass &pass, const gpu::Framebuffer &framebuffer, float far) {
+    list.begin_pass(fmt::format("{} of lamp {}", pass.name(), index), framebuffer, {.clear_color = glm::vec4(far)});
+    pass.record({}, list);
+    list.end_pass();
+  };
+  const gpu::Framebuffer &layer = array_of(index).framebuffers[std::size_t(data.layer)];
+  const float far = shared::esm_encoded(data.range, data.range, data.format);
+  if (slots_[index].kernel != EsmKernel::Separable) {
+    record_into(slots_[index].kernel == EsmKernel::Disk4 ? disk4_ : disk32_, layer, far);
+    return;
+  }
+  record_into(distance_, scratch_[0].framebuffer, data.range);
+  for (recorded_.axis = 0; recorded_.axis < 2; recorded_.axis++) {
+    recorded_.source = {scratch_[std::size_t(recorded_.axis)].texture.id(), sampler_.id()};
+    record_into(separable_, recorded_.axis == 0 ? scratch_[1].framebuffer : layer, far);
+  }
+}
+
+void OctahedralStore::bind(draw::ShadingGroup &group) const
+{
+  GNOMON_ASSERT(!slots_.empty(), "no lamp has an octahedral layer");
+  // An array that no lamp asked for is not made, and not read.
+  const gpu::Texture &floats = arrays_[ESM_FLOAT].texture;
+  const gpu::Texture &halves = arrays_[ESM_HALF].texture;
+  group.bind_uniform("esm_block", block_buffer_);
+  group.bind_texture("shadow_esm", floats ? floats : halves, sampler_);
+  group.bind_texture("shadow_esm_half", halves ? halves : floats, sampler_);
+}
+
+std::size_t OctahedralStore::size_bytes() const
+{
+  std::size_t bytes = 0;
+  for (const Array &array : arrays_) {
+    bytes += array.texture ? array.texture.desc().size_bytes() : 0;
+  }
+  for (const Scratch &scratch : scratch_) {
+    bytes += scratch.texture ? scratch.texture.desc().size_bytes() : 0;
+  }
+  return bytes;
+}
+
+}  // namespace gnomon::eevee

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "eevee_shaders.hh"
+
+#include "draw_pass.hh"
+#include "eevee_esm_shared.h"
+
+#include <optional>
+
+namespace gnomon::eevee {
+
+/** How a layer is filtered. All are exact in log space: filtered is exp(exponent · distance). */
+enum class EsmKernel {
+  /** Cones of one solid angle, sampled by 4 and by 32 taps; the cost is taps × texels. */
+  Disk4,
+  Disk32,
+  /** A Gaussian along rows, then along columns, as wide as the disk: for wide filters. Its solid angle is the same
+     everywhere, its shape is not: where the map is sheared, one axis of it is up to √3 times the other. */
+  Separable,
+};
+
+enum class EsmFormat {
+  /** Half where it rounds visibilities by esm_half_error_max at most. */
+  Auto,
+  Half,
+  Float,
+};
+
+/** Most that 16 bits may change a visibility without a word. */
+inline constexpr float esm_half_error_max = 0.02F;
+
+/** What one lamp asks for. */
+struct EsmSettings {
+  /** 1/m, 0.01 to 1e4; nothing: esm_exponent. */
+  std::optional<float> exponent{};
+  /** Scale of shared::esm_bias, 0 to 1e3. */
+  float bias = 1.0F;
+  /** Half the opening of the filter's cone, radians, 0 to 0.5; nothing: esm_filter_angle. */
+  std::optional<float> filter_angle{};
+  /** Edge of the map, texels, 4 to 8192. */
+  int size_px = 512;
+  EsmFormat format = EsmFormat::Auto;
+  EsmKernel kernel = EsmKernel::Disk32;
+};
+
+/** Two texels of mean solid angle, radians: what hides the texels, and no more. */
+[[nodiscard]] float esm_filter_angle(int size_px);
+
+/**
+ * 1/m. Over a cone of half opening a, a plane tilted by 45° spreads over ± a·d at distance d, and the filter's weights
+ * over exp(± c·a·d): a c that is larger makes the farthest tap win, and shadows shrink by the radius; a smaller one
+ * lets light through behind near casters, over 1 / c. So c·a·d is kept at a constant at half the range.
+ */
+[[nodiscard]] float esm_exponent(float filter_angle, float range);
+
+/** Edge of the cube's faces that serves a map of \a size_px, pixels: doc/decisions/0006. */
+[[nodiscard]] int esm_cube_size_px(int size_px);
+
+/** A lamp that wants a layer. */
+struct EsmLamp {
+  /** Named in messages. */
+  std::string name;
+  /** Metres, above 0, at most 1e30: no farther does it cast or receive a shadow. */
+  float range = 0.0F;
+  EsmSettings settings{};
+};
+
+/** The depths that a layer is made from: reversed, depth = near / distance along the face's axis, and 0 where nothing
+ * is. */
+struct EsmCube {
+  /** Depth32F array of square layers. */
+  const gpu::Texture &texture;
+  /** The six faces follow it, in OpenGL's order. */
+  int first_layer = 0;
+  /** Metres, above 0. */
+  float near = 0.0F;
+  /** Bit f: face f was drawn. What others show is as far as the range. */
+  unsigned face_mask = 0x3F;
+  /** Share of a face's image that 90° take, in (0, 1]. */
+  float uv_scale = 1.0F;
+};
+
+/**
+ * Octahedral exponential shadow maps: for each lamp a layer with the filtered distance to the first caster in each
+ * direction, which shadow_esm_visibility of eevee_esm_lib.glsl reads.
+ *
+ * Order: sync; then record whenever a lamp's cube has changed; bind in what is lit. Must go before its device.
+ */
+class OctahedralStore {
+ public:
+  OctahedralStore() = default;
+  OctahedralStore(const OctahedralStore &) = delete;
+  OctahedralStore &operator=(const OctahedralStore &) = delete;
+
+  /**
+   * Give each of \a lamps a layer; the index is that in \a lamps and in `esm_block`. Lamps beyond size() have none and
+   * are named in limits(). To be called again after a reload of \a shaders, which must outlive the store.
+   *
+   * \return whether all layers must be recorded (again), as textures, settings or lamps are others than before.
+   * \throws gpu::Error naming lamp, setting and value; nothing has changed then.
+   */
+  bool sync(gpu::Device &device, ShaderCache &shaders, std::span<const EsmLamp> lamps);
+
+  /** Append the passes that make the layer of the \a index-th lamp. \pre index below size() */
+  void record(gpu::CommandList &list, std::size_t index, const EsmCube &cube);
+
+  /** `esm_block`, `shadow_esm` and `shadow_esm_half`, by value. \pre size() is above 0 */
+  void bind(draw::ShadingGroup &group) const;
+
+  /** Lamps that have a layer. */
+  [[nodiscard]] std::size_t size() const
+  {
+    return slots_.size();
+  }
+  /** What the lamp was given, derived values in place. */
+  [[nodiscard]] const shared::EsmData &data(std::size_t index) const
+  {
+    return block_.lamps[index];
+  }
+  /** The array that holds the lamp's layer: R32F, or R16F. */
+  [[nodiscard]] const gpu::Texture &texture(std::size_t index) const
+  {
+    return array_of(index).texture;
+  }
+  /** Of layers and of what filtering needs besides. */
+  [[nodiscard]] std::size_t size_bytes() const;
+  /** Lamps without a layer, and those whose visibility 16 bits round by more than esm_half_error_max; named. */
+  [[nodiscard]] const std::vector<std::string> &limits() const
+  {
+    return limits_;
+  }
+
+ private:
+  struct Slot {
+    EsmKernel kernel = EsmKernel::Disk32;
+    bool operator==(const Slot &) const = default;
+  };
+  /** Layers of one format, as large as the largest. */
+  struct Array {
+    gpu::Texture texture;
+    /** One a layer. */
+    std::vector<gpu::Framebuffer> framebuffers;
+  };
+  /** What the separable filter works in: a texture and what draws into it. */
+  struct Scratch {
+    gpu::Texture texture;
+    gpu::Framebuffer framebuffer;
+  };
+
+  [[nodiscard]] const Array &array_of(std::size_t index) const
+  {
+    return arrays_[std::size_t(block_.lamps[index].format)];
+  }
+  bool create_array(gpu::Device &device, int format, int size_px, int layers);
+  void create_scratch(gpu::Device &device, int size_px);
+  void record_passes(gpu::Device &device, ShaderCache &shaders);
+
+  std::vector<Slot> slots_;
+  shared::EsmBlock block_{};
+  gpu::Buffer block_buffer_;
+  /** By ESM_…: floats, halves. */
+  std::array<Array, 2> arrays_;
+  /** Distances, and their rows filtered. */
+  std::array<Scratch, 2> scratch_;
+  gpu::Sampler sampler_;
+  draw::Pass disk4_{"esm_disk4", gpu::State::WriteColor};
+  draw::Pass disk32_{"esm_disk32", gpu::State::WriteColor};
+  draw::Pass distance_{"esm_distance", gpu::State::WriteColor};
+  draw::Pass separable_{"esm_separable", gpu::State::WriteColor};
+  /** What the passes read when they are recorded: the lamp at work. */
+  struct {
+    int lamp = 0;
+    int first_layer = 0;
+    int face_mask = 0;
+    float near = 0.0F;
+    float uv_scale = 1.0F;
+    int axis = 0;
+    draw::TextureBinding cube;
+    draw::TextureBinding source;
+  } recorded_;
+  std::vector<std::string> limits_;
+};
+
+}  // namespace gnomon::eevee

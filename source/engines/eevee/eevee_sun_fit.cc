@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_sun_fit.hh"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace gnomon::eevee {
+
+namespace {
+
+/** Of a map's extent, to each side: how far a camera may move before the map is drawn again. */
+constexpr double slack = 1.0 / 32.0;
+/** A map's extent is a power of this, so that a fit that changes a little keeps its texels. */
+const double extent_step = std::exp2(1.0 / 8.0);
+/** Around what is needed, for the filter's kernel. */
+constexpr double margin_texels = 4.0;
+
+/** A box in double, in a lamp's axes. */
+struct LampBox {
+  glm::dvec3 min{std::numeric_limits<double>::infinity()};
+  glm::dvec3 max{-std::numeric_limits<double>::infinity()};
+
+  void extend(const glm::dvec3 &point)
+  {
+    min = glm::min(min, point);
+    max = glm::max(max, point);
+  }
+};
+
+LampBox box_in(const glm::dmat3 &lamp_from_world, const scene::Bounds &bounds)
+{
+  LampBox box;
+  for (int i = 0; i < 8; i++) {
+    box.extend(lamp_from_world * glm::dvec3((i & 1) ? bounds.max.x : bounds.min.x,
+                                            (i & 2) ? bounds.max.y : bounds.min.y,
+                                            (i & 4) ? bounds.max.z : bounds.min.z));
+  }
+  return box;
+}
+
+/**
+ * Whether a caster may darken any receiver. One that is flat along an axis cannot where all receivers are on its lit
+ * side: the ground of most scenes, which would stretch the map over everything.
+ */
+bool can_darken(const scene::Bounds &caster, const scene::Bounds &receivers, const glm::vec3 &forward_ws)
+{
+  for (int axis = 0; axis < 3; axis++) {
+    // Flat to rounding: what is thin in a wide scene still casts.
+    const float own_tolerance = 1e-6F * std::max(std::abs(caster.min[axis]), std::abs(caster.max[axis]));
+    const float tolerance = own_tolerance + 1e-7F * receivers.radius();
+    const bool is_flat = caster.max[axis] - caster.min[axis] <= own_tolerance;
+    const bool is_below = forward_ws[axis] < 0.0F && receivers.min[axis] >= caster.min[axis] - tolerance;
+    const bool is_above = forward_ws[axis] > 0.0F && receivers.max[axis] <= caster.max[axis] + tolerance;
+    if (is_flat && (is_below || is_above)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/** What all maps of a sun have to hold: where receivers and casters overlap, from the first caster to the last
+ * receiver. */
+std::optional<LampBox> needed_box(const scene::Lamp &lamp, const std::vector<glm::dvec3> &receivers_ws,
+                                  const std::vector<Caster> &casters)
+{
+  // Directions only: a sun is nowhere.
+  const glm::dmat3 from_world = glm::transpose(glm::dmat3(lamp.world_from_lamp));
+  const glm::vec3 forward_ws = -glm::vec3(lamp.world_from_lamp[2]);
+  scene::Bounds receiver_bounds;
+  LampBox receivers;
+  for (const glm::dvec3 &point : receivers_ws) {
+    receiver_bounds.extend(glm::vec3(point));
+    receivers.extend(from_world * point);
+  }
+  LampBox above;
+  for (const Caster &caster : casters) {
+    const LampBox box = box_in(from_world, caster.bounds_ws);
+    const bool overlaps = box.min.x <= receivers.max.x && box.max.x >= receivers.min.x &&
+                          box.min.y <= receivers.max.y && box.max.y >= receivers.min.y && box.max.z >= receivers.min.z;
+    if (overlaps && can_darken(caster.bounds_ws, receiver_bounds, forward_ws)) {
+      above.extend(box.min);
+      above.extend(box.max);
+    }
+  }
+  LampBox needed{glm::max(receivers.min, above.min), glm::min(receivers.max, above.max)};
+  // The lamp shines along -Z: what darkens is above, up to the highest caster.
+  needed.max.z = above.max.z;
+  needed.min.z = receivers.min.z;
+  if (receivers_ws.empty() || !(needed.min.x <= needed.max.x && needed.min.y <= needed.max.y)) {
+    return std::nullopt;
+  }
+  return needed;
+}
+
+SunFit fit_to(const LampBox &needed, const glm::dmat3 &lamp_from_world, int size_px)
+{
+  SunFit fit;
+  fit.needed_min = needed.min;
+  fit.needed_max = needed.max;
+  const glm::dvec3 extent = needed.max - needed.min;
+  // Never an empty box.
+  const double size = std::max({extent.x, extent.y, extent.z, 1e-6});
+  const double share = std::max(1.0 - 2.0 * margin_texels / size_px, 0.5);
+  for (int axis = 0; axis < 2; axis++) {
+    const double wanted = std::max(extent[axis] * (1.0 + 2.0 * slack), 1e-4 * size) / share;
+    const double stepped = std::pow(extent_step, std::ceil(std::log(wanted) / std::log(extent_step) - 1e-9));
+    const double texel = stepped / size_px;
+    const double center = 0.5 * (needed.min[axis] + needed.max[axis]);
+    fit.min[axis] = std::floor((center - 0.5 * stepped) / texel) * texel;
+    fit.max[axis] = fit.min[axis] + stepped;
+  }
+  fit.min.z = needed.min.z - slack * size;
+  fit.max.z = needed.max.z + slack * size;
+  const glm::dvec3 center = 0.5 * (fit.min + fit.max);
+  const glm::dvec3 half = 0.5 * (fit.max - fit.min);
+  glm::dmat4 view_from_world(lamp_from_world);
+  view_from_world[3] = glm::dvec4(-center, 1.0);
+  fit.view = draw::View(glm::mat4(view_from_world),
+                        draw::orthographic(float(half.x), float(half.y), float(-half.z), float(half.z)));
+  return fit;
+}
+
+}  // namespace
+
+VisibleRange visible_range(const draw::View &view, std::vector<glm::dvec3> corners)
+{
+  VisibleRange visible;
+  visible.near = std::numeric_limits<double>::infinity();
+  visible.far = -visible.near;
+  const glm::dmat4 view_from_world(view.view_from_world());
+  for (const glm::dvec3 &corner : corners) {
+    const double distance = -(view_from_world * glm::dvec4(corner, 1.0)).z;
+    visible.near = std::min(visible.near, distance);
+    visible.far = std::max(visible.far, distance);
+  }
+  if (view.is_perspective()) {
+    // Corners on the near plane come out a rounding before it.
+    visible.near = std::max(visible.near, 1e-6 * std::max(visible.far, 1e-6));
+  }
+  visible.corners = std::move(corners);
+  return visible;
+}
+
+std::vector<double> cascade_splits(double near, double far, int count, double lambda)
+{
+  std::vector<double> splits = {near};
+  for (int i = 1; i < count; i++) {
+    const double share = double(i) / count;
+    const double even = near + (far - near) * share;
+    const double logarithmic = near > 0.0 ? near * std::pow(far / near, share) : even;
+    splits.push_back(lambda * logarithmic + (1.0 - lambda) * even);
+  }
+  splits.push_back(far);
+  return splits;
+}
+
+Sphere slice_sphere(const draw::View &view, double near, double far)
+{
+  const glm::dmat4 projection(view.clip_from_view());
+  // The middle and the corners of the frame at a distance, in view space.
+  const auto frame_at = [&](double distance) {
+    std::array<glm::dvec3, 5> points;
+    for (std::size_t i = 0; i < 5; i++) {
+      const glm::dvec2 ndc =
+          i == 4 ? glm::dvec2(0.0) : glm::dvec2((i & 1U) != 0 ? 1.0 : -1.0, (i & 2U) != 0 ? 1.0 : -1.0);
+      const double w = view.is_perspective() ? distance : 1.0;
+      const glm::dvec2 offset(-distance * projection[2][0] + projection[3][0],
+                              -distance * projection[2][1] + projection[3][1]);
+      points[i] = {(ndc.x * w - offset.x) / projection[0][0], (ndc.y * w - offset.y) / projection[1][1], -distance};
+    }
+    return points;
+  };
+  const auto front = frame_at(near);
+  const auto back = frame_at(far);
+  // On the axis, where the near corners are as far away as the far ones.
+  const double length = std::max(glm::distance(front[4], back[4]), 1e-12);
+  const double front_sq = glm::dot(front[0] - front[4], front[0] - front[4]);
+  const double back_sq = glm::dot(back[0] - back[4], back[0] - back[4]);
+  const double along = std::clamp((length * length + back_sq - front_sq) / (2.0 * length), 0.0, length);
+  const glm::dvec3 center = glm::mix(front[4], back[4], along / length);
+  Sphere sphere;
+  for (std::size_t i = 0; i < 4; i++) {
+    sphere.radius = std::max({sphere.radius, glm::distance(center, front[i]), glm::distance(center, back[i])});
+  }
+  sphere.center_ws = glm::dvec3(glm::inverse(glm::dmat4(view.view_from_world())) * glm::dvec4(center, 1.0));
+  return sphere;
+}
+
+std::vector<SunFit> fit_sun(const scene::Lamp &lamp, const draw::View &view, const VisibleRange &visible,
+                            const std::vector<Caster> &casters, int size_px, const CascadeSettings &settings,
+                            float pixel_size)
+{
+  const std::optional<LampBox> needed = needed_box(lamp, visible.corners, casters);
+  if (!needed) {
+    return {};
+  }
+  const glm::dmat3 lamp_from_world = glm::transpose(glm::dmat3(lamp.world_from_lamp));
+  const SunFit whole = fit_to(*needed, lamp_from_world, size_px);
+  const auto fits_of = [&](int count, bool &is_fine) {
+    is_fine = true;
+    std::vector<SunFit> fits;
+    const std::vector<double> splits = cascade_splits(visible.near, visible.far, count, settings.lambda);
+    for (int i = 0; i < count; i++) {
+      const double pixel = view.is_perspective() ? pixel_size * splits[std::size_t(i)] : pixel_size;
+      SunFit fit = whole;
+      if (i < count - 1) {
+        const Sphere sphere = slice_sphere(view, splits[std::size_t(i)], splits[std::size_t(i) + 1]);
+        const glm::dvec3 center = lamp_from_world * sphere.center_ws;
+        LampBox box{center - sphere.radius, center + sphere.radius};
+        box.min.z = needed->min.z;
+        box.max.z = needed->max.z;
+        fit = fit_to(box, lamp_from_world, size_px);
+      }
+      is_fine = is_fine && std::min(fit.texel(size_px), whole.texel(size_px)) <= pixel;
+      // One that shows all is no coarser than this slice's: the rest is not needed.
+      if (i == count - 1 || fit.texel(size_px) >= whole.texel(size_px)) {
+        fits.push_back(whole);
+        break;
+      }
+      fits.push_back(fit);
+    }
+    return fits;
+  };
+  bool is_fine = false;
+  if (settings.count > 0) {
+    return fits_of(settings.count, is_fine);
+  }
+  for (int count = 1;; count++) {
+    std::vector<SunFit> fits = fits_of(count, is_fine);
+    if (is_fine || count == cascade_count_max) {
+      return fits;
+    }
+  }
+}
+
+bool still_fits(const SunFit &old, const SunFit &needed)
+{
+  // Extents grow in steps: within two of them nothing is gained.
+  const double size_ratio_max = std::pow(extent_step, 2.5);
+  const glm::dvec3 old_size = old.max - old.min;
+  const glm::dvec3 size = needed.max - needed.min;
+  return glm::all(glm::lessThanEqual(old.min, needed.needed_min)) &&
+         glm::all(glm::greaterThanEqual(old.max, needed.needed_max)) && old_size.x <= size_ratio_max * size.x &&
+         old_size.y <= size_ratio_max * size.y;
+}
+
+}  // namespace gnomon::eevee

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_casters.hh"
+
+#include "eevee_shadow_shared.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace gnomon::eevee {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+Caster caster_at(const glm::vec3 &center, float half, std::uint64_t fingerprint = 0)
+{
+  Caster caster;
+  caster.bounds_ws.extend(center - half);
+  caster.bounds_ws.extend(center + half);
+  caster.fingerprint = fingerprint;
+  return caster;
+}
+
+TEST(LampNear, IsBeforeEveryCasterAndAboveZero)
+{
+  const Caster box = caster_at(glm::vec3(0), 1.0F);
+  // Along a cube face's axis a point at distance d is at least d / √3 away.
+  EXPECT_LE(lamp_near({0, 5, 0}, infinity, {box}), 4.0F / std::sqrt(3.0F));
+  EXPECT_GT(lamp_near({0, 5, 0}, infinity, {box}), 1.0F);
+  EXPECT_GT(lamp_near({0, 0, 0}, infinity, {box}), 0.0F);
+  EXPECT_GT(lamp_near({0, 0, 0}, infinity, {}), 0.0F);
+  EXPECT_LE(lamp_near({0, 0, 0}, 7.0F, {}), 7.0F);
+}
+
+TEST(CubeFaceMask, HoldsEachFaceThatAPointOfTheSphereIsIn)
+{
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+  const auto point = [&] { return glm::vec3(unit(random), unit(random), unit(random)); };
+  int skipped = 0;
+  for (int i = 0; i < 3000; i++) {
+    const glm::vec3 center = 10.0F * point();
+    const float radius = 5.0F * std::abs(unit(random));
+    const std::uint32_t mask = cube_face_mask(center, radius, 1.0F);
+    skipped += mask == 63U ? 0 : 1;
+    for (int j = 0; j < 20; j++) {
+      const glm::vec3 p = center + radius * point() / std::sqrt(3.0F);
+      ASSERT_TRUE(mask >> shared::cube_face(p) & 1U) << "center " << center.x << " " << center.y << " " << center.z;
+    }
+  }
+  EXPECT_GT(skipped, 2000) << "a mask of all faces would be right, and useless";
+}
+
+TEST(CubeFaceMask, OfASmallSphereOnAnAxisIsOneFace)
+{
+  for (int axis = 0; axis < 3; axis++) {
+    for (const float sign : {1.0F, -1.0F}) {
+      glm::vec3 center(0.0F);
+      center[axis] = 5.0F * sign;
+      EXPECT_EQ(cube_face_mask(center, 1.0F, 1.0F), 1U << (2 * axis + (sign < 0.0F ? 1 : 0)));
+    }
+  }
+  EXPECT_EQ(cube_face_mask(glm::vec3(0), 1.0F, 1.0F), 63U) << "around the lamp";
+}
+
+TEST(ChangedBounds, AreThoseOfWhatCameAndWent)
+{
+  const std::vector<Caster> before = {caster_at({0, 0, 0}, 1, 1), caster_at({5, 0, 0}, 1, 2),
+                                      caster_at({9, 0, 0}, 1, 3)};
+  EXPECT_TRUE(changed_bounds(before, before).empty());
+  // In another order, and one moved.
+  const std::vector<Caster> after = {caster_at({9, 0, 0}, 1, 3), caster_at({0, 0, 0}, 1, 1),
+                                     caster_at({7, 0, 0}, 1, 4)};
+  const std::vector<scene::Bounds> changed = changed_bounds(before, after);
+  ASSERT_EQ(changed.size(), 2U);
+  EXPECT_EQ(changed[0].center().x + changed[1].center().x, 12.0F);
+  EXPECT_EQ(changed_bounds({}, after).size(), 3U);
+}
+
+}  // namespace
+}  // namespace gnomon::eevee
