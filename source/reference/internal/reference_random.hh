@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <glm/vec2.hpp>
+
+#include <cmath>
+#include <cstdint>
+
+/** Numbers that depend on what they are for and on nothing else: not on the order of work, nor on threads. */
+namespace gnomon::reference {
+
+/** SplitMix64's output function (Steele, Lea and Flood 2014). */
+[[nodiscard]] inline std::uint64_t mixed(std::uint64_t x)
+{
+  x += 0x9E3779B97F4A7C15U;
+  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9U;
+  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBU;
+  return x ^ (x >> 31U);
+}
+
+/** In [0, 1). */
+[[nodiscard]] inline double fraction(std::uint64_t bits)
+{
+  return double(bits >> 11U) * 0x1p-53;
+}
+
+[[nodiscard]] inline double fraction(double x)
+{
+  const double part = x - std::floor(x);
+  return part < 1.0 ? part : 0.0;
+}
+
+/**
+ * The \a index-th point of an endless sequence that fills the unit square evenly, however many are taken (Roberts 2018:
+ * multiples of the plastic number's inverse and its square), shifted by \a key.
+ */
+[[nodiscard]] inline glm::dvec2 even_point(int index, std::uint64_t key)
+{
+  return {fraction(double(index) * 0.7548776662466927 + fraction(mixed(key))),
+          fraction(double(index) * 0.5698402909980532 + fraction(mixed(key + 1)))};
+}
+
+}  // namespace gnomon::reference

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+#include "reference_light.hh"
+
+#include "reference_visibility.hh"
+
+#include "internal/reference_bsdf.hh"
+#include "internal/reference_parallel.hh"
+#include "internal/reference_random.hh"
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+#include <numbers>
+#include <stdexcept>
+
+namespace gnomon::reference {
+
+namespace {
+
+/** Half the width of the pixel filter. */
+constexpr double filter_radius_px = 1.5;
+
+/** Four-term Blackman-Harris (Harris 1978, table 1: minimum, -92 dB), of weight 1 in the middle. */
+double filter_weight(double distance_px)
+{
+  if (std::abs(distance_px) >= filter_radius_px) {
+    return 0.0;
+  }
+  constexpr std::array<double, 4> terms = {0.35875, 0.48829, 0.14128, 0.01168};
+  double sum = 0.0;
+  for (int i = 0; i < 4; i++) {
+    sum += terms[std::size_t(i)] * std::cos(std::numbers::pi * double(i) * distance_px / filter_radius_px);
+  }
+  return sum;
+}
+
+/** Rays of a camera in an image. */
+class CameraRays {
+ public:
+  CameraRays(const scene::Camera &camera, glm::ivec2 size_px)
+      : world_from_camera_(camera.world_from_camera),
+        size_px_(size_px),
+        is_perspective_(camera.kind == scene::CameraKind::Perspective),
+        near_(camera.near),
+        far_(camera.far > camera.near ? double(camera.far) : std::numeric_limits<double>::infinity())
+  {
+    const double image_aspect = double(size_px.x) / double(size_px.y);
+    half_size_.y = is_perspective_ ? std::tan(0.5 * double(camera.vertical_angle)) : double(camera.half_height);
+    const double frame_aspect = !is_perspective_       ? double(camera.half_width) / double(camera.half_height)
+                                : camera.aspect > 0.0F ? double(camera.aspect)
+                                                       : image_aspect;
+    // The camera's frame is in the middle of the image, and wholly visible.
+    half_size_.y *= std::max(frame_aspect / image_aspect, 1.0);
+    half_size_.x = half_size_.y * image_aspect;
+  }
+
+  /** \a at_px: from the image's lower left corner. The ray's t is the depth. */
+  [[nodiscard]] Ray at(const glm::dvec2 &at_px) const
+  {
+    const glm::dvec2 across = half_size_ * (2.0 * at_px / glm::dvec2(size_px_) - 1.0);
+    const glm::dvec4 eye = is_perspective_ ? glm::dvec4(0.0, 0.0, 0.0, 1.0) : glm::dvec4(across, 0.0, 1.0);
+    const glm::dvec4 forward = is_perspective_ ? glm::dvec4(across, -1.0, 0.0) : glm::dvec4(0.0, 0.0, -1.0, 0.0);
+    return {glm::dvec3(world_from_camera_ * eye), glm::dvec3(world_from_camera_ * forward), near_, far_};
+  }
+
+ private:
+  glm::dmat4 world_from_camera_;
+  glm::dvec2 size_px_;
+  bool is_perspective_;
+  double near_;
+  double far_;
+  glm::dvec2 half_size_{1.0};
+};
+
+/** What is the same for all samples of a picture. */
+struct Renderer {
+  const Tracer &tracer;
+  CameraRays rays;
+  const DirectLightSettings &settings;
+
+  [[nodiscard]] glm::dvec3 radiance(const Ray &ray, int sample, std::uint64_t pixel_key) const;
+  [[nodiscard]] glm::dvec3 lit_by(const scene::Lamp &lamp, const Receiver &receiver, const glm::dvec3 &normal,
+                                  const glm::dvec3 &view, const Bsdf &bsdf, const glm::dvec2 &u) const;
+  void render_tile(const glm::ivec2 &low_px, const glm::ivec2 &high_px, Picture &picture) const;
+};
+
+glm::dvec3 Renderer::lit_by(const scene::Lamp &lamp, const Receiver &receiver, const glm::dvec3 &normal,
+                            const glm::dvec3 &view, const Bsdf &bsdf, const glm::dvec2 &u) const
+{
+  const glm::dvec3 color(lamp.color);
+  if (lamp.kind == scene::LampKind::Hemi) {
+    const double cosine = glm::dot(normal, lamp_center(lamp).vector_ws);
+    const double sky = double(lamp.intensity) * std::clamp(0.5 + 0.5 * cosine, 0.0, 1.0);
+    return bsdf.diffuse * color * (sky / std::numbers::pi);
+  }
+  const LampSample sample = sample_lamp(lamp, receiver.position_ws, u);
+  if (sample.irradiance <= 0.0) {
+    return glm::dvec3(0.0);
+  }
+  const glm::dvec3 scattered = reflected(bsdf, normal, view, sample.to_light_ws);
+  if (scattered == glm::dvec3(0.0) || (casts_shadow(lamp) && !is_visible(tracer, receiver, sample.point))) {
+    return glm::dvec3(0.0);
+  }
+  return scattered * color * sample.irradiance;
+}
+
+glm::dvec3 Renderer::radiance(const Ray &ray, int sample, std::uint64_t pixel_key) const
+{
+  const std::optional<Hit> hit = tracer.closest(ray, Faces::Drawn);
+  if (!hit) {
+    return glm::dvec3(0.0);
+  }
+  const Surface surface = tracer.surface_at(*hit);
+  const glm::dvec3 view = -glm::normalize(ray.direction_ws);
+  const double side = glm::dot(surface.geometric_normal_ws, view) < 0.0 ? -1.0 : 1.0;
+  const Receiver receiver{surface.position_ws, side * surface.geometric_normal_ws, surface.error_m};
+  const scene::Scene &scene = tracer.scene();
+  const scene::Material &material = scene.materials[surface.material];
+  const Bsdf bsdf = make_bsdf(material, surface.base_color);
+  glm::dvec3 sum(material.emissive);
+  for (std::size_t i = 0; i < scene.lamps.size(); i++) {
+    const glm::dvec2 u = even_point(sample, mixed(pixel_key + i));
+    sum += lit_by(scene.lamps[i], receiver, side * surface.shading_normal_ws, view, bsdf, u);
+  }
+  return sum;
+}
+
+void Renderer::render_tile(const glm::ivec2 &low_px, const glm::ivec2 &high_px, Picture &picture) const
+{
+  const glm::ivec2 size_px = high_px - low_px;
+  // Sum of the samples, and in w of their weights.
+  std::vector<glm::dvec4> sums(std::size_t(size_px.x) * std::size_t(size_px.y), glm::dvec4(0.0));
+  // Neighbours' samples count, beyond the picture's edges too.
+  for (int y = low_px.y - 1; y <= high_px.y; y++) {
+    for (int x = low_px.x - 1; x <= high_px.x; x++) {
+      const std::uint64_t key = mixed(mixed(mixed(settings.seed) ^ std::uint32_t(x)) ^ std::uint32_t(y));
+      for (int i = 0; i < settings.sample_count; i++) {
+        // A lattice by the golden ratio, shifted in each pixel: even in the square, and for all samples together.
+        constexpr double golden = std::numbers::phi - 1.0;
+        const glm::dvec2 within = {fraction((i + fraction(key)) / settings.sample_count),
+                                   fraction(i * golden + fraction(mixed(key)))};
+        const glm::dvec2 at_px = glm::dvec2(x, y) + within;
+        const glm::dvec3 light = radiance(rays.at(at_px), i, key);
+        for (int to_y = std::max(y - 1, low_px.y); to_y <= std::min(y + 1, high_px.y - 1); to_y++) {
+          for (int to_x = std::max(x - 1, low_px.x); to_x <= std::min(x + 1, high_px.x - 1); to_x++) {
+            const double weight = filter_weight(at_px.x - (to_x + 0.5)) * filter_weight(at_px.y - (to_y + 0.5));
+            sums[std::size_t(to_y - low_px.y) * std::size_t(size_px.x) + std::size_t(to_x - low_px.x)] +=
+                weight * glm::dvec4(light, 1.0);
+          }
+        }
+      }
+    }
+  }
+  for (int y = 0; y < size_px.y; y++) {
+    for (int x = 0; x < size_px.x; x++) {
+      const glm::dvec4 &sum = sums[std::size_t(y) * std::size_t(size_px.x) + std::size_t(x)];
+      const std::size_t to = std::size_t(low_px.y + y) * std::size_t(picture.size_px.x) + std::size_t(low_px.x + x);
+      picture.pixels[to] = glm::vec4(sum / sum.w);
+    }
+  }
+}
+
+}  // namespace
+
+Picture direct_light(const Tracer &tracer, const scene::Camera &camera, glm::ivec2 size_px,
+                     const DirectLightSettings &settings)
+{
+  if (size_px.x < 1 || size_px.y < 1 || settings.sample_count < 1) {
+    throw std::invalid_argument(fmt::format("direct light: a picture of {}x{} with {} samples has none", size_px.x,
+                                            size_px.y, settings.sample_count));
+  }
+  const Renderer renderer{tracer, CameraRays(camera, size_px), settings};
+  Picture picture{size_px, std::vector<glm::vec4>(std::size_t(size_px.x) * std::size_t(size_px.y))};
+  // The ring of neighbours around a tile is rendered again: a part in sixteen of it.
+  constexpr int tile_px = 64;
+  const glm::ivec2 tiles = (size_px + tile_px - 1) / tile_px;
+  const std::size_t tile_count = std::size_t(tiles.x) * std::size_t(tiles.y);
+  std::mutex mutex;
+  std::size_t tiles_done = 0;
+  parallel_for(tile_count, settings.thread_count, [&](std::size_t i) {
+    const glm::ivec2 low = tile_px * glm::ivec2(i % std::size_t(tiles.x), i / std::size_t(tiles.x));
+    renderer.render_tile(low, glm::min(low + tile_px, size_px), picture);
+    const std::scoped_lock lock(mutex);
+    tiles_done++;
+    if (settings.progress) {
+      settings.progress(double(tiles_done) / double(tile_count));
+    }
+  });
+  return picture;
+}
+
+}  // namespace gnomon::reference

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+#include "reference_light.hh"
+#include "reference_test_scene.hh"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace gnomon::reference {
+namespace {
+
+using scene::LampKind;
+using test::add_rectangle;
+using test::lamp_at;
+using test::placed;
+
+/** The middle pixel of a picture so small in angle that it is one point. */
+glm::vec3 seen(const scene::Scene &scene, const scene::Camera &camera, int sample_count = 4)
+{
+  const Tracer tracer(scene);
+  return direct_light(tracer, camera, {1, 1}, {.sample_count = sample_count}).pixels.front();
+}
+
+constexpr float narrow = 1e-6F;
+
+void expect_color(const glm::vec3 &color, const glm::dvec3 &expected, double tolerance)
+{
+  for (int i = 0; i < 3; i++) {
+    EXPECT_NEAR(color[i], expected[i], tolerance * (1e-3 + expected[i]));
+  }
+}
+
+TEST(DirectLight, LambertianPlaneIsAlbedoOverPiTimesIrradiance)
+{
+  scene::Scene scene;
+  test::add_material(scene, {0.25F, 0.5F, 1.0F});
+  add_rectangle(scene, {-10, -10}, {10, 10});
+  scene.materials[0].emissive = {0.0F, 0.0F, 2.0F};
+  scene.lamps.push_back(lamp_at(LampKind::Point, {3, 0, 4}));
+  scene.lamps.back().intensity = 5.0F;
+  scene.lamps.back().color = {1.0F, 0.5F, 0.25F};
+  scene.lamps.push_back(lamp_at(LampKind::Sun, {0, 0, 0}, {0, 3, -4}));
+  scene.lamps.push_back(lamp_at(LampKind::Hemi, {0, 0, 0}, {0, 3, -4}));
+  // From below: nothing, as the plane is not transparent.
+  scene.lamps.push_back(lamp_at(LampKind::Point, {0, 0, -1}));
+  const glm::dvec3 albedo(0.25, 0.5, 1.0);
+  const glm::dvec3 irradiance = 5.0 * 0.8 / 25.0 * glm::dvec3(1.0, 0.5, 0.25) + 0.8 + 0.9;
+  // Camera matrices are of floats.
+  expect_color(seen(scene, test::camera_at({2, 1, 5}, {0, 0, 0}, narrow)),
+               albedo * irradiance / std::numbers::pi + glm::dvec3(0, 0, 2), 2e-5);
+}
+
+TEST(DirectLight, MicrofacetLobeHasItsPeakAtNormalIncidence)
+{
+  for (const float metallic : {0.0F, 1.0F}) {
+    scene::Scene scene;
+    test::add_material(scene, {0.9F, 0.5F, 0.1F});
+    scene.materials[0].metallic = metallic;
+    scene.materials[0].roughness = 0.5F;
+    scene.materials[0].specular_color = glm::vec3(1.0F);
+    add_rectangle(scene, {-10, -10}, {10, 10});
+    scene.lamps.push_back(lamp_at(LampKind::Sun, {0, 0, 0}));
+    // D = 1 / (π α²), masking 1, over 4; diffuse light keeps what the strongest channel lets through.
+    const double lobe = 1.0 / (4.0 * std::numbers::pi * 0.0625);
+    const glm::dvec3 color(0.9, 0.5, 0.1);
+    const glm::dvec3 expected = metallic > 0.5F ? color * lobe : color * 0.96 / std::numbers::pi + 0.04 * lobe;
+    expect_color(seen(scene, test::camera_at({0, 0, 5}, {0, 0, 0}, narrow)), expected, 2e-5);
+  }
+}
+
+TEST(DirectLight, NormalsAreInterpolatedAndTurnedToTheViewer)
+{
+  scene::Scene scene;
+  test::add_material(scene, glm::vec3(1.0F));
+  add_rectangle(scene, {-1, -1}, {1, 1});
+  // Tilted to +x on the right and to -x on the left; upright in the middle.
+  for (std::size_t i = 0; i < 6; i++) {
+    scene.meshes[0].normals[i] = glm::normalize(glm::vec3(scene.meshes[0].positions[i].x, 0, 1));
+  }
+  scene.lamps.push_back(lamp_at(LampKind::Sun, {0, 0, 0}));
+  scene.lamps.push_back(lamp_at(LampKind::Sun, {0, 0, 0}, {0, 0, 1}));
+  for (const float side : {1.0F, -1.0F}) {
+    const glm::vec3 color = seen(scene, test::camera_at({0.5F, 0.25F, side * 3}, {0.5F, 0.25F, 0}, narrow));
+    // Between (0, 1) and (1, 1)/√2 at the corners: linear, then normalised.
+    const double x = 0.5 * std::sqrt(0.5);
+    const double z = std::sqrt(0.5);
+    expect_color(color, glm::dvec3(z / std::hypot(x, z) / std::numbers::pi), 2e-5);
+  }
+}
+
+TEST(DirectLight, BacksOfOneSidedMaterialsAreLookedThrough)
+{
+  scene::Scene scene;
+  test::add_material(scene, glm::vec3(1.0F));
+  scene.materials[0].is_double_sided = false;
+  scene.materials[0].emissive = glm::vec3(1.0F);
+  add_rectangle(scene, {-1, -1}, {1, 1});
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[1].emissive = glm::vec3(2.0F);
+  add_rectangle(scene, {-1, -1}, {1, 1}, placed({0, 0, 1}) * glm::scale(glm::mat4(1.0F), glm::vec3(1, 1, -1)));
+  scene.meshes[1].material = 1;
+  EXPECT_FLOAT_EQ(seen(scene, test::camera_at({0, 0.5F, 5}, {0, 0.5F, 0}, narrow)).r, 1.0F);
+  EXPECT_FLOAT_EQ(seen(scene, test::camera_at({0, 0.5F, -5}, {0, 0.5F, 0}, narrow)).r, 2.0F);
+}
+
+TEST(DirectLight, ClipDistancesAreDepths)
+{
+  scene::Scene scene;
+  test::add_material(scene, glm::vec3(1.0F));
+  scene.materials[0].emissive = glm::vec3(1.0F);
+  add_rectangle(scene, {-50, -50}, {50, 50});
+  scene::Camera camera = test::camera_at({0, 0, 4}, {0, 0, 0}, 2.0F);
+  for (const auto &[near, far, expected] :
+       {std::tuple(3.99F, 4.01F, 1.0F), std::tuple(4.01F, 9.0F, 0.0F), std::tuple(1.0F, 3.99F, 0.0F)}) {
+    camera.near = near;
+    camera.far = far;
+    const Tracer tracer(scene);
+    for (const glm::vec4 &pixel : direct_light(tracer, camera, {5, 5}, {}).pixels) {
+      EXPECT_EQ(pixel.r, expected);
+    }
+  }
+}
+
+TEST(DirectLight, CamerasFrameIsInTheMiddleAndWhole)
+{
+  // Exactly what an orthographic camera of 4 by 2 sees, and the middle of it in an image of another aspect.
+  scene::Scene scene;
+  test::add_material(scene, glm::vec3(1.0F));
+  scene.materials[0].emissive = glm::vec3(1.0F);
+  add_rectangle(scene, {-2, -1}, {2, 1});
+  scene::Camera camera = test::camera_at({0, 0, 4}, {0, 0, 0});
+  camera.kind = scene::CameraKind::Orthographic;
+  camera.half_width = 2.0F;
+  camera.half_height = 1.0F;
+  const Tracer tracer(scene);
+  for (const glm::ivec2 size_px : {glm::ivec2(40, 20), glm::ivec2(40, 40), glm::ivec2(80, 20)}) {
+    const Picture picture = direct_light(tracer, camera, size_px, {});
+    double area = 0.0;
+    for (const glm::vec4 &pixel : picture.pixels) {
+      area += pixel.r;
+    }
+    // In each of them the frame is 40 x 20 pixels; at the picture's rim, the filter spreads some beyond it.
+    EXPECT_NEAR(area, 800.0, 0.03 * 800.0);
+    EXPECT_EQ(picture.pixels[std::size_t(size_px.y / 2 * size_px.x + size_px.x / 2)].r, 1.0F);
+  }
+}
+
+TEST(DirectLight, PixelFilterIsBlackmanHarrisOfThreePixels)
+{
+  // The edge of a bright half plane between two columns: each is the filter's integral from the edge on.
+  scene::Scene scene;
+  test::add_material(scene, glm::vec3(1.0F));
+  scene.materials[0].emissive = glm::vec3(1.0F);
+  add_rectangle(scene, {0, -50}, {50, 50});
+  scene::Camera camera = test::camera_at({0, 0, 4}, {0, 0, 0});
+  camera.kind = scene::CameraKind::Orthographic;
+  camera.half_width = 4.0F;
+  camera.half_height = 4.0F;
+  const Tracer tracer(scene);
+  const Picture picture = direct_light(tracer, camera, {8, 8}, {.sample_count = 4096});
+  for (int x = 0; x < 8; x++) {
+    const double from_edge = std::clamp(x + 0.5 - 4.0, -1.5, 1.5);
+    double integral = 0.5 + from_edge / 3.0;
+    constexpr std::array<double, 4> terms = {0.35875, 0.48829, 0.14128, 0.01168};
+    for (int i = 1; i < 4; i++) {
+      integral += terms[std::size_t(i)] / terms[0] * std::sin(2.0 * std::numbers::pi * i * from_edge / 3.0) /
+                  (2.0 * std::numbers::pi * i);
+    }
+    // Evenly placed samples err by about one in their number.
+    EXPECT_NEAR(picture.pixels[std::size_t(4 * 8 + x)].r, integral, 1e-3) << x;
+  }
+}
+
+scene::Scene cluttered_scene()
+{
+  scene::Scene scene;
+  test::add_material(scene, {0.8F, 0.5F, 0.3F});
+  scene.materials[0].specular_color = glm::vec3(1.0F);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> coordinate(-2.0F, 2.0F);
+  std::vector<glm::vec3> corners;
+  for (int i = 0; i < 300; i++) {
+    const float x = coordinate(random);
+    const float y = coordinate(random);
+    corners.emplace_back(x, y, coordinate(random));
+  }
+  test::add_triangles(scene, corners);
+  for (const LampKind kind : {LampKind::Point, LampKind::Sun, LampKind::Spot, LampKind::Hemi, LampKind::Area}) {
+    scene.lamps.push_back(lamp_at(kind, {0, 0, 3}));
+    scene.lamps.back().radius = 0.2F;
+    scene.lamps.back().angle = 0.1F;
+  }
+  return scene;
+}
+
+TEST(DirectLight, PictureDependsOnTheSeedAndNotOnThreads)
+{
+  const scene::Scene scene = cluttered_scene();
+  const Tracer tracer(scene);
+  const scene::Camera camera = test::camera_at({5, 4, 3}, {0, 0, 0});
+  double share = 0.0;
+  const auto render = [&](unsigned threads, std::uint64_t seed) {
+    return direct_light(tracer, camera, {150, 90},
+                        {.sample_count = 2, .seed = seed, .thread_count = threads, .progress = [&](double done) {
+                           EXPECT_GT(done, share);
+                           share = done;
+                         }});
+  };
+  const Picture one = render(1, 1);
+  EXPECT_EQ(share, 1.0);
+  share = 0.0;
+  EXPECT_EQ(one.pixels, render(7, 1).pixels);
+  share = 0.0;
+  EXPECT_NE(one.pixels, render(1, 2).pixels);
+}
+
+TEST(DirectLight, IsFiniteInsideOfGeometryAndAtLamps)
+{
+  scene::Scene scene = cluttered_scene();
+  scene.materials[0].roughness = 0.0F;
+  scene.materials[0].metallic = 1.0F;
+  // Normals that have nothing to do with the surface, and some without length.
+  for (std::size_t i = 0; i < scene.meshes[0].normals.size(); i++) {
+    scene.meshes[0].normals[i] = i % 5 == 0 ? glm::vec3(0.0F) : glm::vec3(0, 0, 1);
+  }
+  const Tracer tracer(scene);
+  for (const glm::vec3 &eye : {glm::vec3(0, 0, 0.1F), glm::vec3(0, 0, 3), glm::vec3(1e5F, 0, 0)}) {
+    scene::Camera camera = test::camera_at(eye, {0.1F, 0, 0}, 3.14159F);
+    camera.near = 1e-6F;
+    for (const glm::vec4 &pixel : direct_light(tracer, camera, {40, 30}, {.sample_count = 4}).pixels) {
+      for (int i = 0; i < 3; i++) {
+        ASSERT_TRUE(std::isfinite(pixel[i]) && pixel[i] >= 0.0F);
+      }
+    }
+  }
+}
+
+TEST(DirectLight, PicturesWithoutPixelsOrSamplesAreErrors)
+{
+  const scene::Scene scene;
+  const Tracer tracer(scene);
+  const scene::Camera camera;
+  EXPECT_THROW(static_cast<void>(direct_light(tracer, camera, {0, 4}, {})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(direct_light(tracer, camera, {4, -1}, {})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(direct_light(tracer, camera, {4, 4}, {.sample_count = 0})), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace gnomon::reference
