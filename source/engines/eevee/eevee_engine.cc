@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <tuple>
 
@@ -27,6 +28,7 @@ struct FramebufferList {
   gpu::Framebuffer main_fb;
   gpu::Framebuffer film_fb;
   gpu::Framebuffer display_fb;
+  gpu::Framebuffer probe_fb;
 };
 
 struct TextureList {
@@ -34,6 +36,8 @@ struct TextureList {
   /** Sum of the weighted samples. */
   gpu::Texture film;
   gpu::Texture display;
+  gpu::Texture probe_position;
+  gpu::Texture probe_normal;
   gpu::Sampler nearest;
 };
 
@@ -43,6 +47,7 @@ struct PassList {
         depth_pass("depth_pass", State::WriteDepth | State::DepthNearerEqual, &objects),
         depth_pass_cull("depth_pass_cull", State::WriteDepth | State::DepthNearerEqual | State::CullBack, &objects),
         pass("pass", State::WriteColor | State::DepthEqual, &objects),
+        probe_pass("probe_pass", State::WriteColor | State::DepthEqual, &objects),
         film_pass("film_pass", State::WriteColor | State::BlendAdd),
         tonemap("tonemap", State::WriteColor)
   {
@@ -51,6 +56,7 @@ struct PassList {
   draw::Pass depth_pass;
   draw::Pass depth_pass_cull;
   draw::Pass pass;
+  draw::Pass probe_pass;
   draw::Pass film_pass;
   draw::Pass tonemap;
 };
@@ -65,6 +71,8 @@ struct StorageList {
   ShaderCache shaders;
   /** One a mesh of the scene; empty until an object uses it. */
   std::vector<gpu::Batch> batches;
+  /** scene::Mesh::revision of each. */
+  std::vector<std::uint64_t> batch_revisions;
   gpu::Buffer view_block;
   gpu::Buffer light_block;
   gpu::Buffer material_block;
@@ -74,6 +82,8 @@ struct StorageList {
   std::map<GroupKey, draw::ShadingGroup *> groups;
   /** One a mesh of the scene and winding; empty until a caster uses it. */
   std::vector<std::array<draw::InstanceCall *, 2>> caster_calls;
+  /** In light_block, of the probe being drawn. */
+  int probed_light = 0;
   /** Of the sample being drawn; the film pass reads it by reference. */
   glm::vec4 film_columns{0.0F};
   glm::vec4 film_rows{0.0F};
@@ -140,8 +150,9 @@ shared::ViewData view_data(const draw::View &view)
 const gpu::Batch &batch_of(gpu::Device &device, StorageList &stl, const scene::Scene &scene, std::uint32_t mesh_index)
 {
   gpu::Batch &batch = stl.batches[mesh_index];
-  if (!batch) {
-    const scene::Mesh &mesh = scene.meshes[mesh_index];
+  const scene::Mesh &mesh = scene.meshes[mesh_index];
+  if (!batch || stl.batch_revisions[mesh_index] != mesh.revision) {
+    stl.batch_revisions[mesh_index] = mesh.revision;
     batch = device.create_batch({mesh.name, mesh.positions, mesh.normals, mesh.indices, mesh.uvs});
   }
   return batch;
@@ -166,13 +177,22 @@ State culled_state(CasterFaces faces)
 }
 
 /** What makes a caster's shadow, as plain numbers. */
-std::uint64_t caster_fingerprint(const draw::ObjectRef &object, std::uint32_t mesh, std::uint64_t revision)
+std::uint64_t caster_fingerprint(const draw::ObjectRef &object, std::uint32_t mesh_index, const scene::Mesh &mesh,
+                                 const scene::Material &material)
 {
   struct {
     glm::mat4 world_from_object;
-    std::uint64_t mesh;
     std::uint64_t revision;
-  } const key = {object.world_from_object, mesh, revision};
+    std::uint32_t mesh_index;
+    std::int32_t mask;
+    float alpha;
+    float alpha_cutoff;
+  } key = {object.world_from_object, mesh.revision, mesh_index, -2, 0.0F, 0.0F};
+  if (is_masked(material)) {
+    key.mask = material.base_color_texture;
+    key.alpha = material.alpha;
+    key.alpha_cutoff = material.alpha_cutoff;
+  }
   return fingerprint_of(std::as_bytes(std::span(&key, 1)));
 }
 
@@ -206,6 +226,13 @@ void Engine::init(draw::Viewport &viewport)
     txl.display = picture(device, "display", gpu::Format::RGBA8, viewport.size_px());
     fbl.display_fb = device.create_framebuffer({.name = "display_fb", .colors = {{&txl.display}}, .depth = {}});
   }
+  if (settings_.has_probe && !txl.probe_position) {
+    txl.probe_position = picture(device, "probe_position", gpu::Format::RGBA32F, viewport.size_px());
+    txl.probe_normal = picture(device, "probe_normal", gpu::Format::RGBA32F, viewport.size_px());
+    fbl.probe_fb = device.create_framebuffer({.name = "probe_fb",
+                                              .colors = {{&txl.probe_position}, {&txl.probe_normal}},
+                                              .depth = {&viewport.depth_texture()}});
+  }
 }
 
 void Engine::cache_init(draw::Viewport &viewport)
@@ -219,8 +246,8 @@ void Engine::cache_init(draw::Viewport &viewport)
   stl.textures.clear();
   stl.caster_calls.assign(scene_.meshes.size(), {});
   stl.shaders.set_pcf(settings_.shadow.pcf);
-  stl.batches.clear();
   stl.batches.resize(scene_.meshes.size());
+  stl.batch_revisions.resize(scene_.meshes.size());
 
   stl.lamps = make_lamps(scene_);
   stl.shadows.sync(device, stl.shaders, scene_, stl.lamps, settings_.shadow);
@@ -306,6 +333,16 @@ void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectRef &obj
     call(data.psl->pass, lit_shader, State::CullBack, is_lit_textured);
   }
 
+  if (settings_.has_probe && has(stl.features, Feature::Light)) {
+    const auto bind = [&stl](draw::ShadingGroup &group) {
+      bind_lit(group, stl);
+      group.constant_ref("probed_light", &stl.probed_light);
+    };
+    const State side = material.is_double_sided ? State::None : State::CullBack;
+    const gpu::Shader &probe_shader = stl.shaders.get(device, ShaderId::Probe, stl.features);
+    group_of(data.psl->probe_pass, probe_shader, side | winding, false, bind).call(batch, index, object.volume);
+  }
+
   if (has(stl.features, any_shadow)) {
     const std::uint32_t mesh_index = scene_.objects[object.index].mesh;
     draw::InstanceCall *&instances = stl.caster_calls[mesh_index][winding == State::None ? 0 : 1];
@@ -323,13 +360,19 @@ void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectRef &obj
           &group_of(data.psl->shadow_pass, stl.shaders.get(device, id, mask), state, has_mask, bind).instances(batch);
     }
     stl.shadows.add_caster({scene::transformed(mesh.bounds, object.world_from_object), index, instances,
-                            caster_fingerprint(object, mesh_index, mesh.revision)});
+                            caster_fingerprint(object, mesh_index, mesh, material)});
   }
 }
 
 void Engine::cache_finish(draw::Viewport &viewport)
 {
   viewport.engine_data<Data>(*this).stl.shadows.finish();
+}
+
+/** Edge of a pixel at distance 1, or, orthographic, anywhere, metres. */
+static float pixel_size(const draw::View &view, const draw::Viewport &viewport)
+{
+  return 2.0F / (view.clip_from_view()[1][1] * float(viewport.size_px().y));
 }
 
 void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
@@ -350,8 +393,7 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
     list.clear();
   };
 
-  const float pixel_size = 2.0F / (view.clip_from_view()[1][1] * float(viewport.size_px().y));
-  stl.shadows.update(device, view, pixel_size, psl->shadow_pass, list);
+  stl.shadows.update(device, view, pixel_size(view, viewport), psl->shadow_pass, list);
   submit_step("shadows");
 
   list.begin_pass("depth_prepass", fbl.depth_fb, {});
@@ -381,6 +423,51 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
     list.end_pass();
     submit_step("tonemap");
   }
+}
+
+static std::optional<std::size_t> light_of(const Lamps &lamps, std::size_t lamp)
+{
+  const auto found = std::ranges::find(lamps.scene_index, std::uint32_t(lamp));
+  return found == lamps.scene_index.end() ? std::nullopt
+                                          : std::optional(std::size_t(found - lamps.scene_index.begin()));
+}
+
+std::optional<Probe> Engine::probe(draw::Viewport &viewport, const draw::View &view, std::size_t lamp)
+{
+  GNOMON_ASSERT(settings_.has_probe, "the settings ask for no probe");
+  auto &[fbl, txl, psl, stl, timing, samples_drawn] = viewport.engine_data<Data>(*this);
+  gpu::Device &device = viewport.device();
+  const std::optional<std::size_t> light = light_of(stl.lamps, lamp);
+  if (!light) {
+    return std::nullopt;
+  }
+  stl.probed_light = int(*light);
+  stl.object_block = {viewport.objects().buffer().id()};
+  device.update(stl.view_block, view_data(view));
+  gpu::CommandList list;
+  stl.shadows.update(device, view, pixel_size(view, viewport), psl->shadow_pass, list);
+  list.begin_pass("depth_prepass", fbl.depth_fb, {});
+  psl->depth_pass.record(view, list);
+  psl->depth_pass_cull.record(view, list);
+  list.end_pass();
+  list.begin_pass("probe", fbl.probe_fb, {.depth_load = gpu::LoadAction::Load});
+  psl->probe_pass.record(view, list);
+  list.end_pass();
+  device.submit(list);
+  const auto read = [&](const gpu::Texture &texture) {
+    const std::vector<std::byte> bytes = device.read(texture);
+    std::vector<glm::vec4> texels(bytes.size() / sizeof(glm::vec4));
+    std::memcpy(texels.data(), bytes.data(), bytes.size());
+    return texels;
+  };
+  return Probe{read(txl.probe_position), read(txl.probe_normal)};
+}
+
+double Engine::shadow_texel_size(draw::Viewport &viewport, std::size_t lamp, const glm::dvec3 &position_ws) const
+{
+  const StorageList &stl = viewport.engine_data<Data>(*this).stl;
+  const std::optional<std::size_t> light = light_of(stl.lamps, lamp);
+  return light ? stl.shadows.texel_size(stl.lamps.light_block.lights[*light], position_ws) : 0.0;
 }
 
 const gpu::Texture &Engine::radiance(draw::Viewport &viewport) const
@@ -417,7 +504,7 @@ std::string Engine::serialize_passes(draw::Viewport &viewport) const
   const Data &data = viewport.engine_data<Data>(*this);
   std::string text;
   for (const draw::Pass *pass : {&data.psl->shadow_pass, &data.psl->depth_pass, &data.psl->depth_pass_cull,
-                                 &data.psl->pass, &data.psl->film_pass, &data.psl->tonemap}) {
+                                 &data.psl->pass, &data.psl->probe_pass, &data.psl->film_pass, &data.psl->tonemap}) {
     text += pass->serialize(viewport.device());
   }
   return text;

@@ -9,6 +9,8 @@
 #include "draw_viewport.hh"
 #include "eevee_tonemap_shared.h"
 
+#include <optional>
+
 namespace gnomon::eevee {
 
 enum class ViewTransform { Standard = VIEW_TRANSFORM_STANDARD, Raw = VIEW_TRANSFORM_RAW };
@@ -26,12 +28,22 @@ struct Settings {
   float exposure = 0.0F;
   /** Measure each step on the device. */
   bool is_timed = false;
+  /** Engine::probe may be asked. */
+  bool has_probe = false;
 };
 
 /** Seconds that the device spent on a step of the frame, summed over the samples of a picture. */
 struct StepTime {
   std::string step;
   double seconds = 0.0;
+};
+
+/** What the engine makes of one lamp at the middle of each pixel; rows from the bottom. */
+struct Probe {
+  /** xyz: where the surface is, world space; w: how much of the lamp it sees by its shadow, in [0, 1]. */
+  std::vector<glm::vec4> position_visibility;
+  /** xyz: of the triangle, on the side that is seen; w: 1. All 0 where there is no surface. */
+  std::vector<glm::vec4> normal;
 };
 
 /** What one viewport's picture is made of, for people and scripts to read. */
@@ -70,6 +82,14 @@ class Engine final : public draw::Engine {
   [[nodiscard]] const gpu::Texture &display(draw::Viewport &viewport) const;
   /** Of the samples drawn since the last call; waits for the device. Empty unless Settings::is_timed. */
   [[nodiscard]] std::vector<StepTime> take_step_times(draw::Viewport &viewport) const;
+  /**
+   * What the picture's shadows of the \a lamp-th lamp of the scene are made of, pixel by pixel, for a judge. Nothing
+   * where the lamp gives no light. \pre Settings::has_probe
+   */
+  [[nodiscard]] std::optional<Probe> probe(draw::Viewport &viewport, const draw::View &view, std::size_t lamp);
+  /** Edge of a texel of that lamp's shadow at a place, across the light, metres; 0: it has none there. */
+  [[nodiscard]] double shadow_texel_size(draw::Viewport &viewport, std::size_t lamp,
+                                         const glm::dvec3 &position_ws) const;
   [[nodiscard]] Report report(draw::Viewport &viewport) const;
   /** For long-running hosts, when a shader file was edited: ShaderCache::reload; then draw::Viewport::sync. */
   std::vector<std::string> reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files) const;

@@ -24,9 +24,12 @@ constexpr std::array<FeatureDefine, 10> feature_table = {
 /** Those that say nothing without light. */
 constexpr Feature light_features = Feature::Light | Feature::Punctual | Feature::Hemi | Feature::Specular |
                                    Feature::ShadowCube | Feature::ShadowMap | Feature::ShadowPcf | Feature::ShadowEsm;
+/** Those that the visibility of a lamp depends on. */
+constexpr Feature shadow_features = Feature::Light | Feature::Punctual | Feature::ShadowCube | Feature::ShadowMap |
+                                    Feature::ShadowPcf | Feature::ShadowEsm;
 constexpr Feature material_features = Feature::BaseColorTexture | Feature::AlphaMask;
 
-constexpr std::array<ShaderDeclaration, 11> declarations = {{
+constexpr std::array<ShaderDeclaration, 12> declarations = {{
     {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
      Feature::AlphaMask, "depth of what is seen, so that each pixel is lit once"},
     {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
@@ -38,6 +41,8 @@ constexpr std::array<ShaderDeclaration, 11> declarations = {{
      "the same where vertex shaders cannot choose a layer"},
     {ShaderId::Lit, "eevee_lit", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_lit_frag.glsl",
      light_features | Feature::BaseColorTexture, "light that surfaces send to the viewer"},
+    {ShaderId::Probe, "eevee_probe", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_probe_frag.glsl", shadow_features,
+     "position, normal and visibility of one lamp, for who judges them"},
     {ShaderId::Film, "eevee_film", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_film_frag.glsl", Feature::None,
      "sum of several samples a pixel"},
     {ShaderId::Tonemap, "eevee_tonemap", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_tonemap_frag.glsl",

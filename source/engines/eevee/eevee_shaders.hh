@@ -17,6 +17,7 @@ enum class ShaderId {
   ShadowLayered,
   ShadowGeometry,
   Lit,
+  Probe,
   Film,
   Tonemap,
   EsmDistance,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_shadows.hh"
 
+#include "eevee_octahedral_shared.h"
 #include "eevee_view_volume.hh"
 
 #include <glm/geometric.hpp>
@@ -596,6 +597,32 @@ void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_si
   if (std::exchange(is_block_dirty_, false) && shadow_block_buffer_) {
     device.update(shadow_block_buffer_, shadow_block_);
   }
+}
+
+double Shadows::texel_size(const shared::LightData &light, const glm::dvec3 &position_ws) const
+{
+  const glm::dvec3 from_light = position_ws - glm::dvec3(light.position_ws);
+  if (light.shadow_kind == SHADOW_CUBE) {
+    const glm::dvec3 size = glm::abs(from_light);
+    return double(shadow_block_.cubes[light.shadow_index].texel_size) * std::max({size.x, size.y, size.z});
+  }
+  if (light.shadow_kind == SHADOW_ESM) {
+    const int size = octahedral_.data(std::size_t(light.shadow_index)).size;
+    return glm::length(from_light) *
+           double(shared::octahedral_texel_angle(glm::vec3(glm::normalize(from_light)), size));
+  }
+  if (light.shadow_kind == SHADOW_MAP) {
+    const int first = light.shadow_index;
+    for (int i = first; i < first + shadow_block_.maps[first].cascade_count; i++) {
+      const shared::ShadowMapData &map = shadow_block_.maps[i];
+      const glm::dvec4 texco = glm::dmat4(map.texco_from_world) * glm::dvec4(position_ws, 1.0);
+      const glm::dvec2 uv = glm::dvec2(texco) / texco.w;
+      if (texco.w > 0.0 && std::min({uv.x, uv.y, 1.0 - uv.x, 1.0 - uv.y}) > 0.0) {
+        return double(map.texel_size) * texco.w;
+      }
+    }
+  }
+  return 0.0;
 }
 
 Feature Shadows::features() const

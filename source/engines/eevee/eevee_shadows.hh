@@ -128,6 +128,8 @@ class Shadows {
   {
     return maps_.texture;
   }
+  /** Edge of a texel of a light's shadow at a place, across the light, metres; 0: it has none there. */
+  [[nodiscard]] double texel_size(const shared::LightData &light, const glm::dvec3 &position_ws) const;
   /** What the shaders read of it. */
   [[nodiscard]] const shared::ShadowBlock &block_data() const
   {
