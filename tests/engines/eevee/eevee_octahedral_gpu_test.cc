@@ -232,6 +232,8 @@ TEST_F(OctahedralGpu, LampsHaveTheirOwnCubesSizesAndFormats)
           << lamps[i].name;
     }
   }
+  // hazards.md: cleared to far, which a smaller map leaves to be seen. Its encoding is 1.
+  EXPECT_EQ(test::decoded_texels(*device, stage.store.texture(1), stage.store.data(1).layer).back().x, 1.0F);
   // Faces that were not drawn: +X alone, then none.
   for (std::size_t i = 0; i < lamps.size(); i++) {
     stage.record(i, cubes[0], 0, i == 0 ? 1U : 0U);

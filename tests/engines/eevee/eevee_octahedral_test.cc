@@ -94,6 +94,7 @@ TEST_F(OctahedralStoreTest, FormatFollowsRangeAndExponentAndItsErrorIsReported)
       "lamp 'forced': 16 bits round its shadow by up to 0.32 at an exponent of 80/m over 40 m; 32 bits would not");
 }
 
+// hazards.md: sharpness depends on scene units.
 TEST_F(OctahedralStoreTest, DerivedSettingsScaleWithTheScene)
 {
   for (const float range : {0.1F, 1.0F, 20.0F, 1e3F}) {
