@@ -13,7 +13,7 @@ namespace gnomon::reference {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-/** Below a micrometre a lamp is no further away: its light stays finite (`doc/conventions.md` has no word for it). */
+/** Nearer than a micrometre a lamp grows no brighter: its light stays finite, as in `eevee_light_shared.h`. */
 constexpr double distance_sq_min = 1e-12;
 
 glm::dvec3 axis(const scene::Lamp &lamp, int column)

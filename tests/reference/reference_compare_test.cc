@@ -147,6 +147,22 @@ TEST(Compare, DepthOffsetAlongTheLightOfAGrazedPlaneIsMeasuredAcrossIt)
   EXPECT_EQ(error.edge_offset_max, 2.0);
 }
 
+TEST(Compare, MovedReceiversStayOnTheirOwnSurface)
+{
+  // A steep plane, and a small caster over it that is level with the receiver: under it, the plane is dark.
+  scene::Scene scene;
+  add_rectangle(scene, {-10, -10}, {10, 10}, glm::rotate(glm::mat4(1.0F), float(M_PI / 3), glm::vec3(0, 1, 0)));
+  add_rectangle(scene, {0.9F, -0.1F}, {1.1F, 0.1F}, placed({0, 0, -0.35F}));
+  const Tracer tracer(scene);
+  Shaded shaded;
+  shaded.add({0, 0, 0}, {float(std::sin(M_PI / 3)), 0, 0.5F}, 0.0F);
+  const VisibilityError error = compare_visibility(tracer, lamp_at(LampKind::Sun, {0, 0, 0}), shaded.view(),
+                                                   {.texel_size_m = [](const glm::dvec3 &) { return 0.5; }});
+  EXPECT_EQ(error.wrong_count, 1U);
+  EXPECT_EQ(error.acne_count, 0U);
+  EXPECT_EQ(error.edge_offset_max, 2.0);
+}
+
 TEST(Compare, LeakAndAcneAreWrongFarFromAnyEdge)
 {
   const SquareOverPlane square(0.0F);

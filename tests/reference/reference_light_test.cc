@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -68,6 +70,24 @@ TEST(DirectLight, MicrofacetLobeHasItsPeakAtNormalIncidence)
     const glm::dvec3 expected = metallic > 0.5F ? color * lobe : color * 0.96 / std::numbers::pi + 0.04 * lobe;
     expect_color(seen(scene, test::camera_at({0, 0, 5}, {0, 0, 0}, narrow)), expected, 2e-5);
   }
+}
+
+TEST(DirectLight, MirroredDirectionHasFresnelsAndSmithsFactors)
+{
+  scene::Scene scene;
+  test::add_material(scene, glm::vec3(0.5F));
+  scene.materials[0].roughness = 0.5F;
+  scene.materials[0].specular_color = glm::vec3(1.0F);
+  add_rectangle(scene, {-10, -10}, {10, 10});
+  // Light and view at 60 degrees to either side of the normal: the half vector is the normal.
+  const float sine = std::sqrt(0.75F);
+  scene.lamps.push_back(lamp_at(LampKind::Sun, {0, 0, 0}, {-sine, 0, -0.5F}));
+  const double a2 = 0.0625;
+  const double distribution = 1.0 / (std::numbers::pi * a2);
+  const double masking = 1.0 / (0.5 + std::sqrt(a2 + (1.0 - a2) * 0.25));
+  const double fresnel = 0.04 + 0.96 * std::pow(0.5, 5.0);
+  const double expected = 0.5 * (0.5 / std::numbers::pi * (1.0 - fresnel) + fresnel * distribution * masking * masking);
+  expect_color(seen(scene, test::camera_at({-5.0F * sine, 0, 2.5F}, {0, 0, 0}, narrow)), glm::dvec3(expected), 2e-5);
 }
 
 TEST(DirectLight, NormalsAreInterpolatedAndTurnedToTheViewer)
@@ -147,30 +167,55 @@ TEST(DirectLight, CamerasFrameIsInTheMiddleAndWhole)
   }
 }
 
-TEST(DirectLight, PixelFilterIsBlackmanHarrisOfThreePixels)
+/** Integral of the pixel filter from \a from_edge_px on. */
+double filter_integral(double from_edge_px)
 {
-  // The edge of a bright half plane between two columns: each is the filter's integral from the edge on.
+  const double at = std::clamp(from_edge_px, -1.5, 1.5);
+  constexpr std::array<double, 4> terms = {0.35875, 0.48829, 0.14128, 0.01168};
+  double integral = 0.5 + at / 3.0;
+  for (int i = 1; i < 4; i++) {
+    integral += terms[std::size_t(i)] / terms[0] * std::sin(2.0 * std::numbers::pi * i * at / 3.0) /
+                (2.0 * std::numbers::pi * i);
+  }
+  return integral;
+}
+
+/** A bright half plane from \a low on, one metre a pixel, the origin in the middle of the picture. */
+Picture bright_from(const glm::vec2 &low, glm::ivec2 size_px, int sample_count)
+{
   scene::Scene scene;
   test::add_material(scene, glm::vec3(1.0F));
   scene.materials[0].emissive = glm::vec3(1.0F);
-  add_rectangle(scene, {0, -50}, {50, 50});
+  add_rectangle(scene, low, {500, 500});
   scene::Camera camera = test::camera_at({0, 0, 4}, {0, 0, 0});
   camera.kind = scene::CameraKind::Orthographic;
-  camera.half_width = 4.0F;
-  camera.half_height = 4.0F;
+  camera.half_width = 0.5F * float(size_px.x);
+  camera.half_height = 0.5F * float(size_px.y);
   const Tracer tracer(scene);
-  const Picture picture = direct_light(tracer, camera, {8, 8}, {.sample_count = 4096});
+  return direct_light(tracer, camera, size_px, {.sample_count = sample_count});
+}
+
+TEST(DirectLight, PixelFilterIsBlackmanHarrisOfThreePixels)
+{
+  // An edge between two columns: each is the filter's integral from the edge on.
+  const Picture picture = bright_from({0, -500}, {8, 8}, 4096);
   for (int x = 0; x < 8; x++) {
-    const double from_edge = std::clamp(x + 0.5 - 4.0, -1.5, 1.5);
-    double integral = 0.5 + from_edge / 3.0;
-    constexpr std::array<double, 4> terms = {0.35875, 0.48829, 0.14128, 0.01168};
-    for (int i = 1; i < 4; i++) {
-      integral += terms[std::size_t(i)] / terms[0] * std::sin(2.0 * std::numbers::pi * i * from_edge / 3.0) /
-                  (2.0 * std::numbers::pi * i);
-    }
     // Evenly placed samples err by about one in their number.
-    EXPECT_NEAR(picture.pixels[std::size_t(4 * 8 + x)].r, integral, 1e-3) << x;
+    EXPECT_NEAR(picture.pixels[std::size_t(4 * 8 + x)].r, filter_integral(x + 0.5 - 4.0), 1e-3) << x;
   }
+}
+
+TEST(DirectLight, PixelFilterCrossesTilesAndThePicturesRim)
+{
+  // Tiles are of 64 pixels: an edge between two, in either direction, and one along the rim, just outside.
+  const Picture rows = bright_from({-500, 0}, {4, 128}, 256);
+  const Picture columns = bright_from({0, -500}, {128, 4}, 256);
+  const Picture rim = bright_from({2, -500}, {4, 4}, 256);
+  for (int i = 62; i < 66; i++) {
+    EXPECT_NEAR(rows.pixels[std::size_t(4 * i + 1)].r, filter_integral(i + 0.5 - 64.0), 1e-2) << i;
+    EXPECT_NEAR(columns.pixels[std::size_t(128 + i)].r, filter_integral(i + 0.5 - 64.0), 1e-2) << i;
+  }
+  EXPECT_NEAR(rim.pixels[7].r, filter_integral(-0.5), 1e-2);
 }
 
 scene::Scene cluttered_scene()
