@@ -45,6 +45,9 @@ static void print_info(const scene::Scene &scene)
     fmt::print("  bounds ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g}) m\n", bounds.min.x, bounds.min.y, bounds.min.z,
                bounds.max.x, bounds.max.y, bounds.max.z);
   }
+  for (const scene::Image &image : scene.images) {
+    fmt::print("  image '{}', {}x{}\n", image.name, image.width, image.height);
+  }
   for (const scene::Camera &camera : scene.cameras) {
     fmt::print("  camera '{}', {}{}\n", camera.name,
                camera.kind == scene::CameraKind::Perspective ? "perspective" : "orthographic",

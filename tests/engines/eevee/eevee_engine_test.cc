@@ -160,5 +160,70 @@ TEST_F(EngineTest, PassesPrintWhatWasRecorded)
   EXPECT_NE(text.find("    uniform light_block -> 10 = light_block\n"), std::string::npos) << text;
 }
 
+/** Objects with: no texture, a texture, the same as a mask, and a mask that is below its cutoff everywhere. */
+scene::Scene textured_scene()
+{
+  scene::Scene scene;
+  const std::int32_t texture = test::add_texture(scene, 1, {255, 0, 0, 200, 0, 255, 0, 10});
+  test::add_texture(scene, 1, {1, 2, 3, 4});
+  for (int i = 0; i < 4; i++) {
+    scene::Material &material = scene.materials[test::add_material(scene, glm::vec3(0.5F))];
+    material.base_color_texture = i == 0 ? -1 : texture;
+    material.alpha_mode = i >= 2 ? scene::AlphaMode::Mask : scene::AlphaMode::Opaque;
+    material.alpha = i == 3 ? 0.25F : 1.0F;
+    const std::uint32_t mesh = test::add_square_mesh(scene, std::uint32_t(i));
+    test::add_object(scene, mesh, glm::translate(glm::mat4(1.0F), glm::vec3(0.1F * float(i), 0, 0)));
+    test::add_object(scene, mesh, glm::translate(glm::mat4(1.0F), glm::vec3(0.1F * float(i), 0.1F, 0)));
+  }
+  return scene;
+}
+
+TEST_F(EngineTest, TexturesAreMadeOnceAndForLightOrMasksOnly)
+{
+  scene = textured_scene();
+  const auto images = [&] {
+    Renderer renderer(*device, scene, {16, 16}, {.shadow = {.method = ShadowMethod::None}});
+    renderer.draw(camera);
+    EXPECT_EQ(is_made(renderer.engine.report(renderer.viewport), "base colour textures"),
+              std::ranges::count(device->live_resources(), "texture 'image'") > 0);
+    return std::ranges::count(device->live_resources(), "texture 'image'");
+  };
+  // For the mask; the other image is nobody's.
+  EXPECT_EQ(images(), 1);
+  scene.materials[2].alpha_mode = scene::AlphaMode::Opaque;
+  EXPECT_EQ(images(), 0);
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, 1.0F);
+  EXPECT_EQ(images(), 1);
+}
+
+TEST_F(EngineTest, OpaqueObjectsKeepTheirDepthProgramWhateverTheirTexture)
+{
+  scene = textured_scene();
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, 1.0F);
+  Renderer renderer(*device, scene, {16, 16}, {.shadow = {.map_size_px = 16}});
+  const std::string text = renderer.engine.serialize_passes(renderer.viewport);
+  const auto count = [](const std::string &where, const std::string &what) {
+    int found = 0;
+    for (std::size_t at = where.find(what); at != where.npos; at = where.find(what, at + 1)) {
+      found++;
+    }
+    return found;
+  };
+  // One for the opaque and one for the mask, in shadow pass and prepass; in the lit pass the two textured ones share.
+  EXPECT_EQ(count(text, "group eevee_shadow\n"), 2) << text;
+  EXPECT_EQ(count(text, "group eevee_depth\n"), 2) << text;
+  EXPECT_EQ(count(text, "group eevee_lit\n"), 2) << text;
+  EXPECT_EQ(count(text, "base_color_texture -> 24"), 3) << text;
+}
+
+TEST_F(EngineTest, WhatIsBelowItsCutoffEverywhereIsNotDrawn)
+{
+  scene = textured_scene();
+  Renderer renderer(*device, scene, {16, 16});
+  renderer.draw(camera);
+  // Six of eight objects, in prepass and lit pass, and the film's triangle.
+  EXPECT_EQ(device->counters().instances, 6U + 6U + 1U);
+}
+
 }  // namespace
 }  // namespace gnomon::eevee

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace gnomon::eevee {
 namespace {
 
@@ -47,6 +49,51 @@ TEST(MaterialData, RoughnessIsSquaredAndNeverZero)
   EXPECT_FLOAT_EQ(material_data(material).alpha, 0.25F);
   material.roughness = 0.0F;
   EXPECT_EQ(material_data(material).alpha, shared::ALPHA_MIN);
+}
+
+TEST(MaterialData, TintIsTheMaterialOfTheProduct)
+{
+  const glm::vec3 tint(0.5F, 0.25F, 0.03125F);
+  for (const float metallic : {0.0F, 0.5F, 1.0F}) {
+    for (const float specular : {0.0F, 1.0F}) {
+      scene::Material material;
+      material.base_color = {0.75F, 0.5F, 1.0F};
+      material.metallic = metallic;
+      material.specular = specular;
+      const shared::MaterialData tinted = shared::tinted(material_data(material), tint);
+      material.base_color *= tint;
+      const shared::MaterialData expected = material_data(material);
+      for (int c = 0; c < 3; c++) {
+        EXPECT_FLOAT_EQ(tinted.diffuse[c], expected.diffuse[c]);
+        EXPECT_NEAR(tinted.specular_f0[c], expected.specular_f0[c], 1e-7F);
+      }
+      EXPECT_NEAR(tinted.specular_f90, expected.specular_f90, 5e-6F);
+      EXPECT_GE(std::min({tinted.specular_f0.x, tinted.specular_f0.y, tinted.specular_f0.z}), 0.0F);
+    }
+  }
+}
+
+TEST(MaterialData, OfAMaskTheTextureDecidesOnlyWhereItCan)
+{
+  scene::Material material;
+  material.alpha_mode = scene::AlphaMode::Mask;
+  material.alpha = 0.8F;
+  // Without a texture all of it is above the cutoff, or none.
+  EXPECT_TRUE(is_seen(material) && !is_masked(material));
+  material.alpha_cutoff = 0.9F;
+  EXPECT_FALSE(is_seen(material) || is_masked(material));
+  material.base_color_texture = 0;
+  EXPECT_FALSE(is_seen(material) || is_masked(material));
+  material.alpha_cutoff = 0.4F;
+  EXPECT_TRUE(is_seen(material) && is_masked(material));
+  EXPECT_EQ(material_data(material).mask_cutoff, 0.5F) << "of the texture's alpha, which is multiplied by 0.8";
+  material.alpha_cutoff = 0.0F;
+  EXPECT_TRUE(is_seen(material) && !is_masked(material));
+  EXPECT_EQ(material_data(material).mask_cutoff, 0.0F);
+  material.alpha_cutoff = 0.4F;
+  material.alpha_mode = scene::AlphaMode::Opaque;
+  EXPECT_TRUE(is_seen(material) && !is_masked(material));
+  EXPECT_EQ(material_data(material).mask_cutoff, 0.0F);
 }
 
 }  // namespace

@@ -83,6 +83,15 @@ TEST(SharedBlocks, FitTheSmallestPromisedUniformBlock)
   }
 }
 
+TEST(ShaderCache, KeepsMasksWithoutLight)
+{
+  const auto device = gpu::create_null_device();
+  ShaderCache cache;
+  EXPECT_NE(&cache.get(*device, ShaderId::Depth), &cache.get(*device, ShaderId::Depth, Feature::AlphaMask));
+  EXPECT_NE(&cache.get(*device, ShaderId::Lit), &cache.get(*device, ShaderId::Lit, Feature::BaseColorTexture));
+  EXPECT_EQ(&cache.get(*device, ShaderId::Lit), &cache.get(*device, ShaderId::Lit, Feature::Specular));
+}
+
 TEST(ShaderCache, MakesAVariantOnceAndIgnoresOtherFeatures)
 {
   const auto device = gpu::create_null_device();

@@ -26,6 +26,18 @@ inline std::uint32_t add_material(scene::Scene &scene, const glm::vec3 &albedo)
   return std::uint32_t(scene.materials.size() - 1);
 }
 
+/** Nearest texels, rows from the top, four bytes each. \return its index. */
+inline std::int32_t add_texture(scene::Scene &scene, std::uint32_t width, const std::vector<std::uint8_t> &texels)
+{
+  scene.images.push_back({"image", width, std::uint32_t(texels.size()) / 4 / width, texels});
+  scene::Texture texture;
+  texture.image = std::uint32_t(scene.images.size() - 1);
+  texture.magnified = texture.minified = scene::TextureFilter::Nearest;
+  texture.mip = scene::MipFilter::None;
+  scene.textures.push_back(texture);
+  return std::int32_t(scene.textures.size() - 1);
+}
+
 /** A square of half size 1 in the plane z = 0, facing +Z. \return its mesh's index. */
 inline std::uint32_t add_square_mesh(scene::Scene &scene, std::uint32_t material)
 {
@@ -33,6 +45,10 @@ inline std::uint32_t add_square_mesh(scene::Scene &scene, std::uint32_t material
   mesh.name = "square";
   mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
   mesh.normals.assign(4, {0, 0, 1});
+  if (scene.materials[material].base_color_texture >= 0) {
+    // The image upright to who faces it.
+    mesh.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+  }
   mesh.indices = {0, 1, 2, 0, 2, 3};
   mesh.material = material;
   for (const glm::vec3 &position : mesh.positions) {

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+// Base colour textures and alpha masks against closed forms and invariants, on the driver.
+#include "eevee_test_scene.hh"
+#include "gpu_device_fixture.hh"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+#include <random>
+
+namespace gnomon::eevee {
+namespace {
+
+using test::Picture;
+using test::Renderer;
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr float PI = std::numbers::pi_v<float>;
+
+class TextureGpuTest : public test::GpuDeviceTest {
+ protected:
+  /** A square of half size 1 with a texture. \return its mesh's index. */
+  std::uint32_t add_textured(std::uint32_t width, const Bytes &texels, scene::AlphaMode mode = scene::AlphaMode::Mask)
+  {
+    const std::int32_t texture = test::add_texture(scene, width, texels);
+    scene::Material &material = scene.materials[test::add_material(scene, glm::vec3(1.0F))];
+    material.base_color_texture = texture;
+    material.alpha_mode = mode;
+    return test::add_square_mesh(scene, std::uint32_t(scene.materials.size() - 1));
+  }
+  std::uint32_t add_plain(const glm::vec3 &albedo)
+  {
+    return test::add_square_mesh(scene, test::add_material(scene, albedo));
+  }
+  void add(std::uint32_t mesh, const glm::vec3 &center, const glm::vec3 &scale = glm::vec3(1.0F))
+  {
+    test::add_object(scene, mesh, glm::scale(glm::translate(glm::mat4(1.0F), center), scale));
+  }
+  Picture render(const Settings &settings = {})
+  {
+    Renderer renderer(*device, scene, {64, 64}, settings);
+    Picture picture = renderer.picture(camera);
+    EXPECT_EQ(picture.non_finite_count(), 0U);
+    return picture;
+  }
+
+  scene::Scene scene;
+  /** Sees x and y from -1.6 to 1.6 on the plane z = 0: 20 pixels a metre. */
+  scene::Camera camera = test::camera_at({0, 0, 16}, {0, 0, 0}, 2.0F * std::atan(0.1F));
+};
+
+const Settings no_shadow = {.shadow = {.method = ShadowMethod::None}};
+
+/** Where \a x and \a y, metres on the plane z = 0, are in the picture. */
+glm::vec4 at(const Picture &picture, float x, float y)
+{
+  return picture.at(int(32 + 20 * x), int(32 + 20 * y));
+}
+
+/** sRGB, IEC 61966-2-1. */
+float decoded(int encoded)
+{
+  const float value = float(encoded) / 255.0F;
+  return value <= 0.04045F ? value / 12.92F : std::pow((value + 0.055F) / 1.055F, 2.4F);
+}
+
+/** Red, green; blue, grey: rows from the top; alpha as given. */
+Bytes four_colours(std::uint8_t alpha)
+{
+  return {200, 0, 0, alpha, 0, 150, 0, alpha, 0, 0, 100, alpha, 50, 50, 50, alpha};
+}
+
+TEST_F(TextureGpuTest, BaseColourIsTheFactorTimesTheDecodedTexelUpright)
+{
+  const std::uint32_t mesh = add_textured(2, four_colours(0), scene::AlphaMode::Opaque);
+  scene.materials[0].base_color = {0.5F, 0.25F, 1.0F};
+  add(mesh, {0, 0, 0});
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, PI);
+  const Picture picture = render();
+  // llvmpipe decodes through a table of eight bits and more.
+  const float tolerance = 2e-3F;
+  EXPECT_NEAR(at(picture, -0.5F, 0.5F).r, 0.5F * decoded(200), tolerance);
+  EXPECT_EQ(at(picture, -0.5F, 0.5F).g, 0.0F);
+  EXPECT_NEAR(at(picture, 0.5F, 0.5F).g, 0.25F * decoded(150), tolerance);
+  EXPECT_NEAR(at(picture, -0.5F, -0.5F).b, decoded(100), tolerance);
+  EXPECT_NEAR(at(picture, 0.5F, -0.5F).r, 0.5F * decoded(50), tolerance);
+}
+
+TEST_F(TextureGpuTest, ATextureOnAMetalColoursItsReflection)
+{
+  const std::uint32_t mesh = add_textured(1, {255, 0, 0, 255}, scene::AlphaMode::Opaque);
+  scene.materials[0].metallic = 1.0F;
+  scene.materials[0].roughness = 0.7F;
+  add(mesh, {0, 0, 0});
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, PI);
+  const glm::vec4 pixel = at(render(), 0, 0);
+  EXPECT_GT(pixel.r, 0.1F);
+  // What Schlick's term adds at the angle of half a degree is far below.
+  EXPECT_LT(pixel.g, 1e-4F);
+}
+
+TEST_F(TextureGpuTest, MaskShowsWhatIsBehindAndCutsItsShadow)
+{
+  for (const scene::LampKind kind : {scene::LampKind::Sun, scene::LampKind::Point}) {
+    scene = {};
+    // The left half is cut out.
+    const std::uint32_t leaf = add_textured(2, {255, 255, 255, 127, 255, 255, 255, 128});
+    scene.materials[0].base_color = {1, 0, 0};
+    add(leaf, {0, 0, 1}, glm::vec3(0.5F));
+    add(add_plain({0, 1, 0}), {0, 0, 0}, glm::vec3(3));
+    // The shadow falls beside the leaf.
+    test::add_lamp(scene, kind, {4, 0, 5}, {-1, 0, -1}, kind == scene::LampKind::Sun ? 1.0F : 30.0F);
+    const Picture picture = render();
+    EXPECT_GT(at(picture, 0.25F, 0.3F).r, 0.0F) << "the leaf";
+    EXPECT_EQ(at(picture, 0.25F, 0.3F).g, 0.0F);
+    EXPECT_EQ(at(picture, -0.25F, 0.3F).r, 0.0F) << "through the leaf";
+    // The middle of either half of the leaf as the lamp projects it to the ground.
+    const auto shadow_x = [kind](float x) { return kind == scene::LampKind::Sun ? x - 1 : 4 + (x - 4) * 5 / 4; };
+    EXPECT_EQ(at(picture, shadow_x(0.25F), 0.2F).g, 0.0F) << "its shadow";
+    EXPECT_GT(at(picture, shadow_x(-0.25F), 0.2F).g, 0.0F) << "the hole in its shadow";
+    EXPECT_GT(at(picture, shadow_x(-0.8F), 0.2F).g, 0.0F) << "beside its shadow";
+  }
+}
+
+TEST_F(TextureGpuTest, WhatIsCutOutLeavesNoTrace)
+{
+  const std::uint32_t ground = add_plain({0.5F, 0.25F, 0.75F});
+  const std::uint32_t ghost = add_textured(1, {255, 255, 255, 0});
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {1, 0.5F, -1}, 1.0F);
+  test::add_lamp(scene, scene::LampKind::Point, {1, 0, 4}, {0, 0, -1}, 10.0F);
+  add(ground, {0, 0, 0}, glm::vec3(2));
+  // So that the shadow maps are fitted to the same box.
+  const std::uint32_t post = add_plain({1, 1, 1});
+  add(post, {1, 0, 2}, glm::vec3(0.1F));
+  add(post, {-1, 0, 2}, glm::vec3(0.1F));
+  const Picture without = render();
+  add(ghost, {0.2F, 0.1F, 0.5F}, glm::vec3(0.5F));
+  // Where its depth is that of the ground.
+  add(ghost, {0, 0, 0}, glm::vec3(2));
+  EXPECT_EQ(render().pixels, without.pixels);
+}
+
+TEST_F(TextureGpuTest, DepthAndLitPassesCutAlike)
+{
+  std::mt19937 random(11);
+  Bytes noise(4 * 64 * 64);
+  std::generate(noise.begin(), noise.end(), [&] { return std::uint8_t(random()); });
+  const std::uint32_t leaf = add_textured(64, noise);
+  scene.materials[0].emissive = {1, 0, 0};
+  scene.textures[0].magnified = scene.textures[0].minified = scene::TextureFilter::Linear;
+  const std::uint32_t ground = add_plain({1, 1, 1});
+  scene.materials[1].emissive = {0, 1, 0};
+  add(ground, {0, 0, -1}, glm::vec3(5));
+  // Tilted, mirrored and small ones, so that texels are larger and smaller than pixels.
+  for (int i = 0; i < 12; i++) {
+    const glm::mat4 turn = glm::rotate(glm::mat4(1.0F), 0.4F * float(i), glm::vec3(1, 0.3F, 0.2F));
+    const glm::vec3 scale(i % 2 == 0 ? 0.5F : -0.5F, 0.05F * float(i + 1), 1.0F);
+    const glm::vec3 center(-1.2F + 0.8F * float(i % 4), -1.0F + 0.8F * float(i / 4), 0.0F);
+    test::add_object(scene, leaf, glm::scale(glm::translate(glm::mat4(1.0F), center) * turn, scale));
+  }
+  const Picture picture = render();
+  int leaf_count = 0;
+  for (const glm::vec4 &pixel : picture.pixels) {
+    // Where they differed, nothing would be drawn.
+    ASSERT_NEAR(pixel.r + pixel.g, 1.0F, 1e-5F);
+    leaf_count += pixel.r > 0.5F ? 1 : 0;
+  }
+  EXPECT_GT(leaf_count, 200);
+}
+
+TEST_F(TextureGpuTest, MirroredTwoSidedAndTurnedLeavesKeepTheirShape)
+{
+  // Only the texel at the upper left is left.
+  const std::uint32_t leaf = add_textured(2, {255, 255, 255, 255, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
+  test::add_lamp(scene, scene::LampKind::Hemi, {}, {0, 0, -1}, 1.0F);
+  const auto corners = [&](const glm::mat4 &world_from_object) {
+    scene.objects.clear();
+    test::add_object(scene, leaf, world_from_object);
+    const Picture picture = render(no_shadow);
+    std::string seen;
+    for (const float y : {0.5F, -0.5F}) {
+      for (const float x : {-0.5F, 0.5F}) {
+        seen += at(picture, x, y).r > 0.0F ? 'x' : '.';
+      }
+    }
+    return seen;
+  };
+  const auto scaled = [](float x, float y, float z) { return glm::scale(glm::mat4(1.0F), glm::vec3(x, y, z)); };
+  const glm::mat4 half_turn = glm::rotate(glm::mat4(1.0F), PI, glm::vec3(0, 1, 0));
+  for (const bool is_double_sided : {true, false}) {
+    scene.materials[0].is_double_sided = is_double_sided;
+    EXPECT_EQ(corners(scaled(1, 1, 1)), "x...");
+    EXPECT_EQ(corners(scaled(-1, 1, 1)), ".x..");
+    EXPECT_EQ(corners(scaled(1, -1, 1)), "..x.");
+    EXPECT_EQ(corners(scaled(-1, -1, 1)), "...x");
+    // From behind it is seen the other way round, if at all.
+    EXPECT_EQ(corners(half_turn), is_double_sided ? ".x.." : "....");
+    EXPECT_EQ(corners(scaled(1, 1, -1)), is_double_sided ? "x..." : "....");
+  }
+}
+
+TEST_F(TextureGpuTest, TransformedCoordinatesWrapAsTheSamplerSays)
+{
+  const std::uint32_t mesh = add_textured(2, four_colours(255), scene::AlphaMode::Opaque);
+  // Twice as many: the right half of the square is the next image.
+  for (glm::vec2 &uv : scene.meshes[mesh].uvs) {
+    uv.x *= 2;
+  }
+  add(mesh, {0, 0, 0});
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, PI);
+  const auto is_red = [&](scene::TextureWrap wrap, float x) {
+    scene.textures[0].wrap_u = wrap;
+    return at(render(), x, 0.5F).r > 0.1F;
+  };
+  EXPECT_TRUE(is_red(scene::TextureWrap::Repeat, 0.25F));
+  EXPECT_FALSE(is_red(scene::TextureWrap::MirroredRepeat, 0.25F));
+  EXPECT_TRUE(is_red(scene::TextureWrap::MirroredRepeat, 0.75F));
+  EXPECT_FALSE(is_red(scene::TextureWrap::ClampToEdge, 0.75F));
+}
+
+}  // namespace
+}  // namespace gnomon::eevee
