@@ -125,18 +125,22 @@ void add_error(reference::VisibilityError &sum, const reference::VisibilityError
   sum.edge_offset_max = std::max(sum.edge_offset_max, one.edge_offset_max);
 }
 
-/** Whether \a lamp shines there at all: within a spot's cone and the range. */
-bool is_in_reach(const scene::Lamp &lamp, const glm::vec3 &position_ws)
+/** Planes seen by a lamp at less than half a degree get less than 1 % of its light, and are not judged. */
+constexpr double judged_cosine_min = 0.0087;
+
+/** Whether \a lamp shines there: within a spot's cone and the range, and not along the surface. */
+bool is_lit_at(const scene::Lamp &lamp, const glm::dvec3 &position_ws, const glm::dvec3 &normal_ws)
 {
-  const glm::dvec3 from_lamp = glm::dvec3(position_ws) - glm::dvec3(lamp.world_from_lamp[3]);
-  const double distance = glm::length(from_lamp);
-  if (lamp.kind == scene::LampKind::Sun || lamp.kind == scene::LampKind::Hemi) {
-    return true;
+  const glm::dvec3 back_ws(lamp.world_from_lamp[2]);
+  if (lamp.kind == scene::LampKind::Sun) {
+    return glm::dot(back_ws, normal_ws) > judged_cosine_min;
   }
+  const glm::dvec3 to_lamp = glm::dvec3(lamp.world_from_lamp[3]) - position_ws;
+  const double distance = glm::length(to_lamp);
   const bool is_in_range = lamp.range == 0.0F || distance < double(lamp.range);
-  const double along = -glm::dot(from_lamp, glm::dvec3(lamp.world_from_lamp[2]));
-  return is_in_range &&
-         (lamp.kind != scene::LampKind::Spot || along > distance * std::cos(double(lamp.spot_outer_angle)));
+  const bool is_in_cone = lamp.kind != scene::LampKind::Spot ||
+                          glm::dot(to_lamp, back_ws) > distance * std::cos(double(lamp.spot_outer_angle));
+  return is_in_range && is_in_cone && glm::dot(to_lamp, normal_ws) > judged_cosine_min * distance;
 }
 
 reference::VisibilityError judge(const scene::Scene &scene, const reference::Tracer &tracer, eevee::Engine &engine,
@@ -152,7 +156,8 @@ reference::VisibilityError judge(const scene::Scene &scene, const reference::Tra
     std::vector<glm::vec3> normals;
     std::vector<float> visibility;
     for (std::size_t i = 0; i < probe->normal.size(); i++) {
-      if (probe->normal[i].w > 0.0F && is_in_reach(scene.lamps[lamp], probe->position_visibility[i])) {
+      if (probe->normal[i].w > 0.0F &&
+          is_lit_at(scene.lamps[lamp], glm::dvec3(probe->position_visibility[i]), glm::dvec3(probe->normal[i]))) {
         positions.emplace_back(probe->position_visibility[i]);
         normals.emplace_back(probe->normal[i]);
         visibility.push_back(probe->position_visibility[i].w);
