@@ -338,7 +338,7 @@ TEST_F(ShadowsTest, ThoseThatLoseTheirsAreNamed)
 
 TEST_F(ShadowsTest, RespectTheDevicesLayers)
 {
-  const std::unique_ptr<gpu::Device> device = gpu::create_null_device({.array_layers_max = 13});
+  device = gpu::create_null_device({.array_layers_max = 13});
   for (int i = 0; i < 3; i++) {
     add_lamp(scene::LampKind::Point, "point" + std::to_string(i));
   }
@@ -361,7 +361,7 @@ TEST_F(ShadowsTest, FortyThreeCubesInARoomKeepTheirs)
 
 TEST_F(ShadowsTest, WithoutVertexLayersTheGeometryShaderChooses)
 {
-  const std::unique_ptr<gpu::Device> device = gpu::create_null_device({.has_vertex_layer = false});
+  device = gpu::create_null_device({.has_vertex_layer = false});
   lamps = make_lamps(scene);
   Shadows plain;
   EXPECT_THROW(plain.sync(*device, shaders, scene, lamps, {.layer_pass = LayerPass::Layered}), gpu::Error);
