@@ -71,5 +71,9 @@ void main()
   // What was filtered among nothing but cleared texels is rounded.
   bool is_cleared = esm_format >= 0 ? distance >= 0.9999 * far[range] : stored <= 0.0;
   float share = clamp((distance - shown.x) / max(shown.y - shown.x, 1e-30), 0.0, 1.0);
+  if (projection != PROJECTION_ORTHOGRAPHIC) {
+    // Around a lamp most of what is seen is near.
+    share = sqrt(max(share, 0.0));
+  }
   picture = is_cleared ? vec4(CLEARED, 0.0) : vec4(vec3(mix(DARKEST, 1.0, share)), distance);
 }

@@ -18,11 +18,10 @@ class ShadowPicture {
    * Draw one layer of \a layers, or, without \a layer, all: a cube's six as the box unfolds, seen from outside; others
    * side by side. A cube's face has its first row of texels above, as cube maps have; others have it below.
    *
-   * \return RGBA32F, until the next call. rgb: what to look at, display-referred: near dark, far bright, blue where the
-   * layer was cleared and nothing drawn, red where the layer was not drawn. a: distance in metres, 0 where there is
-   * none: along the face's axis for cubes and spots, along the light from where its first caster may be for suns, from
-   * the lamp for octahedral layers.
-   * \pre \a layer is one of them
+   * \return RGBA32F, until the next call. rgb: what to look at, display-referred: near dark, far bright (linear for
+   * suns, else by the distance's square root), blue where nothing was drawn, red where the layer was not drawn at all.
+   * a: distance in metres, 0 where there is none: along the face's axis for cubes and spots, along the light from where
+   * its first caster may be for suns, from the lamp for octahedral layers. \pre \a layer is one of them
    */
   const gpu::Texture &draw(gpu::Device &device, ShaderCache &shaders, const ShadowLayers &layers,
                            std::optional<int> layer);

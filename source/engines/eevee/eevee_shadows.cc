@@ -655,7 +655,7 @@ std::optional<ShadowLayers> Shadows::layers(const shared::LightData &light) cons
   const glm::vec3 reach =
       glm::max(glm::abs(caster_bounds_ws_.min - position_ws), glm::abs(caster_bounds_ws_.max - position_ws));
   layers.near_far = {{slot.near, std::numeric_limits<float>::max()}};
-  layers.shown = {slot.near, std::min(glm::length(reach), slot.range)};
+  layers.shown = {slot.near, std::min(std::max({reach.x, reach.y, reach.z}), slot.range)};
   if (light.shadow_kind == SHADOW_ESM) {
     const auto index = std::size_t(light.shadow_index);
     const shared::EsmData &data = octahedral_.data(index);
@@ -667,6 +667,7 @@ std::optional<ShadowLayers> Shadows::layers(const shared::LightData &light) cons
     layers.drawn = 1;
     layers.esm_format = data.format;
     layers.near_far = {{0.0F, data.range}};
+    layers.shown.y = std::min(glm::length(reach), slot.range);
   }
   return layers;
 }
