@@ -382,10 +382,6 @@ Status render(RenderOptions options)
   const Clock::time_point start = Clock::now();
   check_options(options);
   options.debug_view = parse_debug(options.debug);
-  if (options.debug_view.kind == DebugView::Kind::Shadow) {
-    // The first sample draws all shadows.
-    options.samples = 1;
-  }
   const glm::ivec2 size_px = parse_size(options.size);
   check_folder(options.output);
   check_folder(options.json);
@@ -406,7 +402,12 @@ Status render(RenderOptions options)
   result.device_seconds = seconds_since(device_start);
 
   const Clock::time_point sync_start = Clock::now();
-  eevee::Engine engine(scene, engine_settings(options));
+  eevee::Settings settings = engine_settings(options);
+  if (options.debug_view.kind == DebugView::Kind::Shadow) {
+    // The first sample draws the shadows, of the size that all samples have.
+    options.samples = settings.sample_count = 1;
+  }
+  eevee::Engine engine(scene, settings);
   draw::Viewport viewport(*device, size_px);
   const std::array<draw::Engine *, 1> engines = {&engine};
   viewport.sync(engines, eevee::object_refs(scene));

@@ -263,7 +263,7 @@ class CascadeTintGpuTest : public DebugViewGpuTest {
   {
     EXPECT_LT(glm::length(tint - wanted), 1e-3F) << tint.r << " " << tint.g << " " << tint.b;
   }
-  static constexpr int edge_px = 256;
+  static constexpr int edge_px = 512;
   static constexpr glm::vec3 first{1.0F, 0.4F, 0.4F};
   static constexpr glm::vec3 second{0.4F, 1.0F, 0.4F};
 };
@@ -276,34 +276,41 @@ TEST_F(CascadeTintGpuTest, WhatNoCascadeHoldsIsUnchanged)
   // 7.6 m of ground; the map is about 2.3 m wide.
   const Picture picture = tints(test::camera_at({0, 0, 1.9F}, {0, 0, 0}, 2.2F), 1);
   expect_near(picture.middle(), first);
-  expect_near(picture.at(8, 128), glm::vec3(1.0F));
-  expect_near(picture.at(128, 248), glm::vec3(1.0F));
+  expect_near(picture.at(16, edge_px / 2), glm::vec3(1.0F));
+  expect_near(picture.at(edge_px / 2, edge_px - 16), glm::vec3(1.0F));
 }
 
 TEST_F(CascadeTintGpuTest, EachCascadeHasItsColourAndFadesIntoTheNext)
 {
-  add_square({0, 0, 0}, 100.0F);
-  add_square({-2, 0, 2}, 1.0F);
-  add_square({-7, 60, 2}, 6.0F);
+  add_square({0, 0, 0}, 200.0F);
+  for (const float x : {-10.0F, 10.0F}) {
+    add_square({x, -2, 1}, 1.0F);
+    add_square({x, 100, 1}, 1.0F);
+  }
   test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 4}, {0, 0, -1}, 1.0F);
-  const scene::Camera camera = test::camera_at({0, -6, 3}, {0, 10, 0});
-  const Picture picture = tints(camera, 2);
-  expect_near(picture.at(128, 4), first);
-  const auto at = [&](const glm::vec3 &p) {
-    const glm::vec4 clip = view_of(camera, {edge_px, edge_px}).clip_from_world() * glm::vec4(p, 1.0F);
-    const glm::vec2 px = (glm::vec2(clip) / clip.w * 0.5F + 0.5F) * float(edge_px);
-    return picture.at(int(px.x), int(px.y));
-  };
-  // A pixel is 2 m long there.
-  expect_near(at({-6, 35, 0}), second);
-  // Up the picture, between the one and the other; the pixel filter alone would mix two or three.
+  const Picture picture = tints(test::camera_at({0, -10, 8}, {0, 10, 0}), 2);
+  // Up the middle, away from the camera.
+  int first_row = 0;
+  int second_row = 0;
   int fading = 0;
   for (int y = 0; y < edge_px; y++) {
-    const glm::vec4 tint = picture.at(128, y);
-    fading += tint.g > 0.41F && tint.g < 0.99F;
+    const glm::vec3 tint = picture.at(edge_px / 2, y);
+    const bool is_first = glm::length(tint - first) < 1e-3F;
+    const bool is_second = glm::length(tint - second) < 1e-3F;
+    first_row = is_first ? y : first_row;
+    second_row = is_second && second_row == 0 ? y : second_row;
+    // Nothing but the two, in shares that add up to 1.
+    const bool is_between = first_row > 0 && second_row == 0 && !is_first;
+    if (is_between) {
+      EXPECT_NEAR(tint.r + tint.g, 1.4F, 1e-3F) << y;
+      EXPECT_NEAR(tint.b, 0.4F, 1e-3F) << y;
+      fading++;
+    }
   }
-  std::printf("FADING %d\n",fading);
-  EXPECT_GT(fading, 3);
+  EXPECT_GT(first_row, 20);
+  EXPECT_GT(second_row, first_row);
+  // The pixel filter alone would mix two or three.
+  EXPECT_GT(fading, 4) << first_row << " to " << second_row;
 }
 
 }  // namespace
