@@ -131,6 +131,15 @@ void timed(bool is_timed, gpu::Device &device, Timing &timing, const char *name,
   step->is_pending = true;
 }
 
+template <typename T>
+std::vector<T> read_as(gpu::Device &device, const gpu::Texture &texture)
+{
+  const std::vector<std::byte> bytes = device.read(texture);
+  std::vector<T> texels(bytes.size() / sizeof(T));
+  std::memcpy(texels.data(), bytes.data(), bytes.size());
+  return texels;
+}
+
 gpu::Texture picture(gpu::Device &device, const char *name, gpu::Format format, glm::ivec2 size_px)
 {
   return device.create_texture({.name = name, .format = format, .width = size_px.x, .height = size_px.y});
@@ -393,14 +402,23 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
     list.clear();
   };
 
-  stl.shadows.update(device, view, pixel_size(view, viewport), psl->shadow_pass, list);
+  const auto draw_depth = [&] {
+    list.begin_pass("depth_prepass", fbl.depth_fb, {});
+    psl->depth_pass.record(sample_view, list);
+    psl->depth_pass_cull.record(sample_view, list);
+    list.end_pass();
+    submit_step("depth_prepass");
+  };
+  const bool is_depth_first = settings_.shadow.cascades.is_fitted_to_depth;
+  if (is_depth_first) {
+    draw_depth();
+  }
+  const auto read_depths = [&] { return read_as<float>(device, viewport.depth_texture()); };
+  stl.shadows.update(device, view, pixel_size(view, viewport), psl->shadow_pass, list, read_depths);
   submit_step("shadows");
-
-  list.begin_pass("depth_prepass", fbl.depth_fb, {});
-  psl->depth_pass.record(sample_view, list);
-  psl->depth_pass_cull.record(sample_view, list);
-  list.end_pass();
-  submit_step("depth_prepass");
+  if (!is_depth_first) {
+    draw_depth();
+  }
 
   list.begin_pass("lit", fbl.main_fb, {.depth_load = gpu::LoadAction::Load});
   psl->pass.record(sample_view, list);
@@ -454,13 +472,7 @@ std::optional<Probe> Engine::probe(draw::Viewport &viewport, const draw::View &v
   psl->probe_pass.record(view, list);
   list.end_pass();
   device.submit(list);
-  const auto read = [&](const gpu::Texture &texture) {
-    const std::vector<std::byte> bytes = device.read(texture);
-    std::vector<glm::vec4> texels(bytes.size() / sizeof(glm::vec4));
-    std::memcpy(texels.data(), bytes.data(), bytes.size());
-    return texels;
-  };
-  return Probe{read(txl.probe_position), read(txl.probe_normal)};
+  return Probe{read_as<glm::vec4>(device, txl.probe_position), read_as<glm::vec4>(device, txl.probe_normal)};
 }
 
 double Engine::shadow_texel_size(draw::Viewport &viewport, std::size_t lamp, const glm::dvec3 &position_ws) const

@@ -577,11 +577,16 @@ std::uint32_t Shadows::looked_up_faces(const Slot &slot) const
 }
 
 void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
-                     gpu::CommandList &list)
+                     gpu::CommandList &list, const std::function<std::vector<float>()> &read_depths)
 {
   if (seen_clip_from_world_ != view.clip_from_world()) {
     seen_clip_from_world_ = view.clip_from_world();
     visible_ = visible_range(view, visible_corners(view, caster_bounds_ws_));
+    const bool has_sun =
+        std::ranges::any_of(maps_.slots, [](const Slot &slot) { return slot.lamp.kind == scene::LampKind::Sun; });
+    if (has_sun && settings_.cascades.is_fitted_to_depth && read_depths) {
+      narrow_to_depths(view, read_depths(), visible_);
+    }
     fit_suns(device, view, pixel_size);
   }
   for (Slot &slot : cubes_.slots) {

@@ -10,6 +10,7 @@
 #include "eevee_shadow_shared.h"
 
 #include <array>
+#include <functional>
 #include <optional>
 
 namespace gnomon::eevee {
@@ -99,10 +100,11 @@ class Shadows {
 
   /**
    * Fit to what \a view sees and record into \a list what is not up to date. \a pass draws the casters' instances,
-   * \a pixel_size: see fit_sun.
+   * \a pixel_size: see fit_sun. \a read_depths gives the picture's, see narrow_to_depths; asked for only where settings
+   * and lamps want it and the view is a new one.
    */
   void update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
-              gpu::CommandList &list);
+              gpu::CommandList &list, const std::function<std::vector<float>()> &read_depths = {});
 
   /** To be bound by reference in the pass that draws casters, as `shadow_render_block`. */
   [[nodiscard]] const gpu::BufferRange *render_block() const
