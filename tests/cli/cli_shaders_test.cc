@@ -56,7 +56,7 @@ TEST_F(ShadersTest, ListNamesEveryProgramWithItsVariantsAndPurpose)
   EXPECT_EQ(finished.status, 0) << finished.err;
   for (const char *part :
        {"eevee_depth: depth of what is seen", "eevee_lit: ", "USE_LIGHT USE_PUNCTUAL USE_SHADOW_CUBE\n",
-        "USE_HEMI: where a hemi lamp shines", "9 programs, 33 variants\n"}) {
+        "USE_HEMI: where a hemi lamp shines"}) {
     EXPECT_NE(finished.out.find(part), std::string::npos) << part << " is not in:\n" << finished.out;
   }
   EXPECT_EQ(finished.out.find("USE_LIGHT USE_SHADOW_CUBE\n"), std::string::npos) << "cubes are for punctual lamps";

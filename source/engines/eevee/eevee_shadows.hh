@@ -221,7 +221,7 @@ class Shadows {
   void write_cube_data(const Slot &slot);
   void write_map_data(const Slot &slot);
   [[nodiscard]] std::uint32_t looked_up_faces(const Slot &slot) const;
-  [[nodiscard]] std::uint32_t touched_layers(const Slot &slot, const Caster &caster) const;
+  void find_touched_layers(const Slot &slot);
   void update_slot(gpu::Device &device, Slot &slot, Array &array, std::uint32_t wanted, const draw::Pass &pass,
                    gpu::CommandList &list);
 
@@ -233,6 +233,12 @@ class Shadows {
   /** Of the last sync. */
   std::vector<Caster> casters_before_;
   scene::Bounds caster_bounds_ws_;
+  /** Around each caster. */
+  std::vector<draw::CullingVolume> caster_volumes_;
+  /** Those of the casters, each once. */
+  std::vector<draw::InstanceCall *> caster_calls_;
+  /** Of the lamp being drawn: layers that each caster touches. */
+  std::vector<std::uint8_t> caster_layers_;
   /** What visible_ is of. */
   std::optional<glm::mat4> seen_clip_from_world_;
   VisibleRange visible_;

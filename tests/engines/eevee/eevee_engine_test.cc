@@ -182,7 +182,7 @@ TEST_F(EngineTest, TexturesAreMadeOnceAndForLightOrMasksOnly)
 {
   scene = textured_scene();
   const auto images = [&] {
-    Renderer renderer(*device, scene, {16, 16}, {.shadow = {.method = ShadowMethod::None}});
+    Renderer renderer(*device, scene, {16, 16}, {.shadow = {.kind = scene::ShadowKind::None}});
     renderer.draw(camera);
     EXPECT_EQ(is_made(renderer.engine.report(renderer.viewport), "base colour textures"),
               std::ranges::count(device->live_resources(), "texture 'image'") > 0);

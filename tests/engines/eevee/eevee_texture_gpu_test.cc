@@ -50,7 +50,7 @@ class TextureGpuTest : public test::GpuDeviceTest {
   scene::Camera camera = test::camera_at({0, 0, 16}, {0, 0, 0}, 2.0F * std::atan(0.1F));
 };
 
-const Settings no_shadow = {.shadow = {.method = ShadowMethod::None}};
+const Settings no_shadow = {.shadow = {.kind = scene::ShadowKind::None}};
 
 /** Where \a x and \a y, metres on the plane z = 0, are in the picture. */
 glm::vec4 at(const Picture &picture, float x, float y)
