@@ -141,8 +141,11 @@ float shadow_cube_visibility(int index, Surface surface, LightData light, vec3 t
 /** Share of a map's half width over which a cascade fades into the next. */
 const float CASCADE_FADE = 0.1;
 
-/** \a coverage: 0 where the map says nothing of the receiver, 1 where it is not near the map's edge. */
-float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, out float coverage)
+/**
+ * Where a map shows the receiver, xyz after the division by w. \a coverage: 0 where the map says nothing of it, 1 where it is
+ * not near the map's edge.
+ */
+vec3 map_texco(ShadowMapData map, Surface surface, vec3 to_light, out float coverage)
 {
   coverage = 0.0;
   float w = (map.texco_from_world * vec4(surface.position_ws, 1.0)).w;
@@ -150,11 +153,24 @@ float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, out 
                                       largest(surface.position_ws) + abs(w));
   vec4 texco = map.texco_from_world * vec4(lifted_position(surface, to_light, lift), 1.0);
   if (texco.w <= 0.0 || w > map.far) {
-    return 1.0;
+    return vec3(0.0);
   }
   texco.xyz /= texco.w;
   vec2 from_edge = min(texco.xy, 1.0 - texco.xy);
   coverage = clamp(min(from_edge.x, from_edge.y) / (0.5 * CASCADE_FADE), 0.0, 1.0);
+  return texco.xyz;
+}
+
+/** What a cascade decides of what finer ones left open. The last one has nothing to fade into. */
+float cascade_share(bool is_last, float coverage)
+{
+  return is_last ? step(1e-30, coverage) : coverage;
+}
+
+/** \a coverage: of map_texco. */
+float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, out float coverage)
+{
+  vec3 texco = map_texco(map, surface, to_light, coverage);
   if (coverage <= 0.0) {
     return 1.0;
   }
@@ -163,7 +179,7 @@ float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, out 
   vec3 tangent = normalize(abs(n.z) < 0.9 ? vec3(n.y, -n.x, 0.0) : vec3(0.0, n.z, -n.y));
   vec4 along = map.texco_from_world * vec4(tangent, 0.0);
   vec4 across = map.texco_from_world * vec4(cross(n, tangent), 0.0);
-  vec3 normal = cross(along.xyz - texco.xyz * along.w, across.xyz - texco.xyz * across.w);
+  vec3 normal = cross(along.xyz - texco * along.w, across.xyz - texco * across.w);
   float size = float(map.size_px);
   ReceiverPlane plane;
   plane.texel = texco.xy * size - 0.5;
@@ -182,8 +198,7 @@ float shadow_map_visibility(int first, Surface surface, vec3 to_light)
   for (int i = 0; i < count && open > 0.0; i++) {
     float coverage;
     float lit = one_map_visibility(shadow.maps[first + i], surface, to_light, coverage);
-    // The last one has nothing to fade into.
-    float share = i == count - 1 ? step(1e-30, coverage) : coverage;
+    float share = cascade_share(i == count - 1, coverage);
     visibility += open * share * lit;
     open *= 1.0 - share;
   }

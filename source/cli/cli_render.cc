@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli.hh"
 
+#include "cli_debug.hh"
 #include "cli_output.hh"
 
 #include "eevee_camera.hh"
@@ -49,6 +50,8 @@ struct RenderOptions {
   std::string cube_pass = "best";
   std::string casters = "all";
   int shadow_memory = 1024;
+  std::string debug;
+  DebugView debug_view;
   std::string aov;
   std::string view = "standard";
   float exposure = 0.0F;
@@ -199,9 +202,11 @@ eevee::Settings engine_settings(const RenderOptions &options)
   settings.shadow = shadow_settings(options);
   settings.sample_count = options.samples;
   settings.seed = options.seed;
-  settings.has_display = !options.output.empty() && is_png(options.output);
+  settings.has_display =
+      !options.output.empty() && is_png(options.output) && options.debug_view.kind != DebugView::Kind::Shadow;
   settings.view_transform = options.view == "raw" ? eevee::ViewTransform::Raw : eevee::ViewTransform::Standard;
   settings.exposure = options.exposure;
+  settings.has_cascade_tint = options.debug_view.kind == DebugView::Kind::Cascades;
   settings.is_timed = !options.json.empty() || options.is_explained;
   return settings;
 }
@@ -340,12 +345,13 @@ void render_frames(const RenderOptions &options, const scene::Camera &camera, ee
 }
 
 /** \return Status::Done or Status::NonFinite; then nothing is written. */
-Status write_picture(const RenderOptions &options, const scene::Camera &camera, eevee::Engine &engine,
-                     draw::Viewport &viewport, RenderResult &result)
+Status write_picture(const RenderOptions &options, const scene::Camera &camera, const gpu::Texture &picture,
+                     const eevee::Engine &engine, draw::Viewport &viewport, RenderResult &result)
 {
-  const glm::ivec2 size_px = viewport.size_px();
-  const std::vector<float> radiance = read_as<float>(viewport.device(), engine.radiance(viewport));
-  const NonFinite non_finite = find_non_finite(size_px, radiance);
+  const bool is_shadow = options.debug_view.kind == DebugView::Kind::Shadow;
+  const glm::ivec2 size_px(picture.desc().width, picture.desc().height);
+  const std::vector<float> values = read_as<float>(viewport.device(), picture);
+  const NonFinite non_finite = find_non_finite(size_px, values);
   result.non_finite_count = non_finite.count;
   if (non_finite.count > 0) {
     fmt::print(stderr,
@@ -358,21 +364,32 @@ Status write_picture(const RenderOptions &options, const scene::Camera &camera, 
                        {"gnomon:samples", std::to_string(options.samples)},
                        {"gnomon:seed", std::to_string(options.seed)},
                        {"gnomon:device", result.device}};
+  if (!options.debug.empty()) {
+    metadata.emplace_back("gnomon:debug", options.debug);
+  }
   if (is_png(options.output)) {
-    metadata.emplace_back("gnomon:units", fmt::format("display-referred, {}", options.view));
-    write_png(options.output, size_px, read_as<std::uint8_t>(viewport.device(), engine.display(viewport)), metadata);
+    metadata.emplace_back("gnomon:units", fmt::format("display-referred, {}", is_shadow ? "raw" : options.view));
+    write_png(options.output, size_px,
+              is_shadow ? to_bytes(values) : read_as<std::uint8_t>(viewport.device(), engine.display(viewport)),
+              metadata);
   }
   else {
-    metadata.emplace_back("gnomon:units", "scene-linear radiance, W/(sr m^2)");
-    write_exr(options.output, size_px, radiance, metadata);
+    metadata.emplace_back("gnomon:units",
+                          is_shadow ? "metres, 0 where nothing was drawn" : "scene-linear radiance, W/(sr m^2)");
+    write_exr(options.output, size_px, is_shadow ? alpha_in_all(values) : values, metadata);
   }
   return Status::Done;
 }
 
-Status render(const RenderOptions &options)
+Status render(RenderOptions options)
 {
   const Clock::time_point start = Clock::now();
   check_options(options);
+  options.debug_view = parse_debug(options.debug);
+  if (options.debug_view.kind == DebugView::Kind::Shadow) {
+    // The first sample draws all shadows.
+    options.samples = 1;
+  }
   const glm::ivec2 size_px = parse_size(options.size);
   check_folder(options.output);
   check_folder(options.json);
@@ -404,14 +421,20 @@ Status render(const RenderOptions &options)
   for (const std::string &limit : result.report.limits) {
     fmt::print(stderr, "gnomon: limit: {}\n", limit);
   }
+  if (options.debug_view.kind == DebugView::Kind::Cascades && !engine.tinted_sun(viewport)) {
+    throw std::runtime_error(fmt::format("{}: no sun has a shadow, and so there are no cascades", scene.path));
+  }
   result.sync_seconds = seconds_since(sync_start);
 
   render_frames(options, camera, engine, viewport, result);
 
+  const gpu::Texture &picture = options.debug_view.kind == DebugView::Kind::Shadow
+                                    ? shadow_picture(options.debug_view, scene, engine, viewport)
+                                    : engine.radiance(viewport);
   const Clock::time_point output_start = Clock::now();
   Status status = Status::Done;
   if (options.backend == "gl") {
-    status = write_picture(options, camera, engine, viewport, result);
+    status = write_picture(options, camera, picture, engine, viewport, result);
   }
   else {
     fmt::print(stderr, "gnomon: the null backend draws nothing: no picture is written\n");
@@ -489,6 +512,9 @@ void add_render(CLI::App &app, Status &status)
   command->add_option("--shadow-memory", o->shadow_memory, "MiB that shadow layers may take; sizes are lowered to fit")
       ->capture_default_str()
       ->check(CLI::Range(1, 1 << 20));
+  command->add_option("--debug", o->debug,
+                      "shadow:LAMP[:LAYER]: distances in a shadow's layers (a cube's face, a cascade, octahedral, all)"
+                      " instead of the picture; cascades: the picture, tinted by the cascade each pixel reads");
   command->add_option("--aov", o->aov, "Further layers to write (not built yet)");
   command->add_option("--view", o->view, "View transform of a PNG: standard, raw")
       ->capture_default_str()

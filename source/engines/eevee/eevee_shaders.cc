@@ -29,7 +29,7 @@ constexpr Feature shadow_features = Feature::Light | Feature::Punctual | Feature
                                     Feature::ShadowPcf | Feature::ShadowEsm;
 constexpr Feature material_features = Feature::BaseColorTexture | Feature::AlphaMask;
 
-constexpr std::array<ShaderDeclaration, 12> declarations = {{
+constexpr std::array<ShaderDeclaration, 14> declarations = {{
     {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
      Feature::AlphaMask, "depth of what is seen, so that each pixel is lit once"},
     {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
@@ -55,6 +55,10 @@ constexpr std::array<ShaderDeclaration, 12> declarations = {{
      Feature::None, "exponential shadow map of 32 taps", "ESM_TAPS 32"},
     {ShaderId::EsmSeparable, "eevee_esm_separable", "draw/draw_fullscreen_vert.glsl", "",
      "eevee/eevee_esm_separable_frag.glsl", Feature::None, "exponential shadow map of a Gaussian in two passes"},
+    {ShaderId::DebugShadow, "eevee_debug_shadow", "draw/draw_fullscreen_vert.glsl", "",
+     "eevee/eevee_debug_shadow_frag.glsl", Feature::None, "layers of a shadow for people to look at"},
+    {ShaderId::DebugCascades, "eevee_debug_cascades", "eevee/eevee_lit_vert.glsl", "",
+     "eevee/eevee_debug_cascades_frag.glsl", Feature::None, "which cascades of a sun each pixel reads", "USE_LIGHT"},
 }};
 
 /** Whether a scene can ask for this mask, and no smaller mask gives the same program. */

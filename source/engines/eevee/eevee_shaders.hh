@@ -24,6 +24,8 @@ enum class ShaderId {
   EsmDisk4,
   EsmDisk32,
   EsmSeparable,
+  DebugShadow,
+  DebugCascades,
 };
 
 /** A program of the engine as data: what the engine, the checker and the tests read. */
@@ -38,7 +40,7 @@ struct ShaderDeclaration {
   Feature features;
   /** Why it exists. */
   std::string_view purpose;
-  /** "NAME value", defined in each variant; empty: none. */
+  /** "NAME value" or "NAME", defined in each variant; empty: none. */
   std::string_view define{};
 };
 
