@@ -367,7 +367,7 @@ void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectRef &obj
       bind_lit(group, stl);
       group.constant("tinted_light", *stl.tinted_light);
     };
-    const gpu::Shader &tint_shader = stl.shaders.get(device, ShaderId::DebugCascades);
+    const gpu::Shader &tint_shader = stl.shaders.get(device, ShaderId::DebugCascades, stl.features);
     group_of(data.psl->tint_pass, tint_shader, side | winding, false, bind).call(batch, index, object.volume);
   }
   if (settings_.has_probe && has(stl.features, Feature::Light)) {
