@@ -90,6 +90,8 @@ class Engine final : public draw::Engine {
   /** Edge of a texel of that lamp's shadow at a place, across the light, metres; 0: it has none there. */
   [[nodiscard]] double shadow_texel_size(draw::Viewport &viewport, std::size_t lamp,
                                          const glm::dvec3 &position_ws) const;
+  /** For those who look at the layers themselves; as of the last draw. */
+  [[nodiscard]] const Shadows &shadows(draw::Viewport &viewport) const;
   [[nodiscard]] Report report(draw::Viewport &viewport) const;
   /** For long-running hosts, when a shader file was edited: ShaderCache::reload; then draw::Viewport::sync. */
   std::vector<std::string> reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files) const;
