@@ -510,6 +510,11 @@ double Engine::shadow_texel_size(draw::Viewport &viewport, std::size_t lamp, con
   return light ? stl.shadows.texel_size(stl.lamps.light_block.lights[*light], position_ws) : 0.0;
 }
 
+const Shadows &Engine::shadows(draw::Viewport &viewport) const
+{
+  return viewport.engine_data<Data>(*this).stl.shadows;
+}
+
 const gpu::Texture &Engine::radiance(draw::Viewport &viewport) const
 {
   return viewport.engine_data<Data>(*this).txl.film;
