@@ -1,8 +1,8 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
 // What the picture is multiplied by to show which cascades of a sun each pixel reads, and how they fade.
-#define USE_SHADOW_MAP
 #include "eevee/eevee_light_lib.glsl"
+#include "eevee/eevee_shadow_place_lib.glsl"
 #include "eevee/eevee_surface_frag_lib.glsl"
 
 PUSH_CONSTANT_LAYOUT uniform push_constant_block

@@ -10,8 +10,8 @@ namespace gnomon::cli {
 /** Part of the promise, not of the program yet. */
 static void add_unbuilt(CLI::App &app)
 {
-  static constexpr std::array<std::array<const char *, 2>, 3> unbuilt = {
-      {{"stability", "Stiff and extreme cases"}, {"bench", "Benchmarks"}, {"view", "A window on a scene"}}};
+  static constexpr std::array<std::array<const char *, 2>, 2> unbuilt = {
+      {{"stability", "Stiff and extreme cases"}, {"view", "A window on a scene"}}};
   for (const auto &[name, purpose] : unbuilt) {
     CLI::App *command = app.add_subcommand(name, fmt::format("{} (not built yet)", purpose));
     command->allow_extras();
@@ -30,6 +30,7 @@ static Status run(int argc, char **argv)
   add_info(app, status);
   add_report(app, status);
   add_shaders(app, status);
+  add_bench(app);
   add_unbuilt(app);
   try {
     app.parse(argc, argv);

@@ -45,6 +45,8 @@ struct RenderOptions {
   std::string pcf = "3x3";
   std::string esm = "32";
   int cascades = 0;
+  float cascade_lambda = eevee::CascadeSettings().lambda;
+  std::string cascade_range = "view";
   std::string cube_pass = "best";
   std::string casters = "all";
   int shadow_memory = 1024;
@@ -177,6 +179,8 @@ eevee::ShadowSettings shadow_settings(const RenderOptions &options)
   settings.esm.kernel = kernels.at(options.esm);
   settings.pcf = parse_pcf(options.pcf);
   settings.cascades.count = options.cascades;
+  settings.cascades.lambda = options.cascade_lambda;
+  settings.cascades.is_fitted_to_depth = options.cascade_range == "depth";
   settings.layer_pass = passes.at(options.cube_pass);
   settings.caster_faces = faces.at(options.casters);
   settings.memory_bytes_max = std::size_t(options.shadow_memory) << 20U;
@@ -490,6 +494,14 @@ void add_render(CLI::App &app, Status &status)
       ->add_option("--cascades", o->cascades, "Maps a sun; 0: as many as its texels need to be no larger than pixels")
       ->capture_default_str()
       ->check(CLI::Range(0, eevee::cascade_count_max));
+  command->add_option("--cascade-lambda", o->cascade_lambda, "Splits of the distance: 0 even, 1 logarithmic")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+  command
+      ->add_option("--cascade-range", o->cascade_range,
+                   "What is split: view, what the camera could see of the scene; depth, what it sees")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"view", "depth"}));
   command
       ->add_option("--cube-pass", o->cube_pass,
                    "How the layers of a lamp are drawn: six (a pass each), geometry or layered (one pass), best")

@@ -5,11 +5,6 @@
 
 namespace gnomon::draw {
 
-void InstanceCall::add(ObjectIndex object, std::uint32_t value)
-{
-  instances_.push_back({object, value});
-}
-
 void InstanceCall::add_empty()
 {
   instances_.push_back({object_, std::uint32_t(instances_.size())});

@@ -31,7 +31,10 @@ struct TextureBinding {
 class InstanceCall {
  public:
   /** One more instance: an object, and a value for the shader to interpret. */
-  void add(ObjectIndex object, std::uint32_t value = 0);
+  void add(ObjectIndex object, std::uint32_t value = 0)
+  {
+    instances_.push_back({object, value});
+  }
   /** One more, with the call's own object and its ordinal as the value: a cube face. */
   void add_empty();
   void clear();

@@ -80,6 +80,15 @@ TEST_F(CommandListTest, SerializesEachCommandAsALine)
             "end\n");
 }
 
+TEST_F(CommandListTest, PrintsAViewportThatIsNotTheWhole)
+{
+  list.begin_pass("main", framebuffer, {.viewport_px = {3, 2}});
+  list.end_pass();
+  EXPECT_EQ(list.serialize(*device),
+            "begin main -> scene color clear/store depth clear/store viewport 3x2\n"
+            "end\n");
+}
+
 TEST_F(CommandListTest, CopiesBytesWhenTheyAreRecorded)
 {
   glm::vec4 value(1);

@@ -231,6 +231,90 @@ void main()
   }
 }
 
+TEST_F(RenderPassGpu, SomeLayersAreClearedAndDrawnAndTheOthersLeftAlone)
+{
+  for (const TextureKind kind : {TextureKind::Array, TextureKind::CubeArray}) {
+    const Texture color = device->create_texture({.name = "colors",
+                                                  .kind = kind,
+                                                  .format = Format::R32F,
+                                                  .width = 4,
+                                                  .height = 4,
+                                                  .layers = kind == TextureKind::Array ? 12 : 2});
+    const Texture depth = device->create_texture(
+        {.name = "depths", .kind = TextureKind::Array, .format = Format::Depth32F, .width = 4, .height = 4, .layers = 12});
+    run_pass(device->create_framebuffer({"all", {{&color, all_layers}}, {&depth, all_layers}}),
+             {.clear_color = glm::vec4(0.25F), .clear_depth = 0.25F});
+    const Attachment colors{.texture = &color, .layer = 6, .layer_count = 4};
+    const Attachment depths{.texture = &depth, .layer = 6, .layer_count = 4};
+    const Framebuffer some = device->create_framebuffer({"some", {colors}, depths});
+    run_pass(some, {.clear_color = glm::vec4(0.75F), .clear_depth = 0.125F});
+    const auto expect = [&](int first_drawn, int last_drawn) {
+      for (int layer = 0; layer < 12; layer++) {
+        const bool is_in = layer >= 6 && layer < 10;
+        const bool is_drawn = layer >= first_drawn && layer <= last_drawn;
+        expect_all(color, layer, {is_drawn ? 9 : is_in ? 0.75F : 0.25F, 0, 0, 0});
+        expect_all(depth, layer, {is_drawn ? 0.5F : is_in ? 0.125F : 0.25F, 0, 0, 0});
+      }
+    };
+    expect(-1, -1);
+    // gl_Layer 0 is the first of them.
+    const Shader shader = make_shader(*device, "by vertex", R"(
+#extension GL_ARB_shader_viewport_layer_array : require
+layout(location = ATTRIBUTE_POSITION) in vec3 position;
+layout(location = ATTRIBUTE_DRAW_INSTANCE) in uvec2 draw_instance;
+void main()
+{
+  gl_Position = vec4(position, 1.0);
+  gl_Layer = int(draw_instance.y);
+})",
+                                      R"(
+layout(location = 0) out float result;
+void main()
+{
+  result = 9.0;
+})");
+    const Batch batch = test::full_triangle(*device, 0.5F);
+    CommandList list;
+    list.begin_pass("some", some, {.color_load = LoadAction::Load, .depth_load = LoadAction::Load});
+    list.set_shader(shader.id());
+    list.set_state(State::WriteColor | State::WriteDepth | State::DepthNearerEqual);
+    append_draw(list, batch, 2);
+    list.end_pass();
+    device->submit(list);
+    expect(6, 7);
+  }
+}
+
+TEST_F(RenderPassGpu, ASmallerViewportIsDrawnIntoAndTheWholeIsCleared)
+{
+  const Texture texture = device->create_texture({.name = "color", .format = Format::R32F, .width = 5, .height = 4});
+  const Framebuffer framebuffer = device->create_framebuffer({"target", {{&texture}}, {}});
+  const Shader shader = make_shader(*device, "color", test::CLIP_SPACE_VERT, test::COLOR_FRAG);
+  const Batch batch = test::full_triangle(*device, 0.5F);
+  CommandList list;
+  const auto draw = [&](float value, const PassActions &actions) {
+    list.begin_pass("pass", framebuffer, actions);
+    list.set_shader(shader.id());
+    list.set_state(State::WriteColor);
+    push_constants(list, shader, glm::vec4(value));
+    append_draw(list, batch);
+    list.end_pass();
+  };
+  draw(1, {.clear_color = glm::vec4(7), .viewport_px = {3, 2}});
+  device->submit(list);
+  const std::vector<glm::vec4> pixels = decoded_texels(*device, texture, 0);
+  for (int y = 0; y < 4; y++) {
+    for (int x = 0; x < 5; x++) {
+      EXPECT_EQ(pixels[std::size_t(y) * 5 + std::size_t(x)].r, x < 3 && y < 2 ? 1 : 7) << x << " " << y;
+    }
+  }
+  // The next pass has all of it again.
+  list.clear();
+  draw(2, {.color_load = LoadAction::Load});
+  device->submit(list);
+  expect_all(texture, 0, {2, 0, 0, 0});
+}
+
 TEST_F(RenderPassGpu, MipLevelHasItsOwnSizeAndLeavesTheOthers)
 {
   const Texture source =

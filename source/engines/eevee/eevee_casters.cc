@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_casters.hh"
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -60,22 +59,6 @@ float lamp_near(const glm::vec3 &position_ws, float range, const std::vector<Cas
   }
   // Along a face's axis what is at this distance is nearer, by up to the square root of 3.
   return std::max(nearest > 0.0F ? 0.5F * nearest : 1e-2F * smallest_around, near_min);
-}
-
-std::uint32_t cube_face_mask(const glm::vec3 &center, float radius, float half_size)
-{
-  const glm::vec3 size = glm::abs(center);
-  // Distance to the plane through the lamp and a face's edge, times the length of (half_size, 1); rounding is inside
-  // the last factor.
-  const float slack = radius * std::sqrt(half_size * half_size + 1.0F) + 1e-5F * (size.x + size.y + size.z);
-  const glm::vec3 across(std::max(size.y, size.z), std::max(size.x, size.z), std::max(size.x, size.y));
-  std::uint32_t mask = 0;
-  for (int axis = 0; axis < 3; axis++) {
-    const float along = half_size * center[axis];
-    mask |= along + slack >= across[axis] ? 1U << (2 * axis) : 0U;
-    mask |= slack - along >= across[axis] ? 2U << (2 * axis) : 0U;
-  }
-  return mask;
 }
 
 }  // namespace gnomon::eevee

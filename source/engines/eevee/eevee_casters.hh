@@ -4,6 +4,10 @@
 #include "draw_pass.hh"
 #include "scene.hh"
 
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -47,6 +51,20 @@ struct Caster {
  *
  * \a center: from the lamp, metres. \a half_size: of a face at distance 1, at least 1.
  */
-[[nodiscard]] std::uint32_t cube_face_mask(const glm::vec3 &center, float radius, float half_size);
+[[nodiscard]] inline std::uint32_t cube_face_mask(const glm::vec3 &center, float radius, float half_size)
+{
+  const glm::vec3 size = glm::abs(center);
+  // Distance to the plane through the lamp and a face's edge, times the length of (half_size, 1); rounding is inside
+  // the last factor.
+  const float slack = radius * std::sqrt(half_size * half_size + 1.0F) + 1e-5F * (size.x + size.y + size.z);
+  const glm::vec3 across(std::max(size.y, size.z), std::max(size.x, size.z), std::max(size.x, size.y));
+  std::uint32_t mask = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    const float along = half_size * center[axis];
+    mask |= along + slack >= across[axis] ? 1U << (2 * axis) : 0U;
+    mask |= slack - along >= across[axis] ? 2U << (2 * axis) : 0U;
+  }
+  return mask;
+}
 
 }  // namespace gnomon::eevee

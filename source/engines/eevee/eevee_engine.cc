@@ -137,6 +137,15 @@ void timed(bool is_timed, gpu::Device &device, Timing &timing, const char *name,
   step->is_pending = true;
 }
 
+template <typename T>
+std::vector<T> read_as(gpu::Device &device, const gpu::Texture &texture)
+{
+  const std::vector<std::byte> bytes = device.read(texture);
+  std::vector<T> texels(bytes.size() / sizeof(T));
+  std::memcpy(texels.data(), bytes.data(), bytes.size());
+  return texels;
+}
+
 gpu::Texture picture(gpu::Device &device, const char *name, gpu::Format format, glm::ivec2 size_px)
 {
   return device.create_texture({.name = name, .format = format, .width = size_px.x, .height = size_px.y});
@@ -358,7 +367,7 @@ void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectRef &obj
       bind_lit(group, stl);
       group.constant("tinted_light", *stl.tinted_light);
     };
-    const gpu::Shader &tint_shader = stl.shaders.get(device, ShaderId::DebugCascades);
+    const gpu::Shader &tint_shader = stl.shaders.get(device, ShaderId::DebugCascades, stl.features);
     group_of(data.psl->tint_pass, tint_shader, side | winding, false, bind).call(batch, index, object.volume);
   }
   if (settings_.has_probe && has(stl.features, Feature::Light)) {
@@ -420,14 +429,23 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
     list.clear();
   };
 
-  stl.shadows.update(device, view, pixel_size(view, viewport), psl->shadow_pass, list);
+  const auto draw_depth = [&] {
+    list.begin_pass("depth_prepass", fbl.depth_fb, {});
+    psl->depth_pass.record(sample_view, list);
+    psl->depth_pass_cull.record(sample_view, list);
+    list.end_pass();
+    submit_step("depth_prepass");
+  };
+  const bool is_depth_first = settings_.shadow.cascades.is_fitted_to_depth;
+  if (is_depth_first) {
+    draw_depth();
+  }
+  const auto read_depths = [&] { return read_as<float>(device, viewport.depth_texture()); };
+  stl.shadows.update(device, view, pixel_size(view, viewport), psl->shadow_pass, list, read_depths);
   submit_step("shadows");
-
-  list.begin_pass("depth_prepass", fbl.depth_fb, {});
-  psl->depth_pass.record(sample_view, list);
-  psl->depth_pass_cull.record(sample_view, list);
-  list.end_pass();
-  submit_step("depth_prepass");
+  if (!is_depth_first) {
+    draw_depth();
+  }
 
   list.begin_pass("lit", fbl.main_fb, {.depth_load = gpu::LoadAction::Load});
   psl->pass.record(sample_view, list);
@@ -482,13 +500,7 @@ std::optional<Probe> Engine::probe(draw::Viewport &viewport, const draw::View &v
   psl->probe_pass.record(view, list);
   list.end_pass();
   device.submit(list);
-  const auto read = [&](const gpu::Texture &texture) {
-    const std::vector<std::byte> bytes = device.read(texture);
-    std::vector<glm::vec4> texels(bytes.size() / sizeof(glm::vec4));
-    std::memcpy(texels.data(), bytes.data(), bytes.size());
-    return texels;
-  };
-  return Probe{read(txl.probe_position), read(txl.probe_normal)};
+  return Probe{read_as<glm::vec4>(device, txl.probe_position), read_as<glm::vec4>(device, txl.probe_normal)};
 }
 
 double Engine::shadow_texel_size(draw::Viewport &viewport, std::size_t lamp, const glm::dvec3 &position_ws) const
@@ -496,6 +508,11 @@ double Engine::shadow_texel_size(draw::Viewport &viewport, std::size_t lamp, con
   const StorageList &stl = viewport.engine_data<Data>(*this).stl;
   const std::optional<std::size_t> light = light_of(stl.lamps, lamp);
   return light ? stl.shadows.texel_size(stl.lamps.light_block.lights[*light], position_ws) : 0.0;
+}
+
+const Shadows &Engine::shadows(draw::Viewport &viewport) const
+{
+  return viewport.engine_data<Data>(*this).stl.shadows;
 }
 
 const gpu::Texture &Engine::radiance(draw::Viewport &viewport) const

@@ -103,6 +103,8 @@ class Engine final : public draw::Engine {
                                                    std::optional<std::size_t> layer = std::nullopt);
   /** The sun whose cascades Settings::has_cascade_tint shows, in the scene; valid after a sync. */
   [[nodiscard]] std::optional<std::size_t> tinted_sun(draw::Viewport &viewport) const;
+  /** For those who look at the layers themselves; as of the last draw. */
+  [[nodiscard]] const Shadows &shadows(draw::Viewport &viewport) const;
   [[nodiscard]] Report report(draw::Viewport &viewport) const;
   /** For long-running hosts, when a shader file was edited: ShaderCache::reload; then draw::Viewport::sync. */
   std::vector<std::string> reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files) const;

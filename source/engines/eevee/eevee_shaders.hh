@@ -38,6 +38,8 @@ struct ShaderDeclaration {
   std::string_view fragment_path;
   /** The features it has variants for; others make no difference to it. */
   Feature features;
+  /** Of these, those that it always has. */
+  Feature required;
   /** Why it exists. */
   std::string_view purpose;
   /** "NAME value" or "NAME", defined in each variant; empty: none. */

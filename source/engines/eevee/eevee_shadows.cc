@@ -339,9 +339,15 @@ void Shadows::place_render_blocks(gpu::Device &device)
 void Shadows::finish()
 {
   caster_bounds_ws_ = {};
+  caster_volumes_.clear();
+  caster_calls_.clear();
   for (const Caster &caster : casters_) {
     caster_bounds_ws_.extend(caster.bounds_ws);
+    caster_volumes_.push_back({caster.bounds_ws.center(), caster.bounds_ws.radius()});
+    caster_calls_.push_back(caster.instances);
   }
+  std::ranges::sort(caster_calls_);
+  caster_calls_.erase(std::unique(caster_calls_.begin(), caster_calls_.end()), caster_calls_.end());
   const std::vector<scene::Bounds> changed = changed_bounds(casters_before_, casters_);
   casters_before_.clear();
   for (Array *array : arrays()) {
@@ -448,22 +454,35 @@ void Shadows::fit_suns(gpu::Device &device, const draw::View &view, float pixel_
   create_layers(device, maps_, maps_.slots.empty() ? 0 : std::max({layers, layers_now, 1}));
 }
 
-std::uint32_t Shadows::touched_layers(const Slot &slot, const Caster &caster) const
+/** Fills caster_layers_. */
+void Shadows::find_touched_layers(const Slot &slot)
 {
-  const glm::vec3 center_ws = caster.bounds_ws.center();
-  const float radius = caster.bounds_ws.radius();
   const glm::vec3 position_ws(slot.lamp.world_from_lamp[3]);
-  if (!std::isinf(slot.range) && distance_to(caster.bounds_ws, position_ws) > slot.range) {
-    return 0;
-  }
+  const std::size_t count = caster_volumes_.size();
+  caster_layers_.assign(count, 0);
   if (slot.views.size() == 6) {
-    return cube_face_mask(center_ws - position_ws, radius, 1.0F / shared::cube_uv_scale(float(slot.size_px)));
+    const float half_size = 1.0F / shared::cube_uv_scale(float(slot.size_px));
+    for (std::size_t i = 0; i < count; i++) {
+      const draw::CullingVolume &volume = caster_volumes_[i];
+      caster_layers_[i] = std::uint8_t(cube_face_mask(volume.center_ws - position_ws, volume.radius, half_size));
+    }
   }
-  std::uint32_t mask = 0;
-  for (std::size_t i = 0; i < slot.views.size(); i++) {
-    mask |= slot.views[i].touches({center_ws, radius}) ? 1U << i : 0U;
+  else {
+    for (std::size_t layer = 0; layer < slot.views.size(); layer++) {
+      for (std::size_t i = 0; i < count; i++) {
+        if (slot.views[layer].touches(caster_volumes_[i])) {
+          caster_layers_[i] = std::uint8_t(caster_layers_[i] | 1U << layer);
+        }
+      }
+    }
   }
-  return mask;
+  if (!std::isinf(slot.range)) {
+    for (std::size_t i = 0; i < count; i++) {
+      if (distance_to(casters_[i].bounds_ws, position_ws) > slot.range) {
+        caster_layers_[i] = 0;
+      }
+    }
+  }
 }
 
 void Shadows::update_slot(gpu::Device &device, Slot &slot, Array &array, std::uint32_t wanted, const draw::Pass &pass,
@@ -475,12 +494,10 @@ void Shadows::update_slot(gpu::Device &device, Slot &slot, Array &array, std::ui
     return;
   }
   const bool is_cube = &array != &maps_;
-  std::vector<std::uint32_t> masks;
-  masks.reserve(casters_.size());
+  find_touched_layers(slot);
   std::uint32_t with_casters = 0;
-  for (const Caster &caster : casters_) {
-    masks.push_back(touched_layers(slot, caster) & missing);
-    with_casters |= masks.back();
+  for (const std::uint8_t layers : caster_layers_) {
+    with_casters |= layers & missing;
   }
 
   shared::ShadowRenderBlock block{};
@@ -491,11 +508,10 @@ void Shadows::update_slot(gpu::Device &device, Slot &slot, Array &array, std::ui
   render_block_range_ = {render_buffer_.id(), slot.render_offset_bytes, sizeof(block)};
 
   const auto record_instances = [&](std::uint32_t layers) {
-    for (const Caster &caster : casters_) {
-      caster.instances->clear();
-    }
-    for (std::size_t i = 0; i < casters_.size(); i++) {
-      for (std::uint32_t rest = masks[i] & layers; rest != 0; rest &= rest - 1) {
+    std::ranges::for_each(caster_calls_, &draw::InstanceCall::clear);
+    const std::size_t count = casters_.size();
+    for (std::size_t i = 0; i < count; i++) {
+      for (std::uint32_t rest = caster_layers_[i] & layers; rest != 0; rest &= rest - 1) {
         casters_[i].instances->add(casters_[i].object, std::uint32_t(std::countr_zero(rest)));
         counters_.caster_draws++;
       }
@@ -509,7 +525,10 @@ void Shadows::update_slot(gpu::Device &device, Slot &slot, Array &array, std::ui
   keep.depth_load = gpu::LoadAction::Load;
   // What has no caster is not looked up, but for a cascade among others: that has to be empty.
   const std::uint32_t drawn = slot.fits.empty() ? with_casters : missing;
-  for (std::uint32_t rest = drawn; rest != 0; rest &= rest - 1) {
+  const bool is_one_pass = layer_pass_ != LayerPass::Single && with_casters != 0;
+  // One clear of all layers is cheaper than one of each; but those that stay must not be cleared.
+  const bool is_cleared_at_once = is_one_pass && drawn == all;
+  for (std::uint32_t rest = is_cleared_at_once ? 0 : drawn; rest != 0; rest &= rest - 1) {
     const int layer = std::countr_zero(rest);
     list.begin_pass(name(fmt::format("{} {}", is_cube ? "face" : "map", layer)),
                     array.framebuffers[std::size_t(slot.first_layer + layer)], clear);
@@ -518,7 +537,7 @@ void Shadows::update_slot(gpu::Device &device, Slot &slot, Array &array, std::ui
     }
     list.end_pass();
   }
-  if (layer_pass_ != LayerPass::Single && with_casters != 0) {
+  if (is_one_pass) {
     if (!slot.framebuffer) {
       slot.framebuffer = device.create_framebuffer(
           {.name = fmt::format("{} of {}", array.name, slot.lamp.name),
@@ -526,7 +545,7 @@ void Shadows::update_slot(gpu::Device &device, Slot &slot, Array &array, std::ui
            .depth = {.texture = &array.texture, .layer = slot.first_layer, .layer_count = int(slot.views.size())}});
       slot.framebuffer_layers = int(slot.views.size());
     }
-    list.begin_pass(name("all layers"), slot.framebuffer, keep);
+    list.begin_pass(name("all layers"), slot.framebuffer, is_cleared_at_once ? clear : keep);
     record_instances(missing);
     list.end_pass();
   }
@@ -577,11 +596,16 @@ std::uint32_t Shadows::looked_up_faces(const Slot &slot) const
 }
 
 void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
-                     gpu::CommandList &list)
+                     gpu::CommandList &list, const std::function<std::vector<float>()> &read_depths)
 {
   if (seen_clip_from_world_ != view.clip_from_world()) {
     seen_clip_from_world_ = view.clip_from_world();
     visible_ = visible_range(view, visible_corners(view, caster_bounds_ws_));
+    const bool has_sun =
+        std::ranges::any_of(maps_.slots, [](const Slot &slot) { return slot.lamp.kind == scene::LampKind::Sun; });
+    if (has_sun && settings_.cascades.is_fitted_to_depth && read_depths) {
+      narrow_to_depths(view, read_depths(), visible_);
+    }
     fit_suns(device, view, pixel_size);
   }
   for (Slot &slot : cubes_.slots) {

@@ -11,6 +11,7 @@
 #include "eevee_shadow_shared.h"
 
 #include <array>
+#include <functional>
 #include <optional>
 
 namespace gnomon::eevee {
@@ -127,10 +128,11 @@ class Shadows {
 
   /**
    * Fit to what \a view sees and record into \a list what is not up to date. \a pass draws the casters' instances,
-   * \a pixel_size: see fit_sun.
+   * \a pixel_size: see fit_sun. \a read_depths gives the picture's, see narrow_to_depths; asked for only where settings
+   * and lamps want it and the view is a new one.
    */
   void update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
-              gpu::CommandList &list);
+              gpu::CommandList &list, const std::function<std::vector<float>()> &read_depths = {});
 
   /** To be bound by reference in the pass that draws casters, as `shadow_render_block`. */
   [[nodiscard]] const gpu::BufferRange *render_block() const
@@ -249,7 +251,7 @@ class Shadows {
   void write_cube_data(const Slot &slot);
   void write_map_data(const Slot &slot);
   [[nodiscard]] std::uint32_t looked_up_faces(const Slot &slot) const;
-  [[nodiscard]] std::uint32_t touched_layers(const Slot &slot, const Caster &caster) const;
+  void find_touched_layers(const Slot &slot);
   void update_slot(gpu::Device &device, Slot &slot, Array &array, std::uint32_t wanted, const draw::Pass &pass,
                    gpu::CommandList &list);
 
@@ -261,6 +263,12 @@ class Shadows {
   /** Of the last sync. */
   std::vector<Caster> casters_before_;
   scene::Bounds caster_bounds_ws_;
+  /** Around each caster. */
+  std::vector<draw::CullingVolume> caster_volumes_;
+  /** Those of the casters, each once. */
+  std::vector<draw::InstanceCall *> caster_calls_;
+  /** Of the lamp being drawn: layers that each caster touches. */
+  std::vector<std::uint8_t> caster_layers_;
   /** What visible_ is of. */
   std::optional<glm::mat4> seen_clip_from_world_;
   VisibleRange visible_;

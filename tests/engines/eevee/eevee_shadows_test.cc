@@ -338,13 +338,13 @@ TEST_F(ShadowsTest, ThoseThatLoseTheirsAreNamed)
 
 TEST_F(ShadowsTest, RespectTheDevicesLayers)
 {
-  device = gpu::create_null_device({.array_layers_max = 13});
+  const std::unique_ptr<gpu::Device> small = gpu::create_null_device({.array_layers_max = 13});
   for (int i = 0; i < 3; i++) {
     add_lamp(scene::LampKind::Point, "point" + std::to_string(i));
   }
   lamps = make_lamps(scene);
   Shadows few;
-  few.sync(*device, shaders, scene, lamps, {.cube_size_px = 16});
+  few.sync(*small, shaders, scene, lamps, {.cube_size_px = 16});
   EXPECT_EQ(few.cube_count(), 2U);
   EXPECT_NE(few.limits().at(0).find("'point2'"), std::string::npos);
 }
@@ -361,11 +361,11 @@ TEST_F(ShadowsTest, FortyThreeCubesInARoomKeepTheirs)
 
 TEST_F(ShadowsTest, WithoutVertexLayersTheGeometryShaderChooses)
 {
-  device = gpu::create_null_device({.has_vertex_layer = false});
+  const std::unique_ptr<gpu::Device> old = gpu::create_null_device({.has_vertex_layer = false});
   lamps = make_lamps(scene);
   Shadows plain;
-  EXPECT_THROW(plain.sync(*device, shaders, scene, lamps, {.layer_pass = LayerPass::Layered}), gpu::Error);
-  plain.sync(*device, shaders, scene, lamps, {});
+  EXPECT_THROW(plain.sync(*old, shaders, scene, lamps, {.layer_pass = LayerPass::Layered}), gpu::Error);
+  plain.sync(*old, shaders, scene, lamps, {});
   EXPECT_EQ(plain.layer_pass(), LayerPass::Geometry) << "the next best";
 }
 

@@ -58,6 +58,34 @@ inline std::uint32_t add_square_mesh(scene::Scene &scene, std::uint32_t material
   return std::uint32_t(scene.meshes.size() - 1);
 }
 
+/** A closed box from -1 to 1. \return its mesh's index. */
+inline std::uint32_t add_box_mesh(scene::Scene &scene, std::uint32_t material)
+{
+  scene::Mesh mesh;
+  mesh.name = "box";
+  for (int axis = 0; axis < 3; axis++) {
+    for (const float side : {-1.0F, 1.0F}) {
+      glm::vec3 normal(0.0F);
+      glm::vec3 across(0.0F);
+      normal[axis] = side;
+      across[(axis + 1) % 3] = 1.0F;
+      const glm::vec3 up = glm::cross(normal, across);
+      const auto first = std::uint32_t(mesh.positions.size());
+      for (const glm::vec2 &corner : {glm::vec2(-1, -1), glm::vec2(1, -1), glm::vec2(1, 1), glm::vec2(-1, 1)}) {
+        mesh.positions.push_back(normal + corner.x * across + corner.y * up);
+        mesh.normals.push_back(normal);
+        mesh.bounds.extend(mesh.positions.back());
+      }
+      for (const std::uint32_t i : {0U, 1U, 2U, 0U, 2U, 3U}) {
+        mesh.indices.push_back(first + i);
+      }
+    }
+  }
+  mesh.material = material;
+  scene.meshes.push_back(mesh);
+  return std::uint32_t(scene.meshes.size() - 1);
+}
+
 inline void add_object(scene::Scene &scene, std::uint32_t mesh, const glm::mat4 &world_from_object)
 {
   scene.objects.push_back({"object" + std::to_string(scene.objects.size()), mesh, world_from_object});

@@ -1,0 +1,409 @@
+// SPDX-License-Identifier: MIT
+// What stands in the layers of shadows, and when they are drawn, on the driver.
+#include "eevee_test_scene.hh"
+#include "gpu/gpu_testing.hh"
+#include "gpu_device_fixture.hh"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gnomon::eevee {
+namespace {
+
+using test::Picture;
+using test::Renderer;
+
+class ShadowLayersGpuTest : public test::GpuDeviceTest {
+ protected:
+  void add(std::uint32_t mesh, const glm::vec3 &center, const glm::vec3 &scale = glm::vec3(1.0F))
+  {
+    test::add_object(scene, mesh, glm::scale(glm::translate(glm::mat4(1.0F), center), scale));
+  }
+  std::uint32_t add_one_sided()
+  {
+    const std::uint32_t material = test::add_material(scene, glm::vec3(0.5F));
+    scene.materials[material].is_double_sided = false;
+    return material;
+  }
+  /** A leaf whose left half is cut out. */
+  std::uint32_t add_leaf()
+  {
+    const std::int32_t texture = test::add_texture(scene, 2, {255, 255, 255, 0, 255, 255, 255, 255});
+    const std::uint32_t material = test::add_material(scene, glm::vec3(0.5F));
+    scene.materials[material].base_color_texture = texture;
+    scene.materials[material].alpha_mode = scene::AlphaMode::Mask;
+    return test::add_square_mesh(scene, material);
+  }
+  /** Boxes and leaves above a ground, mirrored ones among them, and each kind of lamp. */
+  void make_garden()
+  {
+    const std::uint32_t leaf = add_leaf();
+    add(square, {0, 0, 0}, glm::vec3(60));
+    for (int i = 0; i < 30; i++) {
+      const float x = -8.0F + 0.6F * float(i);
+      const float mirror = i % 2 == 0 ? 1.0F : -1.0F;
+      add(box, {x, 0.7F * float(i % 5) + 40.0F * float(i % 3 == 0), 1.0F + 0.2F * float(i % 4)},
+          glm::vec3(0.2F * mirror, 0.2F, 0.3F));
+      add(leaf, {x, -1.5F, 1.5F}, glm::vec3(0.25F, 0.25F * mirror, 1));
+    }
+    test::add_lamp(scene, scene::LampKind::Point, {0, 0.5F, 2}, {0, 0, -1}, 20.0F);
+    test::add_lamp(scene, scene::LampKind::Point, {4, -3, 3}, {0, 0, -1}, 20.0F);
+    test::add_lamp(scene, scene::LampKind::Spot, {-3, 1, 5}, {0.2F, 0, -1}, 50.0F).spot_outer_angle = 0.8F;
+    test::add_lamp(scene, scene::LampKind::Sun, {}, {0.5F, 0.3F, -1}, 2.0F);
+  }
+
+  scene::Scene scene;
+  /** Two-sided squares and a one-sided box, each with a material of its own. */
+  std::uint32_t square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(0.5F)));
+  std::uint32_t box = test::add_box_mesh(scene, add_one_sided());
+  scene::Camera camera = test::camera_at({0, -14, 6}, {0, 0, 0}, 0.9F);
+};
+
+/** Layers that were drawn, of cubes and then of maps. */
+std::vector<std::vector<float>> drawn_layers(gpu::Device &device, const Shadows &shadows)
+{
+  std::vector<std::vector<float>> layers;
+  for (std::size_t cube = 0; cube < shadows.cube_count(); cube++) {
+    const shared::ShadowCubeData &data = shadows.block_data().cubes[cube];
+    for (int face = 0; face < 6; face++) {
+      if ((data.face_mask >> face & 1) != 0) {
+        layers.push_back(test::texels<float>(device, shadows.cubes(), data.layer + face));
+      }
+    }
+  }
+  for (int layer = 0; shadows.maps() && layer < shadows.maps().desc().layers; layer++) {
+    layers.push_back(test::texels<float>(device, shadows.maps(), layer));
+  }
+  return layers;
+}
+
+float largest_difference(const std::vector<float> &a, const std::vector<float> &b)
+{
+  float largest = 0.0F;
+  for (std::size_t i = 0; i < a.size(); i++) {
+    largest = std::max(largest, std::abs(a[i] - b.at(i)));
+  }
+  return largest;
+}
+
+TEST_F(ShadowLayersGpuTest, TheThreeWaysGiveTheSameTexels)
+{
+  make_garden();
+  std::vector<std::vector<std::vector<float>>> layers;
+  std::vector<ShadowCounters> counters;
+  std::vector<Picture> pictures;
+  for (const LayerPass way : {LayerPass::Single, LayerPass::Geometry, LayerPass::Layered}) {
+    Renderer renderer(
+        *device, scene, {48, 32},
+        {.shadow = {.cube_size_px = 96, .map_size_px = 128, .cascades = {.count = 4}, .layer_pass = way}});
+    pictures.push_back(renderer.picture(camera));
+    const Shadows &shadows = renderer.engine.shadows(renderer.viewport);
+    ASSERT_EQ(shadows.layer_pass(), way);
+    layers.push_back(drawn_layers(*device, shadows));
+    counters.push_back(shadows.counters());
+  }
+  // A few faces of two cubes, a spot and the cascades.
+  ASSERT_GE(layers[0].size(), 10U);
+  EXPECT_EQ(layers[2], layers[0]) << "bit for bit";
+  // Mesa clips what a geometry shader gives to a wider frustum, so that triangles that cross a layer's edge are
+  // interpolated between other points.
+  ASSERT_EQ(layers[1].size(), layers[0].size());
+  for (std::size_t i = 0; i < layers[0].size(); i++) {
+    EXPECT_LE(largest_difference(layers[1][i], layers[0][i]), 2.0F * shared::DEPTH_ROUNDING) << "layer " << i;
+  }
+  for (std::size_t way = 1; way < 3; way++) {
+    EXPECT_EQ(pictures[way].pixels, pictures[0].pixels);
+    EXPECT_EQ(counters[way].caster_draws, counters[0].caster_draws);
+    EXPECT_EQ(counters[way].faces_drawn, counters[0].faces_drawn);
+  }
+}
+
+// hazards.md: every caster drawn six times into every updated lamp, no cull.
+TEST_F(ShadowLayersGpuTest, ACasterIsDrawnOnceForEachFaceThatItTouches)
+{
+  for (int i = 0; i < 6; i++) {
+    glm::vec3 center(0.0F);
+    center[i / 2] = i % 2 == 0 ? 4.0F : -4.0F;
+    add(box, center, glm::vec3(0.5F));
+  }
+  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 0}, {0, 0, -1}, 20.0F);
+  camera = test::camera_at({0, 0, 30}, {0, 0, 0}, 1.0F);
+  std::vector<std::vector<float>> six;
+  for (const LayerPass way : {LayerPass::Single, LayerPass::Geometry, LayerPass::Layered}) {
+    Renderer renderer(*device, scene, {16, 16}, {.shadow = {.cube_size_px = 64, .layer_pass = way}});
+    renderer.draw(camera);
+    const auto layers = drawn_layers(*device, renderer.engine.shadows(renderer.viewport));
+    six = six.empty() ? layers : six;
+    EXPECT_EQ(layers, six) << "bit for bit";
+    const ShadowCounters counters = renderer.engine.report(renderer.viewport).shadow_counters;
+    EXPECT_EQ(counters.faces_drawn, 6U);
+    EXPECT_EQ(counters.caster_draws, 6U) << "and not 36";
+    for (const std::vector<float> &layer : layers) {
+      EXPECT_GT(std::ranges::max(layer), 0.0F);
+    }
+  }
+}
+
+/** Distance to what stands in the middle of a lamp's only map, metres; infinite: nothing. */
+float middle_distance(gpu::Device &device, const Shadows &shadows)
+{
+  const shared::ShadowMapData &map = shadows.block_data().maps[0];
+  const std::vector<float> texels = test::texels<float>(device, shadows.maps(), map.layer);
+  const std::size_t size = std::size_t(map.size_px);
+  // texco_from_world holds near in the row of z: depth = near / distance.
+  const float near = glm::length(glm::vec3(0, 0, map.texco_from_world[3][2]));
+  return near / texels[size / 2 * size + size / 2];
+}
+
+TEST_F(ShadowLayersGpuTest, FrontOrBackFacesCastAsAskedWhateverTheMirroring)
+{
+  struct Case {
+    CasterFaces faces;
+    float one_sided;
+    float two_sided;
+  };
+  // The lamp is at 4, the box reaches from 1 to 2: its upper side is 2 away, its lower one 3.
+  for (const Case &one :
+       {Case{CasterFaces::All, 2, 2}, Case{CasterFaces::Front, 2, 2}, Case{CasterFaces::Back, 3, 2}}) {
+    for (const glm::vec3 &scale :
+         {glm::vec3(0.5F), glm::vec3(-0.5F, 0.5F, 0.5F), glm::vec3(-0.5F), glm::vec3(0.5F, 0.5F, -0.5F)}) {
+      for (const bool is_two_sided : {false, true}) {
+        scene.materials[1].is_double_sided = is_two_sided;
+        scene.objects.clear();
+        scene.lamps.clear();
+        add(box, {0, 0, 1.5F}, scale);
+        test::add_lamp(scene, scene::LampKind::Spot, {0, 0, 4}, {0, 0, -1}, 1.0F).spot_outer_angle = 0.5F;
+        Renderer renderer(*device, scene, {8, 8}, {.shadow = {.map_size_px = 64, .caster_faces = one.faces}});
+        renderer.draw(camera);
+        EXPECT_NEAR(middle_distance(*device, renderer.engine.shadows(renderer.viewport)),
+                    is_two_sided ? one.two_sided : one.one_sided, 1e-4F)
+            << "faces " << int(one.faces) << ", scale " << scale.x << " " << scale.y << " " << scale.z
+            << (is_two_sided ? ", two-sided" : "");
+      }
+    }
+  }
+}
+
+/** How much of its unshadowed light the middle of the picture has. */
+class ClipGpuTest : public ShadowLayersGpuTest {
+ protected:
+  float middle_visibility(const ShadowSettings &shadow = {})
+  {
+    Renderer lit(*device, scene, {32, 32}, {.shadow = {.kind = scene::ShadowKind::None}});
+    Renderer shadowed(*device, scene, {32, 32}, {.shadow = shadow});
+    return shadowed.picture(below).middle().r / lit.picture(below).middle().r;
+  }
+  /** Looks at the origin past what hangs above it. */
+  scene::Camera below = test::camera_at({0, -1, 0.5F}, {0, 0, 0}, 0.1F);
+};
+
+TEST_F(ClipGpuTest, WhatIsBeforeTheNearPlaneCastsUnlessTheLampLeavesItOut)
+{
+  for (const scene::LampKind kind : {scene::LampKind::Point, scene::LampKind::Spot}) {
+    scene.objects.clear();
+    scene.lamps.clear();
+    add(square, {0, 0, 0}, glm::vec3(20));
+    // A small square right under the lamp in a mesh that reaches far around it: the near plane is 2e-4 of that away.
+    scene::Mesh &mesh = scene.meshes[box];
+    mesh.positions = {{-0.05F, -0.05F, 3.9F}, {0.05F, -0.05F, 3.9F}, {0.05F, 0.05F, 3.9F}, {-0.05F, 0.05F, 3.9F},
+                      {-2e3F, -2e3F, 2e3F},   {-2e3F, -2e3F, 2001},  {2e3F, 2e3F, -2e3F},  {2e3F, 2e3F, -2001}};
+    mesh.normals.assign(8, {0, 0, 1});
+    mesh.indices = {0, 1, 2, 0, 2, 3, 4, 5, 4, 6, 7, 6};
+    mesh.bounds = {};
+    for (const glm::vec3 &position : mesh.positions) {
+      mesh.bounds.extend(position);
+    }
+    scene.materials[1].is_double_sided = true;
+    add(box, {0, 0, 0});
+    scene::Lamp &lamp = test::add_lamp(scene, kind, {0, 0, 4}, {0, 0, -1}, 20.0F);
+    lamp.spot_outer_angle = 0.6F;
+    for (const LayerPass way : {LayerPass::Single, LayerPass::Geometry, LayerPass::Layered}) {
+      lamp.shadow.clip_start.reset();
+      Renderer renderer(*device, scene, {8, 8}, {.shadow = {.layer_pass = way}});
+      renderer.draw(below);
+      const shared::ShadowBlock &block = renderer.engine.shadows(renderer.viewport).block_data();
+      const float near = kind == scene::LampKind::Point ? block.cubes[0].near : block.maps[0].texco_from_world[3][2];
+      ASSERT_GT(std::abs(near), 0.2F) << "the caster, at 0.1, is before the near plane";
+      EXPECT_EQ(middle_visibility({.layer_pass = way}), 0.0F) << "lamp kind " << int(kind);
+      lamp.shadow.clip_start = 0.2F;
+      EXPECT_EQ(middle_visibility({.layer_pass = way}), 1.0F) << "lamp kind " << int(kind);
+      // What begins behind the clip stays.
+      lamp.shadow.clip_start = 0.05F;
+      EXPECT_EQ(middle_visibility({.layer_pass = way}), 0.0F) << "lamp kind " << int(kind);
+    }
+  }
+}
+
+TEST_F(ClipGpuTest, BeyondTheClipEndNothingIsInShadow)
+{
+  for (const scene::LampKind kind : {scene::LampKind::Point, scene::LampKind::Spot}) {
+    scene.objects.clear();
+    scene.lamps.clear();
+    add(square, {0, 0, 0}, glm::vec3(20));
+    add(square, {0, 0, 2}, glm::vec3(0.5F));
+    scene::Lamp &lamp = test::add_lamp(scene, kind, {0, 0, 4}, {0, 0, -1}, 20.0F);
+    lamp.spot_outer_angle = 0.6F;
+    EXPECT_EQ(middle_visibility(), 0.0F);
+    // The ground is 4 away, the caster 2.
+    lamp.shadow.clip_end = 4.5F;
+    EXPECT_EQ(middle_visibility(), 0.0F);
+    lamp.shadow.clip_end = 3.0F;
+    EXPECT_EQ(middle_visibility(), 1.0F);
+  }
+}
+
+/** Pictures of a scene that changes, against pictures of it as it is then. */
+class ShadowCacheGpuTest : public ShadowLayersGpuTest {
+ protected:
+  Picture fresh_picture(const scene::Camera &from)
+  {
+    Renderer renderer(*device, scene, {48, 32}, settings);
+    return renderer.picture(from);
+  }
+  static std::uint64_t lamps_updated(Renderer &renderer)
+  {
+    return renderer.engine.report(renderer.viewport).shadow_counters.lamps_updated;
+  }
+  Settings settings{.shadow = {.cube_size_px = 128, .map_size_px = 256}};
+};
+
+TEST_F(ShadowCacheGpuTest, AStillSceneIsDrawnOnce)
+{
+  make_garden();
+  Renderer renderer(*device, scene, {48, 32}, settings);
+  const Picture first = renderer.picture(camera);
+  EXPECT_EQ(lamps_updated(renderer), 4U);
+  EXPECT_EQ(renderer.picture(camera).pixels, first.pixels);
+  renderer.sync();
+  EXPECT_EQ(renderer.picture(camera).pixels, first.pixels);
+  EXPECT_EQ(lamps_updated(renderer), 4U) << "0 more";
+}
+
+TEST_F(ShadowCacheGpuTest, AMovedCasterGivesThePictureOfAFreshStart)
+{
+  add(square, {0, 0, 0}, glm::vec3(20));
+  add(box, {-6, 0, 1}, glm::vec3(0.3F));
+  add(box, {6, 0, 1}, glm::vec3(0.3F));
+  // Each reaches its own half, and the ground.
+  test::add_lamp(scene, scene::LampKind::Point, {-6, 1, 3}, {0, 0, -1}, 20.0F).range = 4.0F;
+  test::add_lamp(scene, scene::LampKind::Point, {6, 1, 3}, {0, 0, -1}, 20.0F).range = 4.0F;
+  Renderer renderer(*device, scene, {48, 32}, settings);
+  renderer.draw(camera);
+  ASSERT_EQ(lamps_updated(renderer), 2U);
+  scene.objects[1].world_from_object[3].y = 0.5F;
+  renderer.sync();
+  EXPECT_EQ(renderer.picture(camera).pixels, fresh_picture(camera).pixels);
+  EXPECT_EQ(lamps_updated(renderer), 3U) << "the lamp in whose range it is";
+  scene.objects[1].world_from_object[3] = {6, 0.5F, 1.5F, 1};
+  renderer.sync();
+  EXPECT_EQ(renderer.picture(camera).pixels, fresh_picture(camera).pixels);
+  EXPECT_EQ(lamps_updated(renderer), 5U) << "the one that it left, where the ground still casts, and the other";
+  scene.objects[1].world_from_object[3] = {0, 60, 1, 1};
+  renderer.sync();
+  EXPECT_EQ(renderer.picture(camera).pixels, fresh_picture(camera).pixels);
+  EXPECT_EQ(lamps_updated(renderer), 6U) << "the one that it left, and no other: nobody reaches so far";
+}
+
+TEST_F(ShadowCacheGpuTest, FacesSkippedAppearWhenTheCameraTurns)
+{
+  make_garden();
+  scene.lamps.resize(2);
+  // Low between the boxes: ahead, and behind.
+  const scene::Camera ahead = test::camera_at({0, 0.2F, 1}, {0, 9, 1}, 0.5F);
+  const scene::Camera behind = test::camera_at({0, 0.2F, 1}, {0, -9, 0.5F}, 0.5F);
+  Renderer renderer(*device, scene, {48, 32}, settings);
+  renderer.draw(ahead);
+  const ShadowCounters before = renderer.engine.report(renderer.viewport).shadow_counters;
+  EXPECT_GT(before.faces_skipped, 0U);
+  const Picture turned = renderer.picture(behind);
+  const ShadowCounters after = renderer.engine.report(renderer.viewport).shadow_counters;
+  EXPECT_GT(after.faces_drawn, before.faces_drawn);
+  EXPECT_LE(after.faces_drawn, 12U) << "none twice";
+  EXPECT_EQ(turned.pixels, fresh_picture(behind).pixels);
+}
+
+/** A sun's cascades as a fresh start draws them for a camera. */
+struct Cascades {
+  std::vector<shared::ShadowMapData> maps;
+  std::vector<std::vector<float>> texels;
+
+  Cascades(gpu::Device &device, const scene::Scene &scene, const scene::Camera &camera, const ShadowSettings &settings)
+  {
+    Renderer renderer(device, scene, {48, 32}, {.shadow = settings});
+    renderer.draw(camera);
+    const Shadows &shadows = renderer.engine.shadows(renderer.viewport);
+    for (int i = 0; i < shadows.block_data().maps[0].cascade_count; i++) {
+      maps.push_back(shadows.block_data().maps[i]);
+      texels.push_back(test::texels<float>(device, shadows.maps(), maps.back().layer));
+    }
+  }
+
+  /** What the finest cascade that holds a point says of it. */
+  struct Lookup {
+    /** -1: none holds it, or its texel's edge is too near to tell which texel it is in. */
+    int cascade = -1;
+    bool is_lit = true;
+  };
+  [[nodiscard]] Lookup at(const glm::vec3 &point) const
+  {
+    for (std::size_t i = 0; i < maps.size(); i++) {
+      const int size = maps[i].size_px;
+      const glm::dvec4 texco = glm::dmat4(maps[i].texco_from_world) * glm::dvec4(point, 1.0);
+      const glm::dvec2 texel = glm::dvec2(texco) * double(size);
+      // Where it does not fade into the next yet.
+      if (std::min({texco.x, texco.y, 1.0 - texco.x, 1.0 - texco.y}) < 0.06) {
+        continue;
+      }
+      const glm::dvec2 fraction = texel - glm::floor(texel);
+      if (std::min({fraction.x, fraction.y, 1.0 - fraction.x, 1.0 - fraction.y}) < 1e-2) {
+        return {};
+      }
+      const std::size_t index = std::size_t(texel.y) * std::size_t(size) + std::size_t(texel.x);
+      return {int(i), double(texels[i][index]) < texco.z + 1e-4};
+    }
+    return {};
+  }
+};
+
+TEST_F(ShadowLayersGpuTest, ACameraMovedByFractionsOfATexelChangesNoStaticShadow)
+{
+  add(square, {0, 0, 0}, glm::vec3(200));
+  for (int i = 0; i < 200; i++) {
+    add(box, {-60.0F + 13.1F * float(i % 10), -10.0F + 12.3F * float(i / 10), 3.2F},
+        glm::vec3(1.4F, 1.3F, 0.2F + 0.3F * float(i % 7)));
+  }
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {0.5F, 0.3F, -1}, 1.0F);
+  const ShadowSettings settings{.map_size_px = 128, .cascades = {.count = 4}};
+  const scene::Camera still = test::camera_at({0, -14, 6}, {0, 0, 1}, 0.9F);
+  const Cascades before(*device, scene, still, settings);
+  ASSERT_EQ(before.maps.size(), 4U);
+  const float texel = before.maps[0].texel_size;
+  for (const float share : {0.13F, 0.37F, 0.61F, 0.99F}) {
+    scene::Camera moved = still;
+    moved.world_from_camera[3] += glm::vec4(share * texel, 0.7F * share * texel, 0.2F * share * texel, 0);
+    const Cascades after(*device, scene, moved, settings);
+    ASSERT_EQ(after.maps.size(), 4U);
+    int compared = 0;
+    int dark = 0;
+    int changed = 0;
+    for (int i = 0; i < 40000; i++) {
+      const glm::vec3 point(-20.0F + 0.2F * float(i % 200), -10.0F + 0.6F * float(i / 200), 0);
+      const Cascades::Lookup old_lookup = before.at(point);
+      const Cascades::Lookup new_lookup = after.at(point);
+      if (old_lookup.cascade >= 0 && old_lookup.cascade == new_lookup.cascade) {
+        compared++;
+        dark += old_lookup.is_lit ? 0 : 1;
+        changed += old_lookup.is_lit == new_lookup.is_lit ? 0 : 1;
+      }
+    }
+    EXPECT_GT(compared, 20000);
+    EXPECT_GT(dark, 500);
+    // Rasterisers place vertices on 1/256 of a texel: an edge that passes a texel's centre so near may fall either way.
+    EXPECT_LE(changed, compared / 10000) << "of " << compared << " points, the camera moved by " << share << " texels";
+  }
+}
+
+}  // namespace
+}  // namespace gnomon::eevee
