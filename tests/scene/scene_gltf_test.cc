@@ -498,6 +498,59 @@ TEST(GltfImport, MorphsSkinsAndAnimationsAreNamed)
   EXPECT_WARNING(scene, "animations: are not played");
 }
 
+// ---- Flat facets ----
+
+/** Two triangles of a quad whose fourth corner is \a lift above the plane of the others, all with \a normal. */
+Mesh import_quad(float lift, const glm::vec3 &normal)
+{
+  GltfBuilder builder;
+  const int positions = builder.positions({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, lift});
+  std::vector<float> normals;
+  for (int i = 0; i < 4; i++) {
+    normals.insert(normals.end(), {normal.x, normal.y, normal.z});
+  }
+  const int normal_accessor = builder.accessor(normals, Component::Float32, "VEC3");
+  const int indices = builder.accessor(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3}, Component::Uint16, "SCALAR");
+  return import_mesh(builder,
+                     {{"attributes", {{"POSITION", positions}, {"NORMAL", normal_accessor}}}, {"indices", indices}});
+}
+
+/** The mean of the triangles' normals, which is what an exporter writes for the polygon. */
+glm::vec3 quad_normal(float lift)
+{
+  const glm::vec3 diagonal = glm::vec3(0, 1, lift) - glm::vec3(1, 0, 0);
+  return glm::normalize(glm::cross(glm::vec3(1, 1, 0), diagonal));
+}
+
+TEST(GltfImport, TrianglesOfABentFlatQuadGetTheirOwnNormals)
+{
+  const Mesh mesh = import_quad(0.3F, quad_normal(0.3F));
+  ASSERT_EQ(mesh.indices.size(), 6U);
+  for (std::size_t triangle = 0; triangle < 2; triangle++) {
+    for (std::size_t corner = 0; corner < 3; corner++) {
+      expect_near(mesh.normals[mesh.indices[3 * triangle + corner]], face_normal(mesh, triangle));
+    }
+  }
+  EXPECT_EQ(corners(mesh)[5], glm::vec3(0, 1, 0.3F)) << "and stay where they are";
+}
+
+TEST(GltfImport, APlaneQuadKeepsItsVertices)
+{
+  const Mesh mesh = import_quad(0.0F, {0, 0, 1});
+  EXPECT_EQ(mesh.positions.size(), 4U);
+  EXPECT_EQ(mesh.normals[0], glm::vec3(0, 0, 1));
+}
+
+TEST(GltfImport, NormalsThatWereMadeOnPurposeStay)
+{
+  // A blade of grass that is lit as the ground below it.
+  const Mesh mesh = import_quad(0.3F, {0, 1, 0});
+  EXPECT_EQ(mesh.positions.size(), 4U);
+  for (const glm::vec3 &normal : mesh.normals) {
+    EXPECT_EQ(normal, glm::vec3(0, 1, 0));
+  }
+}
+
 // ---- Materials ----
 
 /** The material of an otherwise plain scene, with its warnings. */
