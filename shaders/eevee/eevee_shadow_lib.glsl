@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Visibility of a light, 1 lit and 0 in shadow, from the depths that its casters left.
-#include "eevee/eevee_surface_lib.glsl"
+#include "eevee/eevee_shadow_place_lib.glsl"
 #include "shared/eevee_light_shared.h"
-#include "shared/eevee_shadow_shared.h"
-#include "shared/slots_shared.h"
-
-layout(std140, binding = SHADOW_BLOCK_SLOT) uniform shadow_block
-{
-  ShadowBlock shadow;
-};
 
 #ifdef USE_SHADOW_CUBE
 layout(binding = SHADOW_CUBES_SLOT) uniform sampler2DArray shadow_cubes;
@@ -16,39 +9,6 @@ layout(binding = SHADOW_CUBES_SLOT) uniform sampler2DArray shadow_cubes;
 #ifdef USE_SHADOW_MAP
 layout(binding = SHADOW_MAPS_SLOT) uniform sampler2DArray shadow_maps;
 #endif
-
-#ifdef USE_SHADOW_PCF
-/** Edge of the kernel's square, texels, odd; 0: a disk. */
-SPECIALIZATION_CONSTANT(0) const int PCF_WIDTH = SHADOW_PCF_WIDTH;
-/** Lookups on the disk. */
-SPECIALIZATION_CONSTANT(1) const int PCF_TAPS = SHADOW_PCF_TAPS;
-/** Radius of the disk, texels: with the texels around a lookup it stays within CUBE_BORDER_TEXELS. */
-const float PCF_DISK_RADIUS = 2.0;
-#endif
-
-float largest(vec3 v)
-{
-  vec3 a = abs(v);
-  return max(max(a.x, a.y), a.z);
-}
-
-/** The receiver, lifted off its plane to the side of the light. \a to_light: unit vector. */
-vec3 lifted_position(Surface surface, vec3 to_light, float lift)
-{
-  vec3 normal_ws = surface.geometric_normal_ws;
-  return surface.position_ws + normal_ws * (dot(normal_ws, to_light) < 0.0 ? -lift : lift);
-}
-
-/** How far from a lookup its kernel reads, texels. */
-float kernel_reach(int filter_kind)
-{
-#ifdef USE_SHADOW_PCF
-  if (filter_kind == SHADOW_FILTER_PCF) {
-    return PCF_WIDTH > 0 ? 0.5 * float(PCF_WIDTH + 1) : PCF_DISK_RADIUS + 1.0;
-  }
-#endif
-  return 1.0;
-}
 
 /** A plane in a shadow, around a lookup. */
 struct ReceiverPlane {
@@ -138,23 +98,10 @@ float shadow_cube_visibility(int index, Surface surface, LightData light, vec3 t
 #endif
 
 #ifdef USE_SHADOW_MAP
-/** Share of a map's half width over which a cascade fades into the next. */
-const float CASCADE_FADE = 0.1;
-
-/** \a coverage: 0 where the map says nothing of the receiver, 1 where it is not near the map's edge. */
+/** \a coverage: of map_texco. */
 float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, out float coverage)
 {
-  coverage = 0.0;
-  float w = (map.texco_from_world * vec4(surface.position_ws, 1.0)).w;
-  float lift = map.bias * shadow_lift(map.texel_size * w, kernel_reach(map.filter_kind), map.rounding * w * w,
-                                      largest(surface.position_ws) + abs(w));
-  vec4 texco = map.texco_from_world * vec4(lifted_position(surface, to_light, lift), 1.0);
-  if (texco.w <= 0.0 || w > map.far) {
-    return 1.0;
-  }
-  texco.xyz /= texco.w;
-  vec2 from_edge = min(texco.xy, 1.0 - texco.xy);
-  coverage = clamp(min(from_edge.x, from_edge.y) / (0.5 * CASCADE_FADE), 0.0, 1.0);
+  vec3 texco = map_texco(map, surface, to_light, coverage);
   if (coverage <= 0.0) {
     return 1.0;
   }
@@ -163,7 +110,7 @@ float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, out 
   vec3 tangent = normalize(abs(n.z) < 0.9 ? vec3(n.y, -n.x, 0.0) : vec3(0.0, n.z, -n.y));
   vec4 along = map.texco_from_world * vec4(tangent, 0.0);
   vec4 across = map.texco_from_world * vec4(cross(n, tangent), 0.0);
-  vec3 normal = cross(along.xyz - texco.xyz * along.w, across.xyz - texco.xyz * across.w);
+  vec3 normal = cross(along.xyz - texco * along.w, across.xyz - texco * across.w);
   float size = float(map.size_px);
   ReceiverPlane plane;
   plane.texel = texco.xy * size - 0.5;
@@ -182,8 +129,7 @@ float shadow_map_visibility(int first, Surface surface, vec3 to_light)
   for (int i = 0; i < count && open > 0.0; i++) {
     float coverage;
     float lit = one_map_visibility(shadow.maps[first + i], surface, to_light, coverage);
-    // The last one has nothing to fade into.
-    float share = i == count - 1 ? step(1e-30, coverage) : coverage;
+    float share = cascade_share(i == count - 1, coverage);
     visibility += open * share * lit;
     open *= 1.0 - share;
   }

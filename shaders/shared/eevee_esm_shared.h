@@ -170,7 +170,7 @@ SHARED_CONSTANT float ESM_TANGENT_MAX = 10.0f;
 SHARED_FUNCTION float esm_bias(float distance, float cosine, float texel_angle, float format_error)
 {
   float cosine_abs = min(abs(cosine), 1.0f);
-  float tangent = sqrt(1.0f - cosine_abs * cosine_abs) / max(cosine_abs, 1e-30f);
+  float tangent = sqrt(max(1.0f - cosine_abs * cosine_abs, 0.0f)) / max(cosine_abs, 1e-30f);
   return distance * (texel_angle * min(tangent, ESM_TANGENT_MAX) + 4e-7f) + format_error;
 }
 

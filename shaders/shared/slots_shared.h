@@ -25,6 +25,7 @@
 #define SHADOW_ESM_SLOT 19
 #define SHADOW_ESM_HALF_SLOT 20
 #define ESM_SOURCE_SLOT 21
+#define SHADOW_LAYERS_SLOT 22
 #define BASE_COLOR_SLOT 24
 
 /** Declares the block of small per-group values: push constants where the API has them. */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli.hh"
 
+#include "cli_debug.hh"
 #include "cli_output.hh"
 
 #include "eevee_camera.hh"
@@ -44,9 +45,13 @@ struct RenderOptions {
   std::string pcf = "3x3";
   std::string esm = "32";
   int cascades = 0;
+  float cascade_lambda = eevee::CascadeSettings().lambda;
+  std::string cascade_range = "view";
   std::string cube_pass = "best";
   std::string casters = "all";
   int shadow_memory = 1024;
+  std::string debug;
+  DebugView debug_view;
   std::string aov;
   std::string view = "standard";
   float exposure = 0.0F;
@@ -149,6 +154,12 @@ eevee::PcfKernel parse_pcf(const std::string &text)
   return {.width = 0, .taps = taps};
 }
 
+/**
+ * From so many samples a pixel on, the edges of shadows are what is left of the error, and texels half as wide halve
+ * it; their drawing is spread over the samples.
+ */
+constexpr int fine_shadow_samples = 16;
+
 eevee::ShadowSettings shadow_settings(const RenderOptions &options)
 {
   static const std::map<std::string, scene::ShadowKind> kinds = {{"none", scene::ShadowKind::None},
@@ -168,12 +179,19 @@ eevee::ShadowSettings shadow_settings(const RenderOptions &options)
   settings.esm.kernel = kernels.at(options.esm);
   settings.pcf = parse_pcf(options.pcf);
   settings.cascades.count = options.cascades;
+  settings.cascades.lambda = options.cascade_lambda;
+  settings.cascades.is_fitted_to_depth = options.cascade_range == "depth";
   settings.layer_pass = passes.at(options.cube_pass);
   settings.caster_faces = faces.at(options.casters);
   settings.memory_bytes_max = std::size_t(options.shadow_memory) << 20U;
   if (options.shadow_size > 0) {
     settings.cube_size_px = options.shadow_size;
     settings.map_size_px = options.shadow_size;
+  }
+  else if (options.samples >= fine_shadow_samples) {
+    settings.cube_size_px *= 2;
+    settings.map_size_px *= 2;
+    settings.esm.size_px *= 2;
   }
   return settings;
 }
@@ -184,9 +202,11 @@ eevee::Settings engine_settings(const RenderOptions &options)
   settings.shadow = shadow_settings(options);
   settings.sample_count = options.samples;
   settings.seed = options.seed;
-  settings.has_display = !options.output.empty() && is_png(options.output);
+  settings.has_display =
+      !options.output.empty() && is_png(options.output) && options.debug_view.kind != DebugView::Kind::Shadow;
   settings.view_transform = options.view == "raw" ? eevee::ViewTransform::Raw : eevee::ViewTransform::Standard;
   settings.exposure = options.exposure;
+  settings.has_cascade_tint = options.debug_view.kind == DebugView::Kind::Cascades;
   settings.is_timed = !options.json.empty() || options.is_explained;
   return settings;
 }
@@ -325,12 +345,13 @@ void render_frames(const RenderOptions &options, const scene::Camera &camera, ee
 }
 
 /** \return Status::Done or Status::NonFinite; then nothing is written. */
-Status write_picture(const RenderOptions &options, const scene::Camera &camera, eevee::Engine &engine,
-                     draw::Viewport &viewport, RenderResult &result)
+Status write_picture(const RenderOptions &options, const scene::Camera &camera, const gpu::Texture &picture,
+                     const eevee::Engine &engine, draw::Viewport &viewport, RenderResult &result)
 {
-  const glm::ivec2 size_px = viewport.size_px();
-  const std::vector<float> radiance = read_as<float>(viewport.device(), engine.radiance(viewport));
-  const NonFinite non_finite = find_non_finite(size_px, radiance);
+  const bool is_shadow = options.debug_view.kind == DebugView::Kind::Shadow;
+  const glm::ivec2 size_px(picture.desc().width, picture.desc().height);
+  const std::vector<float> values = read_as<float>(viewport.device(), picture);
+  const NonFinite non_finite = find_non_finite(size_px, values);
   result.non_finite_count = non_finite.count;
   if (non_finite.count > 0) {
     fmt::print(stderr,
@@ -343,21 +364,32 @@ Status write_picture(const RenderOptions &options, const scene::Camera &camera, 
                        {"gnomon:samples", std::to_string(options.samples)},
                        {"gnomon:seed", std::to_string(options.seed)},
                        {"gnomon:device", result.device}};
+  if (!options.debug.empty()) {
+    metadata.emplace_back("gnomon:debug", options.debug);
+  }
   if (is_png(options.output)) {
-    metadata.emplace_back("gnomon:units", fmt::format("display-referred, {}", options.view));
-    write_png(options.output, size_px, read_as<std::uint8_t>(viewport.device(), engine.display(viewport)), metadata);
+    metadata.emplace_back("gnomon:units", fmt::format("display-referred, {}", is_shadow ? "raw" : options.view));
+    write_png(options.output, size_px,
+              is_shadow ? to_bytes(values) : read_as<std::uint8_t>(viewport.device(), engine.display(viewport)),
+              metadata);
   }
   else {
-    metadata.emplace_back("gnomon:units", "scene-linear radiance, W/(sr m^2)");
-    write_exr(options.output, size_px, radiance, metadata);
+    metadata.emplace_back("gnomon:units",
+                          is_shadow ? "metres, 0 where nothing was drawn" : "scene-linear radiance, W/(sr m^2)");
+    write_exr(options.output, size_px, is_shadow ? alpha_in_all(values) : values, metadata);
   }
   return Status::Done;
 }
 
-Status render(const RenderOptions &options)
+Status render(RenderOptions options)
 {
   const Clock::time_point start = Clock::now();
   check_options(options);
+  options.debug_view = parse_debug(options.debug);
+  if (options.debug_view.kind == DebugView::Kind::Shadow) {
+    // The first sample draws all shadows.
+    options.samples = 1;
+  }
   const glm::ivec2 size_px = parse_size(options.size);
   check_folder(options.output);
   check_folder(options.json);
@@ -389,14 +421,20 @@ Status render(const RenderOptions &options)
   for (const std::string &limit : result.report.limits) {
     fmt::print(stderr, "gnomon: limit: {}\n", limit);
   }
+  if (options.debug_view.kind == DebugView::Kind::Cascades && !engine.tinted_sun(viewport)) {
+    throw std::runtime_error(fmt::format("{}: no sun has a shadow, and so there are no cascades", scene.path));
+  }
   result.sync_seconds = seconds_since(sync_start);
 
   render_frames(options, camera, engine, viewport, result);
 
+  const gpu::Texture &picture = options.debug_view.kind == DebugView::Kind::Shadow
+                                    ? shadow_picture(options.debug_view, scene, engine, viewport)
+                                    : engine.radiance(viewport);
   const Clock::time_point output_start = Clock::now();
   Status status = Status::Done;
   if (options.backend == "gl") {
-    status = write_picture(options, camera, engine, viewport, result);
+    status = write_picture(options, camera, picture, engine, viewport, result);
   }
   else {
     fmt::print(stderr, "gnomon: the null backend draws nothing: no picture is written\n");
@@ -444,7 +482,7 @@ void add_render(CLI::App &app, Status &status)
       ->check(CLI::IsMember({"none", "hard", "pcf", "esm"}));
   command
       ->add_option("--shadow-size", o->shadow_size,
-                   "Edge of every shadow layer, pixels (default: cubes 1024, maps 2048)")
+                   "Edge of every shadow layer, pixels (default: cubes 1024, maps 2048; twice that from 16 samples)")
       ->check(CLI::Range(1, 16384));
   command->add_option("--pcf", o->pcf, "Kernel of --shadow pcf: 1, 3x3, 5x5, or disk:N for N lookups on a disk")
       ->capture_default_str();
@@ -455,6 +493,14 @@ void add_render(CLI::App &app, Status &status)
       ->add_option("--cascades", o->cascades, "Maps a sun; 0: as many as its texels need to be no larger than pixels")
       ->capture_default_str()
       ->check(CLI::Range(0, eevee::cascade_count_max));
+  command->add_option("--cascade-lambda", o->cascade_lambda, "Splits of the distance: 0 even, 1 logarithmic")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+  command
+      ->add_option("--cascade-range", o->cascade_range,
+                   "What is split: view, what the camera could see of the scene; depth, what it sees")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"view", "depth"}));
   command
       ->add_option("--cube-pass", o->cube_pass,
                    "How the layers of a lamp are drawn: six (a pass each), geometry or layered (one pass), best")
@@ -466,6 +512,9 @@ void add_render(CLI::App &app, Status &status)
   command->add_option("--shadow-memory", o->shadow_memory, "MiB that shadow layers may take; sizes are lowered to fit")
       ->capture_default_str()
       ->check(CLI::Range(1, 1 << 20));
+  command->add_option("--debug", o->debug,
+                      "shadow:LAMP[:LAYER]: distances in a shadow's layers (a cube's face, a cascade, octahedral, all)"
+                      " instead of the picture; cascades: the picture, tinted by the cascade each pixel reads");
   command->add_option("--aov", o->aov, "Further layers to write (not built yet)");
   command->add_option("--view", o->view, "View transform of a PNG: standard, raw")
       ->capture_default_str()

@@ -23,6 +23,8 @@ enum class State : std::uint32_t {
   BlendAdd = 1U << 7,
   /** What lies before the near or behind the far plane is drawn on it instead of cut off. */
   DepthClamp = 1U << 8,
+  /** What is there is multiplied by the colour. */
+  BlendMultiply = 1U << 9,
 };
 
 constexpr State operator|(State a, State b)

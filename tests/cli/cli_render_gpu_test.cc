@@ -52,6 +52,35 @@ TEST_F(CliRenderTest, ThePngIsTheRightWayUp)
   EXPECT_GT(int(pixels[std::size_t(64) * 35 * 3]), 50);
 }
 
+TEST_F(CliRenderTest, AShadowsPictureIsGreyAndColouredAndItsExrIsInMetres)
+{
+  const std::string render = "render " + example("plaza") + " --size 64x36 --shadow-size 64 --debug shadow:POINT -o ";
+  ASSERT_EQ(run(render + "out.png").status, 0);
+  ASSERT_EQ(run(render + "out.exr").status, 0);
+  const auto png = OIIO::ImageInput::open((folder / "out.png").string());
+  const auto exr = OIIO::ImageInput::open((folder / "out.exr").string());
+  ASSERT_TRUE(png && exr);
+  ASSERT_EQ(png->spec().width, 4 * 64);
+  ASSERT_EQ(png->spec().height, 3 * 64);
+  EXPECT_EQ(exr->spec().get_string_attribute("gnomon:units"), "metres, 0 where nothing was drawn");
+  EXPECT_EQ(exr->spec().get_string_attribute("gnomon:debug"), "shadow:POINT");
+  constexpr std::size_t count = std::size_t(4) * 64 * 3 * 64;
+  std::vector<unsigned char> shown(3 * count);
+  std::vector<float> metres(3 * count);
+  ASSERT_TRUE(png->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, shown.data()));
+  ASSERT_TRUE(exr->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, metres.data()));
+  std::size_t distances = 0;
+  for (std::size_t i = 0; i < count; i++) {
+    const bool is_grey = shown[3 * i] == shown[3 * i + 1] && shown[3 * i] == shown[3 * i + 2] && shown[3 * i] > 0;
+    EXPECT_EQ(is_grey, metres[3 * i] > 0.0F) << i;
+    distances += metres[3 * i] > 0.0F;
+  }
+  // Below the lamp, in the lower third, there is ground everywhere; in the first row, above it, nothing.
+  EXPECT_GT(distances, std::size_t(64) * 64);
+  EXPECT_EQ(metres[3 * 96], 0.0F);
+  EXPECT_GT(metres[3 * (256 * 160 + 96)], 0.0F);
+}
+
 TEST_F(CliRenderTest, EqualSeedsGiveEqualPictures)
 {
   for (const std::string name : {"a", "b"}) {

@@ -73,6 +73,43 @@ TEST_F(CliTest, AnUnknownCameraIsAnErrorThatNamesThoseThereAre)
   EXPECT_NE(finished.err.find("no camera 'side'; it has: camera"), std::string::npos) << finished.err;
 }
 
+TEST_F(CliTest, ADebugViewThatIsNoneIsWrongUsage)
+{
+  for (const std::string view : {"depth", "shadow", "shadow:", "shadow::1", "shadow:SUN:", "shadow:SUN:first",
+                                 "shadow:SUN:-1", "cascades:SUN"}) {
+    const Finished finished = run("render " + example("plaza") + " --backend null --debug " + view);
+    EXPECT_EQ(finished.status, 2) << view;
+    EXPECT_NE(finished.err.find("--debug '" + view + "'"), std::string::npos) << finished.err;
+  }
+}
+
+TEST_F(CliTest, ADebugViewOfWhatIsNotThereNamesWhatIs)
+{
+  const auto error = [&](const std::string &arguments) {
+    const Finished finished = run("render " + arguments + " --backend null --size 64x36 --shadow-size 64");
+    EXPECT_EQ(finished.status, 1) << arguments;
+    return finished.err;
+  };
+  const auto expect_error = [&](const std::string &arguments, const std::string &text) {
+    const std::string err = error(arguments);
+    EXPECT_NE(err.find(text), std::string::npos) << err;
+  };
+  expect_error(example("plaza") + " --debug shadow:LAMP",
+               "no lamp 'LAMP'; lamps with a shadow that is seen: POINT, SUN");
+  expect_error(example("plaza") + " --debug shadow:POINT:6", "no layer '6'; it has: 0, 1, 2, 3, 4, 5");
+  expect_error(example("plaza") + " --debug shadow:SUN:octahedral --cascades 2", "no layer 'octahedral'; it has: 0");
+  expect_error(example("plaza") + " --debug shadow:POINT:0 --shadow esm", "no layer '0'; it has: octahedral");
+  expect_error(example("plaza") + " --debug shadow:SUN --shadow none",
+               "lamp 'SUN' has no shadow that is seen; lamps with "
+               "a shadow that is seen: none");
+  expect_error(example("spots") + " --debug cascades", "no sun has a shadow");
+  for (const std::string view : {"shadow:SUN:0", "shadow:SUN:all", "shadow:POINT:5", "cascades"}) {
+    const Finished finished =
+        run("render " + example("plaza") + " --backend null --size 64x36 --shadow-size 64 --debug " + view);
+    EXPECT_EQ(finished.status, 0) << view << ": " << finished.err;
+  }
+}
+
 TEST_F(CliTest, InfoTellsWhatAnExampleHolds)
 {
   const Finished finished = run("info " + example("plaza"));

@@ -170,5 +170,11 @@ TEST_F(StateGpu, BlendAddSums)
             (Pixel{-1 + 2 + 0.25F - 8, 0}));
 }
 
+TEST_F(StateGpu, BlendMultiplyScales)
+{
+  const State multiply = State::WriteColor | State::BlendMultiply;
+  EXPECT_EQ(drawn({{.state = multiply, .value = 0.25F}, {.state = multiply, .value = 3}}), (Pixel{-0.75F, 0}));
+}
+
 }  // namespace
 }  // namespace gnomon::gpu

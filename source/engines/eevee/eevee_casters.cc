@@ -58,7 +58,7 @@ float lamp_near(const glm::vec3 &position_ws, float range, const std::vector<Cas
     return near_min;
   }
   // Along a face's axis what is at this distance is nearer, by up to the square root of 3.
-  return std::max(nearest > 0.0F ? 0.5F * nearest : 2e-4F * smallest_around, near_min);
+  return std::max(nearest > 0.0F ? 0.5F * nearest : 1e-2F * smallest_around, near_min);
 }
 
 }  // namespace gnomon::eevee

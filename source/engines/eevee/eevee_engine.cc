@@ -2,6 +2,7 @@
 #include "eevee_engine.hh"
 
 #include "eevee_camera.hh"
+#include "eevee_debug.hh"
 #include "eevee_film.hh"
 #include "eevee_lamps.hh"
 #include "eevee_materials.hh"
@@ -48,6 +49,7 @@ struct PassList {
         depth_pass_cull("depth_pass_cull", State::WriteDepth | State::DepthNearerEqual | State::CullBack, &objects),
         pass("pass", State::WriteColor | State::DepthEqual, &objects),
         probe_pass("probe_pass", State::WriteColor | State::DepthEqual, &objects),
+        tint_pass("tint_pass", State::WriteColor | State::DepthEqual | State::BlendMultiply, &objects),
         film_pass("film_pass", State::WriteColor | State::BlendAdd),
         tonemap("tonemap", State::WriteColor)
   {
@@ -57,6 +59,7 @@ struct PassList {
   draw::Pass depth_pass_cull;
   draw::Pass pass;
   draw::Pass probe_pass;
+  draw::Pass tint_pass;
   draw::Pass film_pass;
   draw::Pass tonemap;
 };
@@ -84,6 +87,8 @@ struct StorageList {
   std::vector<std::array<draw::InstanceCall *, 2>> caster_calls;
   /** In light_block, of the probe being drawn. */
   int probed_light = 0;
+  /** In light_block: the sun whose cascades are shown; nothing where none is, or nobody asks. */
+  std::optional<int> tinted_light;
   /** Of the sample being drawn; the film pass reads it by reference. */
   glm::vec4 film_columns{0.0F};
   glm::vec4 film_rows{0.0F};
@@ -107,6 +112,7 @@ struct Data final : draw::EngineViewportData {
   StorageList stl;
   Timing timing;
   int samples_drawn = 0;
+  ShadowPicture shadow_picture;
 };
 
 /** The device's time for what \a work submits, added to the step's. */
@@ -129,6 +135,15 @@ void timed(bool is_timed, gpu::Device &device, Timing &timing, const char *name,
   work();
   device.time_end(step->query);
   step->is_pending = true;
+}
+
+template <typename T>
+std::vector<T> read_as(gpu::Device &device, const gpu::Texture &texture)
+{
+  const std::vector<std::byte> bytes = device.read(texture);
+  std::vector<T> texels(bytes.size() / sizeof(T));
+  std::memcpy(texels.data(), bytes.data(), bytes.size());
+  return texels;
 }
 
 gpu::Texture picture(gpu::Device &device, const char *name, gpu::Format format, glm::ivec2 size_px)
@@ -196,6 +211,18 @@ std::uint64_t caster_fingerprint(const draw::ObjectRef &object, std::uint32_t me
   return fingerprint_of(std::as_bytes(std::span(&key, 1)));
 }
 
+/** In light_block. */
+std::optional<int> first_sun_with_maps(const Lamps &lamps)
+{
+  for (int i = 0; i < lamps.light_block.light_count; i++) {
+    const shared::LightData &light = lamps.light_block.lights[i];
+    if (light.kind == LIGHT_SUN && light.shadow_kind == SHADOW_MAP) {
+      return i;
+    }
+  }
+  return std::nullopt;
+}
+
 void bind_lit(draw::ShadingGroup &group, StorageList &stl)
 {
   group.bind_uniform("view_block", stl.view_block);
@@ -211,7 +238,7 @@ void Engine::init(draw::Viewport &viewport)
 {
   Data &data = viewport.engine_data<Data>(*this);
   gpu::Device &device = viewport.device();
-  auto &[fbl, txl, psl, stl, timing, samples_drawn] = data;
+  auto &[fbl, txl, psl, stl, timing, samples_drawn, shadow_picture] = data;
   if (!txl.radiance) {
     txl.radiance = picture(device, "radiance", gpu::Format::RGBA32F, viewport.size_px());
     fbl.depth_fb = device.create_framebuffer({.name = "depth_fb", .colors = {}, .depth = {&viewport.depth_texture()}});
@@ -260,6 +287,7 @@ void Engine::cache_init(draw::Viewport &viewport)
     }
     device.update(stl.light_block, stl.lamps.light_block);
   }
+  stl.tinted_light = settings_.has_cascade_tint ? first_sun_with_maps(stl.lamps) : std::nullopt;
   if (!materials.empty()) {
     const auto bytes = std::as_bytes(std::span(materials));
     if (!stl.material_block || stl.material_block.size_bytes() != bytes.size()) {
@@ -333,12 +361,20 @@ void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectRef &obj
     call(data.psl->pass, lit_shader, State::CullBack, is_lit_textured);
   }
 
+  const State side = material.is_double_sided ? State::None : State::CullBack;
+  if (stl.tinted_light) {
+    const auto bind = [&stl](draw::ShadingGroup &group) {
+      bind_lit(group, stl);
+      group.constant("tinted_light", *stl.tinted_light);
+    };
+    const gpu::Shader &tint_shader = stl.shaders.get(device, ShaderId::DebugCascades, stl.features);
+    group_of(data.psl->tint_pass, tint_shader, side | winding, false, bind).call(batch, index, object.volume);
+  }
   if (settings_.has_probe && has(stl.features, Feature::Light)) {
     const auto bind = [&stl](draw::ShadingGroup &group) {
       bind_lit(group, stl);
       group.constant_ref("probed_light", &stl.probed_light);
     };
-    const State side = material.is_double_sided ? State::None : State::CullBack;
     const gpu::Shader &probe_shader = stl.shaders.get(device, ShaderId::Probe, stl.features);
     group_of(data.psl->probe_pass, probe_shader, side | winding, false, bind).call(batch, index, object.volume);
   }
@@ -378,7 +414,7 @@ static float pixel_size(const draw::View &view, const draw::Viewport &viewport)
 void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
 {
   Data &data = viewport.engine_data<Data>(*this);
-  auto &[fbl, txl, psl, stl, timing, samples_drawn] = data;
+  auto &[fbl, txl, psl, stl, timing, samples_drawn, shadow_picture] = data;
   gpu::Device &device = viewport.device();
   const glm::vec2 offset_px = film_offset_px(samples_drawn, settings_.sample_count, settings_.seed);
   const draw::View sample_view = with_sample_offset(view, offset_px, viewport.size_px());
@@ -393,17 +429,27 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
     list.clear();
   };
 
-  stl.shadows.update(device, view, pixel_size(view, viewport), psl->shadow_pass, list);
+  const auto draw_depth = [&] {
+    list.begin_pass("depth_prepass", fbl.depth_fb, {});
+    psl->depth_pass.record(sample_view, list);
+    psl->depth_pass_cull.record(sample_view, list);
+    list.end_pass();
+    submit_step("depth_prepass");
+  };
+  const bool is_depth_first = settings_.shadow.cascades.is_fitted_to_depth;
+  if (is_depth_first) {
+    draw_depth();
+  }
+  const auto read_depths = [&] { return read_as<float>(device, viewport.depth_texture()); };
+  stl.shadows.update(device, view, pixel_size(view, viewport), psl->shadow_pass, list, read_depths);
   submit_step("shadows");
-
-  list.begin_pass("depth_prepass", fbl.depth_fb, {});
-  psl->depth_pass.record(sample_view, list);
-  psl->depth_pass_cull.record(sample_view, list);
-  list.end_pass();
-  submit_step("depth_prepass");
+  if (!is_depth_first) {
+    draw_depth();
+  }
 
   list.begin_pass("lit", fbl.main_fb, {.depth_load = gpu::LoadAction::Load});
   psl->pass.record(sample_view, list);
+  psl->tint_pass.record(sample_view, list);
   list.end_pass();
   submit_step("lit");
 
@@ -435,7 +481,7 @@ static std::optional<std::size_t> light_of(const Lamps &lamps, std::size_t lamp)
 std::optional<Probe> Engine::probe(draw::Viewport &viewport, const draw::View &view, std::size_t lamp)
 {
   GNOMON_ASSERT(settings_.has_probe, "the settings ask for no probe");
-  auto &[fbl, txl, psl, stl, timing, samples_drawn] = viewport.engine_data<Data>(*this);
+  auto &[fbl, txl, psl, stl, timing, samples_drawn, shadow_picture] = viewport.engine_data<Data>(*this);
   gpu::Device &device = viewport.device();
   const std::optional<std::size_t> light = light_of(stl.lamps, lamp);
   if (!light) {
@@ -454,13 +500,7 @@ std::optional<Probe> Engine::probe(draw::Viewport &viewport, const draw::View &v
   psl->probe_pass.record(view, list);
   list.end_pass();
   device.submit(list);
-  const auto read = [&](const gpu::Texture &texture) {
-    const std::vector<std::byte> bytes = device.read(texture);
-    std::vector<glm::vec4> texels(bytes.size() / sizeof(glm::vec4));
-    std::memcpy(texels.data(), bytes.data(), bytes.size());
-    return texels;
-  };
-  return Probe{read(txl.probe_position), read(txl.probe_normal)};
+  return Probe{read_as<glm::vec4>(device, txl.probe_position), read_as<glm::vec4>(device, txl.probe_normal)};
 }
 
 double Engine::shadow_texel_size(draw::Viewport &viewport, std::size_t lamp, const glm::dvec3 &position_ws) const
@@ -508,11 +548,44 @@ std::string Engine::serialize_passes(draw::Viewport &viewport) const
 {
   const Data &data = viewport.engine_data<Data>(*this);
   std::string text;
-  for (const draw::Pass *pass : {&data.psl->shadow_pass, &data.psl->depth_pass, &data.psl->depth_pass_cull,
-                                 &data.psl->pass, &data.psl->probe_pass, &data.psl->film_pass, &data.psl->tonemap}) {
+  for (const draw::Pass *pass :
+       {&data.psl->shadow_pass, &data.psl->depth_pass, &data.psl->depth_pass_cull, &data.psl->pass,
+        &data.psl->tint_pass, &data.psl->probe_pass, &data.psl->film_pass, &data.psl->tonemap}) {
     text += pass->serialize(viewport.device());
   }
   return text;
+}
+
+static std::optional<ShadowLayers> layers_of(const StorageList &stl, std::size_t lamp)
+{
+  const std::optional<std::size_t> light = light_of(stl.lamps, lamp);
+  return light ? stl.shadows.layers(stl.lamps.light_block.lights[*light]) : std::nullopt;
+}
+
+std::vector<std::string> Engine::shadow_layers(draw::Viewport &viewport, std::size_t lamp) const
+{
+  const std::optional<ShadowLayers> layers = layers_of(viewport.engine_data<Data>(*this).stl, lamp);
+  std::vector<std::string> names;
+  for (int i = 0; layers && i < layers->count; i++) {
+    names.push_back(layers->esm_format >= 0 ? "octahedral" : std::to_string(i));
+  }
+  return names;
+}
+
+const gpu::Texture &Engine::shadow_picture(draw::Viewport &viewport, std::size_t lamp, std::optional<std::size_t> layer)
+{
+  Data &data = viewport.engine_data<Data>(*this);
+  const std::optional<ShadowLayers> layers = layers_of(data.stl, lamp);
+  GNOMON_ASSERT(layers, "lamp {} has no shadow", lamp);
+  return data.shadow_picture.draw(viewport.device(), data.stl.shaders, *layers,
+                                  layer ? std::optional(int(*layer)) : std::nullopt);
+}
+
+std::optional<std::size_t> Engine::tinted_sun(draw::Viewport &viewport) const
+{
+  const StorageList &stl = viewport.engine_data<Data>(*this).stl;
+  return stl.tinted_light ? std::optional(std::size_t(stl.lamps.scene_index[std::size_t(*stl.tinted_light)]))
+                          : std::nullopt;
 }
 
 Report Engine::report(draw::Viewport &viewport) const
@@ -548,6 +621,8 @@ Report Engine::report(draw::Viewport &viewport) const
        "no lit or cut out material has one");
   part("specular in eevee_lit", has(f, Feature::Specular), "a material reflects",
        has(f, Feature::Light) ? "every material is Lambertian" : "no lamp gives light");
+  part("cascade tint", stl.tinted_light.has_value(), "asked for",
+       settings_.has_cascade_tint ? "no sun has a shadow" : "not asked for");
   part("film", true, fmt::format("{} samples a pixel", settings_.sample_count), "");
   part("tonemap", bool(data.txl.display), "a display picture was asked for", "only radiance was asked for");
   part("programs", stl.shaders.size() > 0, fmt::format("{} programs", stl.shaders.size()), "nothing to draw");

@@ -28,6 +28,8 @@ struct Settings {
   float exposure = 0.0F;
   /** Measure each step on the device. */
   bool is_timed = false;
+  /** Multiply the picture by a colour for each cascade of the first sun that has any. */
+  bool has_cascade_tint = false;
   /** Engine::probe may be asked. */
   bool has_probe = false;
 };
@@ -90,6 +92,17 @@ class Engine final : public draw::Engine {
   /** Edge of a texel of that lamp's shadow at a place, across the light, metres; 0: it has none there. */
   [[nodiscard]] double shadow_texel_size(draw::Viewport &viewport, std::size_t lamp,
                                          const glm::dvec3 &position_ws) const;
+  /**
+   * Layers of that lamp's shadow, by name, as the last picture's view had them: "0" to "5" for faces of a cube in
+   * OpenGL's order, "0" on for cascades of a sun from the finest, "0" for a spot, "octahedral". Empty where it has
+   * none.
+   */
+  [[nodiscard]] std::vector<std::string> shadow_layers(draw::Viewport &viewport, std::size_t lamp) const;
+  /** Picture of one of them, by index, or of all. \see ShadowPicture::draw \pre shadow_layers is not empty */
+  [[nodiscard]] const gpu::Texture &shadow_picture(draw::Viewport &viewport, std::size_t lamp,
+                                                   std::optional<std::size_t> layer = std::nullopt);
+  /** The sun whose cascades Settings::has_cascade_tint shows, in the scene; valid after a sync. */
+  [[nodiscard]] std::optional<std::size_t> tinted_sun(draw::Viewport &viewport) const;
   /** For those who look at the layers themselves; as of the last draw. */
   [[nodiscard]] const Shadows &shadows(draw::Viewport &viewport) const;
   [[nodiscard]] Report report(draw::Viewport &viewport) const;

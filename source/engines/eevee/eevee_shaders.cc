@@ -29,32 +29,39 @@ constexpr Feature shadow_features = Feature::Light | Feature::Punctual | Feature
                                     Feature::ShadowPcf | Feature::ShadowEsm;
 constexpr Feature material_features = Feature::BaseColorTexture | Feature::AlphaMask;
 
-constexpr std::array<ShaderDeclaration, 12> declarations = {{
+constexpr std::array<ShaderDeclaration, 14> declarations = {{
     {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
-     Feature::AlphaMask, "depth of what is seen, so that each pixel is lit once"},
+     Feature::AlphaMask, Feature::None, "depth of what is seen, so that each pixel is lit once"},
     {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
-     Feature::AlphaMask, "depth of what a lamp sees, a layer a pass"},
+     Feature::AlphaMask, Feature::None, "depth of what a lamp sees, a layer a pass"},
     {ShaderId::ShadowLayered, "eevee_shadow_layered", "eevee/eevee_shadow_layered_vert.glsl", "",
-     "eevee/eevee_depth_frag.glsl", Feature::AlphaMask, "depth of what a lamp sees, all layers in one pass"},
+     "eevee/eevee_depth_frag.glsl", Feature::AlphaMask, Feature::None,
+     "depth of what a lamp sees, all layers in one pass"},
     {ShaderId::ShadowGeometry, "eevee_shadow_geometry", "eevee/eevee_shadow_geometry_vert.glsl",
-     "eevee/eevee_shadow_geometry_geom.glsl", "eevee/eevee_depth_frag.glsl", Feature::AlphaMask,
+     "eevee/eevee_shadow_geometry_geom.glsl", "eevee/eevee_depth_frag.glsl", Feature::AlphaMask, Feature::None,
      "the same where vertex shaders cannot choose a layer"},
     {ShaderId::Lit, "eevee_lit", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_lit_frag.glsl",
-     light_features | Feature::BaseColorTexture, "light that surfaces send to the viewer"},
-    {ShaderId::Probe, "eevee_probe", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_probe_frag.glsl", shadow_features,
-     "position, normal and visibility of one lamp, for who judges them"},
+     light_features | Feature::BaseColorTexture, Feature::None, "light that surfaces send to the viewer"},
+    {ShaderId::Probe, "eevee_probe", "eevee/eevee_surface_vert.glsl", "", "eevee/eevee_probe_frag.glsl",
+     shadow_features, Feature::Light, "position, normal and visibility of one lamp, for who judges them"},
     {ShaderId::Film, "eevee_film", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_film_frag.glsl", Feature::None,
-     "sum of several samples a pixel"},
+     Feature::None, "sum of several samples a pixel"},
     {ShaderId::Tonemap, "eevee_tonemap", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_tonemap_frag.glsl",
-     Feature::None, "radiance as a display shows it"},
+     Feature::None, Feature::None, "radiance as a display shows it"},
     {ShaderId::EsmDistance, "eevee_esm_distance", "draw/draw_fullscreen_vert.glsl", "",
-     "eevee/eevee_esm_distance_frag.glsl", Feature::None, "distances from a lamp on an octahedral map"},
+     "eevee/eevee_esm_distance_frag.glsl", Feature::None, Feature::None, "distances from a lamp on an octahedral map"},
     {ShaderId::EsmDisk4, "eevee_esm_disk4", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_esm_disk_frag.glsl",
-     Feature::None, "exponential shadow map of four taps", "ESM_TAPS 4"},
+     Feature::None, Feature::None, "exponential shadow map of four taps", "ESM_TAPS 4"},
     {ShaderId::EsmDisk32, "eevee_esm_disk32", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_esm_disk_frag.glsl",
-     Feature::None, "exponential shadow map of 32 taps", "ESM_TAPS 32"},
+     Feature::None, Feature::None, "exponential shadow map of 32 taps", "ESM_TAPS 32"},
     {ShaderId::EsmSeparable, "eevee_esm_separable", "draw/draw_fullscreen_vert.glsl", "",
-     "eevee/eevee_esm_separable_frag.glsl", Feature::None, "exponential shadow map of a Gaussian in two passes"},
+     "eevee/eevee_esm_separable_frag.glsl", Feature::None, Feature::None,
+     "exponential shadow map of a Gaussian in two passes"},
+    {ShaderId::DebugShadow, "eevee_debug_shadow", "draw/draw_fullscreen_vert.glsl", "",
+     "eevee/eevee_debug_shadow_frag.glsl", Feature::None, Feature::None, "layers of a shadow for people to look at"},
+    {ShaderId::DebugCascades, "eevee_debug_cascades", "eevee/eevee_surface_vert.glsl", "",
+     "eevee/eevee_debug_cascades_frag.glsl", Feature::Light, Feature::Light,
+     "which cascades of a sun each pixel reads"},
 }};
 
 /** Whether a scene can ask for this mask, and no smaller mask gives the same program. */
@@ -85,7 +92,8 @@ std::vector<Feature> shader_variants(const ShaderDeclaration &declaration)
   std::vector<Feature> variants;
   for (std::uint32_t mask = 0; mask < 1U << feature_table.size(); mask++) {
     const auto features = Feature(mask);
-    if ((features & declaration.features) == features && is_possible(features)) {
+    if ((features & declaration.features) == features && (features & declaration.required) == declaration.required &&
+        is_possible(features)) {
       variants.push_back(features);
     }
   }

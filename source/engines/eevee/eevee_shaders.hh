@@ -24,6 +24,8 @@ enum class ShaderId {
   EsmDisk4,
   EsmDisk32,
   EsmSeparable,
+  DebugShadow,
+  DebugCascades,
 };
 
 /** A program of the engine as data: what the engine, the checker and the tests read. */
@@ -36,9 +38,11 @@ struct ShaderDeclaration {
   std::string_view fragment_path;
   /** The features it has variants for; others make no difference to it. */
   Feature features;
+  /** Of these, those that it always has. */
+  Feature required;
   /** Why it exists. */
   std::string_view purpose;
-  /** "NAME value", defined in each variant; empty: none. */
+  /** "NAME value" or "NAME", defined in each variant; empty: none. */
   std::string_view define{};
 };
 

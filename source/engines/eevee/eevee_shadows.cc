@@ -596,11 +596,16 @@ std::uint32_t Shadows::looked_up_faces(const Slot &slot) const
 }
 
 void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
-                     gpu::CommandList &list)
+                     gpu::CommandList &list, const std::function<std::vector<float>()> &read_depths)
 {
   if (seen_clip_from_world_ != view.clip_from_world()) {
     seen_clip_from_world_ = view.clip_from_world();
     visible_ = visible_range(view, visible_corners(view, caster_bounds_ws_));
+    const bool has_sun =
+        std::ranges::any_of(maps_.slots, [](const Slot &slot) { return slot.lamp.kind == scene::LampKind::Sun; });
+    if (has_sun && settings_.cascades.is_fitted_to_depth && read_depths) {
+      narrow_to_depths(view, read_depths(), visible_);
+    }
     fit_suns(device, view, pixel_size);
   }
   for (Slot &slot : cubes_.slots) {
@@ -642,6 +647,53 @@ double Shadows::texel_size(const shared::LightData &light, const glm::dvec3 &pos
     }
   }
   return 0.0;
+}
+
+std::optional<ShadowLayers> Shadows::layers(const shared::LightData &light) const
+{
+  if (light.shadow_kind == SHADOW_NONE) {
+    return std::nullopt;
+  }
+  const Array &array = light.shadow_kind == SHADOW_CUBE  ? cubes_
+                       : light.shadow_kind == SHADOW_ESM ? distance_cube_
+                                                         : maps_;
+  const Slot &slot = *std::ranges::find(array.slots, light.shadow_index, &Slot::entry);
+  ShadowLayers layers;
+  layers.count = int(slot.views.size());
+  layers.texture = layers.count > 0 ? &array.texture : nullptr;
+  layers.first_layer = slot.first_layer;
+  layers.size_px = slot.size_px;
+  layers.is_cube = &array == &cubes_;
+  layers.drawn = slot.drawn;
+  if (slot.lamp.kind == scene::LampKind::Sun) {
+    layers.projection = PROJECTION_ORTHOGRAPHIC;
+    const double top = slot.fits.empty() ? 0.0 : slot.fits.back().max.z;
+    for (const SunFit &fit : slot.fits) {
+      layers.near_far.emplace_back(top - fit.max.z, top - fit.min.z);
+    }
+    layers.shown = layers.near_far.empty() ? glm::vec2(0.0F) : layers.near_far.back();
+    return layers;
+  }
+
+  const glm::vec3 position_ws(slot.lamp.world_from_lamp[3]);
+  const glm::vec3 reach =
+      glm::max(glm::abs(caster_bounds_ws_.min - position_ws), glm::abs(caster_bounds_ws_.max - position_ws));
+  layers.near_far = {{slot.near, std::numeric_limits<float>::max()}};
+  layers.shown = {slot.near, std::min(std::max({reach.x, reach.y, reach.z}), slot.range)};
+  if (light.shadow_kind == SHADOW_ESM) {
+    const auto index = std::size_t(light.shadow_index);
+    const shared::EsmData &data = octahedral_.data(index);
+    layers.count = 1;
+    layers.texture = &octahedral_.texture(index);
+    layers.first_layer = data.layer;
+    layers.size_px = data.size;
+    layers.border = ESM_BORDER;
+    layers.drawn = 1;
+    layers.esm_format = data.format;
+    layers.near_far = {{0.0F, data.range}};
+    layers.shown.y = std::min(glm::length(reach), slot.range);
+  }
+  return layers;
 }
 
 Feature Shadows::features() const

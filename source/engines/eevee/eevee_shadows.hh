@@ -7,9 +7,11 @@
 #include "eevee_sun_fit.hh"
 
 #include "draw_pass.hh"
+#include "eevee_depth_shared.h"
 #include "eevee_shadow_shared.h"
 
 #include <array>
+#include <functional>
 #include <optional>
 
 namespace gnomon::eevee {
@@ -76,6 +78,33 @@ struct ShadowCounters {
   std::uint64_t caster_draws = 0;
 };
 
+/** A light's layers as they stand, for who shows them. */
+struct ShadowLayers {
+  /** How many; 0 where nothing is seen that the light's casters could darken. */
+  int count = 0;
+  /** Array that holds them, from `first_layer` on. nullptr while count is 0. */
+  const gpu::Texture *texture = nullptr;
+  int first_layer = 0;
+  /** Edge of each, texels, in the lower left corner of its layer after `border` texels. */
+  int size_px = 0;
+  int border = 0;
+  /** Six faces, in OpenGL's order. */
+  bool is_cube = false;
+  /** Bit i: layer i was drawn. */
+  std::uint32_t drawn = 0;
+  /** PROJECTION_… that the depths were made by. */
+  int projection = PROJECTION_PERSPECTIVE_INFINITE;
+  /** ESM_…: the layer holds distances instead; -1: depths. */
+  int esm_format = -1;
+  /**
+   * Distances that depths 1 and 0 stand for, metres: one for each cascade, from where the first caster may be; one for
+   * all layers of other lamps, from the lamp.
+   */
+  std::vector<glm::vec2> near_far;
+  /** Distances that hold all casters, metres, as far as the lamp reaches. */
+  glm::vec2 shown{0.0F};
+};
+
 /**
  * Shadow maps of a scene's lamps in one viewport: which lamp has which layers, and which of them are up to date.
  *
@@ -99,10 +128,11 @@ class Shadows {
 
   /**
    * Fit to what \a view sees and record into \a list what is not up to date. \a pass draws the casters' instances,
-   * \a pixel_size: see fit_sun.
+   * \a pixel_size: see fit_sun. \a read_depths gives the picture's, see narrow_to_depths; asked for only where settings
+   * and lamps want it and the view is a new one.
    */
   void update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
-              gpu::CommandList &list);
+              gpu::CommandList &list, const std::function<std::vector<float>()> &read_depths = {});
 
   /** To be bound by reference in the pass that draws casters, as `shadow_render_block`. */
   [[nodiscard]] const gpu::BufferRange *render_block() const
@@ -130,6 +160,8 @@ class Shadows {
   }
   /** Edge of a texel of a light's shadow at a place, across the light, metres; 0: it has none there. */
   [[nodiscard]] double texel_size(const shared::LightData &light, const glm::dvec3 &position_ws) const;
+  /** Of a light that casts a shadow, as the last update left them. */
+  [[nodiscard]] std::optional<ShadowLayers> layers(const shared::LightData &light) const;
   /** What the shaders read of it. */
   [[nodiscard]] const shared::ShadowBlock &block_data() const
   {

@@ -146,6 +146,29 @@ VisibleRange visible_range(const draw::View &view, std::vector<glm::dvec3> corne
   return visible;
 }
 
+void narrow_to_depths(const draw::View &view, std::span<const float> depths, VisibleRange &visible)
+{
+  const glm::dmat4 projection(view.clip_from_view());
+  float nearest = 0.0F;
+  float farthest = std::numeric_limits<float>::max();
+  for (const float depth : depths) {
+    if (depth > 0.0F) {
+      nearest = std::max(nearest, depth);
+      farthest = std::min(farthest, depth);
+    }
+  }
+  if (nearest == 0.0F) {
+    return;
+  }
+  const auto distance_of = [&](double depth) {
+    return view.is_perspective() ? projection[3][2] / (depth + projection[2][2])
+                                 : (projection[3][2] - depth) / projection[2][2];
+  };
+  // Samples of the same pixel see a little more.
+  visible.near = std::clamp(0.99 * distance_of(nearest), visible.near, visible.far);
+  visible.far = std::clamp(1.01 * distance_of(farthest), visible.near, visible.far);
+}
+
 std::vector<double> cascade_splits(double near, double far, int count, double lambda)
 {
   std::vector<double> splits = {near};

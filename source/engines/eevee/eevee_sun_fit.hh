@@ -9,6 +9,7 @@
 #include <glm/common.hpp>
 
 #include <array>
+#include <span>
 #include <vector>
 
 namespace gnomon::eevee {
@@ -23,6 +24,9 @@ struct CascadeSettings {
   int count = 0;
   /** Between even splits of the distance (0) and even splits of its logarithm (1). */
   float lambda = 0.8F;
+  /** Split the distances that the picture's depths have, and not those that the scene's box could have. Takes the depth
+   * prepass first, and waits for it whenever the view changes. */
+  bool is_fitted_to_depth = false;
 };
 
 /** A sun's view, and what it holds. */
@@ -53,6 +57,9 @@ struct VisibleRange {
 
 /** Of \a corners, in \a view. */
 [[nodiscard]] VisibleRange visible_range(const draw::View &view, std::vector<glm::dvec3> corners);
+
+/** Narrow \a visible's near and far to what \a depths hold: a picture's reversed depths, 0 where there is nothing. */
+void narrow_to_depths(const draw::View &view, std::span<const float> depths, VisibleRange &visible);
 
 /**
  * Ends of \a count slices of [near, far], count + 1 numbers: the practical split scheme (Zhang et al. 2006),

@@ -671,8 +671,9 @@ void GlDevice::set_state(State state)
   enable(GL_CULL_FACE, has(state, State::CullBack | State::CullFront));
   glCullFace(has(state, State::CullFront) ? GL_FRONT : GL_BACK);
   glFrontFace(has(state, State::FrontClockwise) ? GL_CW : GL_CCW);
-  enable(GL_BLEND, has(state, State::BlendAdd));
-  glBlendFunc(GL_ONE, GL_ONE);
+  const bool is_multiplied = has(state, State::BlendMultiply);
+  enable(GL_BLEND, is_multiplied || has(state, State::BlendAdd));
+  glBlendFunc(is_multiplied ? GL_DST_COLOR : GL_ONE, is_multiplied ? GL_ZERO : GL_ONE);
   glBlendEquation(GL_FUNC_ADD);
   enable(GL_DEPTH_CLAMP, has(state, State::DepthClamp));
 }

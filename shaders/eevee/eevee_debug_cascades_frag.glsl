@@ -1,0 +1,36 @@
+#version 450 core
+// SPDX-License-Identifier: MIT
+// What the picture is multiplied by to show which cascades of a sun each pixel reads, and how they fade.
+#include "eevee/eevee_light_lib.glsl"
+#include "eevee/eevee_shadow_place_lib.glsl"
+#include "eevee/eevee_surface_frag_lib.glsl"
+
+PUSH_CONSTANT_LAYOUT uniform push_constant_block
+{
+  /** The sun, in light_block. */
+  int tinted_light;
+};
+
+layout(location = 0) out vec4 tint;
+
+/** From the finest cascade on: red, green, blue, yellow. */
+const vec3 CASCADE_TINTS[4] = vec3[4](vec3(1.0, 0.4, 0.4), vec3(0.4, 1.0, 0.4), vec3(0.4, 0.6, 1.0), vec3(1.0, 0.9, 0.3));
+
+void main()
+{
+  Surface surface = make_surface();
+  LightData light = light_data.lights[tinted_light];
+  int first = light.shadow_index;
+  int count = min(shadow.maps[first].cascade_count, 4);
+  vec3 sum = vec3(0.0);
+  float open = 1.0;
+  for (int i = 0; i < count && open > 0.0; i++) {
+    float coverage;
+    map_texco(shadow.maps[first + i], surface, -light.forward_ws, coverage);
+    float share = open * cascade_share(i == count - 1, coverage);
+    sum += share * CASCADE_TINTS[i];
+    open -= share;
+  }
+  // Outside of all, nothing is changed.
+  tint = vec4(sum + open, 1.0);
+}

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// Where a shadow shows a receiver.
+#include "eevee/eevee_surface_lib.glsl"
+#include "shared/eevee_shadow_shared.h"
+#include "shared/slots_shared.h"
+
+layout(std140, binding = SHADOW_BLOCK_SLOT) uniform shadow_block
+{
+  ShadowBlock shadow;
+};
+
+#ifdef USE_SHADOW_PCF
+/** Edge of the kernel's square, texels, odd; 0: a disk. */
+SPECIALIZATION_CONSTANT(0) const int PCF_WIDTH = SHADOW_PCF_WIDTH;
+/** Lookups on the disk. */
+SPECIALIZATION_CONSTANT(1) const int PCF_TAPS = SHADOW_PCF_TAPS;
+/** Radius of the disk, texels: with the texels around a lookup it stays within CUBE_BORDER_TEXELS. */
+const float PCF_DISK_RADIUS = 2.0;
+#endif
+
+float largest(vec3 v)
+{
+  vec3 a = abs(v);
+  return max(max(a.x, a.y), a.z);
+}
+
+/** The receiver, lifted off its plane to the side of the light. \a to_light: unit vector. */
+vec3 lifted_position(Surface surface, vec3 to_light, float lift)
+{
+  vec3 normal_ws = surface.geometric_normal_ws;
+  return surface.position_ws + normal_ws * (dot(normal_ws, to_light) < 0.0 ? -lift : lift);
+}
+
+/** How far from a lookup its kernel reads, texels. */
+float kernel_reach(int filter_kind)
+{
+#ifdef USE_SHADOW_PCF
+  if (filter_kind == SHADOW_FILTER_PCF) {
+    return PCF_WIDTH > 0 ? 0.5 * float(PCF_WIDTH + 1) : PCF_DISK_RADIUS + 1.0;
+  }
+#endif
+  return 1.0;
+}
+
+/** Share of a map's half width over which a cascade fades into the next. */
+const float CASCADE_FADE = 0.1;
+
+/**
+ * Where a map shows the receiver, xyz after the division by w. \a coverage: 0 where the map says nothing of it, 1 where it is
+ * not near the map's edge.
+ */
+vec3 map_texco(ShadowMapData map, Surface surface, vec3 to_light, out float coverage)
+{
+  coverage = 0.0;
+  float w = (map.texco_from_world * vec4(surface.position_ws, 1.0)).w;
+  float lift = map.bias * shadow_lift(map.texel_size * w, kernel_reach(map.filter_kind), map.rounding * w * w,
+                                      largest(surface.position_ws) + abs(w));
+  vec4 texco = map.texco_from_world * vec4(lifted_position(surface, to_light, lift), 1.0);
+  if (texco.w <= 0.0 || w > map.far) {
+    return vec3(0.0);
+  }
+  texco.xyz /= texco.w;
+  vec2 from_edge = min(texco.xy, 1.0 - texco.xy);
+  coverage = clamp(min(from_edge.x, from_edge.y) / (0.5 * CASCADE_FADE), 0.0, 1.0);
+  return texco.xyz;
+}
+
+/** What a cascade decides of what finer ones left open. The last one has nothing to fade into. */
+float cascade_share(bool is_last, float coverage)
+{
+  return is_last ? step(1e-30, coverage) : coverage;
+}

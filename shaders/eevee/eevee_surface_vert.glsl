@@ -1,0 +1,14 @@
+#version 450 core
+// SPDX-License-Identifier: MIT
+// As eevee_lit_vert.glsl, for those who look at light and not at materials.
+#include "draw/draw_view_lib.glsl"
+#include "eevee/eevee_surface_vert_lib.glsl"
+
+invariant gl_Position;
+
+void main()
+{
+  vec4 position_ws = vertex_position_ws();
+  gl_Position = view.clip_from_world * position_ws;
+  hand_on_surface(position_ws.xyz);
+}

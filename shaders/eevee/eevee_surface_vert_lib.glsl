@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// For vertex shaders: what eevee_surface_frag_lib.glsl makes the point being lit from.
+#include "draw/draw_object_lib.glsl"
+
+layout(location = ATTRIBUTE_NORMAL) in vec3 normal;
+
+layout(location = 0) out vec3 surface_position_ws;
+layout(location = 1) out vec3 surface_normal_ws;
+
+void hand_on_surface(vec3 position_ws)
+{
+  ObjectData object = objects[draw_instance.x];
+  surface_position_ws = position_ws;
+  vec3 normal_ws = object.normal_x.xyz * normal.x + object.normal_y.xyz * normal.y + object.normal_z * normal.z;
+  float length_sq = dot(normal_ws, normal_ws);
+  surface_normal_ws = length_sq > 0.0 ? normal_ws * inversesqrt(length_sq) : vec3(0.0);
+}

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "cli_debug.hh"
+
+#include "cli.hh"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gnomon::cli {
+
+DebugView parse_debug(const std::string &text)
+{
+  constexpr std::string_view shadow = "shadow:";
+  if (text.empty()) {
+    return {};
+  }
+  if (text == "cascades") {
+    return {.kind = DebugView::Kind::Cascades, .lamp = {}, .layer = {}};
+  }
+  DebugView view{.kind = DebugView::Kind::Shadow, .lamp = {}, .layer = {}};
+  if (text.starts_with(shadow)) {
+    view.lamp = text.substr(shadow.size());
+    // Names may hold colons, too: the last one counts.
+    const std::size_t colon = view.lamp.rfind(':');
+    if (colon != std::string::npos) {
+      view.layer = view.lamp.substr(colon + 1);
+      view.lamp.resize(colon);
+      const bool is_number =
+          !view.layer.empty() && std::ranges::all_of(view.layer, [](char c) { return c >= '0' && c <= '9'; });
+      if (!is_number && view.layer != "octahedral" && view.layer != "all") {
+        view.lamp.clear();
+      }
+    }
+    view.layer = view.layer == "all" ? "" : view.layer;
+  }
+  if (view.lamp.empty()) {
+    throw UsageError(fmt::format(
+        "--debug '{}' is neither cascades nor shadow:LAMP[:LAYER] with a number, octahedral or all as LAYER", text));
+  }
+  return view;
+}
+
+const gpu::Texture &shadow_picture(const DebugView &view, const scene::Scene &scene, eevee::Engine &engine,
+                                   draw::Viewport &viewport)
+{
+  std::vector<std::string> with_layers;
+  bool is_lamp = false;
+  for (std::size_t i = 0; i < scene.lamps.size(); i++) {
+    const std::vector<std::string> layers = engine.shadow_layers(viewport, i);
+    if (!layers.empty()) {
+      with_layers.push_back(scene.lamps[i].name);
+    }
+    if (scene.lamps[i].name != view.lamp) {
+      continue;
+    }
+    is_lamp = true;
+    if (layers.empty()) {
+      continue;
+    }
+    if (view.layer.empty()) {
+      return engine.shadow_picture(viewport, i);
+    }
+    const auto layer = std::ranges::find(layers, view.layer);
+    if (layer == layers.end()) {
+      throw std::runtime_error(fmt::format("{}: the shadow of lamp '{}' has no layer '{}'; it has: {}", scene.path,
+                                           view.lamp, view.layer, fmt::join(layers, ", ")));
+    }
+    return engine.shadow_picture(viewport, i, std::size_t(layer - layers.begin()));
+  }
+  throw std::runtime_error(fmt::format("{}: {} '{}'{}; lamps with a shadow that is seen: {}", scene.path,
+                                       is_lamp ? "lamp" : "no lamp", view.lamp,
+                                       is_lamp ? " has no shadow that is seen" : "",
+                                       with_layers.empty() ? "none" : fmt::format("{}", fmt::join(with_layers, ", "))));
+}
+
+std::vector<std::uint8_t> to_bytes(std::span<const float> rgba)
+{
+  std::vector<std::uint8_t> bytes(rgba.size());
+  std::ranges::transform(rgba, bytes.begin(),
+                         [](float value) { return std::uint8_t(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F))); });
+  return bytes;
+}
+
+std::vector<float> alpha_in_all(std::span<const float> rgba)
+{
+  std::vector<float> values(rgba.size());
+  for (std::size_t i = 0; i < rgba.size(); i++) {
+    values[i] = rgba[i / 4 * 4 + 3];
+  }
+  return values;
+}
+
+}  // namespace gnomon::cli

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// What debug views make, and that they make nothing unasked.
+#include "eevee_test_scene.hh"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace gnomon::eevee {
+namespace {
+
+using test::Renderer;
+
+class DebugViewTest : public testing::Test {
+ protected:
+  DebugViewTest()
+  {
+    const std::uint32_t mesh = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(0.5F)));
+    test::add_object(scene, mesh, glm::scale(glm::mat4(1.0F), glm::vec3(10.0F)));
+    test::add_object(scene, mesh, glm::translate(glm::mat4(1.0F), glm::vec3(0, 0, 1)));
+    settings.shadow.cube_size_px = 32;
+    settings.shadow.map_size_px = 32;
+    settings.shadow.cascades.count = 2;
+  }
+  bool has_live(const std::string &what) const
+  {
+    return std::ranges::any_of(device->live_resources(),
+                               [&](const std::string &name) { return name.find(what) != std::string::npos; });
+  }
+
+  std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  scene::Scene scene;
+  Settings settings;
+  scene::Camera camera = test::camera_at({0, -8, 4}, {0, 0, 0});
+};
+
+TEST_F(DebugViewTest, NothingIsMadeUnasked)
+{
+  test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 4}, {0, 0.2F, -1}, 1.0F);
+  Renderer renderer(*device, scene, {16, 16}, settings);
+  renderer.draw(camera);
+  EXPECT_FALSE(has_live("shadow_picture"));
+  EXPECT_FALSE(has_live("eevee_debug"));
+  EXPECT_FALSE(renderer.engine.tinted_sun(renderer.viewport));
+}
+
+TEST_F(DebugViewTest, APictureOfAShadowTakesOneProgramAndOneTexture)
+{
+  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 4}, {0, 0, -1}, 1.0F);
+  Renderer renderer(*device, scene, {16, 16}, settings);
+  renderer.draw(camera);
+  const gpu::Counters before = device->counters();
+  EXPECT_EQ(renderer.engine.shadow_picture(renderer.viewport, 0, 3).desc().width, 32);
+  EXPECT_EQ(renderer.engine.shadow_picture(renderer.viewport, 0, 5).desc().width, 32);
+  EXPECT_EQ(device->counters().shaders_made, before.shaders_made + 1);
+  EXPECT_EQ(device->counters().textures_made, before.textures_made + 1);
+  EXPECT_EQ(device->counters().passes, before.passes + 2);
+  EXPECT_EQ(renderer.engine.report(renderer.viewport).shadow_counters.lamps_updated, 1U) << "no shadow is drawn again";
+}
+
+TEST_F(DebugViewTest, LayersLargerThanAScreenAreThinned)
+{
+  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 4}, {0, 0, -1}, 1.0F);
+  settings.shadow.cube_size_px = 3000;
+  Renderer renderer(*device, scene, {16, 16}, settings);
+  renderer.draw(camera);
+  const auto size_px = [&](std::optional<std::size_t> layer) {
+    const gpu::TextureDesc &desc = renderer.engine.shadow_picture(renderer.viewport, 0, layer).desc();
+    return glm::ivec2(desc.width, desc.height);
+  };
+  EXPECT_EQ(size_px(0), glm::ivec2(2048, 2048));
+  EXPECT_EQ(size_px(std::nullopt), glm::ivec2(2048, 1536));
+}
+
+TEST_F(DebugViewTest, LayersAreNamedByWhatALampHas)
+{
+  using Names = std::vector<std::string>;
+  const Names cube = {"0", "1", "2", "3", "4", "5"};
+  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 4}, {0, 0, -1}, 1.0F);
+  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 4}, {0, 0, -1}, 1.0F).shadow.kind = scene::ShadowKind::None;
+  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 4}, {0, 0, -1}, 1.0F).shadow.kind = scene::ShadowKind::Esm;
+  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 4}, {0, 0, -1}, 0.0F);
+  test::add_lamp(scene, scene::LampKind::Spot, {0, 0, 4}, {0, 0, -1}, 1.0F).spot_outer_angle = 0.5F;
+  test::add_lamp(scene, scene::LampKind::Spot, {0, 0, 4}, {0, 0, -1}, 1.0F).spot_outer_angle = 1.5F;
+  Renderer renderer(*device, scene, {16, 16}, settings);
+  renderer.draw(camera);
+  const auto names = [&](std::size_t lamp) { return renderer.engine.shadow_layers(renderer.viewport, lamp); };
+  EXPECT_EQ(names(0), cube);
+  EXPECT_EQ(names(1), Names{});
+  EXPECT_EQ(names(2), Names{"octahedral"});
+  EXPECT_EQ(names(3), Names{}) << "gives no light";
+  EXPECT_EQ(names(4), Names{"0"});
+  EXPECT_EQ(names(5), cube) << "too wide for a map";
+}
+
+TEST_F(DebugViewTest, TheTintIsOfTheFirstSunWithAShadow)
+{
+  settings.has_cascade_tint = true;
+  test::add_lamp(scene, scene::LampKind::Spot, {0, 0, 4}, {0, 0, -1}, 1.0F);
+  Renderer renderer(*device, scene, {16, 16}, settings);
+  renderer.draw(camera);
+  EXPECT_FALSE(renderer.engine.tinted_sun(renderer.viewport));
+  EXPECT_FALSE(has_live("eevee_debug")) << "a spot's map is no cascade";
+
+  test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 4}, {0, 0.2F, -1}, 1.0F).shadow.kind = scene::ShadowKind::None;
+  test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 4}, {0, 0.2F, -1}, 1.0F);
+  renderer.sync();
+  renderer.draw(camera);
+  EXPECT_EQ(renderer.engine.tinted_sun(renderer.viewport), std::optional<std::size_t>(2));
+  EXPECT_TRUE(has_live("eevee_debug_cascades"));
+}
+
+}  // namespace
+}  // namespace gnomon::eevee
