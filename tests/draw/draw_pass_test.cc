@@ -57,6 +57,23 @@ TEST(Pass, RecordsWhatItHoldsInOrder)
   EXPECT_EQ(constants.bias, 0) << "what was never given is zero";
 }
 
+TEST(Pass, LeavesStateOffForOneRecordAlone)
+{
+  const auto device = gpu::create_null_device();
+  const test::EverythingPass everything(*device);
+  gpu::CommandList list;
+  // Of the pass, of the group, and one that neither has.
+  everything.pass.record(View(), list, gpu::State::DepthNearerEqual | gpu::State::BlendAdd | gpu::State::DepthClamp);
+  const std::string text = list.serialize(*device);
+  EXPECT_NE(text.find("  state write_color cull_back\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("  state write_color\n"), std::string::npos) << text;
+  EXPECT_EQ(everything.pass.serialize(*device), test::EverythingPass::TEXT) << "the pass itself is as it was";
+  list.clear();
+  everything.pass.record(View(), list);
+  EXPECT_NE(list.serialize(*device).find("  state write_color depth_nearer_equal cull_back blend_add\n"),
+            std::string::npos);
+}
+
 TEST(Pass, ClearForgetsGroupsAndKeepsTheRest)
 {
   const auto device = gpu::create_null_device();

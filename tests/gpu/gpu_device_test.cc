@@ -108,6 +108,12 @@ TEST(Device, RefusesFramebuffersThatDoNotFitByName)
   expect_refused(*device, make({{&array, 3}}), {"framebuffer 'target'", "'array'", "layer 3"});
   expect_refused(*device, make({{&array, -2}}), {"framebuffer 'target'", "'array'", "layer -2"});
   expect_refused(*device, make({{&cube, 6}}), {"framebuffer 'target'", "'cube'", "layer 6"});
+  expect_refused(*device, make({{.texture = &array, .layer = 1, .layer_count = 3}}),
+                 {"framebuffer 'target'", "'array'", "3 layers from 1 on"});
+  expect_refused(*device, make({{.texture = &array, .layer = 0, .layer_count = 0}}),
+                 {"framebuffer 'target'", "'array'", "0 layers from 0 on"});
+  expect_refused(*device, make({{.texture = &array, .layer = all_layers, .layer_count = 2}}),
+                 {"framebuffer 'target'", "'array'", "2 layers from -1 on"});
   expect_refused(*device, make({{&color, 0, 2}}), {"framebuffer 'target'", "'color'", "mip level 2"});
   expect_refused(*device, make({{&color, 0, -1}}), {"framebuffer 'target'", "'color'", "mip level -1"});
   // The same level sizes: fits.
@@ -116,6 +122,7 @@ TEST(Device, RefusesFramebuffersThatDoNotFitByName)
   EXPECT_EQ(device->create_framebuffer({"depth", {}, {&depth}}).size_px(), glm::ivec2(8, 4));
   EXPECT_TRUE(device->create_framebuffer({"cube", {{&cube, 5}}, {}}));
   EXPECT_TRUE(device->create_framebuffer({"all", {{&array, all_layers}}, {}}));
+  EXPECT_TRUE(device->create_framebuffer({"some", {{.texture = &array, .layer = 1, .layer_count = 2}}, {}}));
 }
 
 TEST(Device, RefusalKeepsTheIdForTheNext)

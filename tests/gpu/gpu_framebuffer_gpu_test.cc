@@ -240,8 +240,12 @@ TEST_F(RenderPassGpu, SomeLayersAreClearedAndDrawnAndTheOthersLeftAlone)
                                                   .width = 4,
                                                   .height = 4,
                                                   .layers = kind == TextureKind::Array ? 12 : 2});
-    const Texture depth = device->create_texture(
-        {.name = "depths", .kind = TextureKind::Array, .format = Format::Depth32F, .width = 4, .height = 4, .layers = 12});
+    const Texture depth = device->create_texture({.name = "depths",
+                                                  .kind = TextureKind::Array,
+                                                  .format = Format::Depth32F,
+                                                  .width = 4,
+                                                  .height = 4,
+                                                  .layers = 12});
     run_pass(device->create_framebuffer({"all", {{&color, all_layers}}, {&depth, all_layers}}),
              {.clear_color = glm::vec4(0.25F), .clear_depth = 0.25F});
     const Attachment colors{.texture = &color, .layer = 6, .layer_count = 4};

@@ -35,6 +35,23 @@ TEST(ShaderVariants, AreCompiledByGlslang)
   }
 }
 
+// hazards.md: glslang rejects gl_Layer in a vertex shader at #version 330, and takes it at 450.
+TEST(ShaderVariants, ChooseTheLayerInTheVertexShaderAtVersion450)
+{
+  const ShaderDeclaration &layered = shader_declarations()[std::size_t(ShaderId::ShadowLayered)];
+  const gpu::ShaderDesc desc = shader_desc(layered, Feature::None);
+  const std::string path(layered.vertex_path);
+  std::string text(*shaders::file(path));
+  ASSERT_NE(text.find("gl_Layer = "), std::string::npos);
+  ASSERT_EQ(text.find("#version 450 core\n"), 0U);
+  EXPECT_NO_THROW(gpu::reflect(desc.name, gpu::preprocess(desc, shaders::file)));
+  text.replace(0, 12, "#version 330");
+  const gpu::ShaderFiles older = [&](std::string_view file) {
+    return file == path ? std::optional<std::string_view>(text) : shaders::file(file);
+  };
+  EXPECT_THROW(gpu::reflect(desc.name, gpu::preprocess(desc, older)), gpu::Error);
+}
+
 TEST(ShaderVariants, AreAllDifferentPrograms)
 {
   for (const ShaderDeclaration &declaration : shader_declarations()) {

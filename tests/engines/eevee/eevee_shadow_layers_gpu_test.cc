@@ -186,6 +186,47 @@ TEST_F(ShadowLayersGpuTest, FrontOrBackFacesCastAsAskedWhateverTheMirroring)
   }
 }
 
+// hazards.md: a lookup outside of the map reads its edge, or another lamp's; a lamp's layer overlaps the next one's.
+TEST_F(ShadowLayersGpuTest, EachOfThreeSpotsHasItsOwnMapAndIsLitOutsideOfIt)
+{
+  add(square, {0, 0, 0}, glm::vec3(20));
+  for (int i = 0; i < 3; i++) {
+    const float x = 3.0F * float(i - 1);
+    scene::Lamp &lamp = test::add_lamp(scene, scene::LampKind::Spot, {x, 0, 4}, {0, 0, -1}, 50.0F);
+    lamp.spot_outer_angle = 1.1F;
+    lamp.color = {i == 0 ? 1.0F : 0.0F, i == 1 ? 1.0F : 0.0F, i == 2 ? 1.0F : 0.0F};
+    // So near to its lamp that it is in no other's way to the ground where all shine.
+    add(square, {x, 0, 3.8F}, glm::vec3(0.05F));
+  }
+  const scene::Camera above = test::camera_at({0, 0, 30}, {0, 0, 0}, 0.4F);
+  const glm::ivec2 size_px(128, 128);
+  Renderer renderer(*device, scene, size_px, {.shadow = {.map_size_px = 512}});
+  Renderer unshadowed(*device, scene, size_px, {.shadow = {.kind = scene::ShadowKind::None}});
+  const Picture picture = renderer.picture(above);
+  const Picture lit = unshadowed.picture(above);
+  EXPECT_EQ(renderer.engine.shadows(renderer.viewport).map_count(), 3U);
+  // Half a picture is 30 · tan(0.2) = 6.08 m; a caster's shadow is 20 times as large as it: 1 m to each side.
+  const float px_m = 2.0F * 30.0F * std::tan(0.2F) / 128.0F;
+  int dark = 0;
+  for (int y = 0; y < 128; y++) {
+    for (int x = 0; x < 128; x++) {
+      const glm::vec2 p = (glm::vec2(x, y) + 0.5F - 64.0F) * px_m;
+      for (int i = 0; i < 3; i++) {
+        const float from_middle = std::max(std::abs(p.x - 3.0F * float(i - 1)), std::abs(p.y));
+        // Two pixels for the film's filter, and the casters themselves are seen from above.
+        if (std::abs(from_middle - 1.0F) < 2.0F * px_m || std::abs(p.y) < 2.0F * px_m || lit.at(x, y)[i] <= 0.0F) {
+          continue;
+        }
+        const float visibility = picture.at(x, y)[i] / lit.at(x, y)[i];
+        const bool is_dark = from_middle < 1.0F;
+        dark += is_dark ? 1 : 0;
+        ASSERT_NEAR(visibility, is_dark ? 0.0F : 1.0F, 1e-3F) << "spot " << i << " at " << p.x << " " << p.y;
+      }
+    }
+  }
+  EXPECT_GT(dark, 30);
+}
+
 /** How much of its unshadowed light the middle of the picture has. */
 class ClipGpuTest : public ShadowLayersGpuTest {
  protected:
@@ -205,10 +246,17 @@ TEST_F(ClipGpuTest, WhatIsBeforeTheNearPlaneCastsUnlessTheLampLeavesItOut)
     scene.objects.clear();
     scene.lamps.clear();
     add(square, {0, 0, 0}, glm::vec3(20));
-    // A small square right under the lamp in a mesh that reaches far around it: the near plane is 2e-4 of that away.
+    // A small square right under the lamp in a mesh that reaches 30 m around it: the near plane is a hundredth away.
     scene::Mesh &mesh = scene.meshes[box];
-    mesh.positions = {{-0.05F, -0.05F, 3.9F}, {0.05F, -0.05F, 3.9F}, {0.05F, 0.05F, 3.9F}, {-0.05F, 0.05F, 3.9F},
-                      {-2e3F, -2e3F, 2e3F},   {-2e3F, -2e3F, 2001},  {2e3F, 2e3F, -2e3F},  {2e3F, 2e3F, -2001}};
+    const glm::vec3 far(17.4F, 17.4F, -17.4F);
+    mesh.positions = {{-0.05F, -0.05F, 3.9F},
+                      {0.05F, -0.05F, 3.9F},
+                      {0.05F, 0.05F, 3.9F},
+                      {-0.05F, 0.05F, 3.9F},
+                      far,
+                      far,
+                      -far,
+                      -far};
     mesh.normals.assign(8, {0, 0, 1});
     mesh.indices = {0, 1, 2, 0, 2, 3, 4, 5, 4, 6, 7, 6};
     mesh.bounds = {};

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// `gnomon bench`, as far as it needs no driver: counts, not times.
+#include "cli_process.hh"
+
+#include <nlohmann/json.hpp>
+
+#include <map>
+
+namespace gnomon {
+namespace {
+
+using nlohmann::json;
+using test::Finished;
+
+class BenchTest : public test::ProgramTest {};
+
+TEST_F(BenchTest, ShadowsMeasuresAllWaysOfDrawingTheSameInstances)
+{
+  const Finished finished = run("bench shadows --backend null --rounds 3 --json bench.json");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const json bench = json::parse(read("bench.json"));
+  std::map<int, std::map<std::string, json>> rows;
+  for (const json &row : bench["rows"]) {
+    rows[row["casters"]][row["way"]] = row;
+    EXPECT_GT(row["seconds"]["median"], 0.0);
+    EXPECT_LE(row["seconds"]["low"], row["seconds"]["median"]);
+    EXPECT_GE(row["seconds"]["high"], row["seconds"]["median"]);
+  }
+  ASSERT_EQ(rows.size(), 3U);
+  for (auto &[casters, by_way] : rows) {
+    ASSERT_EQ(by_way.size(), 4U) << casters;
+    // Every caster is in a face, few in two.
+    EXPECT_GE(by_way["six"]["instances"], casters);
+    EXPECT_LE(by_way["six"]["instances"], 3 * casters);
+    for (const char *way : {"geometry", "layered"}) {
+      EXPECT_EQ(by_way[way]["instances"], by_way["six"]["instances"]);
+      EXPECT_EQ(by_way[way]["passes"], 1);
+      EXPECT_LE(by_way[way]["draws"], by_way["six"]["draws"]);
+    }
+    EXPECT_EQ(by_way["six"]["passes"], 6);
+    EXPECT_EQ(by_way["culled"]["passes"], 6);
+    EXPECT_EQ(by_way["culled"]["instances"], by_way["six"]["instances"]) << "a view and a face mask agree on spheres";
+  }
+}
+
+TEST_F(BenchTest, DrawsWritesItsFigures)
+{
+  const Finished finished = run("bench draws --rounds 2 --json bench.json");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const json bench = json::parse(read("bench.json"));
+  ASSERT_EQ(bench["rows"].size(), 3U);
+  for (const json &row : bench["rows"]) {
+    EXPECT_GT(row["seconds_a_draw"]["median"], 0.0) << row;
+  }
+}
+
+}  // namespace
+}  // namespace gnomon
