@@ -200,7 +200,7 @@ TEST_F(EngineTest, OpaqueObjectsKeepTheirDepthProgramWhateverTheirTexture)
 {
   scene = textured_scene();
   test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, 1.0F);
-  Renderer renderer(*device, scene, {16, 16}, {.shadow = {.map_size_px = 16, .layer_pass = LayerPass::Single}});
+  Renderer renderer(*device, scene, {16, 16}, {.shadow = {.map_size_px = 16}});
   const std::string text = renderer.engine.serialize_passes(renderer.viewport);
   const auto count = [](const std::string &where, const std::string &what) {
     int found = 0;
