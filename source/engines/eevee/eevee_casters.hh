@@ -47,22 +47,23 @@ struct Caster {
 [[nodiscard]] float lamp_near(const glm::vec3 &position_ws, float range, const std::vector<Caster> &casters);
 
 /**
- * The faces of a cube that a sphere touches, bit i for face i; never one too few.
+ * The faces of a cube that a box touches, bit i for face i; never one too few.
  *
- * \a center: from the lamp, metres. \a half_size: of a face at distance 1, at least 1.
+ * \a bounds: from the lamp, metres. \a half_size: of a face at distance 1, at least 1.
  */
-[[nodiscard]] inline std::uint32_t cube_face_mask(const glm::vec3 &center, float radius, float half_size)
+[[nodiscard]] inline std::uint32_t cube_face_mask(const scene::Bounds &bounds, float half_size)
 {
-  const glm::vec3 size = glm::abs(center);
-  // Distance to the plane through the lamp and a face's edge, times the length of (half_size, 1); rounding is inside
-  // the last factor.
-  const float slack = radius * std::sqrt(half_size * half_size + 1.0F) + 1e-5F * (size.x + size.y + size.z);
-  const glm::vec3 across(std::max(size.y, size.z), std::max(size.x, size.z), std::max(size.x, size.y));
+  // A face's pyramid is where h · a >= |b| and h · a >= |c|: along its axis at its farthest, across at its nearest.
+  const glm::vec3 nearest = glm::max(bounds.min, -bounds.max);
+  const glm::vec3 farthest = glm::max(bounds.max, -bounds.min);
+  const glm::vec3 across(std::max(nearest.y, nearest.z), std::max(nearest.x, nearest.z),
+                         std::max(nearest.x, nearest.y));
+  const float rounding = 1e-5F * (farthest.x + farthest.y + farthest.z);
   std::uint32_t mask = 0;
   for (int axis = 0; axis < 3; axis++) {
-    const float along = half_size * center[axis];
-    mask |= along + slack >= across[axis] ? 1U << (2 * axis) : 0U;
-    mask |= slack - along >= across[axis] ? 2U << (2 * axis) : 0U;
+    const float least = std::max(across[axis], 0.0F) - rounding;
+    mask |= half_size * bounds.max[axis] >= least ? 1U << (2 * axis) : 0U;
+    mask |= half_size * -bounds.min[axis] >= least ? 2U << (2 * axis) : 0U;
   }
   return mask;
 }

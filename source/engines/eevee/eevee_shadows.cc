@@ -463,8 +463,8 @@ void Shadows::find_touched_layers(const Slot &slot)
   if (slot.views.size() == 6) {
     const float half_size = 1.0F / shared::cube_uv_scale(float(slot.size_px));
     for (std::size_t i = 0; i < count; i++) {
-      const draw::CullingVolume &volume = caster_volumes_[i];
-      caster_layers_[i] = std::uint8_t(cube_face_mask(volume.center_ws - position_ws, volume.radius, half_size));
+      const scene::Bounds &box = casters_[i].bounds_ws;
+      caster_layers_[i] = std::uint8_t(cube_face_mask({box.min - position_ws, box.max - position_ws}, half_size));
     }
   }
   else {

@@ -36,7 +36,12 @@ TEST(LampNear, IsBeforeEveryCasterAndAboveZero)
   EXPECT_LE(lamp_near({0, 0, 0}, 7.0F, {}), 7.0F);
 }
 
-TEST(CubeFaceMask, HoldsEachFaceThatAPointOfTheSphereIsIn)
+scene::Bounds box_around(const glm::vec3 &center, const glm::vec3 &half)
+{
+  return {center - half, center + half};
+}
+
+TEST(CubeFaceMask, HoldsEachFaceThatAPointOfTheBoxIsIn)
 {
   std::mt19937 random(11);
   std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
@@ -44,27 +49,33 @@ TEST(CubeFaceMask, HoldsEachFaceThatAPointOfTheSphereIsIn)
   int skipped = 0;
   for (int i = 0; i < 3000; i++) {
     const glm::vec3 center = 10.0F * point();
-    const float radius = 5.0F * std::abs(unit(random));
-    const std::uint32_t mask = cube_face_mask(center, radius, 1.0F);
+    const glm::vec3 half = 3.0F * glm::abs(point());
+    const std::uint32_t mask = cube_face_mask(box_around(center, half), 1.0F);
     skipped += mask == 63U ? 0 : 1;
     for (int j = 0; j < 20; j++) {
-      const glm::vec3 p = center + radius * point() / std::sqrt(3.0F);
+      const glm::vec3 p = center + half * point();
       ASSERT_TRUE(mask >> shared::cube_face(p) & 1U) << "center " << center.x << " " << center.y << " " << center.z;
     }
   }
-  EXPECT_GT(skipped, 2000) << "a mask of all faces would be right, and useless";
+  EXPECT_GT(skipped, 2500) << "a mask of all faces would be right, and useless";
 }
 
-TEST(CubeFaceMask, OfASmallSphereOnAnAxisIsOneFace)
+TEST(CubeFaceMask, OfASmallBoxOnAnAxisIsOneFace)
 {
   for (int axis = 0; axis < 3; axis++) {
     for (const float sign : {1.0F, -1.0F}) {
       glm::vec3 center(0.0F);
       center[axis] = 5.0F * sign;
-      EXPECT_EQ(cube_face_mask(center, 1.0F, 1.0F), 1U << (2 * axis + (sign < 0.0F ? 1 : 0)));
+      EXPECT_EQ(cube_face_mask(box_around(center, glm::vec3(1)), 1.0F), 1U << (2 * axis + (sign < 0.0F ? 1 : 0)));
     }
   }
-  EXPECT_EQ(cube_face_mask(glm::vec3(0), 1.0F, 1.0F), 63U) << "around the lamp";
+  EXPECT_EQ(cube_face_mask(box_around(glm::vec3(0), glm::vec3(1)), 1.0F), 63U) << "around the lamp";
+}
+
+TEST(CubeFaceMask, OfAWideGroundLeavesOutTheFaceAbove)
+{
+  const std::uint32_t mask = cube_face_mask(box_around({0, -3, 0}, {100, 0, 100}), 1.0F);
+  EXPECT_EQ(mask, 63U & ~(1U << 2));
 }
 
 TEST(ChangedBounds, AreThoseOfWhatCameAndWent)
