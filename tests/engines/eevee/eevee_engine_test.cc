@@ -210,7 +210,7 @@ TEST_F(EngineTest, OpaqueObjectsKeepTheirDepthProgramWhateverTheirTexture)
     return found;
   };
   // One for the opaque and one for the mask, in shadow pass and prepass; in the lit pass the two textured ones share.
-  EXPECT_EQ(count(text, "group eevee_shadow\n"), 2) << text;
+  EXPECT_EQ(count(text, "group eevee_shadow_layered\n"), 2) << text;
   EXPECT_EQ(count(text, "group eevee_depth\n"), 2) << text;
   EXPECT_EQ(count(text, "group eevee_lit\n"), 2) << text;
   EXPECT_EQ(count(text, "base_color_texture -> 24"), 3) << text;
