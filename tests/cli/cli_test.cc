@@ -41,9 +41,10 @@ TEST_F(CliTest, WrongUsageEndsWithTwoAndSaysWhy)
 
 TEST_F(CliTest, WhatIsNotBuiltEndsWithTwoAndSaysSo)
 {
-  for (const std::string arguments : {"report a.glb -o d", "stability -o d", "bench", "view a.glb",
-                                      "render a.glb -o a.png --frames 1-3", "render a.glb -o a.png --aov depth",
-                                      "render a.glb -o a.png --shadow esm", "render a.glb -o a.png --shadow pcf"}) {
+  for (const std::string arguments :
+       {"report a.glb -o d", "stability -o d", "bench", "view a.glb", "render a.glb -o a.png --frames 1-3",
+        "render a.glb -o a.png --aov depth", "render a.glb -o a.png --shadow esm",
+        "render a.glb -o a.png --shadow evsm", "render a.glb -o a.png --shadow pcf"}) {
     const Finished finished = run(arguments);
     EXPECT_EQ(finished.status, 2) << arguments;
     EXPECT_NE(finished.err.find("not built yet"), std::string::npos) << arguments << ": " << finished.err;

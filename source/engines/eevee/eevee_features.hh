@@ -28,6 +28,8 @@ enum class Feature : std::uint32_t {
   BaseColorTexture = 1U << 8,
   /** Of the material: its texture's alpha cuts some of it out. */
   AlphaMask = 1U << 9,
+  /** Some of the octahedral maps hold variances. */
+  ShadowEvsm = 1U << 10,
 };
 
 constexpr Feature operator|(Feature a, Feature b)
