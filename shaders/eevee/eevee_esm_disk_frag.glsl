@@ -3,13 +3,21 @@
 // A layer, filtered over cones of one solid angle: each texel looks into the cube in some directions around its own.
 #include "eevee/eevee_esm_cube_lib.glsl"
 
+#ifdef EVSM_TAPS
+#  define ESM_TAPS EVSM_TAPS
+#endif
+
 #ifdef VULKAN
 layout(constant_id = 0) const int tap_count = ESM_TAPS;
 #else
 const int tap_count = ESM_TAPS;
 #endif
 
+#ifdef EVSM_TAPS
+layout(location = 0) out vec2 stored;
+#else
 layout(location = 0) out float stored;
+#endif
 
 void main()
 {
@@ -24,10 +32,21 @@ void main()
   float weight = 1.0 / float(tap_count);
   vec3 direction = esm_cone_direction(axis, esm_disk_point(0, tap_count), versine);
   LogSum sum = log_sum_begin(cube_distance(direction, data.range), weight);
+#ifdef EVSM_TAPS
+  LogSum squares = sum;
+#endif
   for (int i = 1; i < tap_count; i++) {
     direction = esm_cone_direction(axis, esm_disk_point(i, tap_count), versine);
-    sum = log_sum_add(sum, data.exponent, cube_distance(direction, data.range), weight);
+    float tap = cube_distance(direction, data.range);
+    sum = log_sum_add(sum, data.exponent, tap, weight);
+#ifdef EVSM_TAPS
+    squares = log_sum_add(squares, 2.0 * data.exponent, tap, weight);
+#endif
   }
   float filtered = clamp(log_sum_value(sum, data.exponent), 0.0, data.range);
+#ifdef EVSM_TAPS
+  stored = vec2(filtered, log_sum_variance(sum, squares, 1.0));
+#else
   stored = esm_encoded(filtered, data.range, data.format);
+#endif
 }

@@ -3,9 +3,12 @@
 #include "eevee/eevee_esm_block_lib.glsl"
 #include "shared/eevee_octahedral_shared.h"
 
-/** Both are bound; of a lamp's layer, EsmData::format says which holds it. */
+/** All are bound; of a lamp's layer, EsmData::format says which holds it. */
 layout(binding = SHADOW_ESM_SLOT) uniform sampler2DArray shadow_esm;
 layout(binding = SHADOW_ESM_HALF_SLOT) uniform sampler2DArray shadow_esm_half;
+#ifdef USE_SHADOW_EVSM
+layout(binding = SHADOW_EVSM_SLOT) uniform sampler2DArray shadow_evsm;
+#endif
 
 /** The four texels around \a uv of the map, metres, and where between them it lies. */
 vec4 esm_gathered(sampler2DArray layers, EsmData data, vec2 uv, out vec2 fraction)
@@ -17,6 +20,16 @@ vec4 esm_gathered(sampler2DArray layers, EsmData data, vec2 uv, out vec2 fractio
   vec2 corner = (low + 1.0) / vec2(textureSize(layers, 0).xy);
   return textureGather(layers, vec3(corner, float(data.layer)));
 }
+
+#ifdef USE_SHADOW_EVSM
+/** esm_gathered of the variances, at the same texels. */
+vec4 esm_gathered_variance(EsmData data, vec2 uv)
+{
+  vec2 low = floor(uv * float(data.size) + (float(ESM_BORDER) - 0.5));
+  vec2 corner = (low + 1.0) / vec2(textureSize(shadow_evsm, 0).xy);
+  return textureGather(shadow_evsm, vec3(corner, float(data.layer)), 1);
+}
+#endif
 
 /**
  * Visibility in [0, 1], whatever it is given; 1 at the lamp itself.
@@ -35,10 +48,18 @@ float shadow_esm_visibility(int index, vec3 from_light_ws, vec3 normal_ws)
   vec3 direction = v / max(norm, 1e-30);
   // What is beyond the range is where nothing was drawn is.
   float distance = min(largest * norm, data.range);
-  float bias = esm_bias(distance, dot(normal_ws, direction), octahedral_texel_angle(direction, data.size),
-                        esm_format_error(data.range, data.format));
+  float texel_angle = octahedral_texel_angle(direction, data.size);
+  float bias = esm_bias(distance, dot(normal_ws, direction), texel_angle, esm_format_error(data.range, data.format));
   vec2 uv = octahedral_from_direction(v);
   vec2 fraction;
+#ifdef USE_SHADOW_EVSM
+  if (data.format == ESM_VARIANCE) {
+    vec4 means = esm_gathered(shadow_evsm, data, uv, fraction);
+    float bound = esm_gathered_variance_visibility(data.exponent, means, esm_gathered_variance(data, uv),
+                                                   distance - data.bias * bias, 2.0 * texel_angle * distance, fraction);
+    return bound >= 0.0 ? min(bound, 1.0) : 1.0;
+  }
+#endif
   vec4 stored = data.format == ESM_HALF ? esm_gathered(shadow_esm_half, data, uv, fraction) :
                                           esm_gathered(shadow_esm, data, uv, fraction);
   stored = vec4(esm_decoded(stored.x, data.range, data.format), esm_decoded(stored.y, data.range, data.format),

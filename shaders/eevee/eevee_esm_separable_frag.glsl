@@ -15,12 +15,25 @@ PUSH_CONSTANT_LAYOUT uniform push_constant_block
   int axis;
 };
 
+#ifdef EVSM
+/** With a distance its relative variance, 0 before the first pass. */
+layout(location = 0) out vec2 result;
+#else
 layout(location = 0) out float result;
+#endif
 
 float source_distance(ivec2 texel)
 {
   return texelFetch(esm_source, texel, 0).r;
 }
+
+#ifdef EVSM
+/** Mean of squares of what a row's texel is the mean of, by the mean's square. */
+float source_square(ivec2 texel)
+{
+  return axis == 0 ? 1.0 : 1.0 + texelFetch(esm_source, texel, 0).g;
+}
+#endif
 
 void main()
 {
@@ -38,6 +51,9 @@ void main()
   float falloff = -0.5 / max(deviation * deviation, 1e-30);
   float weights = octahedral_texel_weight(direction);
   LogSum sum = log_sum_begin(source_distance(texel), weights);
+#ifdef EVSM
+  LogSum squares = log_sum_begin(source_distance(texel), weights * source_square(texel));
+#endif
   for (int i = -reach; i <= reach; i++) {
     if (i == 0) {
       continue;
@@ -47,9 +63,19 @@ void main()
     vec3 towards = octahedral_to_direction((vec2(neighbour) + 0.5) / float(data.size));
     float weight = exp(falloff * float(i * i)) * octahedral_texel_weight(towards);
     sum = log_sum_add(sum, data.exponent, source_distance(neighbour), weight);
+#ifdef EVSM
+    squares = log_sum_add(squares, 2.0 * data.exponent, source_distance(neighbour), weight * source_square(neighbour));
+#endif
     weights += weight;
   }
+#ifdef EVSM
+  float variance = log_sum_variance(sum, squares, weights);
+#endif
   sum.sum /= weights;
   float filtered = clamp(log_sum_value(sum, data.exponent), 0.0, data.range);
+#ifdef EVSM
+  result = vec2(filtered, variance);
+#else
   result = axis == 0 ? filtered : esm_encoded(filtered, data.range, data.format);
+#endif
 }

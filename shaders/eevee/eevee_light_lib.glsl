@@ -59,11 +59,9 @@ vec3 reflected(MaterialData material, Surface surface, vec3 to_light, float cos_
 
 vec3 light_radiance(LightData light, MaterialData material, Surface surface)
 {
-#ifdef USE_HEMI
   if (light.kind == LIGHT_HEMI) {
     return material.diffuse * light.color * (INV_PI * hemi_irradiance(-dot(surface.normal_ws, light.forward_ws)));
   }
-#endif
   vec3 to_light = -light.forward_ws;
   float irradiance = 1.0;
 #ifdef USE_PUNCTUAL

@@ -13,6 +13,8 @@ SHARED_BEGIN
 #define ESM_FLOAT 0
 /** 16 bits: the range is laid over [-1, 1] in equal steps. */
 #define ESM_HALF 1
+/** Metres, and the relative variance of what was filtered, in 32 bits each: exponential variance shadow maps. */
+#define ESM_VARIANCE 2
 
 /** One lamp's octahedral layer, an entry of `esm_block`. */
 struct EsmData {
@@ -81,10 +83,43 @@ SHARED_FUNCTION float log_sum_value(LogSum total, float exponent)
   return total.highest + log(max(total.sum, 1e-30f)) / exponent;
 }
 
+/**
+ * Relative variance of exp(c·z), Σ w·e² / (Σ w·e)² - 1 with e = exp(c·z), for weights that add up to \a weights. Both sums are
+ * divided by powers of the largest e, which cancel: whatever the spread, it is at most weights / (weight of the
+ * largest) - 1. Roundings of the sums make it wrong by some 1e-7, which is what it is for equal distances instead of 0.
+ *
+ * \a squares: Σ w·exp(2·c · (z - highest)), as log_sum_add makes it with an exponent of 2·c.
+ */
+SHARED_FUNCTION float log_sum_variance(LogSum total, LogSum squares, float weights)
+{
+  return max(squares.sum * weights / max(total.sum * total.sum, 1e-30f) - 1.0f, 0.0f);
+}
+
 /** Visibility in [0, 1] of a receiver at \a distance behind casters at \a stored, metres: exp(c · (stored - distance)), 1 in front. */
 SHARED_FUNCTION float esm_visibility(float exponent, float stored, float distance)
 {
   return exp(min(exponent * (stored - distance), 0.0f));
+}
+
+/** Share of Chebyshev's bound that is cut off: light that bleeds through two layers of casters, mostly (Lauritzen and McCool 2008). */
+SHARED_CONSTANT float ESM_BLEED = 0.1f;
+
+/**
+ * Visibility in [0, 1] by Chebyshev's bound (Donnelly and Lauritzen 2006) for exp(c·z): of a distribution with mean m and relative
+ * variance v, v / (v + (exp(c·distance) / m - 1)²) at most is beyond \a distance. With the mean stored as a logarithm
+ * only a difference of distances reaches exp().
+ *
+ * \a stored: log(m) / c, metres. \a variance: at least 0. \a spread: least standard deviation, metres, above 0: that of the receiver's own
+ * plane over the texels of a lookup.
+ */
+SHARED_FUNCTION float esm_variance_visibility(float exponent, float stored, float variance, float distance, float spread)
+{
+  float beyond = exponent * (distance - stored);
+  // Where exp() of 40 is, nothing is seen any more; its square is finite.
+  float t = exp(clamp(beyond, 0.0f, 40.0f)) - 1.0f;
+  float least = min(exponent * spread, 1.0f);
+  float v = max(variance, max(least * least, 1e-6f));
+  return max(v / (v + t * t) - ESM_BLEED, 0.0f) / (1.0f - ESM_BLEED);
 }
 
 /** Steps from -1 to 0 that a half has everywhere in [-1, 1]: 11 bits. */
@@ -159,10 +194,12 @@ SHARED_FUNCTION vec3 esm_cone_direction(vec3 axis, vec2 point, float versine)
 
 /** Planes seen more edge-on than this tangent are not lifted further: 84°. */
 SHARED_CONSTANT float ESM_TANGENT_MAX = 10.0f;
+/** What four texels around a lookup see of a plane, and a quarter for the cube's texels, from whose middles they have it. */
+SHARED_CONSTANT float ESM_BIAS_TEXELS = 1.25f;
 
 /**
  * How far to lift a receiver towards the lamp, metres, so that a lit plane does not darken itself: the four texels around it
- * see the plane up to a texel nearer, and distances are rounded.
+ * see the plane up to ESM_BIAS_TEXELS nearer, and distances are rounded.
  *
  * \a cosine: between the plane's normal and the direction to the lamp, in [-1, 1]. \a texel_angle: edge of a texel there,
  * radians. \a format_error: metres.
@@ -171,7 +208,7 @@ SHARED_FUNCTION float esm_bias(float distance, float cosine, float texel_angle, 
 {
   float cosine_abs = min(abs(cosine), 1.0f);
   float tangent = sqrt(max(1.0f - cosine_abs * cosine_abs, 0.0f)) / max(cosine_abs, 1e-30f);
-  return distance * (texel_angle * min(tangent, ESM_TANGENT_MAX) + 4e-7f) + format_error;
+  return distance * (ESM_BIAS_TEXELS * texel_angle * min(tangent, ESM_TANGENT_MAX) + 4e-7f) + format_error;
 }
 
 /**
@@ -185,6 +222,17 @@ SHARED_FUNCTION float esm_gathered_visibility(float exponent, vec4 stored, float
 {
   float low = mix(esm_visibility(exponent, stored.w, distance), esm_visibility(exponent, stored.z, distance), fraction.x);
   float high = mix(esm_visibility(exponent, stored.x, distance), esm_visibility(exponent, stored.y, distance), fraction.x);
+  return mix(low, high, fraction.y);
+}
+
+/** The same by esm_variance_visibility. */
+SHARED_FUNCTION float esm_gathered_variance_visibility(float exponent, vec4 stored, vec4 variance, float distance, float spread,
+                                                       vec2 fraction)
+{
+  float low = mix(esm_variance_visibility(exponent, stored.w, variance.w, distance, spread),
+                  esm_variance_visibility(exponent, stored.z, variance.z, distance, spread), fraction.x);
+  float high = mix(esm_variance_visibility(exponent, stored.x, variance.x, distance, spread),
+                   esm_variance_visibility(exponent, stored.y, variance.y, distance, spread), fraction.x);
   return mix(low, high, fraction.y);
 }
 

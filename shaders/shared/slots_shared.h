@@ -27,6 +27,7 @@
 #define ESM_SOURCE_SLOT 21
 #define SHADOW_LAYERS_SLOT 22
 #define BASE_COLOR_SLOT 24
+#define SHADOW_EVSM_SLOT 25
 
 /** Declares the block of small per-group values: push constants where the API has them. */
 #ifdef VULKAN

@@ -165,7 +165,8 @@ eevee::ShadowSettings shadow_settings(const RenderOptions &options)
   static const std::map<std::string, scene::ShadowKind> kinds = {{"none", scene::ShadowKind::None},
                                                                  {"hard", scene::ShadowKind::Hard},
                                                                  {"pcf", scene::ShadowKind::Pcf},
-                                                                 {"esm", scene::ShadowKind::Esm}};
+                                                                 {"esm", scene::ShadowKind::Esm},
+                                                                 {"evsm", scene::ShadowKind::Evsm}};
   static const std::map<std::string, eevee::EsmKernel> kernels = {
       {"4", eevee::EsmKernel::Disk4}, {"32", eevee::EsmKernel::Disk32}, {"separable", eevee::EsmKernel::Separable}};
   static const std::map<std::string, eevee::LayerPass> passes = {{"best", eevee::LayerPass::Best},
@@ -478,16 +479,16 @@ void add_render(CLI::App &app, Status &status)
       ->check(CLI::Range(1, 100000));
   command
       ->add_option("--shadow", o->shadow,
-                   "none, hard, pcf, esm, where a lamp's gnomon_shadow says nothing; none is for all")
+                   "none, hard, pcf, esm, evsm, where a lamp's gnomon_shadow says nothing; none is for all")
       ->capture_default_str()
-      ->check(CLI::IsMember({"none", "hard", "pcf", "esm"}));
+      ->check(CLI::IsMember({"none", "hard", "pcf", "esm", "evsm"}));
   command
       ->add_option("--shadow-size", o->shadow_size,
                    "Edge of every shadow layer, pixels (default: cubes 1024, maps 2048; twice that from 16 samples)")
       ->check(CLI::Range(1, 16384));
   command->add_option("--pcf", o->pcf, "Kernel of --shadow pcf: 1, 3x3, 5x5, or disk:N for N lookups on a disk")
       ->capture_default_str();
-  command->add_option("--esm", o->esm, "Taps that --shadow esm is filtered with: 4, 32, or separable")
+  command->add_option("--esm", o->esm, "Taps that --shadow esm and evsm are filtered with: 4, 32, or separable")
       ->capture_default_str()
       ->check(CLI::IsMember({"4", "32", "separable"}));
   command

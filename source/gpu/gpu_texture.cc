@@ -18,7 +18,8 @@ int texel_size_bytes(Format format)
     case Format::SRGB8A8:
     case Format::R32F:
     case Format::Depth32F: return 4;
-    case Format::RGBA16F: return 8;
+    case Format::RGBA16F:
+    case Format::RG32F: return 8;
     case Format::RGBA32F: return 16;
   }
   return 0;
@@ -33,6 +34,7 @@ std::string_view to_string(Format format)
     case Format::RGBA32F: return "RGBA32F";
     case Format::R16F: return "R16F";
     case Format::R32F: return "R32F";
+    case Format::RG32F: return "RG32F";
     case Format::Depth32F: return "Depth32F";
   }
   return "?";

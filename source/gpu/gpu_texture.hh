@@ -21,6 +21,8 @@ enum class Format : std::uint8_t {
   /** A distance in metres. */
   R16F,
   R32F,
+  /** A mean and a spread. */
+  RG32F,
   /** Reversed clip-space depth: 1 at the near plane, 0 at the far one. */
   Depth32F,
 };

@@ -131,7 +131,7 @@ enum class LampKind { Point, Sun, Spot, Hemi, Area };
 
 enum class AreaShape { Rectangle, Ellipse };
 
-enum class ShadowKind { None, Hard, Pcf, Esm };
+enum class ShadowKind { None, Hard, Pcf, Esm, Evsm };
 
 enum class EsmFormat { Half, Float };
 

@@ -83,7 +83,7 @@ TEST_F(ShadersTest, ListNamesEveryProgramWithItsVariantsAndPurpose)
   EXPECT_EQ(finished.status, 0) << finished.err;
   for (const std::string &part :
        {std::string("eevee_depth: depth of what is seen"), std::string("USE_LIGHT USE_PUNCTUAL USE_SHADOW_CUBE\n"),
-        std::string("USE_HEMI: where a hemi lamp shines"), programs_and_variants() + "\n"}) {
+        std::string("USE_PUNCTUAL: where a point or spot lamp shines"), programs_and_variants() + "\n"}) {
     EXPECT_NE(finished.out.find(part), std::string::npos) << part << " is not in:\n" << finished.out;
   }
   for (const eevee::ShaderDeclaration &declaration : eevee::shader_declarations()) {
@@ -207,8 +207,8 @@ INSTANTIATE_TEST_SUITE_P(
             "uniform sampler2D planted",
             "has slot 18, as texture 'radiance_texture' has [slot]"},
         Planted{"OneFeatureBitOnly",
-                {{"eevee/eevee_light_lib.glsl", "  if (light.kind == LIGHT_HEMI) {\n",
-                  "  if (light.kind == LIGHT_HEMI) {\n    float planted = undeclared_name;\n"}},
+                {{"eevee/eevee_light_lib.glsl", "  if (light.kind != LIGHT_SUN) {\n",
+                  "  if (light.kind != LIGHT_SUN) {\n    float planted = undeclared_name;\n"}},
                 "eevee/eevee_light_lib.glsl",
                 "float planted",
                 "'undeclared_name' : undeclared identifier [compile] (eevee_lit, "},
@@ -371,8 +371,8 @@ TEST_F(ShadersTest, WarningsDoNotFail)
 TEST_F(ShadersTest, JsonHoldsTheMessageWithItsVariants)
 {
   copy_tree();
-  replace("eevee/eevee_light_lib.glsl", "  if (light.kind == LIGHT_HEMI) {\n",
-          "  if (light.kind == LIGHT_HEMI) {\n    float planted = undeclared_name;\n");
+  replace("eevee/eevee_light_lib.glsl", "  if (light.kind != LIGHT_SUN) {\n",
+          "  if (light.kind != LIGHT_SUN) {\n    float planted = undeclared_name;\n");
   const Finished finished = run("shaders check --shaders tree --format json");
   EXPECT_EQ(finished.status, 1);
   const nlohmann::json json = nlohmann::json::parse(finished.out);
@@ -384,11 +384,11 @@ TEST_F(ShadersTest, JsonHoldsTheMessageWithItsVariants)
   EXPECT_EQ(message["file"], "tree/eevee/eevee_light_lib.glsl");
   EXPECT_EQ(message["line"], line_of(read("tree/eevee/eevee_light_lib.glsl"), "planted"));
   EXPECT_EQ(message["rule"], "compile");
-  const std::size_t hemi_count =
-      variant_count([](eevee::Feature features) { return has(features, eevee::Feature::Hemi); });
-  EXPECT_EQ(message["where"].size(), 2 * hemi_count) << "two targets";
+  const std::size_t punctual_count =
+      variant_count([](eevee::Feature features) { return has(features, eevee::Feature::Punctual); });
+  EXPECT_EQ(message["where"].size(), 2 * punctual_count) << "two targets";
   for (const nlohmann::json &where : message["where"]) {
-    EXPECT_NE(where["variant"].get<std::string>().find("USE_HEMI"), std::string::npos);
+    EXPECT_NE(where["variant"].get<std::string>().find("USE_PUNCTUAL"), std::string::npos);
   }
 }
 

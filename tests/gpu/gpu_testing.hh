@@ -140,6 +140,7 @@ inline std::vector<glm::vec4> decoded_texels(gpu::Device &device, const gpu::Tex
       case gpu::Format::RGBA16F: values.push_back(glm::unpackHalf4x16(as(std::uint64_t()))); break;
       case gpu::Format::RGBA32F: values.push_back(as(glm::vec4())); break;
       case gpu::Format::R16F: values.emplace_back(glm::unpackHalf1x16(as(std::uint16_t())), 0, 0, 0); break;
+      case gpu::Format::RG32F: values.emplace_back(as(glm::vec2()), 0, 0); break;
       case gpu::Format::R32F:
       case gpu::Format::Depth32F: values.emplace_back(as(float()), 0, 0, 0); break;
     }

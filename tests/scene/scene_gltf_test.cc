@@ -901,7 +901,7 @@ TEST(GltfLamp, BadValuesAreErrorsThatNameLampKeyAndValue)
   // A whole number of more than 32 bits is not cut.
   EXPECT_HAS(lamp_error(point, {{"gnomon_radius", 4294967296000000001}}), "gnomon_radius is 4.29497e+18");
   EXPECT_HAS(lamp_error(point, {{"gnomon_shadow", "soft"}}),
-             "lamp 'lamp': gnomon_shadow is 'soft', and must be 'none', 'hard', 'pcf' or 'esm'");
+             "lamp 'lamp': gnomon_shadow is 'soft', and must be 'none', 'hard', 'pcf', 'esm' or 'evsm'");
   EXPECT_HAS(lamp_error(point, {{"gnomon_shadow", 1}}), "gnomon_shadow is 1, and must be a string");
   EXPECT_HAS(lamp_error(point, {{"gnomon_esm_format", "8"}}), "gnomon_esm_format is '8', and must be '16f' or '32f'");
   EXPECT_HAS(lamp_error(point, {{"gnomon_shadow_size", 0}}), "gnomon_shadow_size is 0, and must be from 1 to 16384");

@@ -230,7 +230,8 @@ TEST(EsmBias, IsFiniteAndGrowsWithDistanceTiltAndTexel)
   for (int degrees = 0; degrees <= 90; degrees++) {
     const float cosine = std::cos(float(degrees) * 0.017453292F);
     const float bias = esm_bias(10.0F, cosine, 0.01F, 0.0F);
-    ASSERT_TRUE(bias >= before && bias <= 10.0F * 0.01F * ESM_TANGENT_MAX * 1.001F) << degrees;
+    ASSERT_TRUE(bias >= before && bias <= 10.0F * shared::ESM_BIAS_TEXELS * 0.01F * shared::ESM_TANGENT_MAX * 1.001F)
+        << degrees;
     EXPECT_EQ(bias, esm_bias(10.0F, -cosine, 0.01F, 0.0F)) << "either side of the plane";
     EXPECT_GT(esm_bias(11.0F, cosine, 0.01F, 0.0F), bias);
     EXPECT_GT(esm_bias(10.0F, cosine, 0.01F, 0.1F), bias);

@@ -35,6 +35,7 @@ inline constexpr gnomon::test::CompiledFunction<float> compiled_functions[] = {
   FUNCTION(log_sum, vec4(log_sum_value(log_sum_add(log_sum_add(log_sum_add(log_sum_begin(
       a.x, c.x), b.x, a.y, c.y), b.x, a.z, c.z), b.x, a.w, c.w), b.x), 0, 0, 0))
   FUNCTION(esm_visibility, vec4(esm_visibility(a.x, a.y, a.z), 0, 0, 0))
+  FUNCTION(esm_variance_visibility, vec4(esm_variance_visibility(b.x, a.x, a.y, a.z, a.w), 0, 0, 0))
   FUNCTION(esm_encoded, vec4(esm_encoded(a.x, a.y, int(a.z)), 0, 0, 0))
   FUNCTION(esm_decoded, vec4(esm_decoded(a.x, a.y, int(a.z)), 0, 0, 0))
   FUNCTION(esm_format_error, vec4(esm_format_error(a.x, int(a.y)), 0, 0, 0))

@@ -483,6 +483,25 @@ std::vector<Sweep> make_sweeps()
         }
       }
     }
+    sweeps.push_back(
+        {"esm_variance_visibility",
+         many(20000,
+              [](Random &random) {
+                In in;
+                in.b.x = random.log_uniform(0.01, 100.0);
+                in.a = {random.uniform(1, 2), random.log_uniform(1e-2, 10.0), 0, random.log_uniform(1e-3, 1.0)};
+                in.a.z = in.a.x + random.uniform(-3, 60) / in.b.x;
+                return in;
+              }),
+         [](const Exact &in) {
+           const double t = std::expm1(std::clamp(in.b.x * (in.a.z - in.a.x), 0.0, 40.0));
+           const double least = std::min(in.b.x * in.a.w, 1.0);
+           const double v = std::max(in.a.y, std::max(least * least, 1e-6));
+           const auto cut = double(0.1F);
+           return one(std::max(v / (v + t * t) - cut, 0.0) / (1.0 - cut));
+         },
+         // Where the bound is steep, roundings of the difference of distances count by c / √v.
+         [](const Exact &in) { return one(1.0 + in.b.x * in.a.z / std::sqrt(in.a.y)); }, 1e-6, 4, 16});
     sweeps.push_back({"esm_encoded", encoded,
                       [](const Exact &in) {
                         return one(in.a.z == ESM_HALF ? std::round(4096.0 * in.a.x / in.a.y) / 2048.0 - 1.0 : in.a.x);
@@ -552,7 +571,7 @@ std::vector<Sweep> make_sweeps()
                            }),
                       [](const Exact &in) {
                         const double tangent = std::min(std::tan(std::acos(std::abs(in.a.y))), 10.0);
-                        return one(in.a.x * (in.a.z * tangent + 4e-7) + in.a.w);
+                        return one(in.a.x * (1.25 * in.a.z * tangent + 4e-7) + in.a.w);
                       },
                       [](const Exact &in) {
                         // The tangent of a cosine near 1 is the root of a small difference.

@@ -16,18 +16,19 @@ enum class Feature : std::uint32_t {
   Light = 1U << 0,
   /** Point or spot lamps. */
   Punctual = 1U << 1,
-  Hemi = 1U << 2,
-  Specular = 1U << 3,
-  ShadowCube = 1U << 4,
-  ShadowMap = 1U << 5,
+  Specular = 1U << 2,
+  ShadowCube = 1U << 3,
+  ShadowMap = 1U << 4,
   /** Percentage-closer filtering of them. */
-  ShadowPcf = 1U << 6,
+  ShadowPcf = 1U << 5,
   /** Octahedral exponential shadow maps. */
-  ShadowEsm = 1U << 7,
+  ShadowEsm = 1U << 6,
   /** Of the material: its base colour is looked up. */
-  BaseColorTexture = 1U << 8,
+  BaseColorTexture = 1U << 7,
   /** Of the material: its texture's alpha cuts some of it out. */
-  AlphaMask = 1U << 9,
+  AlphaMask = 1U << 8,
+  /** Some of the octahedral maps hold variances. */
+  ShadowEvsm = 1U << 9,
 };
 
 constexpr Feature operator|(Feature a, Feature b)

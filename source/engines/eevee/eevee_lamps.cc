@@ -80,10 +80,7 @@ Lamps make_lamps(const scene::Scene &scene)
     lamps.light_block.lights[lamps.light_block.light_count++] = light_data(lamp);
     lamps.scene_index.push_back(i);
     lamps.features = lamps.features | Feature::Light;
-    if (lamp.kind == scene::LampKind::Hemi) {
-      lamps.features = lamps.features | Feature::Hemi;
-    }
-    else if (lamp.kind != scene::LampKind::Sun) {
+    if (lamp.kind == scene::LampKind::Point || lamp.kind == scene::LampKind::Spot) {
       lamps.features = lamps.features | Feature::Punctual;
     }
   }

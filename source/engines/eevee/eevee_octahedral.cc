@@ -10,16 +10,22 @@
 
 namespace gnomon::eevee {
 
-float esm_filter_angle(int size_px)
+static float mean_texel_angle(int size_px)
 {
-  const float mean_texel_angle = std::sqrt(4.0F * std::numbers::pi_v<float>) / float(size_px);
-  return std::min(2.0F * mean_texel_angle, 0.5F);
+  return std::sqrt(4.0F * std::numbers::pi_v<float>) / float(size_px);
 }
 
-float esm_exponent(float filter_angle, float range)
+float esm_filter_angle(int size_px)
 {
-  constexpr float spread_at_half_range = 0.5F;
-  return std::clamp(spread_at_half_range / std::max(0.5F * filter_angle * range, 1e-30F), 0.01F, 1e4F);
+  return std::min(0.5F * mean_texel_angle(size_px), 0.5F);
+}
+
+float esm_exponent(EsmMethod method, float filter_angle, int size_px, float range)
+{
+  const bool is_esm = method == EsmMethod::Esm;
+  const float spread_at_half_range = is_esm ? 0.5F : 0.0625F;
+  const float angle = is_esm ? std::max(filter_angle, mean_texel_angle(size_px)) : filter_angle;
+  return std::clamp(spread_at_half_range / std::max(0.5F * angle * range, 1e-30F), 0.01F, 1e4F);
 }
 
 int esm_cube_size_px(int size_px)
@@ -46,7 +52,8 @@ shared::EsmData make_data(const EsmLamp &lamp)
   check_range(lamp, "size", settings.size_px, 4, 8192, " px");
   const float filter_angle = settings.filter_angle.value_or(esm_filter_angle(settings.size_px));
   check_range(lamp, "filter angle", filter_angle, 0.0F, 0.5F, " rad");
-  const float exponent = settings.exponent.value_or(esm_exponent(filter_angle, lamp.range));
+  const float exponent =
+      settings.exponent.value_or(esm_exponent(settings.method, filter_angle, settings.size_px, lamp.range));
   check_range(lamp, "exponent", exponent, 0.01F, 1e4F, "/m");
   check_range(lamp, "bias", settings.bias, 0.0F, 1e3F, "");
 
@@ -59,7 +66,7 @@ shared::EsmData make_data(const EsmLamp &lamp)
   const float half_error = shared::esm_visibility_error(exponent, shared::esm_format_error(lamp.range, ESM_HALF));
   const bool is_half =
       settings.format == EsmFormat::Half || (settings.format == EsmFormat::Auto && half_error <= esm_half_error_max);
-  data.format = is_half ? ESM_HALF : ESM_FLOAT;
+  data.format = settings.method == EsmMethod::Evsm ? ESM_VARIANCE : is_half ? ESM_HALF : ESM_FLOAT;
   return data;
 }
 
@@ -72,9 +79,10 @@ bool OctahedralStore::sync(gpu::Device &device, ShaderCache &shaders, std::span<
   std::vector<Slot> slots;
   std::vector<std::string> limits;
   std::vector<std::string> lost;
-  std::array<int, 2> layers{};
-  std::array<int, 2> sizes{};
+  std::array<int, 3> layers{};
+  std::array<int, 3> sizes{};
   int scratch_size = 0;
+  gpu::Format scratch_format = gpu::Format::R32F;
   for (const EsmLamp &lamp : lamps) {
     shared::EsmData data = make_data(lamp);
     if (slots.size() == most) {
@@ -86,6 +94,7 @@ bool OctahedralStore::sync(gpu::Device &device, ShaderCache &shaders, std::span<
     sizes[format] = std::max(sizes[format], data.size + 2 * ESM_BORDER);
     if (lamp.settings.kernel == EsmKernel::Separable) {
       scratch_size = std::max(scratch_size, data.size);
+      scratch_format = lamp.settings.method == EsmMethod::Evsm ? gpu::Format::RG32F : scratch_format;
     }
     const float error = shared::esm_visibility_error(data.exponent, shared::esm_format_error(data.range, data.format));
     if (error > esm_half_error_max) {
@@ -95,7 +104,7 @@ bool OctahedralStore::sync(gpu::Device &device, ShaderCache &shaders, std::span<
                       lamp.name, error, data.exponent, data.range));
     }
     block.lamps[slots.size()] = data;
-    slots.push_back({lamp.settings.kernel});
+    slots.push_back({lamp.settings.kernel, lamp.settings.method});
   }
   if (!lost.empty()) {
     limits.push_back(fmt::format("{} lamps lost their shadow, as {} octahedral layers are the most: '{}'", lost.size(),
@@ -103,10 +112,10 @@ bool OctahedralStore::sync(gpu::Device &device, ShaderCache &shaders, std::span<
   }
 
   bool is_new = false;
-  for (const int format : {ESM_FLOAT, ESM_HALF}) {
+  for (const int format : {ESM_FLOAT, ESM_HALF, ESM_VARIANCE}) {
     is_new |= create_array(device, format, sizes[std::size_t(format)], layers[std::size_t(format)]);
   }
-  create_scratch(device, scratch_size);
+  create_scratch(device, scratch_size, scratch_format);
   is_new |= slots != slots_ || std::memcmp(&block, &block_, sizeof(block)) != 0;
   block_ = block;
   slots_ = std::move(slots);
@@ -125,7 +134,13 @@ bool OctahedralStore::sync(gpu::Device &device, ShaderCache &shaders, std::span<
 bool OctahedralStore::create_array(gpu::Device &device, int format, int size_px, int layers)
 {
   Array &array = arrays_[std::size_t(format)];
-  const std::string name = format == ESM_HALF ? "shadow_esm_half" : "shadow_esm";
+  struct Kind {
+    std::string name;
+    gpu::Format format;
+  };
+  static const std::array<Kind, 3> kinds = {
+      {{"shadow_esm", gpu::Format::R32F}, {"shadow_esm_half", gpu::Format::R16F}, {"shadow_evsm", gpu::Format::RG32F}}};
+  const std::string &name = kinds[std::size_t(format)].name;
   if (array.texture ? array.texture.desc().width == size_px && array.texture.desc().layers == layers : layers == 0) {
     return false;
   }
@@ -133,7 +148,7 @@ bool OctahedralStore::create_array(gpu::Device &device, int format, int size_px,
   if (layers > 0) {
     made.texture = device.create_texture({.name = name,
                                           .kind = gpu::TextureKind::Array,
-                                          .format = format == ESM_HALF ? gpu::Format::R16F : gpu::Format::R32F,
+                                          .format = kinds[std::size_t(format)].format,
                                           .width = size_px,
                                           .height = size_px,
                                           .layers = layers});
@@ -146,9 +161,10 @@ bool OctahedralStore::create_array(gpu::Device &device, int format, int size_px,
   return layers > 0;
 }
 
-void OctahedralStore::create_scratch(gpu::Device &device, int size_px)
+void OctahedralStore::create_scratch(gpu::Device &device, int size_px, gpu::Format format)
 {
-  if (scratch_[0].texture ? scratch_[0].texture.desc().width == size_px : size_px == 0) {
+  const gpu::Texture &now = scratch_[0].texture;
+  if (now ? now.desc().width == size_px && now.desc().format == format : size_px == 0) {
     return;
   }
   scratch_ = {};
@@ -157,15 +173,16 @@ void OctahedralStore::create_scratch(gpu::Device &device, int size_px)
   }
   for (Scratch &scratch : scratch_) {
     const std::string name = &scratch == scratch_.data() ? "esm_distance" : "esm_rows";
-    scratch.texture =
-        device.create_texture({.name = name, .format = gpu::Format::R32F, .width = size_px, .height = size_px});
+    scratch.texture = device.create_texture({.name = name, .format = format, .width = size_px, .height = size_px});
     scratch.framebuffer = device.create_framebuffer({.name = name, .colors = {{&scratch.texture}}, .depth = {}});
   }
 }
 
 void OctahedralStore::record_passes(gpu::Device &device, ShaderCache &shaders)
 {
-  const auto has_kernel = [&](EsmKernel kernel) { return std::ranges::count(slots_, kernel, &Slot::kernel) > 0; };
+  const auto has = [&](EsmKernel kernel, EsmMethod method) {
+    return std::ranges::count(slots_, Slot{kernel, method}) > 0;
+  };
   const auto group_of = [&](draw::Pass &pass, ShaderId id, bool is_needed) {
     pass.clear();
     if (!is_needed) {
@@ -183,10 +200,25 @@ void OctahedralStore::record_passes(gpu::Device &device, ShaderCache &shaders)
     group.constant_ref("axis", &recorded_.axis);
     group.call_procedural();
   };
-  group_of(disk4_, ShaderId::EsmDisk4, has_kernel(EsmKernel::Disk4));
-  group_of(disk32_, ShaderId::EsmDisk32, has_kernel(EsmKernel::Disk32));
-  group_of(distance_, ShaderId::EsmDistance, has_kernel(EsmKernel::Separable));
-  group_of(separable_, ShaderId::EsmSeparable, has_kernel(EsmKernel::Separable));
+  group_of(disk4_, ShaderId::EsmDisk4, has(EsmKernel::Disk4, EsmMethod::Esm));
+  group_of(disk32_, ShaderId::EsmDisk32, has(EsmKernel::Disk32, EsmMethod::Esm));
+  group_of(separable_, ShaderId::EsmSeparable, has(EsmKernel::Separable, EsmMethod::Esm));
+  group_of(evsm_disk4_, ShaderId::EvsmDisk4, has(EsmKernel::Disk4, EsmMethod::Evsm));
+  group_of(evsm_disk32_, ShaderId::EvsmDisk32, has(EsmKernel::Disk32, EsmMethod::Evsm));
+  group_of(evsm_separable_, ShaderId::EvsmSeparable, has(EsmKernel::Separable, EsmMethod::Evsm));
+  group_of(distance_, ShaderId::EsmDistance,
+           has(EsmKernel::Separable, EsmMethod::Esm) || has(EsmKernel::Separable, EsmMethod::Evsm));
+}
+
+const draw::Pass &OctahedralStore::pass_of(const Slot &slot) const
+{
+  const bool is_esm = slot.method == EsmMethod::Esm;
+  switch (slot.kernel) {
+    case EsmKernel::Disk4: return is_esm ? disk4_ : evsm_disk4_;
+    case EsmKernel::Disk32: return is_esm ? disk32_ : evsm_disk32_;
+    case EsmKernel::Separable: break;
+  }
+  return is_esm ? separable_ : evsm_separable_;
 }
 
 void OctahedralStore::record(gpu::CommandList &list, std::size_t index, const EsmCube &cube)
@@ -202,22 +234,23 @@ void OctahedralStore::record(gpu::CommandList &list, std::size_t index, const Es
   recorded_.uv_scale = cube.uv_scale;
   recorded_.cube = {cube.texture.id(), sampler_.id()};
 
-  // Cleared to far, as the layer stores it: a smaller map leaves a part of it.
+  // Cleared to far and no variance, as the layer stores it: a smaller map leaves a part of it.
   const auto record_into = [&](const draw::Pass &pass, const gpu::Framebuffer &framebuffer, float far) {
-    list.begin_pass(fmt::format("{} of lamp {}", pass.name(), index), framebuffer, {.clear_color = glm::vec4(far)});
+    list.begin_pass(fmt::format("{} of lamp {}", pass.name(), index), framebuffer,
+                    {.clear_color = glm::vec4(far, 0.0F, 0.0F, 0.0F)});
     pass.record({}, list);
     list.end_pass();
   };
   const gpu::Framebuffer &layer = array_of(index).framebuffers[std::size_t(data.layer)];
   const float far = shared::esm_encoded(data.range, data.range, data.format);
   if (slots_[index].kernel != EsmKernel::Separable) {
-    record_into(slots_[index].kernel == EsmKernel::Disk4 ? disk4_ : disk32_, layer, far);
+    record_into(pass_of(slots_[index]), layer, far);
     return;
   }
   record_into(distance_, scratch_[0].framebuffer, data.range);
   for (recorded_.axis = 0; recorded_.axis < 2; recorded_.axis++) {
     recorded_.source = {scratch_[std::size_t(recorded_.axis)].texture.id(), sampler_.id()};
-    record_into(separable_, recorded_.axis == 0 ? scratch_[1].framebuffer : layer, far);
+    record_into(pass_of(slots_[index]), recorded_.axis == 0 ? scratch_[1].framebuffer : layer, far);
   }
 }
 
@@ -225,11 +258,16 @@ void OctahedralStore::bind(draw::ShadingGroup &group) const
 {
   GNOMON_ASSERT(!slots_.empty(), "no lamp has an octahedral layer");
   // An array that no lamp asked for is not made, and not read.
-  const gpu::Texture &floats = arrays_[ESM_FLOAT].texture;
-  const gpu::Texture &halves = arrays_[ESM_HALF].texture;
+  const gpu::Texture &some =
+      std::ranges::find_if(arrays_, [](const Array &array) { return bool(array.texture); })->texture;
+  const auto texture_of = [&](int format) -> const gpu::Texture & {
+    const gpu::Texture &texture = arrays_[std::size_t(format)].texture;
+    return texture ? texture : some;
+  };
   group.bind_uniform("esm_block", block_buffer_);
-  group.bind_texture("shadow_esm", floats ? floats : halves, sampler_);
-  group.bind_texture("shadow_esm_half", halves ? halves : floats, sampler_);
+  group.bind_texture("shadow_esm", texture_of(ESM_FLOAT), sampler_);
+  group.bind_texture("shadow_esm_half", texture_of(ESM_HALF), sampler_);
+  group.bind_texture("shadow_evsm", texture_of(ESM_VARIANCE), sampler_);
 }
 
 std::size_t OctahedralStore::size_bytes() const

@@ -10,6 +10,17 @@
 
 namespace gnomon::eevee {
 
+/** What a layer holds of its distances. */
+enum class EsmMethod {
+  /** The mean of exp(c·z): sharp, and lit behind a caster over a length of 1 / c. */
+  Esm,
+  /**
+   * And its variance: an exponential variance shadow map, in two channels. Better where the filter is wide, at twice
+   * the memory.
+   */
+  Evsm,
+};
+
 /** How a layer is filtered. All are exact in log space: filtered is exp(exponent · distance). */
 enum class EsmKernel {
   /** Cones of one solid angle, sampled by 4 and by 32 taps; the cost is taps × texels. */
@@ -34,6 +45,7 @@ inline constexpr float esm_half_error_max = 0.02F;
 
 /** What one lamp asks for. */
 struct EsmSettings {
+  EsmMethod method = EsmMethod::Esm;
   /** 1/m, 0.01 to 1e4; nothing: esm_exponent. */
   std::optional<float> exponent{};
   /** Scale of shared::esm_bias, 0 to 1e3. */
@@ -42,21 +54,23 @@ struct EsmSettings {
   std::optional<float> filter_angle{};
   /** Edge of the map, texels, 4 to 8192. */
   int size_px = 512;
+  /** Of Esm; Evsm has 32 bits. */
   EsmFormat format = EsmFormat::Auto;
   /** Over the derived angle four taps are as good as 32, in a quarter of the time. */
   EsmKernel kernel = EsmKernel::Disk4;
 };
 
-/** Two texels of mean solid angle, radians: what hides the texels, and no more. */
+/** Half a texel of mean solid angle, radians: the cone is a texel across, as lookups blend four texels anyhow. */
 [[nodiscard]] float esm_filter_angle(int size_px);
 
 /**
  * 1/m. Over a cone of half opening a, a plane tilted by 45° spreads over ± a·d at distance d, and the filter's weights
  * over exp(± c·a·d). With a larger exponent c the farthest tap wins, and shadows shrink by the cone; with a smaller one
- * light comes through behind near casters, over a length of 1 / c. c·a·d is 0.5 at half the range, which a sweep found
+ * light comes through behind near casters, over a length of 1 / c. At half the range c·a·d is 0.5 for Esm, where a is a
+ * texel at least, and 1/16 for Evsm, whose bound needs no steepness: found by sweeps against exact rays
  * (doc/decisions/0005).
  */
-[[nodiscard]] float esm_exponent(float filter_angle, float range);
+[[nodiscard]] float esm_exponent(EsmMethod method, float filter_angle, int size_px, float range);
 
 /** Edge of the cube's faces that serves a map of \a size_px, pixels: doc/decisions/0005. */
 [[nodiscard]] int esm_cube_size_px(int size_px);
@@ -109,9 +123,14 @@ class OctahedralStore {
   /** Append the passes that make the layer of the \a index-th lamp. \pre index below size() */
   void record(gpu::CommandList &list, std::size_t index, const EsmCube &cube);
 
-  /** `esm_block`, `shadow_esm` and `shadow_esm_half`, by value. \pre size() is above 0 */
+  /** `esm_block`, `shadow_esm`, `shadow_esm_half` and `shadow_evsm`, by value. \pre size() is above 0 */
   void bind(draw::ShadingGroup &group) const;
 
+  /** Whether any lamp has EsmMethod::Evsm: then lookups need USE_SHADOW_EVSM. */
+  [[nodiscard]] bool has_variance() const
+  {
+    return bool(arrays_[ESM_VARIANCE].texture);
+  }
   /** Lamps that have a layer. */
   [[nodiscard]] std::size_t size() const
   {
@@ -122,7 +141,7 @@ class OctahedralStore {
   {
     return block_.lamps[index];
   }
-  /** The array that holds the lamp's layer: R32F, or R16F. */
+  /** The array that holds the lamp's layer: R32F, R16F, or RG32F of Evsm. */
   [[nodiscard]] const gpu::Texture &texture(std::size_t index) const
   {
     return array_of(index).texture;
@@ -138,6 +157,7 @@ class OctahedralStore {
  private:
   struct Slot {
     EsmKernel kernel = EsmKernel::Disk4;
+    EsmMethod method = EsmMethod::Esm;
     bool operator==(const Slot &) const = default;
   };
   /** Layers of one format, as large as the largest. */
@@ -152,19 +172,20 @@ class OctahedralStore {
     gpu::Framebuffer framebuffer;
   };
 
+  [[nodiscard]] const draw::Pass &pass_of(const Slot &slot) const;
   [[nodiscard]] const Array &array_of(std::size_t index) const
   {
     return arrays_[std::size_t(block_.lamps[index].format)];
   }
   bool create_array(gpu::Device &device, int format, int size_px, int layers);
-  void create_scratch(gpu::Device &device, int size_px);
+  void create_scratch(gpu::Device &device, int size_px, gpu::Format format);
   void record_passes(gpu::Device &device, ShaderCache &shaders);
 
   std::vector<Slot> slots_;
   shared::EsmBlock block_{};
   gpu::Buffer block_buffer_;
-  /** By ESM_…: floats, halves. */
-  std::array<Array, 2> arrays_;
+  /** By ESM_…: floats, halves, variances. */
+  std::array<Array, 3> arrays_;
   /** Distances, and their rows filtered. */
   std::array<Scratch, 2> scratch_;
   gpu::Sampler sampler_;
@@ -172,6 +193,9 @@ class OctahedralStore {
   draw::Pass disk32_{"esm_disk32", gpu::State::WriteColor};
   draw::Pass distance_{"esm_distance", gpu::State::WriteColor};
   draw::Pass separable_{"esm_separable", gpu::State::WriteColor};
+  draw::Pass evsm_disk4_{"evsm_disk4", gpu::State::WriteColor};
+  draw::Pass evsm_disk32_{"evsm_disk32", gpu::State::WriteColor};
+  draw::Pass evsm_separable_{"evsm_separable", gpu::State::WriteColor};
   /** What the passes read when they are recorded: the lamp at work. */
   struct {
     int lamp = 0;

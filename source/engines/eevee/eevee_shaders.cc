@@ -12,24 +12,24 @@ namespace {
 constexpr std::array<FeatureDefine, 10> feature_table = {
     {{Feature::Light, "USE_LIGHT", "something shines"},
      {Feature::Punctual, "USE_PUNCTUAL", "a point or spot lamp shines"},
-     {Feature::Hemi, "USE_HEMI", "a hemi lamp shines"},
      {Feature::Specular, "USE_SPECULAR", "a material reflects specularly"},
      {Feature::ShadowCube, "USE_SHADOW_CUBE", "a point lamp or a wide spot casts shadows"},
      {Feature::ShadowMap, "USE_SHADOW_MAP", "a sun or a spot casts shadows"},
      {Feature::ShadowPcf, "USE_SHADOW_PCF", "a shadow is filtered by percentage-closer lookups"},
      {Feature::ShadowEsm, "USE_SHADOW_ESM", "a point lamp or a spot casts exponential shadows"},
      {Feature::BaseColorTexture, "USE_BASE_COLOR_TEXTURE", "a material's base colour has a texture"},
-     {Feature::AlphaMask, "USE_ALPHA_MASK", "a texture's alpha cuts a material out"}}};
+     {Feature::AlphaMask, "USE_ALPHA_MASK", "a texture's alpha cuts a material out"},
+     {Feature::ShadowEvsm, "USE_SHADOW_EVSM", "a point lamp or a spot casts exponential variance shadows"}}};
 
 /** Those that say nothing without light. */
-constexpr Feature light_features = Feature::Light | Feature::Punctual | Feature::Hemi | Feature::Specular |
-                                   Feature::ShadowCube | Feature::ShadowMap | Feature::ShadowPcf | Feature::ShadowEsm;
+constexpr Feature light_features = Feature::Light | Feature::Punctual | Feature::Specular | Feature::ShadowCube |
+                                   Feature::ShadowMap | Feature::ShadowPcf | Feature::ShadowEsm | Feature::ShadowEvsm;
 /** Those that the visibility of a lamp depends on. */
 constexpr Feature shadow_features = Feature::Light | Feature::Punctual | Feature::ShadowCube | Feature::ShadowMap |
-                                    Feature::ShadowPcf | Feature::ShadowEsm;
+                                    Feature::ShadowPcf | Feature::ShadowEsm | Feature::ShadowEvsm;
 constexpr Feature material_features = Feature::BaseColorTexture | Feature::AlphaMask;
 
-constexpr std::array<ShaderDeclaration, 14> declarations = {{
+constexpr std::array<ShaderDeclaration, 17> declarations = {{
     {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
      Feature::AlphaMask, Feature::None, "depth of what is seen, so that each pixel is lit once"},
     {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
@@ -57,6 +57,13 @@ constexpr std::array<ShaderDeclaration, 14> declarations = {{
     {ShaderId::EsmSeparable, "eevee_esm_separable", "draw/draw_fullscreen_vert.glsl", "",
      "eevee/eevee_esm_separable_frag.glsl", Feature::None, Feature::None,
      "exponential shadow map of a Gaussian in two passes"},
+    {ShaderId::EvsmDisk4, "eevee_evsm_disk4", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_esm_disk_frag.glsl",
+     Feature::None, Feature::None, "exponential variance shadow map of four taps", "EVSM_TAPS 4"},
+    {ShaderId::EvsmDisk32, "eevee_evsm_disk32", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_esm_disk_frag.glsl",
+     Feature::None, Feature::None, "exponential variance shadow map of 32 taps", "EVSM_TAPS 32"},
+    {ShaderId::EvsmSeparable, "eevee_evsm_separable", "draw/draw_fullscreen_vert.glsl", "",
+     "eevee/eevee_esm_separable_frag.glsl", Feature::None, Feature::None,
+     "exponential variance shadow map of a Gaussian in two passes", "EVSM"},
     {ShaderId::DebugShadow, "eevee_debug_shadow", "draw/draw_fullscreen_vert.glsl", "",
      "eevee/eevee_debug_shadow_frag.glsl", Feature::None, Feature::None, "layers of a shadow for people to look at"},
     {ShaderId::DebugCascades, "eevee_debug_cascades", "eevee/eevee_surface_vert.glsl", "",
@@ -72,7 +79,8 @@ bool is_possible(Feature features)
   }
   // Cubes and exponential maps are for point lamps and spots; what is filtered is a cube or a map.
   return (has(features, Feature::Punctual) || !has(features, Feature::ShadowCube | Feature::ShadowEsm)) &&
-         (has(features, Feature::ShadowCube | Feature::ShadowMap) || !has(features, Feature::ShadowPcf));
+         (has(features, Feature::ShadowCube | Feature::ShadowMap) || !has(features, Feature::ShadowPcf)) &&
+         (has(features, Feature::ShadowEsm) || !has(features, Feature::ShadowEvsm));
 }
 
 }  // namespace

@@ -24,6 +24,9 @@ enum class ShaderId {
   EsmDisk4,
   EsmDisk32,
   EsmSeparable,
+  EvsmDisk4,
+  EvsmDisk32,
+  EvsmSeparable,
   DebugShadow,
   DebugCascades,
 };

@@ -48,13 +48,18 @@ draw::View shadow_spot_view(const scene::Lamp &lamp, float near, int size_px)
   return {lamp_from_world, draw::perspective(half_size, half_size, near, std::numeric_limits<float>::infinity())};
 }
 
+static bool is_exponential(scene::ShadowKind kind)
+{
+  return kind == scene::ShadowKind::Esm || kind == scene::ShadowKind::Evsm;
+}
+
 scene::ShadowKind shadow_kind(const scene::Lamp &lamp, const ShadowSettings &settings)
 {
   if (settings.kind == scene::ShadowKind::None || lamp.kind == scene::LampKind::Hemi) {
     return scene::ShadowKind::None;
   }
   const scene::ShadowKind kind = lamp.shadow.kind.value_or(settings.kind);
-  return kind == scene::ShadowKind::Esm && lamp.kind == scene::LampKind::Sun ? scene::ShadowKind::Pcf : kind;
+  return is_exponential(kind) && lamp.kind == scene::LampKind::Sun ? scene::ShadowKind::Pcf : kind;
 }
 
 /** Whether \a lamp throws a hard or PCF shadow into six faces, rather than into one map. */
@@ -127,7 +132,7 @@ void Shadows::place_slots(const gpu::Limits &device_limits, const scene::Scene &
     }
     warn_of_idle_wishes(lamp);
     const bool is_sun = lamp.kind == scene::LampKind::Sun;
-    const bool is_esm = slot.kind == scene::ShadowKind::Esm;
+    const bool is_esm = is_exponential(slot.kind);
     const bool is_cube = !is_esm && wants_cube(lamp);
     Array &array = is_esm ? distance_cube_ : is_cube ? cubes_ : maps_;
     const int count = int(array.slots.size());
@@ -166,10 +171,14 @@ void Shadows::place_slots(const gpu::Limits &device_limits, const scene::Scene &
 
 void Shadows::warn_of_idle_wishes(const scene::Lamp &lamp)
 {
+  const scene::ShadowKind kind = lamp.shadow.kind.value_or(settings_.kind);
+  if (kind == scene::ShadowKind::Evsm && lamp.shadow.esm_format == scene::EsmFormat::Half) {
+    warnings_.push_back(fmt::format("lamp '{}': evsm is stored in 32 bits; esm_format 16f does nothing", lamp.name));
+  }
   if (lamp.kind != scene::LampKind::Sun) {
     return;
   }
-  if (lamp.shadow.kind.value_or(settings_.kind) == scene::ShadowKind::Esm) {
+  if (is_exponential(kind)) {
     warnings_.push_back(
         fmt::format("lamp '{}': exponential shadows are for point lamps and spots; it has pcf", lamp.name));
   }
@@ -193,6 +202,7 @@ void Shadows::place_octahedral(gpu::Device &device, ShaderCache &shaders, const 
     // Without a range of its own, nothing that it could darken is farther than the scene.
     lamp.range = std::isinf(slot.range) ? std::clamp(1.01F * glm::length(reach), 1e-6F, 1e30F) : slot.range;
     lamp.settings = settings_.esm;
+    lamp.settings.method = slot.kind == scene::ShadowKind::Evsm ? EsmMethod::Evsm : EsmMethod::Esm;
     lamp.settings.exponent = wishes.exponent ? wishes.exponent : lamp.settings.exponent;
     lamp.settings.bias = wishes.bias.value_or(lamp.settings.bias);
     lamp.settings.filter_angle = wishes.filter_radius ? wishes.filter_radius : lamp.settings.filter_angle;
@@ -231,7 +241,7 @@ std::size_t Shadows::bytes_needed() const
   }
   for (const Slot &slot : distance_cube_.slots) {
     const auto edge = std::size_t(octahedral_size_px(slot));
-    bytes += edge * edge * sizeof(float);
+    bytes += edge * edge * sizeof(float) * (slot.kind == scene::ShadowKind::Evsm ? 2 : 1);
   }
   return bytes;
 }
@@ -282,6 +292,7 @@ void Shadows::keep_drawn(Array &array, std::vector<Slot> before)
     if (slot.lamp == old.lamp && slot.size_px == old.size_px && slot.entry == old.entry &&
         slot.layer_count_max == old.layer_count_max) {
       old.light = slot.light;
+      old.kind = slot.kind;
       slot = std::move(old);
     }
   }
@@ -705,7 +716,8 @@ Feature Shadows::features() const
                  (slot.kind == scene::ShadowKind::Pcf ? Feature::ShadowPcf : Feature::None);
     }
   }
-  return features | (octahedral_.size() > 0 ? Feature::ShadowEsm : Feature::None);
+  return features | (octahedral_.size() > 0 ? Feature::ShadowEsm : Feature::None) |
+         (octahedral_.has_variance() ? Feature::ShadowEvsm : Feature::None);
 }
 
 void Shadows::bind(draw::ShadingGroup &group) const

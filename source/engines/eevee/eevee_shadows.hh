@@ -45,7 +45,7 @@ struct ShadowSettings {
   int cube_size_px = 1024;
   int map_size_px = 2048;
   PcfKernel pcf{};
-  /** Of Esm; for point lamps and spots. */
+  /** Of Esm and Evsm, but for its method; for point lamps and spots. */
   EsmSettings esm{};
   CascadeSettings cascades{};
   LayerPass layer_pass = LayerPass::Best;
@@ -57,7 +57,7 @@ struct ShadowSettings {
 /** Spots wider than this (half the opening, radians) look into a cube: a plane would stretch too far. */
 inline constexpr float spot_map_angle_max = 1.2F;
 
-/** What a lamp asks for, or else \a settings have; a sun that asks for Esm has Pcf. */
+/** What a lamp asks for, or else \a settings have; a sun that asks for Esm or Evsm has Pcf. */
 [[nodiscard]] scene::ShadowKind shadow_kind(const scene::Lamp &lamp, const ShadowSettings &settings);
 
 /** The six views of a cube around \a position_ws, each with a border of CUBE_BORDER_TEXELS. */

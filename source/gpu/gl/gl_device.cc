@@ -29,6 +29,7 @@ GlFormat gl_format(Format format)
     case Format::RGBA32F: return {GL_RGBA32F, GL_RGBA, GL_FLOAT};
     case Format::R16F: return {GL_R16F, GL_RED, GL_HALF_FLOAT};
     case Format::R32F: return {GL_R32F, GL_RED, GL_FLOAT};
+    case Format::RG32F: return {GL_RG32F, GL_RG, GL_FLOAT};
     case Format::Depth32F: return {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT};
   }
   return {};

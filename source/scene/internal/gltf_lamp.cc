@@ -251,7 +251,7 @@ class LampReader {
 
   void read_shadow(LampShadow &shadow) const
   {
-    shadow.kind = word<ShadowKind>("gnomon_shadow", {"none", "hard", "pcf", "esm"});
+    shadow.kind = word<ShadowKind>("gnomon_shadow", {"none", "hard", "pcf", "esm", "evsm"});
     shadow.size = texels("gnomon_shadow_size");
     shadow.exponent = number_if_any("gnomon_exponent", {0.01, 1e4});
     shadow.bias = number_if_any("gnomon_bias", {0.0, 100.0});

@@ -201,8 +201,10 @@ void main()
     }
     device_.upload(pictures[0], 0, std::as_bytes(std::span(positions)));
     device_.upload(pictures[1], 0, std::as_bytes(std::span(normals)));
-    if (!lookup_) {
-      lookup_ = make_shader(device_, "lookup", fullscreen_vert, R"(
+    if (!lookup_ || has_variance_ != store.has_variance()) {
+      has_variance_ = store.has_variance();
+      lookup_ = make_shader(device_, "lookup", fullscreen_vert,
+                            std::string(has_variance_ ? "#define USE_SHADOW_EVSM\n" : "") + R"(
 #include "eevee/eevee_esm_lib.glsl"
 layout(binding = 22) uniform sampler2D positions;
 layout(binding = 23) uniform sampler2D normals;
@@ -240,6 +242,7 @@ void main()
   eevee::ShaderCache shaders_;
   gpu::Texture cubes_;
   gpu::Shader lookup_;
+  bool has_variance_ = false;
   gpu::Sampler nearest_;
 
  public:

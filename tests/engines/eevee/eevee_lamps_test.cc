@@ -78,7 +78,7 @@ TEST(Lamps, FeaturesAreThoseOfTheKinds)
   scene.lamps = {lamp_of(scene::LampKind::Sun)};
   EXPECT_EQ(make_lamps(scene).features, Feature::Light);
   scene.lamps = {lamp_of(scene::LampKind::Hemi)};
-  EXPECT_EQ(make_lamps(scene).features, Feature::Light | Feature::Hemi);
+  EXPECT_EQ(make_lamps(scene).features, Feature::Light);
   scene.lamps = {lamp_of(scene::LampKind::Spot)};
   EXPECT_EQ(make_lamps(scene).features, Feature::Light | Feature::Punctual);
 }

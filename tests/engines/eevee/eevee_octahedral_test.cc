@@ -48,6 +48,27 @@ TEST_F(OctahedralStoreTest, SaysWhetherLayersMustBeRecordedAgain)
   EXPECT_TRUE(store.sync(*device, shaders, lamps));
 }
 
+TEST_F(OctahedralStoreTest, VariancesHaveTwoChannelsInAnArrayOfTheirOwn)
+{
+  const EsmSettings plain{.size_px = 64, .format = EsmFormat::Float};
+  EsmSettings variance = plain;
+  variance.method = EsmMethod::Evsm;
+  // Asked for or not: 16 bits would not hold them.
+  variance.format = EsmFormat::Half;
+  store.sync(*device, shaders, {{lamp("a", 10.0F, plain), lamp("b", 10.0F, variance)}});
+  EXPECT_TRUE(store.has_variance());
+  EXPECT_EQ(store.texture(0).desc().format, gpu::Format::R32F);
+  EXPECT_EQ(store.texture(1).desc().format, gpu::Format::RG32F);
+  EXPECT_EQ(store.data(1).layer, 0);
+  EXPECT_EQ(store.size_bytes(), 66U * 66U * (4U + 8U));
+  EXPECT_TRUE(store.limits().empty());
+  variance.kernel = EsmKernel::Separable;
+  store.sync(*device, shaders, {{lamp("b", 10.0F, variance)}});
+  EXPECT_EQ(store.size_bytes(), (66U * 66U + 2U * 64U * 64U) * 8U);
+  store.sync(*device, shaders, {{lamp("a", 10.0F, plain)}});
+  EXPECT_FALSE(store.has_variance());
+}
+
 // hazards.md: more lamps than slots, the lamp past the maximum is dropped silently.
 TEST_F(OctahedralStoreTest, LampsPastTheLimitAreNamedAndTheOthersUnchanged)
 {
@@ -98,10 +119,16 @@ TEST_F(OctahedralStoreTest, FormatFollowsRangeAndExponentAndItsErrorIsReported)
 TEST_F(OctahedralStoreTest, DerivedSettingsScaleWithTheScene)
 {
   for (const float range : {0.1F, 1.0F, 20.0F, 1e3F}) {
-    store.sync(*device, shaders, {{lamp("a", range, {.size_px = 256})}});
-    const shared::EsmData &data = store.data(0);
-    EXPECT_FLOAT_EQ(data.filter_angle, 2.0F * std::sqrt(4.0F * 3.14159265F) / 256.0F);
-    EXPECT_NEAR(data.exponent * data.range, 1.0F / data.filter_angle, 1e-3F) << "the scene's unit makes no difference";
+    const EsmSettings wide{.filter_angle = 0.1F, .size_px = 256};
+    const EsmSettings variance{.method = EsmMethod::Evsm, .filter_angle = 0.01F, .size_px = 256};
+    store.sync(*device, shaders,
+               {{lamp("a", range, {.size_px = 256}), lamp("b", range, wide), lamp("c", range, variance)}});
+    const float texel = std::sqrt(4.0F * 3.14159265F) / 256.0F;
+    EXPECT_FLOAT_EQ(store.data(0).filter_angle, 0.5F * texel);
+    const auto steepness = [&](std::size_t index) { return store.data(index).exponent * store.data(index).range; };
+    EXPECT_NEAR(steepness(0), 1.0F / texel, 1e-3F) << "the scene's unit makes no difference";
+    EXPECT_NEAR(steepness(1), 1.0F / 0.1F, 1e-3F);
+    EXPECT_NEAR(steepness(2), 0.125F / 0.01F, 1e-3F);
   }
 }
 
