@@ -42,23 +42,54 @@ float distance_to(const scene::Bounds &box, const glm::vec3 &position_ws)
   return glm::distance(position_ws, glm::clamp(position_ws, box.min, box.max));
 }
 
+/** Of the nearest point of a triangle: of its plane's, if that is in it, or else of its edges'. */
+static double distance_to_triangle(const glm::dvec3 &p, const glm::dvec3 &a, const glm::dvec3 &b, const glm::dvec3 &c)
+{
+  const glm::dvec3 normal = glm::cross(b - a, c - a);
+  const auto is_inside = [&](const glm::dvec3 &from, const glm::dvec3 &to) {
+    return glm::dot(glm::cross(to - from, p - from), normal) >= 0.0;
+  };
+  const double area_sq = glm::dot(normal, normal);
+  if (area_sq > 0.0 && is_inside(a, b) && is_inside(b, c) && is_inside(c, a)) {
+    return std::abs(glm::dot(p - a, normal)) / std::sqrt(area_sq);
+  }
+  const auto to_edge = [&](const glm::dvec3 &from, const glm::dvec3 &to) {
+    const glm::dvec3 edge = to - from;
+    const double length_sq = glm::dot(edge, edge);
+    const double along = length_sq > 0.0 ? std::clamp(glm::dot(p - from, edge) / length_sq, 0.0, 1.0) : 0.0;
+    return glm::distance(p, from + along * edge);
+  };
+  return std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
+}
+
+float distance_to(const Caster &caster, const glm::vec3 &position_ws)
+{
+  const float to_box = distance_to(caster.bounds_ws, position_ws);
+  if (to_box > 0.0F || !caster.mesh) {
+    return to_box;
+  }
+  const scene::Mesh &mesh = *caster.mesh;
+  const glm::dmat4 world_from_object(*caster.world_from_object);
+  const auto corner = [&](std::size_t i) {
+    return glm::dvec3(world_from_object * glm::dvec4(mesh.positions[mesh.indices[i]], 1.0));
+  };
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+    nearest = std::min(nearest, distance_to_triangle(glm::dvec3(position_ws), corner(i), corner(i + 1), corner(i + 2)));
+  }
+  return float(nearest);
+}
+
 float lamp_near(const glm::vec3 &position_ws, float range, const std::vector<Caster> &casters)
 {
   constexpr float near_min = 1e-6F;
-  float nearest = range;
-  float smallest_around = std::numeric_limits<float>::max();
+  float near = 0.5F * range;
   for (const Caster &caster : casters) {
-    const float distance = distance_to(caster.bounds_ws, position_ws);
-    nearest = std::min(nearest, distance);
-    if (distance == 0.0F) {
-      smallest_around = std::min(smallest_around, caster.bounds_ws.radius());
-    }
+    const float distance = distance_to(caster, position_ws);
+    // Along a face's axis what is at this distance is nearer, by up to the square root of 3.
+    near = std::min(near, std::max(0.5F * distance, 1e-4F * caster.bounds_ws.radius()));
   }
-  if (std::isinf(nearest)) {
-    return near_min;
-  }
-  // Along a face's axis what is at this distance is nearer, by up to the square root of 3.
-  return std::max(nearest > 0.0F ? 0.5F * nearest : 1e-2F * smallest_around, near_min);
+  return std::isinf(near) ? near_min : std::max(near, near_min);
 }
 
 }  // namespace gnomon::eevee

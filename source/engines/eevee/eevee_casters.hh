@@ -22,6 +22,9 @@ struct Caster {
   draw::InstanceCall *instances = nullptr;
   /** Of its shape and place: another number, another shadow. */
   std::uint64_t fingerprint = 0;
+  /** Read where a lamp is inside of the box, and until Shadows::finish. nullptr: the box is all that is known. */
+  const scene::Mesh *mesh = nullptr;
+  const glm::mat4 *world_from_object = nullptr;
 };
 
 /** Of plain numbers; for Caster::fingerprint. */
@@ -37,10 +40,13 @@ struct Caster {
 /** Distance of the nearest point of a box, metres; 0 inside. */
 [[nodiscard]] float distance_to(const scene::Bounds &box, const glm::vec3 &position_ws);
 
+/** Distance of the nearest point of a caster, metres: of its box, or, from inside of that, of its triangles. */
+[[nodiscard]] float distance_to(const Caster &caster, const glm::vec3 &position_ws);
+
 /**
  * Distance of the near plane of a lamp, metres, for the best precision: depths lose it with the square of distance /
- * near. As far as the nearest caster's box allows; where the lamp is inside of boxes, a small part of the smallest
- * one's size. What is nearer is drawn at the near plane, and not lost.
+ * near. As far as the nearest caster allows; where the lamp is on one, a small part of its size. What is nearer is
+ * drawn at the near plane, and not lost.
  *
  * \a range: what is farther casts nothing, metres.
  */

@@ -396,7 +396,7 @@ void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectRef &obj
           &group_of(data.psl->shadow_pass, stl.shaders.get(device, id, mask), state, has_mask, bind).instances(batch);
     }
     stl.shadows.add_caster({scene::transformed(mesh.bounds, object.world_from_object), index, instances,
-                            caster_fingerprint(object, mesh_index, mesh, material)});
+                            caster_fingerprint(object, mesh_index, mesh, material), &mesh, &object.world_from_object});
   }
 }
 

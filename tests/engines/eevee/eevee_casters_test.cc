@@ -36,6 +36,26 @@ TEST(LampNear, IsBeforeEveryCasterAndAboveZero)
   EXPECT_LE(lamp_near({0, 0, 0}, 7.0F, {}), 7.0F);
 }
 
+TEST(LampNear, OfALampInATerrainsBoxIsBeforeItsTriangles)
+{
+  // A slope 2 km wide: the box around it holds the lamp, the slope is 3 m away.
+  scene::Mesh slope;
+  slope.positions = {{-1000, -100, -1000}, {1000, 100, -1000}, {1000, 100, 1000}, {-1000, -100, 1000}};
+  slope.indices = {0, 1, 2, 0, 2, 3};
+  for (const glm::vec3 &position : slope.positions) {
+    slope.bounds.extend(position);
+  }
+  const glm::mat4 world_from_object(1.0F);
+  Caster caster{.bounds_ws = slope.bounds, .mesh = &slope, .world_from_object = &world_from_object};
+  const glm::vec3 above = 3.0F * glm::normalize(glm::vec3(-0.1F, 1, 0));
+  EXPECT_NEAR(distance_to(caster, above), 3.0F, 1e-3F);
+  EXPECT_NEAR(lamp_near(above, infinity, {caster}), 1.5F, 1e-3F);
+  EXPECT_NEAR(distance_to(caster, {900, 90, 0}), 0.0F, 1e-3F) << "on it";
+  EXPECT_GT(lamp_near({900, 90, 0}, infinity, {caster}), 0.0F);
+  // Off its edge and its corner.
+  EXPECT_NEAR(distance_to(caster, {-1000, -90, -1000}), 10.0F, 0.2F);
+}
+
 scene::Bounds box_around(const glm::vec3 &center, const glm::vec3 &half)
 {
   return {center - half, center + half};
