@@ -43,7 +43,7 @@ struct RenderOptions {
   std::string shadow = "hard";
   int shadow_size = 0;
   std::string pcf = "3x3";
-  std::string esm = "32";
+  std::string esm = "4";
   int cascades = 0;
   float cascade_lambda = eevee::CascadeSettings().lambda;
   std::string cascade_range = "view";

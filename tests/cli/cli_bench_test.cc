@@ -14,7 +14,7 @@ using test::Finished;
 
 class BenchTest : public test::ProgramTest {};
 
-TEST_F(BenchTest, ShadowsMeasuresAllWaysOfDrawingTheSameInstances)
+TEST_F(BenchTest, ShadowsMeasuresAllWaysOfDrawingLayers)
 {
   const Finished finished = run("bench shadows --backend null --rounds 3 --json bench.json");
   ASSERT_EQ(finished.status, 0) << finished.err;
@@ -39,7 +39,7 @@ TEST_F(BenchTest, ShadowsMeasuresAllWaysOfDrawingTheSameInstances)
     }
     EXPECT_EQ(by_way["six"]["passes"], 6);
     EXPECT_EQ(by_way["culled"]["passes"], 6);
-    EXPECT_EQ(by_way["culled"]["instances"], by_way["six"]["instances"]) << "a view and a face mask agree on spheres";
+    EXPECT_GE(by_way["culled"]["instances"], by_way["six"]["instances"]) << "a view culls spheres, a face mask boxes";
   }
 }
 

@@ -248,9 +248,10 @@ TEST_F(ClipGpuTest, WhatIsBeforeTheNearPlaneCastsUnlessTheLampLeavesItOut)
     scene.objects.clear();
     scene.lamps.clear();
     add(square, {0, 0, 0}, glm::vec3(20));
-    // A small square right under the lamp in a mesh that reaches 30 m around it: the near plane is a hundredth away.
+    // A small square right under the lamp in a mesh that reaches 3 km around it: the near plane is a ten thousandth
+    // away.
     scene::Mesh &mesh = scene.meshes[box];
-    const glm::vec3 far(17.4F, 17.4F, -17.4F);
+    const glm::vec3 far(1700, 1700, -1700);
     mesh.positions = {{-0.05F, -0.05F, 3.9F},
                       {0.05F, -0.05F, 3.9F},
                       {0.05F, 0.05F, 3.9F},
