@@ -324,10 +324,16 @@ void Shadows::create_layers(gpu::Device &device, Array &array, int layers)
                                          .height = size_px,
                                          .layers = layers});
   array.binding = {array.texture.id(), sampler_.id()};
-  for (int layer = 0; layer < layers; layer++) {
-    array.framebuffers.push_back(device.create_framebuffer(
-        {.name = fmt::format("{} {}", array.name, layer), .colors = {}, .depth = {&array.texture, layer}}));
+  array.framebuffers.resize(std::size_t(layers));
+}
+
+static const gpu::Framebuffer &made(gpu::Device &device, gpu::Framebuffer &framebuffer, std::string name,
+                                    const gpu::Attachment &depth)
+{
+  if (!framebuffer) {
+    framebuffer = device.create_framebuffer({.name = std::move(name), .colors = {}, .depth = depth});
   }
+  return framebuffer;
 }
 
 void Shadows::place_render_blocks(gpu::Device &device)
@@ -541,22 +547,22 @@ void Shadows::update_slot(gpu::Device &device, Slot &slot, Array &array, std::ui
   const bool is_cleared_at_once = is_one_pass && drawn == all;
   for (std::uint32_t rest = is_cleared_at_once ? 0 : drawn; rest != 0; rest &= rest - 1) {
     const int layer = std::countr_zero(rest);
+    const int in_array = slot.first_layer + layer;
     list.begin_pass(name(fmt::format("{} {}", is_cube ? "face" : "map", layer)),
-                    array.framebuffers[std::size_t(slot.first_layer + layer)], clear);
+                    made(device, array.framebuffers[std::size_t(in_array)], fmt::format("{} {}", array.name, in_array),
+                         {&array.texture, in_array}),
+                    clear);
     if (layer_pass_ == LayerPass::Single) {
       record_instances(1U << layer);
     }
     list.end_pass();
   }
   if (is_one_pass) {
-    if (!slot.framebuffer) {
-      slot.framebuffer = device.create_framebuffer(
-          {.name = fmt::format("{} of {}", array.name, slot.lamp.name),
-           .colors = {},
-           .depth = {.texture = &array.texture, .layer = slot.first_layer, .layer_count = int(slot.views.size())}});
-      slot.framebuffer_layers = int(slot.views.size());
-    }
-    list.begin_pass(name("all layers"), slot.framebuffer, is_cleared_at_once ? clear : keep);
+    const gpu::Framebuffer &layers =
+        made(device, slot.framebuffer, fmt::format("{} of {}", array.name, slot.lamp.name),
+             {.texture = &array.texture, .layer = slot.first_layer, .layer_count = int(slot.views.size())});
+    slot.framebuffer_layers = int(slot.views.size());
+    list.begin_pass(name("all layers"), layers, is_cleared_at_once ? clear : keep);
     record_instances(missing);
     list.end_pass();
   }

@@ -229,7 +229,7 @@ class Shadows {
     std::string_view name;
     gpu::Texture texture;
     draw::TextureBinding binding;
-    /** One a layer. */
+    /** One a layer; empty until a pass draws that layer alone. */
     std::vector<gpu::Framebuffer> framebuffers;
     std::vector<Slot> slots;
   };
