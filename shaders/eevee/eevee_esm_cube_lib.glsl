@@ -19,6 +19,8 @@ PUSH_CONSTANT_LAYOUT uniform push_constant_block
   float near;
   /** Share of a face's image that 90° take, at most 1. */
   float uv_scale;
+  /** Edge of a face, texels: the lower left corner of its layer. */
+  int cube_size_px;
 };
 
 /** Radial distance of what is seen along the unit vector \a direction, metres: above 0, at most \a range. */
@@ -29,7 +31,7 @@ float cube_distance(vec3 direction, float range)
     return range;
   }
   vec3 p = cube_face_project(face, direction);
-  int size = textureSize(shadow_cubes, 0).x;
+  int size = cube_size_px;
   // p.z is at least 1 / √3.
   vec2 uv = p.xy / p.z * (0.5 * uv_scale) + 0.5;
   ivec2 texel = clamp(ivec2(uv * float(size)), ivec2(0), ivec2(size - 1));

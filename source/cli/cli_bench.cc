@@ -228,7 +228,8 @@ class LampBench {
       framebuffers_.push_back(
           device_.create_framebuffer({.name = "face", .colors = {}, .depth = {.texture = &faces_, .layer = face}}));
     }
-    stride_ = std::max(std::uint32_t(sizeof(shared::ShadowRenderBlock)), device_.limits().uniform_offset_alignment);
+    const std::uint32_t alignment = device_.limits().uniform_offset_alignment;
+    stride_ = (std::uint32_t(sizeof(shared::ShadowRenderBlock)) + alignment - 1) / alignment * alignment;
     face_blocks_ = device_.create_buffer({"face_blocks", gpu::BufferKind::Storage, std::size_t(6) * stride_});
   }
 

@@ -108,6 +108,9 @@ void check_options(const RenderOptions &options)
   if (!std::isfinite(options.exposure)) {
     throw UsageError(fmt::format("--exposure {} is not a number of stops", options.exposure));
   }
+  if (!std::isfinite(options.cascade_lambda)) {
+    throw UsageError(fmt::format("--cascade-lambda {} is not from 0 to 1", options.cascade_lambda));
+  }
   if (options.output.empty() && options.backend == "gl") {
     throw UsageError("-o OUT.exr or -o OUT.png is required");
   }
@@ -188,6 +191,7 @@ eevee::ShadowSettings shadow_settings(const RenderOptions &options)
   if (options.shadow_size > 0) {
     settings.cube_size_px = options.shadow_size;
     settings.map_size_px = options.shadow_size;
+    settings.esm.size_px = std::clamp(options.shadow_size, 4, 8192);
   }
   else if (options.samples >= fine_shadow_samples) {
     settings.cube_size_px *= 2;
@@ -483,8 +487,10 @@ void add_render(CLI::App &app, Status &status)
       ->capture_default_str()
       ->check(CLI::IsMember({"none", "hard", "pcf", "esm", "evsm"}));
   command
-      ->add_option("--shadow-size", o->shadow_size,
-                   "Edge of every shadow layer, pixels (default: cubes 1024, maps 2048; twice that from 16 samples)")
+      ->add_option(
+          "--shadow-size", o->shadow_size,
+          "Edge of cube faces, maps and octahedral layers, pixels (default: 1024, 2048, 512; twice that from 16 "
+          "samples")
       ->check(CLI::Range(1, 16384));
   command->add_option("--pcf", o->pcf, "Kernel of --shadow pcf: 1, 3x3, 5x5, or disk:N for N lookups on a disk")
       ->capture_default_str();

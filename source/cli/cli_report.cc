@@ -78,18 +78,19 @@ std::vector<Technique> techniques()
   add_maps("pcf 3x3", scene::ShadowKind::Pcf, {.width = 3, .taps = 0});
   add_maps("pcf 5x5", scene::ShadowKind::Pcf, {.width = 5, .taps = 0});
   add_maps("pcf disk:16", scene::ShadowKind::Pcf, {.width = 0, .taps = 16});
-  const auto add_esm = [&](const std::string &name, eevee::EsmKernel kernel) {
+  const auto add_esm = [&](const std::string &name, scene::ShadowKind kind, eevee::EsmKernel kernel) {
     for (const int size_px : {256, 512, 1024}) {
       eevee::ShadowSettings settings;
-      settings.kind = scene::ShadowKind::Esm;
+      settings.kind = kind;
       settings.esm.kernel = kernel;
       settings.esm.size_px = size_px;
       all.push_back({name, size_px, settings});
     }
   };
-  add_esm("esm 4", eevee::EsmKernel::Disk4);
-  add_esm("esm 32", eevee::EsmKernel::Disk32);
-  add_esm("esm separable", eevee::EsmKernel::Separable);
+  add_esm("esm 4", scene::ShadowKind::Esm, eevee::EsmKernel::Disk4);
+  add_esm("esm 32", scene::ShadowKind::Esm, eevee::EsmKernel::Disk32);
+  add_esm("esm separable", scene::ShadowKind::Esm, eevee::EsmKernel::Separable);
+  add_esm("evsm 4", scene::ShadowKind::Evsm, eevee::EsmKernel::Disk4);
   return all;
 }
 
@@ -205,7 +206,13 @@ void run_round(const scene::Scene &scene, const reference::Tracer &tracer, gpu::
 
 SceneReport measure(const std::string &path, gpu::Device &device, const ReportOptions &options)
 {
-  const scene::Scene scene = scene::import_gltf(path);
+  scene::Scene scene = scene::import_gltf(path);
+  for (scene::Lamp &lamp : scene.lamps) {
+    // The technique decides; a lamp that asks for no shadow keeps its word.
+    if (lamp.shadow.kind != scene::ShadowKind::None) {
+      lamp.shadow = {};
+    }
+  }
   const reference::Tracer tracer(scene);
   SceneReport report;
   report.scene = fs::path(path).stem().string();
@@ -318,6 +325,12 @@ void print(const SceneReport &report)
                cell.technique.size_px, 1e3 * median(cell.shadow_seconds), 1e3 * median(cell.frame_seconds),
                100.0 * e.wrong_fraction, 100.0 * e.mean_absolute_error, e.leak_count, e.acne_count,
                e.edge_offset_median, e.edge_offset_p95, e.edge_offset_max);
+  }
+  for (const Cell &cell : report.cells) {
+    for (const std::string &limit : cell.limits) {
+      fmt::print(stderr, "gnomon: limit: {}, {} {}: {}\n", report.scene, cell.technique.name, cell.technique.size_px,
+                 limit);
+    }
   }
   fmt::print("wrong pixels fall as size to the power of");
   for (const std::string &name : technique_names(report)) {

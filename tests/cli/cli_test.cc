@@ -26,13 +26,26 @@ TEST_F(CliTest, HelpAndVersionAreDone)
 
 TEST_F(CliTest, WrongUsageEndsWithTwoAndSaysWhy)
 {
-  for (const std::string arguments :
-       {"", "paint", "render", "render x.glb", "render x.glb -o x.jpg", "render x.glb -o x.png --size 64",
-        "render x.glb -o x.png --size 0x9", "render x.glb -o x.png --size 64x64x",
-        "render x.glb -o x.png --size 4294967297x1", "render x.glb -o x.png --exposure nan",
-        "render x.glb -o x.png --samples 0", "render x.glb -o x.png --samples many",
-        "render x.glb -o x.png --shadow soft", "render x.glb -o x.png --what", "render x.glb -o x.png --backend vulkan",
-        "render x.glb -o x.png --shadow-size -4", "bench", "bench lunch", "bench shadows --rounds 0"}) {
+  for (const std::string arguments : {"",
+                                      "paint",
+                                      "render",
+                                      "render x.glb",
+                                      "render x.glb -o x.jpg",
+                                      "render x.glb -o x.png --size 64",
+                                      "render x.glb -o x.png --size 0x9",
+                                      "render x.glb -o x.png --size 64x64x",
+                                      "render x.glb -o x.png --size 4294967297x1",
+                                      "render x.glb -o x.png --exposure nan",
+                                      "render x.glb -o x.png --samples 0",
+                                      "render x.glb -o x.png --samples many",
+                                      "render x.glb -o x.png --shadow soft",
+                                      "render x.glb -o x.png --what",
+                                      "render x.glb -o x.png --backend vulkan",
+                                      "render x.glb -o x.png --shadow-size -4",
+                                      "render x.glb -o x.png --cascade-lambda nan",
+                                      "bench",
+                                      "bench lunch",
+                                      "bench shadows --rounds 0"}) {
     const Finished finished = run(arguments);
     EXPECT_EQ(finished.status, 2) << arguments;
     EXPECT_FALSE(finished.err.empty()) << arguments;

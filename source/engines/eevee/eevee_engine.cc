@@ -113,6 +113,8 @@ struct Data final : draw::EngineViewportData {
   Timing timing;
   int samples_drawn = 0;
   ShadowPicture shadow_picture;
+  /** The last sync came to its end. */
+  bool is_synced = false;
 };
 
 /** The device's time for what \a work submits, added to the step's. */
@@ -193,18 +195,29 @@ State culled_state(CasterFaces faces)
 
 /** What makes a caster's shadow, as plain numbers. */
 std::uint64_t caster_fingerprint(const draw::ObjectRef &object, std::uint32_t mesh_index, const scene::Mesh &mesh,
-                                 const scene::Material &material)
+                                 const scene::Scene &scene)
 {
+  const scene::Material &material = scene.materials[mesh.material];
   struct {
     glm::mat4 world_from_object;
     std::uint64_t revision;
     std::uint32_t mesh_index;
+    std::uint32_t is_double_sided;
     std::int32_t mask;
+    std::uint32_t image;
+    std::uint32_t wrap_u;
+    std::uint32_t wrap_v;
     float alpha;
     float alpha_cutoff;
-  } key = {object.world_from_object, mesh.revision, mesh_index, -2, 0.0F, 0.0F};
+  } key = {object.world_from_object, mesh.revision, mesh_index, material.is_double_sided ? 1U : 0U, -2, 0, 0, 0, 0, 0};
   if (is_masked(material)) {
     key.mask = material.base_color_texture;
+    if (key.mask >= 0) {
+      const scene::Texture &texture = scene.textures[std::size_t(key.mask)];
+      key.image = texture.image;
+      key.wrap_u = std::uint32_t(texture.wrap_u);
+      key.wrap_v = std::uint32_t(texture.wrap_v);
+    }
     key.alpha = material.alpha;
     key.alpha_cutoff = material.alpha_cutoff;
   }
@@ -238,7 +251,7 @@ void Engine::init(draw::Viewport &viewport)
 {
   Data &data = viewport.engine_data<Data>(*this);
   gpu::Device &device = viewport.device();
-  auto &[fbl, txl, psl, stl, timing, samples_drawn, shadow_picture] = data;
+  auto &[fbl, txl, psl, stl, timing, samples_drawn, shadow_picture, is_synced] = data;
   if (!txl.radiance) {
     txl.radiance = picture(device, "radiance", gpu::Format::RGBA32F, viewport.size_px());
     fbl.depth_fb = device.create_framebuffer({.name = "depth_fb", .colors = {}, .depth = {&viewport.depth_texture()}});
@@ -267,6 +280,7 @@ void Engine::cache_init(draw::Viewport &viewport)
   Data &data = viewport.engine_data<Data>(*this);
   gpu::Device &device = viewport.device();
   StorageList &stl = data.stl;
+  data.is_synced = false;
   data.psl = std::make_unique<PassList>(viewport.objects());
   data.samples_drawn = 0;
   stl.groups.clear();
@@ -396,13 +410,23 @@ void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectRef &obj
           &group_of(data.psl->shadow_pass, stl.shaders.get(device, id, mask), state, has_mask, bind).instances(batch);
     }
     stl.shadows.add_caster({scene::transformed(mesh.bounds, object.world_from_object), index, instances,
-                            caster_fingerprint(object, mesh_index, mesh, material), &mesh, &object.world_from_object});
+                            caster_fingerprint(object, mesh_index, mesh, scene_), &mesh, &object.world_from_object});
   }
 }
 
 void Engine::cache_finish(draw::Viewport &viewport)
 {
-  viewport.engine_data<Data>(*this).stl.shadows.finish();
+  Data &data = viewport.engine_data<Data>(*this);
+  data.stl.shadows.finish();
+  data.is_synced = true;
+}
+
+/** What a failed sync leaves can be synced again, and not be drawn. */
+static void require_sync(bool is_synced)
+{
+  if (!is_synced) {
+    throw gpu::Error("eevee: nothing to draw, as the last sync of the viewport failed");
+  }
 }
 
 /** Edge of a pixel at distance 1, or, orthographic, anywhere, metres. */
@@ -414,7 +438,8 @@ static float pixel_size(const draw::View &view, const draw::Viewport &viewport)
 void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
 {
   Data &data = viewport.engine_data<Data>(*this);
-  auto &[fbl, txl, psl, stl, timing, samples_drawn, shadow_picture] = data;
+  auto &[fbl, txl, psl, stl, timing, samples_drawn, shadow_picture, is_synced] = data;
+  require_sync(is_synced);
   gpu::Device &device = viewport.device();
   const glm::vec2 offset_px = film_offset_px(samples_drawn, settings_.sample_count, settings_.seed);
   const draw::View sample_view = with_sample_offset(view, offset_px, viewport.size_px());
@@ -481,7 +506,8 @@ static std::optional<std::size_t> light_of(const Lamps &lamps, std::size_t lamp)
 std::optional<Probe> Engine::probe(draw::Viewport &viewport, const draw::View &view, std::size_t lamp)
 {
   GNOMON_ASSERT(settings_.has_probe, "the settings ask for no probe");
-  auto &[fbl, txl, psl, stl, timing, samples_drawn, shadow_picture] = viewport.engine_data<Data>(*this);
+  auto &[fbl, txl, psl, stl, timing, samples_drawn, shadow_picture, is_synced] = viewport.engine_data<Data>(*this);
+  require_sync(is_synced);
   gpu::Device &device = viewport.device();
   const std::optional<std::size_t> light = light_of(stl.lamps, lamp);
   if (!light) {
@@ -541,7 +567,9 @@ std::vector<StepTime> Engine::take_step_times(draw::Viewport &viewport) const
 
 std::vector<std::string> Engine::reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files) const
 {
-  return viewport.engine_data<Data>(*this).stl.shaders.reload(viewport.device(), std::move(files));
+  StorageList &stl = viewport.engine_data<Data>(*this).stl;
+  stl.shadows.invalidate();
+  return stl.shaders.reload(viewport.device(), std::move(files));
 }
 
 std::string Engine::serialize_passes(draw::Viewport &viewport) const

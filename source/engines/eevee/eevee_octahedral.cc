@@ -197,6 +197,7 @@ void OctahedralStore::record_passes(gpu::Device &device, ShaderCache &shaders)
     group.constant_ref("face_mask", &recorded_.face_mask);
     group.constant_ref("near", &recorded_.near);
     group.constant_ref("uv_scale", &recorded_.uv_scale);
+    group.constant_ref("cube_size_px", &recorded_.cube_size_px);
     group.constant_ref("axis", &recorded_.axis);
     group.call_procedural();
   };
@@ -232,6 +233,7 @@ void OctahedralStore::record(gpu::CommandList &list, std::size_t index, const Es
   recorded_.face_mask = int(cube.face_mask);
   recorded_.near = cube.near;
   recorded_.uv_scale = cube.uv_scale;
+  recorded_.cube_size_px = cube.size_px > 0 ? cube.size_px : cube.texture.desc().width;
   recorded_.cube = {cube.texture.id(), sampler_.id()};
 
   // Cleared to far and no variance, as the layer stores it: a smaller map leaves a part of it.

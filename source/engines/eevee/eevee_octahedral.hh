@@ -97,6 +97,8 @@ struct EsmCube {
   unsigned face_mask = 0x3F;
   /** Share of a face's image that 90° take, in (0, 1]. */
   float uv_scale = 1.0F;
+  /** Edge of a face, in the lower left corner of its layer, texels. 0: the whole layer. */
+  int size_px = 0;
 };
 
 /**
@@ -203,6 +205,7 @@ class OctahedralStore {
     int face_mask = 0;
     float near = 0.0F;
     float uv_scale = 1.0F;
+    int cube_size_px = 0;
     int axis = 0;
     draw::TextureBinding cube;
     draw::TextureBinding source;

@@ -84,7 +84,13 @@ void Shadows::sync(gpu::Device &device, ShaderCache &shaders, const scene::Scene
                    const ShadowSettings &settings)
 {
   layer_pass_ = best_layer_pass(settings.layer_pass, device.limits());
-  casters_before_ = std::exchange(casters_, {});
+  // After a sync that failed, the last good one's casters are still those that were drawn.
+  if (std::exchange(is_finished_, false)) {
+    casters_before_ = std::exchange(casters_, {});
+  }
+  casters_.clear();
+  caster_volumes_.clear();
+  caster_calls_.clear();
   seen_clip_from_world_.reset();
   warnings_.clear();
   limits_.clear();
@@ -119,6 +125,7 @@ void Shadows::place_slots(const gpu::Limits &device_limits, const scene::Scene &
 {
   const int cube_max = std::min(SHADOW_CUBE_MAX, device_limits.array_layers_max / 6);
   const int map_max = std::min(SHADOW_MAP_MAX, device_limits.array_layers_max);
+  const int esm_max = std::min(ESM_MAX, device_limits.array_layers_max);
   int entry_count = 0;
   std::vector<std::string> lost;
   for (int i = 0; i < lamps.light_block.light_count; i++) {
@@ -138,7 +145,7 @@ void Shadows::place_slots(const gpu::Limits &device_limits, const scene::Scene &
     const int count = int(array.slots.size());
     const int cascades = settings_.cascades.count > 0 ? settings_.cascades.count : cascade_count_max;
     slot.layer_count_max = is_esm || is_cube ? 6 : is_sun ? cascades : 1;
-    const bool is_full = is_esm    ? count == ESM_MAX
+    const bool is_full = is_esm    ? count == esm_max
                          : is_cube ? count == cube_max
                                    : entry_count + slot.layer_count_max > map_max;
     if (is_full) {
@@ -164,7 +171,7 @@ void Shadows::place_slots(const gpu::Limits &device_limits, const scene::Scene &
   if (!lost.empty()) {
     limits_.push_back(
         fmt::format("{} lamps lost their shadow, as {} cubes, {} maps and {} exponential maps are the most: '{}'",
-                    lost.size(), cube_max, map_max, ESM_MAX, fmt::join(lost, "', '")));
+                    lost.size(), cube_max, map_max, esm_max, fmt::join(lost, "', '")));
   }
   fit_memory(lamps);
 }
@@ -239,10 +246,15 @@ std::size_t Shadows::bytes_needed() const
     layers = array == &distance_cube_ ? std::min<std::size_t>(layers, 6) : layers;
     bytes += edge * edge * layers * sizeof(float);
   }
+  // Octahedral layers likewise, as if none were in halves; and two more that a separable filter works in.
+  std::size_t edge = 0;
+  std::size_t texel_bytes = 0;
   for (const Slot &slot : distance_cube_.slots) {
-    const auto edge = std::size_t(octahedral_size_px(slot));
-    bytes += edge * edge * sizeof(float) * (slot.kind == scene::ShadowKind::Evsm ? 2 : 1);
+    edge = std::max(edge, std::size_t(octahedral_size_px(slot) + 2 * ESM_BORDER));
+    texel_bytes = std::max(texel_bytes, sizeof(float) * (slot.kind == scene::ShadowKind::Evsm ? 2 : 1));
   }
+  const std::size_t scratch = settings_.esm.kernel == EsmKernel::Separable ? 2 : 0;
+  bytes += edge * edge * texel_bytes * (distance_cube_.slots.size() + scratch);
   return bytes;
 }
 
@@ -355,6 +367,7 @@ void Shadows::place_render_blocks(gpu::Device &device)
 
 void Shadows::finish()
 {
+  is_finished_ = true;
   caster_bounds_ws_ = {};
   caster_volumes_.clear();
   caster_calls_.clear();
@@ -466,9 +479,16 @@ void Shadows::fit_suns(gpu::Device &device, const draw::View &view, float pixel_
     }
     layers += int(slot.views.size());
   }
-  // Room that a wider view needed stays, for the next one.
+  if (maps_.slots.empty()) {
+    return;
+  }
+  // Room that a wider view of the same lamps needed stays, for the next one.
+  int layers_max = 0;
+  for (const Slot &slot : maps_.slots) {
+    layers_max += slot.layer_count_max;
+  }
   const int layers_now = maps_.texture ? maps_.texture.desc().layers : 0;
-  create_layers(device, maps_, maps_.slots.empty() ? 0 : std::max({layers, layers_now, 1}));
+  create_layers(device, maps_, std::max({layers, std::min(layers_now, layers_max), 1}));
 }
 
 /** Fills caster_layers_. */
@@ -575,9 +595,9 @@ void Shadows::update_slot(gpu::Device &device, Slot &slot, Array &array, std::ui
     write_map_data(slot);
   }
   else {
-    octahedral_.record(
-        list, std::size_t(slot.entry),
-        {array.texture, slot.first_layer, slot.near, slot.drawn, shared::cube_uv_scale(float(slot.size_px))});
+    octahedral_.record(list, std::size_t(slot.entry),
+                       {array.texture, slot.first_layer, slot.near, slot.drawn,
+                        shared::cube_uv_scale(float(slot.size_px)), slot.size_px});
   }
   if (drawn == 0) {
     return;
@@ -616,7 +636,6 @@ void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_si
                      gpu::CommandList &list, const std::function<std::vector<float>()> &read_depths)
 {
   if (seen_clip_from_world_ != view.clip_from_world()) {
-    seen_clip_from_world_ = view.clip_from_world();
     visible_ = visible_range(view, visible_corners(view, caster_bounds_ws_));
     const bool has_sun =
         std::ranges::any_of(maps_.slots, [](const Slot &slot) { return slot.lamp.kind == scene::LampKind::Sun; });
@@ -624,6 +643,7 @@ void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_si
       narrow_to_depths(view, read_depths(), visible_);
     }
     fit_suns(device, view, pixel_size);
+    seen_clip_from_world_ = view.clip_from_world();
   }
   for (Slot &slot : cubes_.slots) {
     update_slot(device, slot, cubes_, looked_up_faces(slot), pass, list);
@@ -711,6 +731,15 @@ std::optional<ShadowLayers> Shadows::layers(const shared::LightData &light) cons
     layers.shown.y = std::min(glm::length(reach), slot.range);
   }
   return layers;
+}
+
+void Shadows::invalidate()
+{
+  for (Array *array : arrays()) {
+    for (Slot &slot : array->slots) {
+      slot.drawn = slot.settled = 0;
+    }
+  }
 }
 
 Feature Shadows::features() const

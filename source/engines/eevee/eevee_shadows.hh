@@ -54,8 +54,11 @@ struct ShadowSettings {
   std::size_t memory_bytes_max = std::size_t(1) << 30U;
 };
 
-/** Spots wider than this (half the opening, radians) look into a cube: a plane would stretch too far. */
-inline constexpr float spot_map_angle_max = 1.2F;
+/**
+ * Spots wider than this (half the opening, radians) look into a cube: a plane would stretch too far, and at 60° a
+ * point's distance along the axis is half of that from the lamp, which is where lamp_near puts the near plane.
+ */
+inline constexpr float spot_map_angle_max = 1.04F;
 
 /** What a lamp asks for, or else \a settings have; a sun that asks for Esm or Evsm has Pcf. */
 [[nodiscard]] scene::ShadowKind shadow_kind(const scene::Lamp &lamp, const ShadowSettings &settings);
@@ -125,6 +128,8 @@ class Shadows {
   }
   /** After the last caster. */
   void finish();
+  /** Draw everything again: the shaders are others. */
+  void invalidate();
 
   /**
    * Fit to what \a view sees and record into \a list what is not up to date. \a pass draws the casters' instances,
@@ -260,6 +265,8 @@ class Shadows {
   float memory_scale_ = 1.0F;
   LayerPass layer_pass_ = LayerPass::Single;
   std::vector<Caster> casters_;
+  /** casters_ is whole: no sync is under way, and the last did not fail. */
+  bool is_finished_ = false;
   /** Of the last sync. */
   std::vector<Caster> casters_before_;
   scene::Bounds caster_bounds_ws_;

@@ -225,5 +225,32 @@ TEST_F(EngineTest, WhatIsBelowItsCutoffEverywhereIsNotDrawn)
   EXPECT_EQ(device->counters().instances, 6U + 6U + 1U);
 }
 
+TEST_F(EngineTest, AFailedSyncIsAnErrorToDrawAndCanBeMended)
+{
+  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 2}, {0, 0, -1}, 1.0F);
+  test::add_lamp(scene, scene::LampKind::Point, {1, 0, 2}, {0, 0, -1}, 1.0F);
+  Renderer renderer(*device, scene, {16, 16}, {.shadow = {.cube_size_px = 16}});
+  renderer.draw(camera);
+  scene.lamps[1].shadow.kind = scene::ShadowKind::Esm;
+  scene.lamps[1].shadow.filter_radius = 0.7F;
+  EXPECT_THROW(renderer.sync(), gpu::Error);
+  EXPECT_THROW(renderer.draw(camera), gpu::Error);
+  scene.lamps[1].shadow.filter_radius = 0.1F;
+  renderer.sync();
+  renderer.draw(camera);
+}
+
+TEST_F(EngineTest, ShadowsAreDrawnAgainWithReloadedShaders)
+{
+  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 2}, {0, 0, -1}, 1.0F);
+  Renderer renderer(*device, scene, {16, 16}, {.shadow = {.cube_size_px = 16}});
+  renderer.draw(camera);
+  const std::uint64_t before = renderer.engine.report(renderer.viewport).shadow_counters.lamps_updated;
+  EXPECT_TRUE(renderer.engine.reload_shaders(renderer.viewport, shaders::file).empty());
+  renderer.sync();
+  renderer.draw(camera);
+  EXPECT_EQ(renderer.engine.report(renderer.viewport).shadow_counters.lamps_updated, before + 1);
+}
+
 }  // namespace
 }  // namespace gnomon::eevee

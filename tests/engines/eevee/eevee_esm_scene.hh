@@ -175,6 +175,7 @@ void main()
     group.constant("face_mask", 0x3F);
     group.constant("near", cube.near);
     group.constant("uv_scale", cube.uv_scale);
+    group.constant("cube_size_px", cube.size_px);
     group.call_procedural();
     gpu::CommandList list;
     list.begin_pass("taps", framebuffer, {});

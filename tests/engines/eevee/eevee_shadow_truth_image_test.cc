@@ -173,5 +173,41 @@ TEST_F(ShadowTruth, WrongPixelsHalveWithTheTexel)
   }
 }
 
+TEST_F(ShadowTruth, OfAnExponentialMapDoesNotDependOnTheSizeOfAnothers)
+{
+  scene::Scene scene;
+  const std::uint32_t square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(1)));
+  test::add_object(scene, square, glm::scale(glm::mat4(1.0F), glm::vec3(4)));
+  test::add_object(scene, square, glm::scale(glm::translate(glm::mat4(1.0F), {0, 0, 1}), glm::vec3(0.5F)));
+  test::add_lamp(scene, scene::LampKind::Point, {0.3F, 0.2F, 3}, {0, 0, -1}, 1.0F);
+  ShadowSettings settings;
+  settings.kind = scene::ShadowKind::Esm;
+  settings.esm.size_px = 128;
+  const scene::Camera camera = test::camera_at({0, -3, 4}, {0, 0, 0});
+  const double alone = compare(scene, camera, settings).error.mean_absolute_error;
+  test::add_lamp(scene, scene::LampKind::Point, {-1, 0, 3}, {0, 0, -1}, 1.0F).shadow.esm_size = 512;
+  EXPECT_NEAR(compare(scene, camera, settings).error.mean_absolute_error, alone, 1e-6);
+}
+
+TEST_F(ShadowTruth, OfASpotHoldsToTheRimOfTheWidestMap)
+{
+  // A plate far off the axis, and another close behind it.
+  for (const float angle : {spot_map_angle_max, spot_map_angle_max + 0.05F}) {
+    scene::Scene scene;
+    const std::uint32_t square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(1)));
+    const glm::vec3 aside(std::sin(angle - 0.03F), 0, -std::cos(angle - 0.03F));
+    const glm::mat4 turn = glm::inverse(glm::lookAt(glm::vec3(0), aside, glm::vec3(0, 1, 0)));
+    test::add_object(scene, square,
+                     turn * glm::scale(glm::translate(glm::mat4(1.0F), {0, 0, -1.12F}), glm::vec3(0.03F)));
+    test::add_object(scene, square, turn * glm::scale(glm::translate(glm::mat4(1.0F), {0, 0, -1}), glm::vec3(0.015F)));
+    test::add_lamp(scene, scene::LampKind::Spot, {0, 0, 0}, {0, 0, -1}, 1.0F).spot_outer_angle = angle;
+    scene.lamps[0].world_from_lamp = glm::mat4(1.0F);
+    const Truth truth = compare(scene, test::camera_at(0.9F * aside + glm::vec3(0, 0.1F, 0), 1.12F * aside, 0.4F), {});
+    EXPECT_EQ(truth.error.leak_count, 0U) << angle;
+    EXPECT_LT(truth.error.wrong_fraction, 0.02) << angle;
+    EXPECT_GT(truth.error.facing_count, 1000U);
+  }
+}
+
 }  // namespace
 }  // namespace gnomon::eevee
