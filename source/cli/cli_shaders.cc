@@ -67,6 +67,11 @@ std::vector<Variant> engine_variants()
   return variants;
 }
 
+[[noreturn]] void throw_no_program(const std::string &name)
+{
+  throw std::runtime_error(fmt::format("no program '{}'; 'gnomon shaders list' names them", name));
+}
+
 std::string defines_of(const gpu::ShaderDesc &desc)
 {
   return fmt::format("{}", fmt::join(desc.defines, " "));
@@ -80,6 +85,7 @@ struct CheckArguments {
   std::string target = "all";
   std::string format = "text";
   std::string shaders;
+  std::string program;
 };
 
 std::vector<gpu::CheckTarget> targets_of(const std::string &name)
@@ -147,13 +153,18 @@ ShaderReport check_engine(const CheckArguments &arguments)
   const EngineFiles files(arguments.shaders);
   std::vector<gpu::ShaderDesc> descs;
   for (Variant &variant : engine_variants()) {
-    descs.push_back(std::move(variant.desc));
+    if (arguments.program.empty() || variant.declaration->name == arguments.program) {
+      descs.push_back(std::move(variant.desc));
+    }
+  }
+  if (descs.empty()) {
+    throw_no_program(arguments.program);
   }
   gpu::CheckOptions options;
   options.blocks = eevee::block_layouts();
   options.is_block_size_strict = true;
   ShaderReport report = check_all(descs, files.files(), options, targets_of(arguments.target));
-  report.program_count = eevee::shader_declarations().size();
+  report.program_count = arguments.program.empty() ? eevee::shader_declarations().size() : 1;
   for (gpu::CheckMessage &message : report.messages) {
     message.file = files.shown(message.file);
   }
@@ -272,7 +283,7 @@ gpu::ShaderDesc find_variant(const ReflectArguments &arguments)
   std::vector<Variant> variants = engine_variants();
   std::erase_if(variants, [&](const Variant &variant) { return variant.declaration->name != arguments.program; });
   if (variants.empty()) {
-    throw std::runtime_error(fmt::format("no program '{}'; 'gnomon shaders list' names them", arguments.program));
+    throw_no_program(arguments.program);
   }
   if (!arguments.variant) {
     return std::ranges::max(variants, {}, [](const Variant &variant) { return variant.desc.defines.size(); }).desc;
@@ -438,6 +449,7 @@ void add_check(CLI::App &shaders, Status &status)
       ->capture_default_str()
       ->check(CLI::IsMember({"text", "json", "sarif"}));
   command->add_option("--shaders", a->shaders, "Folder to read the engine's shaders from, instead of the program");
+  command->add_option("--program", a->program, "Only this one of the engine's, as 'shaders list' names it");
   command->callback([a, &status] { status = check(*a); });
 }
 
