@@ -194,7 +194,7 @@ TEST_F(ShadowLayersGpuTest, EachOfThreeSpotsHasItsOwnMapAndIsLitOutsideOfIt)
   for (int i = 0; i < 3; i++) {
     const float x = 3.0F * float(i - 1);
     scene::Lamp &lamp = test::add_lamp(scene, scene::LampKind::Spot, {x, 0, 4}, {0, 0, -1}, 50.0F);
-    lamp.spot_outer_angle = 1.1F;
+    lamp.spot_outer_angle = 1.0F;
     lamp.color = {i == 0 ? 1.0F : 0.0F, i == 1 ? 1.0F : 0.0F, i == 2 ? 1.0F : 0.0F};
     // So near to its lamp that it is in no other's way to the ground where all shine.
     add(square, {x, 0, 3.8F}, glm::vec3(caster_half[std::size_t(i)]));
