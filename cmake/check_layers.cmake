@@ -10,9 +10,10 @@ set(source/draw source/gpu shaders)
 set(source/scene "")
 set(source/engines/eevee source/draw source/gpu source/scene shaders)
 set(source/reference source/scene shaders)
-set(source/cli source/engines/eevee source/reference source/draw source/gpu source/scene shaders)
+set(source/measure source/engines/eevee source/reference source/draw source/gpu source/scene shaders)
+set(source/cli source/measure source/engines/eevee source/reference source/draw source/gpu source/scene shaders)
 set(shaders "")
-set(LAYERS source/gpu source/draw source/scene source/engines/eevee source/reference source/cli shaders)
+set(LAYERS source/gpu source/draw source/scene source/engines/eevee source/reference source/measure source/cli shaders)
 
 set(VIOLATIONS 0)
 # violation(FILE INCLUDE WHY): INCLUDE is the line's text.
