@@ -20,6 +20,8 @@ if(NOT TARGET glm::glm)
   pkg_check_modules(glm REQUIRED IMPORTED_TARGET glm)
   add_library(glm::glm ALIAS PkgConfig::glm)
 endif()
+# What plots are drawn by, inside the pages that the program writes.
+find_file(GNOMON_CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js /usr/share/nodejs/chart.js/dist REQUIRED)
 if(GNOMON_TESTS)
   find_package(GTest REQUIRED)
 endif()
