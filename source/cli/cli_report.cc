@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli.hh"
 
+#include "cli_fingerprint.hh"
 #include "cli_origin.hh"
 #include "cli_output.hh"
 
@@ -9,7 +10,6 @@
 #include "scene_gltf.hh"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 #include <nlohmann/json.hpp>
 
 #include <unistd.h>
@@ -17,7 +17,6 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 
 namespace gnomon::cli {
 
@@ -74,13 +73,6 @@ class Progress {
   Clock::time_point start_ = Clock::now();
   bool is_shown_ = isatty(STDERR_FILENO) != 0;
 };
-
-std::string fingerprint_of(const fs::path &path)
-{
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
-}
 
 /** A run in its folder, written after each visit, so that another can go on with it. */
 class Run {
@@ -294,6 +286,9 @@ std::size_t Run::measure_all()
 
 Status report(const ReportOptions &options)
 {
+  if (options.reference_samples % 2 != 0) {
+    throw UsageError(fmt::format("--reference-samples {} is not even", options.reference_samples));
+  }
   const std::unique_ptr<gpu::Device> device =
       gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()});
   fmt::print("{}\n", device->description());

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "measure_visit.hh"
-
-#include "draw_viewport.hh"
-#include "eevee_camera.hh"
-#include "eevee_engine.hh"
+#include "internal/measure_bench.hh"
 
 #include <glm/geometric.hpp>
 
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -36,86 +31,69 @@ bool is_lit_at(const scene::Lamp &lamp, const glm::dvec3 &position_ws, const glm
   return is_in_range && is_in_cone && glm::dot(to_lamp, normal_ws) > judged_cosine_min * distance;
 }
 
-/** An engine and its viewport, for one technique. */
-class Bench {
- public:
-  Bench(gpu::Device &device, const scene::Scene &scene, const Technique &technique, glm::ivec2 size_px)
-      : scene_(scene),
-        settings_{.shadow = technique.settings},
-        engine_(scene, settings_),
-        viewport_(device, size_px),
-        view_(eevee::view_of(scene.cameras.front(), size_px))
-  {
+}  // namespace
+
+Bench::Bench(gpu::Device &device, const scene::Scene &scene, const scene::Camera &camera, const Technique &technique,
+             glm::ivec2 size_px)
+    : scene_(scene),
+      settings_{.shadow = technique.settings},
+      engine_(scene, settings_),
+      viewport_(device, size_px),
+      view_(eevee::view_of(camera, size_px))
+{
+}
+
+void Bench::warm_up(bool has_probe)
+{
+  settings_.has_probe = has_probe;
+  set(1, false);
+  draw(1);
+}
+
+std::map<std::string, double> Bench::step_seconds()
+{
+  set(1, true);
+  draw(1);
+  std::map<std::string, double> seconds;
+  for (const eevee::StepTime &step : engine_.take_step_times(viewport_)) {
+    seconds[step.step] = step.seconds;
   }
+  return seconds;
+}
 
-  /** Make all that a picture needs, and draw one. */
-  void warm_up(bool has_probe)
-  {
-    settings_.has_probe = has_probe;
-    set(1, false);
-    draw(1);
+double Bench::picture_seconds(int sample_count)
+{
+  set(sample_count, false);
+  const Clock::time_point start = Clock::now();
+  draw(sample_count);
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::vector<glm::vec4> Bench::picture()
+{
+  const std::vector<std::byte> bytes = viewport_.device().read(engine_.radiance(viewport_));
+  std::vector<glm::vec4> pixels(bytes.size() / sizeof(glm::vec4));
+  std::memcpy(pixels.data(), bytes.data(), bytes.size());
+  return pixels;
+}
+
+void Bench::set(int sample_count, bool is_timed)
+{
+  settings_.sample_count = sample_count;
+  settings_.is_timed = is_timed;
+  engine_.set_settings(settings_);
+  viewport_.sync(engines_, eevee::object_refs(scene_));
+  engine_.invalidate_shadows(viewport_);
+  viewport_.device().finish();
+}
+
+void Bench::draw(int sample_count)
+{
+  for (int i = 0; i < sample_count; i++) {
+    viewport_.draw(engines_, view_);
   }
-
-  [[nodiscard]] std::map<std::string, double> step_seconds()
-  {
-    set(1, true);
-    draw(1);
-    std::map<std::string, double> seconds;
-    for (const eevee::StepTime &step : engine_.take_step_times(viewport_)) {
-      seconds[step.step] = step.seconds;
-    }
-    return seconds;
-  }
-
-  [[nodiscard]] double picture_seconds(int sample_count)
-  {
-    set(sample_count, false);
-    const Clock::time_point start = Clock::now();
-    draw(sample_count);
-    return std::chrono::duration<double>(Clock::now() - start).count();
-  }
-
-  [[nodiscard]] std::vector<glm::vec4> picture()
-  {
-    const std::vector<std::byte> bytes = viewport_.device().read(engine_.radiance(viewport_));
-    std::vector<glm::vec4> pixels(bytes.size() / sizeof(glm::vec4));
-    std::memcpy(pixels.data(), bytes.data(), bytes.size());
-    return pixels;
-  }
-
-  [[nodiscard]] std::vector<LampError> judge(const reference::Tracer &tracer);
-
-  [[nodiscard]] eevee::Report report()
-  {
-    return engine_.report(viewport_);
-  }
-
- private:
-  void set(int sample_count, bool is_timed)
-  {
-    settings_.sample_count = sample_count;
-    settings_.is_timed = is_timed;
-    engine_.set_settings(settings_);
-    viewport_.sync(engines_, eevee::object_refs(scene_));
-    engine_.invalidate_shadows(viewport_);
-    viewport_.device().finish();
-  }
-
-  void draw(int sample_count)
-  {
-    for (int i = 0; i < sample_count; i++) {
-      viewport_.draw(engines_, view_);
-    }
-    viewport_.device().finish();
-  }
-
-  const scene::Scene &scene_;
-  eevee::Settings settings_;
-  eevee::Engine engine_;
-  draw::Viewport viewport_;
-  draw::View view_;
-  std::array<draw::Engine *, 1> engines_ = {&engine_};
-};
+  viewport_.device().finish();
+}
 
 std::vector<LampError> Bench::judge(const reference::Tracer &tracer)
 {
@@ -147,8 +125,6 @@ std::vector<LampError> Bench::judge(const reference::Tracer &tracer)
   return errors;
 }
 
-}  // namespace
-
 void leave_shadows_to_technique(scene::Scene &scene)
 {
   for (scene::Lamp &lamp : scene.lamps) {
@@ -161,7 +137,7 @@ void leave_shadows_to_technique(scene::Scene &scene)
 VisitTimes visit(gpu::Device &device, const scene::Scene &scene, const Technique &technique, glm::ivec2 size_px,
                  const reference::Tracer *tracer, VisitResult &result)
 {
-  Bench bench(device, scene, technique, size_px);
+  Bench bench(device, scene, scene.cameras.front(), technique, size_px);
   bench.warm_up(tracer != nullptr);
   if (tracer) {
     result = {};
