@@ -355,6 +355,8 @@ void add_report(CLI::App &app, Status &status)
   command->add_option("--rounds", o->rounds, "Rounds over all methods; times are the medians")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
+  command->add_option("--technique", o->techniques, "Only these, by name or by name and size: \"hard\", \"hard 1024\"")
+      ->allow_extra_args(false);
   command
       ->add_option("--reference-samples", o->reference_samples,
                    "Rays a pixel of the reference, even; eight times as many at its noisiest tenth")
