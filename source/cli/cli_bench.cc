@@ -152,7 +152,8 @@ class LampBench {
       return;
     }
     eevee::Lamps lamps = eevee::make_lamps(scene_);
-    shadows_.sync(device_, shaders_, scene_, lamps, settings_);
+    shadows_.sync(device_.limits(), scene_, lamps, settings_);
+    shadows_.allocate(device_, shaders_);
     for (const eevee::Caster &caster : casters_) {
       shadows_.add_caster(caster);
     }
