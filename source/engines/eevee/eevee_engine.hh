@@ -2,6 +2,7 @@
 #pragma once
 
 #include "eevee_features.hh"
+#include "eevee_frame_tree.hh"
 #include "eevee_shaders.hh"
 #include "eevee_shadows.hh"
 
@@ -53,6 +54,8 @@ struct Report {
   std::vector<std::string> warnings;
   std::vector<std::string> limits;
   std::vector<FramePart> parts;
+  /** "frame": programs, passes, targets, blocks, meshes, textures, shadows and draws, as of the last picture. */
+  FrameNode tree;
   ShadowCounters shadow_counters;
 };
 
