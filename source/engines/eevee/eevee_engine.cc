@@ -539,8 +539,9 @@ std::vector<StepTime> Engine::take_step_times(draw::Viewport &viewport) const
   std::vector<StepTime> times;
   for (Timing::Step &step : viewport.engine_data<Data>(*this).timing.steps) {
     if (std::exchange(step.is_pending, false)) {
-      step.seconds += viewport.device().elapsed_seconds(step.query).value_or(0.0);
-      step.taken_seconds = step.seconds;
+      const std::optional<double> seconds = viewport.device().elapsed_seconds(step.query);
+      step.seconds += seconds.value_or(0.0);
+      step.taken_seconds = seconds ? std::optional(step.seconds) : std::nullopt;
       times.push_back({step.name, step.seconds});
     }
     step.seconds = 0.0;

@@ -101,8 +101,8 @@ struct Timing {
     gpu::TimerQuery query;
     bool is_pending = false;
     double seconds = 0.0;
-    /** What Engine::take_step_times gave last. */
-    double taken_seconds = 0.0;
+    /** What Engine::take_step_times gave last; nothing where no time passes (null backend). */
+    std::optional<double> taken_seconds{};
   };
   std::vector<Step> steps;
 };
