@@ -314,6 +314,37 @@ TEST_F(LeftOutChange, ALampThatGoesTakesItsTargetsAndBlocksWithIt)
   }
 }
 
+TEST_F(LeftOutChange, DrawsOutsideOfTheViewAreCountedAsCulled)
+{
+  scene::Scene scene;
+  const std::uint32_t square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(0.5F)));
+  for (const float x : {0.0F, 30.0F, 60.0F}) {
+    test::add_object(scene, square, glm::translate(glm::mat4(1.0F), glm::vec3(x, 0, 0)));
+  }
+  test::Renderer renderer(*device, scene, {16, 16}, {.sample_count = 2});
+  renderer.draw(test::camera_at({0, 0, 4}, {0, 0, 0}));
+  const FrameNode tree = renderer.engine.report(renderer.viewport).tree;
+  for (const char *pass : {"depth_pass", "pass"}) {
+    EXPECT_EQ(node_at(tree, {"draws", pass}).count, 2U) << "one, in two samples";
+    EXPECT_EQ(node_at(tree, {"draws", pass, "culled"}).count, 4U);
+  }
+}
+
+TEST_F(LeftOutChange, WhatIsUpToDateIsKeptAndSaysSo)
+{
+  const measure::LeftOutCase full = measure::left_out_cases().front();
+  test::Renderer renderer(*device, full.scene, {64, 36}, full.settings);
+  const auto layers = [&](const char *state) {
+    renderer.draw(full.scene.cameras.front());
+    const FrameNode tree = renderer.engine.report(renderer.viewport).tree;
+    EXPECT_EQ(node_at(tree, {"passes", "shadows"}).is_made, std::string(state) == "drawn");
+    return node_at(tree, {"shadows", "POINT", state}).count.value_or(0);
+  };
+  const std::uint64_t drawn = layers("drawn");
+  EXPECT_GT(drawn, 0U);
+  EXPECT_EQ(layers("kept"), drawn);
+}
+
 TEST_F(LeftOutChange, MaterialsThatNoObjectHasAskForNothing)
 {
   scene::Scene scene;
