@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <set>
 #include <sstream>
+#include <stdexcept>
 
 namespace gnomon::eevee {
 namespace {
@@ -242,7 +243,9 @@ const FrameNode &node_at(const FrameNode &root, const std::vector<std::string> &
   const FrameNode *node = &root;
   for (const std::string &what : path) {
     node = find(*node, what);
-    EXPECT_NE(node, nullptr) << what;
+    if (!node) {
+      throw std::runtime_error("the tree has no '" + what + "' there");
+    }
   }
   return *node;
 }
