@@ -68,8 +68,21 @@ std::string why_no_shadow(const Source &source, std::string no_such_lamp)
   return source.has(Feature::Light) ? std::move(no_such_lamp) : "no lamp gives light";
 }
 
+/** Whether an object that may be seen has a material with a base colour texture; of \a image alone, where given. */
+bool is_textured(const Source &source, std::optional<std::uint32_t> image = std::nullopt)
+{
+  return std::ranges::any_of(source.data.stl.objects, [&](const draw::ObjectRef &object) {
+    const scene::Mesh &mesh = source.scene.meshes[source.scene.objects[object.index].mesh];
+    const std::int32_t texture = source.scene.materials[mesh.material].base_color_texture;
+    return texture >= 0 && (!image || source.scene.textures[std::size_t(texture)].image == *image);
+  });
+}
+
 std::string why_no_feature(const Source &source, Feature feature)
 {
+  if (feature == Feature::BaseColorTexture && source.data.is_recorded && !is_textured(source)) {
+    return "no material that is drawn has a texture";
+  }
   if (feature == Feature::Light || !source.has(Feature::Light)) {
     const bool is_mask = feature == Feature::AlphaMask;
     if (!source.data.is_recorded && (is_mask || feature == Feature::BaseColorTexture)) {
@@ -359,9 +372,9 @@ FrameNode texture_nodes(const Source &source)
     const gpu::Texture *made = source.data.stl.textures.image(i);
     FrameNode &node = images.emplace_back(
         resource_node(source, made ? *made : none, source.scene.images[i].name, "base colour that a material looks up",
-                      !source.data.is_recorded      ? nothing_seen
-                      : !source.has(Feature::Light) ? "no lamp lights it, and it cuts nothing out"
-                                                    : "no object has a material that looks it up"));
+                      !is_textured(source, std::uint32_t(i)) ? "no object has a material that looks it up"
+                      : !source.data.is_recorded             ? nothing_seen
+                                                             : "no lamp lights it, and it cuts nothing out"));
     if (made) {
       node.upload_bytes = source.device().live(*made).upload_bytes;
     }
