@@ -3,8 +3,9 @@
 
 #include "cli_output.hh"
 
-#include "eevee_shaders.hh"
+#include "eevee_camera.hh"
 #include "eevee_shadows.hh"
+#include "measure_left_out.hh"
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
@@ -15,6 +16,7 @@
 #include <cmath>
 #include <ctime>
 #include <fstream>
+#include <limits>
 #include <numbers>
 
 namespace gnomon::cli {
@@ -152,7 +154,8 @@ class LampBench {
       return;
     }
     eevee::Lamps lamps = eevee::make_lamps(scene_);
-    shadows_.sync(device_, shaders_, scene_, lamps, settings_);
+    shadows_.sync(device_.limits(), scene_, lamps, settings_);
+    shadows_.allocate(device_, shaders_);
     for (const eevee::Caster &caster : casters_) {
       shadows_.add_caster(caster);
     }
@@ -424,6 +427,111 @@ void bench_draws(const BenchOptions &options)
                             {"rows", rows}});
 }
 
+/** One of the scenes, and what its frames cost. */
+struct LeftOutRow {
+  measure::LeftOutCase of;
+  gpu::Counters counters;
+  std::size_t memory_bytes = 0;
+  /** From a sync to the last pixel, everything made anew; and of the next frame, which finds all up to date. */
+  std::vector<double> first_seconds;
+  std::vector<double> warm_seconds;
+};
+
+/** A first and a warm frame, added to \a row unless it is to warm up. */
+void draw_left_out(gpu::Device &device, LeftOutRow &row, bool is_warm_up)
+{
+  constexpr glm::ivec2 size_px(640, 360);
+  const gpu::Counters before = device.counters();
+  const double start = wall_seconds();
+  eevee::Engine engine(row.of.scene, row.of.settings);
+  draw::Viewport viewport(device, size_px);
+  const std::array<draw::Engine *, 1> engines = {&engine};
+  const draw::View view = eevee::view_of(row.of.scene.cameras.front(), size_px);
+  viewport.sync(engines, eevee::object_refs(row.of.scene));
+  viewport.draw(engines, view);
+  device.finish();
+  const double first_end = wall_seconds();
+  const gpu::Counters &now = device.counters();
+  row.counters.passes = now.passes - before.passes;
+  row.counters.draws = now.draws - before.draws;
+  row.counters.shaders_made = now.shaders_made - before.shaders_made;
+  row.counters.textures_made = now.textures_made - before.textures_made;
+  row.counters.upload_bytes = now.upload_bytes - before.upload_bytes;
+  row.memory_bytes = device.memory_bytes();
+  // The best of a few: other programs' work only adds.
+  double warm = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 5; i++) {
+    const double warm_start = wall_seconds();
+    viewport.draw(engines, view);
+    device.finish();
+    warm = std::min(warm, wall_seconds() - warm_start);
+  }
+  if (!is_warm_up) {
+    row.first_seconds.push_back(first_end - start);
+    row.warm_seconds.push_back(warm);
+  }
+}
+
+/** Median of the rounds' ratios: what slows one round down slows both. */
+double ratio_to(const std::vector<double> &seconds, const std::vector<double> &base)
+{
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < seconds.size(); i++) {
+    ratios.push_back(seconds[i] / base[i]);
+  }
+  return spread_of(ratios).median;
+}
+
+void bench_left_out(const BenchOptions &options)
+{
+  const std::unique_ptr<gpu::Device> device =
+      options.backend == "gl" ? gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()})
+                              : gpu::create_null_device();
+  std::vector<LeftOutRow> rows;
+  for (measure::LeftOutCase &of : measure::left_out_cases()) {
+    rows.push_back({std::move(of), {}, 0, {}, {}});
+  }
+  for (int round = 0; round <= options.rounds; round++) {
+    for (LeftOutRow &row : rows) {
+      draw_left_out(*device, row, round == 0);
+    }
+  }
+  fmt::print(
+      "A full scene and ten that lack one thing each, 640x360, one sample: a first frame with all that it makes,\n"
+      "and a warm one; milliseconds, median [quartiles] of {} interleaved rounds, and the ratio of the medians\n"
+      "to the full scene's. {}\n\n",
+      options.rounds, device->description());
+  fmt::print("{:<20} {:>6} {:>5} {:>8} {:>8} {:>8}  {:<30} {:>5}  {:<28} {:>5}\n", "scene", "passes", "draws",
+             "programs", "textures", "MiB", "first", "/full", "warm", "/full");
+  nlohmann::json json = nlohmann::json::array();
+  for (const LeftOutRow &row : rows) {
+    const Spread first = spread_of(row.first_seconds);
+    const Spread warm = spread_of(row.warm_seconds);
+    const double first_ratio = ratio_to(row.first_seconds, rows.front().first_seconds);
+    const double warm_ratio = ratio_to(row.warm_seconds, rows.front().warm_seconds);
+    const gpu::Counters &c = row.counters;
+    fmt::print("{:<20} {:>6} {:>5} {:>8} {:>8} {:>8.1f}  {:<30} {:>5.2f}  {:<28} {:>5.2f}\n", row.of.name, c.passes,
+               c.draws, c.shaders_made, c.textures_made, double(row.memory_bytes) / 0x1p20, to_text(first, 1e-3),
+               first_ratio, to_text(warm, 1e-3), warm_ratio);
+    json.push_back({{"scene", row.of.name},
+                    {"passes", c.passes},
+                    {"draws", c.draws},
+                    {"shaders_made", c.shaders_made},
+                    {"textures_made", c.textures_made},
+                    {"upload_bytes", c.upload_bytes},
+                    {"memory_bytes", row.memory_bytes},
+                    {"first_seconds", to_json(first)},
+                    {"warm_seconds", to_json(warm)},
+                    {"first_ratio_to_full", first_ratio},
+                    {"warm_ratio_to_full", warm_ratio}});
+  }
+  write_json(options.json, {{"program", "gnomon " GNOMON_VERSION},
+                            {"bench", "left-out"},
+                            {"rounds", options.rounds},
+                            {"device", device->description()},
+                            {"rows", json}});
+}
+
 }  // namespace
 
 void add_bench(CLI::App &app)
@@ -438,7 +546,13 @@ void add_bench(CLI::App &app)
   shadows->callback([o] { bench_shadows(*o); });
   CLI::App *draws = command->add_subcommand("draws", "What a draw with its own matrix costs, without a driver");
   draws->callback([o] { bench_draws(*o); });
-  for (CLI::App *bench : {shadows, draws}) {
+  CLI::App *left_out =
+      command->add_subcommand("left-out", "What scenes that lack one thing each cost, beside a full one");
+  left_out->add_option("--backend", o->backend, "gl, or null: without a driver")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"gl", "null"}));
+  left_out->callback([o] { bench_left_out(*o); });
+  for (CLI::App *bench : {shadows, draws, left_out}) {
     bench->add_option("--rounds", o->rounds, "Measured rounds, after one that warms up")
         ->capture_default_str()
         ->check(CLI::Range(1, 100000));

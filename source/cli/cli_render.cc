@@ -3,6 +3,7 @@
 
 #include "cli_choice.hh"
 #include "cli_debug.hh"
+#include "cli_explain.hh"
 #include "cli_output.hh"
 
 #include "eevee_camera.hh"
@@ -77,6 +78,8 @@ struct RenderResult {
   double total_seconds = 0.0;
   std::size_t non_finite_count = 0;
   gpu::Counters counters;
+  /** Of what lives on the device at the end. */
+  std::size_t memory_bytes = 0;
   eevee::Report report;
 };
 
@@ -283,27 +286,13 @@ nlohmann::json to_json(const RenderOptions &options, const scene::Scene &scene, 
             {"shaders_from_cache", c.shaders_from_cache},
             {"textures_made", c.textures_made},
             {"upload_bytes", c.upload_bytes}}},
+          {"memory_bytes", result.memory_bytes},
           {"made", made},
           {"left_out", left_out},
+          {"frame_tree", tree_json(result.report.tree)},
           {"choice", chooser ? chooser->to_json() : nlohmann::json()},
           {"limits", result.report.limits},
           {"warnings", warnings}};
-}
-
-void print_explanation(const RenderResult &result)
-{
-  for (const bool is_made : {true, false}) {
-    fmt::print("{}\n", is_made ? "made" : "left out");
-    for (const eevee::FramePart &part : result.report.parts) {
-      if (part.is_made == is_made) {
-        fmt::print("  {:22} {}\n", part.what, part.why);
-      }
-    }
-  }
-  fmt::print("device time of the last frame\n");
-  for (const eevee::StepTime &step : result.frame_steps.back()) {
-    fmt::print("  {:22} {:.2f} ms\n", step.step, 1e3 * step.seconds);
-  }
 }
 
 void print_summary(const RenderOptions &options, const RenderResult &result)
@@ -451,6 +440,7 @@ Status render(RenderOptions options)
   result.sync_seconds = seconds_since(sync_start);
 
   render_frames(options, camera, engine, viewport, result);
+  result.report = engine.report(viewport);
 
   const gpu::Texture &picture = options.debug_view.kind == DebugView::Kind::Shadow
                                     ? shadow_picture(options.debug_view, scene, engine, viewport)
@@ -464,6 +454,7 @@ Status render(RenderOptions options)
     fmt::print(stderr, "gnomon: the null backend draws nothing: no picture is written\n");
   }
   result.counters = device->counters();
+  result.memory_bytes = device->memory_bytes();
   result.output_seconds = seconds_since(output_start);
   result.total_seconds = seconds_since(start);
   if (chooser && status == Status::Done) {
@@ -488,7 +479,7 @@ Status render(RenderOptions options)
       chooser->print_measured();
     }
     if (options.is_explained) {
-      print_explanation(result);
+      fmt::print("{}", tree_text(result.report.tree));
     }
   }
   return status == Status::Done && options.is_strict && !result.report.limits.empty() ? Status::Limit : status;

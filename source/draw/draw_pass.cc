@@ -147,13 +147,15 @@ void ShadingGroup::record_bindings(gpu::CommandList &list) const
   }
 }
 
-void ShadingGroup::record_calls(const View &view, gpu::CommandList &list) const
+RecordCounts ShadingGroup::collect_draws(const View &view, gpu::CommandList &list) const
 {
-  const std::size_t first_draw = list.draws.size();
+  const std::size_t first_instance_of_all = list.instances.size();
+  RecordCounts counts;
   list.instances.reserve(list.instances.size() + calls_.size());
   bool has_draw = false;  // The last of list.draws is this group's: the same batch again makes it longer.
   for (const Call &call : calls_) {
     if (!view.touches(call.volume)) {
+      counts.culled += call.instance_count;
       continue;
     }
     const auto first_instance = std::uint32_t(list.instances.size());
@@ -178,12 +180,8 @@ void ShadingGroup::record_calls(const View &view, gpu::CommandList &list) const
       list.instances.insert(list.instances.end(), call.instances_.begin(), call.instances_.end());
     }
   }
-  if (list.draws.size() > first_draw) {
-    list.draw(std::uint32_t(first_draw), std::uint32_t(list.draws.size() - first_draw));
-  }
-  for (const ProceduralCall &call : procedural_calls_) {
-    list.draw_procedural(call.triangle_count * 3, call.instance_count);
-  }
+  counts.drawn = list.instances.size() - first_instance_of_all + procedural_calls_.size();
+  return counts;
 }
 
 Pass::Pass(std::string name, gpu::State state, ObjectBuffer *objects)
@@ -202,14 +200,29 @@ void Pass::clear()
   groups_.clear();
 }
 
-void Pass::record(const View &view, gpu::CommandList &list, gpu::State without) const
+RecordCounts Pass::record(const View &view, gpu::CommandList &list, gpu::State without) const
 {
+  RecordCounts counts;
   for (const ShadingGroup &group : groups_) {
+    const std::size_t first_draw = list.draws.size();
+    const RecordCounts of_group = group.collect_draws(view, list);
+    counts.drawn += of_group.drawn;
+    counts.culled += of_group.culled;
+    const bool has_calls = !group.calls_.empty() || !group.instance_calls_.empty();
+    if (has_calls && of_group.drawn == 0) {
+      continue;
+    }
     list.set_shader(group.shader_.id());
     list.set_state(gpu::without(state_ | group.state_, without));
     group.record_bindings(list);
-    group.record_calls(view, list);
+    if (list.draws.size() > first_draw) {
+      list.draw(std::uint32_t(first_draw), std::uint32_t(list.draws.size() - first_draw));
+    }
+    for (const ShadingGroup::ProceduralCall &call : group.procedural_calls_) {
+      list.draw_procedural(call.triangle_count * 3, call.instance_count);
+    }
   }
+  return counts;
 }
 
 std::string Pass::serialize(const gpu::Device &device) const

@@ -27,6 +27,14 @@ struct TextureBinding {
   gpu::ResourceId sampler = 0;
 };
 
+/** What Pass::record did with a pass's calls. */
+struct RecordCounts {
+  /** Instances drawn: each call's own, and those of instance calls; a procedural call is one. */
+  std::uint64_t drawn = 0;
+  /** Instances left out, as the view does not touch their volume. */
+  std::uint64_t culled = 0;
+};
+
 /** A call's instances that are not known yet when it is recorded. Lives as long as its pass. */
 class InstanceCall {
  public:
@@ -140,7 +148,8 @@ class ShadingGroup {
   /** Of the name, made at the first ask; nullptr where the shader has none. */
   [[nodiscard]] Constant *constant_entry(std::string_view name, std::size_t size_bytes);
   void record_bindings(gpu::CommandList &list) const;
-  void record_calls(const View &view, gpu::CommandList &list) const;
+  /** Appends to the list's draws, not to its commands. */
+  RecordCounts collect_draws(const View &view, gpu::CommandList &list) const;
 
   const gpu::Shader &shader_;
   ObjectBuffer *objects_;
@@ -167,9 +176,10 @@ class Pass {
 
   /**
    * Append what \a view sees of the pass: to be called between begin_pass and end_pass of \a list. State bits in
-   * \a without are left off this time.
+   * \a without are left off this time. Of a group whose calls draw nothing, nothing is
+   * appended.
    */
-  void record(const View &view, gpu::CommandList &list, gpu::State without = gpu::State::None) const;
+  RecordCounts record(const View &view, gpu::CommandList &list, gpu::State without = gpu::State::None) const;
 
   [[nodiscard]] const std::string &name() const
   {

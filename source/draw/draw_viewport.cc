@@ -3,12 +3,15 @@
 
 namespace gnomon::draw {
 
-Viewport::Viewport(gpu::Device &device, glm::ivec2 size_px)
-    : device_(device),
-      size_px_(size_px),
-      depth_texture_(device.create_texture(
-          {.name = "depth", .format = gpu::Format::Depth32F, .width = size_px.x, .height = size_px.y}))
+Viewport::Viewport(gpu::Device &device, glm::ivec2 size_px) : device_(device), size_px_(size_px) {}
+
+const gpu::Texture &Viewport::depth_texture()
 {
+  if (!depth_texture_) {
+    depth_texture_ = device_.create_texture(
+        {.name = "depth", .format = gpu::Format::Depth32F, .width = size_px_.x, .height = size_px_.y});
+  }
+  return depth_texture_;
 }
 
 void Viewport::sync(std::span<Engine *const> engines, std::span<const ObjectRef> objects)
@@ -26,7 +29,10 @@ void Viewport::sync(std::span<Engine *const> engines, std::span<const ObjectRef>
   for (Engine *engine : engines) {
     engine->cache_finish(*this);
   }
-  objects_.upload(device_);
+  // The identity alone is not worth a buffer.
+  if (objects_.size() > 1) {
+    objects_.upload(device_);
+  }
 }
 
 void Viewport::draw(std::span<Engine *const> engines, const View &view)

@@ -22,10 +22,13 @@ struct EngineViewportData {
  */
 class Viewport {
  public:
-  /** \pre size_px at least 1x1. \throws gpu::Error where the device cannot hold it. */
+  /** \pre size_px at least 1x1 */
   Viewport(gpu::Device &device, glm::ivec2 size_px);
 
-  /** Let \a engines record \a objects; to be called again when any of them changed. */
+  /**
+   * Let \a engines record \a objects; to be called again when any of them changed. What they add to objects() is
+   * uploaded; who adds later, or draws with object_identity alone, calls ObjectBuffer::upload.
+   */
   void sync(std::span<Engine *const> engines, std::span<const ObjectRef> objects);
   /** Let \a engines draw what they recorded, in order. */
   void draw(std::span<Engine *const> engines, const View &view);
@@ -42,10 +45,14 @@ class Viewport {
   {
     return objects_;
   }
-  /** The depth of the picture, for engines to attach to their framebuffers. */
-  [[nodiscard]] const gpu::Texture &depth_texture() const
+  /**
+   * The depth of the picture, for engines to attach to their framebuffers. Made at the first ask.
+   * \throws gpu::Error where the device cannot hold it.
+   */
+  [[nodiscard]] const gpu::Texture &depth_texture();
+  [[nodiscard]] bool has_depth_texture() const
   {
-    return depth_texture_;
+    return bool(depth_texture_);
   }
 
   /** Made by the first ask of \a engine; lives as long as the viewport. \pre always asked with the same Data. */

@@ -68,6 +68,7 @@ class CommandList {
   void set_state(State state);
   void bind_uniform(int slot, const BufferRange &range);
   void bind_storage(int slot, const BufferRange &range);
+  /** 0 and 0: none, for a shader that declares the texture and will not look it up. */
   void bind_texture(int slot, ResourceId texture, ResourceId sampler);
   /** For the block push_constant_block_name of the shader set before, at its slot. Copies \a bytes. */
   void push_constants(int slot, std::span<const std::byte> bytes);

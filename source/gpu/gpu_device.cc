@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gpu_device.hh"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <bit>
 
@@ -13,7 +15,7 @@ Device::Device(const Limits &limits, MessageSink sink, std::filesystem::path sha
       link_(std::make_shared<DeviceLink>(DeviceLink{this}))
 {
   for (std::vector<Slot> &slots : slots_) {
-    slots.push_back({"none", false, {}});
+    slots.emplace_back().name = "none";
   }
 }
 
@@ -45,7 +47,8 @@ void Device::message(std::string_view text) const
 }
 
 template <typename Create>
-Resource Device::make(ResourceKind kind, const std::string &name, Create &&create)
+Resource Device::make(ResourceKind kind, const std::string &name, std::string detail, std::size_t size_bytes,
+                      Create &&create)
 {
   std::vector<Slot> &slots = slots_[std::size_t(kind)];
   std::vector<ResourceId> &free_ids = free_ids_[std::size_t(kind)];
@@ -55,6 +58,9 @@ Resource Device::make(ResourceKind kind, const std::string &name, Create &&creat
   }
   const ResourceId id = free_ids.back();
   slots[id].name = name;
+  slots[id].detail = std::move(detail);
+  slots[id].size_bytes = size_bytes;
+  slots[id].upload_bytes = 0;
   create(id);
   slots[id].is_live = true;
   free_ids.pop_back();
@@ -91,14 +97,18 @@ Texture Device::create_texture(const TextureDesc &desc)
   if (is_cube && desc.width != desc.height) {
     throw Error("texture '{}': a cube's faces are square, not {}x{}", desc.name, desc.width, desc.height);
   }
-  Resource resource = make(ResourceKind::Texture, desc.name, [&](ResourceId id) { texture_create(id, desc); });
+  const std::string detail =
+      fmt::format("{}x{}{} {}", desc.width, desc.height,
+                  desc.layer_count() > 1 ? fmt::format("x{}", desc.layer_count()) : "", to_string(desc.format));
+  Resource resource = make(ResourceKind::Texture, desc.name, detail, desc.size_bytes(),
+                           [&](ResourceId id) { texture_create(id, desc); });
   counters_.textures_made++;
   return {std::move(resource), desc};
 }
 
 Sampler Device::create_sampler(const SamplerDesc &desc)
 {
-  return Sampler(make(ResourceKind::Sampler, desc.name, [&](ResourceId id) { sampler_create(id, desc); }));
+  return Sampler(make(ResourceKind::Sampler, desc.name, {}, 0, [&](ResourceId id) { sampler_create(id, desc); }));
 }
 
 Framebuffer Device::create_framebuffer(const FramebufferDesc &desc)
@@ -142,7 +152,8 @@ Framebuffer Device::create_framebuffer(const FramebufferDesc &desc)
     }
     size_px = size;
   }
-  return {make(ResourceKind::Framebuffer, desc.name, [&](ResourceId id) { framebuffer_create(id, desc); }), size_px};
+  return {make(ResourceKind::Framebuffer, desc.name, {}, 0, [&](ResourceId id) { framebuffer_create(id, desc); }),
+          size_px};
 }
 
 Buffer Device::create_buffer(const BufferDesc &desc)
@@ -152,7 +163,8 @@ Buffer Device::create_buffer(const BufferDesc &desc)
   if (desc.size_bytes == 0 || desc.size_bytes > max) {
     throw Error("buffer '{}': {} bytes, and this device takes 1 to {}", desc.name, desc.size_bytes, max);
   }
-  return {make(ResourceKind::Buffer, desc.name, [&](ResourceId id) { buffer_create(id, desc); }), desc};
+  return {make(ResourceKind::Buffer, desc.name, {}, desc.size_bytes, [&](ResourceId id) { buffer_create(id, desc); }),
+          desc};
 }
 
 Batch Device::create_batch(const BatchDesc &desc)
@@ -173,7 +185,9 @@ Batch Device::create_batch(const BatchDesc &desc)
   range.index_count = std::uint32_t(desc.indices.size());
   range.base_vertex = std::int32_t(vertices_.allocate(range.vertex_count));
   range.first_index = indices_.allocate(range.index_count);
-  Resource resource = make(ResourceKind::Batch, desc.name, [&](ResourceId id) {
+  const std::size_t size_bytes =
+      desc.positions.size_bytes() + desc.normals.size_bytes() + desc.indices.size_bytes() + desc.uvs.size_bytes();
+  Resource resource = make(ResourceKind::Batch, desc.name, {}, size_bytes, [&](ResourceId id) {
     slots_[std::size_t(ResourceKind::Batch)][id].range = range;
     try {
       batch_create(desc, range, vertices_.capacity(), indices_.capacity());
@@ -184,8 +198,7 @@ Batch Device::create_batch(const BatchDesc &desc)
       throw;
     }
   });
-  counters_.upload_bytes +=
-      desc.positions.size_bytes() + desc.normals.size_bytes() + desc.indices.size_bytes() + desc.uvs.size_bytes();
+  count_upload(ResourceKind::Batch, resource.id(), size_bytes);
   return {std::move(resource), range};
 }
 
@@ -199,7 +212,8 @@ Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files)
     cached = CachedShader{.interface = reflect(desc.name, stages)};
   }
   bool is_loaded = false;
-  Resource resource = make(ResourceKind::Shader, desc.name, [&](ResourceId id) {
+  const std::string detail = fmt::format("{}", fmt::join(desc.defines, " "));
+  Resource resource = make(ResourceKind::Shader, desc.name, detail, 0, [&](ResourceId id) {
     is_loaded = is_cached && shader_load(id, desc, *cached);
     if (!is_loaded) {
       shader_create(id, desc, stages);
@@ -216,7 +230,7 @@ Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files)
 
 TimerQuery Device::create_timer_query(std::string name)
 {
-  return TimerQuery(make(ResourceKind::TimerQuery, name, [&](ResourceId id) { timer_query_create(id, name); }));
+  return TimerQuery(make(ResourceKind::TimerQuery, name, {}, 0, [&](ResourceId id) { timer_query_create(id, name); }));
 }
 
 void Device::update(const Buffer &buffer, std::size_t offset_bytes, std::span<const std::byte> bytes)
@@ -224,7 +238,7 @@ void Device::update(const Buffer &buffer, std::size_t offset_bytes, std::span<co
   GNOMON_ASSERT(buffer && offset_bytes + bytes.size() <= buffer.size_bytes(),
                 "buffer '{}': {} bytes at {} do not fit into {}", name_of(ResourceKind::Buffer, buffer.id()),
                 bytes.size(), offset_bytes, buffer.size_bytes());
-  counters_.upload_bytes += bytes.size();
+  count_upload(ResourceKind::Buffer, buffer.id(), bytes.size());
   buffer_update(buffer.id(), offset_bytes, bytes);
 }
 
@@ -238,7 +252,7 @@ void Device::upload(const Texture &texture, int layer, std::span<const std::byte
   const TextureDesc &desc = texture.desc();
   GNOMON_ASSERT(texture && layer >= 0 && layer < desc.layer_count() && texels.size() == layer_size_bytes(desc),
                 "texture '{}': {} bytes to layer {}", desc.name, texels.size(), layer);
-  counters_.upload_bytes += texels.size();
+  count_upload(ResourceKind::Texture, texture.id(), texels.size());
   texture_upload(texture, layer, texels);
 }
 
@@ -264,11 +278,20 @@ void Device::submit(const CommandList &list)
   count(list);
 }
 
+void Device::count_upload(ResourceKind kind, ResourceId id, std::size_t bytes)
+{
+  counters_.upload_bytes += bytes;
+  slots_[std::size_t(kind)][id].upload_bytes += bytes;
+}
+
 void Device::count(const CommandList &list)
 {
   for (const Command &command : list.commands()) {
     switch (command.kind) {
-      case CommandKind::BeginPass: counters_.passes++; break;
+      case CommandKind::BeginPass:
+        counters_.passes++;
+        pass_counts_[list.passes()[command.first].name]++;
+        break;
       case CommandKind::SetShader: counters_.shader_binds++; break;
       case CommandKind::Draw:
         for (std::uint32_t i = command.first; i < command.first + command.count; i++) {
@@ -283,7 +306,7 @@ void Device::count(const CommandList &list)
         counters_.instances += command.count;
         counters_.triangles += std::uint64_t(command.first / 3) * command.count;
         break;
-      case CommandKind::Update: counters_.upload_bytes += command.count; break;
+      case CommandKind::Update: count_upload(ResourceKind::Buffer, command.id, command.count); break;
       default: break;
     }
   }
@@ -296,17 +319,42 @@ const std::string &Device::name_of(ResourceKind kind, ResourceId id) const
   return slots[id < slots.size() ? id : 0].name;
 }
 
-std::vector<std::string> Device::live_resources() const
+std::vector<LiveResource> Device::live() const
 {
-  std::vector<std::string> names;
+  std::vector<LiveResource> resources;
   for (std::size_t kind = 0; kind < kind_count; kind++) {
     for (const Slot &slot : slots_[kind]) {
       if (slot.is_live) {
-        names.push_back(fmt::format("{} '{}'", to_string(ResourceKind(kind)), slot.name));
+        resources.push_back({ResourceKind(kind), slot.name, slot.detail, slot.size_bytes, slot.upload_bytes});
       }
     }
   }
+  return resources;
+}
+
+LiveResource Device::live(const Resource &resource) const
+{
+  GNOMON_ASSERT(resource, "an empty {}", to_string(resource.kind_));
+  const Slot &slot = slots_[std::size_t(resource.kind_)][resource.id()];
+  return {resource.kind_, slot.name, slot.detail, slot.size_bytes, slot.upload_bytes};
+}
+
+std::vector<std::string> Device::live_resources() const
+{
+  std::vector<std::string> names;
+  for (const LiveResource &resource : live()) {
+    names.push_back(fmt::format("{} '{}'", to_string(resource.kind), resource.name));
+  }
   return names;
+}
+
+std::size_t Device::memory_bytes() const
+{
+  std::size_t bytes = 0;
+  for (const LiveResource &resource : live()) {
+    bytes += resource.size_bytes;
+  }
+  return bytes;
 }
 
 }  // namespace gnomon::gpu

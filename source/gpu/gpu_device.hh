@@ -12,6 +12,7 @@
 #include "gpu_texture.hh"
 
 #include <array>
+#include <map>
 #include <span>
 
 namespace gnomon::gpu {
@@ -41,6 +42,18 @@ struct Counters {
   std::uint64_t shaders_from_cache = 0;
   std::uint64_t textures_made = 0;
   /** Bytes written to buffers, batches and textures. */
+  std::uint64_t upload_bytes = 0;
+};
+
+/** One resource that lives on a device, for people and scripts to read. */
+struct LiveResource {
+  ResourceKind kind = ResourceKind::Texture;
+  std::string name;
+  /** Textures: "WIDTHxHEIGHTxLAYERS FORMAT"; shaders: their defines, a space between two; others: empty. */
+  std::string detail;
+  /** What its content takes: of textures, buffers and batches; 0 of others. */
+  std::size_t size_bytes = 0;
+  /** Written to it since it was made, by the host; draws into it not counted. */
   std::uint64_t upload_bytes = 0;
 };
 
@@ -112,13 +125,24 @@ class Device {
   {
     return counters_;
   }
+  /** How often a pass of each name was submitted, since the device was made. */
+  [[nodiscard]] const std::map<std::string, std::uint64_t> &pass_counts() const
+  {
+    return pass_counts_;
+  }
   /** API, version and driver, one line. */
   [[nodiscard]] virtual std::string description() const = 0;
 
   /** The name given at creation; "none" for 0. */
   [[nodiscard]] const std::string &name_of(ResourceKind kind, ResourceId id) const;
+  /** What lives, by kind and then by id. */
+  [[nodiscard]] std::vector<LiveResource> live() const;
+  /** \a resource in particular. \pre it is of this device, and not empty */
+  [[nodiscard]] LiveResource live(const Resource &resource) const;
   /** "texture 'hdr'", one entry a resource that lives. */
   [[nodiscard]] std::vector<std::string> live_resources() const;
+  /** What all that lives takes: the textures', buffers' and batches' contents. A driver may take more for them. */
+  [[nodiscard]] std::size_t memory_bytes() const;
 
  protected:
   /** \a shader_cache_folder: see ShaderDiskCache. */
@@ -161,12 +185,18 @@ class Device {
     bool is_live = false;
     /** Batches only. */
     BatchRange range;
+    /** \see LiveResource */
+    std::string detail;
+    std::size_t size_bytes = 0;
+    std::uint64_t upload_bytes = 0;
   };
   static constexpr std::size_t kind_count = std::size_t(ResourceKind::TimerQuery) + 1;
 
   /** Takes an id for \a name, calls \a create with it, and gives the id back where that throws. */
   template <typename Create>
-  Resource make(ResourceKind kind, const std::string &name, Create &&create);
+  Resource make(ResourceKind kind, const std::string &name, std::string detail, std::size_t size_bytes,
+                Create &&create);
+  void count_upload(ResourceKind kind, ResourceId id, std::size_t bytes);
   void release(ResourceKind kind, ResourceId id);
   void count(const CommandList &list);
 
@@ -179,6 +209,7 @@ class Device {
   std::array<std::vector<ResourceId>, kind_count> free_ids_;
   RangeAllocator vertices_;
   RangeAllocator indices_;
+  std::map<std::string, std::uint64_t> pass_counts_;
 };
 
 /** What a context is made from. */

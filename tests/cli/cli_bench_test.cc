@@ -54,5 +54,21 @@ TEST_F(BenchTest, DrawsWritesItsFigures)
   }
 }
 
+TEST_F(BenchTest, LeftOutPutsTenScenesBesideTheFullOne)
+{
+  const Finished finished = run("bench left-out --backend null --rounds 1 --json bench.json");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const json bench = json::parse(read("bench.json"));
+  ASSERT_EQ(bench["rows"].size(), 11U);
+  const json &full = bench["rows"][0];
+  EXPECT_EQ(full["scene"], "full");
+  EXPECT_EQ(full["warm_ratio_to_full"], 1.0);
+  for (const json &row : bench["rows"]) {
+    EXPECT_GT(row["first_seconds"]["median"], 0.0) << row;
+    EXPECT_LE(row["memory_bytes"], full["memory_bytes"]) << row;
+    EXPECT_LE(row["passes"], full["passes"]) << row;
+  }
+}
+
 }  // namespace
 }  // namespace gnomon

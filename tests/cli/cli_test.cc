@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The command line's promise, as far as it needs no driver.
+#include "cli_explain.hh"
 #include "cli_output.hh"
 #include "cli_process.hh"
 
@@ -200,12 +201,41 @@ TEST_F(CliTest, ALimitIsNamedAndFailsOnlyWhenStrict)
   EXPECT_EQ(strict.status, 4) << strict.err;
 }
 
-TEST_F(CliTest, ExplainSaysWhatWasLeftOutAndWhy)
+TEST_F(CliTest, ExplainPrintsATreeOfWhatIsThereAndWhatIsNotAndWhy)
 {
-  const Finished finished = run("render " + example("plaza") + " --backend null --size 8x8 --explain");
+  const Finished finished =
+      run("render " + example("plaza") + " --backend null --size 8x8 --shadow-size 64 --explain --json run.json");
   EXPECT_EQ(finished.status, 0) << finished.err;
-  EXPECT_NE(finished.out.find("left out\n"), std::string::npos) << finished.out;
-  EXPECT_NE(finished.out.find("every material is Lambertian"), std::string::npos) << finished.out;
+  EXPECT_NE(finished.out.find("\n+ frame "), std::string::npos) << finished.out;
+  EXPECT_NE(finished.out.find("\n|-+ programs "), std::string::npos) << finished.out;
+  const auto line_of = [&](const std::string &what) {
+    const std::size_t at = finished.out.find(what);
+    return finished.out.substr(at, finished.out.find('\n', at) - at);
+  };
+  EXPECT_NE(line_of("-- USE_SPECULAR ").find("every material is Lambertian"), std::string::npos) << finished.out;
+  EXPECT_NE(line_of("-+ shadow_cubes ").find(" 96.0 KiB "), std::string::npos) << "64x64x6 of 4 bytes";
+  EXPECT_NE(line_of("-- textures ").find("no material has one"), std::string::npos) << finished.out;
+  const nlohmann::json json = nlohmann::json::parse(read("run.json"));
+  const nlohmann::json &tree = json["frame_tree"];
+  EXPECT_EQ(tree["what"], "frame");
+  EXPECT_EQ(tree["bytes"], json["memory_bytes"]);
+  std::vector<std::string> names;
+  for (const nlohmann::json &child : tree["children"]) {
+    names.push_back(child["what"]);
+    EXPECT_FALSE(child["why"].get<std::string>().empty());
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"programs", "passes", "targets", "blocks", "meshes", "textures", "shadows",
+                                             "draws"}));
+}
+
+TEST_F(CliTest, UnitsAreReadable)
+{
+  EXPECT_EQ(cli::bytes_text(1023), "1023 B");
+  EXPECT_EQ(cli::bytes_text(1024), "1.0 KiB");
+  EXPECT_EQ(cli::bytes_text(std::uint64_t(59) << 20U), "59.0 MiB");
+  EXPECT_EQ(cli::seconds_text(0.0123), "12.3 ms");
+  EXPECT_EQ(cli::seconds_text(12e-6), "12 us");
+  EXPECT_EQ(cli::seconds_text(2.5), "2.50 s");
 }
 
 TEST_F(CliTest, AFileIsThereWholeOrNotAtAll)

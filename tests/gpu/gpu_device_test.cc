@@ -287,5 +287,45 @@ TEST(Format, TexelsAreAsLargeAsTheirChannels)
   EXPECT_FALSE(is_depth(Format::R32F));
 }
 
+TEST(Live, TellsEachResourceItsBytesAndWhatWasWrittenToIt)
+{
+  const auto device = create_null_device();
+  EXPECT_EQ(device->memory_bytes(), 0U);
+  const Texture layers = device->create_texture(
+      {.name = "layers", .kind = TextureKind::Array, .format = Format::Depth32F, .width = 8, .height = 4, .layers = 3});
+  // 4 x 4, 2 x 2 and 1.
+  const Texture levels = device->create_texture({.name = "levels", .width = 4, .height = 4, .mip_levels = 3});
+  const Framebuffer framebuffer = device->create_framebuffer({"f", {{&levels}}, {}});
+  const Buffer buffer = device->create_buffer({.name = "buffer", .size_bytes = 64});
+  const std::vector<glm::vec3> positions(3);
+  const std::vector<std::uint32_t> indices = {0, 1, 2};
+  const Shader shader = test::make_shader(*device, "shader", test::CLIP_SPACE_VERT, test::COLOR_FRAG);
+  {
+    const Batch batch = device->create_batch({"batch", positions, positions, indices});
+    EXPECT_EQ(device->live(batch).size_bytes, 84U) << "two times three vectors and three indices";
+    EXPECT_EQ(device->live(batch).upload_bytes, 84U);
+    EXPECT_EQ(device->memory_bytes(), 84U + 384U + 84U + 64U);
+  }
+  EXPECT_EQ(device->live(layers).detail, "8x4x3 Depth32F");
+  EXPECT_EQ(device->live(layers).size_bytes, 8U * 4U * 3U * 4U);
+  EXPECT_EQ(device->live(levels).detail, "4x4 RGBA8");
+  EXPECT_EQ(device->live(levels).size_bytes, 4U * (16U + 4U + 1U));
+  device->upload(levels, 0, std::vector<std::byte>(64));
+  device->update(buffer, glm::vec4(0));
+  CommandList list;
+  const glm::vec4 value(1);
+  list.update(buffer, 16, std::as_bytes(std::span(&value, 1)));
+  list.begin_pass("pass", framebuffer, {});
+  list.end_pass();
+  device->submit(list);
+  device->submit(list);
+  EXPECT_EQ(device->live(buffer).upload_bytes, 3U * 16U);
+  EXPECT_EQ(device->live(levels).upload_bytes, 64U);
+  EXPECT_EQ(device->live(layers).upload_bytes, 0U);
+  EXPECT_EQ(device->pass_counts(), (std::map<std::string, std::uint64_t>{{"pass", 2}}));
+  EXPECT_EQ(device->live().size(), 5U) << "the batch is gone";
+  EXPECT_EQ(device->memory_bytes(), 384U + 84U + 64U);
+}
+
 }  // namespace
 }  // namespace gnomon::gpu

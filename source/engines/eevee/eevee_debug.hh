@@ -25,6 +25,11 @@ class ShadowPicture {
    */
   const gpu::Texture &draw(gpu::Device &device, ShaderCache &shaders, const ShadowLayers &layers,
                            std::optional<int> layer);
+  /** Empty before the first draw. */
+  [[nodiscard]] const gpu::Texture &texture() const
+  {
+    return texture_;
+  }
 
  private:
   void fit_target(gpu::Device &device, glm::ivec2 size_px);

@@ -2,11 +2,9 @@
 #include "eevee_engine.hh"
 
 #include "eevee_camera.hh"
-#include "eevee_debug.hh"
+#include "eevee_engine_data.hh"
 #include "eevee_film.hh"
-#include "eevee_lamps.hh"
 #include "eevee_materials.hh"
-#include "eevee_textures.hh"
 
 #include "draw_view_shared.h"
 
@@ -15,107 +13,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <map>
-#include <tuple>
 
 namespace gnomon::eevee {
 
 namespace {
 
 using gpu::State;
-
-struct FramebufferList {
-  gpu::Framebuffer depth_fb;
-  gpu::Framebuffer main_fb;
-  gpu::Framebuffer film_fb;
-  gpu::Framebuffer display_fb;
-  gpu::Framebuffer probe_fb;
-};
-
-struct TextureList {
-  gpu::Texture radiance;
-  /** Sum of the weighted samples. */
-  gpu::Texture film;
-  gpu::Texture display;
-  gpu::Texture probe_position;
-  gpu::Texture probe_normal;
-  gpu::Sampler nearest;
-};
-
-struct PassList {
-  explicit PassList(draw::ObjectBuffer &objects)
-      : shadow_pass("shadow_pass", State::WriteDepth | State::DepthNearerEqual | State::DepthClamp, &objects),
-        depth_pass("depth_pass", State::WriteDepth | State::DepthNearerEqual, &objects),
-        depth_pass_cull("depth_pass_cull", State::WriteDepth | State::DepthNearerEqual | State::CullBack, &objects),
-        pass("pass", State::WriteColor | State::DepthEqual, &objects),
-        probe_pass("probe_pass", State::WriteColor | State::DepthEqual, &objects),
-        tint_pass("tint_pass", State::WriteColor | State::DepthEqual | State::BlendMultiply, &objects),
-        film_pass("film_pass", State::WriteColor | State::BlendAdd),
-        tonemap("tonemap", State::WriteColor)
-  {
-  }
-  draw::Pass shadow_pass;
-  draw::Pass depth_pass;
-  draw::Pass depth_pass_cull;
-  draw::Pass pass;
-  draw::Pass probe_pass;
-  draw::Pass tint_pass;
-  draw::Pass film_pass;
-  draw::Pass tonemap;
-};
-
-/** What calls of one group have in common: pass, state beside the pass's, texture (-1: none). */
-using GroupKey = std::tuple<const draw::Pass *, State, std::int32_t>;
-
-struct StorageList {
-  Lamps lamps;
-  Shadows shadows;
-  Feature features = Feature::None;
-  ShaderCache shaders;
-  /** One a mesh of the scene; empty until an object uses it. */
-  std::vector<gpu::Batch> batches;
-  /** scene::Mesh::revision of each. */
-  std::vector<std::uint64_t> batch_revisions;
-  gpu::Buffer view_block;
-  gpu::Buffer light_block;
-  gpu::Buffer material_block;
-  gpu::BufferRange object_block;
-  Textures textures;
-  /** Made when the first object needs them. */
-  std::map<GroupKey, draw::ShadingGroup *> groups;
-  /** One a mesh of the scene and winding; empty until a caster uses it. */
-  std::vector<std::array<draw::InstanceCall *, 2>> caster_calls;
-  /** In light_block, of the probe being drawn. */
-  int probed_light = 0;
-  /** In light_block: the sun whose cascades are shown; nothing where none is, or nobody asks. */
-  std::optional<int> tinted_light;
-  /** Of the sample being drawn; the film pass reads it by reference. */
-  glm::vec4 film_columns{0.0F};
-  glm::vec4 film_rows{0.0F};
-  double film_weight_sum = 0.0;
-};
-
-struct Timing {
-  struct Step {
-    std::string name;
-    gpu::TimerQuery query;
-    bool is_pending = false;
-    double seconds = 0.0;
-  };
-  std::vector<Step> steps;
-};
-
-struct Data final : draw::EngineViewportData {
-  FramebufferList fbl;
-  TextureList txl;
-  std::unique_ptr<PassList> psl;
-  StorageList stl;
-  Timing timing;
-  int samples_drawn = 0;
-  ShadowPicture shadow_picture;
-  /** The last sync came to its end. */
-  bool is_synced = false;
-};
 
 /** The device's time for what \a work submits, added to the step's. */
 template <typename Work>
@@ -164,15 +67,18 @@ shared::ViewData view_data(const draw::View &view)
   return data;
 }
 
-const gpu::Batch &batch_of(gpu::Device &device, StorageList &stl, const scene::Scene &scene, std::uint32_t mesh_index)
+const gpu::Batch &batch_of(gpu::Device &device, StorageList &stl, const scene::Scene &scene, std::uint32_t mesh_index,
+                           bool needs_uvs)
 {
-  gpu::Batch &batch = stl.batches[mesh_index];
+  MeshBatch &made = stl.batches[mesh_index];
   const scene::Mesh &mesh = scene.meshes[mesh_index];
-  if (!batch || stl.batch_revisions[mesh_index] != mesh.revision) {
-    stl.batch_revisions[mesh_index] = mesh.revision;
-    batch = device.create_batch({mesh.name, mesh.positions, mesh.normals, mesh.indices, mesh.uvs});
+  if (!made.batch || made.revision != mesh.revision || (needs_uvs && !made.has_uvs)) {
+    made.revision = mesh.revision;
+    made.has_uvs = needs_uvs;
+    made.batch = device.create_batch({mesh.name, mesh.positions, mesh.normals, mesh.indices,
+                                      needs_uvs ? std::span(mesh.uvs) : std::span<const glm::vec2>()});
   }
-  return batch;
+  return made.batch;
 }
 
 ShaderId shadow_shader(LayerPass layer_pass)
@@ -251,7 +157,57 @@ void Engine::init(draw::Viewport &viewport)
 {
   Data &data = viewport.engine_data<Data>(*this);
   gpu::Device &device = viewport.device();
-  auto &[fbl, txl, psl, stl, timing, samples_drawn, shadow_picture, is_synced] = data;
+  TextureList &txl = data.txl;
+  if (!txl.film) {
+    txl.film = picture(device, "film", gpu::Format::RGBA32F, viewport.size_px());
+    data.fbl.film_fb = device.create_framebuffer({.name = "film_fb", .colors = {{&txl.film}}, .depth = {}});
+  }
+  if (settings_.has_display && !txl.display) {
+    txl.display = picture(device, "display", gpu::Format::RGBA8, viewport.size_px());
+    data.fbl.display_fb = device.create_framebuffer({.name = "display_fb", .colors = {{&txl.display}}, .depth = {}});
+  }
+}
+
+void Engine::cache_init(draw::Viewport &viewport)
+{
+  Data &data = viewport.engine_data<Data>(*this);
+  StorageList &stl = data.stl;
+  data.is_synced = data.is_recorded = false;
+  data.psl = std::make_unique<PassList>(viewport.objects());
+  data.samples_drawn = 0;
+  stl.groups.clear();
+  stl.textures.clear();
+  stl.objects.clear();
+  stl.caster_calls.assign(scene_.meshes.size(), {});
+  stl.shaders.set_pcf(settings_.shadow.pcf);
+  stl.batches.resize(scene_.meshes.size());
+
+  stl.lamps = make_lamps(scene_);
+  stl.shadows.sync(viewport.device().limits(), scene_, stl.lamps, settings_.shadow);
+  stl.features = stl.lamps.features | stl.shadows.features();
+  stl.tinted_light = settings_.has_cascade_tint ? first_sun_with_maps(stl.lamps) : std::nullopt;
+  stl.film_weight_sum = film_weight_sum(settings_.sample_count, settings_.seed);
+}
+
+void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectRef &object)
+{
+  const scene::Mesh &mesh = scene_.meshes[scene_.objects[object.index].mesh];
+  if (is_seen(scene_.materials[mesh.material])) {
+    viewport.engine_data<Data>(*this).stl.objects.push_back(object);
+  }
+}
+
+void Engine::cache_finish(draw::Viewport &viewport)
+{
+  viewport.engine_data<Data>(*this).is_synced = true;
+}
+
+/** What a picture needs in which anything is seen. */
+void Engine::make_targets(draw::Viewport &viewport)
+{
+  Data &data = viewport.engine_data<Data>(*this);
+  gpu::Device &device = viewport.device();
+  auto &[fbl, txl, psl, stl, timing, samples_drawn, shadow_picture, is_synced, is_recorded, is_seen, passes] = data;
   if (!txl.radiance) {
     txl.radiance = picture(device, "radiance", gpu::Format::RGBA32F, viewport.size_px());
     fbl.depth_fb = device.create_framebuffer({.name = "depth_fb", .colors = {}, .depth = {&viewport.depth_texture()}});
@@ -259,12 +215,6 @@ void Engine::init(draw::Viewport &viewport)
         {.name = "main_fb", .colors = {{&txl.radiance}}, .depth = {&viewport.depth_texture()}});
     stl.view_block = device.create_buffer({"view_block", gpu::BufferKind::Uniform, sizeof(shared::ViewData)});
     txl.nearest = device.create_sampler({.name = "nearest"});
-    txl.film = picture(device, "film", gpu::Format::RGBA32F, viewport.size_px());
-    fbl.film_fb = device.create_framebuffer({.name = "film_fb", .colors = {{&txl.film}}, .depth = {}});
-  }
-  if (settings_.has_display && !txl.display) {
-    txl.display = picture(device, "display", gpu::Format::RGBA8, viewport.size_px());
-    fbl.display_fb = device.create_framebuffer({.name = "display_fb", .colors = {{&txl.display}}, .depth = {}});
   }
   if (settings_.has_probe && !txl.probe_position) {
     txl.probe_position = picture(device, "probe_position", gpu::Format::RGBA32F, viewport.size_px());
@@ -275,49 +225,42 @@ void Engine::init(draw::Viewport &viewport)
   }
 }
 
-void Engine::cache_init(draw::Viewport &viewport)
+void Engine::make_blocks(draw::Viewport &viewport)
+{
+  StorageList &stl = viewport.engine_data<Data>(*this).stl;
+  gpu::Device &device = viewport.device();
+  const std::vector<shared::MaterialData> materials = make_materials(scene_);
+  const auto bytes = std::as_bytes(std::span(materials));
+  if (!stl.material_block || stl.material_block.size_bytes() != bytes.size()) {
+    stl.material_block = device.create_buffer({"material_block", gpu::BufferKind::Storage, bytes.size()});
+  }
+  device.update(stl.material_block, 0, bytes);
+  if (!has(stl.features, Feature::Light)) {
+    stl.light_block = {};
+    return;
+  }
+  std::vector<shared::MaterialData> used;
+  for (const draw::ObjectRef &object : stl.objects) {
+    used.push_back(materials[scene_.meshes[scene_.objects[object.index].mesh].material]);
+  }
+  stl.features = stl.features | material_features(used);
+  if (!stl.light_block) {
+    stl.light_block = device.create_buffer({"light_block", gpu::BufferKind::Uniform, sizeof(shared::LightBlock)});
+  }
+  device.update(stl.light_block, stl.lamps.light_block);
+}
+
+void Engine::record_film(draw::Viewport &viewport)
 {
   Data &data = viewport.engine_data<Data>(*this);
-  gpu::Device &device = viewport.device();
   StorageList &stl = data.stl;
-  data.is_synced = false;
-  data.psl = std::make_unique<PassList>(viewport.objects());
-  data.samples_drawn = 0;
-  stl.groups.clear();
-  stl.textures.clear();
-  stl.caster_calls.assign(scene_.meshes.size(), {});
-  stl.shaders.set_pcf(settings_.shadow.pcf);
-  stl.batches.resize(scene_.meshes.size());
-  stl.batch_revisions.resize(scene_.meshes.size());
-
-  stl.lamps = make_lamps(scene_);
-  stl.shadows.sync(device, stl.shaders, scene_, stl.lamps, settings_.shadow);
-  const std::vector<shared::MaterialData> materials = make_materials(scene_);
-  stl.features = stl.lamps.features | stl.shadows.features();
-  if (has(stl.features, Feature::Light)) {
-    stl.features = stl.features | material_features(materials);
-    if (!stl.light_block) {
-      stl.light_block = device.create_buffer({"light_block", gpu::BufferKind::Uniform, sizeof(shared::LightBlock)});
-    }
-    device.update(stl.light_block, stl.lamps.light_block);
-  }
-  stl.tinted_light = settings_.has_cascade_tint ? first_sun_with_maps(stl.lamps) : std::nullopt;
-  if (!materials.empty()) {
-    const auto bytes = std::as_bytes(std::span(materials));
-    if (!stl.material_block || stl.material_block.size_bytes() != bytes.size()) {
-      stl.material_block = device.create_buffer({"material_block", gpu::BufferKind::Storage, bytes.size()});
-    }
-    device.update(stl.material_block, 0, bytes);
-  }
-
-  stl.film_weight_sum = film_weight_sum(settings_.sample_count, settings_.seed);
-  draw::ShadingGroup &film = data.psl->film_pass.group(stl.shaders.get(device, ShaderId::Film));
+  draw::ShadingGroup &film = data.psl->film_pass.group(stl.shaders.get(viewport.device(), ShaderId::Film));
   film.bind_texture("radiance_texture", data.txl.radiance, data.txl.nearest);
   film.constant_ref("column_weights", &stl.film_columns);
   film.constant_ref("row_weights", &stl.film_rows);
   film.call_procedural();
   if (settings_.has_display) {
-    draw::ShadingGroup &tonemap = data.psl->tonemap.group(stl.shaders.get(device, ShaderId::Tonemap));
+    draw::ShadingGroup &tonemap = data.psl->tonemap.group(stl.shaders.get(viewport.device(), ShaderId::Tonemap));
     tonemap.bind_texture("radiance_texture", data.txl.film, data.txl.nearest);
     tonemap.constant("view_transform", int(settings_.view_transform));
     tonemap.constant("exposure_scale", std::exp2(settings_.exposure));
@@ -325,21 +268,38 @@ void Engine::cache_init(draw::Viewport &viewport)
   }
 }
 
-void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectRef &object)
+void Engine::record(draw::Viewport &viewport)
+{
+  Data &data = viewport.engine_data<Data>(*this);
+  if (data.is_recorded) {
+    return;
+  }
+  // Until it comes to its end: a half of it must not be drawn.
+  data.is_synced = false;
+  make_targets(viewport);
+  make_blocks(viewport);
+  data.stl.shadows.allocate(viewport.device(), data.stl.shaders);
+  for (const draw::ObjectRef &object : data.stl.objects) {
+    record_object(viewport, object);
+  }
+  data.stl.shadows.finish();
+  record_film(viewport);
+  viewport.objects().upload(viewport.device());
+  data.is_synced = data.is_recorded = true;
+}
+
+void Engine::record_object(draw::Viewport &viewport, const draw::ObjectRef &object)
 {
   Data &data = viewport.engine_data<Data>(*this);
   StorageList &stl = data.stl;
   gpu::Device &device = viewport.device();
   const scene::Mesh &mesh = scene_.meshes[scene_.objects[object.index].mesh];
   const scene::Material &material = scene_.materials[mesh.material];
-  if (!is_seen(material)) {
-    return;
-  }
-  const gpu::Batch &batch = batch_of(device, stl, scene_, scene_.objects[object.index].mesh);
-  const draw::ObjectIndex index = viewport.objects().add(object.world_from_object, mesh.material);
-  const State winding = draw::is_mirrored(object.world_from_object) ? State::FrontClockwise : State::None;
   const bool has_mask = is_masked(material);
   const bool is_lit_textured = material.base_color_texture >= 0 && (has_mask || has(stl.features, Feature::Light));
+  const gpu::Batch &batch = batch_of(device, stl, scene_, scene_.objects[object.index].mesh, is_lit_textured);
+  const draw::ObjectIndex index = viewport.objects().add(object.world_from_object, mesh.material);
+  const State winding = draw::is_mirrored(object.world_from_object) ? State::FrontClockwise : State::None;
 
   /** The group of a pass; \a bind fills in a new one. */
   const auto group_of = [&](draw::Pass &pass, const gpu::Shader &shader, State state, bool is_textured,
@@ -414,13 +374,6 @@ void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectRef &obj
   }
 }
 
-void Engine::cache_finish(draw::Viewport &viewport)
-{
-  Data &data = viewport.engine_data<Data>(*this);
-  data.stl.shadows.finish();
-  data.is_synced = true;
-}
-
 /** What a failed sync leaves can be synced again, and not be drawn. */
 static void require_sync(bool is_synced)
 {
@@ -438,62 +391,88 @@ static float pixel_size(const draw::View &view, const draw::Viewport &viewport)
 void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
 {
   Data &data = viewport.engine_data<Data>(*this);
-  auto &[fbl, txl, psl, stl, timing, samples_drawn, shadow_picture, is_synced] = data;
-  require_sync(is_synced);
-  gpu::Device &device = viewport.device();
-  const glm::vec2 offset_px = film_offset_px(samples_drawn, settings_.sample_count, settings_.seed);
+  require_sync(data.is_synced);
+  const glm::vec2 offset_px = film_offset_px(data.samples_drawn, settings_.sample_count, settings_.seed);
   const draw::View sample_view = with_sample_offset(view, offset_px, viewport.size_px());
+  const bool is_first = data.samples_drawn == 0;
+  if (is_first) {
+    data.stl.shadows.begin_picture();
+    data.passes.clear();
+    data.is_seen = false;
+  }
+  if (std::ranges::any_of(data.stl.objects, [&](const auto &object) { return sample_view.touches(object.volume); })) {
+    data.is_seen = true;
+    record(viewport);
+    draw_sample(viewport, view, sample_view);
+  }
+  else if (is_first) {
+    submit_pass(viewport, "film", data.fbl.film_fb, {}, {}, sample_view);
+  }
+  data.samples_drawn = (data.samples_drawn + 1) % settings_.sample_count;
+  if (settings_.has_display && data.samples_drawn == 0) {
+    if (data.is_seen) {
+      submit_pass(viewport, "tonemap", data.fbl.display_fb, {.color_load = gpu::LoadAction::DontCare},
+                  {&data.psl->tonemap}, sample_view);
+    }
+    else {
+      // Black is black whatever the transform, and has no alpha: the clear is all that a picture of nothing takes.
+      submit_pass(viewport, "tonemap", data.fbl.display_fb, {}, {}, sample_view);
+    }
+  }
+}
+
+void Engine::submit_pass(draw::Viewport &viewport, const char *name, const gpu::Framebuffer &framebuffer,
+                         const gpu::PassActions &actions, std::initializer_list<const draw::Pass *> passes,
+                         const draw::View &view)
+{
+  Data &data = viewport.engine_data<Data>(*this);
+  gpu::CommandList list;
+  list.begin_pass(name, framebuffer, actions);
+  for (const draw::Pass *pass : passes) {
+    PassRuns &runs = data.passes[pass->name()];
+    const draw::RecordCounts counts = pass->record(view, list);
+    runs.runs += counts.drawn > 0 ? 1 : 0;
+    runs.counts.drawn += counts.drawn;
+    runs.counts.culled += counts.culled;
+  }
+  list.end_pass();
+  timed(settings_.is_timed, viewport.device(), data.timing, name, [&] { viewport.device().submit(list); });
+}
+
+void Engine::draw_sample(draw::Viewport &viewport, const draw::View &view, const draw::View &sample_view)
+{
+  Data &data = viewport.engine_data<Data>(*this);
+  auto &[fbl, txl, psl, stl, timing, samples_drawn, shadow_picture, is_synced, is_recorded, is_seen, passes] = data;
+  gpu::Device &device = viewport.device();
   stl.object_block = {viewport.objects().buffer().id()};
   device.update(stl.view_block, view_data(sample_view));
 
-  gpu::CommandList list;
-  const auto submit_step = [&](const char *name) {
-    if (!list.commands().empty()) {
-      timed(settings_.is_timed, device, timing, name, [&] { device.submit(list); });
-    }
-    list.clear();
-  };
-
   const auto draw_depth = [&] {
-    list.begin_pass("depth_prepass", fbl.depth_fb, {});
-    psl->depth_pass.record(sample_view, list);
-    psl->depth_pass_cull.record(sample_view, list);
-    list.end_pass();
-    submit_step("depth_prepass");
+    submit_pass(viewport, "depth_prepass", fbl.depth_fb, {}, {&psl->depth_pass, &psl->depth_pass_cull}, sample_view);
   };
   const bool is_depth_first = settings_.shadow.cascades.is_fitted_to_depth;
   if (is_depth_first) {
     draw_depth();
   }
-  const auto read_depths = [&] { return read_as<float>(device, viewport.depth_texture()); };
-  stl.shadows.update(device, view, pixel_size(view, viewport), psl->shadow_pass, list, read_depths);
-  submit_step("shadows");
+  if (has(stl.features, any_shadow)) {
+    const auto read_depths = [&] { return read_as<float>(device, viewport.depth_texture()); };
+    gpu::CommandList list;
+    stl.shadows.update(device, view, pixel_size(view, viewport), psl->shadow_pass, list, read_depths);
+    if (!list.commands().empty()) {
+      timed(settings_.is_timed, device, timing, "shadows", [&] { device.submit(list); });
+    }
+  }
   if (!is_depth_first) {
     draw_depth();
   }
-
-  list.begin_pass("lit", fbl.main_fb, {.depth_load = gpu::LoadAction::Load});
-  psl->pass.record(sample_view, list);
-  psl->tint_pass.record(sample_view, list);
-  list.end_pass();
-  submit_step("lit");
+  submit_pass(viewport, "lit", fbl.main_fb, {.depth_load = gpu::LoadAction::Load}, {&psl->pass, &psl->tint_pass},
+              sample_view);
 
   const FilmWeights weights = film_weights(samples_drawn, settings_.sample_count, settings_.seed, stl.film_weight_sum);
   stl.film_columns = glm::vec4(weights.columns, 0.0F);
   stl.film_rows = glm::vec4(weights.rows, 0.0F);
-  const bool is_first = samples_drawn == 0;
-  list.begin_pass("film", fbl.film_fb, {.color_load = is_first ? gpu::LoadAction::Clear : gpu::LoadAction::Load});
-  psl->film_pass.record(sample_view, list);
-  list.end_pass();
-  submit_step("film");
-
-  samples_drawn = (samples_drawn + 1) % settings_.sample_count;
-  if (!psl->tonemap.is_empty() && samples_drawn == 0) {
-    list.begin_pass("tonemap", fbl.display_fb, {.color_load = gpu::LoadAction::DontCare});
-    psl->tonemap.record(sample_view, list);
-    list.end_pass();
-    submit_step("tonemap");
-  }
+  const gpu::LoadAction load = samples_drawn == 0 ? gpu::LoadAction::Clear : gpu::LoadAction::Load;
+  submit_pass(viewport, "film", fbl.film_fb, {.color_load = load}, {&psl->film_pass}, sample_view);
 }
 
 static std::optional<std::size_t> light_of(const Lamps &lamps, std::size_t lamp)
@@ -506,13 +485,16 @@ static std::optional<std::size_t> light_of(const Lamps &lamps, std::size_t lamp)
 std::optional<Probe> Engine::probe(draw::Viewport &viewport, const draw::View &view, std::size_t lamp)
 {
   GNOMON_ASSERT(settings_.has_probe, "the settings ask for no probe");
-  auto &[fbl, txl, psl, stl, timing, samples_drawn, shadow_picture, is_synced] = viewport.engine_data<Data>(*this);
-  require_sync(is_synced);
-  gpu::Device &device = viewport.device();
+  Data &data = viewport.engine_data<Data>(*this);
+  require_sync(data.is_synced);
+  StorageList &stl = data.stl;
   const std::optional<std::size_t> light = light_of(stl.lamps, lamp);
   if (!light) {
     return std::nullopt;
   }
+  record(viewport);
+  const auto &[fbl, txl, psl] = std::tie(data.fbl, data.txl, data.psl);
+  gpu::Device &device = viewport.device();
   stl.probed_light = int(*light);
   stl.object_block = {viewport.objects().buffer().id()};
   device.update(stl.view_block, view_data(view));
@@ -557,7 +539,9 @@ std::vector<StepTime> Engine::take_step_times(draw::Viewport &viewport) const
   std::vector<StepTime> times;
   for (Timing::Step &step : viewport.engine_data<Data>(*this).timing.steps) {
     if (std::exchange(step.is_pending, false)) {
-      step.seconds += viewport.device().elapsed_seconds(step.query).value_or(0.0);
+      const std::optional<double> seconds = viewport.device().elapsed_seconds(step.query);
+      step.seconds += seconds.value_or(0.0);
+      step.taken_seconds = seconds ? std::optional(step.seconds) : std::nullopt;
       times.push_back({step.name, step.seconds});
     }
     step.seconds = 0.0;
@@ -619,52 +603,6 @@ std::optional<std::size_t> Engine::tinted_sun(draw::Viewport &viewport) const
   const StorageList &stl = viewport.engine_data<Data>(*this).stl;
   return stl.tinted_light ? std::optional(std::size_t(stl.lamps.scene_index[std::size_t(*stl.tinted_light)]))
                           : std::nullopt;
-}
-
-Report Engine::report(draw::Viewport &viewport) const
-{
-  const Data &data = viewport.engine_data<Data>(*this);
-  const StorageList &stl = data.stl;
-  Report report;
-  report.warnings = stl.lamps.warnings;
-  report.warnings.insert(report.warnings.end(), stl.shadows.warnings().begin(), stl.shadows.warnings().end());
-  report.limits = stl.lamps.limits;
-  report.limits.insert(report.limits.end(), stl.shadows.limits().begin(), stl.shadows.limits().end());
-  report.shadow_counters = stl.shadows.counters();
-  for (int i = 0; i < stl.lamps.light_block.light_count; i++) {
-    const scene::Lamp &lamp = scene_.lamps[stl.lamps.scene_index[std::size_t(i)]];
-    const bool is_asked_for = shadow_kind(lamp, settings_.shadow) != scene::ShadowKind::None;
-    report.lost_shadow_count += is_asked_for && stl.lamps.light_block.lights[i].shadow_kind == SHADOW_NONE ? 1 : 0;
-  }
-
-  const auto part = [&](std::string what, bool is_made, std::string why, std::string why_not) {
-    report.parts.push_back({std::move(what), is_made, is_made ? std::move(why) : std::move(why_not)});
-  };
-  const Feature f = stl.features;
-  const std::string no_shadow = settings_.shadow.kind == scene::ShadowKind::None ? "shadows are off" : "no such lamp";
-  part("light_block", has(f, Feature::Light), fmt::format("{} lights", stl.lamps.light_block.light_count),
-       "no lamp gives light");
-  part("shadow_cubes", has(f, Feature::ShadowCube),
-       fmt::format("{} point lamps or wide spots", stl.shadows.cube_count()), no_shadow);
-  part("shadow_maps", has(f, Feature::ShadowMap), fmt::format("{} suns or spots", stl.shadows.map_count()), no_shadow);
-  part("shadow_esm", has(f, Feature::ShadowEsm),
-       fmt::format("{} point lamps or spots", stl.shadows.octahedral().size()), no_shadow);
-  part("shadow_pass", !data.psl->shadow_pass.is_empty(), "casters for the lamps' shadows",
-       has(f, any_shadow) ? "no caster" : "no shadow");
-  part("depth_pass", !data.psl->depth_pass.is_empty(), "two-sided materials", "no object with a two-sided material");
-  part("depth_pass_cull", !data.psl->depth_pass_cull.is_empty(), "one-sided materials",
-       "no object with a one-sided material");
-  part("base colour textures", stl.textures.image_count() > 0,
-       fmt::format("{} images that materials look up", stl.textures.image_count()),
-       "no lit or cut out material has one");
-  part("specular in eevee_lit", has(f, Feature::Specular), "a material reflects",
-       has(f, Feature::Light) ? "every material is Lambertian" : "no lamp gives light");
-  part("cascade tint", stl.tinted_light.has_value(), "asked for",
-       settings_.has_cascade_tint ? "no sun has a shadow" : "not asked for");
-  part("film", true, fmt::format("{} samples a pixel", settings_.sample_count), "");
-  part("tonemap", bool(data.txl.display), "a display picture was asked for", "only radiance was asked for");
-  part("programs", stl.shaders.size() > 0, fmt::format("{} programs", stl.shaders.size()), "nothing to draw");
-  return report;
 }
 
 draw::EngineType engine_type(const scene::Scene &scene, const Settings &settings)

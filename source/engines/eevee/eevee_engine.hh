@@ -2,6 +2,7 @@
 #pragma once
 
 #include "eevee_features.hh"
+#include "eevee_frame_tree.hh"
 #include "eevee_shaders.hh"
 #include "eevee_shadows.hh"
 
@@ -55,12 +56,16 @@ struct Report {
   /** Lamps that ask for a shadow, give light, and have none. */
   int lost_shadow_count = 0;
   std::vector<FramePart> parts;
+  /** "frame": programs, passes, targets, blocks, meshes, textures, shadows and draws, as of the last picture. */
+  FrameNode tree;
   ShadowCounters shadow_counters;
 };
 
 /**
- * Lights a scene with its lamps and their shadow maps. The frame: shadows, depth prepass, culled prepass, lit pass;
- * then the film, where samples are summed under the pixel filter, and the display's picture, where asked for.
+ * Lights a scene with its lamps and their shadow maps. What a sync takes note of is made on the device by the first
+ * draw whose view touches any object: a view of nothing costs a clear. The frame: shadows, depth prepass, culled
+ * prepass, lit pass; then the film, where samples are summed under the pixel filter, and the display's picture, where
+ * asked for.
  *
  * One picture is `sample_count` calls of draw_scene (through draw::Viewport::draw) with one view; the engine moves
  * its samples within the pixels.
@@ -118,10 +123,23 @@ class Engine final : public draw::Engine {
   std::vector<std::string> reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files) const;
   /** Draw each shadow again, up to date or not: for who measures what that costs. */
   void invalidate_shadows(draw::Viewport &viewport) const;
-  /** The recorded passes as text. */
+  /** The recorded passes as text: none before a draw that saw anything. */
   [[nodiscard]] std::string serialize_passes(draw::Viewport &viewport) const;
 
  private:
+  /** Everything that a picture needs in which anything is seen, once after each sync. */
+  void record(draw::Viewport &viewport);
+  void make_targets(draw::Viewport &viewport);
+  void make_blocks(draw::Viewport &viewport);
+  void record_object(draw::Viewport &viewport, const draw::ObjectRef &object);
+  void record_film(draw::Viewport &viewport);
+  /** \a sample_view: \a view moved within the pixels. */
+  void draw_sample(draw::Viewport &viewport, const draw::View &view, const draw::View &sample_view);
+  /** One step of the frame: \a passes into \a framebuffer, counted and timed. */
+  void submit_pass(draw::Viewport &viewport, const char *name, const gpu::Framebuffer &framebuffer,
+                   const gpu::PassActions &actions, std::initializer_list<const draw::Pass *> passes,
+                   const draw::View &view);
+
   const scene::Scene &scene_;
   Settings settings_;
 };

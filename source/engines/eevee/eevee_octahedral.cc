@@ -72,60 +72,62 @@ shared::EsmData make_data(const EsmLamp &lamp)
 
 }  // namespace
 
-bool OctahedralStore::sync(gpu::Device &device, ShaderCache &shaders, std::span<const EsmLamp> lamps)
+OctahedralStore::Plan OctahedralStore::plan(const gpu::Limits &device_limits, std::span<const EsmLamp> lamps)
 {
-  const std::size_t most = std::size_t(std::min(ESM_MAX, device.limits().array_layers_max));
-  shared::EsmBlock block{};
-  std::vector<Slot> slots;
-  std::vector<std::string> limits;
+  const std::size_t most = std::size_t(std::min(ESM_MAX, device_limits.array_layers_max));
+  Plan plan;
   std::vector<std::string> lost;
-  std::array<int, 3> layers{};
-  std::array<int, 3> sizes{};
-  int scratch_size = 0;
-  gpu::Format scratch_format = gpu::Format::R32F;
   for (const EsmLamp &lamp : lamps) {
     shared::EsmData data = make_data(lamp);
-    if (slots.size() == most) {
+    if (plan.slots.size() == most) {
       lost.push_back(lamp.name);
       continue;
     }
     const auto format = std::size_t(data.format);
-    data.layer = layers[format]++;
-    sizes[format] = std::max(sizes[format], data.size + 2 * ESM_BORDER);
+    data.layer = plan.layers[format]++;
+    plan.sizes[format] = std::max(plan.sizes[format], data.size + 2 * ESM_BORDER);
     if (lamp.settings.kernel == EsmKernel::Separable) {
-      scratch_size = std::max(scratch_size, data.size);
-      scratch_format = lamp.settings.method == EsmMethod::Evsm ? gpu::Format::RG32F : scratch_format;
+      plan.scratch_size = std::max(plan.scratch_size, data.size);
+      plan.scratch_format = lamp.settings.method == EsmMethod::Evsm ? gpu::Format::RG32F : plan.scratch_format;
     }
     const float error = shared::esm_visibility_error(data.exponent, shared::esm_format_error(data.range, data.format));
     if (error > esm_half_error_max) {
-      limits.push_back(
+      plan.limits.push_back(
           fmt::format("lamp '{}': 16 bits round its shadow by up to {:.2g} at an exponent of {:.4g}/m over "
                       "{:.4g} m; 32 bits would not",
                       lamp.name, error, data.exponent, data.range));
     }
-    block.lamps[slots.size()] = data;
-    slots.push_back({lamp.settings.kernel, lamp.settings.method});
+    plan.block.lamps[plan.slots.size()] = data;
+    plan.slots.push_back({lamp.settings.kernel, lamp.settings.method});
   }
   if (!lost.empty()) {
-    limits.push_back(fmt::format("{} lamps lost their shadow, as {} octahedral layers are the most: '{}'", lost.size(),
-                                 most, fmt::join(lost, "', '")));
+    plan.limits.push_back(fmt::format("{} lamps lost their shadow, as {} octahedral layers are the most: '{}'",
+                                      lost.size(), most, fmt::join(lost, "', '")));
   }
+  return plan;
+}
 
+bool OctahedralStore::sync(gpu::Device &device, ShaderCache &shaders, std::span<const EsmLamp> lamps)
+{
+  Plan plan = OctahedralStore::plan(device.limits(), lamps);
   bool is_new = false;
   for (const int format : {ESM_FLOAT, ESM_HALF, ESM_VARIANCE}) {
-    is_new |= create_array(device, format, sizes[std::size_t(format)], layers[std::size_t(format)]);
+    is_new |= create_array(device, format, plan.sizes[std::size_t(format)], plan.layers[std::size_t(format)]);
   }
-  create_scratch(device, scratch_size, scratch_format);
-  is_new |= slots != slots_ || std::memcmp(&block, &block_, sizeof(block)) != 0;
-  block_ = block;
-  slots_ = std::move(slots);
-  limits_ = std::move(limits);
+  create_scratch(device, plan.scratch_size, plan.scratch_format);
+  is_new |= plan.slots != slots_ || std::memcmp(&plan.block, &block_, sizeof(block_)) != 0;
+  block_ = plan.block;
+  slots_ = std::move(plan.slots);
+  limits_ = std::move(plan.limits);
   if (!slots_.empty()) {
     if (!block_buffer_) {
       sampler_ = device.create_sampler({.name = "esm_sampler"});
       block_buffer_ = device.create_buffer({"esm_block", gpu::BufferKind::Uniform, sizeof(shared::EsmBlock)});
     }
     device.update(block_buffer_, block_);
+  }
+  else {
+    block_buffer_ = {};
   }
   record_passes(device, shaders);
   return is_new;
@@ -272,14 +274,24 @@ void OctahedralStore::bind(draw::ShadingGroup &group) const
   group.bind_texture("shadow_evsm", texture_of(ESM_VARIANCE), sampler_);
 }
 
+std::vector<const gpu::Texture *> OctahedralStore::textures() const
+{
+  std::vector<const gpu::Texture *> textures;
+  const auto add = [&](const gpu::Texture &texture) {
+    if (texture) {
+      textures.push_back(&texture);
+    }
+  };
+  std::ranges::for_each(arrays_, add, &Array::texture);
+  std::ranges::for_each(scratch_, add, &Scratch::texture);
+  return textures;
+}
+
 std::size_t OctahedralStore::size_bytes() const
 {
   std::size_t bytes = 0;
-  for (const Array &array : arrays_) {
-    bytes += array.texture ? array.texture.desc().size_bytes() : 0;
-  }
-  for (const Scratch &scratch : scratch_) {
-    bytes += scratch.texture ? scratch.texture.desc().size_bytes() : 0;
+  for (const gpu::Texture *texture : textures()) {
+    bytes += texture->desc().size_bytes();
   }
   return bytes;
 }

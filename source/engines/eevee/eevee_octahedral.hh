@@ -122,6 +122,13 @@ class OctahedralStore {
    */
   bool sync(gpu::Device &device, ShaderCache &shaders, std::span<const EsmLamp> lamps);
 
+  /** What limits() would be after a sync, without making anything. \throws gpu::Error as sync */
+  [[nodiscard]] static std::vector<std::string> limits_of(const gpu::Limits &device_limits,
+                                                          std::span<const EsmLamp> lamps)
+  {
+    return plan(device_limits, lamps).limits;
+  }
+
   /** Append the passes that make the layer of the \a index-th lamp. \pre index below size() */
   void record(gpu::CommandList &list, std::size_t index, const EsmCube &cube);
 
@@ -150,6 +157,13 @@ class OctahedralStore {
   }
   /** Of layers and of what filtering needs besides. */
   [[nodiscard]] std::size_t size_bytes() const;
+  /** All that is made, layers first. */
+  [[nodiscard]] std::vector<const gpu::Texture *> textures() const;
+  /** `esm_block`; empty until a lamp has a layer. */
+  [[nodiscard]] const gpu::Buffer &block() const
+  {
+    return block_buffer_;
+  }
   /** Lamps without a layer, and those whose visibility 16 bits round by more than esm_half_error_max; named. */
   [[nodiscard]] const std::vector<std::string> &limits() const
   {
@@ -174,6 +188,20 @@ class OctahedralStore {
     gpu::Framebuffer framebuffer;
   };
 
+  /** What lamps come to, before anything is made for them. */
+  struct Plan {
+    std::vector<Slot> slots;
+    shared::EsmBlock block{};
+    std::vector<std::string> limits;
+    /** By ESM_…: layers, and their edge. */
+    std::array<int, 3> layers{};
+    std::array<int, 3> sizes{};
+    /** 0: no lamp needs any. */
+    int scratch_size = 0;
+    gpu::Format scratch_format = gpu::Format::R32F;
+  };
+
+  [[nodiscard]] static Plan plan(const gpu::Limits &device_limits, std::span<const EsmLamp> lamps);
   [[nodiscard]] const draw::Pass &pass_of(const Slot &slot) const;
   [[nodiscard]] const Array &array_of(std::size_t index) const
   {

@@ -150,6 +150,17 @@ const gpu::Shader &ShaderCache::get(gpu::Device &device, ShaderId id, Feature fe
   return shaders_[key] = device.create_shader(shader_desc(declaration, key.second, pcf_), files_);
 }
 
+std::vector<Feature> ShaderCache::made(ShaderId id) const
+{
+  std::vector<Feature> variants;
+  for (const auto &[key, shader] : shaders_) {
+    if (key.first == id) {
+      variants.push_back(key.second);
+    }
+  }
+  return variants;
+}
+
 std::vector<std::string> ShaderCache::reload(gpu::Device &device, gpu::ShaderFiles files)
 {
   files_ = std::move(files);

@@ -88,6 +88,8 @@ class ShaderCache {
   {
     return shaders_.size();
   }
+  /** Variants of a program that were made, each with its features. */
+  [[nodiscard]] std::vector<Feature> made(ShaderId id) const;
 
  private:
   /** Those that the program was built with, until reload gives others. */

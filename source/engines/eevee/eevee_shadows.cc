@@ -80,10 +80,10 @@ static LayerPass best_layer_pass(LayerPass asked, const gpu::Limits &limits)
   return limits.has_vertex_layer ? LayerPass::Layered : LayerPass::Geometry;
 }
 
-void Shadows::sync(gpu::Device &device, ShaderCache &shaders, const scene::Scene &scene, Lamps &lamps,
+void Shadows::sync(const gpu::Limits &device_limits, const scene::Scene &scene, Lamps &lamps,
                    const ShadowSettings &settings)
 {
-  layer_pass_ = best_layer_pass(settings.layer_pass, device.limits());
+  layer_pass_ = best_layer_pass(settings.layer_pass, device_limits);
   // After a sync that failed, the last good one's casters are still those that were drawn.
   if (std::exchange(is_finished_, false)) {
     casters_before_ = std::exchange(casters_, {});
@@ -102,21 +102,35 @@ void Shadows::sync(gpu::Device &device, ShaderCache &shaders, const scene::Scene
     }
   }
   settings_ = settings;
-  place_slots(device.limits(), scene, lamps);
+  place_slots(device_limits, scene, lamps);
   for (std::size_t i = 0; i < 3; i++) {
     keep_drawn(*arrays()[i], std::move(before[i]));
   }
-  if (!sampler_ && !(cubes_.slots.empty() && maps_.slots.empty() && distance_cube_.slots.empty())) {
+  place_octahedral(device_limits, scene);
+}
+
+void Shadows::allocate(gpu::Device &device, ShaderCache &shaders)
+{
+  const bool has_depths = !cubes_.slots.empty() || !maps_.slots.empty();
+  if (!has_depths) {
+    shadow_block_buffer_ = {};
+  }
+  else if (!shadow_block_buffer_) {
     sampler_ = device.create_sampler({.name = "shadow_sampler"});
     shadow_block_buffer_ =
         device.create_buffer({"shadow_block", gpu::BufferKind::Uniform, sizeof(shared::ShadowBlock)});
+    is_block_dirty_ = true;
   }
   create_layers(device, cubes_, 6 * int(cubes_.slots.size()));
   create_layers(device, distance_cube_, distance_cube_.slots.empty() ? 0 : 6);
   if (maps_.slots.empty()) {
     create_layers(device, maps_, 0);
   }
-  place_octahedral(device, shaders, scene);
+  if (octahedral_.sync(device, shaders, esm_lamps_)) {
+    for (Slot &slot : distance_cube_.slots) {
+      slot.drawn = slot.settled = 0;
+    }
+  }
   place_render_blocks(device);
 }
 
@@ -195,16 +209,16 @@ void Shadows::warn_of_idle_wishes(const scene::Lamp &lamp)
   }
 }
 
-/** Octahedral layers for the lamps that have exponential shadows. */
-void Shadows::place_octahedral(gpu::Device &device, ShaderCache &shaders, const scene::Scene &scene)
+/** What lamps with exponential shadows ask of their octahedral layers. */
+void Shadows::place_octahedral(const gpu::Limits &device_limits, const scene::Scene &scene)
 {
   const scene::Bounds bounds_ws = scene.bounds();
-  std::vector<EsmLamp> esm_lamps;
+  esm_lamps_.clear();
   for (const Slot &slot : distance_cube_.slots) {
     const glm::vec3 position_ws(slot.lamp.world_from_lamp[3]);
     const glm::vec3 reach = glm::max(glm::abs(bounds_ws.min - position_ws), glm::abs(bounds_ws.max - position_ws));
     const scene::LampShadow &wishes = slot.lamp.shadow;
-    EsmLamp &lamp = esm_lamps.emplace_back();
+    EsmLamp &lamp = esm_lamps_.emplace_back();
     lamp.name = slot.lamp.name;
     // Without a range of its own, nothing that it could darken is farther than the scene.
     lamp.range = std::isinf(slot.range) ? std::clamp(1.01F * glm::length(reach), 1e-6F, 1e30F) : slot.range;
@@ -218,12 +232,8 @@ void Shadows::place_octahedral(gpu::Device &device, ShaderCache &shaders, const 
       lamp.settings.format = *wishes.esm_format == scene::EsmFormat::Half ? EsmFormat::Half : EsmFormat::Float;
     }
   }
-  if (octahedral_.sync(device, shaders, esm_lamps)) {
-    for (Slot &slot : distance_cube_.slots) {
-      slot.drawn = slot.settled = 0;
-    }
-  }
-  limits_.insert(limits_.end(), octahedral_.limits().begin(), octahedral_.limits().end());
+  const std::vector<std::string> limits = OctahedralStore::limits_of(device_limits, esm_lamps_);
+  limits_.insert(limits_.end(), limits.begin(), limits.end());
 }
 
 int Shadows::octahedral_size_px(const Slot &slot) const
@@ -359,7 +369,10 @@ void Shadows::place_render_blocks(gpu::Device &device)
       size += stride;
     }
   }
-  if (size > 0 && (!render_buffer_ || render_buffer_.size_bytes() != size)) {
+  if (size == 0) {
+    render_buffer_ = {};
+  }
+  else if (!render_buffer_ || render_buffer_.size_bytes() != size) {
     // A buffer of many blocks may be larger than one block may be, so it is made as storage.
     render_buffer_ = device.create_buffer({"shadow_render_block", gpu::BufferKind::Storage, size});
   }
@@ -488,7 +501,7 @@ void Shadows::fit_suns(gpu::Device &device, const draw::View &view, float pixel_
     layers_max += slot.layer_count_max;
   }
   const int layers_now = maps_.texture ? maps_.texture.desc().layers : 0;
-  create_layers(device, maps_, std::max({layers, std::min(layers_now, layers_max), 1}));
+  create_layers(device, maps_, std::max(layers, std::min(layers_now, layers_max)));
 }
 
 /** Fills caster_layers_. */
@@ -587,6 +600,7 @@ void Shadows::update_slot(gpu::Device &device, Slot &slot, Array &array, std::ui
     list.end_pass();
   }
   slot.drawn |= drawn;
+  slot.drawn_now |= drawn;
   slot.settled |= missing;
   if (&array == &cubes_) {
     write_cube_data(slot);
@@ -605,6 +619,29 @@ void Shadows::update_slot(gpu::Device &device, Slot &slot, Array &array, std::ui
   counters_.lamps_updated++;
   counters_.faces_drawn += std::uint64_t(std::popcount(drawn));
   counters_.faces_skipped += std::uint64_t(std::popcount(all & ~drawn));
+}
+
+std::uint32_t Shadows::looked_up_layers(const Slot &slot) const
+{
+  if (slot.lamp.kind == scene::LampKind::Sun) {
+    // Fitted to what is visible.
+    return ~0U;
+  }
+  return slot.layer_count_max == 6 ? looked_up_faces(slot) : is_spot_looked_up(slot) ? 1U : 0U;
+}
+
+/** Whether anything visible may be within the four sides of a spot's map. */
+bool Shadows::is_spot_looked_up(const Slot &slot) const
+{
+  const glm::dvec3 position_ws(slot.lamp.world_from_lamp[3]);
+  const std::span sides = std::span(slot.views.front().frustum_planes_ws()).first(4);
+  return std::ranges::none_of(sides, [&](const glm::vec4 &side) {
+    return std::ranges::all_of(visible_.corners, [&](const glm::dvec3 &corner) {
+      // The plane's own rounding grows with the coordinates; a map too many costs no more than it did.
+      const double slack = 1e-4 * (glm::length(corner) + glm::length(position_ws));
+      return glm::dot(glm::dvec3(side), corner) + double(side.w) < -slack;
+    });
+  });
 }
 
 /** Faces that something visible may look up: those on whose side of a plane through the lamp any of it is. */
@@ -645,11 +682,10 @@ void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_si
     fit_suns(device, view, pixel_size);
     seen_clip_from_world_ = view.clip_from_world();
   }
-  for (Slot &slot : cubes_.slots) {
-    update_slot(device, slot, cubes_, looked_up_faces(slot), pass, list);
-  }
-  for (Slot &slot : maps_.slots) {
-    update_slot(device, slot, maps_, ~0U, pass, list);
+  for (Array *array : {&cubes_, &maps_}) {
+    for (Slot &slot : array->slots) {
+      update_slot(device, slot, *array, looked_up_layers(slot), pass, list);
+    }
   }
   // The filter looks around corners, so that all faces are wanted; and the cube is the next lamp's then.
   for (Slot &slot : distance_cube_.slots) {
@@ -733,6 +769,32 @@ std::optional<ShadowLayers> Shadows::layers(const shared::LightData &light) cons
   return layers;
 }
 
+void Shadows::begin_picture()
+{
+  for (Array *array : arrays()) {
+    for (Slot &slot : array->slots) {
+      slot.drawn_now = 0;
+    }
+  }
+}
+
+std::vector<ShadowState> Shadows::states() const
+{
+  std::vector<ShadowState> states;
+  for (const Array *array : {&cubes_, &maps_, &distance_cube_}) {
+    for (const Slot &slot : array->slots) {
+      states.push_back({.light = slot.light,
+                        .array = array->name,
+                        .size_px = slot.size_px,
+                        .layer_count = int(slot.views.size()),
+                        .drawn = slot.drawn,
+                        .settled = slot.settled,
+                        .drawn_now = slot.drawn_now});
+    }
+  }
+  return states;
+}
+
 void Shadows::invalidate()
 {
   for (Array *array : arrays()) {
@@ -745,14 +807,16 @@ void Shadows::invalidate()
 Feature Shadows::features() const
 {
   Feature features = Feature::None;
-  for (const Array *array : {&cubes_, &maps_}) {
-    for (const Slot &slot : array->slots) {
-      features = features | (array == &cubes_ ? Feature::ShadowCube : Feature::ShadowMap) |
-                 (slot.kind == scene::ShadowKind::Pcf ? Feature::ShadowPcf : Feature::None);
-    }
+  for (const Slot &slot : cubes_.slots) {
+    features = features | Feature::ShadowCube | (slot.kind == scene::ShadowKind::Pcf ? Feature::ShadowPcf : features);
   }
-  return features | (octahedral_.size() > 0 ? Feature::ShadowEsm : Feature::None) |
-         (octahedral_.has_variance() ? Feature::ShadowEvsm : Feature::None);
+  for (const Slot &slot : maps_.slots) {
+    features = features | Feature::ShadowMap | (slot.kind == scene::ShadowKind::Pcf ? Feature::ShadowPcf : features);
+  }
+  for (const Slot &slot : distance_cube_.slots) {
+    features = features | Feature::ShadowEsm | (slot.kind == scene::ShadowKind::Evsm ? Feature::ShadowEvsm : features);
+  }
+  return features;
 }
 
 void Shadows::bind(draw::ShadingGroup &group) const
@@ -762,7 +826,7 @@ void Shadows::bind(draw::ShadingGroup &group) const
     group.bind_texture_ref("shadow_cubes", &cubes_.binding);
     group.bind_texture_ref("shadow_maps", &maps_.binding);
   }
-  if (octahedral_.size() > 0) {
+  if (!distance_cube_.slots.empty()) {
     octahedral_.bind(group);
   }
 }

@@ -81,6 +81,24 @@ struct ShadowCounters {
   std::uint64_t caster_draws = 0;
 };
 
+/** Which of a light's layers are drawn, and which are not, for who reports it. Bit i of a mask: layer i. */
+struct ShadowState {
+  /** In light_block. */
+  int light = 0;
+  /** Where the layers are: "shadow_cubes", "shadow_maps" or "shadow_distance_cube". */
+  std::string_view array;
+  /** Edge of each, texels. */
+  int size_px = 0;
+  /** 0: a sun, of which nothing is seen that its casters could darken; or nothing was ever seen. */
+  int layer_count = 0;
+  /** Drawn, and still what they should be. */
+  std::uint32_t drawn = 0;
+  /** Those, and those that were not drawn for want of a caster. What is in neither, nothing visible looks up. */
+  std::uint32_t settled = 0;
+  /** Drawn since begin_picture. */
+  std::uint32_t drawn_now = 0;
+};
+
 /** A light's layers as they stand, for who shows them. */
 struct ShadowLayers {
   /** How many; 0 where nothing is seen that the light's casters could darken. */
@@ -111,17 +129,19 @@ struct ShadowLayers {
 /**
  * Shadow maps of a scene's lamps in one viewport: which lamp has which layers, and which of them are up to date.
  *
- * Order: sync, then casters, finish, then update for each view. What the last sync drew stays where neither the lamp
- * nor its settings nor a caster in its range changed.
+ * Order: sync; once anything is seen, allocate, bind, casters, finish; then update for each view. What the last sync
+ * drew stays where neither the lamp nor its settings nor a caster in its range changed.
  */
 class Shadows {
  public:
   /**
    * Give each light of \a lamps that casts a shadow its place. Writes shadow_kind and shadow_index of its entry.
-   * \throws gpu::Error naming lamp and setting where a setting is out of range.
+   * Makes nothing on the device. \throws gpu::Error naming lamp and setting where a setting is out of range.
    */
-  void sync(gpu::Device &device, ShaderCache &shaders, const scene::Scene &scene, Lamps &lamps,
-            const ShadowSettings &settings);
+  void sync(const gpu::Limits &device_limits, const scene::Scene &scene, Lamps &lamps, const ShadowSettings &settings);
+  /** Make what the last sync gave places to, and free what has none any more. \a shaders: for the next filter passes.
+   */
+  void allocate(gpu::Device &device, ShaderCache &shaders);
   void add_caster(const Caster &caster)
   {
     casters_.push_back(caster);
@@ -130,6 +150,10 @@ class Shadows {
   void finish();
   /** Draw everything again: the shaders are others. */
   void invalidate();
+  /** What is drawn from here on is ShadowState::drawn_now. */
+  void begin_picture();
+  /** Of each light that casts a shadow. */
+  [[nodiscard]] std::vector<ShadowState> states() const;
 
   /**
    * Fit to what \a view sees and record into \a list what is not up to date. \a pass draws the casters' instances,
@@ -162,6 +186,19 @@ class Shadows {
   [[nodiscard]] const gpu::Texture &maps() const
   {
     return maps_.texture;
+  }
+  [[nodiscard]] const gpu::Texture &distance_cube() const
+  {
+    return distance_cube_.texture;
+  }
+  /** `shadow_block`, empty without cubes and maps; and the views that casters are drawn with, one a lamp. */
+  [[nodiscard]] const gpu::Buffer &block() const
+  {
+    return shadow_block_buffer_;
+  }
+  [[nodiscard]] const gpu::Buffer &render_blocks() const
+  {
+    return render_buffer_;
   }
   /** Edge of a texel of a light's shadow at a place, across the light, metres; 0: it has none there. */
   [[nodiscard]] double texel_size(const shared::LightData &light, const glm::dvec3 &position_ws) const;
@@ -228,6 +265,7 @@ class Shadows {
     std::uint32_t drawn = 0;
     /** The same, and those that have nothing in them to draw. */
     std::uint32_t settled = 0;
+    std::uint32_t drawn_now = 0;
   };
   /** Layers of one size, and who has them. */
   struct Array {
@@ -245,7 +283,7 @@ class Shadows {
     return {&cubes_, &maps_, &distance_cube_};
   }
   void warn_of_idle_wishes(const scene::Lamp &lamp);
-  void place_octahedral(gpu::Device &device, ShaderCache &shaders, const scene::Scene &scene);
+  void place_octahedral(const gpu::Limits &device_limits, const scene::Scene &scene);
   [[nodiscard]] int octahedral_size_px(const Slot &slot) const;
   void keep_drawn(Array &array, std::vector<Slot> before);
   void create_layers(gpu::Device &device, Array &array, int layers);
@@ -255,6 +293,9 @@ class Shadows {
   void fit_suns(gpu::Device &device, const draw::View &view, float pixel_size);
   void write_cube_data(const Slot &slot);
   void write_map_data(const Slot &slot);
+  /** Of a cube for depths, or of maps: layers that something visible may look up. */
+  [[nodiscard]] std::uint32_t looked_up_layers(const Slot &slot) const;
+  [[nodiscard]] bool is_spot_looked_up(const Slot &slot) const;
   [[nodiscard]] std::uint32_t looked_up_faces(const Slot &slot) const;
   void find_touched_layers(const Slot &slot);
   void update_slot(gpu::Device &device, Slot &slot, Array &array, std::uint32_t wanted, const draw::Pass &pass,
@@ -283,6 +324,8 @@ class Shadows {
   Array maps_{"shadow_maps", {}, {}, {}, {}};
   /** Lamps with exponential shadows; their layers are one cube that each is drawn into on its way to octahedral_. */
   Array distance_cube_{"shadow_distance_cube", {}, {}, {}, {}};
+  /** What each of distance_cube_'s slots asks of octahedral_. */
+  std::vector<EsmLamp> esm_lamps_;
   OctahedralStore octahedral_;
   gpu::Sampler sampler_;
   shared::ShadowBlock shadow_block_{};

@@ -22,6 +22,11 @@ class Textures {
   /** A texture of the scene, whose images and textures stay as they are until clear(). */
   [[nodiscard]] Lookup get(gpu::Device &device, const scene::Scene &scene, std::size_t index);
 
+  /** An image of the scene on the device; nullptr: nobody asked for it. */
+  [[nodiscard]] const gpu::Texture *image(std::size_t index) const
+  {
+    return index < images_.size() && images_[index] ? &images_[index] : nullptr;
+  }
   /** Images on the device. */
   [[nodiscard]] std::size_t image_count() const;
 

@@ -709,8 +709,8 @@ void GlDevice::list_submit(const CommandList &list)
         break;
       }
       case CommandKind::BindTexture:
-        glBindTextureUnit(command.slot, textures_.at(command.id));
-        glBindSampler(command.slot, samplers_.at(command.first));
+        glBindTextureUnit(command.slot, command.id == 0 ? 0 : textures_.at(command.id));
+        glBindSampler(command.slot, command.first == 0 ? 0 : samplers_.at(command.first));
         break;
       case CommandKind::PushConstants:
         glBindBufferRange(GL_UNIFORM_BUFFER, command.slot, streams_[PushStream], GLintptr(push_offset),

@@ -118,7 +118,8 @@ class ShadowsTest : public testing::Test {
   void sync(const ShadowSettings &asked = {})
   {
     lamps = make_lamps(scene);
-    shadows.sync(*device, shaders, scene, lamps, asked);
+    shadows.sync(device->limits(), scene, lamps, asked);
+    shadows.allocate(*device, shaders);
     pass.clear();
     draw::InstanceCall &instances = pass.group(shader).instances(batch);
     for (std::size_t i = 0; i < casters.size(); i++) {
@@ -344,7 +345,7 @@ TEST_F(ShadowsTest, RespectTheDevicesLayers)
   }
   lamps = make_lamps(scene);
   Shadows few;
-  few.sync(*small, shaders, scene, lamps, {.cube_size_px = 16});
+  few.sync(small->limits(), scene, lamps, {.cube_size_px = 16});
   EXPECT_EQ(few.cube_count(), 2U);
   EXPECT_NE(few.limits().at(0).find("'point2'"), std::string::npos);
 }
@@ -364,8 +365,8 @@ TEST_F(ShadowsTest, WithoutVertexLayersTheGeometryShaderChooses)
   const std::unique_ptr<gpu::Device> old = gpu::create_null_device({.has_vertex_layer = false});
   lamps = make_lamps(scene);
   Shadows plain;
-  EXPECT_THROW(plain.sync(*old, shaders, scene, lamps, {.layer_pass = LayerPass::Layered}), gpu::Error);
-  plain.sync(*old, shaders, scene, lamps, {});
+  EXPECT_THROW(plain.sync(old->limits(), scene, lamps, {.layer_pass = LayerPass::Layered}), gpu::Error);
+  plain.sync(old->limits(), scene, lamps, {});
   EXPECT_EQ(plain.layer_pass(), LayerPass::Geometry) << "the next best";
 }
 
