@@ -135,6 +135,24 @@ TEST(Flip, IsInRangeAndTheSameFromBothSides)
   EXPECT_EQ(one, mean_flip(size_px, noise(2), noise(1)));
 }
 
+TEST(Flip, OfPicturesThatAreTurnedIsTheSame)
+{
+  const auto half_turn = [](const Picture &picture) { return Picture(picture.rbegin(), picture.rend()); };
+  const auto transposed = [](const Picture &picture) {
+    Picture result;
+    for (int x = 0; x < size_px.x; x++) {
+      for (int y = 0; y < size_px.y; y++) {
+        result.push_back(picture[std::size_t(y * size_px.x + x)]);
+      }
+    }
+    return result;
+  };
+  const double upright = mean_flip(size_px, noise(1), noise(2));
+  // Sums are in another order.
+  EXPECT_NEAR(mean_flip(size_px, half_turn(noise(1)), half_turn(noise(2))), upright, 1e-6);
+  EXPECT_NEAR(mean_flip({size_px.y, size_px.x}, transposed(noise(1)), transposed(noise(2))), upright, 1e-6);
+}
+
 TEST(Flip, OfUniformGreysIsOfTheirLightness)
 {
   // Both sides of CIELAB's knee, and of the turn in the redistribution.
