@@ -141,10 +141,11 @@ Plane convolve_y(glm::ivec2 size_px, const Plane &plane, const Kernel &kernel)
   const int radius = int(kernel.size() / 2);
   Plane result(plane.size(), 0.0F);
   for (int y = 0; y < size_px.y; y++) {
-    for (int d = -radius; d <= radius; d++) {
-      const int from = std::clamp(y + d, 0, size_px.y - 1);
-      add(std::span(result).subspan(std::size_t(y) * width, width), kernel[std::size_t(d + radius)],
-          std::span(plane).subspan(std::size_t(from) * width, width));
+    const std::span<float> sums = std::span(result).subspan(std::size_t(y) * width, width);
+    int from = y - radius;
+    for (const float factor : kernel) {
+      const auto inside = std::size_t(std::clamp(from++, 0, size_px.y - 1));
+      add(sums, factor, std::span(plane).subspan(inside * width, width));
     }
   }
   return result;
@@ -164,14 +165,14 @@ Plane filter(glm::ivec2 size_px, const Plane &plane, std::span<const Sensitivity
   static const int radius = int(std::ceil(3.0 * std::sqrt(0.04 / (2.0 * pi * pi)) * pixels_per_degree));
   Plane result(plane.size(), 0.0F);
   double total = 0.0;
-  for (const auto &[amplitude, spread] : sensitivities) {
-    Kernel kernel = make_kernel(radius, [spread](double d_px) {
+  for (const Sensitivity &part : sensitivities) {
+    Kernel kernel = make_kernel(radius, [&part](double d_px) {
       const double d = d_px / pixels_per_degree;
-      return std::exp(-pi * pi * d * d / spread);
+      return std::exp(-pi * pi * d * d / part.spread);
     });
     const double sum = std::accumulate(kernel.begin(), kernel.end(), 0.0);
     normalise(kernel);
-    const double weight = amplitude * std::sqrt(pi / spread) * sum * sum;
+    const double weight = part.amplitude * std::sqrt(pi / part.spread) * sum * sum;
     total += weight;
     add(result, float(weight), convolve_y(size_px, convolve_x(size_px, plane, kernel), kernel));
   }
@@ -181,14 +182,7 @@ Plane filter(glm::ivec2 size_px, const Plane &plane, std::span<const Sensitivity
   return result;
 }
 
-/** What an eye has of a picture. */
-struct Seen {
-  /** \see hunt_lab */
-  std::vector<glm::vec3> colours;
-  /** Strength of each pixel's edge, and of a point or a line there, from 0 to the root of 2. */
-  std::vector<glm::vec2> features;
-};
-
+/** Of each pixel, the strength of an edge, and of a point or a line, each from 0 to the root of 2. */
 std::vector<glm::vec2> features(glm::ivec2 size_px, const Plane &luminance)
 {
   constexpr double sigma_px = 0.5 * 0.082 * pixels_per_degree;
@@ -212,6 +206,14 @@ std::vector<glm::vec2> features(glm::ivec2 size_px, const Plane &luminance)
   }
   return strengths;
 }
+
+/** What an eye has of a picture. */
+struct Seen {
+  /** \see hunt_lab */
+  std::vector<glm::vec3> colours;
+  /** \see features */
+  std::vector<glm::vec2> features;
+};
 
 Seen see(glm::ivec2 size_px, std::span<const glm::vec4> picture)
 {

@@ -140,9 +140,10 @@ TEST(Flip, OfPicturesThatAreTurnedIsTheSame)
   const auto half_turn = [](const Picture &picture) { return Picture(picture.rbegin(), picture.rend()); };
   const auto transposed = [](const Picture &picture) {
     Picture result;
-    for (int x = 0; x < size_px.x; x++) {
-      for (int y = 0; y < size_px.y; y++) {
-        result.push_back(picture[std::size_t(y * size_px.x + x)]);
+    const std::size_t width = std::size_t(size_px.x);
+    for (std::size_t x = 0; x < width; x++) {
+      for (std::size_t i = x; i < picture.size(); i += width) {
+        result.push_back(picture[i]);
       }
     }
     return result;
@@ -183,9 +184,9 @@ TEST(Flip, SeesABlackSquareOnGrey)
   constexpr glm::ivec2 large{128, 64};
   const Picture plain = uniform(glm::vec3(0.2F), large);
   Picture square = plain;
-  for (int y = 24; y < 40; y++) {
-    for (int x = 56; x < 72; x++) {
-      square[std::size_t(y * large.x + x)] = glm::vec4(0.0F);
+  for (std::size_t y = 24; y < 40; y++) {
+    for (std::size_t x = 56; x < 72; x++) {
+      square[y * 128 + x] = glm::vec4(0.0F);
     }
   }
   // The square is a 32nd of the picture. Within it the error is at least that of the greys, but for a seam of which the
