@@ -6,6 +6,7 @@
 
 #include <unistd.h>
 #include <cmath>
+#include <fstream>
 #include <stdexcept>
 
 namespace gnomon::cli {
@@ -31,6 +32,16 @@ void write_atomically(const fs::path &path, const std::function<void(const fs::p
     fs::remove(beside, ignored);
     throw;
   }
+}
+
+void write_text(const fs::path &path, const std::string &text)
+{
+  write_atomically(path, [&](const fs::path &beside) {
+    std::ofstream file(beside);
+    if (!(file << text << std::flush)) {
+      throw std::runtime_error(fmt::format("{}: cannot be written", path.string()));
+    }
+  });
 }
 
 NonFinite find_non_finite(glm::ivec2 size_px, std::span<const float> rgba)

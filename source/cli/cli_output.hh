@@ -22,6 +22,9 @@ namespace gnomon::cli {
 void write_atomically(const std::filesystem::path &path,
                       const std::function<void(const std::filesystem::path &beside)> &write);
 
+/** A file of \a text, whole or not at all. \throws as write_atomically */
+void write_text(const std::filesystem::path &path, const std::string &text);
+
 /** What is wrong with a picture's numbers. */
 struct NonFinite {
   /** Channels that are NaN or infinite. */

@@ -16,7 +16,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <map>
 
 namespace gnomon::cli {
@@ -338,16 +337,6 @@ void print(const SceneReport &report)
     fmt::print(" {} {}", name, order ? fmt::format("{:.2f};", -*order) : "(none wrong);");
   }
   fmt::print("\n");
-}
-
-void write_text(const fs::path &path, const std::string &text)
-{
-  write_atomically(path, [&](const fs::path &beside) {
-    std::ofstream file(beside);
-    if (!(file << text << std::flush)) {
-      throw std::runtime_error(fmt::format("{}: cannot be written", path.string()));
-    }
-  });
 }
 
 Status report(const ReportOptions &options)

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: MIT
+#include "cli.hh"
+
+#include "cli_output.hh"
+#include "cli_run_info.hh"
+
+#include "measure_page.hh"
+#include "measure_stability.hh"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <unistd.h>
+#include <algorithm>
+#include <cmath>
+
+namespace gnomon::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct StabilityOptions {
+  std::string folder;
+  std::string group;
+};
+
+struct Judged {
+  measure::StabilityCase one;
+  measure::StabilityResult result;
+};
+
+/** The cases of all lists: the one place that joins them. */
+std::vector<measure::StabilityCase> all_cases()
+{
+  std::vector<measure::StabilityCase> cases = measure::function_stability_cases();
+  // TO MERGE: append input_stability_cases() and image_stability_cases(device) here, and give RunInfo the device's
+  // description.
+  return cases;
+}
+
+std::vector<std::string> groups_of(const std::vector<measure::StabilityCase> &cases)
+{
+  std::vector<std::string> groups;
+  for (const measure::StabilityCase &one : cases) {
+    if (std::ranges::find(groups, one.group) == groups.end()) {
+      groups.push_back(one.group);
+    }
+  }
+  return groups;
+}
+
+/** Of \a group, or all where it is empty, those of a group together. */
+std::vector<measure::StabilityCase> chosen_cases(const std::string &group)
+{
+  std::vector<measure::StabilityCase> cases = all_cases();
+  const std::vector<std::string> groups = groups_of(cases);
+  if (!group.empty()) {
+    if (std::ranges::find(groups, group) == groups.end()) {
+      throw UsageError(fmt::format("no group '{}' of cases; there are: {}", group, fmt::join(groups, ", ")));
+    }
+    std::erase_if(cases, [&](const measure::StabilityCase &one) { return one.group != group; });
+  }
+  std::ranges::stable_sort(cases, {},
+                           [&](const measure::StabilityCase &one) { return std::ranges::find(groups, one.group); });
+  return cases;
+}
+
+std::vector<Judged> judge(std::vector<measure::StabilityCase> cases)
+{
+  std::vector<Judged> judged;
+  for (measure::StabilityCase &one : cases) {
+    measure::StabilityResult result = measure::run(one);
+    judged.push_back({std::move(one), std::move(result)});
+    if (isatty(STDERR_FILENO)) {
+      const bool is_last = judged.size() == cases.size();
+      fmt::print(stderr, "\r{}/{} cases{}", judged.size(), cases.size(), is_last ? "\r\033[K" : "");
+    }
+  }
+  return judged;
+}
+
+struct Summary {
+  std::size_t cases = 0;
+  std::size_t passed = 0;
+  /** Among the passed. */
+  std::size_t baselines = 0;
+  std::size_t failed = 0;
+  /** Cases that are no baselines. */
+  std::size_t non_finite = 0;
+};
+
+Summary summary_of(const std::vector<Judged> &judged)
+{
+  Summary summary;
+  for (const auto &[one, result] : judged) {
+    summary.cases++;
+    summary.passed += result.is_passed ? 1 : 0;
+    summary.baselines += result.is_passed && one.is_baseline ? 1 : 0;
+    summary.failed += result.is_passed ? 0 : 1;
+    summary.non_finite += !one.is_baseline && result.non_finite_count > 0 ? 1 : 0;
+  }
+  return summary;
+}
+
+std::string to_text(const Summary &summary)
+{
+  return fmt::format("{} cases: {} passed ({} baselines seen to fail), {} failed, {} non-finite", summary.cases,
+                     summary.passed, summary.baselines, summary.failed, summary.non_finite);
+}
+
+const char *verdict(const Judged &judged)
+{
+  if (!judged.result.is_passed) {
+    return "FAILED";
+  }
+  return judged.one.is_baseline ? "baseline" : "passed";
+}
+
+std::string range_of(const Judged &judged)
+{
+  const std::vector<measure::StabilitySample> &samples = judged.result.samples;
+  return samples.empty() ? "" : fmt::format("{:.3g} to {:.3g}", samples.front().parameter, samples.back().parameter);
+}
+
+void print(const std::vector<Judged> &judged)
+{
+  std::string group;
+  for (const Judged &each : judged) {
+    const auto &[one, result] = each;
+    if (group != one.group) {
+      group = one.group;
+      fmt::print("\n{}\n{:8} {:>10} {:>10} {:>10}  {}\n", group, "", "error", "bound", "at", "of");
+    }
+    fmt::print("{:8} {:10.3g} {:10.3g} {:10.3g}  {} ({})\n", verdict(each), result.worst_error, one.bound,
+               result.worst_parameter, one.name, one.unit);
+  }
+}
+
+void print_failures(const std::vector<Judged> &judged)
+{
+  for (const auto &[one, result] : judged) {
+    if (result.is_passed) {
+      continue;
+    }
+    std::string reason = result.failure;
+    if (reason.empty()) {
+      reason = one.is_baseline ? "a baseline that no longer fails" : "error";
+      reason += fmt::format(" {:.4g} {} at {} {:.6g}, bound {:.4g}", result.worst_error, one.unit, one.parameter,
+                            result.worst_parameter, one.bound);
+    }
+    fmt::print(stderr, "gnomon: failed: {}, {}: {}\n", one.group, one.name, reason);
+  }
+}
+
+std::string quoted(std::string text)
+{
+  for (std::size_t at = text.find('"'); at != std::string::npos; at = text.find('"', at + 2)) {
+    text.insert(at, 1, '"');
+  }
+  return '"' + text + '"';
+}
+
+std::string to_csv(const std::vector<Judged> &judged)
+{
+  std::string csv =
+      "group,name,quantity,parameter,low,high,reference,unit,worst_error,worst_parameter,bound,samples,non_finite,"
+      "finite,"
+      "baseline,passed,failure\n";
+  for (const auto &[one, result] : judged) {
+    const bool has_samples = !result.samples.empty();
+    csv += fmt::format("{},{},{},{},{},{},{},{},{:.6g},{:.9g},{:.6g},{},{},{},{},{},{}\n", quoted(one.group),
+                       quoted(one.name), quoted(one.quantity), quoted(one.parameter),
+                       has_samples ? fmt::format("{:.9g}", result.samples.front().parameter) : "",
+                       has_samples ? fmt::format("{:.9g}", result.samples.back().parameter) : "", quoted(one.reference),
+                       quoted(one.unit), result.worst_error, result.worst_parameter, one.bound, result.samples.size(),
+                       result.non_finite_count, result.non_finite_count == 0, one.is_baseline, result.is_passed,
+                       quoted(result.failure));
+  }
+  return csv;
+}
+
+/** Numbers that are not finite are null, as JSON has none. */
+nlohmann::json to_json(const std::vector<Judged> &judged, const RunInfo &info)
+{
+  const Summary summary = summary_of(judged);
+  nlohmann::json json = to_json(info);
+  json["summary"] = {{"cases", summary.cases},
+                     {"passed", summary.passed},
+                     {"baselines", summary.baselines},
+                     {"failed", summary.failed},
+                     {"non_finite", summary.non_finite}};
+  json["cases"] = nlohmann::json::array();
+  for (const auto &[one, result] : judged) {
+    nlohmann::json samples = nlohmann::json::array();
+    for (const measure::StabilitySample &sample : result.samples) {
+      samples.push_back({sample.parameter, sample.error});
+    }
+    json["cases"].push_back({{"group", one.group},
+                             {"name", one.name},
+                             {"quantity", one.quantity},
+                             {"parameter", one.parameter},
+                             {"reference", one.reference},
+                             {"unit", one.unit},
+                             {"bound", one.bound},
+                             {"is_baseline", one.is_baseline},
+                             {"worst_error", result.worst_error},
+                             {"worst_parameter", result.worst_parameter},
+                             {"non_finite_count", result.non_finite_count},
+                             {"is_passed", result.is_passed},
+                             {"failure", result.failure},
+                             {"samples", samples}});
+  }
+  return json;
+}
+
+/** Cases of one quantity over one parameter, each in parts of its bound; nothing where no bound is above 0. */
+std::optional<measure::Chart> chart_of(std::span<const Judged> judged)
+{
+  measure::Chart chart;
+  chart.title = judged.front().one.quantity;
+  chart.x.title = judged.front().one.parameter;
+  chart.y.title = "error / bound";
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const auto &[one, result] : judged) {
+    measure::ChartSeries series{one.is_baseline ? one.name + " (baseline)" : one.name, {}, true, false};
+    for (const measure::StabilitySample &sample : result.samples) {
+      low = std::min(low, sample.parameter);
+      high = std::max(high, sample.parameter);
+      series.points.push_back(
+          {sample.parameter, sample.error / one.bound,
+           fmt::format("{}: {:.3g} {} at {:.4g}", one.name, sample.error, one.unit, sample.parameter)});
+    }
+    if (one.bound > 0.0) {
+      chart.series.push_back(std::move(series));
+    }
+  }
+  if (chart.series.empty()) {
+    return std::nullopt;
+  }
+  chart.x.is_logarithmic = low > 0.0 && high > 100.0 * low;
+  chart.series.push_back({"bound", {{low, 1.0, "bound"}, {high, 1.0, "bound"}}, true, false});
+  return chart;
+}
+
+std::string to_html(const std::vector<Judged> &judged, const RunInfo &info)
+{
+  measure::Page page("Stability");
+  page.paragraph(to_text(summary_of(judged)));
+  page.table({{"", ""}, to_rows(info)});
+  page.paragraph(
+      "Plots show errors in parts of each case's bound. What is exact, and what is not finite, is not drawn: a line "
+      "that "
+      "ends has overflowed. Cases that are kept or violated, with a bound of 0, stand in the tables alone. A baseline "
+      "is a "
+      "form that the engine does not use; it passes by failing.");
+  for (auto begin = judged.begin(); begin != judged.end();) {
+    const auto end =
+        std::find_if(begin, judged.end(), [&](const Judged &each) { return each.one.group != begin->one.group; });
+    page.heading(begin->one.group);
+    measure::Table table{{"case", "quantity", "parameter", "range", "reference", "worst error", "at", "bound", "unit",
+                          "finite", "result"},
+                         {}};
+    std::vector<Judged> left(begin, end);
+    for (const Judged &each : left) {
+      table.rows.push_back({each.one.name, each.one.quantity, each.one.parameter, range_of(each), each.one.reference,
+                            fmt::format("{:.3g}", each.result.worst_error),
+                            fmt::format("{:.4g}", each.result.worst_parameter), fmt::format("{:.3g}", each.one.bound),
+                            each.one.unit, each.result.non_finite_count == 0 ? "yes" : "no", verdict(each)});
+    }
+    page.table(table);
+    while (!left.empty()) {
+      const auto is_other = [&, quantity = left.front().one.quantity,
+                             parameter = left.front().one.parameter](const Judged &each) {
+        return each.one.quantity != quantity || each.one.parameter != parameter;
+      };
+      const auto others =
+          std::stable_partition(left.begin(), left.end(), [&](const Judged &each) { return !is_other(each); });
+      if (const std::optional<measure::Chart> chart = chart_of({left.begin(), others})) {
+        page.chart(*chart);
+      }
+      left.erase(left.begin(), others);
+    }
+    begin = end;
+  }
+  return page.html();
+}
+
+Status stability(const StabilityOptions &options)
+{
+  std::vector<measure::StabilityCase> cases = chosen_cases(options.group);
+  fs::create_directories(options.folder);
+  const std::vector<Judged> judged = judge(std::move(cases));
+  const RunInfo info = run_info("");
+  const fs::path folder(options.folder);
+  write_text(folder / "stability.csv", to_csv(judged));
+  write_text(folder / "stability.json", to_json(judged, info).dump(1) + "\n");
+  write_text(folder / "index.html", to_html(judged, info));
+  print(judged);
+  const Summary summary = summary_of(judged);
+  fmt::print("\n{}\n", to_text(summary));
+  print_failures(judged);
+  return summary.non_finite > 0 ? Status::NonFinite : summary.failed > 0 ? Status::Failed : Status::Done;
+}
+
+}  // namespace
+
+void add_stability(CLI::App &app, Status &status)
+{
+  auto o = std::make_shared<StabilityOptions>();
+  CLI::App *command =
+      app.add_subcommand("stability", "Stiff and extreme cases: how wrong, how wrong they may be, and whether finite");
+  command->add_option("-o,--output", o->folder, "Folder for stability.csv, stability.json and index.html")->required();
+  command->add_option("--group", o->group, "Only the cases of this group");
+  command->callback([o, &status] { status = stability(*o); });
+}
+
+}  // namespace gnomon::cli
