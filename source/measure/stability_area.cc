@@ -151,7 +151,7 @@ void add_area_cases(std::vector<StabilityCase> &cases)
                            const double truth =
                                rise > 0.0 ? std::min(double(origin.z) / double(float(rise)), far) : far;
                            if (height == 0.0) {
-                             return rise > 0.0 ? given : given / far - 1.0;
+                             return rise > 0.0 ? std::abs(given) : std::abs(given / far - 1.0);
                            }
                            // Downwards, and behind only where it does not rise at all.
                            return std::abs((rise > 0.0 ? given : std::abs(given)) / truth - 1.0) / float_epsilon;

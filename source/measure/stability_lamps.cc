@@ -137,7 +137,7 @@ void add_falloff_cases(std::vector<StabilityCase> &cases)
                    .parameter = "range, m",
                    .reference = "closed form",
                    .unit = "relative",
-                   .bound = 1e-5,
+                   .bound = 1e-6,
                    .run = swept(log_steps(1e-30, 1e30, 121), [](double range) {
                      scene::Lamp lamp;
                      lamp.range = float(range);
