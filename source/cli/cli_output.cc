@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli_output.hh"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -34,16 +35,6 @@ void write_atomically(const fs::path &path, const std::function<void(const fs::p
   }
 }
 
-void write_text(const fs::path &path, const std::string &text)
-{
-  write_atomically(path, [&](const fs::path &beside) {
-    std::ofstream file(beside);
-    if (!(file << text << std::flush)) {
-      throw std::runtime_error(fmt::format("{}: cannot be written", path.string()));
-    }
-  });
-}
-
 NonFinite find_non_finite(glm::ivec2 size_px, std::span<const float> rgba)
 {
   NonFinite found;
@@ -60,6 +51,15 @@ NonFinite find_non_finite(glm::ivec2 size_px, std::span<const float> rgba)
   return found;
 }
 
+/** Four channels a pixel in memory, and rows from the bottom: strides walk both. */
+static bool write_rows(OIIO::ImageOutput &output, glm::ivec2 size_px, OIIO::TypeDesc type, const void *pixels)
+{
+  const auto pixel_bytes = OIIO::stride_t(4 * type.size());
+  const OIIO::stride_t row_bytes = pixel_bytes * size_px.x;
+  const auto *top = static_cast<const char *>(pixels) + row_bytes * (size_px.y - 1);
+  return output.write_image(type, top, pixel_bytes, -row_bytes) && output.close();
+}
+
 static void write_image(const fs::path &path, glm::ivec2 size_px, OIIO::TypeDesc type, const void *pixels,
                         const Metadata &metadata)
 {
@@ -74,11 +74,7 @@ static void write_image(const fs::path &path, glm::ivec2 size_px, OIIO::TypeDesc
       throw std::runtime_error(
           fmt::format("{}: cannot be written: {}", path.string(), output ? output->geterror() : OIIO::geterror()));
     }
-    // Four channels a pixel in memory, and rows from the bottom: strides walk both.
-    const auto pixel_bytes = OIIO::stride_t(4 * type.size());
-    const OIIO::stride_t row_bytes = pixel_bytes * size_px.x;
-    const auto *top = static_cast<const char *>(pixels) + row_bytes * (size_px.y - 1);
-    if (!output->write_image(type, top, pixel_bytes, -row_bytes) || !output->close()) {
+    if (!write_rows(*output, size_px, type, pixels)) {
       throw std::runtime_error(fmt::format("{}: cannot be written: {}", path.string(), output->geterror()));
     }
   });
@@ -92,6 +88,47 @@ void write_exr(const fs::path &path, glm::ivec2 size_px, std::span<const float> 
 void write_png(const fs::path &path, glm::ivec2 size_px, std::span<const std::uint8_t> rgba, const Metadata &metadata)
 {
   write_image(path, size_px, OIIO::TypeDesc::UINT8, rgba.data(), metadata);
+}
+
+void write_text(const fs::path &path, const std::string &text)
+{
+  write_atomically(path, [&](const fs::path &beside) {
+    std::ofstream file(beside);
+    if (!(file << text << std::flush)) {
+      throw std::runtime_error(fmt::format("{}: cannot be written", path.string()));
+    }
+  });
+}
+
+std::vector<glm::vec4> read_exr(const fs::path &path, glm::ivec2 size_px)
+{
+  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path.string());
+  if (!input) {
+    throw std::runtime_error(fmt::format("{}: {}", path.string(), OIIO::geterror()));
+  }
+  if (input->spec().width != size_px.x || input->spec().height != size_px.y || input->spec().nchannels != 3) {
+    throw std::runtime_error(fmt::format("{}: is not {}x{} pixels of 3 channels", path.string(), size_px.x, size_px.y));
+  }
+  std::vector<glm::vec4> pixels(std::size_t(size_px.x) * std::size_t(size_px.y), glm::vec4(1.0F));
+  const auto row_bytes = OIIO::stride_t(sizeof(glm::vec4)) * size_px.x;
+  auto *top = reinterpret_cast<char *>(pixels.data()) + row_bytes * (size_px.y - 1);
+  if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, top, sizeof(glm::vec4), -row_bytes)) {
+    throw std::runtime_error(fmt::format("{}: {}", path.string(), input->geterror()));
+  }
+  return pixels;
+}
+
+std::vector<std::byte> png_bytes(glm::ivec2 size_px, std::span<const std::uint8_t> rgba)
+{
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("memory.png", &memory);
+  if (!output || !output->open("memory.png", OIIO::ImageSpec(size_px.x, size_px.y, 3, OIIO::TypeDesc::UINT8)) ||
+      !write_rows(*output, size_px, OIIO::TypeDesc::UINT8, rgba.data())) {
+    throw std::runtime_error(fmt::format("a PNG file: {}", output ? output->geterror() : OIIO::geterror()));
+  }
+  const auto view = std::as_bytes(std::span(bytes));
+  return {view.begin(), view.end()};
 }
 
 }  // namespace gnomon::cli

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -22,9 +24,6 @@ namespace gnomon::cli {
 void write_atomically(const std::filesystem::path &path,
                       const std::function<void(const std::filesystem::path &beside)> &write);
 
-/** A file of \a text, whole or not at all. \throws as write_atomically */
-void write_text(const std::filesystem::path &path, const std::string &text);
-
 /** What is wrong with a picture's numbers. */
 struct NonFinite {
   /** Channels that are NaN or infinite. */
@@ -36,6 +35,12 @@ struct NonFinite {
 /** \a rgba: four floats a pixel, rows from the bottom. */
 [[nodiscard]] NonFinite find_non_finite(glm::ivec2 size_px, std::span<const float> rgba);
 
+/** The same numbers, one by one. */
+[[nodiscard]] inline std::span<const float> floats(std::span<const glm::vec4> pixels)
+{
+  return {reinterpret_cast<const float *>(pixels.data()), 4 * pixels.size()};
+}
+
 /** Names and values for an image's header. */
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
@@ -45,5 +50,16 @@ void write_exr(const std::filesystem::path &path, glm::ivec2 size_px, std::span<
 /** RGB, 8 bits, rows from the bottom, four bytes a pixel of which the last is dropped. */
 void write_png(const std::filesystem::path &path, glm::ivec2 size_px, std::span<const std::uint8_t> rgba,
                const Metadata &metadata);
+
+/** Whole, or not at all. \throws std::runtime_error naming \a path where it cannot be written. */
+void write_text(const std::filesystem::path &path, const std::string &text);
+
+/**
+ * Red, green, blue and 1, rows from the bottom, as write_exr has written them.
+ * \throws std::runtime_error naming \a path where it cannot be read or is of another size.
+ */
+[[nodiscard]] std::vector<glm::vec4> read_exr(const std::filesystem::path &path, glm::ivec2 size_px);
+/** A PNG file, as write_png writes it, without metadata. */
+[[nodiscard]] std::vector<std::byte> png_bytes(glm::ivec2 size_px, std::span<const std::uint8_t> rgba);
 
 }  // namespace gnomon::cli

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli.hh"
 
+#include "cli_choice.hh"
 #include "cli_debug.hh"
 #include "cli_output.hh"
 
@@ -58,6 +59,7 @@ struct RenderOptions {
   std::string backend = "gl";
   bool is_explained = false;
   std::string json;
+  ChoiceOptions choice;
   bool is_strict = false;
   std::uint32_t seed = 0;
 };
@@ -110,6 +112,12 @@ void check_options(const RenderOptions &options)
   }
   if (!std::isfinite(options.cascade_lambda)) {
     throw UsageError(fmt::format("--cascade-lambda {} is not from 0 to 1", options.cascade_lambda));
+  }
+  if (options.choice.is_asked() && options.backend != "gl") {
+    throw UsageError("--max-error and --max-time take a picture to measure: --backend gl");
+  }
+  if (!options.choice.report_folder.empty() && !options.choice.is_asked()) {
+    throw UsageError("--report serves --max-error and --max-time, and neither is given");
   }
   if (options.output.empty() && options.backend == "gl") {
     throw UsageError("-o OUT.exr or -o OUT.png is required");
@@ -226,7 +234,7 @@ std::vector<T> read_as(gpu::Device &device, const gpu::Texture &texture)
 }
 
 nlohmann::json to_json(const RenderOptions &options, const scene::Scene &scene, const scene::Camera &camera,
-                       const RenderResult &result)
+                       const RenderResult &result, const Chooser *chooser)
 {
   nlohmann::json frames = nlohmann::json::array();
   for (std::size_t i = 0; i < result.frame_seconds.size(); i++) {
@@ -277,6 +285,7 @@ nlohmann::json to_json(const RenderOptions &options, const scene::Scene &scene, 
             {"upload_bytes", c.upload_bytes}}},
           {"made", made},
           {"left_out", left_out},
+          {"choice", chooser ? chooser->to_json() : nlohmann::json()},
           {"limits", result.report.limits},
           {"warnings", warnings}};
 }
@@ -410,8 +419,17 @@ Status render(RenderOptions options)
   result.device = device->description();
   result.device_seconds = seconds_since(device_start);
 
+  std::unique_ptr<Chooser> chooser;
+  if (options.choice.is_asked()) {
+    chooser = std::make_unique<Chooser>(options.choice, *device, scene, camera, size_px);
+    chooser->print_choice();
+    options.samples = chooser->choice().sample_count;
+  }
   const Clock::time_point sync_start = Clock::now();
   eevee::Settings settings = engine_settings(options);
+  if (chooser) {
+    settings.shadow = chooser->choice().technique.settings;
+  }
   if (options.debug_view.kind == DebugView::Kind::Shadow) {
     // The first sample draws the shadows, of the size that all samples have.
     options.samples = settings.sample_count = 1;
@@ -448,10 +466,17 @@ Status render(RenderOptions options)
   result.counters = device->counters();
   result.output_seconds = seconds_since(output_start);
   result.total_seconds = seconds_since(start);
+  if (chooser && status == Status::Done) {
+    chooser->measure(read_as<glm::vec4>(*device, engine.radiance(viewport)));
+    for (const std::string &limit : chooser->limits()) {
+      fmt::print(stderr, "gnomon: limit: {}\n", limit);
+      result.report.limits.push_back(limit);
+    }
+  }
   if (!options.json.empty()) {
     write_atomically(options.json, [&](const fs::path &beside) {
       std::ofstream file(beside);
-      file << to_json(options, scene, camera, result).dump(2) << "\n";
+      file << to_json(options, scene, camera, result, chooser.get()).dump(2) << "\n";
       if (!file.flush()) {
         throw std::runtime_error(fmt::format("{}: cannot be written", options.json));
       }
@@ -459,6 +484,9 @@ Status render(RenderOptions options)
   }
   if (status == Status::Done) {
     print_summary(options, result);
+    if (chooser) {
+      chooser->print_measured();
+    }
     if (options.is_explained) {
       print_explanation(result);
     }
@@ -535,6 +563,19 @@ void add_render(CLI::App &app, Status &status)
       ->check(CLI::IsMember({"gl", "null"}));
   command->add_flag("--explain", o->is_explained, "Print what the frame is made of, and what was left out");
   command->add_option("--json", o->json, "Write times, counters, limits, what was made and left out");
+  CLI::Option *samples = command->get_option("--samples");
+  CLI::Option *max_error =
+      command
+          ->add_option("--max-error", o->choice.error_max,
+                       "Choose shadows and samples: the fastest with at most that RMSE against exact rays")
+          ->check(CLI::Range(1e-6, 1e6))
+          ->excludes(samples);
+  command->add_option("--max-time", o->choice.milliseconds_max, "Or the most exact within so many ms a picture")
+      ->check(CLI::Range(1e-3, 1e9))
+      ->excludes(samples)
+      ->excludes(max_error);
+  command->add_option("--report", o->choice.report_folder,
+                      "Folder of gnomon report, to choose from; otherwise a pilot is rendered");
   command->add_flag("--strict", o->is_strict, "End with status 4 where a limit was hit");
   command->add_option("--seed", o->seed, "Another arrangement of the samples")->capture_default_str();
   command->callback([o, &status] { status = render(*o); });

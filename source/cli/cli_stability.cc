@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli.hh"
 
+#include "cli_origin.hh"
 #include "cli_output.hh"
-#include "cli_run_info.hh"
 
 #include "measure_page.hh"
 #include "measure_stability.hh"
@@ -34,8 +34,8 @@ struct Judged {
 std::vector<measure::StabilityCase> all_cases()
 {
   std::vector<measure::StabilityCase> cases = measure::function_stability_cases();
-  // TO MERGE: append input_stability_cases() and image_stability_cases(device) here, and give RunInfo the device's
-  // description.
+  // TO MERGE: append input_stability_cases() and image_stability_cases(device) here, and name the device
+  // beside Origin.
   return cases;
 }
 
@@ -80,6 +80,7 @@ std::vector<Judged> judge(std::vector<measure::StabilityCase> cases)
   return judged;
 }
 
+/** Of some cases. */
 struct Summary {
   std::size_t cases = 0;
   std::size_t passed = 0;
@@ -88,17 +89,24 @@ struct Summary {
   std::size_t failed = 0;
   /** Cases that are no baselines. */
   std::size_t non_finite = 0;
+  /** Largest error over its bound, of cases that are no baselines and have a bound above 0. */
+  double worst_share = 0.0;
 };
 
-Summary summary_of(const std::vector<Judged> &judged)
+Summary summary_of(std::span<const Judged> judged)
 {
   Summary summary;
   for (const auto &[one, result] : judged) {
     summary.cases++;
-    summary.passed += result.is_passed ? 1 : 0;
-    summary.baselines += result.is_passed && one.is_baseline ? 1 : 0;
-    summary.failed += result.is_passed ? 0 : 1;
-    summary.non_finite += !one.is_baseline && result.non_finite_count > 0 ? 1 : 0;
+    (result.is_passed ? summary.passed : summary.failed)++;
+    if (one.is_baseline) {
+      summary.baselines += result.is_passed ? 1 : 0;
+      continue;
+    }
+    summary.non_finite += result.non_finite_count > 0 ? 1 : 0;
+    if (one.bound > 0.0) {
+      summary.worst_share = std::max(summary.worst_share, result.worst_error / one.bound);
+    }
   }
   return summary;
 }
@@ -107,6 +115,19 @@ std::string to_text(const Summary &summary)
 {
   return fmt::format("{} cases: {} passed ({} baselines seen to fail), {} failed, {} non-finite", summary.cases,
                      summary.passed, summary.baselines, summary.failed, summary.non_finite);
+}
+
+/** Those of each group together, in order. \pre sorted by group */
+std::vector<std::span<const Judged>> by_group(std::span<const Judged> judged)
+{
+  std::vector<std::span<const Judged>> groups;
+  while (!judged.empty()) {
+    const auto end =
+        std::ranges::find_if(judged, [&](const Judged &each) { return each.one.group != judged.front().one.group; });
+    groups.push_back(judged.first(std::size_t(end - judged.begin())));
+    judged = judged.subspan(groups.back().size());
+  }
+  return groups;
 }
 
 const char *verdict(const Judged &judged)
@@ -125,16 +146,23 @@ std::string range_of(const Judged &judged)
 
 void print(const std::vector<Judged> &judged)
 {
-  std::string group;
-  for (const Judged &each : judged) {
-    const auto &[one, result] = each;
-    if (group != one.group) {
-      group = one.group;
-      fmt::print("\n{}\n{:8} {:>10} {:>10} {:>10}  {}\n", group, "", "error", "bound", "at", "of");
+  for (const std::span<const Judged> group : by_group(judged)) {
+    fmt::print("{}\n{:8} {:>10} {:>10} {:>10}  {}\n", group.front().one.group, "", "error", "bound", "at", "of");
+    for (const Judged &each : group) {
+      const auto &[one, result] = each;
+      fmt::print("{:8} {:10.3g} {:10.3g} {:10.3g}  {} ({})\n", verdict(each), result.worst_error, one.bound,
+                 result.worst_parameter, one.name, one.unit);
     }
-    fmt::print("{:8} {:10.3g} {:10.3g} {:10.3g}  {} ({})\n", verdict(each), result.worst_error, one.bound,
-               result.worst_parameter, one.name, one.unit);
+    fmt::print("\n");
   }
+  fmt::print("{:12} {:>6} {:>7} {:>10} {:>7} {:>11} {:>14}\n", "group", "cases", "passed", "baselines", "failed",
+             "non-finite", "worst / bound");
+  for (const std::span<const Judged> group : by_group(judged)) {
+    const Summary one = summary_of(group);
+    fmt::print("{:12} {:6} {:7} {:10} {:7} {:11} {:14.2f}\n", group.front().one.group, one.cases, one.passed,
+               one.baselines, one.failed, one.non_finite, one.worst_share);
+  }
+  fmt::print("\n{}\n", to_text(summary_of(judged)));
 }
 
 void print_failures(const std::vector<Judged> &judged)
@@ -181,10 +209,11 @@ std::string to_csv(const std::vector<Judged> &judged)
 }
 
 /** Numbers that are not finite are null, as JSON has none. */
-nlohmann::json to_json(const std::vector<Judged> &judged, const RunInfo &info)
+nlohmann::json to_json(const std::vector<Judged> &judged, const Origin &where)
 {
   const Summary summary = summary_of(judged);
-  nlohmann::json json = to_json(info);
+  nlohmann::json json = {
+      {"program", where.program}, {"commit", where.commit}, {"date", where.date}, {"machine", where.machine}};
   json["summary"] = {{"cases", summary.cases},
                      {"passed", summary.passed},
                      {"baselines", summary.baselines},
@@ -244,45 +273,48 @@ std::optional<measure::Chart> chart_of(std::span<const Judged> judged)
   return chart;
 }
 
-std::string to_html(const std::vector<Judged> &judged, const RunInfo &info)
+measure::Table table_of(std::span<const Judged> group)
+{
+  measure::Table table{
+      {"case", "quantity", "parameter", "range", "reference", "worst error", "at", "bound", "unit", "finite", "result"},
+      {}};
+  for (const Judged &each : group) {
+    const auto &[one, result] = each;
+    table.rows.push_back({one.name, one.quantity, one.parameter, range_of(each), one.reference,
+                          fmt::format("{:.3g}", result.worst_error), fmt::format("{:.4g}", result.worst_parameter),
+                          fmt::format("{:.3g}", one.bound), one.unit, result.non_finite_count == 0 ? "yes" : "no",
+                          verdict(each)});
+  }
+  return table;
+}
+
+std::string to_html(const std::vector<Judged> &judged, const Origin &where)
 {
   measure::Page page("Stability");
+  page.paragraph(fmt::format("{} ({}), {}. {}.", where.program, where.commit, where.date, where.machine));
   page.paragraph(to_text(summary_of(judged)));
-  page.table({{"", ""}, to_rows(info)});
   page.paragraph(
       "Plots show errors in parts of each case's bound. What is exact, and what is not finite, is not drawn: a line "
       "that "
       "ends has overflowed. Cases that are kept or violated, with a bound of 0, stand in the tables alone. A baseline "
       "is a "
       "form that the engine does not use; it passes by failing.");
-  for (auto begin = judged.begin(); begin != judged.end();) {
-    const auto end =
-        std::find_if(begin, judged.end(), [&](const Judged &each) { return each.one.group != begin->one.group; });
-    page.heading(begin->one.group);
-    measure::Table table{{"case", "quantity", "parameter", "range", "reference", "worst error", "at", "bound", "unit",
-                          "finite", "result"},
-                         {}};
-    std::vector<Judged> left(begin, end);
-    for (const Judged &each : left) {
-      table.rows.push_back({each.one.name, each.one.quantity, each.one.parameter, range_of(each), each.one.reference,
-                            fmt::format("{:.3g}", each.result.worst_error),
-                            fmt::format("{:.4g}", each.result.worst_parameter), fmt::format("{:.3g}", each.one.bound),
-                            each.one.unit, each.result.non_finite_count == 0 ? "yes" : "no", verdict(each)});
-    }
-    page.table(table);
+  for (const std::span<const Judged> group : by_group(judged)) {
+    page.heading(group.front().one.group);
+    page.table(table_of(group));
+    // A chart for what has one quantity over one parameter.
+    std::vector<Judged> left(group.begin(), group.end());
     while (!left.empty()) {
-      const auto is_other = [&, quantity = left.front().one.quantity,
-                             parameter = left.front().one.parameter](const Judged &each) {
-        return each.one.quantity != quantity || each.one.parameter != parameter;
-      };
-      const auto others =
-          std::stable_partition(left.begin(), left.end(), [&](const Judged &each) { return !is_other(each); });
+      const auto others = std::stable_partition(
+          left.begin(), left.end(),
+          [quantity = left.front().one.quantity, parameter = left.front().one.parameter](const Judged &each) {
+            return each.one.quantity == quantity && each.one.parameter == parameter;
+          });
       if (const std::optional<measure::Chart> chart = chart_of({left.begin(), others})) {
         page.chart(*chart);
       }
       left.erase(left.begin(), others);
     }
-    begin = end;
   }
   return page.html();
 }
@@ -292,16 +324,18 @@ Status stability(const StabilityOptions &options)
   std::vector<measure::StabilityCase> cases = chosen_cases(options.group);
   fs::create_directories(options.folder);
   const std::vector<Judged> judged = judge(std::move(cases));
-  const RunInfo info = run_info("");
+  const Origin where = origin();
   const fs::path folder(options.folder);
   write_text(folder / "stability.csv", to_csv(judged));
-  write_text(folder / "stability.json", to_json(judged, info).dump(1) + "\n");
-  write_text(folder / "index.html", to_html(judged, info));
+  write_text(folder / "stability.json", to_json(judged, where).dump(1) + "\n");
+  write_text(folder / "index.html", to_html(judged, where));
   print(judged);
-  const Summary summary = summary_of(judged);
-  fmt::print("\n{}\n", to_text(summary));
   print_failures(judged);
-  return summary.non_finite > 0 ? Status::NonFinite : summary.failed > 0 ? Status::Failed : Status::Done;
+  const Summary summary = summary_of(judged);
+  if (summary.non_finite > 0) {
+    return Status::NonFinite;
+  }
+  return summary.failed > 0 ? Status::Failed : Status::Done;
 }
 
 }  // namespace

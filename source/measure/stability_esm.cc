@@ -89,7 +89,7 @@ float filtered(Form form, bool is_half, const Taps &taps, float exponent)
       const float value = shared::log_sum_value(sum, exponent);
       const float range = 1.01F * *std::ranges::max_element(taps);
       const int format = is_half ? ESM_HALF : ESM_FLOAT;
-      return shared::esm_decoded(shared::esm_encoded(std::clamp(value, 0.0F, range), range, format), range, format);
+      return shared::esm_decoded(shared::esm_encoded(value, range, format), range, format);
     }
   }
 }

@@ -26,17 +26,60 @@ namespace {
 constexpr double filter_radius_px = 1.5;
 
 /** Four-term Blackman-Harris (Harris 1978, table 1: minimum, -92 dB), of weight 1 in the middle. */
+constexpr std::array<double, 4> filter_terms = {0.35875, 0.48829, 0.14128, 0.01168};
+
 double filter_weight(double distance_px)
 {
   if (std::abs(distance_px) >= filter_radius_px) {
     return 0.0;
   }
-  constexpr std::array<double, 4> terms = {0.35875, 0.48829, 0.14128, 0.01168};
   double sum = 0.0;
   for (int i = 0; i < 4; i++) {
-    sum += terms[std::size_t(i)] * std::cos(std::numbers::pi * double(i) * distance_px / filter_radius_px);
+    sum += filter_terms[std::size_t(i)] * std::cos(std::numbers::pi * double(i) * distance_px / filter_radius_px);
   }
   return sum;
+}
+
+/** The distance below which \a share, in [0, 1), of the filter's weight is, pixels. */
+double filter_quantile(double share)
+{
+  const auto weight_below = [](double distance_px) {
+    double sum = 0.5 * (distance_px / filter_radius_px + 1.0);
+    for (int i = 1; i < 4; i++) {
+      const double frequency = std::numbers::pi * double(i);
+      sum += filter_terms[std::size_t(i)] / filter_terms[0] * std::sin(frequency * distance_px / filter_radius_px) /
+             (2.0 * frequency);
+    }
+    return sum;
+  };
+  double low = -filter_radius_px;
+  double high = filter_radius_px;
+  // To a millionth of a pixel.
+  for (int i = 0; i < 22; i++) {
+    const double middle = 0.5 * (low + high);
+    (weight_below(middle) < share ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+/** A lattice of \a count points by the golden ratio, shifted by \a key: even in the square, and for all together. */
+glm::dvec2 lattice_point(int index, int count, std::uint64_t key)
+{
+  constexpr double golden = std::numbers::phi - 1.0;
+  return {fraction((index + fraction(key)) / count), fraction(index * golden + fraction(mixed(key)))};
+}
+
+std::uint64_t pixel_key(std::uint64_t seed, const glm::ivec2 &pixel)
+{
+  return mixed(mixed(mixed(seed) ^ std::uint32_t(pixel.x)) ^ std::uint32_t(pixel.y));
+}
+
+void check(glm::ivec2 size_px, const DirectLightSettings &settings)
+{
+  if (size_px.x < 1 || size_px.y < 1 || settings.sample_count < 1) {
+    throw std::invalid_argument(fmt::format("direct light: a picture of {}x{} with {} samples has none", size_px.x,
+                                            size_px.y, settings.sample_count));
+  }
 }
 
 /** Rays of a camera in an image. */
@@ -83,7 +126,7 @@ struct Renderer {
   CameraRays rays;
   const DirectLightSettings &settings;
 
-  [[nodiscard]] glm::dvec3 radiance(const Ray &ray, int sample, std::uint64_t pixel_key) const;
+  [[nodiscard]] glm::dvec3 radiance(const Ray &ray, int sample, std::uint64_t key) const;
   [[nodiscard]] glm::dvec3 lit_by(const scene::Lamp &lamp, const Receiver &receiver, const glm::dvec3 &normal,
                                   const glm::dvec3 &view, const Bsdf &bsdf, const glm::dvec2 &u) const;
   void render_tile(const glm::ivec2 &low_px, const glm::ivec2 &high_px, Picture &picture) const;
@@ -109,7 +152,7 @@ glm::dvec3 Renderer::lit_by(const scene::Lamp &lamp, const Receiver &receiver, c
   return scattered * color * sample.irradiance;
 }
 
-glm::dvec3 Renderer::radiance(const Ray &ray, int sample, std::uint64_t pixel_key) const
+glm::dvec3 Renderer::radiance(const Ray &ray, int sample, std::uint64_t key) const
 {
   const std::optional<Hit> hit = tracer.closest(ray, Faces::Drawn);
   if (!hit) {
@@ -124,7 +167,7 @@ glm::dvec3 Renderer::radiance(const Ray &ray, int sample, std::uint64_t pixel_ke
   const Bsdf bsdf = make_bsdf(material, surface.base_color);
   glm::dvec3 sum(material.emissive);
   for (std::size_t i = 0; i < scene.lamps.size(); i++) {
-    const glm::dvec2 u = even_point(sample, mixed(pixel_key + i));
+    const glm::dvec2 u = even_point(sample, mixed(key + i));
     sum += lit_by(scene.lamps[i], receiver, side * surface.shading_normal_ws, view, bsdf, u);
   }
   return sum;
@@ -138,13 +181,9 @@ void Renderer::render_tile(const glm::ivec2 &low_px, const glm::ivec2 &high_px, 
   // Neighbours' samples count, beyond the picture's edges too.
   for (int y = low_px.y - 1; y <= high_px.y; y++) {
     for (int x = low_px.x - 1; x <= high_px.x; x++) {
-      const std::uint64_t key = mixed(mixed(mixed(settings.seed) ^ std::uint32_t(x)) ^ std::uint32_t(y));
+      const std::uint64_t key = pixel_key(settings.seed, {x, y});
       for (int i = 0; i < settings.sample_count; i++) {
-        // A lattice by the golden ratio, shifted in each pixel: even in the square, and for all samples together.
-        constexpr double golden = std::numbers::phi - 1.0;
-        const glm::dvec2 within = {fraction((i + fraction(key)) / settings.sample_count),
-                                   fraction(i * golden + fraction(mixed(key)))};
-        const glm::dvec2 at_px = glm::dvec2(x, y) + within;
+        const glm::dvec2 at_px = glm::dvec2(x, y) + lattice_point(i, settings.sample_count, key);
         const glm::dvec3 light = radiance(rays.at(at_px), i, key);
         for (int to_y = std::max(y - 1, low_px.y); to_y <= std::min(y + 1, high_px.y - 1); to_y++) {
           for (int to_x = std::max(x - 1, low_px.x); to_x <= std::min(x + 1, high_px.x - 1); to_x++) {
@@ -170,10 +209,7 @@ void Renderer::render_tile(const glm::ivec2 &low_px, const glm::ivec2 &high_px, 
 Picture direct_light(const Tracer &tracer, const scene::Camera &camera, glm::ivec2 size_px,
                      const DirectLightSettings &settings)
 {
-  if (size_px.x < 1 || size_px.y < 1 || settings.sample_count < 1) {
-    throw std::invalid_argument(fmt::format("direct light: a picture of {}x{} with {} samples has none", size_px.x,
-                                            size_px.y, settings.sample_count));
-  }
+  check(size_px, settings);
   const Renderer renderer{tracer, CameraRays(camera, size_px), settings};
   Picture picture{size_px, std::vector<glm::vec4>(std::size_t(size_px.x) * std::size_t(size_px.y))};
   // The ring of neighbours around a tile is rendered again: a part in sixteen of it.
@@ -192,6 +228,25 @@ Picture direct_light(const Tracer &tracer, const scene::Camera &camera, glm::ive
     }
   });
   return picture;
+}
+
+std::vector<glm::vec4> direct_light(const Tracer &tracer, const scene::Camera &camera, glm::ivec2 size_px,
+                                    std::span<const glm::ivec2> pixels, const DirectLightSettings &settings)
+{
+  check(size_px, settings);
+  const Renderer renderer{tracer, CameraRays(camera, size_px), settings};
+  std::vector<glm::vec4> light(pixels.size());
+  parallel_for(pixels.size(), settings.thread_count, [&](std::size_t i) {
+    const std::uint64_t key = pixel_key(settings.seed, pixels[i]);
+    glm::dvec3 sum(0.0);
+    for (int sample = 0; sample < settings.sample_count; sample++) {
+      const glm::dvec2 share = lattice_point(sample, settings.sample_count, key);
+      const glm::dvec2 from_center_px = {filter_quantile(share.x), filter_quantile(share.y)};
+      sum += renderer.radiance(renderer.rays.at(glm::dvec2(pixels[i]) + 0.5 + from_center_px), sample, key);
+    }
+    light[i] = glm::vec4(sum / double(settings.sample_count), 1.0F);
+  });
+  return light;
 }
 
 }  // namespace gnomon::reference

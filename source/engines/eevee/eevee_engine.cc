@@ -572,6 +572,11 @@ std::vector<std::string> Engine::reload_shaders(draw::Viewport &viewport, gpu::S
   return stl.shaders.reload(viewport.device(), std::move(files));
 }
 
+void Engine::invalidate_shadows(draw::Viewport &viewport) const
+{
+  viewport.engine_data<Data>(*this).stl.shadows.invalidate();
+}
+
 std::string Engine::serialize_passes(draw::Viewport &viewport) const
 {
   const Data &data = viewport.engine_data<Data>(*this);
@@ -626,6 +631,11 @@ Report Engine::report(draw::Viewport &viewport) const
   report.limits = stl.lamps.limits;
   report.limits.insert(report.limits.end(), stl.shadows.limits().begin(), stl.shadows.limits().end());
   report.shadow_counters = stl.shadows.counters();
+  for (int i = 0; i < stl.lamps.light_block.light_count; i++) {
+    const scene::Lamp &lamp = scene_.lamps[stl.lamps.scene_index[std::size_t(i)]];
+    const bool is_asked_for = shadow_kind(lamp, settings_.shadow) != scene::ShadowKind::None;
+    report.lost_shadow_count += is_asked_for && stl.lamps.light_block.lights[i].shadow_kind == SHADOW_NONE ? 1 : 0;
+  }
 
   const auto part = [&](std::string what, bool is_made, std::string why, std::string why_not) {
     report.parts.push_back({std::move(what), is_made, is_made ? std::move(why) : std::move(why_not)});

@@ -52,6 +52,8 @@ struct Probe {
 struct Report {
   std::vector<std::string> warnings;
   std::vector<std::string> limits;
+  /** Lamps that ask for a shadow, give light, and have none. */
+  int lost_shadow_count = 0;
   std::vector<FramePart> parts;
   ShadowCounters shadow_counters;
 };
@@ -67,6 +69,12 @@ class Engine final : public draw::Engine {
  public:
   /** \a scene must outlive the engine; after a change of it, draw::Viewport::sync. */
   Engine(const scene::Scene &scene, const Settings &settings) : scene_(scene), settings_(settings) {}
+
+  /** Take others, from the next draw::Viewport::sync on, which must come before the next draw. */
+  void set_settings(const Settings &settings)
+  {
+    settings_ = settings;
+  }
 
   [[nodiscard]] std::string_view name() const override
   {
@@ -108,6 +116,8 @@ class Engine final : public draw::Engine {
   [[nodiscard]] Report report(draw::Viewport &viewport) const;
   /** For long-running hosts, when a shader file was edited: ShaderCache::reload; then draw::Viewport::sync. */
   std::vector<std::string> reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files) const;
+  /** Draw each shadow again, up to date or not: for who measures what that costs. */
+  void invalidate_shadows(draw::Viewport &viewport) const;
   /** The recorded passes as text. */
   [[nodiscard]] std::string serialize_passes(draw::Viewport &viewport) const;
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 "use strict";
 
+// A name has one colour and shape on the whole page.
+const names = [];
+const shapes = ["circle", "triangle", "rect", "rectRot", "star"];
 const colors = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c6d1f", "#56b4e9", "#e69f00", "#444444", "#7a3db8", "#b22222"];
 
 function axis(one) {
@@ -11,9 +14,14 @@ function axis(one) {
   };
 }
 
-function dataset(series, index) {
+function dataset(series) {
+  if (!series.is_marked && !names.includes(series.name)) {
+    names.push(series.name);
+  }
+  const index = names.indexOf(series.name);
   const color = series.is_marked ? "#000000" : colors[index % colors.length];
   return {
+    pointStyle: series.is_marked ? "circle" : shapes[Math.floor(index / colors.length) % shapes.length],
     label: series.name,
     data: series.points,
     showLine: series.is_line,
@@ -37,7 +45,7 @@ for (const figure of document.querySelectorAll("figure.chart")) {
       maintainAspectRatio: false,
       scales: { x: axis(spec.x), y: axis(spec.y) },
       plugins: {
-        legend: { position: "right" },
+        legend: { position: "right", labels: { usePointStyle: true } },
         tooltip: {
           callbacks: {
             label: (item) => [item.dataset.label + (item.raw.label ? ", " + item.raw.label : ""),

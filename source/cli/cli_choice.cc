@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "cli_choice.hh"
+
+#include "cli_fingerprint.hh"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <stdexcept>
+
+namespace gnomon::cli {
+
+namespace fs = std::filesystem;
+
+Chooser::Chooser(const ChoiceOptions &options, gpu::Device &device, const scene::Scene &scene,
+                 const scene::Camera &camera, glm::ivec2 size_px)
+    : options_(options), scene_(scene), camera_(camera), size_px_(size_px), tracer_(scene)
+{
+  if (options.error_max > 0.0) {
+    wish_.error_max = options.error_max;
+  }
+  else {
+    wish_.seconds_max = 1e-3 * options.milliseconds_max;
+  }
+  std::vector<measure::Model> models;
+  if (!options.report_folder.empty()) {
+    models = models_of_report();
+    source_ = "report " + options.report_folder;
+  }
+  if (models.empty()) {
+    measure::Pilot pilot = measure::run_pilot(device, scene, camera, size_px, tracer_, wish_);
+    models = std::move(pilot.models);
+    source_ = fmt::format("a pilot of {} pictures in {:.1f} s", pilot.picture_count, pilot.seconds);
+  }
+  choice_ = measure::choose(models, wish_);
+}
+
+std::vector<measure::Model> Chooser::models_of_report() const
+{
+  const fs::path path = fs::path(options_.report_folder) / "report.json";
+  std::ifstream file(path);
+  if (!file) {
+    throw std::runtime_error(fmt::format("{}: cannot be read", path.string()));
+  }
+  measure::RunReport run;
+  try {
+    run = measure::run_from_json(nlohmann::json::parse(file));
+  }
+  catch (const std::exception &error) {
+    throw std::runtime_error(fmt::format("{}: is no report: {}", path.string(), error.what()));
+  }
+  const auto found = std::ranges::find(run.scenes, fingerprint_of(scene_.path), &measure::SceneReport::fingerprint);
+  const auto unknown = [&](const std::string &why) {
+    fmt::print(stderr, "gnomon: warning: {}: {}; a pilot is run\n", path.string(), why);
+    return std::vector<measure::Model>();
+  };
+  if (found == run.scenes.end()) {
+    return unknown(fmt::format("{} is not in it as it is now", scene_.path));
+  }
+  if (run.size_px != size_px_ || &camera_ != &scene_.cameras.front()) {
+    return unknown(fmt::format("it is of pictures of {}x{} by the first camera", run.size_px.x, run.size_px.y));
+  }
+  const bool has_wishes = std::ranges::any_of(scene_.lamps, [](const scene::Lamp &lamp) {
+    return lamp.shadow.kind && *lamp.shadow.kind != scene::ShadowKind::None;
+  });
+  if (has_wishes) {
+    return unknown("lamps have shadows of their own choice, and in it they have not");
+  }
+  return measure::models_from(*found);
+}
+
+void Chooser::measure(std::span<const glm::vec4> picture)
+{
+  constexpr int pixel_count = 4096;
+  constexpr int sample_count = 64;
+  const measure::PixelSample sample(tracer_, camera_, size_px_, picture, pixel_count, sample_count, 1);
+  measured_ = sample.error(picture);
+}
+
+std::string Chooser::wish_text() const
+{
+  return wish_.error_max ? fmt::format("RMSE {}", *wish_.error_max) : fmt::format("{} ms", 1e3 * *wish_.seconds_max);
+}
+
+std::vector<std::string> Chooser::limits() const
+{
+  std::vector<std::string> limits;
+  if (!choice_.is_met) {
+    limits.push_back(fmt::format("{} was asked for; the nearest is RMSE {:.5f} in {:.1f} ms", wish_text(),
+                                 choice_.predicted_error.rmse, 1e3 * choice_.predicted_seconds));
+  }
+  else if (wish_.error_max && measured_.rmse - 2.0 * measured_.standard_error > *wish_.error_max) {
+    limits.push_back(fmt::format("{} was asked for; RMSE {:.5f} was measured", wish_text(), measured_.rmse));
+  }
+  return limits;
+}
+
+void Chooser::print_choice() const
+{
+  fmt::print("for {}: {}, {} samples; expected RMSE {:.5f} ± {:.5f} in {:.1f} ms, by {}\n", wish_text(),
+             label(choice_.technique), choice_.sample_count, choice_.predicted_error.rmse,
+             choice_.predicted_error.standard_error, 1e3 * choice_.predicted_seconds, source_);
+  if (!choice_.technique.options.empty()) {
+    fmt::print("the same again: gnomon render {} --samples {}\n", choice_.technique.options, choice_.sample_count);
+  }
+}
+
+void Chooser::print_measured() const
+{
+  fmt::print("measured: RMSE {:.5f} ± {:.5f} against exact rays at a sample of pixels\n", measured_.rmse,
+             measured_.standard_error);
+}
+
+nlohmann::json Chooser::to_json() const
+{
+  return {{"technique", choice_.technique.name},
+          {"size_px", choice_.technique.size_px},
+          {"options", choice_.technique.options},
+          {"samples", choice_.sample_count},
+          {"source", source_},
+          {"met", choice_.is_met},
+          {"predicted_seconds", choice_.predicted_seconds},
+          {"predicted_rmse", choice_.predicted_error.rmse},
+          {"predicted_rmse_standard_error", choice_.predicted_error.standard_error},
+          {"measured_rmse", measured_.rmse},
+          {"measured_rmse_standard_error", measured_.standard_error}};
+}
+
+}  // namespace gnomon::cli

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "measure_image_error.hh"
+
+#include "eevee_tonemap_shared.h"
+
+#include <OpenImageIO/imagebufalgo.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace gnomon::measure {
+
+namespace {
+
+double seen_fraction(glm::ivec2 size_px, std::span<const glm::vec4> picture, std::span<const glm::vec4> reference)
+{
+  const OIIO::ImageSpec spec(size_px.x, size_px.y, 4, OIIO::TypeDesc::FLOAT);
+  // OpenImageIO takes pixels that may be written to, and does not write to them.
+  const auto wrapped = [&spec](std::span<const glm::vec4> pixels) {
+    return OIIO::ImageBuf(spec, const_cast<glm::vec4 *>(pixels.data()));
+  };
+  OIIO::ImageBufAlgo::CompareResults result;
+  const int failed = OIIO::ImageBufAlgo::compare_Yee(wrapped(picture), wrapped(reference), result);
+  return double(failed) / double(picture.size());
+}
+
+}  // namespace
+
+ImageError image_error(glm::ivec2 size_px, std::span<const glm::vec4> picture, std::span<const glm::vec4> reference)
+{
+  const std::size_t count = std::size_t(std::max(size_px.x, 0)) * std::size_t(std::max(size_px.y, 0));
+  if (count == 0 || picture.size() != count || reference.size() != count) {
+    throw std::invalid_argument(fmt::format("image error: pictures of {} and {} pixels are not of {}x{}",
+                                            picture.size(), reference.size(), size_px.x, size_px.y));
+  }
+  ImageError error;
+  double square = 0.0;
+  double relative = 0.0;
+  std::vector<float> largest(count);
+  for (std::size_t i = 0; i < count; i++) {
+    for (int c = 0; c < 3; c++) {
+      error.non_finite_count += std::isfinite(picture[i][c]) ? 0 : 1;
+      const double expected = double(reference[i][c]);
+      const double off = double(picture[i][c]) - expected;
+      square += off * off;
+      relative += off * off / (expected * expected + relative_mse_floor);
+      largest[i] = std::max(largest[i], float(std::abs(off)));
+    }
+  }
+  if (error.non_finite_count > 0) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    error.rmse = error.relative_mse = error.p99 = error.seen_fraction = nan;
+    return error;
+  }
+  error.rmse = std::sqrt(square / double(3 * count));
+  error.relative_mse = relative / double(3 * count);
+  const auto at = largest.begin() + std::ptrdiff_t(std::ceil(0.99 * double(count))) - 1;
+  std::ranges::nth_element(largest, at);
+  error.p99 = double(*at);
+  error.seen_fraction = seen_fraction(size_px, picture, reference);
+  return error;
+}
+
+std::vector<glm::vec4> difference(std::span<const glm::vec4> picture, std::span<const glm::vec4> reference, float scale)
+{
+  std::vector<glm::vec4> pixels(picture.size());
+  std::ranges::transform(picture, reference, pixels.begin(),
+                         [scale](const glm::vec4 &a, const glm::vec4 &b) { return scale * glm::abs(a - b); });
+  return pixels;
+}
+
+std::vector<std::uint8_t> display_bytes(std::span<const glm::vec4> picture)
+{
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(4 * picture.size());
+  for (const glm::vec4 &pixel : picture) {
+    const glm::vec3 shown = shared::view_transformed(glm::vec3(pixel), VIEW_TRANSFORM_STANDARD);
+    for (int c = 0; c < 3; c++) {
+      bytes.push_back(std::uint8_t(std::lround(255.0F * shown[c])));
+    }
+    bytes.push_back(255);
+  }
+  return bytes;
+}
+
+}  // namespace gnomon::measure

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace gnomon::measure {
+
+/** Added to the square of the reference in ImageError::relative_mse, so that black pixels count. */
+inline constexpr double relative_mse_floor = 1e-2;
+
+/** How a scene-linear picture differs from its reference, over R, G and B. */
+struct ImageError {
+  /** Values that are NaN or infinite. Where there is any, the rest is NaN. */
+  std::size_t non_finite_count = 0;
+  double rmse = 0.0;
+  /** Mean of (a - b)² / (b² + relative_mse_floor), b the reference's value. */
+  double relative_mse = 0.0;
+  /** Of the pixels' largest differences, what 99 % are not above. */
+  double p99 = 0.0;
+  /**
+   * Share of the pixels at which a viewer would see a difference, where 1 is shown at 100 cd/m² over 45°: Yee,
+   * "Perceptual metric for production testing", 2004, as OpenImageIO computes it.
+   */
+  double seen_fraction = 0.0;
+};
+
+/**
+ * Both: R, G, B and a value that is ignored, rows from the bottom.
+ * \throws std::invalid_argument where either is not of that size.
+ */
+[[nodiscard]] ImageError image_error(glm::ivec2 size_px, std::span<const glm::vec4> picture,
+                                     std::span<const glm::vec4> reference);
+
+/** Where the picture is not the reference: the absolute difference of each value, times \a scale. */
+[[nodiscard]] std::vector<glm::vec4> difference(std::span<const glm::vec4> picture,
+                                                std::span<const glm::vec4> reference, float scale);
+
+/** What a display shows, with the sRGB curve: four bytes a pixel, rows as they are. */
+[[nodiscard]] std::vector<std::uint8_t> display_bytes(std::span<const glm::vec4> picture);
+
+}  // namespace gnomon::measure
