@@ -13,6 +13,10 @@
 #include <unistd.h>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
 
 namespace gnomon::cli {
 
@@ -243,7 +247,7 @@ nlohmann::json to_json(const std::vector<Judged> &judged, const Origin &where)
   return json;
 }
 
-/** Cases of one quantity over one parameter, each in parts of its bound; nothing where no bound is above 0. */
+/** Cases of one quantity over one parameter, each in parts of its bound; nothing where there is nothing to be seen. */
 std::optional<measure::Chart> chart_of(std::span<const Judged> judged)
 {
   measure::Chart chart;
@@ -251,25 +255,29 @@ std::optional<measure::Chart> chart_of(std::span<const Judged> judged)
   chart.x.title = judged.front().one.parameter;
   chart.y.title = "error / bound";
   double low = std::numeric_limits<double>::infinity();
-  double high = -low;
+  double high = 0.0;
+  bool has_negative = false;
+  bool is_seen = false;
   for (const auto &[one, result] : judged) {
+    if (one.bound == 0.0) {
+      continue;
+    }
     measure::ChartSeries series{one.is_baseline ? one.name + " (baseline)" : one.name, {}, true, false};
-    for (const measure::StabilitySample &sample : result.samples) {
-      low = std::min(low, sample.parameter);
-      high = std::max(high, sample.parameter);
-      series.points.push_back(
-          {sample.parameter, sample.error / one.bound,
-           fmt::format("{}: {:.3g} {} at {:.4g}", one.name, sample.error, one.unit, sample.parameter)});
+    for (const auto &[parameter, error] : result.samples) {
+      // A sweep may begin at 0, which a logarithmic axis leaves out.
+      low = parameter > 0.0 ? std::min(low, parameter) : low;
+      high = std::max(high, parameter);
+      has_negative = has_negative || parameter < 0.0;
+      is_seen = is_seen || (error > 0.0 && std::isfinite(error));
+      series.points.push_back({parameter, error / one.bound, fmt::format("{:.3g} {}", error, one.unit)});
     }
-    if (one.bound > 0.0) {
-      chart.series.push_back(std::move(series));
-    }
+    chart.series.push_back(std::move(series));
   }
-  if (chart.series.empty()) {
+  if (!is_seen) {
     return std::nullopt;
   }
-  chart.x.is_logarithmic = low > 0.0 && high > 100.0 * low;
-  chart.series.push_back({"bound", {{low, 1.0, "bound"}, {high, 1.0, "bound"}}, true, false});
+  chart.x.is_logarithmic = !has_negative && high > 1000.0 * low;
+  chart.series.push_back({"bound", {{low, 1.0, ""}, {high, 1.0, ""}}, true, false});
   return chart;
 }
 
