@@ -148,6 +148,18 @@ std::string range_of(const Judged &judged)
   return samples.empty() ? "" : fmt::format("{:.3g} to {:.3g}", samples.front().parameter, samples.back().parameter);
 }
 
+measure::Table summary_table(std::span<const Judged> judged)
+{
+  measure::Table table{{"group", "cases", "passed", "baselines", "failed", "non-finite", "worst / bound"}, {}};
+  for (const std::span<const Judged> group : by_group(judged)) {
+    const Summary one = summary_of(group);
+    table.rows.push_back({group.front().one.group, std::to_string(one.cases), std::to_string(one.passed),
+                          std::to_string(one.baselines), std::to_string(one.failed), std::to_string(one.non_finite),
+                          fmt::format("{:.2f}", one.worst_share)});
+  }
+  return table;
+}
+
 void print(const std::vector<Judged> &judged)
 {
   for (const std::span<const Judged> group : by_group(judged)) {
@@ -159,12 +171,12 @@ void print(const std::vector<Judged> &judged)
     }
     fmt::print("\n");
   }
-  fmt::print("{:12} {:>6} {:>7} {:>10} {:>7} {:>11} {:>14}\n", "group", "cases", "passed", "baselines", "failed",
-             "non-finite", "worst / bound");
-  for (const std::span<const Judged> group : by_group(judged)) {
-    const Summary one = summary_of(group);
-    fmt::print("{:12} {:6} {:7} {:10} {:7} {:11} {:14.2f}\n", group.front().one.group, one.cases, one.passed,
-               one.baselines, one.failed, one.non_finite, one.worst_share);
+  const measure::Table summary = summary_table(judged);
+  std::vector<std::vector<std::string>> lines = summary.rows;
+  lines.insert(lines.begin(), summary.head);
+  for (const std::vector<std::string> &line : lines) {
+    fmt::print("{:12} {:>6} {:>7} {:>10} {:>7} {:>11} {:>14}\n", line[0], line[1], line[2], line[3], line[4], line[5],
+               line[6]);
   }
   fmt::print("\n{}\n", to_text(summary_of(judged)));
 }
@@ -284,14 +296,14 @@ std::optional<measure::Chart> chart_of(std::span<const Judged> judged)
 measure::Table table_of(std::span<const Judged> group)
 {
   measure::Table table{
-      {"case", "quantity", "parameter", "range", "reference", "worst error", "at", "bound", "unit", "finite", "result"},
+      {"case", "result", "finite", "worst error", "bound", "unit", "at", "range", "parameter", "quantity", "reference"},
       {}};
   for (const Judged &each : group) {
     const auto &[one, result] = each;
-    table.rows.push_back({one.name, one.quantity, one.parameter, range_of(each), one.reference,
-                          fmt::format("{:.3g}", result.worst_error), fmt::format("{:.4g}", result.worst_parameter),
-                          fmt::format("{:.3g}", one.bound), one.unit, result.non_finite_count == 0 ? "yes" : "no",
-                          verdict(each)});
+    table.rows.push_back({one.name, verdict(each), result.non_finite_count == 0 ? "yes" : "no",
+                          fmt::format("{:.3g}", result.worst_error), fmt::format("{:.3g}", one.bound), one.unit,
+                          fmt::format("{:.4g}", result.worst_parameter), range_of(each), one.parameter, one.quantity,
+                          one.reference});
   }
   return table;
 }
@@ -301,6 +313,7 @@ std::string to_html(const std::vector<Judged> &judged, const Origin &where)
   measure::Page page("Stability");
   page.paragraph(fmt::format("{} ({}), {}. {}.", where.program, where.commit, where.date, where.machine));
   page.paragraph(to_text(summary_of(judged)));
+  page.table(summary_table(judged));
   page.paragraph(
       "Plots show errors in parts of each case's bound. What is exact, and what is not finite, is not drawn: a line "
       "that "
