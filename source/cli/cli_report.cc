@@ -17,6 +17,7 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 
 namespace gnomon::cli {
 
@@ -32,6 +33,8 @@ struct ReportOptions {
   std::vector<int> size = {640, 360};
   int rounds = 3;
   int reference_samples = 64;
+  /** Names or labels of the grid's; empty: all. */
+  std::vector<std::string> techniques;
 };
 
 double seconds_since(Clock::time_point start)
@@ -74,6 +77,40 @@ class Progress {
   bool is_shown_ = isatty(STDERR_FILENO) != 0;
 };
 
+/** \throws UsageError naming one that the grid does not have. */
+std::vector<measure::Technique> wanted_techniques(const std::vector<std::string> &names)
+{
+  const std::vector<measure::Technique> all = measure::report_techniques();
+  if (names.empty()) {
+    return all;
+  }
+  const auto is_called = [](const measure::Technique &one, const std::string &name) {
+    return one.name == name || measure::label(one) == name;
+  };
+  for (const std::string &name : names) {
+    if (std::ranges::none_of(all, [&](const measure::Technique &one) { return is_called(one, name); })) {
+      std::vector<std::string> labels;
+      std::ranges::transform(all, std::back_inserter(labels), measure::label);
+      throw UsageError(fmt::format("--technique '{}' is none of '{}'", name, fmt::join(labels, "', '")));
+    }
+  }
+  std::vector<measure::Technique> wanted;
+  std::ranges::copy_if(all, std::back_inserter(wanted), [&](const measure::Technique &one) {
+    return std::ranges::any_of(names, [&](const std::string &name) { return is_called(one, name); });
+  });
+  return wanted;
+}
+
+/** Whether what was measured of one scene is what is asked of the other. */
+bool is_same_work(const measure::SceneReport &one, const measure::SceneReport &other)
+{
+  return one.name == other.name && one.fingerprint == other.fingerprint &&
+         std::ranges::equal(
+             one.techniques, other.techniques, {},
+             [](const measure::TechniqueReport &report) { return measure::label(report.technique); },
+             [](const measure::TechniqueReport &report) { return measure::label(report.technique); });
+}
+
 /** A run in its folder, written after each visit, so that another can go on with it. */
 class Run {
  public:
@@ -107,7 +144,7 @@ Run::Run(gpu::Device &device, const ReportOptions &options)
   const Origin where = origin();
   run_ = {where.program, where.commit, device.description(), where.machine, where.date, {}, options.rounds, 0.0, {}};
   run_.size_px = {options.size[0], options.size[1]};
-  const std::vector<measure::Technique> techniques = measure::report_techniques();
+  const std::vector<measure::Technique> techniques = wanted_techniques(options.techniques);
   for (const std::string &path : options.scenes) {
     const std::string name = fs::path(path).stem().string();
     if (std::ranges::find(run_.scenes, name, &measure::SceneReport::name) != run_.scenes.end()) {
@@ -146,9 +183,9 @@ void Run::resume()
       return;
     }
     for (measure::SceneReport &scene : run_.scenes) {
-      const auto same = std::ranges::find(before.scenes, scene.fingerprint, &measure::SceneReport::fingerprint);
-      if (same != before.scenes.end() && same->name == scene.name &&
-          same->techniques.size() == scene.techniques.size()) {
+      const auto same = std::ranges::find_if(
+          before.scenes, [&scene](const measure::SceneReport &one) { return is_same_work(one, scene); });
+      if (same != before.scenes.end()) {
         scene = std::move(*same);
       }
     }
@@ -318,6 +355,8 @@ void add_report(CLI::App &app, Status &status)
   command->add_option("--rounds", o->rounds, "Rounds over all methods; times are the medians")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
+  command->add_option("--technique", o->techniques, "Only these, by name or by name and size: \"hard\", \"hard 1024\"")
+      ->allow_extra_args(false);
   command
       ->add_option("--reference-samples", o->reference_samples,
                    "Rays a pixel of the reference, even; eight times as many at its noisiest tenth")

@@ -191,6 +191,10 @@ Pilot run_pilot(gpu::Device &device, const scene::Scene &scene, const scene::Cam
       }
     }
     pilot.models.push_back(std::move(model));
+    // Sizes rise: where one sample takes longer than what is good enough, so it does with those to come.
+    if (first_seconds >= best_seconds) {
+      break;
+    }
   }
   pilot.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return pilot;

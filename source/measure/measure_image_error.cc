@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "measure_image_error.hh"
 
+#include "measure_flip.hh"
+
 #include "eevee_tonemap_shared.h"
 
-#include <OpenImageIO/imagebufalgo.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,22 +13,6 @@
 #include <stdexcept>
 
 namespace gnomon::measure {
-
-namespace {
-
-double seen_fraction(glm::ivec2 size_px, std::span<const glm::vec4> picture, std::span<const glm::vec4> reference)
-{
-  const OIIO::ImageSpec spec(size_px.x, size_px.y, 4, OIIO::TypeDesc::FLOAT);
-  // OpenImageIO takes pixels that may be written to, and does not write to them.
-  const auto wrapped = [&spec](std::span<const glm::vec4> pixels) {
-    return OIIO::ImageBuf(spec, const_cast<glm::vec4 *>(pixels.data()));
-  };
-  OIIO::ImageBufAlgo::CompareResults result;
-  const int failed = OIIO::ImageBufAlgo::compare_Yee(wrapped(picture), wrapped(reference), result);
-  return double(failed) / double(picture.size());
-}
-
-}  // namespace
 
 ImageError image_error(glm::ivec2 size_px, std::span<const glm::vec4> picture, std::span<const glm::vec4> reference)
 {
@@ -52,7 +37,7 @@ ImageError image_error(glm::ivec2 size_px, std::span<const glm::vec4> picture, s
   }
   if (error.non_finite_count > 0) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    error.rmse = error.relative_mse = error.p99 = error.seen_fraction = nan;
+    error.rmse = error.relative_mse = error.p99 = error.flip = nan;
     return error;
   }
   error.rmse = std::sqrt(square / double(3 * count));
@@ -60,7 +45,7 @@ ImageError image_error(glm::ivec2 size_px, std::span<const glm::vec4> picture, s
   const auto at = largest.begin() + std::ptrdiff_t(std::ceil(0.99 * double(count))) - 1;
   std::ranges::nth_element(largest, at);
   error.p99 = double(*at);
-  error.seen_fraction = seen_fraction(size_px, picture, reference);
+  error.flip = mean_flip(size_px, picture, reference);
   return error;
 }
 

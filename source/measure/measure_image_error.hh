@@ -22,11 +22,8 @@ struct ImageError {
   double relative_mse = 0.0;
   /** Of the pixels' largest differences, what 99 % are not above. */
   double p99 = 0.0;
-  /**
-   * Share of the pixels at which a viewer would see a difference, where 1 is shown at 100 cd/m² over 45°: Yee,
-   * "Perceptual metric for production testing", 2004, as OpenImageIO computes it.
-   */
-  double seen_fraction = 0.0;
+  /** \see mean_flip */
+  double flip = 0.0;
 };
 
 /**

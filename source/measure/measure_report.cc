@@ -202,7 +202,7 @@ nlohmann::json to_json(const TechniqueReport &report)
                         {"rmse", number(picture.error.rmse)},
                         {"relative_mse", number(picture.error.relative_mse)},
                         {"p99", number(picture.error.p99)},
-                        {"seen_fraction", number(picture.error.seen_fraction)},
+                        {"flip", number(picture.error.flip)},
                         {"non_finite", picture.error.non_finite_count},
                         {"front", picture.is_on_front}});
   }
@@ -241,7 +241,7 @@ TechniqueReport technique_from_json(const nlohmann::json &json)
     one.error.rmse = number(picture.at("rmse"));
     one.error.relative_mse = number(picture.at("relative_mse"));
     one.error.p99 = number(picture.at("p99"));
-    one.error.seen_fraction = number(picture.at("seen_fraction"));
+    one.error.flip = number(picture.at("flip"));
     picture.at("non_finite").get_to(one.error.non_finite_count);
     picture.at("front").get_to(one.is_on_front);
   }
@@ -351,7 +351,7 @@ std::string to_csv(const RunReport &run)
 {
   std::string csv =
       "scene,technique,size_px,samples,seconds_median,seconds_spread,shadow_device_seconds,sample_device_seconds,"
-      "memory_bytes,rmse,relative_mse,p99,seen_fraction,front,wrong_fraction,mean_absolute_error,facing,wrong,leak,"
+      "memory_bytes,rmse,relative_mse,p99,flip,front,wrong_fraction,mean_absolute_error,facing,wrong,leak,"
       "acne,"
       "edge_offset_median,edge_offset_p95,edge_offset_max,non_finite,lost_shadows\n";
   for (const SceneReport &scene : run.scenes) {
@@ -362,8 +362,8 @@ std::string to_csv(const RunReport &run)
         csv += fmt::format("{},\"{}\",{},{},{:.6f},{:.4f},{:.6f},{:.6f},{},{:.8f},{:.8g},{:.8f},{:.8f},{},", scene.name,
                            one.technique.name, one.technique.size_px, picture.sample_count, median(picture.seconds),
                            spread(picture.seconds), shadows, step_seconds(one, "") - shadows, one.memory_bytes,
-                           picture.error.rmse, picture.error.relative_mse, picture.error.p99,
-                           picture.error.seen_fraction, picture.is_on_front ? 1 : 0);
+                           picture.error.rmse, picture.error.relative_mse, picture.error.p99, picture.error.flip,
+                           picture.is_on_front ? 1 : 0);
         csv += fmt::format("{:.8f},{:.8f},{},{},{},{},{},{},{},{},{}\n", e.wrong_fraction, e.mean_absolute_error,
                            e.facing_count, e.wrong_count, e.leak_count, e.acne_count, e.edge_offset_median,
                            e.edge_offset_p95, e.edge_offset_max, e.non_finite_count + picture.error.non_finite_count,

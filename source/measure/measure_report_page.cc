@@ -80,16 +80,15 @@ Chart visibility_against_time(const SceneReport &scene)
 
 Table front_table(const SceneReport &scene)
 {
-  Table table{{"on the front", "ms", "± %", "RMSE", "relative MSE", "p99", "seen %", "MiB", "gnomon render"}, {}};
+  Table table{{"on the front", "ms", "± %", "RMSE", "relative MSE", "p99", "FLIP", "MiB", "gnomon render"}, {}};
   for (const FrontPoint &point : front(scene)) {
     const auto &[technique, picture] = point;
-    table.rows.push_back({name_of(*technique, *picture), fmt::format("{:.1f}", 1e3 * median(picture->seconds)),
-                          fmt::format("{:.1f}", 100.0 * spread(picture->seconds)),
-                          fmt::format("{:.5f}", picture->error.rmse),
-                          fmt::format("{:.3g}", picture->error.relative_mse), fmt::format("{:.4f}", picture->error.p99),
-                          fmt::format("{:.2f}", 100.0 * picture->error.seen_fraction),
-                          fmt::format("{:.1f}", double(technique->memory_bytes) / 0x1p20),
-                          fmt::format("{} --samples {}", technique->technique.options, picture->sample_count)});
+    table.rows.push_back(
+        {name_of(*technique, *picture), fmt::format("{:.1f}", 1e3 * median(picture->seconds)),
+         fmt::format("{:.1f}", 100.0 * spread(picture->seconds)), fmt::format("{:.5f}", picture->error.rmse),
+         fmt::format("{:.3g}", picture->error.relative_mse), fmt::format("{:.4f}", picture->error.p99),
+         fmt::format("{:.4f}", picture->error.flip), fmt::format("{:.1f}", double(technique->memory_bytes) / 0x1p20),
+         fmt::format("{} --samples {}", technique->technique.options, picture->sample_count)});
   }
   return table;
 }
@@ -192,7 +191,7 @@ std::string to_html(const RunReport &run, const ReadPicture &read, const MakePng
   page.paragraph(
       "Each technique is visited once a round; times are medians of the rounds, ± half of what lies between the "
       "quartiles. A picture's time goes from its first draw to its last pixel, with its shadows drawn anew and "
-      "nothing to compile. RMSE, relative MSE, p99 and what an eye would see (Yee's metric) are against exact rays "
+      "nothing to compile. RMSE, relative MSE, p99 and FLIP are against exact rays "
       "through the same filter. Wrong: a pixel that a lamp reaches and that is dark, or the other way, at half the "
       "light; leak and acne: so, with no edge of the true shadow near.");
   for (const SceneReport &scene : run.scenes) {

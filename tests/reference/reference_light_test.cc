@@ -180,8 +180,8 @@ double filter_integral(double from_edge_px)
   return integral;
 }
 
-/** A bright half plane from \a low on, one metre a pixel, the origin in the middle of the picture. */
-Picture bright_from(const glm::vec2 &low, glm::ivec2 size_px, int sample_count)
+/** A bright quarter of a plane from \a low on, one metre a pixel, the origin in the middle of the picture. */
+scene::Scene bright_scene(const glm::vec2 &low, glm::ivec2 size_px)
 {
   scene::Scene scene;
   test::add_material(scene, glm::vec3(1.0F));
@@ -191,8 +191,15 @@ Picture bright_from(const glm::vec2 &low, glm::ivec2 size_px, int sample_count)
   camera.kind = scene::CameraKind::Orthographic;
   camera.half_width = 0.5F * float(size_px.x);
   camera.half_height = 0.5F * float(size_px.y);
+  scene.cameras.push_back(camera);
+  return scene;
+}
+
+Picture bright_from(const glm::vec2 &low, glm::ivec2 size_px, int sample_count)
+{
+  const scene::Scene scene = bright_scene(low, size_px);
   const Tracer tracer(scene);
-  return direct_light(tracer, camera, size_px, {.sample_count = sample_count});
+  return direct_light(tracer, scene.cameras[0], size_px, {.sample_count = sample_count});
 }
 
 TEST(DirectLight, PixelFilterIsBlackmanHarrisOfThreePixels)
@@ -216,6 +223,28 @@ TEST(DirectLight, PixelFilterCrossesTilesAndThePicturesRim)
     EXPECT_NEAR(columns.pixels[std::size_t(128 + i)].r, filter_integral(i + 0.5 - 64.0), 1e-2) << i;
   }
   EXPECT_NEAR(rim.pixels[7].r, filter_integral(-0.5), 1e-2);
+}
+
+TEST(DirectLight, PixelsAloneHaveTheSameFilter)
+{
+  // A corner of the plane: the filter's integral from the one edge on, times that from the other.
+  const glm::ivec2 size_px{8, 8};
+  const scene::Scene scene = bright_scene({0.3F, -1.2F}, size_px);
+  const Tracer tracer(scene);
+  std::vector<glm::ivec2> pixels;
+  for (int y = 0; y < 8; y++) {
+    for (int x = 0; x < 8; x++) {
+      pixels.emplace_back(x, y);
+    }
+  }
+  const std::vector<glm::vec4> light =
+      direct_light(tracer, scene.cameras[0], size_px, pixels, {.sample_count = 4096, .seed = 1});
+  ASSERT_EQ(light.size(), pixels.size());
+  for (std::size_t i = 0; i < pixels.size(); i++) {
+    const double expected = filter_integral(pixels[i].x + 0.5 - 4.3) * filter_integral(pixels[i].y + 0.5 - 2.8);
+    // A corner is less even than an edge: the same samples err by two to three times as much.
+    EXPECT_NEAR(light[i].r, expected, 3e-3) << pixels[i].x << ", " << pixels[i].y;
+  }
 }
 
 scene::Scene cluttered_scene()
@@ -290,6 +319,8 @@ TEST(DirectLight, PicturesWithoutPixelsOrSamplesAreErrors)
   EXPECT_THROW(static_cast<void>(direct_light(tracer, camera, {0, 4}, {})), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(direct_light(tracer, camera, {4, -1}, {})), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(direct_light(tracer, camera, {4, 4}, {.sample_count = 0})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(direct_light(tracer, camera, {0, 4}, {}, {})), std::invalid_argument);
+  EXPECT_TRUE(direct_light(tracer, camera, {4, 4}, {}, {}).empty());
 }
 
 }  // namespace
