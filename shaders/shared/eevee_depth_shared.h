@@ -23,12 +23,14 @@ SHARED_CONSTANT float DEPTH_DIVISOR_MIN = 1e-30f;
  */
 SHARED_FUNCTION float depth_of_distance(float distance, float near, float far, int projection)
 {
-  float from_far = (far - distance) / max(far - near, DEPTH_DIVISOR_MIN);
+  // Behind the eye of a perspective there is no depth: all of it is as near as its eye.
+  float in_front = projection == PROJECTION_ORTHOGRAPHIC ? distance : max(distance, DEPTH_DIVISOR_MIN);
+  float from_far = (far - in_front) / max(far - near, DEPTH_DIVISOR_MIN);
   if (projection == PROJECTION_ORTHOGRAPHIC) {
     return from_far;
   }
   // near·far / (far - near) · (1 / distance - 1 / far), as a product that is 1 and 0 where it must be.
-  float infinite = near / max(distance, DEPTH_DIVISOR_MIN);
+  float infinite = near / in_front;
   return projection == PROJECTION_PERSPECTIVE_INFINITE ? infinite : infinite * from_far;
 }
 

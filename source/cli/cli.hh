@@ -28,6 +28,7 @@ struct UsageError : std::runtime_error {
 void add_render(CLI::App &app, Status &status);
 void add_info(CLI::App &app, Status &status);
 void add_report(CLI::App &app, Status &status);
+void add_stability(CLI::App &app, Status &status);
 void add_shaders(CLI::App &app, Status &status);
 /** Its status is Done where it does not throw. */
 void add_bench(CLI::App &app);

@@ -56,7 +56,7 @@ TEST_F(CliTest, WrongUsageEndsWithTwoAndSaysWhy)
 TEST_F(CliTest, WhatIsNotBuiltEndsWithTwoAndSaysSo)
 {
   for (const std::string arguments :
-       {"stability -o d", "view a.glb", "render a.glb -o a.png --frames 1-3", "render a.glb -o a.png --aov depth"}) {
+       {"view a.glb", "render a.glb -o a.png --frames 1-3", "render a.glb -o a.png --aov depth"}) {
     const Finished finished = run(arguments);
     EXPECT_EQ(finished.status, 2) << arguments;
     EXPECT_NE(finished.err.find("not built yet"), std::string::npos) << arguments << ": " << finished.err;

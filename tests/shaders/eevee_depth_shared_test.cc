@@ -71,7 +71,7 @@ TEST(DepthOfDistance, FallsWithDistanceAndComesBack)
 
 TEST(DepthOfDistance, OfWhatIsNotInFrontIsFiniteAndNearerThanEverything)
 {
-  for (const float distance : {0.0F, -0.0F, -1e-3F, -1e5F}) {
+  for (const float distance : {0.0F, -0.0F, -1e-3F, -1e5F, -1e30F}) {
     for (const int kind : {PROJECTION_PERSPECTIVE, PROJECTION_PERSPECTIVE_INFINITE}) {
       const float depth = depth_of_distance(distance, 0.1F, 100.0F, kind);
       EXPECT_GT(depth, 1.0F);

@@ -11,6 +11,12 @@
 namespace gnomon::test {
 namespace {
 
+using measure::Arguments;
+using measure::CompiledFunction;
+using measure::Deviation;
+using measure::Sweep;
+using measure::sweeps;
+
 /** A pixel for each of a sweep's arguments. */
 class SharedFunctionGpu : public GpuDeviceTest, public testing::WithParamInterface<std::size_t> {
  protected:
@@ -86,7 +92,7 @@ void main()
 
 TEST_P(SharedFunctionGpu, EqualsItsClosedForm)
 {
-  const auto functions = functions_in_float();
+  const auto functions = measure::functions_in_float();
   const auto function = std::ranges::find(functions, sweep().name, &CompiledFunction<float>::name);
   ASSERT_NE(function, functions.end());
   const std::vector<glm::dvec4> values = results(function->expression);

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace gnomon::eevee {
 
@@ -49,7 +51,9 @@ shared::LightData light_data(const scene::Lamp &lamp)
   light.color = lamp.color * lamp.intensity;
   light.radius_sq = lamp.radius * lamp.radius;
   light.forward_ws = -glm::vec3(lamp.world_from_lamp[2]);
-  light.range_inv_sq = lamp.range > 0.0F ? 1.0F / (lamp.range * lamp.range) : 0.0F;
+  // Finite for every range: times a distance of 0 it must be 0.
+  constexpr float range_sq_min = std::numeric_limits<float>::min();
+  light.range_inv_sq = lamp.range > 0.0F ? 1.0F / std::max(lamp.range * lamp.range, range_sq_min) : 0.0F;
   if (lamp.kind == scene::LampKind::Spot) {
     light.spot_cos_outer = std::cos(lamp.spot_outer_angle);
     light.spot_inv_width = shared::spot_inv_width(light.spot_cos_outer, lamp.spot_blend);

@@ -38,6 +38,18 @@ TEST(LightData, HasNoShadowUntilItIsGivenOne)
   EXPECT_EQ(light.shadow_index, -1);
 }
 
+TEST(LightData, IsFiniteForEveryRange)
+{
+  scene::Lamp lamp = lamp_of(scene::LampKind::Point);
+  for (const float range : {1e-45F, 1e-30F, 1.0F, 1e30F}) {
+    lamp.range = range;
+    const shared::LightData light = light_data(lamp);
+    EXPECT_EQ(shared::distance_falloff(0.0F, light.radius_sq, light.range_inv_sq), 1e12F) << range;
+    EXPECT_EQ(shared::distance_falloff(100.0F, light.radius_sq, light.range_inv_sq), range < 10.0F ? 0.0F : 0.01F)
+        << range;
+  }
+}
+
 TEST(Lamps, AreaLampsAreNamedAndLeftOut)
 {
   scene::Scene scene;

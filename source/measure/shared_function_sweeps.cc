@@ -16,7 +16,7 @@
 #include <numbers>
 #include <random>
 
-namespace gnomon::test {
+namespace gnomon::measure {
 
 namespace {
 
@@ -382,7 +382,7 @@ std::vector<Sweep> make_sweeps()
                       const long double n = in.a.y;
                       const long double f = in.a.z;
                       switch (int(in.a.w)) {
-                        case PROJECTION_PERSPECTIVE: return one(double(n * (f - d) / (in_front * (f - n))));
+                        case PROJECTION_PERSPECTIVE: return one(double(n * (f - in_front) / (in_front * (f - n))));
                         case PROJECTION_PERSPECTIVE_INFINITE: return one(double(n / in_front));
                         default: return one(double((f - d) / (f - n)));
                       }
@@ -393,7 +393,7 @@ std::vector<Sweep> make_sweeps()
                       const double n = in.a.y;
                       const double f = in.a.z;
                       switch (int(in.a.w)) {
-                        case PROJECTION_PERSPECTIVE: return one(std::abs(n * (f - d) / (in_front * (f - n))));
+                        case PROJECTION_PERSPECTIVE: return one(std::abs(n * (f - in_front) / (in_front * (f - n))));
                         case PROJECTION_PERSPECTIVE_INFINITE: return one(n / in_front);
                         default: return one(std::abs((f - d) / (f - n)));
                       }
@@ -857,32 +857,41 @@ const std::vector<Sweep> &sweeps()
   return all;
 }
 
+double epsilons(const Sweep &sweep, const Arguments<float> &arguments, const dvec4 &result)
+{
+  const Exact in = in_double(arguments);
+  const dvec4 truth = sweep.closed_form(in);
+  const dvec4 magnitude = sweep.magnitude(in);
+  double worst = 0.0;
+  for (int k = 0; k < 4; k++) {
+    const double difference = std::abs(result[k] - truth[k]);
+    const double one =
+        difference == 0.0 ? 0.0 : difference / (double(std::numeric_limits<float>::epsilon()) * magnitude[k]);
+    worst = std::isfinite(one) ? std::max(worst, one) : std::numeric_limits<double>::infinity();
+  }
+  return worst;
+}
+
 Deviation deviation(const Sweep &sweep, std::span<const dvec4> results)
 {
   Deviation worst;
   for (std::size_t i = 0; i < sweep.arguments.size(); i++) {
-    const Exact in = in_double(sweep.arguments[i]);
-    const dvec4 truth = sweep.closed_form(in);
-    const dvec4 magnitude = sweep.magnitude(in);
-    for (int k = 0; k < 4; k++) {
-      const double difference = std::abs(results[i][k] - truth[k]);
-      double epsilons = difference / (double(std::numeric_limits<float>::epsilon()) * magnitude[k]);
-      if (difference == 0.0) {
-        epsilons = 0.0;
-      }
-      else if (!std::isfinite(epsilons)) {
-        epsilons = std::numeric_limits<double>::infinity();
-      }
-      if (epsilons > worst.epsilons) {
-        const auto text = [](const dvec4 &v) {
-          return fmt::format("({:.9g} {:.9g} {:.9g} {:.9g})", v.x, v.y, v.z, v.w);
-        };
-        worst = {epsilons, fmt::format("a {} b {} c {}: {} instead of {}", text(in.a), text(in.b), text(in.c),
-                                       text(results[i]), text(truth))};
-      }
+    const double one = epsilons(sweep, sweep.arguments[i], results[i]);
+    if (one > worst.epsilons) {
+      const auto text = [](const dvec4 &v) { return fmt::format("({:.9g} {:.9g} {:.9g} {:.9g})", v.x, v.y, v.z, v.w); };
+      const Exact in = in_double(sweep.arguments[i]);
+      worst = {one, fmt::format("a {} b {} c {}: {} instead of {}", text(in.a), text(in.b), text(in.c),
+                                text(results[i]), text(sweep.closed_form(in)))};
     }
   }
   return worst;
 }
 
-}  // namespace gnomon::test
+double float_epsilons(const Sweep &sweep, const Arguments<float> &arguments)
+{
+  const auto functions = functions_in_float();
+  const auto function = std::ranges::find(functions, sweep.name, &CompiledFunction<float>::name);
+  return epsilons(sweep, arguments, dvec4(function->call(arguments)));
+}
+
+}  // namespace gnomon::measure

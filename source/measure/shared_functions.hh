@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace gnomon::test {
+namespace gnomon::measure {
 
 /** What a function is called with, in as many numbers as it takes. */
 template <typename T>
@@ -48,8 +48,17 @@ struct Sweep {
   double driver_epsilons;
 };
 
-/** One for each function. */
+/** One for each shared function. */
 [[nodiscard]] const std::vector<Sweep> &sweeps();
+
+/**
+ * Difference of \a result from the truth, the largest of its numbers, in float's epsilon times the magnitude; infinite
+ * where either is not finite.
+ */
+[[nodiscard]] double epsilons(const Sweep &sweep, const Arguments<float> &arguments, const glm::dvec4 &result);
+
+/** The same of what the float build gives. */
+[[nodiscard]] double float_epsilons(const Sweep &sweep, const Arguments<float> &arguments);
 
 /** Where results differ most from the truth. */
 struct Deviation {
@@ -67,4 +76,4 @@ struct Deviation {
   return {arguments.a, arguments.b, arguments.c};
 }
 
-}  // namespace gnomon::test
+}  // namespace gnomon::measure

@@ -4,11 +4,11 @@
 // Sees the above.
 #include "shared_function_list.h"
 
-namespace gnomon::test {
+namespace gnomon::measure {
 
 std::span<const CompiledFunction<float>> functions_in_float()
 {
   return shared::compiled_functions;
 }
 
-}  // namespace gnomon::test
+}  // namespace gnomon::measure

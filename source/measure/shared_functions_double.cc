@@ -5,11 +5,11 @@
 #define SHARED_DOUBLE
 #include "shared_function_list.h"
 
-namespace gnomon::test {
+namespace gnomon::measure {
 
 std::span<const CompiledFunction<double>> functions_in_double()
 {
   return shared_double::compiled_functions;
 }
 
-}  // namespace gnomon::test
+}  // namespace gnomon::measure

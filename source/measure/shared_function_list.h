@@ -14,13 +14,13 @@ namespace SHARED_NAMESPACE {
 
 // clang-format off
 #define FUNCTION(NAME, ...) \
-  {#NAME, #__VA_ARGS__, [](const gnomon::test::Arguments<float> &arguments) -> vec4 { \
+  {#NAME, #__VA_ARGS__, [](const gnomon::measure::Arguments<float> &arguments) -> vec4 { \
      const auto &[a, b, c] = arguments; \
      (void)b, (void)c; \
      return __VA_ARGS__; \
    }},
 
-inline constexpr gnomon::test::CompiledFunction<float> compiled_functions[] = {
+inline constexpr gnomon::measure::CompiledFunction<float> compiled_functions[] = {
   FUNCTION(line_plane_distance, vec4(line_plane_distance(vec3(a), vec3(b), vec3(a.w, b.w, c.w), vec3(c)), 0, 0, 0))
   FUNCTION(rectangle_solid_angle, vec4(rectangle_solid_angle(vec3(a), vec3(b), vec3(c)), 0, 0, 0))
 

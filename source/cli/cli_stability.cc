@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: MIT
+#include "cli.hh"
+
+#include "cli_origin.hh"
+#include "cli_output.hh"
+
+#include "measure_page.hh"
+#include "measure_stability.hh"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <unistd.h>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+
+namespace gnomon::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct StabilityOptions {
+  std::string folder;
+  std::string group;
+};
+
+struct Judged {
+  measure::StabilityCase one;
+  measure::StabilityResult result;
+};
+
+/** The cases of all lists: the one place that joins them. */
+std::vector<measure::StabilityCase> all_cases()
+{
+  std::vector<measure::StabilityCase> cases = measure::function_stability_cases();
+  // TO MERGE: append input_stability_cases() and image_stability_cases(device) here, and name the device
+  // beside Origin.
+  return cases;
+}
+
+std::vector<std::string> groups_of(const std::vector<measure::StabilityCase> &cases)
+{
+  std::vector<std::string> groups;
+  for (const measure::StabilityCase &one : cases) {
+    if (std::ranges::find(groups, one.group) == groups.end()) {
+      groups.push_back(one.group);
+    }
+  }
+  return groups;
+}
+
+/** Of \a group, or all where it is empty, those of a group together. */
+std::vector<measure::StabilityCase> chosen_cases(const std::string &group)
+{
+  std::vector<measure::StabilityCase> cases = all_cases();
+  const std::vector<std::string> groups = groups_of(cases);
+  if (!group.empty()) {
+    if (std::ranges::find(groups, group) == groups.end()) {
+      throw UsageError(fmt::format("no group '{}' of cases; there are: {}", group, fmt::join(groups, ", ")));
+    }
+    std::erase_if(cases, [&](const measure::StabilityCase &one) { return one.group != group; });
+  }
+  std::ranges::stable_sort(cases, {},
+                           [&](const measure::StabilityCase &one) { return std::ranges::find(groups, one.group); });
+  return cases;
+}
+
+std::vector<Judged> judge(std::vector<measure::StabilityCase> cases)
+{
+  std::vector<Judged> judged;
+  for (measure::StabilityCase &one : cases) {
+    measure::StabilityResult result = measure::run(one);
+    judged.push_back({std::move(one), std::move(result)});
+    if (isatty(STDERR_FILENO)) {
+      const bool is_last = judged.size() == cases.size();
+      fmt::print(stderr, "\r{}/{} cases{}", judged.size(), cases.size(), is_last ? "\r\033[K" : "");
+    }
+  }
+  return judged;
+}
+
+/** Of some cases. */
+struct Summary {
+  std::size_t cases = 0;
+  std::size_t passed = 0;
+  /** Among the passed. */
+  std::size_t baselines = 0;
+  std::size_t failed = 0;
+  /** Cases that are no baselines. */
+  std::size_t non_finite = 0;
+  /** Largest error over its bound, of cases that are no baselines and have a bound above 0. */
+  double worst_share = 0.0;
+};
+
+Summary summary_of(std::span<const Judged> judged)
+{
+  Summary summary;
+  for (const auto &[one, result] : judged) {
+    summary.cases++;
+    (result.is_passed ? summary.passed : summary.failed)++;
+    if (one.is_baseline) {
+      summary.baselines += result.is_passed ? 1 : 0;
+      continue;
+    }
+    summary.non_finite += result.non_finite_count > 0 ? 1 : 0;
+    if (one.bound > 0.0) {
+      summary.worst_share = std::max(summary.worst_share, result.worst_error / one.bound);
+    }
+  }
+  return summary;
+}
+
+std::string to_text(const Summary &summary)
+{
+  return fmt::format("{} cases: {} passed ({} baselines seen to fail), {} failed, {} non-finite", summary.cases,
+                     summary.passed, summary.baselines, summary.failed, summary.non_finite);
+}
+
+/** Those of each group together, in order. \pre sorted by group */
+std::vector<std::span<const Judged>> by_group(std::span<const Judged> judged)
+{
+  std::vector<std::span<const Judged>> groups;
+  while (!judged.empty()) {
+    const auto end =
+        std::ranges::find_if(judged, [&](const Judged &each) { return each.one.group != judged.front().one.group; });
+    groups.push_back(judged.first(std::size_t(end - judged.begin())));
+    judged = judged.subspan(groups.back().size());
+  }
+  return groups;
+}
+
+const char *verdict(const Judged &judged)
+{
+  if (!judged.result.is_passed) {
+    return "FAILED";
+  }
+  return judged.one.is_baseline ? "baseline" : "passed";
+}
+
+std::string range_of(const Judged &judged)
+{
+  const std::vector<measure::StabilitySample> &samples = judged.result.samples;
+  return samples.empty() ? "" : fmt::format("{:.3g} to {:.3g}", samples.front().parameter, samples.back().parameter);
+}
+
+measure::Table summary_table(std::span<const Judged> judged)
+{
+  measure::Table table{{"group", "cases", "passed", "baselines", "failed", "non-finite", "worst / bound"}, {}};
+  for (const std::span<const Judged> group : by_group(judged)) {
+    const Summary one = summary_of(group);
+    table.rows.push_back({group.front().one.group, std::to_string(one.cases), std::to_string(one.passed),
+                          std::to_string(one.baselines), std::to_string(one.failed), std::to_string(one.non_finite),
+                          fmt::format("{:.2f}", one.worst_share)});
+  }
+  return table;
+}
+
+void print(const std::vector<Judged> &judged)
+{
+  for (const std::span<const Judged> group : by_group(judged)) {
+    fmt::print("{}\n{:8} {:>10} {:>10} {:>10}  {}\n", group.front().one.group, "", "error", "bound", "at", "of");
+    for (const Judged &each : group) {
+      const auto &[one, result] = each;
+      fmt::print("{:8} {:10.3g} {:10.3g} {:10.3g}  {} ({})\n", verdict(each), result.worst_error, one.bound,
+                 result.worst_parameter, one.name, one.unit);
+    }
+    fmt::print("\n");
+  }
+  const measure::Table summary = summary_table(judged);
+  std::vector<std::vector<std::string>> lines = summary.rows;
+  lines.insert(lines.begin(), summary.head);
+  for (const std::vector<std::string> &line : lines) {
+    fmt::print("{:12} {:>6} {:>7} {:>10} {:>7} {:>11} {:>14}\n", line[0], line[1], line[2], line[3], line[4], line[5],
+               line[6]);
+  }
+  fmt::print("\n{}\n", to_text(summary_of(judged)));
+}
+
+void print_failures(const std::vector<Judged> &judged)
+{
+  for (const auto &[one, result] : judged) {
+    if (result.is_passed) {
+      continue;
+    }
+    std::string reason = result.failure;
+    if (reason.empty()) {
+      reason = one.is_baseline ? "a baseline that no longer fails" : "error";
+      reason += fmt::format(" {:.4g} {} at {} {:.6g}, bound {:.4g}", result.worst_error, one.unit, one.parameter,
+                            result.worst_parameter, one.bound);
+    }
+    fmt::print(stderr, "gnomon: failed: {}, {}: {}\n", one.group, one.name, reason);
+  }
+}
+
+std::string quoted(std::string text)
+{
+  for (std::size_t at = text.find('"'); at != std::string::npos; at = text.find('"', at + 2)) {
+    text.insert(at, 1, '"');
+  }
+  return '"' + text + '"';
+}
+
+std::string to_csv(const std::vector<Judged> &judged)
+{
+  std::string csv =
+      "group,name,quantity,parameter,low,high,reference,unit,worst_error,worst_parameter,bound,samples,non_finite,"
+      "finite,"
+      "baseline,passed,failure\n";
+  for (const auto &[one, result] : judged) {
+    const bool has_samples = !result.samples.empty();
+    csv += fmt::format("{},{},{},{},{},{},{},{},{:.6g},{:.9g},{:.6g},{},{},{},{},{},{}\n", quoted(one.group),
+                       quoted(one.name), quoted(one.quantity), quoted(one.parameter),
+                       has_samples ? fmt::format("{:.9g}", result.samples.front().parameter) : "",
+                       has_samples ? fmt::format("{:.9g}", result.samples.back().parameter) : "", quoted(one.reference),
+                       quoted(one.unit), result.worst_error, result.worst_parameter, one.bound, result.samples.size(),
+                       result.non_finite_count, result.non_finite_count == 0, one.is_baseline, result.is_passed,
+                       quoted(result.failure));
+  }
+  return csv;
+}
+
+/** Numbers that are not finite are null, as JSON has none. */
+nlohmann::json to_json(const std::vector<Judged> &judged, const Origin &where)
+{
+  const Summary summary = summary_of(judged);
+  nlohmann::json json = {
+      {"program", where.program}, {"commit", where.commit}, {"date", where.date}, {"machine", where.machine}};
+  json["summary"] = {{"cases", summary.cases},
+                     {"passed", summary.passed},
+                     {"baselines", summary.baselines},
+                     {"failed", summary.failed},
+                     {"non_finite", summary.non_finite}};
+  json["cases"] = nlohmann::json::array();
+  for (const auto &[one, result] : judged) {
+    nlohmann::json samples = nlohmann::json::array();
+    for (const measure::StabilitySample &sample : result.samples) {
+      samples.push_back({sample.parameter, sample.error});
+    }
+    json["cases"].push_back({{"group", one.group},
+                             {"name", one.name},
+                             {"quantity", one.quantity},
+                             {"parameter", one.parameter},
+                             {"reference", one.reference},
+                             {"unit", one.unit},
+                             {"bound", one.bound},
+                             {"is_baseline", one.is_baseline},
+                             {"worst_error", result.worst_error},
+                             {"worst_parameter", result.worst_parameter},
+                             {"non_finite_count", result.non_finite_count},
+                             {"is_passed", result.is_passed},
+                             {"failure", result.failure},
+                             {"samples", samples}});
+  }
+  return json;
+}
+
+/** Cases of one quantity over one parameter, each in parts of its bound; nothing where there is nothing to be seen. */
+std::optional<measure::Chart> chart_of(std::span<const Judged> judged)
+{
+  measure::Chart chart;
+  chart.title = judged.front().one.quantity;
+  chart.x.title = judged.front().one.parameter;
+  chart.y.title = "error / bound";
+  double low = std::numeric_limits<double>::infinity();
+  double high = 0.0;
+  bool has_negative = false;
+  bool is_seen = false;
+  for (const auto &[one, result] : judged) {
+    if (one.bound == 0.0) {
+      continue;
+    }
+    measure::ChartSeries series{one.is_baseline ? one.name + " (baseline)" : one.name, {}, true, false};
+    for (const auto &[parameter, error] : result.samples) {
+      // A sweep may begin at 0, which a logarithmic axis leaves out.
+      low = parameter > 0.0 ? std::min(low, parameter) : low;
+      high = std::max(high, parameter);
+      has_negative = has_negative || parameter < 0.0;
+      is_seen = is_seen || (error > 0.0 && std::isfinite(error));
+      series.points.push_back({parameter, error / one.bound, fmt::format("{:.3g} {}", error, one.unit)});
+    }
+    chart.series.push_back(std::move(series));
+  }
+  if (!is_seen) {
+    return std::nullopt;
+  }
+  chart.x.is_logarithmic = !has_negative && high > 1000.0 * low;
+  chart.series.push_back({"bound", {{low, 1.0, ""}, {high, 1.0, ""}}, true, false});
+  return chart;
+}
+
+measure::Table table_of(std::span<const Judged> group)
+{
+  measure::Table table{
+      {"case", "result", "finite", "worst error", "bound", "unit", "at", "range", "parameter", "quantity", "reference"},
+      {}};
+  for (const Judged &each : group) {
+    const auto &[one, result] = each;
+    table.rows.push_back({one.name, verdict(each), result.non_finite_count == 0 ? "yes" : "no",
+                          fmt::format("{:.3g}", result.worst_error), fmt::format("{:.3g}", one.bound), one.unit,
+                          fmt::format("{:.4g}", result.worst_parameter), range_of(each), one.parameter, one.quantity,
+                          one.reference});
+  }
+  return table;
+}
+
+std::string to_html(const std::vector<Judged> &judged, const Origin &where)
+{
+  measure::Page page("Stability");
+  page.paragraph(fmt::format("{} ({}), {}. {}.", where.program, where.commit, where.date, where.machine));
+  page.paragraph(to_text(summary_of(judged)));
+  page.table(summary_table(judged));
+  page.paragraph(
+      "Plots show errors in parts of each case's bound. What is exact, and what is not finite, is not drawn: a line "
+      "that "
+      "ends has overflowed. Cases that are kept or violated, with a bound of 0, stand in the tables alone. A baseline "
+      "is a "
+      "form that the engine does not use; it passes by failing.");
+  for (const std::span<const Judged> group : by_group(judged)) {
+    page.heading(group.front().one.group);
+    page.table(table_of(group));
+    // A chart for what has one quantity over one parameter.
+    std::vector<Judged> left(group.begin(), group.end());
+    while (!left.empty()) {
+      const auto others = std::stable_partition(
+          left.begin(), left.end(),
+          [quantity = left.front().one.quantity, parameter = left.front().one.parameter](const Judged &each) {
+            return each.one.quantity == quantity && each.one.parameter == parameter;
+          });
+      if (const std::optional<measure::Chart> chart = chart_of({left.begin(), others})) {
+        page.chart(*chart);
+      }
+      left.erase(left.begin(), others);
+    }
+  }
+  return page.html();
+}
+
+Status stability(const StabilityOptions &options)
+{
+  std::vector<measure::StabilityCase> cases = chosen_cases(options.group);
+  fs::create_directories(options.folder);
+  const std::vector<Judged> judged = judge(std::move(cases));
+  const Origin where = origin();
+  const fs::path folder(options.folder);
+  write_text(folder / "stability.csv", to_csv(judged));
+  write_text(folder / "stability.json", to_json(judged, where).dump(1) + "\n");
+  write_text(folder / "index.html", to_html(judged, where));
+  print(judged);
+  print_failures(judged);
+  const Summary summary = summary_of(judged);
+  if (summary.non_finite > 0) {
+    return Status::NonFinite;
+  }
+  return summary.failed > 0 ? Status::Failed : Status::Done;
+}
+
+}  // namespace
+
+void add_stability(CLI::App &app, Status &status)
+{
+  auto o = std::make_shared<StabilityOptions>();
+  CLI::App *command =
+      app.add_subcommand("stability", "Stiff and extreme cases: how wrong, how wrong they may be, and whether finite");
+  command->add_option("-o,--output", o->folder, "Folder for stability.csv, stability.json and index.html")->required();
+  command->add_option("--group", o->group, "Only the cases of this group");
+  command->callback([o, &status] { status = stability(*o); });
+}
+
+}  // namespace gnomon::cli
