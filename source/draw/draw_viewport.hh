@@ -25,9 +25,13 @@ class Viewport {
   /** \pre size_px at least 1x1. \throws gpu::Error where the device cannot hold it. */
   Viewport(gpu::Device &device, glm::ivec2 size_px);
 
-  /** Let \a engines record \a objects; to be called again when any of them changed. */
+  /**
+   * Let \a engines record \a objects; to be called again when any of them changed. \throws gpu::Error naming an object
+   * whose matrix is not finite, or whose volume holds NaN; nothing has changed then.
+   */
   void sync(std::span<Engine *const> engines, std::span<const ObjectRef> objects);
-  /** Let \a engines draw what they recorded, in order. */
+  /** Let \a engines draw what they recorded, in order. \throws gpu::Error where \a view or its inverse is not finite.
+   */
   void draw(std::span<Engine *const> engines, const View &view);
 
   [[nodiscard]] gpu::Device &device() const
