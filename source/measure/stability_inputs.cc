@@ -177,7 +177,7 @@ void add_lamp_cases(std::vector<StabilityCase> &cases)
   cases.push_back(number_case("point range", light_path(0, "range"), "m", "range is", length + tries({0.0}, kept)));
   cases.push_back(number_case(
       "spot outer cone", light_path(2, "spot/outerConeAngle"), "rad", "outerConeAngle is",
-      tries({1e-6, 1e-3, 1.0, 1.5707963}, kept) + tries({-1.0, 0.0, 1e-300, 1e-46, 1.58, 3.2, 1e300}, refused)));
+      tries({1e-9, 1e-3, 1.0, 1.5707963}, kept) + tries({-1.0, 0.0, 1e-300, 1e-46, 1.58, 3.2, 1e300}, refused)));
   cases.push_back(number_case("spot inner cone", light_path(2, "spot/innerConeAngle"), "rad", "innerConeAngle is",
                               tries({0.0, 1e-300, 0.7}, kept) + tries({-1.0, -1e-300, 0.8, 1e300}, refused)));
   cases.push_back(door_case<double>("gltf", "lamp color", "scene of a file with that factor in a lamp's colour",

@@ -240,8 +240,8 @@ void Shadows::place_octahedral(gpu::Device &device, ShaderCache &shaders, const 
     const scene::LampShadow &wishes = slot.lamp.shadow;
     EsmLamp &lamp = esm_lamps.emplace_back();
     lamp.name = slot.lamp.name;
-    // Without a range of its own, nothing that it could darken is farther than the scene.
-    lamp.range = std::isinf(slot.range) ? std::clamp(1.01F * glm::length(reach), 1e-6F, 1e30F) : slot.range;
+    // Nothing that it could darken is farther than the scene, however far it reaches: exponents are derived from this.
+    lamp.range = std::clamp(std::min(1.01F * glm::length(reach), slot.range), 1e-6F, 1e30F);
     lamp.settings = settings_.esm;
     lamp.settings.method = slot.kind == scene::ShadowKind::Evsm ? EsmMethod::Evsm : EsmMethod::Esm;
     lamp.settings.exponent = wishes.exponent ? wishes.exponent : lamp.settings.exponent;

@@ -27,7 +27,7 @@ constexpr double length_min = 1e-12;
 /** Angles come as rounded floats. */
 constexpr double angle_tolerance = 1e-6;
 /** Half the opening of a cone below it would vanish in float once squared, as 1 - cos does. */
-constexpr double cone_min = 1e-6;
+constexpr double cone_min = 1e-9;
 
 /** \a vector at length 1; nothing when it has no direction to speak of. */
 std::optional<glm::dvec3> direction(const glm::dvec3 &vector, double length_least)
