@@ -432,6 +432,22 @@ void add_lamps(Cases &cases)
                 return relative_rmse(picture, at_one);
               });
   }
+  cases.add({"lamp", "denormal intensity", "picture less that at an intensity of 1, times the intensity", "W/sr",
+             "picture at 1", "smallest normal floats"},
+            // GPUs may take denormals for 0: what is lost in each of a film's nine texels is below one.
+            16.0, {1e-45, 1e-42, 1e-39, 1e-38, 1e-36}, [](Studio &studio, double intensity) {
+              Shot shot = table(LampKind::Point);
+              shot.scene.lamps[0].intensity = 1.0F;
+              const Picture at_one = studio.draw(shot, with(ShadowKind::Hard));
+              shot.scene.lamps[0].intensity = float(intensity);
+              const Picture picture = studio.draw(shot, with(ShadowKind::Hard));
+              double most = 0.0;
+              for (std::size_t i = 0; i < picture.pixels.size(); i++) {
+                const double expected = double(at_one.pixels[i].r) * double(shot.scene.lamps[0].intensity);
+                most = std::max(most, std::abs(double(picture.pixels[i].r) - expected));
+              }
+              return picture.non_finite_count() > 0 ? std::nan("") : most / double(std::numeric_limits<float>::min());
+            });
   for (const double blend : {0.0, 1e-6, 0.01, 0.5, 1.0}) {
     cases.add({"spot", fmt::format("blend {}", blend), "picture of the middle of a spot's cone that fills it",
                "opening, degrees", exact_rays},

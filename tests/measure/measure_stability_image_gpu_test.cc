@@ -22,15 +22,22 @@ TEST_F(StabilityImages, AreThereAndTheirNamesDiffer)
   }
 }
 
-// `gnomon stability` runs all; three of each group show that they run and pass.
+// `gnomon stability` runs all; three of each group show that they run and pass, and those that once did not are here.
 TEST_F(StabilityImages, TheFirstTheMiddleAndTheLastOfEachGroupPass)
 {
+  const std::set<std::string> once_failed = {"range, esm", "blend 1"};
   std::map<std::string, std::vector<StabilityCase>> groups;
   for (StabilityCase &one : image_stability_cases(*device)) {
     groups[one.group].push_back(std::move(one));
   }
   for (const auto &[group, cases] : groups) {
-    for (const std::size_t i : std::set<std::size_t>{0, cases.size() / 2, cases.size() - 1}) {
+    std::set<std::size_t> chosen = {0, cases.size() / 2, cases.size() - 1};
+    for (std::size_t i = 0; i < cases.size(); i++) {
+      if (once_failed.contains(cases[i].name)) {
+        chosen.insert(i);
+      }
+    }
+    for (const std::size_t i : chosen) {
       const StabilityResult result = run(cases[i]);
       EXPECT_TRUE(result.is_passed) << group << ", " << cases[i].name << ": " << result.worst_error << " "
                                     << cases[i].unit << " at " << result.worst_parameter << " " << result.failure;
