@@ -32,9 +32,9 @@ struct LightData {
   vec3 forward_ws;
   /** 1 / range², 1/m². 0: no limit. */
   float range_inv_sq;
-  /** Spot: cosine of half the opening angle. */
-  float spot_cos_outer;
-  /** Spot: 1 / ((1 - spot_cos_outer) · blend), finite. */
+  /** Spot: 1 less the cosine of half the opening angle. A narrow cone's cosine would round to 1. */
+  float spot_drop_outer;
+  /** Spot: 1 / (spot_drop_outer · blend), finite. */
   float spot_inv_width;
   /** SHADOW_… */
   int shadow_kind;
@@ -56,22 +56,29 @@ struct LightBlock {
 SHARED_ASSERT_SIZE(LightBlock, 16 + LIGHT_MAX * 64)
 SHARED_ASSERT(LIGHT_MAX == (UNIFORM_BLOCK_BYTES_MAX - 16) / sizeof(LightData))
 
-/** Blends below this share of 1 - cos are hard edges: the inverse stays finite. */
-SHARED_CONSTANT float SPOT_WIDTH_MIN = 1e-6f;
+/** Blends below it are hard edges: the inverse stays finite. */
+SHARED_CONSTANT float SPOT_BLEND_MIN = 1e-6f;
 
-/** Value for LightData::spot_inv_width. \a blend in [0, 1]. */
-SHARED_FUNCTION float spot_inv_width(float cos_outer, float blend)
+/** Value for LightData::spot_inv_width. \a drop_outer in [0, 1], \a blend in [0, 1]. */
+SHARED_FUNCTION float spot_inv_width(float drop_outer, float blend)
 {
-  return 1.0f / max((1.0f - cos_outer) * blend, SPOT_WIDTH_MIN);
+  return 1.0f / max(drop_outer * max(blend, SPOT_BLEND_MIN), 1e-30f);
+}
+
+/** 1 less the cosine between unit vectors: |a - b|² / 2, which nothing cancels in however close they are. */
+SHARED_FUNCTION float cosine_drop(vec3 a, vec3 b)
+{
+  vec3 apart = a - b;
+  return 0.5f * dot(apart, apart);
 }
 
 /**
- * Transmission of a spot's cone, in [0, 1]: smoothstep over the soft edge. \a cos_angle: cosine between the lamp's
- * forward and the direction to the receiver. 0 on the cone and outside, monotone, finite for every cosine in [-1, 1].
+ * Transmission of a spot's cone, in [0, 1]: smoothstep over the soft edge. \a drop: cosine_drop of the lamp's forward and
+ * the direction to the receiver. 0 on the cone and outside, monotone, finite for every drop in [0, 2].
  */
-SHARED_FUNCTION float spot_mask(float cos_angle, float cos_outer, float inv_width)
+SHARED_FUNCTION float spot_mask(float drop, float drop_outer, float inv_width)
 {
-  float t = clamp((cos_angle - cos_outer) * inv_width, 0.0f, 1.0f);
+  float t = clamp((drop_outer - drop) * inv_width, 0.0f, 1.0f);
   return t * t * (3.0f - 2.0f * t);
 }
 

@@ -13,6 +13,7 @@
 #include <unistd.h>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -34,15 +35,6 @@ struct Judged {
   measure::StabilityResult result;
 };
 
-/** The cases of all lists: the one place that joins them. */
-std::vector<measure::StabilityCase> all_cases()
-{
-  std::vector<measure::StabilityCase> cases = measure::function_stability_cases();
-  // TO MERGE: append input_stability_cases() and image_stability_cases(device) here, and name the device
-  // beside Origin.
-  return cases;
-}
-
 std::vector<std::string> groups_of(const std::vector<measure::StabilityCase> &cases)
 {
   std::vector<std::string> groups;
@@ -54,10 +46,23 @@ std::vector<std::string> groups_of(const std::vector<measure::StabilityCase> &ca
   return groups;
 }
 
-/** Of \a group, or all where it is empty, those of a group together. */
-std::vector<measure::StabilityCase> chosen_cases(const std::string &group)
+bool is_rendered(const std::string &group)
 {
-  std::vector<measure::StabilityCase> cases = all_cases();
+  return group.rfind(measure::image_group_prefix, 0) == 0;
+}
+
+/** Of \a group, or all where it is empty, those of a group together. \a device: made where a case needs one. */
+std::vector<measure::StabilityCase> chosen_cases(const std::string &group, std::unique_ptr<gpu::Device> &device)
+{
+  std::vector<measure::StabilityCase> cases = measure::function_stability_cases();
+  const auto append = [&cases](std::vector<measure::StabilityCase> more) {
+    cases.insert(cases.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  };
+  append(measure::input_stability_cases());
+  if (group.empty() || is_rendered(group)) {
+    device = gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()});
+    append(measure::image_stability_cases(*device));
+  }
   const std::vector<std::string> groups = groups_of(cases);
   if (!group.empty()) {
     if (std::ranges::find(groups, group) == groups.end()) {
@@ -175,7 +180,7 @@ void print(const std::vector<Judged> &judged)
   std::vector<std::vector<std::string>> lines = summary.rows;
   lines.insert(lines.begin(), summary.head);
   for (const std::vector<std::string> &line : lines) {
-    fmt::print("{:12} {:>6} {:>7} {:>10} {:>7} {:>11} {:>14}\n", line[0], line[1], line[2], line[3], line[4], line[5],
+    fmt::print("{:20} {:>6} {:>7} {:>10} {:>7} {:>11} {:>14}\n", line[0], line[1], line[2], line[3], line[4], line[5],
                line[6]);
   }
   fmt::print("\n{}\n", to_text(summary_of(judged)));
@@ -225,11 +230,14 @@ std::string to_csv(const std::vector<Judged> &judged)
 }
 
 /** Numbers that are not finite are null, as JSON has none. */
-nlohmann::json to_json(const std::vector<Judged> &judged, const Origin &where)
+nlohmann::json to_json(const std::vector<Judged> &judged, const Origin &where, const std::string &driver)
 {
   const Summary summary = summary_of(judged);
-  nlohmann::json json = {
-      {"program", where.program}, {"commit", where.commit}, {"date", where.date}, {"machine", where.machine}};
+  nlohmann::json json = {{"program", where.program},
+                         {"commit", where.commit},
+                         {"date", where.date},
+                         {"machine", where.machine},
+                         {"device", driver}};
   json["summary"] = {{"cases", summary.cases},
                      {"passed", summary.passed},
                      {"baselines", summary.baselines},
@@ -308,10 +316,10 @@ measure::Table table_of(std::span<const Judged> group)
   return table;
 }
 
-std::string to_html(const std::vector<Judged> &judged, const Origin &where)
+std::string to_html(const std::vector<Judged> &judged, const Origin &where, const std::string &driver)
 {
   measure::Page page("Stability");
-  page.paragraph(fmt::format("{} ({}), {}. {}.", where.program, where.commit, where.date, where.machine));
+  page.paragraph(fmt::format("{} ({}), {}. {}, {}.", where.program, where.commit, where.date, where.machine, driver));
   page.paragraph(to_text(summary_of(judged)));
   page.table(summary_table(judged));
   page.paragraph(
@@ -342,14 +350,16 @@ std::string to_html(const std::vector<Judged> &judged, const Origin &where)
 
 Status stability(const StabilityOptions &options)
 {
-  std::vector<measure::StabilityCase> cases = chosen_cases(options.group);
+  std::unique_ptr<gpu::Device> device;
+  std::vector<measure::StabilityCase> cases = chosen_cases(options.group, device);
+  const std::string driver = device ? device->description() : "no device";
   fs::create_directories(options.folder);
   const std::vector<Judged> judged = judge(std::move(cases));
   const Origin where = origin();
   const fs::path folder(options.folder);
   write_text(folder / "stability.csv", to_csv(judged));
-  write_text(folder / "stability.json", to_json(judged, where).dump(1) + "\n");
-  write_text(folder / "index.html", to_html(judged, where));
+  write_text(folder / "stability.json", to_json(judged, where, driver).dump(1) + "\n");
+  write_text(folder / "index.html", to_html(judged, where, driver));
   print(judged);
   print_failures(judged);
   const Summary summary = summary_of(judged);
@@ -367,7 +377,7 @@ void add_stability(CLI::App &app, Status &status)
   CLI::App *command =
       app.add_subcommand("stability", "Stiff and extreme cases: how wrong, how wrong they may be, and whether finite");
   command->add_option("-o,--output", o->folder, "Folder for stability.csv, stability.json and index.html")->required();
-  command->add_option("--group", o->group, "Only the cases of this group");
+  command->add_option("--group", o->group, "Only the cases of this group; a name that is none lists them");
   command->callback([o, &status] { status = stability(*o); });
 }
 

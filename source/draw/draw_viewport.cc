@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "draw_viewport.hh"
 
+#include <glm/matrix.hpp>
+
+#include <cmath>
+
 namespace gnomon::draw {
 
 Viewport::Viewport(gpu::Device &device, glm::ivec2 size_px) : device_(device), size_px_(size_px) {}
@@ -14,8 +18,29 @@ const gpu::Texture &Viewport::depth_texture()
   return depth_texture_;
 }
 
+static bool is_finite(const glm::mat4 &matrix)
+{
+  for (int column = 0; column < 4; column++) {
+    for (int row = 0; row < 4; row++) {
+      if (!std::isfinite(matrix[column][row])) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
 void Viewport::sync(std::span<Engine *const> engines, std::span<const ObjectRef> objects)
 {
+  for (const ObjectRef &object : objects) {
+    if (!is_finite(object.world_from_object)) {
+      throw gpu::Error("object {}: its matrix is not finite", object.index);
+    }
+    const glm::vec3 &center = object.volume.center_ws;
+    if (std::isnan(center.x + center.y + center.z + object.volume.radius)) {
+      throw gpu::Error("object {}: its culling volume is not a number", object.index);
+    }
+  }
   objects_.clear();
   for (Engine *engine : engines) {
     engine->init(*this);
@@ -37,6 +62,9 @@ void Viewport::sync(std::span<Engine *const> engines, std::span<const ObjectRef>
 
 void Viewport::draw(std::span<Engine *const> engines, const View &view)
 {
+  if (!is_finite(view.clip_from_world()) || !is_finite(glm::mat4(glm::inverse(glm::dmat4(view.view_from_world()))))) {
+    throw gpu::Error("the view's matrix, or its inverse, is not finite");
+  }
   for (Engine *engine : engines) {
     engine->draw_scene(*this, view);
   }

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /** What the program's measuring commands are made of: error against run time, and stability. */
@@ -63,6 +64,9 @@ struct StabilityResult {
 
 /** Of the doors that let data in from outside: files, settings, the host's calls. They need no device. */
 [[nodiscard]] std::vector<StabilityCase> input_stability_cases();
+
+/** What the groups of image_stability_cases() begin with. */
+inline constexpr std::string_view image_group_prefix = "rendered ";
 
 /** Of pictures that the engine renders on \a device, which must outlive the cases. */
 [[nodiscard]] std::vector<StabilityCase> image_stability_cases(gpu::Device &device);

@@ -607,22 +607,22 @@ std::vector<Sweep> make_sweeps()
     std::vector<In> widths;
     std::vector<In> masks;
     for (int degrees = 0; degrees <= 180; degrees += 4) {
-      const float cos_outer = std::cos(float(degrees) * 0.5F * float(std::numbers::pi) / 180.0F);
+      const float drop_outer = 1.0F - std::cos(float(degrees) * 0.5F * float(std::numbers::pi) / 180.0F);
       for (const float blend : {0.0F, 1e-6F, 0.01F, 0.5F, 1.0F}) {
-        widths.push_back({.a = {cos_outer, blend, 0, 0}});
+        widths.push_back({.a = {drop_outer, blend, 0, 0}});
         for (const float c : cosines(-1.0F)) {
-          masks.push_back({.a = {c, cos_outer, blend, 0}});
+          masks.push_back({.a = {1.0F - c, drop_outer, blend, 0}});
         }
         for (int i = 0; i <= 64; i++) {
-          masks.push_back({.a = {cos_outer + (1.0F - cos_outer) * blend * float(i) / 60.0F, cos_outer, blend, 0}});
+          masks.push_back({.a = {drop_outer * (1.0F - blend * float(i) / 60.0F), drop_outer, blend, 0}});
         }
       }
     }
-    const auto inv_width = [](const Exact &in) { return one(1.0 / std::max((1.0 - in.a.x) * in.a.y, 1e-6)); };
+    const auto inv_width = [](const Exact &in) { return one(1.0 / std::max(in.a.x * std::max(in.a.y, 1e-6), 1e-30)); };
     sweeps.push_back({"spot_inv_width", widths, inv_width, inv_width, 0.5, 2, 6});
     const auto mask = [](const Exact &in) {
-      const double width = std::max((1.0 - in.a.y) * in.a.z, 1e-6);
-      const double t = std::clamp((in.a.x - in.a.y) / width, 0.0, 1.0);
+      const double width = std::max(in.a.y * std::max(in.a.z, 1e-6), 1e-30);
+      const double t = std::clamp((in.a.y - in.a.x) / width, 0.0, 1.0);
       return one(t * t * (3.0 - 2.0 * t));
     };
     sweeps.push_back({"spot_mask", masks, mask, mask, 0.5, 4, 12});

@@ -22,6 +22,13 @@ namespace {
 constexpr const char *group = "lamps";
 constexpr double degree = std::numbers::pi / 180.0;
 
+/** 1 less the cosine, without the cancellation. */
+double cosine_drop(double angle)
+{
+  const double sine = std::sin(0.5 * angle);
+  return 2.0 * sine * sine;
+}
+
 /** Angles from a cone's axis, finely next to its edge. */
 std::vector<double> angles_around(double edge)
 {
@@ -37,12 +44,12 @@ std::vector<double> angles_around(double edge)
 void add_spot_cases(std::vector<StabilityCase> &cases)
 {
   for (const double cone : {0.0, 1.0, 45.0, 90.0, 120.0, 179.0, 180.0}) {
-    const auto cos_outer = float(std::cos(0.5 * cone * degree));
+    const auto drop_outer = float(cosine_drop(0.5 * cone * degree));
     for (const float blend : {0.0F, 1e-6F, 0.5F, 1.0F}) {
       cases.push_back(case_of({group, fmt::format("cone of {:g}°, blend {:g}", cone, blend), "spot_mask",
                                "transmission of a spot's cone", "angle from the axis, rad",
                                angles_around(0.5 * cone * degree), [=](double angle) {
-                                 return Arguments<float>{.a = {float(std::cos(angle)), cos_outer, blend, 0.0F}};
+                                 return Arguments<float>{.a = {float(cosine_drop(angle)), drop_outer, blend, 0.0F}};
                                }}));
     }
   }
@@ -54,29 +61,29 @@ void add_spot_cases(std::vector<StabilityCase> &cases)
                    .unit = violation_unit,
                    .bound = 0.0,
                    .run = swept(even_steps(0.0, 180.0, 121), [](double cone) {
-                     const auto cos_outer = float(std::cos(0.5 * cone * degree));
+                     const auto drop_outer = float(cosine_drop(0.5 * cone * degree));
                      double worst = 0.0;
                      for (const float blend : {0.0F, 1e-30F, 1e-6F, 1e-3F, 0.1F, 0.5F, 1.0F}) {
                        float before = 1.0F;
                        for (const double angle : angles_around(0.5 * cone * degree)) {
-                         const float mask = shared::spot_mask(float(std::cos(angle)), cos_outer,
-                                                              shared::spot_inv_width(cos_outer, blend));
+                         const float mask = shared::spot_mask(float(cosine_drop(angle)), drop_outer,
+                                                              shared::spot_inv_width(drop_outer, blend));
                          worst = std::max(worst, violated(mask >= 0.0F && mask <= before));
                          before = mask;
                        }
                      }
                      return worst;
                    })});
-  for (const double cone : {2.0, 20.0, 180.0}) {
+  for (const double cone : {1e-6, 1e-3, 0.1, 2.0, 20.0, 180.0}) {
     cases.push_back({.group = group,
                      .name = fmt::format("engine's cone of {:g}°", cone),
                      .quantity = "transmission of a spot with a blend of 1, from its entry of light_block",
                      .parameter = "angle from the axis, rad",
                      .reference = "double",
                      .unit = epsilon_unit,
-                     // Cosines below 1 are rounded by a quarter of an epsilon, the cone's and the receiver's, of which
-                     // smoothstep makes 1.5 / (1 - cos) at most; and three roundings of its own.
-                     .bound = 0.75 / (1.0 - std::cos(0.5 * cone * degree)) + 1.5,
+                     // The drops and the width are rounded by half an epsilon each, and so is each step to t, of which
+                     // smoothstep makes 1.5 times as much at most; and three roundings of its own.
+                     .bound = 1.5 * 5 * 0.5 + 1.5,
                      .run = swept(even_steps(0.0, 0.5 * cone * degree, 121), [=](double angle) {
                        scene::Lamp lamp;
                        lamp.kind = scene::LampKind::Spot;
@@ -84,9 +91,9 @@ void add_spot_cases(std::vector<StabilityCase> &cases)
                        lamp.spot_blend = 1.0F;
                        const shared::LightData light = eevee::light_data(lamp);
                        const double mask =
-                           shared::spot_mask(float(std::cos(angle)), light.spot_cos_outer, light.spot_inv_width);
-                       const double cos_outer = std::cos(0.5 * cone * degree);
-                       const double t = std::clamp((std::cos(angle) - cos_outer) / (1.0 - cos_outer), 0.0, 1.0);
+                           shared::spot_mask(float(cosine_drop(angle)), light.spot_drop_outer, light.spot_inv_width);
+                       const double drop_outer = cosine_drop(double(lamp.spot_outer_angle));
+                       const double t = std::clamp((drop_outer - cosine_drop(angle)) / drop_outer, 0.0, 1.0);
                        return std::abs(mask - t * t * (3.0 - 2.0 * t)) / float_epsilon;
                      })});
   }

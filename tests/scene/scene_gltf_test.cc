@@ -932,7 +932,7 @@ TEST(GltfLamp, BadLightsAreErrors)
              "color: is an array, and must be an array of 3 numbers");
   EXPECT_HAS(lamp_error({{"type", "point"}, {"range", -1}}), "range is -1, and must be from 1e-12 to 1e+12");
   EXPECT_HAS(lamp_error({{"type", "spot"}, {"spot", {{"outerConeAngle", 2}}}}),
-             "outerConeAngle is 2, and must be above 0");
+             "outerConeAngle is 2, and must be from 1e-09");
   EXPECT_HAS(lamp_error({{"type", "spot"}, {"spot", {{"outerConeAngle", 0}}}}), "outerConeAngle is 0");
   EXPECT_HAS(lamp_error({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.6}, {"outerConeAngle", 0.5}}}}),
              "innerConeAngle is 0.6");

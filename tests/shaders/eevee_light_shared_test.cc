@@ -14,25 +14,38 @@ namespace {
 TEST(SpotMask, IsFiniteAndMonotoneForEveryAngleAndBlend)
 {
   for (int degrees = 0; degrees <= 180; degrees += 3) {
-    const float cos_outer = std::cos(float(degrees) * 0.5F * float(std::numbers::pi) / 180.0F);
+    const float drop_outer = 1.0F - std::cos(float(degrees) * 0.5F * float(std::numbers::pi) / 180.0F);
     for (const float blend : {0.0F, 1e-6F, 0.01F, 0.5F, 1.0F}) {
-      const float inv_width = spot_inv_width(cos_outer, blend);
+      const float inv_width = spot_inv_width(drop_outer, blend);
       ASSERT_TRUE(std::isfinite(inv_width));
       float before = 0.0F;
       for (int i = 0; i <= 2000; i++) {
-        const float cos_angle = -1.0F + float(i) / 1000.0F;
-        const float mask = spot_mask(cos_angle, cos_outer, inv_width);
+        const float drop = 2.0F - float(i) / 1000.0F;
+        const float mask = spot_mask(drop, drop_outer, inv_width);
         ASSERT_TRUE(mask >= 0.0F && mask <= 1.0F);
         ASSERT_GE(mask, before) << degrees << "° blend " << blend;
-        if (cos_angle <= cos_outer) {
+        if (drop >= drop_outer) {
           ASSERT_EQ(mask, 0.0F);
         }
         before = mask;
       }
-      if (degrees > 10) {
+      if (degrees > 0) {
         EXPECT_EQ(before, 1.0F) << "on the axis, " << degrees << "° blend " << blend;
       }
     }
+  }
+}
+
+TEST(SpotMask, OfNarrowConesIsAsOfWideOnes)
+{
+  // Halfway through a blend of 1, however narrow the cone; the cosines of these angles are 1 in float.
+  for (const double angle : {1e-6, 1e-5, 1e-4, 1e-3, 0.1}) {
+    const auto unit = [](double a) { return vec3(float(std::sin(a)), 0.0F, float(std::cos(a))); };
+    const double sine = std::sin(0.5 * angle);
+    const auto drop_outer = float(2.0 * sine * sine);
+    // 1 - cos is half of the outer one's where the angle is √½ of it.
+    const float drop = cosine_drop(unit(0.0), unit(std::sqrt(0.5) * angle));
+    EXPECT_NEAR(spot_mask(drop, drop_outer, spot_inv_width(drop_outer, 1.0F)), 0.5F, 1e-3F) << angle;
   }
 }
 

@@ -56,7 +56,7 @@ constexpr auto light_fields = std::to_array<Field>({
     {"light_data.lights[0].radius_sq", lights_offset + offsetof(LightData, radius_sq)},
     {"light_data.lights[0].forward_ws", lights_offset + offsetof(LightData, forward_ws)},
     {"light_data.lights[0].range_inv_sq", lights_offset + offsetof(LightData, range_inv_sq)},
-    {"light_data.lights[0].spot_cos_outer", lights_offset + offsetof(LightData, spot_cos_outer)},
+    {"light_data.lights[0].spot_drop_outer", lights_offset + offsetof(LightData, spot_drop_outer)},
     {"light_data.lights[0].spot_inv_width", lights_offset + offsetof(LightData, spot_inv_width)},
     {"light_data.lights[0].shadow_kind", lights_offset + offsetof(LightData, shadow_kind)},
     {"light_data.lights[0].shadow_index", lights_offset + offsetof(LightData, shadow_index)},

@@ -153,8 +153,22 @@ void bind_lit(draw::ShadingGroup &group, StorageList &stl)
 
 }  // namespace
 
+/** \throws gpu::Error for those of the frame; those of shadows are the shadows' business. */
+static void check(const Settings &settings)
+{
+  if (settings.sample_count < 1) {
+    throw gpu::Error("eevee: sample_count {} is not at least 1", settings.sample_count);
+  }
+  // Its power of 2 is finite, and no denormal.
+  constexpr float exposure_max = 120.0F;
+  if (!(std::abs(settings.exposure) <= exposure_max)) {
+    throw gpu::Error("eevee: exposure {} is not in [{}, {}]", settings.exposure, -exposure_max, exposure_max);
+  }
+}
+
 void Engine::init(draw::Viewport &viewport)
 {
+  check(settings_);
   Data &data = viewport.engine_data<Data>(*this);
   gpu::Device &device = viewport.device();
   TextureList &txl = data.txl;

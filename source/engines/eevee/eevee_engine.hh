@@ -25,7 +25,7 @@ struct Settings {
   /** Make the picture that a display shows, beside the radiance. */
   bool has_display = false;
   ViewTransform view_transform = ViewTransform::Standard;
-  /** Stops: radiance is multiplied by 2 to this before the view transform. */
+  /** Stops, -120 to 120: radiance is multiplied by 2 to this before the view transform. */
   float exposure = 0.0F;
   /** Measure each step on the device. */
   bool is_timed = false;

@@ -55,8 +55,9 @@ shared::LightData light_data(const scene::Lamp &lamp)
   constexpr float range_sq_min = std::numeric_limits<float>::min();
   light.range_inv_sq = lamp.range > 0.0F ? 1.0F / std::max(lamp.range * lamp.range, range_sq_min) : 0.0F;
   if (lamp.kind == scene::LampKind::Spot) {
-    light.spot_cos_outer = std::cos(lamp.spot_outer_angle);
-    light.spot_inv_width = shared::spot_inv_width(light.spot_cos_outer, lamp.spot_blend);
+    const float sine = std::sin(0.5F * lamp.spot_outer_angle);
+    light.spot_drop_outer = 2.0F * sine * sine;
+    light.spot_inv_width = shared::spot_inv_width(light.spot_drop_outer, lamp.spot_blend);
   }
   light.shadow_kind = SHADOW_NONE;
   light.shadow_index = -1;

@@ -30,7 +30,7 @@ float esm_exponent(EsmMethod method, float filter_angle, int size_px, float rang
 
 int esm_cube_size_px(int size_px)
 {
-  return size_px / 2;
+  return std::max(size_px / 2, 1);
 }
 
 namespace {

@@ -80,9 +80,33 @@ static LayerPass best_layer_pass(LayerPass asked, const gpu::Limits &limits)
   return limits.has_vertex_layer ? LayerPass::Layered : LayerPass::Geometry;
 }
 
+/** Those of exponential maps are the octahedral store's business. \throws gpu::Error */
+static void check(const ShadowSettings &settings)
+{
+  const auto check_range = [](const char *setting, auto value, auto low, auto high) {
+    // false for NaN too.
+    if (!(value >= low && value <= high)) {
+      throw gpu::Error("shadow settings: {} {} is not in [{}, {}]", setting, value, low, high);
+    }
+  };
+  constexpr int most = std::numeric_limits<int>::max();
+  check_range("cube_size_px", settings.cube_size_px, 1, most);
+  check_range("map_size_px", settings.map_size_px, 1, most);
+  check_range("cascades.count", settings.cascades.count, 0, cascade_count_max);
+  check_range("cascades.lambda", settings.cascades.lambda, 0.0F, 1.0F);
+  const int width = settings.pcf.width;
+  if (width == 0) {
+    check_range("pcf.taps", settings.pcf.taps, 1, 64);
+  }
+  if (width != 0 && width != 1 && width != 3 && width != 5) {
+    throw gpu::Error("shadow settings: pcf.width {} is not 0, 1, 3 or 5", width);
+  }
+}
+
 void Shadows::sync(const gpu::Limits &device_limits, const scene::Scene &scene, Lamps &lamps,
                    const ShadowSettings &settings)
 {
+  check(settings);
   layer_pass_ = best_layer_pass(settings.layer_pass, device_limits);
   // After a sync that failed, the last good one's casters are still those that were drawn.
   if (std::exchange(is_finished_, false)) {
@@ -142,6 +166,7 @@ void Shadows::place_slots(const gpu::Limits &device_limits, const scene::Scene &
   const int esm_max = std::min(ESM_MAX, device_limits.array_layers_max);
   int entry_count = 0;
   std::vector<std::string> lost;
+  std::vector<std::string> too_large;
   for (int i = 0; i < lamps.light_block.light_count; i++) {
     const scene::Lamp &lamp = scene.lamps[lamps.scene_index[std::size_t(i)]];
     Slot slot;
@@ -169,7 +194,14 @@ void Shadows::place_slots(const gpu::Limits &device_limits, const scene::Scene &
     const int size_px = is_esm    ? esm_cube_size_px(lamp.shadow.esm_size.value_or(settings_.esm.size_px))
                         : is_cube ? settings_.cube_size_px
                                   : settings_.map_size_px;
-    slot.size_px = std::clamp(lamp.shadow.size.value_or(size_px), 1, device_limits.texture_size_max);
+    const int asked_px = lamp.shadow.size.value_or(size_px);
+    if (asked_px < 1) {
+      throw gpu::Error("lamp '{}': size {} px of its shadow is not at least 1", lamp.name, asked_px);
+    }
+    if (asked_px > device_limits.texture_size_max) {
+      too_large.push_back(lamp.name);
+    }
+    slot.size_px = std::min(asked_px, device_limits.texture_size_max);
     slot.range = std::numeric_limits<float>::infinity();
     if (!is_sun) {
       slot.range = std::min(lamp.range > 0.0F ? lamp.range : slot.range, lamp.shadow.clip_end.value_or(slot.range));
@@ -186,6 +218,10 @@ void Shadows::place_slots(const gpu::Limits &device_limits, const scene::Scene &
     limits_.push_back(
         fmt::format("{} lamps lost their shadow, as {} cubes, {} maps and {} exponential maps are the most: '{}'",
                     lost.size(), cube_max, map_max, esm_max, fmt::join(lost, "', '")));
+  }
+  if (!too_large.empty()) {
+    limits_.push_back(fmt::format("the shadow size of {} lamps is {} texels, as this device takes no more: '{}'",
+                                  too_large.size(), device_limits.texture_size_max, fmt::join(too_large, "', '")));
   }
   fit_memory(lamps);
 }
@@ -220,8 +256,8 @@ void Shadows::place_octahedral(const gpu::Limits &device_limits, const scene::Sc
     const scene::LampShadow &wishes = slot.lamp.shadow;
     EsmLamp &lamp = esm_lamps_.emplace_back();
     lamp.name = slot.lamp.name;
-    // Without a range of its own, nothing that it could darken is farther than the scene.
-    lamp.range = std::isinf(slot.range) ? std::clamp(1.01F * glm::length(reach), 1e-6F, 1e30F) : slot.range;
+    // Nothing that it could darken is farther than the scene, however far it reaches: exponents are derived from this.
+    lamp.range = std::clamp(std::min(1.01F * glm::length(reach), slot.range), 1e-6F, 1e30F);
     lamp.settings = settings_.esm;
     lamp.settings.method = slot.kind == scene::ShadowKind::Evsm ? EsmMethod::Evsm : EsmMethod::Esm;
     lamp.settings.exponent = wishes.exponent ? wishes.exponent : lamp.settings.exponent;

@@ -26,6 +26,8 @@ constexpr double large = 1e12;
 constexpr double length_min = 1e-12;
 /** Angles come as rounded floats. */
 constexpr double angle_tolerance = 1e-6;
+/** Half the opening of a cone below it would vanish in float once squared, as 1 - cos does. */
+constexpr double cone_min = 1e-9;
 
 /** \a vector at length 1; nothing when it has no direction to speak of. */
 std::optional<glm::dvec3> direction(const glm::dvec3 &vector, double length_least)
@@ -72,15 +74,14 @@ std::string node_name(const tinygltf::Node &node, const std::string &fallback, c
 struct Range {
   double min;
   double max;
-  bool is_min_included = true;
 
   [[nodiscard]] bool contains(double value) const
   {
-    return (is_min_included ? value >= min : value > min) && value <= max;
+    return value >= min && value <= max;
   }
   [[nodiscard]] std::string text() const
   {
-    return (is_min_included ? "from " : "above ") + gltf::text(min) + " to " + gltf::text(max);
+    return "from " + gltf::text(min) + " to " + gltf::text(max);
   }
 };
 
@@ -285,7 +286,7 @@ class LampReader {
 
   void read_cone(const tinygltf::SpotLight &spot)
   {
-    const double outer = checked("outerConeAngle", spot.outerConeAngle, {0.0, pi / 2 + angle_tolerance, false});
+    const double outer = checked("outerConeAngle", spot.outerConeAngle, {cone_min, pi / 2 + angle_tolerance});
     // glTF wants the inner angle smaller; Blender writes equal ones for a hard edge, and they make sense.
     const double inner = checked("innerConeAngle", spot.innerConeAngle, {0.0, outer + angle_tolerance});
     lamp_.spot_outer_angle = static_cast<float>(std::min(outer, pi / 2));
@@ -379,17 +380,21 @@ std::string camera_fault(const Camera &camera)
     return "znear " + text(camera.near) + " is out of range";
   }
   const bool is_infinite = is_perspective && camera.far == 0.0F;
-  if (!is_infinite && !(camera.far > camera.near && camera.far <= large)) {
+  if (!is_infinite && !(camera.far > camera.near && is_length(camera.far))) {
     return "zfar " + text(camera.far) + " is not above znear " + text(camera.near) + ", or out of range";
   }
   return {};
 }
 
-/** Out of float's range becomes its limit, which the checks then refuse; a plain cast would be undefined. */
+/**
+ * Out of float's range becomes its limit, which the checks then refuse; a plain cast would be undefined. What is not 0
+ * stays so: 0 has a meaning of its own.
+ */
 float narrowed(double value)
 {
   constexpr double max = std::numeric_limits<float>::max();
-  return static_cast<float>(std::clamp(value, -max, max));
+  constexpr double least = std::numeric_limits<float>::denorm_min();
+  return static_cast<float>(std::copysign(std::clamp(std::abs(value), value == 0.0 ? 0.0 : least, max), value));
 }
 
 /** A frame that looks along the unit vector \a forward. */

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include "internal/measure_contract.hh"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gnomon::measure {
+
+namespace {
+
+/** Half a turn, and a rounding. */
+constexpr float pi = 3.1415927F;
+
+bool is_finite(const glm::vec3 &v)
+{
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/** Collects faults of one element after another. */
+class Checker {
+ public:
+  std::vector<std::string> faults;
+
+  void element(std::string what)
+  {
+    what_ = std::move(what);
+  }
+  void check(bool is_right, const char *promise)
+  {
+    if (!is_right) {
+      faults.push_back(fmt::format("{}: not {}", what_, promise));
+    }
+  }
+  void check_affine(const glm::mat4 &matrix)
+  {
+    bool is_affine = true;
+    for (int column = 0; column < 4; column++) {
+      is_affine = is_affine && is_finite(glm::vec3(matrix[column])) && matrix[column][3] == (column == 3 ? 1.0F : 0.0F);
+    }
+    check(is_affine, "a finite affine matrix");
+  }
+  /** A rotation and a place, right-handed. */
+  void check_frame(const glm::mat4 &matrix)
+  {
+    check_affine(matrix);
+    const glm::vec3 x(matrix[0]);
+    const glm::vec3 y(matrix[1]);
+    const glm::vec3 z(matrix[2]);
+    // Of unit vectors rounded to float.
+    constexpr float rounding = 1e-5F;
+    check(std::abs(glm::length(x) - 1.0F) <= rounding && std::abs(glm::length(y) - 1.0F) <= rounding &&
+              glm::length(glm::cross(x, y) - z) <= rounding,
+          "a right-handed orthonormal frame");
+  }
+
+ private:
+  std::string what_;
+};
+
+void check_mesh(const scene::Scene &scene, const scene::Mesh &mesh, Checker &checker)
+{
+  checker.check(mesh.material < scene.materials.size(), "of a material that is there");
+  checker.check(mesh.normals.size() == mesh.positions.size(), "with a normal a position");
+  checker.check(!mesh.indices.empty() && mesh.indices.size() % 3 == 0, "of whole triangles");
+  checker.check(std::ranges::all_of(mesh.indices, [&](std::uint32_t i) { return i < mesh.positions.size(); }),
+                "with indices in range");
+  checker.check(!mesh.bounds.is_empty(), "with bounds");
+  checker.check(mesh.uvs.empty() || mesh.uvs.size() == mesh.positions.size(), "with a texture coordinate a position");
+  checker.check(mesh.uvs.empty() ==
+                    (mesh.material < scene.materials.size() && scene.materials[mesh.material].base_color_texture < 0),
+                "with texture coordinates just where its material looks a texture up");
+  checker.check(
+      std::ranges::all_of(mesh.uvs, [](const glm::vec2 &uv) { return std::isfinite(uv.x) && std::isfinite(uv.y); }),
+      "with finite texture coordinates");
+  checker.check(std::ranges::all_of(mesh.positions,
+                                    [&](const glm::vec3 &p) {
+                                      return is_finite(p) && glm::min(mesh.bounds.min, p) == mesh.bounds.min &&
+                                             glm::max(mesh.bounds.max, p) == mesh.bounds.max;
+                                    }),
+                "with finite positions within its bounds");
+  checker.check(
+      std::ranges::all_of(mesh.normals,
+                          [](const glm::vec3 &n) { return is_finite(n) && std::abs(glm::length(n) - 1.0F) <= 1e-5F; }),
+      "with unit normals");
+}
+
+void check_material(const scene::Scene &scene, const scene::Material &material, Checker &checker)
+{
+  for (const float factor : {material.base_color.x, material.base_color.y, material.base_color.z, material.alpha,
+                             material.metallic, material.roughness, material.specular, material.alpha_cutoff}) {
+    checker.check(factor >= 0.0F && factor <= 1.0F, "with factors in [0, 1]");
+  }
+  checker.check(is_finite(material.specular_color) && is_finite(material.emissive), "of finite colours");
+  checker.check(material.base_color_texture >= -1 && material.base_color_texture < int(scene.textures.size()),
+                "of a texture that is there");
+}
+
+void check_lamp(const scene::Lamp &lamp, Checker &checker)
+{
+  checker.check_frame(lamp.world_from_lamp);
+  checker.check(is_finite(lamp.color) && lamp.color.x >= 0.0F && lamp.color.y >= 0.0F && lamp.color.z >= 0.0F,
+                "of a finite colour of at least 0");
+  for (const float value : {lamp.intensity, lamp.radius, lamp.angle, lamp.range}) {
+    checker.check(std::isfinite(value) && value >= 0.0F,
+                  "of a finite intensity, radius, angle and range of at least 0");
+  }
+  checker.check(lamp.spot_outer_angle > 0.0F && lamp.spot_outer_angle <= 0.5F * pi, "a cone");
+  checker.check(lamp.spot_blend >= 0.0F && lamp.spot_blend <= 1.0F, "of a blend in [0, 1]");
+  checker.check(std::isfinite(lamp.area_size_x) && lamp.area_size_x > 0.0F && std::isfinite(lamp.area_size_y) &&
+                    lamp.area_size_y > 0.0F,
+                "of an area");
+  const auto check_range = [&](const auto &value, auto low, auto high, const char *promise) {
+    checker.check(!value || (*value >= low && *value <= high), promise);
+  };
+  const scene::LampShadow &shadow = lamp.shadow;
+  check_range(shadow.size, 1, 16384, "of a shadow size from 1 to 16384");
+  check_range(shadow.esm_size, 1, 16384, "of an exponential map from 1 to 16384");
+  // Decimals round to either side.
+  check_range(shadow.exponent, 0.00999F, 1.0001e4F, "of an exponent from 0.01 to 1e4");
+  check_range(shadow.bias, 0.0F, 100.0F, "of a bias from 0 to 100");
+  check_range(shadow.filter_radius, 0.0F, 0.25F * pi, "of a filter from 0 to 45 degrees");
+  check_range(shadow.clip_start, 1e-20F, 1e30F, "of a clip start above 0");
+  check_range(shadow.clip_end, shadow.clip_start.value_or(1e-20F), 1e30F, "of a clip end beyond the start");
+}
+
+void check_camera(const scene::Camera &camera, Checker &checker)
+{
+  checker.check_frame(camera.world_from_camera);
+  const bool is_perspective = camera.kind == scene::CameraKind::Perspective;
+  checker.check(camera.vertical_angle > 0.0F && camera.vertical_angle < pi, "of an angle in (0, pi)");
+  checker.check(std::isfinite(camera.aspect) && camera.aspect >= 0.0F, "of a finite aspect of at least 0");
+  checker.check(std::isfinite(camera.half_width) && camera.half_width > 0.0F && std::isfinite(camera.half_height) &&
+                    camera.half_height > 0.0F,
+                "of a frame");
+  checker.check(std::isfinite(camera.near) && (is_perspective ? camera.near > 0.0F : camera.near >= 0.0F),
+                "of a near distance");
+  checker.check(std::isfinite(camera.far) && (camera.far > camera.near || (is_perspective && camera.far == 0.0F)),
+                "of a far distance beyond the near one");
+}
+
+}  // namespace
+
+std::vector<std::string> contract_faults(const scene::Scene &scene)
+{
+  Checker checker;
+  for (const scene::Mesh &mesh : scene.meshes) {
+    checker.element("mesh '" + mesh.name + "'");
+    check_mesh(scene, mesh, checker);
+  }
+  for (const scene::Material &material : scene.materials) {
+    checker.element("material '" + material.name + "'");
+    check_material(scene, material, checker);
+  }
+  for (const scene::Texture &texture : scene.textures) {
+    checker.element("texture");
+    checker.check(texture.image < scene.images.size(), "of an image that is there");
+  }
+  for (const scene::Image &image : scene.images) {
+    checker.element("image '" + image.name + "'");
+    checker.check(image.width > 0 && image.height > 0, "of a size");
+    checker.check(image.texels.size() == std::size_t(4) * image.width * image.height, "of as many texels");
+  }
+  for (const scene::Object &object : scene.objects) {
+    checker.element("object '" + object.name + "'");
+    checker.check(object.mesh < scene.meshes.size(), "of a mesh that is there");
+    checker.check_affine(object.world_from_object);
+  }
+  for (const scene::Lamp &lamp : scene.lamps) {
+    checker.element("lamp '" + lamp.name + "'");
+    check_lamp(lamp, checker);
+  }
+  for (const scene::Camera &camera : scene.cameras) {
+    checker.element("camera '" + camera.name + "'");
+    check_camera(camera, checker);
+  }
+  checker.element("scene");
+  checker.check(!scene.lamps.empty() && !scene.cameras.empty(), "with a lamp and a camera");
+  checker.check(scene.objects.empty() || std::isfinite(scene.bounds().radius()), "of finite bounds");
+  for (const std::string &warning : scene.warnings) {
+    checker.element("warning '" + warning + "'");
+    checker.check(warning.find('\n') == warning.npos, "one line");
+  }
+  return checker.faults;
+}
+
+}  // namespace gnomon::measure

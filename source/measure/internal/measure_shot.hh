@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "internal/measure_scene.hh"
+
+#include <glm/mat4x4.hpp>
+
+#include <map>
+#include <memory>
+#include <tuple>
+#include <vector>
+
+/** Pictures of small scenes, what is true of them, and how they differ. Internal to source/measure. */
+namespace gnomon::measure {
+
+/** A scene and who looks at it. */
+struct Shot {
+  scene::Scene scene;
+  scene::Camera camera;
+};
+
+/** \a shot moved by a rotation, reflection or translation after it was made \a scale times as large, its light as
+ * bright. */
+[[nodiscard]] Shot placed(Shot shot, const glm::dmat4 &moved, double scale = 1.0);
+
+/** How shots are drawn. */
+struct DrawSettings {
+  scene::ShadowKind shadow = scene::ShadowKind::None;
+  glm::ivec2 size_px{48, 36};
+  int sample_count = 16;
+
+  auto operator<=>(const DrawSettings &other) const
+  {
+    return std::tuple(shadow, size_px.x, size_px.y, sample_count) <=>
+           std::tuple(other.shadow, other.size_px.x, other.size_px.y, other.sample_count);
+  }
+  bool operator==(const DrawSettings &other) const = default;
+};
+
+/** Draws shot after shot, with the programs and textures of those before. */
+class Studio {
+ public:
+  /** \a device must outlive it. */
+  explicit Studio(gpu::Device &device) : device_(device) {}
+
+  Picture draw(const Shot &shot, const DrawSettings &settings = {});
+  /** Of the last draw with \a settings. */
+  [[nodiscard]] eevee::Report report(const DrawSettings &settings);
+
+ private:
+  struct Stage {
+    scene::Scene scene;
+    std::unique_ptr<Renderer> renderer;
+  };
+  gpu::Device &device_;
+  std::map<DrawSettings, Stage> stages_;
+  /** Of the meshes of the last shot. */
+  std::uint64_t revision_ = 0;
+};
+
+/** Exact rays' picture, by as many samples. */
+[[nodiscard]] Picture truth(const Shot &shot, const DrawSettings &settings = {});
+
+/** Root of the mean square of a picture's difference, over the truth's mean; NaN where the picture is not finite. */
+[[nodiscard]] double relative_rmse(const Picture &picture, const Picture &truth);
+
+/** Share of pixels that differ by more than \a tolerance of the truth's mean; NaN where the picture is not finite. */
+[[nodiscard]] double wrong_share(const Picture &picture, const Picture &truth, double tolerance);
+
+/** Median of |difference| / truth over the pixels where the truth is above 0; NaN where the picture is not finite. */
+[[nodiscard]] double median_error(const Picture &picture, const Picture &truth);
+
+/** Largest difference, over the truth's mean; NaN where the picture is not finite. */
+[[nodiscard]] double largest_error(const Picture &picture, const Picture &truth);
+
+}  // namespace gnomon::measure
