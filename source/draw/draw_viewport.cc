@@ -7,7 +7,13 @@
 
 namespace gnomon::draw {
 
-Viewport::Viewport(gpu::Device &device, glm::ivec2 size_px) : device_(device), size_px_(size_px) {}
+Viewport::Viewport(gpu::Device &device, glm::ivec2 size_px) : device_(device), size_px_(size_px)
+{
+  const int most = device.limits().texture_size_max;
+  if (size_px.x < 1 || size_px.y < 1 || size_px.x > most || size_px.y > most) {
+    throw gpu::Error("viewport: {}x{} pixels are not from 1x1 to {}x{}", size_px.x, size_px.y, most, most);
+  }
+}
 
 const gpu::Texture &Viewport::depth_texture()
 {

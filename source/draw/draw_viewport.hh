@@ -22,7 +22,7 @@ struct EngineViewportData {
  */
 class Viewport {
  public:
-  /** \pre size_px at least 1x1 */
+  /** \throws gpu::Error where size_px is below 1x1, or above what a texture of the device may have. */
   Viewport(gpu::Device &device, glm::ivec2 size_px);
 
   /**

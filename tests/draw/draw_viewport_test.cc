@@ -3,6 +3,7 @@
 
 #include "gpu/gpu_testing.hh"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace gnomon::draw {
@@ -134,8 +135,10 @@ TEST(Viewport, PastTheLimitIsAnErrorThatMakesNothing)
   gpu::Limits limits;
   limits.texture_size_max = 16;
   const auto device = gpu::create_null_device(limits);
-  Viewport viewport(*device, {17, 4});
-  expect_contains(error_of([&] { static_cast<void>(viewport.depth_texture()); }), "width is 17");
+  for (const glm::ivec2 &size_px : {glm::ivec2(17, 4), glm::ivec2(4, 17), glm::ivec2(0, 4), glm::ivec2(4, -1)}) {
+    expect_contains(error_of([&] { Viewport(*device, size_px); }),
+                    fmt::format("{}x{} pixels are not from 1x1 to 16x16", size_px.x, size_px.y));
+  }
   EXPECT_TRUE(device->live_resources().empty());
 }
 
