@@ -30,7 +30,7 @@ using Clock = std::chrono::steady_clock;
 struct ReportOptions {
   std::vector<std::string> scenes;
   std::string folder;
-  std::vector<int> size = {640, 360};
+  std::vector<int> size = {480, 270};
   int rounds = 3;
   int reference_samples = 64;
   /** Names or labels of the grid's; empty: all. */
@@ -133,6 +133,8 @@ class Run {
   ReportOptions options_;
   fs::path folder_;
   measure::RunReport run_;
+  /** Of the scene that is measured. */
+  std::vector<glm::vec4> reference_;
   double seconds_before_ = 0.0;
   Clock::time_point start_ = Clock::now();
   std::optional<Progress> progress_;
@@ -241,14 +243,13 @@ void Run::visit(const scene::Scene &scene, const reference::Tracer &tracer, meas
     technique.pictures[i].seconds.push_back(times.picture_seconds[i]);
   }
   if (is_first) {
-    const std::vector<glm::vec4> reference = read_exr(folder_ / measure::reference_file(report), run_.size_px);
     technique.lamps = std::move(result.lamps);
     technique.memory_bytes = result.memory_bytes;
     technique.limits = std::move(result.limits);
     technique.lost_shadow_count = result.lost_shadow_count;
     for (std::size_t i = 0; i < technique.pictures.size(); i++) {
       measure::PictureReport &picture = technique.pictures[i];
-      picture.error = measure::image_error(run_.size_px, result.pictures[i], reference);
+      picture.error = measure::image_error(run_.size_px, result.pictures[i], reference_);
       write_exr(folder_ / measure::picture_file(report, technique.technique, picture.sample_count), run_.size_px,
                 floats(result.pictures[i]),
                 {{"gnomon:scene", report.path.string()}, {"gnomon:units", "scene-linear radiance, W/(sr m^2)"}});
@@ -263,6 +264,7 @@ void Run::measure(measure::SceneReport &report)
     measure::leave_shadows_to_technique(scene);
     const reference::Tracer tracer(scene);
     make_reference(scene, tracer, report);
+    reference_ = read_exr(folder_ / measure::reference_file(report), run_.size_px);
     for (int round = 0; round < run_.rounds; round++) {
       for (measure::TechniqueReport &technique : report.techniques) {
         if (technique.step_seconds.size() == std::size_t(round)) {
@@ -348,7 +350,7 @@ void add_report(CLI::App &app, Status &status)
                    "Folder for index.html, report.csv, report.json and pictures; a run that was interrupted there is "
                    "gone on with")
       ->required();
-  command->add_option("--size", o->size, "Width and height of the picture, pixels")
+  command->add_option("--size", o->size, "Width and height of the picture, pixels (default: 480x270)")
       ->delimiter('x')
       ->expected(2)
       ->check(CLI::Range(1, 16384));

@@ -80,15 +80,15 @@ std::vector<Technique> report_techniques()
   };
   using Kernel = eevee::EsmKernel;
   add_esm("esm 4", "--shadow esm --esm 4", ShadowKind::Esm, {.kernel = Kernel::Disk4}, {256, 512, 1024});
-  add_esm("esm 32", "--shadow esm --esm 32", ShadowKind::Esm, {.kernel = Kernel::Disk32}, {512, 1024});
-  add_esm("esm separable", "--shadow esm --esm separable", ShadowKind::Esm, {.kernel = Kernel::Separable}, {512, 1024});
+  add_esm("esm 32", "--shadow esm --esm 32", ShadowKind::Esm, {.kernel = Kernel::Disk32}, {1024});
+  add_esm("esm separable", "--shadow esm --esm separable", ShadowKind::Esm, {.kernel = Kernel::Separable}, {1024});
   add_esm("esm 4, 16 bits", "", ShadowKind::Esm, {.format = eevee::EsmFormat::Half, .kernel = Kernel::Disk4}, {512});
   add_esm("evsm 4", "--shadow evsm --esm 4", ShadowKind::Evsm, {.kernel = Kernel::Disk4}, {256, 512, 1024});
   add_esm("evsm 32", "--shadow evsm --esm 32", ShadowKind::Evsm, {.kernel = Kernel::Disk32}, {512});
   // Where samples are many, what is left is the shadows' own error: shown where it is smallest.
   for (Technique &technique : all) {
-    if (technique.size_px >= 2048 &&
-        (technique.name == "hard, cascades" || technique.name == "hard" || technique.name == "pcf 3x3")) {
+    const std::string name = label(technique);
+    if (name == "hard 4096" || name == "hard, cascades 2048" || name == "pcf 3x3 4096") {
       technique.sample_counts.push_back(64);
     }
   }

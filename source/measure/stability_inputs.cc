@@ -594,7 +594,7 @@ void add_settings_cases(std::vector<StabilityCase> &cases)
       });
   cases.push_back(door_case<glm::ivec2>(
       "settings", "viewport", "frame of that size",
-      "1 1x1, 2 16384x1, 3 1x16384, 4 16384x16384, 5 0x1, 6 1x0, 7 -1x1, 8 16385x1, 9 1x16385", "texture 'depth'",
+      "1 1x1, 2 16384x1, 3 1x16384, 4 16384x16384, 5 0x1, 6 1x0, 7 -1x1, 8 16385x1, 9 1x16385", "viewport: ",
       {{1, {1, 1}},
        {2, {16384, 1}},
        {3, {1, 16384}},
