@@ -2,6 +2,7 @@
 #include "cli_choice.hh"
 
 #include "cli_fingerprint.hh"
+#include "cli_origin.hh"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -27,8 +28,8 @@ Chooser::Chooser(const ChoiceOptions &options, gpu::Device &device, const scene:
   }
   std::vector<measure::Model> models;
   if (!options.report_folder.empty()) {
-    models = models_of_report();
-    source_ = "report " + options.report_folder;
+    models = models_of_report(device);
+    source_ = fmt::format("report {}", options.report_folder);
   }
   if (models.empty()) {
     measure::Pilot pilot = measure::run_pilot(device, scene, camera, size_px, tracer_, wish_);
@@ -38,7 +39,7 @@ Chooser::Chooser(const ChoiceOptions &options, gpu::Device &device, const scene:
   choice_ = measure::choose(models, wish_);
 }
 
-std::vector<measure::Model> Chooser::models_of_report() const
+std::vector<measure::Model> Chooser::models_of_report(const gpu::Device &device) const
 {
   const fs::path path = fs::path(options_.report_folder) / "report.json";
   std::ifstream file(path);
@@ -52,7 +53,7 @@ std::vector<measure::Model> Chooser::models_of_report() const
   catch (const std::exception &error) {
     throw std::runtime_error(fmt::format("{}: is no report: {}", path.string(), error.what()));
   }
-  const auto found = std::ranges::find(run.scenes, fingerprint_of(scene_.path), &measure::SceneReport::fingerprint);
+  const auto found = std::ranges::find(run.scenes, scene_fingerprint(scene_.path), &measure::SceneReport::fingerprint);
   const auto unknown = [&](const std::string &why) {
     fmt::print(stderr, "gnomon: warning: {}: {}; a pilot is run\n", path.string(), why);
     return std::vector<measure::Model>();
@@ -63,8 +64,12 @@ std::vector<measure::Model> Chooser::models_of_report() const
   if (run.size_px != size_px_ || &camera_ != &scene_.cameras.front()) {
     return unknown(fmt::format("it is of pictures of {}x{} by the first camera", run.size_px.x, run.size_px.y));
   }
+  const Origin here = origin();
+  if (run.build != program_fingerprint() || run.device != device.description() || run.machine != here.machine) {
+    return unknown("another build, machine or driver has other times");
+  }
   const bool has_wishes = std::ranges::any_of(scene_.lamps, [](const scene::Lamp &lamp) {
-    return lamp.shadow.kind && *lamp.shadow.kind != scene::ShadowKind::None;
+    return lamp.shadow.kind != scene::ShadowKind::None && lamp.shadow != scene::LampShadow();
   });
   if (has_wishes) {
     return unknown("lamps have shadows of their own choice, and in it they have not");
@@ -72,8 +77,9 @@ std::vector<measure::Model> Chooser::models_of_report() const
   return measure::models_from(*found);
 }
 
-void Chooser::measure(std::span<const glm::vec4> picture)
+void Chooser::measure(std::span<const glm::vec4> picture, double seconds)
 {
+  measured_seconds_ = seconds;
   constexpr int pixel_count = 4096;
   constexpr int sample_count = 64;
   const measure::PixelSample sample(tracer_, camera_, size_px_, picture, pixel_count, sample_count, 1);
@@ -95,6 +101,10 @@ std::vector<std::string> Chooser::limits() const
   else if (wish_.error_max && measured_.rmse - 2.0 * measured_.standard_error > *wish_.error_max) {
     limits.push_back(fmt::format("{} was asked for; RMSE {:.5f} was measured", wish_text(), measured_.rmse));
   }
+  else if (wish_.seconds_max && measured_seconds_ > *wish_.seconds_max) {
+    limits.push_back(
+        fmt::format("{} was asked for; the first picture took {:.1f} ms", wish_text(), 1e3 * measured_seconds_));
+  }
   return limits;
 }
 
@@ -110,8 +120,8 @@ void Chooser::print_choice() const
 
 void Chooser::print_measured() const
 {
-  fmt::print("measured: RMSE {:.5f} ± {:.5f} against exact rays at a sample of pixels\n", measured_.rmse,
-             measured_.standard_error);
+  fmt::print("measured: RMSE {:.5f} ± {:.5f} against exact rays at a sample of pixels, first picture in {:.1f} ms\n",
+             measured_.rmse, measured_.standard_error, 1e3 * measured_seconds_);
 }
 
 nlohmann::json Chooser::to_json() const
@@ -125,6 +135,7 @@ nlohmann::json Chooser::to_json() const
           {"predicted_seconds", choice_.predicted_seconds},
           {"predicted_rmse", choice_.predicted_error.rmse},
           {"predicted_rmse_standard_error", choice_.predicted_error.standard_error},
+          {"measured_seconds", measured_seconds_},
           {"measured_rmse", measured_.rmse},
           {"measured_rmse_standard_error", measured_.standard_error}};
 }

@@ -39,8 +39,8 @@ class Chooser {
   {
     return choice_;
   }
-  /** Compare the picture with exact rays, at other pixels than the pilot's. */
-  void measure(std::span<const glm::vec4> picture);
+  /** Compare the picture with exact rays, at other pixels than the pilot's. \a seconds: what the first one took. */
+  void measure(std::span<const glm::vec4> picture, double seconds);
   /** What was missed, if anything, by name. */
   [[nodiscard]] std::vector<std::string> limits() const;
 
@@ -50,7 +50,7 @@ class Chooser {
   [[nodiscard]] nlohmann::json to_json() const;
 
  private:
-  [[nodiscard]] std::vector<measure::Model> models_of_report() const;
+  [[nodiscard]] std::vector<measure::Model> models_of_report(const gpu::Device &device) const;
   [[nodiscard]] std::string wish_text() const;
 
   ChoiceOptions options_;
@@ -63,6 +63,7 @@ class Chooser {
   std::string source_;
   measure::Choice choice_;
   measure::SampledError measured_;
+  double measured_seconds_ = 0.0;
 };
 
 }  // namespace gnomon::cli

@@ -458,7 +458,7 @@ Status render(RenderOptions options)
   result.output_seconds = seconds_since(output_start);
   result.total_seconds = seconds_since(start);
   if (chooser && status == Status::Done) {
-    chooser->measure(read_as<glm::vec4>(*device, engine.radiance(viewport)));
+    chooser->measure(read_as<glm::vec4>(*device, engine.radiance(viewport)), result.frame_seconds.front());
     for (const std::string &limit : chooser->limits()) {
       fmt::print(stderr, "gnomon: limit: {}\n", limit);
       result.report.limits.push_back(limit);
@@ -467,7 +467,9 @@ Status render(RenderOptions options)
   if (!options.json.empty()) {
     write_atomically(options.json, [&](const fs::path &beside) {
       std::ofstream file(beside);
-      file << to_json(options, scene, camera, result, chooser.get()).dump(2) << "\n";
+      file << to_json(options, scene, camera, result, chooser.get())
+                  .dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
+           << "\n";
       if (!file.flush()) {
         throw std::runtime_error(fmt::format("{}: cannot be written", options.json));
       }
@@ -554,17 +556,21 @@ void add_render(CLI::App &app, Status &status)
       ->check(CLI::IsMember({"gl", "null"}));
   command->add_flag("--explain", o->is_explained, "Print what the frame is made of, and what was left out");
   command->add_option("--json", o->json, "Write times, counters, limits, what was made and left out");
-  CLI::Option *samples = command->get_option("--samples");
   CLI::Option *max_error =
       command
           ->add_option("--max-error", o->choice.error_max,
                        "Choose shadows and samples: the fastest with at most that RMSE against exact rays")
-          ->check(CLI::Range(1e-6, 1e6))
-          ->excludes(samples);
-  command->add_option("--max-time", o->choice.milliseconds_max, "Or the most exact within so many ms a picture")
-      ->check(CLI::Range(1e-3, 1e9))
-      ->excludes(samples)
-      ->excludes(max_error);
+          ->check(CLI::Range(1e-6, 1e6));
+  CLI::Option *max_time =
+      command->add_option("--max-time", o->choice.milliseconds_max, "Or the most exact within so many ms a picture")
+          ->check(CLI::Range(1e-3, 1e9))
+          ->excludes(max_error);
+  // What is chosen is not to be asked for, and a picture of something else has no error.
+  for (const char *name : {"--samples", "--shadow", "--shadow-size", "--pcf", "--esm", "--cascades", "--cascade-lambda",
+                           "--cascade-range", "--cube-pass", "--casters", "--shadow-memory", "--debug"}) {
+    max_error->excludes(command->get_option(name));
+    max_time->excludes(command->get_option(name));
+  }
   command->add_option("--report", o->choice.report_folder,
                       "Folder of gnomon report, to choose from; otherwise a pilot is rendered");
   command->add_flag("--strict", o->is_strict, "End with status 4 where a limit was hit");

@@ -125,8 +125,12 @@ class Run {
   void visit(const scene::Scene &scene, const reference::Tracer &tracer, measure::SceneReport &report,
              measure::TechniqueReport &technique);
   void make_reference(const scene::Scene &scene, const reference::Tracer &tracer, measure::SceneReport &report);
+  /** Once a scene. */
+  void warn(measure::SceneReport &report, const std::string &warning) const;
   void save() const;
   void finish(measure::SceneReport &report) const;
+  /** Whether the folder holds what a run that goes on with \a report needs. */
+  [[nodiscard]] bool has_pictures(const measure::SceneReport &report) const;
   [[nodiscard]] std::size_t visits_left(const measure::SceneReport &report) const;
 
   gpu::Device &device_;
@@ -144,7 +148,14 @@ Run::Run(gpu::Device &device, const ReportOptions &options)
     : device_(device), options_(options), folder_(options.folder)
 {
   const Origin where = origin();
-  run_ = {where.program, where.commit, device.description(), where.machine, where.date, {}, options.rounds, 0.0, {}};
+  run_.program = where.program;
+  run_.commit = where.commit;
+  run_.build = program_fingerprint();
+  run_.device = device.description();
+  run_.machine = where.machine;
+  run_.date = where.date;
+  run_.rounds = options.rounds;
+  run_.reference_samples = options.reference_samples;
   run_.size_px = {options.size[0], options.size[1]};
   const std::vector<measure::Technique> techniques = wanted_techniques(options.techniques);
   for (const std::string &path : options.scenes) {
@@ -155,7 +166,7 @@ Run::Run(gpu::Device &device, const ReportOptions &options)
     measure::SceneReport &scene = run_.scenes.emplace_back();
     scene.name = name;
     scene.path = path;
-    scene.fingerprint = fingerprint_of(path);
+    scene.fingerprint = scene_fingerprint(path);
     for (const measure::Technique &technique : techniques) {
       measure::TechniqueReport &report = scene.techniques.emplace_back();
       report.technique = technique;
@@ -178,17 +189,20 @@ void Run::resume()
     std::ifstream file(path);
     measure::RunReport before = measure::run_from_json(nlohmann::json::parse(file));
     // Other builds, machines and drivers have other times.
-    if (before.commit != run_.commit || before.device != run_.device || before.machine != run_.machine ||
-        before.size_px != run_.size_px || before.rounds != run_.rounds) {
-      fmt::print(stderr, "gnomon: {}: of another build, machine, size or number of rounds; begun anew\n",
+    if (before.build != run_.build || before.device != run_.device || before.machine != run_.machine ||
+        before.size_px != run_.size_px || before.rounds != run_.rounds ||
+        before.reference_samples != run_.reference_samples) {
+      fmt::print(stderr, "gnomon: {}: of another build, machine, size, reference or number of rounds; begun anew\n",
                  path.string());
       return;
     }
     for (measure::SceneReport &scene : run_.scenes) {
       const auto same = std::ranges::find_if(
           before.scenes, [&scene](const measure::SceneReport &one) { return is_same_work(one, scene); });
-      if (same != before.scenes.end()) {
+      if (same != before.scenes.end() && has_pictures(*same)) {
+        const fs::path scene_path = scene.path;
         scene = std::move(*same);
+        scene.path = scene_path;
       }
     }
     run_.date = before.date;
@@ -197,6 +211,20 @@ void Run::resume()
   catch (const std::exception &error) {
     fmt::print(stderr, "gnomon: {}: cannot be gone on with: {}; begun anew\n", path.string(), error.what());
   }
+}
+
+bool Run::has_pictures(const measure::SceneReport &report) const
+{
+  const bool is_finished = visits_left(report) == 0;
+  bool is_whole = fs::exists(folder_ / measure::reference_file(report));
+  for (const measure::TechniqueReport &technique : report.techniques) {
+    for (const measure::PictureReport &picture : technique.pictures) {
+      const bool is_wanted = is_finished ? picture.is_on_front : !picture.seconds.empty();
+      is_whole &=
+          !is_wanted || fs::exists(folder_ / measure::picture_file(report, technique.technique, picture.sample_count));
+    }
+  }
+  return is_whole;
 }
 
 std::size_t Run::visits_left(const measure::SceneReport &report) const
@@ -212,7 +240,8 @@ void Run::save() const
 {
   measure::RunReport run = run_;
   run.seconds = seconds_before_ + seconds_since(start_);
-  write_text(folder_ / "report.json", measure::to_json(run).dump(1) + "\n");
+  write_text(folder_ / "report.json",
+             measure::to_json(run).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 void Run::make_reference(const scene::Scene &scene, const reference::Tracer &tracer, measure::SceneReport &report)
@@ -230,6 +259,15 @@ void Run::make_reference(const scene::Scene &scene, const reference::Tracer &tra
   report.reference_seconds = seconds_since(start);
 }
 
+void Run::warn(measure::SceneReport &report, const std::string &warning) const
+{
+  if (std::ranges::find(report.warnings, warning) == report.warnings.end()) {
+    progress_->end();
+    fmt::print(stderr, "gnomon: warning: {}: {}\n", report.name, warning);
+    report.warnings.push_back(warning);
+  }
+}
+
 void Run::visit(const scene::Scene &scene, const reference::Tracer &tracer, measure::SceneReport &report,
                 measure::TechniqueReport &technique)
 {
@@ -243,6 +281,9 @@ void Run::visit(const scene::Scene &scene, const reference::Tracer &tracer, meas
     technique.pictures[i].seconds.push_back(times.picture_seconds[i]);
   }
   if (is_first) {
+    for (const std::string &warning : result.warnings) {
+      warn(report, warning);
+    }
     technique.lamps = std::move(result.lamps);
     technique.memory_bytes = result.memory_bytes;
     technique.limits = std::move(result.limits);
@@ -261,6 +302,9 @@ void Run::measure(measure::SceneReport &report)
 {
   if (visits_left(report) > 0) {
     scene::Scene scene = scene::import_gltf(report.path);
+    for (const std::string &warning : scene.warnings) {
+      warn(report, warning);
+    }
     measure::leave_shadows_to_technique(scene);
     const reference::Tracer tracer(scene);
     make_reference(scene, tracer, report);
@@ -307,8 +351,15 @@ std::size_t Run::measure_all()
   const auto read = [this](const std::string &file) { return read_exr(folder_ / file, run_.size_px); };
   write_text(folder_ / "index.html", measure::to_html(run_, read, png_bytes));
   std::size_t non_finite = 0;
+  std::string text =
+      fmt::format("{} ({}), {}, {}, {}, {}x{}, {} rounds, {:.0f} s\n", run_.program, run_.commit, run_.date,
+                  run_.machine, run_.device, run_.size_px.x, run_.size_px.y, run_.rounds, run_.seconds);
   for (const measure::SceneReport &scene : run_.scenes) {
-    fmt::print("{}", measure::to_text(scene));
+    text += measure::to_text(scene);
+  }
+  write_text(folder_ / "report.txt", text);
+  fmt::print("{}", text);
+  for (const measure::SceneReport &scene : run_.scenes) {
     for (const measure::TechniqueReport &technique : scene.techniques) {
       non_finite += measure::all_lamps(technique.lamps).non_finite_count;
       for (const measure::PictureReport &picture : technique.pictures) {
@@ -330,7 +381,6 @@ Status report(const ReportOptions &options)
   }
   const std::unique_ptr<gpu::Device> device =
       gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()});
-  fmt::print("{}\n", device->description());
   const std::size_t non_finite = Run(*device, options).measure_all();
   if (non_finite > 0) {
     fmt::print(stderr, "gnomon: {} values of pictures and shadows are not finite\n", non_finite);
@@ -346,9 +396,10 @@ void add_report(CLI::App &app, Status &status)
   CLI::App *command = app.add_subcommand("report", "Error against run time of each shadow method, by exact rays");
   command->add_option("scenes", o->scenes, "glTF 2.0 files")->required();
   command
-      ->add_option("-o,--output", o->folder,
-                   "Folder for index.html, report.csv, report.json and pictures; a run that was interrupted there is "
-                   "gone on with")
+      ->add_option(
+          "-o,--output", o->folder,
+          "Folder for index.html, report.csv, .json and .txt, and pictures; a run that was interrupted there is "
+          "gone on with")
       ->required();
   command->add_option("--size", o->size, "Width and height of the picture, pixels (default: 480x270)")
       ->delimiter('x')

@@ -5,6 +5,7 @@
 #include "cli_output.hh"
 
 #include "measure_page.hh"
+#include "measure_report.hh"
 #include "measure_stability.hh"
 
 #include <fmt/format.h>
@@ -202,14 +203,6 @@ void print_failures(const std::vector<Judged> &judged)
   }
 }
 
-std::string quoted(std::string text)
-{
-  for (std::size_t at = text.find('"'); at != std::string::npos; at = text.find('"', at + 2)) {
-    text.insert(at, 1, '"');
-  }
-  return '"' + text + '"';
-}
-
 std::string to_csv(const std::vector<Judged> &judged)
 {
   std::string csv =
@@ -218,13 +211,14 @@ std::string to_csv(const std::vector<Judged> &judged)
       "baseline,passed,failure\n";
   for (const auto &[one, result] : judged) {
     const bool has_samples = !result.samples.empty();
-    csv += fmt::format("{},{},{},{},{},{},{},{},{:.6g},{:.9g},{:.6g},{},{},{},{},{},{}\n", quoted(one.group),
-                       quoted(one.name), quoted(one.quantity), quoted(one.parameter),
-                       has_samples ? fmt::format("{:.9g}", result.samples.front().parameter) : "",
-                       has_samples ? fmt::format("{:.9g}", result.samples.back().parameter) : "", quoted(one.reference),
-                       quoted(one.unit), result.worst_error, result.worst_parameter, one.bound, result.samples.size(),
-                       result.non_finite_count, result.non_finite_count == 0, one.is_baseline, result.is_passed,
-                       quoted(result.failure));
+    csv += fmt::format(
+        "{},{},{},{},{},{},{},{},{:.6g},{:.9g},{:.6g},{},{},{},{},{},{}\n", measure::csv_quoted(one.group),
+        measure::csv_quoted(one.name), measure::csv_quoted(one.quantity), measure::csv_quoted(one.parameter),
+        has_samples ? fmt::format("{:.9g}", result.samples.front().parameter) : "",
+        has_samples ? fmt::format("{:.9g}", result.samples.back().parameter) : "", measure::csv_quoted(one.reference),
+        measure::csv_quoted(one.unit), result.worst_error, result.worst_parameter, one.bound, result.samples.size(),
+        result.non_finite_count, result.non_finite_count == 0, one.is_baseline, result.is_passed,
+        measure::csv_quoted(result.failure));
   }
   return csv;
 }

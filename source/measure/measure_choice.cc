@@ -3,6 +3,7 @@
 
 #include "internal/measure_bench.hh"
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
@@ -12,6 +13,7 @@
 #include <limits>
 #include <memory>
 #include <random>
+#include <stdexcept>
 
 namespace gnomon::measure {
 
@@ -179,7 +181,11 @@ Pilot run_pilot(gpu::Device &device, const scene::Scene &scene, const scene::Cam
         model.sample_seconds = std::clamp((seconds - first_seconds) / (n - 1), 0.0, first_seconds);
         model.shadow_seconds = first_seconds - model.sample_seconds;
       }
-      model.points.push_back({n, sample->error(bench.picture())});
+      const SampledError error = sample->error(bench.picture());
+      if (!std::isfinite(error.rmse)) {
+        break;
+      }
+      model.points.push_back({n, error});
       const double upper_error = upper(model.points.back().error);
       const bool is_enough = wish.error_max ? upper_error <= *wish.error_max : model.seconds(n) >= *wish.seconds_max;
       best_seconds = wish.error_max && is_enough ? std::min(best_seconds, model.seconds(n)) : best_seconds;
@@ -190,11 +196,16 @@ Pilot run_pilot(gpu::Device &device, const scene::Scene &scene, const scene::Cam
         break;
       }
     }
-    pilot.models.push_back(std::move(model));
+    if (!model.points.empty()) {
+      pilot.models.push_back(std::move(model));
+    }
     // Sizes rise: where one sample takes longer than what is good enough, so it does with those to come.
     if (first_seconds >= best_seconds) {
       break;
     }
+  }
+  if (pilot.models.empty()) {
+    throw std::runtime_error(fmt::format("{}: every picture of the pilot holds NaN or infinity", scene.path));
   }
   pilot.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return pilot;
@@ -204,10 +215,13 @@ std::vector<Model> models_from(const SceneReport &report)
 {
   std::vector<Model> models;
   for (const TechniqueReport &technique : report.techniques) {
+    if (technique.technique.options.empty()) {
+      continue;
+    }
     Model model{technique.technique, 0.0, 0.0, {}};
     std::vector<glm::dvec2> times;
     for (const PictureReport &picture : technique.pictures) {
-      if (picture.error.non_finite_count == 0 && !picture.seconds.empty()) {
+      if (std::isfinite(picture.error.rmse) && !picture.seconds.empty()) {
         model.points.push_back({picture.sample_count, {picture.error.rmse, 0.0}});
         times.emplace_back(picture.sample_count, median(picture.seconds));
       }

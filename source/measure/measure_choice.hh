@@ -101,12 +101,12 @@ struct Pilot {
 
 /**
  * Try pilot_techniques() with 1, 2, 4, ... samples, no more than \a wish needs. Lamps' own wishes hold.
- * Throws what rendering throws.
+ * Throws what rendering throws, and std::runtime_error where no picture is finite.
  */
 [[nodiscard]] Pilot run_pilot(gpu::Device &device, const scene::Scene &scene, const scene::Camera &camera,
                               glm::ivec2 size_px, const reference::Tracer &tracer, const Wish &wish);
 
-/** What a report knows of a scene. Pictures that held NaN or infinity are left out. */
+/** What a report knows of a scene. Left out: pictures that held NaN or infinity, techniques that no option chooses. */
 [[nodiscard]] std::vector<Model> models_from(const SceneReport &report);
 
 }  // namespace gnomon::measure

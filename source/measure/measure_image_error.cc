@@ -27,7 +27,7 @@ ImageError image_error(glm::ivec2 size_px, std::span<const glm::vec4> picture, s
   std::vector<float> largest(count);
   for (std::size_t i = 0; i < count; i++) {
     for (int c = 0; c < 3; c++) {
-      error.non_finite_count += std::isfinite(picture[i][c]) ? 0 : 1;
+      error.non_finite_count += std::isfinite(picture[i][c]) && std::isfinite(reference[i][c]) ? 0 : 1;
       const double expected = double(reference[i][c]);
       const double off = double(picture[i][c]) - expected;
       square += off * off;

@@ -15,7 +15,7 @@ inline constexpr double relative_mse_floor = 1e-2;
 
 /** How a scene-linear picture differs from its reference, over R, G and B. */
 struct ImageError {
-  /** Values that are NaN or infinite. Where there is any, the rest is NaN. */
+  /** Values that are NaN or infinite, in the picture or in the reference. Where there is any, the rest is NaN. */
   std::size_t non_finite_count = 0;
   double rmse = 0.0;
   /** Mean of (a - b)² / (b² + relative_mse_floor), b the reference's value. */

@@ -1,40 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "measure_left_out.hh"
 
+#include "internal/measure_scene.hh"
+
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
 namespace gnomon::measure {
 
 namespace {
-
-/** A box from -1 to 1 with the whole image on each side. */
-scene::Mesh box(std::string name, std::uint32_t material)
-{
-  scene::Mesh mesh;
-  mesh.name = std::move(name);
-  mesh.material = material;
-  for (int axis = 0; axis < 3; axis++) {
-    for (const float side : {-1.0F, 1.0F}) {
-      glm::vec3 normal(0.0F);
-      glm::vec3 across(0.0F);
-      normal[axis] = side;
-      across[(axis + 1) % 3] = 1.0F;
-      const glm::vec3 up = glm::cross(normal, across);
-      const auto first = std::uint32_t(mesh.positions.size());
-      for (const glm::vec2 &corner : {glm::vec2(-1, -1), glm::vec2(1, -1), glm::vec2(1, 1), glm::vec2(-1, 1)}) {
-        mesh.positions.push_back(normal + corner.x * across + corner.y * up);
-        mesh.normals.push_back(normal);
-        mesh.uvs.push_back(0.5F * corner + 0.5F);
-        mesh.bounds.extend(mesh.positions.back());
-      }
-      for (const std::uint32_t i : {0U, 1U, 2U, 0U, 2U, 3U}) {
-        mesh.indices.push_back(first + i);
-      }
-    }
-  }
-  return mesh;
-}
 
 /** Checks of two colours, of which one is clear. */
 scene::Image checks(std::string name)
@@ -71,13 +45,13 @@ std::int32_t add_texture(scene::Scene &scene, std::string name)
 
 void add_box(scene::Scene &scene, std::uint32_t material, const glm::vec3 &position, const glm::vec3 &half_size)
 {
-  scene::Mesh mesh = box("box of " + scene.materials[material].name, material);
+  const std::uint32_t mesh = add_box_mesh(scene, material);
+  scene.meshes[mesh].name = "box of " + scene.materials[material].name;
   if (scene.materials[material].base_color_texture < 0) {
-    mesh.uvs.clear();
+    scene.meshes[mesh].uvs.clear();
   }
-  scene.meshes.push_back(std::move(mesh));
-  scene.objects.push_back({scene.materials[material].name, std::uint32_t(scene.meshes.size() - 1),
-                           glm::scale(glm::translate(glm::mat4(1.0F), position), half_size)});
+  scene.objects.push_back(
+      {scene.materials[material].name, mesh, glm::scale(glm::translate(glm::mat4(1.0F), position), half_size)});
 }
 
 void add_lamp(scene::Scene &scene, std::string name, scene::LampKind kind, const glm::vec3 &position, float intensity)

@@ -82,7 +82,7 @@ void find_front(SceneReport &report)
   for (TechniqueReport &technique : report.techniques) {
     for (PictureReport &picture : technique.pictures) {
       picture.is_on_front = false;
-      if (picture.error.non_finite_count == 0 && !picture.seconds.empty()) {
+      if (std::isfinite(picture.error.rmse) && !picture.seconds.empty()) {
         pictures.push_back(&picture);
       }
     }
@@ -165,11 +165,11 @@ nlohmann::json to_json(const reference::VisibilityError &e)
           {"leak", e.leak_count},
           {"acne", e.acne_count},
           {"edge", e.edge_count},
-          {"wrong_fraction", e.wrong_fraction},
-          {"mean_absolute_error", e.mean_absolute_error},
-          {"edge_offset_median", e.edge_offset_median},
-          {"edge_offset_p95", e.edge_offset_p95},
-          {"edge_offset_max", e.edge_offset_max}};
+          {"wrong_fraction", number(e.wrong_fraction)},
+          {"mean_absolute_error", number(e.mean_absolute_error)},
+          {"edge_offset_median", number(e.edge_offset_median)},
+          {"edge_offset_p95", number(e.edge_offset_p95)},
+          {"edge_offset_max", number(e.edge_offset_max)}};
 }
 
 reference::VisibilityError visibility_from_json(const nlohmann::json &json)
@@ -183,11 +183,11 @@ reference::VisibilityError visibility_from_json(const nlohmann::json &json)
   json.at("leak").get_to(e.leak_count);
   json.at("acne").get_to(e.acne_count);
   json.at("edge").get_to(e.edge_count);
-  json.at("wrong_fraction").get_to(e.wrong_fraction);
-  json.at("mean_absolute_error").get_to(e.mean_absolute_error);
-  json.at("edge_offset_median").get_to(e.edge_offset_median);
-  json.at("edge_offset_p95").get_to(e.edge_offset_p95);
-  json.at("edge_offset_max").get_to(e.edge_offset_max);
+  e.wrong_fraction = number(json.at("wrong_fraction"));
+  e.mean_absolute_error = number(json.at("mean_absolute_error"));
+  e.edge_offset_median = number(json.at("edge_offset_median"));
+  e.edge_offset_p95 = number(json.at("edge_offset_p95"));
+  e.edge_offset_max = number(json.at("edge_offset_max"));
   return e;
 }
 
@@ -234,6 +234,7 @@ TechniqueReport technique_from_json(const nlohmann::json &json)
   if (report.technique.name.empty()) {
     throw std::runtime_error(fmt::format("no technique is called '{}'", label(wanted)));
   }
+  json.at("step_seconds").get_to(report.step_seconds);
   for (const nlohmann::json &picture : json.at("pictures")) {
     PictureReport &one = report.pictures.emplace_back();
     picture.at("samples").get_to(one.sample_count);
@@ -244,8 +245,13 @@ TechniqueReport technique_from_json(const nlohmann::json &json)
     one.error.flip = number(picture.at("flip"));
     picture.at("non_finite").get_to(one.error.non_finite_count);
     picture.at("front").get_to(one.is_on_front);
+    if (one.seconds.size() != report.step_seconds.size()) {
+      throw std::runtime_error(fmt::format("'{}' has other rounds for its pictures than for its steps", label(wanted)));
+    }
   }
-  json.at("step_seconds").get_to(report.step_seconds);
+  if (!std::ranges::equal(report.pictures, report.technique.sample_counts, {}, &PictureReport::sample_count)) {
+    throw std::runtime_error(fmt::format("'{}' has other numbers of samples", label(wanted)));
+  }
   for (const nlohmann::json &lamp : json.at("lamps")) {
     report.lamps.push_back({lamp.at("lamp"), visibility_from_json(lamp.at("visibility"))});
   }
@@ -272,6 +278,7 @@ nlohmann::json to_json(const SceneReport &report)
           {"fingerprint", report.fingerprint},
           {"reference_noise", report.reference_noise},
           {"reference_seconds", report.reference_seconds},
+          {"warnings", report.warnings},
           {"techniques", techniques},
           {"convergence_order", orders}};
 }
@@ -284,6 +291,7 @@ SceneReport scene_from_json(const nlohmann::json &json)
   json.at("fingerprint").get_to(report.fingerprint);
   json.at("reference_noise").get_to(report.reference_noise);
   json.at("reference_seconds").get_to(report.reference_seconds);
+  json.at("warnings").get_to(report.warnings);
   for (const nlohmann::json &technique : json.at("techniques")) {
     report.techniques.push_back(technique_from_json(technique));
   }
@@ -298,9 +306,17 @@ nlohmann::json to_json(const RunReport &run)
   for (const SceneReport &scene : run.scenes) {
     scenes.push_back(to_json(scene));
   }
-  return {{"program", run.program}, {"commit", run.commit},   {"device", run.device},
-          {"machine", run.machine}, {"date", run.date},       {"size", {run.size_px.x, run.size_px.y}},
-          {"rounds", run.rounds},   {"seconds", run.seconds}, {"scenes", scenes}};
+  return {{"program", run.program},
+          {"commit", run.commit},
+          {"build", run.build},
+          {"device", run.device},
+          {"machine", run.machine},
+          {"date", run.date},
+          {"size", {run.size_px.x, run.size_px.y}},
+          {"rounds", run.rounds},
+          {"reference_samples", run.reference_samples},
+          {"seconds", run.seconds},
+          {"scenes", scenes}};
 }
 
 RunReport run_from_json(const nlohmann::json &json)
@@ -308,14 +324,21 @@ RunReport run_from_json(const nlohmann::json &json)
   RunReport run;
   json.at("program").get_to(run.program);
   json.at("commit").get_to(run.commit);
+  json.at("build").get_to(run.build);
   json.at("device").get_to(run.device);
   json.at("machine").get_to(run.machine);
   json.at("date").get_to(run.date);
   run.size_px = {json.at("size").at(0).get<int>(), json.at("size").at(1).get<int>()};
   json.at("rounds").get_to(run.rounds);
+  json.at("reference_samples").get_to(run.reference_samples);
   json.at("seconds").get_to(run.seconds);
   for (const nlohmann::json &scene : json.at("scenes")) {
     run.scenes.push_back(scene_from_json(scene));
+    for (const TechniqueReport &technique : run.scenes.back().techniques) {
+      if (technique.step_seconds.size() > std::size_t(std::max(run.rounds, 0))) {
+        throw std::runtime_error(fmt::format("'{}' has more rounds than the run", label(technique.technique)));
+      }
+    }
   }
   return run;
 }
@@ -347,6 +370,16 @@ std::string to_text(const SceneReport &scene)
   return text;
 }
 
+std::string csv_quoted(std::string text)
+{
+  for (std::size_t at = text.find('"'); at != std::string::npos; at = text.find('"', at + 2)) {
+    text.insert(at, 1, '"');
+  }
+  text.insert(0, 1, '"');
+  text += '"';
+  return text;
+}
+
 std::string to_csv(const RunReport &run)
 {
   std::string csv =
@@ -359,11 +392,11 @@ std::string to_csv(const RunReport &run)
       const reference::VisibilityError e = all_lamps(one.lamps);
       const double shadows = step_seconds(one, "shadows");
       for (const PictureReport &picture : one.pictures) {
-        csv += fmt::format("{},\"{}\",{},{},{:.6f},{:.4f},{:.6f},{:.6f},{},{:.8f},{:.8g},{:.8f},{:.8f},{},", scene.name,
-                           one.technique.name, one.technique.size_px, picture.sample_count, median(picture.seconds),
-                           spread(picture.seconds), shadows, step_seconds(one, "") - shadows, one.memory_bytes,
-                           picture.error.rmse, picture.error.relative_mse, picture.error.p99, picture.error.flip,
-                           picture.is_on_front ? 1 : 0);
+        csv += fmt::format(
+            "{},{},{},{},{:.6f},{:.4f},{:.6f},{:.6f},{},{:.8f},{:.8g},{:.8f},{:.8f},{},", csv_quoted(scene.name),
+            csv_quoted(one.technique.name), one.technique.size_px, picture.sample_count, median(picture.seconds),
+            spread(picture.seconds), shadows, step_seconds(one, "") - shadows, one.memory_bytes, picture.error.rmse,
+            picture.error.relative_mse, picture.error.p99, picture.error.flip, picture.is_on_front ? 1 : 0);
         csv += fmt::format("{:.8f},{:.8f},{},{},{},{},{},{},{},{},{}\n", e.wrong_fraction, e.mean_absolute_error,
                            e.facing_count, e.wrong_count, e.leak_count, e.acne_count, e.edge_offset_median,
                            e.edge_offset_p95, e.edge_offset_max, e.non_finite_count + picture.error.non_finite_count,
@@ -376,10 +409,10 @@ std::string to_csv(const RunReport &run)
 
 std::string picture_file(const SceneReport &scene, const Technique &technique, int sample_count)
 {
-  std::string name = fmt::format("{}-{}-{}", scene.name, label(technique), sample_count);
+  std::string name = label(technique);
   std::ranges::replace_if(
       name, [](char c) { return c == ' ' || c == ':' || c == ','; }, '_');
-  return name + ".exr";
+  return fmt::format("{}-{}-{}.exr", scene.name, name, sample_count);
 }
 
 std::string reference_file(const SceneReport &scene)

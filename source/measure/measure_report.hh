@@ -42,11 +42,13 @@ struct SceneReport {
   /** Name of its file, without the extension. */
   std::string name;
   std::filesystem::path path;
-  /** Hash of the file: what was measured is of no use for another. */
+  /** Hash of the file and those it names: what was measured is of no use for another. */
   std::string fingerprint;
   /** RMSE of the reference itself, by its two halves. */
   double reference_noise = 0.0;
   double reference_seconds = 0.0;
+  /** Of the import and of the engine: what the pictures lack, for one. */
+  std::vector<std::string> warnings;
   std::vector<TechniqueReport> techniques;
 };
 
@@ -54,12 +56,15 @@ struct SceneReport {
 struct RunReport {
   std::string program;
   std::string commit;
+  /** Hash of the program. */
+  std::string build;
   std::string device;
   std::string machine;
   /** Of the start, UTC. */
   std::string date;
   glm::ivec2 size_px{0};
   int rounds = 0;
+  int reference_samples = 0;
   /** Wall time of all, spent so far. */
   double seconds = 0.0;
   std::vector<SceneReport> scenes;
@@ -93,13 +98,15 @@ struct Convergence {
 
 /** A table for a terminal. */
 [[nodiscard]] std::string to_text(const SceneReport &scene);
+/** A text as a field of a CSV file. */
+[[nodiscard]] std::string csv_quoted(std::string text);
 /** One row a picture, with its head. */
 [[nodiscard]] std::string to_csv(const RunReport &run);
 /** All of it; settings are not in it but by the technique's name. */
 [[nodiscard]] nlohmann::json to_json(const RunReport &run);
 /**
  * What to_json made. Techniques are found by their label among report_techniques().
- * \throws std::exception where it is not that.
+ * \throws std::exception where it is not that, or does not fit together.
  */
 [[nodiscard]] RunReport run_from_json(const nlohmann::json &json);
 

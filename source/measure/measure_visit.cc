@@ -144,6 +144,7 @@ VisitTimes visit(gpu::Device &device, const scene::Scene &scene, const Technique
     result = {};
     result.lamps = judged.judge(*tracer);
     const eevee::Report report = judged.report();
+    result.warnings = report.warnings;
     result.limits = report.limits;
     result.lost_shadow_count = report.lost_shadow_count;
   }

@@ -35,6 +35,7 @@ struct VisitResult {
   std::vector<std::vector<glm::vec4>> pictures;
   /** Textures, buffers and meshes on the device. */
   std::size_t memory_bytes = 0;
+  std::vector<std::string> warnings;
   std::vector<std::string> limits;
   /** \see eevee::Report */
   int lost_shadow_count = 0;

@@ -3,6 +3,7 @@
 #include "cli_process.hh"
 #include "gpu_device_fixture.hh"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -64,9 +65,10 @@ TEST_F(CliReportTest, WritesWhatWasMeasured)
   const std::string html = read("out/index.html");
   EXPECT_NE(html.find("Pareto front"), std::string::npos);
   EXPECT_NE(html.find("data:image/png;base64,"), std::string::npos);
-  // Pictures of the front, the reference, and the three files above; nothing else is left.
+  EXPECT_EQ(read("out/report.txt"), finished.out.substr(0, read("out/report.txt").size()));
+  // Pictures of the front, the reference, and the four files above; nothing else is left.
   const auto files = std::filesystem::directory_iterator(folder / "out");
-  EXPECT_EQ(std::size_t(std::distance(begin(files), end(files))), front + 4);
+  EXPECT_EQ(std::size_t(std::distance(begin(files), end(files))), front + 5);
   // The figures are those of the pictures.
   EXPECT_EQ(std::system(("'" GNOMON_SOURCE "/scripts/check_report' '" + (folder / "out").string() + "' > '" +
                          (folder / "stdout.txt").string() + "'")
@@ -88,6 +90,14 @@ TEST_F(CliReportTest, GoesOnWithWhatWasInterrupted)
   }
   write("out/report.json", before.dump());
   std::filesystem::remove(folder / "out/index.html");
+  // Such a run still has all pictures, and only at its end those of the front alone.
+  for (const char *name : {"hard_512", "esm_4_256"}) {
+    for (const int n : {1, 4, 16}) {
+      std::filesystem::copy_file(folder / "out/spots-reference.exr",
+                                 folder / fmt::format("out/spots-{}-{}.exr", name, n),
+                                 std::filesystem::copy_options::skip_existing);
+    }
+  }
   const Finished finished = report("--rounds 2");
   ASSERT_EQ(finished.status, 0) << finished.err;
   const json after = report_json();
@@ -109,6 +119,23 @@ TEST_F(CliReportTest, AnotherRunIsBegunAnew)
   EXPECT_EQ(report_json().at("rounds"), 2);
   write("out/report.json", "no json");
   EXPECT_NE(report("--rounds 1").err.find("out/report.json: cannot be gone on with"), std::string::npos);
+}
+
+TEST_F(CliReportTest, AFileOfNothingIsMeasuredAndWarnedOf)
+{
+  write("empty.gltf", R"({"asset": {"version": "2.0"}})");
+  const Finished finished = run("report empty.gltf -o out --size 8x8 --rounds 1 --technique 'hard 512'");
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_NE(finished.err.find("warning: empty: "), std::string::npos) << finished.err;
+  EXPECT_FALSE(report_json().at("scenes").at(0).at("warnings").empty());
+}
+
+TEST_F(CliReportTest, ADeletedPictureIsMadeAgain)
+{
+  ASSERT_EQ(report("--rounds 1").status, 0);
+  ASSERT_TRUE(std::filesystem::remove(folder / "out/spots-reference.exr"));
+  EXPECT_EQ(report("--rounds 1").status, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/spots-reference.exr"));
 }
 
 TEST_F(CliReportTest, WrongUsage)
@@ -144,6 +171,7 @@ TEST_F(CliReportTest, RenderChoosesFromAReport)
   EXPECT_EQ(json::parse(read("run.json")).at("choice").at("met"), false);
 
   EXPECT_EQ(run(render + "--max-error 0.1 --samples 4").status, 2);
+  EXPECT_EQ(run(render + "--max-time 4 --shadow-memory 10").status, 2);
   EXPECT_EQ(run(render + "--max-error 0.1 --max-time 4").status, 2);
   EXPECT_EQ(run(render).status, 2);
   finished = run("render " + example("spots") + " -o a.exr --max-error 0.1 --report nowhere");

@@ -83,14 +83,17 @@ TEST(Choice, WhatCannotBeMetIsSaidAndComeNear)
 TEST(Choice, ReportsModelSplitsTimes)
 {
   SceneReport report;
+  // What no option of the program chooses cannot be chosen.
+  report.techniques.emplace_back().pictures.emplace_back().seconds = {1.0};
   TechniqueReport &technique = report.techniques.emplace_back();
+  technique.technique.options = "--shadow hard";
   for (const int n : {1, 4, 16}) {
     PictureReport &picture = technique.pictures.emplace_back();
     picture.sample_count = n;
     picture.seconds = {2.0 + 0.5 * n};
     picture.error.rmse = 1.0 / n;
   }
-  technique.pictures.back().error.non_finite_count = 1;
+  technique.pictures.back().error.rmse = std::nan("");
   const std::vector<Model> models = models_from(report);
   ASSERT_EQ(models.size(), 1U);
   EXPECT_NEAR(models[0].shadow_seconds, 2.0, 1e-12);

@@ -48,7 +48,7 @@ TEST(Report, FrontHoldsWhatNothingBeats)
       {picture(1, 1.0, 0.5), picture(2, 2.0, 0.6), picture(3, 2.0, 0.3), picture(4, 3.0, 0.3), picture(5, 4.0, 0.1)});
   // Fastest and wholly wrong: no candidate.
   scene.techniques[0].pictures.push_back(picture(6, 0.1, 0.0));
-  scene.techniques[0].pictures.back().error.non_finite_count = 1;
+  scene.techniques[0].pictures.back().error.rmse = std::nan("");
   find_front(scene);
   std::vector<bool> is_on_front;
   for (const PictureReport &one : scene.techniques[0].pictures) {
@@ -108,12 +108,15 @@ TEST(Report, JsonHoldsAllThatARunGoesOnWith)
   run.date = "today";
   run.size_px = {640, 360};
   run.rounds = 3;
+  run.build = "fedc";
+  run.reference_samples = 64;
   run.seconds = 12.5;
-  run.scenes.push_back(scene_of({picture(1, 0.5, 0.25), picture(4, 2.0, 0.125)}));
+  run.scenes.push_back(scene_of({picture(1, 0.5, 0.25), picture(4, 2.0, 0.125), picture(16, 8.0, 0.0625)}));
   SceneReport &scene = run.scenes[0];
   scene.path = "folder/scene.glb";
   scene.fingerprint = "0123";
   scene.reference_noise = 0.001;
+  scene.warnings = {"a warning"};
   TechniqueReport &technique = scene.techniques[0];
   technique.pictures[1].error.rmse = std::numeric_limits<double>::quiet_NaN();
   technique.pictures[1].error.non_finite_count = 5;
@@ -129,16 +132,32 @@ TEST(Report, JsonHoldsAllThatARunGoesOnWith)
   EXPECT_TRUE(std::isnan(again.scenes[0].techniques[0].pictures[1].error.rmse));
   EXPECT_EQ(again.scenes[0].techniques[0].technique.sample_counts, technique.technique.sample_counts);
   EXPECT_THROW(static_cast<void>(run_from_json(nlohmann::json::object())), std::exception);
+
+  // What does not fit together is no report: nothing is read past its end later.
+  const auto throws = [&json](const std::string &path, const nlohmann::json &value) {
+    nlohmann::json broken = json;
+    broken[nlohmann::json::json_pointer("/scenes/0/techniques/0/" + path)] = value;
+    EXPECT_THROW(static_cast<void>(run_from_json(broken)), std::exception) << path;
+  };
+  throws("pictures/0/samples", 2);
+  throws("pictures/0/seconds", {1.0, 2.0});
+  throws("pictures/3", json["scenes"][0]["techniques"][0]["pictures"][0]);
+  throws("technique", "none of them");
+  nlohmann::json rounds = json;
+  rounds["rounds"] = 0;
+  EXPECT_THROW(static_cast<void>(run_from_json(rounds)), std::exception);
 }
 
 TEST(Report, CsvHasARowAPictureAndOneLengthOfRow)
 {
   RunReport run;
   run.scenes.push_back(scene_of({picture(1, 0.5, 0.25), picture(4, 2.0, 0.125)}));
+  run.scenes[0].name = "say \"cheese\"";
   const std::string csv = to_csv(run);
   EXPECT_EQ(std::ranges::count(csv, '\n'), 3);
   // Names of techniques are quoted, as some hold a comma; the first holds none.
   EXPECT_EQ(std::ranges::count(csv, ','), 3 * 24);
+  EXPECT_NE(csv.find("\n\"say \"\"cheese\"\"\",\"no shadow\",0,1,"), std::string::npos) << csv;
 }
 
 }  // namespace

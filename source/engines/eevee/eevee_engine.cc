@@ -503,7 +503,7 @@ std::optional<Probe> Engine::probe(draw::Viewport &viewport, const draw::View &v
   require_sync(data.is_synced);
   StorageList &stl = data.stl;
   const std::optional<std::size_t> light = light_of(stl.lamps, lamp);
-  if (!light) {
+  if (!light || stl.objects.empty()) {
     return std::nullopt;
   }
   record(viewport);

@@ -99,7 +99,7 @@ class Engine final : public draw::Engine {
   [[nodiscard]] std::vector<StepTime> take_step_times(draw::Viewport &viewport) const;
   /**
    * What the picture's shadows of the \a lamp-th lamp of the scene are made of, pixel by pixel, for a judge. Nothing
-   * where the lamp gives no light. \pre Settings::has_probe
+   * where the lamp gives no light, or no object is there. \pre Settings::has_probe
    */
   [[nodiscard]] std::optional<Probe> probe(draw::Viewport &viewport, const draw::View &view, std::size_t lamp);
   /** Edge of a texel of that lamp's shadow at a place, across the light, metres; 0: it has none there. */

@@ -58,7 +58,7 @@ inline std::uint32_t add_square_mesh(scene::Scene &scene, std::uint32_t material
   return std::uint32_t(scene.meshes.size() - 1);
 }
 
-/** A closed box from -1 to 1. \return its mesh's index. */
+/** A closed box from -1 to 1, with the whole of an image on each side. \return its mesh's index. */
 inline std::uint32_t add_box_mesh(scene::Scene &scene, std::uint32_t material)
 {
   scene::Mesh mesh;
@@ -74,6 +74,7 @@ inline std::uint32_t add_box_mesh(scene::Scene &scene, std::uint32_t material)
       for (const glm::vec2 &corner : {glm::vec2(-1, -1), glm::vec2(1, -1), glm::vec2(1, 1), glm::vec2(-1, 1)}) {
         mesh.positions.push_back(normal + corner.x * across + corner.y * up);
         mesh.normals.push_back(normal);
+        mesh.uvs.push_back(0.5F * corner + 0.5F);
         mesh.bounds.extend(mesh.positions.back());
       }
       for (const std::uint32_t i : {0U, 1U, 2U, 0U, 2U, 3U}) {
