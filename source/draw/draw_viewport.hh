@@ -28,7 +28,8 @@ class Viewport {
   /**
    * Let \a engines record \a objects; to be called again when any of them changed. What they add to objects() is
    * uploaded; who adds later, or draws with object_identity alone, calls ObjectBuffer::upload.
-   * \throws gpu::Error naming an object whose matrix is not finite, or whose volume holds NaN; nothing has changed then.
+   * \throws gpu::Error naming an object whose matrix is not finite, or whose volume holds NaN; then nothing has
+   * changed.
    */
   void sync(std::span<Engine *const> engines, std::span<const ObjectRef> objects);
   /** Let \a engines draw what they recorded, in order. \throws gpu::Error where \a view or its inverse is not finite.
