@@ -8,6 +8,7 @@
 
 #include "eevee_camera.hh"
 #include "eevee_engine.hh"
+#include "gpu_read.hh"
 #include "scene_gltf.hh"
 
 #include <fmt/format.h>
@@ -227,15 +228,6 @@ eevee::Settings engine_settings(const RenderOptions &options)
   return settings;
 }
 
-template <typename T>
-std::vector<T> read_as(gpu::Device &device, const gpu::Texture &texture)
-{
-  const std::vector<std::byte> bytes = device.read(texture);
-  std::vector<T> values(bytes.size() / sizeof(T));
-  std::memcpy(values.data(), bytes.data(), bytes.size());
-  return values;
-}
-
 nlohmann::json to_json(const RenderOptions &options, const scene::Scene &scene, const scene::Camera &camera,
                        const RenderResult &result, const Chooser *chooser)
 {
@@ -353,7 +345,7 @@ Status write_picture(const RenderOptions &options, const scene::Camera &camera, 
 {
   const bool is_shadow = options.debug_view.kind == DebugView::Kind::Shadow;
   const glm::ivec2 size_px(picture.desc().width, picture.desc().height);
-  const std::vector<float> values = read_as<float>(viewport.device(), picture);
+  const std::vector<float> values = gpu::read_as<float>(viewport.device(), picture);
   const NonFinite non_finite = find_non_finite(size_px, values);
   result.non_finite_count = non_finite.count;
   if (non_finite.count > 0) {
@@ -373,7 +365,7 @@ Status write_picture(const RenderOptions &options, const scene::Camera &camera, 
   if (is_png(options.output)) {
     metadata.emplace_back("gnomon:units", fmt::format("display-referred, {}", is_shadow ? "raw" : options.view));
     write_png(options.output, size_px,
-              is_shadow ? to_bytes(values) : read_as<std::uint8_t>(viewport.device(), engine.display(viewport)),
+              is_shadow ? to_bytes(values) : gpu::read_as<std::uint8_t>(viewport.device(), engine.display(viewport)),
               metadata);
   }
   else {
@@ -458,7 +450,7 @@ Status render(RenderOptions options)
   result.output_seconds = seconds_since(output_start);
   result.total_seconds = seconds_since(start);
   if (chooser && status == Status::Done) {
-    chooser->measure(read_as<glm::vec4>(*device, engine.radiance(viewport)), result.frame_seconds.front());
+    chooser->measure(gpu::read_as<glm::vec4>(*device, engine.radiance(viewport)), result.frame_seconds.front());
     for (const std::string &limit : chooser->limits()) {
       fmt::print(stderr, "gnomon: limit: {}\n", limit);
       result.report.limits.push_back(limit);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "internal/measure_bench.hh"
 
+#include "gpu_read.hh"
+
 #include <glm/geometric.hpp>
 
 #include <chrono>
 #include <cmath>
-#include <cstring>
 
 namespace gnomon::measure {
 
@@ -71,10 +72,7 @@ double Bench::picture_seconds(int sample_count)
 
 std::vector<glm::vec4> Bench::picture()
 {
-  const std::vector<std::byte> bytes = viewport_.device().read(engine_.radiance(viewport_));
-  std::vector<glm::vec4> pixels(bytes.size() / sizeof(glm::vec4));
-  std::memcpy(pixels.data(), bytes.data(), bytes.size());
-  return pixels;
+  return gpu::read_as<glm::vec4>(viewport_.device(), engine_.radiance(viewport_));
 }
 
 void Bench::set(int sample_count, bool is_timed)

@@ -128,34 +128,27 @@ void add_area_cases(std::vector<StabilityCase> &cases)
                                    shared::rectangle_solid_angle(none, none, none));
                    })});
   for (const double height : {0.0, 1e-6, 1.0}) {
-    cases.push_back({.group = group,
-                     .name = fmt::format("grazing line from {:g} m", height),
-                     .quantity = "where a line meets a plane, at most LINE_FAR away",
-                     .parameter = "rise of the line",
-                     .reference = "closed form",
-                     .unit = epsilon_unit,
-                     // One quotient: of what is along an axis the rest is exact.
-                     .bound = 1.0,
-                     .run = swept(
-                         [] {
-                           std::vector<double> steps = log_steps(1e-38, 1.0, 115);
-                           steps.insert(steps.begin(), 0.0);
-                           return steps;
-                         }(),
-                         [=](double rise) {
-                           const shared::vec3 origin(0.0F, 0.0F, float(height));
-                           const shared::vec3 direction(1.0F, 0.0F, float(-rise));
-                           const double given =
-                               shared::line_plane_distance(origin, direction, {5.0F, 7.0F, 0.0F}, {0.0F, 0.0F, 1.0F});
-                           const double far = double(shared::LINE_FAR);
-                           const double truth =
-                               rise > 0.0 ? std::min(double(origin.z) / double(float(rise)), far) : far;
-                           if (height == 0.0) {
-                             return rise > 0.0 ? std::abs(given) : std::abs(given / far - 1.0);
-                           }
-                           // Downwards, and behind only where it does not rise at all.
-                           return std::abs((rise > 0.0 ? given : std::abs(given)) / truth - 1.0) / float_epsilon;
-                         })});
+    cases.push_back(
+        {.group = group,
+         .name = fmt::format("grazing line from {:g} m", height),
+         .quantity = "where a line meets a plane, at most LINE_FAR away",
+         .parameter = "rise of the line",
+         .reference = "closed form",
+         .unit = epsilon_unit,
+         // One quotient: of what is along an axis the rest is exact.
+         .bound = 1.0,
+         .run = swept(zero_and_log_steps(1e-38, 1.0, 115), [=](double rise) {
+           const shared::vec3 origin(0.0F, 0.0F, float(height));
+           const shared::vec3 direction(1.0F, 0.0F, float(-rise));
+           const double given = shared::line_plane_distance(origin, direction, {5.0F, 7.0F, 0.0F}, {0.0F, 0.0F, 1.0F});
+           const double far = double(shared::LINE_FAR);
+           const double truth = rise > 0.0 ? std::min(double(origin.z) / double(float(rise)), far) : far;
+           if (height == 0.0) {
+             return rise > 0.0 ? std::abs(given) : std::abs(given / far - 1.0);
+           }
+           // Downwards, and behind only where it does not rise at all.
+           return std::abs((rise > 0.0 ? given : std::abs(given)) / truth - 1.0) / float_epsilon;
+         })});
   }
 }
 

@@ -113,16 +113,10 @@ void add_bsdf_cases(std::vector<StabilityCase> &cases)
                    .reference = "closed form",
                    .unit = epsilon_unit,
                    .bound = 1.0,
-                   .run = swept(
-                       [] {
-                         std::vector<double> steps = log_steps(1e-38, 1.0, 115);
-                         steps.insert(steps.begin(), 0.0);
-                         return steps;
-                       }(),
-                       [](double roughness) {
-                         const double truth = std::max(roughness * roughness, double(shared::ALPHA_MIN));
-                         return std::abs(double(alpha_of(float(roughness))) / truth - 1.0) / float_epsilon;
-                       })});
+                   .run = swept(zero_and_log_steps(1e-38, 1.0, 115), [](double roughness) {
+                     const double truth = std::max(roughness * roughness, double(shared::ALPHA_MIN));
+                     return std::abs(double(alpha_of(float(roughness))) / truth - 1.0) / float_epsilon;
+                   })});
   cases.push_back(
       {.group = group,
        .name = "specular colours of 0 to the largest",

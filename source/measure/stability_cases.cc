@@ -15,6 +15,13 @@ std::vector<double> log_steps(double low, double high, int count)
   return steps;
 }
 
+std::vector<double> zero_and_log_steps(double low, double high, int count)
+{
+  std::vector<double> steps = log_steps(low, high, count);
+  steps.insert(steps.begin(), 0.0);
+  return steps;
+}
+
 std::vector<double> even_steps(double low, double high, int count)
 {
   std::vector<double> steps;

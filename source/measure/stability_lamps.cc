@@ -124,18 +124,12 @@ void add_falloff_cases(std::vector<StabilityCase> &cases)
 {
   for (const float radius : {0.0F, 1e-4F, 1.0F}) {
     for (const float range : {0.0F, 1e-3F, 1e4F}) {
-      cases.push_back(
-          case_of({group, fmt::format("fall-off, radius {:g} m, range {:g} m", radius, range), "distance_falloff",
-                   "irradiance of a lamp of 1 W/sr, at the lamp and away", "distance, m",
-                   [] {
-                     std::vector<double> steps = log_steps(1e-8, 1e8, 161);
-                     steps.insert(steps.begin(), 0.0);
-                     return steps;
-                   }(),
-                   [=](double distance) {
-                     return Arguments<float>{.a = {float(distance * distance), radius * radius,
-                                                   range > 0.0F ? 1.0F / (range * range) : 0.0F, 0.0F}};
-                   }}));
+      cases.push_back(case_of({group, fmt::format("fall-off, radius {:g} m, range {:g} m", radius, range),
+                               "distance_falloff", "irradiance of a lamp of 1 W/sr, at the lamp and away",
+                               "distance, m", zero_and_log_steps(1e-8, 1e8, 161), [=](double distance) {
+                                 return Arguments<float>{.a = {float(distance * distance), radius * radius,
+                                                               range > 0.0F ? 1.0F / (range * range) : 0.0F, 0.0F}};
+                               }}));
     }
   }
   cases.push_back({.group = group,
@@ -242,21 +236,14 @@ void add_near_cases(std::vector<StabilityCase> &cases)
                      .reference = "closed form",
                      .unit = violation_unit,
                      .bound = 0.0,
-                     .run = swept(
-                         [] {
-                           std::vector<double> steps = log_steps(1e-9, 1e7, 129);
-                           steps.insert(steps.begin(), 0.0);
-                           return steps;
-                         }(),
-                         [=](double distance) {
-                           const CasterBelow below(glm::vec3(0.0F), float(distance), float(size));
-                           const float near = eevee::lamp_near(glm::vec3(0.0F), infinite, {below.caster});
-                           const float least = std::max(1e-4F * below.caster.bounds_ws.radius(), 1e-6F);
-                           return std::isfinite(near)
-                                      ? violated(near > 0.0F &&
-                                                 near <= std::max(float(distance / std::sqrt(3.0)), least))
-                                      : double(near);
-                         })});
+                     .run = swept(zero_and_log_steps(1e-9, 1e7, 129), [=](double distance) {
+                       const CasterBelow below(glm::vec3(0.0F), float(distance), float(size));
+                       const float near = eevee::lamp_near(glm::vec3(0.0F), infinite, {below.caster});
+                       const float least = std::max(1e-4F * below.caster.bounds_ws.radius(), 1e-6F);
+                       return std::isfinite(near)
+                                  ? violated(near > 0.0F && near <= std::max(float(distance / std::sqrt(3.0)), least))
+                                  : double(near);
+                     })});
   }
   cases.push_back({.group = group,
                    .name = "lamp inside a caster's box",
@@ -279,25 +266,19 @@ void add_near_cases(std::vector<StabilityCase> &cases)
                    .unit = epsilon_unit,
                    // In double but for the last.
                    .bound = 1.0,
-                   .run = swept(
-                       [] {
-                         std::vector<double> steps = log_steps(1e-38, 1e6, 133);
-                         steps.insert(steps.begin(), 0.0);
-                         return steps;
-                       }(),
-                       [](double length) {
-                         scene::Mesh mesh;
-                         const auto half = float(0.5 * length);
-                         mesh.positions = {{-half, 0, 0}, {0, 0, 0}, {half, 0, 0}};
-                         mesh.indices = {0, 1, 2, 1, 1, 1};
-                         const glm::mat4 identity(1.0F);
-                         eevee::Caster caster;
-                         caster.bounds_ws = {glm::vec3(-1e7F), glm::vec3(1e7F)};
-                         caster.mesh = &mesh;
-                         caster.world_from_object = &identity;
-                         const double found = eevee::distance_to(caster, {0.0F, 1.0F, 0.0F});
-                         return std::abs(found - 1.0) / float_epsilon;
-                       })});
+                   .run = swept(zero_and_log_steps(1e-38, 1e6, 133), [](double length) {
+                     scene::Mesh mesh;
+                     const auto half = float(0.5 * length);
+                     mesh.positions = {{-half, 0, 0}, {0, 0, 0}, {half, 0, 0}};
+                     mesh.indices = {0, 1, 2, 1, 1, 1};
+                     const glm::mat4 identity(1.0F);
+                     eevee::Caster caster;
+                     caster.bounds_ws = {glm::vec3(-1e7F), glm::vec3(1e7F)};
+                     caster.mesh = &mesh;
+                     caster.world_from_object = &identity;
+                     const double found = eevee::distance_to(caster, {0.0F, 1.0F, 0.0F});
+                     return std::abs(found - 1.0) / float_epsilon;
+                   })});
   cases.push_back({.group = group,
                    .name = "range without a caster",
                    .quantity = "lamp's near plane: above 0, before the range",
@@ -323,12 +304,7 @@ void add_shadow_cases(std::vector<StabilityCase> &cases)
                            }}));
   cases.push_back(case_of({"shadow", "slope of a plane seen edge-on", "slope_quotient",
                            "change of depth a texel, 0 where the plane has none", "denominator",
-                           [] {
-                             std::vector<double> steps = log_steps(1e-38, 1e10, 145);
-                             steps.insert(steps.begin(), 0.0);
-                             return steps;
-                           }(),
-                           [](double denominator) {
+                           zero_and_log_steps(1e-38, 1e10, 145), [](double denominator) {
                              return Arguments<float>{.a = {1.0F, float(denominator), 0.0F, 0.0F}};
                            }}));
   for (const float depth : {0.0F, 1e-6F, 1.0F}) {
@@ -347,28 +323,22 @@ void add_shadow_cases(std::vector<StabilityCase> &cases)
                      .unit = "epsilons of offset / distance",
                      // The receiver is rounded, and so is its difference from the lamp.
                      .bound = 1.0,
-                     .run = swept(
-                         [] {
-                           std::vector<double> steps = log_steps(1e-3, 1e8, 111);
-                           steps.insert(steps.begin(), 0.0);
-                           return steps;
-                         }(),
-                         [=](double offset) {
-                           const double near = 1e-3;
-                           // Never nearer than coordinates resolve.
-                           const double distance = std::max(is_far ? 1e4 : 0.1, 64.0 * float_epsilon * offset);
-                           const glm::vec3 lamp = glm::vec3(glm::dvec3(offset, -offset, offset));
-                           const std::array<draw::View, 6> views = eevee::shadow_cube_views(lamp, float(near), 1024);
-                           double worst = 0.0;
-                           for (std::size_t face = 0; face < 6; face++) {
-                             glm::dvec3 receiver(lamp);
-                             receiver[int(face / 2)] += face % 2 == 0 ? distance : -distance;
-                             const glm::vec4 clip = views[face].clip_from_world() * glm::vec4(receiver, 1.0F);
-                             const double depth = double(clip.z) / double(clip.w);
-                             worst = std::max(worst, std::abs(depth * distance / double(float(near)) - 1.0));
-                           }
-                           return worst / (float_epsilon * (1.0 + offset / distance));
-                         })});
+                     .run = swept(zero_and_log_steps(1e-3, 1e8, 111), [=](double offset) {
+                       const double near = 1e-3;
+                       // Never nearer than coordinates resolve.
+                       const double distance = std::max(is_far ? 1e4 : 0.1, 64.0 * float_epsilon * offset);
+                       const glm::vec3 lamp = glm::vec3(glm::dvec3(offset, -offset, offset));
+                       const std::array<draw::View, 6> views = eevee::shadow_cube_views(lamp, float(near), 1024);
+                       double worst = 0.0;
+                       for (std::size_t face = 0; face < 6; face++) {
+                         glm::dvec3 receiver(lamp);
+                         receiver[int(face / 2)] += face % 2 == 0 ? distance : -distance;
+                         const glm::vec4 clip = views[face].clip_from_world() * glm::vec4(receiver, 1.0F);
+                         const double depth = double(clip.z) / double(clip.w);
+                         worst = std::max(worst, std::abs(depth * distance / double(float(near)) - 1.0));
+                       }
+                       return worst / (float_epsilon * (1.0 + offset / distance));
+                     })});
   }
 }
 

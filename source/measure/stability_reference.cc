@@ -71,15 +71,8 @@ void add_tracer_cases(std::vector<StabilityCase> &cases)
                      .run = swept(std::move(steps), std::move(error_at))});
   };
   const glm::dvec3 down(0, 0, -1);
-  add(
-      "ray at world offsets", "distance of a plane 1 m below, relative to the offset", "world offset, m",
-      [] {
-        std::vector<double> steps = log_steps(1e-3, 1e8, 34);
-        steps.insert(steps.begin(), 0.0);
-        return steps;
-      }(),
-      4.0,
-      [=](double offset) {
+  add("ray at world offsets", "distance of a plane 1 m below, relative to the offset", "world offset, m",
+      zero_and_log_steps(1e-3, 1e8, 34), 4.0, [=](double offset) {
         const glm::vec3 place(glm::dvec3(offset, -offset, offset));
         const Triangles plane(square(3.0), glm::translate(glm::mat4(1.0F), place));
         return std::abs(hit_t(plane, glm::dvec3(place) + glm::dvec3(0.3, 0.2, 1.0), down) - 1.0) /

@@ -29,9 +29,7 @@ using Long3 = glm::vec<3, long double>;
 
 std::vector<double> offsets()
 {
-  std::vector<double> steps = log_steps(1e-3, 1e8, 89);
-  steps.insert(steps.begin(), 0.0);
-  return steps;
+  return zero_and_log_steps(1e-3, 1e8, 89);
 }
 
 /** A rotation about no axis in particular. */
@@ -245,27 +243,21 @@ void add_view_cases(std::vector<StabilityCase> &cases)
                    .reference = "closed form",
                    .unit = violation_unit,
                    .bound = 0.0,
-                   .run = swept(
-                       [] {
-                         std::vector<double> steps = log_steps(1e-38, 1e15, 107);
-                         steps.insert(steps.begin(), 0.0);
-                         return steps;
-                       }(),
-                       [](double scale) {
-                         double worst = 0.0;
-                         for (const glm::dvec3 &axes : {glm::dvec3(1, 1, scale), glm::dvec3(scale, -1, 1),
-                                                        glm::dvec3(scale), glm::dvec3(0, scale, 0)}) {
-                           glm::dmat4 matrix = glm::scale(turned(), axes);
-                           matrix[1][0] += 100.0 * scale;
-                           const draw::View view(glm::mat4(matrix), draw::perspective(1.0F, 1.0F, 0.1F, 100.0F));
-                           for (const glm::vec4 &plane : view.frustum_planes_ws()) {
-                             const bool is_plane = std::isfinite(plane.x + plane.y + plane.z + plane.w);
-                             worst = std::max(worst, violated(is_plane));
-                           }
-                           worst = std::max(worst, violated(view.touches({glm::vec3(0.0F), -1.0F})));
-                         }
-                         return worst;
-                       })});
+                   .run = swept(zero_and_log_steps(1e-38, 1e15, 107), [](double scale) {
+                     double worst = 0.0;
+                     for (const glm::dvec3 &axes : {glm::dvec3(1, 1, scale), glm::dvec3(scale, -1, 1),
+                                                    glm::dvec3(scale), glm::dvec3(0, scale, 0)}) {
+                       glm::dmat4 matrix = glm::scale(turned(), axes);
+                       matrix[1][0] += 100.0 * scale;
+                       const draw::View view(glm::mat4(matrix), draw::perspective(1.0F, 1.0F, 0.1F, 100.0F));
+                       for (const glm::vec4 &plane : view.frustum_planes_ws()) {
+                         const bool is_plane = std::isfinite(plane.x + plane.y + plane.z + plane.w);
+                         worst = std::max(worst, violated(is_plane));
+                       }
+                       worst = std::max(worst, violated(view.touches({glm::vec3(0.0F), -1.0F})));
+                     }
+                     return worst;
+                   })});
   cases.push_back({.group = group,
                    .name = "angles of a camera, 1e-6 rad to pi",
                    .quantity = "height of the frame at distance 1",

@@ -143,18 +143,12 @@ void add_sun_cases(std::vector<StabilityCase> &cases)
                      .unit = "half maps",
                      // The map's slack of 1/32 bears all roundings down to the least scale there is.
                      .bound = 0.0,
-                     .run = swept(
-                         [] {
-                           std::vector<double> steps = log_steps(1e-3, 1e8, 89);
-                           steps.insert(steps.begin(), 0.0);
-                           return steps;
-                         }(),
-                         [=](double offset) {
-                           // Never smaller than what coordinates resolve.
-                           const double scale = std::max(1.0, 64.0 * float_epsilon * offset);
-                           const Field field(offset * glm::dvec3(1, 0, -1), scale, 0.1 * scale, 1e3 * scale);
-                           return outside_of(field.fits(elevation, 1).at(0), field.casters);
-                         })});
+                     .run = swept(zero_and_log_steps(1e-3, 1e8, 89), [=](double offset) {
+                       // Never smaller than what coordinates resolve.
+                       const double scale = std::max(1.0, 64.0 * float_epsilon * offset);
+                       const Field field(offset * glm::dvec3(1, 0, -1), scale, 0.1 * scale, 1e3 * scale);
+                       return outside_of(field.fits(elevation, 1).at(0), field.casters);
+                     })});
   }
   cases.push_back({.group = group,
                    .name = "elevations of 1e-9 to 90°",

@@ -41,7 +41,7 @@ class PassGpu : public test::GpuDeviceTest {
     gpu::CommandList list;
     record(pass, list, view);
     device->submit(list);
-    return test::texels<glm::vec4>(*device, picture);
+    return gpu::read_as<glm::vec4>(*device, picture);
   }
 
   gpu::Texture picture;
@@ -279,7 +279,7 @@ void main()
   device->submit(list);
   for (int layer = 0; layer < 6 * LAMPS; layer++) {
     const auto expected = float(100 * (layer / 6) + layer % 6);
-    EXPECT_EQ(test::texels<float>(*device, cubes, layer), std::vector<float>(4, expected)) << "layer " << layer;
+    EXPECT_EQ(gpu::read_as<float>(*device, cubes, layer), std::vector<float>(4, expected)) << "layer " << layer;
   }
 }
 
@@ -309,7 +309,7 @@ TEST_F(PassGpu, RecordedOnAnotherThreadDrawsTheSame)
     record(*pass, list);
   }).join();
   device->submit(list);
-  EXPECT_EQ(std::ranges::count(test::texels<glm::vec4>(*device, picture), glm::vec4(1, 2, 3, 4)), SIZE * SIZE);
+  EXPECT_EQ(std::ranges::count(gpu::read_as<glm::vec4>(*device, picture), glm::vec4(1, 2, 3, 4)), SIZE * SIZE);
 }
 
 }  // namespace

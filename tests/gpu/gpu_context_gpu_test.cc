@@ -65,7 +65,7 @@ struct SmallScene {
       halves.push_back(glm::packHalf1x16(float(i)));
     }
     device.upload(source, 0, std::as_bytes(std::span(halves)));
-    EXPECT_EQ(test::texels<std::uint16_t>(device, source), halves);
+    EXPECT_EQ(gpu::read_as<std::uint16_t>(device, source), halves);
     device.update(block, glm::vec4(1, 2, 3, 4));
     device.update(store, glm::vec4(10));
   }
@@ -84,8 +84,8 @@ struct SmallScene {
     test::append_draw(list, full);
     list.end_pass();
     device.submit(list);
-    EXPECT_EQ(test::texels<float>(device, depth), std::vector<float>(16, 0.25F));
-    return test::texels<glm::vec4>(device, picture);
+    EXPECT_EQ(gpu::read_as<float>(device, depth), std::vector<float>(16, 0.25F));
+    return gpu::read_as<glm::vec4>(device, picture);
   }
 
   Device &device;

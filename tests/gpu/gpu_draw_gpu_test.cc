@@ -67,7 +67,7 @@ class DrawGpu : public test::GpuDeviceTest {
   std::vector<glm::vec4> submitted(const CommandList &list)
   {
     device->submit(list);
-    return test::texels<glm::vec4>(*device, picture);
+    return gpu::read_as<glm::vec4>(*device, picture);
   }
 
   static std::size_t at(int x, int y)
@@ -248,7 +248,7 @@ TEST_F(DrawGpu, UpdateIsInOrderBetweenPasses)
   device->submit(list);
   for (int i = 0; i < COUNT; i++) {
     const float first = i == 0 ? 77.0F : float(i);
-    EXPECT_EQ(test::texels<glm::vec4>(*device, pictures[std::size_t(i)])[0], glm::vec4(first, first, i, i));
+    EXPECT_EQ(gpu::read_as<glm::vec4>(*device, pictures[std::size_t(i)])[0], glm::vec4(first, first, i, i));
   }
 }
 
@@ -272,7 +272,7 @@ TEST_F(DrawGpu, UpdateDoesNotReachWhatWasSubmittedBefore)
   update(1);
   device->submit(list);
   update(2);
-  EXPECT_EQ(test::texels<glm::vec4>(*device, picture)[0], glm::vec4(1));
+  EXPECT_EQ(gpu::read_as<glm::vec4>(*device, picture)[0], glm::vec4(1));
 }
 
 TEST_F(DrawGpu, RangeOfABufferIsWhatIsBound)

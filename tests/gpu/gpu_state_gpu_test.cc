@@ -57,8 +57,8 @@ class StateGpu : public test::GpuDeviceTest {
     }
     list.end_pass();
     device->submit(list);
-    const std::vector<glm::vec4> colors = test::texels<glm::vec4>(*device, color);
-    const std::vector<float> depths = test::texels<float>(*device, depth);
+    const std::vector<glm::vec4> colors = gpu::read_as<glm::vec4>(*device, color);
+    const std::vector<float> depths = gpu::read_as<float>(*device, depth);
     EXPECT_EQ(std::ranges::count(colors, glm::vec4(colors[0].x)), 64) << "not all pixels alike";
     EXPECT_EQ(std::ranges::count(depths, depths[0]), 64) << "not all pixels alike";
     return {colors[0].x, depths[0]};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gpu_device.hh"
+#include "gpu_read.hh"
 #include "shader_files.hh"
 
 #include <glm/gtc/packing.hpp>
@@ -110,16 +110,6 @@ template <typename T>
 void push_constants(gpu::CommandList &list, const gpu::Shader &shader, const T &value)
 {
   list.push_constants(shader.interface().push_constant_slot, std::as_bytes(std::span(&value, 1)));
-}
-
-/** A layer of \a texture, rows from the bottom. \pre T is as large as a texel. */
-template <typename T>
-std::vector<T> texels(gpu::Device &device, const gpu::Texture &texture, int layer = 0)
-{
-  const std::vector<std::byte> bytes = device.read(texture, layer);
-  std::vector<T> values(bytes.size() / sizeof(T));
-  std::memcpy(values.data(), bytes.data(), bytes.size());
-  return values;
 }
 
 /** Any format as floats; what it has no channel for is 0. */

@@ -42,7 +42,7 @@ class TextureGpu : public test::GpuDeviceTest {
     append_draw(list, full);
     list.end_pass();
     device->submit(list);
-    return test::texels<glm::vec4>(*device, result);
+    return gpu::read_as<glm::vec4>(*device, result);
   }
 
   template <typename T>

@@ -54,7 +54,7 @@ class SharedFunctionGpu : public GpuDeviceTest, public testing::WithParamInterfa
     list.end_pass();
     device->submit(list);
     std::vector<glm::dvec4> values;
-    for (const glm::vec4 &texel : texels<glm::vec4>(*device, picture)) {
+    for (const glm::vec4 &texel : gpu::read_as<glm::vec4>(*device, picture)) {
       values.emplace_back(texel);
     }
     values.resize(count);

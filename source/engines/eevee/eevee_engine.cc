@@ -7,12 +7,12 @@
 #include "eevee_materials.hh"
 
 #include "draw_view_shared.h"
+#include "gpu_read.hh"
 
 #include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 namespace gnomon::eevee {
 
@@ -40,15 +40,6 @@ void timed(bool is_timed, gpu::Device &device, Timing &timing, const char *name,
   work();
   device.time_end(step->query);
   step->is_pending = true;
-}
-
-template <typename T>
-std::vector<T> read_as(gpu::Device &device, const gpu::Texture &texture)
-{
-  const std::vector<std::byte> bytes = device.read(texture);
-  std::vector<T> texels(bytes.size() / sizeof(T));
-  std::memcpy(texels.data(), bytes.data(), bytes.size());
-  return texels;
 }
 
 gpu::Texture picture(gpu::Device &device, const char *name, gpu::Format format, glm::ivec2 size_px)
@@ -469,7 +460,7 @@ void Engine::draw_sample(draw::Viewport &viewport, const draw::View &view, const
     draw_depth();
   }
   if (has(stl.features, any_shadow)) {
-    const auto read_depths = [&] { return read_as<float>(device, viewport.depth_texture()); };
+    const auto read_depths = [&] { return gpu::read_as<float>(device, viewport.depth_texture()); };
     gpu::CommandList list;
     stl.shadows.update(device, view, pixel_size(view, viewport), psl->shadow_pass, list, read_depths);
     if (!list.commands().empty()) {
@@ -522,7 +513,7 @@ std::optional<Probe> Engine::probe(draw::Viewport &viewport, const draw::View &v
   psl->probe_pass.record(view, list);
   list.end_pass();
   device.submit(list);
-  return Probe{read_as<glm::vec4>(device, txl.probe_position), read_as<glm::vec4>(device, txl.probe_normal)};
+  return Probe{gpu::read_as<glm::vec4>(device, txl.probe_position), gpu::read_as<glm::vec4>(device, txl.probe_normal)};
 }
 
 double Engine::shadow_texel_size(draw::Viewport &viewport, std::size_t lamp, const glm::dvec3 &position_ws) const

@@ -3,12 +3,12 @@
 
 #include "eevee_camera.hh"
 #include "eevee_engine.hh"
+#include "gpu_read.hh"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <cmath>
-#include <cstring>
 
 /** Small scenes made in place, and the pixels they come to. Internal to source/measure, and for tests. */
 namespace gnomon::measure {
@@ -164,10 +164,7 @@ class Renderer {
   Picture picture(const scene::Camera &camera)
   {
     draw(camera);
-    const std::vector<std::byte> bytes = viewport.device().read(engine.radiance(viewport));
-    Picture picture{viewport.size_px(), std::vector<glm::vec4>(bytes.size() / sizeof(glm::vec4))};
-    std::memcpy(picture.pixels.data(), bytes.data(), bytes.size());
-    return picture;
+    return {viewport.size_px(), gpu::read_as<glm::vec4>(viewport.device(), engine.radiance(viewport))};
   }
 
  private:

@@ -18,7 +18,9 @@ inline constexpr double float_epsilon = std::numeric_limits<float>::epsilon();
 
 /** \a count values from \a low to \a high, both among them; one ratio from each to the next. \pre low above 0 */
 [[nodiscard]] std::vector<double> log_steps(double low, double high, int count);
-/** The same; one difference. */
+/** The same, after 0. */
+[[nodiscard]] std::vector<double> zero_and_log_steps(double low, double high, int count);
+/** As log_steps; one difference. */
 [[nodiscard]] std::vector<double> even_steps(double low, double high, int count);
 
 /** For StabilityCase::run. */

@@ -23,10 +23,7 @@ class DebugViewGpuTest : public test::GpuDeviceTest {
   }
   Picture read(const gpu::Texture &texture)
   {
-    const std::vector<std::byte> bytes = device->read(texture);
-    Picture picture{{texture.desc().width, texture.desc().height},
-                    std::vector<glm::vec4>(bytes.size() / sizeof(glm::vec4))};
-    std::memcpy(picture.pixels.data(), bytes.data(), bytes.size());
+    Picture picture{{texture.desc().width, texture.desc().height}, gpu::read_as<glm::vec4>(*device, texture)};
     EXPECT_EQ(picture.non_finite_count(), 0U);
     return picture;
   }

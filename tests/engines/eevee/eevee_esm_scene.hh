@@ -182,7 +182,7 @@ void main()
     pass.record({}, list);
     list.end_pass();
     device_.submit(list);
-    return texels<float>(device_, picture);
+    return gpu::read_as<float>(device_, picture);
   }
 
   /** What shadow_esm_visibility gives, on the driver. */
@@ -231,7 +231,7 @@ void main()
     list.end_pass();
     device_.submit(list);
     std::vector<float> values;
-    for (const glm::vec4 &texel : texels<glm::vec4>(device_, pictures[2])) {
+    for (const glm::vec4 &texel : gpu::read_as<glm::vec4>(device_, pictures[2])) {
       values.push_back(texel.x);
     }
     values.resize(receivers.size());

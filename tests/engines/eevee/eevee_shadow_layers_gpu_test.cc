@@ -69,12 +69,12 @@ std::vector<std::vector<float>> drawn_layers(gpu::Device &device, const Shadows 
     const shared::ShadowCubeData &data = shadows.block_data().cubes[cube];
     for (int face = 0; face < 6; face++) {
       if ((data.face_mask >> face & 1) != 0) {
-        layers.push_back(test::texels<float>(device, shadows.cubes(), data.layer + face));
+        layers.push_back(gpu::read_as<float>(device, shadows.cubes(), data.layer + face));
       }
     }
   }
   for (int layer = 0; shadows.maps() && layer < shadows.maps().desc().layers; layer++) {
-    layers.push_back(test::texels<float>(device, shadows.maps(), layer));
+    layers.push_back(gpu::read_as<float>(device, shadows.maps(), layer));
   }
   return layers;
 }
@@ -150,7 +150,7 @@ TEST_F(ShadowLayersGpuTest, ACasterIsDrawnOnceForEachFaceThatItTouches)
 float middle_distance(gpu::Device &device, const Shadows &shadows)
 {
   const shared::ShadowMapData &map = shadows.block_data().maps[0];
-  const std::vector<float> texels = test::texels<float>(device, shadows.maps(), map.layer);
+  const std::vector<float> texels = gpu::read_as<float>(device, shadows.maps(), map.layer);
   const std::size_t size = std::size_t(map.size_px);
   // texco_from_world holds near in the row of z: depth = near / distance.
   const float near = glm::length(glm::vec3(0, 0, map.texco_from_world[3][2]));
@@ -388,7 +388,7 @@ struct Cascades {
     const Shadows &shadows = renderer.engine.shadows(renderer.viewport);
     for (int i = 0; i < shadows.block_data().maps[0].cascade_count; i++) {
       maps.push_back(shadows.block_data().maps[i]);
-      texels.push_back(test::texels<float>(device, shadows.maps(), maps.back().layer));
+      texels.push_back(gpu::read_as<float>(device, shadows.maps(), maps.back().layer));
     }
   }
 
