@@ -36,7 +36,7 @@ struct Judgement {
 /** Judges receivers of one lamp. */
 struct Judge {
   const Tracer &tracer;
-  const scene::Lamp &lamp;
+  const scene::PlacedLamp &lamp;
   const CompareSettings &settings;
   LightPoint light;
 
@@ -153,7 +153,7 @@ std::span<const double> edge_rings()
   return rings_texels;
 }
 
-VisibilityError compare_visibility(const Tracer &tracer, const scene::Lamp &lamp, const ShadedReceivers &shaded,
+VisibilityError compare_visibility(const Tracer &tracer, const scene::PlacedLamp &lamp, const ShadedReceivers &shaded,
                                    const CompareSettings &settings)
 {
   const std::size_t count = shaded.positions_ws.size();

@@ -69,7 +69,7 @@ struct VisibilityError {
  *
  * \throws std::invalid_argument where the spans differ in length.
  */
-[[nodiscard]] VisibilityError compare_visibility(const Tracer &tracer, const scene::Lamp &lamp,
+[[nodiscard]] VisibilityError compare_visibility(const Tracer &tracer, const scene::PlacedLamp &lamp,
                                                  const ShadedReceivers &shaded, const CompareSettings &settings);
 
 }  // namespace gnomon::reference

@@ -16,7 +16,7 @@ constexpr double pi = std::numbers::pi;
 /** Nearer than a micrometre a lamp grows no brighter: its light stays finite, as in `eevee_light_shared.h`. */
 constexpr double distance_sq_min = 1e-12;
 
-glm::dvec3 axis(const scene::Lamp &lamp, int column)
+glm::dvec3 axis(const scene::PlacedLamp &lamp, int column)
 {
   return glm::normalize(glm::dvec3(lamp.world_from_lamp[column]));
 }
@@ -45,7 +45,7 @@ double one_minus_cos(const glm::dvec3 &a, const glm::dvec3 &b)
 }
 
 /** \a from_light: unit vector. */
-double spot_transmission(const scene::Lamp &lamp, const glm::dvec3 &from_light)
+double spot_transmission(const scene::PlacedLamp &lamp, const glm::dvec3 &from_light)
 {
   const double sine = std::sin(0.5 * double(lamp.spot_outer_angle));
   const double edge = 2.0 * sine * sine;
@@ -67,7 +67,7 @@ double range_window(const scene::Lamp &lamp, double distance_sq)
   return std::max(1.0 - ratio * ratio, 0.0);
 }
 
-LampSample sample_sun(const scene::Lamp &lamp, const glm::dvec2 &u)
+LampSample sample_sun(const scene::PlacedLamp &lamp, const glm::dvec2 &u)
 {
   const glm::dvec3 middle = axis(lamp, 2);
   LampSample sample;
@@ -103,7 +103,7 @@ LampSample sample_flat(const glm::dvec3 &position, const glm::dvec3 &forward, do
   return sample;
 }
 
-LampSample sample_point(const scene::Lamp &lamp, const glm::dvec3 &receiver, const glm::dvec2 &u)
+LampSample sample_point(const scene::PlacedLamp &lamp, const glm::dvec3 &receiver, const glm::dvec2 &u)
 {
   const glm::dvec3 center(lamp.world_from_lamp[3]);
   const glm::dvec3 from_light = receiver - center;
@@ -124,7 +124,7 @@ LampSample sample_point(const scene::Lamp &lamp, const glm::dvec3 &receiver, con
   return sample;
 }
 
-LampSample sample_area(const scene::Lamp &lamp, const glm::dvec3 &receiver, const glm::dvec2 &u)
+LampSample sample_area(const scene::PlacedLamp &lamp, const glm::dvec3 &receiver, const glm::dvec2 &u)
 {
   const glm::dvec2 half_size = 0.5 * glm::dvec2(lamp.area_size_x, lamp.area_size_y);
   const glm::dvec2 at = half_size * (lamp.area_shape == scene::AreaShape::Ellipse ? disk(u) : 2.0 * u - 1.0);
@@ -146,7 +146,7 @@ bool has_size(const scene::Lamp &lamp)
   return false;
 }
 
-LampSample sample_lamp(const scene::Lamp &lamp, const glm::dvec3 &position_ws, const glm::dvec2 &u)
+LampSample sample_lamp(const scene::PlacedLamp &lamp, const glm::dvec3 &position_ws, const glm::dvec2 &u)
 {
   switch (lamp.kind) {
     case scene::LampKind::Point:
@@ -163,7 +163,7 @@ bool casts_shadow(const scene::Lamp &lamp)
   return lamp.kind != scene::LampKind::Hemi && lamp.shadow.kind != scene::ShadowKind::None;
 }
 
-LightPoint lamp_center(const scene::Lamp &lamp)
+LightPoint lamp_center(const scene::PlacedLamp &lamp)
 {
   if (lamp.kind == scene::LampKind::Sun || lamp.kind == scene::LampKind::Hemi) {
     return {axis(lamp, 2), true};

@@ -30,12 +30,12 @@ struct LampSample {
  * - an area lamp's rectangle or ellipse, of radiance power / (π area), which shines to one side.
  * A lamp without size is one point, whatever \a u. \pre not a hemi lamp, which has no direction.
  */
-[[nodiscard]] LampSample sample_lamp(const scene::Lamp &lamp, const glm::dvec3 &position_ws, const glm::dvec2 &u);
+[[nodiscard]] LampSample sample_lamp(const scene::PlacedLamp &lamp, const glm::dvec3 &position_ws, const glm::dvec2 &u);
 
 /** false for a hemi lamp, and for one that asks for no shadow. */
 [[nodiscard]] bool casts_shadow(const scene::Lamp &lamp);
 
 /** The middle of a lamp. */
-[[nodiscard]] LightPoint lamp_center(const scene::Lamp &lamp);
+[[nodiscard]] LightPoint lamp_center(const scene::PlacedLamp &lamp);
 
 }  // namespace gnomon::reference

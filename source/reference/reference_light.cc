@@ -85,7 +85,7 @@ void check(glm::ivec2 size_px, const DirectLightSettings &settings)
 /** Rays of a camera in an image. */
 class CameraRays {
  public:
-  CameraRays(const scene::Camera &camera, glm::ivec2 size_px)
+  CameraRays(const scene::PlacedCamera &camera, glm::ivec2 size_px)
       : world_from_camera_(camera.world_from_camera),
         size_px_(size_px),
         is_perspective_(camera.kind == scene::CameraKind::Perspective),
@@ -127,12 +127,12 @@ struct Renderer {
   const DirectLightSettings &settings;
 
   [[nodiscard]] glm::dvec3 radiance(const Ray &ray, int sample, std::uint64_t key) const;
-  [[nodiscard]] glm::dvec3 lit_by(const scene::Lamp &lamp, const Receiver &receiver, const glm::dvec3 &normal,
+  [[nodiscard]] glm::dvec3 lit_by(const scene::PlacedLamp &lamp, const Receiver &receiver, const glm::dvec3 &normal,
                                   const glm::dvec3 &view, const Bsdf &bsdf, const glm::dvec2 &u) const;
   void render_tile(const glm::ivec2 &low_px, const glm::ivec2 &high_px, Picture &picture) const;
 };
 
-glm::dvec3 Renderer::lit_by(const scene::Lamp &lamp, const Receiver &receiver, const glm::dvec3 &normal,
+glm::dvec3 Renderer::lit_by(const scene::PlacedLamp &lamp, const Receiver &receiver, const glm::dvec3 &normal,
                             const glm::dvec3 &view, const Bsdf &bsdf, const glm::dvec2 &u) const
 {
   const glm::dvec3 color(lamp.color);
@@ -162,13 +162,12 @@ glm::dvec3 Renderer::radiance(const Ray &ray, int sample, std::uint64_t key) con
   const glm::dvec3 view = -glm::normalize(ray.direction_ws);
   const double side = glm::dot(surface.geometric_normal_ws, view) < 0.0 ? -1.0 : 1.0;
   const Receiver receiver{surface.position_ws, side * surface.geometric_normal_ws, surface.error_m};
-  const scene::Scene &scene = tracer.scene();
-  const scene::Material &material = scene.materials[surface.material];
-  const Bsdf bsdf = make_bsdf(material, surface.base_color);
-  glm::dvec3 sum(material.emissive);
-  for (std::size_t i = 0; i < scene.lamps.size(); i++) {
+  const Bsdf bsdf = make_bsdf(*surface.material, surface.base_color);
+  glm::dvec3 sum(surface.material->emissive);
+  const std::vector<scene::PlacedLamp> &lamps = tracer.lamps();
+  for (std::size_t i = 0; i < lamps.size(); i++) {
     const glm::dvec2 u = even_point(sample, mixed(key + i));
-    sum += lit_by(scene.lamps[i], receiver, side * surface.shading_normal_ws, view, bsdf, u);
+    sum += lit_by(lamps[i], receiver, side * surface.shading_normal_ws, view, bsdf, u);
   }
   return sum;
 }
@@ -206,7 +205,7 @@ void Renderer::render_tile(const glm::ivec2 &low_px, const glm::ivec2 &high_px, 
 
 }  // namespace
 
-Picture direct_light(const Tracer &tracer, const scene::Camera &camera, glm::ivec2 size_px,
+Picture direct_light(const Tracer &tracer, const scene::PlacedCamera &camera, glm::ivec2 size_px,
                      const DirectLightSettings &settings)
 {
   check(size_px, settings);
@@ -230,7 +229,7 @@ Picture direct_light(const Tracer &tracer, const scene::Camera &camera, glm::ive
   return picture;
 }
 
-std::vector<glm::vec4> direct_light(const Tracer &tracer, const scene::Camera &camera, glm::ivec2 size_px,
+std::vector<glm::vec4> direct_light(const Tracer &tracer, const scene::PlacedCamera &camera, glm::ivec2 size_px,
                                     std::span<const glm::ivec2> pixels, const DirectLightSettings &settings)
 {
   check(size_px, settings);

@@ -40,14 +40,14 @@ struct Picture {
  *
  * \throws std::invalid_argument for a size or a number of samples below 1.
  */
-[[nodiscard]] Picture direct_light(const Tracer &tracer, const scene::Camera &camera, glm::ivec2 size_px,
+[[nodiscard]] Picture direct_light(const Tracer &tracer, const scene::PlacedCamera &camera, glm::ivec2 size_px,
                                    const DirectLightSettings &settings);
 
 /**
  * The same at some of its pixels only, from the lower left corner: each from as many samples as a pixel has there,
  * spread over its filter, so that neighbours share none. Estimates with two seeds are independent of each other.
  */
-[[nodiscard]] std::vector<glm::vec4> direct_light(const Tracer &tracer, const scene::Camera &camera, glm::ivec2 size_px,
+[[nodiscard]] std::vector<glm::vec4> direct_light(const Tracer &tracer, const scene::PlacedCamera &camera, glm::ivec2 size_px,
                                                   std::span<const glm::ivec2> pixels,
                                                   const DirectLightSettings &settings);
 

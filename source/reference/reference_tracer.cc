@@ -67,6 +67,8 @@ float rounded_down(double value)
 
 struct Tracer::Tree {
   const scene::Scene &scene;
+  const std::vector<scene::Object> objects;
+  const std::vector<scene::PlacedLamp> lamps;
   std::vector<Triangle> triangles;
   double largest_coordinate = 0.0;
   /** Tree coordinates are (world - center) · scale, and their box is ±half_size. */
@@ -76,7 +78,10 @@ struct Tracer::Tree {
   RTCDevice device = nullptr;
   RTCScene tree = nullptr;
 
-  explicit Tree(const scene::Scene &scene_) : scene(scene_) {}
+  explicit Tree(const scene::Scene &scene_)
+      : scene(scene_), objects(scene_.objects()), lamps(scene_.placed_lamps())
+  {
+  }
   ~Tree()
   {
     if (tree != nullptr) {
@@ -96,11 +101,11 @@ struct Tracer::Tree {
 
   [[nodiscard]] const scene::Mesh &mesh_of(const Triangle &triangle) const
   {
-    return scene.meshes[scene.objects[triangle.object].mesh];
+    return scene.meshes()[objects[triangle.object].mesh];
   }
   [[nodiscard]] const scene::Material &material_of(const Triangle &triangle) const
   {
-    return scene.materials[mesh_of(triangle).material];
+    return scene.material_of(mesh_of(triangle));
   }
   /** Linear RGB and alpha, texture and factors. */
   [[nodiscard]] glm::dvec4 base_color_at(const Triangle &triangle, const glm::dvec3 &weights) const;
@@ -148,14 +153,16 @@ glm::dvec4 Tracer::Tree::base_color_at(const Triangle &triangle, const glm::dvec
   const scene::Material &material = material_of(triangle);
   const glm::dvec4 factor(material.base_color, material.alpha);
   const scene::Mesh &mesh = mesh_of(triangle);
-  if (material.base_color_texture < 0 || mesh.uvs.empty()) {
+  const scene::Texture *texture = scene.textures().find(material.base_color_texture);
+  const scene::Image *image = texture ? scene.images().find(texture->image) : nullptr;
+  if (!image || mesh.uvs.empty()) {
     return factor;
   }
   glm::dvec2 uv(0.0);
   for (std::size_t i = 0; i < 3; i++) {
     uv += weights[int(i)] * glm::dvec2(mesh.uvs[triangle.vertices[i]]);
   }
-  return factor * texture_at(scene, scene.textures[std::size_t(material.base_color_texture)], uv);
+  return factor * texture_at(*image, *texture, uv);
 }
 
 bool Tracer::Tree::is_opaque_at(const Triangle &triangle, const glm::dvec3 &weights) const
@@ -167,8 +174,8 @@ bool Tracer::Tree::is_opaque_at(const Triangle &triangle, const glm::dvec3 &weig
 
 void Tracer::Tree::add_object(std::uint32_t index)
 {
-  const scene::Mesh &mesh = scene.meshes[scene.objects[index].mesh];
-  const glm::dmat4 world_from_object(scene.objects[index].world_from_object);
+  const scene::Mesh &mesh = scene.meshes()[objects[index].mesh];
+  const glm::dmat4 &world_from_object = objects[index].world_from_object;
   const bool is_mirrored = glm::determinant(glm::dmat3(world_from_object)) < 0.0;
   std::vector<glm::dvec3> positions;
   std::vector<double> errors;
@@ -362,7 +369,7 @@ std::optional<Tracer::Tree::Clipped> Tracer::Tree::clipped(const Ray &ray) const
 
 Tracer::Tracer(const scene::Scene &scene) : tree_(std::make_unique<Tree>(scene))
 {
-  for (std::uint32_t i = 0; i < scene.objects.size(); i++) {
+  for (std::uint32_t i = 0; i < tree_->objects.size(); i++) {
     tree_->add_object(i);
   }
   tree_->build();
@@ -407,7 +414,7 @@ Surface Tracer::surface_at(const Hit &hit) const
   const TrianglePlane plane(triangle.corners);
   Surface surface;
   surface.object = triangle.object;
-  surface.material = mesh.material;
+  surface.material = &tree_->scene.material_of(mesh);
   surface.base_color = glm::dvec3(tree_->base_color_at(triangle, hit.weights));
   surface.geometric_normal_ws = plane.normal / plane.normal_length;
   const Corners &corners = triangle.corners;
@@ -419,7 +426,7 @@ Surface Tracer::surface_at(const Hit &hit) const
     surface.position_ws += weight * triangle.corners[i];
     normal += weight * glm::dvec3(mesh.normals[triangle.vertices[i]]);
   }
-  const glm::dmat3 linear(glm::dmat4(tree_->scene.objects[triangle.object].world_from_object));
+  const glm::dmat3 linear(glm::dmat4(tree_->objects[triangle.object].world_from_object));
   normal = cofactors(linear) * normal;
   if (glm::determinant(linear) < 0.0) {
     normal = -normal;
@@ -432,6 +439,11 @@ Surface Tracer::surface_at(const Hit &hit) const
 double Tracer::largest_coordinate() const
 {
   return tree_->largest_coordinate;
+}
+
+const std::vector<scene::PlacedLamp> &Tracer::lamps() const
+{
+  return tree_->lamps;
 }
 
 const scene::Scene &Tracer::scene() const

@@ -43,10 +43,10 @@ struct Surface {
   glm::dvec3 geometric_normal_ws{0.0, 0.0, 1.0};
   /** Interpolated; unit vector, on the front. The geometric one where the mesh has none of any length. */
   glm::dvec3 shading_normal_ws{0.0, 0.0, 1.0};
-  /** Index in Scene::objects. */
+  /** Index in Scene::objects(). */
   std::uint32_t object = 0;
-  /** Index in Scene::materials. */
-  std::uint32_t material = 0;
+  /** Of the scene; valid until it is edited. */
+  const scene::Material *material = nullptr;
   /** Linear; the material's, and its texture's at its full size. */
   glm::dvec3 base_color{1.0};
 };
@@ -103,6 +103,8 @@ class Tracer {
   [[nodiscard]] double largest_coordinate() const;
 
   [[nodiscard]] const scene::Scene &scene() const;
+  /** Scene::placed_lamps(), as of the tracer's construction. */
+  [[nodiscard]] const std::vector<scene::PlacedLamp> &lamps() const;
 
  private:
   struct Tree;

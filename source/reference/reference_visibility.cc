@@ -67,17 +67,17 @@ bool is_visible(const Tracer &tracer, const Receiver &receiver, const LightPoint
   return cos_to(receiver, light) > 0.0 && !tracer.is_blocked(receiver.position_ws, receiver.error_m, light);
 }
 
-bool is_visible(const Tracer &tracer, const Receiver &receiver, const scene::Lamp &lamp)
+bool is_visible(const Tracer &tracer, const Receiver &receiver, const scene::PlacedLamp &lamp)
 {
   return !casts_shadow(lamp) || is_visible(tracer, receiver, lamp_center(lamp));
 }
 
-bool is_facing(const Receiver &receiver, const scene::Lamp &lamp)
+bool is_facing(const Receiver &receiver, const scene::PlacedLamp &lamp)
 {
   return lamp.kind == scene::LampKind::Hemi || cos_to(receiver, lamp_center(lamp)) > 0.0;
 }
 
-Estimate visibility(const Tracer &tracer, const Receiver &receiver, const scene::Lamp &lamp, int sample_count,
+Estimate visibility(const Tracer &tracer, const Receiver &receiver, const scene::PlacedLamp &lamp, int sample_count,
                     std::uint64_t seed)
 {
   if (!has_size(lamp) || !casts_shadow(lamp)) {
@@ -88,7 +88,7 @@ Estimate visibility(const Tracer &tracer, const Receiver &receiver, const scene:
   });
 }
 
-Estimate irradiance(const Tracer &tracer, const Receiver &receiver, const scene::Lamp &lamp, int sample_count,
+Estimate irradiance(const Tracer &tracer, const Receiver &receiver, const scene::PlacedLamp &lamp, int sample_count,
                     std::uint64_t seed)
 {
   if (lamp.kind == scene::LampKind::Hemi) {

@@ -35,10 +35,10 @@ struct Receiver {
 
 /** The same for the middle of \a lamp: all of it, where it has no size. A hemi lamp casts no shadow and is seen from
  * anywhere. */
-[[nodiscard]] bool is_visible(const Tracer &tracer, const Receiver &receiver, const scene::Lamp &lamp);
+[[nodiscard]] bool is_visible(const Tracer &tracer, const Receiver &receiver, const scene::PlacedLamp &lamp);
 
 /** Whether the middle of \a lamp is above the receiver's plane. Any place is above a hemi lamp's. */
-[[nodiscard]] bool is_facing(const Receiver &receiver, const scene::Lamp &lamp);
+[[nodiscard]] bool is_facing(const Receiver &receiver, const scene::PlacedLamp &lamp);
 
 /** A sampled quantity. */
 struct Estimate {
@@ -50,11 +50,11 @@ struct Estimate {
 
 /** Share of a lamp's surface (sun: of its solid angle) that is seen, in [0, 1]; exact for a lamp without size. \pre
  * sample_count > 0. */
-[[nodiscard]] Estimate visibility(const Tracer &tracer, const Receiver &receiver, const scene::Lamp &lamp,
+[[nodiscard]] Estimate visibility(const Tracer &tracer, const Receiver &receiver, const scene::PlacedLamp &lamp,
                                   int sample_count, std::uint64_t seed);
 
 /** W/m² at \a receiver from one lamp, lamp colour left out. \pre sample_count > 0. */
-[[nodiscard]] Estimate irradiance(const Tracer &tracer, const Receiver &receiver, const scene::Lamp &lamp,
+[[nodiscard]] Estimate irradiance(const Tracer &tracer, const Receiver &receiver, const scene::PlacedLamp &lamp,
                                   int sample_count, std::uint64_t seed);
 
 }  // namespace gnomon::reference

@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
+#include <algorithm>
+
 namespace gnomon::scene {
 
 float Bounds::radius() const
@@ -29,7 +31,7 @@ Bounds transformed(const Bounds &bounds, const glm::mat4 &target_from_source)
   if (bounds.is_empty()) {
     return bounds;
   }
-  // The extremes of a sum are the sums of the extremes, so each axis is taken alone: no corners to visit.
+  // The extremes of a sum are the sums of the extremes, so that each axis is transformed alone.
   Bounds result{glm::vec3(target_from_source[3]), glm::vec3(target_from_source[3])};
   for (int axis = 0; axis < 3; axis++) {
     const glm::vec3 at_min = glm::vec3(target_from_source[axis]) * bounds.min[axis];
@@ -40,13 +42,112 @@ Bounds transformed(const Bounds &bounds, const glm::mat4 &target_from_source)
   return result;
 }
 
+std::vector<Object> Scene::objects() const
+{
+  std::vector<Object> objects;
+  for (const auto &[handle, node] : nodes_) {
+    if (node.meshes.empty() || !links(handle).is_visible) {
+      continue;
+    }
+    for (const Handle<Mesh> mesh : node.meshes) {
+      if (meshes_.is_live(mesh)) {
+        objects.push_back({handle, mesh, links(handle).world_from_node});
+      }
+    }
+  }
+  return objects;
+}
+
+std::vector<PlacedLamp> Scene::placed_lamps() const
+{
+  std::vector<PlacedLamp> placed;
+  for (const auto &[handle, node] : nodes_) {
+    const Lamp *lamp = links(handle).is_visible ? lamps_.find(node.lamp) : nullptr;
+    if (lamp) {
+      placed.push_back({*lamp, handle, frame_of(links(handle).world_from_node)});
+    }
+  }
+  return placed;
+}
+
+std::vector<PlacedCamera> Scene::placed_cameras() const
+{
+  std::vector<PlacedCamera> placed;
+  for (const auto &[handle, node] : nodes_) {
+    if (const Camera *camera = cameras_.find(node.camera)) {
+      placed.push_back({*camera, handle, frame_of(links(handle).world_from_node)});
+    }
+  }
+  return placed;
+}
+
+const Material &Scene::material_of(const Mesh &mesh) const
+{
+  static const Material default_material;
+  const Material *material = materials_.find(mesh.material);
+  return material ? *material : default_material;
+}
+
 Bounds Scene::bounds() const
 {
   Bounds result;
-  for (const Object &object : objects) {
-    result.extend(transformed(meshes[object.mesh].bounds, object.world_from_object));
+  for (const Object &object : objects()) {
+    result.extend(transformed(meshes_[object.mesh].bounds, glm::mat4(object.world_from_object)));
   }
   return result;
+}
+
+std::vector<std::string> Scene::stale_references() const
+{
+  std::vector<std::string> lines;
+  const auto check = [&](std::string_view kind, std::string_view name, const auto &pool, auto handle) {
+    if (handle && !pool.is_live(handle)) {
+      using T = std::decay_t<decltype(*pool.find(handle))>;
+      lines.push_back(fmt::format("{} '{}': its {} was removed", kind, name, T::kind_name));
+    }
+  };
+  for (const auto &[handle, node] : nodes_) {
+    for (const Handle<Mesh> mesh : node.meshes) {
+      check("node", node.name, meshes_, mesh);
+    }
+    check("node", node.name, lamps_, node.lamp);
+    check("node", node.name, cameras_, node.camera);
+  }
+  for (const auto &[handle, mesh] : meshes_) {
+    check("mesh", mesh.name, materials_, mesh.material);
+  }
+  for (const auto &[handle, material] : materials_) {
+    check("material", material.name, textures_, material.base_color_texture);
+  }
+  for (const auto &[handle, texture] : textures_) {
+    check("texture", std::to_string(handle.index), images_, texture.image);
+  }
+  return lines;
+}
+
+const glm::dmat4 &Scene::world_from_node(Handle<Node> node) const
+{
+  return links(node).world_from_node;
+}
+
+bool Scene::is_visible(Handle<Node> node) const
+{
+  return links(node).is_visible;
+}
+
+Handle<Node> Scene::parent(Handle<Node> node) const
+{
+  return links(node).parent;
+}
+
+Handle<Node> Scene::first_child(Handle<Node> node) const
+{
+  return links(node).first_child;
+}
+
+Handle<Node> Scene::next_sibling(Handle<Node> node) const
+{
+  return links(node).next_sibling;
 }
 
 }  // namespace gnomon::scene

@@ -1,241 +1,252 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <glm/mat4x4.hpp>
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
+#include "scene_pool.hh"
+#include "scene_types.hh"
 
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
+#include <concepts>
 
-/**
- * A scene as plain data: what the engines read and nothing knows how it was loaded.
- *
- * World space is right-handed, in metres, with whatever axis up the file had. Colours are linear
- * with Rec. 709 primaries. Matrices read target-from-source. Everything an importer hands over is
- * finite, every index is in range and every non-singular promise below is kept, so that engines do
- * not check again.
- */
 namespace gnomon::scene {
 
-/** Axis-aligned box. Default-constructed it is empty: `min` above `max`. */
-struct Bounds {
-  glm::vec3 min{1e30F};
-  glm::vec3 max{-1e30F};
-
-  [[nodiscard]] bool is_empty() const
-  {
-    return min.x > max.x;
-  }
-  [[nodiscard]] glm::vec3 center() const
-  {
-    return 0.5F * min + 0.5F * max;
-  }
-  /** Half the diagonal: the radius of the sphere around the box. */
-  [[nodiscard]] float radius() const;
-  void extend(const glm::vec3 &point);
-  void extend(const Bounds &other);
+/** A value that a scene cannot hold, or an edit that it cannot make. The message names the thing and the reason. */
+struct InvalidEdit : std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
 };
 
-/** The box around \a bounds after a transform; empty stays empty. */
-[[nodiscard]] Bounds transformed(const Bounds &bounds, const glm::mat4 &target_from_source);
-
-/** Texels of a base colour, each four bytes: red, green and blue encoded as sRGB, and linear alpha, not multiplied in.
- */
-struct Image {
-  std::string name;
-  /** Both above 0. */
-  std::uint32_t width = 0;
-  std::uint32_t height = 0;
-  /** 4 · width · height; rows from the top, which is where v is 0. */
-  std::vector<std::uint8_t> texels;
-};
-
-enum class TextureWrap { Repeat, MirroredRepeat, ClampToEdge };
-
-enum class TextureFilter { Nearest, Linear };
-
-/** Between which levels of a minified texture; None: the full size only. */
-enum class MipFilter { None, Nearest, Linear };
-
-/** How an image is looked up. */
-struct Texture {
-  /** Index in Scene::images. */
-  std::uint32_t image = 0;
-  TextureWrap wrap_u = TextureWrap::Repeat;
-  TextureWrap wrap_v = TextureWrap::Repeat;
-  TextureFilter magnified = TextureFilter::Linear;
-  TextureFilter minified = TextureFilter::Linear;
-  MipFilter mip = MipFilter::Linear;
-};
-
-enum class AlphaMode { Opaque, Mask, Blend };
-
-/** Metallic-roughness surface of glTF 2.0 with KHR_materials_specular. All factors in [0, 1]. */
-struct Material {
-  std::string name;
-  glm::vec3 base_color{1.0F};
-  float alpha = 1.0F;
-  /** Index in Scene::textures of what base_color and alpha are multiplied with, at Mesh::uvs. -1: none. */
-  std::int32_t base_color_texture = -1;
-  float metallic = 1.0F;
-  /** Perceptual; GGX alpha is its square. */
-  float roughness = 1.0F;
-  /** Scales dielectric reflection at normal incidence (0.04); 0 leaves a Lambertian surface. */
-  float specular = 1.0F;
-  /** Tints dielectric reflection. May exceed 1; the product with 0.04 is clamped to 1. */
-  glm::vec3 specular_color{1.0F};
-  /** Scene-linear radiance, W/(sr m²) per channel. May exceed 1. */
-  glm::vec3 emissive{0.0F};
-  AlphaMode alpha_mode = AlphaMode::Opaque;
-  /** Mask only: below it the surface is cut out. */
-  float alpha_cutoff = 0.5F;
-  /** false: back faces are not drawn and cast no light. */
-  bool is_double_sided = false;
-};
-
-/** Indexed triangles of one material (a glTF primitive). */
-struct Mesh {
-  std::string name;
-  /** Object space. */
-  std::vector<glm::vec3> positions;
-  /** Unit vectors, object space, one a position. */
-  std::vector<glm::vec3> normals;
-  /**
-   * Where its material's base colour texture is looked up, one a position; (0, 0) is the outer corner of the image's
-   * first texel. The material's texture transform is in them. Empty where the material has no texture.
-   */
-  std::vector<glm::vec2> uvs;
-  /** Three a triangle, each below positions.size(). */
-  std::vector<std::uint32_t> indices;
-  /** Index in Scene::materials, always valid. */
-  std::uint32_t material = 0;
-  /** Object space, never empty. */
-  Bounds bounds;
-  /** For who changes the rest after a sync: another number, so that engines take the mesh anew. */
-  std::uint64_t revision = 0;
-};
-
-/** A mesh placed in the world. Several objects may share a mesh. */
+/** A mesh at a node: what an engine draws. */
 struct Object {
-  std::string name;
-  /** Index in Scene::meshes. */
-  std::uint32_t mesh = 0;
-  /** Affine; may be singular, sheared or mirrored. */
-  glm::mat4 world_from_object{1.0F};
+  Handle<Node> node{};
+  Handle<Mesh> mesh{};
+  glm::dmat4 world_from_object{1.0};
 };
 
-enum class LampKind { Point, Sun, Spot, Hemi, Area };
+/** A lamp at a node. Its fields are the lamp's. */
+struct PlacedLamp : Lamp {
+  Handle<Node> node{};
+  /** Right-handed and orthonormal: the node's position, direction of -Z and, as far as possible, of +Y. */
+  glm::dmat4 world_from_lamp{1.0};
 
-enum class AreaShape { Rectangle, Ellipse };
+  bool operator==(const PlacedLamp &) const = default;
+};
 
-enum class ShadowKind { None, Hard, Pcf, Esm, Evsm };
-
-enum class EsmFormat { Half, Float };
-
-/** What a lamp asks of its shadow; what is absent is left to whoever draws it. */
-struct LampShadow {
-  std::optional<ShadowKind> kind;
-  /** Texels along an edge of the depth map or of a cube's face, 1 to 16384. */
-  std::optional<int> size;
-  /** Of exponential shadows, 1/m, 0.01 to 1e4. */
-  std::optional<float> exponent;
-  /** Scales the bias that is derived from the texel; 0 to 100, and 1 leaves it. */
-  std::optional<float> bias;
-  /** Casters nearer or farther than these are not drawn, metres, above 0; where both are there, end > start. */
-  std::optional<float> clip_start;
-  std::optional<float> clip_end;
-  /** Half the opening angle of the kernel that exponential shadows are filtered with, radians, 0 to π/4. */
-  std::optional<float> filter_radius;
-  /** Texels along an edge of the octahedral layer of exponential shadows, 1 to 16384. */
-  std::optional<int> esm_size;
-  std::optional<EsmFormat> esm_format;
-
-  bool operator==(const LampShadow &) const = default;
+/** A camera at a node. Its fields are the camera's. */
+struct PlacedCamera : Camera {
+  Handle<Node> node{};
+  /** Right-handed and orthonormal, as PlacedLamp::world_from_lamp. */
+  glm::dmat4 world_from_camera{1.0};
 };
 
 /**
- * A lamp in radiometric units: glTF's photometric ones divided by 683 lm/W.
- * It looks along its local -Z.
+ * The rotation and position of \a world without its scale, shear or mirroring: a right-handed orthonormal frame that
+ * keeps the direction of -Z exactly, and that of +Y as closely as it can. Axes of length 0 are chosen.
  */
-struct Lamp {
-  std::string name;
-  LampKind kind = LampKind::Point;
-  /** Columns 0 to 2 are orthonormal: node scale does not change a lamp. */
-  glm::mat4 world_from_lamp{1.0F};
-  glm::vec3 color{1.0F};
-  /**
-   * Sun: irradiance on a surface that faces it, W/m².
-   * Hemi: the same, of a uniform sky over the half space behind the lamp; a surface tilted by t gets (1 + cos t) / 2.
-   * Point and spot: radiant intensity, W/sr; irradiance is intensity · cos / (d² + radius²).
-   * Area: power of the one emitting side, W.
-   */
-  float intensity = 1.0F;
-  /** Point and spot: a disk turned to the receiver, metres. 0: a hard shadow. */
-  float radius = 0.0F;
-  /** Sun: angular diameter, radians. 0: a hard shadow. */
-  float angle = 0.0F;
-  /** Spot: half the opening angle, radians, in (0, π/2]. */
-  float spot_outer_angle = 0.785398F;
-  /**
-   * Spot: width of the soft edge as a fraction of 1 - cos(outer), in [0, 1]. 0: a hard edge.
-   * Transmission is smoothstep(0, 1, (cos - cos_outer) / ((1 - cos_outer) · blend)).
-   */
-  float spot_blend = 0.0F;
-  /** Point and spot: no light beyond, metres. 0: no limit. */
-  float range = 0.0F;
-  AreaShape area_shape = AreaShape::Rectangle;
-  /** Area: full edge lengths or diameters, metres, above 0. */
-  float area_size_x = 1.0F;
-  float area_size_y = 1.0F;
-  /** Point, spot and sun. */
-  LampShadow shadow;
+[[nodiscard]] glm::dmat4 frame_of(const glm::dmat4 &world);
 
-  bool operator==(const Lamp &) const = default;
-};
-
-enum class CameraKind { Perspective, Orthographic };
-
-/** Looks along its local -Z, +Y up. */
-struct Camera {
-  std::string name;
-  CameraKind kind = CameraKind::Perspective;
-  /** Columns 0 to 2 are orthonormal: node scale does not change a camera. */
-  glm::mat4 world_from_camera{1.0F};
-  /** Perspective: full vertical angle, radians, in (0, π). */
-  float vertical_angle = 0.8F;
-  /** Perspective: width / height of the frame. 0: that of the image. */
-  float aspect = 0.0F;
-  /** Orthographic: half width and half height of the frame, metres, above 0. */
-  float half_width = 1.0F;
-  float half_height = 1.0F;
-  /** Distances along the view direction, metres; near > 0 when perspective, far > near. far 0: infinite. */
-  float near = 0.1F;
-  float far = 0.0F;
-};
-
-struct Scene {
+/**
+ * An editable scene: nodes, meshes, images, textures, materials, lamps and cameras, each named by a Handle.
+ *
+ * World space is right-handed, in metres; which axis points up is the file's or the host's choice. Matrices are named
+ * target_from_source.
+ *
+ * Every edit gives the aspects that it changed a new revision. A consumer keeps the revisions that it has seen,
+ * compares, and does only the work that the difference asks for. Setting a value that is there already changes nothing.
+ *
+ * Removing a thing does not edit the things that refer to it: they hold a stale handle then, which stands for nothing,
+ * or for the default material. stale_references() names them.
+ *
+ * Threads: reading is safe from several threads; an edit needs exclusive access.
+ */
+class Scene {
+ public:
   /** The file as the user named it; for messages. */
   std::string path;
-  std::vector<Mesh> meshes;
-  std::vector<Material> materials;
-  /** Only what some material looks up. */
-  std::vector<Texture> textures;
-  std::vector<Image> images;
-  std::vector<Object> objects;
-  std::vector<Lamp> lamps;
-  /** At least one after import; the first is the default. */
-  std::vector<Camera> cameras;
-  /** The file had none, and what stands in cameras or lamps was made up. */
+  /** The file had no camera, or no lamp, and the importer added one. */
   bool is_camera_default = false;
   bool is_lamp_default = false;
-  /** What was left out or mended at the door, each naming the element and the reason. */
-  std::vector<std::string> warnings;
+  /** Import warnings. Each names the element and the reason. */
+  std::vector<std::string> warnings{};
 
-  /** World space box around all objects; empty when there is none. */
+  [[nodiscard]] const Pool<Node> &nodes() const
+  {
+    return nodes_;
+  }
+  [[nodiscard]] const Pool<Mesh> &meshes() const
+  {
+    return meshes_;
+  }
+  [[nodiscard]] const Pool<Image> &images() const
+  {
+    return images_;
+  }
+  [[nodiscard]] const Pool<Texture> &textures() const
+  {
+    return textures_;
+  }
+  [[nodiscard]] const Pool<Material> &materials() const
+  {
+    return materials_;
+  }
+  [[nodiscard]] const Pool<Lamp> &lamps() const
+  {
+    return lamps_;
+  }
+  [[nodiscard]] const Pool<Camera> &cameras() const
+  {
+    return cameras_;
+  }
+
+  /**
+   * Every visible node's meshes, lamps and cameras, in the order of the nodes. Stale handles are left out. A copy, made
+   * in linear time: keep it instead of asking for one element at a time.
+   */
+  [[nodiscard]] std::vector<Object> objects() const;
+  [[nodiscard]] std::vector<PlacedLamp> placed_lamps() const;
+  /** Of invisible nodes, too: one may look through a hidden camera. */
+  [[nodiscard]] std::vector<PlacedCamera> placed_cameras() const;
+  /** The material of a mesh; the default material where the mesh's handle is stale or names nothing. */
+  [[nodiscard]] const Material &material_of(const Mesh &mesh) const;
+  /** The world space box around all objects; empty when there is none. */
   [[nodiscard]] Bounds bounds() const;
+  /** One line for each reference to a thing that was removed: "node 'a': its lamp was removed". */
+  [[nodiscard]] std::vector<std::string> stale_references() const;
+
+  /** Product of all matrices from the root to \a node. \throws StaleHandle, as do the functions below. */
+  [[nodiscard]] const glm::dmat4 &world_from_node(Handle<Node> node) const;
+  /** Node::is_visible of the node and of all its ancestors. */
+  [[nodiscard]] bool is_visible(Handle<Node> node) const;
+  /** These name nothing for a root, a node without children, and the last child. */
+  [[nodiscard]] Handle<Node> parent(Handle<Node> node) const;
+  [[nodiscard]] Handle<Node> first_child(Handle<Node> node) const;
+  [[nodiscard]] Handle<Node> next_sibling(Handle<Node> node) const;
+
+  /** Revision of the last edit; 0: none was made. */
+  [[nodiscard]] Revision revision() const
+  {
+    return revision_;
+  }
+
+  /** Add a thing. \throws InvalidEdit where the value cannot be held; then nothing changes. */
+  Handle<Mesh> add(Mesh mesh);
+  Handle<Image> add(Image image);
+  Handle<Texture> add(const Texture &texture);
+  Handle<Material> add(Material material);
+  Handle<Lamp> add(Lamp lamp);
+  Handle<Camera> add(Camera camera);
+  /** The last child of \a parent, or a root where \a parent names nothing. */
+  Handle<Node> add(Node node, Handle<Node> parent = {});
+
+  /** Set a thing's value. \throws StaleHandle; InvalidEdit; then nothing changes. */
+  void replace(Handle<Mesh> handle, Mesh mesh);
+  void replace(Handle<Image> handle, Image image);
+  void replace(Handle<Texture> handle, const Texture &texture);
+  void replace(Handle<Material> handle, Material material);
+  void replace(Handle<Lamp> handle, Lamp lamp);
+  void replace(Handle<Camera> handle, Camera camera);
+  void replace(Handle<Node> handle, Node node);
+
+  /**
+   * Change a thing in place: `scene.edit(lamp, [](scene::Lamp &lamp) { lamp.intensity = 2.0F; })`. Works on a copy, and
+   * then replaces; large meshes and images are better replaced.
+   */
+  template <typename T, std::invocable<T &> Change>
+  void edit(Handle<T> handle, Change &&change)
+  {
+    T value = pool<T>()[handle];
+    change(value);
+    replace(handle, std::move(value));
+  }
+  /** The matrix of Node::parent_from_node alone, without a copy of the node. */
+  void set_transform(Handle<Node> node, const glm::dmat4 &parent_from_node);
+  /**
+   * Hang \a node, with all below it, from \a parent as its last child; as a root where \a parent names nothing. Its
+   * world matrix changes with the parent's. \throws InvalidEdit where \a parent is \a node or below it.
+   */
+  void set_parent(Handle<Node> node, Handle<Node> parent);
+
+  /** Remove a thing. The handle, and all copies of it, are stale then. \throws StaleHandle */
+  template <typename T>
+  void remove(Handle<T> handle)
+  {
+    pool<T>()[handle];
+    if constexpr (std::same_as<T, Node>) {
+      remove_subtree(handle);
+    }
+    else {
+      writable_pool<T>().remove(handle, ++revision_);
+    }
+  }
+
+  /** The pool of a kind of thing, for generic code. */
+  template <typename T>
+  [[nodiscard]] const Pool<T> &pool() const
+  {
+    return const_cast<Scene *>(this)->writable_pool<T>();
+  }
+
+ private:
+  /** What a node has beside its value; by Handle::index. */
+  struct NodeLinks {
+    Handle<Node> parent;
+    Handle<Node> first_child;
+    Handle<Node> last_child;
+    Handle<Node> previous_sibling;
+    Handle<Node> next_sibling;
+    glm::dmat4 world_from_node{1.0};
+    bool is_visible = true;
+  };
+
+  template <typename T>
+  Pool<T> &writable_pool()
+  {
+    if constexpr (std::same_as<T, Node>) {
+      return nodes_;
+    }
+    else if constexpr (std::same_as<T, Mesh>) {
+      return meshes_;
+    }
+    else if constexpr (std::same_as<T, Image>) {
+      return images_;
+    }
+    else if constexpr (std::same_as<T, Texture>) {
+      return textures_;
+    }
+    else if constexpr (std::same_as<T, Material>) {
+      return materials_;
+    }
+    else if constexpr (std::same_as<T, Lamp>) {
+      return lamps_;
+    }
+    else {
+      static_assert(std::same_as<T, Camera>);
+      return cameras_;
+    }
+  }
+  template <typename T>
+  void replace_value(Handle<T> handle, T value);
+  void remove_subtree(Handle<Node> node);
+  void link(Handle<Node> node, Handle<Node> parent);
+  void unlink(Handle<Node> node);
+  /** Write world matrices and visibility of \a node and of all below it, with a revision where they differ. */
+  void update_subtree(Handle<Node> node, Revision revision);
+  NodeLinks &links(Handle<Node> node)
+  {
+    return links_[node.index];
+  }
+  const NodeLinks &links(Handle<Node> node) const
+  {
+    nodes_[node];
+    return links_[node.index];
+  }
+
+  Revision revision_ = 0;
+  Pool<Node> nodes_;
+  std::vector<NodeLinks> links_;
+  Pool<Mesh> meshes_;
+  Pool<Image> images_;
+  Pool<Texture> textures_;
+  Pool<Material> materials_;
+  Pool<Lamp> lamps_;
+  Pool<Camera> cameras_;
 };
 
 }  // namespace gnomon::scene

@@ -125,6 +125,7 @@ class Importer {
   Scene scene_;
   gltf::MeshImporter meshes_;
   std::size_t lost_node_count_ = 0;
+  std::size_t object_count_ = 0;
 
   [[nodiscard]] std::string node_label(int node) const
   {
@@ -207,40 +208,48 @@ class Importer {
   {
     struct Visit {
       int node;
+      /** Names nothing for a root, and below a node that was left out. */
+      Handle<Node> parent;
       glm::dmat4 world_from_parent;
     };
     std::vector<Visit> stack;
-    const auto push = [&stack](const std::vector<int> &nodes, const glm::dmat4 &world) {
-      std::for_each(nodes.rbegin(), nodes.rend(), [&](int node) { stack.push_back({node, world}); });
+    const auto push = [&stack](const std::vector<int> &nodes, Handle<Node> parent, const glm::dmat4 &world) {
+      std::for_each(nodes.rbegin(), nodes.rend(), [&](int node) { stack.push_back({node, parent, world}); });
     };
-    push(roots, glm::dmat4(1.0));
+    push(roots, {}, glm::dmat4(1.0));
     while (!stack.empty()) {
       const Visit visit = stack.back();
       stack.pop_back();
       const tinygltf::Node &node = file_.model.nodes[visit.node];
-      const glm::dmat4 world = visit.world_from_parent * matrix_of(node, node_label(visit.node), warnings_);
-      import_node(visit.node, world);
-      push(node.children, world);
+      const glm::dmat4 parent_from_node = matrix_of(node, node_label(visit.node), warnings_);
+      const glm::dmat4 world = visit.world_from_parent * parent_from_node;
+      push(node.children, import_node(visit.node, visit.parent, visit.parent ? parent_from_node : world, world), world);
     }
   }
 
-  void import_node(int index, const glm::dmat4 &world)
+  /** Adds the node. \return a handle that names nothing where it is left out. */
+  Handle<Node> import_node(int index, Handle<Node> parent, const glm::dmat4 &parent_from_node, const glm::dmat4 &world)
   {
     if (!is_usable(world)) {
       warnings_.add_counted(node_label(index), 1, "left out: its matrix is not finite or reaches beyond 1e12 m");
       lost_node_count_++;
-      return;
+      return {};
     }
-    import_objects(index, world);
-    if (std::optional<Lamp> lamp = gltf::lamp_on(file_, index, world, warnings_)) {
-      scene_.lamps.push_back(std::move(*lamp));
+    const std::string &name = file_.model.nodes[index].name;
+    Node node;
+    node.name = name.empty() ? "node " + std::to_string(index) : name;
+    node.parent_from_node = parent_from_node;
+    import_meshes(index, glm::mat4(world), node);
+    if (std::optional<Lamp> lamp = gltf::lamp_on(file_, index, warnings_)) {
+      node.lamp = scene_.add(std::move(*lamp));
     }
-    if (std::optional<Camera> camera = gltf::camera_on(file_, index, world, warnings_)) {
-      scene_.cameras.push_back(std::move(*camera));
+    if (std::optional<Camera> camera = gltf::camera_on(file_, index, warnings_)) {
+      node.camera = scene_.add(std::move(*camera));
     }
+    return scene_.add(std::move(node), parent);
   }
 
-  void import_objects(int index, const glm::dmat4 &world)
+  void import_meshes(int index, const glm::mat4 &world, Node &added)
   {
     const tinygltf::Node &node = file_.model.nodes[index];
     if (node.mesh < 0) {
@@ -252,26 +261,23 @@ class Importer {
     if (node.extensions.count("EXT_mesh_gpu_instancing") > 0) {
       warnings_.add(node_label(index), "EXT_mesh_gpu_instancing is not drawn: one instance stands at the node");
     }
-    Object object;
-    object.name = node.name.empty() ? "node " + std::to_string(index) : node.name;
-    object.world_from_object = glm::mat4(world);
-    for (const std::uint32_t mesh : meshes_.meshes_of(node.mesh)) {
-      object.mesh = mesh;
-      if (!is_usable(transformed(scene_.meshes[mesh].bounds, object.world_from_object))) {
+    for (const Handle<Mesh> mesh : meshes_.meshes_of(node.mesh)) {
+      if (!is_usable(transformed(scene_.meshes()[mesh].bounds, world))) {
         warnings_.add_counted(node_label(index), 1, "object left out: it reaches beyond 1e12 m");
         continue;
       }
-      if (scene_.objects.size() == object_count_max) {
+      if (object_count_ == object_count_max) {
         throw Fault("scene", "has more than " + std::to_string(object_count_max) + " objects");
       }
-      scene_.objects.push_back(object);
+      object_count_++;
+      added.meshes.push_back(mesh);
     }
   }
 
   /** A file with nothing to draw in it is a scene; one of which nothing can be drawn is not. */
   void check_anything_kept()
   {
-    if (!scene_.objects.empty()) {
+    if (object_count_ > 0) {
       return;
     }
     if (meshes_.primitive_count() == 0 && lost_node_count_ == 0) {
@@ -285,16 +291,27 @@ class Importer {
 
   void add_defaults()
   {
-    if (scene_.cameras.empty()) {
+    if (scene_.cameras().empty()) {
       scene_.is_camera_default = true;
-      scene_.cameras.push_back(gltf::default_camera(scene_.bounds()));
+      const PlacedCamera camera = gltf::default_camera(scene_.bounds());
+      Node node;
+      node.name = camera.name;
+      node.parent_from_node = camera.world_from_camera;
+      node.camera = scene_.add(Camera(camera));
+      scene_.add(std::move(node));
       warnings_.add("scene", "has no camera: one was added that frames all of it, taking +Y for up");
     }
-    if (scene_.lamps.empty()) {
+    if (scene_.lamps().empty()) {
       scene_.is_lamp_default = true;
-      scene_.lamps.push_back(gltf::default_sun(scene_.cameras.front()));
+      const PlacedCamera camera = scene_.placed_cameras().front();
+      const PlacedLamp sun = gltf::default_sun(camera);
+      Node node;
+      node.name = sun.name;
+      node.parent_from_node = sun.world_from_lamp;
+      node.lamp = scene_.add(Lamp(sun));
+      scene_.add(std::move(node));
       warnings_.add("scene", "has no lamp: a sun of 3.14 W/m2 was added, over the shoulder of camera '" +
-                                 gltf::printable(scene_.cameras.front().name) + '\'');
+                                 gltf::printable(camera.name) + '\'');
     }
   }
 };

@@ -40,10 +40,9 @@ std::uint32_t wrapped(double place, std::uint32_t size, scene::TextureWrap wrap)
 
 }  // namespace
 
-glm::dvec4 texture_at(const scene::Scene &scene, const scene::Texture &texture, const glm::dvec2 &uv)
+glm::dvec4 texture_at(const scene::Image &image, const scene::Texture &texture, const glm::dvec2 &uv)
 {
   static const std::array<double, 256> decoded_srgb = make_decoded_srgb();
-  const scene::Image &image = scene.images[texture.image];
   const auto texel = [&](double column, double row) {
     const std::size_t x = wrapped(column, image.width, texture.wrap_u);
     const std::size_t y = wrapped(row, image.height, texture.wrap_v);

@@ -29,40 +29,6 @@ constexpr double angle_tolerance = 1e-6;
 /** Half the opening of a cone below it would vanish in float once squared, as 1 - cos does. */
 constexpr double cone_min = 1e-9;
 
-/** \a vector at length 1; nothing when it has no direction to speak of. */
-std::optional<glm::dvec3> direction(const glm::dvec3 &vector, double length_least)
-{
-  const double length = glm::length(vector);
-  return length > length_least ? std::optional(vector / length) : std::nullopt;
-}
-
-/** The part of the unit vector \a vector that is at right angles to the unit vector \a axis, at length 1. */
-std::optional<glm::dvec3> direction_across(const std::optional<glm::dvec3> &vector, const glm::dvec3 &axis)
-{
-  constexpr double nearly_parallel = 1e-6;
-  return vector ? direction(*vector - axis * glm::dot(*vector, axis), nearly_parallel) : std::nullopt;
-}
-
-glm::dvec3 any_across(const glm::dvec3 &axis)
-{
-  const glm::dvec3 least = std::abs(axis.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
-  return *direction_across(least, axis);
-}
-
-/** z from what is left when its own axis is gone. */
-glm::dvec3 replaced_z(const std::optional<glm::dvec3> &x, const std::optional<glm::dvec3> &y)
-{
-  if (!x && !y) {
-    return {0, 0, 1};
-  }
-  if (x && y) {
-    if (const auto across = direction_across(y, *x)) {
-      return glm::cross(*x, *across);
-    }
-  }
-  return any_across(x ? *x : *y);
-}
-
 std::string node_name(const tinygltf::Node &node, const std::string &fallback, const char *kind, int index)
 {
   if (!node.name.empty()) {
@@ -406,32 +372,7 @@ glm::dmat4 looking(const glm::dvec3 &position, const glm::dvec3 &forward, const 
 
 }  // namespace
 
-glm::dmat4 frame_of(const glm::dmat4 &world)
-{
-  // Relative, so that a model in micrometres keeps its axes.
-  const auto axis = [&world](int column) {
-    const glm::dvec3 vector(world[column]);
-    const double size = std::max({std::abs(vector.x), std::abs(vector.y), std::abs(vector.z)});
-    return size > 0.0 ? direction(vector / size, 0.0) : std::nullopt;
-  };
-  const auto x_given = axis(0);
-  const auto y_given = axis(1);
-  const glm::dvec3 z = axis(2).value_or(replaced_z(x_given, y_given));
-  glm::dvec3 y;
-  if (const auto across = direction_across(y_given, z)) {
-    y = *across;
-  }
-  else if (const auto x_across = direction_across(x_given, z)) {
-    y = glm::cross(z, *x_across);
-  }
-  else {
-    y = any_across(z);
-  }
-  const glm::dvec3 x = glm::cross(y, z);
-  return {glm::dvec4(x, 0.0), glm::dvec4(y, 0.0), glm::dvec4(z, 0.0), world[3]};
-}
-
-std::optional<Lamp> lamp_on(const File &file, int node_index, const glm::dmat4 &world, Warnings &warnings)
+std::optional<Lamp> lamp_on(const File &file, int node_index, Warnings &warnings)
 {
   const tinygltf::Node &node = file.model.nodes[node_index];
   const int light = light_index(node);
@@ -448,11 +389,10 @@ std::optional<Lamp> lamp_on(const File &file, int node_index, const glm::dmat4 &
   const std::string fallback = light < 0 ? std::string() : file.model.lights[light].name;
   LampReader reader(node, node_name(node, fallback, "lamp", node_index), warnings);
   Lamp lamp = light < 0 ? reader.read_area() : reader.read_punctual(file.model.lights[light]);
-  lamp.world_from_lamp = glm::mat4(frame_of(world));
   return lamp;
 }
 
-std::optional<Camera> camera_on(const File &file, int node_index, const glm::dmat4 &world, Warnings &warnings)
+std::optional<Camera> camera_on(const File &file, int node_index, Warnings &warnings)
 {
   const tinygltf::Node &node = file.model.nodes[node_index];
   if (node.camera < 0) {
@@ -478,40 +418,39 @@ std::optional<Camera> camera_on(const File &file, int node_index, const glm::dma
     warnings.add("camera '" + printable(camera.name) + '\'', "left out: " + fault);
     return std::nullopt;
   }
-  camera.world_from_camera = glm::mat4(frame_of(world));
   return camera;
 }
 
-Camera default_camera(const Bounds &bounds)
+PlacedCamera default_camera(const Bounds &bounds)
 {
-  Camera camera;
+  PlacedCamera camera;
   camera.name = "default";
   const glm::dvec3 center = bounds.is_empty() ? glm::dvec3(0.0) : glm::dvec3(bounds.center());
-  // Not smaller than what a float can tell apart where the scene is, nor than a length can be.
+  // At least the spacing of floats at the scene's position, and the least length.
   const double reach = glm::length(center);
   const double radius = bounds.is_empty() ? 1.0 : std::max({double(bounds.radius()), 1e-6 * reach, 1e3 * length_min});
   const glm::dvec3 forward = glm::normalize(glm::dvec3(-0.6, -0.45, -1.0));
-  // The whole sphere around the scene fits, with a little air, in a frame that is at least as wide as high.
+  // The sphere around the scene fits, with a margin, into a frame that is at least as wide as high.
   const double distance = 1.05 * radius / std::sin(0.5 * double(camera.vertical_angle));
-  camera.world_from_camera = glm::mat4(looking(center - distance * forward, forward, {0, 1, 0}));
+  camera.world_from_camera = looking(center - distance * forward, forward, {0, 1, 0});
   camera.near = static_cast<float>(0.5 * (distance - radius));
   camera.far = static_cast<float>(distance + 2.0 * radius);
   return camera;
 }
 
-Lamp default_sun(const Camera &camera)
+PlacedLamp default_sun(const PlacedCamera &camera)
 {
-  Lamp sun;
+  PlacedLamp sun;
   sun.name = "default";
   sun.kind = LampKind::Sun;
   // A white surface that faces it has radiance 1.
   sun.intensity = static_cast<float>(pi);
-  const glm::dmat4 view(camera.world_from_camera);
+  const glm::dmat4 &view = camera.world_from_camera;
   const glm::dvec3 right(view[0]);
   const glm::dvec3 up(view[1]);
   const glm::dvec3 forward = -glm::dvec3(view[2]);
-  // From behind the left shoulder and above.
-  sun.world_from_lamp = glm::mat4(looking(glm::dvec3(view[3]), glm::normalize(forward + 0.5 * right - 0.8 * up), up));
+  // From above and from the left of the camera.
+  sun.world_from_lamp = looking(glm::dvec3(view[3]), glm::normalize(forward + 0.5 * right - 0.8 * up), up);
   return sun;
 }
 

@@ -151,7 +151,7 @@ class MaterialReader {
       if (const auto found = slot.extensions.find("KHR_texture_transform"); found != slot.extensions.end()) {
         read_texture_transform(found->second);
       }
-      result_.base_color_texture = textures_.index_of(slot.index);
+      result_.base_color_texture = textures_.handle_of(slot.index);
     }
     catch (const Fault &fault) {
       warnings_.add(what_, std::string("its baseColorFactor is drawn without a texture: ") + fault.what());
@@ -221,22 +221,22 @@ glm::vec2 TextureCoordinates::transformed(const glm::vec2 &uv) const
 }
 
 MaterialImporter::MaterialImporter(const File &file, Warnings &warnings, Scene &scene)
-    : file_(file), warnings_(warnings), materials_(scene.materials), textures_(file, warnings, scene)
+    : file_(file), warnings_(warnings), scene_(scene), textures_(file, warnings, scene)
 {
 }
 
-std::uint32_t MaterialImporter::index_of(int gltf_material)
+Handle<Material> MaterialImporter::handle_of(int gltf_material)
 {
-  const auto [place, is_new] = index_of_.try_emplace(gltf_material, static_cast<std::uint32_t>(materials_.size()));
+  const auto [place, is_new] = handle_of_.try_emplace(gltf_material);
   if (is_new && gltf_material < 0) {
-    materials_.emplace_back().name = "default";
-    texture_coordinates_.emplace_back();
+    place->second = scene_.add(Material{.name = "default"});
+    texture_coordinates_.try_emplace(place->second);
   }
   else if (is_new) {
     const tinygltf::Material &source = file_.model.materials[gltf_material];
     MaterialReader reader(source, static_cast<std::size_t>(gltf_material), textures_, warnings_);
-    materials_.push_back(reader.read());
-    texture_coordinates_.push_back(reader.texture_coordinates());
+    place->second = scene_.add(reader.read());
+    texture_coordinates_.emplace(place->second, reader.texture_coordinates());
   }
   return place->second;
 }

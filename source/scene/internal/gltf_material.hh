@@ -34,23 +34,22 @@ class MaterialImporter {
   /** Keeps references. */
   MaterialImporter(const File &file, Warnings &warnings, Scene &scene);
 
-  /** Index in the scene's materials for that of the file; -1 is glTF's default material. */
-  [[nodiscard]] std::uint32_t index_of(int gltf_material);
+  /** The scene's material for a material of the file; -1 is glTF's default material. */
+  [[nodiscard]] Handle<Material> handle_of(int gltf_material);
 
-  /** Of the scene's material \a index, which came from here. */
-  [[nodiscard]] const TextureCoordinates &texture_coordinates(std::uint32_t index) const
+  /** Of a material that handle_of returned. */
+  [[nodiscard]] const TextureCoordinates &texture_coordinates(Handle<Material> material) const
   {
-    return texture_coordinates_[index];
+    return texture_coordinates_.at(material);
   }
 
  private:
   const File &file_;
   Warnings &warnings_;
-  std::vector<Material> &materials_;
+  Scene &scene_;
   TextureImporter textures_;
-  /** One a material. */
-  std::vector<TextureCoordinates> texture_coordinates_;
-  std::map<int, std::uint32_t> index_of_;
+  std::map<Handle<Material>, TextureCoordinates> texture_coordinates_;
+  std::map<int, Handle<Material>> handle_of_;
 };
 
 }  // namespace gnomon::scene::gltf

@@ -380,7 +380,7 @@ MeshImporter::MeshImporter(const File &file, Warnings &warnings, Scene &scene)
 {
 }
 
-const std::vector<std::uint32_t> &MeshImporter::meshes_of(int gltf_mesh)
+const std::vector<Handle<Mesh>> &MeshImporter::meshes_of(int gltf_mesh)
 {
   const auto [place, is_new] = meshes_of_.try_emplace(gltf_mesh);
   if (is_new) {
@@ -401,7 +401,7 @@ void MeshImporter::spend(std::uint64_t element_count)
   }
 }
 
-void MeshImporter::import_primitive(int gltf_mesh, std::size_t primitive_index, std::vector<std::uint32_t> &meshes)
+void MeshImporter::import_primitive(int gltf_mesh, std::size_t primitive_index, std::vector<Handle<Mesh>> &meshes)
 {
   const tinygltf::Mesh &source = file_.model.meshes[gltf_mesh];
   const tinygltf::Primitive &primitive = source.primitives[primitive_index];
@@ -417,8 +417,8 @@ void MeshImporter::import_primitive(int gltf_mesh, std::size_t primitive_index, 
     spend(reader.element_count());
     mesh = reader.read();
     if (!mesh.indices.empty()) {
-      mesh.material = materials_.index_of(primitive.material);
-      if (scene_.materials[mesh.material].base_color_texture >= 0) {
+      mesh.material = materials_.handle_of(primitive.material);
+      if (scene_.materials()[mesh.material].base_color_texture) {
         mesh.uvs = reader.read_uvs(materials_.texture_coordinates(mesh.material));
       }
     }
@@ -439,8 +439,7 @@ void MeshImporter::import_primitive(int gltf_mesh, std::size_t primitive_index, 
   if (!primitive.targets.empty()) {
     warnings_.add(what, "morph targets are not applied");
   }
-  meshes.push_back(static_cast<std::uint32_t>(scene_.meshes.size()));
-  scene_.meshes.push_back(std::move(mesh));
+  meshes.push_back(scene_.add(std::move(mesh)));
 }
 
 }  // namespace gnomon::scene::gltf

@@ -25,8 +25,8 @@ class MeshImporter {
   /** Keeps references. */
   MeshImporter(const File &file, Warnings &warnings, Scene &scene);
 
-  /** Indices in Scene::meshes of the primitives of a mesh of the file, less those that cannot be drawn. */
-  [[nodiscard]] const std::vector<std::uint32_t> &meshes_of(int gltf_mesh);
+  /** The scene's meshes for the primitives of a mesh of the file, without those that cannot be drawn. */
+  [[nodiscard]] const std::vector<Handle<Mesh>> &meshes_of(int gltf_mesh);
 
   /** Primitives that were looked at, drawable or not. */
   [[nodiscard]] std::size_t primitive_count() const
@@ -39,12 +39,12 @@ class MeshImporter {
   Warnings &warnings_;
   Scene &scene_;
   MaterialImporter materials_;
-  std::map<int, std::vector<std::uint32_t>> meshes_of_;
+  std::map<int, std::vector<Handle<Mesh>>> meshes_of_;
   std::size_t primitive_count_ = 0;
   /** Vertices and indices read so far. */
   std::uint64_t element_count_ = 0;
 
-  void import_primitive(int gltf_mesh, std::size_t primitive_index, std::vector<std::uint32_t> &meshes);
+  void import_primitive(int gltf_mesh, std::size_t primitive_index, std::vector<Handle<Mesh>> &meshes);
   void spend(std::uint64_t element_count);
 };
 

@@ -93,9 +93,9 @@ TextureImporter::TextureImporter(const File &file, Warnings &warnings, Scene &sc
 {
 }
 
-std::int32_t TextureImporter::index_of(int gltf_texture)
+Handle<Texture> TextureImporter::handle_of(int gltf_texture)
 {
-  if (const auto found = index_of_.find(gltf_texture); found != index_of_.end()) {
+  if (const auto found = handle_of_.find(gltf_texture); found != handle_of_.end()) {
     return found->second;
   }
   const tinygltf::Texture &source = element(file_.model.textures, gltf_texture, "texture");
@@ -106,13 +106,10 @@ std::int32_t TextureImporter::index_of(int gltf_texture)
     SamplerReader(what, warnings_).read(element(file_.model.samplers, source.sampler, what + ": sampler"), texture);
   }
   texture.image = image_of(source.source);
-  const auto index = static_cast<std::int32_t>(scene_.textures.size());
-  scene_.textures.push_back(texture);
-  index_of_.emplace(gltf_texture, index);
-  return index;
+  return handle_of_.emplace(gltf_texture, scene_.add(texture)).first->second;
 }
 
-std::uint32_t TextureImporter::image_of(int gltf_image)
+Handle<Image> TextureImporter::image_of(int gltf_image)
 {
   const ImageSource &source = file_.images[gltf_image];
   const auto [place, is_new] = image_of_.try_emplace({source.uri, source.buffer_view});
@@ -127,10 +124,10 @@ std::uint32_t TextureImporter::image_of(int gltf_image)
   if (const Fault *fault = std::get_if<Fault>(&place->second)) {
     throw Fault(*fault);
   }
-  return std::get<std::uint32_t>(place->second);
+  return std::get<Handle<Image>>(place->second);
 }
 
-std::uint32_t TextureImporter::import_image(int gltf_image)
+Handle<Image> TextureImporter::import_image(int gltf_image)
 {
   const ImageSource &source = file_.images[gltf_image];
   const std::string what = label("image", source.name, static_cast<std::size_t>(gltf_image));
@@ -146,8 +143,7 @@ std::uint32_t TextureImporter::import_image(int gltf_image)
   Image image = decoded_image(bytes, what, texel_count_max - texel_count_);
   image.name = source.name.empty() ? "image " + std::to_string(gltf_image) : source.name;
   texel_count_ += std::uint64_t(image.width) * image.height;
-  scene_.images.push_back(std::move(image));
-  return static_cast<std::uint32_t>(scene_.images.size() - 1);
+  return scene_.add(std::move(image));
 }
 
 }  // namespace gnomon::scene::gltf

@@ -21,25 +21,25 @@ class TextureImporter {
   TextureImporter(const File &file, Warnings &warnings, Scene &scene);
 
   /**
-   * Index in Scene::textures for a texture of the file, whose index may be out of range.
+   * The scene's texture for a texture of the file, whose index may be out of range.
    *
    * \throws Fault that names the texture or the image, when it cannot be looked up.
    */
-  [[nodiscard]] std::int32_t index_of(int gltf_texture);
+  [[nodiscard]] Handle<Texture> handle_of(int gltf_texture);
 
  private:
   const File &file_;
   Warnings &warnings_;
   Scene &scene_;
-  std::map<int, std::int32_t> index_of_;
+  std::map<int, Handle<Texture>> handle_of_;
   /** By URI and buffer view: files name an image more than once. */
-  std::map<std::pair<std::string, int>, std::variant<std::uint32_t, Fault>> image_of_;
+  std::map<std::pair<std::string, int>, std::variant<Handle<Image>, Fault>> image_of_;
   /** Texels decoded so far. */
   std::uint64_t texel_count_ = 0;
 
   /** Once for each image, also if it fails. */
-  std::uint32_t image_of(int gltf_image);
-  std::uint32_t import_image(int gltf_image);
+  Handle<Image> image_of(int gltf_image);
+  Handle<Image> import_image(int gltf_image);
 };
 
 }  // namespace gnomon::scene::gltf

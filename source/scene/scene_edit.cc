@@ -1,0 +1,385 @@
+// SPDX-License-Identifier: MIT
+#include "scene.hh"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <initializer_list>
+
+namespace gnomon::scene {
+
+namespace {
+
+/** Bits of the aspects that differ: bit i for the aspect of value i. */
+using Changes = std::uint32_t;
+
+template <typename Aspect>
+Changes bit_if(bool differs, Aspect aspect)
+{
+  return differs ? 1U << unsigned(aspect) : 0U;
+}
+
+/** Bit patterns, so that a NaN equals itself and an unchanged thing gets no new revision. */
+template <typename T>
+bool same_bytes(const T &a, const T &b)
+{
+  return std::memcmp(&a, &b, sizeof(T)) == 0;
+}
+
+template <typename T>
+bool same_elements(const std::vector<T> &a, const std::vector<T> &b)
+{
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+Changes changes(const Mesh &a, const Mesh &b)
+{
+  using enum Mesh::Aspect;
+  const bool same_shape = same_elements(a.positions, b.positions) && same_elements(a.normals, b.normals) &&
+                          same_elements(a.uvs, b.uvs) && same_elements(a.indices, b.indices);
+  return bit_if(a.name != b.name, Name) | bit_if(!same_shape, Shape) | bit_if(a.material != b.material, Material);
+}
+
+Changes changes(const Image &a, const Image &b)
+{
+  using enum Image::Aspect;
+  const bool same_content = a.width == b.width && a.height == b.height && same_elements(a.texels, b.texels);
+  return bit_if(a.name != b.name, Name) | bit_if(!same_content, Content);
+}
+
+Changes changes(const Texture &a, const Texture &b)
+{
+  const bool same_sampler = a.wrap_u == b.wrap_u && a.wrap_v == b.wrap_v && a.magnified == b.magnified &&
+                            a.minified == b.minified && a.mip == b.mip;
+  return bit_if(a.image != b.image, Texture::Aspect::Image) | bit_if(!same_sampler, Texture::Aspect::Sampler);
+}
+
+Changes changes(const Material &a, const Material &b)
+{
+  using enum Material::Aspect;
+  const bool same_surface = same_bytes(a.base_color, b.base_color) && same_bytes(a.metallic, b.metallic) &&
+                            same_bytes(a.roughness, b.roughness) && same_bytes(a.specular, b.specular) &&
+                            same_bytes(a.specular_color, b.specular_color) && same_bytes(a.emissive, b.emissive);
+  const bool same_coverage = same_bytes(a.alpha, b.alpha) && a.alpha_mode == b.alpha_mode &&
+                             same_bytes(a.alpha_cutoff, b.alpha_cutoff) && a.is_double_sided == b.is_double_sided;
+  return bit_if(a.name != b.name, Name) | bit_if(!same_surface, Surface) | bit_if(!same_coverage, Coverage) |
+         bit_if(a.base_color_texture != b.base_color_texture, Textures);
+}
+
+Changes changes(const Lamp &a, const Lamp &b)
+{
+  using enum Lamp::Aspect;
+  const bool same_light = same_bytes(a.color, b.color) && same_bytes(a.intensity, b.intensity);
+  const bool same_shape = a.kind == b.kind && same_bytes(a.radius, b.radius) && same_bytes(a.angle, b.angle) &&
+                          same_bytes(a.spot_outer_angle, b.spot_outer_angle) &&
+                          same_bytes(a.spot_blend, b.spot_blend) && same_bytes(a.range, b.range) &&
+                          a.area_shape == b.area_shape && same_bytes(a.area_size_x, b.area_size_x) &&
+                          same_bytes(a.area_size_y, b.area_size_y);
+  return bit_if(a.name != b.name, Name) | bit_if(!same_light, Light) | bit_if(!same_shape, Shape) |
+         bit_if(a.shadow != b.shadow, Shadow);
+}
+
+Changes changes(const Camera &a, const Camera &b)
+{
+  const bool same_lens = a.kind == b.kind && same_bytes(a.vertical_angle, b.vertical_angle) &&
+                         same_bytes(a.aspect, b.aspect) && same_bytes(a.half_width, b.half_width) &&
+                         same_bytes(a.half_height, b.half_height) && same_bytes(a.near, b.near) &&
+                         same_bytes(a.far, b.far);
+  return bit_if(a.name != b.name, Camera::Aspect::Name) | bit_if(!same_lens, Camera::Aspect::Lens);
+}
+
+/** Transform and Visibility follow from the ancestors, too: Scene::update_subtree gives their revisions. */
+Changes changes(const Node &a, const Node &b)
+{
+  using enum Node::Aspect;
+  const bool same_content = a.meshes == b.meshes && a.lamp == b.lamp && a.camera == b.camera;
+  const bool same_shadow = a.casts_shadow == b.casts_shadow && a.receives_shadow == b.receives_shadow;
+  return bit_if(a.name != b.name, Name) | bit_if(!same_content, Content) | bit_if(!same_shadow, Shadow);
+}
+
+template <typename... Args>
+[[noreturn]] void refuse(std::string_view kind, const std::string &name, fmt::format_string<Args...> reason,
+                         Args &&...args)
+{
+  throw InvalidEdit(fmt::format("{} '{}': {}", kind, name, fmt::format(reason, std::forward<Args>(args)...)));
+}
+
+void check(const Mesh &mesh)
+{
+  const std::size_t count = mesh.positions.size();
+  if (mesh.normals.size() != count) {
+    refuse("mesh", mesh.name, "{} normals for {} positions", mesh.normals.size(), count);
+  }
+  if (!mesh.uvs.empty() && mesh.uvs.size() != count) {
+    refuse("mesh", mesh.name, "{} uvs for {} positions", mesh.uvs.size(), count);
+  }
+  if (mesh.indices.size() % 3 != 0) {
+    refuse("mesh", mesh.name, "{} indices are not three for each triangle", mesh.indices.size());
+  }
+  const auto beyond = std::ranges::find_if(mesh.indices, [&](std::uint32_t index) { return index >= count; });
+  if (beyond != mesh.indices.end()) {
+    refuse("mesh", mesh.name, "index {} is beyond its {} positions", *beyond, count);
+  }
+  const auto infinite = std::ranges::find_if(mesh.positions, [](const glm::vec3 &position) {
+    return !(std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(position.z));
+  });
+  if (infinite != mesh.positions.end()) {
+    refuse("mesh", mesh.name, "position {} is not finite", infinite - mesh.positions.begin());
+  }
+}
+
+void check(const Image &image)
+{
+  const std::uint64_t bytes = std::uint64_t(4) * image.width * image.height;
+  if (bytes == 0 || bytes != image.texels.size()) {
+    refuse("image", image.name, "{} bytes for {}x{} texels of 4 bytes", image.texels.size(), image.width, image.height);
+  }
+}
+
+void check_transform(const std::string &name, const glm::dmat4 &matrix)
+{
+  for (int column = 0; column < 4; column++) {
+    for (int row = 0; row < 4; row++) {
+      if (!std::isfinite(matrix[column][row])) {
+        refuse("node", name, "its matrix is not finite");
+      }
+      if (row == 3 && matrix[column][3] != (column == 3 ? 1.0 : 0.0)) {
+        refuse("node", name, "its matrix is not affine: the last row is not 0 0 0 1");
+      }
+    }
+  }
+}
+
+void check(const Node &node)
+{
+  check_transform(node.name, node.parent_from_node);
+}
+
+/** Numbers of these are the importer's and the engines' to check: each supports its own range. */
+void check(const Texture & /*texture*/) {}
+void check(const Material & /*material*/) {}
+void check(const Lamp & /*lamp*/) {}
+void check(const Camera & /*camera*/) {}
+
+Bounds bounds_of(const Mesh &mesh)
+{
+  Bounds bounds;
+  for (const glm::vec3 &position : mesh.positions) {
+    bounds.extend(position);
+  }
+  return bounds;
+}
+
+}  // namespace
+
+template <typename T>
+void Scene::replace_value(Handle<T> handle, T value)
+{
+  Pool<T> &things = writable_pool<T>();
+  const Changes changed = changes(things[handle], value);
+  check(value);
+  if constexpr (std::same_as<T, Mesh>) {
+    value.bounds = bounds_of(value);
+  }
+  things.writable(handle) = std::move(value);
+  if (changed == 0) {
+    return;
+  }
+  revision_++;
+  for (unsigned aspect = 0; aspect < unsigned(T::Aspect::Count); aspect++) {
+    if ((changed >> aspect & 1U) != 0) {
+      things.touch(handle, typename T::Aspect(aspect), revision_);
+    }
+  }
+}
+
+Handle<Mesh> Scene::add(Mesh mesh)
+{
+  check(mesh);
+  mesh.bounds = bounds_of(mesh);
+  return meshes_.add(std::move(mesh), ++revision_);
+}
+
+Handle<Image> Scene::add(Image image)
+{
+  check(image);
+  return images_.add(std::move(image), ++revision_);
+}
+
+Handle<Texture> Scene::add(const Texture &texture)
+{
+  return textures_.add(texture, ++revision_);
+}
+
+Handle<Material> Scene::add(Material material)
+{
+  return materials_.add(std::move(material), ++revision_);
+}
+
+Handle<Lamp> Scene::add(Lamp lamp)
+{
+  return lamps_.add(std::move(lamp), ++revision_);
+}
+
+Handle<Camera> Scene::add(Camera camera)
+{
+  return cameras_.add(std::move(camera), ++revision_);
+}
+
+Handle<Node> Scene::add(Node node, Handle<Node> parent)
+{
+  check(node);
+  if (parent) {
+    nodes_[parent];
+  }
+  links_.reserve(std::max(links_.capacity(), nodes_.index_end() + 1));
+  const Handle<Node> handle = nodes_.add(std::move(node), ++revision_);
+  links_.resize(nodes_.index_end());
+  links(handle) = {};
+  link(handle, parent);
+  update_subtree(handle, revision_);
+  return handle;
+}
+
+void Scene::replace(Handle<Mesh> handle, Mesh mesh)
+{
+  replace_value(handle, std::move(mesh));
+}
+
+void Scene::replace(Handle<Image> handle, Image image)
+{
+  replace_value(handle, std::move(image));
+}
+
+void Scene::replace(Handle<Texture> handle, const Texture &texture)
+{
+  replace_value(handle, texture);
+}
+
+void Scene::replace(Handle<Material> handle, Material material)
+{
+  replace_value(handle, std::move(material));
+}
+
+void Scene::replace(Handle<Lamp> handle, Lamp lamp)
+{
+  replace_value(handle, std::move(lamp));
+}
+
+void Scene::replace(Handle<Camera> handle, Camera camera)
+{
+  replace_value(handle, std::move(camera));
+}
+
+void Scene::replace(Handle<Node> handle, Node node)
+{
+  const bool is_moved = !same_bytes(nodes_[handle].parent_from_node, node.parent_from_node) ||
+                        nodes_[handle].is_visible != node.is_visible;
+  replace_value(handle, std::move(node));
+  if (is_moved) {
+    update_subtree(handle, ++revision_);
+  }
+}
+
+void Scene::set_transform(Handle<Node> node, const glm::dmat4 &parent_from_node)
+{
+  Node &written = nodes_.writable(node);
+  check_transform(written.name, parent_from_node);
+  if (!same_bytes(written.parent_from_node, parent_from_node)) {
+    written.parent_from_node = parent_from_node;
+    update_subtree(node, ++revision_);
+  }
+}
+
+void Scene::set_parent(Handle<Node> node, Handle<Node> parent)
+{
+  nodes_[node];
+  if (parent) {
+    nodes_[parent];
+  }
+  for (Handle<Node> above = parent; above; above = links(above).parent) {
+    if (above == node) {
+      refuse("node", nodes_[node].name, "node '{}' is itself or below it, and cannot be its parent",
+             nodes_[parent].name);
+    }
+  }
+  unlink(node);
+  link(node, parent);
+  update_subtree(node, ++revision_);
+}
+
+void Scene::link(Handle<Node> node, Handle<Node> parent)
+{
+  NodeLinks &own = links(node);
+  own.parent = parent;
+  if (!parent) {
+    return;
+  }
+  NodeLinks &above = links(parent);
+  own.previous_sibling = above.last_child;
+  (above.last_child ? links(above.last_child).next_sibling : above.first_child) = node;
+  above.last_child = node;
+}
+
+void Scene::unlink(Handle<Node> node)
+{
+  NodeLinks &own = links(node);
+  if (own.parent) {
+    NodeLinks &above = links(own.parent);
+    (own.previous_sibling ? links(own.previous_sibling).next_sibling : above.first_child) = own.next_sibling;
+    (own.next_sibling ? links(own.next_sibling).previous_sibling : above.last_child) = own.previous_sibling;
+  }
+  own.parent = own.previous_sibling = own.next_sibling = {};
+}
+
+void Scene::remove_subtree(Handle<Node> node)
+{
+  unlink(node);
+  revision_++;
+  // Leaves first. No recursion: a scene may be deeper than the stack.
+  Handle<Node> at = node;
+  while (at) {
+    if (const Handle<Node> child = links(at).first_child) {
+      at = child;
+      continue;
+    }
+    const Handle<Node> above = at == node ? Handle<Node>() : links(at).parent;
+    unlink(at);
+    nodes_.remove(at, revision_);
+    at = above;
+  }
+}
+
+void Scene::update_subtree(Handle<Node> node, Revision revision)
+{
+  Handle<Node> at = node;
+  while (at) {
+    NodeLinks &own = links(at);
+    const Node &value = nodes_[at];
+    const NodeLinks *above = own.parent ? &links(own.parent) : nullptr;
+    const glm::dmat4 world = above ? above->world_from_node * value.parent_from_node : value.parent_from_node;
+    const bool is_visible = value.is_visible && (!above || above->is_visible);
+    const bool is_moved = !same_bytes(own.world_from_node, world);
+    const bool is_toggled = own.is_visible != is_visible;
+    if (is_moved) {
+      own.world_from_node = world;
+      nodes_.touch(at, Node::Aspect::Transform, revision);
+    }
+    if (is_toggled) {
+      own.is_visible = is_visible;
+      nodes_.touch(at, Node::Aspect::Visibility, revision);
+    }
+    // Below a node that stayed as it was, nothing changes.
+    Handle<Node> next = is_moved || is_toggled || at == node ? own.first_child : Handle<Node>();
+    while (!next && at != node) {
+      next = links(at).next_sibling;
+      at = next ? at : links(at).parent;
+    }
+    if (at == node && !next) {
+      return;
+    }
+    at = next;
+  }
+}
+
+}  // namespace gnomon::scene

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "scene_handle.hh"
+
+#include <array>
+#include <deque>
+#include <vector>
+
+namespace gnomon::scene {
+
+/**
+ * Things of one kind, by handle, and a revision for each aspect of each.
+ *
+ * Reading only; a Scene writes. \a T has `enum class Aspect { …, Count }` and `static constexpr std::string_view
+ * kind_name`. References stay valid while other things are added and removed. Iteration visits things in the order in
+ * which they were added, except that the place of a removed thing is used again.
+ */
+template <typename T>
+class Pool {
+ public:
+  using Aspect = typename T::Aspect;
+
+  /** \throws StaleHandle where \a handle names no thing of this pool. */
+  const T &operator[](Handle<T> handle) const
+  {
+    return slot(handle).value;
+  }
+  /** nullptr where \a handle names no thing of this pool. */
+  [[nodiscard]] const T *find(Handle<T> handle) const
+  {
+    return is_live(handle) ? &slots_[handle.index].value : nullptr;
+  }
+  [[nodiscard]] bool is_live(Handle<T> handle) const
+  {
+    return handle && handle.index < slots_.size() && slots_[handle.index].is_live &&
+           slots_[handle.index].generation == handle.generation;
+  }
+  [[nodiscard]] std::size_t size() const
+  {
+    return size_;
+  }
+  [[nodiscard]] bool empty() const
+  {
+    return size_ == 0;
+  }
+  /** Above every Handle::index that the pool has given: what an array with a place for each thing needs. */
+  [[nodiscard]] std::size_t index_end() const
+  {
+    return slots_.size();
+  }
+
+  /** When an aspect of one thing changed last; adding the thing changes all. \throws StaleHandle */
+  [[nodiscard]] Revision revision(Handle<T> handle, Aspect aspect) const
+  {
+    return slot(handle).revisions[std::size_t(aspect)];
+  }
+  /** When that aspect of any thing changed last; adding and removing a thing changes all aspects. */
+  [[nodiscard]] Revision latest(Aspect aspect) const
+  {
+    return latest_[std::size_t(aspect)];
+  }
+  /** When any aspect of any thing changed last. */
+  [[nodiscard]] Revision latest() const
+  {
+    Revision revision = 0;
+    for (const Revision each : latest_) {
+      revision = std::max(revision, each);
+    }
+    return revision;
+  }
+
+  struct Item {
+    Handle<T> handle;
+    const T &value;
+  };
+  class Iterator {
+   public:
+    Iterator(const Pool &pool, std::size_t index) : pool_(&pool), index_(index)
+    {
+      skip_removed();
+    }
+    Item operator*() const
+    {
+      const Slot &slot = pool_->slots_[index_];
+      return {{std::uint32_t(index_), slot.generation}, slot.value};
+    }
+    Iterator &operator++()
+    {
+      index_++;
+      skip_removed();
+      return *this;
+    }
+    bool operator==(const Iterator &) const = default;
+
+   private:
+    void skip_removed()
+    {
+      while (index_ < pool_->slots_.size() && !pool_->slots_[index_].is_live) {
+        index_++;
+      }
+    }
+    const Pool *pool_;
+    std::size_t index_;
+  };
+  [[nodiscard]] Iterator begin() const
+  {
+    return {*this, 0};
+  }
+  [[nodiscard]] Iterator end() const
+  {
+    return {*this, slots_.size()};
+  }
+  /** The first thing in iteration order; names nothing where the pool is empty. */
+  [[nodiscard]] Handle<T> first() const
+  {
+    return empty() ? Handle<T>() : (*begin()).handle;
+  }
+
+ private:
+  friend class Scene;
+
+  static constexpr std::size_t aspect_count = std::size_t(Aspect::Count);
+  struct Slot {
+    T value;
+    std::uint32_t generation = 1;
+    bool is_live = true;
+    std::array<Revision, aspect_count> revisions{};
+  };
+
+  const Slot &slot(Handle<T> handle) const
+  {
+    if (!is_live(handle)) {
+      throw StaleHandle(handle ? fmt::format("the {} of handle {}.{} was removed, or is another scene's", T::kind_name,
+                                             handle.index, handle.generation)
+                               : fmt::format("a handle names no {}", T::kind_name));
+    }
+    return slots_[handle.index];
+  }
+
+  Handle<T> add(T value, Revision revision)
+  {
+    std::uint32_t index = std::uint32_t(slots_.size());
+    if (free_.empty()) {
+      slots_.push_back({std::move(value)});
+    }
+    else {
+      index = free_.back();
+      slots_[index].value = std::move(value);
+      slots_[index].is_live = true;
+      free_.pop_back();
+    }
+    slots_[index].revisions.fill(revision);
+    latest_.fill(revision);
+    size_++;
+    return {index, slots_[index].generation};
+  }
+  void remove(Handle<T> handle, Revision revision)
+  {
+    // Room first: nothing below throws.
+    free_.reserve(free_.size() + 1);
+    Slot &removed = slots_[handle.index];
+    removed.value = T();
+    removed.is_live = false;
+    removed.generation++;
+    latest_.fill(revision);
+    size_--;
+    // A generation that would repeat retires its place.
+    if (removed.generation != 0) {
+      free_.push_back(handle.index);
+    }
+  }
+  void touch(Handle<T> handle, Aspect aspect, Revision revision)
+  {
+    slots_[handle.index].revisions[std::size_t(aspect)] = revision;
+    latest_[std::size_t(aspect)] = revision;
+  }
+  T &writable(Handle<T> handle)
+  {
+    slot(handle);
+    return slots_[handle.index].value;
+  }
+
+  std::deque<Slot> slots_;
+  std::vector<std::uint32_t> free_;
+  std::array<Revision, aspect_count> latest_{};
+  std::size_t size_ = 0;
+};
+
+}  // namespace gnomon::scene

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "scene_handle.hh"
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/**
+ * The things that a scene holds, as plain data.
+ *
+ * Units: metres, radians, watts. Colours are linear with Rec. 709 primaries. Each kind of thing lists its aspects: what
+ * a consumer may depend on separately. Editing a thing gives the aspects that differ a new revision (scene.hh).
+ */
+namespace gnomon::scene {
+
+/** Axis-aligned box. Default-constructed it is empty: `min` above `max`. */
+struct Bounds {
+  glm::vec3 min{1e30F};
+  glm::vec3 max{-1e30F};
+
+  [[nodiscard]] bool is_empty() const
+  {
+    return min.x > max.x;
+  }
+  [[nodiscard]] glm::vec3 center() const
+  {
+    return 0.5F * min + 0.5F * max;
+  }
+  /** Half the diagonal: the radius of the sphere around the box. */
+  [[nodiscard]] float radius() const;
+  void extend(const glm::vec3 &point);
+  void extend(const Bounds &other);
+};
+
+/** The box around \a bounds after a transform; an empty box stays empty. */
+[[nodiscard]] Bounds transformed(const Bounds &bounds, const glm::mat4 &target_from_source);
+
+/** Texels of four bytes each: red, green and blue encoded as sRGB, and linear alpha, not multiplied in. */
+struct Image {
+  static constexpr std::string_view kind_name = "image";
+  enum class Aspect { Name, Content, Count };
+
+  std::string name{};
+  /** Both above 0. */
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  /** 4 · width · height bytes; rows from the top, where v is 0. */
+  std::vector<std::uint8_t> texels{};
+};
+
+enum class TextureWrap { Repeat, MirroredRepeat, ClampToEdge };
+
+enum class TextureFilter { Nearest, Linear };
+
+/** The filter between mip levels of a minified texture. None: only the full size is read. */
+enum class MipFilter { None, Nearest, Linear };
+
+/** An image and its sampler. */
+struct Texture {
+  static constexpr std::string_view kind_name = "texture";
+  enum class Aspect { Image, Sampler, Count };
+
+  Handle<Image> image{};
+  TextureWrap wrap_u = TextureWrap::Repeat;
+  TextureWrap wrap_v = TextureWrap::Repeat;
+  TextureFilter magnified = TextureFilter::Linear;
+  TextureFilter minified = TextureFilter::Linear;
+  MipFilter mip = MipFilter::Linear;
+};
+
+enum class AlphaMode { Opaque, Mask, Blend };
+
+/** Metallic-roughness surface of glTF 2.0 with KHR_materials_specular. All factors are in [0, 1]. */
+struct Material {
+  static constexpr std::string_view kind_name = "material";
+  /**
+   * Surface: factors of the shading. Coverage: what decides which parts of a surface exist, and therefore its shadow:
+   * alpha mode, alpha, cutoff, sides. Textures: which textures are read.
+   */
+  enum class Aspect { Name, Surface, Coverage, Textures, Count };
+
+  std::string name{};
+  glm::vec3 base_color{1.0F};
+  float alpha = 1.0F;
+  /** Multiplied with base_color and alpha, at Mesh::uvs. Names nothing: no texture. */
+  Handle<Texture> base_color_texture{};
+  float metallic = 1.0F;
+  /** Perceptual; GGX alpha is its square. */
+  float roughness = 1.0F;
+  /** Scales dielectric reflection at normal incidence (0.04); 0 leaves a Lambertian surface. */
+  float specular = 1.0F;
+  /** Tints dielectric reflection. May exceed 1; the product with 0.04 is clamped to 1. */
+  glm::vec3 specular_color{1.0F};
+  /** Scene-linear radiance, W/(sr m²) per channel. May exceed 1. */
+  glm::vec3 emissive{0.0F};
+  AlphaMode alpha_mode = AlphaMode::Opaque;
+  /** Mask only: the surface is cut out where alpha is below. */
+  float alpha_cutoff = 0.5F;
+  /** false: back faces are not drawn and cast no light. */
+  bool is_double_sided = false;
+};
+
+/** Indexed triangles of one material (a glTF primitive). Object space, metres. */
+struct Mesh {
+  static constexpr std::string_view kind_name = "mesh";
+  enum class Aspect { Name, Shape, Material, Count };
+
+  std::string name{};
+  std::vector<glm::vec3> positions{};
+  /** Unit vectors, one for each position. */
+  std::vector<glm::vec3> normals{};
+  /**
+   * Where the material's base colour texture is looked up, one for each position, with the texture's transform applied.
+   * (0, 0) is the outer corner of the image's first texel. Empty where the material has no texture.
+   */
+  std::vector<glm::vec2> uvs{};
+  /** Three for each triangle, each below positions.size(). */
+  std::vector<std::uint32_t> indices{};
+  /** A handle that names nothing, or a removed material, stands for the default material. */
+  Handle<Material> material{};
+  /** The box around all positions. Scene::add and Scene::replace compute it. */
+  Bounds bounds{};
+};
+
+enum class LampKind { Point, Sun, Spot, Hemi, Area };
+
+enum class AreaShape { Rectangle, Ellipse };
+
+enum class ShadowKind { None, Hard, Pcf, Esm, Evsm };
+
+enum class EsmFormat { Half, Float };
+
+/** Shadow settings of one lamp. Each that is present overrides the engine's setting. */
+struct LampShadow {
+  std::optional<ShadowKind> kind{};
+  /** Texels along an edge of the depth map or of a cube's face, 1 to 16384. */
+  std::optional<int> size{};
+  /** Of exponential shadows, 1/m, 0.01 to 1e4. */
+  std::optional<float> exponent{};
+  /** Scales the bias that is derived from the texel; 0 to 100, and 1 leaves it. */
+  std::optional<float> bias{};
+  /** Casters nearer or farther than these are not drawn, metres, above 0; where both are present, end > start. */
+  std::optional<float> clip_start{};
+  std::optional<float> clip_end{};
+  /** Half the opening angle of the kernel that filters exponential shadows, radians, 0 to π/4. */
+  std::optional<float> filter_radius{};
+  /** Texels along an edge of the octahedral layer of exponential shadows, 1 to 16384. */
+  std::optional<int> esm_size{};
+  std::optional<EsmFormat> esm_format{};
+
+  bool operator==(const LampShadow &) const = default;
+};
+
+/**
+ * A lamp in radiometric units: glTF's photometric units divided by 683 lm/W. It shines along the local -Z axis of its
+ * node. Scale, shear and mirroring of the node do not change it.
+ */
+struct Lamp {
+  static constexpr std::string_view kind_name = "lamp";
+  /** Light: colour and intensity. Shape: kind, size, cone and range. Shadow: LampShadow. */
+  enum class Aspect { Name, Light, Shape, Shadow, Count };
+
+  std::string name{};
+  LampKind kind = LampKind::Point;
+  glm::vec3 color{1.0F};
+  /**
+   * Sun: irradiance on a surface that faces it, W/m².
+   * Hemi: the same, of a uniform sky over the half space behind the lamp; a surface tilted by t gets (1 + cos t) / 2.
+   * Point and spot: radiant intensity, W/sr; irradiance is intensity · cos / (d² + radius²).
+   * Area: power of the one emitting side, W.
+   */
+  float intensity = 1.0F;
+  /** Point and spot: radius of a disk turned to the receiver, metres. 0: a hard shadow. */
+  float radius = 0.0F;
+  /** Sun: angular diameter, radians. 0: a hard shadow. */
+  float angle = 0.0F;
+  /** Spot: half the opening angle, radians, in (0, π/2]. */
+  float spot_outer_angle = 0.785398F;
+  /**
+   * Spot: width of the soft edge as a fraction of 1 - cos(outer), in [0, 1]. 0: a hard edge.
+   * Transmission is smoothstep(0, 1, (cos - cos_outer) / ((1 - cos_outer) · blend)).
+   */
+  float spot_blend = 0.0F;
+  /** Point and spot: no light beyond, metres. 0: no limit. */
+  float range = 0.0F;
+  AreaShape area_shape = AreaShape::Rectangle;
+  /** Area: full edge lengths or diameters, metres, above 0. */
+  float area_size_x = 1.0F;
+  float area_size_y = 1.0F;
+  /** Point, spot and sun. */
+  LampShadow shadow{};
+
+  bool operator==(const Lamp &) const = default;
+};
+
+enum class CameraKind { Perspective, Orthographic };
+
+/** Looks along the local -Z axis of its node, +Y up. Scale, shear and mirroring of the node do not change it. */
+struct Camera {
+  static constexpr std::string_view kind_name = "camera";
+  enum class Aspect { Name, Lens, Count };
+
+  std::string name{};
+  CameraKind kind = CameraKind::Perspective;
+  /** Perspective: full vertical angle, radians, in (0, π). */
+  float vertical_angle = 0.8F;
+  /** Perspective: width / height of the frame. 0: that of the image. */
+  float aspect = 0.0F;
+  /** Orthographic: half width and half height of the frame, metres, above 0. */
+  float half_width = 1.0F;
+  float half_height = 1.0F;
+  /** Distances along the view direction, metres; near > 0 when perspective, far > near. far 0: infinite. */
+  float near = 0.1F;
+  float far = 0.0F;
+};
+
+/** A place in the scene, and what stands there. Nodes form trees: Scene::add(Node, parent). */
+struct Node {
+  static constexpr std::string_view kind_name = "node";
+  /**
+   * Transform: the world matrix, changed by an edit of the node or of an ancestor. Content: meshes, lamp and camera.
+   * Visibility: is_visible of the node or of an ancestor. Shadow: casts_shadow and receives_shadow.
+   */
+  enum class Aspect { Name, Transform, Content, Visibility, Shadow, Count };
+
+  std::string name{};
+  /** Affine and finite; may be singular, sheared or mirrored. */
+  glm::dmat4 parent_from_node{1.0};
+  /** Each is drawn at the node. */
+  std::vector<Handle<Mesh>> meshes{};
+  Handle<Lamp> lamp{};
+  Handle<Camera> camera{};
+  /** false: neither the node nor its descendants are drawn, cast shadows or give light. */
+  bool is_visible = true;
+  /** Of the node's own meshes. */
+  bool casts_shadow = true;
+  bool receives_shadow = true;
+};
+
+}  // namespace gnomon::scene
