@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "draw_view.hh"
+#include "draw_objects.hh"
 
 #include <cstdint>
 #include <functional>
@@ -14,19 +14,12 @@ namespace gnomon::draw {
 
 class Viewport;
 
-/** One object of the host's, as far as the draw manager needs to know it. */
-struct ObjectRef {
-  /** In the host's list; an engine that reads the host's scene finds the rest there. */
-  std::uint32_t index = 0;
-  glm::mat4 world_from_object{1.0F};
-  CullingVolume volume;
-};
-
 /**
  * A way to draw a scene. What belongs to one viewport is kept in Viewport::engine_data.
  *
- * Call order, by Viewport::sync: init, cache_init, cache_populate for each object, cache_finish; then, by
- * Viewport::draw, draw_scene as often as wanted, until the scene changes.
+ * Call order, by Viewport::sync: init; cache_init, if objects were added or removed since the engine's last sync of
+ * this viewport, or a sync failed; cache_populate for each object that changed, after cache_init for every object;
+ * cache_finish. Then, by Viewport::draw, draw_scene as often as wanted, until the scene changes.
  */
 class Engine {
  public:
@@ -44,9 +37,10 @@ class Engine {
   [[nodiscard]] virtual std::string_view name() const = 0;
   /** Make or check what does not depend on the objects. */
   virtual void init(Viewport &viewport) = 0;
-  /** Begin recording passes. */
+  /** Forget all objects. */
   virtual void cache_init(Viewport &viewport) = 0;
-  virtual void cache_populate(Viewport &viewport, const ObjectRef &object) = 0;
+  /** \a object was added or has changed; \a objects has its matrix and volume. */
+  virtual void cache_populate(Viewport &viewport, const ObjectBuffer &objects, ObjectIndex object) = 0;
   /** All objects are known. */
   virtual void cache_finish(Viewport &viewport) = 0;
   virtual void draw_scene(Viewport &viewport, const View &view) = 0;

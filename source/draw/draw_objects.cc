@@ -32,44 +32,113 @@ bool is_mirrored(const glm::mat4 &world_from_object)
   return glm::dot(glm::cross(m[0], m[1]), m[2]) < 0.0;
 }
 
-ObjectBuffer::ObjectBuffer()
+bool is_finite(const glm::mat4 &matrix)
 {
-  clear();
+  for (int column = 0; column < 4; column++) {
+    for (int row = 0; row < 4; row++) {
+      if (!std::isfinite(matrix[column][row])) {
+        return false;
+      }
+    }
+  }
+  return true;
 }
 
-ObjectIndex ObjectBuffer::add(const glm::mat4 &world_from_object, std::uint32_t value)
+static void check(ObjectIndex index, const glm::mat4 &world_from_object, const CullingVolume &volume)
+{
+  if (!is_finite(world_from_object)) {
+    throw gpu::Error("object {}: its matrix is not finite", index);
+  }
+  if (std::isnan(volume.center_ws.x + volume.center_ws.y + volume.center_ws.z + volume.radius)) {
+    throw gpu::Error("object {}: its culling volume is not a number", index);
+  }
+}
+
+ObjectBuffer::ObjectBuffer()
+{
+  add(glm::mat4(1.0F));
+}
+
+ObjectIndex ObjectBuffer::add(const glm::mat4 &world_from_object, std::uint32_t value, const CullingVolume &volume)
+{
+  const ObjectIndex index = free_.empty() ? index_end() : free_.back();
+  check(index, world_from_object, volume);
+  if (free_.empty()) {
+    objects_.emplace_back();
+    volumes_.emplace_back();
+    revisions_.emplace_back();
+  }
+  else {
+    free_.pop_back();
+  }
+  write(index, world_from_object, value, volume);
+  structure_revision_ = revision_;
+  return index;
+}
+
+void ObjectBuffer::set(ObjectIndex index, const glm::mat4 &world_from_object, std::uint32_t value,
+                       const CullingVolume &volume)
+{
+  GNOMON_ASSERT(is_live(index), "object {} was removed", index);
+  check(index, world_from_object, volume);
+  const CullingVolume &before = volumes_[index];
+  if (objects_[index].world_from_object != world_from_object || objects_[index].value != value ||
+      before.center_ws != volume.center_ws || before.radius != volume.radius) {
+    write(index, world_from_object, value, volume);
+  }
+}
+
+void ObjectBuffer::remove(ObjectIndex index)
+{
+  GNOMON_ASSERT(is_live(index) && index != object_identity, "object {} cannot be removed", index);
+  free_.push_back(index);
+  revisions_[index] = 0;
+  structure_revision_ = ++revision_;
+}
+
+void ObjectBuffer::write(ObjectIndex index, const glm::mat4 &world_from_object, std::uint32_t value,
+                         const CullingVolume &volume)
 {
   const glm::mat3 normal = normal_matrix(world_from_object);
-  shared::ObjectData object{};
+  shared::ObjectData &object = objects_[index];
   object.world_from_object = world_from_object;
   object.normal_x = glm::vec4(normal[0], 0.0F);
   object.normal_y = glm::vec4(normal[1], 0.0F);
   object.normal_z = normal[2];
   object.value = value;
-  objects_.push_back(object);
-  is_dirty_ = true;
-  return ObjectIndex(objects_.size() - 1);
-}
-
-void ObjectBuffer::clear()
-{
-  objects_.clear();
-  add(glm::mat4(1.0F));
+  volumes_[index] = volume;
+  revisions_[index] = ++revision_;
 }
 
 void ObjectBuffer::upload(gpu::Device &device)
 {
   const auto bytes = std::as_bytes(std::span(objects_));
   if (!buffer_ || buffer_.size_bytes() < bytes.size()) {
-    // Room to grow, as far as the device goes.
+    // Capacity for more objects, as far as the device allows.
     const std::size_t limit = device.limits().storage_block_bytes_max;
     const std::size_t size = std::max(bytes.size(), std::min(std::bit_ceil(bytes.size()), limit));
     buffer_ = device.create_buffer({"object_block", gpu::BufferKind::Storage, size});
-    is_dirty_ = true;
+    uploaded_revision_ = 0;
   }
-  if (std::exchange(is_dirty_, false)) {
-    device.update(buffer_, 0, bytes);
+  if (uploaded_revision_ == revision_) {
+    return;
   }
+  // One write for each run of changed objects; a few unchanged ones in between are cheaper than another write.
+  constexpr ObjectIndex gap_max = 16;
+  const auto is_changed = [&](ObjectIndex index) { return revisions_[index] > uploaded_revision_; };
+  for (ObjectIndex first = 0; first < index_end(); first++) {
+    if (!is_changed(first)) {
+      continue;
+    }
+    ObjectIndex last = first;
+    for (ObjectIndex i = first + 1; i < index_end() && i - last <= gap_max; i++) {
+      last = is_changed(i) ? i : last;
+    }
+    device.update(buffer_, first * sizeof(shared::ObjectData),
+                  bytes.subspan(first * sizeof(shared::ObjectData), (last - first + 1) * sizeof(shared::ObjectData)));
+    first = last;
+  }
+  uploaded_revision_ = revision_;
 }
 
 }  // namespace gnomon::draw

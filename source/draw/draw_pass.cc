@@ -154,7 +154,9 @@ RecordCounts ShadingGroup::collect_draws(const View &view, gpu::CommandList &lis
   list.instances.reserve(list.instances.size() + calls_.size());
   bool has_draw = false;  // The last of list.draws is this group's: the same batch again makes it longer.
   for (const Call &call : calls_) {
-    if (!view.touches(call.volume)) {
+    // A volume of the call's own goes before the object's.
+    const bool is_object_volume = call.volume.radius < 0.0F && objects_ && call.object < objects_->index_end();
+    if (!view.touches(is_object_volume ? objects_->volume(call.object) : call.volume)) {
       counts.culled += call.instance_count;
       continue;
     }

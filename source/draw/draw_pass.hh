@@ -98,7 +98,10 @@ class ShadingGroup {
 
   /** Draw the batch once, with a matrix. \pre the pass has an ObjectBuffer. */
   void call(const gpu::Batch &batch, const glm::mat4 &world_from_object);
-  /** The same with the matrix of an object that is in the buffer already. */
+  /**
+   * The same with an object of the pass's ObjectBuffer. Left out for views that do not touch the volume that the object
+   * has there when the pass is recorded.
+   */
   void call(const gpu::Batch &batch, ObjectIndex object = object_identity);
   /** Left out for views that do not touch \a volume. */
   void call(const gpu::Batch &batch, ObjectIndex object, const CullingVolume &volume);

@@ -7,12 +7,33 @@
 
 namespace gnomon::draw {
 
-Viewport::Viewport(gpu::Device &device, glm::ivec2 size_px) : device_(device), size_px_(size_px)
+static void check_size(const gpu::Device &device, glm::ivec2 size_px)
 {
   const int most = device.limits().texture_size_max;
   if (size_px.x < 1 || size_px.y < 1 || size_px.x > most || size_px.y > most) {
     throw gpu::Error("viewport: {}x{} pixels are not from 1x1 to {}x{}", size_px.x, size_px.y, most, most);
   }
+}
+
+Viewport::Viewport(gpu::Device &device, glm::ivec2 size_px) : device_(device), size_px_(size_px)
+{
+  check_size(device, size_px);
+}
+
+void Viewport::resize(glm::ivec2 size_px)
+{
+  check_size(device_, size_px);
+  if (size_px == size_px_) {
+    return;
+  }
+  size_px_ = size_px;
+  // Framebuffers go before the textures that they draw into.
+  for (auto &[id, engine] : engines_) {
+    if (engine.data) {
+      engine.data->resized();
+    }
+  }
+  depth_texture_ = {};
 }
 
 const gpu::Texture &Viewport::depth_texture()
@@ -24,45 +45,25 @@ const gpu::Texture &Viewport::depth_texture()
   return depth_texture_;
 }
 
-static bool is_finite(const glm::mat4 &matrix)
+void Viewport::sync(std::span<Engine *const> engines, const ObjectBuffer &objects)
 {
-  for (int column = 0; column < 4; column++) {
-    for (int row = 0; row < 4; row++) {
-      if (!std::isfinite(matrix[column][row])) {
-        return false;
+  for (Engine *engine : engines) {
+    // Until it comes to its end: the engine may have seen a part of the objects.
+    const std::optional<std::uint64_t> seen = std::exchange(engines_[engine->id()].synced_revision, std::nullopt);
+    const bool is_anew = !seen || objects.structure_revision() > *seen;
+    engine->init(*this);
+    if (is_anew) {
+      engine->cache_init(*this);
+    }
+    if (is_anew || objects.revision() > *seen) {
+      for (ObjectIndex index = object_identity + 1; index < objects.index_end(); index++) {
+        if (objects.is_live(index) && (is_anew || objects.revision(index) > *seen)) {
+          engine->cache_populate(*this, objects, index);
+        }
       }
     }
-  }
-  return true;
-}
-
-void Viewport::sync(std::span<Engine *const> engines, std::span<const ObjectRef> objects)
-{
-  for (const ObjectRef &object : objects) {
-    if (!is_finite(object.world_from_object)) {
-      throw gpu::Error("object {}: its matrix is not finite", object.index);
-    }
-    const glm::vec3 &center = object.volume.center_ws;
-    if (std::isnan(center.x + center.y + center.z + object.volume.radius)) {
-      throw gpu::Error("object {}: its culling volume is not a number", object.index);
-    }
-  }
-  objects_.clear();
-  for (Engine *engine : engines) {
-    engine->init(*this);
-    engine->cache_init(*this);
-  }
-  for (const ObjectRef &object : objects) {
-    for (Engine *engine : engines) {
-      engine->cache_populate(*this, object);
-    }
-  }
-  for (Engine *engine : engines) {
     engine->cache_finish(*this);
-  }
-  // The identity alone is not worth a buffer.
-  if (objects_.size() > 1) {
-    objects_.upload(device_);
+    engines_[engine->id()].synced_revision = objects.revision();
   }
 }
 

@@ -7,6 +7,7 @@
 #include "gpu_device.hh"
 
 #include <map>
+#include <optional>
 #include <span>
 
 namespace gnomon::draw {
@@ -14,11 +15,13 @@ namespace gnomon::draw {
 /** Base of what an engine keeps in a viewport: its framebuffer, texture, pass and storage lists (`fbl txl psl stl`). */
 struct EngineViewportData {
   virtual ~EngineViewportData() = default;
+  /** Destroy everything that depends on the size of the picture. The next sync makes it anew. */
+  virtual void resized() = 0;
 };
 
 /**
- * One picture of a scene on a device: its size, the objects' matrices, the depth that all engines share, and what each
- * engine keeps for it. Must go before its device.
+ * One picture of a scene on a device: its size, the depth that all engines share, and what each engine keeps for it.
+ * Must be destroyed before its device.
  */
 class Viewport {
  public:
@@ -26,12 +29,10 @@ class Viewport {
   Viewport(gpu::Device &device, glm::ivec2 size_px);
 
   /**
-   * Let \a engines record \a objects; to be called again when any of them changed. What they add to objects() is
-   * uploaded; who adds later, or draws with object_identity alone, calls ObjectBuffer::upload.
-   * \throws gpu::Error naming an object whose matrix is not finite, or whose volume holds NaN; then nothing has
-   * changed.
+   * Let each engine take note of the objects that changed since its last sync of this viewport. Call it after every
+   * edit of the scene. \a objects must be the same buffer each time.
    */
-  void sync(std::span<Engine *const> engines, std::span<const ObjectRef> objects);
+  void sync(std::span<Engine *const> engines, const ObjectBuffer &objects);
   /** Let \a engines draw what they recorded, in order. \throws gpu::Error where \a view or its inverse is not finite.
    */
   void draw(std::span<Engine *const> engines, const View &view);
@@ -44,12 +45,8 @@ class Viewport {
   {
     return size_px_;
   }
-  [[nodiscard]] ObjectBuffer &objects()
-  {
-    return objects_;
-  }
   /**
-   * The depth of the picture, for engines to attach to their framebuffers. Made at the first ask.
+   * The depth of the picture, for engines to attach to their framebuffers. The first call creates it.
    * \throws gpu::Error where the device cannot hold it.
    */
   [[nodiscard]] const gpu::Texture &depth_texture();
@@ -58,23 +55,38 @@ class Viewport {
     return bool(depth_texture_);
   }
 
-  /** Made by the first ask of \a engine; lives as long as the viewport. \pre always asked with the same Data. */
+  /** The first call of \a engine creates it; remove_engine destroys it. \pre always called with the same Data. */
   template <typename Data>
   Data &engine_data(const Engine &engine)
   {
-    std::unique_ptr<EngineViewportData> &data = engine_data_[engine.id()];
+    std::unique_ptr<EngineViewportData> &data = engines_[engine.id()].data;
     if (!data) {
       data = std::make_unique<Data>();
     }
     return static_cast<Data &>(*data);
   }
+  /** Destroy everything that \a engine keeps in this viewport. An engine that the viewport does not know is ignored. */
+  void remove_engine(const Engine &engine)
+  {
+    engines_.erase(engine.id());
+  }
+  /**
+   * Change the size of the picture. Engines then need another sync. Everything that depended on the size is destroyed.
+   * \throws gpu::Error as the constructor; then nothing changes.
+   */
+  void resize(glm::ivec2 size_px);
 
  private:
   gpu::Device &device_;
   glm::ivec2 size_px_;
-  ObjectBuffer objects_;
   gpu::Texture depth_texture_;
-  std::map<std::uint64_t, std::unique_ptr<EngineViewportData>> engine_data_;
+  struct EngineState {
+    std::unique_ptr<EngineViewportData> data;
+    /** ObjectBuffer::revision at the last sync that came to its end; nothing: none did. */
+    std::optional<std::uint64_t> synced_revision;
+  };
+  /** By Engine::id. */
+  std::map<std::uint64_t, EngineState> engines_;
 };
 
 }  // namespace gnomon::draw

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "render_images.hh"
+
+#include <algorithm>
+#include <bit>
+
+namespace gnomon::render_scene {
+
+namespace {
+
+gpu::Filter gpu_filter(scene::TextureFilter filter)
+{
+  return filter == scene::TextureFilter::Linear ? gpu::Filter::Linear : gpu::Filter::Nearest;
+}
+
+gpu::Wrap gpu_wrap(scene::TextureWrap wrap)
+{
+  switch (wrap) {
+    case scene::TextureWrap::Repeat: return gpu::Wrap::Repeat;
+    case scene::TextureWrap::MirroredRepeat: return gpu::Wrap::MirroredRepeat;
+    case scene::TextureWrap::ClampToEdge: return gpu::Wrap::ClampToEdge;
+  }
+  return gpu::Wrap::Repeat;
+}
+
+gpu::MipFilter gpu_mip_filter(scene::MipFilter filter)
+{
+  switch (filter) {
+    case scene::MipFilter::None: return gpu::MipFilter::None;
+    case scene::MipFilter::Nearest: return gpu::MipFilter::Nearest;
+    case scene::MipFilter::Linear: return gpu::MipFilter::Linear;
+  }
+  return gpu::MipFilter::None;
+}
+
+gpu::Texture make_image(gpu::Device &device, const scene::Image &image)
+{
+  gpu::Texture texture =
+      device.create_texture({.name = image.name,
+                             .format = gpu::Format::SRGB8A8,
+                             .width = int(image.width),
+                             .height = int(image.height),
+                             .mip_levels = int(std::bit_width(std::max(image.width, image.height)))});
+  // The first row has v = 0 in the scene and on the device.
+  device.upload(texture, 0, std::as_bytes(std::span(image.texels)));
+  device.generate_mipmaps(texture);
+  return texture;
+}
+
+}  // namespace
+
+Images::Lookup Images::get(gpu::Device &device, const scene::Scene &scene, scene::Handle<scene::Texture> handle)
+{
+  const scene::Texture &texture = scene.textures()[handle];
+  const scene::Image &image = scene.images()[texture.image];
+  const scene::Revision content = scene.images().revision(texture.image, scene::Image::Aspect::Content);
+  if (entries_.size() <= texture.image.index) {
+    entries_.resize(scene.images().index_end());
+  }
+  Entry &entry = entries_[texture.image.index];
+  if (!entry.texture || entry.handle != texture.image || entry.content != content) {
+    entry = {make_image(device, image), texture.image, content};
+  }
+  const std::uint32_t key = std::uint32_t(texture.magnified) | std::uint32_t(texture.minified) << 4U |
+                            std::uint32_t(texture.mip) << 8U | std::uint32_t(texture.wrap_u) << 12U |
+                            std::uint32_t(texture.wrap_v) << 16U;
+  gpu::Sampler &sampler = samplers_[key];
+  if (!sampler) {
+    sampler = device.create_sampler({.name = fmt::format("sampler of {}", image.name),
+                                     .filter = gpu_filter(texture.magnified),
+                                     .minified = gpu_filter(texture.minified),
+                                     .mip = gpu_mip_filter(texture.mip),
+                                     .wrap_u = gpu_wrap(texture.wrap_u),
+                                     .wrap_v = gpu_wrap(texture.wrap_v)});
+  }
+  return {entry.texture, sampler};
+}
+
+const gpu::Texture *Images::find(scene::Handle<scene::Image> handle) const
+{
+  const bool is_made =
+      handle.index < entries_.size() && entries_[handle.index].handle == handle && entries_[handle.index].texture;
+  return is_made ? &entries_[handle.index].texture : nullptr;
+}
+
+std::size_t Images::count() const
+{
+  return std::size_t(std::ranges::count_if(entries_, [](const Entry &entry) { return bool(entry.texture); }));
+}
+
+void Images::free_removed(const scene::Pool<scene::Image> &images)
+{
+  for (Entry &entry : entries_) {
+    if (entry.texture && !images.is_live(entry.handle)) {
+      entry = {};
+    }
+  }
+}
+
+bool is_drawable(const scene::Scene &scene, scene::Handle<scene::Texture> handle)
+{
+  const scene::Texture *texture = scene.textures().find(handle);
+  return texture && scene.images().is_live(texture->image);
+}
+
+}  // namespace gnomon::render_scene

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "scene.hh"
+
+#include "gpu_device.hh"
+
+namespace gnomon::render_scene {
+
+/** The meshes of a scene on one device. A mesh is uploaded when it is first drawn, and again when its shape changes. */
+class Meshes {
+ public:
+  /**
+   * \a handle's triangles on the device, with texture coordinates where \a needs_uvs. The reference holds until the
+   * next call with the same handle, or until free_removed. \throws gpu::Error where the device cannot hold it; what
+   * was there before stays then. \throws scene::StaleHandle
+   */
+  const gpu::Batch &get(gpu::Device &device, const scene::Pool<scene::Mesh> &meshes, scene::Handle<scene::Mesh> handle,
+                        bool needs_uvs);
+  /** The batch of a mesh; nullptr: it is not on the device. */
+  [[nodiscard]] const gpu::Batch *find(scene::Handle<scene::Mesh> handle) const;
+  /** Free the batches of meshes that were removed. */
+  void free_removed(const scene::Pool<scene::Mesh> &meshes);
+
+ private:
+  struct Entry {
+    gpu::Batch batch;
+    scene::Handle<scene::Mesh> handle;
+    scene::Revision shape = 0;
+    bool has_uvs = false;
+  };
+  /** By Handle::index. */
+  std::vector<Entry> entries_;
+};
+
+}  // namespace gnomon::render_scene

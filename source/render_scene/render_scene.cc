@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "render_scene.hh"
+
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
+
+#include <algorithm>
+
+namespace gnomon::render_scene {
+
+glm::dvec3 origin_near(const glm::dvec3 &position_ws, const glm::dvec3 &current)
+{
+  // Within 1.5 steps of the origin, floats are spaced by at most 0.12 mm. A power of two: multiples are exact.
+  constexpr double step_m = 1024.0;
+  const glm::dvec3 offset = glm::abs(position_ws - current);
+  return std::max({offset.x, offset.y, offset.z}) <= step_m ? current : step_m * glm::round(position_ws / step_m);
+}
+
+static glm::mat4 relative_to(const glm::dmat4 &world, const glm::dvec3 &origin_ws)
+{
+  glm::dmat4 relative = world;
+  relative[3] -= glm::dvec4(origin_ws, 0.0);
+  return glm::mat4(relative);
+}
+
+scene::PlacedCamera RenderScene::relative(scene::PlacedCamera camera) const
+{
+  camera.world_from_camera[3] -= glm::dvec4(origin_ws_, 0.0);
+  return camera;
+}
+
+void RenderScene::update()
+{
+  if (seen_ == scene_.revision() && !is_origin_changed_) {
+    return;
+  }
+  meshes_.free_removed(scene_.meshes());
+  images_.free_removed(scene_.images());
+  materials_.update(scene_);
+  update_objects();
+  update_lamps();
+  update_revisions();
+  seen_ = scene_.revision();
+  is_origin_changed_ = false;
+}
+
+void RenderScene::remove_objects(NodeObjects &entry)
+{
+  for (const draw::ObjectIndex index : entry.objects) {
+    objects_.remove(index);
+  }
+  entry.objects.clear();
+}
+
+void RenderScene::update_objects()
+{
+  using enum scene::Node::Aspect;
+  const scene::Pool<scene::Node> &nodes = scene_.nodes();
+  const scene::Revision meshes = std::max(scene_.meshes().latest(scene::Mesh::Aspect::Shape),
+                                          scene_.meshes().latest(scene::Mesh::Aspect::Material));
+  const scene::Revision materials = scene_.materials().latest(scene::Material::Aspect::Coverage);
+  const scene::Revision latest = std::max({nodes.latest(Transform), nodes.latest(Content), nodes.latest(Visibility),
+                                           nodes.latest(Shadow), meshes, materials});
+  if (latest <= seen_ && !is_origin_changed_) {
+    return;
+  }
+  for (NodeObjects &entry : node_objects_) {
+    if (!entry.objects.empty() && !nodes.is_live(entry.node)) {
+      remove_objects(entry);
+    }
+  }
+  node_objects_.resize(nodes.index_end());
+  // Rare enough to look at every node: an edited mesh or material may be any node's.
+  const bool is_anew = is_origin_changed_ || std::max(meshes, materials) > seen_;
+  for (const auto &[handle, node] : nodes) {
+    if (is_anew || nodes.revision(handle, Transform) > seen_ || nodes.revision(handle, Content) > seen_ ||
+        nodes.revision(handle, Visibility) > seen_ || nodes.revision(handle, Shadow) > seen_) {
+      update_node(handle, node, is_anew);
+    }
+  }
+}
+
+void RenderScene::update_node(scene::Handle<scene::Node> handle, const scene::Node &node, bool is_anew)
+{
+  NodeObjects &entry = node_objects_[handle.index];
+  std::vector<scene::Handle<scene::Mesh>> shown;
+  if (!node.meshes.empty() && scene_.is_visible(handle)) {
+    for (const scene::Handle<scene::Mesh> mesh : node.meshes) {
+      const scene::Mesh *value = scene_.meshes().find(mesh);
+      if (value && is_drawable(scene_.material_of(*value))) {
+        shown.push_back(mesh);
+      }
+    }
+  }
+  const bool is_same =
+      entry.node == handle && std::ranges::equal(entry.objects, shown, {},
+                                                 [&](draw::ObjectIndex index) { return render_objects_[index].mesh; });
+  if (!is_same) {
+    remove_objects(entry);
+    entry = {handle, std::vector<draw::ObjectIndex>(shown.size(), draw::object_identity)};
+  }
+  if (!is_same || is_anew || scene_.nodes().revision(handle, scene::Node::Aspect::Transform) > seen_ ||
+      scene_.nodes().revision(handle, scene::Node::Aspect::Shadow) > seen_) {
+    for (std::size_t i = 0; i < shown.size(); i++) {
+      write_object(entry.objects[i], handle, shown[i]);
+    }
+  }
+}
+
+/** \a index: object_identity for a new object; then the index that it gets. */
+void RenderScene::write_object(draw::ObjectIndex &index, scene::Handle<scene::Node> node,
+                               scene::Handle<scene::Mesh> mesh)
+{
+  const scene::Mesh &value = scene_.meshes()[mesh];
+  const scene::Node &placed = scene_.nodes()[node];
+  const glm::mat4 world_from_object = relative_to(scene_.world_from_node(node), origin_ws_);
+  const scene::Bounds bounds = scene::transformed(value.bounds, world_from_object);
+  const draw::CullingVolume volume{bounds.center(), bounds.radius()};
+  const std::uint32_t material = MaterialTable::place_of(scene_, value.material);
+  if (index == draw::object_identity) {
+    index = objects_.add(world_from_object, material, volume);
+    render_objects_.resize(std::max(render_objects_.size(), std::size_t(objects_.index_end())));
+  }
+  else {
+    objects_.set(index, world_from_object, material, volume);
+  }
+  render_objects_[index] = {node, mesh, bounds, placed.casts_shadow, placed.receives_shadow};
+}
+
+void RenderScene::update_lamps()
+{
+  using enum scene::Node::Aspect;
+  const scene::Pool<scene::Node> &nodes = scene_.nodes();
+  const scene::Revision latest =
+      std::max({scene_.lamps().latest(), nodes.latest(Transform), nodes.latest(Content), nodes.latest(Visibility)});
+  if (latest <= seen_ && !is_origin_changed_) {
+    return;
+  }
+  std::vector<scene::PlacedLamp> lamps = scene_.placed_lamps();
+  for (scene::PlacedLamp &lamp : lamps) {
+    lamp.world_from_lamp[3] -= glm::dvec4(origin_ws_, 0.0);
+  }
+  if (lamps != lamps_) {
+    lamps_ = std::move(lamps);
+    lamps_revision_++;
+  }
+}
+
+void RenderScene::update_revisions()
+{
+  using Material = scene::Material::Aspect;
+  const scene::Pool<scene::Material> &materials = scene_.materials();
+  const scene::Revision passes = std::max(
+      {scene_.meshes().latest(scene::Mesh::Aspect::Shape), scene_.meshes().latest(scene::Mesh::Aspect::Material),
+       materials.latest(Material::Coverage), materials.latest(Material::Textures), scene_.textures().latest(),
+       scene_.images().latest(scene::Image::Aspect::Content)});
+  passes_revision_ += passes > seen_ ? 1 : 0;
+  materials_revision_ += materials.latest(Material::Surface) > seen_ ? 1 : 0;
+}
+
+void RenderScene::upload()
+{
+  objects_.upload(device_);
+  materials_.upload(device_);
+}
+
+}  // namespace gnomon::render_scene
