@@ -44,7 +44,7 @@ std::vector<double> contrast(std::span<const glm::vec4> picture, glm::ivec2 size
 
 }  // namespace
 
-PixelSample::PixelSample(const reference::Tracer &tracer, const scene::Camera &camera, glm::ivec2 size_px,
+PixelSample::PixelSample(const reference::Tracer &tracer, const scene::PlacedCamera &camera, glm::ivec2 size_px,
                          std::span<const glm::vec4> guide, int pixel_count, int sample_count, std::uint64_t seed)
 {
   const std::vector<double> contrasts = contrast(guide, size_px);
@@ -149,7 +149,7 @@ Choice choose(std::span<const Model> models, const Wish &wish)
                     : *std::ranges::min_element(candidates, {}, nearest);
 }
 
-Pilot run_pilot(gpu::Device &device, const scene::Scene &scene, const scene::Camera &camera, glm::ivec2 size_px,
+Pilot run_pilot(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera, glm::ivec2 size_px,
                 const reference::Tracer &tracer, const Wish &wish)
 {
   using Clock = std::chrono::steady_clock;

@@ -36,7 +36,7 @@ class PixelSample {
    * \a guide: a picture of the scene, the rougher the quicker. \a seed: another takes other pixels and other rays.
    * \pre sample_count >= 1, pixel_count >= 2
    */
-  PixelSample(const reference::Tracer &tracer, const scene::Camera &camera, glm::ivec2 size_px,
+  PixelSample(const reference::Tracer &tracer, const scene::PlacedCamera &camera, glm::ivec2 size_px,
               std::span<const glm::vec4> guide, int pixel_count, int sample_count, std::uint64_t seed);
 
   /** Of a picture of that size. NaN where a pixel is. */
@@ -103,7 +103,7 @@ struct Pilot {
  * Try pilot_techniques() with 1, 2, 4, ... samples, no more than \a wish needs. Lamps' own wishes hold.
  * Throws what rendering throws, and std::runtime_error where no picture is finite.
  */
-[[nodiscard]] Pilot run_pilot(gpu::Device &device, const scene::Scene &scene, const scene::Camera &camera,
+[[nodiscard]] Pilot run_pilot(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera,
                               glm::ivec2 size_px, const reference::Tracer &tracer, const Wish &wish);
 
 /** What a report knows of a scene. Left out: pictures that held NaN or infinity, techniques that no option chooses. */

@@ -24,7 +24,7 @@ scene::Image checks(std::string name)
   return image;
 }
 
-std::uint32_t add_material(scene::Scene &scene, std::string name)
+scene::Material material_of(std::string name)
 {
   scene::Material material;
   material.name = std::move(name);
@@ -32,26 +32,29 @@ std::uint32_t add_material(scene::Scene &scene, std::string name)
   material.metallic = 0.0F;
   material.specular_color = glm::vec3(0.0F);
   material.is_double_sided = true;
-  scene.materials.push_back(material);
-  return std::uint32_t(scene.materials.size() - 1);
+  return material;
 }
 
-std::int32_t add_texture(scene::Scene &scene, std::string name)
+scene::Handle<scene::Texture> add_texture(scene::Scene &scene, std::string name)
 {
-  scene.images.push_back(checks(std::move(name)));
-  scene.textures.push_back({.image = std::uint32_t(scene.images.size() - 1)});
-  return std::int32_t(scene.textures.size() - 1);
+  return scene.add(scene::Texture{.image = scene.add(checks(std::move(name)))});
 }
 
-void add_box(scene::Scene &scene, std::uint32_t material, const glm::vec3 &position, const glm::vec3 &half_size)
+/** A box with a material of its own. */
+void add_box(scene::Scene &scene, const scene::Material &material, const glm::vec3 &position,
+             const glm::vec3 &half_size)
 {
-  const std::uint32_t mesh = add_box_mesh(scene, material);
-  scene.meshes[mesh].name = "box of " + scene.materials[material].name;
-  if (scene.materials[material].base_color_texture < 0) {
-    scene.meshes[mesh].uvs.clear();
-  }
-  scene.objects.push_back(
-      {scene.materials[material].name, mesh, glm::scale(glm::translate(glm::mat4(1.0F), position), half_size)});
+  scene::Node node;
+  node.name = material.name;
+  node.parent_from_node = glm::scale(glm::translate(glm::mat4(1.0F), position), half_size);
+  node.meshes = {add_box_mesh(scene, scene.add(material))};
+  scene.edit(node.meshes[0], [&](scene::Mesh &mesh) {
+    mesh.name = "box of " + material.name;
+    if (!material.base_color_texture) {
+      mesh.uvs.clear();
+    }
+  });
+  scene.add(std::move(node));
 }
 
 void add_lamp(scene::Scene &scene, std::string name, scene::LampKind kind, const glm::vec3 &position, float intensity)
@@ -61,27 +64,25 @@ void add_lamp(scene::Scene &scene, std::string name, scene::LampKind kind, const
   lamp.kind = kind;
   lamp.intensity = intensity;
   lamp.spot_outer_angle = 0.6F;
-  lamp.world_from_lamp = glm::inverse(glm::lookAt(position, glm::vec3(0.0F), glm::vec3(0, 1, 0)));
-  scene.lamps.push_back(std::move(lamp));
+  measure::add_lamp(scene, std::move(lamp), glm::inverse(glm::lookAt(position, glm::vec3(0.0F), glm::vec3(0, 1, 0))));
 }
 
 scene::Scene full_scene()
 {
   scene::Scene scene;
   scene.path = "full";
-  const std::uint32_t plain = add_material(scene, "plain");
-  const std::uint32_t specular = add_material(scene, "specular");
-  scene.materials[specular].specular_color = glm::vec3(1.0F);
-  scene.materials[specular].roughness = 0.3F;
-  const std::uint32_t textured = add_material(scene, "textured");
-  scene.materials[textured].base_color_texture = add_texture(scene, "checks");
-  const std::uint32_t masked = add_material(scene, "masked");
-  scene.materials[masked].base_color_texture = add_texture(scene, "holes");
-  scene.materials[masked].alpha_mode = scene::AlphaMode::Mask;
-  const std::uint32_t one_sided = add_material(scene, "one-sided");
-  scene.materials[one_sided].is_double_sided = false;
+  scene::Material specular = material_of("specular");
+  specular.specular_color = glm::vec3(1.0F);
+  specular.roughness = 0.3F;
+  scene::Material textured = material_of("textured");
+  textured.base_color_texture = add_texture(scene, "checks");
+  scene::Material masked = material_of("masked");
+  masked.base_color_texture = add_texture(scene, "holes");
+  masked.alpha_mode = scene::AlphaMode::Mask;
+  scene::Material one_sided = material_of("one-sided");
+  one_sided.is_double_sided = false;
 
-  add_box(scene, plain, {0.0F, -0.1F, 0.0F}, {6.0F, 0.1F, 6.0F});
+  add_box(scene, material_of("plain"), {0.0F, -0.1F, 0.0F}, {6.0F, 0.1F, 6.0F});
   add_box(scene, specular, {-2.0F, 0.6F, 0.5F}, glm::vec3(0.6F));
   add_box(scene, textured, {0.0F, 0.6F, 0.0F}, glm::vec3(0.6F));
   add_box(scene, masked, {2.0F, 0.6F, 0.5F}, glm::vec3(0.6F));
@@ -89,17 +90,21 @@ scene::Scene full_scene()
   add_lamp(scene, "POINT", scene::LampKind::Point, {-1.5F, 3.0F, 2.0F}, 12.0F);
   add_lamp(scene, "SUN", scene::LampKind::Sun, {3.0F, 6.0F, 2.0F}, 1.0F);
   add_lamp(scene, "SPOT", scene::LampKind::Spot, {3.0F, 4.0F, 3.0F}, 30.0F);
-  scene::Camera camera;
-  camera.name = "camera";
-  camera.world_from_camera =
-      glm::inverse(glm::lookAt(glm::vec3(1.0F, 4.0F, 8.0F), glm::vec3(0.0F), glm::vec3(0, 1, 0)));
-  scene.cameras.push_back(camera);
+  add_camera(scene, camera_at({1.0F, 4.0F, 8.0F}, glm::vec3(0.0F)));
   return scene;
 }
 
 void remove_lamps(scene::Scene &scene, scene::LampKind kind)
 {
-  std::erase_if(scene.lamps, [kind](const scene::Lamp &lamp) { return lamp.kind == kind; });
+  measure::remove_lamps(scene, [kind](const scene::Lamp &lamp) { return lamp.kind == kind; });
+}
+
+template <std::invocable<scene::Material &> Change>
+void edit_materials(scene::Scene &scene, Change change)
+{
+  for (const auto &[handle, material] : scene.materials()) {
+    scene.edit(handle, change);
+  }
 }
 
 }  // namespace
@@ -114,32 +119,28 @@ std::vector<LeftOutCase> left_out_cases()
     cases.back().scene.path = std::move(name);
     return cases.back();
   };
-  add("no lamp").scene.lamps.clear();
+  measure::remove_lamps(add("no lamp").scene);
   remove_lamps(add("no sun").scene, scene::LampKind::Sun);
   remove_lamps(add("no point").scene, scene::LampKind::Point);
   remove_lamps(add("no spot").scene, scene::LampKind::Spot);
   add("no shadow").settings.shadow.kind = scene::ShadowKind::None;
   scene::Scene &untextured = add("no texture").scene;
-  for (scene::Material &material : untextured.materials) {
-    material.base_color_texture = -1;
+  edit_materials(untextured, [](scene::Material &material) { material.base_color_texture = {}; });
+  for (const auto &[handle, mesh] : untextured.meshes()) {
+    untextured.edit(handle, [](scene::Mesh &changed) { changed.uvs.clear(); });
   }
-  for (scene::Mesh &mesh : untextured.meshes) {
-    mesh.uvs.clear();
-  }
-  for (scene::Material &material : add("no alpha").scene.materials) {
-    material.alpha_mode = scene::AlphaMode::Opaque;
-  }
-  for (scene::Material &material : add("no specular").scene.materials) {
-    material.specular_color = glm::vec3(0.0F);
-  }
-  scene::Camera &camera = add("no visible receiver").scene.cameras.front();
-  camera.world_from_camera =
-      glm::inverse(glm::lookAt(glm::vec3(1.0F, 4.0F, 20.0F), glm::vec3(1.0F, 4.0F, 40.0F), glm::vec3(0, 1, 0)));
+  edit_materials(add("no alpha").scene,
+                 [](scene::Material &material) { material.alpha_mode = scene::AlphaMode::Opaque; });
+  edit_materials(add("no specular").scene,
+                 [](scene::Material &material) { material.specular_color = glm::vec3(0.0F); });
+  scene::Scene &no_receiver = add("no visible receiver").scene;
+  no_receiver.set_transform(no_receiver.placed_cameras().front().node,
+                            camera_at({1.0F, 4.0F, 20.0F}, {1.0F, 4.0F, 40.0F}).world_from_camera);
   LeftOutCase &nothing = add("nothing at all");
-  const std::vector<scene::Camera> cameras = nothing.scene.cameras;
+  const scene::PlacedCamera camera = nothing.scene.placed_cameras().front();
   nothing.scene = {};
   nothing.scene.path = nothing.name;
-  nothing.scene.cameras = cameras;
+  add_camera(nothing.scene, camera);
   return cases;
 }
 

@@ -49,8 +49,8 @@ std::vector<glm::ivec2> noisiest(const Halves &halves, std::size_t count)
 
 }  // namespace
 
-ReferencePicture reference_picture(const reference::Tracer &tracer, const scene::Camera &camera, glm::ivec2 size_px,
-                                   int sample_count)
+ReferencePicture reference_picture(const reference::Tracer &tracer, const scene::PlacedCamera &camera,
+                                   glm::ivec2 size_px, int sample_count)
 {
   constexpr std::size_t noisy_share = 10;
   constexpr int noisy_samples = 8;

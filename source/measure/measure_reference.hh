@@ -18,7 +18,7 @@ struct ReferencePicture {
  * largest, in a tenth of the pixels, with eight times as many: a picture is noisy at edges, and smooth elsewhere.
  * \pre sample_count is even and at least 2
  */
-[[nodiscard]] ReferencePicture reference_picture(const reference::Tracer &tracer, const scene::Camera &camera,
+[[nodiscard]] ReferencePicture reference_picture(const reference::Tracer &tracer, const scene::PlacedCamera &camera,
                                                  glm::ivec2 size_px, int sample_count);
 
 }  // namespace gnomon::measure

@@ -18,7 +18,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double judged_cosine_min = 0.0087;
 
 /** Whether \a lamp shines there: within a spot's cone and the range, and not along the surface. */
-bool is_lit_at(const scene::Lamp &lamp, const glm::dvec3 &position_ws, const glm::dvec3 &normal_ws)
+bool is_lit_at(const scene::PlacedLamp &lamp, const glm::dvec3 &position_ws, const glm::dvec3 &normal_ws)
 {
   const glm::dvec3 back_ws(lamp.world_from_lamp[2]);
   if (lamp.kind == scene::LampKind::Sun) {
@@ -34,8 +34,8 @@ bool is_lit_at(const scene::Lamp &lamp, const glm::dvec3 &position_ws, const glm
 
 }  // namespace
 
-Bench::Bench(gpu::Device &device, const scene::Scene &scene, const scene::Camera &camera, const Technique &technique,
-             glm::ivec2 size_px)
+Bench::Bench(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera,
+             const Technique &technique, glm::ivec2 size_px)
     : scene_(scene),
       settings_{.shadow = technique.settings},
       engine_(scene, settings_),
@@ -96,7 +96,8 @@ void Bench::draw(int sample_count)
 std::vector<LampError> Bench::judge(const reference::Tracer &tracer)
 {
   std::vector<LampError> errors;
-  for (std::size_t lamp = 0; lamp < scene_.lamps.size(); lamp++) {
+  const std::vector<scene::PlacedLamp> lamps = scene_.placed_lamps();
+  for (std::size_t lamp = 0; lamp < lamps.size(); lamp++) {
     const std::optional<eevee::Probe> probe = engine_.probe(viewport_, view_, lamp);
     if (!probe) {
       continue;
@@ -106,7 +107,7 @@ std::vector<LampError> Bench::judge(const reference::Tracer &tracer)
     std::vector<float> visibility;
     for (std::size_t i = 0; i < probe->normal.size(); i++) {
       if (probe->normal[i].w > 0.0F &&
-          is_lit_at(scene_.lamps[lamp], glm::dvec3(probe->position_visibility[i]), glm::dvec3(probe->normal[i]))) {
+          is_lit_at(lamps[lamp], glm::dvec3(probe->position_visibility[i]), glm::dvec3(probe->normal[i]))) {
         positions.emplace_back(probe->position_visibility[i]);
         normals.emplace_back(probe->normal[i]);
         visibility.push_back(probe->position_visibility[i].w);
@@ -116,18 +117,17 @@ std::vector<LampError> Bench::judge(const reference::Tracer &tracer)
     settings.texel_size_m = [&](const glm::dvec3 &position_ws) {
       return engine_.shadow_texel_size(viewport_, lamp, position_ws);
     };
-    errors.push_back(
-        {scene_.lamps[lamp].name,
-         reference::compare_visibility(tracer, scene_.lamps[lamp], {positions, normals, visibility}, settings)});
+    errors.push_back({lamps[lamp].name,
+                      reference::compare_visibility(tracer, lamps[lamp], {positions, normals, visibility}, settings)});
   }
   return errors;
 }
 
 void leave_shadows_to_technique(scene::Scene &scene)
 {
-  for (scene::Lamp &lamp : scene.lamps) {
+  for (const auto &[handle, lamp] : scene.lamps()) {
     if (lamp.shadow.kind != scene::ShadowKind::None) {
-      lamp.shadow = {};
+      scene.edit(handle, [](scene::Lamp &changed) { changed.shadow = {}; });
     }
   }
 }
@@ -135,9 +135,10 @@ void leave_shadows_to_technique(scene::Scene &scene)
 VisitTimes visit(gpu::Device &device, const scene::Scene &scene, const Technique &technique, glm::ivec2 size_px,
                  const reference::Tracer *tracer, VisitResult &result)
 {
+  const scene::PlacedCamera camera = scene.placed_cameras().front();
   if (tracer) {
     // On its own, so that the probe is no part of the memory.
-    Bench judged(device, scene, scene.cameras.front(), technique, size_px);
+    Bench judged(device, scene, camera, technique, size_px);
     judged.warm_up(true);
     result = {};
     result.lamps = judged.judge(*tracer);
@@ -146,7 +147,7 @@ VisitTimes visit(gpu::Device &device, const scene::Scene &scene, const Technique
     result.limits = report.limits;
     result.lost_shadow_count = report.lost_shadow_count;
   }
-  Bench bench(device, scene, scene.cameras.front(), technique, size_px);
+  Bench bench(device, scene, camera, technique, size_px);
   bench.warm_up(false);
   VisitTimes times;
   times.step_seconds = bench.step_seconds();

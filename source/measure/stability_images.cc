@@ -18,7 +18,7 @@ using scene::ShadowKind;
 
 constexpr double pi = std::numbers::pi;
 
-/** What a case has beside its sweep. */
+/** The texts of a case. */
 struct Words {
   const char *group;
   std::string name;
@@ -33,7 +33,7 @@ constexpr const char *exact_rays = "exact rays";
 /** Error of the picture at a value of the parameter. */
 using ErrorAt = std::function<double(Studio &studio, double parameter)>;
 
-/** All cases, and what draws them. */
+/** All cases, and the Studio that draws them. */
 class Cases {
  public:
   explicit Cases(gpu::Device &device) : studio_(std::make_shared<Studio>(device)) {}
@@ -139,21 +139,36 @@ glm::mat4 scaled(const glm::vec3 &by)
   return glm::scale(glm::mat4(1.0F), by);
 }
 
-/** A turned box, a tilted plate above it and a ground, of which the lamp darkens a third. */
+/** Change the first lamp of a shot. */
+template <std::invocable<scene::Lamp &> Change>
+void edit_lamp(Shot &shot, Change change)
+{
+  shot.scene.edit(shot.scene.lamps().first(), change);
+}
+
+/** Change the first material of a shot. */
+template <std::invocable<scene::Material &> Change>
+void edit_material(Shot &shot, Change change)
+{
+  shot.scene.edit(shot.scene.materials().first(), change);
+}
+
+/** A turned box, a tilted plate above it and a ground. A third of the ground is in shadow. */
 Shot table(LampKind kind)
 {
   Shot shot;
   scene::Scene &scene = shot.scene;
-  const std::uint32_t material = add_material(scene, {0.8F, 0.6F, 0.4F});
-  const std::uint32_t square = add_square_mesh(scene, material);
-  const std::uint32_t box = add_box_mesh(scene, material);
+  const auto material = add_material(scene, {0.8F, 0.6F, 0.4F});
+  const auto square = add_square_mesh(scene, material);
+  const auto box = add_box_mesh(scene, material);
   add_object(scene, square, scaled(glm::vec3(5.0F)));
   add_object(scene, box, glm::rotate(moved({0.8F, 0.2F, 0.7F}), 0.5F, {0.2F, 0.1F, 1}) * scaled(glm::vec3(0.6F)));
   add_object(scene, square, glm::rotate(moved({-1.1F, -0.4F, 1.2F}), 0.4F, {1, 0.5F, 0}) * scaled(glm::vec3(0.8F)));
-  scene::Lamp &lamp =
-      add_lamp(scene, kind, {1.5F, -1.5F, 4.5F}, {-1.6F, 1.7F, -4}, kind == LampKind::Sun ? 3.0F : 60.0F);
-  lamp.spot_outer_angle = 0.7F;
-  lamp.spot_blend = 0.3F;
+  const auto lamp = add_lamp(scene, kind, {1.5F, -1.5F, 4.5F}, {-1.6F, 1.7F, -4}, kind == LampKind::Sun ? 3.0F : 60.0F);
+  scene.edit(lamp, [](scene::Lamp &changed) {
+    changed.spot_outer_angle = 0.7F;
+    changed.spot_blend = 0.3F;
+  });
   shot.camera = camera_at({0.3F, -5, 4}, {0, 0, 0.3F});
   return shot;
 }
@@ -303,13 +318,16 @@ void add_cameras(Cases &cases)
           // Of a radiance of 1 where it should be dark.
           sharp_bound, "half size of the box, m", {0.1, 1.0, 10.0}, [=](Shot &shot, double half) {
             scene::Scene &scene = shot.scene;
-            scene.materials[0].is_double_sided = is_double_sided;
+            edit_material(shot, [&](scene::Material &material) { material.is_double_sided = is_double_sided; });
             const glm::vec3 at(0.3F, -5, 4);
-            add_object(scene, 1, moved(at) * scaled(glm::vec3(float(half))));
+            add_object(scene, handle_at(scene.meshes(), 1), moved(at) * scaled(glm::vec3(float(half))));
             shot.camera.near = 1e-4F;
             if (is_lamp_inside) {
-              scene.lamps[0].world_from_lamp[3] = glm::vec4(at + float(half) * glm::vec3(0.3F, -0.5F, 0.4F), 1.0F);
-              scene.lamps[0].intensity = float(half * half);
+              const scene::PlacedLamp lamp = scene.placed_lamps().front();
+              glm::dmat4 matrix = lamp.world_from_lamp;
+              matrix[3] = glm::vec4(at + float(half) * glm::vec3(0.3F, -0.5F, 0.4F), 1.0F);
+              scene.set_transform(lamp.node, matrix);
+              edit_lamp(shot, [&](scene::Lamp &changed) { changed.intensity = float(half * half); });
             }
           });
     }
@@ -319,8 +337,10 @@ void add_cameras(Cases &cases)
             0.0, {1e-2, 1e-3, 1e-4, 1e-5, 3e-6}, [](Studio &studio, double gap) {
               Shot shot;
               for (const int i : {0, 1}) {
-                const std::uint32_t material = add_material(shot.scene, glm::vec3(0.0F));
-                shot.scene.materials[material].emissive = i == 0 ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+                const auto material = add_material(shot.scene, glm::vec3(0.0F));
+                shot.scene.edit(material, [&](scene::Material &changed) {
+                  changed.emissive = i == 0 ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+                });
                 // Tilted alike, so that depths differ from pixel to pixel.
                 const double distance = i == 0 ? 100.0 : 100.0 * (1.0 + gap);
                 add_object(shot.scene, add_square_mesh(shot.scene, material),
@@ -370,7 +390,8 @@ void add_lamps(Cases &cases)
                 Shot shot = ground(LampKind::Point, {0.02F, 0.01F, 1.5F}, {0, 0, -1});
                 const Picture open = studio.draw(shot, with(shadow));
                 const glm::vec3 at = glm::vec3(0.02F, 0.01F, 1.5F) + float(half) * glm::vec3(0.03F, -0.2F, 0.1F);
-                add_object(shot.scene, add_box_mesh(shot.scene, 0), moved(at) * scaled(glm::vec3(float(half))));
+                const auto box = add_box_mesh(shot.scene, shot.scene.materials().first());
+                add_object(shot.scene, box, moved(at) * scaled(glm::vec3(float(half))));
                 // The box's outer walls, which are seen, are dark, too.
                 const Picture closed = studio.draw(shot, with(shadow));
                 double most = 0.0;
@@ -387,7 +408,7 @@ void add_lamps(Cases &cases)
                "depth below, m", "closed form: none", "largest radiance"},
               0.0, {1e-6, 1e-3, 1.0, 1e3}, [way](Studio &studio, double depth) {
                 Shot shot = ground(way.lamp, {0, 0, float(-depth)}, {0.2F, 0, 1});
-                shot.scene.lamps[0].intensity = float(depth * depth);
+                edit_lamp(shot, [&](scene::Lamp &lamp) { lamp.intensity = float(depth * depth); });
                 const Picture picture = studio.draw(shot, with(way.shadow));
                 return largest_error(picture, Picture{picture.size_px, {picture.pixels.size(), glm::vec4(0.0F)}});
               });
@@ -396,14 +417,14 @@ void add_lamps(Cases &cases)
              "off the plane, m", exact_rays},
             sharp_bound, {0.0, 1e-7, 1e-6, 1e-4, 1e-2, -1e-6, -1e-2}, [](Studio &studio, double off) {
               Shot shot = ground(LampKind::Point, {float(off), 0.3F, 1.0F}, {0, 0, -1});
-              add_object(shot.scene, 0,
+              add_object(shot.scene, shot.scene.meshes().first(),
                          glm::rotate(moved({0, 0, 0.25F}), 0.5F * float(pi), {0, 1, 0}) * scaled({0.25F, 0.5F, 1}));
               return relative_rmse(studio.draw(shot, with(ShadowKind::Hard)), truth(shot, with(ShadowKind::Hard)));
             });
   cases.add({"lamp", "radius", "picture of a small lamp", "radius, m", exact_rays}, sharp_bound,
             {0.0, 1e-12, 1e-6, 1e-3, 1e-2}, [](Studio &studio, double radius) {
               Shot shot = table(LampKind::Point);
-              shot.scene.lamps[0].radius = float(radius);
+              edit_lamp(shot, [&](scene::Lamp &lamp) { lamp.radius = float(radius); });
               return relative_rmse(studio.draw(shot, with(ShadowKind::Hard)), truth(shot, with(ShadowKind::Hard)));
             });
   for (const ShadowKind shadow : {ShadowKind::Hard, ShadowKind::Esm}) {
@@ -412,7 +433,7 @@ void add_lamps(Cases &cases)
         // At 5 m it lights the top of the box alone.
         0.1, {1e-6, 1e-3, 1.0, 5.0, 7.0, 1e3, 1e6, 1e12}, [shadow](Studio &studio, double range) {
           Shot shot = table(LampKind::Point);
-          shot.scene.lamps[0].range = float(range);
+          edit_lamp(shot, [&](scene::Lamp &lamp) { lamp.range = float(range); });
           return relative_rmse(studio.draw(shot, with(shadow)), truth(shot, with(shadow)));
         });
   }
@@ -422,12 +443,12 @@ void add_lamps(Cases &cases)
               // At 1e-30 the lit pass' products are near the smallest floats.
               1e-4, {1e-30, 1e-6, 1.0, 1e6, 1e12, 1e21, 1e30}, [kind](Studio &studio, double intensity) {
                 Shot shot = table(kind);
-                shot.scene.lamps[0].intensity = 1.0F;
+                edit_lamp(shot, [](scene::Lamp &lamp) { lamp.intensity = 1.0F; });
                 const Picture at_one = studio.draw(shot, with(ShadowKind::Hard));
-                shot.scene.lamps[0].intensity = float(intensity);
+                edit_lamp(shot, [&](scene::Lamp &lamp) { lamp.intensity = float(intensity); });
                 Picture picture = studio.draw(shot, with(ShadowKind::Hard));
                 for (glm::vec4 &pixel : picture.pixels) {
-                  pixel = glm::vec4(glm::dvec3(pixel) / double(shot.scene.lamps[0].intensity), pixel.a);
+                  pixel = glm::vec4(glm::dvec3(pixel) / double(float(intensity)), pixel.a);
                 }
                 return relative_rmse(picture, at_one);
               });
@@ -437,13 +458,13 @@ void add_lamps(Cases &cases)
             // GPUs may take denormals for 0: what is lost in each of a film's nine texels is below one.
             16.0, {1e-45, 1e-42, 1e-39, 1e-38, 1e-36}, [](Studio &studio, double intensity) {
               Shot shot = table(LampKind::Point);
-              shot.scene.lamps[0].intensity = 1.0F;
+              edit_lamp(shot, [](scene::Lamp &lamp) { lamp.intensity = 1.0F; });
               const Picture at_one = studio.draw(shot, with(ShadowKind::Hard));
-              shot.scene.lamps[0].intensity = float(intensity);
+              edit_lamp(shot, [&](scene::Lamp &lamp) { lamp.intensity = float(intensity); });
               const Picture picture = studio.draw(shot, with(ShadowKind::Hard));
               double most = 0.0;
               for (std::size_t i = 0; i < picture.pixels.size(); i++) {
-                const double expected = double(at_one.pixels[i].r) * double(shot.scene.lamps[0].intensity);
+                const double expected = double(at_one.pixels[i].r) * double(float(intensity));
                 most = std::max(most, std::abs(double(picture.pixels[i].r) - expected));
               }
               return picture.non_finite_count() > 0 ? std::nan("") : most / double(std::numeric_limits<float>::min());
@@ -454,11 +475,13 @@ void add_lamps(Cases &cases)
               // Edges, but for 0.001°: a direction's rounding is 1 % of it.
               0.05, {1e-3, 1e-2, 0.1, 1, 30, 90, 120, 179, 180}, [blend](Studio &studio, double degrees) {
                 Shot shot = ground(LampKind::Spot, {0, 0, 4.0F}, {0.0F, 0.0F, -1.0F});
-                scene::Lamp &lamp = shot.scene.lamps[0];
-                lamp.spot_outer_angle = float(std::min(degrees * pi / 360.0, 0.5 * pi));
-                lamp.spot_blend = float(blend);
+                const auto outer_angle = float(std::min(degrees * pi / 360.0, 0.5 * pi));
+                edit_lamp(shot, [&](scene::Lamp &lamp) {
+                  lamp.spot_outer_angle = outer_angle;
+                  lamp.spot_blend = float(blend);
+                });
                 // A picture a little wider than the cone.
-                const double half = 4.0 * std::tan(std::min(double(lamp.spot_outer_angle), 0.8));
+                const double half = 4.0 * std::tan(std::min(double(outer_angle), 0.8));
                 shot.camera = camera_at({0, 0, 3}, {0, 0, 0}, float(2.0 * std::atan(1.5 * half / 3.0)));
                 return relative_rmse(studio.draw(shot, with(ShadowKind::None)), truth(shot, with(ShadowKind::None)));
               });
@@ -468,7 +491,9 @@ void add_lamps(Cases &cases)
                exact_rays},
               bound_of(shadow), {90, 119, 120, 121, 150, 180}, [shadow](Studio &studio, double degrees) {
                 Shot shot = table(LampKind::Spot);
-                shot.scene.lamps[0].spot_outer_angle = float(std::min(degrees * pi / 360.0, 0.5 * pi));
+                edit_lamp(shot, [&](scene::Lamp &lamp) {
+                  lamp.spot_outer_angle = float(std::min(degrees * pi / 360.0, 0.5 * pi));
+                });
                 return relative_rmse(studio.draw(shot, with(shadow)), truth(shot, with(shadow)));
               });
   }
@@ -480,7 +505,7 @@ void add_lamps(Cases &cases)
       const glm::vec3 to_lamp(std::cos(elevation), 0, std::sin(elevation));
       Shot shot = ground(way.lamp, 6.0F * to_lamp, -to_lamp);
       // Something above that casts, away from the picture: else a sun would have no map.
-      add_object(shot.scene, 0, moved({6, -6, 0.5F}) * scaled(glm::vec3(0.05F)));
+      add_object(shot.scene, shot.scene.meshes().first(), moved({6, -6, 0.5F}) * scaled(glm::vec3(0.05F)));
       return median_error(studio.draw(shot, with(way.shadow)), truth(shot, with(way.shadow)));
     };
     const Words words = {"grazing",        way.name(), "picture of a ground that light falls on so flatly",
@@ -509,10 +534,11 @@ void add_surfaces(Cases &cases)
               metallic > 0.0F ? 0.25 : sharp_bound, {0.0, 1e-6, 1e-3, 0.03, 0.1, 0.3, 1.0},
               [metallic](Studio &studio, double roughness) {
                 Shot shot = table(LampKind::Point);
-                scene::Material &material = shot.scene.materials[0];
-                material.metallic = metallic;
-                material.roughness = float(roughness);
-                material.specular_color = glm::vec3(1.0F);
+                edit_material(shot, [&](scene::Material &material) {
+                  material.metallic = metallic;
+                  material.roughness = float(roughness);
+                  material.specular_color = glm::vec3(1.0F);
+                });
                 return relative_rmse(studio.draw(shot, with(ShadowKind::Hard)), truth(shot, with(ShadowKind::Hard)));
               });
   }
@@ -521,10 +547,11 @@ void add_surfaces(Cases &cases)
        "relative"},
       1e-6, {0.0, 0.01, 0.03, 0.1, 1.0}, [](Studio &studio, double roughness) {
         Shot shot = ground(LampKind::Sun, {}, {0, 0, -1});
-        scene::Material &material = shot.scene.materials[0];
-        material.metallic = 1.0F;
-        material.base_color = glm::vec3(1.0F);
-        material.roughness = float(roughness);
+        edit_material(shot, [&](scene::Material &material) {
+          material.metallic = 1.0F;
+          material.base_color = glm::vec3(1.0F);
+          material.roughness = float(roughness);
+        });
         shot.camera.kind = scene::CameraKind::Orthographic;
         shot.camera.half_width = shot.camera.half_height = 1.0F;
         const Picture picture = studio.draw(shot, with(ShadowKind::None, {8, 8}, 1));
@@ -538,7 +565,7 @@ void add_surfaces(Cases &cases)
             0.0, {1, 2, 3, 4, 5, 6}, [](Studio &studio, double kind) {
               Shot shot = table(LampKind::Point);
               const Picture without = studio.draw(shot, with(ShadowKind::Hard));
-              scene::Mesh mesh = shot.scene.meshes[0];
+              scene::Mesh mesh = shot.scene.meshes()[shot.scene.meshes().first()];
               switch (int(kind)) {
                 case 1: mesh.positions.assign(4, {0.1F, 0.2F, 1}); break;
                 case 2: mesh.positions = {{0, 0, 1}, {0, 0, 1}, {1, 0, 1}, {1, 0, 1}}; break;
@@ -547,12 +574,7 @@ void add_surfaces(Cases &cases)
                 case 5: mesh.positions = {{0, 0, 1}, {1e-38F, 0, 1}, {1e-38F, 1e-38F, 1}, {0, 1e-38F, 1}}; break;
                 default: mesh.positions = {{-1e12F, 0, 1}, {1e12F, 0, 1}, {1e12F, 0, 1}, {-1e12F, 0, 1}}; break;
               }
-              mesh.bounds = {};
-              for (const glm::vec3 &position : mesh.positions) {
-                mesh.bounds.extend(position);
-              }
-              shot.scene.meshes.push_back(mesh);
-              add_object(shot.scene, 2, glm::mat4(1.0F));
+              add_object(shot.scene, shot.scene.add(std::move(mesh)), glm::mat4(1.0F));
               return relative_rmse(studio.draw(shot, with(ShadowKind::Hard)), without);
             });
   struct Matrix {
@@ -599,8 +621,8 @@ void add_surfaces(Cases &cases)
                  matrix.parameter, exact_rays},
                 bound_of(shadow), matrix.values, [make = matrix.make, shadow](Studio &studio, double value) {
                   Shot shot = table(LampKind::Point);
-                  glm::mat4 &world_from_box = shot.scene.objects[1].world_from_object;
-                  world_from_box = world_from_box * make(value);
+                  const scene::Object box = shot.scene.objects()[1];
+                  shot.scene.set_transform(box.node, glm::mat4(box.world_from_object) * make(value));
                   return relative_rmse(studio.draw(shot, with(shadow)), truth(shot, with(shadow)));
                 });
     }
@@ -619,15 +641,15 @@ Picture even(const Picture &like, double value)
 Shot crowd(LampKind kind, int count)
 {
   Shot shot = table(kind);
-  const scene::Lamp lamp = shot.scene.lamps[0];
-  shot.scene.lamps.clear();
+  const scene::PlacedLamp lamp = shot.scene.placed_lamps().front();
+  remove_lamps(shot.scene);
   for (int i = 0; i < count; i++) {
     scene::Lamp one = lamp;
     one.name = fmt::format("lamp{}", i);
     one.intensity = lamp.intensity / float(count);
     // Room for the shadows of all.
     one.shadow.size = one.shadow.esm_size = 32;
-    shot.scene.lamps.push_back(one);
+    add_lamp(shot.scene, std::move(one), lamp.world_from_lamp);
   }
   return shot;
 }
@@ -696,9 +718,9 @@ Shot room(const glm::vec3 &direction)
 {
   Shot shot;
   scene::Scene &scene = shot.scene;
-  const std::uint32_t material = add_material(scene, glm::vec3(0.8F));
-  const std::uint32_t box = add_box_mesh(scene, material);
-  const std::uint32_t square = add_square_mesh(scene, material);
+  const auto material = add_material(scene, glm::vec3(0.8F));
+  const auto box = add_box_mesh(scene, material);
+  const auto square = add_square_mesh(scene, material);
   add_object(scene, box, scaled({5, 4, 4.5F}));
   const glm::vec3 forward = glm::normalize(direction);
   const glm::vec3 up = std::abs(forward.y) < 0.9F ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, 1);
@@ -737,7 +759,7 @@ void add_folds(Cases &cases)
               0.0, {0.01, 0.1, 1, 10, 100, 1e3, 1e4}, [shadow](Studio &studio, double exponent) {
                 Shot shot = ground(LampKind::Point, {0.2F, 0.1F, 2}, {0, 0, -1});
                 const Picture lit = studio.draw(shot, with(ShadowKind::None));
-                shot.scene.lamps[0].shadow.exponent = float(exponent);
+                edit_lamp(shot, [&](scene::Lamp &lamp) { lamp.shadow.exponent = float(exponent); });
                 return wrong_share(studio.draw(shot, with(shadow)), lit, 0.02);
               });
   }
@@ -750,8 +772,8 @@ void add_folds(Cases &cases)
               shot.camera = camera_at({0.05F, 0.03F, 0.9F}, {0.05F, 0.03F, 0}, 0.6F);
               const DrawSettings settings = with(ShadowKind::None, {64, 48}, 1);
               const Picture lit = studio.draw(shot, settings);
-              add_object(shot.scene, 0, moved({0, 0, 1}) * scaled(glm::vec3(1.5F)));
-              shot.scene.lamps[0].shadow.exponent = float(exponent);
+              add_object(shot.scene, shot.scene.meshes().first(), moved({0, 0, 1}) * scaled(glm::vec3(1.5F)));
+              edit_lamp(shot, [&](scene::Lamp &lamp) { lamp.shadow.exponent = float(exponent); });
               const Picture shadowed = studio.draw(shot, with(ShadowKind::Esm, {64, 48}, 1));
               if (shadowed.non_finite_count() > 0) {
                 return std::nan("");

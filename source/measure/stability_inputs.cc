@@ -77,6 +77,9 @@ double door_error(Wanted wanted, const std::string &word, const std::function<Pa
   catch (const scene::ImportError &error) {
     return wanted == Wanted::Refused && names_it(error.what()) ? 0.0 : 1.0;
   }
+  catch (const scene::InvalidEdit &error) {
+    return wanted == Wanted::Refused && names_it(error.what()) ? 0.0 : 1.0;
+  }
   catch (const gpu::Error &error) {
     return wanted == Wanted::Refused && names_it(error.what()) ? 0.0 : 1.0;
   }
@@ -455,7 +458,7 @@ void add_node_cases(std::vector<StabilityCase> &cases)
 scene::Scene lit_scene()
 {
   scene::Scene scene;
-  const std::uint32_t material = add_material(scene, glm::vec3(0.8F));
+  const auto material = add_material(scene, glm::vec3(0.8F));
   add_object(scene, add_square_mesh(scene, material), glm::scale(glm::mat4(1.0F), glm::vec3(4.0F)));
   add_object(scene, add_box_mesh(scene, material), glm::translate(glm::mat4(1.0F), {0, 0, 2}));
   add_lamp(scene, scene::LampKind::Point, {1, 0, 5}, {0, 0, -1}, 10.0F);
@@ -464,9 +467,9 @@ scene::Scene lit_scene()
   return scene;
 }
 
-const scene::Camera &lit_camera()
+const scene::PlacedCamera &lit_camera()
 {
-  static const scene::Camera camera = camera_at({0, -6, 4}, {0, 0, 0});
+  static const scene::PlacedCamera camera = camera_at({0, -6, 4}, {0, 0, 0});
   return camera;
 }
 
@@ -619,7 +622,8 @@ void add_host_lamp_cases(std::vector<StabilityCase> &cases)
     cases.push_back(door_case<double>("host", name, "frame of a scene with such a lamp", unit, word, std::move(values),
                                       [set = std::move(set), kind](const double &value) {
                                         scene::Scene scene = lit_scene();
-                                        set(scene.lamps[0].shadow, value);
+                                        scene.edit(scene.lamps().first(),
+                                                   [&](scene::Lamp &lamp) { set(lamp.shadow, value); });
                                         return draw_on_null(scene, small_settings(kind));
                                       }));
   };
@@ -665,7 +669,7 @@ void add_host_lamp_cases(std::vector<StabilityCase> &cases)
         "host", fmt::format("count of {}", count.name), "frame of so many lamps; those that lose are named", "lamps",
         fmt::format("'lamp{}'", count.most), values, [count](const int &n) {
           scene::Scene scene = lit_scene();
-          scene.lamps.clear();
+          remove_lamps(scene);
           for (int i = 0; i < n; i++) {
             add_lamp(scene, count.kind, {0.01F * float(i), 0, 5}, {0, 0, -1}, 1.0F);
           }
@@ -718,10 +722,10 @@ void add_host_call_cases(std::vector<StabilityCase> &cases)
 {
   for (const auto &[name, shadow] : {std::pair("object matrices, hard shadows", scene::ShadowKind::Hard),
                                      {"object matrices, exponential shadows", scene::ShadowKind::Esm}}) {
-    cases.push_back(door_case<int>("host", name, "frame of an object with that matrix", matrix_kinds, "object 1",
+    cases.push_back(door_case<int>("host", name, "frame of an object with that matrix", matrix_kinds, "node 'object1'",
                                    matrix_tries(4), [shadow](const int &kind) {
                                      scene::Scene scene = lit_scene();
-                                     scene.objects[1].world_from_object = odd_matrix(kind);
+                                     scene.set_transform(scene.objects()[1].node, odd_matrix(kind));
                                      return draw_on_null(scene, small_settings(shadow));
                                    }));
   }
@@ -759,7 +763,7 @@ void add_host_call_cases(std::vector<StabilityCase> &cases)
        {1e24, {1e-12F, 1e12F}},
        {0.0, {1e-12F, 0.0F}}},
       [](const glm::vec2 &near_far) {
-        scene::Camera camera = lit_camera();
+        scene::PlacedCamera camera = lit_camera();
         camera.near = near_far.x;
         camera.far = near_far.y;
         const scene::Scene scene = lit_scene();

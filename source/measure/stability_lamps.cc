@@ -85,7 +85,7 @@ void add_spot_cases(std::vector<StabilityCase> &cases)
                      // smoothstep makes 1.5 times as much at most; and three roundings of its own.
                      .bound = 1.5 * 5 * 0.5 + 1.5,
                      .run = swept(even_steps(0.0, 0.5 * cone * degree, 121), [=](double angle) {
-                       scene::Lamp lamp;
+                       scene::PlacedLamp lamp;
                        lamp.kind = scene::LampKind::Spot;
                        lamp.spot_outer_angle = float(0.5 * cone * degree);
                        lamp.spot_blend = 1.0F;
@@ -105,7 +105,7 @@ void add_spot_cases(std::vector<StabilityCase> &cases)
                    .unit = violation_unit,
                    .bound = 0.0,
                    .run = swept(log_steps(1e-6, double(eevee::spot_map_angle_max), 121), [](double angle) {
-                     scene::Lamp lamp;
+                     scene::PlacedLamp lamp;
                      lamp.kind = scene::LampKind::Spot;
                      lamp.spot_outer_angle = float(angle);
                      double worst = 0.0;
@@ -140,7 +140,7 @@ void add_falloff_cases(std::vector<StabilityCase> &cases)
                    .unit = "relative",
                    .bound = 1e-6,
                    .run = swept(log_steps(1e-30, 1e30, 121), [](double range) {
-                     scene::Lamp lamp;
+                     scene::PlacedLamp lamp;
                      lamp.range = float(range);
                      const shared::LightData light = eevee::light_data(lamp);
                      const double at_lamp = shared::distance_falloff(0.0F, light.radius_sq, light.range_inv_sq);
@@ -157,7 +157,7 @@ void add_falloff_cases(std::vector<StabilityCase> &cases)
                    .unit = epsilon_unit,
                    .bound = 1.5,
                    .run = swept(log_steps(1e-30, 1e12, 127), [](double radius) {
-                     scene::Lamp lamp;
+                     scene::PlacedLamp lamp;
                      lamp.radius = float(radius);
                      const double given = shared::distance_falloff(0.0F, eevee::light_data(lamp).radius_sq, 0.0F);
                      const double truth = 1.0 / std::max(std::pow(double(lamp.radius), 2.0), 1e-12);
@@ -185,10 +185,13 @@ void add_count_cases(std::vector<StabilityCase> &cases)
                      .run = swept(counts, [=](double count) {
                        scene::Scene scene;
                        for (int i = 0; i < int(count); i++) {
-                         scene::Lamp &lamp = scene.lamps.emplace_back();
+                         scene::Lamp lamp;
                          lamp.kind = kind;
                          lamp.name = fmt::format("<{}>", i);
                          lamp.intensity = float(i + 1);
+                         scene::Node node;
+                         node.lamp = scene.add(std::move(lamp));
+                         scene.add(std::move(node));
                        }
                        const eevee::Lamps lamps = eevee::make_lamps(scene);
                        const int drawn = std::min(int(count), LIGHT_MAX);

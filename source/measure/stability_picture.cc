@@ -59,7 +59,7 @@ void add_picture_cases(std::vector<StabilityCase> &cases)
              shape < 1.0 ? glm::ivec2(1, std::lround(1.0 / shape)) : glm::ivec2(std::lround(shape), 1);
          double worst = 0.0;
          for (const scene::CameraKind kind : {scene::CameraKind::Perspective, scene::CameraKind::Orthographic}) {
-           scene::Camera camera;
+           scene::PlacedCamera camera;
            camera.kind = kind;
            camera.aspect = 1.5F;
            camera.half_width = 1.5F;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The judge itself: rays at world offsets and grazing angles, triangles without area, lamps at receivers.
+// The reference itself: rays at world offsets and grazing angles, triangles without area, lamps at receivers.
 #include "internal/stability_cases.hh"
 
 #include "reference_lamp.hh"
@@ -29,16 +29,20 @@ struct Triangles {
 
   explicit Triangles(std::vector<glm::vec3> corners, const glm::mat4 &world_from_object = glm::mat4(1.0F))
   {
-    scene.materials.emplace_back();
-    scene.materials[0].is_double_sided = true;
-    scene::Mesh &mesh = scene.meshes.emplace_back();
+    scene::Material material;
+    material.is_double_sided = true;
+    scene::Mesh mesh;
     mesh.positions = std::move(corners);
     mesh.normals.assign(mesh.positions.size(), glm::vec3(0, 0, 1));
     for (std::size_t i = 0; i < mesh.positions.size(); i++) {
       mesh.indices.push_back(std::uint32_t(i));
-      mesh.bounds.extend(mesh.positions[i]);
     }
-    scene.objects.push_back({"triangles", 0, world_from_object});
+    mesh.material = scene.add(std::move(material));
+    scene::Node node;
+    node.name = "triangles";
+    node.parent_from_node = world_from_object;
+    node.meshes = {scene.add(std::move(mesh))};
+    scene.add(std::move(node));
   }
 };
 
@@ -187,7 +191,7 @@ void add_light_cases(std::vector<StabilityCase> &cases)
            .unit = "double roundings",
            .bound = 4.0,
            .run = swept(log_steps(1e-12, 1e8, 81), [=](double distance) {
-             scene::Lamp lamp;
+             scene::PlacedLamp lamp;
              lamp.kind = kind;
              lamp.radius = radius;
              // The disk's middle is at (0, 0), the rectangle's at a half.

@@ -143,19 +143,20 @@ void add_normal_cases(std::vector<StabilityCase> &cases)
 }
 
 /** A camera at \a position that looks along its own -Z, turned. */
-scene::Camera camera_at(const glm::dvec3 &position)
+scene::PlacedCamera camera_at(const glm::dvec3 &position)
 {
-  scene::Camera camera;
+  scene::PlacedCamera camera;
   camera.aspect = 1.5F;
+  // Rounded to float, as the views are.
   camera.world_from_camera = glm::mat4(glm::translate(glm::dmat4(1.0), position) * turned());
   return camera;
 }
 
 /** Of a point \a distance before the camera: where it is in the picture, and where it should be, in frame heights. */
-double place_error(const scene::Camera &camera, const glm::dvec3 &in_camera)
+double place_error(const scene::PlacedCamera &camera, const glm::dvec3 &in_camera)
 {
   const draw::View view = eevee::view_of(camera, {900, 600});
-  const glm::dmat4 world_from_camera(camera.world_from_camera);
+  const glm::dmat4 &world_from_camera = camera.world_from_camera;
   const glm::vec3 point(world_from_camera * glm::dvec4(in_camera, 1.0));
   const glm::dvec4 exact = glm::dmat4(view.clip_from_view()) * glm::inverse(world_from_camera) * glm::dvec4(point, 1.0);
   const glm::vec4 clip = view.clip_from_world() * glm::vec4(point, 1.0F);
@@ -176,7 +177,7 @@ void add_view_cases(std::vector<StabilityCase> &cases)
                      // the offset, over a frame of 84 m or 2 m.
                      .bound = kind == scene::CameraKind::Perspective ? 6.0 : 300.0,
                      .run = swept(offsets(), [=](double offset) {
-                       scene::Camera camera = camera_at(offset * glm::dvec3(1, -1, 1));
+                       scene::PlacedCamera camera = camera_at(offset * glm::dvec3(1, -1, 1));
                        camera.kind = kind;
                        return place_error(camera, {0.3, 0.2, -100.0}) / (float_epsilon * (1.0 + offset / 100.0));
                      })});
@@ -188,7 +189,7 @@ void add_view_cases(std::vector<StabilityCase> &cases)
                      .unit = epsilon_unit,
                      .bound = 4.0,
                      .run = swept(log_steps(1e-4, 1e5, 91), [=](double scale) {
-                       scene::Camera camera = camera_at(scale * glm::dvec3(1, -1, 1));
+                       scene::PlacedCamera camera = camera_at(scale * glm::dvec3(1, -1, 1));
                        camera.kind = kind;
                        camera.near = float(1e-2 * scale);
                        camera.half_width = float(1.5 * scale);
@@ -205,14 +206,14 @@ void add_view_cases(std::vector<StabilityCase> &cases)
                        .bound = 0.0,
                        .run = swept(is_far ? offsets() : log_steps(1e-4, 1e5, 91), [=](double x) {
                          const double scale = is_far ? 1.0 : x;
-                         scene::Camera camera = camera_at((is_far ? x : scale) * glm::dvec3(1, -1, 1));
+                         scene::PlacedCamera camera = camera_at((is_far ? x : scale) * glm::dvec3(1, -1, 1));
                          camera.kind = kind;
                          camera.near = float(0.1 * scale);
                          camera.far = float(100.0 * scale);
                          camera.half_width = float(15.0 * scale);
                          camera.half_height = float(10.0 * scale);
                          const draw::View view = eevee::view_of(camera, {900, 600});
-                         const glm::dmat4 world_from_camera(camera.world_from_camera);
+                         const glm::dmat4 &world_from_camera = camera.world_from_camera;
                          const glm::dmat4 clip_from_world =
                              glm::dmat4(view.clip_from_view()) * glm::inverse(world_from_camera);
                          std::mt19937 random(9);
@@ -275,7 +276,7 @@ void add_view_cases(std::vector<StabilityCase> &cases)
                          return steps;
                        }(),
                        [](double angle) {
-                         scene::Camera camera;
+                         scene::PlacedCamera camera;
                          camera.vertical_angle = float(angle);
                          const double half = 0.5 * std::min(double(camera.vertical_angle), double(3.1415F));
                          const double given = 1.0 / double(eevee::view_of(camera, {1, 1}).clip_from_view()[1][1]);
@@ -319,7 +320,7 @@ void add_bounds_cases(std::vector<StabilityCase> &cases)
                    .unit = violation_unit,
                    .bound = 0.0,
                    .run = swept(log_steps(1e-6, 9.0, 71), [](double near) {
-                     scene::Camera camera = camera_at(glm::dvec3(0.0));
+                     scene::PlacedCamera camera = camera_at(glm::dvec3(0.0));
                      camera.near = float(near);
                      const draw::View view = eevee::view_of(camera, {900, 600});
                      const scene::Bounds box{glm::vec3(-10.0F), glm::vec3(10.0F)};
@@ -339,7 +340,7 @@ void add_bounds_cases(std::vector<StabilityCase> &cases)
          .run = swept(is_far ? offsets() : log_steps(1e-4, 1e5, 91), [=](double x) {
            const double size = is_far ? 10.0 : 10.0 * x;
            const glm::dvec3 center = (is_far ? x : size) * glm::dvec3(1, -1, 1);
-           scene::Camera camera = camera_at(center);
+           scene::PlacedCamera camera = camera_at(center);
            camera.near = float(0.01 * size);
            camera.far = float(2.0 * size);
            const draw::View view = eevee::view_of(camera, {900, 600});

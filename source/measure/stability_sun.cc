@@ -22,9 +22,9 @@ constexpr const char *group = "sun";
 constexpr int size_px = 1024;
 
 /** That stands \a elevation above the horizon (+Y is up), rad. */
-scene::Lamp sun_at(double elevation)
+scene::PlacedLamp sun_at(double elevation)
 {
-  scene::Lamp lamp;
+  scene::PlacedLamp lamp;
   lamp.kind = scene::LampKind::Sun;
   const glm::dvec3 z =
       glm::normalize(glm::dvec3(std::cos(elevation) * 0.8, std::sin(elevation), std::cos(elevation) * 0.6));

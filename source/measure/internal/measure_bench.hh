@@ -15,7 +15,7 @@ namespace gnomon::measure {
 class Bench {
  public:
   /** All of them must outlive it. */
-  Bench(gpu::Device &device, const scene::Scene &scene, const scene::Camera &camera, const Technique &technique,
+  Bench(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera, const Technique &technique,
         glm::ivec2 size_px);
 
   /** Make all that a picture needs, and draw one. First of all; \a has_probe: judge will be asked. */

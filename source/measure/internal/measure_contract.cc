@@ -35,24 +35,24 @@ class Checker {
       faults.push_back(fmt::format("{}: not {}", what_, promise));
     }
   }
-  void check_affine(const glm::mat4 &matrix)
+  /** Finite in float, too, which engines use. */
+  void check_affine(const glm::dmat4 &matrix)
   {
     bool is_affine = true;
     for (int column = 0; column < 4; column++) {
-      is_affine = is_affine && is_finite(glm::vec3(matrix[column])) && matrix[column][3] == (column == 3 ? 1.0F : 0.0F);
+      is_affine = is_affine && is_finite(glm::vec3(matrix[column])) && matrix[column][3] == (column == 3 ? 1.0 : 0.0);
     }
     check(is_affine, "a finite affine matrix");
   }
   /** A rotation and a place, right-handed. */
-  void check_frame(const glm::mat4 &matrix)
+  void check_frame(const glm::dmat4 &matrix)
   {
     check_affine(matrix);
-    const glm::vec3 x(matrix[0]);
-    const glm::vec3 y(matrix[1]);
-    const glm::vec3 z(matrix[2]);
-    // Of unit vectors rounded to float.
-    constexpr float rounding = 1e-5F;
-    check(std::abs(glm::length(x) - 1.0F) <= rounding && std::abs(glm::length(y) - 1.0F) <= rounding &&
+    const glm::dvec3 x(matrix[0]);
+    const glm::dvec3 y(matrix[1]);
+    const glm::dvec3 z(matrix[2]);
+    constexpr double rounding = 1e-14;
+    check(std::abs(glm::length(x) - 1.0) <= rounding && std::abs(glm::length(y) - 1.0) <= rounding &&
               glm::length(glm::cross(x, y) - z) <= rounding,
           "a right-handed orthonormal frame");
   }
@@ -63,15 +63,14 @@ class Checker {
 
 void check_mesh(const scene::Scene &scene, const scene::Mesh &mesh, Checker &checker)
 {
-  checker.check(mesh.material < scene.materials.size(), "of a material that is there");
+  checker.check(!mesh.material || scene.materials().is_live(mesh.material), "of a material that is there");
   checker.check(mesh.normals.size() == mesh.positions.size(), "with a normal a position");
   checker.check(!mesh.indices.empty() && mesh.indices.size() % 3 == 0, "of whole triangles");
   checker.check(std::ranges::all_of(mesh.indices, [&](std::uint32_t i) { return i < mesh.positions.size(); }),
                 "with indices in range");
   checker.check(!mesh.bounds.is_empty(), "with bounds");
   checker.check(mesh.uvs.empty() || mesh.uvs.size() == mesh.positions.size(), "with a texture coordinate a position");
-  checker.check(mesh.uvs.empty() ==
-                    (mesh.material < scene.materials.size() && scene.materials[mesh.material].base_color_texture < 0),
+  checker.check(mesh.uvs.empty() == !scene.material_of(mesh).base_color_texture,
                 "with texture coordinates just where its material looks a texture up");
   checker.check(
       std::ranges::all_of(mesh.uvs, [](const glm::vec2 &uv) { return std::isfinite(uv.x) && std::isfinite(uv.y); }),
@@ -95,13 +94,12 @@ void check_material(const scene::Scene &scene, const scene::Material &material, 
     checker.check(factor >= 0.0F && factor <= 1.0F, "with factors in [0, 1]");
   }
   checker.check(is_finite(material.specular_color) && is_finite(material.emissive), "of finite colours");
-  checker.check(material.base_color_texture >= -1 && material.base_color_texture < int(scene.textures.size()),
+  checker.check(!material.base_color_texture || scene.textures().is_live(material.base_color_texture),
                 "of a texture that is there");
 }
 
 void check_lamp(const scene::Lamp &lamp, Checker &checker)
 {
-  checker.check_frame(lamp.world_from_lamp);
   checker.check(is_finite(lamp.color) && lamp.color.x >= 0.0F && lamp.color.y >= 0.0F && lamp.color.z >= 0.0F,
                 "of a finite colour of at least 0");
   for (const float value : {lamp.intensity, lamp.radius, lamp.angle, lamp.range}) {
@@ -129,7 +127,6 @@ void check_lamp(const scene::Lamp &lamp, Checker &checker)
 
 void check_camera(const scene::Camera &camera, Checker &checker)
 {
-  checker.check_frame(camera.world_from_camera);
   const bool is_perspective = camera.kind == scene::CameraKind::Perspective;
   checker.check(camera.vertical_angle > 0.0F && camera.vertical_angle < pi, "of an angle in (0, pi)");
   checker.check(std::isfinite(camera.aspect) && camera.aspect >= 0.0F, "of a finite aspect of at least 0");
@@ -147,39 +144,52 @@ void check_camera(const scene::Camera &camera, Checker &checker)
 std::vector<std::string> contract_faults(const scene::Scene &scene)
 {
   Checker checker;
-  for (const scene::Mesh &mesh : scene.meshes) {
+  for (const auto &[handle, mesh] : scene.meshes()) {
     checker.element("mesh '" + mesh.name + "'");
     check_mesh(scene, mesh, checker);
   }
-  for (const scene::Material &material : scene.materials) {
+  for (const auto &[handle, material] : scene.materials()) {
     checker.element("material '" + material.name + "'");
     check_material(scene, material, checker);
   }
-  for (const scene::Texture &texture : scene.textures) {
+  for (const auto &[handle, texture] : scene.textures()) {
     checker.element("texture");
-    checker.check(texture.image < scene.images.size(), "of an image that is there");
+    checker.check(scene.images().is_live(texture.image), "of an image that is there");
   }
-  for (const scene::Image &image : scene.images) {
+  for (const auto &[handle, image] : scene.images()) {
     checker.element("image '" + image.name + "'");
     checker.check(image.width > 0 && image.height > 0, "of a size");
     checker.check(image.texels.size() == std::size_t(4) * image.width * image.height, "of as many texels");
   }
-  for (const scene::Object &object : scene.objects) {
-    checker.element("object '" + object.name + "'");
-    checker.check(object.mesh < scene.meshes.size(), "of a mesh that is there");
-    checker.check_affine(object.world_from_object);
+  for (const auto &[handle, node] : scene.nodes()) {
+    checker.element("node '" + node.name + "'");
+    checker.check_affine(scene.world_from_node(handle));
   }
-  for (const scene::Lamp &lamp : scene.lamps) {
+  for (const auto &[handle, lamp] : scene.lamps()) {
     checker.element("lamp '" + lamp.name + "'");
     check_lamp(lamp, checker);
   }
-  for (const scene::Camera &camera : scene.cameras) {
+  for (const auto &[handle, camera] : scene.cameras()) {
     checker.element("camera '" + camera.name + "'");
     check_camera(camera, checker);
   }
+  const std::vector<scene::PlacedLamp> lamps = scene.placed_lamps();
+  for (const scene::PlacedLamp &lamp : lamps) {
+    checker.element("lamp '" + lamp.name + "'");
+    checker.check_frame(lamp.world_from_lamp);
+  }
+  const std::vector<scene::PlacedCamera> cameras = scene.placed_cameras();
+  for (const scene::PlacedCamera &camera : cameras) {
+    checker.element("camera '" + camera.name + "'");
+    checker.check_frame(camera.world_from_camera);
+  }
+  for (const std::string &line : scene.stale_references()) {
+    checker.element(line);
+    checker.check(false, "possible after an import");
+  }
   checker.element("scene");
-  checker.check(!scene.lamps.empty() && !scene.cameras.empty(), "with a lamp and a camera");
-  checker.check(scene.objects.empty() || std::isfinite(scene.bounds().radius()), "of finite bounds");
+  checker.check(!lamps.empty() && !cameras.empty(), "with a lamp and a camera");
+  checker.check(scene.objects().empty() || std::isfinite(scene.bounds().radius()), "of finite bounds");
   for (const std::string &warning : scene.warnings) {
     checker.element("warning '" + warning + "'");
     checker.check(warning.find('\n') == warning.npos, "one line");

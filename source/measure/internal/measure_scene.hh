@@ -9,57 +9,65 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <cmath>
+#include <concepts>
+#include <string>
+#include <vector>
 
-/** Small scenes made in place, and the pixels they come to. Internal to source/measure, and for tests. */
+/** Small scenes built in code, and their pictures. Internal to source/measure; tests use it, too. */
 namespace gnomon::measure {
 
-/** Lambertian. \return its index. */
-inline std::uint32_t add_material(scene::Scene &scene, const glm::vec3 &albedo)
+/** The thing number \a index of \a things in their order. \pre there are more than \a index */
+template <typename T>
+scene::Handle<T> handle_at(const scene::Pool<T> &things, std::size_t index)
+{
+  auto thing = things.begin();
+  for (std::size_t i = 0; i < index; i++) {
+    ++thing;
+  }
+  return (*thing).handle;
+}
+
+/** A double-sided Lambertian material. */
+inline scene::Handle<scene::Material> add_material(scene::Scene &scene, const glm::vec3 &albedo)
 {
   scene::Material material;
-  material.name = "material" + std::to_string(scene.materials.size());
+  material.name = "material" + std::to_string(scene.materials().size());
   material.base_color = albedo;
   material.metallic = 0.0F;
   material.specular_color = glm::vec3(0.0F);
   material.is_double_sided = true;
-  scene.materials.push_back(material);
-  return std::uint32_t(scene.materials.size() - 1);
+  return scene.add(std::move(material));
 }
 
-/** Nearest texels, rows from the top, four bytes each. \return its index. */
-inline std::int32_t add_texture(scene::Scene &scene, std::uint32_t width, const std::vector<std::uint8_t> &texels)
+/** Filtered by the nearest texel. \a texels: four bytes each, rows from the top. */
+inline scene::Handle<scene::Texture> add_texture(scene::Scene &scene, std::uint32_t width,
+                                                 const std::vector<std::uint8_t> &texels)
 {
-  scene.images.push_back({"image", width, std::uint32_t(texels.size()) / 4 / width, texels});
   scene::Texture texture;
-  texture.image = std::uint32_t(scene.images.size() - 1);
+  texture.image = scene.add(scene::Image{"image", width, std::uint32_t(texels.size()) / 4 / width, texels});
   texture.magnified = texture.minified = scene::TextureFilter::Nearest;
   texture.mip = scene::MipFilter::None;
-  scene.textures.push_back(texture);
-  return std::int32_t(scene.textures.size() - 1);
+  return scene.add(texture);
 }
 
-/** A square of half size 1 in the plane z = 0, facing +Z. \return its mesh's index. */
-inline std::uint32_t add_square_mesh(scene::Scene &scene, std::uint32_t material)
+/** A square of half size 1 in the plane z = 0 that faces +Z. It has uvs where its material has a texture. */
+inline scene::Handle<scene::Mesh> add_square_mesh(scene::Scene &scene, scene::Handle<scene::Material> material)
 {
   scene::Mesh mesh;
   mesh.name = "square";
   mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
   mesh.normals.assign(4, {0, 0, 1});
-  if (scene.materials[material].base_color_texture >= 0) {
-    // The image upright to who faces it.
+  if (scene.materials()[material].base_color_texture) {
+    // Seen from +Z, the image is upright.
     mesh.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
   }
   mesh.indices = {0, 1, 2, 0, 2, 3};
   mesh.material = material;
-  for (const glm::vec3 &position : mesh.positions) {
-    mesh.bounds.extend(position);
-  }
-  scene.meshes.push_back(mesh);
-  return std::uint32_t(scene.meshes.size() - 1);
+  return scene.add(std::move(mesh));
 }
 
-/** A closed box from -1 to 1, with the whole of an image on each side. \return its mesh's index. */
-inline std::uint32_t add_box_mesh(scene::Scene &scene, std::uint32_t material)
+/** A closed box from -1 to 1 with the whole image on each side. */
+inline scene::Handle<scene::Mesh> add_box_mesh(scene::Scene &scene, scene::Handle<scene::Material> material)
 {
   scene::Mesh mesh;
   mesh.name = "box";
@@ -75,7 +83,6 @@ inline std::uint32_t add_box_mesh(scene::Scene &scene, std::uint32_t material)
         mesh.positions.push_back(normal + corner.x * across + corner.y * up);
         mesh.normals.push_back(normal);
         mesh.uvs.push_back(0.5F * corner + 0.5F);
-        mesh.bounds.extend(mesh.positions.back());
       }
       for (const std::uint32_t i : {0U, 1U, 2U, 0U, 2U, 3U}) {
         mesh.indices.push_back(first + i);
@@ -83,37 +90,79 @@ inline std::uint32_t add_box_mesh(scene::Scene &scene, std::uint32_t material)
     }
   }
   mesh.material = material;
-  scene.meshes.push_back(mesh);
-  return std::uint32_t(scene.meshes.size() - 1);
+  return scene.add(std::move(mesh));
 }
 
-inline void add_object(scene::Scene &scene, std::uint32_t mesh, const glm::mat4 &world_from_object)
+/** A root node, named by its number among the nodes, with \a mesh. */
+inline scene::Handle<scene::Node> add_object(scene::Scene &scene, scene::Handle<scene::Mesh> mesh,
+                                             const glm::dmat4 &world_from_object)
 {
-  scene.objects.push_back({"object" + std::to_string(scene.objects.size()), mesh, world_from_object});
+  scene::Node node;
+  node.name = "object" + std::to_string(scene.nodes().size());
+  node.parent_from_node = world_from_object;
+  node.meshes = {mesh};
+  return scene.add(std::move(node));
 }
 
-/** A lamp at \a position that shines along \a forward. */
-inline scene::Lamp &add_lamp(scene::Scene &scene, scene::LampKind kind, const glm::vec3 &position,
-                             const glm::vec3 &forward, float intensity)
+/** \a lamp at a root node of its name. */
+inline scene::Handle<scene::Lamp> add_lamp(scene::Scene &scene, scene::Lamp lamp, const glm::dmat4 &world_from_lamp)
+{
+  scene::Node node;
+  node.name = lamp.name;
+  node.parent_from_node = world_from_lamp;
+  node.lamp = scene.add(std::move(lamp));
+  return scene.nodes()[scene.add(std::move(node))].lamp;
+}
+
+/** A lamp at \a position that shines along \a forward, named by its number among the lamps. */
+inline scene::Handle<scene::Lamp> add_lamp(scene::Scene &scene, scene::LampKind kind, const glm::vec3 &position,
+                                           const glm::vec3 &forward, float intensity)
 {
   scene::Lamp lamp;
-  lamp.name = "lamp" + std::to_string(scene.lamps.size());
+  lamp.name = "lamp" + std::to_string(scene.lamps().size());
   lamp.kind = kind;
   lamp.intensity = intensity;
   const glm::vec3 up = std::abs(glm::normalize(forward).y) < 0.9F ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
-  lamp.world_from_lamp = glm::inverse(glm::lookAt(position, position + forward, up));
-  scene.lamps.push_back(lamp);
-  return scene.lamps.back();
+  return add_lamp(scene, std::move(lamp), glm::inverse(glm::lookAt(position, position + forward, up)));
 }
 
-inline scene::Camera camera_at(const glm::vec3 &position, const glm::vec3 &target, float vertical_angle = 0.8F)
+/** Remove the lamps that \a is_chosen accepts, with their nodes; the last first, so that places are used in order. */
+template <std::predicate<const scene::Lamp &> Predicate>
+void remove_lamps(scene::Scene &scene, Predicate &&is_chosen)
 {
-  scene::Camera camera;
+  const std::vector<scene::PlacedLamp> lamps = scene.placed_lamps();
+  for (auto lamp = lamps.rbegin(); lamp != lamps.rend(); ++lamp) {
+    if (is_chosen(*lamp)) {
+      scene.remove(scene.nodes()[lamp->node].lamp);
+      scene.remove(lamp->node);
+    }
+  }
+}
+
+inline void remove_lamps(scene::Scene &scene)
+{
+  remove_lamps(scene, [](const scene::Lamp & /*lamp*/) { return true; });
+}
+
+/** In no scene. */
+inline scene::PlacedCamera camera_at(const glm::vec3 &position, const glm::vec3 &target, float vertical_angle = 0.8F)
+{
+  scene::PlacedCamera camera;
   camera.name = "camera";
   const glm::vec3 up = std::abs(glm::normalize(target - position).y) < 0.9F ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, 1);
   camera.world_from_camera = glm::inverse(glm::lookAt(position, target, up));
   camera.vertical_angle = vertical_angle;
   return camera;
+}
+
+/** \a camera at a root node of its name. */
+inline scene::Handle<scene::Node> add_camera(scene::Scene &scene, const scene::PlacedCamera &camera)
+{
+  scene::Node node;
+  node.name = camera.name;
+  node.parent_from_node = camera.world_from_camera;
+  node.camera = scene.add(scene::Camera(camera));
+  return scene.add(std::move(node));
 }
 
 /** Linear radiance, rows from the bottom. */
@@ -141,7 +190,7 @@ struct Picture {
   }
 };
 
-/** An engine, a viewport, and the order of calls that draws a picture with them. */
+/** An engine and a viewport, and the calls that draw a picture with them. */
 class Renderer {
  public:
   Renderer(gpu::Device &device, const scene::Scene &scene, glm::ivec2 size_px, const eevee::Settings &settings = {})
@@ -154,14 +203,14 @@ class Renderer {
     const std::array<draw::Engine *, 1> engines = {&engine};
     viewport.sync(engines, eevee::object_refs(scene_));
   }
-  void draw(const scene::Camera &camera)
+  void draw(const scene::PlacedCamera &camera)
   {
     const std::array<draw::Engine *, 1> engines = {&engine};
     for (int i = 0; i < settings_.sample_count; i++) {
       viewport.draw(engines, eevee::view_of(camera, viewport.size_px()));
     }
   }
-  Picture picture(const scene::Camera &camera)
+  Picture picture(const scene::PlacedCamera &camera)
   {
     draw(camera);
     return {viewport.size_px(), gpu::read_as<glm::vec4>(viewport.device(), engine.radiance(viewport))};

@@ -12,40 +12,101 @@ namespace gnomon::measure {
 Shot placed(Shot shot, const glm::dmat4 &moved, double scale)
 {
   const glm::dmat4 scaled = moved * glm::scale(glm::dmat4(1.0), glm::dvec3(scale));
-  for (scene::Object &object : shot.scene.objects) {
-    object.world_from_object = glm::mat4(scaled * glm::dmat4(object.world_from_object));
-  }
-  // A frame stays one: a reflection turns its x axis back.
-  const bool is_mirrored = glm::determinant(glm::dmat3(moved)) < 0.0;
-  const auto frame = [&](const glm::mat4 &world_from_local) {
-    glm::dmat4 result = moved * glm::dmat4(world_from_local);
-    result[0] *= is_mirrored ? -1.0 : 1.0;
-    result[3] = scaled * glm::dmat4(world_from_local)[3];
-    return glm::mat4(result);
-  };
-  for (scene::Lamp &lamp : shot.scene.lamps) {
-    lamp.world_from_lamp = frame(lamp.world_from_lamp);
-    if (lamp.kind == scene::LampKind::Point || lamp.kind == scene::LampKind::Spot) {
-      lamp.intensity = float(lamp.intensity * scale * scale);
-      lamp.radius = float(lamp.radius * scale);
-      lamp.range = float(lamp.range * scale);
+  const auto rounded = [](const glm::dmat4 &matrix) { return glm::dmat4(glm::mat4(matrix)); };
+  scene::Scene &scene = shot.scene;
+  for (const auto &[handle, node] : scene.nodes()) {
+    if (!scene.parent(handle)) {
+      scene.set_transform(handle, rounded(scaled * node.parent_from_node));
     }
   }
-  scene::Camera &camera = shot.camera;
-  camera.world_from_camera = frame(camera.world_from_camera);
+  for (const auto &[handle, lamp] : scene.lamps()) {
+    if (lamp.kind == scene::LampKind::Point || lamp.kind == scene::LampKind::Spot) {
+      scene.edit(handle, [scale](scene::Lamp &changed) {
+        changed.intensity = float(changed.intensity * scale * scale);
+        changed.radius = float(changed.radius * scale);
+        changed.range = float(changed.range * scale);
+      });
+    }
+  }
+  scene::PlacedCamera &camera = shot.camera;
+  camera.world_from_camera = rounded(scene::frame_of(scaled * camera.world_from_camera));
   for (float *length : {&camera.half_width, &camera.half_height, &camera.near, &camera.far}) {
     *length = float(*length * scale);
   }
   return shot;
 }
 
+/** Removes all things of a kind, the last first, so that places are used in order again. */
+template <typename T>
+static void clear(scene::Scene &scene)
+{
+  std::vector<scene::Handle<T>> handles;
+  for (const auto &thing : scene.pool<T>()) {
+    handles.push_back(thing.handle);
+  }
+  for (auto handle = handles.rbegin(); handle != handles.rend(); ++handle) {
+    // With a node goes all that is below it.
+    if (scene.pool<T>().is_live(*handle)) {
+      scene.remove(*handle);
+    }
+  }
+}
+
+/**
+ * Edits \a scene so that it holds what \a other holds, in the same order. All things are new ones: an assignment would
+ * give an engine other things under handles and revisions that it knows. \pre all nodes of \a other are roots
+ */
+static void become(scene::Scene &scene, const scene::Scene &other)
+{
+  clear<scene::Node>(scene);
+  clear<scene::Mesh>(scene);
+  clear<scene::Material>(scene);
+  clear<scene::Texture>(scene);
+  clear<scene::Image>(scene);
+  clear<scene::Lamp>(scene);
+  scene.path = other.path;
+  // A handle that names nothing is no key, and stays so.
+  std::map<scene::Handle<scene::Image>, scene::Handle<scene::Image>> images;
+  for (const auto &[handle, image] : other.images()) {
+    images[handle] = scene.add(image);
+  }
+  std::map<scene::Handle<scene::Texture>, scene::Handle<scene::Texture>> textures;
+  for (const auto &[handle, texture] : other.textures()) {
+    scene::Texture added = texture;
+    added.image = images[texture.image];
+    textures[handle] = scene.add(added);
+  }
+  std::map<scene::Handle<scene::Material>, scene::Handle<scene::Material>> materials;
+  for (const auto &[handle, material] : other.materials()) {
+    scene::Material added = material;
+    added.base_color_texture = textures[material.base_color_texture];
+    materials[handle] = scene.add(std::move(added));
+  }
+  std::map<scene::Handle<scene::Mesh>, scene::Handle<scene::Mesh>> meshes;
+  for (const auto &[handle, mesh] : other.meshes()) {
+    scene::Mesh added = mesh;
+    added.material = materials[mesh.material];
+    meshes[handle] = scene.add(std::move(added));
+  }
+  std::map<scene::Handle<scene::Lamp>, scene::Handle<scene::Lamp>> lamps;
+  for (const auto &[handle, lamp] : other.lamps()) {
+    lamps[handle] = scene.add(lamp);
+  }
+  for (const auto &[handle, node] : other.nodes()) {
+    scene::Node added = node;
+    for (scene::Handle<scene::Mesh> &mesh : added.meshes) {
+      mesh = meshes[mesh];
+    }
+    added.lamp = lamps[node.lamp];
+    added.camera = {};
+    scene.add(std::move(added));
+  }
+}
+
 Picture Studio::draw(const Shot &shot, const DrawSettings &settings)
 {
   Stage &stage = stages_[settings];
-  stage.scene = shot.scene;
-  for (scene::Mesh &mesh : stage.scene.meshes) {
-    mesh.revision = ++revision_;
-  }
+  become(stage.scene, shot.scene);
   if (!stage.renderer) {
     eevee::Settings engine;
     engine.sample_count = settings.sample_count;
@@ -72,8 +133,8 @@ Picture truth(const Shot &shot, const DrawSettings &settings)
 {
   scene::Scene scene = shot.scene;
   if (settings.shadow == scene::ShadowKind::None) {
-    for (scene::Lamp &lamp : scene.lamps) {
-      lamp.shadow.kind = scene::ShadowKind::None;
+    for (const auto &[handle, lamp] : scene.lamps()) {
+      scene.edit(handle, [](scene::Lamp &changed) { changed.shadow.kind = scene::ShadowKind::None; });
     }
   }
   const reference::Tracer tracer(scene);

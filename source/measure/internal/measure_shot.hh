@@ -10,20 +10,22 @@
 #include <tuple>
 #include <vector>
 
-/** Pictures of small scenes, what is true of them, and how they differ. Internal to source/measure. */
+/** Pictures of small scenes, their ray-traced references, and their differences. Internal to source/measure. */
 namespace gnomon::measure {
 
-/** A scene and who looks at it. */
+/** A scene and the camera of its picture. */
 struct Shot {
   scene::Scene scene;
-  scene::Camera camera;
+  scene::PlacedCamera camera;
 };
 
-/** \a shot moved by a rotation, reflection or translation after it was made \a scale times as large, its light as
- * bright. */
+/**
+ * \a shot made \a scale times as large, and then moved by a rotation, reflection or translation, with the same
+ * irradiance everywhere. Matrices are rounded to float, so that the engine and the rays have the same scene.
+ */
 [[nodiscard]] Shot placed(Shot shot, const glm::dmat4 &moved, double scale = 1.0);
 
-/** How shots are drawn. */
+/** The settings of a picture. */
 struct DrawSettings {
   scene::ShadowKind shadow = scene::ShadowKind::None;
   glm::ivec2 size_px{48, 36};
@@ -37,7 +39,7 @@ struct DrawSettings {
   bool operator==(const DrawSettings &other) const = default;
 };
 
-/** Draws shot after shot, with the programs and textures of those before. */
+/** Draws one shot after another, with the programs and textures of those before. */
 class Studio {
  public:
   /** \a device must outlive it. */
@@ -54,11 +56,9 @@ class Studio {
   };
   gpu::Device &device_;
   std::map<DrawSettings, Stage> stages_;
-  /** Of the meshes of the last shot. */
-  std::uint64_t revision_ = 0;
 };
 
-/** Exact rays' picture, by as many samples. */
+/** The picture by ray tracing with as many samples. */
 [[nodiscard]] Picture truth(const Shot &shot, const DrawSettings &settings = {});
 
 /** Root of the mean square of a picture's difference, over the truth's mean; NaN where the picture is not finite. */
