@@ -78,6 +78,12 @@ void RenderScene::update_objects()
       update_node(handle, node, is_anew);
     }
   }
+  bounds_ = {};
+  for (draw::ObjectIndex index = draw::object_identity + 1; index < objects_.index_end(); index++) {
+    if (objects_.is_live(index)) {
+      bounds_.extend(render_objects_[index].bounds);
+    }
+  }
 }
 
 void RenderScene::update_node(scene::Handle<scene::Node> handle, const scene::Node &node, bool is_anew)

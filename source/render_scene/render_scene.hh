@@ -72,6 +72,11 @@ class RenderScene {
   {
     return render_objects_[index];
   }
+  /** The box around all objects, relative to origin_ws(). */
+  [[nodiscard]] const scene::Bounds &bounds() const
+  {
+    return bounds_;
+  }
   /** All visible lamps, in the order of Scene::placed_lamps. */
   [[nodiscard]] std::span<const scene::PlacedLamp> lamps() const
   {
@@ -145,6 +150,7 @@ class RenderScene {
   std::vector<RenderObject> render_objects_{1};
   /** By Handle::index of the node. */
   std::vector<NodeObjects> node_objects_;
+  scene::Bounds bounds_;
   std::vector<scene::PlacedLamp> lamps_;
   std::uint64_t lamps_revision_ = 0;
   std::uint64_t passes_revision_ = 0;

@@ -4,7 +4,6 @@
 #include "eevee_camera.hh"
 #include "eevee_engine_data.hh"
 #include "eevee_film.hh"
-#include "eevee_materials.hh"
 
 #include "draw_view_shared.h"
 #include "gpu_read.hh"
@@ -42,11 +41,6 @@ void timed(bool is_timed, gpu::Device &device, Timing &timing, const char *name,
   step->is_pending = true;
 }
 
-gpu::Texture picture(gpu::Device &device, const char *name, gpu::Format format, glm::ivec2 size_px)
-{
-  return device.create_texture({.name = name, .format = format, .width = size_px.x, .height = size_px.y});
-}
-
 shared::ViewData view_data(const draw::View &view)
 {
   const glm::mat4 world_from_view(glm::inverse(glm::dmat4(view.view_from_world())));
@@ -56,69 +50,6 @@ shared::ViewData view_data(const draw::View &view)
   data.is_perspective = view.is_perspective() ? 1 : 0;
   data.back_ws = glm::normalize(glm::vec3(world_from_view[2]));
   return data;
-}
-
-const gpu::Batch &batch_of(gpu::Device &device, StorageList &stl, const scene::Scene &scene, std::uint32_t mesh_index,
-                           bool needs_uvs)
-{
-  MeshBatch &made = stl.batches[mesh_index];
-  const scene::Mesh &mesh = scene.meshes[mesh_index];
-  if (!made.batch || made.revision != mesh.revision || (needs_uvs && !made.has_uvs)) {
-    made.revision = mesh.revision;
-    made.has_uvs = needs_uvs;
-    made.batch = device.create_batch({mesh.name, mesh.positions, mesh.normals, mesh.indices,
-                                      needs_uvs ? std::span(mesh.uvs) : std::span<const glm::vec2>()});
-  }
-  return made.batch;
-}
-
-ShaderId shadow_shader(LayerPass layer_pass)
-{
-  switch (layer_pass) {
-    case LayerPass::Layered: return ShaderId::ShadowLayered;
-    case LayerPass::Geometry: return ShaderId::ShadowGeometry;
-    default: return ShaderId::Shadow;
-  }
-}
-
-State culled_state(CasterFaces faces)
-{
-  switch (faces) {
-    case CasterFaces::Front: return State::CullBack;
-    case CasterFaces::Back: return State::CullFront;
-    default: return State::None;
-  }
-}
-
-/** What makes a caster's shadow, as plain numbers. */
-std::uint64_t caster_fingerprint(const draw::ObjectRef &object, std::uint32_t mesh_index, const scene::Mesh &mesh,
-                                 const scene::Scene &scene)
-{
-  const scene::Material &material = scene.materials[mesh.material];
-  struct {
-    glm::mat4 world_from_object;
-    std::uint64_t revision;
-    std::uint32_t mesh_index;
-    std::uint32_t is_double_sided;
-    std::int32_t mask;
-    std::uint32_t image;
-    std::uint32_t wrap_u;
-    std::uint32_t wrap_v;
-    float alpha;
-    float alpha_cutoff;
-  } key = {object.world_from_object, mesh.revision, mesh_index, material.is_double_sided ? 1U : 0U, -2, 0, 0, 0, 0, 0};
-  if (is_masked(material)) {
-    key.mask = material.base_color_texture;
-    if (key.mask >= 0) {
-      const scene::Texture &texture = scene.textures[std::size_t(key.mask)];
-      key.image = texture.image;
-      key.wrap_u = std::uint32_t(texture.wrap_u);
-      key.wrap_v = std::uint32_t(texture.wrap_v);
-    }
-    key.alpha = material.alpha;
-    key.alpha_cutoff = material.alpha_cutoff;
-  }
-  return fingerprint_of(std::as_bytes(std::span(&key, 1)));
 }
 
 /** In light_block. */
@@ -131,15 +62,6 @@ std::optional<int> first_sun_with_maps(const Lamps &lamps)
     }
   }
   return std::nullopt;
-}
-
-void bind_lit(draw::ShadingGroup &group, StorageList &stl)
-{
-  group.bind_uniform("view_block", stl.view_block);
-  group.bind_storage_ref("object_block", &stl.object_block);
-  group.bind_storage("material_block", stl.material_block);
-  group.bind_uniform("light_block", stl.light_block);
-  stl.shadows.bind(group);
 }
 
 }  // namespace
@@ -162,221 +84,67 @@ void Engine::init(draw::Viewport &viewport)
   check(settings_);
   Data &data = viewport.engine_data<Data>(*this);
   gpu::Device &device = viewport.device();
+  data.is_synced = data.is_recorded = false;
+  data.samples_drawn = 0;
+  if (!data.psl) {
+    data.psl = std::make_unique<PassList>(scene_.objects());
+  }
+  data.stl.film_weight_sum = film_weight_sum(settings_.sample_count, settings_.seed);
+  shaders_.set_pcf(settings_.shadow.pcf);
   TextureList &txl = data.txl;
   if (!txl.film) {
-    txl.film = picture(device, "film", gpu::Format::RGBA32F, viewport.size_px());
+    txl.film = create_target(device, "film", gpu::Format::RGBA32F, viewport.size_px());
     data.fbl.film_fb = device.create_framebuffer({.name = "film_fb", .colors = {{&txl.film}}, .depth = {}});
   }
   if (settings_.has_display && !txl.display) {
-    txl.display = picture(device, "display", gpu::Format::RGBA8, viewport.size_px());
+    txl.display = create_target(device, "display", gpu::Format::RGBA8, viewport.size_px());
     data.fbl.display_fb = device.create_framebuffer({.name = "display_fb", .colors = {{&txl.display}}, .depth = {}});
   }
 }
 
-void Engine::cache_init(draw::Viewport &viewport)
+/** Which lamps give light, and which have a shadow of which kind and size. Needs no device. */
+void Engine::sync_lamps(Data &data, const gpu::Limits &device_limits)
 {
-  Data &data = viewport.engine_data<Data>(*this);
   StorageList &stl = data.stl;
-  data.is_synced = data.is_recorded = false;
-  data.psl = std::make_unique<PassList>(viewport.objects());
-  data.samples_drawn = 0;
-  stl.groups.clear();
-  stl.textures.clear();
-  stl.objects.clear();
-  stl.caster_calls.assign(scene_.meshes.size(), {});
-  stl.shaders.set_pcf(settings_.shadow.pcf);
-  stl.batches.resize(scene_.meshes.size());
-
-  stl.lamps = make_lamps(scene_);
-  stl.shadows.sync(viewport.device().limits(), scene_, stl.lamps, settings_.shadow);
-  stl.features = stl.lamps.features | stl.shadows.features();
+  const ShadowsKey key{scene_.lamps_revision(), scene_.objects().revision(), scene_.passes_revision(),
+                       settings_revision_, shaders_revision_};
+  if (stl.shadows_synced == key) {
+    return;
+  }
+  stl.shadows_synced.reset();
+  stl.has_casters = false;
+  stl.is_light_block_written = false;
+  stl.lamps = make_lamps(scene_.lamps());
+  stl.shadows.sync(device_limits, scene_.lamps(), scene_.bounds(), stl.lamps, settings_.shadow);
   stl.tinted_light = settings_.has_cascade_tint ? first_sun_with_maps(stl.lamps) : std::nullopt;
-  stl.film_weight_sum = film_weight_sum(settings_.sample_count, settings_.seed);
+  stl.shadows_synced = key;
 }
 
-void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectRef &object)
+void Engine::cache_init(draw::Viewport &viewport)
 {
-  const scene::Mesh &mesh = scene_.meshes[scene_.objects[object.index].mesh];
-  if (is_seen(scene_.materials[mesh.material])) {
-    viewport.engine_data<Data>(*this).stl.objects.push_back(object);
+  StorageList &stl = viewport.engine_data<Data>(*this).stl;
+  stl.objects.clear();
+  stl.is_collecting = true;
+}
+
+void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectBuffer &objects, draw::ObjectIndex object)
+{
+  StorageList &stl = viewport.engine_data<Data>(*this).stl;
+  if (stl.is_collecting) {
+    stl.objects.push_back(object);
+  }
+  else if (object < stl.is_mirrored.size()) {
+    stl.is_winding_changed |= stl.is_mirrored[object] != draw::is_mirrored(objects.world_from_object(object));
   }
 }
 
 void Engine::cache_finish(draw::Viewport &viewport)
 {
-  viewport.engine_data<Data>(*this).is_synced = true;
-}
-
-/** What a picture needs in which anything is seen. */
-void Engine::make_targets(draw::Viewport &viewport)
-{
   Data &data = viewport.engine_data<Data>(*this);
-  gpu::Device &device = viewport.device();
-  auto &[fbl, txl, psl, stl, timing, samples_drawn, shadow_picture, is_synced, is_recorded, is_seen, passes] = data;
-  if (!txl.radiance) {
-    txl.radiance = picture(device, "radiance", gpu::Format::RGBA32F, viewport.size_px());
-    fbl.depth_fb = device.create_framebuffer({.name = "depth_fb", .colors = {}, .depth = {&viewport.depth_texture()}});
-    fbl.main_fb = device.create_framebuffer(
-        {.name = "main_fb", .colors = {{&txl.radiance}}, .depth = {&viewport.depth_texture()}});
-    stl.view_block = device.create_buffer({"view_block", gpu::BufferKind::Uniform, sizeof(shared::ViewData)});
-    txl.nearest = device.create_sampler({.name = "nearest"});
-  }
-  if (settings_.has_probe && !txl.probe_position) {
-    txl.probe_position = picture(device, "probe_position", gpu::Format::RGBA32F, viewport.size_px());
-    txl.probe_normal = picture(device, "probe_normal", gpu::Format::RGBA32F, viewport.size_px());
-    fbl.probe_fb = device.create_framebuffer({.name = "probe_fb",
-                                              .colors = {{&txl.probe_position}, {&txl.probe_normal}},
-                                              .depth = {&viewport.depth_texture()}});
-  }
-}
-
-void Engine::make_blocks(draw::Viewport &viewport)
-{
-  StorageList &stl = viewport.engine_data<Data>(*this).stl;
-  gpu::Device &device = viewport.device();
-  const std::vector<shared::MaterialData> materials = make_materials(scene_);
-  const auto bytes = std::as_bytes(std::span(materials));
-  if (!stl.material_block || stl.material_block.size_bytes() != bytes.size()) {
-    stl.material_block = device.create_buffer({"material_block", gpu::BufferKind::Storage, bytes.size()});
-  }
-  device.update(stl.material_block, 0, bytes);
-  if (!has(stl.features, Feature::Light)) {
-    stl.light_block = {};
-    return;
-  }
-  std::vector<shared::MaterialData> used;
-  for (const draw::ObjectRef &object : stl.objects) {
-    used.push_back(materials[scene_.meshes[scene_.objects[object.index].mesh].material]);
-  }
-  stl.features = stl.features | material_features(used);
-  if (!stl.light_block) {
-    stl.light_block = device.create_buffer({"light_block", gpu::BufferKind::Uniform, sizeof(shared::LightBlock)});
-  }
-  device.update(stl.light_block, stl.lamps.light_block);
-}
-
-void Engine::record_film(draw::Viewport &viewport)
-{
-  Data &data = viewport.engine_data<Data>(*this);
-  StorageList &stl = data.stl;
-  draw::ShadingGroup &film = data.psl->film_pass.group(stl.shaders.get(viewport.device(), ShaderId::Film));
-  film.bind_texture("radiance_texture", data.txl.radiance, data.txl.nearest);
-  film.constant_ref("column_weights", &stl.film_columns);
-  film.constant_ref("row_weights", &stl.film_rows);
-  film.call_procedural();
-  if (settings_.has_display) {
-    draw::ShadingGroup &tonemap = data.psl->tonemap.group(stl.shaders.get(viewport.device(), ShaderId::Tonemap));
-    tonemap.bind_texture("radiance_texture", data.txl.film, data.txl.nearest);
-    tonemap.constant("view_transform", int(settings_.view_transform));
-    tonemap.constant("exposure_scale", std::exp2(settings_.exposure));
-    tonemap.call_procedural();
-  }
-}
-
-void Engine::record(draw::Viewport &viewport)
-{
-  Data &data = viewport.engine_data<Data>(*this);
-  if (data.is_recorded) {
-    return;
-  }
-  // Until it comes to its end: a half of it must not be drawn.
-  data.is_synced = false;
-  make_targets(viewport);
-  make_blocks(viewport);
-  data.stl.shadows.allocate(viewport.device(), data.stl.shaders);
-  for (const draw::ObjectRef &object : data.stl.objects) {
-    record_object(viewport, object);
-  }
-  data.stl.shadows.finish();
-  record_film(viewport);
-  viewport.objects().upload(viewport.device());
-  data.is_synced = data.is_recorded = true;
-}
-
-void Engine::record_object(draw::Viewport &viewport, const draw::ObjectRef &object)
-{
-  Data &data = viewport.engine_data<Data>(*this);
-  StorageList &stl = data.stl;
-  gpu::Device &device = viewport.device();
-  const scene::Mesh &mesh = scene_.meshes[scene_.objects[object.index].mesh];
-  const scene::Material &material = scene_.materials[mesh.material];
-  const bool has_mask = is_masked(material);
-  const bool is_lit_textured = material.base_color_texture >= 0 && (has_mask || has(stl.features, Feature::Light));
-  const gpu::Batch &batch = batch_of(device, stl, scene_, scene_.objects[object.index].mesh, is_lit_textured);
-  const draw::ObjectIndex index = viewport.objects().add(object.world_from_object, mesh.material);
-  const State winding = draw::is_mirrored(object.world_from_object) ? State::FrontClockwise : State::None;
-
-  /** The group of a pass; \a bind fills in a new one. */
-  const auto group_of = [&](draw::Pass &pass, const gpu::Shader &shader, State state, bool is_textured,
-                            const auto &bind) -> draw::ShadingGroup & {
-    const std::int32_t texture = is_textured ? material.base_color_texture : -1;
-    draw::ShadingGroup *&group = stl.groups[{&pass, state, texture}];
-    if (!group) {
-      group = &pass.group(shader);
-      group->state_enable(state);
-      bind(*group);
-      if (is_textured) {
-        const auto [image, sampler] = stl.textures.get(device, scene_, std::size_t(texture));
-        group->bind_texture("base_color_texture", image, sampler);
-      }
-    }
-    return *group;
-  };
-  const auto call = [&](draw::Pass &pass, const gpu::Shader &shader, State state, bool is_textured) {
-    const auto bind = [&stl](draw::ShadingGroup &group) { bind_lit(group, stl); };
-    group_of(pass, shader, state | winding, is_textured, bind).call(batch, index, object.volume);
-  };
-  const Feature mask = has_mask ? Feature::AlphaMask : Feature::None;
-  const gpu::Shader &depth_shader = stl.shaders.get(device, ShaderId::Depth, mask);
-  const gpu::Shader &lit_shader = stl.shaders.get(
-      device, ShaderId::Lit, stl.features | (is_lit_textured ? Feature::BaseColorTexture : Feature::None));
-  if (material.is_double_sided) {
-    call(data.psl->depth_pass, depth_shader, State::None, has_mask);
-    call(data.psl->pass, lit_shader, State::None, is_lit_textured);
-  }
-  else {
-    call(data.psl->depth_pass_cull, depth_shader, State::None, has_mask);
-    // At the same depth as the front of another face, the back must not be drawn over it.
-    call(data.psl->pass, lit_shader, State::CullBack, is_lit_textured);
-  }
-
-  const State side = material.is_double_sided ? State::None : State::CullBack;
-  if (stl.tinted_light) {
-    const auto bind = [&stl](draw::ShadingGroup &group) {
-      bind_lit(group, stl);
-      group.constant("tinted_light", *stl.tinted_light);
-    };
-    const gpu::Shader &tint_shader = stl.shaders.get(device, ShaderId::DebugCascades, stl.features);
-    group_of(data.psl->tint_pass, tint_shader, side | winding, false, bind).call(batch, index, object.volume);
-  }
-  if (settings_.has_probe && has(stl.features, Feature::Light)) {
-    const auto bind = [&stl](draw::ShadingGroup &group) {
-      bind_lit(group, stl);
-      group.constant_ref("probed_light", &stl.probed_light);
-    };
-    const gpu::Shader &probe_shader = stl.shaders.get(device, ShaderId::Probe, stl.features);
-    group_of(data.psl->probe_pass, probe_shader, side | winding, false, bind).call(batch, index, object.volume);
-  }
-
-  if (has(stl.features, any_shadow)) {
-    const std::uint32_t mesh_index = scene_.objects[object.index].mesh;
-    draw::InstanceCall *&instances = stl.caster_calls[mesh_index][winding == State::None ? 0 : 1];
-    if (!instances) {
-      const auto bind = [&stl](draw::ShadingGroup &group) {
-        group.bind_storage_ref("object_block", &stl.object_block);
-        group.bind_storage("material_block", stl.material_block);
-        group.bind_uniform_ref("shadow_render_block", stl.shadows.render_block());
-      };
-      const ShaderId id = shadow_shader(stl.shadows.layer_pass());
-      const State faces = material.is_double_sided ? State::None : culled_state(settings_.shadow.caster_faces);
-      // Without culling the winding makes no difference.
-      const State state = faces == State::None ? State::None : faces | winding;
-      instances =
-          &group_of(data.psl->shadow_pass, stl.shaders.get(device, id, mask), state, has_mask, bind).instances(batch);
-    }
-    stl.shadows.add_caster({scene::transformed(mesh.bounds, object.world_from_object), index, instances,
-                            caster_fingerprint(object, mesh_index, mesh, scene_), &mesh, &object.world_from_object});
-  }
+  data.stl.is_collecting = false;
+  sync_lamps(data, viewport.device().limits());
+  data.stl.features = data.stl.lamps.features | data.stl.shadows.features();
+  data.is_synced = true;
 }
 
 /** What a failed sync leaves can be synced again, and not be drawn. */
@@ -405,7 +173,9 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
     data.passes.clear();
     data.is_seen = false;
   }
-  if (std::ranges::any_of(data.stl.objects, [&](const auto &object) { return sample_view.touches(object.volume); })) {
+  if (std::ranges::any_of(data.stl.objects, [&](draw::ObjectIndex object) {
+        return sample_view.touches(scene_.objects().volume(object));
+      })) {
     data.is_seen = true;
     record(viewport);
     draw_sample(viewport, view, sample_view);
@@ -449,7 +219,8 @@ void Engine::draw_sample(draw::Viewport &viewport, const draw::View &view, const
   Data &data = viewport.engine_data<Data>(*this);
   auto &[fbl, txl, psl, stl, timing, samples_drawn, shadow_picture, is_synced, is_recorded, is_seen, passes] = data;
   gpu::Device &device = viewport.device();
-  stl.object_block = {viewport.objects().buffer().id()};
+  stl.object_block = {scene_.objects().buffer().id()};
+  stl.material_block = {scene_.materials().buffer().id()};
   device.update(stl.view_block, view_data(sample_view));
 
   const auto draw_depth = [&] {
@@ -470,7 +241,7 @@ void Engine::draw_sample(draw::Viewport &viewport, const draw::View &view, const
   if (!is_depth_first) {
     draw_depth();
   }
-  submit_pass(viewport, "lit", fbl.main_fb, {.depth_load = gpu::LoadAction::Load}, {&psl->pass, &psl->tint_pass},
+  submit_pass(viewport, "lit", fbl.main_fb, {.depth_load = gpu::LoadAction::Load}, {&psl->lit_pass, &psl->tint_pass},
               sample_view);
 
   const FilmWeights weights = film_weights(samples_drawn, settings_.sample_count, settings_.seed, stl.film_weight_sum);
@@ -482,9 +253,8 @@ void Engine::draw_sample(draw::Viewport &viewport, const draw::View &view, const
 
 static std::optional<std::size_t> light_of(const Lamps &lamps, std::size_t lamp)
 {
-  const auto found = std::ranges::find(lamps.scene_index, std::uint32_t(lamp));
-  return found == lamps.scene_index.end() ? std::nullopt
-                                          : std::optional(std::size_t(found - lamps.scene_index.begin()));
+  const auto found = std::ranges::find(lamps.lamp_index, std::uint32_t(lamp));
+  return found == lamps.lamp_index.end() ? std::nullopt : std::optional(std::size_t(found - lamps.lamp_index.begin()));
 }
 
 std::optional<Probe> Engine::probe(draw::Viewport &viewport, const draw::View &view, std::size_t lamp)
@@ -501,7 +271,8 @@ std::optional<Probe> Engine::probe(draw::Viewport &viewport, const draw::View &v
   const auto &[fbl, txl, psl] = std::tie(data.fbl, data.txl, data.psl);
   gpu::Device &device = viewport.device();
   stl.probed_light = int(*light);
-  stl.object_block = {viewport.objects().buffer().id()};
+  stl.object_block = {scene_.objects().buffer().id()};
+  stl.material_block = {scene_.materials().buffer().id()};
   device.update(stl.view_block, view_data(view));
   gpu::CommandList list;
   stl.shadows.update(device, view, pixel_size(view, viewport), psl->shadow_pass, list);
@@ -554,11 +325,11 @@ std::vector<StepTime> Engine::take_step_times(draw::Viewport &viewport) const
   return times;
 }
 
-std::vector<std::string> Engine::reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files) const
+std::vector<std::string> Engine::reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files)
 {
-  StorageList &stl = viewport.engine_data<Data>(*this).stl;
-  stl.shadows.invalidate();
-  return stl.shaders.reload(viewport.device(), std::move(files));
+  viewport.engine_data<Data>(*this).stl.shadows.invalidate();
+  shaders_revision_++;
+  return shaders_.reload(viewport.device(), std::move(files));
 }
 
 void Engine::invalidate_shadows(draw::Viewport &viewport) const
@@ -571,7 +342,7 @@ std::string Engine::serialize_passes(draw::Viewport &viewport) const
   const Data &data = viewport.engine_data<Data>(*this);
   std::string text;
   for (const draw::Pass *pass :
-       {&data.psl->shadow_pass, &data.psl->depth_pass, &data.psl->depth_pass_cull, &data.psl->pass,
+       {&data.psl->shadow_pass, &data.psl->depth_pass, &data.psl->depth_pass_cull, &data.psl->lit_pass,
         &data.psl->tint_pass, &data.psl->probe_pass, &data.psl->film_pass, &data.psl->tonemap}) {
     text += pass->serialize(viewport.device());
   }
@@ -599,32 +370,20 @@ const gpu::Texture &Engine::shadow_picture(draw::Viewport &viewport, std::size_t
   Data &data = viewport.engine_data<Data>(*this);
   const std::optional<ShadowLayers> layers = layers_of(data.stl, lamp);
   GNOMON_ASSERT(layers, "lamp {} has no shadow", lamp);
-  return data.shadow_picture.draw(viewport.device(), data.stl.shaders, *layers,
+  return data.shadow_picture.draw(viewport.device(), shaders_, *layers,
                                   layer ? std::optional(int(*layer)) : std::nullopt);
 }
 
 std::optional<std::size_t> Engine::tinted_sun(draw::Viewport &viewport) const
 {
   const StorageList &stl = viewport.engine_data<Data>(*this).stl;
-  return stl.tinted_light ? std::optional(std::size_t(stl.lamps.scene_index[std::size_t(*stl.tinted_light)]))
+  return stl.tinted_light ? std::optional(std::size_t(stl.lamps.lamp_index[std::size_t(*stl.tinted_light)]))
                           : std::nullopt;
 }
 
-draw::EngineType engine_type(const scene::Scene &scene, const Settings &settings)
+draw::EngineType engine_type(render_scene::RenderScene &scene, const Settings &settings)
 {
   return {"eevee", [&scene, settings] { return std::make_unique<Engine>(scene, settings); }};
-}
-
-std::vector<draw::ObjectRef> object_refs(const scene::Scene &scene)
-{
-  std::vector<draw::ObjectRef> refs;
-  refs.reserve(scene.objects.size());
-  for (std::uint32_t i = 0; i < scene.objects.size(); i++) {
-    const scene::Object &object = scene.objects[i];
-    const scene::Bounds bounds = scene::transformed(scene.meshes[object.mesh].bounds, object.world_from_object);
-    refs.push_back({i, object.world_from_object, {bounds.center(), bounds.radius()}});
-  }
-  return refs;
 }
 
 }  // namespace gnomon::eevee

@@ -9,6 +9,7 @@
 #include "draw_engine.hh"
 #include "draw_viewport.hh"
 #include "eevee_tonemap_shared.h"
+#include "render_scene.hh"
 
 #include <optional>
 
@@ -41,6 +42,8 @@ struct StepTime {
   double seconds = 0.0;
 };
 
+struct Data;
+
 /** What the engine makes of one lamp at the middle of each pixel; rows from the bottom. */
 struct Probe {
   /** xyz: where the surface is, world space; w: how much of the lamp it sees by its shadow, in [0, 1]. */
@@ -72,13 +75,17 @@ struct Report {
  */
 class Engine final : public draw::Engine {
  public:
-  /** \a scene must outlive the engine; after a change of it, draw::Viewport::sync. */
-  Engine(const scene::Scene &scene, const Settings &settings) : scene_(scene), settings_(settings) {}
+  /**
+   * \a scene must outlive the engine, and the viewports that it draws in. After an edit of the scene call
+   * render_scene::RenderScene::update, then draw::Viewport::sync with the objects of \a scene.
+   */
+  Engine(render_scene::RenderScene &scene, const Settings &settings) : scene_(scene), settings_(settings) {}
 
-  /** Take others, from the next draw::Viewport::sync on, which must come before the next draw. */
+  /** Other settings, from the next draw::Viewport::sync on, which must come before the next draw. */
   void set_settings(const Settings &settings)
   {
     settings_ = settings;
+    settings_revision_++;
   }
 
   [[nodiscard]] std::string_view name() const override
@@ -87,7 +94,7 @@ class Engine final : public draw::Engine {
   }
   void init(draw::Viewport &viewport) override;
   void cache_init(draw::Viewport &viewport) override;
-  void cache_populate(draw::Viewport &viewport, const draw::ObjectRef &object) override;
+  void cache_populate(draw::Viewport &viewport, const draw::ObjectBuffer &objects, draw::ObjectIndex object) override;
   void cache_finish(draw::Viewport &viewport) override;
   void draw_scene(draw::Viewport &viewport, const draw::View &view) override;
 
@@ -98,8 +105,8 @@ class Engine final : public draw::Engine {
   /** Of the samples drawn since the last call; waits for the device. Empty unless Settings::is_timed. */
   [[nodiscard]] std::vector<StepTime> take_step_times(draw::Viewport &viewport) const;
   /**
-   * What the picture's shadows of the \a lamp-th lamp of the scene are made of, pixel by pixel, for a judge. Nothing
-   * where the lamp gives no light, or no object is there. \pre Settings::has_probe
+   * Positions, normals and the visibility of the \a lamp-th lamp of RenderScene::lamps at each pixel. Nothing where the
+   * lamp gives no light, or no object is there. \pre Settings::has_probe
    */
   [[nodiscard]] std::optional<Probe> probe(draw::Viewport &viewport, const draw::View &view, std::size_t lamp);
   /** Edge of a texel of that lamp's shadow at a place, across the light, metres; 0: it has none there. */
@@ -120,19 +127,23 @@ class Engine final : public draw::Engine {
   [[nodiscard]] const Shadows &shadows(draw::Viewport &viewport) const;
   [[nodiscard]] Report report(draw::Viewport &viewport) const;
   /** For long-running hosts, when a shader file was edited: ShaderCache::reload; then draw::Viewport::sync. */
-  std::vector<std::string> reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files) const;
+  std::vector<std::string> reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files);
   /** Draw each shadow again, up to date or not: for who measures what that costs. */
   void invalidate_shadows(draw::Viewport &viewport) const;
   /** The recorded passes as text: none before a draw that saw anything. */
   [[nodiscard]] std::string serialize_passes(draw::Viewport &viewport) const;
 
  private:
-  /** Everything that a picture needs in which anything is seen, once after each sync. */
+  void sync_lamps(Data &data, const gpu::Limits &device_limits);
+  /** Create and record everything that a picture needs in which any object is visible, as far as it changed. */
   void record(draw::Viewport &viewport);
   void make_targets(draw::Viewport &viewport);
   void make_blocks(draw::Viewport &viewport);
-  void record_object(draw::Viewport &viewport, const draw::ObjectRef &object);
+  void record_passes(draw::Viewport &viewport);
+  void record_object(draw::Viewport &viewport, draw::ObjectIndex object);
+  void record_caster(Data &data, draw::ObjectIndex object);
   void record_film(draw::Viewport &viewport);
+  void add_casters(Data &data);
   /** \a sample_view: \a view moved within the pixels. */
   void draw_sample(draw::Viewport &viewport, const draw::View &view, const draw::View &sample_view);
   /** One step of the frame: \a passes into \a framebuffer, counted and timed. */
@@ -140,14 +151,15 @@ class Engine final : public draw::Engine {
                    const gpu::PassActions &actions, std::initializer_list<const draw::Pass *> passes,
                    const draw::View &view);
 
-  const scene::Scene &scene_;
+  render_scene::RenderScene &scene_;
   Settings settings_;
+  std::uint64_t settings_revision_ = 0;
+  /** Of all viewports. */
+  ShaderCache shaders_;
+  std::uint64_t shaders_revision_ = 0;
 };
 
 /** For a host's registry; engines that it creates read \a scene, which must outlive them. */
-[[nodiscard]] draw::EngineType engine_type(const scene::Scene &scene, const Settings &settings);
-
-/** The objects of a scene as the draw manager takes them, culling volumes included. */
-[[nodiscard]] std::vector<draw::ObjectRef> object_refs(const scene::Scene &scene);
+[[nodiscard]] draw::EngineType engine_type(render_scene::RenderScene &scene, const Settings &settings);
 
 }  // namespace gnomon::eevee

@@ -4,7 +4,6 @@
 #include "eevee_debug.hh"
 #include "eevee_lamps.hh"
 #include "eevee_shadows.hh"
-#include "eevee_textures.hh"
 
 #include "draw_viewport.hh"
 
@@ -14,6 +13,11 @@
 
 /** What the engine keeps in a viewport. For the engine's own files. */
 namespace gnomon::eevee {
+
+inline gpu::Texture create_target(gpu::Device &device, const char *name, gpu::Format format, glm::ivec2 size_px)
+{
+  return device.create_texture({.name = name, .format = format, .width = size_px.x, .height = size_px.y});
+}
 
 struct FramebufferList {
   gpu::Framebuffer depth_fb;
@@ -40,7 +44,7 @@ struct PassList {
         depth_pass("depth_pass", gpu::State::WriteDepth | gpu::State::DepthNearerEqual, &objects),
         depth_pass_cull("depth_pass_cull", gpu::State::WriteDepth | gpu::State::DepthNearerEqual | gpu::State::CullBack,
                         &objects),
-        pass("pass", gpu::State::WriteColor | gpu::State::DepthEqual, &objects),
+        lit_pass("lit_pass", gpu::State::WriteColor | gpu::State::DepthEqual, &objects),
         probe_pass("probe_pass", gpu::State::WriteColor | gpu::State::DepthEqual, &objects),
         tint_pass("tint_pass", gpu::State::WriteColor | gpu::State::DepthEqual | gpu::State::BlendMultiply, &objects),
         film_pass("film_pass", gpu::State::WriteColor | gpu::State::BlendAdd),
@@ -50,41 +54,73 @@ struct PassList {
   draw::Pass shadow_pass;
   draw::Pass depth_pass;
   draw::Pass depth_pass_cull;
-  draw::Pass pass;
+  draw::Pass lit_pass;
   draw::Pass probe_pass;
   draw::Pass tint_pass;
   draw::Pass film_pass;
   draw::Pass tonemap;
 };
 
-/** What calls of one group have in common: pass, state beside the pass's, texture (-1: none). */
-using GroupKey = std::tuple<const draw::Pass *, gpu::State, std::int32_t>;
+/** What calls of one group have in common: pass, shader, state beside the pass's, texture. */
+using GroupKey = std::tuple<const draw::Pass *, gpu::ResourceId, gpu::State, scene::Handle<scene::Texture>>;
 
-struct MeshBatch {
-  gpu::Batch batch;
-  /** scene::Mesh::revision. */
-  std::uint64_t revision = 0;
-  bool has_uvs = false;
+/** Revisions of everything that recorded passes depend on. */
+struct PassesKey {
+  std::uint64_t structure = 0;
+  std::uint64_t passes = 0;
+  std::uint64_t settings = 0;
+  std::uint64_t shaders = 0;
+  /** Of shadows whose textures and blocks are bound by value. */
+  std::uint64_t exponential_lamps = 0;
+  gpu::ResourceId shadow_block = 0;
+  gpu::ResourceId light_block = 0;
+  Feature features = Feature::None;
+  std::optional<int> tinted_light;
+
+  bool operator==(const PassesKey &) const = default;
+};
+
+/** Revisions of everything that the lamps' shadows depend on. */
+struct ShadowsKey {
+  std::uint64_t lamps = 0;
+  std::uint64_t objects = 0;
+  std::uint64_t passes = 0;
+  std::uint64_t settings = 0;
+  std::uint64_t shaders = 0;
+
+  bool operator==(const ShadowsKey &) const = default;
 };
 
 struct StorageList {
   Lamps lamps;
   Shadows shadows;
   Feature features = Feature::None;
-  ShaderCache shaders;
-  /** What may be seen; recorded when a view touches any of it. */
-  std::vector<draw::ObjectRef> objects;
-  /** One a mesh of the scene; empty until an object uses it. */
-  std::vector<MeshBatch> batches;
+  /** Drawable objects, in the order of their first cache_populate; recorded when a view touches any of them. */
+  std::vector<draw::ObjectIndex> objects;
+  /** cache_init was called, and cache_finish not yet. */
+  bool is_collecting = false;
   gpu::Buffer view_block;
   gpu::Buffer light_block;
-  gpu::Buffer material_block;
+  gpu::BufferRange material_block;
   gpu::BufferRange object_block;
-  Textures textures;
   /** Made when the first object needs them. */
   std::map<GroupKey, draw::ShadingGroup *> groups;
-  /** One a mesh of the scene and winding; empty until a caster uses it. */
-  std::vector<std::array<draw::InstanceCall *, 2>> caster_calls;
+  /** For each mesh and winding of casters, the call in shadow_pass. */
+  std::map<std::pair<scene::Handle<scene::Mesh>, gpu::State>, draw::InstanceCall *> caster_calls;
+  /** By object index: the call of a caster; nullptr for objects that cast no shadow. */
+  std::vector<draw::InstanceCall *> caster_of;
+  /** By object index: passes were recorded for a mirrored matrix. */
+  std::vector<bool> is_mirrored;
+  /** An object changed in a way that passes depend on. */
+  bool is_winding_changed = false;
+  std::optional<PassesKey> recorded;
+  std::optional<ShadowsKey> shadows_synced;
+  /** Casters are those of the last sync of the shadows. */
+  bool has_casters = false;
+  /** Of the material table and the light block on the device. */
+  std::uint64_t materials_features_revision = ~std::uint64_t(0);
+  Feature material_features = Feature::None;
+  bool is_light_block_written = false;
   /** In light_block, of the probe being drawn. */
   int probed_light = 0;
   /** In light_block: the sun whose cascades are shown; nothing where none is, or nobody asks. */
@@ -114,6 +150,15 @@ struct PassRuns {
 };
 
 struct Data final : draw::EngineViewportData {
+  void resized() override
+  {
+    fbl = {};
+    txl = {};
+    is_synced = false;
+    stl.recorded.reset();
+    // Suns are fitted to the size of a pixel.
+    stl.shadows_synced.reset();
+  }
   FramebufferList fbl;
   TextureList txl;
   std::unique_ptr<PassList> psl;
@@ -123,7 +168,7 @@ struct Data final : draw::EngineViewportData {
   ShadowPicture shadow_picture;
   /** The last sync came to its end, and so did what was recorded since. */
   bool is_synced = false;
-  /** A view touched an object since the last sync: passes, programs and targets are made. */
+  /** A view touched an object since the last sync: passes, programs and targets are up to date. */
   bool is_recorded = false;
   /** A sample of the picture at hand did. */
   bool is_seen = false;

@@ -47,6 +47,12 @@ constexpr bool has(Feature mask, Feature bit)
 /** Something is drawn from a lamp. */
 inline constexpr Feature any_shadow = Feature::ShadowCube | Feature::ShadowMap | Feature::ShadowEsm;
 
+/** As if no lamp cast a shadow. */
+constexpr Feature without_shadows(Feature features)
+{
+  return Feature(std::uint32_t(features) & ~std::uint32_t(any_shadow | Feature::ShadowPcf | Feature::ShadowEvsm));
+}
+
 /** The texels that percentage-closer filtering reads. */
 struct PcfKernel {
   /** Edge of a square of texels: 1, 3 or 5; 0: a disk of radius 2 instead. */

@@ -43,7 +43,7 @@ void warn_of_size(const scene::Lamp &lamp, std::vector<std::string> &warnings)
 
 }  // namespace
 
-shared::LightData light_data(const scene::Lamp &lamp)
+shared::LightData light_data(const scene::PlacedLamp &lamp)
 {
   shared::LightData light{};
   light.kind = light_kind(lamp.kind);
@@ -64,12 +64,12 @@ shared::LightData light_data(const scene::Lamp &lamp)
   return light;
 }
 
-Lamps make_lamps(const scene::Scene &scene)
+Lamps make_lamps(std::span<const scene::PlacedLamp> placed)
 {
   Lamps lamps;
   std::vector<std::string> dropped;
-  for (std::uint32_t i = 0; i < scene.lamps.size(); i++) {
-    const scene::Lamp &lamp = scene.lamps[i];
+  for (std::uint32_t i = 0; i < placed.size(); i++) {
+    const scene::PlacedLamp &lamp = placed[i];
     if (!gives_light(lamp)) {
       continue;
     }
@@ -83,7 +83,7 @@ Lamps make_lamps(const scene::Scene &scene)
     }
     warn_of_size(lamp, lamps.warnings);
     lamps.light_block.lights[lamps.light_block.light_count++] = light_data(lamp);
-    lamps.scene_index.push_back(i);
+    lamps.lamp_index.push_back(i);
     lamps.features = lamps.features | Feature::Light;
     if (lamp.kind == scene::LampKind::Point || lamp.kind == scene::LampKind::Spot) {
       lamps.features = lamps.features | Feature::Punctual;

@@ -6,16 +6,18 @@
 #include "eevee_light_shared.h"
 #include "scene.hh"
 
+#include <span>
+
 namespace gnomon::eevee {
 
 /** A lamp's entry of `light_block`, without a shadow: shadow set-up fills that in. \pre not an area lamp. */
-[[nodiscard]] shared::LightData light_data(const scene::Lamp &lamp);
+[[nodiscard]] shared::LightData light_data(const scene::PlacedLamp &lamp);
 
-/** The lamps of a scene as the shaders read them. */
+/** Lamps as the shaders read them. */
 struct Lamps {
   shared::LightBlock light_block{};
-  /** For each light of the block, its lamp's index in the scene. */
-  std::vector<std::uint32_t> scene_index;
+  /** For each light of the block, the index of its lamp in the list that make_lamps was given. */
+  std::vector<std::uint32_t> lamp_index;
   /** Features that the lamps ask for; shadows not among them. */
   Feature features = Feature::None;
   /** One for each lamp, or property of one, that is not drawn yet. */
@@ -24,7 +26,7 @@ struct Lamps {
   std::vector<std::string> limits;
 };
 
-/** Lamps that give no light (black, intensity 0) take no room. */
-[[nodiscard]] Lamps make_lamps(const scene::Scene &scene);
+/** Lamps that give no light (black, intensity 0) take no entry. */
+[[nodiscard]] Lamps make_lamps(std::span<const scene::PlacedLamp> lamps);
 
 }  // namespace gnomon::eevee

@@ -2,12 +2,12 @@
 // What a frame consists of, and what it was spared, from the state that the engine itself went by.
 #include "eevee_engine.hh"
 #include "eevee_engine_data.hh"
-#include "eevee_materials.hh"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <bit>
+#include <set>
 
 namespace gnomon::eevee {
 
@@ -23,7 +23,8 @@ constexpr const char *nothing_seen = "nothing is seen";
 
 /** Everything the nodes are made from. */
 struct Source {
-  const scene::Scene &scene;
+  render_scene::RenderScene &render_scene;
+  const ShaderCache &shaders;
   const Settings &settings;
   const Data &data;
   draw::Viewport &viewport;
@@ -31,6 +32,14 @@ struct Source {
   [[nodiscard]] const gpu::Device &device() const
   {
     return viewport.device();
+  }
+  [[nodiscard]] const scene::Scene &scene() const
+  {
+    return render_scene.scene();
+  }
+  [[nodiscard]] const scene::Mesh &mesh(draw::ObjectIndex object) const
+  {
+    return scene().meshes()[render_scene.object(object).mesh];
   }
   [[nodiscard]] bool has(Feature feature) const
   {
@@ -68,19 +77,22 @@ std::string why_no_shadow(const Source &source, std::string no_such_lamp)
   return source.has(Feature::Light) ? std::move(no_such_lamp) : "no lamp gives light";
 }
 
-/** Whether an object that may be seen has a material with a base colour texture; of \a image alone, where given. */
-bool is_textured(const Source &source, std::optional<std::uint32_t> image = std::nullopt)
+/** The images that materials of drawable objects read. */
+std::set<scene::Handle<scene::Image>> read_images(const Source &source)
 {
-  return std::ranges::any_of(source.data.stl.objects, [&](const draw::ObjectRef &object) {
-    const scene::Mesh &mesh = source.scene.meshes[source.scene.objects[object.index].mesh];
-    const std::int32_t texture = source.scene.materials[mesh.material].base_color_texture;
-    return texture >= 0 && (!image || source.scene.textures[std::size_t(texture)].image == *image);
-  });
+  std::set<scene::Handle<scene::Image>> images;
+  for (const draw::ObjectIndex object : source.data.stl.objects) {
+    const scene::Handle<scene::Texture> texture = source.scene().material_of(source.mesh(object)).base_color_texture;
+    if (render_scene::is_drawable(source.scene(), texture)) {
+      images.insert(source.scene().textures()[texture].image);
+    }
+  }
+  return images;
 }
 
 std::string why_no_feature(const Source &source, Feature feature)
 {
-  if (feature == Feature::BaseColorTexture && source.data.is_recorded && !is_textured(source)) {
+  if (feature == Feature::BaseColorTexture && source.data.is_recorded && read_images(source).empty()) {
     return "no material that is drawn has a texture";
   }
   if (feature == Feature::Light || !source.has(Feature::Light)) {
@@ -161,7 +173,7 @@ FrameNode program_nodes(const Source &source)
   std::vector<FrameNode> programs;
   Feature made_features = Feature::None;
   for (const ShaderDeclaration &declaration : shader_declarations()) {
-    const std::vector<Feature> made = source.data.stl.shaders.made(declaration.id);
+    const std::vector<Feature> made = source.shaders.made(declaration.id);
     const std::size_t possible = shader_variants(declaration).size();
     FrameNode &node = programs.emplace_back(FrameNode{
         .what = std::string(declaration.name), .is_made = !made.empty(), .why = std::string(declaration.purpose)});
@@ -193,7 +205,7 @@ FrameNode program_nodes(const Source &source)
   programs.insert(programs.begin(),
                   folder("features", "what variants have", "no program that is made has any", std::move(features)));
   FrameNode node = folder("programs", "what passes draw with", nothing_seen, std::move(programs));
-  node.count = source.data.stl.shaders.size();
+  node.count = source.shaders.size();
   return node;
 }
 
@@ -242,7 +254,7 @@ FrameNode pass_nodes(const Source &source)
   passes.push_back(
       with_time(folder("depth_prepass", "each pixel is lit once", nothing_seen, std::move(depth)), "depth_prepass"));
   std::vector<FrameNode> lit;
-  lit.push_back(node_of("pass", psl.pass.name(), "objects in the view", nothing_seen));
+  lit.push_back(node_of("lit_pass", psl.lit_pass.name(), "objects in the view", nothing_seen));
   lit.push_back(node_of("tint_pass", psl.tint_pass.name(), "asked for",
                         !source.settings.has_cascade_tint ? "not asked for"
                         : data.stl.tinted_light           ? nothing_seen
@@ -328,9 +340,10 @@ FrameNode block_nodes(const Source &source)
   };
   const std::string no_shadow = why_no_shadow(source, "no lamp casts a shadow");
   add(stl.view_block, "view_block", "whatever is drawn", nothing_seen);
-  add(source.viewport.objects().buffer(), "object_block", fmt::format("{} matrices", source.viewport.objects().size()),
-      nothing_seen);
-  add(stl.material_block, "material_block", fmt::format("{} materials", source.scene.materials.size()), nothing_seen);
+  add(source.render_scene.objects().buffer(), "object_block",
+      fmt::format("{} matrices", source.render_scene.objects().size()), nothing_seen);
+  add(source.render_scene.materials().buffer(), "material_block",
+      fmt::format("{} materials", source.scene().materials().size()), nothing_seen);
   add(stl.light_block, "light_block", fmt::format("{} lights", stl.lamps.light_block.light_count),
       "no lamp gives light");
   add(stl.shadows.block(), "shadow_block", "shadows of depths",
@@ -343,38 +356,41 @@ FrameNode block_nodes(const Source &source)
 /** Meshes and images alike: how many were taken to the device, and why. */
 FrameNode mesh_nodes(const Source &source)
 {
-  const StorageList &stl = source.data.stl;
+  const scene::Scene &scene = source.scene();
+  std::set<scene::Handle<scene::Mesh>> used;
+  for (const scene::Object &object : scene.objects()) {
+    used.insert(object.mesh);
+  }
+  const gpu::Batch none;
   std::vector<FrameNode> meshes;
-  for (std::size_t i = 0; i < source.scene.meshes.size(); i++) {
-    const scene::Mesh &mesh = source.scene.meshes[i];
-    const gpu::Batch none;
-    const gpu::Batch &batch = i < stl.batches.size() ? stl.batches[i].batch : none;
-    const bool is_used = std::ranges::any_of(
-        source.scene.objects, [&](const scene::Object &object) { return object.mesh == std::uint32_t(i); });
+  for (const auto &[handle, mesh] : scene.meshes()) {
+    const gpu::Batch *made = source.render_scene.meshes().find(handle);
+    const gpu::Batch &batch = made ? *made : none;
     FrameNode &node = meshes.emplace_back(
         resource_node(source, batch, mesh.name, fmt::format("{} triangles", mesh.indices.size() / 3),
-                      !is_used                                          ? "no object has it"
-                      : !is_seen(source.scene.materials[mesh.material]) ? "its material is cut out everywhere"
-                                                                        : nothing_seen));
+                      !used.contains(handle)                                ? "no object has it"
+                      : !render_scene::is_drawable(scene.material_of(mesh)) ? "its material is cut out everywhere"
+                                                                            : nothing_seen));
     if (batch) {
       node.upload_bytes = source.device().live(batch).upload_bytes;
     }
   }
-  return folder("meshes", "objects' triangles", source.scene.meshes.empty() ? "there is none" : nothing_seen,
+  return folder("meshes", "objects' triangles", scene.meshes().empty() ? "there is none" : nothing_seen,
                 std::move(meshes));
 }
 
 FrameNode texture_nodes(const Source &source)
 {
   std::vector<FrameNode> images;
-  for (std::size_t i = 0; i < source.scene.images.size(); i++) {
-    const gpu::Texture none;
-    const gpu::Texture *made = source.data.stl.textures.image(i);
+  const std::set<scene::Handle<scene::Image>> read = read_images(source);
+  const gpu::Texture none;
+  for (const auto &[handle, image] : source.scene().images()) {
+    const gpu::Texture *made = source.render_scene.images().find(handle);
     FrameNode &node = images.emplace_back(
-        resource_node(source, made ? *made : none, source.scene.images[i].name, "base colour that a material looks up",
-                      !is_textured(source, std::uint32_t(i)) ? "no object has a material that looks it up"
-                      : !source.data.is_recorded             ? nothing_seen
-                                                             : "no lamp lights it, and it cuts nothing out"));
+        resource_node(source, made ? *made : none, image.name, "base colour that a material looks up",
+                      !read.contains(handle)     ? "no object has a material that looks it up"
+                      : !source.data.is_recorded ? nothing_seen
+                                                 : "no lamp lights it, and it cuts nothing out"));
     if (made) {
       node.upload_bytes = source.device().live(*made).upload_bytes;
     }
@@ -394,15 +410,15 @@ void add_layers(FrameNode &lamp, const char *what, bool is_made, std::uint32_t m
 
 FrameNode lamp_node(const Source &source, std::size_t index, const std::vector<ShadowState> &states)
 {
-  const scene::Lamp &lamp = source.scene.lamps[index];
+  const scene::PlacedLamp &lamp = source.render_scene.lamps()[index];
   const Lamps &lamps = source.data.stl.lamps;
   FrameNode node{.what = lamp.name};
-  const auto light = std::ranges::find(lamps.scene_index, std::uint32_t(index));
-  if (light == lamps.scene_index.end()) {
+  const auto light = std::ranges::find(lamps.lamp_index, std::uint32_t(index));
+  if (light == lamps.lamp_index.end()) {
     node.why = "it gives no light";
     return node;
   }
-  const auto state = std::ranges::find(states, int(light - lamps.scene_index.begin()), &ShadowState::light);
+  const auto state = std::ranges::find(states, int(light - lamps.lamp_index.begin()), &ShadowState::light);
   if (state == states.end()) {
     node.why = source.settings.shadow.kind == scene::ShadowKind::None ? "shadows are off"
                : shadow_kind(lamp, source.settings.shadow) == scene::ShadowKind::None
@@ -429,7 +445,7 @@ FrameNode shadow_nodes(const Source &source)
 {
   const std::vector<ShadowState> states = source.data.stl.shadows.states();
   std::vector<FrameNode> lamps;
-  for (std::size_t i = 0; i < source.scene.lamps.size(); i++) {
+  for (std::size_t i = 0; i < source.render_scene.lamps().size(); i++) {
     lamps.push_back(lamp_node(source, i, states));
   }
   return folder("shadows", "layers by lamp", why_no_shadow(source, "no lamp has a layer that is drawn"),
@@ -440,7 +456,7 @@ FrameNode draw_nodes(const Source &source)
 {
   const PassList &psl = *source.data.psl;
   std::vector<FrameNode> passes;
-  for (const draw::Pass *pass : {&psl.depth_pass, &psl.depth_pass_cull, &psl.pass, &psl.tint_pass}) {
+  for (const draw::Pass *pass : {&psl.depth_pass, &psl.depth_pass_cull, &psl.lit_pass, &psl.tint_pass}) {
     const auto found = source.data.passes.find(pass->name());
     const draw::RecordCounts counts = found == source.data.passes.end() ? draw::RecordCounts() : found->second.counts;
     if (counts.drawn + counts.culled == 0) {
@@ -475,12 +491,12 @@ Report Engine::report(draw::Viewport &viewport) const
   report.limits.insert(report.limits.end(), stl.shadows.limits().begin(), stl.shadows.limits().end());
   report.shadow_counters = stl.shadows.counters();
   for (int i = 0; i < stl.lamps.light_block.light_count; i++) {
-    const scene::Lamp &lamp = scene_.lamps[stl.lamps.scene_index[std::size_t(i)]];
+    const scene::PlacedLamp &lamp = scene_.lamps()[stl.lamps.lamp_index[std::size_t(i)]];
     const bool is_asked_for = shadow_kind(lamp, settings_.shadow) != scene::ShadowKind::None;
     report.lost_shadow_count += is_asked_for && stl.lamps.light_block.lights[i].shadow_kind == SHADOW_NONE ? 1 : 0;
   }
 
-  const Source source{scene_, settings_, data, viewport};
+  const Source source{scene_, shaders_, settings_, data, viewport};
   report.tree = folder("frame", "the picture", "",
                        {program_nodes(source), pass_nodes(source), target_nodes(source), block_nodes(source),
                         mesh_nodes(source), texture_nodes(source), shadow_nodes(source), draw_nodes(source)});
@@ -507,8 +523,8 @@ Report Engine::report(draw::Viewport &viewport) const
        why_not("no object with a two-sided material"));
   part("depth_pass_cull", !data.psl->depth_pass_cull.is_empty(), "one-sided materials",
        why_not("no object with a one-sided material"));
-  part("base colour textures", stl.textures.image_count() > 0,
-       fmt::format("{} images that materials look up", stl.textures.image_count()),
+  part("base colour textures", scene_.images().count() > 0,
+       fmt::format("{} images that materials look up", scene_.images().count()),
        why_not("no lit or cut out material has one"));
   part("specular in eevee_lit", has(f, Feature::Specular), "a material reflects",
        has(f, Feature::Light) ? why_not("every material is Lambertian") : "no lamp gives light");
@@ -519,7 +535,7 @@ Report Engine::report(draw::Viewport &viewport) const
   part("film", is_recorded, fmt::format("{} samples a pixel", settings_.sample_count), nothing_seen);
   part("tonemap", !data.psl->tonemap.is_empty(), "a display picture was asked for",
        settings_.has_display ? nothing_seen : "only radiance was asked for");
-  part("programs", stl.shaders.size() > 0, fmt::format("{} programs", stl.shaders.size()), nothing_seen);
+  part("programs", shaders_.size() > 0, fmt::format("{} programs", shaders_.size()), nothing_seen);
   return report;
 }
 

@@ -40,11 +40,11 @@ std::array<draw::View, 6> shadow_cube_views(const glm::vec3 &position_ws, float 
   return views;
 }
 
-draw::View shadow_spot_view(const scene::Lamp &lamp, float near, int size_px)
+draw::View shadow_spot_view(const scene::PlacedLamp &lamp, float near, int size_px)
 {
   const float border = std::min(2.0F * float(CUBE_BORDER_TEXELS) / float(size_px), 0.5F);
   const float half_size = std::max(std::tan(lamp.spot_outer_angle) / (1.0F - border), 1e-4F);
-  const glm::mat4 lamp_from_world(glm::inverse(glm::dmat4(lamp.world_from_lamp)));
+  const glm::mat4 lamp_from_world(glm::inverse(lamp.world_from_lamp));
   return {lamp_from_world, draw::perspective(half_size, half_size, near, std::numeric_limits<float>::infinity())};
 }
 
@@ -103,8 +103,8 @@ static void check(const ShadowSettings &settings)
   }
 }
 
-void Shadows::sync(const gpu::Limits &device_limits, const scene::Scene &scene, Lamps &lamps,
-                   const ShadowSettings &settings)
+void Shadows::sync(const gpu::Limits &device_limits, std::span<const scene::PlacedLamp> placed,
+                   const scene::Bounds &scene_bounds, Lamps &lamps, const ShadowSettings &settings)
 {
   check(settings);
   layer_pass_ = best_layer_pass(settings.layer_pass, device_limits);
@@ -126,11 +126,11 @@ void Shadows::sync(const gpu::Limits &device_limits, const scene::Scene &scene, 
     }
   }
   settings_ = settings;
-  place_slots(device_limits, scene, lamps);
+  place_slots(device_limits, placed, lamps);
   for (std::size_t i = 0; i < 3; i++) {
     keep_drawn(*arrays()[i], std::move(before[i]));
   }
-  place_octahedral(device_limits, scene);
+  place_octahedral(device_limits, scene_bounds);
 }
 
 void Shadows::allocate(gpu::Device &device, ShaderCache &shaders)
@@ -159,7 +159,7 @@ void Shadows::allocate(gpu::Device &device, ShaderCache &shaders)
 }
 
 /** Which lamps have a shadow, and of what size; those that lose it are named. */
-void Shadows::place_slots(const gpu::Limits &device_limits, const scene::Scene &scene, Lamps &lamps)
+void Shadows::place_slots(const gpu::Limits &device_limits, std::span<const scene::PlacedLamp> placed, Lamps &lamps)
 {
   const int cube_max = std::min(SHADOW_CUBE_MAX, device_limits.array_layers_max / 6);
   const int map_max = std::min(SHADOW_MAP_MAX, device_limits.array_layers_max);
@@ -168,7 +168,7 @@ void Shadows::place_slots(const gpu::Limits &device_limits, const scene::Scene &
   std::vector<std::string> lost;
   std::vector<std::string> too_large;
   for (int i = 0; i < lamps.light_block.light_count; i++) {
-    const scene::Lamp &lamp = scene.lamps[lamps.scene_index[std::size_t(i)]];
+    const scene::PlacedLamp &lamp = placed[lamps.lamp_index[std::size_t(i)]];
     Slot slot;
     slot.lamp = lamp;
     slot.light = i;
@@ -246,9 +246,8 @@ void Shadows::warn_of_idle_wishes(const scene::Lamp &lamp)
 }
 
 /** What lamps with exponential shadows ask of their octahedral layers. */
-void Shadows::place_octahedral(const gpu::Limits &device_limits, const scene::Scene &scene)
+void Shadows::place_octahedral(const gpu::Limits &device_limits, const scene::Bounds &bounds_ws)
 {
-  const scene::Bounds bounds_ws = scene.bounds();
   esm_lamps_.clear();
   for (const Slot &slot : distance_cube_.slots) {
     const glm::vec3 position_ws(slot.lamp.world_from_lamp[3]);

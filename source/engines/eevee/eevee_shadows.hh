@@ -67,7 +67,7 @@ inline constexpr float spot_map_angle_max = 1.04F;
 [[nodiscard]] std::array<draw::View, 6> shadow_cube_views(const glm::vec3 &position_ws, float near, int size_px);
 
 /** The view of a spot, with room for a filter's kernel around its cone. \pre its angle at most spot_map_angle_max */
-[[nodiscard]] draw::View shadow_spot_view(const scene::Lamp &lamp, float near, int size_px);
+[[nodiscard]] draw::View shadow_spot_view(const scene::PlacedLamp &lamp, float near, int size_px);
 
 /** Counts since the shadows were made. */
 struct ShadowCounters {
@@ -135,10 +135,12 @@ struct ShadowLayers {
 class Shadows {
  public:
   /**
-   * Give each light of \a lamps that casts a shadow its place. Writes shadow_kind and shadow_index of its entry.
-   * Makes nothing on the device. \throws gpu::Error naming lamp and setting where a setting is out of range.
+   * Give each light of \a lamps that casts a shadow its place; \a placed is the list that \a lamps was made from.
+   * Writes shadow_kind and shadow_index of its entry. Makes nothing on the device. \throws gpu::Error naming lamp and
+   * setting where a setting is out of range.
    */
-  void sync(const gpu::Limits &device_limits, const scene::Scene &scene, Lamps &lamps, const ShadowSettings &settings);
+  void sync(const gpu::Limits &device_limits, std::span<const scene::PlacedLamp> placed,
+            const scene::Bounds &scene_bounds, Lamps &lamps, const ShadowSettings &settings);
   /** Make what the last sync gave places to, and free what has none any more. \a shaders: for the next filter passes.
    */
   void allocate(gpu::Device &device, ShaderCache &shaders);
@@ -240,7 +242,7 @@ class Shadows {
   /** What a lamp has in an array. */
   struct Slot {
     /** The lamp as it was when its layers were drawn. */
-    scene::Lamp lamp;
+    scene::PlacedLamp lamp;
     /** In light_block. */
     int light = 0;
     scene::ShadowKind kind = scene::ShadowKind::Hard;
@@ -277,13 +279,13 @@ class Shadows {
     std::vector<Slot> slots;
   };
 
-  void place_slots(const gpu::Limits &device_limits, const scene::Scene &scene, Lamps &lamps);
+  void place_slots(const gpu::Limits &device_limits, std::span<const scene::PlacedLamp> placed, Lamps &lamps);
   [[nodiscard]] std::array<Array *, 3> arrays()
   {
     return {&cubes_, &maps_, &distance_cube_};
   }
   void warn_of_idle_wishes(const scene::Lamp &lamp);
-  void place_octahedral(const gpu::Limits &device_limits, const scene::Scene &scene);
+  void place_octahedral(const gpu::Limits &device_limits, const scene::Bounds &bounds_ws);
   [[nodiscard]] int octahedral_size_px(const Slot &slot) const;
   void keep_drawn(Array &array, std::vector<Slot> before);
   void create_layers(gpu::Device &device, Array &array, int layers);

@@ -65,7 +65,7 @@ bool can_darken(const scene::Bounds &caster, const scene::Bounds &receivers, con
 
 /** What all maps of a sun have to hold: where receivers and casters overlap, from the first caster to the last
  * receiver. */
-std::optional<LampBox> needed_box(const scene::Lamp &lamp, const std::vector<glm::dvec3> &receivers_ws,
+std::optional<LampBox> needed_box(const scene::PlacedLamp &lamp, const std::vector<glm::dvec3> &receivers_ws,
                                   const std::vector<Caster> &casters)
 {
   // Directions only: a sun is nowhere.
@@ -214,7 +214,7 @@ Sphere slice_sphere(const draw::View &view, double near, double far)
   return sphere;
 }
 
-std::vector<SunFit> fit_sun(const scene::Lamp &lamp, const draw::View &view, const VisibleRange &visible,
+std::vector<SunFit> fit_sun(const scene::PlacedLamp &lamp, const draw::View &view, const VisibleRange &visible,
                             const std::vector<Caster> &casters, int size_px, const CascadeSettings &settings,
                             float pixel_size)
 {

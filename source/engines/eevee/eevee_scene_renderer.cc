@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_scene_renderer.hh"
+
+#include "eevee_camera.hh"
+
+namespace gnomon::eevee {
+
+void SceneRenderer::sync()
+{
+  render_scene_.update();
+  const std::array<draw::Engine *, 1> engines = {&engine_};
+  viewport_.sync(engines, render_scene_.objects());
+}
+
+draw::View SceneRenderer::view_of(const scene::PlacedCamera &camera) const
+{
+  return eevee::view_of(render_scene_.relative(camera), viewport_.size_px());
+}
+
+void SceneRenderer::draw_sample(const scene::PlacedCamera &camera)
+{
+  const glm::dvec3 origin_ws =
+      render_scene::origin_near(glm::dvec3(camera.world_from_camera[3]), render_scene_.origin_ws());
+  if (origin_ws != render_scene_.origin_ws()) {
+    render_scene_.set_origin(origin_ws);
+    sync();
+  }
+  const std::array<draw::Engine *, 1> engines = {&engine_};
+  viewport_.draw(engines, view_of(camera));
+}
+
+bool SceneRenderer::draw(const scene::PlacedCamera &camera, const Progress &progress)
+{
+  for (int i = 0; i < settings_.sample_count; i++) {
+    draw_sample(camera);
+    if (progress && !progress(i + 1)) {
+      return i + 1 == settings_.sample_count;
+    }
+  }
+  return true;
+}
+
+}  // namespace gnomon::eevee

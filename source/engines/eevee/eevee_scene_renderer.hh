@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "eevee_engine.hh"
+
+#include <functional>
+
+namespace gnomon::eevee {
+
+/**
+ * Renders a scene on a device: the scene's resources there, one engine, one viewport, and the order of calls that makes
+ * a picture with them. For programs that need no other arrangement.
+ *
+ * Belongs to the device's thread. The scene may be edited between any two calls; sync takes note of the edits.
+ */
+class SceneRenderer {
+ public:
+  /**
+   * \a device and \a scene must outlive the renderer. Call sync before the first draw.
+   * \throws gpu::Error where \a size_px is not one that the device can draw.
+   */
+  SceneRenderer(gpu::Device &device, const scene::Scene &scene, glm::ivec2 size_px, const Settings &settings = {})
+      : render_scene_(device, scene), engine_(render_scene_, settings), viewport_(device, size_px), settings_(settings)
+  {
+  }
+
+  /** Take note of edits of the scene and of other settings. \throws gpu::Error naming what cannot be drawn. */
+  void sync();
+  /** Other settings, from the next sync on. */
+  void set_settings(const Settings &settings)
+  {
+    settings_ = settings;
+    engine_.set_settings(settings);
+  }
+  /** Another size, from the next sync on. \throws gpu::Error as the constructor; then nothing changes. */
+  void resize(glm::ivec2 size_px)
+  {
+    viewport_.resize(size_px);
+  }
+
+  /** Draw the next sample of the picture that \a camera sees. */
+  void draw_sample(const scene::PlacedCamera &camera);
+  /** Called after each sample with the samples drawn so far; false: draw no more. May be empty. */
+  using Progress = std::function<bool(int samples_drawn)>;
+  /** Draw all samples of a picture. \return whether it is whole: \a progress stopped it otherwise. */
+  bool draw(const scene::PlacedCamera &camera, const Progress &progress = {});
+
+  /** What \a camera sees, in the coordinates of the render scene. */
+  [[nodiscard]] draw::View view_of(const scene::PlacedCamera &camera) const;
+  [[nodiscard]] const Settings &settings() const
+  {
+    return settings_;
+  }
+  [[nodiscard]] render_scene::RenderScene &render_scene()
+  {
+    return render_scene_;
+  }
+  [[nodiscard]] Engine &engine()
+  {
+    return engine_;
+  }
+  [[nodiscard]] draw::Viewport &viewport()
+  {
+    return viewport_;
+  }
+
+ private:
+  render_scene::RenderScene render_scene_;
+  Engine engine_;
+  draw::Viewport viewport_;
+  Settings settings_;
+};
+
+}  // namespace gnomon::eevee
