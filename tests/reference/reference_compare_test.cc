@@ -48,7 +48,7 @@ struct SquareOverPlane {
 
   /** A grid of receivers, lit as the truth has it at the place where a light that is shifted by \a shift_m would meet
    * them. */
-  [[nodiscard]] Shaded shaded(const Tracer &tracer, const scene::Lamp &lamp, double shift_m) const
+  [[nodiscard]] Shaded shaded(const Tracer &tracer, const scene::PlacedLamp &lamp, double shift_m) const
   {
     Shaded result;
     const LightPoint light = lamp_center(lamp);
@@ -71,7 +71,7 @@ TEST(Compare, TruthIsNotWrong)
   for (const LampKind kind : {LampKind::Point, LampKind::Sun}) {
     const SquareOverPlane square(0.4F);
     const Tracer tracer(square.scene);
-    const scene::Lamp lamp = lamp_at(kind, {0.1F, 0.2F, 8.0F});
+    const scene::PlacedLamp lamp = lamp_at(kind, {0.1F, 0.2F, 8.0F});
     const Shaded shaded = square.shaded(tracer, lamp, 0.0);
     const VisibilityError error =
         compare_visibility(tracer, lamp, shaded.view(), {.texel_size_m = [](const glm::dvec3 &) { return 0.01; }});
@@ -98,7 +98,7 @@ TEST_P(CompareShiftTest, EdgeOffsetIsByHowMuchTheShadowsAreMoved)
   const SquareOverPlane square(shift.tilt);
   const Tracer tracer(square.scene);
   // A lamp far away, so that across its light is along y nearly everywhere.
-  const scene::Lamp lamp = lamp_at(shift.kind, {0, 0, 200});
+  const scene::PlacedLamp lamp = lamp_at(shift.kind, {0, 0, 200});
   constexpr double texel_m = 0.05;
   const Shaded shaded = square.shaded(tracer, lamp, shift.texels * texel_m);
   const VisibilityError error =
@@ -133,7 +133,7 @@ TEST(Compare, DepthOffsetAlongTheLightOfAGrazedPlaneIsMeasuredAcrossIt)
   add_rectangle(scene, {0, -20}, {1, 20}, upright);
   const Tracer tracer(scene);
   const double elevation = 5.0 * M_PI / 180.0;
-  const scene::Lamp sun =
+  const scene::PlacedLamp sun =
       lamp_at(LampKind::Sun, {0, 0, 0}, {float(std::cos(elevation)), 0, -float(std::sin(elevation))});
   const double end = 1.0 / std::tan(elevation);
   constexpr double texel_m = 0.02;
@@ -167,7 +167,7 @@ TEST(Compare, LeakAndAcneAreWrongFarFromAnyEdge)
 {
   const SquareOverPlane square(0.0F);
   const Tracer tracer(square.scene);
-  const scene::Lamp sun = lamp_at(LampKind::Sun, {0, 0, 0});
+  const scene::PlacedLamp sun = lamp_at(LampKind::Sun, {0, 0, 0});
   Shaded shaded = square.shaded(tracer, sun, 0.0);
   // Two inside of the shadow, one at its edge, three in the light.
   shaded.add({0, 0, 0}, {0, 0, 1}, 1.0F);
@@ -225,7 +225,7 @@ TEST(Compare, WhatCannotBeJudgedIsCounted)
 {
   const SquareOverPlane square(0.0F);
   const Tracer tracer(square.scene);
-  const scene::Lamp sun = lamp_at(LampKind::Sun, {0, 0, 0});
+  const scene::PlacedLamp sun = lamp_at(LampKind::Sun, {0, 0, 0});
   const float nan = std::numeric_limits<float>::quiet_NaN();
   Shaded shaded;
   shaded.add({5, 5, 0}, {0, 0, 1}, 1.0F);
@@ -250,7 +250,7 @@ TEST(Compare, ThreadsDoNotChangeTheResult)
 {
   const SquareOverPlane square(0.4F);
   const Tracer tracer(square.scene);
-  scene::Lamp lamp = lamp_at(LampKind::Point, {0, 0, 8});
+  scene::PlacedLamp lamp = lamp_at(LampKind::Point, {0, 0, 8});
   lamp.radius = 0.5F;
   const Shaded shaded = square.shaded(tracer, lamp, 0.1);
   const auto judged = [&](unsigned threads) {

@@ -61,7 +61,7 @@ TEST_P(CyclesTest, DifferenceIsTwiceCyclesNoiseAtMost)
   ASSERT_TRUE(truth.read(0, 0, true, OIIO::TypeDesc::FLOAT)) << truth.geterror();
   const glm::ivec2 size_px{truth.spec().width, truth.spec().height};
   const scene::Scene scene = scene::import_gltf(std::string(GNOMON_SOURCE) + "/examples/scenes/" + c.scene + ".glb");
-  const scene::Camera &camera = scene.cameras.front();
+  const scene::PlacedCamera camera = scene.placed_cameras().front();
   const reference::Tracer tracer(scene);
   const reference::Picture a = direct_light(tracer, camera, size_px, {.sample_count = 3, .seed = 1});
   const reference::Picture b = direct_light(tracer, camera, size_px, {.sample_count = 3, .seed = 2});

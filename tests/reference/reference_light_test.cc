@@ -14,12 +14,13 @@ namespace gnomon::reference {
 namespace {
 
 using scene::LampKind;
+using test::add_lamp;
 using test::add_rectangle;
 using test::lamp_at;
 using test::placed;
 
 /** The middle pixel of a picture so small in angle that it is one point. */
-glm::vec3 seen(const scene::Scene &scene, const scene::Camera &camera, int sample_count = 4)
+glm::vec3 seen(const scene::Scene &scene, const scene::PlacedCamera &camera, int sample_count = 4)
 {
   const Tracer tracer(scene);
   return direct_light(tracer, camera, {1, 1}, {.sample_count = sample_count}).pixels.front();
@@ -39,14 +40,15 @@ TEST(DirectLight, LambertianPlaneIsAlbedoOverPiTimesIrradiance)
   scene::Scene scene;
   test::add_material(scene, {0.25F, 0.5F, 1.0F});
   add_rectangle(scene, {-10, -10}, {10, 10});
-  scene.materials[0].emissive = {0.0F, 0.0F, 2.0F};
-  scene.lamps.push_back(lamp_at(LampKind::Point, {3, 0, 4}));
-  scene.lamps.back().intensity = 5.0F;
-  scene.lamps.back().color = {1.0F, 0.5F, 0.25F};
-  scene.lamps.push_back(lamp_at(LampKind::Sun, {0, 0, 0}, {0, 3, -4}));
-  scene.lamps.push_back(lamp_at(LampKind::Hemi, {0, 0, 0}, {0, 3, -4}));
+  test::edit_material(scene, [&](scene::Material &material) { material.emissive = {0.0F, 0.0F, 2.0F}; });
+  scene::PlacedLamp point = lamp_at(LampKind::Point, {3, 0, 4});
+  point.intensity = 5.0F;
+  point.color = {1.0F, 0.5F, 0.25F};
+  add_lamp(scene, point);
+  add_lamp(scene, lamp_at(LampKind::Sun, {0, 0, 0}, {0, 3, -4}));
+  add_lamp(scene, lamp_at(LampKind::Hemi, {0, 0, 0}, {0, 3, -4}));
   // From below: nothing, as the plane is not transparent.
-  scene.lamps.push_back(lamp_at(LampKind::Point, {0, 0, -1}));
+  add_lamp(scene, lamp_at(LampKind::Point, {0, 0, -1}));
   const glm::dvec3 albedo(0.25, 0.5, 1.0);
   const glm::dvec3 irradiance = 5.0 * 0.8 / 25.0 * glm::dvec3(1.0, 0.5, 0.25) + 0.8 + 0.9;
   // Camera matrices are of floats.
@@ -59,11 +61,13 @@ TEST(DirectLight, MicrofacetLobeHasItsPeakAtNormalIncidence)
   for (const float metallic : {0.0F, 1.0F}) {
     scene::Scene scene;
     test::add_material(scene, {0.9F, 0.5F, 0.1F});
-    scene.materials[0].metallic = metallic;
-    scene.materials[0].roughness = 0.5F;
-    scene.materials[0].specular_color = glm::vec3(1.0F);
+    test::edit_material(scene, [&](scene::Material &material) {
+      material.metallic = metallic;
+      material.roughness = 0.5F;
+      material.specular_color = glm::vec3(1.0F);
+    });
     add_rectangle(scene, {-10, -10}, {10, 10});
-    scene.lamps.push_back(lamp_at(LampKind::Sun, {0, 0, 0}));
+    add_lamp(scene, lamp_at(LampKind::Sun, {0, 0, 0}));
     // D = 1 / (π α²), masking 1, over 4; diffuse light keeps what the strongest channel lets through.
     const double lobe = 1.0 / (4.0 * std::numbers::pi * 0.0625);
     const glm::dvec3 color(0.9, 0.5, 0.1);
@@ -76,12 +80,14 @@ TEST(DirectLight, MirroredDirectionHasFresnelsAndSmithsFactors)
 {
   scene::Scene scene;
   test::add_material(scene, glm::vec3(0.5F));
-  scene.materials[0].roughness = 0.5F;
-  scene.materials[0].specular_color = glm::vec3(1.0F);
+  test::edit_material(scene, [&](scene::Material &material) {
+    material.roughness = 0.5F;
+    material.specular_color = glm::vec3(1.0F);
+  });
   add_rectangle(scene, {-10, -10}, {10, 10});
   // Light and view at 60 degrees to either side of the normal: the half vector is the normal.
   const float sine = std::sqrt(0.75F);
-  scene.lamps.push_back(lamp_at(LampKind::Sun, {0, 0, 0}, {-sine, 0, -0.5F}));
+  add_lamp(scene, lamp_at(LampKind::Sun, {0, 0, 0}, {-sine, 0, -0.5F}));
   const double a2 = 0.0625;
   const double distribution = 1.0 / (std::numbers::pi * a2);
   const double masking = 1.0 / (0.5 + std::sqrt(a2 + (1.0 - a2) * 0.25));
@@ -96,11 +102,13 @@ TEST(DirectLight, NormalsAreInterpolatedAndTurnedToTheViewer)
   test::add_material(scene, glm::vec3(1.0F));
   add_rectangle(scene, {-1, -1}, {1, 1});
   // Tilted to +x on the right and to -x on the left; upright in the middle.
-  for (std::size_t i = 0; i < 6; i++) {
-    scene.meshes[0].normals[i] = glm::normalize(glm::vec3(scene.meshes[0].positions[i].x, 0, 1));
-  }
-  scene.lamps.push_back(lamp_at(LampKind::Sun, {0, 0, 0}));
-  scene.lamps.push_back(lamp_at(LampKind::Sun, {0, 0, 0}, {0, 0, 1}));
+  test::edit_mesh(scene, [](scene::Mesh &mesh) {
+    for (std::size_t i = 0; i < 6; i++) {
+      mesh.normals[i] = glm::normalize(glm::vec3(mesh.positions[i].x, 0, 1));
+    }
+  });
+  add_lamp(scene, lamp_at(LampKind::Sun, {0, 0, 0}));
+  add_lamp(scene, lamp_at(LampKind::Sun, {0, 0, 0}, {0, 0, 1}));
   for (const float side : {1.0F, -1.0F}) {
     const glm::vec3 color = seen(scene, test::camera_at({0.5F, 0.25F, side * 3}, {0.5F, 0.25F, 0}, narrow));
     // Between (0, 1) and (1, 1)/√2 at the corners: linear, then normalised.
@@ -114,13 +122,17 @@ TEST(DirectLight, BacksOfOneSidedMaterialsAreLookedThrough)
 {
   scene::Scene scene;
   test::add_material(scene, glm::vec3(1.0F));
-  scene.materials[0].is_double_sided = false;
-  scene.materials[0].emissive = glm::vec3(1.0F);
+  test::edit_material(scene, [&](scene::Material &material) {
+    material.is_double_sided = false;
+    material.emissive = glm::vec3(1.0F);
+  });
   add_rectangle(scene, {-1, -1}, {1, 1});
-  scene.materials.push_back(scene.materials[0]);
-  scene.materials[1].emissive = glm::vec3(2.0F);
-  add_rectangle(scene, {-1, -1}, {1, 1}, placed({0, 0, 1}) * glm::scale(glm::mat4(1.0F), glm::vec3(1, 1, -1)));
-  scene.meshes[1].material = 1;
+  scene::Material brighter = scene.materials()[scene.materials().first()];
+  brighter.emissive = glm::vec3(2.0F);
+  const auto upper =
+      add_rectangle(scene, {-1, -1}, {1, 1}, placed({0, 0, 1}) * glm::scale(glm::mat4(1.0F), glm::vec3(1, 1, -1)));
+  const auto material = scene.add(std::move(brighter));
+  scene.edit(upper, [&](scene::Mesh &mesh) { mesh.material = material; });
   EXPECT_FLOAT_EQ(seen(scene, test::camera_at({0, 0.5F, 5}, {0, 0.5F, 0}, narrow)).r, 1.0F);
   EXPECT_FLOAT_EQ(seen(scene, test::camera_at({0, 0.5F, -5}, {0, 0.5F, 0}, narrow)).r, 2.0F);
 }
@@ -129,9 +141,9 @@ TEST(DirectLight, ClipDistancesAreDepths)
 {
   scene::Scene scene;
   test::add_material(scene, glm::vec3(1.0F));
-  scene.materials[0].emissive = glm::vec3(1.0F);
+  test::edit_material(scene, [&](scene::Material &material) { material.emissive = glm::vec3(1.0F); });
   add_rectangle(scene, {-50, -50}, {50, 50});
-  scene::Camera camera = test::camera_at({0, 0, 4}, {0, 0, 0}, 2.0F);
+  scene::PlacedCamera camera = test::camera_at({0, 0, 4}, {0, 0, 0}, 2.0F);
   for (const auto &[near, far, expected] :
        {std::tuple(3.99F, 4.01F, 1.0F), std::tuple(4.01F, 9.0F, 0.0F), std::tuple(1.0F, 3.99F, 0.0F)}) {
     camera.near = near;
@@ -148,9 +160,9 @@ TEST(DirectLight, CamerasFrameIsInTheMiddleAndWhole)
   // Exactly what an orthographic camera of 4 by 2 sees, and the middle of it in an image of another aspect.
   scene::Scene scene;
   test::add_material(scene, glm::vec3(1.0F));
-  scene.materials[0].emissive = glm::vec3(1.0F);
+  test::edit_material(scene, [&](scene::Material &material) { material.emissive = glm::vec3(1.0F); });
   add_rectangle(scene, {-2, -1}, {2, 1});
-  scene::Camera camera = test::camera_at({0, 0, 4}, {0, 0, 0});
+  scene::PlacedCamera camera = test::camera_at({0, 0, 4}, {0, 0, 0});
   camera.kind = scene::CameraKind::Orthographic;
   camera.half_width = 2.0F;
   camera.half_height = 1.0F;
@@ -185,13 +197,13 @@ scene::Scene bright_scene(const glm::vec2 &low, glm::ivec2 size_px)
 {
   scene::Scene scene;
   test::add_material(scene, glm::vec3(1.0F));
-  scene.materials[0].emissive = glm::vec3(1.0F);
+  test::edit_material(scene, [&](scene::Material &material) { material.emissive = glm::vec3(1.0F); });
   add_rectangle(scene, low, {500, 500});
-  scene::Camera camera = test::camera_at({0, 0, 4}, {0, 0, 0});
+  scene::PlacedCamera camera = test::camera_at({0, 0, 4}, {0, 0, 0});
   camera.kind = scene::CameraKind::Orthographic;
   camera.half_width = 0.5F * float(size_px.x);
   camera.half_height = 0.5F * float(size_px.y);
-  scene.cameras.push_back(camera);
+  test::add_camera(scene, camera);
   return scene;
 }
 
@@ -199,7 +211,7 @@ Picture bright_from(const glm::vec2 &low, glm::ivec2 size_px, int sample_count)
 {
   const scene::Scene scene = bright_scene(low, size_px);
   const Tracer tracer(scene);
-  return direct_light(tracer, scene.cameras[0], size_px, {.sample_count = sample_count});
+  return direct_light(tracer, scene.placed_cameras()[0], size_px, {.sample_count = sample_count});
 }
 
 TEST(DirectLight, PixelFilterIsBlackmanHarrisOfThreePixels)
@@ -238,7 +250,7 @@ TEST(DirectLight, PixelsAloneHaveTheSameFilter)
     }
   }
   const std::vector<glm::vec4> light =
-      direct_light(tracer, scene.cameras[0], size_px, pixels, {.sample_count = 4096, .seed = 1});
+      direct_light(tracer, scene.placed_cameras()[0], size_px, pixels, {.sample_count = 4096, .seed = 1});
   ASSERT_EQ(light.size(), pixels.size());
   for (std::size_t i = 0; i < pixels.size(); i++) {
     const double expected = filter_integral(pixels[i].x + 0.5 - 4.3) * filter_integral(pixels[i].y + 0.5 - 2.8);
@@ -251,7 +263,7 @@ scene::Scene cluttered_scene()
 {
   scene::Scene scene;
   test::add_material(scene, {0.8F, 0.5F, 0.3F});
-  scene.materials[0].specular_color = glm::vec3(1.0F);
+  test::edit_material(scene, [&](scene::Material &material) { material.specular_color = glm::vec3(1.0F); });
   std::mt19937 random(5);
   std::uniform_real_distribution<float> coordinate(-2.0F, 2.0F);
   std::vector<glm::vec3> corners;
@@ -262,9 +274,10 @@ scene::Scene cluttered_scene()
   }
   test::add_triangles(scene, corners);
   for (const LampKind kind : {LampKind::Point, LampKind::Sun, LampKind::Spot, LampKind::Hemi, LampKind::Area}) {
-    scene.lamps.push_back(lamp_at(kind, {0, 0, 3}));
-    scene.lamps.back().radius = 0.2F;
-    scene.lamps.back().angle = 0.1F;
+    scene::PlacedLamp lamp = lamp_at(kind, {0, 0, 3});
+    lamp.radius = 0.2F;
+    lamp.angle = 0.1F;
+    add_lamp(scene, lamp);
   }
   return scene;
 }
@@ -273,7 +286,7 @@ TEST(DirectLight, PictureDependsOnTheSeedAndNotOnThreads)
 {
   const scene::Scene scene = cluttered_scene();
   const Tracer tracer(scene);
-  const scene::Camera camera = test::camera_at({5, 4, 3}, {0, 0, 0});
+  const scene::PlacedCamera camera = test::camera_at({5, 4, 3}, {0, 0, 0});
   double share = 0.0;
   const auto render = [&](unsigned threads, std::uint64_t seed) {
     return direct_light(tracer, camera, {150, 90},
@@ -293,15 +306,19 @@ TEST(DirectLight, PictureDependsOnTheSeedAndNotOnThreads)
 TEST(DirectLight, IsFiniteInsideOfGeometryAndAtLamps)
 {
   scene::Scene scene = cluttered_scene();
-  scene.materials[0].roughness = 0.0F;
-  scene.materials[0].metallic = 1.0F;
+  test::edit_material(scene, [&](scene::Material &material) {
+    material.roughness = 0.0F;
+    material.metallic = 1.0F;
+  });
   // Normals that have nothing to do with the surface, and some without length.
-  for (std::size_t i = 0; i < scene.meshes[0].normals.size(); i++) {
-    scene.meshes[0].normals[i] = i % 5 == 0 ? glm::vec3(0.0F) : glm::vec3(0, 0, 1);
-  }
+  test::edit_mesh(scene, [](scene::Mesh &mesh) {
+    for (std::size_t i = 0; i < mesh.normals.size(); i++) {
+      mesh.normals[i] = i % 5 == 0 ? glm::vec3(0.0F) : glm::vec3(0, 0, 1);
+    }
+  });
   const Tracer tracer(scene);
   for (const glm::vec3 &eye : {glm::vec3(0, 0, 0.1F), glm::vec3(0, 0, 3), glm::vec3(1e5F, 0, 0)}) {
-    scene::Camera camera = test::camera_at(eye, {0.1F, 0, 0}, 3.14159F);
+    scene::PlacedCamera camera = test::camera_at(eye, {0.1F, 0, 0}, 3.14159F);
     camera.near = 1e-6F;
     for (const glm::vec4 &pixel : direct_light(tracer, camera, {40, 30}, {.sample_count = 4}).pixels) {
       for (int i = 0; i < 3; i++) {
@@ -315,7 +332,7 @@ TEST(DirectLight, PicturesWithoutPixelsOrSamplesAreErrors)
 {
   const scene::Scene scene;
   const Tracer tracer(scene);
-  const scene::Camera camera;
+  const scene::PlacedCamera camera;
   EXPECT_THROW(static_cast<void>(direct_light(tracer, camera, {0, 4}, {})), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(direct_light(tracer, camera, {4, -1}, {})), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(direct_light(tracer, camera, {4, 4}, {.sample_count = 0})), std::invalid_argument);

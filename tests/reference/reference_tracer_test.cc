@@ -214,7 +214,7 @@ TEST(Tracer, BacksOfOneSidedMaterialsAreLookedThroughAndCastShadows)
 {
   scene::Scene scene;
   test::add_material(scene, glm::vec3(1.0F));
-  scene.materials[0].is_double_sided = false;
+  test::edit_material(scene, [&](scene::Material &material) { material.is_double_sided = false; });
   add_rectangle(scene, {-1, -1}, {1, 1});
   const Tracer tracer(scene);
   EXPECT_TRUE(tracer.closest({{0, 0.5, 1}, {0, 0, -1}}, Faces::Drawn));
@@ -228,9 +228,11 @@ TEST(Tracer, MaskedMaterialBelowItsCutoffIsNotThere)
   for (const float alpha : {0.25F, 0.5F, 0.75F}) {
     scene::Scene scene;
     test::add_material(scene, glm::vec3(1.0F));
-    scene.materials[0].alpha_mode = scene::AlphaMode::Mask;
-    scene.materials[0].alpha_cutoff = 0.5F;
-    scene.materials[0].alpha = alpha;
+    test::edit_material(scene, [&](scene::Material &material) {
+      material.alpha_mode = scene::AlphaMode::Mask;
+      material.alpha_cutoff = 0.5F;
+      material.alpha = alpha;
+    });
     add_rectangle(scene, {-1, -1}, {1, 1});
     const Tracer tracer(scene);
     EXPECT_EQ(tracer.closest({{0, 0.5, 1}, {0, 0, -1}}, Faces::All).has_value(), alpha >= 0.5F);
@@ -246,16 +248,20 @@ TEST(Tracer, MaskIsCutWhereTheInterpolatedAlphaIsTheCutoff)
          {std::pair(scene::TextureWrap::ClampToEdge, 0.0F), std::pair(scene::TextureWrap::Repeat, -3.0F),
           std::pair(scene::TextureWrap::MirroredRepeat, 4.0F)}) {
       scene::Scene scene;
+      const auto image = scene.add(scene::Image{"alpha", 2, 1, {255, 255, 255, 0, 0, 0, 0, 255}});
+      const auto texture = scene.add(scene::Texture{.image = image, .wrap_u = wrap});
       test::add_material(scene, glm::vec3(1.0F));
-      scene.materials[0].alpha_mode = scene::AlphaMode::Mask;
-      scene.materials[0].alpha_cutoff = cutoff;
-      scene.materials[0].base_color_texture = 0;
-      scene.images.push_back({"alpha", 2, 1, {255, 255, 255, 0, 0, 0, 0, 255}});
-      scene.textures.push_back({.wrap_u = wrap});
+      test::edit_material(scene, [&](scene::Material &material) {
+        material.alpha_mode = scene::AlphaMode::Mask;
+        material.alpha_cutoff = cutoff;
+        material.base_color_texture = texture;
+      });
       add_rectangle(scene, {0, 0}, {1, 1});
-      for (const glm::vec3 &position : scene.meshes[0].positions) {
-        scene.meshes[0].uvs.emplace_back(position.x + shift, position.y);
-      }
+      test::edit_mesh(scene, [&offset = shift](scene::Mesh &mesh) {
+        for (const glm::vec3 &position : mesh.positions) {
+          mesh.uvs.emplace_back(position.x + offset, position.y);
+        }
+      });
       const Tracer tracer(scene);
       const double edge = 0.25 + 0.5 * double(cutoff);
       for (const double x : {edge - 1e-9, edge + 1e-9}) {
@@ -270,14 +276,16 @@ TEST(Tracer, MaskIsCutWhereTheInterpolatedAlphaIsTheCutoff)
 TEST(Tracer, BaseColorIsDecodedBeforeItIsInterpolated)
 {
   scene::Scene scene;
+  const auto image = scene.add(scene::Image{"grey", 2, 1, {255, 0, 188, 255, 0, 0, 188, 255}});
+  const auto texture = scene.add(scene::Texture{.image = image});
   test::add_material(scene, {0.5F, 1.0F, 1.0F});
-  scene.materials[0].base_color_texture = 0;
-  scene.images.push_back({"grey", 2, 1, {255, 0, 188, 255, 0, 0, 188, 255}});
-  scene.textures.push_back({});
+  test::edit_material(scene, [&](scene::Material &material) { material.base_color_texture = texture; });
   add_rectangle(scene, {0, 0}, {1, 1});
-  for (const glm::vec3 &position : scene.meshes[0].positions) {
-    scene.meshes[0].uvs.emplace_back(position.x, position.y);
-  }
+  test::edit_mesh(scene, [](scene::Mesh &mesh) {
+    for (const glm::vec3 &position : mesh.positions) {
+      mesh.uvs.emplace_back(position.x, position.y);
+    }
+  });
   const Tracer tracer(scene);
   const std::optional<Hit> hit = tracer.closest({{0.5, 0.5, 1}, {0, 0, -1}}, Faces::All);
   ASSERT_TRUE(hit);

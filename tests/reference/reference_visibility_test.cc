@@ -45,7 +45,7 @@ TEST_P(ShadowPlaceTest, SquaresShadowEndsWhereTheThalesTheoremSays)
   add_rectangle(scene, {-100 * s, -100 * s}, {100 * s, 100 * s}, placed(origin));
   add_rectangle(scene, {-s, -s}, {s, s}, placed(origin + glm::vec3(0, 0, 3 * s)));
   const Tracer tracer(scene);
-  const scene::Lamp lamp = lamp_at(LampKind::Point, origin + glm::vec3(0, 0, 8 * s));
+  const scene::PlacedLamp lamp = lamp_at(LampKind::Point, origin + glm::vec3(0, 0, 8 * s));
   const double edge = 1.6;
   // Coordinates round to 2^-53 of the offset; the edge is moved by little more.
   const double tolerance = 1e-14 + 8.0 * 0x1p-53 * place.offset / place.scale;
@@ -146,7 +146,7 @@ TEST(Visibility, LampOnAPlaneIsHiddenFromItAndNotByIt)
   add_rectangle(scene, {-10, -10}, {10, 10}, placed({0, 0, 3}));
   add_rectangle(scene, {-10, -10}, {10, 10}, placed({0, 0, 4}));
   const Tracer tracer(scene);
-  const scene::Lamp lamp = lamp_at(LampKind::Point, {0.3F, 0.2F, 3.0F});
+  const scene::PlacedLamp lamp = lamp_at(LampKind::Point, {0.3F, 0.2F, 3.0F});
   EXPECT_TRUE(is_visible(tracer, receiver_at({1, 2, 0}, up), lamp));
   EXPECT_TRUE(is_visible(tracer, receiver_at({1, 2, 4}, -up), lamp));
   EXPECT_FALSE(is_visible(tracer, receiver_at({1, 2, 3}, up), lamp));
@@ -166,7 +166,7 @@ TEST(Visibility, ASurfaceHidesWhatIsBehindIt)
   EXPECT_FALSE(is_visible(tracer, receiver_at({1, 2, 0}, up), lamp_at(LampKind::Point, {0, 0, -1})));
   EXPECT_TRUE(is_visible(tracer, receiver_at({1, 2, 0}, -up), lamp_at(LampKind::Point, {0, 0, -1})));
   EXPECT_TRUE(is_visible(tracer, receiver_at({1, 2, 0}, up), lamp_at(LampKind::Hemi, {0, 0, 0})));
-  scene::Lamp unshadowed = lamp_at(LampKind::Point, {0, 0, -1});
+  scene::PlacedLamp unshadowed = lamp_at(LampKind::Point, {0, 0, -1});
   unshadowed.shadow.kind = scene::ShadowKind::None;
   EXPECT_TRUE(is_visible(tracer, receiver_at({1, 2, 0}, up), unshadowed));
 }
@@ -197,7 +197,7 @@ TEST(Visibility, ShareOfADiskBehindAnEdgeIsThatOfACircularSegment)
     scene::Scene scene;
     add_rectangle(scene, {float(cut), -50}, {50, 50}, placed({0, 0, 2}));
     const Tracer tracer(scene);
-    scene::Lamp lamp = lamp_at(LampKind::Point, {0, 0, 4});
+    scene::PlacedLamp lamp = lamp_at(LampKind::Point, {0, 0, 4});
     lamp.radius = 1.0F;
     const double x = 2.0 * double(float(cut));
     const double seen = 0.5 + (std::asin(x) + x * std::sqrt(1.0 - x * x)) / std::numbers::pi;
@@ -205,7 +205,7 @@ TEST(Visibility, ShareOfADiskBehindAnEdgeIsThatOfACircularSegment)
     EXPECT_NEAR(estimate.mean, seen, 4.0 * estimate.standard_error);
     EXPECT_LT(estimate.standard_error, 0.004);
     // The sun's cone is cut by a plane through its middle, and only there is that simple.
-    scene::Lamp sun = lamp_at(LampKind::Sun, {0, 0, 0});
+    scene::PlacedLamp sun = lamp_at(LampKind::Sun, {0, 0, 0});
     sun.angle = 0.5F;
     const Estimate half = visibility(tracer, receiver_at({double(float(cut)), 0, 0}, up), sun, 20000, 5);
     EXPECT_NEAR(half.mean, 0.5, 4.0 * half.standard_error);
@@ -217,7 +217,7 @@ TEST(Visibility, StandardErrorIsNoSmallerThanTheSpreadOfSeeds)
   scene::Scene scene;
   add_rectangle(scene, {0.1F, -50}, {50, 50}, placed({0, 0, 2}));
   const Tracer tracer(scene);
-  scene::Lamp lamp = lamp_at(LampKind::Point, {0, 0, 4});
+  scene::PlacedLamp lamp = lamp_at(LampKind::Point, {0, 0, 4});
   lamp.radius = 1.0F;
   double sum = 0.0;
   double squares = 0.0;
@@ -234,7 +234,7 @@ TEST(Visibility, StandardErrorIsNoSmallerThanTheSpreadOfSeeds)
 }
 
 /** Unoccluded, at the origin facing up. */
-void expect_irradiance(const scene::Lamp &lamp, double expected)
+void expect_irradiance(const scene::PlacedLamp &lamp, double expected)
 {
   const scene::Scene scene;
   const Tracer tracer(scene);
@@ -246,14 +246,14 @@ void expect_irradiance(const scene::Lamp &lamp, double expected)
 
 TEST(Irradiance, LampsWithoutSizeFollowTheInverseSquareAndTheCosine)
 {
-  scene::Lamp point = lamp_at(LampKind::Point, {3, 0, 4});
+  scene::PlacedLamp point = lamp_at(LampKind::Point, {3, 0, 4});
   point.intensity = 7.0F;
   expect_irradiance(point, 7.0 * 0.8 / 25.0);
   point.range = 10.0F;
   expect_irradiance(point, 7.0 * 0.8 / 25.0 * (1.0 - 1.0 / 16.0));
-  scene::Lamp sun = lamp_at(LampKind::Sun, {0, 0, 0}, {3, 0, -4});
+  scene::PlacedLamp sun = lamp_at(LampKind::Sun, {0, 0, 0}, {3, 0, -4});
   expect_irradiance(sun, 0.8);
-  scene::Lamp hemi = lamp_at(LampKind::Hemi, {0, 0, 0}, {3, 0, -4});
+  scene::PlacedLamp hemi = lamp_at(LampKind::Hemi, {0, 0, 0}, {3, 0, -4});
   expect_irradiance(hemi, 0.9);
 }
 
@@ -261,7 +261,8 @@ TEST(Irradiance, SpotsConeIsASmoothstepOfTheCosine)
 {
   for (const float blend : {0.0F, 0.25F, 1.0F}) {
     for (const double angle : {0.0, 0.2, 0.35, 0.39, 0.41, 1.0}) {
-      scene::Lamp spot = lamp_at(LampKind::Spot, {0, 0, 2}, {float(std::sin(angle)), 0.0F, -float(std::cos(angle))});
+      scene::PlacedLamp spot =
+          lamp_at(LampKind::Spot, {0, 0, 2}, {float(std::sin(angle)), 0.0F, -float(std::cos(angle))});
       spot.spot_outer_angle = 0.4F;
       spot.spot_blend = blend;
       const double edge = std::cos(double(0.4F));
@@ -274,16 +275,16 @@ TEST(Irradiance, SpotsConeIsASmoothstepOfTheCosine)
 
 TEST(Irradiance, DisksRectanglesEllipsesAndSunsAreTheirClosedForms)
 {
-  scene::Lamp point = lamp_at(LampKind::Point, {0, 0, 2});
+  scene::PlacedLamp point = lamp_at(LampKind::Point, {0, 0, 2});
   point.radius = 1.5F;
   expect_irradiance(point, 1.0 / (4.0 + 2.25));
-  scene::Lamp sun = lamp_at(LampKind::Sun, {0, 0, 0});
+  scene::PlacedLamp sun = lamp_at(LampKind::Sun, {0, 0, 0});
   for (const float angle : {0.01F, 1.0F, 3.14F}) {
     sun.angle = angle;
     expect_irradiance(sun, 1.0);
   }
   // A disk parallel to the receiver, above it: form factor r² / (h² + r²).
-  scene::Lamp area = lamp_at(LampKind::Area, {0, 0, 2});
+  scene::PlacedLamp area = lamp_at(LampKind::Area, {0, 0, 2});
   area.area_shape = scene::AreaShape::Ellipse;
   area.area_size_x = 3.0F;
   area.area_size_y = 3.0F;
@@ -308,7 +309,7 @@ TEST(Irradiance, IsFiniteAtTheLamp)
   const Tracer tracer(scene);
   for (const LampKind kind : {LampKind::Point, LampKind::Sun, LampKind::Spot, LampKind::Hemi, LampKind::Area}) {
     for (const float size : {0.0F, 1e-12F, 1.0F, 1e12F}) {
-      scene::Lamp lamp = lamp_at(kind, {0, 0, 0});
+      scene::PlacedLamp lamp = lamp_at(kind, {0, 0, 0});
       lamp.radius = size;
       lamp.angle = std::min(size, 3.14159F);
       lamp.area_size_x = std::max(size, 1e-30F);
