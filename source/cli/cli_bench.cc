@@ -136,9 +136,8 @@ class LampBench {
       : device_(device), way_(way)
   {
     settings_.layer_pass = way.layer_pass;
-    scene::Lamp &lamp = scene_.lamps.emplace_back();
-    lamp.name = "lamp";
-    lamp.kind = scene::LampKind::Point;
+    lamp_.name = "lamp";
+    lamp_.kind = scene::LampKind::Point;
     add_casters(batches, caster_count);
     prepare(0);
     if (way_.is_culled_by_view) {
@@ -149,12 +148,13 @@ class LampBench {
   /** What a change of the scene costs whatever the way: the lamp moves, so that all its layers are to be drawn. */
   void prepare(int round)
   {
-    scene_.lamps[0].world_from_lamp[3].x = round % 2 == 0 ? 0.0F : 1e-3F;
+    lamp_.world_from_lamp[3].x = round % 2 == 0 ? 0.0 : double(1e-3F);
     if (way_.is_culled_by_view) {
       return;
     }
-    eevee::Lamps lamps = eevee::make_lamps(scene_);
-    shadows_.sync(device_.limits(), scene_, lamps, settings_);
+    const std::span<const scene::PlacedLamp> placed(&lamp_, 1);
+    eevee::Lamps lamps = eevee::make_lamps(placed);
+    shadows_.sync(device_.limits(), placed, {}, lamps, settings_);
     shadows_.allocate(device_, shaders_);
     for (const eevee::Caster &caster : casters_) {
       shadows_.add_caster(caster);
@@ -238,7 +238,7 @@ class LampBench {
 
   void record_faces(gpu::CommandList &list)
   {
-    const glm::vec3 position_ws(scene_.lamps[0].world_from_lamp[3]);
+    const glm::vec3 position_ws(lamp_.world_from_lamp[3]);
     const auto views = eevee::shadow_cube_views(position_ws, 0.05F, settings_.cube_size_px);
     for (std::uint32_t face = 0; face < 6; face++) {
       face_block_ = {face_blocks_.id(), face * stride_, sizeof(shared::ShadowRenderBlock)};
@@ -253,7 +253,7 @@ class LampBench {
   gpu::Device &device_;
   const Way &way_;
   eevee::ShadowSettings settings_;
-  scene::Scene scene_;
+  scene::PlacedLamp lamp_;
   eevee::ShaderCache shaders_;
   eevee::Shadows shadows_;
   draw::ObjectBuffer objects_;
@@ -389,8 +389,10 @@ void bench_draws(const BenchOptions &options)
   const draw::View view;
   std::array<std::vector<double>, 3> seconds;
   for (int round = 0; round <= options.rounds; round++) {
+    for (draw::ObjectIndex i = objects.index_end() - 1; i > draw::object_identity; i--) {
+      objects.remove(i);
+    }
     const double start = cpu_seconds();
-    objects.clear();
     pass.clear();
     draw::ShadingGroup &group = pass.group(shader);
     for (std::size_t i = 0; i < draw_count; i++) {
@@ -443,11 +445,13 @@ void draw_left_out(gpu::Device &device, LeftOutRow &row, bool is_warm_up)
   constexpr glm::ivec2 size_px(640, 360);
   const gpu::Counters before = device.counters();
   const double start = wall_seconds();
-  eevee::Engine engine(row.of.scene, row.of.settings);
+  render_scene::RenderScene render_scene(device, row.of.scene);
+  eevee::Engine engine(render_scene, row.of.settings);
   draw::Viewport viewport(device, size_px);
   const std::array<draw::Engine *, 1> engines = {&engine};
-  const draw::View view = eevee::view_of(row.of.scene.cameras.front(), size_px);
-  viewport.sync(engines, eevee::object_refs(row.of.scene));
+  const draw::View view = eevee::view_of(render_scene.relative(row.of.scene.placed_cameras().front()), size_px);
+  render_scene.update();
+  viewport.sync(engines, render_scene.objects());
   viewport.draw(engines, view);
   device.finish();
   const double first_end = wall_seconds();

@@ -17,7 +17,7 @@ namespace gnomon::cli {
 namespace fs = std::filesystem;
 
 Chooser::Chooser(const ChoiceOptions &options, gpu::Device &device, const scene::Scene &scene,
-                 const scene::Camera &camera, glm::ivec2 size_px)
+                 const scene::PlacedCamera &camera, glm::ivec2 size_px)
     : options_(options), scene_(scene), camera_(camera), size_px_(size_px), tracer_(scene)
 {
   if (options.error_max > 0.0) {
@@ -61,14 +61,14 @@ std::vector<measure::Model> Chooser::models_of_report(const gpu::Device &device)
   if (found == run.scenes.end()) {
     return unknown(fmt::format("{} is not in it as it is now", scene_.path));
   }
-  if (run.size_px != size_px_ || &camera_ != &scene_.cameras.front()) {
+  if (run.size_px != size_px_ || camera_.node != scene_.placed_cameras().front().node) {
     return unknown(fmt::format("it is of pictures of {}x{} by the first camera", run.size_px.x, run.size_px.y));
   }
   const Origin here = origin();
   if (run.build != program_fingerprint() || run.device != device.description() || run.machine != here.machine) {
     return unknown("another build, machine or driver has other times");
   }
-  const bool has_wishes = std::ranges::any_of(scene_.lamps, [](const scene::Lamp &lamp) {
+  const bool has_wishes = std::ranges::any_of(tracer_.lamps(), [](const scene::Lamp &lamp) {
     return lamp.shadow.kind != scene::ShadowKind::None && lamp.shadow != scene::LampShadow();
   });
   if (has_wishes) {

@@ -32,8 +32,8 @@ class Chooser {
    * From the report, where it has the scene at that size, and else from a pilot on \a device. All of them must outlive
    * it. \throws std::runtime_error naming the report where it cannot be read.
    */
-  Chooser(const ChoiceOptions &options, gpu::Device &device, const scene::Scene &scene, const scene::Camera &camera,
-          glm::ivec2 size_px);
+  Chooser(const ChoiceOptions &options, gpu::Device &device, const scene::Scene &scene,
+          const scene::PlacedCamera &camera, glm::ivec2 size_px);
 
   [[nodiscard]] const measure::Choice &choice() const
   {
@@ -55,7 +55,7 @@ class Chooser {
 
   ChoiceOptions options_;
   const scene::Scene &scene_;
-  const scene::Camera &camera_;
+  const scene::PlacedCamera &camera_;
   glm::ivec2 size_px_;
   reference::Tracer tracer_;
   measure::Wish wish_;

@@ -48,12 +48,13 @@ const gpu::Texture &shadow_picture(const DebugView &view, const scene::Scene &sc
 {
   std::vector<std::string> with_layers;
   bool is_lamp = false;
-  for (std::size_t i = 0; i < scene.lamps.size(); i++) {
+  const std::vector<scene::PlacedLamp> lamps = scene.placed_lamps();
+  for (std::size_t i = 0; i < lamps.size(); i++) {
     const std::vector<std::string> layers = engine.shadow_layers(viewport, i);
     if (!layers.empty()) {
-      with_layers.push_back(scene.lamps[i].name);
+      with_layers.push_back(lamps[i].name);
     }
-    if (scene.lamps[i].name != view.lamp) {
+    if (lamps[i].name != view.lamp) {
       continue;
     }
     is_lamp = true;

@@ -33,27 +33,28 @@ static const char *unit(scene::LampKind kind)
 
 static void print_info(const scene::Scene &scene)
 {
+  const std::vector<scene::Object> objects = scene.objects();
   std::size_t triangles = 0;
-  for (const scene::Object &object : scene.objects) {
-    triangles += scene.meshes[object.mesh].indices.size() / 3;
+  for (const scene::Object &object : objects) {
+    triangles += scene.meshes()[object.mesh].indices.size() / 3;
   }
   fmt::print("{}\n", scene.path);
-  fmt::print("  {} objects of {} meshes, {} triangles as placed, {} materials\n", scene.objects.size(),
-             scene.meshes.size(), triangles, scene.materials.size());
+  fmt::print("  {} objects of {} meshes, {} triangles as placed, {} materials\n", objects.size(), scene.meshes().size(),
+             triangles, scene.materials().size());
   const scene::Bounds bounds = scene.bounds();
   if (!bounds.is_empty()) {
     fmt::print("  bounds ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g}) m\n", bounds.min.x, bounds.min.y, bounds.min.z,
                bounds.max.x, bounds.max.y, bounds.max.z);
   }
-  for (const scene::Image &image : scene.images) {
+  for (const auto &[handle, image] : scene.images()) {
     fmt::print("  image '{}', {}x{}\n", image.name, image.width, image.height);
   }
-  for (const scene::Camera &camera : scene.cameras) {
+  for (const scene::PlacedCamera &camera : scene.placed_cameras()) {
     fmt::print("  camera '{}', {}{}\n", camera.name,
                camera.kind == scene::CameraKind::Perspective ? "perspective" : "orthographic",
                scene.is_camera_default ? " (made up)" : "");
   }
-  for (const scene::Lamp &lamp : scene.lamps) {
+  for (const scene::PlacedLamp &lamp : scene.placed_lamps()) {
     fmt::print("  lamp '{}', {}, {:g} {}{}\n", lamp.name, to_string(lamp.kind), lamp.intensity, unit(lamp.kind),
                scene.is_lamp_default ? " (made up)" : "");
   }

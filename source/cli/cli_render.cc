@@ -141,10 +141,10 @@ void check_folder(const fs::path &path)
   }
 }
 
-const scene::Camera &find_camera(const scene::Scene &scene, const std::string &name)
+scene::PlacedCamera find_camera(const scene::Scene &scene, const std::string &name)
 {
   std::vector<std::string> names;
-  for (const scene::Camera &camera : scene.cameras) {
+  for (const scene::PlacedCamera &camera : scene.placed_cameras()) {
     if (name.empty() || camera.name == name) {
       return camera;
     }
@@ -317,7 +317,7 @@ void show_progress(int done, int count)
   }
 }
 
-void render_frames(const RenderOptions &options, const scene::Camera &camera, eevee::Engine &engine,
+void render_frames(const RenderOptions &options, const scene::PlacedCamera &camera, eevee::Engine &engine,
                    draw::Viewport &viewport, RenderResult &result)
 {
   const std::array<draw::Engine *, 1> engines = {&engine};
@@ -387,7 +387,7 @@ Status render(RenderOptions options)
   RenderResult result;
 
   const scene::Scene scene = scene::import_gltf(options.scene);
-  const scene::Camera &camera = find_camera(scene, options.camera);
+  const scene::PlacedCamera camera = find_camera(scene, options.camera);
   for (const std::string &warning : scene.warnings) {
     fmt::print(stderr, "gnomon: warning: {}\n", warning);
   }
@@ -415,10 +415,12 @@ Status render(RenderOptions options)
     // The first sample draws the shadows, of the size that all samples have.
     options.samples = settings.sample_count = 1;
   }
-  eevee::Engine engine(scene, settings);
+  render_scene::RenderScene render_scene(*device, scene);
+  eevee::Engine engine(render_scene, settings);
   draw::Viewport viewport(*device, size_px);
   const std::array<draw::Engine *, 1> engines = {&engine};
-  viewport.sync(engines, eevee::object_refs(scene));
+  render_scene.update();
+  viewport.sync(engines, render_scene.objects());
   result.report = engine.report(viewport);
   for (const std::string &warning : result.report.warnings) {
     fmt::print(stderr, "gnomon: warning: {}\n", warning);
@@ -431,7 +433,7 @@ Status render(RenderOptions options)
   }
   result.sync_seconds = seconds_since(sync_start);
 
-  render_frames(options, camera, engine, viewport, result);
+  render_frames(options, render_scene.relative(camera), engine, viewport, result);
   result.report = engine.report(viewport);
 
   const gpu::Texture &picture = options.debug_view.kind == DebugView::Kind::Shadow

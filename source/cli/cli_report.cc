@@ -252,7 +252,7 @@ void Run::make_reference(const scene::Scene &scene, const reference::Tracer &tra
   progress_->begin_next(report.name + ": reference");
   const Clock::time_point start = Clock::now();
   const measure::ReferencePicture reference =
-      measure::reference_picture(tracer, scene.cameras.front(), run_.size_px, options_.reference_samples);
+      measure::reference_picture(tracer, scene.placed_cameras().front(), run_.size_px, options_.reference_samples);
   report.reference_noise = reference.noise;
   write_exr(folder_ / measure::reference_file(report), run_.size_px, floats(reference.picture.pixels),
             {{"gnomon:scene", report.path.string()}, {"gnomon:units", "scene-linear radiance, W/(sr m^2)"}});

@@ -36,12 +36,13 @@ bool is_lit_at(const scene::PlacedLamp &lamp, const glm::dvec3 &position_ws, con
 
 Bench::Bench(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera,
              const Technique &technique, glm::ivec2 size_px)
-    : scene_(scene),
-      settings_{.shadow = technique.settings},
-      engine_(scene, settings_),
+    : settings_{.shadow = technique.settings},
+      render_scene_(device, scene),
+      engine_(render_scene_, settings_),
       viewport_(device, size_px),
-      view_(eevee::view_of(camera, size_px))
+      view_(eevee::view_of(render_scene_.relative(camera), size_px))
 {
+  render_scene_.update();
 }
 
 void Bench::warm_up(bool has_probe)
@@ -80,7 +81,7 @@ void Bench::set(int sample_count, bool is_timed)
   settings_.sample_count = sample_count;
   settings_.is_timed = is_timed;
   engine_.set_settings(settings_);
-  viewport_.sync(engines_, eevee::object_refs(scene_));
+  viewport_.sync(engines_, render_scene_.objects());
   engine_.invalidate_shadows(viewport_);
   viewport_.device().finish();
 }
@@ -96,7 +97,7 @@ void Bench::draw(int sample_count)
 std::vector<LampError> Bench::judge(const reference::Tracer &tracer)
 {
   std::vector<LampError> errors;
-  const std::vector<scene::PlacedLamp> lamps = scene_.placed_lamps();
+  const std::span<const scene::PlacedLamp> lamps = render_scene_.lamps();
   for (std::size_t lamp = 0; lamp < lamps.size(); lamp++) {
     const std::optional<eevee::Probe> probe = engine_.probe(viewport_, view_, lamp);
     if (!probe) {

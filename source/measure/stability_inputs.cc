@@ -730,15 +730,18 @@ void add_host_call_cases(std::vector<StabilityCase> &cases)
                                    }));
   }
   cases.push_back(door_case<float>("host", "culling volumes", "frame of an object with that radius", float_kinds,
-                                   "object 1", odd_floats({2, 3, 4, 5, 6, 7}, Wanted::Refused),
+                                   "object 2", odd_floats({2, 3, 4, 5, 6, 7}, Wanted::Refused),
                                    [](const float &radius) {
                                      const scene::Scene scene = lit_scene();
                                      const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
                                      Renderer renderer(*device, scene, {16, 16}, small_settings());
-                                     std::vector<draw::ObjectRef> refs = eevee::object_refs(scene);
-                                     refs[1].volume.radius = radius;
+                                     draw::ObjectBuffer &objects = renderer.render_scene.objects();
+                                     const draw::ObjectIndex last = objects.index_end() - 1;
+                                     draw::CullingVolume volume = objects.volume(last);
+                                     volume.radius = radius;
+                                     objects.set(last, objects.world_from_object(last), 0, volume);
                                      const std::array<draw::Engine *, 1> engines = {&renderer.engine};
-                                     renderer.viewport.sync(engines, refs);
+                                     renderer.viewport.sync(engines, objects);
                                      renderer.draw(lit_camera());
                                      return Passed{shadow_block_faults(renderer.engine.shadows(renderer.viewport)), {}};
                                    }));

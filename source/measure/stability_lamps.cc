@@ -183,17 +183,13 @@ void add_count_cases(std::vector<StabilityCase> &cases)
                      .unit = violation_unit,
                      .bound = 0.0,
                      .run = swept(counts, [=](double count) {
-                       scene::Scene scene;
-                       for (int i = 0; i < int(count); i++) {
-                         scene::Lamp lamp;
-                         lamp.kind = kind;
-                         lamp.name = fmt::format("<{}>", i);
-                         lamp.intensity = float(i + 1);
-                         scene::Node node;
-                         node.lamp = scene.add(std::move(lamp));
-                         scene.add(std::move(node));
+                       std::vector<scene::PlacedLamp> placed(static_cast<std::size_t>(count));
+                       for (std::size_t i = 0; i < placed.size(); i++) {
+                         placed[i].kind = kind;
+                         placed[i].name = fmt::format("<{}>", i);
+                         placed[i].intensity = float(i + 1);
                        }
-                       const eevee::Lamps lamps = eevee::make_lamps(scene);
+                       const eevee::Lamps lamps = eevee::make_lamps(placed);
                        const int drawn = std::min(int(count), LIGHT_MAX);
                        double wrong = std::abs(lamps.light_block.light_count - drawn);
                        for (int i = 0; i < drawn; i++) {

@@ -35,8 +35,8 @@ class Bench {
   void set(int sample_count, bool is_timed);
   void draw(int sample_count);
 
-  const scene::Scene &scene_;
   eevee::Settings settings_;
+  render_scene::RenderScene render_scene_;
   eevee::Engine engine_;
   draw::Viewport viewport_;
   draw::View view_;

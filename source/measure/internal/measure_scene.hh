@@ -194,20 +194,22 @@ struct Picture {
 class Renderer {
  public:
   Renderer(gpu::Device &device, const scene::Scene &scene, glm::ivec2 size_px, const eevee::Settings &settings = {})
-      : scene_(scene), settings_(settings), engine(scene, settings), viewport(device, size_px)
+      : settings_(settings), render_scene(device, scene), engine(render_scene, settings), viewport(device, size_px)
   {
     sync();
   }
+  /** After each edit of the scene. */
   void sync()
   {
     const std::array<draw::Engine *, 1> engines = {&engine};
-    viewport.sync(engines, eevee::object_refs(scene_));
+    render_scene.update();
+    viewport.sync(engines, render_scene.objects());
   }
   void draw(const scene::PlacedCamera &camera)
   {
     const std::array<draw::Engine *, 1> engines = {&engine};
     for (int i = 0; i < settings_.sample_count; i++) {
-      viewport.draw(engines, eevee::view_of(camera, viewport.size_px()));
+      viewport.draw(engines, eevee::view_of(render_scene.relative(camera), viewport.size_px()));
     }
   }
   Picture picture(const scene::PlacedCamera &camera)
@@ -217,10 +219,10 @@ class Renderer {
   }
 
  private:
-  const scene::Scene &scene_;
   eevee::Settings settings_;
 
  public:
+  render_scene::RenderScene render_scene;
   eevee::Engine engine;
   draw::Viewport viewport;
 };
