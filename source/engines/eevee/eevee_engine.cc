@@ -4,6 +4,7 @@
 #include "eevee_camera.hh"
 #include "eevee_engine_data.hh"
 #include "eevee_film.hh"
+#include "eevee_frame.hh"
 
 #include "draw_view_shared.h"
 #include "gpu_read.hh"
@@ -16,30 +17,6 @@
 namespace gnomon::eevee {
 
 namespace {
-
-using gpu::State;
-
-/** The device's time for what \a work submits, added to the step's. */
-template <typename Work>
-void timed(bool is_timed, gpu::Device &device, Timing &timing, const char *name, Work &&work)
-{
-  if (!is_timed) {
-    work();
-    return;
-  }
-  auto step = std::ranges::find(timing.steps, name, &Timing::Step::name);
-  if (step == timing.steps.end()) {
-    timing.steps.push_back({name, device.create_timer_query(name)});
-    step = timing.steps.end() - 1;
-  }
-  if (step->is_pending) {
-    step->seconds += device.elapsed_seconds(step->query).value_or(0.0);
-  }
-  device.time_begin(step->query);
-  work();
-  device.time_end(step->query);
-  step->is_pending = true;
-}
 
 shared::ViewData view_data(const draw::View &view)
 {
@@ -155,10 +132,12 @@ static void require_sync(bool is_synced)
   }
 }
 
-/** Edge of a pixel at distance 1, or, orthographic, anywhere, metres. */
-static float pixel_size(const draw::View &view, const draw::Viewport &viewport)
+/** Write what every pass of a sample reads. */
+void Engine::update_view(Data &data, const draw::View &view)
 {
-  return 2.0F / (view.clip_from_view()[1][1] * float(viewport.size_px().y));
+  data.stl.object_block = {scene_.objects().buffer().id()};
+  data.stl.material_block = {scene_.materials().buffer().id()};
+  scene_.device().update(data.stl.view_block, view_data(view));
 }
 
 void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
@@ -167,88 +146,27 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
   require_sync(data.is_synced);
   const glm::vec2 offset_px = film_offset_px(data.samples_drawn, settings_.sample_count, settings_.seed);
   const draw::View sample_view = with_sample_offset(view, offset_px, viewport.size_px());
-  const bool is_first = data.samples_drawn == 0;
-  if (is_first) {
+  if (data.samples_drawn == 0) {
     data.stl.shadows.begin_picture();
-    data.passes.clear();
+    data.frame.clear();
     data.is_seen = false;
   }
-  if (std::ranges::any_of(data.stl.objects, [&](draw::ObjectIndex object) {
-        return sample_view.touches(scene_.objects().volume(object));
-      })) {
+  const bool is_sample_seen = std::ranges::any_of(
+      data.stl.objects, [&](draw::ObjectIndex object) { return sample_view.touches(scene_.objects().volume(object)); });
+  FrameSample sample{data, settings_, viewport, view, sample_view};
+  if (is_sample_seen) {
     data.is_seen = true;
     record(viewport);
-    draw_sample(viewport, view, sample_view);
+    update_view(data, sample_view);
   }
-  else if (is_first) {
-    submit_pass(viewport, "film", data.fbl.film_fb, {}, {}, sample_view);
+  // A sample that sees nothing adds nothing to a picture that has begun.
+  if (is_sample_seen || data.samples_drawn == 0) {
+    draw_steps(sample, FrameStep::When::EachSample);
   }
   data.samples_drawn = (data.samples_drawn + 1) % settings_.sample_count;
-  if (settings_.has_display && data.samples_drawn == 0) {
-    if (data.is_seen) {
-      submit_pass(viewport, "tonemap", data.fbl.display_fb, {.color_load = gpu::LoadAction::DontCare},
-                  {&data.psl->tonemap}, sample_view);
-    }
-    else {
-      // Black is black whatever the transform, and has no alpha: the clear is all that a picture of nothing takes.
-      submit_pass(viewport, "tonemap", data.fbl.display_fb, {}, {}, sample_view);
-    }
+  if (data.samples_drawn == 0) {
+    draw_steps(sample, FrameStep::When::LastSample);
   }
-}
-
-void Engine::submit_pass(draw::Viewport &viewport, const char *name, const gpu::Framebuffer &framebuffer,
-                         const gpu::PassActions &actions, std::initializer_list<const draw::Pass *> passes,
-                         const draw::View &view)
-{
-  Data &data = viewport.engine_data<Data>(*this);
-  gpu::CommandList list;
-  list.begin_pass(name, framebuffer, actions);
-  for (const draw::Pass *pass : passes) {
-    PassRuns &runs = data.passes[pass->name()];
-    const draw::RecordCounts counts = pass->record(view, list);
-    runs.runs += counts.drawn > 0 ? 1 : 0;
-    runs.counts.drawn += counts.drawn;
-    runs.counts.culled += counts.culled;
-  }
-  list.end_pass();
-  timed(settings_.is_timed, viewport.device(), data.timing, name, [&] { viewport.device().submit(list); });
-}
-
-void Engine::draw_sample(draw::Viewport &viewport, const draw::View &view, const draw::View &sample_view)
-{
-  Data &data = viewport.engine_data<Data>(*this);
-  auto &[fbl, txl, psl, stl, timing, samples_drawn, shadow_picture, is_synced, is_recorded, is_seen, passes] = data;
-  gpu::Device &device = viewport.device();
-  stl.object_block = {scene_.objects().buffer().id()};
-  stl.material_block = {scene_.materials().buffer().id()};
-  device.update(stl.view_block, view_data(sample_view));
-
-  const auto draw_depth = [&] {
-    submit_pass(viewport, "depth_prepass", fbl.depth_fb, {}, {&psl->depth_pass, &psl->depth_pass_cull}, sample_view);
-  };
-  const bool is_depth_first = settings_.shadow.cascades.is_fitted_to_depth;
-  if (is_depth_first) {
-    draw_depth();
-  }
-  if (has(stl.features, any_shadow)) {
-    const auto read_depths = [&] { return gpu::read_as<float>(device, viewport.depth_texture()); };
-    gpu::CommandList list;
-    stl.shadows.update(device, view, pixel_size(view, viewport), psl->shadow_pass, list, read_depths);
-    if (!list.commands().empty()) {
-      timed(settings_.is_timed, device, timing, "shadows", [&] { device.submit(list); });
-    }
-  }
-  if (!is_depth_first) {
-    draw_depth();
-  }
-  submit_pass(viewport, "lit", fbl.main_fb, {.depth_load = gpu::LoadAction::Load}, {&psl->lit_pass, &psl->tint_pass},
-              sample_view);
-
-  const FilmWeights weights = film_weights(samples_drawn, settings_.sample_count, settings_.seed, stl.film_weight_sum);
-  stl.film_columns = glm::vec4(weights.columns, 0.0F);
-  stl.film_rows = glm::vec4(weights.rows, 0.0F);
-  const gpu::LoadAction load = samples_drawn == 0 ? gpu::LoadAction::Clear : gpu::LoadAction::Load;
-  submit_pass(viewport, "film", fbl.film_fb, {.color_load = load}, {&psl->film_pass}, sample_view);
 }
 
 static std::optional<std::size_t> light_of(const Lamps &lamps, std::size_t lamp)
@@ -271,9 +189,7 @@ std::optional<Probe> Engine::probe(draw::Viewport &viewport, const draw::View &v
   const auto &[fbl, txl, psl] = std::tie(data.fbl, data.txl, data.psl);
   gpu::Device &device = viewport.device();
   stl.probed_light = int(*light);
-  stl.object_block = {scene_.objects().buffer().id()};
-  stl.material_block = {scene_.materials().buffer().id()};
-  device.update(stl.view_block, view_data(view));
+  update_view(data, view);
   gpu::CommandList list;
   stl.shadows.update(device, view, pixel_size(view, viewport), psl->shadow_pass, list);
   list.begin_pass("depth_prepass", fbl.depth_fb, {});
@@ -341,11 +257,16 @@ std::string Engine::serialize_passes(draw::Viewport &viewport) const
 {
   const Data &data = viewport.engine_data<Data>(*this);
   std::string text;
-  for (const draw::Pass *pass :
-       {&data.psl->shadow_pass, &data.psl->depth_pass, &data.psl->depth_pass_cull, &data.psl->lit_pass,
-        &data.psl->tint_pass, &data.psl->probe_pass, &data.psl->film_pass, &data.psl->tonemap}) {
-    text += pass->serialize(viewport.device());
+  if (!data.psl) {
+    return text;
   }
+  text += data.psl->shadow_pass.serialize(viewport.device());
+  for (const FrameStep &step : frame_steps()) {
+    for (const FramePass &pass : step.passes) {
+      text += ((*data.psl).*pass.pass).serialize(viewport.device());
+    }
+  }
+  text += data.psl->probe_pass.serialize(viewport.device());
   return text;
 }
 

@@ -125,7 +125,13 @@ class Engine final : public draw::Engine {
   [[nodiscard]] std::optional<std::size_t> tinted_sun(draw::Viewport &viewport) const;
   /** For those who look at the layers themselves; as of the last draw. */
   [[nodiscard]] const Shadows &shadows(draw::Viewport &viewport) const;
+  /** Linear in the size of the scene: call it for reports, not for every frame. Before the first sync it is empty. */
   [[nodiscard]] Report report(draw::Viewport &viewport) const;
+  /** Counters of the viewport's shadows. */
+  [[nodiscard]] const ShadowCounters &shadow_counters(draw::Viewport &viewport) const
+  {
+    return shadows(viewport).counters();
+  }
   /** For long-running hosts, when a shader file was edited: ShaderCache::reload; then draw::Viewport::sync. */
   std::vector<std::string> reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files);
   /** Draw each shadow again, up to date or not: for who measures what that costs. */
@@ -144,12 +150,7 @@ class Engine final : public draw::Engine {
   void record_caster(Data &data, draw::ObjectIndex object);
   void record_film(draw::Viewport &viewport);
   void add_casters(Data &data);
-  /** \a sample_view: \a view moved within the pixels. */
-  void draw_sample(draw::Viewport &viewport, const draw::View &view, const draw::View &sample_view);
-  /** One step of the frame: \a passes into \a framebuffer, counted and timed. */
-  void submit_pass(draw::Viewport &viewport, const char *name, const gpu::Framebuffer &framebuffer,
-                   const gpu::PassActions &actions, std::initializer_list<const draw::Pass *> passes,
-                   const draw::View &view);
+  void update_view(Data &data, const draw::View &view);
 
   render_scene::RenderScene &scene_;
   Settings settings_;

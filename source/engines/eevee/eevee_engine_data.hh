@@ -2,6 +2,7 @@
 #pragma once
 
 #include "eevee_debug.hh"
+#include "eevee_frame.hh"
 #include "eevee_lamps.hh"
 #include "eevee_shadows.hh"
 
@@ -143,12 +144,6 @@ struct Timing {
   std::vector<Step> steps;
 };
 
-/** What became of a pass in the picture at hand, over its samples. */
-struct PassRuns {
-  std::uint64_t runs = 0;
-  draw::RecordCounts counts;
-};
-
 struct Data final : draw::EngineViewportData {
   void resized() override
   {
@@ -172,8 +167,8 @@ struct Data final : draw::EngineViewportData {
   bool is_recorded = false;
   /** A sample of the picture at hand did. */
   bool is_seen = false;
-  /** By the names of draw::Pass. */
-  std::map<std::string, PassRuns> passes;
+  /** One for each of frame_steps(), of the picture at hand; empty before the first sample. */
+  std::vector<StepRecord> frame;
 };
 
 }  // namespace gnomon::eevee

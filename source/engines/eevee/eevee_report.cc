@@ -2,6 +2,7 @@
 // What a frame consists of, and what it was spared, from the state that the engine itself went by.
 #include "eevee_engine.hh"
 #include "eevee_engine_data.hh"
+#include "eevee_frame.hh"
 
 #include <fmt/ranges.h>
 
@@ -18,8 +19,6 @@ const FrameNode *find(const FrameNode &node, std::string_view what)
 }
 
 namespace {
-
-constexpr const char *nothing_seen = "nothing is seen";
 
 /** Everything the nodes are made from. */
 struct Source {
@@ -68,13 +67,9 @@ FrameNode folder(std::string what, std::string why, std::string why_not, std::ve
   return node;
 }
 
-/** Why no shadow of a kind is there, where no lamp has one. */
 std::string why_no_shadow(const Source &source, std::string no_such_lamp)
 {
-  if (source.settings.shadow.kind == scene::ShadowKind::None) {
-    return "shadows are off";
-  }
-  return source.has(Feature::Light) ? std::move(no_such_lamp) : "no lamp gives light";
+  return eevee::why_no_shadow(FrameState{source.settings, source.data}, std::move(no_such_lamp));
 }
 
 /** The images that materials of drawable objects read. */
@@ -209,66 +204,59 @@ FrameNode program_nodes(const Source &source)
   return node;
 }
 
+FrameNode pass_node(const FrameStep &step, const StepRecord &record, const FramePass &pass, const FrameState &state)
+{
+  const StepRecord::PassRecord &of_pass = record.passes[std::size_t(&pass - step.passes.data())];
+  const draw::Pass &drawn = (*state.data.psl).*pass.pass;
+  return {
+      .what = drawn.name(), .is_made = of_pass.runs > 0, .why = reason_of(pass, of_pass, state), .count = of_pass.runs};
+}
+
+FrameNode shadow_step_node(const Source &source, const Need &need)
+{
+  std::uint64_t layers = 0;
+  for (const ShadowState &state : source.data.stl.shadows.states()) {
+    layers += std::uint64_t(std::popcount(state.drawn_now));
+  }
+  return {.what = "shadows",
+          .is_made = layers > 0,
+          .why = layers == 0 && need.is_needed ? "every layer that is looked up is up to date" : need.reason,
+          .count = layers};
+}
+
 FrameNode pass_nodes(const Source &source)
 {
   const Data &data = source.data;
-  const auto node_of = [&](std::string what, std::string_view pass, std::string why, std::string why_not) {
-    const auto found = data.passes.find(std::string(pass));
-    const std::uint64_t runs = found == data.passes.end() ? 0 : found->second.runs;
-    return FrameNode{.what = std::move(what),
-                     .is_made = runs > 0,
-                     .why = runs > 0 ? std::move(why) : std::move(why_not),
-                     .count = runs};
-  };
-  const auto with_time = [&](FrameNode node, std::string_view step) {
-    const auto found = std::ranges::find(data.timing.steps, step, &Timing::Step::name);
-    if (found != data.timing.steps.end()) {
-      node.seconds = found->taken_seconds;
+  const FrameState state{source.settings, data};
+  std::vector<FrameNode> nodes;
+  for (std::size_t i = 0; i < frame_steps().size(); i++) {
+    const FrameStep &step = frame_steps()[i];
+    const StepRecord record =
+        i < data.frame.size() ? data.frame[i]
+                              : StepRecord{step.need(state), std::vector<StepRecord::PassRecord>(step.passes.size())};
+    FrameNode node;
+    if (step.passes.empty()) {
+      node = shadow_step_node(source, record.need);
     }
-    return node;
-  };
-  /** Of objects: recorded and out of the view, or of no such object. */
-  const auto why_no_object = [&](const draw::Pass &pass, std::string no_such) {
-    return !data.is_seen ? nothing_seen : pass.is_empty() ? std::move(no_such) : "none of its objects is in the view";
-  };
-  const PassList &psl = *data.psl;
-  std::vector<FrameNode> passes;
-
-  std::uint64_t layers = 0;
-  for (const ShadowState &state : data.stl.shadows.states()) {
-    layers += std::uint64_t(std::popcount(state.drawn_now));
+    else if (step.passes.size() == 1) {
+      node = pass_node(step, record, step.passes.front(), state);
+      node.what = step.name;
+      node.why = record.need.reason;
+    }
+    else {
+      std::vector<FrameNode> passes;
+      for (const FramePass &pass : step.passes) {
+        passes.push_back(pass_node(step, record, pass, state));
+      }
+      node = folder(std::string(step.name), record.need.reason, nothing_seen, std::move(passes));
+    }
+    const auto time = std::ranges::find(data.timing.steps, step.name, &Timing::Step::name);
+    if (time != data.timing.steps.end()) {
+      node.seconds = time->taken_seconds;
+    }
+    nodes.push_back(std::move(node));
   }
-  FrameNode shadows{
-      .what = "shadows", .is_made = layers > 0, .why = "layers that were not up to date", .count = layers};
-  if (layers == 0) {
-    shadows.why = !source.has(any_shadow) ? why_no_shadow(source, "no lamp casts a shadow")
-                  : !data.is_seen         ? nothing_seen
-                                          : "every layer that is looked up is up to date";
-  }
-  passes.push_back(with_time(std::move(shadows), "shadows"));
-  std::vector<FrameNode> depth;
-  depth.push_back(node_of("depth_pass", psl.depth_pass.name(), "two-sided materials",
-                          why_no_object(psl.depth_pass, "no object with a two-sided material")));
-  depth.push_back(node_of("depth_pass_cull", psl.depth_pass_cull.name(), "one-sided materials",
-                          why_no_object(psl.depth_pass_cull, "no object with a one-sided material")));
-  passes.push_back(
-      with_time(folder("depth_prepass", "each pixel is lit once", nothing_seen, std::move(depth)), "depth_prepass"));
-  std::vector<FrameNode> lit;
-  lit.push_back(node_of("lit_pass", psl.lit_pass.name(), "objects in the view", nothing_seen));
-  lit.push_back(node_of("tint_pass", psl.tint_pass.name(), "asked for",
-                        !source.settings.has_cascade_tint ? "not asked for"
-                        : data.stl.tinted_light           ? nothing_seen
-                                                          : "no sun has a shadow"));
-  passes.push_back(with_time(folder("lit", "objects in the view", nothing_seen, std::move(lit)), "lit"));
-  passes.push_back(
-      with_time(node_of("film", psl.film_pass.name(), fmt::format("{} samples a pixel", source.settings.sample_count),
-                        "nothing is seen: the picture is cleared"),
-                "film"));
-  passes.push_back(with_time(
-      node_of("tonemap", psl.tonemap.name(), "a display picture was asked for",
-              source.settings.has_display ? "nothing is seen: the picture is cleared" : "only radiance was asked for"),
-      "tonemap"));
-  return folder("passes", "runs of the last picture", nothing_seen, std::move(passes));
+  return folder("passes", "runs of the last picture", nothing_seen, std::move(nodes));
 }
 
 FrameNode resource_node(const Source &source, const gpu::Resource &resource, std::string what, std::string why,
@@ -454,20 +442,23 @@ FrameNode shadow_nodes(const Source &source)
 
 FrameNode draw_nodes(const Source &source)
 {
-  const PassList &psl = *source.data.psl;
   std::vector<FrameNode> passes;
-  for (const draw::Pass *pass : {&psl.depth_pass, &psl.depth_pass_cull, &psl.lit_pass, &psl.tint_pass}) {
-    const auto found = source.data.passes.find(pass->name());
-    const draw::RecordCounts counts = found == source.data.passes.end() ? draw::RecordCounts() : found->second.counts;
-    if (counts.drawn + counts.culled == 0) {
-      continue;
-    }
-    FrameNode &node = passes.emplace_back(FrameNode{.what = pass->name(),
-                                                    .is_made = counts.drawn > 0,
-                                                    .why = counts.drawn > 0 ? "in the view" : "outside of the view",
-                                                    .count = counts.drawn});
-    if (counts.culled > 0) {
-      node.children.push_back({.what = "culled", .why = "outside of the view", .count = counts.culled});
+  for (std::size_t i = 0; i < source.data.frame.size(); i++) {
+    const FrameStep &step = frame_steps()[i];
+    for (std::size_t j = 0; j < step.passes.size(); j++) {
+      const draw::RecordCounts counts = source.data.frame[i].passes[j].counts;
+      // Steps that draw over the whole picture draw no objects.
+      if (counts.drawn + counts.culled == 0 || step.passes.size() == 1) {
+        continue;
+      }
+      const draw::Pass &pass = (*source.data.psl).*step.passes[j].pass;
+      FrameNode &node = passes.emplace_back(FrameNode{.what = pass.name(),
+                                                      .is_made = counts.drawn > 0,
+                                                      .why = counts.drawn > 0 ? "in the view" : "outside of the view",
+                                                      .count = counts.drawn});
+      if (counts.culled > 0) {
+        node.children.push_back({.what = "culled", .why = "outside of the view", .count = counts.culled});
+      }
     }
   }
   FrameNode node = folder("draws", "instances, over the samples of the last picture", nothing_seen, std::move(passes));
@@ -485,6 +476,10 @@ Report Engine::report(draw::Viewport &viewport) const
   const Data &data = viewport.engine_data<Data>(*this);
   const StorageList &stl = data.stl;
   Report report;
+  if (!data.psl) {
+    report.tree = {.what = "frame", .why = "the viewport was never synced"};
+    return report;
+  }
   report.warnings = stl.lamps.warnings;
   report.warnings.insert(report.warnings.end(), stl.shadows.warnings().begin(), stl.shadows.warnings().end());
   report.limits = stl.lamps.limits;

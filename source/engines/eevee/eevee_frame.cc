@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_frame.hh"
+
+#include "eevee_engine_data.hh"
+#include "eevee_film.hh"
+
+#include "gpu_read.hh"
+
+#include <algorithm>
+#include <array>
+
+namespace gnomon::eevee {
+
+std::string why_no_shadow(const FrameState &state, std::string no_such_lamp)
+{
+  if (state.settings.shadow.kind == scene::ShadowKind::None) {
+    return "shadows are off";
+  }
+  return has(state.data.stl.features, Feature::Light) ? std::move(no_such_lamp) : "no lamp gives light";
+}
+
+float pixel_size(const draw::View &view, const draw::Viewport &viewport)
+{
+  return 2.0F / (view.clip_from_view()[1][1] * float(viewport.size_px().y));
+}
+
+namespace {
+
+Need need_shadows(const FrameState &state)
+{
+  if (!has(state.data.stl.features, any_shadow)) {
+    return {false, why_no_shadow(state, "no lamp casts a shadow")};
+  }
+  return state.data.is_seen ? Need{true, "layers that were not up to date"} : Need{false, nothing_seen};
+}
+
+Need need_depth(const FrameState &state)
+{
+  return state.data.is_seen ? Need{true, "each pixel is lit once"} : Need{false, nothing_seen};
+}
+
+Need need_lit(const FrameState &state)
+{
+  return state.data.is_seen ? Need{true, "objects in the view"} : Need{false, nothing_seen};
+}
+
+/** A picture in which nothing is seen is cleared once. */
+Need need_film(const FrameState &state)
+{
+  if (state.data.is_seen) {
+    return {true, fmt::format("{} samples a pixel", state.settings.sample_count)};
+  }
+  return {state.data.samples_drawn == 0, "nothing is seen: the picture is cleared"};
+}
+
+Need need_tonemap(const FrameState &state)
+{
+  if (!state.settings.has_display) {
+    return {false, "only radiance was asked for"};
+  }
+  return {true, state.data.is_seen ? "a display picture was asked for" : "nothing is seen: the picture is cleared"};
+}
+
+void record_passes(const FrameStep &step, FrameSample &sample, gpu::CommandList &list,
+                   const gpu::Framebuffer &framebuffer, const gpu::PassActions &actions)
+{
+  Data &data = sample.data;
+  StepRecord &record = data.frame[std::size_t(&step - frame_steps().data())];
+  list.begin_pass(step.name, framebuffer, actions);
+  // Of a picture in which nothing is seen, clearing is all that is left.
+  for (std::size_t i = 0; data.is_seen && i < step.passes.size(); i++) {
+    const draw::RecordCounts counts = ((*data.psl).*step.passes[i].pass).record(sample.sample_view, list);
+    record.passes[i].runs += counts.drawn > 0 ? 1 : 0;
+    record.passes[i].counts.drawn += counts.drawn;
+    record.passes[i].counts.culled += counts.culled;
+  }
+  list.end_pass();
+}
+
+void record_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
+{
+  record_passes(step, sample, list, sample.data.fbl.depth_fb, {});
+}
+
+void record_shadows(const FrameStep & /*step*/, FrameSample &sample, gpu::CommandList &list)
+{
+  gpu::Device &device = sample.viewport.device();
+  const auto read_depths = [&] { return gpu::read_as<float>(device, sample.viewport.depth_texture()); };
+  sample.data.stl.shadows.update(device, sample.view, pixel_size(sample.view, sample.viewport),
+                                 sample.data.psl->shadow_pass, list, read_depths);
+}
+
+void record_lit(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
+{
+  record_passes(step, sample, list, sample.data.fbl.main_fb, {.depth_load = gpu::LoadAction::Load});
+}
+
+void record_film(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
+{
+  StorageList &stl = sample.data.stl;
+  const FilmWeights weights =
+      film_weights(sample.data.samples_drawn, sample.settings.sample_count, sample.settings.seed, stl.film_weight_sum);
+  stl.film_columns = glm::vec4(weights.columns, 0.0F);
+  stl.film_rows = glm::vec4(weights.rows, 0.0F);
+  const gpu::LoadAction load = sample.data.samples_drawn == 0 ? gpu::LoadAction::Clear : gpu::LoadAction::Load;
+  record_passes(step, sample, list, sample.data.fbl.film_fb, {.color_load = load});
+}
+
+void record_tonemap(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
+{
+  // Black is black whatever the transform, and has no alpha: a picture of nothing takes a clear.
+  const gpu::LoadAction load = sample.data.is_seen ? gpu::LoadAction::DontCare : gpu::LoadAction::Clear;
+  record_passes(step, sample, list, sample.data.fbl.display_fb, {.color_load = load});
+}
+
+constexpr std::array<FramePass, 2> depth_passes = {{
+    {&PassList::depth_pass, "two-sided materials",
+     [](const FrameState &) -> std::string { return "no object with a two-sided material"; }},
+    {&PassList::depth_pass_cull, "one-sided materials",
+     [](const FrameState &) -> std::string { return "no object with a one-sided material"; }},
+}};
+
+constexpr std::array<FramePass, 2> lit_passes = {{
+    {&PassList::lit_pass, "objects in the view", [](const FrameState &) -> std::string { return nothing_seen; }},
+    {&PassList::tint_pass, "asked for",
+     [](const FrameState &state) -> std::string {
+       return !state.settings.has_cascade_tint ? "not asked for"
+              : state.data.stl.tinted_light    ? nothing_seen
+                                               : "no sun has a shadow";
+     }},
+}};
+
+constexpr std::array<FramePass, 1> film_passes = {
+    {{&PassList::film_pass, "samples", [](const FrameState &) -> std::string { return nothing_seen; }}}};
+
+constexpr std::array<FramePass, 1> tonemap_passes = {
+    {{&PassList::tonemap, "a display picture was asked for",
+      [](const FrameState &) -> std::string { return nothing_seen; }}}};
+
+using Names = std::array<std::string_view, 4>;
+constexpr Names shadow_targets = {"shadow_cubes", "shadow_maps", "shadow_distance_cube", "shadow_esm"};
+constexpr Names pictures = {"depth", "radiance", "film", "display"};
+constexpr std::span depth_only = std::span(pictures).first(1);
+constexpr std::span radiance_only = std::span(pictures).subspan(1, 1);
+constexpr std::span film_only = std::span(pictures).subspan(2, 1);
+constexpr std::span display_only = std::span(pictures).subspan(3, 1);
+
+constexpr std::array<FrameStep, 5> steps = {{
+    // Before the shadows: cascades may be fitted to the depths.
+    {"depth_prepass", FrameStep::When::EachSample, need_depth, {}, depth_only, depth_passes, record_depth},
+    {"shadows", FrameStep::When::EachSample, need_shadows, depth_only, shadow_targets, {}, record_shadows},
+    {"lit", FrameStep::When::EachSample, need_lit, shadow_targets, radiance_only, lit_passes, record_lit},
+    {"film", FrameStep::When::EachSample, need_film, radiance_only, film_only, film_passes, record_film},
+    {"tonemap", FrameStep::When::LastSample, need_tonemap, film_only, display_only, tonemap_passes, record_tonemap},
+}};
+
+/** The device's time for what \a work submits, added to the step's. */
+template <typename Work>
+void timed(gpu::Device &device, Timing &timing, std::string_view name, Work &&work)
+{
+  auto step = std::ranges::find(timing.steps, name, &Timing::Step::name);
+  if (step == timing.steps.end()) {
+    timing.steps.push_back({std::string(name), device.create_timer_query(std::string(name))});
+    step = timing.steps.end() - 1;
+  }
+  if (step->is_pending) {
+    step->seconds += device.elapsed_seconds(step->query).value_or(0.0);
+  }
+  device.time_begin(step->query);
+  work();
+  device.time_end(step->query);
+  step->is_pending = true;
+}
+
+}  // namespace
+
+std::span<const FrameStep> frame_steps()
+{
+  return steps;
+}
+
+std::string reason_of(const FramePass &pass, const StepRecord::PassRecord &record, const FrameState &state)
+{
+  if (record.runs > 0) {
+    return std::string(pass.purpose);
+  }
+  if (!state.data.is_seen) {
+    return nothing_seen;
+  }
+  return ((*state.data.psl).*pass.pass).is_empty() ? pass.why_empty(state) : "none of its objects is in the view";
+}
+
+void draw_steps(FrameSample &sample, FrameStep::When when)
+{
+  Data &data = sample.data;
+  gpu::Device &device = sample.viewport.device();
+  const FrameState state{sample.settings, data};
+  data.frame.resize(steps.size());
+  for (std::size_t i = 0; i < steps.size(); i++) {
+    const FrameStep &step = steps[i];
+    StepRecord &record = data.frame[i];
+    record.passes.resize(step.passes.size());
+    if (step.when != when) {
+      continue;
+    }
+    Need need = step.need(state);
+    const bool is_needed = need.is_needed;
+    // Over the samples of a picture: needed where any sample needs it.
+    if (is_needed || !record.need.is_needed) {
+      record.need = std::move(need);
+    }
+    if (!is_needed) {
+      continue;
+    }
+    gpu::CommandList list;
+    step.record(step, sample, list);
+    if (list.commands().empty()) {
+      continue;
+    }
+    if (sample.settings.is_timed) {
+      timed(device, data.timing, step.name, [&] { device.submit(list); });
+    }
+    else {
+      device.submit(list);
+    }
+  }
+}
+
+}  // namespace gnomon::eevee
