@@ -1,7 +1,7 @@
-# Every package from outside, found once. scripts/setup installs them on Debian.
+# Finds all external packages. scripts/setup installs them on Debian.
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
-# Debian 12's CMake file for it names folders of packages that it does not depend on.
+# The CMake file of OpenImageIO in Debian 12 refers to folders of packages that it does not depend on.
 pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO)
 find_package(glfw3 REQUIRED)
 find_package(SPIRV-Tools REQUIRED)
@@ -16,11 +16,11 @@ pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(tinygltf REQUIRED IMPORTED_TARGET tinygltf)
 find_package(glm QUIET)
 if(NOT TARGET glm::glm)
-  # Debian 12's glm installs a pkg-config file only.
+  # glm in Debian 12 installs only a pkg-config file.
   pkg_check_modules(glm REQUIRED IMPORTED_TARGET glm)
   add_library(glm::glm ALIAS PkgConfig::glm)
 endif()
-# What plots are drawn by, inside the pages that the program writes.
+# Draws the plots in the pages that the program writes.
 find_file(GNOMON_CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js /usr/share/nodejs/chart.js/dist REQUIRED)
 if(GNOMON_TESTS)
   find_package(GTest REQUIRED)

@@ -1,14 +1,14 @@
-# gnomon_layer(NAME): settings common to the target gnomon_NAME, which must exist, and its alias gnomon::NAME.
+# gnomon_layer(NAME): applies the common settings to the target gnomon_NAME, which must exist, and adds its alias gnomon::NAME.
 #
-# A layer's only include folder is its own, and it reaches another layer's headers only by linking it. So
-# `#include "draw_pass.hh"` in source/gpu does not compile: the arrows of doc/architecture.md are one-way by construction.
+# The only include folder of a layer is its own. It can include headers of another layer only if it links that layer. For
+# example, `#include "draw_pass.hh"` in source/gpu does not compile. This enforces the dependencies in doc/architecture.md.
 function(gnomon_layer NAME)
   set(TARGET gnomon_${NAME})
   add_library(gnomon::${NAME} ALIAS ${TARGET})
   set_target_properties(${TARGET} PROPERTIES EXPORT_NAME ${NAME})
   target_include_directories(${TARGET} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
   gnomon_compile_settings(${TARGET})
-  # Every public header compiles alone.
+  # all_verify_interface_header_sets checks that each public header compiles alone.
   file(GLOB HEADERS CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.hh)
   set_target_properties(${TARGET} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)
   target_sources(${TARGET} PUBLIC FILE_SET HEADERS BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR} FILES ${HEADERS})

@@ -1,10 +1,11 @@
-# Fails, with file and line, where a file includes a header that it may not see. Wants FOLDER, the repository's root.
+# Reports each include of a header that the file's layer must not use, with file and line, and fails. FOLDER: the repository's
+# root.
 #
-# Linking keeps most layers apart already (cmake/GnomonLayer.cmake), but it is transitive, and says nothing of headers
-# from outside or of a path that climbs out of its folder.
+# Include folders already separate most layers (cmake/GnomonLayer.cmake). But linking is transitive, and it restricts neither
+# external headers nor paths that contain "..".
 cmake_minimum_required(VERSION 3.25)
 
-# May see, beside itself. A header belongs to the folder here that holds it.
+# The layers that each layer may use. A header belongs to the listed folder that contains it.
 set(source/gpu shaders)
 set(source/draw source/gpu shaders)
 set(source/scene "")
@@ -17,7 +18,7 @@ set(shaders "")
 set(LAYERS source/gpu source/draw source/scene source/render_scene source/engines/eevee source/reference source/measure source/cli shaders)
 
 set(VIOLATIONS 0)
-# violation(FILE INCLUDE WHY): INCLUDE is the line's text.
+# violation(FILE INCLUDE WHY): reports a violation. INCLUDE: the text of the line.
 function(violation FILE INCLUDE WHY)
   file(READ ${FOLDER}/${FILE} TEXT)
   string(FIND "\n${TEXT}" "\n${INCLUDE}" OFFSET)
@@ -30,7 +31,7 @@ function(violation FILE INCLUDE WHY)
   set(VIOLATIONS ${VIOLATIONS} PARENT_SCOPE)
 endfunction()
 
-# The layer of a path below the root, or nothing.
+# layer_of(PATH RESULT): the layer of a path relative to the root; empty if there is none.
 function(layer_of PATH RESULT)
   set(${RESULT} "" PARENT_SCOPE)
   foreach(LAYER ${LAYERS})
@@ -41,7 +42,8 @@ function(layer_of PATH RESULT)
   endforeach()
 endfunction()
 
-# The path below the root of the file of ours that FILE gets by including NAME, or nothing.
+# resolve(FILE NAME RESULT): the path, relative to the root, of the file in this repository that FILE includes as NAME; empty if
+# there is none.
 function(resolve FILE NAME RESULT)
   cmake_path(GET FILE PARENT_PATH OWN)
   foreach(ROOT ${OWN} ${LAYERS} shaders/shared)
@@ -65,7 +67,7 @@ foreach(FILE ${FILES})
     continue()
   endif()
 
-  # Examples and tests play the host, whose context it is.
+  # Examples and tests act as the host, which owns the context.
   if(FILE MATCHES "^(source/gpu/gl|examples|tests)/")
     set(GL_HEADER "^$")
   else()

@@ -1,6 +1,6 @@
-# Writes a C++ file with texts inside it: FILES (paths, below FOLDER where they are relative), OUTPUT. It defines
-# NAMESPACE::file and NAMESPACE::paths, which HEADER declares; a file's name is its path as FILES has it, or its last
-# part where that is absolute.
+# Writes the C++ file OUTPUT, which contains the texts of FILES. Relative paths in FILES are relative to FOLDER. OUTPUT defines
+# NAMESPACE::file and NAMESPACE::paths, which HEADER declares. A file is named by its path in FILES, or by its last component if
+# that path is absolute.
 list(SORT FILES)
 set(TABLE "")
 foreach(FILE ${FILES})

@@ -1,4 +1,4 @@
-# Writes OUTPUT, a header with the commit that FOLDER is at, where that has changed.
+# Writes the header OUTPUT with the current commit of FOLDER, if the commit has changed.
 execute_process(COMMAND git describe --always --dirty --abbrev=7 --exclude=* WORKING_DIRECTORY ${FOLDER}
   OUTPUT_VARIABLE COMMIT OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 if(NOT COMMIT)

@@ -7,10 +7,10 @@
 
 namespace gnomon::shaders {
 
-/** The text of a file under `shaders/`, as it was when the program was built; nothing where there is none. */
+/** Text of a file under `shaders/` at build time; nothing if there is no such file. \a path: relative to `shaders/`. */
 [[nodiscard]] std::optional<std::string_view> file(std::string_view path);
 
-/** All of them, sorted. */
+/** Paths of all files, sorted. */
 [[nodiscard]] std::vector<std::string_view> paths();
 
 }  // namespace gnomon::shaders

@@ -1,6 +1,6 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// One triangle over the whole target, of no vertices but their numbers.
+// One triangle that covers the whole target. Its corners are computed from the vertex index.
 
 void main()
 {

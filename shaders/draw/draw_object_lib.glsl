@@ -4,7 +4,7 @@
 #include "shared/slots_shared.h"
 
 layout(location = ATTRIBUTE_POSITION) in vec3 position;
-/** x: index in object_block; y: value of the instance. */
+/** x: index in object_block. y: value of the instance. */
 layout(location = ATTRIBUTE_DRAW_INSTANCE) in uvec2 draw_instance;
 
 layout(std140, binding = OBJECT_BLOCK_SLOT) readonly buffer object_block

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The view of the pass.
 #include "shared/draw_view_shared.h"
 #include "shared/slots_shared.h"
 

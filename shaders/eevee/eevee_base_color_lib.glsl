@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// For fragment shaders: the texture of the surface's base colour, and what its alpha cuts out.
+// For fragment shaders: the base colour texture of the surface, and its alpha mask.
 #include "eevee/eevee_material_lib.glsl"
 
 layout(location = 3) in vec2 surface_uv;
@@ -12,8 +12,8 @@ vec3 base_color_tint()
 }
 
 /**
- * Always at full size: the means of mip-maps thin out what is far away, where samples add up to the right coverage, and
- * every pass decides alike whatever its view.
+ * Reads level 0. Mip-mapped alpha would thin out distant surfaces, while samples of level 0 average to the correct coverage.
+ * The result is also the same in every pass, whatever its view.
  */
 bool is_cut_out(float mask_cutoff)
 {

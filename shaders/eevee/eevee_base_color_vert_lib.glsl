@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// For vertex shaders: what eevee_base_color_lib.glsl looks up in the fragment shader.
+// For vertex shaders: writes the inputs of eevee_base_color_lib.glsl.
 #include "draw/draw_object_lib.glsl"
 
 layout(location = ATTRIBUTE_UV) in vec2 uv;

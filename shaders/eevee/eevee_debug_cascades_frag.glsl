@@ -1,19 +1,19 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// What the picture is multiplied by to show which cascades of a sun each pixel reads, and how they fade.
+// Tint of the picture that shows which cascades of a sun each pixel reads, and how they blend. The picture is multiplied by it.
 #include "eevee/eevee_light_lib.glsl"
 #include "eevee/eevee_shadow_place_lib.glsl"
 #include "eevee/eevee_surface_frag_lib.glsl"
 
 PUSH_CONSTANT_LAYOUT uniform push_constant_block
 {
-  /** The sun, in light_block. */
+  /** Index of the sun in light_block. */
   int tinted_light;
 };
 
 layout(location = 0) out vec4 tint;
 
-/** From the finest cascade on: red, green, blue, yellow. */
+/** Tints from the finest cascade on: red, green, blue, yellow. */
 const vec3 CASCADE_TINTS[4] = vec3[4](vec3(1.0, 0.4, 0.4), vec3(0.4, 1.0, 0.4), vec3(0.4, 0.6, 1.0), vec3(1.0, 0.9, 0.3));
 
 void main()
@@ -31,6 +31,6 @@ void main()
     sum += share * CASCADE_TINTS[i];
     open -= share;
   }
-  // Outside of all, nothing is changed.
+  // Pixels outside all cascades are unchanged.
   tint = vec4(sum + open, 1.0);
 }

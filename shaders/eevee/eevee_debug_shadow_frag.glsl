@@ -1,6 +1,6 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// Layers of a lamp's shadow for people to look at: near dark, far bright, and what holds no distance in a colour.
+// Picture of a lamp's shadow layers: near is dark, far is bright, and texels without a distance have a colour.
 #include "shared/eevee_depth_shared.h"
 #include "shared/eevee_esm_shared.h"
 #include "shared/slots_shared.h"
@@ -9,41 +9,43 @@ layout(binding = SHADOW_LAYERS_SLOT) uniform sampler2DArray shadow_layers;
 
 PUSH_CONSTANT_LAYOUT uniform push_constant_block
 {
-  /** Of a cascade, or, the first, of all faces: distances that depths 1 and 0 stand for, metres. */
+  /** Distances of depths 1 and 0, metres, for each cascade. The first is used for all faces. */
   vec4 near;
   vec4 far;
-  /** Distances that are black and white, metres. */
+  /** Distances that are shown as black and white, metres. */
   vec2 shown;
-  /** PROJECTION_…, of depths. */
+  /** PROJECTION_… of the depths. */
   int projection;
-  /** ESM_…, of filtered distances up to `far`; -1: depths. */
+  /** ESM_… for filtered distances up to `far`; -1 for depths. */
   int esm_format;
   int first_layer;
   /** Bit i: layer i of the shadow was drawn. */
   int drawn;
-  /** Edge of a layer, texels, from `border` on; and of its picture, pixels. */
+  /** Edge of a layer without its border, texels. */
   int size_px;
+  /** Width of the border, texels. */
   int border;
+  /** Edge of a layer in the picture, pixels. */
   int cell_px;
-  /** Of the shadow, on the left. */
+  /** Index of the leftmost layer in the picture, within the shadow. */
   int first_shown;
-  /** Images of a cube's face have their first row above. */
+  /** 1: cube faces, whose first row is at the top. */
   int is_cube;
-  /** All six of them, four wide and three high. */
+  /** 1: all six faces as a cross, four wide and three high. */
   int is_cross;
 };
 
-/** rgb: to look at, display-referred; a: metres, 0 where nothing is stored. */
+/** rgb: display-referred colour. a: distance in metres; 0 for texels without one. */
 layout(location = 0) out vec4 picture;
 
-/** The box unfolded, seen from outside, rows from below. -1: nothing. */
+/** Faces of the unfolded cube, seen from outside, rows from the bottom. -1: none. */
 const int CROSS[12] = int[12](-1, 3, -1, -1, 1, 4, 0, 5, -1, 2, -1, -1);
 
 const vec3 OUTSIDE = vec3(0.0);
-/** No caster is in it, or nothing that is seen looks there. */
+/** The layer was not drawn: it contains no caster, or no visible receiver looks it up. */
 const vec3 NOT_DRAWN = vec3(0.35, 0.06, 0.06);
 const vec3 CLEARED = vec3(0.08, 0.16, 0.45);
-/** So that near is not outside. */
+/** Brightness of the nearest distance, to distinguish it from OUTSIDE. */
 const float DARKEST = 0.1;
 
 void main()
@@ -68,11 +70,11 @@ void main()
   int range = is_cube != 0 ? 0 : min(layer, 3);
   float distance = esm_format >= 0 ? esm_decoded(stored, far[range], esm_format) :
                                      distance_of_depth(stored, near[range], far[range], projection);
-  // What was filtered among nothing but cleared texels is rounded.
+  // A filtered value of cleared texels only is not exactly `far`, because it is rounded.
   bool is_cleared = esm_format >= 0 ? distance >= 0.9999 * far[range] : stored <= 0.0;
   float share = clamp((distance - shown.x) / max(shown.y - shown.x, 1e-30), 0.0, 1.0);
   if (projection != PROJECTION_ORTHOGRAPHIC) {
-    // Around a lamp most of what is seen is near.
+    // Around a lamp, most surfaces are near, so the scale is a square root.
     share = sqrt(max(share, 0.0));
   }
   picture = is_cleared ? vec4(CLEARED, 0.0) : vec4(vec3(mix(DARKEST, 1.0, share)), distance);

@@ -6,7 +6,7 @@
 #  include "eevee/eevee_base_color_vert_lib.glsl"
 #endif
 
-// The lit pass tests for equal depth, so both compute the position alike.
+// The lit pass tests for equal depth, so both passes must compute the same position.
 invariant gl_Position;
 
 void main()

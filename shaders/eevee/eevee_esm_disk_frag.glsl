@@ -1,6 +1,6 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// A layer, filtered over cones of one solid angle: each texel looks into the cube in some directions around its own.
+// Filters a layer over cones of equal solid angle: each texel looks up several directions around its own in the cube.
 #include "eevee/eevee_esm_cube_lib.glsl"
 
 #ifdef EVSM_TAPS

@@ -1,6 +1,6 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// One distance a texel of the map, metres, without a border: what the separable filter begins with.
+// Writes one distance for each texel of the map, metres, without a border: the input of the separable filter.
 #include "eevee/eevee_esm_cube_lib.glsl"
 
 layout(location = 0) out float distance_m;

@@ -1,22 +1,22 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// One of the two passes of a Gaussian over the map's texels: along its rows, then along its columns into the layer.
+// One of the two passes of a Gaussian filter over the map: along rows, then along columns into the layer.
 #include "eevee/eevee_esm_block_lib.glsl"
 #include "shared/eevee_octahedral_shared.h"
 
-/** Distances, metres, without a border. */
+/** Input distances, metres, without a border. */
 layout(binding = ESM_SOURCE_SLOT) uniform sampler2D esm_source;
 
 PUSH_CONSTANT_LAYOUT uniform push_constant_block
 {
   /** Index in `esm_block`. */
   int lamp;
-  /** 0: along rows, metres without a border; 1: along columns, as the layer stores it, with one. */
+  /** 0: along rows, output in metres without a border. 1: along columns, output in the format of the layer, with a border. */
   int axis;
 };
 
 #ifdef EVSM
-/** With a distance its relative variance, 0 before the first pass. */
+/** Distance and relative variance. The variance is 0 before the first pass. */
 layout(location = 0) out vec2 result;
 #else
 layout(location = 0) out float result;
@@ -28,7 +28,7 @@ float source_distance(ivec2 texel)
 }
 
 #ifdef EVSM
-/** Mean of squares of what a row's texel is the mean of, by the mean's square. */
+/** Mean of the squares of the values that a texel of the first pass averages, divided by the square of their mean. */
 float source_square(ivec2 texel)
 {
   return axis == 0 ? 1.0 : 1.0 + texelFetch(esm_source, texel, 0).g;
@@ -45,7 +45,8 @@ void main()
   }
   texel = octahedral_texel(texel, data.size);
   vec3 direction = octahedral_to_direction((vec2(texel) + 0.5) / float(data.size));
-  // A disk's variance across is a quarter of its radius' square. In texels: those here, so that the solid angle is the same everywhere.
+  // The variance of a disk along one axis is a quarter of its squared radius. Divided by the texel's angle, so that the solid
+  // angle is the same everywhere.
   float deviation = 0.5 * data.filter_angle / octahedral_texel_angle(direction, data.size);
   int reach = int(ceil(3.0 * deviation));
   float falloff = -0.5 / max(deviation * deviation, 1e-30);
@@ -58,7 +59,7 @@ void main()
     if (i == 0) {
       continue;
     }
-    // The map goes on past its edges turned by 180°: a row stays a row.
+    // The map continues beyond its edges rotated by 180°, so that a row continues as a row.
     ivec2 neighbour = octahedral_texel(axis == 0 ? texel + ivec2(i, 0) : texel + ivec2(0, i), data.size);
     vec3 towards = octahedral_to_direction((vec2(neighbour) + 0.5) / float(data.size));
     float weight = exp(falloff * float(i * i)) * octahedral_texel_weight(towards);

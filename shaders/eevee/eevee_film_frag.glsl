@@ -1,14 +1,14 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// Adds one sample of the picture to the sum, by blending: the samples of the pixel and its neighbours, weighted by the
-// pixel filter.
+// Adds one sample of the picture to the film by blending. Each pixel adds the samples of the 3x3 pixels around it, weighted by
+// the pixel filter.
 #include "shared/slots_shared.h"
 
 layout(binding = RADIANCE_SLOT) uniform sampler2D radiance_texture;
 
 PUSH_CONSTANT_LAYOUT uniform push_constant_block
 {
-  /** Left, middle, right; and below, middle, above. */
+  /** Weights of the left, middle and right column, and of the lower, middle and upper row. */
   vec4 column_weights;
   vec4 row_weights;
 };
@@ -22,7 +22,7 @@ void main()
   sum = vec4(0.0);
   for (int y = 0; y < 3; y++) {
     for (int x = 0; x < 3; x++) {
-      // Beyond the edge of the picture, its last pixels stand again.
+      // Pixels at the edge of the picture are repeated beyond it.
       ivec2 neighbour = clamp(pixel + ivec2(x, y) - 1, ivec2(0), last);
       sum += texelFetch(radiance_texture, neighbour, 0) * (column_weights[x] * row_weights[y]);
     }

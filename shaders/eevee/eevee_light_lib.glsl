@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light that reaches a surface directly.
+// Direct light at a surface.
 #include "eevee/eevee_surface_lib.glsl"
 #include "shared/eevee_bsdf_shared.h"
 #include "shared/eevee_light_shared.h"
@@ -18,6 +18,7 @@ layout(std140, binding = LIGHT_BLOCK_SLOT) uniform light_block
   LightBlock light_data;
 };
 
+/** Visibility of a light, 1 lit and 0 in shadow. \a to_light: unit vector. */
 float light_visibility(LightData light, Surface surface, vec3 to_light)
 {
 #ifdef USE_SHADOW_CUBE
@@ -39,7 +40,7 @@ float light_visibility(LightData light, Surface surface, vec3 to_light)
   return 1.0;
 }
 
-/** Scattered towards the viewer, 1/sr, times the cosine. */
+/** BRDF towards the viewer, 1/sr, times the cosine of the incident light. */
 vec3 reflected(MaterialData material, Surface surface, vec3 to_light, float cos_l)
 {
 #ifdef USE_SPECULAR
@@ -57,6 +58,7 @@ vec3 reflected(MaterialData material, Surface surface, vec3 to_light, float cos_
 #endif
 }
 
+/** Radiance towards the viewer from one light, W/(sr m²). */
 vec3 light_radiance(LightData light, MaterialData material, Surface surface)
 {
   if (light.kind == LIGHT_HEMI) {
@@ -68,7 +70,7 @@ vec3 light_radiance(LightData light, MaterialData material, Surface surface)
   if (light.kind != LIGHT_SUN) {
     vec3 vector = light.position_ws - surface.position_ws;
     float distance_sq = dot(vector, vector);
-    // At the lamp itself there is no direction, and nothing to see.
+    // At the lamp itself the direction is undefined. The zero vector gives no light.
     to_light = distance_sq > 0.0 ? vector * inversesqrt(distance_sq) : vec3(0.0);
     irradiance = distance_falloff(distance_sq, light.radius_sq, light.range_inv_sq);
     if (light.kind == LIGHT_SPOT) {

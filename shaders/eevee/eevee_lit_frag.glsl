@@ -26,7 +26,7 @@ void main()
 #endif
   radiance = vec4(sum, 1.0);
 #ifdef USE_BASE_COLOR_TEXTURE
-  // The depth of another surface may be the same.
+  // Another surface may have the same depth, so the depth test alone does not reject a masked fragment.
   if (is_cut_out(material.mask_cutoff)) {
     discard;
   }

@@ -1,12 +1,12 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// What the engine makes of one lamp at each pixel, for those who judge it.
+// The engine's visibility of one lamp at each pixel, for comparison with the reference.
 #include "eevee/eevee_light_lib.glsl"
 #include "eevee/eevee_surface_frag_lib.glsl"
 
 PUSH_CONSTANT_LAYOUT uniform push_constant_block
 {
-  /** In light_block. */
+  /** Index in light_block. */
   int probed_light;
 };
 

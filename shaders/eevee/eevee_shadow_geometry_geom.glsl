@@ -1,12 +1,13 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
+// Passes a caster on to its layer, for devices whose vertex shaders cannot select the layer.
 
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 3) out;
 
 layout(location = 0) flat in int caster_layer[];
 #ifdef USE_ALPHA_MASK
-// What eevee_base_color_vert_lib.glsl hands on, under names that leave its own to the fragment shader.
+// Outputs of eevee_base_color_vert_lib.glsl. They are renamed, because the fragment shader needs the original names.
 layout(location = 2) flat in uint caster_material[];
 layout(location = 3) in vec2 caster_uv[];
 

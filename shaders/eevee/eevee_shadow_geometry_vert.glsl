@@ -1,6 +1,7 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// As eevee_shadow_layered_vert.glsl, for devices whose vertex shaders cannot choose the layer: the next stage does.
+// The same as eevee_shadow_layered_vert.glsl, for devices whose vertex shaders cannot select the layer. The geometry shader
+// selects it.
 #include "eevee/eevee_shadow_render_lib.glsl"
 
 layout(location = 0) flat out int caster_layer;

@@ -1,7 +1,7 @@
 #version 450 core
 #extension GL_ARB_shader_viewport_layer_array : require
 // SPDX-License-Identifier: MIT
-// All layers of a lamp in one pass: each instance says which is its own.
+// Draws all layers of a lamp in one pass. The value of each instance is its layer.
 #include "eevee/eevee_shadow_render_lib.glsl"
 
 void main()

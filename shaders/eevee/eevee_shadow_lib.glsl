@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Visibility of a light, 1 lit and 0 in shadow, from the depths that its casters left.
+// Visibility of a light, 1 lit and 0 in shadow, from the depths of its casters.
 #include "eevee/eevee_shadow_place_lib.glsl"
 #include "shared/eevee_light_shared.h"
 
@@ -10,26 +10,26 @@ layout(binding = SHADOW_CUBES_SLOT) uniform sampler2DArray shadow_cubes;
 layout(binding = SHADOW_MAPS_SLOT) uniform sampler2DArray shadow_maps;
 #endif
 
-/** A plane in a shadow, around a lookup. */
+/** The receiver's plane in the space of a shadow layer, around a lookup. */
 struct ReceiverPlane {
-  /** Where the lookup is; texel centres are at whole numbers. */
+  /** Position of the lookup. Texel centres are at integers. */
   vec2 texel;
-  /** Depth there. */
+  /** Depth of the plane at the lookup. */
   float depth;
-  /** Change of depth a texel, across and up. */
+  /** Change of depth for each texel, across and up. */
   vec2 slope;
 };
 
-/** Which of the four texels from \a corner on are lit, weighted. \a size_px: of the shadow within its layer. */
+/** Weighted sum of the four texels from \a corner on that are lit. \a size_px: edge of the shadow within its layer. */
 float four_texels(sampler2DArray depths, int layer, int size_px, ReceiverPlane plane, vec2 corner, vec2 columns, vec2 rows)
 {
   corner = clamp(corner, vec2(0.0), vec2(max(size_px - 2, 0)));
-  // At the corner that the four share, so that rounding cannot choose others.
+  // Gather at the corner that the four texels share, so that rounding cannot select other texels.
   vec4 stored = textureGather(depths, vec3((corner + 1.0) / vec2(textureSize(depths, 0).xy), float(layer)));
   return weighted_texels(texels_lit(stored, plane_depths(plane.depth, plane.slope, corner - plane.texel)), columns, rows);
 }
 
-/** The bilinear blend of the four texels around \a texel. */
+/** Bilinear blend of the four texels around \a texel. */
 float bilinear_texels(sampler2DArray depths, int layer, int size_px, ReceiverPlane plane, vec2 texel)
 {
   vec2 corner = floor(texel);
@@ -44,7 +44,8 @@ float filtered_visibility(sampler2DArray depths, int layer, int size_px, int fil
   if (filter_kind == SHADOW_FILTER_PCF) {
     float sum = 0.0;
     if (PCF_WIDTH > 0) {
-      // A square of PCF_WIDTH texels around the lookup covers one more each way, of which the outer ones in part.
+      // A square of PCF_WIDTH texels around the lookup touches one more texel in each direction. The outer texels are weighted by
+      // their covered fraction.
       vec2 first = floor(plane.texel) - float((PCF_WIDTH - 1) / 2);
       vec2 fraction = fract(plane.texel);
       for (int y = 0; y < PCF_WIDTH; y += 2) {
@@ -69,7 +70,7 @@ float filtered_visibility(sampler2DArray depths, int layer, int size_px, int fil
 float shadow_cube_visibility(int index, Surface surface, LightData light, vec3 to_light)
 {
   ShadowCubeData cube = shadow.cubes[index];
-  // Distance along the axis of the receiver's face.
+  // Distance along the axis of the face that contains the receiver.
   vec3 from_light = surface.position_ws - light.position_ws;
   float w = largest(from_light);
   if (w > cube.far) {
@@ -78,7 +79,7 @@ float shadow_cube_visibility(int index, Surface surface, LightData light, vec3 t
   float magnitude = largest(surface.position_ws) + largest(light.position_ws);
   float lift = cube.bias * shadow_lift(cube.texel_size * w, kernel_reach(cube.filter_kind),
                                        DEPTH_ROUNDING / cube.near * w * w, magnitude);
-  // Not past the lamp: from behind, the plane would look turned round.
+  // Do not offset past the lamp. From behind, the plane would be reversed.
   lift = min(lift, 0.5 * abs(dot(surface.geometric_normal_ws, from_light)));
   from_light = lifted_position(surface, to_light, lift) - light.position_ws;
   int face = cube_face(from_light);
@@ -98,14 +99,14 @@ float shadow_cube_visibility(int index, Surface surface, LightData light, vec3 t
 #endif
 
 #ifdef USE_SHADOW_MAP
-/** \a coverage: of map_texco. */
+/** Visibility by one map. \a coverage: see map_texco. */
 float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, out float coverage)
 {
   vec3 texco = map_texco(map, surface, to_light, coverage);
   if (coverage <= 0.0) {
     return 1.0;
   }
-  // Two directions on the receiver's plane, as the map sees them: d(q / w) = (dq - q / w · dw) / w.
+  // Derivatives of the map's coordinates along two directions on the receiver's plane: d(q / w) = (dq - q / w · dw) / w.
   vec3 n = surface.geometric_normal_ws;
   vec3 tangent = normalize(abs(n.z) < 0.9 ? vec3(n.y, -n.x, 0.0) : vec3(0.0, n.z, -n.y));
   vec4 along = map.texco_from_world * vec4(tangent, 0.0);
@@ -119,12 +120,12 @@ float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, out 
   return filtered_visibility(shadow_maps, map.layer, map.size_px, map.filter_kind, plane);
 }
 
-/** \a first: the finest map of the light. */
+/** Visibility by all maps of a light. \a first: the finest. */
 float shadow_map_visibility(int first, Surface surface, vec3 to_light)
 {
   int count = shadow.maps[first].cascade_count;
   float visibility = 0.0;
-  // What no finer cascade has decided; outside of all nothing casts.
+  // Weight that finer cascades have left. Points outside all cascades are lit.
   float open = 1.0;
   for (int i = 0; i < count && open > 0.0; i++) {
     float coverage;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where a shadow shows a receiver.
+// Position of a receiver in a shadow map.
 #include "eevee/eevee_surface_lib.glsl"
 #include "shared/eevee_shadow_shared.h"
 #include "shared/slots_shared.h"
@@ -10,28 +10,29 @@ layout(std140, binding = SHADOW_BLOCK_SLOT) uniform shadow_block
 };
 
 #ifdef USE_SHADOW_PCF
-/** Edge of the kernel's square, texels, odd; 0: a disk. */
+/** Edge of the square kernel, texels, odd. 0: a disk. */
 SPECIALIZATION_CONSTANT(0) const int PCF_WIDTH = SHADOW_PCF_WIDTH;
-/** Lookups on the disk. */
+/** Number of lookups on the disk. */
 SPECIALIZATION_CONSTANT(1) const int PCF_TAPS = SHADOW_PCF_TAPS;
-/** Radius of the disk, texels: with the texels around a lookup it stays within CUBE_BORDER_TEXELS. */
+/** Radius of the disk, texels. With the texels around each lookup, the disk stays within CUBE_BORDER_TEXELS. */
 const float PCF_DISK_RADIUS = 2.0;
 #endif
 
+/** Largest absolute component. */
 float largest(vec3 v)
 {
   vec3 a = abs(v);
   return max(max(a.x, a.y), a.z);
 }
 
-/** The receiver, lifted off its plane to the side of the light. \a to_light: unit vector. */
+/** The receiver, offset along its normal to the side of the light. \a to_light: unit vector. \a lift: metres. */
 vec3 lifted_position(Surface surface, vec3 to_light, float lift)
 {
   vec3 normal_ws = surface.geometric_normal_ws;
   return surface.position_ws + normal_ws * (dot(normal_ws, to_light) < 0.0 ? -lift : lift);
 }
 
-/** How far from a lookup its kernel reads, texels. */
+/** Reach of the filter kernel from the lookup, texels. */
 float kernel_reach(int filter_kind)
 {
 #ifdef USE_SHADOW_PCF
@@ -42,12 +43,12 @@ float kernel_reach(int filter_kind)
   return 1.0;
 }
 
-/** Share of a map's half width over which a cascade fades into the next. */
+/** Fraction of a map's half width over which a cascade blends into the next. */
 const float CASCADE_FADE = 0.1;
 
 /**
- * Where a map shows the receiver, xyz after the division by w. \a coverage: 0 where the map says nothing of it, 1 where it is
- * not near the map's edge.
+ * Coordinates and depth of the receiver in a map, after the division by w. \a coverage: 0 outside the map, 1 inside except
+ * near the edge of the map.
  */
 vec3 map_texco(ShadowMapData map, Surface surface, vec3 to_light, out float coverage)
 {
@@ -65,7 +66,7 @@ vec3 map_texco(ShadowMapData map, Surface surface, vec3 to_light, out float cove
   return texco.xyz;
 }
 
-/** What a cascade decides of what finer ones left open. The last one has nothing to fade into. */
+/** Weight of a cascade within the weight that finer cascades have left. The last cascade does not fade. */
 float cascade_share(bool is_last, float coverage)
 {
   return is_last ? step(1e-30, coverage) : coverage;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// For vertex shaders: a caster in the face, or cascade, that its instance names.
+// For vertex shaders: a caster in the layer (face or cascade) that the value of its instance selects.
 #include "draw/draw_object_lib.glsl"
 #include "shared/eevee_shadow_shared.h"
 #ifdef USE_ALPHA_MASK

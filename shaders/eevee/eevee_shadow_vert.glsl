@@ -1,6 +1,6 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// One layer a pass.
+// Draws one layer in each pass.
 #include "eevee/eevee_shadow_render_lib.glsl"
 
 void main()

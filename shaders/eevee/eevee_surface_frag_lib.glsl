@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// For fragment shaders: the point being lit, from what eevee_lit_vert.glsl hands on.
+// For fragment shaders: the shaded point, from the outputs of eevee_surface_vert_lib.glsl.
 #include "draw/draw_view_lib.glsl"
 #include "eevee/eevee_surface_lib.glsl"
 
 layout(location = 0) in vec3 surface_position_ws;
 layout(location = 1) in vec3 surface_normal_ws;
 
-/** \a fallback for a zero vector. */
+/** Unit vector in the direction of \a v; \a fallback for the zero vector. */
 vec3 normalized(vec3 v, vec3 fallback)
 {
   float length_sq = dot(v, v);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 
-/** The point being lit. World space, unit vectors. */
+/** The shaded point. World space; all vectors have unit length. */
 struct Surface {
   vec3 position_ws;
-  /** Shading normal, on the side that is seen. */
+  /** Shading normal, on the visible side. */
   vec3 normal_ws;
-  /** Of the triangle, on the side that is seen. */
+  /** Normal of the triangle, on the visible side. */
   vec3 geometric_normal_ws;
   /** Towards the viewer. */
   vec3 view_ws;

@@ -1,6 +1,6 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// As eevee_lit_vert.glsl, for those who look at light and not at materials.
+// The same as eevee_lit_vert.glsl without the material, for the probe and debug programs.
 #include "draw/draw_view_lib.glsl"
 #include "eevee/eevee_surface_vert_lib.glsl"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// For vertex shaders: what eevee_surface_frag_lib.glsl makes the point being lit from.
+// For vertex shaders: writes the inputs of eevee_surface_frag_lib.glsl.
 #include "draw/draw_object_lib.glsl"
 
 layout(location = ATTRIBUTE_NORMAL) in vec3 normal;

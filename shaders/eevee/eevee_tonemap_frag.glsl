@@ -1,5 +1,6 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
+// Applies exposure and the view transform to the picture.
 #include "shared/eevee_tonemap_shared.h"
 #include "shared/slots_shared.h"
 

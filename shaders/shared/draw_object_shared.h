@@ -6,14 +6,14 @@
 
 SHARED_BEGIN
 
-/** An entry of `object_block`. */
+/** One object: an entry of `object_block`. */
 struct ObjectData {
   mat4 world_from_object;
-  /** Columns of the matrix for normals, up to scale; w unused. \see draw::normal_matrix */
+  /** Columns of the normal matrix, up to scale. w is unused. \see draw::normal_matrix */
   vec4 normal_x;
   vec4 normal_y;
   vec3 normal_z;
-  /** The engine's: eevee's index in `material_block`. */
+  /** Defined by the engine. Eevee stores the index in `material_block`. */
   uint value;
 };
 SHARED_ASSERT_SIZE(ObjectData, 112)

@@ -6,13 +6,14 @@
 
 SHARED_BEGIN
 
-/** `view_block`. */
+/** Content of `view_block`. */
 struct ViewData {
   mat4 clip_from_world;
-  /** World space, metres; unused by a parallel projection. */
+  /** Position of the eye, world space, metres. Unused by an orthographic projection. */
   vec3 position_ws;
+  /** 1 for a perspective projection, 0 for an orthographic one. */
   int is_perspective;
-  /** Unit vector against the view direction. */
+  /** Unit vector opposite to the view direction. */
   vec3 back_ws;
   float _pad0;
 };

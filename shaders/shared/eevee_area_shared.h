@@ -6,13 +6,14 @@
 
 SHARED_BEGIN
 
-/** Where a line and a plane that hardly meet are said to meet, in lengths of the line's direction: its square is finite. */
+/** Largest result of line_plane_distance, in lengths of the line's direction. Its square is finite. */
 SHARED_CONSTANT float LINE_FAR = 1e16f;
 
 /**
- * Along the line, in lengths of \a direction, to the plane. In [-LINE_FAR, LINE_FAR], and LINE_FAR for a parallel.
+ * Distance from \a origin along a line to a plane, in lengths of \a direction. The result is in [-LINE_FAR, LINE_FAR], and
+ * LINE_FAR for a parallel line.
  *
- * \a origin: a point of the line; \a plane_point: one of the plane. \a plane_normal: of any length.
+ * \a origin: a point on the line. \a plane_point: a point on the plane. \a plane_normal: of any length.
  */
 SHARED_FUNCTION float line_plane_distance(vec3 origin, vec3 direction, vec3 plane_point, vec3 plane_normal)
 {
@@ -24,16 +25,16 @@ SHARED_FUNCTION float line_plane_distance(vec3 origin, vec3 direction, vec3 plan
   return (height < 0.0f) == (rise < 0.0f) ? LINE_FAR : -LINE_FAR;
 }
 
-/** Unit vector, or zero for one without length. */
+/** Unit vector in the direction of \a v; the zero vector for the zero vector. */
 SHARED_FUNCTION vec3 direction_or_zero(vec3 v)
 {
   return v / max(sqrt(dot(v, v)), 1e-18f);
 }
 
 /**
- * Numerator and denominator of tan(Ω / 2) for the triangle from an apex in direction \a n to two corners (van
- * Oosterom and Strackee 1983). All unit vectors; \a volume: their triple product. No sum here cancels where n is the apex of the
- * quad that is nearest: it has no angle above 90° with a corner.
+ * Numerator and denominator of tan(Ω / 2), with Ω the solid angle of the triangle between direction \a n and two corners
+ * (van Oosterom and Strackee 1983). All three are unit vectors; \a volume is their triple product. If \a n points to the
+ * nearest point of the quad, its angle with each corner is at most 90° and no sum cancels.
  */
 SHARED_FUNCTION vec2 half_angle_tangent(vec3 n, vec3 corner_a, vec3 corner_b, float volume)
 {
@@ -42,22 +43,23 @@ SHARED_FUNCTION vec2 half_angle_tangent(vec3 n, vec3 corner_a, vec3 corner_b, fl
   return vec2(volume, max(dot(sum, vec3(0.5f) * sum + n), 1e-9f));
 }
 
-/** Product of the complex numbers y + i·x: adds their angles. */
+/** Adds the angles of two complex numbers y + i·x by multiplying them. */
 SHARED_FUNCTION vec2 angles_added(vec2 a, vec2 b)
 {
   return vec2(a.x * b.y + a.y * b.x, a.y * b.y - a.x * b.x);
 }
 
 /**
- * Solid angle of a rectangle, sr, in [0, 2π]; from both sides alike, and whatever a receiver's horizon hides of it.
+ * Solid angle of a rectangle, sr, in [0, 2π]. It is the same from both sides, and is not clipped to a receiver's horizon.
  *
- * \a center: from the eye, metres. \a half_right, \a half_up: from there to the middles of two edges, at right angles;
- * sizes from 1e-8 to 1e8 m. 0 where the rectangle has no area or is seen edge-on, 2π for an eye that touches its inside.
+ * \a center: the centre relative to the eye, metres. \a half_right, \a half_up: from the centre to the middles of two edges;
+ * they are orthogonal, and 1e-8 to 1e8 m long. The result is 0 for a rectangle without area or seen edge-on, and 2π if the
+ * eye lies on its interior.
  */
 SHARED_FUNCTION float rectangle_solid_angle(vec3 center, vec3 half_right, vec3 half_up)
 {
   vec3 area = cross(half_right, half_up);
-  // The point that is nearest to the eye, in half edges, and the direction of it.
+  // The point nearest to the eye, in half edges, and its direction.
   float s = -dot(center, half_right) / max(dot(half_right, half_right), 1e-30f);
   float t = -dot(center, half_up) / max(dot(half_up, half_up), 1e-30f);
   bool is_above = abs(s) < 1.0f && abs(t) < 1.0f;
@@ -65,11 +67,11 @@ SHARED_FUNCTION float rectangle_solid_angle(vec3 center, vec3 half_right, vec3 h
   t = clamp(t, -1.0f, 1.0f);
   vec3 n = direction_or_zero(center + s * half_right + t * half_up);
   if (is_above) {
-    // An eye that touches sees a direction of no length; this one stays.
+    // For an eye on the rectangle that direction has no length. The normal is always defined.
     n = direction_or_zero(area);
     n = dot(n, center) < 0.0f ? -n : n;
   }
-  // Four triangles around that point.
+  // The four triangles around that point.
   vec3 a = center - half_right - half_up;
   vec3 b = center + half_right - half_up;
   vec3 c = center + half_right + half_up;
@@ -85,7 +87,7 @@ SHARED_FUNCTION float rectangle_solid_angle(vec3 center, vec3 half_right, vec3 h
   vec2 high = half_angle_tangent(n, c, d, volume * (1.0f - t) * (inverse.z * inverse.w));
   vec2 left = half_angle_tangent(n, d, a, volume * (1.0f + s) * (inverse.w * inverse.x));
   vec2 half_angle = angles_added(angles_added(low, right), angles_added(high, left));
-  // At most π, where rounding could put it below the axis.
+  // The sum of half angles is at most π. Rounding may give a negative numerator.
   return 2.0f * atan(max(half_angle.x, 0.0f), half_angle.y);
 }
 

@@ -9,19 +9,19 @@ SHARED_BEGIN
 SHARED_CONSTANT float PI = 3.14159265358979f;
 SHARED_CONSTANT float INV_PI = 0.318309886183791f;
 
-/** Below it the lobe of a lamp without size is narrower than floats resolve. */
+/** Least alpha. For a smaller one, the lobe of a lamp without size is narrower than floats can resolve. */
 SHARED_CONSTANT float ALPHA_MIN = 1e-3f;
 
-/** GGX distribution of normals, 1/sr (Walter et al. 2007, eq. 33). */
+/** GGX distribution of microfacet normals, 1/sr (Walter et al. 2007, eq. 33). */
 SHARED_FUNCTION float ggx_distribution(float cos_h, float alpha)
 {
   float a2 = alpha * alpha;
-  // 1 - cos² + a²·cos² as a sum: no cancellation where both are small.
+  // 1 - cos² + a²·cos², written as a sum so that it does not cancel when both terms are small.
   float t = (1.0f - cos_h) * (1.0f + cos_h) + a2 * cos_h * cos_h;
   return a2 / (PI * t * t);
 }
 
-/** Smith's masking of one direction, divided by twice its cosine: G1 = 2·cos / (cos + √(a² + (1 - a²)·cos²)). */
+/** Smith's masking G1 of one direction, divided by twice its cosine. G1 = 2·cos / (cos + √(a² + (1 - a²)·cos²)). */
 SHARED_FUNCTION float ggx_masking_over_2cos(float cosine, float alpha)
 {
   float a2 = alpha * alpha;
@@ -29,15 +29,15 @@ SHARED_FUNCTION float ggx_masking_over_2cos(float cosine, float alpha)
 }
 
 /**
- * D·G1(l)·G1(v) / (4·cos(l)·cos(v)): the microfacet lobe without Fresnel, 1/sr. Masking and shadowing are separable, as in
- * Cycles. Cosines in (0, 1].
+ * Microfacet lobe without Fresnel, 1/sr: D·G1(l)·G1(v) / (4·cos(l)·cos(v)). Masking and shadowing are separable, as in
+ * Cycles. All cosines are in (0, 1].
  */
 SHARED_FUNCTION float ggx_lobe(float cos_l, float cos_v, float cos_h, float alpha)
 {
   return ggx_distribution(cos_h, alpha) * ggx_masking_over_2cos(cos_l, alpha) * ggx_masking_over_2cos(cos_v, alpha);
 }
 
-/** Schlick's approximation (1994). */
+/** Schlick's approximation of Fresnel reflectance (1994). \a cosine: between the half vector and the view direction. */
 SHARED_FUNCTION vec3 fresnel_schlick(vec3 f0, float f90, float cosine)
 {
   float m = clamp(1.0f - cosine, 0.0f, 1.0f);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Exponential shadow maps (Annen et al. 2008), filtered as logarithms (Salvi 2008): log(Σ w·exp(c·z)) / c, of distances z in
-// metres and an exponent c in 1/m. Only differences from the farthest distance reach exp(), so no spread overflows.
+// Exponential shadow maps (Annen et al. 2008), filtered in log space (Salvi 2008): log(Σ w·exp(c·z)) / c for distances z in
+// metres and an exponent c in 1/m. The argument of exp() is always a difference from the farthest distance, so that no spread
+// of distances overflows.
 #ifndef EEVEE_ESM_SHARED_H
 #define EEVEE_ESM_SHARED_H
 
@@ -8,25 +9,25 @@
 
 SHARED_BEGIN
 
-/** EsmData::format: what the array that holds the lamp's layer stores. */
-/** Metres, in 32 bits. */
+/** EsmData::format: the format of the array that contains the lamp's layer. */
+/** Distances in metres, in 32 bits. */
 #define ESM_FLOAT 0
-/** 16 bits: the range is laid over [-1, 1] in equal steps. */
+/** Distances in 16 bits: the range is mapped to [-1, 1] in equal steps. */
 #define ESM_HALF 1
-/** Metres, and the relative variance of what was filtered, in 32 bits each: exponential variance shadow maps. */
+/** Distances in metres and their relative variance, in 32 bits each: exponential variance shadow maps. */
 #define ESM_VARIANCE 2
 
-/** One lamp's octahedral layer, an entry of `esm_block`. */
+/** The octahedral layer of a lamp: an entry of `esm_block`. */
 struct EsmData {
-  /** 1/m, 0.01 to 1e4. */
+  /** Exponent, 1/m, 0.01 to 1e4. */
   float exponent;
-  /** Scale of esm_bias; 1: as derived. */
+  /** Factor of esm_bias. 1: the derived bias. */
   float bias;
-  /** What was not drawn, and what lies beyond, is at this distance, metres. */
+  /** Distance that is stored for empty texels and for all that is farther, metres. */
   float range;
-  /** Half the opening of the filter's cone, radians. */
+  /** Half the opening angle of the filter cone, radians. */
   float filter_angle;
-  /** Edge of the map, texels, without its border. The map stands in its layer's lower left corner. */
+  /** Edge of the map, texels, without its border. The map is in the lower left corner of its layer. */
   int size;
   int layer;
   /** ESM_… */
@@ -35,7 +36,7 @@ struct EsmData {
 };
 SHARED_ASSERT_SIZE(EsmData, 32)
 
-/** One for each light at most. */
+/** At most one for each light. */
 #define ESM_MAX 255
 
 struct EsmBlock {
@@ -44,18 +45,18 @@ struct EsmBlock {
 SHARED_ASSERT_SIZE(EsmBlock, ESM_MAX * 32)
 SHARED_ASSERT(sizeof(EsmBlock) <= UNIFORM_BLOCK_BYTES_MAX)
 
-/** Texels around a map that continue it, so that four neighbours are found at its edges too. */
+/** Width of the border that continues a map, texels, so that lookups at its edges have four neighbours. */
 #define ESM_BORDER 1
 
-/** Σ w·exp(c·z) as exp(c · highest) · sum. */
+/** Σ w·exp(c·z), represented as exp(c · highest) · sum. */
 struct LogSum {
   /** The largest z so far, metres. */
   float highest;
-  /** Σ w·exp(c · (z - highest)): at least the weight of the largest, at most all weights. */
+  /** Σ w·exp(c · (z - highest)): at least the weight of the largest z, at most the sum of the weights. */
   float sum;
 };
 
-/** Of one value. \a weight above 0. */
+/** Sum of one value. \a weight: above 0. */
 SHARED_FUNCTION LogSum log_sum_begin(float value, float weight)
 {
   LogSum begun;
@@ -64,7 +65,10 @@ SHARED_FUNCTION LogSum log_sum_begin(float value, float weight)
   return begun;
 }
 
-/** With one value more. \a exponent, 1/m: the same at each step. \a weight above 0. Spreads may be 1e30 m at exponents of 1e4. */
+/**
+ * Adds a value. \a exponent: 1/m, the same in each step. \a weight: above 0. Spreads up to 1e30 m are valid with exponents up to
+ * 1e4.
+ */
 SHARED_FUNCTION LogSum log_sum_add(LogSum before, float exponent, float value, float weight)
 {
   float scale = exp(-exponent * abs(value - before.highest));
@@ -75,8 +79,8 @@ SHARED_FUNCTION LogSum log_sum_add(LogSum before, float exponent, float value, f
 }
 
 /**
- * The filtered distance, metres: between the smallest and the largest value where weights add up to 1. Roundings of
- * the sum weigh 1 / exponent: about 1e-7 m / exponent.
+ * The filtered distance, metres. It lies between the smallest and the largest value if the weights add up to 1. Rounding of the
+ * sum contributes an error of about 1e-7 / exponent.
  */
 SHARED_FUNCTION float log_sum_value(LogSum total, float exponent)
 {
@@ -84,79 +88,80 @@ SHARED_FUNCTION float log_sum_value(LogSum total, float exponent)
 }
 
 /**
- * Relative variance of exp(c·z), Σ w·e² / (Σ w·e)² - 1 with e = exp(c·z), for weights that add up to \a weights. Both sums are
- * divided by powers of the largest e, which cancel: whatever the spread, it is at most weights / (weight of the
- * largest) - 1. Roundings of the sums make it wrong by some 1e-7, which is what it is for equal distances instead of 0.
+ * Relative variance of e = exp(c·z): Σ w·e² / (Σ w·e)² - 1, for weights that add up to \a weights. Both sums are divided by powers
+ * of the largest e, which cancel, so that the result is at most weights / (weight of the largest) - 1 for every spread. Rounding
+ * of the sums causes an error of about 1e-7; equal distances give this value instead of 0.
  *
- * \a squares: Σ w·exp(2·c · (z - highest)), as log_sum_add makes it with an exponent of 2·c.
+ * \a squares: Σ w·exp(2·c · (z - highest)), from log_sum_add with an exponent of 2·c.
  */
 SHARED_FUNCTION float log_sum_variance(LogSum total, LogSum squares, float weights)
 {
   return max(squares.sum * weights / max(total.sum * total.sum, 1e-30f) - 1.0f, 0.0f);
 }
 
-/** Visibility in [0, 1] of a receiver at \a distance behind casters at \a stored, metres: exp(c · (stored - distance)), 1 in front. */
+/**
+ * Visibility in [0, 1] of a receiver at \a distance for casters at \a stored, metres: exp(c · (stored - distance)), and 1 for a
+ * receiver in front of the casters.
+ */
 SHARED_FUNCTION float esm_visibility(float exponent, float stored, float distance)
 {
   return exp(min(exponent * (stored - distance), 0.0f));
 }
 
-/** Share of Chebyshev's bound that is cut off: light that bleeds through two layers of casters, mostly (Lauritzen and McCool 2008). */
+/** Fraction of Chebyshev's bound that is cut off to reduce light bleeding behind two layers of casters (Lauritzen and McCool 2008). */
 SHARED_CONSTANT float ESM_BLEED = 0.1f;
 
 /**
- * Visibility in [0, 1] by Chebyshev's bound (Donnelly and Lauritzen 2006) for exp(c·z): of a distribution with mean m and relative
- * variance v, v / (v + (exp(c·distance) / m - 1)²) at most is beyond \a distance. With the mean stored as a logarithm
- * only a difference of distances reaches exp().
+ * Visibility in [0, 1] by Chebyshev's bound (Donnelly and Lauritzen 2006) for exp(c·z). Of a distribution with mean m and relative
+ * variance v, at most v / (v + (exp(c·distance) / m - 1)²) lies beyond \a distance. The mean is stored as a logarithm, so that the
+ * argument of exp() is a difference of distances.
  *
- * \a stored: log(m) / c, metres. \a variance: at least 0. \a spread: least standard deviation, metres, above 0: that of the receiver's own
- * plane over the texels of a lookup.
+ * \a stored: log(m) / c, metres. \a variance: at least 0. \a spread: least standard deviation, metres, above 0: that of the
+ * receiver's own plane over the texels of a lookup.
  */
 SHARED_FUNCTION float esm_variance_visibility(float exponent, float stored, float variance, float distance, float spread)
 {
   float beyond = exponent * (distance - stored);
-  // Where exp() of 40 is, nothing is seen any more; its square is finite.
+  // At exp(40) the visibility is 0, and the square of exp(40) is finite.
   float t = exp(clamp(beyond, 0.0f, 40.0f)) - 1.0f;
   float least = min(exponent * spread, 1.0f);
   float v = max(variance, max(least * least, 1e-6f));
   return max(v / (v + t * t) - ESM_BLEED, 0.0f) / (1.0f - ESM_BLEED);
 }
 
-/** Steps from -1 to 0 that a half has everywhere in [-1, 1]: 11 bits. */
+/** Number of steps from -1 to 0 that half floats resolve everywhere in [-1, 1]: 11 bits. */
 SHARED_CONSTANT float ESM_HALF_STEPS = 2048.0f;
 
 /**
- * What a layer of ESM_… \a format holds for \a distance in [0, \a range], metres. Halves are rounded here to what they hold exactly,
- * because drivers may cut them off instead.
+ * Value that a layer of \a format (ESM_…) stores for \a distance in [0, \a range], metres. Half floats are rounded here to
+ * representable values, because drivers may truncate.
  */
 SHARED_FUNCTION float esm_encoded(float distance, float range, int format)
 {
   return format == ESM_HALF ? floor(2.0f * ESM_HALF_STEPS * (distance / range) + 0.5f) / ESM_HALF_STEPS - 1.0f : distance;
 }
 
-/** The inverse. */
+/** The inverse of esm_encoded: metres. */
 SHARED_FUNCTION float esm_decoded(float stored, float range, int format)
 {
   return format == ESM_HALF ? (0.5f * stored + 0.5f) * range : stored;
 }
 
-/** Largest error of distances that the format makes, metres: half a step. Roundings of floats are esm_bias' business. */
+/** Largest error of distances due to the format, metres: half a step. Rounding of floats is included in esm_bias instead. */
 SHARED_FUNCTION float esm_format_error(float range, int format)
 {
   return format == ESM_HALF ? range * (0.25f / ESM_HALF_STEPS) : 0.0f;
 }
 
-/**
- * Largest error of visibilities that an error of distances, metres, makes: where 1 becomes exp(-c·e), or the reverse.
- */
+/** Largest error of visibilities due to an error e of distances, metres: the difference between 1 and exp(-c·e). */
 SHARED_FUNCTION float esm_visibility_error(float exponent, float distance_error)
 {
   return 1.0f - exp(-exponent * distance_error);
 }
 
 /**
- * The \a index-th of \a count points that fill the unit disk evenly: Vogel's spiral (1979) in four turns of 90°, so that the points' mean
- * is the middle and their second moments are the disk's. \a count 1, the middle, or a multiple of 4.
+ * Point \a index of \a count points that fill the unit disk evenly: Vogel's spiral (1979), repeated in four rotations of 90°, so that
+ * the mean of the points is the centre and their second moments are those of the disk. \a count: 1 (the centre) or a multiple of 4.
  */
 SHARED_FUNCTION vec2 esm_disk_point(int index, int count)
 {
@@ -174,9 +179,9 @@ SHARED_FUNCTION vec2 esm_disk_point(int index, int count)
 }
 
 /**
- * Unit vector of the cone around \a axis for a \a point of the unit disk: equal areas become equal solid angles.
+ * Unit vector in the cone around \a axis for a \a point of the unit disk. Equal areas map to equal solid angles.
  *
- * \a axis: unit vector. \a versine: 1 - cos of half the opening, in [0, 2].
+ * \a axis: unit vector. \a versine: 1 - cos of half the opening angle, in [0, 2].
  */
 SHARED_FUNCTION vec3 esm_cone_direction(vec3 axis, vec2 point, float versine)
 {
@@ -186,23 +191,23 @@ SHARED_FUNCTION vec3 esm_cone_direction(vec3 axis, vec2 point, float versine)
   float b = axis.x * axis.y * a;
   vec3 across = vec3(1.0f + side * axis.x * axis.x * a, side * b, -side * axis.x);
   vec3 up = vec3(b, side + axis.y * axis.y * a, -axis.y);
-  // sin² = (1 - cos)·(1 + cos), where 1 - cos grows with the radius' square.
+  // sin² = (1 - cos)·(1 + cos). 1 - cos is proportional to the square of the radius.
   float drop = versine * dot(point, point);
   float sine_a_radius = sqrt(versine * max(2.0f - drop, 0.0f));
   return (1.0f - drop) * axis + sine_a_radius * point.x * across + sine_a_radius * point.y * up;
 }
 
-/** Planes seen more edge-on than this tangent are not lifted further: 84°. */
+/** Largest tangent of the incidence angle for which the bias grows: 84°. */
 SHARED_CONSTANT float ESM_TANGENT_MAX = 10.0f;
-/** What four texels around a lookup see of a plane, and a quarter for the cube's texels, from whose middles they have it. */
+/** Bias in texels: 1 for the four texels around a lookup, and 0.25 for the sampling at the centres of the cube's texels. */
 SHARED_CONSTANT float ESM_BIAS_TEXELS = 1.25f;
 
 /**
- * How far to lift a receiver towards the lamp, metres, so that a lit plane does not darken itself: the four texels around it
- * see the plane up to ESM_BIAS_TEXELS nearer, and distances are rounded.
+ * Distance by which a receiver is moved towards the lamp, metres, so that a lit plane does not shadow itself. The four texels
+ * around the lookup store the plane at distances up to ESM_BIAS_TEXELS nearer, and distances are rounded.
  *
- * \a cosine: between the plane's normal and the direction to the lamp, in [-1, 1]. \a texel_angle: edge of a texel there,
- * radians. \a format_error: metres.
+ * \a cosine: between the plane's normal and the direction to the lamp, in [-1, 1]. \a texel_angle: edge of a texel at the
+ * receiver, radians. \a format_error: metres.
  */
 SHARED_FUNCTION float esm_bias(float distance, float cosine, float texel_angle, float format_error)
 {
@@ -212,11 +217,11 @@ SHARED_FUNCTION float esm_bias(float distance, float cosine, float texel_angle, 
 }
 
 /**
- * Bilinear share of what the four texels around a lookup let through, in the order of textureGather: (0, 1), (1, 1), (1, 0),
- * (0, 0). Visibilities are blended, not distances: blended distances are geometric means of visibilities, and where a
- * near texel stands beside a far one, shadow would reach up to a texel too far.
+ * Bilinear blend of the visibilities of the four texels around a lookup, in the order of textureGather: (0, 1), (1, 1), (1, 0),
+ * (0, 0). Visibilities are blended, not distances. Blended distances give geometric means of visibilities, and a near texel
+ * beside a far one would extend the shadow by up to a texel.
  *
- * \a stored: distances, metres. \a fraction: of the lookup between the texel centres, in [0, 1).
+ * \a stored: distances, metres. \a fraction: position of the lookup between the texel centres, in [0, 1).
  */
 SHARED_FUNCTION float esm_gathered_visibility(float exponent, vec4 stored, float distance, vec2 fraction)
 {
@@ -225,7 +230,7 @@ SHARED_FUNCTION float esm_gathered_visibility(float exponent, vec4 stored, float
   return mix(low, high, fraction.y);
 }
 
-/** The same by esm_variance_visibility. */
+/** The same with esm_variance_visibility. */
 SHARED_FUNCTION float esm_gathered_variance_visibility(float exponent, vec4 stored, vec4 variance, float distance, float spread,
                                                        vec2 fraction)
 {

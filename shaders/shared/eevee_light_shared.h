@@ -18,21 +18,21 @@ SHARED_BEGIN
 #define SHADOW_MAP 2
 #define SHADOW_ESM 3
 
-/** What a lamp is to the shaders: an entry of `light_block`. */
+/** A lamp: an entry of `light_block`. */
 struct LightData {
-  /** World space, metres. Unused by sun and hemi. */
+  /** Position, world space, metres. Unused by sun and hemi. */
   vec3 position_ws;
   /** LIGHT_… */
   int kind;
-  /** Linear; irradiance (sun, hemi) or radiant intensity (point, spot). */
+  /** Linear RGB: irradiance, W/m² (sun, hemi), or radiant intensity, W/sr (point, spot). */
   vec3 color;
-  /** Square of the lamp's radius, m². 0: a point. */
+  /** Square of the radius, m². 0: a point. */
   float radius_sq;
-  /** Unit vector along which the lamp shines. */
+  /** Unit vector in which the lamp emits. */
   vec3 forward_ws;
   /** 1 / range², 1/m². 0: no limit. */
   float range_inv_sq;
-  /** Spot: 1 less the cosine of half the opening angle. A narrow cone's cosine would round to 1. */
+  /** Spot: 1 - cos of half the opening angle. The cosine of a narrow cone would round to 1. */
   float spot_drop_outer;
   /** Spot: 1 / (spot_drop_outer · blend), finite. */
   float spot_inv_width;
@@ -43,7 +43,7 @@ struct LightData {
 };
 SHARED_ASSERT_SIZE(LightData, 64)
 
-/** As many as the smallest promised uniform block holds beside the count. */
+/** The number of entries that fit into the smallest guaranteed uniform block, beside the count. */
 #define LIGHT_MAX 255
 
 struct LightBlock {
@@ -56,7 +56,7 @@ struct LightBlock {
 SHARED_ASSERT_SIZE(LightBlock, 16 + LIGHT_MAX * 64)
 SHARED_ASSERT(LIGHT_MAX == (UNIFORM_BLOCK_BYTES_MAX - 16) / sizeof(LightData))
 
-/** Blends below it are hard edges: the inverse stays finite. */
+/** Smaller blends are treated as hard edges, so that the inverse stays finite. */
 SHARED_CONSTANT float SPOT_BLEND_MIN = 1e-6f;
 
 /** Value for LightData::spot_inv_width. \a drop_outer in [0, 1], \a blend in [0, 1]. */
@@ -65,7 +65,7 @@ SHARED_FUNCTION float spot_inv_width(float drop_outer, float blend)
   return 1.0f / max(drop_outer * max(blend, SPOT_BLEND_MIN), 1e-30f);
 }
 
-/** 1 less the cosine between unit vectors: |a - b|² / 2, which nothing cancels in however close they are. */
+/** 1 - cos of the angle between two unit vectors, as |a - b|² / 2, which does not cancel for small angles. */
 SHARED_FUNCTION float cosine_drop(vec3 a, vec3 b)
 {
   vec3 apart = a - b;
@@ -73,8 +73,8 @@ SHARED_FUNCTION float cosine_drop(vec3 a, vec3 b)
 }
 
 /**
- * Transmission of a spot's cone, in [0, 1]: smoothstep over the soft edge. \a drop: cosine_drop of the lamp's forward and
- * the direction to the receiver. 0 on the cone and outside, monotone, finite for every drop in [0, 2].
+ * Transmission of a spot's cone, in [0, 1]: a smoothstep over the soft edge. \a drop: 1 - cos of the angle between the lamp's
+ * forward vector and the direction to the receiver, in [0, 2]. The result is monotone, finite, and 0 on and outside the cone.
  */
 SHARED_FUNCTION float spot_mask(float drop, float drop_outer, float inv_width)
 {
@@ -83,8 +83,8 @@ SHARED_FUNCTION float spot_mask(float drop, float drop_outer, float inv_width)
 }
 
 /**
- * Fall-off of a point or spot lamp, 1/m²: 1 / (d² + r²), the disk of radius r turned to the receiver, with the
- * window of KHR_lights_punctual at its range. Finite at d = 0.
+ * Fall-off of a point or spot lamp, 1/m²: 1 / (d² + r²) for a disk of radius r turned to the receiver, times the window of
+ * KHR_lights_punctual for its range. Finite at d = 0.
  */
 SHARED_FUNCTION float distance_falloff(float distance_sq, float radius_sq, float range_inv_sq)
 {
@@ -93,7 +93,7 @@ SHARED_FUNCTION float distance_falloff(float distance_sq, float radius_sq, float
   return window / max(distance_sq + radius_sq, 1e-12f);
 }
 
-/** Share of a uniform sky above a horizon that is turned away from the sky's axis: (1 + cos) / 2. */
+/** Irradiance from a uniform hemispherical sky, relative to a surface that faces it: (1 + cos) / 2. */
 SHARED_FUNCTION float hemi_irradiance(float cos_angle)
 {
   return 0.5f + 0.5f * cos_angle;

@@ -7,42 +7,42 @@
 SHARED_BEGIN
 
 /**
- * An entry of `material_block`. Linear colours. With a base colour texture, diffuse and metal_f0 are factors, and
- * specular_f0 and specular_f90 are those of a white one.
+ * A material: an entry of `material_block`. Colours are linear. With a base colour texture, diffuse and metal_f0 are factors of
+ * the texture, and specular_f0 and specular_f90 are those for a white texture.
  */
 struct MaterialData {
-  /** Diffuse albedo: base colour without the metallic share. */
+  /** Diffuse albedo: the base colour times 1 - metallic. */
   vec3 diffuse;
   /** GGX alpha: roughness², in [ALPHA_MIN, 1]. */
   float alpha;
-  /** Reflection at normal incidence; 0: no specular reflection at any angle. */
+  /** Reflectance at normal incidence. 0: no specular reflection at any angle. */
   vec3 specular_f0;
-  /** Reflection at grazing incidence. */
+  /** Reflectance at grazing incidence. */
   float specular_f90;
   /** Radiance, W/(sr m²). */
   vec3 emissive;
-  /** Where the base colour texture's alpha is below it, the surface is cut out; 0: nowhere. */
+  /** The surface is cut out where the alpha of the base colour texture is below this. 0: nowhere. */
   float mask_cutoff;
-  /** The share of specular_f0 that is the base colour of a metal. */
+  /** The part of specular_f0 that comes from the base colour of a metal. */
   vec3 metal_f0;
   float _pad0;
 };
 SHARED_ASSERT_SIZE(MaterialData, 64)
 
 /**
- * Reflection at grazing incidence for that at normal incidence. It fades below 2 %, so that black specular is
- * Lambertian (Lagarde and de Rousiers 2014, 3.2).
+ * Reflectance at grazing incidence from the reflectance at normal incidence. It fades below 2 %, so that a surface with a
+ * black specular colour is Lambertian (Lagarde and de Rousiers 2014, 3.2).
  */
 SHARED_FUNCTION float grazing_reflection(vec3 f0)
 {
   return min(50.0f * max(max(f0.x, f0.y), f0.z), 1.0f);
 }
 
-/** The material with its base colour multiplied. */
+/** The material with its base colour multiplied by \a color. */
 SHARED_FUNCTION MaterialData tinted(MaterialData material, vec3 color)
 {
   material.diffuse = material.diffuse * color;
-  // The larger term first: what is left of a metal is exactly 0.
+  // Subtract first: for a pure metal the difference is exactly 0.
   material.specular_f0 = (material.specular_f0 - material.metal_f0) + material.metal_f0 * color;
   material.specular_f90 = grazing_reflection(material.specular_f0);
   return material;

@@ -6,26 +6,26 @@
 
 SHARED_BEGIN
 
-/** Texels that a cube's face shows beyond its 90° on each side, so that no filter's kernel reaches past its edge. */
+/** Texels by which a cube face extends beyond its 90° on each side, so that no filter kernel crosses its edge. */
 #define CUBE_BORDER_TEXELS 3
 
-/** `filter` of a shadow. */
+/** Values of `filter_kind`. */
 #define SHADOW_FILTER_HARD 0
 #define SHADOW_FILTER_PCF 1
 
-/** Six faces around a lamp, in the layers `layer` to `layer` + 5 of `shadow_cubes`, each in its lower left `size_px`². */
+/** Six faces around a lamp, in layers `layer` to `layer` + 5 of `shadow_cubes`, in the lower left `size_px`² of each. */
 struct ShadowCubeData {
-  /** Distance of the near plane, metres; the far one is infinite: depth = near / distance along the face's axis. */
+  /** Distance of the near plane, metres. The far plane is at infinity: depth = near / distance along the face's axis. */
   float near;
-  /** Beyond this distance along the axis nothing is in shadow, metres. */
+  /** Receivers beyond this distance along the face's axis are lit, metres. */
   float far;
-  /** Edge of a texel at distance 1 along the face's axis. */
+  /** Edge of a texel at a distance of 1 m along the face's axis, metres. */
   float texel_size;
-  /** Scales the derived lift: 1 is derived, 0 none. */
+  /** Factor of the derived normal offset. 0: no offset. */
   float bias;
-  /** 6 · index. */
+  /** First layer: 6 · index. */
   int layer;
-  /** Bit i: face i was drawn; into the others nothing casts. */
+  /** Bit i: face i was drawn. The other faces contain no caster. */
   int face_mask;
   /** SHADOW_FILTER_… */
   int filter_kind;
@@ -33,20 +33,20 @@ struct ShadowCubeData {
 };
 SHARED_ASSERT_SIZE(ShadowCubeData, 32)
 
-/** One view of a spot or a sun, in a layer of `shadow_maps`. The map's axis is the lamp's LightData::forward_ws. */
+/** One map of a spot or a sun, in a layer of `shadow_maps`. The map's axis is LightData::forward_ws of the lamp. */
 struct ShadowMapData {
-  /** texcomat · clip_from_world: after division by w, xy in [0, 1] inside the map and z the reversed depth. */
+  /** texcomat · clip_from_world. After the division by w, xy are in [0, 1] inside the map and z is the reversed depth. */
   mat4 texco_from_world;
-  /** Longer edge of a texel, metres, where w = 1 (a sun's w is 1 everywhere). */
+  /** Longer edge of a texel at w = 1, metres. A sun's w is 1 everywhere. */
   float texel_size;
-  /** Error of stored depths where w = 1, metres; it grows with w². \see DEPTH_ROUNDING */
+  /** Error of stored depths at w = 1, metres. It grows with w². \see DEPTH_ROUNDING */
   float rounding;
-  /** Beyond this w nothing is in shadow. */
+  /** Receivers beyond this w are lit. */
   float far;
-  /** As of cubes. */
+  /** Factor of the derived normal offset. 0: no offset. */
   float bias;
   int layer;
-  /** Maps of the same lamp from this one on, from fine to coarse: the cascades of a sun; 1 for a spot. */
+  /** Number of maps of the same lamp from this one on, from fine to coarse: the cascades of a sun. 1 for a spot. */
   int cascade_count;
   /** SHADOW_FILTER_… */
   int filter_kind;
@@ -54,9 +54,9 @@ struct ShadowMapData {
 };
 SHARED_ASSERT_SIZE(ShadowMapData, 96)
 
-/** One for each light at most. */
+/** At most one for each light. */
 #define SHADOW_CUBE_MAX 255
-/** As many as the block holds beside the cubes. */
+/** The number of maps that fit into the block beside the cubes. */
 #define SHADOW_MAP_MAX 85
 
 struct ShadowBlock {
@@ -66,20 +66,20 @@ struct ShadowBlock {
 SHARED_ASSERT_SIZE(ShadowBlock, SHADOW_CUBE_MAX * 32 + SHADOW_MAP_MAX * 96)
 SHARED_ASSERT(UNIFORM_BLOCK_BYTES_MAX - sizeof(ShadowBlock) < sizeof(ShadowMapData))
 
-/** `shadow_render_block`: what the casters are drawn with, one lamp at a time. */
+/** Content of `shadow_render_block`: the matrices that the casters of one lamp are drawn with. */
 struct ShadowRenderBlock {
-  /** One a face of a cube, or a cascade of a sun; spots use the first. */
+  /** One for each face of a cube or each cascade of a sun. A spot uses the first. */
   mat4 clip_from_world[6];
 };
 SHARED_ASSERT_SIZE(ShadowRenderBlock, 384)
 
-/** Share of a face's width that its 90° take: 1 less the border. \a size_px: of the face, at least 1. */
+/** Fraction of a face's width that its 90° cover: 1 minus the border. \a size_px: edge of the face, at least 1. */
 SHARED_FUNCTION float cube_uv_scale(float size_px)
 {
   return 1.0f - 2.0f * min(float(CUBE_BORDER_TEXELS) / size_px, 0.125f);
 }
 
-/** Faces in OpenGL's order: +X, -X, +Y, -Y, +Z, -Z. \a v not zero; ties go to the earlier axis. */
+/** Face that \a v points to, in OpenGL's order: +X, -X, +Y, -Y, +Z, -Z. \a v is not zero. Ties go to the earlier axis. */
 SHARED_FUNCTION int cube_face(vec3 v)
 {
   vec3 a = abs(v);
@@ -93,8 +93,8 @@ SHARED_FUNCTION int cube_face(vec3 v)
 }
 
 /**
- * \a v as the face sees it: xy across, z along the face's axis. Equal to (x, y, -z) of cubefacemat[face] · v.
- * The axes are those of OpenGL's cube maps, so that xy / z · 0.5 + 0.5 is the texture coordinate there too.
+ * \a v in the space of a face: xy across, z along the face's axis. Equal to (x, y, -z) of cubefacemat[face] · v.
+ * The axes are those of OpenGL's cube maps, so that xy / z · 0.5 + 0.5 is the texture coordinate of a cube map.
  */
 SHARED_FUNCTION vec3 cube_face_project(int face, vec3 v)
 {
@@ -108,18 +108,22 @@ SHARED_FUNCTION vec3 cube_face_project(int face, vec3 v)
   }
 }
 
-/** Of a depth where rasterisation has rounded it, relative to the largest depth of the triangle. */
+/**
+ * Bound of the error of a rasterised depth, relative to the largest depth of the triangle: one ulp of a float. Drivers may
+ * differ; the rendered groups of `gnomon stability` check it on a driver.
+ */
 SHARED_CONSTANT float DEPTH_ROUNDING = 1.2e-7f;
 
-/** Share of a texel by which a receiver is lifted besides: where facets meet, the plane of one ends within a texel. */
+/** Additional normal offset, in texels: at an edge between facets, the plane of one facet ends within a texel. */
 SHARED_CONSTANT float LIFT_TEXELS = 0.1f;
 
 /**
- * How far to lift a receiver off its plane, metres, so that rounding does not put the plane in front of itself. The
- * slope of the plane is not its business: each texel is compared with the plane's own depth there.
+ * Normal offset of a receiver, metres, so that rounding does not make its plane shadow itself. It does not depend on the
+ * slope of the plane, because each texel is compared with the plane's depth at that texel.
  *
- * \a texel: edge of a texel at the receiver, metres. \a reach: of the filter's kernel to each side, texels, 1 for the
- * four around a lookup. \a rounding: error of depths there, metres. \a magnitude: the largest world coordinate at work.
+ * \a texel: edge of a texel at the receiver, metres. \a reach: reach of the filter kernel to each side, texels; 1 for the
+ * four texels around a lookup. \a rounding: error of depths at the receiver, metres. \a magnitude: the largest absolute
+ * world coordinate in the computation, metres.
  */
 SHARED_FUNCTION float shadow_lift(float texel, float reach, float rounding, float magnitude)
 {
@@ -129,8 +133,8 @@ SHARED_FUNCTION float shadow_lift(float texel, float reach, float rounding, floa
 /**
  * Depth of a plane at four texels, in the order of textureGather: (0, 1), (1, 1), (1, 0), (0, 0).
  *
- * \a depth: at the lookup. \a slope: change of depth a texel, across and up; depth is affine over a map for
- * planes, in perspective too. \a offset: from the lookup to the centre of the first texel, (0, 0), texels.
+ * \a depth: depth at the lookup. \a slope: change of depth for each texel, across and up. The depth of a plane is affine over
+ * a map, in perspective too. \a offset: from the lookup to the centre of the first texel, (0, 0), in texels.
  */
 SHARED_FUNCTION vec4 plane_depths(float depth, vec2 slope, vec2 offset)
 {
@@ -140,22 +144,22 @@ SHARED_FUNCTION vec4 plane_depths(float depth, vec2 slope, vec2 offset)
 }
 
 /**
- * Which of four texels, in the order of textureGather, let light through to a receiver, 1 or 0: those whose stored
- * depth is not nearer than the receiver's (reversed: not greater).
+ * 1 for each of four texels, in the order of textureGather, that does not shadow the receiver, else 0. A texel does not shadow
+ * the receiver if its stored depth is not nearer than the receiver's (reversed depth: not greater).
  */
 SHARED_FUNCTION vec4 texels_lit(vec4 stored, vec4 receiver)
 {
-  // Behind the far end a receiver is as far as what was cleared: nothing cast there.
+  // A receiver beyond the far plane gets the cleared depth 0, so that empty texels do not shadow it.
   return step(stored, max(receiver, vec4(0.0f)));
 }
 
-/** Sum of four texels in the order of textureGather, columns and rows weighted: x the first, y the second. */
+/** Weighted sum of four texels in the order of textureGather. \a columns, \a rows: x weights the first, y the second. */
 SHARED_FUNCTION float weighted_texels(vec4 lit, vec2 columns, vec2 rows)
 {
   return rows.x * (columns.x * lit.w + columns.y * lit.z) + rows.y * (columns.x * lit.x + columns.y * lit.y);
 }
 
-/** A disk of \a count taps that covers equal areas (Vogel 1979), of radius 1. \a i from 0 to count - 1. */
+/** Point \a i of \a count points that cover equal areas of the unit disk (Vogel 1979). \a i: 0 to count - 1. */
 SHARED_FUNCTION vec2 vogel_disk(int i, int count)
 {
   float radius = sqrt((float(i) + 0.5f) / float(count));
@@ -163,7 +167,7 @@ SHARED_FUNCTION vec2 vogel_disk(int i, int count)
   return vec2(radius * cos(angle), radius * sin(angle));
 }
 
-/** A quotient for slopes: 0 where the plane is seen edge-on and has none. */
+/** Quotient for slopes. 0 for a plane seen edge-on, whose slope is undefined. */
 SHARED_FUNCTION float slope_quotient(float numerator, float denominator)
 {
   return abs(denominator) > 1e-30f ? numerator / denominator : 0.0f;

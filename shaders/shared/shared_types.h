@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What lets a header be C++ and GLSL: types, functions and asserts under one name. Included first by each *_shared.h.
-// Float literals carry an `f`. Members of a block are vec4, mat4, or a vec3 and a scalar that fills its row.
+// Types, functions and assertions that make a header valid in both C++ and GLSL. Each *_shared.h includes this file first.
+// Float literals have the suffix `f`. Members of a block are vec4, mat4, or a vec3 and a scalar that fills its row.
 //
-// With SHARED_DOUBLE defined before, C++ sees everything in double instead, in gnomon::shared_double: what a function gives
-// without its roundings. Literals keep their float values, and stand beside scalars only: `vec2(0.5f) * v`. `float`
-// is a macro from here on, so include everything else earlier.
+// If SHARED_DOUBLE is defined, C++ compiles everything in double instead, in gnomon::shared_double. The results are those of a
+// function without float rounding. Literals keep their float values and are combined with scalars only: `vec2(0.5f) * v`.
+// `float` is a macro from here on, so include all other headers earlier.
 #ifndef SHARED_TYPES_H
 #define SHARED_TYPES_H
 
@@ -55,7 +55,7 @@ using glm::sin;
 using glm::sqrt;
 using glm::step;
 #  ifdef SHARED_DOUBLE
-// GLM's are templates, to which a double and a float literal are no match.
+// GLM's functions are templates, which do not match a double and a float literal.
 inline double clamp(double x, double low, double high)
 {
   return glm::clamp(x, low, high);
@@ -75,7 +75,7 @@ inline double min(double x, double y)
 #  define SHARED_END }
 #  define SHARED_FUNCTION inline
 #  define SHARED_CONSTANT inline constexpr
-/** std140 gives `TYPE` this size, and so does C++; a test compares each offset. */
+/** `TYPE` has this size in std140 and in C++. A test compares the offset of each member. */
 #  define SHARED_ASSERT_SIZE(TYPE, SIZE_BYTES) \
     SHARED_ASSERT(sizeof(TYPE) == (SIZE_BYTES) && (SIZE_BYTES) % 16 == 0)
 #else
@@ -87,7 +87,7 @@ inline double min(double x, double y)
 #  define SHARED_ASSERT_SIZE(TYPE, SIZE_BYTES)
 #endif
 
-/** Least size of a uniform block that every device takes (OpenGL, Vulkan). */
+/** Size of a uniform block that every device supports (OpenGL, Vulkan). */
 #define UNIFORM_BLOCK_BYTES_MAX 16384
 
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every slot of every shader. Uniform, storage and texture slots are one space, as in Vulkan; storage comes first,
-// because OpenGL promises only eight.
+// The slots of all shaders. Uniform blocks, storage blocks and textures share one space of slots, as in Vulkan. Storage blocks
+// come first, because OpenGL guarantees only eight of them.
 #ifndef SLOTS_SHARED_H
 #define SLOTS_SHARED_H
 
@@ -29,14 +29,14 @@
 #define BASE_COLOR_SLOT 24
 #define SHADOW_EVSM_SLOT 25
 
-/** Declares the block of small per-group values: push constants where the API has them. */
+/** Layout of the block of small values of a group: push constants if the API has them, else a uniform block. */
 #ifdef VULKAN
 #  define PUSH_CONSTANT_LAYOUT layout(push_constant, std140)
 #else
 #  define PUSH_CONSTANT_LAYOUT layout(std140, binding = PUSH_CONSTANT_SLOT)
 #endif
 
-/** Before `const int NAME = VALUE;`: chosen when the pipeline is made where the API can, otherwise by the defines. */
+/** Prefix of `const int NAME = VALUE;`. The value is set at pipeline creation if the API supports it, otherwise by the defines. */
 #ifdef VULKAN
 #  define SPECIALIZATION_CONSTANT(ID) layout(constant_id = ID)
 #else

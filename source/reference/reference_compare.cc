@@ -20,51 +20,52 @@ namespace {
 
 constexpr std::array<double, 9> rings_texels = {0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0};
 constexpr int ring_directions = 16;
-/** Further than any ring. */
+/** Farther than every ring. */
 constexpr double no_edge = std::numeric_limits<double>::infinity();
 
-enum class Verdict : unsigned char { OffSurface, NotFacing, NonFinite, Right, Wrong };
+/** Result of the comparison at one receiver. */
+enum class Outcome : unsigned char { OffSurface, NotFacing, NonFinite, Right, Wrong };
 
-struct Judgement {
-  Verdict verdict = Verdict::OffSurface;
+struct ReceiverResult {
+  Outcome outcome = Outcome::OffSurface;
   bool is_lit_by_engine = false;
   double error = 0.0;
-  /** Wrong only: a ring, or no_edge. */
+  /** For wrong receivers: the radius of a ring, texels, or no_edge. */
   double edge_offset = no_edge;
 };
 
-/** Judges receivers of one lamp. */
-struct Judge {
+/** Compares an engine's visibility of one lamp with the exact one. */
+struct ReceiverComparer {
   const Tracer &tracer;
   const scene::PlacedLamp &lamp;
   const CompareSettings &settings;
   LightPoint light;
 
-  [[nodiscard]] double truth(const Receiver &receiver, std::uint64_t key) const
+  [[nodiscard]] double exact_visibility(const Receiver &receiver, std::uint64_t key) const
   {
     return visibility(tracer, receiver, lamp, settings.sample_count, mixed(settings.seed) ^ key).mean;
   }
   [[nodiscard]] std::optional<Receiver> moved(const Receiver &receiver, const glm::dvec3 &across) const;
   [[nodiscard]] double edge_offset(const Receiver &receiver, bool is_lit, std::uint64_t key) const;
-  [[nodiscard]] Judgement judge(const glm::dvec3 &position_ws, const glm::dvec3 &normal_ws, double engine,
-                                std::uint64_t key) const;
+  [[nodiscard]] ReceiverResult compare(const glm::dvec3 &position_ws, const glm::dvec3 &normal_ws, double engine,
+                                       std::uint64_t key) const;
 };
 
-/** The receiver moved by \a across, at right angles to the light, and back onto its surface along the light. */
-std::optional<Receiver> Judge::moved(const Receiver &receiver, const glm::dvec3 &across) const
+/** The receiver moved by \a across, perpendicular to the light, and then along the light back onto its surface. */
+std::optional<Receiver> ReceiverComparer::moved(const Receiver &receiver, const glm::dvec3 &across) const
 {
   const glm::dvec3 start = receiver.position_ws + across;
   const glm::dvec3 to_light = glm::normalize(light.is_direction ? light.vector_ws : light.vector_ws - start);
   const double rise = glm::dot(receiver.normal_ws, to_light);
   const double along = -glm::dot(receiver.normal_ws, across) / rise;
-  // Moved so far that the light no longer meets the plane, or only behind the lamp.
+  // At this distance the line along the light does not meet the plane, or meets it behind the lamp.
   if (!(rise > 0.0) || !std::isfinite(along) ||
       (!light.is_direction && along >= glm::distance(light.vector_ws, start))) {
     return std::nullopt;
   }
   const glm::dvec3 on_plane = start + along * to_light;
   const double width = glm::length(across);
-  // Along the light, a step of this length leaves the plane by the ring's width.
+  // A step of this length along the light moves away from the plane by the radius of the ring.
   const double reach = width / rise;
   std::optional<Hit> nearest;
   for (const double side : {1.0, -1.0}) {
@@ -84,7 +85,7 @@ std::optional<Receiver> Judge::moved(const Receiver &receiver, const glm::dvec3 
                   surface.error_m};
 }
 
-double Judge::edge_offset(const Receiver &receiver, bool is_lit, std::uint64_t key) const
+double ReceiverComparer::edge_offset(const Receiver &receiver, bool is_lit, std::uint64_t key) const
 {
   const double texel_m = settings.texel_size_m ? settings.texel_size_m(receiver.position_ws) : 0.0;
   if (!(texel_m > 0.0) || !std::isfinite(texel_m)) {
@@ -100,7 +101,7 @@ double Judge::edge_offset(const Receiver &receiver, bool is_lit, std::uint64_t k
       const double angle = 2.0 * std::numbers::pi * double(i) / ring_directions;
       const glm::dvec3 across = ring * texel_m * (std::cos(angle) * right + std::sin(angle) * up);
       const std::optional<Receiver> there = moved(receiver, across);
-      if (there && (truth(*there, key) > 0.5) == is_lit) {
+      if (there && (exact_visibility(*there, key) > 0.5) == is_lit) {
         return ring;
       }
     }
@@ -108,10 +109,10 @@ double Judge::edge_offset(const Receiver &receiver, bool is_lit, std::uint64_t k
   return no_edge;
 }
 
-Judgement Judge::judge(const glm::dvec3 &position_ws, const glm::dvec3 &normal_ws, double engine,
-                       std::uint64_t key) const
+ReceiverResult ReceiverComparer::compare(const glm::dvec3 &position_ws, const glm::dvec3 &normal_ws, double engine,
+                                         std::uint64_t key) const
 {
-  Judgement result;
+  ReceiverResult result;
   const double length = glm::length(normal_ws);
   const std::optional<Receiver> receiver =
       length > 0.0 ? find_receiver(tracer, position_ws, normal_ws / length) : std::nullopt;
@@ -119,24 +120,24 @@ Judgement Judge::judge(const glm::dvec3 &position_ws, const glm::dvec3 &normal_w
     return result;
   }
   if (!is_facing(*receiver, lamp)) {
-    result.verdict = Verdict::NotFacing;
+    result.outcome = Outcome::NotFacing;
     return result;
   }
   if (!std::isfinite(engine)) {
-    result.verdict = Verdict::NonFinite;
+    result.outcome = Outcome::NonFinite;
     return result;
   }
-  const double exact = truth(*receiver, key);
+  const double exact = exact_visibility(*receiver, key);
   result.is_lit_by_engine = engine > 0.5;
   result.error = std::abs(engine - exact);
-  result.verdict = result.is_lit_by_engine == (exact > 0.5) ? Verdict::Right : Verdict::Wrong;
-  if (result.verdict == Verdict::Wrong) {
+  result.outcome = result.is_lit_by_engine == (exact > 0.5) ? Outcome::Right : Outcome::Wrong;
+  if (result.outcome == Outcome::Wrong) {
     result.edge_offset = edge_offset(*receiver, result.is_lit_by_engine, key);
   }
   return result;
 }
 
-/** The least value that \a share of the sorted \a values do not exceed. */
+/** The smallest of the sorted \a values that a fraction \a share of them does not exceed. 0 if there are none. */
 double percentile(const std::vector<double> &values, double share)
 {
   if (values.empty()) {
@@ -161,13 +162,13 @@ VisibilityError compare_visibility(const Tracer &tracer, const scene::PlacedLamp
     throw std::invalid_argument(fmt::format("lamp '{}': {} positions, {} normals and {} visibilities do not match",
                                             lamp.name, count, shaded.normals_ws.size(), shaded.visibility.size()));
   }
-  const Judge judge{tracer, lamp, settings, lamp_center(lamp)};
-  std::vector<Judgement> judgements(count);
+  const ReceiverComparer comparer{tracer, lamp, settings, lamp_center(lamp)};
+  std::vector<ReceiverResult> results(count);
   constexpr std::size_t chunk = 1024;
   parallel_for((count + chunk - 1) / chunk, settings.thread_count, [&](std::size_t part) {
     for (std::size_t i = part * chunk; i < std::min((part + 1) * chunk, count); i++) {
-      judgements[i] = judge.judge(glm::dvec3(shaded.positions_ws[i]), glm::dvec3(shaded.normals_ws[i]),
-                                  double(shaded.visibility[i]), i);
+      results[i] = comparer.compare(glm::dvec3(shaded.positions_ws[i]), glm::dvec3(shaded.normals_ws[i]),
+                                    double(shaded.visibility[i]), i);
     }
   });
 
@@ -176,26 +177,26 @@ VisibilityError compare_visibility(const Tracer &tracer, const scene::PlacedLamp
   std::vector<double> offsets;
   double error_sum = 0.0;
   for (std::size_t i = 0; i < count; i++) {
-    const Judgement &judgement = judgements[i];
-    switch (judgement.verdict) {
-      case Verdict::OffSurface: result.off_surface_count++; continue;
-      case Verdict::NotFacing: continue;
-      case Verdict::NonFinite: result.non_finite_count++; continue;
-      case Verdict::Right:
-      case Verdict::Wrong: break;
+    const ReceiverResult &receiver = results[i];
+    switch (receiver.outcome) {
+      case Outcome::OffSurface: result.off_surface_count++; continue;
+      case Outcome::NotFacing: continue;
+      case Outcome::NonFinite: result.non_finite_count++; continue;
+      case Outcome::Right:
+      case Outcome::Wrong: break;
     }
     result.facing_count++;
-    error_sum += judgement.error;
+    error_sum += receiver.error;
     result.edge_count += shaded.visibility[i] > 0.0F && shaded.visibility[i] < 1.0F;
-    if (judgement.verdict == Verdict::Right) {
+    if (receiver.outcome == Outcome::Right) {
       continue;
     }
     result.wrong_count++;
-    if (judgement.edge_offset < no_edge) {
-      offsets.push_back(judgement.edge_offset);
+    if (receiver.edge_offset < no_edge) {
+      offsets.push_back(receiver.edge_offset);
     }
     else {
-      (judgement.is_lit_by_engine ? result.leak_count : result.acne_count)++;
+      (receiver.is_lit_by_engine ? result.leak_count : result.acne_count)++;
     }
   }
   if (result.facing_count > 0) {

@@ -13,15 +13,16 @@ namespace gnomon::reference {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-/** Nearer than a micrometre a lamp grows no brighter: its light stays finite, as in `eevee_light_shared.h`. */
+/** Light does not increase below a distance of a micrometre and stays finite, as in `eevee_light_shared.h`. */
 constexpr double distance_sq_min = 1e-12;
 
+/** An axis of the lamp in world space, unit vector. */
 glm::dvec3 axis(const scene::PlacedLamp &lamp, int column)
 {
   return glm::normalize(glm::dvec3(lamp.world_from_lamp[column]));
 }
 
-/** Two unit vectors at right angles to \a n and each other (Duff et al. 2017). \a n: unit vector. */
+/** Two unit vectors orthogonal to \a n and to each other (Duff et al. 2017). \a n: unit vector. */
 void make_frame(const glm::dvec3 &n, glm::dvec3 &right, glm::dvec3 &up)
 {
   const double sign = std::copysign(1.0, n.z);
@@ -31,20 +32,20 @@ void make_frame(const glm::dvec3 &n, glm::dvec3 &right, glm::dvec3 &up)
   up = {b, sign + n.y * n.y * a, -n.y};
 }
 
-/** Evenly on the unit disk. */
+/** Maps the unit square evenly to the unit disk. */
 glm::dvec2 disk(const glm::dvec2 &u)
 {
   const double radius = std::sqrt(u.x);
   return {radius * std::cos(2.0 * pi * u.y), radius * std::sin(2.0 * pi * u.y)};
 }
 
-/** 1 - cos of the angle between unit vectors, without the cancellation where they are close. */
+/** 1 - cos of the angle between two unit vectors, without cancellation for small angles. */
 double one_minus_cos(const glm::dvec3 &a, const glm::dvec3 &b)
 {
   return 0.5 * glm::dot(a - b, a - b);
 }
 
-/** \a from_light: unit vector. */
+/** Transmission of the spot's cone, in [0, 1]. \a from_light: unit vector. */
 double spot_transmission(const scene::PlacedLamp &lamp, const glm::dvec3 &from_light)
 {
   const double sine = std::sin(0.5 * double(lamp.spot_outer_angle));
@@ -58,6 +59,7 @@ double spot_transmission(const scene::PlacedLamp &lamp, const glm::dvec3 &from_l
   return t * t * (3.0 - 2.0 * t);
 }
 
+/** Window of KHR_lights_punctual for the range, in [0, 1]. */
 double range_window(const scene::Lamp &lamp, double distance_sq)
 {
   if (lamp.range <= 0.0F) {
@@ -72,7 +74,7 @@ LampSample sample_sun(const scene::PlacedLamp &lamp, const glm::dvec2 &u)
   const glm::dvec3 middle = axis(lamp, 2);
   LampSample sample;
   const double sine = std::sin(0.25 * double(lamp.angle));
-  // Evenly by solid angle: 1 - cos is even in [0, 1 - cos(angle / 2)].
+  // Even in solid angle: 1 - cos is distributed evenly over [0, 1 - cos(angle / 2)].
   const double drop = 2.0 * sine * sine * u.x;
   const double across = std::sqrt(std::max(drop * (2.0 - drop), 0.0));
   glm::dvec3 right;
@@ -86,7 +88,7 @@ LampSample sample_sun(const scene::PlacedLamp &lamp, const glm::dvec2 &u)
   return sample;
 }
 
-/** \a position is on a flat lamp which emits along \a forward, a unit vector; \a strength: radiance · area. */
+/** A sample of a flat lamp at \a position that emits along \a forward, a unit vector. \a strength: radiance · area. */
 LampSample sample_flat(const glm::dvec3 &position, const glm::dvec3 &forward, double strength,
                        const glm::dvec3 &receiver)
 {

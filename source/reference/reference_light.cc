@@ -22,10 +22,10 @@ namespace gnomon::reference {
 
 namespace {
 
-/** Half the width of the pixel filter. */
+/** Radius of the pixel filter, pixels. */
 constexpr double filter_radius_px = 1.5;
 
-/** Four-term Blackman-Harris (Harris 1978, table 1: minimum, -92 dB), of weight 1 in the middle. */
+/** Four-term Blackman-Harris window (Harris 1978, table 1: minimum, -92 dB), with weight 1 at the centre. */
 constexpr std::array<double, 4> filter_terms = {0.35875, 0.48829, 0.14128, 0.01168};
 
 double filter_weight(double distance_px)
@@ -40,7 +40,7 @@ double filter_weight(double distance_px)
   return sum;
 }
 
-/** The distance below which \a share, in [0, 1), of the filter's weight is, pixels. */
+/** Inverse of the filter's cumulative weight: the distance, pixels, below which a fraction \a share in [0, 1) lies. */
 double filter_quantile(double share)
 {
   const auto weight_below = [](double distance_px) {
@@ -54,7 +54,7 @@ double filter_quantile(double share)
   };
   double low = -filter_radius_px;
   double high = filter_radius_px;
-  // To a millionth of a pixel.
+  // 22 bisections give a precision of a millionth of a pixel.
   for (int i = 0; i < 22; i++) {
     const double middle = 0.5 * (low + high);
     (weight_below(middle) < share ? low : high) = middle;
@@ -62,7 +62,7 @@ double filter_quantile(double share)
   return 0.5 * (low + high);
 }
 
-/** A lattice of \a count points by the golden ratio, shifted by \a key: even in the square, and for all together. */
+/** Point \a index of a golden-ratio lattice of \a count points in the unit square, shifted by \a key. */
 glm::dvec2 lattice_point(int index, int count, std::uint64_t key)
 {
   constexpr double golden = std::numbers::phi - 1.0;
@@ -77,12 +77,13 @@ std::uint64_t pixel_key(std::uint64_t seed, const glm::ivec2 &pixel)
 void check(glm::ivec2 size_px, const DirectLightSettings &settings)
 {
   if (size_px.x < 1 || size_px.y < 1 || settings.sample_count < 1) {
-    throw std::invalid_argument(fmt::format("direct light: a picture of {}x{} with {} samples has none", size_px.x,
-                                            size_px.y, settings.sample_count));
+    throw std::invalid_argument(
+        fmt::format("direct light: a picture of {}x{} pixels with {} samples: each must be at least 1", size_px.x,
+                    size_px.y, settings.sample_count));
   }
 }
 
-/** Rays of a camera in an image. */
+/** Camera rays for the pixels of an image. */
 class CameraRays {
  public:
   CameraRays(const scene::PlacedCamera &camera, glm::ivec2 size_px)
@@ -97,12 +98,12 @@ class CameraRays {
     const double frame_aspect = !is_perspective_       ? double(camera.half_width) / double(camera.half_height)
                                 : camera.aspect > 0.0F ? double(camera.aspect)
                                                        : image_aspect;
-    // The camera's frame is in the middle of the image, and wholly visible.
+    // The camera's frame is centred in the image and completely visible.
     half_size_.y *= std::max(frame_aspect / image_aspect, 1.0);
     half_size_.x = half_size_.y * image_aspect;
   }
 
-  /** \a at_px: from the image's lower left corner. The ray's t is the depth. */
+  /** \a at_px: relative to the lower left corner of the image. The ray's t is the depth along the view axis, metres. */
   [[nodiscard]] Ray at(const glm::dvec2 &at_px) const
   {
     const glm::dvec2 across = half_size_ * (2.0 * at_px / glm::dvec2(size_px_) - 1.0);
@@ -120,7 +121,7 @@ class CameraRays {
   glm::dvec2 half_size_{1.0};
 };
 
-/** What is the same for all samples of a picture. */
+/** The inputs that all samples of a picture share. */
 struct Renderer {
   const Tracer &tracer;
   CameraRays rays;
@@ -175,9 +176,9 @@ glm::dvec3 Renderer::radiance(const Ray &ray, int sample, std::uint64_t key) con
 void Renderer::render_tile(const glm::ivec2 &low_px, const glm::ivec2 &high_px, Picture &picture) const
 {
   const glm::ivec2 size_px = high_px - low_px;
-  // Sum of the samples, and in w of their weights.
+  // rgb: weighted sum of the samples. w: sum of the weights.
   std::vector<glm::dvec4> sums(std::size_t(size_px.x) * std::size_t(size_px.y), glm::dvec4(0.0));
-  // Neighbours' samples count, beyond the picture's edges too.
+  // Samples of neighbouring pixels contribute, also beyond the edges of the picture.
   for (int y = low_px.y - 1; y <= high_px.y; y++) {
     for (int x = low_px.x - 1; x <= high_px.x; x++) {
       const std::uint64_t key = pixel_key(settings.seed, {x, y});
@@ -211,7 +212,7 @@ Picture direct_light(const Tracer &tracer, const scene::PlacedCamera &camera, gl
   check(size_px, settings);
   const Renderer renderer{tracer, CameraRays(camera, size_px), settings};
   Picture picture{size_px, std::vector<glm::vec4>(std::size_t(size_px.x) * std::size_t(size_px.y))};
-  // The ring of neighbours around a tile is rendered again: a part in sixteen of it.
+  // Each tile also renders the ring of pixels around it, which adds one sixteenth.
   constexpr int tile_px = 64;
   const glm::ivec2 tiles = (size_px + tile_px - 1) / tile_px;
   const std::size_t tile_count = std::size_t(tiles.x) * std::size_t(tiles.y);

@@ -13,30 +13,31 @@
 namespace gnomon::reference {
 
 struct DirectLightSettings {
-  /** Camera rays a pixel; each lamp with a size is sampled once by each. At least 1. */
+  /** Camera rays for each pixel, at least 1. Each ray takes one sample of each lamp that has a size. */
   int sample_count = 16;
-  /** Another seed takes other samples. The same gives the same picture, to the bit, with any number of threads. */
+  /** Selects the samples. The same seed gives the same picture bit for bit, with any number of threads. */
   std::uint64_t seed = 0;
-  /** 0: one a processor. */
+  /** 0: one thread for each processor. */
   unsigned thread_count = 0;
-  /** Called now and then, by one thread at a time, with a share in (0, 1]. May be empty. */
+  /** Called repeatedly, by one thread at a time, with the completed fraction in (0, 1]. May be empty. */
   std::function<void(double share_done)> progress{};
 };
 
+/** A picture in memory. */
 struct Picture {
   glm::ivec2 size_px{0};
-  /** Scene-linear radiance, W/(sr m²), and 1; rows from the bottom. */
+  /** rgb: scene-linear radiance, W/(sr m²). a: 1. Rows from the bottom. */
   std::vector<glm::vec4> pixels;
 };
 
 /**
- * What \a camera sees by the light that comes straight from the lamps, and by what surfaces emit themselves, in an
- * image of \a size_px; black where there is nothing.
+ * Renders the view of \a camera with direct light from the lamps and emission of surfaces, as an image of \a size_px.
+ * Pixels without a surface are black.
  *
- * Frame, clip distances, pixel filter, units and materials are those of `doc/conventions.md`. Each pixel is the
- * filter's weighted mean of all samples within 1.5 pixels of its centre. Normals are interpolated; a lamp behind the
- * triangle gives no light, whatever the interpolated normal says. Backs of one-sided materials are looked through, yet
- * they cast shadows. Hemi lamps, and those that ask for none, cast none.
+ * `doc/conventions.md` defines frame, clip distances, pixel filter, units and materials. Each pixel is the weighted
+ * mean of all samples within 1.5 pixels of its centre. Normals are interpolated. A lamp behind the plane of the
+ * triangle gives no light, even if the interpolated normal faces it. The backs of one-sided materials are invisible
+ * to the camera but cast shadows. Hemi lamps, and lamps whose shadow setting is None, cast no shadow.
  *
  * \throws std::invalid_argument for a size or a number of samples below 1.
  */
@@ -44,11 +45,11 @@ struct Picture {
                                    const DirectLightSettings &settings);
 
 /**
- * The same at some of its pixels only, from the lower left corner: each from as many samples as a pixel has there,
- * spread over its filter, so that neighbours share none. Estimates with two seeds are independent of each other.
+ * Renders only \a pixels, which are counted from the lower left corner. Each has sample_count samples of its own,
+ * distributed by the pixel filter, and shares none with its neighbours. Estimates with different seeds are independent.
  */
-[[nodiscard]] std::vector<glm::vec4> direct_light(const Tracer &tracer, const scene::PlacedCamera &camera, glm::ivec2 size_px,
-                                                  std::span<const glm::ivec2> pixels,
+[[nodiscard]] std::vector<glm::vec4> direct_light(const Tracer &tracer, const scene::PlacedCamera &camera,
+                                                  glm::ivec2 size_px, std::span<const glm::ivec2> pixels,
                                                   const DirectLightSettings &settings);
 
 }  // namespace gnomon::reference

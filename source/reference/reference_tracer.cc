@@ -23,7 +23,7 @@ namespace {
 struct Triangle {
   /** World space, counter-clockwise from the front. */
   Corners corners;
-  /** How far they may be from where they should, metres. */
+  /** Largest error of the corners due to rounding, metres. */
   double error_m = 0.0;
   std::uint32_t object = 0;
   /** Indices in the mesh's positions. */
@@ -40,16 +40,16 @@ bool is_finite(const glm::dvec3 &v)
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/** Matrix of cofactors: takes normals along, with the determinant's sign, and exists for singular matrices. */
+/** Matrix of cofactors. It transforms normals, up to the sign of the determinant, and exists for singular matrices. */
 glm::dmat3 cofactors(const glm::dmat3 &m)
 {
   return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
 }
 
 /**
- * The tree's coordinates are at most 1 and a ray in its box is at most 2·√3 long. Rounding such a ray's origin and unit
- * direction to float moves none of its points by more than 2^-24 + 3.5 · 2^-25, and a box's corner by 2^-25: an eighth
- * of this.
+ * Margin of the boxes in the tree. Coordinates in the tree are at most 1, and a ray in its box is at most 2·√3 long.
+ * Rounding the origin and unit direction of such a ray to float moves its points by at most 2^-24 + 3.5 · 2^-25, and
+ * the corner of a box by 2^-25. The sum is about an eighth of this margin.
  */
 constexpr double tree_margin = 0x1p-20;
 
@@ -71,17 +71,14 @@ struct Tracer::Tree {
   const std::vector<scene::PlacedLamp> lamps;
   std::vector<Triangle> triangles;
   double largest_coordinate = 0.0;
-  /** Tree coordinates are (world - center) · scale, and their box is ±half_size. */
+  /** Coordinates in the tree are (world - center) · scale. Their bounding box is ±half_size. */
   glm::dvec3 center{0.0};
   double scale = 1.0;
   glm::dvec3 half_size{0.0};
   RTCDevice device = nullptr;
   RTCScene tree = nullptr;
 
-  explicit Tree(const scene::Scene &scene_)
-      : scene(scene_), objects(scene_.objects()), lamps(scene_.placed_lamps())
-  {
-  }
+  explicit Tree(const scene::Scene &scene_) : scene(scene_), objects(scene_.objects()), lamps(scene_.placed_lamps()) {}
   ~Tree()
   {
     if (tree != nullptr) {
@@ -107,24 +104,25 @@ struct Tracer::Tree {
   {
     return scene.material_of(mesh_of(triangle));
   }
-  /** Linear RGB and alpha, texture and factors. */
+  /** Linear RGB and alpha: the texture times the factors of the material. */
   [[nodiscard]] glm::dvec4 base_color_at(const Triangle &triangle, const glm::dvec3 &weights) const;
-  /** false where the material is masked and cut out. */
+  /** false if the material is masked and cut out at this point. */
   [[nodiscard]] bool is_opaque_at(const Triangle &triangle, const glm::dvec3 &weights) const;
 
-  /** The part of a ray that is in the tree's box, in Embree's terms; nothing where there is none. */
+  /** The part of a ray inside the tree's box, as an Embree ray. */
   struct Clipped {
     RTCRay ray{};
     /** Embree's t is (t - t_enter) · length. */
     double t_enter = 0.0;
     double length = 1.0;
   };
+  /** Empty if the ray misses the box, or is not finite. */
   [[nodiscard]] std::optional<Clipped> clipped(const Ray &ray) const;
 };
 
 namespace {
 
-/** What Embree hands on to the functions that it calls back. */
+/** Context that Embree passes to its callbacks. */
 struct ClosestQuery : RTCIntersectContext {
   ShearedRay sheared;
   const Ray &ray;
@@ -145,7 +143,7 @@ struct BlockedQuery : RTCIntersectContext {
 
 void Tracer::Tree::fail(const std::string &reason) const
 {
-  throw std::runtime_error(fmt::format("{}: no ray tracing: {}", scene.path, reason));
+  throw std::runtime_error(fmt::format("{}: cannot build the ray tracing tree: {}", scene.path, reason));
 }
 
 glm::dvec4 Tracer::Tree::base_color_at(const Triangle &triangle, const glm::dvec3 &weights) const
@@ -184,11 +182,12 @@ void Tracer::Tree::add_object(std::uint32_t index)
   for (const glm::vec3 &position : mesh.positions) {
     const glm::dvec3 p(position);
     positions.emplace_back(world_from_object * glm::dvec4(p, 1.0));
-    // Products of two floats are exact in double; what is rounded are three sums of terms of at most this size.
+    // Products of two floats are exact in double. Only the three sums are rounded, with terms of at most this
+    // magnitude.
     const glm::dvec3 terms =
         glm::abs(glm::dvec3(world_from_object[0]) * p.x) + glm::abs(glm::dvec3(world_from_object[1]) * p.y) +
         glm::abs(glm::dvec3(world_from_object[2]) * p.z) + glm::abs(glm::dvec3(world_from_object[3]));
-    // On each axis, hence √3; doubled for points in between.
+    // √3, because each axis has this error. Doubled for points between the corners.
     errors.push_back(2.0 * std::sqrt(3.0) * 3.0 * double_rounding * largest(terms));
   }
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
@@ -268,7 +267,7 @@ void Tracer::Tree::build()
     const TrianglePlane plane(triangle.corners);
     const double rise = glm::dot(plane.normal, query.ray.direction_ws);
     const double t = -plane.height(query.ray.origin_ws) / rise;
-    // A NaN is outside, too.
+    // Written so that NaN is outside the range.
     if (!(t >= query.ray.t_min && t <= query.ray.t_max)) {
       return;
     }
@@ -282,7 +281,8 @@ void Tracer::Tree::build()
       return;
     }
     query.best = Hit{t, a->primID, *weights};
-    // Boxes further away are of no interest; those at the same place are, as one of them may come first.
+    // Boxes farther away can be skipped. Boxes at the same distance cannot: they may contain a triangle that comes
+    // first.
     RTCRay &ray = reinterpret_cast<RTCRayHit *>(a->rayhit)->ray;
     ray.tfar = std::min(ray.tfar, rounded_up((t - query.t_enter) * query.length + tree_margin));
   };
@@ -303,12 +303,12 @@ void Tracer::Tree::build()
     }
     const glm::dvec3 &end = query.light.vector_ws;
     const double end_height = query.light.is_direction ? glm::dot(plane.normal, end) : plane.height(end);
-    // A direction is free of position errors.
+    // A direction has no position error.
     const double end_error = query.light.is_direction ? 16.0 * double_rounding * plane.edge_product * glm::length(end)
                                                       : plane.height_error(end, triangle.error_m);
     const bool is_between = std::abs(end_height) > end_error && (height < 0.0) != (end_height < 0.0);
     if (is_between && self.is_opaque_at(triangle, *weights)) {
-      // Embree's sign for a ray that is blocked.
+      // Embree's convention for a blocked ray.
       reinterpret_cast<RTCRay *>(a->ray)->tfar = -std::numeric_limits<float>::infinity();
     }
   };
@@ -453,7 +453,8 @@ const scene::Scene &Tracer::scene() const
 
 double position_error(const glm::dvec3 &position_ws)
 {
-  // A weighted sum of three corners has five roundings, on each of three axes; the rest is for the weights' own.
+  // A weighted sum of three corners has five roundings on each of three axes. The rest covers the rounding of the
+  // weights.
   return 16.0 * double_rounding * largest(position_ws);
 }
 

@@ -11,37 +11,37 @@
 #include <optional>
 
 /**
- * Exact visibility and direct light by ray tracing: what the engines are judged by. All of it is computed in double,
- * from the scene's floats. It shares no code with an engine but the functions in `shaders/shared`.
+ * Exact visibility and direct light by ray tracing: the ground truth for engines. All values are computed in double
+ * from the scene. The only code shared with an engine are the functions in `shaders/shared`.
  */
 namespace gnomon::reference {
 
 /** Points origin + t · direction with t in [t_min, t_max]. World space, metres. */
 struct Ray {
   glm::dvec3 origin_ws{0.0};
-  /** Of any length; t counts in it. A ray without a direction hits nothing. */
+  /** Of any length, which is the unit of t. A ray with a zero direction hits nothing. */
   glm::dvec3 direction_ws{0.0};
   double t_min = 0.0;
   double t_max = std::numeric_limits<double>::infinity();
 };
 
-/** Where a ray met a triangle. */
+/** Intersection of a ray with a triangle. */
 struct Hit {
   double t = 0.0;
-  /** Of the tracer's triangles. */
+  /** Index of the triangle in the tracer. */
   std::uint32_t triangle = 0;
-  /** Of its corners; they sum to 1. */
+  /** Barycentric weights of its corners. The sum is 1. */
   glm::dvec3 weights{0.0};
 };
 
-/** A hit in terms of the scene. */
+/** The surface of the scene at a hit. */
 struct Surface {
   glm::dvec3 position_ws{0.0};
-  /** How far the position may be from where it should, metres. */
+  /** Largest possible error of the position, metres. */
   double error_m = 0.0;
-  /** Unit vector, on the front of the triangle. */
+  /** Normal of the triangle, unit vector, on its front side. */
   glm::dvec3 geometric_normal_ws{0.0, 0.0, 1.0};
-  /** Interpolated; unit vector, on the front. The geometric one where the mesh has none of any length. */
+  /** Interpolated normal, unit vector, on the front side. The geometric normal if the mesh's normals add up to zero. */
   glm::dvec3 shading_normal_ws{0.0, 0.0, 1.0};
   /** Index in Scene::objects(). */
   std::uint32_t object = 0;
@@ -51,49 +51,49 @@ struct Surface {
   glm::dvec3 base_color{1.0};
 };
 
-/** A point of a lamp, where a shadow ray ends. */
+/** A point of a lamp: the end of a shadow ray. */
 struct LightPoint {
-  /** A position, metres, or a direction of any length towards a lamp that is endlessly far. World space. */
+  /** A position, metres, or a direction of any length towards a lamp at infinity. World space. */
   glm::dvec3 vector_ws{0.0};
   bool is_direction = false;
 };
 
-/** Which triangles a ray meets. */
+/** Selects the triangles that a ray can hit. */
 enum class Faces {
-  /** Both sides of all: what casts a shadow. */
+  /** Both sides of all triangles: the casters of shadows. */
   All,
-  /** Not the backs of one-sided materials: what a camera sees. */
+  /** Without the backs of one-sided materials: the surfaces that a camera sees. */
   Drawn,
 };
 
 /**
- * The triangles of a scene in world space, and a tree over them.
+ * The triangles of a scene in world space, and a tree of bounding boxes over them.
  *
- * The tree is Embree's and works in float, in coordinates in which the scene fills [-1, 1] and with boxes that are
- * larger than all of its roundings; which triangle is hit is decided in double. So results depend on neither the tree,
- * the number of threads, nor the scene's place and scale. Where a material is masked, what is cut out is not hit;
- * blended materials are solid. Triangles without an area are nowhere.
+ * The tree is Embree's. It works in float, in coordinates in which the scene fills [-1, 1], with boxes larger than all
+ * of its rounding errors. The intersection with a triangle is decided in double. The results therefore do not depend on
+ * the tree, on the number of threads, or on the scene's position and scale. Masked materials are not hit where they are
+ * cut out. Blended materials are opaque. Triangles without area are ignored.
  *
- * All functions may be called by several threads at a time. The scene must outlive the tracer and stay as it is.
+ * All functions may be called by several threads concurrently. The scene must outlive the tracer and must not change.
  */
 class Tracer {
  public:
-  /** \throws std::runtime_error naming the scene and the reason where Embree cannot make the tree. */
+  /** \throws std::runtime_error naming the scene and the reason if Embree cannot create the tree. */
   explicit Tracer(const scene::Scene &scene);
   ~Tracer();
   Tracer(const Tracer &) = delete;
   Tracer &operator=(const Tracer &) = delete;
 
-  /** The nearest hit. Of several at the same t, the one that comes first in the scene. */
+  /** The nearest hit. Of several hits at the same t, the triangle that comes first in the scene. */
   [[nodiscard]] std::optional<Hit> closest(const Ray &ray, Faces faces) const;
 
   /**
-   * Whether a triangle stands between a point and a lamp's.
+   * Whether a triangle lies between a point and a point of a lamp.
    *
-   * One whose plane holds either of them, as far as roundings can tell, does not: the triangle that \a point_ws is on,
-   * what lies in its plane, and what the lamp is mounted on. Nothing else is left out, so that a caster which touches
-   * the receiver darkens it up to the line where they meet. \a error_m: how far the point may be from where it should,
-   * at most.
+   * A triangle whose plane contains either point, within rounding, does not block. This excludes the triangle that
+   * \a point_ws is on, triangles in its plane, and the surface that the lamp is mounted on. No other triangle is
+   * excluded, so that a caster that touches the receiver darkens it up to the line of contact. \a error_m: largest
+   * possible error of \a point_ws, metres.
    */
   [[nodiscard]] bool is_blocked(const glm::dvec3 &point_ws, double error_m, const LightPoint &light) const;
 
@@ -111,7 +111,7 @@ class Tracer {
   std::unique_ptr<Tree> tree_;
 };
 
-/** How far a position may be from where it should, metres, when it was computed from others of its size in double. */
+/** Largest error of a position, metres, that was computed in double from positions of similar magnitude. */
 [[nodiscard]] double position_error(const glm::dvec3 &position_ws);
 
 }  // namespace gnomon::reference

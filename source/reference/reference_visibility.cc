@@ -16,7 +16,7 @@ namespace {
 template <typename Value>
 Estimate mean_over_square(int count, std::uint64_t seed, const Value &value)
 {
-  // Welford: no cancellation where all values are nearly the same.
+  // Welford's algorithm does not cancel if all values are almost equal.
   double mean = 0.0;
   double squares = 0.0;
   for (int i = 0; i < count; i++) {
@@ -25,11 +25,12 @@ Estimate mean_over_square(int count, std::uint64_t seed, const Value &value)
     mean += from_mean / double(i + 1);
     squares += from_mean * (x - mean);
   }
-  // One sample tells nothing about its error: it is as large as what was found.
+  // The error of a single sample is unknown; its magnitude is used instead.
   const double error = count > 1 ? std::sqrt(squares / (double(count) * double(count - 1))) : std::abs(mean);
   return {mean, error};
 }
 
+/** Positive if \a light is above the receiver's plane. Not normalised. */
 double cos_to(const Receiver &receiver, const LightPoint &light)
 {
   return glm::dot(receiver.normal_ws, light.is_direction ? light.vector_ws : light.vector_ws - receiver.position_ws);

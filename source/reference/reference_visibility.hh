@@ -7,53 +7,59 @@
 
 namespace gnomon::reference {
 
-/** A point of a surface that light may reach. World space, metres. */
+/** A point on a surface that receives light. World space, metres. */
 struct Receiver {
   glm::dvec3 position_ws{0.0};
-  /** Of the triangle; unit vector, on the side that is lit. */
+  /** Normal of the triangle on the lit side, unit vector. */
   glm::dvec3 normal_ws{0.0, 0.0, 1.0};
-  /** How far the position may be from the surface, at most. */
+  /** Largest possible distance of the position from the surface. */
   double error_m = 0.0;
 };
 
-/** A receiver at a position that was computed in double. */
+/** A receiver at a position that was computed in double. \a normal_ws: of any length. */
 [[nodiscard]] Receiver receiver_at(const glm::dvec3 &position_ws, const glm::dvec3 &normal_ws);
 
 /**
- * The receiver that an engine meant, which has its position in float: the surface that is nearest along the normal,
- * within the roundings of 16 float operations on the scene's largest coordinate. Its normal is the triangle's, on \a
- * normal_ws's side. Nothing where there is none.
+ * The receiver for a position that an engine computed in float: the nearest surface along the normal, within the
+ * rounding of 16 float operations on the scene's largest coordinate. Its normal is that of the triangle, on the side of
+ * \a normal_ws. Empty if there is no surface within that distance. \a normal_ws: unit vector.
  */
 [[nodiscard]] std::optional<Receiver> find_receiver(const Tracer &tracer, const glm::dvec3 &position_ws,
                                                     const glm::dvec3 &normal_ws);
 
 /**
- * Whether a point of a lamp is seen from \a receiver: it is above the receiver's plane, and nothing is between. Every
- * triangle casts its shadow from both of its sides, as in a shadow map that draws all faces.
+ * Whether a point of a lamp is visible from \a receiver: it is above the receiver's plane, and no triangle is between
+ * them. Both sides of a triangle cast shadows, as in a shadow map that draws all faces.
  */
 [[nodiscard]] bool is_visible(const Tracer &tracer, const Receiver &receiver, const LightPoint &light);
 
-/** The same for the middle of \a lamp: all of it, where it has no size. A hemi lamp casts no shadow and is seen from
- * anywhere. */
+/**
+ * The same for the centre of \a lamp. For a lamp without size, this is exact visibility. A hemi lamp casts no shadow
+ * and is visible from everywhere.
+ */
 [[nodiscard]] bool is_visible(const Tracer &tracer, const Receiver &receiver, const scene::PlacedLamp &lamp);
 
-/** Whether the middle of \a lamp is above the receiver's plane. Any place is above a hemi lamp's. */
+/** Whether the centre of \a lamp is above the receiver's plane. Always true for hemi lamps. */
 [[nodiscard]] bool is_facing(const Receiver &receiver, const scene::PlacedLamp &lamp);
 
 /** A sampled quantity. */
 struct Estimate {
   double mean = 0.0;
-  /** Of the mean; 0 for what is exact. At most too large: it takes the samples for independent, and they are spread
-   * evenly. */
+  /**
+   * Standard error of the mean; 0 for exact values. An upper estimate: it assumes independent samples, while the
+   * samples are distributed evenly.
+   */
   double standard_error = 0.0;
 };
 
-/** Share of a lamp's surface (sun: of its solid angle) that is seen, in [0, 1]; exact for a lamp without size. \pre
- * sample_count > 0. */
+/**
+ * Visible fraction of a lamp's surface (sun: of its solid angle), in [0, 1]. Exact for a lamp without size.
+ * \pre sample_count > 0.
+ */
 [[nodiscard]] Estimate visibility(const Tracer &tracer, const Receiver &receiver, const scene::PlacedLamp &lamp,
                                   int sample_count, std::uint64_t seed);
 
-/** W/m² at \a receiver from one lamp, lamp colour left out. \pre sample_count > 0. */
+/** Irradiance at \a receiver from one lamp, W/m², without the lamp's colour. \pre sample_count > 0. */
 [[nodiscard]] Estimate irradiance(const Tracer &tracer, const Receiver &receiver, const scene::PlacedLamp &lamp,
                                   int sample_count, std::uint64_t seed);
 

@@ -16,7 +16,7 @@ using test::add_rectangle;
 using test::lamp_at;
 using test::placed;
 
-/** What an engine hands over. */
+/** Receivers and visibilities of an engine. */
 struct Shaded {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;
@@ -34,7 +34,7 @@ struct Shaded {
   }
 };
 
-/** A square of half width 1 at height 2 over a plane that is tilted around y, under a lamp. */
+/** A square of half width 1 at height 2 above a plane that is tilted around y. */
 struct SquareOverPlane {
   scene::Scene scene;
   glm::mat4 plane{1.0F};
@@ -46,8 +46,7 @@ struct SquareOverPlane {
     add_rectangle(scene, {-1, -1}, {1, 1}, placed({0, 0, 2}));
   }
 
-  /** A grid of receivers, lit as the truth has it at the place where a light that is shifted by \a shift_m would meet
-   * them. */
+  /** A grid of receivers with the exact visibility at positions shifted by \a shift_m. */
   [[nodiscard]] Shaded shaded(const Tracer &tracer, const scene::PlacedLamp &lamp, double shift_m) const
   {
     Shaded result;
@@ -56,7 +55,7 @@ struct SquareOverPlane {
     for (int i = 0; i < 80; i++) {
       for (int k = 0; k < 80; k++) {
         const glm::dvec3 position(glm::dmat4(plane) * glm::dvec4(0.0937 * (i - 40), 0.0937 * (k - 40), 0, 1));
-        // Shifted along y, which is in the plane, and which the light of these tests is at right angles to.
+        // Shifted along y, which lies in the plane and is perpendicular to the light of these tests.
         const glm::dvec3 there = position + glm::dvec3(0, shift_m, 0);
         const bool is_lit = is_visible(tracer, receiver_at(there, normal), light);
         result.add(glm::vec3(position), glm::vec3(normal), is_lit ? 1.0F : 0.0F);
@@ -97,7 +96,7 @@ TEST_P(CompareShiftTest, EdgeOffsetIsByHowMuchTheShadowsAreMoved)
   const Shift shift = GetParam();
   const SquareOverPlane square(shift.tilt);
   const Tracer tracer(square.scene);
-  // A lamp far away, so that across its light is along y nearly everywhere.
+  // The lamp is distant, so that y is almost perpendicular to its light everywhere.
   const scene::PlacedLamp lamp = lamp_at(shift.kind, {0, 0, 200});
   constexpr double texel_m = 0.05;
   const Shaded shaded = square.shaded(tracer, lamp, shift.texels * texel_m);
@@ -106,7 +105,8 @@ TEST_P(CompareShiftTest, EdgeOffsetIsByHowMuchTheShadowsAreMoved)
   EXPECT_GT(error.wrong_count, 20U);
   EXPECT_EQ(error.leak_count, 0U);
   EXPECT_EQ(error.acne_count, 0U);
-  // At most the first ring that is no narrower than the shift; a receiver is less than that from the edge.
+  // The distance of a receiver from the edge is below the shift, so the offset is at most the first ring that is not
+  // smaller.
   const auto rings = edge_rings();
   EXPECT_LE(error.edge_offset_max, *std::ranges::lower_bound(rings, shift.texels * 1.02));
   EXPECT_GE(error.edge_offset_max, 0.7 * shift.texels);
@@ -121,7 +121,7 @@ INSTANTIATE_TEST_SUITE_P(Shifts, CompareShiftTest,
 
 TEST(Compare, DepthOffsetAlongTheLightOfAGrazedPlaneIsMeasuredAcrossIt)
 {
-  // A wall on a plane under a sun of 5 degrees: the shadow's end is long, and a texel across the light is 11 on the
+  // A wall on a plane under a sun at 5 degrees. The shadow is long, and one texel across the light covers 11 on the
   // plane.
   scene::Scene scene;
   add_rectangle(scene, {-50, -50}, {50, 50});
@@ -137,7 +137,7 @@ TEST(Compare, DepthOffsetAlongTheLightOfAGrazedPlaneIsMeasuredAcrossIt)
       lamp_at(LampKind::Sun, {0, 0, 0}, {float(std::cos(elevation)), 0, -float(std::sin(elevation))});
   const double end = 1.0 / std::tan(elevation);
   constexpr double texel_m = 0.02;
-  // Two texels across the light beyond the end, dark where it is lit.
+  // A receiver two texels across the light beyond the end of the shadow: the engine is dark, the exact result is lit.
   Shaded shaded;
   shaded.add({float(end + 1.9 * texel_m / std::sin(elevation)), 0.5F, 0}, {0, 0, 1}, 0.0F);
   const VisibilityError error =
@@ -149,7 +149,7 @@ TEST(Compare, DepthOffsetAlongTheLightOfAGrazedPlaneIsMeasuredAcrossIt)
 
 TEST(Compare, MovedReceiversStayOnTheirOwnSurface)
 {
-  // A steep plane, and a small caster over it that is level with the receiver: under it, the plane is dark.
+  // A steep plane, and a small caster above it at the height of the receiver. The plane below the caster is dark.
   scene::Scene scene;
   add_rectangle(scene, {-10, -10}, {10, 10}, glm::rotate(glm::mat4(1.0F), float(M_PI / 3), glm::vec3(0, 1, 0)));
   add_rectangle(scene, {0.9F, -0.1F}, {1.1F, 0.1F}, placed({0, 0, -0.35F}));
@@ -169,7 +169,7 @@ TEST(Compare, LeakAndAcneAreWrongFarFromAnyEdge)
   const Tracer tracer(square.scene);
   const scene::PlacedLamp sun = lamp_at(LampKind::Sun, {0, 0, 0});
   Shaded shaded = square.shaded(tracer, sun, 0.0);
-  // Two inside of the shadow, one at its edge, three in the light.
+  // Two receivers inside the shadow, one at its edge, three in the light.
   shaded.add({0, 0, 0}, {0, 0, 1}, 1.0F);
   shaded.add({0.5F, -0.5F, 0}, {0, 0, 1}, 0.75F);
   shaded.add({0.995F, 0, 0}, {0, 0, 1}, 1.0F);
@@ -185,18 +185,18 @@ TEST(Compare, LeakAndAcneAreWrongFarFromAnyEdge)
   EXPECT_EQ(error.edge_count, 3U);
   EXPECT_DOUBLE_EQ(error.wrong_fraction, 6.0 / 6406.0);
   EXPECT_DOUBLE_EQ(error.mean_absolute_error, (1.0 + 0.75 + 1.0 + 1.0 + 0.5 + 0.75) / 6406.0);
-  // Without a texel's size nothing is near an edge.
+  // Without a texel size, no receiver is near an edge.
   EXPECT_EQ(compare_visibility(tracer, sun, shaded.view(), {}).leak_count, 3U);
 }
 
 TEST(Compare, AcneOnACurvedHollowIsNotTakenForAnEdge)
 {
-  // Inside of a closed sphere with the lamp in its middle all is lit, though every tangent plane is outside.
+  // The inside of a closed sphere with the lamp at its centre is lit, although every tangent plane is outside.
   std::vector<glm::vec3> corners;
   const auto corner = [](int row, int column) {
     const float polar = float(M_PI) * float(row) / 32.0F;
     const float turn = 2.0F * float(M_PI) * float(column % 64) / 64.0F;
-    // At the poles all corners are one, exactly: slivers there would fold.
+    // All corners at a pole are exactly equal, so that triangles there do not fold.
     const float across = row % 32 == 0 ? 0.0F : std::sin(polar);
     return glm::vec3(across * std::cos(turn), across * std::sin(turn), std::cos(polar));
   };

@@ -19,7 +19,7 @@ using test::add_rectangle;
 using test::lamp_at;
 using test::placed;
 
-/** The middle pixel of a picture so small in angle that it is one point. */
+/** The middle pixel of a picture with so small an angle that it shows one point. */
 glm::vec3 seen(const scene::Scene &scene, const scene::PlacedCamera &camera, int sample_count = 4)
 {
   const Tracer tracer(scene);
@@ -47,11 +47,11 @@ TEST(DirectLight, LambertianPlaneIsAlbedoOverPiTimesIrradiance)
   add_lamp(scene, point);
   add_lamp(scene, lamp_at(LampKind::Sun, {0, 0, 0}, {0, 3, -4}));
   add_lamp(scene, lamp_at(LampKind::Hemi, {0, 0, 0}, {0, 3, -4}));
-  // From below: nothing, as the plane is not transparent.
+  // A lamp below gives no light, because the plane is opaque.
   add_lamp(scene, lamp_at(LampKind::Point, {0, 0, -1}));
   const glm::dvec3 albedo(0.25, 0.5, 1.0);
   const glm::dvec3 irradiance = 5.0 * 0.8 / 25.0 * glm::dvec3(1.0, 0.5, 0.25) + 0.8 + 0.9;
-  // Camera matrices are of floats.
+  // The tolerance covers the float rounding of camera matrices.
   expect_color(seen(scene, test::camera_at({2, 1, 5}, {0, 0, 0}, narrow)),
                albedo * irradiance / std::numbers::pi + glm::dvec3(0, 0, 2), 2e-5);
 }
@@ -68,7 +68,8 @@ TEST(DirectLight, MicrofacetLobeHasItsPeakAtNormalIncidence)
     });
     add_rectangle(scene, {-10, -10}, {10, 10});
     add_lamp(scene, lamp_at(LampKind::Sun, {0, 0, 0}));
-    // D = 1 / (π α²), masking 1, over 4; diffuse light keeps what the strongest channel lets through.
+    // The lobe is D · G / 4 with D = 1 / (π α²) and G = 1. Diffuse light is scaled by 1 - the strongest channel's
+    // Fresnel term.
     const double lobe = 1.0 / (4.0 * std::numbers::pi * 0.0625);
     const glm::dvec3 color(0.9, 0.5, 0.1);
     const glm::dvec3 expected = metallic > 0.5F ? color * lobe : color * 0.96 / std::numbers::pi + 0.04 * lobe;
@@ -85,7 +86,7 @@ TEST(DirectLight, MirroredDirectionHasFresnelsAndSmithsFactors)
     material.specular_color = glm::vec3(1.0F);
   });
   add_rectangle(scene, {-10, -10}, {10, 10});
-  // Light and view at 60 degrees to either side of the normal: the half vector is the normal.
+  // Light and view are at 60 degrees on both sides of the normal, so the half vector is the normal.
   const float sine = std::sqrt(0.75F);
   add_lamp(scene, lamp_at(LampKind::Sun, {0, 0, 0}, {-sine, 0, -0.5F}));
   const double a2 = 0.0625;
@@ -101,7 +102,7 @@ TEST(DirectLight, NormalsAreInterpolatedAndTurnedToTheViewer)
   scene::Scene scene;
   test::add_material(scene, glm::vec3(1.0F));
   add_rectangle(scene, {-1, -1}, {1, 1});
-  // Tilted to +x on the right and to -x on the left; upright in the middle.
+  // Normals are tilted to +x on the right and to -x on the left, and upright in the middle.
   test::edit_mesh(scene, [](scene::Mesh &mesh) {
     for (std::size_t i = 0; i < 6; i++) {
       mesh.normals[i] = glm::normalize(glm::vec3(mesh.positions[i].x, 0, 1));
@@ -111,7 +112,7 @@ TEST(DirectLight, NormalsAreInterpolatedAndTurnedToTheViewer)
   add_lamp(scene, lamp_at(LampKind::Sun, {0, 0, 0}, {0, 0, 1}));
   for (const float side : {1.0F, -1.0F}) {
     const glm::vec3 color = seen(scene, test::camera_at({0.5F, 0.25F, side * 3}, {0.5F, 0.25F, 0}, narrow));
-    // Between (0, 1) and (1, 1)/√2 at the corners: linear, then normalised.
+    // Interpolated linearly between (0, 1) and (1, 1)/√2, then normalised.
     const double x = 0.5 * std::sqrt(0.5);
     const double z = std::sqrt(0.5);
     expect_color(color, glm::dvec3(z / std::hypot(x, z) / std::numbers::pi), 2e-5);
@@ -157,7 +158,7 @@ TEST(DirectLight, ClipDistancesAreDepths)
 
 TEST(DirectLight, CamerasFrameIsInTheMiddleAndWhole)
 {
-  // Exactly what an orthographic camera of 4 by 2 sees, and the middle of it in an image of another aspect.
+  // A rectangle that exactly fills an orthographic camera of 4 by 2. Images of other aspects show it in the middle.
   scene::Scene scene;
   test::add_material(scene, glm::vec3(1.0F));
   test::edit_material(scene, [&](scene::Material &material) { material.emissive = glm::vec3(1.0F); });
@@ -173,13 +174,13 @@ TEST(DirectLight, CamerasFrameIsInTheMiddleAndWhole)
     for (const glm::vec4 &pixel : picture.pixels) {
       area += pixel.r;
     }
-    // In each of them the frame is 40 x 20 pixels; at the picture's rim, the filter spreads some beyond it.
+    // The frame is 40 x 20 pixels in each image. At the edge of the picture, the filter spreads some light beyond it.
     EXPECT_NEAR(area, 800.0, 0.03 * 800.0);
     EXPECT_EQ(picture.pixels[std::size_t(size_px.y / 2 * size_px.x + size_px.x / 2)].r, 1.0F);
   }
 }
 
-/** Integral of the pixel filter from \a from_edge_px on. */
+/** Integral of the pixel filter from \a from_edge_px to infinity. */
 double filter_integral(double from_edge_px)
 {
   const double at = std::clamp(from_edge_px, -1.5, 1.5);
@@ -192,7 +193,8 @@ double filter_integral(double from_edge_px)
   return integral;
 }
 
-/** A bright quarter of a plane from \a low on, one metre a pixel, the origin in the middle of the picture. */
+/** A bright quadrant of a plane with its corner at \a low, one metre a pixel, with the origin in the middle of the
+ * picture. */
 scene::Scene bright_scene(const glm::vec2 &low, glm::ivec2 size_px)
 {
   scene::Scene scene;
@@ -216,17 +218,18 @@ Picture bright_from(const glm::vec2 &low, glm::ivec2 size_px, int sample_count)
 
 TEST(DirectLight, PixelFilterIsBlackmanHarrisOfThreePixels)
 {
-  // An edge between two columns: each is the filter's integral from the edge on.
+  // An edge between two columns. Each pixel is the integral of the filter beyond the edge.
   const Picture picture = bright_from({0, -500}, {8, 8}, 4096);
   for (int x = 0; x < 8; x++) {
-    // Evenly placed samples err by about one in their number.
+    // The error of evenly placed samples is about one sample.
     EXPECT_NEAR(picture.pixels[std::size_t(4 * 8 + x)].r, filter_integral(x + 0.5 - 4.0), 1e-3) << x;
   }
 }
 
 TEST(DirectLight, PixelFilterCrossesTilesAndThePicturesRim)
 {
-  // Tiles are of 64 pixels: an edge between two, in either direction, and one along the rim, just outside.
+  // Tiles have 64 pixels. The pictures have an edge between two tiles, in both directions, and one just outside the
+  // picture.
   const Picture rows = bright_from({-500, 0}, {4, 128}, 256);
   const Picture columns = bright_from({0, -500}, {128, 4}, 256);
   const Picture rim = bright_from({2, -500}, {4, 4}, 256);
@@ -239,7 +242,7 @@ TEST(DirectLight, PixelFilterCrossesTilesAndThePicturesRim)
 
 TEST(DirectLight, PixelsAloneHaveTheSameFilter)
 {
-  // A corner of the plane: the filter's integral from the one edge on, times that from the other.
+  // A corner of the plane: the product of the integrals of the filter beyond its two edges.
   const glm::ivec2 size_px{8, 8};
   const scene::Scene scene = bright_scene({0.3F, -1.2F}, size_px);
   const Tracer tracer(scene);
@@ -254,7 +257,7 @@ TEST(DirectLight, PixelsAloneHaveTheSameFilter)
   ASSERT_EQ(light.size(), pixels.size());
   for (std::size_t i = 0; i < pixels.size(); i++) {
     const double expected = filter_integral(pixels[i].x + 0.5 - 4.3) * filter_integral(pixels[i].y + 0.5 - 2.8);
-    // A corner is less even than an edge: the same samples err by two to three times as much.
+    // The error at a corner is two to three times the error at an edge for the same samples.
     EXPECT_NEAR(light[i].r, expected, 3e-3) << pixels[i].x << ", " << pixels[i].y;
   }
 }
@@ -310,7 +313,7 @@ TEST(DirectLight, IsFiniteInsideOfGeometryAndAtLamps)
     material.roughness = 0.0F;
     material.metallic = 1.0F;
   });
-  // Normals that have nothing to do with the surface, and some without length.
+  // Normals unrelated to the surface, and some of length zero.
   test::edit_mesh(scene, [](scene::Mesh &mesh) {
     for (std::size_t i = 0; i < mesh.normals.size(); i++) {
       mesh.normals[i] = i % 5 == 0 ? glm::vec3(0.0F) : glm::vec3(0, 0, 1);

@@ -65,7 +65,7 @@ inline scene::Handle<scene::Mesh> add_triangles(scene::Scene &scene, const std::
   return handle;
 }
 
-/** A rectangle in the plane z = 0, facing +Z. */
+/** Adds a rectangle in the plane z = 0, facing +Z. */
 inline scene::Handle<scene::Mesh> add_rectangle(scene::Scene &scene, const glm::vec2 &low, const glm::vec2 &high,
                                                 const glm::mat4 &world_from_object = glm::mat4(1.0F))
 {
@@ -81,7 +81,7 @@ inline glm::mat4 placed(const glm::vec3 &position)
   return glm::translate(glm::mat4(1.0F), position);
 }
 
-/** A lamp of intensity 1 at \a position that shines along \a forward. */
+/** A lamp of intensity 1 at \a position that emits along \a forward. */
 inline scene::PlacedLamp lamp_at(scene::LampKind kind, const glm::vec3 &position,
                                  const glm::vec3 &forward = {0.0F, 0.0F, -1.0F})
 {

@@ -24,7 +24,9 @@ glm::dvec3 random_point(std::mt19937 &random)
 
 using Wide = glm::vec<3, long double>;
 
-/** Where a ray meets a triangle, in long double (Möller and Trumbore 1997), or infinity; NaN too near an edge to tell.
+/**
+ * t of the intersection of a ray with a triangle, in long double (Möller and Trumbore 1997). Infinity: no intersection.
+ * NaN: too near an edge to decide.
  */
 double hit_in_long_double(const Ray &ray, const std::array<glm::dvec3, 3> &corners)
 {
@@ -57,7 +59,7 @@ TEST_P(TracerPlaceTest, NearestHitIsThatOfAllTrianglesInLongDouble)
 {
   const Place place = GetParam();
   std::mt19937 random(7);
-  // Large and tiny triangles together: boxes in float must lose none.
+  // Large and tiny triangles together. Float boxes must not lose any.
   std::vector<glm::vec3> corners;
   for (int i = 0; i < 300; i++) {
     const glm::dvec3 center = random_point(random);
@@ -77,7 +79,7 @@ TEST_P(TracerPlaceTest, NearestHitIsThatOfAllTrianglesInLongDouble)
   int compared = 0;
   int hits = 0;
   for (int i = 0; i < 3000; i++) {
-    // At a triangle, so that the tiny ones are found.
+    // Aimed at a triangle, so that tiny triangles are hit.
     const auto &aim = world[std::size_t(i) % world.size()];
     Ray ray{random_point(random) * 3.0 * place.scale + place.offset, {}};
     ray.direction_ws = (0.2 * aim[0] + 0.3 * aim[1] + 0.5 * aim[2] - ray.origin_ws) * std::pow(10.0, double(i % 7 - 3));
@@ -94,7 +96,7 @@ TEST_P(TracerPlaceTest, NearestHitIsThatOfAllTrianglesInLongDouble)
     ASSERT_EQ(hit.has_value(), std::isfinite(nearest)) << "ray " << i;
     if (hit) {
       hits++;
-      // The farther away the origin, the more the coordinates round.
+      // The rounding of coordinates grows with the distance from the origin.
       const double tolerance = 1e-10 + 1e-14 * place.offset / place.scale * 1e4;
       ASSERT_NEAR(hit->t / nearest, 1.0, tolerance) << "ray " << i;
     }
@@ -109,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(Places, TracerPlaceTest,
 
 TEST(Tracer, RaysDoNotSlipBetweenTrianglesThatShareAnEdge)
 {
-  // A sphere of triangles around the origin, with corners that no float arithmetic likes.
+  // A sphere of triangles around the origin, with corners that are not exact in float.
   constexpr int rows = 13;
   constexpr int columns = 17;
   const auto corner = [](int row, int column) {
@@ -141,7 +143,7 @@ TEST(Tracer, RaysDoNotSlipBetweenTrianglesThatShareAnEdge)
     const glm::dvec3 origin = 0.3 * random_point(random);
     const glm::dvec3 aim = a * (1.0 - s) + b * s;
     ASSERT_TRUE(tracer.closest({origin, aim - origin}, Faces::All)) << i;
-    // Half way out, so that the lamp is outside of the sphere.
+    // The lamp is twice as far away as `aim`, outside the sphere.
     ASSERT_TRUE(tracer.is_blocked(origin, 0.0, {2.0 * aim - origin, false})) << i;
     ASSERT_TRUE(tracer.is_blocked(origin, 0.0, {aim - origin, true})) << i;
   }
@@ -160,7 +162,7 @@ TEST(Tracer, TrianglesWithoutAreaAndFlattenedObjectsAreHarmless)
   scene::Scene scene;
   add_triangles(scene, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}});
   add_rectangle(scene, {-1, -1}, {1, 1}, glm::scale(glm::mat4(1.0F), glm::vec3(0.0F)));
-  // Flat in z: still a square to a ray along z, at the height of its object.
+  // Flattened along z. A ray along z still hits the square, at the height of its object.
   add_rectangle(scene, {-1, -1}, {1, 1}, placed({0, 0, 3}) * glm::scale(glm::mat4(1.0F), glm::vec3(1, 1, 0)));
   const Tracer tracer(scene);
   const std::optional<Hit> hit = tracer.closest({{0.5, 0.25, 0}, {0, 0, 1}}, Faces::All);
@@ -194,11 +196,11 @@ TEST(Tracer, NormalsStayOnTheFrontOfMirroredAndShearedObjects)
   for (const glm::mat4 &matrix : {glm::scale(glm::mat4(1.0F), glm::vec3(-1, 1, 1)), sheared,
                                   sheared * glm::scale(glm::mat4(1.0F), glm::vec3(2, -3, 0.5F))}) {
     scene::Scene scene;
-    // Tilted, so that shear turns its normal.
+    // Tilted, so that shear rotates the normal.
     const glm::mat4 tilted = glm::rotate(matrix, 0.6F, glm::vec3(1, 0, 0));
     add_rectangle(scene, {-1, -1}, {1, 1}, tilted);
     const Tracer tracer(scene);
-    // What is above the front before the matrix is above it after.
+    // A point in front of the object stays in front after the transformation.
     const glm::dvec3 above = glm::dvec3(glm::dmat4(tilted) * glm::dvec4(0.1, 0.2, 1.0, 1.0));
     const glm::dvec3 at = glm::dvec3(glm::dmat4(tilted) * glm::dvec4(0.1, 0.2, 0.0, 1.0));
     const std::optional<Hit> hit = tracer.closest({above, at - above}, Faces::All);
@@ -292,7 +294,7 @@ TEST(Tracer, BaseColorIsDecodedBeforeItIsInterpolated)
   const glm::dvec3 color = tracer.surface_at(*hit).base_color;
   EXPECT_NEAR(color.r, 0.25, 1e-12);
   EXPECT_NEAR(color.g, 0.0, 1e-12);
-  // 188 is sRGB's middle grey: 0.5029.
+  // 188 in sRGB is 0.5029 in linear light.
   EXPECT_NEAR(color.b, 0.5029, 1e-4);
 }
 

@@ -17,7 +17,7 @@ using test::placed;
 
 constexpr glm::dvec3 up{0.0, 0.0, 1.0};
 
-/** Turns x up and z to -x, without a rounding: a wall at x = 0. */
+/** Rotates x to up and z to -x without rounding: a wall at x = 0. */
 glm::mat4 upright()
 {
   glm::mat4 matrix(0.0F);
@@ -37,7 +37,7 @@ class ShadowPlaceTest : public testing::TestWithParam<Place> {};
 
 TEST_P(ShadowPlaceTest, SquaresShadowEndsWhereTheThalesTheoremSays)
 {
-  // A lamp 8 above a plane, a square of half width 1 at height 3: the shadow's half width is 8 / 5.
+  // A lamp 8 m above a plane and a square of half width 1 at height 3. The half width of the shadow is 8 / 5.
   const Place place = GetParam();
   const float s = float(place.scale);
   const glm::vec3 origin(float(place.offset), -float(place.offset), 0.5F * float(place.offset));
@@ -47,7 +47,7 @@ TEST_P(ShadowPlaceTest, SquaresShadowEndsWhereTheThalesTheoremSays)
   const Tracer tracer(scene);
   const scene::PlacedLamp lamp = lamp_at(LampKind::Point, origin + glm::vec3(0, 0, 8 * s));
   const double edge = 1.6;
-  // Coordinates round to 2^-53 of the offset; the edge is moved by little more.
+  // Coordinates are rounded to 2^-53 of the offset. The error of the edge is little more.
   const double tolerance = 1e-14 + 8.0 * 0x1p-53 * place.offset / place.scale;
   for (const glm::dvec2 along : {glm::dvec2(1, 0), glm::dvec2(0, -1), glm::dvec2(1, 0.375), glm::dvec2(-0.5, 1)}) {
     for (const double side : {-1.0, 1.0}) {
@@ -64,7 +64,7 @@ INSTANTIATE_TEST_SUITE_P(Places, ShadowPlaceTest,
 
 TEST(Visibility, WallsShadowUnderAGrazingSunIsExact)
 {
-  // Elevations down to a millionth of a radian: the shadow of a wall of 1 m is up to 1000 km long.
+  // Elevations down to a millionth of a radian. The shadow of a wall of 1 m is up to 1000 km long.
   for (const double elevation : {0.5, 1e-2, 1e-4, 1e-6}) {
     const double length = 1.0 / std::tan(elevation);
     scene::Scene scene;
@@ -96,8 +96,7 @@ TEST(Visibility, ACasterThatTouchesDarkensUpToTheContact)
 
 TEST(Visibility, APlaneDoesNotShadowItself)
 {
-  // A plane of many triangles, turned so that none of its corners is exact, lit at angles down to a millionth of a
-  // radian.
+  // A plane of many triangles, rotated so that no corner is exact, lit at angles down to a millionth of a radian.
   std::vector<glm::vec3> corners;
   for (int i = 0; i < 20; i++) {
     for (int k = 0; k < 20; k++) {
@@ -116,7 +115,7 @@ TEST(Visibility, APlaneDoesNotShadowItself)
       glm::mat4 matrix = glm::rotate(placed(glm::vec3(offset, -offset, offset)), 0.9F, glm::vec3(0.48F, -0.6F, 0.64F));
       matrix = glm::scale(matrix, glm::vec3(scale));
       test::add_triangles(scene, corners, matrix);
-      // A second layer of it.
+      // A second layer of the plane at the same position.
       add_rectangle(scene, {-10, -10}, {10, 10}, matrix);
       const Tracer tracer(scene);
       const glm::dmat4 world_from_object(matrix);
@@ -142,7 +141,7 @@ TEST(Visibility, LampOnAPlaneIsHiddenFromItAndNotByIt)
 {
   scene::Scene scene;
   add_rectangle(scene, {-10, -10}, {10, 10});
-  // A ceiling in which the lamp is, and one above it.
+  // One ceiling contains the lamp, another one is above it.
   add_rectangle(scene, {-10, -10}, {10, 10}, placed({0, 0, 3}));
   add_rectangle(scene, {-10, -10}, {10, 10}, placed({0, 0, 4}));
   const Tracer tracer(scene);
@@ -152,9 +151,9 @@ TEST(Visibility, LampOnAPlaneIsHiddenFromItAndNotByIt)
   EXPECT_FALSE(is_visible(tracer, receiver_at({1, 2, 3}, up), lamp));
   EXPECT_FALSE(is_visible(tracer, receiver_at({1, 2, 3}, -up), lamp));
   EXPECT_FALSE(is_facing(receiver_at({1, 2, 3}, up), lamp));
-  // Through the lower ceiling.
+  // A lamp above the lower ceiling is blocked by it.
   EXPECT_FALSE(is_visible(tracer, receiver_at({1, 2, 0}, up), lamp_at(LampKind::Point, {0.3F, 0.2F, 3.5F})));
-  // At the lamp itself there is no side that faces it.
+  // A receiver at the lamp itself does not face it.
   EXPECT_FALSE(is_visible(tracer, receiver_at(glm::dvec3(lamp.world_from_lamp[3]), up), lamp));
 }
 
@@ -192,7 +191,7 @@ TEST(Visibility, FloatPositionsAreMovedBackOntoTheirSurface)
 
 TEST(Visibility, ShareOfADiskBehindAnEdgeIsThatOfACircularSegment)
 {
-  // A half plane at half the lamp's height, its edge over x = c: on the lamp it hides what is beyond x = 2c.
+  // A half plane at half the height of the lamp, with its edge at x = c. It hides the part of the lamp beyond x = 2c.
   for (const double cut : {-0.4, -0.1, 0.0, 0.25}) {
     scene::Scene scene;
     add_rectangle(scene, {float(cut), -50}, {50, 50}, placed({0, 0, 2}));
@@ -204,7 +203,7 @@ TEST(Visibility, ShareOfADiskBehindAnEdgeIsThatOfACircularSegment)
     const Estimate estimate = visibility(tracer, receiver_at({0, 0, 0}, up), lamp, 20000, 5);
     EXPECT_NEAR(estimate.mean, seen, 4.0 * estimate.standard_error);
     EXPECT_LT(estimate.standard_error, 0.004);
-    // The sun's cone is cut by a plane through its middle, and only there is that simple.
+    // A plane through the axis of the sun's cone hides exactly half of it.
     scene::PlacedLamp sun = lamp_at(LampKind::Sun, {0, 0, 0});
     sun.angle = 0.5F;
     const Estimate half = visibility(tracer, receiver_at({double(float(cut)), 0, 0}, up), sun, 20000, 5);
@@ -233,13 +232,13 @@ TEST(Visibility, StandardErrorIsNoSmallerThanTheSpreadOfSeeds)
   EXPECT_GT(stated, 0.0);
 }
 
-/** Unoccluded, at the origin facing up. */
+/** Expects this irradiance at an unoccluded receiver at the origin that faces up. */
 void expect_irradiance(const scene::PlacedLamp &lamp, double expected)
 {
   const scene::Scene scene;
   const Tracer tracer(scene);
   const Estimate estimate = irradiance(tracer, receiver_at({0, 0, 0}, up), lamp, 20000, 1);
-  // The lamp's axis is of floats, and a spot's edge is steep against it.
+  // The tolerance covers the float rounding of the lamp's axis, which the steep edge of a spot amplifies.
   EXPECT_NEAR(estimate.mean, expected, 4.0 * estimate.standard_error + 1e-5 * expected);
   EXPECT_LE(estimate.standard_error, 0.02 * expected);
 }
@@ -283,14 +282,14 @@ TEST(Irradiance, DisksRectanglesEllipsesAndSunsAreTheirClosedForms)
     sun.angle = angle;
     expect_irradiance(sun, 1.0);
   }
-  // A disk parallel to the receiver, above it: form factor r² / (h² + r²).
+  // A disk above the receiver and parallel to it: the form factor is r² / (h² + r²).
   scene::PlacedLamp area = lamp_at(LampKind::Area, {0, 0, 2});
   area.area_shape = scene::AreaShape::Ellipse;
   area.area_size_x = 3.0F;
   area.area_size_y = 3.0F;
   const double disk_area = std::numbers::pi * 2.25;
   expect_irradiance(area, 1.0 / disk_area * 2.25 / (4.0 + 2.25));
-  // A rectangle there: four of Howell's B-3 for one over a corner.
+  // A rectangle at the same position: four times Howell's form factor B-3, which is for a corner.
   area.area_shape = scene::AreaShape::Rectangle;
   area.area_size_y = 1.0F;
   const double a = 1.5 / 2.0;
@@ -299,7 +298,7 @@ TEST(Irradiance, DisksRectanglesEllipsesAndSunsAreTheirClosedForms)
                           b / std::sqrt(1 + b * b) * std::atan(a / std::sqrt(1 + b * b))) /
                          (2.0 * std::numbers::pi);
   expect_irradiance(area, 4.0 * quarter / 3.0);
-  // It shines to one side.
+  // It emits to one side only.
   expect_irradiance(lamp_at(LampKind::Area, {0, 0, 2}, {0, 0, 1}), 0.0);
 }
 

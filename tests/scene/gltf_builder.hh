@@ -3,7 +3,7 @@
 
 #include "internal/measure_gltf.hh"
 
-/** The files that stability is measured on serve tests too. */
+/** Tests use the same glTF files as the stability cases. */
 namespace gnomon::test {
 
 using namespace measure::gltf;

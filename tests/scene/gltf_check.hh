@@ -17,7 +17,7 @@
 
 namespace gnomon::test {
 
-/** Everything that scene.hh promises of an imported scene. */
+/** Expects every property that scene.hh promises of an imported scene. */
 inline void expect_valid(const scene::Scene &scene)
 {
   EXPECT_EQ(measure::contract_faults(scene), std::vector<std::string>());
@@ -54,7 +54,7 @@ inline scene::Scene import(const GltfBuilder &builder)
   return import_text(builder.gltf());
 }
 
-/** The message of the import's error; empty when there was none. */
+/** The message of the import error; empty if there was none. */
 inline std::string import_error(const std::string &content, const std::string &name = "scene.gltf")
 {
   const TemporaryFolder folder;

@@ -130,7 +130,7 @@ TEST(GltfDoor, EveryIndexIsChecked)
                d["buffers"] = json::array();
              }),
              "bufferViews[0].buffer: index 1");
-  // Would come through tinygltf as 0.
+  // tinygltf would read it as 0.
   EXPECT_HAS(error_after([](json &d) { d["nodes"][0]["mesh"] = 4294967296; }),
              "nodes[0].mesh: is 4294967296, and must be an index");
   EXPECT_HAS(error_after([](json &d) { d["nodes"][0]["mesh"] = -1; }), "nodes[0].mesh: is -1, and must be an index");
@@ -196,7 +196,7 @@ TEST(GltfNodes, RingsAndSecondParentsAreErrors)
 
 // ---- Accessors ----
 
-/** The import of a good triangle and, beside it, one that \a change has spoilt: positions 1, indices 2. */
+/** Imports a valid triangle and a second one that \a change has damaged. Its accessors: positions 1, indices 2. */
 Scene import_beside(const std::function<void(json &)> &change)
 {
   GltfBuilder builder = triangle_scene();
@@ -268,7 +268,7 @@ TEST(GltfAccessor, SparseIsChecked)
   expect_left_out(with_sparse(3, {{"bufferView", 2}, {"componentType", 5125}}, values),
                   "accessor 1: its sparse indices run past");
   expect_left_out(with_sparse(3, indices, {{"bufferView", 2}}), "accessor 1: its sparse values run past");
-  // The bytes of 1.0F do not ascend.
+  // The bytes of 1.0F are not ascending, so they are invalid sparse indices.
   expect_left_out(with_sparse(3, {{"bufferView", 0}, {"componentType", 5121}}, values),
                   "accessor 1: its sparse indices do not ascend");
 }
@@ -349,7 +349,7 @@ TEST(GltfImport, BufferOfAnExtensionIsNoData)
 
 TEST(GltfImport, FewBytesCannotAskForEndlessWork)
 {
-  // A thousand primitives that share one long index accessor: small as a file, 10^9 triangles as a scene.
+  // A thousand primitives share one long index accessor: a small file, but a scene of 10^9 triangles.
   GltfBuilder builder;
   const int positions = builder.positions(triangle_positions);
   std::vector<std::uint8_t> long_list(1000000, 7);
@@ -385,9 +385,9 @@ TEST(GltfImport, NamesCannotBreakAMessage)
              "nodes[0].name: is longer than 1024 bytes");
 }
 
-// ---- Whatever comes ----
+// ---- Random damage ----
 
-/** A scene with a little of everything. */
+/** A scene with all kinds of content. */
 GltfBuilder rich_scene()
 {
   GltfBuilder builder;
@@ -422,7 +422,7 @@ GltfBuilder rich_scene()
   return builder;
 }
 
-/** Change a few bytes, or cut the end off. */
+/** Changes a few bytes, or cuts off the end. */
 std::string mutated(const std::string &original, std::mt19937 &random)
 {
   std::string result = original;
@@ -440,7 +440,7 @@ std::string mutated(const std::string &original, std::mt19937 &random)
       case 0: result[at] = static_cast<char>(below(256)); break;
       case 1: result[at] = static_cast<char>(result[at] ^ static_cast<char>(1U << below(8))); break;
       case 2: {
-        // Digits become other digits, so that the JSON stays whole more often.
+        // Digits become other digits, so that the JSON stays valid more often.
         constexpr std::string_view characters = "0123456789-.e\"[]{},:";
         result[at] = characters[below(characters.size())];
         break;
@@ -468,13 +468,13 @@ void expect_survives(const std::string &original, const std::string &name, int c
     catch (const scene::ImportError &) {
     }
     if (::testing::Test::HasFailure()) {
-      // Left for whoever looks into it.
+      // Keep the file for analysis.
       std::filesystem::copy_file(path, std::filesystem::temp_directory_path() / ("gnomon_fuzz_" + name),
                                  std::filesystem::copy_options::overwrite_existing);
       FAIL() << "mutation " << i << ", kept in " << std::filesystem::temp_directory_path();
     }
   }
-  // Else the mutations would only ever test the JSON parser.
+  // Otherwise the mutations would test only the JSON parser.
   EXPECT_GT(kept, count / 50);
 }
 
@@ -488,7 +488,7 @@ TEST(GltfFuzz, MutatedGlbImportsOrFailsCleanly)
   expect_survives(rich_scene().glb(), "scene.glb", 4000);
 }
 
-/** Replace one value somewhere in the document by an odd one: the JSON stays whole, so this reaches deep. */
+/** Replaces one value in the document by an unusual one. The JSON stays valid, so that deeper layers are tested. */
 void replace_some_value(json &value, std::mt19937 &random)
 {
   const json odd = {nullptr,
@@ -573,7 +573,8 @@ TEST(GltfModels, AssimpsImportOrSayWhyNot)
       }
     }
   }
-  // Version 5.2.5 of the package: the errors are glTF 1.0, files made to be wrong, and points and lines alone.
+  // Version 5.2.5 of the package. The failing files are glTF 1.0, intentionally invalid, or contain only points and
+  // lines.
   EXPECT_GE(ok_count, 25);
   EXPECT_LE(error_count, 27);
 }

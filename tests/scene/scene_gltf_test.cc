@@ -28,7 +28,7 @@ void expect_near(const glm::vec3 &value, const glm::vec3 &expected, float tolera
                                                       << expected.x << ' ' << expected.y << ' ' << expected.z;
 }
 
-/** The corners of the triangles, in order. */
+/** The corners of all triangles, in order. */
 std::vector<glm::vec3> corners(const Mesh &mesh)
 {
   std::vector<glm::vec3> result;
@@ -44,7 +44,7 @@ glm::vec3 face_normal(const Mesh &mesh, std::size_t triangle)
   return glm::normalize(glm::cross(c[3 * triangle + 1] - c[3 * triangle], c[3 * triangle + 2] - c[3 * triangle]));
 }
 
-/** The only mesh of a scene whose only primitive is \a primitive. */
+/** Imports a scene whose only primitive is \a primitive. \return its mesh. */
 Mesh import_mesh(GltfBuilder &builder, const json &primitive)
 {
   builder.node({{"mesh", builder.mesh(primitive)}});
@@ -71,7 +71,7 @@ TEST(GltfImport, ReadsABufferBesideTheFile)
 {
   GltfBuilder builder = triangle_scene();
   const TemporaryFolder folder;
-  // Longer than byteLength is legal, and a space is written as %20.
+  // A file longer than byteLength is valid. A space in a URI is written as %20.
   (void)folder.write("the data.bin", std::string(builder.bytes.begin(), builder.bytes.end()) + "tail");
   builder.document["buffers"] = {{{"byteLength", builder.bytes.size()}, {"uri", "the%20data.bin"}}};
   const Scene scene = scene::import_gltf(folder.write("scene.gltf", builder.gltf()));
@@ -108,7 +108,7 @@ TEST(GltfNodes, WorldIsTheProductDownTheTree)
   builder.document["scenes"] = {{{"nodes", {2}}}};
   const Scene scene = import(builder);
   ASSERT_EQ(scene.objects().size(), 1U);
-  // (1, 0, 0) is doubled, moved up 3, turned a quarter about +Z, and carried along.
+  // (1, 0, 0) is doubled, moved up by 3, rotated by 90 degrees about +Z, and translated.
   expect_near(glm::vec3(scene.objects()[0].world_from_object * glm::vec4(1, 0, 0, 1)), {10 - 3, 20 + 2, 30}, 1e-5F);
 }
 
@@ -129,7 +129,7 @@ TEST(GltfNodes, OrderIsTranslateRotateScale)
 
 TEST(GltfNodes, ProductsAreInDouble)
 {
-  // 16777217 is no float: in single precision the child's step back would leave 0 or 2.
+  // 16777217 is not a float. In single precision the child's translation back would leave 0 or 2.
   GltfBuilder builder = triangle_scene();
   builder.document["nodes"][0]["translation"] = {-16777216, 0, 0};
   builder.append("nodes", {{"translation", {16777217, 0, 0}}, {"children", {0}}});
@@ -331,7 +331,7 @@ TEST(GltfImport, SharedVerticesStaySharedAndUnusedOnesGo)
 
 TEST(GltfImport, MissingNormalsAreFlat)
 {
-  // Two triangles that share an edge of a roof: no vertex can keep both normals.
+  // Two triangles share the ridge of a roof. A shared vertex could not have both normals.
   GltfBuilder builder;
   const int positions = builder.positions({0, 0, 0, 0, 0, 1, 1, 1, 0, -1, 1, 0});
   const int indices = builder.accessor(std::vector<std::uint8_t>{0, 2, 1, 0, 1, 3}, Uint8, "SCALAR");
@@ -459,7 +459,7 @@ TEST(GltfAccessor, SparseWithoutBufferViewStartsFromZeros)
 
 TEST(GltfAccessor, SparseIndexAccessorWithoutBufferView)
 {
-  // tinygltf alone refuses this file.
+  // tinygltf on its own rejects this file.
   GltfBuilder builder;
   const int positions = builder.positions(triangle_positions);
   const int places = builder.view(std::vector<std::uint8_t>{1, 2});
@@ -500,7 +500,7 @@ TEST(GltfImport, MorphsSkinsAndAnimationsAreNamed)
 
 // ---- Flat facets ----
 
-/** Two triangles of a quad whose fourth corner is \a lift above the plane of the others, all with \a normal. */
+/** Two triangles of a quad whose fourth corner is \a lift above the plane of the others. All corners have \a normal. */
 Mesh import_quad(float lift, const glm::vec3 &normal)
 {
   GltfBuilder builder;
@@ -515,7 +515,7 @@ Mesh import_quad(float lift, const glm::vec3 &normal)
                      {{"attributes", {{"POSITION", positions}, {"NORMAL", normal_accessor}}}, {"indices", indices}});
 }
 
-/** The mean of the triangles' normals, which is what an exporter writes for the polygon. */
+/** The mean of the triangles' normals, which exporters write for the polygon. */
 glm::vec3 quad_normal(float lift)
 {
   const glm::vec3 diagonal = glm::vec3(0, 1, lift) - glm::vec3(1, 0, 0);
@@ -543,7 +543,7 @@ TEST(GltfImport, APlaneQuadKeepsItsVertices)
 
 TEST(GltfImport, NormalsThatWereMadeOnPurposeStay)
 {
-  // A blade of grass that is lit as the ground below it.
+  // A blade of grass with the normal of the ground below it.
   const Mesh mesh = import_quad(0.3F, {0, 1, 0});
   EXPECT_EQ(mesh.positions.size(), 4U);
   for (const glm::vec3 &normal : mesh.normals) {
@@ -553,7 +553,7 @@ TEST(GltfImport, NormalsThatWereMadeOnPurposeStay)
 
 // ---- Materials ----
 
-/** The material of an otherwise plain scene, with its warnings. */
+/** Imports a simple scene with this material. \return the material and the scene, which has its warnings. */
 std::pair<Material, Scene> import_material(json material)
 {
   GltfBuilder builder = triangle_scene();
@@ -603,7 +603,7 @@ TEST(GltfMaterial, FactorsAreRead)
 
 TEST(GltfMaterial, RefractionScalesTheReflection)
 {
-  // 1.5 reflects 0.04; 2 reflects 1/9.
+  // An index of 1.5 reflects 0.04, and 2 reflects 1/9.
   const auto with_ior = [](double ior) {
     return import_material({{"extensions", {{"KHR_materials_ior", {{"ior", ior}}}}}}).first.specular_color.x;
   };
@@ -634,7 +634,7 @@ TEST(GltfMaterial, EmissionStaysFinite)
 
 TEST(GltfMaterial, LargeWholeNumbersAreNotCut)
 {
-  // tinygltf alone keeps 32 bits of it, which are 1.
+  // tinygltf on its own keeps only 32 bits, which are 1.
   const auto [material, scene] = import_material(
       {{"extensions",
         {{"KHR_materials_specular", {{"specularFactor", 0.5}, {"specularColorFactor", {4294967297, 0, 0}}}}}}});
@@ -706,7 +706,7 @@ TEST(GltfLamp, PhotometricUnitsAreDividedBy683)
   EXPECT_EQ(sun.kind, LampKind::Sun);
   EXPECT_FLOAT_EQ(sun.intensity, 2.0F);
   EXPECT_EQ(sun.color, glm::vec3(1, 0.5F, 0.25F));
-  // A point lamp of 100 W, as Blender writes it.
+  // A point lamp of 100 W as written by Blender.
   const PlacedLamp point = import_lamp({{"type", "point"}, {"intensity", 100 * 683 / (4 * pi)}, {"range", 12.5}});
   EXPECT_EQ(point.kind, LampKind::Point);
   EXPECT_FLOAT_EQ(point.intensity, float(100 / (4 * pi)));
@@ -733,7 +733,7 @@ TEST(GltfLamp, BlendComesFromTheConesInCosines)
   EXPECT_NEAR(blend(0.3, 0.6), (std::cos(0.3) - std::cos(0.6)) / (1 - std::cos(0.6)), 1e-6);
   EXPECT_EQ(blend(0.5, 0.5), 0.0F);
   EXPECT_NEAR(blend(0, pi / 2), 1.0, 1e-6);
-  // The limit of narrow cones is 1 - (inner / outer)², which plain cosines cannot give.
+  // The limit for narrow cones is 1 - (inner / outer)², which float cosines cannot resolve.
   EXPECT_NEAR(blend(0.5e-9, 1e-9), 0.75, 1e-6);
 }
 
@@ -755,7 +755,7 @@ TEST(GltfLamp, ShadowExtrasAreAbsentOrRead)
   const scene::LampShadow none = import_lamp(point).shadow;
   EXPECT_FALSE(none.kind || none.size || none.exponent || none.bias || none.clip_start || none.clip_end ||
                none.filter_radius || none.esm_size || none.esm_format);
-  // Whole numbers as Blender writes them, both ways.
+  // Blender writes whole numbers both as integers and as floats.
   const scene::LampShadow all = import_lamp(point, {{"gnomon_shadow", "esm"},
                                                     {"gnomon_shadow_size", 1024},
                                                     {"gnomon_exponent", 80},
@@ -849,7 +849,7 @@ TEST(GltfLamp, ScaleShearAndMirrorLeaveAFrame)
   const auto frame = [](const json &more) {
     return import_lamp({{"type", "directional"}}, nullptr, more).world_from_lamp;
   };
-  // The direction of -Z is the node's own, whatever else the matrix does.
+  // The direction is the node's -Z for every matrix.
   expect_near(-glm::vec3(frame({{"scale", {5, 0.1, 3}}})[2]), {0, 0, -1});
   expect_near(-glm::vec3(frame({{"scale", {-1, 1, 1}}})[2]), {0, 0, -1});
   expect_near(-glm::vec3(frame({{"scale", {1, 1, -2}}})[2]), {0, 0, 1});
@@ -857,14 +857,14 @@ TEST(GltfLamp, ScaleShearAndMirrorLeaveAFrame)
   const glm::mat4 sheared = frame({{"matrix", {1, 0, 0, 0, 0.5, 1, 0.75, 0, 0, 3, 4, 0, 7, 8, 9, 1}}});
   expect_near(-glm::vec3(sheared[2]), {0, -0.6F, -0.8F});
   expect_near(glm::vec3(sheared[3]), {7, 8, 9});
-  // expect_valid has seen that every one is right-handed and orthonormal; so it does these, which have lost axes.
+  // expect_valid checks that each frame is right-handed and orthonormal, also for these matrices, which collapse axes.
   for (const json &scale :
        json{{0, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1e-200, 1e-200, 1e-200}}) {
     const double s = std::sqrt(0.5);
     frame({{"scale", scale}, {"rotation", {s, 0, 0, s}}});
   }
   const double s = std::sqrt(0.5);
-  // Flattened along z, the frame is what the other two axes say.
+  // Flattened along z: the frame follows from the other two axes.
   expect_near(-glm::vec3(frame({{"scale", {1, 1, 0}}, {"rotation", {s, 0, 0, s}}})[2]), {0, 1, 0});
 }
 
@@ -898,7 +898,7 @@ TEST(GltfLamp, BadValuesAreErrorsThatNameLampKeyAndValue)
   EXPECT_HAS(lamp_error(point, {{"gnomon_radius", nullptr}}), "'lamp': extra gnomon_radius is null");
   EXPECT_HAS(lamp_error(point, {{"gnomon_radius", {{"a", 1}}}}), "extra gnomon_radius is an object");
   EXPECT_HAS(lamp_error(point, {{"gnomon_radius", 1e300}}), "gnomon_radius is 1e+300");
-  // A whole number of more than 32 bits is not cut.
+  // An integer of more than 32 bits is not truncated.
   EXPECT_HAS(lamp_error(point, {{"gnomon_radius", 4294967296000000001}}), "gnomon_radius is 4.29497e+18");
   EXPECT_HAS(lamp_error(point, {{"gnomon_shadow", "soft"}}),
              "lamp 'lamp': gnomon_shadow is 'soft', and must be 'none', 'hard', 'pcf', 'esm' or 'evsm'");
@@ -1035,7 +1035,7 @@ TEST(GltfCamera, BadNumbersLeaveItOut)
   expect_left_out("orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 1}, {"zfar", 1}}, "zfar 1");
 }
 
-/** Whether every corner of \a bounds lies in the frame of a square image, between near and far. */
+/** Expects every corner of \a bounds to lie in the frame of a square image, between near and far. */
 void expect_frames(const PlacedCamera &camera, const scene::Bounds &bounds)
 {
   const glm::mat4 camera_from_world(glm::inverse(camera.world_from_camera));

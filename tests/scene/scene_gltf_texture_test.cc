@@ -20,7 +20,7 @@ std::string data_uri(const Bytes &bytes)
   return "data:image/png;base64," + base64(bytes);
 }
 
-/** Two by two texels, each of its own colour and alpha. */
+/** Two by two texels with different colours and alphas. */
 const Bytes four_texels{255, 0, 0, 255, 0, 200, 10, 128, 20, 30, 240, 64, 90, 80, 70, 0};
 
 Bytes four_texel_png()
@@ -30,7 +30,7 @@ Bytes four_texel_png()
 
 const std::vector<float> triangle_uvs{0, 0, 1, 0, 0.25F, 0.75F};
 
-/** A triangle whose material looks up texture 0, which is image 0, at TEXCOORD_0. */
+/** A triangle whose material uses texture 0 (image 0) at TEXCOORD_0. */
 GltfBuilder textured_triangle(const json &image)
 {
   GltfBuilder builder;
@@ -62,7 +62,7 @@ Image only_image(const Bytes &file)
   return scene.images().empty() ? Image() : nth(scene.images(), 0);
 }
 
-/** What is said of the texture when it cannot be drawn. */
+/** The reason in the warning about a texture that cannot be drawn. */
 std::string reason(const json &image)
 {
   const Scene scene = import(textured_triangle(image));
@@ -113,7 +113,7 @@ TEST(GltfImage, ChannelsAndDepthsAreSpreadToEightBitColourAndAlpha)
   EXPECT_EQ(only_image(image_file("png", 2, 1, 2, Bytes{7, 9, 250, 0})).texels, (Bytes{7, 7, 7, 9, 250, 250, 250, 0}));
   EXPECT_EQ(only_image(image_file("png", 2, 1, 3, Bytes{1, 2, 3, 4, 5, 6})).texels,
             (Bytes{1, 2, 3, 255, 4, 5, 6, 255}));
-  // 257 sixteen-bit steps to one of eight bits.
+  // One step of 8 bits equals 257 steps of 16 bits.
   const std::vector<std::uint16_t> deep{0, 257, 65535, 32896};
   EXPECT_EQ(only_image(image_file("png", 1, 1, 4, deep)).texels, (Bytes{0, 1, 255, 128}));
 }
@@ -139,7 +139,7 @@ TEST(GltfImage, JpegIsReadWithinItsCompression)
 TEST(GltfImage, OneThatIsUsedTwiceIsDecodedOnce)
 {
   GltfBuilder builder = textured_triangle();
-  // Another texture of it, and another image that is the same.
+  // A second texture of the same image, and a second image with the same content.
   builder.append("textures", {{"source", 0}});
   builder.append("images", builder.document["images"][0]);
   builder.append("textures", {{"source", 1}});
@@ -194,14 +194,14 @@ TEST(GltfImage, DamagedBytesImportOrAreNamed)
       for (int k = 0; k < 4; k++) {
         file[random() % (i % 2 == 0 ? 64 : file.size())] = static_cast<std::uint8_t>(random());
       }
-      // expect_valid in it holds the promises.
+      // import() calls expect_valid.
       (void)import(textured_triangle({{"uri", data_uri(file)}}));
       ASSERT_FALSE(HasFailure()) << extension << ' ' << i;
     }
   }
 }
 
-/** A PNG of a few bytes that says it is \a edge texels wide and high. */
+/** A PNG of a few bytes whose header states \a edge texels of width and height. */
 Bytes claimed_png(std::uint32_t edge)
 {
   const auto crc = [](const Bytes &bytes) {
@@ -313,14 +313,14 @@ TEST(GltfUv, TransformScalesTurnsThenMoves)
   slot(builder)["extensions"]["KHR_texture_transform"] = {
       {"offset", {10, 20}}, {"rotation", std::numbers::pi / 2}, {"scale", {2, 4}}};
   const glm::vec2 uv = uvs_of(builder).at(2);
-  // (0.25, 0.75) scaled is (0.5, 3); a quarter turn counter-clockwise to the eye, v running down, takes u to -v.
+  // (0.25, 0.75) scaled is (0.5, 3). A visual rotation by 90 degrees counter-clockwise, with v down, maps u to -v.
   EXPECT_NEAR(uv.x, 10 + 3, 1e-5);
   EXPECT_NEAR(uv.y, 20 - 0.5, 1e-5);
 }
 
 TEST(GltfUv, StayWithTheirVerticesWhenOthersAreLeftOut)
 {
-  // Vertex 0 is used by no triangle, and the second triangle has no area.
+  // No triangle uses vertex 0, and the second triangle has no area.
   const std::vector<float> positions{9, 9, 9, 0, 0, 0, 1, 0, 0, 0, 1, 0, 2, 0, 0};
   const std::vector<float> uvs{9, 9, 0.1F, 0, 0.2F, 0, 0.3F, 0, 0.4F, 0};
   const std::vector<float> normals{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What glslang says of a shader's blocks, what the driver says, and what C++ writes into them.
+// The layout of a shader's blocks agrees between glslang, the driver and C++.
 #include "eevee_blocks.hh"
 #include "eevee_shaders.hh"
 #include "gpu_device_fixture.hh"
@@ -20,7 +20,7 @@ namespace {
 using gpu::BindingKind;
 using Offsets = std::map<std::string, int>;
 
-/** A variant compiled by the driver of the current context, from the text that glslang is given. */
+/** A variant compiled by the driver of the current context from the same text that glslang compiles. */
 class DriverProgram {
  public:
   explicit DriverProgram(const std::vector<gpu::ShaderSource> &stages) : program_(glCreateProgram())
@@ -67,7 +67,7 @@ class DriverProgram {
     int size_bytes = 0;
     Offsets offsets;
   };
-  /** By name. */
+  /** The blocks, by name. */
   [[nodiscard]] std::map<std::string, Block> blocks(BindingKind kind) const
   {
     const bool is_uniform = kind == BindingKind::UniformBlock;
@@ -95,7 +95,7 @@ class DriverProgram {
     return blocks;
   }
 
-  /** The texture slots by name of sampler. */
+  /** The texture slots, by the name of the sampler. */
   [[nodiscard]] std::map<std::string, int> textures() const
   {
     std::map<std::string, int> textures;
@@ -125,7 +125,7 @@ class DriverProgram {
     glGetProgramResourceName(program_, interface, index, name.size(), nullptr, name.data());
     return name.data();
   }
-  /** A member's name as gpu::ShaderInterface has it; empty for what is not in an array's first element. */
+  /** A member's name in the form of gpu::ShaderInterface; empty for members outside the first element of an array. */
   static std::string reflected_name(const std::string &block, std::string name)
   {
     if (name.starts_with(block + ".")) {
@@ -157,7 +157,7 @@ Offsets offsets_of(const std::vector<gpu::ShaderInterface::Member> &members)
 
 class DriverAgreement : public test::GpuDeviceTest {
  protected:
-  /** Calls \a check for every variant, with both views of it. */
+  /** Calls \a check for every variant, with the interfaces of glslang and of the driver. */
   template <typename Check>
   void for_each_variant(Check &&check)
   {
@@ -196,7 +196,7 @@ TEST_F(DriverAgreement, BlocksHaveTheSameSlotSizeAndOffsets)
     declared.insert(name);
     const auto found = blocks.find(name);
     if (found == blocks.end()) {
-      // Of no use to this variant; another one must use it.
+      // This variant does not use it. Another variant must.
       return;
     }
     compared.insert(name);
@@ -253,7 +253,7 @@ TEST_F(DriverAgreement, BlocksAreThoseOfCpp)
           continue;
         }
         seen.insert(layout->name);
-        // Arrays without a size count as one element.
+        // Arrays without a size are reported with one element.
         EXPECT_EQ(std::size_t(block.size_bytes), layout->size_bytes) << name;
         Offsets offsets;
         for (const auto &field : layout->fields) {

@@ -34,7 +34,7 @@ TEST(RectangleSolidAngle, IsTheSumOfItsParts)
         sum += double(rectangle_solid_angle(center + i * unit_x + j * unit_y, 0.5F * unit_x, 0.5F * unit_y));
       }
     }
-    // At the smaller heights the corners' roundings are the larger part: 1e-7 m at 1e-4 m from the rim.
+    // At small heights the rounding of the corners dominates: 1e-7 m at a distance of 1e-4 m from the rim.
     EXPECT_NEAR(rectangle_solid_angle(center, unit_x, unit_y), sum, 1e-6 + 1e-6 * sum) << center.z;
   }
 }
@@ -45,7 +45,7 @@ TEST(RectangleSolidAngle, FarAwayIsAreaOverSquaredDistance)
   for (const float distance : {1e3F, 1e5F, 1e7F}) {
     const vec3 center = distance * direction;
     const double expected = 4.0 * double(direction.z) / (double(distance) * double(distance));
-    // A few roundings; the next term of the series is 1 / distance², 1e-6 of the whole at 1 km.
+    // A few roundings. The next term of the series is 1 / distance², a relative 1e-6 at 1 km.
     EXPECT_NEAR(rectangle_solid_angle(center, unit_x, unit_y) / expected, 1.0, 2e-6) << distance;
   }
 }
@@ -55,7 +55,7 @@ TEST(RectangleSolidAngle, GrowsToAHalfSpaceOnApproach)
   float before = 0.0F;
   for (float height = 1e6F; height > 1e-30F; height *= 0.5F) {
     const float angle = rectangle_solid_angle({0.25F, -0.5F, height}, unit_x, unit_y);
-    // Where it is 2π to the last digits, only these may change.
+    // Close to 2π, only the last digits may change.
     ASSERT_GE(angle, before * (1.0F - 2e-7F)) << height;
     before = angle;
   }
@@ -71,7 +71,7 @@ TEST(RectangleSolidAngle, IsAHalfSpaceToAnEyeThatTouches)
   }
 }
 
-// hazards.md: behind the horizon. The lamp's side and the receiver's horizon are the caller's.
+// hazards.md: behind the horizon. The caller handles the lamp's side and the receiver's horizon.
 TEST(RectangleSolidAngle, IsTheSameFromBothSidesAndWhicheverWayItsAxesPoint)
 {
   const vec3 center(0.3F, -1.7F, 0.4F);
@@ -109,7 +109,7 @@ TEST(RectangleSolidAngle, StaysInRangeOnTheRimAndForSkewedAxes)
   }
 }
 
-/** The angles between the planes through the edges, less 2π: as in the seed. */
+/** The sum of the angles between the planes through the edges, minus 2π: the naive form. */
 float naive_solid_angle(const std::array<vec3, 4> &corner)
 {
   float sum = -2.0F * float(pi);
@@ -121,7 +121,7 @@ float naive_solid_angle(const std::array<vec3, 4> &corner)
   return sum;
 }
 
-// What the tests above would see.
+// The tests above detect the naive form.
 TEST(RectangleSolidAngle, NaivelyIsNoNumberEdgeOnAndNoiseFarAway)
 {
   const auto corners = [](const vec3 &center) {

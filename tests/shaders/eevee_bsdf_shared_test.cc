@@ -9,14 +9,14 @@
 namespace gnomon::shared {
 namespace {
 
-/** Integral of f(cos θ) · cos θ over the hemisphere, by the midpoint rule in sin² θ, refined where f peaks. */
+/** Integral of f(cos θ) · cos θ over the hemisphere, by the midpoint rule in sin² θ, refined at the peak of f. */
 template <typename F>
 double hemisphere_integral(F &&f)
 {
   constexpr int count = 400000;
   double sum = 0.0;
   for (int i = 0; i < count; i++) {
-    // t = s⁴ puts most points near the pole.
+    // t = s⁴ places most points near the pole.
     const double s = (i + 0.5) / count;
     const double sin_sq = s * s * s * s;
     sum += f(std::sqrt(1.0 - sin_sq)) * 4.0 * s * s * s / count;
@@ -26,10 +26,10 @@ double hemisphere_integral(F &&f)
 
 TEST(GgxDistribution, ProjectsToOne)
 {
-  // Walter et al. 2007, eq. 4: the projected area of the microfacets is that of the surface.
+  // Walter et al. 2007, eq. 4: the projected area of the microfacets equals that of the surface.
   for (const float alpha : {0.01F, 0.0625F, 0.3F, 0.7225F, 1.0F}) {
     const double area = hemisphere_integral([&](double c) { return double(ggx_distribution(float(c), alpha)); });
-    // Floats near cos = 1 limit narrow lobes: measured 4e-4 at alpha 0.01.
+    // The float resolution near cos = 1 limits narrow lobes. Measured error: 4e-4 at alpha 0.01.
     EXPECT_NEAR(area, 1.0, alpha < 0.05F ? 2e-3 : 1e-4) << "alpha " << alpha;
   }
 }
@@ -41,7 +41,7 @@ TEST(GgxLobe, IsReciprocal)
 
 TEST(GgxLobe, ReflectsNoMoreThanItReceives)
 {
-  // Directional albedo by quadrature over the light's directions, for a viewer at cos_v.
+  // Directional albedo for a viewer at cos_v, by quadrature over the directions of the light.
   constexpr int count = 512;
   for (const float alpha : {0.1F, 0.4F, 1.0F}) {
     for (const double cos_v : {0.1, 0.5, 0.95}) {

@@ -42,7 +42,7 @@ TEST(DepthOfDistance, IsOneAtTheNearPlaneAndZeroAtTheFar)
       for (const int kind : kinds) {
         EXPECT_EQ(depth_of_distance(near, near, far, kind), 1.0F);
         EXPECT_EQ(depth_of_distance(far, near, far, kind), kind == PROJECTION_PERSPECTIVE_INFINITE ? near / far : 0.0F);
-        // In parallel projection a difference of distances as large as the far plane's.
+        // An orthographic depth is a difference of distances of the magnitude of the far plane.
         const float tolerance = 3e-7F * (kind == PROJECTION_ORTHOGRAPHIC ? far : near);
         EXPECT_NEAR(distance_of_depth(1.0F, near, far, kind), near, tolerance);
       }
@@ -62,7 +62,7 @@ TEST(DepthOfDistance, FallsWithDistanceAndComesBack)
       const float depth = depth_of_distance(distance, near, far, kind);
       ASSERT_LE(depth, before);
       before = depth;
-      // Relative roundings in perspective; those of the far plane's distance in parallel projection.
+      // Rounding relative to the distance in perspective, and relative to the far plane in orthographic projection.
       const float tolerance = 1e-6F * (kind == PROJECTION_ORTHOGRAPHIC ? far : distance);
       ASSERT_NEAR(distance_of_depth(depth, near, far, kind), distance, tolerance) << kind;
     }

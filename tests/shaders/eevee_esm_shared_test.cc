@@ -16,7 +16,7 @@
 namespace gnomon::shared {
 namespace {
 
-/** As many as the prefilter takes. */
+/** Number of taps of the prefilter. */
 constexpr int tap_count = 32;
 
 float filtered(const std::vector<float> &values, float exponent)
@@ -58,7 +58,7 @@ TEST(LogSum, IsFiniteAndBetweenItsValuesAtAnySpreadAndExponent)
         const float result = filtered(values, exponent);
         ASSERT_TRUE(std::isfinite(result)) << exponent << " " << spread;
         const auto [low, high] = std::ranges::minmax(values);
-        // 32 sums of about 1 are off by 1e-6 at most, and the logarithm of that is divided by the exponent.
+        // 32 sums of about 1 have an error of at most 1e-6. Its logarithm is divided by the exponent.
         const float rounding = 1e-6F / exponent + 1e-7F * high;
         ASSERT_GE(result, low - rounding) << exponent << " " << spread;
         ASSERT_LE(result, high + rounding) << exponent << " " << spread;
@@ -67,7 +67,7 @@ TEST(LogSum, IsFiniteAndBetweenItsValuesAtAnySpreadAndExponent)
   }
 }
 
-// design.md: exact to 1e-4 m at 1 km.
+// Promise: an error of at most 1e-4 m at 1 km.
 TEST(LogSum, Of32TapsIsExactToATenthOfAMillimetreAtAKilometre)
 {
   for (float exponent = 0.1F; exponent <= 1.01e4F; exponent *= 10.0F) {
@@ -91,7 +91,7 @@ TEST(LogSum, IsTheSameInAnyOrderAndAtAnyDistance)
   for (float &value : values) {
     value += 16.0F;
   }
-  // Roundings of numbers up to 32.
+  // Rounding of numbers up to 32.
   EXPECT_NEAR(filtered(values, 80.0F), once + 16.0F, 4e-6F);
 }
 
@@ -102,14 +102,13 @@ TEST(LogSum, OfEqualValuesIsTheirs)
   }
 }
 
-/** A tap more, as in the seed: the running value is subtracted, not the larger one, and the exponent is not in the sum.
- */
+/** Adds a tap in the naive form: it subtracts the running value instead of the larger one, and has no exponent. */
 float naive_sum(float weight_x, float x, float weight_y, float y)
 {
   return x + std::log(weight_x + weight_y * std::exp(y - x));
 }
 
-// hazards.md: what the tests above would see.
+// hazards.md: the tests above detect the naive form.
 TEST(LogSum, NaivelyIsInfiniteFrom89MetresOfSpread)
 {
   const float weight = 1.0F / tap_count;
@@ -132,7 +131,7 @@ TEST(EsmVisibility, NaivelyIsInfiniteFrom18MetresAndOursIsNot)
   EXPECT_EQ(std::exp(5.0F * 17.75F), std::numeric_limits<float>::infinity());
   EXPECT_NEAR(naive(17.0F, 17.2F), std::exp(-1.0F), 1e-4F);
   EXPECT_EQ(naive(18.0F, 18.2F), 1.0F) << "lit in the shadow";
-  // 18.2 - 18 is off by a rounding of 18, a millionth, which the exponent multiplies.
+  // 18.2 - 18 has the rounding error of 18, about 1e-6, and the exponent multiplies it.
   EXPECT_NEAR(esm_visibility(5.0F, 18.0F, 18.2F), std::exp(-1.0F), 4e-6F);
 }
 
@@ -207,7 +206,7 @@ TEST(EsmCone, HasOneAngleAllOverTheMapAndNaivelyHasNot)
         ASSERT_NEAR(glm::length(direction), 1.0F, 3e-7F);
         ASSERT_NEAR(glm::length(glm::cross(axis, direction)), std::sin(angle), 3e-7F);
       }
-      // The seed's: a fixed offset from a vector whose length is 1 / √3 to 1.
+      // The naive form: a fixed offset from a vector whose length is between 1 / √3 and 1.
       const float length = 1.0F / (std::abs(axis.x) + std::abs(axis.y) + std::abs(axis.z));
       const float naive = std::atan(angle / length);
       low = std::min(low, naive);
@@ -241,7 +240,8 @@ TEST(EsmBias, IsFiniteAndGrowsWithDistanceTiltAndTexel)
 
 TEST(EsmGathered, BlendsVisibilitiesAndNotDistances)
 {
-  // A near texel beside one without a caster: lit by the share of the second, and not dark nearly up to its middle.
+  // A near texel beside an empty one: visibility equals the weight of the empty texel, and is not dark almost up to its
+  // centre.
   const vec4 stored(100.0F, 100.0F, 100.0F, 1.0F);
   for (const float fraction : {0.0F, 0.25F, 0.75F, 1.0F}) {
     EXPECT_NEAR(esm_gathered_visibility(10.0F, stored, 50.0F, vec2(fraction, 0.0F)), fraction, 1e-6F);

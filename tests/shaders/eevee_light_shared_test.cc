@@ -38,12 +38,12 @@ TEST(SpotMask, IsFiniteAndMonotoneForEveryAngleAndBlend)
 
 TEST(SpotMask, OfNarrowConesIsAsOfWideOnes)
 {
-  // Halfway through a blend of 1, however narrow the cone; the cosines of these angles are 1 in float.
+  // The middle of a blend of 1, for narrow cones. The cosines of these angles are 1 in float.
   for (const double angle : {1e-6, 1e-5, 1e-4, 1e-3, 0.1}) {
     const auto unit = [](double a) { return vec3(float(std::sin(a)), 0.0F, float(std::cos(a))); };
     const double sine = std::sin(0.5 * angle);
     const auto drop_outer = float(2.0 * sine * sine);
-    // 1 - cos is half of the outer one's where the angle is √½ of it.
+    // 1 - cos is half of its outer value at √½ of the outer angle.
     const float drop = cosine_drop(unit(0.0), unit(std::sqrt(0.5) * angle));
     EXPECT_NEAR(spot_mask(drop, drop_outer, spot_inv_width(drop_outer, 1.0F)), 0.5F, 1e-3F) << angle;
   }
@@ -67,7 +67,7 @@ TEST(DistanceFalloff, EndsAtTheRange)
 
 TEST(HemiIrradiance, IsTheShareOfTheSkyAboveTheHorizon)
 {
-  // Cosine-weighted share of a half-space of directions seen from a plane tilted by t, by quadrature.
+  // Cosine-weighted fraction of the sky that a plane tilted by t sees, by quadrature.
   for (const double tilt : {0.0, 0.7, std::numbers::pi / 2.0, 2.5, std::numbers::pi}) {
     constexpr int count = 700;
     double sum = 0.0;

@@ -17,7 +17,7 @@ vec3 round_trip(const vec3 &v)
   return octahedral_to_direction(octahedral_from_direction(v));
 }
 
-/** Between unit vectors, radians. */
+/** Angle between two unit vectors, radians. */
 float angle(const vec3 &a, const vec3 &b)
 {
   return 2.0F * std::asin(std::min(0.5F * glm::distance(a, b), 1.0F));
@@ -65,7 +65,7 @@ TEST(Octahedral, RoundTripIsExactOnDiagonalsButForThirds)
 {
   for (int i = 0; i < 8; i++) {
     const vec3 v(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
-    // 1/3 is no float: a rounding, which the coordinate's sum with 1/2 makes one of 1.
+    // 1/3 is not a float. Its rounding error becomes that of a number near 1 when 1/2 is added.
     const vec3 back = round_trip(v);
     EXPECT_EQ(std::abs(back.x), std::abs(back.y));
     EXPECT_LE(angle(back, glm::normalize(v)), 3e-7F);
@@ -83,7 +83,8 @@ TEST(Octahedral, RoundTripOfDirectionsIsWithinRounding)
     ASSERT_NEAR(glm::length(back), 1.0F, 2e-7F);
     worst = std::max(worst, angle(back, v));
   }
-  // Coordinates near 1 are rounded to 6e-8, which is twice that on the octahedron and three times more on the sphere.
+  // Coordinates near 1 are rounded to 6e-8. The error is twice that on the octahedron, and three times more on the
+  // sphere.
   EXPECT_LE(worst, 4e-7F);
 }
 
@@ -115,7 +116,7 @@ TEST(Octahedral, DirectionToTexelAndBackIsWithinATexel)
       for (const vec2 half : {vec2(-0.5F, -0.5F), vec2(0.5F, -0.5F), vec2(-0.5F, 0.5F), vec2(0.5F, 0.5F)}) {
         corner = std::max(corner, angle(back, octahedral_to_direction((vec2(texel) + 0.5F + half) / float(size))));
       }
-      // No farther from its middle than the texel's corners; and those are near.
+      // The error is at most the distance from the texel's centre to its corners.
       ASSERT_LE(angle(v, back), corner * 1.001F) << size;
       ASSERT_LE(corner, 1.25F * octahedral_texel_angle(back, size)) << size;
     }
@@ -157,7 +158,7 @@ TEST(Octahedral, CornersAreMinusZAndEdgesMeetThemselvesReversed)
   }
 }
 
-/** With GLSL's sign(), which is 0 at 0. */
+/** The naive form with GLSL's sign(), which is 0 at 0. */
 vec2 naive_from_direction(vec3 v)
 {
   v /= std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
@@ -168,7 +169,7 @@ vec2 naive_from_direction(vec3 v)
   return 0.5F * p + 0.5F;
 }
 
-// What the tests above would see.
+// The tests above detect the naive form.
 TEST(Octahedral, NaivelyLosesTheFoldAndTheZeroVector)
 {
   EXPECT_GT(angle(octahedral_to_direction(naive_from_direction({1, 0, -1})), glm::normalize(vec3(1, 0, -1))), 0.7F);
@@ -191,7 +192,7 @@ TEST(OctahedralTexel, OutsideIsTheNeighbourOnTheSphere)
     const auto direction = [&](const ivec2 &texel) {
       return octahedral_to_direction((vec2(texel) + 0.5F) / float(size));
     };
-    // The widest step between neighbours inside.
+    // The largest step between neighbours in the interior.
     float widest = 0.0F;
     for (int y = 0; y < size; y++) {
       for (int x = 0; x + 1 < size; x++) {
@@ -207,7 +208,7 @@ TEST(OctahedralTexel, OutsideIsTheNeighbourOnTheSphere)
         const ivec2 texel = octahedral_texel(outside, size);
         EXPECT_TRUE(texel.x >= 0 && texel.x < size && texel.y >= 0 && texel.y < size);
         EXPECT_LE(angle(direction(inside), direction(texel)), widest * 1.0001F) << outside.x << " " << outside.y;
-        // The edge lies on a plane of symmetry, over which the map goes on.
+        // The edge lies on a plane of symmetry. The map continues mirrored at it.
         vec3 mirrored = direction(inside);
         mirrored[inside.x == outside.x ? 0 : 1] *= -1.0F;
         EXPECT_LE(angle(mirrored, direction(texel)), 5e-7F) << outside.x << " " << outside.y;

@@ -19,19 +19,19 @@ TEST(TexelsLit, AreThoseThatAreNotNearer)
   const vec4 receiver(0.5F);
   EXPECT_EQ(texels_lit(vec4(0.4F), receiver), vec4(1.0F));
   EXPECT_EQ(texels_lit(vec4(0.6F), receiver), vec4(0.0F));
-  // Equally near is lit: reversed depth, greater or equal.
+  // A receiver at the stored depth is lit (reversed depth: greater or equal).
   EXPECT_EQ(texels_lit(receiver, receiver), vec4(1.0F));
 }
 
 TEST(WeightedTexels, TakeThoseOfTheGathersOrder)
 {
-  // Only the right upper texel (second of the gather) lets light through: 0.3 of the columns, 0.6 of the rows.
+  // Only the upper right texel (second of the gather) is lit: weight 0.3 of the columns and 0.6 of the rows.
   EXPECT_FLOAT_EQ(weighted_texels({0, 1, 0, 0}, {0.7F, 0.3F}, {0.4F, 0.6F}), 0.18F);
 }
 
 TEST(VogelDisk, CoversTheDiskEvenly)
 {
-  // Mean of the squared radius over a disk of radius 1 is a half; the mean position its middle.
+  // Over the unit disk, the mean of the squared radius is 1/2 and the mean position is the centre.
   vec2 mean(0.0F);
   float mean_square = 0.0F;
   constexpr int count = 32;
@@ -47,7 +47,7 @@ TEST(VogelDisk, CoversTheDiskEvenly)
 
 TEST(CubeFace, LooksAlongItsLargestComponent)
 {
-  // Ties go to the earlier axis; a face looks at what is in front of it.
+  // Ties go to the earlier axis. A face has z above 0 for directions in front of it.
   EXPECT_EQ(cube_face({1, 1, 1}), 0);
   EXPECT_EQ(cube_face({-1, 1, 1}), 1);
   EXPECT_EQ(cube_face({0, -2, 2}), 3);

@@ -17,7 +17,7 @@ using measure::Deviation;
 using measure::Sweep;
 using measure::sweeps;
 
-/** A pixel for each of a sweep's arguments. */
+/** Evaluates a function on the device, with one pixel for each argument of a sweep. */
 class SharedFunctionGpu : public GpuDeviceTest, public testing::WithParamInterface<std::size_t> {
  protected:
   static constexpr int width_px = 256;
@@ -27,7 +27,7 @@ class SharedFunctionGpu : public GpuDeviceTest, public testing::WithParamInterfa
     return sweeps()[GetParam()];
   }
 
-  /** What the driver makes of \a expression, of the vectors a, b and c. */
+  /** Results of \a expression on the device. It may use the vectors a, b and c. */
   std::vector<glm::dvec4> results(std::string_view expression) const
   {
     const auto count = sweep().arguments.size();
@@ -100,7 +100,7 @@ TEST_P(SharedFunctionGpu, EqualsItsClosedForm)
   RecordProperty("epsilons", fmt::format("{:.3g}", worst.epsilons));
   EXPECT_LE(worst.epsilons, sweep().driver_epsilons) << worst.where;
 
-  // And so C++'s results, which are as near to the truth, cannot be farther off than both together. For the record:
+  // The C++ result has a bound too, so the difference is at most the sum of both. It is recorded for information.
   double difference = 0.0;
   for (std::size_t i = 0; i < values.size(); i++) {
     const Arguments<float> &in = sweep().arguments[i];

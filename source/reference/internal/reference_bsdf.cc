@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
-// From here on `float` is double.
+// This header defines `float` as double, so it must come last.
 #define SHARED_DOUBLE
 #include "eevee_bsdf_shared.h"
 
@@ -32,7 +32,7 @@ glm::dvec3 reflected(const Bsdf &bsdf, const glm::dvec3 &normal, const glm::dvec
   const glm::dvec3 sum = to_light + view;
   const double length = glm::length(sum);
   const glm::dvec3 half_vector = length > 0.0 ? sum / length : normal;
-  // An interpolated normal may be turned from the viewer.
+  // An interpolated normal may face away from the viewer.
   const double cos_v = std::clamp(glm::dot(normal, view), 0.0, 1.0);
   const double cos_h = std::clamp(glm::dot(normal, half_vector), 0.0, 1.0);
   const glm::dvec3 fresnel = shared_double::fresnel_schlick(bsdf.f0, bsdf.f90, glm::dot(view, half_vector));

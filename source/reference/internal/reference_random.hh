@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-/** Numbers that depend on what they are for and on nothing else: not on the order of work, nor on threads. */
+/** Random numbers that depend only on their key, not on the order of work or on threads. */
 namespace gnomon::reference {
 
 /** SplitMix64's output function (Steele, Lea and Flood 2014). */
@@ -18,12 +18,13 @@ namespace gnomon::reference {
   return x ^ (x >> 31U);
 }
 
-/** In [0, 1). */
+/** Maps \a bits to [0, 1). */
 [[nodiscard]] inline double fraction(std::uint64_t bits)
 {
   return double(bits >> 11U) * 0x1p-53;
 }
 
+/** The fractional part of \a x, in [0, 1). */
 [[nodiscard]] inline double fraction(double x)
 {
   const double part = x - std::floor(x);
@@ -31,8 +32,8 @@ namespace gnomon::reference {
 }
 
 /**
- * The \a index-th point of an endless sequence that fills the unit square evenly, however many are taken (Roberts 2018:
- * multiples of the plastic number's inverse and its square), shifted by \a key.
+ * Point \a index of an infinite sequence of which every prefix fills the unit square evenly (Roberts 2018: multiples of
+ * the inverse of the plastic number and of its square), shifted by \a key.
  */
 [[nodiscard]] inline glm::dvec2 even_point(int index, std::uint64_t key)
 {

@@ -11,7 +11,7 @@ namespace gnomon::reference {
 
 namespace {
 
-/** IEC 61966-2-1, of bytes. */
+/** Table of the sRGB decoding (IEC 61966-2-1) for bytes. */
 std::array<double, 256> make_decoded_srgb()
 {
   std::array<double, 256> decoded{};
@@ -22,7 +22,7 @@ std::array<double, 256> make_decoded_srgb()
   return decoded;
 }
 
-/** Which of \a size texels stands at \a place, counted from the first. */
+/** Index of the texel at \a place, an integer counted from the first of \a size texels. */
 std::uint32_t wrapped(double place, std::uint32_t size, scene::TextureWrap wrap)
 {
   const double count = size;
@@ -34,7 +34,7 @@ std::uint32_t wrapped(double place, std::uint32_t size, scene::TextureWrap wrap)
       place = place < count ? place : 2.0 * count - 1.0 - place;
       break;
   }
-  // A place so far out that it is no whole number any more.
+  // For large values, `place` may not be an exact integer in this range.
   return std::uint32_t(std::clamp(place, 0.0, count - 1.0));
 }
 

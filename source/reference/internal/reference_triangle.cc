@@ -33,7 +33,7 @@ std::optional<glm::dvec3> line_triangle(const ShearedRay &ray, const Corners &co
     return std::nullopt;
   }
   const double sum = u + v + w;
-  // Edge-on, or too small to have an area: nothing is covered.
+  // The triangle is edge-on, or its area underflows: it covers nothing.
   if (sum == 0.0 || !std::isfinite(sum)) {
     return std::nullopt;
   }
@@ -56,7 +56,7 @@ double TrianglePlane::height(const glm::dvec3 &p) const
 
 double TrianglePlane::height_error(const glm::dvec3 &p, double error_m) const
 {
-  // Subtractions, a cross and a dot product: fewer than 16 roundings in a row.
+  // Subtractions, a cross product and a dot product: fewer than 16 successive roundings.
   return normal_length * error_m + 16.0 * double_rounding * edge_product * glm::length(p - point);
 }
 

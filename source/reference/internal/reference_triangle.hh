@@ -8,18 +8,18 @@
 
 namespace gnomon::reference {
 
-/** Half the distance from 1 to the next double: the relative error of one rounded operation. */
+/** Half the spacing of doubles at 1: the largest relative error of one rounded operation. */
 inline constexpr double double_rounding = 0x1p-53;
 
 /**
- * A ray made ready for the test against many triangles: Woop, Benthin and Wald 2013, "Watertight Ray/Triangle
- * Intersection", in double. An edge that two triangles share is judged by the same numbers for both, so
- * that no ray slips between them.
+ * A ray prepared for intersection with many triangles: Woop, Benthin and Wald 2013, "Watertight Ray/Triangle
+ * Intersection", in double. An edge that two triangles share is evaluated with the same numbers for both, so that no
+ * ray passes between them.
  */
 struct ShearedRay {
   glm::dvec3 origin{0.0};
   glm::dvec3 direction{0.0};
-  /** Axis along which the direction is longest, and the two others. */
+  /** Axis of the largest component of the direction (z), and the two other axes. */
   int z = 2;
   int x = 0;
   int y = 1;
@@ -32,24 +32,27 @@ struct ShearedRay {
 
 using Corners = std::array<glm::dvec3, 3>;
 
-/** Weights of the corners where the ray's line, either way, meets the triangle; an edge belongs to it. */
+/**
+ * Barycentric weights of the intersection of the ray's line, in both directions, with a triangle. Edges belong to the
+ * triangle. Empty if there is no intersection.
+ */
 [[nodiscard]] std::optional<glm::dvec3> line_triangle(const ShearedRay &ray, const Corners &corners);
 
-/** The plane of a triangle, and how far rounding may have moved it. */
+/** The plane of a triangle, with the error of its position due to rounding. */
 struct TrianglePlane {
-  /** Not of unit length: twice the area. */
+  /** Its length is twice the area. */
   glm::dvec3 normal{0.0};
   double normal_length = 0.0;
   glm::dvec3 point{0.0};
-  /** Product of the two edges' lengths that the normal was made of. */
+  /** Product of the lengths of the two edges that the normal was computed from. */
   double edge_product = 0.0;
 
   explicit TrianglePlane(const Corners &corners);
-  /** Distance of \a p times the normal's length. */
+  /** Signed distance of \a p from the plane, times the length of the normal. */
   [[nodiscard]] double height(const glm::dvec3 &p) const;
   /**
-   * Below it, a height of \a p is 0 as far as anyone can tell. \a error_m: how far \a p and the triangle's corners
-   * may be from where they should, in all.
+   * Error bound of height(). A height of \a p below it is indistinguishable from 0. \a error_m: sum of the largest
+   * errors of \a p and of the triangle's corners, metres.
    */
   [[nodiscard]] double height_error(const glm::dvec3 &p, double error_m) const;
 };
