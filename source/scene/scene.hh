@@ -51,6 +51,8 @@ struct Image {
   std::uint32_t height = 0;
   /** 4 · width · height; rows from the top, which is where v is 0. */
   std::vector<std::uint8_t> texels;
+  /** To be incremented after an edit of the texels between two syncs, so that engines take the image anew. */
+  std::uint64_t revision = 0;
 };
 
 enum class TextureWrap { Repeat, MirroredRepeat, ClampToEdge };

@@ -90,7 +90,7 @@ State culled_state(CasterFaces faces)
   }
 }
 
-/** What makes a caster's shadow, as plain numbers. */
+/** Hash of everything that a caster's shadow depends on. */
 std::uint64_t caster_fingerprint(const draw::ObjectRef &object, std::uint32_t mesh_index, const scene::Mesh &mesh,
                                  const scene::Scene &scene)
 {
@@ -98,22 +98,35 @@ std::uint64_t caster_fingerprint(const draw::ObjectRef &object, std::uint32_t me
   struct {
     glm::mat4 world_from_object;
     std::uint64_t revision;
+    std::uint64_t image_revision;
     std::uint32_t mesh_index;
     std::uint32_t is_double_sided;
     std::int32_t mask;
     std::uint32_t image;
-    std::uint32_t wrap_u;
-    std::uint32_t wrap_v;
+    std::array<std::uint32_t, 5> lookup;
     float alpha;
     float alpha_cutoff;
-  } key = {object.world_from_object, mesh.revision, mesh_index, material.is_double_sided ? 1U : 0U, -2, 0, 0, 0, 0, 0};
+    std::uint32_t padding;
+  } key = {.world_from_object = object.world_from_object,
+           .revision = mesh.revision,
+           .image_revision = 0,
+           .mesh_index = mesh_index,
+           .is_double_sided = material.is_double_sided ? 1U : 0U,
+           .mask = -2,
+           .image = 0,
+           .lookup = {},
+           .alpha = 0.0F,
+           .alpha_cutoff = 0.0F,
+           .padding = 0};
+  static_assert(sizeof(key) == sizeof(glm::mat4) + 2 * 8 + 12 * 4, "a hole would make the hash depend on chance");
   if (is_masked(material)) {
     key.mask = material.base_color_texture;
     if (key.mask >= 0) {
       const scene::Texture &texture = scene.textures[std::size_t(key.mask)];
       key.image = texture.image;
-      key.wrap_u = std::uint32_t(texture.wrap_u);
-      key.wrap_v = std::uint32_t(texture.wrap_v);
+      key.image_revision = scene.images[texture.image].revision;
+      key.lookup = {std::uint32_t(texture.wrap_u), std::uint32_t(texture.wrap_v), std::uint32_t(texture.magnified),
+                    std::uint32_t(texture.minified), std::uint32_t(texture.mip)};
     }
     key.alpha = material.alpha;
     key.alpha_cutoff = material.alpha_cutoff;
@@ -188,7 +201,8 @@ void Engine::cache_init(draw::Viewport &viewport)
   stl.batches.resize(scene_.meshes.size());
 
   stl.lamps = make_lamps(scene_);
-  stl.shadows.sync(viewport.device().limits(), scene_, stl.lamps, settings_.shadow);
+  stl.shadows.sync(viewport.device().limits(), shadow_lamps(scene_, stl.lamps), scene_.bounds(), stl.lamps.light_block,
+                   settings_.shadow);
   stl.features = stl.lamps.features | stl.shadows.features();
   stl.tinted_light = settings_.has_cascade_tint ? first_sun_with_maps(stl.lamps) : std::nullopt;
   stl.film_weight_sum = film_weight_sum(settings_.sample_count, settings_.seed);
@@ -466,6 +480,7 @@ void Engine::draw_sample(draw::Viewport &viewport, const draw::View &view, const
     if (!list.commands().empty()) {
       timed(settings_.is_timed, device, timing, "shadows", [&] { device.submit(list); });
     }
+    stl.shadows.submitted();
   }
   if (!is_depth_first) {
     draw_depth();
@@ -513,6 +528,7 @@ std::optional<Probe> Engine::probe(draw::Viewport &viewport, const draw::View &v
   psl->probe_pass.record(view, list);
   list.end_pass();
   device.submit(list);
+  stl.shadows.submitted();
   return Probe{gpu::read_as<glm::vec4>(device, txl.probe_position), gpu::read_as<glm::vec4>(device, txl.probe_normal)};
 }
 

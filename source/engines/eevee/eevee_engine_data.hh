@@ -3,7 +3,7 @@
 
 #include "eevee_debug.hh"
 #include "eevee_lamps.hh"
-#include "eevee_shadows.hh"
+#include "shadows/shadows.hh"
 #include "eevee_textures.hh"
 
 #include "draw_viewport.hh"
