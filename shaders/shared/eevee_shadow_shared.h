@@ -23,7 +23,7 @@ struct ShadowCubeData {
   float texel_size;
   /** Scales the derived lift: 1 is derived, 0 none. */
   float bias;
-  /** 6 · index. */
+  /** The first of six. */
   int layer;
   /** Bit i: face i was drawn; into the others nothing casts. */
   int face_mask;

@@ -2,11 +2,13 @@
 // What an edit of the scene draws again: only the layers whose texels it changes.
 #include "eevee_shadow_fixture.hh"
 
+#include "eevee_test_scene.hh"
 #include "shadows/shadow_octahedral.hh"
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include <bit>
+#include <cmath>
+#include <map>
 
 namespace gnomon::eevee {
 namespace {
@@ -69,12 +71,12 @@ TEST_F(ShadowEditsTest, ALampThatComesOrGoesDrawsNoOtherAgain)
   add_lamps();
   drawn_layers();
   const auto places = [&] {
-    std::map<std::uint64_t, int> places;
+    std::map<std::uint64_t, int> first_layers;
     for (int i = 0; i < lamps.light_block.light_count; i++) {
       const shared::LightData &light = lamps.light_block.lights[i];
-      places[keys[lamps.scene_index[std::size_t(i)]]] = shadows.layers(light)->first_layer;
+      first_layers[keys[lamps.scene_index[std::size_t(i)]]] = shadows.layers(light)->first_layer;
     }
-    return places;
+    return first_layers;
   };
   for (std::size_t i = 0; i < 8; i++) {
     const auto before = places();
@@ -107,10 +109,12 @@ TEST_F(ShadowEditsTest, AShadowOfAnotherSizeMovesNoTexelsOfTheOthers)
 TEST_F(ShadowEditsTest, AnotherNumberOfCascadesDrawsNoSpotAgain)
 {
   settings.cascades.count = 0;
-  add_lamp(scene::LampKind::Sun, "sun");
+  // From above.
+  add_lamp(scene::LampKind::Sun, "sun").world_from_lamp =
+      glm::rotate(glm::mat4(1.0F), -1.57079633F, glm::vec3(1, 0, 0));
   add_lamp(scene::LampKind::Spot, "spot", {0, 0, 20});
-  // Along the ground, so that near slices are much smaller than the whole.
-  casters = {box_at({0, 0, 0}, 8.0F), box_at({200, 0, 0}, 8.0F), box_at({-200, 0, 0}, 8.0F)};
+  // Away from the camera, so that near slices are much smaller than the whole.
+  casters = {box_at({0, 0, 0}, 8.0F), box_at({0, 0, -200}, 8.0F), box_at({0, 0, -400}, 8.0F)};
   std::vector<int> counts;
   for (const float distance : {600.0F, 12.0F, 600.0F, 12.0F}) {
     view = draw::View(glm::translate(glm::mat4(1.0F), {0, 0, -distance}), view.clip_from_view());
@@ -169,6 +173,37 @@ TEST(EsmRange, ChangesInStepsWithTheScene)
   EXPECT_EQ(esm_range(lamp, box_at({0, 0, 0}, 10.0F)), 5.0F);
   lamp.range = 0.0F;
   EXPECT_GT(esm_range(lamp, {}), 0.0F) << "a scene of nothing";
+}
+
+TEST_F(ShadowEditsTest, AnEditedMaskDrawsItsShadowAgain)
+{
+  scene::Scene garden;
+  const std::int32_t texture = test::add_texture(garden, 2, {255, 255, 255, 0, 255, 255, 255, 255});
+  scene::Material &material = garden.materials[test::add_material(garden, glm::vec3(0.5F))];
+  material.base_color_texture = texture;
+  material.alpha_mode = scene::AlphaMode::Mask;
+  test::add_object(garden, test::add_square_mesh(garden, 0), glm::mat4(1.0F));
+  test::add_lamp(garden, scene::LampKind::Point, {0, 0, 3}, {0, 0, -1}, 20.0F);
+  test::Renderer renderer(*device, garden, {16, 16});
+  const auto updated_lamps = [&] {
+    const std::uint64_t before = renderer.engine.shadows(renderer.viewport).counters().lamps_updated;
+    renderer.sync();
+    renderer.draw(test::camera_at({0, -4, 4}, {0, 0, 0}));
+    return renderer.engine.shadows(renderer.viewport).counters().lamps_updated - before;
+  };
+  EXPECT_EQ(updated_lamps(), 1U);
+  EXPECT_EQ(updated_lamps(), 0U);
+  scene::Texture &lookup = garden.textures[std::size_t(texture)];
+  garden.images[lookup.image].texels[3] = 255;
+  garden.images[lookup.image].revision++;
+  EXPECT_EQ(updated_lamps(), 1U) << "texels";
+  lookup.magnified =
+      lookup.magnified == scene::TextureFilter::Nearest ? scene::TextureFilter::Linear : scene::TextureFilter::Nearest;
+  EXPECT_EQ(updated_lamps(), 1U) << "filter";
+  material.alpha_mode = scene::AlphaMode::Opaque;
+  updated_lamps();
+  garden.images[lookup.image].revision++;
+  EXPECT_EQ(updated_lamps(), 0U) << "no mask";
 }
 
 TEST_F(ShadowEditsTest, WhatWasNotSubmittedIsRecordedAgain)
@@ -234,7 +269,9 @@ TEST_F(ShadowEditsTest, TheTrianglesAroundLampsAreVisitedOnce)
 
 TEST_F(ShadowEditsTest, AGivenNearPlaneVisitsNoTriangle)
 {
-  const scene::Mesh triangle{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .indices = {0, 1, 2}};
+  scene::Mesh triangle;
+  triangle.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  triangle.indices = {0, 1, 2};
   mesh = &triangle;
   add_lamp(scene::LampKind::Point, "lamp", {0, 0, 1}).shadow.clip_start = 0.25F;
   sync(settings);

@@ -188,7 +188,9 @@ TEST_F(ShadowsTest, AMovedCasterUpdatesTheLampsInWhoseRangeItWasOrIs)
   casters.push_back(box_at({60, 3, 0}, 0.5F));
   EXPECT_EQ(updated(), 1U) << "one more";
   casters.pop_back();
-  EXPECT_EQ(updated(), 1U) << "one less";
+  EXPECT_NE(shadows.block_data().cubes[3].face_mask & 1 << 2, 0);
+  EXPECT_EQ(updated(), 0U) << "one less: the face that it leaves is empty, and the others stay";
+  EXPECT_EQ(shadows.block_data().cubes[3].face_mask, 1 << 5);
   casters.push_back(box_at({200, 0, 0}, 1.0F));
   EXPECT_EQ(updated(), 0U) << "out of everyone's range";
 }

@@ -71,9 +71,9 @@ class CasterDistances {
 };
 
 /**
- * Distance of a lamp's near plane, metres, for the best precision: the error of depths grows with the square of distance
- * over near. It is as large as the nearest caster permits; where the lamp is on a caster, a small part of that caster's
- * size. What is nearer is drawn on the near plane and still casts.
+ * Distance of a lamp's near plane, metres, for the best precision: the error of depths grows with the square of
+ * distance over near. It is as large as the nearest caster permits; where the lamp is on a caster, a small part of that
+ * caster's size. What is nearer is drawn on the near plane and still casts.
  *
  * \a range: casters beyond it are ignored, metres.
  */

@@ -193,8 +193,8 @@ void OctahedralStore::create_scratch(gpu::Device &device, int size_px, gpu::Form
 void OctahedralStore::record_passes(gpu::Device &device, ShaderCache &shaders)
 {
   const auto has = [&](EsmKernel kernel, EsmMethod method) {
-    return std::ranges::any_of(
-        slots_, [&](const Slot &slot) { return slot.kernel == kernel && slot.method == method; });
+    return std::ranges::any_of(slots_,
+                               [&](const Slot &slot) { return slot.kernel == kernel && slot.method == method; });
   };
   const auto group_of = [&](draw::Pass &pass, ShaderId id, bool is_needed) {
     pass.clear();

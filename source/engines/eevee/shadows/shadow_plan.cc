@@ -152,9 +152,9 @@ void fit_memory(ShadowPlan &plan, std::span<const ShadowLamp> lamps, const Shado
     }
     scale = low;
   }
-  plan.limits.push_back(fmt::format(
-      "the shadows of {} lamps need {:.1f} MiB, and may take {:.1f}: their sizes are lowered to {:.0f} %",
-      plan.places.size(), double(needed) / 0x1p20, double(most) / 0x1p20, 100.0F * scale));
+  plan.limits.push_back(
+      fmt::format("the shadows of {} lamps need {:.1f} MiB, and may take {:.1f}: their sizes are lowered to {:.0f} %",
+                  plan.places.size(), double(needed) / 0x1p20, double(most) / 0x1p20, 100.0F * scale));
   while (needs(scale) > most) {
     lost.push_back(lamps[plan.places.back().lamp].name);
     plan.places.pop_back();
@@ -188,18 +188,28 @@ void place_layers(ShadowPlan &plan, std::span<const ShadowLamp> lamps, const Sha
     }
   };
   place_cubes();
-  const int layers = 6 * int(keys[index_of(ShadowArrayId::Cubes)].size());
-  const auto gap_layers = std::size_t(cubes.end() - layers);
-  std::size_t edge = 0;
+  std::array<std::size_t, shadow_array_count> layer_bytes{};
+  std::array<int, shadow_array_count> layers{};
   for (const ShadowPlace &place : plan.places) {
-    edge = std::max(edge, place.given.array == ShadowArrayId::Cubes ? std::size_t(place.given.size_px) : 0);
+    const std::size_t array = index_of(place.given.array);
+    const auto edge = std::size_t(place.given.size_px);
+    layer_bytes[array] = std::max(layer_bytes[array], edge * edge * sizeof(float));
+    layers[array] += place.given.layer_count_max;
   }
+  // What the limits leave for gaps.
   const std::size_t bytes = bytes_needed(plan.places, 1.0F, settings.esm.kernel == EsmKernel::Separable);
-  if (cubes.end() > device_limits.array_layers_max ||
-      bytes + edge * edge * gap_layers * sizeof(float) > settings.memory_bytes_max) {
+  std::size_t spare_bytes = settings.memory_bytes_max - std::min(bytes, settings.memory_bytes_max);
+  std::size_t gap_bytes = std::size_t(cubes.end() - layers[0]) * layer_bytes[0];
+  if (cubes.end() > device_limits.array_layers_max || gap_bytes > spare_bytes) {
     cubes.clear();
     place_cubes();
+    gap_bytes = 0;
   }
+  spare_bytes -= gap_bytes;
+  const std::size_t map_bytes = std::max<std::size_t>(layer_bytes[index_of(ShadowArrayId::Maps)], 1);
+  const int spare_layers = device_limits.array_layers_max - layers[index_of(ShadowArrayId::Maps)];
+  plan.map_layers_max = layers[index_of(ShadowArrayId::Maps)] +
+                        int(std::min(spare_bytes / map_bytes, std::size_t(std::max(spare_layers, 0))));
 }
 
 }  // namespace
@@ -248,8 +258,7 @@ ShadowPlan plan_shadows(std::span<const ShadowLamp> lamps, const ShadowSettings 
   }
   if (!too_large.empty()) {
     plan.limits.push_back(fmt::format("the shadow size of {} lamps is {} texels, as this device takes no more: '{}'",
-                                      too_large.size(), device_limits.texture_size_max,
-                                      fmt::join(too_large, "', '")));
+                                      too_large.size(), device_limits.texture_size_max, fmt::join(too_large, "', '")));
   }
   fit_memory(plan, lamps, settings);
   place_layers(plan, lamps, settings, device_limits);

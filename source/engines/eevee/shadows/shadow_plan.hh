@@ -38,7 +38,8 @@ struct ShadowLamp {
   {
     return glm::vec3(world_from_lamp[3]);
   }
-  /** Distance beyond which nothing casts or receives the lamp's shadow, metres; infinite for suns and without limits. */
+  /** Distance beyond which nothing casts or receives the lamp's shadow, metres; infinite for suns and without limits.
+   */
   [[nodiscard]] float shadow_range() const;
 };
 
@@ -92,6 +93,8 @@ struct ShadowPlan {
   std::vector<ShadowPlace> places;
   /** By ShadowArrayId. */
   std::array<LayerRuns, shadow_array_count> runs;
+  /** Most layers that the array of maps may have, gaps between runs included. */
+  int map_layers_max = 0;
   /** Lamps that ask for something without effect. */
   std::vector<std::string> warnings;
   /** Lamps that lost their shadow and sizes that were lowered, with the limit that was hit. */
@@ -105,8 +108,8 @@ struct ShadowPlan {
  * shadows need more than ShadowSettings::memory_bytes_max, all sizes are lowered by one factor, to 16 texels at least,
  * because layers of one array have one size; if that does not suffice, the last lamps lose their shadow.
  *
- * \a previous: the last plan. A lamp that has a place in it keeps it. Only where the gaps that removed lamps leave would
- * exceed the memory or the device's layers, places are given anew.
+ * \a previous: the last plan. A lamp that has a place in it keeps it. Only where the gaps that removed lamps leave
+ * would exceed the memory or the device's layers, places are given anew.
  *
  * \throws gpu::Error naming the lamp and the setting that is out of range.
  */

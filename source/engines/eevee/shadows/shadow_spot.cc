@@ -82,9 +82,8 @@ class SpotTechnique final : public ShadowTechnique {
   ShadowRequest request(const ShadowLamp &lamp, scene::ShadowKind /*kind*/,
                         const ShadowSettings &settings) const override
   {
-    return {.array = ShadowArrayId::Maps,
-            .layer_count_max = 1,
-            .size_px = lamp.shadow.size.value_or(settings.map_size_px)};
+    return {
+        .array = ShadowArrayId::Maps, .layer_count_max = 1, .size_px = lamp.shadow.size.value_or(settings.map_size_px)};
   }
 
   ShadowTexelKey texel_key(const ShadowLamp &lamp) const override
@@ -94,8 +93,8 @@ class SpotTechnique final : public ShadowTechnique {
 
   std::vector<draw::View> lamp_views(const ShadowSlot &slot) const override
   {
-    return {shadow_spot_view(slot.lamp.world_from_lamp, slot.lamp.spot_outer_angle, slot.near,
-                             slot.place.given.size_px)};
+    return {
+        shadow_spot_view(slot.lamp.world_from_lamp, slot.lamp.spot_outer_angle, slot.near, slot.place.given.size_px)};
   }
 
   /** The map, where anything visible may be within its four sides. */

@@ -15,8 +15,8 @@ extern const glm::mat4 texcomat;
 inline constexpr float spot_map_angle_max = 1.04F;
 
 /**
- * The view of a spot, with a border for a filter's kernel around its cone. \a outer_angle: half the opening, radians, at
- * most spot_map_angle_max. \a near: metres.
+ * The view of a spot, with a border for a filter's kernel around its cone. \a outer_angle: half the opening, radians,
+ * at most spot_map_angle_max. \a near: metres.
  */
 [[nodiscard]] draw::View shadow_spot_view(const glm::mat4 &world_from_lamp, float outer_angle, float near, int size_px);
 

@@ -40,7 +40,8 @@ const gpu::Framebuffer &LayerArray::framebuffer(gpu::Device &device, int first, 
     const gpu::Attachment layers{.texture = &texture_, .layer = first, .layer_count = count};
     const bool is_depth = format_ == gpu::Format::Depth32F;
     framebuffer = device.create_framebuffer(
-        {.name = count == 1 ? fmt::format("{} {}", name_, first) : fmt::format("{} {}-{}", name_, first, first + count - 1),
+        {.name =
+             count == 1 ? fmt::format("{} {}", name_, first) : fmt::format("{} {}-{}", name_, first, first + count - 1),
          .colors = is_depth ? std::vector<gpu::Attachment>{} : std::vector<gpu::Attachment>{layers},
          .depth = is_depth ? layers : gpu::Attachment{}});
   }

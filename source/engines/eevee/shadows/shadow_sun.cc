@@ -45,9 +45,8 @@ class SunTechnique final : public ShadowTechnique {
   void fit_views(ShadowSlot &slot, const ShadowView &view, const ShadowCasters &casters,
                  const ShadowSettings &settings) const override
   {
-    const std::vector<SunFit> fits =
-        fit_sun(slot.lamp.world_from_lamp, view.view, view.visible, casters.list(), slot.place.given.size_px,
-                settings.cascades, view.pixel_size);
+    const std::vector<SunFit> fits = fit_sun(slot.lamp.world_from_lamp, view.view, view.visible, casters.list(),
+                                             slot.place.given.size_px, settings.cascades, view.pixel_size);
     if (fits.size() != slot.fits.size()) {
       slot.invalidate(~0U);
     }

@@ -85,8 +85,8 @@ struct Sphere {
  *
  * \a pixel_size: of the picture, at distance 1 (perspective) or anywhere (orthographic), metres.
  */
-[[nodiscard]] std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &view, const VisibleRange &visible,
-                                          const std::vector<Caster> &casters, int size_px,
+[[nodiscard]] std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &view,
+                                          const VisibleRange &visible, const std::vector<Caster> &casters, int size_px,
                                           const CascadeSettings &settings, float pixel_size);
 
 /** Whether \a old serves where \a needed is asked for: it covers it, and its texels are not much larger. */

@@ -15,9 +15,8 @@ namespace gnomon::eevee {
 
 std::span<const ShadowTechnique *const> shadow_techniques()
 {
-  static const std::array<const ShadowTechnique *, 4> techniques = {&shadow_cube_technique(), &shadow_spot_technique(),
-                                                                    &shadow_sun_technique(),
-                                                                    &shadow_octahedral_technique()};
+  static const std::array<const ShadowTechnique *, 4> techniques = {
+      &shadow_cube_technique(), &shadow_spot_technique(), &shadow_sun_technique(), &shadow_octahedral_technique()};
   return techniques;
 }
 
@@ -57,8 +56,7 @@ static bool update_near(ShadowSlot &slot, ShadowCasters &casters)
     return false;
   }
   const std::optional<float> clip_start = slot.lamp.shadow.clip_start;
-  const float needed =
-      clip_start ? *clip_start : lamp_near(position_ws, range, casters.list(), &casters.distances());
+  const float needed = clip_start ? *clip_start : lamp_near(position_ws, range, casters.list(), &casters.distances());
   // A near plane before all casters serves; up to a factor of 2 it costs little precision.
   if (slot.up_to_date != 0 && slot.near <= needed && slot.near >= 0.5F * needed) {
     return false;
@@ -131,10 +129,9 @@ LayerMask record_depths(ShadowSlot &slot, LayerMask missing, bool is_empty_drawn
     list.end_pass();
   }
   if (is_one_pass) {
-    list.begin_pass(
-        name("all layers"),
-        recording.array.framebuffer(recording.device, slot.place.first_layer, int(slot.views.size())),
-        is_cleared_at_once ? clear : keep);
+    list.begin_pass(name("all layers"),
+                    recording.array.framebuffer(recording.device, slot.place.first_layer, int(slot.views.size())),
+                    is_cleared_at_once ? clear : keep);
     record_instances(missing);
     list.end_pass();
   }

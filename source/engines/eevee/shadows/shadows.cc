@@ -44,8 +44,8 @@ static void check(const ShadowSettings &settings)
   }
 }
 
-void Shadows::sync(const gpu::Limits &device_limits, std::span<const ShadowLamp> lamps,
-                   const scene::Bounds &bounds_ws, shared::LightBlock &light_block, const ShadowSettings &settings)
+void Shadows::sync(const gpu::Limits &device_limits, std::span<const ShadowLamp> lamps, const scene::Bounds &bounds_ws,
+                   shared::LightBlock &light_block, const ShadowSettings &settings)
 {
   check(settings);
   const LayerPass layer_pass = best_layer_pass(settings.layer_pass, device_limits);
@@ -86,8 +86,8 @@ void Shadows::sync(const gpu::Limits &device_limits, std::span<const ShadowLamp>
 /** Take the layers that \a slot's lamp had in \a before, if their texels still are what they should be. */
 void Shadows::take_over(ShadowSlot &slot, std::vector<ShadowSlot> &before) const
 {
-  const auto found = std::ranges::find_if(
-      before, [&](const ShadowSlot &candidate) { return candidate.lamp.key == slot.lamp.key; });
+  const auto found =
+      std::ranges::find_if(before, [&](const ShadowSlot &candidate) { return candidate.lamp.key == slot.lamp.key; });
   if (found == before.end()) {
     return;
   }
@@ -126,8 +126,8 @@ void Shadows::resize(gpu::Device &device, ShadowArrayId id, int layers)
   }
   LayerArray &array = arrays_[std::size_t(id)];
   array.resize(device, size_px, layers, has_content);
-  bindings_[std::size_t(id)] = array.texture() ? draw::TextureBinding{array.texture().id(), sampler_.id()}
-                                               : draw::TextureBinding{};
+  bindings_[std::size_t(id)] =
+      array.texture() ? draw::TextureBinding{array.texture().id(), sampler_.id()} : draw::TextureBinding{};
 }
 
 void Shadows::allocate(gpu::Device &device, ShaderCache &shaders)
@@ -197,7 +197,6 @@ void Shadows::write_block(const ShadowSlot &slot)
 void Shadows::place_maps()
 {
   LayerRuns &runs = plan_.runs[std::size_t(ShadowArrayId::Maps)];
-  int layers_max = 0;
   const auto place_all = [&](auto &&is_placed) {
     for (ShadowSlot &slot : slots_) {
       if (slot.place.given.array == ShadowArrayId::Maps && is_placed(slot)) {
@@ -210,14 +209,11 @@ void Shadows::place_maps()
     }
   };
   const auto grows = [&](const ShadowSlot &slot) { return int(slot.views.size()) > runs.count_of(slot.lamp.key); };
-  for (const ShadowSlot &slot : slots_) {
-    layers_max += slot.place.given.array == ShadowArrayId::Maps ? slot.place.given.layer_count_max : 0;
-  }
   // Layers that are not needed any more first, for those that grow.
   place_all([&](const ShadowSlot &slot) { return !grows(slot); });
   place_all(grows);
-  if (runs.end() > layers_max) {
-    // More than the plan allows for, because of gaps.
+  if (runs.end() > plan_.map_layers_max) {
+    // The gaps do not fit into the limits.
     runs.clear();
     place_all([](const ShadowSlot & /*slot*/) { return true; });
   }

@@ -42,8 +42,8 @@ struct ShadowState {
  *
  * Order of calls: sync; once anything is seen, allocate, bind, add_caster for each, finish; then, for each view, update
  * and, once the list that it recorded into is submitted, submitted. A layer is drawn again where its lamp's place,
- * direction, cone, range, size or method changes, where a caster that touches it changes, or where its view follows what
- * is seen. The lamp's name, colour, intensity, bias and filter change no texel.
+ * direction, cone, range, size or method changes, where a caster that touches it changes, or where its view follows
+ * what is seen. The lamp's name, colour, intensity, bias and filter change no texel.
  */
 class Shadows {
  public:
@@ -76,8 +76,8 @@ class Shadows {
   void update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
               gpu::CommandList &list, const std::function<std::vector<float>()> &read_depths = {});
   /**
-   * The list of the last update was submitted: what it draws is up to date from now on. Without this call the next update
-   * records the same layers again.
+   * The list of the last update was submitted: what it draws is up to date from now on. Without this call the next
+   * update records the same layers again.
    */
   void submitted();
 
