@@ -23,7 +23,7 @@ struct ShadowCubeData {
   float texel_size;
   /** Factor of the derived normal offset. 0: no offset. */
   float bias;
-  /** First layer: 6 · index. */
+  /** The first of six. */
   int layer;
   /** Bit i: face i was drawn. The other faces contain no caster. */
   int face_mask;

@@ -4,7 +4,7 @@
 #include "cli_output.hh"
 
 #include "eevee_camera.hh"
-#include "eevee_shadows.hh"
+#include "shadows/shadows.hh"
 #include "measure_left_out.hh"
 
 #include <fmt/format.h>
@@ -154,7 +154,7 @@ class LampBench {
     }
     const std::span<const scene::PlacedLamp> placed(&lamp_, 1);
     eevee::Lamps lamps = eevee::make_lamps(placed);
-    shadows_.sync(device_.limits(), placed, {}, lamps, settings_);
+    shadows_.sync(device_.limits(), eevee::shadow_lamps(placed, lamps), {}, lamps.light_block, settings_);
     shadows_.allocate(device_, shaders_);
     for (const eevee::Caster &caster : casters_) {
       shadows_.add_caster(caster);
@@ -173,6 +173,7 @@ class LampBench {
       shadows_.update(device_, view_, 1e-3F, pass_, list);
     }
     device_.submit(list);
+    shadows_.submitted();
   }
 
  private:

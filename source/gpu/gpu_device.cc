@@ -263,6 +263,17 @@ void Device::generate_mipmaps(const Texture &texture)
   mipmaps_generate(texture);
 }
 
+void Device::copy_layers(const Texture &source, const Texture &target)
+{
+  GNOMON_ASSERT(source && target && source.id() != target.id() && source.desc().format == target.desc().format &&
+                    source.desc().kind == target.desc().kind,
+                "copy of texture '{}' to '{}'", source.desc().name, target.desc().name);
+  const TextureDesc &from = source.desc();
+  const TextureDesc &to = target.desc();
+  layers_copy(source, target, {std::min(from.width, to.width), std::min(from.height, to.height)},
+              std::min(from.layer_count(), to.layer_count()));
+}
+
 std::vector<std::byte> Device::read(const Texture &texture, int layer)
 {
   const TextureDesc &desc = texture.desc();

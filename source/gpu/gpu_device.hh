@@ -102,6 +102,11 @@ class Device {
   void upload(const Texture &texture, int layer, std::span<const std::byte> texels);
   /** Fill the levels above 0 from it, each texel the mean of those below it: of light, where the format is encoded. */
   void generate_mipmaps(const Texture &texture);
+  /**
+   * Copy level 0 of the layers that both textures have, as far as both reach from the lower left corner. Takes place
+   * before anything submitted later. \pre two different textures of one format and kind
+   */
+  void copy_layers(const Texture &source, const Texture &target);
 
   /** Do the work of \a list. In debug builds, \throws Error where the driver reports one. */
   void submit(const CommandList &list);
@@ -172,6 +177,7 @@ class Device {
   virtual void buffer_update(ResourceId id, std::size_t offset_bytes, std::span<const std::byte> bytes) = 0;
   virtual void texture_upload(const Texture &texture, int layer, std::span<const std::byte> texels) = 0;
   virtual void mipmaps_generate(const Texture &texture) = 0;
+  virtual void layers_copy(const Texture &source, const Texture &target, glm::ivec2 size_px, int layers) = 0;
   virtual void texture_read(const Texture &texture, int layer, std::span<std::byte> texels) = 0;
   virtual void list_submit(const CommandList &list) = 0;
 

@@ -4,7 +4,7 @@
 
 #include "draw_view.hh"
 #include "eevee_depth_shared.h"
-#include "eevee_sun_fit.hh"
+#include "shadows/shadow_sun_fit.hh"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #include "internal/stability_cases.hh"
 
 #include "eevee_esm_shared.h"
-#include "eevee_octahedral.hh"
+#include "shadows/shadow_octahedral_store.hh"
 #include "eevee_octahedral_shared.h"
 
 #include <fmt/format.h>

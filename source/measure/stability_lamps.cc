@@ -2,10 +2,10 @@
 // Lamps: cones, fall-off, near planes, the block's limit.
 #include "internal/stability_cases.hh"
 
-#include "eevee_casters.hh"
+#include "shadows/shadow_casters.hh"
 #include "eevee_lamps.hh"
 #include "eevee_shadow_shared.h"
-#include "eevee_shadows.hh"
+#include "shadows/shadows.hh"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -105,12 +105,9 @@ void add_spot_cases(std::vector<StabilityCase> &cases)
                    .unit = violation_unit,
                    .bound = 0.0,
                    .run = swept(log_steps(1e-6, double(eevee::spot_map_angle_max), 121), [](double angle) {
-                     scene::PlacedLamp lamp;
-                     lamp.kind = scene::LampKind::Spot;
-                     lamp.spot_outer_angle = float(angle);
                      double worst = 0.0;
                      for (const int size_px : {1, 16, 16384}) {
-                       const draw::View view = eevee::shadow_spot_view(lamp, 1e-3F, size_px);
+                       const draw::View view = eevee::shadow_spot_view(glm::mat4(1.0F), float(angle), 1e-3F, size_px);
                        const glm::vec4 clip =
                            view.clip_from_world() * glm::vec4(float(std::tan(angle)), 0.0F, -1.0F, 1.0F);
                        worst =

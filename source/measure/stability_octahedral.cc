@@ -2,7 +2,7 @@
 // Directions on the octahedral map and on a cube's faces: folds, edges, corners, lengths.
 #include "internal/stability_cases.hh"
 
-#include "eevee_casters.hh"
+#include "shadows/shadow_casters.hh"
 #include "eevee_octahedral_shared.h"
 #include "eevee_shadow_shared.h"
 

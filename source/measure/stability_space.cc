@@ -5,8 +5,8 @@
 #include "draw_objects.hh"
 #include "draw_view.hh"
 #include "eevee_camera.hh"
-#include "eevee_sun_fit.hh"
-#include "eevee_view_volume.hh"
+#include "shadows/shadow_sun_fit.hh"
+#include "shadows/shadow_view_volume.hh"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

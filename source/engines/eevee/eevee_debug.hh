@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "eevee_shadows.hh"
+#include "shadows/shadows.hh"
 
 namespace gnomon::eevee {
 

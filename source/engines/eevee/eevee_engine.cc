@@ -92,7 +92,8 @@ void Engine::sync_lamps(Data &data, const gpu::Limits &device_limits)
   stl.has_casters = false;
   stl.is_light_block_written = false;
   stl.lamps = make_lamps(scene_.lamps());
-  stl.shadows.sync(device_limits, scene_.lamps(), scene_.bounds(), stl.lamps, settings_.shadow);
+  stl.shadows.sync(device_limits, shadow_lamps(scene_.lamps(), stl.lamps), scene_.bounds(), stl.lamps.light_block,
+                   settings_.shadow);
   stl.tinted_light = settings_.has_cascade_tint ? first_sun_with_maps(stl.lamps) : std::nullopt;
   stl.shadows_synced = key;
 }
@@ -200,6 +201,7 @@ std::optional<Probe> Engine::probe(draw::Viewport &viewport, const draw::View &v
   psl->probe_pass.record(view, list);
   list.end_pass();
   device.submit(list);
+  stl.shadows.submitted();
   return Probe{gpu::read_as<glm::vec4>(device, txl.probe_position), gpu::read_as<glm::vec4>(device, txl.probe_normal)};
 }
 

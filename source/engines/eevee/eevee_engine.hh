@@ -4,7 +4,7 @@
 #include "eevee_features.hh"
 #include "eevee_frame_tree.hh"
 #include "eevee_shaders.hh"
-#include "eevee_shadows.hh"
+#include "shadows/shadows.hh"
 
 #include "draw_engine.hh"
 #include "draw_viewport.hh"

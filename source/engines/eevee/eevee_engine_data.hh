@@ -4,7 +4,7 @@
 #include "eevee_debug.hh"
 #include "eevee_frame.hh"
 #include "eevee_lamps.hh"
-#include "eevee_shadows.hh"
+#include "shadows/shadows.hh"
 
 #include "draw_viewport.hh"
 

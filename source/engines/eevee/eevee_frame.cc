@@ -148,7 +148,8 @@ constexpr std::span display_only = std::span(pictures).subspan(3, 1);
 constexpr std::array<FrameStep, 5> steps = {{
     // Before the shadows: cascades may be fitted to the depths.
     {"depth_prepass", FrameStep::When::EachSample, need_depth, {}, depth_only, depth_passes, record_depth},
-    {"shadows", FrameStep::When::EachSample, need_shadows, depth_only, shadow_targets, {}, record_shadows},
+    {"shadows", FrameStep::When::EachSample, need_shadows, depth_only, shadow_targets, {}, record_shadows,
+     [](Data &data) { data.stl.shadows.submitted(); }},
     {"lit", FrameStep::When::EachSample, need_lit, shadow_targets, radiance_only, lit_passes, record_lit},
     {"film", FrameStep::When::EachSample, need_film, radiance_only, film_only, film_passes, record_film},
     {"tonemap", FrameStep::When::LastSample, need_tonemap, film_only, display_only, tonemap_passes, record_tonemap},
@@ -214,14 +215,18 @@ void draw_steps(FrameSample &sample, FrameStep::When when)
     }
     gpu::CommandList list;
     step.record(step, sample, list);
+    const auto submit = [&] { device.submit(list); };
     if (list.commands().empty()) {
-      continue;
+      // Nothing was out of date.
     }
-    if (sample.settings.is_timed) {
-      timed(device, data.timing, step.name, [&] { device.submit(list); });
+    else if (sample.settings.is_timed) {
+      timed(device, data.timing, step.name, submit);
     }
     else {
-      device.submit(list);
+      submit();
+    }
+    if (step.submitted) {
+      step.submitted(data);
     }
   }
 }

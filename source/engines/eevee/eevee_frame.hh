@@ -60,6 +60,8 @@ struct FrameStep {
   std::span<const FramePass> passes;
   /** Appends the step's render passes to \a list. */
   void (*record)(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);
+  /** Called once the list is submitted, for steps whose results later frames rely on; nullptr: nothing to do. */
+  void (*submitted)(Data &data) = nullptr;
 };
 
 /** In the order in which they are drawn. */

@@ -424,8 +424,8 @@ FrameNode lamp_node(const Source &source, std::size_t index, const std::vector<S
   const std::uint32_t all = (1U << state->layer_count) - 1U;
   add_layers(node, "drawn", true, state->drawn_now & all, "not up to date");
   add_layers(node, "kept", false, state->drawn & ~state->drawn_now & all, "up to date");
-  add_layers(node, "empty", false, state->settled & ~state->drawn & all, "no caster in it");
-  add_layers(node, "not looked up", false, ~state->settled & all, "nothing visible looks there");
+  add_layers(node, "empty", false, state->up_to_date & ~state->drawn & all, "no caster in it");
+  add_layers(node, "not looked up", false, ~state->up_to_date & all, "nothing visible looks there");
   return node;
 }
 

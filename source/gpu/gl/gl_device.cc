@@ -475,6 +475,14 @@ class GlDevice final : public Device {
     check(fmt::format("texture '{}'", texture.desc().name));
   }
 
+  void layers_copy(const Texture &source, const Texture &target, glm::ivec2 size_px, int layers) override
+  {
+    const auto gl_kind = [](const Texture &texture) { return gl_target(texture.desc().kind); };
+    glCopyImageSubData(textures_.at(source.id()), gl_kind(source), 0, 0, 0, 0, textures_.at(target.id()),
+                       gl_kind(target), 0, 0, 0, 0, size_px.x, size_px.y, layers);
+    check(fmt::format("copy of texture '{}'", source.desc().name));
+  }
+
   void texture_read(const Texture &texture, int layer, std::span<std::byte> texels) override
   {
     const TextureDesc &desc = texture.desc();

@@ -44,6 +44,10 @@ class NullDevice final : public Device {
   void buffer_update(ResourceId /*id*/, std::size_t /*offset_bytes*/, std::span<const std::byte> /*bytes*/) override {}
   void texture_upload(const Texture & /*texture*/, int /*layer*/, std::span<const std::byte> /*texels*/) override {}
   void mipmaps_generate(const Texture & /*texture*/) override {}
+  void layers_copy(const Texture & /*source*/, const Texture & /*target*/, glm::ivec2 /*size_px*/,
+                   int /*layers*/) override
+  {
+  }
   void texture_read(const Texture & /*texture*/, int /*layer*/, std::span<std::byte> texels) override
   {
     std::fill(texels.begin(), texels.end(), std::byte(0));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "eevee_casters.hh"
+#include "shadows/shadow_casters.hh"
 
 #include "eevee_shadow_shared.h"
 

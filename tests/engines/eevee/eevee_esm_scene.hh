@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "eevee_octahedral.hh"
+#include "shadows/shadow_octahedral_store.hh"
 #include "eevee_octahedral_shared.h"
 #include "eevee_shadow_shared.h"
 #include "gpu/gpu_testing.hh"
@@ -99,11 +99,16 @@ class EsmStage {
  public:
   EsmStage(gpu::Device &device, std::span<const eevee::EsmLamp> lamps) : device_(device)
   {
-    store.sync(device, shaders_, lamps);
+    sync(lamps);
   }
+  /** Identifies each lamp by its index. */
   void sync(std::span<const eevee::EsmLamp> lamps)
   {
-    store.sync(device_, shaders_, lamps);
+    std::vector<eevee::EsmLamp> identified(lamps.begin(), lamps.end());
+    for (std::size_t i = 0; i < identified.size(); i++) {
+      identified[i].key = i;
+    }
+    store.sync(device_, shaders_, identified);
   }
 
   /** Upload \a cube as the \a cube_index-th of an array of two. */

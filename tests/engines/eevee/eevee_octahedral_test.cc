@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "eevee_octahedral.hh"
+#include "shadows/shadow_octahedral_store.hh"
 
 #include "gpu/gpu_testing.hh"
 
@@ -11,7 +11,7 @@ namespace {
 
 EsmLamp lamp(const std::string &name, float range, const EsmSettings &settings = {})
 {
-  return {name, range, settings};
+  return {name, range, settings, std::hash<std::string>{}(name)};
 }
 
 class OctahedralStoreTest : public testing::Test {
@@ -44,8 +44,17 @@ TEST_F(OctahedralStoreTest, SaysWhetherLayersMustBeRecordedAgain)
   lamps[1].settings.kernel = EsmKernel::Separable;
   EXPECT_TRUE(store.sync(*device, shaders, lamps));
   EXPECT_FALSE(store.sync(*device, shaders, lamps));
-  lamps.pop_back();
+  EXPECT_FALSE(store.must_record(0));
+  lamps[1].settings.bias = 2.0F;
+  EXPECT_FALSE(store.sync(*device, shaders, lamps)) << "lookups alone read the bias";
+  lamps.push_back(lamp("c", 5.0F));
   EXPECT_TRUE(store.sync(*device, shaders, lamps));
+  EXPECT_FALSE(store.must_record(0) || store.must_record(1));
+  EXPECT_TRUE(store.must_record(2));
+  const int layer = store.data(2).layer;
+  lamps.erase(lamps.begin());
+  EXPECT_FALSE(store.sync(*device, shaders, lamps)) << "a removed lamp leaves the others' layers where they are";
+  EXPECT_EQ(store.data(1).layer, layer);
 }
 
 TEST_F(OctahedralStoreTest, VariancesHaveTwoChannelsInAnArrayOfTheirOwn)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "eevee_sun_fit.hh"
+#include "shadows/shadow_sun_fit.hh"
 
-#include "eevee_view_volume.hh"
+#include "shadows/shadow_view_volume.hh"
 
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ const draw::View any_view(glm::mat4(1.0F), draw::perspective(1.0F, 1.0F, 0.1F, 1
 std::vector<SunFit> fit_one(const scene::Lamp &lamp, const std::vector<glm::dvec3> &receivers,
                             const std::vector<Caster> &casters, int size_px)
 {
-  return fit_sun(lamp, any_view, visible_range(any_view, receivers), casters, size_px, {.count = 1}, 0.001F);
+  return fit_sun(lamp.world_from_lamp, any_view, visible_range(any_view, receivers), casters, size_px, {.count = 1}, 0.001F);
 }
 
 TEST(SunFit, HoldsEveryCasterOfAVisibleReceiver)
@@ -74,7 +74,7 @@ TEST(SunFit, HoldsEveryCasterOfAVisibleReceiver)
     const draw::View view(glm::lookAt(10.0F * point(), point(), glm::vec3(0, 1, 0)),
                           draw::perspective(0.3F, 0.2F, 0.1F, 50.0F));
     const std::vector<SunFit> fits =
-        fit_sun(lamp, view, range_of(view, casters), casters, 512, {.count = 1 + trial % 4}, 0.001F);
+        fit_sun(lamp.world_from_lamp, view, range_of(view, casters), casters, 512, {.count = 1 + trial % 4}, 0.001F);
     // A ray from a visible receiver towards the sun that meets a caster: caster point and receiver both in the last
     // map.
     for (int i = 0; i < 4000; i++) {
@@ -222,7 +222,7 @@ struct Field {
   }
   [[nodiscard]] std::vector<SunFit> fit_at(const draw::View &view, int count, float pixel_size = 0.001F) const
   {
-    return fit_sun(sun, view, range_of(view, casters), casters, 1024, {.count = count}, pixel_size);
+    return fit_sun(sun.world_from_lamp, view, range_of(view, casters), casters, 1024, {.count = count}, pixel_size);
   }
   std::vector<Caster> casters;
   scene::Lamp sun = sun_along({0.4F, -1, 0.2F});

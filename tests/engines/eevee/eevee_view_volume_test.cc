@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "eevee_view_volume.hh"
+#include "shadows/shadow_view_volume.hh"
 
 #include <gtest/gtest.h>
 

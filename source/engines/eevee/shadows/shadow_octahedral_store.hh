@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "shadow_layer_runs.hh"
+#include "shadow_storage.hh"
+
 #include "eevee_shaders.hh"
 
 #include "draw_pass.hh"
@@ -82,6 +85,8 @@ struct EsmLamp {
   /** Metres, above 0, at most 1e30: no farther does it cast or receive a shadow. */
   float range = 0.0F;
   EsmSettings settings{};
+  /** Identity of the lamp: the same in each sync, different for every lamp. */
+  std::uint64_t key = 0;
 };
 
 /** The depths that a layer is made from: reversed, depth = near / distance along the face's axis, and 0 where nothing
@@ -117,7 +122,9 @@ class OctahedralStore {
    * Give each of \a lamps a layer; the index is that in \a lamps and in `esm_block`. Lamps beyond size() have none and
    * are named in limits(). To be called again after a reload of \a shaders, which must outlive the store.
    *
-   * \return whether all layers must be recorded (again), as textures, settings or lamps are others than before.
+   * A lamp keeps its layer and its texels from one sync to the next while nothing changes that they depend on.
+   *
+   * \return whether any layer must be recorded; \see must_record
    * \throws gpu::Error naming lamp, setting and value; nothing has changed then.
    */
   bool sync(gpu::Device &device, ShaderCache &shaders, std::span<const EsmLamp> lamps);
@@ -126,7 +133,13 @@ class OctahedralStore {
   [[nodiscard]] static std::vector<std::string> limits_of(const gpu::Limits &device_limits,
                                                           std::span<const EsmLamp> lamps)
   {
-    return plan(device_limits, lamps).limits;
+    return plan(device_limits, lamps, {}).limits;
+  }
+
+  /** Whether the layer of the \a index-th lamp has to be recorded since the last sync. */
+  [[nodiscard]] bool must_record(std::size_t index) const
+  {
+    return slots_[index].must_record;
   }
 
   /** Append the passes that make the layer of the \a index-th lamp. \pre index below size() */
@@ -138,7 +151,7 @@ class OctahedralStore {
   /** Whether any lamp has EsmMethod::Evsm: then lookups need USE_SHADOW_EVSM. */
   [[nodiscard]] bool has_variance() const
   {
-    return bool(arrays_[ESM_VARIANCE].texture);
+    return bool(arrays_[ESM_VARIANCE].texture());
   }
   /** Lamps that have a layer. */
   [[nodiscard]] std::size_t size() const
@@ -153,7 +166,7 @@ class OctahedralStore {
   /** The array that holds the lamp's layer: R32F, R16F, or RG32F of Evsm. */
   [[nodiscard]] const gpu::Texture &texture(std::size_t index) const
   {
-    return array_of(index).texture;
+    return array_of(index).texture();
   }
   /** Of layers and of what filtering needs besides. */
   [[nodiscard]] std::size_t size_bytes() const;
@@ -171,16 +184,12 @@ class OctahedralStore {
   }
 
  private:
+  using Runs = std::array<LayerRuns, 3>;
   struct Slot {
+    std::uint64_t key = 0;
     EsmKernel kernel = EsmKernel::Disk4;
     EsmMethod method = EsmMethod::Esm;
-    bool operator==(const Slot &) const = default;
-  };
-  /** Layers of one format, as large as the largest. */
-  struct Array {
-    gpu::Texture texture;
-    /** One a layer. */
-    std::vector<gpu::Framebuffer> framebuffers;
+    bool must_record = true;
   };
   /** What the separable filter works in: a texture and what draws into it. */
   struct Scratch {
@@ -188,26 +197,28 @@ class OctahedralStore {
     gpu::Framebuffer framebuffer;
   };
 
-  /** What lamps come to, before anything is made for them. */
+  /** The result of planning, before anything is created for it. */
   struct Plan {
     std::vector<Slot> slots;
     shared::EsmBlock block{};
     std::vector<std::string> limits;
-    /** By ESM_…: layers, and their edge. */
-    std::array<int, 3> layers{};
+    /** By ESM_…: layers in use, and the edge that they need. */
+    Runs runs;
     std::array<int, 3> sizes{};
     /** 0: no lamp needs any. */
     int scratch_size = 0;
     gpu::Format scratch_format = gpu::Format::R32F;
   };
 
-  [[nodiscard]] static Plan plan(const gpu::Limits &device_limits, std::span<const EsmLamp> lamps);
+  /** \a runs: the layers of the last sync. */
+  [[nodiscard]] static Plan plan(const gpu::Limits &device_limits, std::span<const EsmLamp> lamps, Runs runs);
+  /** Whether the lamp in \a slot of a new plan has the texels that it needs. */
+  [[nodiscard]] bool has_texels(const Slot &slot, const shared::EsmData &data) const;
   [[nodiscard]] const draw::Pass &pass_of(const Slot &slot) const;
-  [[nodiscard]] const Array &array_of(std::size_t index) const
+  [[nodiscard]] const LayerArray &array_of(std::size_t index) const
   {
     return arrays_[std::size_t(block_.lamps[index].format)];
   }
-  bool create_array(gpu::Device &device, int format, int size_px, int layers);
   void create_scratch(gpu::Device &device, int size_px, gpu::Format format);
   void record_passes(gpu::Device &device, ShaderCache &shaders);
 
@@ -215,7 +226,10 @@ class OctahedralStore {
   shared::EsmBlock block_{};
   gpu::Buffer block_buffer_;
   /** By ESM_…: floats, halves, variances. */
-  std::array<Array, 3> arrays_;
+  Runs runs_;
+  std::array<LayerArray, 3> arrays_ = {LayerArray("shadow_esm", gpu::Format::R32F),
+                                       LayerArray("shadow_esm_half", gpu::Format::R16F),
+                                       LayerArray("shadow_evsm", gpu::Format::RG32F)};
   /** Distances, and their rows filtered. */
   std::array<Scratch, 2> scratch_;
   gpu::Sampler sampler_;
@@ -226,7 +240,7 @@ class OctahedralStore {
   draw::Pass evsm_disk4_{"evsm_disk4", gpu::State::WriteColor};
   draw::Pass evsm_disk32_{"evsm_disk32", gpu::State::WriteColor};
   draw::Pass evsm_separable_{"evsm_separable", gpu::State::WriteColor};
-  /** What the passes read when they are recorded: the lamp at work. */
+  /** What the passes read when they are recorded. */
   struct {
     int lamp = 0;
     int first_layer = 0;
@@ -238,6 +252,8 @@ class OctahedralStore {
     draw::TextureBinding cube;
     draw::TextureBinding source;
   } recorded_;
+  /** Of the last sync; framebuffers are created when first drawn into. */
+  gpu::Device *device_ = nullptr;
   std::vector<std::string> limits_;
 };
 

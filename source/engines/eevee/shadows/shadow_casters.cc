@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "eevee_casters.hh"
+#include "shadow_casters.hh"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 namespace gnomon::eevee {
 
@@ -80,16 +82,80 @@ float distance_to(const Caster &caster, const glm::vec3 &position_ws)
   return float(nearest);
 }
 
-float lamp_near(const glm::vec3 &position_ws, float range, const std::vector<Caster> &casters)
+float CasterDistances::distance(const Caster &caster, const glm::vec3 &position_ws)
+{
+  const float to_box = distance_to(caster.bounds_ws, position_ws);
+  if (to_box > 0.0F || !caster.mesh) {
+    return to_box;
+  }
+  const auto [found, is_new] = distances_.try_emplace({std::bit_cast<Position>(position_ws), caster.fingerprint});
+  if (is_new) {
+    found->second = distance_to(caster, position_ws);
+    triangles_visited_ += caster.mesh->indices.size() / 3;
+  }
+  return found->second;
+}
+
+void CasterDistances::keep_only(std::span<const glm::vec3> positions_ws, const std::vector<Caster> &casters)
+{
+  if (distances_.empty()) {
+    return;
+  }
+  std::vector<Position> positions;
+  for (const glm::vec3 &position : positions_ws) {
+    positions.push_back(std::bit_cast<Position>(position));
+  }
+  std::vector<std::uint64_t> fingerprints;
+  for (const Caster &caster : casters) {
+    fingerprints.push_back(caster.fingerprint);
+  }
+  std::ranges::sort(positions);
+  std::ranges::sort(fingerprints);
+  std::erase_if(distances_, [&](const auto &entry) {
+    return !std::ranges::binary_search(positions, entry.first.first) ||
+           !std::ranges::binary_search(fingerprints, entry.first.second);
+  });
+}
+
+float lamp_near(const glm::vec3 &position_ws, float range, const std::vector<Caster> &casters,
+                CasterDistances *distances)
 {
   constexpr float near_min = 1e-6F;
   float near = 0.5F * range;
   for (const Caster &caster : casters) {
-    const float distance = distance_to(caster, position_ws);
+    const float distance = distances ? distances->distance(caster, position_ws) : distance_to(caster, position_ws);
     // Along a face's axis what is at this distance is nearer, by up to the square root of 3.
     near = std::min(near, std::max(0.5F * distance, 1e-4F * caster.bounds_ws.radius()));
   }
   return std::isinf(near) ? near_min : std::max(near, near_min);
+}
+
+void ShadowCasters::begin()
+{
+  if (std::exchange(is_finished_, false)) {
+    before_ = std::exchange(casters_, {});
+  }
+  casters_.clear();
+  volumes_.clear();
+  calls_.clear();
+  changed_.clear();
+}
+
+void ShadowCasters::finish()
+{
+  is_finished_ = true;
+  bounds_ws_ = {};
+  volumes_.clear();
+  calls_.clear();
+  for (const Caster &caster : casters_) {
+    bounds_ws_.extend(caster.bounds_ws);
+    volumes_.push_back({caster.bounds_ws.center(), caster.bounds_ws.radius()});
+    calls_.push_back(caster.instances);
+  }
+  std::ranges::sort(calls_);
+  calls_.erase(std::unique(calls_.begin(), calls_.end()), calls_.end());
+  changed_ = changed_bounds(before_, casters_);
+  before_.clear();
 }
 
 }  // namespace gnomon::eevee

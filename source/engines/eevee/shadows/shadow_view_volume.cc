@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "eevee_view_volume.hh"
+#include "shadow_view_volume.hh"
 
 #include <glm/geometric.hpp>
 

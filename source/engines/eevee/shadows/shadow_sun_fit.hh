@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "eevee_casters.hh"
+#include "shadow_casters.hh"
 
 #include "draw_view.hh"
 #include "scene.hh"
@@ -85,7 +85,7 @@ struct Sphere {
  *
  * \a pixel_size: of the picture, at distance 1 (perspective) or anywhere (orthographic), metres.
  */
-[[nodiscard]] std::vector<SunFit> fit_sun(const scene::PlacedLamp &lamp, const draw::View &view,
+[[nodiscard]] std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &view,
                                           const VisibleRange &visible, const std::vector<Caster> &casters, int size_px,
                                           const CascadeSettings &settings, float pixel_size);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "eevee_sun_fit.hh"
+#include "shadow_sun_fit.hh"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -65,12 +65,12 @@ bool can_darken(const scene::Bounds &caster, const scene::Bounds &receivers, con
 
 /** What all maps of a sun have to hold: where receivers and casters overlap, from the first caster to the last
  * receiver. */
-std::optional<LampBox> needed_box(const scene::PlacedLamp &lamp, const std::vector<glm::dvec3> &receivers_ws,
+std::optional<LampBox> needed_box(const glm::mat4 &world_from_lamp, const std::vector<glm::dvec3> &receivers_ws,
                                   const std::vector<Caster> &casters)
 {
   // Directions only: a sun is nowhere.
-  const glm::dmat3 from_world = glm::transpose(glm::dmat3(lamp.world_from_lamp));
-  const glm::vec3 forward_ws = -glm::vec3(lamp.world_from_lamp[2]);
+  const glm::dmat3 from_world = glm::transpose(glm::dmat3(world_from_lamp));
+  const glm::vec3 forward_ws = -glm::vec3(world_from_lamp[2]);
   scene::Bounds receiver_bounds;
   LampBox receivers;
   for (const glm::dvec3 &point : receivers_ws) {
@@ -214,15 +214,15 @@ Sphere slice_sphere(const draw::View &view, double near, double far)
   return sphere;
 }
 
-std::vector<SunFit> fit_sun(const scene::PlacedLamp &lamp, const draw::View &view, const VisibleRange &visible,
+std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &view, const VisibleRange &visible,
                             const std::vector<Caster> &casters, int size_px, const CascadeSettings &settings,
                             float pixel_size)
 {
-  const std::optional<LampBox> needed = needed_box(lamp, visible.corners, casters);
+  const std::optional<LampBox> needed = needed_box(world_from_lamp, visible.corners, casters);
   if (!needed) {
     return {};
   }
-  const glm::dmat3 lamp_from_world = glm::transpose(glm::dmat3(lamp.world_from_lamp));
+  const glm::dmat3 lamp_from_world = glm::transpose(glm::dmat3(world_from_lamp));
   const SunFit whole = fit_to(*needed, lamp_from_world, size_px);
   const auto fits_of = [&](int count, bool &is_fine) {
     is_fine = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "eevee_octahedral.hh"
+#include "shadow_octahedral_store.hh"
 
 #include <fmt/ranges.h>
 
@@ -72,19 +72,20 @@ shared::EsmData make_data(const EsmLamp &lamp)
 
 }  // namespace
 
-OctahedralStore::Plan OctahedralStore::plan(const gpu::Limits &device_limits, std::span<const EsmLamp> lamps)
+OctahedralStore::Plan OctahedralStore::plan(const gpu::Limits &device_limits, std::span<const EsmLamp> lamps, Runs runs)
 {
   const std::size_t most = std::size_t(std::min(ESM_MAX, device_limits.array_layers_max));
   Plan plan;
+  std::array<std::vector<std::uint64_t>, 3> keys;
   std::vector<std::string> lost;
   for (const EsmLamp &lamp : lamps) {
-    shared::EsmData data = make_data(lamp);
+    const shared::EsmData data = make_data(lamp);
     if (plan.slots.size() == most) {
       lost.push_back(lamp.name);
       continue;
     }
     const auto format = std::size_t(data.format);
-    data.layer = plan.layers[format]++;
+    keys[format].push_back(lamp.key);
     plan.sizes[format] = std::max(plan.sizes[format], data.size + 2 * ESM_BORDER);
     if (lamp.settings.kernel == EsmKernel::Separable) {
       plan.scratch_size = std::max(plan.scratch_size, data.size);
@@ -98,8 +99,26 @@ OctahedralStore::Plan OctahedralStore::plan(const gpu::Limits &device_limits, st
                       lamp.name, error, data.exponent, data.range));
     }
     plan.block.lamps[plan.slots.size()] = data;
-    plan.slots.push_back({lamp.settings.kernel, lamp.settings.method});
+    plan.slots.push_back({.key = lamp.key, .kernel = lamp.settings.kernel, .method = lamp.settings.method});
   }
+  for (std::size_t format = 0; format < runs.size(); format++) {
+    runs[format].keep_only(keys[format]);
+  }
+  const auto place = [&] {
+    for (std::size_t i = 0; i < plan.slots.size(); i++) {
+      shared::EsmData &data = plan.block.lamps[i];
+      data.layer = runs[std::size_t(data.format)].place(plan.slots[i].key, 1);
+    }
+  };
+  place();
+  // Gaps that removed lamps left stay for the next lamps, but not where many layers would be unused.
+  for (std::size_t format = 0; format < runs.size(); format++) {
+    if (runs[format].end() > std::min(2 * int(keys[format].size()), int(most))) {
+      runs[format].clear();
+    }
+  }
+  place();
+  plan.runs = std::move(runs);
   if (!lost.empty()) {
     plan.limits.push_back(fmt::format("{} lamps lost their shadow, as {} octahedral layers are the most: '{}'",
                                       lost.size(), most, fmt::join(lost, "', '")));
@@ -107,17 +126,38 @@ OctahedralStore::Plan OctahedralStore::plan(const gpu::Limits &device_limits, st
   return plan;
 }
 
+bool OctahedralStore::has_texels(const Slot &slot, const shared::EsmData &data) const
+{
+  const auto old = std::ranges::find(slots_, slot.key, &Slot::key);
+  if (old == slots_.end() || old->kernel != slot.kernel || old->method != slot.method) {
+    return false;
+  }
+  shared::EsmData old_data = block_.lamps[old - slots_.begin()];
+  // Lookups alone read the bias.
+  old_data.bias = data.bias;
+  return std::memcmp(&old_data, &data, sizeof(data)) == 0;
+}
+
 bool OctahedralStore::sync(gpu::Device &device, ShaderCache &shaders, std::span<const EsmLamp> lamps)
 {
-  Plan plan = OctahedralStore::plan(device.limits(), lamps);
-  bool is_new = false;
-  for (const int format : {ESM_FLOAT, ESM_HALF, ESM_VARIANCE}) {
-    is_new |= create_array(device, format, plan.sizes[std::size_t(format)], plan.layers[std::size_t(format)]);
+  device_ = &device;
+  Plan plan = OctahedralStore::plan(device.limits(), lamps, runs_);
+  bool is_any_new = false;
+  for (std::size_t i = 0; i < plan.slots.size(); i++) {
+    plan.slots[i].must_record = !has_texels(plan.slots[i], plan.block.lamps[i]);
+    is_any_new |= plan.slots[i].must_record;
+  }
+  for (std::size_t format = 0; format < arrays_.size(); format++) {
+    bool has_content = false;
+    for (std::size_t i = 0; i < plan.slots.size(); i++) {
+      has_content |= plan.block.lamps[i].format == int(format) && !plan.slots[i].must_record;
+    }
+    arrays_[format].resize(device, plan.sizes[format], plan.runs[format].end(), has_content);
   }
   create_scratch(device, plan.scratch_size, plan.scratch_format);
-  is_new |= plan.slots != slots_ || std::memcmp(&plan.block, &block_, sizeof(block_)) != 0;
   block_ = plan.block;
   slots_ = std::move(plan.slots);
+  runs_ = std::move(plan.runs);
   limits_ = std::move(plan.limits);
   if (!slots_.empty()) {
     if (!block_buffer_) {
@@ -130,37 +170,7 @@ bool OctahedralStore::sync(gpu::Device &device, ShaderCache &shaders, std::span<
     block_buffer_ = {};
   }
   record_passes(device, shaders);
-  return is_new;
-}
-
-bool OctahedralStore::create_array(gpu::Device &device, int format, int size_px, int layers)
-{
-  Array &array = arrays_[std::size_t(format)];
-  struct Kind {
-    std::string name;
-    gpu::Format format;
-  };
-  static const std::array<Kind, 3> kinds = {
-      {{"shadow_esm", gpu::Format::R32F}, {"shadow_esm_half", gpu::Format::R16F}, {"shadow_evsm", gpu::Format::RG32F}}};
-  const std::string &name = kinds[std::size_t(format)].name;
-  if (array.texture ? array.texture.desc().width == size_px && array.texture.desc().layers == layers : layers == 0) {
-    return false;
-  }
-  Array made;
-  if (layers > 0) {
-    made.texture = device.create_texture({.name = name,
-                                          .kind = gpu::TextureKind::Array,
-                                          .format = kinds[std::size_t(format)].format,
-                                          .width = size_px,
-                                          .height = size_px,
-                                          .layers = layers});
-  }
-  for (int layer = 0; layer < layers; layer++) {
-    made.framebuffers.push_back(device.create_framebuffer(
-        {.name = fmt::format("{} {}", name, layer), .colors = {{&made.texture, layer}}, .depth = {}}));
-  }
-  array = std::move(made);
-  return layers > 0;
+  return is_any_new;
 }
 
 void OctahedralStore::create_scratch(gpu::Device &device, int size_px, gpu::Format format)
@@ -183,7 +193,8 @@ void OctahedralStore::create_scratch(gpu::Device &device, int size_px, gpu::Form
 void OctahedralStore::record_passes(gpu::Device &device, ShaderCache &shaders)
 {
   const auto has = [&](EsmKernel kernel, EsmMethod method) {
-    return std::ranges::count(slots_, Slot{kernel, method}) > 0;
+    return std::ranges::any_of(slots_,
+                               [&](const Slot &slot) { return slot.kernel == kernel && slot.method == method; });
   };
   const auto group_of = [&](draw::Pass &pass, ShaderId id, bool is_needed) {
     pass.clear();
@@ -245,7 +256,7 @@ void OctahedralStore::record(gpu::CommandList &list, std::size_t index, const Es
     pass.record({}, list);
     list.end_pass();
   };
-  const gpu::Framebuffer &layer = array_of(index).framebuffers[std::size_t(data.layer)];
+  const gpu::Framebuffer &layer = arrays_[std::size_t(data.format)].framebuffer(*device_, data.layer);
   const float far = shared::esm_encoded(data.range, data.range, data.format);
   if (slots_[index].kernel != EsmKernel::Separable) {
     record_into(pass_of(slots_[index]), layer, far);
@@ -263,9 +274,9 @@ void OctahedralStore::bind(draw::ShadingGroup &group) const
   GNOMON_ASSERT(!slots_.empty(), "no lamp has an octahedral layer");
   // An array that no lamp asked for is not made, and not read.
   const gpu::Texture &some =
-      std::ranges::find_if(arrays_, [](const Array &array) { return bool(array.texture); })->texture;
+      std::ranges::find_if(arrays_, [](const LayerArray &array) { return bool(array.texture()); })->texture();
   const auto texture_of = [&](int format) -> const gpu::Texture & {
-    const gpu::Texture &texture = arrays_[std::size_t(format)].texture;
+    const gpu::Texture &texture = arrays_[std::size_t(format)].texture();
     return texture ? texture : some;
   };
   group.bind_uniform("esm_block", block_buffer_);
@@ -282,7 +293,7 @@ std::vector<const gpu::Texture *> OctahedralStore::textures() const
       textures.push_back(&texture);
     }
   };
-  std::ranges::for_each(arrays_, add, &Array::texture);
+  std::ranges::for_each(arrays_, add, &LayerArray::texture);
   std::ranges::for_each(scratch_, add, &Scratch::texture);
   return textures;
 }

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "shadow_cube.hh"
+
+#include "shadow_spot.hh"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace gnomon::eevee {
+
+// Columns. Each comment says what the face shows to the right, upwards and against its axis.
+const std::array<glm::mat4, 6> cubefacemat = {
+    glm::mat4({0, 0, -1, 0}, {0, -1, 0, 0}, {-1, 0, 0, 0}, {0, 0, 0, 1}),  // +X: -z, -y, -x
+    glm::mat4({0, 0, 1, 0}, {0, -1, 0, 0}, {1, 0, 0, 0}, {0, 0, 0, 1}),    // -X: z, -y, x
+    glm::mat4({1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}),    // +Y: x, z, -y
+    glm::mat4({1, 0, 0, 0}, {0, 0, 1, 0}, {0, -1, 0, 0}, {0, 0, 0, 1}),    // -Y: x, -z, y
+    glm::mat4({1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, -1, 0}, {0, 0, 0, 1}),   // +Z: x, -y, -z
+    glm::mat4({-1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}),   // -Z: -x, -y, z
+};
+
+std::array<draw::View, 6> shadow_cube_views(const glm::vec3 &position_ws, float near, int size_px)
+{
+  const float half_size = 1.0F / shared::cube_uv_scale(float(size_px));
+  const glm::mat4 clip_from_face =
+      draw::perspective(half_size, half_size, near, std::numeric_limits<float>::infinity());
+  glm::mat4 lamp_from_world(1.0F);
+  lamp_from_world[3] = glm::vec4(-position_ws, 1.0F);
+  std::array<draw::View, 6> views;
+  for (std::size_t face = 0; face < 6; face++) {
+    views[face] = draw::View(cubefacemat[face] * lamp_from_world, clip_from_face);
+  }
+  return views;
+}
+
+namespace {
+
+class CubeTechnique final : public ShadowTechnique {
+ public:
+  bool serves(const ShadowLamp &lamp, scene::ShadowKind kind) const override
+  {
+    const bool is_depth = kind == scene::ShadowKind::Hard || kind == scene::ShadowKind::Pcf;
+    const bool is_wide = lamp.kind == scene::LampKind::Spot && lamp.spot_outer_angle > spot_map_angle_max;
+    return is_depth && (lamp.kind == scene::LampKind::Point || is_wide);
+  }
+
+  int light_shadow_kind() const override
+  {
+    return SHADOW_CUBE;
+  }
+
+  Feature features(scene::ShadowKind kind) const override
+  {
+    return Feature::ShadowCube | (kind == scene::ShadowKind::Pcf ? Feature::ShadowPcf : Feature::None);
+  }
+
+  ShadowRequest request(const ShadowLamp &lamp, scene::ShadowKind /*kind*/,
+                        const ShadowSettings &settings) const override
+  {
+    return {.array = ShadowArrayId::Cubes,
+            .layer_count_max = 6,
+            .size_px = lamp.shadow.size.value_or(settings.cube_size_px)};
+  }
+
+  ShadowTexelKey texel_key(const ShadowLamp &lamp) const override
+  {
+    ShadowTexelKey key{.range = lamp.shadow_range(), .clip_start = lamp.shadow.clip_start};
+    // The faces' axes are the world's.
+    key.world_from_lamp[3] = lamp.world_from_lamp[3];
+    return key;
+  }
+
+  std::vector<draw::View> lamp_views(const ShadowSlot &slot) const override
+  {
+    const auto views = shadow_cube_views(slot.lamp.position_ws(), slot.near, slot.place.given.size_px);
+    return {views.begin(), views.end()};
+  }
+
+  /** Faces for which some visible point is on the inner side of each of the four planes that bound the face. */
+  LayerMask layers_needed(const ShadowSlot &slot, const VisibleRange &visible) const override
+  {
+    const glm::dvec3 position_ws(slot.lamp.position_ws());
+    // Bit i of each: some corner is on the inner side of the i-th plane.
+    std::array<std::uint32_t, 6> within{};
+    for (const glm::dvec3 &corner : visible.corners) {
+      const glm::dvec3 v = corner - position_ws;
+      const double slack = 1e-5 * (std::abs(v.x) + std::abs(v.y) + std::abs(v.z));
+      for (std::size_t face = 0; face < 6; face++) {
+        const std::size_t axis = face / 2;
+        const double along = (face % 2 == 0 ? v[int(axis)] : -v[int(axis)]) + slack;
+        const double a = v[int((axis + 1) % 3)];
+        const double b = v[int((axis + 2) % 3)];
+        within[face] |=
+            (along >= a ? 1U : 0U) | (along >= -a ? 2U : 0U) | (along >= b ? 4U : 0U) | (along >= -b ? 8U : 0U);
+      }
+    }
+    LayerMask faces = 0;
+    for (std::size_t face = 0; face < 6; face++) {
+      faces |= within[face] == 15U ? 1U << face : 0U;
+    }
+    return faces;
+  }
+
+  void write_block(const ShadowSlot &slot, shared::ShadowBlock &block) const override
+  {
+    const int size_px = slot.place.given.size_px;
+    shared::ShadowCubeData &data = block.cubes[slot.place.entry];
+    data.near = slot.near;
+    data.far = slot.lamp.shadow.clip_end.value_or(shadow_far_none);
+    data.texel_size = 2.0F / (float(size_px) * shared::cube_uv_scale(float(size_px)));
+    data.bias = slot.lamp.shadow.bias.value_or(1.0F);
+    data.layer = slot.place.first_layer;
+    data.face_mask = int(slot.drawn | slot.recorded_drawn);
+    data.filter_kind = slot.place.kind == scene::ShadowKind::Pcf ? SHADOW_FILTER_PCF : SHADOW_FILTER_HARD;
+    data.size_px = size_px;
+  }
+
+  void record(ShadowSlot &slot, LayerMask missing, const ShadowRecording &recording) const override
+  {
+    // A face without a caster is not looked up: see ShadowCubeData::face_mask.
+    record_depths(slot, missing, false, recording);
+  }
+
+  double texel_size(const ShadowSlot &slot, const ShadowInspection &inspection,
+                    const glm::dvec3 &position_ws) const override
+  {
+    const glm::dvec3 size = glm::abs(position_ws - glm::dvec3(slot.lamp.position_ws()));
+    return double(inspection.block.cubes[slot.place.entry].texel_size) * std::max({size.x, size.y, size.z});
+  }
+
+  ShadowLayers layers(const ShadowSlot &slot, const ShadowInspection &inspection) const override
+  {
+    ShadowLayers layers = depth_layers(slot, inspection);
+    layers.is_cube = true;
+    return layers;
+  }
+};
+
+}  // namespace
+
+const ShadowTechnique &shadow_cube_technique()
+{
+  static const CubeTechnique technique;
+  return technique;
+}
+
+}  // namespace gnomon::eevee

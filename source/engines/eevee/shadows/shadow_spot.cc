@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+#include "shadow_spot.hh"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace gnomon::eevee {
+
+const glm::mat4 texcomat({0.5F, 0, 0, 0}, {0, 0.5F, 0, 0}, {0, 0, 1, 0}, {0.5F, 0.5F, 0, 1});
+
+draw::View shadow_spot_view(const glm::mat4 &world_from_lamp, float outer_angle, float near, int size_px)
+{
+  const float border = std::min(2.0F * float(CUBE_BORDER_TEXELS) / float(size_px), 0.5F);
+  const float half_size = std::max(std::tan(outer_angle) / (1.0F - border), 1e-4F);
+  const glm::mat4 lamp_from_world(glm::inverse(glm::dmat4(world_from_lamp)));
+  return {lamp_from_world, draw::perspective(half_size, half_size, near, std::numeric_limits<float>::infinity())};
+}
+
+void write_map_data(const ShadowSlot &slot, shared::ShadowBlock &block)
+{
+  const int size_px = slot.place.given.size_px;
+  const bool has_layers = (slot.drawn | slot.recorded_drawn) != 0;
+  for (std::size_t i = 0; i < slot.views.size(); i++) {
+    shared::ShadowMapData &data = block.maps[std::size_t(slot.place.entry) + i];
+    const draw::View &view = slot.views[i];
+    const glm::mat4 &projection = view.clip_from_view();
+    data.texco_from_world = texcomat * view.clip_from_world();
+    data.texel_size = 2.0F / (float(size_px) * std::min(projection[0][0], projection[1][1]));
+    // Reversed: near / w where w is a distance, and (far - z) / (far - near) for a sun.
+    data.rounding = shared::DEPTH_ROUNDING / (view.is_perspective() ? projection[3][2] : projection[2][2]);
+    data.far = view.is_perspective() ? slot.lamp.shadow.clip_end.value_or(shadow_far_none) : shadow_far_none;
+    data.bias = slot.lamp.shadow.bias.value_or(1.0F);
+    data.layer = slot.place.first_layer + int(i);
+    data.cascade_count = has_layers ? int(slot.views.size() - i) : 0;
+    data.filter_kind = slot.place.kind == scene::ShadowKind::Pcf ? SHADOW_FILTER_PCF : SHADOW_FILTER_HARD;
+    data.size_px = size_px;
+  }
+  if (slot.views.empty()) {
+    // Without a map everything is lit.
+    block.maps[slot.place.entry].cascade_count = 0;
+  }
+}
+
+double map_texel_size(const ShadowSlot &slot, const shared::ShadowBlock &block, const glm::dvec3 &position_ws)
+{
+  const int first = slot.place.entry;
+  for (int i = first; i < first + block.maps[first].cascade_count; i++) {
+    const shared::ShadowMapData &map = block.maps[i];
+    const glm::dvec4 texco = glm::dmat4(map.texco_from_world) * glm::dvec4(position_ws, 1.0);
+    const glm::dvec2 uv = glm::dvec2(texco) / texco.w;
+    if (texco.w > 0.0 && std::min({uv.x, uv.y, 1.0 - uv.x, 1.0 - uv.y}) > 0.0) {
+      return double(map.texel_size) * texco.w;
+    }
+  }
+  return 0.0;
+}
+
+namespace {
+
+class SpotTechnique final : public ShadowTechnique {
+ public:
+  bool serves(const ShadowLamp &lamp, scene::ShadowKind kind) const override
+  {
+    const bool is_depth = kind == scene::ShadowKind::Hard || kind == scene::ShadowKind::Pcf;
+    return is_depth && lamp.kind == scene::LampKind::Spot && !(lamp.spot_outer_angle > spot_map_angle_max);
+  }
+
+  int light_shadow_kind() const override
+  {
+    return SHADOW_MAP;
+  }
+
+  Feature features(scene::ShadowKind kind) const override
+  {
+    return Feature::ShadowMap | (kind == scene::ShadowKind::Pcf ? Feature::ShadowPcf : Feature::None);
+  }
+
+  ShadowRequest request(const ShadowLamp &lamp, scene::ShadowKind /*kind*/,
+                        const ShadowSettings &settings) const override
+  {
+    return {
+        .array = ShadowArrayId::Maps, .layer_count_max = 1, .size_px = lamp.shadow.size.value_or(settings.map_size_px)};
+  }
+
+  ShadowTexelKey texel_key(const ShadowLamp &lamp) const override
+  {
+    return {lamp.world_from_lamp, lamp.spot_outer_angle, lamp.shadow_range(), lamp.shadow.clip_start};
+  }
+
+  std::vector<draw::View> lamp_views(const ShadowSlot &slot) const override
+  {
+    return {
+        shadow_spot_view(slot.lamp.world_from_lamp, slot.lamp.spot_outer_angle, slot.near, slot.place.given.size_px)};
+  }
+
+  /** The map, where anything visible may be within its four sides. */
+  LayerMask layers_needed(const ShadowSlot &slot, const VisibleRange &visible) const override
+  {
+    const glm::dvec3 position_ws(slot.lamp.position_ws());
+    const std::span sides = std::span(slot.views.front().frustum_planes_ws()).first(4);
+    const bool is_outside = std::ranges::any_of(sides, [&](const glm::vec4 &side) {
+      return std::ranges::all_of(visible.corners, [&](const glm::dvec3 &corner) {
+        // The plane's own rounding grows with the coordinates; a map that is drawn in vain does no harm.
+        const double slack = 1e-4 * (glm::length(corner) + glm::length(position_ws));
+        return glm::dot(glm::dvec3(side), corner) + double(side.w) < -slack;
+      });
+    });
+    return is_outside ? 0U : 1U;
+  }
+
+  void write_block(const ShadowSlot &slot, shared::ShadowBlock &block) const override
+  {
+    write_map_data(slot, block);
+  }
+
+  void record(ShadowSlot &slot, LayerMask missing, const ShadowRecording &recording) const override
+  {
+    // A map without a caster is not looked up: see ShadowMapData::cascade_count.
+    record_depths(slot, missing, false, recording);
+  }
+
+  double texel_size(const ShadowSlot &slot, const ShadowInspection &inspection,
+                    const glm::dvec3 &position_ws) const override
+  {
+    return map_texel_size(slot, inspection.block, position_ws);
+  }
+
+  ShadowLayers layers(const ShadowSlot &slot, const ShadowInspection &inspection) const override
+  {
+    return depth_layers(slot, inspection);
+  }
+};
+
+}  // namespace
+
+const ShadowTechnique &shadow_spot_technique()
+{
+  static const SpotTechnique technique;
+  return technique;
+}
+
+}  // namespace gnomon::eevee

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "shadow_sun.hh"
+
+#include "shadow_spot.hh"
+
+namespace gnomon::eevee {
+
+namespace {
+
+class SunTechnique final : public ShadowTechnique {
+ public:
+  bool serves(const ShadowLamp &lamp, scene::ShadowKind /*kind*/) const override
+  {
+    return lamp.kind == scene::LampKind::Sun;
+  }
+
+  int light_shadow_kind() const override
+  {
+    return SHADOW_MAP;
+  }
+
+  Feature features(scene::ShadowKind kind) const override
+  {
+    return Feature::ShadowMap | (kind == scene::ShadowKind::Pcf ? Feature::ShadowPcf : Feature::None);
+  }
+
+  ShadowRequest request(const ShadowLamp &lamp, scene::ShadowKind /*kind*/,
+                        const ShadowSettings &settings) const override
+  {
+    const int cascades = settings.cascades.count > 0 ? settings.cascades.count : cascade_count_max;
+    return {.array = ShadowArrayId::Maps,
+            .layer_count_max = cascades,
+            .entry_count = cascades,
+            .size_px = lamp.shadow.size.value_or(settings.map_size_px)};
+  }
+
+  ShadowTexelKey texel_key(const ShadowLamp &lamp) const override
+  {
+    ShadowTexelKey key{.world_from_lamp = lamp.world_from_lamp, .range = lamp.shadow_range()};
+    // A sun has a direction and no position.
+    key.world_from_lamp[3] = glm::vec4(0, 0, 0, 1);
+    return key;
+  }
+
+  void fit_views(ShadowSlot &slot, const ShadowView &view, const ShadowCasters &casters,
+                 const ShadowSettings &settings) const override
+  {
+    const std::vector<SunFit> fits = fit_sun(slot.lamp.world_from_lamp, view.view, view.visible, casters.list(),
+                                             slot.place.given.size_px, settings.cascades, view.pixel_size);
+    if (fits.size() != slot.fits.size()) {
+      slot.invalidate(~0U);
+    }
+    slot.fits.resize(fits.size());
+    slot.views.resize(fits.size());
+    for (std::size_t i = 0; i < fits.size(); i++) {
+      if ((slot.up_to_date >> i & 1U) == 0 || !still_fits(slot.fits[i], fits[i])) {
+        slot.fits[i] = fits[i];
+        slot.views[i] = fits[i].view;
+        slot.invalidate(1U << i);
+      }
+    }
+  }
+
+  LayerMask layers_needed(const ShadowSlot &slot, const VisibleRange & /*visible*/) const override
+  {
+    // The maps are fitted to what is visible.
+    return slot.all_layers();
+  }
+
+  void write_block(const ShadowSlot &slot, shared::ShadowBlock &block) const override
+  {
+    write_map_data(slot, block);
+  }
+
+  void record(ShadowSlot &slot, LayerMask missing, const ShadowRecording &recording) const override
+  {
+    // A cascade without a caster is looked up like the others, so that it has to be cleared.
+    record_depths(slot, missing, true, recording);
+  }
+
+  double texel_size(const ShadowSlot &slot, const ShadowInspection &inspection,
+                    const glm::dvec3 &position_ws) const override
+  {
+    return map_texel_size(slot, inspection.block, position_ws);
+  }
+
+  ShadowLayers layers(const ShadowSlot &slot, const ShadowInspection &inspection) const override
+  {
+    ShadowLayers layers = depth_layers(slot, inspection);
+    layers.projection = PROJECTION_ORTHOGRAPHIC;
+    const double top = slot.fits.empty() ? 0.0 : slot.fits.back().max.z;
+    for (const SunFit &fit : slot.fits) {
+      layers.near_far.emplace_back(top - fit.max.z, top - fit.min.z);
+    }
+    layers.shown = layers.near_far.empty() ? glm::vec2(0.0F) : layers.near_far.back();
+    return layers;
+  }
+};
+
+}  // namespace
+
+const ShadowTechnique &shadow_sun_technique()
+{
+  static const SunTechnique technique;
+  return technique;
+}
+
+}  // namespace gnomon::eevee

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+#include "shadow_technique.hh"
+
+#include "shadow_cube.hh"
+#include "shadow_octahedral.hh"
+#include "shadow_spot.hh"
+#include "shadow_sun.hh"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+namespace gnomon::eevee {
+
+std::span<const ShadowTechnique *const> shadow_techniques()
+{
+  static const std::array<const ShadowTechnique *, 4> techniques = {
+      &shadow_cube_technique(), &shadow_spot_technique(), &shadow_sun_technique(), &shadow_octahedral_technique()};
+  return techniques;
+}
+
+const ShadowTechnique &technique_of(const ShadowLamp &lamp, scene::ShadowKind kind)
+{
+  const auto found = std::ranges::find_if(
+      shadow_techniques(), [&](const ShadowTechnique *technique) { return technique->serves(lamp, kind); });
+  GNOMON_ASSERT(found != shadow_techniques().end(), "lamp '{}': no technique for its shadow", lamp.name);
+  return **found;
+}
+
+LayerMask touched_layers(const ShadowSlot &slot, const scene::Bounds &bounds_ws, const draw::CullingVolume &volume)
+{
+  const glm::vec3 position_ws = slot.lamp.position_ws();
+  const float range = slot.lamp.shadow_range();
+  if (!std::isinf(range) && distance_to(bounds_ws, position_ws) > range) {
+    return 0;
+  }
+  if (slot.views.size() == 6) {
+    const float half_size = 1.0F / shared::cube_uv_scale(float(slot.place.given.size_px));
+    return cube_face_mask({bounds_ws.min - position_ws, bounds_ws.max - position_ws}, half_size);
+  }
+  LayerMask layers = 0;
+  for (std::size_t i = 0; i < slot.views.size(); i++) {
+    layers |= slot.views[i].touches(volume) ? 1U << i : 0U;
+  }
+  return layers;
+}
+
+/** Move the near plane to where \a casters permit. \return whether it moved, or nothing depends on where it was. */
+static bool update_near(ShadowSlot &slot, ShadowCasters &casters)
+{
+  const glm::vec3 position_ws = slot.lamp.position_ws();
+  const float range = slot.lamp.shadow_range();
+  const auto is_in_range = [&](const scene::Bounds &box) { return distance_to(box, position_ws) <= range; };
+  if (slot.up_to_date != 0 && std::ranges::none_of(casters.changed(), is_in_range)) {
+    return false;
+  }
+  const std::optional<float> clip_start = slot.lamp.shadow.clip_start;
+  const float needed = clip_start ? *clip_start : lamp_near(position_ws, range, casters.list(), &casters.distances());
+  // A near plane before all casters serves; up to a factor of 2 it costs little precision.
+  if (slot.up_to_date != 0 && slot.near <= needed && slot.near >= 0.5F * needed) {
+    return false;
+  }
+  slot.near = needed;
+  return true;
+}
+
+void update_for_casters(ShadowSlot &slot, ShadowCasters &casters)
+{
+  LayerMask touched = 0;
+  for (const scene::Bounds &box : casters.changed()) {
+    touched |= touched_layers(slot, box, {box.center(), box.radius()});
+  }
+  slot.invalidate(slot.place.technique->changed_layers(touched));
+  if (slot.lamp.kind != scene::LampKind::Sun && update_near(slot, casters)) {
+    slot.views = slot.place.technique->lamp_views(slot);
+    slot.invalidate(~0U);
+  }
+}
+
+LayerMask record_depths(ShadowSlot &slot, LayerMask missing, bool is_empty_drawn, const ShadowRecording &recording)
+{
+  gpu::CommandList &list = recording.list;
+  const std::vector<Caster> &casters = recording.casters.list();
+  std::vector<std::uint8_t> caster_layers(casters.size());
+  LayerMask with_casters = 0;
+  for (std::size_t i = 0; i < casters.size(); i++) {
+    caster_layers[i] =
+        std::uint8_t(touched_layers(slot, casters[i].bounds_ws, recording.casters.volumes()[i]) & missing);
+    with_casters |= caster_layers[i];
+  }
+
+  shared::ShadowRenderBlock block{};
+  for (std::size_t i = 0; i < slot.views.size(); i++) {
+    block.clip_from_world[i] = slot.views[i].clip_from_world();
+  }
+  list.update(recording.render_buffer, slot.render_offset_bytes, std::as_bytes(std::span(&block, 1)));
+  recording.render_block = {recording.render_buffer.id(), slot.render_offset_bytes, sizeof(block)};
+
+  const auto record_instances = [&](LayerMask layers) {
+    std::ranges::for_each(recording.casters.calls(), &draw::InstanceCall::clear);
+    for (std::size_t i = 0; i < casters.size(); i++) {
+      for (LayerMask rest = caster_layers[i] & layers; rest != 0; rest &= rest - 1) {
+        casters[i].instances->add(casters[i].object, std::uint32_t(std::countr_zero(rest)));
+        recording.counters.caster_draws++;
+      }
+    }
+    // Casters nearer than the near plane are drawn on it, unless the lamp asks for them to be left out.
+    recording.pass.record(slot.views.front(), list,
+                          slot.lamp.shadow.clip_start ? gpu::State::DepthClamp : gpu::State::None);
+  };
+  const auto name = [&](std::string_view what) { return fmt::format("shadow of {}, {}", slot.lamp.name, what); };
+  const ShadowRequest &given = slot.place.given;
+  const std::string_view layer_name = given.array == ShadowArrayId::Maps ? "map" : "face";
+  const gpu::PassActions clear{.viewport_px = glm::ivec2(given.size_px)};
+  gpu::PassActions keep = clear;
+  keep.depth_load = gpu::LoadAction::Load;
+  const LayerMask drawn = is_empty_drawn ? missing : with_casters;
+  const bool is_one_pass = recording.layer_pass != LayerPass::Single && with_casters != 0;
+  // One clear of all layers is cheaper than one clear for each; but layers that stay must not be cleared.
+  const bool is_cleared_at_once = is_one_pass && drawn == slot.all_layers();
+  for (LayerMask rest = is_cleared_at_once ? 0 : drawn; rest != 0; rest &= rest - 1) {
+    const int layer = std::countr_zero(rest);
+    list.begin_pass(name(fmt::format("{} {}", layer_name, layer)),
+                    recording.array.framebuffer(recording.device, slot.place.first_layer + layer), clear);
+    if (recording.layer_pass == LayerPass::Single) {
+      record_instances(1U << layer);
+    }
+    list.end_pass();
+  }
+  if (is_one_pass) {
+    list.begin_pass(name("all layers"),
+                    recording.array.framebuffer(recording.device, slot.place.first_layer, int(slot.views.size())),
+                    is_cleared_at_once ? clear : keep);
+    record_instances(missing);
+    list.end_pass();
+  }
+  slot.recorded_drawn = drawn;
+  slot.recorded_up_to_date = missing;
+  if (drawn != 0) {
+    recording.counters.lamps_updated++;
+    recording.counters.faces_drawn += std::uint64_t(std::popcount(drawn));
+    recording.counters.faces_skipped += std::uint64_t(std::popcount(slot.all_layers() & ~drawn));
+  }
+  return drawn;
+}
+
+glm::vec3 reach_from(const glm::vec3 &position_ws, const scene::Bounds &bounds_ws)
+{
+  return glm::max(glm::abs(bounds_ws.min - position_ws), glm::abs(bounds_ws.max - position_ws));
+}
+
+ShadowLayers depth_layers(const ShadowSlot &slot, const ShadowInspection &inspection)
+{
+  ShadowLayers layers;
+  layers.count = int(slot.views.size());
+  layers.texture = layers.count > 0 ? &inspection.array.texture() : nullptr;
+  layers.first_layer = slot.place.first_layer;
+  layers.size_px = slot.place.given.size_px;
+  layers.drawn = slot.drawn;
+  if (slot.lamp.kind != scene::LampKind::Sun) {
+    const glm::vec3 reach = reach_from(slot.lamp.position_ws(), inspection.caster_bounds_ws);
+    layers.near_far = {{slot.near, std::numeric_limits<float>::max()}};
+    layers.shown = {slot.near, std::min(std::max({reach.x, reach.y, reach.z}), slot.lamp.shadow_range())};
+  }
+  return layers;
+}
+
+}  // namespace gnomon::eevee
