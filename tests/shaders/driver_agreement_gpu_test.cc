@@ -2,6 +2,7 @@
 // What glslang says of a shader's blocks, what the driver says, and what C++ writes into them.
 #include "eevee_blocks.hh"
 #include "eevee_shaders.hh"
+#include "shader_check_reflection.hh"
 #include "gpu_device_fixture.hh"
 #include "shader_files.hh"
 
@@ -167,7 +168,7 @@ class DriverAgreement : public test::GpuDeviceTest {
         SCOPED_TRACE(fmt::format("{} {}", desc.name, fmt::join(desc.defines, " ")));
         const std::vector<gpu::ShaderSource> stages = gpu::preprocess(desc, shaders::file);
         gpu::ShaderInterface interface;
-        ASSERT_NO_THROW(interface = gpu::reflect(desc.name, stages)) << "glslang";
+        ASSERT_NO_THROW(interface = shader_check::reflect(desc.name, stages)) << "glslang";
         const DriverProgram program(stages);
         ASSERT_TRUE(program.is_linked()) << device->description() << ":\n" << program.log();
         check(interface, program);

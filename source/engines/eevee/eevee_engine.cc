@@ -554,11 +554,12 @@ std::vector<StepTime> Engine::take_step_times(draw::Viewport &viewport) const
   return times;
 }
 
-std::vector<std::string> Engine::reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files) const
+std::vector<std::string> Engine::reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files,
+                                                gpu::ShaderReflection reflection) const
 {
   StorageList &stl = viewport.engine_data<Data>(*this).stl;
   stl.shadows.invalidate();
-  return stl.shaders.reload(viewport.device(), std::move(files));
+  return stl.shaders.reload(viewport.device(), std::move(files), std::move(reflection));
 }
 
 void Engine::invalidate_shadows(draw::Viewport &viewport) const

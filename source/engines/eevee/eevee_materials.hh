@@ -3,6 +3,8 @@
 
 #include "eevee_features.hh"
 
+#include "scene.hh"
+
 #include "eevee_material_shared.h"
 
 namespace gnomon::eevee {
