@@ -2,8 +2,8 @@
 // What glslang says of a shader's blocks, what the driver says, and what C++ writes into them.
 #include "eevee_blocks.hh"
 #include "eevee_shaders.hh"
-#include "shader_check_reflection.hh"
 #include "gpu_device_fixture.hh"
+#include "shader_check_reflection.hh"
 #include "shader_files.hh"
 
 #include <epoxy/gl.h>

@@ -2,6 +2,7 @@
 #include "eevee_test_scene.hh"
 
 #include "shader_check_reflection.hh"
+#include "shader_files.hh"
 
 #include <gtest/gtest.h>
 

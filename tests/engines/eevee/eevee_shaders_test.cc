@@ -38,17 +38,18 @@ TEST(InterfaceTables, StandInTheOrderOfTheIds)
   }
 }
 
-// The build tool reflects two kernels; here are more.
+// The build tool reflects other kernels than these.
 TEST(InterfaceTables, EqualAFreshReflectionOfEachVariantWithAnyKernel)
 {
   for (const ShaderDeclaration &declaration : shader_declarations()) {
     for (const Feature features : shader_variants(declaration)) {
       const gpu::ShaderInterface generated =
           interface_tables()[std::size_t(declaration.id)].interface_of(std::uint32_t(features));
-      const bool has_kernel = has(features, Feature::ShadowPcf);
-      for (const PcfKernel &kernel : has_kernel
-                                         ? std::vector<PcfKernel>{{.width = 3}, {.width = 1}, {.width = 0, .taps = 1}}
-                                         : std::vector<PcfKernel>{{}}) {
+      std::vector<PcfKernel> kernels = {{.width = 1}};
+      if (has(features, Feature::ShadowPcf)) {
+        kernels.push_back({.width = 0, .taps = 1});
+      }
+      for (const PcfKernel &kernel : kernels) {
         const gpu::ShaderDesc desc = shader_desc(declaration, features, kernel);
         EXPECT_EQ(generated, shader_check::reflect(desc.name, gpu::preprocess(desc, shaders::file)))
             << declaration.name << " " << std::uint32_t(features) << ", kernel " << kernel.width;
