@@ -7,15 +7,21 @@ cmake_minimum_required(VERSION 3.25)
 
 # The layers that each layer may use. A header belongs to the listed folder that contains it.
 set(source/gpu shaders)
+set(source/shader_check source/gpu shaders)
 set(source/draw source/gpu shaders)
 set(source/scene "")
 set(source/render_scene source/draw source/gpu source/scene shaders)
 set(source/engines/eevee source/render_scene source/draw source/gpu source/scene shaders)
+# A program of the build. The engine itself must not use shader_check.
+set(source/engines/eevee/interface_tool source/engines/eevee source/shader_check source/gpu shaders)
 set(source/reference source/scene shaders)
 set(source/measure source/engines/eevee source/render_scene source/reference source/draw source/gpu source/scene shaders)
-set(source/cli source/measure source/engines/eevee source/render_scene source/reference source/draw source/gpu source/scene shaders)
+set(source/cli source/measure source/engines/eevee source/render_scene source/reference source/draw source/shader_check source/gpu
+  source/scene shaders)
 set(shaders "")
-set(LAYERS source/gpu source/draw source/scene source/render_scene source/engines/eevee source/reference source/measure source/cli shaders)
+# A folder within another layer's folder comes after it.
+set(LAYERS source/gpu source/shader_check source/draw source/scene source/render_scene source/engines/eevee
+  source/engines/eevee/interface_tool source/reference source/measure source/cli shaders)
 
 set(VIOLATIONS 0)
 # violation(FILE INCLUDE WHY): reports a violation. INCLUDE: the text of the line.

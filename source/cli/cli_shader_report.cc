@@ -16,15 +16,15 @@ using nlohmann::json;
 
 /** Messages that say the same of the same line. */
 struct Group {
-  const gpu::CheckMessage *first = nullptr;
-  std::vector<const gpu::CheckMessage *> all;
+  const shader_check::CheckMessage *first = nullptr;
+  std::vector<const shader_check::CheckMessage *> all;
 };
 
 std::vector<Group> groups_of(const ShaderReport &report)
 {
-  using Key = std::tuple<std::string_view, int, gpu::Severity, std::string_view, std::string_view>;
+  using Key = std::tuple<std::string_view, int, shader_check::Severity, std::string_view, std::string_view>;
   std::map<Key, Group> groups;
-  for (const gpu::CheckMessage &message : report.messages) {
+  for (const shader_check::CheckMessage &message : report.messages) {
     Group &group = groups[Key(message.file, message.line, message.severity, message.rule, message.text)];
     group.first = group.first == nullptr ? &message : group.first;
     group.all.push_back(&message);
@@ -47,7 +47,7 @@ std::string where(const Group &group)
   std::set<std::string> shaders;
   std::set<std::string> targets;
   std::set<std::pair<std::string, std::string>> variants;
-  for (const gpu::CheckMessage *message : group.all) {
+  for (const shader_check::CheckMessage *message : group.all) {
     shaders.insert(message->shader);
     variants.emplace(message->shader, message->variant);
     targets.emplace(to_string(message->target));
@@ -62,7 +62,7 @@ std::string where(const Group &group)
   return fmt::format("{}; {}", what, join(targets, ", "));
 }
 
-std::size_t count(const std::vector<Group> &groups, gpu::Severity severity)
+std::size_t count(const std::vector<Group> &groups, shader_check::Severity severity)
 {
   return std::size_t(
       std::ranges::count_if(groups, [&](const Group &group) { return group.first->severity == severity; }));
@@ -90,7 +90,8 @@ std::string dump(const json &document)
 
 bool ShaderReport::has_errors() const
 {
-  return std::ranges::any_of(messages, [](const auto &message) { return message.severity == gpu::Severity::Error; });
+  return std::ranges::any_of(messages,
+                             [](const auto &message) { return message.severity == shader_check::Severity::Error; });
 }
 
 std::string to_text(const ShaderReport &report)
@@ -98,17 +99,17 @@ std::string to_text(const ShaderReport &report)
   const std::vector<Group> groups = groups_of(report);
   std::string text;
   for (const Group &group : groups) {
-    const gpu::CheckMessage &m = *group.first;
+    const shader_check::CheckMessage &m = *group.first;
     text +=
         fmt::format("{}:{}: {}: {} [{}] ({})\n", m.file, m.line, to_string(m.severity), m.text, m.rule, where(group));
   }
   std::set<std::string> targets;
-  for (const gpu::CheckTarget target : report.targets) {
+  for (const shader_check::CheckTarget target : report.targets) {
     targets.emplace(to_string(target));
   }
   text += fmt::format("{} programs, {} variants, {}: {} errors, {} warnings, {:.2f} s\n", report.program_count,
-                      report.variant_count, join(targets, " and "), count(groups, gpu::Severity::Error),
-                      count(groups, gpu::Severity::Warning), report.seconds);
+                      report.variant_count, join(targets, " and "), count(groups, shader_check::Severity::Error),
+                      count(groups, shader_check::Severity::Warning), report.seconds);
   return text;
 }
 
@@ -118,10 +119,10 @@ std::string to_json(const ShaderReport &report)
   json messages = json::array();
   for (const Group &group : groups) {
     json places = json::array();
-    for (const gpu::CheckMessage *m : group.all) {
+    for (const shader_check::CheckMessage *m : group.all) {
       places.push_back({{"shader", m->shader}, {"variant", m->variant}, {"target", to_string(m->target)}});
     }
-    const gpu::CheckMessage &m = *group.first;
+    const shader_check::CheckMessage &m = *group.first;
     messages.push_back({{"severity", to_string(m.severity)},
                         {"file", m.file},
                         {"line", m.line},
@@ -131,8 +132,8 @@ std::string to_json(const ShaderReport &report)
   }
   return dump({{"programs", report.program_count},
                {"variants", report.variant_count},
-               {"errors", count(groups, gpu::Severity::Error)},
-               {"warnings", count(groups, gpu::Severity::Warning)},
+               {"errors", count(groups, shader_check::Severity::Error)},
+               {"warnings", count(groups, shader_check::Severity::Warning)},
                {"seconds", report.seconds},
                {"messages", std::move(messages)}});
 }
@@ -140,12 +141,12 @@ std::string to_json(const ShaderReport &report)
 std::string to_sarif(const ShaderReport &report)
 {
   json rules = json::array();
-  for (const gpu::CheckRule &rule : gpu::check_rules()) {
+  for (const shader_check::CheckRule &rule : shader_check::check_rules()) {
     rules.push_back({{"id", rule.name}, {"shortDescription", {{"text", rule.purpose}}}});
   }
   json results = json::array();
   for (const Group &group : groups_of(report)) {
-    const gpu::CheckMessage &m = *group.first;
+    const shader_check::CheckMessage &m = *group.first;
     const json location = {
         {"physicalLocation", {{"artifactLocation", {{"uri", uri(m.file)}}}, {"region", {{"startLine", m.line}}}}}};
     results.push_back({{"ruleId", m.rule},

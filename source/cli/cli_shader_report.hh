@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gpu_shader_check.hh"
+#include "shader_check.hh"
 
 namespace gnomon::cli {
 
 /** The outcome of a check of several shaders. */
 struct ShaderReport {
-  std::vector<gpu::CheckMessage> messages;
+  std::vector<shader_check::CheckMessage> messages;
   std::size_t program_count = 0;
   std::size_t variant_count = 0;
-  std::vector<gpu::CheckTarget> targets;
+  std::vector<shader_check::CheckTarget> targets;
   double seconds = 0.0;
 
   [[nodiscard]] bool has_errors() const;

@@ -202,30 +202,28 @@ Batch Device::create_batch(const BatchDesc &desc)
   return {std::move(resource), range};
 }
 
-Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files)
+Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files, const ShaderReflection &reflection)
 {
   const std::vector<ShaderSource> stages = preprocess(desc, files);
+  ShaderInterface interface = reflection(desc.name, stages);
   const std::string key = ShaderDiskCache::key_of(stages, description());
-  std::optional<CachedShader> cached = shader_cache_.load(key);
-  const bool is_cached = cached.has_value();
-  if (!cached) {
-    cached = CachedShader{.interface = reflect(desc.name, stages)};
-  }
+  const std::optional<CachedShader> cached = shader_cache_.load(key);
   bool is_loaded = false;
   const std::string detail = fmt::format("{}", fmt::join(desc.defines, " "));
   Resource resource = make(ResourceKind::Shader, desc.name, detail, 0, [&](ResourceId id) {
-    is_loaded = is_cached && shader_load(id, desc, *cached);
+    is_loaded = cached && shader_load(id, desc, *cached);
     if (!is_loaded) {
       shader_create(id, desc, stages);
     }
   });
   if (!is_loaded) {
-    shader_binary(resource.id(), *cached);
-    shader_cache_.store(key, *cached);
+    CachedShader made;
+    shader_binary(resource.id(), made);
+    shader_cache_.store(key, made);
   }
   counters_.shaders_made++;
-  counters_.shaders_from_cache += is_cached;
-  return {std::move(resource), desc.name, std::move(cached->interface)};
+  counters_.shaders_from_cache += is_loaded;
+  return {std::move(resource), desc.name, std::move(interface)};
 }
 
 TimerQuery Device::create_timer_query(std::string name)

@@ -38,7 +38,7 @@ struct Counters {
   std::uint64_t triangles = 0;
   std::uint64_t shader_binds = 0;
   std::uint64_t shaders_made = 0;
-  /** Of shaders_made, those that the disk cache spared glslang. */
+  /** Of shaders_made, those whose program the driver took from the disk cache. */
   std::uint64_t shaders_from_cache = 0;
   std::uint64_t textures_made = 0;
   /** Bytes written to buffers, batches and textures. */
@@ -87,8 +87,9 @@ class Device {
   [[nodiscard]] Framebuffer create_framebuffer(const FramebufferDesc &desc);
   [[nodiscard]] Buffer create_buffer(const BufferDesc &desc);
   [[nodiscard]] Batch create_batch(const BatchDesc &desc);
-  /** Preprocesses, reflects with glslang, compiles. \throws Error whose message names file and line. */
-  [[nodiscard]] Shader create_shader(const ShaderDesc &desc, const ShaderFiles &files);
+  /** Preprocesses, asks \a reflection for the interface, compiles. \throws Error whose message names file and line. */
+  [[nodiscard]] Shader create_shader(const ShaderDesc &desc, const ShaderFiles &files,
+                                     const ShaderReflection &reflection);
   [[nodiscard]] TimerQuery create_timer_query(std::string name);
 
   /** Write now: before anything submitted later. */

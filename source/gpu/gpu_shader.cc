@@ -2,9 +2,9 @@
 #include "gpu_shader.hh"
 
 #include "gpu_error.hh"
+#include "gpu_shader_text.hh"
 
 #include <algorithm>
-#include <regex>
 #include <sstream>
 
 namespace gnomon::gpu {
@@ -41,19 +41,61 @@ const ShaderInterface::Member *ShaderInterface::find_push_constant(std::string_v
   return found == push_constant_members.end() ? nullptr : &*found;
 }
 
+namespace {
+
+/** A position in a source, as a compiler's message begins with it. */
+struct LogPosition {
+  int file = 0;
+  int line = 0;
+  /** Where it begins, and what follows it. */
+  std::size_t begin = 0;
+  std::string_view rest;
+};
+
+/** The position at \a begin: `FILE:LINE` (glslang, Mesa) or, where \a has_parentheses, `FILE(LINE)` (NVIDIA). */
+std::optional<LogPosition> log_position_at(std::string_view line, std::size_t begin, bool has_parentheses)
+{
+  TextScanner scanner(line.substr(begin));
+  const std::optional<int> file = scanner.take_number();
+  const bool is_parenthesis = has_parentheses && scanner.take("(");
+  if (!file || !(is_parenthesis || scanner.take(":"))) {
+    return std::nullopt;
+  }
+  const std::optional<int> number = scanner.take_number();
+  if (!number || (is_parenthesis && !scanner.take(")"))) {
+    return std::nullopt;
+  }
+  return LogPosition{*file, *number, begin, scanner.rest()};
+}
+
+/** The first position of \a line: at its start, or behind `ERROR: ` or `WARNING: `. */
+std::optional<LogPosition> log_position(std::string_view line)
+{
+  if (const auto position = log_position_at(line, 0, true)) {
+    return position;
+  }
+  for (const std::string_view mark : {"ERROR: ", "WARNING: "}) {
+    const std::size_t at = line.find(mark);
+    if (at != std::string_view::npos) {
+      if (const auto position = log_position_at(line, at + mark.size(), false)) {
+        return position;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::string ShaderSource::name_files(std::string_view log) const
 {
-  // glslang writes "ERROR: 2:15: …", Mesa "2:15(3): error: …".
-  static const std::regex position(R"((^|ERROR: |WARNING: )(\d+):(\d+))");
   std::istringstream lines{std::string(log)};
   std::string named;
   for (std::string line; std::getline(lines, line);) {
-    std::smatch match;
-    if (std::regex_search(line, match, position)) {
-      const std::size_t file = std::stoul(match[2]);
-      if (file < files.size()) {
-        line = match.prefix().str() + match[1].str() + files[file] + ":" + match[3].str() + match.suffix().str();
-      }
+    const std::optional<LogPosition> position = log_position(line);
+    if (position && std::size_t(position->file) < files.size()) {
+      line = fmt::format("{}{}:{}{}", std::string_view(line).substr(0, position->begin),
+                         files[std::size_t(position->file)], position->line, position->rest);
     }
     named += line + "\n";
   }
@@ -119,16 +161,13 @@ class Preprocessor {
 
   void append_line(const std::string &line, const std::string &path, int number, std::size_t file)
   {
-    static const std::regex include_line(R"rx(^\s*#\s*include\s+"([^"]+)"\s*(//.*)?$)rx");
-    static const std::regex version_line(R"(^\s*#\s*version\b.*)");
-    static const std::regex once_line(R"(^\s*#\s*pragma\s+once\b.*)");
-    std::smatch match;
-    if (std::regex_match(line, match, include_line)) {
-      const std::string named = match[1];
-      append_include(include_path_ ? include_path_(named, path) : named, path, number);
+    const std::string_view name = directive_of(line);
+    const std::string_view named = name == "include" ? included_name(line) : std::string_view();
+    if (!named.empty()) {
+      append_include(include_path_ ? include_path_(named, path) : std::string(named), path, number);
       append_position(number + 1, file);
     }
-    else if (std::regex_match(line, version_line)) {
+    else if (name == "version") {
       has_version_ = true;
       source_.text += line + "\n";
       for (const std::string &define : desc_.defines) {
@@ -137,8 +176,30 @@ class Preprocessor {
       append_position(number + 1, file);
     }
     else {
-      source_.text += (std::regex_match(line, once_line) ? "" : line) + "\n";
+      source_.text += (name == "pragma" && argument_of(line) == "once" ? "" : line) + "\n";
     }
+  }
+
+  /** Behind the name of the directive. */
+  static TextScanner behind_directive(std::string_view line)
+  {
+    TextScanner scanner(line);
+    scanner.skip_space().take("#");
+    scanner.skip_space().take_word();
+    return scanner.skip_space();
+  }
+  /** The word that follows the name of the directive. */
+  static std::string_view argument_of(std::string_view line)
+  {
+    return behind_directive(line).take_word();
+  }
+  /** NAMED of `#include "NAMED"`; empty where the line has another form, which the compiler reports. */
+  static std::string_view included_name(std::string_view line)
+  {
+    TextScanner scanner = behind_directive(line);
+    const bool has_quote = scanner.take("\"");
+    const std::string_view named = scanner.rest().substr(0, scanner.rest().find('"'));
+    return has_quote && scanner.take(named) && scanner.take("\"") && scanner.is_at_end() ? named : std::string_view();
   }
 
   void append_include(const std::string &path, const std::string &includer, int number)
@@ -179,33 +240,30 @@ class Preprocessor {
     return numbers;
   }
 
-  static std::string directive(const std::string &line)
+  /** The name that `#ifndef NAME` or `#define NAME`, as \a directive says, has alone behind it. */
+  static std::string_view guard_name(std::string_view line, std::string_view directive)
   {
-    static const std::regex DIRECTIVE(R"(^\s*#\s*(\w+).*)");
-    std::smatch match;
-    return std::regex_match(line, match, DIRECTIVE) ? match[1].str() : std::string();
+    TextScanner scanner = behind_directive(line);
+    const std::string_view name = scanner.take_word();
+    return directive_of(line) == directive && scanner.is_at_end() ? name : std::string_view();
   }
 
-  /** Line of an `#ifndef X` that holds always, because `#define X` follows it; past the end where there is none. */
+  /** Index of an `#ifndef X` that always holds, because `#define X` follows it; lines.size() where there is none. */
   static std::size_t include_guard(const std::vector<std::string> &lines)
   {
-    static const std::regex GUARD(R"(^\s*#\s*(ifndef|define)\s+(\w+)\s*(//.*)?$)");
     const auto next = [&](std::size_t i) {
-      while (i < lines.size() && directive(lines[i]).empty()) {
+      while (i < lines.size() && directive_of(lines[i]).empty()) {
         i++;
       }
       return i;
     };
     const std::size_t first = next(0);
     const std::size_t second = first < lines.size() ? next(first + 1) : first;
-    std::smatch ifndef;
-    std::smatch define;
-    if (second < lines.size() && std::regex_match(lines[first], ifndef, GUARD) &&
-        std::regex_match(lines[second], define, GUARD) && ifndef[1] == "ifndef" && define[1] == "define" &&
-        ifndef[2] == define[2]) {
-      return first;
+    if (second == lines.size()) {
+      return second;
     }
-    return lines.size();
+    const std::string_view name = guard_name(lines[first], "ifndef");
+    return !name.empty() && name == guard_name(lines[second], "define") ? first : lines.size();
   }
 
   /**
@@ -214,7 +272,7 @@ class Preprocessor {
    */
   bool follow_branch(const std::string &line, bool is_include_guard)
   {
-    const std::string name = directive(line);
+    const std::string_view name = directive_of(line);
     if (name == "if" || name == "ifdef" || name == "ifndef") {
       branches_.push_back({++branch_count_, is_include_guard});
     }

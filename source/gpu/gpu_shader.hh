@@ -6,15 +6,16 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace gnomon::gpu {
 
-/** Gives the text of a shader file by its path below `shaders/`; nothing where there is no such file. */
+/** Returns the text of a shader file by its path below `shaders/`; nothing if there is no such file. */
 using ShaderFiles = std::function<std::optional<std::string_view>(std::string_view path)>;
 
-/** The path that `#include "NAMED"` in the file \a includer means. */
+/** Returns the path that `#include "NAMED"` in the file \a includer refers to. */
 using IncludePath = std::function<std::string(std::string_view named, std::string_view includer)>;
 
 /** A shader as data. */
@@ -35,38 +36,61 @@ enum class BindingKind : std::uint8_t { UniformBlock, StorageBlock, Texture };
 /** The block of small per-group values; see ShaderInterface::push_constant_members. */
 inline constexpr std::string_view push_constant_block_name = "push_constant_block";
 
-/** What a shader reads, by name: reflected by glslang, so that it is the same whatever the driver. */
+/**
+ * The blocks, textures and push constants that a program reads, by name. glslang reflects them
+ * (shader_check_reflection.hh), so that they do not depend on the driver.
+ */
 struct ShaderInterface {
   struct Member {
     /** Of a block's member, arrays and structs resolved: `lights[0].color`. */
     std::string name;
     std::uint32_t offset_bytes = 0;
-    /** Up to the next member: padding included. */
+    /** Distance to the next member, so padding is included. */
     std::uint32_t size_bytes = 0;
+
+    bool operator==(const Member &) const = default;
   };
   struct Binding {
-    /** Of the block, not of an instance of it; of the sampler. */
+    /** The name of the block, not of its instance; or the name of the sampler. */
     std::string name;
     BindingKind kind = BindingKind::UniformBlock;
     /** `layout(binding = …)`. */
     int slot = 0;
     /** Blocks: std140 size. Textures: 0. */
     std::uint32_t size_bytes = 0;
-    /** Blocks: by offset; of an array, the first element only. */
+    /** Blocks: sorted by offset; of an array, the first element only. */
     std::vector<Member> members;
+
+    bool operator==(const Binding &) const = default;
   };
   /** Sorted by kind, then slot. The push-constant block is not among them. */
   std::vector<Binding> bindings;
   /** Members of the block push_constant_block_name. */
   std::vector<Member> push_constant_members;
-  /** 0: the shader has none. */
+  /** 0: the program has no push constants. */
   std::uint32_t push_constant_size_bytes = 0;
   /** The uniform slot that stands for push constants where the API has none. */
   int push_constant_slot = 0;
 
-  /** nullptr: the shader reads no such thing. */
+  bool operator==(const ShaderInterface &) const = default;
+
+  /** nullptr: the program reads nothing of this name. */
   [[nodiscard]] const Binding *find(BindingKind kind, std::string_view name) const;
   [[nodiscard]] const Member *find_push_constant(std::string_view name) const;
+};
+
+/** The layout of a block as C++ has it; shader_check compares it with GLSL's. */
+struct BlockLayout {
+  struct Field {
+    /** As in ShaderInterface::Member; of an array the first element: `light_data.lights[0].color`. */
+    std::string_view name;
+    std::size_t offset_bytes;
+  };
+  /** The name of the block in GLSL. */
+  std::string_view name;
+  /** Of a storage block that is an array: the size of one entry. */
+  std::size_t size_bytes;
+  std::span<const Field> fields;
 };
 
 /** A linked program. */
@@ -96,14 +120,14 @@ enum class ShaderStage : std::uint8_t { Vertex, Geometry, Fragment };
 
 [[nodiscard]] std::string_view to_string(ShaderStage stage);
 
-/** One stage with its includes in place: what glslang and the driver both compile. */
+/** One stage with its includes in place. glslang and the driver both compile this text. */
 struct ShaderSource {
   ShaderStage stage = ShaderStage::Vertex;
   std::string text;
   /** Source string number in `#line` → path. */
   std::vector<std::string> files;
 
-  /** \a log with `N:LINE` at the start of a message replaced by `FILE:LINE`. */
+  /** \a log with the position of each message, `N:LINE` or `N(LINE)`, replaced by `FILE:LINE`. */
   [[nodiscard]] std::string name_files(std::string_view log) const;
 };
 
@@ -122,8 +146,8 @@ struct SourceError : Error {
 };
 
 /**
- * Put includes and defines in place. Without \a include_path, `#include "PATH"` takes a path below `shaders/`. A file
- * is seen once a stage, so that headers need no guard and a cycle ends.
+ * Put includes and defines in place. Without \a include_path, the path in `#include "PATH"` is relative to `shaders/`.
+ * Each stage includes a file once, so that headers need no guard and a cycle ends.
  *
  * \throws SourceError for an include that does not exist and for a stage without `#version`; Error for a stage's file
  * that does not exist.
@@ -132,10 +156,10 @@ struct SourceError : Error {
                                                    const IncludePath &include_path = {});
 
 /**
- * Compile and link with glslang for OpenGL 4.5 and read the interface.
- *
- * \throws Error with glslang's message, files named; also for a slot that two bindings of one kind share.
+ * Returns the interface of the program \a name with these \a stages, or throws Error. A table that the build generates
+ * gives it for an engine's own shaders (gpu_interface_table.hh). For shaders that are known at run time only, pass
+ * shader_check::reflect, which needs the library gnomon::shader_check.
  */
-[[nodiscard]] ShaderInterface reflect(std::string_view name, const std::vector<ShaderSource> &stages);
+using ShaderReflection = std::function<ShaderInterface(std::string_view name, const std::vector<ShaderSource> &stages)>;
 
 }  // namespace gnomon::gpu

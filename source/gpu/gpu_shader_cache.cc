@@ -17,62 +17,24 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/** Of the file's form; another number's files are not read. */
-constexpr std::string_view magic = "gnomon shader 1\n";
+/** The number is the file format's version. Files of another version are not read. */
+constexpr std::string_view magic = "gnomon shader 2\n";
 
 std::uint64_t checksum(std::span<const std::uint8_t> bytes)
 {
   return XXH3_64bits(bytes.data(), bytes.size());
 }
 
-nlohmann::json to_json(const ShaderInterface::Member &member)
-{
-  return {member.name, member.offset_bytes, member.size_bytes};
-}
-
-nlohmann::json to_json(const std::vector<ShaderInterface::Member> &members)
-{
-  nlohmann::json json = nlohmann::json::array();
-  for (const ShaderInterface::Member &member : members) {
-    json.push_back(to_json(member));
-  }
-  return json;
-}
-
-std::vector<ShaderInterface::Member> members_from(const nlohmann::json &json)
-{
-  std::vector<ShaderInterface::Member> members;
-  for (const nlohmann::json &member : json) {
-    members.push_back({member.at(0), member.at(1), member.at(2)});
-  }
-  return members;
-}
-
 nlohmann::json to_json(const CachedShader &shader)
 {
-  nlohmann::json bindings = nlohmann::json::array();
-  for (const ShaderInterface::Binding &binding : shader.interface.bindings) {
-    bindings.push_back({binding.name, int(binding.kind), binding.slot, binding.size_bytes, to_json(binding.members)});
-  }
   const auto *bytes = reinterpret_cast<const std::uint8_t *>(shader.binary.data());
-  return {{"bindings", bindings},
-          {"push_members", to_json(shader.interface.push_constant_members)},
-          {"push_size", shader.interface.push_constant_size_bytes},
-          {"push_slot", shader.interface.push_constant_slot},
-          {"binary_format", shader.binary_format},
+  return {{"binary_format", shader.binary_format},
           {"binary", nlohmann::json::binary(std::vector<std::uint8_t>(bytes, bytes + shader.binary.size()))}};
 }
 
 CachedShader from_json(const nlohmann::json &json)
 {
   CachedShader shader;
-  for (const nlohmann::json &binding : json.at("bindings")) {
-    shader.interface.bindings.push_back({binding.at(0), BindingKind(binding.at(1).get<int>()), binding.at(2),
-                                         binding.at(3), members_from(binding.at(4))});
-  }
-  shader.interface.push_constant_members = members_from(json.at("push_members"));
-  shader.interface.push_constant_size_bytes = json.at("push_size");
-  shader.interface.push_constant_slot = json.at("push_slot");
   shader.binary_format = json.at("binary_format");
   const auto &binary = json.at("binary").get_binary();
   const auto *bytes = reinterpret_cast<const std::byte *>(binary.data());
@@ -122,7 +84,7 @@ std::optional<CachedShader> ShaderDiskCache::load(const std::string &key) const
 
 void ShaderDiskCache::store(const std::string &key, const CachedShader &shader) const
 {
-  if (folder_.empty()) {
+  if (folder_.empty() || shader.binary.empty()) {
     return;
   }
   const std::vector<std::uint8_t> body = nlohmann::json::to_cbor(to_json(shader));

@@ -8,11 +8,9 @@
 
 namespace gnomon::gpu {
 
-/** What compiling a shader came to, without compiling it again. */
+/** A compiled program as the driver returns it. */
 struct CachedShader {
-  ShaderInterface interface {
-  };
-  /** The driver's own name for the form of `binary`; 0 with an empty binary: the driver gave none. */
+  /** The driver's own number for the format of `binary`; 0 with an empty binary: the driver returned none. */
   std::uint32_t binary_format = 0;
   std::vector<std::byte> binary{};
 };
@@ -33,6 +31,7 @@ class ShaderDiskCache {
   [[nodiscard]] static std::string key_of(const std::vector<ShaderSource> &stages, std::string_view driver);
 
   [[nodiscard]] std::optional<CachedShader> load(const std::string &key) const;
+  /** A shader without a binary is not stored. */
   void store(const std::string &key, const CachedShader &shader) const;
 
  private:

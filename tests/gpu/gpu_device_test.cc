@@ -139,11 +139,12 @@ TEST(Device, RefusesAShaderThatIsNoneAndMakesNothing)
   const auto device = create_null_device();
   const test::ShaderTexts texts{{{"v", "#version 450 core\nvoid main() { gl_Position = nothing; }\n"},
                                  {"f", "#version 450 core\nvoid main() {}\n"}}};
-  expect_refused(*device,
-                 [&] {
-                   static_cast<void>(device->create_shader({"odd", "v", "", "f", {}}, texts.files()));
-                 },
-                 {"shader 'odd'", "vertex", "v:2", "nothing"});
+  expect_refused(
+      *device,
+      [&] {
+        static_cast<void>(device->create_shader({"odd", "v", "", "f", {}}, texts.files(), shader_check::reflect));
+      },
+      {"shader 'odd'", "vertex", "v:2", "nothing"});
 }
 
 TEST(Device, BatchesStandApartInThePool)

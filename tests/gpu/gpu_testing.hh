@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gpu_read.hh"
+#include "shader_check_reflection.hh"
 #include "shader_files.hh"
 
 #include <glm/gtc/packing.hpp>
@@ -56,7 +57,8 @@ inline gpu::Shader make_shader(gpu::Device &device, const std::string &name, con
 {
   const std::string head = "#version 450 core\n#include \"shared/slots_shared.h\"\n";
   const ShaderTexts texts{{{"vert", head + vertex}, {"geom", head + geometry}, {"frag", head + fragment}}};
-  return device.create_shader({name, "vert", geometry.empty() ? "" : "geom", "frag", {}}, texts.files());
+  return device.create_shader({name, "vert", geometry.empty() ? "" : "geom", "frag", {}}, texts.files(),
+                              shader_check::reflect);
 }
 
 /** Vertices are clip coordinates; hands on what the draw's instance holds. */

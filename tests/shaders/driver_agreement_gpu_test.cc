@@ -3,6 +3,7 @@
 #include "eevee_blocks.hh"
 #include "eevee_shaders.hh"
 #include "gpu_device_fixture.hh"
+#include "shader_check_reflection.hh"
 #include "shader_files.hh"
 
 #include <epoxy/gl.h>
@@ -167,7 +168,7 @@ class DriverAgreement : public test::GpuDeviceTest {
         SCOPED_TRACE(fmt::format("{} {}", desc.name, fmt::join(desc.defines, " ")));
         const std::vector<gpu::ShaderSource> stages = gpu::preprocess(desc, shaders::file);
         gpu::ShaderInterface interface;
-        ASSERT_NO_THROW(interface = gpu::reflect(desc.name, stages)) << "glslang";
+        ASSERT_NO_THROW(interface = shader_check::reflect(desc.name, stages)) << "glslang";
         const DriverProgram program(stages);
         ASSERT_TRUE(program.is_linked()) << device->description() << ":\n" << program.log();
         check(interface, program);

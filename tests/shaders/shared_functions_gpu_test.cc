@@ -33,8 +33,9 @@ class SharedFunctionGpu : public GpuDeviceTest, public testing::WithParamInterfa
     const auto count = sweep().arguments.size();
     const int height = int((count + width_px - 1) / width_px);
     const ShaderTexts texts{{{"frag", fragment_text(expression)}}};
-    const gpu::Shader shader = device->create_shader(
-        {std::string(sweep().name), "draw/draw_fullscreen_vert.glsl", "", "frag", {}}, texts.files());
+    const gpu::Shader shader =
+        device->create_shader({std::string(sweep().name), "draw/draw_fullscreen_vert.glsl", "", "frag", {}},
+                              texts.files(), shader_check::reflect);
 
     std::vector<Arguments<float>> arguments = sweep().arguments;
     arguments.resize(std::size_t(width_px) * std::size_t(height));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gpu_shader_check.hh"
+#include "gpu_shader.hh"
 
 namespace gnomon::eevee {
 

@@ -243,11 +243,12 @@ std::vector<StepTime> Engine::take_step_times(draw::Viewport &viewport) const
   return times;
 }
 
-std::vector<std::string> Engine::reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files)
+std::vector<std::string> Engine::reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files,
+                                                gpu::ShaderReflection reflection)
 {
   viewport.engine_data<Data>(*this).stl.shadows.invalidate();
   shaders_revision_++;
-  return shaders_.reload(viewport.device(), std::move(files));
+  return shaders_.reload(viewport.device(), std::move(files), std::move(reflection));
 }
 
 void Engine::invalidate_shadows(draw::Viewport &viewport) const

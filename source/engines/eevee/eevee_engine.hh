@@ -133,7 +133,8 @@ class Engine final : public draw::Engine {
     return shadows(viewport).counters();
   }
   /** For long-running hosts, when a shader file was edited: ShaderCache::reload; then draw::Viewport::sync. */
-  std::vector<std::string> reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files);
+  std::vector<std::string> reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files,
+                                          gpu::ShaderReflection reflection);
   /** Draw each shadow again, up to date or not: for who measures what that costs. */
   void invalidate_shadows(draw::Viewport &viewport) const;
   /** The recorded passes as text: none before a draw that saw anything. */

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "scene.hh"
-
 #include <cstdint>
 #include <string>
 #include <vector>

@@ -1,134 +1,27 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_shaders.hh"
 
-#include <fmt/format.h>
-
-#include <array>
+#include "eevee_interfaces.hh"
+#include "shader_files.hh"
 
 namespace gnomon::eevee {
 
 namespace {
 
-constexpr std::array<FeatureDefine, 10> feature_table = {
-    {{Feature::Light, "USE_LIGHT", "something shines"},
-     {Feature::Punctual, "USE_PUNCTUAL", "a point or spot lamp shines"},
-     {Feature::Specular, "USE_SPECULAR", "a material reflects specularly"},
-     {Feature::ShadowCube, "USE_SHADOW_CUBE", "a point lamp or a wide spot casts shadows"},
-     {Feature::ShadowMap, "USE_SHADOW_MAP", "a sun or a spot casts shadows"},
-     {Feature::ShadowPcf, "USE_SHADOW_PCF", "a shadow is filtered by percentage-closer lookups"},
-     {Feature::ShadowEsm, "USE_SHADOW_ESM", "a point lamp or a spot casts exponential shadows"},
-     {Feature::BaseColorTexture, "USE_BASE_COLOR_TEXTURE", "a material's base colour has a texture"},
-     {Feature::AlphaMask, "USE_ALPHA_MASK", "a texture's alpha cuts a material out"},
-     {Feature::ShadowEvsm, "USE_SHADOW_EVSM", "a point lamp or a spot casts exponential variance shadows"}}};
-
-/** Those that say nothing without light. */
-constexpr Feature light_features = Feature::Light | Feature::Punctual | Feature::Specular | Feature::ShadowCube |
-                                   Feature::ShadowMap | Feature::ShadowPcf | Feature::ShadowEsm | Feature::ShadowEvsm;
-/** Those that the visibility of a lamp depends on. */
-constexpr Feature shadow_features = Feature::Light | Feature::Punctual | Feature::ShadowCube | Feature::ShadowMap |
-                                    Feature::ShadowPcf | Feature::ShadowEsm | Feature::ShadowEvsm;
+/** Features that make a difference without light, too. */
 constexpr Feature material_features = Feature::BaseColorTexture | Feature::AlphaMask;
 
-constexpr std::array<ShaderDeclaration, 17> declarations = {{
-    {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
-     Feature::AlphaMask, Feature::None, "depth of what is seen, so that each pixel is lit once"},
-    {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
-     Feature::AlphaMask, Feature::None, "depth of what a lamp sees, a layer a pass"},
-    {ShaderId::ShadowLayered, "eevee_shadow_layered", "eevee/eevee_shadow_layered_vert.glsl", "",
-     "eevee/eevee_depth_frag.glsl", Feature::AlphaMask, Feature::None,
-     "depth of what a lamp sees, all layers in one pass"},
-    {ShaderId::ShadowGeometry, "eevee_shadow_geometry", "eevee/eevee_shadow_geometry_vert.glsl",
-     "eevee/eevee_shadow_geometry_geom.glsl", "eevee/eevee_depth_frag.glsl", Feature::AlphaMask, Feature::None,
-     "the same where vertex shaders cannot choose a layer"},
-    {ShaderId::Lit, "eevee_lit", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_lit_frag.glsl",
-     light_features | Feature::BaseColorTexture, Feature::None, "light that surfaces send to the viewer"},
-    {ShaderId::Probe, "eevee_probe", "eevee/eevee_surface_vert.glsl", "", "eevee/eevee_probe_frag.glsl",
-     shadow_features, Feature::Light, "position, normal and visibility of one lamp, for who judges them"},
-    {ShaderId::Film, "eevee_film", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_film_frag.glsl", Feature::None,
-     Feature::None, "sum of several samples a pixel"},
-    {ShaderId::Tonemap, "eevee_tonemap", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_tonemap_frag.glsl",
-     Feature::None, Feature::None, "radiance as a display shows it"},
-    {ShaderId::EsmDistance, "eevee_esm_distance", "draw/draw_fullscreen_vert.glsl", "",
-     "eevee/eevee_esm_distance_frag.glsl", Feature::None, Feature::None, "distances from a lamp on an octahedral map"},
-    {ShaderId::EsmDisk4, "eevee_esm_disk4", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_esm_disk_frag.glsl",
-     Feature::None, Feature::None, "exponential shadow map of four taps", "ESM_TAPS 4"},
-    {ShaderId::EsmDisk32, "eevee_esm_disk32", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_esm_disk_frag.glsl",
-     Feature::None, Feature::None, "exponential shadow map of 32 taps", "ESM_TAPS 32"},
-    {ShaderId::EsmSeparable, "eevee_esm_separable", "draw/draw_fullscreen_vert.glsl", "",
-     "eevee/eevee_esm_separable_frag.glsl", Feature::None, Feature::None,
-     "exponential shadow map of a Gaussian in two passes"},
-    {ShaderId::EvsmDisk4, "eevee_evsm_disk4", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_esm_disk_frag.glsl",
-     Feature::None, Feature::None, "exponential variance shadow map of four taps", "EVSM_TAPS 4"},
-    {ShaderId::EvsmDisk32, "eevee_evsm_disk32", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_esm_disk_frag.glsl",
-     Feature::None, Feature::None, "exponential variance shadow map of 32 taps", "EVSM_TAPS 32"},
-    {ShaderId::EvsmSeparable, "eevee_evsm_separable", "draw/draw_fullscreen_vert.glsl", "",
-     "eevee/eevee_esm_separable_frag.glsl", Feature::None, Feature::None,
-     "exponential variance shadow map of a Gaussian in two passes", "EVSM"},
-    {ShaderId::DebugShadow, "eevee_debug_shadow", "draw/draw_fullscreen_vert.glsl", "",
-     "eevee/eevee_debug_shadow_frag.glsl", Feature::None, Feature::None, "layers of a shadow for people to look at"},
-    {ShaderId::DebugCascades, "eevee_debug_cascades", "eevee/eevee_surface_vert.glsl", "",
-     "eevee/eevee_debug_cascades_frag.glsl", Feature::Light, Feature::Light,
-     "which cascades of a sun each pixel reads"},
-}};
-
-/** Whether a scene can ask for this mask, and no smaller mask gives the same program. */
-bool is_possible(Feature features)
+/** The interface of a variant from the table that the build generated. */
+gpu::ShaderReflection generated_reflection(ShaderId id, Feature features)
 {
-  if (!has(features, Feature::Light)) {
-    return (features & light_features) == Feature::None;
-  }
-  // Cubes and exponential maps are for point lamps and spots; what is filtered is a cube or a map.
-  return (has(features, Feature::Punctual) || !has(features, Feature::ShadowCube | Feature::ShadowEsm)) &&
-         (has(features, Feature::ShadowCube | Feature::ShadowMap) || !has(features, Feature::ShadowPcf)) &&
-         (has(features, Feature::ShadowEsm) || !has(features, Feature::ShadowEvsm));
+  return [id, features](std::string_view, const std::vector<gpu::ShaderSource> &) {
+    return interface_tables()[std::size_t(id)].interface_of(std::uint32_t(features));
+  };
 }
 
 }  // namespace
 
-std::span<const FeatureDefine> feature_defines()
-{
-  return feature_table;
-}
-
-std::span<const ShaderDeclaration> shader_declarations()
-{
-  return declarations;
-}
-
-std::vector<Feature> shader_variants(const ShaderDeclaration &declaration)
-{
-  std::vector<Feature> variants;
-  for (std::uint32_t mask = 0; mask < 1U << feature_table.size(); mask++) {
-    const auto features = Feature(mask);
-    if ((features & declaration.features) == features && (features & declaration.required) == declaration.required &&
-        is_possible(features)) {
-      variants.push_back(features);
-    }
-  }
-  return variants;
-}
-
-gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature features, const PcfKernel &pcf)
-{
-  gpu::ShaderDesc desc;
-  desc.name = declaration.name;
-  desc.vertex_path = declaration.vertex_path;
-  desc.geometry_path = declaration.geometry_path;
-  desc.fragment_path = declaration.fragment_path;
-  if (!declaration.define.empty()) {
-    desc.defines.emplace_back(declaration.define);
-  }
-  for (const FeatureDefine &define : feature_table) {
-    if (has(features & declaration.features, define.feature)) {
-      desc.defines.emplace_back(define.define);
-    }
-  }
-  if (has(features & declaration.features, Feature::ShadowPcf)) {
-    desc.defines.push_back(fmt::format("SHADOW_PCF_WIDTH {}", pcf.width));
-    desc.defines.push_back(fmt::format("SHADOW_PCF_TAPS {}", pcf.taps));
-  }
-  return desc;
-}
+ShaderCache::ShaderCache() : files_(shaders::file) {}
 
 void ShaderCache::set_pcf(const PcfKernel &pcf)
 {
@@ -140,14 +33,21 @@ void ShaderCache::set_pcf(const PcfKernel &pcf)
 
 const gpu::Shader &ShaderCache::get(gpu::Device &device, ShaderId id, Feature features)
 {
-  const ShaderDeclaration &declaration = declarations.at(std::size_t(id));
+  const ShaderDeclaration &declaration = shader_declarations()[std::size_t(id)];
   const Feature reachable = has(features, Feature::Light) ? features : features & material_features;
-  const std::pair key(id, reachable & declaration.features);
+  const Key key(id, reachable & declaration.features);
   const auto found = shaders_.find(key);
   if (found != shaders_.end()) {
     return found->second;
   }
-  return shaders_[key] = device.create_shader(shader_desc(declaration, key.second, pcf_), files_);
+  return shaders_[key] = make(device, key);
+}
+
+gpu::Shader ShaderCache::make(gpu::Device &device, const Key &key) const
+{
+  const auto &[id, features] = key;
+  return device.create_shader(shader_desc(shader_declarations()[std::size_t(id)], features, pcf_), files_,
+                              reflection_ ? reflection_ : generated_reflection(id, features));
 }
 
 std::vector<Feature> ShaderCache::made(ShaderId id) const
@@ -161,13 +61,20 @@ std::vector<Feature> ShaderCache::made(ShaderId id) const
   return variants;
 }
 
-std::vector<std::string> ShaderCache::reload(gpu::Device &device, gpu::ShaderFiles files)
+std::vector<std::string> ShaderCache::reload(gpu::Device &device, gpu::ShaderFiles files,
+                                             gpu::ShaderReflection reflection)
 {
+  if (!reflection) {
+    return {
+        "shaders are not reloaded: the host gives no reflection function; shader_check::reflect of the library "
+        "gnomon::shader_check is one"};
+  }
   files_ = std::move(files);
+  reflection_ = std::move(reflection);
   std::vector<std::string> failures;
   for (auto &[key, shader] : shaders_) {
     try {
-      shader = device.create_shader(shader_desc(declarations.at(std::size_t(key.first)), key.second, pcf_), files_);
+      shader = make(device, key);
     }
     catch (const gpu::Error &error) {
       failures.emplace_back(error.what());

@@ -2,6 +2,7 @@
 // Light and shadow against closed forms, on the driver.
 #include "eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
+#include "shader_check_reflection.hh"
 #include "shader_files.hh"
 
 #include <gtest/gtest.h>
@@ -391,9 +392,10 @@ TEST_F(EngineGpuTest, AnEditedShaderIsReloadedAndABadEditKeepsTheLastGoodOne)
   const auto reload = [&](const std::string &replacement) {
     edited = original;
     edited.replace(edited.find(line), line.size(), replacement);
-    const auto failures = renderer.engine.reload_shaders(renderer.viewport, [&](std::string_view file) {
+    const gpu::ShaderFiles files = [&](std::string_view file) {
       return file == path ? std::optional<std::string_view>(edited) : shaders::file(file);
-    });
+    };
+    const auto failures = renderer.engine.reload_shaders(renderer.viewport, files, shader_check::reflect);
     renderer.sync();
     return failures;
   };

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_test_scene.hh"
 
+#include "shader_check_reflection.hh"
+#include "shader_files.hh"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -250,7 +253,7 @@ TEST_F(EngineTest, ShadowsAreDrawnAgainWithReloadedShaders)
   Renderer renderer(*device, scene, {16, 16}, {.shadow = {.cube_size_px = 16}});
   renderer.draw(camera);
   const std::uint64_t before = renderer.engine.report(renderer.viewport).shadow_counters.lamps_updated;
-  EXPECT_TRUE(renderer.engine.reload_shaders(renderer.viewport, shaders::file).empty());
+  EXPECT_TRUE(renderer.engine.reload_shaders(renderer.viewport, shaders::file, shader_check::reflect).empty());
   renderer.sync();
   renderer.draw(camera);
   EXPECT_EQ(renderer.engine.report(renderer.viewport).shadow_counters.lamps_updated, before + 1);

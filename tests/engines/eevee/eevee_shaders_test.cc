@@ -2,6 +2,9 @@
 #include "eevee_shaders.hh"
 
 #include "eevee_blocks.hh"
+#include "eevee_interfaces.hh"
+#include "shader_check_blocks.hh"
+#include "shader_check_reflection.hh"
 #include "shader_files.hh"
 #include "shared_types.h"
 
@@ -15,7 +18,7 @@ namespace {
 gpu::ShaderInterface interface_of(const ShaderDeclaration &declaration, Feature features)
 {
   const gpu::ShaderDesc desc = shader_desc(declaration, features);
-  return gpu::reflect(desc.name, gpu::preprocess(desc, shaders::file));
+  return shader_check::reflect(desc.name, gpu::preprocess(desc, shaders::file));
 }
 
 TEST(ShaderDeclarations, StandInTheOrderOfTheirIds)
@@ -23,6 +26,35 @@ TEST(ShaderDeclarations, StandInTheOrderOfTheirIds)
   for (std::size_t i = 0; i < shader_declarations().size(); i++) {
     EXPECT_EQ(std::size_t(shader_declarations()[i].id), i);
     EXPECT_FALSE(shader_declarations()[i].purpose.empty());
+  }
+}
+
+TEST(InterfaceTables, StandInTheOrderOfTheIds)
+{
+  ASSERT_EQ(interface_tables().size(), shader_declarations().size());
+  for (std::size_t i = 0; i < shader_declarations().size(); i++) {
+    EXPECT_EQ(interface_tables()[i].name, shader_declarations()[i].name);
+    EXPECT_EQ(interface_tables()[i].variants.size(), shader_variants(shader_declarations()[i]).size());
+  }
+}
+
+// The build tool reflects other kernels than these.
+TEST(InterfaceTables, EqualAFreshReflectionOfEachVariantWithAnyKernel)
+{
+  for (const ShaderDeclaration &declaration : shader_declarations()) {
+    for (const Feature features : shader_variants(declaration)) {
+      const gpu::ShaderInterface generated =
+          interface_tables()[std::size_t(declaration.id)].interface_of(std::uint32_t(features));
+      std::vector<PcfKernel> kernels = {{.width = 1}};
+      if (has(features, Feature::ShadowPcf)) {
+        kernels.push_back({.width = 0, .taps = 1});
+      }
+      for (const PcfKernel &kernel : kernels) {
+        const gpu::ShaderDesc desc = shader_desc(declaration, features, kernel);
+        EXPECT_EQ(generated, shader_check::reflect(desc.name, gpu::preprocess(desc, shaders::file)))
+            << declaration.name << " " << std::uint32_t(features) << ", kernel " << kernel.width;
+      }
+    }
   }
 }
 
@@ -44,12 +76,12 @@ TEST(ShaderVariants, ChooseTheLayerInTheVertexShaderAtVersion450)
   std::string text(*shaders::file(path));
   ASSERT_NE(text.find("gl_Layer = "), std::string::npos);
   ASSERT_EQ(text.find("#version 450 core\n"), 0U);
-  EXPECT_NO_THROW(gpu::reflect(desc.name, gpu::preprocess(desc, shaders::file)));
+  EXPECT_NO_THROW(shader_check::reflect(desc.name, gpu::preprocess(desc, shaders::file)));
   text.replace(0, 12, "#version 330");
   const gpu::ShaderFiles older = [&](std::string_view file) {
     return file == path ? std::optional<std::string_view>(text) : shaders::file(file);
   };
-  EXPECT_THROW(gpu::reflect(desc.name, gpu::preprocess(desc, older)), gpu::Error);
+  EXPECT_THROW(shader_check::reflect(desc.name, gpu::preprocess(desc, older)), gpu::Error);
 }
 
 TEST(ShaderVariants, AreAllDifferentPrograms)
@@ -73,7 +105,7 @@ TEST(SharedBlocks, AreLaidOutAlikeInCppAndGlsl)
   for (const ShaderDeclaration &declaration : shader_declarations()) {
     for (const Feature features : shader_variants(declaration)) {
       const gpu::ShaderDesc desc = shader_desc(declaration, features);
-      for (const auto &comparison : gpu::compare_blocks(desc, shaders::file, block_layouts())) {
+      for (const auto &comparison : shader_check::compare_blocks(desc, shaders::file, block_layouts())) {
         compared.insert(comparison.block);
         EXPECT_EQ(comparison.cpp_size_bytes, comparison.glsl_size_bytes) << comparison.block;
         for (const auto &field : comparison.fields) {
@@ -119,6 +151,37 @@ TEST(ShaderCache, MakesAVariantOnceAndIgnoresOtherFeatures)
   cache.get(*device, ShaderId::Lit, Feature::Light);
   EXPECT_EQ(cache.size(), 2U);
   EXPECT_EQ(device->counters().shaders_made, 2U);
+}
+
+TEST(ShaderCache, ReloadWithoutAReflectionFunctionSaysSoAndChangesNothing)
+{
+  const auto device = gpu::create_null_device();
+  ShaderCache cache;
+  cache.get(*device, ShaderId::Depth);
+  const gpu::ShaderFiles none = [](std::string_view) { return std::optional<std::string_view>(); };
+  const std::vector<std::string> failures = cache.reload(*device, none, {});
+  ASSERT_EQ(failures.size(), 1U);
+  EXPECT_NE(failures[0].find("shader_check::reflect"), std::string::npos) << failures[0];
+  EXPECT_EQ(device->counters().shaders_made, 1U);
+  // Still of the library's files.
+  EXPECT_NO_THROW(cache.get(*device, ShaderId::Lit));
+}
+
+TEST(ShaderCache, ReloadedShadersHaveTheInterfaceOfTheNewFiles)
+{
+  const auto device = gpu::create_null_device();
+  ShaderCache cache;
+  ASSERT_EQ(cache.get(*device, ShaderId::Film).interface().push_constant_size_bytes, 32U);
+  const std::string path = "eevee/eevee_film_frag.glsl";
+  std::string edited(*shaders::file(path));
+  const std::string line = "  vec4 row_weights;\n";
+  ASSERT_NE(edited.find(line), std::string::npos);
+  edited.insert(edited.find(line) + line.size(), "  vec4 more;\n");
+  const gpu::ShaderFiles files = [&](std::string_view file) {
+    return file == path ? std::optional<std::string_view>(edited) : shaders::file(file);
+  };
+  EXPECT_EQ(cache.reload(*device, files, shader_check::reflect), std::vector<std::string>());
+  EXPECT_EQ(cache.get(*device, ShaderId::Film).interface().push_constant_size_bytes, 48U);
 }
 
 }  // namespace

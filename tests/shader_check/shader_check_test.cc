@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "gpu_shader_check.hh"
+#include "shader_check.hh"
+#include "shader_check_reflection.hh"
 
 #include "gpu/gpu_testing.hh"
 
@@ -7,7 +8,7 @@
 #include <cstddef>
 #include <thread>
 
-namespace gnomon::gpu {
+namespace gnomon::shader_check {
 namespace {
 
 using test::expect_contains;
@@ -256,12 +257,12 @@ TEST(CheckShader, BlocksLargerThanPromised)
 }
 
 /** `vec3 a; float b; Inner c;` as C++ has it. */
-constexpr std::array<BlockLayout::Field, 4> fields = {{{"a", 0}, {"b", 12}, {"c.d", 16}, {"c.e", 20}}};
+constexpr std::array<gpu::BlockLayout::Field, 4> fields = {{{"a", 0}, {"b", 12}, {"c.d", 16}, {"c.e", 20}}};
 
 std::vector<CheckMessage> check_layout(const std::string &inner, const std::string &block, std::size_t size_bytes = 32,
                                        std::string_view name = "a_block")
 {
-  const std::array<BlockLayout, 1> blocks = {{{name, size_bytes, fields}}};
+  const std::array<gpu::BlockLayout, 1> blocks = {{{name, size_bytes, fields}}};
   CheckOptions options;
   options.blocks = blocks;
   return check_fragment(COLOR + "struct Inner {\n" + inner + "\n};\nlayout(std140, binding = 1) uniform a_block {\n" +
@@ -383,4 +384,4 @@ TEST(StageVariables, AreInputsOfTheFirstStageAndOutputsOfTheLast)
 }
 
 }  // namespace
-}  // namespace gnomon::gpu
+}  // namespace gnomon::shader_check

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "cli_shader_files.hh"
+
+#include "eevee_programs.hh"
+
+namespace gnomon::cli {
+
+/** The engine's shader files: those in the program, or those of a folder. */
+class EngineFiles {
+ public:
+  /** \a folder: empty for the program's own. \throws std::runtime_error if it does not exist. */
+  explicit EngineFiles(const std::string &folder);
+
+  [[nodiscard]] const gpu::ShaderFiles &files() const
+  {
+    return files_;
+  }
+  /** A path that an editor can open. For shaders in the program it is relative to the repository's root. */
+  [[nodiscard]] std::string shown(const std::string &path) const
+  {
+    return (std::filesystem::path(prefix_) / path).string();
+  }
+
+ private:
+  std::string prefix_;
+  FolderFiles folder_;
+  gpu::ShaderFiles files_;
+};
+
+/** One variant of a program of the engine. */
+struct Variant {
+  const eevee::ShaderDeclaration *declaration;
+  gpu::ShaderDesc desc;
+};
+
+[[nodiscard]] std::vector<Variant> engine_variants();
+
+/** For an unknown \a name. */
+[[noreturn]] void throw_no_program(const std::string &name);
+
+/** The defines, separated by spaces. */
+[[nodiscard]] std::string defines_of(const gpu::ShaderDesc &desc);
+
+}  // namespace gnomon::cli

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+#include "cli_shaders.hh"
+
+#include "cli_shader_programs.hh"
+#include "cli_shader_report.hh"
+
+#include "eevee_blocks.hh"
+
+#include <unistd.h>
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+namespace gnomon::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct CheckArguments {
+  std::vector<std::string> files;
+  std::vector<std::string> include_folders;
+  std::vector<std::string> defines;
+  std::string stage;
+  std::string target = "all";
+  std::string format = "text";
+  std::string shaders;
+  std::string program;
+};
+
+std::vector<shader_check::CheckTarget> targets_of(const std::string &name)
+{
+  if (name == "opengl") {
+    return {shader_check::CheckTarget::OpenGl};
+  }
+  if (name == "vulkan") {
+    return {shader_check::CheckTarget::Vulkan};
+  }
+  return {shader_check::CheckTarget::OpenGl, shader_check::CheckTarget::Vulkan};
+}
+
+/** A bar on a terminal; nothing in a pipe. */
+void show_progress(std::size_t done, std::size_t count)
+{
+  constexpr std::size_t width = 40;
+  const std::size_t full = done * width / std::max<std::size_t>(count, 1);
+  fmt::print(stderr, "\r[{}{}] {}/{}{}", std::string(full, '#'), std::string(width - full, ' '), done, count,
+             done == count ? "\r\033[K" : "");
+}
+
+/** Check all of \a descs for all of \a targets, on all cores. */
+ShaderReport check_all(const std::vector<gpu::ShaderDesc> &descs, const gpu::ShaderFiles &files,
+                       const shader_check::CheckOptions &options, const std::vector<shader_check::CheckTarget> &targets)
+{
+  const auto start = std::chrono::steady_clock::now();
+  const std::size_t job_count = descs.size() * targets.size();
+  std::vector<std::vector<shader_check::CheckMessage>> results(job_count);
+  std::atomic<std::size_t> next = 0;
+  std::atomic<std::size_t> done = 0;
+  const auto work = [&](bool has_bar) {
+    for (std::size_t i = next++; i < job_count; i = next++) {
+      shader_check::CheckOptions job = options;
+      job.target = targets[i % targets.size()];
+      results[i] = shader_check::check_shader(descs[i / targets.size()], files, job);
+      done++;
+      if (has_bar) {
+        show_progress(done, job_count);
+      }
+    }
+  };
+  const bool is_terminal = isatty(STDERR_FILENO) != 0;
+  std::vector<std::jthread> threads;
+  for (std::size_t i = 1; i < std::min<std::size_t>(std::thread::hardware_concurrency(), job_count); i++) {
+    threads.emplace_back(work, false);
+  }
+  work(is_terminal);
+  threads.clear();
+  if (is_terminal) {
+    show_progress(job_count, job_count);
+  }
+  ShaderReport report;
+  for (const std::vector<shader_check::CheckMessage> &messages : results) {
+    report.messages.insert(report.messages.end(), messages.begin(), messages.end());
+  }
+  report.variant_count = descs.size();
+  report.targets = targets;
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return report;
+}
+
+ShaderReport check_engine(const CheckArguments &arguments)
+{
+  const EngineFiles files(arguments.shaders);
+  std::vector<gpu::ShaderDesc> descs;
+  for (Variant &variant : engine_variants()) {
+    if (arguments.program.empty() || variant.declaration->name == arguments.program) {
+      descs.push_back(std::move(variant.desc));
+    }
+  }
+  if (descs.empty()) {
+    throw_no_program(arguments.program);
+  }
+  shader_check::CheckOptions options;
+  options.blocks = eevee::block_layouts();
+  options.is_block_size_strict = true;
+  ShaderReport report = check_all(descs, files.files(), options, targets_of(arguments.target));
+  report.program_count = arguments.program.empty() ? eevee::shader_declarations().size() : 1;
+  for (shader_check::CheckMessage &message : report.messages) {
+    message.file = files.shown(message.file);
+  }
+  return report;
+}
+
+gpu::ShaderStage required_stage(const std::string &file, const std::string &stage_name)
+{
+  const std::optional<gpu::ShaderStage> stage =
+      stage_of(stage_name.empty() ? fs::path(file) : fs::path("." + stage_name));
+  if (!stage) {
+    throw UsageError(
+        fmt::format("{}: its name ends in none of .vert, _vert.glsl, .geom, _geom.glsl, .frag, _frag.glsl; "
+                    "--stage vert|geom|frag says what it is",
+                    file));
+  }
+  return *stage;
+}
+
+std::string &path_of(gpu::ShaderDesc &desc, gpu::ShaderStage stage)
+{
+  switch (stage) {
+    case gpu::ShaderStage::Vertex: return desc.vertex_path;
+    case gpu::ShaderStage::Geometry: return desc.geometry_path;
+    case gpu::ShaderStage::Fragment: break;
+  }
+  return desc.fragment_path;
+}
+
+/** `NAME=VALUE` and `NAME` as a compiler's -D has them. */
+std::string define_of(const std::string &argument)
+{
+  const std::size_t equals = argument.find('=');
+  const std::string name = argument.substr(0, equals);
+  if (name.empty()) {
+    throw UsageError(fmt::format("-D '{}' is not NAME or NAME=VALUE", argument));
+  }
+  return name + " " + (equals == std::string::npos ? "1" : argument.substr(equals + 1));
+}
+
+/** Files of one name but for the stage are one program. */
+ShaderReport check_files(const CheckArguments &arguments)
+{
+  std::vector<gpu::ShaderDesc> descs;
+  std::vector<std::string> defines;
+  std::ranges::transform(arguments.defines, std::back_inserter(defines), define_of);
+  for (const std::string &file : arguments.files) {
+    const gpu::ShaderStage stage = required_stage(file, arguments.stage);
+    const std::string name = stem_of(file);
+    auto desc = std::ranges::find_if(
+        descs, [&](gpu::ShaderDesc &known) { return known.name == name && path_of(known, stage).empty(); });
+    if (desc == descs.end()) {
+      descs.push_back({name, "", "", "", defines});
+      desc = descs.end() - 1;
+    }
+    path_of(*desc, stage) = file;
+  }
+  FolderFiles files{fs::path()};
+  shader_check::CheckOptions options;
+  options.include_path = include_path({arguments.include_folders.begin(), arguments.include_folders.end()});
+  ShaderReport report = check_all(descs, files.files(), options, targets_of(arguments.target));
+  report.program_count = descs.size();
+  return report;
+}
+
+Status check(const CheckArguments &arguments)
+{
+  if (!arguments.files.empty() && !arguments.shaders.empty()) {
+    throw UsageError("--shaders is for the engine's shaders, FILES for others: not both");
+  }
+  if (arguments.files.empty() &&
+      !(arguments.include_folders.empty() && arguments.defines.empty() && arguments.stage.empty())) {
+    throw UsageError("-I, -D and --stage are for FILES");
+  }
+  const ShaderReport report = arguments.files.empty() ? check_engine(arguments) : check_files(arguments);
+  fmt::print("{}", arguments.format == "json"    ? to_json(report)
+                   : arguments.format == "sarif" ? to_sarif(report)
+                                                 : to_text(report));
+  return report.has_errors() ? Status::Failed : Status::Done;
+}
+
+}  // namespace
+
+void add_shaders_check(CLI::App &shaders, Status &status)
+{
+  CLI::App *command = shaders.add_subcommand("check", "Look for mistakes, without running anything");
+  auto a = std::make_shared<CheckArguments>();
+  command->add_option("files", a->files, "A user's own shaders; without any, the engine's, every variant");
+  command->add_option("-I", a->include_folders, "Folder to look for includes in, after the including file's own")
+      ->allow_extra_args(false);
+  command->add_option("-D", a->defines, "NAME or NAME=VALUE, defined in every stage")->allow_extra_args(false);
+  command->add_option("--stage", a->stage, "What FILES are; otherwise their names tell")
+      ->check(CLI::IsMember({"vert", "geom", "frag"}));
+  command->add_option("--target", a->target, "opengl, vulkan, all")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"opengl", "vulkan", "all"}));
+  command->add_option("--format", a->format, "text, json, sarif")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"text", "json", "sarif"}));
+  command->add_option("--shaders", a->shaders, "Folder to read the engine's shaders from, instead of the program");
+  command->add_option("--program", a->program, "Only this one of the engine's, as 'shaders list' names it");
+  command->callback([a, &status] { status = check(*a); });
+}
+
+}  // namespace gnomon::cli

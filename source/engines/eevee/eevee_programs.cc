@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_programs.hh"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace gnomon::eevee {
+
+namespace {
+
+constexpr std::array<FeatureDefine, 10> feature_table = {
+    {{Feature::Light, "USE_LIGHT", "something shines"},
+     {Feature::Punctual, "USE_PUNCTUAL", "a point or spot lamp shines"},
+     {Feature::Specular, "USE_SPECULAR", "a material reflects specularly"},
+     {Feature::ShadowCube, "USE_SHADOW_CUBE", "a point lamp or a wide spot casts shadows"},
+     {Feature::ShadowMap, "USE_SHADOW_MAP", "a sun or a spot casts shadows"},
+     {Feature::ShadowPcf, "USE_SHADOW_PCF", "a shadow is filtered by percentage-closer lookups"},
+     {Feature::ShadowEsm, "USE_SHADOW_ESM", "a point lamp or a spot casts exponential shadows"},
+     {Feature::BaseColorTexture, "USE_BASE_COLOR_TEXTURE", "a material's base colour has a texture"},
+     {Feature::AlphaMask, "USE_ALPHA_MASK", "a texture's alpha cuts a material out"},
+     {Feature::ShadowEvsm, "USE_SHADOW_EVSM", "a point lamp or a spot casts exponential variance shadows"}}};
+
+/** Features that make no difference without light. */
+constexpr Feature light_features = Feature::Light | Feature::Punctual | Feature::Specular | Feature::ShadowCube |
+                                   Feature::ShadowMap | Feature::ShadowPcf | Feature::ShadowEsm | Feature::ShadowEvsm;
+/** Features that the visibility of a lamp depends on. */
+constexpr Feature shadow_features = Feature::Light | Feature::Punctual | Feature::ShadowCube | Feature::ShadowMap |
+                                    Feature::ShadowPcf | Feature::ShadowEsm | Feature::ShadowEvsm;
+
+constexpr std::array<ShaderDeclaration, 17> declarations = {{
+    {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
+     Feature::AlphaMask, Feature::None, "depth of what is seen, so that each pixel is lit once"},
+    {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
+     Feature::AlphaMask, Feature::None, "depth of what a lamp sees, a layer a pass"},
+    {ShaderId::ShadowLayered, "eevee_shadow_layered", "eevee/eevee_shadow_layered_vert.glsl", "",
+     "eevee/eevee_depth_frag.glsl", Feature::AlphaMask, Feature::None,
+     "depth of what a lamp sees, all layers in one pass"},
+    {ShaderId::ShadowGeometry, "eevee_shadow_geometry", "eevee/eevee_shadow_geometry_vert.glsl",
+     "eevee/eevee_shadow_geometry_geom.glsl", "eevee/eevee_depth_frag.glsl", Feature::AlphaMask, Feature::None,
+     "the same where vertex shaders cannot choose a layer"},
+    {ShaderId::Lit, "eevee_lit", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_lit_frag.glsl",
+     light_features | Feature::BaseColorTexture, Feature::None, "light that surfaces send to the viewer"},
+    {ShaderId::Probe, "eevee_probe", "eevee/eevee_surface_vert.glsl", "", "eevee/eevee_probe_frag.glsl",
+     shadow_features, Feature::Light, "position, normal and visibility of one lamp, for who judges them"},
+    {ShaderId::Film, "eevee_film", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_film_frag.glsl", Feature::None,
+     Feature::None, "sum of several samples a pixel"},
+    {ShaderId::Tonemap, "eevee_tonemap", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_tonemap_frag.glsl",
+     Feature::None, Feature::None, "radiance as a display shows it"},
+    {ShaderId::EsmDistance, "eevee_esm_distance", "draw/draw_fullscreen_vert.glsl", "",
+     "eevee/eevee_esm_distance_frag.glsl", Feature::None, Feature::None, "distances from a lamp on an octahedral map"},
+    {ShaderId::EsmDisk4, "eevee_esm_disk4", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_esm_disk_frag.glsl",
+     Feature::None, Feature::None, "exponential shadow map of four taps", "ESM_TAPS 4"},
+    {ShaderId::EsmDisk32, "eevee_esm_disk32", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_esm_disk_frag.glsl",
+     Feature::None, Feature::None, "exponential shadow map of 32 taps", "ESM_TAPS 32"},
+    {ShaderId::EsmSeparable, "eevee_esm_separable", "draw/draw_fullscreen_vert.glsl", "",
+     "eevee/eevee_esm_separable_frag.glsl", Feature::None, Feature::None,
+     "exponential shadow map of a Gaussian in two passes"},
+    {ShaderId::EvsmDisk4, "eevee_evsm_disk4", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_esm_disk_frag.glsl",
+     Feature::None, Feature::None, "exponential variance shadow map of four taps", "EVSM_TAPS 4"},
+    {ShaderId::EvsmDisk32, "eevee_evsm_disk32", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_esm_disk_frag.glsl",
+     Feature::None, Feature::None, "exponential variance shadow map of 32 taps", "EVSM_TAPS 32"},
+    {ShaderId::EvsmSeparable, "eevee_evsm_separable", "draw/draw_fullscreen_vert.glsl", "",
+     "eevee/eevee_esm_separable_frag.glsl", Feature::None, Feature::None,
+     "exponential variance shadow map of a Gaussian in two passes", "EVSM"},
+    {ShaderId::DebugShadow, "eevee_debug_shadow", "draw/draw_fullscreen_vert.glsl", "",
+     "eevee/eevee_debug_shadow_frag.glsl", Feature::None, Feature::None, "layers of a shadow for people to look at"},
+    {ShaderId::DebugCascades, "eevee_debug_cascades", "eevee/eevee_surface_vert.glsl", "",
+     "eevee/eevee_debug_cascades_frag.glsl", Feature::Light, Feature::Light,
+     "which cascades of a sun each pixel reads"},
+}};
+
+/** Whether a scene can need this mask, and no smaller mask gives the same program. */
+bool is_possible(Feature features)
+{
+  if (!has(features, Feature::Light)) {
+    return (features & light_features) == Feature::None;
+  }
+  // Cubes and exponential maps are for point lamps and spots. Percentage-closer filtering reads a cube or a map.
+  return (has(features, Feature::Punctual) || !has(features, Feature::ShadowCube | Feature::ShadowEsm)) &&
+         (has(features, Feature::ShadowCube | Feature::ShadowMap) || !has(features, Feature::ShadowPcf)) &&
+         (has(features, Feature::ShadowEsm) || !has(features, Feature::ShadowEvsm));
+}
+
+}  // namespace
+
+std::span<const FeatureDefine> feature_defines()
+{
+  return feature_table;
+}
+
+std::span<const ShaderDeclaration> shader_declarations()
+{
+  return declarations;
+}
+
+std::vector<Feature> shader_variants(const ShaderDeclaration &declaration)
+{
+  std::vector<Feature> variants;
+  for (std::uint32_t mask = 0; mask < 1U << feature_table.size(); mask++) {
+    const auto features = Feature(mask);
+    if ((features & declaration.features) == features && (features & declaration.required) == declaration.required &&
+        is_possible(features)) {
+      variants.push_back(features);
+    }
+  }
+  return variants;
+}
+
+gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature features, const PcfKernel &pcf)
+{
+  gpu::ShaderDesc desc;
+  desc.name = declaration.name;
+  desc.vertex_path = declaration.vertex_path;
+  desc.geometry_path = declaration.geometry_path;
+  desc.fragment_path = declaration.fragment_path;
+  if (!declaration.define.empty()) {
+    desc.defines.emplace_back(declaration.define);
+  }
+  for (const FeatureDefine &define : feature_table) {
+    if (has(features & declaration.features, define.feature)) {
+      desc.defines.emplace_back(define.define);
+    }
+  }
+  if (has(features & declaration.features, Feature::ShadowPcf)) {
+    desc.defines.push_back(fmt::format("SHADOW_PCF_WIDTH {}", pcf.width));
+    desc.defines.push_back(fmt::format("SHADOW_PCF_TAPS {}", pcf.taps));
+  }
+  return desc;
+}
+
+}  // namespace gnomon::eevee

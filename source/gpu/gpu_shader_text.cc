@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include "gpu_shader_text.hh"
+
+#include <algorithm>
+#include <charconv>
+
+namespace gnomon::gpu {
+
+bool is_word_character(char c)
+{
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+TextScanner &TextScanner::skip_space()
+{
+  rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t\r\n\v\f"), rest_.size()));
+  return *this;
+}
+
+bool TextScanner::take(std::string_view prefix)
+{
+  const bool is_there = rest_.starts_with(prefix);
+  rest_.remove_prefix(is_there ? prefix.size() : 0);
+  return is_there;
+}
+
+std::string_view TextScanner::take_word()
+{
+  const auto end = std::ranges::find_if_not(rest_, is_word_character);
+  const std::string_view word = rest_.substr(0, std::size_t(end - rest_.begin()));
+  rest_.remove_prefix(word.size());
+  return word;
+}
+
+std::optional<int> TextScanner::take_number()
+{
+  int number = 0;
+  const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), number);
+  if (error != std::errc() || number < 0 || rest_.starts_with('-')) {
+    return std::nullopt;
+  }
+  rest_.remove_prefix(std::size_t(end - rest_.data()));
+  return number;
+}
+
+bool TextScanner::is_at_end() const
+{
+  const std::string_view rest = TextScanner(*this).skip_space().rest();
+  return rest.empty() || rest.starts_with("//");
+}
+
+std::string_view directive_of(std::string_view line)
+{
+  TextScanner scanner(line);
+  return scanner.skip_space().take("#") ? scanner.skip_space().take_word() : std::string_view();
+}
+
+}  // namespace gnomon::gpu

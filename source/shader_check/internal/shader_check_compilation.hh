@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "shader_check_glslang.hh"
+#include "shader_check_stage.hh"
+
+namespace gnomon::shader_check {
+
+/** One shader for one target: its sources, glslang's program, and the facts read from that. */
+struct Compilation {
+  std::vector<gpu::ShaderSource> sources;
+  std::vector<SourceLines> lines;
+  GlslangProgram glslang;
+  /** Parallel to sources; empty until linked. */
+  std::vector<StageFacts> facts;
+
+  [[nodiscard]] const glslang::TIntermediate *tree(std::size_t stage)
+  {
+    return glslang.program().getIntermediate(glslang_language(sources[stage].stage));
+  }
+  void read_facts();
+  /** The path of the file of a position in a stage. */
+  [[nodiscard]] const std::string &file(std::size_t stage, SourcePosition position) const;
+};
+
+/** Compile, link and read the facts, for OpenGL. \throws Error if \a desc does not compile. */
+void compile(const gpu::ShaderDesc &desc, const gpu::ShaderFiles &files, Compilation &compilation);
+
+/** A declaration and the index of its stage. */
+struct StageDeclaration {
+  std::size_t stage;
+  const Declaration *declaration;
+};
+
+/** The uniform or storage block \a name in the first stage that has it. */
+[[nodiscard]] std::optional<StageDeclaration> find_block(const Compilation &compilation, gpu::BindingKind kind,
+                                                         std::string_view name);
+
+}  // namespace gnomon::shader_check

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: MIT
+#include "shader_check_function.hh"
+
+#include "gpu_shader_text.hh"
+#include "shader_check_tree.hh"
+
+#include <algorithm>
+#include <array>
+
+namespace gnomon::shader_check {
+
+using glslang::TIntermAggregate;
+using glslang::TIntermBinary;
+using glslang::TIntermLoop;
+using glslang::TIntermSelection;
+using glslang::TIntermSymbol;
+using glslang::TIntermTraverser;
+using glslang::TIntermTyped;
+using glslang::TIntermUnary;
+using glslang::TOperator;
+using glslang::TVisit;
+
+namespace {
+
+/** Whether an expression lies in [0, 1] by its outermost function. */
+bool is_share(const TIntermTyped *node)
+{
+  switch (operator_of(node)) {
+    case glslang::EOpClamp:
+    case glslang::EOpFract:
+    case glslang::EOpSmoothStep:
+    case glslang::EOpStep: return true;
+    case glslang::EOpMul:
+      return is_share(node->getAsBinaryNode()->getLeft()) && is_share(node->getAsBinaryNode()->getRight());
+    default: return false;
+  }
+}
+
+/** `1 - x` with x in [0, 1]. */
+bool is_rest_of_one(const FunctionFacts &facts, TIntermTyped *node)
+{
+  const auto *binary = node->getAsBinaryNode();
+  return binary != nullptr && binary->getOp() == glslang::EOpSub &&
+         binary->getLeft()->getAsConstantUnion() != nullptr && is_share(facts.resolved(binary->getRight()));
+}
+
+/** Why \a op may fail on \a argument, where that can be told from the expression; else nothing. */
+std::string danger(const FunctionFacts &facts, TOperator op, TIntermTyped *argument)
+{
+  TIntermTyped *value = facts.resolved(argument);
+  const TOperator source = operator_of(value);
+  const bool is_difference = source == glslang::EOpSub;
+  const bool is_dot = source == glslang::EOpDot;
+  bool is_square = false;
+  if (is_dot) {
+    const std::vector<TIntermTyped *> factors = arguments_of(value);
+    const std::string path = access_path(factors[0]);
+    is_square = !path.empty() && path == access_path(factors[1]);
+  }
+  const bool is_length = source == glslang::EOpLength || source == glslang::EOpDistance;
+  switch (op) {
+    case glslang::EOpAcos:
+    case glslang::EOpAsin: return is_dot ? "by rounding a scalar product may lie beyond [-1, 1]" : "";
+    case glslang::EOpSqrt:
+    case glslang::EOpPow:
+      return (is_difference && !is_rest_of_one(facts, value)) || (is_dot && !is_square) ? "it may be below 0" : "";
+    case glslang::EOpInverseSqrt:
+    case glslang::EOpLog:
+    case glslang::EOpLog2: return is_difference || is_dot || is_length ? "it may be 0 or below" : "";
+    case glslang::EOpNormalize: return is_difference || source == glslang::EOpCross ? "it may be the zero vector" : "";
+    case glslang::EOpDiv:
+    case glslang::EOpDivAssign: return is_difference || is_dot || is_length ? "it may be 0" : "";
+    default: return {};
+  }
+}
+
+std::string_view operator_name(TOperator op)
+{
+  switch (op) {
+    case glslang::EOpAcos: return "acos of";
+    case glslang::EOpAsin: return "asin of";
+    case glslang::EOpSqrt: return "sqrt of";
+    case glslang::EOpPow: return "pow of";
+    case glslang::EOpInverseSqrt: return "inversesqrt of";
+    case glslang::EOpLog: return "log of";
+    case glslang::EOpLog2: return "log2 of";
+    case glslang::EOpNormalize: return "normalize of";
+    default: return "division by";
+  }
+}
+
+/** Whether a comparison in a loop's test has a side that the loop moves on, by `++`, `+=`, `i = i + …` and the like. */
+class LoopSteps : public TIntermTraverser {
+ public:
+  explicit LoopSteps(TIntermLoop *loop)
+  {
+    for (TIntermNode *part : {loop->getBody(), static_cast<TIntermNode *>(loop->getTerminal())}) {
+      if (part != nullptr) {
+        part->traverse(this);
+      }
+    }
+  }
+  bool visitUnary(TVisit, TIntermUnary *unary) override
+  {
+    if (is_assignment(unary->getOp())) {
+      stepped_.insert(access_path(unary->getOperand()));
+    }
+    return true;
+  }
+  bool visitBinary(TVisit, TIntermBinary *binary) override
+  {
+    const std::string target = is_assignment(binary->getOp()) ? access_path(binary->getLeft()) : std::string();
+    const bool is_step = binary->getOp() != glslang::EOpAssign || (binary->getRight()->getAsBinaryNode() != nullptr &&
+                                                                   paths_of(binary->getRight()).contains(target));
+    if (!target.empty() && is_step) {
+      stepped_.insert(target);
+    }
+    return true;
+  }
+  bool bound(TIntermTyped *test) const
+  {
+    if (test == nullptr || test->getAsConstantUnion() != nullptr) {
+      return false;
+    }
+    // A test with a step of its own, `i-- > 0`, or one that calls a function, is taken for what it looks like.
+    const std::vector<TIntermTyped *> sides = arguments_of(test);
+    switch (operator_of(test)) {
+      case glslang::EOpLogicalAnd: return std::ranges::any_of(sides, [&](TIntermTyped *side) { return bound(side); });
+      case glslang::EOpLessThan:
+      case glslang::EOpGreaterThan:
+      case glslang::EOpLessThanEqual:
+      case glslang::EOpGreaterThanEqual:
+      case glslang::EOpEqual:
+      case glslang::EOpNotEqual:
+        return std::ranges::any_of(sides, [&](TIntermTyped *side) {
+          return is_assignment(operator_of(side)) ||
+                 std::ranges::any_of(paths_of(side), [&](const std::string &read) { return stepped_.contains(read); });
+        });
+      default: return false;
+    }
+  }
+
+ private:
+  std::set<std::string> stepped_;
+};
+
+/** Whether \a text ends with a constructor and its opening parenthesis: `float(`. */
+bool ends_with_constructor(std::string_view text)
+{
+  const auto trim = [&] { text.remove_suffix(text.size() - (text.find_last_not_of(" \t") + 1)); };
+  trim();
+  if (!text.ends_with('(')) {
+    return false;
+  }
+  text.remove_suffix(1);
+  trim();
+  const auto begin = std::find_if_not(text.rbegin(), text.rend(), gpu::is_word_character);
+  const std::string_view word = text.substr(std::size_t(text.rend() - begin));
+  static constexpr std::array constructors = {"bool",  "int",   "uint",  "float", "double", "bvec2", "bvec3",
+                                              "bvec4", "ivec2", "ivec3", "ivec4", "uvec2",  "uvec3", "uvec4",
+                                              "dvec2", "dvec3", "dvec4", "vec2",  "vec3",   "vec4"};
+  return std::ranges::find(constructors, word) != constructors.end();
+}
+
+/** Reads one function. */
+class FunctionLint : public TIntermTraverser {
+ public:
+  FunctionLint(TIntermNode *function, const SourceLines &lines, std::vector<StageFinding> &findings)
+      : facts_(function), lines_(lines), findings_(findings)
+  {
+    function->traverse(this);
+  }
+
+  bool visitBinary(TVisit, TIntermBinary *binary) override
+  {
+    if (binary->getOp() == glslang::EOpDiv || binary->getOp() == glslang::EOpDivAssign) {
+      check_argument(binary->getOp(), binary->getRight(), binary->getLoc());
+    }
+    return true;
+  }
+  bool visitUnary(TVisit, TIntermUnary *unary) override
+  {
+    check_argument(unary->getOp(), unary->getOperand(), unary->getLoc());
+    check_conversion(unary);
+    return true;
+  }
+  bool visitAggregate(TVisit, TIntermAggregate *aggregate) override
+  {
+    if (aggregate->getOp() == glslang::EOpPow) {
+      check_argument(glslang::EOpPow, aggregate->getSequence().front()->getAsTyped(), aggregate->getLoc());
+    }
+    return true;
+  }
+  bool visitLoop(TVisit, TIntermLoop *loop) override
+  {
+    if (!LoopSteps(loop).bound(loop->getTest())) {
+      // A loop itself has no position.
+      const TIntermNode *known = loop->getTest() != nullptr ? loop->getTest() : loop->getBody();
+      const glslang::TSourceLoc loc = loop->getLoc().line > 0 || known == nullptr ? loop->getLoc() : known->getLoc();
+      add("unbounded-loop", loc,
+          "nothing bounds the loop: no comparison in its condition has a side that the loop steps");
+    }
+    return true;
+  }
+
+ private:
+  void check_argument(TOperator op, TIntermTyped *argument, const glslang::TSourceLoc &loc)
+  {
+    if (argument->getAsConstantUnion() != nullptr) {
+      return;
+    }
+    const std::string reason = danger(facts_, op, argument);
+    if (!reason.empty() && !facts_.is_tested(argument) && !facts_.is_tested(facts_.resolved(argument))) {
+      add("unguarded-math", loc, fmt::format("{} an unguarded value: {}", operator_name(op), reason));
+    }
+  }
+
+  /** A member of a block that becomes another type without a word. glslang's tree does not tell: its text does. */
+  void check_conversion(TIntermUnary *unary)
+  {
+    TIntermTyped *operand = unary->getOperand();
+    const TIntermSymbol *symbol = root_symbol(operand);
+    if (unary->getOp() < glslang::EOpConvInt8ToBool || unary->getOp() > glslang::EOpConvDoubleToFloat ||
+        symbol == nullptr || symbol->getType().getBasicType() != glslang::EbtBlock) {
+      return;
+    }
+    const auto *parent = getParentNode() == nullptr ? nullptr : getParentNode()->getAsAggregate();
+    if (parent != nullptr && parent->getOp() > glslang::EOpConstructGuardStart &&
+        parent->getOp() < glslang::EOpConstructGuardEnd) {
+      return;
+    }
+    const std::string start = first_name(operand);
+    const std::string_view line = lines_.line(position_of(symbol->getLoc()));
+    const std::size_t at = start.empty() ? std::string_view::npos : find_word(line, start);
+    // Twice in a line: which one is meant cannot be told.
+    if (at == std::string_view::npos || find_word(line, start, at + 1) != std::string_view::npos) {
+      return;
+    }
+    if (!ends_with_constructor(line.substr(0, at))) {
+      add("implicit-conversion", symbol->getLoc(),
+          fmt::format("a block's member of type {} becomes {} implicitly: say {}(…)", type_name(operand->getType()),
+                      type_name(unary->getType()), type_name(unary->getType())));
+    }
+  }
+
+  /** The name that a block's member begins with in the text: the instance's, or the member's where there is none. */
+  static std::string first_name(const TIntermTyped *node)
+  {
+    const TIntermBinary *innermost = nullptr;
+    while (const TIntermBinary *binary = node->getAsBinaryNode()) {
+      innermost = binary;
+      node = binary->getLeft();
+    }
+    const TIntermSymbol *symbol = node->getAsSymbolNode();
+    if (innermost == nullptr || symbol == nullptr) {
+      return {};
+    }
+    const std::string name = text_of(symbol->getName());
+    if (!name.starts_with("anon@")) {
+      return name;
+    }
+    const auto *index = innermost->getRight()->getAsConstantUnion();
+    if (innermost->getOp() != glslang::EOpIndexDirectStruct || index == nullptr) {
+      return {};
+    }
+    const auto member = std::size_t(index->getConstArray()[0].getIConst());
+    return text_of((*symbol->getType().getStruct())[member].type->getFieldName());
+  }
+
+  void add(std::string_view rule, const glslang::TSourceLoc &loc, std::string text)
+  {
+    findings_.push_back({rule, position_of(loc), std::move(text), false});
+  }
+
+  FunctionFacts facts_;
+  const SourceLines &lines_;
+  std::vector<StageFinding> &findings_;
+};
+
+}  // namespace
+
+void check_function(TIntermNode *function, const SourceLines &lines, std::vector<StageFinding> &findings)
+{
+  FunctionLint(function, lines, findings);
+}
+
+}  // namespace gnomon::shader_check

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// Reads glslang's tree of a stage: the declarations, which of them are used, and likely mistakes.
+#pragma once
+
+#include "shader_check_sources.hh"
+
+#include <glslang/Public/ShaderLang.h>
+
+namespace gnomon::shader_check {
+
+/** A mistake at a line; rule and text as in CheckMessage. */
+struct StageFinding {
+  std::string_view rule;
+  SourcePosition position;
+  std::string text;
+  bool is_error = false;
+};
+
+struct BlockMember {
+  /** As reflection names it: `lights[0].color`. */
+  std::string name;
+  /** The name of the struct that declares it; empty: the block itself. */
+  std::string structure;
+  SourcePosition position;
+};
+
+/** A block, a texture, a stage's input or output. Types belong to the glslang program. */
+struct Declaration {
+  std::string name;
+  const glslang::TType *type = nullptr;
+  SourcePosition position;
+  int set = 0;
+  /** -1: none. */
+  int slot = -1;
+  int location = -1;
+  int location_count = 1;
+  bool is_used = false;
+  /** Blocks. */
+  std::vector<BlockMember> members;
+};
+
+struct StageFacts {
+  std::vector<Declaration> uniform_blocks;
+  std::vector<Declaration> storage_blocks;
+  std::vector<Declaration> textures;
+  std::vector<Declaration> inputs;
+  std::vector<Declaration> outputs;
+  std::vector<StageFinding> findings;
+};
+
+/** Call it after linking, which drops functions without a caller: before, their uses count, too. */
+[[nodiscard]] StageFacts read_stage(const glslang::TIntermediate &tree, const SourceLines &lines);
+
+}  // namespace gnomon::shader_check

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// Helpers to read glslang's tree: names, positions, the values that expressions read, assign and test.
+#pragma once
+
+#include "shader_check_sources.hh"
+
+#include <glslang/MachineIndependent/localintermediate.h>
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace gnomon::shader_check {
+
+[[nodiscard]] SourcePosition position_of(const glslang::TSourceLoc &loc);
+[[nodiscard]] std::string text_of(const glslang::TString &text);
+/** GLSL's name of a type. \a is_arrayed: leave out the outermost array, that of a geometry shader's vertices. */
+[[nodiscard]] std::string type_name(const glslang::TType &type, bool is_arrayed = false);
+
+/**
+ * The path of a value: the id of its symbol and the indices of members taken from it, `12.3`. Swizzles and constant
+ * array indices are left out. Empty: \a node is no such expression.
+ */
+[[nodiscard]] std::string access_path(const TIntermNode *node);
+
+/** The paths of all values that an expression reads. */
+[[nodiscard]] std::set<std::string> paths_of(TIntermNode *node);
+
+/** The leftmost operand, if it is a symbol; else nullptr. */
+[[nodiscard]] const glslang::TIntermSymbol *root_symbol(const TIntermNode *node);
+
+[[nodiscard]] bool is_assignment(glslang::TOperator op);
+
+/** The arguments of a built-in function or of an operator. */
+[[nodiscard]] std::vector<glslang::TIntermTyped *> arguments_of(glslang::TIntermTyped *node);
+
+/** EOpNull if \a node is no operation. */
+[[nodiscard]] glslang::TOperator operator_of(const glslang::TIntermTyped *node);
+
+/** The values that a function assigns, and those that its conditions test. */
+class FunctionFacts : public glslang::TIntermTraverser {
+ public:
+  explicit FunctionFacts(TIntermNode *function);
+
+  /** The expression that a local variable is set to, if it is set once; else \a node. */
+  [[nodiscard]] glslang::TIntermTyped *resolved(glslang::TIntermTyped *node) const;
+  /** Whether a condition tests a value that \a node reads, or a value computed from it. */
+  [[nodiscard]] bool is_tested(glslang::TIntermTyped *node) const;
+
+  bool visitBinary(glslang::TVisit, glslang::TIntermBinary *binary) override;
+  bool visitUnary(glslang::TVisit, glslang::TIntermUnary *unary) override;
+  bool visitAggregate(glslang::TVisit, glslang::TIntermAggregate *aggregate) override;
+  bool visitSelection(glslang::TVisit, glslang::TIntermSelection *selection) override;
+  bool visitLoop(glslang::TVisit, glslang::TIntermLoop *loop) override;
+
+ private:
+  struct Value {
+    int assignment_count = 0;
+    /** nullptr: assigned several times, in parts, or by a call. */
+    glslang::TIntermTyped *expression = nullptr;
+  };
+
+  void assign(TIntermNode *to, glslang::TIntermTyped *expression);
+
+  /** By path. */
+  std::map<std::string, Value> values_;
+  std::set<std::string> tested_;
+};
+
+}  // namespace gnomon::shader_check

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// The interface of a program, read by glslang. Needs no driver and no device. Any thread may call these functions.
+#pragma once
+
+#include "gpu_shader.hh"
+
+namespace gnomon::shader_check {
+
+/**
+ * Compile and link with glslang for OpenGL 4.5 and read the interface. It is a gpu::ShaderReflection.
+ *
+ * \throws gpu::Error with glslang's message, which names file and line; also for a binding without a slot and for a
+ * slot that two bindings of one kind share.
+ */
+[[nodiscard]] gpu::ShaderInterface reflect(std::string_view name, const std::vector<gpu::ShaderSource> &stages);
+
+struct StageVariable {
+  std::string name;
+  /** GLSL's name of it. */
+  std::string type;
+  /** -1: none. */
+  int location = -1;
+};
+
+/** Inputs of the first stage and outputs of the last, both sorted by location. */
+struct StageVariables {
+  std::vector<StageVariable> inputs;
+  std::vector<StageVariable> outputs;
+};
+
+/** \throws gpu::Error if \a desc does not compile. */
+[[nodiscard]] StageVariables stage_variables(const gpu::ShaderDesc &desc, const gpu::ShaderFiles &files);
+
+}  // namespace gnomon::shader_check
