@@ -455,7 +455,7 @@ TEST_F(EngineGpuTest, StepTimesAreMeasured)
     EXPECT_GE(step.seconds, 0.0);
     EXPECT_LT(step.seconds, 60.0);
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"shadows", "depth_prepass", "lit", "film"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"depth_prepass", "shadows", "lit", "film"}));
 }
 
 }  // namespace

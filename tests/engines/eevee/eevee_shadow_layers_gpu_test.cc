@@ -267,6 +267,7 @@ TEST_F(ClipGpuTest, WhatIsBeforeTheNearPlaneCastsUnlessTheLampLeavesItOut)
                       -far,
                       -far};
     mesh.normals.assign(8, {0, 0, 1});
+    mesh.uvs.clear();
     mesh.indices = {0, 1, 2, 0, 2, 3, 4, 5, 4, 6, 7, 6};
     scene.replace(box, mesh);
     test::edit_material(scene, 1, [&](scene::Material &material) { material.is_double_sided = true; });
