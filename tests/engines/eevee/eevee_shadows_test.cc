@@ -201,9 +201,9 @@ TEST_F(ShadowsTest, AChangedLampIsUpdatedAlone)
   add_lamp(scene::LampKind::Spot, "b");
   add_lamp(scene::LampKind::Sun, "c");
   EXPECT_EQ(updated(), 3U);
-  scene.lamps[1].world_from_lamp[3] = {0.5F, 0, 0, 1};
+  placed[1].world_from_lamp[3] = {0.5F, 0, 0, 1};
   EXPECT_EQ(updated(), 1U);
-  scene.lamps[2].world_from_lamp = glm::mat4(glm::rotate(glm::mat4(1.0F), 0.1F, {1, 0, 0}));
+  placed[2].world_from_lamp = glm::mat4(glm::rotate(glm::mat4(1.0F), 0.1F, {1, 0, 0}));
   EXPECT_EQ(updated(), 1U);
   settings.cube_size_px = 512;
   EXPECT_EQ(updated(), 1U);
