@@ -9,6 +9,7 @@
 #include "eevee_depth_shared.h"
 #include "eevee_shadow_shared.h"
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
