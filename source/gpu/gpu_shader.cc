@@ -43,8 +43,8 @@ const ShaderInterface::Member *ShaderInterface::find_push_constant(std::string_v
 
 std::string ShaderSource::name_files(std::string_view log) const
 {
-  // glslang writes "ERROR: 2:15: …", Mesa "2:15(3): error: …".
-  static const std::regex position(R"((^|ERROR: |WARNING: )(\d+):(\d+))");
+  // glslang writes "ERROR: 2:15: …", Mesa "2:15(3): error: …", NVIDIA "2(15) : error …".
+  static const std::regex position(R"((^|ERROR: |WARNING: )(\d+)(?::(\d+)|\((\d+)\) :))");
   std::istringstream lines{std::string(log)};
   std::string named;
   for (std::string line; std::getline(lines, line);) {
@@ -52,7 +52,9 @@ std::string ShaderSource::name_files(std::string_view log) const
     if (std::regex_search(line, match, position)) {
       const std::size_t file = std::stoul(match[2]);
       if (file < files.size()) {
-        line = match.prefix().str() + match[1].str() + files[file] + ":" + match[3].str() + match.suffix().str();
+        const bool is_nvidia = match[4].matched;
+        line = fmt::format("{}{}{}:{}{}{}", match.prefix().str(), match[1].str(), files[file],
+                           is_nvidia ? match[4].str() : match[3].str(), is_nvidia ? ":" : "", match.suffix().str());
       }
     }
     named += line + "\n";

@@ -54,6 +54,8 @@ struct ShaderInterface {
     std::uint32_t size_bytes = 0;
     /** Blocks: by offset; of an array, the first element only. */
     std::vector<Member> members;
+    /** Stages that read it: bit 0 vertex, bit 1 geometry, bit 2 fragment; 0: not known. */
+    std::uint32_t stages = 0;
   };
   /** Sorted by kind, then slot. The push-constant block is not among them. */
   std::vector<Binding> bindings;

@@ -45,6 +45,14 @@ std::vector<ShaderInterface::Member> members_of(const glslang::TObjectReflection
   return members;
 }
 
+/** ShaderInterface::Binding::stages of what glslang reports. */
+std::uint32_t stages_of(const glslang::TObjectReflection &object)
+{
+  return ((object.stages & EShLangVertexMask) != 0 ? 1U << unsigned(ShaderStage::Vertex) : 0U) |
+         ((object.stages & EShLangGeometryMask) != 0 ? 1U << unsigned(ShaderStage::Geometry) : 0U) |
+         ((object.stages & EShLangFragmentMask) != 0 ? 1U << unsigned(ShaderStage::Fragment) : 0U);
+}
+
 /** glslang ends a block at its last member; std140, and drivers, at the end of that member's row of 16 bytes. */
 std::uint32_t std140_size(const glslang::TObjectReflection &block)
 {
@@ -70,20 +78,22 @@ ShaderInterface interface_of(glslang::TProgram &program)
       continue;
     }
     interface.bindings.push_back(
-        {block.name, BindingKind::UniformBlock, block.getBinding(), std140_size(block), std::move(members)});
+        {block.name, BindingKind::UniformBlock, block.getBinding(), std140_size(block), std::move(members),
+         stages_of(block)});
   }
   for (int i = 0; i < program.getNumBufferBlocks(); i++) {
     const glslang::TObjectReflection &block = program.getBufferBlock(i);
     interface.bindings.push_back(
         {block.name, BindingKind::StorageBlock, block.getBinding(), std::uint32_t(block.size),
          members_of(block, i, program.getNumBufferVariables(),
-                    [&](int j) -> const glslang::TObjectReflection & { return program.getBufferVariable(j); })});
+                    [&](int j) -> const glslang::TObjectReflection & { return program.getBufferVariable(j); }),
+         stages_of(block)});
   }
   for (int i = 0; i < variable_count; i++) {
     const glslang::TObjectReflection &uniform = variable(i);
     // Outside of blocks stand textures, and plain uniforms, which have no slot either: check_slots refuses those.
     if (uniform.index == -1) {
-      interface.bindings.push_back({uniform.name, BindingKind::Texture, uniform.getBinding(), 0, {}});
+      interface.bindings.push_back({uniform.name, BindingKind::Texture, uniform.getBinding(), 0, {}, stages_of(uniform)});
     }
   }
   std::ranges::sort(interface.bindings, [](const auto &a, const auto &b) {

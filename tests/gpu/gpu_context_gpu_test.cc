@@ -376,8 +376,8 @@ TEST_F(HeadlessGpu, DriverErrorIsAnErrorOnceInADebugDevice)
   const Buffer block = device->create_buffer({.name = "block", .size_bytes = 1024});
   CommandList list;
   list.begin_pass("p", framebuffer, {});
-  // Not a multiple of the alignment.
-  list.bind_uniform(9, {block.id(), device->limits().uniform_offset_alignment / 2 + 1, 16});
+  // No driver has so many slots, and the validation does not know their number.
+  list.bind_uniform(1 << 20, {block.id(), 0, 16});
   list.end_pass();
   const std::uint64_t passes = device->counters().passes;
   expect_contains(error_of([&] { device->submit(list); }), "submit: the driver reports");
