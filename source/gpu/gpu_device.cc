@@ -96,8 +96,8 @@ Texture Device::create_texture(const TextureDesc &desc)
   in_range("layer count", desc.layers, desc.kind == TextureKind::Array ? limits_.array_layers_max : 1);
   in_range("mip level count", desc.mip_levels, int(std::bit_width(unsigned(std::max(desc.width, desc.height)))));
   const std::string detail =
-      fmt::format("{}x{}{} {}", desc.width, desc.height,
-                  desc.layers > 1 ? fmt::format("x{}", desc.layers) : "", to_string(desc.format));
+      fmt::format("{}x{}{} {}", desc.width, desc.height, desc.layers > 1 ? fmt::format("x{}", desc.layers) : "",
+                  to_string(desc.format));
   Resource resource = make(ResourceKind::Texture, {desc.name, desc}, detail, desc.size_bytes(),
                            [&](ResourceId id) { texture_create(id, desc); });
   counters_.textures_made++;
@@ -106,7 +106,8 @@ Texture Device::create_texture(const TextureDesc &desc)
 
 Sampler Device::create_sampler(const SamplerDesc &desc)
 {
-  return Sampler(make(ResourceKind::Sampler, {desc.name, desc}, {}, 0, [&](ResourceId id) { sampler_create(id, desc); }));
+  return Sampler(
+      make(ResourceKind::Sampler, {desc.name, desc}, {}, 0, [&](ResourceId id) { sampler_create(id, desc); }));
 }
 
 Framebuffer Device::create_framebuffer(const FramebufferDesc &desc)
@@ -166,7 +167,8 @@ Buffer Device::create_buffer(const BufferDesc &desc)
   if (desc.size_bytes == 0 || desc.size_bytes > max) {
     throw Error("buffer '{}': {} bytes, and this device takes 1 to {}", desc.name, desc.size_bytes, max);
   }
-  return {make(ResourceKind::Buffer, {desc.name, desc}, {}, desc.size_bytes, [&](ResourceId id) { buffer_create(id, desc); }),
+  return {make(ResourceKind::Buffer, {desc.name, desc}, {}, desc.size_bytes,
+               [&](ResourceId id) { buffer_create(id, desc); }),
           desc};
 }
 
@@ -189,9 +191,9 @@ Batch Device::create_batch(const BatchDesc &desc)
   const std::size_t size_bytes =
       desc.positions.size_bytes() + desc.normals.size_bytes() + desc.indices.size_bytes() + desc.uvs.size_bytes();
   try {
-    Resource resource =
-        make(ResourceKind::Batch, {desc.name, range}, {}, size_bytes,
-             [&](ResourceId /*id*/) { batch_create(desc, range, vertices_.capacity(), indices_.capacity()); });
+    Resource resource = make(ResourceKind::Batch, {desc.name, range}, {}, size_bytes, [&](ResourceId /*id*/) {
+      batch_create(desc, range, vertices_.capacity(), indices_.capacity());
+    });
     count_upload(ResourceKind::Batch, resource.id(), size_bytes);
     return {std::move(resource), range};
   }
@@ -261,9 +263,8 @@ Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files)
   check_storage_blocks(desc.name, cached->interface, limits_);
   const std::string detail = fmt::format("{}", fmt::join(desc.defines, " "));
   const std::vector<std::byte> known = cached->compiled;
-  Resource resource =
-      make(ResourceKind::Shader, {desc.name, cached->interface}, detail, 0,
-           [&](ResourceId id) { shader_create(id, desc, stages, cached->compiled); });
+  Resource resource = make(ResourceKind::Shader, {desc.name, cached->interface}, detail, 0,
+                           [&](ResourceId id) { shader_create(id, desc, stages, cached->compiled); });
   if (!is_cached || cached->compiled != known) {
     shader_cache_.store(key, *cached);
   }
@@ -274,7 +275,8 @@ Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files)
 
 TimerQuery Device::create_timer_query(std::string name)
 {
-  return TimerQuery(make(ResourceKind::TimerQuery, {name, {}}, {}, 0, [&](ResourceId id) { timer_query_create(id, name); }));
+  return TimerQuery(
+      make(ResourceKind::TimerQuery, {name, {}}, {}, 0, [&](ResourceId id) { timer_query_create(id, name); }));
 }
 
 void Device::update(const Buffer &buffer, std::size_t offset_bytes, std::span<const std::byte> bytes)

@@ -53,8 +53,8 @@ nlohmann::json to_json(const CachedShader &shader)
 {
   nlohmann::json bindings = nlohmann::json::array();
   for (const ShaderInterface::Binding &binding : shader.interface.bindings) {
-    bindings.push_back({binding.name, int(binding.kind), binding.slot, binding.size_bytes, to_json(binding.members),
-                        binding.stages});
+    bindings.push_back(
+        {binding.name, int(binding.kind), binding.slot, binding.size_bytes, to_json(binding.members), binding.stages});
   }
   const auto *bytes = reinterpret_cast<const std::uint8_t *>(shader.compiled.data());
   return {{"bindings", bindings},
@@ -155,8 +155,8 @@ bool is_cache_file(const std::string &name)
 {
   constexpr std::size_t key_size = 32;
   const bool is_key = name.find_first_not_of("0123456789abcdef") >= key_size && name.size() >= key_size;
-  return is_key && (name.size() == key_size || (name[key_size] == '.' &&
-                                                name.find_first_not_of("0123456789", key_size + 1) == name.npos));
+  return is_key && (name.size() == key_size ||
+                    (name[key_size] == '.' && name.find_first_not_of("0123456789", key_size + 1) == name.npos));
 }
 
 }  // namespace

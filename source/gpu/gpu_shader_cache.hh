@@ -34,8 +34,8 @@ class ShaderDiskCache {
   }
 
   /**
-   * Hash of everything that the result depends on: the preprocessed \a stages, which contain the defines, and \a driver,
-   * a text that identifies the driver. 32 hexadecimal digits.
+   * Hash of everything that the result depends on: the preprocessed \a stages, which contain the defines, and \a
+   * driver, a text that identifies the driver. 32 hexadecimal digits.
    */
   [[nodiscard]] static std::string key_of(const std::vector<ShaderSource> &stages, std::string_view driver);
 

@@ -77,9 +77,8 @@ ShaderInterface interface_of(glslang::TProgram &program)
       interface.push_constant_members = std::move(members);
       continue;
     }
-    interface.bindings.push_back(
-        {block.name, BindingKind::UniformBlock, block.getBinding(), std140_size(block), std::move(members),
-         stages_of(block)});
+    interface.bindings.push_back({block.name, BindingKind::UniformBlock, block.getBinding(), std140_size(block),
+                                  std::move(members), stages_of(block)});
   }
   for (int i = 0; i < program.getNumBufferBlocks(); i++) {
     const glslang::TObjectReflection &block = program.getBufferBlock(i);
@@ -93,7 +92,8 @@ ShaderInterface interface_of(glslang::TProgram &program)
     const glslang::TObjectReflection &uniform = variable(i);
     // Outside of blocks stand textures, and plain uniforms, which have no slot either: check_slots refuses those.
     if (uniform.index == -1) {
-      interface.bindings.push_back({uniform.name, BindingKind::Texture, uniform.getBinding(), 0, {}, stages_of(uniform)});
+      interface.bindings.push_back(
+          {uniform.name, BindingKind::Texture, uniform.getBinding(), 0, {}, stages_of(uniform)});
     }
   }
   std::ranges::sort(interface.bindings, [](const auto &a, const auto &b) {

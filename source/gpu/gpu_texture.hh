@@ -78,8 +78,8 @@ struct SamplerDesc {
   Wrap wrap_u = Wrap::ClampToEdge;
   Wrap wrap_v = Wrap::ClampToEdge;
   /**
-   * For `sampler2DShadow` and `sampler2DArrayShadow`: a lookup returns 1 where the reference is greater than or equal to
-   * the stored depth (depth is reversed: nearer or as near), otherwise 0. Filter::Linear interpolates four results.
+   * For `sampler2DShadow` and `sampler2DArrayShadow`: a lookup returns 1 where the reference is greater than or equal
+   * to the stored depth (depth is reversed: nearer or as near), otherwise 0. Filter::Linear interpolates four results.
    */
   bool is_depth_comparison = false;
 };

@@ -145,8 +145,8 @@ class Validator {
     check_slot(command.slot);
     const ResourceInfo &info = live(ResourceKind::Buffer, command.id);
     const auto &desc = std::get<BufferDesc>(info.desc);
-    if (desc.kind != kind) {
-      fail("buffer '{}' is a {} buffer", info.name, desc.kind == BufferKind::Uniform ? "uniform" : "storage");
+    if (kind == BufferKind::Storage && desc.kind == BufferKind::Uniform) {
+      fail("buffer '{}' is a uniform buffer", info.name);
     }
     const std::uint32_t alignment = device_.limits().uniform_offset_alignment;
     if (command.first % alignment != 0) {
@@ -156,8 +156,12 @@ class Validator {
     if (end > desc.size_bytes || command.first >= desc.size_bytes) {
       fail("buffer '{}': bytes [{}, {}) exceed its {} bytes", info.name, command.first, end, desc.size_bytes);
     }
-    set_bound(bounds,
-              {int(command.slot), command.id, command.count > 0 ? command.count : desc.size_bytes - command.first});
+    const std::size_t size = command.count > 0 ? command.count : desc.size_bytes - command.first;
+    const std::size_t max = device_.limits().uniform_block_bytes_max;
+    if (kind == BufferKind::Uniform && size > max) {
+      fail("buffer '{}': a range of {} bytes, and a uniform block of this device has at most {}", info.name, size, max);
+    }
+    set_bound(bounds, {int(command.slot), command.id, size});
   }
 
   void bind_texture(const Command &command)
@@ -190,9 +194,9 @@ class Validator {
     const auto &interface = std::get<ShaderInterface>(shader_->desc);
     for (const ShaderInterface::Binding &binding : interface.bindings) {
       const bool is_texture = binding.kind == BindingKind::Texture;
-      const std::vector<Bound> &bounds = is_texture                                    ? textures_
+      const std::vector<Bound> &bounds = is_texture                                  ? textures_
                                          : binding.kind == BindingKind::UniformBlock ? uniforms_
-                                                                                       : storages_;
+                                                                                     : storages_;
       const auto bound = std::ranges::find(bounds, binding.slot, &Bound::slot);
       if (bound == bounds.end()) {
         fail("shader '{}': {} '{}' at slot {} is not bound", shader_->name, to_string(binding.kind), binding.name,
@@ -227,8 +231,8 @@ class Validator {
     }
     for (const AttachedTexture &attached : framebuffer_->attachments) {
       if (attached.texture == bound.id) {
-        fail("shader '{}': feedback loop: texture '{}' at slot {} ('{}') is attached to the framebuffer",
-             shader_->name, attached.name, binding.slot, binding.name);
+        fail("shader '{}': feedback loop: texture '{}' at slot {} ('{}') is attached to the framebuffer", shader_->name,
+             attached.name, binding.slot, binding.name);
       }
     }
   }

@@ -139,12 +139,8 @@ TEST_F(RenderPassGpu, LayerIsOneSliceAndAllLayersAreAll)
   for (const int layers : {5, 12}) {
     for (const Format format : {Format::R32F, Format::Depth32F}) {
       SCOPED_TRACE(fmt::format("{} layers {}", layers, to_string(format)));
-      const Texture texture = device->create_texture({.name = "layers",
-                                                      .kind = TextureKind::Array,
-                                                      .format = format,
-                                                      .width = 4,
-                                                      .height = 4,
-                                                      .layers = layers});
+      const Texture texture = device->create_texture(
+          {.name = "layers", .kind = TextureKind::Array, .format = format, .width = 4, .height = 4, .layers = layers});
       const auto framebuffer_of = [&](int layer) {
         return is_depth(format) ? device->create_framebuffer({"one", {}, {&texture, layer}})
                                 : device->create_framebuffer({"one", {{&texture, layer}}, {}});
@@ -170,12 +166,8 @@ TEST_F(RenderPassGpu, LayerOfADrawIsGlLayer)
 {
   const Texture texture = device->create_texture(
       {.name = "layers", .kind = TextureKind::Array, .format = Format::R32F, .width = 4, .height = 4, .layers = 12});
-  const Texture depth = device->create_texture({.name = "depth",
-                                                .kind = TextureKind::Array,
-                                                .format = Format::Depth32F,
-                                                .width = 4,
-                                                .height = 4,
-                                                .layers = 12});
+  const Texture depth = device->create_texture(
+      {.name = "depth", .kind = TextureKind::Array, .format = Format::Depth32F, .width = 4, .height = 4, .layers = 12});
   const Framebuffer framebuffer = device->create_framebuffer({"all", {{&texture, all_layers}}, {&depth, all_layers}});
   const std::string fragment = R"(
 layout(location = 0) flat in uint value;
@@ -232,12 +224,8 @@ void main()
 TEST_F(RenderPassGpu, SomeLayersAreClearedAndDrawnAndTheOthersLeftAlone)
 {
   {
-    const Texture color = device->create_texture({.name = "colors",
-                                                  .kind = TextureKind::Array,
-                                                  .format = Format::R32F,
-                                                  .width = 4,
-                                                  .height = 4,
-                                                  .layers = 12});
+    const Texture color = device->create_texture(
+        {.name = "colors", .kind = TextureKind::Array, .format = Format::R32F, .width = 4, .height = 4, .layers = 12});
     const Texture depth = device->create_texture({.name = "depths",
                                                   .kind = TextureKind::Array,
                                                   .format = Format::Depth32F,

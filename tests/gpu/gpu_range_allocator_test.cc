@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "gpu_error.hh"
 #include "gpu_range_allocator.hh"
+#include "gpu_error.hh"
 
 #include <gtest/gtest.h>
 

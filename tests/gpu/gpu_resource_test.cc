@@ -157,8 +157,8 @@ TEST(Device, AnIndexWithoutGenerationsIsNotUsedAgain)
   }
   EXPECT_EQ(ids.size(), count);
   EXPECT_FALSE(ids.contains(0));
-  EXPECT_TRUE(std::ranges::all_of(
-      ids, [&](ResourceId id) { return device->find(ResourceKind::Sampler, id) == nullptr; }));
+  EXPECT_TRUE(
+      std::ranges::all_of(ids, [&](ResourceId id) { return device->find(ResourceKind::Sampler, id) == nullptr; }));
 }
 
 TEST(Device, NamesNoneWhereThereIsNoResource)

@@ -174,29 +174,49 @@ TEST_F(Validation, DeclaredBindingsAreBound)
 
 TEST_F(Validation, PushConstantsHaveTheSizeOfTheirBlock)
 {
-  const auto push = [&](std::size_t size) { return [&, size] { list.push_constants(8, std::vector<std::byte>(size)); }; };
+  const auto push = [&](std::size_t size) {
+    return [&, size] { list.push_constants(8, std::vector<std::byte>(size)); };
+  };
   expect_refused({.at_constants = push(12)}, {"shader 'reading'", "12 bytes of push constants", "has 16"});
   expect_refused({.at_constants = push(32)}, {"shader 'reading'", "32 bytes of push constants", "has 16"});
   expect_refused({.at_constants = [&] { list.push_constants(7, std::vector<std::byte>(16)); }}, {"slot 8", "not set"});
 }
 
-TEST_F(Validation, KindsOfBuffersAreRight)
+TEST_F(Validation, KindsOfBuffersAllowTheirUse)
 {
-  expect_refused({.at_uniform = [&] { list.bind_uniform(9, {store.id()}); }},
-                 {"(bind_uniform)", "buffer 'object_block' is a storage buffer"});
+  // A range of a storage buffer may be a uniform block, up to the size that those may have.
+  record({.at_uniform = [&] { list.bind_uniform(9, {store.id()}); }});
+  EXPECT_EQ(error_of([&] { validate(list, *device); }), "");
+  const Buffer blocks = device->create_buffer({"blocks", BufferKind::Storage, 1 << 20});
+  record({.at_uniform = [&] { list.bind_uniform(9, {blocks.id(), 1 << 18, 1 << 10}); }});
+  EXPECT_EQ(error_of([&] { validate(list, *device); }), "");
+  expect_refused({.at_uniform = [&] { list.bind_uniform(9, {blocks.id()}); }},
+                 {"(bind_uniform)", "buffer 'blocks': a range of 1048576 bytes", "at most 65536"});
   expect_refused({.at_storage = [&] { list.bind_storage(0, {block.id()}); }},
                  {"(bind_storage)", "buffer 'light_block' is a uniform buffer"});
 }
 
 TEST_F(Validation, RangesOfBuffersAreInsideAlignedAndLargeEnough)
 {
-  expect_refused({.at_uniform = [&] { list.bind_uniform(9, {block.id(), 8, 16}); }},
+  expect_refused({.at_uniform =
+                      [&] {
+                        list.bind_uniform(9, {block.id(), 8, 16});
+                      }},
                  {"(bind_uniform)", "buffer 'light_block'", "offset 8 is no multiple of 16"});
-  expect_refused({.at_uniform = [&] { list.bind_uniform(9, {block.id(), 16, 64}); }},
+  expect_refused({.at_uniform =
+                      [&] {
+                        list.bind_uniform(9, {block.id(), 16, 64});
+                      }},
                  {"buffer 'light_block'", "[16, 80) exceed its 64 bytes"});
-  expect_refused({.at_storage = [&] { list.bind_storage(0, {store.id(), 64, 0}); }},
+  expect_refused({.at_storage =
+                      [&] {
+                        list.bind_storage(0, {store.id(), 64, 0});
+                      }},
                  {"(bind_storage)", "buffer 'object_block'", "exceed its 64 bytes"});
-  expect_refused({.at_uniform = [&] { list.bind_uniform(9, {block.id(), 16, 0}); }},
+  expect_refused({.at_uniform =
+                      [&] {
+                        list.bind_uniform(9, {block.id(), 16, 0});
+                      }},
                  {"(draw)", "uniform 'light_block' has 64 bytes, and 48 of buffer 'light_block' are bound"});
   expect_refused({.at_uniform = [&] { list.bind_uniform(-1, {block.id()}); }}, {"slot -1 is negative"});
 }
@@ -296,7 +316,8 @@ TEST_F(Validation, DrawsAreInsideTheListAndTheBatches)
     };
   };
   expect_refused({.at_draw = draw({3, 2, 0, 0, 1})}, {"draw 0: instances [1, 3) exceed the list's 2 instances"});
-  expect_refused({.at_draw = draw({4, 1, 0, 0, 0})}, {"draw 0: indices [0, 4) from vertex 0 on belong to no live batch"});
+  expect_refused({.at_draw = draw({4, 1, 0, 0, 0})},
+                 {"draw 0: indices [0, 4) from vertex 0 on belong to no live batch"});
   expect_refused({.at_draw = draw({3, 1, 0, 3, 0})}, {"from vertex 3 on belong to no live batch"});
   expect_refused({.at_draw = draw({3, 1, 0, -1, 0})}, {"from vertex -1 on belong to no live batch"});
   record({.at_draw = draw({3, 2, 0, 0, 0})});

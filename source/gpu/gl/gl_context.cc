@@ -79,18 +79,11 @@ std::unique_ptr<GlContext> create_on(EGLDisplay display, const std::string &way,
       (!eglChooseConfig(display, config_wanted.data(), &config, 1, &config_count) || config_count == 0)) {
     return failed("no config for OpenGL");
   }
-  std::array<EGLint, 11> wanted = {EGL_CONTEXT_MAJOR_VERSION,
-                                   4,
-                                   EGL_CONTEXT_MINOR_VERSION,
-                                   5,
-                                   EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                   EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                   EGL_CONTEXT_OPENGL_DEBUG,
-                                   is_debug ? EGL_TRUE : EGL_FALSE,
+  std::array<EGLint, 11> wanted = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
+                                   EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                   EGL_CONTEXT_OPENGL_DEBUG, is_debug ? EGL_TRUE : EGL_FALSE,
                                    // So that a reset of the GPU is reported.
-                                   EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
-                                   EGL_LOSE_CONTEXT_ON_RESET,
-                                   EGL_NONE};
+                                   EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET, EGL_NONE};
   EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, wanted.data());
   if (context == EGL_NO_CONTEXT) {
     // Some drivers do not support the notification.
@@ -165,8 +158,8 @@ std::unique_ptr<GlContext> create_on_devices(bool is_software, bool is_debug, At
       continue;
     }
     is_found = true;
-    if (auto context = create_on(get_display(EGL_PLATFORM_DEVICE_EXT, device.device, nullptr), device.name, is_debug,
-                                 attempts)) {
+    if (auto context =
+            create_on(get_display(EGL_PLATFORM_DEVICE_EXT, device.device, nullptr), device.name, is_debug, attempts)) {
       return context;
     }
   }

@@ -59,8 +59,8 @@ GlDevice::Entry::~Entry()
   }
   for (const GLenum error : host_errors_) {
     if (!raise_gl_error(error)) {
-      device_.message(fmt::format("an error of the host was pending and cannot be raised again: {}",
-                                  gl_error_name(error)));
+      device_.message(
+          fmt::format("an error of the host was pending and cannot be raised again: {}", gl_error_name(error)));
     }
   }
 }
@@ -77,7 +77,6 @@ GlDevice::GlDevice(std::unique_ptr<GlContext> context, const GlDeviceDesc &desc)
     glDebugMessageCallback(&GlDevice::receive_message, this);
   }
   glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &timestamp_bits_);
-  glCreateBuffers(GLsizei(streams_.size()), streams_.data());
   create_vertex_arrays();
 }
 
@@ -85,7 +84,7 @@ GlDevice::~GlDevice()
 {
   const Entry entry(*this);
   free_live_resources();
-  glDeleteBuffers(GLsizei(streams_.size()), streams_.data());
+  stream_.destroy();
   glDeleteBuffers(GLsizei(pool_.size()), pool_.data());
   glDeleteVertexArrays(1, &vertex_array_);
   glDeleteVertexArrays(1, &empty_vertex_array_);
@@ -120,7 +119,6 @@ void GlDevice::create_vertex_arrays()
   glVertexArrayAttribIFormat(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, 2, GL_UNSIGNED_INT, 0);
   glVertexArrayAttribBinding(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, ATTRIBUTE_DRAW_INSTANCE);
   glVertexArrayBindingDivisor(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, 1);
-  glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, streams_[InstanceStream], 0, sizeof(DrawInstance));
   // Procedural draws need a vertex array too, and must not read the batches' attributes.
   glCreateVertexArrays(1, &empty_vertex_array_);
 }

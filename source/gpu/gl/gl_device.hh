@@ -5,6 +5,7 @@
 
 #include "gl_context.hh"
 #include "gl_state.hh"
+#include "gl_stream.hh"
 
 #include <functional>
 #include <optional>
@@ -66,7 +67,6 @@ class GlDevice final : public Device {
 
  private:
   enum Pool { PositionPool, NormalPool, UvPool, IndexPool, PoolCount };
-  enum Stream { InstanceStream, IndirectStream, PushStream, StreamCount };
 
   struct GlFramebuffer {
     GLuint name = 0;
@@ -148,7 +148,8 @@ class GlDevice final : public Device {
 
   void collect_slots(const CommandList &list);
   void execute(const CommandList &list);
-  void upload_streams(const CommandList &list);
+  /** Copies the list's draws, instances and bytes into the stream. */
+  void write_stream(const CommandList &list);
   void begin_pass(const CommandList::PassInfo &pass);
   void end_pass();
   void set_state(State state);
@@ -182,7 +183,9 @@ class GlDevice final : public Device {
   std::array<GLuint, PoolCount> pool_{};
   /** Bytes. */
   std::array<std::size_t, PoolCount> pool_size_{};
-  std::array<GLuint, StreamCount> streams_{};
+  StreamRing stream_;
+  /** Offset of the list's draws in the stream's buffer. */
+  std::size_t draws_offset_ = 0;
 
   UsedSlots used_slots_;
   /** The pass between begin_pass and end_pass. */

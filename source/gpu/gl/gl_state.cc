@@ -39,12 +39,12 @@ constexpr std::array<GLenum, 26> used_capabilities = {
     GL_PROGRAM_POINT_SIZE,
 };
 
-constexpr std::array<GLenum, 8> unpack_parameters = {
-    GL_UNPACK_ALIGNMENT,   GL_UNPACK_SWAP_BYTES,  GL_UNPACK_LSB_FIRST,    GL_UNPACK_ROW_LENGTH,
-    GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_ROWS,   GL_UNPACK_IMAGE_HEIGHT, GL_UNPACK_SKIP_IMAGES};
-constexpr std::array<GLenum, 8> pack_parameters = {
-    GL_PACK_ALIGNMENT,   GL_PACK_SWAP_BYTES, GL_PACK_LSB_FIRST,    GL_PACK_ROW_LENGTH,
-    GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_ROWS,  GL_PACK_IMAGE_HEIGHT, GL_PACK_SKIP_IMAGES};
+constexpr std::array<GLenum, 8> unpack_parameters = {GL_UNPACK_ALIGNMENT,    GL_UNPACK_SWAP_BYTES,  GL_UNPACK_LSB_FIRST,
+                                                     GL_UNPACK_ROW_LENGTH,   GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_ROWS,
+                                                     GL_UNPACK_IMAGE_HEIGHT, GL_UNPACK_SKIP_IMAGES};
+constexpr std::array<GLenum, 8> pack_parameters = {GL_PACK_ALIGNMENT,    GL_PACK_SWAP_BYTES,  GL_PACK_LSB_FIRST,
+                                                   GL_PACK_ROW_LENGTH,   GL_PACK_SKIP_PIXELS, GL_PACK_SKIP_ROWS,
+                                                   GL_PACK_IMAGE_HEIGHT, GL_PACK_SKIP_IMAGES};
 
 constexpr std::array<GLenum, 4> blend_functions = {GL_BLEND_SRC_RGB, GL_BLEND_DST_RGB, GL_BLEND_SRC_ALPHA,
                                                    GL_BLEND_DST_ALPHA};
@@ -135,8 +135,7 @@ SavedBufferBinding::~SavedBufferBinding()
 }
 
 SavedPixelStore::SavedPixelStore(PixelTransfer transfer)
-    : transfer_(transfer),
-      buffer_(transfer == PixelTransfer::Pack ? GL_PIXEL_PACK_BUFFER : GL_PIXEL_UNPACK_BUFFER)
+    : transfer_(transfer), buffer_(transfer == PixelTransfer::Pack ? GL_PIXEL_PACK_BUFFER : GL_PIXEL_UNPACK_BUFFER)
 {
   const bool is_pack = transfer == PixelTransfer::Pack;
   glBindBuffer(is_pack ? GL_PIXEL_PACK_BUFFER : GL_PIXEL_UNPACK_BUFFER, 0);
@@ -224,8 +223,8 @@ SavedDrawState::SavedDrawState(const UsedSlots &slots)
                slots.storage_slots);
   for (const GLuint unit : slots.texture_units) {
     glActiveTexture(GL_TEXTURE0 + unit);
-    texture_units_.push_back({unit, integer(GL_TEXTURE_BINDING_2D), integer(GL_TEXTURE_BINDING_2D_ARRAY),
-                              integer(GL_SAMPLER_BINDING)});
+    texture_units_.push_back(
+        {unit, integer(GL_TEXTURE_BINDING_2D), integer(GL_TEXTURE_BINDING_2D_ARRAY), integer(GL_SAMPLER_BINDING)});
   }
   for (GLuint i = 0; i < slots.color_count; i++) {
     ColorBuffer &saved = color_buffers_.emplace_back();
@@ -300,12 +299,11 @@ SavedDrawState::~SavedDrawState()
 
 std::string unsaveable_state(GLuint &probe_query)
 {
-  for (const auto &[target, name] : {std::pair(GL_SAMPLES_PASSED, "GL_SAMPLES_PASSED"),
-                                     std::pair(GL_ANY_SAMPLES_PASSED, "GL_ANY_SAMPLES_PASSED"),
-                                     std::pair(GL_ANY_SAMPLES_PASSED_CONSERVATIVE, "GL_ANY_SAMPLES_PASSED_CONSERVATIVE"),
-                                     std::pair(GL_PRIMITIVES_GENERATED, "GL_PRIMITIVES_GENERATED"),
-                                     std::pair(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN,
-                                               "GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN")}) {
+  for (const auto &[target, name] :
+       {std::pair(GL_SAMPLES_PASSED, "GL_SAMPLES_PASSED"), std::pair(GL_ANY_SAMPLES_PASSED, "GL_ANY_SAMPLES_PASSED"),
+        std::pair(GL_ANY_SAMPLES_PASSED_CONSERVATIVE, "GL_ANY_SAMPLES_PASSED_CONSERVATIVE"),
+        std::pair(GL_PRIMITIVES_GENERATED, "GL_PRIMITIVES_GENERATED"),
+        std::pair(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, "GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN")}) {
     GLint query = 0;
     glGetQueryiv(GLenum(target), GL_CURRENT_QUERY, &query);
     if (query != 0) {

@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "gl_device.hh"
 
+#include "slots_shared.h"
+
 #include <algorithm>
 #include <optional>
 
 namespace gnomon::gpu {
 
 namespace {
-
-/** Distance of the constants of one PushConstants command from those of the next one in the stream. */
-std::size_t push_stride(const Limits &limits, std::uint32_t count)
-{
-  const std::size_t alignment = limits.uniform_offset_alignment;
-  return (count + alignment - 1) / alignment * alignment;
-}
 
 void set_capability(GLenum capability, bool is_enabled)
 {
@@ -66,20 +61,24 @@ void GlDevice::list_submit(const CommandList &list)
       if (pass_) {
         end_pass();
       }
+      stream_.end();
       throw;
     }
+    stream_.end();
   }
   check("submit");
 }
 
 void GlDevice::execute(const CommandList &list)
 {
-  upload_streams(list);
+  write_stream(list);
   set_draw_defaults();
-  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, streams_[IndirectStream]);
   program_ = nullptr;
   bound_textures_.clear();
-  std::size_t push_offset = 0;
+  const auto written = [&](const Command &command) {
+    return stream_.write(std::span(list.bytes()).subspan(command.first, command.count),
+                         limits().uniform_offset_alignment);
+  };
   for (const Command &command : list.commands()) {
     switch (command.kind) {
       case CommandKind::BeginPass: begin_pass(list.passes()[command.first]); break;
@@ -93,16 +92,16 @@ void GlDevice::execute(const CommandList &list)
       case CommandKind::BindStorage: bind_range(command); break;
       case CommandKind::BindTexture: bind_texture(command); break;
       case CommandKind::PushConstants:
-        glBindBufferRange(GL_UNIFORM_BUFFER, command.slot, streams_[PushStream], GLintptr(push_offset),
+        glBindBufferRange(GL_UNIFORM_BUFFER, command.slot, stream_.buffer(), GLintptr(written(command)),
                           GLsizeiptr(command.count));
-        push_offset += push_stride(limits(), command.count);
         break;
       case CommandKind::Draw:
         complete_textures();
         glBindVertexArray(vertex_array_);
-        glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT,
-                                    reinterpret_cast<const void *>(command.first * sizeof(DrawIndirect)),
-                                    GLsizei(command.count), sizeof(DrawIndirect));
+        glMultiDrawElementsIndirect(
+            GL_TRIANGLES, GL_UNSIGNED_INT,
+            reinterpret_cast<const void *>(draws_offset_ + command.first * sizeof(DrawIndirect)),
+            GLsizei(command.count), sizeof(DrawIndirect));
         break;
       case CommandKind::DrawProcedural:
         complete_textures();
@@ -110,31 +109,30 @@ void GlDevice::execute(const CommandList &list)
         glDrawArraysInstanced(GL_TRIANGLES, 0, GLsizei(command.first), GLsizei(command.count));
         break;
       case CommandKind::Update:
-        buffer_update(command.id, command.slot, std::span(list.bytes()).subspan(command.first, command.count));
+        glCopyNamedBufferSubData(stream_.buffer(), buffers_.at(command.id).name, GLintptr(written(command)),
+                                 GLintptr(command.slot), GLsizeiptr(command.count));
         break;
     }
   }
 }
 
-void GlDevice::upload_streams(const CommandList &list)
+void GlDevice::write_stream(const CommandList &list)
 {
-  const auto upload = [&](Stream stream, std::size_t bytes, const void *data) {
-    if (bytes > 0) {
-      glNamedBufferData(streams_[stream], GLsizeiptr(bytes), data, GL_STREAM_DRAW);
-    }
-  };
-  upload(InstanceStream, list.instances.size() * sizeof(DrawInstance), list.instances.data());
-  upload(IndirectStream, list.draws.size() * sizeof(DrawIndirect), list.draws.data());
-  std::vector<std::byte> push;
+  const std::size_t alignment = limits().uniform_offset_alignment;
+  std::size_t size = std::as_bytes(std::span(list.instances)).size() + std::as_bytes(std::span(list.draws)).size();
+  std::size_t part_count = 2;
   for (const Command &command : list.commands()) {
-    if (command.kind == CommandKind::PushConstants) {
-      const std::size_t end = push.size() + push_stride(limits(), command.count);
-      const auto first = list.bytes().begin() + command.first;
-      push.insert(push.end(), first, first + command.count);
-      push.resize(end);
+    if (command.kind == CommandKind::PushConstants || command.kind == CommandKind::Update) {
+      size += command.count;
+      part_count++;
     }
   }
-  upload(PushStream, push.size(), push.data());
+  stream_.begin(size + part_count * alignment);
+  const std::size_t instances = stream_.write(std::as_bytes(std::span(list.instances)), alignment);
+  draws_offset_ = stream_.write(std::as_bytes(std::span(list.draws)), alignment);
+  glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, stream_.buffer(), GLintptr(instances),
+                            sizeof(DrawInstance));
+  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, stream_.buffer());
 }
 
 void GlDevice::begin_pass(const CommandList::PassInfo &pass)

@@ -35,8 +35,7 @@ class NullDevice final : public Device {
                     std::uint32_t /*index_capacity*/) override
   {
   }
-  void shader_create(ResourceId /*id*/, const ShaderDesc & /*desc*/,
-                     const std::vector<ShaderSource> & /*stages*/,
+  void shader_create(ResourceId /*id*/, const ShaderDesc & /*desc*/, const std::vector<ShaderSource> & /*stages*/,
                      std::vector<std::byte> & /*compiled*/) override
   {
   }

@@ -121,7 +121,9 @@ class ShadowsTest : public testing::Test {
     shadows.sync(device->limits(), scene, lamps, asked);
     shadows.allocate(*device, shaders);
     pass.clear();
-    draw::InstanceCall &instances = pass.group(shader).instances(batch);
+    draw::ShadingGroup &group = pass.group(shader);
+    group.bind_uniform_ref("shadow_render_block", shadows.render_block());
+    draw::InstanceCall &instances = group.instances(batch);
     for (std::size_t i = 0; i < casters.size(); i++) {
       shadows.add_caster(
           {casters[i], draw::ObjectIndex(i), &instances, fingerprint_of(std::as_bytes(std::span(&casters[i], 1)))});
