@@ -123,6 +123,7 @@ class ShadowsTest : public testing::Test {
     pass.clear();
     draw::ShadingGroup &group = pass.group(shader);
     group.bind_uniform_ref("shadow_render_block", shadows.render_block());
+    group.bind_storage("object_block", objects);
     draw::InstanceCall &instances = group.instances(batch);
     for (std::size_t i = 0; i < casters.size(); i++) {
       shadows.add_caster(
@@ -150,6 +151,7 @@ class ShadowsTest : public testing::Test {
   std::array<glm::vec3, 3> positions = {glm::vec3(0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)};
   std::array<std::uint32_t, 3> indices = {0, 1, 2};
   gpu::Batch batch = device->create_batch({"triangle", positions, {}, indices});
+  gpu::Buffer objects = device->create_buffer({"object_block", gpu::BufferKind::Storage, 4096});
   ShaderCache shaders;
   const gpu::Shader &shader = shaders.get(*device, ShaderId::Shadow);
   draw::Pass pass{"casters", gpu::State::WriteDepth};
