@@ -12,21 +12,21 @@
 namespace gnomon::gpu {
 
 /**
- * Vertex inputs are at the locations of `shaders/shared/slots_shared.h`.
- * All batches of a device stand in one set of buffers, so that one command draws many of them.
+ * Triangles with vertex attributes. Shaders read them at the locations of `shaders/shared/slots_shared.h`.
+ * All batches of a device share one set of buffers, so that one command draws many of them.
  */
 struct BatchDesc {
   std::string name;
   std::span<const glm::vec3> positions;
-  /** As many as positions, or none: zeros. */
+  /** One for each position, or none: the shader then reads zeros. */
   std::span<const glm::vec3> normals;
-  /** Three a triangle, each below positions.size(). */
+  /** Three for each triangle, each less than positions.size(). */
   std::span<const std::uint32_t> indices;
-  /** As many as positions, or none: then no shader may read them. */
+  /** One for each position, or none: then no shader may read them. */
   std::span<const glm::vec2> uvs{};
 };
 
-/** Where a batch stands in its device's buffers: what an indexed draw needs. */
+/** Location of a batch in the buffers of its device, for indexed draws. */
 struct BatchRange {
   std::uint32_t first_index = 0;
   std::uint32_t index_count = 0;
@@ -34,11 +34,11 @@ struct BatchRange {
   std::uint32_t vertex_count = 0;
 };
 
-/** Triangles on the device. */
+/** Owner of triangles on the device. */
 class Batch : public Resource {
  public:
   Batch() = default;
-  /** Fixed for the batch's life. */
+  /** Constant during the lifetime of the batch. */
   [[nodiscard]] const BatchRange &range() const
   {
     return range_;

@@ -8,7 +8,12 @@
 
 namespace gnomon::gpu {
 
-enum class BufferKind : std::uint8_t { Uniform, Storage };
+enum class BufferKind : std::uint8_t {
+  /** For uniform blocks. */
+  Uniform,
+  /** For storage blocks; also for many uniform blocks of one kind, each of which is bound as a range. */
+  Storage,
+};
 
 struct BufferDesc {
   std::string name;
@@ -17,7 +22,7 @@ struct BufferDesc {
   std::size_t size_bytes = 0;
 };
 
-/** A uniform block's (or storage block's) memory, laid out std140. Written by Device::update or CommandList::update. */
+/** Memory of a uniform or storage block, in std140 layout. Written by Device::update or CommandList::update. */
 class Buffer : public Resource {
  public:
   Buffer() = default;
@@ -40,7 +45,7 @@ class Buffer : public Resource {
   BufferKind kind_ = BufferKind::Uniform;
 };
 
-/** A part of a buffer, to be bound to a block. */
+/** A range of a buffer that can be bound to a block. */
 struct BufferRange {
   ResourceId buffer = 0;
   /** A multiple of Limits::uniform_offset_alignment. */

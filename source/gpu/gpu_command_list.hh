@@ -25,15 +25,15 @@ enum class CommandKind : std::uint32_t {
   Update,
 };
 
-/** What an instance of a draw hands to its vertex shader, as the input `draw_instance`. */
+/** Vertex input `draw_instance` of one instance of a draw. */
 struct DrawInstance {
   /** Index in the object block. */
   std::uint32_t object = 0;
-  /** For the shader to interpret: the ordinal of an instance, a cube face. */
+  /** Meaning defined by the shader, such as the ordinal of an instance or a cube face. */
   std::uint32_t value = 0;
 };
 
-/** The layout that indirect draws have in OpenGL and Vulkan alike. */
+/** An indexed draw, in the layout of indirect draws in OpenGL and Vulkan. */
 struct DrawIndirect {
   std::uint32_t index_count = 0;
   std::uint32_t instance_count = 0;
@@ -43,7 +43,7 @@ struct DrawIndirect {
   std::uint32_t first_instance = 0;
 };
 
-/** What `slot`, `id`, `first` and `count` mean depends on the kind; see CommandList's functions. */
+/** The meaning of `slot`, `id`, `first` and `count` depends on the kind; see the functions of CommandList. */
 struct Command {
   CommandKind kind = CommandKind::EndPass;
   std::uint32_t slot = 0;
@@ -53,14 +53,16 @@ struct Command {
 };
 
 /**
- * Work for a device, as plain data: flat arrays, resources by id. May be filled on one thread and submitted on
- * another, submitted again, printed and compared. Keeps no resource alive.
+ * Work for a device as plain data: flat arrays that name resources by id. A list may be recorded on one thread and
+ * submitted on another, submitted several times, printed and compared. It keeps no resource alive; validate() and
+ * Device::submit report ids of destroyed resources.
  *
- * Draws stand between begin_pass and end_pass; updates outside of them.
+ * Draws must be recorded between begin_pass and end_pass, updates outside of passes. Shader, bindings and push
+ * constants stay in effect until they are replaced or the list ends. The state must be set in each pass.
  */
 class CommandList {
  public:
-  /** Nothing of the framebuffer but what \a actions say survives. The viewport is the whole framebuffer. */
+  /** Begin to draw into \a framebuffer. \a actions: the treatment of its content, and the viewport. */
   void begin_pass(std::string_view name, const Framebuffer &framebuffer, const PassActions &actions);
   void end_pass();
 
@@ -68,20 +70,20 @@ class CommandList {
   void set_state(State state);
   void bind_uniform(int slot, const BufferRange &range);
   void bind_storage(int slot, const BufferRange &range);
-  /** 0 and 0: none, for a shader that declares the texture and will not look it up. */
+  /** 0 and 0: no texture. A shader that declares the texture then reads zeros, and 1 from a depth comparison. */
   void bind_texture(int slot, ResourceId texture, ResourceId sampler);
-  /** For the block push_constant_block_name of the shader set before, at its slot. Copies \a bytes. */
+  /** Set the content of the block push_constant_block_name of later draws, at its slot. Copies \a bytes. */
   void push_constants(int slot, std::span<const std::byte> bytes);
-  /** `draws[first, first + count)`, with the shader, state and bindings set before. */
+  /** Draw `draws[first, first + count)` with the current shader, state and bindings. */
   void draw(std::uint32_t first, std::uint32_t count);
-  /** \a vertex_count vertices without attributes. */
+  /** Draw triangles of \a vertex_count vertices without attributes. */
   void draw_procedural(std::uint32_t vertex_count, std::uint32_t instance_count);
-  /** Copies \a bytes now, writes them to the buffer in order with the other commands. */
+  /** Write \a bytes to the buffer, in order with the other commands. They are copied now. */
   void update(const Buffer &buffer, std::size_t offset_bytes, std::span<const std::byte> bytes);
 
   void clear();
 
-  /** Filled by the caller, before the draw() that names their range. */
+  /** Appended by the caller, before the draw() that refers to them. */
   std::vector<DrawIndirect> draws;
   std::vector<DrawInstance> instances;
 
@@ -94,18 +96,21 @@ class CommandList {
   {
     return commands_;
   }
-  /** BeginPass: `first` is the index here. */
+  /** Indexed by `first` of BeginPass. */
   [[nodiscard]] const std::vector<PassInfo> &passes() const
   {
     return passes_;
   }
-  /** PushConstants and Update: `first` is the offset here, `count` the size; of Update, `slot` is the offset there. */
+  /**
+   * Data of PushConstants and Update: `first` is the offset in it and `count` the size. `slot` of Update is the offset
+   * in the written buffer.
+   */
   [[nodiscard]] const std::vector<std::byte> &bytes() const
   {
     return bytes_;
   }
 
-  /** One line a command, resources by the names \a device has for them. */
+  /** One line for each command. \a device supplies the names of the resources. */
   [[nodiscard]] std::string serialize(const Device &device) const;
 
  private:

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gpu_device.hh"
 
+#include "gpu_validate.hh"
+
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -15,7 +17,7 @@ Device::Device(const Limits &limits, MessageSink sink, std::filesystem::path sha
       link_(std::make_shared<DeviceLink>(DeviceLink{this}))
 {
   for (std::vector<Slot> &slots : slots_) {
-    slots.emplace_back().name = "none";
+    slots.emplace_back().info.name = "none";
   }
 }
 
@@ -24,12 +26,12 @@ Device::~Device() = default;
 void Device::free_live_resources()
 {
   for (const std::string &resource : live_resources()) {
-    message(fmt::format("{} is destroyed with its device; its owner should go first", resource));
+    message(fmt::format("{} is destroyed with its device; its owner should be destroyed first", resource));
   }
   for (std::size_t kind = 0; kind < kind_count; kind++) {
-    for (ResourceId id = 1; id < slots_[kind].size(); id++) {
-      if (slots_[kind][id].is_live) {
-        release(ResourceKind(kind), id);
+    for (const Slot &slot : slots_[kind]) {
+      if (slot.is_live) {
+        release(ResourceKind(kind), slot.id);
       }
     }
   }
@@ -47,34 +49,35 @@ void Device::message(std::string_view text) const
 }
 
 template <typename Create>
-Resource Device::make(ResourceKind kind, const std::string &name, std::string detail, std::size_t size_bytes,
-                      Create &&create)
+Resource Device::make(ResourceKind kind, ResourceInfo info, std::string detail, std::size_t size_bytes, Create &&create)
 {
   std::vector<Slot> &slots = slots_[std::size_t(kind)];
   std::vector<ResourceId> &free_ids = free_ids_[std::size_t(kind)];
   if (free_ids.empty()) {
+    if (slots.size() > resource_count_max) {
+      throw Error("{} '{}': a device has ids for {} of them", to_string(kind), info.name, resource_count_max);
+    }
     free_ids.push_back(ResourceId(slots.size()));
     slots.emplace_back();
   }
   const ResourceId id = free_ids.back();
-  slots[id].name = name;
-  slots[id].detail = std::move(detail);
-  slots[id].size_bytes = size_bytes;
-  slots[id].upload_bytes = 0;
   create(id);
-  slots[id].is_live = true;
+  slots[index_of(id)] = {id, true, std::move(info), std::move(detail), size_bytes, 0};
   free_ids.pop_back();
   return {link_, kind, id};
 }
 
 void Device::release(ResourceKind kind, ResourceId id)
 {
-  Slot &slot = slots_[std::size_t(kind)][id];
+  Slot &slot = slots_[std::size_t(kind)][index_of(id)];
   slot.is_live = false;
-  free_ids_[std::size_t(kind)].push_back(id);
+  // An index without unused generations is never used again, so that no id is issued twice.
+  constexpr std::uint32_t generation_max = (1U << (32U - resource_index_bits)) - 1U;
+  if (generation_of(id) < generation_max) {
+    free_ids_[std::size_t(kind)].push_back(id + (1U << resource_index_bits));
+  }
   if (kind == ResourceKind::Batch) {
-    vertices_.free(std::uint32_t(slot.range.base_vertex), slot.range.vertex_count);
-    indices_.free(slot.range.first_index, slot.range.index_count);
+    free_range(std::get<BatchRange>(slot.info.desc));
   }
   else {
     resource_destroy(kind, id);
@@ -88,19 +91,14 @@ Texture Device::create_texture(const TextureDesc &desc)
       throw Error("texture '{}': {} is {}, and this device takes 1 to {}", desc.name, what, value, max);
     }
   };
-  const bool is_cube = desc.kind == TextureKind::Cube || desc.kind == TextureKind::CubeArray;
-  const bool is_array = desc.kind == TextureKind::Array || desc.kind == TextureKind::CubeArray;
   in_range("width", desc.width, limits_.texture_size_max);
   in_range("height", desc.height, limits_.texture_size_max);
-  in_range("layer count", desc.layers, !is_array ? 1 : limits_.array_layers_max / (is_cube ? 6 : 1));
+  in_range("layer count", desc.layers, desc.kind == TextureKind::Array ? limits_.array_layers_max : 1);
   in_range("mip level count", desc.mip_levels, int(std::bit_width(unsigned(std::max(desc.width, desc.height)))));
-  if (is_cube && desc.width != desc.height) {
-    throw Error("texture '{}': a cube's faces are square, not {}x{}", desc.name, desc.width, desc.height);
-  }
   const std::string detail =
-      fmt::format("{}x{}{} {}", desc.width, desc.height,
-                  desc.layer_count() > 1 ? fmt::format("x{}", desc.layer_count()) : "", to_string(desc.format));
-  Resource resource = make(ResourceKind::Texture, desc.name, detail, desc.size_bytes(),
+      fmt::format("{}x{}{} {}", desc.width, desc.height, desc.layers > 1 ? fmt::format("x{}", desc.layers) : "",
+                  to_string(desc.format));
+  Resource resource = make(ResourceKind::Texture, {desc.name, desc}, detail, desc.size_bytes(),
                            [&](ResourceId id) { texture_create(id, desc); });
   counters_.textures_made++;
   return {std::move(resource), desc};
@@ -108,7 +106,8 @@ Texture Device::create_texture(const TextureDesc &desc)
 
 Sampler Device::create_sampler(const SamplerDesc &desc)
 {
-  return Sampler(make(ResourceKind::Sampler, desc.name, {}, 0, [&](ResourceId id) { sampler_create(id, desc); }));
+  return Sampler(
+      make(ResourceKind::Sampler, {desc.name, desc}, {}, 0, [&](ResourceId id) { sampler_create(id, desc); }));
 }
 
 Framebuffer Device::create_framebuffer(const FramebufferDesc &desc)
@@ -133,10 +132,10 @@ Framebuffer Device::create_framebuffer(const FramebufferDesc &desc)
       throw Error("framebuffer '{}': texture '{}' of format {} cannot be its {} attachment", desc.name, texture.name,
                   to_string(texture.format), is_depth_attachment ? "depth" : "colour");
     }
-    if (attachment.layer < all_layers || attachment.layer >= texture.layer_count()) {
+    if (attachment.layer < all_layers || attachment.layer >= texture.layers) {
       throw Error("framebuffer '{}': texture '{}' has no layer {}", desc.name, texture.name, attachment.layer);
     }
-    if (attachment.layer_count < 1 || attachment.layer + attachment.layer_count > texture.layer_count() ||
+    if (attachment.layer_count < 1 || attachment.layer + attachment.layer_count > texture.layers ||
         (attachment.layer == all_layers && attachment.layer_count > 1)) {
       throw Error("framebuffer '{}': texture '{}' has no {} layers from {} on", desc.name, texture.name,
                   attachment.layer_count, attachment.layer);
@@ -152,7 +151,12 @@ Framebuffer Device::create_framebuffer(const FramebufferDesc &desc)
     }
     size_px = size;
   }
-  return {make(ResourceKind::Framebuffer, desc.name, {}, 0, [&](ResourceId id) { framebuffer_create(id, desc); }),
+  FramebufferInfo info{.attachments = {}, .size_px = size_px};
+  for (const Attachment &attachment : attachments) {
+    info.attachments.push_back({attachment.texture->id(), attachment.texture->desc().name});
+  }
+  return {make(ResourceKind::Framebuffer, {desc.name, std::move(info)}, {}, 0,
+               [&](ResourceId id) { framebuffer_create(id, desc); }),
           size_px};
 }
 
@@ -163,7 +167,8 @@ Buffer Device::create_buffer(const BufferDesc &desc)
   if (desc.size_bytes == 0 || desc.size_bytes > max) {
     throw Error("buffer '{}': {} bytes, and this device takes 1 to {}", desc.name, desc.size_bytes, max);
   }
-  return {make(ResourceKind::Buffer, desc.name, {}, desc.size_bytes, [&](ResourceId id) { buffer_create(id, desc); }),
+  return {make(ResourceKind::Buffer, {desc.name, desc}, {}, desc.size_bytes,
+               [&](ResourceId id) { buffer_create(id, desc); }),
           desc};
 }
 
@@ -180,26 +185,70 @@ Batch Device::create_batch(const BatchDesc &desc)
                 desc.name, desc.uvs.size(), desc.positions.size());
   GNOMON_ASSERT(std::ranges::all_of(desc.indices, [&](auto index) { return index < desc.positions.size(); }),
                 "batch '{}': an index reaches past its {} vertices", desc.name, desc.positions.size());
-  BatchRange range;
-  range.vertex_count = std::uint32_t(desc.positions.size());
-  range.index_count = std::uint32_t(desc.indices.size());
-  range.base_vertex = std::int32_t(vertices_.allocate(range.vertex_count));
-  range.first_index = indices_.allocate(range.index_count);
+  const std::uint32_t vertex_capacity = vertices_.capacity();
+  const std::uint32_t index_capacity = indices_.capacity();
+  const BatchRange range = allocate_range(desc);
   const std::size_t size_bytes =
       desc.positions.size_bytes() + desc.normals.size_bytes() + desc.indices.size_bytes() + desc.uvs.size_bytes();
-  Resource resource = make(ResourceKind::Batch, desc.name, {}, size_bytes, [&](ResourceId id) {
-    slots_[std::size_t(ResourceKind::Batch)][id].range = range;
-    try {
+  try {
+    Resource resource = make(ResourceKind::Batch, {desc.name, range}, {}, size_bytes, [&](ResourceId /*id*/) {
       batch_create(desc, range, vertices_.capacity(), indices_.capacity());
+    });
+    count_upload(ResourceKind::Batch, resource.id(), size_bytes);
+    return {std::move(resource), range};
+  }
+  catch (...) {
+    free_range(range);
+    // The backend may not have grown its buffers, and smaller batches still fit into them.
+    vertices_.shrink(vertex_capacity);
+    indices_.shrink(index_capacity);
+    throw;
+  }
+}
+
+BatchRange Device::allocate_range(const BatchDesc &desc)
+{
+  BatchRange range;
+  const auto vertex_count = std::uint32_t(desc.positions.size());
+  const auto index_count = std::uint32_t(desc.indices.size());
+  try {
+    range.base_vertex = std::int32_t(vertices_.allocate(vertex_count));
+    range.vertex_count = vertex_count;
+    range.first_index = indices_.allocate(index_count);
+    range.index_count = index_count;
+  }
+  catch (const Error &error) {
+    free_range(range);
+    throw Error("batch '{}': {} vertices and {} indices: {}", desc.name, vertex_count, index_count, error.what());
+  }
+  return range;
+}
+
+void Device::free_range(const BatchRange &range)
+{
+  vertices_.free(std::uint32_t(range.base_vertex), range.vertex_count);
+  indices_.free(range.first_index, range.index_count);
+}
+
+bool Device::has_batch_data(std::uint32_t first_index, std::uint32_t index_count, std::int32_t base_vertex) const
+{
+  return base_vertex >= 0 && vertices_.is_allocated(std::uint32_t(base_vertex), 1) &&
+         indices_.is_allocated(first_index, index_count);
+}
+
+static void check_storage_blocks(std::string_view name, const ShaderInterface &interface, const Limits &limits)
+{
+  for (const auto &[stage, max] : {std::pair(ShaderStage::Vertex, limits.vertex_storage_block_max),
+                                   std::pair(ShaderStage::Geometry, limits.geometry_storage_block_max),
+                                   std::pair(ShaderStage::Fragment, limits.fragment_storage_block_max)}) {
+    const auto count = std::ranges::count_if(interface.bindings, [&](const ShaderInterface::Binding &binding) {
+      return binding.kind == BindingKind::StorageBlock && (binding.stages & (1U << unsigned(stage))) != 0;
+    });
+    if (count > max) {
+      throw Error("shader '{}': {} storage blocks in the {} stage, and this device supports {}", name, count,
+                  to_string(stage), max);
     }
-    catch (...) {
-      vertices_.free(std::uint32_t(range.base_vertex), range.vertex_count);
-      indices_.free(range.first_index, range.index_count);
-      throw;
-    }
-  });
-  count_upload(ResourceKind::Batch, resource.id(), size_bytes);
-  return {std::move(resource), range};
+  }
 }
 
 Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files, const ShaderReflection &reflection)
@@ -207,19 +256,15 @@ Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files, c
   const std::vector<ShaderSource> stages = preprocess(desc, files);
   ShaderInterface interface = reflection(desc.name, stages);
   const std::string key = ShaderDiskCache::key_of(stages, description());
-  const std::optional<CachedShader> cached = shader_cache_.load(key);
-  bool is_loaded = false;
+  CachedShader shader = shader_cache_.load(key).value_or(CachedShader());
+  check_storage_blocks(desc.name, interface, limits_);
   const std::string detail = fmt::format("{}", fmt::join(desc.defines, " "));
-  Resource resource = make(ResourceKind::Shader, desc.name, detail, 0, [&](ResourceId id) {
-    is_loaded = cached && shader_load(id, desc, *cached);
-    if (!is_loaded) {
-      shader_create(id, desc, stages);
-    }
-  });
-  if (!is_loaded) {
-    CachedShader made;
-    shader_binary(resource.id(), made);
-    shader_cache_.store(key, made);
+  const std::vector<std::byte> known = shader.compiled;
+  Resource resource = make(ResourceKind::Shader, {desc.name, interface}, detail, 0,
+                           [&](ResourceId id) { shader_create(id, desc, stages, shader.compiled); });
+  const bool is_loaded = !known.empty() && shader.compiled == known;
+  if (!is_loaded && !shader.compiled.empty()) {
+    shader_cache_.store(key, shader);
   }
   counters_.shaders_made++;
   counters_.shaders_from_cache += is_loaded;
@@ -228,7 +273,8 @@ Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files, c
 
 TimerQuery Device::create_timer_query(std::string name)
 {
-  return TimerQuery(make(ResourceKind::TimerQuery, name, {}, 0, [&](ResourceId id) { timer_query_create(id, name); }));
+  return TimerQuery(
+      make(ResourceKind::TimerQuery, {name, {}}, {}, 0, [&](ResourceId id) { timer_query_create(id, name); }));
 }
 
 void Device::update(const Buffer &buffer, std::size_t offset_bytes, std::span<const std::byte> bytes)
@@ -248,7 +294,7 @@ static std::size_t layer_size_bytes(const TextureDesc &desc)
 void Device::upload(const Texture &texture, int layer, std::span<const std::byte> texels)
 {
   const TextureDesc &desc = texture.desc();
-  GNOMON_ASSERT(texture && layer >= 0 && layer < desc.layer_count() && texels.size() == layer_size_bytes(desc),
+  GNOMON_ASSERT(texture && layer >= 0 && layer < desc.layers && texels.size() == layer_size_bytes(desc),
                 "texture '{}': {} bytes to layer {}", desc.name, texels.size(), layer);
   count_upload(ResourceKind::Texture, texture.id(), texels.size());
   texture_upload(texture, layer, texels);
@@ -269,13 +315,13 @@ void Device::copy_layers(const Texture &source, const Texture &target)
   const TextureDesc &from = source.desc();
   const TextureDesc &to = target.desc();
   layers_copy(source, target, {std::min(from.width, to.width), std::min(from.height, to.height)},
-              std::min(from.layer_count(), to.layer_count()));
+              std::min(from.layers, to.layers));
 }
 
 std::vector<std::byte> Device::read(const Texture &texture, int layer)
 {
   const TextureDesc &desc = texture.desc();
-  GNOMON_ASSERT(texture && layer >= 0 && layer < desc.layer_count(), "texture '{}' has no layer {}", desc.name, layer);
+  GNOMON_ASSERT(texture && layer >= 0 && layer < desc.layers, "texture '{}' has no layer {}", desc.name, layer);
   std::vector<std::byte> texels(layer_size_bytes(desc));
   texture_read(texture, layer, texels);
   return texels;
@@ -283,6 +329,9 @@ std::vector<std::byte> Device::read(const Texture &texture, int layer)
 
 void Device::submit(const CommandList &list)
 {
+#ifndef NDEBUG
+  validate(list, *this);
+#endif
   list_submit(list);
   count(list);
 }
@@ -290,7 +339,7 @@ void Device::submit(const CommandList &list)
 void Device::count_upload(ResourceKind kind, ResourceId id, std::size_t bytes)
 {
   counters_.upload_bytes += bytes;
-  slots_[std::size_t(kind)][id].upload_bytes += bytes;
+  slots_[std::size_t(kind)][index_of(id)].upload_bytes += bytes;
 }
 
 void Device::count(const CommandList &list)
@@ -299,7 +348,7 @@ void Device::count(const CommandList &list)
     switch (command.kind) {
       case CommandKind::BeginPass:
         counters_.passes++;
-        pass_counts_[list.passes()[command.first].name]++;
+        count_pass(list.passes()[command.first].name);
         break;
       case CommandKind::SetShader: counters_.shader_binds++; break;
       case CommandKind::Draw:
@@ -322,10 +371,33 @@ void Device::count(const CommandList &list)
   counters_.upload_bytes += list.draws.size() * sizeof(DrawIndirect) + list.instances.size() * sizeof(DrawInstance);
 }
 
-const std::string &Device::name_of(ResourceKind kind, ResourceId id) const
+void Device::count_pass(const std::string &name)
+{
+  const auto known = pass_counts_.find(name);
+  if (known != pass_counts_.end()) {
+    known->second++;
+  }
+  else {
+    pass_counts_[pass_counts_.size() < pass_name_max ? name : other_passes]++;
+  }
+}
+
+const Device::Slot &Device::slot_of(ResourceKind kind, ResourceId id) const
 {
   const std::vector<Slot> &slots = slots_[std::size_t(kind)];
-  return slots[id < slots.size() ? id : 0].name;
+  const std::uint32_t index = index_of(id);
+  return index < slots.size() && slots[index].id == id ? slots[index] : slots[0];
+}
+
+const std::string &Device::name_of(ResourceKind kind, ResourceId id) const
+{
+  return slot_of(kind, id).info.name;
+}
+
+const ResourceInfo *Device::find(ResourceKind kind, ResourceId id) const
+{
+  const Slot &slot = slot_of(kind, id);
+  return slot.is_live ? &slot.info : nullptr;
 }
 
 std::vector<LiveResource> Device::live() const
@@ -334,7 +406,7 @@ std::vector<LiveResource> Device::live() const
   for (std::size_t kind = 0; kind < kind_count; kind++) {
     for (const Slot &slot : slots_[kind]) {
       if (slot.is_live) {
-        resources.push_back({ResourceKind(kind), slot.name, slot.detail, slot.size_bytes, slot.upload_bytes});
+        resources.push_back({ResourceKind(kind), slot.info.name, slot.detail, slot.size_bytes, slot.upload_bytes});
       }
     }
   }
@@ -344,8 +416,8 @@ std::vector<LiveResource> Device::live() const
 LiveResource Device::live(const Resource &resource) const
 {
   GNOMON_ASSERT(resource, "an empty {}", to_string(resource.kind_));
-  const Slot &slot = slots_[std::size_t(resource.kind_)][resource.id()];
-  return {resource.kind_, slot.name, slot.detail, slot.size_bytes, slot.upload_bytes};
+  const Slot &slot = slot_of(resource.kind_, resource.id());
+  return {resource.kind_, slot.info.name, slot.detail, slot.size_bytes, slot.upload_bytes};
 }
 
 std::vector<std::string> Device::live_resources() const

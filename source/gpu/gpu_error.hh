@@ -9,8 +9,8 @@
 namespace gnomon::gpu {
 
 /**
- * Bad input or device: the message names the object, the file where there is one, and the reason.
- * What threw is left as it was before the call.
+ * Bad input or device. The message names the object, the file where there is one, and the reason.
+ * The object whose function throws is left as it was before the call, unless the function documents otherwise.
  */
 struct Error : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -22,14 +22,19 @@ struct Error : std::runtime_error {
   }
 };
 
+/** The driver reports that the context is lost. The device and its resources can only be destroyed. */
+struct DeviceLost : Error {
+  using Error::Error;
+};
+
 /** Print \a message and abort. \see GNOMON_ASSERT */
 [[noreturn]] void assertion_failed(const char *file, int line, const char *condition, std::string_view message);
 
 }  // namespace gnomon::gpu
 
 /**
- * A contract between programmers. What follows the condition is an fmt format string and the values at fault.
- * Stays on in release builds, so it does not belong in a loop over draws.
+ * Checks a contract between programmers. The condition is followed by an fmt format string and its values.
+ * The check remains in release builds, so it must not be used in a loop over draws.
  */
 #define GNOMON_ASSERT(condition, ...) \
   ((condition) ? void(0) : ::gnomon::gpu::assertion_failed(__FILE__, __LINE__, #condition, fmt::format(__VA_ARGS__)))

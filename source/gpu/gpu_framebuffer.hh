@@ -10,27 +10,28 @@
 
 namespace gnomon::gpu {
 
-/** Every layer of the texture; the shader says which by `gl_Layer`. */
+/** Attaches every layer of the texture; the shader selects one by `gl_Layer`. */
 inline constexpr int all_layers = -1;
 
 struct Attachment {
-  /** nullptr: none. Must outlive the framebuffer. */
+  /** nullptr: no attachment. Must outlive the framebuffer. */
   const Texture *texture = nullptr;
-  /** One slice, or all_layers. */
+  /** One layer, or all_layers. */
   int layer = 0;
   int mip_level = 0;
-  /** More than 1: this many from `layer` on, and `gl_Layer` 0 is `layer`; passes clear these and no others. */
+  /** More than 1: attaches this many layers from `layer` on. `gl_Layer` 0 is `layer`, and passes clear these layers
+   * only. */
   int layer_count = 1;
 };
 
 struct FramebufferDesc {
   std::string name;
-  /** At most Limits::color_attachment_max; all attachments have one size. */
+  /** At most Limits::color_attachment_max. All attachments must have the same size. */
   std::vector<Attachment> colors;
   Attachment depth;
 };
 
-/** What a render pass draws into. */
+/** Target of a render pass. */
 class Framebuffer : public Resource {
  public:
   Framebuffer() = default;
@@ -46,16 +47,16 @@ class Framebuffer : public Resource {
 };
 
 enum class LoadAction : std::uint8_t {
-  /** What was there is needed. */
+  /** Keep the content. */
   Load,
   Clear,
-  /** Every pixel will be written, or none is read: what was there may be lost. */
+  /** The content may be lost: every pixel will be written, or none will be read. */
   DontCare,
 };
 
 enum class StoreAction : std::uint8_t { Store, DontCare };
 
-/** What becomes of the attachments at the beginning and at the end of a render pass; all colours alike. */
+/** Treatment of the attachments at the begin and at the end of a render pass; the same for all colour attachments. */
 struct PassActions {
   LoadAction color_load = LoadAction::Clear;
   StoreAction color_store = StoreAction::Store;
@@ -64,7 +65,8 @@ struct PassActions {
   StoreAction depth_store = StoreAction::Store;
   /** Reversed depth: 0 is far. */
   float clear_depth = 0.0F;
-  /** Draw into the lower left corner of this size; clears and invalidations are of the whole. 0: all of it. */
+  /** Size of the viewport, from the lower left corner. Clears apply to the whole framebuffer. 0: the whole framebuffer.
+   */
   glm::ivec2 viewport_px{0};
 };
 

@@ -6,7 +6,7 @@
 namespace gnomon::gpu {
 
 /**
- * Render passes inside one another: pushing suspends the pass below, popping resumes it with what it had drawn.
+ * Nested render passes: push suspends the current pass, pop resumes it with its content kept.
  *
  * Records into \a list, which must outlive the stack. A pass that discards an attachment at its end cannot be
  * suspended.
@@ -15,11 +15,11 @@ class FramebufferStack {
  public:
   explicit FramebufferStack(CommandList &list) : list_(list) {}
 
-  /** \a framebuffer must live until it is popped. \throws Error where the pass below cannot be suspended. */
+  /** \a framebuffer must live until it is popped. \throws Error where the current pass cannot be suspended. */
   void push(std::string name, const Framebuffer &framebuffer, const PassActions &actions);
-  /** \throws Error on an empty stack; nothing changes then. */
+  /** \throws Error for an empty stack; nothing changes then. */
   void pop();
-  /** \throws Error on an empty stack. */
+  /** \throws Error for an empty stack. */
   [[nodiscard]] const Framebuffer &top() const;
   [[nodiscard]] bool is_empty() const
   {

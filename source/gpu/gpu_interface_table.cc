@@ -28,8 +28,8 @@ ShaderInterface InterfaceTable::interface_of(std::uint32_t key) const
   for (std::size_t i = 0; i < bindings.size(); i++) {
     if ((variant->bindings >> i & 1U) != 0) {
       const Binding &binding = bindings[i];
-      interface.bindings.push_back(
-          {std::string(binding.name), binding.kind, binding.slot, binding.size_bytes, copy_of(binding.members)});
+      interface.bindings.push_back({std::string(binding.name), binding.kind, binding.slot, binding.size_bytes,
+                                    copy_of(binding.members), binding.stages});
     }
   }
   if (variant->has_push_constants) {

@@ -26,6 +26,8 @@ struct InterfaceTable {
     int slot;
     std::uint32_t size_bytes;
     std::span<const Member> members;
+    /** Of all variants. */
+    std::uint32_t stages = 0;
   };
   struct Variant {
     /** Chosen by the engine: its features as bits. */

@@ -9,7 +9,7 @@
 
 namespace gnomon::gpu {
 
-/** Device::read as numbers: float for each channel, say, or glm::vec4 for each texel of RGBA32F. */
+/** Device::read as values of T, such as float for each channel, or glm::vec4 for each texel of RGBA32F. */
 template <typename T>
 [[nodiscard]] std::vector<T> read_as(Device &device, const Texture &texture, int layer = 0)
 {

@@ -15,20 +15,38 @@ enum class ResourceKind : std::uint8_t { Texture, Sampler, Framebuffer, Buffer, 
 /** "texture", "sampler", … */
 [[nodiscard]] std::string_view to_string(ResourceKind kind);
 
-/** Names a resource of one kind within its device, in command lists. 0: none. Reused after destruction. */
+/**
+ * Names a resource of one kind within its device, in command lists. 0: none.
+ *
+ * The lower bits are an index, the upper bits a generation that increases whenever the index is used again. A device
+ * never issues an id twice, so the id of a destroyed resource never names another resource.
+ */
 using ResourceId = std::uint32_t;
+inline constexpr unsigned resource_index_bits = 20;
+/** Live resources of one kind that a device can hold. */
+inline constexpr std::uint32_t resource_count_max = (1U << resource_index_bits) - 1U;
 
-/** What a resource keeps of its device, so that it can outlive it harmlessly. */
+[[nodiscard]] constexpr std::uint32_t index_of(ResourceId id)
+{
+  return id & resource_count_max;
+}
+[[nodiscard]] constexpr std::uint32_t generation_of(ResourceId id)
+{
+  return id >> resource_index_bits;
+}
+
+/** Shared by a device and its resources, so that a resource may outlive its device. */
 struct DeviceLink {
-  /** nullptr once the device is gone. */
+  /** nullptr once the device is destroyed. */
   Device *device = nullptr;
 };
 
 /**
- * Owner of one thing on the device; the base of Texture, Buffer, Batch and the like.
+ * Owner of one object on the device; the base of Texture, Buffer, Batch and the like.
  *
- * Move-only. Destroying it frees the thing, on the device's thread. Default-constructed, moved-from or left over
- * from a device that is gone, it is empty: `false`, id 0.
+ * Move-only. Its destructor frees the object and must run on the device's thread. A resource that is
+ * default-constructed, moved from, or older than its device's destruction is empty: it converts to `false` and its id
+ * is 0.
  */
 class Resource {
  public:

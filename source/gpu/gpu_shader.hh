@@ -8,20 +8,21 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace gnomon::gpu {
 
-/** Returns the text of a shader file by its path below `shaders/`; nothing if there is no such file. */
+/** Returns the text of a shader file by its path below `shaders/`; empty where there is no such file. */
 using ShaderFiles = std::function<std::optional<std::string_view>(std::string_view path)>;
 
 /** Returns the path that `#include "NAMED"` in the file \a includer refers to. */
 using IncludePath = std::function<std::string(std::string_view named, std::string_view includer)>;
 
-/** A shader as data. */
+/** Description of a shader program. */
 struct ShaderDesc {
   std::string name;
-  /** Paths below `shaders/`. Geometry may be empty. Each begins with `#version 450 core`. */
+  /** Paths below `shaders/`. The geometry path may be empty. Each file begins with `#version 450 core`. */
   std::string vertex_path;
   std::string geometry_path;
   std::string fragment_path;
@@ -33,25 +34,25 @@ enum class BindingKind : std::uint8_t { UniformBlock, StorageBlock, Texture };
 
 [[nodiscard]] std::string_view to_string(BindingKind kind);
 
-/** The block of small per-group values; see ShaderInterface::push_constant_members. */
+/** Name of the block of small per-group values; see ShaderInterface::push_constant_members. */
 inline constexpr std::string_view push_constant_block_name = "push_constant_block";
 
 /**
- * The blocks, textures and push constants that a program reads, by name. glslang reflects them
- * (shader_check_reflection.hh), so that they do not depend on the driver.
+ * Inputs of a shader by name. glslang reflects them (shader_check_reflection.hh), so that they do not depend on the
+ * driver.
  */
 struct ShaderInterface {
   struct Member {
-    /** Of a block's member, arrays and structs resolved: `lights[0].color`. */
+    /** Name of a block's member with arrays and structs resolved, such as `lights[0].color`. */
     std::string name;
     std::uint32_t offset_bytes = 0;
-    /** Distance to the next member, so padding is included. */
+    /** Up to the next member, including padding. */
     std::uint32_t size_bytes = 0;
 
     bool operator==(const Member &) const = default;
   };
   struct Binding {
-    /** The name of the block, not of its instance; or the name of the sampler. */
+    /** Name of the block, not of its instance; name of the sampler. */
     std::string name;
     BindingKind kind = BindingKind::UniformBlock;
     /** `layout(binding = …)`. */
@@ -60,21 +61,28 @@ struct ShaderInterface {
     std::uint32_t size_bytes = 0;
     /** Blocks: sorted by offset; of an array, the first element only. */
     std::vector<Member> members;
+    /** Stages that read it: bit 0 vertex, bit 1 geometry, bit 2 fragment; 0: not known. */
+    std::uint32_t stages = 0;
 
-    bool operator==(const Binding &) const = default;
+    /** Without `stages`: variants of one program read a block in different stages. */
+    bool operator==(const Binding &other) const
+    {
+      return std::tie(name, kind, slot, size_bytes, members) ==
+             std::tie(other.name, other.kind, other.slot, other.size_bytes, other.members);
+    }
   };
-  /** Sorted by kind, then slot. The push-constant block is not among them. */
+  /** Sorted by kind, then slot, without the push-constant block. */
   std::vector<Binding> bindings;
-  /** Members of the block push_constant_block_name. */
+  /** Members of the block push_constant_block_name, by offset. */
   std::vector<Member> push_constant_members;
-  /** 0: the program has no push constants. */
+  /** 0: the shader has no such block. */
   std::uint32_t push_constant_size_bytes = 0;
-  /** The uniform slot that stands for push constants where the API has none. */
+  /** Uniform slot of the block, for an API without push constants. */
   int push_constant_slot = 0;
 
   bool operator==(const ShaderInterface &) const = default;
 
-  /** nullptr: the program reads nothing of this name. */
+  /** nullptr: the shader has no such binding. */
   [[nodiscard]] const Binding *find(BindingKind kind, std::string_view name) const;
   [[nodiscard]] const Member *find_push_constant(std::string_view name) const;
 };
@@ -120,14 +128,14 @@ enum class ShaderStage : std::uint8_t { Vertex, Geometry, Fragment };
 
 [[nodiscard]] std::string_view to_string(ShaderStage stage);
 
-/** One stage with its includes in place. glslang and the driver both compile this text. */
+/** Source of one stage with includes resolved, as glslang and the driver compile it. */
 struct ShaderSource {
   ShaderStage stage = ShaderStage::Vertex;
   std::string text;
-  /** Source string number in `#line` → path. */
+  /** Path by source string number of `#line`. */
   std::vector<std::string> files;
 
-  /** \a log with the position of each message, `N:LINE` or `N(LINE)`, replaced by `FILE:LINE`. */
+  /** \a log with `N:LINE` or `N(LINE)` at the start of a message replaced by `FILE:LINE`. */
   [[nodiscard]] std::string name_files(std::string_view log) const;
 };
 
@@ -146,8 +154,8 @@ struct SourceError : Error {
 };
 
 /**
- * Put includes and defines in place. Without \a include_path, the path in `#include "PATH"` is relative to `shaders/`.
- * Each stage includes a file once, so that headers need no guard and a cycle ends.
+ * Insert includes and defines. Without \a include_path, `#include "PATH"` refers to a path below `shaders/`. Each file
+ * is included once in a stage, so that headers need no guard and cycles end.
  *
  * \throws SourceError for an include that does not exist and for a stage without `#version`; Error for a stage's file
  * that does not exist.

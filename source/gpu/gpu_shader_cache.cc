@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <unistd.h>
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -17,8 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/** The number is the file format's version. Files of another version are not read. */
-constexpr std::string_view magic = "gnomon shader 2\n";
+/** Identifies the file format. Files of another version are not read. */
+constexpr std::string_view magic = "gnomon shader 3\n";
 
 std::uint64_t checksum(std::span<const std::uint8_t> bytes)
 {
@@ -27,18 +28,16 @@ std::uint64_t checksum(std::span<const std::uint8_t> bytes)
 
 nlohmann::json to_json(const CachedShader &shader)
 {
-  const auto *bytes = reinterpret_cast<const std::uint8_t *>(shader.binary.data());
-  return {{"binary_format", shader.binary_format},
-          {"binary", nlohmann::json::binary(std::vector<std::uint8_t>(bytes, bytes + shader.binary.size()))}};
+  const auto *bytes = reinterpret_cast<const std::uint8_t *>(shader.compiled.data());
+  return {{"compiled", nlohmann::json::binary(std::vector<std::uint8_t>(bytes, bytes + shader.compiled.size()))}};
 }
 
 CachedShader from_json(const nlohmann::json &json)
 {
   CachedShader shader;
-  shader.binary_format = json.at("binary_format");
-  const auto &binary = json.at("binary").get_binary();
-  const auto *bytes = reinterpret_cast<const std::byte *>(binary.data());
-  shader.binary.assign(bytes, bytes + binary.size());
+  const auto &compiled = json.at("compiled").get_binary();
+  const auto *bytes = reinterpret_cast<const std::byte *>(compiled.data());
+  shader.compiled.assign(bytes, bytes + compiled.size());
   return shader;
 }
 
@@ -74,6 +73,9 @@ std::optional<CachedShader> ShaderDiskCache::load(const std::string &key) const
   if (checksum(body) != expected) {
     return std::nullopt;
   }
+  // Marks the file as used, for trim.
+  std::error_code ignored;
+  fs::last_write_time(folder_ / key, fs::file_time_type::clock::now(), ignored);
   try {
     return from_json(nlohmann::json::from_cbor(body.begin(), body.end()));
   }
@@ -91,7 +93,7 @@ void ShaderDiskCache::store(const std::string &key, const CachedShader &shader) 
   const std::uint64_t sum = checksum(body);
   std::error_code failed;
   fs::create_directories(folder_, failed);
-  // Written beside and renamed: another program that starts meanwhile finds a whole file or none.
+  // Written beside and renamed, so that another process finds a complete file or none.
   const fs::path beside = folder_ / fmt::format("{}.{}", key, getpid());
   std::ofstream file(beside, std::ios::binary);
   file.write(magic.data(), std::streamsize(magic.size()));
@@ -103,6 +105,55 @@ void ShaderDiskCache::store(const std::string &key, const CachedShader &shader) 
   }
   if (!file || failed) {
     fs::remove(beside, failed);
+  }
+  trim(folder_ / key);
+}
+
+namespace {
+
+/** Whether \a name is a key, or a key and a process id: a file that a process left unfinished. */
+bool is_cache_file(const std::string &name)
+{
+  constexpr std::size_t key_size = 32;
+  const bool is_key = name.find_first_not_of("0123456789abcdef") >= key_size && name.size() >= key_size;
+  return is_key && (name.size() == key_size ||
+                    (name[key_size] == '.' && name.find_first_not_of("0123456789", key_size + 1) == name.npos));
+}
+
+}  // namespace
+
+void ShaderDiskCache::trim(const fs::path &kept) const
+{
+  struct Entry {
+    fs::file_time_type time;
+    fs::path path;
+    std::uintmax_t size_bytes;
+  };
+  std::vector<Entry> entries;
+  std::uintmax_t total = 0;
+  std::error_code failed;
+  for (auto file = fs::directory_iterator(folder_, failed); !failed && file != fs::directory_iterator();
+       file.increment(failed)) {
+    std::error_code unreadable;
+    if (!is_cache_file(file->path().filename().string()) || !file->is_regular_file(unreadable)) {
+      continue;
+    }
+    const std::uintmax_t size_bytes = file->file_size(unreadable);
+    const fs::file_time_type time = file->last_write_time(unreadable);
+    if (!unreadable) {
+      entries.push_back({time, file->path(), size_bytes});
+      total += size_bytes;
+    }
+  }
+  std::ranges::sort(entries, {}, &Entry::time);
+  for (const Entry &entry : entries) {
+    if (total <= size_bytes_max_) {
+      break;
+    }
+    // A file that another process is writing is newer than most; losing it costs one compilation.
+    if (entry.path != kept && fs::remove(entry.path, failed)) {
+      total -= entry.size_bytes;
+    }
   }
 }
 

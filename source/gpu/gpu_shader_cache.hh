@@ -8,25 +8,32 @@
 
 namespace gnomon::gpu {
 
-/** A compiled program as the driver returns it. */
+/** A compiled shader in the backend's own form. */
 struct CachedShader {
-  /** The driver's own number for the format of `binary`; 0 with an empty binary: the driver returned none. */
-  std::uint32_t binary_format = 0;
-  std::vector<std::byte> binary{};
+  /** Empty: the backend has none. */
+  std::vector<std::byte> compiled{};
 };
 
 /**
- * Compiled shaders on disk, a file each. A file that is missing, cut off, changed or another version's is no entry; one
- * that cannot be written is not written. So nothing about the folder can change a picture or end a program.
+ * Compiled shaders on disk, one file each. A file that is missing, truncated, changed or of another version is ignored,
+ * and a failure to write is ignored. The state of the folder therefore never changes a picture or ends a program.
+ *
+ * The files together stay below a bound: storing one removes the files that were used least recently. Files whose names
+ * are not those of the cache are neither counted nor removed.
  */
 class ShaderDiskCache {
  public:
-  /** \a folder is made at the first store; empty: nothing is kept. */
-  explicit ShaderDiskCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  static constexpr std::uintmax_t size_bytes_default = std::uintmax_t(64) << 20U;
+
+  /** \a folder is created by the first store; empty: nothing is kept. */
+  explicit ShaderDiskCache(std::filesystem::path folder, std::uintmax_t size_bytes_max = size_bytes_default)
+      : folder_(std::move(folder)), size_bytes_max_(size_bytes_max)
+  {
+  }
 
   /**
-   * Hash of all that the result depends on: the preprocessed \a stages, which hold the defines, and \a driver, the
-   * text that tells one driver from another.
+   * Hash of everything that the result depends on: the preprocessed \a stages, which contain the defines, and \a
+   * driver, a text that identifies the driver. 32 hexadecimal digits.
    */
   [[nodiscard]] static std::string key_of(const std::vector<ShaderSource> &stages, std::string_view driver);
 
@@ -35,10 +42,14 @@ class ShaderDiskCache {
   void store(const std::string &key, const CachedShader &shader) const;
 
  private:
+  /** Remove the least recently used files until the rest fits; \a kept is not removed. */
+  void trim(const std::filesystem::path &kept) const;
+
   std::filesystem::path folder_;
+  std::uintmax_t size_bytes_max_;
 };
 
-/** `$XDG_CACHE_HOME/gnomon`, else `~/.cache/gnomon`; empty where neither variable is set. */
+/** `$XDG_CACHE_HOME/gnomon` or `~/.cache/gnomon`; empty where neither variable is set. */
 [[nodiscard]] std::filesystem::path default_shader_cache_folder();
 
 }  // namespace gnomon::gpu

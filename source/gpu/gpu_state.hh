@@ -6,24 +6,24 @@
 
 namespace gnomon::gpu {
 
-/** Fixed-function state of a draw, as a mask. What is not named is off. */
+/** Fixed-function state of a draw, as a mask. A bit that is not set disables its function. */
 enum class State : std::uint32_t {
   None = 0,
   WriteColor = 1U << 0,
   WriteDepth = 1U << 1,
-  /** Passes what is nearer than, or as near as, what is stored. */
+  /** Depth test: passes where the depth is nearer than or equal to the stored depth. */
   DepthNearerEqual = 1U << 2,
-  /** Passes what has exactly the stored depth. */
+  /** Depth test: passes where the depth equals the stored depth. */
   DepthEqual = 1U << 3,
   CullBack = 1U << 4,
   CullFront = 1U << 5,
-  /** The front is where the vertices go clockwise: objects whose matrix mirrors. */
+  /** Front faces have clockwise vertices: for objects whose matrix mirrors. */
   FrontClockwise = 1U << 6,
-  /** Colour is added to what is there. */
+  /** The colour is added to the stored colour. */
   BlendAdd = 1U << 7,
-  /** What lies before the near or behind the far plane is drawn on it instead of cut off. */
+  /** Geometry before the near plane or behind the far plane is drawn at the depth of that plane instead of clipped. */
   DepthClamp = 1U << 8,
-  /** What is there is multiplied by the colour. */
+  /** The stored colour is multiplied by the colour. */
   BlendMultiply = 1U << 9,
 };
 

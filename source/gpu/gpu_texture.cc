@@ -46,7 +46,7 @@ std::size_t TextureDesc::size_bytes() const
   for (int level = 0; level < mip_levels; level++) {
     texels += std::size_t(std::max(width >> level, 1)) * std::size_t(std::max(height >> level, 1));
   }
-  return texels * std::size_t(layer_count()) * std::size_t(texel_size_bytes(format));
+  return texels * std::size_t(layers) * std::size_t(texel_size_bytes(format));
 }
 
 }  // namespace gnomon::gpu

@@ -9,13 +9,13 @@
 
 namespace gnomon::gpu {
 
-/** Named by content; the purpose decides: Depth32F for every depth, RGBA32F for scene-linear radiance. */
+/** Texel formats. Depth32F is used for every depth, RGBA32F for scene-linear radiance. */
 enum class Format : std::uint8_t {
   /** Display-referred colour, [0, 1]. */
   RGBA8,
-  /** Colour encoded as sRGB, which a lookup decodes before it filters, and linear alpha. */
+  /** sRGB-encoded colour, which a lookup decodes before it filters, and linear alpha. */
   SRGB8A8,
-  /** Scene-linear radiance where half floats are enough: largest value 65504. */
+  /** Scene-linear radiance where half floats suffice; the largest value is 65504. */
   RGBA16F,
   RGBA32F,
   /** A distance in metres. */
@@ -31,26 +31,22 @@ enum class Format : std::uint8_t {
 [[nodiscard]] int texel_size_bytes(Format format);
 [[nodiscard]] std::string_view to_string(Format format);
 
-enum class TextureKind : std::uint8_t { Flat, Array, Cube, CubeArray };
+enum class TextureKind : std::uint8_t { Flat, Array };
 
 struct TextureDesc {
   /** Shown in messages and debuggers. */
   std::string name;
   TextureKind kind = TextureKind::Flat;
   Format format = Format::RGBA8;
-  /** Pixels, at least 1. Cubes: equal. */
+  /** Pixels, at least 1. */
   int width = 1;
   int height = 1;
-  /** Array: slices. CubeArray: cubes, of six layers each. Otherwise 1. */
+  /** Array: number of slices. Flat: 1. */
   int layers = 1;
-  /** Levels of the mip chain; 1: no mip-maps. */
+  /** Levels of the mip chain; 1: no smaller levels. */
   int mip_levels = 1;
 
-  /** Slices that an attachment can name: six for each cube. */
-  [[nodiscard]] int layer_count() const
-  {
-    return kind == TextureKind::Cube || kind == TextureKind::CubeArray ? 6 * layers : layers;
-  }
+  /** Of all levels and layers. */
   [[nodiscard]] std::size_t size_bytes() const;
 };
 
@@ -70,20 +66,20 @@ class Texture : public Resource {
 
 enum class Filter : std::uint8_t { Nearest, Linear };
 enum class Wrap : std::uint8_t { ClampToEdge, Repeat, MirroredRepeat };
-/** Between the levels of a mip chain; None: level 0 only. */
+/** Filter between the levels of a mip chain. None: level 0 only. */
 enum class MipFilter : std::uint8_t { None, Nearest, Linear };
 
 struct SamplerDesc {
   std::string name;
   Filter filter = Filter::Nearest;
-  /** Where texels are smaller than pixels; absent: as `filter`. */
+  /** Filter where texels are smaller than pixels; absent: the same as `filter`. */
   std::optional<Filter> minified{};
   MipFilter mip = MipFilter::None;
   Wrap wrap_u = Wrap::ClampToEdge;
   Wrap wrap_v = Wrap::ClampToEdge;
   /**
-   * For `sampler…Shadow`: the lookup gives 1 where the reference is nearer than or as near as the stored depth
-   * (reversed: greater or equal), and with Filter::Linear the blend of four such answers.
+   * For `sampler2DShadow` and `sampler2DArrayShadow`: a lookup returns 1 where the reference is greater than or equal
+   * to the stored depth (depth is reversed: nearer or as near), otherwise 0. Filter::Linear interpolates four results.
    */
   bool is_depth_comparison = false;
 };

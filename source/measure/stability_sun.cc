@@ -71,7 +71,8 @@ struct Field {
 
   [[nodiscard]] std::vector<eevee::SunFit> fits(double elevation, int count) const
   {
-    return eevee::fit_sun(sun_at(elevation).world_from_lamp, view, visible, casters, size_px, {.count = count}, pixel_size);
+    return eevee::fit_sun(glm::mat4(sun_at(elevation).world_from_lamp), view, visible, casters, size_px,
+                          {.count = count}, pixel_size);
   }
 };
 
@@ -175,8 +176,9 @@ void add_sun_cases(std::vector<StabilityCase> &cases)
          range.near = range.far / ratio;
          double worst = 0.0;
          for (int count = 1; count <= eevee::cascade_count_max; count++) {
-           const std::vector<eevee::SunFit> fits = eevee::fit_sun(sun_at(0.5).world_from_lamp, field.view, range, field.casters,
-                                                                  size_px, {.count = count}, field.pixel_size);
+           const std::vector<eevee::SunFit> fits =
+               eevee::fit_sun(glm::mat4(sun_at(0.5).world_from_lamp), field.view, range, field.casters, size_px,
+                              {.count = count}, field.pixel_size);
            const bool is_sorted =
                std::ranges::is_sorted(fits, {}, [](const eevee::SunFit &fit) { return fit.texel(size_px); });
            worst = std::max(worst, violated(!fits.empty() && is_sorted && std::ranges::all_of(fits, is_finite)));
@@ -198,8 +200,9 @@ void add_sun_cases(std::vector<StabilityCase> &cases)
                        const double reach = is_flat ? x : 1.0;
                        const eevee::VisibleRange range = eevee::visible_range(
                            view, {glm::dvec3(-reach, 0, -reach), glm::dvec3(reach + 2.0, 0, reach + 4.0)});
-                       const std::vector<eevee::SunFit> fits = eevee::fit_sun(
-                           sun_at(0.5 * std::numbers::pi).world_from_lamp, view, range, {caster}, size_px, {.count = 1}, 0.001F);
+                       const std::vector<eevee::SunFit> fits =
+                           eevee::fit_sun(glm::mat4(sun_at(0.5 * std::numbers::pi).world_from_lamp), view, range,
+                                          {caster}, size_px, {.count = 1}, 0.001F);
                        return violated(fits.size() == 1 && is_finite(fits[0]) && outside_of(fits[0], {caster}) <= 0.0);
                      })});
   }

@@ -78,9 +78,10 @@ class Merger {
 
   void add_binding(const gpu::ShaderDesc &desc, const Binding &binding)
   {
-    for (const Known &known : known_) {
+    for (Known &known : known_) {
       const bool is_same_name = known.binding.kind == binding.kind && known.binding.name == binding.name;
       if (is_same_name && known.binding == binding) {
+        known.binding.stages |= binding.stages;
         return;
       }
       if (is_same_name) {
@@ -207,8 +208,8 @@ std::string table_source(std::span<const VariantInterfaces> programs, std::strin
     if (!program.all.bindings.empty()) {
       arrays += fmt::format("constexpr InterfaceTable::Binding bindings_{}[] = {{\n", i);
       for (const Binding &binding : program.all.bindings) {
-        arrays += fmt::format("    {{\"{}\", {}, {}, {}, {}}},\n", binding.name, kind_source(binding.kind),
-                              binding.slot, binding.size_bytes, members.name_of(binding.members));
+        arrays += fmt::format("    {{\"{}\", {}, {}, {}, {}, {}}},\n", binding.name, kind_source(binding.kind),
+                              binding.slot, binding.size_bytes, members.name_of(binding.members), binding.stages);
       }
       arrays += "};\n";
     }

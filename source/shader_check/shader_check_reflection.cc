@@ -52,6 +52,15 @@ std::uint32_t std140_size(const glslang::TObjectReflection &block)
   return (std::uint32_t(block.size) + 15U) / 16U * 16U;
 }
 
+/** ShaderInterface::Binding::stages of an object that glslang reports. */
+std::uint32_t stages_of(const glslang::TObjectReflection &object)
+{
+  using gpu::ShaderStage;
+  return ((object.stages & EShLangVertexMask) != 0 ? 1U << unsigned(ShaderStage::Vertex) : 0U) |
+         ((object.stages & EShLangGeometryMask) != 0 ? 1U << unsigned(ShaderStage::Geometry) : 0U) |
+         ((object.stages & EShLangFragmentMask) != 0 ? 1U << unsigned(ShaderStage::Fragment) : 0U);
+}
+
 }  // namespace
 
 gpu::ShaderInterface interface_of(glslang::TProgram &program)
@@ -70,21 +79,23 @@ gpu::ShaderInterface interface_of(glslang::TProgram &program)
       interface.push_constant_members = std::move(members);
       continue;
     }
-    interface.bindings.push_back(
-        {block.name, gpu::BindingKind::UniformBlock, block.getBinding(), std140_size(block), std::move(members)});
+    interface.bindings.push_back({block.name, gpu::BindingKind::UniformBlock, block.getBinding(), std140_size(block),
+                                  std::move(members), stages_of(block)});
   }
   for (int i = 0; i < program.getNumBufferBlocks(); i++) {
     const glslang::TObjectReflection &block = program.getBufferBlock(i);
     interface.bindings.push_back(
         {block.name, gpu::BindingKind::StorageBlock, block.getBinding(), std::uint32_t(block.size),
          members_of(block, i, program.getNumBufferVariables(),
-                    [&](int j) -> const glslang::TObjectReflection & { return program.getBufferVariable(j); })});
+                    [&](int j) -> const glslang::TObjectReflection & { return program.getBufferVariable(j); }),
+         stages_of(block)});
   }
   for (int i = 0; i < variable_count; i++) {
     const glslang::TObjectReflection &uniform = variable(i);
     // Outside of blocks: textures, and plain uniforms. check_slots refuses the latter, because they have no slot.
     if (uniform.index == -1) {
-      interface.bindings.push_back({uniform.name, gpu::BindingKind::Texture, uniform.getBinding(), 0, {}});
+      interface.bindings.push_back(
+          {uniform.name, gpu::BindingKind::Texture, uniform.getBinding(), 0, {}, stages_of(uniform)});
     }
   }
   std::ranges::sort(interface.bindings, [](const auto &a, const auto &b) {

@@ -419,7 +419,8 @@ TEST(Pass, RecordsOnOneThreadAndIsSubmittedOnAnother)
 {
   const auto device = gpu::create_null_device();
   const test::EverythingPass everything(*device);
-  const gpu::Framebuffer framebuffer = device->create_framebuffer({"target", {{&everything.picture}}, {}});
+  const gpu::Texture target = device->create_texture({.name = "target"});
+  const gpu::Framebuffer framebuffer = device->create_framebuffer({"target", {{&target}}, {}});
   const auto record = [&](gpu::CommandList &list) {
     list.begin_pass("pass", framebuffer, {});
     for (int i = 0; i < 100; i++) {

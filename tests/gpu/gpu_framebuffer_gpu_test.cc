@@ -136,23 +136,17 @@ void main()
 
 TEST_F(RenderPassGpu, LayerIsOneSliceAndAllLayersAreAll)
 {
-  for (const TextureKind kind : {TextureKind::Array, TextureKind::Cube, TextureKind::CubeArray}) {
+  for (const int layers : {5, 12}) {
     for (const Format format : {Format::R32F, Format::Depth32F}) {
-      SCOPED_TRACE(fmt::format("kind {} {}", int(kind), to_string(format)));
-      const Texture texture = device->create_texture({.name = "layers",
-                                                      .kind = kind,
-                                                      .format = format,
-                                                      .width = 4,
-                                                      .height = 4,
-                                                      .layers = kind == TextureKind::Array  ? 5
-                                                                : kind == TextureKind::Cube ? 1
-                                                                                            : 2});
+      SCOPED_TRACE(fmt::format("{} layers {}", layers, to_string(format)));
+      const Texture texture = device->create_texture(
+          {.name = "layers", .kind = TextureKind::Array, .format = format, .width = 4, .height = 4, .layers = layers});
       const auto framebuffer_of = [&](int layer) {
         return is_depth(format) ? device->create_framebuffer({"one", {}, {&texture, layer}})
                                 : device->create_framebuffer({"one", {{&texture, layer}}, {}});
       };
       const auto value = [](int layer) { return 1.0F / float(layer + 2); };
-      const int layer_count = texture.desc().layer_count();
+      const int layer_count = layers;
       // Backwards, so that a clear of all layers by mistake shows.
       run_pass(framebuffer_of(all_layers), {.clear_color = glm::vec4(0.75F), .clear_depth = 0.75F});
       for (int layer = 0; layer < layer_count; layer++) {
@@ -171,13 +165,9 @@ TEST_F(RenderPassGpu, LayerIsOneSliceAndAllLayersAreAll)
 TEST_F(RenderPassGpu, LayerOfADrawIsGlLayer)
 {
   const Texture texture = device->create_texture(
-      {.name = "layers", .kind = TextureKind::CubeArray, .format = Format::R32F, .width = 4, .height = 4, .layers = 2});
-  const Texture depth = device->create_texture({.name = "depth",
-                                                .kind = TextureKind::CubeArray,
-                                                .format = Format::Depth32F,
-                                                .width = 4,
-                                                .height = 4,
-                                                .layers = 2});
+      {.name = "layers", .kind = TextureKind::Array, .format = Format::R32F, .width = 4, .height = 4, .layers = 12});
+  const Texture depth = device->create_texture(
+      {.name = "depth", .kind = TextureKind::Array, .format = Format::Depth32F, .width = 4, .height = 4, .layers = 12});
   const Framebuffer framebuffer = device->create_framebuffer({"all", {{&texture, all_layers}}, {&depth, all_layers}});
   const std::string fragment = R"(
 layout(location = 0) flat in uint value;
@@ -233,13 +223,9 @@ void main()
 
 TEST_F(RenderPassGpu, SomeLayersAreClearedAndDrawnAndTheOthersLeftAlone)
 {
-  for (const TextureKind kind : {TextureKind::Array, TextureKind::CubeArray}) {
-    const Texture color = device->create_texture({.name = "colors",
-                                                  .kind = kind,
-                                                  .format = Format::R32F,
-                                                  .width = 4,
-                                                  .height = 4,
-                                                  .layers = kind == TextureKind::Array ? 12 : 2});
+  {
+    const Texture color = device->create_texture(
+        {.name = "colors", .kind = TextureKind::Array, .format = Format::R32F, .width = 4, .height = 4, .layers = 12});
     const Texture depth = device->create_texture({.name = "depths",
                                                   .kind = TextureKind::Array,
                                                   .format = Format::Depth32F,

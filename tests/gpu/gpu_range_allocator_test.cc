@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gpu_range_allocator.hh"
+#include "gpu_error.hh"
 
 #include <gtest/gtest.h>
 
@@ -131,6 +132,54 @@ TEST(RangeAllocator, EmptyRangeTakesNothing)
   allocator.free(all, 1024);
   EXPECT_EQ(allocator.allocate(1024), 0U);
   EXPECT_EQ(allocator.capacity(), 1024U);
+}
+
+TEST(RangeAllocator, RefusesWhatExceedsItsLargestCapacity)
+{
+  RangeAllocator allocator;
+  constexpr std::uint32_t half = 1U << 30U;
+  EXPECT_EQ(allocator.allocate(half), 0U);
+  EXPECT_EQ(allocator.allocate(half - 1), half);
+  EXPECT_EQ(allocator.capacity(), RangeAllocator::capacity_max);
+  EXPECT_THROW(static_cast<void>(allocator.allocate(2)), Error);
+  EXPECT_THROW(static_cast<void>(allocator.allocate(~0U)), Error);
+  EXPECT_EQ(allocator.capacity(), RangeAllocator::capacity_max);
+  EXPECT_EQ(allocator.allocate(1), 2 * half - 1);
+  allocator.free(0, half);
+  EXPECT_EQ(allocator.allocate(half), 0U);
+}
+
+TEST(RangeAllocator, ShrinksToItsLastRange)
+{
+  RangeAllocator allocator;
+  ASSERT_EQ(allocator.allocate(600), 0U);
+  ASSERT_EQ(allocator.allocate(3000), 600U);
+  EXPECT_EQ(allocator.capacity(), 4096U);
+  allocator.shrink(1024);
+  EXPECT_EQ(allocator.capacity(), 3600U) << "elements in use stay";
+  allocator.free(600, 3000);
+  allocator.shrink(1024);
+  EXPECT_EQ(allocator.capacity(), 1024U);
+  EXPECT_EQ(allocator.allocate(424), 600U);
+  EXPECT_EQ(allocator.capacity(), 1024U);
+  allocator.shrink(0);
+  EXPECT_EQ(allocator.capacity(), 1024U);
+}
+
+TEST(RangeAllocator, KnowsWhatIsInUse)
+{
+  RangeAllocator allocator;
+  EXPECT_FALSE(allocator.is_allocated(0, 1));
+  ASSERT_EQ(allocator.allocate(10), 0U);
+  ASSERT_EQ(allocator.allocate(10), 10U);
+  EXPECT_TRUE(allocator.is_allocated(0, 20));
+  EXPECT_FALSE(allocator.is_allocated(0, 21));
+  EXPECT_FALSE(allocator.is_allocated(19, ~0U));
+  allocator.free(0, 10);
+  EXPECT_TRUE(allocator.is_allocated(10, 10));
+  EXPECT_FALSE(allocator.is_allocated(9, 2));
+  EXPECT_FALSE(allocator.is_allocated(5, 1));
+  EXPECT_FALSE(allocator.is_allocated(20, 1));
 }
 
 }  // namespace

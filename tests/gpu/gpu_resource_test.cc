@@ -2,6 +2,7 @@
 #include "gpu/gpu_testing.hh"
 
 #include <algorithm>
+#include <set>
 #include <type_traits>
 
 namespace gnomon::gpu {
@@ -128,7 +129,7 @@ TEST(Device, EndIsSilentWhereAllIsFreed)
   EXPECT_TRUE(messages.empty());
 }
 
-TEST(Device, ReusesTheIdOfWhatIsGone)
+TEST(Device, NeverIssuesAnIdTwice)
 {
   const auto device = create_null_device();
   Buffer a = device->create_buffer({.name = "a", .size_bytes = 16});
@@ -137,9 +138,27 @@ TEST(Device, ReusesTheIdOfWhatIsGone)
   const ResourceId id = a.id();
   a = Buffer();
   const Buffer c = device->create_buffer({.name = "c", .size_bytes = 16});
-  EXPECT_EQ(c.id(), id);
-  EXPECT_EQ(device->name_of(ResourceKind::Buffer, id), "c");
+  EXPECT_EQ(index_of(c.id()), index_of(id)) << "the place is used again";
+  EXPECT_NE(c.id(), id);
+  EXPECT_EQ(device->name_of(ResourceKind::Buffer, id), "none");
+  EXPECT_EQ(device->find(ResourceKind::Buffer, id), nullptr);
+  EXPECT_EQ(device->name_of(ResourceKind::Buffer, c.id()), "c");
+  EXPECT_EQ(device->find(ResourceKind::Buffer, c.id())->name, "c");
   EXPECT_EQ(device->name_of(ResourceKind::Buffer, b.id()), "b");
+}
+
+TEST(Device, AnIndexWithoutGenerationsIsNotUsedAgain)
+{
+  const auto device = create_null_device();
+  std::set<ResourceId> ids;
+  constexpr std::size_t count = 10000;
+  for (std::size_t i = 0; i < count; i++) {
+    ids.insert(device->create_sampler({.name = "s"}).id());
+  }
+  EXPECT_EQ(ids.size(), count);
+  EXPECT_FALSE(ids.contains(0));
+  EXPECT_TRUE(
+      std::ranges::all_of(ids, [&](ResourceId id) { return device->find(ResourceKind::Sampler, id) == nullptr; }));
 }
 
 TEST(Device, NamesNoneWhereThereIsNoResource)

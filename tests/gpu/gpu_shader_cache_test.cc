@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "gpu_shader_cache.hh"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -18,8 +20,7 @@ class ShaderDiskCacheTest : public testing::Test {
   {
     std::string pattern = (fs::temp_directory_path() / "gnomon_cache.XXXXXX").string();
     folder = mkdtemp(pattern.data());
-    shader.binary_format = 0x875F;
-    shader.binary = {std::byte(0), std::byte(255), std::byte(10)};
+    shader.compiled = {std::byte(0), std::byte(255), std::byte(10)};
   }
   ~ShaderDiskCacheTest() override
   {
@@ -37,8 +38,7 @@ TEST_F(ShaderDiskCacheTest, GivesBackWhatWasStored)
   cache.store("key", shader);
   const std::optional<CachedShader> loaded = cache.load("key");
   ASSERT_TRUE(loaded);
-  EXPECT_EQ(loaded->binary_format, shader.binary_format);
-  EXPECT_EQ(loaded->binary, shader.binary);
+  EXPECT_EQ(loaded->compiled, shader.compiled);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder / "deep" / "er"), fs::directory_iterator()), 1);
 }
 
@@ -93,6 +93,38 @@ TEST_F(ShaderDiskCacheTest, AFileInTheWayOfTheFolderIsHarmless)
   const ShaderDiskCache cache(folder / "file");
   cache.store("key", shader);
   EXPECT_FALSE(cache.load("key"));
+}
+
+TEST_F(ShaderDiskCacheTest, RemovesTheFilesThatWereUsedLeastRecently)
+{
+  const auto key = [](int i) { return fmt::format("{:032x}", i); };
+  // Not of the cache.
+  std::ofstream(folder / "notes.txt") << std::string(100000, ' ');
+  const fs::file_time_type past = fs::file_time_type::clock::now() - std::chrono::hours(100);
+  const auto set_age = [&](int i) { fs::last_write_time(folder / key(i), past + std::chrono::minutes(i)); };
+  const ShaderDiskCache measured(folder);
+  measured.store(key(0), shader);
+  set_age(0);
+  const std::uintmax_t file_size = fs::file_size(folder / key(0));
+  const ShaderDiskCache cache(folder, 5 * file_size + file_size / 2);
+  for (int i = 1; i < 5; i++) {
+    cache.store(key(i), shader);
+    set_age(i);
+  }
+  EXPECT_TRUE(cache.load(key(0))) << "five fit";
+  for (int i = 5; i < 8; i++) {
+    cache.store(key(i), shader);
+  }
+  for (int i = 0; i < 8; i++) {
+    // The first was used by the load above.
+    EXPECT_EQ(fs::exists(folder / key(i)), i == 0 || i > 3) << i;
+  }
+  EXPECT_TRUE(fs::exists(folder / "notes.txt"));
+  // One that is larger than the bound remains until the next.
+  const ShaderDiskCache tiny(folder, 1);
+  tiny.store(key(20), shader);
+  EXPECT_TRUE(tiny.load(key(20)));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 2);
 }
 
 TEST(ShaderDiskCacheKey, DependsOnAllThatTheResultDoes)

@@ -145,7 +145,9 @@ TEST(ShaderSource, NamesTheFilesOfALog)
   EXPECT_EQ(source.name_files("1:15(3): error: x\n0:2(1): warning: 3:4\n"),
             "lib.glsl:15(3): error: x\nmain.glsl:2(1): warning: 3:4\n");
   // NVIDIA.
-  EXPECT_EQ(source.name_files("1(12) : error C1008: undefined\n"), "lib.glsl:12 : error C1008: undefined\n");
+  EXPECT_EQ(source.name_files("1(15) : error C1503: undefined variable\n0(2) : warning C7050: 3(4) :\n"),
+            "lib.glsl:15 : error C1503: undefined variable\nmain.glsl:2 : warning C7050: 3(4) :\n");
+  EXPECT_EQ(source.name_files("7(1) : error C0000: no such file"), "7(1) : error C0000: no such file\n");
   EXPECT_EQ(source.name_files("99999999999999999999:1: x"), "99999999999999999999:1: x\n");
   EXPECT_EQ(source.name_files("WARNING: 7:1: no such file"), "WARNING: 7:1: no such file\n");
   EXPECT_EQ(source.name_files("nothing to name, 0:1"), "nothing to name, 0:1\n");

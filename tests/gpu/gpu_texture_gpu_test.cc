@@ -57,19 +57,16 @@ TEST_F(TextureGpu, UploadComesBackAsItWas)
   std::mt19937 random(5);
   for (const Format format : {Format::RGBA8, Format::SRGB8A8, Format::RGBA16F, Format::RGBA32F, Format::R16F,
                               Format::R32F, Format::Depth32F}) {
-    for (const TextureKind kind : {TextureKind::Flat, TextureKind::Array, TextureKind::Cube, TextureKind::CubeArray}) {
+    for (const TextureKind kind : {TextureKind::Flat, TextureKind::Array}) {
       SCOPED_TRACE(fmt::format("{} kind {}", to_string(format), int(kind)));
-      const bool is_cube = kind == TextureKind::Cube || kind == TextureKind::CubeArray;
       const Texture texture = device->create_texture({.name = "round trip",
                                                       .kind = kind,
                                                       .format = format,
                                                       .width = 7,
-                                                      .height = is_cube ? 7 : 5,
-                                                      .layers = kind == TextureKind::Array       ? 3
-                                                                : kind == TextureKind::CubeArray ? 2
-                                                                                                 : 1});
+                                                      .height = 5,
+                                                      .layers = kind == TextureKind::Array ? 3 : 1});
       std::vector<std::vector<std::byte>> layers;
-      for (int layer = 0; layer < texture.desc().layer_count(); layer++) {
+      for (int layer = 0; layer < texture.desc().layers; layer++) {
         const std::size_t texel_count = std::size_t(7 * texture.desc().height);
         std::vector<std::byte> bytes;
         const auto append = [&](const auto &value) {
@@ -95,7 +92,7 @@ TEST_F(TextureGpu, UploadComesBackAsItWas)
         device->upload(texture, layer, bytes);
         layers.push_back(std::move(bytes));
       }
-      for (int layer = 0; layer < texture.desc().layer_count(); layer++) {
+      for (int layer = 0; layer < texture.desc().layers; layer++) {
         EXPECT_EQ(device->read(texture, layer), layers[std::size_t(layer)]) << "layer " << layer;
       }
     }
@@ -280,86 +277,6 @@ TEST_F(TextureGpu, DepthComparisonOfAnArrayNamesTheLayer)
   EXPECT_EQ(values[0].r, 1);
   EXPECT_EQ(values[1].r, 1);
   EXPECT_EQ(values[2].r, 0);
-}
-
-/** Texel of a face that a direction meets, by the shared functions that shadows look up with. */
-struct CubeTexel {
-  int face;
-  int x;
-  int y;
-};
-
-CubeTexel cube_texel(const glm::vec3 &direction, int size)
-{
-  const int face = shared::cube_face(direction);
-  const glm::vec3 projected = shared::cube_face_project(face, direction);
-  const glm::vec2 texco = glm::vec2(projected) / projected.z * 0.5F + 0.5F;
-  return {face, int(texco.x * float(size)), int(texco.y * float(size))};
-}
-
-TEST_F(TextureGpu, CubeIsSampledByFaceAsTheSharedFunctionsSay)
-{
-  constexpr int SIZE = 4;
-  constexpr int CUBES = 2;
-  const Texture cube = device->create_texture(
-      {.name = "cube", .kind = TextureKind::Cube, .format = Format::R32F, .width = SIZE, .height = SIZE});
-  const Texture cubes = device->create_texture({.name = "cubes",
-                                                .kind = TextureKind::CubeArray,
-                                                .format = Format::R32F,
-                                                .width = SIZE,
-                                                .height = SIZE,
-                                                .layers = CUBES});
-  const auto code = [](int layer, int x, int y) { return float((layer * SIZE + y) * SIZE + x); };
-  for (int layer = 0; layer < 6 * CUBES; layer++) {
-    std::vector<float> values;
-    for (int y = 0; y < SIZE; y++) {
-      for (int x = 0; x < SIZE; x++) {
-        values.push_back(code(layer, x, y));
-      }
-    }
-    upload(cubes, layer, values);
-    if (layer < 6) {
-      upload(cube, layer, values);
-    }
-  }
-  // Directions away from texel borders: there, both answers are right.
-  std::mt19937 random(11);
-  std::normal_distribution<float> normal;
-  std::vector<glm::vec4> inputs = {{1, 0.1F, 0.2F, 0},  {-1, 0.1F, 0.2F, 1}, {0.1F, 1, 0.2F, 0},
-                                   {0.1F, -1, 0.2F, 1}, {0.1F, 0.2F, 1, 0},  {0.1F, 0.2F, -1, 1}};
-  while (inputs.size() < 500) {
-    const glm::vec3 v(normal(random), normal(random), normal(random));
-    const glm::vec3 projected = shared::cube_face_project(shared::cube_face(v), v);
-    const glm::vec2 position = (glm::vec2(projected) / projected.z * 0.5F + 0.5F) * float(SIZE);
-    const glm::vec2 to_border = glm::abs(position - glm::round(position));
-    if (std::min(to_border.x, to_border.y) > 0.01F) {
-      inputs.emplace_back(v, float(inputs.size() % CUBES));
-    }
-  }
-  const Sampler nearest = device->create_sampler({.name = "nearest"});
-  const auto of_cube = evaluated("samplerCube", "texture(picture, v.xyz)", inputs, cube, nearest);
-  const auto of_cubes = evaluated("samplerCubeArray", "texture(picture, v)", inputs, cubes, nearest);
-  for (std::size_t i = 0; i < inputs.size(); i++) {
-    const CubeTexel texel = cube_texel(glm::vec3(inputs[i]), SIZE);
-    EXPECT_EQ(of_cube[i].r, code(texel.face, texel.x, texel.y)) << i;
-    EXPECT_EQ(of_cubes[i].r, code(6 * int(inputs[i].w) + texel.face, texel.x, texel.y)) << i;
-  }
-}
-
-TEST_F(TextureGpu, CubeIsSeamlessAcrossItsEdges)
-{
-  const Texture cube = device->create_texture(
-      {.name = "cube", .kind = TextureKind::Cube, .format = Format::R32F, .width = 4, .height = 4});
-  for (int face = 0; face < 6; face++) {
-    upload(cube, face, std::vector<float>(16, face == 0 ? 1.0F : 0.0F));
-  }
-  const Sampler linear = device->create_sampler({.name = "linear", .filter = Filter::Linear});
-  const auto values = evaluated("samplerCube", "texture(picture, v.xyz)",
-                                {{1, 0.99999F, 0.1F, 0}, {0.99999F, 1, 0.1F, 0}, {1, 0.1F, 0.1F, 0}}, cube, linear);
-  // On the edge between +X and another face: half of each, from both sides.
-  EXPECT_NEAR(values[0].r, 0.5F, 0.02F);
-  EXPECT_NEAR(values[1].r, 0.5F, 0.02F);
-  EXPECT_EQ(values[2].r, 1);
 }
 
 }  // namespace

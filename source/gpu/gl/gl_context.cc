@@ -20,7 +20,7 @@ namespace gnomon::gpu {
 
 namespace {
 
-/** Reasons gathered while one way after another fails. */
+/** Reasons of failure of the kinds of context that were tried. */
 using Attempts = std::vector<std::string>;
 
 bool has_extension(EGLDisplay display, const char *name)
@@ -40,7 +40,7 @@ class EglContext final : public GlContext {
     if (eglGetCurrentContext() == context_) {
       eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     }
-    // The display is the process's: terminating it would take other contexts along.
+    // The display belongs to the process: terminating it would destroy other contexts.
     eglDestroyContext(display_, context_);
   }
   std::string description() const override
@@ -79,16 +79,17 @@ std::unique_ptr<GlContext> create_on(EGLDisplay display, const std::string &way,
       (!eglChooseConfig(display, config_wanted.data(), &config, 1, &config_count) || config_count == 0)) {
     return failed("no config for OpenGL");
   }
-  const std::array<EGLint, 9> wanted = {EGL_CONTEXT_MAJOR_VERSION,
-                                        4,
-                                        EGL_CONTEXT_MINOR_VERSION,
-                                        5,
-                                        EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                        EGL_CONTEXT_OPENGL_DEBUG,
-                                        is_debug ? EGL_TRUE : EGL_FALSE,
-                                        EGL_NONE};
+  std::array<EGLint, 11> wanted = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
+                                   EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                   EGL_CONTEXT_OPENGL_DEBUG, is_debug ? EGL_TRUE : EGL_FALSE,
+                                   // So that a reset of the GPU is reported.
+                                   EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET, EGL_NONE};
   EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, wanted.data());
+  if (context == EGL_NO_CONTEXT) {
+    // Some drivers do not support the notification.
+    wanted[8] = EGL_NONE;
+    context = eglCreateContext(display, config, EGL_NO_CONTEXT, wanted.data());
+  }
   if (context == EGL_NO_CONTEXT) {
     return failed("no OpenGL 4.5 core context");
   }
@@ -116,24 +117,72 @@ std::unique_ptr<GlContext> create_surfaceless(bool is_debug, Attempts &attempts)
   return create_on(get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr), way, is_debug, attempts);
 }
 
-std::unique_ptr<GlContext> create_on_device(bool is_debug, Attempts &attempts)
+struct EglDevice {
+  EGLDeviceEXT device = nullptr;
+  /** "EGL device 0 (/dev/dri/card0)". */
+  std::string name;
+  bool is_software = false;
+};
+
+std::vector<EglDevice> egl_devices()
 {
-  const auto get_display = egl_function<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
   const auto query_devices = egl_function<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
-  std::array<EGLDeviceEXT, 16> devices{};
+  const auto query_string = egl_function<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
+  std::array<EGLDeviceEXT, 16> handles{};
   EGLint count = 0;
-  if (!get_display || !query_devices || !query_devices(EGLint(devices.size()), devices.data(), &count) || count == 0) {
-    attempts.emplace_back("EGL device: none found");
-    return nullptr;
+  std::vector<EglDevice> devices;
+  if (!query_devices || !query_devices(EGLint(handles.size()), handles.data(), &count)) {
+    return devices;
   }
   for (EGLint i = 0; i < count; i++) {
-    const std::string way = fmt::format("EGL device {}", i);
-    if (auto context = create_on(get_display(EGL_PLATFORM_DEVICE_EXT, devices[std::size_t(i)], nullptr), way, is_debug,
-                                 attempts)) {
+    EglDevice device{handles[std::size_t(i)], fmt::format("EGL device {}", i), true};
+    const char *extensions = query_string ? query_string(device.device, EGL_EXTENSIONS) : nullptr;
+    if (extensions) {
+      device.is_software = std::strstr(extensions, "EGL_MESA_device_software") != nullptr;
+      const char *file = std::strstr(extensions, "EGL_EXT_device_drm")
+                             ? query_string(device.device, EGL_DRM_DEVICE_FILE_EXT)
+                             : nullptr;
+      device.name += device.is_software ? " (software)" : file ? fmt::format(" ({})", file) : "";
+    }
+    devices.push_back(std::move(device));
+  }
+  return devices;
+}
+
+std::unique_ptr<GlContext> create_on_devices(bool is_software, bool is_debug, Attempts &attempts)
+{
+  const auto get_display = egl_function<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
+  bool is_found = false;
+  for (const EglDevice &device : get_display ? egl_devices() : std::vector<EglDevice>()) {
+    if (device.is_software != is_software) {
+      continue;
+    }
+    is_found = true;
+    if (auto context =
+            create_on(get_display(EGL_PLATFORM_DEVICE_EXT, device.device, nullptr), device.name, is_debug, attempts)) {
       return context;
     }
   }
+  if (!is_found) {
+    attempts.push_back(fmt::format("EGL device: no {} device found", is_software ? "software" : "hardware"));
+  }
   return nullptr;
+}
+
+std::unique_ptr<GlContext> create_on_hardware(bool is_debug, Attempts &attempts)
+{
+  // The variable of Mesa by which a user asks for its rasteriser.
+  const char *software = std::getenv("LIBGL_ALWAYS_SOFTWARE");
+  if (software && *software && std::strcmp(software, "0") != 0 && std::strcmp(software, "false") != 0) {
+    attempts.emplace_back("EGL device: LIBGL_ALWAYS_SOFTWARE is set");
+    return nullptr;
+  }
+  return create_on_devices(false, is_debug, attempts);
+}
+
+std::unique_ptr<GlContext> create_on_software(bool is_debug, Attempts &attempts)
+{
+  return create_on_devices(true, is_debug, attempts);
 }
 
 class WindowContext final : public GlContext {
@@ -171,6 +220,7 @@ std::unique_ptr<GlContext> create_hidden_window(bool is_debug, Attempts &attempt
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, is_debug ? GLFW_TRUE : GLFW_FALSE);
+  glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
   GLFWwindow *window = glfwCreateWindow(16, 16, "gnomon", nullptr, nullptr);
   if (!window) {
     return failed("no OpenGL 4.5 core context");
@@ -184,7 +234,7 @@ std::unique_ptr<GlContext> create_hidden_window(bool is_debug, Attempts &attempt
 std::unique_ptr<GlContext> create_headless_context(bool is_debug)
 {
   Attempts attempts;
-  for (const auto create : {create_surfaceless, create_on_device, create_hidden_window}) {
+  for (const auto create : {create_on_hardware, create_surfaceless, create_on_software, create_hidden_window}) {
     if (auto context = create(is_debug, attempts)) {
       return context;
     }
@@ -192,14 +242,40 @@ std::unique_ptr<GlContext> create_headless_context(bool is_debug)
   throw Error("no OpenGL 4.5 context: {}", fmt::join(attempts, "; "));
 }
 
+namespace {
+
+/**
+ * glXGetCurrentContext of a library that is loaded already; nullptr where none is. A host may have loaded it without
+ * making its symbols global, as GLFW does, so RTLD_DEFAULT does not suffice. Nothing is loaded here.
+ */
+void *loaded_glx_function()
+{
+  constexpr const char *name = "glXGetCurrentContext";
+  if (void *function = dlsym(RTLD_DEFAULT, name)) {
+    return function;
+  }
+  for (const char *library : {"libGLX.so.0", "libGL.so.1", "libGL.so"}) {
+    if (void *handle = dlopen(library, RTLD_LAZY | RTLD_NOLOAD)) {
+      void *function = dlsym(handle, name);
+      // The host's own reference keeps the library loaded.
+      dlclose(handle);
+      if (function) {
+        return function;
+      }
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace
+
 bool has_current_context()
 {
   if (eglGetCurrentContext() != EGL_NO_CONTEXT) {
     return true;
   }
-  // A host that uses GLX has loaded it; nothing here should.
   using GetCurrent = void *(*)();
-  const auto get_current = reinterpret_cast<GetCurrent>(dlsym(RTLD_DEFAULT, "glXGetCurrentContext"));
+  const auto get_current = reinterpret_cast<GetCurrent>(loaded_glx_function());
   return get_current && get_current();
 }
 

@@ -6,18 +6,21 @@
 
 namespace gnomon::gpu {
 
-/** An OpenGL 4.5 core context, current on the thread that made it until it is destroyed. */
+/** An OpenGL 4.5 core context. It is current on the thread that created it until it is destroyed. */
 class GlContext {
  public:
   virtual ~GlContext() = default;
-  /** "EGL surfaceless", … */
+  /** Kind of context, such as "EGL surfaceless" or "EGL device 0 (/dev/dri/card0)". */
   [[nodiscard]] virtual std::string description() const = 0;
 };
 
-/** \throws Error naming each way that was tried and why it failed. */
+/**
+ * Tries a hardware EGL device, EGL without a surface, a software EGL device and a hidden window, in this order.
+ * \throws Error naming each kind of context that was tried and the reason of its failure.
+ */
 [[nodiscard]] std::unique_ptr<GlContext> create_headless_context(bool is_debug);
 
-/** Whether any context, EGL's or GLX's, is current on this thread. */
+/** Whether a context of EGL or GLX is current on this thread. */
 [[nodiscard]] bool has_current_context();
 
 }  // namespace gnomon::gpu

@@ -5,7 +5,7 @@ namespace gnomon::gpu {
 
 namespace {
 
-/** All checks and counts are the base's; nothing is drawn. */
+/** Checks and counts are done by the base class; nothing is drawn. */
 class NullDevice final : public Device {
  public:
   NullDevice(const Limits &limits, MessageSink sink) : Device(limits, std::move(sink)) {}
@@ -35,8 +35,8 @@ class NullDevice final : public Device {
                     std::uint32_t /*index_capacity*/) override
   {
   }
-  void shader_create(ResourceId /*id*/, const ShaderDesc & /*desc*/,
-                     const std::vector<ShaderSource> & /*stages*/) override
+  void shader_create(ResourceId /*id*/, const ShaderDesc & /*desc*/, const std::vector<ShaderSource> & /*stages*/,
+                     std::vector<std::byte> & /*compiled*/) override
   {
   }
   void timer_query_create(ResourceId /*id*/, const std::string & /*name*/) override {}

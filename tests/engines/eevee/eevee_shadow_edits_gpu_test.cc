@@ -15,19 +15,20 @@ TEST_F(ShadowEditsGpuTest, LayersKeepTheirTexelsWhereTheirArrayGrowsAndShrinks)
 {
   for (const scene::ShadowKind kind : {scene::ShadowKind::Hard, scene::ShadowKind::Esm}) {
     scene::Scene scene;
-    const std::uint32_t material = test::add_material(scene, glm::vec3(0.5F));
-    test::add_object(scene, test::add_square_mesh(scene, material), glm::scale(glm::mat4(1.0F), glm::vec3(10)));
-    const std::uint32_t box = test::add_box_mesh(scene, material);
+    const auto material = test::add_material(scene, glm::vec3(0.5F));
+    test::add_object(scene, test::add_square_mesh(scene, material), glm::scale(glm::dmat4(1.0), glm::dvec3(10)));
+    const auto box = test::add_box_mesh(scene, material);
     for (const float x : {-3.0F, 0.0F, 3.0F}) {
-      test::add_object(scene, box, glm::translate(glm::mat4(1.0F), glm::vec3(x, 0, 1.5F)));
+      test::add_object(scene, box, glm::translate(glm::dmat4(1.0), glm::dvec3(x, 0, 1.5)));
     }
     test::add_lamp(scene, scene::LampKind::Point, {-2, -2, 4}, {0, 0, -1}, 20.0F);
-    test::add_lamp(scene, scene::LampKind::Spot, {2, -2, 5}, {0, 0, -1}, 30.0F).spot_outer_angle = 0.6F;
+    const auto narrow = [](scene::Lamp &lamp) { lamp.spot_outer_angle = 0.6F; };
+    scene.edit(test::add_lamp(scene, scene::LampKind::Spot, {2, -2, 5}, {0, 0, -1}, 30.0F), narrow);
     Settings settings;
     settings.shadow.kind = kind;
     settings.shadow.cube_size_px = settings.shadow.map_size_px = 64;
     settings.shadow.esm.size_px = 32;
-    const scene::Camera camera = test::camera_at({0, -12, 9}, {0, 0, 0}, 0.9F);
+    const scene::PlacedCamera camera = test::camera_at({0, -12, 9}, {0, 0, 0}, 0.9F);
     test::Renderer renderer(*device, scene, {64, 48}, settings);
     renderer.draw(camera);
     const auto expect_as_fresh = [&](const char *edit, std::uint64_t updated) {
@@ -38,13 +39,17 @@ TEST_F(ShadowEditsGpuTest, LayersKeepTheirTexelsWhereTheirArrayGrowsAndShrinks)
       test::Renderer fresh(*device, scene, {64, 48}, settings);
       EXPECT_EQ(edited.pixels, fresh.picture(camera).pixels) << edit << ", bit for bit";
     };
-    test::add_lamp(scene, scene::LampKind::Point, {3, 2, 4}, {0, 0, -1}, 10.0F).shadow.size = 128;
-    scene.lamps.back().shadow.esm_size = 64;
-    test::add_lamp(scene, scene::LampKind::Spot, {-2, 2, 5}, {0, 0, -1}, 30.0F).spot_outer_angle = 0.6F;
+    scene.edit(test::add_lamp(scene, scene::LampKind::Point, {3, 2, 4}, {0, 0, -1}, 10.0F), [](scene::Lamp &lamp) {
+      lamp.shadow.size = 128;
+      lamp.shadow.esm_size = 64;
+    });
+    scene.edit(test::add_lamp(scene, scene::LampKind::Spot, {-2, 2, 5}, {0, 0, -1}, 30.0F), narrow);
     expect_as_fresh("two lamps more, one with larger layers", 2);
-    scene.lamps.resize(2);
+    for (int i = 0; i < 2; i++) {
+      scene.remove(scene.placed_lamps().back().node);
+    }
     expect_as_fresh("two lamps less", 0);
-    scene.lamps[0].intensity *= 2.0F;
+    scene.edit(scene.lamps().first(), [](scene::Lamp &lamp) { lamp.intensity *= 2.0F; });
     expect_as_fresh("a brighter lamp", 0);
   }
 }

@@ -42,9 +42,9 @@ class ShadowEditsTest : public ShadowsTest {
       add_lamp(scene::LampKind::Point, "esm", {float(i), 0, 12}).shadow.kind = scene::ShadowKind::Esm;
     }
   }
-  scene::Lamp &lamp_at(std::size_t index)
+  scene::PlacedLamp &lamp_at(std::size_t index)
   {
-    return scene.lamps[index];
+    return placed[index];
   }
 };
 
@@ -52,7 +52,7 @@ TEST_F(ShadowEditsTest, DimmingRenamingAndFilteringDrawNothing)
 {
   add_lamps();
   EXPECT_GT(drawn_layers(), 0U);
-  for (scene::Lamp &lamp : scene.lamps) {
+  for (scene::PlacedLamp &lamp : placed) {
     lamp.intensity *= 0.5F;
     lamp.color = {0.2F, 0.3F, 0.4F};
     lamp.name += " renamed";
@@ -74,21 +74,20 @@ TEST_F(ShadowEditsTest, ALampThatComesOrGoesDrawsNoOtherAgain)
     std::map<std::uint64_t, int> first_layers;
     for (int i = 0; i < lamps.light_block.light_count; i++) {
       const shared::LightData &light = lamps.light_block.lights[i];
-      first_layers[keys[lamps.scene_index[std::size_t(i)]]] = shadows.layers(light)->first_layer;
+      first_layers[placed[lamps.lamp_index[std::size_t(i)]].node.key()] = shadows.layers(light)->first_layer;
     }
     return first_layers;
   };
   for (std::size_t i = 0; i < 8; i++) {
     const auto before = places();
-    const scene::Lamp removed = scene.lamps.front();
-    const std::uint64_t removed_key = keys.front();
+    scene::PlacedLamp removed = placed.front();
     remove_lamp(0);
     EXPECT_EQ(drawn_layers(), 0U) << "without " << removed.name;
     for (const auto &[key, layer] : places()) {
       EXPECT_EQ(layer, before.at(key)) << "without " << removed.name;
     }
-    scene.lamps.push_back(removed);
-    keys.push_back(removed_key + 1000);
+    removed.node = {next_node++, 1};
+    placed.push_back(removed);
     const std::uint64_t updated_before = shadows.counters().lamps_updated;
     EXPECT_GT(drawn_layers(), 0U);
     EXPECT_EQ(shadows.counters().lamps_updated, updated_before + 1) << "with " << removed.name << " again";
@@ -111,7 +110,7 @@ TEST_F(ShadowEditsTest, AnotherNumberOfCascadesDrawsNoSpotAgain)
   settings.cascades.count = 0;
   // From above.
   add_lamp(scene::LampKind::Sun, "sun").world_from_lamp =
-      glm::rotate(glm::mat4(1.0F), -1.57079633F, glm::vec3(1, 0, 0));
+      glm::rotate(glm::dmat4(1.0), -1.57079633, glm::dvec3(1, 0, 0));
   add_lamp(scene::LampKind::Spot, "spot", {0, 0, 20});
   // Away from the camera, so that near slices are much smaller than the whole.
   casters = {box_at({0, 0, 0}, 8.0F), box_at({0, 0, -200}, 8.0F), box_at({0, 0, -400}, 8.0F)};
@@ -178,11 +177,13 @@ TEST(EsmRange, ChangesInStepsWithTheScene)
 TEST_F(ShadowEditsTest, AnEditedMaskDrawsItsShadowAgain)
 {
   scene::Scene garden;
-  const std::int32_t texture = test::add_texture(garden, 2, {255, 255, 255, 0, 255, 255, 255, 255});
-  scene::Material &material = garden.materials[test::add_material(garden, glm::vec3(0.5F))];
-  material.base_color_texture = texture;
-  material.alpha_mode = scene::AlphaMode::Mask;
-  test::add_object(garden, test::add_square_mesh(garden, 0), glm::mat4(1.0F));
+  const auto texture = test::add_texture(garden, 2, {255, 255, 255, 0, 255, 255, 255, 255});
+  const auto material = test::add_material(garden, glm::vec3(0.5F));
+  garden.edit(material, [&](scene::Material &edited) {
+    edited.base_color_texture = texture;
+    edited.alpha_mode = scene::AlphaMode::Mask;
+  });
+  test::add_object(garden, test::add_square_mesh(garden, material), glm::dmat4(1.0));
   test::add_lamp(garden, scene::LampKind::Point, {0, 0, 3}, {0, 0, -1}, 20.0F);
   test::Renderer renderer(*device, garden, {16, 16});
   const auto updated_lamps = [&] {
@@ -193,16 +194,14 @@ TEST_F(ShadowEditsTest, AnEditedMaskDrawsItsShadowAgain)
   };
   EXPECT_EQ(updated_lamps(), 1U);
   EXPECT_EQ(updated_lamps(), 0U);
-  scene::Texture &lookup = garden.textures[std::size_t(texture)];
-  garden.images[lookup.image].texels[3] = 255;
-  garden.images[lookup.image].revision++;
+  const auto image = garden.textures()[texture].image;
+  garden.edit(image, [](scene::Image &edited) { edited.texels[3] = 255; });
   EXPECT_EQ(updated_lamps(), 1U) << "texels";
-  lookup.magnified =
-      lookup.magnified == scene::TextureFilter::Nearest ? scene::TextureFilter::Linear : scene::TextureFilter::Nearest;
+  garden.edit(texture, [](scene::Texture &edited) { edited.magnified = scene::TextureFilter::Linear; });
   EXPECT_EQ(updated_lamps(), 1U) << "filter";
-  material.alpha_mode = scene::AlphaMode::Opaque;
+  garden.edit(material, [](scene::Material &edited) { edited.alpha_mode = scene::AlphaMode::Opaque; });
   updated_lamps();
-  garden.images[lookup.image].revision++;
+  garden.edit(image, [](scene::Image &edited) { edited.texels[3] = 128; });
   EXPECT_EQ(updated_lamps(), 0U) << "no mask";
 }
 

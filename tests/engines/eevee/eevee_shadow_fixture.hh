@@ -26,31 +26,26 @@ inline scene::Bounds box_at(const glm::vec3 &center, float half)
 /** Shadows of a few lamps on the null device. Each box is a caster. */
 class ShadowsTest : public testing::Test {
  protected:
-  scene::Lamp &add_lamp(scene::LampKind kind, const std::string &name, const glm::vec3 &position = glm::vec3(0))
+  /** The reference holds until the next lamp is added or removed. */
+  scene::PlacedLamp &add_lamp(scene::LampKind kind, const std::string &name, const glm::vec3 &position = glm::vec3(0))
   {
-    scene::Lamp lamp;
+    scene::PlacedLamp lamp;
     lamp.kind = kind;
     lamp.name = name;
     lamp.spot_outer_angle = 0.5F;
-    lamp.world_from_lamp[3] = glm::vec4(position, 1.0F);
-    scene.lamps.push_back(lamp);
-    keys.push_back(next_key++);
-    return scene.lamps.back();
+    lamp.world_from_lamp[3] = glm::dvec4(position, 1.0);
+    lamp.node = {next_node++, 1};
+    placed.push_back(lamp);
+    return placed.back();
   }
   void remove_lamp(std::size_t index)
   {
-    scene.lamps.erase(scene.lamps.begin() + std::ptrdiff_t(index));
-    keys.erase(keys.begin() + std::ptrdiff_t(index));
+    placed.erase(placed.begin() + std::ptrdiff_t(index));
   }
-  /** The scene's lamps, each with the identity that it got when it was added. */
   std::vector<ShadowLamp> identified_lamps()
   {
-    lamps = make_lamps(scene);
-    std::vector<ShadowLamp> identified = shadow_lamps(scene, lamps);
-    for (std::size_t i = 0; i < identified.size(); i++) {
-      identified[i].key = keys[lamps.scene_index[i]];
-    }
-    return identified;
+    lamps = make_lamps(placed);
+    return shadow_lamps(placed, lamps);
   }
   scene::Bounds bounds_ws() const
   {
@@ -66,7 +61,10 @@ class ShadowsTest : public testing::Test {
     shadows.sync(device->limits(), identified, bounds_ws(), lamps.light_block, asked);
     shadows.allocate(*device, shaders);
     pass.clear();
-    draw::InstanceCall &instances = pass.group(shader).instances(batch);
+    draw::ShadingGroup &group = pass.group(shader);
+    group.bind_uniform_ref("shadow_render_block", shadows.render_block());
+    group.bind_storage("object_block", objects);
+    draw::InstanceCall &instances = group.instances(batch);
     for (std::size_t i = 0; i < casters.size(); i++) {
       shadows.add_caster({casters[i], draw::ObjectIndex(i), &instances,
                           fingerprint_of(std::as_bytes(std::span(&casters[i], 1))), mesh, &world_from_mesh});
@@ -94,13 +92,13 @@ class ShadowsTest : public testing::Test {
   std::array<glm::vec3, 3> positions = {glm::vec3(0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)};
   std::array<std::uint32_t, 3> indices = {0, 1, 2};
   gpu::Batch batch = device->create_batch({"triangle", positions, {}, indices});
+  gpu::Buffer objects = device->create_buffer({"object_block", gpu::BufferKind::Storage, 4096});
   ShaderCache shaders;
   const gpu::Shader &shader = shaders.get(*device, ShaderId::Shadow);
   draw::Pass pass{"casters", gpu::State::WriteDepth};
-  scene::Scene scene;
-  /** Identity of each lamp of the scene. */
-  std::vector<std::uint64_t> keys;
-  std::uint64_t next_key = 100;
+  std::vector<scene::PlacedLamp> placed;
+  /** Of the next lamp. */
+  std::uint32_t next_node = 100;
   /** The triangles of each caster, in world space; nullptr: only the boxes are known. */
   const scene::Mesh *mesh = nullptr;
   glm::mat4 world_from_mesh{1.0F};

@@ -56,7 +56,8 @@ const draw::View any_view(glm::mat4(1.0F), draw::perspective(1.0F, 1.0F, 0.1F, 1
 std::vector<SunFit> fit_one(const scene::PlacedLamp &lamp, const std::vector<glm::dvec3> &receivers,
                             const std::vector<Caster> &casters, int size_px)
 {
-  return fit_sun(lamp.world_from_lamp, any_view, visible_range(any_view, receivers), casters, size_px, {.count = 1}, 0.001F);
+  return fit_sun(glm::mat4(lamp.world_from_lamp), any_view, visible_range(any_view, receivers), casters, size_px,
+                 {.count = 1}, 0.001F);
 }
 
 TEST(SunFit, HoldsEveryCasterOfAVisibleReceiver)
@@ -73,8 +74,8 @@ TEST(SunFit, HoldsEveryCasterOfAVisibleReceiver)
     const scene::Bounds all = bounds_of(casters);
     const draw::View view(glm::lookAt(10.0F * point(), point(), glm::vec3(0, 1, 0)),
                           draw::perspective(0.3F, 0.2F, 0.1F, 50.0F));
-    const std::vector<SunFit> fits =
-        fit_sun(lamp.world_from_lamp, view, range_of(view, casters), casters, 512, {.count = 1 + trial % 4}, 0.001F);
+    const std::vector<SunFit> fits = fit_sun(glm::mat4(lamp.world_from_lamp), view, range_of(view, casters), casters,
+                                             512, {.count = 1 + trial % 4}, 0.001F);
     // A ray from a visible receiver towards the sun that meets a caster: caster point and receiver both in the last
     // map.
     for (int i = 0; i < 4000; i++) {
@@ -222,7 +223,8 @@ struct Field {
   }
   [[nodiscard]] std::vector<SunFit> fit_at(const draw::View &view, int count, float pixel_size = 0.001F) const
   {
-    return fit_sun(sun.world_from_lamp, view, range_of(view, casters), casters, 1024, {.count = count}, pixel_size);
+    return fit_sun(glm::mat4(sun.world_from_lamp), view, range_of(view, casters), casters, 1024, {.count = count},
+                   pixel_size);
   }
   std::vector<Caster> casters;
   scene::PlacedLamp sun = sun_along({0.4F, -1, 0.2F});

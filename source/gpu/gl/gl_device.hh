@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gpu_device.hh"
+
+#include "gl_context.hh"
+#include "gl_state.hh"
+#include "gl_stream.hh"
+
+#include <functional>
+#include <optional>
+
+namespace gnomon::gpu {
+
+struct GlFormat {
+  GLenum internal;
+  GLenum format;
+  GLenum type;
+};
+[[nodiscard]] GlFormat gl_format(Format format);
+
+/** Nanoseconds from \a begin to \a end of a counter of \a bits bits, which may have wrapped once. */
+[[nodiscard]] std::uint64_t elapsed_ticks(std::uint64_t begin, std::uint64_t end, int bits);
+
+/** Backend's objects by resource id. */
+template <typename T>
+class IdTable {
+ public:
+  explicit IdTable(ResourceKind kind) : kind_(kind) {}
+
+  T &insert(ResourceId id, T value)
+  {
+    if (index_of(id) >= entries_.size()) {
+      entries_.resize(index_of(id) + 1);
+    }
+    entries_[index_of(id)] = {id, std::move(value)};
+    return entries_[index_of(id)].second;
+  }
+  /** \throws Error for 0 and for the id of a destroyed resource. */
+  [[nodiscard]] T &at(ResourceId id)
+  {
+    if (id == 0 || index_of(id) >= entries_.size() || entries_[index_of(id)].first != id) {
+      throw Error("{} id {} is stale or 0: there is no such resource", to_string(kind_), id);
+    }
+    return entries_[index_of(id)].second;
+  }
+  void erase(ResourceId id)
+  {
+    entries_[index_of(id)] = {};
+  }
+
+ private:
+  ResourceKind kind_;
+  std::vector<std::pair<ResourceId, T>> entries_;
+};
+
+class GlDevice final : public Device {
+ public:
+  GlDevice(std::unique_ptr<GlContext> context, const GlDeviceDesc &desc);
+  ~GlDevice() override;
+
+  void finish() override;
+  void time_begin(const TimerQuery &query) override;
+  void time_end(const TimerQuery &query) override;
+  std::optional<double> elapsed_seconds(const TimerQuery &query) override;
+  std::string description() const override;
+
+ private:
+  enum Pool { PositionPool, NormalPool, UvPool, IndexPool, PoolCount };
+
+  struct GlFramebuffer {
+    GLuint name = 0;
+    GLuint color_count = 0;
+    bool has_depth = false;
+    glm::ivec2 size_px{0};
+    /** Texture views of attachments that are a range of layers. */
+    std::vector<GLuint> views;
+  };
+  struct GlBuffer {
+    GLuint name = 0;
+    std::size_t size_bytes = 0;
+  };
+  /** A sampler that a program declares. */
+  struct DeclaredSampler {
+    GLuint unit = 0;
+    /** Of the texture: GL_TEXTURE_2D or GL_TEXTURE_2D_ARRAY. */
+    GLenum target = GL_NONE;
+    bool is_comparison = false;
+  };
+  struct GlProgram {
+    GLuint name = 0;
+    std::vector<DeclaredSampler> samplers;
+  };
+  /** A texture of one texel and its sampler, for declared samplers that a list does not bind. */
+  struct Dummy {
+    GLuint texture = 0;
+    GLuint sampler = 0;
+  };
+  /** A function of this class that the host calls. Nested entries do nothing. */
+  class Entry {
+   public:
+    explicit Entry(GlDevice &device);
+    ~Entry();
+    Entry(const Entry &) = delete;
+    Entry &operator=(const Entry &) = delete;
+
+   private:
+    GlDevice &device_;
+    std::vector<GLenum> host_errors_;
+  };
+
+  static void GLAPIENTRY receive_message(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
+                                         const GLchar *text, const void *user);
+  /** \throws Error with all that the driver reported since the last check; DeviceLost. */
+  void check(std::string_view what);
+  /** As check; where it throws, \a destroy is called first. */
+  void check_or(std::string_view what, const std::function<void()> &destroy);
+  /** In builds with assertions, \throws Error where the host's state cannot be saved. */
+  void check_host_state(std::string_view what);
+  static void label(GLenum kind, GLuint name, const std::string &text);
+
+  void texture_create(ResourceId id, const TextureDesc &desc) override;
+  void sampler_create(ResourceId id, const SamplerDesc &desc) override;
+  void framebuffer_create(ResourceId id, const FramebufferDesc &desc) override;
+  void buffer_create(ResourceId id, const BufferDesc &desc) override;
+  void batch_create(const BatchDesc &desc, const BatchRange &range, std::uint32_t vertex_capacity,
+                    std::uint32_t index_capacity) override;
+  void shader_create(ResourceId id, const ShaderDesc &desc, const std::vector<ShaderSource> &stages,
+                     std::vector<std::byte> &compiled) override;
+  void timer_query_create(ResourceId id, const std::string &name) override;
+  void resource_destroy(ResourceKind kind, ResourceId id) override;
+  void buffer_update(ResourceId id, std::size_t offset_bytes, std::span<const std::byte> bytes) override;
+  void texture_upload(const Texture &texture, int layer, std::span<const std::byte> texels) override;
+  void mipmaps_generate(const Texture &texture) override;
+  void layers_copy(const Texture &source, const Texture &target, glm::ivec2 size_px, int layers) override;
+  void texture_read(const Texture &texture, int layer, std::span<std::byte> texels) override;
+  void list_submit(const CommandList &list) override;
+
+  void create_vertex_arrays();
+  /** The attachment of \a framebuffer at \a point; adds a view to \a views where it needs one. */
+  void attach(GLuint framebuffer, GLenum point, const Attachment &attachment, std::vector<GLuint> &views);
+  void grow_pools(const BatchDesc &desc, std::size_t vertex_capacity, std::size_t index_capacity);
+  /** Compiles and links \a stages. \throws Error with the driver's log. */
+  GLuint compile(const ShaderDesc &desc, const std::vector<ShaderSource> &stages);
+  /** 0: the driver does not accept \a compiled. */
+  GLuint load_compiled(const std::vector<std::byte> &compiled);
+  static std::vector<DeclaredSampler> declared_samplers(GLuint program);
+  const Dummy &dummy(const DeclaredSampler &sampler);
+
+  void collect_slots(const CommandList &list);
+  void execute(const CommandList &list);
+  /** Copies the list's draws, instances and bytes into the stream. */
+  void write_stream(const CommandList &list);
+  void begin_pass(const CommandList::PassInfo &pass);
+  void end_pass();
+  void set_state(State state);
+  void bind_range(const Command &command);
+  void bind_texture(const Command &command);
+  /** Binds dummies to the samplers of the current program that the list has not bound. */
+  void complete_textures();
+
+  std::unique_ptr<GlContext> context_;
+  /** Driver errors come as messages. Never in a host's context, whose messages go to the host. */
+  bool is_debug_;
+  std::vector<std::string> driver_errors_;
+  int entry_depth_ = 0;
+  bool is_lost_ = false;
+  /** Of the GL_TIMESTAMP counter; 0: there is no timer. */
+  GLint timestamp_bits_ = 0;
+  GLuint probe_query_ = 0;
+
+  IdTable<GLuint> textures_{ResourceKind::Texture};
+  IdTable<GLuint> samplers_{ResourceKind::Sampler};
+  IdTable<GlFramebuffer> framebuffers_{ResourceKind::Framebuffer};
+  IdTable<GlBuffer> buffers_{ResourceKind::Buffer};
+  IdTable<GlProgram> programs_{ResourceKind::Shader};
+  IdTable<std::array<GLuint, 2>> timers_{ResourceKind::TimerQuery};
+
+  /** By target (2D, 2D array), then by whether the sampler compares. */
+  std::array<std::array<Dummy, 2>, 2> dummies_{};
+
+  GLuint vertex_array_ = 0;
+  GLuint empty_vertex_array_ = 0;
+  std::array<GLuint, PoolCount> pool_{};
+  /** Bytes. */
+  std::array<std::size_t, PoolCount> pool_size_{};
+  StreamRing stream_;
+  /** Offset of the list's draws in the stream's buffer. */
+  std::size_t draws_offset_ = 0;
+
+  UsedSlots used_slots_;
+  /** The pass between begin_pass and end_pass. */
+  const CommandList::PassInfo *pass_ = nullptr;
+  GLuint color_count_ = 0;
+  const GlProgram *program_ = nullptr;
+  /** By unit: GL_NONE, GL_TEXTURE for a texture of the list, or the target of the bound dummy. */
+  std::vector<GLenum> bound_textures_;
+};
+
+}  // namespace gnomon::gpu

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: MIT
+#include "gl_device.hh"
+
+#include "slots_shared.h"
+
+#include <algorithm>
+
+namespace gnomon::gpu {
+
+namespace {
+
+GLenum gl_target(TextureKind kind)
+{
+  return kind == TextureKind::Array ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
+}
+
+GLint gl_wrap(Wrap wrap)
+{
+  switch (wrap) {
+    case Wrap::ClampToEdge: return GL_CLAMP_TO_EDGE;
+    case Wrap::Repeat: return GL_REPEAT;
+    case Wrap::MirroredRepeat: return GL_MIRRORED_REPEAT;
+  }
+  return GL_CLAMP_TO_EDGE;
+}
+
+GLint gl_min_filter(Filter filter, MipFilter mip)
+{
+  const bool is_linear = filter == Filter::Linear;
+  switch (mip) {
+    case MipFilter::None: return is_linear ? GL_LINEAR : GL_NEAREST;
+    case MipFilter::Nearest: return is_linear ? GL_LINEAR_MIPMAP_NEAREST : GL_NEAREST_MIPMAP_NEAREST;
+    case MipFilter::Linear: return is_linear ? GL_LINEAR_MIPMAP_LINEAR : GL_NEAREST_MIPMAP_LINEAR;
+  }
+  return GL_NEAREST;
+}
+
+glm::ivec2 size_of(const Attachment &attachment)
+{
+  const TextureDesc &desc = attachment.texture->desc();
+  return {std::max(desc.width >> attachment.mip_level, 1), std::max(desc.height >> attachment.mip_level, 1)};
+}
+
+}  // namespace
+
+GlFormat gl_format(Format format)
+{
+  switch (format) {
+    case Format::RGBA8: return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
+    case Format::SRGB8A8: return {GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE};
+    case Format::RGBA16F: return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT};
+    case Format::RGBA32F: return {GL_RGBA32F, GL_RGBA, GL_FLOAT};
+    case Format::R16F: return {GL_R16F, GL_RED, GL_HALF_FLOAT};
+    case Format::R32F: return {GL_R32F, GL_RED, GL_FLOAT};
+    case Format::RG32F: return {GL_RG32F, GL_RG, GL_FLOAT};
+    case Format::Depth32F: return {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT};
+  }
+  return {};
+}
+
+void GlDevice::texture_create(ResourceId id, const TextureDesc &desc)
+{
+  const Entry entry(*this);
+  GLuint texture = 0;
+  glCreateTextures(gl_target(desc.kind), 1, &texture);
+  const GLenum internal = gl_format(desc.format).internal;
+  if (desc.kind == TextureKind::Flat) {
+    glTextureStorage2D(texture, desc.mip_levels, internal, desc.width, desc.height);
+  }
+  else {
+    glTextureStorage3D(texture, desc.mip_levels, internal, desc.width, desc.height, desc.layers);
+  }
+  label(GL_TEXTURE, texture, desc.name);
+  check_or(fmt::format("texture '{}'", desc.name), [&] { glDeleteTextures(1, &texture); });
+  textures_.insert(id, texture);
+}
+
+void GlDevice::sampler_create(ResourceId id, const SamplerDesc &desc)
+{
+  const Entry entry(*this);
+  GLuint sampler = 0;
+  glCreateSamplers(1, &sampler);
+  glSamplerParameteri(sampler, GL_TEXTURE_MIN_FILTER, gl_min_filter(desc.minified.value_or(desc.filter), desc.mip));
+  glSamplerParameteri(sampler, GL_TEXTURE_MAG_FILTER, desc.filter == Filter::Linear ? GL_LINEAR : GL_NEAREST);
+  glSamplerParameteri(sampler, GL_TEXTURE_WRAP_S, gl_wrap(desc.wrap_u));
+  glSamplerParameteri(sampler, GL_TEXTURE_WRAP_T, gl_wrap(desc.wrap_v));
+  glSamplerParameteri(sampler, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
+  if (desc.is_depth_comparison) {
+    glSamplerParameteri(sampler, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+    glSamplerParameteri(sampler, GL_TEXTURE_COMPARE_FUNC, GL_GEQUAL);
+  }
+  label(GL_SAMPLER, sampler, desc.name);
+  samplers_.insert(id, sampler);
+}
+
+void GlDevice::attach(GLuint framebuffer, GLenum point, const Attachment &attachment, std::vector<GLuint> &views)
+{
+  const GLuint texture = textures_.at(attachment.texture->id());
+  const TextureDesc &desc = attachment.texture->desc();
+  if (attachment.layer_count > 1) {
+    GLuint &view = views.emplace_back();
+    glGenTextures(1, &view);
+    glTextureView(view, GL_TEXTURE_2D_ARRAY, texture, gl_format(desc.format).internal, 0, GLuint(desc.mip_levels),
+                  GLuint(attachment.layer), GLuint(attachment.layer_count));
+    glNamedFramebufferTexture(framebuffer, point, view, attachment.mip_level);
+  }
+  else if (attachment.layer == all_layers || desc.kind == TextureKind::Flat) {
+    glNamedFramebufferTexture(framebuffer, point, texture, attachment.mip_level);
+  }
+  else {
+    glNamedFramebufferTextureLayer(framebuffer, point, texture, attachment.mip_level, attachment.layer);
+  }
+}
+
+void GlDevice::framebuffer_create(ResourceId id, const FramebufferDesc &desc)
+{
+  const Entry entry(*this);
+  GlFramebuffer framebuffer;
+  glCreateFramebuffers(1, &framebuffer.name);
+  std::vector<GLenum> buffers;
+  for (const Attachment &color : desc.colors) {
+    buffers.push_back(GL_COLOR_ATTACHMENT0 + GLenum(buffers.size()));
+    attach(framebuffer.name, buffers.back(), color, framebuffer.views);
+  }
+  glNamedFramebufferDrawBuffers(framebuffer.name, GLsizei(buffers.size()), buffers.data());
+  if (desc.depth.texture) {
+    attach(framebuffer.name, GL_DEPTH_ATTACHMENT, desc.depth, framebuffer.views);
+  }
+  label(GL_FRAMEBUFFER, framebuffer.name, desc.name);
+  framebuffer.color_count = GLuint(desc.colors.size());
+  framebuffer.has_depth = desc.depth.texture != nullptr;
+  framebuffer.size_px = size_of(desc.colors.empty() ? desc.depth : desc.colors.front());
+  framebuffers_.insert(id, framebuffer);
+  const GLenum status = glCheckNamedFramebufferStatus(framebuffer.name, GL_DRAW_FRAMEBUFFER);
+  if (status != GL_FRAMEBUFFER_COMPLETE) {
+    resource_destroy(ResourceKind::Framebuffer, id);
+    throw Error("framebuffer '{}': the driver cannot draw into these attachments (status 0x{:x})", desc.name, status);
+  }
+}
+
+void GlDevice::buffer_create(ResourceId id, const BufferDesc &desc)
+{
+  const Entry entry(*this);
+  GLuint buffer = 0;
+  glCreateBuffers(1, &buffer);
+  // Not by name: Mesa's rasteriser delays updates until earlier draws are done only where it knows the target.
+  const GLenum target = desc.kind == BufferKind::Uniform ? GL_UNIFORM_BUFFER : GL_SHADER_STORAGE_BUFFER;
+  {
+    const SavedBufferBinding saved(target);
+    glBindBuffer(target, buffer);
+    glBufferData(target, GLsizeiptr(desc.size_bytes), nullptr, GL_DYNAMIC_DRAW);
+  }
+  label(GL_BUFFER, buffer, desc.name);
+  check_or(fmt::format("buffer '{}'", desc.name), [&] { glDeleteBuffers(1, &buffer); });
+  buffers_.insert(id, {buffer, desc.size_bytes});
+}
+
+void GlDevice::grow_pools(const BatchDesc &desc, std::size_t vertex_capacity, std::size_t index_capacity)
+{
+  std::array<std::size_t, PoolCount> sizes{};
+  sizes[PositionPool] = sizes[NormalPool] = vertex_capacity * sizeof(glm::vec3);
+  // Created for the first batch that has uv coordinates, and grown for such batches only.
+  sizes[UvPool] = desc.uvs.empty() ? 0 : vertex_capacity * sizeof(glm::vec2);
+  sizes[IndexPool] = index_capacity * sizeof(std::uint32_t);
+  std::array<GLuint, PoolCount> grown{};
+  for (std::size_t i = 0; i < PoolCount; i++) {
+    if (sizes[i] > pool_size_[i]) {
+      glCreateBuffers(1, &grown[i]);
+      glNamedBufferData(grown[i], GLsizeiptr(sizes[i]), nullptr, GL_STATIC_DRAW);
+    }
+  }
+  // The buffers in use are replaced only once all new ones are known to exist.
+  check_or(fmt::format("batch '{}': {} vertices and {} indices in all", desc.name, vertex_capacity, index_capacity),
+           [&] { glDeleteBuffers(GLsizei(grown.size()), grown.data()); });
+  for (std::size_t i = 0; i < PoolCount; i++) {
+    if (grown[i] != 0) {
+      if (pool_[i] != 0) {
+        glCopyNamedBufferSubData(pool_[i], grown[i], 0, 0, GLsizeiptr(pool_size_[i]));
+      }
+      std::swap(pool_[i], grown[i]);
+      pool_size_[i] = sizes[i];
+    }
+  }
+  glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_POSITION, pool_[PositionPool], 0, sizeof(glm::vec3));
+  glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_NORMAL, pool_[NormalPool], 0, sizeof(glm::vec3));
+  glVertexArrayElementBuffer(vertex_array_, pool_[IndexPool]);
+  if (pool_[UvPool] != 0) {
+    glEnableVertexArrayAttrib(vertex_array_, ATTRIBUTE_UV);
+    glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_UV, pool_[UvPool], 0, sizeof(glm::vec2));
+  }
+  glDeleteBuffers(GLsizei(grown.size()), grown.data());
+}
+
+void GlDevice::batch_create(const BatchDesc &desc, const BatchRange &range, std::uint32_t vertex_capacity,
+                            std::uint32_t index_capacity)
+{
+  const Entry entry(*this);
+  const bool has_uvs = !desc.uvs.empty();
+  if (vertex_capacity * sizeof(glm::vec3) > pool_size_[PositionPool] ||
+      index_capacity * sizeof(std::uint32_t) > pool_size_[IndexPool] ||
+      (has_uvs && vertex_capacity * sizeof(glm::vec2) > pool_size_[UvPool])) {
+    grow_pools(desc, vertex_capacity, index_capacity);
+  }
+  const auto write = [&](Pool pool, std::size_t first, const auto &values) {
+    glNamedBufferSubData(pool_[pool], GLintptr(first * sizeof(values[0])), GLsizeiptr(values.size_bytes()),
+                         values.data());
+  };
+  const auto base_vertex = std::size_t(range.base_vertex);
+  write(PositionPool, base_vertex, desc.positions);
+  const std::vector<glm::vec3> zeros(desc.normals.empty() ? desc.positions.size() : 0, glm::vec3(0.0F));
+  write(NormalPool, base_vertex, desc.normals.empty() ? std::span<const glm::vec3>(zeros) : desc.normals);
+  if (has_uvs) {
+    write(UvPool, base_vertex, desc.uvs);
+  }
+  write(IndexPool, range.first_index, desc.indices);
+  check(fmt::format("batch '{}'", desc.name));
+}
+
+void GlDevice::timer_query_create(ResourceId id, const std::string & /*name*/)
+{
+  const Entry entry(*this);
+  glCreateQueries(GL_TIMESTAMP, 2, timers_.insert(id, {}).data());
+}
+
+void GlDevice::resource_destroy(ResourceKind kind, ResourceId id)
+{
+  const Entry entry(*this);
+  switch (kind) {
+    case ResourceKind::Texture:
+      glDeleteTextures(1, &textures_.at(id));
+      textures_.erase(id);
+      break;
+    case ResourceKind::Sampler:
+      glDeleteSamplers(1, &samplers_.at(id));
+      samplers_.erase(id);
+      break;
+    case ResourceKind::Framebuffer: {
+      const GlFramebuffer &framebuffer = framebuffers_.at(id);
+      glDeleteFramebuffers(1, &framebuffer.name);
+      glDeleteTextures(GLsizei(framebuffer.views.size()), framebuffer.views.data());
+      framebuffers_.erase(id);
+      break;
+    }
+    case ResourceKind::Buffer:
+      glDeleteBuffers(1, &buffers_.at(id).name);
+      buffers_.erase(id);
+      break;
+    case ResourceKind::Shader:
+      glDeleteProgram(programs_.at(id).name);
+      programs_.erase(id);
+      break;
+    case ResourceKind::TimerQuery:
+      glDeleteQueries(2, timers_.at(id).data());
+      timers_.erase(id);
+      break;
+    case ResourceKind::Batch: break;
+  }
+}
+
+void GlDevice::buffer_update(ResourceId id, std::size_t offset_bytes, std::span<const std::byte> bytes)
+{
+  const Entry entry(*this);
+  glNamedBufferSubData(buffers_.at(id).name, GLintptr(offset_bytes), GLsizeiptr(bytes.size()), bytes.data());
+}
+
+void GlDevice::texture_upload(const Texture &texture, int layer, std::span<const std::byte> texels)
+{
+  const Entry entry(*this);
+  const SavedPixelStore pixel_store(PixelTransfer::Unpack);
+  const TextureDesc &desc = texture.desc();
+  const GlFormat format = gl_format(desc.format);
+  const GLuint name = textures_.at(texture.id());
+  if (desc.kind == TextureKind::Flat) {
+    glTextureSubImage2D(name, 0, 0, 0, desc.width, desc.height, format.format, format.type, texels.data());
+  }
+  else {
+    glTextureSubImage3D(name, 0, 0, 0, layer, desc.width, desc.height, 1, format.format, format.type, texels.data());
+  }
+  check(fmt::format("texture '{}'", desc.name));
+}
+
+void GlDevice::mipmaps_generate(const Texture &texture)
+{
+  const Entry entry(*this);
+  const std::string what = fmt::format("texture '{}'", texture.desc().name);
+  check_host_state(what);
+  glGenerateTextureMipmap(textures_.at(texture.id()));
+  check(what);
+}
+
+void GlDevice::layers_copy(const Texture &source, const Texture &target, glm::ivec2 size_px, int layers)
+{
+  const Entry entry(*this);
+  const auto gl_kind = [](const Texture &texture) { return gl_target(texture.desc().kind); };
+  glCopyImageSubData(textures_.at(source.id()), gl_kind(source), 0, 0, 0, 0, textures_.at(target.id()), gl_kind(target),
+                     0, 0, 0, 0, size_px.x, size_px.y, layers);
+  check(fmt::format("copy of texture '{}'", source.desc().name));
+}
+
+void GlDevice::texture_read(const Texture &texture, int layer, std::span<std::byte> texels)
+{
+  const Entry entry(*this);
+  const SavedPixelStore pixel_store(PixelTransfer::Pack);
+  const TextureDesc &desc = texture.desc();
+  const GlFormat format = gl_format(desc.format);
+  // In bands of rows, because GL counts the bytes of a read in 32 bits.
+  constexpr std::size_t band_bytes_max = std::size_t(1) << 30U;
+  const std::size_t row_bytes = texels.size() / std::size_t(desc.height);
+  const int band_rows = int(std::max<std::size_t>(band_bytes_max / row_bytes, 1));
+  for (int y = 0; y < desc.height; y += band_rows) {
+    const int rows = std::min(band_rows, desc.height - y);
+    const auto band = texels.subspan(std::size_t(y) * row_bytes, std::size_t(rows) * row_bytes);
+    glGetTextureSubImage(textures_.at(texture.id()), 0, 0, y, layer, desc.width, rows, 1, format.format, format.type,
+                         GLsizei(band.size()), band.data());
+  }
+  check(fmt::format("texture '{}'", desc.name));
+}
+
+}  // namespace gnomon::gpu

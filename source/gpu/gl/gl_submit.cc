@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: MIT
+#include "gl_device.hh"
+
+#include "slots_shared.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace gnomon::gpu {
+
+namespace {
+
+void set_capability(GLenum capability, bool is_enabled)
+{
+  if (is_enabled) {
+    glEnable(capability);
+  }
+  else {
+    glDisable(capability);
+  }
+}
+
+}  // namespace
+
+void GlDevice::collect_slots(const CommandList &list)
+{
+  used_slots_.clear();
+  for (const Command &command : list.commands()) {
+    switch (command.kind) {
+      case CommandKind::BeginPass:
+        used_slots_.color_count = std::max(used_slots_.color_count, framebuffers_.at(command.id).color_count);
+        break;
+      case CommandKind::SetShader:
+        for (const DeclaredSampler &sampler : programs_.at(command.id).samplers) {
+          UsedSlots::add(used_slots_.texture_units, sampler.unit);
+        }
+        break;
+      case CommandKind::BindUniform:
+      case CommandKind::PushConstants: UsedSlots::add(used_slots_.uniform_slots, command.slot); break;
+      case CommandKind::BindStorage: UsedSlots::add(used_slots_.storage_slots, command.slot); break;
+      case CommandKind::BindTexture: UsedSlots::add(used_slots_.texture_units, command.slot); break;
+      default: break;
+    }
+  }
+}
+
+void GlDevice::list_submit(const CommandList &list)
+{
+  const Entry entry(*this);
+  check_host_state("submit");
+  {
+    std::optional<SavedDrawState> saved;
+    if (!context_) {
+      collect_slots(list);
+      saved.emplace(used_slots_);
+    }
+    try {
+      execute(list);
+    }
+    catch (...) {
+      if (pass_) {
+        end_pass();
+      }
+      stream_.end();
+      throw;
+    }
+    stream_.end();
+  }
+  check("submit");
+}
+
+void GlDevice::execute(const CommandList &list)
+{
+  write_stream(list);
+  set_draw_defaults();
+  program_ = nullptr;
+  bound_textures_.clear();
+  const auto written = [&](const Command &command) {
+    return stream_.write(std::span(list.bytes()).subspan(command.first, command.count),
+                         limits().uniform_offset_alignment);
+  };
+  for (const Command &command : list.commands()) {
+    switch (command.kind) {
+      case CommandKind::BeginPass: begin_pass(list.passes()[command.first]); break;
+      case CommandKind::EndPass: end_pass(); break;
+      case CommandKind::SetShader:
+        program_ = &programs_.at(command.id);
+        glUseProgram(program_->name);
+        break;
+      case CommandKind::SetState: set_state(State(command.first)); break;
+      case CommandKind::BindUniform:
+      case CommandKind::BindStorage: bind_range(command); break;
+      case CommandKind::BindTexture: bind_texture(command); break;
+      case CommandKind::PushConstants:
+        glBindBufferRange(GL_UNIFORM_BUFFER, command.slot, stream_.buffer(), GLintptr(written(command)),
+                          GLsizeiptr(command.count));
+        break;
+      case CommandKind::Draw:
+        complete_textures();
+        glBindVertexArray(vertex_array_);
+        glMultiDrawElementsIndirect(
+            GL_TRIANGLES, GL_UNSIGNED_INT,
+            reinterpret_cast<const void *>(draws_offset_ + command.first * sizeof(DrawIndirect)),
+            GLsizei(command.count), sizeof(DrawIndirect));
+        break;
+      case CommandKind::DrawProcedural:
+        complete_textures();
+        glBindVertexArray(empty_vertex_array_);
+        glDrawArraysInstanced(GL_TRIANGLES, 0, GLsizei(command.first), GLsizei(command.count));
+        break;
+      case CommandKind::Update:
+        glCopyNamedBufferSubData(stream_.buffer(), buffers_.at(command.id).name, GLintptr(written(command)),
+                                 GLintptr(command.slot), GLsizeiptr(command.count));
+        break;
+    }
+  }
+}
+
+void GlDevice::write_stream(const CommandList &list)
+{
+  const std::size_t alignment = limits().uniform_offset_alignment;
+  std::size_t size = std::as_bytes(std::span(list.instances)).size() + std::as_bytes(std::span(list.draws)).size();
+  std::size_t part_count = 2;
+  for (const Command &command : list.commands()) {
+    if (command.kind == CommandKind::PushConstants || command.kind == CommandKind::Update) {
+      size += command.count;
+      part_count++;
+    }
+  }
+  stream_.begin(size + part_count * alignment);
+  const std::size_t instances = stream_.write(std::as_bytes(std::span(list.instances)), alignment);
+  draws_offset_ = stream_.write(std::as_bytes(std::span(list.draws)), alignment);
+  glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, stream_.buffer(), GLintptr(instances),
+                            sizeof(DrawInstance));
+  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, stream_.buffer());
+}
+
+void GlDevice::begin_pass(const CommandList::PassInfo &pass)
+{
+  const GlFramebuffer &framebuffer = framebuffers_.at(pass.framebuffer);
+  if (is_debug_) {
+    glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, GLsizei(std::min<std::size_t>(pass.name.size(), 255)),
+                     pass.name.data());
+  }
+  pass_ = &pass;
+  color_count_ = framebuffer.color_count;
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer.name);
+  const glm::ivec2 viewport_px =
+      pass.actions.viewport_px == glm::ivec2(0) ? framebuffer.size_px : pass.actions.viewport_px;
+  glViewportIndexedf(0, 0.0F, 0.0F, float(viewport_px.x), float(viewport_px.y));
+  // Clears obey the write masks.
+  set_state(State::WriteColor | State::WriteDepth);
+  std::vector<GLenum> discarded;
+  for (GLuint i = 0; i < framebuffer.color_count; i++) {
+    if (pass.actions.color_load == LoadAction::Clear) {
+      glClearNamedFramebufferfv(framebuffer.name, GL_COLOR, GLint(i), &pass.actions.clear_color[0]);
+    }
+    else if (pass.actions.color_load == LoadAction::DontCare) {
+      discarded.push_back(GL_COLOR_ATTACHMENT0 + i);
+    }
+  }
+  if (framebuffer.has_depth) {
+    if (pass.actions.depth_load == LoadAction::Clear) {
+      glClearNamedFramebufferfv(framebuffer.name, GL_DEPTH, 0, &pass.actions.clear_depth);
+    }
+    else if (pass.actions.depth_load == LoadAction::DontCare) {
+      discarded.push_back(GL_DEPTH_ATTACHMENT);
+    }
+  }
+  if (!discarded.empty()) {
+    glInvalidateNamedFramebufferData(framebuffer.name, GLsizei(discarded.size()), discarded.data());
+  }
+}
+
+void GlDevice::end_pass()
+{
+  const GlFramebuffer &framebuffer = framebuffers_.at(pass_->framebuffer);
+  std::vector<GLenum> discarded;
+  for (GLuint i = 0; i < framebuffer.color_count && pass_->actions.color_store == StoreAction::DontCare; i++) {
+    discarded.push_back(GL_COLOR_ATTACHMENT0 + i);
+  }
+  if (framebuffer.has_depth && pass_->actions.depth_store == StoreAction::DontCare) {
+    discarded.push_back(GL_DEPTH_ATTACHMENT);
+  }
+  if (!discarded.empty()) {
+    glInvalidateNamedFramebufferData(framebuffer.name, GLsizei(discarded.size()), discarded.data());
+  }
+  if (is_debug_) {
+    glPopDebugGroup();
+  }
+  pass_ = nullptr;
+}
+
+void GlDevice::set_state(State state)
+{
+  glDepthMask(GLboolean(has(state, State::WriteDepth)));
+  // Depth is written only while the test is enabled.
+  const bool is_tested = has(state, State::DepthNearerEqual | State::DepthEqual);
+  set_capability(GL_DEPTH_TEST, is_tested || has(state, State::WriteDepth));
+  glDepthFunc(!is_tested ? GL_ALWAYS : has(state, State::DepthEqual) ? GL_EQUAL : GL_GEQUAL);
+  set_capability(GL_CULL_FACE, has(state, State::CullBack | State::CullFront));
+  glCullFace(has(state, State::CullFront) ? GL_FRONT : GL_BACK);
+  glFrontFace(has(state, State::FrontClockwise) ? GL_CW : GL_CCW);
+  set_capability(GL_DEPTH_CLAMP, has(state, State::DepthClamp));
+  // By draw buffer, so that a host's state of the other draw buffers is left alone.
+  const auto mask = GLboolean(has(state, State::WriteColor));
+  const bool is_multiplied = has(state, State::BlendMultiply);
+  for (GLuint i = 0; i < color_count_; i++) {
+    glColorMaski(i, mask, mask, mask, mask);
+    if (is_multiplied || has(state, State::BlendAdd)) {
+      glEnablei(GL_BLEND, i);
+    }
+    else {
+      glDisablei(GL_BLEND, i);
+    }
+    glBlendFunci(i, is_multiplied ? GL_DST_COLOR : GL_ONE, is_multiplied ? GL_ZERO : GL_ONE);
+    glBlendEquationi(i, GL_FUNC_ADD);
+  }
+}
+
+void GlDevice::bind_range(const Command &command)
+{
+  const GlBuffer &buffer = buffers_.at(command.id);
+  const std::size_t size = command.count > 0 ? command.count : buffer.size_bytes - command.first;
+  const GLenum target = command.kind == CommandKind::BindUniform ? GL_UNIFORM_BUFFER : GL_SHADER_STORAGE_BUFFER;
+  glBindBufferRange(target, command.slot, buffer.name, GLintptr(command.first), GLsizeiptr(size));
+}
+
+void GlDevice::bind_texture(const Command &command)
+{
+  if (command.slot >= bound_textures_.size()) {
+    bound_textures_.resize(std::size_t(command.slot) + 1, GL_NONE);
+  }
+  if (command.id == 0) {
+    bound_textures_[command.slot] = GL_NONE;
+    return;
+  }
+  bound_textures_[command.slot] = GL_TEXTURE;
+  glBindTextureUnit(command.slot, textures_.at(command.id));
+  glBindSampler(command.slot, command.first == 0 ? 0 : samplers_.at(command.first));
+}
+
+void GlDevice::complete_textures()
+{
+  for (const DeclaredSampler &sampler : program_ ? program_->samplers : std::vector<DeclaredSampler>()) {
+    if (sampler.unit >= bound_textures_.size()) {
+      bound_textures_.resize(std::size_t(sampler.unit) + 1, GL_NONE);
+    }
+    GLenum &bound = bound_textures_[sampler.unit];
+    if (bound != GL_TEXTURE && bound != sampler.target) {
+      const Dummy &one = dummy(sampler);
+      glBindTextureUnit(sampler.unit, one.texture);
+      glBindSampler(sampler.unit, one.sampler);
+      bound = sampler.target;
+    }
+  }
+}
+
+}  // namespace gnomon::gpu

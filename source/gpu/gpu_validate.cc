@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: MIT
+#include "gpu_validate.hh"
+
+#include "gpu_device.hh"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+namespace gnomon::gpu {
+
+namespace {
+
+std::string_view name_of(CommandKind kind)
+{
+  switch (kind) {
+    case CommandKind::BeginPass: return "begin_pass";
+    case CommandKind::EndPass: return "end_pass";
+    case CommandKind::SetShader: return "set_shader";
+    case CommandKind::SetState: return "set_state";
+    case CommandKind::BindUniform: return "bind_uniform";
+    case CommandKind::BindStorage: return "bind_storage";
+    case CommandKind::BindTexture: return "bind_texture";
+    case CommandKind::PushConstants: return "push_constants";
+    case CommandKind::Draw: return "draw";
+    case CommandKind::DrawProcedural: return "draw_procedural";
+    case CommandKind::Update: return "update";
+  }
+  return "?";
+}
+
+class Validator {
+ public:
+  Validator(const CommandList &list, const Device &device) : list_(list), device_(device) {}
+
+  void run()
+  {
+    for (const Command &command : list_.commands()) {
+      check(command);
+      command_index_++;
+    }
+    if (pass_) {
+      throw Error("command list: pass '{}' is not ended", pass_->name);
+    }
+  }
+
+ private:
+  /** A bound buffer range or texture of one slot. */
+  struct Bound {
+    int slot = 0;
+    ResourceId id = 0;
+    /** Buffers: bytes that the shader can read. */
+    std::size_t size_bytes = 0;
+  };
+
+  template <typename... Args>
+  [[noreturn]] void fail(fmt::format_string<Args...> format, Args &&...args) const
+  {
+    const std::string reason = fmt::format(format, std::forward<Args>(args)...);
+    throw Error("command list: {}, command {} ({}): {}",
+                pass_ ? fmt::format("pass '{}'", pass_->name) : std::string("outside of a pass"), command_index_,
+                name_of(list_.commands()[command_index_].kind), reason);
+  }
+
+  /** \a id's description; fails where it is 0 or stale. */
+  const ResourceInfo &live(ResourceKind kind, ResourceId id) const
+  {
+    const ResourceInfo *info = id == 0 ? nullptr : device_.find(kind, id);
+    if (!info) {
+      fail("{} id {} (index {}, generation {}) is {}", to_string(kind), id, index_of(id), generation_of(id),
+           id == 0 ? "0, which names no resource" : "stale: the resource was destroyed");
+    }
+    return *info;
+  }
+
+  void check(const Command &command)
+  {
+    switch (command.kind) {
+      case CommandKind::BeginPass: begin_pass(command); break;
+      case CommandKind::EndPass:
+        if (!pass_) {
+          fail("there is no pass to end");
+        }
+        pass_ = nullptr;
+        break;
+      case CommandKind::SetShader: shader_ = &live(ResourceKind::Shader, command.id); break;
+      case CommandKind::SetState: has_state_ = true; break;
+      case CommandKind::BindUniform: bind_buffer(command, BufferKind::Uniform, uniforms_); break;
+      case CommandKind::BindStorage: bind_buffer(command, BufferKind::Storage, storages_); break;
+      case CommandKind::BindTexture: bind_texture(command); break;
+      case CommandKind::PushConstants: push_constants_ = {int(command.slot), 0, command.count}; break;
+      case CommandKind::Draw:
+        check_draw_state();
+        draw(command);
+        break;
+      case CommandKind::DrawProcedural: check_draw_state(); break;
+      case CommandKind::Update: update(command); break;
+    }
+  }
+
+  void begin_pass(const Command &command)
+  {
+    const CommandList::PassInfo &pass = list_.passes()[command.first];
+    if (pass_) {
+      fail("pass '{}' begins inside it", pass.name);
+    }
+    pass_ = &pass;
+    has_state_ = false;
+    const ResourceInfo &info = live(ResourceKind::Framebuffer, command.id);
+    framebuffer_ = &std::get<FramebufferInfo>(info.desc);
+    for (const AttachedTexture &attached : framebuffer_->attachments) {
+      if (!device_.find(ResourceKind::Texture, attached.texture)) {
+        fail("framebuffer '{}': texture '{}' that is attached to it was destroyed", info.name, attached.name);
+      }
+    }
+    const glm::ivec2 viewport = pass.actions.viewport_px;
+    const glm::ivec2 size = framebuffer_->size_px;
+    const bool is_whole = viewport == glm::ivec2(0);
+    if (!is_whole && (viewport.x < 1 || viewport.y < 1 || viewport.x > size.x || viewport.y > size.y)) {
+      fail("framebuffer '{}': a viewport of {}x{} px does not fit into {}x{} px", info.name, viewport.x, viewport.y,
+           size.x, size.y);
+    }
+  }
+
+  static void set_bound(std::vector<Bound> &bounds, const Bound &bound)
+  {
+    const auto same = std::ranges::find(bounds, bound.slot, &Bound::slot);
+    if (same == bounds.end()) {
+      bounds.push_back(bound);
+    }
+    else {
+      *same = bound;
+    }
+  }
+
+  void check_slot(std::uint32_t slot) const
+  {
+    if (int(slot) < 0) {
+      fail("slot {} is negative", int(slot));
+    }
+  }
+
+  void bind_buffer(const Command &command, BufferKind kind, std::vector<Bound> &bounds)
+  {
+    check_slot(command.slot);
+    const ResourceInfo &info = live(ResourceKind::Buffer, command.id);
+    const auto &desc = std::get<BufferDesc>(info.desc);
+    if (kind == BufferKind::Storage && desc.kind == BufferKind::Uniform) {
+      fail("buffer '{}' is a uniform buffer", info.name);
+    }
+    const std::uint32_t alignment = device_.limits().uniform_offset_alignment;
+    if (command.first % alignment != 0) {
+      fail("buffer '{}': offset {} is no multiple of {}", info.name, command.first, alignment);
+    }
+    const std::size_t end = std::size_t(command.first) + command.count;
+    if (end > desc.size_bytes || command.first >= desc.size_bytes) {
+      fail("buffer '{}': bytes [{}, {}) exceed its {} bytes", info.name, command.first, end, desc.size_bytes);
+    }
+    const std::size_t size = command.count > 0 ? command.count : desc.size_bytes - command.first;
+    const std::size_t max = device_.limits().uniform_block_bytes_max;
+    if (kind == BufferKind::Uniform && size > max) {
+      fail("buffer '{}': a range of {} bytes, and a uniform block of this device has at most {}", info.name, size, max);
+    }
+    set_bound(bounds, {int(command.slot), command.id, size});
+  }
+
+  void bind_texture(const Command &command)
+  {
+    check_slot(command.slot);
+    if (command.id != 0 || command.first != 0) {
+      const ResourceInfo &texture = live(ResourceKind::Texture, command.id);
+      const ResourceInfo &sampler = live(ResourceKind::Sampler, command.first);
+      const bool is_comparison = std::get<SamplerDesc>(sampler.desc).is_depth_comparison;
+      const Format format = std::get<TextureDesc>(texture.desc).format;
+      if (is_comparison && !is_depth(format)) {
+        fail("sampler '{}' compares depths, and texture '{}' of format {} has none", sampler.name, texture.name,
+             to_string(format));
+      }
+    }
+    set_bound(textures_, {int(command.slot), command.id, 0});
+  }
+
+  void check_draw_state() const
+  {
+    if (!pass_) {
+      fail("a draw must be inside a pass");
+    }
+    if (!shader_) {
+      fail("no shader is set");
+    }
+    if (!has_state_) {
+      fail("shader '{}': no state is set in this pass", shader_->name);
+    }
+    const auto &interface = std::get<ShaderInterface>(shader_->desc);
+    for (const ShaderInterface::Binding &binding : interface.bindings) {
+      const bool is_texture = binding.kind == BindingKind::Texture;
+      const std::vector<Bound> &bounds = is_texture                                  ? textures_
+                                         : binding.kind == BindingKind::UniformBlock ? uniforms_
+                                                                                     : storages_;
+      const auto bound = std::ranges::find(bounds, binding.slot, &Bound::slot);
+      if (bound == bounds.end()) {
+        fail("shader '{}': {} '{}' at slot {} is not bound", shader_->name, to_string(binding.kind), binding.name,
+             binding.slot);
+      }
+      if (is_texture) {
+        check_sampled(binding, *bound);
+      }
+      else {
+        check_block(binding, *bound);
+      }
+    }
+    if (interface.push_constant_size_bytes > 0) {
+      check_push_constants(interface);
+    }
+  }
+
+  void check_block(const ShaderInterface::Binding &binding, const Bound &bound) const
+  {
+    const ResourceKind kind = ResourceKind::Buffer;
+    const ResourceInfo &buffer = live(kind, bound.id);
+    if (binding.kind == BindingKind::UniformBlock && bound.size_bytes < binding.size_bytes) {
+      fail("shader '{}': uniform '{}' has {} bytes, and {} of buffer '{}' are bound", shader_->name, binding.name,
+           binding.size_bytes, bound.size_bytes, buffer.name);
+    }
+  }
+
+  void check_sampled(const ShaderInterface::Binding &binding, const Bound &bound) const
+  {
+    if (bound.id == 0) {
+      return;
+    }
+    for (const AttachedTexture &attached : framebuffer_->attachments) {
+      if (attached.texture == bound.id) {
+        fail("shader '{}': feedback loop: texture '{}' at slot {} ('{}') is attached to the framebuffer", shader_->name,
+             attached.name, binding.slot, binding.name);
+      }
+    }
+  }
+
+  void check_push_constants(const ShaderInterface &interface) const
+  {
+    if (!push_constants_ || push_constants_->slot != interface.push_constant_slot) {
+      fail("shader '{}': its push constants at slot {} are not set", shader_->name, interface.push_constant_slot);
+    }
+    const ShaderInterface::Member &last = interface.push_constant_members.back();
+    const std::size_t needed = last.offset_bytes + last.size_bytes;
+    if (push_constants_->size_bytes < needed || push_constants_->size_bytes > interface.push_constant_size_bytes) {
+      fail("shader '{}': {} bytes of push constants are set, and its block has {}", shader_->name,
+           push_constants_->size_bytes, interface.push_constant_size_bytes);
+    }
+  }
+
+  void draw(const Command &command) const
+  {
+    const std::size_t end = std::size_t(command.first) + command.count;
+    if (end > list_.draws.size()) {
+      fail("draws [{}, {}) exceed the list's {} draws", command.first, end, list_.draws.size());
+    }
+    for (std::size_t i = command.first; i < end; i++) {
+      const DrawIndirect &draw = list_.draws[i];
+      const std::size_t instance_end = std::size_t(draw.first_instance) + draw.instance_count;
+      if (instance_end > list_.instances.size()) {
+        fail("draw {}: instances [{}, {}) exceed the list's {} instances", i, draw.first_instance, instance_end,
+             list_.instances.size());
+      }
+      if (draw.index_count > 0 && draw.instance_count > 0 &&
+          !device_.has_batch_data(draw.first_index, draw.index_count, draw.base_vertex)) {
+        fail("draw {}: indices [{}, {}) from vertex {} on belong to no live batch", i, draw.first_index,
+             std::size_t(draw.first_index) + draw.index_count, draw.base_vertex);
+      }
+    }
+  }
+
+  void update(const Command &command) const
+  {
+    const ResourceInfo &info = live(ResourceKind::Buffer, command.id);
+    if (pass_) {
+      fail("buffer '{}' cannot be written inside a pass", info.name);
+    }
+    const std::size_t size = std::get<BufferDesc>(info.desc).size_bytes;
+    const std::size_t end = std::size_t(command.slot) + command.count;
+    if (end > size) {
+      fail("buffer '{}': bytes [{}, {}) exceed its {} bytes", info.name, command.slot, end, size);
+    }
+  }
+
+  const CommandList &list_;
+  const Device &device_;
+  std::size_t command_index_ = 0;
+  /** nullptr: outside of a pass. */
+  const CommandList::PassInfo *pass_ = nullptr;
+  const FramebufferInfo *framebuffer_ = nullptr;
+  const ResourceInfo *shader_ = nullptr;
+  /** In the current pass. */
+  bool has_state_ = false;
+  std::vector<Bound> uniforms_;
+  std::vector<Bound> storages_;
+  std::vector<Bound> textures_;
+  std::optional<Bound> push_constants_;
+};
+
+}  // namespace
+
+void validate(const CommandList &list, const Device &device)
+{
+  Validator(list, device).run();
+}
+
+}  // namespace gnomon::gpu

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: MIT
+#include "gpu/gpu_gl_hook.hh"
+#include "gpu/gpu_testing.hh"
+#include "gpu_device_fixture.hh"
+
+#include "gl/gl_device.hh"
+
+#include <deque>
+
+namespace gnomon::gpu {
+namespace {
+
+using test::error_of;
+using test::expect_contains;
+using test::Hook;
+using test::make_shader;
+
+/** A device whose driver is made to fail. Without debug messages, as in release builds. */
+class FailureGpu : public test::GpuDeviceTest {
+ protected:
+  void SetUp() override
+  {
+    test::GpuDeviceTest::SetUp();
+    if (!device) {
+      return;
+    }
+    device.reset();
+    device = create_gl_device({.is_debug = false, .sink = [](std::string_view /*text*/) {}});
+    errors.clear();
+    large_size = 0;
+    picture = device->create_texture({.name = "p", .format = Format::RGBA32F, .width = 4, .height = 4});
+    framebuffer = device->create_framebuffer({"p", {{&picture}}, {}});
+    shader = make_shader(*device, "color", test::CLIP_SPACE_VERT, test::COLOR_FRAG);
+  }
+
+  CommandList drawing(const Batch &batch, float value) const
+  {
+    CommandList list;
+    list.begin_pass("p", framebuffer, {});
+    list.set_shader(shader.id());
+    list.set_state(State::WriteColor);
+    test::push_constants(list, shader, glm::vec4(value));
+    test::append_draw(list, batch);
+    list.end_pass();
+    return list;
+  }
+
+  void expect_drawn(const Batch &batch, float value)
+  {
+    device->submit(drawing(batch, value));
+    EXPECT_EQ(gpu::read_as<glm::vec4>(*device, picture), std::vector<glm::vec4>(16, glm::vec4(value)));
+  }
+
+  /** What the driver reports next, before its own errors. */
+  static inline std::deque<GLenum> errors;
+  static inline std::size_t large_size = 0;
+
+  static GLenum GLAPIENTRY next_error()
+  {
+    if (errors.empty()) {
+      return GL_NO_ERROR;
+    }
+    const GLenum error = errors.front();
+    errors.pop_front();
+    return error;
+  }
+
+  Texture picture;
+  Framebuffer framebuffer;
+  Shader shader;
+};
+
+TEST_F(FailureGpu, AllPendingErrorsAreRead)
+{
+  const Hook hook(epoxy_glGetError, &FailureGpu::next_error);
+  errors = {GL_INVALID_OPERATION, GL_OUT_OF_MEMORY};
+  expect_contains(error_of([&] { static_cast<void>(device->create_texture({.name = "big"})); }),
+                  "texture 'big': the driver is out of memory");
+  EXPECT_TRUE(errors.empty()) << "the next call would report it";
+  errors = {GL_INVALID_OPERATION, GL_INVALID_VALUE};
+  expect_contains(error_of([&] { static_cast<void>(device->create_texture({.name = "odd"})); }),
+                  "texture 'odd': the driver reports: GL_INVALID_OPERATION; GL_INVALID_VALUE");
+  EXPECT_EQ(device->live_resources().size(), 3U);
+}
+
+TEST_F(FailureGpu, ALostContextIsReportedByEveryCall)
+{
+  const Batch full = test::full_triangle(*device, 0);
+  expect_drawn(full, 1);
+  {
+    const Hook hook(
+        epoxy_glGetGraphicsResetStatus, +[]() -> GLenum { return GL_GUILTY_CONTEXT_RESET; });
+    EXPECT_THROW(device->submit(drawing(full, 1)), DeviceLost);
+  }
+  // A driver may report the reset once.
+  EXPECT_THROW(device->submit(drawing(full, 1)), DeviceLost);
+  EXPECT_THROW(static_cast<void>(device->read(picture)), DeviceLost);
+  EXPECT_THROW(static_cast<void>(device->create_texture({.name = "t"})), DeviceLost);
+  EXPECT_THROW(device->finish(), DeviceLost);
+  expect_contains(error_of([&] { device->submit(drawing(full, 1)); }), "submit: the OpenGL context is lost");
+}
+
+TEST_F(FailureGpu, APoolThatCannotGrowLeavesAllBatches)
+{
+  const Batch first = test::full_triangle(*device, 0);
+  expect_drawn(first, 1);
+  const std::vector<std::string> live = device->live_resources();
+  const std::uint64_t uploaded = device->counters().upload_bytes;
+  std::vector<glm::vec3> positions(40000, glm::vec3(0));
+  std::vector<std::uint32_t> indices(60000, 0);
+  std::vector<glm::vec2> uvs(positions.size());
+  {
+    static auto original = epoxy_glNamedBufferData;
+    large_size = 100000;
+    const Hook memory(
+        epoxy_glNamedBufferData, +[](GLuint buffer, GLsizeiptr size, const void *data, GLenum usage) {
+          if (std::size_t(size) > large_size) {
+            errors.push_back(GL_OUT_OF_MEMORY);
+          }
+          else {
+            original(buffer, size, data, usage);
+          }
+        });
+    const Hook hook(epoxy_glGetError, &FailureGpu::next_error);
+    for (int i = 0; i < 3; i++) {
+      expect_contains(error_of([&] {
+                        static_cast<void>(device->create_batch({"terrain", positions, {}, indices, uvs}));
+                      }),
+                      "batch 'terrain'");
+      EXPECT_TRUE(errors.empty());
+    }
+    EXPECT_EQ(device->live_resources(), live);
+    EXPECT_EQ(device->counters().upload_bytes, uploaded);
+    // All that was there is drawn, and what fits into the pool is still taken.
+    expect_drawn(first, 2);
+    const Batch small = test::full_triangle(*device, 0.5F, "small");
+    expect_drawn(small, 3);
+    expect_drawn(first, 4);
+  }
+  const Batch terrain = device->create_batch({"terrain", positions, {}, indices, uvs});
+  const Batch after = test::full_triangle(*device, 0.5F, "after");
+  expect_drawn(first, 5);
+  expect_drawn(after, 6);
+}
+
+TEST_F(FailureGpu, AFailedSubmitLeavesAUsableDevice)
+{
+  const Batch full = test::full_triangle(*device, 0);
+  CommandList list = drawing(full, 1);
+  device->submit(list);
+  const Counters before = device->counters();
+  {
+    const Hook hook(
+        epoxy_glMultiDrawElementsIndirect,
+        +[](GLenum, GLenum, const void *, GLsizei, GLsizei) { throw Error("thrown by a draw"); });
+    EXPECT_EQ(error_of([&] { device->submit(list); }), "thrown by a draw");
+  }
+  EXPECT_EQ(device->counters().passes, before.passes);
+  EXPECT_EQ(device->counters().draws, before.draws);
+  EXPECT_EQ(device->counters().upload_bytes, before.upload_bytes);
+  expect_drawn(full, 7);
+}
+
+TEST_F(FailureGpu, AStaleIdIsAnErrorInEveryBuild)
+{
+  const Batch full = test::full_triangle(*device, 0);
+  const CommandList list = drawing(full, 1);
+  shader = make_shader(*device, "other", test::CLIP_SPACE_VERT, test::COLOR_FRAG);
+  const std::string message = error_of([&] { device->submit(list); });
+  expect_contains(message, "shader id");
+  expect_contains(message, "stale");
+  expect_drawn(full, 2);
+}
+
+TEST_F(FailureGpu, ATimerWithoutBitsGivesNothing)
+{
+  const TimerQuery timer = device->create_timer_query("t");
+  device->time_begin(timer);
+  device->time_end(timer);
+  EXPECT_TRUE(device->elapsed_seconds(timer));
+  device.reset();
+  static auto original = epoxy_glGetQueryiv;
+  const Hook hook(
+      epoxy_glGetQueryiv, +[](GLenum target, GLenum name, GLint *value) {
+        name == GL_QUERY_COUNTER_BITS ? static_cast<void>(*value = 0) : original(target, name, value);
+      });
+  device = create_gl_device();
+  const TimerQuery without = device->create_timer_query("t");
+  device->time_begin(without);
+  device->time_end(without);
+  EXPECT_FALSE(device->elapsed_seconds(without));
+}
+
+TEST(TimerTicks, WrapAtTheBitsOfTheCounter)
+{
+  EXPECT_EQ(elapsed_ticks(5, 12, 64), 7U);
+  EXPECT_EQ(elapsed_ticks(~std::uint64_t(0) - 1, 3, 64), 5U);
+  EXPECT_EQ(elapsed_ticks((std::uint64_t(1) << 36U) - 4, 6, 36), 10U);
+  EXPECT_EQ(elapsed_ticks(0xFFFFFFFFU, 0, 32), 1U);
+  EXPECT_EQ(elapsed_ticks(3, 3, 30), 0U);
+}
+
+TEST_F(FailureGpu, DeclaredSamplersThatAreNotBoundReadZeros)
+{
+  const Shader reader = make_shader(*device, "reader", test::CLIP_SPACE_VERT, R"(
+layout(binding = 16) uniform sampler2D flat_texture;
+layout(binding = 17) uniform sampler2DArray layers;
+layout(binding = 18) uniform sampler2DShadow flat_depth;
+layout(binding = 19) uniform sampler2DArrayShadow depth_layers;
+layout(location = 0) out vec4 result;
+void main()
+{
+  result = vec4(texture(flat_texture, vec2(0.5)).r, texture(layers, vec3(0.5)).r, texture(flat_depth, vec3(0.5)),
+                texture(depth_layers, vec4(0.5)));
+})");
+  const Batch full = test::full_triangle(*device, 0);
+  const auto record = [&](bool is_second) {
+    CommandList list;
+    list.begin_pass("p", framebuffer, {});
+    list.set_shader(reader.id());
+    list.set_state(State::WriteColor);
+    for (int slot = 16; slot < 20; slot++) {
+      list.bind_texture(slot, 0, 0);
+    }
+    test::append_draw(list, full);
+    if (is_second) {
+      test::append_draw(list, full);
+    }
+    list.end_pass();
+    return list;
+  };
+  for (const bool is_second : {false, true}) {
+    device->submit(record(is_second));
+    // A reference of 0.5 is nearer than the far plane: not in shadow.
+    EXPECT_EQ(gpu::read_as<glm::vec4>(*device, picture), std::vector<glm::vec4>(16, glm::vec4(0, 0, 1, 1)));
+  }
+}
+
+}  // namespace
+}  // namespace gnomon::gpu

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <epoxy/egl.h>
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <poll.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+namespace gnomon::test {
+
+/** An OpenGL context of a host: current on this thread until it is destroyed. */
+class HostContext {
+ public:
+  HostContext() = default;
+  HostContext(const HostContext &) = delete;
+  HostContext &operator=(const HostContext &) = delete;
+  virtual ~HostContext() = default;
+  [[nodiscard]] virtual bool is_current() const = 0;
+};
+
+class EglHostContext final : public HostContext {
+ public:
+  EglHostContext()
+  {
+    const auto get_display =
+        reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
+    display_ = get_display ? get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr) : EGL_NO_DISPLAY;
+    if (display_ == EGL_NO_DISPLAY || !eglInitialize(display_, nullptr, nullptr) || !eglBindAPI(EGL_OPENGL_API)) {
+      return;
+    }
+    const std::array<EGLint, 7> wanted = {
+        EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+    context_ = eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted.data());
+    if (context_ != EGL_NO_CONTEXT) {
+      eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);
+    }
+  }
+  ~EglHostContext() override
+  {
+    if (context_ != EGL_NO_CONTEXT) {
+      eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+      eglDestroyContext(display_, context_);
+    }
+  }
+  [[nodiscard]] bool is_current() const override
+  {
+    return context_ != EGL_NO_CONTEXT && eglGetCurrentContext() == context_;
+  }
+
+ private:
+  EGLDisplay display_ = EGL_NO_DISPLAY;
+  EGLContext context_ = EGL_NO_CONTEXT;
+};
+
+/** An X server without a screen, for windows of tests. */
+class Xvfb {
+ public:
+  Xvfb()
+  {
+    std::array<int, 2> ends{};
+    if (pipe(ends.data()) != 0) {
+      return;
+    }
+    process_ = fork();
+    if (process_ == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGTERM);
+      close(ends[0]);
+      const std::string end = std::to_string(ends[1]);
+      if (!freopen("/dev/null", "w", stderr)) {
+        _exit(126);
+      }
+      execlp("Xvfb", "Xvfb", "-displayfd", end.c_str(), "-screen", "0", "640x480x24", "-nolisten", "tcp", nullptr);
+      _exit(127);
+    }
+    close(ends[1]);
+    // The server writes its number once it takes connections.
+    constexpr int timeout_ms = 30000;
+    pollfd readable{.fd = ends[0], .events = POLLIN, .revents = 0};
+    char digit = 0;
+    while (poll(&readable, 1, timeout_ms) == 1 && read(ends[0], &digit, 1) == 1 && digit != '\n') {
+      number_ += digit;
+    }
+    close(ends[0]);
+  }
+  Xvfb(const Xvfb &) = delete;
+  Xvfb &operator=(const Xvfb &) = delete;
+  ~Xvfb()
+  {
+    if (process_ > 0) {
+      kill(process_, SIGTERM);
+      waitpid(process_, nullptr, 0);
+    }
+  }
+  /** ":7"; empty: the server did not start. */
+  [[nodiscard]] std::string display() const
+  {
+    return number_.empty() ? "" : ":" + number_;
+  }
+
+ private:
+  pid_t process_ = -1;
+  std::string number_;
+};
+
+/** A window of GLFW with a context of GLX, on a server of its own. */
+class GlxHostContext final : public HostContext {
+ public:
+  GlxHostContext()
+  {
+    if (server_.display().empty()) {
+      reason_ = "Xvfb does not start";
+      return;
+    }
+    setenv("DISPLAY", server_.display().c_str(), 1);
+    if (!glfwInit()) {
+      reason_ = "glfwInit fails";
+      return;
+    }
+    glfwDefaultWindowHints();
+    glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_NATIVE_CONTEXT_API);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    window_ = glfwCreateWindow(64, 48, "host", nullptr, nullptr);
+    if (!window_) {
+      reason_ = "GLX gives no OpenGL 4.5 core context";
+      return;
+    }
+    glfwMakeContextCurrent(window_);
+  }
+  ~GlxHostContext() override
+  {
+    glfwTerminate();
+    unsetenv("DISPLAY");
+  }
+  [[nodiscard]] bool is_current() const override
+  {
+    return window_ && glfwGetCurrentContext() == window_;
+  }
+  /** Why there is no context; empty where there is one. */
+  [[nodiscard]] const std::string &reason() const
+  {
+    return reason_;
+  }
+  [[nodiscard]] GLFWwindow *window() const
+  {
+    return window_;
+  }
+
+ private:
+  Xvfb server_;
+  GLFWwindow *window_ = nullptr;
+  std::string reason_;
+};
+
+}  // namespace gnomon::test

@@ -1,0 +1,472 @@
+// SPDX-License-Identifier: MIT
+#include "gpu/gpu_gl_hook.hh"
+#include "gpu/gpu_gl_state_table.hh"
+#include "gpu/gpu_host_contexts.hh"
+#include "gpu/gpu_testing.hh"
+
+#include "gl/gl_state.hh"
+#include "gpu_device.hh"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+namespace gnomon::gpu {
+namespace {
+
+using test::error_of;
+using test::expect_contains;
+using test::Hook;
+using test::HostObjects;
+using test::make_shader;
+using test::StateItem;
+using test::StateSnapshot;
+
+/** A picture that uses every kind of resource and binding, two draw buffers and a mip chain. */
+struct HostedScene {
+  explicit HostedScene(Device &owner) : device(owner)
+  {
+    const std::vector<float> ones(16, 1.0F);
+    const std::vector<float> two = {2.0F};
+    device.upload(source, 0, std::as_bytes(std::span(ones)));
+    device.generate_mipmaps(source);
+    device.upload(layers, 1, std::as_bytes(std::span(two)));
+    device.update(block, glm::vec4(10));
+    device.update(store, glm::vec4(100));
+  }
+
+  CommandList list() const
+  {
+    CommandList commands;
+    const glm::vec4 value(1000);
+    commands.update(later, 0, std::as_bytes(std::span(&value, 1)));
+    commands.begin_pass("scene", framebuffer,
+                        {.color_store = StoreAction::Store, .depth_store = StoreAction::DontCare});
+    commands.set_shader(shader.id());
+    commands.set_state(State::WriteColor | State::WriteDepth | State::DepthNearerEqual | State::CullBack |
+                       State::BlendAdd | State::DepthClamp);
+    commands.bind_uniform(9, {block.id()});
+    commands.bind_uniform(10, {later.id()});
+    commands.bind_storage(0, {store.id()});
+    commands.bind_texture(16, source.id(), sampler.id());
+    commands.bind_texture(17, layers.id(), sampler.id());
+    commands.bind_texture(24, 0, 0);
+    test::push_constants(commands, shader, glm::vec4(10000));
+    test::append_draw(commands, full);
+    commands.set_state(State::WriteColor | State::BlendAdd);
+    test::push_constants(commands, shader, glm::vec4(20000));
+    commands.draw_procedural(0, 1);
+    commands.end_pass();
+    return commands;
+  }
+
+  /** Fails where the picture is not what the list draws. */
+  void expect_picture()
+  {
+    EXPECT_EQ(gpu::read_as<glm::vec4>(device, picture), std::vector<glm::vec4>(16, glm::vec4(11113.0F)));
+    EXPECT_EQ(gpu::read_as<glm::vec4>(device, second), std::vector<glm::vec4>(16, glm::vec4(5)));
+  }
+
+  Device &device;
+  Texture picture = device.create_texture({.name = "p", .format = Format::RGBA32F, .width = 4, .height = 4});
+  Texture second = device.create_texture({.name = "q", .format = Format::RGBA32F, .width = 4, .height = 4});
+  Texture depth = device.create_texture({.name = "d", .format = Format::Depth32F, .width = 4, .height = 4});
+  Texture source =
+      device.create_texture({.name = "s", .format = Format::R32F, .width = 4, .height = 4, .mip_levels = 3});
+  Texture layers =
+      device.create_texture({.name = "l", .kind = TextureKind::Array, .format = Format::R32F, .layers = 2});
+  Sampler sampler = device.create_sampler({.name = "nearest"});
+  Buffer block = device.create_buffer({.name = "block", .size_bytes = 16});
+  Buffer later = device.create_buffer({.name = "later", .size_bytes = 16});
+  Buffer store = device.create_buffer({"store", BufferKind::Storage, 16});
+  Framebuffer framebuffer = device.create_framebuffer({"p", {{&picture}, {&second}}, {&depth}});
+  Batch full = test::full_triangle(device, 0.25F);
+  Shader shader = make_shader(device, "all", test::CLIP_SPACE_VERT, R"(
+PUSH_CONSTANT_LAYOUT uniform push_constant_block
+{
+  vec4 color;
+};
+layout(std140, binding = 9) uniform a_block
+{
+  vec4 a;
+};
+layout(std140, binding = 10) uniform c_block
+{
+  vec4 c;
+};
+layout(std140, binding = 0) readonly buffer b_block
+{
+  vec4 b;
+};
+layout(binding = 16) uniform sampler2D source;
+layout(binding = 17) uniform sampler2DArray layers;
+layout(binding = 24) uniform sampler2D not_bound;
+layout(location = 0) out vec4 result;
+layout(location = 1) out vec4 other;
+void main()
+{
+  // What is not bound is 0 in colour, not the host's texture.
+  result = color + a + b + c + texture(source, vec2(0.5)).r + texture(layers, vec3(0.5, 0.5, 1)).r +
+           vec4(texture(not_bound, vec2(0.5)).rgb, 0);
+  other = vec4(5);
+})");
+};
+
+enum class HostKind { Egl, Glx };
+
+class HostState : public testing::TestWithParam<HostKind> {
+ protected:
+  void SetUp() override
+  {
+    std::string reason = "EGL gives no surfaceless context";
+    if (GetParam() == HostKind::Egl) {
+      host = std::make_unique<test::EglHostContext>();
+    }
+    else {
+      auto glx = std::make_unique<test::GlxHostContext>();
+      reason = glx->reason();
+      host = std::move(glx);
+    }
+    if (!host->is_current()) {
+      const char *ci = std::getenv("CI");
+      if (GetParam() == HostKind::Egl && ci && *ci) {
+        FAIL() << "CI is set and " << reason;
+      }
+      GTEST_SKIP() << reason;
+    }
+    table = test::state_table();
+  }
+
+  /** Calls \a action, which must leave all state as it was. */
+  template <typename Action>
+  void expect_unchanged(const char *name, Action &&action)
+  {
+    const StateSnapshot before(table);
+    action();
+    EXPECT_EQ(before.differences(), std::vector<std::string>()) << name;
+    EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR)) << name;
+  }
+
+  std::unique_ptr<test::HostContext> host;
+  std::vector<StateItem> table;
+};
+
+INSTANTIATE_TEST_SUITE_P(, HostState, testing::Values(HostKind::Egl, HostKind::Glx),
+                         [](const auto &parameter) { return parameter.param == HostKind::Egl ? "Egl" : "Glx"; });
+
+TEST_P(HostState, TheTableHasAllStateAndUnusualValues)
+{
+  std::set<std::string> names;
+  std::set<std::string> distinct;
+  for (const StateItem &item : table) {
+    names.insert(item.name);
+    distinct.insert(item.name.substr(0, item.name.find_first_of(", ")));
+  }
+  EXPECT_EQ(names.size(), table.size());
+  EXPECT_GE(distinct.size(), 150U);
+  ASSERT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+  const StateSnapshot initial(table);
+  ASSERT_EQ(glGetError(), GLenum(GL_NO_ERROR)) << "a row that cannot be queried";
+  const HostObjects objects;
+  test::set_unusual_state(objects);
+  ASSERT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+  const std::size_t unusual = initial.differences().size();
+  fmt::print("{} rows, {} of distinct names, {} at unusual values\n", table.size(), distinct.size(), unusual);
+  // Not: queries, the debug group, and draw buffers whose blending or scissor test stays off.
+  EXPECT_GE(unusual, table.size() - 40);
+}
+
+TEST_P(HostState, IsUnchangedByEveryCall)
+{
+  const HostObjects objects;
+  test::set_unusual_state(objects);
+  std::unique_ptr<Device> device;
+  expect_unchanged("device", [&] { device = create_gl_device({.context = ContextKind::Host}); });
+  std::unique_ptr<HostedScene> scene;
+  expect_unchanged("creation and upload", [&] { scene = std::make_unique<HostedScene>(*device); });
+  const CommandList list = scene->list();
+  expect_unchanged("submit", [&] { device->submit(list); });
+  expect_unchanged("read", [&] { scene->expect_picture(); });
+  expect_unchanged("upload", [&] { device->upload(scene->source, 0, std::vector<std::byte>(64)); });
+  expect_unchanged("mipmaps", [&] { device->generate_mipmaps(scene->source); });
+  expect_unchanged("update", [&] { device->update(scene->block, glm::vec4(3)); });
+  expect_unchanged("finish", [&] { device->finish(); });
+  expect_unchanged("timer", [&] {
+    const TimerQuery timer = device->create_timer_query("t");
+    device->time_begin(timer);
+    device->submit(list);
+    device->time_end(timer);
+    const std::optional<double> seconds = device->elapsed_seconds(timer);
+    ASSERT_TRUE(seconds);
+    EXPECT_GT(*seconds, 0);
+    EXPECT_LT(*seconds, 10) << "written elsewhere";
+  });
+  expect_unchanged("growth of the pool", [&] {
+    const std::vector<glm::vec3> positions(5000);
+    const std::vector<std::uint32_t> indices(5001);
+    static_cast<void>(device->create_batch({"large", positions, {}, indices}));
+  });
+  expect_unchanged("refused framebuffer", [&] {
+    expect_contains(error_of([&] {
+                      static_cast<void>(
+                          device->create_framebuffer({"mixed", {{&scene->layers, all_layers}, {&scene->picture}}, {}}));
+                    }),
+                    "mixed");
+  });
+  expect_unchanged("destruction", [&] { scene.reset(); });
+  expect_unchanged("end of the device", [&] { device.reset(); });
+}
+
+TEST_P(HostState, IsUnchangedByASubmitThatThrows)
+{
+  const HostObjects objects;
+  test::set_unusual_state(objects);
+  const auto device = create_gl_device({.context = ContextKind::Host});
+  HostedScene scene(*device);
+  device->submit(scene.list());
+  const Counters before = device->counters();
+  expect_unchanged("error of the driver", [&] {
+    CommandList list;
+    list.begin_pass("p", scene.framebuffer, {});
+    list.bind_uniform(1 << 20, {scene.block.id()});
+    list.end_pass();
+    expect_contains(error_of([&] { device->submit(list); }), "submit: the driver reports: GL_INVALID_VALUE");
+  });
+  expect_unchanged("exception within a pass", [&] {
+    const Hook hook(
+        epoxy_glMultiDrawElementsIndirect,
+        +[](GLenum, GLenum, const void *, GLsizei, GLsizei) { throw Error("thrown by a draw"); });
+    EXPECT_EQ(error_of([&] { device->submit(scene.list()); }), "thrown by a draw");
+  });
+  EXPECT_EQ(device->counters().passes, before.passes) << "a list that failed is not counted";
+  EXPECT_EQ(device->counters().upload_bytes, before.upload_bytes);
+  device->submit(scene.list());
+  scene.expect_picture();
+}
+
+TEST_P(HostState, TheTableFindsChangesOfEveryItem)
+{
+  const HostObjects objects;
+  const StateSnapshot initial(table);
+  const StateSnapshot *reference = &initial;
+  struct Change {
+    const char *item;
+    std::function<void()> make;
+  };
+  for (const Change &change :
+       {Change{"GL_CURRENT_PROGRAM", [&] { glUseProgram(objects.program); }},
+        Change{"GL_TEXTURE_BINDING_2D_ARRAY, unit 17", [&] { glBindTextureUnit(17, objects.textures[4]); }},
+        Change{"GL_UNIFORM_BUFFER 9", [&] { glBindBufferRange(GL_UNIFORM_BUFFER, 9, objects.buffer, 256, 16); }},
+        Change{"GL_BLEND_DST_RGB, draw buffer 1", [&] { glBlendFunci(1, GL_ONE, GL_ONE); }},
+        Change{"GL_UNPACK_ALIGNMENT", [&] { glPixelStorei(GL_UNPACK_ALIGNMENT, 1); }},
+        Change{"GL_VIEWPORT 0", [&] { glViewportIndexedf(0, 0, 0, 5, 5); }},
+        Change{"GL_CLIP_DEPTH_MODE", [&] { glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE); }}}) {
+    const StateSnapshot before(table);
+    change.make();
+    const std::vector<std::string> found = before.differences();
+    EXPECT_EQ(std::ranges::count_if(found, [&](const std::string &text) { return text.starts_with(change.item); }), 1)
+        << change.item << ": " << fmt::format("{}", fmt::join(found, "; "));
+    EXPECT_LE(found.size(), 2U) << fmt::format("{}", fmt::join(found, "; "));
+  }
+  EXPECT_GE(reference->differences().size(), 7U);
+}
+
+TEST_P(HostState, LeaksOfTheDeviceAreFound)
+{
+  const HostObjects objects;
+  test::set_unusual_state(objects);
+  const auto device = create_gl_device({.context = ContextKind::Host});
+  HostedScene scene(*device);
+  // Afterwards the function pointers are those of the driver.
+  device->submit(scene.list());
+  static GLuint ignored = 0;
+  const auto expect_leak = [&](const char *item, auto &&action) {
+    test::set_unusual_state(objects);
+    const StateSnapshot before(table);
+    action();
+    const std::vector<std::string> found = before.differences();
+    EXPECT_TRUE(std::ranges::any_of(found, [&](const std::string &text) { return text.starts_with(item); }))
+        << item << ": " << fmt::format("{}", fmt::join(found, "; "));
+  };
+  const auto submit = [&] { device->submit(scene.list()); };
+  // Each hook drops the calls that restore the value of the host.
+  {
+    static auto original = epoxy_glUseProgram;
+    ignored = objects.program;
+    const Hook hook(
+        epoxy_glUseProgram, +[](GLuint program) { program == ignored ? void() : original(program); });
+    expect_leak("GL_CURRENT_PROGRAM", submit);
+  }
+  {
+    static auto original = epoxy_glClipControl;
+    const Hook hook(
+        epoxy_glClipControl,
+        +[](GLenum origin, GLenum depth) { origin == GL_UPPER_LEFT ? void() : original(origin, depth); });
+    expect_leak("GL_CLIP_ORIGIN", submit);
+  }
+  {
+    static auto original = epoxy_glBindSampler;
+    ignored = objects.sampler;
+    const Hook hook(
+        epoxy_glBindSampler,
+        +[](GLuint unit, GLuint sampler) { sampler == ignored ? void() : original(unit, sampler); });
+    expect_leak("GL_SAMPLER_BINDING, unit 16", submit);
+  }
+  {
+    static auto original = epoxy_glBindBufferRange;
+    ignored = objects.buffer;
+    const Hook hook(
+        epoxy_glBindBufferRange, +[](GLenum target, GLuint slot, GLuint buffer, GLintptr offset, GLsizeiptr size) {
+          buffer == ignored ? void() : original(target, slot, buffer, offset, size);
+        });
+    const auto submit_only = [&] { device->submit(scene.list()); };
+    const StateSnapshot before(table);
+    submit_only();
+    const std::vector<std::string> found = before.differences();
+    EXPECT_TRUE(std::ranges::any_of(found, [](const auto &text) { return text.starts_with("GL_UNIFORM_BUFFER 9"); }));
+  }
+  {
+    static auto original = epoxy_glPixelStorei;
+    const Hook hook(
+        epoxy_glPixelStorei, +[](GLenum name, GLint value) { value == 17 ? void() : original(name, value); });
+    const StateSnapshot before(table);
+    device->upload(scene.source, 0, std::vector<std::byte>(64));
+    const std::vector<std::string> found = before.differences();
+    EXPECT_TRUE(std::ranges::any_of(found, [](const auto &text) { return text.starts_with("GL_UNPACK_ROW_LENGTH"); }));
+  }
+  {
+    static auto original = epoxy_glBindFramebuffer;
+    ignored = objects.draw_framebuffer;
+    const Hook hook(
+        epoxy_glBindFramebuffer,
+        +[](GLenum target, GLuint name) { name == ignored ? void() : original(target, name); });
+    const StateSnapshot before(table);
+    device->submit(scene.list());
+    const std::vector<std::string> found = before.differences();
+    EXPECT_TRUE(
+        std::ranges::any_of(found, [](const auto &text) { return text.starts_with("GL_DRAW_FRAMEBUFFER_BINDING"); }));
+  }
+}
+
+TEST_P(HostState, AnErrorOfTheHostStaysTheHosts)
+{
+  const auto device = create_gl_device({.context = ContextKind::Host});
+  const auto raise_enum = [] { glEnable(GL_NONE); };
+  const auto raise_value = [] { glLineWidth(-1); };
+  const auto raise_operation = [] { glBindVertexArray(0xFFFFFFU); };
+  for (const auto &[raise, error] : {std::pair<void (*)(), GLenum>(raise_enum, GL_INVALID_ENUM),
+                                     std::pair<void (*)(), GLenum>(raise_value, GL_INVALID_VALUE),
+                                     std::pair<void (*)(), GLenum>(raise_operation, GL_INVALID_OPERATION)}) {
+    raise();
+    HostedScene scene(*device);
+    EXPECT_EQ(glGetError(), error);
+    raise();
+    device->submit(scene.list());
+    EXPECT_EQ(glGetError(), error);
+    raise();
+    scene.expect_picture();
+    EXPECT_EQ(glGetError(), error);
+    EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+  }
+}
+
+TEST_P(HostState, AnErrorThatCannotBeRaisedAgainIsReported)
+{
+  std::vector<std::string> messages;
+  const auto device = create_gl_device(
+      {.context = ContextKind::Host, .sink = [&](std::string_view text) { messages.emplace_back(text); }});
+  const GLuint incomplete = [] {
+    GLuint name = 0;
+    glCreateFramebuffers(1, &name);
+    return name;
+  }();
+  glBindFramebuffer(GL_FRAMEBUFFER, incomplete);
+  glClear(GL_COLOR_BUFFER_BIT);
+  const Sampler sampler = device->create_sampler({.name = "s"});
+  ASSERT_EQ(messages.size(), 1U);
+  expect_contains(messages[0], "GL_INVALID_FRAMEBUFFER_OPERATION");
+  EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+  glDeleteFramebuffers(1, &incomplete);
+}
+
+#ifndef NDEBUG
+TEST_P(HostState, WhatCannotBeSavedIsAnErrorThatNamesIt)
+{
+  const auto device = create_gl_device({.context = ContextKind::Host});
+  HostedScene scene(*device);
+  const auto message = [&] { return error_of([&] { device->submit(scene.list()); }); };
+  GLuint query = 0;
+  glCreateQueries(GL_SAMPLES_PASSED, 1, &query);
+  glBeginQuery(GL_SAMPLES_PASSED, query);
+  expect_contains(message(), "GL_SAMPLES_PASSED is active");
+  expect_contains(error_of([&] { device->generate_mipmaps(scene.source); }), "GL_SAMPLES_PASSED is active");
+  glEndQuery(GL_SAMPLES_PASSED);
+  EXPECT_EQ(message(), "");
+  glBeginConditionalRender(query, GL_QUERY_WAIT);
+  expect_contains(message(), "conditional rendering is active");
+  glEndConditionalRender();
+  EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR)) << "it was still active";
+  EXPECT_EQ(message(), "");
+  GLuint timer = 0;
+  glCreateQueries(GL_TIME_ELAPSED, 1, &timer);
+  glBeginQuery(GL_TIME_ELAPSED, timer);
+  EXPECT_EQ(message(), "") << "a host may time what is drawn here";
+  glEndQuery(GL_TIME_ELAPSED);
+  glDeleteQueries(1, &query);
+  glDeleteQueries(1, &timer);
+}
+#endif
+
+TEST_P(HostState, ADeviceDrawsAndTheContextStaysTheHosts)
+{
+  {
+    const auto device = create_gl_device({.context = ContextKind::Host});
+    expect_contains(device->description(), "host");
+    HostedScene scene(*device);
+    device->submit(scene.list());
+    scene.expect_picture();
+    EXPECT_TRUE(host->is_current());
+  }
+  EXPECT_TRUE(host->is_current()) << "the device destroyed the host's context";
+  EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+  EXPECT_TRUE(glGetString(GL_VERSION)) << "the context does not work any more";
+}
+
+TEST_P(HostState, AHeadlessDeviceDoesNotTakeTheHostsPlace)
+{
+  const GLubyte *version = glGetString(GL_VERSION);
+  expect_contains(error_of([] { static_cast<void>(create_gl_device()); }), "current");
+  EXPECT_TRUE(host->is_current());
+  EXPECT_EQ(eglGetCurrentContext() != EGL_NO_CONTEXT, GetParam() == HostKind::Egl);
+  EXPECT_EQ(glGetString(GL_VERSION), version);
+}
+
+TEST_P(HostState, CostOfSaving)
+{
+  using Clock = std::chrono::steady_clock;
+  UsedSlots slots;
+  slots.uniform_slots = {8, 9, 10, 11, 12};
+  slots.storage_slots = {0, 1};
+  slots.texture_units = {16, 17, 18, 19, 20, 24, 25};
+  slots.color_count = 1;
+  const HostObjects objects;
+  test::set_unusual_state(objects);
+  constexpr int count = 2000;
+  double best = 1e9;
+  for (int round = 0; round < 5; round++) {
+    const auto start = Clock::now();
+    for (int i = 0; i < count; i++) {
+      const SavedDrawState saved(slots);
+      set_draw_defaults();
+    }
+    best = std::min(best, std::chrono::duration<double>(Clock::now() - start).count() / count);
+  }
+  fmt::print("saving and restoring a host's state takes {:.1f} µs a submit (5 uniform and 2 storage slots, 7 units)\n",
+             best * 1e6);
+  RecordProperty("saving_us", std::to_string(best * 1e6));
+}
+
+}  // namespace
+}  // namespace gnomon::gpu
