@@ -5,9 +5,9 @@
 #include "cli_origin.hh"
 #include "cli_output.hh"
 
+#include "gltf_import.hh"
 #include "measure_reference.hh"
 #include "measure_report.hh"
-#include "scene_gltf.hh"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -301,7 +301,7 @@ void Run::visit(const scene::Scene &scene, const reference::Tracer &tracer, meas
 void Run::measure(measure::SceneReport &report)
 {
   if (visits_left(report) > 0) {
-    scene::Scene scene = scene::import_gltf(report.path);
+    scene::Scene scene = gltf::import_gltf(report.path);
     for (const std::string &warning : scene.warnings) {
       warn(report, warning);
     }

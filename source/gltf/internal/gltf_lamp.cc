@@ -13,7 +13,19 @@
 #include <string>
 #include <string_view>
 
-namespace gnomon::scene::gltf {
+namespace gnomon::gltf {
+
+using scene::AreaShape;
+using scene::Bounds;
+using scene::Camera;
+using scene::CameraKind;
+using scene::EsmFormat;
+using scene::Lamp;
+using scene::LampKind;
+using scene::LampShadow;
+using scene::PlacedCamera;
+using scene::PlacedLamp;
+using scene::ShadowKind;
 
 namespace {
 
@@ -367,7 +379,7 @@ float narrowed(double value)
 glm::dmat4 looking(const glm::dvec3 &position, const glm::dvec3 &forward, const glm::dvec3 &up)
 {
   const glm::dmat4 skewed(glm::dvec4(0.0), glm::dvec4(up, 0.0), glm::dvec4(-forward, 0.0), glm::dvec4(position, 1.0));
-  return frame_of(skewed);
+  return scene::frame_of(skewed);
 }
 
 }  // namespace
@@ -454,4 +466,4 @@ PlacedLamp default_sun(const PlacedCamera &camera)
   return sun;
 }
 
-}  // namespace gnomon::scene::gltf
+}  // namespace gnomon::gltf

@@ -8,7 +8,15 @@
 #include <string>
 #include <vector>
 
-namespace gnomon::scene::gltf {
+namespace gnomon::gltf {
+
+using scene::Handle;
+using scene::Image;
+using scene::MipFilter;
+using scene::Scene;
+using scene::Texture;
+using scene::TextureFilter;
+using scene::TextureWrap;
 
 namespace {
 
@@ -146,4 +154,4 @@ Handle<Image> TextureImporter::import_image(int gltf_image)
   return scene_.add(std::move(image));
 }
 
-}  // namespace gnomon::scene::gltf
+}  // namespace gnomon::gltf

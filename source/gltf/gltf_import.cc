@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scene_gltf.hh"
+#include "gltf_import.hh"
 
 #include "internal/gltf_file.hh"
 #include "internal/gltf_lamp.hh"
@@ -18,14 +18,19 @@
 #include <string_view>
 #include <utility>
 
-namespace gnomon::scene {
+namespace gnomon::gltf {
+
+using scene::Bounds;
+using scene::Camera;
+using scene::Handle;
+using scene::Lamp;
+using scene::Mesh;
+using scene::Node;
+using scene::PlacedCamera;
+using scene::PlacedLamp;
+using scene::Scene;
 
 namespace {
-
-using gltf::Fault;
-using gltf::File;
-using gltf::label;
-using gltf::Warnings;
 
 /** A mesh of many primitives on many nodes multiplies; the size of the file does not limit that. */
 constexpr std::size_t object_count_max = std::size_t(1) << 22U;
@@ -45,7 +50,7 @@ std::string unknown_required_extensions(const File &file)
       names += (names.empty() ? "" : ", ") + name;
     }
   }
-  return gltf::printable(names);
+  return printable(names);
 }
 
 glm::dvec3 vec3_or(const std::vector<double> &values, const glm::dvec3 &fallback)
@@ -90,7 +95,7 @@ bool is_usable(const glm::dmat4 &world)
 {
   for (int column = 0; column < 4; column++) {
     for (int row = 0; row < 3; row++) {
-      if (!(std::abs(world[column][row]) <= gltf::coordinate_max)) {
+      if (!(std::abs(world[column][row]) <= coordinate_max)) {
         return false;
       }
     }
@@ -101,7 +106,7 @@ bool is_usable(const glm::dmat4 &world)
 bool is_usable(const Bounds &bounds)
 {
   const glm::vec3 reach = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
-  return reach.x <= gltf::coordinate_max && reach.y <= gltf::coordinate_max && reach.z <= gltf::coordinate_max;
+  return reach.x <= coordinate_max && reach.y <= coordinate_max && reach.z <= coordinate_max;
 }
 
 class Importer {
@@ -123,7 +128,7 @@ class Importer {
   const File &file_;
   Warnings warnings_;
   Scene scene_;
-  gltf::MeshImporter meshes_;
+  MeshImporter meshes_;
   std::size_t lost_node_count_ = 0;
   std::size_t object_count_ = 0;
 
@@ -240,10 +245,10 @@ class Importer {
     node.name = name.empty() ? "node " + std::to_string(index) : name;
     node.parent_from_node = parent_from_node;
     import_meshes(index, glm::mat4(world), node);
-    if (std::optional<Lamp> lamp = gltf::lamp_on(file_, index, warnings_)) {
+    if (std::optional<Lamp> lamp = lamp_on(file_, index, warnings_)) {
       node.lamp = scene_.add(std::move(*lamp));
     }
-    if (std::optional<Camera> camera = gltf::camera_on(file_, index, warnings_)) {
+    if (std::optional<Camera> camera = camera_on(file_, index, warnings_)) {
       node.camera = scene_.add(std::move(*camera));
     }
     return scene_.add(std::move(node), parent);
@@ -293,7 +298,7 @@ class Importer {
   {
     if (scene_.cameras().empty()) {
       scene_.is_camera_default = true;
-      const PlacedCamera camera = gltf::default_camera(scene_.bounds());
+      const PlacedCamera camera = default_camera(scene_.bounds());
       Node node;
       node.name = camera.name;
       node.parent_from_node = camera.world_from_camera;
@@ -304,14 +309,14 @@ class Importer {
     if (scene_.lamps().empty()) {
       scene_.is_lamp_default = true;
       const PlacedCamera camera = scene_.placed_cameras().front();
-      const PlacedLamp sun = gltf::default_sun(camera);
+      const PlacedLamp sun = default_sun(camera);
       Node node;
       node.name = sun.name;
       node.parent_from_node = sun.world_from_lamp;
       node.lamp = scene_.add(Lamp(sun));
       scene_.add(std::move(node));
       warnings_.add("scene", "has no lamp: a sun of 3.14 W/m2 was added, over the shoulder of camera '" +
-                                 gltf::printable(camera.name) + '\'');
+                                 printable(camera.name) + '\'');
     }
   }
 };
@@ -324,7 +329,7 @@ Scene import_gltf(const std::filesystem::path &path)
     return ImportError(path.string() + ": " + std::string(reason));
   };
   try {
-    const File file = gltf::load_file(path);
+    const File file = load_file(path);
     Scene scene = Importer(file).import();
     scene.path = path.string();
     return scene;
@@ -337,8 +342,8 @@ Scene import_gltf(const std::filesystem::path &path)
   }
   catch (const std::exception &error) {
     // The libraries below throw what they like.
-    throw failed(gltf::printable(error.what()));
+    throw failed(printable(error.what()));
   }
 }
 
-}  // namespace gnomon::scene
+}  // namespace gnomon::gltf

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-namespace gnomon::scene {
+namespace gnomon::gltf {
 
 /** A file that cannot be made a scene. The message names the file and the reason. */
 struct ImportError : std::runtime_error {
@@ -22,6 +22,6 @@ struct ImportError : std::runtime_error {
  *
  * \throws ImportError for a file that is missing, unreadable, malformed, or that holds nothing which can be kept.
  */
-[[nodiscard]] Scene import_gltf(const std::filesystem::path &path);
+[[nodiscard]] scene::Scene import_gltf(const std::filesystem::path &path);
 
-}  // namespace gnomon::scene
+}  // namespace gnomon::gltf

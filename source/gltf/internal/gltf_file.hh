@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-/** Internal to source/scene. */
-namespace gnomon::scene::gltf {
+/** Internal to source/gltf. */
+namespace gnomon::gltf {
 
 /** Where the bytes of an image are. */
 struct ImageSource {
@@ -50,4 +50,4 @@ struct File {
 /** \throws Fault, or an exception of the JSON library. */
 [[nodiscard]] File load_file(const std::filesystem::path &path);
 
-}  // namespace gnomon::scene::gltf
+}  // namespace gnomon::gltf

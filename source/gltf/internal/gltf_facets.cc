@@ -5,7 +5,9 @@
 
 #include <numeric>
 
-namespace gnomon::scene::gltf {
+namespace gnomon::gltf {
+
+using scene::Mesh;
 
 namespace {
 
@@ -87,4 +89,4 @@ std::size_t flatten_facets(Mesh &mesh)
   return changed;
 }
 
-}  // namespace gnomon::scene::gltf
+}  // namespace gnomon::gltf

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-/** Internal to source/scene. */
-namespace gnomon::scene::gltf {
+/** Internal to source/gltf. */
+namespace gnomon::gltf {
 
 /**
  * The bytes of a buffer view from \a offset on.
@@ -67,4 +67,4 @@ class AccessorReader {
   [[nodiscard]] float component(const unsigned char *bytes) const;
 };
 
-}  // namespace gnomon::scene::gltf
+}  // namespace gnomon::gltf

@@ -7,8 +7,8 @@
 #include <span>
 #include <string>
 
-/** Internal to source/scene. */
-namespace gnomon::scene::gltf {
+/** Internal to source/gltf. */
+namespace gnomon::gltf {
 
 /**
  * A PNG or JPEG file in memory as an Image without a name. 16-bit values are rounded to 8, grey becomes three equal
@@ -17,7 +17,7 @@ namespace gnomon::scene::gltf {
  * \throws Fault that names \a what, for a file that is cut off, damaged, of another format, or of more than
  * \a texel_count_max texels.
  */
-[[nodiscard]] Image decoded_image(std::span<const unsigned char> bytes, const std::string &what,
-                                  std::uint64_t texel_count_max);
+[[nodiscard]] scene::Image decoded_image(std::span<const unsigned char> bytes, const std::string &what,
+                                         std::uint64_t texel_count_max);
 
-}  // namespace gnomon::scene::gltf
+}  // namespace gnomon::gltf

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdio>
 
-namespace gnomon::scene::gltf {
+namespace gnomon::gltf {
 
 namespace {
 
@@ -105,4 +105,4 @@ std::vector<std::string> Warnings::messages() const
   return result;
 }
 
-}  // namespace gnomon::scene::gltf
+}  // namespace gnomon::gltf

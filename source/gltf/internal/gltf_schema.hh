@@ -3,8 +3,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-/** Internal to source/scene. */
-namespace gnomon::scene::gltf {
+/** Internal to source/gltf. */
+namespace gnomon::gltf {
 
 /**
  * Make a glTF document safe to hand to tinygltf, which takes a wrong type for an absent value, cuts integers to 32
@@ -17,4 +17,4 @@ namespace gnomon::scene::gltf {
  */
 void check_document(nlohmann::json &document);
 
-}  // namespace gnomon::scene::gltf
+}  // namespace gnomon::gltf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf_check.hh"
+#include "gltf/gltf_check.hh"
 #include "image_file.hh"
 
 #include <cmath>
@@ -102,7 +102,7 @@ TEST(GltfImage, MayBeAFileBeside)
   const Bytes png = four_texel_png();
   (void)folder.write("a leaf.png", std::string(png.begin(), png.end()));
   const Scene scene =
-      scene::import_gltf(folder.write("scene.gltf", textured_triangle({{"uri", "a%20leaf.png"}}).gltf()));
+      gltf::import_gltf(folder.write("scene.gltf", textured_triangle({{"uri", "a%20leaf.png"}}).gltf()));
   ASSERT_EQ(scene.images.size(), 1U) << all_warnings(scene);
   EXPECT_EQ(scene.images[0].texels, four_texels);
 }

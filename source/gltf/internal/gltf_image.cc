@@ -11,7 +11,9 @@
 #include <memory>
 #include <string_view>
 
-namespace gnomon::scene::gltf {
+namespace gnomon::gltf {
+
+using scene::Image;
 
 namespace {
 
@@ -109,4 +111,4 @@ Image decoded_image(ByteSpan bytes, const std::string &what, std::uint64_t texel
   return image;
 }
 
-}  // namespace gnomon::scene::gltf
+}  // namespace gnomon::gltf

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <system_error>
 
-namespace gnomon::scene::gltf {
+namespace gnomon::gltf {
 
 namespace {
 
@@ -339,4 +339,4 @@ std::vector<unsigned char> bytes_of_uri(const std::filesystem::path &folder, con
   return read_bytes(file.path, file.what);
 }
 
-}  // namespace gnomon::scene::gltf
+}  // namespace gnomon::gltf

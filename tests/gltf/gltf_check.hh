@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gltf_builder.hh"
+#include "gltf/gltf_builder.hh"
+#include "gltf_import.hh"
 #include "internal/measure_contract.hh"
-#include "scene_gltf.hh"
 
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
@@ -25,7 +25,7 @@ inline void expect_valid(const scene::Scene &scene)
 inline scene::Scene import_text(const std::string &content, const std::string &name = "scene.gltf")
 {
   const TemporaryFolder folder;
-  scene::Scene result = scene::import_gltf(folder.write(name, content));
+  scene::Scene result = gltf::import_gltf(folder.write(name, content));
   expect_valid(result);
   return result;
 }
@@ -41,9 +41,9 @@ inline std::string import_error(const std::string &content, const std::string &n
   const TemporaryFolder folder;
   const std::filesystem::path path = folder.write(name, content);
   try {
-    (void)scene::import_gltf(path);
+    (void)gltf::import_gltf(path);
   }
-  catch (const scene::ImportError &error) {
+  catch (const gltf::ImportError &error) {
     const std::string message = error.what();
     const std::string prefix = path.string() + ": ";
     EXPECT_EQ(message.rfind(prefix, 0), 0U) << message;

@@ -5,8 +5,8 @@
 
 #include <cstddef>
 
-/** Internal to source/scene. */
-namespace gnomon::scene::gltf {
+/** Internal to source/gltf. */
+namespace gnomon::gltf {
 
 /**
  * Give each triangle of a flat-shaded polygon that is not plane its own normal.
@@ -17,6 +17,6 @@ namespace gnomon::scene::gltf {
  *
  * \return how many triangles got another normal.
  */
-std::size_t flatten_facets(Mesh &mesh);
+std::size_t flatten_facets(scene::Mesh &mesh);
 
-}  // namespace gnomon::scene::gltf
+}  // namespace gnomon::gltf

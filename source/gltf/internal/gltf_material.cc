@@ -9,7 +9,12 @@
 #include <limits>
 #include <string>
 
-namespace gnomon::scene::gltf {
+namespace gnomon::gltf {
+
+using scene::AlphaMode;
+using scene::Handle;
+using scene::Material;
+using scene::Scene;
 
 namespace {
 
@@ -241,4 +246,4 @@ Handle<Material> MaterialImporter::handle_of(int gltf_material)
   return place->second;
 }
 
-}  // namespace gnomon::scene::gltf
+}  // namespace gnomon::gltf

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-namespace gnomon::scene::gltf {
+namespace gnomon::gltf {
 
 namespace {
 
@@ -200,4 +200,4 @@ std::uint32_t AccessorReader::integer(std::size_t index) const
   }
 }
 
-}  // namespace gnomon::scene::gltf
+}  // namespace gnomon::gltf

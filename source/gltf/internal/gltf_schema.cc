@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-namespace gnomon::scene::gltf {
+namespace gnomon::gltf {
 
 namespace {
 
@@ -575,4 +575,4 @@ void check_document(json &document)
   Checker(document).check_all();
 }
 
-}  // namespace gnomon::scene::gltf
+}  // namespace gnomon::gltf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scene/gltf_check.hh"
+#include "gltf/gltf_check.hh"
 
 #include <cstdlib>
 #include <functional>
@@ -16,10 +16,10 @@ TEST(GltfDoor, MissingFileIsNamed)
 {
   const TemporaryFolder folder;
   try {
-    (void)scene::import_gltf(folder.path() / "nowhere.glb");
+    (void)gltf::import_gltf(folder.path() / "nowhere.glb");
     FAIL();
   }
-  catch (const scene::ImportError &error) {
+  catch (const gltf::ImportError &error) {
     EXPECT_HAS(std::string(error.what()), "nowhere.glb: file: there is no such file");
   }
 }
@@ -27,7 +27,7 @@ TEST(GltfDoor, MissingFileIsNamed)
 TEST(GltfDoor, FolderIsNoFile)
 {
   const TemporaryFolder folder;
-  EXPECT_THROW((void)scene::import_gltf(folder.path()), scene::ImportError);
+  EXPECT_THROW((void)gltf::import_gltf(folder.path()), gltf::ImportError);
 }
 
 TEST(GltfDoor, NotJson)
@@ -462,10 +462,10 @@ void expect_survives(const std::string &original, const std::string &name, int c
   for (int i = 0; i < count; i++) {
     const std::filesystem::path path = folder.write(name, mutated(original, random));
     try {
-      expect_valid(scene::import_gltf(path));
+      expect_valid(gltf::import_gltf(path));
       kept++;
     }
-    catch (const scene::ImportError &) {
+    catch (const gltf::ImportError &) {
     }
     if (::testing::Test::HasFailure()) {
       // Left for whoever looks into it.
@@ -536,10 +536,10 @@ TEST(GltfFuzz, OddValuesAnywhereImportOrFailCleanly)
     replace_some_value(builder.document, random);
     const std::filesystem::path path = folder.write("scene.gltf", builder.gltf());
     try {
-      expect_valid(scene::import_gltf(path));
+      expect_valid(gltf::import_gltf(path));
       kept++;
     }
-    catch (const scene::ImportError &) {
+    catch (const gltf::ImportError &) {
     }
     ASSERT_FALSE(::testing::Test::HasFailure()) << builder.document.dump();
   }
@@ -564,10 +564,10 @@ TEST(GltfModels, AssimpsImportOrSayWhyNot)
       }
       SCOPED_TRACE(entry.path());
       try {
-        expect_valid(scene::import_gltf(entry.path()));
+        expect_valid(gltf::import_gltf(entry.path()));
         ok_count++;
       }
-      catch (const scene::ImportError &error) {
+      catch (const gltf::ImportError &error) {
         EXPECT_HAS(std::string(error.what()), entry.path().string() + ": ");
         error_count++;
       }

@@ -16,7 +16,11 @@
 #include <string>
 #include <utility>
 
-namespace gnomon::scene::gltf {
+namespace gnomon::gltf {
+
+using scene::Handle;
+using scene::Mesh;
+using scene::Scene;
 
 namespace {
 
@@ -442,4 +446,4 @@ void MeshImporter::import_primitive(int gltf_mesh, std::size_t primitive_index, 
   meshes.push_back(scene_.add(std::move(mesh)));
 }
 
-}  // namespace gnomon::scene::gltf
+}  // namespace gnomon::gltf

@@ -12,8 +12,8 @@
 #include <map>
 #include <vector>
 
-/** Internal to source/scene. */
-namespace gnomon::scene::gltf {
+/** Internal to source/gltf. */
+namespace gnomon::gltf {
 
 /** Where a material looks its base colour up: a set of texture coordinates of the mesh, and what is done to them. */
 struct TextureCoordinates {
@@ -32,13 +32,13 @@ struct TextureCoordinates {
 class MaterialImporter {
  public:
   /** Keeps references. */
-  MaterialImporter(const File &file, Warnings &warnings, Scene &scene);
+  MaterialImporter(const File &file, Warnings &warnings, scene::Scene &scene);
 
   /** The scene's material for a material of the file; -1 is glTF's default material. */
-  [[nodiscard]] Handle<Material> handle_of(int gltf_material);
+  [[nodiscard]] scene::Handle<scene::Material> handle_of(int gltf_material);
 
   /** Of a material that handle_of returned. */
-  [[nodiscard]] const TextureCoordinates &texture_coordinates(Handle<Material> material) const
+  [[nodiscard]] const TextureCoordinates &texture_coordinates(scene::Handle<scene::Material> material) const
   {
     return texture_coordinates_.at(material);
   }
@@ -46,10 +46,10 @@ class MaterialImporter {
  private:
   const File &file_;
   Warnings &warnings_;
-  Scene &scene_;
+  scene::Scene &scene_;
   TextureImporter textures_;
-  std::map<Handle<Material>, TextureCoordinates> texture_coordinates_;
-  std::map<int, Handle<Material>> handle_of_;
+  std::map<scene::Handle<scene::Material>, TextureCoordinates> texture_coordinates_;
+  std::map<int, scene::Handle<scene::Material>> handle_of_;
 };
 
-}  // namespace gnomon::scene::gltf
+}  // namespace gnomon::gltf

@@ -10,8 +10,8 @@
 #include <map>
 #include <vector>
 
-/** Internal to source/scene. */
-namespace gnomon::scene::gltf {
+/** Internal to source/gltf. */
+namespace gnomon::gltf {
 
 /**
  * No coordinate may be larger, in metres: ten times the way to the outermost planet. Its square and its cube are
@@ -23,10 +23,10 @@ constexpr double coordinate_max = 1e12;
 class MeshImporter {
  public:
   /** Keeps references. */
-  MeshImporter(const File &file, Warnings &warnings, Scene &scene);
+  MeshImporter(const File &file, Warnings &warnings, scene::Scene &scene);
 
   /** The scene's meshes for the primitives of a mesh of the file, without those that cannot be drawn. */
-  [[nodiscard]] const std::vector<Handle<Mesh>> &meshes_of(int gltf_mesh);
+  [[nodiscard]] const std::vector<scene::Handle<scene::Mesh>> &meshes_of(int gltf_mesh);
 
   /** Primitives that were looked at, drawable or not. */
   [[nodiscard]] std::size_t primitive_count() const
@@ -37,15 +37,15 @@ class MeshImporter {
  private:
   const File &file_;
   Warnings &warnings_;
-  Scene &scene_;
+  scene::Scene &scene_;
   MaterialImporter materials_;
-  std::map<int, std::vector<Handle<Mesh>>> meshes_of_;
+  std::map<int, std::vector<scene::Handle<scene::Mesh>>> meshes_of_;
   std::size_t primitive_count_ = 0;
   /** Vertices and indices read so far. */
   std::uint64_t element_count_ = 0;
 
-  void import_primitive(int gltf_mesh, std::size_t primitive_index, std::vector<Handle<Mesh>> &meshes);
+  void import_primitive(int gltf_mesh, std::size_t primitive_index, std::vector<scene::Handle<scene::Mesh>> &meshes);
   void spend(std::uint64_t element_count);
 };
 
-}  // namespace gnomon::scene::gltf
+}  // namespace gnomon::gltf

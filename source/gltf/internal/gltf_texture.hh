@@ -11,35 +11,35 @@
 #include <utility>
 #include <variant>
 
-/** Internal to source/scene. */
-namespace gnomon::scene::gltf {
+/** Internal to source/gltf. */
+namespace gnomon::gltf {
 
 /** Appends textures and their images to a scene, each at its first use, so that no other image is decoded. */
 class TextureImporter {
  public:
   /** Keeps references. */
-  TextureImporter(const File &file, Warnings &warnings, Scene &scene);
+  TextureImporter(const File &file, Warnings &warnings, scene::Scene &scene);
 
   /**
    * The scene's texture for a texture of the file, whose index may be out of range.
    *
    * \throws Fault that names the texture or the image, when it cannot be looked up.
    */
-  [[nodiscard]] Handle<Texture> handle_of(int gltf_texture);
+  [[nodiscard]] scene::Handle<scene::Texture> handle_of(int gltf_texture);
 
  private:
   const File &file_;
   Warnings &warnings_;
-  Scene &scene_;
-  std::map<int, Handle<Texture>> handle_of_;
+  scene::Scene &scene_;
+  std::map<int, scene::Handle<scene::Texture>> handle_of_;
   /** By URI and buffer view: files name an image more than once. */
-  std::map<std::pair<std::string, int>, std::variant<Handle<Image>, Fault>> image_of_;
+  std::map<std::pair<std::string, int>, std::variant<scene::Handle<scene::Image>, Fault>> image_of_;
   /** Texels decoded so far. */
   std::uint64_t texel_count_ = 0;
 
   /** Once for each image, also if it fails. */
-  Handle<Image> image_of(int gltf_image);
-  Handle<Image> import_image(int gltf_image);
+  scene::Handle<scene::Image> image_of(int gltf_image);
+  scene::Handle<scene::Image> import_image(int gltf_image);
 };
 
-}  // namespace gnomon::scene::gltf
+}  // namespace gnomon::gltf

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-/** How the glTF import says what is wrong. Internal to source/scene. */
-namespace gnomon::scene::gltf {
+/** How the glTF import says what is wrong. Internal to source/gltf. */
+namespace gnomon::gltf {
 
 /** Something in the file cannot be used: "what: reason", without the file, which the door puts in front. */
 struct Fault : std::runtime_error {
@@ -62,4 +62,4 @@ class Warnings {
   Entry &entry(std::string_view element, std::string_view reason, bool is_counted);
 };
 
-}  // namespace gnomon::scene::gltf
+}  // namespace gnomon::gltf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scene/gltf_check.hh"
+#include "gltf/gltf_check.hh"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -74,7 +74,7 @@ TEST(GltfImport, ReadsABufferBesideTheFile)
   // Longer than byteLength is legal, and a space is written as %20.
   (void)folder.write("the data.bin", std::string(builder.bytes.begin(), builder.bytes.end()) + "tail");
   builder.document["buffers"] = {{{"byteLength", builder.bytes.size()}, {"uri", "the%20data.bin"}}};
-  const Scene scene = scene::import_gltf(folder.write("scene.gltf", builder.gltf()));
+  const Scene scene = gltf::import_gltf(folder.write("scene.gltf", builder.gltf()));
   expect_valid(scene);
   EXPECT_EQ(corners(scene.meshes.at(0))[1], glm::vec3(1, 0, 0));
 }
@@ -83,7 +83,7 @@ TEST(GltfImport, KeepsThePathAsGiven)
 {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder.write("scene.gltf", triangle_scene().gltf());
-  EXPECT_EQ(scene::import_gltf(path).path, path.string());
+  EXPECT_EQ(gltf::import_gltf(path).path, path.string());
 }
 
 TEST(GltfImport, NeverLooksAtImagesThatNothingWears)
