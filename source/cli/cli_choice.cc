@@ -53,7 +53,7 @@ std::vector<measure::Model> Chooser::models_of_report(const gpu::Device &device)
   catch (const std::exception &error) {
     throw std::runtime_error(fmt::format("{}: is no report: {}", path.string(), error.what()));
   }
-  const auto found = std::ranges::find(run.scenes, scene_fingerprint(scene_.path), &measure::SceneReport::fingerprint);
+  const auto found = std::ranges::find(run.scenes, scene_fingerprint(scene_), &measure::SceneReport::fingerprint);
   const auto unknown = [&](const std::string &why) {
     fmt::print(stderr, "gnomon: warning: {}: {}; a pilot is run\n", path.string(), why);
     return std::vector<measure::Model>();

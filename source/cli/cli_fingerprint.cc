@@ -3,56 +3,187 @@
 
 #include <fmt/format.h>
 #include <xxhash.h>
-#include <nlohmann/json.hpp>
 
+#include <array>
 #include <fstream>
-#include <iterator>
-#include <optional>
-#include <stdexcept>
+#include <memory>
+#include <type_traits>
 
 namespace gnomon::cli {
 
-namespace fs = std::filesystem;
+namespace {
 
-static std::optional<std::string> bytes_of(const fs::path &path)
-{
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  return file.is_open() && !file.bad() ? std::optional(std::move(bytes)) : std::nullopt;
-}
-
-static std::string hash_of(const std::string &bytes)
-{
-  return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
-}
-
-std::string scene_fingerprint(const fs::path &path)
-{
-  std::optional<std::string> bytes = bytes_of(path);
-  if (!bytes) {
-    throw std::runtime_error(fmt::format("{}: cannot be read", path.string()));
+/** Hashes values one after another; never padding, whose bytes mean nothing. */
+class Hasher {
+ public:
+  Hasher()
+  {
+    XXH3_64bits_reset(state_.get());
   }
-  std::string hash = hash_of(*bytes);
-  // A binary file's JSON is not looked into: such files hold their data themselves.
-  const nlohmann::json json = nlohmann::json::parse(*bytes, nullptr, false);
-  for (const char *list : {"buffers", "images"}) {
-    if (!json.is_object() || !json.contains(list) || !json[list].is_array()) {
-      continue;
-    }
-    for (const nlohmann::json &entry : json[list]) {
-      if (entry.is_object() && entry.contains("uri") && entry["uri"].is_string()) {
-        const std::string uri = entry["uri"];
-        hash += uri.rfind("data:", 0) == 0 ? "" : hash_of(bytes_of(path.parent_path() / uri).value_or(""));
-      }
+  template <typename T>
+  requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void add(const T &value)
+  {
+    add_bytes(&value, sizeof(value));
+  }
+  template <typename T>
+  void add(const std::optional<T> &value)
+  {
+    add(value.has_value());
+    add(value.value_or(T()));
+  }
+  void add(std::string_view text)
+  {
+    add(text.size());
+    add_bytes(text.data(), text.size());
+  }
+  template <glm::length_t Length, typename T>
+  void add(const glm::vec<Length, T> &value)
+  {
+    for (glm::length_t i = 0; i < Length; i++) {
+      add(value[i]);
     }
   }
-  return hash_of(hash);
+  void add(const glm::dmat4 &value)
+  {
+    for (int column = 0; column < 4; column++) {
+      add(value[column]);
+    }
+  }
+  /** Elements without padding: numbers and vectors of them. */
+  template <typename T>
+  void add(const std::vector<T> &values)
+  {
+    add(values.size());
+    add_bytes(values.data(), values.size() * sizeof(T));
+  }
+  void add_bytes(const void *bytes, std::size_t size)
+  {
+    XXH3_64bits_update(state_.get(), bytes, size);
+  }
+  [[nodiscard]] std::string text() const
+  {
+    return fmt::format("{:016x}", XXH3_64bits_digest(state_.get()));
+  }
+
+ private:
+  struct Free {
+    void operator()(XXH3_state_t *state) const
+    {
+      XXH3_freeState(state);
+    }
+  };
+  std::unique_ptr<XXH3_state_t, Free> state_{XXH3_createState()};
+};
+
+void add(Hasher &hash, const scene::Scene &scene, const scene::Material &material)
+{
+  hash.add(material.base_color);
+  hash.add(material.alpha);
+  hash.add(material.metallic);
+  hash.add(material.roughness);
+  hash.add(material.specular);
+  hash.add(material.specular_color);
+  hash.add(material.emissive);
+  hash.add(material.alpha_mode);
+  hash.add(material.alpha_cutoff);
+  hash.add(material.is_double_sided);
+  const scene::Texture *texture = scene.textures().find(material.base_color_texture);
+  hash.add(texture != nullptr);
+  if (!texture) {
+    return;
+  }
+  hash.add(texture->wrap_u);
+  hash.add(texture->wrap_v);
+  hash.add(texture->magnified);
+  hash.add(texture->minified);
+  hash.add(texture->mip);
+  hash.add(texture->image.index);
+}
+
+void add(Hasher &hash, const scene::PlacedLamp &lamp)
+{
+  hash.add(lamp.name);
+  hash.add(lamp.world_from_lamp);
+  hash.add(lamp.kind);
+  hash.add(lamp.color);
+  hash.add(lamp.intensity);
+  hash.add(lamp.radius);
+  hash.add(lamp.angle);
+  hash.add(lamp.spot_outer_angle);
+  hash.add(lamp.spot_blend);
+  hash.add(lamp.range);
+  hash.add(lamp.area_shape);
+  hash.add(lamp.area_size_x);
+  hash.add(lamp.area_size_y);
+  hash.add(lamp.shadow.kind);
+  hash.add(lamp.shadow.size);
+  hash.add(lamp.shadow.exponent);
+  hash.add(lamp.shadow.bias);
+  hash.add(lamp.shadow.clip_start);
+  hash.add(lamp.shadow.clip_end);
+  hash.add(lamp.shadow.filter_radius);
+  hash.add(lamp.shadow.esm_size);
+  hash.add(lamp.shadow.esm_format);
+}
+
+void add(Hasher &hash, const scene::PlacedCamera &camera)
+{
+  hash.add(camera.name);
+  hash.add(camera.world_from_camera);
+  hash.add(camera.kind);
+  hash.add(camera.vertical_angle);
+  hash.add(camera.aspect);
+  hash.add(camera.half_width);
+  hash.add(camera.half_height);
+  hash.add(camera.near);
+  hash.add(camera.far);
+}
+
+}  // namespace
+
+std::string scene_fingerprint(const scene::Scene &scene)
+{
+  Hasher hash;
+  for (const auto &[handle, image] : scene.images()) {
+    hash.add(image.width);
+    hash.add(image.height);
+    hash.add(image.texels);
+  }
+  for (const auto &[handle, mesh] : scene.meshes()) {
+    hash.add(mesh.positions);
+    hash.add(mesh.normals);
+    hash.add(mesh.uvs);
+    hash.add(mesh.indices);
+    add(hash, scene, scene.material_of(mesh));
+  }
+  for (const scene::Object &object : scene.objects()) {
+    hash.add(object.mesh.index);
+    hash.add(object.world_from_object);
+    const scene::Node &node = scene.nodes()[object.node];
+    hash.add(node.casts_shadow);
+    hash.add(node.receives_shadow);
+  }
+  for (const scene::PlacedLamp &lamp : scene.placed_lamps()) {
+    add(hash, lamp);
+  }
+  for (const scene::PlacedCamera &camera : scene.placed_cameras()) {
+    add(hash, camera);
+  }
+  return hash.text();
 }
 
 std::string program_fingerprint()
 {
-  const std::optional<std::string> bytes = bytes_of("/proc/self/exe");
-  return bytes ? hash_of(*bytes) : "";
+  std::ifstream file("/proc/self/exe", std::ios::binary);
+  if (!file) {
+    return "";
+  }
+  Hasher hash;
+  std::array<char, 1 << 16> bytes;
+  while (file.read(bytes.data(), bytes.size()) || file.gcount() > 0) {
+    hash.add_bytes(bytes.data(), std::size_t(file.gcount()));
+  }
+  return hash.text();
 }
 
 }  // namespace gnomon::cli

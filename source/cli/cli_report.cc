@@ -166,7 +166,7 @@ Run::Run(gpu::Device &device, const ReportOptions &options)
     measure::SceneReport &scene = run_.scenes.emplace_back();
     scene.name = name;
     scene.path = path;
-    scene.fingerprint = scene_fingerprint(path);
+    scene.fingerprint = scene_fingerprint(gltf::import_gltf(path));
     for (const measure::Technique &technique : techniques) {
       measure::TechniqueReport &report = scene.techniques.emplace_back();
       report.technique = technique;

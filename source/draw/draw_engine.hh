@@ -7,7 +7,6 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 namespace gnomon::draw {
@@ -65,29 +64,6 @@ class EngineRegistry {
 
  private:
   std::vector<EngineType> types_;
-};
-
-/** What an engine keeps with something of the host's, a lamp say, from frame to frame. */
-template <typename T>
-class EngineDataMap {
- public:
-  /** Default-constructed at the first ask; the reference holds until remove_from. */
-  T &get(std::uint32_t host_index)
-  {
-    return data_[host_index];
-  }
-  /** Forget what belongs to indices from \a host_count on: the host has no more. */
-  void remove_from(std::uint32_t host_count)
-  {
-    std::erase_if(data_, [&](const auto &entry) { return entry.first >= host_count; });
-  }
-  [[nodiscard]] std::size_t size() const
-  {
-    return data_.size();
-  }
-
- private:
-  std::unordered_map<std::uint32_t, T> data_;
 };
 
 }  // namespace gnomon::draw

@@ -112,7 +112,12 @@ void ObjectBuffer::write(ObjectIndex index, const glm::mat4 &world_from_object, 
 
 void ObjectBuffer::upload(gpu::Device &device)
 {
-  const auto bytes = std::as_bytes(std::span(objects_));
+  // Removed objects at the end take no room: a scene that lost what was past the limit fits again.
+  ObjectIndex end = index_end();
+  while (!is_live(end - 1)) {
+    end--;
+  }
+  const auto bytes = std::as_bytes(std::span(objects_).first(end));
   if (!buffer_ || buffer_.size_bytes() < bytes.size()) {
     // Capacity for more objects, as far as the device allows.
     const std::size_t limit = device.limits().storage_block_bytes_max;
@@ -126,12 +131,12 @@ void ObjectBuffer::upload(gpu::Device &device)
   // One write for each run of changed objects; a few unchanged ones in between are cheaper than another write.
   constexpr ObjectIndex gap_max = 16;
   const auto is_changed = [&](ObjectIndex index) { return revisions_[index] > uploaded_revision_; };
-  for (ObjectIndex first = 0; first < index_end(); first++) {
+  for (ObjectIndex first = 0; first < end; first++) {
     if (!is_changed(first)) {
       continue;
     }
     ObjectIndex last = first;
-    for (ObjectIndex i = first + 1; i < index_end() && i - last <= gap_max; i++) {
+    for (ObjectIndex i = first + 1; i < end && i - last <= gap_max; i++) {
       last = is_changed(i) ? i : last;
     }
     device.update(buffer_, first * sizeof(shared::ObjectData),

@@ -5,11 +5,6 @@
 
 namespace gnomon::draw {
 
-void InstanceCall::add_empty()
-{
-  instances_.push_back({object_, std::uint32_t(instances_.size())});
-}
-
 void InstanceCall::clear()
 {
   instances_.clear();
@@ -94,22 +89,17 @@ void ShadingGroup::call(const gpu::Batch &batch, const glm::mat4 &world_from_obj
 
 void ShadingGroup::call(const gpu::Batch &batch, ObjectIndex object)
 {
-  calls_.push_back({batch.range(), object, 1, {}});
+  calls_.push_back({batch.range(), object, {}});
 }
 
 void ShadingGroup::call(const gpu::Batch &batch, ObjectIndex object, const CullingVolume &volume)
 {
-  calls_.push_back({batch.range(), object, 1, volume});
+  calls_.push_back({batch.range(), object, volume});
 }
 
-void ShadingGroup::call_instances(const gpu::Batch &batch, std::uint32_t count, ObjectIndex object)
+InstanceCall &ShadingGroup::instances(const gpu::Batch &batch)
 {
-  calls_.push_back({batch.range(), object, count, {}});
-}
-
-InstanceCall &ShadingGroup::instances(const gpu::Batch &batch, ObjectIndex object)
-{
-  instance_calls_.push_back(InstanceCall(batch.range(), object));
+  instance_calls_.push_back(InstanceCall(batch.range()));
   return instance_calls_.back();
 }
 
@@ -157,21 +147,18 @@ RecordCounts ShadingGroup::collect_draws(const View &view, gpu::CommandList &lis
     // A volume of the call's own goes before the object's.
     const bool is_object_volume = call.volume.radius < 0.0F && objects_ && call.object < objects_->index_end();
     if (!view.touches(is_object_volume ? objects_->volume(call.object) : call.volume)) {
-      counts.culled += call.instance_count;
+      counts.culled++;
       continue;
     }
     const auto first_instance = std::uint32_t(list.instances.size());
-    for (std::uint32_t i = 0; i < call.instance_count; i++) {
-      list.instances.push_back({call.object, i});
-    }
+    list.instances.push_back({call.object, 0});
     // An empty batch begins where the next one does: the count tells them apart.
     if (has_draw && list.draws.back().first_index == call.batch.first_index &&
         list.draws.back().index_count == call.batch.index_count) {
-      list.draws.back().instance_count += call.instance_count;
+      list.draws.back().instance_count++;
     }
     else {
-      list.draws.push_back({call.batch.index_count, call.instance_count, call.batch.first_index, call.batch.base_vertex,
-                            first_instance});
+      list.draws.push_back({call.batch.index_count, 1, call.batch.first_index, call.batch.base_vertex, first_instance});
       has_draw = true;
     }
   }
@@ -254,7 +241,6 @@ std::string Pass::serialize(const gpu::Device &device) const
     }
     for (const ShadingGroup::Call &call : group.calls_) {
       text += fmt::format("    call {}, object {}", batch_text(call.batch), call.object);
-      text += call.instance_count == 1 ? "" : fmt::format(" x{}", call.instance_count);
       text += call.volume.radius < 0.0F ? "\n" : ", culled\n";
     }
     for (const InstanceCall &call : group.instance_calls_) {

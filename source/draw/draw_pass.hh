@@ -35,7 +35,7 @@ struct RecordCounts {
   std::uint64_t culled = 0;
 };
 
-/** A call's instances that are not known yet when it is recorded. Lives as long as its pass. */
+/** Instances of a batch that may be added and removed after the call was made. Lives as long as its pass. */
 class InstanceCall {
  public:
   /** One more instance: an object, and a value for the shader to interpret. */
@@ -43,17 +43,14 @@ class InstanceCall {
   {
     instances_.push_back({object, value});
   }
-  /** One more, with the call's own object and its ordinal as the value: a cube face. */
-  void add_empty();
   void clear();
 
  private:
   friend class ShadingGroup;
   friend class Pass;
-  InstanceCall(const gpu::BatchRange &batch, ObjectIndex object) : batch_(batch), object_(object) {}
+  explicit InstanceCall(const gpu::BatchRange &batch) : batch_(batch) {}
 
   gpu::BatchRange batch_;
-  ObjectIndex object_;
   std::vector<gpu::DrawInstance> instances_;
 };
 
@@ -105,10 +102,8 @@ class ShadingGroup {
   void call(const gpu::Batch &batch, ObjectIndex object = object_identity);
   /** Left out for views that do not touch \a volume. */
   void call(const gpu::Batch &batch, ObjectIndex object, const CullingVolume &volume);
-  /** \a count instances of one object; their values are 0 to count - 1. */
-  void call_instances(const gpu::Batch &batch, std::uint32_t count, ObjectIndex object = object_identity);
   /** Instances to be added until the pass is recorded, and changed between records. */
-  InstanceCall &instances(const gpu::Batch &batch, ObjectIndex object = object_identity);
+  InstanceCall &instances(const gpu::Batch &batch);
   /** \a count triangles whose vertices the shader makes up. */
   void call_procedural(std::uint32_t triangle_count = 1, std::uint32_t instance_count = 1);
 
@@ -136,7 +131,6 @@ class ShadingGroup {
   struct Call {
     gpu::BatchRange batch;
     ObjectIndex object = object_identity;
-    std::uint32_t instance_count = 1;
     CullingVolume volume;
   };
   struct ProceduralCall {

@@ -232,9 +232,9 @@ Handle<Node> Scene::add(Node node, Handle<Node> parent)
   if (parent) {
     nodes_[parent];
   }
-  links_.reserve(std::max(links_.capacity(), nodes_.index_end() + 1));
+  // Before the node, as it may throw. Unlike reserve, resize grows geometrically.
+  links_.resize(std::max(links_.size(), nodes_.index_end() + 1));
   const Handle<Node> handle = nodes_.add(std::move(node), ++revision_);
-  links_.resize(nodes_.index_end());
   links(handle) = {};
   link(handle, parent);
   update_subtree(handle, revision_);

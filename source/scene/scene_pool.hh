@@ -157,8 +157,8 @@ class Pool {
   }
   void remove(Handle<T> handle, Revision revision)
   {
-    // Room first: nothing below throws.
-    free_.reserve(free_.size() + 1);
+    // First, as it may throw.
+    free_.push_back(handle.index);
     Slot &removed = slots_[handle.index];
     removed.value = T();
     removed.is_live = false;
@@ -166,8 +166,8 @@ class Pool {
     latest_.fill(revision);
     size_--;
     // A generation that would repeat retires its place.
-    if (removed.generation != 0) {
-      free_.push_back(handle.index);
+    if (removed.generation == 0) {
+      free_.pop_back();
     }
   }
   void touch(Handle<T> handle, Aspect aspect, Revision revision)

@@ -40,12 +40,14 @@ class ReferenceTest : public testing::TestWithParam<Case> {};
 /** RGB, rows from the top. */
 std::vector<float> render(gpu::Device &device, const scene::Scene &scene, glm::ivec2 size_px, int samples)
 {
-  eevee::Engine engine(scene, {.sample_count = samples});
+  render_scene::RenderScene render_scene(device, scene);
+  eevee::Engine engine(render_scene, {.sample_count = samples});
   draw::Viewport viewport(device, size_px);
   const std::array<draw::Engine *, 1> engines = {&engine};
-  viewport.sync(engines, eevee::object_refs(scene));
+  render_scene.update();
+  viewport.sync(engines, render_scene.objects());
   for (int i = 0; i < samples; i++) {
-    viewport.draw(engines, eevee::view_of(scene.cameras.front(), size_px));
+    viewport.draw(engines, eevee::view_of(render_scene.relative(scene.placed_cameras().front()), size_px));
   }
   const std::vector<std::byte> bytes = device.read(engine.radiance(viewport));
   std::vector<float> rgb;

@@ -10,7 +10,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace gnomon::draw {
@@ -86,7 +88,7 @@ TEST(NormalMatrix, KeepsNormalsPerpendicularToTheSurfaceAndOutside)
       const glm::mat4 matrix = matrix_of(one, random);
       const glm::mat3 normals = normal_matrix(matrix);
       EXPECT_NEAR(largest_element(normals), 1, 1e-6F);
-      // Normal and tangents of the object, in double: the judge must not round.
+      // Normal and tangents of the object, in double, whose rounding is far below the tolerance.
       const glm::dvec3 n = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
       const glm::dvec3 u = glm::normalize(glm::cross(n, glm::dvec3(0.3, -0.5, 0.8)));
       const glm::dvec3 v = glm::cross(n, u);
@@ -160,36 +162,143 @@ TEST(IsMirrored, IsTheSignOfTheDeterminant)
   EXPECT_FALSE(is_mirrored(glm::mat4(0)));
 }
 
+constexpr std::size_t ENTRY_BYTES = sizeof(shared::ObjectData);
+
+/** Bytes that an upload of \a objects writes. */
+std::uint64_t uploaded_bytes(ObjectBuffer &objects, gpu::Device &device)
+{
+  const std::uint64_t before = device.counters().upload_bytes;
+  objects.upload(device);
+  return device.counters().upload_bytes - before;
+}
+
 TEST(ObjectBuffer, BeginsWithTheIdentity)
 {
   ObjectBuffer objects;
   EXPECT_EQ(objects.size(), 1U);
+  EXPECT_EQ(objects.world_from_object(object_identity), glm::mat4(1));
   EXPECT_EQ(objects.add(glm::mat4(2)), 1U);
   EXPECT_EQ(objects.add(glm::mat4(3), 7), 2U);
-  objects.clear();
-  EXPECT_EQ(objects.size(), 1U);
-  EXPECT_EQ(objects.add(glm::mat4(4)), 1U);
+  EXPECT_EQ(objects.size(), 3U);
+  EXPECT_EQ(objects.index_end(), 3U);
 }
 
-TEST(ObjectBuffer, UploadIsFreeWhereNothingWasAdded)
+TEST(ObjectBuffer, IndicesStayAndThatOfARemovedObjectIsUsedAgain)
+{
+  ObjectBuffer objects;
+  for (int i = 1; i <= 5; i++) {
+    objects.add(glm::mat4(float(i)), 0, {glm::vec3(float(i)), 1});
+  }
+  objects.remove(2);
+  objects.remove(4);
+  EXPECT_EQ(objects.size(), 4U);
+  for (const ObjectIndex index : {1U, 3U, 5U}) {
+    EXPECT_TRUE(objects.is_live(index));
+    EXPECT_EQ(objects.world_from_object(index), glm::mat4(float(index)));
+    EXPECT_EQ(objects.volume(index).center_ws, glm::vec3(float(index)));
+  }
+  EXPECT_FALSE(objects.is_live(2));
+  EXPECT_FALSE(objects.is_live(4));
+  EXPECT_FALSE(objects.is_live(6)) << "an index that was never given";
+  std::vector<ObjectIndex> again = {objects.add(glm::mat4(6)), objects.add(glm::mat4(7))};
+  std::ranges::sort(again);
+  EXPECT_EQ(again, (std::vector<ObjectIndex>{2, 4}));
+  EXPECT_EQ(objects.add(glm::mat4(8)), 6U);
+}
+
+TEST(ObjectBuffer, RevisionsTellWhatChanged)
+{
+  ObjectBuffer objects;
+  const CullingVolume volume{{1, 2, 3}, 4};
+  const ObjectIndex a = objects.add(glm::mat4(2), 5, volume);
+  const ObjectIndex b = objects.add(glm::mat4(3), 6, volume);
+  EXPECT_GT(objects.revision(b), objects.revision(a));
+  const auto is_edit = [&](ObjectIndex index, auto &&change) {
+    const std::uint64_t before = objects.revision();
+    const std::uint64_t structure = objects.structure_revision();
+    change();
+    EXPECT_EQ(objects.structure_revision(), structure) << "nothing was added or removed";
+    EXPECT_EQ(objects.revision() > before, objects.revision(index) > before);
+    return objects.revision() > before;
+  };
+  EXPECT_FALSE(is_edit(a, [&] { objects.set(a, glm::mat4(2), 5, volume); })) << "the same values";
+  EXPECT_TRUE(is_edit(a, [&] { objects.set(a, glm::mat4(9), 5, volume); }));
+  EXPECT_TRUE(is_edit(a, [&] { objects.set(a, glm::mat4(9), 7, volume); }));
+  EXPECT_TRUE(is_edit(a, [&] { objects.set(a, glm::mat4(9), 7, {{1, 2, 3}, 5}); }));
+  EXPECT_TRUE(is_edit(a, [&] { objects.set(a, glm::mat4(9), 7, {{1, 2, 4}, 5}); }));
+  EXPECT_LT(objects.revision(b), objects.revision(a));
+  const std::uint64_t structure = objects.structure_revision();
+  objects.remove(b);
+  EXPECT_GT(objects.structure_revision(), structure);
+  EXPECT_EQ(objects.structure_revision(), objects.revision());
+  EXPECT_EQ(objects.revision(b), 0U);
+}
+
+TEST(ObjectBuffer, RefusesWhatIsNotFiniteAndIsAsBefore)
+{
+  constexpr float NAN_VALUE = std::numeric_limits<float>::quiet_NaN();
+  constexpr float INFINITE = std::numeric_limits<float>::infinity();
+  const CullingVolume volume{{1, 2, 3}, 4};
+  ObjectBuffer objects;
+  const ObjectIndex index = objects.add(glm::mat4(2), 5, volume);
+  const std::uint64_t revision = objects.revision();
+  struct Refused {
+    glm::mat4 matrix;
+    CullingVolume volume;
+    const char *reason;
+  };
+  std::vector<Refused> refused;
+  for (const float value : {NAN_VALUE, INFINITE, -INFINITE}) {
+    for (int element = 0; element < 16; element++) {
+      glm::mat4 matrix(1);
+      matrix[element / 4][element % 4] = value;
+      refused.push_back({matrix, volume, "matrix is not finite"});
+    }
+  }
+  refused.push_back({glm::mat4(1), {{1, NAN_VALUE, 3}, 4}, "volume is not a number"});
+  refused.push_back({glm::mat4(1), {{1, 2, 3}, NAN_VALUE}, "volume is not a number"});
+  for (const Refused &one : refused) {
+    test::expect_contains(test::error_of([&] { objects.set(index, one.matrix, 6, one.volume); }), one.reason);
+    test::expect_contains(test::error_of([&] { objects.add(one.matrix, 6, one.volume); }), one.reason);
+  }
+  EXPECT_EQ(objects.size(), 2U);
+  EXPECT_EQ(objects.revision(), revision);
+  EXPECT_EQ(objects.world_from_object(index), glm::mat4(2));
+  EXPECT_EQ(objects.volume(index).radius, 4);
+  // Nor does a removed object's place get lost.
+  objects.remove(index);
+  EXPECT_NE(test::error_of([&] { objects.add(glm::mat4(NAN_VALUE)); }), "");
+  EXPECT_EQ(objects.add(glm::mat4(1)), index);
+}
+
+TEST(ObjectBuffer, UploadsWhatChanged)
 {
   const auto device = gpu::create_null_device();
   ObjectBuffer objects;
   EXPECT_FALSE(objects.buffer());
-  const auto uploaded = [&] {
-    const std::uint64_t before = device->counters().upload_bytes;
-    objects.upload(*device);
-    return device->counters().upload_bytes - before;
-  };
-  constexpr std::size_t ENTRY = sizeof(shared::ObjectData);
-  EXPECT_EQ(uploaded(), ENTRY);
-  EXPECT_EQ(uploaded(), 0U);
-  objects.add(glm::mat4(1));
-  objects.add(glm::mat4(1));
-  EXPECT_EQ(uploaded(), 3 * ENTRY);
-  EXPECT_EQ(uploaded(), 0U);
-  objects.clear();
-  EXPECT_EQ(uploaded(), ENTRY);
+  EXPECT_EQ(uploaded_bytes(objects, *device), ENTRY_BYTES);
+  EXPECT_EQ(uploaded_bytes(objects, *device), 0U);
+  for (int i = 1; i < 1000; i++) {
+    objects.add(glm::mat4(1));
+  }
+  EXPECT_EQ(uploaded_bytes(objects, *device), 1000 * ENTRY_BYTES);
+  EXPECT_EQ(uploaded_bytes(objects, *device), 0U);
+  const auto move = [&](ObjectIndex index) { objects.set(index, glm::mat4(float(objects.revision())), 0, {}); };
+  move(500);
+  EXPECT_EQ(uploaded_bytes(objects, *device), ENTRY_BYTES) << "one object";
+  for (const ObjectIndex index : {10U, 11U, 12U, 900U}) {
+    move(index);
+  }
+  EXPECT_EQ(uploaded_bytes(objects, *device), 4 * ENTRY_BYTES) << "a run, and one far from it";
+  objects.set(500, objects.world_from_object(500), 0, {});
+  EXPECT_EQ(uploaded_bytes(objects, *device), 0U) << "the same values";
+  objects.remove(500);
+  EXPECT_EQ(uploaded_bytes(objects, *device), 0U) << "a removed object is written by nobody";
+  EXPECT_EQ(objects.add(glm::mat4(3)), 500U);
+  EXPECT_EQ(uploaded_bytes(objects, *device), ENTRY_BYTES);
+  move(0 + 1);
+  move(999);
+  EXPECT_EQ(uploaded_bytes(objects, *device), 2 * ENTRY_BYTES) << "the first and the last";
 }
 
 TEST(ObjectBuffer, GrowsNowAndThenAndNeverShrinks)
@@ -202,13 +311,15 @@ TEST(ObjectBuffer, GrowsNowAndThenAndNeverShrinks)
     objects.add(glm::mat4(1));
     objects.upload(*device);
     const std::size_t size = objects.buffer().size_bytes();
-    EXPECT_GE(size, objects.size() * sizeof(shared::ObjectData));
+    EXPECT_GE(size, objects.size() * ENTRY_BYTES);
     EXPECT_GE(size, size_before);
     growths += size > size_before ? 1 : 0;
     size_before = size;
   }
   EXPECT_LE(growths, 12);
-  objects.clear();
+  for (ObjectIndex index = 1; index < objects.index_end(); index++) {
+    objects.remove(index);
+  }
   objects.upload(*device);
   EXPECT_EQ(objects.buffer().size_bytes(), size_before);
   EXPECT_EQ(device->live_resources().size(), 1U) << "a buffer that was outgrown lives";
@@ -218,7 +329,7 @@ TEST(ObjectBuffer, TakesAllThatTheLimitHoldsAndNamesItBeyond)
 {
   // Eight entries and a little.
   gpu::Limits limits;
-  limits.storage_block_bytes_max = 8 * sizeof(shared::ObjectData) + 100;
+  limits.storage_block_bytes_max = 8 * ENTRY_BYTES + 100;
   const auto device = gpu::create_null_device(limits);
   ObjectBuffer objects;
   objects.upload(*device);
@@ -226,13 +337,14 @@ TEST(ObjectBuffer, TakesAllThatTheLimitHoldsAndNamesItBeyond)
     objects.add(glm::mat4(1));
   }
   EXPECT_EQ(test::error_of([&] { objects.upload(*device); }), "");
-  objects.add(glm::mat4(1));
+  const ObjectIndex last = objects.add(glm::mat4(1));
+  objects.set(1, glm::mat4(2), 0, {});
   test::expect_contains(test::error_of([&] { objects.upload(*device); }), "buffer 'object_block'");
   EXPECT_TRUE(objects.buffer()) << "what was there is lost";
-  // The next try fails too, and after a clear all is well.
+  // The next try fails too; without the object past the limit all is well, and no edit is lost.
   EXPECT_NE(test::error_of([&] { objects.upload(*device); }), "");
-  objects.clear();
-  EXPECT_EQ(test::error_of([&] { objects.upload(*device); }), "");
+  objects.remove(last);
+  EXPECT_EQ(uploaded_bytes(objects, *device), ENTRY_BYTES) << "the object that was set";
 }
 
 TEST(ObjectBuffer, MovesToANewDeviceWithItsContent)

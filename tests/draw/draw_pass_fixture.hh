@@ -72,10 +72,13 @@ struct EverythingPass {
     first.call(quad);
     first.call(quad, glm::mat4(2));
     first.call(triangle, 5, {{0, 0, 0}, 1});
-    first.call_instances(triangle, 4, 3);
-    draw::InstanceCall &instances = first.instances(quad, 2);
-    for (int i = 0; i < 6; i++) {
-      instances.add_empty();
+    draw::InstanceCall &triangles = first.instances(triangle);
+    for (std::uint32_t i = 0; i < 4; i++) {
+      triangles.add(3, i);
+    }
+    draw::InstanceCall &quads = first.instances(quad);
+    for (std::uint32_t i = 0; i < 6; i++) {
+      quads.add(2, i);
     }
     first.call_procedural(2, 3);
     pass.group(shader);
@@ -96,7 +99,7 @@ struct EverythingPass {
       "    call 2 triangles from 0, object 0\n"
       "    call 2 triangles from 0, object 1\n"
       "    call 1 triangles from 6, object 5, culled\n"
-      "    call 1 triangles from 6, object 3 x4\n"
+      "    instances 1 triangles from 6 x4\n"
       "    instances 2 triangles from 0 x6\n"
       "    procedural 2 triangles x3\n"
       "  group everything\n";

@@ -222,7 +222,10 @@ void main()
   group.call(full, 1);
   group.call(other, 2);
   group.call(full, 3);
-  group.call_instances(full, 4, 5);
+  InstanceCall &instances = group.instances(full);
+  for (std::uint32_t i = 0; i < 4; i++) {
+    instances.add(5, i);
+  }
   EXPECT_EQ(drawn(pass)[0], glm::vec4(5, 3, 0, 0));
   group.call(other, 6, {{9, 9, 9}, 1});
   EXPECT_EQ(drawn(pass, View(glm::mat4(1), perspective(1, 1, 1, 2)))[0], glm::vec4(5, 3, 0, 0)) << "not culled";
@@ -230,8 +233,7 @@ void main()
 
 TEST_F(PassGpu, OnePassDrawsTheSixFacesOfOneLampAfterAnother)
 {
-  // Seed 000: six empty instances, layered output, a block for the lamp. There, the second lamp's layers overlap the
-  // first's.
+  // Layers of one lamp must not overlap those of the one before it.
   constexpr int LAMPS = 3;
   const gpu::Texture cubes = device->create_texture({.name = "cubes",
                                                      .kind = gpu::TextureKind::Array,
@@ -267,8 +269,8 @@ void main()
   ShadingGroup &group = pass.group(shader);
   group.constant_ref("lamp", &lamp);
   InstanceCall &faces = group.instances(full);
-  for (int i = 0; i < 6; i++) {
-    faces.add_empty();
+  for (std::uint32_t i = 0; i < 6; i++) {
+    faces.add(object_identity, i);
   }
   gpu::CommandList list;
   list.begin_pass("cubes", layers, {.clear_color = glm::vec4(-1)});

@@ -39,7 +39,8 @@ TEST(Pass, RecordsWhatItHoldsInOrder)
             "  texture hdr linear -> 17\n"
             "  push_constants 32 bytes\n"
             "  draw 2 triangles x2, instances from 0\n"
-            "  draw 1 triangles x5, instances from 2\n"
+            "  draw 1 triangles x1, instances from 2\n"
+            "  draw 1 triangles x4, instances from 3\n"
             "  draw 2 triangles x6, instances from 7\n"
             "  draw_procedural 6 vertices x3\n"
             "  shader everything\n"
@@ -274,11 +275,11 @@ TEST_F(ShadingGroupTest, ConsecutiveCallsOfABatchAreOneDrawAndTheOrderHolds)
   group.call(b, 12);
   group.call(a, 13);
   group.call(a, 14);
-  group.call_instances(a, 2, 15);
+  group.call(a, 15);
   EXPECT_EQ(drawn(pass, view),
             "a: 10/0 11/0\n"
             "b: 12/0\n"
-            "a: 13/0 14/0 15/0 15/1\n");
+            "a: 13/0 14/0 15/0\n");
 }
 
 TEST_F(ShadingGroupTest, DrawsOfAGroupAreOneCommand)
@@ -329,30 +330,22 @@ TEST_F(ShadingGroupTest, CallOfAnEmptyBatchDoesNotSwallowTheNext)
   }
 }
 
-TEST_F(ShadingGroupTest, InstancesOfACallAreNumbered)
+TEST_F(ShadingGroupTest, InstancesOfOneObjectAreTheSixFacesOfACube)
 {
-  group.call_instances(a, 5, 3);
-  group.call_instances(b, 0, 3);
-  EXPECT_EQ(drawn(pass, view).substr(0, 24), "a: 3/0 3/1 3/2 3/3 3/4\nb");
-}
-
-TEST_F(ShadingGroupTest, EmptyInstancesAreTheSixFacesOfACube)
-{
-  // As the shadow cubes of seed 000: six empty instances of one object.
-  InstanceCall &faces = group.instances(a, 4);
-  for (int i = 0; i < 6; i++) {
-    faces.add_empty();
+  InstanceCall &faces = group.instances(a);
+  for (std::uint32_t i = 0; i < 6; i++) {
+    faces.add(4, i);
   }
   EXPECT_EQ(drawn(pass, view), "a: 4/0 4/1 4/2 4/3 4/4 4/5\n");
 }
 
 TEST_F(ShadingGroupTest, InstancesChangeBetweenRecords)
 {
-  InstanceCall &instances = group.instances(a, 4);
+  InstanceCall &instances = group.instances(a);
   EXPECT_EQ(drawn(pass, view), "") << "none are no draw";
   instances.add(8, 3);
   instances.add(9);
-  instances.add_empty();
+  instances.add(4, 2);
   EXPECT_EQ(drawn(pass, view), "a: 8/3 9/0 4/2\n");
   instances.clear();
   EXPECT_EQ(drawn(pass, view), "");
@@ -388,6 +381,26 @@ TEST_F(ShadingGroupTest, CallOutsideTheViewIsLeftOut)
   EXPECT_EQ(
       drawn(pass, View(glm::lookAt(glm::vec3(0), glm::vec3(0, 0, 1), glm::vec3(0, 1, 0)), perspective(1, 1, 1, 100))),
       "a: 2/0 5/0\n");
+}
+
+TEST_F(ShadingGroupTest, VolumeOfAMovedObjectIsReadAtEachRecord)
+{
+  view = View(glm::mat4(1), perspective(1, 1, 1, 100));
+  const CullingVolume seen{{0, 0, -10}, 1};
+  const CullingVolume hidden{{0, 0, 10}, 1};
+  const ObjectIndex object = objects.add(glm::mat4(1), 0, hidden);
+  group.call(a, object);
+  group.call(a, object, seen);
+  EXPECT_EQ(drawn(pass, view), "a: 1/0\n") << "the call with a volume of its own alone";
+  objects.set(object, glm::mat4(1), 0, seen);
+  EXPECT_EQ(drawn(pass, view), "a: 1/0 1/0\n");
+  objects.set(object, glm::mat4(1), 0, hidden);
+  gpu::CommandList list;
+  const RecordCounts counts = pass.record(view, list);
+  EXPECT_EQ(counts.drawn, 1U);
+  EXPECT_EQ(counts.culled, 1U);
+  objects.set(object, glm::mat4(1), 0, {});
+  EXPECT_EQ(drawn(pass, view), "a: 1/0 1/0\n") << "an object without a volume is always drawn";
 }
 
 TEST_F(ShadingGroupTest, ProceduralNeedsNoBatch)

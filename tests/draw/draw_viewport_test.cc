@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <glm/gtc/matrix_transform.hpp>
 
 namespace gnomon::draw {
 namespace {
@@ -14,11 +15,18 @@ using test::expect_contains;
 
 using Log = std::vector<std::string>;
 
-/** Writes down what it is asked. */
+/** Logs its calls. */
 class LoggingEngine final : public Engine {
  public:
   struct Data : EngineViewportData {
+    void resized() override
+    {
+      resizes++;
+      texture = {};
+    }
     int syncs = 0;
+    int resizes = 0;
+    gpu::Texture texture;
   };
 
   LoggingEngine(std::string name, Log &log) : name_(std::move(name)), log_(log) {}
@@ -29,101 +37,211 @@ class LoggingEngine final : public Engine {
   }
   void init(Viewport &viewport) override
   {
-    viewport.engine_data<Data>(*this).syncs++;
+    auto &data = viewport.engine_data<Data>(*this);
+    data.syncs++;
+    data.texture = viewport.device().create_texture({.name = name_});
     log_.push_back(name_ + " init");
   }
   void cache_init(Viewport & /*viewport*/) override
   {
     log_.push_back(name_ + " cache_init");
   }
-  void cache_populate(Viewport &viewport, const ObjectRef &object) override
+  void cache_populate(Viewport & /*viewport*/, const ObjectBuffer &objects, ObjectIndex object) override
   {
-    viewport.objects().add(object.world_from_object);
-    log_.push_back(fmt::format("{} cache_populate {}", name_, object.index));
+    if (object == fails_at) {
+      throw gpu::Error("object {} fails", object);
+    }
+    log_.push_back(fmt::format("{} cache_populate {} at {}", name_, object, objects.world_from_object(object)[3].x));
   }
-  void cache_finish(Viewport &viewport) override
+  void cache_finish(Viewport & /*viewport*/) override
   {
-    log_.push_back(fmt::format("{} cache_finish, {} objects", name_, viewport.objects().size()));
+    log_.push_back(name_ + " cache_finish");
   }
-  void draw_scene(Viewport &viewport, const View &view) override
+  void draw_scene(Viewport & /*viewport*/, const View &view) override
   {
-    log_.push_back(fmt::format("{} draw_scene {}{}", name_, view.is_perspective() ? "perspective" : "parallel",
-                               viewport.objects().buffer() ? "" : ", objects not uploaded"));
+    log_.push_back(fmt::format("{} draw_scene {}", name_, view.is_perspective() ? "perspective" : "parallel"));
   }
+
+  /** cache_populate throws for this object. */
+  ObjectIndex fails_at = object_identity;
 
  private:
   std::string name_;
   Log &log_;
 };
 
-TEST(Viewport, CallsEnginesInOrder)
-{
-  const auto device = gpu::create_null_device();
+class ViewportTest : public testing::Test {
+ protected:
+  static glm::mat4 at(float x)
+  {
+    return glm::translate(glm::mat4(1), {x, 0, 0});
+  }
+  /** Lines that a sync of \a viewport logs. */
+  Log synced(Viewport &viewport, std::initializer_list<Engine *> engines)
+  {
+    log.clear();
+    viewport.sync(std::vector<Engine *>(engines), objects);
+    return log;
+  }
+
+  std::unique_ptr<gpu::Device> device = gpu::create_null_device();
   Log log;
-  LoggingEngine a("a", log);
-  LoggingEngine b("b", log);
-  const std::vector<Engine *> engines = {&a, &b};
-  const std::vector<ObjectRef> objects = {{.index = 5, .volume = {}}, {.index = 2, .volume = {}}};
+  LoggingEngine a{"a", log};
+  LoggingEngine b{"b", log};
+  ObjectBuffer objects;
+};
+
+TEST_F(ViewportTest, CallsEnginesInOrder)
+{
+  objects.add(at(5));
+  objects.add(at(2));
   Viewport viewport(*device, {8, 4});
-  viewport.sync(engines, objects);
-  // What counts for each engine: init, cache_init, each object in the host's order, cache_finish once all are known.
-  const auto of = [&](const std::string &name) {
-    Log lines;
-    for (const std::string &line : log) {
-      if (line.starts_with(name + " ")) {
-        lines.push_back(line);
-      }
-    }
-    return lines;
-  };
-  EXPECT_EQ(of("a"),
-            (Log{"a init", "a cache_init", "a cache_populate 5", "a cache_populate 2", "a cache_finish, 5 objects"}));
-  EXPECT_EQ(of("b"),
-            (Log{"b init", "b cache_init", "b cache_populate 5", "b cache_populate 2", "b cache_finish, 5 objects"}));
+  // For each engine: init, cache_init, each object in the order of the indices, cache_finish.
+  EXPECT_EQ(synced(viewport, {&a, &b}),
+            (Log{"a init", "a cache_init", "a cache_populate 1 at 5", "a cache_populate 2 at 2", "a cache_finish",
+                 "b init", "b cache_init", "b cache_populate 1 at 5", "b cache_populate 2 at 2", "b cache_finish"}));
   log.clear();
+  const std::vector<Engine *> engines = {&a, &b};
   viewport.draw(engines, View(glm::mat4(1), perspective(1, 1, 0.1F, 10)));
   viewport.draw(engines, View(glm::mat4(1), orthographic(1, 1, 0.1F, 10)));
   EXPECT_EQ(log, (Log{"a draw_scene perspective", "b draw_scene perspective", "a draw_scene parallel",
                       "b draw_scene parallel"}));
 }
 
-TEST(Viewport, SyncBeginsWithoutTheObjectsOfTheLast)
+TEST_F(ViewportTest, HandsOverOnlyTheObjectsThatChanged)
 {
-  const auto device = gpu::create_null_device();
-  Log log;
-  LoggingEngine engine("e", log);
-  const std::vector<Engine *> engines = {&engine};
-  const std::vector<ObjectRef> objects(3);
+  for (int i = 1; i <= 4; i++) {
+    objects.add(at(float(i)));
+  }
   Viewport viewport(*device, {8, 4});
-  viewport.sync(engines, objects);
-  EXPECT_EQ(viewport.objects().size(), 4U);
-  viewport.sync(engines, std::span(objects).first(1));
-  EXPECT_EQ(viewport.objects().size(), 2U);
+  synced(viewport, {&a});
+  EXPECT_EQ(synced(viewport, {&a}), (Log{"a init", "a cache_finish"})) << "nothing changed";
+  objects.set(3, at(30), 0, {});
+  objects.set(1, at(10), 0, {});
+  objects.set(2, at(2), 0, {});
+  EXPECT_EQ(synced(viewport, {&a}),
+            (Log{"a init", "a cache_populate 1 at 10", "a cache_populate 3 at 30", "a cache_finish"}));
+  EXPECT_EQ(synced(viewport, {&a}), (Log{"a init", "a cache_finish"}));
 }
 
-TEST(Viewport, KeepsTheDataOfAnEngineApartFromSyncToSync)
+TEST_F(ViewportTest, BeginsAnewWhereObjectsWereAddedOrRemoved)
 {
-  const auto device = gpu::create_null_device();
-  Log log;
-  LoggingEngine a("a", log);
-  LoggingEngine b("b", log);
+  for (int i = 1; i <= 3; i++) {
+    objects.add(at(float(i)));
+  }
+  Viewport viewport(*device, {8, 4});
+  synced(viewport, {&a});
+  objects.remove(2);
+  EXPECT_EQ(synced(viewport, {&a}),
+            (Log{"a init", "a cache_init", "a cache_populate 1 at 1", "a cache_populate 3 at 3", "a cache_finish"}));
+  objects.add(at(7));
+  EXPECT_EQ(synced(viewport, {&a}), (Log{"a init", "a cache_init", "a cache_populate 1 at 1", "a cache_populate 2 at 7",
+                                         "a cache_populate 3 at 3", "a cache_finish"}));
+  EXPECT_EQ(synced(viewport, {&a}), (Log{"a init", "a cache_finish"}));
+}
+
+TEST_F(ViewportTest, ChangesAreCountedForEachEngineAndViewport)
+{
+  objects.add(at(1));
   Viewport viewport(*device, {8, 4});
   Viewport other(*device, {8, 4});
-  const std::vector<Engine *> only_a = {&a};
-  const std::vector<Engine *> both = {&a, &b};
-  viewport.sync(only_a, {});
-  viewport.sync(both, {});
-  other.sync(only_a, {});
+  synced(viewport, {&a});
+  objects.set(1, at(2), 0, {});
+  const Log all_of_b = {"b init", "b cache_init", "b cache_populate 1 at 2", "b cache_finish"};
+  EXPECT_EQ(synced(viewport, {&b}), all_of_b) << "its first sync";
+  EXPECT_EQ(synced(viewport, {&a}), (Log{"a init", "a cache_populate 1 at 2", "a cache_finish"}));
+  EXPECT_EQ(synced(other, {&b}), all_of_b) << "its first sync of this viewport";
+}
+
+TEST_F(ViewportTest, AFailedSyncIsRepeatedWhole)
+{
+  for (int i = 1; i <= 3; i++) {
+    objects.add(at(float(i)));
+  }
+  Viewport viewport(*device, {8, 4});
+  synced(viewport, {&a, &b});
+  objects.set(1, at(10), 0, {});
+  objects.set(3, at(30), 0, {});
+  a.fails_at = 3;
+  EXPECT_THROW(synced(viewport, {&a, &b}), gpu::Error);
+  EXPECT_EQ(log, (Log{"a init", "a cache_populate 1 at 10"})) << "the engine after the failed one was not called";
+  a.fails_at = object_identity;
+  EXPECT_EQ(
+      synced(viewport, {&a, &b}),
+      (Log{"a init", "a cache_init", "a cache_populate 1 at 10", "a cache_populate 2 at 2", "a cache_populate 3 at 30",
+           "a cache_finish", "b init", "b cache_populate 1 at 10", "b cache_populate 3 at 30", "b cache_finish"}));
+}
+
+TEST_F(ViewportTest, KeepsTheDataOfAnEngineApartFromSyncToSync)
+{
+  Viewport viewport(*device, {8, 4});
+  Viewport other(*device, {8, 4});
+  synced(viewport, {&a});
+  synced(viewport, {&a, &b});
+  synced(other, {&a});
   EXPECT_EQ(viewport.engine_data<LoggingEngine::Data>(a).syncs, 2);
   EXPECT_EQ(viewport.engine_data<LoggingEngine::Data>(b).syncs, 1);
   EXPECT_EQ(other.engine_data<LoggingEngine::Data>(a).syncs, 1);
+}
+
+TEST_F(ViewportTest, RemovedEngineLeavesNothingAndBeginsAnew)
+{
+  objects.add(at(1));
+  Viewport viewport(*device, {8, 4});
+  viewport.remove_engine(a);
+  synced(viewport, {&b});
+  const std::size_t memory = device->memory_bytes();
+  synced(viewport, {&a});
+  EXPECT_GT(device->memory_bytes(), memory);
+  viewport.remove_engine(a);
+  EXPECT_EQ(device->memory_bytes(), memory);
+  EXPECT_EQ(device->live_resources(), std::vector<std::string>{"texture 'b'"});
+  EXPECT_EQ(viewport.engine_data<LoggingEngine::Data>(b).syncs, 1) << "the other engine's data";
+  EXPECT_EQ(synced(viewport, {&a}), (Log{"a init", "a cache_init", "a cache_populate 1 at 1", "a cache_finish"}));
+}
+
+TEST_F(ViewportTest, ResizeFreesTheDepthAndTellsTheEngines)
+{
+  objects.add(at(1));
+  Viewport viewport(*device, {8, 4});
+  static_cast<void>(viewport.depth_texture());
+  synced(viewport, {&a, &b});
+  viewport.resize({8, 4});
+  EXPECT_EQ(viewport.engine_data<LoggingEngine::Data>(a).resizes, 0) << "the same size";
+  EXPECT_TRUE(viewport.has_depth_texture());
+  viewport.resize({6, 10});
+  EXPECT_EQ(viewport.size_px(), glm::ivec2(6, 10));
+  EXPECT_EQ(viewport.engine_data<LoggingEngine::Data>(a).resizes, 1);
+  EXPECT_EQ(viewport.engine_data<LoggingEngine::Data>(b).resizes, 1);
+  EXPECT_EQ(device->live_resources(), std::vector<std::string>());
+  const gpu::TextureDesc &depth = viewport.depth_texture().desc();
+  EXPECT_EQ(glm::ivec2(depth.width, depth.height), glm::ivec2(6, 10));
+  // The objects are as they were.
+  EXPECT_EQ(synced(viewport, {&a}), (Log{"a init", "a cache_finish"}));
+}
+
+TEST_F(ViewportTest, ResizeToASizePastTheLimitChangesNothing)
+{
+  gpu::Limits limits;
+  limits.texture_size_max = 16;
+  const auto small = gpu::create_null_device(limits);
+  Viewport viewport(*small, {8, 4});
+  static_cast<void>(viewport.depth_texture());
+  synced(viewport, {&a});
+  for (const glm::ivec2 &size_px : {glm::ivec2(17, 4), glm::ivec2(4, 17), glm::ivec2(0, 4), glm::ivec2(4, -1)}) {
+    expect_contains(error_of([&] { viewport.resize(size_px); }),
+                    fmt::format("{}x{} pixels are not from 1x1 to 16x16", size_px.x, size_px.y));
+  }
+  EXPECT_EQ(viewport.size_px(), glm::ivec2(8, 4));
+  EXPECT_TRUE(viewport.has_depth_texture());
+  EXPECT_EQ(viewport.engine_data<LoggingEngine::Data>(a).resizes, 0);
 }
 
 TEST(Viewport, SharesADepthOfItsSize)
 {
   const auto device = gpu::create_null_device();
   Viewport viewport(*device, {8, 4});
-  EXPECT_FALSE(viewport.has_depth_texture()) << "nobody asked";
+  EXPECT_FALSE(viewport.has_depth_texture()) << "no engine asked for it";
   const gpu::TextureDesc &depth = viewport.depth_texture().desc();
   EXPECT_EQ(glm::ivec2(depth.width, depth.height), glm::ivec2(8, 4));
   EXPECT_EQ(depth.format, gpu::Format::Depth32F);
@@ -175,34 +293,6 @@ TEST(EngineRegistry, UnknownNameIsAnErrorThatNamesTheKnown)
   const std::string message = error_of([&] { static_cast<void>(registry.create("third")); });
   expect_contains(message, "'third'");
   expect_contains(message, "first, second");
-}
-
-TEST(EngineDataMap, MakesAtTheFirstAskAndKeepsInPlace)
-{
-  EngineDataMap<std::vector<int>> map;
-  std::vector<int> &seven = map.get(7);
-  EXPECT_TRUE(seven.empty());
-  seven.push_back(1);
-  for (std::uint32_t i = 100; i < 1000; i++) {
-    map.get(i);
-  }
-  EXPECT_EQ(&map.get(7), &seven) << "the reference moved";
-  EXPECT_EQ(map.get(7).size(), 1U);
-  EXPECT_EQ(map.size(), 901U);
-}
-
-TEST(EngineDataMap, ForgetsWhatTheHostHasNoMore)
-{
-  EngineDataMap<int> map;
-  for (std::uint32_t i = 0; i < 10; i++) {
-    map.get(i) = int(i) + 1;
-  }
-  map.remove_from(4);
-  EXPECT_EQ(map.size(), 4U);
-  EXPECT_EQ(map.get(3), 4);
-  EXPECT_EQ(map.get(4), 0) << "made anew";
-  map.remove_from(0);
-  EXPECT_EQ(map.size(), 0U);
 }
 
 }  // namespace

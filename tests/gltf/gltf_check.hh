@@ -12,14 +12,33 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 namespace gnomon::test {
 
-/** All that scene.hh promises of an imported scene. */
+/** Everything that scene.hh promises of an imported scene. */
 inline void expect_valid(const scene::Scene &scene)
 {
   EXPECT_EQ(measure::contract_faults(scene), std::vector<std::string>());
+}
+
+/** The thing number \a index of a pool in its order. \throws std::out_of_range */
+template <typename T>
+const T &nth(const scene::Pool<T> &things, std::size_t index)
+{
+  for (const auto &[handle, thing] : things) {
+    if (index-- == 0) {
+      return thing;
+    }
+  }
+  throw std::out_of_range("the pool has fewer things");
+}
+
+/** The name of the node of an object. */
+inline std::string object_name(const scene::Scene &scene, std::size_t index)
+{
+  return scene.nodes()[scene.objects().at(index).node].name;
 }
 
 inline scene::Scene import_text(const std::string &content, const std::string &name = "scene.gltf")

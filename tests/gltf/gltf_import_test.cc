@@ -12,12 +12,12 @@ namespace {
 
 using scene::AlphaMode;
 using scene::AreaShape;
-using scene::Camera;
 using scene::CameraKind;
-using scene::Lamp;
 using scene::LampKind;
 using scene::Material;
 using scene::Mesh;
+using scene::PlacedCamera;
+using scene::PlacedLamp;
 using scene::Scene;
 
 constexpr double pi = std::numbers::pi;
@@ -49,8 +49,8 @@ Mesh import_mesh(GltfBuilder &builder, const json &primitive)
 {
   builder.node({{"mesh", builder.mesh(primitive)}});
   const Scene scene = import(builder);
-  EXPECT_EQ(scene.meshes.size(), 1U);
-  return scene.meshes.at(0);
+  EXPECT_EQ(scene.meshes().size(), 1U);
+  return nth(scene.meshes(), 0);
 }
 
 // ---- Containers ----
@@ -60,11 +60,11 @@ TEST(GltfImport, GltfAndGlbGiveTheSameScene)
   const GltfBuilder builder = triangle_scene();
   const Scene text = import_text(builder.gltf());
   const Scene binary = import_text(builder.glb(), "scene.glb");
-  ASSERT_EQ(text.meshes.size(), 1U);
-  ASSERT_EQ(binary.meshes.size(), 1U);
-  EXPECT_EQ(text.meshes[0].positions, binary.meshes[0].positions);
-  EXPECT_EQ(text.objects[0].name, "thing");
-  EXPECT_EQ(binary.objects[0].name, "thing");
+  ASSERT_EQ(text.meshes().size(), 1U);
+  ASSERT_EQ(binary.meshes().size(), 1U);
+  EXPECT_EQ(nth(text.meshes(), 0).positions, nth(binary.meshes(), 0).positions);
+  EXPECT_EQ(object_name(text, 0), "thing");
+  EXPECT_EQ(object_name(binary, 0), "thing");
 }
 
 TEST(GltfImport, ReadsABufferBesideTheFile)
@@ -76,7 +76,7 @@ TEST(GltfImport, ReadsABufferBesideTheFile)
   builder.document["buffers"] = {{{"byteLength", builder.bytes.size()}, {"uri", "the%20data.bin"}}};
   const Scene scene = gltf::import_gltf(folder.write("scene.gltf", builder.gltf()));
   expect_valid(scene);
-  EXPECT_EQ(corners(scene.meshes.at(0))[1], glm::vec3(1, 0, 0));
+  EXPECT_EQ(corners(nth(scene.meshes(), 0))[1], glm::vec3(1, 0, 0));
 }
 
 TEST(GltfImport, KeepsThePathAsGiven)
@@ -92,7 +92,7 @@ TEST(GltfImport, NeverLooksAtImagesThatNothingWears)
   builder.document["images"] = {
       {{"uri", "missing.png"}}, {{"uri", "data:image/webp;base64,AAAA"}}, {{"bufferView", 99}}, json::object()};
   builder.document["textures"] = {{{"source", 77}}};
-  EXPECT_EQ(import(builder).objects.size(), 1U);
+  EXPECT_EQ(import(builder).objects().size(), 1U);
 }
 
 // ---- Nodes ----
@@ -107,9 +107,9 @@ TEST(GltfNodes, WorldIsTheProductDownTheTree)
   nodes.push_back({{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 10, 20, 30, 1}}, {"children", {1}}});
   builder.document["scenes"] = {{{"nodes", {2}}}};
   const Scene scene = import(builder);
-  ASSERT_EQ(scene.objects.size(), 1U);
+  ASSERT_EQ(scene.objects().size(), 1U);
   // (1, 0, 0) is doubled, moved up 3, turned a quarter about +Z, and carried along.
-  expect_near(glm::vec3(scene.objects[0].world_from_object * glm::vec4(1, 0, 0, 1)), {10 - 3, 20 + 2, 30}, 1e-5F);
+  expect_near(glm::vec3(scene.objects()[0].world_from_object * glm::vec4(1, 0, 0, 1)), {10 - 3, 20 + 2, 30}, 1e-5F);
 }
 
 TEST(GltfNodes, OrderIsTranslateRotateScale)
@@ -123,7 +123,7 @@ TEST(GltfNodes, OrderIsTranslateRotateScale)
       glm::translate(glm::mat4(1), {1, 2, 3}) * glm::mat4_cast(rotation) * glm::scale(glm::mat4(1), {2, -3, 0.25F});
   const Scene scene = import(builder);
   for (int column = 0; column < 4; column++) {
-    expect_near(glm::vec3(scene.objects.at(0).world_from_object[column]), glm::vec3(expected[column]), 1e-5F);
+    expect_near(glm::vec3(scene.objects().at(0).world_from_object[column]), glm::vec3(expected[column]), 1e-5F);
   }
 }
 
@@ -134,7 +134,7 @@ TEST(GltfNodes, ProductsAreInDouble)
   builder.document["nodes"][0]["translation"] = {-16777216, 0, 0};
   builder.append("nodes", {{"translation", {16777217, 0, 0}}, {"children", {0}}});
   builder.document["scenes"] = {{{"nodes", {1}}}};
-  EXPECT_EQ(import(builder).objects.at(0).world_from_object[3].x, 1.0F);
+  EXPECT_EQ(import(builder).objects().at(0).world_from_object[3].x, 1.0F);
 }
 
 TEST(GltfNodes, SharedMeshIsOneMeshOfManyObjects)
@@ -142,10 +142,10 @@ TEST(GltfNodes, SharedMeshIsOneMeshOfManyObjects)
   GltfBuilder builder = triangle_scene();
   builder.node({{"name", "other"}, {"mesh", 0}, {"translation", {5, 0, 0}}});
   const Scene scene = import(builder);
-  EXPECT_EQ(scene.meshes.size(), 1U);
-  ASSERT_EQ(scene.objects.size(), 2U);
-  EXPECT_EQ(scene.objects[0].mesh, scene.objects[1].mesh);
-  EXPECT_EQ(scene.objects[1].name, "other");
+  EXPECT_EQ(scene.meshes().size(), 1U);
+  ASSERT_EQ(scene.objects().size(), 2U);
+  EXPECT_EQ(scene.objects()[0].mesh, scene.objects()[1].mesh);
+  EXPECT_EQ(object_name(scene, 1), "other");
 }
 
 TEST(GltfNodes, EachPrimitiveIsAnObject)
@@ -156,9 +156,9 @@ TEST(GltfNodes, EachPrimitiveIsAnObject)
   builder.append("meshes", {{"name", "pair"}, {"primitives", {primitive, primitive}}});
   builder.node({{"name", "node"}, {"mesh", 0}});
   const Scene scene = import(builder);
-  ASSERT_EQ(scene.objects.size(), 2U);
-  EXPECT_EQ(scene.meshes.at(0).name, "pair[0]");
-  EXPECT_EQ(scene.meshes.at(1).name, "pair[1]");
+  ASSERT_EQ(scene.objects().size(), 2U);
+  EXPECT_EQ(nth(scene.meshes(), 0).name, "pair[0]");
+  EXPECT_EQ(nth(scene.meshes(), 1).name, "pair[1]");
 }
 
 TEST(GltfNodes, DefaultSceneDecides)
@@ -167,11 +167,11 @@ TEST(GltfNodes, DefaultSceneDecides)
   builder.append("nodes", {{"name", "second"}, {"mesh", 0}});
   builder.document["scenes"] = {{{"nodes", {0}}}, {{"nodes", {1}}}};
   builder.document["scene"] = 1;
-  EXPECT_EQ(import(builder).objects.at(0).name, "second");
+  EXPECT_EQ(object_name(import(builder), 0), "second");
   builder.document.erase("scene");
-  EXPECT_EQ(import(builder).objects.at(0).name, "thing");
+  EXPECT_EQ(object_name(import(builder), 0), "thing");
   builder.document.erase("scenes");
-  EXPECT_EQ(import(builder).objects.size(), 2U);
+  EXPECT_EQ(import(builder).objects().size(), 2U);
 }
 
 TEST(GltfNodes, HundredThousandDeepIsNoTrouble)
@@ -183,7 +183,7 @@ TEST(GltfNodes, HundredThousandDeepIsNoTrouble)
     nodes.push_back({{"children", {i - 1}}, {"translation", {0, 1, 0}}});
   }
   builder.document["scenes"] = {{{"nodes", {depth}}}};
-  EXPECT_EQ(import(builder).objects.at(0).world_from_object[3].y, float(depth));
+  EXPECT_EQ(import(builder).objects().at(0).world_from_object[3].y, float(depth));
 }
 
 TEST(GltfNodes, SingularAndMirroredObjectsAreKept)
@@ -191,8 +191,8 @@ TEST(GltfNodes, SingularAndMirroredObjectsAreKept)
   GltfBuilder builder = triangle_scene();
   builder.document["nodes"][0]["scale"] = {-1, 1, 0};
   const Scene scene = import(builder);
-  EXPECT_EQ(scene.objects.at(0).world_from_object[0].x, -1.0F);
-  EXPECT_EQ(scene.objects.at(0).world_from_object[2], glm::vec4(0));
+  EXPECT_EQ(scene.objects().at(0).world_from_object[0].x, -1.0F);
+  EXPECT_EQ(scene.objects().at(0).world_from_object[2], glm::dvec4(0));
 }
 
 TEST(GltfNodes, PerspectiveMatrixLosesItsLastRow)
@@ -215,7 +215,7 @@ TEST(GltfNodes, MatrixOutOfFloatIsLeftOut)
   builder.node({{"name", "far"}, {"mesh", 0}, {"translation", {1e300, 0, 0}}});
   builder.node({{"name", "farther"}, {"mesh", 0}, {"scale", {1e13, 1, 1}}});
   const Scene scene = import(builder);
-  EXPECT_EQ(scene.objects.size(), 1U);
+  EXPECT_EQ(scene.objects().size(), 1U);
   EXPECT_WARNING(scene,
                  "node 'far' and 1 other: left out: its matrix is not finite or reaches beyond 1e12 m (2 times)");
 }
@@ -230,7 +230,7 @@ TEST(GltfNodes, ObjectBeyondTheWorldIsLeftOut)
   const int mesh = builder.mesh({{"attributes", {{"POSITION", 1}}}});
   builder.node({{"name", "huge"}, {"mesh", mesh}, {"scale", {1e10, 1, 1}}});
   const Scene scene = import(builder);
-  EXPECT_EQ(scene.objects.size(), 1U);
+  EXPECT_EQ(scene.objects().size(), 1U);
   EXPECT_WARNING(scene, "node 'huge': object left out: it reaches beyond");
 }
 
@@ -277,7 +277,7 @@ TEST(GltfImport, StripStitchesAreDroppedSilently)
   const json primitive = {{"attributes", {{"POSITION", positions}}}, {"indices", indices}, {"mode", 5}};
   builder.node({{"mesh", builder.mesh(primitive)}});
   const Scene scene = import(builder);
-  ASSERT_EQ(scene.meshes.at(0).indices.size(), 6U);
+  ASSERT_EQ(nth(scene.meshes(), 0).indices.size(), 6U);
   EXPECT_NO_WARNING(scene, "triangle");
 }
 
@@ -293,7 +293,7 @@ TEST(GltfImport, PointsAndLinesAreCountedAndNamed)
                               {{"attributes", attributes}, {"mode", 9}}}}});
   builder.node({{"mesh", 1}});
   const Scene scene = import(builder);
-  EXPECT_EQ(scene.objects.size(), 1U);
+  EXPECT_EQ(scene.objects().size(), 1U);
   EXPECT_WARNING(scene, "mesh 'wires': primitive left out: lines are not drawn (2 times)");
   EXPECT_WARNING(scene, "mesh 'wires': primitive left out: points are not drawn");
   EXPECT_WARNING(scene, "mesh 'wires': primitive left out: mode 9 is unknown");
@@ -350,9 +350,9 @@ TEST(GltfImport, BadNormalsAreMended)
   const int normals = builder.accessor(std::vector<float>{0, 0, 0, nan, 0, 0, 0, 3, 4}, Float32, "VEC3");
   builder.node({{"mesh", builder.mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}}})}});
   const Scene scene = import(builder);
-  expect_near(scene.meshes.at(0).normals[0], {0, 0, 1});
-  expect_near(scene.meshes.at(0).normals[1], {0, 0, 1});
-  expect_near(scene.meshes.at(0).normals[2], {0, 0.6F, 0.8F});
+  expect_near(nth(scene.meshes(), 0).normals[0], {0, 0, 1});
+  expect_near(nth(scene.meshes(), 0).normals[1], {0, 0, 1});
+  expect_near(nth(scene.meshes(), 0).normals[2], {0, 0.6F, 0.8F});
   EXPECT_WARNING(scene, "mesh 'mesh': normal replaced by that of a face: it was zero or not finite (2 times)");
 }
 
@@ -383,7 +383,7 @@ TEST(GltfImport, UnreadableNormalsAreMadeInstead)
   const int normals = builder.accessor(std::vector<float>{0, 0, 1}, Float32, "VEC3");
   builder.node({{"mesh", builder.mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}}})}});
   const Scene scene = import(builder);
-  EXPECT_EQ(scene.meshes.at(0).normals[0], glm::vec3(0, 0, 1));
+  EXPECT_EQ(nth(scene.meshes(), 0).normals[0], glm::vec3(0, 0, 1));
   EXPECT_WARNING(scene, "mesh 'mesh': flat normals made instead: NORMAL: count differs");
 }
 
@@ -481,7 +481,7 @@ TEST(GltfImport, LeftOverVerticesAreCounted)
   const int positions = builder.positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 5, 6, 6, 6});
   builder.node({{"mesh", builder.mesh({{"attributes", {{"POSITION", positions}}}})}});
   const Scene scene = import(builder);
-  EXPECT_EQ(scene.meshes.at(0).indices.size(), 3U);
+  EXPECT_EQ(nth(scene.meshes(), 0).indices.size(), 3U);
   EXPECT_WARNING(scene, "mesh 'mesh': vertex left over at the end: it makes no triangle (2 times)");
 }
 
@@ -561,14 +561,14 @@ std::pair<Material, Scene> import_material(json material)
   builder.append("materials", std::move(material));
   builder.document["meshes"][0]["primitives"][0]["material"] = 0;
   Scene scene = import(builder);
-  return {scene.materials.at(0), scene};
+  return {nth(scene.materials(), 0), scene};
 }
 
 TEST(GltfMaterial, AbsentIsTheDefaultOfGltf)
 {
   const Scene scene = import(triangle_scene());
-  ASSERT_EQ(scene.materials.size(), 1U);
-  const Material &material = scene.materials[0];
+  ASSERT_EQ(scene.materials().size(), 1U);
+  const Material &material = nth(scene.materials(), 0);
   EXPECT_EQ(material.base_color, glm::vec3(1));
   EXPECT_EQ(material.metallic, 1);
   EXPECT_EQ(material.roughness, 1);
@@ -683,31 +683,31 @@ TEST(GltfMaterial, UnusedOnesAreNeitherKeptNorNamed)
   GltfBuilder builder = triangle_scene();
   builder.append("materials", {{"name", "idle"}, {"alphaMode", "MASK"}});
   const Scene scene = import(builder);
-  EXPECT_EQ(scene.materials.size(), 1U);
+  EXPECT_EQ(scene.materials().size(), 1U);
   EXPECT_NO_WARNING(scene, "idle");
 }
 
 // ---- Lamps ----
 
-Lamp import_lamp(json light, json extras = nullptr, json more = json::object())
+PlacedLamp import_lamp(json light, json extras = nullptr, json more = json::object())
 {
   GltfBuilder builder = triangle_scene();
   builder.light(std::move(light), std::move(extras), std::move(more));
   const Scene scene = import(builder);
-  EXPECT_EQ(scene.lamps.size(), 1U);
+  EXPECT_EQ(scene.placed_lamps().size(), 1U);
   EXPECT_FALSE(scene.is_lamp_default);
   EXPECT_NO_WARNING(scene, "lamp 'lamp'");
-  return scene.lamps.at(0);
+  return scene.placed_lamps().at(0);
 }
 
 TEST(GltfLamp, PhotometricUnitsAreDividedBy683)
 {
-  const Lamp sun = import_lamp({{"type", "directional"}, {"intensity", 1366}, {"color", {1, 0.5, 0.25}}});
+  const PlacedLamp sun = import_lamp({{"type", "directional"}, {"intensity", 1366}, {"color", {1, 0.5, 0.25}}});
   EXPECT_EQ(sun.kind, LampKind::Sun);
   EXPECT_FLOAT_EQ(sun.intensity, 2.0F);
   EXPECT_EQ(sun.color, glm::vec3(1, 0.5F, 0.25F));
   // A point lamp of 100 W, as Blender writes it.
-  const Lamp point = import_lamp({{"type", "point"}, {"intensity", 100 * 683 / (4 * pi)}, {"range", 12.5}});
+  const PlacedLamp point = import_lamp({{"type", "point"}, {"intensity", 100 * 683 / (4 * pi)}, {"range", 12.5}});
   EXPECT_EQ(point.kind, LampKind::Point);
   EXPECT_FLOAT_EQ(point.intensity, float(100 / (4 * pi)));
   EXPECT_EQ(point.range, 12.5F);
@@ -716,7 +716,7 @@ TEST(GltfLamp, PhotometricUnitsAreDividedBy683)
 
 TEST(GltfLamp, DefaultsAreThoseOfTheExtension)
 {
-  const Lamp lamp = import_lamp({{"type", "spot"}, {"spot", json::object()}});
+  const PlacedLamp lamp = import_lamp({{"type", "spot"}, {"spot", json::object()}});
   EXPECT_EQ(lamp.color, glm::vec3(1));
   EXPECT_FLOAT_EQ(lamp.intensity, float(1 / 683.0));
   EXPECT_EQ(lamp.range, 0);
@@ -740,7 +740,7 @@ TEST(GltfLamp, BlendComesFromTheConesInCosines)
 TEST(GltfLamp, ExtrasOfPointSpotAndSun)
 {
   const json spot = {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.42}, {"outerConeAngle", 0.6}}}};
-  const Lamp lamp =
+  const PlacedLamp lamp =
       import_lamp(spot, {{"gnomon_radius", 0.25}, {"gnomon_spot_blend", 0.3}, {"someone_elses", {{"a", 1}}}});
   EXPECT_EQ(lamp.radius, 0.25F);
   EXPECT_EQ(lamp.spot_blend, 0.3F);
@@ -786,28 +786,28 @@ TEST(GltfLamp, ShadowExtrasAreAbsentOrRead)
 
 TEST(GltfLamp, HemiIsADirectionalLightThatSaysSo)
 {
-  const Lamp lamp = import_lamp({{"type", "directional"}, {"intensity", 683}}, {{"gnomon_lamp", "hemi"}});
+  const PlacedLamp lamp = import_lamp({{"type", "directional"}, {"intensity", 683}}, {{"gnomon_lamp", "hemi"}});
   EXPECT_EQ(lamp.kind, LampKind::Hemi);
   EXPECT_FLOAT_EQ(lamp.intensity, 1.0F);
 }
 
-Lamp import_area(const json &extras)
+PlacedLamp import_area(const json &extras)
 {
   GltfBuilder builder = triangle_scene();
   builder.node({{"name", "area"}, {"extras", extras}});
   const Scene scene = import(builder);
-  EXPECT_EQ(scene.lamps.size(), 1U);
-  return scene.lamps.at(0);
+  EXPECT_EQ(scene.placed_lamps().size(), 1U);
+  return scene.placed_lamps().at(0);
 }
 
 TEST(GltfLamp, AreaIsMadeOfExtrasAlone)
 {
-  const Lamp lamp = import_area({{"gnomon_lamp", "area"},
-                                 {"gnomon_shape", "rectangle"},
-                                 {"gnomon_size_x", 2.5},
-                                 {"gnomon_size_y", 0.75},
-                                 {"gnomon_power", 120},
-                                 {"gnomon_color", {1, 0.5, 0}}});
+  const PlacedLamp lamp = import_area({{"gnomon_lamp", "area"},
+                                       {"gnomon_shape", "rectangle"},
+                                       {"gnomon_size_x", 2.5},
+                                       {"gnomon_size_y", 0.75},
+                                       {"gnomon_power", 120},
+                                       {"gnomon_color", {1, 0.5, 0}}});
   EXPECT_EQ(lamp.name, "area");
   EXPECT_EQ(lamp.kind, LampKind::Area);
   EXPECT_EQ(lamp.area_shape, AreaShape::Rectangle);
@@ -874,7 +874,7 @@ TEST(GltfLamp, NamesComeFromTheNodeThenTheLight)
   GltfBuilder builder = triangle_scene();
   const int node = builder.light({{"type", "point"}, {"name", "bulb"}});
   builder.document["nodes"][node].erase("name");
-  EXPECT_EQ(import(builder).lamps.at(0).name, "bulb");
+  EXPECT_EQ(import(builder).placed_lamps().at(0).name, "bulb");
 }
 
 std::string lamp_error(json light, json extras = nullptr)
@@ -975,9 +975,9 @@ TEST(GltfCamera, Perspective)
   const Scene scene = import_camera(
       {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.25}, {"zfar", 100}, {"aspectRatio", 1.5}}}},
       {{"translation", {1, 2, 3}}, {"scale", {2, 2, 2}}});
-  ASSERT_EQ(scene.cameras.size(), 1U);
+  ASSERT_EQ(scene.placed_cameras().size(), 1U);
   EXPECT_FALSE(scene.is_camera_default);
-  const Camera &camera = scene.cameras[0];
+  const PlacedCamera camera = scene.placed_cameras()[0];
   EXPECT_EQ(camera.name, "eye");
   EXPECT_EQ(camera.kind, CameraKind::Perspective);
   EXPECT_EQ(camera.vertical_angle, 0.5F);
@@ -990,15 +990,15 @@ TEST(GltfCamera, Perspective)
 TEST(GltfCamera, AbsentAspectAndFarAreZero)
 {
   const Scene scene = import_camera({{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.25}}}});
-  EXPECT_EQ(scene.cameras.at(0).aspect, 0.0F);
-  EXPECT_EQ(scene.cameras.at(0).far, 0.0F);
+  EXPECT_EQ(scene.placed_cameras().at(0).aspect, 0.0F);
+  EXPECT_EQ(scene.placed_cameras().at(0).far, 0.0F);
 }
 
 TEST(GltfCamera, Orthographic)
 {
   const Scene scene = import_camera(
       {{"type", "orthographic"}, {"orthographic", {{"xmag", 4}, {"ymag", 3}, {"znear", 0}, {"zfar", 50}}}});
-  const Camera &camera = scene.cameras.at(0);
+  const PlacedCamera camera = scene.placed_cameras().at(0);
   EXPECT_EQ(camera.kind, CameraKind::Orthographic);
   EXPECT_EQ(camera.half_width, 4.0F);
   EXPECT_EQ(camera.half_height, 3.0F);
@@ -1013,9 +1013,9 @@ TEST(GltfCamera, EachNodeWithOneIsAnEntry)
   builder.node({{"name", "first"}, {"camera", 0}});
   builder.node({{"name", "second"}, {"camera", 0}});
   const Scene scene = import(builder);
-  ASSERT_EQ(scene.cameras.size(), 2U);
-  EXPECT_EQ(scene.cameras[0].name, "first");
-  EXPECT_EQ(scene.cameras[1].name, "second");
+  ASSERT_EQ(scene.placed_cameras().size(), 2U);
+  EXPECT_EQ(scene.placed_cameras()[0].name, "first");
+  EXPECT_EQ(scene.placed_cameras()[1].name, "second");
 }
 
 TEST(GltfCamera, BadNumbersLeaveItOut)
@@ -1036,9 +1036,9 @@ TEST(GltfCamera, BadNumbersLeaveItOut)
 }
 
 /** Whether every corner of \a bounds lies in the frame of a square image, between near and far. */
-void expect_frames(const Camera &camera, const scene::Bounds &bounds)
+void expect_frames(const PlacedCamera &camera, const scene::Bounds &bounds)
 {
-  const glm::mat4 camera_from_world = glm::inverse(camera.world_from_camera);
+  const glm::mat4 camera_from_world(glm::inverse(camera.world_from_camera));
   const float slope = std::tan(0.5F * camera.vertical_angle);
   for (int corner = 0; corner < 8; corner++) {
     const glm::vec3 point((corner & 1) != 0 ? bounds.max.x : bounds.min.x,
@@ -1059,10 +1059,10 @@ TEST(GltfCamera, DefaultFramesTheScene)
   const Scene scene = import(builder);
   EXPECT_TRUE(scene.is_camera_default);
   EXPECT_WARNING(scene, "has no camera: one was added");
-  expect_frames(scene.cameras.at(0), scene.bounds());
+  expect_frames(scene.placed_cameras().at(0), scene.bounds());
   // From above, and upright.
-  EXPECT_GT(scene.cameras[0].world_from_camera[2].y, 0.2F);
-  EXPECT_GT(scene.cameras[0].world_from_camera[1].y, 0.5F);
+  EXPECT_GT(scene.placed_cameras()[0].world_from_camera[2].y, 0.2F);
+  EXPECT_GT(scene.placed_cameras()[0].world_from_camera[1].y, 0.5F);
 }
 
 TEST(GltfCamera, DefaultFramesTheVeryLargeAndSmall)
@@ -1071,7 +1071,7 @@ TEST(GltfCamera, DefaultFramesTheVeryLargeAndSmall)
     GltfBuilder builder = triangle_scene();
     builder.document["nodes"][0]["scale"] = {scale, scale, scale};
     const Scene scene = import(builder);
-    expect_frames(scene.cameras.at(0), scene.bounds());
+    expect_frames(scene.placed_cameras().at(0), scene.bounds());
   }
 }
 
@@ -1079,11 +1079,11 @@ TEST(GltfLamp, DefaultSunShinesFromOverTheShoulder)
 {
   const Scene scene = import(triangle_scene());
   EXPECT_TRUE(scene.is_lamp_default);
-  ASSERT_EQ(scene.lamps.size(), 1U);
-  EXPECT_EQ(scene.lamps[0].kind, LampKind::Sun);
+  ASSERT_EQ(scene.placed_lamps().size(), 1U);
+  EXPECT_EQ(scene.placed_lamps()[0].kind, LampKind::Sun);
   EXPECT_WARNING(scene, "has no lamp: a sun of 3.14 W/m2 was added, over the shoulder of camera 'default'");
-  const glm::vec3 light = -glm::vec3(scene.lamps[0].world_from_lamp[2]);
-  const glm::mat4 &view = scene.cameras.at(0).world_from_camera;
+  const glm::vec3 light = -glm::vec3(scene.placed_lamps()[0].world_from_lamp[2]);
+  const glm::mat4 view(scene.placed_cameras().at(0).world_from_camera);
   EXPECT_GT(glm::dot(light, -glm::vec3(view[2])), 0.5F);
   EXPECT_LT(glm::dot(light, glm::vec3(view[1])), -0.3F);
 }
@@ -1092,7 +1092,7 @@ TEST(GltfImport, EmptySceneStillHasACameraAndALamp)
 {
   GltfBuilder builder;
   const Scene nothing = import(builder);
-  EXPECT_TRUE(nothing.objects.empty());
+  EXPECT_TRUE(nothing.objects().empty());
   EXPECT_TRUE(nothing.is_camera_default && nothing.is_lamp_default);
   EXPECT_WARNING(nothing, "scene: has nothing to draw");
   builder.append("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.25}}}});

@@ -211,13 +211,13 @@ Scene import_beside(const std::function<void(json &)> &change)
 void expect_left_out(const std::function<void(json &)> &change, const std::string &reason)
 {
   const Scene scene = import_beside(change);
-  EXPECT_EQ(scene.objects.size(), 1U);
+  EXPECT_EQ(scene.objects().size(), 1U);
   EXPECT_WARNING(scene, "mesh 'bad': primitive left out: " + reason);
 }
 
 TEST(GltfAccessor, AllTheWaysNotToFit)
 {
-  EXPECT_EQ(import_beside([](json &) {}).objects.size(), 2U);
+  EXPECT_EQ(import_beside([](json &) {}).objects().size(), 2U);
   expect_left_out([](json &d) { d["accessors"][1]["count"] = 4; },
                   "accessor 1: runs past the end of bufferView 1: count is 4");
   expect_left_out([](json &d) { d["accessors"][1]["count"] = 18446744073709551615ULL; }, "accessor 1: runs past");
@@ -251,7 +251,7 @@ TEST(GltfAccessor, AllTheWaysNotToFit)
 TEST(GltfAccessor, NoElementsMakeNoTriangles)
 {
   const Scene scene = import_beside([](json &d) { d["accessors"][1]["count"] = 0; });
-  EXPECT_EQ(scene.objects.size(), 1U);
+  EXPECT_EQ(scene.objects().size(), 1U);
   EXPECT_WARNING(scene, "mesh 'bad': triangle left out: a vertex index is out of range");
   expect_left_out([](json &d) { d["accessors"][2]["count"] = 0; }, "POSITION: makes no triangle");
 }
@@ -263,7 +263,7 @@ TEST(GltfAccessor, SparseIsChecked)
   };
   const json values = {{"bufferView", 0}};
   const json indices = {{"bufferView", 2}, {"componentType", 5121}};
-  EXPECT_EQ(import_beside(with_sparse(3, indices, values)).objects.size(), 2U);
+  EXPECT_EQ(import_beside(with_sparse(3, indices, values)).objects().size(), 2U);
   expect_left_out(with_sparse(4, indices, values), "accessor 1: sparse.count 4 is above count");
   expect_left_out(with_sparse(3, {{"bufferView", 2}, {"componentType", 5125}}, values),
                   "accessor 1: its sparse indices run past");
@@ -281,7 +281,7 @@ TEST(GltfImport, VertexIndexOutOfRangeLosesItsTriangle)
       builder.accessor(std::vector<std::uint32_t>{0, 1, 2, 0, 1, 3, 0xFFFFFFFFU, 1, 2}, Uint32, "SCALAR");
   builder.node({{"mesh", builder.mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}})}});
   const Scene scene = import(builder);
-  EXPECT_EQ(scene.meshes.at(0).indices.size(), 3U);
+  EXPECT_EQ(nth(scene.meshes(), 0).indices.size(), 3U);
   EXPECT_WARNING(scene, "mesh 'mesh': triangle left out: a vertex index is out of range (2 times)");
 }
 
@@ -293,7 +293,7 @@ TEST(GltfImport, NonFiniteVertexLosesItsTriangle)
                                            0, 0, 0, inf, 0, 0, 0, 1, 0, 0, 0, 0, 1e30F, 0, 0, 0, 1, 0});
   builder.node({{"mesh", builder.mesh({{"attributes", {{"POSITION", positions}}}})}});
   const Scene scene = import(builder);
-  EXPECT_EQ(scene.meshes.at(0).indices.size(), 3U);
+  EXPECT_EQ(nth(scene.meshes(), 0).indices.size(), 3U);
   EXPECT_WARNING(scene, "mesh 'mesh': triangle left out: a position is not finite or beyond 1e12 m (3 times)");
 }
 
@@ -303,7 +303,7 @@ TEST(GltfImport, TriangleWithoutAreaIsLeftOut)
   const int positions = builder.positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 1, 2, 2, 2});
   builder.node({{"mesh", builder.mesh({{"attributes", {{"POSITION", positions}}}})}});
   const Scene scene = import(builder);
-  EXPECT_EQ(scene.meshes.at(0).indices.size(), 3U);
+  EXPECT_EQ(nth(scene.meshes(), 0).indices.size(), 3U);
   EXPECT_WARNING(scene, "mesh 'mesh': triangle left out: it has no area");
 }
 
@@ -325,7 +325,7 @@ TEST(GltfImport, CompressedPrimitivesAreLeftOutIfTheRestCanBeDrawn)
     document["accessors"][indices].erase("bufferView");
   };
   const Scene scene = import_beside([&](json &document) { compress(document, 1, 1, 2); });
-  EXPECT_EQ(scene.objects.size(), 1U);
+  EXPECT_EQ(scene.objects().size(), 1U);
   EXPECT_WARNING(scene, "extensionsRequired: KHR_draco_mesh_compression is not known");
   EXPECT_WARNING(scene, "mesh 'bad': primitive left out: POSITION: is compressed by KHR_draco_mesh_compression");
 

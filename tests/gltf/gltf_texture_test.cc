@@ -58,17 +58,17 @@ json &slot(GltfBuilder &builder)
 Image only_image(const Bytes &file)
 {
   const Scene scene = import(textured_triangle({{"name", "leaf"}, {"uri", data_uri(file)}}));
-  EXPECT_EQ(scene.images.size(), 1U) << all_warnings(scene);
-  return scene.images.empty() ? Image() : scene.images.front();
+  EXPECT_EQ(scene.images().size(), 1U) << all_warnings(scene);
+  return scene.images().empty() ? Image() : nth(scene.images(), 0);
 }
 
 /** What is said of the texture when it cannot be drawn. */
 std::string reason(const json &image)
 {
   const Scene scene = import(textured_triangle(image));
-  EXPECT_EQ(scene.materials.at(0).base_color_texture, -1);
-  EXPECT_TRUE(scene.images.empty() && scene.textures.empty());
-  EXPECT_EQ(scene.objects.size(), 1U);
+  EXPECT_FALSE(nth(scene.materials(), 0).base_color_texture);
+  EXPECT_TRUE(scene.images().empty() && scene.textures().empty());
+  EXPECT_EQ(scene.objects().size(), 1U);
   EXPECT_WARNING(scene, "material 'paint': its baseColorFactor is drawn without a texture: ");
   return all_warnings(scene);
 }
@@ -91,8 +91,8 @@ TEST(GltfImage, MayBeInABufferView)
   builder.document["images"][0] = {{"bufferView", view}, {"mimeType", "image/png"}};
   for (const std::string &content : {builder.gltf(), builder.glb()}) {
     const Scene scene = import_text(content);
-    ASSERT_EQ(scene.images.size(), 1U) << all_warnings(scene);
-    EXPECT_EQ(scene.images[0].texels, four_texels);
+    ASSERT_EQ(scene.images().size(), 1U) << all_warnings(scene);
+    EXPECT_EQ(nth(scene.images(), 0).texels, four_texels);
   }
 }
 
@@ -103,8 +103,8 @@ TEST(GltfImage, MayBeAFileBeside)
   (void)folder.write("a leaf.png", std::string(png.begin(), png.end()));
   const Scene scene =
       gltf::import_gltf(folder.write("scene.gltf", textured_triangle({{"uri", "a%20leaf.png"}}).gltf()));
-  ASSERT_EQ(scene.images.size(), 1U) << all_warnings(scene);
-  EXPECT_EQ(scene.images[0].texels, four_texels);
+  ASSERT_EQ(scene.images().size(), 1U) << all_warnings(scene);
+  EXPECT_EQ(nth(scene.images(), 0).texels, four_texels);
 }
 
 TEST(GltfImage, ChannelsAndDepthsAreSpreadToEightBitColourAndAlpha)
@@ -150,8 +150,8 @@ TEST(GltfImage, OneThatIsUsedTwiceIsDecodedOnce)
     builder.document["meshes"][0]["primitives"].push_back(primitive);
   }
   const Scene scene = import(builder);
-  EXPECT_EQ(scene.images.size(), 1U);
-  EXPECT_EQ(scene.textures.size(), 3U);
+  EXPECT_EQ(scene.images().size(), 1U);
+  EXPECT_EQ(scene.textures().size(), 3U);
 }
 
 TEST(GltfImage, WhatCannotBeReadLeavesTheFactorAndIsNamed)
@@ -244,20 +244,20 @@ TEST(GltfImage, SizesThatCannotBeAreRefusedBeforeAnythingIsAllocated)
 TEST(GltfTexture, SamplerWordsBecomeOurs)
 {
   GltfBuilder builder = textured_triangle();
-  const scene::Texture without = import(builder).textures.at(0);
+  const scene::Texture without = nth(import(builder).textures(), 0);
   EXPECT_EQ(without.wrap_u, scene::TextureWrap::Repeat);
   EXPECT_EQ(without.magnified, scene::TextureFilter::Linear);
   EXPECT_EQ(without.mip, scene::MipFilter::Linear);
   builder.document["textures"][0]["sampler"] = 0;
   builder.document["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}, {"minFilter", 9985}}};
-  const scene::Texture texture = import(builder).textures.at(0);
+  const scene::Texture texture = nth(import(builder).textures(), 0);
   EXPECT_EQ(texture.wrap_u, scene::TextureWrap::ClampToEdge);
   EXPECT_EQ(texture.wrap_v, scene::TextureWrap::MirroredRepeat);
   EXPECT_EQ(texture.magnified, scene::TextureFilter::Nearest);
   EXPECT_EQ(texture.minified, scene::TextureFilter::Linear);
   EXPECT_EQ(texture.mip, scene::MipFilter::Nearest);
   builder.document["samplers"] = {{{"minFilter", 9728}}};
-  EXPECT_EQ(import(builder).textures.at(0).mip, scene::MipFilter::None);
+  EXPECT_EQ(nth(import(builder).textures(), 0).mip, scene::MipFilter::None);
   builder.document["samplers"] = {{{"wrapS", 1}, {"minFilter", 2}}};
   EXPECT_WARNING(import(builder), "texture 0: wrapS 1 is unknown");
   EXPECT_WARNING(import(builder), "texture 0: minFilter 2 is unknown");
@@ -267,7 +267,7 @@ TEST(GltfTexture, SamplerWordsBecomeOurs)
 
 std::vector<glm::vec2> uvs_of(const GltfBuilder &builder)
 {
-  return import(builder).meshes.at(0).uvs;
+  return nth(import(builder).meshes(), 0).uvs;
 }
 
 TEST(GltfUv, AreThoseOfTheVertices)
@@ -334,7 +334,7 @@ TEST(GltfUv, StayWithTheirVerticesWhenOthersAreLeftOut)
     }
     primitive["indices"] = builder.accessor(std::vector<std::uint16_t>{1, 2, 3, 1, 2, 4}, Uint16, "SCALAR");
     const Scene scene = import(builder);
-    const scene::Mesh &mesh = scene.meshes.at(0);
+    const scene::Mesh &mesh = nth(scene.meshes(), 0);
     ASSERT_EQ(mesh.indices.size(), 3U);
     for (const std::uint32_t index : mesh.indices) {
       const float expected = mesh.positions[index].x == 1 ? 0.2F : mesh.positions[index].y == 1 ? 0.3F : 0.1F;
@@ -350,7 +350,7 @@ TEST(GltfUv, BadOnesAreZeroAndCounted)
   const float nan = std::numeric_limits<float>::quiet_NaN();
   attributes["TEXCOORD_0"] = builder.accessor(std::vector<float>{nan, 0, 1e30F, 0, 0.5F, 0.5F}, Float32, "VEC2");
   const Scene scene = import(builder);
-  EXPECT_EQ(scene.meshes[0].uvs, (std::vector<glm::vec2>{{0, 0}, {0, 0}, {0.5F, 0.5F}}));
+  EXPECT_EQ(nth(scene.meshes(), 0).uvs, (std::vector<glm::vec2>{{0, 0}, {0, 0}, {0.5F, 0.5F}}));
   EXPECT_WARNING(scene, "texture coordinate replaced by 0: it was not finite or beyond 1e6 (2 times)");
   attributes["TEXCOORD_0"] = builder.accessor(std::vector<float>{0, 0}, Float32, "VEC2");
   EXPECT_WARNING(import(builder), "mesh 'mesh': its texture is drawn as the colour of one corner: TEXCOORD_0: count");

@@ -108,15 +108,16 @@ class PixelSampleTest : public testing::Test {
   {
     test::add_rectangle(scene_, {-5.0F, -5.0F}, {5.0F, 5.0F});
     test::add_rectangle(scene_, {-0.7F, -0.4F}, {0.6F, 0.5F}, test::placed({0.0F, 0.0F, 1.0F}));
-    scene_.lamps.push_back(test::lamp_at(scene::LampKind::Point, {1.0F, 1.0F, 4.0F}));
-    scene_.lamps[0].intensity = 20.0F;
-    scene_.cameras.push_back(test::camera_at({0.0F, -6.0F, 5.0F}, {0.0F, 0.0F, 0.0F}));
+    scene::PlacedLamp lamp = test::lamp_at(scene::LampKind::Point, {1.0F, 1.0F, 4.0F});
+    lamp.intensity = 20.0F;
+    test::add_lamp(scene_, lamp);
     tracer_ = std::make_unique<reference::Tracer>(scene_);
-    exact_ = reference_picture(*tracer_, scene_.cameras[0], size_px_, 16).picture.pixels;
+    exact_ = reference_picture(*tracer_, camera_, size_px_, 16).picture.pixels;
   }
 
   glm::ivec2 size_px_{64, 48};
   scene::Scene scene_;
+  const scene::PlacedCamera camera_ = test::camera_at({0.0F, -6.0F, 5.0F}, {0.0F, 0.0F, 0.0F});
   std::unique_ptr<reference::Tracer> tracer_;
   std::vector<glm::vec4> exact_;
 };
@@ -133,7 +134,7 @@ TEST_F(PixelSampleTest, FindsAnErrorThatIsKnown)
   }
   const double rmse = std::sqrt(square / double(picture.size()));
   for (std::uint64_t seed = 0; seed < 4; seed++) {
-    const PixelSample sample(*tracer_, scene_.cameras[0], size_px_, exact_, 1000, 16, seed);
+    const PixelSample sample(*tracer_, camera_, size_px_, exact_, 1000, 16, seed);
     const SampledError error = sample.error(picture);
     // Four deviations: once in 16 000 by chance, and the seeds are fixed.
     EXPECT_NEAR(error.rmse, rmse, 4.0 * error.standard_error) << seed;
@@ -147,11 +148,11 @@ TEST_F(PixelSampleTest, OwnNoiseIsNoError)
   double square = 0.0;
   constexpr int seeds = 8;
   for (std::uint64_t seed = 0; seed < seeds; seed++) {
-    const PixelSample rough(*tracer_, scene_.cameras[0], size_px_, exact_, 1000, 2, seed);
+    const PixelSample rough(*tracer_, camera_, size_px_, exact_, 1000, 2, seed);
     square += std::pow(rough.error(exact_).rmse, 2) / seeds;
   }
   const reference::Picture noisy =
-      reference::direct_light(*tracer_, scene_.cameras[0], size_px_, {.sample_count = 2, .seed = 77});
+      reference::direct_light(*tracer_, camera_, size_px_, {.sample_count = 2, .seed = 77});
   const double noise = image_error(size_px_, noisy.pixels, exact_).rmse;
   EXPECT_LT(std::sqrt(square), 0.4 * noise);
 }
@@ -159,21 +160,19 @@ TEST_F(PixelSampleTest, OwnNoiseIsNoError)
 TEST_F(PixelSampleTest, NanIsNotLost)
 {
   const std::vector<glm::vec4> picture(exact_.size(), glm::vec4(std::numeric_limits<float>::quiet_NaN()));
-  const PixelSample sample(*tracer_, scene_.cameras[0], size_px_, exact_, 10, 1, 0);
+  const PixelSample sample(*tracer_, camera_, size_px_, exact_, 10, 1, 0);
   EXPECT_TRUE(std::isnan(sample.error(picture).rmse));
 }
 
 TEST_F(PixelSampleTest, ReferenceSpendsItsSamplesOnEdges)
 {
   const reference::Tracer &tracer = *tracer_;
-  const ReferencePicture refined = reference_picture(tracer, scene_.cameras[0], size_px_, 4);
-  const reference::Picture a = reference::direct_light(tracer, scene_.cameras[0], size_px_, {.sample_count = 2});
-  const reference::Picture b =
-      reference::direct_light(tracer, scene_.cameras[0], size_px_, {.sample_count = 2, .seed = 1});
+  const ReferencePicture refined = reference_picture(tracer, camera_, size_px_, 4);
+  const reference::Picture a = reference::direct_light(tracer, camera_, size_px_, {.sample_count = 2});
+  const reference::Picture b = reference::direct_light(tracer, camera_, size_px_, {.sample_count = 2, .seed = 1});
   // Half the halves' difference is the noise of their mean: measured 0.29 of it with the noisiest tenth refined.
   EXPECT_LT(refined.noise, 0.5 * 0.5 * image_error(size_px_, a.pixels, b.pixels).rmse);
-  const reference::Picture exact =
-      reference::direct_light(tracer, scene_.cameras[0], size_px_, {.sample_count = 256, .seed = 9});
+  const reference::Picture exact = reference::direct_light(tracer, camera_, size_px_, {.sample_count = 256, .seed = 9});
   const double error = image_error(size_px_, refined.picture.pixels, exact.pixels).rmse;
   EXPECT_LT(error, 2.0 * refined.noise);
   EXPECT_GT(error, 0.5 * refined.noise);

@@ -159,7 +159,7 @@ TEST(Tracer, TrianglesWithoutAreaAndFlattenedObjectsAreHarmless)
 {
   scene::Scene scene;
   add_triangles(scene, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {2, 0, 1}});
-  add_rectangle(scene, {-1, -1}, {1, 1}, glm::mat4(0.0F));
+  add_rectangle(scene, {-1, -1}, {1, 1}, glm::scale(glm::mat4(1.0F), glm::vec3(0.0F)));
   // Flat in z: still a square to a ray along z, at the height of its object.
   add_rectangle(scene, {-1, -1}, {1, 1}, placed({0, 0, 3}) * glm::scale(glm::mat4(1.0F), glm::vec3(1, 1, 0)));
   const Tracer tracer(scene);

@@ -62,9 +62,15 @@ TEST(Scene, BoundsAreThoseOfItsObjects)
 {
   Scene scene;
   EXPECT_TRUE(scene.bounds().is_empty());
-  scene.meshes.emplace_back().bounds = {{0, 0, 0}, {1, 1, 1}};
-  scene.objects.push_back({"a", 0, glm::mat4(1)});
-  scene.objects.push_back({"b", 0, glm::translate(glm::mat4(1), {10, 0, -5})});
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 1, 1}};
+  mesh.normals.assign(2, {0, 0, 1});
+  const Handle<Mesh> handle = scene.add(std::move(mesh));
+  Node node;
+  node.meshes = {handle};
+  scene.add(node);
+  node.parent_from_node = glm::translate(glm::dmat4(1), {10, 0, -5});
+  scene.add(node);
   EXPECT_EQ(scene.bounds().min, glm::vec3(0, 0, -5));
   EXPECT_EQ(scene.bounds().max, glm::vec3(11, 1, 1));
 }

@@ -31,10 +31,10 @@ struct Judge {
       : device(gpu_device),
         scene(gltf::import_gltf(GNOMON_SOURCE "/examples/scenes/" + name + ".glb")),
         tracer(scene),
-        points(scene.lamps.size())
+        points(tracer.lamps().size())
   {
     const auto probes = probes_of({.kind = scene::ShadowKind::Esm});
-    for (std::size_t lamp = 0; lamp < scene.lamps.size(); lamp++) {
+    for (std::size_t lamp = 0; lamp < tracer.lamps().size(); lamp++) {
       const eevee::Probe &probe = probes[lamp];
       for (std::size_t i = 0; i < probe.normal.size(); i++) {
         const bool is_judged = int(i) % size_px.x % stride == 0 && int(i) / size_px.x % stride == 0;
@@ -43,14 +43,14 @@ struct Judge {
         }
         const auto receiver =
             reference::find_receiver(tracer, glm::dvec3(probe.position_visibility[i]), glm::dvec3(probe.normal[i]));
-        if (receiver && is_lit(*receiver, scene.lamps[lamp])) {
+        if (receiver && is_lit(*receiver, tracer.lamps()[lamp])) {
           points[lamp].push_back({i, *receiver});
         }
       }
     }
   }
 
-  static bool is_lit(const reference::Receiver &receiver, const scene::Lamp &lamp)
+  static bool is_lit(const reference::Receiver &receiver, const scene::PlacedLamp &lamp)
   {
     const glm::dvec3 from_lamp = glm::normalize(receiver.position_ws - glm::dvec3(lamp.world_from_lamp[3]));
     return reference::is_facing(receiver, lamp) &&
@@ -61,14 +61,17 @@ struct Judge {
   /** One a lamp; empty of suns. */
   [[nodiscard]] std::vector<eevee::Probe> probes_of(const eevee::ShadowSettings &shadow) const
   {
-    eevee::Engine engine(scene, {.shadow = shadow, .has_probe = true});
+    render_scene::RenderScene render_scene(device, scene);
+    eevee::Engine engine(render_scene, {.shadow = shadow, .has_probe = true});
     draw::Viewport viewport(device, size_px);
     const std::array<draw::Engine *, 1> engines = {&engine};
-    viewport.sync(engines, eevee::object_refs(scene));
-    std::vector<eevee::Probe> probes(scene.lamps.size());
-    for (std::size_t lamp = 0; lamp < scene.lamps.size(); lamp++) {
-      if (scene.lamps[lamp].kind != scene::LampKind::Sun) {
-        probes[lamp] = engine.probe(viewport, eevee::view_of(scene.cameras[0], size_px), lamp).value_or(eevee::Probe{});
+    render_scene.update();
+    viewport.sync(engines, render_scene.objects());
+    const draw::View view = eevee::view_of(render_scene.relative(scene.placed_cameras().front()), size_px);
+    std::vector<eevee::Probe> probes(tracer.lamps().size());
+    for (std::size_t lamp = 0; lamp < tracer.lamps().size(); lamp++) {
+      if (tracer.lamps()[lamp].kind != scene::LampKind::Sun) {
+        probes[lamp] = engine.probe(viewport, view, lamp).value_or(eevee::Probe{});
       }
     }
     return probes;
@@ -76,7 +79,7 @@ struct Judge {
 
   /** Share of a cone of half opening \a angle, radians, around the ray from the lamp that reaches the receiver's plane.
    */
-  [[nodiscard]] double truth(const Point &point, const scene::Lamp &lamp, double angle) const
+  [[nodiscard]] double truth(const Point &point, const scene::PlacedLamp &lamp, double angle) const
   {
     const glm::dvec3 lamp_ws(lamp.world_from_lamp[3]);
     const reference::Receiver &r = point.receiver;
@@ -111,7 +114,7 @@ struct Judge {
     for (std::size_t lamp = 0; lamp < points.size(); lamp++) {
       for (const Point &point : points[lamp]) {
         const float visibility = probes[lamp].position_visibility[point.pixel].w;
-        squares += std::pow(double(visibility) - truth(point, scene.lamps[lamp], truth_angle), 2.0);
+        squares += std::pow(double(visibility) - truth(point, tracer.lamps()[lamp], truth_angle), 2.0);
         count += 1.0;
       }
     }

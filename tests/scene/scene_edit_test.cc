@@ -1,0 +1,662 @@
+// SPDX-License-Identifier: MIT
+#include "scene.hh"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+#include <set>
+
+namespace gnomon::scene {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Mesh triangle()
+{
+  Mesh mesh;
+  mesh.name = "triangle";
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.normals.assign(3, {0, 0, 1});
+  mesh.indices = {0, 1, 2};
+  return mesh;
+}
+
+Image texel()
+{
+  return {"texel", 1, 1, {1, 2, 3, 4}};
+}
+
+Node named(const std::string &name)
+{
+  Node node;
+  node.name = name;
+  return node;
+}
+
+Node at(const glm::dvec3 &position, const std::string &name = "node")
+{
+  Node node = named(name);
+  node.parent_from_node = glm::translate(glm::dmat4(1.0), position);
+  return node;
+}
+
+/** The message of the exception that \a act throws; empty where it throws none. */
+template <typename Exception>
+std::string message_of(const std::function<void()> &act)
+{
+  try {
+    act();
+  }
+  catch (const Exception &error) {
+    return error.what();
+  }
+  return {};
+}
+
+#define EXPECT_STALE(statement, kind)                                                          \
+  EXPECT_NE(message_of<StaleHandle>([&] { (void)(statement); }).find(kind), std::string::npos) \
+      << message_of<StaleHandle>([&] { (void)(statement); })
+
+// ---- Handles ----
+
+/** The promises of handles, for one kind of thing. */
+template <typename T>
+void expect_handles_of(const T &value)
+{
+  const std::string kind(T::kind_name);
+  Scene scene;
+  const Pool<T> &pool = scene.pool<T>();
+  EXPECT_FALSE(pool.first());
+  const Handle<T> a = scene.add(value);
+  const Handle<T> b = scene.add(value);
+  EXPECT_TRUE(a && b && a != b && a.key() != b.key());
+  EXPECT_EQ(pool.size(), 2U);
+  EXPECT_EQ(pool.first(), a);
+  const T *kept = &pool[b];
+  scene.remove(a);
+  EXPECT_EQ(&pool[b], kept) << kind << ": references of others stay valid";
+  EXPECT_EQ(pool.size(), 1U);
+  EXPECT_EQ(pool.first(), b);
+  EXPECT_FALSE(pool.is_live(a));
+  EXPECT_EQ(pool.find(a), nullptr);
+  EXPECT_STALE(pool[a], kind);
+  EXPECT_STALE(pool.revision(a, typename T::Aspect(0)), kind);
+  EXPECT_STALE(scene.replace(a, value), kind);
+  EXPECT_STALE(scene.remove(a), kind);
+  EXPECT_STALE(scene.edit(a, [](T & /*thing*/) { ADD_FAILURE() << "of a removed thing"; }), kind);
+  EXPECT_STALE(pool[Handle<T>()], kind);
+  EXPECT_EQ(pool.find(Handle<T>()), nullptr);
+  EXPECT_STALE(pool[Handle<T>({99, 1})], kind);
+
+  const Handle<T> again = scene.add(value);
+  EXPECT_EQ(again.index, a.index) << kind << ": the place is used again";
+  EXPECT_NE(again.generation, a.generation);
+  EXPECT_NE(again.key(), a.key());
+  EXPECT_EQ(pool.find(a), nullptr) << kind << ": the old handle does not name the new thing";
+  EXPECT_EQ(pool.index_end(), 2U);
+  // Copies of a scene have the same handles, and are edited apart.
+  Scene copy = scene;
+  copy.remove(again);
+  EXPECT_TRUE(pool.is_live(again));
+}
+
+TEST(SceneHandle, RemovedThingsAreDetected)
+{
+  expect_handles_of(triangle());
+  expect_handles_of(texel());
+  expect_handles_of(Texture());
+  expect_handles_of(Material());
+  expect_handles_of(Lamp());
+  expect_handles_of(Camera());
+  expect_handles_of(Node());
+}
+
+TEST(SceneHandle, NodeFunctionsThrowForStaleHandles)
+{
+  Scene scene;
+  const Handle<Node> node = scene.add(Node());
+  const Handle<Node> removed = scene.add(Node());
+  scene.remove(removed);
+  for (const Handle<Node> stale : {removed, Handle<Node>()}) {
+    EXPECT_STALE(scene.world_from_node(stale), "node");
+    EXPECT_STALE(scene.is_visible(stale), "node");
+    EXPECT_STALE(scene.parent(stale), "node");
+    EXPECT_STALE(scene.first_child(stale), "node");
+    EXPECT_STALE(scene.next_sibling(stale), "node");
+    EXPECT_STALE(scene.set_transform(stale, glm::dmat4(1.0)), "node");
+    EXPECT_STALE(scene.set_parent(stale, node), "node");
+  }
+  EXPECT_STALE(scene.set_parent(node, removed), "node");
+  EXPECT_STALE(scene.add(Node(), removed), "node");
+  EXPECT_EQ(scene.nodes().size(), 1U);
+}
+
+TEST(SceneHandle, StaleReferencesAreNamedAndStandForNothing)
+{
+  Scene scene;
+  const auto image = scene.add(texel());
+  const auto texture = scene.add(Texture{.image = image});
+  Material material;
+  material.name = "paint";
+  material.base_color = glm::vec3(0.5F);
+  material.base_color_texture = texture;
+  const auto paint = scene.add(material);
+  Mesh mesh = triangle();
+  mesh.material = paint;
+  const auto shape = scene.add(mesh);
+  const auto lamp = scene.add(Lamp());
+  const auto camera = scene.add(Camera());
+  Node node = named("all");
+  node.meshes = {shape};
+  node.lamp = lamp;
+  node.camera = camera;
+  scene.add(node);
+  EXPECT_TRUE(scene.stale_references().empty());
+  EXPECT_EQ(scene.material_of(mesh).base_color, glm::vec3(0.5F));
+
+  scene.remove(paint);
+  EXPECT_EQ(scene.stale_references(), std::vector<std::string>{"mesh 'triangle': its material was removed"});
+  EXPECT_EQ(scene.material_of(mesh).base_color, Material().base_color) << "the default material";
+  EXPECT_EQ(scene.objects().size(), 1U);
+  scene.remove(shape);
+  scene.remove(lamp);
+  scene.remove(camera);
+  scene.remove(image);
+  EXPECT_EQ(scene.stale_references(),
+            (std::vector<std::string>{"node 'all': its mesh was removed", "node 'all': its lamp was removed",
+                                      "node 'all': its camera was removed", "texture '0': its image was removed"}));
+  EXPECT_TRUE(scene.objects().empty() && scene.placed_lamps().empty() && scene.placed_cameras().empty());
+  EXPECT_TRUE(scene.bounds().is_empty());
+  // New things at the old places are not meant.
+  scene.add(triangle());
+  scene.add(Lamp());
+  EXPECT_TRUE(scene.objects().empty() && scene.placed_lamps().empty());
+  EXPECT_EQ(scene.stale_references().size(), 4U);
+}
+
+// ---- Hierarchy ----
+
+TEST(SceneNodes, WorldMatricesAreComposedInDouble)
+{
+  // 16777217 is no float: in single precision the child would stand at 0 or 2.
+  Scene scene;
+  const auto root = scene.add(at({16777217, 0, 0}));
+  const auto child = scene.add(at({-16777216, 0, 0}), root);
+  EXPECT_EQ(scene.world_from_node(child)[3].x, 1.0);
+  Node node = at({0, 0, 0});
+  node.parent_from_node = glm::rotate(glm::dmat4(1.0), 0.5, glm::dvec3(0.6, 0.0, 0.8));
+  const auto grandchild = scene.add(node, child);
+  EXPECT_EQ(scene.world_from_node(grandchild), scene.world_from_node(child) * node.parent_from_node);
+}
+
+TEST(SceneNodes, SetTransformMovesTheSubtreeAlone)
+{
+  Scene scene;
+  const auto root = scene.add(at({1, 0, 0}));
+  const auto child = scene.add(at({0, 2, 0}), root);
+  const auto leaf = scene.add(at({0, 0, 3}), child);
+  const auto sibling = scene.add(at({0, 5, 0}), root);
+  const auto other = scene.add(at({9, 9, 9}));
+  scene.set_transform(child, glm::translate(glm::dmat4(1.0), {0, -2, 0}));
+  EXPECT_EQ(scene.world_from_node(leaf)[3], glm::dvec4(1, -2, 3, 1));
+  EXPECT_EQ(scene.nodes()[child].parent_from_node[3], glm::dvec4(0, -2, 0, 1));
+  scene.set_transform(root, glm::translate(glm::dmat4(1.0), {-1, 0, 0}));
+  EXPECT_EQ(scene.world_from_node(leaf)[3], glm::dvec4(-1, -2, 3, 1));
+  EXPECT_EQ(scene.world_from_node(sibling)[3], glm::dvec4(-1, 5, 0, 1));
+  EXPECT_EQ(scene.world_from_node(other)[3], glm::dvec4(9, 9, 9, 1));
+}
+
+/** Children in order. */
+std::vector<Handle<Node>> children_of(const Scene &scene, Handle<Node> node)
+{
+  std::vector<Handle<Node>> children;
+  for (Handle<Node> child = scene.first_child(node); child; child = scene.next_sibling(child)) {
+    children.push_back(child);
+  }
+  return children;
+}
+
+TEST(SceneNodes, SetParentMovesTheSubtreeToTheEndOfTheChildren)
+{
+  using Handles = std::vector<Handle<Node>>;
+  Scene scene;
+  const auto left = scene.add(at({-10, 0, 0}));
+  const auto right = scene.add(at({10, 0, 0}));
+  const auto a = scene.add(at({1, 0, 0}), left);
+  const auto b = scene.add(at({2, 0, 0}), left);
+  const auto c = scene.add(at({3, 0, 0}), left);
+  const auto leaf = scene.add(at({0, 1, 0}), b);
+  EXPECT_EQ(children_of(scene, left), (Handles{a, b, c}));
+  scene.set_parent(b, right);
+  EXPECT_EQ(children_of(scene, left), (Handles{a, c}));
+  EXPECT_EQ(children_of(scene, right), Handles{b});
+  EXPECT_EQ(scene.parent(b), right);
+  EXPECT_EQ(scene.world_from_node(leaf)[3], glm::dvec4(12, 1, 0, 1));
+  scene.set_parent(a, right);
+  scene.set_parent(c, right);
+  EXPECT_EQ(children_of(scene, right), (Handles{b, a, c}));
+  EXPECT_FALSE(scene.first_child(left));
+  scene.set_parent(a, {});
+  EXPECT_FALSE(scene.parent(a));
+  EXPECT_FALSE(scene.next_sibling(a));
+  EXPECT_EQ(scene.world_from_node(a)[3], glm::dvec4(1, 0, 0, 1));
+  EXPECT_EQ(children_of(scene, right), (Handles{b, c}));
+}
+
+TEST(SceneNodes, ACycleIsRefused)
+{
+  Scene scene;
+  const auto root = scene.add(named("root"));
+  const auto child = scene.add(named("child"), root);
+  const auto leaf = scene.add(named("leaf"), child);
+  const Revision before = scene.revision();
+  for (const Handle<Node> parent : {root, child, leaf}) {
+    const std::string message = message_of<InvalidEdit>([&] { scene.set_parent(root, parent); });
+    EXPECT_NE(message.find("node 'root'"), std::string::npos) << message;
+    EXPECT_NE(message.find("'" + scene.nodes()[parent].name + "'"), std::string::npos) << message;
+  }
+  EXPECT_EQ(scene.parent(child), root);
+  EXPECT_EQ(scene.parent(leaf), child);
+  EXPECT_FALSE(scene.parent(root));
+  EXPECT_EQ(scene.revision(), before);
+}
+
+TEST(SceneNodes, RemovalTakesTheSubtreeAndLeavesTheRest)
+{
+  Scene scene;
+  const auto root = scene.add(named("root"));
+  const auto first = scene.add(named("first"), root);
+  const auto middle = scene.add(named("middle"), root);
+  const auto last = scene.add(named("last"), root);
+  const auto child = scene.add(named("child"), middle);
+  const auto leaf = scene.add(named("leaf"), child);
+  const auto lamp = scene.add(Lamp());
+  scene.edit(leaf, [&](Node &node) { node.lamp = lamp; });
+  scene.remove(middle);
+  for (const Handle<Node> removed : {middle, child, leaf}) {
+    EXPECT_FALSE(scene.nodes().is_live(removed));
+  }
+  EXPECT_EQ(children_of(scene, root), (std::vector<Handle<Node>>{first, last}));
+  EXPECT_TRUE(scene.lamps().is_live(lamp)) << "things at nodes stay";
+  EXPECT_TRUE(scene.placed_lamps().empty());
+  EXPECT_EQ(scene.nodes().size(), 3U);
+  const auto added = scene.add(named("added"), root);
+  EXPECT_EQ(children_of(scene, root), (std::vector<Handle<Node>>{first, last, added}));
+  EXPECT_FALSE(scene.first_child(added)) << "links of the place's former node are gone";
+}
+
+TEST(SceneNodes, HundredThousandDeepIsNoTrouble)
+{
+  Scene scene;
+  const auto root = scene.add(at({0, 1, 0}));
+  Handle<Node> leaf = root;
+  for (int i = 1; i < 100000; i++) {
+    leaf = scene.add(at({0, 1, 0}), leaf);
+  }
+  EXPECT_EQ(scene.world_from_node(leaf)[3].y, 100000.0);
+  scene.set_transform(root, glm::dmat4(1.0));
+  EXPECT_EQ(scene.world_from_node(leaf)[3].y, 99999.0);
+  scene.remove(root);
+  EXPECT_TRUE(scene.nodes().empty());
+}
+
+TEST(SceneNodes, VisibilityIsInherited)
+{
+  Scene scene;
+  const auto mesh = scene.add(triangle());
+  const auto root = scene.add(Node());
+  Node value = named("child");
+  value.meshes = {mesh};
+  value.lamp = scene.add(Lamp());
+  value.camera = scene.add(Camera());
+  const auto child = scene.add(value, root);
+  const auto grandchild = scene.add(value, child);
+  EXPECT_EQ(scene.objects().size(), 2U);
+  EXPECT_EQ(scene.placed_lamps().size(), 2U) << "a lamp at two nodes shines twice";
+
+  scene.edit(root, [](Node &node) { node.is_visible = false; });
+  EXPECT_FALSE(scene.is_visible(root) || scene.is_visible(child) || scene.is_visible(grandchild));
+  EXPECT_TRUE(scene.nodes()[child].is_visible) << "the node's own flag stays";
+  EXPECT_TRUE(scene.objects().empty() && scene.placed_lamps().empty() && scene.bounds().is_empty());
+  EXPECT_EQ(scene.placed_cameras().size(), 2U) << "one may look through a hidden camera";
+  const auto added = scene.add(value, grandchild);
+  EXPECT_FALSE(scene.is_visible(added));
+
+  scene.edit(child, [](Node &node) { node.is_visible = false; });
+  scene.edit(root, [](Node &node) { node.is_visible = true; });
+  EXPECT_TRUE(scene.is_visible(root));
+  EXPECT_FALSE(scene.is_visible(child) || scene.is_visible(grandchild) || scene.is_visible(added));
+  scene.set_parent(grandchild, root);
+  EXPECT_TRUE(scene.is_visible(grandchild) && scene.is_visible(added));
+  EXPECT_EQ(scene.objects().size(), 2U);
+}
+
+TEST(SceneNodes, LampsAndCamerasArePlacedWithoutScaleShearAndMirroring)
+{
+  Scene scene;
+  Node root = at({1, 2, 3});
+  root.parent_from_node = glm::scale(root.parent_from_node, {-2.0, 3.0, 0.5});
+  Node node = named("spot");
+  node.parent_from_node = glm::rotate(glm::dmat4(1.0), 0.7, glm::dvec3(0.0, 0.6, 0.8));
+  Lamp lamp;
+  lamp.intensity = 5.0F;
+  node.lamp = scene.add(lamp);
+  node.camera = scene.add(Camera());
+  const auto handle = scene.add(node, scene.add(root));
+  const PlacedLamp placed = scene.placed_lamps().at(0);
+  EXPECT_EQ(placed.intensity, 5.0F);
+  EXPECT_EQ(placed.node, handle);
+  EXPECT_EQ(placed.world_from_lamp, frame_of(scene.world_from_node(handle)));
+  EXPECT_EQ(scene.placed_cameras().at(0).world_from_camera, placed.world_from_lamp);
+  EXPECT_EQ(placed.world_from_lamp[3], scene.world_from_node(handle)[3]);
+  const glm::dmat3 frame(placed.world_from_lamp);
+  EXPECT_NEAR(glm::determinant(frame), 1.0, 1e-15);
+  EXPECT_LT(glm::length(frame[2] - glm::normalize(glm::dvec3(scene.world_from_node(handle)[2]))), 1e-15);
+}
+
+// ---- Revisions ----
+
+/** The aspects of a thing whose revision differs, and is the scene's last. */
+template <typename T>
+class Changes {
+ public:
+  Changes(const Scene &scene, Handle<T> handle) : scene_(scene), handle_(handle)
+  {
+    start();
+  }
+  /** What has changed since the last call. */
+  std::vector<typename T::Aspect> take()
+  {
+    std::vector<typename T::Aspect> changed;
+    for (std::size_t i = 0; i < before_.size(); i++) {
+      const auto aspect = typename T::Aspect(i);
+      const Revision revision = scene_.pool<T>().revision(handle_, aspect);
+      if (revision != before_[i]) {
+        EXPECT_EQ(revision, scene_.revision()) << i;
+        EXPECT_EQ(scene_.pool<T>().latest(aspect), revision) << i;
+        changed.push_back(aspect);
+      }
+    }
+    start();
+    return changed;
+  }
+
+ private:
+  void start()
+  {
+    for (std::size_t i = 0; i < before_.size(); i++) {
+      before_[i] = scene_.pool<T>().revision(handle_, typename T::Aspect(i));
+    }
+  }
+  const Scene &scene_;
+  Handle<T> handle_;
+  std::array<Revision, std::size_t(T::Aspect::Count)> before_{};
+};
+
+/** Each change alters one aspect, and setting the same value again none. */
+template <typename T>
+void expect_aspects(const T &value, const std::vector<std::pair<typename T::Aspect, std::function<void(T &)>>> &edits)
+{
+  Scene scene;
+  const Handle<T> other = scene.add(value);
+  const Handle<T> handle = scene.add(value);
+  Changes<T> changes(scene, handle);
+  Changes<T> others(scene, other);
+  for (std::size_t i = 0; i < edits.size(); i++) {
+    const Revision before = scene.revision();
+    scene.edit(handle, edits[i].second);
+    EXPECT_EQ(changes.take(), std::vector{edits[i].first}) << T::kind_name << ' ' << i;
+    EXPECT_EQ(scene.revision(), before + 1) << T::kind_name << ' ' << i;
+    scene.replace(handle, scene.pool<T>()[handle]);
+    EXPECT_TRUE(changes.take().empty()) << T::kind_name << ' ' << i;
+    EXPECT_EQ(scene.revision(), before + 1) << T::kind_name << ' ' << i;
+    EXPECT_EQ(scene.pool<T>().latest(), scene.revision());
+  }
+  EXPECT_TRUE(others.take().empty()) << T::kind_name;
+}
+
+TEST(SceneRevision, EachEditChangesItsAspectAlone)
+{
+  using enum LampKind;
+  expect_aspects<Lamp>({}, {{Lamp::Aspect::Light, [](Lamp &lamp) { lamp.intensity = 3.0F; }},
+                            {Lamp::Aspect::Light, [](Lamp &lamp) { lamp.color.g = 0.5F; }},
+                            {Lamp::Aspect::Name, [](Lamp &lamp) { lamp.name = "renamed"; }},
+                            {Lamp::Aspect::Shape, [](Lamp &lamp) { lamp.kind = Spot; }},
+                            {Lamp::Aspect::Shape, [](Lamp &lamp) { lamp.radius = 0.1F; }},
+                            {Lamp::Aspect::Shape, [](Lamp &lamp) { lamp.angle = 0.1F; }},
+                            {Lamp::Aspect::Shape, [](Lamp &lamp) { lamp.spot_outer_angle = 0.3F; }},
+                            {Lamp::Aspect::Shape, [](Lamp &lamp) { lamp.spot_blend = 0.5F; }},
+                            {Lamp::Aspect::Shape, [](Lamp &lamp) { lamp.range = 5.0F; }},
+                            {Lamp::Aspect::Shape, [](Lamp &lamp) { lamp.area_shape = AreaShape::Ellipse; }},
+                            {Lamp::Aspect::Shape, [](Lamp &lamp) { lamp.area_size_x = 2.0F; }},
+                            {Lamp::Aspect::Shape, [](Lamp &lamp) { lamp.area_size_y = 2.0F; }},
+                            {Lamp::Aspect::Shadow, [](Lamp &lamp) { lamp.shadow.size = 64; }}});
+  expect_aspects<Camera>({}, {{Camera::Aspect::Name, [](Camera &camera) { camera.name = "renamed"; }},
+                              {Camera::Aspect::Lens, [](Camera &camera) { camera.near = 0.2F; }},
+                              {Camera::Aspect::Lens, [](Camera &camera) { camera.far = 9.0F; }},
+                              {Camera::Aspect::Lens, [](Camera &camera) { camera.aspect = 1.5F; }},
+                              {Camera::Aspect::Lens, [](Camera &camera) { camera.vertical_angle = 0.5F; }},
+                              {Camera::Aspect::Lens, [](Camera &camera) { camera.kind = CameraKind::Orthographic; }},
+                              {Camera::Aspect::Lens, [](Camera &camera) { camera.half_width = 3.0F; }},
+                              {Camera::Aspect::Lens, [](Camera &camera) { camera.half_height = 3.0F; }}});
+  expect_aspects<Material>(
+      {}, {{Material::Aspect::Name, [](Material &material) { material.name = "renamed"; }},
+           {Material::Aspect::Surface, [](Material &material) { material.base_color.r = 0.5F; }},
+           {Material::Aspect::Surface, [](Material &material) { material.metallic = 0.5F; }},
+           {Material::Aspect::Surface, [](Material &material) { material.roughness = 0.5F; }},
+           {Material::Aspect::Surface, [](Material &material) { material.specular = 0.5F; }},
+           {Material::Aspect::Surface, [](Material &material) { material.specular_color.b = 0.5F; }},
+           {Material::Aspect::Surface, [](Material &material) { material.emissive.b = 0.5F; }},
+           {Material::Aspect::Coverage, [](Material &material) { material.alpha = 0.5F; }},
+           {Material::Aspect::Coverage, [](Material &material) { material.alpha_mode = AlphaMode::Mask; }},
+           {Material::Aspect::Coverage, [](Material &material) { material.alpha_cutoff = 0.25F; }},
+           {Material::Aspect::Coverage, [](Material &material) { material.is_double_sided = true; }},
+           {Material::Aspect::Textures, [](Material &material) {
+              material.base_color_texture = {7, 1};
+            }}});
+  expect_aspects<Texture>({}, {{Texture::Aspect::Image,
+                                [](Texture &texture) {
+                                  texture.image = {7, 1};
+                                }},
+                               {Texture::Aspect::Sampler, [](Texture &t) { t.wrap_u = TextureWrap::ClampToEdge; }},
+                               {Texture::Aspect::Sampler, [](Texture &t) { t.wrap_v = TextureWrap::ClampToEdge; }},
+                               {Texture::Aspect::Sampler, [](Texture &t) { t.magnified = TextureFilter::Nearest; }},
+                               {Texture::Aspect::Sampler, [](Texture &t) { t.minified = TextureFilter::Nearest; }},
+                               {Texture::Aspect::Sampler, [](Texture &texture) { texture.mip = MipFilter::None; }}});
+  expect_aspects<Image>(texel(), {{Image::Aspect::Name, [](Image &image) { image.name = "renamed"; }},
+                                  {Image::Aspect::Content, [](Image &image) { image.texels[2] = 77; }},
+                                  {Image::Aspect::Content, [](Image &image) {
+                                     image.width = 2;
+                                     image.texels.resize(8);
+                                   }}});
+  expect_aspects<Mesh>(triangle(), {{Mesh::Aspect::Name, [](Mesh &mesh) { mesh.name = "renamed"; }},
+                                    {Mesh::Aspect::Shape, [](Mesh &mesh) { mesh.positions[0].x = -1.0F; }},
+                                    {Mesh::Aspect::Shape,
+                                     [](Mesh &mesh) {
+                                       mesh.normals[0] = {1, 0, 0};
+                                     }},
+                                    {Mesh::Aspect::Shape, [](Mesh &mesh) { mesh.uvs.resize(3); }},
+                                    {Mesh::Aspect::Shape,
+                                     [](Mesh &mesh) {
+                                       mesh.indices = {0, 2, 1};
+                                     }},
+                                    {Mesh::Aspect::Material, [](Mesh &mesh) {
+                                       mesh.material = {7, 1};
+                                     }}});
+  expect_aspects<Node>({}, {{Node::Aspect::Name, [](Node &node) { node.name = "renamed"; }},
+                            {Node::Aspect::Transform, [](Node &node) { node.parent_from_node[3].x = 1.0; }},
+                            {Node::Aspect::Content,
+                             [](Node &node) {
+                               node.meshes = {{7, 1}};
+                             }},
+                            {Node::Aspect::Content,
+                             [](Node &node) {
+                               node.lamp = {7, 1};
+                             }},
+                            {Node::Aspect::Content,
+                             [](Node &node) {
+                               node.camera = {7, 1};
+                             }},
+                            {Node::Aspect::Visibility, [](Node &node) { node.is_visible = false; }},
+                            {Node::Aspect::Shadow, [](Node &node) { node.casts_shadow = false; }},
+                            {Node::Aspect::Shadow, [](Node &node) { node.receives_shadow = false; }}});
+}
+
+TEST(SceneRevision, MovingAParentChangesTheTransformsBelowAlone)
+{
+  Scene scene;
+  const auto root = scene.add(named("root"));
+  const auto child = scene.add(named("child"), root);
+  const auto leaf = scene.add(named("leaf"), child);
+  const auto other = scene.add(named("other"));
+  Changes<Node> of_child(scene, child);
+  Changes<Node> of_leaf(scene, leaf);
+  Changes<Node> of_other(scene, other);
+  using Aspects = std::vector<Node::Aspect>;
+  scene.set_transform(root, glm::translate(glm::dmat4(1.0), {1, 0, 0}));
+  EXPECT_EQ(of_child.take(), Aspects{Node::Aspect::Transform});
+  EXPECT_EQ(of_leaf.take(), Aspects{Node::Aspect::Transform});
+  scene.edit(root, [](Node &node) { node.is_visible = false; });
+  EXPECT_EQ(of_child.take(), Aspects{Node::Aspect::Visibility});
+  EXPECT_EQ(of_leaf.take(), Aspects{Node::Aspect::Visibility});
+  // A hidden node's child that is hidden itself stays as it is.
+  scene.edit(child, [](Node &node) { node.is_visible = false; });
+  EXPECT_TRUE(of_child.take().empty() && of_leaf.take().empty());
+  scene.edit(root, [](Node &node) { node.is_visible = true; });
+  EXPECT_TRUE(of_child.take().empty() && of_leaf.take().empty());
+  // A parent with the same matrix and visibility changes neither.
+  const auto twin = scene.add(scene.nodes()[root]);
+  scene.set_parent(child, twin);
+  EXPECT_TRUE(of_child.take().empty() && of_leaf.take().empty());
+  scene.edit(root, [](Node &node) { node.name = "renamed"; });
+  scene.set_transform(root, scene.nodes()[root].parent_from_node);
+  EXPECT_TRUE(of_child.take().empty() && of_leaf.take().empty() && of_other.take().empty());
+}
+
+TEST(SceneRevision, AddingAndRemovingChangesThePoolAndNotTheOthers)
+{
+  Scene scene;
+  EXPECT_EQ(scene.revision(), 0U);
+  EXPECT_EQ(scene.lamps().latest(), 0U);
+  const auto lamp = scene.add(Lamp());
+  const Revision added = scene.revision();
+  EXPECT_EQ(scene.lamps().latest(), added);
+  EXPECT_EQ(scene.lamps().revision(lamp, Lamp::Aspect::Shape), added);
+  const auto second = scene.add(Lamp());
+  EXPECT_GT(scene.revision(), added);
+  EXPECT_EQ(scene.lamps().revision(lamp, Lamp::Aspect::Shape), added);
+  const Revision before = scene.revision();
+  scene.remove(second);
+  EXPECT_GT(scene.revision(), before);
+  for (const auto aspect : {Lamp::Aspect::Name, Lamp::Aspect::Light, Lamp::Aspect::Shape, Lamp::Aspect::Shadow}) {
+    EXPECT_EQ(scene.lamps().latest(aspect), scene.revision());
+    EXPECT_EQ(scene.lamps().revision(lamp, aspect), added);
+  }
+  EXPECT_EQ(scene.materials().latest(), 0U) << "another kind of thing";
+  const auto third = scene.add(Lamp());
+  EXPECT_EQ(third.index, second.index);
+  EXPECT_EQ(scene.lamps().revision(third, Lamp::Aspect::Name), scene.revision());
+}
+
+TEST(SceneRevision, MeshBoundsFollowThePositions)
+{
+  Scene scene;
+  Mesh mesh = triangle();
+  mesh.bounds = {{-9, -9, -9}, {9, 9, 9}};
+  const auto handle = scene.add(mesh);
+  EXPECT_EQ(scene.meshes()[handle].bounds.max, glm::vec3(1, 1, 0));
+  scene.edit(handle, [](Mesh &changed) { changed.positions[1].x = 5.0F; });
+  EXPECT_EQ(scene.meshes()[handle].bounds.max, glm::vec3(5, 1, 0));
+}
+
+// ---- Refused edits ----
+
+/** Each change is refused with a message that holds its word, by add, replace and edit; then nothing has changed. */
+template <typename T>
+void expect_refused(const T &value, const std::vector<std::pair<std::string, std::function<void(T &)>>> &changes)
+{
+  Scene scene;
+  const Handle<T> handle = scene.add(value);
+  const Revision before = scene.revision();
+  for (const auto &[word, change] : changes) {
+    T changed = value;
+    change(changed);
+    for (const std::string &message : {message_of<InvalidEdit>([&] { scene.add(changed); }),
+                                       message_of<InvalidEdit>([&] { scene.replace(handle, changed); }),
+                                       message_of<InvalidEdit>([&] { scene.edit(handle, change); })}) {
+      EXPECT_NE(message.find(word), std::string::npos) << word << ": " << message;
+      EXPECT_EQ(message.find(fmt::format("{} '{}': ", T::kind_name, value.name)), 0U) << message;
+    }
+  }
+  EXPECT_EQ(scene.revision(), before);
+  EXPECT_EQ(scene.pool<T>().size(), 1U);
+  scene.replace(handle, value);
+  EXPECT_EQ(scene.revision(), before) << "the value is the old one";
+}
+
+TEST(SceneEdit, ValuesThatCannotBeHeldAreRefused)
+{
+  expect_refused<Mesh>(triangle(), {{"2 normals for 3 positions", [](Mesh &mesh) { mesh.normals.pop_back(); }},
+                                    {"1 uvs for 3 positions", [](Mesh &mesh) { mesh.uvs.resize(1); }},
+                                    {"2 indices", [](Mesh &mesh) { mesh.indices.pop_back(); }},
+                                    {"index 3 is beyond", [](Mesh &mesh) { mesh.indices[1] = 3; }},
+                                    {"index 4294967295", [](Mesh &mesh) { mesh.indices[2] = 0xFFFFFFFFU; }},
+                                    {"position 1 is not finite", [](Mesh &mesh) { mesh.positions[1].y = float(nan); }},
+                                    {"position 2", [](Mesh &mesh) { mesh.positions[2].z = float(-infinity); }}});
+  expect_refused<Image>(texel(), {{"4 bytes for 2x1", [](Image &image) { image.width = 2; }},
+                                  {"3 bytes", [](Image &image) { image.texels.pop_back(); }},
+                                  {"0 bytes for 0x0",
+                                   [](Image &image) {
+                                     image = {"texel", 0, 0, {}};
+                                   }},
+                                  // 4 · 2³⁰ · 2³⁰ is 0 in 32 bits.
+                                  {"bytes for", [](Image &image) {
+                                     image = {"texel", 1U << 30U, 1U << 30U, {}};
+                                   }}});
+  expect_refused<Node>(named("n"), {{"not finite", [](Node &node) { node.parent_from_node[1][1] = nan; }},
+                                    {"not finite", [](Node &node) { node.parent_from_node[3][0] = infinity; }},
+                                    {"not affine", [](Node &node) { node.parent_from_node[0][3] = 0.5; }},
+                                    {"not affine", [](Node &node) { node.parent_from_node[3][3] = 2.0; }},
+                                    {"not affine", [](Node &node) { node.parent_from_node = glm::dmat4(0.0); }}});
+}
+
+TEST(SceneEdit, ARefusedTransformChangesNothing)
+{
+  Scene scene;
+  const auto root = scene.add(at({1, 2, 3}, "root"));
+  const auto child = scene.add(Node(), root);
+  const Revision before = scene.revision();
+  glm::dmat4 matrix(1.0);
+  matrix[2][2] = nan;
+  const std::string message = message_of<InvalidEdit>([&] { scene.set_transform(root, matrix); });
+  EXPECT_NE(message.find("node 'root': "), std::string::npos) << message;
+  EXPECT_EQ(scene.world_from_node(child)[3], glm::dvec4(1, 2, 3, 1));
+  EXPECT_EQ(scene.nodes()[root].parent_from_node[2][2], 1.0);
+  EXPECT_EQ(scene.revision(), before);
+  // Singular and mirrored ones are none of these.
+  scene.set_transform(root, glm::scale(glm::dmat4(1.0), {-1.0, 0.0, 1.0}));
+  EXPECT_EQ(scene.world_from_node(child)[0][0], -1.0);
+}
+
+TEST(SceneEdit, AMeshOfNothingIsOne)
+{
+  Scene scene;
+  const auto mesh = scene.add(Mesh());
+  EXPECT_TRUE(scene.meshes()[mesh].bounds.is_empty());
+  Node node;
+  node.meshes = {mesh, mesh};
+  scene.add(node);
+  EXPECT_EQ(scene.objects().size(), 2U);
+  EXPECT_TRUE(scene.bounds().is_empty());
+}
+
+}  // namespace
+}  // namespace gnomon::scene
