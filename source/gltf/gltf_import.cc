@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "gltf_import.hh"
 
+#include "internal/gltf_camera.hh"
 #include "internal/gltf_file.hh"
 #include "internal/gltf_lamp.hh"
 #include "internal/gltf_mesh.hh"
+#include "internal/gltf_node.hh"
 #include "internal/gltf_report.hh"
 
 #include <glm/common.hpp>
@@ -13,7 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -45,7 +47,7 @@ constexpr std::array<std::string_view, 8> harmless_extensions{
 std::string unknown_required_extensions(const File &file)
 {
   std::string names;
-  for (const std::string &name : file.model.extensionsRequired) {
+  for (const std::string &name : file.model.extensions_required) {
     if (std::find(harmless_extensions.begin(), harmless_extensions.end(), name) == harmless_extensions.end()) {
       names += (names.empty() ? "" : ", ") + name;
     }
@@ -53,40 +55,33 @@ std::string unknown_required_extensions(const File &file)
   return printable(names);
 }
 
-glm::dvec3 vec3_or(const std::vector<double> &values, const glm::dvec3 &fallback)
-{
-  return values.empty() ? fallback : glm::dvec3(values[0], values[1], values[2]);
-}
-
-glm::dmat4 matrix_of(const tinygltf::Node &node, const std::string &what, Warnings &warnings)
+/** \a what is called where there is something to say. */
+glm::dmat4 matrix_of(const Model::Node &node, const std::function<std::string()> &what, Warnings &warnings)
 {
   glm::dmat4 matrix(1.0);
-  if (!node.matrix.empty()) {
-    for (int i = 0; i < 16; i++) {
-      matrix[i / 4][i % 4] = node.matrix[i];
+  if (node.matrix) {
+    for (std::size_t i = 0; i < 16; i++) {
+      matrix[int(i / 4)][int(i % 4)] = (*node.matrix)[i];
     }
     if (matrix[0][3] != 0.0 || matrix[1][3] != 0.0 || matrix[2][3] != 0.0 || matrix[3][3] != 1.0) {
-      warnings.add(what, "the last row of its matrix is not 0 0 0 1 and is not used");
+      warnings.add(what(), "the last row of its matrix is not 0 0 0 1 and is not used");
       matrix[0][3] = matrix[1][3] = matrix[2][3] = 0.0;
       matrix[3][3] = 1.0;
     }
     return matrix;
   }
-  if (!node.rotation.empty()) {
-    const std::vector<double> &r = node.rotation;
-    const double length = std::hypot(std::hypot(r[0], r[1]), std::hypot(r[2], r[3]));
-    if (length > 0.0 && std::isfinite(length)) {
-      matrix = glm::mat4_cast(glm::dquat(r[3] / length, r[0] / length, r[1] / length, r[2] / length));
-    }
-    else {
-      warnings.add(what, "its rotation has no length and is not used");
-    }
+  const auto &[x, y, z, w] = node.rotation;
+  const double length = std::hypot(std::hypot(x, y), std::hypot(z, w));
+  if (length > 0.0 && std::isfinite(length)) {
+    matrix = glm::mat4_cast(glm::dquat(w / length, x / length, y / length, z / length));
   }
-  const glm::dvec3 scale = vec3_or(node.scale, glm::dvec3(1.0));
-  for (int axis = 0; axis < 3; axis++) {
-    matrix[axis] *= scale[axis];
+  else {
+    warnings.add(what(), "its rotation has no length and is not used");
   }
-  matrix[3] = glm::dvec4(vec3_or(node.translation, glm::dvec3(0.0)), 1.0);
+  for (std::size_t axis = 0; axis < 3; axis++) {
+    matrix[int(axis)] *= node.scale[axis];
+    matrix[3][int(axis)] = node.translation[axis];
+  }
   return matrix;
 }
 
@@ -142,7 +137,7 @@ class Importer {
     if (const std::string names = unknown_required_extensions(file_); !names.empty()) {
       warnings_.add("extensionsRequired", names + " is not known: what needs it is left out");
     }
-    if (file_.has_animations) {
+    if (file_.model.has_animations) {
       warnings_.add("animations", "are not played: the scene stands as its nodes say");
     }
   }
@@ -150,7 +145,7 @@ class Importer {
   /** Where each node hangs, -1 for a root. \throws Fault if the nodes are not trees. */
   [[nodiscard]] std::vector<int> parents() const
   {
-    const std::vector<tinygltf::Node> &nodes = file_.model.nodes;
+    const std::vector<Model::Node> &nodes = file_.model.nodes;
     std::vector<int> parent(nodes.size(), -1);
     for (std::size_t i = 0; i < nodes.size(); i++) {
       for (const int child : nodes[i].children) {
@@ -194,7 +189,7 @@ class Importer {
       }
       return roots;
     }
-    roots = file_.model.scenes[std::max(file_.model.defaultScene, 0)].nodes;
+    roots = file_.model.scenes[std::max(file_.model.scene, 0)];
     std::vector<bool> is_listed(parent.size(), false);
     for (const int root : roots) {
       if (parent[root] >= 0) {
@@ -225,8 +220,9 @@ class Importer {
     while (!stack.empty()) {
       const Visit visit = stack.back();
       stack.pop_back();
-      const tinygltf::Node &node = file_.model.nodes[visit.node];
-      const glm::dmat4 parent_from_node = matrix_of(node, node_label(visit.node), warnings_);
+      const Model::Node &node = file_.model.nodes[visit.node];
+      const glm::dmat4 parent_from_node = matrix_of(
+          node, [&] { return node_label(visit.node); }, warnings_);
       const glm::dmat4 world = visit.world_from_parent * parent_from_node;
       push(node.children, import_node(visit.node, visit.parent, visit.parent ? parent_from_node : world, world), world);
     }
@@ -244,6 +240,7 @@ class Importer {
     Node node;
     node.name = name.empty() ? "node " + std::to_string(index) : name;
     node.parent_from_node = parent_from_node;
+    read_flags(file_.model.nodes[index], index, node);
     import_meshes(index, glm::mat4(world), node);
     if (std::optional<Lamp> lamp = lamp_on(file_, index, warnings_)) {
       node.lamp = scene_.add(std::move(*lamp));
@@ -256,14 +253,14 @@ class Importer {
 
   void import_meshes(int index, const glm::mat4 &world, Node &added)
   {
-    const tinygltf::Node &node = file_.model.nodes[index];
+    const Model::Node &node = file_.model.nodes[index];
     if (node.mesh < 0) {
       return;
     }
     if (node.skin >= 0) {
       warnings_.add_counted(node_label(index), 1, "its skin is not applied");
     }
-    if (node.extensions.count("EXT_mesh_gpu_instancing") > 0) {
+    if (node.is_instanced) {
       warnings_.add(node_label(index), "EXT_mesh_gpu_instancing is not drawn: one instance stands at the node");
     }
     for (const Handle<Mesh> mesh : meshes_.meshes_of(node.mesh)) {

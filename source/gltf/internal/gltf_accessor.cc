@@ -14,15 +14,15 @@ namespace {
 /** An accessor without bytes of its own costs a file nothing, so its count needs a limit of ours. */
 constexpr std::size_t empty_count_max = std::size_t(1) << 24U;
 
-std::size_t component_size(int component_type)
+std::size_t component_size(std::uint64_t component_type)
 {
   switch (component_type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
+    case Model::Byte:
+    case Model::UnsignedByte: return 1;
+    case Model::Short:
+    case Model::UnsignedShort: return 2;
+    case Model::UnsignedInt:
+    case Model::Float: return 4;
     default: return 0;
   }
 }
@@ -49,77 +49,87 @@ bool fits(std::size_t size, std::size_t count, std::size_t stride, std::size_t e
   return count == 0 || (size >= element_size && count - 1 <= (size - element_size) / stride);
 }
 
-/** How many components an element has. */
-std::size_t width_of(int type)
+struct TypeName {
+  std::size_t width;
+  const char *name;
+};
+
+TypeName name_of(Model::ElementType type)
 {
-  return type == TINYGLTF_TYPE_SCALAR ? 1 : type == TINYGLTF_TYPE_VEC2 ? 2 : 3;
+  switch (type) {
+    case Model::ElementType::Scalar: return {1, "SCALAR"};
+    case Model::ElementType::Vec2: return {2, "VEC2"};
+    case Model::ElementType::Vec3: return {3, "VEC3"};
+    case Model::ElementType::Vec4: return {4, "VEC4"};
+    case Model::ElementType::Matrix: break;
+  }
+  return {16, "matrix"};
 }
 
 }  // namespace
 
 std::span<const unsigned char> view_bytes(const File &file, int view_index, std::size_t offset, const std::string &what)
 {
-  const tinygltf::BufferView &view = file.model.bufferViews[view_index];
+  const Model::BufferView &view = file.model.buffer_views[view_index];
   const std::span<const unsigned char> buffer = file.buffers[view.buffer];
   if (buffer.empty()) {
     throw Fault(what, "buffer " + std::to_string(view.buffer) + " holds no data");
   }
-  if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset) {
+  if (view.byte_offset > buffer.size() || view.byte_length > buffer.size() - view.byte_offset) {
     throw Fault(what, "bufferView " + std::to_string(view_index) + " runs past the end of buffer " +
                           std::to_string(view.buffer));
   }
-  if (offset > view.byteLength) {
+  if (offset > view.byte_length) {
     throw Fault(what, "begins past the end of bufferView " + std::to_string(view_index));
   }
-  return buffer.subspan(view.byteOffset + offset, view.byteLength - offset);
+  return buffer.subspan(view.byte_offset + offset, view.byte_length - offset);
 }
 
-AccessorReader::AccessorReader(const File &file, int accessor_index, int type)
+AccessorReader::AccessorReader(const File &file, int accessor_index, Model::ElementType type)
     : accessor_(file.model.accessors[accessor_index]), what_("accessor " + std::to_string(accessor_index))
 {
-  const std::size_t size = component_size(accessor_.componentType);
+  const std::size_t size = component_size(accessor_.component_type);
   if (size == 0) {
-    throw Fault(what_, "componentType " + std::to_string(accessor_.componentType) + " is not one of glTF 2.0");
+    throw Fault(what_, "componentType " + std::to_string(accessor_.component_type) + " is not one of glTF 2.0");
   }
+  const auto [width, name] = name_of(type);
   if (accessor_.type != type) {
-    throw Fault(what_, type == TINYGLTF_TYPE_SCALAR ? "must be a SCALAR"
-                       : type == TINYGLTF_TYPE_VEC2 ? "must be a VEC2"
-                                                    : "must be a VEC3");
+    throw Fault(what_, std::string("must be a ") + name);
   }
-  element_size_ = size * width_of(type);
+  element_size_ = size * width;
   stride_ = element_size_;
-  if (accessor_.bufferView >= 0) {
-    const std::size_t byte_stride = file.model.bufferViews[accessor_.bufferView].byteStride;
+  if (accessor_.buffer_view >= 0) {
+    const std::size_t byte_stride = file.model.buffer_views[accessor_.buffer_view].byte_stride;
     if (byte_stride != 0 && byte_stride < element_size_) {
       throw Fault(what_, "byteStride " + std::to_string(byte_stride) + " is below the size of an element, " +
                              std::to_string(element_size_));
     }
     stride_ = byte_stride == 0 ? element_size_ : byte_stride;
-    bytes_ = view_bytes(file, accessor_.bufferView, accessor_.byteOffset, what_);
+    bytes_ = view_bytes(file, accessor_.buffer_view, accessor_.byte_offset, what_);
     if (!fits(bytes_.size(), accessor_.count, stride_, element_size_)) {
-      throw Fault(what_, "runs past the end of bufferView " + std::to_string(accessor_.bufferView) + ": count is " +
+      throw Fault(what_, "runs past the end of bufferView " + std::to_string(accessor_.buffer_view) + ": count is " +
                              std::to_string(accessor_.count));
     }
   }
   else if (accessor_.count > empty_count_max) {
     throw Fault(what_, "count " + std::to_string(accessor_.count) + " is too large for an accessor without bufferView");
   }
-  if (accessor_.sparse.isSparse) {
+  if (accessor_.sparse) {
     read_sparse(file);
   }
 }
 
 void AccessorReader::read_sparse(const File &file)
 {
-  const auto &sparse = accessor_.sparse;
-  const auto count = static_cast<std::size_t>(sparse.count);
+  const Model::Sparse &sparse = *accessor_.sparse;
+  const std::size_t count = sparse.count;
   if (count > accessor_.count) {
     throw Fault(what_, "sparse.count " + std::to_string(count) + " is above count");
   }
-  const std::size_t index_size = component_size(sparse.indices.componentType);
+  const std::size_t index_size = component_size(std::uint64_t(sparse.indices.component_type));
   const std::span<const unsigned char> indices =
-      view_bytes(file, sparse.indices.bufferView, sparse.indices.byteOffset, what_);
-  sparse_values_ = view_bytes(file, sparse.values.bufferView, sparse.values.byteOffset, what_);
+      view_bytes(file, sparse.indices.buffer_view, sparse.indices.byte_offset, what_);
+  sparse_values_ = view_bytes(file, sparse.values.buffer_view, sparse.values.byte_offset, what_);
   if (index_size == 0 || !fits(indices.size(), count, index_size, index_size)) {
     throw Fault(what_, "its sparse indices run past the end of their bufferView");
   }
@@ -151,12 +161,12 @@ const unsigned char *AccessorReader::element(std::size_t index) const
 
 float AccessorReader::component(const unsigned char *bytes) const
 {
-  switch (accessor_.componentType) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE: return from_integer<std::int8_t>(bytes, accessor_.normalized);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return from_integer<std::uint8_t>(bytes, accessor_.normalized);
-    case TINYGLTF_COMPONENT_TYPE_SHORT: return from_integer<std::int16_t>(bytes, accessor_.normalized);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return from_integer<std::uint16_t>(bytes, accessor_.normalized);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return from_integer<std::uint32_t>(bytes, accessor_.normalized);
+  switch (accessor_.component_type) {
+    case Model::Byte: return from_integer<std::int8_t>(bytes, accessor_.is_normalized);
+    case Model::UnsignedByte: return from_integer<std::uint8_t>(bytes, accessor_.is_normalized);
+    case Model::Short: return from_integer<std::int16_t>(bytes, accessor_.is_normalized);
+    case Model::UnsignedShort: return from_integer<std::uint16_t>(bytes, accessor_.is_normalized);
+    case Model::UnsignedInt: return from_integer<std::uint32_t>(bytes, accessor_.is_normalized);
     default: return loaded<float>(bytes);
   }
 }
@@ -180,11 +190,28 @@ glm::vec2 AccessorReader::vec2(std::size_t index) const
   return {component(bytes), component(bytes + element_size_ / 2)};
 }
 
+glm::vec4 AccessorReader::color(std::size_t index) const
+{
+  const unsigned char *bytes = element(index);
+  if (bytes == nullptr) {
+    return glm::vec4(0.0F, 0.0F, 0.0F, accessor_.type == Model::ElementType::Vec3 ? 1.0F : 0.0F);
+  }
+  const std::size_t size = component_size(accessor_.component_type);
+  const float alpha = accessor_.type == Model::ElementType::Vec3 ? 1.0F : component(bytes + 3 * size);
+  return {component(bytes), component(bytes + size), component(bytes + 2 * size), alpha};
+}
+
+bool AccessorReader::is_color() const
+{
+  const bool is_small =
+      accessor_.component_type == Model::UnsignedByte || accessor_.component_type == Model::UnsignedShort;
+  return accessor_.component_type == Model::Float || (is_small && accessor_.is_normalized);
+}
+
 bool AccessorReader::is_unsigned() const
 {
-  return accessor_.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
-         accessor_.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
-         accessor_.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+  return accessor_.component_type == Model::UnsignedByte || accessor_.component_type == Model::UnsignedShort ||
+         accessor_.component_type == Model::UnsignedInt;
 }
 
 std::uint32_t AccessorReader::integer(std::size_t index) const

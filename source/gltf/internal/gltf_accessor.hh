@@ -5,6 +5,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -30,8 +31,8 @@ namespace gnomon::gltf {
  */
 class AccessorReader {
  public:
-  /** \throws Fault that names the accessor, when its elements are not all there or not of \a type (TINYGLTF_TYPE_*). */
-  AccessorReader(const File &file, int accessor_index, int type);
+  /** \throws Fault that names the accessor, when its elements are not all there or not of \a type. */
+  AccessorReader(const File &file, int accessor_index, Model::ElementType type);
 
   [[nodiscard]] std::size_t count() const
   {
@@ -46,12 +47,16 @@ class AccessorReader {
   [[nodiscard]] glm::vec3 vec3(std::size_t index) const;
   /** The same of a VEC2. */
   [[nodiscard]] glm::vec2 vec2(std::size_t index) const;
+  /** Element of a VEC3 or VEC4 of colours; the alpha of a VEC3 is 1. */
+  [[nodiscard]] glm::vec4 color(std::size_t index) const;
+  /** Whether components are floats, or normalised unsigned integers of 8 or 16 bits, as glTF wants of colours. */
+  [[nodiscard]] bool is_color() const;
   /** Element of a SCALAR of unsigned integers. \pre index < count(), and is_unsigned(). */
   [[nodiscard]] std::uint32_t integer(std::size_t index) const;
   [[nodiscard]] bool is_unsigned() const;
 
  private:
-  const tinygltf::Accessor &accessor_;
+  const Model::Accessor &accessor_;
   std::string what_;
   std::size_t element_size_ = 0;
   std::size_t stride_ = 0;

@@ -3,6 +3,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <limits>
 #include <numeric>
 
 namespace gnomon::gltf {
@@ -37,6 +38,38 @@ bool is_flat(const Mesh &mesh, std::size_t first)
 {
   const glm::vec3 &normal = mesh.normals[mesh.indices[first]];
   return mesh.normals[mesh.indices[first + 1]] == normal && mesh.normals[mesh.indices[first + 2]] == normal;
+}
+
+/** Vertices keep their order. */
+void drop_unused_vertices(Mesh &mesh)
+{
+  constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> new_index(mesh.positions.size(), unused);
+  for (const std::uint32_t index : mesh.indices) {
+    new_index[index] = 0;
+  }
+  std::uint32_t kept = 0;
+  for (std::size_t vertex = 0; vertex < new_index.size(); vertex++) {
+    if (new_index[vertex] == unused) {
+      continue;
+    }
+    mesh.positions[kept] = mesh.positions[vertex];
+    mesh.normals[kept] = mesh.normals[vertex];
+    if (!mesh.uvs.empty()) {
+      mesh.uvs[kept] = mesh.uvs[vertex];
+    }
+    if (!mesh.colors.empty()) {
+      mesh.colors[kept] = mesh.colors[vertex];
+    }
+    new_index[vertex] = kept++;
+  }
+  mesh.positions.resize(kept);
+  mesh.normals.resize(kept);
+  mesh.uvs.resize(mesh.uvs.empty() ? 0 : kept);
+  mesh.colors.resize(mesh.colors.empty() ? 0 : kept);
+  for (std::uint32_t &index : mesh.indices) {
+    index = new_index[index];
+  }
 }
 
 bool is_along(const glm::dvec3 &vector, const glm::dvec3 &direction)
@@ -83,8 +116,14 @@ std::size_t flatten_facets(Mesh &mesh)
       if (!mesh.uvs.empty()) {
         mesh.uvs.push_back(mesh.uvs[vertex]);
       }
+      if (!mesh.colors.empty()) {
+        mesh.colors.push_back(mesh.colors[vertex]);
+      }
       parent.push_back(std::uint32_t(parent.size()));
     }
+  }
+  if (changed > 0) {
+    drop_unused_vertices(mesh);
   }
   return changed;
 }

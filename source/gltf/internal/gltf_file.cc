@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "internal/gltf_file.hh"
 
+#include "internal/gltf_document.hh"
 #include "internal/gltf_report.hh"
-#include "internal/gltf_schema.hh"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <string_view>
 #include <system_error>
 
@@ -19,7 +19,6 @@ namespace gnomon::gltf {
 
 namespace {
 
-using nlohmann::json;
 using Bytes = std::vector<unsigned char>;
 using ByteSpan = std::span<const unsigned char>;
 
@@ -45,7 +44,9 @@ Bytes read_bytes(const std::filesystem::path &path, const std::string &what)
   if (error || size > file_size_max) {
     throw Fault(what, error ? error.message() : "is larger than 4 GiB");
   }
-  Bytes bytes(size);
+  Bytes bytes;
+  bytes.reserve(size + document_padding());
+  bytes.resize(size);
   std::ifstream stream(path, std::ios::binary);
   if (!stream.read(reinterpret_cast<char *>(bytes.data()), static_cast<std::streamsize>(size))) {
     throw Fault(what, "cannot be read");
@@ -114,19 +115,6 @@ Chunks split_glb(ByteSpan bytes)
   return chunks;
 }
 
-json parse_json(ByteSpan bytes)
-{
-  try {
-    return json::parse(bytes.begin(), bytes.end());
-  }
-  catch (const json::exception &error) {
-    // "[json.exception.parse_error.101] parse error at ...": the identifier says nothing to a user.
-    const std::string_view message = error.what();
-    const std::size_t prefix_end = message.find("] ");
-    throw Fault("JSON", printable(prefix_end == message.npos ? message : message.substr(prefix_end + 2)));
-  }
-}
-
 /** A value of two hexadecimal digits, or nothing. */
 int hexadecimal(std::string_view digits)
 {
@@ -158,6 +146,44 @@ bool is_data_uri(const std::string &uri)
   return uri.rfind("data:", 0) == 0;
 }
 
+/** Nothing for what is no base64. Padding at the end may be missing; white space may not be in between. */
+std::optional<Bytes> base64_decoded(std::string_view text)
+{
+  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  constexpr std::uint8_t none = 64;
+  static const std::array<std::uint8_t, 256> value_of = [&] {
+    std::array<std::uint8_t, 256> values;
+    values.fill(none);
+    for (std::size_t i = 0; i < digits.size(); i++) {
+      values[static_cast<unsigned char>(digits[i])] = static_cast<std::uint8_t>(i);
+    }
+    return values;
+  }();
+  while (!text.empty() && text.back() == '=') {
+    text.remove_suffix(1);
+  }
+  if (text.size() % 4 == 1) {
+    return std::nullopt;
+  }
+  Bytes bytes;
+  bytes.reserve(3 * text.size() / 4);
+  std::uint32_t bits = 0;
+  unsigned bit_count = 0;
+  for (const char character : text) {
+    const std::uint8_t value = value_of[static_cast<unsigned char>(character)];
+    if (value == none) {
+      return std::nullopt;
+    }
+    bits = bits << 6U | value;
+    bit_count += 6;
+    if (bit_count >= 8) {
+      bit_count -= 8;
+      bytes.push_back(static_cast<unsigned char>(bits >> bit_count));
+    }
+  }
+  return bytes;
+}
+
 Bytes bytes_of_data_uri(const std::string &what, const std::string &uri)
 {
   const std::size_t comma = uri.find(',');
@@ -165,14 +191,11 @@ Bytes bytes_of_data_uri(const std::string &what, const std::string &uri)
   if (comma == uri.npos || comma < suffix.size() || uri.compare(comma - suffix.size(), suffix.size(), suffix) != 0) {
     throw Fault(what, "its data URI is not base64");
   }
-  // tinygltf knows a few media types only, and the type does not matter here.
-  const std::string known = "data:application/octet-stream;base64," + uri.substr(comma + 1);
-  Bytes bytes;
-  std::string media_type;
-  if (comma + 1 < uri.size() && !tinygltf::DecodeDataURI(&bytes, media_type, known, 0, false)) {
+  std::optional<Bytes> bytes = base64_decoded(std::string_view(uri).substr(comma + 1));
+  if (!bytes) {
     throw Fault(what, "its data URI cannot be decoded");
   }
-  return bytes;
+  return std::move(*bytes);
 }
 
 /** A file that \a uri names, and how messages name it. */
@@ -196,15 +219,13 @@ class BufferLoader {
  public:
   BufferLoader(File &file, ByteSpan binary_chunk) : file_(file), binary_chunk_(binary_chunk) {}
 
-  void load(const json &buffer)
+  void load(const Model::Buffer &buffer)
   {
     const std::size_t index = file_.buffers.size();
     const std::string what = "buffer " + std::to_string(index);
     ByteSpan bytes;
-    const auto uri = buffer.find("uri");
-    if (uri != buffer.end()) {
-      const auto &uri_text = uri->get_ref<const std::string &>();
-      bytes = is_data_uri(uri_text) ? store(bytes_of_data_uri(what, uri_text)) : from_file(what, uri_text);
+    if (buffer.uri) {
+      bytes = is_data_uri(*buffer.uri) ? store(bytes_of_data_uri(what, *buffer.uri)) : from_file(what, *buffer.uri);
     }
     else if (index == 0 && !binary_chunk_.empty()) {
       bytes = binary_chunk_;
@@ -214,12 +235,11 @@ class BufferLoader {
       file_.buffers.emplace_back();
       return;
     }
-    const auto length = buffer.value("byteLength", std::uint64_t(0));
-    if (length > bytes.size()) {
-      throw Fault(what,
-                  "is cut off: it says " + std::to_string(length) + " bytes, but has " + std::to_string(bytes.size()));
+    if (buffer.byte_length > bytes.size()) {
+      throw Fault(what, "is cut off: it says " + std::to_string(buffer.byte_length) + " bytes, but has " +
+                            std::to_string(bytes.size()));
     }
-    file_.buffers.push_back(bytes.first(length));
+    file_.buffers.push_back(bytes.first(buffer.byte_length));
   }
 
  private:
@@ -249,83 +269,23 @@ class BufferLoader {
   }
 };
 
-/**
- * tinygltf refuses a file in which an index accessor has no buffer view, though glTF allows that (all zeros, sparse,
- * or filled by an extension). So such accessors are lent an empty one, which is taken back afterwards.
- */
-int lend_buffer_view(json &document)
-{
-  if (!document.contains("bufferViews")) {
-    document["bufferViews"] = json::array();
-  }
-  json &views = document["bufferViews"];
-  const auto lent = static_cast<int>(views.size());
-  views.push_back({{"buffer", 0}, {"byteLength", 0}});
-  if (document.contains("accessors")) {
-    for (json &accessor : document["accessors"]) {
-      if (!accessor.contains("bufferView")) {
-        accessor["bufferView"] = lent;
-      }
-    }
-  }
-  return lent;
-}
-
-void take_back_buffer_view(tinygltf::Model &model, int lent)
-{
-  for (tinygltf::Accessor &accessor : model.accessors) {
-    if (accessor.bufferView == lent) {
-      accessor.bufferView = -1;
-    }
-  }
-  model.bufferViews.pop_back();
-}
-
-tinygltf::Model model_from(json &document)
-{
-  const int lent = lend_buffer_view(document);
-  const std::string pruned = document.dump();
-  tinygltf::TinyGLTF loader;
-  tinygltf::Model model;
-  std::string error;
-  std::string warning;
-  if (!loader.LoadASCIIFromString(&model, &error, &warning, pruned.data(), static_cast<unsigned>(pruned.size()), "")) {
-    throw Fault("glTF", printable(std::string_view(error).substr(0, error.find('\n'))));
-  }
-  take_back_buffer_view(model, lent);
-  return model;
-}
-
 }  // namespace
 
 File load_file(const std::filesystem::path &path)
 {
   File file;
   file.storage.push_back(read_bytes(path, "file"));
-  const ByteSpan bytes = file.storage.back();
+  Bytes &storage = file.storage.back();
+  const std::size_t size = storage.size();
+  storage.resize(size + document_padding());
+  const ByteSpan bytes = ByteSpan(storage).first(size);
   const Chunks chunks = is_glb(bytes) ? split_glb(bytes) : Chunks{bytes, {}};
-  json document = parse_json(chunks.json);
-  const auto animations = document.is_object() ? document.find("animations") : document.end();
-  file.has_animations = animations != document.end() && !animations->empty();
-  check_document(document);
-
+  file.model = parse_document(chunks.json);
   file.folder = path.parent_path();
   BufferLoader buffer_loader(file, chunks.binary);
-  if (document.contains("buffers")) {
-    for (const json &buffer : document["buffers"]) {
-      buffer_loader.load(buffer);
-    }
-    // tinygltf would read them once more, and with fewer checks.
-    document.erase("buffers");
+  for (const Model::Buffer &buffer : file.model.buffers) {
+    buffer_loader.load(buffer);
   }
-  if (document.contains("images")) {
-    for (const json &image : document["images"]) {
-      file.images.push_back({image.value("name", ""), image.value("uri", ""), image.value("bufferView", -1)});
-    }
-    // tinygltf would read them all.
-    document.erase("images");
-  }
-  file.model = model_from(document);
   return file;
 }
 

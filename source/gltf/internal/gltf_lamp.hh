@@ -7,7 +7,7 @@
 
 #include <optional>
 
-/** Reads lamps and cameras. Internal to source/gltf. */
+/** Reads lamps. Internal to source/gltf. */
 namespace gnomon::gltf {
 
 /**
@@ -16,15 +16,5 @@ namespace gnomon::gltf {
  * \throws Fault that names the lamp, the key and the value, when one is of the wrong type or out of range.
  */
 [[nodiscard]] std::optional<scene::Lamp> lamp_on(const File &file, int node, Warnings &warnings);
-
-/** The camera on a node, if there is one with usable numbers. */
-[[nodiscard]] std::optional<scene::Camera> camera_on(const File &file, int node, Warnings &warnings);
-
-/** Three quarters from the front and above, with +Y up, all of \a bounds in the frame. Empty bounds: the unit sphere.
- */
-[[nodiscard]] scene::PlacedCamera default_camera(const scene::Bounds &bounds);
-
-/** A sun from above and from the left of \a camera. */
-[[nodiscard]] scene::PlacedLamp default_sun(const scene::PlacedCamera &camera);
 
 }  // namespace gnomon::gltf

@@ -21,7 +21,7 @@ namespace {
 /** Reads one material; every message names it. */
 class MaterialReader {
  public:
-  MaterialReader(const tinygltf::Material &source, std::size_t index, TextureImporter &textures, Warnings &warnings)
+  MaterialReader(const Model::Material &source, std::size_t index, TextureImporter &textures, Warnings &warnings)
       : source_(source), what_(label("material", source.name, index)), textures_(textures), warnings_(warnings)
   {
     result_.name = source.name.empty() ? "material " + std::to_string(index) : source.name;
@@ -34,7 +34,7 @@ class MaterialReader {
     read_emissive();
     read_alpha();
     read_base_color_texture();
-    result_.is_double_sided = source_.doubleSided;
+    result_.is_double_sided = source_.is_double_sided;
     warn_textures();
     warn_extensions();
     return result_;
@@ -46,12 +46,18 @@ class MaterialReader {
   }
 
  private:
-  const tinygltf::Material &source_;
+  const Model::Material &source_;
   std::string what_;
   TextureImporter &textures_;
   Warnings &warnings_;
   Material result_;
   TextureCoordinates texture_coordinates_;
+
+  template <std::size_t Count>
+  static glm::dvec3 vec3(const std::array<double, Count> &values)
+  {
+    return {values[0], values[1], values[2]};
+  }
 
   float clamped(const char *factor, double value, double max)
   {
@@ -62,45 +68,25 @@ class MaterialReader {
     return static_cast<float>(result);
   }
 
-  glm::vec3 clamped(const char *factor, const std::vector<double> &value, double max)
+  glm::vec3 clamped(const char *factor, const glm::dvec3 &value, double max)
   {
     return {clamped(factor, value[0], max), clamped(factor, value[1], max), clamped(factor, value[2], max)};
   }
 
-  /** nullptr when the material does not have it. */
-  const tinygltf::Value *extension(const char *name) const
-  {
-    const auto found = source_.extensions.find(name);
-    return found == source_.extensions.end() ? nullptr : &found->second;
-  }
-
-  static double number(const tinygltf::Value &object, const char *key, double fallback)
-  {
-    return object.Has(key) ? object.Get(key).GetNumberAsDouble() : fallback;
-  }
-
   void read_metallic_roughness()
   {
-    const tinygltf::PbrMetallicRoughness &roughness = source_.pbrMetallicRoughness;
-    result_.base_color = clamped("baseColorFactor", roughness.baseColorFactor, 1.0);
-    result_.alpha = clamped("baseColorFactor", roughness.baseColorFactor[3], 1.0);
-    result_.metallic = clamped("metallicFactor", roughness.metallicFactor, 1.0);
-    result_.roughness = clamped("roughnessFactor", roughness.roughnessFactor, 1.0);
+    result_.base_color = clamped("baseColorFactor", vec3(source_.base_color), 1.0);
+    result_.alpha = clamped("baseColorFactor", source_.base_color[3], 1.0);
+    result_.metallic = clamped("metallicFactor", source_.metallic, 1.0);
+    result_.roughness = clamped("roughnessFactor", source_.roughness, 1.0);
   }
 
   void read_specular()
   {
-    if (const tinygltf::Value *specular = extension("KHR_materials_specular")) {
-      result_.specular = clamped("specularFactor", number(*specular, "specularFactor", 1.0), 1.0);
-      if (specular->Has("specularColorFactor")) {
-        const tinygltf::Value &color = specular->Get("specularColorFactor");
-        const std::vector<double> values{color.Get(0).GetNumberAsDouble(), color.Get(1).GetNumberAsDouble(),
-                                         color.Get(2).GetNumberAsDouble()};
-        result_.specular_color = clamped("specularColorFactor", values, large);
-      }
-    }
-    if (const tinygltf::Value *refraction = extension("KHR_materials_ior")) {
-      result_.specular_color *= reflectance_ratio(number(*refraction, "ior", 1.5));
+    result_.specular = clamped("specularFactor", source_.specular, 1.0);
+    result_.specular_color = clamped("specularColorFactor", vec3(source_.specular_color), large);
+    if (source_.ior) {
+      result_.specular_color *= reflectance_ratio(*source_.ior);
     }
   }
 
@@ -121,59 +107,40 @@ class MaterialReader {
 
   void read_emissive()
   {
-    double strength = 1.0;
-    if (const tinygltf::Value *emissive = extension("KHR_materials_emissive_strength")) {
-      strength = clamped("emissiveStrength", number(*emissive, "emissiveStrength", 1.0), large);
-    }
-    result_.emissive = clamped("emissiveFactor", source_.emissiveFactor, 1.0) * static_cast<float>(strength);
+    const float strength = clamped("emissiveStrength", source_.emissive_strength, large);
+    result_.emissive = clamped("emissiveFactor", vec3(source_.emissive), 1.0) * strength;
   }
 
   void read_alpha()
   {
-    result_.alpha_cutoff = clamped("alphaCutoff", source_.alphaCutoff, 1.0);
-    if (source_.alphaMode == "MASK") {
+    result_.alpha_cutoff = clamped("alphaCutoff", source_.alpha_cutoff, 1.0);
+    if (source_.alpha_mode == "MASK") {
       result_.alpha_mode = AlphaMode::Mask;
     }
-    else if (source_.alphaMode == "BLEND") {
+    else if (source_.alpha_mode == "BLEND") {
       result_.alpha_mode = AlphaMode::Blend;
     }
-    else if (source_.alphaMode != "OPAQUE") {
-      warnings_.add(what_, "alphaMode '" + printable(source_.alphaMode) + "' is unknown, taken for OPAQUE");
+    else if (source_.alpha_mode != "OPAQUE") {
+      warnings_.add(what_, "alphaMode '" + printable(source_.alpha_mode) + "' is unknown, taken for OPAQUE");
     }
     if (result_.alpha_mode == AlphaMode::Blend) {
-      warnings_.add(what_, "alphaMode " + source_.alphaMode + " is drawn opaque for now");
+      warnings_.add(what_, "alphaMode " + source_.alpha_mode + " is drawn opaque for now");
     }
   }
 
   void read_base_color_texture()
   {
-    const tinygltf::TextureInfo &slot = source_.pbrMetallicRoughness.baseColorTexture;
+    const Model::TextureSlot &slot = source_.base_color_texture;
     if (slot.index < 0) {
       return;
     }
+    texture_coordinates_ = {slot.set, {slot.offset[0], slot.offset[1]}, slot.rotation, {slot.scale[0], slot.scale[1]}};
     try {
-      texture_coordinates_.set = slot.texCoord;
-      if (const auto found = slot.extensions.find("KHR_texture_transform"); found != slot.extensions.end()) {
-        read_texture_transform(found->second);
-      }
       result_.base_color_texture = textures_.handle_of(slot.index);
     }
     catch (const Fault &fault) {
       warnings_.add(what_, std::string("its baseColorFactor is drawn without a texture: ") + fault.what());
     }
-  }
-
-  void read_texture_transform(const tinygltf::Value &transform)
-  {
-    const auto vec2 = [&transform](const char *key, const glm::dvec2 &fallback) {
-      return transform.Has(key) ? glm::dvec2(transform.Get(key).Get(0).GetNumberAsDouble(),
-                                             transform.Get(key).Get(1).GetNumberAsDouble())
-                                : fallback;
-    };
-    texture_coordinates_.set = static_cast<int>(number(transform, "texCoord", texture_coordinates_.set));
-    texture_coordinates_.offset = vec2("offset", glm::dvec2(0.0));
-    texture_coordinates_.rotation = number(transform, "rotation", 0.0);
-    texture_coordinates_.scale = vec2("scale", glm::dvec2(1.0));
   }
 
   void warn_textures()
@@ -184,14 +151,12 @@ class MaterialReader {
         slots += slots.empty() ? name : std::string(", ") + name;
       }
     };
-    add_slot(source_.pbrMetallicRoughness.metallicRoughnessTexture.index >= 0, "metallicRoughnessTexture");
-    add_slot(source_.normalTexture.index >= 0, "normalTexture");
-    add_slot(source_.occlusionTexture.index >= 0, "occlusionTexture");
-    add_slot(source_.emissiveTexture.index >= 0, "emissiveTexture");
-    if (const tinygltf::Value *specular = extension("KHR_materials_specular")) {
-      add_slot(specular->Has("specularTexture"), "specularTexture");
-      add_slot(specular->Has("specularColorTexture"), "specularColorTexture");
-    }
+    add_slot(source_.has_metallic_roughness_texture, "metallicRoughnessTexture");
+    add_slot(source_.has_normal_texture, "normalTexture");
+    add_slot(source_.has_occlusion_texture, "occlusionTexture");
+    add_slot(source_.has_emissive_texture, "emissiveTexture");
+    add_slot(source_.has_specular_texture, "specularTexture");
+    add_slot(source_.has_specular_color_texture, "specularColorTexture");
     if (!slots.empty()) {
       const bool is_one = slots.find(',') == slots.npos;
       warnings_.add(what_, slots + (is_one ? " is" : " are") + " not drawn yet");
@@ -202,7 +167,7 @@ class MaterialReader {
   {
     constexpr std::array read_or_without_effect{"KHR_materials_specular", "KHR_materials_emissive_strength",
                                                 "KHR_materials_ior", "KHR_materials_variants"};
-    for (const auto &[name, content] : source_.extensions) {
+    for (const std::string &name : source_.extensions) {
       if (std::find(read_or_without_effect.begin(), read_or_without_effect.end(), name) ==
           read_or_without_effect.end()) {
         warnings_.add(what_, printable(name) + " is not drawn");
@@ -238,7 +203,7 @@ Handle<Material> MaterialImporter::handle_of(int gltf_material)
     texture_coordinates_.try_emplace(place->second);
   }
   else if (is_new) {
-    const tinygltf::Material &source = file_.model.materials[gltf_material];
+    const Model::Material &source = file_.model.materials[gltf_material];
     MaterialReader reader(source, static_cast<std::size_t>(gltf_material), textures_, warnings_);
     place->second = scene_.add(reader.read());
     texture_coordinates_.emplace(place->second, reader.texture_coordinates());

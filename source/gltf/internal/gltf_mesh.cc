@@ -3,6 +3,7 @@
 
 #include "internal/gltf_accessor.hh"
 #include "internal/gltf_facets.hh"
+#include "internal/gltf_triangles.hh"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -30,35 +31,6 @@ namespace {
  */
 constexpr std::uint64_t element_count_max = std::uint64_t(1) << 28U;
 
-using Triangle = std::array<std::uint32_t, 3>;
-
-/** Counts of what was wrong with a primitive's triangles, and the words for them. */
-struct Losses {
-  std::uint64_t out_of_range = 0;
-  std::uint64_t non_finite = 0;
-  std::uint64_t flat = 0;
-  std::uint64_t incomplete = 0;
-  std::uint64_t bad_normals = 0;
-  std::uint64_t bad_uvs = 0;
-
-  bool operator==(const Losses &) const = default;
-
-  void report(Warnings &warnings, const std::string &what) const
-  {
-    const auto add = [&](std::uint64_t count, const char *reason) {
-      if (count > 0) {
-        warnings.add_counted(what, count, reason);
-      }
-    };
-    add(out_of_range, "triangle left out: a vertex index is out of range");
-    add(non_finite, "triangle left out: a position is not finite or beyond 1e12 m");
-    add(flat, "triangle left out: it has no area");
-    add(incomplete, "vertex left over at the end: it makes no triangle");
-    add(bad_normals, "normal replaced by that of a face: it was zero or not finite");
-    add(bad_uvs, "texture coordinate replaced by 0: it was not finite or beyond 1e6");
-  }
-};
-
 /** A float tells texels apart no more beyond it. */
 constexpr float uv_max = 1e6F;
 
@@ -66,6 +38,16 @@ bool is_uv(const glm::vec2 &uv)
 {
   // False for NaN too.
   return std::abs(uv.x) <= uv_max && std::abs(uv.y) <= uv_max;
+}
+
+/** Each component in [0, 1]; 0 for one that is no number. */
+glm::vec4 limited_color(const glm::vec4 &color)
+{
+  glm::vec4 limited;
+  for (int i = 0; i < 4; i++) {
+    limited[i] = color[i] >= 0.0F ? std::min(color[i], 1.0F) : 0.0F;
+  }
+  return limited;
 }
 
 bool is_position(const glm::vec3 &position)
@@ -89,29 +71,6 @@ glm::vec3 unit(const glm::dvec3 &vector)
   return glm::vec3(glm::normalize(vector / std::max({size.x, size.y, size.z})));
 }
 
-/** The triangles of a list, strip or fan of \a count vertices, as places in it, with the winding glTF gives them. */
-std::vector<Triangle> triangles_of(int mode, std::uint32_t count, Losses &losses)
-{
-  std::vector<Triangle> triangles;
-  const std::uint32_t triangle_count = mode == TINYGLTF_MODE_TRIANGLES ? count / 3 : count < 3 ? 0 : count - 2;
-  const std::uint32_t used_count = mode == TINYGLTF_MODE_TRIANGLES ? 3 * triangle_count
-                                   : triangle_count > 0            ? count
-                                                                   : 0;
-  losses.incomplete = count - used_count;
-  triangles.reserve(triangle_count);
-  for (std::uint32_t i = 0; i < triangle_count; i++) {
-    switch (mode) {
-      case TINYGLTF_MODE_TRIANGLE_STRIP:
-        // Every other triangle is turned round, so that all face the same way.
-        triangles.push_back({i, i + 1 + i % 2, i + 2 - i % 2});
-        break;
-      case TINYGLTF_MODE_TRIANGLE_FAN: triangles.push_back({i + 1, i + 2, 0}); break;
-      default: triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-    }
-  }
-  return triangles;
-}
-
 std::uint32_t vertex_count(std::size_t count)
 {
   if (count > std::numeric_limits<std::uint32_t>::max()) {
@@ -123,7 +82,7 @@ std::uint32_t vertex_count(std::size_t count)
 /** One primitive on its way to a Mesh. */
 class PrimitiveReader {
  public:
-  PrimitiveReader(const File &file, const tinygltf::Primitive &primitive, std::string what, Warnings &warnings)
+  PrimitiveReader(const File &file, const Model::Primitive &primitive, std::string what, Warnings &warnings)
       : file_(file),
         primitive_(primitive),
         what_(std::move(what)),
@@ -131,15 +90,16 @@ class PrimitiveReader {
         positions_(file, position_accessor(), vec3_type)
   {
     if (positions_.is_all_zero()) {
-      throw Fault("POSITION", compression().empty() ? "holds no data" : "is compressed by " + compression());
+      throw Fault("POSITION", primitive_.compression.empty() ? "holds no data"
+                                                             : "is compressed by " + printable(primitive_.compression));
     }
     if (primitive.indices >= 0) {
-      indices_.emplace(file, primitive.indices, TINYGLTF_TYPE_SCALAR);
+      indices_.emplace(file, primitive.indices, Model::ElementType::Scalar);
       if (!indices_->is_unsigned()) {
         throw Fault("indices", "are not unsigned integers");
       }
-      if (indices_->is_all_zero() && !compression().empty()) {
-        throw Fault("indices", "are compressed by " + compression());
+      if (indices_->is_all_zero() && !primitive_.compression.empty()) {
+        throw Fault("indices", "are compressed by " + printable(primitive_.compression));
       }
     }
     open_normals(file);
@@ -181,7 +141,7 @@ class PrimitiveReader {
       if (found == primitive_.attributes.end()) {
         throw Fault(attribute, "is missing");
       }
-      const AccessorReader reader(file_, found->second, TINYGLTF_TYPE_VEC2);
+      const AccessorReader reader(file_, found->second, Model::ElementType::Vec2);
       if (reader.count() != positions_.count()) {
         throw Fault(attribute, "count differs from that of POSITION");
       }
@@ -199,10 +159,41 @@ class PrimitiveReader {
     return uvs;
   }
 
+  /** Vertex colours for a mesh that read() has given; none where the primitive has none that can be read. */
+  std::vector<glm::vec4> read_colors()
+  {
+    const auto found = primitive_.attributes.find("COLOR_0");
+    if (found == primitive_.attributes.end()) {
+      return {};
+    }
+    std::vector<glm::vec4> colors;
+    try {
+      const bool is_vec3 = file_.model.accessors[found->second].type == vec3_type;
+      const AccessorReader reader(file_, found->second, is_vec3 ? vec3_type : Model::ElementType::Vec4);
+      if (reader.count() != positions_.count()) {
+        throw Fault("COLOR_0", "count differs from that of POSITION");
+      }
+      if (!reader.is_color()) {
+        throw Fault("COLOR_0", "holds neither floats nor normalized unsigned integers of 8 or 16 bits");
+      }
+      Losses losses;
+      for (const std::uint32_t vertex : file_vertices_) {
+        const glm::vec4 color = reader.color(vertex);
+        colors.push_back(limited_color(color));
+        losses.bad_colors += colors.back() == color ? 0 : 1;
+      }
+      losses.report(warnings_, what_);
+    }
+    catch (const Fault &fault) {
+      warnings_.add(what_, std::string("its vertex colours are left out: ") + fault.what());
+    }
+    return colors;
+  }
+
  private:
-  static constexpr int vec3_type = TINYGLTF_TYPE_VEC3;
+  static constexpr Model::ElementType vec3_type = Model::ElementType::Vec3;
   const File &file_;
-  const tinygltf::Primitive &primitive_;
+  const Model::Primitive &primitive_;
   std::string what_;
   Warnings &warnings_;
   AccessorReader positions_;
@@ -220,17 +211,6 @@ class PrimitiveReader {
       throw Fault("POSITION", "is missing");
     }
     return found->second;
-  }
-
-  /** The extension that holds the data instead of the accessors; empty when none does. */
-  [[nodiscard]] std::string compression() const
-  {
-    for (const auto &[name, content] : primitive_.extensions) {
-      if (name.find("compression") != name.npos) {
-        return printable(name);
-      }
-    }
-    return {};
   }
 
   /** Normals that cannot be read are no reason to lose the surface. */
@@ -282,7 +262,7 @@ class PrimitiveReader {
       return true;
     }
     const auto [a, b, c] = triangle;
-    if (primitive_.mode != TINYGLTF_MODE_TRIANGLES && (a == b || b == c || c == a)) {
+    if (primitive_.mode != Model::Triangles && (a == b || b == c || c == a)) {
       // The usual way to join strips: no loss.
       return true;
     }
@@ -347,7 +327,13 @@ class PrimitiveReader {
   {
     const bool is_usable =
         std::isfinite(normal.x) && std::isfinite(normal.y) && std::isfinite(normal.z) && normal != glm::vec3(0.0F);
-    return is_usable ? unit(normal) : glm::vec3(0.0F);
+    if (!is_usable) {
+      return glm::vec3(0.0F);
+    }
+    // A unit vector in float stays as it is, so that what was imported, exported and imported again is the same.
+    constexpr double rounding = 1.2e-7;
+    const glm::dvec3 vector(normal);
+    return std::abs(glm::dot(vector, vector) - 1.0) <= rounding ? normal : unit(vector);
   }
 
   void replace_zero_normals(Mesh &mesh)
@@ -363,18 +349,14 @@ class PrimitiveReader {
   }
 };
 
-bool is_drawn(int mode)
+/** Of a mesh of the scene. */
+std::string primitive_name(const Model::Mesh &mesh, int mesh_index, std::size_t primitive_index)
 {
-  return mode == TINYGLTF_MODE_TRIANGLES || mode == TINYGLTF_MODE_TRIANGLE_STRIP || mode == TINYGLTF_MODE_TRIANGLE_FAN;
-}
-
-std::string mode_reason(int mode)
-{
-  if (mode > TINYGLTF_MODE_TRIANGLE_FAN) {
-    return "primitive left out: mode " + std::to_string(mode) + " is unknown";
+  if (!mesh.primitives[primitive_index].name.empty()) {
+    return mesh.primitives[primitive_index].name;
   }
-  return mode == TINYGLTF_MODE_POINTS ? "primitive left out: points are not drawn"
-                                      : "primitive left out: lines are not drawn";
+  const std::string name = mesh.name.empty() ? "mesh " + std::to_string(mesh_index) : mesh.name;
+  return mesh.primitives.size() > 1 ? name + '[' + std::to_string(primitive_index) + ']' : name;
 }
 
 }  // namespace
@@ -407,12 +389,21 @@ void MeshImporter::spend(std::uint64_t element_count)
 
 void MeshImporter::import_primitive(int gltf_mesh, std::size_t primitive_index, std::vector<Handle<Mesh>> &meshes)
 {
-  const tinygltf::Mesh &source = file_.model.meshes[gltf_mesh];
-  const tinygltf::Primitive &primitive = source.primitives[primitive_index];
+  const Model::Mesh &source = file_.model.meshes[gltf_mesh];
+  const Model::Primitive &primitive = source.primitives[primitive_index];
   const std::string what = label("mesh", source.name, static_cast<std::size_t>(gltf_mesh));
+  const std::string name = primitive_name(source, gltf_mesh, primitive_index);
   primitive_count_++;
   if (!is_drawn(primitive.mode)) {
     warnings_.add_counted(what, 1, mode_reason(primitive.mode));
+    return;
+  }
+  const auto [place, is_new] = mesh_of_.try_emplace(
+      {name, primitive.attributes, primitive.indices, primitive.material, primitive.mode}, Handle<Mesh>());
+  if (!is_new) {
+    if (place->second) {
+      meshes.push_back(place->second);
+    }
     return;
   }
   Mesh mesh;
@@ -421,6 +412,7 @@ void MeshImporter::import_primitive(int gltf_mesh, std::size_t primitive_index, 
     spend(reader.element_count());
     mesh = reader.read();
     if (!mesh.indices.empty()) {
+      mesh.colors = reader.read_colors();
       mesh.material = materials_.handle_of(primitive.material);
       if (scene_.materials()[mesh.material].base_color_texture) {
         mesh.uvs = reader.read_uvs(materials_.texture_coordinates(mesh.material));
@@ -436,14 +428,12 @@ void MeshImporter::import_primitive(int gltf_mesh, std::size_t primitive_index, 
     return;
   }
   flatten_facets(mesh);
-  mesh.name = source.name.empty() ? "mesh " + std::to_string(gltf_mesh) : source.name;
-  if (source.primitives.size() > 1) {
-    mesh.name += '[' + std::to_string(primitive_index) + ']';
-  }
-  if (!primitive.targets.empty()) {
+  mesh.name = name;
+  if (primitive.has_targets) {
     warnings_.add(what, "morph targets are not applied");
   }
-  meshes.push_back(scene_.add(std::move(mesh)));
+  place->second = scene_.add(std::move(mesh));
+  meshes.push_back(place->second);
 }
 
 }  // namespace gnomon::gltf

@@ -8,6 +8,8 @@
 
 #include <cstdint>
 #include <map>
+#include <string>
+#include <tuple>
 #include <vector>
 
 /** Internal to source/gltf. */
@@ -40,6 +42,10 @@ class MeshImporter {
   scene::Scene &scene_;
   MaterialImporter materials_;
   std::map<int, std::vector<scene::Handle<scene::Mesh>>> meshes_of_;
+  /** What makes two primitives the same mesh of the scene: name, attributes, indices, material and mode. */
+  using PrimitiveKey = std::tuple<std::string, std::map<std::string, int, std::less<>>, int, int, int>;
+  /** Names nothing where the primitive was left out. */
+  std::map<PrimitiveKey, scene::Handle<scene::Mesh>> mesh_of_;
   std::size_t primitive_count_ = 0;
   /** Vertices and indices read so far. */
   std::uint64_t element_count_ = 0;

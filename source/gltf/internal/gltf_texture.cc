@@ -3,6 +3,7 @@
 
 #include "internal/gltf_accessor.hh"
 #include "internal/gltf_image.hh"
+#include "internal/gltf_sampler.hh"
 
 #include <span>
 #include <string>
@@ -28,10 +29,10 @@ class SamplerReader {
  public:
   SamplerReader(std::string what, Warnings &warnings) : what_(std::move(what)), warnings_(warnings) {}
 
-  void read(const tinygltf::Sampler &sampler, Texture &texture)
+  void read(const Model::Sampler &sampler, Texture &texture)
   {
-    texture.wrap_u = wrap("wrapS", sampler.wrapS);
-    texture.wrap_v = wrap("wrapT", sampler.wrapT);
+    texture.wrap_u = wrap("wrapS", sampler.wrap_s);
+    texture.wrap_v = wrap("wrapT", sampler.wrap_t);
     read_filters(sampler, texture);
   }
 
@@ -47,38 +48,38 @@ class SamplerReader {
   TextureWrap wrap(const char *key, int value)
   {
     switch (value) {
-      case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE: return TextureWrap::ClampToEdge;
-      case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT: return TextureWrap::MirroredRepeat;
-      case TINYGLTF_TEXTURE_WRAP_REPEAT: return TextureWrap::Repeat;
+      case gl_clamp_to_edge: return TextureWrap::ClampToEdge;
+      case gl_mirrored_repeat: return TextureWrap::MirroredRepeat;
+      case gl_repeat: return TextureWrap::Repeat;
       default: warn_unknown(key, value); return TextureWrap::Repeat;
     }
   }
 
-  void read_filters(const tinygltf::Sampler &sampler, Texture &texture)
+  void read_filters(const Model::Sampler &sampler, Texture &texture)
   {
-    switch (sampler.magFilter) {
-      case TINYGLTF_TEXTURE_FILTER_NEAREST: texture.magnified = TextureFilter::Nearest; break;
-      case TINYGLTF_TEXTURE_FILTER_LINEAR:
+    switch (sampler.mag_filter) {
+      case gl_nearest: texture.magnified = TextureFilter::Nearest; break;
+      case gl_linear:
       case absent: break;
-      default: warn_unknown("magFilter", sampler.magFilter);
+      default: warn_unknown("magFilter", sampler.mag_filter);
     }
     const auto set = [&texture](TextureFilter filter, MipFilter mip) {
       texture.minified = filter;
       texture.mip = mip;
     };
-    switch (sampler.minFilter) {
-      case TINYGLTF_TEXTURE_FILTER_NEAREST: set(TextureFilter::Nearest, MipFilter::None); break;
-      case TINYGLTF_TEXTURE_FILTER_LINEAR: set(TextureFilter::Linear, MipFilter::None); break;
-      case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST: set(TextureFilter::Nearest, MipFilter::Nearest); break;
-      case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_NEAREST: set(TextureFilter::Linear, MipFilter::Nearest); break;
-      case TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR: set(TextureFilter::Nearest, MipFilter::Linear); break;
-      case TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR:
+    switch (sampler.min_filter) {
+      case gl_nearest: set(TextureFilter::Nearest, MipFilter::None); break;
+      case gl_linear: set(TextureFilter::Linear, MipFilter::None); break;
+      case gl_nearest_mipmap_nearest: set(TextureFilter::Nearest, MipFilter::Nearest); break;
+      case gl_linear_mipmap_nearest: set(TextureFilter::Linear, MipFilter::Nearest); break;
+      case gl_nearest_mipmap_linear: set(TextureFilter::Nearest, MipFilter::Linear); break;
+      case gl_linear_mipmap_linear:
       case absent: break;
-      default: warn_unknown("minFilter", sampler.minFilter);
+      default: warn_unknown("minFilter", sampler.min_filter);
     }
   }
 
-  /** tinygltf's word for a filter that the file leaves to us. */
+  /** The file leaves the filter to us. */
   static constexpr int absent = -1;
 };
 
@@ -106,9 +107,9 @@ Handle<Texture> TextureImporter::handle_of(int gltf_texture)
   if (const auto found = handle_of_.find(gltf_texture); found != handle_of_.end()) {
     return found->second;
   }
-  const tinygltf::Texture &source = element(file_.model.textures, gltf_texture, "texture");
+  const Model::Texture &source = element(file_.model.textures, gltf_texture, "texture");
   const std::string what = label("texture", source.name, static_cast<std::size_t>(gltf_texture));
-  element(file_.images, source.source, what + ": source");
+  element(file_.model.images, source.source, what + ": source");
   Texture texture;
   if (source.sampler >= 0) {
     SamplerReader(what, warnings_).read(element(file_.model.samplers, source.sampler, what + ": sampler"), texture);
@@ -119,7 +120,7 @@ Handle<Texture> TextureImporter::handle_of(int gltf_texture)
 
 Handle<Image> TextureImporter::image_of(int gltf_image)
 {
-  const ImageSource &source = file_.images[gltf_image];
+  const Model::Image &source = file_.model.images[gltf_image];
   const auto [place, is_new] = image_of_.try_emplace({source.uri, source.buffer_view});
   if (is_new) {
     try {
@@ -137,7 +138,7 @@ Handle<Image> TextureImporter::image_of(int gltf_image)
 
 Handle<Image> TextureImporter::import_image(int gltf_image)
 {
-  const ImageSource &source = file_.images[gltf_image];
+  const Model::Image &source = file_.model.images[gltf_image];
   const std::string what = label("image", source.name, static_cast<std::size_t>(gltf_image));
   std::vector<unsigned char> storage;
   std::span<const unsigned char> bytes;
@@ -145,7 +146,7 @@ Handle<Image> TextureImporter::import_image(int gltf_image)
     bytes = storage = bytes_of_uri(file_.folder, what, source.uri);
   }
   else {
-    element(file_.model.bufferViews, source.buffer_view, what + ": bufferView");
+    element(file_.model.buffer_views, source.buffer_view, what + ": bufferView");
     bytes = view_bytes(file_, source.buffer_view, 0, what);
   }
   Image image = decoded_image(bytes, what, texel_count_max - texel_count_);
