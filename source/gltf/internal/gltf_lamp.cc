@@ -67,7 +67,8 @@ class LampReader {
     for (std::size_t i = 0; i < 3; i++) {
       lamp_.color[int(i)] = checked("color", light.color[i], not_negative);
     }
-    lamp_.intensity = static_cast<float>(checked("intensity", light.intensity, not_negative) / lumen_per_watt);
+    static_cast<void>(checked("intensity", light.intensity, not_negative));
+    lamp_.intensity = static_cast<float>(light.intensity / lumen_per_watt);
     if (lamp_.kind == LampKind::Point || lamp_.kind == LampKind::Spot) {
       lamp_.range = light.range == 0.0 ? 0.0F : checked("range", light.range, length_range);
       lamp_.radius = number("gnomon_radius", 0.0, not_negative);

@@ -330,8 +330,8 @@ class PrimitiveReader {
     if (!is_usable) {
       return glm::vec3(0.0F);
     }
-    // A unit vector in float stays as it is, so that what was imported, exported and imported again is the same.
-    constexpr double rounding = 1.2e-7;
+    // What is a unit vector but for rounding stays as it is: a scene that was exported is imported as it was.
+    constexpr double rounding = 1e-6;
     const glm::dvec3 vector(normal);
     return std::abs(glm::dot(vector, vector) - 1.0) <= rounding ? normal : unit(vector);
   }
