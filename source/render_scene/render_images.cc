@@ -66,7 +66,8 @@ Images::Lookup Images::get(gpu::Device &device, const scene::Scene &scene, scene
                             std::uint32_t(texture.wrap_v) << 16U;
   gpu::Sampler &sampler = samplers_[key];
   if (!sampler) {
-    sampler = device.create_sampler({.name = fmt::format("sampler of {}", image.name),
+    // Textures of any image share it.
+    sampler = device.create_sampler({.name = "texture_sampler",
                                      .filter = gpu_filter(texture.magnified),
                                      .minified = gpu_filter(texture.minified),
                                      .mip = gpu_mip_filter(texture.mip),

@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <cstring>
 
 namespace gnomon::render_scene {
 
@@ -58,22 +59,33 @@ void MaterialTable::update(const scene::Scene &scene)
   for (const auto &[handle, material] : materials) {
     entries[handle.index + 1] = material_data(material, is_masked(scene, material));
   }
+  for (std::size_t place = 0; place < entries.size(); place++) {
+    const bool is_same =
+        place < entries_.size() && std::memcmp(&entries[place], &entries_[place], sizeof(shared::MaterialData)) == 0;
+    if (!is_same) {
+      changed_begin_ = std::min(changed_begin_, place);
+      changed_end_ = std::max(changed_end_, place + 1);
+    }
+  }
   entries_ = std::move(entries);
   seen_ = latest;
-  is_uploaded_ = false;
 }
 
 void MaterialTable::upload(gpu::Device &device)
 {
-  if (is_uploaded_ && buffer_) {
-    return;
-  }
   const auto bytes = std::as_bytes(std::span(entries_));
   if (!buffer_ || buffer_.size_bytes() != bytes.size()) {
     buffer_ = device.create_buffer({"material_block", gpu::BufferKind::Storage, bytes.size()});
+    changed_begin_ = 0;
+    changed_end_ = entries_.size();
   }
-  device.update(buffer_, 0, bytes);
-  is_uploaded_ = true;
+  if (changed_begin_ < changed_end_) {
+    constexpr std::size_t entry_bytes = sizeof(shared::MaterialData);
+    device.update(buffer_, changed_begin_ * entry_bytes,
+                  bytes.subspan(changed_begin_ * entry_bytes, (changed_end_ - changed_begin_) * entry_bytes));
+    changed_begin_ = entries_.size();
+    changed_end_ = 0;
+  }
 }
 
 }  // namespace gnomon::render_scene

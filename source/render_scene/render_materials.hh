@@ -41,7 +41,9 @@ class MaterialTable {
   std::vector<shared::MaterialData> entries_;
   gpu::Buffer buffer_;
   scene::Revision seen_ = 0;
-  bool is_uploaded_ = false;
+  /** Entries that the device has not yet, as a range; empty where the begin is not below the end. */
+  std::size_t changed_begin_ = 0;
+  std::size_t changed_end_ = 0;
 };
 
 }  // namespace gnomon::render_scene

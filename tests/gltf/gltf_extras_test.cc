@@ -169,6 +169,15 @@ TEST(GltfDoor, ByteOrderMarkIsSkipped)
   EXPECT_EQ(import_error("\xEF\xBB\xBF" + triangle_scene().gltf()), "");
 }
 
+TEST(GltfDoor, WholeNumbersMayBeOfAnyLength)
+{
+  std::string text = triangle_scene().gltf();
+  text.insert(1, R"("extras":[123456789012345678901234567890,-99999999999999999999,"\\\"99999999999999999999"],)");
+  EXPECT_EQ(import_error(text), "");
+  EXPECT_HAS(import_error("{\"asset\": {\"version\": \"2.0\"}, \"nodes\": [{\"mesh\": 99999999999999999999}]}"),
+             "nodes[0].mesh: is ");
+}
+
 TEST(GltfDoor, OfPropertiesOfOneNameTheLastCounts)
 {
   std::string text = triangle_scene().gltf();

@@ -459,7 +459,7 @@ TEST(GltfAccessor, SparseWithoutBufferViewStartsFromZeros)
 
 TEST(GltfAccessor, SparseIndexAccessorWithoutBufferView)
 {
-  // tinygltf alone refuses this file.
+  // Some loaders refuse this file, though glTF allows it.
   GltfBuilder builder;
   const int positions = builder.positions(triangle_positions);
   const int places = builder.view(std::vector<std::uint8_t>{1, 2});
@@ -634,7 +634,7 @@ TEST(GltfMaterial, EmissionStaysFinite)
 
 TEST(GltfMaterial, LargeWholeNumbersAreNotCut)
 {
-  // tinygltf alone keeps 32 bits of it, which are 1.
+  // Its lower 32 bits are 1.
   const auto [material, scene] = import_material(
       {{"extensions",
         {{"KHR_materials_specular", {{"specularFactor", 0.5}, {"specularColorFactor", {4294967297, 0, 0}}}}}}});

@@ -130,7 +130,7 @@ TEST(GltfDoor, EveryIndexIsChecked)
                d["buffers"] = json::array();
              }),
              "bufferViews[0].buffer: index 1");
-  // Would come through tinygltf as 0.
+  // Its lower 32 bits are 0.
   EXPECT_HAS(error_after([](json &d) { d["nodes"][0]["mesh"] = 4294967296; }),
              "nodes[0].mesh: is 4294967296, and must be an index");
   EXPECT_HAS(error_after([](json &d) { d["nodes"][0]["mesh"] = -1; }), "nodes[0].mesh: is -1, and must be an index");
@@ -167,7 +167,7 @@ TEST(GltfDoor, EveryTypeIsChecked)
   EXPECT_HAS(error_after([](json &d) { d["extensionsRequired"] = {{"a", 1}}; }), "extensionsRequired: is an object");
 }
 
-TEST(GltfDoor, WhatTinygltfRefusesIsOneLine)
+TEST(GltfDoor, PropertiesThatGltfRequiresAreChecked)
 {
   EXPECT_HAS(error_after([](json &d) { d["accessors"][0].erase("type"); }), "glTF: ");
   EXPECT_HAS(error_after([](json &d) { d["cameras"][0]["type"] = "fisheye"; }), "glTF: Invalid camera type");

@@ -427,13 +427,18 @@ Model parse_document(std::span<const unsigned char> json)
   }
   simdjson::dom::parser parser;
   JsonValue document;
-  const auto parse = [&] {
-    return parser.parse(reinterpret_cast<const std::uint8_t *>(json.data()), json.size(), false).get(document);
-  };
+  std::string_view text(reinterpret_cast<const char *>(json.data()), json.size());
+  const auto parse = [&] { return parser.parse(text.data(), text.size(), false).get(document); };
   simdjson::error_code error = parse();
+  std::string changed;
+  if (error == simdjson::NUMBER_ERROR) {
+    changed = with_long_numbers_as_floats(text, document_padding());
+    text = std::string_view(changed).substr(0, changed.size() - document_padding());
+    error = parse();
+  }
   if (error == simdjson::DEPTH_ERROR) {
     // What nobody reads may be of any depth.
-    error = parser.allocate(json.size(), json.size());
+    error = parser.allocate(text.size(), text.size());
     error = error == simdjson::SUCCESS ? parse() : error;
   }
   if (error == simdjson::MEMALLOC) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "internal/gltf_json.hh"
 
+#include <algorithm>
+
 namespace gnomon::gltf {
 
 std::string Place::text() const
@@ -8,6 +10,31 @@ std::string Place::text() const
   std::string result = outer == nullptr ? "" : outer->text() + '.';
   result += key;
   return index == no_index ? result : result + '[' + std::to_string(index) + ']';
+}
+
+std::string with_long_numbers_as_floats(std::string_view json, std::size_t padding)
+{
+  constexpr std::size_t length_min = 19;
+  constexpr std::string_view number_characters = "+-.0123456789Ee";
+  std::string result;
+  bool is_in_string = false;
+  for (std::size_t i = 0; i < json.size();) {
+    const std::size_t end = std::min(json.find_first_not_of(number_characters, i), json.size());
+    const std::string_view token = json.substr(i, end - i);
+    if (!is_in_string && !token.empty()) {
+      result += token;
+      result += token.size() >= length_min && token.find_first_of(".Ee") == token.npos ? ".0" : "";
+      i = end;
+      continue;
+    }
+    const bool is_escape = is_in_string && json[i] == '\\';
+    is_in_string = is_in_string != (json[i] == '"');
+    const std::size_t count = std::min<std::size_t>(is_escape ? 2 : 1, json.size() - i);
+    result += json.substr(i, count);
+    i += count;
+  }
+  result.resize(result.size() + padding);
+  return result;
 }
 
 std::string quoted(const JsonValue &value)

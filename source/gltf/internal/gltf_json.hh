@@ -32,6 +32,12 @@ using JsonValue = simdjson::dom::element;
 using JsonObject = simdjson::dom::object;
 using JsonArray = simdjson::dom::array;
 
+/**
+ * A document in which whole numbers that may not fit into 64 bits end in ".0", followed by \a padding bytes. JSON
+ * allows such numbers; simdjson reads them with a fraction only.
+ */
+[[nodiscard]] std::string with_long_numbers_as_floats(std::string_view json, std::size_t padding);
+
 /** A value as it stands in the file, cut short. */
 [[nodiscard]] std::string quoted(const JsonValue &value);
 

@@ -19,7 +19,7 @@ glm::vec3 ndc(const draw::View &view, const glm::vec3 &position_ws)
 
 TEST(CameraView, PutsTheFrameEdgeAtTheImageEdge)
 {
-  scene::Camera camera;
+  scene::PlacedCamera camera;
   camera.vertical_angle = 1.0F;
   camera.near = 0.5F;
   camera.far = 100.0F;
@@ -33,7 +33,7 @@ TEST(CameraView, PutsTheFrameEdgeAtTheImageEdge)
 
 TEST(CameraView, WithoutFarPlaneReachesInfinity)
 {
-  scene::Camera camera;
+  scene::PlacedCamera camera;
   const draw::View view = view_of(camera, {64, 64});
   const float depth = ndc(view, {0, 0, -1e9F}).z;
   EXPECT_GT(depth, 0.0F);
@@ -42,7 +42,7 @@ TEST(CameraView, WithoutFarPlaneReachesInfinity)
 
 TEST(CameraView, KeepsTheWholeFrameWhateverTheImage)
 {
-  scene::Camera camera;
+  scene::PlacedCamera camera;
   camera.vertical_angle = 0.8F;
   camera.aspect = 1.5F;
   const float half_height = std::tan(0.4F);
@@ -56,7 +56,7 @@ TEST(CameraView, KeepsTheWholeFrameWhateverTheImage)
 
 TEST(CameraView, OrthographicKeepsSizeAtEveryDistance)
 {
-  scene::Camera camera;
+  scene::PlacedCamera camera;
   camera.kind = scene::CameraKind::Orthographic;
   camera.half_width = 4.0F;
   camera.half_height = 2.0F;
@@ -77,7 +77,7 @@ TEST(CameraView, StaysFiniteForExtremeCameras)
     for (const float near : {1e-6F, 1e9F}) {
       for (const scene::CameraKind kind : {scene::CameraKind::Perspective, scene::CameraKind::Orthographic}) {
         for (const float far : {0.0F, std::nextafter(near, 1e30F)}) {
-          scene::Camera camera;
+          scene::PlacedCamera camera;
           camera.kind = kind;
           camera.vertical_angle = angle;
           camera.near = near;
@@ -94,7 +94,7 @@ TEST(CameraView, StaysFiniteForExtremeCameras)
 
 TEST(SampleOffset, MovesThePictureByPartsOfAPixelAtEveryDistance)
 {
-  scene::Camera camera;
+  scene::PlacedCamera camera;
   const glm::ivec2 size{320, 200};
   const draw::View view = view_of(camera, size);
   const draw::View moved = with_sample_offset(view, {0.25F, -0.5F}, size);

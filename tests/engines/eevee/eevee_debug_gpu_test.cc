@@ -41,7 +41,7 @@ class DebugViewGpuTest : public test::GpuDeviceTest {
   }
 
   scene::Scene scene;
-  std::uint32_t square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(0.8F)));
+  scene::Handle<scene::Mesh> square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(0.8F)));
 };
 
 TEST_F(DebugViewGpuTest, FacesOfACubeHoldDistancesAlongTheirAxes)
@@ -240,7 +240,7 @@ TEST_F(DebugViewGpuTest, AnOctahedralLayerHoldsDistancesFromTheLamp)
 class CascadeTintGpuTest : public DebugViewGpuTest {
  protected:
   /** Factors by which the tint multiplies the picture, pixel by pixel. */
-  Picture tints(const scene::Camera &camera, int cascades)
+  Picture tints(const scene::PlacedCamera &camera, int cascades)
   {
     // Lights everything, so that there is something to tint in the shadow.
     test::add_lamp(scene, scene::LampKind::Hemi, {}, {0, 0, -1}, 1.0F);

@@ -15,7 +15,7 @@ class DebugViewTest : public testing::Test {
  protected:
   DebugViewTest()
   {
-    const std::uint32_t mesh = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(0.5F)));
+    const auto mesh = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(0.5F)));
     test::add_object(scene, mesh, glm::scale(glm::mat4(1.0F), glm::vec3(10.0F)));
     test::add_object(scene, mesh, glm::translate(glm::mat4(1.0F), glm::vec3(0, 0, 1)));
     settings.shadow.cube_size_px = 32;
@@ -31,7 +31,7 @@ class DebugViewTest : public testing::Test {
   std::unique_ptr<gpu::Device> device = gpu::create_null_device();
   scene::Scene scene;
   Settings settings;
-  scene::Camera camera = test::camera_at({0, -8, 4}, {0, 0, 0});
+  scene::PlacedCamera camera = test::camera_at({0, -8, 4}, {0, 0, 0});
 };
 
 TEST_F(DebugViewTest, NothingIsMadeUnasked)
@@ -77,11 +77,15 @@ TEST_F(DebugViewTest, LayersAreNamedByWhatALampHas)
   using Names = std::vector<std::string>;
   const Names cube = {"0", "1", "2", "3", "4", "5"};
   test::add_lamp(scene, scene::LampKind::Point, {0, 0, 4}, {0, 0, -1}, 1.0F);
-  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 4}, {0, 0, -1}, 1.0F).shadow.kind = scene::ShadowKind::None;
-  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 4}, {0, 0, -1}, 1.0F).shadow.kind = scene::ShadowKind::Esm;
+  scene.edit(test::add_lamp(scene, scene::LampKind::Point, {0, 0, 4}, {0, 0, -1}, 1.0F),
+             [](scene::Lamp &lamp) { lamp.shadow.kind = scene::ShadowKind::None; });
+  scene.edit(test::add_lamp(scene, scene::LampKind::Point, {0, 0, 4}, {0, 0, -1}, 1.0F),
+             [](scene::Lamp &lamp) { lamp.shadow.kind = scene::ShadowKind::Esm; });
   test::add_lamp(scene, scene::LampKind::Point, {0, 0, 4}, {0, 0, -1}, 0.0F);
-  test::add_lamp(scene, scene::LampKind::Spot, {0, 0, 4}, {0, 0, -1}, 1.0F).spot_outer_angle = 0.5F;
-  test::add_lamp(scene, scene::LampKind::Spot, {0, 0, 4}, {0, 0, -1}, 1.0F).spot_outer_angle = 1.5F;
+  scene.edit(test::add_lamp(scene, scene::LampKind::Spot, {0, 0, 4}, {0, 0, -1}, 1.0F),
+             [](scene::Lamp &lamp) { lamp.spot_outer_angle = 0.5F; });
+  scene.edit(test::add_lamp(scene, scene::LampKind::Spot, {0, 0, 4}, {0, 0, -1}, 1.0F),
+             [](scene::Lamp &lamp) { lamp.spot_outer_angle = 1.5F; });
   Renderer renderer(*device, scene, {16, 16}, settings);
   renderer.draw(camera);
   const auto names = [&](std::size_t lamp) { return renderer.engine.shadow_layers(renderer.viewport, lamp); };
@@ -102,7 +106,8 @@ TEST_F(DebugViewTest, TheTintIsOfTheFirstSunWithAShadow)
   EXPECT_FALSE(renderer.engine.tinted_sun(renderer.viewport));
   EXPECT_FALSE(has_live("eevee_debug")) << "a spot's map is no cascade";
 
-  test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 4}, {0, 0.2F, -1}, 1.0F).shadow.kind = scene::ShadowKind::None;
+  scene.edit(test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 4}, {0, 0.2F, -1}, 1.0F),
+             [](scene::Lamp &lamp) { lamp.shadow.kind = scene::ShadowKind::None; });
   test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 4}, {0, 0.2F, -1}, 1.0F);
   renderer.sync();
   renderer.draw(camera);

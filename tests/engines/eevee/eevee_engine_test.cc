@@ -27,8 +27,8 @@ class EngineTest : public testing::Test {
 
   std::unique_ptr<gpu::Device> device = gpu::create_null_device();
   scene::Scene scene;
-  std::uint32_t mesh = 0;
-  scene::Camera camera = test::camera_at({0, 0, 4}, {0, 0, 0});
+  scene::Handle<scene::Mesh> mesh;
+  scene::PlacedCamera camera = test::camera_at({0, 0, 4}, {0, 0, 0});
 };
 
 TEST_F(EngineTest, MakesNothingForALampThatIsNotThere)
@@ -54,10 +54,7 @@ TEST_F(EngineTest, MakesWhatTheSceneAsksFor)
 {
   test::add_lamp(scene, scene::LampKind::Point, {0, 0, 2}, {0, 0, -1}, 1.0F);
   test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 2}, {0, 0, -1}, 1.0F);
-  scene.materials.push_back({});
-  scene.meshes.push_back(scene.meshes[0]);
-  scene.meshes[1].material = 1;
-  test::add_object(scene, 1, glm::mat4(1.0F));
+  test::add_object(scene, test::add_square_mesh(scene, scene.add(scene::Material())), glm::mat4(1.0F));
   Settings settings;
   settings.has_display = true;
   settings.shadow.cube_size_px = 32;
@@ -136,7 +133,8 @@ TEST_F(EngineTest, TwoViewportsKeepTheirOwn)
 TEST_F(EngineTest, IsMadeByTheRegistry)
 {
   draw::EngineRegistry registry;
-  registry.add(engine_type(scene, {}));
+  render_scene::RenderScene render_scene(*device, scene);
+  registry.add(engine_type(render_scene, {}));
   EXPECT_EQ(registry.create("eevee")->name(), "eevee");
 }
 
@@ -167,14 +165,16 @@ TEST_F(EngineTest, PassesPrintWhatWasRecorded)
 scene::Scene textured_scene()
 {
   scene::Scene scene;
-  const std::int32_t texture = test::add_texture(scene, 1, {255, 0, 0, 200, 0, 255, 0, 10});
+  const auto texture = test::add_texture(scene, 1, {255, 0, 0, 200, 0, 255, 0, 10});
   test::add_texture(scene, 1, {1, 2, 3, 4});
   for (int i = 0; i < 4; i++) {
-    scene::Material &material = scene.materials[test::add_material(scene, glm::vec3(0.5F))];
-    material.base_color_texture = i == 0 ? -1 : texture;
-    material.alpha_mode = i >= 2 ? scene::AlphaMode::Mask : scene::AlphaMode::Opaque;
-    material.alpha = i == 3 ? 0.25F : 1.0F;
-    const std::uint32_t mesh = test::add_square_mesh(scene, std::uint32_t(i));
+    const auto material = test::add_material(scene, glm::vec3(0.5F));
+    scene.edit(material, [&](scene::Material &value) {
+      value.base_color_texture = i == 0 ? scene::Handle<scene::Texture>() : texture;
+      value.alpha_mode = i >= 2 ? scene::AlphaMode::Mask : scene::AlphaMode::Opaque;
+      value.alpha = i == 3 ? 0.25F : 1.0F;
+    });
+    const auto mesh = test::add_square_mesh(scene, material);
     test::add_object(scene, mesh, glm::translate(glm::mat4(1.0F), glm::vec3(0.1F * float(i), 0, 0)));
     test::add_object(scene, mesh, glm::translate(glm::mat4(1.0F), glm::vec3(0.1F * float(i), 0.1F, 0)));
   }
@@ -191,9 +191,9 @@ TEST_F(EngineTest, TexturesAreMadeOnceAndForLightOrMasksOnly)
               std::ranges::count(device->live_resources(), "texture 'image'") > 0);
     return std::ranges::count(device->live_resources(), "texture 'image'");
   };
-  // For the mask; the other image is nobody's.
+  // For the mask; no material reads the other image.
   EXPECT_EQ(images(), 1);
-  scene.materials[2].alpha_mode = scene::AlphaMode::Opaque;
+  test::edit_material(scene, 2, [&](scene::Material &material) { material.alpha_mode = scene::AlphaMode::Opaque; });
   EXPECT_EQ(images(), 0);
   test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, 1.0F);
   EXPECT_EQ(images(), 1);
@@ -235,11 +235,14 @@ TEST_F(EngineTest, AFailedSyncIsAnErrorToDrawAndCanBeMended)
   test::add_lamp(scene, scene::LampKind::Point, {1, 0, 2}, {0, 0, -1}, 1.0F);
   Renderer renderer(*device, scene, {16, 16}, {.shadow = {.cube_size_px = 16}});
   renderer.draw(camera);
-  scene.lamps[1].shadow.kind = scene::ShadowKind::Esm;
-  scene.lamps[1].shadow.filter_radius = 0.7F;
+  const auto lamp = test::handle_at(scene.lamps(), 1);
+  scene.edit(lamp, [](scene::Lamp &value) {
+    value.shadow.kind = scene::ShadowKind::Esm;
+    value.shadow.filter_radius = 0.7F;
+  });
   EXPECT_THROW(renderer.sync(), gpu::Error);
   EXPECT_THROW(renderer.draw(camera), gpu::Error);
-  scene.lamps[1].shadow.filter_radius = 0.1F;
+  scene.edit(lamp, [](scene::Lamp &value) { value.shadow.filter_radius = 0.1F; });
   renderer.sync();
   renderer.draw(camera);
 }

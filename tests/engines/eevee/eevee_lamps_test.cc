@@ -8,9 +8,9 @@
 namespace gnomon::eevee {
 namespace {
 
-scene::Lamp lamp_of(scene::LampKind kind)
+scene::PlacedLamp lamp_of(scene::LampKind kind)
 {
-  scene::Lamp lamp;
+  scene::PlacedLamp lamp;
   lamp.name = "lamp";
   lamp.kind = kind;
   lamp.world_from_lamp = glm::translate(glm::mat4(1.0F), glm::vec3(1, 2, 3));
@@ -21,8 +21,9 @@ scene::Lamp lamp_of(scene::LampKind kind)
 
 TEST(LightData, ShinesAlongTheLampsMinusZ)
 {
-  scene::Lamp lamp = lamp_of(scene::LampKind::Spot);
-  lamp.world_from_lamp = lamp.world_from_lamp * glm::rotate(glm::mat4(1.0F), 0.5F * 3.14159265F, glm::vec3(1, 0, 0));
+  scene::PlacedLamp lamp = lamp_of(scene::LampKind::Spot);
+  lamp.world_from_lamp =
+      lamp.world_from_lamp * glm::rotate(glm::dmat4(1.0), 0.5 * 3.14159265358979, glm::dvec3(1, 0, 0));
   const shared::LightData light = light_data(lamp);
   // -Z turned by 90° around X is +Y.
   EXPECT_NEAR(glm::distance(light.forward_ws, glm::vec3(0, 1, 0)), 0.0F, 1e-6F);
@@ -40,7 +41,7 @@ TEST(LightData, HasNoShadowUntilItIsGivenOne)
 
 TEST(LightData, IsFiniteForEveryRange)
 {
-  scene::Lamp lamp = lamp_of(scene::LampKind::Point);
+  scene::PlacedLamp lamp = lamp_of(scene::LampKind::Point);
   for (const float range : {1e-45F, 1e-30F, 1.0F, 1e30F}) {
     lamp.range = range;
     const shared::LightData light = light_data(lamp);
@@ -52,22 +53,22 @@ TEST(LightData, IsFiniteForEveryRange)
 
 TEST(Lamps, AreaLampsAreNamedAndLeftOut)
 {
-  scene::Scene scene;
-  scene.lamps = {lamp_of(scene::LampKind::Area), lamp_of(scene::LampKind::Sun)};
-  const Lamps lamps = make_lamps(scene);
+  std::vector<scene::PlacedLamp> placed;
+  placed = {lamp_of(scene::LampKind::Area), lamp_of(scene::LampKind::Sun)};
+  const Lamps lamps = make_lamps(placed);
   EXPECT_EQ(lamps.light_block.light_count, 1);
-  EXPECT_EQ(lamps.scene_index, std::vector<std::uint32_t>{1});
+  EXPECT_EQ(lamps.lamp_index, std::vector<std::uint32_t>{1});
   ASSERT_EQ(lamps.warnings.size(), 1U);
   EXPECT_NE(lamps.warnings[0].find("'lamp': area lamps are not drawn"), std::string::npos);
 }
 
 TEST(Lamps, SizedLampsAreDrawnAndWarnedOf)
 {
-  scene::Scene scene;
-  scene.lamps = {lamp_of(scene::LampKind::Point), lamp_of(scene::LampKind::Sun)};
-  scene.lamps[0].radius = 0.5F;
-  scene.lamps[1].angle = 0.1F;
-  const Lamps lamps = make_lamps(scene);
+  std::vector<scene::PlacedLamp> placed;
+  placed = {lamp_of(scene::LampKind::Point), lamp_of(scene::LampKind::Sun)};
+  placed[0].radius = 0.5F;
+  placed[1].angle = 0.1F;
+  const Lamps lamps = make_lamps(placed);
   EXPECT_EQ(lamps.light_block.light_count, 2);
   EXPECT_EQ(lamps.warnings.size(), 2U);
   EXPECT_FLOAT_EQ(lamps.light_block.lights[0].radius_sq, 0.25F);
@@ -75,36 +76,36 @@ TEST(Lamps, SizedLampsAreDrawnAndWarnedOf)
 
 TEST(Lamps, BlackLampsTakeNoRoom)
 {
-  scene::Scene scene;
-  scene.lamps = {lamp_of(scene::LampKind::Sun), lamp_of(scene::LampKind::Point)};
-  scene.lamps[0].intensity = 0.0F;
-  scene.lamps[1].color = glm::vec3(0.0F);
-  const Lamps lamps = make_lamps(scene);
+  std::vector<scene::PlacedLamp> placed;
+  placed = {lamp_of(scene::LampKind::Sun), lamp_of(scene::LampKind::Point)};
+  placed[0].intensity = 0.0F;
+  placed[1].color = glm::vec3(0.0F);
+  const Lamps lamps = make_lamps(placed);
   EXPECT_EQ(lamps.light_block.light_count, 0);
   EXPECT_EQ(lamps.features, Feature::None);
 }
 
 TEST(Lamps, FeaturesAreThoseOfTheKinds)
 {
-  scene::Scene scene;
-  scene.lamps = {lamp_of(scene::LampKind::Sun)};
-  EXPECT_EQ(make_lamps(scene).features, Feature::Light);
-  scene.lamps = {lamp_of(scene::LampKind::Hemi)};
-  EXPECT_EQ(make_lamps(scene).features, Feature::Light);
-  scene.lamps = {lamp_of(scene::LampKind::Spot)};
-  EXPECT_EQ(make_lamps(scene).features, Feature::Light | Feature::Punctual);
+  std::vector<scene::PlacedLamp> placed;
+  placed = {lamp_of(scene::LampKind::Sun)};
+  EXPECT_EQ(make_lamps(placed).features, Feature::Light);
+  placed = {lamp_of(scene::LampKind::Hemi)};
+  EXPECT_EQ(make_lamps(placed).features, Feature::Light);
+  placed = {lamp_of(scene::LampKind::Spot)};
+  EXPECT_EQ(make_lamps(placed).features, Feature::Light | Feature::Punctual);
 }
 
 // hazards.md: the lamp past the maximum was written out of range, or dropped without a word.
 TEST(Lamps, TheOneTooManyIsNamedAndTheRestUnchanged)
 {
-  scene::Scene scene;
+  std::vector<scene::PlacedLamp> placed;
   for (int i = 0; i <= LIGHT_MAX; i++) {
-    scene.lamps.push_back(lamp_of(scene::LampKind::Point));
-    scene.lamps.back().name = "lamp" + std::to_string(i);
-    scene.lamps.back().intensity = float(i + 1);
+    placed.push_back(lamp_of(scene::LampKind::Point));
+    placed.back().name = "lamp" + std::to_string(i);
+    placed.back().intensity = float(i + 1);
   }
-  const Lamps lamps = make_lamps(scene);
+  const Lamps lamps = make_lamps(placed);
   EXPECT_EQ(lamps.light_block.light_count, LIGHT_MAX);
   for (int i = 0; i < LIGHT_MAX; i++) {
     EXPECT_EQ(lamps.light_block.lights[i].color.r, float(i + 1));
@@ -113,8 +114,8 @@ TEST(Lamps, TheOneTooManyIsNamedAndTheRestUnchanged)
   EXPECT_NE(lamps.limits[0].find("'lamp255'"), std::string::npos) << lamps.limits[0];
   EXPECT_EQ(lamps.limits[0].find("'lamp254'"), std::string::npos);
 
-  scene.lamps.pop_back();
-  EXPECT_TRUE(make_lamps(scene).limits.empty());
+  placed.pop_back();
+  EXPECT_TRUE(make_lamps(placed).limits.empty());
 }
 
 }  // namespace

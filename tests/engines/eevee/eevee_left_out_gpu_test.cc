@@ -16,20 +16,20 @@ class LeftOutGpuTest : public test::GpuDeviceTest {
  protected:
   LeftOutGpuTest()
   {
-    const std::uint32_t plain = test::add_material(scene, glm::vec3(0.5F));
+    const auto plain = test::add_material(scene, glm::vec3(0.5F));
     test::add_object(scene, test::add_square_mesh(scene, plain), glm::mat4(1.0F));
     test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 2}, {0, 0, -1}, 1.0F);
   }
   scene::Scene scene;
   /** Sees the square in the middle, and nothing around it. */
-  scene::Camera camera = test::camera_at({0, 0, 8}, {0, 0, 0});
-  scene::Camera away = test::camera_at({0, 0, 8}, {0, 0, 20});
+  scene::PlacedCamera camera = test::camera_at({0, 0, 8}, {0, 0, 0});
+  scene::PlacedCamera away = test::camera_at({0, 0, 8}, {0, 0, 20});
 };
 
 TEST_F(LeftOutGpuTest, APictureOfNothingIsThatOfTheBackgroundBesideSomething)
 {
   Renderer renderer(*device, scene, {32, 32}, {.sample_count = 2, .has_display = true, .exposure = 1.0F});
-  const auto bytes = [&](const scene::Camera &from) {
+  const auto bytes = [&](const scene::PlacedCamera &from) {
     const test::Picture picture = renderer.picture(from);
     EXPECT_EQ(picture.non_finite_count(), 0U);
     return std::pair(picture, device->read(renderer.engine.display(renderer.viewport)));

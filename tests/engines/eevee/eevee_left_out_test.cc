@@ -37,7 +37,7 @@ Taken taken_by(const measure::LeftOutCase &of)
   settings.has_display = true;
   settings.sample_count = 2;
   test::Renderer renderer(*device, of.scene, {64, 36}, settings);
-  renderer.draw(of.scene.cameras.front());
+  renderer.draw(of.scene.placed_cameras().front());
   Taken taken;
   for (const gpu::LiveResource &live : device->live()) {
     if (live.kind == gpu::ResourceKind::Framebuffer || live.kind == gpu::ResourceKind::TimerQuery) {
@@ -116,20 +116,20 @@ TEST_F(LeftOut, TheFullSceneHasAll)
   EXPECT_EQ(full.features, both(shadow_features, {"USE_LIGHT", "USE_PUNCTUAL", "USE_SPECULAR", "USE_BASE_COLOR_TEXTURE",
                                                   "USE_ALPHA_MASK"}));
   const Names resources =
-      both(shadow_resources,
-           {"texture 'film'",        "texture 'display'",        "texture 'depth'",         "texture 'radiance'",
-            "texture 'checks'",      "texture 'holes'",          "sampler 'nearest'",       "sampler 'checks'",
-            "sampler 'holes'",       "buffer 'view_block'",      "buffer 'object_block'",   "buffer 'material_block'",
-            "buffer 'light_block'",  "batch 'box of plain'",     "batch 'box of specular'", "batch 'box of textured'",
-            "batch 'box of masked'", "batch 'box of one-sided'", "shader 'eevee_depth'",    "shader 'eevee_lit'",
-            "shader 'eevee_film'",   "shader 'eevee_tonemap'"});
+      both(shadow_resources, {"texture 'film'",        "texture 'display'",         "texture 'depth'",
+                              "texture 'radiance'",    "texture 'checks'",          "texture 'holes'",
+                              "sampler 'nearest'",     "sampler 'texture_sampler'", "buffer 'view_block'",
+                              "buffer 'object_block'", "buffer 'material_block'",   "buffer 'light_block'",
+                              "batch 'box of plain'",  "batch 'box of specular'",   "batch 'box of textured'",
+                              "batch 'box of masked'", "batch 'box of one-sided'",  "shader 'eevee_depth'",
+                              "shader 'eevee_lit'",    "shader 'eevee_film'",       "shader 'eevee_tonemap'"});
   EXPECT_EQ(full.resources, resources);
 }
 
 TEST_F(LeftOut, NoLamp)
 {
-  // What the mask cuts out is there without light; the opaque texture is nobody's then.
-  expect_lacks("no lamp", both(shadow_resources, {"buffer 'light_block'", "texture 'checks'", "sampler 'checks'"}),
+  // What the mask cuts out is there without light; no pass reads the opaque texture then.
+  expect_lacks("no lamp", both(shadow_resources, {"buffer 'light_block'", "texture 'checks'"}),
                both(shadow_features, {"USE_LIGHT", "USE_PUNCTUAL", "USE_SPECULAR"}), shadow_passes);
 }
 
@@ -157,7 +157,7 @@ TEST_F(LeftOut, NoShadow)
 
 TEST_F(LeftOut, NoTexture)
 {
-  expect_lacks("no texture", {"texture 'checks'", "texture 'holes'", "sampler 'checks'", "sampler 'holes'"},
+  expect_lacks("no texture", {"texture 'checks'", "texture 'holes'", "sampler 'texture_sampler'"},
                {"USE_BASE_COLOR_TEXTURE", "USE_ALPHA_MASK"}, {});
 }
 
@@ -287,7 +287,7 @@ TEST_F(LeftOutChange, WhatAnotherViewSeesIsMadeThenAndTheShadowsToo)
   test::Renderer renderer(*device, full.scene, {64, 36}, full.settings);
   renderer.draw(test::camera_at({0, 4, 20}, {0, 4, 40}));
   EXPECT_EQ(device->counters().shaders_made, 0U);
-  renderer.draw(full.scene.cameras.front());
+  renderer.draw(full.scene.placed_cameras().front());
   EXPECT_EQ(device->counters().passes - device->pass_counts().at("film"), device->counters().passes - 2U);
   EXPECT_EQ(device->pass_counts().at("lit"), 1U);
   EXPECT_EQ(renderer.engine.report(renderer.viewport).shadow_counters.lamps_updated, 3U);
@@ -303,10 +303,10 @@ TEST_F(LeftOutChange, ALampThatGoesTakesItsTargetsAndBlocksWithIt)
 {
   measure::LeftOutCase full = measure::left_out_cases().front();
   test::Renderer renderer(*device, full.scene, {64, 36}, full.settings);
-  renderer.draw(full.scene.cameras.front());
-  full.scene.lamps.clear();
+  renderer.draw(full.scene.placed_cameras().front());
+  test::remove_lamps(full.scene);
   renderer.sync();
-  renderer.draw(full.scene.cameras.front());
+  renderer.draw(full.scene.placed_cameras().front());
   for (const std::string &resource : device->live_resources()) {
     EXPECT_EQ(resource.find("shadow_cubes"), std::string::npos) << resource;
     EXPECT_EQ(resource.find("shadow_maps"), std::string::npos) << resource;
@@ -320,14 +320,14 @@ TEST_F(LeftOutChange, ALampThatGoesTakesItsTargetsAndBlocksWithIt)
 TEST_F(LeftOutChange, DrawsOutsideOfTheViewAreCountedAsCulled)
 {
   scene::Scene scene;
-  const std::uint32_t square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(0.5F)));
+  const auto square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(0.5F)));
   for (const float x : {0.0F, 30.0F, 60.0F}) {
     test::add_object(scene, square, glm::translate(glm::mat4(1.0F), glm::vec3(x, 0, 0)));
   }
   test::Renderer renderer(*device, scene, {16, 16}, {.sample_count = 2});
   renderer.draw(test::camera_at({0, 0, 4}, {0, 0, 0}));
   const FrameNode tree = renderer.engine.report(renderer.viewport).tree;
-  for (const char *pass : {"depth_pass", "pass"}) {
+  for (const char *pass : {"depth_pass", "lit_pass"}) {
     EXPECT_EQ(node_at(tree, {"draws", pass}).count, 2U) << "one, in two samples";
     EXPECT_EQ(node_at(tree, {"draws", pass, "culled"}).count, 4U);
   }
@@ -338,7 +338,7 @@ TEST_F(LeftOutChange, WhatIsUpToDateIsKeptAndSaysSo)
   const measure::LeftOutCase full = measure::left_out_cases().front();
   test::Renderer renderer(*device, full.scene, {64, 36}, full.settings);
   const auto layers = [&](const char *state) {
-    renderer.draw(full.scene.cameras.front());
+    renderer.draw(full.scene.placed_cameras().front());
     const FrameNode tree = renderer.engine.report(renderer.viewport).tree;
     EXPECT_EQ(node_at(tree, {"passes", "shadows"}).is_made, std::string(state) == "drawn");
     return node_at(tree, {"shadows", "POINT", state}).count.value_or(0);
@@ -351,10 +351,11 @@ TEST_F(LeftOutChange, WhatIsUpToDateIsKeptAndSaysSo)
 TEST_F(LeftOutChange, MaterialsThatNoObjectHasAskForNothing)
 {
   scene::Scene scene;
-  const std::uint32_t plain = test::add_material(scene, glm::vec3(0.5F));
+  const auto plain = test::add_material(scene, glm::vec3(0.5F));
   test::add_object(scene, test::add_square_mesh(scene, plain), glm::mat4(1.0F));
   test::add_lamp(scene, scene::LampKind::Hemi, {0, 0, 2}, {0, 0, -1}, 1.0F);
-  scene.materials[test::add_material(scene, glm::vec3(1.0F))].specular_color = glm::vec3(1.0F);
+  scene.edit(test::add_material(scene, glm::vec3(1.0F)),
+             [](scene::Material &material) { material.specular_color = glm::vec3(1.0F); });
   test::Renderer renderer(*device, scene, {16, 16});
   renderer.draw(test::camera_at({0, 0, 4}, {0, 0, 0}));
   for (const gpu::LiveResource &live : device->live()) {
@@ -365,8 +366,9 @@ TEST_F(LeftOutChange, MaterialsThatNoObjectHasAskForNothing)
 TEST_F(LeftOutChange, UvsAreUploadedWithTheLightThatNeedsThem)
 {
   scene::Scene scene;
-  const std::uint32_t textured = test::add_material(scene, glm::vec3(0.5F));
-  scene.materials[textured].base_color_texture = test::add_texture(scene, 1, {255, 0, 0, 255});
+  const auto textured = test::add_material(scene, glm::vec3(0.5F));
+  const auto texture = test::add_texture(scene, 1, {255, 0, 0, 255});
+  scene.edit(textured, [&](scene::Material &material) { material.base_color_texture = texture; });
   test::add_object(scene, test::add_square_mesh(scene, textured), glm::mat4(1.0F));
   const auto mesh_bytes = [&](test::Renderer &renderer) {
     renderer.draw(test::camera_at({0, 0, 4}, {0, 0, 0}));
@@ -383,13 +385,14 @@ TEST_F(LeftOutChange, UvsAreUploadedWithTheLightThatNeedsThem)
 TEST_F(LeftOutChange, ASpotThatNothingVisibleLooksUpIsDrawnWhenSomethingDoes)
 {
   scene::Scene scene;
-  const std::uint32_t plain = test::add_material(scene, glm::vec3(0.5F));
-  const std::uint32_t square = test::add_square_mesh(scene, plain);
+  const auto plain = test::add_material(scene, glm::vec3(0.5F));
+  const auto square = test::add_square_mesh(scene, plain);
   test::add_object(scene, square, glm::mat4(1.0F));
   test::add_object(scene, square, glm::translate(glm::mat4(1.0F), glm::vec3(20, 0, 0)));
-  test::add_lamp(scene, scene::LampKind::Spot, {20, 0, 3}, {0, 0, -1}, 1.0F).spot_outer_angle = 0.5F;
+  scene.edit(test::add_lamp(scene, scene::LampKind::Spot, {20, 0, 3}, {0, 0, -1}, 1.0F),
+             [](scene::Lamp &lamp) { lamp.spot_outer_angle = 0.5F; });
   test::Renderer renderer(*device, scene, {16, 16});
-  const auto layers = [&](const scene::Camera &camera) {
+  const auto layers = [&](const scene::PlacedCamera &camera) {
     renderer.draw(camera);
     return find(*find(renderer.engine.report(renderer.viewport).tree, "shadows"), "lamp0")->count;
   };
@@ -402,9 +405,9 @@ TEST_F(LeftOutChange, ExponentialShadowsAloneTakeNoBlockOfDepths)
 {
   measure::LeftOutCase full = measure::left_out_cases().front();
   full.settings.shadow.kind = scene::ShadowKind::Esm;
-  std::erase_if(full.scene.lamps, [](const auto &lamp) { return lamp.kind == scene::LampKind::Sun; });
+  test::remove_lamps(full.scene, [](const scene::Lamp &lamp) { return lamp.kind == scene::LampKind::Sun; });
   test::Renderer renderer(*device, full.scene, {64, 36}, full.settings);
-  renderer.draw(full.scene.cameras.front());
+  renderer.draw(full.scene.placed_cameras().front());
   EXPECT_TRUE(std::ranges::count(device->live_resources(), "buffer 'esm_block'") == 1);
   EXPECT_TRUE(std::ranges::count(device->live_resources(), "buffer 'shadow_block'") == 0);
   EXPECT_EQ(renderer.engine.report(renderer.viewport).tree.bytes, device->memory_bytes());

@@ -17,29 +17,31 @@ using test::Renderer;
 
 class ShadowLayersGpuTest : public test::GpuDeviceTest {
  protected:
-  void add(std::uint32_t mesh, const glm::vec3 &center, const glm::vec3 &scale = glm::vec3(1.0F))
+  void add(scene::Handle<scene::Mesh> mesh, const glm::vec3 &center, const glm::vec3 &scale = glm::vec3(1.0F))
   {
     test::add_object(scene, mesh, glm::scale(glm::translate(glm::mat4(1.0F), center), scale));
   }
-  std::uint32_t add_one_sided()
+  scene::Handle<scene::Material> add_one_sided()
   {
-    const std::uint32_t material = test::add_material(scene, glm::vec3(0.5F));
-    scene.materials[material].is_double_sided = false;
+    const auto material = test::add_material(scene, glm::vec3(0.5F));
+    scene.edit(material, [](scene::Material &value) { value.is_double_sided = false; });
     return material;
   }
   /** A leaf whose left half is cut out. */
-  std::uint32_t add_leaf()
+  scene::Handle<scene::Mesh> add_leaf()
   {
-    const std::int32_t texture = test::add_texture(scene, 2, {255, 255, 255, 0, 255, 255, 255, 255});
-    const std::uint32_t material = test::add_material(scene, glm::vec3(0.5F));
-    scene.materials[material].base_color_texture = texture;
-    scene.materials[material].alpha_mode = scene::AlphaMode::Mask;
+    const auto texture = test::add_texture(scene, 2, {255, 255, 255, 0, 255, 255, 255, 255});
+    const auto material = test::add_material(scene, glm::vec3(0.5F));
+    scene.edit(material, [&](scene::Material &value) {
+      value.base_color_texture = texture;
+      value.alpha_mode = scene::AlphaMode::Mask;
+    });
     return test::add_square_mesh(scene, material);
   }
   /** Boxes and leaves above a ground, mirrored ones among them, and each kind of lamp. */
   void make_garden()
   {
-    const std::uint32_t leaf = add_leaf();
+    const auto leaf = add_leaf();
     add(square, {0, 0, 0}, glm::vec3(60));
     for (int i = 0; i < 30; i++) {
       const float x = -8.0F + 0.6F * float(i);
@@ -50,15 +52,16 @@ class ShadowLayersGpuTest : public test::GpuDeviceTest {
     }
     test::add_lamp(scene, scene::LampKind::Point, {0, 0.5F, 2}, {0, 0, -1}, 20.0F);
     test::add_lamp(scene, scene::LampKind::Point, {4, -3, 3}, {0, 0, -1}, 20.0F);
-    test::add_lamp(scene, scene::LampKind::Spot, {-3, 1, 5}, {0.2F, 0, -1}, 50.0F).spot_outer_angle = 0.8F;
+    scene.edit(test::add_lamp(scene, scene::LampKind::Spot, {-3, 1, 5}, {0.2F, 0, -1}, 50.0F),
+               [](scene::Lamp &lamp) { lamp.spot_outer_angle = 0.8F; });
     test::add_lamp(scene, scene::LampKind::Sun, {}, {0.5F, 0.3F, -1}, 2.0F);
   }
 
   scene::Scene scene;
   /** Two-sided squares and a one-sided box, each with a material of its own. */
-  std::uint32_t square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(0.5F)));
-  std::uint32_t box = test::add_box_mesh(scene, add_one_sided());
-  scene::Camera camera = test::camera_at({0, -14, 6}, {0, 0, 0}, 0.9F);
+  scene::Handle<scene::Mesh> square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(0.5F)));
+  scene::Handle<scene::Mesh> box = test::add_box_mesh(scene, add_one_sided());
+  scene::PlacedCamera camera = test::camera_at({0, -14, 6}, {0, 0, 0}, 0.9F);
 };
 
 /** Layers that were drawn, of cubes and then of maps. */
@@ -170,11 +173,12 @@ TEST_F(ShadowLayersGpuTest, FrontOrBackFacesCastAsAskedWhateverTheMirroring)
     for (const glm::vec3 &scale :
          {glm::vec3(0.5F), glm::vec3(-0.5F, 0.5F, 0.5F), glm::vec3(-0.5F), glm::vec3(0.5F, 0.5F, -0.5F)}) {
       for (const bool is_two_sided : {false, true}) {
-        scene.materials[1].is_double_sided = is_two_sided;
-        scene.objects.clear();
-        scene.lamps.clear();
+        test::edit_material(scene, 1, [&](scene::Material &material) { material.is_double_sided = is_two_sided; });
+        test::remove_objects(scene);
+        test::remove_lamps(scene);
         add(box, {0, 0, 1.5F}, scale);
-        test::add_lamp(scene, scene::LampKind::Spot, {0, 0, 4}, {0, 0, -1}, 1.0F).spot_outer_angle = 0.5F;
+        scene.edit(test::add_lamp(scene, scene::LampKind::Spot, {0, 0, 4}, {0, 0, -1}, 1.0F),
+                   [](scene::Lamp &lamp) { lamp.spot_outer_angle = 0.5F; });
         Renderer renderer(*device, scene, {8, 8}, {.shadow = {.map_size_px = 64, .caster_faces = one.faces}});
         renderer.draw(camera);
         EXPECT_NEAR(middle_distance(*device, renderer.engine.shadows(renderer.viewport)),
@@ -193,13 +197,15 @@ TEST_F(ShadowLayersGpuTest, EachOfThreeSpotsHasItsOwnMapAndIsLitOutsideOfIt)
   const std::array<float, 3> caster_half = {0.03F, 0.05F, 0.04F};
   for (int i = 0; i < 3; i++) {
     const float x = 3.0F * float(i - 1);
-    scene::Lamp &lamp = test::add_lamp(scene, scene::LampKind::Spot, {x, 0, 4}, {0, 0, -1}, 50.0F);
-    lamp.spot_outer_angle = 1.0F;
-    lamp.color = {i == 0 ? 1.0F : 0.0F, i == 1 ? 1.0F : 0.0F, i == 2 ? 1.0F : 0.0F};
+    const auto lamp = test::add_lamp(scene, scene::LampKind::Spot, {x, 0, 4}, {0, 0, -1}, 50.0F);
+    scene.edit(lamp, [&](scene::Lamp &value) { value.spot_outer_angle = 1.0F; });
+    scene.edit(lamp, [&](scene::Lamp &value) {
+      value.color = {i == 0 ? 1.0F : 0.0F, i == 1 ? 1.0F : 0.0F, i == 2 ? 1.0F : 0.0F};
+    });
     // So near to its lamp that it is in no other's way to the ground where all shine.
     add(square, {x, 0, 3.8F}, glm::vec3(caster_half[std::size_t(i)]));
   }
-  const scene::Camera above = test::camera_at({0, 0, 30}, {0, 0, 0}, 0.4F);
+  const scene::PlacedCamera above = test::camera_at({0, 0, 30}, {0, 0, 0}, 0.4F);
   const glm::ivec2 size_px(128, 128);
   Renderer renderer(*device, scene, size_px, {.shadow = {.map_size_px = 512}});
   Renderer unshadowed(*device, scene, size_px, {.shadow = {.kind = scene::ShadowKind::None}});
@@ -239,18 +245,18 @@ class ClipGpuTest : public ShadowLayersGpuTest {
     return shadowed.picture(below).middle().r / lit.picture(below).middle().r;
   }
   /** Looks at the origin past what hangs above it. */
-  scene::Camera below = test::camera_at({0, -1, 0.5F}, {0, 0, 0}, 0.1F);
+  scene::PlacedCamera below = test::camera_at({0, -1, 0.5F}, {0, 0, 0}, 0.1F);
 };
 
 TEST_F(ClipGpuTest, WhatIsBeforeTheNearPlaneCastsUnlessTheLampLeavesItOut)
 {
   for (const scene::LampKind kind : {scene::LampKind::Point, scene::LampKind::Spot}) {
-    scene.objects.clear();
-    scene.lamps.clear();
+    test::remove_objects(scene);
+    test::remove_lamps(scene);
     add(square, {0, 0, 0}, glm::vec3(20));
     // A small square right under the lamp in a mesh that reaches 3 km around it: the near plane is a ten thousandth
     // away.
-    scene::Mesh &mesh = scene.meshes[box];
+    scene::Mesh mesh = scene.meshes()[box];
     const glm::vec3 far(1700, 1700, -1700);
     mesh.positions = {{-0.05F, -0.05F, 3.9F},
                       {0.05F, -0.05F, 3.9F},
@@ -261,27 +267,25 @@ TEST_F(ClipGpuTest, WhatIsBeforeTheNearPlaneCastsUnlessTheLampLeavesItOut)
                       -far,
                       -far};
     mesh.normals.assign(8, {0, 0, 1});
+    mesh.uvs.clear();
     mesh.indices = {0, 1, 2, 0, 2, 3, 4, 5, 4, 6, 7, 6};
-    mesh.bounds = {};
-    for (const glm::vec3 &position : mesh.positions) {
-      mesh.bounds.extend(position);
-    }
-    scene.materials[1].is_double_sided = true;
+    scene.replace(box, mesh);
+    test::edit_material(scene, 1, [&](scene::Material &material) { material.is_double_sided = true; });
     add(box, {0, 0, 0});
-    scene::Lamp &lamp = test::add_lamp(scene, kind, {0, 0, 4}, {0, 0, -1}, 20.0F);
-    lamp.spot_outer_angle = 0.6F;
+    const auto lamp = test::add_lamp(scene, kind, {0, 0, 4}, {0, 0, -1}, 20.0F);
+    scene.edit(lamp, [&](scene::Lamp &value) { value.spot_outer_angle = 0.6F; });
     for (const LayerPass way : {LayerPass::Single, LayerPass::Geometry, LayerPass::Layered}) {
-      lamp.shadow.clip_start.reset();
+      scene.edit(lamp, [](scene::Lamp &value) { value.shadow.clip_start.reset(); });
       Renderer renderer(*device, scene, {8, 8}, {.shadow = {.layer_pass = way}});
       renderer.draw(below);
       const shared::ShadowBlock &block = renderer.engine.shadows(renderer.viewport).block_data();
       const float near = kind == scene::LampKind::Point ? block.cubes[0].near : block.maps[0].texco_from_world[3][2];
       ASSERT_GT(std::abs(near), 0.2F) << "the caster, at 0.1, is before the near plane";
       EXPECT_EQ(middle_visibility({.layer_pass = way}), 0.0F) << "lamp kind " << int(kind);
-      lamp.shadow.clip_start = 0.2F;
+      scene.edit(lamp, [&](scene::Lamp &value) { value.shadow.clip_start = 0.2F; });
       EXPECT_EQ(middle_visibility({.layer_pass = way}), 1.0F) << "lamp kind " << int(kind);
       // What begins behind the clip stays.
-      lamp.shadow.clip_start = 0.05F;
+      scene.edit(lamp, [&](scene::Lamp &value) { value.shadow.clip_start = 0.05F; });
       EXPECT_EQ(middle_visibility({.layer_pass = way}), 0.0F) << "lamp kind " << int(kind);
     }
   }
@@ -290,17 +294,17 @@ TEST_F(ClipGpuTest, WhatIsBeforeTheNearPlaneCastsUnlessTheLampLeavesItOut)
 TEST_F(ClipGpuTest, BeyondTheClipEndNothingIsInShadow)
 {
   for (const scene::LampKind kind : {scene::LampKind::Point, scene::LampKind::Spot}) {
-    scene.objects.clear();
-    scene.lamps.clear();
+    test::remove_objects(scene);
+    test::remove_lamps(scene);
     add(square, {0, 0, 0}, glm::vec3(20));
     add(square, {0, 0, 2}, glm::vec3(0.5F));
-    scene::Lamp &lamp = test::add_lamp(scene, kind, {0, 0, 4}, {0, 0, -1}, 20.0F);
-    lamp.spot_outer_angle = 0.6F;
+    const auto lamp = test::add_lamp(scene, kind, {0, 0, 4}, {0, 0, -1}, 20.0F);
+    scene.edit(lamp, [&](scene::Lamp &value) { value.spot_outer_angle = 0.6F; });
     EXPECT_EQ(middle_visibility(), 0.0F);
     // The ground is 4 away, the caster 2.
-    lamp.shadow.clip_end = 4.5F;
+    scene.edit(lamp, [&](scene::Lamp &value) { value.shadow.clip_end = 4.5F; });
     EXPECT_EQ(middle_visibility(), 0.0F);
-    lamp.shadow.clip_end = 3.0F;
+    scene.edit(lamp, [&](scene::Lamp &value) { value.shadow.clip_end = 3.0F; });
     EXPECT_EQ(middle_visibility(), 1.0F);
   }
 }
@@ -308,7 +312,7 @@ TEST_F(ClipGpuTest, BeyondTheClipEndNothingIsInShadow)
 /** Pictures of a scene that changes, against pictures of it as it is then. */
 class ShadowCacheGpuTest : public ShadowLayersGpuTest {
  protected:
-  Picture fresh_picture(const scene::Camera &from)
+  Picture fresh_picture(const scene::PlacedCamera &from)
   {
     Renderer renderer(*device, scene, {48, 32}, settings);
     return renderer.picture(from);
@@ -338,32 +342,40 @@ TEST_F(ShadowCacheGpuTest, AMovedCasterGivesThePictureOfAFreshStart)
   add(box, {-6, 0, 1}, glm::vec3(0.3F));
   add(box, {6, 0, 1}, glm::vec3(0.3F));
   // Each reaches its own half, and the ground.
-  test::add_lamp(scene, scene::LampKind::Point, {-6, 1, 3}, {0, 0, -1}, 20.0F).range = 4.0F;
-  test::add_lamp(scene, scene::LampKind::Point, {6, 1, 3}, {0, 0, -1}, 20.0F).range = 4.0F;
+  scene.edit(test::add_lamp(scene, scene::LampKind::Point, {-6, 1, 3}, {0, 0, -1}, 20.0F),
+             [](scene::Lamp &lamp) { lamp.range = 4.0F; });
+  scene.edit(test::add_lamp(scene, scene::LampKind::Point, {6, 1, 3}, {0, 0, -1}, 20.0F),
+             [](scene::Lamp &lamp) { lamp.range = 4.0F; });
   Renderer renderer(*device, scene, {48, 32}, settings);
   renderer.draw(camera);
   ASSERT_EQ(lamps_updated(renderer), 2U);
-  scene.objects[1].world_from_object[3].y = 0.5F;
+  const auto move_box = [&](const glm::dvec3 &center) {
+    const scene::Object object = scene.objects()[1];
+    glm::dmat4 world_from_object = object.world_from_object;
+    world_from_object[3] = glm::dvec4(center, 1.0);
+    scene.set_transform(object.node, world_from_object);
+  };
+  move_box({-6, 0.5, 1});
   renderer.sync();
   EXPECT_EQ(renderer.picture(camera).pixels, fresh_picture(camera).pixels);
   EXPECT_EQ(lamps_updated(renderer), 3U) << "the lamp in whose range it is";
-  scene.objects[1].world_from_object[3] = {6, 0.5F, 1.5F, 1};
+  move_box({6, 0.5, 1.5});
   renderer.sync();
   EXPECT_EQ(renderer.picture(camera).pixels, fresh_picture(camera).pixels);
   EXPECT_EQ(lamps_updated(renderer), 5U) << "the one that it left, where the ground still casts, and the other";
-  scene.objects[1].world_from_object[3] = {0, 60, 1, 1};
+  move_box({0, 60, 1});
   renderer.sync();
   EXPECT_EQ(renderer.picture(camera).pixels, fresh_picture(camera).pixels);
-  EXPECT_EQ(lamps_updated(renderer), 6U) << "the one that it left, and no other: nobody reaches so far";
+  EXPECT_EQ(lamps_updated(renderer), 6U) << "the one that it left, and no other: no lamp reaches so far";
 }
 
 TEST_F(ShadowCacheGpuTest, FacesSkippedAppearWhenTheCameraTurns)
 {
   make_garden();
-  scene.lamps.resize(2);
+  test::remove_lamps(scene, [](const scene::Lamp &lamp) { return lamp.name > "lamp1"; });
   // Low between the boxes: ahead, and behind.
-  const scene::Camera ahead = test::camera_at({0, 0.2F, 1}, {0, 9, 1}, 0.5F);
-  const scene::Camera behind = test::camera_at({0, 0.2F, 1}, {0, -9, 0.5F}, 0.5F);
+  const scene::PlacedCamera ahead = test::camera_at({0, 0.2F, 1}, {0, 9, 1}, 0.5F);
+  const scene::PlacedCamera behind = test::camera_at({0, 0.2F, 1}, {0, -9, 0.5F}, 0.5F);
   Renderer renderer(*device, scene, {48, 32}, settings);
   const Picture first = renderer.picture(ahead);
   const ShadowCounters before = renderer.engine.report(renderer.viewport).shadow_counters;
@@ -381,7 +393,8 @@ struct Cascades {
   std::vector<shared::ShadowMapData> maps;
   std::vector<std::vector<float>> texels;
 
-  Cascades(gpu::Device &device, const scene::Scene &scene, const scene::Camera &camera, const ShadowSettings &settings)
+  Cascades(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera,
+           const ShadowSettings &settings)
   {
     Renderer renderer(device, scene, {48, 32}, {.shadow = settings});
     renderer.draw(camera);
@@ -428,13 +441,13 @@ TEST_F(ShadowLayersGpuTest, ACameraMovedByFractionsOfATexelChangesNoStaticShadow
   }
   test::add_lamp(scene, scene::LampKind::Sun, {}, {0.5F, 0.3F, -1}, 1.0F);
   const ShadowSettings settings{.map_size_px = 128, .cascades = {.count = 4}};
-  const scene::Camera still = test::camera_at({0, -14, 6}, {0, 0, 1}, 0.9F);
+  const scene::PlacedCamera still = test::camera_at({0, -14, 6}, {0, 0, 1}, 0.9F);
   const Cascades before(*device, scene, still, settings);
   ASSERT_EQ(before.maps.size(), 4U);
   const float texel = before.maps[0].texel_size;
   for (const float share : {0.13F, 0.37F, 0.61F, 0.99F}) {
-    scene::Camera moved = still;
-    moved.world_from_camera[3] += glm::vec4(share * texel, 0.7F * share * texel, 0.2F * share * texel, 0);
+    scene::PlacedCamera moved = still;
+    moved.world_from_camera[3] += glm::dvec4(share * texel, 0.7F * share * texel, 0.2F * share * texel, 0);
     const Cascades after(*device, scene, moved, settings);
     ASSERT_EQ(after.maps.size(), 4U);
     int compared = 0;

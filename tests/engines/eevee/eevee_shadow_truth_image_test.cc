@@ -20,13 +20,14 @@ struct Truth {
 
 class ShadowTruth : public test::GpuDeviceTest {
  protected:
-  Truth compare(const scene::Scene &scene, const scene::Camera &camera, const ShadowSettings &shadow,
+  Truth compare(const scene::Scene &scene, const scene::PlacedCamera &camera, const ShadowSettings &shadow,
                 glm::ivec2 size_px = {320, 320})
   {
     Settings settings;
     settings.shadow = shadow;
     settings.has_probe = true;
     Renderer renderer(*device, scene, size_px, settings);
+    const scene::PlacedLamp lamp = scene.placed_lamps().front();
     const std::optional<Probe> probe = renderer.engine.probe(renderer.viewport, view_of(camera, size_px), 0);
     EXPECT_TRUE(probe);
     std::vector<glm::vec3> positions;
@@ -41,16 +42,14 @@ class ShadowTruth : public test::GpuDeviceTest {
         visibility.push_back(probe->position_visibility[i].w);
         const auto receiver = reference::find_receiver(tracer, positions.back(), normals.back());
         truth.darkened_count +=
-            receiver && visibility.back() < 1.0F - 1e-6F && reference::is_visible(tracer, *receiver, scene.lamps[0])
-                ? 1
-                : 0;
+            receiver && visibility.back() < 1.0F - 1e-6F && reference::is_visible(tracer, *receiver, lamp) ? 1 : 0;
       }
     }
     reference::CompareSettings compare;
     compare.texel_size_m = [&](const glm::dvec3 &position_ws) {
       return renderer.engine.shadow_texel_size(renderer.viewport, 0, position_ws);
     };
-    truth.error = reference::compare_visibility(tracer, scene.lamps[0], {positions, normals, visibility}, compare);
+    truth.error = reference::compare_visibility(tracer, lamp, {positions, normals, visibility}, compare);
     return truth;
   }
 };
@@ -98,14 +97,14 @@ class ShadowTruthEach : public ShadowTruth, public testing::WithParamInterface<C
 scene::Scene plane_under(scene::LampKind kind, float angle)
 {
   scene::Scene scene;
-  const std::uint32_t square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(1)));
+  const auto square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(1)));
   const glm::mat4 turn = glm::rotate(glm::rotate(glm::mat4(1.0F), 0.3F, {1, 2, 0.5F}), 0.7F, {0, 0, 1});
   test::add_object(scene, square, turn);
   // Behind the plane, so that there is something that casts, and a map.
   test::add_object(scene, square, turn * glm::scale(glm::translate(glm::mat4(1.0F), {0, 0, -1}), glm::vec3(2)));
   const glm::vec3 to_lamp(turn * glm::vec4(std::cos(angle) * 0.8F, std::cos(angle) * 0.6F, std::sin(angle), 0));
-  scene::Lamp &lamp = test::add_lamp(scene, kind, 3.0F * to_lamp, -to_lamp, 1.0F);
-  lamp.spot_outer_angle = 0.6F;
+  const auto lamp = test::add_lamp(scene, kind, 3.0F * to_lamp, -to_lamp, 1.0F);
+  scene.edit(lamp, [&](scene::Lamp &value) { value.spot_outer_angle = 0.6F; });
   return scene;
 }
 
@@ -114,7 +113,7 @@ TEST_P(ShadowTruthEach, NoAcneOnPlanesFromHalfADegreeToNinety)
 {
   for (const float degrees : {0.5F, 1.0F, 2.0F, 5.0F, 10.0F, 30.0F, 60.0F, 89.0F, 90.0F}) {
     const scene::Scene scene = plane_under(GetParam().kind, glm::radians(degrees));
-    const glm::vec3 normal = glm::vec3(scene.objects[0].world_from_object[2]);
+    const glm::vec3 normal = glm::vec3(scene.objects()[0].world_from_object[2]);
     const Truth truth = compare(scene, test::camera_at(2.4F * normal, {0, 0, 0}, 0.5F), settings_of(GetParam()));
     EXPECT_EQ(truth.error.acne_count, 0U) << degrees << " degrees";
     // Not even a shade of it.
@@ -127,13 +126,13 @@ TEST_P(ShadowTruthEach, LeaksAndGapsAtContactAreATexelAndAHalf)
 {
   // A wall that stands on the ground, lit from one side.
   scene::Scene scene;
-  const std::uint32_t square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(1)));
+  const auto square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(1)));
   test::add_object(scene, square, glm::scale(glm::mat4(1.0F), glm::vec3(4)));
   test::add_object(scene, square,
                    glm::rotate(glm::translate(glm::mat4(1.0F), {0, 0, 0.5F}), 1.5707963F, {1, 0, 0}) *
                        glm::scale(glm::mat4(1.0F), glm::vec3(0.5F)));
-  scene::Lamp &lamp = test::add_lamp(scene, GetParam().kind, {0.7F, -3, 3}, {-0.2F, 1, -1}, 1.0F);
-  lamp.spot_outer_angle = 0.5F;
+  const auto lamp = test::add_lamp(scene, GetParam().kind, {0.7F, -3, 3}, {-0.2F, 1, -1}, 1.0F);
+  scene.edit(lamp, [&](scene::Lamp &value) { value.spot_outer_angle = 0.5F; });
   // Along the foot of the wall, on its dark side.
   const Truth truth = compare(scene, test::camera_at({0.2F, 1.2F, 1.2F}, {0, 0.1F, 0}, 0.5F), settings_of(GetParam()));
   EXPECT_EQ(truth.error.leak_count, 0U);
@@ -150,7 +149,7 @@ TEST_F(ShadowTruth, WrongPixelsHalveWithTheTexel)
 {
   // Squares at all angles over a ground, so that edges run in every direction.
   scene::Scene scene;
-  const std::uint32_t square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(1)));
+  const auto square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(1)));
   test::add_object(scene, square, glm::scale(glm::mat4(1.0F), glm::vec3(4)));
   for (int i = 0; i < 9; i++) {
     const glm::vec3 place(0.9F * float(i % 3 - 1), 0.9F * float(i / 3 - 1), 0.5F);
@@ -159,8 +158,9 @@ TEST_F(ShadowTruth, WrongPixelsHalveWithTheTexel)
                          glm::scale(glm::mat4(1.0F), glm::vec3(0.25F)));
   }
   for (const scene::LampKind kind : {scene::LampKind::Point, scene::LampKind::Spot, scene::LampKind::Sun}) {
-    scene.lamps.clear();
-    test::add_lamp(scene, kind, {1, -1, 4}, {-0.25F, 0.25F, -1}, 1.0F).spot_outer_angle = 0.6F;
+    test::remove_lamps(scene);
+    scene.edit(test::add_lamp(scene, kind, {1, -1, 4}, {-0.25F, 0.25F, -1}, 1.0F),
+               [](scene::Lamp &lamp) { lamp.spot_outer_angle = 0.6F; });
     std::vector<double> wrong;
     for (const int size_px : {256, 512, 1024}) {
       ShadowSettings settings;
@@ -176,16 +176,17 @@ TEST_F(ShadowTruth, WrongPixelsHalveWithTheTexel)
 TEST_F(ShadowTruth, OfAnExponentialMapDoesNotDependOnTheSizeOfAnothers)
 {
   scene::Scene scene;
-  const std::uint32_t square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(1)));
+  const auto square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(1)));
   test::add_object(scene, square, glm::scale(glm::mat4(1.0F), glm::vec3(4)));
   test::add_object(scene, square, glm::scale(glm::translate(glm::mat4(1.0F), {0, 0, 1}), glm::vec3(0.5F)));
   test::add_lamp(scene, scene::LampKind::Point, {0.3F, 0.2F, 3}, {0, 0, -1}, 1.0F);
   ShadowSettings settings;
   settings.kind = scene::ShadowKind::Esm;
   settings.esm.size_px = 128;
-  const scene::Camera camera = test::camera_at({0, -3, 4}, {0, 0, 0});
+  const scene::PlacedCamera camera = test::camera_at({0, -3, 4}, {0, 0, 0});
   const double alone = compare(scene, camera, settings).error.mean_absolute_error;
-  test::add_lamp(scene, scene::LampKind::Point, {-1, 0, 3}, {0, 0, -1}, 1.0F).shadow.esm_size = 512;
+  scene.edit(test::add_lamp(scene, scene::LampKind::Point, {-1, 0, 3}, {0, 0, -1}, 1.0F),
+             [](scene::Lamp &lamp) { lamp.shadow.esm_size = 512; });
   EXPECT_NEAR(compare(scene, camera, settings).error.mean_absolute_error, alone, 1e-6);
 }
 
@@ -194,14 +195,15 @@ TEST_F(ShadowTruth, OfASpotHoldsToTheRimOfTheWidestMap)
   // A plate far off the axis, and another close behind it.
   for (const float angle : {spot_map_angle_max, spot_map_angle_max + 0.05F}) {
     scene::Scene scene;
-    const std::uint32_t square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(1)));
+    const auto square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(1)));
     const glm::vec3 aside(std::sin(angle - 0.03F), 0, -std::cos(angle - 0.03F));
     const glm::mat4 turn = glm::inverse(glm::lookAt(glm::vec3(0), aside, glm::vec3(0, 1, 0)));
     test::add_object(scene, square,
                      turn * glm::scale(glm::translate(glm::mat4(1.0F), {0, 0, -1.12F}), glm::vec3(0.03F)));
     test::add_object(scene, square, turn * glm::scale(glm::translate(glm::mat4(1.0F), {0, 0, -1}), glm::vec3(0.015F)));
-    test::add_lamp(scene, scene::LampKind::Spot, {0, 0, 0}, {0, 0, -1}, 1.0F).spot_outer_angle = angle;
-    scene.lamps[0].world_from_lamp = glm::mat4(1.0F);
+    scene.edit(test::add_lamp(scene, scene::LampKind::Spot, {0, 0, 0}, {0, 0, -1}, 1.0F),
+               [&](scene::Lamp &lamp) { lamp.spot_outer_angle = angle; });
+    scene.set_transform(scene.placed_lamps().front().node, glm::dmat4(1.0));
     const Truth truth = compare(scene, test::camera_at(0.9F * aside + glm::vec3(0, 0.1F, 0), 1.12F * aside, 0.4F), {});
     EXPECT_EQ(truth.error.leak_count, 0U) << angle;
     EXPECT_LT(truth.error.wrong_fraction, 0.02) << angle;

@@ -92,7 +92,7 @@ scene::Bounds box_at(const glm::vec3 &center, float half)
 TEST(SpotView, HoldsItsCone)
 {
   for (const float angle : {1e-3F, 0.2F, 0.8F, spot_map_angle_max}) {
-    scene::Lamp lamp;
+    scene::PlacedLamp lamp;
     lamp.kind = scene::LampKind::Spot;
     lamp.spot_outer_angle = angle;
     const draw::View view = shadow_spot_view(lamp, 0.01F, 512);
@@ -105,20 +105,21 @@ TEST(SpotView, HoldsItsCone)
 /** Shadows of a few lamps on a null device. */
 class ShadowsTest : public testing::Test {
  protected:
-  scene::Lamp &add_lamp(scene::LampKind kind, const std::string &name, const glm::vec3 &position = glm::vec3(0))
+  /** The reference holds until the next lamp is added. */
+  scene::PlacedLamp &add_lamp(scene::LampKind kind, const std::string &name, const glm::vec3 &position = glm::vec3(0))
   {
-    scene::Lamp lamp;
+    scene::PlacedLamp lamp;
     lamp.kind = kind;
     lamp.name = name;
     lamp.spot_outer_angle = 0.5F;
-    lamp.world_from_lamp[3] = glm::vec4(position, 1.0F);
-    scene.lamps.push_back(lamp);
-    return scene.lamps.back();
+    lamp.world_from_lamp[3] = glm::dvec4(position, 1.0);
+    placed.push_back(lamp);
+    return placed.back();
   }
   void sync(const ShadowSettings &asked = {})
   {
-    lamps = make_lamps(scene);
-    shadows.sync(device->limits(), scene, lamps, asked);
+    lamps = make_lamps(placed);
+    shadows.sync(device->limits(), placed, {}, lamps, asked);
     shadows.allocate(*device, shaders);
     pass.clear();
     draw::InstanceCall &instances = pass.group(shader).instances(batch);
@@ -151,7 +152,7 @@ class ShadowsTest : public testing::Test {
   ShaderCache shaders;
   const gpu::Shader &shader = shaders.get(*device, ShaderId::Shadow);
   draw::Pass pass{"casters", gpu::State::WriteDepth};
-  scene::Scene scene;
+  std::vector<scene::PlacedLamp> placed;
   std::vector<scene::Bounds> casters = {box_at({0, 0, -3}, 1.0F)};
   ShadowSettings settings;
   Lamps lamps;
@@ -272,9 +273,9 @@ TEST_F(ShadowsTest, AChangedLampIsUpdatedAlone)
   add_lamp(scene::LampKind::Spot, "b");
   add_lamp(scene::LampKind::Sun, "c");
   EXPECT_EQ(updated(), 3U);
-  scene.lamps[1].world_from_lamp[3] = {0.5F, 0, 0, 1};
+  placed[1].world_from_lamp[3] = {0.5F, 0, 0, 1};
   EXPECT_EQ(updated(), 1U);
-  scene.lamps[2].world_from_lamp = glm::mat4(glm::rotate(glm::mat4(1.0F), 0.1F, {1, 0, 0}));
+  placed[2].world_from_lamp = glm::mat4(glm::rotate(glm::mat4(1.0F), 0.1F, {1, 0, 0}));
   EXPECT_EQ(updated(), 1U);
   settings.cube_size_px = 512;
   EXPECT_EQ(updated(), 1U);
@@ -343,9 +344,9 @@ TEST_F(ShadowsTest, RespectTheDevicesLayers)
   for (int i = 0; i < 3; i++) {
     add_lamp(scene::LampKind::Point, "point" + std::to_string(i));
   }
-  lamps = make_lamps(scene);
+  lamps = make_lamps(placed);
   Shadows few;
-  few.sync(small->limits(), scene, lamps, {.cube_size_px = 16});
+  few.sync(small->limits(), placed, {}, lamps, {.cube_size_px = 16});
   EXPECT_EQ(few.cube_count(), 2U);
   EXPECT_NE(few.limits().at(0).find("'point2'"), std::string::npos);
 }
@@ -363,10 +364,10 @@ TEST_F(ShadowsTest, FortyThreeCubesInARoomKeepTheirs)
 TEST_F(ShadowsTest, WithoutVertexLayersTheGeometryShaderChooses)
 {
   const std::unique_ptr<gpu::Device> old = gpu::create_null_device({.has_vertex_layer = false});
-  lamps = make_lamps(scene);
+  lamps = make_lamps(placed);
   Shadows plain;
-  EXPECT_THROW(plain.sync(old->limits(), scene, lamps, {.layer_pass = LayerPass::Layered}), gpu::Error);
-  plain.sync(old->limits(), scene, lamps, {});
+  EXPECT_THROW(plain.sync(old->limits(), placed, {}, lamps, {.layer_pass = LayerPass::Layered}), gpu::Error);
+  plain.sync(old->limits(), placed, {}, lamps, {});
   EXPECT_EQ(plain.layer_pass(), LayerPass::Geometry) << "the next best";
 }
 

@@ -17,9 +17,9 @@
 namespace gnomon::eevee {
 namespace {
 
-scene::Lamp sun_along(const glm::vec3 &forward)
+scene::PlacedLamp sun_along(const glm::vec3 &forward)
 {
-  scene::Lamp lamp;
+  scene::PlacedLamp lamp;
   lamp.kind = scene::LampKind::Sun;
   const glm::vec3 z = -glm::normalize(forward);
   const glm::vec3 x = glm::normalize(glm::cross(std::abs(z.y) < 0.9F ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0), z));
@@ -53,7 +53,7 @@ VisibleRange range_of(const draw::View &view, const std::vector<Caster> &casters
 /** A view that sees nothing in particular, for fits to given receivers. */
 const draw::View any_view(glm::mat4(1.0F), draw::perspective(1.0F, 1.0F, 0.1F, 100.0F));
 
-std::vector<SunFit> fit_one(const scene::Lamp &lamp, const std::vector<glm::dvec3> &receivers,
+std::vector<SunFit> fit_one(const scene::PlacedLamp &lamp, const std::vector<glm::dvec3> &receivers,
                             const std::vector<Caster> &casters, int size_px)
 {
   return fit_sun(lamp, any_view, visible_range(any_view, receivers), casters, size_px, {.count = 1}, 0.001F);
@@ -65,7 +65,7 @@ TEST(SunFit, HoldsEveryCasterOfAVisibleReceiver)
   std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
   const auto point = [&] { return glm::vec3(unit(random), unit(random), unit(random)); };
   for (int trial = 0; trial < 100; trial++) {
-    const scene::Lamp lamp = sun_along(point() + glm::vec3(0, -1.5F, 0));
+    const scene::PlacedLamp lamp = sun_along(point() + glm::vec3(0, -1.5F, 0));
     std::vector<Caster> casters;
     for (int i = 0; i < 12; i++) {
       casters.push_back(caster_at(6.0F * point(), glm::vec3(0.5F)));
@@ -100,7 +100,7 @@ TEST(SunFit, LeavesTheGroundOutOfTheCasters)
   const Caster ground = caster_at({0, 0, 0}, {100, 0, 100});
   const std::vector<glm::dvec3> receivers = {{-100, 0, -100}, {100, 0, -100}, {-100, 0, 100}, {100, 3, 100}};
   const std::vector<Caster> casters = {ground, caster_at({0, 1, 0}, glm::vec3(1))};
-  const scene::Lamp sun = sun_along({0.3F, -1, 0});
+  const scene::PlacedLamp sun = sun_along({0.3F, -1, 0});
   const std::vector<SunFit> fits = fit_one(sun, receivers, casters, 1024);
   ASSERT_EQ(fits.size(), 1U);
   EXPECT_LT(fits[0].max.x - fits[0].min.x, 6.0);
@@ -225,7 +225,7 @@ struct Field {
     return fit_sun(sun, view, range_of(view, casters), casters, 1024, {.count = count}, pixel_size);
   }
   std::vector<Caster> casters;
-  scene::Lamp sun = sun_along({0.4F, -1, 0.2F});
+  scene::PlacedLamp sun = sun_along({0.4F, -1, 0.2F});
 };
 
 TEST(Cascades, CoverWhatIsVisibleAndAreFinerNearby)

@@ -13,7 +13,25 @@ using measure::add_object;
 using measure::add_square_mesh;
 using measure::add_texture;
 using measure::camera_at;
+using measure::handle_at;
 using measure::Picture;
+using measure::remove_lamps;
 using measure::Renderer;
+
+/** Remove the nodes that have meshes; the last first, so that places are used in order. */
+inline void remove_objects(scene::Scene &scene)
+{
+  const std::vector<scene::Object> objects = scene.objects();
+  for (auto object = objects.rbegin(); object != objects.rend(); ++object) {
+    scene.remove(object->node);
+  }
+}
+
+/** Edit the material number \a index of \a scene. */
+template <std::invocable<scene::Material &> Change>
+void edit_material(scene::Scene &scene, std::size_t index, Change &&change)
+{
+  scene.edit(handle_at(scene.materials(), index), change);
+}
 
 }  // namespace gnomon::test

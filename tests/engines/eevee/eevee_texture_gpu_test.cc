@@ -20,20 +20,23 @@ constexpr float PI = std::numbers::pi_v<float>;
 
 class TextureGpuTest : public test::GpuDeviceTest {
  protected:
-  /** A square of half size 1 with a texture. \return its mesh's index. */
-  std::uint32_t add_textured(std::uint32_t width, const Bytes &texels, scene::AlphaMode mode = scene::AlphaMode::Mask)
+  /** A square of half size 1 with a texture. \return its mesh. */
+  scene::Handle<scene::Mesh> add_textured(std::uint32_t width, const Bytes &texels,
+                                          scene::AlphaMode mode = scene::AlphaMode::Mask)
   {
-    const std::int32_t texture = test::add_texture(scene, width, texels);
-    scene::Material &material = scene.materials[test::add_material(scene, glm::vec3(1.0F))];
-    material.base_color_texture = texture;
-    material.alpha_mode = mode;
-    return test::add_square_mesh(scene, std::uint32_t(scene.materials.size() - 1));
+    const auto texture = test::add_texture(scene, width, texels);
+    const auto material = test::add_material(scene, glm::vec3(1.0F));
+    scene.edit(material, [&](scene::Material &value) {
+      value.base_color_texture = texture;
+      value.alpha_mode = mode;
+    });
+    return test::add_square_mesh(scene, material);
   }
-  std::uint32_t add_plain(const glm::vec3 &albedo)
+  scene::Handle<scene::Mesh> add_plain(const glm::vec3 &albedo)
   {
     return test::add_square_mesh(scene, test::add_material(scene, albedo));
   }
-  void add(std::uint32_t mesh, const glm::vec3 &center, const glm::vec3 &scale = glm::vec3(1.0F))
+  void add(scene::Handle<scene::Mesh> mesh, const glm::vec3 &center, const glm::vec3 &scale = glm::vec3(1.0F))
   {
     test::add_object(scene, mesh, glm::scale(glm::translate(glm::mat4(1.0F), center), scale));
   }
@@ -47,7 +50,7 @@ class TextureGpuTest : public test::GpuDeviceTest {
 
   scene::Scene scene;
   /** Sees x and y from -1.6 to 1.6 on the plane z = 0: 20 pixels a metre. */
-  scene::Camera camera = test::camera_at({0, 0, 16}, {0, 0, 0}, 2.0F * std::atan(0.1F));
+  scene::PlacedCamera camera = test::camera_at({0, 0, 16}, {0, 0, 0}, 2.0F * std::atan(0.1F));
 };
 
 const Settings no_shadow = {.shadow = {.kind = scene::ShadowKind::None}};
@@ -73,8 +76,8 @@ Bytes four_colours(std::uint8_t alpha)
 
 TEST_F(TextureGpuTest, BaseColourIsTheFactorTimesTheDecodedTexelUpright)
 {
-  const std::uint32_t mesh = add_textured(2, four_colours(0), scene::AlphaMode::Opaque);
-  scene.materials[0].base_color = {0.5F, 0.25F, 1.0F};
+  const auto mesh = add_textured(2, four_colours(0), scene::AlphaMode::Opaque);
+  test::edit_material(scene, 0, [&](scene::Material &material) { material.base_color = {0.5F, 0.25F, 1.0F}; });
   add(mesh, {0, 0, 0});
   test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, PI);
   const Picture picture = render();
@@ -89,9 +92,11 @@ TEST_F(TextureGpuTest, BaseColourIsTheFactorTimesTheDecodedTexelUpright)
 
 TEST_F(TextureGpuTest, ATextureOnAMetalColoursItsReflection)
 {
-  const std::uint32_t mesh = add_textured(1, {255, 0, 0, 255}, scene::AlphaMode::Opaque);
-  scene.materials[0].metallic = 1.0F;
-  scene.materials[0].roughness = 0.7F;
+  const auto mesh = add_textured(1, {255, 0, 0, 255}, scene::AlphaMode::Opaque);
+  test::edit_material(scene, 0, [](scene::Material &material) {
+    material.metallic = 1.0F;
+    material.roughness = 0.7F;
+  });
   add(mesh, {0, 0, 0});
   test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, PI);
   const glm::vec4 pixel = at(render(), 0, 0);
@@ -105,8 +110,8 @@ TEST_F(TextureGpuTest, MaskShowsWhatIsBehindAndCutsItsShadow)
   for (const scene::LampKind kind : {scene::LampKind::Sun, scene::LampKind::Point}) {
     scene = {};
     // The left half is cut out.
-    const std::uint32_t leaf = add_textured(2, {255, 255, 255, 127, 255, 255, 255, 128});
-    scene.materials[0].base_color = {1, 0, 0};
+    const auto leaf = add_textured(2, {255, 255, 255, 127, 255, 255, 255, 128});
+    test::edit_material(scene, 0, [&](scene::Material &material) { material.base_color = {1, 0, 0}; });
     add(leaf, {0, 0, 1}, glm::vec3(0.5F));
     add(add_plain({0, 1, 0}), {0, 0, 0}, glm::vec3(3));
     // The shadow falls beside the leaf.
@@ -125,13 +130,13 @@ TEST_F(TextureGpuTest, MaskShowsWhatIsBehindAndCutsItsShadow)
 
 TEST_F(TextureGpuTest, WhatIsCutOutLeavesNoTrace)
 {
-  const std::uint32_t ground = add_plain({0.5F, 0.25F, 0.75F});
-  const std::uint32_t ghost = add_textured(1, {255, 255, 255, 0});
+  const auto ground = add_plain({0.5F, 0.25F, 0.75F});
+  const auto ghost = add_textured(1, {255, 255, 255, 0});
   test::add_lamp(scene, scene::LampKind::Sun, {}, {1, 0.5F, -1}, 1.0F);
   test::add_lamp(scene, scene::LampKind::Point, {1, 0, 4}, {0, 0, -1}, 10.0F);
   add(ground, {0, 0, 0}, glm::vec3(2));
   // So that the shadow maps are fitted to the same box.
-  const std::uint32_t post = add_plain({1, 1, 1});
+  const auto post = add_plain({1, 1, 1});
   add(post, {1, 0, 2}, glm::vec3(0.1F));
   add(post, {-1, 0, 2}, glm::vec3(0.1F));
   const Picture without = render();
@@ -146,11 +151,12 @@ TEST_F(TextureGpuTest, DepthAndLitPassesCutAlike)
   std::mt19937 random(11);
   Bytes noise(4 * 64 * 64);
   std::generate(noise.begin(), noise.end(), [&] { return std::uint8_t(random()); });
-  const std::uint32_t leaf = add_textured(64, noise);
-  scene.materials[0].emissive = {1, 0, 0};
-  scene.textures[0].magnified = scene.textures[0].minified = scene::TextureFilter::Linear;
-  const std::uint32_t ground = add_plain({1, 1, 1});
-  scene.materials[1].emissive = {0, 1, 0};
+  const auto leaf = add_textured(64, noise);
+  test::edit_material(scene, 0, [&](scene::Material &material) { material.emissive = {1, 0, 0}; });
+  scene.edit(scene.textures().first(),
+             [](scene::Texture &texture) { texture.magnified = texture.minified = scene::TextureFilter::Linear; });
+  const auto ground = add_plain({1, 1, 1});
+  test::edit_material(scene, 1, [&](scene::Material &material) { material.emissive = {0, 1, 0}; });
   add(ground, {0, 0, -1}, glm::vec3(5));
   // Tilted, mirrored and small ones, so that texels are larger and smaller than pixels.
   for (int i = 0; i < 12; i++) {
@@ -172,10 +178,10 @@ TEST_F(TextureGpuTest, DepthAndLitPassesCutAlike)
 TEST_F(TextureGpuTest, MirroredTwoSidedAndTurnedLeavesKeepTheirShape)
 {
   // Only the texel at the upper left is left.
-  const std::uint32_t leaf = add_textured(2, {255, 255, 255, 255, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
+  const auto leaf = add_textured(2, {255, 255, 255, 255, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
   test::add_lamp(scene, scene::LampKind::Hemi, {}, {0, 0, -1}, 1.0F);
   const auto corners = [&](const glm::mat4 &world_from_object) {
-    scene.objects.clear();
+    test::remove_objects(scene);
     test::add_object(scene, leaf, world_from_object);
     const Picture picture = render(no_shadow);
     std::string seen;
@@ -189,7 +195,7 @@ TEST_F(TextureGpuTest, MirroredTwoSidedAndTurnedLeavesKeepTheirShape)
   const auto scaled = [](float x, float y, float z) { return glm::scale(glm::mat4(1.0F), glm::vec3(x, y, z)); };
   const glm::mat4 half_turn = glm::rotate(glm::mat4(1.0F), PI, glm::vec3(0, 1, 0));
   for (const bool is_double_sided : {true, false}) {
-    scene.materials[0].is_double_sided = is_double_sided;
+    test::edit_material(scene, 0, [&](scene::Material &material) { material.is_double_sided = is_double_sided; });
     EXPECT_EQ(corners(scaled(1, 1, 1)), "x...");
     EXPECT_EQ(corners(scaled(-1, 1, 1)), ".x..");
     EXPECT_EQ(corners(scaled(1, -1, 1)), "..x.");
@@ -202,15 +208,17 @@ TEST_F(TextureGpuTest, MirroredTwoSidedAndTurnedLeavesKeepTheirShape)
 
 TEST_F(TextureGpuTest, TransformedCoordinatesWrapAsTheSamplerSays)
 {
-  const std::uint32_t mesh = add_textured(2, four_colours(255), scene::AlphaMode::Opaque);
+  const auto mesh = add_textured(2, four_colours(255), scene::AlphaMode::Opaque);
   // Twice as many: the right half of the square is the next image.
-  for (glm::vec2 &uv : scene.meshes[mesh].uvs) {
-    uv.x *= 2;
-  }
+  scene.edit(mesh, [](scene::Mesh &value) {
+    for (glm::vec2 &uv : value.uvs) {
+      uv.x *= 2;
+    }
+  });
   add(mesh, {0, 0, 0});
   test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, PI);
   const auto is_red = [&](scene::TextureWrap wrap, float x) {
-    scene.textures[0].wrap_u = wrap;
+    scene.edit(scene.textures().first(), [&](scene::Texture &texture) { texture.wrap_u = wrap; });
     return at(render(), x, 0.5F).r > 0.1F;
   };
   EXPECT_TRUE(is_red(scene::TextureWrap::Repeat, 0.25F));

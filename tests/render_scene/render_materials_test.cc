@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "eevee_materials.hh"
+#include "render_materials.hh"
+
+#include "internal/measure_scene.hh"
 
 #include "eevee_bsdf_shared.h"
 
@@ -7,7 +9,7 @@
 
 #include <algorithm>
 
-namespace gnomon::eevee {
+namespace gnomon::render_scene {
 namespace {
 
 TEST(MaterialData, BlackSpecularIsLambertian)
@@ -16,28 +18,26 @@ TEST(MaterialData, BlackSpecularIsLambertian)
   material.metallic = 0.0F;
   material.specular_color = glm::vec3(0.0F);
   material.base_color = {0.2F, 0.4F, 0.6F};
-  const shared::MaterialData data = material_data(material);
+  const shared::MaterialData data = material_data(material, false);
   EXPECT_EQ(data.diffuse, material.base_color);
   EXPECT_EQ(data.specular_f0, glm::vec3(0.0F));
   EXPECT_EQ(data.specular_f90, 0.0F);
-  EXPECT_EQ(material_features({data}), Feature::None);
 }
 
 TEST(MaterialData, DielectricReflectsFourPercent)
 {
   scene::Material material;
   material.metallic = 0.0F;
-  const shared::MaterialData data = material_data(material);
+  const shared::MaterialData data = material_data(material, false);
   EXPECT_EQ(data.specular_f0, glm::vec3(0.04F));
   EXPECT_EQ(data.specular_f90, 1.0F);
-  EXPECT_EQ(material_features({data}), Feature::Specular);
 }
 
 TEST(MaterialData, MetalReflectsItsColourAndScattersNothing)
 {
   scene::Material material;
   material.base_color = {0.9F, 0.6F, 0.3F};
-  const shared::MaterialData data = material_data(material);
+  const shared::MaterialData data = material_data(material, false);
   EXPECT_EQ(data.diffuse, glm::vec3(0.0F));
   EXPECT_EQ(data.specular_f0, material.base_color);
 }
@@ -46,9 +46,9 @@ TEST(MaterialData, RoughnessIsSquaredAndNeverZero)
 {
   scene::Material material;
   material.roughness = 0.5F;
-  EXPECT_FLOAT_EQ(material_data(material).alpha, 0.25F);
+  EXPECT_FLOAT_EQ(material_data(material, false).alpha, 0.25F);
   material.roughness = 0.0F;
-  EXPECT_EQ(material_data(material).alpha, shared::ALPHA_MIN);
+  EXPECT_EQ(material_data(material, false).alpha, shared::ALPHA_MIN);
 }
 
 TEST(MaterialData, TintIsTheMaterialOfTheProduct)
@@ -60,9 +60,9 @@ TEST(MaterialData, TintIsTheMaterialOfTheProduct)
       material.base_color = {0.75F, 0.5F, 1.0F};
       material.metallic = metallic;
       material.specular = specular;
-      const shared::MaterialData tinted = shared::tinted(material_data(material), tint);
+      const shared::MaterialData tinted = shared::tinted(material_data(material, false), tint);
       material.base_color *= tint;
-      const shared::MaterialData expected = material_data(material);
+      const shared::MaterialData expected = material_data(material, false);
       for (int c = 0; c < 3; c++) {
         EXPECT_FLOAT_EQ(tinted.diffuse[c], expected.diffuse[c]);
         EXPECT_NEAR(tinted.specular_f0[c], expected.specular_f0[c], 1e-7F);
@@ -75,26 +75,47 @@ TEST(MaterialData, TintIsTheMaterialOfTheProduct)
 
 TEST(MaterialData, OfAMaskTheTextureDecidesOnlyWhereItCan)
 {
+  scene::Scene scene;
   scene::Material material;
+  const auto mask_cutoff = [&] { return material_data(material, is_masked(scene, material)).mask_cutoff; };
   material.alpha_mode = scene::AlphaMode::Mask;
   material.alpha = 0.8F;
   // Without a texture all of it is above the cutoff, or none.
-  EXPECT_TRUE(is_seen(material) && !is_masked(material));
+  EXPECT_TRUE(is_drawable(material) && !is_masked(scene, material));
   material.alpha_cutoff = 0.9F;
-  EXPECT_FALSE(is_seen(material) || is_masked(material));
-  material.base_color_texture = 0;
-  EXPECT_FALSE(is_seen(material) || is_masked(material));
+  EXPECT_FALSE(is_drawable(material) || is_masked(scene, material));
+  material.base_color_texture = measure::add_texture(scene, 1, {255, 255, 255, 255});
+  EXPECT_FALSE(is_drawable(material) || is_masked(scene, material));
   material.alpha_cutoff = 0.4F;
-  EXPECT_TRUE(is_seen(material) && is_masked(material));
-  EXPECT_EQ(material_data(material).mask_cutoff, 0.5F) << "of the texture's alpha, which is multiplied by 0.8";
+  EXPECT_TRUE(is_drawable(material) && is_masked(scene, material));
+  EXPECT_EQ(mask_cutoff(), 0.5F) << "of the texture's alpha, which is multiplied by 0.8";
   material.alpha_cutoff = 0.0F;
-  EXPECT_TRUE(is_seen(material) && !is_masked(material));
-  EXPECT_EQ(material_data(material).mask_cutoff, 0.0F);
+  EXPECT_TRUE(is_drawable(material) && !is_masked(scene, material));
+  EXPECT_EQ(mask_cutoff(), 0.0F);
   material.alpha_cutoff = 0.4F;
   material.alpha_mode = scene::AlphaMode::Opaque;
-  EXPECT_TRUE(is_seen(material) && !is_masked(material));
-  EXPECT_EQ(material_data(material).mask_cutoff, 0.0F);
+  EXPECT_TRUE(is_drawable(material) && !is_masked(scene, material));
+  EXPECT_EQ(mask_cutoff(), 0.0F);
+}
+
+TEST(MaterialData, AMaskWhoseTextureOrImageWasRemovedCutsNothingOut)
+{
+  for (const bool is_image_removed : {false, true}) {
+    scene::Scene scene;
+    scene::Material material;
+    material.alpha_mode = scene::AlphaMode::Mask;
+    material.base_color_texture = measure::add_texture(scene, 1, {255, 255, 255, 255});
+    ASSERT_TRUE(is_masked(scene, material));
+    if (is_image_removed) {
+      scene.remove(scene.images().first());
+    }
+    else {
+      scene.remove(material.base_color_texture);
+    }
+    EXPECT_FALSE(is_masked(scene, material));
+    EXPECT_TRUE(is_drawable(material));
+  }
 }
 
 }  // namespace
-}  // namespace gnomon::eevee
+}  // namespace gnomon::render_scene

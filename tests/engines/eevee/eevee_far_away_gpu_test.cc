@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// A scene far from the origin looks the same: matrices are composed in double, and the device's are relative.
+#include "eevee_scene_renderer.hh"
+#include "eevee_test_scene.hh"
+
+#include "gltf_import.hh"
+#include "gpu_device_fixture.hh"
+
+#include <gtest/gtest.h>
+
+namespace gnomon::eevee {
+namespace {
+
+/** The scene's roots, and with them everything, moved by \a shift. */
+void move_all(scene::Scene &scene, const glm::dvec3 &shift)
+{
+  std::vector<scene::Handle<scene::Node>> roots;
+  for (const auto &[handle, node] : scene.nodes()) {
+    if (!scene.parent(handle)) {
+      roots.push_back(handle);
+    }
+  }
+  const scene::Handle<scene::Node> root =
+      scene.add(scene::Node{.name = "root", .parent_from_node = glm::translate(glm::dmat4(1.0), shift)});
+  for (const scene::Handle<scene::Node> node : roots) {
+    scene.set_parent(node, root);
+  }
+}
+
+class FarAway : public test::GpuDeviceTest {
+ protected:
+  std::vector<glm::vec4> picture_of(const scene::Scene &scene, const scene::PlacedCamera &camera)
+  {
+    Settings settings;
+    settings.shadow.cube_size_px = 256;
+    settings.shadow.map_size_px = 512;
+    SceneRenderer renderer(*device, scene, {160, 90}, settings);
+    renderer.sync();
+    renderer.draw(camera);
+    return gpu::read_as<glm::vec4>(*device, renderer.engine().radiance(renderer.viewport()));
+  }
+  static double rms_difference(const std::vector<glm::vec4> &a, const std::vector<glm::vec4> &b)
+  {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.size(); i++) {
+      const glm::dvec3 difference = glm::dvec3(a[i]) - glm::dvec3(b[i]);
+      sum += glm::dot(difference, difference);
+    }
+    return std::sqrt(sum / (3.0 * double(a.size())));
+  }
+};
+
+TEST_F(FarAway, APictureIsTheSameWhereTheShiftIsAMultipleOfTheOriginsStep)
+{
+  for (const char *name : {"plaza", "spots"}) {
+    scene::Scene scene = gltf::import_gltf(std::string(GNOMON_SOURCE) + "/examples/scenes/" + name + ".glb");
+    const std::vector<glm::vec4> near = picture_of(scene, scene.placed_cameras().front());
+    move_all(scene, {1048576.0, 0.0, -524288.0});
+    const std::vector<glm::vec4> far = picture_of(scene, scene.placed_cameras().front());
+    EXPECT_LE(rms_difference(near, far), 1e-3) << name;
+  }
+}
+
+TEST_F(FarAway, AMovingCameraChangesTheOriginAndNotThePicture)
+{
+  scene::Scene scene;
+  const auto mesh = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(0.5F)));
+  for (const double x : {0.0, 1600.0}) {
+    test::add_object(scene, mesh, glm::scale(glm::translate(glm::dmat4(1.0), {x, 0, 0}), glm::dvec3(3.0)));
+    test::add_object(scene, mesh, glm::scale(glm::translate(glm::dmat4(1.0), {x, 0, 1}), glm::dvec3(0.5)));
+    test::add_lamp(scene, scene::LampKind::Point, glm::vec3(x + 1.0, 1, 3), {0, 0, -1}, 30.0F);
+  }
+  Settings settings;
+  settings.shadow.cube_size_px = 256;
+  SceneRenderer renderer(*device, scene, {64, 64}, settings);
+  renderer.sync();
+  const auto picture_at = [&](double x) {
+    scene::PlacedCamera camera = test::camera_at({0, 0, 8}, {0, 0, 0});
+    camera.world_from_camera[3].x += x;
+    renderer.draw(camera);
+    return gpu::read_as<glm::vec4>(*device, renderer.engine().radiance(renderer.viewport()));
+  };
+  const std::vector<glm::vec4> first = picture_at(0.0);
+  EXPECT_EQ(renderer.render_scene().origin_ws(), glm::dvec3(0.0));
+  const std::vector<glm::vec4> second = picture_at(1600.0);
+  EXPECT_EQ(renderer.render_scene().origin_ws(), glm::dvec3(2048.0, 0.0, 0.0));
+  // The same arrangement stands in both places; the other lamp adds 1600 m of distance's worth.
+  EXPECT_LE(rms_difference(first, second), 1e-4);
+  EXPECT_LE(rms_difference(first, picture_at(0.0)), 1e-6) << "and back";
+}
+
+}  // namespace
+}  // namespace gnomon::eevee

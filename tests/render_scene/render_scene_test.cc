@@ -1,0 +1,503 @@
+// SPDX-License-Identifier: MIT
+// Edits of a scene, and what they change on the device and in the lists that engines read.
+#include "render_scene.hh"
+
+#include "internal/measure_scene.hh"
+
+#include "gpu/gpu_testing.hh"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace gnomon::render_scene {
+namespace {
+
+using measure::add_lamp;
+using measure::add_material;
+using measure::add_object;
+using measure::add_square_mesh;
+using measure::add_texture;
+
+glm::dmat4 at(const glm::dvec3 &position)
+{
+  return glm::translate(glm::dmat4(1.0), position);
+}
+
+class RenderSceneTest : public testing::Test {
+ protected:
+  /** The only object of \a node; object_identity: it has none. */
+  [[nodiscard]] draw::ObjectIndex object_of(scene::Handle<scene::Node> node)
+  {
+    draw::ObjectIndex found = draw::object_identity;
+    draw::ObjectBuffer &objects = render_scene.objects();
+    for (draw::ObjectIndex index = draw::object_identity + 1; index < objects.index_end(); index++) {
+      if (objects.is_live(index) && render_scene.object(index).node == node) {
+        EXPECT_EQ(found, draw::object_identity) << "a second object of the node";
+        found = index;
+      }
+    }
+    return found;
+  }
+  /** Where an object is, relative to the origin. */
+  [[nodiscard]] glm::vec3 place_of(scene::Handle<scene::Node> node)
+  {
+    return glm::vec3(render_scene.objects().world_from_object(object_of(node))[3]);
+  }
+  /** Objects, without the identity. */
+  [[nodiscard]] std::size_t object_count()
+  {
+    return render_scene.objects().size() - 1;
+  }
+  /** Objects that \a change and an update change, by index. */
+  template <typename Change>
+  std::vector<draw::ObjectIndex> changed_by(Change &&change)
+  {
+    draw::ObjectBuffer &objects = render_scene.objects();
+    const std::uint64_t before = objects.revision();
+    change();
+    render_scene.update();
+    std::vector<draw::ObjectIndex> changed;
+    for (draw::ObjectIndex index = draw::object_identity + 1; index < objects.index_end(); index++) {
+      if (objects.is_live(index) && objects.revision(index) > before) {
+        changed.push_back(index);
+      }
+    }
+    return changed;
+  }
+  /** Bytes that \a change, an update and an upload write to the device. */
+  template <typename Change>
+  std::uint64_t uploaded_by(Change &&change)
+  {
+    const std::uint64_t before = device->counters().upload_bytes;
+    change();
+    render_scene.update();
+    render_scene.upload();
+    return device->counters().upload_bytes - before;
+  }
+  std::uint64_t uploads_of_batch(scene::Handle<scene::Mesh> handle, bool needs_uvs = false)
+  {
+    const std::uint64_t before = device->counters().upload_bytes;
+    static_cast<void>(render_scene.batch(handle, needs_uvs));
+    return device->counters().upload_bytes - before;
+  }
+
+  std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  scene::Scene scene;
+  scene::Handle<scene::Material> material = add_material(scene, glm::vec3(0.5F));
+  scene::Handle<scene::Mesh> mesh = add_square_mesh(scene, material);
+  RenderScene render_scene{*device, scene};
+};
+
+TEST_F(RenderSceneTest, UpdateNeedsNoDevice)
+{
+  add_object(scene, mesh, at({1, 2, 3}));
+  add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, 1.0F);
+  render_scene.update();
+  EXPECT_EQ(object_count(), 1U);
+  EXPECT_EQ(render_scene.lamps().size(), 1U);
+  EXPECT_EQ(device->counters().upload_bytes, 0U);
+  EXPECT_TRUE(device->live_resources().empty());
+}
+
+TEST_F(RenderSceneTest, UpdateOfAStillSceneChangesNothing)
+{
+  add_object(scene, mesh, at({1, 2, 3}));
+  add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, 1.0F);
+  EXPECT_GT(uploaded_by([] {}), 0U);
+  const std::uint64_t lamps = render_scene.lamps_revision();
+  const std::uint64_t passes = render_scene.passes_revision();
+  const std::uint64_t materials = render_scene.materials_revision();
+  const std::uint64_t objects = render_scene.objects().revision();
+  EXPECT_EQ(uploaded_by([] {}), 0U);
+  EXPECT_EQ(uploaded_by([&] {
+              scene.edit(material, [](scene::Material &value) { value.name = "renamed"; });
+              scene.edit(mesh, [](scene::Mesh &value) { value.name = "renamed"; });
+              scene.edit(scene.lamps().first(), [](scene::Lamp &value) { value.name = "lamp0"; });
+              scene.edit(scene.nodes().first(), [](scene::Node &value) { value.name = "renamed"; });
+            }),
+            0U);
+  EXPECT_EQ(render_scene.lamps_revision(), lamps);
+  EXPECT_EQ(render_scene.passes_revision(), passes);
+  EXPECT_EQ(render_scene.materials_revision(), materials);
+  EXPECT_EQ(render_scene.objects().revision(), objects);
+}
+
+TEST_F(RenderSceneTest, AMeshIsUploadedOnceAndAgainWhereItsShapeChanged)
+{
+  const std::size_t bytes = 4 * 2 * sizeof(glm::vec3) + 6 * sizeof(std::uint32_t);
+  EXPECT_EQ(uploads_of_batch(mesh), bytes);
+  EXPECT_EQ(uploads_of_batch(mesh), 0U);
+  scene.edit(mesh, [](scene::Mesh &value) { value.name = "renamed"; });
+  scene.edit(mesh, [&](scene::Mesh &value) { value.material = add_material(scene, glm::vec3(1.0F)); });
+  EXPECT_EQ(uploads_of_batch(mesh), 0U) << "the same shape";
+  scene.edit(mesh, [](scene::Mesh &value) { value.positions[0].x -= 1.0F; });
+  EXPECT_EQ(uploads_of_batch(mesh), bytes);
+  EXPECT_EQ(uploads_of_batch(mesh), 0U);
+}
+
+TEST_F(RenderSceneTest, AMeshGetsTextureCoordinatesWhereTheyAreReadAndKeepsThem)
+{
+  const auto box = measure::add_box_mesh(scene, material);
+  const std::size_t bare = 24 * 2 * sizeof(glm::vec3) + 36 * sizeof(std::uint32_t);
+  EXPECT_EQ(uploads_of_batch(box), bare);
+  EXPECT_EQ(uploads_of_batch(box, true), bare + 24 * sizeof(glm::vec2));
+  EXPECT_EQ(uploads_of_batch(box), 0U) << "another viewport may read them";
+  scene.edit(box, [](scene::Mesh &value) { value.positions[0].x -= 1.0F; });
+  EXPECT_EQ(uploads_of_batch(box), bare) << "no viewport asked for those of the new shape";
+}
+
+TEST_F(RenderSceneTest, RemovedMeshesAndImagesAreFreed)
+{
+  const auto texture = add_texture(scene, 1, {1, 2, 3, 255});
+  const auto image = scene.textures()[texture].image;
+  static_cast<void>(render_scene.batch(mesh, false));
+  static_cast<void>(render_scene.texture(texture));
+  ASSERT_TRUE(render_scene.meshes().find(mesh));
+  ASSERT_TRUE(render_scene.images().find(image));
+  EXPECT_EQ(render_scene.images().count(), 1U);
+  scene.remove(mesh);
+  scene.remove(image);
+  render_scene.update();
+  EXPECT_FALSE(render_scene.meshes().find(mesh));
+  EXPECT_FALSE(render_scene.images().find(image));
+  EXPECT_EQ(render_scene.images().count(), 0U);
+  for (const std::string &resource : device->live_resources()) {
+    EXPECT_TRUE(resource.starts_with("sampler")) << resource;
+  }
+}
+
+TEST_F(RenderSceneTest, AMeshInThePlaceOfARemovedOneIsItsOwn)
+{
+  static_cast<void>(render_scene.batch(mesh, false));
+  scene.remove(mesh);
+  const auto other = add_square_mesh(scene, material);
+  ASSERT_EQ(other.index, mesh.index);
+  EXPECT_FALSE(render_scene.meshes().find(other));
+  EXPECT_GT(uploads_of_batch(other), 0U);
+  EXPECT_TRUE(render_scene.meshes().find(other));
+  EXPECT_FALSE(render_scene.meshes().find(mesh));
+}
+
+TEST_F(RenderSceneTest, AnImageIsUploadedOnceAndAgainWhereItsContentChanged)
+{
+  const auto first = add_texture(scene, 2, {1, 2, 3, 255, 4, 5, 6, 255});
+  scene::Texture repeated = scene.textures()[first];
+  repeated.wrap_u = scene::TextureWrap::ClampToEdge;
+  const auto second = scene.add(repeated);
+  const auto uploaded = [&](scene::Handle<scene::Texture> texture) {
+    const std::uint64_t before = device->counters().upload_bytes;
+    static_cast<void>(render_scene.texture(texture));
+    return device->counters().upload_bytes - before;
+  };
+  EXPECT_EQ(uploaded(first), 8U);
+  EXPECT_EQ(uploaded(first), 0U);
+  EXPECT_EQ(uploaded(second), 0U) << "the same image with another sampler";
+  EXPECT_EQ(device->counters().textures_made, 1U);
+  const auto image = scene.textures()[first].image;
+  scene.edit(image, [](scene::Image &value) { value.name = "renamed"; });
+  scene.edit(first, [](scene::Texture &value) { value.wrap_v = scene::TextureWrap::ClampToEdge; });
+  EXPECT_EQ(uploaded(first), 0U);
+  scene.edit(image, [](scene::Image &value) { value.texels[0] = 9; });
+  EXPECT_EQ(uploaded(second), 8U);
+  EXPECT_EQ(uploaded(first), 0U);
+  EXPECT_EQ(std::ranges::count_if(device->live_resources(),
+                                  [](const std::string &name) { return name.starts_with("texture"); }),
+            1);
+}
+
+TEST_F(RenderSceneTest, AFailedUploadLeavesWhatWasThere)
+{
+  // The null device accepts every batch, but not every image.
+  gpu::Limits limits;
+  limits.texture_size_max = 4;
+  const auto small = gpu::create_null_device(limits);
+  RenderScene on_small(*small, scene);
+  const auto texture = add_texture(scene, 2, std::vector<std::uint8_t>(8, 255));
+  const auto image = scene.textures()[texture].image;
+  static_cast<void>(on_small.texture(texture));
+  const gpu::ResourceId before = on_small.images().find(image)->id();
+  const scene::Image large{"large", 5, 1, std::vector<std::uint8_t>(20, 255)};
+  scene.replace(image, large);
+  on_small.update();
+  test::expect_contains(test::error_of([&] { static_cast<void>(on_small.texture(texture)); }), "large");
+  ASSERT_TRUE(on_small.images().find(image));
+  EXPECT_EQ(on_small.images().find(image)->id(), before);
+  EXPECT_NE(test::error_of([&] { static_cast<void>(on_small.texture(texture)); }), "") << "it is tried again";
+  scene.replace(image, scene::Image{"small", 1, 1, std::vector<std::uint8_t>(4, 255)});
+  EXPECT_EQ(on_small.texture(texture).image.desc().width, 1);
+}
+
+TEST_F(RenderSceneTest, HiddenNodesHaveNoObjectAndNoLamp)
+{
+  const auto parent = scene.add(scene::Node());
+  scene::Node child;
+  child.meshes = {mesh};
+  child.lamp = scene.add(scene::Lamp());
+  const auto node = scene.add(child, parent);
+  const auto other = add_object(scene, mesh, at({5, 0, 0}));
+  render_scene.update();
+  EXPECT_EQ(object_count(), 2U);
+  EXPECT_EQ(render_scene.lamps().size(), 1U);
+  const auto set_visible = [&](bool is_visible) {
+    scene.edit(parent, [&](scene::Node &value) { value.is_visible = is_visible; });
+    render_scene.update();
+  };
+  set_visible(false);
+  EXPECT_EQ(object_of(node), draw::object_identity);
+  EXPECT_NE(object_of(other), draw::object_identity);
+  EXPECT_TRUE(render_scene.lamps().empty());
+  EXPECT_NEAR(render_scene.bounds().min.x, 4.0F, 1e-6F) << "the bounds are those of what is there";
+  set_visible(true);
+  EXPECT_EQ(object_count(), 2U);
+  EXPECT_NEAR(render_scene.bounds().min.x, -1.0F, 1e-6F);
+  EXPECT_EQ(render_scene.lamps().size(), 1U);
+}
+
+TEST_F(RenderSceneTest, AMaskBelowItsCutoffHasNoObject)
+{
+  const auto node = add_object(scene, mesh, glm::dmat4(1.0));
+  render_scene.update();
+  ASSERT_NE(object_of(node), draw::object_identity);
+  const auto set_alpha = [&](float alpha) {
+    scene.edit(material, [&](scene::Material &value) {
+      value.alpha_mode = scene::AlphaMode::Mask;
+      value.alpha = alpha;
+    });
+    render_scene.update();
+  };
+  set_alpha(0.25F);
+  EXPECT_EQ(object_of(node), draw::object_identity);
+  set_alpha(0.75F);
+  EXPECT_NE(object_of(node), draw::object_identity);
+}
+
+TEST_F(RenderSceneTest, MovingAParentChangesTheObjectsBelowItAlone)
+{
+  const auto parent = scene.add(scene::Node());
+  const auto add_below = [&](scene::Handle<scene::Node> above, const glm::dvec3 &position) {
+    scene::Node node;
+    node.meshes = {mesh};
+    node.parent_from_node = at(position);
+    return scene.add(node, above);
+  };
+  const auto first = add_below(parent, {1, 0, 0});
+  const auto second = add_below(first, {0, 1, 0});
+  const auto other = add_below({}, {0, 0, 1});
+  render_scene.update();
+  std::vector<draw::ObjectIndex> expected = {object_of(first), object_of(second)};
+  std::ranges::sort(expected);
+  const std::uint64_t structure = render_scene.objects().structure_revision();
+  EXPECT_EQ(changed_by([&] { scene.set_transform(parent, at({10, 0, 0})); }), expected);
+  EXPECT_EQ(render_scene.objects().structure_revision(), structure) << "indices stay";
+  EXPECT_EQ(place_of(first), glm::vec3(11, 0, 0));
+  EXPECT_EQ(place_of(second), glm::vec3(11, 1, 0));
+  EXPECT_EQ(changed_by([&] {
+              scene.set_transform(other, at({0, 0, 2}));
+            }),
+            std::vector<draw::ObjectIndex>{object_of(other)});
+  EXPECT_EQ(render_scene.objects().volume(object_of(other)).center_ws, glm::vec3(0, 0, 2));
+}
+
+TEST_F(RenderSceneTest, RemovedNodesTakeTheirObjectsWithThem)
+{
+  const auto parent = add_object(scene, mesh, at({1, 0, 0}));
+  scene::Node child;
+  child.meshes = {mesh, add_square_mesh(scene, material)};
+  scene.add(child, parent);
+  const auto other = add_object(scene, mesh, at({7, 0, 0}));
+  render_scene.update();
+  EXPECT_EQ(object_count(), 4U);
+  const draw::ObjectIndex index = object_of(other);
+  scene.remove(parent);
+  render_scene.update();
+  EXPECT_EQ(object_count(), 1U);
+  EXPECT_EQ(object_of(other), index);
+  // Two nodes in the places of the removed ones.
+  const auto a = add_object(scene, mesh, at({2, 0, 0}));
+  const auto b = add_object(scene, mesh, at({3, 0, 0}));
+  render_scene.update();
+  EXPECT_EQ(object_count(), 3U);
+  EXPECT_EQ(place_of(a), glm::vec3(2, 0, 0));
+  EXPECT_EQ(place_of(b), glm::vec3(3, 0, 0));
+}
+
+TEST_F(RenderSceneTest, ANodeInThePlaceOfARemovedOneBetweenTwoUpdates)
+{
+  const auto before = add_object(scene, mesh, at({1, 0, 0}));
+  render_scene.update();
+  scene.remove(before);
+  const auto after = add_object(scene, mesh, at({2, 0, 0}));
+  ASSERT_EQ(after.index, before.index);
+  render_scene.update();
+  EXPECT_EQ(object_count(), 1U);
+  EXPECT_EQ(place_of(after), glm::vec3(2, 0, 0));
+}
+
+TEST_F(RenderSceneTest, OfManyObjectsTheMovedOneIsUploaded)
+{
+  std::vector<scene::Handle<scene::Node>> nodes;
+  for (int i = 0; i < 1000; i++) {
+    nodes.push_back(add_object(scene, mesh, at({i, 0, 0})));
+  }
+  constexpr std::size_t entry_bytes = sizeof(shared::ObjectData);
+  EXPECT_EQ(uploaded_by([] {}), 1001 * entry_bytes + 2 * sizeof(shared::MaterialData));
+  EXPECT_EQ(uploaded_by([] {}), 0U);
+  EXPECT_EQ(uploaded_by([&] { scene.set_transform(nodes[500], at({0, 3, 0})); }), entry_bytes);
+  EXPECT_EQ(uploaded_by([&] { scene.set_transform(nodes[500], at({0, 3, 0})); }), 0U) << "it is there already";
+  EXPECT_EQ(uploaded_by([&] { scene.remove(nodes[500]); }), 0U);
+  EXPECT_EQ(uploaded_by([&] { add_object(scene, mesh, at({0, 4, 0})); }), entry_bytes);
+}
+
+TEST_F(RenderSceneTest, AMaterialEditWritesTheMaterialBlockAlone)
+{
+  add_object(scene, mesh, glm::dmat4(1.0));
+  static_cast<void>(uploaded_by([] {}));
+  const std::uint64_t objects = render_scene.objects().revision();
+  const std::uint64_t passes = render_scene.passes_revision();
+  const std::uint64_t materials = render_scene.materials_revision();
+  EXPECT_EQ(uploaded_by([&] {
+              scene.edit(material, [](scene::Material &value) { value.base_color = {0.25F, 0.5F, 1.0F}; });
+            }),
+            sizeof(shared::MaterialData));
+  EXPECT_EQ(render_scene.materials()[MaterialTable::place_of(scene, material)].diffuse, glm::vec3(0.25F, 0.5F, 1.0F));
+  EXPECT_GT(render_scene.materials_revision(), materials);
+  EXPECT_EQ(render_scene.passes_revision(), passes);
+  EXPECT_EQ(render_scene.objects().revision(), objects);
+}
+
+TEST_F(RenderSceneTest, OfManyMaterialsTheEditedOnesAreUploaded)
+{
+  std::vector<scene::Handle<scene::Material>> materials;
+  for (int i = 0; i < 100; i++) {
+    materials.push_back(add_material(scene, glm::vec3(0.5F)));
+  }
+  constexpr std::size_t entry_bytes = sizeof(shared::MaterialData);
+  static_cast<void>(uploaded_by([] {}));
+  const auto edit = [&](std::size_t index) {
+    scene.edit(materials[index], [](scene::Material &value) { value.roughness *= 0.5F; });
+  };
+  EXPECT_EQ(uploaded_by([&] { edit(50); }), entry_bytes);
+  EXPECT_EQ(uploaded_by([&] {
+              edit(10);
+              edit(13);
+            }),
+            4 * entry_bytes)
+      << "the range around both";
+  EXPECT_EQ(uploaded_by([&] { scene.remove(materials[99]); }), entry_bytes) << "the default material stands there";
+  const auto added = [&] { materials[99] = add_material(scene, glm::vec3(0.25F)); };
+  EXPECT_EQ(uploaded_by(added), entry_bytes);
+  add_texture(scene, 1, {1, 2, 3, 255});
+  EXPECT_EQ(uploaded_by([] {}), 0U) << "no material reads the texture";
+}
+
+TEST_F(RenderSceneTest, PassesRevisionTellsWhatPassesAreMadeOf)
+{
+  const auto texture = add_texture(scene, 1, {1, 2, 3, 255});
+  const auto node = add_object(scene, mesh, glm::dmat4(1.0));
+  const auto lamp = add_lamp(scene, scene::LampKind::Point, {0, 0, 2}, {0, 0, -1}, 1.0F);
+  render_scene.update();
+  const auto is_changed_by = [&](auto &&change) {
+    const std::uint64_t before = render_scene.passes_revision();
+    change();
+    render_scene.update();
+    return render_scene.passes_revision() != before;
+  };
+  const auto edit_material = [&](auto &&change) { return is_changed_by([&] { scene.edit(material, change); }); };
+  EXPECT_TRUE(edit_material([](scene::Material &value) { value.is_double_sided = false; }));
+  EXPECT_TRUE(edit_material([](scene::Material &value) { value.alpha_mode = scene::AlphaMode::Mask; }));
+  EXPECT_TRUE(edit_material([&](scene::Material &value) { value.base_color_texture = texture; }));
+  EXPECT_FALSE(edit_material([](scene::Material &value) { value.roughness = 0.25F; }));
+  EXPECT_TRUE(is_changed_by([&] { scene.edit(mesh, [](scene::Mesh &value) { value.positions[0].z = 1.0F; }); }));
+  EXPECT_TRUE(is_changed_by([&] { scene.edit(mesh, [](scene::Mesh &value) { value.material = {}; }); }));
+  EXPECT_TRUE(
+      is_changed_by([&] { scene.edit(scene.images().first(), [](scene::Image &value) { value.texels[0] = 77; }); }));
+  EXPECT_TRUE(is_changed_by(
+      [&] { scene.edit(texture, [](scene::Texture &value) { value.wrap_u = scene::TextureWrap::MirroredRepeat; }); }));
+  EXPECT_FALSE(is_changed_by([&] { scene.set_transform(node, at({1, 0, 0})); }));
+  EXPECT_FALSE(is_changed_by([&] { scene.edit(lamp, [](scene::Lamp &value) { value.intensity = 3.0F; }); }));
+}
+
+TEST_F(RenderSceneTest, LampsRevisionTellsOfEditsAndMovesOfLamps)
+{
+  const auto parent = scene.add(scene::Node());
+  scene::Node node;
+  node.lamp = scene.add(scene::Lamp());
+  const auto lamp_node = scene.add(node, parent);
+  const auto object = add_object(scene, mesh, glm::dmat4(1.0));
+  render_scene.update();
+  const auto is_changed_by = [&](auto &&change) {
+    const std::uint64_t before = render_scene.lamps_revision();
+    change();
+    render_scene.update();
+    return render_scene.lamps_revision() != before;
+  };
+  EXPECT_TRUE(is_changed_by([&] { scene.set_transform(lamp_node, at({1, 0, 0})); }));
+  EXPECT_TRUE(is_changed_by([&] { scene.set_transform(parent, at({0, 1, 0})); }));
+  EXPECT_EQ(glm::dvec3(render_scene.lamps()[0].world_from_lamp[3]), glm::dvec3(1, 1, 0));
+  EXPECT_TRUE(is_changed_by([&] { scene.edit(node.lamp, [](scene::Lamp &lamp) { lamp.intensity = 9.0F; }); }));
+  EXPECT_FALSE(is_changed_by([&] { scene.set_transform(object, at({1, 0, 0})); }));
+  EXPECT_FALSE(is_changed_by([&] { scene.add(scene::Lamp()); })) << "a lamp at no node";
+  EXPECT_FALSE(is_changed_by([&] {
+    scene.set_transform(parent, glm::scale(at({0, 1, 0}), glm::dvec3(1, 1, 2)));
+  })) << "a node's scale does not change its lamp";
+  EXPECT_TRUE(is_changed_by([&] { scene.remove(node.lamp); }));
+  EXPECT_TRUE(render_scene.lamps().empty());
+}
+
+TEST_F(RenderSceneTest, TheOriginIsSubtractedInDouble)
+{
+  // Floats at 1e6 m are spaced by 6 cm, and half a metre beside 1e9 m is lost.
+  for (const double far : {1e6, 1e9}) {
+    const auto node = add_object(scene, mesh, at({far + 0.5, -far - 0.25, 0.125}));
+    add_lamp(scene, scene::Lamp(), at({far + 0.125, -far, 0}));
+    const auto camera = measure::camera_at({0, 0, 0}, {0, 0, -1});
+    render_scene.set_origin({far, -far, 0});
+    render_scene.update();
+    EXPECT_EQ(place_of(node), glm::vec3(0.5F, -0.25F, 0.125F));
+    EXPECT_EQ(render_scene.object(object_of(node)).bounds.center(), glm::vec3(0.5F, -0.25F, 0.125F));
+    EXPECT_EQ(glm::dvec3(render_scene.lamps().back().world_from_lamp[3]), glm::dvec3(0.125, 0, 0));
+    scene::PlacedCamera moved = camera;
+    moved.world_from_camera[3] = glm::dvec4(far + 0.0625, -far, 3, 1);
+    EXPECT_EQ(glm::dvec3(render_scene.relative(moved).world_from_camera[3]), glm::dvec3(0.0625, 0, 3));
+    measure::remove_lamps(scene);
+    scene.remove(node);
+  }
+}
+
+TEST_F(RenderSceneTest, AnotherOriginMovesEveryObjectAndTheSameOneNone)
+{
+  for (int i = 0; i < 10; i++) {
+    add_object(scene, mesh, at({i, 0, 0}));
+  }
+  render_scene.update();
+  EXPECT_EQ(changed_by([&] { render_scene.set_origin({0, 0, 0}); }).size(), 0U);
+  EXPECT_EQ(changed_by([&] { render_scene.set_origin({100, 0, 0}); }).size(), 10U);
+  EXPECT_EQ(changed_by([&] { render_scene.set_origin({100, 0, 0}); }).size(), 0U);
+  EXPECT_NEAR(render_scene.bounds().min.x, -101.0F, 1e-4F);
+}
+
+TEST(OriginNear, KeepsTheCurrentOriginWithinItsStep)
+{
+  const glm::dvec3 current(1024, 0, -2048);
+  for (const glm::dvec3 &offset : {glm::dvec3(0), glm::dvec3(1000, -1000, 1000), glm::dvec3(0, 0, -1024)}) {
+    EXPECT_EQ(origin_near(current + offset, current), current);
+  }
+  EXPECT_EQ(origin_near({1024 + 1025, 0, -2048}, current), glm::dvec3(2048, 0, -2048));
+  EXPECT_EQ(origin_near({1e6 + 0.5, -3, 600}, current), glm::dvec3(1024.0 * 977, 0, 1024));
+}
+
+TEST(OriginNear, IsWithinAStepOfThePositionAndAMultipleOfIt)
+{
+  for (const double coordinate : {0.0, 511.0, 513.0, -1e3, 1e6 + 0.5, -1e9}) {
+    const glm::dvec3 position(coordinate, -coordinate, 0.5 * coordinate);
+    const glm::dvec3 origin = origin_near(position, glm::dvec3(0));
+    for (int axis = 0; axis < 3; axis++) {
+      EXPECT_LE(std::abs(position[axis] - origin[axis]), 1024.0);
+      EXPECT_EQ(std::fmod(origin[axis], 1024.0), 0.0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gnomon::render_scene
