@@ -13,7 +13,7 @@ find_package(embree 3 REQUIRED)
 pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
 pkg_check_modules(egl REQUIRED IMPORTED_TARGET egl)
 pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
-pkg_check_modules(tinygltf REQUIRED IMPORTED_TARGET tinygltf)
+pkg_check_modules(simdjson REQUIRED IMPORTED_TARGET simdjson)
 find_package(glm QUIET)
 if(NOT TARGET glm::glm)
   # glm in Debian 12 installs only a pkg-config file.

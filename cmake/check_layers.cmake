@@ -10,17 +10,19 @@ set(source/gpu shaders)
 set(source/shader_check source/gpu shaders)
 set(source/draw source/gpu shaders)
 set(source/scene "")
+set(source/gltf source/scene)
 set(source/render_scene source/draw source/gpu source/scene shaders)
 set(source/engines/eevee source/render_scene source/draw source/gpu source/scene shaders)
 # A program of the build. The engine itself must not use shader_check.
 set(source/engines/eevee/interface_tool source/engines/eevee source/shader_check source/gpu shaders)
 set(source/reference source/scene shaders)
-set(source/measure source/engines/eevee source/render_scene source/reference source/draw source/gpu source/scene shaders)
-set(source/cli source/measure source/engines/eevee source/render_scene source/reference source/draw source/shader_check source/gpu
+set(source/measure source/engines/eevee source/render_scene source/reference source/draw source/gpu source/gltf
   source/scene shaders)
+set(source/cli source/measure source/engines/eevee source/render_scene source/reference source/draw source/shader_check source/gpu
+  source/gltf source/scene shaders)
 set(shaders "")
 # A folder within another layer's folder comes after it.
-set(LAYERS source/gpu source/shader_check source/draw source/scene source/render_scene source/engines/eevee
+set(LAYERS source/gpu source/shader_check source/draw source/scene source/gltf source/render_scene source/engines/eevee
   source/engines/eevee/interface_tool source/reference source/measure source/cli shaders)
 
 set(VIOLATIONS 0)

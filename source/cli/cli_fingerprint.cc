@@ -153,6 +153,9 @@ std::string scene_fingerprint(const scene::Scene &scene)
     hash.add(mesh.positions);
     hash.add(mesh.normals);
     hash.add(mesh.uvs);
+    if (!mesh.colors.empty()) {
+      hash.add(mesh.colors);
+    }
     hash.add(mesh.indices);
     add(hash, scene, scene.material_of(mesh));
   }

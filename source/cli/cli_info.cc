@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli.hh"
 
-#include "scene_gltf.hh"
+#include "gltf_import.hh"
 
 #include <fmt/format.h>
 
@@ -66,7 +66,7 @@ void add_info(CLI::App &app, Status &status)
   auto path = std::make_shared<std::string>();
   command->add_option("scene", *path, "glTF 2.0 file")->required();
   command->callback([path, &status] {
-    const scene::Scene scene = scene::import_gltf(*path);
+    const scene::Scene scene = gltf::import_gltf(*path);
     for (const std::string &warning : scene.warnings) {
       fmt::print(stderr, "gnomon: warning: {}\n", warning);
     }

@@ -8,8 +8,8 @@
 
 #include "eevee_camera.hh"
 #include "eevee_engine.hh"
+#include "gltf_import.hh"
 #include "gpu_read.hh"
-#include "scene_gltf.hh"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -386,7 +386,7 @@ Status render(RenderOptions options)
   check_folder(options.json);
   RenderResult result;
 
-  const scene::Scene scene = scene::import_gltf(options.scene);
+  const scene::Scene scene = gltf::import_gltf(options.scene);
   const scene::PlacedCamera camera = find_camera(scene, options.camera);
   for (const std::string &warning : scene.warnings) {
     fmt::print(stderr, "gnomon: warning: {}\n", warning);

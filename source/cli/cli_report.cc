@@ -5,9 +5,9 @@
 #include "cli_origin.hh"
 #include "cli_output.hh"
 
+#include "gltf_import.hh"
 #include "measure_reference.hh"
 #include "measure_report.hh"
-#include "scene_gltf.hh"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -166,7 +166,7 @@ Run::Run(gpu::Device &device, const ReportOptions &options)
     measure::SceneReport &scene = run_.scenes.emplace_back();
     scene.name = name;
     scene.path = path;
-    scene.fingerprint = scene_fingerprint(scene::import_gltf(path));
+    scene.fingerprint = scene_fingerprint(gltf::import_gltf(path));
     for (const measure::Technique &technique : techniques) {
       measure::TechniqueReport &report = scene.techniques.emplace_back();
       report.technique = technique;
@@ -301,7 +301,7 @@ void Run::visit(const scene::Scene &scene, const reference::Tracer &tracer, meas
 void Run::measure(measure::SceneReport &report)
 {
   if (visits_left(report) > 0) {
-    scene::Scene scene = scene::import_gltf(report.path);
+    scene::Scene scene = gltf::import_gltf(report.path);
     for (const std::string &warning : scene.warnings) {
       warn(report, warning);
     }

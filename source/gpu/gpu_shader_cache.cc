@@ -86,7 +86,7 @@ std::optional<CachedShader> ShaderDiskCache::load(const std::string &key) const
 
 void ShaderDiskCache::store(const std::string &key, const CachedShader &shader) const
 {
-  if (folder_.empty() || shader.binary.empty()) {
+  if (folder_.empty() || shader.compiled.empty()) {
     return;
   }
   const std::vector<std::uint8_t> body = nlohmann::json::to_cbor(to_json(shader));

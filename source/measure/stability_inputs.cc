@@ -5,7 +5,7 @@
 #include "internal/measure_gltf.hh"
 #include "internal/measure_scene.hh"
 
-#include "scene_gltf.hh"
+#include "gltf_import.hh"
 
 #include <fmt/format.h>
 
@@ -74,7 +74,7 @@ double door_error(Wanted wanted, const std::string &word, const std::function<Pa
     const bool is_silent = wanted == Wanted::Named && !std::ranges::any_of(passed.messages, names_it);
     return double(passed.fault_count) + (wanted == Wanted::Refused || is_silent ? 1.0 : 0.0);
   }
-  catch (const scene::ImportError &error) {
+  catch (const gnomon::gltf::ImportError &error) {
     return wanted == Wanted::Refused && names_it(error.what()) ? 0.0 : 1.0;
   }
   catch (const scene::InvalidEdit &error) {
@@ -113,7 +113,7 @@ StabilityCase door_case(std::string group, std::string name, std::string quantit
 Passed import_text(const std::string &text)
 {
   const gltf::TemporaryFolder folder;
-  const scene::Scene scene = scene::import_gltf(folder.write("scene.gltf", text));
+  const scene::Scene scene = gnomon::gltf::import_gltf(folder.write("scene.gltf", text));
   return {contract_faults(scene).size(), scene.warnings};
 }
 

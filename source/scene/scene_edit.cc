@@ -36,7 +36,8 @@ Changes changes(const Mesh &a, const Mesh &b)
 {
   using enum Mesh::Aspect;
   const bool same_shape = same_elements(a.positions, b.positions) && same_elements(a.normals, b.normals) &&
-                          same_elements(a.uvs, b.uvs) && same_elements(a.indices, b.indices);
+                          same_elements(a.uvs, b.uvs) && same_elements(a.colors, b.colors) &&
+                          same_elements(a.indices, b.indices);
   return bit_if(a.name != b.name, Name) | bit_if(!same_shape, Shape) | bit_if(a.material != b.material, Material);
 }
 
@@ -112,6 +113,9 @@ void check(const Mesh &mesh)
   }
   if (!mesh.uvs.empty() && mesh.uvs.size() != count) {
     refuse("mesh", mesh.name, "{} uvs for {} positions", mesh.uvs.size(), count);
+  }
+  if (!mesh.colors.empty() && mesh.colors.size() != count) {
+    refuse("mesh", mesh.name, "{} colours for {} positions", mesh.colors.size(), count);
   }
   if (mesh.indices.size() % 3 != 0) {
     refuse("mesh", mesh.name, "{} indices are not three for each triangle", mesh.indices.size());

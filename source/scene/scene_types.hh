@@ -6,6 +6,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include <cstdint>
 #include <optional>
@@ -122,6 +123,8 @@ struct Mesh {
    * (0, 0) is the outer corner of the image's first texel. Empty where the material has no texture.
    */
   std::vector<glm::vec2> uvs{};
+  /** Multiplied with the material's base colour and alpha: linear, in [0, 1], one for each position. Empty: white. */
+  std::vector<glm::vec4> colors{};
   /** Three for each triangle, each below positions.size(). */
   std::vector<std::uint32_t> indices{};
   /** A handle that names nothing, or a removed material, stands for the default material. */

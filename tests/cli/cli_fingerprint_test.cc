@@ -2,7 +2,7 @@
 #include "cli_fingerprint.hh"
 
 #include "internal/measure_scene.hh"
-#include "scene_gltf.hh"
+#include "gltf_import.hh"
 
 #include <gtest/gtest.h>
 
@@ -65,10 +65,10 @@ TEST(SceneFingerprint, FollowsFilesThatTheSceneNames)
     "buffers":[{"uri":"a%20b.bin","byteLength":36}],"bufferViews":[{"buffer":0,"byteLength":36}],
     "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[2,1,0]}]})";
   write_buffer(1.0F);
-  const std::string before = scene_fingerprint(scene::import_gltf(folder / "scene.gltf"));
-  EXPECT_EQ(scene_fingerprint(scene::import_gltf(folder / "scene.gltf")), before);
+  const std::string before = scene_fingerprint(gltf::import_gltf(folder / "scene.gltf"));
+  EXPECT_EQ(scene_fingerprint(gltf::import_gltf(folder / "scene.gltf")), before);
   write_buffer(2.0F);
-  EXPECT_NE(scene_fingerprint(scene::import_gltf(folder / "scene.gltf")), before);
+  EXPECT_NE(scene_fingerprint(gltf::import_gltf(folder / "scene.gltf")), before);
   fs::remove_all(folder);
 }
 

@@ -2,8 +2,8 @@
 // The examples against Cycles' renders of them.
 #include "eevee_camera.hh"
 #include "eevee_engine.hh"
+#include "gltf_import.hh"
 #include "gpu_device_fixture.hh"
-#include "scene_gltf.hh"
 
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
@@ -71,7 +71,7 @@ TEST_P(ReferenceTest, ErrorIsBelowBlenderEevees)
   OIIO::ImageBuf truth(std::string(GNOMON_TEST_DATA) + "/scenes/" + c.reference);
   ASSERT_TRUE(truth.read(0, 0, true, OIIO::TypeDesc::FLOAT)) << truth.geterror();
   const glm::ivec2 size_px{truth.spec().width, truth.spec().height};
-  const scene::Scene scene = scene::import_gltf(std::string(GNOMON_SOURCE) + "/examples/scenes/" + c.scene + ".glb");
+  const scene::Scene scene = gltf::import_gltf(std::string(GNOMON_SOURCE) + "/examples/scenes/" + c.scene + ".glb");
   const std::vector<float> rgb = render(*device, scene, size_px, c.samples);
   ASSERT_TRUE(std::ranges::all_of(rgb, [](float value) { return std::isfinite(value); }));
 

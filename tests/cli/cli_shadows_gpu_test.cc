@@ -2,7 +2,7 @@
 // `gnomon render` and its options for shadows, on the driver.
 #include "cli_process.hh"
 #include "gpu_device_fixture.hh"
-#include "scene/gltf_builder.hh"
+#include "gltf/gltf_builder.hh"
 
 #include <OpenImageIO/imageio.h>
 

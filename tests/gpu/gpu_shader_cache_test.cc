@@ -53,7 +53,7 @@ TEST_F(ShaderDiskCacheTest, HasNoEntryThatWasNotStored)
 
 TEST_F(ShaderDiskCacheTest, AShaderWithoutABinaryIsNotStored)
 {
-  shader.binary.clear();
+  shader.compiled.clear();
   const ShaderDiskCache cache(folder);
   cache.store("key", shader);
   EXPECT_FALSE(fs::exists(folder / "key"));

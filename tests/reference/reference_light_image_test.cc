@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Ray traced direct light against Cycles' pictures of the example scenes.
+#include "gltf_import.hh"
 #include "reference_light.hh"
-#include "scene_gltf.hh"
 
 #include <OpenImageIO/imagebuf.h>
 #include <fmt/format.h>
@@ -60,7 +60,7 @@ TEST_P(CyclesTest, DifferenceIsTwiceCyclesNoiseAtMost)
   OIIO::ImageBuf truth(std::string(GNOMON_TEST_DATA) + "/scenes/" + c.truth);
   ASSERT_TRUE(truth.read(0, 0, true, OIIO::TypeDesc::FLOAT)) << truth.geterror();
   const glm::ivec2 size_px{truth.spec().width, truth.spec().height};
-  const scene::Scene scene = scene::import_gltf(std::string(GNOMON_SOURCE) + "/examples/scenes/" + c.scene + ".glb");
+  const scene::Scene scene = gltf::import_gltf(std::string(GNOMON_SOURCE) + "/examples/scenes/" + c.scene + ".glb");
   const scene::PlacedCamera camera = scene.placed_cameras().front();
   const reference::Tracer tracer(scene);
   const reference::Picture a = direct_light(tracer, camera, size_px, {.sample_count = 3, .seed = 1});

@@ -2,9 +2,9 @@
 // Exponential shadows of real scenes against exact rays: what doc/decisions/0005 quotes.
 #include "eevee_camera.hh"
 #include "eevee_engine.hh"
+#include "gltf_import.hh"
 #include "gpu_device_fixture.hh"
 #include "reference_visibility.hh"
-#include "scene_gltf.hh"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -29,7 +29,7 @@ struct Judge {
 
   Judge(gpu::Device &gpu_device, const std::string &name)
       : device(gpu_device),
-        scene(scene::import_gltf(GNOMON_SOURCE "/examples/scenes/" + name + ".glb")),
+        scene(gltf::import_gltf(GNOMON_SOURCE "/examples/scenes/" + name + ".glb")),
         tracer(scene),
         points(tracer.lamps().size())
   {

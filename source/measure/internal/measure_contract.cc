@@ -72,6 +72,7 @@ void check_mesh(const scene::Scene &scene, const scene::Mesh &mesh, Checker &che
   checker.check(mesh.uvs.empty() || mesh.uvs.size() == mesh.positions.size(), "with a texture coordinate a position");
   checker.check(mesh.uvs.empty() == !scene.material_of(mesh).base_color_texture,
                 "with texture coordinates just where its material looks a texture up");
+  checker.check(mesh.colors.empty() || mesh.colors.size() == mesh.positions.size(), "with a colour a position");
   checker.check(
       std::ranges::all_of(mesh.uvs, [](const glm::vec2 &uv) { return std::isfinite(uv.x) && std::isfinite(uv.y); }),
       "with finite texture coordinates");
@@ -188,7 +189,7 @@ std::vector<std::string> contract_faults(const scene::Scene &scene)
     checker.check(false, "possible after an import");
   }
   checker.element("scene");
-  checker.check(!lamps.empty() && !cameras.empty(), "with a lamp and a camera");
+  checker.check(!scene.lamps().empty() && !cameras.empty(), "with a lamp and a camera");
   checker.check(scene.objects().empty() || std::isfinite(scene.bounds().radius()), "of finite bounds");
   for (const std::string &warning : scene.warnings) {
     checker.element("warning '" + warning + "'");

@@ -3,8 +3,8 @@
 #include "eevee_scene_renderer.hh"
 #include "eevee_test_scene.hh"
 
+#include "gltf_import.hh"
 #include "gpu_device_fixture.hh"
-#include "scene_gltf.hh"
 
 #include <gtest/gtest.h>
 
@@ -53,7 +53,7 @@ class FarAway : public test::GpuDeviceTest {
 TEST_F(FarAway, APictureIsTheSameWhereTheShiftIsAMultipleOfTheOriginsStep)
 {
   for (const char *name : {"plaza", "spots"}) {
-    scene::Scene scene = scene::import_gltf(std::string(GNOMON_SOURCE) + "/examples/scenes/" + name + ".glb");
+    scene::Scene scene = gltf::import_gltf(std::string(GNOMON_SOURCE) + "/examples/scenes/" + name + ".glb");
     const std::vector<glm::vec4> near = picture_of(scene, scene.placed_cameras().front());
     move_all(scene, {1048576.0, 0.0, -524288.0});
     const std::vector<glm::vec4> far = picture_of(scene, scene.placed_cameras().front());

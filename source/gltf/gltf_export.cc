@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: MIT
+#include "gltf_export.hh"
+
+#include "internal/gltf_camera.hh"
+#include "internal/gltf_report.hh"
+#include "internal/gltf_write_buffer.hh"
+#include "internal/gltf_write_json.hh"
+#include "internal/gltf_write_lamp.hh"
+#include "internal/gltf_write_mesh.hh"
+
+#include <array>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <new>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <unistd.h>
+
+namespace gnomon::gltf {
+
+using scene::Camera;
+using scene::Handle;
+using scene::Lamp;
+using scene::Node;
+using scene::Scene;
+
+namespace {
+
+class SceneWriter {
+ public:
+  explicit SceneWriter(const Scene &scene) : scene_(scene), meshes_(scene, buffer_) {}
+
+  /** The document but for the member "buffers", which depends on the kind of file. */
+  JsonText document()
+  {
+    number_nodes();
+    JsonText nodes;
+    JsonText roots;
+    for (const Handle<Node> handle : order_) {
+      nodes.add(node_json(handle));
+      if (!scene_.parent(handle)) {
+        roots.add(std::to_string(index_of_.at(handle)));
+      }
+    }
+    JsonText document;
+    document.add("asset", R"({"generator":"Gnomon","version":"2.0"})");
+    add_extensions(document);
+    document.add("scene", "0");
+    document.add("scenes", roots.empty() ? "[{}]" : "[{\"nodes\":" + roots.array() + "}]");
+    const auto add = [&document](std::string_view key, const JsonText &array) {
+      if (!array.empty()) {
+        document.add(key, array.array());
+      }
+    };
+    add("nodes", nodes);
+    add("cameras", cameras_);
+    add("meshes", meshes_.meshes);
+    add("materials", meshes_.materials);
+    add("textures", meshes_.textures);
+    add("samplers", meshes_.samplers);
+    add("images", meshes_.images);
+    add("accessors", buffer_.accessors);
+    add("bufferViews", buffer_.views);
+    return document;
+  }
+
+  [[nodiscard]] const std::vector<unsigned char> &bytes() const
+  {
+    return buffer_.bytes;
+  }
+
+ private:
+  const Scene &scene_;
+  WrittenBuffer buffer_;
+  MeshWriter meshes_;
+  JsonText cameras_;
+  JsonText lights_;
+  std::map<Handle<Camera>, int> camera_of_;
+  std::map<Handle<Lamp>, int> light_of_;
+  /** Parents before their children. */
+  std::vector<Handle<Node>> order_;
+  std::map<Handle<Node>, int> index_of_;
+
+  /** Whether the importer added the node to a file without a camera or a lamp. */
+  [[nodiscard]] bool is_made_up(Handle<Node> handle, const Node &node) const
+  {
+    if (node.name != default_name || !node.meshes.empty() || scene_.parent(handle) || scene_.first_child(handle)) {
+      return false;
+    }
+    const Camera *camera = scene_.cameras().find(node.camera);
+    const Lamp *lamp = scene_.lamps().find(node.lamp);
+    return (scene_.is_camera_default && camera != nullptr && lamp == nullptr && camera->name == default_name) ||
+           (scene_.is_lamp_default && lamp != nullptr && camera == nullptr && lamp->name == default_name);
+  }
+
+  void number_nodes()
+  {
+    for (const auto &[root, node] : scene_.nodes()) {
+      if (scene_.parent(root) || is_made_up(root, node)) {
+        continue;
+      }
+      // No recursion: a scene may be deeper than the stack.
+      Handle<Node> at = root;
+      while (at) {
+        index_of_.emplace(at, static_cast<int>(order_.size()));
+        order_.push_back(at);
+        Handle<Node> next = scene_.first_child(at);
+        while (!next && at != root) {
+          next = scene_.next_sibling(at);
+          at = next ? at : scene_.parent(at);
+        }
+        at = next;
+      }
+    }
+  }
+
+  std::string node_json(Handle<Node> handle)
+  {
+    const Node &node = scene_.nodes()[handle];
+    const std::string what = "node '" + printable(node.name) + '\'';
+    JsonText json;
+    JsonText extras;
+    if (!node.name.empty()) {
+      json.add("name", json_string(node.name, what));
+    }
+    JsonText children;
+    for (Handle<Node> child = scene_.first_child(handle); child; child = scene_.next_sibling(child)) {
+      children.add(std::to_string(index_of_.at(child)));
+    }
+    if (!children.empty()) {
+      json.add("children", children.array());
+    }
+    if (node.parent_from_node != glm::dmat4(1.0)) {
+      JsonText matrix;
+      for (int i = 0; i < 16; i++) {
+        matrix.add(json_number(node.parent_from_node[i / 4][i % 4], what));
+      }
+      json.add("matrix", matrix.array());
+    }
+    if (const int mesh = meshes_.index_of(node.meshes); mesh >= 0) {
+      json.add("mesh", std::to_string(mesh));
+    }
+    add_flags(node, extras);
+    add_camera(node, json, extras);
+    add_lamp(node, json, extras);
+    if (!extras.empty()) {
+      json.add("extras", extras.object());
+    }
+    return json.object();
+  }
+
+  static void add_flags(const Node &node, JsonText &extras)
+  {
+    const auto add_if_false = [&extras](std::string_view key, bool flag) {
+      if (!flag) {
+        extras.add(key, "false");
+      }
+    };
+    add_if_false("gnomon_visible", node.is_visible);
+    add_if_false("gnomon_casts_shadow", node.casts_shadow);
+    add_if_false("gnomon_receives_shadow", node.receives_shadow);
+  }
+
+  void add_camera(const Node &node, JsonText &json, JsonText &extras)
+  {
+    const Camera *camera = scene_.cameras().find(node.camera);
+    if (camera == nullptr) {
+      return;
+    }
+    const auto [place, is_new] = camera_of_.try_emplace(node.camera, 0);
+    if (is_new) {
+      place->second = cameras_.add(camera_json(*camera));
+    }
+    json.add("camera", std::to_string(place->second));
+    if (camera->name != node.name) {
+      extras.add("gnomon_camera_name", json_string(camera->name, "camera"));
+    }
+  }
+
+  void add_lamp(const Node &node, JsonText &json, JsonText &extras)
+  {
+    const Lamp *lamp = scene_.lamps().find(node.lamp);
+    if (lamp == nullptr) {
+      return;
+    }
+    if (lamp->kind != scene::LampKind::Area) {
+      const auto [place, is_new] = light_of_.try_emplace(node.lamp, 0);
+      if (is_new) {
+        place->second = lights_.add(light_json(*lamp));
+      }
+      json.add("extensions", "{\"KHR_lights_punctual\":{\"light\":" + std::to_string(place->second) + "}}");
+    }
+    if (lamp->name != node.name) {
+      extras.add("gnomon_lamp_name", json_string(lamp->name, "lamp"));
+    }
+    add_lamp_extras(*lamp, extras);
+  }
+
+  void add_extensions(JsonText &document) const
+  {
+    JsonText used;
+    if (!lights_.empty()) {
+      used.add("\"KHR_lights_punctual\"");
+    }
+    if (meshes_.has_specular) {
+      used.add("\"KHR_materials_specular\"");
+    }
+    if (meshes_.has_emissive_strength) {
+      used.add("\"KHR_materials_emissive_strength\"");
+    }
+    if (!used.empty()) {
+      document.add("extensionsUsed", used.array());
+    }
+    if (!lights_.empty()) {
+      document.add("extensions", "{\"KHR_lights_punctual\":{\"lights\":" + lights_.array() + "}}");
+    }
+  }
+};
+
+std::string base64(const std::vector<unsigned char> &bytes)
+{
+  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; k++) {
+      group = group << 8U | (k < count ? bytes[i + k] : 0U);
+    }
+    for (std::size_t k = 0; k < 4; k++) {
+      text += k > count ? '=' : digits[group >> (18 - 6 * k) & 63U];
+    }
+  }
+  return text;
+}
+
+void add_u32(std::string &text, std::size_t value)
+{
+  for (unsigned shift = 0; shift < 32; shift += 8) {
+    text += static_cast<char>(value >> shift & 0xFFU);
+  }
+}
+
+std::string glb_of(std::string json, const std::vector<unsigned char> &bytes)
+{
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  std::string binary(bytes.begin(), bytes.end());
+  binary.resize((binary.size() + 3) / 4 * 4, '\0');
+  const std::size_t size = 12 + 8 + json.size() + (binary.empty() ? 0 : 8 + binary.size());
+  if (size > std::numeric_limits<std::uint32_t>::max()) {
+    throw Fault("scene", "is larger than the 4 GiB that a .glb can have");
+  }
+  std::string result = "glTF";
+  add_u32(result, 2);
+  add_u32(result, size);
+  add_u32(result, json.size());
+  result += "JSON" + json;
+  if (!binary.empty()) {
+    add_u32(result, binary.size());
+    result += std::string("BIN\0", 4) + binary;
+  }
+  return result;
+}
+
+std::string file_of(const Scene &scene, bool is_binary)
+{
+  SceneWriter writer(scene);
+  JsonText document = writer.document();
+  if (!writer.bytes().empty()) {
+    const std::string uri =
+        is_binary ? "" : ",\"uri\":\"data:application/octet-stream;base64," + base64(writer.bytes()) + '"';
+    document.add("buffers", "[{\"byteLength\":" + std::to_string(writer.bytes().size()) + uri + "}]");
+  }
+  return is_binary ? glb_of(document.object(), writer.bytes()) : document.object() + '\n';
+}
+
+/** Beside it first, so that a file of that name is replaced only by a whole one. */
+void write_file(const std::filesystem::path &path, const std::string &content)
+{
+  std::filesystem::path part = path;
+  part += ".part" + std::to_string(::getpid());
+  std::error_code error;
+  {
+    std::ofstream stream(part, std::ios::binary | std::ios::trunc);
+    stream.write(content.data(), static_cast<std::streamsize>(content.size()));
+    stream.close();
+    if (!stream) {
+      std::filesystem::remove(part, error);
+      throw Fault("file", "cannot be written");
+    }
+  }
+  std::filesystem::rename(part, path, error);
+  if (error) {
+    const std::string reason = error.message();
+    std::filesystem::remove(part, error);
+    throw Fault("file", "cannot be replaced: " + reason);
+  }
+}
+
+}  // namespace
+
+void export_gltf(const Scene &scene, const std::filesystem::path &path)
+{
+  const auto failed = [&path](std::string_view reason) {
+    return ExportError(path.string() + ": " + std::string(reason));
+  };
+  const std::filesystem::path extension = path.extension();
+  if (extension != ".gltf" && extension != ".glb") {
+    throw failed("the name ends neither in .gltf nor in .glb");
+  }
+  try {
+    write_file(path, file_of(scene, extension == ".glb"));
+  }
+  catch (const Fault &fault) {
+    throw failed(fault.what());
+  }
+  catch (const std::bad_alloc &) {
+    throw failed("there is not enough memory for it");
+  }
+}
+
+}  // namespace gnomon::gltf

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: MIT
+#include "gltf_import.hh"
+
+#include "internal/gltf_camera.hh"
+#include "internal/gltf_file.hh"
+#include "internal/gltf_lamp.hh"
+#include "internal/gltf_mesh.hh"
+#include "internal/gltf_node.hh"
+#include "internal/gltf_report.hh"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace gnomon::gltf {
+
+using scene::Bounds;
+using scene::Camera;
+using scene::Handle;
+using scene::Lamp;
+using scene::Mesh;
+using scene::Node;
+using scene::PlacedCamera;
+using scene::PlacedLamp;
+using scene::Scene;
+
+namespace {
+
+/** A mesh of many primitives on many nodes multiplies; the size of the file does not limit that. */
+constexpr std::size_t object_count_max = std::size_t(1) << 22U;
+
+/** What a file may require without our losing anything by not knowing it. */
+constexpr std::array<std::string_view, 8> harmless_extensions{
+    "KHR_lights_punctual",   "KHR_materials_specular", "KHR_materials_emissive_strength", "KHR_materials_ior",
+    "KHR_mesh_quantization", "KHR_materials_variants", "KHR_texture_transform",           "KHR_xmp_json_ld",
+};
+
+/** The names of those that the file requires and we do not know; empty for none. */
+std::string unknown_required_extensions(const File &file)
+{
+  std::string names;
+  for (const std::string &name : file.model.extensions_required) {
+    if (std::find(harmless_extensions.begin(), harmless_extensions.end(), name) == harmless_extensions.end()) {
+      names += (names.empty() ? "" : ", ") + name;
+    }
+  }
+  return printable(names);
+}
+
+/** \a what is called where there is something to say. */
+glm::dmat4 matrix_of(const Model::Node &node, const std::function<std::string()> &what, Warnings &warnings)
+{
+  glm::dmat4 matrix(1.0);
+  if (node.matrix) {
+    for (std::size_t i = 0; i < 16; i++) {
+      matrix[int(i / 4)][int(i % 4)] = (*node.matrix)[i];
+    }
+    if (matrix[0][3] != 0.0 || matrix[1][3] != 0.0 || matrix[2][3] != 0.0 || matrix[3][3] != 1.0) {
+      warnings.add(what(), "the last row of its matrix is not 0 0 0 1 and is not used");
+      matrix[0][3] = matrix[1][3] = matrix[2][3] = 0.0;
+      matrix[3][3] = 1.0;
+    }
+    return matrix;
+  }
+  const auto &[x, y, z, w] = node.rotation;
+  const double length = std::hypot(std::hypot(x, y), std::hypot(z, w));
+  if (length > 0.0 && std::isfinite(length)) {
+    matrix = glm::mat4_cast(glm::dquat(w / length, x / length, y / length, z / length));
+  }
+  else {
+    warnings.add(what(), "its rotation has no length and is not used");
+  }
+  for (std::size_t axis = 0; axis < 3; axis++) {
+    matrix[int(axis)] *= node.scale[axis];
+    matrix[3][int(axis)] = node.translation[axis];
+  }
+  return matrix;
+}
+
+/** Whether the matrix and the world around it can be kept in float. False for NaN. */
+bool is_usable(const glm::dmat4 &world)
+{
+  for (int column = 0; column < 4; column++) {
+    for (int row = 0; row < 3; row++) {
+      if (!(std::abs(world[column][row]) <= coordinate_max)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool is_usable(const Bounds &bounds)
+{
+  const glm::vec3 reach = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
+  return reach.x <= coordinate_max && reach.y <= coordinate_max && reach.z <= coordinate_max;
+}
+
+class Importer {
+ public:
+  explicit Importer(const File &file) : file_(file), meshes_(file, warnings_, scene_) {}
+
+  Scene import()
+  {
+    warn_about_file();
+    const std::vector<int> roots = scene_roots();
+    visit_nodes(roots);
+    check_anything_kept();
+    add_defaults();
+    scene_.warnings = warnings_.messages();
+    return std::move(scene_);
+  }
+
+ private:
+  const File &file_;
+  Warnings warnings_;
+  Scene scene_;
+  MeshImporter meshes_;
+  std::size_t lost_node_count_ = 0;
+  std::size_t object_count_ = 0;
+
+  [[nodiscard]] std::string node_label(int node) const
+  {
+    return label("node", file_.model.nodes[node].name, static_cast<std::size_t>(node));
+  }
+
+  void warn_about_file()
+  {
+    if (const std::string names = unknown_required_extensions(file_); !names.empty()) {
+      warnings_.add("extensionsRequired", names + " is not known: what needs it is left out");
+    }
+    if (file_.model.has_animations) {
+      warnings_.add("animations", "are not played: the scene stands as its nodes say");
+    }
+  }
+
+  /** Where each node hangs, -1 for a root. \throws Fault if the nodes are not trees. */
+  [[nodiscard]] std::vector<int> parents() const
+  {
+    const std::vector<Model::Node> &nodes = file_.model.nodes;
+    std::vector<int> parent(nodes.size(), -1);
+    for (std::size_t i = 0; i < nodes.size(); i++) {
+      for (const int child : nodes[i].children) {
+        if (parent[child] >= 0) {
+          throw Fault(node_label(child),
+                      "has two parents, " + node_label(parent[child]) + " and " + node_label(static_cast<int>(i)));
+        }
+        parent[child] = static_cast<int>(i);
+      }
+    }
+    // With one parent each, what no root leads to is on a ring or hangs from one.
+    std::vector<int> reached;
+    for (std::size_t i = 0; i < nodes.size(); i++) {
+      if (parent[i] < 0) {
+        reached.push_back(static_cast<int>(i));
+      }
+    }
+    std::vector<bool> is_reached(nodes.size(), false);
+    for (std::size_t i = 0; i < reached.size(); i++) {
+      is_reached[reached[i]] = true;
+      const std::vector<int> &children = nodes[reached[i]].children;
+      reached.insert(reached.end(), children.begin(), children.end());
+    }
+    const auto lost = std::find(is_reached.begin(), is_reached.end(), false);
+    if (lost != is_reached.end()) {
+      throw Fault(node_label(static_cast<int>(lost - is_reached.begin())), "is its own ancestor, or hangs from one");
+    }
+    return parent;
+  }
+
+  /** The roots of the default scene, or of the first, or of the file. */
+  [[nodiscard]] std::vector<int> scene_roots() const
+  {
+    const std::vector<int> parent = parents();
+    std::vector<int> roots;
+    if (file_.model.scenes.empty()) {
+      for (std::size_t i = 0; i < parent.size(); i++) {
+        if (parent[i] < 0) {
+          roots.push_back(static_cast<int>(i));
+        }
+      }
+      return roots;
+    }
+    roots = file_.model.scenes[std::max(file_.model.scene, 0)];
+    std::vector<bool> is_listed(parent.size(), false);
+    for (const int root : roots) {
+      if (parent[root] >= 0) {
+        throw Fault(node_label(root), "is a root of the scene, but also a child of " + node_label(parent[root]));
+      }
+      if (is_listed[root]) {
+        throw Fault(node_label(root), "is twice a root of the scene");
+      }
+      is_listed[root] = true;
+    }
+    return roots;
+  }
+
+  /** Depth first, children in their order; with a stack of our own, since a file can be deeper than the program's. */
+  void visit_nodes(const std::vector<int> &roots)
+  {
+    struct Visit {
+      int node;
+      /** Names nothing for a root, and below a node that was left out. */
+      Handle<Node> parent;
+      glm::dmat4 world_from_parent;
+    };
+    std::vector<Visit> stack;
+    const auto push = [&stack](const std::vector<int> &nodes, Handle<Node> parent, const glm::dmat4 &world) {
+      std::for_each(nodes.rbegin(), nodes.rend(), [&](int node) { stack.push_back({node, parent, world}); });
+    };
+    push(roots, {}, glm::dmat4(1.0));
+    while (!stack.empty()) {
+      const Visit visit = stack.back();
+      stack.pop_back();
+      const Model::Node &node = file_.model.nodes[visit.node];
+      const glm::dmat4 parent_from_node = matrix_of(
+          node, [&] { return node_label(visit.node); }, warnings_);
+      const glm::dmat4 world = visit.world_from_parent * parent_from_node;
+      push(node.children, import_node(visit.node, visit.parent, visit.parent ? parent_from_node : world, world), world);
+    }
+  }
+
+  /** Adds the node. \return a handle that names nothing where it is left out. */
+  Handle<Node> import_node(int index, Handle<Node> parent, const glm::dmat4 &parent_from_node, const glm::dmat4 &world)
+  {
+    if (!is_usable(world)) {
+      warnings_.add_counted(node_label(index), 1, "left out: its matrix is not finite or reaches beyond 1e12 m");
+      lost_node_count_++;
+      return {};
+    }
+    const std::string &name = file_.model.nodes[index].name;
+    Node node;
+    node.name = name.empty() ? "node " + std::to_string(index) : name;
+    node.parent_from_node = parent_from_node;
+    read_flags(file_.model.nodes[index], index, node);
+    import_meshes(index, glm::mat4(world), node);
+    if (std::optional<Lamp> lamp = lamp_on(file_, index, warnings_)) {
+      node.lamp = scene_.add(std::move(*lamp));
+    }
+    if (std::optional<Camera> camera = camera_on(file_, index, warnings_)) {
+      node.camera = scene_.add(std::move(*camera));
+    }
+    return scene_.add(std::move(node), parent);
+  }
+
+  void import_meshes(int index, const glm::mat4 &world, Node &added)
+  {
+    const Model::Node &node = file_.model.nodes[index];
+    if (node.mesh < 0) {
+      return;
+    }
+    if (node.skin >= 0) {
+      warnings_.add_counted(node_label(index), 1, "its skin is not applied");
+    }
+    if (node.is_instanced) {
+      warnings_.add(node_label(index), "EXT_mesh_gpu_instancing is not drawn: one instance stands at the node");
+    }
+    for (const Handle<Mesh> mesh : meshes_.meshes_of(node.mesh)) {
+      if (!is_usable(transformed(scene_.meshes()[mesh].bounds, world))) {
+        warnings_.add_counted(node_label(index), 1, "object left out: it reaches beyond 1e12 m");
+        continue;
+      }
+      if (object_count_ == object_count_max) {
+        throw Fault("scene", "has more than " + std::to_string(object_count_max) + " objects");
+      }
+      object_count_++;
+      added.meshes.push_back(mesh);
+    }
+  }
+
+  /** A file with nothing to draw in it is a scene; one of which nothing can be drawn is not. */
+  void check_anything_kept()
+  {
+    if (object_count_ > 0) {
+      return;
+    }
+    if (meshes_.primitive_count() == 0 && lost_node_count_ == 0) {
+      warnings_.add("scene", "has nothing to draw");
+      return;
+    }
+    const std::string names = unknown_required_extensions(file_);
+    throw Fault("scene", "nothing in it can be drawn" + (names.empty() ? "" : ", and it requires " + names) + ": " +
+                             warnings_.messages().back());
+  }
+
+  void add_defaults()
+  {
+    if (scene_.cameras().empty()) {
+      scene_.is_camera_default = true;
+      const PlacedCamera camera = default_camera(scene_.bounds());
+      Node node;
+      node.name = camera.name;
+      node.parent_from_node = camera.world_from_camera;
+      node.camera = scene_.add(Camera(camera));
+      scene_.add(std::move(node));
+      warnings_.add("scene", "has no camera: one was added that frames all of it, taking +Y for up");
+    }
+    if (scene_.lamps().empty()) {
+      scene_.is_lamp_default = true;
+      const PlacedCamera camera = scene_.placed_cameras().front();
+      const PlacedLamp sun = default_sun(camera);
+      Node node;
+      node.name = sun.name;
+      node.parent_from_node = sun.world_from_lamp;
+      node.lamp = scene_.add(Lamp(sun));
+      scene_.add(std::move(node));
+      warnings_.add("scene", "has no lamp: a sun of 3.14 W/m2 was added, over the shoulder of camera '" +
+                                 printable(camera.name) + '\'');
+    }
+  }
+};
+
+}  // namespace
+
+Scene import_gltf(const std::filesystem::path &path)
+{
+  const auto failed = [&path](std::string_view reason) {
+    return ImportError(path.string() + ": " + std::string(reason));
+  };
+  try {
+    const File file = load_file(path);
+    Scene scene = Importer(file).import();
+    scene.path = path.string();
+    return scene;
+  }
+  catch (const Fault &fault) {
+    throw failed(fault.what());
+  }
+  catch (const std::bad_alloc &) {
+    throw failed("there is not enough memory for it");
+  }
+  catch (const std::exception &error) {
+    // The libraries below throw what they like.
+    throw failed(printable(error.what()));
+  }
+}
+
+}  // namespace gnomon::gltf

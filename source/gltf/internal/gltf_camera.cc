@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "internal/gltf_camera.hh"
+
+#include "internal/gltf_node.hh"
+#include "internal/gltf_units.hh"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+namespace gnomon::gltf {
+
+using scene::Bounds;
+using scene::Camera;
+using scene::CameraKind;
+using scene::LampKind;
+using scene::PlacedCamera;
+using scene::PlacedLamp;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/** What is wrong with a camera's numbers; empty: nothing. Called with the floats that will be used. */
+std::string camera_fault(const Camera &camera)
+{
+  const bool is_perspective = camera.kind == CameraKind::Perspective;
+  const auto is_length = [](float value) { return value >= length_min && value <= large; };
+  if (is_perspective && !(camera.vertical_angle > 1e-6F && camera.vertical_angle < static_cast<float>(pi))) {
+    return "yfov " + text(camera.vertical_angle) + " is not between 0 and pi";
+  }
+  if (is_perspective && camera.aspect != 0.0F && !(camera.aspect >= 1e-6F && camera.aspect <= 1e6F)) {
+    return "aspectRatio " + text(camera.aspect) + " is out of range";
+  }
+  if (!is_perspective && !(is_length(camera.half_width) && is_length(camera.half_height))) {
+    return "xmag " + text(camera.half_width) + " and ymag " + text(camera.half_height) + " must be above 0";
+  }
+  if (is_perspective ? !is_length(camera.near) : !(camera.near >= 0.0F && camera.near <= large)) {
+    return "znear " + text(camera.near) + " is out of range";
+  }
+  const bool is_infinite = is_perspective && camera.far == 0.0F;
+  if (!is_infinite && !(camera.far > camera.near && is_length(camera.far))) {
+    return "zfar " + text(camera.far) + " is not above znear " + text(camera.near) + ", or out of range";
+  }
+  return {};
+}
+
+/**
+ * Out of float's range becomes its limit, which the checks then refuse; a plain cast would be undefined. What is not 0
+ * stays so: 0 has a meaning of its own.
+ */
+float narrowed(double value)
+{
+  constexpr double max = std::numeric_limits<float>::max();
+  constexpr double least = std::numeric_limits<float>::denorm_min();
+  return static_cast<float>(std::copysign(std::clamp(std::abs(value), value == 0.0 ? 0.0 : least, max), value));
+}
+
+/** A frame that looks along the unit vector \a forward. */
+glm::dmat4 looking(const glm::dvec3 &position, const glm::dvec3 &forward, const glm::dvec3 &up)
+{
+  const glm::dmat4 skewed(glm::dvec4(0.0), glm::dvec4(up, 0.0), glm::dvec4(-forward, 0.0), glm::dvec4(position, 1.0));
+  return scene::frame_of(skewed);
+}
+
+}  // namespace
+
+std::optional<Camera> camera_on(const File &file, int node_index, Warnings &warnings)
+{
+  const Model::Node &node = file.model.nodes[node_index];
+  if (node.camera < 0) {
+    return std::nullopt;
+  }
+  const Model::Camera &source = file.model.cameras[node.camera];
+  Camera camera;
+  camera.name = thing_name(node, "gnomon_camera_name", source.name, "camera", node_index);
+  if (source.is_perspective) {
+    camera.vertical_angle = narrowed(source.yfov);
+    camera.aspect = narrowed(source.aspect_ratio);
+    camera.near = narrowed(source.znear);
+    camera.far = narrowed(source.zfar);
+  }
+  else {
+    camera.kind = CameraKind::Orthographic;
+    camera.half_width = narrowed(source.xmag);
+    camera.half_height = narrowed(source.ymag);
+    camera.near = narrowed(source.znear);
+    camera.far = narrowed(source.zfar);
+  }
+  if (const std::string fault = camera_fault(camera); !fault.empty()) {
+    warnings.add("camera '" + printable(camera.name) + '\'', "left out: " + fault);
+    return std::nullopt;
+  }
+  return camera;
+}
+
+PlacedCamera default_camera(const Bounds &bounds)
+{
+  PlacedCamera camera;
+  camera.name = default_name;
+  const glm::dvec3 center = bounds.is_empty() ? glm::dvec3(0.0) : glm::dvec3(bounds.center());
+  // At least the spacing of floats at the scene's position, and the least length.
+  const double reach = glm::length(center);
+  const double radius = bounds.is_empty() ? 1.0 : std::max({double(bounds.radius()), 1e-6 * reach, 1e3 * length_min});
+  const glm::dvec3 forward = glm::normalize(glm::dvec3(-0.6, -0.45, -1.0));
+  // The sphere around the scene fits, with a margin, into a frame that is at least as wide as high.
+  const double distance = 1.05 * radius / std::sin(0.5 * double(camera.vertical_angle));
+  camera.world_from_camera = looking(center - distance * forward, forward, {0, 1, 0});
+  camera.near = static_cast<float>(0.5 * (distance - radius));
+  camera.far = static_cast<float>(distance + 2.0 * radius);
+  return camera;
+}
+
+PlacedLamp default_sun(const PlacedCamera &camera)
+{
+  PlacedLamp sun;
+  sun.name = default_name;
+  sun.kind = LampKind::Sun;
+  // A white surface that faces it has radiance 1.
+  sun.intensity = static_cast<float>(pi);
+  const glm::dmat4 &view = camera.world_from_camera;
+  const glm::dvec3 right(view[0]);
+  const glm::dvec3 up(view[1]);
+  const glm::dvec3 forward = -glm::dvec3(view[2]);
+  // From above and from the left of the camera.
+  sun.world_from_lamp = looking(glm::dvec3(view[3]), glm::normalize(forward + 0.5 * right - 0.8 * up), up);
+  return sun;
+}
+
+}  // namespace gnomon::gltf

@@ -1,0 +1,453 @@
+// SPDX-License-Identifier: MIT
+#include "internal/gltf_document.hh"
+
+#include "internal/gltf_document_shading.hh"
+#include "internal/gltf_json.hh"
+
+#include <algorithm>
+#include <new>
+#include <utility>
+
+namespace gnomon::gltf {
+
+namespace {
+
+/** The length of an array. Long ones are counted: simdjson keeps 24 bits of a length. */
+std::size_t size_of(const JsonArray &array)
+{
+  constexpr std::size_t saturated = 0xFFFFFF;
+  const std::size_t size = array.size();
+  return size < saturated ? size : std::size_t(std::distance(array.begin(), array.end()));
+}
+
+/** Fills a model from a document. */
+class DocumentReader {
+ public:
+  explicit DocumentReader(const JsonValue &document)
+  {
+    JsonObject root;
+    if (document.get(root) != simdjson::SUCCESS) {
+      throw Fault("JSON", "the document is not an object");
+    }
+    for (const auto [key, value] : root) {
+      root_.insert_or_assign(key, value);
+    }
+  }
+
+  Model read()
+  {
+    check_asset();
+    for (const std::string_view key :
+         {"scenes", "nodes", "meshes", "skins", "accessors", "bufferViews", "buffers", "materials", "cameras",
+          "textures", "samplers", "images", "extensionsRequired"}) {
+      if (const JsonValue *value = root(key)) {
+        sizes_[key] = size_of(array_at({nullptr, key}, *value));
+      }
+    }
+    if (const JsonValue *value = root("scene")) {
+      model_.scene = index_into("scenes", {nullptr, "scene"}, *value);
+    }
+    read_lights();
+    read_array("scenes", model_.scenes,
+               [this](const auto &at, const auto &value, auto &one) { read_scene(at, value, one); });
+    read_array("buffers", model_.buffers, read_buffer);
+    read_array("nodes", model_.nodes,
+               [this](const auto &at, const auto &value, auto &one) { read_node(at, value, one); });
+    read_array("meshes", model_.meshes,
+               [this](const auto &at, const auto &value, auto &one) { read_mesh(at, value, one); });
+    read_array("accessors", model_.accessors,
+               [this](const auto &at, const auto &value, auto &one) { read_accessor(at, value, one); });
+    read_array("materials", model_.materials, read_material);
+    read_array("cameras", model_.cameras, read_camera);
+    read_array("bufferViews", model_.buffer_views,
+               [this](const auto &at, const auto &value, auto &one) { read_buffer_view(at, value, one); });
+    read_array("textures", model_.textures, read_texture);
+    read_array("samplers", model_.samplers, read_sampler);
+    read_array("images", model_.images, read_image);
+    read_array("extensionsRequired", model_.extensions_required, read_required_extension);
+    if (const JsonValue *value = root("animations")) {
+      JsonArray array;
+      model_.has_animations = value->get(array) != simdjson::SUCCESS || size_of(array) > 0;
+    }
+    return std::move(model_);
+  }
+
+ private:
+  std::map<std::string_view, JsonValue> root_;
+  /** How many elements each top-level array has, and "lights". */
+  std::map<std::string_view, std::size_t> sizes_;
+  Model model_;
+
+  [[nodiscard]] const JsonValue *root(std::string_view key) const
+  {
+    const auto found = root_.find(key);
+    return found == root_.end() ? nullptr : &found->second;
+  }
+
+  template <typename Element, typename Read>
+  static void read_elements(const Place &place, const JsonArray &array, std::vector<Element> &elements,
+                            const Read &read_one)
+  {
+    elements.clear();
+    elements.reserve(size_of(array));
+    for (const JsonValue value : array) {
+      const Place at{place.outer, place.key, elements.size()};
+      read_one(at, value, elements.emplace_back());
+    }
+  }
+
+  template <typename Element, typename Read>
+  void read_array(std::string_view key, std::vector<Element> &elements, const Read &read_one)
+  {
+    if (const JsonValue *value = root(key)) {
+      const Place place{nullptr, key};
+      read_elements(place, array_at(place, *value), elements, read_one);
+    }
+  }
+
+  [[nodiscard]] int index_into(std::string_view array, const Place &place, const JsonValue &value) const
+  {
+    const int index = index_at(place, value);
+    const auto found = sizes_.find(array);
+    const std::size_t size = found == sizes_.end() ? 0 : found->second;
+    if (static_cast<std::size_t>(index) >= size) {
+      throw Fault(place.text(), "index " + std::to_string(index) + " is out of range: the file has " +
+                                    std::to_string(size) + ' ' + std::string(array));
+    }
+    return index;
+  }
+
+  [[nodiscard]] std::vector<int> indices_into(std::string_view array, const Place &place, const JsonValue &value) const
+  {
+    std::vector<int> indices;
+    for (const JsonValue element : array_at(place, value, "an array of indices")) {
+      indices.push_back(index_into(array, {place.outer, place.key, indices.size()}, element));
+    }
+    return indices;
+  }
+
+  auto into_index(std::string_view key, int &target, std::string_view array) const
+  {
+    return Member{key, [this, &target, array](const Place &place, const JsonValue &value) {
+                    target = index_into(array, place, value);
+                  }};
+  }
+  auto into_indices(std::string_view key, std::vector<int> &target, std::string_view array) const
+  {
+    return Member{key, [this, &target, array](const Place &place, const JsonValue &value) {
+                    target = indices_into(array, place, value);
+                  }};
+  }
+
+  [[noreturn]] static void fail_incomplete(const Place &place, const std::string &missing)
+  {
+    throw Fault("glTF", place.text() + ": has no " + missing);
+  }
+
+  void check_asset() const
+  {
+    const JsonValue *asset = root("asset");
+    if (asset == nullptr) {
+      throw Fault("asset", "is missing: this is not a glTF 2.0 file");
+    }
+    std::string version;
+    read_members({nullptr, "asset"}, *asset, into("version", version));
+    if (!version.starts_with("2.")) {
+      throw Fault("asset.version", "is '" + printable(version) + "', and only glTF 2.0 is read");
+    }
+  }
+
+  static void read_required_extension(const Place &place, const JsonValue &value, std::string &name)
+  {
+    name = string_at(place, value);
+  }
+
+  void read_scene(const Place &place, const JsonValue &value, std::vector<int> &roots) const
+  {
+    read_members(place, value, into_indices("nodes", roots, "nodes"));
+  }
+
+  // ---- Nodes ----
+
+  void read_node(const Place &place, const JsonValue &value, Model::Node &node) const
+  {
+    std::optional<JsonValue> extras;
+    read_members(place, value, into_name(node.name), into_indices("children", node.children, "nodes"),
+                 Member{"matrix", [&](const Place &at,
+                                      const JsonValue &matrix) { read_numbers(at, matrix, node.matrix.emplace()); }},
+                 into("translation", node.translation), into("rotation", node.rotation), into("scale", node.scale),
+                 into_index("mesh", node.mesh, "meshes"), into_index("camera", node.camera, "cameras"),
+                 into_index("skin", node.skin, "skins"),
+                 Member{"extensions", [&](const Place &at,
+                                          const JsonValue &extensions) { read_node_extensions(at, extensions, node); }},
+                 Member{"extras", [&](const Place &, const JsonValue &member) { extras = member; }});
+    // After the name, which messages about extras hold.
+    if (extras) {
+      read_extras(place, *extras, node);
+    }
+  }
+
+  void read_node_extensions(const Place &place, const JsonValue &value, Model::Node &node) const
+  {
+    read_members(
+        place, value,
+        Member{"KHR_lights_punctual",
+               [&](const Place &at, const JsonValue &extension) {
+                 read_members(at, extension, into_index("light", node.light, "lights"));
+               }},
+        Member{"EXT_mesh_gpu_instancing", [&](const Place &, const JsonValue &) { node.is_instanced = true; }});
+  }
+
+  /** Extras that are no object are another program's. */
+  static void read_extras(const Place &place, const JsonValue &value, Model::Node &node)
+  {
+    JsonObject extras;
+    if (value.get(extras) != simdjson::SUCCESS) {
+      return;
+    }
+    for (const auto [key, extra] : extras) {
+      if (!key.starts_with("gnomon_")) {
+        continue;
+      }
+      std::optional<Model::Extra> read = extra_of(extra);
+      if (!read) {
+        const std::string name = node.name.empty() ? "" : " '" + printable(node.name) + "'";
+        throw Fault(place.text() + name, "extra " + printable(key) + " is " + quoted(extra) +
+                                             ", and must be a number, a string or a few numbers");
+      }
+      node.extras.insert_or_assign(std::string(key), std::move(*read));
+    }
+  }
+
+  static std::optional<Model::Extra> extra_of(const JsonValue &value)
+  {
+    constexpr std::size_t array_size_max = 4;
+    if (bool boolean = false; value.get(boolean) == simdjson::SUCCESS) {
+      return boolean;
+    }
+    if (double number = 0.0; value.get(number) == simdjson::SUCCESS) {
+      return number;
+    }
+    if (std::string_view text; value.get(text) == simdjson::SUCCESS) {
+      return std::string(text);
+    }
+    JsonArray array;
+    if (value.get(array) != simdjson::SUCCESS || array.size() == 0 || array.size() > array_size_max) {
+      return std::nullopt;
+    }
+    std::vector<double> numbers;
+    for (const JsonValue element : array) {
+      if (element.get(numbers.emplace_back()) != simdjson::SUCCESS) {
+        return std::nullopt;
+      }
+    }
+    return numbers;
+  }
+
+  // ---- Meshes ----
+
+  void read_mesh(const Place &place, const JsonValue &value, Model::Mesh &mesh) const
+  {
+    bool has_primitives = false;
+    read_members(place, value, into_name(mesh.name),
+                 Member{"primitives", [&](const Place &at, const JsonValue &member) {
+                          JsonArray primitives;
+                          has_primitives = member.get(primitives) == simdjson::SUCCESS;
+                          if (has_primitives) {
+                            read_elements(at, primitives, mesh.primitives,
+                                          [this](const auto &at_one, const auto &value_one, auto &one) {
+                                            read_primitive(at_one, value_one, one);
+                                          });
+                          }
+                        }});
+    if (!has_primitives) {
+      throw Fault(place.text() + ".primitives", "is missing or not an array");
+    }
+  }
+
+  void read_primitive(const Place &place, const JsonValue &value, Model::Primitive &primitive) const
+  {
+    bool has_attributes = false;
+    const auto read_compression = [&](std::string_view name, const Place &, const JsonValue &) {
+      if (name.find("compression") != name.npos) {
+        primitive.compression = name;
+      }
+    };
+    read_members(
+        place, value, into_index("indices", primitive.indices, "accessors"),
+        into_index("material", primitive.material, "materials"), into("mode", primitive.mode),
+        Member{"attributes",
+               [&](const Place &at, const JsonValue &attributes) {
+                 has_attributes = true;
+                 read_attributes(at, attributes, primitive);
+               }},
+        Member{"targets", [&](const Place &, const JsonValue &) { primitive.has_targets = true; }},
+        Member{"extensions",
+               [&](const Place &at, const JsonValue &extensions) { for_members(at, extensions, read_compression); }},
+        Member{"extras", [&](const Place &at, const JsonValue &extras) {
+                 if (extras.is_object()) {
+                   read_members(at, extras, Member{"gnomon_name", [&](const Place &in, const JsonValue &name) {
+                                                     primitive.name = name_at(in, name);
+                                                   }});
+                 }
+               }});
+    if (!has_attributes) {
+      throw Fault(place.text(), "has no attributes");
+    }
+  }
+
+  void read_attributes(const Place &place, const JsonValue &value, Model::Primitive &primitive) const
+  {
+    primitive.attributes.clear();
+    for_members(place, value, [&](std::string_view key, const Place &at, const JsonValue &accessor) {
+      if (key == "POSITION" || key == "NORMAL" || key == "COLOR_0" || key.starts_with("TEXCOORD_")) {
+        primitive.attributes.insert_or_assign(std::string(key), index_into("accessors", at, accessor));
+      }
+    });
+  }
+
+  // ---- Accessors ----
+
+  void read_accessor(const Place &place, const JsonValue &value, Model::Accessor &accessor) const
+  {
+    std::optional<std::uint64_t> component_type;
+    std::optional<std::uint64_t> count;
+    std::optional<Model::ElementType> type;
+    read_members(place, value, into_index("bufferView", accessor.buffer_view, "bufferViews"),
+                 into("byteOffset", accessor.byte_offset), into("normalized", accessor.is_normalized),
+                 Member{"componentType",
+                        [&](const Place &at, const JsonValue &member) { component_type = size_at(at, member); }},
+                 Member{"count", [&](const Place &at, const JsonValue &member) { count = size_at(at, member); }},
+                 Member{"type", [&](const Place &at, const JsonValue &member) { type = element_type(at, member); }},
+                 Member{"sparse", [&](const Place &at, const JsonValue &member) {
+                          read_sparse(at, member, accessor.sparse.emplace());
+                        }});
+    if (!component_type || !count || !type) {
+      fail_incomplete(place, !type ? "type" : !count ? "count" : "componentType");
+    }
+    accessor.component_type = *component_type;
+    accessor.count = *count;
+    accessor.type = *type;
+  }
+
+  static Model::ElementType element_type(const Place &place, const JsonValue &value)
+  {
+    constexpr std::array types{
+        std::pair{"SCALAR", Model::ElementType::Scalar}, std::pair{"VEC2", Model::ElementType::Vec2},
+        std::pair{"VEC3", Model::ElementType::Vec3},     std::pair{"VEC4", Model::ElementType::Vec4},
+        std::pair{"MAT2", Model::ElementType::Matrix},   std::pair{"MAT3", Model::ElementType::Matrix},
+        std::pair{"MAT4", Model::ElementType::Matrix}};
+    const std::string name = string_at(place, value);
+    const auto *const found =
+        std::find_if(types.begin(), types.end(), [&](const auto &type) { return type.first == name; });
+    if (found == types.end()) {
+      fail(place, value, "a type of glTF 2.0");
+    }
+    return found->second;
+  }
+
+  void read_sparse(const Place &place, const JsonValue &value, Model::Sparse &sparse) const
+  {
+    const auto into_part = [this](std::string_view key, Model::SparsePart &part) {
+      return Member{key, [this, &part](const Place &at, const JsonValue &member) {
+                      read_members(at, member, into_index("bufferView", part.buffer_view, "bufferViews"),
+                                   into("byteOffset", part.byte_offset), into("componentType", part.component_type));
+                      if (part.buffer_view < 0) {
+                        fail_incomplete(at, "bufferView");
+                      }
+                    }};
+    };
+    read_members(place, value, into("count", sparse.count), into_part("indices", sparse.indices),
+                 into_part("values", sparse.values));
+    if (sparse.indices.buffer_view < 0 || sparse.values.buffer_view < 0) {
+      throw Fault(place.text(), sparse.indices.buffer_view < 0 ? "has no indices" : "has no values");
+    }
+  }
+
+  void read_buffer_view(const Place &place, const JsonValue &value, Model::BufferView &view) const
+  {
+    std::optional<std::uint64_t> length;
+    read_members(place, value, into_index("buffer", view.buffer, "buffers"), into("byteOffset", view.byte_offset),
+                 into("byteStride", view.byte_stride),
+                 Member{"byteLength", [&](const Place &at, const JsonValue &member) { length = size_at(at, member); }});
+    if (view.buffer < 0 || !length) {
+      fail_incomplete(place, view.buffer < 0 ? "buffer" : "byteLength");
+    }
+    view.byte_length = *length;
+    if (view.byte_stride > 252 || view.byte_stride % 4 != 0) {
+      throw Fault("glTF", "Invalid `byteStride' of " + place.text() + ": " + std::to_string(view.byte_stride) +
+                              " is not a multiple of 4 up to 252");
+    }
+  }
+
+  static void read_buffer(const Place &place, const JsonValue &value, Model::Buffer &buffer)
+  {
+    read_members(place, value, into("byteLength", buffer.byte_length),
+                 Member{"uri", [&](const Place &at, const JsonValue &uri) { buffer.uri = string_at(at, uri); }});
+  }
+
+  void read_lights()
+  {
+    const JsonValue *extensions = root("extensions");
+    if (extensions == nullptr) {
+      return;
+    }
+    const auto read_array_of_lights = [&](const Place &at, const JsonValue &lights) {
+      read_elements(at, array_at(at, lights), model_.lights, read_light);
+    };
+    read_members({nullptr, "extensions"}, *extensions,
+                 Member{"KHR_lights_punctual", [&](const Place &at, const JsonValue &punctual) {
+                          read_members(at, punctual, Member{"lights", read_array_of_lights});
+                        }});
+    sizes_["lights"] = model_.lights.size();
+  }
+};
+
+/** "CODE: The JSON document has …": the code means nothing to a user. */
+std::string reason_of(simdjson::error_code error)
+{
+  const std::string_view message = simdjson::error_message(error);
+  const std::size_t prefix_end = message.find(": ");
+  return "parse error: " + printable(prefix_end == message.npos ? message : message.substr(prefix_end + 2));
+}
+
+}  // namespace
+
+std::size_t document_padding()
+{
+  return simdjson::SIMDJSON_PADDING;
+}
+
+Model parse_document(std::span<const unsigned char> json)
+{
+  constexpr std::array<unsigned char, 3> byte_order_mark{0xEF, 0xBB, 0xBF};
+  if (json.size() >= byte_order_mark.size() &&
+      std::equal(byte_order_mark.begin(), byte_order_mark.end(), json.begin())) {
+    json = json.subspan(byte_order_mark.size());
+  }
+  simdjson::dom::parser parser;
+  JsonValue document;
+  std::string_view text(reinterpret_cast<const char *>(json.data()), json.size());
+  const auto parse = [&] { return parser.parse(text.data(), text.size(), false).get(document); };
+  simdjson::error_code error = parse();
+  std::string changed;
+  if (error == simdjson::NUMBER_ERROR) {
+    changed = with_long_numbers_as_floats(text, document_padding());
+    text = std::string_view(changed).substr(0, changed.size() - document_padding());
+    error = parse();
+  }
+  if (error == simdjson::DEPTH_ERROR) {
+    // What nobody reads may be of any depth.
+    error = parser.allocate(text.size(), text.size());
+    error = error == simdjson::SUCCESS ? parse() : error;
+  }
+  if (error == simdjson::MEMALLOC) {
+    throw std::bad_alloc();
+  }
+  if (error != simdjson::SUCCESS) {
+    throw Fault("JSON", reason_of(error));
+  }
+  return DocumentReader(document).read();
+}
+
+}  // namespace gnomon::gltf

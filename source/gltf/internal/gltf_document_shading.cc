@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+#include "internal/gltf_document_shading.hh"
+
+#include <algorithm>
+#include <map>
+
+namespace gnomon::gltf {
+
+namespace {
+
+/** Whether a texture slot has an index. */
+bool has_index(const Place &place, const JsonValue &slot)
+{
+  int index = -1;
+  read_members(place, slot, into("index", index));
+  return index >= 0;
+}
+
+auto into_has_index(std::string_view key, bool &target)
+{
+  return Member{key, [&target](const Place &place, const JsonValue &slot) { target = has_index(place, slot); }};
+}
+
+void read_slot(const Place &place, const JsonValue &value, Model::TextureSlot &slot)
+{
+  // The transform's replaces the slot's.
+  int transformed_set = -1;
+  const auto read_transform = [&](const Place &at, const JsonValue &transform) {
+    read_members(at, transform, into("offset", slot.offset), into("rotation", slot.rotation), into("scale", slot.scale),
+                 into("texCoord", transformed_set));
+  };
+  read_members(place, value, into("index", slot.index), into("texCoord", slot.set),
+               Member{"extensions", [&](const Place &at, const JsonValue &extensions) {
+                        read_members(at, extensions, Member{"KHR_texture_transform", read_transform});
+                      }});
+  slot.set = transformed_set < 0 ? slot.set : transformed_set;
+}
+
+void read_specular(const Place &place, const JsonValue &value, Model::Material &material)
+{
+  const auto present = [](std::string_view key, bool &target) {
+    return Member{key, [&target](const Place &at, const JsonValue &slot) {
+                    static_cast<void>(has_index(at, slot));
+                    target = true;
+                  }};
+  };
+  read_members(place, value, into("specularFactor", material.specular),
+               into("specularColorFactor", material.specular_color),
+               present("specularTexture", material.has_specular_texture),
+               present("specularColorTexture", material.has_specular_color_texture));
+}
+
+void read_material_extensions(const Place &place, const JsonValue &value, Model::Material &material)
+{
+  for_members(place, value, [&](std::string_view name, const Place &at, const JsonValue &extension) {
+    material.extensions.emplace_back(name);
+    if (name == "KHR_materials_specular") {
+      read_specular(at, extension, material);
+    }
+    else if (name == "KHR_materials_emissive_strength") {
+      read_members(at, extension, into("emissiveStrength", material.emissive_strength));
+    }
+    else if (name == "KHR_materials_ior") {
+      read_members(at, extension, into("ior", material.ior.emplace(1.5)));
+    }
+  });
+  std::sort(material.extensions.begin(), material.extensions.end());
+}
+
+/** glTF requires all of \a numbers. */
+void read_lens(const Place &place, const JsonValue &value, const std::map<std::string_view, double *> &required,
+               double *aspect_ratio, double *zfar)
+{
+  std::map<std::string_view, double *> numbers = required;
+  if (aspect_ratio != nullptr) {
+    numbers.insert({{"aspectRatio", aspect_ratio}, {"zfar", zfar}});
+  }
+  std::size_t required_count = 0;
+  for_members(place, value, [&](std::string_view key, const Place &at, const JsonValue &number) {
+    if (const auto found = numbers.find(key); found != numbers.end()) {
+      required_count += required.count(key);
+      *found->second = number_at(at, number);
+    }
+  });
+  if (required_count < required.size()) {
+    std::string names;
+    for (const auto &[key, number] : required) {
+      names += (names.empty() ? "" : ", ") + std::string(key);
+    }
+    throw Fault("glTF", place.text() + ": needs " + names);
+  }
+}
+
+}  // namespace
+
+void read_material(const Place &place, const JsonValue &value, Model::Material &material)
+{
+  const auto read_roughness = [&](const Place &at, const JsonValue &roughness) {
+    read_members(
+        at, roughness, into("baseColorFactor", material.base_color), into("metallicFactor", material.metallic),
+        into("roughnessFactor", material.roughness),
+        Member{"baseColorTexture",
+               [&](const Place &in, const JsonValue &slot) { read_slot(in, slot, material.base_color_texture); }},
+        into_has_index("metallicRoughnessTexture", material.has_metallic_roughness_texture));
+  };
+  read_members(place, value, into_name(material.name), Member{"pbrMetallicRoughness", read_roughness},
+               into("emissiveFactor", material.emissive), into("alphaMode", material.alpha_mode),
+               into("alphaCutoff", material.alpha_cutoff), into("doubleSided", material.is_double_sided),
+               into_has_index("normalTexture", material.has_normal_texture),
+               into_has_index("occlusionTexture", material.has_occlusion_texture),
+               into_has_index("emissiveTexture", material.has_emissive_texture),
+               Member{"extensions", [&](const Place &at, const JsonValue &extensions) {
+                        read_material_extensions(at, extensions, material);
+                      }});
+}
+
+void read_texture(const Place &place, const JsonValue &value, Model::Texture &texture)
+{
+  read_members(place, value, into_name(texture.name), into("sampler", texture.sampler), into("source", texture.source));
+}
+
+void read_sampler(const Place &place, const JsonValue &value, Model::Sampler &sampler)
+{
+  read_members(place, value, into("magFilter", sampler.mag_filter), into("minFilter", sampler.min_filter),
+               into("wrapS", sampler.wrap_s), into("wrapT", sampler.wrap_t));
+}
+
+void read_image(const Place &place, const JsonValue &value, Model::Image &image)
+{
+  read_members(place, value, into_name(image.name), into("uri", image.uri), into("bufferView", image.buffer_view));
+}
+
+void read_camera(const Place &place, const JsonValue &value, Model::Camera &camera)
+{
+  std::string type;
+  read_members(place, value, into_name(camera.name), into("type", type));
+  if (type != "perspective" && type != "orthographic") {
+    throw Fault("glTF", "Invalid camera type of " + place.text() + ": '" + printable(type) + "'");
+  }
+  camera.is_perspective = type == "perspective";
+  bool has_lens = false;
+  const auto read_if_used = [&](const Place &at, const JsonValue &lens) {
+    has_lens = has_lens || at.key == type;
+    if (at.key != type) {
+      static_cast<void>(object_at(at, lens));
+    }
+    else if (camera.is_perspective) {
+      read_lens(at, lens, {{"yfov", &camera.yfov}, {"znear", &camera.znear}}, &camera.aspect_ratio, &camera.zfar);
+    }
+    else {
+      read_lens(at, lens,
+                {{"xmag", &camera.xmag}, {"ymag", &camera.ymag}, {"znear", &camera.znear}, {"zfar", &camera.zfar}},
+                nullptr, nullptr);
+    }
+  };
+  read_members(place, value, Member{"perspective", read_if_used}, Member{"orthographic", read_if_used});
+  if (!has_lens) {
+    throw Fault("glTF", place.text() + ": has no " + type);
+  }
+}
+
+void read_light(const Place &place, const JsonValue &value, Model::Light &light)
+{
+  bool has_spot = false;
+  read_members(place, value, into_name(light.name), into("type", light.type), into("color", light.color),
+               into("intensity", light.intensity), into("range", light.range),
+               Member{"spot", [&](const Place &at, const JsonValue &spot) {
+                        has_spot = true;
+                        read_members(at, spot, into("innerConeAngle", light.inner_cone_angle),
+                                     into("outerConeAngle", light.outer_cone_angle));
+                      }});
+  if (light.type.empty() || (light.type == "spot" && !has_spot)) {
+    throw Fault("glTF", place.text() + ": has no " + (light.type.empty() ? "type" : "spot"));
+  }
+}
+
+}  // namespace gnomon::gltf

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "internal/gltf_json.hh"
+#include "internal/gltf_model.hh"
+
+/** Parts of a document that refer to no others, or whose references are checked where they are used. Internal to
+ * source/gltf. */
+namespace gnomon::gltf {
+
+/** These throw a Fault that names the place. */
+void read_material(const Place &place, const JsonValue &value, Model::Material &material);
+void read_texture(const Place &place, const JsonValue &value, Model::Texture &texture);
+void read_sampler(const Place &place, const JsonValue &value, Model::Sampler &sampler);
+void read_image(const Place &place, const JsonValue &value, Model::Image &image);
+void read_camera(const Place &place, const JsonValue &value, Model::Camera &camera);
+void read_light(const Place &place, const JsonValue &value, Model::Light &light);
+
+}  // namespace gnomon::gltf

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: MIT
+#include "internal/gltf_file.hh"
+
+#include "internal/gltf_document.hh"
+#include "internal/gltf_report.hh"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+namespace gnomon::gltf {
+
+namespace {
+
+using Bytes = std::vector<unsigned char>;
+using ByteSpan = std::span<const unsigned char>;
+
+static_assert(std::endian::native == std::endian::little,
+              "glTF's numbers are little-endian and are copied as they are");
+
+/** The largest size that a .glb can have. */
+constexpr std::uintmax_t file_size_max = std::uintmax_t(4) << 30U;
+
+/** \a what names the file in the message. Devices and pipes are refused: reading one might never end. */
+Bytes read_bytes(const std::filesystem::path &path, const std::string &what)
+{
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) {
+    throw Fault(what,
+                error && error != std::errc::no_such_file_or_directory ? error.message() : "there is no such file");
+  }
+  if (!std::filesystem::is_regular_file(status)) {
+    throw Fault(what, "is not a file");
+  }
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error || size > file_size_max) {
+    throw Fault(what, error ? error.message() : "is larger than 4 GiB");
+  }
+  Bytes bytes;
+  bytes.reserve(size + document_padding());
+  bytes.resize(size);
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream.read(reinterpret_cast<char *>(bytes.data()), static_cast<std::streamsize>(size))) {
+    throw Fault(what, "cannot be read");
+  }
+  return bytes;
+}
+
+std::uint32_t read_u32(ByteSpan bytes, std::size_t offset)
+{
+  std::uint32_t value = 0;
+  std::memcpy(&value, bytes.data() + offset, sizeof(value));
+  return value;
+}
+
+struct Chunks {
+  ByteSpan json;
+  ByteSpan binary;
+};
+
+constexpr std::string_view glb_magic = "glTF";
+
+bool is_glb(ByteSpan bytes)
+{
+  return bytes.size() >= glb_magic.size() && std::equal(glb_magic.begin(), glb_magic.end(), bytes.begin());
+}
+
+/** The two chunks of a .glb; others are skipped, as glTF asks. */
+Chunks split_glb(ByteSpan bytes)
+{
+  constexpr std::size_t file_header_size = 12;
+  constexpr std::size_t chunk_header_size = 8;
+  constexpr std::uint32_t json_type = 0x4E4F534A;
+  constexpr std::uint32_t binary_type = 0x004E4942;
+  if (bytes.size() < file_header_size + chunk_header_size) {
+    throw Fault("GLB header", "the file is cut off");
+  }
+  if (const std::uint32_t version = read_u32(bytes, 4); version != 2) {
+    throw Fault("GLB header", "version " + std::to_string(version) + " is not read, only 2");
+  }
+  const std::size_t length = read_u32(bytes, 8);
+  if (length > bytes.size()) {
+    throw Fault("GLB header", "the file is cut off: it says " + std::to_string(length) + " bytes, but has " +
+                                  std::to_string(bytes.size()));
+  }
+  Chunks chunks;
+  std::size_t offset = file_header_size;
+  while (length >= offset && length - offset >= chunk_header_size) {
+    const std::size_t chunk_size = read_u32(bytes, offset);
+    const std::uint32_t type = read_u32(bytes, offset + 4);
+    offset += chunk_header_size;
+    if (chunk_size > length - offset) {
+      throw Fault("GLB chunk", "runs past the end of the file");
+    }
+    const ByteSpan content = bytes.subspan(offset, chunk_size);
+    if (type == json_type && chunks.json.empty()) {
+      chunks.json = content;
+    }
+    else if (type == binary_type && chunks.binary.empty()) {
+      chunks.binary = content;
+    }
+    offset += chunk_size;
+  }
+  if (chunks.json.empty()) {
+    throw Fault("GLB", "has no JSON chunk");
+  }
+  return chunks;
+}
+
+/** A value of two hexadecimal digits, or nothing. */
+int hexadecimal(std::string_view digits)
+{
+  int value = 0;
+  for (const char digit : digits) {
+    constexpr std::string_view all = "0123456789abcdef";
+    const std::size_t found = all.find(static_cast<char>(digit | 0x20));
+    if (found == all.npos) {
+      return -1;
+    }
+    value = 16 * value + static_cast<int>(found);
+  }
+  return digits.size() == 2 ? value : -1;
+}
+
+std::string percent_decoded(std::string_view uri)
+{
+  std::string result;
+  for (std::size_t i = 0; i < uri.size(); i++) {
+    const int code = uri[i] == '%' ? hexadecimal(uri.substr(i + 1, 2)) : -1;
+    result += code < 0 ? uri[i] : static_cast<char>(code);
+    i += code < 0 ? 0 : 2;
+  }
+  return result;
+}
+
+bool is_data_uri(const std::string &uri)
+{
+  return uri.rfind("data:", 0) == 0;
+}
+
+/** Nothing for what is no base64. Padding at the end may be missing; white space may not be in between. */
+std::optional<Bytes> base64_decoded(std::string_view text)
+{
+  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  constexpr std::uint8_t none = 64;
+  static const std::array<std::uint8_t, 256> value_of = [&] {
+    std::array<std::uint8_t, 256> values;
+    values.fill(none);
+    for (std::size_t i = 0; i < digits.size(); i++) {
+      values[static_cast<unsigned char>(digits[i])] = static_cast<std::uint8_t>(i);
+    }
+    return values;
+  }();
+  while (!text.empty() && text.back() == '=') {
+    text.remove_suffix(1);
+  }
+  if (text.size() % 4 == 1) {
+    return std::nullopt;
+  }
+  Bytes bytes;
+  bytes.reserve(3 * text.size() / 4);
+  std::uint32_t bits = 0;
+  unsigned bit_count = 0;
+  for (const char character : text) {
+    const std::uint8_t value = value_of[static_cast<unsigned char>(character)];
+    if (value == none) {
+      return std::nullopt;
+    }
+    bits = bits << 6U | value;
+    bit_count += 6;
+    if (bit_count >= 8) {
+      bit_count -= 8;
+      bytes.push_back(static_cast<unsigned char>(bits >> bit_count));
+    }
+  }
+  return bytes;
+}
+
+Bytes bytes_of_data_uri(const std::string &what, const std::string &uri)
+{
+  const std::size_t comma = uri.find(',');
+  constexpr std::string_view suffix = ";base64";
+  if (comma == uri.npos || comma < suffix.size() || uri.compare(comma - suffix.size(), suffix.size(), suffix) != 0) {
+    throw Fault(what, "its data URI is not base64");
+  }
+  std::optional<Bytes> bytes = base64_decoded(std::string_view(uri).substr(comma + 1));
+  if (!bytes) {
+    throw Fault(what, "its data URI cannot be decoded");
+  }
+  return std::move(*bytes);
+}
+
+/** A file that \a uri names, and how messages name it. */
+struct FileBeside {
+  std::filesystem::path path;
+  std::string what;
+};
+
+FileBeside file_beside(const std::filesystem::path &folder, const std::string &what, const std::string &uri)
+{
+  const std::string name = percent_decoded(uri);
+  const std::string what_file = what + " '" + printable(name) + "'";
+  if (name.empty() || name.find('\0') != name.npos || name.find("://") != name.npos ||
+      std::filesystem::path(name).is_absolute()) {
+    throw Fault(what_file, "is not a file beside the scene");
+  }
+  return {folder / name, what_file};
+}
+
+class BufferLoader {
+ public:
+  BufferLoader(File &file, ByteSpan binary_chunk) : file_(file), binary_chunk_(binary_chunk) {}
+
+  void load(const Model::Buffer &buffer)
+  {
+    const std::size_t index = file_.buffers.size();
+    const std::string what = "buffer " + std::to_string(index);
+    ByteSpan bytes;
+    if (buffer.uri) {
+      bytes = is_data_uri(*buffer.uri) ? store(bytes_of_data_uri(what, *buffer.uri)) : from_file(what, *buffer.uri);
+    }
+    else if (index == 0 && !binary_chunk_.empty()) {
+      bytes = binary_chunk_;
+    }
+    else {
+      // Legal: an extension that we do not read fills it.
+      file_.buffers.emplace_back();
+      return;
+    }
+    if (buffer.byte_length > bytes.size()) {
+      throw Fault(what, "is cut off: it says " + std::to_string(buffer.byte_length) + " bytes, but has " +
+                            std::to_string(bytes.size()));
+    }
+    file_.buffers.push_back(bytes.first(buffer.byte_length));
+  }
+
+ private:
+  File &file_;
+  ByteSpan binary_chunk_;
+  /** A file that many buffers name is read once. */
+  std::map<std::filesystem::path, ByteSpan> read_;
+
+  ByteSpan store(Bytes bytes)
+  {
+    return file_.storage.emplace_back(std::move(bytes));
+  }
+
+  ByteSpan from_file(const std::string &what, const std::string &uri)
+  {
+    const auto [path, what_file] = file_beside(file_.folder, what, uri);
+    std::error_code error;
+    std::filesystem::path key = std::filesystem::canonical(path, error);
+    if (error) {
+      key = path;
+    }
+    const auto [place, is_new] = read_.try_emplace(std::move(key));
+    if (is_new) {
+      place->second = store(read_bytes(path, what_file));
+    }
+    return place->second;
+  }
+};
+
+}  // namespace
+
+File load_file(const std::filesystem::path &path)
+{
+  File file;
+  file.storage.push_back(read_bytes(path, "file"));
+  Bytes &storage = file.storage.back();
+  const std::size_t size = storage.size();
+  storage.resize(size + document_padding());
+  const ByteSpan bytes = ByteSpan(storage).first(size);
+  const Chunks chunks = is_glb(bytes) ? split_glb(bytes) : Chunks{bytes, {}};
+  file.model = parse_document(chunks.json);
+  file.folder = path.parent_path();
+  BufferLoader buffer_loader(file, chunks.binary);
+  for (const Model::Buffer &buffer : file.model.buffers) {
+    buffer_loader.load(buffer);
+  }
+  return file;
+}
+
+std::vector<unsigned char> bytes_of_uri(const std::filesystem::path &folder, const std::string &what,
+                                        const std::string &uri)
+{
+  if (is_data_uri(uri)) {
+    return bytes_of_data_uri(what, uri);
+  }
+  const FileBeside file = file_beside(folder, what, uri);
+  return read_bytes(file.path, file.what);
+}
+
+}  // namespace gnomon::gltf

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "internal/gltf_image.hh"
+
+#include "internal/gltf_report.hh"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string_view>
+
+namespace gnomon::gltf {
+
+using scene::Image;
+
+namespace {
+
+using ByteSpan = std::span<const unsigned char>;
+
+/** What every GPU of today takes. */
+constexpr int edge_max = 16384;
+/** Deflate makes at most 1032 bytes of one; JPEG codes 64 samples in two bits or more, times as many channels. */
+constexpr std::uint64_t expansion_max = 1032;
+
+bool begins_with(ByteSpan bytes, std::string_view start)
+{
+  return bytes.size() >= start.size() &&
+         std::equal(start.begin(), start.end(), bytes.begin(),
+                    [](char a, unsigned char b) { return static_cast<unsigned char>(a) == b; });
+}
+
+/** A name that lets OpenImageIO pick the reader; nullptr for what glTF has no such images of. */
+const char *format_of(ByteSpan bytes)
+{
+  using namespace std::string_view_literals;
+  return begins_with(bytes, "\x89PNG\r\n\x1A\n"sv) ? "png" : begins_with(bytes, "\xFF\xD8\xFF"sv) ? "jpeg" : nullptr;
+}
+
+/** A JPEG decoder makes up what is missing at the end, so its end marker is looked for. */
+bool is_cut_off_jpeg(ByteSpan bytes)
+{
+  constexpr std::array<unsigned char, 2> end_marker{0xFF, 0xD9};
+  return std::search(bytes.rbegin(), bytes.rend(), end_marker.rbegin(), end_marker.rend()) == bytes.rend();
+}
+
+/** Spread one to four channels of each texel to four, in place. */
+void spread_channels(std::vector<std::uint8_t> &texels, std::size_t texel_count, int channel_count)
+{
+  const auto count = static_cast<std::size_t>(channel_count);
+  const bool is_grey = count < 3;
+  // From the last: the place that is written is never before the one that is read.
+  for (std::size_t i = texel_count; i-- > 0;) {
+    const std::uint8_t *source = texels.data() + i * count;
+    const std::array<std::uint8_t, 4> texel{source[0], source[is_grey ? 0 : 1], source[is_grey ? 0 : 2],
+                                            count % 2 == 0 ? source[count - 1] : std::uint8_t(255)};
+    std::copy(texel.begin(), texel.end(), texels.begin() + static_cast<std::ptrdiff_t>(4 * i));
+  }
+}
+
+}  // namespace
+
+Image decoded_image(ByteSpan bytes, const std::string &what, std::uint64_t texel_count_max)
+{
+  const char *format = format_of(bytes);
+  if (format == nullptr) {
+    throw Fault(what, bytes.empty() ? "is empty" : "is neither PNG nor JPEG");
+  }
+  OIIO::Filesystem::IOMemReader reader(const_cast<unsigned char *>(bytes.data()), bytes.size());
+  OIIO::Filesystem::IOProxy *proxy = &reader;
+  OIIO::ImageSpec config;
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  // Else colours would come multiplied by alpha.
+  config.attribute("oiio:UnassociatedAlpha", 1);
+  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
+  if (!input) {
+    throw Fault(what, "cannot be decoded: " + printable(OIIO::geterror()));
+  }
+  OIIO::ImageSpec spec;
+  if (!input->open(format, spec, config)) {
+    throw Fault(what, "cannot be decoded: " + printable(input->geterror()));
+  }
+  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || spec.nchannels > 4) {
+    throw Fault(what, "has no texels, or more than four channels");
+  }
+  const std::string size = std::to_string(spec.width) + 'x' + std::to_string(spec.height);
+  const std::uint64_t texel_count = std::uint64_t(spec.width) * std::uint64_t(spec.height);
+  if (spec.width > edge_max || spec.height > edge_max) {
+    throw Fault(what, "is too large, " + size + " texels: an edge may have " + std::to_string(edge_max));
+  }
+  if (texel_count > texel_count_max) {
+    throw Fault(what, "is too large, " + size + " texels: " + std::to_string(texel_count_max) +
+                          " are left of those that all images may have");
+  }
+  if (texel_count / 8 / expansion_max > bytes.size()) {
+    throw Fault(what, "is cut off: " + size + " texels cannot be in " + std::to_string(bytes.size()) + " bytes");
+  }
+  if (std::string_view(format) == "jpeg" && is_cut_off_jpeg(bytes)) {
+    throw Fault(what, "is cut off");
+  }
+  Image image;
+  image.width = static_cast<std::uint32_t>(spec.width);
+  image.height = static_cast<std::uint32_t>(spec.height);
+  image.texels.resize(4 * texel_count);
+  const int channel_count = spec.nchannels;
+  if (!input->read_image(0, 0, 0, channel_count, OIIO::TypeDesc::UINT8, image.texels.data())) {
+    throw Fault(what, "cannot be decoded: " + printable(input->geterror()));
+  }
+  spread_channels(image.texels, texel_count, channel_count);
+  return image;
+}
+
+}  // namespace gnomon::gltf

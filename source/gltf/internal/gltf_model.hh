@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+/** Internal to source/gltf. */
+namespace gnomon::gltf {
+
+/**
+ * The properties of a glTF document that the importer reads, with glTF's defaults. Indices are -1 where absent.
+ *
+ * Types are checked, and so is the range of every index but those of and into textures.
+ */
+struct Model {
+  enum ComponentType { Byte = 5120, UnsignedByte, Short, UnsignedShort, UnsignedInt = 5125, Float };
+  enum PrimitiveMode { Points, Lines, LineLoop, LineStrip, Triangles, TriangleStrip, TriangleFan };
+  enum class ElementType { Scalar, Vec2, Vec3, Vec4, Matrix };
+
+  struct BufferView {
+    int buffer = -1;
+    std::uint64_t byte_offset = 0;
+    std::uint64_t byte_length = 0;
+    /** 0: elements follow each other without a gap. */
+    std::uint64_t byte_stride = 0;
+  };
+  struct SparsePart {
+    int buffer_view = -1;
+    std::uint64_t byte_offset = 0;
+    /** Of indices only. */
+    int component_type = 0;
+  };
+  struct Sparse {
+    std::uint64_t count = 0;
+    SparsePart indices;
+    SparsePart values;
+  };
+  struct Accessor {
+    int buffer_view = -1;
+    std::uint64_t byte_offset = 0;
+    /** May be none of ComponentType. */
+    std::uint64_t component_type = 0;
+    std::uint64_t count = 0;
+    ElementType type = ElementType::Scalar;
+    bool is_normalized = false;
+    std::optional<Sparse> sparse;
+  };
+  struct Primitive {
+    /** POSITION, NORMAL, COLOR_0 and TEXCOORD_n: accessors. */
+    std::map<std::string, int, std::less<>> attributes;
+    int indices = -1;
+    int material = -1;
+    /** May be none of PrimitiveMode. */
+    int mode = Triangles;
+    bool has_targets = false;
+    /** The extension that holds the data instead of the accessors; empty: none does. */
+    std::string compression;
+    /** The extra gnomon_name; empty: none. */
+    std::string name;
+  };
+  struct Mesh {
+    std::string name;
+    std::vector<Primitive> primitives;
+  };
+  using Extra = std::variant<bool, double, std::string, std::vector<double>>;
+  struct Node {
+    std::string name;
+    std::vector<int> children;
+    /** By columns; instead of the three below. */
+    std::optional<std::array<double, 16>> matrix;
+    std::array<double, 3> translation{0.0, 0.0, 0.0};
+    std::array<double, 4> rotation{0.0, 0.0, 0.0, 1.0};
+    std::array<double, 3> scale{1.0, 1.0, 1.0};
+    int mesh = -1;
+    int camera = -1;
+    int skin = -1;
+    int light = -1;
+    /** EXT_mesh_gpu_instancing. */
+    bool is_instanced = false;
+    /** Those whose key begins with "gnomon_". */
+    std::map<std::string, Extra, std::less<>> extras;
+  };
+  struct TextureSlot {
+    int index = -1;
+    int set = 0;
+    std::array<double, 2> offset{0.0, 0.0};
+    double rotation = 0.0;
+    std::array<double, 2> scale{1.0, 1.0};
+  };
+  struct Material {
+    std::string name;
+    std::array<double, 4> base_color{1.0, 1.0, 1.0, 1.0};
+    TextureSlot base_color_texture;
+    double metallic = 1.0;
+    double roughness = 1.0;
+    std::array<double, 3> emissive{0.0, 0.0, 0.0};
+    double emissive_strength = 1.0;
+    double specular = 1.0;
+    std::array<double, 3> specular_color{1.0, 1.0, 1.0};
+    std::optional<double> ior;
+    std::string alpha_mode = "OPAQUE";
+    double alpha_cutoff = 0.5;
+    bool is_double_sided = false;
+    bool has_metallic_roughness_texture = false;
+    bool has_normal_texture = false;
+    bool has_occlusion_texture = false;
+    bool has_emissive_texture = false;
+    bool has_specular_texture = false;
+    bool has_specular_color_texture = false;
+    /** Names, ascending. */
+    std::vector<std::string> extensions;
+  };
+  struct Texture {
+    std::string name;
+    int sampler = -1;
+    int source = -1;
+  };
+  /** Numbers of OpenGL. */
+  struct Sampler {
+    int mag_filter = -1;
+    int min_filter = -1;
+    int wrap_s = 10497;
+    int wrap_t = 10497;
+  };
+  struct Buffer {
+    std::optional<std::string> uri;
+    std::uint64_t byte_length = 0;
+  };
+  struct Image {
+    std::string name;
+    /** A data URI or a file's name; empty: `buffer_view` has the bytes. */
+    std::string uri;
+    int buffer_view = -1;
+  };
+  struct Camera {
+    std::string name;
+    bool is_perspective = true;
+    double yfov = 0.0;
+    /** 0: absent. */
+    double aspect_ratio = 0.0;
+    double xmag = 0.0;
+    double ymag = 0.0;
+    double znear = 0.0;
+    /** 0: absent. */
+    double zfar = 0.0;
+  };
+  struct Light {
+    std::string name;
+    std::string type;
+    std::array<double, 3> color{1.0, 1.0, 1.0};
+    double intensity = 1.0;
+    /** 0: absent. */
+    double range = 0.0;
+    double inner_cone_angle = 0.0;
+    double outer_cone_angle = 0.78539816339744831;
+  };
+
+  std::vector<std::string> extensions_required;
+  /** -1: absent. */
+  int scene = -1;
+  /** The roots of each scene. */
+  std::vector<std::vector<int>> scenes;
+  std::vector<Node> nodes;
+  std::vector<Mesh> meshes;
+  std::vector<Accessor> accessors;
+  std::vector<BufferView> buffer_views;
+  std::vector<Buffer> buffers;
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+  std::vector<Sampler> samplers;
+  std::vector<Image> images;
+  std::vector<Camera> cameras;
+  std::vector<Light> lights;
+  bool has_animations = false;
+};
+
+}  // namespace gnomon::gltf

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "internal/gltf_node.hh"
+
+#include "internal/gltf_report.hh"
+
+#include <algorithm>
+#include <array>
+
+namespace gnomon::gltf {
+
+namespace {
+
+constexpr std::array<std::string_view, 5> node_extras{"gnomon_visible", "gnomon_casts_shadow", "gnomon_receives_shadow",
+                                                      "gnomon_lamp_name", "gnomon_camera_name"};
+
+[[noreturn]] void fail_extra(const Model::Node &node, int index, const std::string &key, const char *wanted)
+{
+  throw Fault(label("node", node.name, static_cast<std::size_t>(index)),
+              key + " is " + written(node.extras.at(key)) + ", and must be " + wanted);
+}
+
+}  // namespace
+
+bool is_node_extra(std::string_view key)
+{
+  return std::find(node_extras.begin(), node_extras.end(), key) != node_extras.end();
+}
+
+void read_flags(const Model::Node &source, int index, scene::Node &node)
+{
+  const auto read = [&](const char *key, bool &flag) {
+    if (const auto found = source.extras.find(key); found != source.extras.end()) {
+      const bool *value = std::get_if<bool>(&found->second);
+      if (value == nullptr) {
+        fail_extra(source, index, key, "true or false");
+      }
+      flag = *value;
+    }
+  };
+  read("gnomon_visible", node.is_visible);
+  read("gnomon_casts_shadow", node.casts_shadow);
+  read("gnomon_receives_shadow", node.receives_shadow);
+}
+
+std::string thing_name(const Model::Node &node, const char *key, const std::string &fallback, const char *kind,
+                       int index)
+{
+  if (const auto found = node.extras.find(key); found != node.extras.end()) {
+    const std::string *name = std::get_if<std::string>(&found->second);
+    if (name == nullptr) {
+      fail_extra(node, index, key, "a string");
+    }
+    return *name;
+  }
+  if (!node.name.empty()) {
+    return node.name;
+  }
+  return fallback.empty() ? std::string(kind) + " on node " + std::to_string(index) : fallback;
+}
+
+std::string written(const Model::Extra &extra)
+{
+  if (const auto *number = std::get_if<double>(&extra)) {
+    return text(*number);
+  }
+  if (const auto *string = std::get_if<std::string>(&extra)) {
+    return '\'' + printable(*string) + '\'';
+  }
+  const auto *boolean = std::get_if<bool>(&extra);
+  return boolean == nullptr ? "an array" : *boolean ? "true" : "false";
+}
+
+}  // namespace gnomon::gltf

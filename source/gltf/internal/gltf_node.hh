@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "internal/gltf_model.hh"
+#include "scene.hh"
+
+#include <string>
+#include <string_view>
+
+/** Reads what a node says beside its lamp. Internal to source/gltf. */
+namespace gnomon::gltf {
+
+/** Whether an extra is about a node, with or without a lamp. */
+[[nodiscard]] bool is_node_extra(std::string_view key);
+
+/** The extras gnomon_visible, gnomon_casts_shadow and gnomon_receives_shadow. \throws Fault that names \a node. */
+void read_flags(const Model::Node &source, int index, scene::Node &node);
+
+/**
+ * The name of a lamp or camera on a node: the extra \a key, else the node's name, else \a fallback, else one made of
+ * \a kind and \a index.
+ */
+[[nodiscard]] std::string thing_name(const Model::Node &node, const char *key, const std::string &fallback,
+                                     const char *kind, int index);
+
+/** An extra as a person would write it. */
+[[nodiscard]] std::string written(const Model::Extra &extra);
+
+}  // namespace gnomon::gltf

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "internal/gltf_texture.hh"
+
+#include "internal/gltf_accessor.hh"
+#include "internal/gltf_image.hh"
+#include "internal/gltf_sampler.hh"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gnomon::gltf {
+
+using scene::Handle;
+using scene::Image;
+using scene::MipFilter;
+using scene::Scene;
+using scene::Texture;
+using scene::TextureFilter;
+using scene::TextureWrap;
+
+namespace {
+
+/** A few kilobytes can be compressed out of millions of texels, so the size of a file does not limit them. */
+constexpr std::uint64_t texel_count_max = std::uint64_t(1) << 27U;
+
+/** Reads one sampler; what glTF does not know is taken for what it has without a sampler. */
+class SamplerReader {
+ public:
+  SamplerReader(std::string what, Warnings &warnings) : what_(std::move(what)), warnings_(warnings) {}
+
+  void read(const Model::Sampler &sampler, Texture &texture)
+  {
+    texture.wrap_u = wrap("wrapS", sampler.wrap_s);
+    texture.wrap_v = wrap("wrapT", sampler.wrap_t);
+    read_filters(sampler, texture);
+  }
+
+ private:
+  std::string what_;
+  Warnings &warnings_;
+
+  void warn_unknown(const char *key, int value)
+  {
+    warnings_.add(what_, std::string(key) + ' ' + std::to_string(value) + " is unknown and not used");
+  }
+
+  TextureWrap wrap(const char *key, int value)
+  {
+    switch (value) {
+      case gl_clamp_to_edge: return TextureWrap::ClampToEdge;
+      case gl_mirrored_repeat: return TextureWrap::MirroredRepeat;
+      case gl_repeat: return TextureWrap::Repeat;
+      default: warn_unknown(key, value); return TextureWrap::Repeat;
+    }
+  }
+
+  void read_filters(const Model::Sampler &sampler, Texture &texture)
+  {
+    switch (sampler.mag_filter) {
+      case gl_nearest: texture.magnified = TextureFilter::Nearest; break;
+      case gl_linear:
+      case absent: break;
+      default: warn_unknown("magFilter", sampler.mag_filter);
+    }
+    const auto set = [&texture](TextureFilter filter, MipFilter mip) {
+      texture.minified = filter;
+      texture.mip = mip;
+    };
+    switch (sampler.min_filter) {
+      case gl_nearest: set(TextureFilter::Nearest, MipFilter::None); break;
+      case gl_linear: set(TextureFilter::Linear, MipFilter::None); break;
+      case gl_nearest_mipmap_nearest: set(TextureFilter::Nearest, MipFilter::Nearest); break;
+      case gl_linear_mipmap_nearest: set(TextureFilter::Linear, MipFilter::Nearest); break;
+      case gl_nearest_mipmap_linear: set(TextureFilter::Nearest, MipFilter::Linear); break;
+      case gl_linear_mipmap_linear:
+      case absent: break;
+      default: warn_unknown("minFilter", sampler.min_filter);
+    }
+  }
+
+  /** The file leaves the filter to us. */
+  static constexpr int absent = -1;
+};
+
+/** \throws Fault that names \a what, when the file has no element \a index. */
+template <typename Elements>
+const auto &element(const Elements &elements, int index, const std::string &what)
+{
+  if (index < 0 || static_cast<std::size_t>(index) >= elements.size()) {
+    throw Fault(what, index < 0 ? "is missing"
+                                : "index " + std::to_string(index) + " is out of range: the file has " +
+                                      std::to_string(elements.size()));
+  }
+  return elements[static_cast<std::size_t>(index)];
+}
+
+}  // namespace
+
+TextureImporter::TextureImporter(const File &file, Warnings &warnings, Scene &scene)
+    : file_(file), warnings_(warnings), scene_(scene)
+{
+}
+
+Handle<Texture> TextureImporter::handle_of(int gltf_texture)
+{
+  if (const auto found = handle_of_.find(gltf_texture); found != handle_of_.end()) {
+    return found->second;
+  }
+  const Model::Texture &source = element(file_.model.textures, gltf_texture, "texture");
+  const std::string what = label("texture", source.name, static_cast<std::size_t>(gltf_texture));
+  element(file_.model.images, source.source, what + ": source");
+  Texture texture;
+  if (source.sampler >= 0) {
+    SamplerReader(what, warnings_).read(element(file_.model.samplers, source.sampler, what + ": sampler"), texture);
+  }
+  texture.image = image_of(source.source);
+  return handle_of_.emplace(gltf_texture, scene_.add(texture)).first->second;
+}
+
+Handle<Image> TextureImporter::image_of(int gltf_image)
+{
+  const Model::Image &source = file_.model.images[gltf_image];
+  const auto [place, is_new] = image_of_.try_emplace({source.uri, source.buffer_view});
+  if (is_new) {
+    try {
+      place->second = import_image(gltf_image);
+    }
+    catch (const Fault &fault) {
+      place->second = fault;
+    }
+  }
+  if (const Fault *fault = std::get_if<Fault>(&place->second)) {
+    throw Fault(*fault);
+  }
+  return std::get<Handle<Image>>(place->second);
+}
+
+Handle<Image> TextureImporter::import_image(int gltf_image)
+{
+  const Model::Image &source = file_.model.images[gltf_image];
+  const std::string what = label("image", source.name, static_cast<std::size_t>(gltf_image));
+  std::vector<unsigned char> storage;
+  std::span<const unsigned char> bytes;
+  if (!source.uri.empty()) {
+    bytes = storage = bytes_of_uri(file_.folder, what, source.uri);
+  }
+  else {
+    element(file_.model.buffer_views, source.buffer_view, what + ": bufferView");
+    bytes = view_bytes(file_, source.buffer_view, 0, what);
+  }
+  Image image = decoded_image(bytes, what, texel_count_max - texel_count_);
+  image.name = source.name.empty() ? "image " + std::to_string(gltf_image) : source.name;
+  texel_count_ += std::uint64_t(image.width) * image.height;
+  return scene_.add(std::move(image));
+}
+
+}  // namespace gnomon::gltf

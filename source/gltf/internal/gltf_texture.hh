@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "internal/gltf_file.hh"
+#include "internal/gltf_report.hh"
+#include "scene.hh"
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <variant>
+
+/** Internal to source/gltf. */
+namespace gnomon::gltf {
+
+/** Appends textures and their images to a scene, each at its first use, so that no other image is decoded. */
+class TextureImporter {
+ public:
+  /** Keeps references. */
+  TextureImporter(const File &file, Warnings &warnings, scene::Scene &scene);
+
+  /**
+   * The scene's texture for a texture of the file, whose index may be out of range.
+   *
+   * \throws Fault that names the texture or the image, when it cannot be looked up.
+   */
+  [[nodiscard]] scene::Handle<scene::Texture> handle_of(int gltf_texture);
+
+ private:
+  const File &file_;
+  Warnings &warnings_;
+  scene::Scene &scene_;
+  std::map<int, scene::Handle<scene::Texture>> handle_of_;
+  /** By URI and buffer view: files name an image more than once. */
+  std::map<std::pair<std::string, int>, std::variant<scene::Handle<scene::Image>, Fault>> image_of_;
+  /** Texels decoded so far. */
+  std::uint64_t texel_count_ = 0;
+
+  /** Once for each image, also if it fails. */
+  scene::Handle<scene::Image> image_of(int gltf_image);
+  scene::Handle<scene::Image> import_image(int gltf_image);
+};
+
+}  // namespace gnomon::gltf

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <string>
+#include <string_view>
+
+/** JSON text. Internal to source/gltf. */
+namespace gnomon::gltf {
+
+/** A string in quotes. \throws Fault that names \a what where \a text is not UTF-8 or has more than 1024 bytes. */
+[[nodiscard]] std::string json_string(std::string_view text, std::string_view what);
+
+/** The shortest number that reads back as the same value. \throws Fault that names \a what where it is not finite. */
+[[nodiscard]] std::string json_number(double value, std::string_view what);
+[[nodiscard]] std::string json_number(float value, std::string_view what);
+[[nodiscard]] std::string json_numbers(const glm::vec3 &value, std::string_view what);
+[[nodiscard]] std::string json_numbers(const glm::vec4 &value, std::string_view what);
+
+/** An array or object that grows. The values are JSON text. */
+class JsonText {
+ public:
+  [[nodiscard]] bool empty() const
+  {
+    return text_.empty();
+  }
+  [[nodiscard]] std::size_t size() const
+  {
+    return count_;
+  }
+  /** Append an element; returns its index. */
+  int add(std::string_view value);
+  /** Append a member. \a key is a plain word. */
+  void add(std::string_view key, std::string_view value);
+  [[nodiscard]] std::string array() const
+  {
+    return '[' + text_ + ']';
+  }
+  [[nodiscard]] std::string object() const
+  {
+    return '{' + text_ + '}';
+  }
+
+ private:
+  std::string text_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace gnomon::gltf

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+#include "internal/gltf_write_mesh.hh"
+
+#include "internal/gltf_model.hh"
+#include "internal/gltf_report.hh"
+#include "internal/gltf_sampler.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gnomon::gltf {
+
+using scene::AlphaMode;
+using scene::Handle;
+using scene::Image;
+using scene::Material;
+using scene::Mesh;
+using scene::MipFilter;
+using scene::Texture;
+using scene::TextureFilter;
+using scene::TextureWrap;
+
+namespace {
+
+std::string what_of(const char *kind, const std::string &name)
+{
+  return std::string(kind) + " '" + printable(name) + '\'';
+}
+
+/** The name that the importer gives to a primitive without a name of its own. */
+std::string derived_name(const std::string &mesh_name, std::size_t primitive, std::size_t primitive_count)
+{
+  return primitive_count == 1 ? mesh_name : mesh_name + '[' + std::to_string(primitive) + ']';
+}
+
+int gl_wrap(TextureWrap wrap)
+{
+  return wrap == TextureWrap::Repeat        ? gl_repeat
+         : wrap == TextureWrap::ClampToEdge ? gl_clamp_to_edge
+                                            : gl_mirrored_repeat;
+}
+
+int gl_minified(TextureFilter filter, MipFilter mip)
+{
+  const bool is_linear = filter == TextureFilter::Linear;
+  switch (mip) {
+    case MipFilter::None: return is_linear ? gl_linear : gl_nearest;
+    case MipFilter::Nearest: return is_linear ? gl_linear_mipmap_nearest : gl_nearest_mipmap_nearest;
+    case MipFilter::Linear: break;
+  }
+  return is_linear ? gl_linear_mipmap_linear : gl_nearest_mipmap_linear;
+}
+
+/** A power of two by which emission above 1 is divided, so that nothing is rounded; 1 for other emission. */
+float emissive_strength(const glm::vec3 &emissive)
+{
+  const float largest = std::max({emissive.x, emissive.y, emissive.z});
+  if (!(largest > 1.0F) || !std::isfinite(largest)) {
+    return 1.0F;
+  }
+  int exponent = 0;
+  const float mantissa = std::frexp(largest, &exponent);
+  return std::ldexp(1.0F, mantissa == 0.5F ? exponent - 1 : exponent);
+}
+
+}  // namespace
+
+int MeshWriter::index_of(const std::vector<Handle<Mesh>> &node_meshes)
+{
+  std::vector<Handle<Mesh>> drawn;
+  std::copy_if(node_meshes.begin(), node_meshes.end(), std::back_inserter(drawn), [this](Handle<Mesh> handle) {
+    const Mesh *mesh = scene_.meshes().find(handle);
+    return mesh != nullptr && !mesh->indices.empty();
+  });
+  if (drawn.empty()) {
+    return -1;
+  }
+  const auto [place, is_new] = mesh_of_.try_emplace(drawn, 0);
+  if (!is_new) {
+    return place->second;
+  }
+  std::string name = scene_.meshes()[drawn.front()].name;
+  constexpr std::string_view first = "[0]";
+  if (drawn.size() > 1 && std::string_view(name).ends_with(first)) {
+    name.resize(name.size() - first.size());
+  }
+  JsonText primitives;
+  for (std::size_t i = 0; i < drawn.size(); i++) {
+    const Mesh &mesh = scene_.meshes()[drawn[i]];
+    JsonText json = primitive(drawn[i]);
+    if (mesh.name != derived_name(name, i, drawn.size())) {
+      json.add("extras", "{\"gnomon_name\":" + json_string(mesh.name, what_of("mesh", mesh.name)) + '}');
+    }
+    primitives.add(json.object());
+  }
+  JsonText json;
+  json.add("name", json_string(name, what_of("mesh", name)));
+  json.add("primitives", primitives.array());
+  place->second = meshes.add(json.object());
+  return place->second;
+}
+
+const JsonText &MeshWriter::primitive(Handle<Mesh> handle)
+{
+  const auto [place, is_new] = primitive_of_.try_emplace(handle);
+  if (!is_new) {
+    return place->second;
+  }
+  const Mesh &mesh = scene_.meshes()[handle];
+  const std::string what = what_of("mesh", mesh.name);
+  const std::string bounds =
+      ",\"min\":" + json_numbers(mesh.bounds.min, what) + ",\"max\":" + json_numbers(mesh.bounds.max, what);
+  JsonText attributes;
+  const auto add = [&](std::string_view key, const auto &values, std::string_view type, const std::string &more) {
+    attributes.add(key, std::to_string(buffer_.add_accessor(values, Model::Float, type, more)));
+  };
+  add("POSITION", mesh.positions, "VEC3", bounds);
+  add("NORMAL", mesh.normals, "VEC3", "");
+  if (!mesh.uvs.empty()) {
+    add("TEXCOORD_0", mesh.uvs, "VEC2", "");
+  }
+  if (!mesh.colors.empty()) {
+    add("COLOR_0", mesh.colors, "VEC4", "");
+  }
+  place->second.add("attributes", attributes.object());
+  place->second.add("indices", std::to_string(buffer_.add_accessor(mesh.indices, Model::UnsignedInt, "SCALAR")));
+  if (scene_.materials().is_live(mesh.material)) {
+    place->second.add("material", std::to_string(material(mesh.material)));
+  }
+  return place->second;
+}
+
+int MeshWriter::material(Handle<Material> handle)
+{
+  if (const auto found = material_of_.find(handle); found != material_of_.end()) {
+    return found->second;
+  }
+  const Material &material = scene_.materials()[handle];
+  const std::string what = what_of("material", material.name);
+  JsonText roughness;
+  roughness.add("baseColorFactor", json_numbers(glm::vec4(material.base_color, material.alpha), what));
+  if (const Texture *texture = scene_.textures().find(material.base_color_texture);
+      texture != nullptr && scene_.images().is_live(texture->image)) {
+    const int index = this->texture(material.base_color_texture);
+    roughness.add("baseColorTexture", "{\"index\":" + std::to_string(index) + '}');
+  }
+  roughness.add("metallicFactor", json_number(material.metallic, what));
+  roughness.add("roughnessFactor", json_number(material.roughness, what));
+  const float strength = emissive_strength(material.emissive);
+  JsonText extensions;
+  if (material.specular != 1.0F || material.specular_color != glm::vec3(1.0F)) {
+    has_specular = true;
+    extensions.add("KHR_materials_specular",
+                   "{\"specularFactor\":" + json_number(material.specular, what) +
+                       ",\"specularColorFactor\":" + json_numbers(material.specular_color, what) + '}');
+  }
+  if (strength != 1.0F) {
+    has_emissive_strength = true;
+    extensions.add("KHR_materials_emissive_strength", "{\"emissiveStrength\":" + json_number(strength, what) + '}');
+  }
+  JsonText json;
+  json.add("name", json_string(material.name, what));
+  json.add("pbrMetallicRoughness", roughness.object());
+  json.add("emissiveFactor", json_numbers(material.emissive / strength, what));
+  json.add("alphaMode", material.alpha_mode == AlphaMode::Mask    ? "\"MASK\""
+                        : material.alpha_mode == AlphaMode::Blend ? "\"BLEND\""
+                                                                  : "\"OPAQUE\"");
+  json.add("alphaCutoff", json_number(material.alpha_cutoff, what));
+  json.add("doubleSided", material.is_double_sided ? "true" : "false");
+  if (!extensions.empty()) {
+    json.add("extensions", extensions.object());
+  }
+  return material_of_.emplace(handle, materials.add(json.object())).first->second;
+}
+
+int MeshWriter::texture(Handle<Texture> handle)
+{
+  if (const auto found = texture_of_.find(handle); found != texture_of_.end()) {
+    return found->second;
+  }
+  const Texture &texture = scene_.textures()[handle];
+  JsonText json;
+  json.add("sampler", std::to_string(sampler(texture)));
+  json.add("source", std::to_string(image(texture.image)));
+  return texture_of_.emplace(handle, textures.add(json.object())).first->second;
+}
+
+int MeshWriter::sampler(const Texture &texture)
+{
+  JsonText json;
+  json.add("magFilter", std::to_string(texture.magnified == TextureFilter::Linear ? gl_linear : gl_nearest));
+  json.add("minFilter", std::to_string(gl_minified(texture.minified, texture.mip)));
+  json.add("wrapS", std::to_string(gl_wrap(texture.wrap_u)));
+  json.add("wrapT", std::to_string(gl_wrap(texture.wrap_v)));
+  const auto [place, is_new] = sampler_of_.try_emplace(json.object(), 0);
+  if (is_new) {
+    place->second = samplers.add(json.object());
+  }
+  return place->second;
+}
+
+int MeshWriter::image(Handle<Image> handle)
+{
+  if (const auto found = image_of_.find(handle); found != image_of_.end()) {
+    return found->second;
+  }
+  const Image &image = scene_.images()[handle];
+  const std::string what = what_of("image", image.name);
+  JsonText json;
+  json.add("name", json_string(image.name, what));
+  json.add("mimeType", "\"image/png\"");
+  json.add("bufferView", std::to_string(buffer_.add_view(png_of(image, what))));
+  return image_of_.emplace(handle, images.add(json.object())).first->second;
+}
+
+}  // namespace gnomon::gltf

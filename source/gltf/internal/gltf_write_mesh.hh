@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "internal/gltf_write_buffer.hh"
+#include "internal/gltf_write_json.hh"
+#include "scene.hh"
+
+#include <map>
+#include <string>
+#include <vector>
+
+/** Internal to source/gltf. */
+namespace gnomon::gltf {
+
+/** Collects meshes with all that they need, each thing once, at its first use. Members throw Fault. */
+class MeshWriter {
+ public:
+  /** Keeps references. */
+  MeshWriter(const scene::Scene &scene, WrittenBuffer &buffer) : scene_(scene), buffer_(buffer) {}
+
+  /** The glTF mesh whose primitives are \a meshes; -1 where none of them has triangles. */
+  [[nodiscard]] int index_of(const std::vector<scene::Handle<scene::Mesh>> &meshes);
+
+  JsonText meshes;
+  JsonText materials;
+  JsonText textures;
+  JsonText samplers;
+  JsonText images;
+  bool has_specular = false;
+  bool has_emissive_strength = false;
+
+ private:
+  const scene::Scene &scene_;
+  WrittenBuffer &buffer_;
+  std::map<std::vector<scene::Handle<scene::Mesh>>, int> mesh_of_;
+  /** Members of a primitive, without its name. */
+  std::map<scene::Handle<scene::Mesh>, JsonText> primitive_of_;
+  std::map<scene::Handle<scene::Material>, int> material_of_;
+  std::map<scene::Handle<scene::Texture>, int> texture_of_;
+  std::map<scene::Handle<scene::Image>, int> image_of_;
+  std::map<std::string, int> sampler_of_;
+
+  const JsonText &primitive(scene::Handle<scene::Mesh> handle);
+  int material(scene::Handle<scene::Material> handle);
+  int texture(scene::Handle<scene::Texture> handle);
+  int image(scene::Handle<scene::Image> handle);
+  int sampler(const scene::Texture &texture);
+};
+
+}  // namespace gnomon::gltf

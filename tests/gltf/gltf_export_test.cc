@@ -1,0 +1,464 @@
+// SPDX-License-Identifier: MIT
+#include "gltf_export.hh"
+#include "gltf/gltf_check.hh"
+
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <random>
+
+namespace gnomon::test {
+namespace {
+
+using scene::Handle;
+using scene::Scene;
+
+/** A scene as text, exact to the bit: equal texts mean equal scenes, apart from the places in the pools. */
+class Description {
+ public:
+  static std::string of(const Scene &scene)
+  {
+    Description description(scene);
+    for (const auto &[handle, node] : scene.nodes()) {
+      if (!scene.parent(handle)) {
+        description.add_node(handle, 0);
+      }
+    }
+    return fmt::format("default camera {} lamp {}\n{}", scene.is_camera_default, scene.is_lamp_default,
+                       description.text_);
+  }
+
+ private:
+  explicit Description(const Scene &scene) : scene_(scene) {}
+
+  const Scene &scene_;
+  std::string text_;
+  std::map<Handle<scene::Mesh>, std::size_t> meshes_;
+  std::map<Handle<scene::Material>, std::size_t> materials_;
+  std::map<Handle<scene::Texture>, std::size_t> textures_;
+  std::map<Handle<scene::Image>, std::size_t> images_;
+
+  template <typename... Args>
+  void line(fmt::format_string<Args...> format, Args &&...args)
+  {
+    text_ += fmt::format(format, std::forward<Args>(args)...) + '\n';
+  }
+  template <typename T>
+  static std::string numbers(const T &value, int count)
+  {
+    std::string text;
+    for (int i = 0; i < count; i++) {
+      text += fmt::format(" {:a}", value[i]);
+    }
+    return text;
+  }
+  template <typename T>
+  static std::string values(const std::vector<T> &values)
+  {
+    const auto *bytes = reinterpret_cast<const unsigned char *>(values.data());
+    std::uint64_t hash = 14695981039346656037ULL;
+    for (std::size_t i = 0; i < values.size() * sizeof(T); i++) {
+      hash = (hash ^ bytes[i]) * 1099511628211ULL;
+    }
+    return fmt::format("{}:{:x}", values.size(), hash);
+  }
+  /** Number of a thing by its first use, so that sharing shows. */
+  template <typename T, typename Add>
+  std::string number(std::map<Handle<T>, std::size_t> &seen, Handle<T> handle, const Add &add)
+  {
+    if (!scene_.pool<T>().is_live(handle)) {
+      return "none";
+    }
+    const auto [place, is_new] = seen.try_emplace(handle, seen.size());
+    const std::string result = std::to_string(place->second);
+    if (is_new) {
+      add(scene_.pool<T>()[handle], result);
+    }
+    return result;
+  }
+
+  void add_node(Handle<scene::Node> handle, int depth)
+  {
+    const scene::Node &node = scene_.nodes()[handle];
+    std::string matrix;
+    for (int column = 0; column < 4; column++) {
+      matrix += numbers(node.parent_from_node[column], 4);
+    }
+    std::string meshes;
+    for (const Handle<scene::Mesh> mesh : node.meshes) {
+      meshes += ' ' + number(meshes_, mesh,
+                             [this](const scene::Mesh &value, const std::string &name) { add_mesh(value, name); });
+    }
+    line("{} node '{}' visible {} casts {} receives {} meshes{} matrix{}", depth, node.name, node.is_visible,
+         node.casts_shadow, node.receives_shadow, meshes, matrix);
+    if (const scene::Lamp *lamp = scene_.lamps().find(node.lamp)) {
+      add_lamp(*lamp);
+    }
+    if (const scene::Camera *camera = scene_.cameras().find(node.camera)) {
+      line("  camera '{}' {} {:a} {:a} {:a} {:a} {:a} {:a}", camera->name, int(camera->kind), camera->vertical_angle,
+           camera->aspect, camera->half_width, camera->half_height, camera->near, camera->far);
+    }
+    for (Handle<scene::Node> child = scene_.first_child(handle); child; child = scene_.next_sibling(child)) {
+      add_node(child, depth + 1);
+    }
+  }
+
+  void add_mesh(const scene::Mesh &mesh, const std::string &number_of)
+  {
+    const std::string material =
+        number(materials_, mesh.material,
+               [this](const scene::Material &value, const std::string &name) { add_material(value, name); });
+    line("mesh {} '{}' material {} {} {} {} {} {}", number_of, mesh.name, material, values(mesh.positions),
+         values(mesh.normals), values(mesh.uvs), values(mesh.colors), values(mesh.indices));
+  }
+
+  void add_material(const scene::Material &m, const std::string &number_of)
+  {
+    const std::string texture =
+        number(textures_, m.base_color_texture, [this](const scene::Texture &t, const std::string &name) {
+          const std::string image = number(images_, t.image, [this](const scene::Image &i, const std::string &at) {
+            line("image {} '{}' {}x{} {}", at, i.name, i.width, i.height, values(i.texels));
+          });
+          line("texture {} image {} {} {} {} {} {}", name, image, int(t.wrap_u), int(t.wrap_v), int(t.magnified),
+               int(t.minified), int(t.mip));
+        });
+    line("material {} '{}'{} {:a} texture {} {:a} {:a} {:a}{}{} {} {:a} {}", number_of, m.name,
+         numbers(m.base_color, 3), m.alpha, texture, m.metallic, m.roughness, m.specular, numbers(m.specular_color, 3),
+         numbers(m.emissive, 3), int(m.alpha_mode), m.alpha_cutoff, m.is_double_sided);
+  }
+
+  void add_lamp(const scene::Lamp &l)
+  {
+    const auto optional = [](const auto &value) { return value ? fmt::format("{:a}", double(*value)) : "none"; };
+    line("  lamp '{}' {}{} {:a} {:a} {:a} {:a} {:a} {:a} {} {:a} {:a}", l.name, int(l.kind), numbers(l.color, 3),
+         l.intensity, l.radius, l.angle, l.spot_outer_angle, l.spot_blend, l.range, int(l.area_shape), l.area_size_x,
+         l.area_size_y);
+    line("  shadow {} {} {} {} {} {} {} {} {}", l.shadow.kind ? int(*l.shadow.kind) : -1, optional(l.shadow.size),
+         optional(l.shadow.exponent), optional(l.shadow.bias), optional(l.shadow.clip_start),
+         optional(l.shadow.clip_end), optional(l.shadow.filter_radius), optional(l.shadow.esm_size),
+         l.shadow.esm_format ? int(*l.shadow.esm_format) : -1);
+  }
+};
+
+std::string content_of(const std::filesystem::path &path)
+{
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/** Both kinds of file read back as \a scene, and the same scene gives the same bytes. */
+void expect_round_trip(const Scene &scene)
+{
+  const TemporaryFolder folder;
+  const std::string expected = Description::of(scene);
+  for (const char *name : {"copy.gltf", "copy.glb"}) {
+    SCOPED_TRACE(name);
+    const std::filesystem::path path = folder.path() / name;
+    gltf::export_gltf(scene, path);
+    const Scene copy = gltf::import_gltf(path);
+    expect_valid(copy);
+    EXPECT_EQ(Description::of(copy), expected);
+    const std::filesystem::path again = folder.path() / (std::string("again_") + name);
+    gltf::export_gltf(copy, again);
+    EXPECT_EQ(content_of(again), content_of(path));
+  }
+}
+
+TEST(GltfExport, PublicScenesReadBackAsTheyAre)
+{
+  std::size_t count = 0;
+  for (const auto &entry : std::filesystem::directory_iterator(GNOMON_SOURCE "/examples/scenes")) {
+    if (entry.path().extension() == ".gltf" || entry.path().extension() == ".glb") {
+      SCOPED_TRACE(entry.path());
+      expect_round_trip(gltf::import_gltf(entry.path()));
+      count++;
+    }
+  }
+  EXPECT_GE(count, 5U);
+}
+
+/** Seeded values that are not round in any unit. */
+class Values {
+ public:
+  float operator()(float low, float high)
+  {
+    return std::uniform_real_distribution<float>(low, high)(random_);
+  }
+  glm::vec3 color(float high = 1.0F)
+  {
+    return {(*this)(0, high), (*this)(0, high), (*this)(0, high)};
+  }
+
+ private:
+  std::mt19937 random_{9};
+};
+
+scene::Mesh triangle(const std::string &name, Values &value)
+{
+  scene::Mesh mesh;
+  mesh.name = name;
+  mesh.positions = {{0, 0, 0}, {1.1F, 0, value(0, 0.1F)}, {0, 1.3F, 0.7F}};
+  for (int i = 0; i < 3; i++) {
+    mesh.normals.push_back(glm::normalize(glm::vec3(value(-1, 1), value(-1, 1), 1)));
+    mesh.colors.emplace_back(value.color(), value(0, 1));
+  }
+  mesh.indices = {0, 1, 2};
+  return mesh;
+}
+
+/** A lamp with a value for all that its kind has. */
+scene::Lamp lamp_of(scene::LampKind kind, Values &value)
+{
+  using scene::LampKind;
+  scene::Lamp lamp;
+  lamp.name = fmt::format("lamp of kind {} \"\\ü", int(kind));
+  lamp.kind = kind;
+  lamp.color = value.color(3);
+  lamp.intensity = value(0.001F, 1000);
+  const bool is_point = kind == LampKind::Point || kind == LampKind::Spot;
+  if (is_point) {
+    lamp.radius = value(0, 1);
+    lamp.range = value(1, 100);
+  }
+  if (kind == LampKind::Sun) {
+    lamp.angle = float(std::numbers::pi);
+  }
+  if (kind == LampKind::Spot) {
+    lamp.spot_outer_angle = float(std::numbers::pi / 2);
+    lamp.spot_blend = value(0, 1);
+  }
+  if (kind == LampKind::Area) {
+    lamp.area_shape = scene::AreaShape::Ellipse;
+    lamp.area_size_x = value(0.1F, 3);
+    lamp.area_size_y = value(0.1F, 3);
+  }
+  if (is_point || kind == LampKind::Sun) {
+    lamp.shadow = {scene::ShadowKind::Evsm,
+                   513,
+                   value(0.1F, 99),
+                   value(0, 2),
+                   value(0.01F, 0.1F),
+                   value(10, 20),
+                   kind == LampKind::Sun ? float(std::numbers::pi / 4) : value(0, 0.7F),
+                   65,
+                   scene::EsmFormat::Float};
+  }
+  return lamp;
+}
+
+Handle<scene::Material> add_material(Scene &scene, Values &value)
+{
+  scene::Image image{"leaf", 3, 2, {}};
+  for (int i = 0; i < 24; i++) {
+    image.texels.push_back(std::uint8_t(value(0, 255)));
+  }
+  scene::Texture texture;
+  texture.image = scene.add(std::move(image));
+  texture.wrap_u = scene::TextureWrap::MirroredRepeat;
+  texture.wrap_v = scene::TextureWrap::ClampToEdge;
+  texture.magnified = scene::TextureFilter::Nearest;
+  texture.mip = scene::MipFilter::Nearest;
+  scene::Material material;
+  material.name = "paint";
+  material.base_color = value.color();
+  material.alpha = value(0, 1);
+  material.base_color_texture = scene.add(texture);
+  material.metallic = value(0, 1);
+  material.roughness = value(0, 1);
+  material.specular = value(0, 1);
+  material.specular_color = value.color(2);
+  material.emissive = value.color(77);
+  material.alpha_mode = scene::AlphaMode::Mask;
+  material.alpha_cutoff = value(0, 1);
+  material.is_double_sided = true;
+  return scene.add(material);
+}
+
+/** Something of everything that a scene can hold. */
+Scene full_scene()
+{
+  Values value;
+  Scene scene;
+  scene::Mesh textured = triangle("pair[0]", value);
+  textured.material = add_material(scene, value);
+  textured.uvs = {{0.1F, 0.2F}, {3, 0.3F}, {0.5F, -1}};
+  const Handle<scene::Mesh> first = scene.add(textured);
+  scene::Mesh plain = triangle("any \t name", value);
+  scene::Material emissive;
+  emissive.name = "dim";
+  emissive.emissive = value.color();
+  emissive.alpha_mode = scene::AlphaMode::Blend;
+  plain.material = scene.add(emissive);
+  const Handle<scene::Mesh> second = scene.add(plain);
+
+  scene::Node root;
+  root.name = "root";
+  root.parent_from_node = glm::translate(glm::dmat4(1.0), {1048576.1, 0.3, -524288.7});
+  const Handle<scene::Node> parent = scene.add(root);
+  scene::Node pair;
+  pair.name = "both";
+  pair.meshes = {first, second};
+  pair.parent_from_node = glm::rotate(glm::dmat4(1.0), 0.3, {1, 2, 3});
+  pair.casts_shadow = false;
+  scene.add(pair, parent);
+  scene::Node alone;
+  alone.name = "alone";
+  alone.meshes = {second};
+  alone.receives_shadow = false;
+  alone.parent_from_node[1][0] = 0.5;
+  const Handle<scene::Node> child = scene.add(alone, parent);
+  scene::Node hidden;
+  hidden.name = "hidden";
+  hidden.is_visible = false;
+  const Handle<scene::Node> grandchild = scene.add(hidden, child);
+  for (int kind = 0; kind <= int(scene::LampKind::Area); kind++) {
+    scene::Node node;
+    node.name = kind % 2 == 0 ? fmt::format("lamp {}", kind) : lamp_of(scene::LampKind(kind), value).name;
+    node.lamp = scene.add(lamp_of(scene::LampKind(kind), value));
+    scene.add(node, kind == 0 ? grandchild : Handle<scene::Node>());
+  }
+  for (const scene::CameraKind kind : {scene::CameraKind::Perspective, scene::CameraKind::Orthographic}) {
+    scene::Camera camera;
+    camera.name = "eye";
+    camera.kind = kind;
+    if (kind == scene::CameraKind::Perspective) {
+      camera.vertical_angle = value(0.1F, 1);
+      camera.aspect = value(1, 2);
+    }
+    else {
+      camera.half_width = value(1, 2);
+      camera.half_height = value(1, 2);
+      camera.far = value(50, 60);
+    }
+    camera.near = value(0.01F, 0.1F);
+    scene::Node node;
+    node.name = "stand";
+    node.camera = scene.add(camera);
+    scene.add(node);
+  }
+  return scene;
+}
+
+TEST(GltfExport, AllThatASceneHoldsReadsBack)
+{
+  expect_round_trip(full_scene());
+}
+
+TEST(GltfExport, AnEditedSceneReadsBack)
+{
+  Scene scene = full_scene();
+  const Handle<scene::Node> removed = scene.first_child(scene.nodes().first());
+  scene.remove(removed);
+  scene::Node node;
+  node.name = "takes the place of a removed one";
+  scene.add(node, scene.first_child(scene.nodes().first()));
+  expect_round_trip(scene);
+}
+
+TEST(GltfExport, RemovedAndUnusedThingsAreNotWritten)
+{
+  Values value;
+  Scene scene = full_scene();
+  const std::string expected = Description::of(scene);
+  scene::Mesh unused = triangle("unused", value);
+  scene.add(unused);
+  scene::Mesh gone = triangle("gone", value);
+  const Handle<scene::Mesh> handle = scene.add(gone);
+  scene.edit(scene.nodes().first(), [&](scene::Node &node) { node.meshes.push_back(handle); });
+  scene.remove(handle);
+  const TemporaryFolder folder;
+  gltf::export_gltf(scene, folder.path() / "copy.glb");
+  EXPECT_EQ(Description::of(gltf::import_gltf(folder.path() / "copy.glb")), expected);
+}
+
+TEST(GltfExport, WhatTheImporterAddedIsNotWritten)
+{
+  const Scene scene = import(triangle_scene());
+  ASSERT_TRUE(scene.is_camera_default && scene.is_lamp_default);
+  const TemporaryFolder folder;
+  gltf::export_gltf(scene, folder.path() / "copy.gltf");
+  const json document = json::parse(content_of(folder.path() / "copy.gltf"));
+  EXPECT_EQ(document["nodes"].size(), 1U);
+  EXPECT_FALSE(document.contains("cameras"));
+  EXPECT_FALSE(document.contains("extensions"));
+  expect_round_trip(scene);
+}
+
+TEST(GltfExport, BentFlatQuadsReadBack)
+{
+  // The importer gives each triangle its own normal, and so its own corners.
+  GltfBuilder builder;
+  const int positions = builder.positions({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0.3F});
+  const glm::vec3 n = glm::normalize(glm::cross(glm::vec3(1, 1, 0), glm::vec3(-1, 1, 0.3F)));
+  const int normals = builder.positions({n.x, n.y, n.z, n.x, n.y, n.z, n.x, n.y, n.z, n.x, n.y, n.z});
+  const int indices = builder.accessor(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3}, Uint16, "SCALAR");
+  builder.node(
+      {{"mesh", builder.mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}}, {"indices", indices}})}});
+  const Scene scene = import(builder);
+  EXPECT_EQ((*scene.meshes().begin()).value.positions.size(), 6U);
+  expect_round_trip(scene);
+}
+
+TEST(GltfExport, UnitsAreThoseOfGltf)
+{
+  Scene scene;
+  scene::Node node;
+  node.name = "sun";
+  scene::Lamp lamp{.name = "sun", .kind = scene::LampKind::Sun};
+  lamp.intensity = 2.0F;
+  node.lamp = scene.add(lamp);
+  scene.add(node);
+  const TemporaryFolder folder;
+  gltf::export_gltf(scene, folder.path() / "sun.gltf");
+  const json document = json::parse(content_of(folder.path() / "sun.gltf"));
+  EXPECT_EQ(document["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"], 1366.0);
+  EXPECT_EQ(document["extensionsUsed"], json({"KHR_lights_punctual"}));
+}
+
+std::string export_error(const Scene &scene, const std::filesystem::path &path)
+{
+  try {
+    gltf::export_gltf(scene, path);
+  }
+  catch (const gltf::ExportError &error) {
+    EXPECT_HAS(std::string(error.what()), path.string() + ": ");
+    return error.what();
+  }
+  return {};
+}
+
+TEST(GltfExport, ErrorsNameTheFileAndLeaveTheOldOne)
+{
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder.write("old.gltf", "old");
+  Scene scene;
+  scene::Lamp lamp{.name = "bulb"};
+  lamp.intensity = std::numeric_limits<float>::quiet_NaN();
+  scene::Node node;
+  node.lamp = scene.add(lamp);
+  const Handle<scene::Node> handle = scene.add(node);
+  EXPECT_HAS(export_error(scene, path), "lamp 'bulb': one of its numbers is not finite");
+  scene.edit(handle, [](scene::Node &edited) {
+    edited.lamp = {};
+    edited.name = "\xC3\x28";
+  });
+  EXPECT_HAS(export_error(scene, path), "its name is not UTF-8");
+  scene.edit(handle, [](scene::Node &edited) { edited.name = std::string(1025, 'x'); });
+  EXPECT_HAS(export_error(scene, path), "its name is longer than 1024 bytes");
+  scene.edit(handle, [](scene::Node &edited) { edited.name = "node"; });
+  EXPECT_HAS(export_error(scene, folder.path() / "scene.obj"), "the name ends neither in .gltf nor in .glb");
+  EXPECT_HAS(export_error(scene, folder.path() / "nowhere" / "scene.glb"), "file: cannot be written");
+  std::filesystem::create_directory(folder.path() / "folder.glb");
+  EXPECT_HAS(export_error(scene, folder.path() / "folder.glb"), "file: cannot be replaced: ");
+  EXPECT_EQ(content_of(path), "old");
+  // Nothing is left beside it.
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2);
+}
+
+}  // namespace
+}  // namespace gnomon::test
