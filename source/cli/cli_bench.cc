@@ -3,6 +3,7 @@
 
 #include "cli_output.hh"
 
+#include "draw_view_shared.h"
 #include "eevee_camera.hh"
 #include "shadows/shadows.hh"
 #include "measure_left_out.hh"
@@ -385,7 +386,10 @@ void bench_draws(const BenchOptions &options)
     const glm::vec3 axis(1.0F, float(i % 7), float(i % 3));
     matrices.push_back(glm::rotate(glm::translate(glm::mat4(1.0F), glm::vec3(i % 100, i / 100, 0)), float(i), axis));
   }
+  const gpu::Buffer view_block =
+      device->create_buffer({"view_block", gpu::BufferKind::Uniform, sizeof(shared::ViewData)});
   draw::ObjectBuffer objects;
+  gpu::BufferRange object_block;
   draw::Pass pass("depth_pass", gpu::State::WriteDepth, &objects);
   const draw::View view;
   std::array<std::vector<double>, 3> seconds;
@@ -396,10 +400,13 @@ void bench_draws(const BenchOptions &options)
     const double start = cpu_seconds();
     pass.clear();
     draw::ShadingGroup &group = pass.group(shader);
+    group.bind_uniform("view_block", view_block);
+    group.bind_storage_ref("object_block", &object_block);
     for (std::size_t i = 0; i < draw_count; i++) {
       group.call(batches[i % mesh_count], matrices[i]);
     }
     objects.upload(*device);
+    object_block = {objects.buffer().id()};
     const double called = cpu_seconds();
     gpu::CommandList list;
     list.begin_pass("depth_prepass", framebuffer, {});
