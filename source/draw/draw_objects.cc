@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 
 namespace gnomon::draw {
 
@@ -61,7 +62,7 @@ ObjectBuffer::ObjectBuffer()
 
 ObjectIndex ObjectBuffer::add(const glm::mat4 &world_from_object, std::uint32_t value, const CullingVolume &volume)
 {
-  const ObjectIndex index = free_.empty() ? index_end() : free_.back();
+  const ObjectIndex index = free_.empty() ? index_end() : free_.front();
   check(index, world_from_object, volume);
   if (free_.empty()) {
     objects_.emplace_back();
@@ -69,6 +70,7 @@ ObjectIndex ObjectBuffer::add(const glm::mat4 &world_from_object, std::uint32_t 
     revisions_.emplace_back();
   }
   else {
+    std::ranges::pop_heap(free_, std::greater());
     free_.pop_back();
   }
   write(index, world_from_object, value, volume);
@@ -92,6 +94,7 @@ void ObjectBuffer::remove(ObjectIndex index)
 {
   GNOMON_ASSERT(is_live(index) && index != object_identity, "object {} cannot be removed", index);
   free_.push_back(index);
+  std::ranges::push_heap(free_, std::greater());
   revisions_[index] = 0;
   structure_revision_ = ++revision_;
 }

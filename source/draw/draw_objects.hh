@@ -37,7 +37,7 @@ class ObjectBuffer {
   ObjectIndex add(const glm::mat4 &world_from_object, std::uint32_t value = 0, const CullingVolume &volume = {});
   /** Change an object. The same values again change nothing. \pre \a index is of add, and not removed \throws as add */
   void set(ObjectIndex index, const glm::mat4 &world_from_object, std::uint32_t value, const CullingVolume &volume);
-  /** Its index may be used again by add. \pre as set */
+  /** Its index may be used again by add, which takes the least free one. \pre as set */
   void remove(ObjectIndex index);
 
   [[nodiscard]] const glm::mat4 &world_from_object(ObjectIndex index) const
@@ -92,6 +92,7 @@ class ObjectBuffer {
   std::vector<shared::ObjectData> objects_;
   std::vector<CullingVolume> volumes_;
   std::vector<std::uint64_t> revisions_;
+  /** A heap with the least index first, so that indices, and with them the order of drawing, depend on few edits. */
   std::vector<ObjectIndex> free_;
   std::uint64_t revision_ = 0;
   std::uint64_t structure_revision_ = 0;

@@ -17,6 +17,11 @@ bool is_drawable(const scene::Material &material)
   return material.alpha_mode != scene::AlphaMode::Mask || material.alpha >= material.alpha_cutoff;
 }
 
+bool is_textured(const scene::Scene &scene, const scene::Mesh &mesh)
+{
+  return !mesh.uvs.empty() && is_drawable(scene, scene.material_of(mesh).base_color_texture);
+}
+
 bool is_masked(const scene::Scene &scene, const scene::Material &material)
 {
   return material.alpha_mode == scene::AlphaMode::Mask && is_drawable(scene, material.base_color_texture) &&

@@ -11,7 +11,13 @@ namespace gnomon::render_scene {
 /** Whether any part of the surface can be above the cutoff; a texture's alpha is at most 1. */
 [[nodiscard]] bool is_drawable(const scene::Material &material);
 
-/** Whether a texture may cut some of the surface out, so that a pass must read its alpha. */
+/** Whether \a mesh can be drawn with the texture of its material: both are there, and the mesh has uvs. */
+[[nodiscard]] bool is_textured(const scene::Scene &scene, const scene::Mesh &mesh);
+
+/**
+ * Whether a texture may cut some of the surface out, so that a pass must read its alpha. A mesh without uvs is not cut:
+ * \see is_textured
+ */
 [[nodiscard]] bool is_masked(const scene::Scene &scene, const scene::Material &material);
 
 /** \a is_masked: see the function of this name. */

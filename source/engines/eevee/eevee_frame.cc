@@ -148,7 +148,13 @@ constexpr std::span display_only = std::span(pictures).subspan(3, 1);
 constexpr std::array<FrameStep, 5> steps = {{
     // Before the shadows: cascades may be fitted to the depths.
     {"depth_prepass", FrameStep::When::EachSample, need_depth, {}, depth_only, depth_passes, record_depth},
-    {"shadows", FrameStep::When::EachSample, need_shadows, depth_only, shadow_targets, {}, record_shadows,
+    {"shadows",
+     FrameStep::When::EachSample,
+     need_shadows,
+     depth_only,
+     shadow_targets,
+     {},
+     record_shadows,
      [](Data &data) { data.stl.shadows.submitted(); }},
     {"lit", FrameStep::When::EachSample, need_lit, shadow_targets, radiance_only, lit_passes, record_lit},
     {"film", FrameStep::When::EachSample, need_film, radiance_only, film_only, film_passes, record_film},

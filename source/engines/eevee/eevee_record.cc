@@ -54,7 +54,7 @@ std::uint64_t caster_fingerprint(const scene::Scene &scene, const render_scene::
   key.mesh = object.mesh.key();
   key.shape = scene.meshes().revision(object.mesh, scene::Mesh::Aspect::Shape);
   key.is_double_sided = material.is_double_sided ? 1 : 0;
-  if (render_scene::is_masked(scene, material)) {
+  if (render_scene::is_textured(scene, mesh) && render_scene::is_masked(scene, material)) {
     const scene::Handle<scene::Texture> texture = material.base_color_texture;
     key.texture = texture.key();
     key.image_of_texture = scene.textures().revision(texture, scene::Texture::Aspect::Image);
@@ -210,10 +210,11 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
   gpu::Device &device = viewport.device();
   const scene::Scene &scene = scene_.scene();
   const render_scene::RenderObject &object = scene_.object(index);
-  const scene::Material &material = scene.material_of(scene.meshes()[object.mesh]);
-  const bool has_mask = render_scene::is_masked(scene, material);
-  const bool is_lit_textured =
-      render_scene::is_drawable(scene, material.base_color_texture) && (has_mask || has(stl.features, Feature::Light));
+  const scene::Mesh &mesh = scene.meshes()[object.mesh];
+  const scene::Material &material = scene.material_of(mesh);
+  const bool has_texture = render_scene::is_textured(scene, mesh);
+  const bool has_mask = has_texture && render_scene::is_masked(scene, material);
+  const bool is_lit_textured = has_texture && (has_mask || has(stl.features, Feature::Light));
   const gpu::Batch &batch = scene_.batch(object.mesh, is_lit_textured);
   stl.is_mirrored[index] = draw::is_mirrored(scene_.objects().world_from_object(index));
   const State winding = stl.is_mirrored[index] ? State::FrontClockwise : State::None;
@@ -266,8 +267,9 @@ void Engine::record_caster(Data &data, draw::ObjectIndex index)
   StorageList &stl = data.stl;
   const render_scene::RenderObject &object = scene_.object(index);
   const scene::Scene &scene = scene_.scene();
-  const scene::Material &material = scene.material_of(scene.meshes()[object.mesh]);
-  const bool has_mask = render_scene::is_masked(scene, material);
+  const scene::Mesh &mesh = scene.meshes()[object.mesh];
+  const scene::Material &material = scene.material_of(mesh);
+  const bool has_mask = render_scene::is_textured(scene, mesh) && render_scene::is_masked(scene, material);
   const State winding = stl.is_mirrored[index] ? State::FrontClockwise : State::None;
   draw::InstanceCall *&instances = stl.caster_calls[{object.mesh, winding}];
   if (!instances) {

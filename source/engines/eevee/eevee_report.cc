@@ -78,7 +78,7 @@ std::set<scene::Handle<scene::Image>> read_images(const Source &source)
   std::set<scene::Handle<scene::Image>> images;
   for (const draw::ObjectIndex object : source.data.stl.objects) {
     const scene::Handle<scene::Texture> texture = source.scene().material_of(source.mesh(object)).base_color_texture;
-    if (render_scene::is_drawable(source.scene(), texture)) {
+    if (render_scene::is_textured(source.scene(), source.mesh(object))) {
       images.insert(source.scene().textures()[texture].image);
     }
   }
@@ -482,6 +482,18 @@ Report Engine::report(draw::Viewport &viewport) const
   }
   report.warnings = stl.lamps.warnings;
   report.warnings.insert(report.warnings.end(), stl.shadows.warnings().begin(), stl.shadows.warnings().end());
+  for (std::string &line : scene_.scene().stale_references()) {
+    report.warnings.push_back(std::move(line));
+  }
+  std::set<std::string_view> untextured;
+  for (const draw::ObjectIndex object : stl.objects) {
+    const scene::Mesh &mesh = scene_.scene().meshes()[scene_.object(object).mesh];
+    if (mesh.uvs.empty() && scene_.scene().material_of(mesh).base_color_texture &&
+        untextured.insert(mesh.name).second) {
+      report.warnings.push_back(
+          fmt::format("mesh '{}': it has no uvs; its material's texture is not drawn", mesh.name));
+    }
+  }
   report.limits = stl.lamps.limits;
   report.limits.insert(report.limits.end(), stl.shadows.limits().begin(), stl.shadows.limits().end());
   report.shadow_counters = stl.shadows.counters();
