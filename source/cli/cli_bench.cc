@@ -5,8 +5,8 @@
 
 #include "draw_view_shared.h"
 #include "eevee_camera.hh"
-#include "shadows/shadows.hh"
 #include "measure_left_out.hh"
+#include "shadows/shadows.hh"
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>

@@ -3,8 +3,8 @@
 #include "internal/stability_cases.hh"
 
 #include "eevee_esm_shared.h"
-#include "shadows/shadow_octahedral_store.hh"
 #include "eevee_octahedral_shared.h"
+#include "shadows/shadow_octahedral_store.hh"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

@@ -2,9 +2,9 @@
 // Lamps: cones, fall-off, near planes, the block's limit.
 #include "internal/stability_cases.hh"
 
-#include "shadows/shadow_casters.hh"
 #include "eevee_lamps.hh"
 #include "eevee_shadow_shared.h"
+#include "shadows/shadow_casters.hh"
 #include "shadows/shadows.hh"
 
 #include <fmt/format.h>

@@ -2,9 +2,9 @@
 // Directions on the octahedral map and on a cube's faces: folds, edges, corners, lengths.
 #include "internal/stability_cases.hh"
 
-#include "shadows/shadow_casters.hh"
 #include "eevee_octahedral_shared.h"
 #include "eevee_shadow_shared.h"
+#include "shadows/shadow_casters.hh"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

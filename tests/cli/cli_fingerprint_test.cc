@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli_fingerprint.hh"
 
-#include "internal/measure_scene.hh"
 #include "gltf_import.hh"
+#include "internal/measure_scene.hh"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // `gnomon render` and its options for shadows, on the driver.
 #include "cli_process.hh"
-#include "gpu_device_fixture.hh"
 #include "gltf/gltf_builder.hh"
+#include "gpu_device_fixture.hh"
 
 #include <OpenImageIO/imageio.h>
 

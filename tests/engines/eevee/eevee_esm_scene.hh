@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "shadows/shadow_octahedral_store.hh"
 #include "eevee_octahedral_shared.h"
 #include "eevee_shadow_shared.h"
 #include "gpu/gpu_testing.hh"
+#include "shadows/shadow_octahedral_store.hh"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/packing.hpp>

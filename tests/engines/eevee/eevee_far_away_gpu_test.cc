@@ -84,8 +84,8 @@ TEST_F(FarAway, AMovingCameraChangesTheOriginAndNotThePicture)
   EXPECT_EQ(renderer.render_scene().origin_ws(), glm::dvec3(0.0));
   const std::vector<glm::vec4> second = picture_at(1600.0);
   EXPECT_EQ(renderer.render_scene().origin_ws(), glm::dvec3(2048.0, 0.0, 0.0));
-  // The same arrangement stands in both places, 1600 m apart. Floats are spaced by 0.03 mm where the second one is drawn,
-  // which moves single texels of shadow edges: 1.3e-4 was measured.
+  // The same arrangement stands in both places, 1600 m apart. Floats are spaced by 0.03 mm where the second one is
+  // drawn, which moves single texels of shadow edges: 1.3e-4 was measured.
   EXPECT_LE(rms_difference(first, second), 1e-3);
   EXPECT_LE(rms_difference(first, picture_at(0.0)), 1e-6) << "and back";
 }

@@ -63,18 +63,12 @@ class RandomEditor {
           lamp.shadow.kind = scene::ShadowKind(below(4));
         });
         break;
-      case 8:
-        scene_.edit(pick(objects_), [&](scene::Node &node) { node.is_visible = !node.is_visible; });
-        break;
-      case 9:
-        scene_.edit(pick(objects_), [&](scene::Node &node) { node.meshes = {pick(meshes_)}; });
-        break;
+      case 8: scene_.edit(pick(objects_), [&](scene::Node &node) { node.is_visible = !node.is_visible; }); break;
+      case 9: scene_.edit(pick(objects_), [&](scene::Node &node) { node.meshes = {pick(meshes_)}; }); break;
       case 10: edit_material(); break;
       case 11: edit_mesh(); break;
       case 12: edit_image(); break;
-      case 13:
-        scene_.edit(pick(objects_), [&](scene::Node &node) { node.casts_shadow = !node.casts_shadow; });
-        break;
+      case 13: scene_.edit(pick(objects_), [&](scene::Node &node) { node.casts_shadow = !node.casts_shadow; }); break;
       default: break;
     }
   }

@@ -118,8 +118,8 @@ TEST(ShadowPlan, WhereLimitsLeaveTooFewPlacesTheLastLampsLose)
   EXPECT_EQ(plan.places.back().lamp, 2U);
   ASSERT_EQ(plan.limits.size(), 1U);
   test::expect_contains(plan.limits[0], "'lamp 3', 'lamp 4'");
-  const ShadowPlan small = plan_shadows(point_lamps(5), {.cube_size_px = 16, .memory_bytes_max = 2 * cube_bytes(16)},
-                                        {}, {});
+  const ShadowPlan small =
+      plan_shadows(point_lamps(5), {.cube_size_px = 16, .memory_bytes_max = 2 * cube_bytes(16)}, {}, {});
   EXPECT_EQ(small.places.size(), 2U);
 }
 
