@@ -485,11 +485,17 @@ Report Engine::report(draw::Viewport &viewport) const
   for (std::string &line : scene_.scene().stale_references()) {
     report.warnings.push_back(std::move(line));
   }
-  std::set<std::string_view> untextured;
+  std::set<scene::Handle<scene::Mesh>> meshes;
   for (const draw::ObjectIndex object : stl.objects) {
-    const scene::Mesh &mesh = scene_.scene().meshes()[scene_.object(object).mesh];
-    if (mesh.uvs.empty() && scene_.scene().material_of(mesh).base_color_texture &&
-        untextured.insert(mesh.name).second) {
+    const scene::Handle<scene::Mesh> handle = scene_.object(object).mesh;
+    if (!meshes.insert(handle).second) {
+      continue;
+    }
+    const scene::Mesh &mesh = scene_.scene().meshes()[handle];
+    if (!mesh.colors.empty()) {
+      report.warnings.push_back(fmt::format("mesh '{}': vertex colours are not drawn yet", mesh.name));
+    }
+    if (mesh.uvs.empty() && scene_.scene().material_of(mesh).base_color_texture) {
       report.warnings.push_back(
           fmt::format("mesh '{}': it has no uvs; its material's texture is not drawn", mesh.name));
     }

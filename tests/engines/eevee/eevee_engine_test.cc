@@ -262,5 +262,34 @@ TEST_F(EngineTest, ShadowsAreDrawnAgainWithReloadedShaders)
   EXPECT_EQ(renderer.engine.report(renderer.viewport).shadow_counters.lamps_updated, before + 1);
 }
 
+/** Another mesh's uvs stand where it would read them. */
+TEST_F(EngineTest, AMeshWithoutUvsIsDrawnWithoutItsTextureAndNamed)
+{
+  scene = {};
+  const auto material = test::add_material(scene, glm::vec3(0.5F));
+  test::add_object(scene, test::add_square_mesh(scene, material), glm::dmat4(1.0));
+  test::add_lamp(scene, scene::LampKind::Hemi, {0, 0, 2}, {0, 0, -1}, 1.0F);
+  const auto texture = test::add_texture(scene, 1, {255, 0, 0, 255});
+  scene.edit(material, [&](scene::Material &edited) { edited.base_color_texture = texture; });
+  ASSERT_TRUE(scene.meshes()[scene.meshes().first()].uvs.empty());
+  Renderer renderer(*device, scene, {16, 16});
+  renderer.draw(camera);
+  EXPECT_EQ(std::ranges::count(device->live_resources(), "texture 'image'"), 0);
+  const std::vector<std::string> warnings = renderer.engine.report(renderer.viewport).warnings;
+  EXPECT_EQ(warnings, std::vector<std::string>{"mesh 'square': it has no uvs; its material's texture is not drawn"});
+}
+
+TEST_F(EngineTest, StaleHandlesAndVertexColoursAreNamed)
+{
+  const auto handle = scene.meshes().first();
+  scene.edit(handle, [](scene::Mesh &edited) { edited.colors.assign(4, glm::vec4(1.0F)); });
+  scene.remove(scene.materials().first());
+  Renderer renderer(*device, scene, {16, 16});
+  renderer.draw(camera);
+  const std::vector<std::string> warnings = renderer.engine.report(renderer.viewport).warnings;
+  EXPECT_EQ(warnings, (std::vector<std::string>{"mesh 'square': its material was removed",
+                                                "mesh 'square': vertex colours are not drawn yet"}));
+}
+
 }  // namespace
 }  // namespace gnomon::eevee
