@@ -62,6 +62,8 @@ struct Report {
   /** "frame": programs, passes, targets, blocks, meshes, textures, shadows and draws, as of the last picture. */
   FrameNode tree;
   ShadowCounters shadow_counters;
+  /** How often the passes were recorded since the first sync of the viewport. */
+  std::uint64_t pass_recordings = 0;
 };
 
 /**

@@ -115,6 +115,8 @@ struct StorageList {
   /** An object changed in a way that passes depend on. */
   bool is_winding_changed = false;
   std::optional<PassesKey> recorded;
+  /** \see Report */
+  std::uint64_t pass_recordings = 0;
   std::optional<ShadowsKey> shadows_synced;
   /** Casters are those of the last sync of the shadows. */
   bool has_casters = false;

@@ -189,6 +189,7 @@ void Engine::record_passes(draw::Viewport &viewport)
   Data &data = viewport.engine_data<Data>(*this);
   StorageList &stl = data.stl;
   data.psl = std::make_unique<PassList>(scene_.objects());
+  stl.pass_recordings++;
   stl.groups.clear();
   stl.caster_calls.clear();
   stl.caster_of.assign(scene_.objects().index_end(), nullptr);

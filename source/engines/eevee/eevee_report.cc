@@ -503,6 +503,7 @@ Report Engine::report(draw::Viewport &viewport) const
   report.limits = stl.lamps.limits;
   report.limits.insert(report.limits.end(), stl.shadows.limits().begin(), stl.shadows.limits().end());
   report.shadow_counters = stl.shadows.counters();
+  report.pass_recordings = stl.pass_recordings;
   for (int i = 0; i < stl.lamps.light_block.light_count; i++) {
     const scene::PlacedLamp &lamp = scene_.lamps()[stl.lamps.lamp_index[std::size_t(i)]];
     const bool is_asked_for = shadow_kind(lamp, settings_.shadow) != scene::ShadowKind::None;

@@ -65,12 +65,14 @@ class EditTest : public testing::Test {
     ShadowCounters shadows;
     std::uint64_t textures_made = 0;
     std::uint64_t shaders_made = 0;
+    std::uint64_t pass_recordings = 0;
   };
   template <typename Change>
   Cost cost_of(Change &&change)
   {
     const gpu::Counters before = device->counters();
     const ShadowCounters shadows = renderer->engine.shadows(renderer->viewport).counters();
+    const std::uint64_t recordings = renderer->engine.report(renderer->viewport).pass_recordings;
     change();
     renderer->sync();
     renderer->draw(camera);
@@ -81,7 +83,8 @@ class EditTest : public testing::Test {
     return {edited.upload_bytes - before.upload_bytes - still_bytes,
             {after.lamps_updated - shadows.lamps_updated, after.faces_drawn - shadows.faces_drawn, 0, 0},
             edited.textures_made - before.textures_made,
-            edited.shaders_made - before.shaders_made};
+            edited.shaders_made - before.shaders_made,
+            renderer->engine.report(renderer->viewport).pass_recordings - recordings};
   }
   /** The first picture, of the whole scene. */
   Cost start()
@@ -214,24 +217,44 @@ TEST_F(EditTest, ALampThatMovesIsDrawnAlone)
 TEST_F(EditTest, ALampThatIsDimmedOrRenamedOrAddedOrRemoved)
 {
   start();
-  // No shadow changes when a lamp is dimmed or renamed, and no other lamp's when one is added or removed. The shadows
-  // do not tell these edits apart yet: the expectations of shadows drawn follow with that.
-  expect_small(cost_of([&] { scene.edit(lamps[10], [](scene::Lamp &lamp) { lamp.intensity = 0.5F; }); }), 0);
-  expect_small(cost_of([&] { scene.edit(lamps[10], [](scene::Lamp &lamp) { lamp.name = "renamed"; }); }), 0);
-  const Cost removed = cost_of([&] { scene.remove(lamps[10]); });
-  EXPECT_LE(removed.upload_bytes, lamps_bytes);
+  const auto dim = [&] { scene.edit(lamps[10], [](scene::Lamp &lamp) { lamp.intensity = 0.5F; }); };
+  const auto rename = [&] { scene.edit(lamps[10], [](scene::Lamp &lamp) { lamp.name = "renamed"; }); };
+  for (const Cost &cost : {cost_of(dim), cost_of(rename), cost_of([&] { scene.remove(lamps[10]); })}) {
+    expect_small(cost, 0);
+    expect_no_shadow_is_drawn(cost);
+    EXPECT_EQ(cost.pass_recordings, 0U);
+  }
   const Cost added = cost_of([&] {
     const auto lamp = test::add_lamp(scene, scene::LampKind::Point, {29, 31, 2}, {0, 0, -1}, 1.0F);
     scene.edit(lamp, [](scene::Lamp &value) { value.range = 4.0F; });
   });
   EXPECT_LE(added.upload_bytes, lamps_bytes);
+  EXPECT_EQ(added.shadows.lamps_updated, 1U);
+  EXPECT_EQ(added.pass_recordings, 0U);
+}
+
+TEST_F(EditTest, PassesAreRecordedOnlyWhereObjectsOrMaterialsNeedIt)
+{
+  start();
+  const auto recordings = [&](auto &&change) { return cost_of(change).pass_recordings; };
+  EXPECT_EQ(recordings([] {}), 0U);
+  EXPECT_EQ(recordings([&] { scene.set_transform(objects[7], box_at(14.2, 0.1)); }), 0U);
+  EXPECT_EQ(recordings([&] { scene.set_transform(lamp_nodes[3], glm::dmat4(1.0)); }), 0U);
+  EXPECT_EQ(recordings([&] {
+              scene.edit(materials[0], [](scene::Material &material) { material.base_color = glm::vec3(0.1F); });
+            }),
+            0U);
+  EXPECT_EQ(recordings([&] { scene.remove(objects[8]); }), 1U);
+  EXPECT_EQ(recordings(
+                [&] { scene.edit(materials[0], [](scene::Material &material) { material.is_double_sided = false; }); }),
+            1U);
 }
 
 TEST_F(EditTest, AnotherSizeKeepsSceneAndShadows)
 {
   start();
   const Cost cost = cost_of([&] { renderer->viewport.resize({32, 48}); });
-  expect_small({cost.upload_bytes, cost.shadows, 0, cost.shaders_made}, 0);
+  expect_small({cost.upload_bytes, cost.shadows, 0, cost.shaders_made, 0}, 0);
   // Depth, radiance and film.
   EXPECT_EQ(cost.textures_made, 3U);
   expect_no_shadow_is_drawn(cost);
