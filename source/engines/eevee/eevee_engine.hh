@@ -19,20 +19,20 @@ enum class ViewTransform { Standard = VIEW_TRANSFORM_STANDARD, Raw = VIEW_TRANSF
 
 struct Settings {
   ShadowSettings shadow{};
-  /** Samples a pixel that one picture is the mean of, at least 1. */
+  /** Samples for each pixel of a picture, at least 1. */
   int sample_count = 1;
-  /** Another arrangement of the samples. */
+  /** Selects the arrangement of the samples. */
   std::uint32_t seed = 0;
-  /** Make the picture that a display shows, beside the radiance. */
+  /** Make a display-referred picture in addition to the radiance. */
   bool has_display = false;
   ViewTransform view_transform = ViewTransform::Standard;
-  /** Stops, -120 to 120: radiance is multiplied by 2 to this before the view transform. */
+  /** Stops, -120 to 120: radiance is multiplied by 2^exposure before the view transform. */
   float exposure = 0.0F;
-  /** Measure each step on the device. */
+  /** Measure the time of each step on the device. */
   bool is_timed = false;
-  /** Multiply the picture by a colour for each cascade of the first sun that has any. */
+  /** Multiply the picture by a colour for each cascade of the first sun that has a shadow. */
   bool has_cascade_tint = false;
-  /** Engine::probe may be asked. */
+  /** Engine::probe may be called. */
   bool has_probe = false;
 };
 
@@ -44,19 +44,20 @@ struct StepTime {
 
 struct Data;
 
-/** What the engine makes of one lamp at the middle of each pixel; rows from the bottom. */
+/** The surface at the middle of each pixel and the visibility of one lamp there; rows from the bottom. */
 struct Probe {
-  /** xyz: where the surface is, world space; w: how much of the lamp it sees by its shadow, in [0, 1]. */
+  /** xyz: position in the coordinates of the render scene, metres; w: visibility of the lamp by its shadow, in [0, 1].
+   */
   std::vector<glm::vec4> position_visibility;
-  /** xyz: of the triangle, on the side that is seen; w: 1. All 0 where there is no surface. */
+  /** xyz: normal of the triangle on the visible side; w: 1. All 0 where there is no surface. */
   std::vector<glm::vec4> normal;
 };
 
-/** What one viewport's picture is made of, for people and scripts to read. */
+/** The content of one viewport's picture: warnings, limits, and everything that was made or left out. */
 struct Report {
   std::vector<std::string> warnings;
   std::vector<std::string> limits;
-  /** Lamps that ask for a shadow, give light, and have none. */
+  /** Lamps that give light and request a shadow, and have none because of a limit. */
   int lost_shadow_count = 0;
   std::vector<FramePart> parts;
   /** "frame": programs, passes, targets, blocks, meshes, textures, shadows and draws, as of the last picture. */
@@ -67,13 +68,11 @@ struct Report {
 };
 
 /**
- * Lights a scene with its lamps and their shadow maps. What a sync takes note of is made on the device by the first
- * draw whose view touches any object: a view of nothing costs a clear. The frame: shadows, depth prepass, culled
- * prepass, lit pass; then the film, where samples are summed under the pixel filter, and the display's picture, where
- * asked for.
+ * Lights a scene with its lamps and their shadow maps. GPU resources are created by the first draw in which an object
+ * is visible; a view of nothing costs a clear. eevee_frame.cc lists the steps of a frame.
  *
- * One picture is `sample_count` calls of draw_scene (through draw::Viewport::draw) with one view; the engine moves
- * its samples within the pixels.
+ * One picture takes `sample_count` calls of draw_scene (through draw::Viewport::draw) with one view. The engine offsets
+ * the samples within the pixels.
  */
 class Engine final : public draw::Engine {
  public:
@@ -100,32 +99,31 @@ class Engine final : public draw::Engine {
   void cache_finish(draw::Viewport &viewport) override;
   void draw_scene(draw::Viewport &viewport, const draw::View &view) override;
 
-  /** The scene-linear picture, RGBA32F: a mean once all samples are drawn. */
+  /** The scene-linear picture, RGBA32F. Complete once all samples are drawn. */
   [[nodiscard]] const gpu::Texture &radiance(draw::Viewport &viewport) const;
-  /** The display's picture, RGBA8. \pre Settings::has_display; all samples are drawn. */
+  /** The display-referred picture, RGBA8. \pre Settings::has_display; all samples are drawn. */
   [[nodiscard]] const gpu::Texture &display(draw::Viewport &viewport) const;
-  /** Of the samples drawn since the last call; waits for the device. Empty unless Settings::is_timed. */
+  /** Times of the samples drawn since the last call. Waits for the device. Empty unless Settings::is_timed. */
   [[nodiscard]] std::vector<StepTime> take_step_times(draw::Viewport &viewport) const;
   /**
    * Positions, normals and the visibility of the \a lamp-th lamp of RenderScene::lamps at each pixel. Nothing where the
    * lamp gives no light, or no object is there. \pre Settings::has_probe
    */
   [[nodiscard]] std::optional<Probe> probe(draw::Viewport &viewport, const draw::View &view, std::size_t lamp);
-  /** Edge of a texel of that lamp's shadow at a place, across the light, metres; 0: it has none there. */
+  /** Edge of a texel of that lamp's shadow at a position, perpendicular to the light, metres; 0: it has none there. */
   [[nodiscard]] double shadow_texel_size(draw::Viewport &viewport, std::size_t lamp,
                                          const glm::dvec3 &position_ws) const;
   /**
-   * Layers of that lamp's shadow, by name, as the last picture's view had them: "0" to "5" for faces of a cube in
-   * OpenGL's order, "0" on for cascades of a sun from the finest, "0" for a spot, "octahedral". Empty where it has
-   * none.
+   * Names of the layers of that lamp's shadow in the last picture: "0" to "5" for faces of a cube in OpenGL's order,
+   * "0" and up for cascades of a sun from the finest, "0" for a spot, "octahedral". Empty where the lamp has no shadow.
    */
   [[nodiscard]] std::vector<std::string> shadow_layers(draw::Viewport &viewport, std::size_t lamp) const;
-  /** Picture of one of them, by index, or of all. \see ShadowPicture::draw \pre shadow_layers is not empty */
+  /** A picture of one layer, by index, or of all layers. \see ShadowPicture::draw \pre shadow_layers is not empty */
   [[nodiscard]] const gpu::Texture &shadow_picture(draw::Viewport &viewport, std::size_t lamp,
                                                    std::optional<std::size_t> layer = std::nullopt);
-  /** The sun whose cascades Settings::has_cascade_tint shows, in the scene; valid after a sync. */
+  /** Index in RenderScene::lamps of the sun whose cascades Settings::has_cascade_tint shows; valid after a sync. */
   [[nodiscard]] std::optional<std::size_t> tinted_sun(draw::Viewport &viewport) const;
-  /** For those who look at the layers themselves; as of the last draw. */
+  /** The shadow layers, as of the last draw. */
   [[nodiscard]] const Shadows &shadows(draw::Viewport &viewport) const;
   /** Linear in the size of the scene: call it for reports, not for every frame. Before the first sync it is empty. */
   [[nodiscard]] Report report(draw::Viewport &viewport) const;
@@ -134,12 +132,15 @@ class Engine final : public draw::Engine {
   {
     return shadows(viewport).counters();
   }
-  /** For long-running hosts, when a shader file was edited: ShaderCache::reload; then draw::Viewport::sync. */
+  /**
+   * Compile the programs again, from \a files; for hosts that edit shaders. Call draw::Viewport::sync after it.
+   * \return one message for each program that failed and stays as it was. \see ShaderCache::reload
+   */
   std::vector<std::string> reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files,
                                           gpu::ShaderReflection reflection);
-  /** Draw each shadow again, up to date or not: for who measures what that costs. */
+  /** Mark all shadows as out of date, to measure the cost of drawing them. */
   void invalidate_shadows(draw::Viewport &viewport) const;
-  /** The recorded passes as text: none before a draw that saw anything. */
+  /** The recorded passes as text; empty before the first draw in which an object is visible. */
   [[nodiscard]] std::string serialize_passes(draw::Viewport &viewport) const;
 
  private:

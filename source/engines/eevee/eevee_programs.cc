@@ -42,7 +42,7 @@ constexpr std::array<ShaderDeclaration, 17> declarations = {{
     {ShaderId::Lit, "eevee_lit", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_lit_frag.glsl",
      light_features | Feature::BaseColorTexture, Feature::None, "light that surfaces send to the viewer"},
     {ShaderId::Probe, "eevee_probe", "eevee/eevee_surface_vert.glsl", "", "eevee/eevee_probe_frag.glsl",
-     shadow_features, Feature::Light, "position, normal and visibility of one lamp, for who judges them"},
+     shadow_features, Feature::Light, "position, normal and visibility of one lamp, for comparison with the reference"},
     {ShaderId::Film, "eevee_film", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_film_frag.glsl", Feature::None,
      Feature::None, "sum of several samples a pixel"},
     {ShaderId::Tonemap, "eevee_tonemap", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_tonemap_frag.glsl",

@@ -82,7 +82,9 @@ void Engine::make_targets(draw::Viewport &viewport)
 {
   Data &data = viewport.engine_data<Data>(*this);
   gpu::Device &device = viewport.device();
-  auto &[fbl, txl, psl, stl, timing, samples_drawn, shadow_picture, is_synced, is_recorded, is_seen, passes] = data;
+  FramebufferList &fbl = data.fbl;
+  TextureList &txl = data.txl;
+  StorageList &stl = data.stl;
   if (!txl.radiance) {
     txl.radiance = create_target(device, "radiance", gpu::Format::RGBA32F, viewport.size_px());
     fbl.depth_fb = device.create_framebuffer({.name = "depth_fb", .colors = {}, .depth = {&viewport.depth_texture()}});
