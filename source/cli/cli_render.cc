@@ -6,8 +6,7 @@
 #include "cli_explain.hh"
 #include "cli_output.hh"
 
-#include "eevee_camera.hh"
-#include "eevee_engine.hh"
+#include "eevee_scene_renderer.hh"
 #include "gltf_import.hh"
 #include "gpu_read.hh"
 
@@ -317,22 +316,20 @@ void show_progress(int done, int count)
   }
 }
 
-void render_frames(const RenderOptions &options, const scene::PlacedCamera &camera, eevee::Engine &engine,
-                   draw::Viewport &viewport, RenderResult &result)
+void render_frames(const RenderOptions &options, const scene::PlacedCamera &camera, eevee::SceneRenderer &renderer,
+                   RenderResult &result)
 {
-  const std::array<draw::Engine *, 1> engines = {&engine};
-  const draw::View view = eevee::view_of(camera, viewport.size_px());
   eevee::ShadowCounters before;
   for (int frame = 0; frame < options.repeat; frame++) {
     const Clock::time_point start = Clock::now();
-    for (int i = 0; i < options.samples; i++) {
-      viewport.draw(engines, view);
-      show_progress(i + 1, options.samples);
-    }
-    viewport.device().finish();
+    renderer.draw(camera, [&](int samples_drawn) {
+      show_progress(samples_drawn, options.samples);
+      return true;
+    });
+    renderer.viewport().device().finish();
     result.frame_seconds.push_back(seconds_since(start));
-    result.frame_steps.push_back(engine.take_step_times(viewport));
-    const eevee::ShadowCounters now = engine.report(viewport).shadow_counters;
+    result.frame_steps.push_back(renderer.engine().take_step_times(renderer.viewport()));
+    const eevee::ShadowCounters now = renderer.engine().shadow_counters(renderer.viewport());
     result.frame_shadows.push_back({now.lamps_updated - before.lamps_updated, now.faces_drawn - before.faces_drawn,
                                     now.faces_skipped - before.faces_skipped, now.caster_draws - before.caster_draws});
     before = now;
@@ -415,12 +412,10 @@ Status render(RenderOptions options)
     // The first sample draws the shadows, of the size that all samples have.
     options.samples = settings.sample_count = 1;
   }
-  render_scene::RenderScene render_scene(*device, scene);
-  eevee::Engine engine(render_scene, settings);
-  draw::Viewport viewport(*device, size_px);
-  const std::array<draw::Engine *, 1> engines = {&engine};
-  render_scene.update();
-  viewport.sync(engines, render_scene.objects());
+  eevee::SceneRenderer renderer(*device, scene, size_px, settings);
+  eevee::Engine &engine = renderer.engine();
+  draw::Viewport &viewport = renderer.viewport();
+  renderer.sync();
   result.report = engine.report(viewport);
   for (const std::string &warning : result.report.warnings) {
     fmt::print(stderr, "gnomon: warning: {}\n", warning);
@@ -433,7 +428,7 @@ Status render(RenderOptions options)
   }
   result.sync_seconds = seconds_since(sync_start);
 
-  render_frames(options, render_scene.relative(camera), engine, viewport, result);
+  render_frames(options, camera, renderer, result);
   result.report = engine.report(viewport);
 
   const gpu::Texture &picture = options.debug_view.kind == DebugView::Kind::Shadow
