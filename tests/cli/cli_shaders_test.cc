@@ -107,7 +107,7 @@ TEST_F(ShadersTest, NeedNoDisplayDriverOrHome)
   copy_tree();
   // One program: TheEnginesOwnShadersAreClean checks all of them.
   const std::string program =
-      "env -i '" GNOMON_PROGRAM "' shaders check eevee_film --shaders '" + (folder / "tree").string() + "'";
+      "env -i '" GNOMON_PROGRAM "' shaders check --program eevee_film --shaders '" + (folder / "tree").string() + "'";
   EXPECT_EQ(std::system((program + " > /dev/null 2>&1").c_str()), 0);
 }
 
