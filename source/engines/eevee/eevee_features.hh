@@ -61,7 +61,7 @@ struct PcfKernel {
   bool operator==(const PcfKernel &) const = default;
 };
 
-/** Something a frame consists of, or was spared, and who asked for it or why nobody did. */
+/** A part of a frame that was made or left out, and the reason. */
 struct FramePart {
   std::string what;
   bool is_made = false;

@@ -14,7 +14,7 @@ namespace gnomon::eevee {
 struct FrameNode {
   std::string what;
   bool is_made = false;
-  /** Made: who asked for it. Not made: why nobody did. */
+  /** The reason why it was made, or why it was left out. */
   std::string why{};
   /** On the device; of a node with children, theirs together. */
   std::optional<std::size_t> bytes{};
