@@ -13,6 +13,6 @@ void main()
 {
   gl_Position = view.clip_from_world * vertex_position_ws();
 #ifdef USE_ALPHA_MASK
-  hand_on_base_color();
+  write_base_color_varyings();
 #endif
 }

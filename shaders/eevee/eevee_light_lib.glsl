@@ -74,7 +74,7 @@ vec3 light_radiance(LightData light, MaterialData material, Surface surface)
     to_light = distance_sq > 0.0 ? vector * inversesqrt(distance_sq) : vec3(0.0);
     irradiance = distance_falloff(distance_sq, light.radius_sq, light.range_inv_sq);
     if (light.kind == LIGHT_SPOT) {
-      irradiance *= spot_mask(cosine_drop(-to_light, light.forward_ws), light.spot_drop_outer, light.spot_inv_width);
+      irradiance *= spot_mask(one_minus_cos(-to_light, light.forward_ws), light.spot_drop_outer, light.spot_inv_width);
     }
   }
 #endif

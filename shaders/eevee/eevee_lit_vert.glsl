@@ -18,11 +18,11 @@ void main()
   vec4 position_ws = vertex_position_ws();
   gl_Position = view.clip_from_world * position_ws;
 #ifdef USE_BASE_COLOR_TEXTURE
-  hand_on_base_color();
+  write_base_color_varyings();
 #else
   surface_material = objects[draw_instance.x].value;
 #endif
 #ifdef USE_LIGHT
-  hand_on_surface(position_ws.xyz);
+  write_surface_varyings(position_ws.xyz);
 #endif
 }

@@ -15,6 +15,6 @@ void place_caster()
 {
   gl_Position = shadow_render.clip_from_world[draw_instance.y] * vertex_position_ws();
 #ifdef USE_ALPHA_MASK
-  hand_on_base_color();
+  write_base_color_varyings();
 #endif
 }

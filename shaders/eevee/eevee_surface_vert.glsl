@@ -10,5 +10,5 @@ void main()
 {
   vec4 position_ws = vertex_position_ws();
   gl_Position = view.clip_from_world * position_ws;
-  hand_on_surface(position_ws.xyz);
+  write_surface_varyings(position_ws.xyz);
 }

@@ -7,7 +7,7 @@ layout(location = ATTRIBUTE_NORMAL) in vec3 normal;
 layout(location = 0) out vec3 surface_position_ws;
 layout(location = 1) out vec3 surface_normal_ws;
 
-void hand_on_surface(vec3 position_ws)
+void write_surface_varyings(vec3 position_ws)
 {
   ObjectData object = objects[draw_instance.x];
   surface_position_ws = position_ws;

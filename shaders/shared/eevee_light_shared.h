@@ -66,7 +66,7 @@ SHARED_FUNCTION float spot_inv_width(float drop_outer, float blend)
 }
 
 /** 1 - cos of the angle between two unit vectors, as |a - b|² / 2, which does not cancel for small angles. */
-SHARED_FUNCTION float cosine_drop(vec3 a, vec3 b)
+SHARED_FUNCTION float one_minus_cos(vec3 a, vec3 b)
 {
   vec3 apart = a - b;
   return 0.5f * dot(apart, apart);

@@ -115,7 +115,7 @@ std::vector<gpu::Batch> column_batches(gpu::Device &device)
 }
 
 /** How the layers of a lamp are drawn. */
-struct Way {
+struct Variant {
   const char *name;
   const char *what;
   eevee::LayerPass layer_pass;
@@ -123,20 +123,20 @@ struct Way {
   bool is_culled_by_view = false;
 };
 
-constexpr std::array<Way, 4> ways = {{
+constexpr std::array<Variant, 4> variants = {{
     {"culled", "a pass a face, each face's view culling all casters (no face masks)", eevee::LayerPass::Single, true},
     {"six", "--cube-pass six: a pass a face, face masks once a lamp", eevee::LayerPass::Single},
     {"geometry", "--cube-pass geometry: one pass, the geometry shader chooses the layer", eevee::LayerPass::Geometry},
     {"layered", "--cube-pass layered: one pass, the vertex shader chooses it", eevee::LayerPass::Layered},
 }};
 
-/** Casters on a grid, a metre apart, and a point lamp in their middle, drawn in one way. */
+/** Casters on a grid, a metre apart, and a point lamp in their middle, drawn by one variant. */
 class LampBench {
  public:
-  LampBench(gpu::Device &device, const std::vector<gpu::Batch> &batches, int caster_count, const Way &way)
-      : device_(device), way_(way)
+  LampBench(gpu::Device &device, const std::vector<gpu::Batch> &batches, int caster_count, const Variant &variant)
+      : device_(device), way_(variant)
   {
-    settings_.layer_pass = way.layer_pass;
+    settings_.layer_pass = variant.layer_pass;
     lamp_.name = "lamp";
     lamp_.kind = scene::LampKind::Point;
     add_casters(batches, caster_count);
@@ -146,7 +146,7 @@ class LampBench {
     }
   }
 
-  /** What a change of the scene costs whatever the way: the lamp moves, so that all its layers are to be drawn. */
+  /** What a change of the scene costs with every variant: the lamp moves, so that all its layers are to be drawn. */
   void prepare(int round)
   {
     lamp_.world_from_lamp[3].x = round % 2 == 0 ? 0.0 : double(1e-3F);
@@ -253,7 +253,7 @@ class LampBench {
   }
 
   gpu::Device &device_;
-  const Way &way_;
+  const Variant &way_;
   eevee::ShadowSettings settings_;
   scene::PlacedLamp lamp_;
   eevee::ShaderCache shaders_;
@@ -273,21 +273,21 @@ class LampBench {
 
 /** A row of the table. */
 struct LampRow {
-  const Way *way = nullptr;
+  const Variant *variant = nullptr;
   gpu::Counters counters;
   std::vector<double> seconds;
 };
 
-/** The ways side by side: each round draws once in each. */
+/** The variants side by side: each round draws each of them once. */
 std::vector<LampRow> measure_lamps(gpu::Device &device, int caster_count, int rounds, double (*clock)())
 {
   const std::vector<gpu::Batch> batches = column_batches(device);
   std::vector<std::unique_ptr<LampBench>> benches;
   std::vector<LampRow> rows;
-  for (const Way &way : ways) {
-    if (way.layer_pass != eevee::LayerPass::Layered || device.limits().has_vertex_layer) {
-      benches.push_back(std::make_unique<LampBench>(device, batches, caster_count, way));
-      rows.push_back({&way, {}, {}});
+  for (const Variant &variant : variants) {
+    if (variant.layer_pass != eevee::LayerPass::Layered || device.limits().has_vertex_layer) {
+      benches.push_back(std::make_unique<LampBench>(device, batches, caster_count, variant));
+      rows.push_back({&variant, {}, {}});
     }
   }
   // The first warms up.
@@ -319,11 +319,11 @@ nlohmann::json print_lamps(const std::vector<LampRow> &rows, int caster_count, c
   const Spread six = spread_of(rows[1].seconds);
   for (const LampRow &row : rows) {
     const Spread spread = spread_of(row.seconds);
-    fmt::print("{:>8}  {:<9} {:>6} {:>6} {:>9}  {:<32} {:>7.2f} {:>7.2f}\n", caster_count, row.way->name,
+    fmt::print("{:>8}  {:<9} {:>6} {:>6} {:>9}  {:<32} {:>7.2f} {:>7.2f}\n", caster_count, row.variant->name,
                row.counters.passes, row.counters.draws, row.counters.instances, to_text(spread, unit),
                spread.median / base.median, spread.median / six.median);
     json.push_back({{"casters", caster_count},
-                    {"way", row.way->name},
+                    {"way", row.variant->name},
                     {"measure", what},
                     {"passes", row.counters.passes},
                     {"draws", row.counters.draws},
@@ -341,13 +341,13 @@ void bench_shadows(const BenchOptions &options)
   nlohmann::json devices = nlohmann::json::array();
   fmt::print("A point lamp's six faces among casters of {} meshes; median [quartiles] of {} interleaved rounds.\n",
              mesh_count, options.rounds);
-  for (const Way &way : ways) {
-    fmt::print("  {:<9} {}\n", way.name, way.what);
+  for (const Variant &variant : variants) {
+    fmt::print("  {:<9} {}\n", variant.name, variant.what);
   }
   const auto measure = [&](gpu::Device &device, const char *what, double (*clock)(), double unit, const char *title) {
     fmt::print("\n{}: {}\n", title, device.description());
-    fmt::print("{:>8}  {:<9} {:>6} {:>6} {:>9}  {:<32} {:>7} {:>7}\n", "casters", "way", "passes", "draws", "instances",
-               unit == 1e-6 ? "microseconds" : "milliseconds", "/culled", "/six");
+    fmt::print("{:>8}  {:<9} {:>6} {:>6} {:>9}  {:<32} {:>7} {:>7}\n", "casters", "variant", "passes", "draws",
+               "instances", unit == 1e-6 ? "microseconds" : "milliseconds", "/culled", "/six");
     devices.push_back(device.description());
     for (const int caster_count : {10, 1000, 10000}) {
       for (const nlohmann::json &row :
@@ -551,7 +551,7 @@ void add_bench(CLI::App &app)
   CLI::App *command = app.add_subcommand("bench", "Measure the engine's parts on scenes made in place");
   command->require_subcommand(1);
   auto o = std::make_shared<BenchOptions>();
-  CLI::App *shadows = command->add_subcommand("shadows", "The ways of drawing a lamp's layers, side by side");
+  CLI::App *shadows = command->add_subcommand("shadows", "The methods of drawing a lamp's layers, side by side");
   shadows->add_option("--backend", o->backend, "gl: on the null backend and on the driver; null: without a driver")
       ->capture_default_str()
       ->check(CLI::IsMember({"gl", "null"}));

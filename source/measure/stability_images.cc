@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "measure_stability.hh"
 
-#include "internal/measure_shot.hh"
+#include "internal/measure_test_view.hh"
 
 #include <fmt/format.h>
 
@@ -93,7 +93,7 @@ const char *name_of(ShadowKind kind)
 }
 
 /** A lamp and how its shadow is made. */
-struct Way {
+struct Variant {
   LampKind lamp;
   ShadowKind shadow;
 
@@ -103,16 +103,16 @@ struct Way {
   }
 };
 
-constexpr std::array<Way, 10> ways = {{{LampKind::Point, ShadowKind::Hard},
-                                       {LampKind::Point, ShadowKind::Pcf},
-                                       {LampKind::Point, ShadowKind::Esm},
-                                       {LampKind::Point, ShadowKind::Evsm},
-                                       {LampKind::Spot, ShadowKind::Hard},
-                                       {LampKind::Spot, ShadowKind::Pcf},
-                                       {LampKind::Spot, ShadowKind::Esm},
-                                       {LampKind::Spot, ShadowKind::Evsm},
-                                       {LampKind::Sun, ShadowKind::Hard},
-                                       {LampKind::Sun, ShadowKind::Pcf}}};
+constexpr std::array<Variant, 10> variants = {{{LampKind::Point, ShadowKind::Hard},
+                                               {LampKind::Point, ShadowKind::Pcf},
+                                               {LampKind::Point, ShadowKind::Esm},
+                                               {LampKind::Point, ShadowKind::Evsm},
+                                               {LampKind::Spot, ShadowKind::Hard},
+                                               {LampKind::Spot, ShadowKind::Pcf},
+                                               {LampKind::Spot, ShadowKind::Esm},
+                                               {LampKind::Spot, ShadowKind::Evsm},
+                                               {LampKind::Sun, ShadowKind::Hard},
+                                               {LampKind::Sun, ShadowKind::Pcf}}};
 
 /**
  * A scene's picture differs from exact rays' by its edges, which both sample at 16 places a pixel, but not at the same:
@@ -139,25 +139,25 @@ glm::mat4 scaled(const glm::vec3 &by)
   return glm::scale(glm::mat4(1.0F), by);
 }
 
-/** Change the first lamp of a shot. */
+/** Change the first lamp of a test view. */
 template <std::invocable<scene::Lamp &> Change>
-void edit_lamp(Shot &shot, Change change)
+void edit_lamp(TestView &test_view, Change change)
 {
-  shot.scene.edit(shot.scene.lamps().first(), change);
+  test_view.scene.edit(test_view.scene.lamps().first(), change);
 }
 
-/** Change the first material of a shot. */
+/** Change the first material of a test view. */
 template <std::invocable<scene::Material &> Change>
-void edit_material(Shot &shot, Change change)
+void edit_material(TestView &test_view, Change change)
 {
-  shot.scene.edit(shot.scene.materials().first(), change);
+  test_view.scene.edit(test_view.scene.materials().first(), change);
 }
 
 /** A turned box, a tilted plate above it and a ground. A third of the ground is in shadow. */
-Shot table(LampKind kind)
+TestView table(LampKind kind)
 {
-  Shot shot;
-  scene::Scene &scene = shot.scene;
+  TestView test_view;
+  scene::Scene &scene = test_view.scene;
   const auto material = add_material(scene, {0.8F, 0.6F, 0.4F});
   const auto square = add_square_mesh(scene, material);
   const auto box = add_box_mesh(scene, material);
@@ -169,8 +169,8 @@ Shot table(LampKind kind)
     changed.spot_outer_angle = 0.7F;
     changed.spot_blend = 0.3F;
   });
-  shot.camera = camera_at({0.3F, -5, 4}, {0, 0, 0.3F});
-  return shot;
+  test_view.camera = camera_at({0.3F, -5, 4}, {0, 0, 0.3F});
+  return test_view;
 }
 
 DrawSettings with(ShadowKind shadow, glm::ivec2 size_px = DrawSettings().size_px, int sample_count = 16)
@@ -190,60 +190,61 @@ Picture mirrored(const Picture &picture)
   return result;
 }
 
-// ---- Where the scene is, how large, and which way round ----
+// ---- Position of the scene, its scale and its handedness ----
 
 void add_placement(Cases &cases)
 {
-  const auto against_truth = [](Studio &studio, const Shot &shot, ShadowKind shadow) {
-    return relative_rmse(studio.draw(shot, with(shadow)), truth(shot, with(shadow)));
+  const auto against_truth = [](Studio &studio, const TestView &test_view, ShadowKind shadow) {
+    return relative_rmse(studio.draw(test_view, with(shadow)), truth(test_view, with(shadow)));
   };
-  for (const Way &way : ways) {
-    const auto error_at = [way, against_truth](Studio &studio, double scale) {
-      return against_truth(studio, placed(table(way.lamp), glm::dmat4(1.0), scale), way.shadow);
+  for (const Variant &variant : variants) {
+    const auto error_at = [variant, against_truth](Studio &studio, double scale) {
+      return against_truth(studio, placed(table(variant.lamp), glm::dmat4(1.0), scale), variant.shadow);
     };
     const char *quantity = "picture of a scene of 10 m made larger, its light as bright";
-    if (bound_of(way.shadow) == sharp_bound) {
-      cases.add({"scale", way.name(), quantity, "scale", exact_rays}, sharp_bound, {1e-4, 1e-2, 1.0, 1e2, 1e5},
+    if (bound_of(variant.shadow) == sharp_bound) {
+      cases.add({"scale", variant.name(), quantity, "scale", exact_rays}, sharp_bound, {1e-4, 1e-2, 1.0, 1e2, 1e5},
                 error_at);
     }
     else {
-      cases.add({"scale", way.name(), quantity, "scale", exact_rays}, soft_bound, {1e-2, 1.0, 1e2}, error_at);
+      cases.add({"scale", variant.name(), quantity, "scale", exact_rays}, soft_bound, {1e-2, 1.0, 1e2}, error_at);
       // Exponents end at 0.01 and 1e4 /m: shadows of a scene of a millimetre are soft, those of 1000 km hard. 0.1 was
       // measured.
-      cases.add({"scale", way.name() + ", where exponents end", quantity, "scale", exact_rays}, 0.12, {1e-4, 1e5},
+      cases.add({"scale", variant.name() + ", where exponents end", quantity, "scale", exact_rays}, 0.12, {1e-4, 1e5},
                 error_at);
     }
   }
   const auto offset = [](double by) { return glm::translate(glm::dmat4(1.0), by * glm::dvec3(1.0, 0.6, -0.3)); };
-  for (const Way &way : ways) {
+  for (const Variant &variant : variants) {
     // Positions are floats. One an ulp aside moves edges by a share of a pixel, which is 0.13 m here: 7 per metre was
     // measured at 100 km, where ulps are 8 mm. From 1000 km on, at 6 cm, nothing is claimed but that the picture is
     // finite.
-    cases.add({"offset", way.name(),
+    cases.add({"offset", variant.name(),
                "picture of a scene of 10 m that far from the origin, less 8 per metre of its coordinates' ulp", "m",
                exact_rays},
-              bound_of(way.shadow), {0.0, 1e3, 1e4, 1e5, 1e6, 1e8},
-              [way, offset, against_truth](Studio &studio, double by) {
+              bound_of(variant.shadow), {0.0, 1e3, 1e4, 1e5, 1e6, 1e8},
+              [variant, offset, against_truth](Studio &studio, double by) {
                 const double ulp =
                     double(std::nextafter(float(by), std::numeric_limits<float>::infinity())) - double(float(by));
-                const double error = against_truth(studio, placed(table(way.lamp), offset(by)), way.shadow);
+                const double error = against_truth(studio, placed(table(variant.lamp), offset(by)), variant.shadow);
                 return std::isnan(error) ? error : std::max(error - 8.0 * ulp, 0.0);
               });
   }
-  for (const Way &way : {ways[0], ways[2], ways[4], ways[8]}) {
+  for (const Variant &variant : {variants[0], variants[2], variants[4], variants[8]}) {
     // Exponents end here too, at 1e8 m.
-    cases.add({"offset", way.name() + ", scaled", "picture of a scene as large as a thousandth of its offset", "m",
+    cases.add({"offset", variant.name() + ", scaled", "picture of a scene as large as a thousandth of its offset", "m",
                exact_rays},
-              way.shadow == ShadowKind::Esm ? 0.07 : sharp_bound, {1e2, 1e4, 1e6, 1e8},
-              [way, offset, against_truth](Studio &studio, double by) {
-                return against_truth(studio, placed(table(way.lamp), offset(by), 1e-4 * by), way.shadow);
+              variant.shadow == ShadowKind::Esm ? 0.07 : sharp_bound, {1e2, 1e4, 1e6, 1e8},
+              [variant, offset, against_truth](Studio &studio, double by) {
+                return against_truth(studio, placed(table(variant.lamp), offset(by), 1e-4 * by), variant.shadow);
               });
   }
   // One sample: others are not where their images would be.
   const DrawSettings one_sample = with(ShadowKind::Hard, DrawSettings().size_px, 1);
-  const auto against_itself = [one_sample](Studio &studio, const Shot &moved_shot, const Shot &shot, bool is_mirrored) {
-    const Picture picture = studio.draw(moved_shot, one_sample);
-    return relative_rmse(is_mirrored ? mirrored(picture) : picture, studio.draw(shot, one_sample));
+  const auto against_itself = [one_sample](Studio &studio, const TestView &moved_view, const TestView &test_view,
+                                           bool is_mirrored) {
+    const Picture picture = studio.draw(moved_view, one_sample);
+    return relative_rmse(is_mirrored ? mirrored(picture) : picture, studio.draw(test_view, one_sample));
   };
   for (const LampKind kind : lamp_kinds) {
     // A spot's map turns with it; a cube and a sun's grid stand in the world, and their texels fall elsewhere: 0.035
@@ -251,24 +252,24 @@ void add_placement(Cases &cases)
     cases.add({"turn", name_of(kind), "picture of a scene turned about (1, 2, 3)", "turn, rad", "picture unturned"},
               kind == LampKind::Spot ? 1e-4 : 0.06, {0.0, 0.1, 1.0, 0.5 * pi, 2.0, pi},
               [kind, against_itself](Studio &studio, double turn) {
-                const Shot shot = table(kind);
+                const TestView test_view = table(kind);
                 const glm::dmat4 turned = glm::rotate(glm::dmat4(1.0), turn, glm::normalize(glm::dvec3(1, 2, 3)));
-                return against_itself(studio, placed(shot, turned), shot, false);
+                return against_itself(studio, placed(test_view, turned), test_view, false);
               });
     // Roundings alone, and those of a texel's edge.
     cases.add({"turn", fmt::format("{}, axes exchanged", name_of(kind)), "picture of a scene whose +Z is another axis",
                "axis", "picture unturned"},
               1e-4, {0, 1, 2, 3, 4, 5}, [kind, against_itself](Studio &studio, double axis) {
-                const Shot shot = table(kind);
+                const TestView test_view = table(kind);
                 const glm::dmat4 turned(glm::dmat3(glm::transpose(glm::mat3(eevee::cubefacemat[std::size_t(axis)]))));
-                return against_itself(studio, placed(shot, turned), shot, false);
+                return against_itself(studio, placed(test_view, turned), test_view, false);
               });
     cases.add({"mirror", name_of(kind), "picture of a mirrored scene, mirrored", "axis", "picture unmirrored"}, 1e-4,
               {0, 1, 2}, [kind, against_itself](Studio &studio, double axis) {
-                const Shot shot = table(kind);
+                const TestView test_view = table(kind);
                 glm::dmat4 mirror(1.0);
                 mirror[int(axis)][int(axis)] = -1.0;
-                return against_itself(studio, placed(shot, mirror), shot, true);
+                return against_itself(studio, placed(test_view, mirror), test_view, true);
               });
   }
 }
@@ -278,33 +279,34 @@ void add_placement(Cases &cases)
 void add_cameras(Cases &cases)
 {
   const auto add = [&](const std::string &name, double bound, const char *parameter, std::vector<double> values,
-                       std::function<void(Shot &, double)> change) {
+                       std::function<void(TestView &, double)> change) {
     cases.add({"camera", name, "picture by such a camera", parameter, exact_rays}, bound, std::move(values),
               [change = std::move(change)](Studio &studio, double value) {
-                Shot shot = table(LampKind::Point);
-                change(shot, value);
-                return relative_rmse(studio.draw(shot, with(ShadowKind::Hard)), truth(shot, with(ShadowKind::Hard)));
+                TestView test_view = table(LampKind::Point);
+                change(test_view, value);
+                return relative_rmse(studio.draw(test_view, with(ShadowKind::Hard)),
+                                     truth(test_view, with(ShadowKind::Hard)));
               });
   };
   add("near", sharp_bound, "m", {1e-12, 1e-6, 1e-3, 1.0},
-      [](Shot &shot, double near) { shot.camera.near = float(near); });
-  add("far / near", sharp_bound, "ratio", {20, 1e3, 1e6, 1e9, 1e12}, [](Shot &shot, double ratio) {
-    shot.camera.near = ratio > 1e6 ? 1e-6F : 1.0F;
-    shot.camera.far = float(double(shot.camera.near) * ratio);
+      [](TestView &test_view, double near) { test_view.camera.near = float(near); });
+  add("far / near", sharp_bound, "ratio", {20, 1e3, 1e6, 1e9, 1e12}, [](TestView &test_view, double ratio) {
+    test_view.camera.near = ratio > 1e6 ? 1e-6F : 1.0F;
+    test_view.camera.far = float(double(test_view.camera.near) * ratio);
   });
   // Where all is small in the picture, more of it is edges.
   add("angle", 0.06, "rad", {1e-4, 1e-2, 0.5, 1.0, 2.0},
-      [](Shot &shot, double angle) { shot.camera.vertical_angle = float(angle); });
-  add("parallel", 0.06, "half height, m", {1e-4, 1e-2, 1.0, 3.0}, [](Shot &shot, double half) {
-    shot.camera.kind = scene::CameraKind::Orthographic;
-    shot.camera.half_height = float(half);
-    shot.camera.half_width = float(half * 64.0 / 48.0);
+      [](TestView &test_view, double angle) { test_view.camera.vertical_angle = float(angle); });
+  add("parallel", 0.06, "half height, m", {1e-4, 1e-2, 1.0, 3.0}, [](TestView &test_view, double half) {
+    test_view.camera.kind = scene::CameraKind::Orthographic;
+    test_view.camera.half_height = float(half);
+    test_view.camera.half_width = float(half * 64.0 / 48.0);
   });
-  const auto parallel_far = [](Shot &shot, double far) {
-    shot.camera.kind = scene::CameraKind::Orthographic;
-    shot.camera.half_height = 2.0F;
-    shot.camera.half_width = 2.0F * 64.0F / 48.0F;
-    shot.camera.far = float(far);
+  const auto parallel_far = [](TestView &test_view, double far) {
+    test_view.camera.kind = scene::CameraKind::Orthographic;
+    test_view.camera.half_height = 2.0F;
+    test_view.camera.half_width = 2.0F * 64.0F / 48.0F;
+    test_view.camera.far = float(far);
   };
   add("parallel, far", sharp_bound, "m", {10, 1e3, 1e5}, parallel_far);
   // A parallel view's depths are even: at 1e9 m a float's steps are 60 m, and what is drawn last is in front. 0.08 was
@@ -316,18 +318,18 @@ void add_cameras(Cases &cases)
       add(fmt::format("inside a box, {}, lamp {}", is_double_sided ? "two-sided" : "one-sided",
                       is_lamp_inside ? "inside too" : "outside"),
           // Of a radiance of 1 where it should be dark.
-          sharp_bound, "half size of the box, m", {0.1, 1.0, 10.0}, [=](Shot &shot, double half) {
-            scene::Scene &scene = shot.scene;
-            edit_material(shot, [&](scene::Material &material) { material.is_double_sided = is_double_sided; });
+          sharp_bound, "half size of the box, m", {0.1, 1.0, 10.0}, [=](TestView &test_view, double half) {
+            scene::Scene &scene = test_view.scene;
+            edit_material(test_view, [&](scene::Material &material) { material.is_double_sided = is_double_sided; });
             const glm::vec3 at(0.3F, -5, 4);
             add_object(scene, handle_at(scene.meshes(), 1), moved(at) * scaled(glm::vec3(float(half))));
-            shot.camera.near = 1e-4F;
+            test_view.camera.near = 1e-4F;
             if (is_lamp_inside) {
               const scene::PlacedLamp lamp = scene.placed_lamps().front();
               glm::dmat4 matrix = lamp.world_from_lamp;
               matrix[3] = glm::vec4(at + float(half) * glm::vec3(0.3F, -0.5F, 0.4F), 1.0F);
               scene.set_transform(lamp.node, matrix);
-              edit_lamp(shot, [&](scene::Lamp &changed) { changed.intensity = float(half * half); });
+              edit_lamp(test_view, [&](scene::Lamp &changed) { changed.intensity = float(half * half); });
             }
           });
     }
@@ -335,22 +337,22 @@ void add_cameras(Cases &cases)
   cases.add({"camera", "depths apart", "pixels of a red plate that a green one shows through",
              "distance between, relative", "closed form", "share of pixels"},
             0.0, {1e-2, 1e-3, 1e-4, 1e-5, 3e-6}, [](Studio &studio, double gap) {
-              Shot shot;
+              TestView test_view;
               for (const int i : {0, 1}) {
-                const auto material = add_material(shot.scene, glm::vec3(0.0F));
-                shot.scene.edit(material, [&](scene::Material &changed) {
+                const auto material = add_material(test_view.scene, glm::vec3(0.0F));
+                test_view.scene.edit(material, [&](scene::Material &changed) {
                   changed.emissive = i == 0 ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
                 });
                 // Tilted alike, so that depths differ from pixel to pixel.
                 const double distance = i == 0 ? 100.0 : 100.0 * (1.0 + gap);
-                add_object(shot.scene, add_square_mesh(shot.scene, material),
+                add_object(test_view.scene, add_square_mesh(test_view.scene, material),
                            glm::mat4(glm::rotate(glm::translate(glm::dmat4(1.0), {0, 0, -distance}), 0.5, {1, 2, 0})) *
                                scaled(glm::vec3(1e3F)));
               }
-              shot.camera = camera_at({0, 0, 0}, {0, 0, -1});
-              shot.camera.near = 1e-6F;
-              shot.camera.far = 1e3F;
-              const Picture picture = studio.draw(shot, with(ShadowKind::None, {64, 48}, 1));
+              test_view.camera = camera_at({0, 0, 0}, {0, 0, -1});
+              test_view.camera.near = 1e-6F;
+              test_view.camera.far = 1e3F;
+              const Picture picture = studio.draw(test_view, with(ShadowKind::None, {64, 48}, 1));
               std::size_t wrong = 0;
               for (const glm::vec4 &pixel : picture.pixels) {
                 wrong += std::abs(pixel.r - 1.0F) > 1e-5F || pixel.g > 1e-5F ? 1 : 0;
@@ -362,14 +364,14 @@ void add_cameras(Cases &cases)
 // ---- Lamps ----
 
 /** A ground that fills the picture, seen from straight above, and nothing else. */
-Shot ground(LampKind kind, const glm::vec3 &lamp_position, const glm::vec3 &forward)
+TestView ground(LampKind kind, const glm::vec3 &lamp_position, const glm::vec3 &forward)
 {
-  Shot shot;
-  add_object(shot.scene, add_square_mesh(shot.scene, add_material(shot.scene, glm::vec3(0.8F))),
+  TestView test_view;
+  add_object(test_view.scene, add_square_mesh(test_view.scene, add_material(test_view.scene, glm::vec3(0.8F))),
              scaled(glm::vec3(8.0F)));
-  add_lamp(shot.scene, kind, lamp_position, forward, 1.0F);
-  shot.camera = camera_at({0.05F, 0.03F, 3}, {0.05F, 0.03F, 0}, 0.6F);
-  return shot;
+  add_lamp(test_view.scene, kind, lamp_position, forward, 1.0F);
+  test_view.camera = camera_at({0.05F, 0.03F, 3}, {0.05F, 0.03F, 0}, 0.6F);
+  return test_view;
 }
 
 void add_lamps(Cases &cases)
@@ -380,20 +382,20 @@ void add_lamps(Cases &cases)
               // Exponential maps lift receivers up to a tangent of 10, and here it is 1e9: 0.23 was measured.
               bound_of(shadow) == sharp_bound ? 0.003 : 0.3, {0.0, 1e-9, 1e-6, 1e-3, 1e-2, 1.0},
               [shadow](Studio &studio, double height) {
-                const Shot shot = ground(LampKind::Point, {0.02F, 0.01F, float(height)}, {0, 0, -1});
-                return median_error(studio.draw(shot, with(shadow)), truth(shot, with(shadow)));
+                const TestView test_view = ground(LampKind::Point, {0.02F, 0.01F, float(height)}, {0, 0, -1});
+                return median_error(studio.draw(test_view, with(shadow)), truth(test_view, with(shadow)));
               });
     cases.add({"lamp", fmt::format("inside a box, {}", name_of(shadow)), "light that comes out of a closed box",
                "half size, m", "closed form: none", "largest radiance over that without the box"},
               // Of esm, exp(-c · d) a little behind the wall.
               shadow == ShadowKind::Esm ? 1e-3 : 0.0, {1e-4, 1e-2, 0.3, 1.0}, [shadow](Studio &studio, double half) {
-                Shot shot = ground(LampKind::Point, {0.02F, 0.01F, 1.5F}, {0, 0, -1});
-                const Picture open = studio.draw(shot, with(shadow));
+                TestView test_view = ground(LampKind::Point, {0.02F, 0.01F, 1.5F}, {0, 0, -1});
+                const Picture open = studio.draw(test_view, with(shadow));
                 const glm::vec3 at = glm::vec3(0.02F, 0.01F, 1.5F) + float(half) * glm::vec3(0.03F, -0.2F, 0.1F);
-                const auto box = add_box_mesh(shot.scene, shot.scene.materials().first());
-                add_object(shot.scene, box, moved(at) * scaled(glm::vec3(float(half))));
+                const auto box = add_box_mesh(test_view.scene, test_view.scene.materials().first());
+                add_object(test_view.scene, box, moved(at) * scaled(glm::vec3(float(half))));
                 // The box's outer walls, which are seen, are dark, too.
-                const Picture closed = studio.draw(shot, with(shadow));
+                const Picture closed = studio.draw(test_view, with(shadow));
                 double most = 0.0;
                 double brightest = 0.0;
                 for (std::size_t i = 0; i < open.pixels.size(); i++) {
@@ -403,38 +405,40 @@ void add_lamps(Cases &cases)
                 return closed.non_finite_count() > 0 ? std::nan("") : most / brightest;
               });
   }
-  for (const Way &way : ways) {
-    cases.add({"lamp", fmt::format("behind everything, {}", way.name()), "radiance of a ground lit from below",
+  for (const Variant &variant : variants) {
+    cases.add({"lamp", fmt::format("behind everything, {}", variant.name()), "radiance of a ground lit from below",
                "depth below, m", "closed form: none", "largest radiance"},
-              0.0, {1e-6, 1e-3, 1.0, 1e3}, [way](Studio &studio, double depth) {
-                Shot shot = ground(way.lamp, {0, 0, float(-depth)}, {0.2F, 0, 1});
-                edit_lamp(shot, [&](scene::Lamp &lamp) { lamp.intensity = float(depth * depth); });
-                const Picture picture = studio.draw(shot, with(way.shadow));
+              0.0, {1e-6, 1e-3, 1.0, 1e3}, [variant](Studio &studio, double depth) {
+                TestView test_view = ground(variant.lamp, {0, 0, float(-depth)}, {0.2F, 0, 1});
+                edit_lamp(test_view, [&](scene::Lamp &lamp) { lamp.intensity = float(depth * depth); });
+                const Picture picture = studio.draw(test_view, with(variant.shadow));
                 return largest_error(picture, Picture{picture.size_px, {picture.pixels.size(), glm::vec4(0.0F)}});
               });
   }
   cases.add({"lamp", "in a wall's plane", "picture of a ground and a wall whose plane holds the lamp",
              "off the plane, m", exact_rays},
             sharp_bound, {0.0, 1e-7, 1e-6, 1e-4, 1e-2, -1e-6, -1e-2}, [](Studio &studio, double off) {
-              Shot shot = ground(LampKind::Point, {float(off), 0.3F, 1.0F}, {0, 0, -1});
-              add_object(shot.scene, shot.scene.meshes().first(),
+              TestView test_view = ground(LampKind::Point, {float(off), 0.3F, 1.0F}, {0, 0, -1});
+              add_object(test_view.scene, test_view.scene.meshes().first(),
                          glm::rotate(moved({0, 0, 0.25F}), 0.5F * float(pi), {0, 1, 0}) * scaled({0.25F, 0.5F, 1}));
-              return relative_rmse(studio.draw(shot, with(ShadowKind::Hard)), truth(shot, with(ShadowKind::Hard)));
+              return relative_rmse(studio.draw(test_view, with(ShadowKind::Hard)),
+                                   truth(test_view, with(ShadowKind::Hard)));
             });
   cases.add({"lamp", "radius", "picture of a small lamp", "radius, m", exact_rays}, sharp_bound,
             {0.0, 1e-12, 1e-6, 1e-3, 1e-2}, [](Studio &studio, double radius) {
-              Shot shot = table(LampKind::Point);
-              edit_lamp(shot, [&](scene::Lamp &lamp) { lamp.radius = float(radius); });
-              return relative_rmse(studio.draw(shot, with(ShadowKind::Hard)), truth(shot, with(ShadowKind::Hard)));
+              TestView test_view = table(LampKind::Point);
+              edit_lamp(test_view, [&](scene::Lamp &lamp) { lamp.radius = float(radius); });
+              return relative_rmse(studio.draw(test_view, with(ShadowKind::Hard)),
+                                   truth(test_view, with(ShadowKind::Hard)));
             });
   for (const ShadowKind shadow : {ShadowKind::Hard, ShadowKind::Esm}) {
     cases.add(
         {"lamp", fmt::format("range, {}", name_of(shadow)), "picture of a lamp of that range", "range, m", exact_rays},
         // At 5 m it lights the top of the box alone.
         0.1, {1e-6, 1e-3, 1.0, 5.0, 7.0, 1e3, 1e6, 1e12}, [shadow](Studio &studio, double range) {
-          Shot shot = table(LampKind::Point);
-          edit_lamp(shot, [&](scene::Lamp &lamp) { lamp.range = float(range); });
-          return relative_rmse(studio.draw(shot, with(shadow)), truth(shot, with(shadow)));
+          TestView test_view = table(LampKind::Point);
+          edit_lamp(test_view, [&](scene::Lamp &lamp) { lamp.range = float(range); });
+          return relative_rmse(studio.draw(test_view, with(shadow)), truth(test_view, with(shadow)));
         });
   }
   for (const LampKind kind : {LampKind::Point, LampKind::Spot, LampKind::Sun, LampKind::Hemi}) {
@@ -442,11 +446,11 @@ void add_lamps(Cases &cases)
                "picture at 1"},
               // At 1e-30 the lit pass' products are near the smallest floats.
               1e-4, {1e-30, 1e-6, 1.0, 1e6, 1e12, 1e21, 1e30}, [kind](Studio &studio, double intensity) {
-                Shot shot = table(kind);
-                edit_lamp(shot, [](scene::Lamp &lamp) { lamp.intensity = 1.0F; });
-                const Picture at_one = studio.draw(shot, with(ShadowKind::Hard));
-                edit_lamp(shot, [&](scene::Lamp &lamp) { lamp.intensity = float(intensity); });
-                Picture picture = studio.draw(shot, with(ShadowKind::Hard));
+                TestView test_view = table(kind);
+                edit_lamp(test_view, [](scene::Lamp &lamp) { lamp.intensity = 1.0F; });
+                const Picture at_one = studio.draw(test_view, with(ShadowKind::Hard));
+                edit_lamp(test_view, [&](scene::Lamp &lamp) { lamp.intensity = float(intensity); });
+                Picture picture = studio.draw(test_view, with(ShadowKind::Hard));
                 for (glm::vec4 &pixel : picture.pixels) {
                   pixel = glm::vec4(glm::dvec3(pixel) / double(float(intensity)), pixel.a);
                 }
@@ -457,11 +461,11 @@ void add_lamps(Cases &cases)
              "picture at 1", "smallest normal floats"},
             // GPUs may take denormals for 0: what is lost in each of a film's nine texels is below one.
             16.0, {1e-45, 1e-42, 1e-39, 1e-38, 1e-36}, [](Studio &studio, double intensity) {
-              Shot shot = table(LampKind::Point);
-              edit_lamp(shot, [](scene::Lamp &lamp) { lamp.intensity = 1.0F; });
-              const Picture at_one = studio.draw(shot, with(ShadowKind::Hard));
-              edit_lamp(shot, [&](scene::Lamp &lamp) { lamp.intensity = float(intensity); });
-              const Picture picture = studio.draw(shot, with(ShadowKind::Hard));
+              TestView test_view = table(LampKind::Point);
+              edit_lamp(test_view, [](scene::Lamp &lamp) { lamp.intensity = 1.0F; });
+              const Picture at_one = studio.draw(test_view, with(ShadowKind::Hard));
+              edit_lamp(test_view, [&](scene::Lamp &lamp) { lamp.intensity = float(intensity); });
+              const Picture picture = studio.draw(test_view, with(ShadowKind::Hard));
               double most = 0.0;
               for (std::size_t i = 0; i < picture.pixels.size(); i++) {
                 const double expected = double(at_one.pixels[i].r) * double(float(intensity));
@@ -474,43 +478,44 @@ void add_lamps(Cases &cases)
                "opening, degrees", exact_rays},
               // Edges, but for 0.001°: a direction's rounding is 1 % of it.
               0.05, {1e-3, 1e-2, 0.1, 1, 30, 90, 120, 179, 180}, [blend](Studio &studio, double degrees) {
-                Shot shot = ground(LampKind::Spot, {0, 0, 4.0F}, {0.0F, 0.0F, -1.0F});
+                TestView test_view = ground(LampKind::Spot, {0, 0, 4.0F}, {0.0F, 0.0F, -1.0F});
                 const auto outer_angle = float(std::min(degrees * pi / 360.0, 0.5 * pi));
-                edit_lamp(shot, [&](scene::Lamp &lamp) {
+                edit_lamp(test_view, [&](scene::Lamp &lamp) {
                   lamp.spot_outer_angle = outer_angle;
                   lamp.spot_blend = float(blend);
                 });
                 // A picture a little wider than the cone.
                 const double half = 4.0 * std::tan(std::min(double(outer_angle), 0.8));
-                shot.camera = camera_at({0, 0, 3}, {0, 0, 0}, float(2.0 * std::atan(1.5 * half / 3.0)));
-                return relative_rmse(studio.draw(shot, with(ShadowKind::None)), truth(shot, with(ShadowKind::None)));
+                test_view.camera = camera_at({0, 0, 3}, {0, 0, 0}, float(2.0 * std::atan(1.5 * half / 3.0)));
+                return relative_rmse(studio.draw(test_view, with(ShadowKind::None)),
+                                     truth(test_view, with(ShadowKind::None)));
               });
   }
   for (const ShadowKind shadow : {ShadowKind::Hard, ShadowKind::Pcf, ShadowKind::Esm, ShadowKind::Evsm}) {
     cases.add({"spot", fmt::format("opening, {}", name_of(shadow)), "picture of a spot with its shadow", "degrees",
                exact_rays},
               bound_of(shadow), {90, 119, 120, 121, 150, 180}, [shadow](Studio &studio, double degrees) {
-                Shot shot = table(LampKind::Spot);
-                edit_lamp(shot, [&](scene::Lamp &lamp) {
+                TestView test_view = table(LampKind::Spot);
+                edit_lamp(test_view, [&](scene::Lamp &lamp) {
                   lamp.spot_outer_angle = float(std::min(degrees * pi / 360.0, 0.5 * pi));
                 });
-                return relative_rmse(studio.draw(shot, with(shadow)), truth(shot, with(shadow)));
+                return relative_rmse(studio.draw(test_view, with(shadow)), truth(test_view, with(shadow)));
               });
   }
-  for (const Way &way : ways) {
-    if (way.lamp == LampKind::Spot) {
+  for (const Variant &variant : variants) {
+    if (variant.lamp == LampKind::Spot) {
       continue;
     }
-    const auto error_at = [way](Studio &studio, double elevation) {
+    const auto error_at = [variant](Studio &studio, double elevation) {
       const glm::vec3 to_lamp(std::cos(elevation), 0, std::sin(elevation));
-      Shot shot = ground(way.lamp, 6.0F * to_lamp, -to_lamp);
+      TestView test_view = ground(variant.lamp, 6.0F * to_lamp, -to_lamp);
       // Something above that casts, away from the picture: else a sun would have no map.
-      add_object(shot.scene, shot.scene.meshes().first(), moved({6, -6, 0.5F}) * scaled(glm::vec3(0.05F)));
-      return median_error(studio.draw(shot, with(way.shadow)), truth(shot, with(way.shadow)));
+      add_object(test_view.scene, test_view.scene.meshes().first(), moved({6, -6, 0.5F}) * scaled(glm::vec3(0.05F)));
+      return median_error(studio.draw(test_view, with(variant.shadow)), truth(test_view, with(variant.shadow)));
     };
-    const Words words = {"grazing",        way.name(), "picture of a ground that light falls on so flatly",
-                         "elevation, rad", exact_rays, "median error"};
-    if (bound_of(way.shadow) == sharp_bound) {
+    const Words words = {"grazing",        variant.name(), "picture of a ground that light falls on so flatly",
+                         "elevation, rad", exact_rays,     "median error"};
+    if (bound_of(variant.shadow) == sharp_bound) {
       cases.add(words, 1e-3, {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0}, error_at);
     }
     else {
@@ -533,28 +538,29 @@ void add_surfaces(Cases &cases)
               // Metal's is a highlight smaller than a pixel on black: 0.16 was measured.
               metallic > 0.0F ? 0.25 : sharp_bound, {0.0, 1e-6, 1e-3, 0.03, 0.1, 0.3, 1.0},
               [metallic](Studio &studio, double roughness) {
-                Shot shot = table(LampKind::Point);
-                edit_material(shot, [&](scene::Material &material) {
+                TestView test_view = table(LampKind::Point);
+                edit_material(test_view, [&](scene::Material &material) {
                   material.metallic = metallic;
                   material.roughness = float(roughness);
                   material.specular_color = glm::vec3(1.0F);
                 });
-                return relative_rmse(studio.draw(shot, with(ShadowKind::Hard)), truth(shot, with(ShadowKind::Hard)));
+                return relative_rmse(studio.draw(test_view, with(ShadowKind::Hard)),
+                                     truth(test_view, with(ShadowKind::Hard)));
               });
   }
   cases.add(
       {"material", "mirror of a sun", "radiance of smooth metal where it reflects the sun", "roughness", "closed form",
        "relative"},
       1e-6, {0.0, 0.01, 0.03, 0.1, 1.0}, [](Studio &studio, double roughness) {
-        Shot shot = ground(LampKind::Sun, {}, {0, 0, -1});
-        edit_material(shot, [&](scene::Material &material) {
+        TestView test_view = ground(LampKind::Sun, {}, {0, 0, -1});
+        edit_material(test_view, [&](scene::Material &material) {
           material.metallic = 1.0F;
           material.base_color = glm::vec3(1.0F);
           material.roughness = float(roughness);
         });
-        shot.camera.kind = scene::CameraKind::Orthographic;
-        shot.camera.half_width = shot.camera.half_height = 1.0F;
-        const Picture picture = studio.draw(shot, with(ShadowKind::None, {8, 8}, 1));
+        test_view.camera.kind = scene::CameraKind::Orthographic;
+        test_view.camera.half_width = test_view.camera.half_height = 1.0F;
+        const Picture picture = studio.draw(test_view, with(ShadowKind::None, {8, 8}, 1));
         // All vectors the normal: D / 4, and no masking. Walter et al. 2007, eq. 33 at an angle of 0.
         const double alpha = std::max(double(float(roughness)) * double(float(roughness)), 1e-3);
         const double expected = 1.0 / (4.0 * pi * alpha * alpha);
@@ -563,9 +569,9 @@ void add_surfaces(Cases &cases)
   cases.add({"triangles", "without area", "picture of a scene with such triangles too",
              "1 corners alike, 2 two alike, 3 in a line, 4 1e-30 high, 5 1e-38 large, 6 1e12 long", "picture without"},
             0.0, {1, 2, 3, 4, 5, 6}, [](Studio &studio, double kind) {
-              Shot shot = table(LampKind::Point);
-              const Picture without = studio.draw(shot, with(ShadowKind::Hard));
-              scene::Mesh mesh = shot.scene.meshes()[shot.scene.meshes().first()];
+              TestView test_view = table(LampKind::Point);
+              const Picture without = studio.draw(test_view, with(ShadowKind::Hard));
+              scene::Mesh mesh = test_view.scene.meshes()[test_view.scene.meshes().first()];
               switch (int(kind)) {
                 case 1: mesh.positions.assign(4, {0.1F, 0.2F, 1}); break;
                 case 2: mesh.positions = {{0, 0, 1}, {0, 0, 1}, {1, 0, 1}, {1, 0, 1}}; break;
@@ -574,8 +580,8 @@ void add_surfaces(Cases &cases)
                 case 5: mesh.positions = {{0, 0, 1}, {1e-38F, 0, 1}, {1e-38F, 1e-38F, 1}, {0, 1e-38F, 1}}; break;
                 default: mesh.positions = {{-1e12F, 0, 1}, {1e12F, 0, 1}, {1e12F, 0, 1}, {-1e12F, 0, 1}}; break;
               }
-              add_object(shot.scene, shot.scene.add(std::move(mesh)), glm::mat4(1.0F));
-              return relative_rmse(studio.draw(shot, with(ShadowKind::Hard)), without);
+              add_object(test_view.scene, test_view.scene.add(std::move(mesh)), glm::mat4(1.0F));
+              return relative_rmse(studio.draw(test_view, with(ShadowKind::Hard)), without);
             });
   struct Matrix {
     const char *name;
@@ -620,10 +626,10 @@ void add_surfaces(Cases &cases)
       cases.add({"matrix", fmt::format("{}, {}", matrix.name, name_of(shadow)), "picture of a scene whose box is so",
                  matrix.parameter, exact_rays},
                 bound_of(shadow), matrix.values, [make = matrix.make, shadow](Studio &studio, double value) {
-                  Shot shot = table(LampKind::Point);
-                  const scene::Object box = shot.scene.objects()[1];
-                  shot.scene.set_transform(box.node, glm::mat4(box.world_from_object) * make(value));
-                  return relative_rmse(studio.draw(shot, with(shadow)), truth(shot, with(shadow)));
+                  TestView test_view = table(LampKind::Point);
+                  const scene::Object box = test_view.scene.objects()[1];
+                  test_view.scene.set_transform(box.node, glm::mat4(box.world_from_object) * make(value));
+                  return relative_rmse(studio.draw(test_view, with(shadow)), truth(test_view, with(shadow)));
                 });
     }
   }
@@ -638,20 +644,20 @@ Picture even(const Picture &like, double value)
 }
 
 /** \a count lamps where one would stand, of its light together; 0: none. */
-Shot crowd(LampKind kind, int count)
+TestView crowd(LampKind kind, int count)
 {
-  Shot shot = table(kind);
-  const scene::PlacedLamp lamp = shot.scene.placed_lamps().front();
-  remove_lamps(shot.scene);
+  TestView test_view = table(kind);
+  const scene::PlacedLamp lamp = test_view.scene.placed_lamps().front();
+  remove_lamps(test_view.scene);
   for (int i = 0; i < count; i++) {
     scene::Lamp one = lamp;
     one.name = fmt::format("lamp{}", i);
     one.intensity = lamp.intensity / float(count);
     // Room for the shadows of all.
     one.shadow.size = one.shadow.esm_size = 32;
-    add_lamp(shot.scene, std::move(one), lamp.world_from_lamp);
+    add_lamp(test_view.scene, std::move(one), lamp.world_from_lamp);
   }
-  return shot;
+  return test_view;
 }
 
 /** Whether a limit names the lamp. */
@@ -668,14 +674,14 @@ void add_counts(Cases &cases)
             // Roundings of the film's weights.
             1e-6, {1, 2, 3, 4, 5}, [](Studio &studio, double kind) {
               const std::array<glm::ivec2, 5> sizes = {{{1, 1}, {16384, 1}, {1, 16384}, {16384, 16}, {3, 5}}};
-              Shot shot = ground(LampKind::Sun, {}, {0, 0, -1});
-              shot.camera.kind = scene::CameraKind::Orthographic;
-              shot.camera.half_width = shot.camera.half_height = 1e-4F;
-              const Picture picture = studio.draw(shot, with(ShadowKind::Hard, sizes[std::size_t(kind) - 1], 1));
+              TestView test_view = ground(LampKind::Sun, {}, {0, 0, -1});
+              test_view.camera.kind = scene::CameraKind::Orthographic;
+              test_view.camera.half_width = test_view.camera.half_height = 1e-4F;
+              const Picture picture = studio.draw(test_view, with(ShadowKind::Hard, sizes[std::size_t(kind) - 1], 1));
               return largest_error(picture, even(picture, 0.8 / pi));
             });
   struct Count {
-    Way way;
+    Variant variant;
     int most;
   };
   const DrawSettings one_sample = with(ShadowKind::None, {64, 48}, 1);
@@ -697,13 +703,13 @@ void add_counts(Cases &cases)
   for (const Count &count : {Count{{LampKind::Point, ShadowKind::Hard}, SHADOW_CUBE_MAX},
                              {{LampKind::Spot, ShadowKind::Hard}, SHADOW_MAP_MAX},
                              {{LampKind::Point, ShadowKind::Esm}, ESM_MAX}}) {
-    const DrawSettings settings = with(count.way.shadow, {16, 12}, 1);
-    cases.add({"count", fmt::format("shadows, {}", count.way.name()),
+    const DrawSettings settings = with(count.variant.shadow, {16, 12}, 1);
+    cases.add({"count", fmt::format("shadows, {}", count.variant.name()),
                "picture by so many lamps with shadows in one place; who loses it is named", "lamps", "picture by one"},
               2e-5, {1, double(count.most), double(count.most + 1)}, [count, settings](Studio &studio, double lamps) {
-                const Picture by_one = studio.draw(crowd(count.way.lamp, 1), settings);
-                const Shot shot = crowd(count.way.lamp, int(lamps));
-                const Picture picture = studio.draw(shot, settings);
+                const Picture by_one = studio.draw(crowd(count.variant.lamp, 1), settings);
+                const TestView test_view = crowd(count.variant.lamp, int(lamps));
+                const Picture picture = studio.draw(test_view, settings);
                 const bool is_lost = is_named(studio.report(settings), int(lamps) - 1);
                 // The lamp that loses its shadow lights what it should not: that is the limit's price, and it is named.
                 return is_lost == (lamps > count.most) ? (is_lost ? 0.0 : relative_rmse(picture, by_one)) : 1.0;
@@ -714,10 +720,10 @@ void add_counts(Cases &cases)
 // ---- Cube edges, the octahedron's fold, exponents ----
 
 /** Walls around a lamp, seen along a direction from it, with a plate between. */
-Shot room(const glm::vec3 &direction)
+TestView room(const glm::vec3 &direction)
 {
-  Shot shot;
-  scene::Scene &scene = shot.scene;
+  TestView test_view;
+  scene::Scene &scene = test_view.scene;
   const auto material = add_material(scene, glm::vec3(0.8F));
   const auto box = add_box_mesh(scene, material);
   const auto square = add_square_mesh(scene, material);
@@ -729,8 +735,8 @@ Shot room(const glm::vec3 &direction)
       scene, square,
       glm::inverse(glm::lookAt(glm::vec3(0.0F), forward, up)) * moved({-1.0F, 0.1F, -2.2F}) * scaled({0.8F, 0.6F, 1}));
   add_lamp(scene, LampKind::Point, {0.05F, 0.03F, 0.02F}, {0, 0, -1}, 20.0F);
-  shot.camera = camera_at(1.2F * forward + 1.3F * up + glm::vec3(0.02F), 3.5F * forward, 1.4F);
-  return shot;
+  test_view.camera = camera_at(1.2F * forward + 1.3F * up + glm::vec3(0.02F), 3.5F * forward, 1.4F);
+  return test_view;
 }
 
 /** Directions of a cube's faces, edges and corners, each along the octahedron's faces or fold. */
@@ -748,8 +754,8 @@ void add_folds(Cases &cases)
                "picture of a wall, an edge or a corner of a room, from a lamp in its middle",
                "0 +X, 1 +Z, 2 -Z, 3 to 5 edges, 6 and 7 corners", exact_rays},
               bound_of(shadow), {0, 1, 2, 3, 4, 5, 6, 7}, [shadow](Studio &studio, double index) {
-                const Shot shot = room(cube_direction(index));
-                return relative_rmse(studio.draw(shot, with(shadow)), truth(shot, with(shadow)));
+                const TestView test_view = room(cube_direction(index));
+                return relative_rmse(studio.draw(test_view, with(shadow)), truth(test_view, with(shadow)));
               });
   }
   for (const ShadowKind shadow : {ShadowKind::Esm, ShadowKind::Evsm}) {
@@ -757,31 +763,31 @@ void add_folds(Cases &cases)
                "share of an open ground that an exponent darkens by 2 %", "exponent, 1/m", "picture without shadows",
                "share of pixels"},
               0.0, {0.01, 0.1, 1, 10, 100, 1e3, 1e4}, [shadow](Studio &studio, double exponent) {
-                Shot shot = ground(LampKind::Point, {0.2F, 0.1F, 2}, {0, 0, -1});
-                const Picture lit = studio.draw(shot, with(ShadowKind::None));
-                edit_lamp(shot, [&](scene::Lamp &lamp) { lamp.shadow.exponent = float(exponent); });
-                return wrong_share(studio.draw(shot, with(shadow)), lit, 0.02);
+                TestView test_view = ground(LampKind::Point, {0.2F, 0.1F, 2}, {0, 0, -1});
+                const Picture lit = studio.draw(test_view, with(ShadowKind::None));
+                edit_lamp(test_view, [&](scene::Lamp &lamp) { lamp.shadow.exponent = float(exponent); });
+                return wrong_share(studio.draw(test_view, with(shadow)), lit, 0.02);
               });
   }
   cases.add({"exponent", "light behind a caster", "visibility 1 m and more behind a plate, against exp(-c (d - d0))",
              "exponent, 1/m", "closed form", "largest error"},
             // The lift of the receiver: half a centimetre.
             0.01, {0.01, 0.1, 1, 3, 10, 100, 1e3, 1e4}, [](Studio &studio, double exponent) {
-              Shot shot = ground(LampKind::Point, {0.05F, 0.03F, 2}, {0, 0, -1});
+              TestView test_view = ground(LampKind::Point, {0.05F, 0.03F, 2}, {0, 0, -1});
               // Under the plate, so that it hides nothing.
-              shot.camera = camera_at({0.05F, 0.03F, 0.9F}, {0.05F, 0.03F, 0}, 0.6F);
+              test_view.camera = camera_at({0.05F, 0.03F, 0.9F}, {0.05F, 0.03F, 0}, 0.6F);
               const DrawSettings settings = with(ShadowKind::None, {64, 48}, 1);
-              const Picture lit = studio.draw(shot, settings);
-              add_object(shot.scene, shot.scene.meshes().first(), moved({0, 0, 1}) * scaled(glm::vec3(1.5F)));
-              edit_lamp(shot, [&](scene::Lamp &lamp) { lamp.shadow.exponent = float(exponent); });
-              const Picture shadowed = studio.draw(shot, with(ShadowKind::Esm, {64, 48}, 1));
+              const Picture lit = studio.draw(test_view, settings);
+              add_object(test_view.scene, test_view.scene.meshes().first(), moved({0, 0, 1}) * scaled(glm::vec3(1.5F)));
+              edit_lamp(test_view, [&](scene::Lamp &lamp) { lamp.shadow.exponent = float(exponent); });
+              const Picture shadowed = studio.draw(test_view, with(ShadowKind::Esm, {64, 48}, 1));
               if (shadowed.non_finite_count() > 0) {
                 return std::nan("");
               }
               double worst = 0.0;
               for (int y = 1; y < 47; y++) {
                 for (int x = 1; x < 63; x++) {
-                  // On the ground, from below the lamp; half way to it is the plate.
+                  // On the ground, from below the lamp; half variant to it is the plate.
                   const double half = 0.9 * std::tan(0.3);
                   const glm::dvec2 from_middle =
                       (glm::dvec2(x + 0.5, y + 0.5) / 24.0 - glm::dvec2(64.0 / 48.0, 1.0)) * half;

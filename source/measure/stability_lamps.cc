@@ -23,7 +23,7 @@ constexpr const char *group = "lamps";
 constexpr double degree = std::numbers::pi / 180.0;
 
 /** 1 less the cosine, without the cancellation. */
-double cosine_drop(double angle)
+double one_minus_cos(double angle)
 {
   const double sine = std::sin(0.5 * angle);
   return 2.0 * sine * sine;
@@ -44,12 +44,12 @@ std::vector<double> angles_around(double edge)
 void add_spot_cases(std::vector<StabilityCase> &cases)
 {
   for (const double cone : {0.0, 1.0, 45.0, 90.0, 120.0, 179.0, 180.0}) {
-    const auto drop_outer = float(cosine_drop(0.5 * cone * degree));
+    const auto drop_outer = float(one_minus_cos(0.5 * cone * degree));
     for (const float blend : {0.0F, 1e-6F, 0.5F, 1.0F}) {
       cases.push_back(case_of({group, fmt::format("cone of {:g}°, blend {:g}", cone, blend), "spot_mask",
                                "transmission of a spot's cone", "angle from the axis, rad",
                                angles_around(0.5 * cone * degree), [=](double angle) {
-                                 return Arguments<float>{.a = {float(cosine_drop(angle)), drop_outer, blend, 0.0F}};
+                                 return Arguments<float>{.a = {float(one_minus_cos(angle)), drop_outer, blend, 0.0F}};
                                }}));
     }
   }
@@ -61,12 +61,12 @@ void add_spot_cases(std::vector<StabilityCase> &cases)
                    .unit = violation_unit,
                    .bound = 0.0,
                    .run = swept(even_steps(0.0, 180.0, 121), [](double cone) {
-                     const auto drop_outer = float(cosine_drop(0.5 * cone * degree));
+                     const auto drop_outer = float(one_minus_cos(0.5 * cone * degree));
                      double worst = 0.0;
                      for (const float blend : {0.0F, 1e-30F, 1e-6F, 1e-3F, 0.1F, 0.5F, 1.0F}) {
                        float before = 1.0F;
                        for (const double angle : angles_around(0.5 * cone * degree)) {
-                         const float mask = shared::spot_mask(float(cosine_drop(angle)), drop_outer,
+                         const float mask = shared::spot_mask(float(one_minus_cos(angle)), drop_outer,
                                                               shared::spot_inv_width(drop_outer, blend));
                          worst = std::max(worst, violated(mask >= 0.0F && mask <= before));
                          before = mask;
@@ -91,9 +91,9 @@ void add_spot_cases(std::vector<StabilityCase> &cases)
                        lamp.spot_blend = 1.0F;
                        const shared::LightData light = eevee::light_data(lamp);
                        const double mask =
-                           shared::spot_mask(float(cosine_drop(angle)), light.spot_drop_outer, light.spot_inv_width);
-                       const double drop_outer = cosine_drop(double(lamp.spot_outer_angle));
-                       const double t = std::clamp((drop_outer - cosine_drop(angle)) / drop_outer, 0.0, 1.0);
+                           shared::spot_mask(float(one_minus_cos(angle)), light.spot_drop_outer, light.spot_inv_width);
+                       const double drop_outer = one_minus_cos(double(lamp.spot_outer_angle));
+                       const double t = std::clamp((drop_outer - one_minus_cos(angle)) / drop_outer, 0.0, 1.0);
                        return std::abs(mask - t * t * (3.0 - 2.0 * t)) / float_epsilon;
                      })});
   }

@@ -44,7 +44,7 @@ TEST(SpotMask, OfNarrowConesIsAsOfWideOnes)
     const double sine = std::sin(0.5 * angle);
     const auto drop_outer = float(2.0 * sine * sine);
     // 1 - cos is half of its outer value at √½ of the outer angle.
-    const float drop = cosine_drop(unit(0.0), unit(std::sqrt(0.5) * angle));
+    const float drop = one_minus_cos(unit(0.0), unit(std::sqrt(0.5) * angle));
     EXPECT_NEAR(spot_mask(drop, drop_outer, spot_inv_width(drop_outer, 1.0F)), 0.5F, 1e-3F) << angle;
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "internal/measure_shot.hh"
+#include "internal/measure_test_view.hh"
 
 #include "reference_light.hh"
 
@@ -9,11 +9,11 @@
 
 namespace gnomon::measure {
 
-Shot placed(Shot shot, const glm::dmat4 &moved, double scale)
+TestView placed(TestView test_view, const glm::dmat4 &moved, double scale)
 {
   const glm::dmat4 scaled = moved * glm::scale(glm::dmat4(1.0), glm::dvec3(scale));
   const auto rounded = [](const glm::dmat4 &matrix) { return glm::dmat4(glm::mat4(matrix)); };
-  scene::Scene &scene = shot.scene;
+  scene::Scene &scene = test_view.scene;
   for (const auto &[handle, node] : scene.nodes()) {
     if (!scene.parent(handle)) {
       scene.set_transform(handle, rounded(scaled * node.parent_from_node));
@@ -28,12 +28,12 @@ Shot placed(Shot shot, const glm::dmat4 &moved, double scale)
       });
     }
   }
-  scene::PlacedCamera &camera = shot.camera;
+  scene::PlacedCamera &camera = test_view.camera;
   camera.world_from_camera = rounded(scene::frame_of(scaled * camera.world_from_camera));
   for (float *length : {&camera.half_width, &camera.half_height, &camera.near, &camera.far}) {
     *length = float(*length * scale);
   }
-  return shot;
+  return test_view;
 }
 
 /** Removes all things of a kind, the last first, so that places are used in order again. */
@@ -103,10 +103,10 @@ static void become(scene::Scene &scene, const scene::Scene &other)
   }
 }
 
-Picture Studio::draw(const Shot &shot, const DrawSettings &settings)
+Picture Studio::draw(const TestView &test_view, const DrawSettings &settings)
 {
   Stage &stage = stages_[settings];
-  become(stage.scene, shot.scene);
+  become(stage.scene, test_view.scene);
   if (!stage.renderer) {
     eevee::Settings engine;
     engine.sample_count = settings.sample_count;
@@ -120,7 +120,7 @@ Picture Studio::draw(const Shot &shot, const DrawSettings &settings)
   else {
     stage.renderer->sync();
   }
-  return stage.renderer->picture(shot.camera);
+  return stage.renderer->picture(test_view.camera);
 }
 
 eevee::Report Studio::report(const DrawSettings &settings)
@@ -129,9 +129,9 @@ eevee::Report Studio::report(const DrawSettings &settings)
   return renderer.engine.report(renderer.viewport);
 }
 
-Picture truth(const Shot &shot, const DrawSettings &settings)
+Picture truth(const TestView &test_view, const DrawSettings &settings)
 {
-  scene::Scene scene = shot.scene;
+  scene::Scene scene = test_view.scene;
   if (settings.shadow == scene::ShadowKind::None) {
     for (const auto &[handle, lamp] : scene.lamps()) {
       scene.edit(handle, [](scene::Lamp &changed) { changed.shadow.kind = scene::ShadowKind::None; });
@@ -139,7 +139,7 @@ Picture truth(const Shot &shot, const DrawSettings &settings)
   }
   const reference::Tracer tracer(scene);
   reference::Picture picture =
-      reference::direct_light(tracer, shot.camera, settings.size_px, {.sample_count = settings.sample_count});
+      reference::direct_light(tracer, test_view.camera, settings.size_px, {.sample_count = settings.sample_count});
   return {picture.size_px, std::move(picture.pixels)};
 }
 

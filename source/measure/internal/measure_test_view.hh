@@ -14,16 +14,16 @@
 namespace gnomon::measure {
 
 /** A scene and the camera of its picture. */
-struct Shot {
+struct TestView {
   scene::Scene scene;
   scene::PlacedCamera camera;
 };
 
 /**
- * \a shot made \a scale times as large, and then moved by a rotation, reflection or translation, with the same
+ * \a test_view made \a scale times as large, and then moved by a rotation, reflection or translation, with the same
  * irradiance everywhere. Matrices are rounded to float, so that the engine and the rays have the same scene.
  */
-[[nodiscard]] Shot placed(Shot shot, const glm::dmat4 &moved, double scale = 1.0);
+[[nodiscard]] TestView placed(TestView test_view, const glm::dmat4 &moved, double scale = 1.0);
 
 /** The settings of a picture. */
 struct DrawSettings {
@@ -39,13 +39,13 @@ struct DrawSettings {
   bool operator==(const DrawSettings &other) const = default;
 };
 
-/** Draws one shot after another, with the programs and textures of those before. */
+/** Draws one test view after another, with the programs and textures of those before. */
 class Studio {
  public:
   /** \a device must outlive it. */
   explicit Studio(gpu::Device &device) : device_(device) {}
 
-  Picture draw(const Shot &shot, const DrawSettings &settings = {});
+  Picture draw(const TestView &test_view, const DrawSettings &settings = {});
   /** Of the last draw with \a settings. */
   [[nodiscard]] eevee::Report report(const DrawSettings &settings);
 
@@ -59,7 +59,7 @@ class Studio {
 };
 
 /** The picture by ray tracing with as many samples. */
-[[nodiscard]] Picture truth(const Shot &shot, const DrawSettings &settings = {});
+[[nodiscard]] Picture truth(const TestView &test_view, const DrawSettings &settings = {});
 
 /** Root of the mean square of a picture's difference, over the truth's mean; NaN where the picture is not finite. */
 [[nodiscard]] double relative_rmse(const Picture &picture, const Picture &truth);
