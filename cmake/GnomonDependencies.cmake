@@ -14,6 +14,8 @@ pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
 pkg_check_modules(egl REQUIRED IMPORTED_TARGET egl)
 pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(simdjson REQUIRED IMPORTED_TARGET simdjson)
+pkg_check_modules(draco REQUIRED IMPORTED_TARGET draco)
+find_package(meshoptimizer REQUIRED)
 find_package(glm QUIET)
 if(NOT TARGET glm::glm)
   # glm in Debian 12 installs only a pkg-config file.

@@ -2,7 +2,9 @@
 #include "gltf_import.hh"
 
 #include "internal/gltf_camera.hh"
+#include "internal/gltf_decompress.hh"
 #include "internal/gltf_file.hh"
+#include "internal/gltf_instances.hh"
 #include "internal/gltf_lamp.hh"
 #include "internal/gltf_mesh.hh"
 #include "internal/gltf_node.hh"
@@ -10,7 +12,6 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>
 #include <array>
@@ -38,9 +39,10 @@ namespace {
 constexpr std::size_t object_count_max = std::size_t(1) << 22U;
 
 /** What a file may require without our losing anything by not knowing it. */
-constexpr std::array<std::string_view, 8> harmless_extensions{
-    "KHR_lights_punctual",   "KHR_materials_specular", "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_mesh_quantization", "KHR_materials_variants", "KHR_texture_transform",           "KHR_xmp_json_ld",
+constexpr std::array<std::string_view, 11> harmless_extensions{
+    "KHR_lights_punctual",        "KHR_materials_specular",  "KHR_materials_emissive_strength", "KHR_materials_ior",
+    "KHR_mesh_quantization",      "KHR_materials_variants",  "KHR_texture_transform",           "KHR_xmp_json_ld",
+    "KHR_draco_mesh_compression", "EXT_meshopt_compression", "EXT_mesh_gpu_instancing",
 };
 
 /** The names of those that the file requires and we do not know; empty for none. */
@@ -71,18 +73,12 @@ glm::dmat4 matrix_of(const Model::Node &node, const std::function<std::string()>
     return matrix;
   }
   const auto &[x, y, z, w] = node.rotation;
-  const double length = std::hypot(std::hypot(x, y), std::hypot(z, w));
-  if (length > 0.0 && std::isfinite(length)) {
-    matrix = glm::mat4_cast(glm::dquat(w / length, x / length, y / length, z / length));
-  }
-  else {
+  const glm::dvec4 rotation(x, y, z, w);
+  if (!is_rotation(rotation)) {
     warnings.add(what(), "its rotation has no length and is not used");
   }
-  for (std::size_t axis = 0; axis < 3; axis++) {
-    matrix[int(axis)] *= node.scale[axis];
-    matrix[3][int(axis)] = node.translation[axis];
-  }
-  return matrix;
+  return matrix_from({node.translation[0], node.translation[1], node.translation[2]}, rotation,
+                     {node.scale[0], node.scale[1], node.scale[2]});
 }
 
 /** Whether the matrix and the world around it can be kept in float. False for NaN. */
@@ -106,7 +102,10 @@ bool is_usable(const Bounds &bounds)
 
 class Importer {
  public:
-  explicit Importer(const File &file) : file_(file), meshes_(file, warnings_, scene_) {}
+  Importer(const File &file, Warnings warnings)
+      : file_(file), warnings_(std::move(warnings)), meshes_(file, warnings_, scene_)
+  {
+  }
 
   Scene import()
   {
@@ -241,14 +240,53 @@ class Importer {
     node.name = name.empty() ? "node " + std::to_string(index) : name;
     node.parent_from_node = parent_from_node;
     read_flags(file_.model.nodes[index], index, node);
-    import_meshes(index, glm::mat4(world), node);
+    const std::vector<glm::dmat4> instances = instances_of(index);
+    if (instances.empty()) {
+      import_meshes(index, world, node);
+    }
     if (std::optional<Lamp> lamp = lamp_on(file_, index, warnings_)) {
       node.lamp = scene_.add(std::move(*lamp));
     }
     if (std::optional<Camera> camera = camera_on(file_, index, warnings_)) {
       node.camera = scene_.add(std::move(*camera));
     }
-    return scene_.add(std::move(node), parent);
+    const Handle<Node> handle = scene_.add(std::move(node), parent);
+    for (std::size_t i = 0; i < instances.size(); i++) {
+      import_instance(index, i, handle, instances[i], world * instances[i]);
+    }
+    return handle;
+  }
+
+  /** Empty where the node is its mesh's only instance. */
+  std::vector<glm::dmat4> instances_of(int index)
+  {
+    const Model::Node &node = file_.model.nodes[index];
+    if (node.mesh >= 0 && node.instances) {
+      try {
+        return instance_matrices(file_, *node.instances);
+      }
+      catch (const Fault &fault) {
+        warnings_.add(node_label(index), std::string("drawn once, at the node, and not as instances: ") + fault.what());
+      }
+    }
+    return {};
+  }
+
+  /** Adds a child of the node with its meshes. */
+  void import_instance(int index, std::size_t instance, Handle<Node> parent, const glm::dmat4 &parent_from_node,
+                       const glm::dmat4 &world)
+  {
+    if (!is_usable(world)) {
+      warnings_.add_counted(node_label(index), 1,
+                            "instance left out: its matrix is not finite or reaches beyond 1e12 m");
+      return;
+    }
+    Node node;
+    node.name = scene_.nodes()[parent].name + '[' + std::to_string(instance) + ']';
+    node.parent_from_node = parent_from_node;
+    read_flags(file_.model.nodes[index], index, node);
+    import_meshes(index, world, node);
+    scene_.add(std::move(node), parent);
   }
 
   void import_meshes(int index, const glm::mat4 &world, Node &added)
@@ -259,9 +297,6 @@ class Importer {
     }
     if (node.skin >= 0) {
       warnings_.add_counted(node_label(index), 1, "its skin is not applied");
-    }
-    if (node.is_instanced) {
-      warnings_.add(node_label(index), "EXT_mesh_gpu_instancing is not drawn: one instance stands at the node");
     }
     for (const Handle<Mesh> mesh : meshes_.meshes_of(node.mesh)) {
       if (!is_usable(transformed(scene_.meshes()[mesh].bounds, world))) {
@@ -326,8 +361,10 @@ Scene import_gltf(const std::filesystem::path &path)
     return ImportError(path.string() + ": " + std::string(reason));
   };
   try {
-    const File file = load_file(path);
-    Scene scene = Importer(file).import();
+    File file = load_file(path);
+    Warnings warnings;
+    decompress(file, warnings);
+    Scene scene = Importer(file, std::move(warnings)).import();
     scene.path = path.string();
     return scene;
   }

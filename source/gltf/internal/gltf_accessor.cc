@@ -190,15 +190,19 @@ glm::vec2 AccessorReader::vec2(std::size_t index) const
   return {component(bytes), component(bytes + element_size_ / 2)};
 }
 
-glm::vec4 AccessorReader::color(std::size_t index) const
+glm::vec4 AccessorReader::vec4(std::size_t index) const
 {
   const unsigned char *bytes = element(index);
   if (bytes == nullptr) {
-    return glm::vec4(0.0F, 0.0F, 0.0F, accessor_.type == Model::ElementType::Vec3 ? 1.0F : 0.0F);
+    return glm::vec4(0.0F);
   }
-  const std::size_t size = component_size(accessor_.component_type);
-  const float alpha = accessor_.type == Model::ElementType::Vec3 ? 1.0F : component(bytes + 3 * size);
-  return {component(bytes), component(bytes + size), component(bytes + 2 * size), alpha};
+  const std::size_t size = element_size_ / 4;
+  return {component(bytes), component(bytes + size), component(bytes + 2 * size), component(bytes + 3 * size)};
+}
+
+glm::vec4 AccessorReader::color(std::size_t index) const
+{
+  return accessor_.type == Model::ElementType::Vec3 ? glm::vec4(vec3(index), 1.0F) : vec4(index);
 }
 
 bool AccessorReader::is_color() const

@@ -47,6 +47,8 @@ class AccessorReader {
   [[nodiscard]] glm::vec3 vec3(std::size_t index) const;
   /** The same of a VEC2. */
   [[nodiscard]] glm::vec2 vec2(std::size_t index) const;
+  /** The same of a VEC4. */
+  [[nodiscard]] glm::vec4 vec4(std::size_t index) const;
   /** Element of a VEC3 or VEC4 of colours; the alpha of a VEC3 is 1. */
   [[nodiscard]] glm::vec4 color(std::size_t index) const;
   /** Whether components are floats, or normalised unsigned integers of 8 or 16 bits, as glTF wants of colours. */

@@ -189,13 +189,22 @@ class DocumentReader {
 
   void read_node_extensions(const Place &place, const JsonValue &value, Model::Node &node) const
   {
-    read_members(
-        place, value,
-        Member{"KHR_lights_punctual",
-               [&](const Place &at, const JsonValue &extension) {
-                 read_members(at, extension, into_index("light", node.light, "lights"));
-               }},
-        Member{"EXT_mesh_gpu_instancing", [&](const Place &, const JsonValue &) { node.is_instanced = true; }});
+    read_members(place, value,
+                 Member{"KHR_lights_punctual",
+                        [&](const Place &at, const JsonValue &extension) {
+                          read_members(at, extension, into_index("light", node.light, "lights"));
+                        }},
+                 Member{"EXT_mesh_gpu_instancing", [&](const Place &at, const JsonValue &extension) {
+                          Model::Instances &instances = node.instances.emplace();
+                          read_members(at, extension,
+                                       Member{"attributes", [&](const Place &in, const JsonValue &attributes) {
+                                                read_members(
+                                                    in, attributes,
+                                                    into_index("TRANSLATION", instances.translation, "accessors"),
+                                                    into_index("ROTATION", instances.rotation, "accessors"),
+                                                    into_index("SCALE", instances.scale, "accessors"));
+                                              }});
+                        }});
   }
 
   /** Extras that are no object are another program's. */
@@ -268,8 +277,11 @@ class DocumentReader {
   void read_primitive(const Place &place, const JsonValue &value, Model::Primitive &primitive) const
   {
     bool has_attributes = false;
-    const auto read_compression = [&](std::string_view name, const Place &, const JsonValue &) {
-      if (name.find("compression") != name.npos) {
+    const auto read_compression = [&](std::string_view name, const Place &at, const JsonValue &extension) {
+      if (name == "KHR_draco_mesh_compression") {
+        read_draco(at, extension, primitive.draco.emplace());
+      }
+      else if (name.find("compression") != name.npos) {
         primitive.compression = name;
       }
     };
@@ -293,6 +305,19 @@ class DocumentReader {
                }});
     if (!has_attributes) {
       throw Fault(place.text(), "has no attributes");
+    }
+  }
+
+  void read_draco(const Place &place, const JsonValue &value, Model::Draco &draco) const
+  {
+    read_members(place, value, into_index("bufferView", draco.buffer_view, "bufferViews"),
+                 Member{"attributes", [&](const Place &at, const JsonValue &attributes) {
+                          for_members(at, attributes, [&](std::string_view key, const Place &in, const JsonValue &id) {
+                            draco.attributes.insert_or_assign(std::string(key), index_at(in, id));
+                          });
+                        }});
+    if (draco.buffer_view < 0) {
+      fail_incomplete(place, "bufferView");
     }
   }
 
@@ -369,7 +394,13 @@ class DocumentReader {
     std::optional<std::uint64_t> length;
     read_members(place, value, into_index("buffer", view.buffer, "buffers"), into("byteOffset", view.byte_offset),
                  into("byteStride", view.byte_stride),
-                 Member{"byteLength", [&](const Place &at, const JsonValue &member) { length = size_at(at, member); }});
+                 Member{"byteLength", [&](const Place &at, const JsonValue &member) { length = size_at(at, member); }},
+                 Member{"extensions", [&](const Place &at, const JsonValue &extensions) {
+                          read_members(at, extensions,
+                                       Member{"EXT_meshopt_compression", [&](const Place &in, const JsonValue &member) {
+                                                read_meshopt(in, member, view.meshopt.emplace());
+                                              }});
+                        }});
     if (view.buffer < 0 || !length) {
       fail_incomplete(place, view.buffer < 0 ? "buffer" : "byteLength");
     }
@@ -377,6 +408,16 @@ class DocumentReader {
     if (view.byte_stride > 252 || view.byte_stride % 4 != 0) {
       throw Fault("glTF", "Invalid `byteStride' of " + place.text() + ": " + std::to_string(view.byte_stride) +
                               " is not a multiple of 4 up to 252");
+    }
+  }
+
+  void read_meshopt(const Place &place, const JsonValue &value, Model::Meshopt &meshopt) const
+  {
+    read_members(place, value, into_index("buffer", meshopt.buffer, "buffers"), into("byteOffset", meshopt.byte_offset),
+                 into("byteLength", meshopt.byte_length), into("byteStride", meshopt.byte_stride),
+                 into("count", meshopt.count), into("mode", meshopt.mode), into("filter", meshopt.filter));
+    if (meshopt.buffer < 0) {
+      fail_incomplete(place, "buffer");
     }
   }
 

@@ -22,12 +22,23 @@ struct Model {
   enum PrimitiveMode { Points, Lines, LineLoop, LineStrip, Triangles, TriangleStrip, TriangleFan };
   enum class ElementType { Scalar, Vec2, Vec3, Vec4, Matrix };
 
+  /** EXT_meshopt_compression of a buffer view. */
+  struct Meshopt {
+    int buffer = -1;
+    std::uint64_t byte_offset = 0;
+    std::uint64_t byte_length = 0;
+    std::uint64_t byte_stride = 0;
+    std::uint64_t count = 0;
+    std::string mode;
+    std::string filter = "NONE";
+  };
   struct BufferView {
     int buffer = -1;
     std::uint64_t byte_offset = 0;
     std::uint64_t byte_length = 0;
     /** 0: elements follow each other without a gap. */
     std::uint64_t byte_stride = 0;
+    std::optional<Meshopt> meshopt;
   };
   struct SparsePart {
     int buffer_view = -1;
@@ -50,6 +61,12 @@ struct Model {
     bool is_normalized = false;
     std::optional<Sparse> sparse;
   };
+  /** KHR_draco_mesh_compression of a primitive. */
+  struct Draco {
+    int buffer_view = -1;
+    /** By the name of the attribute: its unique id in the compressed mesh. */
+    std::map<std::string, int, std::less<>> attributes;
+  };
   struct Primitive {
     /** POSITION, NORMAL, COLOR_0 and TEXCOORD_n: accessors. */
     std::map<std::string, int, std::less<>> attributes;
@@ -58,7 +75,8 @@ struct Model {
     /** May be none of PrimitiveMode. */
     int mode = Triangles;
     bool has_targets = false;
-    /** The extension that holds the data instead of the accessors; empty: none does. */
+    std::optional<Draco> draco;
+    /** The unknown extension that holds the data instead of the accessors; empty: none does. */
     std::string compression;
     /** The extra gnomon_name; empty: none. */
     std::string name;
@@ -68,6 +86,12 @@ struct Model {
     std::vector<Primitive> primitives;
   };
   using Extra = std::variant<bool, double, std::string, std::vector<double>>;
+  /** EXT_mesh_gpu_instancing: accessors with one element for each instance; -1: absent. */
+  struct Instances {
+    int translation = -1;
+    int rotation = -1;
+    int scale = -1;
+  };
   struct Node {
     std::string name;
     std::vector<int> children;
@@ -80,8 +104,7 @@ struct Model {
     int camera = -1;
     int skin = -1;
     int light = -1;
-    /** EXT_mesh_gpu_instancing. */
-    bool is_instanced = false;
+    std::optional<Instances> instances;
     /** Those whose key begins with "gnomon_". */
     std::map<std::string, Extra, std::less<>> extras;
   };

@@ -3,8 +3,12 @@
 
 #include "internal/gltf_report.hh"
 
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace gnomon::gltf {
 
@@ -40,6 +44,26 @@ void read_flags(const Model::Node &source, int index, scene::Node &node)
   read("gnomon_visible", node.is_visible);
   read("gnomon_casts_shadow", node.casts_shadow);
   read("gnomon_receives_shadow", node.receives_shadow);
+}
+
+bool is_rotation(const glm::dvec4 &xyzw)
+{
+  const double length = glm::length(xyzw);
+  return length > 0.0 && std::isfinite(length);
+}
+
+glm::dmat4 matrix_from(const glm::dvec3 &translation, const glm::dvec4 &rotation_xyzw, const glm::dvec3 &scale)
+{
+  glm::dmat4 matrix(1.0);
+  if (is_rotation(rotation_xyzw)) {
+    const glm::dvec4 unit = rotation_xyzw / glm::length(rotation_xyzw);
+    matrix = glm::mat4_cast(glm::dquat(unit.w, unit.x, unit.y, unit.z));
+  }
+  for (int axis = 0; axis < 3; axis++) {
+    matrix[axis] *= scale[axis];
+    matrix[3][axis] = translation[axis];
+  }
+  return matrix;
 }
 
 std::string thing_name(const Model::Node &node, const char *key, const std::string &fallback, const char *kind,

@@ -4,6 +4,8 @@
 #include "internal/gltf_model.hh"
 #include "scene.hh"
 
+#include <glm/mat4x4.hpp>
+
 #include <string>
 #include <string_view>
 
@@ -15,6 +17,12 @@ namespace gnomon::gltf {
 
 /** The extras gnomon_visible, gnomon_casts_shadow and gnomon_receives_shadow. \throws Fault that names \a node. */
 void read_flags(const Model::Node &source, int index, scene::Node &node);
+
+/** Whether a quaternion can be normalised. */
+[[nodiscard]] bool is_rotation(const glm::dvec4 &xyzw);
+/** Translation · rotation · scale; without the rotation where is_rotation is false. */
+[[nodiscard]] glm::dmat4 matrix_from(const glm::dvec3 &translation, const glm::dvec4 &rotation_xyzw,
+                                     const glm::dvec3 &scale);
 
 /**
  * The name of a lamp or camera on a node: the extra \a key, else the node's name, else \a fallback, else one made of
