@@ -6,6 +6,7 @@
 #include "draw_view_shared.h"
 #include "eevee_camera.hh"
 #include "measure_left_out.hh"
+#include "shadows/shadow_cube.hh"
 #include "shadows/shadows.hh"
 
 #include <fmt/format.h>
@@ -155,12 +156,13 @@ class LampBench {
     }
     const std::span<const scene::PlacedLamp> placed(&lamp_, 1);
     eevee::Lamps lamps = eevee::make_lamps(placed);
-    shadows_.sync(device_.limits(), eevee::shadow_lamps(placed, lamps), {}, lamps.light_block, settings_);
-    shadows_.allocate(device_, shaders_);
+    scene_shadows_.sync(device_.limits(), eevee::shadow_lamps(placed, lamps), {}, lamps.light_block, settings_);
+    scene_shadows_.allocate(device_, shaders_);
+    shadows_.allocate(device_);
     for (const eevee::Caster &caster : casters_) {
-      shadows_.add_caster(caster);
+      scene_shadows_.add_caster(caster);
     }
-    shadows_.finish();
+    scene_shadows_.finish();
   }
 
   /** What is measured. */
@@ -186,7 +188,8 @@ class LampBench {
                                                                         : ShaderId::Shadow;
     draw::ShadingGroup &group = pass_.group(shaders_.get(device_, id));
     group.bind_storage_ref("object_block", &object_block_);
-    group.bind_uniform_ref("shadow_render_block", way_.is_culled_by_view ? &face_block_ : shadows_.render_block());
+    group.bind_uniform_ref("shadow_render_block",
+                           way_.is_culled_by_view ? &face_block_ : scene_shadows_.render_block());
     std::vector<draw::InstanceCall *> calls;
     if (!way_.is_culled_by_view) {
       for (const gpu::Batch &batch : batches) {
@@ -257,7 +260,8 @@ class LampBench {
   eevee::ShadowSettings settings_;
   scene::PlacedLamp lamp_;
   eevee::ShaderCache shaders_;
-  eevee::Shadows shadows_;
+  eevee::SceneShadows scene_shadows_;
+  eevee::Shadows shadows_{scene_shadows_};
   draw::ObjectBuffer objects_;
   gpu::BufferRange object_block_;
   // As the engine's.

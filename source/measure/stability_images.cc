@@ -2,6 +2,7 @@
 #include "measure_stability.hh"
 
 #include "internal/measure_test_view.hh"
+#include "shadows/shadow_cube.hh"
 
 #include <fmt/format.h>
 

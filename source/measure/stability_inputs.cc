@@ -507,8 +507,8 @@ std::size_t shadow_block_faults(const eevee::Shadows &shadows)
   for (const shared::ShadowMapData &map : shadows.block_data().maps) {
     count += non_finite(map.texco_from_world) + non_finite({map.texel_size, map.rounding, map.far, map.bias});
   }
-  for (std::size_t i = 0; i < shadows.octahedral().size(); i++) {
-    const shared::EsmData &data = shadows.octahedral().data(i);
+  for (std::size_t i = 0; i < shadows.scene().octahedral().size(); i++) {
+    const shared::EsmData &data = shadows.scene().octahedral().data(i);
     count += non_finite({data.exponent, data.bias, data.range, data.filter_angle});
   }
   return count;

@@ -5,7 +5,8 @@
 #include "eevee_lamps.hh"
 #include "eevee_shadow_shared.h"
 #include "shadows/shadow_casters.hh"
-#include "shadows/shadows.hh"
+#include "shadows/shadow_cube.hh"
+#include "shadows/shadow_spot.hh"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>

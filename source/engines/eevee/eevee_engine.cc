@@ -66,6 +66,14 @@ void Engine::init(draw::Viewport &viewport)
   if (!data.psl) {
     data.psl = std::make_unique<PassList>(scene_.objects());
   }
+  if (!data.shared) {
+    data.shared = shared_.lock();
+    if (!data.shared) {
+      data.shared = std::make_shared<SharedData>(scene_.objects());
+      shared_ = data.shared;
+    }
+    data.stl.shadows.emplace(data.shared->shadows);
+  }
   data.stl.film_weight_sum = film_weight_sum(settings_.sample_count, settings_.seed);
   shaders_.set_pcf(settings_.shadow.pcf);
   TextureList &txl = data.txl;
@@ -80,22 +88,32 @@ void Engine::init(draw::Viewport &viewport)
 }
 
 /** Which lamps give light, and which have a shadow of which kind and size. Needs no device. */
-void Engine::sync_lamps(Data &data, const gpu::Limits &device_limits)
+void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
 {
-  StorageList &stl = data.stl;
   const ShadowsKey key{scene_.lamps_revision(), scene_.objects().revision(), scene_.passes_revision(),
-                       settings_revision_, shaders_revision_};
-  if (stl.shadows_synced == key) {
+                       settings_revision_,      shaders_revision_,           shared.shadows.viewports_revision()};
+  if (shared.synced == key) {
     return;
   }
-  stl.shadows_synced.reset();
-  stl.has_casters = false;
-  stl.is_light_block_written = false;
-  stl.lamps = make_lamps(scene_.lamps());
-  stl.shadows.sync(device_limits, shadow_lamps(scene_.lamps(), stl.lamps), scene_.bounds(), stl.lamps.light_block,
-                   settings_.shadow);
-  stl.tinted_light = settings_.has_cascade_tint ? first_sun_with_maps(stl.lamps) : std::nullopt;
-  stl.shadows_synced = key;
+  shared.synced.reset();
+  shared.has_casters = false;
+  shared.is_light_block_written = false;
+  shared.revision++;
+  shared.lamps = make_lamps(scene_.lamps());
+  shared.shadows.sync(device_limits, shadow_lamps(scene_.lamps(), shared.lamps), scene_.bounds(),
+                      shared.lamps.light_block, settings_.shadow);
+  shared.tinted_light = settings_.has_cascade_tint ? first_sun_with_maps(shared.lamps) : std::nullopt;
+  shared.synced = key;
+}
+
+/** Take note of the last sync of the lamps, which another viewport may have asked for. */
+static void follow_lamps(Data &data)
+{
+  if (data.stl.shared_revision != data.shared->revision) {
+    data.stl.features = data.shared->lamps.features | data.shared->shadows.features();
+    data.stl.shared_revision = data.shared->revision;
+    data.is_recorded = false;
+  }
 }
 
 void Engine::cache_init(draw::Viewport &viewport)
@@ -120,8 +138,8 @@ void Engine::cache_finish(draw::Viewport &viewport)
 {
   Data &data = viewport.engine_data<Data>(*this);
   data.stl.is_collecting = false;
-  sync_lamps(data, viewport.device().limits());
-  data.stl.features = data.stl.lamps.features | data.stl.shadows.features();
+  sync_lamps(*data.shared, viewport.device().limits());
+  follow_lamps(data);
   data.is_synced = true;
 }
 
@@ -136,8 +154,8 @@ static void require_sync(bool is_synced)
 /** Write what every pass of a sample reads. */
 void Engine::update_view(Data &data, const draw::View &view)
 {
-  data.stl.object_block = {scene_.objects().buffer().id()};
-  data.stl.material_block = {scene_.materials().buffer().id()};
+  data.stl.object_block = data.shared->object_block = {scene_.objects().buffer().id()};
+  data.stl.material_block = data.shared->material_block = {scene_.materials().buffer().id()};
   scene_.device().update(data.stl.view_block, view_data(view));
 }
 
@@ -145,10 +163,11 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
 {
   Data &data = viewport.engine_data<Data>(*this);
   require_sync(data.is_synced);
+  follow_lamps(data);
   const glm::vec2 offset_px = film_offset_px(data.samples_drawn, settings_.sample_count, settings_.seed);
   const draw::View sample_view = with_sample_offset(view, offset_px, viewport.size_px());
   if (data.samples_drawn == 0) {
-    data.stl.shadows.begin_picture();
+    data.stl.shadows->begin_picture();
     data.frame.clear();
     data.is_seen = false;
   }
@@ -170,8 +189,13 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
   }
 }
 
-static std::optional<std::size_t> light_of(const Lamps &lamps, std::size_t lamp)
+/** In light_block. Nothing where the lamp gives no light, or the viewport was never synced. */
+static std::optional<std::size_t> light_of(const Data &data, std::size_t lamp)
 {
+  if (!data.shared) {
+    return std::nullopt;
+  }
+  const Lamps &lamps = data.shared->lamps;
   const auto found = std::ranges::find(lamps.lamp_index, std::uint32_t(lamp));
   return found == lamps.lamp_index.end() ? std::nullopt : std::optional(std::size_t(found - lamps.lamp_index.begin()));
 }
@@ -181,8 +205,9 @@ std::optional<Probe> Engine::probe(draw::Viewport &viewport, const draw::View &v
   GNOMON_ASSERT(settings_.has_probe, "the settings ask for no probe");
   Data &data = viewport.engine_data<Data>(*this);
   require_sync(data.is_synced);
+  follow_lamps(data);
   StorageList &stl = data.stl;
-  const std::optional<std::size_t> light = light_of(stl.lamps, lamp);
+  const std::optional<std::size_t> light = light_of(data, lamp);
   if (!light || stl.objects.empty()) {
     return std::nullopt;
   }
@@ -192,7 +217,7 @@ std::optional<Probe> Engine::probe(draw::Viewport &viewport, const draw::View &v
   stl.probed_light = int(*light);
   update_view(data, view);
   gpu::CommandList list;
-  stl.shadows.update(device, view, pixel_size(view, viewport), psl->shadow_pass, list);
+  stl.shadows->update(device, view, pixel_size(view, viewport), data.shared->shadow_pass, list);
   list.begin_pass("depth_prepass", fbl.depth_fb, {});
   psl->depth_pass.record(view, list);
   psl->depth_pass_cull.record(view, list);
@@ -201,20 +226,22 @@ std::optional<Probe> Engine::probe(draw::Viewport &viewport, const draw::View &v
   psl->probe_pass.record(view, list);
   list.end_pass();
   device.submit(list);
-  stl.shadows.submitted();
+  stl.shadows->submitted();
   return Probe{gpu::read_as<glm::vec4>(device, txl.probe_position), gpu::read_as<glm::vec4>(device, txl.probe_normal)};
 }
 
 double Engine::shadow_texel_size(draw::Viewport &viewport, std::size_t lamp, const glm::dvec3 &position_ws) const
 {
-  const StorageList &stl = viewport.engine_data<Data>(*this).stl;
-  const std::optional<std::size_t> light = light_of(stl.lamps, lamp);
-  return light ? stl.shadows.texel_size(stl.lamps.light_block.lights[*light], position_ws) : 0.0;
+  const Data &data = viewport.engine_data<Data>(*this);
+  const std::optional<std::size_t> light = light_of(data, lamp);
+  return light ? data.stl.shadows->texel_size(data.shared->lamps.light_block.lights[*light], position_ws) : 0.0;
 }
 
 const Shadows &Engine::shadows(draw::Viewport &viewport) const
 {
-  return viewport.engine_data<Data>(*this).stl.shadows;
+  const Data &data = viewport.engine_data<Data>(*this);
+  GNOMON_ASSERT(data.stl.shadows, "the viewport was never synced");
+  return *data.stl.shadows;
 }
 
 const gpu::Texture &Engine::radiance(draw::Viewport &viewport) const
@@ -246,14 +273,16 @@ std::vector<StepTime> Engine::take_step_times(draw::Viewport &viewport) const
 std::vector<std::string> Engine::reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files,
                                                 gpu::ShaderReflection reflection)
 {
-  viewport.engine_data<Data>(*this).stl.shadows.invalidate();
+  invalidate_shadows(viewport);
   shaders_revision_++;
   return shaders_.reload(viewport.device(), std::move(files), std::move(reflection));
 }
 
 void Engine::invalidate_shadows(draw::Viewport &viewport) const
 {
-  viewport.engine_data<Data>(*this).stl.shadows.invalidate();
+  if (const Data &data = viewport.engine_data<Data>(*this); data.shared) {
+    data.shared->shadows.invalidate();
+  }
 }
 
 std::string Engine::serialize_passes(draw::Viewport &viewport) const
@@ -263,7 +292,7 @@ std::string Engine::serialize_passes(draw::Viewport &viewport) const
   if (!data.psl) {
     return text;
   }
-  text += data.psl->shadow_pass.serialize(viewport.device());
+  text += data.shared->shadow_pass.serialize(viewport.device());
   for (const FrameStep &step : frame_steps()) {
     for (const FramePass &pass : step.passes) {
       text += ((*data.psl).*pass.pass).serialize(viewport.device());
@@ -273,15 +302,15 @@ std::string Engine::serialize_passes(draw::Viewport &viewport) const
   return text;
 }
 
-static std::optional<ShadowLayers> layers_of(const StorageList &stl, std::size_t lamp)
+static std::optional<ShadowLayers> layers_of(const Data &data, std::size_t lamp)
 {
-  const std::optional<std::size_t> light = light_of(stl.lamps, lamp);
-  return light ? stl.shadows.layers(stl.lamps.light_block.lights[*light]) : std::nullopt;
+  const std::optional<std::size_t> light = light_of(data, lamp);
+  return light ? data.stl.shadows->layers(data.shared->lamps.light_block.lights[*light]) : std::nullopt;
 }
 
 std::vector<std::string> Engine::shadow_layers(draw::Viewport &viewport, std::size_t lamp) const
 {
-  const std::optional<ShadowLayers> layers = layers_of(viewport.engine_data<Data>(*this).stl, lamp);
+  const std::optional<ShadowLayers> layers = layers_of(viewport.engine_data<Data>(*this), lamp);
   std::vector<std::string> names;
   for (int i = 0; layers && i < layers->count; i++) {
     names.push_back(layers->esm_format >= 0 ? "octahedral" : std::to_string(i));
@@ -292,7 +321,7 @@ std::vector<std::string> Engine::shadow_layers(draw::Viewport &viewport, std::si
 const gpu::Texture &Engine::shadow_picture(draw::Viewport &viewport, std::size_t lamp, std::optional<std::size_t> layer)
 {
   Data &data = viewport.engine_data<Data>(*this);
-  const std::optional<ShadowLayers> layers = layers_of(data.stl, lamp);
+  const std::optional<ShadowLayers> layers = layers_of(data, lamp);
   GNOMON_ASSERT(layers, "lamp {} has no shadow", lamp);
   return data.shadow_picture.draw(viewport.device(), shaders_, *layers,
                                   layer ? std::optional(int(*layer)) : std::nullopt);
@@ -300,9 +329,11 @@ const gpu::Texture &Engine::shadow_picture(draw::Viewport &viewport, std::size_t
 
 std::optional<std::size_t> Engine::tinted_sun(draw::Viewport &viewport) const
 {
-  const StorageList &stl = viewport.engine_data<Data>(*this).stl;
-  return stl.tinted_light ? std::optional(std::size_t(stl.lamps.lamp_index[std::size_t(*stl.tinted_light)]))
-                          : std::nullopt;
+  const Data &data = viewport.engine_data<Data>(*this);
+  if (!data.shared || !data.shared->tinted_light) {
+    return std::nullopt;
+  }
+  return data.shared->lamps.lamp_index[std::size_t(*data.shared->tinted_light)];
 }
 
 draw::EngineType engine_type(render_scene::RenderScene &scene, const Settings &settings)

@@ -11,6 +11,7 @@
 #include "eevee_tonemap_shared.h"
 #include "render_scene.hh"
 
+#include <memory>
 #include <optional>
 
 namespace gnomon::eevee {
@@ -43,6 +44,7 @@ struct StepTime {
 };
 
 struct Data;
+struct SharedData;
 
 /** The surface at the middle of each pixel and the visibility of one lamp there; rows from the bottom. */
 struct Probe {
@@ -123,11 +125,11 @@ class Engine final : public draw::Engine {
                                                    std::optional<std::size_t> layer = std::nullopt);
   /** Index in RenderScene::lamps of the sun whose cascades Settings::has_cascade_tint shows; valid after a sync. */
   [[nodiscard]] std::optional<std::size_t> tinted_sun(draw::Viewport &viewport) const;
-  /** The shadow layers, as of the last draw. */
+  /** The shadow layers, as of the last draw. \pre the viewport was synced */
   [[nodiscard]] const Shadows &shadows(draw::Viewport &viewport) const;
   /** Linear in the size of the scene: call it for reports, not for every frame. Before the first sync it is empty. */
   [[nodiscard]] Report report(draw::Viewport &viewport) const;
-  /** Counters of the viewport's shadows. */
+  /** Of the shadow layers that this viewport's draws were the first to need. \pre the viewport was synced */
   [[nodiscard]] const ShadowCounters &shadow_counters(draw::Viewport &viewport) const
   {
     return shadows(viewport).counters();
@@ -144,15 +146,16 @@ class Engine final : public draw::Engine {
   [[nodiscard]] std::string serialize_passes(draw::Viewport &viewport) const;
 
  private:
-  void sync_lamps(Data &data, const gpu::Limits &device_limits);
+  void sync_lamps(SharedData &shared, const gpu::Limits &device_limits);
   /** Create and record everything that a picture needs in which any object is visible, as far as it changed. */
   void record(draw::Viewport &viewport);
   void make_targets(draw::Viewport &viewport);
   void make_blocks(draw::Viewport &viewport);
   void record_passes(draw::Viewport &viewport);
   void record_object(draw::Viewport &viewport, draw::ObjectIndex object);
-  void record_caster(Data &data, draw::ObjectIndex object);
   void record_film(draw::Viewport &viewport);
+  void record_casters(Data &data);
+  void record_caster(SharedData &shared, draw::ObjectIndex object);
   void add_casters(Data &data);
   void update_view(Data &data, const draw::View &view);
 
@@ -162,6 +165,8 @@ class Engine final : public draw::Engine {
   /** Of all viewports. */
   ShaderCache shaders_;
   std::uint64_t shaders_revision_ = 0;
+  /** Of the viewports, which own it. */
+  std::weak_ptr<SharedData> shared_;
 };
 
 /** For a host's registry; engines that it creates read \a scene, which must outlive them. */

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <tuple>
 
 /** What the engine keeps in a viewport. For the engine's own files. */
@@ -40,9 +41,7 @@ struct TextureList {
 
 struct PassList {
   explicit PassList(draw::ObjectBuffer &objects)
-      : shadow_pass("shadow_pass", gpu::State::WriteDepth | gpu::State::DepthNearerEqual | gpu::State::DepthClamp,
-                    &objects),
-        depth_pass("depth_pass", gpu::State::WriteDepth | gpu::State::DepthNearerEqual, &objects),
+      : depth_pass("depth_pass", gpu::State::WriteDepth | gpu::State::DepthNearerEqual, &objects),
         depth_pass_cull("depth_pass_cull", gpu::State::WriteDepth | gpu::State::DepthNearerEqual | gpu::State::CullBack,
                         &objects),
         lit_pass("lit_pass", gpu::State::WriteColor | gpu::State::DepthEqual, &objects),
@@ -52,7 +51,6 @@ struct PassList {
         tonemap("tonemap", gpu::State::WriteColor)
   {
   }
-  draw::Pass shadow_pass;
   draw::Pass depth_pass;
   draw::Pass depth_pass_cull;
   draw::Pass lit_pass;
@@ -88,28 +86,68 @@ struct ShadowsKey {
   std::uint64_t passes = 0;
   std::uint64_t settings = 0;
   std::uint64_t shaders = 0;
+  std::uint64_t viewports = 0;
 
   bool operator==(const ShadowsKey &) const = default;
 };
 
-struct StorageList {
+/** Revisions of everything that the recorded casters depend on. */
+struct CastersKey {
+  std::uint64_t structure = 0;
+  std::uint64_t passes = 0;
+  std::uint64_t settings = 0;
+  std::uint64_t shaders = 0;
+  bool has_shadows = false;
+
+  bool operator==(const CastersKey &) const = default;
+};
+
+/** What the engine keeps for all viewports of its scene. It goes with the last of them. */
+struct SharedData {
+  explicit SharedData(draw::ObjectBuffer &objects)
+      : shadow_pass("shadow_pass", gpu::State::WriteDepth | gpu::State::DepthNearerEqual | gpu::State::DepthClamp,
+                    &objects)
+  {
+  }
   Lamps lamps;
-  Shadows shadows;
+  SceneShadows shadows;
+  std::optional<ShadowsKey> synced;
+  /** Increased by each sync of the lamps. */
+  std::uint64_t revision = 0;
+  /** In light_block: the sun whose cascades are shown; nothing where none is, or nobody asks. */
+  std::optional<int> tinted_light;
+  gpu::Buffer light_block;
+  bool is_light_block_written = false;
+  /** Draws the casters of any lamp. */
+  draw::Pass shadow_pass;
+  gpu::BufferRange object_block;
+  gpu::BufferRange material_block;
+  /** Of shadow_pass; made when the first object needs them. */
+  std::map<GroupKey, draw::ShadingGroup *> groups;
+  /** For each mesh and winding of casters, the call in shadow_pass. */
+  std::map<std::pair<scene::Handle<scene::Mesh>, gpu::State>, draw::InstanceCall *> caster_calls;
+  /** By object index: the call of a caster; nullptr for objects that cast no shadow. */
+  std::vector<draw::InstanceCall *> caster_of;
+  /** By object index: the caster was recorded for a mirrored matrix. */
+  std::vector<bool> is_mirrored;
+  std::optional<CastersKey> recorded;
+  /** The shadows have the casters of the last sync. */
+  bool has_casters = false;
+};
+
+struct StorageList {
+  /** Made by the first sync. */
+  std::optional<Shadows> shadows;
   Feature features = Feature::None;
   /** Drawable objects, in the order of their first cache_populate; recorded when a view touches any of them. */
   std::vector<draw::ObjectIndex> objects;
   /** cache_init was called, and cache_finish not yet. */
   bool is_collecting = false;
   gpu::Buffer view_block;
-  gpu::Buffer light_block;
   gpu::BufferRange material_block;
   gpu::BufferRange object_block;
   /** Made when the first object needs them. */
   std::map<GroupKey, draw::ShadingGroup *> groups;
-  /** For each mesh and winding of casters, the call in shadow_pass. */
-  std::map<std::pair<scene::Handle<scene::Mesh>, gpu::State>, draw::InstanceCall *> caster_calls;
-  /** By object index: the call of a caster; nullptr for objects that cast no shadow. */
-  std::vector<draw::InstanceCall *> caster_of;
   /** By object index: passes were recorded for a mirrored matrix. */
   std::vector<bool> is_mirrored;
   /** An object changed in a way that passes depend on. */
@@ -117,17 +155,13 @@ struct StorageList {
   std::optional<PassesKey> recorded;
   /** \see Report */
   std::uint64_t pass_recordings = 0;
-  std::optional<ShadowsKey> shadows_synced;
-  /** Casters are those of the last sync of the shadows. */
-  bool has_casters = false;
-  /** Of the material table and the light block on the device. */
+  /** SharedData::revision that features and passes follow. */
+  std::uint64_t shared_revision = 0;
+  /** Of the material table. */
   std::uint64_t materials_features_revision = ~std::uint64_t(0);
   Feature material_features = Feature::None;
-  bool is_light_block_written = false;
   /** In light_block, of the probe being drawn. */
   int probed_light = 0;
-  /** In light_block: the sun whose cascades are shown; nothing where none is, or nobody asks. */
-  std::optional<int> tinted_light;
   /** Of the sample being drawn; the film pass reads it by reference. */
   glm::vec4 film_columns{0.0F};
   glm::vec4 film_rows{0.0F};
@@ -153,9 +187,9 @@ struct Data final : draw::EngineViewportData {
     txl = {};
     is_synced = false;
     stl.recorded.reset();
-    // Suns are fitted to the size of a pixel.
-    stl.shadows_synced.reset();
   }
+  /** Made by the first sync; it must outlive the shadows of the viewport. */
+  std::shared_ptr<SharedData> shared;
   FramebufferList fbl;
   TextureList txl;
   std::unique_ptr<PassList> psl;

@@ -86,8 +86,8 @@ void record_shadows(const FrameStep & /*step*/, FrameSample &sample, gpu::Comman
 {
   gpu::Device &device = sample.viewport.device();
   const auto read_depths = [&] { return gpu::read_as<float>(device, sample.viewport.depth_texture()); };
-  sample.data.stl.shadows.update(device, sample.view, pixel_size(sample.view, sample.viewport),
-                                 sample.data.psl->shadow_pass, list, read_depths);
+  sample.data.stl.shadows->update(device, sample.view, pixel_size(sample.view, sample.viewport),
+                                  sample.data.shared->shadow_pass, list, read_depths);
 }
 
 void record_lit(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
@@ -124,9 +124,9 @@ constexpr std::array<FramePass, 2> lit_passes = {{
     {&PassList::lit_pass, "objects in the view", [](const FrameState &) -> std::string { return nothing_seen; }},
     {&PassList::tint_pass, "asked for",
      [](const FrameState &state) -> std::string {
-       return !state.settings.has_cascade_tint ? "not asked for"
-              : state.data.stl.tinted_light    ? nothing_seen
-                                               : "no sun has a shadow";
+       return !state.settings.has_cascade_tint  ? "not asked for"
+              : state.data.shared->tinted_light ? nothing_seen
+                                                : "no sun has a shadow";
      }},
 }};
 
@@ -155,7 +155,7 @@ constexpr std::array<FrameStep, 5> steps = {{
      shadow_targets,
      {},
      record_shadows,
-     [](Data &data) { data.stl.shadows.submitted(); }},
+     [](Data &data) { data.stl.shadows->submitted(); }},
     {"lit", FrameStep::When::EachSample, need_lit, shadow_targets, radiance_only, lit_passes, record_lit},
     {"film", FrameStep::When::EachSample, need_film, radiance_only, film_only, film_passes, record_film},
     {"tonemap", FrameStep::When::LastSample, need_tonemap, film_only, display_only, tonemap_passes, record_tonemap},

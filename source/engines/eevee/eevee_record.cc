@@ -66,13 +66,14 @@ std::uint64_t caster_fingerprint(const scene::Scene &scene, const render_scene::
   return fingerprint_of(std::as_bytes(std::span(&key, 1)));
 }
 
-void bind_lit(draw::ShadingGroup &group, StorageList &stl)
+void bind_lit(draw::ShadingGroup &group, Data &data)
 {
+  StorageList &stl = data.stl;
   group.bind_uniform("view_block", stl.view_block);
   group.bind_storage_ref("object_block", &stl.object_block);
   group.bind_storage_ref("material_block", &stl.material_block);
-  group.bind_uniform("light_block", stl.light_block);
-  stl.shadows.bind(group);
+  group.bind_uniform("light_block", data.shared->light_block);
+  stl.shadows->bind(group);
 }
 
 }  // namespace
@@ -104,11 +105,13 @@ void Engine::make_targets(draw::Viewport &viewport)
 
 void Engine::make_blocks(draw::Viewport &viewport)
 {
-  StorageList &stl = viewport.engine_data<Data>(*this).stl;
+  Data &data = viewport.engine_data<Data>(*this);
+  StorageList &stl = data.stl;
+  SharedData &shared = *data.shared;
   gpu::Device &device = viewport.device();
   scene_.upload();
   if (!has(stl.features, Feature::Light)) {
-    stl.light_block = {};
+    shared.light_block = {};
     return;
   }
   const std::uint64_t materials =
@@ -123,12 +126,12 @@ void Engine::make_blocks(draw::Viewport &viewport)
     stl.materials_features_revision = materials;
   }
   stl.features = stl.features | stl.material_features;
-  if (!stl.light_block) {
-    stl.light_block = device.create_buffer({"light_block", gpu::BufferKind::Uniform, sizeof(shared::LightBlock)});
-    stl.is_light_block_written = false;
+  if (!shared.light_block) {
+    shared.light_block = device.create_buffer({"light_block", gpu::BufferKind::Uniform, sizeof(shared::LightBlock)});
+    shared.is_light_block_written = false;
   }
-  if (!std::exchange(stl.is_light_block_written, true)) {
-    device.update(stl.light_block, stl.lamps.light_block);
+  if (!std::exchange(shared.is_light_block_written, true)) {
+    device.update(shared.light_block, shared.lamps.light_block);
   }
 }
 
@@ -159,28 +162,32 @@ void Engine::record(draw::Viewport &viewport)
   // Until it comes to its end: a part of it must not be drawn.
   data.is_synced = false;
   StorageList &stl = data.stl;
+  SharedData &shared = *data.shared;
   make_targets(viewport);
   make_blocks(viewport);
-  if (!stl.has_casters) {
-    stl.shadows.allocate(viewport.device(), shaders_);
+  if (!shared.has_casters) {
+    shared.shadows.allocate(viewport.device(), shaders_);
   }
+  stl.shadows->allocate(viewport.device());
   const PassesKey key{
       .structure = scene_.objects().structure_revision(),
       .passes = scene_.passes_revision(),
       .settings = settings_revision_,
       .shaders = shaders_revision_,
-      .exponential_lamps = has(stl.features, Feature::ShadowEsm) ? scene_.lamps_revision() + 1 : 0,
-      .shadow_block = stl.shadows.block().id(),
-      .light_block = stl.light_block.id(),
+      .exponential_lamps =
+          has(stl.features, Feature::ShadowEsm) ? scene_.lamps_revision() + shared.shadows.viewports_revision() : 0,
+      .shadow_block = stl.shadows->block().id(),
+      .light_block = shared.light_block.id(),
       .features = stl.features,
-      .tinted_light = stl.tinted_light,
+      .tinted_light = shared.tinted_light,
   };
   if (stl.recorded != key || std::exchange(stl.is_winding_changed, false)) {
     stl.recorded.reset();
     record_passes(viewport);
     stl.recorded = key;
   }
-  if (!stl.has_casters) {
+  if (!shared.has_casters) {
+    record_casters(data);
     add_casters(data);
   }
   data.is_synced = data.is_recorded = true;
@@ -193,15 +200,9 @@ void Engine::record_passes(draw::Viewport &viewport)
   data.psl = std::make_unique<PassList>(scene_.objects());
   stl.pass_recordings++;
   stl.groups.clear();
-  stl.caster_calls.clear();
-  stl.caster_of.assign(scene_.objects().index_end(), nullptr);
   stl.is_mirrored.assign(scene_.objects().index_end(), false);
-  stl.has_casters = false;
   for (const draw::ObjectIndex object : stl.objects) {
     record_object(viewport, object);
-    if (has(stl.features, any_shadow) && scene_.object(object).casts_shadow) {
-      record_caster(data, object);
-    }
   }
   record_film(viewport);
 }
@@ -237,7 +238,7 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
     }
     group->call(batch, index);
   };
-  const auto bind_surface = [&stl](draw::ShadingGroup &group) { bind_lit(group, stl); };
+  const auto bind_surface = [&data](draw::ShadingGroup &group) { bind_lit(group, data); };
   // A surface that receives no shadow is lit as if no lamp had one.
   const Feature lighting = object.receives_shadow ? stl.features : without_shadows(stl.features);
   const gpu::Shader &depth_shader =
@@ -249,46 +250,73 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
   // At the same depth as the front of another face, the back must not be drawn over it.
   const State side = material.is_double_sided ? State::None : State::CullBack;
   call(data.psl->lit_pass, lit_shader, side, is_lit_textured, bind_surface);
-  if (stl.tinted_light) {
+  if (data.shared->tinted_light) {
     call(data.psl->tint_pass, shaders_.get(device, ShaderId::DebugCascades, stl.features), side, false,
-         [&stl](draw::ShadingGroup &group) {
-           bind_lit(group, stl);
-           group.constant("tinted_light", *stl.tinted_light);
+         [&data](draw::ShadingGroup &group) {
+           bind_lit(group, data);
+           group.constant("tinted_light", *data.shared->tinted_light);
          });
   }
   if (settings_.has_probe && has(stl.features, Feature::Light)) {
     call(data.psl->probe_pass, shaders_.get(device, ShaderId::Probe, stl.features), side, false,
-         [&stl](draw::ShadingGroup &group) {
-           bind_lit(group, stl);
-           group.constant_ref("probed_light", &stl.probed_light);
+         [&data](draw::ShadingGroup &group) {
+           bind_lit(group, data);
+           group.constant_ref("probed_light", &data.stl.probed_light);
          });
   }
 }
 
-void Engine::record_caster(Data &data, draw::ObjectIndex index)
+/** The pass that draws casters, where what it depends on changed. */
+void Engine::record_casters(Data &data)
 {
-  StorageList &stl = data.stl;
+  SharedData &shared = *data.shared;
+  const CastersKey key{scene_.objects().structure_revision(), scene_.passes_revision(), settings_revision_,
+                       shaders_revision_, has(data.stl.features, any_shadow)};
+  const bool is_winding_kept = std::ranges::none_of(data.stl.objects, [&](draw::ObjectIndex index) {
+    return index < shared.is_mirrored.size() &&
+           shared.is_mirrored[index] != draw::is_mirrored(scene_.objects().world_from_object(index));
+  });
+  if (shared.recorded == key && is_winding_kept) {
+    return;
+  }
+  shared.recorded.reset();
+  shared.shadow_pass.clear();
+  shared.groups.clear();
+  shared.caster_calls.clear();
+  shared.caster_of.assign(scene_.objects().index_end(), nullptr);
+  shared.is_mirrored.assign(scene_.objects().index_end(), false);
+  for (const draw::ObjectIndex object : data.stl.objects) {
+    if (key.has_shadows && scene_.object(object).casts_shadow) {
+      record_caster(shared, object);
+    }
+  }
+  shared.recorded = key;
+}
+
+void Engine::record_caster(SharedData &shared, draw::ObjectIndex index)
+{
   const render_scene::RenderObject &object = scene_.object(index);
   const scene::Scene &scene = scene_.scene();
   const scene::Mesh &mesh = scene.meshes()[object.mesh];
   const scene::Material &material = scene.material_of(mesh);
   const bool has_mask = render_scene::is_textured(scene, mesh) && render_scene::is_masked(scene, material);
-  const State winding = stl.is_mirrored[index] ? State::FrontClockwise : State::None;
-  draw::InstanceCall *&instances = stl.caster_calls[{object.mesh, winding}];
+  shared.is_mirrored[index] = draw::is_mirrored(scene_.objects().world_from_object(index));
+  const State winding = shared.is_mirrored[index] ? State::FrontClockwise : State::None;
+  draw::InstanceCall *&instances = shared.caster_calls[{object.mesh, winding}];
   if (!instances) {
-    const gpu::Shader &shader = shaders_.get(scene_.device(), shadow_shader(stl.shadows.layer_pass()),
+    const gpu::Shader &shader = shaders_.get(scene_.device(), shadow_shader(shared.shadows.layer_pass()),
                                              has_mask ? Feature::AlphaMask : Feature::None);
     const State faces = material.is_double_sided ? State::None : culled_state(settings_.shadow.caster_faces);
     // Without culling the winding makes no difference.
     const State state = faces == State::None ? State::None : faces | winding;
     const auto texture = has_mask ? material.base_color_texture : scene::Handle<scene::Texture>();
-    draw::ShadingGroup *&group = stl.groups[{&data.psl->shadow_pass, shader.id(), state, texture}];
+    draw::ShadingGroup *&group = shared.groups[{&shared.shadow_pass, shader.id(), state, texture}];
     if (!group) {
-      group = &data.psl->shadow_pass.group(shader);
+      group = &shared.shadow_pass.group(shader);
       group->state_enable(state);
-      group->bind_storage_ref("object_block", &stl.object_block);
-      group->bind_storage_ref("material_block", &stl.material_block);
-      group->bind_uniform_ref("shadow_render_block", stl.shadows.render_block());
+      group->bind_storage_ref("object_block", &shared.object_block);
+      group->bind_storage_ref("material_block", &shared.material_block);
+      group->bind_uniform_ref("shadow_render_block", shared.shadows.render_block());
       if (has_mask) {
         const auto [image, sampler] = scene_.texture(texture);
         group->bind_texture("base_color_texture", image, sampler);
@@ -296,24 +324,24 @@ void Engine::record_caster(Data &data, draw::ObjectIndex index)
     }
     instances = &group->instances(scene_.batch(object.mesh, has_mask));
   }
-  stl.caster_of[index] = instances;
+  shared.caster_of[index] = instances;
 }
 
 /** The casters as they stand, for the shadows to compare with those that they were drawn with. */
 void Engine::add_casters(Data &data)
 {
-  StorageList &stl = data.stl;
-  for (const draw::ObjectIndex index : stl.objects) {
-    if (draw::InstanceCall *instances = stl.caster_of[index]) {
+  SharedData &shared = *data.shared;
+  for (const draw::ObjectIndex index : data.stl.objects) {
+    if (draw::InstanceCall *instances = shared.caster_of[index]) {
       const render_scene::RenderObject &object = scene_.object(index);
       const glm::mat4 &world_from_object = scene_.objects().world_from_object(index);
-      stl.shadows.add_caster({object.bounds, index, instances,
-                              caster_fingerprint(scene_.scene(), object, world_from_object),
-                              &scene_.scene().meshes()[object.mesh], &world_from_object});
+      shared.shadows.add_caster({object.bounds, index, instances,
+                                 caster_fingerprint(scene_.scene(), object, world_from_object),
+                                 &scene_.scene().meshes()[object.mesh], &world_from_object});
     }
   }
-  stl.shadows.finish();
-  stl.has_casters = true;
+  shared.shadows.finish();
+  shared.has_casters = true;
 }
 
 }  // namespace gnomon::eevee

@@ -122,7 +122,7 @@ std::string why_no_program(const Source &source, ShaderId id)
     case ShaderId::Probe: return source.settings.has_probe ? "no lamp was probed" : "not asked for";
     case ShaderId::DebugShadow: return "not asked for";
     case ShaderId::DebugCascades:
-      return source.data.stl.tinted_light
+      return source.data.shared->tinted_light
                  ? nothing_seen
                  : (source.settings.has_cascade_tint ? "no sun has a shadow" : "not asked for");
     case ShaderId::Tonemap: return source.settings.has_display ? nothing_seen : "only radiance was asked for";
@@ -215,7 +215,7 @@ FrameNode pass_node(const FrameStep &step, const StepRecord &record, const Frame
 FrameNode shadow_step_node(const Source &source, const Need &need)
 {
   std::uint64_t layers = 0;
-  for (const ShadowState &state : source.data.stl.shadows.states()) {
+  for (const ShadowState &state : source.data.stl.shadows->states()) {
     layers += std::uint64_t(std::popcount(state.drawn_now));
   }
   return {.what = "shadows",
@@ -276,7 +276,7 @@ FrameNode resource_node(const Source &source, const gpu::Resource &resource, std
 FrameNode target_nodes(const Source &source)
 {
   const TextureList &txl = source.data.txl;
-  const Shadows &shadows = source.data.stl.shadows;
+  const SceneShadows &shadows = source.data.shared->shadows;
   std::vector<FrameNode> targets;
   const auto add = [&](const gpu::Texture &texture, std::string what, std::string why, std::string why_not) {
     targets.push_back(resource_node(source, texture, std::move(what), std::move(why), std::move(why_not)));
@@ -332,12 +332,13 @@ FrameNode block_nodes(const Source &source)
       fmt::format("{} matrices", source.render_scene.objects().size()), nothing_seen);
   add(source.render_scene.materials().buffer(), "material_block",
       fmt::format("{} materials", source.scene().materials().size()), nothing_seen);
-  add(stl.light_block, "light_block", fmt::format("{} lights", stl.lamps.light_block.light_count),
-      "no lamp gives light");
-  add(stl.shadows.block(), "shadow_block", "shadows of depths",
+  add(source.data.shared->light_block, "light_block",
+      fmt::format("{} lights", source.data.shared->lamps.light_block.light_count), "no lamp gives light");
+  add(stl.shadows->block(), "shadow_block", "shadows of depths",
       source.has(any_shadow) ? "all shadows are exponential" : no_shadow);
-  add(stl.shadows.render_blocks(), "shadow_render_block", "views that casters are drawn with", no_shadow);
-  add(stl.shadows.octahedral().block(), "esm_block", "exponential shadows", why_no_feature(source, Feature::ShadowEsm));
+  add(stl.shadows->scene().render_blocks(), "shadow_render_block", "views that casters are drawn with", no_shadow);
+  add(stl.shadows->scene().octahedral().block(), "esm_block", "exponential shadows",
+      why_no_feature(source, Feature::ShadowEsm));
   return folder("blocks", "what programs read", nothing_seen, std::move(blocks));
 }
 
@@ -399,7 +400,7 @@ void add_layers(FrameNode &lamp, const char *what, bool is_made, std::uint32_t m
 FrameNode lamp_node(const Source &source, std::size_t index, const std::vector<ShadowState> &states)
 {
   const scene::PlacedLamp &lamp = source.render_scene.lamps()[index];
-  const Lamps &lamps = source.data.stl.lamps;
+  const Lamps &lamps = source.data.shared->lamps;
   FrameNode node{.what = lamp.name};
   const auto light = std::ranges::find(lamps.lamp_index, std::uint32_t(index));
   if (light == lamps.lamp_index.end()) {
@@ -431,7 +432,7 @@ FrameNode lamp_node(const Source &source, std::size_t index, const std::vector<S
 
 FrameNode shadow_nodes(const Source &source)
 {
-  const std::vector<ShadowState> states = source.data.stl.shadows.states();
+  const std::vector<ShadowState> states = source.data.stl.shadows->states();
   std::vector<FrameNode> lamps;
   for (std::size_t i = 0; i < source.render_scene.lamps().size(); i++) {
     lamps.push_back(lamp_node(source, i, states));
@@ -480,8 +481,11 @@ Report Engine::report(draw::Viewport &viewport) const
     report.tree = {.what = "frame", .why = "the viewport was never synced"};
     return report;
   }
-  report.warnings = stl.lamps.warnings;
-  report.warnings.insert(report.warnings.end(), stl.shadows.warnings().begin(), stl.shadows.warnings().end());
+  const SharedData &shared = *data.shared;
+  const Lamps &lamps = shared.lamps;
+  const SceneShadows &shadows = shared.shadows;
+  report.warnings = lamps.warnings;
+  report.warnings.insert(report.warnings.end(), shadows.warnings().begin(), shadows.warnings().end());
   for (std::string &line : scene_.scene().stale_references()) {
     report.warnings.push_back(std::move(line));
   }
@@ -500,14 +504,14 @@ Report Engine::report(draw::Viewport &viewport) const
           fmt::format("mesh '{}': it has no uvs; its material's texture is not drawn", mesh.name));
     }
   }
-  report.limits = stl.lamps.limits;
-  report.limits.insert(report.limits.end(), stl.shadows.limits().begin(), stl.shadows.limits().end());
-  report.shadow_counters = stl.shadows.counters();
+  report.limits = lamps.limits;
+  report.limits.insert(report.limits.end(), shadows.limits().begin(), shadows.limits().end());
+  report.shadow_counters = stl.shadows->counters();
   report.pass_recordings = stl.pass_recordings;
-  for (int i = 0; i < stl.lamps.light_block.light_count; i++) {
-    const scene::PlacedLamp &lamp = scene_.lamps()[stl.lamps.lamp_index[std::size_t(i)]];
+  for (int i = 0; i < lamps.light_block.light_count; i++) {
+    const scene::PlacedLamp &lamp = scene_.lamps()[lamps.lamp_index[std::size_t(i)]];
     const bool is_asked_for = shadow_kind(lamp, settings_.shadow) != scene::ShadowKind::None;
-    report.lost_shadow_count += is_asked_for && stl.lamps.light_block.lights[i].shadow_kind == SHADOW_NONE ? 1 : 0;
+    report.lost_shadow_count += is_asked_for && lamps.light_block.lights[i].shadow_kind == SHADOW_NONE ? 1 : 0;
   }
 
   const Source source{scene_, shaders_, settings_, data, viewport};
@@ -522,16 +526,16 @@ Report Engine::report(draw::Viewport &viewport) const
   const bool is_recorded = data.is_recorded;
   const std::string no_shadow = settings_.shadow.kind == scene::ShadowKind::None ? "shadows are off" : "no such lamp";
   const auto why_not = [&](std::string reason) { return is_recorded ? std::move(reason) : nothing_seen; };
-  part("light_block", bool(stl.light_block), fmt::format("{} lights", stl.lamps.light_block.light_count),
+  part("light_block", bool(shared.light_block), fmt::format("{} lights", lamps.light_block.light_count),
        has(f, Feature::Light) ? nothing_seen : "no lamp gives light");
-  part("shadow_cubes", bool(stl.shadows.cubes()), fmt::format("{} point lamps or wide spots", stl.shadows.cube_count()),
+  part("shadow_cubes", bool(shadows.cubes()), fmt::format("{} point lamps or wide spots", shadows.cube_count()),
        has(f, Feature::ShadowCube) ? nothing_seen : no_shadow);
-  part("shadow_maps", bool(stl.shadows.maps()), fmt::format("{} suns or spots", stl.shadows.map_count()),
+  part("shadow_maps", bool(shadows.maps()), fmt::format("{} suns or spots", shadows.map_count()),
        has(f, Feature::ShadowMap) ? why_not("nothing is seen that a caster could darken") : no_shadow);
-  part("shadow_esm", stl.shadows.octahedral().size() > 0,
-       fmt::format("{} point lamps or spots", stl.shadows.octahedral().size()),
+  part("shadow_esm", shadows.octahedral().size() > 0,
+       fmt::format("{} point lamps or spots", shadows.octahedral().size()),
        has(f, Feature::ShadowEsm) ? nothing_seen : no_shadow);
-  part("shadow_pass", !data.psl->shadow_pass.is_empty(), "casters for the lamps' shadows",
+  part("shadow_pass", !shared.shadow_pass.is_empty(), "casters for the lamps' shadows",
        has(f, any_shadow) ? nothing_seen : "no shadow");
   part("depth_pass", !data.psl->depth_pass.is_empty(), "two-sided materials",
        why_not("no object with a two-sided material"));
@@ -544,7 +548,7 @@ Report Engine::report(draw::Viewport &viewport) const
        has(f, Feature::Light) ? why_not("every material is Lambertian") : "no lamp gives light");
   part("cascade tint", !data.psl->tint_pass.is_empty(), "asked for",
        !settings_.has_cascade_tint ? "not asked for"
-       : stl.tinted_light          ? nothing_seen
+       : shared.tinted_light       ? nothing_seen
                                    : "no sun has a shadow");
   part("film", is_recorded, fmt::format("{} samples a pixel", settings_.sample_count), nothing_seen);
   part("tonemap", !data.psl->tonemap.is_empty(), "a display picture was asked for",

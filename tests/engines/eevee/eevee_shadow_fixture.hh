@@ -58,18 +58,19 @@ class ShadowsTest : public testing::Test {
   void sync(const ShadowSettings &asked = {})
   {
     const std::vector<ShadowLamp> identified = identified_lamps();
-    shadows.sync(device->limits(), identified, bounds_ws(), lamps.light_block, asked);
-    shadows.allocate(*device, shaders);
+    scene_shadows.sync(device->limits(), identified, bounds_ws(), lamps.light_block, asked);
+    scene_shadows.allocate(*device, shaders);
+    shadows.allocate(*device);
     pass.clear();
     draw::ShadingGroup &group = pass.group(shader);
-    group.bind_uniform_ref("shadow_render_block", shadows.render_block());
+    group.bind_uniform_ref("shadow_render_block", scene_shadows.render_block());
     group.bind_storage("object_block", objects);
     draw::InstanceCall &instances = group.instances(batch);
     for (std::size_t i = 0; i < casters.size(); i++) {
-      shadows.add_caster({casters[i], draw::ObjectIndex(i), &instances,
-                          fingerprint_of(std::as_bytes(std::span(&casters[i], 1))), mesh, &world_from_mesh});
+      scene_shadows.add_caster({casters[i], draw::ObjectIndex(i), &instances,
+                                fingerprint_of(std::as_bytes(std::span(&casters[i], 1))), mesh, &world_from_mesh});
     }
-    shadows.finish();
+    scene_shadows.finish();
   }
   std::string update()
   {
@@ -105,7 +106,8 @@ class ShadowsTest : public testing::Test {
   std::vector<scene::Bounds> casters = {box_at({0, 0, -3}, 1.0F)};
   ShadowSettings settings;
   Lamps lamps;
-  Shadows shadows;
+  SceneShadows scene_shadows;
+  Shadows shadows{scene_shadows};
   draw::View view{glm::mat4(1.0F), draw::perspective(1.0F, 1.0F, 0.1F, 100.0F)};
 };
 

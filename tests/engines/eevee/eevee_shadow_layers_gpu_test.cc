@@ -68,16 +68,16 @@ class ShadowLayersGpuTest : public test::GpuDeviceTest {
 std::vector<std::vector<float>> drawn_layers(gpu::Device &device, const Shadows &shadows)
 {
   std::vector<std::vector<float>> layers;
-  for (std::size_t cube = 0; cube < shadows.cube_count(); cube++) {
+  for (std::size_t cube = 0; cube < shadows.scene().cube_count(); cube++) {
     const shared::ShadowCubeData &data = shadows.block_data().cubes[cube];
     for (int face = 0; face < 6; face++) {
       if ((data.face_mask >> face & 1) != 0) {
-        layers.push_back(gpu::read_as<float>(device, shadows.cubes(), data.layer + face));
+        layers.push_back(gpu::read_as<float>(device, shadows.scene().cubes(), data.layer + face));
       }
     }
   }
-  for (int layer = 0; shadows.maps() && layer < shadows.maps().desc().layers; layer++) {
-    layers.push_back(gpu::read_as<float>(device, shadows.maps(), layer));
+  for (int layer = 0; shadows.scene().maps() && layer < shadows.scene().maps().desc().layers; layer++) {
+    layers.push_back(gpu::read_as<float>(device, shadows.scene().maps(), layer));
   }
   return layers;
 }
@@ -103,7 +103,7 @@ TEST_F(ShadowLayersGpuTest, TheThreeWaysGiveTheSameTexels)
         {.shadow = {.cube_size_px = 96, .map_size_px = 128, .cascades = {.count = 4}, .layer_pass = way}});
     pictures.push_back(renderer.picture(camera));
     const Shadows &shadows = renderer.engine.shadows(renderer.viewport);
-    ASSERT_EQ(shadows.layer_pass(), way);
+    ASSERT_EQ(shadows.scene().layer_pass(), way);
     layers.push_back(drawn_layers(*device, shadows));
     counters.push_back(shadows.counters());
   }
@@ -153,7 +153,7 @@ TEST_F(ShadowLayersGpuTest, ACasterIsDrawnOnceForEachFaceThatItTouches)
 float middle_distance(gpu::Device &device, const Shadows &shadows)
 {
   const shared::ShadowMapData &map = shadows.block_data().maps[0];
-  const std::vector<float> texels = gpu::read_as<float>(device, shadows.maps(), map.layer);
+  const std::vector<float> texels = gpu::read_as<float>(device, shadows.scene().maps(), map.layer);
   const std::size_t size = std::size_t(map.size_px);
   // texco_from_world holds near in the row of z: depth = near / distance.
   const float near = glm::length(glm::vec3(0, 0, map.texco_from_world[3][2]));
@@ -211,7 +211,7 @@ TEST_F(ShadowLayersGpuTest, EachOfThreeSpotsHasItsOwnMapAndIsLitOutsideOfIt)
   Renderer unshadowed(*device, scene, size_px, {.shadow = {.kind = scene::ShadowKind::None}});
   const Picture picture = renderer.picture(above);
   const Picture lit = unshadowed.picture(above);
-  EXPECT_EQ(renderer.engine.shadows(renderer.viewport).map_count(), 3U);
+  EXPECT_EQ(renderer.engine.shadows(renderer.viewport).scene().map_count(), 3U);
   // Half a picture is 30 · tan(0.2) = 6.08 m; a caster's shadow is 20 times as large as it.
   const float px_m = 2.0F * 30.0F * std::tan(0.2F) / 128.0F;
   int dark = 0;
@@ -401,7 +401,7 @@ struct Cascades {
     const Shadows &shadows = renderer.engine.shadows(renderer.viewport);
     for (int i = 0; i < shadows.block_data().maps[0].cascade_count; i++) {
       maps.push_back(shadows.block_data().maps[i]);
-      texels.push_back(gpu::read_as<float>(device, shadows.maps(), maps.back().layer));
+      texels.push_back(gpu::read_as<float>(device, shadows.scene().maps(), maps.back().layer));
     }
   }
 

@@ -38,12 +38,14 @@ TEST(LayerRuns, KeepTheirPlacesAndNeverOverlap)
 {
   std::mt19937 random(3);
   LayerRuns runs;
-  std::map<std::uint64_t, std::pair<int, int>> known;
+  std::map<std::pair<std::uint64_t, std::uint64_t>, std::pair<int, int>> known;
   for (int edit = 0; edit < 3000; edit++) {
-    const std::uint64_t key = random() % 12;
+    // Lamps of two viewports.
+    const LayerOwner owner{random() % 6, random() % 2};
     const int count = int(random() % 5);
-    const int first = runs.place(key, count);
-    ASSERT_EQ(runs.count_of(key), count);
+    const int first = runs.place(owner, count);
+    ASSERT_EQ(runs.count_of(owner), count);
+    const std::pair key(owner.lamp, owner.viewport);
     if (count > 0 && known.contains(key) && known[key].second >= count) {
       ASSERT_EQ(first, known[key].first) << "a run that does not grow stays";
     }
@@ -53,7 +55,7 @@ TEST(LayerRuns, KeepTheirPlacesAndNeverOverlap)
     }
     std::set<int> used;
     int end = 0;
-    for (const auto &[owner, run] : known) {
+    for (const auto &[run_owner, run] : known) {
       for (int layer = run.first; layer < run.first + run.second; layer++) {
         ASSERT_TRUE(used.insert(layer).second) << "layer " << layer << " has two owners";
       }

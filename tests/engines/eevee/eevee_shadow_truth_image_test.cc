@@ -4,6 +4,7 @@
 #include "gpu_device_fixture.hh"
 
 #include "reference_compare.hh"
+#include "shadows/shadow_spot.hh"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_shadow_fixture.hh"
 
+#include "shadows/shadow_cube.hh"
+#include "shadows/shadow_spot.hh"
+
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
@@ -95,10 +98,10 @@ TEST_F(ShadowsTest, PointsAndWideSpotsHaveCubesSunsAndSpotsMaps)
   add_lamp(scene::LampKind::Hemi, "hemi");
   sync({.cascades = {.count = 1}});
   update();
-  EXPECT_EQ(shadows.cube_count(), 2U);
-  EXPECT_EQ(shadows.map_count(), 2U);
-  EXPECT_EQ(shadows.cubes().desc().layers, 12);
-  EXPECT_EQ(shadows.maps().desc().layers, 2);
+  EXPECT_EQ(scene_shadows.cube_count(), 2U);
+  EXPECT_EQ(scene_shadows.map_count(), 2U);
+  EXPECT_EQ(scene_shadows.cubes().desc().layers, 12);
+  EXPECT_EQ(scene_shadows.maps().desc().layers, 2);
   EXPECT_EQ(lamps.light_block.lights[1].shadow_kind, SHADOW_CUBE);
   EXPECT_EQ(lamps.light_block.lights[1].shadow_index, 1);
   EXPECT_EQ(lamps.light_block.lights[4].shadow_kind, SHADOW_NONE);
@@ -225,8 +228,8 @@ TEST_F(ShadowsTest, OffMeansNothingIsMade)
 {
   add_lamp(scene::LampKind::Point, "point");
   sync({.kind = scene::ShadowKind::None});
-  EXPECT_EQ(shadows.features(), Feature::None);
-  EXPECT_FALSE(shadows.cubes());
+  EXPECT_EQ(scene_shadows.features(), Feature::None);
+  EXPECT_FALSE(scene_shadows.cubes());
   EXPECT_EQ(update(), "");
   EXPECT_EQ(device->counters().textures_made, 0U);
 }
@@ -240,11 +243,11 @@ TEST_F(ShadowsTest, SizesAreLoweredEvenlyToFitTheMemory)
   small.cube_size_px = 640;
   small.memory_bytes_max = std::size_t(5) * 6 * 64 * 64 * 4;
   sync(small);
-  EXPECT_EQ(shadows.cube_count(), 5U);
-  EXPECT_EQ(shadows.cubes().desc().width, 64);
-  ASSERT_EQ(shadows.limits().size(), 1U);
-  EXPECT_NE(shadows.limits()[0].find("the shadows of 5 lamps"), std::string::npos) << shadows.limits()[0];
-  EXPECT_NE(shadows.limits()[0].find("lowered to 10 %"), std::string::npos) << shadows.limits()[0];
+  EXPECT_EQ(scene_shadows.cube_count(), 5U);
+  EXPECT_EQ(scene_shadows.cubes().desc().width, 64);
+  ASSERT_EQ(scene_shadows.limits().size(), 1U);
+  EXPECT_NE(scene_shadows.limits()[0].find("the shadows of 5 lamps"), std::string::npos) << scene_shadows.limits()[0];
+  EXPECT_NE(scene_shadows.limits()[0].find("lowered to 10 %"), std::string::npos) << scene_shadows.limits()[0];
 }
 
 // hazards.md: more lamps than slots lost their shadow without a word.
@@ -257,10 +260,11 @@ TEST_F(ShadowsTest, ThoseThatLoseTheirsAreNamed)
   small.cube_size_px = 64;
   small.memory_bytes_max = 3 * 6 * 16 * 16 * 4;
   sync(small);
-  EXPECT_EQ(shadows.cube_count(), 3U);
-  ASSERT_EQ(shadows.limits().size(), 2U);
-  EXPECT_NE(shadows.limits()[1].find("2 lamps lost their shadow"), std::string::npos) << shadows.limits()[1];
-  EXPECT_NE(shadows.limits()[1].find("'point4', 'point3'"), std::string::npos) << shadows.limits()[1];
+  EXPECT_EQ(scene_shadows.cube_count(), 3U);
+  ASSERT_EQ(scene_shadows.limits().size(), 2U);
+  EXPECT_NE(scene_shadows.limits()[1].find("2 lamps lost their shadow"), std::string::npos)
+      << scene_shadows.limits()[1];
+  EXPECT_NE(scene_shadows.limits()[1].find("'point4', 'point3'"), std::string::npos) << scene_shadows.limits()[1];
   EXPECT_EQ(lamps.light_block.lights[3].shadow_kind, SHADOW_NONE);
   EXPECT_EQ(lamps.light_block.lights[3].shadow_index, -1);
   EXPECT_EQ(lamps.light_block.lights[2].shadow_kind, SHADOW_CUBE) << "the first are unchanged";
@@ -272,7 +276,7 @@ TEST_F(ShadowsTest, RespectTheDevicesLayers)
   for (int i = 0; i < 3; i++) {
     add_lamp(scene::LampKind::Point, "point" + std::to_string(i));
   }
-  Shadows few;
+  SceneShadows few;
   few.sync(small->limits(), identified_lamps(), bounds_ws(), lamps.light_block, {.cube_size_px = 16});
   EXPECT_EQ(few.cube_count(), 2U);
   EXPECT_NE(few.limits().at(0).find("'point2'"), std::string::npos);
@@ -284,14 +288,14 @@ TEST_F(ShadowsTest, FortyThreeCubesInARoomKeepTheirs)
     add_lamp(scene::LampKind::Point, "point" + std::to_string(i));
   }
   sync({.memory_bytes_max = std::size_t(43) * 6 * 1024 * 1024 * 4});
-  EXPECT_EQ(shadows.cube_count(), 43U);
-  EXPECT_TRUE(shadows.limits().empty());
+  EXPECT_EQ(scene_shadows.cube_count(), 43U);
+  EXPECT_TRUE(scene_shadows.limits().empty());
 }
 
 TEST_F(ShadowsTest, WithoutVertexLayersTheGeometryShaderChooses)
 {
   const std::unique_ptr<gpu::Device> old = gpu::create_null_device({.has_vertex_layer = false});
-  Shadows plain;
+  SceneShadows plain;
   const auto sync_plain = [&](const ShadowSettings &asked) {
     plain.sync(old->limits(), identified_lamps(), bounds_ws(), lamps.light_block, asked);
   };

@@ -5,9 +5,9 @@
 
 namespace gnomon::eevee {
 
-int LayerRuns::place(std::uint64_t key, int count)
+int LayerRuns::place(const LayerOwner &owner, int count)
 {
-  const auto own = std::ranges::find(runs_, key, &Run::key);
+  const auto own = std::ranges::find(runs_, owner, &Run::owner);
   if (own != runs_.end() && count > 0) {
     const auto next = own + 1;
     if (count <= own->count || next == runs_.end() || own->first + count <= next->first) {
@@ -27,19 +27,19 @@ int LayerRuns::place(std::uint64_t key, int count)
     first = next->first + next->count;
     next++;
   }
-  runs_.insert(next, {key, first, count});
+  runs_.insert(next, {owner, first, count});
   return first;
 }
 
-int LayerRuns::count_of(std::uint64_t key) const
+int LayerRuns::count_of(const LayerOwner &owner) const
 {
-  const auto own = std::ranges::find(runs_, key, &Run::key);
+  const auto own = std::ranges::find(runs_, owner, &Run::owner);
   return own == runs_.end() ? 0 : own->count;
 }
 
-void LayerRuns::keep_only(std::span<const std::uint64_t> keys)
+void LayerRuns::keep_only(std::span<const LayerOwner> owners)
 {
-  std::erase_if(runs_, [&](const Run &run) { return std::ranges::find(keys, run.key) == keys.end(); });
+  std::erase_if(runs_, [&](const Run &run) { return std::ranges::find(owners, run.owner) == owners.end(); });
 }
 
 }  // namespace gnomon::eevee

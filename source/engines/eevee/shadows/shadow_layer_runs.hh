@@ -7,18 +7,28 @@
 
 namespace gnomon::eevee {
 
-/** Runs of layers in an array, each owned by a key. A run keeps its first layer while its owner lives. */
+/** Who owns layers: a lamp, or a lamp in one viewport. */
+struct LayerOwner {
+  /** ShadowLamp::key. */
+  std::uint64_t lamp = 0;
+  /** Of the viewport; 0: the layers serve all viewports. */
+  std::uint64_t viewport = 0;
+
+  bool operator==(const LayerOwner &) const = default;
+};
+
+/** Runs of layers in an array, each with one owner. A run keeps its first layer while its owner lives. */
 class LayerRuns {
  public:
   /**
-   * The first layer of \a key's run, which has \a count layers afterwards. A run that has to grow, and cannot at its
+   * The first layer of \a owner's run, which has \a count layers afterwards. A run that has to grow, and cannot at its
    * place, gets another place. \a count 0 releases the run; the result is then 0.
    */
-  int place(std::uint64_t key, int count);
-  /** 0: \a key has no run. */
-  [[nodiscard]] int count_of(std::uint64_t key) const;
-  /** Release the runs of all keys that are not in \a keys. */
-  void keep_only(std::span<const std::uint64_t> keys);
+  int place(const LayerOwner &owner, int count);
+  /** 0: \a owner has no run. */
+  [[nodiscard]] int count_of(const LayerOwner &owner) const;
+  /** Release the runs of all owners that are not in \a owners. */
+  void keep_only(std::span<const LayerOwner> owners);
   /** Release all runs. */
   void clear()
   {
@@ -32,7 +42,7 @@ class LayerRuns {
 
  private:
   struct Run {
-    std::uint64_t key = 0;
+    LayerOwner owner;
     int first = 0;
     int count = 0;
   };

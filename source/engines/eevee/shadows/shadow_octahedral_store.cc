@@ -76,7 +76,7 @@ OctahedralStore::Plan OctahedralStore::plan(const gpu::Limits &device_limits, st
 {
   const std::size_t most = std::size_t(std::min(ESM_MAX, device_limits.array_layers_max));
   Plan plan;
-  std::array<std::vector<std::uint64_t>, 3> keys;
+  std::array<std::vector<LayerOwner>, 3> owners;
   std::vector<std::string> lost;
   for (const EsmLamp &lamp : lamps) {
     const shared::EsmData data = make_data(lamp);
@@ -85,7 +85,7 @@ OctahedralStore::Plan OctahedralStore::plan(const gpu::Limits &device_limits, st
       continue;
     }
     const auto format = std::size_t(data.format);
-    keys[format].push_back(lamp.key);
+    owners[format].push_back({lamp.key});
     plan.sizes[format] = std::max(plan.sizes[format], data.size + 2 * ESM_BORDER);
     if (lamp.settings.kernel == EsmKernel::Separable) {
       plan.scratch_size = std::max(plan.scratch_size, data.size);
@@ -102,18 +102,18 @@ OctahedralStore::Plan OctahedralStore::plan(const gpu::Limits &device_limits, st
     plan.slots.push_back({.key = lamp.key, .kernel = lamp.settings.kernel, .method = lamp.settings.method});
   }
   for (std::size_t format = 0; format < runs.size(); format++) {
-    runs[format].keep_only(keys[format]);
+    runs[format].keep_only(owners[format]);
   }
   const auto place = [&] {
     for (std::size_t i = 0; i < plan.slots.size(); i++) {
       shared::EsmData &data = plan.block.lamps[i];
-      data.layer = runs[std::size_t(data.format)].place(plan.slots[i].key, 1);
+      data.layer = runs[std::size_t(data.format)].place({plan.slots[i].key}, 1);
     }
   };
   place();
   // Gaps that removed lamps left stay for the next lamps, but not where many layers would be unused.
   for (std::size_t format = 0; format < runs.size(); format++) {
-    if (runs[format].end() > std::min(2 * int(keys[format].size()), int(most))) {
+    if (runs[format].end() > std::min(2 * int(owners[format].size()), int(most))) {
       runs[format].clear();
     }
   }

@@ -78,8 +78,22 @@ ShadowRequest scaled(ShadowRequest request, float scale)
   return request;
 }
 
+/** What a plan is made for. */
+struct Conditions {
+  std::span<const ShadowLamp> lamps;
+  const ShadowSettings &settings;
+  const gpu::Limits &device_limits;
+  int viewport_count = 1;
+};
+
+/** Most layers that the lamp of \a place may have in its array, for all viewports. */
+int layers_max(const ShadowPlace &place, const Conditions &conditions)
+{
+  return place.given.layer_count_max * (place.technique->follows_view() ? conditions.viewport_count : 1);
+}
+
 /** Device memory of \a places whose requests are scaled by \a scale, bytes. */
-std::size_t bytes_needed(const std::vector<ShadowPlace> &places, float scale, bool has_scratch)
+std::size_t bytes_needed(const std::vector<ShadowPlace> &places, float scale, const Conditions &conditions)
 {
   std::array<std::size_t, shadow_array_count> edges{};
   std::array<std::size_t, shadow_array_count> layers{};
@@ -90,7 +104,7 @@ std::size_t bytes_needed(const std::vector<ShadowPlace> &places, float scale, bo
     const ShadowRequest request = scaled(place.given, scale);
     const std::size_t array = index_of(request.array);
     edges[array] = std::max(edges[array], std::size_t(request.size_px));
-    layers[array] += std::size_t(request.layer_count_max);
+    layers[array] += std::size_t(layers_max(place, conditions));
     if (request.octahedral_px > 0) {
       octahedral_edge = std::max(octahedral_edge, std::size_t(request.octahedral_px + 2 * ESM_BORDER));
       octahedral_texel_bytes = std::max(octahedral_texel_bytes, std::size_t(request.octahedral_texel_bytes));
@@ -105,7 +119,7 @@ std::size_t bytes_needed(const std::vector<ShadowPlace> &places, float scale, bo
     bytes += edges[i] * edges[i] * layers[i] * sizeof(float);
   }
   // Octahedral layers as if none had 16 bits, and two textures that a separable filter works in.
-  octahedral_layers += has_scratch ? 2 : 0;
+  octahedral_layers += conditions.settings.esm.kernel == EsmKernel::Separable ? 2 : 0;
   return bytes + octahedral_edge * octahedral_edge * octahedral_texel_bytes * octahedral_layers;
 }
 
@@ -129,12 +143,11 @@ void warn_of_settings_without_effect(const ShadowLamp &lamp, const ShadowSetting
   }
 }
 
-/** Lower the sizes of \a plan, or drop its last places, until it needs no more than \a settings allow. */
-void fit_memory(ShadowPlan &plan, std::span<const ShadowLamp> lamps, const ShadowSettings &settings)
+/** Lower the sizes of \a plan, or drop its last places, until it needs no more than the settings allow. */
+void fit_memory(ShadowPlan &plan, const Conditions &conditions)
 {
-  const bool has_scratch = settings.esm.kernel == EsmKernel::Separable;
-  const auto needs = [&](float scale) { return bytes_needed(plan.places, scale, has_scratch); };
-  const std::size_t most = settings.memory_bytes_max;
+  const auto needs = [&](float scale) { return bytes_needed(plan.places, scale, conditions); };
+  const std::size_t most = conditions.settings.memory_bytes_max;
   const std::size_t needed = needs(1.0F);
   if (needed <= most) {
     return;
@@ -155,7 +168,7 @@ void fit_memory(ShadowPlan &plan, std::span<const ShadowLamp> lamps, const Shado
       fmt::format("the shadows of {} lamps need {:.1f} MiB, and may take {:.1f}: their sizes are lowered to {:.0f} %",
                   plan.places.size(), double(needed) / 0x1p20, double(most) / 0x1p20, 100.0F * scale));
   while (needs(scale) > most) {
-    lost.push_back(lamps[plan.places.back().lamp].name);
+    lost.push_back(conditions.lamps[plan.places.back().lamp].name);
     plan.places.pop_back();
   }
   for (ShadowPlace &place : plan.places) {
@@ -167,60 +180,61 @@ void fit_memory(ShadowPlan &plan, std::span<const ShadowLamp> lamps, const Shado
   }
 }
 
-/** Give each cube its layers; keep the runs of maps. */
-void place_layers(ShadowPlan &plan, std::span<const ShadowLamp> lamps, const ShadowSettings &settings,
-                  const gpu::Limits &device_limits)
+/** Give each cube its layers, and tell how many layers maps may have. */
+void place_layers(ShadowPlan &plan, const Conditions &conditions)
 {
-  std::array<std::vector<std::uint64_t>, shadow_array_count> keys;
-  for (const ShadowPlace &place : plan.places) {
-    keys[index_of(place.given.array)].push_back(lamps[place.lamp].key);
-  }
-  for (std::size_t i = 0; i < shadow_array_count; i++) {
-    plan.runs[i].keep_only(keys[i]);
-  }
-  LayerRuns &cubes = plan.runs[index_of(ShadowArrayId::Cubes)];
-  const auto place_cubes = [&] {
-    for (ShadowPlace &place : plan.places) {
-      if (place.given.array == ShadowArrayId::Cubes) {
-        place.first_layer = cubes.place(lamps[place.lamp].key, place.given.layer_count_max);
-      }
-    }
-  };
-  place_cubes();
+  const auto owner = [&](const ShadowPlace &place) { return LayerOwner{conditions.lamps[place.lamp].key}; };
   std::array<std::size_t, shadow_array_count> layer_bytes{};
   std::array<int, shadow_array_count> layers{};
+  std::vector<LayerOwner> cubes;
   for (const ShadowPlace &place : plan.places) {
     const std::size_t array = index_of(place.given.array);
     const auto edge = std::size_t(place.given.size_px);
     layer_bytes[array] = std::max(layer_bytes[array], edge * edge * sizeof(float));
-    layers[array] += place.given.layer_count_max;
+    layers[array] += layers_max(place, conditions);
+    if (place.given.array == ShadowArrayId::Cubes) {
+      cubes.push_back(owner(place));
+    }
   }
+  plan.cubes.keep_only(cubes);
+  const auto place_cubes = [&] {
+    for (ShadowPlace &place : plan.places) {
+      if (place.given.array == ShadowArrayId::Cubes) {
+        place.first_layer = plan.cubes.place(owner(place), place.given.layer_count_max);
+      }
+    }
+  };
+  place_cubes();
   // What the limits leave for gaps.
-  const std::size_t bytes = bytes_needed(plan.places, 1.0F, settings.esm.kernel == EsmKernel::Separable);
-  std::size_t spare_bytes = settings.memory_bytes_max - std::min(bytes, settings.memory_bytes_max);
-  std::size_t gap_bytes = std::size_t(cubes.end() - layers[0]) * layer_bytes[0];
-  if (cubes.end() > device_limits.array_layers_max || gap_bytes > spare_bytes) {
-    cubes.clear();
+  const std::size_t bytes = bytes_needed(plan.places, 1.0F, conditions);
+  const std::size_t most = conditions.settings.memory_bytes_max;
+  std::size_t spare_bytes = most - std::min(bytes, most);
+  std::size_t gap_bytes = std::size_t(plan.cubes.end() - layers[0]) * layer_bytes[0];
+  if (plan.cubes.end() > conditions.device_limits.array_layers_max || gap_bytes > spare_bytes) {
+    plan.cubes.clear();
     place_cubes();
     gap_bytes = 0;
   }
   spare_bytes -= gap_bytes;
   const std::size_t map_bytes = std::max<std::size_t>(layer_bytes[index_of(ShadowArrayId::Maps)], 1);
-  const int spare_layers = device_limits.array_layers_max - layers[index_of(ShadowArrayId::Maps)];
-  plan.map_layers_max = layers[index_of(ShadowArrayId::Maps)] +
-                        int(std::min(spare_bytes / map_bytes, std::size_t(std::max(spare_layers, 0))));
+  const int map_layers = layers[index_of(ShadowArrayId::Maps)];
+  const int spare_layers = std::max(conditions.device_limits.array_layers_max - map_layers, 0);
+  plan.map_layers_max = map_layers + int(std::min(spare_bytes / map_bytes, std::size_t(spare_layers)));
 }
 
 }  // namespace
 
 ShadowPlan plan_shadows(std::span<const ShadowLamp> lamps, const ShadowSettings &settings,
-                        const gpu::Limits &device_limits, const ShadowPlan &previous)
+                        const gpu::Limits &device_limits, const ShadowPlan &previous, int viewport_count)
 {
+  const Conditions conditions{lamps, settings, device_limits, viewport_count};
   const std::array<int, shadow_array_count> entries_max = {
       std::min(SHADOW_CUBE_MAX, device_limits.array_layers_max / 6),
-      std::min(SHADOW_MAP_MAX, device_limits.array_layers_max), std::min(ESM_MAX, device_limits.array_layers_max)};
+      // As if all of them were cascades.
+      std::min(SHADOW_MAP_MAX, device_limits.array_layers_max / std::max(viewport_count, 1)),
+      std::min(ESM_MAX, device_limits.array_layers_max)};
   ShadowPlan plan;
-  plan.runs = previous.runs;
+  plan.cubes = previous.cubes;
   std::array<int, shadow_array_count> entries{};
   std::vector<std::string> lost;
   std::vector<std::string> too_large;
@@ -248,6 +262,7 @@ ShadowPlan plan_shadows(std::span<const ShadowLamp> lamps, const ShadowSettings 
     place.entry = entries[array];
     entries[array] += place.given.entry_count;
     place.first_layer = place.given.array == ShadowArrayId::Maps ? -1 : 0;
+    place.index = plan.places.size();
     plan.places.push_back(place);
   }
   if (!lost.empty()) {
@@ -259,8 +274,8 @@ ShadowPlan plan_shadows(std::span<const ShadowLamp> lamps, const ShadowSettings 
     plan.limits.push_back(fmt::format("the shadow size of {} lamps is {} texels, as this device takes no more: '{}'",
                                       too_large.size(), device_limits.texture_size_max, fmt::join(too_large, "', '")));
   }
-  fit_memory(plan, lamps, settings);
-  place_layers(plan, lamps, settings, device_limits);
+  fit_memory(plan, conditions);
+  place_layers(plan, conditions);
   return plan;
 }
 

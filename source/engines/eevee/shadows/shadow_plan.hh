@@ -63,7 +63,7 @@ inline constexpr std::size_t shadow_array_count = 3;
 /** What a technique needs for one lamp. */
 struct ShadowRequest {
   ShadowArrayId array = ShadowArrayId::Cubes;
-  /** Most layers that the lamp may have in the array. */
+  /** Most layers that the lamp may have in the array; for each viewport, where the technique follows the view. */
   int layer_count_max = 0;
   /** Entries in the technique's list in the uniform block. */
   int entry_count = 1;
@@ -78,6 +78,8 @@ struct ShadowRequest {
 struct ShadowPlace {
   /** Index in the planned lamps. */
   std::size_t lamp = 0;
+  /** In ShadowPlan::places. */
+  std::size_t index = 0;
   const ShadowTechnique *technique = nullptr;
   scene::ShadowKind kind = scene::ShadowKind::Hard;
   /** The request, its sizes lowered to the device's and the memory's limits. */
@@ -91,8 +93,8 @@ struct ShadowPlace {
 struct ShadowPlan {
   /** In the order of the lamps. */
   std::vector<ShadowPlace> places;
-  /** By ShadowArrayId. */
-  std::array<LayerRuns, shadow_array_count> runs;
+  /** Layers of the array of cubes. */
+  LayerRuns cubes;
   /** Most layers that the array of maps may have, gaps between runs included. */
   int map_layers_max = 0;
   /** Lamps that ask for something without effect. */
@@ -108,12 +110,14 @@ struct ShadowPlan {
  * shadows need more than ShadowSettings::memory_bytes_max, all sizes are lowered by one factor, to 16 texels at least,
  * because layers of one array have one size; if that does not suffice, the last lamps lose their shadow.
  *
+ * \a viewport_count: viewports that draw the lamps; each has layers of its own where the technique follows the view.
  * \a previous: the last plan. A lamp that has a place in it keeps it. Only where the gaps that removed lamps leave
  * would exceed the memory or the device's layers, places are given anew.
  *
  * \throws gpu::Error naming the lamp and the setting that is out of range.
  */
 [[nodiscard]] ShadowPlan plan_shadows(std::span<const ShadowLamp> lamps, const ShadowSettings &settings,
-                                      const gpu::Limits &device_limits, const ShadowPlan &previous);
+                                      const gpu::Limits &device_limits, const ShadowPlan &previous,
+                                      int viewport_count = 1);
 
 }  // namespace gnomon::eevee

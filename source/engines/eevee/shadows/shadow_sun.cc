@@ -42,6 +42,11 @@ class SunTechnique final : public ShadowTechnique {
     return key;
   }
 
+  bool follows_view() const override
+  {
+    return true;
+  }
+
   void fit_views(ShadowSlot &slot, const ShadowView &view, const ShadowCasters &casters,
                  const ShadowSettings &settings) const override
   {

@@ -70,22 +70,22 @@ struct ShadowTexelKey {
 
 /** A lamp's shadow: its place and the state of its layers. */
 struct ShadowSlot {
-  ShadowLamp lamp;
-  ShadowPlace place;
+  ShadowLamp lamp{};
+  ShadowPlace place{};
+  /** LayerOwner::viewport. */
+  std::uint64_t viewport = 0;
   /** Distance of the near plane, metres. */
   float near = 0.0F;
   /** One for each layer. */
-  std::vector<draw::View> views;
+  std::vector<draw::View> views{};
   /** Suns: what the views are fitted to; empty while no caster matters. */
-  std::vector<SunFit> fits;
+  std::vector<SunFit> fits{};
   /** Offset of its ShadowRenderBlock in the buffer. */
   std::uint32_t render_offset_bytes = 0;
   /** Drawn and still correct. */
   LayerMask drawn = 0;
   /** The same, and the layers that have nothing in them to draw. */
   LayerMask up_to_date = 0;
-  /** Drawn since Shadows::begin_picture. */
-  LayerMask drawn_now = 0;
   /** What a command list that was not submitted yet makes of `drawn` and `up_to_date`. */
   LayerMask recorded_drawn = 0;
   LayerMask recorded_up_to_date = 0;
@@ -158,12 +158,17 @@ class ShadowTechnique {
 
   // Views.
 
+  /** Whether the layers follow what a viewport sees, so that each viewport has layers of its own. */
+  [[nodiscard]] virtual bool follows_view() const
+  {
+    return false;
+  }
   /** Views that depend on the lamp alone, for a slot whose `near` is set. Empty where they follow what is seen. */
   [[nodiscard]] virtual std::vector<draw::View> lamp_views(const ShadowSlot & /*slot*/) const
   {
     return {};
   }
-  /** Fit views that follow what is seen; layers whose view changes are invalidated. */
+  /** Where follows_view: fit the views to what is seen; layers whose view changes are invalidated. */
   virtual void fit_views(ShadowSlot & /*slot*/, const ShadowView & /*view*/, const ShadowCasters & /*casters*/,
                          const ShadowSettings & /*settings*/) const
   {

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: MIT
+#include "scene_shadows.hh"
+
+#include "shadow_octahedral.hh"
+#include "shadows.hh"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace gnomon::eevee {
+
+static LayerPass best_layer_pass(LayerPass asked, const gpu::Limits &limits)
+{
+  if (asked == LayerPass::Layered && !limits.has_vertex_layer) {
+    throw gpu::Error("the layered shadow pass needs GL_ARB_shader_viewport_layer_array, which this device lacks");
+  }
+  if (asked != LayerPass::Best) {
+    return asked;
+  }
+  return limits.has_vertex_layer ? LayerPass::Layered : LayerPass::Geometry;
+}
+
+/** The octahedral store checks the settings of exponential maps. \throws gpu::Error */
+static void check(const ShadowSettings &settings)
+{
+  const auto check_range = [](const char *setting, auto value, auto low, auto high) {
+    // false for NaN too.
+    if (!(value >= low && value <= high)) {
+      throw gpu::Error("shadow settings: {} {} is not in [{}, {}]", setting, value, low, high);
+    }
+  };
+  constexpr int most = std::numeric_limits<int>::max();
+  check_range("cube_size_px", settings.cube_size_px, 1, most);
+  check_range("map_size_px", settings.map_size_px, 1, most);
+  check_range("cascades.count", settings.cascades.count, 0, cascade_count_max);
+  check_range("cascades.lambda", settings.cascades.lambda, 0.0F, 1.0F);
+  const int width = settings.pcf.width;
+  if (width == 0) {
+    check_range("pcf.taps", settings.pcf.taps, 1, 64);
+  }
+  if (width != 0 && width != 1 && width != 3 && width != 5) {
+    throw gpu::Error("shadow settings: pcf.width {} is not 0, 1, 3 or 5", width);
+  }
+}
+
+/** Take the layers that \a slot's lamp had in \a before, if their texels still are what they should be. */
+static void take_over(ShadowSlot &slot, std::vector<ShadowSlot> &before)
+{
+  const auto found =
+      std::ranges::find_if(before, [&](const ShadowSlot &candidate) { return candidate.lamp.key == slot.lamp.key; });
+  if (found == before.end()) {
+    return;
+  }
+  ShadowSlot &old = *found;
+  const ShadowTechnique &technique = *slot.place.technique;
+  const ShadowRequest &given = slot.place.given;
+  if (old.place.technique != &technique || old.place.given.size_px != given.size_px ||
+      old.place.given.layer_count_max != given.layer_count_max ||
+      technique.texel_key(old.lamp) != technique.texel_key(slot.lamp)) {
+    return;
+  }
+  if (given.array == ShadowArrayId::Maps) {
+    slot.place.first_layer = old.place.first_layer;
+  }
+  else if (old.place.first_layer != slot.place.first_layer) {
+    return;
+  }
+  slot.near = old.near;
+  slot.views = std::move(old.views);
+  slot.fits = std::move(old.fits);
+  slot.drawn = old.drawn;
+  slot.up_to_date = old.up_to_date;
+}
+
+template <typename Action>
+void SceneShadows::for_each_slot(Action &&action)
+{
+  std::ranges::for_each(slots_, action);
+  for (Shadows *viewport : viewports_) {
+    std::ranges::for_each(viewport->slots_, action);
+  }
+}
+
+void SceneShadows::sync(const gpu::Limits &device_limits, std::span<const ShadowLamp> lamps,
+                        const scene::Bounds &bounds_ws, shared::LightBlock &light_block, const ShadowSettings &settings)
+{
+  check(settings);
+  const LayerPass layer_pass = best_layer_pass(settings.layer_pass, device_limits);
+  ShadowPlan plan = plan_shadows(lamps, settings, device_limits, plan_, std::max(int(viewports_.size()), 1));
+  std::vector<EsmLamp> esm_lamps;
+  for (const ShadowPlace &place : plan.places) {
+    if (place.given.array == ShadowArrayId::DistanceCube) {
+      esm_lamps.push_back(esm_lamp(lamps[place.lamp], place, bounds_ws, settings));
+    }
+  }
+  limits_ = plan.limits;
+  const std::vector<std::string> octahedral_limits = OctahedralStore::limits_of(device_limits, esm_lamps);
+  limits_.insert(limits_.end(), octahedral_limits.begin(), octahedral_limits.end());
+
+  // Nothing throws from here on, so that a sync that fails leaves the shadows as they were.
+  layer_pass_ = layer_pass;
+  plan_ = std::move(plan);
+  esm_lamps_ = std::move(esm_lamps);
+  casters_.begin();
+  const bool is_kept = settings.caster_faces == settings_.caster_faces;
+  settings_ = settings;
+  /** \a viewport: LayerOwner::viewport. */
+  const auto replace = [&](std::vector<ShadowSlot> &slots, std::uint64_t viewport) {
+    std::vector<ShadowSlot> before = std::exchange(slots, {});
+    for (const ShadowPlace &place : plan_.places) {
+      if (place.technique->follows_view() == (viewport != 0)) {
+        slots.push_back({.lamp = lamps[place.lamp], .place = place, .viewport = viewport});
+        if (is_kept) {
+          take_over(slots.back(), before);
+        }
+      }
+    }
+  };
+  replace(slots_, 0);
+  for (Shadows *viewport : viewports_) {
+    replace(viewport->slots_, viewport->id_);
+    viewport->seen_.reset();
+    viewport->recorded_counters_ = {};
+  }
+  std::vector<LayerOwner> owners;
+  for_each_slot([&](const ShadowSlot &slot) { owners.push_back({slot.lamp.key, slot.viewport}); });
+  map_runs_.keep_only(owners);
+  for (const ShadowPlace &place : plan_.places) {
+    shared::LightData &light = light_block.lights[lamps[place.lamp].light];
+    light.shadow_kind = place.technique->light_shadow_kind();
+    light.shadow_index = place.entry;
+  }
+}
+
+void SceneShadows::resize(gpu::Device &device, ShadowArrayId id, int layers)
+{
+  int size_px = 0;
+  bool has_content = false;
+  for_each_slot([&](const ShadowSlot &slot) {
+    if (slot.place.given.array == id) {
+      size_px = std::max(size_px, slot.place.given.size_px);
+      // The cube is a scratch: no lamp needs its texels after its layer was filtered.
+      has_content = has_content || (slot.drawn != 0 && id != ShadowArrayId::DistanceCube);
+    }
+  });
+  LayerArray &array = arrays_[std::size_t(id)];
+  array.resize(device, size_px, layers, has_content);
+  bindings_[std::size_t(id)] =
+      array.texture() ? draw::TextureBinding{array.texture().id(), sampler_.id()} : draw::TextureBinding{};
+}
+
+void SceneShadows::allocate(gpu::Device &device, ShaderCache &shaders)
+{
+  if (cube_count() + map_count() > 0 && !sampler_) {
+    sampler_ = device.create_sampler({.name = "shadow_sampler"});
+  }
+  resize(device, ShadowArrayId::Cubes, plan_.cubes.end());
+  resize(device, ShadowArrayId::DistanceCube, lamp_count(ShadowArrayId::DistanceCube) > 0 ? 6 : 0);
+  if (map_count() == 0) {
+    resize(device, ShadowArrayId::Maps, 0);
+  }
+  octahedral_.sync(device, shaders, esm_lamps_);
+  for (ShadowSlot &slot : slots_) {
+    if (slot.place.given.array == ShadowArrayId::DistanceCube &&
+        octahedral_.must_record(std::size_t(slot.place.entry))) {
+      slot.invalidate(~0U);
+    }
+  }
+  place_render_blocks(device);
+}
+
+/** A block for each lamp; viewports take turns with it, as a list writes it before each use. */
+void SceneShadows::place_render_blocks(gpu::Device &device)
+{
+  const std::uint32_t alignment = device.limits().uniform_offset_alignment;
+  const auto stride = std::uint32_t((sizeof(shared::ShadowRenderBlock) + alignment - 1) / alignment * alignment);
+  for_each_slot([&](ShadowSlot &slot) { slot.render_offset_bytes = stride * std::uint32_t(slot.place.index); });
+  const std::size_t size = plan_.places.size() * stride;
+  if (size == 0) {
+    render_buffer_ = {};
+  }
+  else if (!render_buffer_ || render_buffer_.size_bytes() != size) {
+    // A buffer of many blocks may be larger than one block may be, so it is a storage buffer.
+    render_buffer_ = device.create_buffer({"shadow_render_block", gpu::BufferKind::Storage, size});
+  }
+}
+
+void SceneShadows::finish()
+{
+  casters_.finish();
+  std::vector<glm::vec3> positions_ws;
+  for_each_slot([&](ShadowSlot &slot) {
+    update_for_casters(slot, casters_);
+    positions_ws.push_back(slot.lamp.position_ws());
+  });
+  casters_.distances().keep_only(positions_ws, casters_.list());
+}
+
+/** Give each map its layers. Layers keep their places, except those of a sun that needs more where there is no gap. */
+void SceneShadows::place_maps(gpu::Device &device)
+{
+  if (map_count() == 0) {
+    return;
+  }
+  int layers_max = 0;
+  const auto place_all = [&](auto &&is_placed) {
+    for_each_slot([&](ShadowSlot &slot) {
+      if (slot.place.given.array == ShadowArrayId::Maps && is_placed(slot)) {
+        const int first_layer = map_runs_.place({slot.lamp.key, slot.viewport}, int(slot.views.size()));
+        if (first_layer != slot.place.first_layer) {
+          slot.place.first_layer = first_layer;
+          slot.invalidate(~0U);
+        }
+        layers_max += slot.place.given.layer_count_max;
+      }
+    });
+  };
+  const auto grows = [&](const ShadowSlot &slot) {
+    return int(slot.views.size()) > map_runs_.count_of({slot.lamp.key, slot.viewport});
+  };
+  // Layers that are not needed any more first, for those that grow.
+  place_all([&](const ShadowSlot &slot) { return !grows(slot); });
+  place_all(grows);
+  if (map_runs_.end() > plan_.map_layers_max) {
+    // The gaps do not fit into the limits.
+    map_runs_.clear();
+    layers_max = 0;
+    place_all([](const ShadowSlot & /*slot*/) { return true; });
+  }
+  // Layers that a wider view of the same lamps needed stay for the next such view.
+  const int layers_now = array(ShadowArrayId::Maps).layer_count();
+  resize(device, ShadowArrayId::Maps, std::max(map_runs_.end(), std::min(layers_now, layers_max)));
+}
+
+void SceneShadows::invalidate()
+{
+  for_each_slot([](ShadowSlot &slot) { slot.invalidate(~0U); });
+}
+
+Feature SceneShadows::features() const
+{
+  Feature features = Feature::None;
+  for (const ShadowPlace &place : plan_.places) {
+    features = features | place.technique->features(place.kind);
+  }
+  return features;
+}
+
+std::size_t SceneShadows::lamp_count(ShadowArrayId id) const
+{
+  return std::size_t(
+      std::ranges::count_if(plan_.places, [id](const ShadowPlace &place) { return place.given.array == id; }));
+}
+
+}  // namespace gnomon::eevee
