@@ -27,6 +27,7 @@ struct UsageError : std::runtime_error {
 /** A subcommand adds itself to \a app, and leaves its status in \a status when run. */
 void add_render(CLI::App &app, Status &status);
 void add_info(CLI::App &app, Status &status);
+void add_compare(CLI::App &app, Status &status);
 void add_report(CLI::App &app, Status &status);
 void add_stability(CLI::App &app, Status &status);
 void add_shaders(CLI::App &app, Status &status);

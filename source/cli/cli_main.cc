@@ -22,6 +22,7 @@ static Status run(int argc, char **argv)
   Status status = Status::Done;
   add_render(app, status);
   add_info(app, status);
+  add_compare(app, status);
   add_report(app, status);
   add_stability(app, status);
   add_shaders(app, status);

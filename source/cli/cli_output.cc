@@ -100,22 +100,44 @@ void write_text(const fs::path &path, const std::string &text)
   });
 }
 
-std::vector<glm::vec4> read_exr(const fs::path &path, glm::ivec2 size_px)
+static float linear_of_srgb(float encoded)
+{
+  return encoded <= 0.04045F ? encoded / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
+}
+
+Picture read_picture(const fs::path &path)
 {
   const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path.string());
   if (!input) {
     throw std::runtime_error(fmt::format("{}: {}", path.string(), OIIO::geterror()));
   }
-  if (input->spec().width != size_px.x || input->spec().height != size_px.y || input->spec().nchannels != 3) {
-    throw std::runtime_error(fmt::format("{}: is not {}x{} pixels of 3 channels", path.string(), size_px.x, size_px.y));
+  const OIIO::ImageSpec &spec = input->spec();
+  const int red = spec.channelindex("R");
+  if (red < 0 || spec.channelindex("G") != red + 1 || spec.channelindex("B") != red + 2) {
+    throw std::runtime_error(fmt::format("{}: has no channels R, G and B", path.string()));
   }
-  std::vector<glm::vec4> pixels(std::size_t(size_px.x) * std::size_t(size_px.y), glm::vec4(1.0F));
-  const auto row_bytes = OIIO::stride_t(sizeof(glm::vec4)) * size_px.x;
-  auto *top = reinterpret_cast<char *>(pixels.data()) + row_bytes * (size_px.y - 1);
-  if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, top, sizeof(glm::vec4), -row_bytes)) {
+  Picture picture{{spec.width, spec.height}, {}};
+  picture.pixels.assign(std::size_t(spec.width) * std::size_t(spec.height), glm::vec4(1.0F));
+  const auto row_bytes = OIIO::stride_t(sizeof(glm::vec4)) * spec.width;
+  auto *top = reinterpret_cast<char *>(picture.pixels.data()) + row_bytes * (spec.height - 1);
+  if (!input->read_image(0, 0, red, red + 3, OIIO::TypeDesc::FLOAT, top, sizeof(glm::vec4), -row_bytes)) {
     throw std::runtime_error(fmt::format("{}: {}", path.string(), input->geterror()));
   }
-  return pixels;
+  if (!spec.format.is_floating_point()) {
+    for (glm::vec4 &pixel : picture.pixels) {
+      pixel = {linear_of_srgb(pixel.r), linear_of_srgb(pixel.g), linear_of_srgb(pixel.b), 1.0F};
+    }
+  }
+  return picture;
+}
+
+std::vector<glm::vec4> read_exr(const fs::path &path, glm::ivec2 size_px)
+{
+  Picture picture = read_picture(path);
+  if (picture.size_px != size_px) {
+    throw std::runtime_error(fmt::format("{}: is not of {}x{} pixels", path.string(), size_px.x, size_px.y));
+  }
+  return std::move(picture.pixels);
 }
 
 std::vector<std::byte> png_bytes(glm::ivec2 size_px, std::span<const std::uint8_t> rgba)

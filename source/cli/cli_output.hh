@@ -59,6 +59,17 @@ void write_text(const std::filesystem::path &path, const std::string &text);
  * \throws std::runtime_error naming \a path where it cannot be read or is of another size.
  */
 [[nodiscard]] std::vector<glm::vec4> read_exr(const std::filesystem::path &path, glm::ivec2 size_px);
+/** A picture of any size. */
+struct Picture {
+  glm::ivec2 size_px{0};
+  /** Scene-linear red, green, blue and 1, rows from the bottom. */
+  std::vector<glm::vec4> pixels;
+};
+/**
+ * Read an image of any format that OpenImageIO knows; integers are decoded by the sRGB curve. Of an EXR with layers,
+ * the channels R, G and B. \throws std::runtime_error naming \a path where it cannot be read or has no R, G and B.
+ */
+[[nodiscard]] Picture read_picture(const std::filesystem::path &path);
 /** A PNG file, as write_png writes it, without metadata. */
 [[nodiscard]] std::vector<std::byte> png_bytes(glm::ivec2 size_px, std::span<const std::uint8_t> rgba);
 

@@ -34,6 +34,12 @@ double seconds_since(Clock::time_point start)
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/** Names of `--view`. */
+const std::map<std::string, eevee::ViewTransform> view_transforms = {{"standard", eevee::ViewTransform::Standard},
+                                                                     {"raw", eevee::ViewTransform::Raw},
+                                                                     {"agx", eevee::ViewTransform::Agx},
+                                                                     {"pbr-neutral", eevee::ViewTransform::PbrNeutral}};
+
 struct RenderOptions {
   std::string scene;
   std::string output;
@@ -55,7 +61,7 @@ struct RenderOptions {
   std::string debug;
   DebugView debug_view;
   std::string aov;
-  std::string view = "standard";
+  std::string view = "pbr-neutral";
   float exposure = 0.0F;
   std::string backend = "gl";
   bool is_explained = false;
@@ -220,7 +226,7 @@ eevee::Settings engine_settings(const RenderOptions &options)
   settings.seed = options.seed;
   settings.has_display =
       !options.output.empty() && is_png(options.output) && options.debug_view.kind != DebugView::Kind::Shadow;
-  settings.view_transform = options.view == "raw" ? eevee::ViewTransform::Raw : eevee::ViewTransform::Standard;
+  settings.view_transform = view_transforms.at(options.view);
   settings.exposure = options.exposure;
   settings.has_cascade_tint = options.debug_view.kind == DebugView::Kind::Cascades;
   settings.is_timed = !options.json.empty() || options.is_explained;
@@ -534,9 +540,9 @@ void add_render(CLI::App &app, Status &status)
                       "shadow:LAMP[:LAYER]: distances in a shadow's layers (a cube's face, a cascade, octahedral, all)"
                       " instead of the picture; cascades: the picture, tinted by the cascade each pixel reads");
   command->add_option("--aov", o->aov, "Further layers to write (not built yet)");
-  command->add_option("--view", o->view, "View transform of a PNG: standard, raw")
+  command->add_option("--view", o->view, "View transform of a PNG: standard, raw, agx, pbr-neutral")
       ->capture_default_str()
-      ->check(CLI::IsMember({"standard", "raw"}));
+      ->check(CLI::IsMember(view_transforms));
   command->add_option("--exposure", o->exposure, "Stops, for a PNG")
       ->capture_default_str()
       ->check(CLI::Range(-64.0, 64.0));

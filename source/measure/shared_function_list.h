@@ -67,6 +67,9 @@ inline constexpr gnomon::measure::CompiledFunction<float> compiled_functions[] =
   FUNCTION(slope_quotient, vec4(slope_quotient(a.x, a.y), 0, 0, 0))
 
   FUNCTION(srgb_encoded, vec4(srgb_encoded(a.x), 0, 0, 0))
+  FUNCTION(agx_curve, vec4(agx_curve(a.x), 0, 0, 0))
+  FUNCTION(agx, vec4(agx(vec3(a)), 0))
+  FUNCTION(pbr_neutral, vec4(pbr_neutral(vec3(a)), 0))
   FUNCTION(view_transformed, vec4(view_transformed(vec3(a), int(a.w)), 0))
 };
 // clang-format on

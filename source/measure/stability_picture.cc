@@ -7,9 +7,11 @@
 #include "eevee_tonemap_shared.h"
 
 #include <fmt/format.h>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace gnomon::measure {
 
@@ -115,15 +117,38 @@ void add_picture_cases(std::vector<StabilityCase> &cases)
   cases.push_back(case_of({group, "sRGB from denormals to 1", "srgb_encoded", "encoded value", "linear value",
                            log_steps(1.5e-45, 1.0, 180),
                            [](double linear) { return Arguments<float>{.a = glm::vec4(float(linear))}; }}));
-  for (const int transform : {VIEW_TRANSFORM_STANDARD, VIEW_TRANSFORM_RAW}) {
+  for (const auto &[transform, name] :
+       {std::pair(VIEW_TRANSFORM_STANDARD, "standard"), std::pair(VIEW_TRANSFORM_RAW, "raw")}) {
     for (const double sign : {-1.0, 1.0}) {
       cases.push_back(case_of(
-          {group,
-           fmt::format("view {} of {} radiance", transform == VIEW_TRANSFORM_RAW ? "raw" : "standard",
-                       sign < 0.0 ? "negative" : "huge"),
-           "view_transformed", "displayed value", "radiance", log_steps(1e-38, 3e38, 153), [=](double radiance) {
+          {group, fmt::format("view {} of {} radiance", name, sign < 0.0 ? "negative" : "huge"), "view_transformed",
+           "displayed value", "radiance", log_steps(1e-38, 3e38, 153), [=](double radiance) {
              return Arguments<float>{.a = glm::vec4(glm::vec3(float(sign * radiance)), float(transform))};
            }}));
+    }
+  }
+  // What no closed form can say simply: a display takes 0 to 1, and more light is never shown darker.
+  for (const auto &[transform, name] :
+       {std::pair(VIEW_TRANSFORM_AGX, "agx"), std::pair(VIEW_TRANSFORM_PBR_NEUTRAL, "pbr-neutral")}) {
+    for (const glm::vec3 &tint : {glm::vec3(1.0F), glm::vec3(1.0F, 0.0F, 0.0F), glm::vec3(0.1F, 0.4F, 1.0F)}) {
+      cases.push_back({.group = group,
+                       .name = fmt::format("view {} of ({:g} {:g} {:g})", name, tint.r, tint.g, tint.b),
+                       .quantity = "displayed values: in [0, 1], the largest not falling",
+                       .parameter = "radiance",
+                       .reference = "invariant",
+                       .unit = violation_unit,
+                       .bound = 0.0,
+                       .run = swept(log_steps(1e-38, 3e38, 153), [=](double radiance) {
+                         const auto shown = [&](double light) {
+                           return shared::view_transformed(float(light) * tint, transform);
+                         };
+                         const glm::vec3 now = shown(radiance);
+                         const glm::vec3 before = shown(0.5 * radiance);
+                         const auto largest = [](const glm::vec3 &v) { return std::max({v.x, v.y, v.z}); };
+                         const bool is_in_range = glm::all(glm::greaterThanEqual(now, glm::vec3(0.0F))) &&
+                                                  glm::all(glm::lessThanEqual(now, glm::vec3(1.0F)));
+                         return violated(is_in_range && largest(now) >= largest(before) - 1e-5F);
+                       })});
     }
   }
 }

@@ -16,7 +16,12 @@
 
 namespace gnomon::eevee {
 
-enum class ViewTransform { Standard = VIEW_TRANSFORM_STANDARD, Raw = VIEW_TRANSFORM_RAW };
+enum class ViewTransform {
+  Standard = VIEW_TRANSFORM_STANDARD,
+  Raw = VIEW_TRANSFORM_RAW,
+  Agx = VIEW_TRANSFORM_AGX,
+  PbrNeutral = VIEW_TRANSFORM_PBR_NEUTRAL,
+};
 
 struct Settings {
   ShadowSettings shadow{};
