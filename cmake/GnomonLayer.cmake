@@ -8,6 +8,7 @@ function(gnomon_layer NAME)
   set_target_properties(${TARGET} PROPERTIES EXPORT_NAME ${NAME})
   target_include_directories(${TARGET} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
   gnomon_compile_settings(${TARGET})
+  gnomon_reuse_pch(${TARGET} gnomon_pch)
   # all_verify_interface_header_sets checks that each public header compiles alone.
   file(GLOB HEADERS CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.hh)
   set_target_properties(${TARGET} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)

@@ -346,7 +346,7 @@ TEST(GltfImport, BufferOfAnExtensionIsNoData)
              "it requires EXT_other: mesh 'mesh': primitive left out: accessor 0: buffer 0 holds no data");
 }
 
-TEST(GltfImport, FewBytesCannotAskForEndlessWork)
+TEST(SlowGltfImport, FewBytesCannotAskForEndlessWork)
 {
   // A thousand primitives share one long index accessor: a small file, but a scene of 10^9 triangles.
   GltfBuilder builder;
@@ -362,7 +362,7 @@ TEST(GltfImport, FewBytesCannotAskForEndlessWork)
   EXPECT_HAS(import_error(builder.glb(), "scene.glb"), "scene: has more than 268435456 vertices and indices");
 }
 
-TEST(GltfImport, ObjectsAreLimited)
+TEST(SlowGltfImport, ObjectsAreLimited)
 {
   GltfBuilder builder;
   const json primitive = {{"attributes", {{"POSITION", builder.positions(triangle_positions)}}}};

@@ -1,0 +1,28 @@
+# Precompiled headers, if GNOMON_PCH is set.
+set(GNOMON_PCH_HEADERS <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <fstream> <functional> <map> <memory> <optional>
+  <set> <span> <sstream> <string> <string_view> <tuple> <variant> <vector>
+  <fmt/format.h> <glm/glm.hpp> <glm/gtc/matrix_transform.hpp> <glm/gtc/quaternion.hpp>)
+
+# gnomon_pch_target(NAME LIBRARIES [HEADERS...]): a target whose precompiled headers others reuse.
+function(gnomon_pch_target NAME LIBRARIES)
+  set(SOURCE ${CMAKE_CURRENT_BINARY_DIR}/${NAME}.cc)
+  file(CONFIGURE OUTPUT ${SOURCE} CONTENT "")
+  add_library(${NAME} OBJECT ${SOURCE})
+  gnomon_compile_settings(${NAME})
+  target_link_libraries(${NAME} PRIVATE ${LIBRARIES})
+  target_precompile_headers(${NAME} PRIVATE ${GNOMON_PCH_HEADERS} ${ARGN})
+endfunction()
+
+# gnomon_reuse_pch(TARGET PCH_TARGET): the compile settings of both must be equal.
+function(gnomon_reuse_pch TARGET PCH_TARGET)
+  if(GNOMON_PCH)
+    target_precompile_headers(${TARGET} REUSE_FROM ${PCH_TARGET})
+  endif()
+endfunction()
+
+if(GNOMON_PCH)
+  gnomon_pch_target(gnomon_pch "fmt::fmt;glm::glm")
+  if(GNOMON_TESTS)
+    gnomon_pch_target(gnomon_test_pch "fmt::fmt;glm::glm;GTest::gtest" <gtest/gtest.h>)
+  endif()
+endif()
