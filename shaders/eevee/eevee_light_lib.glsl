@@ -9,6 +9,9 @@
 #  define USE_SHADOW
 #  include "eevee/eevee_shadow_lib.glsl"
 #endif
+#ifdef USE_LAMP_SHAPE
+#  include "eevee/eevee_lamp_shape_lib.glsl"
+#endif
 #ifdef USE_SHADOW_ESM
 #  include "eevee/eevee_esm_lib.glsl"
 #endif
@@ -58,33 +61,144 @@ vec3 reflected(MaterialData material, Surface surface, vec3 to_light, float cos_
 #endif
 }
 
-/** Radiance towards the viewer from one light, W/(sr m²). */
-vec3 light_radiance(LightData light, MaterialData material, Surface surface)
+/** Diffuse radiance for an irradiance of 1 by light from \a to_light: without what the surface reflects specularly. */
+vec3 diffuse_share(MaterialData material, Surface surface, vec3 to_light)
 {
-  if (light.kind == LIGHT_HEMI) {
-    return material.diffuse * light.color * (INV_PI * hemi_irradiance(-dot(surface.normal_ws, light.forward_ws)));
-  }
-  vec3 to_light = -light.forward_ws;
-  float irradiance = 1.0;
+#ifdef USE_SPECULAR
+  vec3 half_vector = to_light + surface.view_ws;
+  float length_sq = dot(half_vector, half_vector);
+  half_vector *= length_sq > 0.0 ? inversesqrt(length_sq) : 0.0;
+  vec3 fresnel = fresnel_schlick(material.specular_f0, material.specular_f90, dot(surface.view_ws, half_vector));
+  return material.diffuse * (INV_PI * (1.0 - max(max(fresnel.r, fresnel.g), fresnel.b)));
+#else
+  return material.diffuse * INV_PI;
+#endif
+}
+
+/** The light that falls from the centre of a lamp. */
+struct CenterLight {
+  /** Unit vector; zero at the lamp itself. */
+  vec3 to_light;
+  float distance_sq;
+  /** On a surface that faces the lamp, where the light's colour is 1. */
+  float irradiance;
+};
+
+CenterLight center_light(int index, Surface surface)
+{
+  LightData light = light_data.lights[index];
+  CenterLight center = CenterLight(-light.forward_ws, 1.0, 1.0);
 #ifdef USE_PUNCTUAL
   if (light.kind != LIGHT_SUN) {
     vec3 vector = light.position_ws - surface.position_ws;
-    float distance_sq = dot(vector, vector);
+    center.distance_sq = dot(vector, vector);
     // At the lamp itself the direction is undefined. The zero vector gives no light.
-    to_light = distance_sq > 0.0 ? vector * inversesqrt(distance_sq) : vec3(0.0);
-    irradiance = distance_falloff(distance_sq, light.radius_sq, light.range_inv_sq);
+    center.to_light = center.distance_sq > 0.0 ? vector * inversesqrt(center.distance_sq) : vec3(0.0);
+    center.irradiance = distance_falloff(center.distance_sq, light.radius_sq, light.range_inv_sq);
     if (light.kind == LIGHT_SPOT) {
-      irradiance *= spot_mask(one_minus_cos(-to_light, light.forward_ws), light.spot_drop_outer, light.spot_inv_width);
+#ifdef USE_LAMP_SHAPE
+      LightShape shape = light_shapes.shapes[index];
+      float drop = elliptic_drop(-center.to_light, light.forward_ws, shape.axis_x_ws, shape.axis_y_ws);
+#else
+      float drop = one_minus_cos(-center.to_light, light.forward_ws);
+#endif
+      center.irradiance *= spot_mask(drop, light.spot_drop_outer, light.spot_inv_width);
     }
+#ifdef USE_LAMP_SHAPE
+    if (light.kind >= LIGHT_RECTANGLE) {
+      center.irradiance *= max(-dot(center.to_light, light.forward_ws), 0.0);
+    }
+#endif
   }
 #endif
-  float cos_l = dot(surface.normal_ws, to_light);
-  if (cos_l <= 0.0 || irradiance <= 0.0) {
+  return center;
+}
+
+/** Radiance towards the viewer from the light \a index, shaded as the one point at its centre, W/(sr m²). */
+vec3 point_radiance(int index, MaterialData material, Surface surface)
+{
+  LightData light = light_data.lights[index];
+  if (light.kind == LIGHT_HEMI) {
+    return material.diffuse * light.color * (INV_PI * hemi_irradiance(-dot(surface.normal_ws, light.forward_ws)));
+  }
+  CenterLight center = center_light(index, surface);
+  float cos_l = dot(surface.normal_ws, center.to_light);
+  if (cos_l <= 0.0 || center.irradiance <= 0.0) {
     return vec3(0.0);
   }
-  float visibility = light_visibility(light, surface, to_light);
+  float visibility = light_visibility(light, surface, center.to_light);
   if (visibility <= 0.0) {
     return vec3(0.0);
   }
-  return light.color * (irradiance * visibility) * reflected(material, surface, to_light, cos_l);
+  return light.color * (center.irradiance * visibility) * reflected(material, surface, center.to_light, cos_l);
+}
+
+#ifdef USE_LAMP_SHAPE
+/** What all lamps that are shaded as a whole share at one point. */
+struct ShapeShading {
+  ShadingFrame frame;
+#ifdef USE_SPECULAR
+  vec4 ltc_matrix;
+#endif
+};
+
+/** The same from a lamp that is shaded as a whole. Its shadow is that of its centre. */
+vec3 shape_radiance(int index, MaterialData material, Surface surface, ShapeShading shading)
+{
+  LightData light = light_data.lights[index];
+  LightShape shape = light_shapes.shapes[index];
+  CenterLight center = center_light(index, surface);
+  if (center.irradiance <= 0.0 || center.distance_sq <= 0.0) {
+    return vec3(0.0);
+  }
+  FlatLamp lamp;
+  float irradiance;
+  if (light.kind >= LIGHT_RECTANGLE) {
+    lamp = area_lamp(light, shape, shading.frame, surface);
+    irradiance = lamp.radiance * PI * flat_flux(lamp.center, lamp.axis_x, lamp.axis_y, lamp.corner_count, vec3(0.0, 0.0, 1.0)).z;
+  }
+  else {
+    // Nearer than a billionth of its radius a lamp fills the half space all the same.
+    float tangent = min(shape.extent * inversesqrt(max(center.distance_sq, 1e-30)), 1e9);
+    lamp = round_lamp(center.to_light, tangent, center.irradiance, shading.frame);
+    float sine_sq = tangent * tangent / (1.0 + tangent * tangent);
+    irradiance = center.irradiance * disk_cosine(max(sine_sq, 1e-30), dot(surface.normal_ws, center.to_light));
+  }
+  if (irradiance <= 0.0) {
+    return vec3(0.0);
+  }
+  float visibility = light_visibility(light, surface, center.to_light);
+  if (visibility <= 0.0) {
+    return vec3(0.0);
+  }
+  vec3 radiance = diffuse_share(material, surface, center.to_light) * irradiance;
+#ifdef USE_SPECULAR
+  radiance += specular_of(lamp, material, shading.ltc_matrix, in_frame(shading.frame, surface.view_ws));
+#endif
+  return light.color * visibility * radiance;
+}
+#endif
+
+/** Radiance towards the viewer from all lights, W/(sr m²). */
+vec3 direct_light(MaterialData material, Surface surface)
+{
+#ifdef USE_LAMP_SHAPE
+  ShapeShading shading;
+  shading.frame = shading_frame(surface);
+#ifdef USE_SPECULAR
+  float cos_v = clamp(dot(surface.normal_ws, surface.view_ws), 1e-4, 1.0);
+  shading.ltc_matrix = textureLod(ltc_table, ltc_texco(material.alpha, cos_v), 0.0);
+#endif
+#endif
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < min(light_data.light_count, LIGHT_MAX); i++) {
+#ifdef USE_LAMP_SHAPE
+    if (light_shapes.shapes[i].extent > 0.0) {
+      sum += shape_radiance(i, material, surface, shading);
+      continue;
+    }
+#endif
+    sum += point_radiance(i, material, surface);
+  }
+  return sum;
 }

@@ -20,9 +20,7 @@ void main()
   vec3 sum = material.emissive;
 #ifdef USE_LIGHT
   Surface surface = make_surface();
-  for (int i = 0; i < min(light_data.light_count, LIGHT_MAX); i++) {
-    sum += light_radiance(light_data.lights[i], material, surface);
-  }
+  sum += direct_light(material, surface);
 #endif
   radiance = vec4(sum, 1.0);
 #ifdef USE_BASE_COLOR_TEXTURE

@@ -11,6 +11,8 @@ SHARED_BEGIN
 #define LIGHT_SUN 1
 #define LIGHT_SPOT 2
 #define LIGHT_HEMI 3
+#define LIGHT_RECTANGLE 4
+#define LIGHT_ELLIPSE 5
 
 /** LightData::shadow_kind. */
 #define SHADOW_NONE 0
@@ -24,9 +26,12 @@ struct LightData {
   vec3 position_ws;
   /** LIGHT_… */
   int kind;
-  /** Linear RGB: irradiance, W/m² (sun, hemi), or radiant intensity, W/sr (point, spot). */
+  /**
+   * Linear RGB: irradiance, W/m² (sun, hemi), or radiant intensity, W/sr: in every direction (point, spot), or straight
+   * ahead, with the cosine law (rectangle, ellipse).
+   */
   vec3 color;
-  /** Square of the radius, m². 0: a point. */
+  /** Point, spot: square of the radius, m². 0: a point. */
   float radius_sq;
   /** Unit vector in which the lamp emits. */
   vec3 forward_ws;
@@ -56,6 +61,30 @@ struct LightBlock {
 SHARED_ASSERT_SIZE(LightBlock, 16 + LIGHT_MAX * 64)
 SHARED_ASSERT(LIGHT_MAX == (UNIFORM_BLOCK_BYTES_MAX - 16) / sizeof(LightData))
 
+/** A lamp's extent and axes: an entry of `light_shape_block`, which exists where some lamp needs it. */
+struct LightShape {
+  /**
+   * Rectangle, ellipse: from the centre to the middle of an edge, or to the rim, metres. Spot: a unit vector across the
+   * axis divided by spot_scale, so that the cone is round in these coordinates.
+   */
+  vec3 axis_x_ws;
+  /**
+   * Above 0: the lamp is shaded as a whole. Point, spot: radius, metres. Sun: tangent of half its angular diameter.
+   * Rectangle, ellipse: 1. 0: it is shaded as the one point at LightData::position_ws, or in the direction forward_ws.
+   */
+  float extent;
+  /** As axis_x_ws, at a right angle to it. */
+  vec3 axis_y_ws;
+  float _pad0;
+};
+SHARED_ASSERT_SIZE(LightShape, 32)
+
+/** As many as `light_block` holds, in the same order. */
+struct LightShapeBlock {
+  LightShape shapes[LIGHT_MAX];
+};
+SHARED_ASSERT_SIZE(LightShapeBlock, LIGHT_MAX * 32)
+
 /** Smaller blends are treated as hard edges, so that the inverse stays finite. */
 SHARED_CONSTANT float SPOT_BLEND_MIN = 1e-6f;
 
@@ -73,8 +102,19 @@ SHARED_FUNCTION float one_minus_cos(vec3 a, vec3 b)
 }
 
 /**
- * Transmission of a spot's cone, in [0, 1]: a smoothstep over the soft edge. \a drop: 1 - cos of the angle between the lamp's
- * forward vector and the direction to the receiver, in [0, 2]. The result is monotone, finite, and 0 on and outside the cone.
+ * 1 - cos of the angle to a spot's axis, for spot_mask, where the cone is an ellipse. \a axis_x, \a axis_y: of
+ * LightShape. \a from_light: unit vector.
+ */
+SHARED_FUNCTION float elliptic_drop(vec3 from_light, vec3 forward, vec3 axis_x, vec3 axis_y)
+{
+  vec3 round = vec3(dot(from_light, axis_x), dot(from_light, axis_y), dot(from_light, forward));
+  return one_minus_cos(round / max(sqrt(dot(round, round)), 1e-18f), vec3(0.0f, 0.0f, 1.0f));
+}
+
+/**
+ * Transmission of a spot's cone, in [0, 1]: a smoothstep over the soft edge. \a drop: 1 - cos of the angle between the
+ * lamp's forward vector and the direction to the receiver, in [0, 2]. The result is monotone, finite, and 0 on and
+ * outside the cone.
  */
 SHARED_FUNCTION float spot_mask(float drop, float drop_outer, float inv_width)
 {
@@ -83,8 +123,8 @@ SHARED_FUNCTION float spot_mask(float drop, float drop_outer, float inv_width)
 }
 
 /**
- * Fall-off of a point or spot lamp, 1/m²: 1 / (d² + r²) for a disk of radius r turned to the receiver, times the window of
- * KHR_lights_punctual for its range. Finite at d = 0.
+ * Fall-off of a point or spot lamp, 1/m²: 1 / (d² + r²) for a disk of radius r turned to the receiver, times the window
+ * of KHR_lights_punctual for its range. Finite at d = 0.
  */
 SHARED_FUNCTION float distance_falloff(float distance_sq, float radius_sq, float range_inv_sq)
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The slots of all shaders. Uniform blocks, storage blocks and textures share one space of slots, as in Vulkan. Storage blocks
-// come first, because OpenGL guarantees only eight of them.
+// The slots of all shaders. Uniform blocks, storage blocks and textures share one space of slots, as in Vulkan. Storage
+// blocks come first, because OpenGL guarantees only eight of them.
 #ifndef SLOTS_SHARED_H
 #define SLOTS_SHARED_H
 
@@ -18,6 +18,7 @@
 #define SHADOW_BLOCK_SLOT 11
 #define SHADOW_RENDER_BLOCK_SLOT 12
 #define ESM_BLOCK_SLOT 13
+#define LIGHT_SHAPE_BLOCK_SLOT 14
 
 #define SHADOW_CUBES_SLOT 16
 #define SHADOW_MAPS_SLOT 17
@@ -28,19 +29,21 @@
 #define SHADOW_LAYERS_SLOT 22
 #define BASE_COLOR_SLOT 24
 #define SHADOW_EVSM_SLOT 25
+#define LTC_TABLE_SLOT 44
 
 /** Layout of the block of small values of a group: push constants if the API has them, else a uniform block. */
 #ifdef VULKAN
-#  define PUSH_CONSTANT_LAYOUT layout(push_constant, std140)
+#define PUSH_CONSTANT_LAYOUT layout(push_constant, std140)
 #else
-#  define PUSH_CONSTANT_LAYOUT layout(std140, binding = PUSH_CONSTANT_SLOT)
+#define PUSH_CONSTANT_LAYOUT layout(std140, binding = PUSH_CONSTANT_SLOT)
 #endif
 
-/** Prefix of `const int NAME = VALUE;`. The value is set at pipeline creation if the API supports it, otherwise by the defines. */
+/** Prefix of `const int NAME = VALUE;`. The value is set at pipeline creation if the API supports it, otherwise by the
+ * defines. */
 #ifdef VULKAN
-#  define SPECIALIZATION_CONSTANT(ID) layout(constant_id = ID)
+#define SPECIALIZATION_CONSTANT(ID) layout(constant_id = ID)
 #else
-#  define SPECIALIZATION_CONSTANT(ID)
+#define SPECIALIZATION_CONSTANT(ID)
 #endif
 
 #endif

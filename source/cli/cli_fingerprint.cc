@@ -104,6 +104,7 @@ void add(Hasher &hash, const scene::PlacedLamp &lamp)
 {
   hash.add(lamp.name);
   hash.add(lamp.world_from_lamp);
+  hash.add(lamp.scale);
   hash.add(lamp.kind);
   hash.add(lamp.color);
   hash.add(lamp.intensity);

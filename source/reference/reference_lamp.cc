@@ -50,7 +50,13 @@ double spot_transmission(const scene::PlacedLamp &lamp, const glm::dvec3 &from_l
 {
   const double sine = std::sin(0.5 * double(lamp.spot_outer_angle));
   const double edge = 2.0 * sine * sine;
-  const double inside = edge - one_minus_cos(from_light, -axis(lamp, 2));
+  // An ellipse across the axis is a circle once each axis is divided by its width.
+  const glm::dvec2 width_of = scene::spot_scale(lamp);
+  const glm::dvec3 forward = -axis(lamp, 2);
+  const glm::dvec3 narrowed =
+      glm::normalize(glm::dvec3(glm::dot(from_light, axis(lamp, 0)) / width_of.x,
+                                glm::dot(from_light, axis(lamp, 1)) / width_of.y, glm::dot(from_light, forward)));
+  const double inside = edge - one_minus_cos(narrowed, {0.0, 0.0, 1.0});
   const double width = edge * double(lamp.spot_blend);
   if (inside <= 0.0) {
     return 0.0;
@@ -128,10 +134,10 @@ LampSample sample_point(const scene::PlacedLamp &lamp, const glm::dvec3 &receive
 
 LampSample sample_area(const scene::PlacedLamp &lamp, const glm::dvec3 &receiver, const glm::dvec2 &u)
 {
-  const glm::dvec2 half_size = 0.5 * glm::dvec2(lamp.area_size_x, lamp.area_size_y);
+  const glm::dvec2 half_size = scene::area_half_size(lamp);
   const glm::dvec2 at = half_size * (lamp.area_shape == scene::AreaShape::Ellipse ? disk(u) : 2.0 * u - 1.0);
   const glm::dvec3 position = glm::dvec3(lamp.world_from_lamp[3]) + at.x * axis(lamp, 0) + at.y * axis(lamp, 1);
-  return sample_flat(position, -axis(lamp, 2), double(lamp.intensity) / pi, receiver);
+  return sample_flat(position, -axis(lamp, 2), half_size.x > 0.0 ? 0.25 * double(lamp.intensity) : 0.0, receiver);
 }
 
 }  // namespace

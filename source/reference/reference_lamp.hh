@@ -27,7 +27,7 @@ struct LampSample {
  * - the disk of a point or spot lamp, with the lamp's radius and turned to the receiver. Its radiance is intensity /
  *   (π radius²), which gives intensity / (d² + radius²) on the axis. `doc/conventions.md` defines cone and range;
  * - the cone of a sun, by solid angle. Its radiance gives the sun's intensity on a surface that faces it;
- * - the rectangle or ellipse of an area lamp, which emits to one side. Its radiance is power / (π area).
+ * - the rectangle or ellipse of an area lamp, which emits to one side. Its radiance is power / (4 area).
  * A lamp without size is one point for every \a u. \pre the lamp is not a hemi lamp, which has no single direction.
  */
 [[nodiscard]] LampSample sample_lamp(const scene::PlacedLamp &lamp, const glm::dvec3 &position_ws, const glm::dvec2 &u);

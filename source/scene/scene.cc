@@ -64,7 +64,8 @@ std::vector<PlacedLamp> Scene::placed_lamps() const
   for (const auto &[handle, node] : nodes_) {
     const Lamp *lamp = links(handle).is_visible ? lamps_.find(node.lamp) : nullptr;
     if (lamp) {
-      placed.push_back({*lamp, handle, frame_of(links(handle).world_from_node)});
+      const glm::dmat4 &world = links(handle).world_from_node;
+      placed.push_back({*lamp, handle, frame_of(world), scale_of(world)});
     }
   }
   return placed;

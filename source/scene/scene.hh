@@ -25,9 +25,27 @@ struct PlacedLamp : Lamp {
   Handle<Node> node{};
   /** Right-handed and orthonormal: the node's position, direction of -Z and, as far as possible, of +Y. */
   glm::dmat4 world_from_lamp{1.0};
+  /** Lengths of the node's axes in world space. */
+  glm::dvec3 scale{1.0};
 
   bool operator==(const PlacedLamp &) const = default;
 };
+
+/**
+ * Half the extent of an area lamp along the x and y axes of PlacedLamp::world_from_lamp, metres. \pre an area lamp
+ * \return 0 in both where the lamp has no area: an axis of its node has no length, or the product is not a number that
+ * floats can work with.
+ */
+[[nodiscard]] glm::dvec2 area_half_size(const PlacedLamp &lamp);
+/** Area of that rectangle or ellipse, m². */
+[[nodiscard]] double area_of(const PlacedLamp &lamp);
+
+/**
+ * Width of a spot's cone along the x and y axes of PlacedLamp::world_from_lamp, relative to Lamp::spot_outer_angle: the
+ * tangent of the half angle along each axis is that of spot_outer_angle times this. The ratio of the node's scale there
+ * to that along its z axis, in [0.001, 1000]; 1 along both where an axis of the node has no length. \pre a spot
+ */
+[[nodiscard]] glm::dvec2 spot_scale(const PlacedLamp &lamp);
 
 /** A camera at a node. Its fields are the camera's. */
 struct PlacedCamera : Camera {
@@ -41,6 +59,8 @@ struct PlacedCamera : Camera {
  * keeps the direction of -Z exactly, and that of +Y as closely as it can. Axes of length 0 are chosen.
  */
 [[nodiscard]] glm::dmat4 frame_of(const glm::dmat4 &world);
+/** Lengths of the axes of \a world. Finite for every finite matrix. */
+[[nodiscard]] glm::dvec3 scale_of(const glm::dmat4 &world);
 
 /**
  * An editable scene: nodes, meshes, images, textures, materials, lamps and cameras, each named by a Handle.

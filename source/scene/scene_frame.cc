@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <optional>
 
 namespace gnomon::scene {
@@ -70,6 +72,50 @@ glm::dmat4 frame_of(const glm::dmat4 &world)
   }
   const glm::dvec3 x = glm::cross(y, z);
   return {glm::dvec4(x, 0.0), glm::dvec4(y, 0.0), glm::dvec4(z, 0.0), world[3]};
+}
+
+glm::dvec3 scale_of(const glm::dmat4 &world)
+{
+  glm::dvec3 lengths;
+  for (int column = 0; column < 3; column++) {
+    const glm::dvec3 axis(world[column]);
+    const double size = std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)});
+    // Relative, so that no square overflows or vanishes.
+    const double length = size > 0.0 ? size * glm::length(axis / size) : 0.0;
+    lengths[column] = std::min(length, std::numeric_limits<double>::max());
+  }
+  return lengths;
+}
+
+glm::dvec2 area_half_size(const PlacedLamp &lamp)
+{
+  // Of such lengths floats hold the squares and their inverses.
+  constexpr double least = 1e-9;
+  constexpr double most = 1e9;
+  const glm::dvec2 half_size =
+      0.5 * glm::dvec2(lamp.area_size_x, lamp.area_size_y) * glm::dvec2(lamp.scale.x, lamp.scale.y);
+  const bool is_area = std::min(half_size.x, half_size.y) >= least && std::max(half_size.x, half_size.y) <= most;
+  return is_area ? half_size : glm::dvec2(0.0);
+}
+
+double area_of(const PlacedLamp &lamp)
+{
+  const glm::dvec2 half_size = area_half_size(lamp);
+  return (lamp.area_shape == AreaShape::Ellipse ? std::numbers::pi : 4.0) * half_size.x * half_size.y;
+}
+
+glm::dvec2 spot_scale(const PlacedLamp &lamp)
+{
+  if (!(std::min({lamp.scale.x, lamp.scale.y, lamp.scale.z}) > 0.0)) {
+    return glm::dvec2(1.0);
+  }
+  constexpr double limit = 1000.0;
+  const auto ratio = [&](double across) {
+    const double wide = across / lamp.scale.z;
+    // Matrices come with rounding, and a round cone is cheaper.
+    return std::abs(wide - 1.0) < 1e-6 ? 1.0 : std::clamp(wide, 1.0 / limit, limit);
+  };
+  return {ratio(lamp.scale.x), ratio(lamp.scale.y)};
 }
 
 }  // namespace gnomon::scene

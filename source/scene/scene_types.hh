@@ -164,7 +164,8 @@ struct LampShadow {
 
 /**
  * A lamp in radiometric units: glTF's photometric units divided by 683 lm/W. It shines along the local -Z axis of its
- * node. Scale, shear and mirroring of the node do not change it.
+ * node. The lengths of the node's axes scale an area lamp, and the cone of a spot across its axis (PlacedLamp::scale);
+ * shear and mirroring do not change a lamp, and scale changes no other.
  */
 struct Lamp {
   static constexpr std::string_view kind_name = "lamp";
@@ -178,7 +179,8 @@ struct Lamp {
    * Sun: irradiance on a surface that faces it, W/m².
    * Hemi: the same, of a uniform sky over the half space behind the lamp; a surface tilted by t gets (1 + cos t) / 2.
    * Point and spot: radiant intensity, W/sr; irradiance is intensity · cos / (d² + radius²).
-   * Area: power of the one emitting side, W.
+   * Area: Blender's power, W: the radiance of the one emitting side is intensity / (4 · area). That is π/4 of the
+   * radiance of a Lambertian emitter of as many watts.
    */
   float intensity = 1.0F;
   /** Point and spot: radius of a disk turned to the receiver, metres. 0: a hard shadow. */
@@ -198,7 +200,7 @@ struct Lamp {
   /** Area: full edge lengths or diameters, metres, above 0. */
   float area_size_x = 1.0F;
   float area_size_y = 1.0F;
-  /** Point, spot and sun. */
+  /** Of no effect on a hemi lamp. */
   LampShadow shadow{};
 
   bool operator==(const Lamp &) const = default;

@@ -288,7 +288,7 @@ TEST(Irradiance, DisksRectanglesEllipsesAndSunsAreTheirClosedForms)
   area.area_size_x = 3.0F;
   area.area_size_y = 3.0F;
   const double disk_area = std::numbers::pi * 2.25;
-  expect_irradiance(area, 1.0 / disk_area * 2.25 / (4.0 + 2.25));
+  expect_irradiance(area, 0.25 * std::numbers::pi / disk_area * 2.25 / (4.0 + 2.25));
   // A rectangle at the same position: four times Howell's form factor B-3, which is for a corner.
   area.area_shape = scene::AreaShape::Rectangle;
   area.area_size_y = 1.0F;
@@ -297,7 +297,7 @@ TEST(Irradiance, DisksRectanglesEllipsesAndSunsAreTheirClosedForms)
   const double quarter = (a / std::sqrt(1 + a * a) * std::atan(b / std::sqrt(1 + a * a)) +
                           b / std::sqrt(1 + b * b) * std::atan(a / std::sqrt(1 + b * b))) /
                          (2.0 * std::numbers::pi);
-  expect_irradiance(area, 4.0 * quarter / 3.0);
+  expect_irradiance(area, 0.25 * std::numbers::pi * 4.0 * quarter / 3.0);
   // It emits to one side only.
   expect_irradiance(lamp_at(LampKind::Area, {0, 0, 2}, {0, 0, 1}), 0.0);
 }

@@ -62,6 +62,13 @@ constexpr auto light_fields = std::to_array<Field>({
     {"light_data.lights[0].shadow_index", lights_offset + offsetof(LightData, shadow_index)},
 });
 
+constexpr auto light_shape_fields = std::to_array<Field>({
+    {"light_shapes.shapes[0].axis_x_ws", offsetof(LightShape, axis_x_ws)},
+    {"light_shapes.shapes[0].extent", offsetof(LightShape, extent)},
+    {"light_shapes.shapes[0].axis_y_ws", offsetof(LightShape, axis_y_ws)},
+    {"light_shapes.shapes[0]._pad0", offsetof(LightShape, _pad0)},
+});
+
 constexpr std::size_t maps_offset = offsetof(ShadowBlock, maps);
 constexpr auto shadow_fields = std::to_array<Field>({
     {"shadow.cubes[0].near", offsetof(ShadowCubeData, near)},
@@ -98,11 +105,12 @@ constexpr auto esm_fields = std::to_array<Field>({
     {"esm.lamps[0]._pad0", offsetof(EsmData, _pad0)},
 });
 
-constexpr std::array<gpu::BlockLayout, 7> layouts = {{
+constexpr std::array<gpu::BlockLayout, 8> layouts = {{
     {"view_block", sizeof(ViewData), view_fields},
     {"object_block", sizeof(ObjectData), object_fields},
     {"material_block", sizeof(MaterialData), material_fields},
     {"light_block", sizeof(LightBlock), light_fields},
+    {"light_shape_block", sizeof(LightShapeBlock), light_shape_fields},
     {"shadow_block", sizeof(ShadowBlock), shadow_fields},
     {"shadow_render_block", sizeof(ShadowRenderBlock), shadow_render_fields},
     {"esm_block", sizeof(EsmBlock), esm_fields},

@@ -73,6 +73,8 @@ struct PassesKey {
   std::uint64_t exponential_lamps = 0;
   gpu::ResourceId shadow_block = 0;
   gpu::ResourceId light_block = 0;
+  gpu::ResourceId light_shape_block = 0;
+  gpu::ResourceId ltc_table = 0;
   Feature features = Feature::None;
   std::optional<int> tinted_light;
 
@@ -117,6 +119,10 @@ struct SharedData {
   /** In light_block: the sun whose cascades are shown; nothing where none is, or nobody asks. */
   std::optional<int> tinted_light;
   gpu::Buffer light_block;
+  gpu::Buffer light_shape_block;
+  /** Where a specular surface is lit by a lamp that is shaded as a whole. */
+  gpu::Texture ltc_table;
+  gpu::Sampler ltc_sampler;
   bool is_light_block_written = false;
   /** Draws the casters of any lamp. */
   draw::Pass shadow_pass;

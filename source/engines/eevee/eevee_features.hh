@@ -12,7 +12,7 @@ enum class Feature : std::uint32_t {
   None = 0,
   /** Any light at all. */
   Light = 1U << 0,
-  /** Point or spot lamps. */
+  /** Point, spot or area lamps. */
   Punctual = 1U << 1,
   Specular = 1U << 2,
   ShadowCube = 1U << 3,
@@ -27,6 +27,8 @@ enum class Feature : std::uint32_t {
   AlphaMask = 1U << 8,
   /** Some of the octahedral maps hold variances. */
   ShadowEvsm = 1U << 9,
+  /** Lamps that are shaded as a whole, area lamps, or spots of elliptical cones. */
+  LampShape = 1U << 10,
 };
 
 constexpr Feature operator|(Feature a, Feature b)

@@ -11,16 +11,16 @@ namespace gnomon::eevee {
 
 namespace {
 
-int light_kind(scene::LampKind kind)
+int light_kind(const scene::Lamp &lamp)
 {
-  switch (kind) {
+  switch (lamp.kind) {
     case scene::LampKind::Point: return LIGHT_POINT;
     case scene::LampKind::Sun: return LIGHT_SUN;
     case scene::LampKind::Spot: return LIGHT_SPOT;
     case scene::LampKind::Hemi: return LIGHT_HEMI;
     case scene::LampKind::Area: break;
   }
-  return -1;
+  return lamp.area_shape == scene::AreaShape::Ellipse ? LIGHT_ELLIPSE : LIGHT_RECTANGLE;
 }
 
 bool gives_light(const scene::Lamp &lamp)
@@ -46,9 +46,10 @@ void warn_of_size(const scene::Lamp &lamp, std::vector<std::string> &warnings)
 shared::LightData light_data(const scene::PlacedLamp &lamp)
 {
   shared::LightData light{};
-  light.kind = light_kind(lamp.kind);
+  light.kind = light_kind(lamp);
   light.position_ws = glm::vec3(lamp.world_from_lamp[3]);
-  light.color = lamp.color * lamp.intensity;
+  // An area lamp of radiance P / (4 A) has P / 4 straight ahead.
+  light.color = lamp.color * (lamp.kind == scene::LampKind::Area ? 0.25F * lamp.intensity : lamp.intensity);
   light.radius_sq = lamp.radius * lamp.radius;
   light.forward_ws = -glm::vec3(lamp.world_from_lamp[2]);
   // Finite for every range: times a distance of 0 it must be 0.
@@ -64,7 +65,51 @@ shared::LightData light_data(const scene::PlacedLamp &lamp)
   return light;
 }
 
-Lamps make_lamps(std::span<const scene::PlacedLamp> placed)
+shared::LightShape light_shape(const scene::PlacedLamp &lamp, LampShading shading)
+{
+  shared::LightShape shape{};
+  const bool is_whole = shading == LampShading::Whole;
+  const glm::dvec3 x_ws(lamp.world_from_lamp[0]);
+  const glm::dvec3 y_ws(lamp.world_from_lamp[1]);
+  switch (lamp.kind) {
+    case scene::LampKind::Point: shape.extent = is_whole ? lamp.radius : 0.0F; break;
+    case scene::LampKind::Spot: {
+      const glm::dvec2 width = scene::spot_scale(lamp);
+      shape.axis_x_ws = glm::vec3(x_ws / width.x);
+      shape.axis_y_ws = glm::vec3(y_ws / width.y);
+      shape.extent = is_whole ? lamp.radius : 0.0F;
+      break;
+    }
+    case scene::LampKind::Sun: {
+      // The tangent of a right angle has no float.
+      constexpr float half_angle_max = 1.57F;
+      shape.extent = is_whole ? std::tan(std::min(0.5F * lamp.angle, half_angle_max)) : 0.0F;
+      break;
+    }
+    case scene::LampKind::Area: {
+      const glm::dvec2 half_size = scene::area_half_size(lamp);
+      shape.axis_x_ws = glm::vec3(half_size.x * x_ws);
+      shape.axis_y_ws = glm::vec3(half_size.y * y_ws);
+      shape.extent = is_whole ? 1.0F : 0.0F;
+      break;
+    }
+    case scene::LampKind::Hemi: break;
+  }
+  return shape;
+}
+
+/** What the shaders need to shade \a lamp. */
+static Feature features_of(const scene::PlacedLamp &lamp, const shared::LightShape &shape)
+{
+  const bool has_distance =
+      lamp.kind == scene::LampKind::Point || lamp.kind == scene::LampKind::Spot || lamp.kind == scene::LampKind::Area;
+  const bool is_elliptic = lamp.kind == scene::LampKind::Spot && scene::spot_scale(lamp) != glm::dvec2(1.0);
+  const bool has_shape = shape.extent > 0.0F || is_elliptic || lamp.kind == scene::LampKind::Area;
+  return Feature::Light | (has_distance ? Feature::Punctual : Feature::None) |
+         (has_shape ? Feature::LampShape : Feature::None);
+}
+
+Lamps make_lamps(std::span<const scene::PlacedLamp> placed, LampShading shading)
 {
   Lamps lamps;
   std::vector<std::string> dropped;
@@ -73,8 +118,9 @@ Lamps make_lamps(std::span<const scene::PlacedLamp> placed)
     if (!gives_light(lamp)) {
       continue;
     }
-    if (lamp.kind == scene::LampKind::Area) {
-      lamps.warnings.push_back(fmt::format("lamp '{}': area lamps are not drawn yet", lamp.name));
+    if (lamp.kind == scene::LampKind::Area && scene::area_of(lamp) <= 0.0) {
+      lamps.warnings.push_back(fmt::format(
+          "lamp '{}': the scale of its node leaves it no area that can be drawn; it gives no light", lamp.name));
       continue;
     }
     if (lamps.light_block.light_count == LIGHT_MAX) {
@@ -82,12 +128,11 @@ Lamps make_lamps(std::span<const scene::PlacedLamp> placed)
       continue;
     }
     warn_of_size(lamp, lamps.warnings);
-    lamps.light_block.lights[lamps.light_block.light_count++] = light_data(lamp);
+    const int light = lamps.light_block.light_count++;
+    lamps.light_block.lights[light] = light_data(lamp);
+    lamps.shape_block.shapes[light] = light_shape(lamp, shading);
     lamps.lamp_index.push_back(i);
-    lamps.features = lamps.features | Feature::Light;
-    if (lamp.kind == scene::LampKind::Point || lamp.kind == scene::LampKind::Spot) {
-      lamps.features = lamps.features | Feature::Punctual;
-    }
+    lamps.features = lamps.features | features_of(lamp, lamps.shape_block.shapes[light]);
   }
   if (!dropped.empty()) {
     lamps.limits.push_back(fmt::format("{} of {} lamps give no light, as light_block holds {}: '{}'", dropped.size(),

@@ -10,12 +10,24 @@
 
 namespace gnomon::eevee {
 
-/** A lamp's entry of `light_block`, without a shadow: shadow set-up fills that in. \pre not an area lamp. */
+/** How lamps with a radius, an angle or an area are shaded. */
+enum class LampShading {
+  /** The whole lamp at once, by formulas. */
+  Whole,
+  /** One point of it, where LightData has the lamp; the mean over many points is the lamp. */
+  Point,
+};
+
+/** A lamp's entry of `light_block`, without a shadow: shadow set-up fills that in. */
 [[nodiscard]] shared::LightData light_data(const scene::PlacedLamp &lamp);
+/** A lamp's entry of `light_shape_block`. */
+[[nodiscard]] shared::LightShape light_shape(const scene::PlacedLamp &lamp, LampShading shading);
 
 /** Lamps as the shaders read them. */
 struct Lamps {
   shared::LightBlock light_block{};
+  /** Read where `features` has LampShape. */
+  shared::LightShapeBlock shape_block{};
   /** For each light of the block, the index of its lamp in the list that make_lamps was given. */
   std::vector<std::uint32_t> lamp_index;
   /** Features that the lamps ask for; shadows not among them. */
@@ -26,7 +38,7 @@ struct Lamps {
   std::vector<std::string> limits;
 };
 
-/** Lamps that give no light (black, intensity 0) take no entry. */
-[[nodiscard]] Lamps make_lamps(std::span<const scene::PlacedLamp> lamps);
+/** Lamps that give no light (black, intensity 0, no area) take no entry. */
+[[nodiscard]] Lamps make_lamps(std::span<const scene::PlacedLamp> lamps, LampShading shading = LampShading::Whole);
 
 }  // namespace gnomon::eevee

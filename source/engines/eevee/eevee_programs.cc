@@ -9,21 +9,23 @@ namespace gnomon::eevee {
 
 namespace {
 
-constexpr std::array<FeatureDefine, 10> feature_table = {
+constexpr std::array<FeatureDefine, 11> feature_table = {
     {{Feature::Light, "USE_LIGHT", "something shines"},
-     {Feature::Punctual, "USE_PUNCTUAL", "a point or spot lamp shines"},
+     {Feature::Punctual, "USE_PUNCTUAL", "a point, spot or area lamp shines"},
      {Feature::Specular, "USE_SPECULAR", "a material reflects specularly"},
-     {Feature::ShadowCube, "USE_SHADOW_CUBE", "a point lamp or a wide spot casts shadows"},
+     {Feature::ShadowCube, "USE_SHADOW_CUBE", "a point lamp, a wide spot or an area lamp casts shadows"},
      {Feature::ShadowMap, "USE_SHADOW_MAP", "a sun or a spot casts shadows"},
      {Feature::ShadowPcf, "USE_SHADOW_PCF", "a shadow is filtered by percentage-closer lookups"},
      {Feature::ShadowEsm, "USE_SHADOW_ESM", "a point lamp or a spot casts exponential shadows"},
      {Feature::BaseColorTexture, "USE_BASE_COLOR_TEXTURE", "a material's base colour has a texture"},
      {Feature::AlphaMask, "USE_ALPHA_MASK", "a texture's alpha cuts a material out"},
-     {Feature::ShadowEvsm, "USE_SHADOW_EVSM", "a point lamp or a spot casts exponential variance shadows"}}};
+     {Feature::ShadowEvsm, "USE_SHADOW_EVSM", "a point lamp or a spot casts exponential variance shadows"},
+     {Feature::LampShape, "USE_LAMP_SHAPE", "a lamp has an extent, or a spot's cone is an ellipse"}}};
 
 /** Features that make no difference without light. */
 constexpr Feature light_features = Feature::Light | Feature::Punctual | Feature::Specular | Feature::ShadowCube |
-                                   Feature::ShadowMap | Feature::ShadowPcf | Feature::ShadowEsm | Feature::ShadowEvsm;
+                                   Feature::ShadowMap | Feature::ShadowPcf | Feature::ShadowEsm | Feature::ShadowEvsm |
+                                   Feature::LampShape;
 /** Features that the visibility of a lamp depends on. */
 constexpr Feature shadow_features = Feature::Light | Feature::Punctual | Feature::ShadowCube | Feature::ShadowMap |
                                     Feature::ShadowPcf | Feature::ShadowEsm | Feature::ShadowEvsm;

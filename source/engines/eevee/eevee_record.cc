@@ -4,6 +4,8 @@
 #include "eevee_engine_data.hh"
 
 #include "draw_view_shared.h"
+#include "eevee_ltc_table.hh"
+#include "eevee_shape_shared.h"
 
 #include <algorithm>
 #include <cmath>
@@ -73,6 +75,12 @@ void bind_lit(draw::ShadingGroup &group, Data &data)
   group.bind_storage_ref("object_block", &stl.object_block);
   group.bind_storage_ref("material_block", &stl.material_block);
   group.bind_uniform("light_block", data.shared->light_block);
+  if (has(stl.features, Feature::LampShape)) {
+    group.bind_uniform("light_shape_block", data.shared->light_shape_block);
+  }
+  if (data.shared->ltc_table) {
+    group.bind_texture("ltc_table", data.shared->ltc_table, data.shared->ltc_sampler);
+  }
   stl.shadows->bind(group);
 }
 
@@ -112,6 +120,8 @@ void Engine::make_blocks(draw::Viewport &viewport)
   scene_.upload();
   if (!has(stl.features, Feature::Light)) {
     shared.light_block = {};
+    shared.light_shape_block = {};
+    shared.ltc_table = {};
     return;
   }
   const std::uint64_t materials =
@@ -130,8 +140,29 @@ void Engine::make_blocks(draw::Viewport &viewport)
     shared.light_block = device.create_buffer({"light_block", gpu::BufferKind::Uniform, sizeof(shared::LightBlock)});
     shared.is_light_block_written = false;
   }
+  if (!has(stl.features, Feature::LampShape)) {
+    shared.light_shape_block = {};
+  }
+  else if (!shared.light_shape_block) {
+    shared.light_shape_block =
+        device.create_buffer({"light_shape_block", gpu::BufferKind::Uniform, sizeof(shared::LightShapeBlock)});
+    shared.is_light_block_written = false;
+  }
+  const bool has_ltc = has(stl.features, Feature::LampShape) && has(stl.features, Feature::Specular);
+  if (!has_ltc) {
+    shared.ltc_table = {};
+  }
+  else if (!shared.ltc_table) {
+    shared.ltc_table = device.create_texture(
+        {.name = "ltc_table", .format = gpu::Format::RGBA32F, .width = 2 * LTC_TABLE_SIZE, .height = LTC_TABLE_SIZE});
+    shared.ltc_sampler = device.create_sampler({.name = "ltc_sampler", .filter = gpu::Filter::Linear});
+    device.upload(shared.ltc_table, 0, std::as_bytes(ltc_table()));
+  }
   if (!std::exchange(shared.is_light_block_written, true)) {
     device.update(shared.light_block, shared.lamps.light_block);
+    if (shared.light_shape_block) {
+      device.update(shared.light_shape_block, shared.lamps.shape_block);
+    }
   }
 }
 
@@ -178,6 +209,8 @@ void Engine::record(draw::Viewport &viewport)
           has(stl.features, Feature::ShadowEsm) ? scene_.lamps_revision() + shared.shadows.viewports_revision() : 0,
       .shadow_block = stl.shadows->block().id(),
       .light_block = shared.light_block.id(),
+      .light_shape_block = shared.light_shape_block.id(),
+      .ltc_table = shared.ltc_table.id(),
       .features = stl.features,
       .tinted_light = shared.tinted_light,
   };

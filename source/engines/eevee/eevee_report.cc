@@ -98,7 +98,7 @@ std::string why_no_feature(const Source &source, Feature feature)
     return is_mask ? "no texture's alpha cuts a material out" : "no lamp gives light";
   }
   switch (feature) {
-    case Feature::Punctual: return "no point lamp or spot gives light";
+    case Feature::Punctual: return "no point, spot or area lamp gives light";
     case Feature::Specular: return source.data.is_recorded ? "every material is Lambertian" : nothing_seen;
     case Feature::ShadowCube: return why_no_shadow(source, "no point lamp or wide spot casts a shadow of depths");
     case Feature::ShadowMap: return why_no_shadow(source, "no sun or spot casts a shadow of depths");
@@ -107,6 +107,7 @@ std::string why_no_feature(const Source &source, Feature feature)
     case Feature::ShadowEvsm: return why_no_shadow(source, "no lamp casts an exponential variance shadow");
     case Feature::BaseColorTexture:
       return source.data.is_recorded ? "no material that is drawn has a texture" : nothing_seen;
+    case Feature::LampShape: return "no lamp has an extent, and no spot's cone is an ellipse";
     case Feature::AlphaMask: return source.data.is_recorded ? "no texture's alpha cuts a material out" : nothing_seen;
     default: return "";
   }
@@ -299,6 +300,9 @@ FrameNode target_nodes(const Source &source)
            : !source.data.is_recorded ? nothing_seen
                                       : "nothing is seen that a caster could darken";
   };
+  add(source.data.shared->ltc_table, "ltc_table", "specular light of lamps with an extent",
+      source.has(Feature::LampShape) ? why_no_feature(source, Feature::Specular)
+                                     : why_no_feature(source, Feature::LampShape));
   add(shadows.cubes(), "shadow_cubes", fmt::format("{} point lamps or wide spots", shadows.cube_count()),
       why_no_layers(Feature::ShadowCube));
   add(shadows.maps(), "shadow_maps", fmt::format("{} suns or spots", shadows.map_count()),
@@ -334,6 +338,8 @@ FrameNode block_nodes(const Source &source)
       fmt::format("{} materials", source.scene().materials().size()), nothing_seen);
   add(source.data.shared->light_block, "light_block",
       fmt::format("{} lights", source.data.shared->lamps.light_block.light_count), "no lamp gives light");
+  add(source.data.shared->light_shape_block, "light_shape_block", "extents and axes of lamps",
+      why_no_feature(source, Feature::LampShape));
   add(stl.shadows->block(), "shadow_block", "shadows of depths",
       source.has(any_shadow) ? "all shadows are exponential" : no_shadow);
   add(stl.shadows->scene().render_blocks(), "shadow_render_block", "views that casters are drawn with", no_shadow);

@@ -107,6 +107,7 @@ class LampReader {
     }
     lamp_.intensity = number("gnomon_power", 1.0, not_negative);
     read_area_color();
+    read_shadow(lamp_.shadow);
     warn_idle_extras();
     return lamp_;
   }
@@ -274,7 +275,8 @@ class LampReader {
   /** A misspelt or misplaced extra would otherwise be looked for in the picture. */
   void warn_idle_extras() const
   {
-    static const std::initializer_list<LampKind> casts_shadow{LampKind::Point, LampKind::Sun, LampKind::Spot};
+    static const std::initializer_list<LampKind> casts_shadow{LampKind::Point, LampKind::Sun, LampKind::Spot,
+                                                              LampKind::Area};
     static const std::array<Extra, 18> known{{
         {"gnomon_radius", {LampKind::Point, LampKind::Spot}},
         {"gnomon_angle", {LampKind::Sun}},

@@ -147,7 +147,7 @@ void add_lamp_extras(const Lamp &lamp, JsonText &extras)
       extras.add("gnomon_color", json_numbers(lamp.color, what));
       break;
   }
-  if (lamp.kind == LampKind::Point || lamp.kind == LampKind::Sun || lamp.kind == LampKind::Spot) {
+  if (lamp.kind != LampKind::Hemi) {
     add_shadow_extras(lamp.shadow, what, extras);
   }
 }

@@ -51,15 +51,71 @@ TEST(LightData, IsFiniteForEveryRange)
   }
 }
 
-TEST(Lamps, AreaLampsAreNamedAndLeftOut)
+TEST(Lamps, AreaLampsAreScaledByTheirNode)
+{
+  std::vector<scene::PlacedLamp> placed;
+  placed = {lamp_of(scene::LampKind::Area)};
+  placed[0].area_shape = scene::AreaShape::Ellipse;
+  placed[0].area_size_x = 3.0F;
+  placed[0].area_size_y = 2.0F;
+  placed[0].scale = {2.0, 0.5, 7.0};
+  const Lamps lamps = make_lamps(placed);
+  EXPECT_EQ(lamps.features, Feature::Light | Feature::Punctual | Feature::LampShape);
+  EXPECT_EQ(lamps.light_block.lights[0].kind, LIGHT_ELLIPSE);
+  // Blender's power P: radiance P / (4 A), which is P / 4 straight ahead.
+  EXPECT_EQ(lamps.light_block.lights[0].color, glm::vec3(2, 1, 0.5F));
+  EXPECT_EQ(lamps.shape_block.shapes[0].axis_x_ws, glm::vec3(3, 0, 0));
+  EXPECT_EQ(lamps.shape_block.shapes[0].axis_y_ws, glm::vec3(0, 0.5F, 0));
+}
+
+TEST(Lamps, AreaLampsWithoutAreaAreNamedAndLeftOut)
 {
   std::vector<scene::PlacedLamp> placed;
   placed = {lamp_of(scene::LampKind::Area), lamp_of(scene::LampKind::Sun)};
+  placed[0].scale.y = 0.0;
   const Lamps lamps = make_lamps(placed);
   EXPECT_EQ(lamps.light_block.light_count, 1);
   EXPECT_EQ(lamps.lamp_index, std::vector<std::uint32_t>{1});
   ASSERT_EQ(lamps.warnings.size(), 1U);
-  EXPECT_NE(lamps.warnings[0].find("'lamp': area lamps are not drawn"), std::string::npos);
+  EXPECT_NE(lamps.warnings[0].find("'lamp': the scale of its node leaves it no area"), std::string::npos);
+}
+
+TEST(Lamps, ScaleMakesASpotsConeElliptical)
+{
+  std::vector<scene::PlacedLamp> placed;
+  placed = {lamp_of(scene::LampKind::Spot)};
+  placed[0].scale = {3.0, 3.0, 3.0};
+  EXPECT_EQ(make_lamps(placed).features, Feature::Light | Feature::Punctual);
+  placed[0].scale = {2.0, 0.5, 1.0};
+  const Lamps lamps = make_lamps(placed);
+  EXPECT_EQ(lamps.features, Feature::Light | Feature::Punctual | Feature::LampShape);
+  const shared::LightShape &shape = lamps.shape_block.shapes[0];
+  // On the rim along each axis the tangent is that of the round cone times the scale.
+  const shared::LightData &light = lamps.light_block.lights[0];
+  const float tangent = std::tan(placed[0].spot_outer_angle);
+  for (const glm::vec3 &rim : {glm::vec3(2.0F * tangent, 0, -1), glm::vec3(0, 0.5F * tangent, -1)}) {
+    EXPECT_NEAR(shared::elliptic_drop(glm::normalize(rim), light.forward_ws, shape.axis_x_ws, shape.axis_y_ws),
+                light.spot_drop_outer, 1e-6F);
+  }
+  // A singular matrix leaves the cone round.
+  placed[0].scale = {2.0, 0.5, 0.0};
+  EXPECT_EQ(make_lamps(placed).features, Feature::Light | Feature::Punctual);
+}
+
+TEST(Lamps, LampsShadedAsPointsHaveNoExtent)
+{
+  std::vector<scene::PlacedLamp> placed;
+  placed = {lamp_of(scene::LampKind::Point), lamp_of(scene::LampKind::Sun), lamp_of(scene::LampKind::Area)};
+  placed[0].radius = 0.5F;
+  placed[1].angle = 0.2F;
+  const Lamps whole = make_lamps(placed, LampShading::Whole);
+  EXPECT_FLOAT_EQ(whole.shape_block.shapes[0].extent, 0.5F);
+  EXPECT_FLOAT_EQ(whole.shape_block.shapes[1].extent, std::tan(0.1F));
+  EXPECT_GT(whole.shape_block.shapes[2].extent, 0.0F);
+  const Lamps point = make_lamps(placed, LampShading::Point);
+  for (int i = 0; i < 3; i++) {
+    EXPECT_EQ(point.shape_block.shapes[i].extent, 0.0F);
+  }
 }
 
 TEST(Lamps, SizedLampsAreDrawnAndWarnedOf)

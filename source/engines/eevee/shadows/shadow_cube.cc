@@ -35,13 +35,24 @@ std::array<draw::View, 6> shadow_cube_views(const glm::vec3 &position_ws, float 
 
 namespace {
 
+/** Whether any direction through \a face of the cube is on the side that a flat lamp shines to. */
+bool reaches_ahead(const ShadowLamp &lamp, std::size_t face)
+{
+  const glm::vec3 forward_ws = -glm::vec3(lamp.world_from_lamp[2]);
+  const int axis = int(face / 2);
+  const float along = face % 2 == 0 ? forward_ws[axis] : -forward_ws[axis];
+  const float across = std::abs(forward_ws[(axis + 1) % 3]) + std::abs(forward_ws[(axis + 2) % 3]);
+  // Of the corner of the face that is farthest ahead. A face that is drawn in vain does no harm.
+  return along + across > -1e-5F;
+}
+
 class CubeTechnique final : public ShadowTechnique {
  public:
   bool serves(const ShadowLamp &lamp, scene::ShadowKind kind) const override
   {
     const bool is_depth = kind == scene::ShadowKind::Hard || kind == scene::ShadowKind::Pcf;
     const bool is_wide = lamp.kind == scene::LampKind::Spot && lamp.spot_outer_angle > spot_map_angle_max;
-    return is_depth && (lamp.kind == scene::LampKind::Point || is_wide);
+    return is_depth && (lamp.kind == scene::LampKind::Point || lamp.kind == scene::LampKind::Area || is_wide);
   }
 
   int light_shadow_kind() const override
@@ -96,7 +107,8 @@ class CubeTechnique final : public ShadowTechnique {
     }
     LayerMask faces = 0;
     for (std::size_t face = 0; face < 6; face++) {
-      faces |= within[face] == 15U ? 1U << face : 0U;
+      const bool is_lit = slot.lamp.kind != scene::LampKind::Area || reaches_ahead(slot.lamp, face);
+      faces |= is_lit && within[face] == 15U ? 1U << face : 0U;
     }
     return faces;
   }

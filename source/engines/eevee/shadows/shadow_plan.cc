@@ -23,6 +23,14 @@ float ShadowLamp::shadow_range() const
   return std::min(range > 0.0F ? range : infinity, shadow.clip_end.value_or(infinity));
 }
 
+/** Of the round cone around a spot's elliptical one, radians. */
+static float widest_half_angle(const scene::PlacedLamp &lamp)
+{
+  const glm::dvec2 scale = lamp.kind == scene::LampKind::Spot ? scene::spot_scale(lamp) : glm::dvec2(1.0);
+  const double widest = std::max(scale.x, scale.y);
+  return widest == 1.0 ? lamp.spot_outer_angle : float(std::atan(widest * std::tan(double(lamp.spot_outer_angle))));
+}
+
 std::vector<ShadowLamp> shadow_lamps(std::span<const scene::PlacedLamp> placed, const Lamps &lamps)
 {
   std::vector<ShadowLamp> result;
@@ -33,7 +41,7 @@ std::vector<ShadowLamp> shadow_lamps(std::span<const scene::PlacedLamp> placed, 
                       .name = lamp.name,
                       .kind = lamp.kind,
                       .world_from_lamp = glm::mat4(lamp.world_from_lamp),
-                      .spot_outer_angle = lamp.spot_outer_angle,
+                      .spot_outer_angle = widest_half_angle(lamp),
                       .range = lamp.range,
                       .shadow = lamp.shadow});
   }

@@ -28,7 +28,7 @@ struct ShadowLamp {
   std::string name{};
   scene::LampKind kind = scene::LampKind::Point;
   glm::mat4 world_from_lamp{1.0F};
-  /** Spot: half the opening angle, radians. */
+  /** Spot: half the opening angle, radians; of an elliptical cone, the widest. */
   float spot_outer_angle = 0.0F;
   /** Metres. 0: no limit. */
   float range = 0.0F;

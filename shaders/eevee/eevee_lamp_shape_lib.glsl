@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// Light of lamps with an extent, each shaded as a whole: form factors for diffuse reflection, linearly transformed cosines for
+// the specular lobe.
+#include "eevee/eevee_surface_lib.glsl"
+#include "shared/eevee_area_shared.h"
+#include "shared/eevee_light_shared.h"
+#include "shared/eevee_shape_shared.h"
+#include "shared/slots_shared.h"
+
+layout(std140, binding = LIGHT_SHAPE_BLOCK_SLOT) uniform light_shape_block
+{
+  LightShapeBlock light_shapes;
+};
+
+#ifdef USE_SPECULAR
+layout(binding = LTC_TABLE_SLOT) uniform sampler2D ltc_table;
+
+#endif
+
+/** Axes at the shaded point: the normal is z, the view direction is in the plane of x and z. Unit vectors. */
+struct ShadingFrame {
+  vec3 x_ws;
+  vec3 y_ws;
+  vec3 z_ws;
+};
+
+/** A unit vector across the unit vector \a n. */
+vec3 any_across(vec3 n)
+{
+  return normalize(abs(n.z) < 0.9 ? vec3(n.y, -n.x, 0.0) : vec3(0.0, n.z, -n.y));
+}
+
+ShadingFrame shading_frame(Surface surface)
+{
+  vec3 across = surface.view_ws - surface.normal_ws * dot(surface.normal_ws, surface.view_ws);
+  float length_sq = dot(across, across);
+  vec3 x_ws = length_sq > 1e-10 ? across * inversesqrt(length_sq) : any_across(surface.normal_ws);
+  return ShadingFrame(x_ws, cross(surface.normal_ws, x_ws), surface.normal_ws);
+}
+
+vec3 in_frame(ShadingFrame frame, vec3 v)
+{
+  return vec3(dot(frame.x_ws, v), dot(frame.y_ws, v), dot(frame.z_ws, v));
+}
+
+/** A flat lamp in the axes of a shading frame, relative to the shaded point. */
+struct FlatLamp {
+  vec3 center;
+  vec3 axis_x;
+  vec3 axis_y;
+  int corner_count;
+  /** Radiance where the light's colour is 1. */
+  float radiance;
+};
+
+/** A rectangle or an ellipse. */
+FlatLamp area_lamp(LightData light, LightShape shape, ShadingFrame frame, Surface surface)
+{
+  bool is_rectangle = light.kind == LIGHT_RECTANGLE;
+  vec3 across = cross(shape.axis_x_ws, shape.axis_y_ws);
+  float area = (is_rectangle ? 4.0 : PI) * sqrt(dot(across, across));
+  return FlatLamp(in_frame(frame, light.position_ws - surface.position_ws), in_frame(frame, shape.axis_x_ws),
+                  in_frame(frame, shape.axis_y_ws), is_rectangle ? RECTANGLE_CORNERS : ELLIPSE_CORNERS,
+                  1.0 / max(area, 1e-30));
+}
+
+/**
+ * The disk that stands for a point, a spot or a sun, turned to the shaded point. \a to_light: unit vector to its centre.
+ * \a tangent: radius over distance. \a irradiance: on a surface that faces it, where the light's colour is 1.
+ */
+FlatLamp round_lamp(vec3 to_light, float tangent, float irradiance, ShadingFrame frame)
+{
+  vec3 center = in_frame(frame, to_light);
+  vec3 axis_x = any_across(center) * tangent;
+  // Radiance times π sin².
+  float sine_sq = tangent * tangent / (1.0 + tangent * tangent);
+  return FlatLamp(center, axis_x, cross(center, axis_x), ELLIPSE_CORNERS, irradiance * INV_PI / max(sine_sq, 1e-30));
+}
+
+#ifdef USE_SPECULAR
+/**
+ * Radiance that the specular lobe of \a material sends to the viewer, where the light's colour is 1: what the transformed
+ * cosine of \a ltc_matrix sends, times the ratio of the lobe to it in the mean direction of that light. For a lamp that is
+ * small in the lobe that is the lobe itself, and for a lobe that is small in the lamp the ratio is the lobe's albedo.
+ */
+vec3 specular_of(FlatLamp lamp, MaterialData material, vec4 ltc_matrix, vec3 view)
+{
+  vec3 flux = flat_flux(ltc_transformed(ltc_matrix, lamp.center), ltc_transformed(ltc_matrix, lamp.axis_x),
+                        ltc_transformed(ltc_matrix, lamp.axis_y), lamp.corner_count, ltc_up(ltc_matrix));
+  vec3 to_light = direction_or_zero(ltc_restored(ltc_matrix, flux));
+  vec3 half_vector = direction_or_zero(to_light + view);
+  if (flux.z <= 0.0 || to_light.z <= 0.0) {
+    return vec3(0.0);
+  }
+  float cos_h = clamp(half_vector.z, 0.0, 1.0);
+  float lobe = ggx_lobe(to_light.z, max(view.z, 1e-4), cos_h, material.alpha) * to_light.z;
+  float ratio = min(lobe / max(ltc_density(ltc_matrix, to_light), 1e-30), LTC_RATIO_MAX);
+  vec3 fresnel = fresnel_schlick(material.specular_f0, material.specular_f90, dot(view, half_vector));
+  return fresnel * (lamp.radiance * flux.z * ratio);
+}
+#endif
