@@ -43,6 +43,10 @@ float light_visibility(LightData light, Surface surface, vec3 to_light)
   return 1.0;
 }
 
+#if defined(USE_LAMP_SHAPE) && defined(USE_SHADOW)
+#  include "eevee/eevee_penumbra_lib.glsl"
+#endif
+
 /** BRDF towards the viewer, 1/sr, times the cosine of the incident light. */
 vec3 reflected(MaterialData material, Surface surface, vec3 to_light, float cos_l)
 {
@@ -142,7 +146,36 @@ struct ShapeShading {
 #endif
 };
 
-/** The same from a lamp that is shaded as a whole. Its shadow is that of its centre. */
+#ifdef USE_SHADOW
+/** Visibility of a lamp that is shaded as a whole. */
+float shape_visibility(LightData light, LightShape shape, Surface surface, CenterLight center)
+{
+  if (light.shadow_kind != SHADOW_CUBE && light.shadow_kind != SHADOW_MAP) {
+    return light_visibility(light, surface, center.to_light);
+  }
+  // A caster half way to the lamp spreads its edge by the lamp's size.
+  float search = 1.0;
+  vec3 axis_x = shape.axis_x_ws;
+  vec3 axis_y = shape.axis_y_ws;
+  if (light.kind < LIGHT_RECTANGLE) {
+    axis_x = any_across(center.to_light) * shape.extent;
+    axis_y = cross(center.to_light, axis_x);
+  }
+#ifdef USE_SHADOW_MAP
+  if (light.kind == LIGHT_SUN) {
+    search = 0.3 * sun_gap_max(light.shadow_index, surface, center.to_light);
+  }
+#endif
+  if (light.kind == LIGHT_RECTANGLE) {
+    // The taps are on a disk: of the same second moments as the rectangle.
+    axis_x *= 1.1547;
+    axis_y *= 1.1547;
+  }
+  return penumbra_visibility(light, surface, center.to_light, axis_x, axis_y, search);
+}
+#endif
+
+/** The same from a lamp that is shaded as a whole. */
 vec3 shape_radiance(int index, MaterialData material, Surface surface, ShapeShading shading)
 {
   LightData light = light_data.lights[index];
@@ -167,7 +200,11 @@ vec3 shape_radiance(int index, MaterialData material, Surface surface, ShapeShad
   if (irradiance <= 0.0) {
     return vec3(0.0);
   }
+#ifdef USE_SHADOW
+  float visibility = shape_visibility(light, shape, surface, center);
+#else
   float visibility = light_visibility(light, surface, center.to_light);
+#endif
   if (visibility <= 0.0) {
     return vec3(0.0);
   }

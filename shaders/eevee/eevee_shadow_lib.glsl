@@ -66,15 +66,32 @@ float filtered_visibility(sampler2DArray depths, int layer, int size_px, int fil
   return bilinear_texels(depths, layer, size_px, plane, plane.texel);
 }
 
-#ifdef USE_SHADOW_CUBE
-float shadow_cube_visibility(int index, Surface surface, LightData light, vec3 to_light)
+/** Where a receiver is in a shadow. */
+struct ShadowPlace {
+  ReceiverPlane plane;
+  int layer;
+  /** false: no caster can be in the way. */
+  bool is_covered;
+};
+
+/** Depth of the caster at a place, the nearest texel's; 0 where there is none nearer than the receiver's plane. */
+float caster_depth(sampler2DArray depths, ShadowPlace place, int size_px)
 {
-  ShadowCubeData cube = shadow.cubes[index];
+  vec2 texel = clamp(floor(place.plane.texel + 0.5), vec2(0.0), vec2(size_px - 1));
+  float stored = texelFetch(depths, ivec3(ivec2(texel), place.layer), 0).r;
+  return stored > place.plane.depth + dot(place.plane.slope, texel - place.plane.texel) ? stored : 0.0;
+}
+
+#ifdef USE_SHADOW_CUBE
+ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, vec3 to_light)
+{
+  ShadowPlace place;
+  place.is_covered = false;
   // Distance along the axis of the face that contains the receiver.
   vec3 from_light = surface.position_ws - light.position_ws;
   float w = largest(from_light);
   if (w > cube.far) {
-    return 1.0;
+    return place;
   }
   float magnitude = largest(surface.position_ws) + largest(light.position_ws);
   float lift = cube.bias * shadow_lift(cube.texel_size * w, kernel_reach(cube.filter_kind),
@@ -85,26 +102,46 @@ float shadow_cube_visibility(int index, Surface surface, LightData light, vec3 t
   int face = cube_face(from_light);
   vec3 p = cube_face_project(face, from_light);
   if ((cube.face_mask >> face & 1) == 0 || p.z <= 0.0) {
-    return 1.0;
+    return place;
   }
   // A plane n · p = c has 1 / z = (n.x · x/z + n.y · y/z + n.z) / c.
   vec3 n = cube_face_project(face, surface.geometric_normal_ws);
   float size = float(cube.size_px);
-  ReceiverPlane plane;
-  plane.texel = (p.xy / p.z * (0.5 * cube_uv_scale(size)) + 0.5) * size - 0.5;
-  plane.depth = cube.near / p.z;
-  plane.slope = n.xy * (slope_quotient(cube.near, dot(n, p)) * cube.texel_size);
-  return filtered_visibility(shadow_cubes, cube.layer + face, cube.size_px, cube.filter_kind, plane);
+  place.plane.texel = (p.xy / p.z * (0.5 * cube_uv_scale(size)) + 0.5) * size - 0.5;
+  place.plane.depth = cube.near / p.z;
+  place.plane.slope = n.xy * (slope_quotient(cube.near, dot(n, p)) * cube.texel_size);
+  place.layer = cube.layer + face;
+  place.is_covered = true;
+  return place;
+}
+
+float shadow_cube_visibility(int index, Surface surface, LightData light, vec3 to_light)
+{
+  ShadowCubeData cube = shadow.cubes[index];
+  ShadowPlace place = cube_place(cube, surface, light, to_light);
+  return place.is_covered ? filtered_visibility(shadow_cubes, place.layer, cube.size_px, cube.filter_kind, place.plane)
+                          : 1.0;
+}
+
+/** \see shadow_gap */
+float shadow_cube_gap(int index, Surface surface, LightData light, vec3 to_light)
+{
+  ShadowCubeData cube = shadow.cubes[index];
+  ShadowPlace place = cube_place(cube, surface, light, to_light);
+  // A depth is the near plane's distance over the caster's.
+  return place.is_covered ? max(caster_depth(shadow_cubes, place, cube.size_px) / place.plane.depth - 1.0, 0.0) : 0.0;
 }
 #endif
 
 #ifdef USE_SHADOW_MAP
-/** Visibility by one map. \a coverage: see map_texco. */
-float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, out float coverage)
+/** \a coverage: see map_texco. */
+ShadowPlace map_place(ShadowMapData map, Surface surface, vec3 to_light, out float coverage)
 {
+  ShadowPlace place;
   vec3 texco = map_texco(map, surface, to_light, coverage);
-  if (coverage <= 0.0) {
-    return 1.0;
+  place.is_covered = coverage > 0.0;
+  if (!place.is_covered) {
+    return place;
   }
   // Derivatives of the map's coordinates along two directions on the receiver's plane: d(q / w) = (dq - q / w · dw) / w.
   vec3 n = surface.geometric_normal_ws;
@@ -113,11 +150,52 @@ float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, out 
   vec4 across = map.texco_from_world * vec4(cross(n, tangent), 0.0);
   vec3 normal = cross(along.xyz - texco * along.w, across.xyz - texco * across.w);
   float size = float(map.size_px);
-  ReceiverPlane plane;
-  plane.texel = texco.xy * size - 0.5;
-  plane.depth = texco.z;
-  plane.slope = vec2(slope_quotient(-normal.x, normal.z), slope_quotient(-normal.y, normal.z)) / size;
-  return filtered_visibility(shadow_maps, map.layer, map.size_px, map.filter_kind, plane);
+  place.plane.texel = texco.xy * size - 0.5;
+  place.plane.depth = texco.z;
+  place.plane.slope = vec2(slope_quotient(-normal.x, normal.z), slope_quotient(-normal.y, normal.z)) / size;
+  place.layer = map.layer;
+  return place;
+}
+
+/** Visibility by one map. \a coverage: see map_texco. */
+float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, out float coverage)
+{
+  ShadowPlace place = map_place(map, surface, to_light, coverage);
+  return place.is_covered ? filtered_visibility(shadow_maps, place.layer, map.size_px, map.filter_kind, place.plane) : 1.0;
+}
+
+/** \see shadow_gap. By the finest map that holds the receiver. */
+float shadow_map_gap(int first, Surface surface, LightData light, vec3 to_light)
+{
+  int count = shadow.maps[first].cascade_count;
+  for (int i = 0; i < count; i++) {
+    ShadowMapData map = shadow.maps[first + i];
+    float coverage;
+    ShadowPlace place = map_place(map, surface, to_light, coverage);
+    if (place.is_covered) {
+      float stored = caster_depth(shadow_maps, place, map.size_px);
+      if (light.kind != LIGHT_SUN) {
+        return max(stored / place.plane.depth - 1.0, 0.0);
+      }
+      // Depth for each metre towards the sun.
+      vec3 row = vec3(map.texco_from_world[0].z, map.texco_from_world[1].z, map.texco_from_world[2].z);
+      return stored > 0.0 ? max((stored - place.plane.depth) / max(dot(row, to_light), 1e-20), 0.0) : 0.0;
+    }
+  }
+  return 0.0;
+}
+
+/** Distance from the receiver to the plane before all casters of a sun, metres; 0 where there is no map. */
+float sun_gap_max(int first, Surface surface, vec3 to_light)
+{
+  int count = shadow.maps[first].cascade_count;
+  if (count == 0) {
+    return 0.0;
+  }
+  mat4 texco_from_world = shadow.maps[first + count - 1].texco_from_world;
+  vec3 row = vec3(texco_from_world[0].z, texco_from_world[1].z, texco_from_world[2].z);
+  float depth = dot(row, surface.position_ws) + texco_from_world[3].z;
+  return max((1.0 - depth) / max(dot(row, to_light), 1e-20), 0.0);
 }
 
 /** Visibility by all maps of a light. \a first: the finest. */

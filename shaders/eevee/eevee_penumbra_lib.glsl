@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// Penumbrae from one map of a lamp's centre (percentage-closer soft shadows, Fernando 2005), by lookups on the receiver's plane.
+
+/** Lookups for casters, and lookups for visibility. */
+const int PENUMBRA_SEARCH_TAPS = 12;
+const int PENUMBRA_TAPS = 20;
+
+/**
+ * How wide a caster spreads the lamp's edge on the receiver, in half axes of the lamp; 0: there is no caster. For a lamp at a
+ * distance that is the quotient of the distances from the caster to the receiver and to the lamp. For a sun it is the distance
+ * from the caster, metres.
+ */
+float shadow_gap(LightData light, Surface surface, vec3 to_light)
+{
+#ifdef USE_SHADOW_CUBE
+  if (light.shadow_kind == SHADOW_CUBE) {
+    return shadow_cube_gap(light.shadow_index, surface, light, to_light);
+  }
+#endif
+#ifdef USE_SHADOW_MAP
+  if (light.shadow_kind == SHADOW_MAP) {
+    return shadow_map_gap(light.shadow_index, surface, light, to_light);
+  }
+#endif
+  return 0.0;
+}
+
+/** The point where light to \a surface, moved by \a offset across the light, meets the surface's plane. */
+Surface beside(Surface surface, vec3 to_light, vec3 offset)
+{
+  vec3 n = surface.geometric_normal_ws;
+  float facing = dot(n, to_light);
+  // At grazing angles the point would be far away.
+  facing = facing < 0.0 ? min(facing, -0.05) : max(facing, 0.05);
+  surface.position_ws += offset - to_light * (dot(n, offset) / facing);
+  return surface;
+}
+
+/** A turn that differs from pixel to pixel (Jimenez 2014, interleaved gradient noise), as cosine and sine. */
+vec2 pixel_turn()
+{
+  float angle = 6.2831853 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  return vec2(cos(angle), sin(angle));
+}
+
+/**
+ * Visibility of a lamp with an extent. \a axis_x, \a axis_y: its half axes, world space; metres, or for a sun at a distance of
+ * 1 m. \a search: gap of the casters that are looked for first. Casters whose penumbra does not reach the receiver are no
+ * matter.
+ */
+float penumbra_visibility(LightData light, Surface surface, vec3 to_light, vec3 axis_x, vec3 axis_y, float search)
+{
+  vec2 turn = pixel_turn();
+  float gaps = 0.0;
+  float count = 0.0;
+  for (int i = 0; i < PENUMBRA_SEARCH_TAPS; i++) {
+    vec2 tap = vogel_disk(i, PENUMBRA_SEARCH_TAPS);
+    tap = vec2(tap.x * turn.x - tap.y * turn.y, tap.x * turn.y + tap.y * turn.x);
+    float gap = shadow_gap(light, beside(surface, to_light, (tap.x * axis_x + tap.y * axis_y) * search), to_light);
+    if (gap > 0.0 && gap >= length(tap) * search) {
+      gaps += gap;
+      count += 1.0;
+    }
+  }
+  if (count == 0.0) {
+    return light_visibility(light, surface, to_light);
+  }
+  float gap = gaps / count;
+  float sum = 0.0;
+  for (int i = 0; i < PENUMBRA_TAPS; i++) {
+    vec2 tap = vogel_disk(i, PENUMBRA_TAPS);
+    tap = vec2(tap.x * turn.x - tap.y * turn.y, tap.x * turn.y + tap.y * turn.x);
+    sum += light_visibility(light, beside(surface, to_light, (tap.x * axis_x + tap.y * axis_y) * gap), to_light);
+  }
+  return sum / float(PENUMBRA_TAPS);
+}
