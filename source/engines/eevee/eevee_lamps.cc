@@ -29,18 +29,6 @@ bool gives_light(const scene::Lamp &lamp)
   return color.r > 0.0F || color.g > 0.0F || color.b > 0.0F;
 }
 
-void warn_of_size(const scene::Lamp &lamp, std::vector<std::string> &warnings)
-{
-  if (lamp.radius > 0.0F) {
-    warnings.push_back(fmt::format("lamp '{}': penumbrae are not drawn yet; its radius of {:g} m softens no shadow",
-                                   lamp.name, lamp.radius));
-  }
-  if (lamp.angle > 0.0F) {
-    warnings.push_back(fmt::format("lamp '{}': penumbrae are not drawn yet; its angle of {:g} rad softens no shadow",
-                                   lamp.name, lamp.angle));
-  }
-}
-
 }  // namespace
 
 shared::LightData light_data(const scene::PlacedLamp &lamp)
@@ -127,7 +115,6 @@ Lamps make_lamps(std::span<const scene::PlacedLamp> placed, LampShading shading)
       dropped.push_back(lamp.name);
       continue;
     }
-    warn_of_size(lamp, lamps.warnings);
     const int light = lamps.light_block.light_count++;
     lamps.light_block.lights[light] = light_data(lamp);
     lamps.shape_block.shapes[light] = light_shape(lamp, shading);

@@ -32,7 +32,7 @@ struct Lamps {
   std::vector<std::uint32_t> lamp_index;
   /** Features that the lamps ask for; shadows not among them. */
   Feature features = Feature::None;
-  /** One for each lamp, or property of one, that is not drawn yet. */
+  /** One for each lamp that cannot be drawn. */
   std::vector<std::string> warnings;
   /** Lamps past LIGHT_MAX, named. */
   std::vector<std::string> limits;
