@@ -198,7 +198,7 @@ void add_light_cases(std::vector<StabilityCase> &cases)
              const bool is_area = kind == scene::LampKind::Area;
              const double given =
                  reference::sample_lamp(lamp, {0.0, 0.0, -distance}, glm::dvec2(is_area ? 0.5 : 0.0)).irradiance;
-             const double truth = (is_area ? 1.0 / std::numbers::pi : 1.0) / std::max(distance * distance, 1e-12);
+             const double truth = (is_area ? 0.25 : 1.0) / std::max(distance * distance, 1e-12);
              return std::abs(given / truth - 1.0) / rounding;
            })});
     }
