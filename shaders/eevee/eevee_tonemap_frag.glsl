@@ -1,23 +1,53 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// Applies exposure and the view transform to the picture.
+// Writes the picture to a target: applies exposure, view transform and, where the target has depth, the host's convention.
 #include "shared/eevee_tonemap_shared.h"
 #include "shared/slots_shared.h"
 
 layout(binding = RADIANCE_SLOT) uniform sampler2D radiance_texture;
+#ifdef USE_TARGET_DEPTH
+layout(binding = DEPTH_SLOT) uniform sampler2D depth_texture;
+#endif
 
 PUSH_CONSTANT_LAYOUT uniform push_constant_block
 {
+  /** \see draw::DepthMap */
+  vec4 depth_scale;
+  /** Lower left corner of the picture in the target. */
+  ivec2 origin_px;
   /** VIEW_TRANSFORM_… */
   int view_transform;
+  /** ENCODING_… */
+  int encoding;
   /** 2 to the exposure in stops. */
   float exposure_scale;
+  /** Makes the sum of the samples so far their mean. */
+  float sample_scale;
+  float background_depth;
+  /** Pixels without a surface are left as they are. */
+  int is_over;
 };
 
 layout(location = 0) out vec4 display;
 
 void main()
 {
-  vec4 radiance = texelFetch(radiance_texture, ivec2(gl_FragCoord.xy), 0);
-  display = vec4(view_transformed(radiance.rgb * exposure_scale, view_transform), clamp(radiance.a, 0.0, 1.0));
+  ivec2 pixel = ivec2(gl_FragCoord.xy) - origin_px;
+  vec4 radiance = texelFetch(radiance_texture, pixel, 0) * sample_scale;
+  vec3 color = radiance.rgb * exposure_scale;
+  if (encoding == ENCODING_DISPLAY) {
+    color = view_transformed(color, view_transform);
+  }
+  else if (encoding == ENCODING_SRGB_FORMAT) {
+    color = displayed_light(color, view_transform);
+  }
+  display = vec4(color, clamp(radiance.a, 0.0, 1.0));
+#ifdef USE_TARGET_DEPTH
+  float depth = texelFetch(depth_texture, pixel, 0).r;
+  if (depth == 0.0 && is_over != 0) {
+    discard;
+  }
+  float stored = (depth_scale.x * depth + depth_scale.y) / (depth_scale.z * depth + depth_scale.w);
+  gl_FragDepth = depth == 0.0 ? background_depth : clamp(stored, 0.0, 1.0);
+#endif
 }

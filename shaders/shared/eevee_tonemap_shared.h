@@ -21,6 +21,11 @@ SHARED_BEGIN
  */
 #define VIEW_TRANSFORM_PBR_NEUTRAL 3
 
+/** How a target stores colours. \see draw::Encoding */
+#define ENCODING_SCENE_LINEAR 0
+#define ENCODING_DISPLAY 1
+#define ENCODING_SRGB_FORMAT 2
+
 /** sRGB's transfer function (IEC 61966-2-1). \a linear in [0, 1]. */
 SHARED_FUNCTION float srgb_encoded(float linear)
 {
@@ -81,8 +86,8 @@ SHARED_FUNCTION vec3 pbr_neutral(vec3 linear)
   return color + (vec3(new_peak) - color) * white;
 }
 
-/** Display-referred colour in [0, 1]. \a view_transform: VIEW_TRANSFORM_… */
-SHARED_FUNCTION vec3 view_transformed(vec3 linear, int view_transform)
+/** Linear light in [0, 1] that a display shows for \a linear. \a view_transform: VIEW_TRANSFORM_… */
+SHARED_FUNCTION vec3 displayed_light(vec3 linear, int view_transform)
 {
   vec3 mapped = linear;
   if (view_transform == VIEW_TRANSFORM_AGX) {
@@ -91,7 +96,13 @@ SHARED_FUNCTION vec3 view_transformed(vec3 linear, int view_transform)
   else if (view_transform == VIEW_TRANSFORM_PBR_NEUTRAL) {
     mapped = pbr_neutral(clamp(linear, vec3(0.0f), vec3(1e30f)));
   }
-  vec3 clipped = clamp(mapped, vec3(0.0f), vec3(1.0f));
+  return clamp(mapped, vec3(0.0f), vec3(1.0f));
+}
+
+/** Display-referred colour in [0, 1]. \a view_transform: VIEW_TRANSFORM_… */
+SHARED_FUNCTION vec3 view_transformed(vec3 linear, int view_transform)
+{
+  vec3 clipped = displayed_light(linear, view_transform);
   if (view_transform == VIEW_TRANSFORM_RAW) {
     return clipped;
   }

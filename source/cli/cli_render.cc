@@ -35,10 +35,10 @@ double seconds_since(Clock::time_point start)
 }
 
 /** Names of `--view`. */
-const std::map<std::string, eevee::ViewTransform> view_transforms = {{"standard", eevee::ViewTransform::Standard},
-                                                                     {"raw", eevee::ViewTransform::Raw},
-                                                                     {"agx", eevee::ViewTransform::Agx},
-                                                                     {"pbr-neutral", eevee::ViewTransform::PbrNeutral}};
+const std::map<std::string, draw::ViewTransform> view_transforms = {{"standard", draw::ViewTransform::Standard},
+                                                                    {"raw", draw::ViewTransform::Raw},
+                                                                    {"agx", draw::ViewTransform::Agx},
+                                                                    {"pbr-neutral", draw::ViewTransform::PbrNeutral}};
 
 struct RenderOptions {
   std::string scene;
@@ -224,10 +224,6 @@ eevee::Settings engine_settings(const RenderOptions &options)
   settings.shadow = shadow_settings(options);
   settings.sample_count = options.samples;
   settings.seed = options.seed;
-  settings.has_display =
-      !options.output.empty() && is_png(options.output) && options.debug_view.kind != DebugView::Kind::Shadow;
-  settings.view_transform = view_transforms.at(options.view);
-  settings.exposure = options.exposure;
   settings.has_cascade_tint = options.debug_view.kind == DebugView::Kind::Cascades;
   settings.is_timed = !options.json.empty() || options.is_explained;
   return settings;
@@ -322,16 +318,30 @@ void show_progress(int done, int count)
   }
 }
 
-void render_frames(const RenderOptions &options, const scene::PlacedCamera &camera, eevee::SceneRenderer &renderer,
-                   RenderResult &result)
+/** What a PNG holds: the picture as a display shows it. Nothing where the output is something else. */
+std::optional<draw::TargetTexture> make_display(const RenderOptions &options, gpu::Device &device, glm::ivec2 size_px)
 {
+  if (!is_png(options.output) || options.debug_view.kind == DebugView::Kind::Shadow) {
+    return std::nullopt;
+  }
+  return std::make_optional<draw::TargetTexture>(device, "display", gpu::Format::RGBA8, size_px);
+}
+
+void render_frames(const RenderOptions &options, const scene::PlacedCamera &camera, eevee::SceneRenderer &renderer,
+                   const std::optional<draw::TargetTexture> &display, RenderResult &result)
+{
+  draw::Target target = display ? display->target() : draw::Target();
+  target.view_transform = view_transforms.at(options.view);
+  target.exposure = options.exposure;
+
   eevee::ShadowCounters before;
   for (int frame = 0; frame < options.repeat; frame++) {
     const Clock::time_point start = Clock::now();
-    renderer.draw(camera, [&](int samples_drawn) {
+    const auto progress = [&](int samples_drawn) {
       show_progress(samples_drawn, options.samples);
       return true;
-    });
+    };
+    renderer.draw(camera, progress, target);
     renderer.viewport().device().finish();
     result.frame_seconds.push_back(seconds_since(start));
     result.frame_steps.push_back(renderer.engine().take_step_times(renderer.viewport()));
@@ -343,12 +353,13 @@ void render_frames(const RenderOptions &options, const scene::PlacedCamera &came
 }
 
 /** \return Status::Done or Status::NonFinite; then nothing is written. */
-Status write_picture(const RenderOptions &options, const scene::Camera &camera, const gpu::Texture &picture,
-                     const eevee::Engine &engine, draw::Viewport &viewport, RenderResult &result)
+Status write_picture(const RenderOptions &options, const scene::Camera &camera, gpu::Device &device,
+                     const gpu::Texture &picture, const std::optional<draw::TargetTexture> &display,
+                     RenderResult &result)
 {
   const bool is_shadow = options.debug_view.kind == DebugView::Kind::Shadow;
   const glm::ivec2 size_px(picture.desc().width, picture.desc().height);
-  const std::vector<float> values = gpu::read_as<float>(viewport.device(), picture);
+  const std::vector<float> values = gpu::read_as<float>(device, picture);
   const NonFinite non_finite = find_non_finite(size_px, values);
   result.non_finite_count = non_finite.count;
   if (non_finite.count > 0) {
@@ -368,8 +379,7 @@ Status write_picture(const RenderOptions &options, const scene::Camera &camera, 
   if (is_png(options.output)) {
     metadata.emplace_back("gnomon:units", fmt::format("display-referred, {}", is_shadow ? "raw" : options.view));
     write_png(options.output, size_px,
-              is_shadow ? to_bytes(values) : gpu::read_as<std::uint8_t>(viewport.device(), engine.display(viewport)),
-              metadata);
+              display ? gpu::read_as<std::uint8_t>(device, display->texture()) : to_bytes(values), metadata);
   }
   else {
     metadata.emplace_back("gnomon:units",
@@ -434,7 +444,8 @@ Status render(RenderOptions options)
   }
   result.sync_seconds = seconds_since(sync_start);
 
-  render_frames(options, camera, renderer, result);
+  const std::optional<draw::TargetTexture> display = make_display(options, *device, size_px);
+  render_frames(options, camera, renderer, display, result);
   result.report = engine.report(viewport);
 
   const gpu::Texture &picture = options.debug_view.kind == DebugView::Kind::Shadow
@@ -443,7 +454,7 @@ Status render(RenderOptions options)
   const Clock::time_point output_start = Clock::now();
   Status status = Status::Done;
   if (options.backend == "gl") {
-    status = write_picture(options, camera, picture, engine, viewport, result);
+    status = write_picture(options, camera, *device, picture, display, result);
   }
   else {
     fmt::print(stderr, "gnomon: the null backend draws nothing: no picture is written\n");

@@ -18,7 +18,8 @@ class Viewport;
  *
  * Call order, by Viewport::sync: init; cache_init, if objects were added or removed since the engine's last sync of
  * this viewport, or a sync failed; cache_populate for each object that changed, after cache_init for every object;
- * cache_finish. Then, by Viewport::draw, draw_scene as often as wanted, until the scene changes.
+ * cache_finish, which calls Viewport::restart where the picture is another one than before. Then, by Viewport::draw,
+ * draw_scene as often as wanted, until the scene changes.
  */
 class Engine {
  public:
@@ -42,6 +43,10 @@ class Engine {
   virtual void cache_populate(Viewport &viewport, const ObjectBuffer &objects, ObjectIndex object) = 0;
   /** All objects are known. */
   virtual void cache_finish(Viewport &viewport) = 0;
+  /**
+   * Draw the sample Viewport::samples_drawn of the picture, 0 being the first, unless the picture has all that the
+   * engine draws; then write the picture so far to Viewport::target, where there is one.
+   */
   virtual void draw_scene(Viewport &viewport, const View &view) = 0;
 
  private:

@@ -49,6 +49,7 @@ class View {
   }
   /** Whether any of the sphere may be in the frustum: no false no, rare false yes near the edges. */
   [[nodiscard]] bool touches(const CullingVolume &volume) const;
+  bool operator==(const View &) const = default;
 
  private:
   glm::mat4 view_from_world_;

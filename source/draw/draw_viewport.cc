@@ -3,7 +3,8 @@
 
 #include <glm/matrix.hpp>
 
-#include <cmath>
+#include <algorithm>
+#include <limits>
 
 namespace gnomon::draw {
 
@@ -27,6 +28,7 @@ void Viewport::resize(glm::ivec2 size_px)
     return;
   }
   size_px_ = size_px;
+  restart();
   // Framebuffers go before the textures that they draw into.
   for (auto &[id, engine] : engines_) {
     if (engine.data) {
@@ -67,14 +69,28 @@ void Viewport::sync(std::span<Engine *const> engines, const ObjectBuffer &object
   }
 }
 
-void Viewport::draw(std::span<Engine *const> engines, const View &view)
+void Viewport::draw(std::span<Engine *const> engines, const View &view, const Target &target)
 {
   if (!is_finite(view.clip_from_world()) || !is_finite(glm::mat4(glm::inverse(glm::dmat4(view.view_from_world()))))) {
     throw gpu::Error("the view's matrix, or its inverse, is not finite");
   }
-  for (Engine *engine : engines) {
-    engine->draw_scene(*this, view);
+  check(target, size_px_);
+  target_ = target;
+  if (view != view_) {
+    view_ = view;
+    restart();
   }
+  try {
+    for (Engine *engine : engines) {
+      engine->draw_scene(*this, view);
+    }
+  }
+  catch (...) {
+    // A part of a sample must not stay in the picture.
+    restart();
+    throw;
+  }
+  samples_drawn_ = std::min(samples_drawn_, std::numeric_limits<int>::max() - 1) + 1;
 }
 
 }  // namespace gnomon::draw

@@ -3,6 +3,8 @@
 
 #include "draw_engine.hh"
 #include "draw_objects.hh"
+#include "draw_target.hh"
+#include "draw_view.hh"
 
 #include "gpu_device.hh"
 
@@ -20,8 +22,11 @@ struct EngineViewportData {
 };
 
 /**
- * One picture of a scene on a device: its size, the depth that all engines share, and what each engine keeps for it.
- * Must be destroyed before its device.
+ * One picture of a scene on a device: its size, the samples drawn so far, the depth that all engines share, and what
+ * each engine keeps for it. Must be destroyed before its device.
+ *
+ * Each draw adds a sample to the picture until the engines have all that they are to draw. A picture begins anew when
+ * its view or its size changes, after a sync in which an engine finds a change, and by restart().
  */
 class Viewport {
  public:
@@ -33,9 +38,26 @@ class Viewport {
    * edit of the scene. \a objects must be the same buffer each time.
    */
   void sync(std::span<Engine *const> engines, const ObjectBuffer &objects);
-  /** Let \a engines draw what they recorded, in order. \throws gpu::Error where \a view or its inverse is not finite.
+  /**
+   * Let \a engines draw the next sample, in order, and write the picture so far to \a target.
+   * \throws gpu::Error where \a view or its inverse is not finite, and where \a target cannot take the picture.
    */
-  void draw(std::span<Engine *const> engines, const View &view);
+  void draw(std::span<Engine *const> engines, const View &view, const Target &target = {});
+  /** Begin the picture anew with the next draw. */
+  void restart()
+  {
+    samples_drawn_ = 0;
+  }
+  /** Draws since the picture began. */
+  [[nodiscard]] int samples_drawn() const
+  {
+    return samples_drawn_;
+  }
+  /** Of the current draw, or of the last one, whose framebuffer may be gone. */
+  [[nodiscard]] const Target &target() const
+  {
+    return target_;
+  }
 
   [[nodiscard]] gpu::Device &device() const
   {
@@ -80,6 +102,10 @@ class Viewport {
   gpu::Device &device_;
   glm::ivec2 size_px_;
   gpu::Texture depth_texture_;
+  /** Of the samples drawn. */
+  View view_;
+  Target target_;
+  int samples_drawn_ = 0;
   struct EngineState {
     std::unique_ptr<EngineViewportData> data;
     /** ObjectBuffer::revision at the last sync that came to its end; nothing: none did. */

@@ -11,6 +11,12 @@ void CommandList::begin_pass(std::string_view name, const Framebuffer &framebuff
   passes_.push_back({std::string(name), framebuffer.id(), actions});
 }
 
+void CommandList::begin_pass(std::string_view name, const HostFramebuffer &framebuffer, const PassActions &actions)
+{
+  commands_.push_back({.kind = CommandKind::BeginPass, .first = std::uint32_t(passes_.size())});
+  passes_.push_back({std::string(name), 0, actions, framebuffer});
+}
+
 void CommandList::end_pass()
 {
   commands_.push_back({.kind = CommandKind::EndPass});
@@ -98,6 +104,17 @@ static std::string_view to_string(StoreAction action)
   return action == StoreAction::Store ? "store" : "dont_care";
 }
 
+/** " viewport 4x3 at 1,2"; empty for the whole framebuffer. */
+static std::string to_string(std::string_view what, const Rectangle &rectangle)
+{
+  if (rectangle.is_whole()) {
+    return {};
+  }
+  const glm::ivec2 origin = rectangle.origin_px;
+  return fmt::format("{} {}x{}{}", what, rectangle.size_px.x, rectangle.size_px.y,
+                     origin == glm::ivec2(0) ? "" : fmt::format(" at {},{}", origin.x, origin.y));
+}
+
 std::string CommandList::serialize(const Device &device) const
 {
   const auto name = [&](ResourceKind kind, ResourceId id) { return device.name_of(kind, id); };
@@ -107,12 +124,11 @@ std::string CommandList::serialize(const Device &device) const
       case CommandKind::BeginPass: {
         const PassInfo &pass = passes_[command.first];
         const PassActions &a = pass.actions;
-        text += fmt::format("begin {} -> {} color {}/{} depth {}/{}\n", pass.name,
-                            name(ResourceKind::Framebuffer, command.id), to_string(a.color_load),
-                            to_string(a.color_store), to_string(a.depth_load), to_string(a.depth_store));
-        if (a.viewport_px != glm::ivec2(0)) {
-          text.insert(text.size() - 1, fmt::format(" viewport {}x{}", a.viewport_px.x, a.viewport_px.y));
-        }
+        text += fmt::format("begin {} -> {} color {}/{} depth {}/{}{}{}{}\n", pass.name,
+                            pass.host_framebuffer ? "host framebuffer" : name(ResourceKind::Framebuffer, command.id),
+                            to_string(a.color_load), to_string(a.color_store), to_string(a.depth_load),
+                            to_string(a.depth_store), to_string(" viewport", a.viewport),
+                            to_string(" scissor", a.scissor), a.is_srgb_encoded ? " srgb" : "");
         break;
       }
       case CommandKind::EndPass: text += "end\n"; break;

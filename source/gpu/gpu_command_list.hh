@@ -5,6 +5,7 @@
 #include "gpu_framebuffer.hh"
 #include "gpu_state.hh"
 
+#include <optional>
 #include <span>
 
 namespace gnomon::gpu {
@@ -64,6 +65,8 @@ class CommandList {
  public:
   /** Begin to draw into \a framebuffer. \a actions: the treatment of its content, and the viewport. */
   void begin_pass(std::string_view name, const Framebuffer &framebuffer, const PassActions &actions);
+  /** The same for a framebuffer of the host's. LoadAction::DontCare keeps the content. */
+  void begin_pass(std::string_view name, const HostFramebuffer &framebuffer, const PassActions &actions);
   void end_pass();
 
   void set_shader(ResourceId shader);
@@ -89,8 +92,10 @@ class CommandList {
 
   struct PassInfo {
     std::string name;
+    /** 0: `host_framebuffer`. */
     ResourceId framebuffer = 0;
     PassActions actions;
+    std::optional<HostFramebuffer> host_framebuffer{};
   };
   [[nodiscard]] const std::vector<Command> &commands() const
   {

@@ -31,7 +31,7 @@ struct FramebufferDesc {
   Attachment depth;
 };
 
-/** Target of a render pass. */
+/** Render target of a pass, made of textures of the device. */
 class Framebuffer : public Resource {
  public:
   Framebuffer() = default;
@@ -44,6 +44,28 @@ class Framebuffer : public Resource {
   friend class Device;
   Framebuffer(Resource resource, glm::ivec2 size_px) : Resource(std::move(resource)), size_px_(size_px) {}
   glm::ivec2 size_px_{0};
+};
+
+/**
+ * A framebuffer of the host's, in a device of ContextKind::Host: another render target of a pass. Plain data, which may
+ * name another framebuffer in every frame. It may be multisampled: all samples of a pixel are written alike.
+ */
+struct HostFramebuffer {
+  /** OpenGL's name; 0: the default framebuffer. Only the first of its draw buffers is written. */
+  std::uint32_t name = 0;
+  glm::ivec2 size_px{0};
+};
+
+/** From the lower left corner. */
+struct Rectangle {
+  glm::ivec2 origin_px{0};
+  /** 0: the whole framebuffer. */
+  glm::ivec2 size_px{0};
+
+  [[nodiscard]] bool is_whole() const
+  {
+    return origin_px == glm::ivec2(0) && size_px == glm::ivec2(0);
+  }
 };
 
 enum class LoadAction : std::uint8_t {
@@ -65,9 +87,11 @@ struct PassActions {
   StoreAction depth_store = StoreAction::Store;
   /** Reversed depth: 0 is far. */
   float clear_depth = 0.0F;
-  /** Size of the viewport, from the lower left corner. Clears apply to the whole framebuffer. 0: the whole framebuffer.
-   */
-  glm::ivec2 viewport_px{0};
+  Rectangle viewport{};
+  /** Draws and clears change only this part. */
+  Rectangle scissor{};
+  /** Attachments of an sRGB format encode what is drawn, and blend linear colours. Otherwise they store it as it is. */
+  bool is_srgb_encoded = false;
 };
 
 }  // namespace gnomon::gpu

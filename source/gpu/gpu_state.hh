@@ -25,6 +25,10 @@ enum class State : std::uint32_t {
   DepthClamp = 1U << 8,
   /** The stored colour is multiplied by the colour. */
   BlendMultiply = 1U << 9,
+  /** The colour, which is premultiplied by its alpha, lies over the stored colour. */
+  BlendOver = 1U << 10,
+  /** Depth test: passes where the depth is less than or equal to the stored depth. For a host's depth. */
+  DepthLessEqual = 1U << 11,
 };
 
 constexpr State operator|(State a, State b)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace gnomon::gpu {
@@ -106,19 +107,37 @@ class Validator {
     }
     pass_ = &pass;
     has_state_ = false;
-    const ResourceInfo &info = live(ResourceKind::Framebuffer, command.id);
-    framebuffer_ = &std::get<FramebufferInfo>(info.desc);
-    for (const AttachedTexture &attached : framebuffer_->attachments) {
+    attachments_ = {};
+    std::string name = "of the host";
+    glm::ivec2 size_px;
+    if (pass.host_framebuffer) {
+      size_px = pass.host_framebuffer->size_px;
+    }
+    else {
+      const ResourceInfo &info = live(ResourceKind::Framebuffer, command.id);
+      const auto &framebuffer = std::get<FramebufferInfo>(info.desc);
+      attachments_ = framebuffer.attachments;
+      name = fmt::format("'{}'", info.name);
+      size_px = framebuffer.size_px;
+    }
+    for (const AttachedTexture &attached : attachments_) {
       if (!device_.find(ResourceKind::Texture, attached.texture)) {
-        fail("framebuffer '{}': texture '{}' that is attached to it was destroyed", info.name, attached.name);
+        fail("framebuffer {}: texture '{}' that is attached to it was destroyed", name, attached.name);
       }
     }
-    const glm::ivec2 viewport = pass.actions.viewport_px;
-    const glm::ivec2 size = framebuffer_->size_px;
-    const bool is_whole = viewport == glm::ivec2(0);
-    if (!is_whole && (viewport.x < 1 || viewport.y < 1 || viewport.x > size.x || viewport.y > size.y)) {
-      fail("framebuffer '{}': a viewport of {}x{} px does not fit into {}x{} px", info.name, viewport.x, viewport.y,
-           size.x, size.y);
+    check_rectangle(name, size_px, "viewport", pass.actions.viewport);
+    check_rectangle(name, size_px, "scissor", pass.actions.scissor);
+  }
+
+  void check_rectangle(std::string_view framebuffer, glm::ivec2 size_px, std::string_view what,
+                       const Rectangle &rectangle) const
+  {
+    const glm::ivec2 first = rectangle.origin_px;
+    const glm::ivec2 end = first + rectangle.size_px;
+    if (!rectangle.is_whole() && (first.x < 0 || first.y < 0 || rectangle.size_px.x < 1 || rectangle.size_px.y < 1 ||
+                                  end.x > size_px.x || end.y > size_px.y)) {
+      fail("framebuffer {}: a {} of {}x{} px at {},{} does not fit into {}x{} px", framebuffer, what,
+           rectangle.size_px.x, rectangle.size_px.y, first.x, first.y, size_px.x, size_px.y);
     }
   }
 
@@ -229,7 +248,7 @@ class Validator {
     if (bound.id == 0) {
       return;
     }
-    for (const AttachedTexture &attached : framebuffer_->attachments) {
+    for (const AttachedTexture &attached : attachments_) {
       if (attached.texture == bound.id) {
         fail("shader '{}': feedback loop: texture '{}' at slot {} ('{}') is attached to the framebuffer", shader_->name,
              attached.name, binding.slot, binding.name);
@@ -289,7 +308,8 @@ class Validator {
   std::size_t command_index_ = 0;
   /** nullptr: outside of a pass. */
   const CommandList::PassInfo *pass_ = nullptr;
-  const FramebufferInfo *framebuffer_ = nullptr;
+  /** Of the pass's framebuffer. */
+  std::span<const AttachedTexture> attachments_;
   const ResourceInfo *shader_ = nullptr;
   /** In the current pass. */
   bool has_state_ = false;

@@ -88,6 +88,7 @@ void Bench::set(int sample_count, bool is_timed)
 
 void Bench::draw(int sample_count)
 {
+  viewport_.restart();
   for (int i = 0; i < sample_count; i++) {
     viewport_.draw(engines_, view_);
   }

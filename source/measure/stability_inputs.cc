@@ -515,11 +515,19 @@ std::size_t shadow_block_faults(const eevee::Shadows &shadows)
 }
 
 /** A frame on a device that draws nothing. */
-Passed draw_on_null(const scene::Scene &scene, const eevee::Settings &settings, glm::ivec2 size_px = {16, 16})
+Passed draw_on_null(const scene::Scene &scene, const eevee::Settings &settings, glm::ivec2 size_px = {16, 16},
+                    std::optional<float> exposure = std::nullopt)
 {
   const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  std::optional<draw::TargetTexture> display;
+  draw::Target target;
+  if (exposure) {
+    display.emplace(*device, "display", gpu::Format::RGBA8, size_px);
+    target = display->target();
+    target.exposure = *exposure;
+  }
   Renderer renderer(*device, scene, size_px, settings);
-  renderer.draw(lit_camera());
+  renderer.draw(lit_camera(), target);
   const eevee::Report report = renderer.engine.report(renderer.viewport);
   Passed passed{shadow_block_faults(renderer.engine.shadows(renderer.viewport)), report.limits};
   passed.messages.insert(passed.messages.end(), report.warnings.begin(), report.warnings.end());
@@ -589,12 +597,11 @@ void add_settings_cases(std::vector<StabilityCase> &cases)
       [](eevee::Settings &s, double v) { s.shadow.pcf = {.width = 0, .taps = int(v)}; }, scene::ShadowKind::Pcf);
   add("samples", "samples a pixel", "sample_count", tries({1, 2, 64}, Wanted::Kept) + tries({-1, 0}, refused),
       [](eevee::Settings &s, double v) { s.sample_count = int(v); });
-  add("exposure", "stops", "exposure",
-      with_nan(tries({-100, 0, 100}, Wanted::Kept) + tries({-1e9, 128, 1e38}, refused)),
-      [](eevee::Settings &s, double v) {
-        s.has_display = true;
-        s.exposure = float(v);
-      });
+  cases.push_back(door_case<double>("settings", "exposure", "frame with such a target", "stops", "exposure",
+                                    with_nan(tries({-100, 0, 100}, Wanted::Kept) + tries({-1e9, 128, 1e38}, refused)),
+                                    [](const double &v) {
+                                      return draw_on_null(lit_scene(), small_settings(), {16, 16}, float(v));
+                                    }));
   cases.push_back(door_case<glm::ivec2>(
       "settings", "viewport", "frame of that size",
       "1 1x1, 2 16384x1, 3 1x16384, 4 16384x16384, 5 0x1, 6 1x0, 7 -1x1, 8 16385x1, 9 1x16385", "viewport: ",

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <functional>
+
 namespace gnomon::draw {
 namespace {
 
@@ -57,13 +59,20 @@ class LoggingEngine final : public Engine {
   {
     log_.push_back(name_ + " cache_finish");
   }
-  void draw_scene(Viewport & /*viewport*/, const View &view) override
+  void draw_scene(Viewport &viewport, const View &view) override
   {
+    samples.push_back(viewport.samples_drawn());
+    if (fails_to_draw) {
+      throw gpu::Error("no draw");
+    }
     log_.push_back(fmt::format("{} draw_scene {}", name_, view.is_perspective() ? "perspective" : "parallel"));
   }
 
   /** cache_populate throws for this object. */
   ObjectIndex fails_at = object_identity;
+  bool fails_to_draw = false;
+  /** Viewport::samples_drawn at each draw. */
+  std::vector<int> samples;
 
  private:
   std::string name_;
@@ -235,6 +244,35 @@ TEST_F(ViewportTest, ResizeToASizePastTheLimitChangesNothing)
   EXPECT_EQ(viewport.size_px(), glm::ivec2(8, 4));
   EXPECT_TRUE(viewport.has_depth_texture());
   EXPECT_EQ(viewport.engine_data<LoggingEngine::Data>(a).resizes, 0);
+}
+
+TEST_F(ViewportTest, APictureBeginsAnewWithItsViewItsSizeAFailureAndARestart)
+{
+  Viewport viewport(*device, {8, 4});
+  const std::vector<Engine *> engines = {&a};
+  const View first(glm::mat4(1), perspective(1, 1, 0.1F, 10));
+  const View second(at(1), perspective(1, 1, 0.1F, 10));
+  const auto samples_of = [&](const std::function<void()> &change, const View &view) {
+    a.samples.clear();
+    viewport.draw(engines, first);
+    viewport.draw(engines, first);
+    change();
+    viewport.draw(engines, view);
+    viewport.restart();
+    return a.samples;
+  };
+  const auto nothing = [] {};
+  EXPECT_EQ(samples_of(nothing, first), (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(samples_of(nothing, second), (std::vector<int>{0, 1, 0}));
+  EXPECT_EQ(samples_of([&] { viewport.resize({8, 5}); }, first), (std::vector<int>{0, 1, 0}));
+  EXPECT_EQ(samples_of([&] { viewport.resize({8, 5}); }, first), (std::vector<int>{0, 1, 2})) << "the same size";
+  EXPECT_EQ(samples_of([&] { viewport.restart(); }, first), (std::vector<int>{0, 1, 0}));
+  const auto fail = [&] {
+    a.fails_to_draw = true;
+    EXPECT_THROW(viewport.draw(engines, first), gpu::Error);
+    a.fails_to_draw = false;
+  };
+  EXPECT_EQ(samples_of(fail, first), (std::vector<int>{0, 1, 2, 0}));
 }
 
 TEST(Viewport, SharesADepthOfItsSize)

@@ -82,10 +82,22 @@ TEST_F(CommandListTest, SerializesEachCommandAsALine)
 
 TEST_F(CommandListTest, PrintsAViewportThatIsNotTheWhole)
 {
-  list.begin_pass("main", framebuffer, {.viewport_px = {3, 2}});
+  list.begin_pass("main", framebuffer, {.viewport = {.size_px = {3, 2}}});
   list.end_pass();
   EXPECT_EQ(list.serialize(*device),
             "begin main -> scene color clear/store depth clear/store viewport 3x2\n"
+            "end\n");
+}
+
+TEST_F(CommandListTest, PrintsAFramebufferOfTheHostAndARectangle)
+{
+  const Rectangle part{{10, 20}, {3, 2}};
+  list.begin_pass("main", HostFramebuffer{.name = 7, .size_px = {64, 48}},
+                  {.color_load = LoadAction::Load, .viewport = part, .scissor = part, .is_srgb_encoded = true});
+  list.end_pass();
+  EXPECT_EQ(list.serialize(*device),
+            "begin main -> host framebuffer color load/store depth clear/store viewport 3x2 at 10,20"
+            " scissor 3x2 at 10,20 srgb\n"
             "end\n");
 }
 

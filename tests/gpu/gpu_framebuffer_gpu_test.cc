@@ -290,7 +290,7 @@ TEST_F(RenderPassGpu, ASmallerViewportIsDrawnIntoAndTheWholeIsCleared)
     append_draw(list, batch);
     list.end_pass();
   };
-  draw(1, {.clear_color = glm::vec4(7), .viewport_px = {3, 2}});
+  draw(1, {.clear_color = glm::vec4(7), .viewport = {.size_px = {3, 2}}});
   device->submit(list);
   const std::vector<glm::vec4> pixels = decoded_texels(*device, texture, 0);
   for (int y = 0; y < 4; y++) {

@@ -4,6 +4,7 @@
 #include <epoxy/egl.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <gtest/gtest.h>
 
 #include <poll.h>
 #include <signal.h>
@@ -162,6 +163,40 @@ class GlxHostContext final : public HostContext {
   Xvfb server_;
   GLFWwindow *window_ = nullptr;
   std::string reason_;
+};
+
+enum class HostKind { Egl, Glx };
+
+inline std::string name_of_host(const testing::TestParamInfo<HostKind> &parameter)
+{
+  return parameter.param == HostKind::Egl ? "Egl" : "Glx";
+}
+
+/** Base of test cases that run in a host's context of each kind; skipped, or failed where CI is set and EGL has none.
+ */
+class HostContextTest : public testing::TestWithParam<HostKind> {
+ protected:
+  void SetUp() override
+  {
+    std::string reason = "EGL gives no surfaceless context";
+    if (GetParam() == HostKind::Egl) {
+      context = std::make_unique<EglHostContext>();
+    }
+    else {
+      auto glx = std::make_unique<GlxHostContext>();
+      reason = glx->reason();
+      context = std::move(glx);
+    }
+    if (!context->is_current()) {
+      const char *ci = std::getenv("CI");
+      if (GetParam() == HostKind::Egl && ci && *ci) {
+        FAIL() << "CI is set and " << reason;
+      }
+      GTEST_SKIP() << reason;
+    }
+  }
+
+  std::unique_ptr<HostContext> context;
 };
 
 }  // namespace gnomon::test

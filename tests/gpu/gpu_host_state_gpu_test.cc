@@ -114,29 +114,14 @@ void main()
 })");
 };
 
-enum class HostKind { Egl, Glx };
-
-class HostState : public testing::TestWithParam<HostKind> {
+class HostState : public test::HostContextTest {
  protected:
   void SetUp() override
   {
-    std::string reason = "EGL gives no surfaceless context";
-    if (GetParam() == HostKind::Egl) {
-      host = std::make_unique<test::EglHostContext>();
+    HostContextTest::SetUp();
+    if (!IsSkipped() && !HasFailure()) {
+      table = test::state_table();
     }
-    else {
-      auto glx = std::make_unique<test::GlxHostContext>();
-      reason = glx->reason();
-      host = std::move(glx);
-    }
-    if (!host->is_current()) {
-      const char *ci = std::getenv("CI");
-      if (GetParam() == HostKind::Egl && ci && *ci) {
-        FAIL() << "CI is set and " << reason;
-      }
-      GTEST_SKIP() << reason;
-    }
-    table = test::state_table();
   }
 
   /** Calls \a action, which must leave all state as it was. */
@@ -149,12 +134,10 @@ class HostState : public testing::TestWithParam<HostKind> {
     EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR)) << name;
   }
 
-  std::unique_ptr<test::HostContext> host;
   std::vector<StateItem> table;
 };
 
-INSTANTIATE_TEST_SUITE_P(, HostState, testing::Values(HostKind::Egl, HostKind::Glx),
-                         [](const auto &parameter) { return parameter.param == HostKind::Egl ? "Egl" : "Glx"; });
+INSTANTIATE_TEST_SUITE_P(, HostState, testing::Values(test::HostKind::Egl, test::HostKind::Glx), test::name_of_host);
 
 TEST_P(HostState, TheTableHasAllStateAndUnusualValues)
 {
@@ -427,9 +410,9 @@ TEST_P(HostState, ADeviceDrawsAndTheContextStaysTheHosts)
     HostedScene scene(*device);
     device->submit(scene.list());
     scene.expect_picture();
-    EXPECT_TRUE(host->is_current());
+    EXPECT_TRUE(context->is_current());
   }
-  EXPECT_TRUE(host->is_current()) << "the device destroyed the host's context";
+  EXPECT_TRUE(context->is_current()) << "the device destroyed the host's context";
   EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
   EXPECT_TRUE(glGetString(GL_VERSION)) << "the context does not work any more";
 }
@@ -438,8 +421,8 @@ TEST_P(HostState, AHeadlessDeviceDoesNotTakeTheHostsPlace)
 {
   const GLubyte *version = glGetString(GL_VERSION);
   expect_contains(error_of([] { static_cast<void>(create_gl_device()); }), "current");
-  EXPECT_TRUE(host->is_current());
-  EXPECT_EQ(eglGetCurrentContext() != EGL_NO_CONTEXT, GetParam() == HostKind::Egl);
+  EXPECT_TRUE(context->is_current());
+  EXPECT_EQ(eglGetCurrentContext() != EGL_NO_CONTEXT, GetParam() == test::HostKind::Egl);
   EXPECT_EQ(glGetString(GL_VERSION), version);
 }
 

@@ -297,11 +297,28 @@ TEST_F(Validation, ViewportsFitTheirFramebuffer)
 {
   for (const glm::ivec2 size : {glm::ivec2(5, 4), glm::ivec2(4, 5), glm::ivec2(-1, 4), glm::ivec2(0, 4)}) {
     list.clear();
-    list.begin_pass("lit", framebuffer, {.viewport_px = size});
+    list.begin_pass("lit", framebuffer, {.viewport = {.size_px = size}});
     list.end_pass();
     const std::string message = error_of([&] { validate(list, *device); });
     expect_contains(message, "framebuffer 'scene'");
-    expect_contains(message, fmt::format("{}x{} px does not fit into 4x4 px", size.x, size.y));
+    expect_contains(message, fmt::format("{}x{} px at 0,0 does not fit into 4x4 px", size.x, size.y));
+  }
+}
+
+TEST_F(Validation, RectanglesFitTheHostsFramebuffer)
+{
+  const auto message_of = [&](const Rectangle &viewport, const Rectangle &scissor) {
+    list.clear();
+    list.begin_pass("lit", HostFramebuffer{.name = 1, .size_px = {8, 6}}, {.viewport = viewport, .scissor = scissor});
+    list.end_pass();
+    return error_of([&] { validate(list, *device); });
+  };
+  EXPECT_EQ(message_of({{3, 2}, {5, 4}}, {{3, 2}, {5, 4}}), "");
+  EXPECT_EQ(message_of({}, {}), "");
+  for (const Rectangle bad : {Rectangle{{4, 2}, {5, 4}}, Rectangle{{3, 3}, {5, 4}}, Rectangle{{-1, 0}, {5, 4}},
+                              Rectangle{{0, -1}, {5, 4}}, Rectangle{{2, 2}, {0, 0}}}) {
+    expect_contains(message_of(bad, {}), "framebuffer of the host: a viewport of");
+    expect_contains(message_of({}, bad), "framebuffer of the host: a scissor of");
   }
 }
 

@@ -13,21 +13,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace gnomon::eevee {
 
 namespace {
-
-shared::ViewData view_data(const draw::View &view)
-{
-  const glm::mat4 world_from_view(glm::inverse(glm::dmat4(view.view_from_world())));
-  shared::ViewData data{};
-  data.clip_from_world = view.clip_from_world();
-  data.position_ws = glm::vec3(world_from_view[3]);
-  data.is_perspective = view.is_perspective() ? 1 : 0;
-  data.back_ws = glm::normalize(glm::vec3(world_from_view[2]));
-  return data;
-}
 
 /** In light_block. */
 std::optional<int> first_sun_with_maps(const Lamps &lamps)
@@ -49,11 +39,6 @@ static void check(const Settings &settings)
   if (settings.sample_count < 1) {
     throw gpu::Error("eevee: sample_count {} is not at least 1", settings.sample_count);
   }
-  // Its power of 2 is finite, and no denormal.
-  constexpr float exposure_max = 120.0F;
-  if (!(std::abs(settings.exposure) <= exposure_max)) {
-    throw gpu::Error("eevee: exposure {} is not in [{}, {}]", settings.exposure, -exposure_max, exposure_max);
-  }
 }
 
 void Engine::init(draw::Viewport &viewport)
@@ -62,7 +47,6 @@ void Engine::init(draw::Viewport &viewport)
   Data &data = viewport.engine_data<Data>(*this);
   gpu::Device &device = viewport.device();
   data.is_synced = data.is_recorded = false;
-  data.samples_drawn = 0;
   if (!data.psl) {
     data.psl = std::make_unique<PassList>(scene_.objects());
   }
@@ -80,10 +64,6 @@ void Engine::init(draw::Viewport &viewport)
   if (!txl.film) {
     txl.film = create_target(device, "film", gpu::Format::RGBA32F, viewport.size_px());
     data.fbl.film_fb = device.create_framebuffer({.name = "film_fb", .colors = {{&txl.film}}, .depth = {}});
-  }
-  if (settings_.has_display && !txl.display) {
-    txl.display = create_target(device, "display", gpu::Format::RGBA8, viewport.size_px());
-    data.fbl.display_fb = device.create_framebuffer({.name = "display_fb", .colors = {{&txl.display}}, .depth = {}});
   }
 }
 
@@ -140,6 +120,12 @@ void Engine::cache_finish(draw::Viewport &viewport)
   data.stl.is_collecting = false;
   sync_lamps(*data.shared, viewport.device().limits());
   follow_lamps(data);
+  const PictureKey picture{scene_.objects().revision(), scene_.lamps_revision(), scene_.passes_revision(),
+                           scene_.materials_revision(), settings_revision_,      shaders_revision_};
+  if (data.stl.synced_picture != picture) {
+    viewport.restart();
+    data.stl.synced_picture = picture;
+  }
   data.is_synced = true;
 }
 
@@ -164,13 +150,27 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
   Data &data = viewport.engine_data<Data>(*this);
   require_sync(data.is_synced);
   follow_lamps(data);
-  const glm::vec2 offset_px = film_offset_px(data.samples_drawn, settings_.sample_count, settings_.seed);
-  const draw::View sample_view = with_sample_offset(view, offset_px, viewport.size_px());
-  if (data.samples_drawn == 0) {
+  data.target = viewport.target();
+  data.sample_index = viewport.samples_drawn();
+  if (data.sample_index == 0) {
     data.stl.shadows->begin_picture();
+    data.stl.film_share = 0.0;
     data.frame.clear();
-    data.is_seen = false;
+    data.is_seen = data.has_picture_depth = false;
   }
+  if (!is_complete(viewport)) {
+    draw_sample(viewport, view);
+  }
+  if (data.target) {
+    draw_target(viewport, view);
+  }
+}
+
+void Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
+{
+  Data &data = viewport.engine_data<Data>(*this);
+  const glm::vec2 offset_px = film_offset_px(data.sample_index, settings_.sample_count, settings_.seed);
+  const draw::View sample_view = with_sample_offset(view, offset_px, viewport.size_px());
   const bool is_sample_seen = std::ranges::any_of(
       data.stl.objects, [&](draw::ObjectIndex object) { return sample_view.touches(scene_.objects().volume(object)); });
   FrameSample sample{data, settings_, viewport, view, sample_view};
@@ -180,13 +180,33 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
     update_view(data, sample_view);
   }
   // A sample that sees nothing adds nothing to a picture that has begun.
-  if (is_sample_seen || data.samples_drawn == 0) {
+  if (is_sample_seen || data.sample_index == 0) {
     draw_steps(sample, FrameStep::When::EachSample);
   }
-  data.samples_drawn = (data.samples_drawn + 1) % settings_.sample_count;
-  if (data.samples_drawn == 0) {
-    draw_steps(sample, FrameStep::When::LastSample);
+  data.stl.film_share +=
+      film_share(data.sample_index, settings_.sample_count, settings_.seed, data.stl.film_weight_sum);
+}
+
+void Engine::draw_target(draw::Viewport &viewport, const draw::View &view)
+{
+  Data &data = viewport.engine_data<Data>(*this);
+  TonemapConstants &constants = data.stl.tonemap;
+  const bool is_last = data.sample_index + 1 >= settings_.sample_count;
+  constants.origin_px = data.target.origin_px;
+  constants.view_transform = int(data.target.view_transform);
+  constants.encoding = int(data.target.encoding);
+  constants.exposure_scale =
+      data.target.encoding == draw::Encoding::SceneLinear ? 1.0F : std::exp2(data.target.exposure);
+  constants.sample_scale = is_last ? 1.0F : float(1.0 / data.stl.film_share);
+  constants.is_over = data.target.composition == draw::Composition::Over ? 1 : 0;
+  if (data.target.depth) {
+    constants.depth = draw::depth_map(view.clip_from_view(), *data.target.depth);
   }
+  if (data.is_seen) {
+    record_tonemap(viewport);
+  }
+  FrameSample sample{data, settings_, viewport, view, view};
+  draw_steps(sample, FrameStep::When::EachTarget);
 }
 
 /** In light_block. Nothing where the lamp gives no light, or the viewport was never synced. */
@@ -249,12 +269,6 @@ const gpu::Texture &Engine::radiance(draw::Viewport &viewport) const
   return viewport.engine_data<Data>(*this).txl.film;
 }
 
-const gpu::Texture &Engine::display(draw::Viewport &viewport) const
-{
-  GNOMON_ASSERT(settings_.has_display, "the settings ask for no display picture");
-  return viewport.engine_data<Data>(*this).txl.display;
-}
-
 std::vector<StepTime> Engine::take_step_times(draw::Viewport &viewport) const
 {
   std::vector<StepTime> times;
@@ -293,9 +307,12 @@ std::string Engine::serialize_passes(draw::Viewport &viewport) const
     return text;
   }
   text += data.shared->shadow_pass.serialize(viewport.device());
+  // Some steps draw passes of earlier steps again.
+  std::set<const draw::Pass *> printed;
   for (const FrameStep &step : frame_steps()) {
     for (const FramePass &pass : step.passes) {
-      text += ((*data.psl).*pass.pass).serialize(viewport.device());
+      const draw::Pass &recorded = (*data.psl).*pass.pass;
+      text += printed.insert(&recorded).second ? recorded.serialize(viewport.device()) : std::string();
     }
   }
   text += data.psl->probe_pass.serialize(viewport.device());

@@ -8,7 +8,6 @@
 
 #include "draw_engine.hh"
 #include "draw_viewport.hh"
-#include "eevee_tonemap_shared.h"
 #include "render_scene.hh"
 
 #include <memory>
@@ -16,24 +15,12 @@
 
 namespace gnomon::eevee {
 
-enum class ViewTransform {
-  Standard = VIEW_TRANSFORM_STANDARD,
-  Raw = VIEW_TRANSFORM_RAW,
-  Agx = VIEW_TRANSFORM_AGX,
-  PbrNeutral = VIEW_TRANSFORM_PBR_NEUTRAL,
-};
-
 struct Settings {
   ShadowSettings shadow{};
   /** Samples for each pixel of a picture, at least 1. */
   int sample_count = 1;
   /** Selects the arrangement of the samples. */
   std::uint32_t seed = 0;
-  /** Make a display-referred picture in addition to the radiance. */
-  bool has_display = false;
-  ViewTransform view_transform = ViewTransform::Standard;
-  /** Stops, -120 to 120: radiance is multiplied by 2^exposure before the view transform. */
-  float exposure = 0.0F;
   /** Measure the time of each step on the device. */
   bool is_timed = false;
   /** Multiply the picture by a colour for each cascade of the first sun that has a shadow. */
@@ -79,7 +66,8 @@ struct Report {
  * is visible; a view of nothing costs a clear. eevee_frame.cc lists the steps of a frame.
  *
  * One picture takes `sample_count` calls of draw_scene (through draw::Viewport::draw) with one view. The engine offsets
- * the samples within the pixels.
+ * the samples within the pixels. Further calls draw no sample; each call writes the mean of the samples so far to the
+ * viewport's target, where there is one.
  */
 class Engine final : public draw::Engine {
  public:
@@ -106,10 +94,13 @@ class Engine final : public draw::Engine {
   void cache_finish(draw::Viewport &viewport) override;
   void draw_scene(draw::Viewport &viewport, const draw::View &view) override;
 
-  /** The scene-linear picture, RGBA32F. Complete once all samples are drawn. */
+  /** The scene-linear picture, RGBA32F. Complete once all samples are drawn; before, their sum lacks the others. */
   [[nodiscard]] const gpu::Texture &radiance(draw::Viewport &viewport) const;
-  /** The display-referred picture, RGBA8. \pre Settings::has_display; all samples are drawn. */
-  [[nodiscard]] const gpu::Texture &display(draw::Viewport &viewport) const;
+  /** All samples of the picture are drawn: further draws would change nothing. */
+  [[nodiscard]] bool is_complete(const draw::Viewport &viewport) const
+  {
+    return viewport.samples_drawn() >= settings_.sample_count;
+  }
   /** Times of the samples drawn since the last call. Waits for the device. Empty unless Settings::is_timed. */
   [[nodiscard]] std::vector<StepTime> take_step_times(draw::Viewport &viewport) const;
   /**
@@ -161,6 +152,9 @@ class Engine final : public draw::Engine {
   void record_film(draw::Viewport &viewport);
   void record_casters(Data &data);
   void record_caster(SharedData &shared, draw::ObjectIndex object);
+  void record_tonemap(draw::Viewport &viewport);
+  void draw_sample(draw::Viewport &viewport, const draw::View &view);
+  void draw_target(draw::Viewport &viewport, const draw::View &view);
   void add_casters(Data &data);
   void update_view(Data &data, const draw::View &view);
 

@@ -25,7 +25,7 @@ struct FramebufferList {
   gpu::Framebuffer depth_fb;
   gpu::Framebuffer main_fb;
   gpu::Framebuffer film_fb;
-  gpu::Framebuffer display_fb;
+  gpu::Framebuffer picture_depth_fb;
   gpu::Framebuffer probe_fb;
 };
 
@@ -33,7 +33,8 @@ struct TextureList {
   gpu::Texture radiance;
   /** Sum of the weighted samples. */
   gpu::Texture film;
-  gpu::Texture display;
+  /** Without the samples' offsets. Made where a target takes the depth of several samples. */
+  gpu::Texture picture_depth;
   gpu::Texture probe_position;
   gpu::Texture probe_normal;
   gpu::Sampler nearest;
@@ -91,6 +92,38 @@ struct ShadowsKey {
   std::uint64_t viewports = 0;
 
   bool operator==(const ShadowsKey &) const = default;
+};
+
+/** Revisions of everything that the picture depends on, beside its view and size. */
+struct PictureKey {
+  std::uint64_t objects = 0;
+  std::uint64_t lamps = 0;
+  std::uint64_t passes = 0;
+  std::uint64_t materials = 0;
+  std::uint64_t settings = 0;
+  std::uint64_t shaders = 0;
+
+  bool operator==(const PictureKey &) const = default;
+};
+
+/** What the tonemap pass was recorded for. */
+struct TonemapKey {
+  gpu::State state = gpu::State::None;
+  /** 0: the target takes no depth. */
+  gpu::ResourceId depth_texture = 0;
+
+  bool operator==(const TonemapKey &) const = default;
+};
+
+/** The tonemap pass reads these by reference. \see eevee_tonemap_frag.glsl */
+struct TonemapConstants {
+  draw::DepthMap depth;
+  glm::ivec2 origin_px{0};
+  int view_transform = 0;
+  int encoding = 0;
+  float exposure_scale = 1.0F;
+  float sample_scale = 1.0F;
+  int is_over = 0;
 };
 
 /** Revisions of everything that the recorded casters depend on. */
@@ -172,6 +205,11 @@ struct StorageList {
   glm::vec4 film_columns{0.0F};
   glm::vec4 film_rows{0.0F};
   double film_weight_sum = 0.0;
+  /** Part of the whole picture's weight that the samples drawn so far have. */
+  double film_share = 0.0;
+  std::optional<PictureKey> synced_picture;
+  std::optional<TonemapKey> tonemap_recorded;
+  TonemapConstants tonemap;
 };
 
 struct Timing {
@@ -193,6 +231,7 @@ struct Data final : draw::EngineViewportData {
     txl = {};
     is_synced = false;
     stl.recorded.reset();
+    stl.tonemap_recorded.reset();
   }
   /** Made by the first sync; it must outlive the shadows of the viewport. */
   std::shared_ptr<SharedData> shared;
@@ -201,7 +240,9 @@ struct Data final : draw::EngineViewportData {
   std::unique_ptr<PassList> psl;
   StorageList stl;
   Timing timing;
-  int samples_drawn = 0;
+  /** Of the draw at hand, or of the last one. */
+  draw::Target target;
+  int sample_index = 0;
   ShadowPicture shadow_picture;
   /** The last sync came to its end, and so did what was recorded since. */
   bool is_synced = false;
@@ -209,6 +250,8 @@ struct Data final : draw::EngineViewportData {
   bool is_recorded = false;
   /** A sample of the picture at hand did. */
   bool is_seen = false;
+  /** TextureList::picture_depth is of the picture at hand. */
+  bool has_picture_depth = false;
   /** One for each of frame_steps(), of the picture at hand; empty before the first sample. */
   std::vector<StepRecord> frame;
 };

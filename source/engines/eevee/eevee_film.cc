@@ -47,10 +47,15 @@ double film_weight_sum(int count, std::uint32_t seed)
 {
   double total = 0.0;
   for (int i = 0; i < count; i++) {
-    const glm::vec2 offset_px = film_offset_px(i, count, seed);
-    total += sum(axis_weights(offset_px.x)) * sum(axis_weights(offset_px.y));
+    total += film_share(i, count, seed, 1.0);
   }
   return total;
+}
+
+double film_share(int index, int count, std::uint32_t seed, double weight_sum)
+{
+  const glm::vec2 offset_px = film_offset_px(index, count, seed);
+  return sum(axis_weights(offset_px.x)) * sum(axis_weights(offset_px.y)) / weight_sum;
 }
 
 FilmWeights film_weights(int index, int count, std::uint32_t seed, double weight_sum)

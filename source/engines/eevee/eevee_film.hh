@@ -36,4 +36,7 @@ struct FilmWeights {
  */
 [[nodiscard]] FilmWeights film_weights(int index, int count, std::uint32_t seed, double weight_sum);
 
+/** The sum of one sample's weights. Those of all samples sum to 1. */
+[[nodiscard]] double film_share(int index, int count, std::uint32_t seed, double weight_sum);
+
 }  // namespace gnomon::eevee

@@ -6,6 +6,8 @@
 
 #include "gpu_read.hh"
 
+#include <glm/matrix.hpp>
+
 #include <algorithm>
 #include <array>
 
@@ -22,6 +24,17 @@ std::string why_no_shadow(const FrameState &state, std::string no_such_lamp)
 float pixel_size(const draw::View &view, const draw::Viewport &viewport)
 {
   return 2.0F / (view.clip_from_view()[1][1] * float(viewport.size_px().y));
+}
+
+shared::ViewData view_data(const draw::View &view)
+{
+  const glm::mat4 world_from_view(glm::inverse(glm::dmat4(view.view_from_world())));
+  shared::ViewData data{};
+  data.clip_from_world = view.clip_from_world();
+  data.position_ws = glm::vec3(world_from_view[3]);
+  data.is_perspective = view.is_perspective() ? 1 : 0;
+  data.back_ws = glm::normalize(glm::vec3(world_from_view[2]));
+  return data;
 }
 
 namespace {
@@ -50,36 +63,62 @@ Need need_film(const FrameState &state)
   if (state.data.is_seen) {
     return {true, fmt::format("{} samples a pixel", state.settings.sample_count)};
   }
-  return {state.data.samples_drawn == 0, "nothing is seen: the picture is cleared"};
+  return {state.data.sample_index == 0, "nothing is seen: the picture is cleared"};
+}
+
+Need need_picture_depth(const FrameState &state)
+{
+  if (!state.data.target.depth) {
+    return {false, "no target takes depth"};
+  }
+  if (state.settings.sample_count == 1) {
+    return {false, "the one sample's depth is the picture's"};
+  }
+  return !state.data.is_seen            ? Need{false, nothing_seen}
+         : state.data.has_picture_depth ? Need{false, "it is up to date"}
+                                        : Need{true, "the target takes depth, without the samples' offsets"};
 }
 
 Need need_tonemap(const FrameState &state)
 {
-  if (!state.settings.has_display) {
-    return {false, "only radiance was asked for"};
+  const draw::Target &target = state.data.target;
+  if (!target) {
+    return {false, "no target was given"};
   }
-  return {true, state.data.is_seen ? "a display picture was asked for" : "nothing is seen: the picture is cleared"};
+  if (state.data.is_seen) {
+    return {true, "a target was given"};
+  }
+  return target.composition == draw::Composition::Over
+             ? Need{false, nothing_seen}
+             : Need{true, "nothing is seen: the target's rectangle is cleared"};
 }
 
-void record_passes(const FrameStep &step, FrameSample &sample, gpu::CommandList &list,
-                   const gpu::Framebuffer &framebuffer, const gpu::PassActions &actions)
+/** Appends the calls of \a step's passes that \a view sees. */
+void record_passes(const FrameStep &step, FrameSample &sample, const draw::View &view, gpu::CommandList &list)
 {
   Data &data = sample.data;
   StepRecord &record = data.frame[std::size_t(&step - frame_steps().data())];
-  list.begin_pass(step.name, framebuffer, actions);
   // Of a picture in which nothing is seen, clearing is all that is left.
   for (std::size_t i = 0; data.is_seen && i < step.passes.size(); i++) {
-    const draw::RecordCounts counts = ((*data.psl).*step.passes[i].pass).record(sample.sample_view, list);
+    const draw::RecordCounts counts = ((*data.psl).*step.passes[i].pass).record(view, list);
     record.passes[i].runs += counts.drawn > 0 ? 1 : 0;
     record.passes[i].counts.drawn += counts.drawn;
     record.passes[i].counts.culled += counts.culled;
   }
+}
+
+/** A render pass that draws what the sample's view sees. */
+void record_pass(const FrameStep &step, FrameSample &sample, gpu::CommandList &list,
+                 const gpu::Framebuffer &framebuffer, const gpu::PassActions &actions)
+{
+  list.begin_pass(step.name, framebuffer, actions);
+  record_passes(step, sample, sample.sample_view, list);
   list.end_pass();
 }
 
 void record_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
-  record_passes(step, sample, list, sample.data.fbl.depth_fb, {});
+  record_pass(step, sample, list, sample.data.fbl.depth_fb, {});
 }
 
 void record_shadows(const FrameStep & /*step*/, FrameSample &sample, gpu::CommandList &list)
@@ -92,25 +131,40 @@ void record_shadows(const FrameStep & /*step*/, FrameSample &sample, gpu::Comman
 
 void record_lit(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
-  record_passes(step, sample, list, sample.data.fbl.main_fb, {.depth_load = gpu::LoadAction::Load});
+  record_pass(step, sample, list, sample.data.fbl.main_fb, {.depth_load = gpu::LoadAction::Load});
 }
 
 void record_film(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
   StorageList &stl = sample.data.stl;
   const FilmWeights weights =
-      film_weights(sample.data.samples_drawn, sample.settings.sample_count, sample.settings.seed, stl.film_weight_sum);
+      film_weights(sample.data.sample_index, sample.settings.sample_count, sample.settings.seed, stl.film_weight_sum);
   stl.film_columns = glm::vec4(weights.columns, 0.0F);
   stl.film_rows = glm::vec4(weights.rows, 0.0F);
-  const gpu::LoadAction load = sample.data.samples_drawn == 0 ? gpu::LoadAction::Clear : gpu::LoadAction::Load;
-  record_passes(step, sample, list, sample.data.fbl.film_fb, {.color_load = load});
+  const gpu::LoadAction load = sample.data.sample_index == 0 ? gpu::LoadAction::Clear : gpu::LoadAction::Load;
+  record_pass(step, sample, list, sample.data.fbl.film_fb, {.color_load = load});
+}
+
+void record_picture_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
+{
+  const shared::ViewData block = view_data(sample.view);
+  list.update(sample.data.stl.view_block, 0, std::as_bytes(std::span(&block, 1)));
+  list.begin_pass(step.name, sample.data.fbl.picture_depth_fb, {});
+  record_passes(step, sample, sample.view, list);
+  list.end_pass();
 }
 
 void record_tonemap(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
   // Black is black whatever the transform, and has no alpha: a picture of nothing takes a clear.
-  const gpu::LoadAction load = sample.data.is_seen ? gpu::LoadAction::DontCare : gpu::LoadAction::Clear;
-  record_passes(step, sample, list, sample.data.fbl.display_fb, {.color_load = load});
+  const gpu::LoadAction load = sample.data.is_seen ? gpu::LoadAction::Load : gpu::LoadAction::Clear;
+  const draw::Target &target = sample.data.target;
+  draw::begin_pass(list, step.name, target, sample.viewport.size_px(),
+                   {.color_load = load,
+                    .depth_load = target.depth ? load : gpu::LoadAction::Load,
+                    .clear_depth = sample.data.stl.tonemap.depth.background});
+  record_passes(step, sample, sample.view, list);
+  list.end_pass();
 }
 
 constexpr std::array<FramePass, 2> depth_passes = {{
@@ -134,18 +188,19 @@ constexpr std::array<FramePass, 1> film_passes = {
     {{&PassList::film_pass, "samples", [](const FrameState &) -> std::string { return nothing_seen; }}}};
 
 constexpr std::array<FramePass, 1> tonemap_passes = {
-    {{&PassList::tonemap, "a display picture was asked for",
-      [](const FrameState &) -> std::string { return nothing_seen; }}}};
+    {{&PassList::tonemap, "a target was given", [](const FrameState &) -> std::string { return nothing_seen; }}}};
 
-using Names = std::array<std::string_view, 4>;
-constexpr Names shadow_targets = {"shadow_cubes", "shadow_maps", "shadow_distance_cube", "shadow_esm"};
-constexpr Names pictures = {"depth", "radiance", "film", "display"};
+constexpr std::array<std::string_view, 4> shadow_targets = {"shadow_cubes", "shadow_maps", "shadow_distance_cube",
+                                                            "shadow_esm"};
+constexpr std::array<std::string_view, 5> pictures = {"depth", "radiance", "film", "picture_depth", "target"};
 constexpr std::span depth_only = std::span(pictures).first(1);
 constexpr std::span radiance_only = std::span(pictures).subspan(1, 1);
 constexpr std::span film_only = std::span(pictures).subspan(2, 1);
-constexpr std::span display_only = std::span(pictures).subspan(3, 1);
+constexpr std::span picture_depth_only = std::span(pictures).subspan(3, 1);
+constexpr std::span picture_only = std::span(pictures).subspan(2, 2);
+constexpr std::span target_only = std::span(pictures).subspan(4, 1);
 
-constexpr std::array<FrameStep, 5> steps = {{
+constexpr std::array<FrameStep, 6> steps = {{
     // Before the shadows: cascades may be fitted to the depths.
     {"depth_prepass", FrameStep::When::EachSample, need_depth, {}, depth_only, depth_passes, record_depth},
     {"shadows",
@@ -158,7 +213,15 @@ constexpr std::array<FrameStep, 5> steps = {{
      [](Data &data) { data.stl.shadows->submitted(); }},
     {"lit", FrameStep::When::EachSample, need_lit, shadow_targets, radiance_only, lit_passes, record_lit},
     {"film", FrameStep::When::EachSample, need_film, radiance_only, film_only, film_passes, record_film},
-    {"tonemap", FrameStep::When::LastSample, need_tonemap, film_only, display_only, tonemap_passes, record_tonemap},
+    {"picture_depth",
+     FrameStep::When::EachTarget,
+     need_picture_depth,
+     {},
+     picture_depth_only,
+     depth_passes,
+     record_picture_depth,
+     [](Data &data) { data.has_picture_depth = true; }},
+    {"tonemap", FrameStep::When::EachTarget, need_tonemap, picture_only, target_only, tonemap_passes, record_tonemap},
 }};
 
 /** The device's time for what \a work submits, added to the step's. */

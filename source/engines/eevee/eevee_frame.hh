@@ -3,6 +3,8 @@
 
 #include "eevee_engine.hh"
 
+#include "draw_view_shared.h"
+
 #include <span>
 
 /**
@@ -49,8 +51,8 @@ struct FramePass {
 
 struct FrameStep {
   std::string_view name;
-  /** When in the picture it is drawn. */
-  enum class When { EachSample, LastSample } when;
+  /** Whether it is drawn for samples of the picture, or for draws that have a target. */
+  enum class When { EachSample, EachTarget } when;
   /** Decided before each sample in which it may be drawn. */
   Need (*need)(const FrameState &);
   /** Names of the targets that it reads and writes, as reports have them. */
@@ -60,7 +62,7 @@ struct FrameStep {
   std::span<const FramePass> passes;
   /** Appends the step's render passes to \a list. */
   void (*record)(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);
-  /** Called once the list is submitted, for steps whose results later frames rely on; nullptr: nothing to do. */
+  /** Called once the list is submitted, for steps whose results are relied on later; nullptr: nothing to do. */
   void (*submitted)(Data &data) = nullptr;
 };
 
@@ -88,6 +90,9 @@ void draw_steps(FrameSample &sample, FrameStep::When when);
 
 /** Edge of a pixel at distance 1, or, orthographic, anywhere, metres. */
 [[nodiscard]] float pixel_size(const draw::View &view, const draw::Viewport &viewport);
+
+/** Content of view_block. */
+[[nodiscard]] shared::ViewData view_data(const draw::View &view);
 
 inline constexpr const char *nothing_seen = "nothing is seen";
 

@@ -9,7 +9,7 @@ namespace gnomon::eevee {
 
 namespace {
 
-constexpr std::array<FeatureDefine, 11> feature_table = {
+constexpr std::array<FeatureDefine, 12> feature_table = {
     {{Feature::Light, "USE_LIGHT", "something shines"},
      {Feature::Punctual, "USE_PUNCTUAL", "a point, spot or area lamp shines"},
      {Feature::Specular, "USE_SPECULAR", "a material reflects specularly"},
@@ -20,7 +20,8 @@ constexpr std::array<FeatureDefine, 11> feature_table = {
      {Feature::BaseColorTexture, "USE_BASE_COLOR_TEXTURE", "a material's base colour has a texture"},
      {Feature::AlphaMask, "USE_ALPHA_MASK", "a texture's alpha cuts a material out"},
      {Feature::ShadowEvsm, "USE_SHADOW_EVSM", "a point lamp or a spot casts exponential variance shadows"},
-     {Feature::LampShape, "USE_LAMP_SHAPE", "a lamp has an extent, or a spot's cone is an ellipse"}}};
+     {Feature::LampShape, "USE_LAMP_SHAPE", "a lamp has an extent, or a spot's cone is an ellipse"},
+     {Feature::TargetDepth, "USE_TARGET_DEPTH", "the target takes depth"}}};
 
 /** Features that make no difference without light. */
 constexpr Feature light_features = Feature::Light | Feature::Punctual | Feature::Specular | Feature::ShadowCube |
@@ -48,7 +49,7 @@ constexpr std::array<ShaderDeclaration, 17> declarations = {{
     {ShaderId::Film, "eevee_film", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_film_frag.glsl", Feature::None,
      Feature::None, "sum of several samples a pixel"},
     {ShaderId::Tonemap, "eevee_tonemap", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_tonemap_frag.glsl",
-     Feature::None, Feature::None, "radiance as a display shows it"},
+     Feature::TargetDepth, Feature::None, "the picture as its target stores it"},
     {ShaderId::EsmDistance, "eevee_esm_distance", "draw/draw_fullscreen_vert.glsl", "",
      "eevee/eevee_esm_distance_frag.glsl", Feature::None, Feature::None, "distances from a lamp on an octahedral map"},
     {ShaderId::EsmDisk4, "eevee_esm_disk4", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_esm_disk_frag.glsl",

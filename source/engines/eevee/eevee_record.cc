@@ -175,13 +175,54 @@ void Engine::record_film(draw::Viewport &viewport)
   film.constant_ref("column_weights", &stl.film_columns);
   film.constant_ref("row_weights", &stl.film_rows);
   film.call_procedural();
-  if (settings_.has_display) {
-    draw::ShadingGroup &tonemap = data.psl->tonemap.group(shaders_.get(viewport.device(), ShaderId::Tonemap));
-    tonemap.bind_texture("radiance_texture", data.txl.film, data.txl.nearest);
-    tonemap.constant("view_transform", int(settings_.view_transform));
-    tonemap.constant("exposure_scale", std::exp2(settings_.exposure));
-    tonemap.call_procedural();
+}
+
+/** For the target at hand, unless the pass was recorded for one like it. */
+void Engine::record_tonemap(draw::Viewport &viewport)
+{
+  Data &data = viewport.engine_data<Data>(*this);
+  StorageList &stl = data.stl;
+  TextureList &txl = data.txl;
+  gpu::Device &device = viewport.device();
+  const draw::Target &target = data.target;
+  const bool has_own_depth = target.depth && settings_.sample_count > 1;
+  if (has_own_depth && !txl.picture_depth) {
+    txl.picture_depth = create_target(device, "picture_depth", gpu::Format::Depth32F, viewport.size_px());
+    data.fbl.picture_depth_fb =
+        device.create_framebuffer({.name = "picture_depth_fb", .colors = {}, .depth = {&txl.picture_depth}});
   }
+  const gpu::Texture &depth_texture = has_own_depth ? txl.picture_depth : viewport.depth_texture();
+  const bool is_over = target.composition == draw::Composition::Over;
+  State state = is_over ? State::BlendOver : State::None;
+  if (target.depth) {
+    state = state | State::WriteDepth;
+    if (is_over) {
+      state = state | (stl.tonemap.depth.is_near_smaller ? State::DepthLessEqual : State::DepthNearerEqual);
+    }
+  }
+  const TonemapKey key{state, target.depth ? depth_texture.id() : 0};
+  if (stl.tonemap_recorded == key) {
+    return;
+  }
+  stl.tonemap_recorded.reset();
+  data.psl->tonemap.clear();
+  draw::ShadingGroup &tonemap = data.psl->tonemap.group(
+      shaders_.get(device, ShaderId::Tonemap, target.depth ? Feature::TargetDepth : Feature::None));
+  tonemap.state_enable(state);
+  tonemap.bind_texture("radiance_texture", txl.film, txl.nearest);
+  if (target.depth) {
+    tonemap.bind_texture("depth_texture", depth_texture, txl.nearest);
+  }
+  tonemap.constant_ref("origin_px", &stl.tonemap.origin_px);
+  tonemap.constant_ref("view_transform", &stl.tonemap.view_transform);
+  tonemap.constant_ref("encoding", &stl.tonemap.encoding);
+  tonemap.constant_ref("exposure_scale", &stl.tonemap.exposure_scale);
+  tonemap.constant_ref("sample_scale", &stl.tonemap.sample_scale);
+  tonemap.constant_ref("depth_scale", &stl.tonemap.depth.scale);
+  tonemap.constant_ref("background_depth", &stl.tonemap.depth.background);
+  tonemap.constant_ref("is_over", &stl.tonemap.is_over);
+  tonemap.call_procedural();
+  stl.tonemap_recorded = key;
 }
 
 void Engine::record(draw::Viewport &viewport)
@@ -232,6 +273,7 @@ void Engine::record_passes(draw::Viewport &viewport)
   StorageList &stl = data.stl;
   data.psl = std::make_unique<PassList>(scene_.objects());
   stl.pass_recordings++;
+  stl.tonemap_recorded.reset();
   stl.groups.clear();
   stl.is_mirrored.assign(scene_.objects().index_end(), false);
   for (const draw::ObjectIndex object : stl.objects) {

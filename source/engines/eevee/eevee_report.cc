@@ -20,6 +20,8 @@ const FrameNode *find(const FrameNode &node, std::string_view what)
 
 namespace {
 
+constexpr const char *no_target = "no target was given";
+
 /** Everything the nodes are made from. */
 struct Source {
   render_scene::RenderScene &render_scene;
@@ -87,6 +89,9 @@ std::set<scene::Handle<scene::Image>> read_images(const Source &source)
 
 std::string why_no_feature(const Source &source, Feature feature)
 {
+  if (feature == Feature::TargetDepth) {
+    return source.data.target ? "the target takes no depth" : no_target;
+  }
   if (feature == Feature::BaseColorTexture && source.data.is_recorded && read_images(source).empty()) {
     return "no material that is drawn has a texture";
   }
@@ -126,7 +131,7 @@ std::string why_no_program(const Source &source, ShaderId id)
       return source.data.shared->tinted_light
                  ? nothing_seen
                  : (source.settings.has_cascade_tint ? "no sun has a shadow" : "not asked for");
-    case ShaderId::Tonemap: return source.settings.has_display ? nothing_seen : "only radiance was asked for";
+    case ShaderId::Tonemap: return source.data.target ? nothing_seen : no_target;
     default: break;
   }
   if (!source.data.is_recorded) {
@@ -284,7 +289,10 @@ FrameNode target_nodes(const Source &source)
   };
   const std::string not_asked = "not asked for";
   add(txl.film, "film", "the picture", "");
-  add(txl.display, "display", "a display picture was asked for", "only radiance was asked for");
+  targets.push_back({.what = "target",
+                     .is_made = bool(source.data.target),
+                     .why = source.data.target ? "the host's, of the last draw" : no_target});
+  add(txl.picture_depth, "picture_depth", "the target takes depth", "no target takes the depth of several samples");
   if (source.viewport.has_depth_texture()) {
     add(source.viewport.depth_texture(), "depth", "each pixel is lit once", "");
   }
@@ -557,8 +565,7 @@ Report Engine::report(draw::Viewport &viewport) const
        : shared.tinted_light       ? nothing_seen
                                    : "no sun has a shadow");
   part("film", is_recorded, fmt::format("{} samples a pixel", settings_.sample_count), nothing_seen);
-  part("tonemap", !data.psl->tonemap.is_empty(), "a display picture was asked for",
-       settings_.has_display ? nothing_seen : "only radiance was asked for");
+  part("tonemap", !data.psl->tonemap.is_empty(), "a target was given", data.target ? nothing_seen : no_target);
   part("programs", shaders_.size() > 0, fmt::format("{} programs", shaders_.size()), nothing_seen);
   return report;
 }

@@ -17,7 +17,7 @@ draw::View SceneRenderer::view_of(const scene::PlacedCamera &camera) const
   return eevee::view_of(render_scene_.relative(camera), viewport_.size_px());
 }
 
-void SceneRenderer::draw_sample(const scene::PlacedCamera &camera)
+bool SceneRenderer::draw_sample(const scene::PlacedCamera &camera, const draw::Target &target)
 {
   const glm::dvec3 origin_ws =
       render_scene::origin_near(glm::dvec3(camera.world_from_camera[3]), render_scene_.origin_ws());
@@ -26,13 +26,15 @@ void SceneRenderer::draw_sample(const scene::PlacedCamera &camera)
     sync();
   }
   const std::array<draw::Engine *, 1> engines = {&engine_};
-  viewport_.draw(engines, view_of(camera));
+  viewport_.draw(engines, view_of(camera), target);
+  return engine_.is_complete(viewport_);
 }
 
-bool SceneRenderer::draw(const scene::PlacedCamera &camera, const Progress &progress)
+bool SceneRenderer::draw(const scene::PlacedCamera &camera, const Progress &progress, const draw::Target &target)
 {
+  viewport_.restart();
   for (int i = 0; i < settings_.sample_count; i++) {
-    draw_sample(camera);
+    draw_sample(camera, i + 1 == settings_.sample_count ? target : draw::Target());
     if (progress && !progress(i + 1)) {
       return i + 1 == settings_.sample_count;
     }

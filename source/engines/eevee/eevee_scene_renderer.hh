@@ -38,12 +38,19 @@ class SceneRenderer {
     viewport_.resize(size_px);
   }
 
-  /** Draw the next sample of the picture that \a camera sees. */
-  void draw_sample(const scene::PlacedCamera &camera);
+  /**
+   * Draw the next sample of the picture that \a camera sees, if it needs more, and write the picture so far to
+   * \a target. The picture begins anew when the camera or anything that sync takes note of changes: a host calls this
+   * once a frame. \return whether the picture is complete, so that further calls would change nothing
+   */
+  bool draw_sample(const scene::PlacedCamera &camera, const draw::Target &target = {});
   /** Called after each sample with the samples drawn so far; false: draw no more. May be empty. */
   using Progress = std::function<bool(int samples_drawn)>;
-  /** Draw all samples of a picture. \return whether it is whole: \a progress stopped it otherwise. */
-  bool draw(const scene::PlacedCamera &camera, const Progress &progress = {});
+  /**
+   * Draw all samples of a picture anew and write it to \a target.
+   * \return whether it is whole: \a progress stopped it otherwise, and the target is as it was
+   */
+  bool draw(const scene::PlacedCamera &camera, const Progress &progress = {}, const draw::Target &target = {});
 
   /** What \a camera sees, in the coordinates of the render scene. */
   [[nodiscard]] draw::View view_of(const scene::PlacedCamera &camera) const;

@@ -9,7 +9,7 @@ namespace gnomon::eevee {
 namespace {
 
 /** Features that make a difference without light, too. */
-constexpr Feature material_features = Feature::BaseColorTexture | Feature::AlphaMask;
+constexpr Feature unlit_features = Feature::BaseColorTexture | Feature::AlphaMask | Feature::TargetDepth;
 
 /** The interface of a variant from the table that the build generated. */
 gpu::ShaderReflection generated_reflection(ShaderId id, Feature features)
@@ -34,7 +34,7 @@ void ShaderCache::set_pcf(const PcfKernel &pcf)
 const gpu::Shader &ShaderCache::get(gpu::Device &device, ShaderId id, Feature features)
 {
   const ShaderDeclaration &declaration = shader_declarations()[std::size_t(id)];
-  const Feature reachable = has(features, Feature::Light) ? features : features & material_features;
+  const Feature reachable = has(features, Feature::Light) ? features : features & unlit_features;
   const Key key(id, reachable & declaration.features);
   const auto found = shaders_.find(key);
   if (found != shaders_.end()) {

@@ -153,6 +153,10 @@ class GlDevice final : public Device {
   void write_stream(const CommandList &list);
   void begin_pass(const CommandList::PassInfo &pass);
   void end_pass();
+  /** The render target of \a pass. Valid until the next call. */
+  [[nodiscard]] const GlFramebuffer &framebuffer_of(const CommandList::PassInfo &pass);
+  /** In builds with assertions, \throws Error where the host's framebuffer cannot be drawn into. */
+  void check_host_framebuffer(const CommandList::PassInfo &pass);
   void set_state(State state);
   void bind_range(const Command &command);
   void bind_texture(const Command &command);
@@ -192,6 +196,8 @@ class GlDevice final : public Device {
   /** The pass between begin_pass and end_pass. */
   const CommandList::PassInfo *pass_ = nullptr;
   GLuint color_count_ = 0;
+  /** Of the pass, where it draws into one. */
+  GlFramebuffer host_framebuffer_;
   const GlProgram *program_ = nullptr;
   /** By unit: GL_NONE, GL_TEXTURE for a texture of the list, or the target of the bound dummy. */
   std::vector<GLenum> bound_textures_;

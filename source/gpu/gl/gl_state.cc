@@ -210,6 +210,7 @@ SavedDrawState::SavedDrawState(const UsedSlots &slots)
 {
   glGetBooleanv(GL_DEPTH_WRITEMASK, &depth_mask_);
   glGetFloati_v(GL_VIEWPORT, 0, viewport_.data());
+  glGetIntegeri_v(GL_SCISSOR_BOX, 0, scissor_box_.data());
   glGetDoublei_v(GL_DEPTH_RANGE, 0, depth_range_.data());
   const GLint viewport_count = integer(GL_MAX_VIEWPORTS);
   for (GLint i = 0; i < viewport_count; i++) {
@@ -284,6 +285,7 @@ SavedDrawState::~SavedDrawState()
     }
   }
   glViewportIndexedfv(0, viewport_.data());
+  glScissorIndexedv(0, scissor_box_.data());
   glDepthRangeIndexed(0, depth_range_[0], depth_range_[1]);
   glClipControl(GLenum(clip_origin_), GLenum(clip_depth_));
   glDepthFunc(GLenum(depth_function_));

@@ -74,9 +74,9 @@ void set_draw_defaults();
  *
  * This is: program, vertex array, draw framebuffer; the bindings of the indirect, uniform and storage buffers, with
  * their indexed bindings at the used slots; texture (2D, 2D array) and sampler of the used units; active texture;
- * viewport and depth range of viewport 0; scissor tests; clip control; the capabilities of gl_state.cc; blending and
- * colour mask of the used draw buffers; depth function and mask; cull face, front face, polygon mode; provoking vertex.
- * Everything else is not changed by a submit.
+ * viewport, scissor box and depth range of viewport 0; scissor tests; clip control; the capabilities of gl_state.cc;
+ * blending and colour mask of the used draw buffers; depth function and mask; cull face, front face, polygon mode;
+ * provoking vertex. Everything else is not changed by a submit.
  */
 class SavedDrawState {
  public:
@@ -121,6 +121,7 @@ class SavedDrawState {
   GLint uniform_buffer_ = 0;
   GLint storage_buffer_ = 0;
   std::array<GLfloat, 4> viewport_{};
+  std::array<GLint, 4> scissor_box_{};
   std::array<GLdouble, 2> depth_range_{};
   GLint clip_origin_ = 0;
   GLint clip_depth_ = 0;

@@ -28,7 +28,10 @@ void GlDevice::collect_slots(const CommandList &list)
   for (const Command &command : list.commands()) {
     switch (command.kind) {
       case CommandKind::BeginPass:
-        used_slots_.color_count = std::max(used_slots_.color_count, framebuffers_.at(command.id).color_count);
+        // Of a host's framebuffer, the draw buffers above the first are masked.
+        used_slots_.color_count =
+            std::max(used_slots_.color_count, command.id == 0 ? GLuint(limits().color_attachment_max)
+                                                              : framebuffers_.at(command.id).color_count);
         break;
       case CommandKind::SetShader:
         for (const DeclaredSampler &sampler : programs_.at(command.id).samplers) {
@@ -135,9 +138,54 @@ void GlDevice::write_stream(const CommandList &list)
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, stream_.buffer());
 }
 
+const GlDevice::GlFramebuffer &GlDevice::framebuffer_of(const CommandList::PassInfo &pass)
+{
+  if (!pass.host_framebuffer) {
+    return framebuffers_.at(pass.framebuffer);
+  }
+  host_framebuffer_.name = pass.host_framebuffer->name;
+  host_framebuffer_.color_count = 1;
+  host_framebuffer_.has_depth = true;
+  host_framebuffer_.size_px = pass.host_framebuffer->size_px;
+  return host_framebuffer_;
+}
+
+void GlDevice::check_host_framebuffer([[maybe_unused]] const CommandList::PassInfo &pass)
+{
+#ifndef NDEBUG
+  const GLuint name = pass.host_framebuffer->name;
+  const auto refuse = [&](std::string_view why) {
+    throw Error("pass '{}': framebuffer {} of the host {}", pass.name, name, why);
+  };
+  if (name != 0 && !glIsFramebuffer(name)) {
+    refuse("does not exist in the current context");
+  }
+  if (glCheckNamedFramebufferStatus(name, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    refuse("is not complete");
+  }
+  // Drivers disagree on the encoding of the default framebuffer.
+  if (name != 0 && pass.actions.is_srgb_encoded) {
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name);
+    GLint buffer = GL_NONE;
+    glGetIntegerv(GL_DRAW_BUFFER0, &buffer);
+    GLint encoding = GL_LINEAR;
+    if (buffer != GL_NONE) {
+      glGetNamedFramebufferAttachmentParameteriv(name, GLenum(buffer), GL_FRAMEBUFFER_ATTACHMENT_COLOR_ENCODING,
+                                                 &encoding);
+    }
+    if (encoding != GL_SRGB) {
+      refuse("has no attachment of an sRGB format, which would encode the colours");
+    }
+  }
+#endif
+}
+
 void GlDevice::begin_pass(const CommandList::PassInfo &pass)
 {
-  const GlFramebuffer &framebuffer = framebuffers_.at(pass.framebuffer);
+  if (pass.host_framebuffer) {
+    check_host_framebuffer(pass);
+  }
+  const GlFramebuffer &framebuffer = framebuffer_of(pass);
   if (is_debug_) {
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, GLsizei(std::min<std::size_t>(pass.name.size(), 255)),
                      pass.name.data());
@@ -145,36 +193,48 @@ void GlDevice::begin_pass(const CommandList::PassInfo &pass)
   pass_ = &pass;
   color_count_ = framebuffer.color_count;
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer.name);
-  const glm::ivec2 viewport_px =
-      pass.actions.viewport_px == glm::ivec2(0) ? framebuffer.size_px : pass.actions.viewport_px;
-  glViewportIndexedf(0, 0.0F, 0.0F, float(viewport_px.x), float(viewport_px.y));
+  const PassActions &actions = pass.actions;
+  const Rectangle viewport = actions.viewport.is_whole() ? Rectangle{{0, 0}, framebuffer.size_px} : actions.viewport;
+  glViewportIndexedf(0, float(viewport.origin_px.x), float(viewport.origin_px.y), float(viewport.size_px.x),
+                     float(viewport.size_px.y));
+  if (!actions.scissor.is_whole()) {
+    glScissorIndexed(0, actions.scissor.origin_px.x, actions.scissor.origin_px.y, actions.scissor.size_px.x,
+                     actions.scissor.size_px.y);
+    glEnablei(GL_SCISSOR_TEST, 0);
+  }
+  set_capability(GL_FRAMEBUFFER_SRGB, actions.is_srgb_encoded);
+  for (GLuint i = 1; pass.host_framebuffer && i < GLuint(limits().color_attachment_max); i++) {
+    glColorMaski(i, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  }
   // Clears obey the write masks.
   set_state(State::WriteColor | State::WriteDepth);
   std::vector<GLenum> discarded;
   for (GLuint i = 0; i < framebuffer.color_count; i++) {
-    if (pass.actions.color_load == LoadAction::Clear) {
-      glClearNamedFramebufferfv(framebuffer.name, GL_COLOR, GLint(i), &pass.actions.clear_color[0]);
+    if (actions.color_load == LoadAction::Clear) {
+      glClearNamedFramebufferfv(framebuffer.name, GL_COLOR, GLint(i), &actions.clear_color[0]);
     }
-    else if (pass.actions.color_load == LoadAction::DontCare) {
+    else if (actions.color_load == LoadAction::DontCare) {
       discarded.push_back(GL_COLOR_ATTACHMENT0 + i);
     }
   }
   if (framebuffer.has_depth) {
-    if (pass.actions.depth_load == LoadAction::Clear) {
-      glClearNamedFramebufferfv(framebuffer.name, GL_DEPTH, 0, &pass.actions.clear_depth);
+    if (actions.depth_load == LoadAction::Clear) {
+      glClearNamedFramebufferfv(framebuffer.name, GL_DEPTH, 0, &actions.clear_depth);
     }
-    else if (pass.actions.depth_load == LoadAction::DontCare) {
+    else if (actions.depth_load == LoadAction::DontCare) {
       discarded.push_back(GL_DEPTH_ATTACHMENT);
     }
   }
-  if (!discarded.empty()) {
+  if (!discarded.empty() && !pass.host_framebuffer) {
     glInvalidateNamedFramebufferData(framebuffer.name, GLsizei(discarded.size()), discarded.data());
   }
 }
 
 void GlDevice::end_pass()
 {
-  const GlFramebuffer &framebuffer = framebuffers_.at(pass_->framebuffer);
+  const GlFramebuffer &framebuffer = framebuffer_of(*pass_);
+  glDisable(GL_FRAMEBUFFER_SRGB);
+  glDisablei(GL_SCISSOR_TEST, 0);
   std::vector<GLenum> discarded;
   for (GLuint i = 0; i < framebuffer.color_count && pass_->actions.color_store == StoreAction::DontCare; i++) {
     discarded.push_back(GL_COLOR_ATTACHMENT0 + i);
@@ -182,7 +242,7 @@ void GlDevice::end_pass()
   if (framebuffer.has_depth && pass_->actions.depth_store == StoreAction::DontCare) {
     discarded.push_back(GL_DEPTH_ATTACHMENT);
   }
-  if (!discarded.empty()) {
+  if (!discarded.empty() && !pass_->host_framebuffer) {
     glInvalidateNamedFramebufferData(framebuffer.name, GLsizei(discarded.size()), discarded.data());
   }
   if (is_debug_) {
@@ -195,9 +255,12 @@ void GlDevice::set_state(State state)
 {
   glDepthMask(GLboolean(has(state, State::WriteDepth)));
   // Depth is written only while the test is enabled.
-  const bool is_tested = has(state, State::DepthNearerEqual | State::DepthEqual);
-  set_capability(GL_DEPTH_TEST, is_tested || has(state, State::WriteDepth));
-  glDepthFunc(!is_tested ? GL_ALWAYS : has(state, State::DepthEqual) ? GL_EQUAL : GL_GEQUAL);
+  const GLenum function = has(state, State::DepthEqual)         ? GL_EQUAL
+                          : has(state, State::DepthNearerEqual) ? GL_GEQUAL
+                          : has(state, State::DepthLessEqual)   ? GL_LEQUAL
+                                                                : GL_ALWAYS;
+  set_capability(GL_DEPTH_TEST, function != GL_ALWAYS || has(state, State::WriteDepth));
+  glDepthFunc(function);
   set_capability(GL_CULL_FACE, has(state, State::CullBack | State::CullFront));
   glCullFace(has(state, State::CullFront) ? GL_FRONT : GL_BACK);
   glFrontFace(has(state, State::FrontClockwise) ? GL_CW : GL_CCW);
@@ -205,15 +268,16 @@ void GlDevice::set_state(State state)
   // By draw buffer, so that a host's state of the other draw buffers is left alone.
   const auto mask = GLboolean(has(state, State::WriteColor));
   const bool is_multiplied = has(state, State::BlendMultiply);
+  const GLenum stored = is_multiplied ? GL_ZERO : has(state, State::BlendOver) ? GL_ONE_MINUS_SRC_ALPHA : GL_ONE;
   for (GLuint i = 0; i < color_count_; i++) {
     glColorMaski(i, mask, mask, mask, mask);
-    if (is_multiplied || has(state, State::BlendAdd)) {
+    if (has(state, State::BlendAdd | State::BlendMultiply | State::BlendOver)) {
       glEnablei(GL_BLEND, i);
     }
     else {
       glDisablei(GL_BLEND, i);
     }
-    glBlendFunci(i, is_multiplied ? GL_DST_COLOR : GL_ONE, is_multiplied ? GL_ZERO : GL_ONE);
+    glBlendFunci(i, is_multiplied ? GL_DST_COLOR : GL_ONE, stored);
     glBlendEquationi(i, GL_FUNC_ADD);
   }
 }

@@ -205,16 +205,19 @@ class Renderer {
     render_scene.update();
     viewport.sync(engines, render_scene.objects());
   }
-  void draw(const scene::PlacedCamera &camera)
+  /** All samples of a picture, which is then written to \a target. */
+  void draw(const scene::PlacedCamera &camera, const draw::Target &target = {})
   {
     const std::array<draw::Engine *, 1> engines = {&engine};
+    viewport.restart();
     for (int i = 0; i < settings_.sample_count; i++) {
-      viewport.draw(engines, eevee::view_of(render_scene.relative(camera), viewport.size_px()));
+      viewport.draw(engines, eevee::view_of(render_scene.relative(camera), viewport.size_px()),
+                    i + 1 == settings_.sample_count ? target : draw::Target());
     }
   }
-  Picture picture(const scene::PlacedCamera &camera)
+  Picture picture(const scene::PlacedCamera &camera, const draw::Target &target = {})
   {
-    draw(camera);
+    draw(camera, target);
     return {viewport.size_px(), gpu::read_as<glm::vec4>(viewport.device(), engine.radiance(viewport))};
   }
 

@@ -370,12 +370,13 @@ TEST_F(EngineGpuTest, RecordsTheSamePassesAsTheNullBackend)
   add_square({0, 0, 0}, {0, 0, 1}, 10.0F, square);
   test::add_lamp(scene, scene::LampKind::Point, {0, 0, 2}, {0, 0, -1}, 1.0F);
   test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 2}, {0, 0, -1}, 1.0F);
-  const Settings settings{.has_display = true};
-  Renderer gl(*device, scene, {16, 16}, settings);
   const auto null_device = gpu::create_null_device();
-  Renderer null(*null_device, scene, {16, 16}, settings);
-  gl.draw(above);
-  null.draw(above);
+  const draw::TargetTexture gl_target(*device, "display", gpu::Format::RGBA8, {16, 16});
+  const draw::TargetTexture null_target(*null_device, "display", gpu::Format::RGBA8, {16, 16});
+  Renderer gl(*device, scene, {16, 16});
+  Renderer null(*null_device, scene, {16, 16});
+  gl.draw(above, gl_target.target());
+  null.draw(above, null_target.target());
   const std::string passes = gl.engine.serialize_passes(gl.viewport);
   EXPECT_NE(passes.find("group eevee_lit"), std::string::npos) << passes;
   EXPECT_EQ(passes, null.engine.serialize_passes(null.viewport));
@@ -428,14 +429,18 @@ TEST_F(EngineGpuTest, DisplayIsTheViewTransformOfTheRadiance)
 {
   test::edit_material(scene, 0, [&](scene::Material &material) { material.emissive = {0.5F, 0.001F, 4.0F}; });
   add_square({0, 0, 0}, {0, 0, 1}, 10.0F, square);
-  for (const ViewTransform transform : {ViewTransform::Standard, ViewTransform::Raw}) {
-    Renderer renderer(*device, scene, {8, 8}, {.has_display = true, .view_transform = transform, .exposure = -1.0F});
-    renderer.draw(above);
-    const std::vector<std::byte> pixels = device->read(renderer.engine.display(renderer.viewport));
+  const draw::TargetTexture display(*device, "display", gpu::Format::RGBA8, {8, 8});
+  Renderer renderer(*device, scene, {8, 8});
+  for (const draw::ViewTransform transform : {draw::ViewTransform::Standard, draw::ViewTransform::Raw}) {
+    draw::Target target = display.target();
+    target.view_transform = transform;
+    target.exposure = -1.0F;
+    renderer.draw(above, target);
+    const std::vector<std::byte> pixels = device->read(display.texture());
     const auto encoded = [&](double linear) {
       const double v = std::clamp(linear, 0.0, 1.0);
       const double srgb = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055;
-      return 255.0 * (transform == ViewTransform::Raw ? v : srgb);
+      return 255.0 * (transform == draw::ViewTransform::Raw ? v : srgb);
     };
     // Within rounding: half a step of 255, and a little for the driver's pow.
     EXPECT_NEAR(double(pixels[0]), encoded(0.25), 0.6);

@@ -59,11 +59,11 @@ TEST_F(EngineTest, MakesWhatTheSceneAsksFor)
   test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 2}, {0, 0, -1}, 1.0F);
   test::add_object(scene, test::add_square_mesh(scene, scene.add(scene::Material())), glm::mat4(1.0F));
   Settings settings;
-  settings.has_display = true;
   settings.shadow.cube_size_px = 32;
   settings.shadow.map_size_px = 32;
+  const draw::TargetTexture display(*device, "display", gpu::Format::RGBA8, {16, 16});
   Renderer renderer(*device, scene, {16, 16}, settings);
-  renderer.draw(camera);
+  renderer.draw(camera, display.target());
   const Report report = renderer.engine.report(renderer.viewport);
   for (const char *what : {"light_block", "shadow_cubes", "shadow_pass", "depth_pass", "depth_pass_cull",
                            "specular in eevee_lit", "film", "tonemap"}) {
@@ -145,8 +145,9 @@ TEST_F(EngineTest, LeavesNothingBehind)
 {
   {
     test::add_lamp(scene, scene::LampKind::Point, {0, 0, 2}, {0, 0, -1}, 1.0F);
-    Renderer renderer(*device, scene, {16, 16}, {.has_display = true, .is_timed = true});
-    renderer.draw(camera);
+    const draw::TargetTexture display(*device, "display", gpu::Format::RGBA8, {16, 16});
+    Renderer renderer(*device, scene, {16, 16}, {.is_timed = true});
+    renderer.draw(camera, display.target());
     EXPECT_FALSE(device->live_resources().empty());
   }
   EXPECT_EQ(device->live_resources(), std::vector<std::string>());

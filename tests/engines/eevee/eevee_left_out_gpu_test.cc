@@ -28,11 +28,12 @@ class LeftOutGpuTest : public test::GpuDeviceTest {
 
 TEST_F(LeftOutGpuTest, APictureOfNothingIsThatOfTheBackgroundBesideSomething)
 {
-  Renderer renderer(*device, scene, {32, 32}, {.sample_count = 2, .has_display = true, .exposure = 1.0F});
+  const draw::TargetTexture display(*device, "display", gpu::Format::RGBA8, {32, 32});
+  Renderer renderer(*device, scene, {32, 32}, {.sample_count = 2});
   const auto bytes = [&](const scene::PlacedCamera &from) {
-    const test::Picture picture = renderer.picture(from);
+    const test::Picture picture = renderer.picture(from, display.target());
     EXPECT_EQ(picture.non_finite_count(), 0U);
-    return std::pair(picture, device->read(renderer.engine.display(renderer.viewport)));
+    return std::pair(picture, device->read(display.texture()));
   };
   // Whatever was in the pictures before.
   const auto [seen, seen_display] = bytes(camera);

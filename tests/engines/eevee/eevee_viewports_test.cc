@@ -35,6 +35,7 @@ class ViewportsTest : public testing::Test {
     const std::array<draw::Engine *, 1> engines = {&*engine};
     render_scene->update();
     viewport.sync(engines, render_scene->objects());
+    viewport.restart();
     viewport.draw(engines, view_of(render_scene->relative(camera), viewport.size_px()));
   }
   /** Of meshes, programs, lights, and shadows: everything but pictures and the blocks of a view. */

@@ -112,7 +112,7 @@ LayerMask record_depths(ShadowSlot &slot, LayerMask missing, bool is_empty_drawn
   const auto name = [&](std::string_view what) { return fmt::format("shadow of {}, {}", slot.lamp.name, what); };
   const ShadowRequest &given = slot.place.given;
   const std::string_view layer_name = given.array == ShadowArrayId::Maps ? "map" : "face";
-  const gpu::PassActions clear{.viewport_px = glm::ivec2(given.size_px)};
+  const gpu::PassActions clear{.viewport = {.size_px = glm::ivec2(given.size_px)}};
   gpu::PassActions keep = clear;
   keep.depth_load = gpu::LoadAction::Load;
   const LayerMask drawn = is_empty_drawn ? missing : with_casters;

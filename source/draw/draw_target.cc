@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "draw_target.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gnomon::draw {
+
+namespace {
+
+glm::ivec2 size_of(const Target &target)
+{
+  const auto *const *own = std::get_if<const gpu::Framebuffer *>(&target.framebuffer);
+  return own ? (*own)->size_px() : std::get<gpu::HostFramebuffer>(target.framebuffer).size_px;
+}
+
+/** How much the host's z / w grows with the view's z: its sign is all that counts. 0: not at all. */
+double depth_slope(const HostDepth &host)
+{
+  const glm::dmat4 &clip = host.clip_from_view;
+  return clip[2][2] * clip[3][3] - clip[3][2] * clip[2][3];
+}
+
+}  // namespace
+
+void check(const Target &target, glm::ivec2 size_px)
+{
+  if (!target) {
+    return;
+  }
+  const glm::ivec2 first = target.origin_px;
+  const glm::ivec2 room = size_of(target) - first;
+  if (first.x < 0 || first.y < 0 || size_px.x > room.x || size_px.y > room.y) {
+    throw gpu::Error("target: a picture of {}x{} px at {},{} does not fit into its {}x{} px", size_px.x, size_px.y,
+                     first.x, first.y, size_of(target).x, size_of(target).y);
+  }
+  // Its power of 2 is finite, and no denormal.
+  constexpr float exposure_max = 120.0F;
+  if (!(std::abs(target.exposure) <= exposure_max)) {
+    throw gpu::Error("target: exposure {} is not in [{}, {}]", target.exposure, -exposure_max, exposure_max);
+  }
+  if (target.depth) {
+    const glm::dvec2 range = target.depth->range;
+    if (!(range.x >= 0.0 && range.x <= 1.0 && range.y >= 0.0 && range.y <= 1.0) || range.x == range.y) {
+      throw gpu::Error("target: depth range {} to {} is not within [0, 1], or empty", range.x, range.y);
+    }
+    const double slope = depth_slope(*target.depth);
+    if (!std::isfinite(slope) || slope == 0.0) {
+      throw gpu::Error("target: the depth of the host's projection does not depend on the distance");
+    }
+  }
+}
+
+void begin_pass(gpu::CommandList &list, std::string_view name, const Target &target, glm::ivec2 size_px,
+                gpu::PassActions actions)
+{
+  actions.viewport = actions.scissor = {target.origin_px, size_px};
+  actions.is_srgb_encoded = target.encoding == Encoding::SrgbFormat && target.view_transform != ViewTransform::Raw;
+  if (const auto *const *own = std::get_if<const gpu::Framebuffer *>(&target.framebuffer)) {
+    list.begin_pass(name, **own, actions);
+  }
+  else {
+    list.begin_pass(name, std::get<gpu::HostFramebuffer>(target.framebuffer), actions);
+  }
+}
+
+DepthMap depth_map(const glm::mat4 &clip_from_view, const HostDepth &host)
+{
+  // The view's z of a depth d, as the fraction (from[3][3] d - from[3][2]) / (from[2][2] - from[2][3] d).
+  const glm::dmat4 from(clip_from_view);
+  const glm::dmat4 &to = host.clip_from_view;
+  const auto row = [&](int i) {
+    return glm::dvec2(to[2][i] * from[3][3] - to[3][i] * from[2][3], to[3][i] * from[2][2] - to[2][i] * from[3][2]);
+  };
+  const glm::dvec2 z = row(2);
+  const glm::dvec2 w = row(3);
+  const double low = host.is_zero_to_one ? 0.0 : -1.0;
+  const double scale = (host.range.y - host.range.x) / (1.0 - low);
+  const double offset = host.range.x - scale * low;
+  const glm::dvec2 stored = scale * z + offset * w;
+  // Of the view's z, which decreases with the distance.
+  const bool is_far_upper = depth_slope(host) < 0.0;
+  const double far = is_far_upper ? host.range.y : host.range.x;
+  const double near = is_far_upper ? host.range.x : host.range.y;
+  // The fraction's common factor is free: the largest number becomes 1.
+  const double largest = std::max({std::abs(stored.x), std::abs(stored.y), std::abs(w.x), std::abs(w.y)});
+  return {glm::vec4(glm::dvec4(stored, w) / largest), float(far), near < far};
+}
+
+TargetTexture::TargetTexture(gpu::Device &device, std::string name, gpu::Format format, glm::ivec2 size_px)
+    : texture_(
+          device.create_texture({.name = std::move(name), .format = format, .width = size_px.x, .height = size_px.y})),
+      framebuffer_(device.create_framebuffer({.name = texture_.desc().name, .colors = {{&texture_}}, .depth = {}}))
+{
+}
+
+}  // namespace gnomon::draw
