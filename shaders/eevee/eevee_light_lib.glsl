@@ -108,11 +108,9 @@ CenterLight center_light(int index, Surface surface)
 #endif
       center.irradiance *= spot_mask(drop, light.spot_drop_outer, light.spot_inv_width);
     }
-#ifdef USE_LAMP_SHAPE
     if (light.kind >= LIGHT_RECTANGLE) {
       center.irradiance *= max(-dot(center.to_light, light.forward_ws), 0.0);
     }
-#endif
   }
 #endif
   return center;

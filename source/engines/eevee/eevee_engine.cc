@@ -79,9 +79,15 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
   shared.has_casters = false;
   shared.is_light_block_written = false;
   shared.revision++;
-  shared.lamps = make_lamps(scene_.lamps());
-  shared.shadows.sync(device_limits, shadow_lamps(scene_.lamps(), shared.lamps), scene_.bounds(),
+  const LampShading shading = settings_.sample_count > 1 ? LampShading::Point : LampShading::Whole;
+  shared.lamps = make_lamps(scene_.lamps(), shading);
+  shared.shadows.sync(device_limits, shadow_lamps(scene_.lamps(), shared.lamps, shading), scene_.bounds(),
                       shared.lamps.light_block, settings_.shadow);
+  const scene::Bounds &bounds_ws = scene_.bounds();
+  shared.lamp_points =
+      shading == LampShading::Point
+          ? LampPoints(scene_.lamps(), shared.lamps, bounds_ws.is_empty() ? glm::vec3(0.0F) : bounds_ws.center())
+          : LampPoints();
   shared.tinted_light = settings_.has_cascade_tint ? first_sun_with_maps(shared.lamps) : std::nullopt;
   shared.synced = key;
 }
@@ -237,7 +243,9 @@ std::optional<Probe> Engine::probe(draw::Viewport &viewport, const draw::View &v
   stl.probed_light = int(*light);
   update_view(data, view);
   gpu::CommandList list;
-  stl.shadows->update(device, view, pixel_size(view, viewport), data.shared->shadow_pass, list);
+  stl.lamp_points = data.shared->lamp_points.centers();
+  write_lamp_points(data, list);
+  stl.shadows->update(device, view, pixel_size(view, viewport), data.shared->shadow_pass, list, stl.lamp_points);
   list.begin_pass("depth_prepass", fbl.depth_fb, {});
   psl->depth_pass.record(view, list);
   psl->depth_pass_cull.record(view, list);

@@ -3,6 +3,7 @@
 
 #include "eevee_debug.hh"
 #include "eevee_frame.hh"
+#include "eevee_lamp_points.hh"
 #include "eevee_lamps.hh"
 #include "shadows/shadows.hh"
 
@@ -145,6 +146,8 @@ struct SharedData {
   {
   }
   Lamps lamps;
+  /** Of lamps with an extent; empty where a picture has one sample, which is lit from their centres. */
+  LampPoints lamp_points;
   SceneShadows shadows;
   std::optional<ShadowsKey> synced;
   /** Increased by each sync of the lamps. */
@@ -182,6 +185,8 @@ struct StorageList {
   std::vector<draw::ObjectIndex> objects;
   /** cache_init was called, and cache_finish not yet. */
   bool is_collecting = false;
+  /** Of the sample being drawn. */
+  std::span<const LampPoint> lamp_points;
   gpu::Buffer view_block;
   gpu::BufferRange material_block;
   gpu::BufferRange object_block;

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 
 namespace gnomon::eevee {
 
@@ -37,7 +38,28 @@ shared::ViewData view_data(const draw::View &view)
   return data;
 }
 
+void write_lamp_points(const Data &data, gpu::CommandList &list)
+{
+  for (const LampPoint &point : data.stl.lamp_points) {
+    const shared::LightData light = light_at(data.shared->lamps.light_block.lights[point.light], point);
+    list.update(data.shared->light_block,
+                offsetof(shared::LightBlock, lights) + std::size_t(point.light) * sizeof(light),
+                std::as_bytes(std::span(&light, 1)));
+  }
+}
+
 namespace {
+
+Need need_lamp_points(const FrameState &state)
+{
+  const std::size_t count = state.data.shared->lamp_points.size();
+  if (count == 0) {
+    return {false, state.settings.sample_count > 1 ? "no lamp that gives light has a size"
+                                                   : "one sample: lamps are lit from their centres"};
+  }
+  return state.data.is_seen ? Need{true, fmt::format("{} lamps have a size: each sample sees one point of each", count)}
+                            : Need{false, nothing_seen};
+}
 
 Need need_shadows(const FrameState &state)
 {
@@ -121,12 +143,19 @@ void record_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &
   record_pass(step, sample, list, sample.data.fbl.depth_fb, {});
 }
 
+void record_lamp_points(const FrameStep & /*step*/, FrameSample &sample, gpu::CommandList &list)
+{
+  sample.data.stl.lamp_points =
+      sample.data.shared->lamp_points.sample(std::uint32_t(sample.data.sample_index), sample.settings.seed);
+  write_lamp_points(sample.data, list);
+}
+
 void record_shadows(const FrameStep & /*step*/, FrameSample &sample, gpu::CommandList &list)
 {
   gpu::Device &device = sample.viewport.device();
   const auto read_depths = [&] { return gpu::read_as<float>(device, sample.viewport.depth_texture()); };
   sample.data.stl.shadows->update(device, sample.view, pixel_size(sample.view, sample.viewport),
-                                  sample.data.shared->shadow_pass, list, read_depths);
+                                  sample.data.shared->shadow_pass, list, sample.data.stl.lamp_points, read_depths);
 }
 
 void record_lit(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
@@ -200,9 +229,12 @@ constexpr std::span picture_depth_only = std::span(pictures).subspan(3, 1);
 constexpr std::span picture_only = std::span(pictures).subspan(2, 2);
 constexpr std::span target_only = std::span(pictures).subspan(4, 1);
 
-constexpr std::array<FrameStep, 6> steps = {{
+constexpr std::array<std::string_view, 1> light_block_only = {"light_block"};
+
+constexpr std::array<FrameStep, 7> steps = {{
     // Before the shadows: cascades may be fitted to the depths.
     {"depth_prepass", FrameStep::When::EachSample, need_depth, {}, depth_only, depth_passes, record_depth},
+    {"lamp_points", FrameStep::When::EachSample, need_lamp_points, {}, light_block_only, {}, record_lamp_points},
     {"shadows",
      FrameStep::When::EachSample,
      need_shadows,

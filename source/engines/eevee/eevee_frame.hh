@@ -96,6 +96,9 @@ void draw_steps(FrameSample &sample, FrameStep::When when);
 
 inline constexpr const char *nothing_seen = "nothing is seen";
 
+/** Append the entries of `light_block` for the lamp points at hand. */
+void write_lamp_points(const Data &data, gpu::CommandList &list);
+
 /** Why no lamp has a shadow; \a no_such_lamp where shadows are on and some lamp gives light. */
 [[nodiscard]] std::string why_no_shadow(const FrameState &state, std::string no_such_lamp);
 

@@ -92,7 +92,7 @@ static Feature features_of(const scene::PlacedLamp &lamp, const shared::LightSha
   const bool has_distance =
       lamp.kind == scene::LampKind::Point || lamp.kind == scene::LampKind::Spot || lamp.kind == scene::LampKind::Area;
   const bool is_elliptic = lamp.kind == scene::LampKind::Spot && scene::spot_scale(lamp) != glm::dvec2(1.0);
-  const bool has_shape = shape.extent > 0.0F || is_elliptic || lamp.kind == scene::LampKind::Area;
+  const bool has_shape = shape.extent > 0.0F || is_elliptic;
   return Feature::Light | (has_distance ? Feature::Punctual : Feature::None) |
          (has_shape ? Feature::LampShape : Feature::None);
 }

@@ -241,8 +241,11 @@ FrameNode pass_nodes(const Source &source)
         i < data.frame.size() ? data.frame[i]
                               : StepRecord{step.need(state), std::vector<StepRecord::PassRecord>(step.passes.size())};
     FrameNode node;
-    if (step.passes.empty()) {
+    if (step.name == "shadows") {
       node = shadow_step_node(source, record.need);
+    }
+    else if (step.passes.empty()) {
+      node = {.what = std::string(step.name), .is_made = record.need.is_needed, .why = record.need.reason};
     }
     else if (step.passes.size() == 1) {
       node = pass_node(step, record, step.passes.front(), state);

@@ -67,6 +67,7 @@ static void take_over(ShadowSlot &slot, std::vector<ShadowSlot> &before)
     return;
   }
   slot.near = old.near;
+  slot.center_near = old.center_near;
   slot.views = std::move(old.views);
   slot.fits = std::move(old.fits);
   slot.drawn = old.drawn;

@@ -3,6 +3,8 @@
 
 #include "shadow_technique.hh"
 
+#include "eevee_lamp_points.hh"
+
 #include "eevee_octahedral_shared.h"
 #include "eevee_shadow_shared.h"
 
@@ -31,7 +33,7 @@ static float widest_half_angle(const scene::PlacedLamp &lamp)
   return widest == 1.0 ? lamp.spot_outer_angle : float(std::atan(widest * std::tan(double(lamp.spot_outer_angle))));
 }
 
-std::vector<ShadowLamp> shadow_lamps(std::span<const scene::PlacedLamp> placed, const Lamps &lamps)
+std::vector<ShadowLamp> shadow_lamps(std::span<const scene::PlacedLamp> placed, const Lamps &lamps, LampShading shading)
 {
   std::vector<ShadowLamp> result;
   for (int i = 0; i < lamps.light_block.light_count; i++) {
@@ -43,7 +45,8 @@ std::vector<ShadowLamp> shadow_lamps(std::span<const scene::PlacedLamp> placed, 
                       .world_from_lamp = glm::mat4(lamp.world_from_lamp),
                       .spot_outer_angle = widest_half_angle(lamp),
                       .range = lamp.range,
-                      .shadow = lamp.shadow});
+                      .shadow = lamp.shadow,
+                      .is_sampled = shading == LampShading::Point && has_extent(lamp)});
   }
   return result;
 }
@@ -255,6 +258,9 @@ ShadowPlan plan_shadows(std::span<const ShadowLamp> lamps, const ShadowSettings 
     warn_of_settings_without_effect(lamp, settings, plan.warnings);
     place.technique = &technique_of(lamp, place.kind);
     place.given = place.technique->request(lamp, place.kind, settings);
+    if (lamp.is_sampled && !lamp.shadow.size) {
+      place.given.size_px = std::max(place.given.size_px / 2, 1);
+    }
     const std::size_t array = index_of(place.given.array);
     if (entries[array] + place.given.entry_count > entries_max[array]) {
       lost.push_back(lamp.name);

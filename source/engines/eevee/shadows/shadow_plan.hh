@@ -33,6 +33,8 @@ struct ShadowLamp {
   /** Metres. 0: no limit. */
   float range = 0.0F;
   scene::LampShadow shadow{};
+  /** Each sample of a picture has the shadow of another point of the lamp. */
+  bool is_sampled = false;
 
   [[nodiscard]] glm::vec3 position_ws() const
   {
@@ -44,7 +46,8 @@ struct ShadowLamp {
 };
 
 /** The lights of \a lamps, in their order. The key is the node's; \a placed is the list that \a lamps was made from. */
-[[nodiscard]] std::vector<ShadowLamp> shadow_lamps(std::span<const scene::PlacedLamp> placed, const Lamps &lamps);
+[[nodiscard]] std::vector<ShadowLamp> shadow_lamps(std::span<const scene::PlacedLamp> placed, const Lamps &lamps,
+                                                   LampShading shading = LampShading::Whole);
 
 /** The kind that the lamp asks for, or else that of \a settings. A sun that asks for Esm or Evsm has Pcf. */
 [[nodiscard]] scene::ShadowKind shadow_kind(scene::LampKind lamp, std::optional<scene::ShadowKind> asked,
@@ -109,6 +112,8 @@ struct ShadowPlan {
  * Priority is the order of \a lamps: where a limit leaves no place for all, the last lamps lose their shadow. Where the
  * shadows need more than ShadowSettings::memory_bytes_max, all sizes are lowered by one factor, to 16 texels at least,
  * because layers of one array have one size; if that does not suffice, the last lamps lose their shadow.
+ *
+ * Lamps that are sampled have half the size that the settings give: their errors average out.
  *
  * \a viewport_count: viewports that draw the lamps; each has layers of its own where the technique follows the view.
  * \a previous: the last plan. A lamp that has a place in it keeps it. Only where the gaps that removed lamps leave

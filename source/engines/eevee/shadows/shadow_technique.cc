@@ -61,7 +61,7 @@ static bool update_near(ShadowSlot &slot, ShadowCasters &casters)
   if (slot.up_to_date != 0 && slot.near <= needed && slot.near >= 0.5F * needed) {
     return false;
   }
-  slot.near = needed;
+  slot.near = slot.center_near = needed;
   return true;
 }
 

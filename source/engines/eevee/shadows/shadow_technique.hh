@@ -74,8 +74,9 @@ struct ShadowSlot {
   ShadowPlace place{};
   /** LayerOwner::viewport. */
   std::uint64_t viewport = 0;
-  /** Distance of the near plane, metres. */
+  /** Distance of the near plane, metres; that for the lamp's centre, where the lamp is at one of its points. */
   float near = 0.0F;
+  float center_near = 0.0F;
   /** One for each layer. */
   std::vector<draw::View> views{};
   /** Suns: what the views are fitted to; empty while no caster matters. */

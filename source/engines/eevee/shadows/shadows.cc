@@ -65,6 +65,38 @@ void Shadows::fit(gpu::Device &device, const draw::View &view, float pixel_size,
   seen_ = seen;
 }
 
+/** Distance of the near plane from a point of a lamp that is \a offset away from its centre, metres. */
+static float point_near(const ShadowSlot &slot, float offset)
+{
+  // The nearest caster is at twice the near plane's distance, or farther. What is nearer than the plane still casts.
+  return slot.lamp.shadow.clip_start
+             ? slot.center_near
+             : std::max(slot.center_near - 0.5F * offset, std::min(slot.center_near, 0.1F * offset));
+}
+
+/** Move the lamps to \a points: their layers are those of another place then. */
+void Shadows::place_lamps(std::span<const LampPoint> points)
+{
+  if (points.empty()) {
+    return;
+  }
+  for_each_slot([&](ShadowSlot &slot) {
+    const auto point = std::ranges::find(points, slot.lamp.light, &LampPoint::light);
+    if (point == points.end() || point->world_from_lamp == slot.lamp.world_from_lamp) {
+      return;
+    }
+    slot.lamp.world_from_lamp = point->world_from_lamp;
+    slot.near = point_near(slot, point->offset);
+    if (!slot.place.technique->follows_view()) {
+      slot.views = slot.place.technique->lamp_views(slot);
+    }
+    else {
+      seen_.reset();
+    }
+    slot.invalidate(~0U);
+  });
+}
+
 void Shadows::write_block(gpu::Device &device)
 {
   if (!block_buffer_) {
@@ -79,11 +111,13 @@ void Shadows::write_block(gpu::Device &device)
 }
 
 void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
-                     gpu::CommandList &list, const std::function<std::vector<float>()> &read_depths)
+                     gpu::CommandList &list, std::span<const LampPoint> points,
+                     const std::function<std::vector<float>()> &read_depths)
 {
   // Of lists that were not submitted.
   recorded_counters_ = {};
   for_each_slot([](ShadowSlot &slot) { slot.recorded_drawn = slot.recorded_up_to_date = 0; });
+  place_lamps(points);
   fit(device, view, pixel_size, read_depths);
   // Array by array: the lamps of the distance cube take turns with it.
   for (std::size_t id = 0; id < shadow_array_count; id++) {

@@ -3,6 +3,8 @@
 
 #include "scene_shadows.hh"
 
+#include "eevee_lamp_points.hh"
+
 #include <functional>
 #include <map>
 #include <optional>
@@ -53,10 +55,12 @@ class Shadows {
   /**
    * Fit to what \a view sees and record into \a list the layers that are needed and not up to date. \a pass draws the
    * casters' instances; \a pixel_size: see fit_sun. \a read_depths gives the picture's depths, see narrow_to_depths; it
-   * is called only where the settings and lamps ask for it and the view changed.
+   * is called only where the settings and lamps ask for it and the view changed. \a points: lamps of which the shadow
+   * is that of one point; each lamp the same in all updates after a sync.
    */
   void update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
-              gpu::CommandList &list, const std::function<std::vector<float>()> &read_depths = {});
+              gpu::CommandList &list, std::span<const LampPoint> points = {},
+              const std::function<std::vector<float>()> &read_depths = {});
   /**
    * The list of the last update was submitted: what it draws is up to date from now on. Without this call the next
    * update of any viewport records the same layers again.
@@ -104,6 +108,7 @@ class Shadows {
   [[nodiscard]] ShadowInspection inspection(const ShadowSlot &slot) const;
   void fit(gpu::Device &device, const draw::View &view, float pixel_size,
            const std::function<std::vector<float>()> &read_depths);
+  void place_lamps(std::span<const LampPoint> points);
   void write_block(gpu::Device &device);
 
   SceneShadows &scene_;

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_lamp_points.hh"
+
+#include "eevee_sobol.hh"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace gnomon::eevee {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/** Of a sun, radians: at most a right angle. */
+double half_angle(const scene::Lamp &lamp)
+{
+  return std::min(0.5 * double(lamp.angle), 0.5 * pi);
+}
+
+/** The square [0, 1)² on the unit disk, areas kept in proportion (Shirley and Chiu 1997). */
+glm::dvec2 on_disk(const glm::vec3 &place)
+{
+  const glm::dvec2 square = 2.0 * glm::dvec2(place) - 1.0;
+  if (square.x == 0.0 && square.y == 0.0) {
+    return {0.0, 0.0};
+  }
+  const bool is_wide = std::abs(square.x) > std::abs(square.y);
+  const double radius = is_wide ? square.x : square.y;
+  const double angle = is_wide ? 0.25 * pi * (square.y / square.x) : 0.5 * pi - 0.25 * pi * (square.x / square.y);
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+/** Unit vectors, the last along \a z. */
+glm::dmat3 axes_around(const glm::dvec3 &z)
+{
+  const glm::dvec3 helper = std::abs(z.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+  const glm::dvec3 x = glm::normalize(glm::cross(helper, z));
+  return {x, glm::cross(z, x), z};
+}
+
+/** In the ball of radius 1, of density ∝ (1 - ρ²)^(-1/2): even over the disk, and an arcsine across it. */
+glm::dvec3 in_ball(const glm::vec3 &place)
+{
+  const glm::dvec2 disk = on_disk(place);
+  const double half_chord = std::sqrt(std::max(1.0 - glm::dot(disk, disk), 0.0));
+  return {disk, half_chord * std::sin(pi * (double(place.z) - 0.5))};
+}
+
+/** \a world_from_lamp turned so that it shines along \a forward_ws. */
+glm::dmat4 turned(const glm::dmat4 &world_from_lamp, const glm::dvec3 &forward_ws)
+{
+  const glm::dvec3 z = -forward_ws;
+  glm::dvec3 x(world_from_lamp[0]);
+  glm::dvec3 y(world_from_lamp[1]);
+  // Whichever is farther from the axis stays as it is, as far as it can.
+  if (std::abs(glm::dot(x, z)) < std::abs(glm::dot(y, z))) {
+    x = glm::normalize(x - z * glm::dot(x, z));
+    y = glm::cross(z, x);
+  }
+  else {
+    y = glm::normalize(y - z * glm::dot(y, z));
+    x = glm::cross(y, z);
+  }
+  return {glm::dvec4(x, 0.0), glm::dvec4(y, 0.0), glm::dvec4(z, 0.0), world_from_lamp[3]};
+}
+
+}  // namespace
+
+bool has_extent(const scene::Lamp &lamp)
+{
+  switch (lamp.kind) {
+    case scene::LampKind::Point:
+    case scene::LampKind::Spot: return lamp.radius > 0.0F;
+    case scene::LampKind::Sun: return lamp.angle > 0.0F;
+    case scene::LampKind::Area: return true;
+    default: return false;
+  }
+}
+
+glm::mat4 point_of(const scene::PlacedLamp &lamp, const glm::vec3 &place, const glm::vec3 &toward_ws)
+{
+  if (lamp.kind == scene::LampKind::Sun) {
+    const glm::dvec2 disk = on_disk(place);
+    const double radius_sq = glm::dot(disk, disk);
+    const double sine = std::sin(0.5 * half_angle(lamp));
+    const double drop = 2.0 * sine * sine * radius_sq;
+    const double across = radius_sq > 0.0 ? std::sqrt(drop * (2.0 - drop) / radius_sq) : 0.0;
+    const glm::dmat3 axes(lamp.world_from_lamp);
+    const glm::dvec3 forward = axes * glm::dvec3(across * disk, drop - 1.0);
+    return turned(lamp.world_from_lamp, glm::normalize(forward));
+  }
+  const glm::dvec3 center(lamp.world_from_lamp[3]);
+  glm::dmat4 moved = lamp.world_from_lamp;
+  if (lamp.kind == scene::LampKind::Area) {
+    const glm::dvec2 across =
+        lamp.area_shape == scene::AreaShape::Ellipse ? on_disk(place) : 2.0 * glm::dvec2(place) - 1.0;
+    moved[3] = moved * glm::dvec4(scene::area_half_size(lamp) * across, 0.0, 1.0);
+    return moved;
+  }
+  const glm::dvec3 toward = glm::dvec3(toward_ws) - center;
+  const double distance = glm::length(toward);
+  const glm::dmat3 axes = axes_around(distance > 0.0 ? toward / distance : glm::dvec3(0, 0, -1));
+  moved[3] = glm::dvec4(center + axes * (double(lamp.radius) * in_ball(place)), 1.0);
+  return moved;
+}
+
+LampPoints::LampPoints(std::span<const scene::PlacedLamp> placed, const Lamps &lamps, const glm::vec3 &toward_ws)
+    : toward_ws_(toward_ws)
+{
+  for (int i = 0; i < lamps.light_block.light_count; i++) {
+    const scene::PlacedLamp &lamp = placed[lamps.lamp_index[std::size_t(i)]];
+    if (has_extent(lamp)) {
+      sized_.push_back({i, lamp});
+    }
+  }
+}
+
+std::span<const LampPoint> LampPoints::sample(std::uint32_t index, std::uint32_t seed)
+{
+  points_.clear();
+  for (const Sized &sized : sized_) {
+    const glm::vec3 place = sobol_point(index, mixed_bits(seed) + std::uint32_t(sized.light));
+    // The mean of directions over a cone of half angle a is (1 + cos a) / 2 long.
+    const double weight =
+        sized.lamp.kind == scene::LampKind::Sun ? 2.0 / (1.0 + std::cos(half_angle(sized.lamp))) : 1.0;
+    const glm::mat4 world_from_lamp = point_of(sized.lamp, place, toward_ws_);
+    const glm::vec3 center_ws(sized.lamp.world_from_lamp[3]);
+    points_.push_back(
+        {sized.light, world_from_lamp, glm::distance(glm::vec3(world_from_lamp[3]), center_ws), float(weight)});
+  }
+  return points_;
+}
+
+std::span<const LampPoint> LampPoints::centers()
+{
+  points_.clear();
+  for (const Sized &sized : sized_) {
+    points_.push_back({sized.light, glm::mat4(sized.lamp.world_from_lamp), 0.0F, 1.0F});
+  }
+  return points_;
+}
+
+shared::LightData light_at(shared::LightData light, const LampPoint &point)
+{
+  light.position_ws = glm::vec3(point.world_from_lamp[3]);
+  light.forward_ws = -glm::vec3(point.world_from_lamp[2]);
+  light.color *= point.weight;
+  return light;
+}
+
+}  // namespace gnomon::eevee
