@@ -6,11 +6,6 @@ layout(location = 3) in vec2 surface_uv;
 
 layout(binding = BASE_COLOR_SLOT) uniform sampler2D base_color_texture;
 
-vec3 base_color_tint()
-{
-  return texture(base_color_texture, surface_uv).rgb;
-}
-
 /**
  * Reads level 0. Mip-mapped alpha would thin out distant surfaces, while samples of level 0 average to the correct coverage.
  * The result is also the same in every pass, whatever its view.

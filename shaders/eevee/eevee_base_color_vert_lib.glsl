@@ -7,7 +7,7 @@ layout(location = ATTRIBUTE_UV) in vec2 uv;
 layout(location = 2) flat out uint surface_material;
 layout(location = 3) out vec2 surface_uv;
 
-void write_base_color_varyings()
+void write_material_varyings()
 {
   surface_material = objects[draw_instance.x].value;
   surface_uv = uv;

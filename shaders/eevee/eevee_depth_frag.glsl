@@ -1,7 +1,7 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
 #ifdef USE_ALPHA_MASK
-#  include "eevee/eevee_base_color_lib.glsl"
+#  include "eevee/eevee_alpha_lib.glsl"
 #endif
 
 void main()

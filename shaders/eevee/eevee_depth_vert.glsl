@@ -3,7 +3,7 @@
 #include "draw/draw_object_lib.glsl"
 #include "draw/draw_view_lib.glsl"
 #ifdef USE_ALPHA_MASK
-#  include "eevee/eevee_base_color_vert_lib.glsl"
+#  include "eevee/eevee_alpha_vert_lib.glsl"
 #endif
 
 // The lit pass tests for equal depth, so both passes must compute the same position.
@@ -13,6 +13,6 @@ void main()
 {
   gl_Position = view.clip_from_world * vertex_position_ws();
 #ifdef USE_ALPHA_MASK
-  write_base_color_varyings();
+  write_material_varyings();
 #endif
 }

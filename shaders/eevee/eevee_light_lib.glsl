@@ -121,13 +121,21 @@ vec3 point_radiance(int index, MaterialData material, Surface surface)
 {
   LightData light = light_data.lights[index];
   if (light.kind == LIGHT_HEMI) {
-    return material.diffuse * light.color * (INV_PI * hemi_irradiance(-dot(surface.normal_ws, light.forward_ws)));
+    float irradiance = material.occlusion * hemi_irradiance(-dot(surface.normal_ws, light.forward_ws));
+    return material.diffuse * light.color * (INV_PI * irradiance);
   }
   CenterLight center = center_light(index, surface);
   float cos_l = dot(surface.normal_ws, center.to_light);
   if (cos_l <= 0.0 || center.irradiance <= 0.0) {
     return vec3(0.0);
   }
+#ifdef USE_FULL_MATERIAL
+  // A normal texture turns no surface towards a light behind it.
+  if (dot(surface.geometric_normal_ws, center.to_light) <= 0.0) {
+    return vec3(0.0);
+  }
+  material.diffuse *= bump_visibility(surface.smooth_normal_ws, surface.normal_ws, center.to_light);
+#endif
   float visibility = light_visibility(light, surface, center.to_light);
   if (visibility <= 0.0) {
     return vec3(0.0);

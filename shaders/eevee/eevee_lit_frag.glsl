@@ -1,7 +1,13 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
 #include "eevee/eevee_material_lib.glsl"
-#ifdef USE_BASE_COLOR_TEXTURE
+#if defined(USE_FULL_MATERIAL)
+#  include "eevee/eevee_full_material_lib.glsl"
+#  ifdef USE_LIGHT
+#    include "eevee/eevee_normal_map_lib.glsl"
+#  endif
+#elif defined(USE_BASE_COLOR_TEXTURE)
+#  include "draw/draw_view_lib.glsl"
 #  include "eevee/eevee_base_color_lib.glsl"
 #endif
 #ifdef USE_LIGHT
@@ -13,19 +19,26 @@ layout(location = 0) out vec4 radiance;
 
 void main()
 {
+#ifdef USE_FULL_MATERIAL
+  MaterialData material = full_material();
+#else
   MaterialData material = materials[surface_material];
+#endif
 #ifdef USE_BASE_COLOR_TEXTURE
-  material = tinted(material, base_color_tint());
+  material = tinted(material, texture(base_color_texture, surface_uv, view.texture_lod_bias).rgb);
 #endif
   vec3 sum = material.emissive;
 #ifdef USE_LIGHT
   Surface surface = make_surface();
+#  ifdef USE_FULL_MATERIAL
+  surface = normal_mapped(surface);
+#  endif
   sum += direct_light(material, surface);
 #endif
   radiance = vec4(sum, 1.0);
-#ifdef USE_BASE_COLOR_TEXTURE
+#if defined(USE_FULL_MATERIAL) || defined(USE_BASE_COLOR_TEXTURE)
   // Another surface may have the same depth, so the depth test alone does not reject a masked fragment.
-  if (is_cut_out(material.mask_cutoff)) {
+  if (is_cut_out(materials[surface_material].mask_cutoff)) {
     discard;
   }
 #endif

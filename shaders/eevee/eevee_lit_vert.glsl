@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "draw/draw_object_lib.glsl"
 #include "draw/draw_view_lib.glsl"
-#ifdef USE_BASE_COLOR_TEXTURE
+#if defined(USE_FULL_MATERIAL)
+#  include "eevee/eevee_full_material_vert_lib.glsl"
+#elif defined(USE_BASE_COLOR_TEXTURE)
 #  include "eevee/eevee_base_color_vert_lib.glsl"
 #else
 layout(location = 2) flat out uint surface_material;
@@ -17,8 +19,11 @@ void main()
 {
   vec4 position_ws = vertex_position_ws();
   gl_Position = view.clip_from_world * position_ws;
-#ifdef USE_BASE_COLOR_TEXTURE
-  write_base_color_varyings();
+#if defined(USE_FULL_MATERIAL) || defined(USE_BASE_COLOR_TEXTURE)
+  write_material_varyings();
+#  ifdef USE_FULL_MATERIAL
+  write_full_varyings();
+#  endif
 #else
   surface_material = objects[draw_instance.x].value;
 #endif

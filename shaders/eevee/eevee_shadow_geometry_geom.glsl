@@ -7,12 +7,15 @@ layout(triangle_strip, max_vertices = 3) out;
 
 layout(location = 0) flat in int caster_layer[];
 #ifdef USE_ALPHA_MASK
-// Outputs of eevee_base_color_vert_lib.glsl. They are renamed, because the fragment shader needs the original names.
+// Outputs of eevee_alpha_vert_lib.glsl. They are renamed, because the fragment shader needs the original names.
 layout(location = 2) flat in uint caster_material[];
-layout(location = 3) in vec2 caster_uv[];
-
 layout(location = 2) flat out uint surface_material;
+layout(location = 3) in vec2 caster_uv[];
 layout(location = 3) out vec2 surface_uv;
+#  ifdef USE_FULL_MATERIAL
+layout(location = 4) in vec4 caster_color[];
+layout(location = 4) out vec4 surface_color;
+#  endif
 #endif
 
 void main()
@@ -23,6 +26,9 @@ void main()
 #ifdef USE_ALPHA_MASK
     surface_material = caster_material[i];
     surface_uv = caster_uv[i];
+#  ifdef USE_FULL_MATERIAL
+    surface_color = caster_color[i];
+#  endif
 #endif
     EmitVertex();
   }

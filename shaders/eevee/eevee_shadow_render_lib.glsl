@@ -3,7 +3,7 @@
 #include "draw/draw_object_lib.glsl"
 #include "shared/eevee_shadow_shared.h"
 #ifdef USE_ALPHA_MASK
-#  include "eevee/eevee_base_color_vert_lib.glsl"
+#  include "eevee/eevee_alpha_vert_lib.glsl"
 #endif
 
 layout(std140, binding = SHADOW_RENDER_BLOCK_SLOT) uniform shadow_render_block
@@ -15,6 +15,6 @@ void place_caster()
 {
   gl_Position = shadow_render.clip_from_world[draw_instance.y] * vertex_position_ws();
 #ifdef USE_ALPHA_MASK
-  write_base_color_varyings();
+  write_material_varyings();
 #endif
 }

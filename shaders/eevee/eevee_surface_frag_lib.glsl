@@ -24,5 +24,8 @@ Surface make_surface()
   surface.geometric_normal_ws = dot(seen, surface.view_ws) < 0.0 ? -seen : seen;
   vec3 normal_ws = normalized(surface_normal_ws, surface.geometric_normal_ws);
   surface.normal_ws = gl_FrontFacing ? normal_ws : -normal_ws;
+#ifdef USE_FULL_MATERIAL
+  surface.smooth_normal_ws = surface.normal_ws;
+#endif
   return surface;
 }

@@ -5,6 +5,10 @@ struct Surface {
   vec3 position_ws;
   /** Shading normal, on the visible side. */
   vec3 normal_ws;
+#ifdef USE_FULL_MATERIAL
+  /** The same without the normal texture. */
+  vec3 smooth_normal_ws;
+#endif
   /** Normal of the triangle, on the visible side. */
   vec3 geometric_normal_ws;
   /** Towards the viewer. */

@@ -15,7 +15,8 @@ struct ViewData {
   int is_perspective;
   /** Unit vector opposite to the view direction. */
   vec3 back_ws;
-  float _pad0;
+  /** Added to the mip level of materials' textures: several samples a pixel resolve smaller texels. */
+  float texture_lod_bias;
 };
 SHARED_ASSERT_SIZE(ViewData, 96)
 

@@ -45,6 +45,18 @@ SHARED_FUNCTION vec3 fresnel_schlick(vec3 f0, float f90, float cosine)
   return f0 + (vec3(f90) - f0) * (m2 * m2 * m);
 }
 
+/**
+ * Visibility of a light to the diffuse part of a surface whose normal a texture turned, so that light fades towards the
+ * horizon of the smooth surface instead of ending there (Conty Estevez, Lecocq and Stein 2019, Ray Tracing Gems 12). 1 for a
+ * normal that was not turned. \a normal and \a to_light form an acute angle.
+ */
+SHARED_FUNCTION float bump_visibility(vec3 smooth_normal, vec3 normal, vec3 to_light)
+{
+  float below = dot(normal, to_light) * dot(smooth_normal, normal);
+  float g = below > 0.0f ? clamp(dot(smooth_normal, to_light) / below, 0.0f, 1.0f) : 0.0f;
+  return g + g * g * (1.0f - g);
+}
+
 SHARED_END
 
 #endif

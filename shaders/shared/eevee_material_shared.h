@@ -2,13 +2,15 @@
 #ifndef EEVEE_MATERIAL_SHARED_H
 #define EEVEE_MATERIAL_SHARED_H
 
+#include "shared/eevee_bsdf_shared.h"
 #include "shared/shared_types.h"
 
 SHARED_BEGIN
 
 /**
- * A material: an entry of `material_block`. Colours are linear. With a base colour texture, diffuse and metal_f0 are factors of
- * the texture, and specular_f0 and specular_f90 are those for a white texture.
+ * A surface to be lit. An entry of `material_block` is that of a material without textures. Colours are linear. With a base
+ * colour texture alone, diffuse and metal_f0 are factors of the texture, and specular_f0 and specular_f90 are those for a white
+ * texture. With other textures, the surface is evaluated from FullMaterialData.
  */
 struct MaterialData {
   /** Diffuse albedo: the base colour times 1 - metallic. */
@@ -21,13 +23,44 @@ struct MaterialData {
   float specular_f90;
   /** Radiance, W/(sr m²). */
   vec3 emissive;
-  /** The surface is cut out where the alpha of the base colour texture is below this. 0: nowhere. */
+  /** The surface is cut out where the alpha of its texture and its vertex colours is below this. 0: nowhere. */
   float mask_cutoff;
   /** The part of specular_f0 that comes from the base colour of a metal. */
   vec3 metal_f0;
-  float _pad0;
+  /** The part of the light from all around that arrives. */
+  float occlusion;
 };
 SHARED_ASSERT_SIZE(MaterialData, 64)
+
+/** Bits of FullMaterialData::inputs: the texture is there. In the order of scene::texture_inputs. */
+#define INPUT_BASE_COLOR 1u
+#define INPUT_METALLIC_ROUGHNESS 2u
+#define INPUT_NORMAL 4u
+#define INPUT_OCCLUSION 8u
+#define INPUT_EMISSIVE 16u
+#define INPUT_SPECULAR 32u
+#define INPUT_SPECULAR_COLOR 64u
+/** The base colour is the radiance. */
+#define INPUT_UNLIT 128u
+#define INPUT_TEXTURE_COUNT 7
+
+/** An entry of `full_material_block`: factors of the textures and of vertex colours. */
+struct FullMaterialData {
+  vec3 base_color;
+  float metallic;
+  vec3 specular_color;
+  float specular;
+  vec3 emissive;
+  float roughness;
+  float normal_scale;
+  float occlusion_strength;
+  /** INPUT_ bits. */
+  uint inputs;
+  float _pad0;
+  /** Two rows for each texture. It is looked up at xyz · (u, v, 1); w of the first row: 0 for the first set of uvs, 1 for the second. */
+  vec4 uv_rows[2 * INPUT_TEXTURE_COUNT];
+};
+SHARED_ASSERT_SIZE(FullMaterialData, 64 + 32 * INPUT_TEXTURE_COUNT)
 
 /**
  * Reflectance at grazing incidence from the reflectance at normal incidence. It fades below 2 %, so that a surface with a
@@ -36,6 +69,31 @@ SHARED_ASSERT_SIZE(MaterialData, 64)
 SHARED_FUNCTION float grazing_reflection(vec3 f0)
 {
   return min(50.0f * max(max(f0.x, f0.y), f0.z), 1.0f);
+}
+
+/** Metallic-roughness surface of glTF 2.0, appendix B, with KHR_materials_specular. 0.04 is a dielectric of index 1.5. */
+SHARED_FUNCTION MaterialData metallic_roughness_material(vec3 base_color, float metallic, float roughness, vec3 specular_color,
+                                              float specular)
+{
+  vec3 dielectric = min(0.04f * specular_color, vec3(1.0f)) * specular;
+  MaterialData material;
+  material.diffuse = base_color * (1.0f - metallic);
+  material.alpha = max(roughness * roughness, ALPHA_MIN);
+  material.specular_f0 = mix(dielectric, base_color, metallic);
+  material.specular_f90 = grazing_reflection(material.specular_f0);
+  material.emissive = vec3(0.0f);
+  material.mask_cutoff = 0.0f;
+  material.metal_f0 = base_color * metallic;
+  material.occlusion = 1.0f;
+  return material;
+}
+
+/** A surface whose radiance is \a radiance, whatever the light. */
+SHARED_FUNCTION MaterialData unlit_material(vec3 radiance)
+{
+  MaterialData material = metallic_roughness_material(vec3(0.0f), 0.0f, 1.0f, vec3(0.0f), 0.0f);
+  material.emissive = radiance;
+  return material;
 }
 
 /** The material with its base colour multiplied by \a color. */

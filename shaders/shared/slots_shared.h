@@ -8,9 +8,13 @@
 #define ATTRIBUTE_NORMAL 1
 #define ATTRIBUTE_DRAW_INSTANCE 2
 #define ATTRIBUTE_UV 3
+#define ATTRIBUTE_SECOND_UV 4
+#define ATTRIBUTE_TANGENT 5
+#define ATTRIBUTE_COLOR 6
 
 #define OBJECT_BLOCK_SLOT 0
 #define MATERIAL_BLOCK_SLOT 1
+#define FULL_MATERIAL_BLOCK_SLOT 2
 
 #define PUSH_CONSTANT_SLOT 8
 #define VIEW_BLOCK_SLOT 9
@@ -28,9 +32,16 @@
 #define ESM_SOURCE_SLOT 21
 #define SHADOW_LAYERS_SLOT 22
 #define DEPTH_SLOT 23
-#define BASE_COLOR_SLOT 24
 #define SHADOW_EVSM_SLOT 25
 #define LTC_TABLE_SLOT 44
+
+#define BASE_COLOR_SLOT 32
+#define METALLIC_ROUGHNESS_SLOT 33
+#define NORMAL_SLOT 34
+#define OCCLUSION_SLOT 35
+#define EMISSIVE_SLOT 36
+#define SPECULAR_SLOT 37
+#define SPECULAR_COLOR_SLOT 38
 
 /** Layout of the block of small values of a group: push constants if the API has them, else a uniform block. */
 #ifdef VULKAN

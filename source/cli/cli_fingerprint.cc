@@ -75,6 +75,25 @@ class Hasher {
   std::unique_ptr<XXH3_state_t, Free> state_{XXH3_createState()};
 };
 
+void add(Hasher &hash, const scene::Scene &scene, const scene::TextureSlot &slot)
+{
+  const scene::Texture *texture = scene.textures().find(slot.texture);
+  hash.add(texture != nullptr);
+  if (!texture) {
+    return;
+  }
+  hash.add(slot.uv_set);
+  hash.add(slot.offset);
+  hash.add(slot.rotation);
+  hash.add(slot.scale);
+  hash.add(texture->wrap_u);
+  hash.add(texture->wrap_v);
+  hash.add(texture->magnified);
+  hash.add(texture->minified);
+  hash.add(texture->mip);
+  hash.add(texture->image.index);
+}
+
 void add(Hasher &hash, const scene::Scene &scene, const scene::Material &material)
 {
   hash.add(material.base_color);
@@ -87,17 +106,12 @@ void add(Hasher &hash, const scene::Scene &scene, const scene::Material &materia
   hash.add(material.alpha_mode);
   hash.add(material.alpha_cutoff);
   hash.add(material.is_double_sided);
-  const scene::Texture *texture = scene.textures().find(material.base_color_texture);
-  hash.add(texture != nullptr);
-  if (!texture) {
-    return;
+  hash.add(material.normal_scale);
+  hash.add(material.occlusion_strength);
+  hash.add(material.is_unlit);
+  for (const scene::TextureInput &input : scene::texture_inputs) {
+    add(hash, scene, material.*input.slot);
   }
-  hash.add(texture->wrap_u);
-  hash.add(texture->wrap_v);
-  hash.add(texture->magnified);
-  hash.add(texture->minified);
-  hash.add(texture->mip);
-  hash.add(texture->image.index);
 }
 
 void add(Hasher &hash, const scene::PlacedLamp &lamp)
@@ -154,9 +168,9 @@ std::string scene_fingerprint(const scene::Scene &scene)
     hash.add(mesh.positions);
     hash.add(mesh.normals);
     hash.add(mesh.uvs);
-    if (!mesh.colors.empty()) {
-      hash.add(mesh.colors);
-    }
+    hash.add(mesh.second_uvs);
+    hash.add(mesh.tangents);
+    hash.add(mesh.colors);
     hash.add(mesh.indices);
     add(hash, scene, scene.material_of(mesh));
   }

@@ -206,11 +206,8 @@ class SceneWriter {
     if (!lights_.empty()) {
       used.add("\"KHR_lights_punctual\"");
     }
-    if (meshes_.has_specular) {
-      used.add("\"KHR_materials_specular\"");
-    }
-    if (meshes_.has_emissive_strength) {
-      used.add("\"KHR_materials_emissive_strength\"");
+    for (const std::string &name : meshes_.extensions) {
+      used.add('"' + name + '"');
     }
     if (!used.empty()) {
       document.add("extensionsUsed", used.array());

@@ -39,10 +39,10 @@ namespace {
 constexpr std::size_t object_count_max = std::size_t(1) << 22U;
 
 /** What a file may require without our losing anything by not knowing it. */
-constexpr std::array<std::string_view, 11> harmless_extensions{
+constexpr std::array<std::string_view, 12> harmless_extensions{
     "KHR_lights_punctual",        "KHR_materials_specular",  "KHR_materials_emissive_strength", "KHR_materials_ior",
     "KHR_mesh_quantization",      "KHR_materials_variants",  "KHR_texture_transform",           "KHR_xmp_json_ld",
-    "KHR_draco_mesh_compression", "EXT_meshopt_compression", "EXT_mesh_gpu_instancing",
+    "KHR_draco_mesh_compression", "EXT_meshopt_compression", "EXT_mesh_gpu_instancing",         "KHR_materials_unlit",
 };
 
 /** The names of those that the file requires and we do not know; empty for none. */
@@ -112,6 +112,7 @@ class Importer {
     warn_about_file();
     const std::vector<int> roots = scene_roots();
     visit_nodes(roots);
+    meshes_.finish();
     check_anything_kept();
     add_defaults();
     scene_.warnings = warnings_.messages();

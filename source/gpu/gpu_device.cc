@@ -179,17 +179,19 @@ Batch Device::create_batch(const BatchDesc &desc)
     throw Error("batch '{}': {} vertices and {} indices, and a batch takes {} of each", desc.name,
                 desc.positions.size(), desc.indices.size(), count_max);
   }
-  GNOMON_ASSERT(desc.normals.empty() || desc.normals.size() == desc.positions.size(),
-                "batch '{}': {} normals, {} positions", desc.name, desc.normals.size(), desc.positions.size());
-  GNOMON_ASSERT(desc.uvs.empty() || desc.uvs.size() == desc.positions.size(), "batch '{}': {} uvs, {} positions",
-                desc.name, desc.uvs.size(), desc.positions.size());
+  std::size_t size_bytes = desc.indices.size_bytes();
+  for (std::size_t i = 0; i < vertex_stream_count; i++) {
+    const std::size_t stream_bytes = desc.bytes(VertexStream(i)).size();
+    GNOMON_ASSERT(stream_bytes == 0 || stream_bytes == desc.positions.size() * vertex_formats()[i].size_bytes,
+                  "batch '{}': {} bytes of attribute {} for {} positions", desc.name, stream_bytes,
+                  vertex_formats()[i].attribute, desc.positions.size());
+    size_bytes += stream_bytes;
+  }
   GNOMON_ASSERT(std::ranges::all_of(desc.indices, [&](auto index) { return index < desc.positions.size(); }),
                 "batch '{}': an index reaches past its {} vertices", desc.name, desc.positions.size());
   const std::uint32_t vertex_capacity = vertices_.capacity();
   const std::uint32_t index_capacity = indices_.capacity();
   const BatchRange range = allocate_range(desc);
-  const std::size_t size_bytes =
-      desc.positions.size_bytes() + desc.normals.size_bytes() + desc.indices.size_bytes() + desc.uvs.size_bytes();
   try {
     Resource resource = make(ResourceKind::Batch, {desc.name, range}, {}, size_bytes, [&](ResourceId /*id*/) {
       batch_create(desc, range, vertices_.capacity(), indices_.capacity());

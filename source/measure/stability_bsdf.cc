@@ -23,7 +23,7 @@ float alpha_of(float roughness)
 {
   scene::Material material;
   material.roughness = roughness;
-  return render_scene::material_data(material, false).alpha;
+  return render_scene::material_data(material).alpha;
 }
 
 /** What a textbook has: a² / (π (cos² (a² - 1) + 1)²). */
@@ -131,8 +131,7 @@ void add_bsdf_cases(std::vector<StabilityCase> &cases)
            scene::Material material;
            material.metallic = metallic;
            material.specular_color = glm::vec3(float(color), 0.0F, 1.0F);
-           const shared::MaterialData data =
-               shared::tinted(render_scene::material_data(material, false), {1.0F, 0.0F, 0.5F});
+           const shared::MaterialData data = shared::tinted(render_scene::material_data(material), {1.0F, 0.0F, 0.5F});
            for (const float f : {data.specular_f0.x, data.specular_f0.y, data.specular_f0.z, data.specular_f90}) {
              worst = std::max(worst, violated(f >= 0.0F && f <= 1.0F));
            }

@@ -163,12 +163,20 @@ glm::dvec3 Renderer::radiance(const Ray &ray, int sample, std::uint64_t key) con
   const glm::dvec3 view = -glm::normalize(ray.direction_ws);
   const double side = glm::dot(surface.geometric_normal_ws, view) < 0.0 ? -1.0 : 1.0;
   const Receiver receiver{surface.position_ws, side * surface.geometric_normal_ws, surface.error_m};
-  const Bsdf bsdf = make_bsdf(*surface.material, surface.base_color);
-  glm::dvec3 sum(surface.material->emissive);
+  if (surface.material->is_unlit) {
+    return surface.base_color;
+  }
+  Bsdf bsdf = make_bsdf(surface);
+  if (surface.shading_normal_ws != surface.smooth_normal_ws) {
+    bsdf.smooth_normal = side * surface.smooth_normal_ws;
+  }
+  glm::dvec3 sum = surface.emissive;
   const std::vector<scene::PlacedLamp> &lamps = tracer.lamps();
   for (std::size_t i = 0; i < lamps.size(); i++) {
     const glm::dvec2 u = even_point(sample, mixed(key + i));
-    sum += lit_by(lamps[i], receiver, side * surface.shading_normal_ws, view, bsdf, u);
+    // Occlusion is of the light from all around.
+    const double occlusion = lamps[i].kind == scene::LampKind::Hemi ? surface.occlusion : 1.0;
+    sum += occlusion * lit_by(lamps[i], receiver, side * surface.shading_normal_ws, view, bsdf, u);
   }
   return sum;
 }

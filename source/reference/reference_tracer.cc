@@ -40,12 +40,6 @@ bool is_finite(const glm::dvec3 &v)
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/** Matrix of cofactors. It transforms normals, up to the sign of the determinant, and exists for singular matrices. */
-glm::dmat3 cofactors(const glm::dmat3 &m)
-{
-  return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
-}
-
 /**
  * Margin of the boxes in the tree. Coordinates in the tree are at most 1, and a ray in its box is at most 2·√3 long.
  * Rounding the origin and unit direction of such a ray to float moves its points by at most 2^-24 + 3.5 · 2^-25, and
@@ -104,8 +98,10 @@ struct Tracer::Tree {
   {
     return scene.material_of(mesh_of(triangle));
   }
-  /** Linear RGB and alpha: the texture times the factors of the material. */
-  [[nodiscard]] glm::dvec4 base_color_at(const Triangle &triangle, const glm::dvec3 &weights) const;
+  [[nodiscard]] MeshPoint point_on(const Triangle &triangle, const glm::dvec3 &weights) const
+  {
+    return {scene, mesh_of(triangle), triangle.vertices, weights};
+  }
   /** false if the material is masked and cut out at this point. */
   [[nodiscard]] bool is_opaque_at(const Triangle &triangle, const glm::dvec3 &weights) const;
 
@@ -146,28 +142,11 @@ void Tracer::Tree::fail(const std::string &reason) const
   throw std::runtime_error(fmt::format("{}: cannot build the ray tracing tree: {}", scene.path, reason));
 }
 
-glm::dvec4 Tracer::Tree::base_color_at(const Triangle &triangle, const glm::dvec3 &weights) const
-{
-  const scene::Material &material = material_of(triangle);
-  const glm::dvec4 factor(material.base_color, material.alpha);
-  const scene::Mesh &mesh = mesh_of(triangle);
-  const scene::Texture *texture = scene.textures().find(material.base_color_texture);
-  const scene::Image *image = texture ? scene.images().find(texture->image) : nullptr;
-  if (!image || mesh.uvs.empty()) {
-    return factor;
-  }
-  glm::dvec2 uv(0.0);
-  for (std::size_t i = 0; i < 3; i++) {
-    uv += weights[int(i)] * glm::dvec2(mesh.uvs[triangle.vertices[i]]);
-  }
-  return factor * texture_at(*image, *texture, uv);
-}
-
 bool Tracer::Tree::is_opaque_at(const Triangle &triangle, const glm::dvec3 &weights) const
 {
   const scene::Material &material = material_of(triangle);
   return material.alpha_mode != scene::AlphaMode::Mask ||
-         base_color_at(triangle, weights).a >= double(material.alpha_cutoff);
+         point_on(triangle, weights).base_color().a >= double(material.alpha_cutoff);
 }
 
 void Tracer::Tree::add_object(std::uint32_t index)
@@ -410,29 +389,43 @@ bool Tracer::is_blocked(const glm::dvec3 &point_ws, double error_m, const LightP
 Surface Tracer::surface_at(const Hit &hit) const
 {
   const Triangle &triangle = tree_->triangles[hit.triangle];
-  const scene::Mesh &mesh = tree_->mesh_of(triangle);
+  const MeshPoint point = tree_->point_on(triangle, hit.weights);
+  const scene::Material &material = point.scene.material_of(point.mesh);
   const TrianglePlane plane(triangle.corners);
   Surface surface;
   surface.object = triangle.object;
-  surface.material = &tree_->scene.material_of(mesh);
-  surface.base_color = glm::dvec3(tree_->base_color_at(triangle, hit.weights));
+  surface.material = &material;
   surface.geometric_normal_ws = plane.normal / plane.normal_length;
   const Corners &corners = triangle.corners;
   surface.error_m =
       triangle.error_m + std::max({position_error(corners[0]), position_error(corners[1]), position_error(corners[2])});
-  glm::dvec3 normal(0.0);
   for (std::size_t i = 0; i < 3; i++) {
-    const double weight = hit.weights[int(i)];
-    surface.position_ws += weight * triangle.corners[i];
-    normal += weight * glm::dvec3(mesh.normals[triangle.vertices[i]]);
+    surface.position_ws += hit.weights[int(i)] * triangle.corners[i];
   }
   const glm::dmat3 linear(glm::dmat4(tree_->objects[triangle.object].world_from_object));
-  normal = cofactors(linear) * normal;
-  if (glm::determinant(linear) < 0.0) {
-    normal = -normal;
-  }
-  const double length = glm::length(normal);
-  surface.shading_normal_ws = length > 0.0 && std::isfinite(length) ? normal / length : surface.geometric_normal_ws;
+  const auto unit_or = [](const glm::dvec3 &v, const glm::dvec3 &fallback) {
+    const double length = glm::length(v);
+    return length > 0.0 && std::isfinite(length) ? v / length : fallback;
+  };
+  surface.smooth_normal_ws = unit_or(point.smooth_normal_ws(linear), surface.geometric_normal_ws);
+  surface.shading_normal_ws = unit_or(point.normal_ws(linear), surface.smooth_normal_ws);
+
+  const auto texel = [&point](const scene::TextureSlot &slot, bool is_color) {
+    return point.texture(slot, is_color).value_or(glm::dvec4(1.0));
+  };
+  const glm::dvec4 roughness_metallic = texel(material.metallic_roughness_texture, false);
+  surface.base_color = glm::dvec3(point.base_color());
+  surface.metallic = double(material.metallic) * roughness_metallic.b;
+  surface.roughness = double(material.roughness) * roughness_metallic.g;
+  surface.specular = double(material.specular) * texel(material.specular_texture, false).a;
+  surface.specular_color =
+      glm::dvec3(material.specular_color) * glm::dvec3(texel(material.specular_color_texture, true));
+  // Without the texture that says where it emits, it does not.
+  surface.emissive = material.emissive_texture
+                         ? glm::dvec3(material.emissive) *
+                               glm::dvec3(point.texture(material.emissive_texture, true).value_or(glm::dvec4(0.0)))
+                         : glm::dvec3(material.emissive);
+  surface.occlusion = 1.0 + double(material.occlusion_strength) * (texel(material.occlusion_texture, false).r - 1.0);
   return surface;
 }
 

@@ -41,14 +41,26 @@ struct Surface {
   double error_m = 0.0;
   /** Normal of the triangle, unit vector, on its front side. */
   glm::dvec3 geometric_normal_ws{0.0, 0.0, 1.0};
-  /** Interpolated normal, unit vector, on the front side. The geometric normal if the mesh's normals add up to zero. */
+  /**
+   * Interpolated normal with the normal texture, unit vector, on the front side. The geometric normal if the mesh's
+   * normals add up to zero.
+   */
   glm::dvec3 shading_normal_ws{0.0, 0.0, 1.0};
+  /** The same without the normal texture. */
+  glm::dvec3 smooth_normal_ws{0.0, 0.0, 1.0};
   /** Index in Scene::objects(). */
   std::uint32_t object = 0;
   /** Of the scene; valid until it is edited. */
   const scene::Material *material = nullptr;
-  /** Linear; the material's, and its texture's at its full size. */
+  /** The material's factors times its textures, at their full size, and vertex colours. Linear. */
   glm::dvec3 base_color{1.0};
+  double metallic = 1.0;
+  double roughness = 1.0;
+  double specular = 1.0;
+  glm::dvec3 specular_color{1.0};
+  glm::dvec3 emissive{0.0};
+  /** The part of the light from all around that arrives. */
+  double occlusion = 1.0;
 };
 
 /** A point of a lamp: the end of a shadow ray. */

@@ -33,34 +33,48 @@ gpu::MipFilter gpu_mip_filter(scene::MipFilter filter)
   return gpu::MipFilter::None;
 }
 
-gpu::Texture make_image(gpu::Device &device, const scene::Image &image)
+gpu::Texture make_image(gpu::Device &device, const scene::Image &image, bool is_color)
 {
   gpu::Texture texture =
       device.create_texture({.name = image.name,
-                             .format = gpu::Format::SRGB8A8,
+                             .format = is_color ? gpu::Format::SRGB8A8 : gpu::Format::RGBA8,
                              .width = int(image.width),
                              .height = int(image.height),
                              .mip_levels = int(std::bit_width(std::max(image.width, image.height)))});
   // The first row has v = 0 in the scene and on the device.
   device.upload(texture, 0, std::as_bytes(std::span(image.texels)));
-  device.generate_mipmaps(texture);
+  if (texture.desc().mip_levels > 1) {
+    device.generate_mipmaps(texture);
+  }
   return texture;
 }
 
 }  // namespace
 
-Images::Lookup Images::get(gpu::Device &device, const scene::Scene &scene, scene::Handle<scene::Texture> handle)
+Images::Lookup Images::get(gpu::Device &device, const scene::Scene &scene, scene::Handle<scene::Texture> handle,
+                           bool is_color)
 {
+  if (!is_drawable(scene, handle)) {
+    if (!white_) {
+      white_ = make_image(device, {"white", 1, 1, {255, 255, 255, 255}}, false);
+    }
+    return {white_, sampler(device, {})};
+  }
   const scene::Texture &texture = scene.textures()[handle];
-  const scene::Image &image = scene.images()[texture.image];
   const scene::Revision content = scene.images().revision(texture.image, scene::Image::Aspect::Content);
-  if (entries_.size() <= texture.image.index) {
-    entries_.resize(scene.images().index_end());
+  std::vector<Entry> &entries = entries_[is_color ? 1 : 0];
+  if (entries.size() <= texture.image.index) {
+    entries.resize(scene.images().index_end());
   }
-  Entry &entry = entries_[texture.image.index];
+  Entry &entry = entries[texture.image.index];
   if (!entry.texture || entry.handle != texture.image || entry.content != content) {
-    entry = {make_image(device, image), texture.image, content};
+    entry = {make_image(device, scene.images()[texture.image], is_color), texture.image, content};
   }
+  return {entry.texture, sampler(device, texture)};
+}
+
+const gpu::Sampler &Images::sampler(gpu::Device &device, const scene::Texture &texture)
+{
   const std::uint32_t key = std::uint32_t(texture.magnified) | std::uint32_t(texture.minified) << 4U |
                             std::uint32_t(texture.mip) << 8U | std::uint32_t(texture.wrap_u) << 12U |
                             std::uint32_t(texture.wrap_v) << 16U;
@@ -74,26 +88,33 @@ Images::Lookup Images::get(gpu::Device &device, const scene::Scene &scene, scene
                                      .wrap_u = gpu_wrap(texture.wrap_u),
                                      .wrap_v = gpu_wrap(texture.wrap_v)});
   }
-  return {entry.texture, sampler};
+  return sampler;
 }
 
-const gpu::Texture *Images::find(scene::Handle<scene::Image> handle) const
+const gpu::Texture *Images::find(scene::Handle<scene::Image> handle, bool is_color) const
 {
+  const std::vector<Entry> &entries = entries_[is_color ? 1 : 0];
   const bool is_made =
-      handle.index < entries_.size() && entries_[handle.index].handle == handle && entries_[handle.index].texture;
-  return is_made ? &entries_[handle.index].texture : nullptr;
+      handle.index < entries.size() && entries[handle.index].handle == handle && entries[handle.index].texture;
+  return is_made ? &entries[handle.index].texture : nullptr;
 }
 
 std::size_t Images::count() const
 {
-  return std::size_t(std::ranges::count_if(entries_, [](const Entry &entry) { return bool(entry.texture); }));
+  std::size_t count = 0;
+  for (const std::vector<Entry> &entries : entries_) {
+    count += std::size_t(std::ranges::count_if(entries, [](const Entry &entry) { return bool(entry.texture); }));
+  }
+  return count;
 }
 
 void Images::free_removed(const scene::Pool<scene::Image> &images)
 {
-  for (Entry &entry : entries_) {
-    if (entry.texture && !images.is_live(entry.handle)) {
-      entry = {};
+  for (std::vector<Entry> &entries : entries_) {
+    for (Entry &entry : entries) {
+      if (entry.texture && !images.is_live(entry.handle)) {
+        entry = {};
+      }
     }
   }
 }

@@ -17,31 +17,77 @@ bool is_drawable(const scene::Material &material)
   return material.alpha_mode != scene::AlphaMode::Mask || material.alpha >= material.alpha_cutoff;
 }
 
-bool is_textured(const scene::Scene &scene, const scene::Mesh &mesh)
+bool is_drawable(const scene::Scene &scene, const scene::Mesh &mesh, const scene::TextureSlot &slot)
 {
-  return !mesh.uvs.empty() && is_drawable(scene, scene.material_of(mesh).base_color_texture);
+  return is_drawable(scene, slot.texture) && !mesh.uv_set(slot.uv_set).empty();
 }
 
-bool is_masked(const scene::Scene &scene, const scene::Material &material)
+MaterialClass material_class(const scene::Scene &scene, const scene::Mesh &mesh)
 {
-  return material.alpha_mode == scene::AlphaMode::Mask && is_drawable(scene, material.base_color_texture) &&
-         is_drawable(material) && material.alpha_cutoff > 0.0F;
+  const scene::Material &material = scene.material_of(mesh);
+  const scene::TextureSlot &base_color = material.base_color_texture;
+  const bool is_full = std::ranges::any_of(scene::texture_inputs, [&](const scene::TextureInput &input) {
+    const scene::TextureSlot &slot = material.*input.slot;
+    if (!is_drawable(scene, mesh, slot)) {
+      return false;
+    }
+    if (input.slot == &scene::Material::base_color_texture) {
+      return slot.uv_set != 0 || slot.is_transformed() || material.is_unlit;
+    }
+    return input.slot != &scene::Material::normal_texture || !mesh.tangents.empty();
+  });
+  if (is_full || !mesh.colors.empty()) {
+    return MaterialClass::Full;
+  }
+  return is_drawable(scene, mesh, base_color) ? MaterialClass::BaseColor : MaterialClass::Plain;
 }
 
-shared::MaterialData material_data(const scene::Material &material, bool is_masked)
+bool is_masked(const scene::Scene &scene, const scene::Mesh &mesh)
 {
-  // glTF 2.0, appendix B, and KHR_materials_specular; 0.04 is a dielectric of index 1.5.
-  constexpr float dielectric_f0 = 0.04F;
-  const glm::vec3 dielectric = glm::min(dielectric_f0 * material.specular_color, glm::vec3(1.0F)) * material.specular;
-  shared::MaterialData data{};
-  data.diffuse = material.base_color * (1.0F - material.metallic);
-  data.alpha = std::max(material.roughness * material.roughness, shared::ALPHA_MIN);
-  data.specular_f0 = glm::mix(dielectric, material.base_color, material.metallic);
-  data.specular_f90 = shared::grazing_reflection(data.specular_f0);
-  data.emissive = material.emissive;
-  data.metal_f0 = material.base_color * material.metallic;
-  if (is_masked) {
+  const scene::Material &material = scene.material_of(mesh);
+  return material.alpha_mode == scene::AlphaMode::Mask && material.alpha_cutoff > 0.0F && is_drawable(material) &&
+         (is_drawable(scene, mesh, material.base_color_texture) || !mesh.colors.empty());
+}
+
+shared::MaterialData material_data(const scene::Material &material)
+{
+  shared::MaterialData data = material.is_unlit ? shared::unlit_material(material.base_color)
+                                                : shared::metallic_roughness_material(
+                                                      material.base_color, material.metallic, material.roughness,
+                                                      material.specular_color, material.specular);
+  if (!material.is_unlit && !material.emissive_texture) {
+    data.emissive = material.emissive;
+  }
+  if (material.alpha_mode == scene::AlphaMode::Mask && is_drawable(material) && material.alpha_cutoff > 0.0F) {
     data.mask_cutoff = material.alpha_cutoff / material.alpha;
+  }
+  return data;
+}
+
+shared::FullMaterialData full_material_data(const scene::Scene &scene, const scene::Material &material)
+{
+  shared::FullMaterialData data{};
+  data.base_color = material.base_color;
+  data.metallic = material.metallic;
+  data.roughness = material.roughness;
+  data.specular_color = material.specular_color;
+  data.specular = material.specular;
+  data.emissive = is_drawable(scene, material.emissive_texture.texture) || !material.emissive_texture
+                      ? material.emissive
+                      : glm::vec3(0.0F);
+  data.normal_scale = material.normal_scale;
+  data.occlusion_strength = material.occlusion_strength;
+  data.inputs = material.is_unlit ? INPUT_UNLIT : 0U;
+  for (std::size_t i = 0; i < scene::texture_inputs.size(); i++) {
+    const scene::TextureSlot &slot = material.*scene::texture_inputs[i].slot;
+    if (is_drawable(scene, slot.texture)) {
+      data.inputs |= 1U << i;
+    }
+    const glm::dmat3x2 uv_from_mesh = slot.uv_from_mesh();
+    for (int row = 0; row < 2; row++) {
+      data.uv_rows[2 * i + std::size_t(row)] = {uv_from_mesh[0][row], uv_from_mesh[1][row], uv_from_mesh[2][row],
+                                                slot.uv_set};
+    }
   }
   return data;
 }
@@ -51,45 +97,61 @@ std::uint32_t MaterialTable::place_of(const scene::Scene &scene, scene::Handle<s
   return scene.materials().is_live(material) ? material.index + 1 : 0;
 }
 
+template <typename Entry>
+void MaterialTable::replace(std::vector<Entry> &entries, std::vector<Entry> changed, Block &block)
+{
+  for (std::size_t place = 0; place < changed.size(); place++) {
+    const bool is_same = place < entries.size() && std::memcmp(&changed[place], &entries[place], sizeof(Entry)) == 0;
+    if (!is_same) {
+      block.changed_begin = std::min(block.changed_begin, place);
+      block.changed_end = std::max(block.changed_end, place + 1);
+    }
+  }
+  entries = std::move(changed);
+}
+
 void MaterialTable::update(const scene::Scene &scene)
 {
   const scene::Pool<scene::Material> &materials = scene.materials();
-  // A removed image changes which materials are masked.
+  // A removed image changes which textures are there.
   const scene::Revision latest =
       std::max({materials.latest(), scene.textures().latest(), scene.images().latest(scene::Image::Aspect::Content)});
   if (!entries_.empty() && latest == seen_) {
     return;
   }
-  std::vector<shared::MaterialData> entries(materials.index_end() + 1, material_data({}, false));
+  std::vector<shared::MaterialData> entries(materials.index_end() + 1, material_data({}));
+  std::vector<shared::FullMaterialData> full_entries(entries.size(), full_material_data(scene, {}));
   for (const auto &[handle, material] : materials) {
-    entries[handle.index + 1] = material_data(material, is_masked(scene, material));
+    entries[handle.index + 1] = material_data(material);
+    full_entries[handle.index + 1] = full_material_data(scene, material);
   }
-  for (std::size_t place = 0; place < entries.size(); place++) {
-    const bool is_same =
-        place < entries_.size() && std::memcmp(&entries[place], &entries_[place], sizeof(shared::MaterialData)) == 0;
-    if (!is_same) {
-      changed_begin_ = std::min(changed_begin_, place);
-      changed_end_ = std::max(changed_end_, place + 1);
-    }
-  }
-  entries_ = std::move(entries);
+  replace(entries_, std::move(entries), entries_block_);
+  replace(full_entries_, std::move(full_entries), full_block_);
   seen_ = latest;
 }
 
-void MaterialTable::upload(gpu::Device &device)
+template <typename Entry>
+void MaterialTable::upload(gpu::Device &device, const char *name, const std::vector<Entry> &entries, Block &block)
 {
-  const auto bytes = std::as_bytes(std::span(entries_));
-  if (!buffer_ || buffer_.size_bytes() != bytes.size()) {
-    buffer_ = device.create_buffer({"material_block", gpu::BufferKind::Storage, bytes.size()});
-    changed_begin_ = 0;
-    changed_end_ = entries_.size();
+  const auto bytes = std::as_bytes(std::span(entries));
+  if (!block.buffer || block.buffer.size_bytes() != bytes.size()) {
+    block.buffer = device.create_buffer({name, gpu::BufferKind::Storage, bytes.size()});
+    block.changed_begin = 0;
+    block.changed_end = entries.size();
   }
-  if (changed_begin_ < changed_end_) {
-    constexpr std::size_t entry_bytes = sizeof(shared::MaterialData);
-    device.update(buffer_, changed_begin_ * entry_bytes,
-                  bytes.subspan(changed_begin_ * entry_bytes, (changed_end_ - changed_begin_) * entry_bytes));
-    changed_begin_ = entries_.size();
-    changed_end_ = 0;
+  if (block.changed_begin < block.changed_end) {
+    const std::size_t first = block.changed_begin * sizeof(Entry);
+    device.update(block.buffer, first, bytes.subspan(first, block.changed_end * sizeof(Entry) - first));
+    block.changed_begin = entries.size();
+    block.changed_end = 0;
+  }
+}
+
+void MaterialTable::upload(gpu::Device &device, bool needs_full)
+{
+  upload(device, "material_block", entries_, entries_block_);
+  if (needs_full || full_block_.buffer) {
+    upload(device, "full_material_block", full_entries_, full_block_);
   }
 }
 

@@ -1,10 +1,50 @@
 // SPDX-License-Identifier: MIT
 #include "render_meshes.hh"
 
+#include <glm/gtc/packing.hpp>
+
+#include <algorithm>
+
 namespace gnomon::render_scene {
 
+namespace {
+
+template <typename Packed>
+std::vector<Packed> packed(const std::vector<glm::vec4> &values, std::size_t count, Packed absent,
+                           Packed (*pack)(const glm::vec4 &))
+{
+  std::vector<Packed> result(values.empty() ? count : 0, absent);
+  std::ranges::transform(values, std::back_inserter(result), pack);
+  return result;
+}
+
+gpu::Batch make_batch(gpu::Device &device, const scene::Mesh &mesh, MeshStreams streams)
+{
+  gpu::BatchDesc desc{mesh.name, mesh.positions, mesh.normals, mesh.indices};
+  if (streams >= MeshStreams::Uvs) {
+    desc.uvs = mesh.uvs;
+  }
+  if (streams < MeshStreams::All) {
+    return device.create_batch(desc);
+  }
+  const std::size_t count = mesh.positions.size();
+  const std::vector<glm::vec2> zeros(mesh.uvs.empty() || mesh.second_uvs.empty() ? count : 0, glm::vec2(0.0F));
+  desc.uvs = mesh.uvs.empty() ? zeros : mesh.uvs;
+  desc.second_uvs = mesh.second_uvs.empty() ? zeros : mesh.second_uvs;
+  const auto tangents = packed<glm::i16vec4>(mesh.tangents, count, glm::i16vec4(0), [](const glm::vec4 &tangent) {
+    return glm::packSnorm<glm::int16>(tangent);
+  });
+  const auto colors = packed<glm::u16vec4>(mesh.colors, count, glm::u16vec4(65535),
+                                           [](const glm::vec4 &color) { return glm::packUnorm<glm::uint16>(color); });
+  desc.tangents = tangents;
+  desc.colors = colors;
+  return device.create_batch(desc);
+}
+
+}  // namespace
+
 const gpu::Batch &Meshes::get(gpu::Device &device, const scene::Pool<scene::Mesh> &meshes,
-                              scene::Handle<scene::Mesh> handle, bool needs_uvs)
+                              scene::Handle<scene::Mesh> handle, MeshStreams streams)
 {
   const scene::Mesh &mesh = meshes[handle];
   const scene::Revision shape = meshes.revision(handle, scene::Mesh::Aspect::Shape);
@@ -13,12 +53,10 @@ const gpu::Batch &Meshes::get(gpu::Device &device, const scene::Pool<scene::Mesh
   }
   Entry &entry = entries_[handle.index];
   const bool is_same = entry.batch && entry.handle == handle && entry.shape == shape;
-  if (!is_same || (needs_uvs && !entry.has_uvs)) {
-    // Once it has texture coordinates it keeps them: another viewport may read them.
-    const bool has_uvs = needs_uvs || (is_same && entry.has_uvs);
-    gpu::Batch batch = device.create_batch({mesh.name, mesh.positions, mesh.normals, mesh.indices,
-                                            has_uvs ? std::span(mesh.uvs) : std::span<const glm::vec2>()});
-    entry = {std::move(batch), handle, shape, has_uvs};
+  if (!is_same || streams > entry.streams) {
+    // Once it has a stream it keeps it: another viewport may read it.
+    const MeshStreams all = is_same ? std::max(streams, entry.streams) : streams;
+    entry = {make_batch(device, mesh, all), handle, shape, all};
   }
   return entry.batch;
 }

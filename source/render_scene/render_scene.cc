@@ -164,10 +164,10 @@ void RenderScene::update_revisions()
   materials_revision_ += materials.latest(Material::Surface) > seen_ ? 1 : 0;
 }
 
-void RenderScene::upload()
+void RenderScene::upload(bool needs_full_materials)
 {
   objects_.upload(device_);
-  materials_.upload(device_);
+  materials_.upload(device_, needs_full_materials);
 }
 
 }  // namespace gnomon::render_scene

@@ -103,13 +103,14 @@ class RenderScene {
   /** The camera, relative to origin_ws(). */
   [[nodiscard]] scene::PlacedCamera relative(scene::PlacedCamera camera) const;
 
-  [[nodiscard]] const gpu::Batch &batch(scene::Handle<scene::Mesh> mesh, bool needs_uvs)
+  [[nodiscard]] const gpu::Batch &batch(scene::Handle<scene::Mesh> mesh, MeshStreams streams)
   {
-    return meshes_.get(device_, scene_.meshes(), mesh, needs_uvs);
+    return meshes_.get(device_, scene_.meshes(), mesh, streams);
   }
-  [[nodiscard]] Images::Lookup texture(scene::Handle<scene::Texture> texture)
+  /** \a is_color: \see scene::TextureInput. A texture that cannot be drawn is white. */
+  [[nodiscard]] Images::Lookup texture(scene::Handle<scene::Texture> texture, bool is_color)
   {
-    return images_.get(device_, scene_, texture);
+    return images_.get(device_, scene_, texture, is_color);
   }
   [[nodiscard]] const Meshes &meshes() const
   {
@@ -123,8 +124,11 @@ class RenderScene {
   {
     return materials_;
   }
-  /** Write object_block and material_block, as far as they changed. \throws gpu::Error past the device's limits. */
-  void upload();
+  /**
+   * Write object_block, material_block and, where \a needs_full_materials, full_material_block, as far as they changed.
+   * \throws gpu::Error past the device's limits.
+   */
+  void upload(bool needs_full_materials);
 
  private:
   /** One node's objects. */

@@ -6,8 +6,17 @@
 #include <glm/vec4.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace gnomon::scene {
+
+glm::dmat3x2 TextureSlot::uv_from_mesh() const
+{
+  const double sine = std::sin(double(rotation));
+  const double cosine = std::cos(double(rotation));
+  // v runs down the image, which turns the sense of the angle.
+  return {glm::dvec2(cosine, -sine) * double(scale.x), glm::dvec2(sine, cosine) * double(scale.y), glm::dvec2(offset)};
+}
 
 float Bounds::radius() const
 {
@@ -118,7 +127,9 @@ std::vector<std::string> Scene::stale_references() const
     check("mesh", mesh.name, materials_, mesh.material);
   }
   for (const auto &[handle, material] : materials_) {
-    check("material", material.name, textures_, material.base_color_texture);
+    for (const TextureInput &input : texture_inputs) {
+      check("material", material.name, textures_, (material.*input.slot).texture);
+    }
   }
   for (const auto &[handle, texture] : textures_) {
     check("texture", std::to_string(handle.index), images_, texture.image);

@@ -36,7 +36,8 @@ Changes changes(const Mesh &a, const Mesh &b)
 {
   using enum Mesh::Aspect;
   const bool same_shape = same_elements(a.positions, b.positions) && same_elements(a.normals, b.normals) &&
-                          same_elements(a.uvs, b.uvs) && same_elements(a.colors, b.colors) &&
+                          same_elements(a.uvs, b.uvs) && same_elements(a.second_uvs, b.second_uvs) &&
+                          same_elements(a.tangents, b.tangents) && same_elements(a.colors, b.colors) &&
                           same_elements(a.indices, b.indices);
   return bit_if(a.name != b.name, Name) | bit_if(!same_shape, Shape) | bit_if(a.material != b.material, Material);
 }
@@ -55,16 +56,26 @@ Changes changes(const Texture &a, const Texture &b)
   return bit_if(a.image != b.image, Texture::Aspect::Image) | bit_if(!same_sampler, Texture::Aspect::Sampler);
 }
 
+bool same_slot(const TextureSlot &a, const TextureSlot &b)
+{
+  return a.texture == b.texture && a.uv_set == b.uv_set && same_bytes(a.offset, b.offset) &&
+         same_bytes(a.rotation, b.rotation) && same_bytes(a.scale, b.scale);
+}
+
 Changes changes(const Material &a, const Material &b)
 {
   using enum Material::Aspect;
   const bool same_surface = same_bytes(a.base_color, b.base_color) && same_bytes(a.metallic, b.metallic) &&
                             same_bytes(a.roughness, b.roughness) && same_bytes(a.specular, b.specular) &&
-                            same_bytes(a.specular_color, b.specular_color) && same_bytes(a.emissive, b.emissive);
+                            same_bytes(a.specular_color, b.specular_color) && same_bytes(a.emissive, b.emissive) &&
+                            same_bytes(a.normal_scale, b.normal_scale) &&
+                            same_bytes(a.occlusion_strength, b.occlusion_strength) && a.is_unlit == b.is_unlit;
   const bool same_coverage = same_bytes(a.alpha, b.alpha) && a.alpha_mode == b.alpha_mode &&
                              same_bytes(a.alpha_cutoff, b.alpha_cutoff) && a.is_double_sided == b.is_double_sided;
+  const bool same_textures = std::ranges::all_of(
+      texture_inputs, [&](const TextureInput &input) { return same_slot(a.*input.slot, b.*input.slot); });
   return bit_if(a.name != b.name, Name) | bit_if(!same_surface, Surface) | bit_if(!same_coverage, Coverage) |
-         bit_if(a.base_color_texture != b.base_color_texture, Textures);
+         bit_if(!same_textures, Textures);
 }
 
 Changes changes(const Lamp &a, const Lamp &b)
@@ -111,12 +122,15 @@ void check(const Mesh &mesh)
   if (mesh.normals.size() != count) {
     refuse("mesh", mesh.name, "{} normals for {} positions", mesh.normals.size(), count);
   }
-  if (!mesh.uvs.empty() && mesh.uvs.size() != count) {
-    refuse("mesh", mesh.name, "{} uvs for {} positions", mesh.uvs.size(), count);
-  }
-  if (!mesh.colors.empty() && mesh.colors.size() != count) {
-    refuse("mesh", mesh.name, "{} colours for {} positions", mesh.colors.size(), count);
-  }
+  const auto check_count = [&](std::string_view what, std::size_t size) {
+    if (size != 0 && size != count) {
+      refuse("mesh", mesh.name, "{} {} for {} positions", size, what, count);
+    }
+  };
+  check_count("uvs", mesh.uvs.size());
+  check_count("second uvs", mesh.second_uvs.size());
+  check_count("tangents", mesh.tangents.size());
+  check_count("colours", mesh.colors.size());
   if (mesh.indices.size() % 3 != 0) {
     refuse("mesh", mesh.name, "{} indices are not three for each triangle", mesh.indices.size());
   }

@@ -3,11 +3,13 @@
 
 #include "scene_handle.hh"
 
+#include <glm/mat3x2.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -44,7 +46,10 @@ struct Bounds {
 /** The box around \a bounds after a transform; an empty box stays empty. */
 [[nodiscard]] Bounds transformed(const Bounds &bounds, const glm::mat4 &target_from_source);
 
-/** Texels of four bytes each: red, green and blue encoded as sRGB, and linear alpha, not multiplied in. */
+/**
+ * Texels of four bytes each, alpha not multiplied in. A texture of colours takes red, green and blue as encoded by
+ * sRGB; a texture of data takes them as linear (TextureInput::is_color). Alpha is always linear.
+ */
 struct Image {
   static constexpr std::string_view kind_name = "image";
   enum class Aspect { Name, Content, Count };
@@ -77,37 +82,106 @@ struct Texture {
   MipFilter mip = MipFilter::Linear;
 };
 
+/** A texture as a material looks it up: at offset + rotation · (scale · uv), as KHR_texture_transform defines. */
+struct TextureSlot {
+  TextureSlot() = default;
+  TextureSlot(Handle<Texture> texture_) : texture(texture_) {}
+
+  /** Names nothing: no texture. */
+  Handle<Texture> texture{};
+  /** 0: Mesh::uvs. 1: Mesh::second_uvs. */
+  int uv_set = 0;
+  glm::vec2 offset{0.0F};
+  /** Radians, counter-clockwise as one sees the image. */
+  float rotation = 0.0F;
+  glm::vec2 scale{1.0F};
+
+  /** Whether there is a handle; the texture may have been removed. */
+  explicit operator bool() const
+  {
+    return bool(texture);
+  }
+  bool operator==(const TextureSlot &) const = default;
+  [[nodiscard]] bool is_transformed() const
+  {
+    return offset != glm::vec2(0.0F) || rotation != 0.0F || scale != glm::vec2(1.0F);
+  }
+  /** The transform: the image is looked up at `uv_from_mesh * vec3(uv, 1)`. */
+  [[nodiscard]] glm::dmat3x2 uv_from_mesh() const;
+};
+
 enum class AlphaMode { Opaque, Mask, Blend };
 
-/** Metallic-roughness surface of glTF 2.0 with KHR_materials_specular. All factors are in [0, 1]. */
+/**
+ * Metallic-roughness surface of glTF 2.0 with KHR_materials_specular and KHR_materials_unlit. All factors are in [0,
+ * 1]. A mesh without the uvs of a slot is drawn without its texture.
+ */
 struct Material {
   static constexpr std::string_view kind_name = "material";
   /**
    * Surface: factors of the shading. Coverage: what decides which parts of a surface exist, and therefore its shadow:
-   * alpha mode, alpha, cutoff, sides. Textures: which textures are read.
+   * alpha mode, alpha, cutoff, sides. Textures: which textures are read, and where.
    */
   enum class Aspect { Name, Surface, Coverage, Textures, Count };
 
   std::string name{};
   glm::vec3 base_color{1.0F};
   float alpha = 1.0F;
-  /** Multiplied with base_color and alpha, at Mesh::uvs. Names nothing: no texture. */
-  Handle<Texture> base_color_texture{};
+  /** Multiplied with base_color and alpha. */
+  TextureSlot base_color_texture{};
   float metallic = 1.0F;
   /** Perceptual; GGX alpha is its square. */
   float roughness = 1.0F;
+  /** Green is multiplied with roughness, and blue with metallic. */
+  TextureSlot metallic_roughness_texture{};
+  /** Tangent space; needs Mesh::tangents. Red and green, mapped to [-1, 1], are multiplied with normal_scale. */
+  TextureSlot normal_texture{};
+  /** Any finite value. */
+  float normal_scale = 1.0F;
+  /** Red: the part of the light from all around that arrives. It does not affect light from lamps other than Hemi. */
+  TextureSlot occlusion_texture{};
+  /** 0: occlusion_texture has no effect. */
+  float occlusion_strength = 1.0F;
   /** Scales dielectric reflection at normal incidence (0.04); 0 leaves a Lambertian surface. */
   float specular = 1.0F;
   /** Tints dielectric reflection. May exceed 1; the product with 0.04 is clamped to 1. */
   glm::vec3 specular_color{1.0F};
+  /** Alpha is multiplied with specular. */
+  TextureSlot specular_texture{};
+  /** Multiplied with specular_color. */
+  TextureSlot specular_color_texture{};
   /** Scene-linear radiance, W/(sr m²) per channel. May exceed 1. */
   glm::vec3 emissive{0.0F};
+  /** Multiplied with emissive. */
+  TextureSlot emissive_texture{};
+  /** Lamps have no effect on it: its radiance is the base colour. */
+  bool is_unlit = false;
   AlphaMode alpha_mode = AlphaMode::Opaque;
   /** Mask only: the surface is cut out where alpha is below. */
   float alpha_cutoff = 0.5F;
   /** false: back faces are not drawn and cast no light. */
   bool is_double_sided = false;
 };
+
+/** One of a material's texture slots. */
+struct TextureInput {
+  TextureSlot Material::*slot;
+  /** The name of the slot: also of the sampler in shaders. */
+  std::string_view name;
+  /** Red, green and blue are encoded as sRGB. */
+  bool is_color;
+};
+
+/** All of them. */
+inline constexpr std::array<TextureInput, 7> texture_inputs = {{
+    {&Material::base_color_texture, "base_color_texture", true},
+    {&Material::metallic_roughness_texture, "metallic_roughness_texture", false},
+    {&Material::normal_texture, "normal_texture", false},
+    {&Material::occlusion_texture, "occlusion_texture", false},
+    {&Material::emissive_texture, "emissive_texture", true},
+    {&Material::specular_texture, "specular_texture", false},
+    {&Material::specular_color_texture, "specular_color_texture", true},
+}};
 
 /** Indexed triangles of one material (a glTF primitive). Object space, metres. */
 struct Mesh {
@@ -119,10 +193,17 @@ struct Mesh {
   /** Unit vectors, one for each position. */
   std::vector<glm::vec3> normals{};
   /**
-   * Where the material's base colour texture is looked up, one for each position, with the texture's transform applied.
-   * (0, 0) is the outer corner of the image's first texel. Empty where the material has no texture.
+   * Where the material's textures are looked up, one for each position. (0, 0) is the outer corner of the image's first
+   * texel. Empty where no texture is looked up there.
    */
   std::vector<glm::vec2> uvs{};
+  /** A second set of the same kind. */
+  std::vector<glm::vec2> second_uvs{};
+  /**
+   * Along u of the normal texture, one unit vector for each position; w is 1 or -1: w · cross(normal, tangent) points
+   * up in the image, against v. Empty where the material has no normal texture. \see make_tangents
+   */
+  std::vector<glm::vec4> tangents{};
   /** Multiplied with the material's base colour and alpha: linear, in [0, 1], one for each position. Empty: white. */
   std::vector<glm::vec4> colors{};
   /** Three for each triangle, each below positions.size(). */
@@ -131,7 +212,30 @@ struct Mesh {
   Handle<Material> material{};
   /** The box around all positions. Scene::add and Scene::replace compute it. */
   Bounds bounds{};
+
+  /** By TextureSlot::uv_set. */
+  [[nodiscard]] const std::vector<glm::vec2> &uv_set(int set) const
+  {
+    return set == 0 ? uvs : second_uvs;
+  }
 };
+
+/** Calls \a function with each vector of \a mesh that holds a value for each position; empty ones are left out. */
+template <typename AnyMesh, typename Function>
+void for_each_stream(AnyMesh &mesh, Function &&function)
+{
+  const auto visit = [&](auto &stream) {
+    if (!stream.empty()) {
+      function(stream);
+    }
+  };
+  visit(mesh.positions);
+  visit(mesh.normals);
+  visit(mesh.uvs);
+  visit(mesh.second_uvs);
+  visit(mesh.tangents);
+  visit(mesh.colors);
+}
 
 enum class LampKind { Point, Sun, Spot, Hemi, Area };
 

@@ -113,23 +113,34 @@ class Description {
     const std::string material =
         number(materials_, mesh.material,
                [this](const scene::Material &value, const std::string &name) { add_material(value, name); });
-    line("mesh {} '{}' material {} {} {} {} {} {}", number_of, mesh.name, material, values(mesh.positions),
-         values(mesh.normals), values(mesh.uvs), values(mesh.colors), values(mesh.indices));
+    line("mesh {} '{}' material {} {} {} {} {} {} {} {}", number_of, mesh.name, material, values(mesh.positions),
+         values(mesh.normals), values(mesh.uvs), values(mesh.second_uvs), values(mesh.tangents), values(mesh.colors),
+         values(mesh.indices));
   }
 
   void add_material(const scene::Material &m, const std::string &number_of)
   {
-    const std::string texture =
-        number(textures_, m.base_color_texture, [this](const scene::Texture &t, const std::string &name) {
-          const std::string image = number(images_, t.image, [this](const scene::Image &i, const std::string &at) {
-            line("image {} '{}' {}x{} {}", at, i.name, i.width, i.height, values(i.texels));
-          });
-          line("texture {} image {} {} {} {} {} {}", name, image, int(t.wrap_u), int(t.wrap_v), int(t.magnified),
-               int(t.minified), int(t.mip));
-        });
-    line("material {} '{}'{} {:a} texture {} {:a} {:a} {:a}{}{} {} {:a} {}", number_of, m.name,
-         numbers(m.base_color, 3), m.alpha, texture, m.metallic, m.roughness, m.specular, numbers(m.specular_color, 3),
-         numbers(m.emissive, 3), int(m.alpha_mode), m.alpha_cutoff, m.is_double_sided);
+    std::string textures;
+    for (const scene::TextureInput &input : scene::texture_inputs) {
+      const scene::TextureSlot &slot = m.*input.slot;
+      textures += fmt::format(" {} {} {:a}{}{}", texture_number(slot), slot.uv_set, slot.rotation,
+                              numbers(slot.offset, 2), numbers(slot.scale, 2));
+    }
+    line("material {} '{}'{} {:a} textures{} {:a} {:a} {:a}{}{} {} {:a} {} {:a} {:a} {}", number_of, m.name,
+         numbers(m.base_color, 3), m.alpha, textures, m.metallic, m.roughness, m.specular, numbers(m.specular_color, 3),
+         numbers(m.emissive, 3), int(m.alpha_mode), m.alpha_cutoff, m.is_double_sided, m.normal_scale,
+         m.occlusion_strength, m.is_unlit);
+  }
+
+  std::string texture_number(const scene::TextureSlot &slot)
+  {
+    return number(textures_, slot.texture, [this](const scene::Texture &t, const std::string &name) {
+      const std::string image = number(images_, t.image, [this](const scene::Image &i, const std::string &at) {
+        line("image {} '{}' {}x{} {}", at, i.name, i.width, i.height, values(i.texels));
+      });
+      line("texture {} image {} {} {} {} {} {}", name, image, int(t.wrap_u), int(t.wrap_v), int(t.magnified),
+           int(t.minified), int(t.mip));
+    });
   }
 
   void add_lamp(const scene::Lamp &l)
@@ -276,6 +287,19 @@ Handle<scene::Material> add_material(Scene &scene, Values &value)
   material.alpha_mode = scene::AlphaMode::Mask;
   material.alpha_cutoff = value(0, 1);
   material.is_double_sided = true;
+  int set = 0;
+  for (const scene::TextureInput &input : scene::texture_inputs) {
+    scene::TextureSlot &slot = material.*input.slot;
+    slot = material.base_color_texture;
+    slot.uv_set = set;
+    set = 1 - set;
+    slot.offset = {value(-1, 1), value(-1, 1)};
+    slot.rotation = value(0, 3);
+    slot.scale = {value(-2, 2), value(1, 2)};
+  }
+  material.normal_scale = value(-1, 2);
+  material.occlusion_strength = value(0, 1);
+  material.is_unlit = true;
   return scene.add(material);
 }
 
@@ -287,6 +311,8 @@ Scene full_scene()
   scene::Mesh textured = triangle("pair[0]", value);
   textured.material = add_material(scene, value);
   textured.uvs = {{0.1F, 0.2F}, {3, 0.3F}, {0.5F, -1}};
+  textured.second_uvs = {{0.7F, 0.2F}, {0.1F, 0.9F}, {-0.5F, 1}};
+  textured.tangents = {{1, 0, 0, 1}, {0, -1, 0, -1}, {0.6F, 0.8F, 0, 1}};
   const Handle<scene::Mesh> first = scene.add(textured);
   scene::Mesh plain = triangle("any \t name", value);
   scene::Material emissive;

@@ -654,20 +654,39 @@ TEST(GltfMaterial, AlphaModesAreReadAndNamed)
   EXPECT_WARNING(odd_scene, "alphaMode 'ODD' is unknown");
 }
 
-TEST(GltfMaterial, TexturesAreNamedOnceEach)
+TEST(GltfMaterial, MissingTexturesHaveStandInsThatAreNamed)
 {
   const json slot = {{"index", 0}};
-  const auto [one, one_scene] = import_material({{"normalTexture", slot}});
-  EXPECT_WARNING(one_scene, "material 'paint': normalTexture is not drawn yet");
-  const auto [all, all_scene] = import_material(
-      {{"pbrMetallicRoughness", {{"metallicRoughnessTexture", slot}}},
-       {"normalTexture", slot},
-       {"occlusionTexture", slot},
+  const auto [material, scene] = import_material(
+      {{"pbrMetallicRoughness", {{"baseColorTexture", slot}, {"metallicRoughnessTexture", slot}}},
+       {"normalTexture", {{"index", 0}, {"scale", 0.5}}},
+       {"occlusionTexture", {{"index", 0}, {"strength", 0.25}}},
        {"emissiveTexture", slot},
+       {"emissiveFactor", {1, 1, 1}},
        {"extensions", {{"KHR_materials_specular", {{"specularTexture", slot}, {"specularColorTexture", slot}}}}}});
-  EXPECT_WARNING(all_scene,
-                 "material 'paint': metallicRoughnessTexture, normalTexture, occlusionTexture, emissiveTexture, "
-                 "specularTexture, specularColorTexture are not drawn yet");
+  EXPECT_EQ(material.normal_scale, 0.5F);
+  EXPECT_EQ(material.occlusion_strength, 0.25F);
+  const auto stand_in = [&scene_ = scene](const scene::TextureSlot &of) {
+    const std::vector<std::uint8_t> &texels = scene_.images()[scene_.textures()[of.texture].image].texels;
+    return std::vector<int>(texels.begin(), texels.begin() + 4);
+  };
+  EXPECT_EQ(stand_in(material.base_color_texture), (std::vector{255, 0, 255, 255}));
+  EXPECT_EQ(stand_in(material.metallic_roughness_texture), (std::vector{255, 255, 0, 255})) << "no metal";
+  EXPECT_EQ(stand_in(material.normal_texture), (std::vector{128, 128, 255, 255}));
+  EXPECT_EQ(stand_in(material.occlusion_texture), (std::vector{255, 255, 255, 255}));
+  EXPECT_EQ(stand_in(material.emissive_texture), (std::vector{0, 0, 0, 255})) << "it must not shine all over";
+  EXPECT_EQ(stand_in(material.specular_texture), (std::vector{255, 255, 255, 255}));
+  EXPECT_EQ(stand_in(material.specular_color_texture), (std::vector{255, 255, 255, 255}));
+  EXPECT_WARNING(scene,
+                 "material 'paint': its metallicRoughnessTexture is drawn as no metal, of the factor's roughness: ");
+  EXPECT_WARNING(scene, "material 'paint': its emissiveTexture is drawn as no emission: ");
+}
+
+TEST(GltfMaterial, UnlitIsRead)
+{
+  const auto [material, scene] = import_material({{"extensions", {{"KHR_materials_unlit", json::object()}}}});
+  EXPECT_TRUE(material.is_unlit);
+  EXPECT_NO_WARNING(scene, "unlit");
 }
 
 TEST(GltfMaterial, ForeignModelsAreNamed)

@@ -66,10 +66,13 @@ Image only_image(const Bytes &file)
 std::string reason(const json &image)
 {
   const Scene scene = import(textured_triangle(image));
-  EXPECT_FALSE(nth(scene.materials(), 0).base_color_texture);
-  EXPECT_TRUE(scene.images().empty() && scene.textures().empty());
+  expect_valid(scene);
+  // The stand-in alone: a checkerboard.
+  EXPECT_EQ(nth(scene.materials(), 0).base_color_texture.texture, scene.textures().first());
+  EXPECT_TRUE(scene.images().size() == 1 && scene.textures().size() == 1);
+  EXPECT_EQ(nth(scene.images(), 0).texels, (Bytes{255, 0, 255, 255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 0, 255, 255}));
   EXPECT_EQ(scene.objects().size(), 1U);
-  EXPECT_WARNING(scene, "material 'paint': its baseColorFactor is drawn without a texture: ");
+  EXPECT_WARNING(scene, "material 'paint': its baseColorTexture is drawn as a checkerboard: ");
   return all_warnings(scene);
 }
 
@@ -270,6 +273,18 @@ std::vector<glm::vec2> uvs_of(const GltfBuilder &builder)
   return nth(import(builder).meshes(), 0).uvs;
 }
 
+/** Where the base colour texture is looked up. */
+std::vector<glm::dvec2> transformed_uvs_of(const GltfBuilder &builder)
+{
+  const Scene scene = import(builder);
+  const scene::Mesh &mesh = nth(scene.meshes(), 0);
+  std::vector<glm::dvec2> uvs;
+  for (const glm::vec2 &uv : mesh.uvs) {
+    uvs.push_back(scene.material_of(mesh).base_color_texture.uv_from_mesh() * glm::dvec3(uv, 1.0));
+  }
+  return uvs;
+}
+
 TEST(GltfUv, AreThoseOfTheVertices)
 {
   const std::vector<glm::vec2> uvs = uvs_of(textured_triangle());
@@ -307,12 +322,44 @@ TEST(GltfUv, TheSlotChoosesTheSetAndItsTransformGoesFirst)
   EXPECT_EQ(uvs_of(builder).at(2), glm::vec2(0.25F, 0.75F));
 }
 
+TEST(GltfUv, TwoSetsAreKeptAndAThirdIsNamed)
+{
+  GltfBuilder builder = textured_triangle();
+  json &attributes = builder.document["meshes"][0]["primitives"][0]["attributes"];
+  attributes["TEXCOORD_3"] = builder.accessor(std::vector<float>{5, 5, 6, 6, 7, 7}, Float32, "VEC2");
+  json &material = builder.document["materials"][0];
+  material["emissiveTexture"] = {{"index", 0}, {"texCoord", 3}};
+  const Scene two = import(builder);
+  EXPECT_EQ(nth(two.meshes(), 0).uvs.at(2), glm::vec2(0.25F, 0.75F));
+  EXPECT_EQ(nth(two.meshes(), 0).second_uvs.at(2), glm::vec2(7));
+  EXPECT_EQ(nth(two.materials(), 0).emissive_texture.uv_set, 1);
+  EXPECT_EQ(two.images().size(), 1U) << "shared";
+  material["occlusionTexture"] = {{"index", 0}, {"texCoord", 5}};
+  EXPECT_WARNING(import(builder), "its occlusionTexture is drawn as no occlusion: texCoord: 5 is a third set");
+}
+
+TEST(GltfTangent, AreTheFilesOrMade)
+{
+  GltfBuilder builder = textured_triangle();
+  builder.document["materials"][0]["normalTexture"] = {{"index", 0}};
+  json &attributes = builder.document["meshes"][0]["primitives"][0]["attributes"];
+  const std::size_t made = nth(import(builder).meshes(), 0).tangents.size();
+  EXPECT_EQ(made, 3U);
+  attributes["NORMAL"] = builder.positions({0, 0, 1, 0, 0, 1, 0, 0, 1});
+  const std::vector<float> tangents{0, 1, 0, -1, 0, 2, 0, 1, 0.6F, 0.8F, 0, 1};
+  attributes["TANGENT"] = builder.accessor(tangents, Float32, "VEC4", {{"count", 3}});
+  const Scene scene = import(builder);
+  EXPECT_EQ(nth(scene.meshes(), 0).tangents, (std::vector<glm::vec4>{{0, 1, 0, -1}, {0, 1, 0, 1}, {0.6F, 0.8F, 0, 1}}));
+  attributes["TANGENT"] = builder.accessor(std::vector<float>(12, 0.0F), Float32, "VEC4", {{"count", 3}});
+  EXPECT_WARNING(import(builder), "mesh 'mesh': tangents made instead: TANGENT: one is zero or not finite");
+}
+
 TEST(GltfUv, TransformScalesTurnsThenMoves)
 {
   GltfBuilder builder = textured_triangle();
   slot(builder)["extensions"]["KHR_texture_transform"] = {
       {"offset", {10, 20}}, {"rotation", std::numbers::pi / 2}, {"scale", {2, 4}}};
-  const glm::vec2 uv = uvs_of(builder).at(2);
+  const glm::dvec2 uv = transformed_uvs_of(builder).at(2);
   // (0.25, 0.75) scaled is (0.5, 3). A visual rotation by 90 degrees counter-clockwise, with v down, maps u to -v.
   EXPECT_NEAR(uv.x, 10 + 3, 1e-5);
   EXPECT_NEAR(uv.y, 20 - 0.5, 1e-5);

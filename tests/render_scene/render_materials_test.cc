@@ -18,7 +18,7 @@ TEST(MaterialData, BlackSpecularIsLambertian)
   material.metallic = 0.0F;
   material.specular_color = glm::vec3(0.0F);
   material.base_color = {0.2F, 0.4F, 0.6F};
-  const shared::MaterialData data = material_data(material, false);
+  const shared::MaterialData data = material_data(material);
   EXPECT_EQ(data.diffuse, material.base_color);
   EXPECT_EQ(data.specular_f0, glm::vec3(0.0F));
   EXPECT_EQ(data.specular_f90, 0.0F);
@@ -28,7 +28,7 @@ TEST(MaterialData, DielectricReflectsFourPercent)
 {
   scene::Material material;
   material.metallic = 0.0F;
-  const shared::MaterialData data = material_data(material, false);
+  const shared::MaterialData data = material_data(material);
   EXPECT_EQ(data.specular_f0, glm::vec3(0.04F));
   EXPECT_EQ(data.specular_f90, 1.0F);
 }
@@ -37,7 +37,7 @@ TEST(MaterialData, MetalReflectsItsColourAndScattersNothing)
 {
   scene::Material material;
   material.base_color = {0.9F, 0.6F, 0.3F};
-  const shared::MaterialData data = material_data(material, false);
+  const shared::MaterialData data = material_data(material);
   EXPECT_EQ(data.diffuse, glm::vec3(0.0F));
   EXPECT_EQ(data.specular_f0, material.base_color);
 }
@@ -46,9 +46,9 @@ TEST(MaterialData, RoughnessIsSquaredAndNeverZero)
 {
   scene::Material material;
   material.roughness = 0.5F;
-  EXPECT_FLOAT_EQ(material_data(material, false).alpha, 0.25F);
+  EXPECT_FLOAT_EQ(material_data(material).alpha, 0.25F);
   material.roughness = 0.0F;
-  EXPECT_EQ(material_data(material, false).alpha, shared::ALPHA_MIN);
+  EXPECT_EQ(material_data(material).alpha, shared::ALPHA_MIN);
 }
 
 TEST(MaterialData, TintIsTheMaterialOfTheProduct)
@@ -60,9 +60,9 @@ TEST(MaterialData, TintIsTheMaterialOfTheProduct)
       material.base_color = {0.75F, 0.5F, 1.0F};
       material.metallic = metallic;
       material.specular = specular;
-      const shared::MaterialData tinted = shared::tinted(material_data(material, false), tint);
+      const shared::MaterialData tinted = shared::tinted(material_data(material), tint);
       material.base_color *= tint;
-      const shared::MaterialData expected = material_data(material, false);
+      const shared::MaterialData expected = material_data(material);
       for (int c = 0; c < 3; c++) {
         EXPECT_FLOAT_EQ(tinted.diffuse[c], expected.diffuse[c]);
         EXPECT_NEAR(tinted.specular_f0[c], expected.specular_f0[c], 1e-7F);
@@ -73,48 +73,147 @@ TEST(MaterialData, TintIsTheMaterialOfTheProduct)
   }
 }
 
+/** A scene with one square, whose material tests edit. */
+struct SquareScene {
+  scene::Scene scene;
+  scene::Handle<scene::Material> material = measure::add_material(scene, glm::vec3(0.5F));
+  scene::Handle<scene::Texture> texture = measure::add_texture(scene, 1, {255, 255, 255, 255});
+  scene::Handle<scene::Mesh> mesh = measure::add_square_mesh(scene, material);
+
+  template <typename Change>
+  void edit(Change &&change)
+  {
+    scene.edit(material, change);
+  }
+  template <typename Change>
+  void edit_mesh(Change &&change)
+  {
+    scene.edit(mesh, change);
+  }
+  [[nodiscard]] bool is_masked() const
+  {
+    return render_scene::is_masked(scene, scene.meshes()[mesh]);
+  }
+  [[nodiscard]] bool is_drawable() const
+  {
+    return render_scene::is_drawable(scene.materials()[material]);
+  }
+  [[nodiscard]] MaterialClass material_class() const
+  {
+    return render_scene::material_class(scene, scene.meshes()[mesh]);
+  }
+  [[nodiscard]] float mask_cutoff() const
+  {
+    return material_data(scene.materials()[material]).mask_cutoff;
+  }
+};
+
+void add_uvs(scene::Mesh &mesh)
+{
+  mesh.uvs.assign(mesh.positions.size(), glm::vec2(0.0F));
+}
+
 TEST(MaterialData, OfAMaskTheTextureDecidesOnlyWhereItCan)
 {
-  scene::Scene scene;
-  scene::Material material;
-  const auto mask_cutoff = [&] { return material_data(material, is_masked(scene, material)).mask_cutoff; };
-  material.alpha_mode = scene::AlphaMode::Mask;
-  material.alpha = 0.8F;
+  SquareScene square;
+  square.edit([](scene::Material &material) {
+    material.alpha_mode = scene::AlphaMode::Mask;
+    material.alpha = 0.8F;
+  });
+  square.edit_mesh(add_uvs);
   // Without a texture all of it is above the cutoff, or none.
-  EXPECT_TRUE(is_drawable(material) && !is_masked(scene, material));
-  material.alpha_cutoff = 0.9F;
-  EXPECT_FALSE(is_drawable(material) || is_masked(scene, material));
-  material.base_color_texture = measure::add_texture(scene, 1, {255, 255, 255, 255});
-  EXPECT_FALSE(is_drawable(material) || is_masked(scene, material));
-  material.alpha_cutoff = 0.4F;
-  EXPECT_TRUE(is_drawable(material) && is_masked(scene, material));
-  EXPECT_EQ(mask_cutoff(), 0.5F) << "of the texture's alpha, which is multiplied by 0.8";
-  material.alpha_cutoff = 0.0F;
-  EXPECT_TRUE(is_drawable(material) && !is_masked(scene, material));
-  EXPECT_EQ(mask_cutoff(), 0.0F);
-  material.alpha_cutoff = 0.4F;
-  material.alpha_mode = scene::AlphaMode::Opaque;
-  EXPECT_TRUE(is_drawable(material) && !is_masked(scene, material));
-  EXPECT_EQ(mask_cutoff(), 0.0F);
+  EXPECT_TRUE(square.is_drawable() && !square.is_masked());
+  square.edit([](scene::Material &material) { material.alpha_cutoff = 0.9F; });
+  EXPECT_FALSE(square.is_drawable() || square.is_masked());
+  square.edit([&](scene::Material &material) { material.base_color_texture = square.texture; });
+  EXPECT_FALSE(square.is_drawable() || square.is_masked());
+  square.edit([](scene::Material &material) { material.alpha_cutoff = 0.4F; });
+  EXPECT_TRUE(square.is_drawable() && square.is_masked());
+  EXPECT_EQ(square.mask_cutoff(), 0.5F) << "of the texture's alpha, which is multiplied by 0.8";
+  square.edit([](scene::Material &material) { material.alpha_cutoff = 0.0F; });
+  EXPECT_TRUE(square.is_drawable() && !square.is_masked());
+  EXPECT_EQ(square.mask_cutoff(), 0.0F);
+  square.edit([](scene::Material &material) {
+    material.alpha_cutoff = 0.4F;
+    material.alpha_mode = scene::AlphaMode::Opaque;
+  });
+  EXPECT_TRUE(square.is_drawable() && !square.is_masked());
+  EXPECT_EQ(square.mask_cutoff(), 0.0F);
+}
+
+TEST(MaterialData, VertexColoursDecideOfAMaskToo)
+{
+  SquareScene square;
+  square.edit([](scene::Material &material) { material.alpha_mode = scene::AlphaMode::Mask; });
+  EXPECT_FALSE(square.is_masked());
+  square.edit_mesh([](scene::Mesh &mesh) { mesh.colors.assign(4, glm::vec4(0.25F)); });
+  EXPECT_TRUE(square.is_masked());
 }
 
 TEST(MaterialData, AMaskWhoseTextureOrImageWasRemovedCutsNothingOut)
 {
   for (const bool is_image_removed : {false, true}) {
-    scene::Scene scene;
-    scene::Material material;
-    material.alpha_mode = scene::AlphaMode::Mask;
-    material.base_color_texture = measure::add_texture(scene, 1, {255, 255, 255, 255});
-    ASSERT_TRUE(is_masked(scene, material));
+    SquareScene square;
+    square.edit([&](scene::Material &material) {
+      material.alpha_mode = scene::AlphaMode::Mask;
+      material.base_color_texture = square.texture;
+    });
+    square.edit_mesh(add_uvs);
+    ASSERT_TRUE(square.is_masked());
     if (is_image_removed) {
-      scene.remove(scene.images().first());
+      square.scene.remove(square.scene.images().first());
     }
     else {
-      scene.remove(material.base_color_texture);
+      square.scene.remove(square.texture);
     }
-    EXPECT_FALSE(is_masked(scene, material));
-    EXPECT_TRUE(is_drawable(material));
+    EXPECT_FALSE(square.is_masked());
+    EXPECT_TRUE(square.is_drawable());
   }
+}
+
+TEST(MaterialClassTest, EachInputHasTheLeastClassThatReadsIt)
+{
+  SquareScene square;
+  EXPECT_EQ(square.material_class(), MaterialClass::Plain);
+  square.edit([&](scene::Material &material) { material.base_color_texture = square.texture; });
+  EXPECT_EQ(square.material_class(), MaterialClass::Plain) << "the mesh has no uvs";
+  square.edit_mesh(add_uvs);
+  EXPECT_EQ(square.material_class(), MaterialClass::BaseColor);
+  square.edit([](scene::Material &material) { material.base_color_texture.scale.x = 2.0F; });
+  EXPECT_EQ(square.material_class(), MaterialClass::Full);
+  square.edit([](scene::Material &material) {
+    material.base_color_texture.scale.x = 1.0F;
+    material.base_color_texture.uv_set = 1;
+  });
+  EXPECT_EQ(square.material_class(), MaterialClass::Plain) << "the mesh has no second uvs";
+  square.edit_mesh([](scene::Mesh &mesh) { mesh.second_uvs = mesh.uvs; });
+  EXPECT_EQ(square.material_class(), MaterialClass::Full);
+  square.edit([&](scene::Material &material) {
+    material.base_color_texture = {};
+    material.normal_texture = square.texture;
+  });
+  EXPECT_EQ(square.material_class(), MaterialClass::Plain) << "the mesh has no tangents";
+  square.edit_mesh([](scene::Mesh &mesh) { mesh.tangents.assign(4, {1, 0, 0, 1}); });
+  EXPECT_EQ(square.material_class(), MaterialClass::Full);
+  square.edit([](scene::Material &material) { material.normal_texture = {}; });
+  EXPECT_EQ(square.material_class(), MaterialClass::Plain);
+  square.edit_mesh([](scene::Mesh &mesh) { mesh.colors.assign(4, glm::vec4(1.0F)); });
+  EXPECT_EQ(square.material_class(), MaterialClass::Full);
+}
+
+TEST(MaterialData, WithoutItsEmissiveTextureAMaterialDoesNotEmit)
+{
+  SquareScene square;
+  square.edit([](scene::Material &material) { material.emissive = glm::vec3(1.0F); });
+  const auto full = [&] { return full_material_data(square.scene, square.scene.materials()[square.material]); };
+  EXPECT_EQ(material_data(square.scene.materials()[square.material]).emissive, glm::vec3(1.0F));
+  EXPECT_EQ(full().emissive, glm::vec3(1.0F));
+  square.edit([&](scene::Material &material) { material.emissive_texture = square.texture; });
+  // The class Plain is for meshes without uvs: they do not have the texture.
+  EXPECT_EQ(material_data(square.scene.materials()[square.material]).emissive, glm::vec3(0.0F));
+  EXPECT_EQ(full().emissive, glm::vec3(1.0F));
+  square.scene.remove(square.texture);
+  EXPECT_EQ(full().emissive, glm::vec3(0.0F));
 }
 
 }  // namespace

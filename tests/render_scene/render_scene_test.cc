@@ -72,13 +72,13 @@ class RenderSceneTest : public testing::Test {
     const std::uint64_t before = device->counters().upload_bytes;
     change();
     render_scene.update();
-    render_scene.upload();
+    render_scene.upload(false);
     return device->counters().upload_bytes - before;
   }
-  std::uint64_t uploads_of_batch(scene::Handle<scene::Mesh> handle, bool needs_uvs = false)
+  std::uint64_t uploads_of_batch(scene::Handle<scene::Mesh> handle, MeshStreams streams = MeshStreams::Shape)
   {
     const std::uint64_t before = device->counters().upload_bytes;
-    static_cast<void>(render_scene.batch(handle, needs_uvs));
+    static_cast<void>(render_scene.batch(handle, streams));
     return device->counters().upload_bytes - before;
   }
 
@@ -141,7 +141,7 @@ TEST_F(RenderSceneTest, AMeshGetsTextureCoordinatesWhereTheyAreReadAndKeepsThem)
   const auto box = measure::add_box_mesh(scene, material);
   const std::size_t bare = 24 * 2 * sizeof(glm::vec3) + 36 * sizeof(std::uint32_t);
   EXPECT_EQ(uploads_of_batch(box), bare);
-  EXPECT_EQ(uploads_of_batch(box, true), bare + 24 * sizeof(glm::vec2));
+  EXPECT_EQ(uploads_of_batch(box, MeshStreams::Uvs), bare + 24 * sizeof(glm::vec2));
   EXPECT_EQ(uploads_of_batch(box), 0U) << "another viewport may read them";
   scene.edit(box, [](scene::Mesh &value) { value.positions[0].x -= 1.0F; });
   EXPECT_EQ(uploads_of_batch(box), bare) << "no viewport asked for those of the new shape";
@@ -151,8 +151,8 @@ TEST_F(RenderSceneTest, RemovedMeshesAndImagesAreFreed)
 {
   const auto texture = add_texture(scene, 1, {1, 2, 3, 255});
   const auto image = scene.textures()[texture].image;
-  static_cast<void>(render_scene.batch(mesh, false));
-  static_cast<void>(render_scene.texture(texture));
+  static_cast<void>(render_scene.batch(mesh, MeshStreams::Shape));
+  static_cast<void>(render_scene.texture(texture, true));
   ASSERT_TRUE(render_scene.meshes().find(mesh));
   ASSERT_TRUE(render_scene.images().find(image));
   EXPECT_EQ(render_scene.images().count(), 1U);
@@ -169,7 +169,7 @@ TEST_F(RenderSceneTest, RemovedMeshesAndImagesAreFreed)
 
 TEST_F(RenderSceneTest, AMeshInThePlaceOfARemovedOneIsItsOwn)
 {
-  static_cast<void>(render_scene.batch(mesh, false));
+  static_cast<void>(render_scene.batch(mesh, MeshStreams::Shape));
   scene.remove(mesh);
   const auto other = add_square_mesh(scene, material);
   ASSERT_EQ(other.index, mesh.index);
@@ -187,7 +187,7 @@ TEST_F(RenderSceneTest, AnImageIsUploadedOnceAndAgainWhereItsContentChanged)
   const auto second = scene.add(repeated);
   const auto uploaded = [&](scene::Handle<scene::Texture> texture) {
     const std::uint64_t before = device->counters().upload_bytes;
-    static_cast<void>(render_scene.texture(texture));
+    static_cast<void>(render_scene.texture(texture, true));
     return device->counters().upload_bytes - before;
   };
   EXPECT_EQ(uploaded(first), 8U);
@@ -215,17 +215,17 @@ TEST_F(RenderSceneTest, AFailedUploadLeavesWhatWasThere)
   RenderScene on_small(*small, scene);
   const auto texture = add_texture(scene, 2, std::vector<std::uint8_t>(8, 255));
   const auto image = scene.textures()[texture].image;
-  static_cast<void>(on_small.texture(texture));
+  static_cast<void>(on_small.texture(texture, true));
   const gpu::ResourceId before = on_small.images().find(image)->id();
   const scene::Image large{"large", 5, 1, std::vector<std::uint8_t>(20, 255)};
   scene.replace(image, large);
   on_small.update();
-  test::expect_contains(test::error_of([&] { static_cast<void>(on_small.texture(texture)); }), "large");
+  test::expect_contains(test::error_of([&] { static_cast<void>(on_small.texture(texture, true)); }), "large");
   ASSERT_TRUE(on_small.images().find(image));
   EXPECT_EQ(on_small.images().find(image)->id(), before);
-  EXPECT_NE(test::error_of([&] { static_cast<void>(on_small.texture(texture)); }), "") << "it is tried again";
+  EXPECT_NE(test::error_of([&] { static_cast<void>(on_small.texture(texture, true)); }), "") << "it is tried again";
   scene.replace(image, scene::Image{"small", 1, 1, std::vector<std::uint8_t>(4, 255)});
-  EXPECT_EQ(on_small.texture(texture).image.desc().width, 1);
+  EXPECT_EQ(on_small.texture(texture, true).image.desc().width, 1);
 }
 
 TEST_F(RenderSceneTest, HiddenNodesHaveNoObjectAndNoLamp)

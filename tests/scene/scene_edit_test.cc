@@ -448,20 +448,33 @@ TEST(SceneRevision, EachEditChangesItsAspectAlone)
                               {Camera::Aspect::Lens, [](Camera &camera) { camera.half_width = 3.0F; }},
                               {Camera::Aspect::Lens, [](Camera &camera) { camera.half_height = 3.0F; }}});
   expect_aspects<Material>(
-      {}, {{Material::Aspect::Name, [](Material &material) { material.name = "renamed"; }},
-           {Material::Aspect::Surface, [](Material &material) { material.base_color.r = 0.5F; }},
-           {Material::Aspect::Surface, [](Material &material) { material.metallic = 0.5F; }},
-           {Material::Aspect::Surface, [](Material &material) { material.roughness = 0.5F; }},
-           {Material::Aspect::Surface, [](Material &material) { material.specular = 0.5F; }},
-           {Material::Aspect::Surface, [](Material &material) { material.specular_color.b = 0.5F; }},
-           {Material::Aspect::Surface, [](Material &material) { material.emissive.b = 0.5F; }},
-           {Material::Aspect::Coverage, [](Material &material) { material.alpha = 0.5F; }},
-           {Material::Aspect::Coverage, [](Material &material) { material.alpha_mode = AlphaMode::Mask; }},
-           {Material::Aspect::Coverage, [](Material &material) { material.alpha_cutoff = 0.25F; }},
-           {Material::Aspect::Coverage, [](Material &material) { material.is_double_sided = true; }},
-           {Material::Aspect::Textures, [](Material &material) {
-              material.base_color_texture = {7, 1};
-            }}});
+      {},
+      {{Material::Aspect::Name, [](Material &material) { material.name = "renamed"; }},
+       {Material::Aspect::Surface, [](Material &material) { material.base_color.r = 0.5F; }},
+       {Material::Aspect::Surface, [](Material &material) { material.metallic = 0.5F; }},
+       {Material::Aspect::Surface, [](Material &material) { material.roughness = 0.5F; }},
+       {Material::Aspect::Surface, [](Material &material) { material.specular = 0.5F; }},
+       {Material::Aspect::Surface, [](Material &material) { material.specular_color.b = 0.5F; }},
+       {Material::Aspect::Surface, [](Material &material) { material.emissive.b = 0.5F; }},
+       {Material::Aspect::Coverage, [](Material &material) { material.alpha = 0.5F; }},
+       {Material::Aspect::Coverage, [](Material &material) { material.alpha_mode = AlphaMode::Mask; }},
+       {Material::Aspect::Coverage, [](Material &material) { material.alpha_cutoff = 0.25F; }},
+       {Material::Aspect::Coverage, [](Material &material) { material.is_double_sided = true; }},
+       {Material::Aspect::Surface, [](Material &material) { material.normal_scale = 0.5F; }},
+       {Material::Aspect::Surface, [](Material &material) { material.occlusion_strength = 0.5F; }},
+       {Material::Aspect::Surface, [](Material &material) { material.is_unlit = true; }},
+       {Material::Aspect::Textures,
+        [](Material &material) {
+          material.base_color_texture = Handle<Texture>{7, 1};
+        }},
+       {Material::Aspect::Textures,
+        [](Material &material) {
+          material.specular_color_texture = Handle<Texture>{7, 1};
+        }},
+       {Material::Aspect::Textures, [](Material &material) { material.normal_texture.uv_set = 1; }},
+       {Material::Aspect::Textures, [](Material &material) { material.emissive_texture.offset.y = 1.0F; }},
+       {Material::Aspect::Textures, [](Material &material) { material.occlusion_texture.rotation = 1.0F; }},
+       {Material::Aspect::Textures, [](Material &material) { material.metallic_roughness_texture.scale.x = 2.0F; }}});
   expect_aspects<Texture>({}, {{Texture::Aspect::Image,
                                 [](Texture &texture) {
                                   texture.image = {7, 1};
@@ -484,6 +497,9 @@ TEST(SceneRevision, EachEditChangesItsAspectAlone)
                                        mesh.normals[0] = {1, 0, 0};
                                      }},
                                     {Mesh::Aspect::Shape, [](Mesh &mesh) { mesh.uvs.resize(3); }},
+                                    {Mesh::Aspect::Shape, [](Mesh &mesh) { mesh.second_uvs.resize(3); }},
+                                    {Mesh::Aspect::Shape, [](Mesh &mesh) { mesh.tangents.resize(3); }},
+                                    {Mesh::Aspect::Shape, [](Mesh &mesh) { mesh.colors.resize(3); }},
                                     {Mesh::Aspect::Shape,
                                      [](Mesh &mesh) {
                                        mesh.indices = {0, 2, 1};
@@ -606,6 +622,9 @@ TEST(SceneEdit, ValuesThatCannotBeHeldAreRefused)
 {
   expect_refused<Mesh>(triangle(), {{"2 normals for 3 positions", [](Mesh &mesh) { mesh.normals.pop_back(); }},
                                     {"1 uvs for 3 positions", [](Mesh &mesh) { mesh.uvs.resize(1); }},
+                                    {"2 second uvs for 3", [](Mesh &mesh) { mesh.second_uvs.resize(2); }},
+                                    {"4 tangents for 3", [](Mesh &mesh) { mesh.tangents.resize(4); }},
+                                    {"1 colours for 3", [](Mesh &mesh) { mesh.colors.resize(1); }},
                                     {"2 indices", [](Mesh &mesh) { mesh.indices.pop_back(); }},
                                     {"index 3 is beyond", [](Mesh &mesh) { mesh.indices[1] = 3; }},
                                     {"index 4294967295", [](Mesh &mesh) { mesh.indices[2] = 0xFFFFFFFFU; }},

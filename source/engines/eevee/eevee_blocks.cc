@@ -22,7 +22,7 @@ constexpr auto view_fields = std::to_array<Field>({
     {"view.position_ws", offsetof(ViewData, position_ws)},
     {"view.is_perspective", offsetof(ViewData, is_perspective)},
     {"view.back_ws", offsetof(ViewData, back_ws)},
-    {"view._pad0", offsetof(ViewData, _pad0)},
+    {"view.texture_lod_bias", offsetof(ViewData, texture_lod_bias)},
 });
 
 constexpr auto object_fields = std::to_array<Field>({
@@ -41,7 +41,21 @@ constexpr auto material_fields = std::to_array<Field>({
     {"materials[0].emissive", offsetof(MaterialData, emissive)},
     {"materials[0].mask_cutoff", offsetof(MaterialData, mask_cutoff)},
     {"materials[0].metal_f0", offsetof(MaterialData, metal_f0)},
-    {"materials[0]._pad0", offsetof(MaterialData, _pad0)},
+    {"materials[0].occlusion", offsetof(MaterialData, occlusion)},
+});
+
+constexpr auto full_material_fields = std::to_array<Field>({
+    {"full_materials[0].base_color", offsetof(FullMaterialData, base_color)},
+    {"full_materials[0].metallic", offsetof(FullMaterialData, metallic)},
+    {"full_materials[0].specular_color", offsetof(FullMaterialData, specular_color)},
+    {"full_materials[0].specular", offsetof(FullMaterialData, specular)},
+    {"full_materials[0].emissive", offsetof(FullMaterialData, emissive)},
+    {"full_materials[0].roughness", offsetof(FullMaterialData, roughness)},
+    {"full_materials[0].normal_scale", offsetof(FullMaterialData, normal_scale)},
+    {"full_materials[0].occlusion_strength", offsetof(FullMaterialData, occlusion_strength)},
+    {"full_materials[0].inputs", offsetof(FullMaterialData, inputs)},
+    {"full_materials[0]._pad0", offsetof(FullMaterialData, _pad0)},
+    {"full_materials[0].uv_rows", offsetof(FullMaterialData, uv_rows)},
 });
 
 constexpr std::size_t lights_offset = offsetof(LightBlock, lights);
@@ -105,10 +119,11 @@ constexpr auto esm_fields = std::to_array<Field>({
     {"esm.lamps[0]._pad0", offsetof(EsmData, _pad0)},
 });
 
-constexpr std::array<gpu::BlockLayout, 8> layouts = {{
+constexpr std::array<gpu::BlockLayout, 9> layouts = {{
     {"view_block", sizeof(ViewData), view_fields},
     {"object_block", sizeof(ObjectData), object_fields},
     {"material_block", sizeof(MaterialData), material_fields},
+    {"full_material_block", sizeof(FullMaterialData), full_material_fields},
     {"light_block", sizeof(LightBlock), light_fields},
     {"light_shape_block", sizeof(LightShapeBlock), light_shape_fields},
     {"shadow_block", sizeof(ShadowBlock), shadow_fields},

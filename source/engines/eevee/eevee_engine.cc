@@ -148,7 +148,8 @@ void Engine::update_view(Data &data, const draw::View &view)
 {
   data.stl.object_block = data.shared->object_block = {scene_.objects().buffer().id()};
   data.stl.material_block = data.shared->material_block = {scene_.materials().buffer().id()};
-  scene_.device().update(data.stl.view_block, view_data(view));
+  data.stl.full_material_block = data.shared->full_material_block = {scene_.materials().full_buffer().id()};
+  scene_.device().update(data.stl.view_block, view_data(view, settings_.sample_count));
 }
 
 void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)

@@ -62,8 +62,8 @@ struct PassList {
   draw::Pass tonemap;
 };
 
-/** What calls of one group have in common: pass, shader, state beside the pass's, texture. */
-using GroupKey = std::tuple<const draw::Pass *, gpu::ResourceId, gpu::State, scene::Handle<scene::Texture>>;
+/** What calls of one group have in common: pass, shader, state beside the pass's, textures of the material. */
+using GroupKey = std::tuple<const draw::Pass *, gpu::ResourceId, gpu::State, TextureSet>;
 
 /** Revisions of everything that recorded passes depend on. */
 struct PassesKey {
@@ -164,6 +164,7 @@ struct SharedData {
   draw::Pass shadow_pass;
   gpu::BufferRange object_block;
   gpu::BufferRange material_block;
+  gpu::BufferRange full_material_block;
   /** Of shadow_pass; made when the first object needs them. */
   std::map<GroupKey, draw::ShadingGroup *> groups;
   /** For each mesh and winding of casters, the call in shadow_pass. */
@@ -189,6 +190,7 @@ struct StorageList {
   std::span<const LampPoint> lamp_points;
   gpu::Buffer view_block;
   gpu::BufferRange material_block;
+  gpu::BufferRange full_material_block;
   gpu::BufferRange object_block;
   /** Made when the first object needs them. */
   std::map<GroupKey, draw::ShadingGroup *> groups;
@@ -203,6 +205,7 @@ struct StorageList {
   std::uint64_t shared_revision = 0;
   /** Of the material table. */
   std::uint64_t materials_features_revision = ~std::uint64_t(0);
+  /** Specular and FullMaterial, as the materials need them. */
   Feature material_features = Feature::None;
   /** In light_block, of the probe being drawn. */
   int probed_light = 0;

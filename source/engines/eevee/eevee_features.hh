@@ -29,8 +29,10 @@ enum class Feature : std::uint32_t {
   ShadowEvsm = 1U << 9,
   /** Lamps that are shaded as a whole, area lamps, or spots of elliptical cones. */
   LampShape = 1U << 10,
+  /** Of the material: render_scene::MaterialClass::Full. Excludes BaseColorTexture. */
+  FullMaterial = 1U << 11,
   /** The target of the picture takes depth. */
-  TargetDepth = 1U << 11,
+  TargetDepth = 1U << 12,
 };
 
 constexpr Feature operator|(Feature a, Feature b)

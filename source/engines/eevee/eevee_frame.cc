@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace gnomon::eevee {
@@ -27,7 +28,7 @@ float pixel_size(const draw::View &view, const draw::Viewport &viewport)
   return 2.0F / (view.clip_from_view()[1][1] * float(viewport.size_px().y));
 }
 
-shared::ViewData view_data(const draw::View &view)
+shared::ViewData view_data(const draw::View &view, int sample_count)
 {
   const glm::mat4 world_from_view(glm::inverse(glm::dmat4(view.view_from_world())));
   shared::ViewData data{};
@@ -35,6 +36,8 @@ shared::ViewData view_data(const draw::View &view)
   data.position_ws = glm::vec3(world_from_view[3]);
   data.is_perspective = view.is_perspective() ? 1 : 0;
   data.back_ws = glm::normalize(glm::vec3(world_from_view[2]));
+  // The distance between samples, in pixels, is the root of the area of each.
+  data.texture_lod_bias = -0.5F * std::log2(float(sample_count));
   return data;
 }
 
@@ -176,7 +179,7 @@ void record_film(const FrameStep &step, FrameSample &sample, gpu::CommandList &l
 
 void record_picture_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
-  const shared::ViewData block = view_data(sample.view);
+  const shared::ViewData block = view_data(sample.view, sample.settings.sample_count);
   list.update(sample.data.stl.view_block, 0, std::as_bytes(std::span(&block, 1)));
   list.begin_pass(step.name, sample.data.fbl.picture_depth_fb, {});
   record_passes(step, sample, sample.view, list);

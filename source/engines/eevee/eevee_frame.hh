@@ -92,7 +92,7 @@ void draw_steps(FrameSample &sample, FrameStep::When when);
 [[nodiscard]] float pixel_size(const draw::View &view, const draw::Viewport &viewport);
 
 /** Content of view_block. */
-[[nodiscard]] shared::ViewData view_data(const draw::View &view);
+[[nodiscard]] shared::ViewData view_data(const draw::View &view, int sample_count);
 
 inline constexpr const char *nothing_seen = "nothing is seen";
 

@@ -9,7 +9,7 @@ namespace gnomon::eevee {
 
 namespace {
 
-constexpr std::array<FeatureDefine, 12> feature_table = {
+constexpr std::array<FeatureDefine, 13> feature_table = {
     {{Feature::Light, "USE_LIGHT", "something shines"},
      {Feature::Punctual, "USE_PUNCTUAL", "a point, spot or area lamp shines"},
      {Feature::Specular, "USE_SPECULAR", "a material reflects specularly"},
@@ -21,6 +21,8 @@ constexpr std::array<FeatureDefine, 12> feature_table = {
      {Feature::AlphaMask, "USE_ALPHA_MASK", "a texture's alpha cuts a material out"},
      {Feature::ShadowEvsm, "USE_SHADOW_EVSM", "a point lamp or a spot casts exponential variance shadows"},
      {Feature::LampShape, "USE_LAMP_SHAPE", "a lamp has an extent, or a spot's cone is an ellipse"},
+     {Feature::FullMaterial, "USE_FULL_MATERIAL",
+      "a material has other textures than base colour, a transform or a second set of uvs, or a mesh has colours"},
      {Feature::TargetDepth, "USE_TARGET_DEPTH", "the target takes depth"}}};
 
 /** Features that make no difference without light. */
@@ -31,19 +33,22 @@ constexpr Feature light_features = Feature::Light | Feature::Punctual | Feature:
 constexpr Feature shadow_features = Feature::Light | Feature::Punctual | Feature::ShadowCube | Feature::ShadowMap |
                                     Feature::ShadowPcf | Feature::ShadowEsm | Feature::ShadowEvsm;
 
+/** Features that alpha depends on. */
+constexpr Feature alpha_features = Feature::AlphaMask | Feature::FullMaterial;
+
 constexpr std::array<ShaderDeclaration, 17> declarations = {{
-    {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
-     Feature::AlphaMask, Feature::None, "depth of what is seen, so that each pixel is lit once"},
+    {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl", alpha_features,
+     Feature::None, "depth of what is seen, so that each pixel is lit once"},
     {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
-     Feature::AlphaMask, Feature::None, "depth of what a lamp sees, a layer a pass"},
+     alpha_features, Feature::None, "depth of what a lamp sees, a layer a pass"},
     {ShaderId::ShadowLayered, "eevee_shadow_layered", "eevee/eevee_shadow_layered_vert.glsl", "",
-     "eevee/eevee_depth_frag.glsl", Feature::AlphaMask, Feature::None,
-     "depth of what a lamp sees, all layers in one pass"},
+     "eevee/eevee_depth_frag.glsl", alpha_features, Feature::None, "depth of what a lamp sees, all layers in one pass"},
     {ShaderId::ShadowGeometry, "eevee_shadow_geometry", "eevee/eevee_shadow_geometry_vert.glsl",
-     "eevee/eevee_shadow_geometry_geom.glsl", "eevee/eevee_depth_frag.glsl", Feature::AlphaMask, Feature::None,
+     "eevee/eevee_shadow_geometry_geom.glsl", "eevee/eevee_depth_frag.glsl", alpha_features, Feature::None,
      "the same where vertex shaders cannot choose a layer"},
     {ShaderId::Lit, "eevee_lit", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_lit_frag.glsl",
-     light_features | Feature::BaseColorTexture, Feature::None, "light that surfaces send to the viewer"},
+     light_features | Feature::BaseColorTexture | Feature::FullMaterial, Feature::None,
+     "light that surfaces send to the viewer"},
     {ShaderId::Probe, "eevee_probe", "eevee/eevee_surface_vert.glsl", "", "eevee/eevee_probe_frag.glsl",
      shadow_features, Feature::Light, "position, normal and visibility of one lamp, for comparison with the reference"},
     {ShaderId::Film, "eevee_film", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_film_frag.glsl", Feature::None,
@@ -73,9 +78,15 @@ constexpr std::array<ShaderDeclaration, 17> declarations = {{
      "which cascades of a sun each pixel reads"},
 }};
 
-/** Whether a scene can need this mask, and no smaller mask gives the same program. */
-bool is_possible(Feature features)
+/** Whether a scene can need this mask of a program's, and no smaller mask gives the same program. */
+bool is_possible(Feature features, const ShaderDeclaration &declaration)
 {
+  // A full material's program reads the base colour texture, too. Without light, only alpha makes a difference.
+  if (has(features, Feature::FullMaterial) &&
+      (has(features, Feature::BaseColorTexture) ||
+       (has(declaration.features, Feature::AlphaMask) && !has(features, Feature::AlphaMask)))) {
+    return false;
+  }
   if (!has(features, Feature::Light)) {
     return (features & light_features) == Feature::None;
   }
@@ -103,7 +114,7 @@ std::vector<Feature> shader_variants(const ShaderDeclaration &declaration)
   for (std::uint32_t mask = 0; mask < 1U << feature_table.size(); mask++) {
     const auto features = Feature(mask);
     if ((features & declaration.features) == features && (features & declaration.required) == declaration.required &&
-        is_possible(features)) {
+        is_possible(features, declaration)) {
       variants.push_back(features);
     }
   }

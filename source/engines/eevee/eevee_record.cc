@@ -15,6 +15,7 @@ namespace gnomon::eevee {
 namespace {
 
 using gpu::State;
+using render_scene::MaterialClass;
 
 ShaderId shadow_shader(LayerPass layer_pass)
 {
@@ -49,6 +50,10 @@ std::uint64_t caster_fingerprint(const scene::Scene &scene, const render_scene::
     scene::Revision image_of_texture;
     scene::Revision sampler;
     scene::Revision content;
+    glm::vec2 uv_offset;
+    glm::vec2 uv_scale;
+    float uv_rotation;
+    int uv_set;
     float alpha;
     float alpha_cutoff;
   } key{};
@@ -56,16 +61,65 @@ std::uint64_t caster_fingerprint(const scene::Scene &scene, const render_scene::
   key.mesh = object.mesh.key();
   key.shape = scene.meshes().revision(object.mesh, scene::Mesh::Aspect::Shape);
   key.is_double_sided = material.is_double_sided ? 1 : 0;
-  if (render_scene::is_textured(scene, mesh) && render_scene::is_masked(scene, material)) {
-    const scene::Handle<scene::Texture> texture = material.base_color_texture;
-    key.texture = texture.key();
-    key.image_of_texture = scene.textures().revision(texture, scene::Texture::Aspect::Image);
-    key.sampler = scene.textures().revision(texture, scene::Texture::Aspect::Sampler);
-    key.content = scene.images().revision(scene.textures()[texture].image, scene::Image::Aspect::Content);
+  if (render_scene::is_masked(scene, mesh)) {
+    const scene::TextureSlot &slot = material.base_color_texture;
+    if (render_scene::is_drawable(scene, mesh, slot)) {
+      key.texture = slot.texture.key();
+      key.image_of_texture = scene.textures().revision(slot.texture, scene::Texture::Aspect::Image);
+      key.sampler = scene.textures().revision(slot.texture, scene::Texture::Aspect::Sampler);
+      key.content = scene.images().revision(scene.textures()[slot.texture].image, scene::Image::Aspect::Content);
+      key.uv_offset = slot.offset;
+      key.uv_scale = slot.scale;
+      key.uv_rotation = slot.rotation;
+      key.uv_set = slot.uv_set;
+    }
     key.alpha = material.alpha;
     key.alpha_cutoff = material.alpha_cutoff;
   }
   return fingerprint_of(std::as_bytes(std::span(&key, 1)));
+}
+
+Feature feature_of(MaterialClass material_class)
+{
+  switch (material_class) {
+    case MaterialClass::BaseColor: return Feature::BaseColorTexture;
+    case MaterialClass::Full: return Feature::FullMaterial;
+    default: return Feature::None;
+  }
+}
+
+render_scene::MeshStreams streams_of(MaterialClass material_class)
+{
+  switch (material_class) {
+    case MaterialClass::BaseColor: return render_scene::MeshStreams::Uvs;
+    case MaterialClass::Full: return render_scene::MeshStreams::All;
+    default: return render_scene::MeshStreams::Shape;
+  }
+}
+
+/** The textures that can be drawn, of the base colour alone, or of all inputs. */
+TextureSet textures_of(const scene::Scene &scene, const scene::Mesh &mesh, bool is_base_color_only)
+{
+  const scene::Material &material = scene.material_of(mesh);
+  TextureSet set;
+  for (std::size_t i = 0; i < (is_base_color_only ? 1 : set.size()); i++) {
+    const scene::TextureSlot &slot = material.*scene::texture_inputs[i].slot;
+    set[i] = render_scene::is_drawable(scene, slot.texture) ? slot.texture : scene::Handle<scene::Texture>();
+  }
+  return set;
+}
+
+/** What a program reads that tells where a surface is cut out: nothing, or a texture and vertex colours. */
+MaterialClass mask_class(const scene::Scene &scene, const scene::Mesh &mesh)
+{
+  return render_scene::is_masked(scene, mesh) ? render_scene::material_class(scene, mesh) : MaterialClass::Plain;
+}
+
+Feature mask_features(MaterialClass mask_class)
+{
+  return mask_class == MaterialClass::Plain  ? Feature::None
+         : mask_class == MaterialClass::Full ? Feature::AlphaMask | Feature::FullMaterial
+                                             : Feature::AlphaMask;
 }
 
 void bind_lit(draw::ShadingGroup &group, Data &data)
@@ -74,6 +128,7 @@ void bind_lit(draw::ShadingGroup &group, Data &data)
   group.bind_uniform("view_block", stl.view_block);
   group.bind_storage_ref("object_block", &stl.object_block);
   group.bind_storage_ref("material_block", &stl.material_block);
+  group.bind_storage_ref("full_material_block", &stl.full_material_block);
   group.bind_uniform("light_block", data.shared->light_block);
   if (has(stl.features, Feature::LampShape)) {
     group.bind_uniform("light_shape_block", data.shared->light_shape_block);
@@ -117,25 +172,27 @@ void Engine::make_blocks(draw::Viewport &viewport)
   StorageList &stl = data.stl;
   SharedData &shared = *data.shared;
   gpu::Device &device = viewport.device();
-  scene_.upload();
+  const std::uint64_t materials =
+      scene_.materials_revision() + scene_.passes_revision() + scene_.objects().structure_revision();
+  if (stl.materials_features_revision != materials) {
+    stl.material_features = Feature::None;
+    for (const draw::ObjectIndex object : stl.objects) {
+      const scene::Mesh &mesh = scene_.scene().meshes()[scene_.object(object).mesh];
+      const std::uint32_t place = render_scene::MaterialTable::place_of(scene_.scene(), mesh.material);
+      stl.material_features = stl.material_features |
+                              (scene_.materials()[place].specular_f90 > 0.0F ? Feature::Specular : Feature::None) |
+                              feature_of(render_scene::material_class(scene_.scene(), mesh));
+    }
+    stl.materials_features_revision = materials;
+  }
+  scene_.upload(has(stl.material_features, Feature::FullMaterial));
   if (!has(stl.features, Feature::Light)) {
     shared.light_block = {};
     shared.light_shape_block = {};
     shared.ltc_table = {};
     return;
   }
-  const std::uint64_t materials =
-      scene_.materials_revision() + scene_.passes_revision() + scene_.objects().structure_revision();
-  if (stl.materials_features_revision != materials) {
-    const bool is_specular = std::ranges::any_of(stl.objects, [&](draw::ObjectIndex object) {
-      const scene::Handle<scene::Material> material = scene_.scene().meshes()[scene_.object(object).mesh].material;
-      const std::uint32_t place = render_scene::MaterialTable::place_of(scene_.scene(), material);
-      return scene_.materials()[place].specular_f90 > 0.0F;
-    });
-    stl.material_features = is_specular ? Feature::Specular : Feature::None;
-    stl.materials_features_revision = materials;
-  }
-  stl.features = stl.features | stl.material_features;
+  stl.features = stl.features | (stl.material_features & Feature::Specular);
   if (!shared.light_block) {
     shared.light_block = device.create_buffer({"light_block", gpu::BufferKind::Uniform, sizeof(shared::LightBlock)});
     shared.is_light_block_written = false;
@@ -282,6 +339,18 @@ void Engine::record_passes(draw::Viewport &viewport)
   record_film(viewport);
 }
 
+void Engine::bind_textures(draw::ShadingGroup &group, MaterialClass material_class, const TextureSet &set)
+{
+  const std::size_t count = material_class == MaterialClass::Plain       ? 0
+                            : material_class == MaterialClass::BaseColor ? 1
+                                                                         : set.size();
+  for (std::size_t i = 0; i < count; i++) {
+    const scene::TextureInput &input = scene::texture_inputs[i];
+    const auto [image, sampler] = scene_.texture(set[i], input.is_color);
+    group.bind_texture(input.name, image, sampler);
+  }
+}
+
 void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
 {
   Data &data = viewport.engine_data<Data>(*this);
@@ -291,49 +360,50 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
   const render_scene::RenderObject &object = scene_.object(index);
   const scene::Mesh &mesh = scene.meshes()[object.mesh];
   const scene::Material &material = scene.material_of(mesh);
-  const bool has_texture = render_scene::is_textured(scene, mesh);
-  const bool has_mask = has_texture && render_scene::is_masked(scene, material);
-  const bool is_lit_textured = has_texture && (has_mask || has(stl.features, Feature::Light));
-  const gpu::Batch &batch = scene_.batch(object.mesh, is_lit_textured);
+  const MaterialClass cut_out = mask_class(scene, mesh);
+  const MaterialClass material_class = render_scene::material_class(scene, mesh);
+  // Without light the base colour makes no difference.
+  const bool is_colorless = material_class == MaterialClass::BaseColor && cut_out == MaterialClass::Plain &&
+                            !has(stl.features, Feature::Light);
+  const MaterialClass surface = is_colorless ? MaterialClass::Plain : material_class;
+  const gpu::Batch &batch = scene_.batch(object.mesh, streams_of(surface));
   stl.is_mirrored[index] = draw::is_mirrored(scene_.objects().world_from_object(index));
   const State winding = stl.is_mirrored[index] ? State::FrontClockwise : State::None;
 
   /** Appends a call to the group of a pass; \a bind fills in a new group. */
-  const auto call = [&](draw::Pass &pass, const gpu::Shader &shader, State state, bool is_textured, const auto &bind) {
-    const auto texture = is_textured ? material.base_color_texture : scene::Handle<scene::Texture>();
-    draw::ShadingGroup *&group = stl.groups[{&pass, shader.id(), state | winding, texture}];
+  const auto call = [&](draw::Pass &pass, const gpu::Shader &shader, State state, MaterialClass read,
+                        const TextureSet &textures, const auto &bind) {
+    draw::ShadingGroup *&group = stl.groups[{&pass, shader.id(), state | winding, textures}];
     if (!group) {
       group = &pass.group(shader);
       group->state_enable(state | winding);
       bind(*group);
-      if (is_textured) {
-        const auto [image, sampler] = scene_.texture(texture);
-        group->bind_texture("base_color_texture", image, sampler);
-      }
+      bind_textures(*group, read, textures);
     }
     group->call(batch, index);
   };
+  const TextureSet alpha_textures = cut_out == MaterialClass::Plain ? TextureSet() : textures_of(scene, mesh, true);
+  const TextureSet surface_textures =
+      surface == MaterialClass::Plain ? TextureSet() : textures_of(scene, mesh, surface == MaterialClass::BaseColor);
   const auto bind_surface = [&data](draw::ShadingGroup &group) { bind_lit(group, data); };
   // A surface that receives no shadow is lit as if no lamp had one.
   const Feature lighting = object.receives_shadow ? stl.features : without_shadows(stl.features);
-  const gpu::Shader &depth_shader =
-      shaders_.get(device, ShaderId::Depth, has_mask ? Feature::AlphaMask : Feature::None);
-  const gpu::Shader &lit_shader =
-      shaders_.get(device, ShaderId::Lit, lighting | (is_lit_textured ? Feature::BaseColorTexture : Feature::None));
-  call(material.is_double_sided ? data.psl->depth_pass : data.psl->depth_pass_cull, depth_shader, State::None, has_mask,
-       bind_surface);
+  const gpu::Shader &depth_shader = shaders_.get(device, ShaderId::Depth, mask_features(cut_out));
+  const gpu::Shader &lit_shader = shaders_.get(device, ShaderId::Lit, lighting | feature_of(surface));
+  call(material.is_double_sided ? data.psl->depth_pass : data.psl->depth_pass_cull, depth_shader, State::None, cut_out,
+       alpha_textures, bind_surface);
   // At the same depth as the front of another face, the back must not be drawn over it.
   const State side = material.is_double_sided ? State::None : State::CullBack;
-  call(data.psl->lit_pass, lit_shader, side, is_lit_textured, bind_surface);
+  call(data.psl->lit_pass, lit_shader, side, surface, surface_textures, bind_surface);
   if (data.shared->tinted_light) {
-    call(data.psl->tint_pass, shaders_.get(device, ShaderId::DebugCascades, stl.features), side, false,
-         [&data](draw::ShadingGroup &group) {
+    call(data.psl->tint_pass, shaders_.get(device, ShaderId::DebugCascades, stl.features), side, MaterialClass::Plain,
+         {}, [&data](draw::ShadingGroup &group) {
            bind_lit(group, data);
            group.constant("tinted_light", *data.shared->tinted_light);
          });
   }
   if (settings_.has_probe && has(stl.features, Feature::Light)) {
-    call(data.psl->probe_pass, shaders_.get(device, ShaderId::Probe, stl.features), side, false,
+    call(data.psl->probe_pass, shaders_.get(device, ShaderId::Probe, stl.features), side, MaterialClass::Plain, {},
          [&data](draw::ShadingGroup &group) {
            bind_lit(group, data);
            group.constant_ref("probed_light", &data.stl.probed_light);
@@ -374,30 +444,28 @@ void Engine::record_caster(SharedData &shared, draw::ObjectIndex index)
   const scene::Scene &scene = scene_.scene();
   const scene::Mesh &mesh = scene.meshes()[object.mesh];
   const scene::Material &material = scene.material_of(mesh);
-  const bool has_mask = render_scene::is_textured(scene, mesh) && render_scene::is_masked(scene, material);
+  const MaterialClass cut_out = mask_class(scene, mesh);
   shared.is_mirrored[index] = draw::is_mirrored(scene_.objects().world_from_object(index));
   const State winding = shared.is_mirrored[index] ? State::FrontClockwise : State::None;
   draw::InstanceCall *&instances = shared.caster_calls[{object.mesh, winding}];
   if (!instances) {
-    const gpu::Shader &shader = shaders_.get(scene_.device(), shadow_shader(shared.shadows.layer_pass()),
-                                             has_mask ? Feature::AlphaMask : Feature::None);
+    const gpu::Shader &shader =
+        shaders_.get(scene_.device(), shadow_shader(shared.shadows.layer_pass()), mask_features(cut_out));
     const State faces = material.is_double_sided ? State::None : culled_state(settings_.shadow.caster_faces);
     // Without culling the winding makes no difference.
     const State state = faces == State::None ? State::None : faces | winding;
-    const auto texture = has_mask ? material.base_color_texture : scene::Handle<scene::Texture>();
-    draw::ShadingGroup *&group = shared.groups[{&shared.shadow_pass, shader.id(), state, texture}];
+    const TextureSet textures = cut_out == MaterialClass::Plain ? TextureSet() : textures_of(scene, mesh, true);
+    draw::ShadingGroup *&group = shared.groups[{&shared.shadow_pass, shader.id(), state, textures}];
     if (!group) {
       group = &shared.shadow_pass.group(shader);
       group->state_enable(state);
       group->bind_storage_ref("object_block", &shared.object_block);
       group->bind_storage_ref("material_block", &shared.material_block);
+      group->bind_storage_ref("full_material_block", &shared.full_material_block);
       group->bind_uniform_ref("shadow_render_block", shared.shadows.render_block());
-      if (has_mask) {
-        const auto [image, sampler] = scene_.texture(texture);
-        group->bind_texture("base_color_texture", image, sampler);
-      }
+      bind_textures(*group, cut_out, textures);
     }
-    instances = &group->instances(scene_.batch(object.mesh, has_mask));
+    instances = &group->instances(scene_.batch(object.mesh, streams_of(cut_out)));
   }
   shared.caster_of[index] = instances;
 }

@@ -74,18 +74,33 @@ std::string why_no_shadow(const Source &source, std::string no_such_lamp)
   return eevee::why_no_shadow(FrameState{source.settings, source.data}, std::move(no_such_lamp));
 }
 
-/** The images that materials of drawable objects read. */
-std::set<scene::Handle<scene::Image>> read_images(const Source &source)
+/** The images that materials of drawable objects read, and whether for colours. */
+std::set<std::pair<scene::Handle<scene::Image>, bool>> read_images(const Source &source)
 {
-  std::set<scene::Handle<scene::Image>> images;
+  std::set<std::pair<scene::Handle<scene::Image>, bool>> images;
   for (const draw::ObjectIndex object : source.data.stl.objects) {
-    const scene::Handle<scene::Texture> texture = source.scene().material_of(source.mesh(object)).base_color_texture;
-    if (render_scene::is_textured(source.scene(), source.mesh(object))) {
-      images.insert(source.scene().textures()[texture].image);
+    const scene::Material &material = source.scene().material_of(source.mesh(object));
+    for (const scene::TextureInput &input : scene::texture_inputs) {
+      const scene::TextureSlot &slot = material.*input.slot;
+      if (render_scene::is_drawable(source.scene(), source.mesh(object), slot)) {
+        images.emplace(source.scene().textures()[slot.texture].image, input.is_color);
+      }
     }
   }
   return images;
 }
+
+/** Why a mesh is drawn without a texture of its material; empty: it is drawn with it. */
+std::string why_no_texture(const scene::Mesh &mesh, const scene::TextureInput &input, const scene::TextureSlot &slot)
+{
+  if (slot && mesh.uv_set(slot.uv_set).empty()) {
+    return fmt::format("it has no {}uvs", slot.uv_set == 0 ? "" : "second ");
+  }
+  const bool needs_tangents = input.slot == &scene::Material::normal_texture;
+  return slot && needs_tangents && mesh.tangents.empty() ? "it has no tangents" : "";
+}
+
+constexpr const char *no_full_material = "no material that is drawn needs more than a base colour texture";
 
 std::string why_no_feature(const Source &source, Feature feature)
 {
@@ -97,10 +112,13 @@ std::string why_no_feature(const Source &source, Feature feature)
   }
   if (feature == Feature::Light || !source.has(Feature::Light)) {
     const bool is_mask = feature == Feature::AlphaMask;
-    if (!source.data.is_recorded && (is_mask || feature == Feature::BaseColorTexture)) {
+    if (!source.data.is_recorded &&
+        (is_mask || feature == Feature::BaseColorTexture || feature == Feature::FullMaterial)) {
       return nothing_seen;
     }
-    return is_mask ? "no texture's alpha cuts a material out" : "no lamp gives light";
+    return is_mask                            ? "no texture's alpha cuts a material out"
+           : feature == Feature::FullMaterial ? no_full_material
+                                              : "no lamp gives light";
   }
   switch (feature) {
     case Feature::Punctual: return "no point, spot or area lamp gives light";
@@ -113,6 +131,7 @@ std::string why_no_feature(const Source &source, Feature feature)
     case Feature::BaseColorTexture:
       return source.data.is_recorded ? "no material that is drawn has a texture" : nothing_seen;
     case Feature::LampShape: return "no lamp has an extent, and no spot's cone is an ellipse";
+    case Feature::FullMaterial: return source.data.is_recorded ? no_full_material : nothing_seen;
     case Feature::AlphaMask: return source.data.is_recorded ? "no texture's alpha cuts a material out" : nothing_seen;
     default: return "";
   }
@@ -347,6 +366,9 @@ FrameNode block_nodes(const Source &source)
       fmt::format("{} matrices", source.render_scene.objects().size()), nothing_seen);
   add(source.render_scene.materials().buffer(), "material_block",
       fmt::format("{} materials", source.scene().materials().size()), nothing_seen);
+  add(source.render_scene.materials().full_buffer(), "full_material_block",
+      fmt::format("{} materials", source.scene().materials().size()),
+      source.data.is_recorded ? no_full_material : nothing_seen);
   add(source.data.shared->light_block, "light_block",
       fmt::format("{} lights", source.data.shared->lamps.light_block.light_count), "no lamp gives light");
   add(source.data.shared->light_shape_block, "light_shape_block", "extents and axes of lamps",
@@ -388,20 +410,28 @@ FrameNode mesh_nodes(const Source &source)
 FrameNode texture_nodes(const Source &source)
 {
   std::vector<FrameNode> images;
-  const std::set<scene::Handle<scene::Image>> read = read_images(source);
+  const auto read = read_images(source);
   const gpu::Texture none;
   for (const auto &[handle, image] : source.scene().images()) {
-    const gpu::Texture *made = source.render_scene.images().find(handle);
-    FrameNode &node = images.emplace_back(
-        resource_node(source, made ? *made : none, image.name, "base colour that a material looks up",
-                      !read.contains(handle)     ? "no object has a material that looks it up"
-                      : !source.data.is_recorded ? nothing_seen
-                                                 : "no lamp lights it, and it cuts nothing out"));
-    if (made) {
-      node.upload_bytes = source.device().live(*made).upload_bytes;
+    for (const bool is_color : {true, false}) {
+      const gpu::Texture *made = source.render_scene.images().find(handle, is_color);
+      // An image that nothing reads has one node.
+      const bool is_read = read.contains({handle, is_color});
+      if (!made && !is_read && (!is_color || read.contains({handle, false}))) {
+        continue;
+      }
+      FrameNode &node = images.emplace_back(
+          resource_node(source, made ? *made : none, image.name,
+                        is_color ? "colours that a material looks up" : "data that a material looks up",
+                        !is_read                   ? "no object has a material that looks it up"
+                        : !source.data.is_recorded ? nothing_seen
+                                                   : "no lamp lights it, and it cuts nothing out"));
+      if (made) {
+        node.upload_bytes = source.device().live(*made).upload_bytes;
+      }
     }
   }
-  return folder("textures", "materials' base colours", images.empty() ? "no material has one" : "none is looked up",
+  return folder("textures", "what materials look up", images.empty() ? "no material has one" : "none is looked up",
                 std::move(images));
 }
 
@@ -513,12 +543,12 @@ Report Engine::report(draw::Viewport &viewport) const
       continue;
     }
     const scene::Mesh &mesh = scene_.scene().meshes()[handle];
-    if (!mesh.colors.empty()) {
-      report.warnings.push_back(fmt::format("mesh '{}': vertex colours are not drawn yet", mesh.name));
-    }
-    if (mesh.uvs.empty() && scene_.scene().material_of(mesh).base_color_texture) {
-      report.warnings.push_back(
-          fmt::format("mesh '{}': it has no uvs; its material's texture is not drawn", mesh.name));
+    for (const scene::TextureInput &input : scene::texture_inputs) {
+      const std::string why = why_no_texture(mesh, input, scene_.scene().material_of(mesh).*input.slot);
+      if (!why.empty()) {
+        report.warnings.push_back(
+            fmt::format("mesh '{}': {}; its material's {} is not drawn", mesh.name, why, input.name));
+      }
     }
   }
   report.limits = lamps.limits;

@@ -9,7 +9,8 @@ namespace gnomon::eevee {
 namespace {
 
 /** Features that make a difference without light, too. */
-constexpr Feature unlit_features = Feature::BaseColorTexture | Feature::AlphaMask | Feature::TargetDepth;
+constexpr Feature unlit_features =
+    Feature::BaseColorTexture | Feature::AlphaMask | Feature::FullMaterial | Feature::TargetDepth;
 
 /** The interface of a variant from the table that the build generated. */
 gpu::ShaderReflection generated_reflection(ShaderId id, Feature features)

@@ -325,7 +325,8 @@ class DocumentReader {
   {
     primitive.attributes.clear();
     for_members(place, value, [&](std::string_view key, const Place &at, const JsonValue &accessor) {
-      if (key == "POSITION" || key == "NORMAL" || key == "COLOR_0" || key.starts_with("TEXCOORD_")) {
+      if (key == "POSITION" || key == "NORMAL" || key == "TANGENT" || key == "COLOR_0" ||
+          key.starts_with("TEXCOORD_")) {
         primitive.attributes.insert_or_assign(std::string(key), index_into("accessors", at, accessor));
       }
     });

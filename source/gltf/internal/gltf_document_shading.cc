@@ -8,20 +8,9 @@ namespace gnomon::gltf {
 
 namespace {
 
-/** Whether a texture slot has an index. */
-bool has_index(const Place &place, const JsonValue &slot)
-{
-  int index = -1;
-  read_members(place, slot, into("index", index));
-  return index >= 0;
-}
-
-auto into_has_index(std::string_view key, bool &target)
-{
-  return Member{key, [&target](const Place &place, const JsonValue &slot) { target = has_index(place, slot); }};
-}
-
-void read_slot(const Place &place, const JsonValue &value, Model::TextureSlot &slot)
+/** \a factor: of the slot's own, by \a factor_key; nullptr: it has none. */
+void read_slot(const Place &place, const JsonValue &value, Model::TextureSlot &slot, std::string_view factor_key = "",
+               double *factor = nullptr)
 {
   // The transform's replaces the slot's.
   int transformed_set = -1;
@@ -34,20 +23,25 @@ void read_slot(const Place &place, const JsonValue &value, Model::TextureSlot &s
                         read_members(at, extensions, Member{"KHR_texture_transform", read_transform});
                       }});
   slot.set = transformed_set < 0 ? slot.set : transformed_set;
+  if (factor != nullptr) {
+    read_members(place, value, into(factor_key, *factor));
+  }
+}
+
+auto into_slot(std::string_view key, Model::TextureSlot &slot, std::string_view factor_key = "",
+               double *factor = nullptr)
+{
+  return Member{key, [=, &slot](const Place &place, const JsonValue &value) {
+                  read_slot(place, value, slot, factor_key, factor);
+                }};
 }
 
 void read_specular(const Place &place, const JsonValue &value, Model::Material &material)
 {
-  const auto present = [](std::string_view key, bool &target) {
-    return Member{key, [&target](const Place &at, const JsonValue &slot) {
-                    static_cast<void>(has_index(at, slot));
-                    target = true;
-                  }};
-  };
   read_members(place, value, into("specularFactor", material.specular),
                into("specularColorFactor", material.specular_color),
-               present("specularTexture", material.has_specular_texture),
-               present("specularColorTexture", material.has_specular_color_texture));
+               into_slot("specularTexture", material.specular_texture),
+               into_slot("specularColorTexture", material.specular_color_texture));
 }
 
 void read_material_extensions(const Place &place, const JsonValue &value, Model::Material &material)
@@ -62,6 +56,10 @@ void read_material_extensions(const Place &place, const JsonValue &value, Model:
     }
     else if (name == "KHR_materials_ior") {
       read_members(at, extension, into("ior", material.ior.emplace(1.5)));
+    }
+    else if (name == "KHR_materials_unlit") {
+      static_cast<void>(object_at(at, extension));
+      material.is_unlit = true;
     }
   });
   std::sort(material.extensions.begin(), material.extensions.end());
@@ -96,19 +94,17 @@ void read_lens(const Place &place, const JsonValue &value, const std::map<std::s
 void read_material(const Place &place, const JsonValue &value, Model::Material &material)
 {
   const auto read_roughness = [&](const Place &at, const JsonValue &roughness) {
-    read_members(
-        at, roughness, into("baseColorFactor", material.base_color), into("metallicFactor", material.metallic),
-        into("roughnessFactor", material.roughness),
-        Member{"baseColorTexture",
-               [&](const Place &in, const JsonValue &slot) { read_slot(in, slot, material.base_color_texture); }},
-        into_has_index("metallicRoughnessTexture", material.has_metallic_roughness_texture));
+    read_members(at, roughness, into("baseColorFactor", material.base_color), into("metallicFactor", material.metallic),
+                 into("roughnessFactor", material.roughness),
+                 into_slot("baseColorTexture", material.base_color_texture),
+                 into_slot("metallicRoughnessTexture", material.metallic_roughness_texture));
   };
   read_members(place, value, into_name(material.name), Member{"pbrMetallicRoughness", read_roughness},
                into("emissiveFactor", material.emissive), into("alphaMode", material.alpha_mode),
                into("alphaCutoff", material.alpha_cutoff), into("doubleSided", material.is_double_sided),
-               into_has_index("normalTexture", material.has_normal_texture),
-               into_has_index("occlusionTexture", material.has_occlusion_texture),
-               into_has_index("emissiveTexture", material.has_emissive_texture),
+               into_slot("normalTexture", material.normal_texture, "scale", &material.normal_scale),
+               into_slot("occlusionTexture", material.occlusion_texture, "strength", &material.occlusion_strength),
+               into_slot("emissiveTexture", material.emissive_texture),
                Member{"extensions", [&](const Place &at, const JsonValue &extensions) {
                         read_material_extensions(at, extensions, material);
                       }});

@@ -53,20 +53,10 @@ void drop_unused_vertices(Mesh &mesh)
     if (new_index[vertex] == unused) {
       continue;
     }
-    mesh.positions[kept] = mesh.positions[vertex];
-    mesh.normals[kept] = mesh.normals[vertex];
-    if (!mesh.uvs.empty()) {
-      mesh.uvs[kept] = mesh.uvs[vertex];
-    }
-    if (!mesh.colors.empty()) {
-      mesh.colors[kept] = mesh.colors[vertex];
-    }
+    scene::for_each_stream(mesh, [&](auto &stream) { stream[kept] = stream[vertex]; });
     new_index[vertex] = kept++;
   }
-  mesh.positions.resize(kept);
-  mesh.normals.resize(kept);
-  mesh.uvs.resize(mesh.uvs.empty() ? 0 : kept);
-  mesh.colors.resize(mesh.colors.empty() ? 0 : kept);
+  scene::for_each_stream(mesh, [&](auto &stream) { stream.resize(kept); });
   for (std::uint32_t &index : mesh.indices) {
     index = new_index[index];
   }
@@ -111,14 +101,8 @@ std::size_t flatten_facets(Mesh &mesh)
     for (std::size_t i = first; i < first + 3; i++) {
       const std::uint32_t vertex = mesh.indices[i];
       mesh.indices[i] = std::uint32_t(mesh.positions.size());
-      mesh.positions.push_back(mesh.positions[vertex]);
-      mesh.normals.emplace_back(glm::normalize(area));
-      if (!mesh.uvs.empty()) {
-        mesh.uvs.push_back(mesh.uvs[vertex]);
-      }
-      if (!mesh.colors.empty()) {
-        mesh.colors.push_back(mesh.colors[vertex]);
-      }
+      scene::for_each_stream(mesh, [vertex](auto &stream) { stream.push_back(stream[vertex]); });
+      mesh.normals.back() = glm::vec3(glm::normalize(area));
       parent.push_back(std::uint32_t(parent.size()));
     }
   }

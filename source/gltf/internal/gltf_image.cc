@@ -61,53 +61,77 @@ void spread_channels(std::vector<std::uint8_t> &texels, std::size_t texel_count,
 
 }  // namespace
 
-Image decoded_image(ByteSpan bytes, const std::string &what, std::uint64_t texel_count_max)
+struct ImageDecoder::Input {
+  std::string what;
+  OIIO::Filesystem::IOMemReader reader;
+  OIIO::Filesystem::IOProxy *proxy = &reader;
+  std::unique_ptr<OIIO::ImageInput> file{};
+  OIIO::ImageSpec spec{};
+
+  [[nodiscard]] std::uint64_t texel_count() const
+  {
+    return std::uint64_t(spec.width) * std::uint64_t(spec.height);
+  }
+};
+
+ImageDecoder::ImageDecoder(ByteSpan bytes, std::string what, std::uint64_t texel_count_max)
+    : input_(new Input{std::move(what), {const_cast<unsigned char *>(bytes.data()), bytes.size()}})
 {
+  const std::string &name = input_->what;
   const char *format = format_of(bytes);
   if (format == nullptr) {
-    throw Fault(what, bytes.empty() ? "is empty" : "is neither PNG nor JPEG");
+    throw Fault(name, bytes.empty() ? "is empty" : "is neither PNG nor JPEG");
   }
-  OIIO::Filesystem::IOMemReader reader(const_cast<unsigned char *>(bytes.data()), bytes.size());
-  OIIO::Filesystem::IOProxy *proxy = &reader;
   OIIO::ImageSpec config;
-  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &input_->proxy);
   // Else colours would come multiplied by alpha.
   config.attribute("oiio:UnassociatedAlpha", 1);
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
-  if (!input) {
-    throw Fault(what, "cannot be decoded: " + printable(OIIO::geterror()));
+  input_->file = OIIO::ImageInput::create(format);
+  if (!input_->file) {
+    throw Fault(name, "cannot be decoded: " + printable(OIIO::geterror()));
   }
-  OIIO::ImageSpec spec;
-  if (!input->open(format, spec, config)) {
-    throw Fault(what, "cannot be decoded: " + printable(input->geterror()));
+  OIIO::ImageSpec &spec = input_->spec;
+  if (!input_->file->open(format, spec, config)) {
+    throw Fault(name, "cannot be decoded: " + printable(input_->file->geterror()));
   }
   if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || spec.nchannels > 4) {
-    throw Fault(what, "has no texels, or more than four channels");
+    throw Fault(name, "has no texels, or more than four channels");
   }
   const std::string size = std::to_string(spec.width) + 'x' + std::to_string(spec.height);
-  const std::uint64_t texel_count = std::uint64_t(spec.width) * std::uint64_t(spec.height);
   if (spec.width > edge_max || spec.height > edge_max) {
-    throw Fault(what, "is too large, " + size + " texels: an edge may have " + std::to_string(edge_max));
+    throw Fault(name, "is too large, " + size + " texels: an edge may have " + std::to_string(edge_max));
   }
-  if (texel_count > texel_count_max) {
-    throw Fault(what, "is too large, " + size + " texels: " + std::to_string(texel_count_max) +
+  if (texel_count() > texel_count_max) {
+    throw Fault(name, "is too large, " + size + " texels: " + std::to_string(texel_count_max) +
                           " are left of those that all images may have");
   }
-  if (texel_count / 8 / expansion_max > bytes.size()) {
-    throw Fault(what, "is cut off: " + size + " texels cannot be in " + std::to_string(bytes.size()) + " bytes");
+  if (texel_count() / 8 / expansion_max > bytes.size()) {
+    throw Fault(name, "is cut off: " + size + " texels cannot be in " + std::to_string(bytes.size()) + " bytes");
   }
   if (std::string_view(format) == "jpeg" && is_cut_off_jpeg(bytes)) {
-    throw Fault(what, "is cut off");
+    throw Fault(name, "is cut off");
   }
+}
+
+ImageDecoder::ImageDecoder(ImageDecoder &&) noexcept = default;
+ImageDecoder::~ImageDecoder() = default;
+
+std::uint64_t ImageDecoder::texel_count() const
+{
+  return input_->texel_count();
+}
+
+Image ImageDecoder::read()
+{
+  const OIIO::ImageSpec &spec = input_->spec;
   Image image;
   image.width = static_cast<std::uint32_t>(spec.width);
   image.height = static_cast<std::uint32_t>(spec.height);
-  image.texels.resize(4 * texel_count);
-  const int channel_count = spec.nchannels;
-  if (!input->read_image(0, 0, 0, channel_count, OIIO::TypeDesc::UINT8, image.texels.data())) {
-    throw Fault(what, "cannot be decoded: " + printable(input->geterror()));
+  image.texels.resize(4 * texel_count());
+  if (!input_->file->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, image.texels.data())) {
+    throw Fault(input_->what, "cannot be decoded: " + printable(input_->file->geterror()));
   }
-  spread_channels(image.texels, texel_count, channel_count);
+  spread_channels(image.texels, texel_count(), spec.nchannels);
   return image;
 }
 

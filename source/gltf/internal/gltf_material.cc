@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <set>
 #include <string>
 
 namespace gnomon::gltf {
@@ -15,14 +15,23 @@ using scene::AlphaMode;
 using scene::Handle;
 using scene::Material;
 using scene::Scene;
+using scene::TextureSlot;
 
 namespace {
+
+/** Of a mesh; \see scene::TextureSlot::uv_set */
+constexpr std::size_t uv_sets_max = 2;
 
 /** Reads one material; every message names it. */
 class MaterialReader {
  public:
-  MaterialReader(const Model::Material &source, std::size_t index, TextureImporter &textures, Warnings &warnings)
-      : source_(source), what_(label("material", source.name, index)), textures_(textures), warnings_(warnings)
+  MaterialReader(const Model::Material &source, std::size_t index, TextureImporter &textures, StandIns &stand_ins,
+                 Warnings &warnings)
+      : source_(source),
+        what_(label("material", source.name, index)),
+        textures_(textures),
+        stand_ins_(stand_ins),
+        warnings_(warnings)
   {
     result_.name = source.name.empty() ? "material " + std::to_string(index) : source.name;
   }
@@ -33,25 +42,26 @@ class MaterialReader {
     read_specular();
     read_emissive();
     read_alpha();
-    read_base_color_texture();
+    read_textures();
     result_.is_double_sided = source_.is_double_sided;
-    warn_textures();
+    result_.is_unlit = source_.is_unlit;
     warn_extensions();
     return result_;
   }
 
-  [[nodiscard]] const TextureCoordinates &texture_coordinates() const
+  [[nodiscard]] const std::vector<int> &uv_sets() const
   {
-    return texture_coordinates_;
+    return uv_sets_;
   }
 
  private:
   const Model::Material &source_;
   std::string what_;
   TextureImporter &textures_;
+  StandIns &stand_ins_;
   Warnings &warnings_;
   Material result_;
-  TextureCoordinates texture_coordinates_;
+  std::vector<int> uv_sets_;
 
   template <std::size_t Count>
   static glm::dvec3 vec3(const std::array<double, Count> &values)
@@ -128,45 +138,65 @@ class MaterialReader {
     }
   }
 
-  void read_base_color_texture()
+  /** Beyond it, floats no longer tell texels apart. */
+  float limited(const char *member, double value)
   {
-    const Model::TextureSlot &slot = source_.base_color_texture;
-    if (slot.index < 0) {
-      return;
+    constexpr double limit = 1e6;
+    const double result = std::clamp(value, -limit, limit);
+    if (result != value) {
+      warnings_.add(what_, std::string(member) + " is " + text(value) + ", clamped to " + text(result));
     }
-    texture_coordinates_ = {slot.set, {slot.offset[0], slot.offset[1]}, slot.rotation, {slot.scale[0], slot.scale[1]}};
-    try {
-      result_.base_color_texture = textures_.handle_of(slot.index);
+    return static_cast<float>(result);
+  }
+
+  void read_textures()
+  {
+    result_.normal_scale = limited("normalTexture.scale", source_.normal_scale);
+    result_.occlusion_strength = clamped("occlusionTexture.strength", source_.occlusion_strength, 1.0);
+    std::set<int> sets;
+    for (const SlotName &name : slot_names) {
+      const Model::TextureSlot &slot = source_.*name.source;
+      if (slot.index >= 0) {
+        sets.insert(slot.set);
+      }
     }
-    catch (const Fault &fault) {
-      warnings_.add(what_, std::string("its baseColorFactor is drawn without a texture: ") + fault.what());
+    uv_sets_.assign(sets.begin(), sets.end());
+    if (uv_sets_.size() > uv_sets_max) {
+      uv_sets_.resize(uv_sets_max);
+    }
+    for (const SlotName &name : slot_names) {
+      const Model::TextureSlot &slot = source_.*name.source;
+      if (slot.index >= 0) {
+        result_.*name.target = read_slot(name, slot);
+      }
     }
   }
 
-  void warn_textures()
+  TextureSlot read_slot(const SlotName &name, const Model::TextureSlot &slot)
   {
-    std::string slots;
-    const auto add_slot = [&slots](bool is_used, const char *name) {
-      if (is_used) {
-        slots += slots.empty() ? name : std::string(", ") + name;
+    TextureSlot result;
+    try {
+      const auto set = std::find(uv_sets_.begin(), uv_sets_.end(), slot.set);
+      if (set == uv_sets_.end()) {
+        throw Fault("texCoord", std::to_string(slot.set) + " is a third set of texture coordinates");
       }
-    };
-    add_slot(source_.has_metallic_roughness_texture, "metallicRoughnessTexture");
-    add_slot(source_.has_normal_texture, "normalTexture");
-    add_slot(source_.has_occlusion_texture, "occlusionTexture");
-    add_slot(source_.has_emissive_texture, "emissiveTexture");
-    add_slot(source_.has_specular_texture, "specularTexture");
-    add_slot(source_.has_specular_color_texture, "specularColorTexture");
-    if (!slots.empty()) {
-      const bool is_one = slots.find(',') == slots.npos;
-      warnings_.add(what_, slots + (is_one ? " is" : " are") + " not drawn yet");
+      result.uv_set = static_cast<int>(set - uv_sets_.begin());
+      result.texture = textures_.handle_of(slot.index);
     }
+    catch (const Fault &fault) {
+      result.texture = stand_ins_.texture_of(name);
+      warnings_.add(what_, reason_of(name, fault));
+    }
+    result.offset = {limited("offset", slot.offset[0]), limited("offset", slot.offset[1])};
+    result.rotation = limited("rotation", slot.rotation);
+    result.scale = {limited("scale", slot.scale[0]), limited("scale", slot.scale[1])};
+    return result;
   }
 
   void warn_extensions()
   {
     constexpr std::array read_or_without_effect{"KHR_materials_specular", "KHR_materials_emissive_strength",
-                                                "KHR_materials_ior", "KHR_materials_variants"};
+                                                "KHR_materials_ior", "KHR_materials_variants", "KHR_materials_unlit"};
     for (const std::string &name : source_.extensions) {
       if (std::find(read_or_without_effect.begin(), read_or_without_effect.end(), name) ==
           read_or_without_effect.end()) {
@@ -181,17 +211,8 @@ class MaterialReader {
 
 }  // namespace
 
-glm::vec2 TextureCoordinates::transformed(const glm::vec2 &uv) const
-{
-  const glm::dvec2 scaled = scale * glm::dvec2(uv);
-  const double sine = std::sin(rotation);
-  const double cosine = std::cos(rotation);
-  // v runs down the image, which turns the sense of the angle.
-  return glm::vec2(offset + glm::dvec2(cosine * scaled.x + sine * scaled.y, cosine * scaled.y - sine * scaled.x));
-}
-
 MaterialImporter::MaterialImporter(const File &file, Warnings &warnings, Scene &scene)
-    : file_(file), warnings_(warnings), scene_(scene), textures_(file, warnings, scene)
+    : file_(file), warnings_(warnings), scene_(scene), textures_(file, warnings, scene), stand_ins_(scene)
 {
 }
 
@@ -200,15 +221,48 @@ Handle<Material> MaterialImporter::handle_of(int gltf_material)
   const auto [place, is_new] = handle_of_.try_emplace(gltf_material);
   if (is_new && gltf_material < 0) {
     place->second = scene_.add(Material{.name = "default"});
-    texture_coordinates_.try_emplace(place->second);
+    uv_sets_.try_emplace(place->second);
   }
   else if (is_new) {
     const Model::Material &source = file_.model.materials[gltf_material];
-    MaterialReader reader(source, static_cast<std::size_t>(gltf_material), textures_, warnings_);
+    MaterialReader reader(source, static_cast<std::size_t>(gltf_material), textures_, stand_ins_, warnings_);
     place->second = scene_.add(reader.read());
-    texture_coordinates_.emplace(place->second, reader.texture_coordinates());
+    uv_sets_.emplace(place->second, reader.uv_sets());
   }
   return place->second;
+}
+
+void MaterialImporter::finish()
+{
+  const std::map<Handle<scene::Image>, Fault> damaged = textures_.decode();
+  if (damaged.empty()) {
+    return;
+  }
+  for (const auto &[handle, material] : scene_.materials()) {
+    Material changed = material;
+    for (const SlotName &name : slot_names) {
+      TextureSlot &slot = changed.*name.target;
+      const scene::Texture *texture = scene_.textures().find(slot.texture);
+      const auto found = texture != nullptr ? damaged.find(texture->image) : damaged.end();
+      if (found != damaged.end()) {
+        slot.texture = stand_ins_.texture_of(name);
+        warnings_.add("material '" + printable(material.name) + '\'', reason_of(name, found->second));
+      }
+    }
+    scene_.replace(handle, std::move(changed));
+  }
+  std::vector<Handle<scene::Texture>> unused;
+  for (const auto &[handle, texture] : scene_.textures()) {
+    if (damaged.count(texture.image) > 0) {
+      unused.push_back(handle);
+    }
+  }
+  for (const Handle<scene::Texture> handle : unused) {
+    scene_.remove(handle);
+  }
+  for (const auto &[handle, fault] : damaged) {
+    scene_.remove(handle);
+  }
 }
 
 }  // namespace gnomon::gltf

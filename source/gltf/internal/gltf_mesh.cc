@@ -4,6 +4,7 @@
 #include "internal/gltf_accessor.hh"
 #include "internal/gltf_facets.hh"
 #include "internal/gltf_triangles.hh"
+#include "scene_tangents.hh"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -132,10 +133,10 @@ class PrimitiveReader {
   }
 
   /** Texture coordinates for a mesh that read() has given; all 0 where the primitive has none that can be read. */
-  std::vector<glm::vec2> read_uvs(const TextureCoordinates &coordinates)
+  std::vector<glm::vec2> read_uvs(int set)
   {
     std::vector<glm::vec2> uvs(file_vertices_.size(), glm::vec2(0.0F));
-    const std::string attribute = "TEXCOORD_" + std::to_string(coordinates.set);
+    const std::string attribute = "TEXCOORD_" + std::to_string(set);
     try {
       const auto found = primitive_.attributes.find(attribute);
       if (found == primitive_.attributes.end()) {
@@ -147,7 +148,7 @@ class PrimitiveReader {
       }
       Losses losses;
       for (std::size_t i = 0; i < uvs.size(); i++) {
-        const glm::vec2 uv = coordinates.transformed(reader.vec2(file_vertices_[i]));
+        const glm::vec2 uv = reader.vec2(file_vertices_[i]);
         losses.bad_uvs += is_uv(uv) ? 0 : 1;
         uvs[i] = is_uv(uv) ? uv : glm::vec2(0.0F);
       }
@@ -157,6 +158,36 @@ class PrimitiveReader {
       warnings_.add(what_, std::string("its texture is drawn as the colour of one corner: ") + fault.what());
     }
     return uvs;
+  }
+
+  /** Tangents for a mesh that read() has given; none where the primitive has none that can be read. */
+  std::vector<glm::vec4> read_tangents()
+  {
+    const auto found = primitive_.attributes.find("TANGENT");
+    // glTF ignores the tangents of a primitive without normals.
+    if (found == primitive_.attributes.end() || !normals_) {
+      return {};
+    }
+    std::vector<glm::vec4> tangents;
+    try {
+      const AccessorReader reader(file_, found->second, Model::ElementType::Vec4);
+      if (reader.count() != positions_.count()) {
+        throw Fault("TANGENT", "count differs from that of POSITION");
+      }
+      for (const std::uint32_t vertex : file_vertices_) {
+        const glm::vec4 tangent = reader.vec4(vertex);
+        const glm::vec3 direction = unit_or_zero(glm::vec3(tangent));
+        if (direction == glm::vec3(0.0F)) {
+          throw Fault("TANGENT", "one is zero or not finite");
+        }
+        tangents.emplace_back(direction, tangent.w < 0.0F ? -1.0F : 1.0F);
+      }
+    }
+    catch (const Fault &fault) {
+      tangents.clear();
+      warnings_.add(what_, std::string("tangents made instead: ") + fault.what());
+    }
+    return tangents;
   }
 
   /** Vertex colours for a mesh that read() has given; none where the primitive has none that can be read. */
@@ -414,8 +445,11 @@ void MeshImporter::import_primitive(int gltf_mesh, std::size_t primitive_index, 
     if (!mesh.indices.empty()) {
       mesh.colors = reader.read_colors();
       mesh.material = materials_.handle_of(primitive.material);
-      if (scene_.materials()[mesh.material].base_color_texture) {
-        mesh.uvs = reader.read_uvs(materials_.texture_coordinates(mesh.material));
+      const std::vector<int> &uv_sets = materials_.uv_sets(mesh.material);
+      mesh.uvs = uv_sets.empty() ? std::vector<glm::vec2>() : reader.read_uvs(uv_sets[0]);
+      mesh.second_uvs = uv_sets.size() < 2 ? std::vector<glm::vec2>() : reader.read_uvs(uv_sets[1]);
+      if (scene_.materials()[mesh.material].normal_texture) {
+        mesh.tangents = reader.read_tangents();
       }
     }
   }
@@ -428,6 +462,10 @@ void MeshImporter::import_primitive(int gltf_mesh, std::size_t primitive_index, 
     return;
   }
   flatten_facets(mesh);
+  const scene::TextureSlot &normal_texture = scene_.materials()[mesh.material].normal_texture;
+  if (normal_texture && mesh.tangents.empty()) {
+    scene::make_tangents(mesh, normal_texture);
+  }
   mesh.name = name;
   if (primitive.has_targets) {
     warnings_.add(what, "morph targets are not applied");

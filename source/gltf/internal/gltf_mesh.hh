@@ -30,6 +30,12 @@ class MeshImporter {
   /** The scene's meshes for the primitives of a mesh of the file, without those that cannot be drawn. */
   [[nodiscard]] const std::vector<scene::Handle<scene::Mesh>> &meshes_of(int gltf_mesh);
 
+  /** Decode the images of materials; call it once, at the end. */
+  void finish()
+  {
+    materials_.finish();
+  }
+
   /** Primitives that were looked at, drawable or not. */
   [[nodiscard]] std::size_t primitive_count() const
   {

@@ -119,6 +119,14 @@ struct Model {
     std::string name;
     std::array<double, 4> base_color{1.0, 1.0, 1.0, 1.0};
     TextureSlot base_color_texture;
+    TextureSlot metallic_roughness_texture;
+    TextureSlot normal_texture;
+    double normal_scale = 1.0;
+    TextureSlot occlusion_texture;
+    double occlusion_strength = 1.0;
+    TextureSlot emissive_texture;
+    TextureSlot specular_texture;
+    TextureSlot specular_color_texture;
     double metallic = 1.0;
     double roughness = 1.0;
     std::array<double, 3> emissive{0.0, 0.0, 0.0};
@@ -129,12 +137,7 @@ struct Model {
     std::string alpha_mode = "OPAQUE";
     double alpha_cutoff = 0.5;
     bool is_double_sided = false;
-    bool has_metallic_roughness_texture = false;
-    bool has_normal_texture = false;
-    bool has_occlusion_texture = false;
-    bool has_emissive_texture = false;
-    bool has_specular_texture = false;
-    bool has_specular_color_texture = false;
+    bool is_unlit = false;
     /** Names, ascending. */
     std::vector<std::string> extensions;
   };

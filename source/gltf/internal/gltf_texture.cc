@@ -2,9 +2,11 @@
 #include "internal/gltf_texture.hh"
 
 #include "internal/gltf_accessor.hh"
-#include "internal/gltf_image.hh"
 #include "internal/gltf_sampler.hh"
 
+#include <OpenImageIO/parallel.h>
+
+#include <exception>
 #include <span>
 #include <string>
 #include <vector>
@@ -149,10 +151,43 @@ Handle<Image> TextureImporter::import_image(int gltf_image)
     element(file_.model.buffer_views, source.buffer_view, what + ": bufferView");
     bytes = view_bytes(file_, source.buffer_view, 0, what);
   }
-  Image image = decoded_image(bytes, what, texel_count_max - texel_count_);
-  image.name = source.name.empty() ? "image " + std::to_string(gltf_image) : source.name;
-  texel_count_ += std::uint64_t(image.width) * image.height;
-  return scene_.add(std::move(image));
+  ImageDecoder decoder(bytes, what, texel_count_max - texel_count_);
+  texel_count_ += decoder.texel_count();
+  const Handle<Image> handle =
+      scene_.add(Image{source.name.empty() ? "image " + std::to_string(gltf_image) : source.name, 1, 1, {0, 0, 0, 0}});
+  pending_.push_back({handle, std::move(storage), std::move(decoder)});
+  return handle;
+}
+
+std::map<Handle<Image>, Fault> TextureImporter::decode()
+{
+  std::vector<std::variant<Image, Fault>> results(pending_.size());
+  OIIO::parallel_for(std::int64_t(0), std::int64_t(pending_.size()), [&](std::int64_t i) {
+    const auto index = static_cast<std::size_t>(i);
+    try {
+      results[index] = pending_[index].decoder.read();
+    }
+    catch (const Fault &fault) {
+      results[index] = fault;
+    }
+    catch (const std::exception &error) {
+      // No exception may leave a thread.
+      results[index] = Fault("image " + std::to_string(index), printable(error.what()));
+    }
+  });
+  std::map<Handle<Image>, Fault> damaged;
+  for (std::size_t i = 0; i < pending_.size(); i++) {
+    const Handle<Image> handle = pending_[i].handle;
+    if (const Fault *fault = std::get_if<Fault>(&results[i])) {
+      damaged.emplace(handle, *fault);
+      continue;
+    }
+    Image &image = std::get<Image>(results[i]);
+    image.name = scene_.images()[handle].name;
+    scene_.replace(handle, std::move(image));
+  }
+  pending_.clear();
+  return damaged;
 }
 
 }  // namespace gnomon::gltf

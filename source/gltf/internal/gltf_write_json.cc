@@ -60,6 +60,11 @@ std::string json_number(float value, std::string_view what)
   return static_cast<float>(std::strtod(text.c_str(), nullptr)) == value ? text : fmt::format("{}", double(value));
 }
 
+std::string json_numbers(const glm::vec2 &value, std::string_view what)
+{
+  return '[' + json_number(value.x, what) + ',' + json_number(value.y, what) + ']';
+}
+
 std::string json_numbers(const glm::vec3 &value, std::string_view what)
 {
   return '[' + json_number(value.x, what) + ',' + json_number(value.y, what) + ',' + json_number(value.z, what) + ']';

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
@@ -16,6 +17,7 @@ namespace gnomon::gltf {
 /** The shortest number that reads back as the same value. \throws Fault that names \a what where it is not finite. */
 [[nodiscard]] std::string json_number(double value, std::string_view what);
 [[nodiscard]] std::string json_number(float value, std::string_view what);
+[[nodiscard]] std::string json_numbers(const glm::vec2 &value, std::string_view what);
 [[nodiscard]] std::string json_numbers(const glm::vec3 &value, std::string_view what);
 [[nodiscard]] std::string json_numbers(const glm::vec4 &value, std::string_view what);
 

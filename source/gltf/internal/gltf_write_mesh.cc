@@ -119,6 +119,12 @@ const JsonText &MeshWriter::primitive(Handle<Mesh> handle)
   if (!mesh.uvs.empty()) {
     add("TEXCOORD_0", mesh.uvs, "VEC2", "");
   }
+  if (!mesh.second_uvs.empty()) {
+    add("TEXCOORD_1", mesh.second_uvs, "VEC2", "");
+  }
+  if (!mesh.tangents.empty()) {
+    add("TANGENT", mesh.tangents, "VEC4", "");
+  }
   if (!mesh.colors.empty()) {
     add("COLOR_0", mesh.colors, "VEC4", "");
   }
@@ -139,24 +145,30 @@ int MeshWriter::material(Handle<Material> handle)
   const std::string what = what_of("material", material.name);
   JsonText roughness;
   roughness.add("baseColorFactor", json_numbers(glm::vec4(material.base_color, material.alpha), what));
-  if (const Texture *texture = scene_.textures().find(material.base_color_texture);
-      texture != nullptr && scene_.images().is_live(texture->image)) {
-    const int index = this->texture(material.base_color_texture);
-    roughness.add("baseColorTexture", "{\"index\":" + std::to_string(index) + '}');
-  }
+  add_slot(roughness, "baseColorTexture", material.base_color_texture, what);
   roughness.add("metallicFactor", json_number(material.metallic, what));
   roughness.add("roughnessFactor", json_number(material.roughness, what));
+  add_slot(roughness, "metallicRoughnessTexture", material.metallic_roughness_texture, what);
   const float strength = emissive_strength(material.emissive);
-  JsonText extensions;
-  if (material.specular != 1.0F || material.specular_color != glm::vec3(1.0F)) {
-    has_specular = true;
-    extensions.add("KHR_materials_specular",
-                   "{\"specularFactor\":" + json_number(material.specular, what) +
-                       ",\"specularColorFactor\":" + json_numbers(material.specular_color, what) + '}');
+  JsonText used;
+  const auto add_extension = [&](const char *name, const std::string &value) {
+    extensions.insert(name);
+    used.add(name, value);
+  };
+  if (material.specular != 1.0F || material.specular_color != glm::vec3(1.0F) || material.specular_texture ||
+      material.specular_color_texture) {
+    JsonText specular;
+    specular.add("specularFactor", json_number(material.specular, what));
+    specular.add("specularColorFactor", json_numbers(material.specular_color, what));
+    add_slot(specular, "specularTexture", material.specular_texture, what);
+    add_slot(specular, "specularColorTexture", material.specular_color_texture, what);
+    add_extension("KHR_materials_specular", specular.object());
   }
   if (strength != 1.0F) {
-    has_emissive_strength = true;
-    extensions.add("KHR_materials_emissive_strength", "{\"emissiveStrength\":" + json_number(strength, what) + '}');
+    add_extension("KHR_materials_emissive_strength", "{\"emissiveStrength\":" + json_number(strength, what) + '}');
+  }
+  if (material.is_unlit) {
+    add_extension("KHR_materials_unlit", "{}");
   }
   JsonText json;
   json.add("name", json_string(material.name, what));
@@ -167,10 +179,34 @@ int MeshWriter::material(Handle<Material> handle)
                                                                   : "\"OPAQUE\"");
   json.add("alphaCutoff", json_number(material.alpha_cutoff, what));
   json.add("doubleSided", material.is_double_sided ? "true" : "false");
-  if (!extensions.empty()) {
-    json.add("extensions", extensions.object());
+  add_slot(json, "normalTexture", material.normal_texture, what,
+           ",\"scale\":" + json_number(material.normal_scale, what));
+  add_slot(json, "occlusionTexture", material.occlusion_texture, what,
+           ",\"strength\":" + json_number(material.occlusion_strength, what));
+  add_slot(json, "emissiveTexture", material.emissive_texture, what);
+  if (!used.empty()) {
+    json.add("extensions", used.object());
   }
   return material_of_.emplace(handle, materials.add(json.object())).first->second;
+}
+
+void MeshWriter::add_slot(JsonText &json, std::string_view key, const scene::TextureSlot &slot, const std::string &what,
+                          const std::string &factor)
+{
+  const Texture *found = scene_.textures().find(slot.texture);
+  if (found == nullptr || !scene_.images().is_live(found->image)) {
+    return;
+  }
+  std::string text = "{\"index\":" + std::to_string(texture(slot.texture)) + factor;
+  if (slot.uv_set != 0) {
+    text += ",\"texCoord\":" + std::to_string(slot.uv_set);
+  }
+  if (slot.is_transformed()) {
+    extensions.insert("KHR_texture_transform");
+    text += ",\"extensions\":{\"KHR_texture_transform\":{\"offset\":" + json_numbers(slot.offset, what) +
+            ",\"rotation\":" + json_number(slot.rotation, what) + ",\"scale\":" + json_numbers(slot.scale, what) + "}}";
+  }
+  json.add(key, text + '}');
 }
 
 int MeshWriter::texture(Handle<Texture> handle)

@@ -6,6 +6,7 @@
 #include "scene.hh"
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,8 @@ class MeshWriter {
   JsonText textures;
   JsonText samplers;
   JsonText images;
-  bool has_specular = false;
-  bool has_emissive_strength = false;
+  /** Names of the extensions that materials use. */
+  std::set<std::string> extensions;
 
  private:
   const scene::Scene &scene_;
@@ -42,6 +43,9 @@ class MeshWriter {
 
   const JsonText &primitive(scene::Handle<scene::Mesh> handle);
   int material(scene::Handle<scene::Material> handle);
+  /** Adds the slot where it has a texture; \a factor: more members of it. */
+  void add_slot(JsonText &json, std::string_view key, const scene::TextureSlot &slot, const std::string &what,
+                const std::string &factor = "");
   int texture(scene::Handle<scene::Texture> handle);
   int image(scene::Handle<scene::Image> handle);
   int sampler(const scene::Texture &texture);

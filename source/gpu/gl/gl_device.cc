@@ -105,16 +105,15 @@ GlDevice::~GlDevice()
 void GlDevice::create_vertex_arrays()
 {
   glCreateVertexArrays(1, &vertex_array_);
-  const auto add = [&](GLuint attribute, GLint size) {
-    glVertexArrayAttribFormat(vertex_array_, attribute, size, GL_FLOAT, GL_FALSE, 0);
-    glVertexArrayAttribBinding(vertex_array_, attribute, attribute);
-  };
-  add(ATTRIBUTE_POSITION, 3);
-  add(ATTRIBUTE_NORMAL, 3);
-  add(ATTRIBUTE_UV, 2);
-  // The uv attribute is enabled with the first batch that has uv coordinates.
-  glEnableVertexArrayAttrib(vertex_array_, ATTRIBUTE_POSITION);
-  glEnableVertexArrayAttrib(vertex_array_, ATTRIBUTE_NORMAL);
+  // A stream's attribute is enabled with the first batch that has the stream.
+  for (const VertexFormat &format : vertex_formats()) {
+    const GLenum type = format.type == VertexFormat::Type::Float     ? GL_FLOAT
+                        : format.type == VertexFormat::Type::Snorm16 ? GL_SHORT
+                                                                     : GL_UNSIGNED_SHORT;
+    const GLboolean is_normalized = format.type == VertexFormat::Type::Float ? GL_FALSE : GL_TRUE;
+    glVertexArrayAttribFormat(vertex_array_, format.attribute, format.component_count, type, is_normalized, 0);
+    glVertexArrayAttribBinding(vertex_array_, format.attribute, format.attribute);
+  }
   glEnableVertexArrayAttrib(vertex_array_, ATTRIBUTE_DRAW_INSTANCE);
   glVertexArrayAttribIFormat(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, 2, GL_UNSIGNED_INT, 0);
   glVertexArrayAttribBinding(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, ATTRIBUTE_DRAW_INSTANCE);

@@ -66,7 +66,11 @@ class GlDevice final : public Device {
   std::string description() const override;
 
  private:
-  enum Pool { PositionPool, NormalPool, UvPool, IndexPool, PoolCount };
+  /** The pools of vertices, by VertexStream, come first. */
+  static constexpr std::size_t index_pool = vertex_stream_count;
+  static constexpr std::size_t pool_count = vertex_stream_count + 1;
+  using PoolBuffers = std::array<GLuint, pool_count>;
+  using PoolSizes = std::array<std::size_t, pool_count>;
 
   struct GlFramebuffer {
     GLuint name = 0;
@@ -139,7 +143,7 @@ class GlDevice final : public Device {
   void create_vertex_arrays();
   /** The attachment of \a framebuffer at \a point; adds a view to \a views where it needs one. */
   void attach(GLuint framebuffer, GLenum point, const Attachment &attachment, std::vector<GLuint> &views);
-  void grow_pools(const BatchDesc &desc, std::size_t vertex_capacity, std::size_t index_capacity);
+  void grow_pools(const BatchDesc &desc, const PoolSizes &sizes);
   /** Compiles and links \a stages. \throws Error with the driver's log. */
   GLuint compile(const ShaderDesc &desc, const std::vector<ShaderSource> &stages);
   /** 0: the driver does not accept \a compiled. */
@@ -185,9 +189,9 @@ class GlDevice final : public Device {
 
   GLuint vertex_array_ = 0;
   GLuint empty_vertex_array_ = 0;
-  std::array<GLuint, PoolCount> pool_{};
+  PoolBuffers pool_{};
   /** Bytes. */
-  std::array<std::size_t, PoolCount> pool_size_{};
+  PoolSizes pool_size_{};
   StreamRing stream_;
   /** Offset of the list's draws in the stream's buffer. */
   std::size_t draws_offset_ = 0;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gl_device.hh"
 
-#include "slots_shared.h"
-
 #include <algorithm>
+#include <numeric>
 
 namespace gnomon::gpu {
 
@@ -155,24 +154,20 @@ void GlDevice::buffer_create(ResourceId id, const BufferDesc &desc)
   buffers_.insert(id, {buffer, desc.size_bytes});
 }
 
-void GlDevice::grow_pools(const BatchDesc &desc, std::size_t vertex_capacity, std::size_t index_capacity)
+void GlDevice::grow_pools(const BatchDesc &desc, const PoolSizes &sizes)
 {
-  std::array<std::size_t, PoolCount> sizes{};
-  sizes[PositionPool] = sizes[NormalPool] = vertex_capacity * sizeof(glm::vec3);
-  // Created for the first batch that has uv coordinates, and grown for such batches only.
-  sizes[UvPool] = desc.uvs.empty() ? 0 : vertex_capacity * sizeof(glm::vec2);
-  sizes[IndexPool] = index_capacity * sizeof(std::uint32_t);
-  std::array<GLuint, PoolCount> grown{};
-  for (std::size_t i = 0; i < PoolCount; i++) {
+  PoolBuffers grown{};
+  for (std::size_t i = 0; i < pool_count; i++) {
     if (sizes[i] > pool_size_[i]) {
       glCreateBuffers(1, &grown[i]);
       glNamedBufferData(grown[i], GLsizeiptr(sizes[i]), nullptr, GL_STATIC_DRAW);
     }
   }
   // The buffers in use are replaced only once all new ones are known to exist.
-  check_or(fmt::format("batch '{}': {} vertices and {} indices in all", desc.name, vertex_capacity, index_capacity),
+  check_or(fmt::format("batch '{}': {} bytes of vertices and {} of indices in all", desc.name,
+                       std::reduce(sizes.begin(), sizes.begin() + vertex_stream_count), sizes[index_pool]),
            [&] { glDeleteBuffers(GLsizei(grown.size()), grown.data()); });
-  for (std::size_t i = 0; i < PoolCount; i++) {
+  for (std::size_t i = 0; i < pool_count; i++) {
     if (grown[i] != 0) {
       if (pool_[i] != 0) {
         glCopyNamedBufferSubData(pool_[i], grown[i], 0, 0, GLsizeiptr(pool_size_[i]));
@@ -181,13 +176,14 @@ void GlDevice::grow_pools(const BatchDesc &desc, std::size_t vertex_capacity, st
       pool_size_[i] = sizes[i];
     }
   }
-  glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_POSITION, pool_[PositionPool], 0, sizeof(glm::vec3));
-  glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_NORMAL, pool_[NormalPool], 0, sizeof(glm::vec3));
-  glVertexArrayElementBuffer(vertex_array_, pool_[IndexPool]);
-  if (pool_[UvPool] != 0) {
-    glEnableVertexArrayAttrib(vertex_array_, ATTRIBUTE_UV);
-    glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_UV, pool_[UvPool], 0, sizeof(glm::vec2));
+  for (std::size_t i = 0; i < vertex_stream_count; i++) {
+    const VertexFormat &format = vertex_formats()[i];
+    if (pool_[i] != 0) {
+      glEnableVertexArrayAttrib(vertex_array_, format.attribute);
+      glVertexArrayVertexBuffer(vertex_array_, format.attribute, pool_[i], 0, GLsizei(format.size_bytes));
+    }
   }
+  glVertexArrayElementBuffer(vertex_array_, pool_[index_pool]);
   glDeleteBuffers(GLsizei(grown.size()), grown.data());
 }
 
@@ -195,24 +191,30 @@ void GlDevice::batch_create(const BatchDesc &desc, const BatchRange &range, std:
                             std::uint32_t index_capacity)
 {
   const Entry entry(*this);
-  const bool has_uvs = !desc.uvs.empty();
-  if (vertex_capacity * sizeof(glm::vec3) > pool_size_[PositionPool] ||
-      index_capacity * sizeof(std::uint32_t) > pool_size_[IndexPool] ||
-      (has_uvs && vertex_capacity * sizeof(glm::vec2) > pool_size_[UvPool])) {
-    grow_pools(desc, vertex_capacity, index_capacity);
-  }
-  const auto write = [&](Pool pool, std::size_t first, const auto &values) {
-    glNamedBufferSubData(pool_[pool], GLintptr(first * sizeof(values[0])), GLsizeiptr(values.size_bytes()),
-                         values.data());
-  };
-  const auto base_vertex = std::size_t(range.base_vertex);
-  write(PositionPool, base_vertex, desc.positions);
+  // A stream's pool is created for the first batch that has the stream, and grown for such batches only.
+  PoolSizes sizes = pool_size_;
+  const auto need = [&sizes](std::size_t pool, std::size_t bytes) { sizes[pool] = std::max(sizes[pool], bytes); };
+  // Normals that a batch does not have are read as zeros.
   const std::vector<glm::vec3> zeros(desc.normals.empty() ? desc.positions.size() : 0, glm::vec3(0.0F));
-  write(NormalPool, base_vertex, desc.normals.empty() ? std::span<const glm::vec3>(zeros) : desc.normals);
-  if (has_uvs) {
-    write(UvPool, base_vertex, desc.uvs);
+  std::array<std::span<const std::byte>, vertex_stream_count> streams;
+  for (std::size_t i = 0; i < vertex_stream_count; i++) {
+    const bool is_zero = VertexStream(i) == VertexStream::Normal && desc.normals.empty();
+    streams[i] = is_zero ? std::as_bytes(std::span(zeros)) : desc.bytes(VertexStream(i));
+    need(i, streams[i].empty() ? 0 : std::size_t(vertex_capacity) * vertex_formats()[i].size_bytes);
   }
-  write(IndexPool, range.first_index, desc.indices);
+  need(index_pool, std::size_t(index_capacity) * sizeof(std::uint32_t));
+  if (sizes != pool_size_) {
+    grow_pools(desc, sizes);
+  }
+  const auto write = [&](std::size_t pool, std::size_t offset_bytes, std::span<const std::byte> bytes) {
+    if (!bytes.empty()) {
+      glNamedBufferSubData(pool_[pool], GLintptr(offset_bytes), GLsizeiptr(bytes.size()), bytes.data());
+    }
+  };
+  for (std::size_t i = 0; i < vertex_stream_count; i++) {
+    write(i, std::size_t(range.base_vertex) * vertex_formats()[i].size_bytes, streams[i]);
+  }
+  write(index_pool, std::size_t(range.first_index) * sizeof(std::uint32_t), std::as_bytes(desc.indices));
   check(fmt::format("batch '{}'", desc.name));
 }
 

@@ -69,13 +69,28 @@ void check_mesh(const scene::Scene &scene, const scene::Mesh &mesh, Checker &che
   checker.check(std::ranges::all_of(mesh.indices, [&](std::uint32_t i) { return i < mesh.positions.size(); }),
                 "with indices in range");
   checker.check(!mesh.bounds.is_empty(), "with bounds");
-  checker.check(mesh.uvs.empty() || mesh.uvs.size() == mesh.positions.size(), "with a texture coordinate a position");
-  checker.check(mesh.uvs.empty() == !scene.material_of(mesh).base_color_texture,
-                "with texture coordinates just where its material looks a texture up");
-  checker.check(mesh.colors.empty() || mesh.colors.size() == mesh.positions.size(), "with a colour a position");
-  checker.check(
-      std::ranges::all_of(mesh.uvs, [](const glm::vec2 &uv) { return std::isfinite(uv.x) && std::isfinite(uv.y); }),
-      "with finite texture coordinates");
+  scene::for_each_stream(mesh, [&](const auto &stream) {
+    checker.check(stream.size() == mesh.positions.size(), "with a value a position");
+  });
+  const scene::Material &material = scene.material_of(mesh);
+  for (int set = 0; set < 2; set++) {
+    const bool is_read = std::ranges::any_of(scene::texture_inputs, [&](const scene::TextureInput &input) {
+      return (material.*input.slot) && (material.*input.slot).uv_set == set;
+    });
+    checker.check(mesh.uv_set(set).empty() == !is_read,
+                  "with texture coordinates just where its material looks a texture up");
+    checker.check(std::ranges::all_of(mesh.uv_set(set),
+                                      [](const glm::vec2 &uv) { return std::isfinite(uv.x) && std::isfinite(uv.y); }),
+                  "with finite texture coordinates");
+  }
+  checker.check(mesh.tangents.empty() == !material.normal_texture,
+                "with tangents just where its material has a normal texture");
+  checker.check(std::ranges::all_of(mesh.tangents,
+                                    [](const glm::vec4 &t) {
+                                      return std::abs(glm::length(glm::vec3(t)) - 1.0F) <= 1e-5F &&
+                                             std::abs(t.w) == 1.0F;
+                                    }),
+                "with unit tangents");
   checker.check(std::ranges::all_of(mesh.positions,
                                     [&](const glm::vec3 &p) {
                                       return is_finite(p) && glm::min(mesh.bounds.min, p) == mesh.bounds.min &&
@@ -95,8 +110,11 @@ void check_material(const scene::Scene &scene, const scene::Material &material, 
     checker.check(factor >= 0.0F && factor <= 1.0F, "with factors in [0, 1]");
   }
   checker.check(is_finite(material.specular_color) && is_finite(material.emissive), "of finite colours");
-  checker.check(!material.base_color_texture || scene.textures().is_live(material.base_color_texture),
-                "of a texture that is there");
+  for (const scene::TextureInput &input : scene::texture_inputs) {
+    const scene::TextureSlot &slot = material.*input.slot;
+    checker.check(!slot || scene.textures().is_live(slot.texture), "of a texture that is there");
+    checker.check(slot.uv_set == 0 || slot.uv_set == 1, "with textures on one of two sets of coordinates");
+  }
 }
 
 void check_lamp(const scene::Lamp &lamp, Checker &checker)

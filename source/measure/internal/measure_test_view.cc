@@ -79,7 +79,10 @@ static void become(scene::Scene &scene, const scene::Scene &other)
   std::map<scene::Handle<scene::Material>, scene::Handle<scene::Material>> materials;
   for (const auto &[handle, material] : other.materials()) {
     scene::Material added = material;
-    added.base_color_texture = textures[material.base_color_texture];
+    for (const scene::TextureInput &input : scene::texture_inputs) {
+      scene::TextureSlot &slot = added.*input.slot;
+      slot.texture = textures[slot.texture];
+    }
     materials[handle] = scene.add(std::move(added));
   }
   std::map<scene::Handle<scene::Mesh>, scene::Handle<scene::Mesh>> meshes;

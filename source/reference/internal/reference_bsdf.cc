@@ -10,15 +10,13 @@
 
 namespace gnomon::reference {
 
-Bsdf make_bsdf(const scene::Material &material, const glm::dvec3 &base_color)
+Bsdf make_bsdf(const Surface &surface)
 {
-  const double metallic = material.metallic;
-  const glm::dvec3 dielectric =
-      glm::min(0.04 * glm::dvec3(material.specular_color), glm::dvec3(1.0)) * double(material.specular);
+  const glm::dvec3 dielectric = glm::min(0.04 * surface.specular_color, glm::dvec3(1.0)) * surface.specular;
   Bsdf bsdf;
-  bsdf.diffuse = base_color * (1.0 - metallic);
-  bsdf.alpha = std::max<double>(double(material.roughness) * double(material.roughness), shared_double::ALPHA_MIN);
-  bsdf.f0 = glm::mix(dielectric, base_color, metallic);
+  bsdf.diffuse = surface.base_color * (1.0 - surface.metallic);
+  bsdf.alpha = std::max<double>(surface.roughness * surface.roughness, shared_double::ALPHA_MIN);
+  bsdf.f0 = glm::mix(dielectric, surface.base_color, surface.metallic);
   bsdf.f90 = std::min(std::max({bsdf.f0.r, bsdf.f0.g, bsdf.f0.b}) / 0.02, 1.0);
   return bsdf;
 }
@@ -38,7 +36,8 @@ glm::dvec3 reflected(const Bsdf &bsdf, const glm::dvec3 &normal, const glm::dvec
   const glm::dvec3 fresnel = shared_double::fresnel_schlick(bsdf.f0, bsdf.f90, glm::dot(view, half_vector));
   const double kept = 1.0 - std::max({fresnel.r, fresnel.g, fresnel.b});
   const double lobe = shared_double::ggx_lobe(cos_l, cos_v, cos_h, bsdf.alpha);
-  return (bsdf.diffuse * (kept / std::numbers::pi) + fresnel * lobe) * cos_l;
+  const double seen = bsdf.smooth_normal ? shared_double::bump_visibility(*bsdf.smooth_normal, normal, to_light) : 1.0;
+  return (bsdf.diffuse * (seen * kept / std::numbers::pi) + fresnel * lobe) * cos_l;
 }
 
 }  // namespace gnomon::reference

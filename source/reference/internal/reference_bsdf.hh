@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "scene.hh"
+#include "reference_tracer.hh"
+
+#include <optional>
 
 namespace gnomon::reference {
 
@@ -14,10 +16,11 @@ struct Bsdf {
   /** Reflectance at normal incidence (f0) and at grazing incidence (f90). */
   glm::dvec3 f0{0.0};
   double f90 = 0.0;
+  /** Of a normal texture: the normal without it, on the visible side. */
+  std::optional<glm::dvec3> smooth_normal{};
 };
 
-/** \a base_color: base colour of the material times its texture, linear. */
-[[nodiscard]] Bsdf make_bsdf(const scene::Material &material, const glm::dvec3 &base_color);
+[[nodiscard]] Bsdf make_bsdf(const Surface &surface);
 
 /** BRDF from \a to_light to \a view, 1/sr, times the cosine of the light. All vectors have unit length. Finite. */
 [[nodiscard]] glm::dvec3 reflected(const Bsdf &bsdf, const glm::dvec3 &normal, const glm::dvec3 &view,

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// For vertex shaders: writes the inputs of eevee_full_alpha_lib.glsl.
+#include "draw/draw_object_lib.glsl"
+#include "eevee/eevee_full_block_lib.glsl"
+
+layout(location = ATTRIBUTE_UV) in vec2 uv;
+layout(location = ATTRIBUTE_SECOND_UV) in vec2 second_uv;
+layout(location = ATTRIBUTE_COLOR) in vec4 color;
+
+layout(location = 2) flat out uint surface_material;
+layout(location = 3) out vec2 surface_uv;
+layout(location = 4) out vec4 surface_color;
+
+/**
+ * Where a texture is looked up; \a index: of its INPUT_ bit. Fragment shaders cannot compute it: llvmpipe's invocations outside
+ * of a triangle read zeros from storage blocks, which derivatives would see.
+ */
+vec2 input_uv(uint material, int index)
+{
+  vec4 row_u = full_materials[material].uv_rows[2 * index];
+  vec4 row_v = full_materials[material].uv_rows[2 * index + 1];
+  vec3 mesh_uv = vec3(row_u.w == 0.0 ? uv : second_uv, 1.0);
+  return vec2(dot(row_u.xyz, mesh_uv), dot(row_v.xyz, mesh_uv));
+}
+
+void write_material_varyings()
+{
+  surface_material = objects[draw_instance.x].value;
+  surface_uv = input_uv(surface_material, 0);
+  surface_color = color;
+}

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// For fragment shaders: the shading normal from a normal texture.
+#include "eevee/eevee_full_material_lib.glsl"
+#include "eevee/eevee_surface_frag_lib.glsl"
+
+layout(location = 5) in vec4 surface_tangent_ws;
+
+layout(binding = NORMAL_SLOT) uniform sampler2D normal_texture;
+
+/** \a surface with the normal of the material's normal texture. A mesh without tangents keeps its own. */
+Surface normal_mapped(Surface surface)
+{
+  if (!has_input(INPUT_NORMAL) || surface_tangent_ws.xyz == vec3(0.0)) {
+    return surface;
+  }
+  vec3 mapped = texture(normal_texture, surface_roughness_normal_uvs.zw, view.texture_lod_bias).xyz * 2.0 - 1.0;
+  mapped.xy *= full_materials[surface_material].normal_scale;
+  // The interpolated vectors as they are, as MikkTSpace defines the frame.
+  vec3 up_ws = surface_tangent_ws.w * cross(surface_normal_ws, surface_tangent_ws.xyz);
+  vec3 normal_ws = mapped.x * surface_tangent_ws.xyz + mapped.y * up_ws + mapped.z * surface_normal_ws;
+  surface.normal_ws = normalized(gl_FrontFacing ? normal_ws : -normal_ws, surface.normal_ws);
+  return surface;
+}

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "internal/gltf_model.hh"
+#include "internal/gltf_report.hh"
+#include "scene.hh"
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+
+/** The texture slots of materials. Internal to source/gltf. */
+namespace gnomon::gltf {
+
+struct SlotName {
+  std::string_view name;
+  Model::TextureSlot Model::Material::*source;
+  scene::TextureSlot scene::Material::*target;
+  /** The texel of the image that stands for one that is missing or damaged, and what it looks like. */
+  std::array<std::uint8_t, 4> stand_in;
+  std::string_view stand_in_name;
+};
+
+/** In the order of scene::texture_inputs. */
+inline constexpr std::array<SlotName, 7> slot_names = {{
+    {"baseColorTexture",
+     &Model::Material::base_color_texture,
+     &scene::Material::base_color_texture,
+     {255, 0, 255, 255},
+     "a checkerboard"},
+    {"metallicRoughnessTexture",
+     &Model::Material::metallic_roughness_texture,
+     &scene::Material::metallic_roughness_texture,
+     {255, 255, 0, 255},
+     "no metal, of the factor's roughness"},
+    {"normalTexture",
+     &Model::Material::normal_texture,
+     &scene::Material::normal_texture,
+     {128, 128, 255, 255},
+     "a flat surface"},
+    {"occlusionTexture",
+     &Model::Material::occlusion_texture,
+     &scene::Material::occlusion_texture,
+     {255, 255, 255, 255},
+     "no occlusion"},
+    {"emissiveTexture",
+     &Model::Material::emissive_texture,
+     &scene::Material::emissive_texture,
+     {0, 0, 0, 255},
+     "no emission"},
+    {"specularTexture",
+     &Model::Material::specular_texture,
+     &scene::Material::specular_texture,
+     {255, 255, 255, 255},
+     "the factor alone"},
+    {"specularColorTexture",
+     &Model::Material::specular_color_texture,
+     &scene::Material::specular_color_texture,
+     {255, 255, 255, 255},
+     "the factor alone"},
+}};
+
+/** The warning of a slot with a stand-in. */
+[[nodiscard]] inline std::string reason_of(const SlotName &slot, const Fault &fault)
+{
+  return "its " + std::string(slot.name) + " is drawn as " + std::string(slot.stand_in_name) + ": " + fault.what();
+}
+
+/** Textures that stand for missing or damaged ones, one for each slot that needs any. */
+class StandIns {
+ public:
+  explicit StandIns(scene::Scene &scene) : scene_(scene) {}
+
+  [[nodiscard]] scene::Handle<scene::Texture> texture_of(const SlotName &slot)
+  {
+    scene::Handle<scene::Texture> &texture = textures_[slot.name];
+    if (!texture) {
+      // Alone, a base colour is chequered, so that it can be seen to be a stand-in.
+      const std::array<std::uint8_t, 4> other = slot.target == &scene::Material::base_color_texture
+                                                    ? std::array<std::uint8_t, 4>{0, 0, 0, 255}
+                                                    : slot.stand_in;
+      scene::Image image{"stand-in for " + std::string(slot.name), 2, 2, {}};
+      for (const auto &texel : {slot.stand_in, other, other, slot.stand_in}) {
+        image.texels.insert(image.texels.end(), texel.begin(), texel.end());
+      }
+      scene::Texture value{.image = scene_.add(std::move(image))};
+      value.magnified = value.minified = scene::TextureFilter::Nearest;
+      value.mip = scene::MipFilter::Linear;
+      texture = scene_.add(value);
+    }
+    return texture;
+  }
+
+ private:
+  scene::Scene &scene_;
+  std::map<std::string_view, scene::Handle<scene::Texture>> textures_;
+};
+
+}  // namespace gnomon::gltf

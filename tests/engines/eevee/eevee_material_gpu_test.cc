@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: MIT
+// The inputs of materials against closed forms and against the reference, on the driver.
+#include "eevee_test_scene.hh"
+#include "gpu_device_fixture.hh"
+#include "reference_light.hh"
+#include "scene_tangents.hh"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace gnomon::eevee {
+namespace {
+
+using test::Picture;
+using test::Renderer;
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr float PI = std::numbers::pi_v<float>;
+
+/** A white Lambertian square that fills the view, and a sun that lights it with radiance 1. */
+class MaterialGpuTest : public test::GpuDeviceTest {
+ protected:
+  MaterialGpuTest()
+  {
+    material = test::add_material(scene, glm::vec3(1.0F));
+    mesh = test::add_square_mesh(scene, material);
+    test::add_object(scene, mesh, glm::scale(glm::dmat4(1.0), glm::dvec3(4.0)));
+    scene.edit(mesh, [](scene::Mesh &value) {
+      value.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+      value.second_uvs = {{0.75F, 0.5F}, {0.75F, 0.5F}, {0.75F, 0.5F}, {0.75F, 0.5F}};
+    });
+  }
+  void add_sun(const glm::vec3 &forward = {0, 0, -1})
+  {
+    test::add_lamp(scene, scene::LampKind::Sun, {}, forward, PI);
+  }
+  template <typename Change>
+  void edit(Change &&change)
+  {
+    scene.edit(material, change);
+  }
+  /** A texture of texels in one row, not filtered. */
+  scene::Handle<scene::Texture> texture(const Bytes &texels)
+  {
+    return test::add_texture(scene, std::uint32_t(texels.size() / 4), texels);
+  }
+  Picture render()
+  {
+    Renderer renderer(*device, scene, {16, 16});
+    Picture picture = renderer.picture(camera);
+    EXPECT_EQ(picture.non_finite_count(), 0U);
+    return picture;
+  }
+  glm::vec3 middle()
+  {
+    return glm::vec3(render().at(8, 8));
+  }
+  /** The middle of the picture by the reference. */
+  glm::vec3 reference_middle()
+  {
+    const reference::Tracer tracer(scene);
+    const std::vector<glm::ivec2> pixels = {{8, 8}};
+    return glm::vec3(reference::direct_light(tracer, camera, {16, 16}, pixels, {.sample_count = 4}).front());
+  }
+
+  scene::Scene scene;
+  scene::Handle<scene::Material> material;
+  scene::Handle<scene::Mesh> mesh;
+  scene::PlacedCamera camera = test::camera_at({0.1, 0.1, 16}, {0.1, 0.1, 0}, 0.05F);
+};
+
+void expect_near(const glm::vec3 &value, const glm::vec3 &expected, float tolerance)
+{
+  for (int i = 0; i < 3; i++) {
+    EXPECT_NEAR(value[i], expected[i], tolerance) << "channel " << i;
+  }
+}
+
+/** Of llvmpipe's filter and of its sRGB table. */
+constexpr float texel_tolerance = 3e-3F;
+
+TEST_F(MaterialGpuTest, VertexColoursMultiplyTheBaseColour)
+{
+  add_sun();
+  edit([](scene::Material &value) { value.base_color = {1.0F, 0.5F, 0.25F}; });
+  scene.edit(mesh, [](scene::Mesh &value) { value.colors.assign(4, {0.5F, 0.25F, 1.0F, 1.0F}); });
+  expect_near(middle(), {0.5F, 0.125F, 0.25F}, 1e-4F);
+  expect_near(reference_middle(), {0.5F, 0.125F, 0.25F}, 1e-5F);
+}
+
+TEST_F(MaterialGpuTest, VertexAlphaCutsAMaskAndItsShadow)
+{
+  add_sun();
+  edit([](scene::Material &value) { value.alpha_mode = scene::AlphaMode::Mask; });
+  scene.edit(mesh, [](scene::Mesh &value) { value.colors.assign(4, glm::vec4(1.0F, 1.0F, 1.0F, 0.25F)); });
+  const auto ground = test::add_material(scene, glm::vec3(0.5F));
+  test::add_object(scene, test::add_square_mesh(scene, ground),
+                   glm::translate(glm::scale(glm::dmat4(1.0), glm::dvec3(4.0)), glm::dvec3(0, 0, -0.5)));
+  expect_near(middle(), glm::vec3(0.5F), 1e-4F);
+  expect_near(reference_middle(), glm::vec3(0.5F), 1e-5F);
+}
+
+TEST_F(MaterialGpuTest, EachSlotHasItsOwnSetAndTransform)
+{
+  add_sun();
+  const auto halves = texture({255, 0, 0, 255, 0, 255, 0, 255});
+  edit([&](scene::Material &value) { value.base_color_texture = halves; });
+  expect_near(middle(), {0, 1, 0}, texel_tolerance);
+  edit([](scene::Material &value) { value.base_color_texture.offset.x = 0.5F; });
+  expect_near(middle(), {1, 0, 0}, texel_tolerance);
+  expect_near(reference_middle(), {1, 0, 0}, 1e-5F);
+  edit([](scene::Material &value) { value.base_color_texture.uv_set = 1; });
+  expect_near(middle(), {1, 0, 0}, texel_tolerance);
+  edit([](scene::Material &value) { value.base_color_texture.offset.x = 0.0F; });
+  expect_near(middle(), {0, 1, 0}, texel_tolerance);
+  expect_near(reference_middle(), {0, 1, 0}, 1e-5F);
+}
+
+TEST_F(MaterialGpuTest, EmissiveTextureMultipliesTheFactorAlsoWithoutLight)
+{
+  edit([&](scene::Material &value) {
+    value.emissive = {2.0F, 1.0F, 1.0F};
+    value.emissive_texture = texture({255, 0, 255, 255});
+  });
+  expect_near(middle(), {2, 0, 1}, 2 * texel_tolerance);
+  expect_near(reference_middle(), {2, 0, 1}, 1e-5F);
+}
+
+TEST_F(MaterialGpuTest, MetallicRoughnessTexturesAreLinearAndMultiplyTheFactors)
+{
+  add_sun({0.3F, 0, -1});
+  const auto expected_of = [&](float metallic, float roughness) {
+    edit([&](scene::Material &value) {
+      value.base_color = {0.9F, 0.5F, 0.2F};
+      value.metallic_roughness_texture = {};
+      value.metallic = metallic;
+      value.roughness = roughness;
+    });
+    return middle();
+  };
+  const glm::vec3 expected = expected_of(0.5F * 204.0F / 255.0F, 0.8F * 128.0F / 255.0F);
+  edit([&](scene::Material &value) {
+    value.metallic = 0.5F;
+    value.roughness = 0.8F;
+    value.metallic_roughness_texture = texture({7, 128, 204, 255});
+  });
+  expect_near(middle(), expected, texel_tolerance);
+  expect_near(reference_middle(), expected, texel_tolerance);
+}
+
+TEST_F(MaterialGpuTest, SpecularTexturesMultiplyTheFactors)
+{
+  add_sun();
+  edit([](scene::Material &value) {
+    value.base_color = glm::vec3(0.0F);
+    value.specular_color = {1.0F, 0.5F, 1.0F};
+    value.roughness = 0.5F;
+    value.specular = 0.5F;
+  });
+  const glm::vec3 half = middle();
+  ASSERT_GT(half.r, 0.01F);
+  edit([&](scene::Material &value) {
+    value.specular = 1.0F;
+    value.specular_color = glm::vec3(1.0F);
+    value.specular_texture = texture({0, 0, 0, 128});
+    value.specular_color_texture = texture({255, 188, 255, 255});
+  });
+  expect_near(middle(), half, 0.01F * half.r + 1e-4F);
+  expect_near(reference_middle(), half, 0.01F * half.r + 1e-4F);
+}
+
+/** A normal turned by 45 degrees towards +X, and a sun from +X at 45 degrees: it faces the sun. */
+TEST_F(MaterialGpuTest, NormalTextureTurnsTheNormalInTheTangentFrame)
+{
+  add_sun({-1, 0, -1});
+  expect_near(middle(), glm::vec3(std::sqrt(0.5F)), 1e-3F);
+  const auto tilted = texture({218, 128, 218, 255});
+  edit([&](scene::Material &value) { value.normal_texture = tilted; });
+  scene.edit(mesh,
+             [&](scene::Mesh &value) { scene::make_tangents(value, scene.materials()[material].normal_texture); });
+  expect_near(middle(), glm::vec3(1.0F), 1e-3F);
+  expect_near(reference_middle(), glm::vec3(1.0F), 1e-3F);
+  // Away from the sun: perpendicular to it.
+  edit([](scene::Material &value) { value.normal_scale = -1.0F; });
+  expect_near(middle(), glm::vec3(0.0F), 0.02F);
+  expect_near(reference_middle(), glm::vec3(0.0F), 0.02F);
+  // A mirrored object mirrors its image: the normal is still turned along the image's u, which points to -X now.
+  edit([](scene::Material &value) { value.normal_scale = 1.0F; });
+  const auto node = scene.nodes().first();
+  scene.set_transform(node, glm::scale(glm::dmat4(1.0), {-4.0, 4.0, 4.0}));
+  expect_near(middle(), glm::vec3(0.0F), 0.02F);
+  expect_near(reference_middle(), glm::vec3(0.0F), 0.02F);
+}
+
+TEST_F(MaterialGpuTest, GreenOfANormalTexturePointsUpTheImageAlsoMirrored)
+{
+  // From +Y at 45 degrees; up the image is +Y.
+  add_sun({0, -1, -1});
+  edit([&](scene::Material &value) { value.normal_texture = texture({128, 218, 218, 255}); });
+  scene.edit(mesh,
+             [&](scene::Mesh &value) { scene::make_tangents(value, scene.materials()[material].normal_texture); });
+  expect_near(middle(), glm::vec3(1.0F), 1e-3F);
+  scene.set_transform(scene.nodes().first(), glm::scale(glm::dmat4(1.0), {-4.0, 4.0, 4.0}));
+  expect_near(middle(), glm::vec3(1.0F), 1e-3F);
+  expect_near(reference_middle(), glm::vec3(1.0F), 1e-3F);
+}
+
+TEST_F(MaterialGpuTest, NormalTextureLetsNoLightThroughTheSurface)
+{
+  // From below the plane, at 10 degrees; the normal is turned towards it by 45.
+  const float angle = 0.17F;
+  add_sun({-std::cos(angle), 0, std::sin(angle)});
+  scene.edit(scene.lamps().first(), [](scene::Lamp &lamp) { lamp.shadow.kind = scene::ShadowKind::None; });
+  edit([&](scene::Material &value) { value.normal_texture = texture({218, 128, 218, 255}); });
+  scene.edit(mesh,
+             [&](scene::Mesh &value) { scene::make_tangents(value, scene.materials()[material].normal_texture); });
+  EXPECT_EQ(middle(), glm::vec3(0.0F));
+}
+
+TEST_F(MaterialGpuTest, OcclusionIsOfLightFromAllAroundAlone)
+{
+  test::add_lamp(scene, scene::LampKind::Hemi, {}, {0, 0, -1}, PI);
+  const auto dark = texture({51, 255, 255, 255});
+  edit([&](scene::Material &value) {
+    value.occlusion_texture = dark;
+    value.occlusion_strength = 0.5F;
+  });
+  // 1 + 0.5 (0.2 - 1).
+  expect_near(middle(), glm::vec3(0.6F), texel_tolerance);
+  expect_near(reference_middle(), glm::vec3(0.6F), 1e-5F);
+  test::remove_lamps(scene, [](const scene::Lamp &) { return true; });
+  add_sun();
+  expect_near(middle(), glm::vec3(1.0F), 1e-3F);
+  expect_near(reference_middle(), glm::vec3(1.0F), 1e-5F);
+}
+
+TEST_F(MaterialGpuTest, UnlitIsTheBaseColourWhateverTheLight)
+{
+  edit([](scene::Material &value) {
+    value.is_unlit = true;
+    value.base_color = {0.25F, 0.5F, 0.75F};
+    value.emissive = glm::vec3(9.0F);
+  });
+  expect_near(middle(), {0.25F, 0.5F, 0.75F}, 1e-6F);
+  add_sun();
+  expect_near(middle(), {0.25F, 0.5F, 0.75F}, 1e-6F);
+  expect_near(reference_middle(), {0.25F, 0.5F, 0.75F}, 1e-6F);
+  edit([&](scene::Material &value) { value.base_color_texture = texture({255, 0, 255, 255}); });
+  expect_near(middle(), {0.25F, 0.0F, 0.75F}, texel_tolerance);
+  expect_near(reference_middle(), {0.25F, 0.0F, 0.75F}, 1e-6F);
+}
+
+TEST_F(MaterialGpuTest, AMeshWithoutUvsDoesNotEmitByATexture)
+{
+  edit([&](scene::Material &value) {
+    value.emissive = glm::vec3(1.0F);
+    value.emissive_texture = texture({255, 255, 255, 255});
+  });
+  scene.edit(mesh, [](scene::Mesh &value) { value.uvs.clear(); });
+  EXPECT_EQ(middle(), glm::vec3(0.0F));
+  EXPECT_EQ(reference_middle(), glm::vec3(0.0F));
+}
+
+}  // namespace
+}  // namespace gnomon::eevee
