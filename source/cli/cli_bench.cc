@@ -4,7 +4,8 @@
 #include "cli_output.hh"
 
 #include "draw_view_shared.h"
-#include "eevee_camera.hh"
+#include "eevee_scene_renderer.hh"
+#include "measure_edits.hh"
 #include "measure_left_out.hh"
 #include "shadows/shadow_cube.hh"
 #include "shadows/shadows.hh"
@@ -457,14 +458,10 @@ void draw_left_out(gpu::Device &device, LeftOutRow &row, bool is_warm_up)
   constexpr glm::ivec2 size_px(640, 360);
   const gpu::Counters before = device.counters();
   const double start = wall_seconds();
-  render_scene::RenderScene render_scene(device, row.of.scene);
-  eevee::Engine engine(render_scene, row.of.settings);
-  draw::Viewport viewport(device, size_px);
-  const std::array<draw::Engine *, 1> engines = {&engine};
-  const draw::View view = eevee::view_of(render_scene.relative(row.of.scene.placed_cameras().front()), size_px);
-  render_scene.update();
-  viewport.sync(engines, render_scene.objects());
-  viewport.draw(engines, view);
+  eevee::SceneRenderer renderer(device, row.of.scene, size_px, row.of.settings);
+  const scene::PlacedCamera camera = row.of.scene.placed_cameras().front();
+  renderer.sync();
+  renderer.draw(camera);
   device.finish();
   const double first_end = wall_seconds();
   const gpu::Counters &now = device.counters();
@@ -478,8 +475,7 @@ void draw_left_out(gpu::Device &device, LeftOutRow &row, bool is_warm_up)
   double warm = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 5; i++) {
     const double warm_start = wall_seconds();
-    viewport.restart();
-    viewport.draw(engines, view);
+    renderer.draw(camera);
     device.finish();
     warm = std::min(warm, wall_seconds() - warm_start);
   }
@@ -549,6 +545,33 @@ void bench_left_out(const BenchOptions &options)
                             {"rows", json}});
 }
 
+void bench_edits(const BenchOptions &options)
+{
+  const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  fmt::print(
+      "Edits of a scene of {} objects and {} lamps: bytes uploaded beyond those of a picture without an edit,\n"
+      "lamps whose shadows are drawn, recordings of the passes, and what is made. Counted on the null backend.\n\n",
+      measure::edited_object_count, measure::edited_lamp_count);
+  fmt::print("{:<40} {:>9} {:>8} {:>11} {:>9} {:>9}\n", "edit", "bytes", "shadows", "recordings", "textures",
+             "programs");
+  nlohmann::json json = nlohmann::json::array();
+  for (const measure::EditCost &cost : measure::edit_costs(*device)) {
+    fmt::print("{:<40} {:>9} {:>8} {:>11} {:>9} {:>9}\n", cost.edit, cost.upload_bytes, cost.shadows_drawn,
+               cost.pass_recordings, cost.textures_made, cost.shaders_made);
+    json.push_back({{"edit", cost.edit},
+                    {"upload_bytes", cost.upload_bytes},
+                    {"shadows_drawn", cost.shadows_drawn},
+                    {"pass_recordings", cost.pass_recordings},
+                    {"textures_made", cost.textures_made},
+                    {"shaders_made", cost.shaders_made}});
+  }
+  write_json(options.json, {{"program", "gnomon " GNOMON_VERSION},
+                            {"bench", "edits"},
+                            {"objects", measure::edited_object_count},
+                            {"lamps", measure::edited_lamp_count},
+                            {"rows", json}});
+}
+
 }  // namespace
 
 void add_bench(CLI::App &app)
@@ -575,6 +598,9 @@ void add_bench(CLI::App &app)
         ->check(CLI::Range(1, 100000));
     bench->add_option("--json", o->json, "Write the figures, in seconds");
   }
+  CLI::App *edits = command->add_subcommand("edits", "The work that each kind of edit of a large scene causes");
+  edits->add_option("--json", o->json, "Write the figures");
+  edits->callback([o] { bench_edits(*o); });
 }
 
 }  // namespace gnomon::cli

@@ -14,50 +14,45 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/** Planes seen by a lamp at less than half a degree get less than 1 % of its light, and are not judged. */
-constexpr double judged_cosine_min = 0.0087;
+/** Planes seen by a lamp at less than half a degree get less than 1 % of its light, and are not compared. */
+constexpr double compared_cosine_min = 0.0087;
 
 /** Whether \a lamp shines there: within a spot's cone and the range, and not along the surface. */
 bool is_lit_at(const scene::PlacedLamp &lamp, const glm::dvec3 &position_ws, const glm::dvec3 &normal_ws)
 {
   const glm::dvec3 back_ws(lamp.world_from_lamp[2]);
   if (lamp.kind == scene::LampKind::Sun) {
-    return glm::dot(back_ws, normal_ws) > judged_cosine_min;
+    return glm::dot(back_ws, normal_ws) > compared_cosine_min;
   }
   const glm::dvec3 to_lamp = glm::dvec3(lamp.world_from_lamp[3]) - position_ws;
   const double distance = glm::length(to_lamp);
   const bool is_in_range = lamp.range == 0.0F || distance < double(lamp.range);
   const bool is_in_cone = lamp.kind != scene::LampKind::Spot ||
                           glm::dot(to_lamp, back_ws) > distance * std::cos(double(lamp.spot_outer_angle));
-  return is_in_range && is_in_cone && glm::dot(to_lamp, normal_ws) > judged_cosine_min * distance;
+  return is_in_range && is_in_cone && glm::dot(to_lamp, normal_ws) > compared_cosine_min * distance;
 }
 
 }  // namespace
 
 Bench::Bench(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera,
              const Technique &technique, glm::ivec2 size_px)
-    : settings_{.shadow = technique.settings},
-      render_scene_(device, scene),
-      engine_(render_scene_, settings_),
-      viewport_(device, size_px),
-      view_(eevee::view_of(render_scene_.relative(camera), size_px))
+    : camera_(camera), settings_{.shadow = technique.settings}, renderer_(device, scene, size_px, settings_)
 {
-  render_scene_.update();
 }
 
 void Bench::warm_up(bool has_probe)
 {
   settings_.has_probe = has_probe;
   set(1, false);
-  draw(1);
+  draw();
 }
 
 std::map<std::string, double> Bench::step_seconds()
 {
   set(1, true);
-  draw(1);
+  draw();
   std::map<std::string, double> seconds;
-  for (const eevee::StepTime &step : engine_.take_step_times(viewport_)) {
+  for (const eevee::StepTime &step : renderer_.engine().take_step_times(renderer_.viewport())) {
     seconds[step.step] = step.seconds;
   }
   return seconds;
@@ -67,60 +62,63 @@ double Bench::picture_seconds(int sample_count)
 {
   set(sample_count, false);
   const Clock::time_point start = Clock::now();
-  draw(sample_count);
+  draw();
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 std::vector<glm::vec4> Bench::picture()
 {
-  return gpu::read_as<glm::vec4>(viewport_.device(), engine_.radiance(viewport_));
+  return gpu::read_as<glm::vec4>(renderer_.viewport().device(), renderer_.engine().radiance(renderer_.viewport()));
 }
 
 void Bench::set(int sample_count, bool is_timed)
 {
   settings_.sample_count = sample_count;
   settings_.is_timed = is_timed;
-  engine_.set_settings(settings_);
-  viewport_.sync(engines_, render_scene_.objects());
-  engine_.invalidate_shadows(viewport_);
-  viewport_.device().finish();
+  renderer_.set_settings(settings_);
+  renderer_.sync();
+  renderer_.engine().invalidate_shadows(renderer_.viewport());
+  renderer_.viewport().device().finish();
 }
 
-void Bench::draw(int sample_count)
+void Bench::draw()
 {
-  viewport_.restart();
-  for (int i = 0; i < sample_count; i++) {
-    viewport_.draw(engines_, view_);
-  }
-  viewport_.device().finish();
+  renderer_.draw(camera_);
+  renderer_.viewport().device().finish();
 }
 
-std::vector<LampError> Bench::judge(const reference::Tracer &tracer)
+std::vector<LampError> Bench::lamp_errors(const reference::Tracer &tracer)
 {
   std::vector<LampError> errors;
-  const std::span<const scene::PlacedLamp> lamps = render_scene_.lamps();
-  for (std::size_t lamp = 0; lamp < lamps.size(); lamp++) {
-    const std::optional<eevee::Probe> probe = engine_.probe(viewport_, view_, lamp);
+  eevee::Engine &engine = renderer_.engine();
+  draw::Viewport &viewport = renderer_.viewport();
+  const glm::dvec3 origin_ws = renderer_.render_scene().origin_ws();
+  const std::span<const scene::PlacedLamp> lamps = renderer_.render_scene().lamps();
+  for (std::size_t i_lamp = 0; i_lamp < lamps.size(); i_lamp++) {
+    const std::optional<eevee::Probe> probe = engine.probe(viewport, renderer_.view_of(camera_), i_lamp);
     if (!probe) {
       continue;
     }
-    std::vector<glm::vec3> positions;
+    // The reference's world space is the scene's, not the device's.
+    scene::PlacedLamp lamp = lamps[i_lamp];
+    lamp.world_from_lamp[3] += glm::dvec4(origin_ws, 0.0);
+    std::vector<glm::dvec3> positions;
     std::vector<glm::vec3> normals;
     std::vector<float> visibility;
     for (std::size_t i = 0; i < probe->normal.size(); i++) {
-      if (probe->normal[i].w > 0.0F &&
-          is_lit_at(lamps[lamp], glm::dvec3(probe->position_visibility[i]), glm::dvec3(probe->normal[i]))) {
-        positions.emplace_back(probe->position_visibility[i]);
+      const glm::dvec3 position_ws = origin_ws + glm::dvec3(probe->position_visibility[i]);
+      if (probe->normal[i].w > 0.0F && is_lit_at(lamp, position_ws, glm::dvec3(probe->normal[i]))) {
+        positions.push_back(position_ws);
         normals.emplace_back(probe->normal[i]);
         visibility.push_back(probe->position_visibility[i].w);
       }
     }
     reference::CompareSettings settings;
     settings.texel_size_m = [&](const glm::dvec3 &position_ws) {
-      return engine_.shadow_texel_size(viewport_, lamp, position_ws);
+      return engine.shadow_texel_size(viewport, i_lamp, position_ws - origin_ws);
     };
-    errors.push_back({lamps[lamp].name,
-                      reference::compare_visibility(tracer, lamps[lamp], {positions, normals, visibility}, settings)});
+    errors.push_back(
+        {lamp.name, reference::compare_visibility(tracer, lamp, {positions, normals, visibility}, settings)});
   }
   return errors;
 }
@@ -140,11 +138,11 @@ VisitTimes visit(gpu::Device &device, const scene::Scene &scene, const Technique
   const scene::PlacedCamera camera = scene.placed_cameras().front();
   if (tracer) {
     // On its own, so that the probe is no part of the memory.
-    Bench judged(device, scene, camera, technique, size_px);
-    judged.warm_up(true);
+    Bench probed(device, scene, camera, technique, size_px);
+    probed.warm_up(true);
     result = {};
-    result.lamps = judged.judge(*tracer);
-    const eevee::Report report = judged.report();
+    result.lamps = probed.lamp_errors(*tracer);
+    const eevee::Report report = probed.report();
     result.warnings = report.warnings;
     result.limits = report.limits;
     result.lost_shadow_count = report.lost_shadow_count;

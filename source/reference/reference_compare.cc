@@ -167,8 +167,8 @@ VisibilityError compare_visibility(const Tracer &tracer, const scene::PlacedLamp
   constexpr std::size_t chunk = 1024;
   parallel_for((count + chunk - 1) / chunk, settings.thread_count, [&](std::size_t part) {
     for (std::size_t i = part * chunk; i < std::min((part + 1) * chunk, count); i++) {
-      results[i] = comparer.compare(glm::dvec3(shaded.positions_ws[i]), glm::dvec3(shaded.normals_ws[i]),
-                                    double(shaded.visibility[i]), i);
+      results[i] =
+          comparer.compare(shaded.positions_ws[i], glm::dvec3(shaded.normals_ws[i]), double(shaded.visibility[i]), i);
     }
   });
 

@@ -12,7 +12,7 @@ namespace gnomon::reference {
 /** Points that an engine lit by one lamp, with the engine's visibility of the lamp. Each span has one entry for each
  * point. */
 struct ShadedReceivers {
-  std::span<const glm::vec3> positions_ws;
+  std::span<const glm::dvec3> positions_ws;
   /** Normals of the triangles, on the shaded side, of any length. */
   std::span<const glm::vec3> normals_ws;
   /** In [0, 1]. Values strictly between 0 and 1 belong to an edge. */

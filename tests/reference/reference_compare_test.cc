@@ -18,7 +18,7 @@ using test::placed;
 
 /** Receivers and visibilities of an engine. */
 struct Shaded {
-  std::vector<glm::vec3> positions;
+  std::vector<glm::dvec3> positions;
   std::vector<glm::vec3> normals;
   std::vector<float> visibility;
 

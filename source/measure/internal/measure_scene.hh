@@ -2,7 +2,7 @@
 #pragma once
 
 #include "eevee_camera.hh"
-#include "eevee_engine.hh"
+#include "eevee_scene_renderer.hh"
 #include "gpu_read.hh"
 
 #include <glm/geometric.hpp>
@@ -190,30 +190,26 @@ struct Picture {
   }
 };
 
-/** An engine and a viewport, and the calls that draw a picture with them. */
+/** A scene renderer that is synced, and reads its pictures. */
 class Renderer {
  public:
   Renderer(gpu::Device &device, const scene::Scene &scene, glm::ivec2 size_px, const eevee::Settings &settings = {})
-      : settings_(settings), render_scene(device, scene), engine(render_scene, settings), viewport(device, size_px)
+      : renderer_(device, scene, size_px, settings),
+        render_scene(renderer_.render_scene()),
+        engine(renderer_.engine()),
+        viewport(renderer_.viewport())
   {
     sync();
   }
   /** After each edit of the scene. */
   void sync()
   {
-    const std::array<draw::Engine *, 1> engines = {&engine};
-    render_scene.update();
-    viewport.sync(engines, render_scene.objects());
+    renderer_.sync();
   }
   /** All samples of a picture, which is then written to \a target. */
   void draw(const scene::PlacedCamera &camera, const draw::Target &target = {})
   {
-    const std::array<draw::Engine *, 1> engines = {&engine};
-    viewport.restart();
-    for (int i = 0; i < settings_.sample_count; i++) {
-      viewport.draw(engines, eevee::view_of(render_scene.relative(camera), viewport.size_px()),
-                    i + 1 == settings_.sample_count ? target : draw::Target());
-    }
+    renderer_.draw(camera, {}, target);
   }
   Picture picture(const scene::PlacedCamera &camera, const draw::Target &target = {})
   {
@@ -222,12 +218,12 @@ class Renderer {
   }
 
  private:
-  eevee::Settings settings_;
+  eevee::SceneRenderer renderer_;
 
  public:
-  render_scene::RenderScene render_scene;
-  eevee::Engine engine;
-  draw::Viewport viewport;
+  render_scene::RenderScene &render_scene;
+  eevee::Engine &engine;
+  draw::Viewport &viewport;
 };
 
 }  // namespace gnomon::measure

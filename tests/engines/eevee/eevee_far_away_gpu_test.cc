@@ -5,6 +5,7 @@
 
 #include "gltf_import.hh"
 #include "gpu_device_fixture.hh"
+#include "reference_light.hh"
 
 #include <gtest/gtest.h>
 
@@ -29,14 +30,22 @@ void move_all(scene::Scene &scene, const glm::dvec3 &shift)
 
 class FarAway : public test::GpuDeviceTest {
  protected:
-  std::vector<glm::vec4> picture_of(const scene::Scene &scene, const scene::PlacedCamera &camera)
+  static constexpr glm::ivec2 size_px{160, 90};
+
+  /** The renderer draws \a earlier first. */
+  std::vector<glm::vec4> picture_of(const scene::Scene &scene, const scene::PlacedCamera &camera,
+                                    const std::vector<scene::PlacedCamera> &earlier = {})
   {
     Settings settings;
     settings.shadow.cube_size_px = 256;
     settings.shadow.map_size_px = 512;
-    SceneRenderer renderer(*device, scene, {160, 90}, settings);
+    SceneRenderer renderer(*device, scene, size_px, settings);
     renderer.sync();
+    for (const scene::PlacedCamera &before : earlier) {
+      renderer.draw(before);
+    }
     renderer.draw(camera);
+    origin_ws = renderer.render_scene().origin_ws();
     return gpu::read_as<glm::vec4>(*device, renderer.engine().radiance(renderer.viewport()));
   }
   static double rms_difference(const std::vector<glm::vec4> &a, const std::vector<glm::vec4> &b)
@@ -48,6 +57,9 @@ class FarAway : public test::GpuDeviceTest {
     }
     return std::sqrt(sum / (3.0 * double(a.size())));
   }
+
+  /** Of the last picture_of. */
+  glm::dvec3 origin_ws{0.0};
 };
 
 TEST_F(FarAway, APictureIsTheSameWhereTheShiftIsAMultipleOfTheOriginsStep)
@@ -58,6 +70,32 @@ TEST_F(FarAway, APictureIsTheSameWhereTheShiftIsAMultipleOfTheOriginsStep)
     move_all(scene, {1048576.0, 0.0, -524288.0});
     const std::vector<glm::vec4> far = picture_of(scene, scene.placed_cameras().front());
     EXPECT_LE(rms_difference(near, far), 1e-3) << name;
+  }
+}
+
+TEST_F(FarAway, TheErrorAgainstTheReferenceIsTheSameAnywhereAndAfterAChangeOfTheOrigin)
+{
+  for (const char *name : {"plaza", "spots"}) {
+    const scene::Scene near = gltf::import_gltf(std::string(GNOMON_SOURCE) + "/examples/scenes/" + name + ".glb");
+    const scene::PlacedCamera near_camera = near.placed_cameras().front();
+    const std::vector<glm::vec4> truth =
+        reference::direct_light(reference::Tracer(near), near_camera, size_px, {.sample_count = 4}).pixels;
+    const double error = rms_difference(picture_of(near, near_camera), truth);
+    // Relative to multiples of the origin's step of 1024 m: little, less than half, more than half.
+    for (const double shift : {1048576.3, 1048576.0 + 400.7, 1048576.0 + 700.1}) {
+      SCOPED_TRACE(testing::Message() << name << " at " << shift);
+      scene::Scene far = near;
+      move_all(far, {shift, 12.9, -524288.0 - 0.5 * shift});
+      const scene::PlacedCamera camera = far.placed_cameras().front();
+      EXPECT_LE(rms_difference(picture_of(far, camera), truth), 1.02 * error);
+      const glm::dvec3 own_origin_ws = origin_ws;
+      scene::PlacedCamera away = camera;
+      away.world_from_camera[3].x += 1000.0;
+      EXPECT_LE(rms_difference(picture_of(far, camera, {camera, away}), truth), 1.02 * error);
+      away.world_from_camera[3].x += 2000.0;
+      EXPECT_LE(rms_difference(picture_of(far, camera, {away}), truth), 1.02 * error);
+      EXPECT_EQ(origin_ws, own_origin_ws) << "it came back";
+    }
   }
 }
 

@@ -31,7 +31,7 @@ class ShadowTruth : public test::GpuDeviceTest {
     const scene::PlacedLamp lamp = scene.placed_lamps().front();
     const std::optional<Probe> probe = renderer.engine.probe(renderer.viewport, view_of(camera, size_px), 0);
     EXPECT_TRUE(probe);
-    std::vector<glm::vec3> positions;
+    std::vector<glm::dvec3> positions;
     std::vector<glm::vec3> normals;
     std::vector<float> visibility;
     const reference::Tracer tracer(scene);

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+// Edits of a large scene: each costs what it changed, in bytes, shadows and recordings, and not what the scene holds.
+#include "measure_edits.hh"
+
+#include "draw_objects.hh"
+#include "eevee_engine.hh"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+namespace gnomon::measure {
+namespace {
+
+constexpr std::uint64_t object_bytes = sizeof(shared::ObjectData);
+constexpr std::uint64_t material_bytes = sizeof(shared::MaterialData);
+constexpr std::uint64_t texel_bytes = 4;
+/**
+ * What lamps and shadows may upload at an edit: their blocks, whole, and the draws of casters. Far below the block of
+ * all objects.
+ */
+constexpr std::uint64_t lamps_bytes = sizeof(shared::LightBlock) + sizeof(shared::ShadowBlock) +
+                                      edited_lamp_count * sizeof(shared::ShadowRenderBlock) + 32768;
+
+struct Allowed {
+  std::uint64_t upload_bytes_max = 0;
+  /** Exactly. */
+  std::uint64_t shadows_drawn = 0;
+  std::uint64_t pass_recordings = 0;
+  std::uint64_t textures_made = 0;
+};
+
+const std::map<std::string, Allowed> allowed = {
+    {"nothing", {}},
+    {"move the camera", {}},
+    {"move an object near a lamp", {object_bytes + lamps_bytes, 1, 0, 0}},
+    {"move an object far from lamps", {object_bytes + lamps_bytes, 0, 0, 0}},
+    {"hide an object", {object_bytes + lamps_bytes, 0, 1, 0}},
+    {"show an object", {object_bytes + lamps_bytes, 0, 1, 0}},
+    // The block of objects may have to grow.
+    {"add an object", {(edited_object_count + 2) * object_bytes + lamps_bytes, 0, 1, 0}},
+    {"remove an object", {lamps_bytes, 0, 1, 0}},
+    {"give an object another mesh", {object_bytes + lamps_bytes, 0, 1, 0}},
+    {"rename an object, a mesh and a material", {}},
+    {"set a matrix that is set already", {}},
+    {"change a material's colour", {material_bytes, 0, 0, 0}},
+    // Settings choose which side of a one-sided material casts. With the default, both, the same layers result.
+    {"make a material one-sided", {lamps_bytes + material_bytes, edited_lamp_count, 1, 0}},
+    {"change an image", {texel_bytes + lamps_bytes, 0, 1, 1}},
+    // Each lamp reaches boxes with the mask.
+    {"change a mask's cutoff", {material_bytes + lamps_bytes, edited_lamp_count, 1, 0}},
+    {"change a mask's image", {texel_bytes + lamps_bytes, edited_lamp_count, 1, 1}},
+    {"move a lamp", {lamps_bytes, 1, 0, 0}},
+    {"dim a lamp", {lamps_bytes, 0, 0, 0}},
+    {"rename a lamp", {lamps_bytes, 0, 0, 0}},
+    {"remove a lamp", {lamps_bytes, 0, 0, 0}},
+    {"add a lamp", {lamps_bytes, 1, 0, 0}},
+    // Depth, radiance and film. Meshes, images, objects and shadows are those of the first viewport.
+    {"a second viewport", {lamps_bytes, 0, 1, 3}},
+    // Shadows belong to an engine.
+    {"a second engine, with a viewport", {lamps_bytes, edited_lamp_count, 1, 4}},
+    {"resize the viewport", {lamps_bytes, 0, 1, 3}},
+};
+
+TEST(Edits, CostWhatTheyChange)
+{
+  const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  const std::vector<EditCost> costs = edit_costs(*device);
+  ASSERT_FALSE(costs.empty());
+  EXPECT_EQ(costs.front().edit, "first picture");
+  EXPECT_GT(costs.front().upload_bytes, edited_object_count * object_bytes);
+  EXPECT_EQ(costs.front().shadows_drawn, std::uint64_t(edited_lamp_count));
+  EXPECT_EQ(costs.size(), 1 + allowed.size());
+  for (std::size_t i = 1; i < costs.size(); i++) {
+    const EditCost &cost = costs[i];
+    SCOPED_TRACE(cost.edit);
+    ASSERT_TRUE(allowed.contains(cost.edit));
+    const Allowed &most = allowed.at(cost.edit);
+    EXPECT_LE(cost.upload_bytes, most.upload_bytes_max);
+    EXPECT_EQ(cost.shadows_drawn, most.shadows_drawn);
+    EXPECT_EQ(cost.pass_recordings, most.pass_recordings);
+    EXPECT_EQ(cost.textures_made, most.textures_made);
+    if (cost.edit != "a second engine, with a viewport") {
+      EXPECT_EQ(cost.shaders_made, 0U);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gnomon::measure
