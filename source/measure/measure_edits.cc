@@ -72,6 +72,7 @@ class EditedScene {
         renderer->draw(camera);
       }
       else {
+        viewport.restart();
         viewport.draw(engines, view);
       }
     };

@@ -74,7 +74,8 @@ std::vector<PlacedLamp> Scene::placed_lamps() const
     const Lamp *lamp = links(handle).is_visible ? lamps_.find(node.lamp) : nullptr;
     if (lamp) {
       const glm::dmat4 &world = links(handle).world_from_node;
-      placed.push_back({*lamp, handle, frame_of(world), scale_of(world)});
+      const bool is_scaled = lamp->kind == LampKind::Spot || lamp->kind == LampKind::Area;
+      placed.push_back({*lamp, handle, frame_of(world), is_scaled ? scale_of(world) : glm::dvec3(1.0)});
     }
   }
   return placed;

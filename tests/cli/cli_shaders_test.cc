@@ -83,7 +83,7 @@ TEST_F(ShadersTest, ListNamesEveryProgramWithItsVariantsAndPurpose)
   EXPECT_EQ(finished.status, 0) << finished.err;
   for (const std::string &part :
        {std::string("eevee_depth: depth of what is seen"), std::string("USE_LIGHT USE_PUNCTUAL USE_SHADOW_CUBE\n"),
-        std::string("USE_PUNCTUAL: where a point or spot lamp shines"), programs_and_variants() + "\n"}) {
+        std::string("USE_PUNCTUAL: where a point, spot or area lamp shines"), programs_and_variants() + "\n"}) {
     EXPECT_NE(finished.out.find(part), std::string::npos) << part << " is not in:\n" << finished.out;
   }
   for (const eevee::ShaderDeclaration &declaration : eevee::shader_declarations()) {
@@ -231,7 +231,7 @@ INSTANTIATE_TEST_SUITE_P(
                  {"eevee/eevee_tonemap_frag.glsl", "radiance.rgb * exposure_scale", "radiance.rgb * planted"}},
                 "eevee/eevee_tonemap_frag.glsl",
                 "uniform float planted",
-                "(eevee_tonemap; Vulkan 1.2)"},
+                "(eevee_tonemap, 2 variants; Vulkan 1.2)"},
         Planted{"BlockTooLarge",
                 "eevee_debug_cascades",
                 {{"shared/eevee_light_shared.h", "#define LIGHT_MAX 255\n", "#define LIGHT_MAX 256\n"}},
