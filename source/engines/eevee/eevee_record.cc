@@ -5,6 +5,7 @@
 
 #include "draw_view_shared.h"
 #include "eevee_ltc_table.hh"
+#include "eevee_material_variants.hh"
 #include "eevee_shape_shared.h"
 
 #include <algorithm>
@@ -16,111 +17,6 @@ namespace {
 
 using gpu::State;
 using render_scene::MaterialClass;
-
-ShaderId shadow_shader(LayerPass layer_pass)
-{
-  switch (layer_pass) {
-    case LayerPass::Layered: return ShaderId::ShadowLayered;
-    case LayerPass::Geometry: return ShaderId::ShadowGeometry;
-    default: return ShaderId::Shadow;
-  }
-}
-
-State culled_state(CasterFaces faces)
-{
-  switch (faces) {
-    case CasterFaces::Front: return State::CullBack;
-    case CasterFaces::Back: return State::CullFront;
-    default: return State::None;
-  }
-}
-
-/** What a caster's shadow depends on, as plain numbers. */
-std::uint64_t caster_fingerprint(const scene::Scene &scene, const render_scene::RenderObject &object,
-                                 const glm::mat4 &world_from_object)
-{
-  const scene::Mesh &mesh = scene.meshes()[object.mesh];
-  const scene::Material &material = scene.material_of(mesh);
-  struct {
-    glm::mat4 world_from_object;
-    std::uint64_t mesh;
-    scene::Revision shape;
-    std::uint64_t is_double_sided;
-    std::uint64_t texture;
-    scene::Revision image_of_texture;
-    scene::Revision sampler;
-    scene::Revision content;
-    glm::vec2 uv_offset;
-    glm::vec2 uv_scale;
-    float uv_rotation;
-    int uv_set;
-    float alpha;
-    float alpha_cutoff;
-  } key{};
-  key.world_from_object = world_from_object;
-  key.mesh = object.mesh.key();
-  key.shape = scene.meshes().revision(object.mesh, scene::Mesh::Aspect::Shape);
-  key.is_double_sided = material.is_double_sided ? 1 : 0;
-  if (render_scene::is_masked(scene, mesh)) {
-    const scene::TextureSlot &slot = material.base_color_texture;
-    if (render_scene::is_drawable(scene, mesh, slot)) {
-      key.texture = slot.texture.key();
-      key.image_of_texture = scene.textures().revision(slot.texture, scene::Texture::Aspect::Image);
-      key.sampler = scene.textures().revision(slot.texture, scene::Texture::Aspect::Sampler);
-      key.content = scene.images().revision(scene.textures()[slot.texture].image, scene::Image::Aspect::Content);
-      key.uv_offset = slot.offset;
-      key.uv_scale = slot.scale;
-      key.uv_rotation = slot.rotation;
-      key.uv_set = slot.uv_set;
-    }
-    key.alpha = material.alpha;
-    key.alpha_cutoff = material.alpha_cutoff;
-  }
-  return fingerprint_of(std::as_bytes(std::span(&key, 1)));
-}
-
-Feature feature_of(MaterialClass material_class)
-{
-  switch (material_class) {
-    case MaterialClass::BaseColor: return Feature::BaseColorTexture;
-    case MaterialClass::Full: return Feature::FullMaterial;
-    default: return Feature::None;
-  }
-}
-
-render_scene::MeshStreams streams_of(MaterialClass material_class)
-{
-  switch (material_class) {
-    case MaterialClass::BaseColor: return render_scene::MeshStreams::Uvs;
-    case MaterialClass::Full: return render_scene::MeshStreams::All;
-    default: return render_scene::MeshStreams::Shape;
-  }
-}
-
-/** The textures that can be drawn, of the base colour alone, or of all inputs. */
-TextureSet textures_of(const scene::Scene &scene, const scene::Mesh &mesh, bool is_base_color_only)
-{
-  const scene::Material &material = scene.material_of(mesh);
-  TextureSet set;
-  for (std::size_t i = 0; i < (is_base_color_only ? 1 : set.size()); i++) {
-    const scene::TextureSlot &slot = material.*scene::texture_inputs[i].slot;
-    set[i] = render_scene::is_drawable(scene, slot.texture) ? slot.texture : scene::Handle<scene::Texture>();
-  }
-  return set;
-}
-
-/** What a program reads that tells where a surface is cut out: nothing, or a texture and vertex colours. */
-MaterialClass mask_class(const scene::Scene &scene, const scene::Mesh &mesh)
-{
-  return render_scene::is_masked(scene, mesh) ? render_scene::material_class(scene, mesh) : MaterialClass::Plain;
-}
-
-Feature mask_features(MaterialClass mask_class)
-{
-  return mask_class == MaterialClass::Plain  ? Feature::None
-         : mask_class == MaterialClass::Full ? Feature::AlphaMask | Feature::FullMaterial
-                                             : Feature::AlphaMask;
-}
 
 void bind_lit(draw::ShadingGroup &group, Data &data)
 {
@@ -409,82 +305,6 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
            group.constant_ref("probed_light", &data.stl.probed_light);
          });
   }
-}
-
-/** The pass that draws casters, where what it depends on changed. */
-void Engine::record_casters(Data &data)
-{
-  SharedData &shared = *data.shared;
-  const CastersKey key{scene_.objects().structure_revision(), scene_.passes_revision(), settings_revision_,
-                       shaders_revision_, has(data.stl.features, any_shadow)};
-  const bool is_winding_kept = std::ranges::none_of(data.stl.objects, [&](draw::ObjectIndex index) {
-    return index < shared.is_mirrored.size() &&
-           shared.is_mirrored[index] != draw::is_mirrored(scene_.objects().world_from_object(index));
-  });
-  if (shared.recorded == key && is_winding_kept) {
-    return;
-  }
-  shared.recorded.reset();
-  shared.shadow_pass.clear();
-  shared.groups.clear();
-  shared.caster_calls.clear();
-  shared.caster_of.assign(scene_.objects().index_end(), nullptr);
-  shared.is_mirrored.assign(scene_.objects().index_end(), false);
-  for (const draw::ObjectIndex object : data.stl.objects) {
-    if (key.has_shadows && scene_.object(object).casts_shadow) {
-      record_caster(shared, object);
-    }
-  }
-  shared.recorded = key;
-}
-
-void Engine::record_caster(SharedData &shared, draw::ObjectIndex index)
-{
-  const render_scene::RenderObject &object = scene_.object(index);
-  const scene::Scene &scene = scene_.scene();
-  const scene::Mesh &mesh = scene.meshes()[object.mesh];
-  const scene::Material &material = scene.material_of(mesh);
-  const MaterialClass cut_out = mask_class(scene, mesh);
-  shared.is_mirrored[index] = draw::is_mirrored(scene_.objects().world_from_object(index));
-  const State winding = shared.is_mirrored[index] ? State::FrontClockwise : State::None;
-  draw::InstanceCall *&instances = shared.caster_calls[{object.mesh, winding}];
-  if (!instances) {
-    const gpu::Shader &shader =
-        shaders_.get(scene_.device(), shadow_shader(shared.shadows.layer_pass()), mask_features(cut_out));
-    const State faces = material.is_double_sided ? State::None : culled_state(settings_.shadow.caster_faces);
-    // Without culling the winding makes no difference.
-    const State state = faces == State::None ? State::None : faces | winding;
-    const TextureSet textures = cut_out == MaterialClass::Plain ? TextureSet() : textures_of(scene, mesh, true);
-    draw::ShadingGroup *&group = shared.groups[{&shared.shadow_pass, shader.id(), state, textures}];
-    if (!group) {
-      group = &shared.shadow_pass.group(shader);
-      group->state_enable(state);
-      group->bind_storage_ref("object_block", &shared.object_block);
-      group->bind_storage_ref("material_block", &shared.material_block);
-      group->bind_storage_ref("full_material_block", &shared.full_material_block);
-      group->bind_uniform_ref("shadow_render_block", shared.shadows.render_block());
-      bind_textures(*group, cut_out, textures);
-    }
-    instances = &group->instances(scene_.batch(object.mesh, streams_of(cut_out)));
-  }
-  shared.caster_of[index] = instances;
-}
-
-/** The casters as they stand, for the shadows to compare with those that they were drawn with. */
-void Engine::add_casters(Data &data)
-{
-  SharedData &shared = *data.shared;
-  for (const draw::ObjectIndex index : data.stl.objects) {
-    if (draw::InstanceCall *instances = shared.caster_of[index]) {
-      const render_scene::RenderObject &object = scene_.object(index);
-      const glm::mat4 &world_from_object = scene_.objects().world_from_object(index);
-      shared.shadows.add_caster({object.bounds, index, instances,
-                                 caster_fingerprint(scene_.scene(), object, world_from_object),
-                                 &scene_.scene().meshes()[object.mesh], &world_from_object});
-    }
-  }
-  shared.shadows.finish();
-  shared.has_casters = true;
 }
 
 }  // namespace gnomon::eevee

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
 // What a frame consists of, and what it was spared, from the state that the engine itself went by.
-#include "eevee_engine.hh"
-#include "eevee_engine_data.hh"
-#include "eevee_frame.hh"
+#include "eevee_report_source.hh"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <bit>
-#include <set>
 
 namespace gnomon::eevee {
 
@@ -20,160 +17,7 @@ const FrameNode *find(const FrameNode &node, std::string_view what)
 
 namespace {
 
-constexpr const char *no_target = "no target was given";
-
-/** Everything the nodes are made from. */
-struct Source {
-  render_scene::RenderScene &render_scene;
-  const ShaderCache &shaders;
-  const Settings &settings;
-  const Data &data;
-  draw::Viewport &viewport;
-
-  [[nodiscard]] const gpu::Device &device() const
-  {
-    return viewport.device();
-  }
-  [[nodiscard]] const scene::Scene &scene() const
-  {
-    return render_scene.scene();
-  }
-  [[nodiscard]] const scene::Mesh &mesh(draw::ObjectIndex object) const
-  {
-    return scene().meshes()[render_scene.object(object).mesh];
-  }
-  [[nodiscard]] bool has(Feature feature) const
-  {
-    return eevee::has(data.stl.features, feature);
-  }
-};
-
-/** Made of its children: made where any of them is, bytes and seconds theirs together. */
-FrameNode folder(std::string what, std::string why, std::string why_not, std::vector<FrameNode> children)
-{
-  FrameNode node{.what = std::move(what)};
-  for (const FrameNode &child : children) {
-    node.is_made |= child.is_made;
-    if (child.bytes) {
-      node.bytes = node.bytes.value_or(0) + *child.bytes;
-    }
-    if (child.upload_bytes) {
-      node.upload_bytes = node.upload_bytes.value_or(0) + *child.upload_bytes;
-    }
-    if (child.seconds) {
-      node.seconds = node.seconds.value_or(0.0) + *child.seconds;
-    }
-  }
-  node.why = node.is_made ? std::move(why) : std::move(why_not);
-  node.children = std::move(children);
-  return node;
-}
-
-std::string why_no_shadow(const Source &source, std::string no_such_lamp)
-{
-  return eevee::why_no_shadow(FrameState{source.settings, source.data}, std::move(no_such_lamp));
-}
-
-/** The images that materials of drawable objects read, and whether for colours. */
-std::set<std::pair<scene::Handle<scene::Image>, bool>> read_images(const Source &source)
-{
-  std::set<std::pair<scene::Handle<scene::Image>, bool>> images;
-  for (const draw::ObjectIndex object : source.data.stl.objects) {
-    const scene::Material &material = source.scene().material_of(source.mesh(object));
-    for (const scene::TextureInput &input : scene::texture_inputs) {
-      const scene::TextureSlot &slot = material.*input.slot;
-      if (render_scene::is_drawable(source.scene(), source.mesh(object), slot)) {
-        images.emplace(source.scene().textures()[slot.texture].image, input.is_color);
-      }
-    }
-  }
-  return images;
-}
-
-/** Why a mesh is drawn without a texture of its material; empty: it is drawn with it. */
-std::string why_no_texture(const scene::Mesh &mesh, const scene::TextureInput &input, const scene::TextureSlot &slot)
-{
-  if (slot && mesh.uv_set(slot.uv_set).empty()) {
-    return fmt::format("it has no {}uvs", slot.uv_set == 0 ? "" : "second ");
-  }
-  const bool needs_tangents = input.slot == &scene::Material::normal_texture;
-  return slot && needs_tangents && mesh.tangents.empty() ? "it has no tangents" : "";
-}
-
-constexpr const char *no_full_material = "no material that is drawn needs more than a base colour texture";
-
-std::string why_no_feature(const Source &source, Feature feature)
-{
-  if (feature == Feature::TargetDepth) {
-    return source.data.target ? "the target takes no depth" : no_target;
-  }
-  if (feature == Feature::BaseColorTexture && source.data.is_recorded && read_images(source).empty()) {
-    return "no material that is drawn has a texture";
-  }
-  if (feature == Feature::Light || !source.has(Feature::Light)) {
-    const bool is_mask = feature == Feature::AlphaMask;
-    if (!source.data.is_recorded &&
-        (is_mask || feature == Feature::BaseColorTexture || feature == Feature::FullMaterial)) {
-      return nothing_seen;
-    }
-    return is_mask                            ? "no texture's alpha cuts a material out"
-           : feature == Feature::FullMaterial ? no_full_material
-                                              : "no lamp gives light";
-  }
-  switch (feature) {
-    case Feature::Punctual: return "no point, spot or area lamp gives light";
-    case Feature::Specular: return source.data.is_recorded ? "every material is Lambertian" : nothing_seen;
-    case Feature::ShadowCube: return why_no_shadow(source, "no point lamp or wide spot casts a shadow of depths");
-    case Feature::ShadowMap: return why_no_shadow(source, "no sun or spot casts a shadow of depths");
-    case Feature::ShadowPcf: return why_no_shadow(source, "no shadow is filtered by percentage-closer lookups");
-    case Feature::ShadowEsm: return why_no_shadow(source, "no lamp casts an exponential shadow");
-    case Feature::ShadowEvsm: return why_no_shadow(source, "no lamp casts an exponential variance shadow");
-    case Feature::BaseColorTexture:
-      return source.data.is_recorded ? "no material that is drawn has a texture" : nothing_seen;
-    case Feature::LampShape: return "no lamp has an extent, and no spot's cone is an ellipse";
-    case Feature::FullMaterial: return source.data.is_recorded ? no_full_material : nothing_seen;
-    case Feature::AlphaMask: return source.data.is_recorded ? "no texture's alpha cuts a material out" : nothing_seen;
-    default: return "";
-  }
-}
-
-/** Why no variant of a program was made. \pre none was */
-std::string why_no_program(const Source &source, ShaderId id)
-{
-  const std::string no_esm = why_no_feature(source, Feature::ShadowEsm);
-  const std::string no_evsm = why_no_feature(source, Feature::ShadowEvsm);
-  const std::string other_kernel = "exponential shadows are filtered otherwise";
-  switch (id) {
-    case ShaderId::Probe: return source.settings.has_probe ? "no lamp was probed" : "not asked for";
-    case ShaderId::DebugShadow: return "not asked for";
-    case ShaderId::DebugCascades:
-      return source.data.shared->tinted_light
-                 ? nothing_seen
-                 : (source.settings.has_cascade_tint ? "no sun has a shadow" : "not asked for");
-    case ShaderId::Tonemap: return source.data.target ? nothing_seen : no_target;
-    default: break;
-  }
-  if (!source.data.is_recorded) {
-    return nothing_seen;
-  }
-  switch (id) {
-    case ShaderId::Shadow:
-    case ShaderId::ShadowLayered:
-    case ShaderId::ShadowGeometry:
-      return source.has(any_shadow) ? "another way of drawing a lamp's layers is used"
-                                    : why_no_shadow(source, "no lamp casts a shadow");
-    case ShaderId::EsmDistance:
-    case ShaderId::EsmDisk4:
-    case ShaderId::EsmDisk32:
-    case ShaderId::EsmSeparable: return source.has(Feature::ShadowEsm) ? other_kernel : no_esm;
-    case ShaderId::EvsmDisk4:
-    case ShaderId::EvsmDisk32:
-    case ShaderId::EvsmSeparable: return source.has(Feature::ShadowEvsm) ? other_kernel : no_evsm;
-    default: return nothing_seen;
-  }
-}
-
-/** "LIGHT|PUNCTUAL", and who asked for each. */
+/** "LIGHT|PUNCTUAL", and the purpose of each. */
 std::pair<std::string, std::string> variant_text(Feature features, std::string_view purpose)
 {
   std::vector<std::string_view> names;
@@ -188,7 +32,7 @@ std::pair<std::string, std::string> variant_text(Feature features, std::string_v
           purposes.empty() ? std::string(purpose) : fmt::format("{}", fmt::join(purposes, "; "))};
 }
 
-FrameNode program_nodes(const Source &source)
+FrameNode program_nodes(const ReportSource &source)
 {
   std::vector<FrameNode> programs;
   Feature made_features = Feature::None;
@@ -237,7 +81,7 @@ FrameNode pass_node(const FrameStep &step, const StepRecord &record, const Frame
       .what = drawn.name(), .is_made = of_pass.runs > 0, .why = reason_of(pass, of_pass, state), .count = of_pass.runs};
 }
 
-FrameNode shadow_step_node(const Source &source, const Need &need)
+FrameNode shadow_step_node(const ReportSource &source, const Need &need)
 {
   std::uint64_t layers = 0;
   for (const ShadowState &state : source.data.stl.shadows->states()) {
@@ -249,7 +93,7 @@ FrameNode shadow_step_node(const Source &source, const Need &need)
           .count = layers};
 }
 
-FrameNode pass_nodes(const Source &source)
+FrameNode pass_nodes(const ReportSource &source)
 {
   const Data &data = source.data;
   const FrameState state{source.settings, data};
@@ -287,154 +131,6 @@ FrameNode pass_nodes(const Source &source)
   return folder("passes", "runs of the last picture", nothing_seen, std::move(nodes));
 }
 
-FrameNode resource_node(const Source &source, const gpu::Resource &resource, std::string what, std::string why,
-                        std::string why_not)
-{
-  FrameNode node{.what = std::move(what), .is_made = bool(resource)};
-  if (!resource) {
-    node.why = std::move(why_not);
-    return node;
-  }
-  const gpu::LiveResource live = source.device().live(resource);
-  node.why = live.detail.empty() ? std::move(why) : fmt::format("{}: {}", live.detail, why);
-  node.bytes = live.size_bytes;
-  return node;
-}
-
-FrameNode target_nodes(const Source &source)
-{
-  const TextureList &txl = source.data.txl;
-  const SceneShadows &shadows = source.data.shared->shadows;
-  std::vector<FrameNode> targets;
-  const auto add = [&](const gpu::Texture &texture, std::string what, std::string why, std::string why_not) {
-    targets.push_back(resource_node(source, texture, std::move(what), std::move(why), std::move(why_not)));
-  };
-  const std::string not_asked = "not asked for";
-  add(txl.film, "film", "the picture", "");
-  targets.push_back({.what = "target",
-                     .is_made = bool(source.data.target),
-                     .why = source.data.target ? "the host's, of the last draw" : no_target});
-  add(txl.picture_depth, "picture_depth", "the target takes depth", "no target takes the depth of several samples");
-  if (source.viewport.has_depth_texture()) {
-    add(source.viewport.depth_texture(), "depth", "each pixel is lit once", "");
-  }
-  else {
-    add({}, "depth", "", nothing_seen);
-  }
-  add(txl.radiance, "radiance", "one sample, before the pixel filter", nothing_seen);
-  add(txl.probe_position, "probe_position", "asked for", source.settings.has_probe ? nothing_seen : not_asked);
-  add(txl.probe_normal, "probe_normal", "asked for", source.settings.has_probe ? nothing_seen : not_asked);
-  add(source.data.shadow_picture.texture(), "shadow_picture", "asked for", not_asked);
-  const auto why_no_layers = [&](Feature feature) {
-    return !source.has(feature)       ? why_no_feature(source, feature)
-           : !source.data.is_recorded ? nothing_seen
-                                      : "nothing is seen that a caster could darken";
-  };
-  add(source.data.shared->ltc_table, "ltc_table", "specular light of lamps with an extent",
-      source.has(Feature::LampShape) ? why_no_feature(source, Feature::Specular)
-                                     : why_no_feature(source, Feature::LampShape));
-  add(shadows.cubes(), "shadow_cubes", fmt::format("{} point lamps or wide spots", shadows.cube_count()),
-      why_no_layers(Feature::ShadowCube));
-  add(shadows.maps(), "shadow_maps", fmt::format("{} suns or spots", shadows.map_count()),
-      why_no_layers(Feature::ShadowMap));
-  add(shadows.distance_cube(), "shadow_distance_cube", "on the way to octahedral layers",
-      why_no_layers(Feature::ShadowEsm));
-  if (shadows.octahedral().textures().empty()) {
-    add({}, "shadow_esm", "", why_no_layers(Feature::ShadowEsm));
-  }
-  for (const gpu::Texture *texture : shadows.octahedral().textures()) {
-    add(*texture, texture->desc().name, "exponential shadows", "");
-  }
-  return folder("targets", "what passes draw into", "", std::move(targets));
-}
-
-FrameNode block_nodes(const Source &source)
-{
-  const StorageList &stl = source.data.stl;
-  std::vector<FrameNode> blocks;
-  const auto add = [&](const gpu::Buffer &buffer, std::string what, std::string why, std::string why_not) {
-    FrameNode &node = blocks.emplace_back(
-        resource_node(source, buffer, std::move(what), std::move(why),
-                      source.data.is_recorded || !source.has(Feature::Light) ? std::move(why_not) : nothing_seen));
-    if (buffer) {
-      node.upload_bytes = source.device().live(buffer).upload_bytes;
-    }
-  };
-  const std::string no_shadow = why_no_shadow(source, "no lamp casts a shadow");
-  add(stl.view_block, "view_block", "whatever is drawn", nothing_seen);
-  add(source.render_scene.objects().buffer(), "object_block",
-      fmt::format("{} matrices", source.render_scene.objects().size()), nothing_seen);
-  add(source.render_scene.materials().buffer(), "material_block",
-      fmt::format("{} materials", source.scene().materials().size()), nothing_seen);
-  add(source.render_scene.materials().full_buffer(), "full_material_block",
-      fmt::format("{} materials", source.scene().materials().size()),
-      source.data.is_recorded ? no_full_material : nothing_seen);
-  add(source.data.shared->light_block, "light_block",
-      fmt::format("{} lights", source.data.shared->lamps.light_block.light_count), "no lamp gives light");
-  add(source.data.shared->light_shape_block, "light_shape_block", "extents and axes of lamps",
-      why_no_feature(source, Feature::LampShape));
-  add(stl.shadows->block(), "shadow_block", "shadows of depths",
-      source.has(any_shadow) ? "all shadows are exponential" : no_shadow);
-  add(stl.shadows->scene().render_blocks(), "shadow_render_block", "views that casters are drawn with", no_shadow);
-  add(stl.shadows->scene().octahedral().block(), "esm_block", "exponential shadows",
-      why_no_feature(source, Feature::ShadowEsm));
-  return folder("blocks", "what programs read", nothing_seen, std::move(blocks));
-}
-
-/** Meshes and images alike: how many were taken to the device, and why. */
-FrameNode mesh_nodes(const Source &source)
-{
-  const scene::Scene &scene = source.scene();
-  std::set<scene::Handle<scene::Mesh>> used;
-  for (const scene::Object &object : scene.objects()) {
-    used.insert(object.mesh);
-  }
-  const gpu::Batch none;
-  std::vector<FrameNode> meshes;
-  for (const auto &[handle, mesh] : scene.meshes()) {
-    const gpu::Batch *made = source.render_scene.meshes().find(handle);
-    const gpu::Batch &batch = made ? *made : none;
-    FrameNode &node = meshes.emplace_back(
-        resource_node(source, batch, mesh.name, fmt::format("{} triangles", mesh.indices.size() / 3),
-                      !used.contains(handle)                                ? "no object has it"
-                      : !render_scene::is_drawable(scene.material_of(mesh)) ? "its material is cut out everywhere"
-                                                                            : nothing_seen));
-    if (batch) {
-      node.upload_bytes = source.device().live(batch).upload_bytes;
-    }
-  }
-  return folder("meshes", "objects' triangles", scene.meshes().empty() ? "there is none" : nothing_seen,
-                std::move(meshes));
-}
-
-FrameNode texture_nodes(const Source &source)
-{
-  std::vector<FrameNode> images;
-  const auto read = read_images(source);
-  const gpu::Texture none;
-  for (const auto &[handle, image] : source.scene().images()) {
-    for (const bool is_color : {true, false}) {
-      const gpu::Texture *made = source.render_scene.images().find(handle, is_color);
-      // An image that nothing reads has one node.
-      const bool is_read = read.contains({handle, is_color});
-      if (!made && !is_read && (!is_color || read.contains({handle, false}))) {
-        continue;
-      }
-      FrameNode &node = images.emplace_back(
-          resource_node(source, made ? *made : none, image.name,
-                        is_color ? "colours that a material looks up" : "data that a material looks up",
-                        !is_read                   ? "no object has a material that looks it up"
-                        : !source.data.is_recorded ? nothing_seen
-                                                   : "no lamp lights it, and it cuts nothing out"));
-      if (made) {
-        node.upload_bytes = source.device().live(*made).upload_bytes;
-      }
-    }
-  }
-  return folder("textures", "what materials look up", images.empty() ? "no material has one" : "none is looked up",
-                std::move(images));
-}
-
 /** Layers of one kind of a lamp's; none: no node. */
 void add_layers(FrameNode &lamp, const char *what, bool is_made, std::uint32_t mask, const char *why)
 {
@@ -444,7 +140,7 @@ void add_layers(FrameNode &lamp, const char *what, bool is_made, std::uint32_t m
   }
 }
 
-FrameNode lamp_node(const Source &source, std::size_t index, const std::vector<ShadowState> &states)
+FrameNode lamp_node(const ReportSource &source, std::size_t index, const std::vector<ShadowState> &states)
 {
   const scene::PlacedLamp &lamp = source.render_scene.lamps()[index];
   const Lamps &lamps = source.data.shared->lamps;
@@ -477,7 +173,7 @@ FrameNode lamp_node(const Source &source, std::size_t index, const std::vector<S
   return node;
 }
 
-FrameNode shadow_nodes(const Source &source)
+FrameNode shadow_nodes(const ReportSource &source)
 {
   const std::vector<ShadowState> states = source.data.stl.shadows->states();
   std::vector<FrameNode> lamps;
@@ -488,7 +184,7 @@ FrameNode shadow_nodes(const Source &source)
                 std::move(lamps));
 }
 
-FrameNode draw_nodes(const Source &source)
+FrameNode draw_nodes(const ReportSource &source)
 {
   std::vector<FrameNode> passes;
   for (std::size_t i = 0; i < source.data.frame.size(); i++) {
@@ -561,7 +257,7 @@ Report Engine::report(draw::Viewport &viewport) const
     report.lost_shadow_count += is_asked_for && lamps.light_block.lights[i].shadow_kind == SHADOW_NONE ? 1 : 0;
   }
 
-  const Source source{scene_, shaders_, settings_, data, viewport};
+  const ReportSource source{scene_, shaders_, settings_, data, viewport};
   report.tree = folder("frame", "the picture", "",
                        {program_nodes(source), pass_nodes(source), target_nodes(source), block_nodes(source),
                         mesh_nodes(source), texture_nodes(source), shadow_nodes(source), draw_nodes(source)});
