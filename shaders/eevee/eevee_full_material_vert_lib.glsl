@@ -2,9 +2,11 @@
 // For vertex shaders: writes the inputs of eevee_full_material_lib.glsl.
 #include "eevee/eevee_full_alpha_vert_lib.glsl"
 
+#ifdef USE_LIGHT
 layout(location = ATTRIBUTE_TANGENT) in vec4 tangent;
 
 layout(location = 5) out vec4 surface_tangent_ws;
+#endif
 layout(location = 6) out vec4 surface_roughness_normal_uvs;
 layout(location = 7) out vec4 surface_occlusion_emissive_uvs;
 layout(location = 8) out vec4 surface_specular_uvs;
@@ -15,10 +17,12 @@ void write_full_varyings()
   surface_roughness_normal_uvs = vec4(input_uv(material, 1), input_uv(material, 2));
   surface_occlusion_emissive_uvs = vec4(input_uv(material, 3), input_uv(material, 4));
   surface_specular_uvs = vec4(input_uv(material, 5), input_uv(material, 6));
+#ifdef USE_LIGHT
   mat3 world_from_object = mat3(objects[draw_instance.x].world_from_object);
   vec3 tangent_ws = world_from_object * tangent.xyz;
   float length_sq = dot(tangent_ws, tangent_ws);
   // A mirrored object turns cross(normal, tangent) around.
   surface_tangent_ws = vec4(length_sq > 0.0 ? tangent_ws * inversesqrt(length_sq) : vec3(0.0),
                             determinant(world_from_object) < 0.0 ? -tangent.w : tangent.w);
+#endif
 }

@@ -188,10 +188,11 @@ INSTANTIATE_TEST_SUITE_P(
                 2},
         Planted{"PaddingRemoved",
                 "eevee_depth",
-                {{"shared/draw_view_shared.h", "  float _pad0;\n", ""}},
-                "shared/draw_view_shared.h",
-                "struct ViewData",
-                "field 'view._pad0' of struct 'ViewData' in block 'view_block' is in C++ only [layout]"},
+                {{"shared/eevee_material_shared.h", "  float _pad0;\n", ""}},
+                "shared/eevee_material_shared.h",
+                "struct FullMaterialData",
+                "field 'full_materials[0]._pad0' of struct 'FullMaterialData' in block 'full_material_block' is in C++ "
+                "only [layout]"},
         Planted{"FieldsReordered",
                 "eevee_debug_cascades",
                 {{"shared/eevee_light_shared.h", "float spot_drop_outer;", "float planted;"},
@@ -284,9 +285,10 @@ TEST_F(ShadersTest, LayoutNamesStructAndFieldThatDiffer)
   const int line = line_of(read("tree/shared/eevee_material_shared.h"), "planted");
   const Finished finished = run("shaders layout --shaders tree");
   EXPECT_EQ(finished.status, 1);
-  EXPECT_NE(finished.out.find("     -     60  materials[0].planted  <-- differs"), std::string::npos) << finished.out;
+  EXPECT_NE(finished.out.find("     -     60  full_materials[0].planted  <-- differs"), std::string::npos)
+      << finished.out;
   EXPECT_NE(finished.out.find("tree/shared/eevee_material_shared.h:" + std::to_string(line) +
-                              ": error: field 'materials[0].planted' of struct 'MaterialData'"),
+                              ": error: field 'full_materials[0].planted' of struct 'FullMaterialData'"),
             std::string::npos)
       << finished.out;
 }
@@ -390,7 +392,7 @@ TEST_F(ShadersTest, JsonHoldsTheMessageWithItsVariants)
   const Finished finished = run("shaders check --shaders tree --program eevee_depth --format json");
   EXPECT_EQ(finished.status, 1);
   const nlohmann::json json = nlohmann::json::parse(finished.out);
-  EXPECT_EQ(json["variants"], 2) << "with a mask and without";
+  EXPECT_EQ(json["variants"], 3) << "without a mask, with one, and with one of a full material";
   EXPECT_EQ(json["errors"], 1);
   ASSERT_EQ(json["messages"].size(), 1U);
   const nlohmann::json &message = json["messages"][0];
@@ -398,7 +400,7 @@ TEST_F(ShadersTest, JsonHoldsTheMessageWithItsVariants)
   EXPECT_EQ(message["file"], "tree/eevee/eevee_depth_frag.glsl");
   EXPECT_EQ(message["line"], line_of(read("tree/eevee/eevee_depth_frag.glsl"), "planted"));
   EXPECT_EQ(message["rule"], "compile");
-  EXPECT_EQ(message["where"].size(), 2) << "two targets";
+  EXPECT_EQ(message["where"].size(), 4) << "two variants, two targets";
   for (const nlohmann::json &where : message["where"]) {
     EXPECT_NE(where["variant"].get<std::string>().find("USE_ALPHA_MASK"), std::string::npos);
   }
