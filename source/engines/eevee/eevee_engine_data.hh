@@ -152,7 +152,7 @@ struct SharedData {
   std::optional<ShadowsKey> synced;
   /** Increased by each sync of the lamps. */
   std::uint64_t revision = 0;
-  /** In light_block: the sun whose cascades are shown; nothing where none is, or nobody asks. */
+  /** In light_block: the sun whose cascades are shown; nothing where there is none, or where it was not asked for. */
   std::optional<int> tinted_light;
   gpu::Buffer light_block;
   gpu::Buffer light_shape_block;

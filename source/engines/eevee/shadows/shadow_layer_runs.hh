@@ -7,7 +7,7 @@
 
 namespace gnomon::eevee {
 
-/** Who owns layers: a lamp, or a lamp in one viewport. */
+/** Owner of layers: a lamp, or a lamp in one viewport. */
 struct LayerOwner {
   /** ShadowLamp::key. */
   std::uint64_t lamp = 0;
