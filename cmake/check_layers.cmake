@@ -18,12 +18,14 @@ set(source/engines/eevee/interface_tool source/engines/eevee source/shader_check
 set(source/reference source/scene shaders)
 set(source/measure source/engines/eevee source/render_scene source/reference source/draw source/gpu source/gltf
   source/scene shaders)
-set(source/cli source/measure source/engines/eevee source/render_scene source/reference source/draw source/shader_check source/gpu
+set(source/verify source/measure source/engines/eevee source/render_scene source/reference source/draw source/gpu source/gltf
+  source/scene shaders)
+set(source/cli source/verify source/measure source/engines/eevee source/render_scene source/reference source/draw source/shader_check source/gpu
   source/gltf source/scene shaders)
 set(shaders "")
 # A folder within another layer's folder comes after it.
 set(LAYERS source/gpu source/shader_check source/draw source/scene source/gltf source/render_scene source/engines/eevee
-  source/engines/eevee/interface_tool source/reference source/measure source/cli shaders)
+  source/engines/eevee/interface_tool source/reference source/measure source/verify source/cli shaders)
 
 set(VIOLATIONS 0)
 # violation(FILE INCLUDE WHY): reports a violation. INCLUDE: the text of the line.

@@ -6,7 +6,7 @@
 
 #include "measure_page.hh"
 #include "measure_report.hh"
-#include "measure_stability.hh"
+#include "verify_stability.hh"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -31,15 +31,15 @@ struct StabilityOptions {
   std::string group;
 };
 
-struct Judged {
-  measure::StabilityCase one;
-  measure::StabilityResult result;
+struct CaseResult {
+  verify::StabilityCase one;
+  verify::StabilityResult result;
 };
 
-std::vector<std::string> groups_of(const std::vector<measure::StabilityCase> &cases)
+std::vector<std::string> groups_of(const std::vector<verify::StabilityCase> &cases)
 {
   std::vector<std::string> groups;
-  for (const measure::StabilityCase &one : cases) {
+  for (const verify::StabilityCase &one : cases) {
     if (std::ranges::find(groups, one.group) == groups.end()) {
       groups.push_back(one.group);
     }
@@ -49,64 +49,64 @@ std::vector<std::string> groups_of(const std::vector<measure::StabilityCase> &ca
 
 bool is_rendered(const std::string &group)
 {
-  return group.rfind(measure::image_group_prefix, 0) == 0;
+  return group.rfind(verify::image_group_prefix, 0) == 0;
 }
 
-/** Of \a group, or all where it is empty, those of a group together. \a device: made where a case needs one. */
-std::vector<measure::StabilityCase> chosen_cases(const std::string &group, std::unique_ptr<gpu::Device> &device)
+/** The cases of \a group, or all if it is empty, sorted by group. Creates \a device if a case needs one. */
+std::vector<verify::StabilityCase> chosen_cases(const std::string &group, std::unique_ptr<gpu::Device> &device)
 {
-  std::vector<measure::StabilityCase> cases = measure::function_stability_cases();
-  const auto append = [&cases](std::vector<measure::StabilityCase> more) {
+  std::vector<verify::StabilityCase> cases = verify::function_stability_cases();
+  const auto append = [&cases](std::vector<verify::StabilityCase> more) {
     cases.insert(cases.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
   };
-  append(measure::input_stability_cases());
+  append(verify::input_stability_cases());
   if (group.empty() || is_rendered(group)) {
     device = gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()});
-    append(measure::image_stability_cases(*device));
+    append(verify::image_stability_cases(*device));
   }
   const std::vector<std::string> groups = groups_of(cases);
   if (!group.empty()) {
     if (std::ranges::find(groups, group) == groups.end()) {
       throw UsageError(fmt::format("no group '{}' of cases; there are: {}", group, fmt::join(groups, ", ")));
     }
-    std::erase_if(cases, [&](const measure::StabilityCase &one) { return one.group != group; });
+    std::erase_if(cases, [&](const verify::StabilityCase &one) { return one.group != group; });
   }
   std::ranges::stable_sort(cases, {},
-                           [&](const measure::StabilityCase &one) { return std::ranges::find(groups, one.group); });
+                           [&](const verify::StabilityCase &one) { return std::ranges::find(groups, one.group); });
   return cases;
 }
 
-std::vector<Judged> judge(std::vector<measure::StabilityCase> cases)
+std::vector<CaseResult> run_all(std::vector<verify::StabilityCase> cases)
 {
-  std::vector<Judged> judged;
-  for (measure::StabilityCase &one : cases) {
-    measure::StabilityResult result = measure::run(one);
-    judged.push_back({std::move(one), std::move(result)});
+  std::vector<CaseResult> results;
+  for (verify::StabilityCase &one : cases) {
+    verify::StabilityResult result = verify::run(one);
+    results.push_back({std::move(one), std::move(result)});
     if (isatty(STDERR_FILENO)) {
-      const bool is_last = judged.size() == cases.size();
-      fmt::print(stderr, "\r{}/{} cases{}", judged.size(), cases.size(), is_last ? "\r\033[K" : "");
+      const bool is_last = results.size() == cases.size();
+      fmt::print(stderr, "\r{}/{} cases{}", results.size(), cases.size(), is_last ? "\r\033[K" : "");
     }
   }
-  return judged;
+  return results;
 }
 
-/** Of some cases. */
+/** Counts over some cases. */
 struct Summary {
   std::size_t cases = 0;
   std::size_t passed = 0;
-  /** Among the passed. */
+  /** Included in passed. */
   std::size_t baselines = 0;
   std::size_t failed = 0;
-  /** Cases that are no baselines. */
+  /** Baselines are not counted. */
   std::size_t non_finite = 0;
-  /** Largest error over its bound, of cases that are no baselines and have a bound above 0. */
+  /** Largest ratio of error to bound. Baselines and cases with a bound of 0 do not count. */
   double worst_share = 0.0;
 };
 
-Summary summary_of(std::span<const Judged> judged)
+Summary summary_of(std::span<const CaseResult> results)
 {
   Summary summary;
-  for (const auto &[one, result] : judged) {
+  for (const auto &[one, result] : results) {
     summary.cases++;
     (result.is_passed ? summary.passed : summary.failed)++;
     if (one.is_baseline) {
@@ -127,37 +127,37 @@ std::string to_text(const Summary &summary)
                      summary.passed, summary.baselines, summary.failed, summary.non_finite);
 }
 
-/** Those of each group together, in order. \pre sorted by group */
-std::vector<std::span<const Judged>> by_group(std::span<const Judged> judged)
+/** One span for each group, in order. \pre sorted by group */
+std::vector<std::span<const CaseResult>> by_group(std::span<const CaseResult> results)
 {
-  std::vector<std::span<const Judged>> groups;
-  while (!judged.empty()) {
-    const auto end =
-        std::ranges::find_if(judged, [&](const Judged &each) { return each.one.group != judged.front().one.group; });
-    groups.push_back(judged.first(std::size_t(end - judged.begin())));
-    judged = judged.subspan(groups.back().size());
+  std::vector<std::span<const CaseResult>> groups;
+  while (!results.empty()) {
+    const auto end = std::ranges::find_if(
+        results, [&](const CaseResult &each) { return each.one.group != results.front().one.group; });
+    groups.push_back(results.first(std::size_t(end - results.begin())));
+    results = results.subspan(groups.back().size());
   }
   return groups;
 }
 
-const char *verdict(const Judged &judged)
+const char *verdict(const CaseResult &each)
 {
-  if (!judged.result.is_passed) {
+  if (!each.result.is_passed) {
     return "FAILED";
   }
-  return judged.one.is_baseline ? "baseline" : "passed";
+  return each.one.is_baseline ? "baseline" : "passed";
 }
 
-std::string range_of(const Judged &judged)
+std::string range_of(const CaseResult &each)
 {
-  const std::vector<measure::StabilitySample> &samples = judged.result.samples;
+  const std::vector<verify::StabilitySample> &samples = each.result.samples;
   return samples.empty() ? "" : fmt::format("{:.3g} to {:.3g}", samples.front().parameter, samples.back().parameter);
 }
 
-measure::Table summary_table(std::span<const Judged> judged)
+measure::Table summary_table(std::span<const CaseResult> results)
 {
   measure::Table table{{"group", "cases", "passed", "baselines", "failed", "non-finite", "worst / bound"}, {}};
-  for (const std::span<const Judged> group : by_group(judged)) {
+  for (const std::span<const CaseResult> group : by_group(results)) {
     const Summary one = summary_of(group);
     table.rows.push_back({group.front().one.group, std::to_string(one.cases), std::to_string(one.passed),
                           std::to_string(one.baselines), std::to_string(one.failed), std::to_string(one.non_finite),
@@ -166,30 +166,30 @@ measure::Table summary_table(std::span<const Judged> judged)
   return table;
 }
 
-void print(const std::vector<Judged> &judged)
+void print(const std::vector<CaseResult> &results)
 {
-  for (const std::span<const Judged> group : by_group(judged)) {
+  for (const std::span<const CaseResult> group : by_group(results)) {
     fmt::print("{}\n{:8} {:>10} {:>10} {:>10}  {}\n", group.front().one.group, "", "error", "bound", "at", "of");
-    for (const Judged &each : group) {
+    for (const CaseResult &each : group) {
       const auto &[one, result] = each;
       fmt::print("{:8} {:10.3g} {:10.3g} {:10.3g}  {} ({})\n", verdict(each), result.worst_error, one.bound,
                  result.worst_parameter, one.name, one.unit);
     }
     fmt::print("\n");
   }
-  const measure::Table summary = summary_table(judged);
+  const measure::Table summary = summary_table(results);
   std::vector<std::vector<std::string>> lines = summary.rows;
   lines.insert(lines.begin(), summary.head);
   for (const std::vector<std::string> &line : lines) {
     fmt::print("{:20} {:>6} {:>7} {:>10} {:>7} {:>11} {:>14}\n", line[0], line[1], line[2], line[3], line[4], line[5],
                line[6]);
   }
-  fmt::print("\n{}\n", to_text(summary_of(judged)));
+  fmt::print("\n{}\n", to_text(summary_of(results)));
 }
 
-void print_failures(const std::vector<Judged> &judged)
+void print_failures(const std::vector<CaseResult> &results)
 {
-  for (const auto &[one, result] : judged) {
+  for (const auto &[one, result] : results) {
     if (result.is_passed) {
       continue;
     }
@@ -203,13 +203,13 @@ void print_failures(const std::vector<Judged> &judged)
   }
 }
 
-std::string to_csv(const std::vector<Judged> &judged)
+std::string to_csv(const std::vector<CaseResult> &results)
 {
   std::string csv =
       "group,name,quantity,parameter,low,high,reference,unit,worst_error,worst_parameter,bound,samples,non_finite,"
       "finite,"
       "baseline,passed,failure\n";
-  for (const auto &[one, result] : judged) {
+  for (const auto &[one, result] : results) {
     const bool has_samples = !result.samples.empty();
     csv += fmt::format(
         "{},{},{},{},{},{},{},{},{:.6g},{:.9g},{:.6g},{},{},{},{},{},{}\n", measure::csv_quoted(one.group),
@@ -223,10 +223,10 @@ std::string to_csv(const std::vector<Judged> &judged)
   return csv;
 }
 
-/** Numbers that are not finite are null, as JSON has none. */
-nlohmann::json to_json(const std::vector<Judged> &judged, const Origin &where, const std::string &driver)
+/** Non-finite numbers become null, because JSON cannot represent them. */
+nlohmann::json to_json(const std::vector<CaseResult> &results, const Origin &where, const std::string &driver)
 {
-  const Summary summary = summary_of(judged);
+  const Summary summary = summary_of(results);
   nlohmann::json json = {{"program", where.program},
                          {"commit", where.commit},
                          {"date", where.date},
@@ -238,9 +238,9 @@ nlohmann::json to_json(const std::vector<Judged> &judged, const Origin &where, c
                      {"failed", summary.failed},
                      {"non_finite", summary.non_finite}};
   json["cases"] = nlohmann::json::array();
-  for (const auto &[one, result] : judged) {
+  for (const auto &[one, result] : results) {
     nlohmann::json samples = nlohmann::json::array();
-    for (const measure::StabilitySample &sample : result.samples) {
+    for (const verify::StabilitySample &sample : result.samples) {
       samples.push_back({sample.parameter, sample.error});
     }
     json["cases"].push_back({{"group", one.group},
@@ -261,18 +261,18 @@ nlohmann::json to_json(const std::vector<Judged> &judged, const Origin &where, c
   return json;
 }
 
-/** Cases of one quantity over one parameter, each in parts of its bound; nothing where there is nothing to be seen. */
-std::optional<measure::Chart> chart_of(std::span<const Judged> judged)
+/** A chart of error over bound for cases of one quantity and parameter; none if no case has a finite error above 0. */
+std::optional<measure::Chart> chart_of(std::span<const CaseResult> results)
 {
   measure::Chart chart;
-  chart.title = judged.front().one.quantity;
-  chart.x.title = judged.front().one.parameter;
+  chart.title = results.front().one.quantity;
+  chart.x.title = results.front().one.parameter;
   chart.y.title = "error / bound";
   double low = std::numeric_limits<double>::infinity();
   double high = 0.0;
   bool has_negative = false;
   bool is_seen = false;
-  for (const auto &[one, result] : judged) {
+  for (const auto &[one, result] : results) {
     if (one.bound == 0.0) {
       continue;
     }
@@ -295,12 +295,12 @@ std::optional<measure::Chart> chart_of(std::span<const Judged> judged)
   return chart;
 }
 
-measure::Table table_of(std::span<const Judged> group)
+measure::Table table_of(std::span<const CaseResult> group)
 {
   measure::Table table{
       {"case", "result", "finite", "worst error", "bound", "unit", "at", "range", "parameter", "quantity", "reference"},
       {}};
-  for (const Judged &each : group) {
+  for (const CaseResult &each : group) {
     const auto &[one, result] = each;
     table.rows.push_back({one.name, verdict(each), result.non_finite_count == 0 ? "yes" : "no",
                           fmt::format("{:.3g}", result.worst_error), fmt::format("{:.3g}", one.bound), one.unit,
@@ -310,27 +310,27 @@ measure::Table table_of(std::span<const Judged> group)
   return table;
 }
 
-std::string to_html(const std::vector<Judged> &judged, const Origin &where, const std::string &driver)
+std::string to_html(const std::vector<CaseResult> &results, const Origin &where, const std::string &driver)
 {
   measure::Page page("Stability");
   page.paragraph(fmt::format("{} ({}), {}. {}, {}.", where.program, where.commit, where.date, where.machine, driver));
-  page.paragraph(to_text(summary_of(judged)));
-  page.table(summary_table(judged));
+  page.paragraph(to_text(summary_of(results)));
+  page.table(summary_table(results));
   page.paragraph(
-      "Plots show errors in parts of each case's bound. What is exact, and what is not finite, is not drawn: a line "
+      "Charts show each case's error divided by its bound. Errors of 0 and non-finite errors are not drawn: a line "
       "that "
-      "ends has overflowed. Cases that are kept or violated, with a bound of 0, stand in the tables alone. A baseline "
-      "is a "
-      "form that the engine does not use; it passes by failing.");
-  for (const std::span<const Judged> group : by_group(judged)) {
+      "ends has overflowed. Cases with a bound of 0 are in the tables only. A baseline is a formula that the engine "
+      "does "
+      "not use; it passes if its error exceeds the bound.");
+  for (const std::span<const CaseResult> group : by_group(results)) {
     page.heading(group.front().one.group);
     page.table(table_of(group));
-    // A chart for what has one quantity over one parameter.
-    std::vector<Judged> left(group.begin(), group.end());
+    // One chart for each pair of quantity and parameter.
+    std::vector<CaseResult> left(group.begin(), group.end());
     while (!left.empty()) {
       const auto others = std::stable_partition(
           left.begin(), left.end(),
-          [quantity = left.front().one.quantity, parameter = left.front().one.parameter](const Judged &each) {
+          [quantity = left.front().one.quantity, parameter = left.front().one.parameter](const CaseResult &each) {
             return each.one.quantity == quantity && each.one.parameter == parameter;
           });
       if (const std::optional<measure::Chart> chart = chart_of({left.begin(), others})) {
@@ -345,18 +345,18 @@ std::string to_html(const std::vector<Judged> &judged, const Origin &where, cons
 Status stability(const StabilityOptions &options)
 {
   std::unique_ptr<gpu::Device> device;
-  std::vector<measure::StabilityCase> cases = chosen_cases(options.group, device);
+  std::vector<verify::StabilityCase> cases = chosen_cases(options.group, device);
   const std::string driver = device ? device->description() : "no device";
   fs::create_directories(options.folder);
-  const std::vector<Judged> judged = judge(std::move(cases));
+  const std::vector<CaseResult> results = run_all(std::move(cases));
   const Origin where = origin();
   const fs::path folder(options.folder);
-  write_text(folder / "stability.csv", to_csv(judged));
-  write_text(folder / "stability.json", to_json(judged, where, driver).dump(1) + "\n");
-  write_text(folder / "index.html", to_html(judged, where, driver));
-  print(judged);
-  print_failures(judged);
-  const Summary summary = summary_of(judged);
+  write_text(folder / "stability.csv", to_csv(results));
+  write_text(folder / "stability.json", to_json(results, where, driver).dump(1) + "\n");
+  write_text(folder / "index.html", to_html(results, where, driver));
+  print(results);
+  print_failures(results);
+  const Summary summary = summary_of(results);
   if (summary.non_finite > 0) {
     return Status::NonFinite;
   }
@@ -368,10 +368,9 @@ Status stability(const StabilityOptions &options)
 void add_stability(CLI::App &app, Status &status)
 {
   auto o = std::make_shared<StabilityOptions>();
-  CLI::App *command =
-      app.add_subcommand("stability", "Stiff and extreme cases: how wrong, how wrong they may be, and whether finite");
+  CLI::App *command = app.add_subcommand("stability", "Stiff and extreme cases: error, bound and finiteness");
   command->add_option("-o,--output", o->folder, "Folder for stability.csv, stability.json and index.html")->required();
-  command->add_option("--group", o->group, "Only the cases of this group; a name that is none lists them");
+  command->add_option("--group", o->group, "Run only the cases of this group; an unknown name lists the groups");
   command->callback([o, &status] { status = stability(*o); });
 }
 

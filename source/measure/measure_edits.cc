@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "measure_edits.hh"
 
-#include "internal/measure_scene.hh"
+#include "measure_scene.hh"
 
 #include <functional>
 #include <memory>

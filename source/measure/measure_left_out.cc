@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "measure_left_out.hh"
 
-#include "internal/measure_scene.hh"
+#include "measure_scene.hh"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>

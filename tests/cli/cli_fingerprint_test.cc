@@ -2,7 +2,7 @@
 #include "cli_fingerprint.hh"
 
 #include "gltf_import.hh"
-#include "internal/measure_scene.hh"
+#include "measure_scene.hh"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "internal/measure_gltf.hh"
+#include "internal/verify_gltf.hh"
 
 /** Tests use the same glTF files as the stability cases. */
 namespace gnomon::test {
 
-using namespace measure::gltf;
+using namespace verify::gltf;
 
 }  // namespace gnomon::test

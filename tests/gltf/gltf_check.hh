@@ -3,7 +3,7 @@
 
 #include "gltf/gltf_builder.hh"
 #include "gltf_import.hh"
-#include "internal/measure_contract.hh"
+#include "internal/verify_contract.hh"
 
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
@@ -20,7 +20,7 @@ namespace gnomon::test {
 /** Expects every property that scene.hh promises of an imported scene. */
 inline void expect_valid(const scene::Scene &scene)
 {
-  EXPECT_EQ(measure::contract_faults(scene), std::vector<std::string>());
+  EXPECT_EQ(verify::contract_faults(scene), std::vector<std::string>());
 }
 
 /** The thing number \a index of a pool in its order. \throws std::out_of_range */

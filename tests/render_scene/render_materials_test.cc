@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "render_materials.hh"
 
-#include "internal/measure_scene.hh"
+#include "measure_scene.hh"
 
 #include "eevee_bsdf_shared.h"
 

@@ -2,7 +2,7 @@
 // Edits of a scene, and what they change on the device and in the lists that engines read.
 #include "render_scene.hh"
 
-#include "internal/measure_scene.hh"
+#include "measure_scene.hh"
 
 #include "gpu/gpu_testing.hh"
 

@@ -11,11 +11,11 @@
 namespace gnomon::test {
 namespace {
 
-using measure::Arguments;
-using measure::CompiledFunction;
-using measure::Deviation;
-using measure::Sweep;
-using measure::sweeps;
+using verify::Arguments;
+using verify::CompiledFunction;
+using verify::Deviation;
+using verify::Sweep;
+using verify::sweeps;
 
 /** Evaluates a function on the device, with one pixel for each argument of a sweep. */
 class SharedFunctionGpu : public GpuDeviceTest, public testing::WithParamInterface<std::size_t> {
@@ -93,7 +93,7 @@ void main()
 
 TEST_P(SharedFunctionGpu, EqualsItsClosedForm)
 {
-  const auto functions = measure::functions_in_float();
+  const auto functions = verify::functions_in_float();
   const auto function = std::ranges::find(functions, sweep().name, &CompiledFunction<float>::name);
   ASSERT_NE(function, functions.end());
   const std::vector<glm::dvec4> values = results(function->expression);

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace gnomon::measure {
+namespace gnomon::verify {
 namespace {
 
 class SharedFunction : public testing::TestWithParam<std::size_t> {
@@ -45,4 +45,4 @@ INSTANTIATE_TEST_SUITE_P(Each, SharedFunction, testing::Range(std::size_t(0), sw
                          [](const auto &test) { return std::string(sweeps()[test.param].name); });
 
 }  // namespace
-}  // namespace gnomon::measure
+}  // namespace gnomon::verify

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "internal/measure_scene.hh"
+#include "measure_scene.hh"
 
 /** The scenes that stability is measured on serve tests too. */
 namespace gnomon::test {

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+#include "internal/verify_contract.hh"
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gnomon::verify {
+
+namespace {
+
+/** Half a turn, and a rounding. */
+constexpr float pi = 3.1415927F;
+
+bool is_finite(const glm::vec3 &v)
+{
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/** Collects faults of one element after another. */
+class Checker {
+ public:
+  std::vector<std::string> faults;
+
+  void element(std::string what)
+  {
+    what_ = std::move(what);
+  }
+  void check(bool is_right, const char *promise)
+  {
+    if (!is_right) {
+      faults.push_back(fmt::format("{}: not {}", what_, promise));
+    }
+  }
+  /** Finite in float, too, which engines use. */
+  void check_affine(const glm::dmat4 &matrix)
+  {
+    bool is_affine = true;
+    for (int column = 0; column < 4; column++) {
+      is_affine = is_affine && is_finite(glm::vec3(matrix[column])) && matrix[column][3] == (column == 3 ? 1.0 : 0.0);
+    }
+    check(is_affine, "a finite affine matrix");
+  }
+  /** A rotation and a place, right-handed. */
+  void check_frame(const glm::dmat4 &matrix)
+  {
+    check_affine(matrix);
+    const glm::dvec3 x(matrix[0]);
+    const glm::dvec3 y(matrix[1]);
+    const glm::dvec3 z(matrix[2]);
+    constexpr double rounding = 1e-14;
+    check(std::abs(glm::length(x) - 1.0) <= rounding && std::abs(glm::length(y) - 1.0) <= rounding &&
+              glm::length(glm::cross(x, y) - z) <= rounding,
+          "a right-handed orthonormal frame");
+  }
+
+ private:
+  std::string what_;
+};
+
+void check_mesh(const scene::Scene &scene, const scene::Mesh &mesh, Checker &checker)
+{
+  checker.check(!mesh.material || scene.materials().is_live(mesh.material), "of a material that is there");
+  checker.check(mesh.normals.size() == mesh.positions.size(), "with a normal a position");
+  checker.check(!mesh.indices.empty() && mesh.indices.size() % 3 == 0, "of whole triangles");
+  checker.check(std::ranges::all_of(mesh.indices, [&](std::uint32_t i) { return i < mesh.positions.size(); }),
+                "with indices in range");
+  checker.check(!mesh.bounds.is_empty(), "with bounds");
+  scene::for_each_stream(mesh, [&](const auto &stream) {
+    checker.check(stream.size() == mesh.positions.size(), "with a value a position");
+  });
+  const scene::Material &material = scene.material_of(mesh);
+  for (int set = 0; set < 2; set++) {
+    const bool is_read = std::ranges::any_of(scene::texture_inputs, [&](const scene::TextureInput &input) {
+      return (material.*input.slot) && (material.*input.slot).uv_set == set;
+    });
+    checker.check(mesh.uv_set(set).empty() == !is_read,
+                  "with texture coordinates just where its material looks a texture up");
+    checker.check(std::ranges::all_of(mesh.uv_set(set),
+                                      [](const glm::vec2 &uv) { return std::isfinite(uv.x) && std::isfinite(uv.y); }),
+                  "with finite texture coordinates");
+  }
+  checker.check(mesh.tangents.empty() == !material.normal_texture,
+                "with tangents just where its material has a normal texture");
+  checker.check(std::ranges::all_of(mesh.tangents,
+                                    [](const glm::vec4 &t) {
+                                      return std::abs(glm::length(glm::vec3(t)) - 1.0F) <= 1e-5F &&
+                                             std::abs(t.w) == 1.0F;
+                                    }),
+                "with unit tangents");
+  checker.check(std::ranges::all_of(mesh.positions,
+                                    [&](const glm::vec3 &p) {
+                                      return is_finite(p) && glm::min(mesh.bounds.min, p) == mesh.bounds.min &&
+                                             glm::max(mesh.bounds.max, p) == mesh.bounds.max;
+                                    }),
+                "with finite positions within its bounds");
+  checker.check(
+      std::ranges::all_of(mesh.normals,
+                          [](const glm::vec3 &n) { return is_finite(n) && std::abs(glm::length(n) - 1.0F) <= 1e-5F; }),
+      "with unit normals");
+}
+
+void check_material(const scene::Scene &scene, const scene::Material &material, Checker &checker)
+{
+  for (const float factor : {material.base_color.x, material.base_color.y, material.base_color.z, material.alpha,
+                             material.metallic, material.roughness, material.specular, material.alpha_cutoff}) {
+    checker.check(factor >= 0.0F && factor <= 1.0F, "with factors in [0, 1]");
+  }
+  checker.check(is_finite(material.specular_color) && is_finite(material.emissive), "of finite colours");
+  for (const scene::TextureInput &input : scene::texture_inputs) {
+    const scene::TextureSlot &slot = material.*input.slot;
+    checker.check(!slot || scene.textures().is_live(slot.texture), "of a texture that is there");
+    checker.check(slot.uv_set == 0 || slot.uv_set == 1, "with textures on one of two sets of coordinates");
+  }
+}
+
+void check_lamp(const scene::Lamp &lamp, Checker &checker)
+{
+  checker.check(is_finite(lamp.color) && lamp.color.x >= 0.0F && lamp.color.y >= 0.0F && lamp.color.z >= 0.0F,
+                "of a finite colour of at least 0");
+  for (const float value : {lamp.intensity, lamp.radius, lamp.angle, lamp.range}) {
+    checker.check(std::isfinite(value) && value >= 0.0F,
+                  "of a finite intensity, radius, angle and range of at least 0");
+  }
+  checker.check(lamp.spot_outer_angle > 0.0F && lamp.spot_outer_angle <= 0.5F * pi, "a cone");
+  checker.check(lamp.spot_blend >= 0.0F && lamp.spot_blend <= 1.0F, "of a blend in [0, 1]");
+  checker.check(std::isfinite(lamp.area_size_x) && lamp.area_size_x > 0.0F && std::isfinite(lamp.area_size_y) &&
+                    lamp.area_size_y > 0.0F,
+                "of an area");
+  const auto check_range = [&](const auto &value, auto low, auto high, const char *promise) {
+    checker.check(!value || (*value >= low && *value <= high), promise);
+  };
+  const scene::LampShadow &shadow = lamp.shadow;
+  check_range(shadow.size, 1, 16384, "of a shadow size from 1 to 16384");
+  check_range(shadow.esm_size, 1, 16384, "of an exponential map from 1 to 16384");
+  // Decimals round to either side.
+  check_range(shadow.exponent, 0.00999F, 1.0001e4F, "of an exponent from 0.01 to 1e4");
+  check_range(shadow.bias, 0.0F, 100.0F, "of a bias from 0 to 100");
+  check_range(shadow.filter_radius, 0.0F, 0.25F * pi, "of a filter from 0 to 45 degrees");
+  check_range(shadow.clip_start, 1e-20F, 1e30F, "of a clip start above 0");
+  check_range(shadow.clip_end, shadow.clip_start.value_or(1e-20F), 1e30F, "of a clip end beyond the start");
+}
+
+void check_camera(const scene::Camera &camera, Checker &checker)
+{
+  const bool is_perspective = camera.kind == scene::CameraKind::Perspective;
+  checker.check(camera.vertical_angle > 0.0F && camera.vertical_angle < pi, "of an angle in (0, pi)");
+  checker.check(std::isfinite(camera.aspect) && camera.aspect >= 0.0F, "of a finite aspect of at least 0");
+  checker.check(std::isfinite(camera.half_width) && camera.half_width > 0.0F && std::isfinite(camera.half_height) &&
+                    camera.half_height > 0.0F,
+                "of a frame");
+  checker.check(std::isfinite(camera.near) && (is_perspective ? camera.near > 0.0F : camera.near >= 0.0F),
+                "of a near distance");
+  checker.check(std::isfinite(camera.far) && (camera.far > camera.near || (is_perspective && camera.far == 0.0F)),
+                "of a far distance beyond the near one");
+}
+
+}  // namespace
+
+std::vector<std::string> contract_faults(const scene::Scene &scene)
+{
+  Checker checker;
+  for (const auto &[handle, mesh] : scene.meshes()) {
+    checker.element("mesh '" + mesh.name + "'");
+    check_mesh(scene, mesh, checker);
+  }
+  for (const auto &[handle, material] : scene.materials()) {
+    checker.element("material '" + material.name + "'");
+    check_material(scene, material, checker);
+  }
+  for (const auto &[handle, texture] : scene.textures()) {
+    checker.element("texture");
+    checker.check(scene.images().is_live(texture.image), "of an image that is there");
+  }
+  for (const auto &[handle, image] : scene.images()) {
+    checker.element("image '" + image.name + "'");
+    checker.check(image.width > 0 && image.height > 0, "of a size");
+    checker.check(image.texels.size() == std::size_t(4) * image.width * image.height, "of as many texels");
+  }
+  for (const auto &[handle, node] : scene.nodes()) {
+    checker.element("node '" + node.name + "'");
+    checker.check_affine(scene.world_from_node(handle));
+  }
+  for (const auto &[handle, lamp] : scene.lamps()) {
+    checker.element("lamp '" + lamp.name + "'");
+    check_lamp(lamp, checker);
+  }
+  for (const auto &[handle, camera] : scene.cameras()) {
+    checker.element("camera '" + camera.name + "'");
+    check_camera(camera, checker);
+  }
+  const std::vector<scene::PlacedLamp> lamps = scene.placed_lamps();
+  for (const scene::PlacedLamp &lamp : lamps) {
+    checker.element("lamp '" + lamp.name + "'");
+    checker.check_frame(lamp.world_from_lamp);
+  }
+  const std::vector<scene::PlacedCamera> cameras = scene.placed_cameras();
+  for (const scene::PlacedCamera &camera : cameras) {
+    checker.element("camera '" + camera.name + "'");
+    checker.check_frame(camera.world_from_camera);
+  }
+  for (const std::string &line : scene.stale_references()) {
+    checker.element(line);
+    checker.check(false, "possible after an import");
+  }
+  checker.element("scene");
+  checker.check(!scene.lamps().empty() && !cameras.empty(), "with a lamp and a camera");
+  checker.check(scene.objects().empty() || std::isfinite(scene.bounds().radius()), "of finite bounds");
+  for (const std::string &warning : scene.warnings) {
+    checker.element("warning '" + warning + "'");
+    checker.check(warning.find('\n') == warning.npos, "one line");
+  }
+  return checker.faults;
+}
+
+}  // namespace gnomon::verify

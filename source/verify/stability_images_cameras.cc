@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#include "internal/stability_images.hh"
+
+#include <fmt/format.h>
+
+namespace gnomon::verify {
+
+void add_camera_images(ImageCases &cases)
+{
+  const auto add = [&](const std::string &name, double bound, const char *parameter, std::vector<double> values,
+                       std::function<void(TestView &, double)> change) {
+    cases.add({"camera", name, "picture by such a camera", parameter, exact_rays}, bound, std::move(values),
+              [change = std::move(change)](TestViewRenderer &renderer, double value) {
+                TestView test_view = table(LampKind::Point);
+                change(test_view, value);
+                return relative_rmse(renderer.draw(test_view, with(ShadowKind::Hard)),
+                                     truth(test_view, with(ShadowKind::Hard)));
+              });
+  };
+  add("near", sharp_bound, "m", {1e-12, 1e-6, 1e-3, 1.0},
+      [](TestView &test_view, double near) { test_view.camera.near = float(near); });
+  add("far / near", sharp_bound, "ratio", {20, 1e3, 1e6, 1e9, 1e12}, [](TestView &test_view, double ratio) {
+    test_view.camera.near = ratio > 1e6 ? 1e-6F : 1.0F;
+    test_view.camera.far = float(double(test_view.camera.near) * ratio);
+  });
+  // Where all is small in the picture, more of it is edges.
+  add("angle", 0.06, "rad", {1e-4, 1e-2, 0.5, 1.0, 2.0},
+      [](TestView &test_view, double angle) { test_view.camera.vertical_angle = float(angle); });
+  add("parallel", 0.06, "half height, m", {1e-4, 1e-2, 1.0, 3.0}, [](TestView &test_view, double half) {
+    test_view.camera.kind = scene::CameraKind::Orthographic;
+    test_view.camera.half_height = float(half);
+    test_view.camera.half_width = float(half * 64.0 / 48.0);
+  });
+  const auto parallel_far = [](TestView &test_view, double far) {
+    test_view.camera.kind = scene::CameraKind::Orthographic;
+    test_view.camera.half_height = 2.0F;
+    test_view.camera.half_width = 2.0F * 64.0F / 48.0F;
+    test_view.camera.far = float(far);
+  };
+  add("parallel, far", sharp_bound, "m", {10, 1e3, 1e5}, parallel_far);
+  // A parallel view's depths are even: at 1e9 m a float's steps are 60 m, and what is drawn last is in front. 0.08 was
+  // measured.
+  add("parallel, too far", 0.15, "m", {1e6, 1e9, 1e12}, parallel_far);
+  // With it the picture is of the box's inner walls, and of the ground through one-sided ones.
+  for (const bool is_double_sided : {true, false}) {
+    for (const bool is_lamp_inside : {true, false}) {
+      add(fmt::format("inside a box, {}, lamp {}", is_double_sided ? "two-sided" : "one-sided",
+                      is_lamp_inside ? "inside too" : "outside"),
+          // Of a radiance of 1 where it should be dark.
+          sharp_bound, "half size of the box, m", {0.1, 1.0, 10.0}, [=](TestView &test_view, double half) {
+            scene::Scene &scene = test_view.scene;
+            edit_material(test_view, [&](scene::Material &material) { material.is_double_sided = is_double_sided; });
+            const glm::vec3 at(0.3F, -5, 4);
+            add_object(scene, handle_at(scene.meshes(), 1), moved(at) * scaled(glm::vec3(float(half))));
+            test_view.camera.near = 1e-4F;
+            if (is_lamp_inside) {
+              const scene::PlacedLamp lamp = scene.placed_lamps().front();
+              glm::dmat4 matrix = lamp.world_from_lamp;
+              matrix[3] = glm::vec4(at + float(half) * glm::vec3(0.3F, -0.5F, 0.4F), 1.0F);
+              scene.set_transform(lamp.node, matrix);
+              edit_lamp(test_view, [&](scene::Lamp &changed) { changed.intensity = float(half * half); });
+            }
+          });
+    }
+  }
+  cases.add({"camera", "depths apart", "pixels of a red plate that a green one shows through",
+             "distance between, relative", "closed form", "share of pixels"},
+            0.0, {1e-2, 1e-3, 1e-4, 1e-5, 3e-6}, [](TestViewRenderer &renderer, double gap) {
+              TestView test_view;
+              for (const int i : {0, 1}) {
+                const auto material = add_material(test_view.scene, glm::vec3(0.0F));
+                test_view.scene.edit(material, [&](scene::Material &changed) {
+                  changed.emissive = i == 0 ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+                });
+                // Tilted alike, so that depths differ from pixel to pixel.
+                const double distance = i == 0 ? 100.0 : 100.0 * (1.0 + gap);
+                add_object(test_view.scene, add_square_mesh(test_view.scene, material),
+                           glm::mat4(glm::rotate(glm::translate(glm::dmat4(1.0), {0, 0, -distance}), 0.5, {1, 2, 0})) *
+                               scaled(glm::vec3(1e3F)));
+              }
+              test_view.camera = camera_at({0, 0, 0}, {0, 0, -1});
+              test_view.camera.near = 1e-6F;
+              test_view.camera.far = 1e3F;
+              const Picture picture = renderer.draw(test_view, with(ShadowKind::None, {64, 48}, 1));
+              std::size_t wrong = 0;
+              for (const glm::vec4 &pixel : picture.pixels) {
+                wrong += std::abs(pixel.r - 1.0F) > 1e-5F || pixel.g > 1e-5F ? 1 : 0;
+              }
+              return picture.non_finite_count() > 0 ? std::nan("") : double(wrong) / double(picture.pixels.size());
+            });
+}
+
+}  // namespace gnomon::verify
