@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "measure_choice.hh"
 
-#include "internal/measure_bench.hh"
+#include "internal/measure_technique_renderer.hh"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -161,16 +161,16 @@ Pilot run_pilot(gpu::Device &device, const scene::Scene &scene, const scene::Pla
   std::unique_ptr<PixelSample> sample;
   double best_seconds = std::numeric_limits<double>::infinity();
   for (const Technique &technique : pilot_techniques()) {
-    Bench bench(device, scene, camera, technique, size_px);
-    bench.warm_up(false);
+    TechniqueRenderer renderer(device, scene, camera, technique, size_px);
+    renderer.warm_up(false);
     if (!sample) {
       sample =
-          std::make_unique<PixelSample>(tracer, camera, size_px, bench.picture(), pixel_count, reference_samples, 0);
+          std::make_unique<PixelSample>(tracer, camera, size_px, renderer.picture(), pixel_count, reference_samples, 0);
     }
     Model model{technique, 0.0, 0.0, {}};
     double first_seconds = 0.0;
     for (int n = 1; n <= sample_count_max; n *= 2) {
-      const double seconds = bench.picture_seconds(n);
+      const double seconds = renderer.picture_seconds(n);
       pilot.picture_count++;
       if (n == 1) {
         first_seconds = seconds;
@@ -181,7 +181,7 @@ Pilot run_pilot(gpu::Device &device, const scene::Scene &scene, const scene::Pla
         model.sample_seconds = std::clamp((seconds - first_seconds) / (n - 1), 0.0, first_seconds);
         model.shadow_seconds = first_seconds - model.sample_seconds;
       }
-      const SampledError error = sample->error(bench.picture());
+      const SampledError error = sample->error(renderer.picture());
       if (!std::isfinite(error.rmse)) {
         break;
       }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "internal/measure_bench.hh"
+#include "internal/measure_technique_renderer.hh"
 
 #include "gpu_read.hh"
 
@@ -34,20 +34,20 @@ bool is_lit_at(const scene::PlacedLamp &lamp, const glm::dvec3 &position_ws, con
 
 }  // namespace
 
-Bench::Bench(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera,
-             const Technique &technique, glm::ivec2 size_px)
+TechniqueRenderer::TechniqueRenderer(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera,
+                                     const Technique &technique, glm::ivec2 size_px)
     : camera_(camera), settings_{.shadow = technique.settings}, renderer_(device, scene, size_px, settings_)
 {
 }
 
-void Bench::warm_up(bool has_probe)
+void TechniqueRenderer::warm_up(bool has_probe)
 {
   settings_.has_probe = has_probe;
   set(1, false);
   draw();
 }
 
-std::map<std::string, double> Bench::step_seconds()
+std::map<std::string, double> TechniqueRenderer::step_seconds()
 {
   set(1, true);
   draw();
@@ -58,7 +58,7 @@ std::map<std::string, double> Bench::step_seconds()
   return seconds;
 }
 
-double Bench::picture_seconds(int sample_count)
+double TechniqueRenderer::picture_seconds(int sample_count)
 {
   set(sample_count, false);
   const Clock::time_point start = Clock::now();
@@ -66,12 +66,12 @@ double Bench::picture_seconds(int sample_count)
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-std::vector<glm::vec4> Bench::picture()
+std::vector<glm::vec4> TechniqueRenderer::picture()
 {
   return gpu::read_as<glm::vec4>(renderer_.viewport().device(), renderer_.engine().radiance(renderer_.viewport()));
 }
 
-void Bench::set(int sample_count, bool is_timed)
+void TechniqueRenderer::set(int sample_count, bool is_timed)
 {
   settings_.sample_count = sample_count;
   settings_.is_timed = is_timed;
@@ -81,13 +81,13 @@ void Bench::set(int sample_count, bool is_timed)
   renderer_.viewport().device().finish();
 }
 
-void Bench::draw()
+void TechniqueRenderer::draw()
 {
   renderer_.draw(camera_);
   renderer_.viewport().device().finish();
 }
 
-std::vector<LampError> Bench::lamp_errors(const reference::Tracer &tracer)
+std::vector<LampError> TechniqueRenderer::lamp_errors(const reference::Tracer &tracer)
 {
   std::vector<LampError> errors;
   eevee::Engine &engine = renderer_.engine();
@@ -138,7 +138,7 @@ VisitTimes visit(gpu::Device &device, const scene::Scene &scene, const Technique
   const scene::PlacedCamera camera = scene.placed_cameras().front();
   if (tracer) {
     // On its own, so that the probe is no part of the memory.
-    Bench probed(device, scene, camera, technique, size_px);
+    TechniqueRenderer probed(device, scene, camera, technique, size_px);
     probed.warm_up(true);
     result = {};
     result.lamps = probed.lamp_errors(*tracer);
@@ -147,14 +147,14 @@ VisitTimes visit(gpu::Device &device, const scene::Scene &scene, const Technique
     result.limits = report.limits;
     result.lost_shadow_count = report.lost_shadow_count;
   }
-  Bench bench(device, scene, camera, technique, size_px);
-  bench.warm_up(false);
+  TechniqueRenderer renderer(device, scene, camera, technique, size_px);
+  renderer.warm_up(false);
   VisitTimes times;
-  times.step_seconds = bench.step_seconds();
+  times.step_seconds = renderer.step_seconds();
   for (const int sample_count : technique.sample_counts) {
-    times.picture_seconds.push_back(bench.picture_seconds(sample_count));
+    times.picture_seconds.push_back(renderer.picture_seconds(sample_count));
     if (tracer) {
-      result.pictures.push_back(bench.picture());
+      result.pictures.push_back(renderer.picture());
     }
   }
   result.memory_bytes = tracer ? device.memory_bytes() : result.memory_bytes;

@@ -8,11 +8,11 @@
 namespace gnomon::measure {
 
 /** Renders pictures by one technique, and draws all shadows again for each. */
-class Bench {
+class TechniqueRenderer {
  public:
   /** All of them must outlive it. */
-  Bench(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera, const Technique &technique,
-        glm::ivec2 size_px);
+  TechniqueRenderer(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera,
+                    const Technique &technique, glm::ivec2 size_px);
 
   /** Create all that a picture needs, and draw one. Call it first. \a has_probe: lamp_errors will be called. */
   void warm_up(bool has_probe);

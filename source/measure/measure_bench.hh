@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "eevee_engine.hh"
+#include "gpu_device.hh"
+
+#include <span>
+#include <string>
+#include <vector>
+
+/** The benchmarks of `gnomon bench`, but for `edits` (measure_edits.hh). */
+namespace gnomon::measure {
+
+/** Median and quartiles of measured times, seconds. */
+struct Spread {
+  double median = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/** \pre \a seconds is not empty */
+[[nodiscard]] Spread spread_of(std::vector<double> seconds);
+
+/** Median of the ratios of each round. A disturbance of a round affects both of its times. \pre equal sizes, not empty
+ */
+[[nodiscard]] double median_ratio(std::span<const double> seconds, std::span<const double> base);
+
+enum class Clock {
+  /** CPU time of the calling thread. It excludes the time of other programs, and of the driver's threads. */
+  ThreadCpu,
+  Wall,
+};
+
+/** Number of different meshes in measure_layer_passes() and measure_draws(). */
+inline constexpr int bench_mesh_count = 8;
+
+/** A method of drawing the six layers of a point lamp's shadow. */
+struct LayerPassVariant {
+  const char *name;
+  const char *description;
+  eevee::LayerPass layer_pass;
+  /** Not used by the engine: one pass for each face, whose view culls the casters one by one. */
+  bool is_culled_by_view = false;
+};
+
+[[nodiscard]] std::span<const LayerPassVariant> layer_pass_variants();
+
+/** The cost of drawing the six layers once by one variant. */
+struct LayerPassCost {
+  const LayerPassVariant *variant = nullptr;
+  /** passes, draws and instances. */
+  gpu::Counters counters;
+  /** One time for each round: recording, submission, and the wait until the device is done. */
+  std::vector<double> seconds;
+};
+
+/**
+ * Draws the shadow layers of a point lamp in the middle of a grid of \a caster_count casters. Each round draws by each
+ * variant that the device supports once, in the order of layer_pass_variants(). A first round is not measured.
+ */
+[[nodiscard]] std::vector<LayerPassCost> measure_layer_passes(gpu::Device &device, int caster_count, int rounds,
+                                                              Clock clock);
+
+/** CPU seconds for each draw, one entry for each round. */
+struct DrawSeconds {
+  /** Adding the draw to a pass. */
+  std::vector<double> recorded;
+  /** Recording the pass for a view and submitting it. */
+  std::vector<double> submitted;
+  std::vector<double> sum;
+};
+
+/** Draws with a matrix of their own, each of another mesh than the draw before. A first round is not measured. */
+[[nodiscard]] DrawSeconds measure_draws(gpu::Device &device, int draw_count, int rounds);
+
+/** The cost of drawing one of left_out_cases(). */
+struct LeftOutCost {
+  std::string name;
+  /** passes, draws, shaders_made, textures_made and upload_bytes of the first frame. */
+  gpu::Counters counters;
+  /** Of the device after the first frame, bytes. */
+  std::size_t memory_bytes = 0;
+  /** One time for each round: a sync and a frame in which all resources are created. */
+  std::vector<double> first_seconds;
+  /** One time for each round: a frame that finds all resources up to date; the fastest of five. */
+  std::vector<double> warm_seconds;
+};
+
+/** The full scene first. Each round draws each scene in turn; a first round is not measured. */
+[[nodiscard]] std::vector<LeftOutCost> measure_left_out(gpu::Device &device, int rounds);
+
+}  // namespace gnomon::measure
