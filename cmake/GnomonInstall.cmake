@@ -1,0 +1,42 @@
+# cmake --install: headers, libraries, the program, and what find_package and pkg-config read.
+#
+# Headers are in include/gnomon. Those that GLSL includes too are in include/gnomon/shared, as in the sources.
+include(CMakePackageConfigHelpers)
+include(GNUInstallDirs)
+
+set(HEADER_FOLDER ${CMAKE_INSTALL_INCLUDEDIR}/gnomon)
+set(PACKAGE_FOLDER ${CMAKE_INSTALL_LIBDIR}/cmake/gnomon)
+
+foreach(LAYER ${GNOMON_INSTALLED_LAYERS})
+  get_target_property(TARGET gnomon::${LAYER} ALIASED_TARGET)
+  set(FILE_SETS "")
+  get_target_property(HEADER_SETS ${TARGET} INTERFACE_HEADER_SETS)
+  foreach(SET ${HEADER_SETS})
+    string(REPLACE HEADERS "" FOLDER ${SET})
+    list(APPEND FILE_SETS FILE_SET ${SET} DESTINATION ${HEADER_FOLDER}/${FOLDER})
+  endforeach()
+  install(TARGETS ${TARGET} EXPORT gnomon ${FILE_SETS})
+endforeach()
+install(EXPORT gnomon NAMESPACE gnomon:: FILE gnomon-targets.cmake DESTINATION ${PACKAGE_FOLDER})
+
+# The name in lower case serves find_package(gnomon) and find_package(Gnomon).
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/gnomon-config.cmake.in ${PROJECT_BINARY_DIR}/gnomon-config.cmake
+  INSTALL_DESTINATION ${PACKAGE_FOLDER})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/gnomon-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/gnomon-config.cmake ${PROJECT_BINARY_DIR}/gnomon-config-version.cmake
+  ${CMAKE_CURRENT_LIST_DIR}/GnomonLibraryDependencies.cmake DESTINATION ${PACKAGE_FOLDER})
+
+# A static library is of no use without what it is linked with. A shared one knows it.
+set(PC_REQUIRES "epoxy egl libxxhash glfw3 OpenImageIO simdjson draco")
+set(PC_LIBS "-lmeshoptimizer")
+if(BUILD_SHARED_LIBS)
+  set(PC_REQUIRES "")
+  set(PC_LIBS "")
+endif()
+file(RELATIVE_PATH PREFIX_FROM_PC /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+configure_file(${CMAKE_CURRENT_LIST_DIR}/gnomon.pc.in ${PROJECT_BINARY_DIR}/gnomon.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/gnomon.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+if(GNOMON_PROGRAM)
+  install(TARGETS gnomon)
+endif()
