@@ -21,10 +21,10 @@ Chooser::Chooser(const ChoiceOptions &options, gpu::Device &device, const scene:
     : options_(options), scene_(scene), camera_(camera), size_px_(size_px), tracer_(scene)
 {
   if (options.error_max > 0.0) {
-    wish_.error_max = options.error_max;
+    requirement_.error_max = options.error_max;
   }
   else {
-    wish_.seconds_max = 1e-3 * options.milliseconds_max;
+    requirement_.seconds_max = 1e-3 * options.milliseconds_max;
   }
   std::vector<measure::Model> models;
   if (!options.report_folder.empty()) {
@@ -32,11 +32,11 @@ Chooser::Chooser(const ChoiceOptions &options, gpu::Device &device, const scene:
     source_ = fmt::format("report {}", options.report_folder);
   }
   if (models.empty()) {
-    measure::Pilot pilot = measure::run_pilot(device, scene, camera, size_px, tracer_, wish_);
+    measure::Pilot pilot = measure::run_pilot(device, scene, camera, size_px, tracer_, requirement_);
     models = std::move(pilot.models);
     source_ = fmt::format("a pilot of {} pictures in {:.1f} s", pilot.picture_count, pilot.seconds);
   }
-  choice_ = measure::choose(models, wish_);
+  choice_ = measure::choose(models, requirement_);
 }
 
 std::vector<measure::Model> Chooser::models_of_report(const gpu::Device &device) const
@@ -86,31 +86,32 @@ void Chooser::measure(std::span<const glm::vec4> picture, double seconds)
   measured_ = sample.error(picture);
 }
 
-std::string Chooser::wish_text() const
+std::string Chooser::requirement_text() const
 {
-  return wish_.error_max ? fmt::format("RMSE {}", *wish_.error_max) : fmt::format("{} ms", 1e3 * *wish_.seconds_max);
+  return requirement_.error_max ? fmt::format("RMSE {}", *requirement_.error_max)
+                                : fmt::format("{} ms", 1e3 * *requirement_.seconds_max);
 }
 
 std::vector<std::string> Chooser::limits() const
 {
   std::vector<std::string> limits;
   if (!choice_.is_met) {
-    limits.push_back(fmt::format("{} was asked for; the nearest is RMSE {:.5f} in {:.1f} ms", wish_text(),
+    limits.push_back(fmt::format("{} was asked for; the nearest is RMSE {:.5f} in {:.1f} ms", requirement_text(),
                                  choice_.predicted_error.rmse, 1e3 * choice_.predicted_seconds));
   }
-  else if (wish_.error_max && measured_.rmse - 2.0 * measured_.standard_error > *wish_.error_max) {
-    limits.push_back(fmt::format("{} was asked for; RMSE {:.5f} was measured", wish_text(), measured_.rmse));
+  else if (requirement_.error_max && measured_.rmse - 2.0 * measured_.standard_error > *requirement_.error_max) {
+    limits.push_back(fmt::format("{} was asked for; RMSE {:.5f} was measured", requirement_text(), measured_.rmse));
   }
-  else if (wish_.seconds_max && measured_seconds_ > *wish_.seconds_max) {
+  else if (requirement_.seconds_max && measured_seconds_ > *requirement_.seconds_max) {
     limits.push_back(
-        fmt::format("{} was asked for; the first picture took {:.1f} ms", wish_text(), 1e3 * measured_seconds_));
+        fmt::format("{} was asked for; the first picture took {:.1f} ms", requirement_text(), 1e3 * measured_seconds_));
   }
   return limits;
 }
 
 void Chooser::print_choice() const
 {
-  fmt::print("for {}: {}, {} samples; expected RMSE {:.5f} ± {:.5f} in {:.1f} ms, by {}\n", wish_text(),
+  fmt::print("for {}: {}, {} samples; expected RMSE {:.5f} ± {:.5f} in {:.1f} ms, by {}\n", requirement_text(),
              label(choice_.technique), choice_.sample_count, choice_.predicted_error.rmse,
              choice_.predicted_error.standard_error, 1e3 * choice_.predicted_seconds, source_);
   if (!choice_.technique.options.empty()) {

@@ -51,14 +51,14 @@ class Chooser {
 
  private:
   [[nodiscard]] std::vector<measure::Model> models_of_report(const gpu::Device &device) const;
-  [[nodiscard]] std::string wish_text() const;
+  [[nodiscard]] std::string requirement_text() const;
 
   ChoiceOptions options_;
   const scene::Scene &scene_;
   const scene::PlacedCamera &camera_;
   glm::ivec2 size_px_;
   reference::Tracer tracer_;
-  measure::Wish wish_;
+  measure::Requirement requirement_;
   /** Where the choice is from. */
   std::string source_;
   measure::Choice choice_;

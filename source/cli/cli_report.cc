@@ -273,9 +273,9 @@ void Run::visit(const scene::Scene &scene, const reference::Tracer &tracer, meas
 {
   const bool is_first = technique.step_seconds.empty();
   progress_->begin_next(fmt::format("{}: {}", report.name, measure::label(technique.technique)));
-  measure::VisitResult result;
-  const measure::VisitTimes times =
-      measure::visit(device_, scene, technique.technique, run_.size_px, is_first ? &tracer : nullptr, result);
+  measure::TechniqueResult result;
+  const measure::TechniqueTimes times = measure::measure_technique(device_, scene, technique.technique, run_.size_px,
+                                                                   is_first ? &tracer : nullptr, result);
   technique.step_seconds.push_back(times.step_seconds);
   for (std::size_t i = 0; i < technique.pictures.size(); i++) {
     technique.pictures[i].seconds.push_back(times.picture_seconds[i]);
@@ -305,7 +305,7 @@ void Run::measure(measure::SceneReport &report)
     for (const std::string &warning : scene.warnings) {
       warn(report, warning);
     }
-    measure::leave_shadows_to_technique(scene);
+    measure::remove_shadow_settings(scene);
     const reference::Tracer tracer(scene);
     make_reference(scene, tracer, report);
     reference_ = read_exr(folder_ / measure::reference_file(report), run_.size_px);

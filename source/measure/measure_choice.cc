@@ -19,7 +19,7 @@ namespace gnomon::measure {
 
 namespace {
 
-/** How much a picture changes from each pixel to its neighbours. */
+/** Largest difference of each pixel from its neighbours. */
 std::vector<double> contrast(std::span<const glm::vec4> picture, glm::ivec2 size_px)
 {
   const auto at = [&](int x, int y) {
@@ -52,13 +52,13 @@ PixelSample::PixelSample(const reference::Tracer &tracer, const scene::PlacedCam
   for (const double one : contrasts) {
     sum += one;
   }
-  // What has no edge in the guide may be wrong all the same: a part of the sample is taken evenly.
+  // Errors also occur where the guide has no edge, so part of the sample is distributed evenly.
   constexpr double even_share = 0.3;
   const auto count = double(contrasts.size());
   const auto probability = [&](std::size_t i) {
     return sum > 0.0 ? even_share / count + (1.0 - even_share) * contrasts[i] / sum : 1.0 / count;
   };
-  // Systematic sampling: even steps along the sum of the probabilities, from a random start.
+  // Systematic sampling: equal steps along the cumulative probability from a random start.
   std::mt19937_64 random(seed);
   const double start = double(random() >> 11U) * 0x1p-53;
   std::vector<glm::ivec2> places;
@@ -121,7 +121,7 @@ SampledError Model::error(int sample_count) const
 
 namespace {
 
-/** What an error may be, rather than what it is likely to be. */
+/** Upper bound of an error at two standard errors. */
 double upper(const SampledError &error)
 {
   return error.rmse + 2.0 * error.standard_error;
@@ -129,28 +129,28 @@ double upper(const SampledError &error)
 
 }  // namespace
 
-Choice choose(std::span<const Model> models, const Wish &wish)
+Choice choose(std::span<const Model> models, const Requirement &requirement)
 {
   std::vector<Choice> met;
   std::vector<Choice> all;
   for (const Model &model : models) {
     for (int n = model.points.front().sample_count; n <= model.points.back().sample_count; n++) {
       Choice one{model.technique, n, model.seconds(n), model.error(n), false};
-      one.is_met =
-          wish.error_max ? upper(one.predicted_error) <= *wish.error_max : one.predicted_seconds <= *wish.seconds_max;
+      one.is_met = requirement.error_max ? upper(one.predicted_error) <= *requirement.error_max
+                                         : one.predicted_seconds <= *requirement.seconds_max;
       (one.is_met ? met : all).push_back(one);
     }
   }
   const auto fastest = [](const Choice &one) { return one.predicted_seconds; };
   const auto nearest = [](const Choice &one) { return upper(one.predicted_error); };
-  const bool is_by_time = wish.error_max.has_value() != met.empty();
+  const bool is_by_time = requirement.error_max.has_value() != met.empty();
   const std::vector<Choice> &candidates = met.empty() ? all : met;
   return is_by_time ? *std::ranges::min_element(candidates, {}, fastest)
                     : *std::ranges::min_element(candidates, {}, nearest);
 }
 
 Pilot run_pilot(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera, glm::ivec2 size_px,
-                const reference::Tracer &tracer, const Wish &wish)
+                const reference::Tracer &tracer, const Requirement &requirement)
 {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
@@ -174,7 +174,7 @@ Pilot run_pilot(gpu::Device &device, const scene::Scene &scene, const scene::Pla
       pilot.picture_count++;
       if (n == 1) {
         first_seconds = seconds;
-        // Until two samples tell it from the shadows.
+        // One picture cannot separate the samples' time from the shadows'.
         model.sample_seconds = seconds;
       }
       else {
@@ -187,9 +187,10 @@ Pilot run_pilot(gpu::Device &device, const scene::Scene &scene, const scene::Pla
       }
       model.points.push_back({n, error});
       const double upper_error = upper(model.points.back().error);
-      const bool is_enough = wish.error_max ? upper_error <= *wish.error_max : model.seconds(n) >= *wish.seconds_max;
-      best_seconds = wish.error_max && is_enough ? std::min(best_seconds, model.seconds(n)) : best_seconds;
-      // More samples that lower the error no more show what the shadows' own is.
+      const bool is_enough =
+          requirement.error_max ? upper_error <= *requirement.error_max : model.seconds(n) >= *requirement.seconds_max;
+      best_seconds = requirement.error_max && is_enough ? std::min(best_seconds, model.seconds(n)) : best_seconds;
+      // If more samples do not lower the error, the rest is the shadows' error.
       const bool is_idle =
           n > 4 && model.points.back().error.rmse > 0.95 * model.points[model.points.size() - 2].error.rmse;
       if (is_enough || is_idle || model.seconds(n) >= best_seconds) {
@@ -199,7 +200,7 @@ Pilot run_pilot(gpu::Device &device, const scene::Scene &scene, const scene::Pla
     if (!model.points.empty()) {
       pilot.models.push_back(std::move(model));
     }
-    // Sizes rise: where one sample takes longer than what is good enough, so it does with those to come.
+    // Sizes rise: if one sample takes longer than a sufficient picture, so do all larger sizes.
     if (first_seconds >= best_seconds) {
       break;
     }

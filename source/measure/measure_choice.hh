@@ -13,67 +13,67 @@
 #include <string>
 #include <vector>
 
-/** How many samples and which shadows a picture of a scene needs for an error that is asked for, or a time. */
+/** Chooses the shadow technique and the number of samples of a picture for a required error or time. */
 namespace gnomon::measure {
 
-/** RMSE over R, G and B, estimated from some pixels. */
+/** RMSE over R, G and B, estimated from a sample of the pixels. */
 struct SampledError {
   double rmse = 0.0;
-  /** Of rmse, one standard deviation. */
+  /** Standard deviation of rmse. */
   double standard_error = 0.0;
 };
 
 /**
- * Some pixels of a picture, and what exact rays find there.
+ * A sample of a picture's pixels with their reference radiance, to estimate the error of pictures.
  *
- * Pixels are taken more often where a picture has edges, as its errors are there, and count less in return. Two
- * independent estimates of each pixel's light, multiplied, cancel the noise of either: the error is that of the
- * picture alone.
+ * The probability of a pixel rises with the local contrast of a guide picture, because errors are largest at edges; its
+ * weight falls accordingly. Each pixel has two independent estimates of its radiance. Their product cancels the noise
+ * of both, so that the error is that of the picture alone.
  */
 class PixelSample {
  public:
   /**
-   * \a guide: a picture of the scene, the rougher the quicker. \a seed: another takes other pixels and other rays.
+   * \a guide: a picture of the scene; it may be noisy. \a seed: selects the pixels and the rays.
    * \pre sample_count >= 1, pixel_count >= 2
    */
   PixelSample(const reference::Tracer &tracer, const scene::PlacedCamera &camera, glm::ivec2 size_px,
               std::span<const glm::vec4> guide, int pixel_count, int sample_count, std::uint64_t seed);
 
-  /** Of a picture of that size. NaN where a pixel is. */
+  /** Error of \a picture, which has the size given to the constructor. NaN if a sampled pixel is NaN. */
   [[nodiscard]] SampledError error(std::span<const glm::vec4> picture) const;
 
  private:
-  /** In rows from the bottom. */
+  /** Indices in the picture, whose rows begin at the bottom. */
   std::vector<std::size_t> pixels_;
-  /** Of each: its part of the mean. They sum to 1 in expectation. */
+  /** Weight of each pixel in the mean. The expectation of their sum is 1. */
   std::vector<double> weights_;
   std::array<std::vector<glm::vec4>, 2> light_;
 };
 
-/** What is known of a technique on a scene: its times, and its error for some numbers of samples. */
+/** Time and error of a technique on a scene, as functions of the number of samples. */
 struct Model {
   Technique technique;
-  /** A picture takes shadow_seconds + n · sample_seconds. */
+  /** A picture takes shadow_seconds + sample_count · sample_seconds. */
   double shadow_seconds = 0.0;
   double sample_seconds = 0.0;
   struct Point {
     int sample_count = 0;
     SampledError error;
   };
-  /** In order of the samples; at least one. */
+  /** In order of sample_count; at least one. */
   std::vector<Point> points;
 
   [[nodiscard]] double seconds(int sample_count) const;
   /**
-   * Between two points a power of the samples; beyond the last, nothing is known, and its error is given.
+   * Interpolates between two points by a power of the number of samples. Beyond the last point its error is returned.
    * \pre sample_count is at least that of the first point
    */
   [[nodiscard]] SampledError error(int sample_count) const;
 };
 
-/** What was asked for; one of them. */
-struct Wish {
-  /** RMSE. */
+/** The required error or time. Exactly one of them is set. */
+struct Requirement {
+  /** Largest RMSE. */
   std::optional<double> error_max;
   std::optional<double> seconds_max;
 };
@@ -83,15 +83,15 @@ struct Choice {
   int sample_count = 1;
   double predicted_seconds = 0.0;
   SampledError predicted_error;
-  /** Whether the prediction is what was asked for; otherwise it is the nearest to it. */
+  /** true if the prediction meets the requirement; otherwise the choice is the nearest to it. */
   bool is_met = false;
 };
 
 /**
- * The fastest picture whose predicted error, and twice its standard error, are below what was asked for; or the one
- * with the least error in that time. \pre models is not empty
+ * For a required error: the fastest picture whose predicted error plus two standard errors is at most that error. For a
+ * required time: the picture with the least error within that time. \pre models is not empty
  */
-[[nodiscard]] Choice choose(std::span<const Model> models, const Wish &wish);
+[[nodiscard]] Choice choose(std::span<const Model> models, const Requirement &requirement);
 
 struct Pilot {
   std::vector<Model> models;
@@ -100,13 +100,17 @@ struct Pilot {
 };
 
 /**
- * Try pilot_techniques() with 1, 2, 4, ... samples, no more than \a wish needs. Lamps' own wishes hold.
- * Throws what rendering throws, and std::runtime_error where no picture is finite.
+ * Renders pictures with pilot_techniques() and 1, 2, 4, ... samples, no more than \a requirement needs. Per-lamp shadow
+ * settings apply.
+ * \throws what rendering throws, and std::runtime_error if no picture is finite.
  */
 [[nodiscard]] Pilot run_pilot(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera,
-                              glm::ivec2 size_px, const reference::Tracer &tracer, const Wish &wish);
+                              glm::ivec2 size_px, const reference::Tracer &tracer, const Requirement &requirement);
 
-/** What a report knows of a scene. Left out: pictures that held NaN or infinity, techniques that no option chooses. */
+/**
+ * The models of a report's techniques. Pictures with NaN or infinity and techniques without command line options are
+ * left out.
+ */
 [[nodiscard]] std::vector<Model> models_from(const SceneReport &report);
 
 }  // namespace gnomon::measure

@@ -17,7 +17,7 @@ glm::dmat4 box_at(double x, double y)
   return glm::scale(glm::translate(glm::dmat4(1.0), {x, y, 0}), glm::dvec3(0.4));
 }
 
-/** 20 m apart in x and 40 m in y; each lights what lies within 4 m. */
+/** Position of a lamp. Lamps are 20 m apart in x and 40 m in y, and each lights objects within 4 m. */
 glm::vec3 lamp_place(int lamp)
 {
   return {20.0F * float(lamp % 10) + 9.0F, 40.0F * float(lamp / 10) + 9.0F, 2.0F};
@@ -55,13 +55,13 @@ class EditedScene {
     return lamp;
   }
 
-  /** The object in a column and row of the grid of 100 by 100, which are 2 m apart. */
+  /** The object in a column and row of the grid of 100 by 100 objects, which are 2 m apart. */
   [[nodiscard]] scene::Handle<scene::Node> object(int column, int row) const
   {
     return objects[std::size_t(100 * row + column)];
   }
 
-  /** Of \a change, and of a sync and picture of \a viewport by \a engine. */
+  /** The cost of \a change, and of the following sync and picture of \a viewport by \a engine. */
   template <typename Change>
   EditCost cost_of(std::string edit, draw::Viewport &viewport, eevee::Engine &engine, Change &&change)
   {
@@ -116,7 +116,7 @@ class EditedScene {
   std::optional<eevee::SceneRenderer> renderer;
 
  private:
-  /** Give \a material a texture of one texel. \return its image */
+  /** Gives \a material a texture of one texel. \return its image */
   scene::Handle<scene::Image> add_textured(scene::Handle<scene::Material> material, scene::AlphaMode alpha_mode)
   {
     const auto texture = add_texture(scene, 1, {255, 0, 0, 255});

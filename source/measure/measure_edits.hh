@@ -9,28 +9,30 @@
 
 namespace gnomon::measure {
 
-/** The scene that is edited: boxes of four meshes and materials on a grid, and point lamps that each reach a few boxes.
+/**
+ * Size of the edited scene: boxes with four meshes and materials on a grid, and point lamps that each reach a few
+ * boxes.
  */
 inline constexpr int edited_object_count = 10000;
 inline constexpr int edited_lamp_count = 50;
 
 /** The work that one edit causes in the next sync and picture. */
 struct EditCost {
-  /** "move an object near a lamp" */
+  /** Name of the edit, for example "move an object near a lamp". */
   std::string edit;
-  /** Beyond the bytes that the next picture uploads without an edit: its view, draws and instances. */
+  /** Excludes the bytes that every picture uploads: its view, draws and instances. */
   std::uint64_t upload_bytes = 0;
-  /** Lamps of which any shadow layer was drawn. */
+  /** Number of lamps whose shadow layers were drawn, at least one layer each. */
   std::uint64_t shadows_drawn = 0;
-  /** How often the passes of the picture were recorded. */
+  /** Number of passes that were recorded again. */
   std::uint64_t pass_recordings = 0;
   std::uint64_t textures_made = 0;
   std::uint64_t shaders_made = 0;
 };
 
 /**
- * The cost of each kind of edit, one after the other, in a scene of edited_object_count objects and edited_lamp_count
- * lamps that is drawn before. The first entry is that first picture; the second is no edit at all.
+ * Measures each kind of edit in turn, in a scene of edited_object_count objects and edited_lamp_count lamps that has
+ * been drawn before. The first entry is the first picture, the second a picture without an edit.
  */
 [[nodiscard]] std::vector<EditCost> edit_costs(gpu::Device &device);
 

@@ -18,22 +18,22 @@ namespace gnomon::measure {
 
 namespace {
 
-/** The paper's display: 3840 pixels over 0.7 m, seen from 0.7 m. */
+/** The paper's display: 3840 pixels over 0.7 m at a distance of 0.7 m. */
 constexpr double pixels_per_degree = 3840.0 * std::numbers::pi / 180.0;
 
-/** One value a pixel, in the picture's order. */
+/** One value for each pixel, in the picture's order. */
 using Plane = std::vector<float>;
 
-/** X, Y and Z of the chromaticity (x, y), Y being 1. */
+/** X, Y and Z of the chromaticity (x, y) for Y = 1. */
 glm::dvec3 xyz(double x, double y)
 {
   return {x / y, 1.0, (1.0 - x - y) / y};
 }
 
-/** From linear R, G and B to X, Y and Z, each over that of white: (1, 1, 1) stays as it is. */
+/** Matrix from linear R, G and B to X, Y and Z, each divided by that of white, so that (1, 1, 1) maps to itself. */
 glm::mat3 make_relative_xyz_from_rgb()
 {
-  // Rec. 709's primaries, and D65 with the five digits that FLIP's authors take.
+  // Rec. 709's primaries. D65 has the five digits that FLIP's authors use.
   const glm::dmat3 primaries(xyz(0.64, 0.33), xyz(0.3, 0.6), xyz(0.15, 0.06));
   const glm::dvec3 white = xyz(0.31271, 0.32902);
   const glm::dvec3 amounts = glm::inverse(primaries) * white;
@@ -47,7 +47,7 @@ glm::mat3 make_relative_xyz_from_rgb()
 const glm::mat3 relative_xyz_from_rgb = make_relative_xyz_from_rgb();
 const glm::mat3 rgb_from_relative_xyz = glm::inverse(relative_xyz_from_rgb);
 
-/** CIELAB, its a and b weakened in the dark, as Hunt found colours to be. */
+/** CIELAB with the Hunt effect: a and b are scaled down in the dark. */
 glm::vec3 hunt_lab(glm::vec3 rgb)
 {
   const glm::vec3 relative = relative_xyz_from_rgb * rgb;
@@ -68,18 +68,18 @@ float colour_distance(glm::vec3 a, glm::vec3 b)
   return std::pow(std::abs(off.x) + glm::length(glm::vec2(off.y, off.z)), 0.7F);
 }
 
-/** Of two colours that hunt_lab gave, in [0, 1]. */
+/** Error between two colours of hunt_lab, in [0, 1]. */
 float colour_error(glm::vec3 a, glm::vec3 b)
 {
-  // No two colours are further apart than green and blue.
+  // Green and blue have the largest distance of all colours.
   static const float largest = colour_distance(hunt_lab({0.0F, 1.0F, 0.0F}), hunt_lab({0.0F, 0.0F, 1.0F}));
-  // Most of the range is for the smaller differences.
+  // Smaller differences take most of the range.
   const float turn = 0.4F * largest;
   const float distance = colour_distance(a, b);
   return distance < turn ? 0.95F * distance / turn : 0.95F + 0.05F * (distance - turn) / (largest - turn);
 }
 
-/** Values at -radius to radius. */
+/** Weights at offsets from -radius to radius. */
 using Kernel = std::vector<float>;
 
 template <typename Function>
@@ -92,7 +92,7 @@ Kernel make_kernel(int radius, const Function &function)
   return kernel;
 }
 
-/** Scale what is positive to a sum of 1, and what is negative to one of -1. */
+/** Scales the positive values to a sum of 1 and the negative ones to a sum of -1. */
 void normalise(Kernel &kernel)
 {
   float above = 0.0F;
@@ -115,7 +115,10 @@ void add(std::span<float> sums, float factor, std::span<const float> values)
   }
 }
 
-/** Beyond the edges is the pixel at the edge. Kernels are turned about, which no use here minds. */
+/**
+ * Repeats the pixels at the edge beyond it. Does not mirror the kernel; all kernels here are symmetric or
+ * antisymmetric, and only magnitudes are used.
+ */
 Plane convolve_x(glm::ivec2 size_px, const Plane &plane, const Kernel &kernel)
 {
   const auto width = std::size_t(size_px.x);
@@ -157,11 +160,11 @@ struct Sensitivity {
   double spread = 0.0;
 };
 
-/** What an eye keeps of a plane: the part that is finer than it can see is gone. */
+/** Removes detail that is too fine to be visible. */
 Plane filter(glm::ivec2 size_px, const Plane &plane, std::span<const Sensitivity> sensitivities)
 {
   constexpr double pi = std::numbers::pi;
-  // Three standard deviations of the widest, for all.
+  // Three standard deviations of the widest kernel, for all kernels.
   static const int radius = int(std::ceil(3.0 * std::sqrt(0.04 / (2.0 * pi * pi)) * pixels_per_degree));
   Plane result(plane.size(), 0.0F);
   double total = 0.0;
@@ -182,7 +185,7 @@ Plane filter(glm::ivec2 size_px, const Plane &plane, std::span<const Sensitivity
   return result;
 }
 
-/** Of each pixel, the strength of an edge, and of a point or a line, each from 0 to the root of 2. */
+/** For each pixel the strength of an edge and of a point or line, each from 0 to √2. */
 std::vector<glm::vec2> features(glm::ivec2 size_px, const Plane &luminance)
 {
   constexpr double sigma_px = 0.5 * 0.082 * pixels_per_degree;
@@ -207,17 +210,17 @@ std::vector<glm::vec2> features(glm::ivec2 size_px, const Plane &luminance)
   return strengths;
 }
 
-/** What an eye has of a picture. */
-struct Seen {
+/** The visible colours and features of a picture. */
+struct Perceived {
   /** \see hunt_lab */
   std::vector<glm::vec3> colours;
   /** \see features */
   std::vector<glm::vec2> features;
 };
 
-Seen see(glm::ivec2 size_px, std::span<const glm::vec4> picture)
+Perceived see(glm::ivec2 size_px, std::span<const glm::vec4> picture)
 {
-  // Y, Cx and Cz of the paper without their factors and the offset, which linear filters that sum to 1 leave alone.
+  // Y, Cx and Cz of the paper without their factors and offset, which linear filters with a sum of 1 preserve.
   Plane luminance;
   Plane red_green;
   Plane blue_yellow;
@@ -227,7 +230,7 @@ Seen see(glm::ivec2 size_px, std::span<const glm::vec4> picture)
     red_green.push_back(relative.x - relative.y);
     blue_yellow.push_back(relative.y - relative.z);
   }
-  Seen seen;
+  Perceived seen;
   seen.features = features(size_px, luminance);
   luminance = filter(size_px, luminance, std::array{Sensitivity{1.0, 0.0047}});
   red_green = filter(size_px, red_green, std::array{Sensitivity{1.0, 0.0053}});
@@ -244,13 +247,13 @@ Seen see(glm::ivec2 size_px, std::span<const glm::vec4> picture)
 
 double mean_flip(glm::ivec2 size_px, std::span<const glm::vec4> picture, std::span<const glm::vec4> reference)
 {
-  const Seen a = see(size_px, picture);
-  const Seen b = see(size_px, reference);
+  const Perceived a = see(size_px, picture);
+  const Perceived b = see(size_px, reference);
   double sum = 0.0;
   for (std::size_t i = 0; i < picture.size(); i++) {
     const glm::vec2 off = glm::abs(a.features[i] - b.features[i]);
     const float feature_error = std::sqrt(std::max(off.x, off.y) / std::numbers::sqrt2_v<float>);
-    // Roundings may lead out of the range by some millionths.
+    // Rounding may leave the range by some millionths.
     sum += double(std::min(std::pow(colour_error(a.colours[i], b.colours[i]), 1.0F - feature_error), 1.0F));
   }
   return sum / double(picture.size());

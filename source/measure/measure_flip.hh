@@ -9,11 +9,11 @@
 namespace gnomon::measure {
 
 /**
- * How different two pictures look to an eye that flips between them, in [0, 1]: the mean over the pixels of FLIP
+ * Perceived difference of two pictures that are shown alternately, in [0, 1]: the mean over the pixels of FLIP
  * (Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild, "FLIP: A Difference Evaluator for Alternating
- * Images", 2020), of what a display shows of them through the sRGB curve, at 67 pixels a degree.
+ * Images", 2020). The pictures are compared as displayed with the sRGB curve, at 67 pixels per degree.
  *
- * Both: scene-linear R, G, B and a value that is ignored. \pre both are finite and of size_px
+ * Both: scene-linear R, G, B and an ignored value. \pre both are finite and of size_px
  */
 [[nodiscard]] double mean_flip(glm::ivec2 size_px, std::span<const glm::vec4> picture,
                                std::span<const glm::vec4> reference);

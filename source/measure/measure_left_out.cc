@@ -10,7 +10,7 @@ namespace gnomon::measure {
 
 namespace {
 
-/** Checks of two colours, of which one is clear. */
+/** A checkerboard of two colours, one of which is transparent. */
 scene::Image checks(std::string name)
 {
   constexpr std::uint32_t edge = 64;

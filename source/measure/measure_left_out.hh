@@ -8,18 +8,19 @@
 
 namespace gnomon::measure {
 
-/** A scene that lacks something which a full one has, to see that an engine does no work for it. */
+/** A scene without one feature of the full scene, to show that an engine does no work for that feature. */
 struct LeftOutCase {
-  /** Unique: "full", "no lamp", "no sun", … */
+  /** Unique name: "full", "no lamp", "no sun", … */
   std::string name;
   scene::Scene scene;
   eevee::Settings settings;
 };
 
 /**
- * The full scene first: a point lamp, a sun and a spot with filtered shadows; boxes on a ground, of which one is
- * textured, one cut out by a texture's alpha, one specular, one one-sided. Then ten that lack one thing each. The view
- * is scenes' first camera; without a visible receiver it looks away from everything.
+ * The full scene, and then ten scenes that each lack one feature. The full scene has a point lamp, a sun and a spot
+ * with filtered shadows, and boxes on a ground: one textured, one masked by a texture's alpha, one specular, one
+ * one-sided. The view is the scene's first camera; in the case without a visible receiver it faces away from all
+ * objects.
  */
 [[nodiscard]] std::vector<LeftOutCase> left_out_cases();
 

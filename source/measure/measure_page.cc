@@ -45,7 +45,7 @@ bool is_drawn(const ChartPoint &point, const Chart &chart)
   return is_on(point.x, chart.x) && is_on(point.y, chart.y);
 }
 
-/** As JSON inside a script element: a "</" would end it. */
+/** JSON for a script element, which a "</" would end. */
 std::string embedded(const nlohmann::json &json)
 {
   std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);

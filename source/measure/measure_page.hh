@@ -12,21 +12,21 @@ namespace gnomon::measure {
 struct ChartPoint {
   double x = 0.0;
   double y = 0.0;
-  /** What a pointer over it is told. */
+  /** Text shown at the pointer. */
   std::string label;
 };
 
 struct ChartSeries {
   std::string name;
   std::vector<ChartPoint> points;
-  /** Joined by a line, in their order; otherwise dots alone. */
+  /** Whether a line joins the points in their order; otherwise only dots are drawn. */
   bool is_line = false;
-  /** Drawn large, before the others: what the eye should go to. */
+  /** Whether the series is emphasised: large and in front of the others. */
   bool is_marked = false;
 };
 
 struct ChartAxis {
-  /** With the unit. */
+  /** Title with the unit. */
   std::string title;
   bool is_logarithmic = true;
 };
@@ -38,7 +38,7 @@ struct Chart {
   std::vector<ChartSeries> series;
 };
 
-/** Pictures of one size, to be compared by a slider between any two of them. */
+/** Pictures of one size. A slider compares any two of them. */
 struct Comparison {
   std::string title;
   struct Picture {
@@ -46,19 +46,18 @@ struct Comparison {
     /** A PNG file. */
     std::vector<std::byte> png;
   };
-  /** The first two are shown at first. */
+  /** The first two are shown initially. */
   std::vector<Picture> pictures;
 };
 
-/** Rows as long as the head; what reads as a number is set to the right. */
+/** Rows have as many cells as the head. Numbers are aligned to the right. */
 struct Table {
   std::vector<std::string> head;
   std::vector<std::vector<std::string>> rows;
 };
 
 /**
- * A page of measurements in one HTML file that needs no other: scripts, styles and pictures are inside it. All text is
- * taken as it is, and not as HTML.
+ * A page of measurements in one self-contained HTML file with its scripts, styles and pictures. All text is escaped.
  */
 class Page {
  public:
@@ -70,7 +69,7 @@ class Page {
   void chart(const Chart &chart);
   void compare(const Comparison &comparison);
 
-  /** The whole file. */
+  /** The complete file. */
   [[nodiscard]] std::string html() const;
 
  private:

@@ -15,7 +15,9 @@ namespace {
 
 using Halves = std::array<reference::Picture, 2>;
 
-/** The pixels around which the halves differ most: the larger a neighbourhood's difference, the surer its noise. */
+/**
+ * The pixels in whose neighbourhood the halves differ most. A neighbourhood estimates the noise better than one pixel.
+ */
 std::vector<glm::ivec2> noisiest(const Halves &halves, std::size_t count)
 {
   const glm::ivec2 size_px = halves[0].size_px;
@@ -54,7 +56,7 @@ ReferencePicture reference_picture(const reference::Tracer &tracer, const scene:
 {
   constexpr std::size_t noisy_share = 10;
   constexpr int noisy_samples = 8;
-  // Other rays than those of a PixelSample: the one may judge the other's choice.
+  // Different from the seeds of a PixelSample, so that a choice can be verified with independent rays.
   constexpr std::uint64_t first_seed = std::uint64_t(1) << 32U;
   Halves halves;
   for (std::size_t i = 0; i < 2; i++) {

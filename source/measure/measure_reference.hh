@@ -9,13 +9,13 @@ namespace gnomon::measure {
 
 struct ReferencePicture {
   reference::Picture picture;
-  /** RMSE of the picture by its own noise, as two independent halves of it tell. */
+  /** RMSE due to the picture's own noise, estimated from two independent halves of its samples. */
   double noise = 0.0;
 };
 
 /**
- * What pictures are judged by: reference::direct_light with \a sample_count samples a pixel, and where its noise is
- * largest, in a tenth of the pixels, with eight times as many: a picture is noisy at edges, and smooth elsewhere.
+ * The reference for picture errors: reference::direct_light with \a sample_count samples for each pixel, and eight
+ * times as many in the tenth of the pixels where the noise is largest.
  * \pre sample_count is even and at least 2
  */
 [[nodiscard]] ReferencePicture reference_picture(const reference::Tracer &tracer, const scene::PlacedCamera &camera,

@@ -144,7 +144,7 @@ std::vector<Convergence> convergence(const SceneReport &report)
 
 namespace {
 
-/** JSON has no NaN: it is null there. */
+/** JSON has no NaN; it is written as null. */
 nlohmann::json number(double value)
 {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
@@ -246,11 +246,12 @@ TechniqueReport technique_from_json(const nlohmann::json &json)
     picture.at("non_finite").get_to(one.error.non_finite_count);
     picture.at("front").get_to(one.is_on_front);
     if (one.seconds.size() != report.step_seconds.size()) {
-      throw std::runtime_error(fmt::format("'{}' has other rounds for its pictures than for its steps", label(wanted)));
+      throw std::runtime_error(
+          fmt::format("'{}' has different numbers of rounds for its pictures and its steps", label(wanted)));
     }
   }
   if (!std::ranges::equal(report.pictures, report.technique.sample_counts, {}, &PictureReport::sample_count)) {
-    throw std::runtime_error(fmt::format("'{}' has other numbers of samples", label(wanted)));
+    throw std::runtime_error(fmt::format("'{}' has numbers of samples that differ from this program's", label(wanted)));
   }
   for (const nlohmann::json &lamp : json.at("lamps")) {
     report.lamps.push_back({lamp.at("lamp"), visibility_from_json(lamp.at("visibility"))});

@@ -10,7 +10,7 @@ namespace gnomon::measure {
 
 namespace {
 
-/** By which differences are brightened, so that an eye finds them. */
+/** Factor that makes differences visible. */
 constexpr float difference_scale = 8.0F;
 
 struct FrontPoint {
@@ -18,7 +18,7 @@ struct FrontPoint {
   const PictureReport *picture;
 };
 
-/** From the fastest on. */
+/** The pictures on the front, the fastest first. */
 std::vector<FrontPoint> front(const SceneReport &scene)
 {
   std::vector<FrontPoint> points;
@@ -63,7 +63,7 @@ Chart visibility_against_time(const SceneReport &scene)
 {
   Chart chart{scene.name + ": wrong pixels of the lamps' shadows against the time to draw them",
               {"device seconds of the shadows"},
-              {"share of lit or dark pixels that are the other"},
+              {"share of wrong pixels"},
               {}};
   for (const TechniqueReport &technique : scene.techniques) {
     if (technique.technique.size_px == 0) {
@@ -129,7 +129,7 @@ Table technique_table(const SceneReport &scene)
 
 Table lamp_table(const SceneReport &scene)
 {
-  Table table{{"technique", "lamp", "pixels it faces", "wrong %", "mean error %", "leak", "acne", "edge offset, texels",
+  Table table{{"technique", "lamp", "facing pixels", "wrong %", "mean error %", "leak", "acne", "edge offset, texels",
                "95 %", "largest"},
               {}};
   for (const TechniqueReport &one : scene.techniques) {
@@ -147,7 +147,7 @@ Table lamp_table(const SceneReport &scene)
 
 Table convergence_table(const SceneReport &scene)
 {
-  Table table{{"technique", "wrong pixels fall as size to the", "RMSE falls as samples to the"}, {}};
+  Table table{{"technique", "order of wrong pixels in the size", "order of RMSE in the samples"}, {}};
   const auto order = [](const std::optional<double> &one) { return one ? fmt::format("{:.2f}", *one) : "–"; };
   for (const Convergence &one : convergence(scene)) {
     table.rows.push_back({one.technique, order(one.visibility_by_size), order(one.rmse_by_samples)});
@@ -189,11 +189,11 @@ std::string to_html(const RunReport &run, const ReadPicture &read, const MakePng
   page.paragraph(fmt::format("{} ({}), {}. {}, {}. {}x{} pixels, {} rounds, {:.0f} s in all.", run.program, run.commit,
                              run.date, run.machine, run.device, run.size_px.x, run.size_px.y, run.rounds, run.seconds));
   page.paragraph(
-      "Each technique is visited once a round; times are medians of the rounds, ± half of what lies between the "
-      "quartiles. A picture's time goes from its first draw to its last pixel, with its shadows drawn anew and "
-      "nothing to compile. RMSE, relative MSE, p99 and FLIP are against exact rays "
-      "through the same filter. Wrong: a pixel that a lamp reaches and that is dark, or the other way, at half the "
-      "light; leak and acne: so, with no edge of the true shadow near.");
+      "Each technique is measured once a round. Times are medians over the rounds, ± half the interquartile range. A "
+      "picture's time runs from its first draw to its last pixel and includes drawing its shadows, but no compilation. "
+      "RMSE, relative MSE, p99 and FLIP compare with ray tracing through the same pixel filter. Wrong: the visibility "
+      "of a lamp at a pixel and the exact visibility are on different sides of one half. Leak and acne: wrong pixels "
+      "without an edge of the exact shadow nearby.");
   for (const SceneReport &scene : run.scenes) {
     page.heading(scene.name);
     page.paragraph(fmt::format("{}. The reference's own noise is {:.5f} (RMSE); it took {:.0f} s.", scene.path.string(),

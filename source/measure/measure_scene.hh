@@ -16,7 +16,7 @@
 /** Small scenes built in code, and their pictures, for benchmarks, stability cases and tests. */
 namespace gnomon::measure {
 
-/** The thing number \a index of \a things in their order. \pre there are more than \a index */
+/** Item number \a index of \a things, in their order. \pre there are more than \a index */
 template <typename T>
 scene::Handle<T> handle_at(const scene::Pool<T> &things, std::size_t index)
 {
@@ -39,7 +39,7 @@ inline scene::Handle<scene::Material> add_material(scene::Scene &scene, const gl
   return scene.add(std::move(material));
 }
 
-/** Filtered by the nearest texel. \a texels: four bytes each, rows from the top. */
+/** A texture with nearest filtering. \a texels: four bytes each, rows from the top. */
 inline scene::Handle<scene::Texture> add_texture(scene::Scene &scene, std::uint32_t width,
                                                  const std::vector<std::uint8_t> &texels)
 {
@@ -50,7 +50,7 @@ inline scene::Handle<scene::Texture> add_texture(scene::Scene &scene, std::uint3
   return scene.add(texture);
 }
 
-/** A square of half size 1 in the plane z = 0 that faces +Z. It has uvs where its material has a texture. */
+/** A square of half size 1 in the plane z = 0 that faces +Z. It has uvs if its material has a texture. */
 inline scene::Handle<scene::Mesh> add_square_mesh(scene::Scene &scene, scene::Handle<scene::Material> material)
 {
   scene::Mesh mesh;
@@ -66,7 +66,7 @@ inline scene::Handle<scene::Mesh> add_square_mesh(scene::Scene &scene, scene::Ha
   return scene.add(std::move(mesh));
 }
 
-/** A closed box from -1 to 1 with the whole image on each side. */
+/** A closed box from -1 to 1. The uvs show the whole image on each side. */
 inline scene::Handle<scene::Mesh> add_box_mesh(scene::Scene &scene, scene::Handle<scene::Material> material)
 {
   scene::Mesh mesh;
@@ -93,7 +93,7 @@ inline scene::Handle<scene::Mesh> add_box_mesh(scene::Scene &scene, scene::Handl
   return scene.add(std::move(mesh));
 }
 
-/** A root node, named by its number among the nodes, with \a mesh. */
+/** A root node with \a mesh, named by its number among the nodes. */
 inline scene::Handle<scene::Node> add_object(scene::Scene &scene, scene::Handle<scene::Mesh> mesh,
                                              const glm::dmat4 &world_from_object)
 {
@@ -104,7 +104,7 @@ inline scene::Handle<scene::Node> add_object(scene::Scene &scene, scene::Handle<
   return scene.add(std::move(node));
 }
 
-/** \a lamp at a root node of its name. */
+/** A root node with \a lamp and its name. */
 inline scene::Handle<scene::Lamp> add_lamp(scene::Scene &scene, scene::Lamp lamp, const glm::dmat4 &world_from_lamp)
 {
   scene::Node node;
@@ -114,7 +114,7 @@ inline scene::Handle<scene::Lamp> add_lamp(scene::Scene &scene, scene::Lamp lamp
   return scene.nodes()[scene.add(std::move(node))].lamp;
 }
 
-/** A lamp at \a position that shines along \a forward, named by its number among the lamps. */
+/** A lamp at \a position with the direction \a forward, named by its number among the lamps. */
 inline scene::Handle<scene::Lamp> add_lamp(scene::Scene &scene, scene::LampKind kind, const glm::vec3 &position,
                                            const glm::vec3 &forward, float intensity)
 {
@@ -126,7 +126,7 @@ inline scene::Handle<scene::Lamp> add_lamp(scene::Scene &scene, scene::LampKind 
   return add_lamp(scene, std::move(lamp), glm::inverse(glm::lookAt(position, position + forward, up)));
 }
 
-/** Remove the lamps that \a is_chosen accepts, with their nodes; the last first, so that places are used in order. */
+/** Removes the lamps that \a is_chosen accepts, with their nodes; the last first, so that slots are reused in order. */
 template <std::predicate<const scene::Lamp &> Predicate>
 void remove_lamps(scene::Scene &scene, Predicate &&is_chosen)
 {
@@ -144,7 +144,7 @@ inline void remove_lamps(scene::Scene &scene)
   remove_lamps(scene, [](const scene::Lamp & /*lamp*/) { return true; });
 }
 
-/** In no scene. */
+/** A camera that belongs to no scene. \a vertical_angle: radians. */
 inline scene::PlacedCamera camera_at(const glm::vec3 &position, const glm::vec3 &target, float vertical_angle = 0.8F)
 {
   scene::PlacedCamera camera;
@@ -155,7 +155,7 @@ inline scene::PlacedCamera camera_at(const glm::vec3 &position, const glm::vec3 
   return camera;
 }
 
-/** \a camera at a root node of its name. */
+/** A root node with \a camera and its name. */
 inline scene::Handle<scene::Node> add_camera(scene::Scene &scene, const scene::PlacedCamera &camera)
 {
   scene::Node node;
@@ -190,7 +190,7 @@ struct Picture {
   }
 };
 
-/** A scene renderer that is synced, and reads its pictures. */
+/** A scene renderer that syncs on construction and reads back its pictures. */
 class Renderer {
  public:
   Renderer(gpu::Device &device, const scene::Scene &scene, glm::ivec2 size_px, const eevee::Settings &settings = {})
@@ -201,12 +201,12 @@ class Renderer {
   {
     sync();
   }
-  /** After each edit of the scene. */
+  /** Call after editing the scene. */
   void sync()
   {
     renderer_.sync();
   }
-  /** All samples of a picture, which is then written to \a target. */
+  /** Draws all samples of a picture and writes it to \a target. */
   void draw(const scene::PlacedCamera &camera, const draw::Target &target = {})
   {
     renderer_.draw(camera, {}, target);

@@ -13,7 +13,7 @@ namespace {
 using scene::ShadowKind;
 using Sizes = std::initializer_list<int>;
 
-/** Above any that a grid needs, so that its sizes are what they say. */
+/** More than any technique needs, so that no shadow map is made smaller. */
 constexpr std::size_t memory_bytes_max = std::size_t(4) << 30U;
 
 Technique maps(std::string name, int size_px, std::string options, const eevee::ShadowSettings &settings)
@@ -39,7 +39,7 @@ Technique exponential(std::string name, int size_px, std::string options, Shadow
   return technique;
 }
 
-/** One map for each sun, so that its size is all that changes from one to the next. */
+/** One map for each sun, so that only the size differs. */
 constexpr eevee::CascadeSettings one_cascade = {.count = 1};
 
 }  // namespace
@@ -85,7 +85,7 @@ std::vector<Technique> report_techniques()
   add_esm("esm 4, 16 bits", "", ShadowKind::Esm, {.format = eevee::EsmFormat::Half, .kernel = Kernel::Disk4}, {512});
   add_esm("evsm 4", "--shadow evsm --esm 4", ShadowKind::Evsm, {.kernel = Kernel::Disk4}, {256, 512, 1024});
   add_esm("evsm 32", "--shadow evsm --esm 32", ShadowKind::Evsm, {.kernel = Kernel::Disk32}, {512});
-  // Where samples are many, what is left is the shadows' own error: shown where it is smallest.
+  // With many samples only the shadows' own error remains, so they are rendered where it is smallest.
   for (Technique &technique : all) {
     const std::string name = label(technique);
     if (name == "hard 4096" || name == "hard, cascades 2048" || name == "pcf 3x3 4096") {

@@ -8,26 +8,26 @@
 
 namespace gnomon::measure {
 
-/** A way of making a picture's shadows. */
+/** A shadow technique: settings for a picture's shadows. */
 struct Technique {
-  /** Those that differ in size alone share it. */
+  /** Shared by techniques that differ only in size. */
   std::string name;
-  /** Of the layers that are looked up; 0: there are none. */
+  /** Size of the shadow map layers; 0 if there are none. */
   int size_px = 0;
   eevee::ShadowSettings settings{};
-  /** Samples a pixel that pictures are made with. */
+  /** Numbers of samples per pixel of the measured pictures. */
   std::vector<int> sample_counts;
-  /** What chooses it in `gnomon render`; empty where no option does. */
+  /** Options of `gnomon render` that select it; empty if there are none. */
   std::string options;
 };
 
-/** "hard 1024": unique among the techniques of a grid. */
+/** For example "hard 1024". Unique in each list of techniques. */
 [[nodiscard]] std::string label(const Technique &technique);
 
-/** What `gnomon report` compares. */
+/** The techniques that `gnomon report` compares. */
 [[nodiscard]] std::vector<Technique> report_techniques();
 
-/** What `--max-error` and `--max-time` choose among, where nothing is known of the scene yet. */
+/** The techniques among which `--max-error` and `--max-time` choose if there is no report of the scene. */
 [[nodiscard]] std::vector<Technique> pilot_techniques();
 
 }  // namespace gnomon::measure

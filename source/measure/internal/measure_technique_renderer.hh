@@ -1,25 +1,27 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "measure_visit.hh"
+#include "measure_technique_run.hh"
 
 #include "eevee_scene_renderer.hh"
 
 namespace gnomon::measure {
 
-/** Renders pictures by one technique, and draws all shadows again for each. */
+/** Renders pictures with one technique, and draws all shadows again for each picture. */
 class TechniqueRenderer {
  public:
-  /** All of them must outlive it. */
+  /** All references must outlive the renderer. */
   TechniqueRenderer(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera,
                     const Technique &technique, glm::ivec2 size_px);
 
-  /** Create all that a picture needs, and draw one. Call it first. \a has_probe: lamp_errors will be called. */
+  /**
+   * Creates all resources of a picture and draws one. Call it first. \a has_probe: whether lamp_errors will be called.
+   */
   void warm_up(bool has_probe);
-  /** \see VisitTimes */
+  /** \see TechniqueTimes */
   [[nodiscard]] std::map<std::string, double> step_seconds();
   [[nodiscard]] double picture_seconds(int sample_count);
-  /** The last. */
+  /** The last picture. */
   [[nodiscard]] std::vector<glm::vec4> picture();
   [[nodiscard]] std::vector<LampError> lamp_errors(const reference::Tracer &tracer);
   [[nodiscard]] eevee::Report report()

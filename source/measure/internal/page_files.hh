@@ -7,10 +7,10 @@
 
 namespace gnomon::measure::page_files {
 
-/** A style sheet or script that a page holds, by name; nothing where there is none of it. */
+/** An embedded style sheet or script, by name. Empty if there is none with that name. */
 [[nodiscard]] std::optional<std::string_view> file(std::string_view name);
 
-/** All of them, in the order in which a page holds them. */
+/** Names of all embedded files, in the order in which a page contains them. */
 [[nodiscard]] std::vector<std::string_view> paths();
 
 }  // namespace gnomon::measure::page_files

@@ -14,10 +14,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/** Planes seen by a lamp at less than half a degree get less than 1 % of its light, and are not compared. */
+/** Surfaces at less than half a degree to the light receive less than 1 % of it and are not compared. */
 constexpr double compared_cosine_min = 0.0087;
 
-/** Whether \a lamp shines there: within a spot's cone and the range, and not along the surface. */
+/** Whether \a lamp lights the position: within the spot's cone and the range, and not at a grazing angle. */
 bool is_lit_at(const scene::PlacedLamp &lamp, const glm::dvec3 &position_ws, const glm::dvec3 &normal_ws)
 {
   const glm::dvec3 back_ws(lamp.world_from_lamp[2]);
@@ -99,7 +99,7 @@ std::vector<LampError> TechniqueRenderer::lamp_errors(const reference::Tracer &t
     if (!probe) {
       continue;
     }
-    // The reference's world space is the scene's, not the device's.
+    // The reference uses the scene's world space, the engine a space relative to its origin.
     scene::PlacedLamp lamp = lamps[i_lamp];
     lamp.world_from_lamp[3] += glm::dvec4(origin_ws, 0.0);
     std::vector<glm::dvec3> positions;
@@ -123,7 +123,7 @@ std::vector<LampError> TechniqueRenderer::lamp_errors(const reference::Tracer &t
   return errors;
 }
 
-void leave_shadows_to_technique(scene::Scene &scene)
+void remove_shadow_settings(scene::Scene &scene)
 {
   for (const auto &[handle, lamp] : scene.lamps()) {
     if (lamp.shadow.kind != scene::ShadowKind::None) {
@@ -132,12 +132,12 @@ void leave_shadows_to_technique(scene::Scene &scene)
   }
 }
 
-VisitTimes visit(gpu::Device &device, const scene::Scene &scene, const Technique &technique, glm::ivec2 size_px,
-                 const reference::Tracer *tracer, VisitResult &result)
+TechniqueTimes measure_technique(gpu::Device &device, const scene::Scene &scene, const Technique &technique,
+                                 glm::ivec2 size_px, const reference::Tracer *tracer, TechniqueResult &result)
 {
   const scene::PlacedCamera camera = scene.placed_cameras().front();
   if (tracer) {
-    // On its own, so that the probe is no part of the memory.
+    // In a renderer of its own, so that the probe's memory is not counted.
     TechniqueRenderer probed(device, scene, camera, technique, size_px);
     probed.warm_up(true);
     result = {};
@@ -149,7 +149,7 @@ VisitTimes visit(gpu::Device &device, const scene::Scene &scene, const Technique
   }
   TechniqueRenderer renderer(device, scene, camera, technique, size_px);
   renderer.warm_up(false);
-  VisitTimes times;
+  TechniqueTimes times;
   times.step_seconds = renderer.step_seconds();
   for (const int sample_count : technique.sample_counts) {
     times.picture_seconds.push_back(renderer.picture_seconds(sample_count));
