@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every pure function of shaders/shared, called with numbers of the vectors a, b and c. Each line is compiled as C++ in
-// float, as C++ in double, and as GLSL. Included once by shared_functions_float.cc and shared_functions_double.cc.
+// Calls of every pure function of shaders/shared with the vectors a, b and c. Each line is compiled as C++ in float, as
+// C++ in double, and as GLSL. Included once by shared_functions_float.cc and once by shared_functions_double.cc.
 #include "eevee_area_shared.h"
 #include "eevee_bsdf_shared.h"
 #include "eevee_depth_shared.h"

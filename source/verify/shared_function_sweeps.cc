@@ -10,7 +10,7 @@ namespace gnomon::verify {
 
 namespace {
 
-/** Ends, middles of edges, corners of a cube, ties, zeros of both signs. */
+/** Directions to the face centres, edge middles and corners of a cube, ties between axes, and zeros of both signs. */
 std::vector<glm::vec3> special_directions()
 {
   std::vector<glm::vec3> directions;

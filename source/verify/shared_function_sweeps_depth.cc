@@ -19,7 +19,7 @@ std::vector<In> depth_arguments(bool is_distance)
     const float share = random.uniform(0, 1);
     float x = share;
     if (is_distance) {
-      // From behind the eye to beyond the far plane.
+      // Distances from behind the eye to beyond the far plane.
       x = random.one_of(std::array{near, far, near + share * (far - near), random.log_uniform(0.5 * near, 2.0 * far),
                                    0.0F, -share * near});
     }
@@ -37,7 +37,7 @@ void add_depth_sweeps(std::vector<Sweep> &sweeps)
 {
   sweeps.push_back({"depth_of_distance", depth_arguments(true),
                     [](const Exact &in) {
-                      // In front of the eye by no less.
+                      // The function clamps smaller distances.
                       const long double d = in.a.x;
                       const long double in_front = std::max(d, static_cast<long double>(1e-30F));
                       const long double n = in.a.y;

@@ -13,7 +13,7 @@ void add_esm_sweeps(std::vector<Sweep> &sweeps)
   sweeps.push_back({"log_sum",
                     many(30000,
                          [](Random &random) {
-                           // Four distances, spread from nothing to 1e30 m around one up to 1 km away.
+                           // Four distances with a spread of 0 to 1e30 m around one of up to 1 km.
                            const float base = random.log_uniform(1e-3, 1e3);
                            const float spread =
                                random.one_of(std::array{0.0F, random.log_uniform(1e-4, 1e3),
@@ -51,8 +51,8 @@ void add_esm_sweeps(std::vector<Sweep> &sweeps)
                          }),
                     [](const Exact &in) { return one(std::min(1.0, std::exp(in.a.x * (in.a.y - in.a.z)))); },
                     [](const Exact &in) {
-                      // An exponent that is off by a rounding changes the power by as much as the exponent is large.
-                      // The least magnitude is that of numbers that a driver may flush to 0.
+                      // A relative error of the exponent is multiplied by the exponent in the power. The smallest
+                      // magnitude belongs to numbers that a driver may flush to 0.
                       const double exponent = std::min(in.a.x * (in.a.y - in.a.z), 0.0);
                       return one(std::exp(exponent) * (1.0 - exponent) + 1e-30);
                     },
@@ -63,7 +63,7 @@ void add_esm_sweeps(std::vector<Sweep> &sweeps)
     std::vector<In> decoded;
     for (const float range : {1e-3F, 1.0F, 37.5F, 1e6F}) {
       for (const int format : {ESM_FLOAT, ESM_HALF}) {
-        // Away from where a rounding decides which step is next: steps of 1/4096, and a bit.
+        // Multiples of 1/4096 plus an offset, so that rounding does not decide between two steps.
         for (int i = 0; i <= 4096; i += 3) {
           encoded.push_back({.a = {range * (float(i) + 0.25F) / 4096.25F, range, format, 0}});
           decoded.push_back({.a = {float(i) / 2048.0F - 1.0F, range, format, 0}});
@@ -87,7 +87,7 @@ void add_esm_sweeps(std::vector<Sweep> &sweeps)
            const auto cut = double(0.1F);
            return one(std::max(v / (v + t * t) - cut, 0.0) / (1.0 - cut));
          },
-         // Where the bound is steep, roundings of the difference of distances count by c / √v.
+         // Where the bound is steep, rounding of the difference of distances is multiplied by c / √v.
          [](const Exact &in) { return one(1.0 + in.b.x * in.a.z / std::sqrt(in.a.y)); }, 1e-6, 4, 16});
     sweeps.push_back({"esm_encoded", encoded,
                       [](const Exact &in) {
@@ -126,7 +126,7 @@ void add_esm_sweeps(std::vector<Sweep> &sweeps)
                         const double angle = ring * golden + (int(in.a.x) % 4) * std::numbers::pi / 2.0;
                         return dvec4(radius * std::cos(angle), radius * std::sin(angle), 0, 0);
                       },
-                      // The golden angle is rounded, and drivers' sines are not for large angles.
+                      // The golden angle is rounded, and drivers' sines are inaccurate for large angles.
                       [](const Exact &in) { return dvec4(1, 1, 0, 0) * (1.0 + in.a.x / 4.0); }, 2, 3, 20});
     sweeps.push_back({"esm_cone_direction",
                       many(20000,
@@ -138,7 +138,7 @@ void add_esm_sweeps(std::vector<Sweep> &sweeps)
                                              random.one_of(std::array{0.0F, 1e-3F, 0.12F, 1.0F}), 0}};
                            }),
                       [](const Exact &in) {
-                        // The turn that takes the nearer of +Z and -Z to the axis.
+                        // The rotation from the nearer of +Z and -Z to the axis.
                         const dvec3 n = dvec3(in.a);
                         const double side = n.z >= 0.0 ? 1.0 : -1.0;
                         const double scale = 1.0 / (1.0 + std::abs(n.z));
@@ -161,7 +161,7 @@ void add_esm_sweeps(std::vector<Sweep> &sweeps)
                         return one(in.a.x * (1.25 * in.a.z * tangent + 4e-7) + in.a.w);
                       },
                       [](const Exact &in) {
-                        // The tangent of a cosine near 1 is the root of a small difference.
+                        // The tangent of a cosine near 1 is the square root of a small difference.
                         const double tangent = std::tan(std::acos(std::abs(in.a.y)));
                         return one(in.a.x * in.a.z * (std::min(tangent, 10.0) + 1.0 / std::max(tangent, 1e-3)) +
                                    in.a.x * 1e-6 + in.a.w);

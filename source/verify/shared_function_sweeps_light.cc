@@ -25,7 +25,9 @@ std::vector<float> cosines(float low)
 
 constexpr std::array<float, 7> alphas = {1e-3F, 2e-3F, 0.01F, 0.0625F, 0.3F, 0.7225F, 1.0F};
 
-/** Of two triangles that share a diagonal (van Oosterom and Strackee 1983, eq. 8): long doubles bear its cancellations.
+/**
+ * Solid angle of two triangles that share a diagonal (van Oosterom and Strackee 1983, eq. 8), in long double because of
+ * its cancellation.
  */
 double solid_angle(const Exact &in)
 {
@@ -52,7 +54,7 @@ double distance_to_segment(const dvec3 &from, const dvec3 &to)
   return glm::length(from + std::clamp(t, 0.0, 1.0) * along);
 }
 
-/** How much the angle changes where the corners move by their own size: what a rounding of them is relative to. */
+/** Change of the solid angle if the corners move by their own magnitude: the factor of their rounding errors. */
 double solid_angle_condition(const Exact &in)
 {
   const dvec3 center(in.a);
@@ -64,13 +66,13 @@ double solid_angle_condition(const Exact &in)
   for (std::size_t i = 0; i < 4; i++) {
     rim = std::min(rim, distance_to_segment(corners[i], corners[(i + 1) % 4]));
   }
-  // Its gradient is the field of a current along the rim (Biot and Savart): that of a long wire from near, and at most
-  // the rim's length over the square of its distance.
+  // The gradient is the magnetic field of a current along the rim (Biot and Savart): near the rim that of a long wire,
+  // and at most the rim's length over the squared distance.
   const double size = glm::length(right) + glm::length(up);
   return (glm::length(center) + size) * std::min(2.0 / rim, 4.0 * size / (rim * rim));
 }
 
-/** Where parallels are said to meet. */
+/** The distance that stands for the intersection of parallels. */
 constexpr double line_far = 1e16F;
 
 double ggx_distribution(double c, double alpha)
@@ -81,7 +83,7 @@ double ggx_distribution(double c, double alpha)
 
 double ggx_masking(double c, double alpha)
 {
-  // Walter et al. 2007, eq. 34, with the tangent.
+  // Walter et al. 2007, eq. 34, in terms of the tangent.
   return 2.0 / (1.0 + std::sqrt(1.0 + alpha * alpha * (1.0 - c * c) / (c * c)));
 }
 
@@ -89,7 +91,7 @@ double ggx_masking(double c, double alpha)
 
 void add_light_sweeps(std::vector<Sweep> &sweeps)
 {
-  // The magnitude holds both dot products, whose terms may cancel.
+  // The magnitude includes both dot products, whose terms may cancel.
   sweeps.push_back({"line_plane_distance",
                     many(20000,
                          [](Random &random) {
@@ -97,7 +99,7 @@ void add_light_sweeps(std::vector<Sweep> &sweeps)
                            In in{glm::vec4(random.box(100.0), point.x), glm::vec4(random.direction(), point.y),
                                  glm::vec4(random.direction(), point.z)};
                            if (random.uniform(0, 1) < 0.05F) {
-                             // Parallel, or nearly; at times in the plane.
+                             // Parallel or nearly parallel, in some cases within the plane.
                              in.c = {0, 0, 1, point.z};
                              in.b.z = random.one_of(std::array{0.0F, -0.0F, 1e-30F, -1e-30F, 1e-12F});
                              in.a.z = random.one_of(std::array{in.a.z, point.z});
@@ -122,12 +124,11 @@ void add_light_sweeps(std::vector<Sweep> &sweeps)
                     },
                     1e-6, 2, 4});
 
-  // Driver: Mesa's atan is a polynomial, off by 2e-5 of its value (Vulkan allows 5e-4).
+  // Driver: Mesa's atan is a polynomial with a relative error of 2e-5 (Vulkan allows 5e-4).
   sweeps.push_back({"rectangle_solid_angle",
                     [] {
                       std::vector<In> arguments = many(40000, [](Random &random) {
-                        // Along axes, so that edges are at right angles to the last bit, or turned, where they are to
-                        // 1e-7.
+                        // Along axes, so that the edges are exactly orthogonal, or rotated, so that they are to 1e-7.
                         glm::vec3 x(1, 0, 0);
                         glm::vec3 y(0, 1, 0);
                         if (random.uniform(0, 1) < 0.5F) {
@@ -149,7 +150,7 @@ void add_light_sweeps(std::vector<Sweep> &sweeps)
                     [](const Exact &in) { return one(solid_angle(in)); },
                     [](const Exact &in) { return one(solid_angle(in) + solid_angle_condition(in)); }, 0.5, 2, 16});
 
-  // Sums of positive terms only: relative errors of a few roundings.
+  // Only sums of positive terms: relative errors of a few roundings.
   {
     std::vector<In> arguments;
     for (const float c : cosines(0.0F)) {
@@ -237,7 +238,7 @@ void add_light_sweeps(std::vector<Sweep> &sweeps)
                       return one(std::max(window, 0.0) / std::max(in.a.x + in.a.y, 1e-12));
                     },
                     [](const Exact &in) {
-                      // Where the window closes, a difference of two numbers near 1.
+                      // Where the window closes, the result is a difference of two numbers near 1.
                       const double window = 1.0 - std::pow(in.a.x * in.a.z, 2.0);
                       return one(window < -1e-6 ? 0.0 : 1.0 / std::max(in.a.x + in.a.y, 1e-12));
                     },

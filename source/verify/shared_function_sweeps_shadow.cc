@@ -8,14 +8,14 @@ namespace gnomon::verify {
 
 namespace {
 
-/** Mirrored on the diamond's edge of the quadrant that \a p is in. */
+/** \a p mirrored on the edge of the diamond |x| + |y| = 1 in its quadrant. */
 dvec2 folded(dvec2 p)
 {
   const dvec2 sign(p.x < 0.0 ? -1.0 : 1.0, p.y < 0.0 ? -1.0 : 1.0);
   return p - (glm::dot(sign, p) - 1.0) * sign;
 }
 
-/** Columns of OpenGL 4.5 core, table 8.19: which components, and with which sign, are sc, tc and ma of a face. */
+/** OpenGL 4.5 core, table 8.19: sc, tc and ma of a face, as signed components of \a v. */
 dvec3 cube_coordinates(int face, dvec3 v)
 {
   struct Row {
@@ -32,13 +32,17 @@ dvec3 cube_coordinates(int face, dvec3 v)
   return {row.sc_sign * v[row.sc], row.tc_sign * v[row.tc], row.ma_sign * v[row.ma]};
 }
 
-/** Where \a texel lies on the map that goes on outside: by the reflection of the plane's points, not of indices. */
+/**
+ * The texel of the map that continues the map at \a texel outside of it, computed by reflecting points of the plane
+ * instead of indices.
+ */
 dvec2 continued_texel(dvec2 texel, double size)
 {
   dvec2 p = (texel + 0.5) / size * 2.0 - 1.0;
   for (int axis = 0; axis < 2; axis++) {
     if (std::abs(p[axis]) > 1.0) {
-      // A point beyond the edge is the one as far within, on the other side of the edge's middle.
+      // A point beyond the edge corresponds to the point at the same distance within, on the other side of the edge's
+      // middle.
       p[axis] = std::copysign(2.0, p[axis]) - p[axis];
       p[1 - axis] = -p[1 - axis];
     }
@@ -53,7 +57,7 @@ void add_shadow_sweeps(std::vector<Sweep> &sweeps)
   sweeps.push_back({"octahedral_texel_weight",
                     many(5000, [](Random &random) { return In{.a = glm::vec4(random.direction(), 0)}; }),
                     [](const Exact &in) {
-                      // 1 / r³ of the point of the octahedron in that direction.
+                      // 1 / r³ for the point of the octahedron in that direction.
                       const dvec3 point = dvec3(in.a) / (std::abs(in.a.x) + std::abs(in.a.y) + std::abs(in.a.z));
                       return one(std::pow(glm::length(point) / glm::length(dvec3(in.a)), -3.0));
                     },
@@ -102,13 +106,13 @@ void add_shadow_sweeps(std::vector<Sweep> &sweeps)
         }
       }
     }
-    // Integers.
+    // Results are integers, so they are exact.
     sweeps.push_back({"octahedral_texel", arguments,
                       [](const Exact &in) { return dvec4(continued_texel(dvec2(in.a), in.a.z), 0, 0); },
                       [](const Exact &) { return dvec4(1, 1, 0, 0); }, 0, 0, 0});
   }
 
-  // Components chosen and negated: exact.
+  // Components are selected and negated, so results are exact.
   sweeps.push_back({"cube_face", direction_arguments(),
                     [](const Exact &in) {
                       int face = 0;
@@ -117,7 +121,7 @@ void add_shadow_sweeps(std::vector<Sweep> &sweeps)
                         const double largest = face % 2 == 0 ? in.a[face / 2] : -in.a[face / 2];
                         face = along > largest ? i : face;
                       }
-                      // Ties go to the earlier axis, whichever its sign.
+                      // In a tie the earlier axis wins, for either sign.
                       for (int axis = 2; axis >= 0; axis--) {
                         if (std::abs(in.a[axis]) == std::abs(in.a[face / 2])) {
                           face = 2 * axis + (in.a[axis] < 0.0 ? 1 : 0);
@@ -138,7 +142,7 @@ void add_shadow_sweeps(std::vector<Sweep> &sweeps)
                          [](Random &random) {
                            return In{.a = {std::floor(random.log_uniform(1, 16384)), 0, 0, 0}};
                          }),
-                    // Three texels of the border on each side, of small faces an eighth.
+                    // Three border texels on each side; for small faces an eighth of the face.
                     [](const Exact &in) { return one(in.a.x < 24.0 ? 0.75 : (in.a.x - 6.0) / in.a.x); },
                     [](const Exact &) { return one(1.0); }, 0.5, 1, 2});
   sweeps.push_back({"shadow_lift",
@@ -157,7 +161,7 @@ void add_shadow_sweeps(std::vector<Sweep> &sweeps)
                         {random.uniform(-4, 3), random.uniform(-4, 3), 0, 0}};
             }),
        [](const Exact &in) {
-         // The plane's depth at a texel's centre, from the lookup's.
+         // Depth of the plane at a texel's centre, relative to the lookup's position.
          const auto at = [&](double x, double y) { return in.a.x + in.a.y * (x + in.b.x) + in.a.z * (y + in.b.y); };
          return dvec4(at(0, 1), at(1, 1), at(1, 0), at(0, 0));
        },
@@ -165,7 +169,7 @@ void add_shadow_sweeps(std::vector<Sweep> &sweeps)
   sweeps.push_back({"texels_lit",
                     many(10000,
                          [](Random &random) {
-                           // Few levels, so that many are equal; a receiver may be behind the far end.
+                           // Few levels, so that many are equal. A receiver may be behind the far end.
                            const std::array<float, 4> levels = {0.0F, 0.25F, 0.5F, 0.75F};
                            In in;
                            for (int i = 0; i < 4; i++) {
@@ -206,7 +210,7 @@ void add_shadow_sweeps(std::vector<Sweep> &sweeps)
                       const double radius = std::sqrt((in.a.x + 0.5) / in.a.y);
                       return dvec4(radius * std::cos(angle), radius * std::sin(angle), 0, 0);
                     },
-                    // The angle's constant has seven digits; drivers' sines are good to 1e-5 or so.
+                    // The constant of the angle has seven digits; drivers' sines are accurate to about 1e-5.
                     [](const Exact &in) { return dvec4(1, 1, 0, 0) * (10.0 + in.a.x); }, 1, 100, 400});
   {
     std::vector<In> arguments = many(5000, [](Random &random) {

@@ -25,7 +25,7 @@ double agx_curve_exact(double x)
 
 dvec3 agx_exact(const dvec3 &linear)
 {
-  // By columns.
+  // Column-major.
   const glm::dmat3 rec2020_from_rec709(0.6274, 0.0691, 0.0164, 0.3293, 0.9195, 0.0880, 0.0433, 0.0113, 0.8956);
   const glm::dmat3 inset(0.856627153315983, 0.137318972929847, 0.11189821299995, 0.0951212405381588, 0.761241990602591,
                          0.0767994186031903, 0.0482516061458583, 0.101439036467562, 0.811302368396859);
@@ -65,22 +65,22 @@ void add_view_transform_sweeps(std::vector<Sweep> &sweeps)
     for (int i = -50; i <= 50; i++) {
       arguments.push_back({.a = glm::vec4(0.0031308F + float(i) * 1e-7F)});
     }
-    // Literals are floats.
+    // The function's literals are floats.
     sweeps.push_back({"srgb_encoded", arguments, [](const Exact &in) { return one(srgb(in.a.x)); },
                       [](const Exact &) { return one(1.0); }, 0.5, 2, 16});
     sweeps.push_back({"agx_curve", std::vector<In>(arguments.begin(), arguments.begin() + 4097),
                       [](const Exact &in) { return one(agx_curve_exact(in.a.x)); },
-                      // The terms' size, not the sum's: they cancel.
+                      // Magnitude of the terms, which cancel in the sum.
                       [](const Exact &) { return one(32.0); }, 0.5, 1, 4});
     const auto lights = many(10000, [](Random &random) {
       const auto light = [&] { return random.log_uniform(1e-5, 1e3); };
       return In{.a = glm::vec4(light(), light(), light(), 0.0F)};
     });
-    // The curve's terms cancel, and the outset's rows amplify what is left by 1.3 and 2.2.
+    // The curve's terms cancel, and the outset matrix amplifies the remainder by 1.3 and 2.2.
     sweeps.push_back({"agx", lights, [](const Exact &in) { return dvec4(agx_exact(dvec3(in.a)), 0); },
                       [](const Exact &) { return dvec4(64, 64, 64, 0); }, 1, 2, 8});
     sweeps.push_back({"pbr_neutral", lights, [](const Exact &in) { return dvec4(pbr_neutral_exact(dvec3(in.a)), 0); },
-                      // Small channels keep the rounding of what is subtracted from them.
+                      // Small channels retain the rounding error of the values subtracted from them.
                       [](const Exact &) { return dvec4(1, 1, 1, 0); }, 4, 8, 16});
     sweeps.push_back(
         {"view_transformed",

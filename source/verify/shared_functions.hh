@@ -10,7 +10,7 @@
 
 namespace gnomon::verify {
 
-/** What a function is called with, in as many numbers as it takes. */
+/** Arguments of a shared function. A function uses as many of the numbers as it needs. */
 template <typename T>
 struct Arguments {
   glm::vec<4, T> a{0};
@@ -18,57 +18,57 @@ struct Arguments {
   glm::vec<4, T> c{0};
 };
 
-/** An expression of `a`, `b` and `c` that calls a shared function, as C++ has compiled it with T for `float`. */
+/** An expression of `a`, `b` and `c` that calls a shared function, compiled as C++ with T for `float`. */
 template <typename T>
 struct CompiledFunction {
   std::string_view name;
-  /** Text of the expression: GLSL too. */
+  /** Text of the expression, which is also valid GLSL. */
   std::string_view expression;
   glm::vec<4, T> (*call)(const Arguments<T> &arguments);
 };
 
-/** shared_function_list.h in float, and the same in double. */
+/** The functions of shared_function_list.h, compiled in float and in double. */
 [[nodiscard]] std::span<const CompiledFunction<float>> functions_in_float();
 [[nodiscard]] std::span<const CompiledFunction<double>> functions_in_double();
 
-/** What one function is called with, and what comes out in truth. */
+/** Arguments for one function, its exact result, and error bounds. */
 struct Sweep {
-  /** Of the function, in shared_function_list.h. */
+  /** The function's name in shared_function_list.h. */
   std::string_view name;
   std::vector<Arguments<float>> arguments;
-  /** Mathematics, written otherwise than the function. */
+  /** The exact result, computed by a different method than the function's. */
   glm::dvec4 (*closed_form)(const Arguments<double> &arguments);
-  /** What a rounding in the function is relative to. */
+  /** Magnitude to which the function's rounding errors are relative. */
   glm::dvec4 (*magnitude)(const Arguments<double> &arguments);
-  /** Largest difference from the truth, in float's epsilon (2^-23) times the magnitude: of the double build, … */
+  /** Largest error of the double build, in units of float's epsilon (2^-23) times the magnitude. */
   double double_epsilons;
-  /** … of the float build, … */
+  /** The same for the float build. */
   double float_epsilons;
-  /** … and of a driver. */
+  /** The same for a driver. */
   double driver_epsilons;
 };
 
-/** One for each shared function. */
+/** One or more for each shared function. */
 [[nodiscard]] const std::vector<Sweep> &sweeps();
 
 /**
- * Difference of \a result from the truth, the largest of its numbers, in float's epsilon times the magnitude; infinite
- * where either is not finite.
+ * Largest error of a component of \a result, in units of float's epsilon times the magnitude; infinite if the result or
+ * the exact value is not finite.
  */
 [[nodiscard]] double epsilons(const Sweep &sweep, const Arguments<float> &arguments, const glm::dvec4 &result);
 
-/** The same of what the float build gives. */
+/** The same for the result of the float build. */
 [[nodiscard]] double float_epsilons(const Sweep &sweep, const Arguments<float> &arguments);
 
-/** Where results differ most from the truth. */
+/** The largest error of a sweep. */
 struct Deviation {
-  /** In float's epsilon times the magnitude; infinite where a result is not finite. */
+  /** In units of float's epsilon times the magnitude; infinite if a result is not finite. */
   double epsilons = 0.0;
-  /** Arguments and results. */
+  /** Text with the arguments and both results. */
   std::string where;
 };
 
-/** \a results: one for each of the sweep's arguments. */
+/** \a results: one for each entry of the sweep's arguments. */
 [[nodiscard]] Deviation deviation(const Sweep &sweep, std::span<const glm::dvec4> results);
 
 [[nodiscard]] inline Arguments<double> in_double(const Arguments<float> &arguments)

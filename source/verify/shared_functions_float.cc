@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "shared_functions.hh"
 
-// Sees the above.
+// Must follow the headers above.
 #include "shared_function_list.h"
 
 namespace gnomon::verify {

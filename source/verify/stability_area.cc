@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Area lamps: rectangles far away, edge-on, touched, without area; lines that hardly meet a plane.
+// Area lamps: rectangles that are distant, edge-on, touched or without area, and lines that almost miss a plane.
 #include "internal/stability_cases.hh"
 
 #include "eevee_area_shared.h"
@@ -19,7 +19,7 @@ constexpr const char *group = "area";
 const glm::dvec3 unit_x(1, 0, 0);
 const glm::dvec3 unit_y(0, 1, 0);
 
-/** A square of 2 m, as the angles between the planes through its edges, less 2π. */
+/** Solid angle of a square of 2 m, as the sum of the angles between the planes through its edges, less 2π. */
 double naive_solid_angle(const glm::dvec3 &center)
 {
   const shared::vec3 c(center);
@@ -40,16 +40,15 @@ void add_area_cases(std::vector<StabilityCase> &cases)
 {
   const auto add = [&](const std::string &name, const std::string &parameter, std::vector<double> steps, auto center_at,
                        auto right_at, auto up_at) {
-    cases.push_back(case_of({group, name, "rectangle_solid_angle",
-                             "solid angle of a rectangle, of its size and how it grows with the corners' roundings",
-                             parameter, std::move(steps),
-                             [=](double x) {
-                               return Arguments<float>{.a = glm::vec4(center_at(x), 0.0F),
-                                                       .b = glm::vec4(right_at(x), 0.0F),
-                                                       .c = glm::vec4(up_at(x), 0.0F)};
-                             },
-                             // Edges along axes are at right angles to the last bit. Measured: 0.31.
-                             0.6}));
+    cases.push_back(case_of(
+        {group, name, "rectangle_solid_angle", "solid angle of a rectangle, relative to its size and its condition",
+         parameter, std::move(steps),
+         [=](double x) {
+           return Arguments<float>{
+               .a = glm::vec4(center_at(x), 0.0F), .b = glm::vec4(right_at(x), 0.0F), .c = glm::vec4(up_at(x), 0.0F)};
+         },
+         // Edges along axes are exactly orthogonal. Measured: 0.31.
+         0.6}));
   };
   const auto always = [](const glm::dvec3 &v) { return [=](double) { return v; }; };
   add(
@@ -94,7 +93,7 @@ void add_area_cases(std::vector<StabilityCase> &cases)
     return double(shared::rectangle_solid_angle(shared::vec3(center), shared::vec3(unit_x), shared::vec3(unit_y)));
   };
   for (const bool is_naive : {true, false}) {
-    // The next term of the series is 1 / distance²; ours besides rounds a dozen times.
+    // The next term of the series is 1 / distance², and the engine's form has a dozen roundings.
     add_angle(
         is_naive ? "planes' angles, far away" : "area over squared distance, far away", is_naive, 3e-6, "distance, m",
         log_steps(1e3, 1e7, 81), [=](double distance) {
@@ -102,7 +101,7 @@ void add_area_cases(std::vector<StabilityCase> &cases)
           return std::abs((is_naive ? naive_solid_angle(center) : ours(center)) * distance * distance / 4.0 - 1.0);
         });
     add_angle(is_naive ? "planes' angles, touched corner to middle" : "half a space, touched corner to middle",
-              is_naive, 4.0 * float_epsilon, "place, from the corner inwards, m",
+              is_naive, 4.0 * float_epsilon, "distance from the corner, inwards, m",
               even_steps(is_naive ? 0.0 : 0.01, 1.0, 101), [=](double inwards) {
                 const glm::dvec3 center(1.0 - inwards, 1.0 - inwards, 0.0);
                 return std::abs((is_naive ? naive_solid_angle(center) : ours(center)) / (2.0 * std::numbers::pi) - 1.0);
@@ -131,11 +130,11 @@ void add_area_cases(std::vector<StabilityCase> &cases)
     cases.push_back(
         {.group = group,
          .name = fmt::format("grazing line from {:g} m", height),
-         .quantity = "where a line meets a plane, at most LINE_FAR away",
+         .quantity = "distance of a line's intersection with a plane, at most LINE_FAR",
          .parameter = "rise of the line",
          .reference = "closed form",
          .unit = epsilon_unit,
-         // One quotient: of what is along an axis the rest is exact.
+         // One division; the other operations are exact for vectors along an axis.
          .bound = 1.0,
          .run = swept(zero_and_log_steps(1e-38, 1.0, 115), [=](double rise) {
            const shared::vec3 origin(0.0F, 0.0F, float(height));
@@ -146,7 +145,7 @@ void add_area_cases(std::vector<StabilityCase> &cases)
            if (height == 0.0) {
              return rise > 0.0 ? std::abs(given) : std::abs(given / far - 1.0);
            }
-           // Downwards, and behind only where it does not rise at all.
+           // The plane is below, and behind only if the line does not rise.
            return std::abs((rise > 0.0 ? given : std::abs(given)) / truth - 1.0) / float_epsilon;
          })});
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reflection: roughness 0, grazing angles, and the form of the distribution that cancels.
+// Reflection: roughness 0, grazing angles, and the textbook form of the distribution, which cancels.
 #include "internal/stability_cases.hh"
 
 #include "eevee_bsdf_shared.h"
@@ -26,7 +26,7 @@ float alpha_of(float roughness)
   return render_scene::material_data(material).alpha;
 }
 
-/** What a textbook has: a² / (π (cos² (a² - 1) + 1)²). */
+/** The textbook form of GGX: a² / (π (cos² (a² - 1) + 1)²). */
 double textbook_distribution(float cos_h, float alpha)
 {
   const float a2 = alpha * alpha;
@@ -50,10 +50,11 @@ void add_bsdf_cases(std::vector<StabilityCase> &cases)
                              "cosine", log_steps(1e-6, 1.0, 121), [=](double cosine) {
                                return Arguments<float>{.a = {float(cosine), alpha, 0.0F, 0.0F}};
                              }}));
-    cases.push_back(case_of({group, "lobe to grazing, " + of, "ggx_lobe", "microfacet lobe, view and light alike",
-                             "cosine of view and light", log_steps(1e-6, 1.0, 121), [=](double cosine) {
-                               return Arguments<float>{.a = {float(cosine), float(cosine), 1.0F, alpha}};
-                             }}));
+    cases.push_back(
+        case_of({group, "lobe to grazing, " + of, "ggx_lobe", "microfacet lobe, same view and light direction",
+                 "cosine of view and light", log_steps(1e-6, 1.0, 121), [=](double cosine) {
+                   return Arguments<float>{.a = {float(cosine), float(cosine), 1.0F, alpha}};
+                 }}));
   }
   for (const bool is_textbook : {true, false}) {
     cases.push_back(
@@ -63,7 +64,7 @@ void add_bsdf_cases(std::vector<StabilityCase> &cases)
          .parameter = "alpha",
          .reference = "double",
          .unit = epsilon_unit,
-         // As the shared function's own sweep.
+         // The bound of the function's sweep.
          .bound = 4.0,
          .is_baseline = is_textbook,
          .run = swept(log_steps(is_textbook ? 1e-6 : double(shared::ALPHA_MIN), 1.0, 121), [=](double a) {
@@ -83,11 +84,11 @@ void add_bsdf_cases(std::vector<StabilityCase> &cases)
                    .parameter = "alpha",
                    .reference = "closed form: 1",
                    .unit = "relative",
-                   // The midpoint rule in 2000 steps, and float cosines, whose quarter of an epsilon is 3e-8 /
-                   // alpha² of its width.
+                   // The midpoint rule with 2000 steps, and cosines in float: a quarter of an epsilon is 3e-8 / alpha²
+                   // of the peak's width.
                    .bound = 5e-3,
                    .run = swept(log_steps(double(shared::ALPHA_MIN), 1.0, 41), [](double alpha) {
-                     // Even steps of tan² / (a² + tan²), which is the share of area up to an angle.
+                     // Equal steps of tan² / (a² + tan²), the fraction of area up to an angle.
                      double sum = 0.0;
                      constexpr int count = 2000;
                      for (int i = 0; i < count; i++) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Depths: reversed as ours, and the forward ones that lose the distance.
+// Depths: the engine's reversed depth, and forward depths, which lose distant values.
 #include "internal/stability_cases.hh"
 
 #include "draw_view.hh"
@@ -20,7 +20,7 @@ constexpr const char *group = "depth";
 constexpr const char *distance_parameter = "distance, m";
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
-/** From near to far, and finely next to the far plane, where a reversed depth goes to 0. */
+/** Distances from near to far, dense next to the far plane, where a reversed depth approaches 0. */
 std::vector<double> distances(double near, double far)
 {
   std::vector<double> steps = log_steps(near, 0.5 * far, 81);
@@ -31,7 +31,7 @@ std::vector<double> distances(double near, double far)
   return steps;
 }
 
-/** A distance there and back again. */
+/** Relative error of a distance that is converted to depth and back. */
 double round_trip_error(float distance, float near, float far, int projection)
 {
   const float depth = shared::depth_of_distance(distance, near, far, projection);
@@ -40,7 +40,7 @@ double round_trip_error(float distance, float near, float far, int projection)
   return std::abs(double(back) - double(distance)) / (float_epsilon * scale);
 }
 
-/** The same through a depth that is 0 at the near plane. */
+/** The same for a depth that is 0 at the near plane. */
 double forward_error(float distance, float near, float far)
 {
   const float depth = far * (distance - near) / (distance * (far - near));
@@ -48,7 +48,7 @@ double forward_error(float distance, float near, float far)
   return std::abs(double(back) - double(distance)) / (float_epsilon * double(distance));
 }
 
-/** Reversed, but stored by a clip space of [-1, 1]. */
+/** The same for a reversed depth in a clip space of [-1, 1]. */
 double unclipped_error(float distance, float near, float far)
 {
   const float depth = shared::depth_of_distance(distance, near, far, PROJECTION_PERSPECTIVE);
@@ -58,14 +58,14 @@ double unclipped_error(float distance, float near, float far)
   return std::abs(double(back) - double(distance)) / (float_epsilon * double(distance));
 }
 
-/** Through the matrix that draws, solved for the distance in double. */
+/** Error of the projection matrix: its depth, solved for the distance in double. */
 double matrix_error(const glm::mat4 &clip_from_view, float distance)
 {
   const glm::vec4 clip = clip_from_view * glm::vec4(0.0F, 0.0F, -distance, 1.0F);
   const double depth = clip.z / clip.w;
   const double a = clip_from_view[2][2];
   const double b = clip_from_view[3][2];
-  // Depth a·-d + b over w, which is d or 1.
+  // The depth is (b - a·d) / w, and w is d or 1.
   const double back = clip_from_view[2][3] != 0.0F ? b / (depth + a) : (b - depth) / a;
   return std::abs(back - double(distance)) / float_epsilon;
 }
@@ -80,7 +80,7 @@ void add_perspective_cases(std::vector<StabilityCase> &cases)
          .parameter = distance_parameter,
          .reference = "closed form",
          .unit = epsilon_unit,
-         // Three roundings each way, of a distance that a reversed depth holds relative to itself.
+         // Three roundings in each direction; a reversed depth represents distances with a relative error.
          .bound = 3.0,
          .is_baseline = is_baseline,
          .run = swept(distances(near, far), [=](double x) { return error(float(x), float(near), float(far)); })});
@@ -105,10 +105,10 @@ void add_matrix_cases(std::vector<StabilityCase> &cases)
   for (const double ratio : {1.001, 10.0, 1e3, 1e6, 1e9}) {
     const double near = 1e-2;
     const double far = near * ratio;
-    // Two roundings of the two terms of z, and one of the quotient.
+    // Two roundings of the terms of z, and one of the quotient.
     cases.push_back({.group = group,
                      .name = fmt::format("perspective matrix, far/near {:g}", ratio),
-                     .quantity = "distance, from what the matrix makes of it",
+                     .quantity = "distance, from the depth of the matrix",
                      .parameter = distance_parameter,
                      .reference = "double",
                      .unit = epsilon_unit,
@@ -120,7 +120,7 @@ void add_matrix_cases(std::vector<StabilityCase> &cases)
   }
   cases.push_back({.group = group,
                    .name = "perspective matrix, near to 1e-6 m",
-                   .quantity = "distance, from what the matrix with its far plane at infinity makes of it, 0.7 m",
+                   .quantity = "distance of 0.7 m, from the depth of the matrix with an infinite far plane",
                    .parameter = "near plane, m",
                    .reference = "double",
                    .unit = epsilon_unit,
@@ -132,7 +132,7 @@ void add_matrix_cases(std::vector<StabilityCase> &cases)
     const double far = 1e6;
     cases.push_back({.group = group,
                      .name = fmt::format("orthographic matrix, near {:g} m", near),
-                     .quantity = "distance, from what the matrix makes of it, relative to the range",
+                     .quantity = "distance, from the depth of the matrix, relative to the range",
                      .parameter = distance_parameter,
                      .reference = "double",
                      .unit = epsilon_unit,
@@ -175,7 +175,7 @@ void add_other_cases(std::vector<StabilityCase> &cases)
                      })});
     cases.push_back({.group = group,
                      .name = "cleared, " + name,
-                     .quantity = "distance of a depth of 0: finite and beyond what a depth of 1e-6 stands for",
+                     .quantity = "distance of depth 0: finite and larger than that of depth 1e-6",
                      .parameter = "near plane, m",
                      .reference = "closed form",
                      .unit = violation_unit,

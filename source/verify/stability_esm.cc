@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Exponential shadow maps: the forms that others store and filter, which overflow, and ours over the same ranges.
+// Exponential shadow maps: forms that overflow when stored and filtered, and the engine's form over the same ranges.
 #include "internal/stability_cases.hh"
 
 #include "eevee_esm_shared.h"
@@ -21,14 +21,14 @@ namespace gnomon::verify {
 namespace {
 
 constexpr const char *group = "esm";
-/** 1/m. The ends of what a lamp may ask for, 5 of the seed's and 80 of its second form. */
+/** Exponents, 1/m: the limits for a lamp, and 5 and 80 of the two seeds. */
 constexpr std::array<float, 5> exponents = {0.01F, 1.0F, 5.0F, 80.0F, 1e4F};
-/** Largest x with a finite exp(x): in float, and rounded to a half. */
+/** Largest x with a finite exp(x) in float and in half. */
 constexpr double float_limit = 88.7228391;
 constexpr double half_limit = 11.0901;
 /**
- * Of 32 taps, in float's epsilon times (farthest distance + 1 / exponent): 32 additions and as many rescalings round
- * the sum, of which the logarithm is divided by the exponent, and the distance itself is rounded. Measured: 4.6.
+ * Error bound for 32 taps, in float's epsilon times (farthest distance + 1 / exponent). The sum has 32 additions and as
+ * many rescalings; its logarithm is divided by the exponent, and the distance is rounded. Measured: 4.6.
  */
 constexpr double filter_bound = 8.0;
 
@@ -36,7 +36,7 @@ enum class Form { Naive, Unsafe, Safe };
 
 using Taps = std::vector<float>;
 
-/** From the nearest to the farthest: each tap is farther than all before, which a running sum likes least. */
+/** Taps from the nearest to the farthest, the worst order for a running sum. */
 Taps taps_from(double nearest, double spread, int count)
 {
   Taps taps;
@@ -61,7 +61,7 @@ float rounded_to_half(float value)
   return glm::unpackHalf1x16(glm::packHalf1x16(value));
 }
 
-/** What a layer gives back for its taps, metres. */
+/** Filtered distance of a layer, metres. */
 float filtered(Form form, bool is_half, const Taps &taps, float exponent)
 {
   const float weight = 1.0F / float(taps.size());
@@ -74,7 +74,7 @@ float filtered(Form form, bool is_half, const Taps &taps, float exponent)
       return std::log(is_half ? rounded_to_half(sum) : sum) / exponent;
     }
     case Form::Unsafe: {
-      // The first tap is subtracted, whichever is the largest.
+      // Subtracts the first tap instead of the largest.
       float sum = 0.0F;
       for (const float tap : taps) {
         sum += weight * std::exp(exponent * (tap - taps[0]));
@@ -100,7 +100,7 @@ double filter_error(Form form, bool is_half, const Taps &taps, float exponent)
       std::abs(double(filtered(form, is_half, taps, exponent)) - exactly_filtered(taps, double(exponent)));
   const double farthest = *std::ranges::max_element(taps);
   const double rounded = float_epsilon * (farthest + 1.0 / double(exponent));
-  // Halves: in the format's own largest error, and the filter's.
+  // Half floats: in units of the format's largest error plus the filter's.
   return is_half ? difference / (shared::esm_format_error(1.01F * float(farthest), ESM_HALF) + filter_bound * rounded)
                  : difference / rounded;
 }
@@ -120,7 +120,7 @@ const char *storage_name(bool is_half)
   return is_half ? "16f" : "32f";
 }
 
-/** Each pair: what others do, and ours over the same range. */
+/** Pairs of a baseline and the engine's form over the same range. */
 void add_filter_cases(std::vector<StabilityCase> &cases)
 {
   const auto add = [&](Form form, bool is_half, float exponent, const std::string &swept_name,
@@ -129,7 +129,7 @@ void add_filter_cases(std::vector<StabilityCase> &cases)
     cases.push_back(
         {.group = group,
          .name = fmt::format("{} {} {:g}/m, {}", form_name, storage_name(is_half), exponent, swept_name),
-         .quantity = fmt::format("distance that a layer gives back for {} taps", count),
+         .quantity = fmt::format("filtered distance of a layer for {} taps", count),
          .parameter = parameter,
          .reference = "long double",
          .unit = filter_unit_of(is_half),
@@ -157,15 +157,14 @@ void add_filter_cases(std::vector<StabilityCase> &cases)
   }
 }
 
-/** How wrong 16 bits make a visibility: distances as they are, and as the engine stores them where it finds that
- * enough. */
+/** Error of the visibility due to 16 bits: with linear distances, and with the format that the engine selects. */
 void add_format_cases(std::vector<StabilityCase> &cases)
 {
   for (const float exponent : exponents) {
     const auto worst_error = [=](float range, auto stored) {
       double worst = 0.0;
       for (int i = 1; i <= 64; i++) {
-        // Not on the format's own steps.
+        // Values between the format's steps.
         const float distance = range * (float(i) - 0.37F) / 64.0F;
         worst = std::max(worst, 1.0 - double(shared::esm_visibility(exponent, stored(distance), distance)));
       }
@@ -183,7 +182,7 @@ void add_format_cases(std::vector<StabilityCase> &cases)
     linear.name = fmt::format("linear halves 16f {:g}/m", exponent);
     linear.is_baseline = true;
     linear.run = swept(log_steps(1e-3, 1e6, 91), [=](double range) {
-      // Beyond 65504 m a half is infinite: what was stored, and not the visibility, which saturates.
+      // Beyond 65504 m a half is infinite. This makes the stored value non-finite, while the visibility saturates.
       const auto farthest = double(rounded_to_half(float(range)));
       return std::isfinite(farthest) ? worst_error(float(range), rounded_to_half) : farthest;
     });
@@ -207,7 +206,7 @@ void add_format_cases(std::vector<StabilityCase> &cases)
   }
 }
 
-/** Σ w·e² / (Σ w·e)² - 1 of 32 taps, e = exp(c·z). */
+/** Variance Σ w·e² / (Σ w·e)² - 1 of 32 taps with e = exp(c·z). */
 void add_variance_cases(std::vector<StabilityCase> &cases)
 {
   constexpr int count = 32;
@@ -255,8 +254,8 @@ void add_variance_cases(std::vector<StabilityCase> &cases)
                        .parameter = parameter,
                        .reference = "long double",
                        .unit = epsilon_unit,
-                       // Three sums of 32 terms, whose differences from the farthest tap the exponent multiplies:
-                       // exp() of what is above -16, beyond which nothing counts. Measured: 11.
+                       // Three sums of 32 terms, whose differences from the farthest tap are multiplied by the
+                       // exponent; terms below exp(-16) are negligible. Measured: 11.
                        .bound = 20.0,
                        .is_baseline = is_baseline,
                        .run = swept(std::move(steps), std::move(error_at))});
@@ -282,7 +281,7 @@ void add_visibility_cases(std::vector<StabilityCase> &cases)
                              [=](double behind) {
                                return Arguments<float>{.a = {exponent, 10.0F, float(10.0 + behind), 0.0F}};
                              },
-                             // Differences from 10 m are exact, or next to it: one rounding less. Measured: 0.35.
+                             // Differences from 10 m are almost exact: one rounding less. Measured: 0.35.
                              1.0}));
   }
   for (const float variance : {1e-6F, 1e-2F, 31.0F}) {
@@ -293,13 +292,13 @@ void add_visibility_cases(std::vector<StabilityCase> &cases)
          [=](double behind) {
            return Arguments<float>{.a = {10.0F, variance, float(10.0 + behind), 1e-3F}, .b = {80.0F, 0.0F, 0.0F, 0.0F}};
          },
-         // Differences from 10 m are exact, or next to it, which the sweep's magnitude does not know: 8 epsilons of 1.
+         // Differences from 10 m are almost exact, which the sweep's magnitude does not consider: 8 epsilons of 1.
          // Measured: 3.5.
          8.0 / (1.0 + 800.0 / std::sqrt(double(variance)))}));
   }
   for (const float distance : {1e-3F, 1.0F, 1e6F}) {
     cases.push_back(
-        case_of({group, fmt::format("bias at {:g} m, grazing", distance), "esm_bias", "how far a receiver is lifted",
+        case_of({group, fmt::format("bias at {:g} m, grazing", distance), "esm_bias", "normal offset of a receiver",
                  "cosine to the lamp", log_steps(1e-6, 1.0, 121), [=](double cosine) {
                    return Arguments<float>{.a = {distance, float(cosine), 2e-3F, 0.0F}};
                  }}));
@@ -311,14 +310,14 @@ void add_visibility_cases(std::vector<StabilityCase> &cases)
                      .parameter = "range of the lamp, m",
                      .reference = "closed form",
                      .unit = "relative",
-                     // Two products and a quotient, rounded.
+                     // Roundings of two products and a quotient.
                      .bound = 4.0 * float_epsilon,
                      .run = swept(log_steps(1e-6, 1e30, 145), [=](double range) {
                        double worst = 0.0;
                        for (int size_px = 4; size_px <= 8192; size_px *= 2) {
                          const float angle = eevee::esm_filter_angle(size_px);
                          const double texel = std::sqrt(4.0 * std::numbers::pi) / size_px;
-                         // A plane of 45° spreads by ± c·a·d at half the range.
+                         // A plane at 45° has a spread of ± c·a·d at half the range.
                          const double wanted = method == eevee::EsmMethod::Esm
                                                    ? 0.5 / (std::max(double(angle), texel) * range / 2.0)
                                                    : 0.0625 / (double(angle) * range / 2.0);
@@ -331,7 +330,7 @@ void add_visibility_cases(std::vector<StabilityCase> &cases)
   }
 }
 
-/** The filter's cone, from +Z, where a map's middle is, to a diagonal, where its texels are seen smallest. */
+/** The filter's cone, from +Z (the middle of a map) to a diagonal, where texels have the smallest solid angle. */
 void add_cone_cases(std::vector<StabilityCase> &cases)
 {
   constexpr double angle = 0.01;
@@ -340,7 +339,7 @@ void add_cone_cases(std::vector<StabilityCase> &cases)
     const shared::vec3 direction = shared::esm_cone_direction(axis, {0.6F, 0.8F}, versine);
     return double(std::asin(std::min(glm::length(glm::cross(axis, direction)), 1.0F)));
   };
-  // A fixed offset from a vector that was left on the octahedron.
+  // A fixed offset from a vector on the octahedron that is not normalised.
   const auto naive_opening = [=](const shared::vec3 &axis) {
     const float norm = std::abs(axis.x) + std::abs(axis.y) + std::abs(axis.z);
     return std::atan(angle * double(norm));
@@ -352,7 +351,7 @@ void add_cone_cases(std::vector<StabilityCase> &cases)
                      .parameter = "angle from the map's middle to its diagonal, rad",
                      .reference = "closed form",
                      .unit = "relative",
-                     // A unit vector's rounding of 1e-7, over an angle of 0.01.
+                     // The rounding of a unit vector, 1e-7, over an angle of 0.01.
                      .bound = 2e-5,
                      .is_baseline = is_naive,
                      .run = swept(even_steps(0.0, std::acos(1.0 / std::sqrt(3.0)), 101), [=](double tilt) {

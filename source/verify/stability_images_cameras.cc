@@ -9,7 +9,7 @@ void add_camera_images(ImageCases &cases)
 {
   const auto add = [&](const std::string &name, double bound, const char *parameter, std::vector<double> values,
                        std::function<void(TestView &, double)> change) {
-    cases.add({"camera", name, "picture by such a camera", parameter, exact_rays}, bound, std::move(values),
+    cases.add({"camera", name, "picture with this camera parameter", parameter, exact_rays}, bound, std::move(values),
               [change = std::move(change)](TestViewRenderer &renderer, double value) {
                 TestView test_view = table(LampKind::Point);
                 change(test_view, value);
@@ -23,7 +23,7 @@ void add_camera_images(ImageCases &cases)
     test_view.camera.near = ratio > 1e6 ? 1e-6F : 1.0F;
     test_view.camera.far = float(double(test_view.camera.near) * ratio);
   });
-  // Where all is small in the picture, more of it is edges.
+  // Small objects in the picture have a larger fraction of edges.
   add("angle", 0.06, "rad", {1e-4, 1e-2, 0.5, 1.0, 2.0},
       [](TestView &test_view, double angle) { test_view.camera.vertical_angle = float(angle); });
   add("parallel", 0.06, "half height, m", {1e-4, 1e-2, 1.0, 3.0}, [](TestView &test_view, double half) {
@@ -38,15 +38,15 @@ void add_camera_images(ImageCases &cases)
     test_view.camera.far = float(far);
   };
   add("parallel, far", sharp_bound, "m", {10, 1e3, 1e5}, parallel_far);
-  // A parallel view's depths are even: at 1e9 m a float's steps are 60 m, and what is drawn last is in front. 0.08 was
-  // measured.
+  // Depths of a parallel view are linear: at 1e9 m the spacing of floats is 60 m, and the object drawn last is in
+  // front. Measured: 0.08.
   add("parallel, too far", 0.15, "m", {1e6, 1e9, 1e12}, parallel_far);
-  // With it the picture is of the box's inner walls, and of the ground through one-sided ones.
+  // Two-sided: the picture shows the box's inner walls. One-sided: it shows the ground through them.
   for (const bool is_double_sided : {true, false}) {
     for (const bool is_lamp_inside : {true, false}) {
       add(fmt::format("inside a box, {}, lamp {}", is_double_sided ? "two-sided" : "one-sided",
                       is_lamp_inside ? "inside too" : "outside"),
-          // Of a radiance of 1 where it should be dark.
+          // Relative to a radiance of 1.
           sharp_bound, "half size of the box, m", {0.1, 1.0, 10.0}, [=](TestView &test_view, double half) {
             scene::Scene &scene = test_view.scene;
             edit_material(test_view, [&](scene::Material &material) { material.is_double_sided = is_double_sided; });
@@ -63,8 +63,8 @@ void add_camera_images(ImageCases &cases)
           });
     }
   }
-  cases.add({"camera", "depths apart", "pixels of a red plate that a green one shows through",
-             "distance between, relative", "closed form", "share of pixels"},
+  cases.add({"camera", "depths apart", "pixels of a red plate where a green one behind it is visible",
+             "distance between the plates, relative", "closed form", "share of pixels"},
             0.0, {1e-2, 1e-3, 1e-4, 1e-5, 3e-6}, [](TestViewRenderer &renderer, double gap) {
               TestView test_view;
               for (const int i : {0, 1}) {
@@ -72,7 +72,7 @@ void add_camera_images(ImageCases &cases)
                 test_view.scene.edit(material, [&](scene::Material &changed) {
                   changed.emissive = i == 0 ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
                 });
-                // Tilted alike, so that depths differ from pixel to pixel.
+                // Tilted by the same angle, so that depths differ between pixels.
                 const double distance = i == 0 ? 100.0 : 100.0 * (1.0 + gap);
                 add_object(test_view.scene, add_square_mesh(test_view.scene, material),
                            glm::mat4(glm::rotate(glm::translate(glm::dmat4(1.0), {0, 0, -distance}), 0.5, {1, 2, 0})) *

@@ -9,13 +9,13 @@ namespace gnomon::verify {
 
 namespace {
 
-/** A picture of one value. */
+/** A picture with the same value at all pixels. */
 Picture even(const Picture &like, double value)
 {
   return {like.size_px, {like.pixels.size(), glm::vec4(glm::vec3(float(value)), 1.0F)}};
 }
 
-/** \a count lamps where one would stand, of its light together; 0: none. */
+/** \a count lamps at the position of one, with the same total intensity. 0: no lamp. */
 TestView crowd(LampKind kind, int count)
 {
   TestView test_view = table(kind);
@@ -25,14 +25,14 @@ TestView crowd(LampKind kind, int count)
     scene::Lamp one = lamp;
     one.name = fmt::format("lamp{}", i);
     one.intensity = lamp.intensity / float(count);
-    // Room for the shadows of all.
+    // Small enough for the shadows of all lamps.
     one.shadow.size = one.shadow.esm_size = 32;
     add_lamp(test_view.scene, std::move(one), lamp.world_from_lamp);
   }
   return test_view;
 }
 
-/** Whether a limit names the lamp. */
+/** Whether a reported limit names the lamp. */
 bool is_named(const eevee::Report &report, int lamp)
 {
   return std::ranges::any_of(
@@ -45,7 +45,7 @@ void add_count_images(ImageCases &cases)
 {
   cases.add({"size", "of pictures", "radiance of a ground under a sun, at every pixel",
              "1 1x1, 2 16384x1, 3 1x16384, 4 16384x16, 5 3x5", "closed form", "largest error, relative"},
-            // Roundings of the film's weights.
+            // Rounding of the film's weights.
             1e-6, {1, 2, 3, 4, 5}, [](TestViewRenderer &renderer, double kind) {
               const std::array<glm::ivec2, 5> sizes = {{{1, 1}, {16384, 1}, {1, 16384}, {16384, 16}, {3, 5}}};
               TestView test_view = ground(LampKind::Sun, {}, {0, 0, -1});
@@ -60,34 +60,36 @@ void add_count_images(ImageCases &cases)
   };
   const DrawSettings one_sample = with(ShadowKind::None, {64, 48}, 1);
   for (const LampKind kind : {LampKind::Point, LampKind::Spot, LampKind::Sun, LampKind::Hemi}) {
-    // 255 roundings of a sum.
-    cases.add(
-        {"count", fmt::format("lamps, {}", name_of(kind)), "picture by so many lamps in one place; the last is named",
-         "lamps", "picture by one; the one too many gives none"},
-        2e-5, {0, 1, LIGHT_MAX - 1, LIGHT_MAX, LIGHT_MAX + 1, 1000},
-        [kind, one_sample](TestViewRenderer &renderer, double count) {
-          const Picture by_one = renderer.draw(crowd(kind, 1), one_sample);
-          Picture expected = by_one;
-          for (glm::vec4 &pixel : expected.pixels) {
-            pixel *= float(std::min(count, double(LIGHT_MAX)) / std::max(count, 1.0));
-          }
-          const double error = relative_rmse(renderer.draw(crowd(kind, int(count)), one_sample), expected);
-          return is_named(renderer.report(one_sample), int(count) - 1) == (count > LIGHT_MAX) ? error : 1.0;
-        });
+    // A sum with 255 roundings.
+    cases.add({"count", fmt::format("lamps, {}", name_of(kind)),
+               "picture of this many lamps at one position; a lamp above the limit is named", "lamps",
+               "picture of one lamp; a lamp above the limit gives no light"},
+              2e-5, {0, 1, LIGHT_MAX - 1, LIGHT_MAX, LIGHT_MAX + 1, 1000},
+              [kind, one_sample](TestViewRenderer &renderer, double count) {
+                const Picture by_one = renderer.draw(crowd(kind, 1), one_sample);
+                Picture expected = by_one;
+                for (glm::vec4 &pixel : expected.pixels) {
+                  pixel *= float(std::min(count, double(LIGHT_MAX)) / std::max(count, 1.0));
+                }
+                const double error = relative_rmse(renderer.draw(crowd(kind, int(count)), one_sample), expected);
+                return is_named(renderer.report(one_sample), int(count) - 1) == (count > LIGHT_MAX) ? error : 1.0;
+              });
   }
   for (const Count &count : {Count{{LampKind::Point, ShadowKind::Hard}, SHADOW_CUBE_MAX},
                              {{LampKind::Spot, ShadowKind::Hard}, SHADOW_MAP_MAX},
                              {{LampKind::Point, ShadowKind::Esm}, ESM_MAX}}) {
     const DrawSettings settings = with(count.variant.shadow, {16, 12}, 1);
     cases.add({"count", fmt::format("shadows, {}", count.variant.name()),
-               "picture by so many lamps with shadows in one place; who loses it is named", "lamps", "picture by one"},
+               "picture of this many lamps with shadows at one position; a lamp without a shadow map is named", "lamps",
+               "picture of one lamp"},
               2e-5, {1, double(count.most), double(count.most + 1)},
               [count, settings](TestViewRenderer &renderer, double lamps) {
                 const Picture by_one = renderer.draw(crowd(count.variant.lamp, 1), settings);
                 const TestView test_view = crowd(count.variant.lamp, int(lamps));
                 const Picture picture = renderer.draw(test_view, settings);
                 const bool is_lost = is_named(renderer.report(settings), int(lamps) - 1);
-                // The lamp that loses its shadow lights what it should not: that is the limit's price, and it is named.
+                // The lamp that loses its shadow also lights receivers in shadow. This is the documented effect of the
+                // limit, and the limit is named.
                 return is_lost == (lamps > count.most) ? (is_lost ? 0.0 : relative_rmse(picture, by_one)) : 1.0;
               });
   }

@@ -7,7 +7,7 @@ namespace gnomon::verify {
 
 namespace {
 
-/** Walls around a lamp, seen along a direction from it, with a plate between. */
+/** Walls around a lamp, viewed from it along \a direction, with a plate in between. */
 TestView room(const glm::vec3 &direction)
 {
   TestView test_view;
@@ -18,7 +18,7 @@ TestView room(const glm::vec3 &direction)
   add_object(scene, box, scaled({5, 4, 4.5F}));
   const glm::vec3 forward = glm::normalize(direction);
   const glm::vec3 up = std::abs(forward.y) < 0.9F ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, 1);
-  // A plate over the left half of the picture.
+  // Covers the left half of the picture.
   add_object(
       scene, square,
       glm::inverse(glm::lookAt(glm::vec3(0.0F), forward, up)) * moved({-1.0F, 0.1F, -2.2F}) * scaled({0.8F, 0.6F, 1}));
@@ -27,7 +27,7 @@ TestView room(const glm::vec3 &direction)
   return test_view;
 }
 
-/** Directions of a cube's faces, edges and corners, each along the octahedron's faces or fold. */
+/** Directions of the faces, edges and corners of a cube. Each lies along a face or fold of the octahedron. */
 glm::vec3 cube_direction(double index)
 {
   const std::array<glm::vec3, 8> directions = {
@@ -61,10 +61,10 @@ void add_fold_images(ImageCases &cases)
   }
   cases.add({"exponent", "light behind a caster", "visibility 1 m and more behind a plate, against exp(-c (d - d0))",
              "exponent, 1/m", "closed form", "largest error"},
-            // The lift of the receiver: half a centimetre.
+            // The normal offset of the receiver: half a centimetre.
             0.01, {0.01, 0.1, 1, 3, 10, 100, 1e3, 1e4}, [](TestViewRenderer &renderer, double exponent) {
               TestView test_view = ground(LampKind::Point, {0.05F, 0.03F, 2}, {0, 0, -1});
-              // Under the plate, so that it hides nothing.
+              // Below the plate, so that the plate is not visible.
               test_view.camera = camera_at({0.05F, 0.03F, 0.9F}, {0.05F, 0.03F, 0}, 0.6F);
               const DrawSettings settings = with(ShadowKind::None, {64, 48}, 1);
               const Picture lit = renderer.draw(test_view, settings);
@@ -77,7 +77,7 @@ void add_fold_images(ImageCases &cases)
               double worst = 0.0;
               for (int y = 1; y < 47; y++) {
                 for (int x = 1; x < 63; x++) {
-                  // On the ground, from below the lamp; half variant to it is the plate.
+                  // Distance from the point on the ground below the lamp. The plate is half way to the lamp.
                   const double half = 0.9 * std::tan(0.3);
                   const glm::dvec2 from_middle =
                       (glm::dvec2(x + 0.5, y + 0.5) / 24.0 - glm::dvec2(64.0 / 48.0, 1.0)) * half;

@@ -11,7 +11,7 @@ namespace gnomon::verify {
 
 namespace {
 
-/** A picture's pixels from right to left. */
+/** The picture mirrored from left to right. */
 Picture mirrored(const Picture &picture)
 {
   Picture result = picture;
@@ -34,27 +34,27 @@ void add_placement_images(ImageCases &cases)
     const auto error_at = [variant, against_truth](TestViewRenderer &renderer, double scale) {
       return against_truth(renderer, placed(table(variant.lamp), glm::dmat4(1.0), scale), variant.shadow);
     };
-    const char *quantity = "picture of a scene of 10 m made larger, its light as bright";
+    const char *quantity = "picture of a scene of 10 m, scaled with the same irradiance";
     if (bound_of(variant.shadow) == sharp_bound) {
       cases.add({"scale", variant.name(), quantity, "scale", exact_rays}, sharp_bound, {1e-4, 1e-2, 1.0, 1e2, 1e5},
                 error_at);
     }
     else {
       cases.add({"scale", variant.name(), quantity, "scale", exact_rays}, soft_bound, {1e-2, 1.0, 1e2}, error_at);
-      // Exponents end at 0.01 and 1e4 /m: shadows of a scene of a millimetre are soft, those of 1000 km hard. 0.1 was
-      // measured.
-      cases.add({"scale", variant.name() + ", where exponents end", quantity, "scale", exact_rays}, 0.12, {1e-4, 1e5},
-                error_at);
+      // Exponents are limited to 0.01 to 1e4 /m: shadows of a scene of a millimetre are soft, those of 1000 km hard.
+      // Measured: 0.1.
+      cases.add({"scale", variant.name() + ", at the limits of exponents", quantity, "scale", exact_rays}, 0.12,
+                {1e-4, 1e5}, error_at);
     }
   }
   const auto offset = [](double by) { return glm::translate(glm::dmat4(1.0), by * glm::dvec3(1.0, 0.6, -0.3)); };
   for (const Variant &variant : variants) {
-    // Positions are floats. One an ulp aside moves edges by a share of a pixel, which is 0.13 m here: 7 per metre was
-    // measured at 100 km, where ulps are 8 mm. From 1000 km on, at 6 cm, nothing is claimed but that the picture is
-    // finite.
+    // Positions are floats. An error of one ulp moves an edge by a fraction of a pixel, which is 0.13 m here. Measured
+    // at 100 km, where an ulp is 8 mm: 7 per metre. From 1000 km on, with ulps of 6 cm, the case requires only that the
+    // picture is finite.
     cases.add({"offset", variant.name(),
-               "picture of a scene of 10 m that far from the origin, less 8 per metre of its coordinates' ulp", "m",
-               exact_rays},
+               "picture of a scene of 10 m at this distance from the origin, less 8 per metre of its coordinates' ulp",
+               "m", exact_rays},
               bound_of(variant.shadow), {0.0, 1e3, 1e4, 1e5, 1e6, 1e8},
               [variant, offset, against_truth](TestViewRenderer &renderer, double by) {
                 const double ulp =
@@ -64,15 +64,15 @@ void add_placement_images(ImageCases &cases)
               });
   }
   for (const Variant &variant : {variants[0], variants[2], variants[4], variants[8]}) {
-    // Exponents end here too, at 1e8 m.
-    cases.add({"offset", variant.name() + ", scaled", "picture of a scene as large as a thousandth of its offset", "m",
-               exact_rays},
+    // At 1e8 m the exponents reach their limit, too.
+    cases.add({"offset", variant.name() + ", scaled", "picture of a scene with the size of a thousandth of its offset",
+               "m", exact_rays},
               variant.shadow == ShadowKind::Esm ? 0.07 : sharp_bound, {1e2, 1e4, 1e6, 1e8},
               [variant, offset, against_truth](TestViewRenderer &renderer, double by) {
                 return against_truth(renderer, placed(table(variant.lamp), offset(by), 1e-4 * by), variant.shadow);
               });
   }
-  // One sample: others are not where their images would be.
+  // One sample: the positions of several samples are not symmetric.
   const DrawSettings one_sample = with(ShadowKind::Hard, DrawSettings().size_px, 1);
   const auto against_itself = [one_sample](TestViewRenderer &renderer, const TestView &moved_view,
                                            const TestView &test_view, bool is_mirrored) {
@@ -80,30 +80,32 @@ void add_placement_images(ImageCases &cases)
     return relative_rmse(is_mirrored ? mirrored(picture) : picture, renderer.draw(test_view, one_sample));
   };
   for (const LampKind kind : lamp_kinds) {
-    // A spot's map turns with it; a cube and a sun's grid stand in the world, and their texels fall elsewhere: 0.035
-    // was measured.
-    cases.add({"turn", name_of(kind), "picture of a scene turned about (1, 2, 3)", "turn, rad", "picture unturned"},
+    // A spot's map rotates with the spot. A cube and a sun's grid are fixed in the world, so their texels change.
+    // Measured: 0.035.
+    cases.add({"turn", name_of(kind), "picture of a scene rotated about (1, 2, 3)", "angle, rad",
+               "picture of the original scene"},
               kind == LampKind::Spot ? 1e-4 : 0.06, {0.0, 0.1, 1.0, 0.5 * pi, 2.0, pi},
               [kind, against_itself](TestViewRenderer &renderer, double turn) {
                 const TestView test_view = table(kind);
                 const glm::dmat4 turned = glm::rotate(glm::dmat4(1.0), turn, glm::normalize(glm::dvec3(1, 2, 3)));
                 return against_itself(renderer, placed(test_view, turned), test_view, false);
               });
-    // Roundings alone, and those of a texel's edge.
-    cases.add({"turn", fmt::format("{}, axes exchanged", name_of(kind)), "picture of a scene whose +Z is another axis",
-               "axis", "picture unturned"},
+    // Only rounding, also at the edges of texels.
+    cases.add({"turn", fmt::format("{}, axes exchanged", name_of(kind)), "picture of a scene with exchanged axes",
+               "axis", "picture of the original scene"},
               1e-4, {0, 1, 2, 3, 4, 5}, [kind, against_itself](TestViewRenderer &renderer, double axis) {
                 const TestView test_view = table(kind);
                 const glm::dmat4 turned(glm::dmat3(glm::transpose(glm::mat3(eevee::cubefacemat[std::size_t(axis)]))));
                 return against_itself(renderer, placed(test_view, turned), test_view, false);
               });
-    cases.add({"mirror", name_of(kind), "picture of a mirrored scene, mirrored", "axis", "picture unmirrored"}, 1e-4,
-              {0, 1, 2}, [kind, against_itself](TestViewRenderer &renderer, double axis) {
-                const TestView test_view = table(kind);
-                glm::dmat4 mirror(1.0);
-                mirror[int(axis)][int(axis)] = -1.0;
-                return against_itself(renderer, placed(test_view, mirror), test_view, true);
-              });
+    cases.add(
+        {"mirror", name_of(kind), "picture of a mirrored scene, mirrored", "axis", "picture of the original scene"},
+        1e-4, {0, 1, 2}, [kind, against_itself](TestViewRenderer &renderer, double axis) {
+          const TestView test_view = table(kind);
+          glm::dmat4 mirror(1.0);
+          mirror[int(axis)][int(axis)] = -1.0;
+          return against_itself(renderer, placed(test_view, mirror), test_view, true);
+        });
   }
 }
 

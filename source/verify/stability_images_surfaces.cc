@@ -8,9 +8,9 @@ namespace gnomon::verify {
 void add_surface_images(ImageCases &cases)
 {
   for (const float metallic : {0.0F, 1.0F}) {
-    cases.add({"material", metallic > 0.0F ? "metal" : "dielectric", "picture of a scene of that roughness",
+    cases.add({"material", metallic > 0.0F ? "metal" : "dielectric", "picture of a scene of this roughness",
                "roughness", exact_rays},
-              // Metal's is a highlight smaller than a pixel on black: 0.16 was measured.
+              // The metal shows a highlight smaller than a pixel on black. Measured: 0.16.
               metallic > 0.0F ? 0.25 : sharp_bound, {0.0, 1e-6, 1e-3, 0.03, 0.1, 0.3, 1.0},
               [metallic](TestViewRenderer &renderer, double roughness) {
                 TestView test_view = table(LampKind::Point);
@@ -36,13 +36,14 @@ void add_surface_images(ImageCases &cases)
         test_view.camera.kind = scene::CameraKind::Orthographic;
         test_view.camera.half_width = test_view.camera.half_height = 1.0F;
         const Picture picture = renderer.draw(test_view, with(ShadowKind::None, {8, 8}, 1));
-        // All vectors the normal: D / 4, and no masking. Walter et al. 2007, eq. 33 at an angle of 0.
+        // At normal incidence: D / 4, without masking. Walter et al. 2007, eq. 33 at an angle of 0.
         const double alpha = std::max(double(float(roughness)) * double(float(roughness)), 1e-3);
         const double expected = 1.0 / (4.0 * pi * alpha * alpha);
         return largest_error(picture, Picture{picture.size_px, {picture.pixels.size(), glm::vec4(float(expected))}});
       });
-  cases.add({"triangles", "without area", "picture of a scene with such triangles too",
-             "1 corners alike, 2 two alike, 3 in a line, 4 1e-30 high, 5 1e-38 large, 6 1e12 long", "picture without"},
+  cases.add({"triangles", "without area", "picture of a scene with additional triangles",
+             "1 equal corners, 2 two equal corners, 3 in a line, 4 1e-30 high, 5 1e-38 large, 6 1e12 long",
+             "picture without"},
             0.0, {1, 2, 3, 4, 5, 6}, [](TestViewRenderer &renderer, double kind) {
               TestView test_view = table(LampKind::Point);
               const Picture without = renderer.draw(test_view, with(ShadowKind::Hard));
@@ -98,8 +99,8 @@ void add_surface_images(ImageCases &cases)
                                          }}};
   for (const Matrix &matrix : matrices) {
     for (const ShadowKind shadow : {ShadowKind::Hard, ShadowKind::Esm}) {
-      cases.add({"matrix", fmt::format("{}, {}", matrix.name, name_of(shadow)), "picture of a scene whose box is so",
-                 matrix.parameter, exact_rays},
+      cases.add({"matrix", fmt::format("{}, {}", matrix.name, name_of(shadow)),
+                 "picture of a scene whose box has this matrix", matrix.parameter, exact_rays},
                 bound_of(shadow), matrix.values,
                 [make = matrix.make, shadow](TestViewRenderer &renderer, double value) {
                   TestView test_view = table(LampKind::Point);

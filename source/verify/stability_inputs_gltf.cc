@@ -23,10 +23,10 @@ Outcome import_text(const std::string &text)
   return {contract_faults(scene).size(), scene.warnings};
 }
 
-/** Places of the nodes in small_scene. */
+/** Indices of the nodes in small_scene. */
 enum Node : int { Thing, Eye, Flat, Bulb, Sun, Spot, Panel };
 
-/** One of everything that has numbers. */
+/** A scene with every element that has numbers. */
 gltf::GltfBuilder small_scene()
 {
   gltf::GltfBuilder builder = gltf::triangle_scene();
@@ -49,11 +49,11 @@ gltf::GltfBuilder small_scene()
   return builder;
 }
 
-/** small_scene with one number changed. \a path: an RFC 6901 pointer. */
+/** A case of small_scene with one number replaced. \a path: an RFC 6901 pointer. */
 StabilityCase number_case(const std::string &name, const std::string &path, const std::string &unit,
                           const std::string &expected_text, Numbers values)
 {
-  return input_case<double>("gltf", name, "scene of a file with that value at " + path, unit, expected_text,
+  return input_case<double>("gltf", name, "scene of a file with this value at " + path, unit, expected_text,
                             std::move(values), [path](const double &value) {
                               gltf::GltfBuilder builder = small_scene();
                               builder.document[json::json_pointer(path)] = value;
@@ -75,7 +75,7 @@ void add_lamp_inputs(std::vector<StabilityCase> &cases)
 {
   constexpr Expected accepted = Expected::Accepted;
   constexpr Expected rejected = Expected::Rejected;
-  // Beyond what a product of two such numbers leaves finite, below 0, and beyond float.
+  // Values whose products overflow float, negative values, and values beyond float.
   const Numbers outside = inputs({-1e300, -1.0, -1e-300, 1.01e12, 1e38, 1e39, 1e300}, rejected);
   const Numbers not_negative = inputs({0.0, 5e-324, 1e-300, 1e-40, 1.0, 1e12}, accepted) + outside;
   const Numbers length =
@@ -91,7 +91,7 @@ void add_lamp_inputs(std::vector<StabilityCase> &cases)
       inputs({1e-9, 1e-3, 1.0, 1.5707963}, accepted) + inputs({-1.0, 0.0, 1e-300, 1e-46, 1.58, 3.2, 1e300}, rejected)));
   cases.push_back(number_case("spot inner cone", light_path(2, "spot/innerConeAngle"), "rad", "innerConeAngle is",
                               inputs({0.0, 1e-300, 0.7}, accepted) + inputs({-1.0, -1e-300, 0.8, 1e300}, rejected)));
-  cases.push_back(input_case<double>("gltf", "lamp color", "scene of a file with that factor in a lamp's colour",
+  cases.push_back(input_case<double>("gltf", "lamp color", "scene of a file with this factor in a lamp's colour",
                                      "factor", "color is", not_negative, [](const double &value) {
                                        gltf::GltfBuilder builder = small_scene();
                                        builder.document[json::json_pointer(light_path(0, "color"))] = {1.0, value, 0.5};
@@ -129,7 +129,7 @@ void add_lamp_inputs(std::vector<StabilityCase> &cases)
                                 std::string(extra.key) + " is", extra.values));
   }
   cases.push_back(input_case<json>("gltf", "extras of a wrong type",
-                                   "scene of a file whose gnomon_exponent is no number",
+                                   "scene of a file whose gnomon_exponent is not a number",
                                    "1 string, 2 true, 3 null, 4 array, 5 object", "gnomon_exponent is",
                                    {{1, "1", rejected},
                                     {2, true, rejected},
@@ -141,7 +141,7 @@ void add_lamp_inputs(std::vector<StabilityCase> &cases)
                                      builder.document[json::json_pointer(extra_path(Bulb, "gnomon_exponent"))] = value;
                                      return import_text(builder.gltf());
                                    }));
-  cases.push_back(input_case<int>("gltf", "lamp count", "scene of a file with so many lamps", "lamps", "no lamp",
+  cases.push_back(input_case<int>("gltf", "lamp count", "scene of a file with this many lamps", "lamps", "no lamp",
                                   {{0, 0, Expected::Reported}, {1, 1}, {255, 255}, {256, 256}, {2000, 2000}},
                                   [](const int &count) {
                                     gltf::GltfBuilder builder = gltf::triangle_scene();
@@ -194,7 +194,7 @@ void add_material_inputs(std::vector<StabilityCase> &cases)
           inputs({-1e300, -1.0, 1e-300, 0.99}, Expected::Reported));
   const auto add_color = [&](const std::string &name, const std::string &path, const json &color,
                              const Numbers &values) {
-    cases.push_back(input_case<double>("gltf", name, "scene of a file with that factor in " + path, "factor",
+    cases.push_back(input_case<double>("gltf", name, "scene of a file with this factor in " + path, "factor",
                                        path.substr(path.rfind('/') + 1) + " is", values,
                                        [path = material + path, color](const double &value) {
                                          gltf::GltfBuilder builder = small_scene();
@@ -209,7 +209,7 @@ void add_material_inputs(std::vector<StabilityCase> &cases)
   add_color("specular color", "extensions/KHR_materials_specular/specularColorFactor", {0.5, 0.5, 0.5}, open);
 }
 
-/** A good triangle, and one beside it of which \a spoil changes the last corner's x. */
+/** A valid triangle, and a second one whose last corner has the coordinate \a x. */
 gltf::GltfBuilder two_triangles(float x)
 {
   gltf::GltfBuilder builder;
@@ -226,16 +226,16 @@ void add_mesh_inputs(std::vector<StabilityCase> &cases)
         input_case<float>("gltf", name, quantity, float_kinds, expected_text, std::move(values),
                           [make = std::move(make)](const float &x) { return import_text(make(x).gltf()); }));
   };
-  add_floats("positions", "scene of a file with such a coordinate", "a position is not finite",
+  add_floats("positions", "scene of a file with this coordinate", "a position is not finite",
              float_inputs({5, 6}, Expected::Reported), two_triangles);
-  add_floats("normals", "scene of a file with such normals", "normal replaced",
+  add_floats("normals", "scene of a file with this normal", "normal replaced",
              float_inputs({4, 5, 7}, Expected::Reported), [](float x) {
                gltf::GltfBuilder builder = two_triangles(0.0F);
                builder.document["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = builder.accessor(
                    std::vector<float>{0, 0, 1, 0, 0, 1, x, x, x, 0, 0, 1, 0, 0, 1, 0, x, 0}, gltf::Float32, "VEC3");
                return builder;
              });
-  add_floats("texture coordinates", "scene of a file with such texture coordinates", "texture coordinate replaced",
+  add_floats("texture coordinates", "scene of a file with this texture coordinate", "texture coordinate replaced",
              float_inputs({5, 6}, Expected::Reported), [](float x) {
                gltf::GltfBuilder builder = two_triangles(0.0F);
                json &primitive = builder.document["meshes"][0]["primitives"][0];
@@ -252,9 +252,9 @@ void add_mesh_inputs(std::vector<StabilityCase> &cases)
                                 "AABJRU5ErkJggg=="}});
                return builder;
              });
-  // Corners of the second triangle along a line; the last is off it by the parameter.
+  // The corners of the second triangle are on a line, except that the parameter is the last one's distance from it.
   cases.push_back(input_case<float>(
-      "gltf", "flat triangles", "scene of a file with a triangle of that height", "m", "it has no area",
+      "gltf", "flat triangles", "scene of a file with a triangle of this height", "m", "it has no area",
       {{0.0, 0.0F, Expected::Reported}, {1e-40, 1e-40F}, {1e-30, 1e-30F}, {1e-7, 1e-7F}, {1.0, 1.0F}},
       [](const float &height) {
         gltf::GltfBuilder builder;
@@ -263,13 +263,13 @@ void add_mesh_inputs(std::vector<StabilityCase> &cases)
         return import_text(builder.gltf());
       }));
   cases.push_back(input_case<std::uint32_t>(
-      "gltf", "vertex indices", "scene of a file with that index", "index", "a vertex index is out of range",
+      "gltf", "vertex indices", "scene of a file with this index", "index", "a vertex index is out of range",
       {{0, 0, Expected::Reported}, {5, 5}, {6, 6, Expected::Reported}, {4294967295.0, 0xFFFFFFFFU, Expected::Reported}},
       [](const std::uint32_t &index) {
         gltf::GltfBuilder builder = two_triangles(0.0F);
         builder.document["meshes"][0]["primitives"][0]["indices"] =
             builder.accessor(std::vector<std::uint32_t>{0, 1, 2, 3, 4, index}, gltf::Uint32, "SCALAR");
-        // Index 0 makes a triangle between the two; it is only there to be accepted.
+        // Index 0 gives a triangle between the two, which is only required to be accepted.
         Outcome outcome = import_text(builder.gltf());
         if (index == 0) {
           outcome.messages.emplace_back("a vertex index is out of range");
@@ -282,12 +282,12 @@ void add_node_inputs(std::vector<StabilityCase> &cases)
 {
   const auto add_matrices = [&](const char *name, const char *parameter, const char *expected_text,
                                 std::vector<Input<json>> values) {
-    cases.push_back(input_case<json>("gltf", name, "scene of a file with that node, an object, lamp or camera on it",
+    cases.push_back(input_case<json>("gltf", name, "scene of a file with this node and an object, lamp or camera on it",
                                      parameter, expected_text, std::move(values), [](const json &place) {
                                        Outcome all;
                                        for (const int node : {Thing, Eye, Bulb, Sun, Spot, Panel}) {
                                          gltf::GltfBuilder builder = small_scene();
-                                         // Something is left where this is left out.
+                                         // Keeps the scene valid if the tested node is left out.
                                          builder.node({{"mesh", 0}});
                                          json &changed = builder.document["nodes"][node];
                                          changed.erase("translation");
@@ -333,7 +333,7 @@ void add_node_inputs(std::vector<StabilityCase> &cases)
                 {2, {{"scale", {1e-300, 1, 1}}}},
                 {3, {{"scale", {1e300, 1, 1}}}, reported},
                 {4, {{"scale", {1e-20, 1e11, -1e11}}}}});
-  // A number that JSON has and no float: one place after another.
+  // Numbers that JSON can express and a float cannot, in one property after another.
   const std::vector<std::string> paths = {"/nodes/0/translation",
                                           light_path(0, "intensity"),
                                           light_path(2, "spot/outerConeAngle"),

@@ -161,12 +161,12 @@ void add_settings_inputs(std::vector<StabilityCase> &cases)
   add("samples", "samples a pixel", "sample_count", inputs({1, 2, 64}, Expected::Accepted) + inputs({-1, 0}, rejected),
       [](eevee::Settings &s, double v) { s.sample_count = int(v); });
   cases.push_back(input_case<double>(
-      "settings", "exposure", "frame with such a target", "stops", "exposure",
+      "settings", "exposure", "frame with this target", "stops", "exposure",
       with_nan(inputs({-100, 0, 100}, Expected::Accepted) + inputs({-1e9, 128, 1e38}, rejected)), [](const double &v) {
         return draw_on_null(lit_scene(), small_settings(), {16, 16}, float(v));
       }));
   cases.push_back(input_case<glm::ivec2>(
-      "settings", "viewport", "frame of that size",
+      "settings", "viewport", "frame of this size",
       "1 1x1, 2 16384x1, 3 1x16384, 4 16384x16384, 5 0x1, 6 1x0, 7 -1x1, 8 16385x1, 9 1x16385", "viewport: ",
       {{1, {1, 1}},
        {2, {16384, 1}},
@@ -178,18 +178,18 @@ void add_settings_inputs(std::vector<StabilityCase> &cases)
        {8, {16385, 1}, rejected},
        {9, {1, 16385}, rejected}},
       [](const glm::ivec2 &size_px) {
-        // Nothing is read back: 16384x16384 would be 4 GiB.
+        // The picture is not read back, because 16384x16384 would need 4 GiB.
         return draw_on_null(lit_scene(), small_settings(), size_px);
       }));
 }
 
-/** \a lamp changed, of a scene made by a host. */
+/** Cases of lamps in a scene made by a host. */
 void add_host_lamp_inputs(std::vector<StabilityCase> &cases)
 {
   constexpr Expected rejected = Expected::Rejected;
   const auto add = [&](const char *name, const char *unit, const char *expected_text, scene::ShadowKind kind,
                        Numbers values, std::function<void(scene::LampShadow &, double)> set) {
-    cases.push_back(input_case<double>("host", name, "frame of a scene with such a lamp", unit, expected_text,
+    cases.push_back(input_case<double>("host", name, "frame of a scene with this lamp", unit, expected_text,
                                        std::move(values), [set = std::move(set), kind](const double &value) {
                                          scene::Scene scene = lit_scene();
                                          scene.edit(scene.lamps().first(),
@@ -209,7 +209,7 @@ void add_host_lamp_inputs(std::vector<StabilityCase> &cases)
   add("lamp's filter", "rad", "lamp 'lamp0': filter angle", scene::ShadowKind::Evsm,
       inputs({0, 0.5}, Expected::Accepted) + inputs({-1, 0.51, 1e38}, rejected),
       [](scene::LampShadow &shadow, double v) { shadow.filter_radius = float(v); });
-  // glTF's length_range: what an importer lets in.
+  // The importer's length_range.
   add("lamp's clip distances", "m", "", scene::ShadowKind::Hard,
       inputs({1e-12, 1e-6, 1.0, 1e6, 1e12}, Expected::Accepted), [](scene::LampShadow &shadow, double v) {
         shadow.clip_start = float(v);
@@ -236,8 +236,8 @@ void add_host_lamp_inputs(std::vector<StabilityCase> &cases)
     }
     values.push_back({double(count.most + 1), count.most + 1, Expected::Reported});
     cases.push_back(input_case<int>(
-        "host", fmt::format("count of {}", count.name), "frame of so many lamps; those that lose are reported", "lamps",
-        fmt::format("'lamp{}'", count.most), values, [count](const int &n) {
+        "host", fmt::format("count of {}", count.name), "frame of this many lamps; lamps above the limit are reported",
+        "lamps", fmt::format("'lamp{}'", count.most), values, [count](const int &n) {
           scene::Scene scene = lit_scene();
           remove_lamps(scene);
           for (int i = 0; i < n; i++) {
@@ -247,7 +247,7 @@ void add_host_lamp_inputs(std::vector<StabilityCase> &cases)
           settings.shadow.esm.size_px = 8;
           settings.shadow.cascades.count = 1;
           Outcome outcome = draw_on_null(scene, settings);
-          // No lamp is lost before the limit.
+          // Below the limit no lamp is reported.
           const bool is_named =
               std::ranges::any_of(outcome.messages, [](const auto &m) { return m.find("lamps l") != m.npos; });
           outcome.fault_count += n <= count.most && is_named ? 1 : 0;
@@ -259,7 +259,7 @@ void add_host_lamp_inputs(std::vector<StabilityCase> &cases)
 constexpr const char *matrix_kinds =
     "1 NaN, 2 infinity, 3 -infinity, 4 zero, 5 flat, 6 sheared, 7 mirrored, 8 1e-20, 9 1e12";
 
-/** Matrices that are not finite, and then those that are. */
+/** Matrices that are not finite, followed by finite ones. */
 glm::mat4 odd_matrix(int kind)
 {
   using Float = std::numeric_limits<float>;
@@ -292,7 +292,7 @@ void add_host_call_inputs(std::vector<StabilityCase> &cases)
 {
   for (const auto &[name, shadow] : {std::pair("object matrices, hard shadows", scene::ShadowKind::Hard),
                                      {"object matrices, exponential shadows", scene::ShadowKind::Esm}}) {
-    cases.push_back(input_case<int>("host", name, "frame of an object with that matrix", matrix_kinds, "node 'object1'",
+    cases.push_back(input_case<int>("host", name, "frame of an object with this matrix", matrix_kinds, "node 'object1'",
                                     matrix_inputs(4), [shadow](const int &kind) {
                                       scene::Scene scene = lit_scene();
                                       scene.set_transform(scene.objects()[1].node, odd_matrix(kind));
@@ -300,7 +300,7 @@ void add_host_call_inputs(std::vector<StabilityCase> &cases)
                                     }));
   }
   cases.push_back(
-      input_case<float>("host", "culling volumes", "frame of an object with that radius", float_kinds, "object 2",
+      input_case<float>("host", "culling volumes", "frame of an object with this radius", float_kinds, "object 2",
                         float_inputs({2, 3, 4, 5, 6, 7}, Expected::Rejected), [](const float &radius) {
                           const scene::Scene scene = lit_scene();
                           const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
@@ -315,10 +315,10 @@ void add_host_call_inputs(std::vector<StabilityCase> &cases)
                           renderer.draw(lit_camera());
                           return Outcome{shadow_block_faults(renderer.engine.shadows(renderer.viewport)), {}};
                         }));
-  // A view without an inverse sees nothing from nowhere.
+  // A view without an inverse is refused.
   std::vector<Input<int>> views = matrix_inputs(6);
-  cases.push_back(input_case<int>(
-      "host", "view matrices", "frame from such a view", matrix_kinds, "view", views, [](const int &kind) {
+  cases.push_back(
+      input_case<int>("host", "view matrices", "frame of this view", matrix_kinds, "view", views, [](const int &kind) {
         const scene::Scene scene = lit_scene();
         const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
         Renderer renderer(*device, scene, {16, 16}, small_settings());

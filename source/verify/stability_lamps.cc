@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lamps: cones, fall-off, near planes, the block's limit.
+// Lamps: cones, fall-off, near planes, and the capacity of light_block.
 #include "internal/stability_cases.hh"
 
 #include "eevee_lamps.hh"
@@ -23,14 +23,14 @@ namespace {
 constexpr const char *group = "lamps";
 constexpr double degree = std::numbers::pi / 180.0;
 
-/** 1 less the cosine, without the cancellation. */
+/** 1 - cos, without cancellation. */
 double one_minus_cos(double angle)
 {
   const double sine = std::sin(0.5 * angle);
   return 2.0 * sine * sine;
 }
 
-/** Angles from a cone's axis, finely next to its edge. */
+/** Angles from a cone's axis, dense next to its edge. */
 std::vector<double> angles_around(double edge)
 {
   std::vector<double> angles = even_steps(0.0, std::numbers::pi, 91);
@@ -82,8 +82,8 @@ void add_spot_cases(std::vector<StabilityCase> &cases)
                      .parameter = "angle from the axis, rad",
                      .reference = "double",
                      .unit = epsilon_unit,
-                     // The drops and the width are rounded by half an epsilon each, and so is each step to t, of which
-                     // smoothstep makes 1.5 times as much at most; and three roundings of its own.
+                     // 1 - cos of both angles and the width are rounded by half an epsilon each, and so is each step to
+                     // t, which smoothstep multiplies by at most 1.5; it has three more roundings.
                      .bound = 1.5 * 5 * 0.5 + 1.5,
                      .run = swept(even_steps(0.0, 0.5 * cone * degree, 121), [=](double angle) {
                        scene::PlacedLamp lamp;
@@ -100,7 +100,7 @@ void add_spot_cases(std::vector<StabilityCase> &cases)
   }
   cases.push_back({.group = group,
                    .name = "spot's view, narrow to wide",
-                   .quantity = "place in the map of a receiver on the cone's edge: inside",
+                   .quantity = "position in the map of a receiver on the cone's edge: inside",
                    .parameter = "half of the opening, rad",
                    .reference = "closed form",
                    .unit = violation_unit,
@@ -123,8 +123,8 @@ void add_falloff_cases(std::vector<StabilityCase> &cases)
   for (const float radius : {0.0F, 1e-4F, 1.0F}) {
     for (const float range : {0.0F, 1e-3F, 1e4F}) {
       cases.push_back(case_of({group, fmt::format("fall-off, radius {:g} m, range {:g} m", radius, range),
-                               "distance_falloff", "irradiance of a lamp of 1 W/sr, at the lamp and away",
-                               "distance, m", zero_and_log_steps(1e-8, 1e8, 161), [=](double distance) {
+                               "distance_falloff", "irradiance of a lamp of 1 W/sr", "distance, m",
+                               zero_and_log_steps(1e-8, 1e8, 161), [=](double distance) {
                                  return Arguments<float>{.a = {float(distance * distance), radius * radius,
                                                                range > 0.0F ? 1.0F / (range * range) : 0.0F, 0.0F}};
                                }}));
@@ -132,7 +132,7 @@ void add_falloff_cases(std::vector<StabilityCase> &cases)
   }
   cases.push_back({.group = group,
                    .name = "ranges of 1e-30 to 1e30 m",
-                   .quantity = "irradiance in the lamp's position and at 1 m: finite, and as the range says",
+                   .quantity = "irradiance at the lamp's position and at 1 m: finite, and equal to the closed form",
                    .parameter = "range, m",
                    .reference = "closed form",
                    .unit = "relative",
@@ -144,12 +144,12 @@ void add_falloff_cases(std::vector<StabilityCase> &cases)
                      const double at_lamp = shared::distance_falloff(0.0F, light.radius_sq, light.range_inv_sq);
                      const double away = shared::distance_falloff(1.0F, light.radius_sq, light.range_inv_sq);
                      const double window = std::max(1.0 - std::pow(range, -4.0), 0.0);
-                     // Where the window closes its slope is 4.
+                     // The window's slope is 4 where it closes.
                      return std::max(std::abs(at_lamp / 1e12 - 1.0), std::abs(away - window));
                    })});
   cases.push_back({.group = group,
                    .name = "radii of 1e-30 to 1e12 m",
-                   .quantity = "irradiance of a lamp of 1 W/sr in its own position: 1 / radius², at most 1e12",
+                   .quantity = "irradiance of a lamp of 1 W/sr at its own position: 1 / radius², at most 1e12",
                    .parameter = "radius, m",
                    .reference = "closed form",
                    .unit = epsilon_unit,
@@ -161,7 +161,7 @@ void add_falloff_cases(std::vector<StabilityCase> &cases)
                      const double truth = 1.0 / std::max(std::pow(double(lamp.radius), 2.0), 1e-12);
                      return std::abs(given / truth - 1.0) / float_epsilon;
                    })});
-  cases.push_back(case_of({group, "hemi", "hemi_irradiance", "share of a uniform sky that a surface sees",
+  cases.push_back(case_of({group, "hemi", "hemi_irradiance", "visible fraction of a uniform sky from a surface",
                            "angle from the sky's axis, rad", even_steps(0.0, std::numbers::pi, 91), [](double angle) {
                              return Arguments<float>{.a = {float(std::cos(angle)), 0.0F, 0.0F, 0.0F}};
                            }}));
@@ -174,8 +174,8 @@ void add_count_cases(std::vector<StabilityCase> &cases)
     const char *name = kind == scene::LampKind::Point ? "points" : kind == scene::LampKind::Sun ? "suns" : "spots";
     cases.push_back({.group = group,
                      .name = fmt::format("0, 1, max and max+1 {}", name),
-                     .quantity = "entries of light_block that are not the lamp's of their number, and lamps too many "
-                                 "that are not named",
+                     .quantity = "entries of light_block that differ from the lamp of their index, and lamps above the "
+                                 "limit that are not named",
                      .parameter = "lamps",
                      .reference = "closed form",
                      .unit = violation_unit,
@@ -202,7 +202,7 @@ void add_count_cases(std::vector<StabilityCase> &cases)
   }
 }
 
-/** A triangle around the lamp's axis, \a distance below it, as a caster of which the mesh is known. */
+/** A caster: a triangle around the lamp's axis, \a distance below the lamp, with a known mesh. */
 struct CasterBelow {
   scene::Mesh mesh;
   glm::mat4 world_from_object{1.0F};
@@ -227,8 +227,9 @@ void add_near_cases(std::vector<StabilityCase> &cases)
   for (const double size : {1e-3, 1.0, 1e5}) {
     cases.push_back({.group = group,
                      .name = fmt::format("near plane before a caster of {:g} m", size),
-                     .quantity = "lamp's near plane: before what is along a face's diagonal, or 1e-4 of the caster's "
-                                 "radius; and above 0",
+                     .quantity =
+                         "lamp's near plane: above 0, and nearer than the caster along a face's diagonal or 1e-4 "
+                         "of the caster's radius",
                      .parameter = "distance of the caster, m",
                      .reference = "closed form",
                      .unit = violation_unit,
@@ -261,7 +262,7 @@ void add_near_cases(std::vector<StabilityCase> &cases)
                    .parameter = "length of the triangle, m",
                    .reference = "closed form",
                    .unit = epsilon_unit,
-                   // In double but for the last.
+                   // Computed in double except for the last step.
                    .bound = 1.0,
                    .run = swept(zero_and_log_steps(1e-38, 1e6, 133), [](double length) {
                      scene::Mesh mesh;
@@ -291,23 +292,23 @@ void add_near_cases(std::vector<StabilityCase> &cases)
 
 void add_shadow_cases(std::vector<StabilityCase> &cases)
 {
-  cases.push_back(case_of({"shadow", "lift over texels", "shadow_lift", "how far a receiver is lifted",
+  cases.push_back(case_of({"shadow", "lift over texels", "shadow_lift", "normal offset of a receiver",
                            "edge of a texel, m", log_steps(1e-9, 1e6, 151), [](double texel) {
                              return Arguments<float>{.a = {float(texel), 2.0F, 1e-6F, 1.0F}};
                            }}));
-  cases.push_back(case_of({"shadow", "lift over world offsets", "shadow_lift", "how far a receiver is lifted",
+  cases.push_back(case_of({"shadow", "lift over world offsets", "shadow_lift", "normal offset of a receiver",
                            "largest coordinate, m", log_steps(1e-3, 1e8, 111), [](double offset) {
                              return Arguments<float>{.a = {1e-3F, 1.0F, 0.0F, float(offset)}};
                            }}));
   cases.push_back(case_of({"shadow", "slope of a plane seen edge-on", "slope_quotient",
-                           "change of depth a texel, 0 where the plane has none", "denominator",
+                           "change of depth per texel, 0 for a plane without area", "denominator",
                            zero_and_log_steps(1e-38, 1e10, 145), [](double denominator) {
                              return Arguments<float>{.a = {1.0F, float(denominator), 0.0F, 0.0F}};
                            }}));
   for (const float depth : {0.0F, 1e-6F, 1.0F}) {
     cases.push_back(case_of(
         {"shadow", fmt::format("depths of a grazing plane at {:g}", depth), "plane_depths",
-         "depth of a plane at four texels", "slope, depth a texel", log_steps(1e-12, 1e6, 109), [=](double slope) {
+         "depth of a plane at four texels", "slope, depth per texel", log_steps(1e-12, 1e6, 109), [=](double slope) {
            return Arguments<float>{.a = {depth, float(slope), -float(slope), 0.0F}, .b = {-0.25F, -0.75F, 0.0F, 0.0F}};
          }}));
   }
@@ -318,11 +319,11 @@ void add_shadow_cases(std::vector<StabilityCase> &cases)
                      .parameter = "world offset of the lamp, m",
                      .reference = "closed form",
                      .unit = "epsilons of offset / distance",
-                     // The receiver is rounded, and so is its difference from the lamp.
+                     // The receiver and its difference from the lamp are rounded.
                      .bound = 1.0,
                      .run = swept(zero_and_log_steps(1e-3, 1e8, 111), [=](double offset) {
                        const double near = 1e-3;
-                       // Never nearer than coordinates resolve.
+                       // At least the resolution of coordinates.
                        const double distance = std::max(is_far ? 1e4 : 0.1, 64.0 * float_epsilon * offset);
                        const glm::vec3 lamp = glm::vec3(glm::dvec3(offset, -offset, offset));
                        const std::array<draw::View, 6> views = eevee::shadow_cube_views(lamp, float(near), 1024);

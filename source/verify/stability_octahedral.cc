@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Directions on the octahedral map and on a cube's faces: folds, edges, corners, lengths.
+// Directions on the octahedral map and on the faces of a cube: folds, edges, corners, vector lengths.
 #include "internal/stability_cases.hh"
 
 #include "eevee_octahedral_shared.h"
@@ -20,11 +20,11 @@ namespace {
 
 constexpr const char *group = "octahedral";
 /**
- * Radians: coordinates near 1 are rounded to 6e-8, which is twice that on the octahedron and up to three times more
- * on the sphere, in two axes.
+ * Error bound, rad: coordinates near 1 are rounded to 6e-8, which is twice as much on the octahedron and up to three
+ * times more on the sphere, in two axes.
  */
 constexpr double angle_bound = 5e-7;
-/** Where one of two coordinates is exact. Measured: 3e-8. */
+/** Error bound, rad, if one of the two coordinates is exact. Measured: 3e-8. */
 constexpr double edge_bound = 1e-7;
 constexpr std::array<const char *, 6> axis_names = {"+X", "-X", "+Y", "-Y", "+Z", "-Z"};
 
@@ -46,7 +46,7 @@ double round_trip_error(const shared::vec3 &v)
                        glm::dvec3(shared::octahedral_to_direction(shared::octahedral_from_direction(v))));
 }
 
-/** With GLSL's sign(), which is 0 at 0, and no least norm. */
+/** Error of the form with GLSL's sign(), which is 0 at 0, and without a minimum norm. */
 double naive_round_trip_error(const shared::vec3 &v)
 {
   const float norm = std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
@@ -64,7 +64,7 @@ void add_round_trip_cases(std::vector<StabilityCase> &cases)
                        std::function<double(double)> error_at, double bound = angle_bound, bool is_baseline = false) {
     cases.push_back({.group = group,
                      .name = name,
-                     .quantity = "direction, to the map and back",
+                     .quantity = "direction, converted to the map and back",
                      .parameter = parameter,
                      .reference = "closed form",
                      .unit = "rad",
@@ -93,7 +93,7 @@ void add_round_trip_cases(std::vector<StabilityCase> &cases)
       if (k / 2 == i / 2) {
         continue;
       }
-      // The third axis' components of the directions on an edge are 0, of either sign.
+      // Directions on an edge have a third component of 0, of either sign.
       const int third = 3 - int(i / 2) - int(k / 2);
       const auto error_at = [=](double share, double beside, auto trip) {
         glm::dvec3 v = (1.0 - share) * axis_of(i) + share * axis_of(k);
@@ -102,7 +102,7 @@ void add_round_trip_cases(std::vector<StabilityCase> &cases)
       };
       const std::string name = fmt::format("edge {} to {}", axis_names[i], axis_names[k]);
       add(
-          name, "place on the edge", even_steps(0.0, 1.0, 65),
+          name, "position on the edge", even_steps(0.0, 1.0, 65),
           [=](double share) {
             double worst = 0.0;
             for (const double beside : {0.0, -0.0, 1e-30, -1e-30, 1e-8, -1e-8}) {
@@ -113,7 +113,7 @@ void add_round_trip_cases(std::vector<StabilityCase> &cases)
           edge_bound);
       if (k == 5) {
         add(
-            "sign(0), " + name, "place on the edge", even_steps(0.0, 1.0, 65),
+            "sign(0), " + name, "position on the edge", even_steps(0.0, 1.0, 65),
             [=](double share) { return error_at(share, 0.0, naive_round_trip_error); }, edge_bound, true);
       }
     }
@@ -173,9 +173,8 @@ void add_texel_cases(std::vector<StabilityCase> &cases)
   const std::vector<double> sizes = {1, 2, 3, 4, 7, 16, 31, 64, 257, 512, 1024, 4096, 8192, 16384};
   cases.push_back({.group = group,
                    .name = "border of maps of 1 to 16384 px",
-                   .quantity =
-                       "texel that continues the map past an edge or corner: it is in the map, and the direction "
-                       "next to it that the edge mirrors",
+                   .quantity = "texel that continues the map beyond an edge or corner: inside the map, and in the "
+                               "mirrored direction",
                    .parameter = "size of the map, px",
                    .reference = "closed form",
                    .unit = "rad",
@@ -214,7 +213,7 @@ void add_texel_cases(std::vector<StabilityCase> &cases)
                    .parameter = "size of the map, px",
                    .reference = "closed form: 1",
                    .unit = "relative",
-                   // The midpoint rule's error, whose largest terms cancel. Measured: 1e-7.
+                   // The error of the midpoint rule, whose largest terms cancel. Measured: 1e-7.
                    .bound = 1e-6,
                    .run = swept({32, 48, 64, 96, 128}, [](double size_px) {
                      const int size = int(size_px);
@@ -240,7 +239,7 @@ void add_cube_cases(std::vector<StabilityCase> &cases)
       const int third = 3 - int(i / 2) - int(k / 2);
       cases.push_back({.group = "cube",
                        .name = fmt::format("edge between {} and {}", axis_names[i], axis_names[k]),
-                       .quantity = "face: one of the two, that shows the direction within its 90°",
+                       .quantity = "face: one of the two, with the direction within its 90°",
                        .parameter = "angle from the edge, rad",
                        .reference = "closed form",
                        .unit = violation_unit,
@@ -257,7 +256,7 @@ void add_cube_cases(std::vector<StabilityCase> &cases)
                              const shared::vec3 seen = shared::cube_face_project(face, direction);
                              const bool is_shown =
                                  seen.z > 0.0F && std::abs(seen.x) <= seen.z && std::abs(seen.y) <= seen.z;
-                             // Float may put the nearest on the edge, where the earlier axis has it.
+                             // In float the nearest directions may be on the edge, which belongs to the earlier axis.
                              const bool is_right = face == int(side > 1e-7 ? k : side < -1e-7 ? i : std::size_t(face));
                              worst = std::max(worst, violated(is_shown && is_right));
                            }
@@ -268,7 +267,7 @@ void add_cube_cases(std::vector<StabilityCase> &cases)
   }
   cases.push_back({.group = "cube",
                    .name = "faces that a box touches",
-                   .quantity = "face of each point of a box: in the mask of the box",
+                   .quantity = "faces of the points of a box: all in the mask of the box",
                    .parameter = "size of the box, m, 1 m from the lamp",
                    .reference = "closed form",
                    .unit = violation_unit,
@@ -293,7 +292,7 @@ void add_cube_cases(std::vector<StabilityCase> &cases)
                      }
                      return missing;
                    })});
-  cases.push_back(case_of({"cube", "faces of 1 to 16384 px", "cube_uv_scale", "share of a face's width that 90° take",
+  cases.push_back(case_of({"cube", "faces of 1 to 16384 px", "cube_uv_scale", "fraction of a face's width for 90°",
                            "size of the face, px", log_steps(1, 16384, 101), [](double size) {
                              return Arguments<float>{.a = {std::floor(float(size)), 0.0F, 0.0F, 0.0F}};
                            }}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From samples to a file: sizes from 1 pixel to 16384, sample counts, the display's transfer function.
+// Pictures from samples to files: sizes from 1 to 16384 pixels, numbers of samples, view transforms.
 #include "internal/stability_cases.hh"
 
 #include "eevee_camera.hh"
@@ -27,11 +27,11 @@ void add_picture_cases(std::vector<StabilityCase> &cases)
   cases.push_back(
       {.group = group,
        .name = "samples of pictures of 1 px to 16384",
-       .quantity = "how far a sample half a pixel aside moves the picture",
+       .quantity = "offset of the picture for a sample at half a pixel",
        .parameter = "width and height, px",
        .reference = "double",
        .unit = "epsilons of the size",
-       // The offset and its sum with the matrix are rounded.
+       // Roundings of the offset and of its sum with the matrix.
        .bound = 0.5,
        .run = swept(sizes, [](double size) {
          const glm::ivec2 size_px{int(size)};
@@ -51,7 +51,7 @@ void add_picture_cases(std::vector<StabilityCase> &cases)
   cases.push_back(
       {.group = group,
        .name = "pictures of any shape",
-       .quantity = "camera's own frame of 3:2: wholly visible, as large as fits",
+       .quantity = "camera's frame of 3:2: completely visible and as large as possible",
        .parameter = "width / height",
        .reference = "closed form",
        .unit = epsilon_unit,
@@ -80,7 +80,7 @@ void add_picture_cases(std::vector<StabilityCase> &cases)
                    .parameter = "samples",
                    .reference = "closed form: 1",
                    .unit = epsilon_unit,
-                   // Each weight is rounded once and multiplied once, either way.
+                   // Each weight is rounded once and multiplied once.
                    .bound = 1.0,
                    .run = swept(counts, [](double count) {
                      double worst = 0.0;
@@ -99,7 +99,7 @@ void add_picture_cases(std::vector<StabilityCase> &cases)
                    })});
   cases.push_back({.group = group,
                    .name = "sample places of 1 to 16384 samples",
-                   .quantity = "place in the pixel: in [-0.5, 0.5]",
+                   .quantity = "position in the pixel: in [-0.5, 0.5]",
                    .parameter = "samples",
                    .reference = "closed form",
                    .unit = violation_unit,
@@ -127,9 +127,9 @@ void add_picture_cases(std::vector<StabilityCase> &cases)
            }}));
     }
   }
-  // What no closed form can say simply: a display takes 0 to 1, and more light is never shown darker by half a step of
-  // 8 bits. AgX's polynomial ends at 0.9987, to which saturated colours fall from 1 as they fade to white: 0.0014 was
-  // measured.
+  // Properties instead of a closed form: values are in [0, 1], and with more light the largest channel does not fall by
+  // half a step of 8 bits. AgX's polynomial ends at 0.9987, to which saturated colours fall from 1 as they fade to
+  // white. Measured: 0.0014.
   constexpr float fall_max = 0.5F / 255.0F;
   for (const auto &[transform, name] :
        {std::pair(VIEW_TRANSFORM_AGX, "agx"), std::pair(VIEW_TRANSFORM_PBR_NEUTRAL, "pbr-neutral")}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The reference itself: rays at world offsets and grazing angles, triangles without area, lamps at receivers.
+// The reference: rays at world offsets and grazing angles, triangles without area, lamps at receivers.
 #include "internal/stability_cases.hh"
 
 #include "reference_lamp.hh"
@@ -20,10 +20,10 @@ namespace gnomon::verify {
 namespace {
 
 constexpr const char *group = "reference";
-/** Half of double's epsilon: one rounding. */
+/** Largest relative error of one rounding in double. */
 constexpr double rounding = 0x1p-53;
 
-/** Triangles with corners in the order given, in a scene of their own. */
+/** A scene of triangles with the given corners. */
 struct Triangles {
   scene::Scene scene;
 
@@ -46,14 +46,14 @@ struct Triangles {
   }
 };
 
-/** A square in z = 0 around the origin, of two triangles. */
+/** A square of two triangles in z = 0 around the origin. */
 std::vector<glm::vec3> square(double half)
 {
   const auto h = float(half);
   return {{-h, -h, 0}, {h, -h, 0}, {h, h, 0}, {-h, -h, 0}, {h, h, 0}, {-h, h, 0}};
 }
 
-/** The first hit's t, or infinity. */
+/** t of the nearest hit, or infinity. */
 double hit_t(const Triangles &triangles, const glm::dvec3 &origin, const glm::dvec3 &direction)
 {
   const reference::Tracer tracer(triangles.scene);
@@ -93,9 +93,9 @@ void add_tracer_cases(std::vector<StabilityCase> &cases)
         return std::abs(hit_t(Triangles(square(2e6)), {-1e5, 0.2, 1.0}, {std::cos(angle), 0.0, -sine}) * sine - 1.0) /
                rounding;
       });
-  // What has no area is not hit, and hides nothing.
+  // Triangles without area are not hit and do not hide others.
   for (const std::string_view shape : {"a point", "a line", "a sliver"}) {
-    add(fmt::format("ray through {}", shape), "distance of the plane behind a triangle without area",
+    add(fmt::format("ray through {}", shape), "distance of a plane behind a triangle without area",
         "length of the triangle, m", log_steps(1e-30, 1e4, 35), 4.0, [=](double length) {
           std::vector<glm::vec3> corners = square(3.0);
           const auto half = float(0.5 * length);
@@ -112,14 +112,14 @@ void add_tracer_cases(std::vector<StabilityCase> &cases)
                                            middle + glm::vec3(0, 0, half)});
           }
           const double t = hit_t(Triangles(corners), {0.25, 0.5, 1.0}, down);
-          // Edge-on the sliver's upper end belongs to it, where it is hit.
+          // If the sliver is hit edge-on, the nearest hit is its upper end.
           const double sliver = std::max(0.5 - double(half), 0.0);
           return std::min(std::abs(t - 1.0),
                           shape == "a sliver" ? std::max({sliver - t, t - 0.5, 0.0}) : std::abs(t - 1.0)) /
                  rounding;
         });
   }
-  add("ray without a direction, and with a huge one", "hits of a ray without direction; distance along others",
+  add("ray without a direction, and with a huge one", "hits of a ray without direction; distance along other rays",
       "length of the direction", log_steps(1e-150, 1e150, 31), 4.0, [=](double length) {
         const Triangles plane(square(3.0));
         const bool is_hit = std::isfinite(hit_t(plane, {0.3, 0.2, 1.0}, glm::dvec3(0.0)));
@@ -144,8 +144,8 @@ void add_visibility_cases(std::vector<StabilityCase> &cases)
   for (const double offset : {0.0, 1e6}) {
     const glm::vec3 place = glm::vec3(glm::dvec3(offset));
     add(fmt::format("plane lit at grazing angles, {:g} m from the origin", offset),
-        "receivers that their own plane hides", "angle with the plane, rad",
-        log_steps(1e-6, 0.5 * std::numbers::pi, 31), [=](double angle) {
+        "receivers hidden by their own plane", "angle with the plane, rad", log_steps(1e-6, 0.5 * std::numbers::pi, 31),
+        [=](double angle) {
           const Triangles plane(square(3.0), glm::translate(glm::mat4(1.0F), place));
           const reference::Tracer tracer(plane.scene);
           double wrong = 0.0;
@@ -156,7 +156,7 @@ void add_visibility_cases(std::vector<StabilityCase> &cases)
           }
           return wrong;
         });
-    add(fmt::format("caster above a receiver, {:g} m from the origin", offset), "receivers that a caster does not hide",
+    add(fmt::format("caster above a receiver, {:g} m from the origin", offset), "receivers not hidden by a caster",
         "height of the caster, m", log_steps(offset > 0.0 ? 1.0 : 1e-6, 1e4, 31), [=](double height) {
           std::vector<glm::vec3> corners = square(3.0);
           for (const glm::vec3 &corner : square(1.0)) {
@@ -185,7 +185,7 @@ void add_light_cases(std::vector<StabilityCase> &cases)
       cases.push_back(
           {.group = group,
            .name = fmt::format("{} lamp at a receiver, radius {:g} m", name, radius),
-           .quantity = "irradiance at the middle of the light, from the middle of the lamp",
+           .quantity = "irradiance on the lamp's axis from its centre",
            .parameter = "distance, m",
            .reference = "closed form",
            .unit = "double roundings",
@@ -194,7 +194,7 @@ void add_light_cases(std::vector<StabilityCase> &cases)
              scene::PlacedLamp lamp;
              lamp.kind = kind;
              lamp.radius = radius;
-             // The disk's middle is at (0, 0), the rectangle's at a half.
+             // The unit square maps (0, 0) to the disk's centre, and (0.5, 0.5) to the rectangle's.
              const bool is_area = kind == scene::LampKind::Area;
              const double given =
                  reference::sample_lamp(lamp, {0.0, 0.0, -distance}, glm::dvec2(is_area ? 0.5 : 0.0)).irradiance;

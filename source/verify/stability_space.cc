@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Spaces: far from the world's origin, at scales from 1e-4 to 1e5, through matrices that are hardly any.
+// Spaces: far from the world's origin, at scales from 1e-4 to 1e5, and with ill-conditioned matrices.
 #include "internal/stability_cases.hh"
 
 #include "draw_objects.hh"
@@ -32,13 +32,16 @@ std::vector<double> offsets()
   return zero_and_log_steps(1e-3, 1e8, 89);
 }
 
-/** A rotation about no axis in particular. */
+/** A rotation about an arbitrary axis. */
 glm::dmat4 turned()
 {
   return glm::rotate(glm::dmat4(1.0), 0.7, glm::normalize(glm::dvec3(1, 2, 3)));
 }
 
-/** Normals of planes of all directions, taken to the world: against the cross product of their transformed tangents. */
+/**
+ * Error of world-space normals of planes of all directions, relative to the cross product of their transformed
+ * tangents.
+ */
 double normal_error(const glm::mat4 &world_from_object)
 {
   const glm::mat3 matrix = draw::normal_matrix(world_from_object);
@@ -58,7 +61,7 @@ double normal_error(const glm::mat4 &world_from_object)
       return std::numeric_limits<double>::quiet_NaN();
     }
     const glm::dvec3 direction(truth / glm::length(truth));
-    // The sum of three terms, each rounded: relative to the largest of them.
+    // A sum of three rounded terms: relative to the largest of them.
     const double terms = std::abs(double(n.x)) * glm::length(glm::dvec3(matrix[0])) +
                          std::abs(double(n.y)) * glm::length(glm::dvec3(matrix[1])) +
                          std::abs(double(n.z)) * glm::length(glm::dvec3(matrix[2]));
@@ -76,11 +79,11 @@ void add_normal_cases(std::vector<StabilityCase> &cases)
     cases.push_back(
         {.group = group,
          .name = "normals, " + name,
-         .quantity = "normal in the world, and its side",
+         .quantity = "world-space normal with its sign",
          .parameter = parameter,
          .reference = "long double",
          .unit = epsilon_unit,
-         // The matrix' elements, three products and two sums are rounded.
+         // Roundings of the matrix elements, three products and two sums.
          .bound = 1.5,
          .run = swept(std::move(steps), [=](double x) { return normal_error(glm::mat4(turned() * matrix_at(x))); })});
   };
@@ -101,14 +104,15 @@ void add_normal_cases(std::vector<StabilityCase> &cases)
   for (const int rank : {0, 1, 2}) {
     cases.push_back({.group = group,
                      .name = fmt::format("normals, singular of rank {}", rank),
-                     .quantity = rank == 2 ? "normal of the plane that all is flattened to" : "normals: 0",
+                     .quantity = rank == 2 ? "normal of the plane that the object is flattened to" : "normals: 0",
                      .parameter = "scale",
                      .reference = "closed form",
                      .unit = "rad",
-                     // One rounding of each component.
+                     // One rounding for each component.
                      .bound = rank == 2 ? 2.0 * float_epsilon : 0.0,
                      .run = swept(log_steps(1e-15, 1e15, 121), [=](double scale) {
-                       // Exact in float, so that it is singular: columns (1, 0, 1), (2, 0, 2) or (0, 1, 0), and 0.
+                       // The matrix is exact in float, and therefore singular: columns (1, 0, 1), (2, 0, 2) or (0, 1,
+                       // 0), and 0.
                        glm::mat4 matrix(0.0F);
                        const auto s = float(scale);
                        if (rank > 0) {
@@ -126,7 +130,7 @@ void add_normal_cases(std::vector<StabilityCase> &cases)
   }
   cases.push_back({.group = group,
                    .name = "mirrored or not",
-                   .quantity = "side of objects that are scaled and sheared",
+                   .quantity = "orientation of objects that are scaled and sheared",
                    .parameter = "scale of one axis",
                    .reference = "closed form",
                    .unit = violation_unit,
@@ -142,17 +146,17 @@ void add_normal_cases(std::vector<StabilityCase> &cases)
                    })});
 }
 
-/** A camera at \a position that looks along its own -Z, turned. */
+/** A camera at \a position with an arbitrary rotation. */
 scene::PlacedCamera camera_at(const glm::dvec3 &position)
 {
   scene::PlacedCamera camera;
   camera.aspect = 1.5F;
-  // Rounded to float, as the views are.
+  // Rounded to float, like the engine's views.
   camera.world_from_camera = glm::mat4(glm::translate(glm::dmat4(1.0), position) * turned());
   return camera;
 }
 
-/** Of a point \a distance before the camera: where it is in the picture, and where it should be, in frame heights. */
+/** Error of the picture position of a point in camera space, in frame heights. */
 double place_error(const scene::PlacedCamera &camera, const glm::dvec3 &in_camera)
 {
   const draw::View view = eevee::view_of(camera, {900, 600});
@@ -169,12 +173,12 @@ void add_view_cases(std::vector<StabilityCase> &cases)
     const std::string name = kind == scene::CameraKind::Perspective ? "perspective" : "parallel";
     cases.push_back({.group = group,
                      .name = name + " camera far from the origin",
-                     .quantity = "place in the picture of a point 100 m away",
+                     .quantity = "position in the picture of a point 100 m away",
                      .parameter = offset_parameter,
                      .reference = "double",
                      .unit = "epsilons of offset / distance",
-                     // The matrix' translation is three products' sum, and so is the point's: each a few roundings of
-                     // the offset, over a frame of 84 m or 2 m.
+                     // The matrix's translation and the point are sums of three products: a few roundings of the offset
+                     // each, over a frame of 84 m or 2 m.
                      .bound = kind == scene::CameraKind::Perspective ? 6.0 : 300.0,
                      .run = swept(offsets(), [=](double offset) {
                        scene::PlacedCamera camera = camera_at(offset * glm::dvec3(1, -1, 1));
@@ -183,7 +187,7 @@ void add_view_cases(std::vector<StabilityCase> &cases)
                      })});
     cases.push_back({.group = group,
                      .name = name + " camera at scales of 1e-4 to 1e5",
-                     .quantity = "place in the picture of a point",
+                     .quantity = "position in the picture of a point",
                      .parameter = "scale",
                      .reference = "double",
                      .unit = epsilon_unit,
@@ -199,7 +203,7 @@ void add_view_cases(std::vector<StabilityCase> &cases)
     for (const bool is_far : {false, true}) {
       cases.push_back({.group = group,
                        .name = fmt::format("culling, {}, {}", name, is_far ? "far from the origin" : "scaled"),
-                       .quantity = "points that are seen and whose spheres are said not to be",
+                       .quantity = "visible points whose spheres are culled",
                        .parameter = is_far ? offset_parameter : "scale",
                        .reference = "double",
                        .unit = violation_unit,
@@ -220,7 +224,7 @@ void add_view_cases(std::vector<StabilityCase> &cases)
                          std::uniform_real_distribution<double> unit(0.0, 1.0);
                          double missed = 0.0;
                          for (int i = 0; i < 200; i++) {
-                           // Next to the frustum's sides.
+                           // Near the sides of the frustum.
                            const double distance = scale * 0.1 * std::pow(1000.0, unit(random));
                            const double w = kind == scene::CameraKind::Perspective ? distance : 1.0;
                            const double a = i % 2 == 0 ? 0.999999 : 2.0 * unit(random) - 1.0;
@@ -264,7 +268,7 @@ void add_view_cases(std::vector<StabilityCase> &cases)
                    .quantity = "height of the frame at distance 1",
                    .parameter = "vertical angle, rad",
                    .reference = "double",
-                   .unit = "epsilons, and how a tangent multiplies them",
+                   .unit = "epsilons times the condition of the tangent",
                    .bound = 1.0,
                    .run = swept(
                        [] {
@@ -290,7 +294,7 @@ void add_bounds_cases(std::vector<StabilityCase> &cases)
   cases.push_back(
       {.group = group,
        .name = "boxes far from the origin",
-       .quantity = "how far a turned box' corners are outside of its world box",
+       .quantity = "distance of a rotated box's corners outside of its world box",
        .parameter = offset_parameter,
        .reference = "double",
        .unit = "epsilons of offset + size",
@@ -314,7 +318,7 @@ void add_bounds_cases(std::vector<StabilityCase> &cases)
        })});
   cases.push_back({.group = group,
                    .name = "visible part of a box around the camera, near to 1e-6 m",
-                   .quantity = "camera inside geometry: visible range is finite, before it and not empty",
+                   .quantity = "camera inside geometry: the visible range is finite, in front of it and not empty",
                    .parameter = "near plane, m",
                    .reference = "closed form",
                    .unit = violation_unit,
@@ -331,11 +335,11 @@ void add_bounds_cases(std::vector<StabilityCase> &cases)
     cases.push_back(
         {.group = group,
          .name = fmt::format("visible part of a box, {}", is_far ? "far from the origin" : "scaled"),
-         .quantity = "how far its corners are outside of the frustum and the box, over the box' size",
+         .quantity = "distance of its corners outside of the frustum and the box, relative to the box's size",
          .parameter = is_far ? offset_parameter : "scale",
          .reference = "double",
          .unit = "double epsilons of 1 + offset / size",
-         // Against the planes as they are, which are in float.
+         // Relative to the planes as rounded to float.
          .bound = 8.0,
          .run = swept(is_far ? offsets() : log_steps(1e-4, 1e5, 91), [=](double x) {
            const double size = is_far ? 10.0 : 10.0 * x;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A sun's maps: fitted to scenes of any scale and place, low suns, flat and pointlike casters, deep views.
+// A sun's maps: fitted to scenes of any scale and position, low suns, flat and point-like casters, deep views.
 #include "internal/stability_cases.hh"
 
 #include "shadows/shadow_sun_fit.hh"
@@ -21,7 +21,7 @@ namespace {
 constexpr const char *group = "sun";
 constexpr int size_px = 1024;
 
-/** That stands \a elevation above the horizon (+Y is up), rad. */
+/** A sun with \a elevation above the horizon, rad. +Y is up. */
 scene::PlacedLamp sun_at(double elevation)
 {
   scene::PlacedLamp lamp;
@@ -42,7 +42,7 @@ eevee::Caster caster_of(const glm::dvec3 &center, const glm::dvec3 &half)
   return caster;
 }
 
-/** Boxes of 1 m over 10 m, times \a scale, around \a center, and what is seen of them from above. */
+/** Boxes of 1 m over 10 m, times \a scale, around \a center, and their visible part from above. */
 struct Field {
   std::vector<eevee::Caster> casters;
   draw::View view;
@@ -76,7 +76,7 @@ struct Field {
   }
 };
 
-/** How far corners of casters are outside of a map, and of its depths; in half maps. */
+/** Distance of casters' corners outside of a map and of its depth range, in half maps. */
 double outside_of(const eevee::SunFit &fit, const std::vector<eevee::Caster> &casters)
 {
   double worst = 0.0;
@@ -113,7 +113,7 @@ void add_sun_cases(std::vector<StabilityCase> &cases)
     const std::string of = fmt::format("sun at {:.3g} rad", elevation);
     cases.push_back({.group = group,
                      .name = "scene at scales of 1e-4 to 1e5, " + of,
-                     .quantity = "how far casters are outside of their map",
+                     .quantity = "distance of casters outside of their map",
                      .parameter = "scale",
                      .reference = "closed form",
                      .unit = "half maps",
@@ -124,11 +124,11 @@ void add_sun_cases(std::vector<StabilityCase> &cases)
                      })});
     cases.push_back({.group = group,
                      .name = "texels at scales of 1e-4 to 1e5, " + of,
-                     .quantity = "texel over that of scale 1: extents go in steps of 2^(1/8)",
+                     .quantity = "texel relative to that of scale 1: extents are rounded to steps of 2^(1/8)",
                      .parameter = "scale",
                      .reference = "closed form",
                      .unit = "octaves",
-                     // Below and above: a step each.
+                     // One step below and one above.
                      .bound = 0.126,
                      .run = swept(log_steps(1e-4, 1e5, 91), [=](double scale) {
                        const auto texel_at = [&](double s) {
@@ -138,14 +138,14 @@ void add_sun_cases(std::vector<StabilityCase> &cases)
                      })});
     cases.push_back({.group = group,
                      .name = "scene at world offsets, " + of,
-                     .quantity = "how far casters are outside of their map",
+                     .quantity = "distance of casters outside of their map",
                      .parameter = "world offset, m",
                      .reference = "closed form",
                      .unit = "half maps",
-                     // The map's slack of 1/32 bears all roundings down to the least scale there is.
+                     // The map's margin of 1/32 covers all rounding down to the smallest scale.
                      .bound = 0.0,
                      .run = swept(zero_and_log_steps(1e-3, 1e8, 89), [=](double offset) {
-                       // Never smaller than what coordinates resolve.
+                       // At least the resolution of coordinates.
                        const double scale = std::max(1.0, 64.0 * float_epsilon * offset);
                        const Field field(offset * glm::dvec3(1, 0, -1), scale, 0.1 * scale, 1e3 * scale);
                        return outside_of(field.fits(elevation, 1).at(0), field.casters);
@@ -165,7 +165,7 @@ void add_sun_cases(std::vector<StabilityCase> &cases)
   cases.push_back(
       {.group = group,
        .name = "views of any depth",
-       .quantity = "cascades: finite, from fine to coarse, the last around all",
+       .quantity = "cascades: finite, from fine to coarse, the last one around the whole scene",
        .parameter = "far/near",
        .reference = "closed form",
        .unit = violation_unit,
@@ -186,25 +186,26 @@ void add_sun_cases(std::vector<StabilityCase> &cases)
          return worst;
        })});
   for (const bool is_flat : {false, true}) {
-    cases.push_back({.group = group,
-                     .name = is_flat ? "flat casters" : "casters of a point",
-                     .quantity = "map of a caster without height, or size, above its receiver: finite, and holds it",
-                     .parameter = is_flat ? "size of the caster, m" : "distance above the receiver, m",
-                     .reference = "closed form",
-                     .unit = violation_unit,
-                     .bound = 0.0,
-                     .run = swept(log_steps(1e-4, 1e5, 91), [=](double x) {
-                       const eevee::Caster caster = is_flat ? caster_of({0, 2.0 * x, 0}, {x, 0, x})
-                                                            : caster_of({1, 2.0 + x, 3}, glm::dvec3(0.0));
-                       const draw::View view(glm::mat4(1.0F), draw::perspective(1.0F, 1.0F, 0.1F, 100.0F));
-                       const double reach = is_flat ? x : 1.0;
-                       const eevee::VisibleRange range = eevee::visible_range(
-                           view, {glm::dvec3(-reach, 0, -reach), glm::dvec3(reach + 2.0, 0, reach + 4.0)});
-                       const std::vector<eevee::SunFit> fits =
-                           eevee::fit_sun(glm::mat4(sun_at(0.5 * std::numbers::pi).world_from_lamp), view, range,
-                                          {caster}, size_px, {.count = 1}, 0.001F);
-                       return violated(fits.size() == 1 && is_finite(fits[0]) && outside_of(fits[0], {caster}) <= 0.0);
-                     })});
+    cases.push_back(
+        {.group = group,
+         .name = is_flat ? "flat casters" : "casters of a point",
+         .quantity = "map of a caster without height or size above its receiver: finite, and contains the caster",
+         .parameter = is_flat ? "size of the caster, m" : "distance above the receiver, m",
+         .reference = "closed form",
+         .unit = violation_unit,
+         .bound = 0.0,
+         .run = swept(log_steps(1e-4, 1e5, 91), [=](double x) {
+           const eevee::Caster caster =
+               is_flat ? caster_of({0, 2.0 * x, 0}, {x, 0, x}) : caster_of({1, 2.0 + x, 3}, glm::dvec3(0.0));
+           const draw::View view(glm::mat4(1.0F), draw::perspective(1.0F, 1.0F, 0.1F, 100.0F));
+           const double reach = is_flat ? x : 1.0;
+           const eevee::VisibleRange range =
+               eevee::visible_range(view, {glm::dvec3(-reach, 0, -reach), glm::dvec3(reach + 2.0, 0, reach + 4.0)});
+           const std::vector<eevee::SunFit> fits =
+               eevee::fit_sun(glm::mat4(sun_at(0.5 * std::numbers::pi).world_from_lamp), view, range, {caster}, size_px,
+                              {.count = 1}, 0.001F);
+           return violated(fits.size() == 1 && is_finite(fits[0]) && outside_of(fits[0], {caster}) <= 0.0);
+         })});
   }
 }
 

@@ -22,7 +22,7 @@ StabilityResult run(const StabilityCase &one)
   for (const StabilitySample &sample : result.samples) {
     const double error = std::isfinite(sample.error) ? sample.error : std::numeric_limits<double>::infinity();
     result.non_finite_count += std::isfinite(sample.error) ? 0 : 1;
-    // >=: a case without any error has its worst at its last sample, not nowhere.
+    // >=, so that a case without error also reports a parameter.
     if (error >= result.worst_error) {
       result.worst_error = error;
       result.worst_parameter = sample.parameter;

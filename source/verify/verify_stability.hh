@@ -8,67 +8,70 @@
 #include <string_view>
 #include <vector>
 
-/** What the program's measuring commands are made of: error against run time, and stability. */
+/** Stability cases: errors of functions, inputs and pictures over ranges of parameters. */
 namespace gnomon::verify {
 
-/** A value of the parameter that a case sweeps, and how wrong the quantity is there. */
+/** A value of a case's parameter, and the error there. */
 struct StabilitySample {
   double parameter = 0.0;
-  /** In the case's unit, at least 0. NaN or infinite: the result was, where it should not be. */
+  /** In the case's unit, at least 0. NaN or infinity stands for an unexpected NaN or infinity in the result. */
   double error = 0.0;
 };
 
-/** One quantity over one range of one parameter, what it is compared with, and what is asked of it. */
+/** One quantity over a range of one parameter, with its reference and error bound. */
 struct StabilityCase {
-  /** Cases of a group are shown together: "esm", "depth". */
+  /** Cases of a group are reported together, for example "esm" or "depth". */
   std::string group;
-  /** Unique in its group, and short. */
+  /** Short name, unique in its group. */
   std::string name;
-  /** What is computed, from what: "prefilter of 32 taps, 80/m". */
+  /** The computed quantity, for example "prefilter of 32 taps, 80/m". */
   std::string quantity;
-  /** What is swept, with its unit: "spread of distances, m". */
+  /** The parameter with its unit, for example "spread of distances, m". */
   std::string parameter;
-  /** "long double", "closed form", "exact rays". */
+  /** Source of the exact values: "long double", "closed form", "exact rays", … */
   std::string reference;
-  /** Of the error: "m", "relative", "fraction of pixels". */
+  /** Unit of the error: "m", "relative", "fraction of pixels", … */
   std::string unit;
   /** Largest error that passes. */
   double bound = 0.0;
   /**
-   * A form that the engine does not use, kept to be seen to fail where `doc/testing.md` says that such forms do: it
-   * passes where its error is above the bound or not finite.
+   * Whether the case tests a form that the engine does not use, to show that the case detects its failure (see
+   * `doc/testing.md`). Such a case passes if its error is above the bound or not finite.
    */
   bool is_baseline = false;
-  /** In order of the parameter; at least one. What it throws fails the case with that reason. */
+  /**
+   * Returns at least one sample, in order of the parameter. An exception fails the case, with its message as the
+   * reason.
+   */
   std::function<std::vector<StabilitySample>()> run{};
 };
 
-/** What came of a case. */
+/** Result of a case. */
 struct StabilityResult {
   std::vector<StabilitySample> samples;
-  /** Largest error, and where; infinite where any is not finite. */
+  /** Largest error and its parameter. Infinite if an error is not finite. */
   double worst_error = 0.0;
   double worst_parameter = 0.0;
-  /** Samples of which the error is not finite. */
+  /** Number of samples whose error is not finite. */
   std::size_t non_finite_count = 0;
-  /** As the case asks: below the bound, or above for a baseline. */
+  /** worst_error is at most the bound; for a baseline, above it. */
   bool is_passed = false;
-  /** What the case threw; empty where nothing. */
+  /** Message of the exception that the case threw; empty if it threw none. */
   std::string failure;
 };
 
 [[nodiscard]] StabilityResult run(const StabilityCase &one);
 
-/** Of functions that the engine calls or that its shaders share with C++. They need no device. */
+/** Cases of functions that the engine calls or shares with its shaders. They need no device. */
 [[nodiscard]] std::vector<StabilityCase> function_stability_cases();
 
-/** Cases of inputs from outside: files, settings, the host's calls. They need no device. */
+/** Cases of external input: files, settings, the host's calls. They need no device. */
 [[nodiscard]] std::vector<StabilityCase> input_stability_cases();
 
-/** What the groups of image_stability_cases() begin with. */
+/** Prefix of the groups of image_stability_cases(). */
 inline constexpr std::string_view image_group_prefix = "rendered ";
 
-/** Of pictures that the engine renders on \a device, which must outlive the cases. */
+/** Cases of pictures that the engine renders on \a device, which must outlive the cases. */
 [[nodiscard]] std::vector<StabilityCase> image_stability_cases(gpu::Device &device);
 
 }  // namespace gnomon::verify

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <random>
 
-/** Helpers for the lists of sweeps, and these lists, one for each area of the shared functions. */
+/** Helpers for the sweeps, and one list of sweeps for each area of the shared functions. */
 namespace gnomon::verify {
 
 using glm::dvec2;
@@ -20,14 +20,14 @@ using glm::dvec4;
 using In = Arguments<float>;
 using Exact = Arguments<double>;
 
-/** The same numbers in every run. */
+/** Random numbers that are the same in every run. */
 class Random {
  public:
   float uniform(double low, double high)
   {
     return float(low + (high - low) * unit());
   }
-  /** Each power of ten as often as the next. \pre low above 0. */
+  /** Logarithmically uniform. \pre low above 0. */
   float log_uniform(double low, double high)
   {
     return float(low * std::pow(high / low, unit()));
@@ -65,7 +65,7 @@ inline dvec4 one(double value)
   return {value, 0, 0, 0};
 }
 
-/** \a count times what \a make makes. */
+/** \a count arguments, each made by \a make. */
 template <typename Make>
 std::vector<In> many(int count, Make &&make)
 {
@@ -78,13 +78,13 @@ std::vector<In> many(int count, Make &&make)
   return arguments;
 }
 
-/** Directions of all lengths, and those along axes, diagonals and edges of a cube. */
+/** Vectors of random directions and lengths, and vectors along axes, diagonals and edges of a cube. */
 [[nodiscard]] std::vector<In> direction_arguments();
 
-// Tolerances. Double: 1e-6, its own roundings; 0.5 where literals of the function are rounded to floats. Float: half
-// an epsilon for each rounding on the longest path, less what was seen not to add up. Driver: more where it divides
-// (Vulkan allows 2.5 epsilons, and GLSL's sqrt is a division), and for exp, log and pow (3 + 2·|x|). Mesa's
-// rasteriser rounds all correctly but these, and there they are as near as C++'s.
+// Tolerances, in float epsilons. Double: 1e-6 for its rounding; 0.5 if literals of the function are rounded to float.
+// Float: half an epsilon for each rounding on the longest path, less if the measured errors do not accumulate. Driver:
+// more for divisions (Vulkan allows 2.5 epsilons, and GLSL's sqrt counts as a division), and for exp, log and pow (3 +
+// 2·|x|). Mesa's rasteriser rounds all other operations correctly, and these as accurately as C++.
 
 void add_depth_sweeps(std::vector<Sweep> &sweeps);
 void add_esm_sweeps(std::vector<Sweep> &sweeps);

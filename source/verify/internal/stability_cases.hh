@@ -10,47 +10,47 @@
 #include <string>
 #include <vector>
 
-/** What the lists of cases are written with, and the lists of functions by group. */
+/** Helpers for stability cases, and the lists of function cases by group. */
 namespace gnomon::verify {
 
-/** Of float, 2^-23: a rounding is half of it at most. */
+/** Float's epsilon, 2^-23. The relative error of one rounding is at most half of it. */
 inline constexpr double float_epsilon = std::numeric_limits<float>::epsilon();
 
-/** \a count values from \a low to \a high, both among them; one ratio from each to the next. \pre low above 0 */
+/** \a count values from \a low to \a high inclusive, with equal ratios. \pre low above 0 */
 [[nodiscard]] std::vector<double> log_steps(double low, double high, int count);
-/** The same, after 0. */
+/** 0, followed by log_steps. */
 [[nodiscard]] std::vector<double> zero_and_log_steps(double low, double high, int count);
-/** As log_steps; one difference. */
+/** \a count values from \a low to \a high inclusive, with equal differences. */
 [[nodiscard]] std::vector<double> even_steps(double low, double high, int count);
 
-/** For StabilityCase::run. */
+/** A StabilityCase::run that evaluates \a error_at for each of \a parameters. */
 [[nodiscard]] std::function<std::vector<StabilitySample>()> swept(std::vector<double> parameters,
                                                                   std::function<double(double parameter)> error_at);
 
-/** The error of what either holds or does not; its unit, and 0 is its bound. */
+/** The error of a condition: 0 if it holds, 1 if not. Its unit is violation_unit and its bound is 0. */
 [[nodiscard]] inline double violated(bool is_kept)
 {
   return is_kept ? 0.0 : 1.0;
 }
 inline constexpr const char *violation_unit = "violations";
 
-/** Unit of errors that are counted in float epsilons of the numbers that were rounded. */
+/** Unit of errors in float epsilons of the rounded numbers. */
 inline constexpr const char *epsilon_unit = "epsilons";
 
 /**
- * A shared function along one parameter: what its float build gives, against the closed form of its sweep and within
- * the bound of that.
+ * A case of a shared function along one parameter: the float build against the closed form of the function's sweep,
+ * within that sweep's bound.
  */
 struct SharedFunctionCase {
   std::string group;
   std::string name;
-  /** Of the sweep. */
+  /** Name of the sweep's function. */
   std::string function;
   std::string quantity;
   std::string parameter;
   std::vector<double> steps;
   std::function<Arguments<float>(double parameter)> arguments;
-  /** In place of the sweep's, where these arguments are kinder than its; with the reason beside it. */
+  /** Replaces the sweep's bound if the errors at these arguments are smaller. */
   std::optional<double> bound{};
 };
 [[nodiscard]] StabilityCase case_of(SharedFunctionCase one);

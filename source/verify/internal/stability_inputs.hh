@@ -14,17 +14,17 @@
 /** Helpers for the cases of inputs, and the lists of these cases. */
 namespace gnomon::verify {
 
-/** How an importer or the engine must treat an input. */
+/** Required treatment of an input by an importer or the engine. */
 enum class Expected {
-  /** Use it; the values that result are within the contract. */
+  /** It is used, and the resulting values satisfy the contract. */
   Accepted,
-  /** Leave it out or replace it, with a warning or limit that names it. */
+  /** It is left out or replaced, and a warning or limit names it. */
   Reported,
-  /** Throw an error of one line that names it. */
+  /** It is refused by an error of one line that names it. */
   Rejected,
 };
 
-/** An input, and how it must be treated. */
+/** An input and its required treatment. */
 template <typename T = double>
 struct Input {
   /** StabilitySample::parameter of this input. */

@@ -12,7 +12,7 @@ namespace gnomon::verify {
 
 namespace {
 
-/** Half a turn, and a rounding. */
+/** π, rounded up. */
 constexpr float pi = 3.1415927F;
 
 bool is_finite(const glm::vec3 &v)
@@ -20,7 +20,7 @@ bool is_finite(const glm::vec3 &v)
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/** Collects faults of one element after another. */
+/** Collects the faults of the elements. */
 class Checker {
  public:
   std::vector<std::string> faults;
@@ -35,7 +35,7 @@ class Checker {
       faults.push_back(fmt::format("{}: not {}", what_, promise));
     }
   }
-  /** Finite in float, too, which engines use. */
+  /** Also finite in float, which engines use. */
   void check_affine(const glm::dmat4 &matrix)
   {
     bool is_affine = true;
@@ -44,7 +44,7 @@ class Checker {
     }
     check(is_affine, "a finite affine matrix");
   }
-  /** A rotation and a place, right-handed. */
+  /** A rigid, right-handed matrix. */
   void check_frame(const glm::dmat4 &matrix)
   {
     check_affine(matrix);
@@ -136,7 +136,7 @@ void check_lamp(const scene::Lamp &lamp, Checker &checker)
   const scene::LampShadow &shadow = lamp.shadow;
   check_range(shadow.size, 1, 16384, "of a shadow size from 1 to 16384");
   check_range(shadow.esm_size, 1, 16384, "of an exponential map from 1 to 16384");
-  // Decimals round to either side.
+  // Decimal values may be rounded in either direction.
   check_range(shadow.exponent, 0.00999F, 1.0001e4F, "of an exponent from 0.01 to 1e4");
   check_range(shadow.bias, 0.0F, 100.0F, "of a bias from 0 to 100");
   check_range(shadow.filter_radius, 0.0F, 0.25F * pi, "of a filter from 0 to 45 degrees");

@@ -9,8 +9,8 @@
 namespace gnomon::verify {
 
 /**
- * What in \a scene is not as scene.hh promises of an imported scene, each naming the element: what is not finite, out
- * of range or of the wrong size. Internal to source/verify, and for tests.
+ * Violations of the contract of scene.hh for imported scenes: values that are not finite, out of range or of the wrong
+ * size. Each text names the element. Internal to source/verify, and for tests.
  */
 [[nodiscard]] std::vector<std::string> contract_faults(const scene::Scene &scene);
 

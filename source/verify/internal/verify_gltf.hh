@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-/** Small glTF files made on the spot. Internal to source/verify, and for tests, which so show what they import. */
+/** A builder of small glTF files. Internal to source/verify, and for tests. */
 namespace gnomon::verify::gltf {
 
 using nlohmann::json;
@@ -34,7 +34,7 @@ inline std::string base64(const std::vector<unsigned char> &bytes)
   return result;
 }
 
-/** A folder of its own, removed with it. */
+/** A temporary folder that is removed by the destructor. */
 class TemporaryFolder {
  public:
   TemporaryFolder()
@@ -65,7 +65,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/** A document and its one buffer. */
+/** A glTF document with one buffer. */
 class GltfBuilder {
  public:
   json document = {{"asset", {{"version", "2.0"}}}};
@@ -101,13 +101,13 @@ class GltfBuilder {
     return accessor(values, Float32, "VEC3");
   }
 
-  /** Mesh of one primitive. */
+  /** Adds a mesh of one primitive. \return its index */
   int mesh(const json &primitive, const std::string &name = "mesh")
   {
     return append("meshes", {{"name", name}, {"primitives", json::array({primitive})}});
   }
 
-  /** Node that is a root of the scene. */
+  /** Adds a node that is a root of the scene. \return its index */
   int node(json node)
   {
     const int index = append("nodes", std::move(node));
@@ -122,7 +122,7 @@ class GltfBuilder {
     return static_cast<int>(document[array].size()) - 1;
   }
 
-  /** Light on a node of its own. \return the node. */
+  /** Adds a light on a node of its own. \return the node's index */
   int light(json light, json extras = nullptr, json more = json::object())
   {
     json &lights = document["extensions"]["KHR_lights_punctual"]["lights"];
@@ -173,7 +173,7 @@ class GltfBuilder {
 /** A triangle in the plane z = 0, facing +Z. */
 inline const std::vector<float> triangle_positions{0, 0, 0, 1, 0, 0, 0, 1, 0};
 
-/** One node with that triangle. */
+/** A scene of one node with this triangle. */
 inline GltfBuilder triangle_scene()
 {
   GltfBuilder builder;

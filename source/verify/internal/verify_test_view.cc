@@ -36,7 +36,7 @@ TestView placed(TestView test_view, const glm::dmat4 &moved, double scale)
   return test_view;
 }
 
-/** Removes all things of a kind, the last first, so that places are used in order again. */
+/** Removes all things of a type, the last first, so that slots are reused in order. */
 template <typename T>
 static void clear(scene::Scene &scene)
 {
@@ -45,7 +45,7 @@ static void clear(scene::Scene &scene)
     handles.push_back(thing.handle);
   }
   for (auto handle = handles.rbegin(); handle != handles.rend(); ++handle) {
-    // With a node goes all that is below it.
+    // Removing a node also removes its descendants.
     if (scene.pool<T>().is_live(*handle)) {
       scene.remove(*handle);
     }
@@ -53,8 +53,8 @@ static void clear(scene::Scene &scene)
 }
 
 /**
- * Edits \a scene so that it holds what \a other holds, in the same order. All things are new ones: an assignment would
- * give an engine other things under handles and revisions that it knows. \pre all nodes of \a other are roots
+ * Makes the content and order of \a scene equal to \a other. All things are added anew: assigning the scene would reuse
+ * handles and revisions that the engine has already seen for other things. \pre all nodes of \a other are roots
  */
 static void become(scene::Scene &scene, const scene::Scene &other)
 {
@@ -65,7 +65,7 @@ static void become(scene::Scene &scene, const scene::Scene &other)
   clear<scene::Image>(scene);
   clear<scene::Lamp>(scene);
   scene.path = other.path;
-  // A handle that names nothing is no key, and stays so.
+  // An invalid handle is not a key and is kept.
   std::map<scene::Handle<scene::Image>, scene::Handle<scene::Image>> images;
   for (const auto &[handle, image] : other.images()) {
     images[handle] = scene.add(image);
@@ -114,7 +114,7 @@ Picture TestViewRenderer::draw(const TestView &test_view, const DrawSettings &se
     eevee::Settings engine;
     engine.sample_count = settings.sample_count;
     engine.shadow.kind = settings.shadow;
-    // Coarse: the pictures are small.
+    // Coarse, because the pictures are small.
     engine.shadow.cube_size_px = 256;
     engine.shadow.map_size_px = 512;
     engine.shadow.esm.size_px = 256;
@@ -146,7 +146,7 @@ Picture truth(const TestView &test_view, const DrawSettings &settings)
   return {picture.size_px, std::move(picture.pixels)};
 }
 
-/** NaN for a picture that is not finite, or of another size. */
+/** Error of \a picture; NaN if it is not finite or of another size. */
 static double error_of(const Picture &picture, const Picture &truth, const std::function<double(double mean)> &error)
 {
   double sum = 0.0;
@@ -154,12 +154,12 @@ static double error_of(const Picture &picture, const Picture &truth, const std::
     sum += (double(pixel.r) + double(pixel.g) + double(pixel.b)) / 3.0;
   }
   const bool is_valid = picture.pixels.size() == truth.pixels.size() && picture.non_finite_count() == 0;
-  // A black truth is in units of 1.
+  // The difference from a black reference is absolute.
   const double mean = sum > 0.0 ? sum / double(truth.pixels.size()) : 1.0;
   return is_valid ? error(mean) : std::numeric_limits<double>::quiet_NaN();
 }
 
-/** Of the channel where it is largest. */
+/** Largest difference of a channel. */
 static double difference(const glm::vec4 &a, const glm::vec4 &b)
 {
   const glm::dvec3 d = glm::abs(glm::dvec3(a) - glm::dvec3(b));
@@ -171,7 +171,7 @@ double relative_rmse(const Picture &picture, const Picture &truth)
   return error_of(picture, truth, [&](double mean) {
     double squares = 0.0;
     for (std::size_t i = 0; i < truth.pixels.size(); i++) {
-      // Squares of huge or denormal radiances would leave double's range.
+      // Squares of huge or denormal radiances would overflow or underflow double.
       const glm::dvec3 d = (glm::dvec3(picture.pixels[i]) - glm::dvec3(truth.pixels[i])) / mean;
       squares += glm::dot(d, d) / 3.0;
     }

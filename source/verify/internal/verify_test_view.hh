@@ -16,15 +16,16 @@ namespace gnomon::verify {
 using measure::Picture;
 using measure::Renderer;
 
-/** A scene and the camera of its picture. */
+/** A scene and the camera that views it. */
 struct TestView {
   scene::Scene scene;
   scene::PlacedCamera camera;
 };
 
 /**
- * \a test_view made \a scale times as large, and then moved by a rotation, reflection or translation, with the same
- * irradiance everywhere. Matrices are rounded to float, so that the engine and the rays have the same scene.
+ * \a test_view scaled by \a scale and then transformed by the rotation, reflection or translation \a moved. Lamps are
+ * scaled so that the irradiance remains the same everywhere. Matrices are rounded to float, so that the engine and the
+ * ray tracer use the same scene.
  */
 [[nodiscard]] TestView placed(TestView test_view, const glm::dmat4 &moved, double scale = 1.0);
 
@@ -42,14 +43,14 @@ struct DrawSettings {
   bool operator==(const DrawSettings &other) const = default;
 };
 
-/** Draws one test view after another, with the programs and textures of those before. */
+/** Draws test views in turn, and reuses programs and textures of earlier ones. */
 class TestViewRenderer {
  public:
   /** \a device must outlive it. */
   explicit TestViewRenderer(gpu::Device &device) : device_(device) {}
 
   Picture draw(const TestView &test_view, const DrawSettings &settings = {});
-  /** Of the last draw with \a settings. */
+  /** Report of the last draw with \a settings. */
   [[nodiscard]] eevee::Report report(const DrawSettings &settings);
 
  private:
@@ -61,19 +62,22 @@ class TestViewRenderer {
   std::map<DrawSettings, Stage> stages_;
 };
 
-/** The picture by ray tracing with as many samples. */
+/** The ray-traced picture with the same number of samples. */
 [[nodiscard]] Picture truth(const TestView &test_view, const DrawSettings &settings = {});
 
-/** Root of the mean square of a picture's difference, over the truth's mean; NaN where the picture is not finite. */
+/** RMSE divided by the mean of \a truth; NaN if the picture is not finite. */
 [[nodiscard]] double relative_rmse(const Picture &picture, const Picture &truth);
 
-/** Share of pixels that differ by more than \a tolerance of the truth's mean; NaN where the picture is not finite. */
+/**
+ * Fraction of pixels whose difference exceeds \a tolerance times the mean of \a truth; NaN if the picture is not
+ * finite.
+ */
 [[nodiscard]] double wrong_share(const Picture &picture, const Picture &truth, double tolerance);
 
-/** Median of |difference| / truth over the pixels where the truth is above 0; NaN where the picture is not finite. */
+/** Median of |difference| / truth over the pixels where \a truth is above 0; NaN if the picture is not finite. */
 [[nodiscard]] double median_error(const Picture &picture, const Picture &truth);
 
-/** Largest difference, over the truth's mean; NaN where the picture is not finite. */
+/** Largest difference, divided by the mean of \a truth; NaN if the picture is not finite. */
 [[nodiscard]] double largest_error(const Picture &picture, const Picture &truth);
 
 }  // namespace gnomon::verify
