@@ -34,7 +34,7 @@ class SceneWriter {
  public:
   explicit SceneWriter(const Scene &scene) : scene_(scene), meshes_(scene, buffer_) {}
 
-  /** The document but for the member "buffers", which depends on the kind of file. */
+  /** The document without the member "buffers", which depends on the file format. */
   JsonText document()
   {
     number_nodes();
@@ -103,7 +103,7 @@ class SceneWriter {
       if (scene_.parent(root) || is_made_up(root, node)) {
         continue;
       }
-      // No recursion: a scene may be deeper than the stack.
+      // No recursion: the node tree may be deeper than the stack.
       Handle<Node> at = root;
       while (at) {
         index_of_.emplace(at, static_cast<int>(order_.size()));
@@ -250,7 +250,7 @@ std::string glb_of(std::string json, const std::vector<unsigned char> &bytes)
   binary.resize((binary.size() + 3) / 4 * 4, '\0');
   const std::size_t size = 12 + 8 + json.size() + (binary.empty() ? 0 : 8 + binary.size());
   if (size > std::numeric_limits<std::uint32_t>::max()) {
-    throw Fault("scene", "is larger than the 4 GiB that a .glb can have");
+    throw Fault("scene", "is larger than 4 GiB, the limit of a .glb");
   }
   std::string result = "glTF";
   add_u32(result, 2);
@@ -276,7 +276,10 @@ std::string file_of(const Scene &scene, bool is_binary)
   return is_binary ? glb_of(document.object(), writer.bytes()) : document.object() + '\n';
 }
 
-/** Beside it first, so that a file of that name is replaced only by a whole one. */
+/**
+ * Writes a temporary file in the same folder and renames it, so that an existing file is replaced only by a complete
+ * one.
+ */
 void write_file(const std::filesystem::path &path, const std::string &content)
 {
   std::filesystem::path part = path;

@@ -35,17 +35,20 @@ using scene::Scene;
 
 namespace {
 
-/** A mesh of many primitives on many nodes multiplies; the size of the file does not limit that. */
+/**
+ * Limit of objects. Many nodes may use one mesh of many primitives, so the size of the file does not limit their
+ * number.
+ */
 constexpr std::size_t object_count_max = std::size_t(1) << 22U;
 
-/** What a file may require without our losing anything by not knowing it. */
+/** Extensions that are not needed to draw a file correctly, even if it requires them. */
 constexpr std::array<std::string_view, 12> harmless_extensions{
     "KHR_lights_punctual",        "KHR_materials_specular",  "KHR_materials_emissive_strength", "KHR_materials_ior",
     "KHR_mesh_quantization",      "KHR_materials_variants",  "KHR_texture_transform",           "KHR_xmp_json_ld",
     "KHR_draco_mesh_compression", "EXT_meshopt_compression", "EXT_mesh_gpu_instancing",         "KHR_materials_unlit",
 };
 
-/** The names of those that the file requires and we do not know; empty for none. */
+/** Names of required extensions that are not supported; empty if there are none. */
 std::string unknown_required_extensions(const File &file)
 {
   std::string names;
@@ -57,7 +60,7 @@ std::string unknown_required_extensions(const File &file)
   return printable(names);
 }
 
-/** \a what is called where there is something to say. */
+/** \a what: called for the name of the node if there is a warning. */
 glm::dmat4 matrix_of(const Model::Node &node, const std::function<std::string()> &what, Warnings &warnings)
 {
   glm::dmat4 matrix(1.0);
@@ -81,7 +84,7 @@ glm::dmat4 matrix_of(const Model::Node &node, const std::function<std::string()>
                      {node.scale[0], node.scale[1], node.scale[2]});
 }
 
-/** Whether the matrix and the world around it can be kept in float. False for NaN. */
+/** Whether the matrix is finite in float and its coordinates are in range. False for NaN. */
 bool is_usable(const glm::dmat4 &world)
 {
   for (int column = 0; column < 4; column++) {
@@ -135,14 +138,14 @@ class Importer {
   void warn_about_file()
   {
     if (const std::string names = unknown_required_extensions(file_); !names.empty()) {
-      warnings_.add("extensionsRequired", names + " is not known: what needs it is left out");
+      warnings_.add("extensionsRequired", names + " is not supported: elements that need it are left out");
     }
     if (file_.model.has_animations) {
-      warnings_.add("animations", "are not played: the scene stands as its nodes say");
+      warnings_.add("animations", "are not played: nodes keep their static transforms");
     }
   }
 
-  /** Where each node hangs, -1 for a root. \throws Fault if the nodes are not trees. */
+  /** The parent of each node, -1 for a root. \throws Fault if the nodes are not trees. */
   [[nodiscard]] std::vector<int> parents() const
   {
     const std::vector<Model::Node> &nodes = file_.model.nodes;
@@ -156,7 +159,7 @@ class Importer {
         parent[child] = static_cast<int>(i);
       }
     }
-    // With one parent each, what no root leads to is on a ring or hangs from one.
+    // Every node has at most one parent, so nodes that no root reaches are on a cycle or below one.
     std::vector<int> reached;
     for (std::size_t i = 0; i < nodes.size(); i++) {
       if (parent[i] < 0) {
@@ -171,12 +174,13 @@ class Importer {
     }
     const auto lost = std::find(is_reached.begin(), is_reached.end(), false);
     if (lost != is_reached.end()) {
-      throw Fault(node_label(static_cast<int>(lost - is_reached.begin())), "is its own ancestor, or hangs from one");
+      throw Fault(node_label(static_cast<int>(lost - is_reached.begin())),
+                  "is its own ancestor, or a descendant of such a node");
     }
     return parent;
   }
 
-  /** The roots of the default scene, or of the first, or of the file. */
+  /** The roots of the default scene; if there is none, of the first scene; if there is none, of the file. */
   [[nodiscard]] std::vector<int> scene_roots() const
   {
     const std::vector<int> parent = parents();
@@ -203,12 +207,15 @@ class Importer {
     return roots;
   }
 
-  /** Depth first, children in their order; with a stack of our own, since a file can be deeper than the program's. */
+  /**
+   * Visits nodes depth first, children in order. Uses an explicit stack, because the tree may be deeper than the
+   * program's stack.
+   */
   void visit_nodes(const std::vector<int> &roots)
   {
     struct Visit {
       int node;
-      /** Names nothing for a root, and below a node that was left out. */
+      /** Invalid for a root, and below a node that was left out. */
       Handle<Node> parent;
       glm::dmat4 world_from_parent;
     };
@@ -228,7 +235,7 @@ class Importer {
     }
   }
 
-  /** Adds the node. \return a handle that names nothing where it is left out. */
+  /** Adds the node. \return an invalid handle if it is left out. */
   Handle<Node> import_node(int index, Handle<Node> parent, const glm::dmat4 &parent_from_node, const glm::dmat4 &world)
   {
     if (!is_usable(world)) {
@@ -258,7 +265,7 @@ class Importer {
     return handle;
   }
 
-  /** Empty where the node is its mesh's only instance. */
+  /** Empty if the node has no instances. */
   std::vector<glm::dmat4> instances_of(int index)
   {
     const Model::Node &node = file_.model.nodes[index];
@@ -312,7 +319,7 @@ class Importer {
     }
   }
 
-  /** A file with nothing to draw in it is a scene; one of which nothing can be drawn is not. */
+  /** A file without drawable elements is a valid scene. A file whose elements are all unusable is an error. */
   void check_anything_kept()
   {
     if (object_count_ > 0) {
@@ -337,7 +344,7 @@ class Importer {
       node.parent_from_node = camera.world_from_camera;
       node.camera = scene_.add(Camera(camera));
       scene_.add(std::move(node));
-      warnings_.add("scene", "has no camera: one was added that frames all of it, taking +Y for up");
+      warnings_.add("scene", "has no camera: one was added that shows the whole scene, with +Y up");
     }
     if (scene_.lamps().empty()) {
       scene_.is_lamp_default = true;
@@ -348,7 +355,7 @@ class Importer {
       node.parent_from_node = sun.world_from_lamp;
       node.lamp = scene_.add(Lamp(sun));
       scene_.add(std::move(node));
-      warnings_.add("scene", "has no lamp: a sun of 3.14 W/m2 was added, over the shoulder of camera '" +
+      warnings_.add("scene", "has no lamp: a sun of 3.14 W/m2 was added, above and to the left of camera '" +
                                  printable(camera.name) + '\'');
     }
   }
@@ -376,7 +383,7 @@ Scene import_gltf(const std::filesystem::path &path)
     throw failed("there is not enough memory for it");
   }
   catch (const std::exception &error) {
-    // The libraries below throw what they like.
+    // Libraries may throw exceptions of other types.
     throw failed(printable(error.what()));
   }
 }

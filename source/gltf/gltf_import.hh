@@ -8,19 +8,19 @@
 
 namespace gnomon::gltf {
 
-/** A file that cannot be made a scene. The message names the file and the reason. */
+/** Thrown if a file cannot be imported. The message names the file and the reason. */
 struct ImportError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 /**
- * Read glTF 2.0: `.gltf` with files or data URIs beside it, or `.glb`.
+ * Reads a glTF 2.0 file: `.gltf` with external files or data URIs, or `.glb`.
  *
- * The default scene's node tree is flattened: an object for each mesh primitive of each node. Units and node
- * extras (`gnomon_*`) are those of `doc/conventions.md`. What cannot be represented, while the rest can, is left
- * out with an entry in Scene::warnings; a camera and a lamp are made up where the file has none.
+ * The node tree of the default scene keeps its local transforms. Each mesh primitive becomes a mesh of its nodes.
+ * `doc/conventions.md` defines units and the extras of nodes (`gnomon_*`). Unsupported elements are left out and
+ * reported in Scene::warnings. A camera and a lamp are added if the file has none.
  *
- * \throws ImportError for a file that is missing, unreadable, malformed, or that holds nothing which can be kept.
+ * \throws ImportError if the file is missing, unreadable or malformed, or if nothing in it can be drawn.
  */
 [[nodiscard]] scene::Scene import_gltf(const std::filesystem::path &path);
 

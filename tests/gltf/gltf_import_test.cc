@@ -1100,7 +1100,7 @@ TEST(GltfLamp, DefaultSunShinesFromOverTheShoulder)
   EXPECT_TRUE(scene.is_lamp_default);
   ASSERT_EQ(scene.placed_lamps().size(), 1U);
   EXPECT_EQ(scene.placed_lamps()[0].kind, LampKind::Sun);
-  EXPECT_WARNING(scene, "has no lamp: a sun of 3.14 W/m2 was added, over the shoulder of camera 'default'");
+  EXPECT_WARNING(scene, "has no lamp: a sun of 3.14 W/m2 was added, above and to the left of camera 'default'");
   const glm::vec3 light = -glm::vec3(scene.placed_lamps()[0].world_from_lamp[2]);
   const glm::mat4 view(scene.placed_cameras().at(0).world_from_camera);
   EXPECT_GT(glm::dot(light, -glm::vec3(view[2])), 0.5F);

@@ -11,7 +11,7 @@ namespace gnomon::gltf {
 
 namespace {
 
-/** An accessor without bytes of its own costs a file nothing, so its count needs a limit of ours. */
+/** Limit of accessors without a buffer view, which the size of the file does not limit. */
 constexpr std::size_t empty_count_max = std::size_t(1) << 24U;
 
 std::size_t component_size(std::uint64_t component_type)

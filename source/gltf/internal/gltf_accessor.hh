@@ -18,40 +18,43 @@
 namespace gnomon::gltf {
 
 /**
- * The bytes of a buffer view from \a offset on.
+ * The bytes of a buffer view from \a offset to its end.
  *
- * \throws Fault that names \a what, when they are not all there.
+ * \throws Fault that names \a what, if the bytes are incomplete.
  */
 [[nodiscard]] std::span<const unsigned char> view_bytes(const File &file, int view_index, std::size_t offset,
                                                         const std::string &what);
 
 /**
- * Reads the elements of one accessor where they lie. Nothing is allocated that the file's own size does not
- * bound, and once constructed no element can lie outside its buffer.
+ * Reads the elements of one accessor without copying its buffer. The constructor checks that all elements are within
+ * the buffer. Memory use is bounded by the file's size.
  */
 class AccessorReader {
  public:
-  /** \throws Fault that names the accessor, when its elements are not all there or not of \a type. */
+  /** \throws Fault that names the accessor, if elements are missing or not of \a type. */
   AccessorReader(const File &file, int accessor_index, Model::ElementType type);
 
   [[nodiscard]] std::size_t count() const
   {
     return accessor_.count;
   }
-  /** No element has bytes of its own: all are zero. */
+  /** Whether the accessor has no bytes, so that all elements are zero. */
   [[nodiscard]] bool is_all_zero() const
   {
     return bytes_.empty() && sparse_indices_.empty();
   }
-  /** Element of a VEC3, normalised if the accessor says so; may be non-finite. \pre index < count(). */
+  /** Element of a VEC3, normalised if the accessor is. May be non-finite. \pre index < count(). */
   [[nodiscard]] glm::vec3 vec3(std::size_t index) const;
-  /** The same of a VEC2. */
+  /** The same for a VEC2. */
   [[nodiscard]] glm::vec2 vec2(std::size_t index) const;
-  /** The same of a VEC4. */
+  /** The same for a VEC4. */
   [[nodiscard]] glm::vec4 vec4(std::size_t index) const;
   /** Element of a VEC3 or VEC4 of colours; the alpha of a VEC3 is 1. */
   [[nodiscard]] glm::vec4 color(std::size_t index) const;
-  /** Whether components are floats, or normalised unsigned integers of 8 or 16 bits, as glTF wants of colours. */
+  /**
+   * Whether components have a type that glTF allows for colours: float, or normalised unsigned integers of 8 or 16
+   * bits.
+   */
   [[nodiscard]] bool is_color() const;
   /** Element of a SCALAR of unsigned integers. \pre index < count(), and is_unsigned(). */
   [[nodiscard]] std::uint32_t integer(std::size_t index) const;
@@ -62,14 +65,14 @@ class AccessorReader {
   std::string what_;
   std::size_t element_size_ = 0;
   std::size_t stride_ = 0;
-  /** From the first element on; empty: zeros. */
+  /** Begins with the first element. Empty: all elements are zero. */
   std::span<const unsigned char> bytes_;
   /** Ascending. */
   std::vector<std::uint32_t> sparse_indices_;
   std::span<const unsigned char> sparse_values_;
 
   void read_sparse(const File &file);
-  /** nullptr: zeros. */
+  /** nullptr for an element that is zero. */
   [[nodiscard]] const unsigned char *element(std::size_t index) const;
   [[nodiscard]] float component(const unsigned char *bytes) const;
 };

@@ -25,7 +25,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/** What is wrong with a camera's numbers; empty: nothing. Called with the floats that will be used. */
+/** Describes an invalid number of a camera; empty if there is none. Checks the floats that will be used. */
 std::string camera_fault(const Camera &camera)
 {
   const bool is_perspective = camera.kind == CameraKind::Perspective;
@@ -50,8 +50,8 @@ std::string camera_fault(const Camera &camera)
 }
 
 /**
- * Out of float's range becomes its limit, which the checks then refuse; a plain cast would be undefined. What is not 0
- * stays so: 0 has a meaning of its own.
+ * Converts to float. Values out of range become float's limits, which the checks refuse; a plain cast would be
+ * undefined. A value other than 0 remains other than 0, which has a special meaning.
  */
 float narrowed(double value)
 {
@@ -60,7 +60,7 @@ float narrowed(double value)
   return static_cast<float>(std::copysign(std::clamp(std::abs(value), value == 0.0 ? 0.0 : least, max), value));
 }
 
-/** A frame that looks along the unit vector \a forward. */
+/** A camera or lamp matrix with the view direction \a forward, a unit vector. */
 glm::dmat4 looking(const glm::dvec3 &position, const glm::dvec3 &forward, const glm::dvec3 &up)
 {
   const glm::dmat4 skewed(glm::dvec4(0.0), glm::dvec4(up, 0.0), glm::dvec4(-forward, 0.0), glm::dvec4(position, 1.0));
@@ -103,11 +103,11 @@ PlacedCamera default_camera(const Bounds &bounds)
   PlacedCamera camera;
   camera.name = default_name;
   const glm::dvec3 center = bounds.is_empty() ? glm::dvec3(0.0) : glm::dvec3(bounds.center());
-  // At least the spacing of floats at the scene's position, and the least length.
+  // At least the spacing of floats at the scene's position, and at least the smallest length.
   const double reach = glm::length(center);
   const double radius = bounds.is_empty() ? 1.0 : std::max({double(bounds.radius()), 1e-6 * reach, 1e3 * length_min});
   const glm::dvec3 forward = glm::normalize(glm::dvec3(-0.6, -0.45, -1.0));
-  // The sphere around the scene fits, with a margin, into a frame that is at least as wide as high.
+  // The sphere around the scene fits with a margin into a frame that is at least as wide as high.
   const double distance = 1.05 * radius / std::sin(0.5 * double(camera.vertical_angle));
   camera.world_from_camera = looking(center - distance * forward, forward, {0, 1, 0});
   camera.near = static_cast<float>(0.5 * (distance - radius));
@@ -120,7 +120,7 @@ PlacedLamp default_sun(const PlacedCamera &camera)
   PlacedLamp sun;
   sun.name = default_name;
   sun.kind = LampKind::Sun;
-  // A white surface that faces it has radiance 1.
+  // A white surface that faces the sun has radiance 1.
   sun.intensity = static_cast<float>(pi);
   const glm::dmat4 &view = camera.world_from_camera;
   const glm::dvec3 right(view[0]);

@@ -7,16 +7,18 @@
 
 #include <optional>
 
-/** Reads cameras, and makes the camera and the lamp of files without one. Internal to source/gltf. */
+/** Reads cameras, and makes the default camera and lamp of files without one. Internal to source/gltf. */
 namespace gnomon::gltf {
 
-/** The camera on a node, if there is one with usable numbers. */
+/** The camera on a node; empty if there is none, or if its numbers are invalid. */
 [[nodiscard]] std::optional<scene::Camera> camera_on(const File &file, int node, Warnings &warnings);
 
-/** Name of the camera and the lamp below, and of their nodes. */
+/** Name of the default camera, the default lamp and their nodes. */
 constexpr const char *default_name = "default";
 
-/** Three quarters from the front and above, with +Y up, all of \a bounds in the frame. Empty bounds: the unit sphere.
+/**
+ * A camera above and to the side of the front, with all of \a bounds in the frame. +Y is up. Empty bounds: the unit
+ * sphere.
  */
 [[nodiscard]] scene::PlacedCamera default_camera(const scene::Bounds &bounds);
 

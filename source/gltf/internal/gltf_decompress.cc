@@ -11,8 +11,8 @@ namespace gnomon::gltf {
 namespace {
 
 /**
- * Decoded bytes for each compressed byte, at most. A run of equal vertices takes 1 bit for 32 bytes at best (vertex
- * codec, version 0: 2 bits for 16 vertices and each of their bytes), so no valid data has a larger ratio.
+ * Largest ratio of decoded to compressed bytes of valid data: a run of equal vertices takes at least 1 bit for 32 bytes
+ * (vertex codec, version 0: 2 bits for each byte of 16 vertices).
  */
 constexpr std::uint64_t ratio_max = 64;
 
@@ -25,7 +25,7 @@ std::span<const unsigned char> compressed_bytes(const File &file, const Model::M
   return buffer.subspan(meshopt.byte_offset, meshopt.byte_length);
 }
 
-/** The conditions of the extension's text, which meshoptimizer asserts. */
+/** The conditions of the extension's specification, which meshoptimizer asserts. */
 bool is_valid(const Model::Meshopt &meshopt)
 {
   const std::uint64_t stride = meshopt.byte_stride;
@@ -92,7 +92,7 @@ void decompress(File &file, Warnings &warnings)
       file.buffers.emplace_back(file.storage.back());
     }
     catch (const Fault &fault) {
-      // The view keeps its fallback buffer, which may hold the plain data.
+      // The view keeps its fallback buffer, which may have uncompressed data.
       warnings.add_counted("bufferView " + std::to_string(i), 1, fault.what());
     }
   }

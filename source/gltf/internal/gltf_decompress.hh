@@ -4,12 +4,12 @@
 #include "internal/gltf_file.hh"
 #include "internal/gltf_report.hh"
 
-/** Compressed data of a file. Internal to source/gltf. */
+/** Decoding of compressed data. Internal to source/gltf. */
 namespace gnomon::gltf {
 
 /**
- * Decode EXT_meshopt_compression and KHR_draco_mesh_compression, so that afterwards accessors read plain bytes. Data
- * that cannot be decoded leaves a warning, and its buffer views without bytes.
+ * Decodes EXT_meshopt_compression and KHR_draco_mesh_compression, so that accessors read uncompressed bytes afterwards.
+ * If data cannot be decoded, a warning is added, and accessors use the fallback data of the file, if there is any.
  */
 void decompress(File &file, Warnings &warnings);
 

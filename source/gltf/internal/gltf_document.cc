@@ -12,7 +12,7 @@ namespace gnomon::gltf {
 
 namespace {
 
-/** The length of an array. Long ones are counted: simdjson keeps 24 bits of a length. */
+/** The length of an array. Long arrays are counted, because simdjson stores a length in 24 bits. */
 std::size_t size_of(const JsonArray &array)
 {
   constexpr std::size_t saturated = 0xFFFFFF;
@@ -74,7 +74,7 @@ class DocumentReader {
 
  private:
   std::map<std::string_view, JsonValue> root_;
-  /** How many elements each top-level array has, and "lights". */
+  /** Lengths of the top-level arrays and of "lights". */
   std::map<std::string_view, std::size_t> sizes_;
   Model model_;
 
@@ -181,7 +181,7 @@ class DocumentReader {
                  Member{"extensions", [&](const Place &at,
                                           const JsonValue &extensions) { read_node_extensions(at, extensions, node); }},
                  Member{"extras", [&](const Place &, const JsonValue &member) { extras = member; }});
-    // After the name, which messages about extras hold.
+    // After the name, which messages about extras include.
     if (extras) {
       read_extras(place, *extras, node);
     }
@@ -207,7 +207,7 @@ class DocumentReader {
                         }});
   }
 
-  /** Extras that are no object are another program's. */
+  /** Extras that are not an object belong to another program and are ignored. */
   static void read_extras(const Place &place, const JsonValue &value, Model::Node &node)
   {
     JsonObject extras;

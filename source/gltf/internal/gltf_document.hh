@@ -9,12 +9,12 @@
 /** Internal to source/gltf. */
 namespace gnomon::gltf {
 
-/** parse_document reads this many bytes past the end of the document, whatever they hold. */
+/** Number of bytes, of any value, that must follow the document in memory. */
 [[nodiscard]] std::size_t document_padding();
 
 /**
- * A glTF 2.0 document in JSON. What the importer does not read is not checked, beyond being JSON. Of properties of the
- * same name the last counts.
+ * Parses a glTF 2.0 document in JSON. Properties that the importer does not use are checked only for JSON syntax. The
+ * last of several properties of the same name counts.
  *
  * \throws Fault that names the place in the document; std::bad_alloc.
  */

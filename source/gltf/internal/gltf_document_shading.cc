@@ -8,11 +8,11 @@ namespace gnomon::gltf {
 
 namespace {
 
-/** \a factor: of the slot's own, by \a factor_key; nullptr: it has none. */
+/** \a factor: a member of the slot named \a factor_key; nullptr if it has none. */
 void read_slot(const Place &place, const JsonValue &value, Model::TextureSlot &slot, std::string_view factor_key = "",
                double *factor = nullptr)
 {
-  // The transform's replaces the slot's.
+  // The texture transform's set replaces the slot's.
   int transformed_set = -1;
   const auto read_transform = [&](const Place &at, const JsonValue &transform) {
     read_members(at, transform, into("offset", slot.offset), into("rotation", slot.rotation), into("scale", slot.scale),
@@ -65,7 +65,7 @@ void read_material_extensions(const Place &place, const JsonValue &value, Model:
   std::sort(material.extensions.begin(), material.extensions.end());
 }
 
-/** glTF requires all of \a numbers. */
+/** Reads the numbers of a camera. All of \a required must be present. */
 void read_lens(const Place &place, const JsonValue &value, const std::map<std::string_view, double *> &required,
                double *aspect_ratio, double *zfar)
 {

@@ -4,11 +4,12 @@
 #include "internal/gltf_json.hh"
 #include "internal/gltf_model.hh"
 
-/** Parts of a document that refer to no others, or whose references are checked where they are used. Internal to
- * source/gltf. */
+/**
+ * Reads the elements of a document whose references, if any, are checked where they are used. Internal to source/gltf.
+ */
 namespace gnomon::gltf {
 
-/** These throw a Fault that names the place. */
+/** All of these throw a Fault that names the place. */
 void read_material(const Place &place, const JsonValue &value, Model::Material &material);
 void read_texture(const Place &place, const JsonValue &value, Model::Texture &texture);
 void read_sampler(const Place &place, const JsonValue &value, Model::Sampler &sampler);

@@ -45,7 +45,7 @@ bool write_as(const draco::PointAttribute &attribute, const draco::Mesh &mesh, i
   return true;
 }
 
-/** The attribute in the accessor's own type, one element for each point of the mesh. */
+/** The values of an attribute in the accessor's type, one for each point of the mesh. */
 std::vector<unsigned char> element_bytes(const draco::Mesh &mesh, const std::string &name, int id,
                                          const Model::Accessor &accessor)
 {
@@ -95,7 +95,7 @@ std::vector<unsigned char> index_bytes(const draco::Mesh &mesh)
   return bytes;
 }
 
-/** Adds a plain buffer, view and accessor. \return the accessor's index. */
+/** Adds an uncompressed buffer, view and accessor. \return the accessor's index. */
 int add_accessor(File &file, std::vector<unsigned char> bytes, Model::Accessor accessor)
 {
   file.storage.push_back(std::move(bytes));
@@ -111,7 +111,7 @@ int add_accessor(File &file, std::vector<unsigned char> bytes, Model::Accessor a
   return int(file.model.accessors.size()) - 1;
 }
 
-/** What the compressed form of a primitive is read into. */
+/** Accessors of a decoded primitive. */
 struct Plain {
   Attributes attributes;
   int indices = -1;
@@ -120,7 +120,7 @@ struct Plain {
 Plain plain_of(File &file, const Model::Primitive &primitive)
 {
   const std::unique_ptr<draco::Mesh> mesh = decoded(file, *primitive.draco);
-  // Everything is read before anything is added, so that a fault leaves the file as it was.
+  // Decode everything before adding anything, so that a fault leaves the file unchanged.
   std::map<std::string, std::vector<unsigned char>> read;
   for (const auto &[name, accessor] : primitive.attributes) {
     if (const auto id = primitive.draco->attributes.find(name); id != primitive.draco->attributes.end()) {
@@ -142,7 +142,7 @@ Plain plain_of(File &file, const Model::Primitive &primitive)
 
 void decompress_draco(File &file, Warnings &warnings)
 {
-  // Primitives that share compressed data stay one mesh of the scene.
+  // Primitives that share compressed data remain one mesh of the scene.
   std::map<std::tuple<int, Attributes, Attributes>, Plain> done;
   for (std::size_t i = 0; i < file.model.meshes.size(); i++) {
     Model::Mesh &mesh = file.model.meshes[i];
@@ -159,12 +159,12 @@ void decompress_draco(File &file, Warnings &warnings)
         if (place->second.indices >= 0) {
           primitive.attributes = place->second.attributes;
           primitive.indices = place->second.indices;
-          // The compressed form of a strip is a list, too.
+          // The decoded form of a strip is a list.
           primitive.mode = Model::Triangles;
         }
       }
       catch (const Fault &fault) {
-        // The accessors may hold the plain data as well.
+        // The accessors may refer to uncompressed data as a fallback.
         warnings.add_counted(label("mesh", mesh.name, i), 1,
                              std::string("its compressed form cannot be decoded: ") + fault.what());
       }

@@ -12,10 +12,10 @@ using scene::Mesh;
 
 namespace {
 
-/** Cosine of the angle, 1e-3 rad, within which float coordinates make two directions the same. */
+/** Cosine of 1e-3 rad. Directions within this angle are equal to the precision of float coordinates. */
 constexpr double same_direction = 1.0 - 0.5e-6;
 
-/** Root of \a vertex among vertices that are joined by a triangle; shortens the way for the next. */
+/** Root of \a vertex in the forest of connected vertices. Shortens the path for later calls. */
 std::uint32_t root_of(std::vector<std::uint32_t> &parent, std::uint32_t vertex)
 {
   while (parent[vertex] != vertex) {
@@ -25,7 +25,7 @@ std::uint32_t root_of(std::vector<std::uint32_t> &parent, std::uint32_t vertex)
   return vertex;
 }
 
-/** Twice the area, along the normal. */
+/** Normal of a triangle, with the length of twice its area. */
 glm::dvec3 area_vector(const Mesh &mesh, std::size_t first)
 {
   const glm::dvec3 a(mesh.positions[mesh.indices[first]]);
@@ -40,7 +40,7 @@ bool is_flat(const Mesh &mesh, std::size_t first)
   return mesh.normals[mesh.indices[first + 1]] == normal && mesh.normals[mesh.indices[first + 2]] == normal;
 }
 
-/** Vertices keep their order. */
+/** Removes unused vertices and keeps the order of the others. */
 void drop_unused_vertices(Mesh &mesh)
 {
   constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
@@ -97,7 +97,7 @@ std::size_t flatten_facets(Mesh &mesh)
       continue;
     }
     changed++;
-    // Corners of its own; those it leaves may be other triangles' still.
+    // New vertices for this triangle; other triangles may still use the old ones.
     for (std::size_t i = first; i < first + 3; i++) {
       const std::uint32_t vertex = mesh.indices[i];
       mesh.indices[i] = std::uint32_t(mesh.positions.size());

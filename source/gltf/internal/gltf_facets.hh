@@ -9,14 +9,13 @@
 namespace gnomon::gltf {
 
 /**
- * Give each triangle of a flat-shaded polygon that is not plane its own normal.
+ * Gives each triangle of a flat-shaded, non-planar polygon its own normal.
  *
- * An exporter writes such a polygon as triangles that all carry the polygon's normal, the mean of theirs. What is meant
- * is a flat face, and a renderer that is given the polygon shades each of its triangles by where it lies. Where the
- * shared normal is anything but that mean it was made so on purpose, and stays. See doc/decisions/0004. Vertices that
- * no triangle uses afterwards are removed.
+ * Exporters write such a polygon as triangles that share the polygon's normal, the mean of the triangles' normals.
+ * Other renderers shade a flat polygon by the orientation of each triangle. Shared normals that differ from the mean
+ * are intentional and remain. See doc/decisions/0004. Vertices that are unused afterwards are removed.
  *
- * \return how many triangles got another normal.
+ * \return the number of triangles with a new normal.
  */
 std::size_t flatten_facets(scene::Mesh &mesh);
 

@@ -25,10 +25,10 @@ using ByteSpan = std::span<const unsigned char>;
 static_assert(std::endian::native == std::endian::little,
               "glTF's numbers are little-endian and are copied as they are");
 
-/** The largest size that a .glb can have. */
+/** Largest size of a .glb, which is also the limit for other files. */
 constexpr std::uintmax_t file_size_max = std::uintmax_t(4) << 30U;
 
-/** \a what names the file in the message. Devices and pipes are refused: reading one might never end. */
+/** Reads a file. \a what: its name in messages. Devices and pipes are refused, because reading one might never end. */
 Bytes read_bytes(const std::filesystem::path &path, const std::string &what)
 {
   std::error_code error;
@@ -73,7 +73,7 @@ bool is_glb(ByteSpan bytes)
   return bytes.size() >= glb_magic.size() && std::equal(glb_magic.begin(), glb_magic.end(), bytes.begin());
 }
 
-/** The two chunks of a .glb; others are skipped, as glTF asks. */
+/** The JSON and BIN chunks of a .glb. Others are skipped, as glTF requires. */
 Chunks split_glb(ByteSpan bytes)
 {
   constexpr std::size_t file_header_size = 12;
@@ -115,7 +115,7 @@ Chunks split_glb(ByteSpan bytes)
   return chunks;
 }
 
-/** A value of two hexadecimal digits, or nothing. */
+/** The value of two hexadecimal digits; negative for other characters. */
 int hexadecimal(std::string_view digits)
 {
   int value = 0;
@@ -146,7 +146,7 @@ bool is_data_uri(const std::string &uri)
   return uri.rfind("data:", 0) == 0;
 }
 
-/** Nothing for what is no base64. Padding at the end may be missing; white space may not be in between. */
+/** Empty if the text is not base64. Padding at the end is optional; white space is not allowed. */
 std::optional<Bytes> base64_decoded(std::string_view text)
 {
   constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -198,7 +198,7 @@ Bytes bytes_of_data_uri(const std::string &what, const std::string &uri)
   return std::move(*bytes);
 }
 
-/** A file that \a uri names, and how messages name it. */
+/** The path of an external file, and its name in messages. */
 struct FileBeside {
   std::filesystem::path path;
   std::string what;
@@ -231,7 +231,7 @@ class BufferLoader {
       bytes = binary_chunk_;
     }
     else {
-      // Legal: an extension that we do not read fills it.
+      // Valid: an unsupported extension provides the bytes.
       file_.buffers.emplace_back();
       return;
     }
@@ -245,7 +245,7 @@ class BufferLoader {
  private:
   File &file_;
   ByteSpan binary_chunk_;
-  /** A file that many buffers name is read once. */
+  /** Files by path: a file that several buffers use is read once. */
   std::map<std::filesystem::path, ByteSpan> read_;
 
   ByteSpan store(Bytes bytes)

@@ -13,19 +13,19 @@
 /** Internal to source/gltf. */
 namespace gnomon::gltf {
 
-/** A glTF file in memory. What the accessors say of the bytes is not checked yet. */
+/** A glTF file in memory. Accessors are not yet checked against the bytes. */
 struct File {
   Model model;
-  /** The bytes of each buffer of the file; empty where an extension that is not read fills the buffer. */
+  /** The bytes of each buffer; empty if an unsupported extension provides them. */
   std::vector<std::span<const unsigned char>> buffers;
-  /** That of the file: URIs are relative to it. */
+  /** Folder of the file, to which URIs are relative. */
   std::filesystem::path folder;
-  /** What `buffers` points into; a list because its elements stay where they are. */
+  /** Memory that `buffers` refers to. A list, because its elements do not move. */
   std::list<std::vector<unsigned char>> storage;
 };
 
 /**
- * What a URI of the file \a what stands for: decoded, or read from beside the scene.
+ * The bytes of a URI: a decoded data URI, or a file relative to \a folder.
  *
  * \throws Fault that names \a what.
  */

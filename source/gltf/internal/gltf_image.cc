@@ -19,9 +19,12 @@ namespace {
 
 using ByteSpan = std::span<const unsigned char>;
 
-/** What every GPU of today takes. */
+/** Texture size limit of all current GPUs. */
 constexpr int edge_max = 16384;
-/** Deflate makes at most 1032 bytes of one; JPEG codes 64 samples in two bits or more, times as many channels. */
+/**
+ * Largest ratio of decoded to encoded bytes. Deflate: 1032. JPEG: smaller, as 64 samples take at least two bits in each
+ * channel.
+ */
 constexpr std::uint64_t expansion_max = 1032;
 
 bool begins_with(ByteSpan bytes, std::string_view start)
@@ -31,26 +34,26 @@ bool begins_with(ByteSpan bytes, std::string_view start)
                     [](char a, unsigned char b) { return static_cast<unsigned char>(a) == b; });
 }
 
-/** A name that lets OpenImageIO pick the reader; nullptr for what glTF has no such images of. */
+/** A file name with which OpenImageIO selects the reader; nullptr for formats that glTF does not allow. */
 const char *format_of(ByteSpan bytes)
 {
   using namespace std::string_view_literals;
   return begins_with(bytes, "\x89PNG\r\n\x1A\n"sv) ? "png" : begins_with(bytes, "\xFF\xD8\xFF"sv) ? "jpeg" : nullptr;
 }
 
-/** A JPEG decoder makes up what is missing at the end, so its end marker is looked for. */
+/** JPEG decoders fill in missing data at the end, so the end marker is checked. */
 bool is_cut_off_jpeg(ByteSpan bytes)
 {
   constexpr std::array<unsigned char, 2> end_marker{0xFF, 0xD9};
   return std::search(bytes.rbegin(), bytes.rend(), end_marker.rbegin(), end_marker.rend()) == bytes.rend();
 }
 
-/** Spread one to four channels of each texel to four, in place. */
+/** Expands one to four channels of each texel to four, in place. */
 void spread_channels(std::vector<std::uint8_t> &texels, std::size_t texel_count, int channel_count)
 {
   const auto count = static_cast<std::size_t>(channel_count);
   const bool is_grey = count < 3;
-  // From the last: the place that is written is never before the one that is read.
+  // Backwards, so that no byte is overwritten before it is read.
   for (std::size_t i = texel_count; i-- > 0;) {
     const std::uint8_t *source = texels.data() + i * count;
     const std::array<std::uint8_t, 4> texel{source[0], source[is_grey ? 0 : 1], source[is_grey ? 0 : 2],
@@ -84,7 +87,7 @@ ImageDecoder::ImageDecoder(ByteSpan bytes, std::string what, std::uint64_t texel
   }
   OIIO::ImageSpec config;
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &input_->proxy);
-  // Else colours would come multiplied by alpha.
+  // Otherwise colours would be multiplied by alpha.
   config.attribute("oiio:UnassociatedAlpha", 1);
   input_->file = OIIO::ImageInput::create(format);
   if (!input_->file) {

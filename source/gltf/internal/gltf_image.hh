@@ -12,23 +12,23 @@
 namespace gnomon::gltf {
 
 /**
- * A PNG or JPEG file in memory. 16-bit values are rounded to 8, grey becomes three equal colours, and what has no alpha
- * is opaque. Profiles and gammas in the file are not used, as glTF asks.
+ * A PNG or JPEG file in memory. 16-bit values are rounded to 8 bits, grey is expanded to RGB, and a missing alpha is
+ * opaque. Colour profiles and gamma values are ignored, as glTF requires.
  */
 class ImageDecoder {
  public:
   /**
-   * Reads the head of the file. Keeps \a bytes.
+   * Reads the header of the file. \a bytes must outlive the decoder.
    *
-   * \throws Fault that names \a what, for a file that is cut off, of another format, or of more than
-   * \a texel_count_max texels.
+   * \throws Fault that names \a what, if the file is truncated, of another format, or has more than \a texel_count_max
+   * texels.
    */
   ImageDecoder(std::span<const unsigned char> bytes, std::string what, std::uint64_t texel_count_max);
   ImageDecoder(ImageDecoder &&) noexcept;
   ~ImageDecoder();
 
   [[nodiscard]] std::uint64_t texel_count() const;
-  /** The texels, without a name. Several decoders may read at once. \throws Fault for a file that is damaged. */
+  /** Decodes the image, without a name. Several decoders may run concurrently. \throws Fault for a damaged file. */
   [[nodiscard]] scene::Image read();
 
  private:

@@ -11,8 +11,8 @@
 namespace gnomon::gltf {
 
 /**
- * The matrix of each instance, from the instance's space into the node's. Rotations are normalised; one without length
- * or with a NaN is left out of the matrix.
+ * The matrix of each instance, from the instance's space to the node's. Rotations are normalised; a rotation without
+ * length or with NaN is ignored.
  *
  * \throws Fault naming the attribute that cannot be read, or whose count differs from that of the others.
  */

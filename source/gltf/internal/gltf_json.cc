@@ -39,7 +39,7 @@ std::string with_long_numbers_as_floats(std::string_view json, std::size_t paddi
 
 std::string quoted(const JsonValue &value)
 {
-  // Nothing nested is written out: it may be of any depth.
+  // Nested values are not printed, as they may have any depth.
   if (value.is_array() || value.is_object()) {
     return value.is_array() ? "an array" : "an object";
   }

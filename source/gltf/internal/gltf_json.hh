@@ -16,7 +16,7 @@
 /** Values of a JSON document with their types checked. Internal to source/gltf. */
 namespace gnomon::gltf {
 
-/** A place in the document. Linked to the place around it, so that its text is made only for a message. */
+/** A place in the document. It links to the enclosing place, so that a text is created only for messages. */
 struct Place {
   static constexpr std::size_t no_index = std::numeric_limits<std::size_t>::max();
 
@@ -24,7 +24,7 @@ struct Place {
   std::string_view key = {};
   std::size_t index = no_index;
 
-  /** As in "nodes[3].mesh". */
+  /** For example "nodes[3].mesh". */
   [[nodiscard]] std::string text() const;
 };
 
@@ -33,29 +33,29 @@ using JsonObject = simdjson::dom::object;
 using JsonArray = simdjson::dom::array;
 
 /**
- * A document in which whole numbers that may not fit into 64 bits end in ".0", followed by \a padding bytes. JSON
- * allows such numbers; simdjson reads them with a fraction only.
+ * Appends ".0" to whole numbers that may exceed 64 bits, which JSON allows and simdjson refuses, and \a padding bytes
+ * to the document.
  */
 [[nodiscard]] std::string with_long_numbers_as_floats(std::string_view json, std::size_t padding);
 
-/** A value as it stands in the file, cut short. */
+/** The text of a value, shortened. */
 [[nodiscard]] std::string quoted(const JsonValue &value);
 
 /** \throws Fault: "place: is value, and must be wanted". */
 [[noreturn]] void fail(const Place &place, const JsonValue &value, std::string_view wanted);
 
-/** The functions below throw a Fault that names the place where the value is of another type or out of range. */
+/** The functions below throw a Fault that names the place, if the value has another type or is out of range. */
 [[nodiscard]] JsonObject object_at(const Place &place, const JsonValue &value);
-/** \a wanted is for the message. */
+/** \a wanted: expected type, for the message. */
 [[nodiscard]] JsonArray array_at(const Place &place, const JsonValue &value, std::string_view wanted = "an array");
 [[nodiscard]] std::string string_at(const Place &place, const JsonValue &value);
-/** Of at most 1024 bytes: names are copied to every object. */
+/** A string of at most 1024 bytes, because names are copied to every object. */
 [[nodiscard]] std::string name_at(const Place &place, const JsonValue &value);
 [[nodiscard]] bool boolean_at(const Place &place, const JsonValue &value);
 [[nodiscard]] double number_at(const Place &place, const JsonValue &value);
-/** A whole number of at least 0. */
+/** A whole number, at least 0. */
 [[nodiscard]] std::uint64_t size_at(const Place &place, const JsonValue &value);
-/** A whole number that an int holds, of at least 0. */
+/** A whole number in [0, INT_MAX]. */
 [[nodiscard]] int index_at(const Place &place, const JsonValue &value);
 
 template <std::size_t Count>
@@ -119,7 +119,10 @@ inline auto into_name(std::string &name)
   return Member{"name", [&name](const Place &place, const JsonValue &value) { name = name_at(place, value); }};
 }
 
-/** Reads those \a members that an object has. \throws Fault where \a value is no object, and what the members throw. */
+/**
+ * Reads those of \a members that the object has. \throws Fault if \a value is not an object, and what the members
+ * throw.
+ */
 template <typename... Read>
 void read_members(const Place &place, const JsonValue &value, const Member<Read> &...members)
 {

@@ -24,9 +24,9 @@ using scene::ShadowKind;
 namespace {
 
 constexpr double pi = std::numbers::pi;
-/** Angles come as rounded floats. */
+/** Angles may have been rounded to float. */
 constexpr double angle_tolerance = 1e-6;
-/** Half the opening of a cone below it would vanish in float once squared, as 1 - cos does. */
+/** Smallest half angle of a cone, rad. For smaller angles 1 - cos would underflow in float. */
 constexpr double cone_min = 1e-9;
 
 struct Range {
@@ -46,7 +46,7 @@ struct Range {
 constexpr Range not_negative{0.0, large};
 constexpr Range length_range{length_min, large};
 
-/** Every extra that is ours, with the lamps that it is for. */
+/** All supported extras, with the lamps to which they apply. */
 struct Extra {
   std::string_view key;
   std::initializer_list<LampKind> kinds;
@@ -169,7 +169,7 @@ class LampReader {
     return *text;
   }
 
-  /** One of \a words, as its place among them is in \a Word; nothing where the key is absent. */
+  /** The enumerator of \a Word at the index of the extra's value in \a words; empty if the key is absent. */
   template <typename Word>
   std::optional<Word> word(const char *key, std::initializer_list<std::string_view> words) const
   {
@@ -195,7 +195,7 @@ class LampReader {
     return value ? std::optional(static_cast<float>(*value)) : std::nullopt;
   }
 
-  /** Blender writes a property's whole numbers as floats too. */
+  /** Blender may write whole numbers as floats. */
   std::optional<int> texels(const char *key) const
   {
     const std::optional<double> value = number_if_any(key, {1.0, 16384.0});
@@ -242,13 +242,13 @@ class LampReader {
   void read_cone(const Model::Light &light)
   {
     const double outer = checked("outerConeAngle", light.outer_cone_angle, {cone_min, pi / 2 + angle_tolerance});
-    // glTF wants the inner angle smaller; Blender writes equal ones for a hard edge, and they make sense.
+    // glTF requires a smaller inner angle. Equal angles are accepted: Blender writes them for a hard edge.
     const double inner = checked("innerConeAngle", light.inner_cone_angle, {0.0, outer + angle_tolerance});
     lamp_.spot_outer_angle = static_cast<float>(std::min(outer, pi / 2));
     lamp_.spot_blend = number("gnomon_spot_blend", derived_blend(std::min(inner, outer), outer), {0.0, 1.0});
   }
 
-  /** (cos inner - cos outer) / (1 - cos outer), by half angles: nothing cancels however narrow the cone. */
+  /** (cos inner - cos outer) / (1 - cos outer), computed from half angles without cancellation in narrow cones. */
   static double derived_blend(double inner, double outer)
   {
     const double scale = std::sin(0.5 * outer);
@@ -272,7 +272,7 @@ class LampReader {
     }
   }
 
-  /** A misspelt or misplaced extra would otherwise be looked for in the picture. */
+  /** Warns about misspelt and inapplicable extras, which would have no effect. */
   void warn_idle_extras() const
   {
     static const std::initializer_list<LampKind> casts_shadow{LampKind::Point, LampKind::Sun, LampKind::Spot,

@@ -13,7 +13,7 @@ namespace gnomon::gltf {
 /**
  * The lamp on a node, if there is one.
  *
- * \throws Fault that names the lamp, the key and the value, when one is of the wrong type or out of range.
+ * \throws Fault that names the lamp, the key and the value, if a value has the wrong type or is out of range.
  */
 [[nodiscard]] std::optional<scene::Lamp> lamp_on(const File &file, int node, Warnings &warnings);
 

@@ -19,7 +19,7 @@ using scene::TextureSlot;
 
 namespace {
 
-/** Of a mesh; \see scene::TextureSlot::uv_set */
+/** Number of uv sets of a mesh. \see scene::TextureSlot::uv_set */
 constexpr std::size_t uv_sets_max = 2;
 
 /** Reads one material; every message names it. */
@@ -101,8 +101,8 @@ class MaterialReader {
   }
 
   /**
-   * An index of refraction other than 1.5 scales the reflection at normal incidence, exactly as the specular colour
-   * does, so it is folded into that. 0 stands for full reflection at every angle.
+   * An index of refraction other than 1.5 scales the reflectance at normal incidence, as the specular colour does. It
+   * is therefore multiplied into the specular colour. 0 means full reflection at all angles.
    */
   float reflectance_ratio(double ior)
   {
@@ -138,7 +138,7 @@ class MaterialReader {
     }
   }
 
-  /** Beyond it, floats no longer tell texels apart. */
+  /** Clamps to the range in which floats still distinguish texels. */
   float limited(const char *member, double value)
   {
     constexpr double limit = 1e6;
@@ -205,7 +205,7 @@ class MaterialReader {
     }
   }
 
-  /** For what has no upper limit: products of a few such numbers stay finite in float. */
+  /** Upper limit for factors without one in glTF. Products of a few such numbers are finite in float. */
   static constexpr double large = 1e9;
 };
 

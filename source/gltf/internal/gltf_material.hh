@@ -13,24 +13,25 @@
 /** Internal to source/gltf. */
 namespace gnomon::gltf {
 
-/** Appends materials to a scene, each at its first use: what nothing wears is neither kept nor warned about. */
+/** Adds materials to a scene at their first use. Unused materials are neither kept nor reported. */
 class MaterialImporter {
  public:
-  /** Keeps references. */
+  /** All references must outlive the importer. */
   MaterialImporter(const File &file, Warnings &warnings, scene::Scene &scene);
 
   /** The scene's material for a material of the file; -1 is glTF's default material. */
   [[nodiscard]] scene::Handle<scene::Material> handle_of(int gltf_material);
 
   /**
-   * The n of TEXCOORD_n of a material that handle_of returned: TextureSlot::uv_set is an index in it. At most two.
+   * The numbers n of the attributes TEXCOORD_n of a material, at most two. TextureSlot::uv_set is an index into them.
+   * \pre handle_of returned \a material
    */
   [[nodiscard]] const std::vector<int> &uv_sets(scene::Handle<scene::Material> material) const
   {
     return uv_sets_.at(material);
   }
 
-  /** Decode the images; call it once, at the end. Materials of damaged ones get a stand-in. */
+  /** Decodes the images. Call it once, at the end. Damaged images are replaced by stand-ins. */
   void finish();
 
  private:

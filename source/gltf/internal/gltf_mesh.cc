@@ -27,12 +27,12 @@ using scene::Scene;
 namespace {
 
 /**
- * Many primitives may name the same few bytes, so the size of the file does not limit the work in it. This does:
- * vertices and indices that are read, of all primitives together.
+ * Limit of the vertices and indices that are read for all primitives together. Primitives may share bytes, so the size
+ * of the file does not limit the work.
  */
 constexpr std::uint64_t element_count_max = std::uint64_t(1) << 28U;
 
-/** A float tells texels apart no more beyond it. */
+/** Largest texture coordinate. Beyond it floats do not distinguish texels. */
 constexpr float uv_max = 1e6F;
 
 bool is_uv(const glm::vec2 &uv)
@@ -41,7 +41,7 @@ bool is_uv(const glm::vec2 &uv)
   return std::abs(uv.x) <= uv_max && std::abs(uv.y) <= uv_max;
 }
 
-/** Each component in [0, 1]; 0 for one that is no number. */
+/** Clamps each component to [0, 1]; NaN becomes 0. */
 glm::vec4 limited_color(const glm::vec4 &color)
 {
   glm::vec4 limited;
@@ -58,14 +58,14 @@ bool is_position(const glm::vec3 &position)
   return size.x <= coordinate_max && size.y <= coordinate_max && size.z <= coordinate_max;
 }
 
-/** Twice the area times the unit normal; in double, where no product of floats vanishes or overflows. */
+/** Twice the area times the unit normal, in double, so that no product of floats underflows or overflows. */
 glm::dvec3 area_vector(const glm::vec3 &a, const glm::vec3 &b, const glm::vec3 &c)
 {
   const glm::dvec3 origin(a);
   return glm::cross(glm::dvec3(b) - origin, glm::dvec3(c) - origin);
 }
 
-/** \a vector must have a length; one so small or large that its square leaves double's range is no trouble. */
+/** \a vector must not be zero. Its squared length may leave double's range. */
 glm::vec3 unit(const glm::dvec3 &vector)
 {
   const glm::dvec3 size = glm::abs(vector);
@@ -80,7 +80,7 @@ std::uint32_t vertex_count(std::size_t count)
   return static_cast<std::uint32_t>(count);
 }
 
-/** One primitive on its way to a Mesh. */
+/** Converts one primitive to a Mesh. */
 class PrimitiveReader {
  public:
   PrimitiveReader(const File &file, const Model::Primitive &primitive, std::string what, Warnings &warnings)
@@ -111,7 +111,7 @@ class PrimitiveReader {
     return positions_.count() + (indices_ ? indices_->count() : 0);
   }
 
-  /** Positions, normals, indices and bounds. Without triangles where none can be kept. */
+  /** Reads positions, normals, indices and bounds. The mesh is empty if no triangle can be kept. */
   Mesh read()
   {
     std::vector<Triangle> triangles = kept_triangles();
@@ -132,7 +132,7 @@ class PrimitiveReader {
     return mesh;
   }
 
-  /** Texture coordinates for a mesh that read() has given; all 0 where the primitive has none that can be read. */
+  /** Texture coordinates for the mesh of read(). All 0 if the primitive has none that can be read. */
   std::vector<glm::vec2> read_uvs(int set)
   {
     std::vector<glm::vec2> uvs(file_vertices_.size(), glm::vec2(0.0F));
@@ -160,7 +160,7 @@ class PrimitiveReader {
     return uvs;
   }
 
-  /** Tangents for a mesh that read() has given; none where the primitive has none that can be read. */
+  /** Tangents for the mesh of read(). Empty if the primitive has none that can be read. */
   std::vector<glm::vec4> read_tangents()
   {
     const auto found = primitive_.attributes.find("TANGENT");
@@ -190,7 +190,7 @@ class PrimitiveReader {
     return tangents;
   }
 
-  /** Vertex colours for a mesh that read() has given; none where the primitive has none that can be read. */
+  /** Vertex colours for the mesh of read(). Empty if the primitive has none that can be read. */
   std::vector<glm::vec4> read_colors()
   {
     const auto found = primitive_.attributes.find("COLOR_0");
@@ -229,10 +229,10 @@ class PrimitiveReader {
   Warnings &warnings_;
   AccessorReader positions_;
   std::optional<AccessorReader> normals_;
-  /** None: the vertices in their order. */
+  /** Empty for a primitive without indices. */
   std::optional<AccessorReader> indices_;
   Losses losses_;
-  /** Which vertex of the file each of the mesh was. */
+  /** For each vertex of the mesh its index in the file. */
   std::vector<std::uint32_t> file_vertices_;
 
   [[nodiscard]] int position_accessor() const
@@ -244,7 +244,7 @@ class PrimitiveReader {
     return found->second;
   }
 
-  /** Normals that cannot be read are no reason to lose the surface. */
+  /** Normals that cannot be read are replaced, and the surface is kept. */
   void open_normals(const File &file)
   {
     const auto found = primitive_.attributes.find("NORMAL");
@@ -275,7 +275,7 @@ class PrimitiveReader {
       }
       return is_left_out(triangle);
     };
-    // In order, so not std::remove_if: its predicate must not modify.
+    // The order matters, and is_lost modifies its argument, so std::remove_if cannot be used.
     std::size_t kept = 0;
     for (Triangle &triangle : triangles) {
       if (!is_lost(triangle)) {
@@ -294,7 +294,7 @@ class PrimitiveReader {
     }
     const auto [a, b, c] = triangle;
     if (primitive_.mode != Model::Triangles && (a == b || b == c || c == a)) {
-      // The usual way to join strips: no loss.
+      // Degenerate triangles join strips. They are not counted as lost.
       return true;
     }
     const std::array corners{positions_.vec3(a), positions_.vec3(b), positions_.vec3(c)};
@@ -309,7 +309,7 @@ class PrimitiveReader {
     return false;
   }
 
-  /** Keep the file's vertices, in their order, less those that no triangle uses. */
+  /** Keeps the file's vertices in their order, except for unused ones. */
   void share_vertices(const std::vector<Triangle> &triangles, Mesh &mesh)
   {
     constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
@@ -336,7 +336,7 @@ class PrimitiveReader {
     replace_zero_normals(mesh);
   }
 
-  /** glTF asks for flat normals where a file has none, so no two triangles can share a vertex. */
+  /** glTF requires flat normals if a file has none, so triangles cannot share vertices. */
   void unshare_vertices(const std::vector<Triangle> &triangles, Mesh &mesh)
   {
     const std::size_t count = 3 * triangles.size();
@@ -361,7 +361,7 @@ class PrimitiveReader {
     if (!is_usable) {
       return glm::vec3(0.0F);
     }
-    // What is a unit vector but for rounding stays as it is: a scene that was exported is imported as it was.
+    // Vectors of unit length within rounding are kept unchanged, so that an exported scene is imported exactly.
     constexpr double rounding = 1e-6;
     const glm::dvec3 vector(normal);
     return std::abs(glm::dot(vector, vector) - 1.0) <= rounding ? normal : unit(vector);
@@ -380,7 +380,7 @@ class PrimitiveReader {
   }
 };
 
-/** Of a mesh of the scene. */
+/** Name of the scene's mesh for a primitive. */
 std::string primitive_name(const Model::Mesh &mesh, int mesh_index, std::size_t primitive_index)
 {
   if (!mesh.primitives[primitive_index].name.empty()) {
@@ -411,7 +411,7 @@ const std::vector<Handle<Mesh>> &MeshImporter::meshes_of(int gltf_mesh)
 
 void MeshImporter::spend(std::uint64_t element_count)
 {
-  // No overflow: an accessor's count is bounded by the size of a file.
+  // No overflow, because the count of an accessor is bounded by the size of a file.
   element_count_ += element_count;
   if (element_count_ > element_count_max) {
     throw std::length_error("scene: has more than " + std::to_string(element_count_max) + " vertices and indices");
@@ -458,7 +458,7 @@ void MeshImporter::import_primitive(int gltf_mesh, std::size_t primitive_index, 
     return;
   }
   if (mesh.indices.empty()) {
-    // What was lost has been reported.
+    // The lost triangles have been reported.
     return;
   }
   flatten_facets(mesh);

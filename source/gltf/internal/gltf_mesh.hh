@@ -16,27 +16,27 @@
 namespace gnomon::gltf {
 
 /**
- * No coordinate may be larger, in metres: ten times the way to the outermost planet. Its square and its cube are
- * finite in float, so that lengths, areas and volumes of whatever is imported are.
+ * Largest accepted coordinate, metres. Its square and its cube are finite in float, and so are all lengths, areas and
+ * volumes of an imported scene.
  */
 constexpr double coordinate_max = 1e12;
 
-/** Appends meshes to a scene, each glTF primitive once, at its first use. */
+/** Adds meshes to a scene, one for each glTF primitive, at its first use. */
 class MeshImporter {
  public:
-  /** Keeps references. */
+  /** All references must outlive the importer. */
   MeshImporter(const File &file, Warnings &warnings, scene::Scene &scene);
 
   /** The scene's meshes for the primitives of a mesh of the file, without those that cannot be drawn. */
   [[nodiscard]] const std::vector<scene::Handle<scene::Mesh>> &meshes_of(int gltf_mesh);
 
-  /** Decode the images of materials; call it once, at the end. */
+  /** Decodes the images of materials. Call it once, at the end. */
   void finish()
   {
     materials_.finish();
   }
 
-  /** Primitives that were looked at, drawable or not. */
+  /** Number of primitives that were read, drawable or not. */
   [[nodiscard]] std::size_t primitive_count() const
   {
     return primitive_count_;
@@ -48,9 +48,9 @@ class MeshImporter {
   scene::Scene &scene_;
   MaterialImporter materials_;
   std::map<int, std::vector<scene::Handle<scene::Mesh>>> meshes_of_;
-  /** What makes two primitives the same mesh of the scene: name, attributes, indices, material and mode. */
+  /** Primitives with the same key become one mesh: name, attributes, indices, material and mode. */
   using PrimitiveKey = std::tuple<std::string, std::map<std::string, int, std::less<>>, int, int, int>;
-  /** Names nothing where the primitive was left out. */
+  /** Invalid handles for primitives that were left out. */
   std::map<PrimitiveKey, scene::Handle<scene::Mesh>> mesh_of_;
   std::size_t primitive_count_ = 0;
   /** Vertices and indices read so far. */

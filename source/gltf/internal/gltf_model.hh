@@ -13,9 +13,9 @@
 namespace gnomon::gltf {
 
 /**
- * The properties of a glTF document that the importer reads, with glTF's defaults. Indices are -1 where absent.
+ * The properties of a glTF document that the importer reads, with glTF's defaults. Indices are -1 if absent.
  *
- * Types are checked, and so is the range of every index but those of and into textures.
+ * Types are checked, and so are the ranges of all indices except texture and image indices.
  */
 struct Model {
   enum ComponentType { Byte = 5120, UnsignedByte, Short, UnsignedShort, UnsignedInt = 5125, Float };
@@ -43,7 +43,7 @@ struct Model {
   struct SparsePart {
     int buffer_view = -1;
     std::uint64_t byte_offset = 0;
-    /** Of indices only. */
+    /** For sparse indices only. */
     int component_type = 0;
   };
   struct Sparse {
@@ -54,7 +54,7 @@ struct Model {
   struct Accessor {
     int buffer_view = -1;
     std::uint64_t byte_offset = 0;
-    /** May be none of ComponentType. */
+    /** Unchecked: may be a value outside of ComponentType. */
     std::uint64_t component_type = 0;
     std::uint64_t count = 0;
     ElementType type = ElementType::Scalar;
@@ -64,21 +64,21 @@ struct Model {
   /** KHR_draco_mesh_compression of a primitive. */
   struct Draco {
     int buffer_view = -1;
-    /** By the name of the attribute: its unique id in the compressed mesh. */
+    /** Unique id in the compressed mesh for each attribute name. */
     std::map<std::string, int, std::less<>> attributes;
   };
   struct Primitive {
-    /** POSITION, NORMAL, COLOR_0 and TEXCOORD_n: accessors. */
+    /** Accessor of each attribute: POSITION, NORMAL, TANGENT, COLOR_0 and TEXCOORD_n. */
     std::map<std::string, int, std::less<>> attributes;
     int indices = -1;
     int material = -1;
-    /** May be none of PrimitiveMode. */
+    /** Unchecked: may be a value outside of PrimitiveMode. */
     int mode = Triangles;
     bool has_targets = false;
     std::optional<Draco> draco;
-    /** The unknown extension that holds the data instead of the accessors; empty: none does. */
+    /** Name of the unsupported extension that holds the data instead of the accessors; empty if there is none. */
     std::string compression;
-    /** The extra gnomon_name; empty: none. */
+    /** The extra gnomon_name; empty if absent. */
     std::string name;
   };
   struct Mesh {
@@ -95,7 +95,7 @@ struct Model {
   struct Node {
     std::string name;
     std::vector<int> children;
-    /** By columns; instead of the three below. */
+    /** Column-major. Replaces translation, rotation and scale. */
     std::optional<std::array<double, 16>> matrix;
     std::array<double, 3> translation{0.0, 0.0, 0.0};
     std::array<double, 4> rotation{0.0, 0.0, 0.0, 1.0};
@@ -105,7 +105,7 @@ struct Model {
     int skin = -1;
     int light = -1;
     std::optional<Instances> instances;
-    /** Those whose key begins with "gnomon_". */
+    /** Extras whose key begins with "gnomon_". */
     std::map<std::string, Extra, std::less<>> extras;
   };
   struct TextureSlot {
@@ -138,7 +138,7 @@ struct Model {
     double alpha_cutoff = 0.5;
     bool is_double_sided = false;
     bool is_unlit = false;
-    /** Names, ascending. */
+    /** Names of all extensions, sorted. */
     std::vector<std::string> extensions;
   };
   struct Texture {
@@ -146,7 +146,7 @@ struct Model {
     int sampler = -1;
     int source = -1;
   };
-  /** Numbers of OpenGL. */
+  /** Values are OpenGL's enumerants. */
   struct Sampler {
     int mag_filter = -1;
     int min_filter = -1;
@@ -159,7 +159,7 @@ struct Model {
   };
   struct Image {
     std::string name;
-    /** A data URI or a file's name; empty: `buffer_view` has the bytes. */
+    /** A data URI or a file name; empty if `buffer_view` has the bytes. */
     std::string uri;
     int buffer_view = -1;
   };

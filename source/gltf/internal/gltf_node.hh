@@ -9,10 +9,10 @@
 #include <string>
 #include <string_view>
 
-/** Reads what a node says beside its lamp. Internal to source/gltf. */
+/** Reads properties of nodes except their lamps. Internal to source/gltf. */
 namespace gnomon::gltf {
 
-/** Whether an extra is about a node, with or without a lamp. */
+/** Whether an extra applies to all nodes, not only to those with a lamp. */
 [[nodiscard]] bool is_node_extra(std::string_view key);
 
 /** The extras gnomon_visible, gnomon_casts_shadow and gnomon_receives_shadow. \throws Fault that names \a node. */
@@ -25,13 +25,13 @@ void read_flags(const Model::Node &source, int index, scene::Node &node);
                                      const glm::dvec3 &scale);
 
 /**
- * The name of a lamp or camera on a node: the extra \a key, else the node's name, else \a fallback, else one made of
- * \a kind and \a index.
+ * The name of a lamp or camera on a node: the first of the extra \a key, the node's name, \a fallback, and a text made
+ * of \a kind and \a index.
  */
 [[nodiscard]] std::string thing_name(const Model::Node &node, const char *key, const std::string &fallback,
                                      const char *kind, int index);
 
-/** An extra as a person would write it. */
+/** The text of an extra for messages. */
 [[nodiscard]] std::string written(const Model::Extra &extra);
 
 }  // namespace gnomon::gltf

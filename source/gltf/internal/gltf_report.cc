@@ -31,7 +31,7 @@ std::string printable(std::string_view name)
 {
   std::string result(name.substr(0, printable_size_max));
   if (result.size() < name.size()) {
-    // Not through the middle of a character.
+    // Do not split a character.
     while (!result.empty() && is_utf8_continuation(name[result.size()])) {
       result.pop_back();
     }
@@ -62,14 +62,14 @@ std::string text(double value)
 
 Warnings::Entry &Warnings::entry(std::string_view element, std::string_view reason, bool is_counted)
 {
-  // Counted entries are shared between elements, so their key leaves the element out.
+  // Counted entries are shared by elements, so their key has no element.
   std::pair<std::string, std::string> key(is_counted ? std::string_view() : element, reason);
   const auto [place, is_new] = index_of_.try_emplace(std::move(key), entries_.size());
   if (is_new) {
     entries_.push_back({std::string(element), std::string(reason), {}, 0, 0, is_counted});
   }
   Entry &result = entries_[place->second];
-  // An element is dealt with from end to end, so one that comes again does so at once.
+  // All messages about an element are consecutive.
   if (result.last_element != element) {
     result.last_element = element;
     result.element_count++;

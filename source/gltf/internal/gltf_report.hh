@@ -9,31 +9,31 @@
 #include <utility>
 #include <vector>
 
-/** How the glTF import says what is wrong. Internal to source/gltf. */
+/** Error and warning messages of the glTF import. Internal to source/gltf. */
 namespace gnomon::gltf {
 
-/** Something in the file cannot be used: "what: reason", without the file, which the door puts in front. */
+/** An element of the file cannot be used: "what: reason". The importer's entry point adds the file's name. */
 struct Fault : std::runtime_error {
   Fault(std::string_view what, std::string_view reason);
 };
 
-/** A name from a file, fit for a one-line message: no control characters, not endless. */
+/** A name from a file for a one-line message: shortened, and without control characters. */
 [[nodiscard]] std::string printable(std::string_view name);
 
-/** `kind 'name'`, or `kind index` for what has no name. */
+/** `kind 'name'`, or `kind index` if the name is empty. */
 [[nodiscard]] std::string label(std::string_view kind, std::string_view name, std::size_t index);
 
-/** A number as a person would write it. */
+/** The text of a number for messages. */
 [[nodiscard]] std::string text(double value);
 
-/** What was left out or mended: every message once, with the number of elements it is about. */
+/** Warnings about elements that were left out or replaced. Equal messages are counted. */
 class Warnings {
  public:
-  /** A message of its own. The same one again only counts. */
+  /** Adds a message. An identical message is only counted. */
   void add(std::string_view element, std::string_view reason);
 
   /**
-   * \a count things of one \a element. Elements with the same \a reason share one message:
+   * Adds a message about \a count items of one \a element. Elements with the same \a reason share one message:
    * "mesh 'a' and 2 others: triangle left out: it has no area (7 times)".
    */
   void add_counted(std::string_view element, std::uint64_t count, std::string_view reason);
@@ -47,7 +47,7 @@ class Warnings {
 
  private:
   struct Entry {
-    /** The first that it was said of. */
+    /** The first element with this message. */
     std::string element;
     std::string reason;
     std::string last_element;

@@ -4,7 +4,7 @@
 /** Internal to source/gltf. */
 namespace gnomon::gltf {
 
-/** OpenGL's numbers, which glTF's samplers use. */
+/** OpenGL's enumerants, which glTF's samplers use. */
 constexpr int gl_nearest = 9728;
 constexpr int gl_linear = 9729;
 constexpr int gl_nearest_mipmap_nearest = 9984;

@@ -17,7 +17,7 @@ struct SlotName {
   std::string_view name;
   Model::TextureSlot Model::Material::*source;
   scene::TextureSlot scene::Material::*target;
-  /** The texel of the image that stands for one that is missing or damaged, and what it looks like. */
+  /** The texel of the image that replaces a missing or damaged one, and a description of its appearance. */
   std::array<std::uint8_t, 4> stand_in;
   std::string_view stand_in_name;
 };
@@ -61,13 +61,13 @@ inline constexpr std::array<SlotName, 7> slot_names = {{
      "the factor alone"},
 }};
 
-/** The warning of a slot with a stand-in. */
+/** Text of the warning about a slot with a stand-in. */
 [[nodiscard]] inline std::string reason_of(const SlotName &slot, const Fault &fault)
 {
   return "its " + std::string(slot.name) + " is drawn as " + std::string(slot.stand_in_name) + ": " + fault.what();
 }
 
-/** Textures that stand for missing or damaged ones, one for each slot that needs any. */
+/** Textures that replace missing or damaged ones, one for each slot that needs it. */
 class StandIns {
  public:
   explicit StandIns(scene::Scene &scene) : scene_(scene) {}
@@ -76,7 +76,7 @@ class StandIns {
   {
     scene::Handle<scene::Texture> &texture = textures_[slot.name];
     if (!texture) {
-      // Alone, a base colour is chequered, so that it can be seen to be a stand-in.
+      // Only a base colour is a checkerboard, so that the stand-in is visible as such.
       const std::array<std::uint8_t, 4> other = slot.target == &scene::Material::base_color_texture
                                                     ? std::array<std::uint8_t, 4>{0, 0, 0, 255}
                                                     : slot.stand_in;

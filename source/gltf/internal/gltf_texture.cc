@@ -23,10 +23,13 @@ using scene::TextureWrap;
 
 namespace {
 
-/** A few kilobytes can be compressed out of millions of texels, so the size of a file does not limit them. */
+/**
+ * Limit of texels. Millions of texels may be compressed to a few kilobytes, so the size of the file does not limit
+ * them.
+ */
 constexpr std::uint64_t texel_count_max = std::uint64_t(1) << 27U;
 
-/** Reads one sampler; what glTF does not know is taken for what it has without a sampler. */
+/** Reads one sampler. Unknown values are replaced by those of a texture without a sampler. */
 class SamplerReader {
  public:
   SamplerReader(std::string what, Warnings &warnings) : what_(std::move(what)), warnings_(warnings) {}
@@ -81,11 +84,11 @@ class SamplerReader {
     }
   }
 
-  /** The file leaves the filter to us. */
+  /** The file does not specify the filter. */
   static constexpr int absent = -1;
 };
 
-/** \throws Fault that names \a what, when the file has no element \a index. */
+/** \throws Fault that names \a what, if the file has no element \a index. */
 template <typename Elements>
 const auto &element(const Elements &elements, int index, const std::string &what)
 {

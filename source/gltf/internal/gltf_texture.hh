@@ -17,29 +17,29 @@
 namespace gnomon::gltf {
 
 /**
- * Appends textures and their images to a scene, each at its first use, so that no other image is decoded. Images are
- * decoded together, by decode().
+ * Adds textures and their images to a scene at their first use, so that unused images are not decoded. decode() decodes
+ * all images together.
  */
 class TextureImporter {
  public:
-  /** Keeps references. */
+  /** All references must outlive the importer. */
   TextureImporter(const File &file, Warnings &warnings, scene::Scene &scene);
 
   /**
    * The scene's texture for a texture of the file, whose index may be out of range. Its image has one texel until
    * decode().
    *
-   * \throws Fault that names the texture or the image, when it cannot be looked up.
+   * \throws Fault that names the texture or the image, if either cannot be used.
    */
   [[nodiscard]] scene::Handle<scene::Texture> handle_of(int gltf_texture);
 
-  /** Decode all images, on all processors. \return those that are damaged, with the reason. */
+  /** Decodes all images, on all processors. \return the damaged images, with the reason. */
   [[nodiscard]] std::map<scene::Handle<scene::Image>, Fault> decode();
 
  private:
   struct Pending {
     scene::Handle<scene::Image> handle;
-    /** Empty where the file's buffers hold the bytes. */
+    /** The image file; empty if it is in one of the glTF file's buffers. */
     std::vector<unsigned char> storage;
     ImageDecoder decoder;
   };
@@ -48,13 +48,13 @@ class TextureImporter {
   Warnings &warnings_;
   scene::Scene &scene_;
   std::map<int, scene::Handle<scene::Texture>> handle_of_;
-  /** By URI and buffer view: files name an image more than once. */
+  /** By URI and buffer view, because several images may refer to the same data. */
   std::map<std::pair<std::string, int>, std::variant<scene::Handle<scene::Image>, Fault>> image_of_;
   std::vector<Pending> pending_;
   /** Texels of all images so far. */
   std::uint64_t texel_count_ = 0;
 
-  /** Once for each image, also if it fails. */
+  /** Imports each image once; later calls return the same handle or throw the same Fault. */
   scene::Handle<scene::Image> image_of(int gltf_image);
   scene::Handle<scene::Image> import_image(int gltf_image);
 };

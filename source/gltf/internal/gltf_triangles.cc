@@ -31,7 +31,7 @@ std::vector<Triangle> triangles_of(int mode, std::uint32_t count, Losses &losses
   for (std::uint32_t i = 0; i < triangle_count; i++) {
     switch (mode) {
       case Model::TriangleStrip:
-        // Every other triangle is turned round, so that all face the same way.
+        // Every other triangle is reversed, so that all have the same winding.
         triangles.push_back({i, i + 1 + i % 2, i + 2 - i % 2});
         break;
       case Model::TriangleFan: triangles.push_back({i + 1, i + 2, 0}); break;

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-/** Triangles of a primitive, and what is lost of it. Internal to source/gltf. */
+/** Triangles of a primitive, and counts of its faults. Internal to source/gltf. */
 namespace gnomon::gltf {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/** Counts of what was wrong with a primitive's triangles, and the words for them. */
+/** Counts of faulty triangles, vertices and attributes of a primitive. */
 struct Losses {
   std::uint64_t out_of_range = 0;
   std::uint64_t non_finite = 0;
@@ -28,14 +28,13 @@ struct Losses {
   void report(Warnings &warnings, const std::string &what) const;
 };
 
-/** Whether a mode of glTF makes triangles. */
+/** Whether primitives of this glTF mode consist of triangles. */
 [[nodiscard]] bool is_drawn(int mode);
 
-/** Why a primitive of another mode is left out. */
+/** The reason for which a primitive of another mode is left out. */
 [[nodiscard]] std::string mode_reason(int mode);
 
-/** The triangles of a list, strip or fan of \a count vertices, as places in it, with the winding that glTF gives them.
- */
+/** The triangles of a list, strip or fan of \a count vertices, as positions in that sequence, with glTF's winding. */
 [[nodiscard]] std::vector<Triangle> triangles_of(int mode, std::uint32_t count, Losses &losses);
 
 }  // namespace gnomon::gltf

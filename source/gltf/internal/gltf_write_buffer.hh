@@ -11,7 +11,7 @@
 /** Internal to source/gltf. */
 namespace gnomon::gltf {
 
-/** The bytes of a file that is written, and the glTF buffer views and accessors that name them. */
+/** The binary data of a file under construction, with its glTF buffer views and accessors. */
 struct WrittenBuffer {
   std::vector<unsigned char> bytes;
   JsonText views;
@@ -21,8 +21,8 @@ struct WrittenBuffer {
   int add_view(std::span<const unsigned char> content);
 
   /**
-   * Appends an accessor of \a values, whose components are \a component_type; \a more is further members of it, each
-   * after a comma. \return its index.
+   * Appends an accessor of \a values with components of \a component_type. \a more: further JSON members, each preceded
+   * by a comma. \return its index.
    */
   template <typename T>
   int add_accessor(const std::vector<T> &values, int component_type, std::string_view type,
@@ -36,7 +36,7 @@ struct WrittenBuffer {
   }
 };
 
-/** A PNG file of \a image. \throws Fault that names \a what. */
+/** Encodes \a image as a PNG file. \throws Fault that names \a what. */
 [[nodiscard]] std::vector<unsigned char> png_of(const scene::Image &image, const std::string &what);
 
 }  // namespace gnomon::gltf

@@ -55,7 +55,7 @@ std::string json_number(double value, std::string_view what)
 std::string json_number(float value, std::string_view what)
 {
   check_finite(value, what);
-  // A reader goes through double, which can round the shortest text of a float to its neighbour.
+  // Readers convert through double, which can round the shortest text of a float to a neighbouring float.
   std::string text = fmt::format("{}", value);
   return static_cast<float>(std::strtod(text.c_str(), nullptr)) == value ? text : fmt::format("{}", double(value));
 }

@@ -11,17 +11,17 @@
 /** JSON text. Internal to source/gltf. */
 namespace gnomon::gltf {
 
-/** A string in quotes. \throws Fault that names \a what where \a text is not UTF-8 or has more than 1024 bytes. */
+/** A quoted string. \throws Fault that names \a what if \a text is not UTF-8 or has more than 1024 bytes. */
 [[nodiscard]] std::string json_string(std::string_view text, std::string_view what);
 
-/** The shortest number that reads back as the same value. \throws Fault that names \a what where it is not finite. */
+/** The shortest text that is read as the same value. \throws Fault that names \a what if the value is not finite. */
 [[nodiscard]] std::string json_number(double value, std::string_view what);
 [[nodiscard]] std::string json_number(float value, std::string_view what);
 [[nodiscard]] std::string json_numbers(const glm::vec2 &value, std::string_view what);
 [[nodiscard]] std::string json_numbers(const glm::vec3 &value, std::string_view what);
 [[nodiscard]] std::string json_numbers(const glm::vec4 &value, std::string_view what);
 
-/** An array or object that grows. The values are JSON text. */
+/** Builder of an array or object. The values are JSON text. */
 class JsonText {
  public:
   [[nodiscard]] bool empty() const
@@ -32,9 +32,9 @@ class JsonText {
   {
     return count_;
   }
-  /** Append an element; returns its index. */
+  /** Appends an element. \return its index */
   int add(std::string_view value);
-  /** Append a member. \a key is a plain word. */
+  /** Appends a member. \a key: needs no escaping. */
   void add(std::string_view key, std::string_view value);
   [[nodiscard]] std::string array() const
   {

@@ -31,12 +31,12 @@ std::string quoted_word(std::string_view word)
   return '"' + std::string(word) + '"';
 }
 
-/** Where the soft edge begins: the inverse of what the importer derives gnomon_spot_blend from. */
+/** Inner cone angle, from which the importer computes the same gnomon_spot_blend. */
 double inner_angle(const Lamp &lamp)
 {
   const double outer = lamp.spot_outer_angle;
   const double blend = std::clamp(double(lamp.spot_blend), 0.0, 1.0);
-  // 1 - cos by half angles: nothing cancels however narrow the cone.
+  // Uses half angles to avoid cancellation in narrow cones.
   const double half_sine = std::sin(0.5 * outer) * std::sqrt(1.0 - blend);
   return std::clamp(2.0 * std::asin(half_sine), 0.0, outer);
 }

@@ -9,13 +9,13 @@
 /** Internal to source/gltf. */
 namespace gnomon::gltf {
 
-/** A camera of glTF. \throws Fault, as the others. */
+/** A glTF camera. All functions here throw Fault. */
 [[nodiscard]] std::string camera_json(const scene::Camera &camera);
 
-/** A light of KHR_lights_punctual. Not for area lamps, which are extras alone. */
+/** A light of KHR_lights_punctual. \pre not an area lamp, which is written as extras only */
 [[nodiscard]] std::string light_json(const scene::Lamp &lamp);
 
-/** Adds the extras that a node with \a lamp has, but for its name. */
+/** Adds the extras of a node with \a lamp, except for gnomon_lamp_name. */
 void add_lamp_extras(const scene::Lamp &lamp, JsonText &extras);
 
 }  // namespace gnomon::gltf

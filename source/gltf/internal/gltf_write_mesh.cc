@@ -27,7 +27,7 @@ std::string what_of(const char *kind, const std::string &name)
   return std::string(kind) + " '" + printable(name) + '\'';
 }
 
-/** The name that the importer gives to a primitive without a name of its own. */
+/** The name that the importer gives to a primitive without a name. */
 std::string derived_name(const std::string &mesh_name, std::size_t primitive, std::size_t primitive_count)
 {
   return primitive_count == 1 ? mesh_name : mesh_name + '[' + std::to_string(primitive) + ']';
@@ -51,7 +51,7 @@ int gl_minified(TextureFilter filter, MipFilter mip)
   return is_linear ? gl_linear_mipmap_linear : gl_nearest_mipmap_linear;
 }
 
-/** A power of two by which emission above 1 is divided, so that nothing is rounded; 1 for other emission. */
+/** A power of two, by which emission above 1 is divided without rounding; 1 for other emission. */
 float emissive_strength(const glm::vec3 &emissive)
 {
   const float largest = std::max({emissive.x, emissive.y, emissive.z});

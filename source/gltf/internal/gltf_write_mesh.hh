@@ -13,13 +13,15 @@
 /** Internal to source/gltf. */
 namespace gnomon::gltf {
 
-/** Collects meshes with all that they need, each thing once, at its first use. Members throw Fault. */
+/**
+ * Collects meshes and the materials, textures and images that they use, each at its first use. All members throw Fault.
+ */
 class MeshWriter {
  public:
-  /** Keeps references. */
+  /** All references must outlive the writer. */
   MeshWriter(const scene::Scene &scene, WrittenBuffer &buffer) : scene_(scene), buffer_(buffer) {}
 
-  /** The glTF mesh whose primitives are \a meshes; -1 where none of them has triangles. */
+  /** Index of the glTF mesh whose primitives are \a meshes; -1 if none of them has triangles. */
   [[nodiscard]] int index_of(const std::vector<scene::Handle<scene::Mesh>> &meshes);
 
   JsonText meshes;
@@ -43,7 +45,7 @@ class MeshWriter {
 
   const JsonText &primitive(scene::Handle<scene::Mesh> handle);
   int material(scene::Handle<scene::Material> handle);
-  /** Adds the slot where it has a texture; \a factor: more members of it. */
+  /** Adds the slot if it has a texture. \a factor: further JSON members of the slot. */
   void add_slot(JsonText &json, std::string_view key, const scene::TextureSlot &slot, const std::string &what,
                 const std::string &factor = "");
   int texture(scene::Handle<scene::Texture> handle);
