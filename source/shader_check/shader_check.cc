@@ -28,26 +28,26 @@ std::string_view to_string(Severity severity)
 
 namespace {
 
-/** What no device promises for a uniform block, though many take it. */
+/** Above this size a uniform block is an error, although some devices support more. */
 constexpr std::uint32_t uniform_block_bytes_limit = 65536;
 
 constexpr std::array<CheckRule, 16> rules = {{
-    {"include", "a file that is included, or named as a stage, exists"},
+    {"include", "included files and the files of stages exist"},
     {"compile", "glslang accepts the stage"},
     {"link", "glslang accepts the stages together"},
-    {"spirv", "SPIRV-Tools accepts what glslang makes of the stage"},
+    {"spirv", "SPIRV-Tools accepts glslang's output for the stage"},
     {"slot", "each block and texture has a slot of its own, the same in each stage"},
-    {"missing-varying", "what a stage reads, the stage before it writes"},
-    {"varying-type", "what a stage reads has the type that the stage before it writes"},
-    {"layout", "a block that C++ and GLSL share is laid out alike in both"},
+    {"missing-varying", "each input of a stage is an output of the previous stage"},
+    {"varying-type", "an input has the type of the previous stage's output"},
+    {"layout", "a block has the same layout in C++ and GLSL"},
     {"block-array", "an array in a block has elements that fill rows of 16 bytes"},
-    {"block-size", "a uniform block is not larger than every device takes"},
+    {"block-size", "a uniform block is within the limit that all devices support"},
     {"recursion", "no function calls itself"},
-    {"unused-binding", "a block or texture that is declared is read"},
+    {"unused-binding", "each declared block or texture is read"},
     {"unread-output", "an output is read by the next stage"},
-    {"implicit-conversion", "a block's member is not converted without saying so"},
-    {"unbounded-loop", "a loop ends evidently"},
-    {"unguarded-math", "a function with a limited domain is not given what may leave it"},
+    {"implicit-conversion", "a member of a block is converted only explicitly"},
+    {"unbounded-loop", "a value that the loop steps bounds the loop"},
+    {"unguarded-math", "the argument of a function with a limited domain is guarded"},
 }};
 
 class Checker {
@@ -68,7 +68,7 @@ class Checker {
     std::ranges::stable_sort(messages_, [](const CheckMessage &a, const CheckMessage &b) {
       return std::tie(a.file, a.line, a.text) < std::tie(b.file, b.line, b.text);
     });
-    // A header is in each stage.
+    // A header that is part of several stages gives the same message several times.
     messages_.erase(std::unique(messages_.begin(), messages_.end()), messages_.end());
     return std::move(messages_);
   }
@@ -135,7 +135,8 @@ class Checker {
     check_findings();
     check_slots();
     check_varyings();
-    // glslang names no line. Our own checks do, where they found the mistake.
+    // glslang's link errors have no line. They are reported only if our own checks, whose messages have lines, found no
+    // mistake.
     if (!is_linked && !has_errors()) {
       const std::size_t stage = c_.sources.size() - 1;
       for (const LinkMessage &message : link_messages(log)) {
@@ -175,7 +176,7 @@ class Checker {
             fmt::format("{} '{}' has no layout(binding = …)", to_string(kind), declaration.name));
       }
       for (const Slot &other : known) {
-        // OpenGL has a space of slots for each kind, Vulkan one for all.
+        // OpenGL has separate slots for each kind of resource, Vulkan one set for all.
         const bool is_same_space = kind == other.kind || options_.target == CheckTarget::Vulkan;
         const bool is_same_slot = declaration.slot >= 0 && declaration.slot == other.declaration->slot &&
                                   declaration.set == other.declaration->set;
@@ -208,7 +209,7 @@ class Checker {
     }
   }
 
-  /** Whether the two meet, by location where they have any. */
+  /** Whether an output and an input are connected: by location if they have one, otherwise by name. */
   static bool match(const Declaration &output, const Declaration &input)
   {
     if (output.location < 0 || input.location < 0) {
@@ -308,7 +309,7 @@ class Checker {
     }
     const bool is_error = options_.is_block_size_strict || binding.size_bytes > uniform_block_bytes_limit;
     add(is_error ? Severity::Error : Severity::Warning, "block-size", found.stage, found.declaration->position,
-        fmt::format("block '{}' takes {} bytes; every device takes {}, many {}, few more", binding.name,
+        fmt::format("block '{}' takes {} bytes; all devices support {}, many {}, few more", binding.name,
                     binding.size_bytes, UNIFORM_BLOCK_BYTES_MAX, uniform_block_bytes_limit));
   }
 

@@ -56,12 +56,12 @@ struct CheckOptions {
 };
 
 /**
- * Compile each stage of \a desc to SPIR-V, validate, link, and look for mistakes that compilers accept. To check a
+ * Compiles each stage of \a desc to SPIR-V, validates it, links, and reports mistakes that compilers accept. To check a
  * single stage, leave the paths of the other stages empty.
  *
- * A mistake in the shader is a message, never an exception. Texts of messages are at most some 400 bytes long. Several
- * threads may call it at once if they may call \a files.
- * \return the mistakes, sorted by file and line; empty: none was found.
+ * Mistakes in the shader are returned as messages, never as exceptions. Texts of messages have at most about 400 bytes.
+ * Several threads may call the function concurrently if \a files allows it.
+ * \return the mistakes, sorted by file and line; empty if none was found.
  */
 [[nodiscard]] std::vector<CheckMessage> check_shader(const gpu::ShaderDesc &desc, const gpu::ShaderFiles &files,
                                                      const CheckOptions &options);

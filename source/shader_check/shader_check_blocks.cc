@@ -100,7 +100,7 @@ std::vector<BlockDifference> differences(const BlockComparison &comparison)
                                    *field.cpp_offset_bytes)});
     }
   }
-  // A field too many or too few moves others: they say nothing new.
+  // A missing or additional field moves the following ones, so their offsets are not reported.
   if (!missing.empty()) {
     return missing;
   }

@@ -15,21 +15,21 @@ struct BlockComparison {
     std::string name;
     std::optional<std::size_t> cpp_offset_bytes;
     std::optional<std::size_t> glsl_offset_bytes;
-    /** Of the field in GLSL; else of the struct or block that lacks it. */
+    /** File of the field in GLSL, or of the struct or block that lacks it. */
     std::string file;
     int line = 1;
   };
   std::string block;
   std::size_t cpp_size_bytes = 0;
   std::size_t glsl_size_bytes = 0;
-  /** In GLSL's order; then the fields that only C++ has. */
+  /** Fields in GLSL's order, followed by the fields that only C++ has. */
   std::vector<Field> fields;
-  /** Of the block in GLSL. */
+  /** File of the block in GLSL. */
   std::string file;
   int line = 1;
 };
 
-/** Compare the blocks that \a desc reads and \a blocks contains. \throws gpu::Error if \a desc does not compile. */
+/** Compares the blocks that \a desc reads and \a blocks contains. \throws gpu::Error if \a desc does not compile. */
 [[nodiscard]] std::vector<BlockComparison> compare_blocks(const gpu::ShaderDesc &desc, const gpu::ShaderFiles &files,
                                                           std::span<const gpu::BlockLayout> blocks);
 

@@ -14,19 +14,20 @@ struct TableEntry {
   gpu::ShaderDesc desc;
 };
 
-/** The interfaces of all variants of one program; gpu::InterfaceTable holds the same. */
+/** The interfaces of all variants of one program, as in gpu::InterfaceTable. */
 struct VariantInterfaces {
   std::string name;
-  /** All bindings and push constants that some variant reads. */
+  /** Union of the bindings and push constants of all variants. */
   gpu::ShaderInterface all;
   std::vector<gpu::InterfaceTable::Variant> variants;
 };
 
 /**
- * Reflect all entries. The result has the order in which names and keys first occur.
+ * Reflects all entries. The result is in the order in which names and keys first occur.
  *
- * \throws gpu::Error that names the program and its variants: if one does not compile; if a name has different slots or
- * layouts, or two names one slot, in variants of one program; if two entries of one key read different names.
+ * \throws gpu::Error that names the program and its variants: if a variant does not compile; if variants of one program
+ * disagree about the slot or layout of a name, or use one slot for two names; if two entries with the same key read
+ * different names.
  */
 [[nodiscard]] std::vector<VariantInterfaces> variant_interfaces(std::span<const TableEntry> entries,
                                                                 const gpu::ShaderFiles &files);

@@ -7,18 +7,18 @@
 namespace gnomon::shader_check {
 
 /**
- * Compile and link with glslang for OpenGL 4.5 and read the interface. It is a gpu::ShaderReflection.
+ * Compiles and links with glslang for OpenGL 4.5, and reads the interface. It is a gpu::ShaderReflection.
  *
- * \throws gpu::Error with glslang's message, which names file and line; also for a binding without a slot and for a
- * slot that two bindings of one kind share.
+ * \throws gpu::Error with glslang's message, which names file and line; also for a binding without a slot, and for two
+ * bindings of one kind with the same slot.
  */
 [[nodiscard]] gpu::ShaderInterface reflect(std::string_view name, const std::vector<gpu::ShaderSource> &stages);
 
 struct StageVariable {
   std::string name;
-  /** GLSL's name of it. */
+  /** GLSL's name of the type. */
   std::string type;
-  /** -1: none. */
+  /** -1 if there is none. */
   int location = -1;
 };
 

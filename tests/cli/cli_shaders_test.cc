@@ -241,7 +241,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {{"shared/eevee_light_shared.h", "#define LIGHT_MAX 255\n", "#define LIGHT_MAX 256\n"}},
                 "eevee/eevee_light_lib.glsl",
                 "uniform light_block",
-                "block 'light_block' takes 16400 bytes; every device takes 16384",
+                "block 'light_block' takes 16400 bytes; all devices support 16384",
                 // C++ has fewer lights, too.
                 2},
         Planted{"Recursion",

@@ -6,7 +6,7 @@
 
 namespace gnomon::shader_check {
 
-/** Compare the block that \a binding and \a found both describe with C++'s \a layout of it. */
+/** Compares a block's layout in GLSL, given by \a binding and \a found, with its C++ \a layout. */
 [[nodiscard]] BlockComparison compare_block(const Compilation &compilation,
                                             const gpu::ShaderInterface::Binding &binding, const StageDeclaration &found,
                                             const gpu::BlockLayout &layout);

@@ -6,7 +6,7 @@
 
 namespace gnomon::shader_check {
 
-/** One shader for one target: its sources, glslang's program, and the facts read from that. */
+/** One shader for one target: its sources, glslang's program, and facts about its stages. */
 struct Compilation {
   std::vector<gpu::ShaderSource> sources;
   std::vector<SourceLines> lines;
@@ -19,11 +19,11 @@ struct Compilation {
     return glslang.program().getIntermediate(glslang_language(sources[stage].stage));
   }
   void read_facts();
-  /** The path of the file of a position in a stage. */
+  /** Path of the file at a position in a stage. */
   [[nodiscard]] const std::string &file(std::size_t stage, SourcePosition position) const;
 };
 
-/** Compile, link and read the facts, for OpenGL. \throws Error if \a desc does not compile. */
+/** Compiles and links for OpenGL, and reads the facts. \throws Error if \a desc does not compile. */
 void compile(const gpu::ShaderDesc &desc, const gpu::ShaderFiles &files, Compilation &compilation);
 
 /** A declaration and the index of its stage. */
@@ -32,7 +32,7 @@ struct StageDeclaration {
   const Declaration *declaration;
 };
 
-/** The uniform or storage block \a name in the first stage that has it. */
+/** The declaration of the uniform or storage block \a name in the first stage that contains it. */
 [[nodiscard]] std::optional<StageDeclaration> find_block(const Compilation &compilation, gpu::BindingKind kind,
                                                          std::string_view name);
 

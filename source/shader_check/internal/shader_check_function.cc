@@ -22,7 +22,7 @@ using glslang::TVisit;
 
 namespace {
 
-/** Whether an expression lies in [0, 1] by its outermost function. */
+/** Whether the outermost function of an expression limits it to [0, 1]. */
 bool is_share(const TIntermTyped *node)
 {
   switch (operator_of(node)) {
@@ -44,7 +44,7 @@ bool is_rest_of_one(const FunctionFacts &facts, TIntermTyped *node)
          binary->getLeft()->getAsConstantUnion() != nullptr && is_share(facts.resolved(binary->getRight()));
 }
 
-/** Why \a op may fail on \a argument, where that can be told from the expression; else nothing. */
+/** The reason for which \a op may fail for \a argument, as far as the expression shows it; otherwise empty. */
 std::string danger(const FunctionFacts &facts, TOperator op, TIntermTyped *argument)
 {
   TIntermTyped *value = facts.resolved(argument);
@@ -89,7 +89,7 @@ std::string_view operator_name(TOperator op)
   }
 }
 
-/** Whether a comparison in a loop's test has a side that the loop moves on, by `++`, `+=`, `i = i + …` and the like. */
+/** Whether the loop steps a side of a comparison in its condition, by `++`, `+=`, `i = i + …` and the like. */
 class LoopSteps : public TIntermTraverser {
  public:
   explicit LoopSteps(TIntermLoop *loop)
@@ -122,7 +122,7 @@ class LoopSteps : public TIntermTraverser {
     if (test == nullptr || test->getAsConstantUnion() != nullptr) {
       return false;
     }
-    // A test with a step of its own, `i-- > 0`, or one that calls a function, is taken for what it looks like.
+    // A test that includes a step, `i-- > 0`, or a function call is assumed to bound the loop.
     const std::vector<TIntermTyped *> sides = arguments_of(test);
     switch (operator_of(test)) {
       case glslang::EOpLogicalAnd: return std::ranges::any_of(sides, [&](TIntermTyped *side) { return bound(side); });
@@ -194,11 +194,10 @@ class FunctionLint : public TIntermTraverser {
   bool visitLoop(TVisit, TIntermLoop *loop) override
   {
     if (!LoopSteps(loop).bound(loop->getTest())) {
-      // A loop itself has no position.
+      // A loop has no position; its parts have.
       const TIntermNode *known = loop->getTest() != nullptr ? loop->getTest() : loop->getBody();
       const glslang::TSourceLoc loc = loop->getLoc().line > 0 || known == nullptr ? loop->getLoc() : known->getLoc();
-      add("unbounded-loop", loc,
-          "nothing bounds the loop: no comparison in its condition has a side that the loop steps");
+      add("unbounded-loop", loc, "the loop may not end: it steps no side of a comparison in its condition");
     }
     return true;
   }
@@ -215,7 +214,10 @@ class FunctionLint : public TIntermTraverser {
     }
   }
 
-  /** A member of a block that becomes another type without a word. glslang's tree does not tell: its text does. */
+  /**
+   * Reports an implicit conversion of a block's member. glslang's tree does not distinguish it from an explicit one, so
+   * the source text is used.
+   */
   void check_conversion(TIntermUnary *unary)
   {
     TIntermTyped *operand = unary->getOperand();
@@ -232,18 +234,21 @@ class FunctionLint : public TIntermTraverser {
     const std::string start = first_name(operand);
     const std::string_view line = lines_.line(position_of(symbol->getLoc()));
     const std::size_t at = start.empty() ? std::string_view::npos : find_word(line, start);
-    // Twice in a line: which one is meant cannot be told.
+    // The name occurs twice in the line, so the expression is ambiguous.
     if (at == std::string_view::npos || find_word(line, start, at + 1) != std::string_view::npos) {
       return;
     }
     if (!ends_with_constructor(line.substr(0, at))) {
       add("implicit-conversion", symbol->getLoc(),
-          fmt::format("a block's member of type {} becomes {} implicitly: say {}(…)", type_name(operand->getType()),
+          fmt::format("a block's member of type {} becomes {} implicitly: write {}(…)", type_name(operand->getType()),
                       type_name(unary->getType()), type_name(unary->getType())));
     }
   }
 
-  /** The name that a block's member begins with in the text: the instance's, or the member's where there is none. */
+  /**
+   * The first name of a block's member in the source text: that of the instance, or of the member if there is no
+   * instance name.
+   */
   static std::string first_name(const TIntermTyped *node)
   {
     const TIntermBinary *innermost = nullptr;

@@ -13,7 +13,7 @@ namespace {
 constexpr int glsl_version = 450;
 constexpr EShMessages messages = EShMsgDefault;
 
-/** Makes glslang's process-wide tables at the first use, because that takes some milliseconds. */
+/** Creates glslang's process-wide tables at the first use, because that takes some milliseconds. */
 void initialize_glslang()
 {
   struct Process {
@@ -29,7 +29,7 @@ void initialize_glslang()
   static const Process process;
 }
 
-/** An address range: the system commits the pages that are touched. */
+/** Reserved address space; the system commits only the pages in use. */
 constexpr std::size_t stack_bytes = std::size_t(512) << 20U;
 /** An expression has at most one operator for each two bytes, and an operator takes less than 1 KiB of stack. */
 constexpr std::size_t source_bytes_max = stack_bytes / 512;

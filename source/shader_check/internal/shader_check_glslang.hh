@@ -12,7 +12,7 @@
 namespace gnomon::shader_check {
 
 enum class GlslangTarget : std::uint8_t {
-  /** GLSL as a driver reads it: what glShaderSource takes. */
+  /** GLSL for glShaderSource. */
   OpenGl,
   /** SPIR-V 1.0 for OpenGL 4.5. */
   OpenGlSpirv,
@@ -21,9 +21,9 @@ enum class GlslangTarget : std::uint8_t {
 };
 
 /**
- * Run \a work on a thread with a stack of 512 MiB and wait for it. glslang recurses once per operator of an expression:
- * one of 100 000 operators overflows a usual stack of 8 MiB. The large stack suffices for 1 MiB of text; macros that
- * multiply a short text to millions of operators overflow it, too.
+ * Runs \a work on a thread with a stack of 512 MiB and waits for it. glslang recurses for each operator of an
+ * expression: 100 000 operators overflow a usual stack of 8 MiB. The large stack suffices for 1 MiB of text, but not
+ * for macros that expand a short text to millions of operators.
  *
  * \throws what \a work throws; Error if there is no memory for the thread.
  */
@@ -31,17 +31,19 @@ void with_large_stack(const std::function<void()> &work);
 
 [[nodiscard]] EShLanguage glslang_language(gpu::ShaderStage stage);
 
-/** The stages of one shader. Several threads may each have programs. Call it within with_large_stack only. */
+/** The stages of one shader. Threads may use different programs concurrently. Call it only within with_large_stack. */
 class GlslangProgram {
  public:
   GlslangProgram();
 
-  /** Compile \a source, which must outlive this. False: log() has the reason. A source of more than 1 MiB is refused.
+  /**
+   * Compiles \a source, which must outlive the program. false on failure: log() has the reason. Sources of more than 1
+   * MiB are refused.
    */
   bool add(const gpu::ShaderSource &source, GlslangTarget target);
-  /** Call it after all stages are added. False: log() has the reason. */
+  /** Call it after adding all stages. false on failure: log() has the reason. */
   bool link();
-  /** Of the last call. */
+  /** Log of the last call. */
   [[nodiscard]] std::string_view log() const
   {
     return log_;
@@ -53,7 +55,7 @@ class GlslangProgram {
 
  private:
   std::vector<std::unique_ptr<glslang::TShader>> shaders_;
-  /** Declared behind the shaders, because it refers to them until it is destroyed. */
+  /** Declared after the shaders, because it refers to them until it is destroyed. */
   std::unique_ptr<glslang::TProgram> program_;
   std::string log_;
 };

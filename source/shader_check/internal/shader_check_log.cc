@@ -17,7 +17,7 @@ std::string_view without_space_at_end(std::string_view text)
   return text.substr(0, text.find_last_not_of(" \t\r\n\v\f") + 1);
 }
 
-/** \a text without `highp`: Vulkan has precisions, OpenGL has none, and our sources name none. */
+/** \a text without `highp`, which glslang adds for Vulkan and our sources do not contain. */
 std::string without_precision(std::string_view text)
 {
   constexpr std::string_view precision = "highp";
@@ -50,7 +50,7 @@ std::optional<CompileMessage> compile_message(std::string_view line)
                         without_precision(without_space_at_end(scanner.rest()))};
 }
 
-/** Whether the compiler says this because it stopped at an error. */
+/** Whether the message only follows from an earlier error. */
 bool is_consequence(const CompileMessage &message)
 {
   return message.text.starts_with("'' : compilation terminated") || message.text.starts_with("'' : missing #endif");
@@ -64,7 +64,7 @@ std::string bounded(std::string_view text)
     return std::string(text);
   }
   std::size_t end = message_bytes_max;
-  // Not within a character of UTF-8.
+  // Do not split a UTF-8 character.
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) {
     end--;
   }
@@ -101,7 +101,7 @@ std::vector<CompileMessage> compile_messages(std::string_view log)
 
 std::vector<LinkMessage> link_messages(std::string_view log)
 {
-  // `ERROR: Linking STAGE stage: TEXT`, then indented lines that begin with the name at fault.
+  // `ERROR: Linking STAGE stage: TEXT`, followed by indented lines that begin with the name of the faulty declaration.
   std::vector<LinkMessage> messages;
   std::istringstream lines{std::string(log)};
   for (std::string line; std::getline(lines, line);) {

@@ -7,7 +7,7 @@
 
 namespace gnomon::shader_check {
 
-/** \a text, or its start and its length if it is longer than a reader wants: tokens may have any length. */
+/** \a text, or its beginning and length if it is too long for a message: tokens may have any length. */
 [[nodiscard]] std::string bounded(std::string_view text);
 /** bounded() of each line. */
 [[nodiscard]] std::string bounded_lines(std::string_view text);
@@ -18,12 +18,12 @@ struct CompileMessage {
   std::string text;
 };
 
-/** The messages of a compiler's log that name a line. Those that only follow from an earlier one are left out. */
+/** The messages of a compiler's log that have a line, without those that only follow from an earlier error. */
 [[nodiscard]] std::vector<CompileMessage> compile_messages(std::string_view log);
 
 struct LinkMessage {
   std::string text;
-  /** The name of the declaration at fault; empty: unknown. */
+  /** Name of the faulty declaration; empty if unknown. */
   std::string name;
 };
 

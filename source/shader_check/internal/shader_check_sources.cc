@@ -23,7 +23,10 @@ std::size_t find_word(std::string_view text, std::string_view word, std::size_t 
 
 namespace {
 
-/** \a line without comments. \a is_in_comment: whether its start is in a comment; then whether its end is. */
+/**
+ * \a line without comments. \a is_in_comment: whether the line begins within a comment; on return, whether it ends
+ * within one.
+ */
 std::string without_comments(std::string_view line, bool &is_in_comment)
 {
   std::string code;
@@ -49,7 +52,7 @@ std::string without_comments(std::string_view line, bool &is_in_comment)
   return code;
 }
 
-/** The position that a line `#line LINE FILE` of preprocess() sets; nothing for all other lines. */
+/** The position set by a line `#line LINE FILE` of preprocess(); empty for other lines. */
 std::optional<SourcePosition> position_set_by(std::string_view text)
 {
   gpu::TextScanner scanner(text);
@@ -79,7 +82,7 @@ SourceLines::SourceLines(const gpu::ShaderSource &source)
     }
     std::string code = without_comments(text, is_in_comment);
     lines_.push_back({position, std::move(text), std::move(code)});
-    // A `#line` of the user's own may give any number.
+    // A `#line` in the user's source may have any number.
     position.line += position.line < std::numeric_limits<int>::max() ? 1 : 0;
   }
 }

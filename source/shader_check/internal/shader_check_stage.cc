@@ -19,7 +19,7 @@ using glslang::TVisit;
 
 namespace {
 
-/** Functions, what they call, and what they use of the outside. */
+/** Reads functions, their calls and the globals that they use. */
 class StageReader : public TIntermTraverser {
  public:
   std::vector<TIntermAggregate *> functions;
@@ -72,7 +72,7 @@ void find_recursion(const StageReader &reader, std::vector<StageFinding> &findin
   }
 }
 
-/** An array of what does not fill rows of 16 bytes: C++ packs it, std140 does not. */
+/** Reports arrays of elements that do not fill rows of 16 bytes: C++ packs them, std140 does not. */
 void check_array(const TType &type, const BlockMember &member, bool is_std140, std::vector<StageFinding> &findings)
 {
   if (type.isMatrix() && type.getMatrixRows() != 4) {
@@ -113,14 +113,14 @@ void add_members(const TType &type, const std::string &prefix, const std::string
 
 int location_count(const TType &type, EShLanguage language)
 {
-  // Of an array with an element a vertex, an element.
+  // Inputs of a geometry shader are arrays over the vertices; use the element type.
   const bool is_arrayed = language == EShLangGeometry && type.getQualifier().isPipeInput() && type.isArray();
   const int count = TIntermediate::computeTypeLocationSize(type, language);
   const int vertices = is_arrayed ? std::max(type.getOuterArraySize(), 1) : 1;
   return std::max(count / vertices, 1);
 }
 
-/** One object of the stage's interface, if it is one of those that are looked at. */
+/** Adds an object of the stage's interface, if it is a block, texture, input or output. */
 void add_declaration(const TIntermSymbol &symbol, const StageReader &reader, const SourceLines &lines,
                      EShLanguage language, StageFacts &facts)
 {
@@ -143,7 +143,7 @@ void add_declaration(const TIntermSymbol &symbol, const StageReader &reader, con
     if (is_block) {
       add_members(type, "", "", qualifier.layoutPacking == glslang::ElpStd140, declaration, facts.findings);
       if (qualifier.isPushConstant() || declaration.name == gpu::push_constant_block_name) {
-        // Which slot it stands in is the target's affair.
+        // The slot of push constants depends on the target.
         declaration.slot = qualifier.isPushConstant() ? -1 : declaration.slot;
       }
       (is_buffer ? facts.storage_blocks : facts.uniform_blocks).push_back(std::move(declaration));

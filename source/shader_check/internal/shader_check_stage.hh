@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reads glslang's tree of a stage: the declarations, which of them are used, and likely mistakes.
+// Reads the declarations of a stage, their use and likely mistakes from glslang's tree.
 #pragma once
 
 #include "shader_check_sources.hh"
@@ -17,14 +17,14 @@ struct StageFinding {
 };
 
 struct BlockMember {
-  /** As reflection names it: `lights[0].color`. */
+  /** Name as in reflection: `lights[0].color`. */
   std::string name;
-  /** The name of the struct that declares it; empty: the block itself. */
+  /** Name of the struct that declares it; empty for the block itself. */
   std::string structure;
   SourcePosition position;
 };
 
-/** A block, a texture, a stage's input or output. Types belong to the glslang program. */
+/** A block, texture, stage input or stage output. Types belong to the glslang program. */
 struct Declaration {
   std::string name;
   const glslang::TType *type = nullptr;
@@ -48,7 +48,7 @@ struct StageFacts {
   std::vector<StageFinding> findings;
 };
 
-/** Call it after linking, which drops functions without a caller: before, their uses count, too. */
+/** Call it after linking, which removes functions without a caller. Otherwise their uses count, too. */
 [[nodiscard]] StageFacts read_stage(const glslang::TIntermediate &tree, const SourceLines &lines);
 
 }  // namespace gnomon::shader_check

@@ -85,7 +85,7 @@ std::string access_path(const TIntermNode *node)
 
 namespace {
 
-/** Whether one path is the other, or a part of it. */
+/** Whether the paths are equal or one contains the other. */
 bool overlap(std::string_view a, std::string_view b)
 {
   const auto [shorter, longer] = a.size() < b.size() ? std::pair(a, b) : std::pair(b, a);
@@ -252,7 +252,7 @@ void FunctionFacts::assign(TIntermNode *to, TIntermTyped *expression)
   }
   Value &value = values_[std::to_string(symbol->getId())];
   value.assignment_count++;
-  // A swizzle or a member: no expression gives the whole value.
+  // For a swizzle or a member, no expression gives the whole value.
   value.expression = value.assignment_count == 1 && to->getAsSymbolNode() != nullptr ? expression : nullptr;
 }
 

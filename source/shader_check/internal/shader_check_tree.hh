@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Helpers to read glslang's tree: names, positions, the values that expressions read, assign and test.
+// Helpers to read glslang's tree: names, positions, and the values that expressions read, assign and test.
 #pragma once
 
 #include "shader_check_sources.hh"
@@ -15,12 +15,12 @@ namespace gnomon::shader_check {
 
 [[nodiscard]] SourcePosition position_of(const glslang::TSourceLoc &loc);
 [[nodiscard]] std::string text_of(const glslang::TString &text);
-/** GLSL's name of a type. \a is_arrayed: leave out the outermost array, that of a geometry shader's vertices. */
+/** GLSL's name of a type. \a is_arrayed: leave out the outermost array, the vertices of a geometry shader. */
 [[nodiscard]] std::string type_name(const glslang::TType &type, bool is_arrayed = false);
 
 /**
- * The path of a value: the id of its symbol and the indices of members taken from it, `12.3`. Swizzles and constant
- * array indices are left out. Empty: \a node is no such expression.
+ * The path of a value: the id of its symbol and the indices of its members, `12.3`. Swizzles and constant array indices
+ * are left out. Empty if \a node is not such an expression.
  */
 [[nodiscard]] std::string access_path(const TIntermNode *node);
 
@@ -35,15 +35,15 @@ namespace gnomon::shader_check {
 /** The arguments of a built-in function or of an operator. */
 [[nodiscard]] std::vector<glslang::TIntermTyped *> arguments_of(glslang::TIntermTyped *node);
 
-/** EOpNull if \a node is no operation. */
+/** EOpNull if \a node is not an operation. */
 [[nodiscard]] glslang::TOperator operator_of(const glslang::TIntermTyped *node);
 
-/** The values that a function assigns, and those that its conditions test. */
+/** The values that a function assigns and that its conditions test. */
 class FunctionFacts : public glslang::TIntermTraverser {
  public:
   explicit FunctionFacts(TIntermNode *function);
 
-  /** The expression that a local variable is set to, if it is set once; else \a node. */
+  /** The expression that is assigned to a local variable, if it is assigned once; otherwise \a node. */
   [[nodiscard]] glslang::TIntermTyped *resolved(glslang::TIntermTyped *node) const;
   /** Whether a condition tests a value that \a node reads, or a value computed from it. */
   [[nodiscard]] bool is_tested(glslang::TIntermTyped *node) const;
