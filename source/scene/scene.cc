@@ -14,7 +14,7 @@ glm::dmat3x2 TextureSlot::uv_from_mesh() const
 {
   const double sine = std::sin(double(rotation));
   const double cosine = std::cos(double(rotation));
-  // v runs down the image, which turns the sense of the angle.
+  // v points down the image, which reverses the direction of the angle.
   return {glm::dvec2(cosine, -sine) * double(scale.x), glm::dvec2(sine, cosine) * double(scale.y), glm::dvec2(offset)};
 }
 
@@ -40,7 +40,7 @@ Bounds transformed(const Bounds &bounds, const glm::mat4 &target_from_source)
   if (bounds.is_empty()) {
     return bounds;
   }
-  // The extremes of a sum are the sums of the extremes, so that each axis is transformed alone.
+  // The extremes of a sum are the sums of the extremes of its terms, so each axis is transformed separately.
   Bounds result{glm::vec3(target_from_source[3]), glm::vec3(target_from_source[3])};
   for (int axis = 0; axis < 3; axis++) {
     const glm::vec3 at_min = glm::vec3(target_from_source[axis]) * bounds.min[axis];

@@ -8,12 +8,12 @@
 
 namespace gnomon::scene {
 
-/** A value that a scene cannot hold, or an edit that it cannot make. The message names the thing and the reason. */
+/** Thrown for an invalid value or edit. The message names the thing and the reason. */
 struct InvalidEdit : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/** A mesh at a node: what an engine draws. */
+/** A mesh at a node, as engines draw it. */
 struct Object {
   Handle<Node> node{};
   Handle<Mesh> mesh{};
@@ -33,17 +33,17 @@ struct PlacedLamp : Lamp {
 
 /**
  * Half the extent of an area lamp along the x and y axes of PlacedLamp::world_from_lamp, metres. \pre an area lamp
- * \return 0 in both where the lamp has no area: an axis of its node has no length, or the product is not a number that
- * floats can work with.
+ * \return 0 in both if the lamp has no area: an axis of its node has no length, or an extent is below 1e-9 m or above
+ * 1e9 m.
  */
 [[nodiscard]] glm::dvec2 area_half_size(const PlacedLamp &lamp);
 /** Area of that rectangle or ellipse, m². */
 [[nodiscard]] double area_of(const PlacedLamp &lamp);
 
 /**
- * Width of a spot's cone along the x and y axes of PlacedLamp::world_from_lamp, relative to Lamp::spot_outer_angle: the
- * tangent of the half angle along each axis is that of spot_outer_angle times this. The ratio of the node's scale there
- * to that along its z axis, in [0.001, 1000]; 1 along both where an axis of the node has no length. \pre a spot
+ * Width of a spot's cone along the x and y axes of PlacedLamp::world_from_lamp: the factor of the tangent of
+ * Lamp::spot_outer_angle. It is the ratio of the node's scale along that axis to its scale along z, in [0.001, 1000]; 1
+ * for both if an axis of the node has no length. \pre a spot
  */
 [[nodiscard]] glm::dvec2 spot_scale(const PlacedLamp &lamp);
 
@@ -55,32 +55,32 @@ struct PlacedCamera : Camera {
 };
 
 /**
- * The rotation and position of \a world without its scale, shear or mirroring: a right-handed orthonormal frame that
- * keeps the direction of -Z exactly, and that of +Y as closely as it can. Axes of length 0 are chosen.
+ * The rotation and position of \a world without its scale, shear and mirroring: a right-handed orthonormal frame that
+ * keeps the direction of -Z exactly, and the direction of +Y as closely as possible. Axes of length 0 are replaced.
  */
 [[nodiscard]] glm::dmat4 frame_of(const glm::dmat4 &world);
 /** Lengths of the axes of \a world. Finite for every finite matrix. */
 [[nodiscard]] glm::dvec3 scale_of(const glm::dmat4 &world);
 
 /**
- * An editable scene: nodes, meshes, images, textures, materials, lamps and cameras, each named by a Handle.
+ * An editable scene: nodes, meshes, images, textures, materials, lamps and cameras, each identified by a Handle.
  *
- * World space is right-handed, in metres; which axis points up is the file's or the host's choice. Matrices are named
+ * World space is right-handed, in metres. The file or the host chooses which axis points up. Matrices are named
  * target_from_source.
  *
- * Every edit gives the aspects that it changed a new revision. A consumer keeps the revisions that it has seen,
- * compares, and does only the work that the difference asks for. Setting a value that is there already changes nothing.
+ * Every edit gives the changed aspects a new revision. A consumer compares them with the revisions that it has already
+ * processed, and repeats only the dependent work. Setting an equal value changes nothing.
  *
- * Removing a thing does not edit the things that refer to it: they hold a stale handle then, which stands for nothing,
- * or for the default material. stale_references() names them.
+ * Removing a thing does not edit the things that refer to it: their handles become stale and are treated as absent, or
+ * as the default material. stale_references() lists them.
  *
  * Threads: reading is safe from several threads; an edit needs exclusive access.
  */
 class Scene {
  public:
-  /** The file as the user named it; for messages. */
+  /** Path of the file as given by the user, for messages. */
   std::string path;
-  /** The file had no camera, or no lamp, and the importer added one. */
+  /** Whether the importer added a camera or a lamp because the file has none. */
   bool is_camera_default = false;
   bool is_lamp_default = false;
   /** Import warnings. Each names the element and the reason. */
@@ -116,14 +116,14 @@ class Scene {
   }
 
   /**
-   * Every visible node's meshes, lamps and cameras, in the order of the nodes. Stale handles are left out. A copy, made
-   * in linear time: keep it instead of asking for one element at a time.
+   * The meshes, lamps and cameras of all visible nodes, in the order of the nodes. Stale handles are left out. Each
+   * call makes a copy in linear time: keep the result instead of calling it for single elements.
    */
   [[nodiscard]] std::vector<Object> objects() const;
   [[nodiscard]] std::vector<PlacedLamp> placed_lamps() const;
-  /** Of invisible nodes, too: one may look through a hidden camera. */
+  /** Includes the cameras of invisible nodes. */
   [[nodiscard]] std::vector<PlacedCamera> placed_cameras() const;
-  /** The material of a mesh; the default material where the mesh's handle is stale or names nothing. */
+  /** The material of a mesh; the default material if the mesh's handle is stale or invalid. */
   [[nodiscard]] const Material &material_of(const Mesh &mesh) const;
   /** The world space box around all objects; empty when there is none. */
   [[nodiscard]] Bounds bounds() const;
@@ -134,28 +134,28 @@ class Scene {
   [[nodiscard]] const glm::dmat4 &world_from_node(Handle<Node> node) const;
   /** Node::is_visible of the node and of all its ancestors. */
   [[nodiscard]] bool is_visible(Handle<Node> node) const;
-  /** These name nothing for a root, a node without children, and the last child. */
+  /** Invalid handles for a root, a node without children, and the last child. */
   [[nodiscard]] Handle<Node> parent(Handle<Node> node) const;
   [[nodiscard]] Handle<Node> first_child(Handle<Node> node) const;
   [[nodiscard]] Handle<Node> next_sibling(Handle<Node> node) const;
 
-  /** Revision of the last edit; 0: none was made. */
+  /** Revision of the last edit; 0 before the first. */
   [[nodiscard]] Revision revision() const
   {
     return revision_;
   }
 
-  /** Add a thing. \throws InvalidEdit where the value cannot be held; then nothing changes. */
+  /** Adds a thing. \throws InvalidEdit if the value is invalid; the scene is then unchanged. */
   Handle<Mesh> add(Mesh mesh);
   Handle<Image> add(Image image);
   Handle<Texture> add(const Texture &texture);
   Handle<Material> add(Material material);
   Handle<Lamp> add(Lamp lamp);
   Handle<Camera> add(Camera camera);
-  /** The last child of \a parent, or a root where \a parent names nothing. */
+  /** Adds the node as the last child of \a parent, or as a root if \a parent is an invalid handle. */
   Handle<Node> add(Node node, Handle<Node> parent = {});
 
-  /** Set a thing's value. \throws StaleHandle; InvalidEdit; then nothing changes. */
+  /** Sets a thing's value. \throws StaleHandle or InvalidEdit; the scene is then unchanged. */
   void replace(Handle<Mesh> handle, Mesh mesh);
   void replace(Handle<Image> handle, Image image);
   void replace(Handle<Texture> handle, const Texture &texture);
@@ -165,8 +165,8 @@ class Scene {
   void replace(Handle<Node> handle, Node node);
 
   /**
-   * Change a thing in place: `scene.edit(lamp, [](scene::Lamp &lamp) { lamp.intensity = 2.0F; })`. Works on a copy, and
-   * then replaces; large meshes and images are better replaced.
+   * Changes a thing: `scene.edit(lamp, [](scene::Lamp &lamp) { lamp.intensity = 2.0F; })`. Copies the value, changes
+   * the copy and replaces the thing; prefer replace() for large meshes and images.
    */
   template <typename T, std::invocable<T &> Change>
   void edit(Handle<T> handle, Change &&change)
@@ -175,15 +175,15 @@ class Scene {
     change(value);
     replace(handle, std::move(value));
   }
-  /** The matrix of Node::parent_from_node alone, without a copy of the node. */
+  /** Sets Node::parent_from_node without copying the node. */
   void set_transform(Handle<Node> node, const glm::dmat4 &parent_from_node);
   /**
-   * Hang \a node, with all below it, from \a parent as its last child; as a root where \a parent names nothing. Its
-   * world matrix changes with the parent's. \throws InvalidEdit where \a parent is \a node or below it.
+   * Makes \a node, with its descendants, the last child of \a parent, or a root if \a parent is an invalid handle. Its
+   * local transform is kept. \throws InvalidEdit if \a parent is \a node or one of its descendants.
    */
   void set_parent(Handle<Node> node, Handle<Node> parent);
 
-  /** Remove a thing. The handle, and all copies of it, are stale then. \throws StaleHandle */
+  /** Removes a thing. All copies of its handle become stale. \throws StaleHandle */
   template <typename T>
   void remove(Handle<T> handle)
   {
@@ -196,7 +196,7 @@ class Scene {
     }
   }
 
-  /** The pool of a kind of thing, for generic code. */
+  /** The pool of a type of thing, for generic code. */
   template <typename T>
   [[nodiscard]] const Pool<T> &pool() const
   {
@@ -204,7 +204,7 @@ class Scene {
   }
 
  private:
-  /** What a node has beside its value; by Handle::index. */
+  /** Links and derived values of a node, by Handle::index. */
   struct NodeLinks {
     Handle<Node> parent;
     Handle<Node> first_child;
@@ -246,7 +246,7 @@ class Scene {
   void remove_subtree(Handle<Node> node);
   void link(Handle<Node> node, Handle<Node> parent);
   void unlink(Handle<Node> node);
-  /** Write world matrices and visibility of \a node and of all below it, with a revision where they differ. */
+  /** Updates world matrices and visibility of \a node and its descendants. Changed ones get \a revision. */
   void update_subtree(Handle<Node> node, Revision revision);
   NodeLinks &links(Handle<Node> node)
   {

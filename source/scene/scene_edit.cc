@@ -100,7 +100,7 @@ Changes changes(const Camera &a, const Camera &b)
   return bit_if(a.name != b.name, Camera::Aspect::Name) | bit_if(!same_lens, Camera::Aspect::Lens);
 }
 
-/** Transform and Visibility follow from the ancestors, too: Scene::update_subtree gives their revisions. */
+/** Transform and Visibility also depend on the ancestors: Scene::update_subtree assigns their revisions. */
 Changes changes(const Node &a, const Node &b)
 {
   using enum Node::Aspect;
@@ -173,7 +173,7 @@ void check(const Node &node)
   check_transform(node.name, node.parent_from_node);
 }
 
-/** Numbers of these are the importer's and the engines' to check: each supports its own range. */
+/** Importers and engines check the numbers of these types, because each supports its own range. */
 void check(const Texture & /*texture*/) {}
 void check(const Material & /*material*/) {}
 void check(const Lamp & /*lamp*/) {}
@@ -250,7 +250,7 @@ Handle<Node> Scene::add(Node node, Handle<Node> parent)
   if (parent) {
     nodes_[parent];
   }
-  // Before the node, as it may throw. Unlike reserve, resize grows geometrically.
+  // Before the node, because it may throw. Unlike reserve, resize grows geometrically.
   links_.resize(std::max(links_.size(), nodes_.index_end() + 1));
   const Handle<Node> handle = nodes_.add(std::move(node), ++revision_);
   links(handle) = {};
@@ -317,7 +317,7 @@ void Scene::set_parent(Handle<Node> node, Handle<Node> parent)
   }
   for (Handle<Node> above = parent; above; above = links(above).parent) {
     if (above == node) {
-      refuse("node", nodes_[node].name, "node '{}' is itself or below it, and cannot be its parent",
+      refuse("node", nodes_[node].name, "node '{}' cannot be its parent: it is the node itself or a descendant of it",
              nodes_[parent].name);
     }
   }
@@ -354,7 +354,7 @@ void Scene::remove_subtree(Handle<Node> node)
 {
   unlink(node);
   revision_++;
-  // Leaves first. No recursion: a scene may be deeper than the stack.
+  // Leaves first. No recursion: the tree may be deeper than the stack.
   Handle<Node> at = node;
   while (at) {
     if (const Handle<Node> child = links(at).first_child) {
@@ -387,7 +387,7 @@ void Scene::update_subtree(Handle<Node> node, Revision revision)
       own.is_visible = is_visible;
       nodes_.touch(at, Node::Aspect::Visibility, revision);
     }
-    // Below a node that stayed as it was, nothing changes.
+    // The descendants of an unchanged node are unchanged.
     Handle<Node> next = is_moved || is_toggled || at == node ? own.first_child : Handle<Node>();
     while (!next && at != node) {
       next = links(at).next_sibling;

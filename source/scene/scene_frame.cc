@@ -13,14 +13,17 @@ namespace gnomon::scene {
 
 namespace {
 
-/** \a vector at length 1; nothing when it has no direction to speak of. */
+/** \a vector normalised; empty if it is not longer than \a length_least. */
 std::optional<glm::dvec3> direction(const glm::dvec3 &vector, double length_least)
 {
   const double length = glm::length(vector);
   return length > length_least ? std::optional(vector / length) : std::nullopt;
 }
 
-/** The part of the unit vector \a vector that is at right angles to the unit vector \a axis, at length 1. */
+/**
+ * The component of the unit vector \a vector orthogonal to the unit vector \a axis, normalised; empty if they are
+ * nearly parallel.
+ */
 std::optional<glm::dvec3> direction_across(const std::optional<glm::dvec3> &vector, const glm::dvec3 &axis)
 {
   constexpr double nearly_parallel = 1e-6;
@@ -33,7 +36,7 @@ glm::dvec3 any_across(const glm::dvec3 &axis)
   return *direction_across(least, axis);
 }
 
-/** z from what is left when its own axis is gone. */
+/** Direction of z from the other axes, for a matrix whose z axis has no length. */
 glm::dvec3 replaced_z(const std::optional<glm::dvec3> &x, const std::optional<glm::dvec3> &y)
 {
   if (!x && !y) {
@@ -51,7 +54,7 @@ glm::dvec3 replaced_z(const std::optional<glm::dvec3> &x, const std::optional<gl
 
 glm::dmat4 frame_of(const glm::dmat4 &world)
 {
-  // Relative, so that a model in micrometres keeps its axes.
+  // Relative, so that small scales keep their axes.
   const auto axis = [&world](int column) {
     const glm::dvec3 vector(world[column]);
     const double size = std::max({std::abs(vector.x), std::abs(vector.y), std::abs(vector.z)});
@@ -80,7 +83,7 @@ glm::dvec3 scale_of(const glm::dmat4 &world)
   for (int column = 0; column < 3; column++) {
     const glm::dvec3 axis(world[column]);
     const double size = std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)});
-    // Relative, so that no square overflows or vanishes.
+    // Relative, so that squares neither overflow nor underflow.
     const double length = size > 0.0 ? size * glm::length(axis / size) : 0.0;
     lengths[column] = std::min(length, std::numeric_limits<double>::max());
   }
@@ -89,7 +92,7 @@ glm::dvec3 scale_of(const glm::dmat4 &world)
 
 glm::dvec2 area_half_size(const PlacedLamp &lamp)
 {
-  // Of such lengths floats hold the squares and their inverses.
+  // Squares of these lengths and their inverses are finite in float.
   constexpr double least = 1e-9;
   constexpr double most = 1e9;
   const glm::dvec2 half_size =
@@ -112,7 +115,7 @@ glm::dvec2 spot_scale(const PlacedLamp &lamp)
   constexpr double limit = 1000.0;
   const auto ratio = [&](double across) {
     const double wide = across / lamp.scale.z;
-    // Matrices come with rounding, and a round cone is cheaper.
+    // Ignores rounding errors of the matrix, because a round cone is cheaper.
     return std::abs(wide - 1.0) < 1e-6 ? 1.0 : std::clamp(wide, 1.0 / limit, limit);
   };
   return {ratio(lamp.scale.x), ratio(lamp.scale.y)};

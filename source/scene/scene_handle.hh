@@ -12,15 +12,15 @@
 namespace gnomon::scene {
 
 /**
- * Names one thing of a scene: a node, mesh, material, lamp, … \a T is the thing's type.
+ * Identifies one thing of a scene: a node, mesh, material, lamp, … \a T is the thing's type.
  *
- * A handle stays valid until its thing is removed. Its place may then be used again, with another generation, so that
- * an old handle is detected and never names another thing. Plain data: copy it, compare it, use it as a key.
+ * A handle stays valid until its thing is removed. Its index may then be reused with another generation, so that an old
+ * handle is detected and never refers to another thing. Plain data: it can be copied, compared and used as a key.
  */
 template <typename T>
 struct Handle {
   std::uint32_t index = 0;
-  /** 0: the handle names nothing. */
+  /** 0 for an invalid handle. */
   std::uint32_t generation = 0;
 
   explicit operator bool() const
@@ -29,19 +29,19 @@ struct Handle {
   }
   auto operator<=>(const Handle &) const = default;
 
-  /** Different for each thing of a kind that a scene ever held; 0 for nothing. */
+  /** Unique among all things of a type that a scene ever held; 0 for an invalid handle. */
   [[nodiscard]] std::uint64_t key() const
   {
     return std::uint64_t(generation) << 32U | index;
   }
 };
 
-/** A handle that names nothing, or a thing that was removed, was used. The message names the kind of thing. */
+/** Thrown for the use of an invalid or stale handle. The message names the type of the thing. */
 struct StaleHandle : std::logic_error {
   using std::logic_error::logic_error;
 };
 
-/** Counts the edits of a scene. A larger revision is a later edit; 0 is before the first. */
+/** Number of an edit of a scene. A later edit has a larger revision; 0 precedes the first edit. */
 using Revision = std::uint64_t;
 
 }  // namespace gnomon::scene

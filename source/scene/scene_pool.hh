@@ -10,23 +10,23 @@
 namespace gnomon::scene {
 
 /**
- * Things of one kind, by handle, and a revision for each aspect of each.
+ * The things of one type, by handle, with a revision for each aspect of each thing. Read-only; Scene writes it.
  *
- * Reading only; a Scene writes. \a T has `enum class Aspect { …, Count }` and `static constexpr std::string_view
- * kind_name`. References stay valid while other things are added and removed. Iteration visits things in the order in
- * which they were added, except that the place of a removed thing is used again.
+ * Requires `enum class T::Aspect { …, Count }` and `static constexpr std::string_view T::kind_name`. References stay
+ * valid while other things are added and removed. Iteration is in the order of addition, except that a new thing may
+ * take the position of a removed one.
  */
 template <typename T>
 class Pool {
  public:
   using Aspect = typename T::Aspect;
 
-  /** \throws StaleHandle where \a handle names no thing of this pool. */
+  /** \throws StaleHandle if \a handle is not valid in this pool. */
   const T &operator[](Handle<T> handle) const
   {
     return slot(handle).value;
   }
-  /** nullptr where \a handle names no thing of this pool. */
+  /** nullptr if \a handle is not valid in this pool. */
   [[nodiscard]] const T *find(Handle<T> handle) const
   {
     return is_live(handle) ? &slots_[handle.index].value : nullptr;
@@ -44,23 +44,23 @@ class Pool {
   {
     return size_ == 0;
   }
-  /** Above every Handle::index that the pool has given: what an array with a place for each thing needs. */
+  /** Above all values of Handle::index in the pool: the size of an array indexed by them. */
   [[nodiscard]] std::size_t index_end() const
   {
     return slots_.size();
   }
 
-  /** When an aspect of one thing changed last; adding the thing changes all. \throws StaleHandle */
+  /** Last change of an aspect of one thing; adding the thing changes all its aspects. \throws StaleHandle */
   [[nodiscard]] Revision revision(Handle<T> handle, Aspect aspect) const
   {
     return slot(handle).revisions[std::size_t(aspect)];
   }
-  /** When that aspect of any thing changed last; adding and removing a thing changes all aspects. */
+  /** Last change of the aspect of any thing; adding and removing a thing changes all aspects. */
   [[nodiscard]] Revision latest(Aspect aspect) const
   {
     return latest_[std::size_t(aspect)];
   }
-  /** When any aspect of any thing changed last. */
+  /** Last change of any aspect of any thing. */
   [[nodiscard]] Revision latest() const
   {
     Revision revision = 0;
@@ -111,7 +111,7 @@ class Pool {
   {
     return {*this, slots_.size()};
   }
-  /** The first thing in iteration order; names nothing where the pool is empty. */
+  /** The first thing in iteration order; an invalid handle if the pool is empty. */
   [[nodiscard]] Handle<T> first() const
   {
     return empty() ? Handle<T>() : (*begin()).handle;
@@ -157,7 +157,7 @@ class Pool {
   }
   void remove(Handle<T> handle, Revision revision)
   {
-    // First, as it may throw.
+    // First, because it may throw.
     free_.push_back(handle.index);
     Slot &removed = slots_[handle.index];
     removed.value = T();
@@ -165,7 +165,7 @@ class Pool {
     removed.generation++;
     latest_.fill(revision);
     size_--;
-    // A generation that would repeat retires its place.
+    // The slot is not reused once its generations are exhausted.
     if (removed.generation == 0) {
       free_.pop_back();
     }

@@ -14,7 +14,7 @@ namespace gnomon::scene {
 
 namespace {
 
-/** A corner's vertices are welded where all of these are equal. */
+/** Vertices with equal keys are treated as one. */
 struct WeldKey {
   glm::vec3 position;
   glm::vec3 normal;
@@ -26,7 +26,7 @@ std::vector<std::uint32_t> welded(const Mesh &mesh, const std::vector<glm::vec2>
 {
   std::vector<WeldKey> keys(mesh.positions.size());
   for (std::size_t i = 0; i < keys.size(); i++) {
-    // Adding 0 turns -0 into 0.
+    // Adding 0 converts -0 to 0.
     keys[i] = {mesh.positions[i] + 0.0F, mesh.normals[i] + 0.0F, uvs[i] + 0.0F};
   }
   std::vector<std::uint32_t> order(keys.size());
@@ -43,7 +43,7 @@ std::vector<std::uint32_t> welded(const Mesh &mesh, const std::vector<glm::vec2>
   return first;
 }
 
-/** The unit vector along \a v without its part along \a normal; zero where nothing is left. */
+/** The component of \a v orthogonal to \a normal, normalised; zero if there is none. */
 glm::dvec3 in_plane(const glm::dvec3 &v, const glm::dvec3 &normal)
 {
   const glm::dvec3 flat = v - normal * glm::dot(normal, v);
@@ -78,7 +78,7 @@ void make_tangents(Mesh &mesh, const TextureSlot &normal_texture)
     };
     const glm::dvec2 a = uv_edge(1);
     const glm::dvec2 b = uv_edge(2);
-    // v runs down the image.
+    // v points down the image.
     const double area = -(a.x * b.y - b.x * a.y);
     if (area == 0.0 || !std::isfinite(area)) {
       continue;
@@ -97,7 +97,7 @@ void make_tangents(Mesh &mesh, const TextureSlot &normal_texture)
 
   const std::size_t vertex_count = mesh.positions.size();
   mesh.tangents.assign(vertex_count, glm::vec4(0.0F));
-  // The vertex of the mirrored triangles, where a vertex has triangles of both kinds.
+  // For a vertex with triangles of both orientations, the vertex of the mirrored ones.
   std::vector<std::uint32_t> mirror(vertex_count, 0);
   for (std::size_t i = 0; i < mesh.indices.size(); i++) {
     std::uint32_t &index = mesh.indices[i];

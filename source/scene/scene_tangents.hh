@@ -6,9 +6,9 @@
 namespace gnomon::scene {
 
 /**
- * Compute Mesh::tangents for a material whose normal texture is \a normal_texture, as MikkTSpace does: each corner of a
- * triangle adds its direction of u, weighted by its angle, to the vertices of the same position, normal and uv, apart
- * for mirrored images. A vertex with triangles of both kinds is split into two. \pre the mesh has the slot's uvs
+ * Computes Mesh::tangents for a material with \a normal_texture, like MikkTSpace: each corner of a triangle adds its u
+ * direction, weighted by its angle, to all vertices of the same position, normal and uv. Mirrored images are kept
+ * apart: a vertex of triangles with both orientations is split in two. \pre the mesh has the slot's uvs
  */
 void make_tangents(Mesh &mesh, const TextureSlot &normal_texture);
 

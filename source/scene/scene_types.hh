@@ -17,10 +17,10 @@
 #include <vector>
 
 /**
- * The things that a scene holds, as plain data.
+ * The contents of a scene as plain data.
  *
- * Units: metres, radians, watts. Colours are linear with Rec. 709 primaries. Each kind of thing lists its aspects: what
- * a consumer may depend on separately. Editing a thing gives the aspects that differ a new revision (scene.hh).
+ * Units: metres, radians, watts. Colours are linear with Rec. 709 primaries. Each type lists its aspects, on which a
+ * consumer may depend separately. An edit gives the changed aspects a new revision (scene.hh).
  */
 namespace gnomon::scene {
 
@@ -47,8 +47,8 @@ struct Bounds {
 [[nodiscard]] Bounds transformed(const Bounds &bounds, const glm::mat4 &target_from_source);
 
 /**
- * Texels of four bytes each, alpha not multiplied in. A texture of colours takes red, green and blue as encoded by
- * sRGB; a texture of data takes them as linear (TextureInput::is_color). Alpha is always linear.
+ * Texels of four bytes each, not premultiplied by alpha. Textures of colours decode red, green and blue as sRGB;
+ * textures of data use them as linear values (TextureInput::is_color). Alpha is always linear.
  */
 struct Image {
   static constexpr std::string_view kind_name = "image";
@@ -82,17 +82,17 @@ struct Texture {
   MipFilter mip = MipFilter::Linear;
 };
 
-/** A texture as a material looks it up: at offset + rotation · (scale · uv), as KHR_texture_transform defines. */
+/** A texture of a material, looked up at offset + rotation · (scale · uv), as KHR_texture_transform defines. */
 struct TextureSlot {
   TextureSlot() = default;
   TextureSlot(Handle<Texture> texture_) : texture(texture_) {}
 
-  /** Names nothing: no texture. */
+  /** An invalid handle stands for no texture. */
   Handle<Texture> texture{};
   /** 0: Mesh::uvs. 1: Mesh::second_uvs. */
   int uv_set = 0;
   glm::vec2 offset{0.0F};
-  /** Radians, counter-clockwise as one sees the image. */
+  /** Radians, counter-clockwise on the upright image. */
   float rotation = 0.0F;
   glm::vec2 scale{1.0F};
 
@@ -119,8 +119,8 @@ enum class AlphaMode { Opaque, Mask, Blend };
 struct Material {
   static constexpr std::string_view kind_name = "material";
   /**
-   * Surface: factors of the shading. Coverage: what decides which parts of a surface exist, and therefore its shadow:
-   * alpha mode, alpha, cutoff, sides. Textures: which textures are read, and where.
+   * Surface: factors of the shading. Coverage: properties that decide which parts of a surface, and of its shadow,
+   * exist: alpha mode, alpha, cutoff, sides. Textures: textures and their transforms.
    */
   enum class Aspect { Name, Surface, Coverage, Textures, Count };
 
@@ -138,7 +138,7 @@ struct Material {
   TextureSlot normal_texture{};
   /** Any finite value. */
   float normal_scale = 1.0F;
-  /** Red: the part of the light from all around that arrives. It does not affect light from lamps other than Hemi. */
+  /** Red: the fraction of ambient light that arrives. Of the lamps it affects only Hemi. */
   TextureSlot occlusion_texture{};
   /** 0: occlusion_texture has no effect. */
   float occlusion_strength = 1.0F;
@@ -154,7 +154,7 @@ struct Material {
   glm::vec3 emissive{0.0F};
   /** Multiplied with emissive. */
   TextureSlot emissive_texture{};
-  /** Lamps have no effect on it: its radiance is the base colour. */
+  /** Lamps have no effect: the radiance is the base colour. */
   bool is_unlit = false;
   AlphaMode alpha_mode = AlphaMode::Opaque;
   /** Mask only: the surface is cut out where alpha is below. */
@@ -166,13 +166,13 @@ struct Material {
 /** One of a material's texture slots. */
 struct TextureInput {
   TextureSlot Material::*slot;
-  /** The name of the slot: also of the sampler in shaders. */
+  /** Name of the slot, and of its sampler in shaders. */
   std::string_view name;
   /** Red, green and blue are encoded as sRGB. */
   bool is_color;
 };
 
-/** All of them. */
+/** All texture slots. */
 inline constexpr std::array<TextureInput, 7> texture_inputs = {{
     {&Material::base_color_texture, "base_color_texture", true},
     {&Material::metallic_roughness_texture, "metallic_roughness_texture", false},
@@ -193,22 +193,22 @@ struct Mesh {
   /** Unit vectors, one for each position. */
   std::vector<glm::vec3> normals{};
   /**
-   * Where the material's textures are looked up, one for each position. (0, 0) is the outer corner of the image's first
-   * texel. Empty where no texture is looked up there.
+   * Texture coordinates, one for each position. (0, 0) is the outer corner of the image's first texel. Empty if no
+   * texture uses them.
    */
   std::vector<glm::vec2> uvs{};
-  /** A second set of the same kind. */
+  /** A second set of texture coordinates. */
   std::vector<glm::vec2> second_uvs{};
   /**
-   * Along u of the normal texture, one unit vector for each position; w is 1 or -1: w · cross(normal, tangent) points
-   * up in the image, against v. Empty where the material has no normal texture. \see make_tangents
+   * Unit vectors along u of the normal texture, one for each position. w is 1 or -1: w · cross(normal, tangent) points
+   * up in the image, against v. Empty if the material has no normal texture. \see make_tangents
    */
   std::vector<glm::vec4> tangents{};
   /** Multiplied with the material's base colour and alpha: linear, in [0, 1], one for each position. Empty: white. */
   std::vector<glm::vec4> colors{};
   /** Three for each triangle, each below positions.size(). */
   std::vector<std::uint32_t> indices{};
-  /** A handle that names nothing, or a removed material, stands for the default material. */
+  /** An invalid or stale handle stands for the default material. */
   Handle<Material> material{};
   /** The box around all positions. Scene::add and Scene::replace compute it. */
   Bounds bounds{};
@@ -220,7 +220,7 @@ struct Mesh {
   }
 };
 
-/** Calls \a function with each vector of \a mesh that holds a value for each position; empty ones are left out. */
+/** Calls \a function with each vector of \a mesh that has a value for each position. Empty vectors are skipped. */
 template <typename AnyMesh, typename Function>
 void for_each_stream(AnyMesh &mesh, Function &&function)
 {
@@ -245,16 +245,16 @@ enum class ShadowKind { None, Hard, Pcf, Esm, Evsm };
 
 enum class EsmFormat { Half, Float };
 
-/** Shadow settings of one lamp. Each that is present overrides the engine's setting. */
+/** Shadow settings of one lamp. Each present value overrides the engine's setting. */
 struct LampShadow {
   std::optional<ShadowKind> kind{};
   /** Texels along an edge of the depth map or of a cube's face, 1 to 16384. */
   std::optional<int> size{};
-  /** Of exponential shadows, 1/m, 0.01 to 1e4. */
+  /** Exponent of exponential shadows, 1/m, 0.01 to 1e4. */
   std::optional<float> exponent{};
-  /** Scales the bias that is derived from the texel; 0 to 100, and 1 leaves it. */
+  /** Factor of the bias that is derived from the texel size, 0 to 100. 1 leaves it unchanged. */
   std::optional<float> bias{};
-  /** Casters nearer or farther than these are not drawn, metres, above 0; where both are present, end > start. */
+  /** Casters outside of this distance range are not drawn. Metres, above 0; if both are present, end > start. */
   std::optional<float> clip_start{};
   std::optional<float> clip_end{};
   /** Half the opening angle of the kernel that filters exponential shadows, radians, 0 to π/4. */
@@ -268,8 +268,8 @@ struct LampShadow {
 
 /**
  * A lamp in radiometric units: glTF's photometric units divided by 683 lm/W. It shines along the local -Z axis of its
- * node. The lengths of the node's axes scale an area lamp, and the cone of a spot across its axis (PlacedLamp::scale);
- * shear and mirroring do not change a lamp, and scale changes no other.
+ * node. The node's scale changes the size of an area lamp and the width of a spot's cone (PlacedLamp::scale), but no
+ * other lamp. Shear and mirroring have no effect on lamps.
  */
 struct Lamp {
   static constexpr std::string_view kind_name = "lamp";
@@ -304,7 +304,7 @@ struct Lamp {
   /** Area: full edge lengths or diameters, metres, above 0. */
   float area_size_x = 1.0F;
   float area_size_y = 1.0F;
-  /** Of no effect on a hemi lamp. */
+  /** Has no effect on a hemi lamp. */
   LampShadow shadow{};
 
   bool operator==(const Lamp &) const = default;
@@ -331,25 +331,25 @@ struct Camera {
   float far = 0.0F;
 };
 
-/** A place in the scene, and what stands there. Nodes form trees: Scene::add(Node, parent). */
+/** A position in the scene with its contents. Nodes form trees: Scene::add(Node, parent). */
 struct Node {
   static constexpr std::string_view kind_name = "node";
   /**
-   * Transform: the world matrix, changed by an edit of the node or of an ancestor. Content: meshes, lamp and camera.
-   * Visibility: is_visible of the node or of an ancestor. Shadow: casts_shadow and receives_shadow.
+   * Transform: the world matrix, which depends on the node and its ancestors. Content: meshes, lamp and camera.
+   * Visibility: is_visible of the node and its ancestors. Shadow: casts_shadow and receives_shadow.
    */
   enum class Aspect { Name, Transform, Content, Visibility, Shadow, Count };
 
   std::string name{};
   /** Affine and finite; may be singular, sheared or mirrored. */
   glm::dmat4 parent_from_node{1.0};
-  /** Each is drawn at the node. */
+  /** Meshes that are drawn at the node. */
   std::vector<Handle<Mesh>> meshes{};
   Handle<Lamp> lamp{};
   Handle<Camera> camera{};
   /** false: neither the node nor its descendants are drawn, cast shadows or give light. */
   bool is_visible = true;
-  /** Of the node's own meshes. */
+  /** Apply only to the node's own meshes. */
   bool casts_shadow = true;
   bool receives_shadow = true;
 };
