@@ -7,31 +7,31 @@
 
 namespace gnomon::cli {
 
-/** What a command ends with: a promise to scripts. */
+/** Exit status of a command. Scripts rely on these values. */
 enum class Status : int {
   Done = 0,
-  /** One message on stderr says why. */
+  /** One message on stderr gives the reason. */
   Failed = 1,
   Usage = 2,
-  /** The result holds NaN or infinity; nothing was written. */
+  /** The result contains NaN or infinity; nothing was written. */
   NonFinite = 3,
-  /** With --strict: a limit was hit, a lamp lost its shadow say. The result was written. */
+  /** With --strict: a limit was reached, for example a lamp has no shadow. The result was written. */
   Limit = 4,
 };
 
-/** Asks for something that cannot be: ends with Status::Usage. */
+/** An invalid request on the command line: ends with Status::Usage. */
 struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/** A subcommand adds itself to \a app, and leaves its status in \a status when run. */
+/** Each function adds a subcommand to \a app. When the subcommand runs, it sets \a status. */
 void add_render(CLI::App &app, Status &status);
 void add_info(CLI::App &app, Status &status);
 void add_compare(CLI::App &app, Status &status);
 void add_report(CLI::App &app, Status &status);
 void add_stability(CLI::App &app, Status &status);
 void add_shaders(CLI::App &app, Status &status);
-/** Its status is Done where it does not throw. */
+/** Its status is Done unless it throws. */
 void add_bench(CLI::App &app);
 
 }  // namespace gnomon::cli

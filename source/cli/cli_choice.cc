@@ -51,28 +51,28 @@ std::vector<measure::Model> Chooser::models_of_report(const gpu::Device &device)
     run = measure::run_from_json(nlohmann::json::parse(file));
   }
   catch (const std::exception &error) {
-    throw std::runtime_error(fmt::format("{}: is no report: {}", path.string(), error.what()));
+    throw std::runtime_error(fmt::format("{}: is not a report: {}", path.string(), error.what()));
   }
   const auto found = std::ranges::find(run.scenes, scene_fingerprint(scene_), &measure::SceneReport::fingerprint);
   const auto unknown = [&](const std::string &why) {
-    fmt::print(stderr, "gnomon: warning: {}: {}; a pilot is run\n", path.string(), why);
+    fmt::print(stderr, "gnomon: warning: {}: {}; running a pilot instead\n", path.string(), why);
     return std::vector<measure::Model>();
   };
   if (found == run.scenes.end()) {
-    return unknown(fmt::format("{} is not in it as it is now", scene_.path));
+    return unknown(fmt::format("{} is not in it, or has changed", scene_.path));
   }
   if (run.size_px != size_px_ || camera_.node != scene_.placed_cameras().front().node) {
-    return unknown(fmt::format("it is of pictures of {}x{} by the first camera", run.size_px.x, run.size_px.y));
+    return unknown(fmt::format("it has pictures of {}x{} by the first camera only", run.size_px.x, run.size_px.y));
   }
   const Origin here = origin();
   if (run.build != program_fingerprint() || run.device != device.description() || run.machine != here.machine) {
-    return unknown("another build, machine or driver has other times");
+    return unknown("its times are those of another build, machine or driver");
   }
-  const bool has_wishes = std::ranges::any_of(tracer_.lamps(), [](const scene::Lamp &lamp) {
+  const bool has_lamp_settings = std::ranges::any_of(tracer_.lamps(), [](const scene::Lamp &lamp) {
     return lamp.shadow.kind != scene::ShadowKind::None && lamp.shadow != scene::LampShadow();
   });
-  if (has_wishes) {
-    return unknown("lamps have shadows of their own choice, and in it they have not");
+  if (has_lamp_settings) {
+    return unknown("the scene has per-lamp shadow settings, which reports ignore");
   }
   return measure::models_from(*found);
 }
@@ -96,15 +96,15 @@ std::vector<std::string> Chooser::limits() const
 {
   std::vector<std::string> limits;
   if (!choice_.is_met) {
-    limits.push_back(fmt::format("{} was asked for; the nearest is RMSE {:.5f} in {:.1f} ms", requirement_text(),
+    limits.push_back(fmt::format("{} required; the nearest is RMSE {:.5f} in {:.1f} ms", requirement_text(),
                                  choice_.predicted_error.rmse, 1e3 * choice_.predicted_seconds));
   }
   else if (requirement_.error_max && measured_.rmse - 2.0 * measured_.standard_error > *requirement_.error_max) {
-    limits.push_back(fmt::format("{} was asked for; RMSE {:.5f} was measured", requirement_text(), measured_.rmse));
+    limits.push_back(fmt::format("{} required; RMSE {:.5f} was measured", requirement_text(), measured_.rmse));
   }
   else if (requirement_.seconds_max && measured_seconds_ > *requirement_.seconds_max) {
     limits.push_back(
-        fmt::format("{} was asked for; the first picture took {:.1f} ms", requirement_text(), 1e3 * measured_seconds_));
+        fmt::format("{} required; the first picture took {:.1f} ms", requirement_text(), 1e3 * measured_seconds_));
   }
   return limits;
 }
@@ -115,13 +115,13 @@ void Chooser::print_choice() const
              label(choice_.technique), choice_.sample_count, choice_.predicted_error.rmse,
              choice_.predicted_error.standard_error, 1e3 * choice_.predicted_seconds, source_);
   if (!choice_.technique.options.empty()) {
-    fmt::print("the same again: gnomon render {} --samples {}\n", choice_.technique.options, choice_.sample_count);
+    fmt::print("to repeat: gnomon render {} --samples {}\n", choice_.technique.options, choice_.sample_count);
   }
 }
 
 void Chooser::print_measured() const
 {
-  fmt::print("measured: RMSE {:.5f} ± {:.5f} against exact rays at a sample of pixels, first picture in {:.1f} ms\n",
+  fmt::print("measured: RMSE {:.5f} ± {:.5f} against ray tracing at a sample of pixels, first picture in {:.1f} ms\n",
              measured_.rmse, measured_.standard_error, 1e3 * measured_seconds_);
 }
 

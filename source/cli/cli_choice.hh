@@ -12,9 +12,9 @@ namespace gnomon::cli {
 
 /** `--max-error`, `--max-time` and `--report`. */
 struct ChoiceOptions {
-  /** RMSE; 0: not asked for. */
+  /** Required RMSE; 0: none. */
   double error_max = 0.0;
-  /** 0: not asked for. */
+  /** Required time; 0: none. */
   double milliseconds_max = 0.0;
   /** Folder of `gnomon report`; empty: none. */
   std::string report_folder;
@@ -25,12 +25,12 @@ struct ChoiceOptions {
   }
 };
 
-/** The choice of a picture's settings, from what is known of its scene to what came of it. */
+/** Chooses a picture's settings for a required error or time, and verifies the choice. */
 class Chooser {
  public:
   /**
-   * From the report, where it has the scene at that size, and else from a pilot on \a device. All of them must outlive
-   * it. \throws std::runtime_error naming the report where it cannot be read.
+   * Chooses from the report, if it contains the scene at that size, and otherwise from a pilot on \a device. All
+   * references must outlive the chooser. \throws std::runtime_error naming the report if it cannot be read.
    */
   Chooser(const ChoiceOptions &options, gpu::Device &device, const scene::Scene &scene,
           const scene::PlacedCamera &camera, glm::ivec2 size_px);
@@ -39,12 +39,12 @@ class Chooser {
   {
     return choice_;
   }
-  /** Compare the picture with exact rays, at other pixels than the pilot's. \a seconds: what the first one took. */
+  /** Compares the picture with ray tracing at other pixels than the pilot's. \a seconds: time of the first picture. */
   void measure(std::span<const glm::vec4> picture, double seconds);
-  /** What was missed, if anything, by name. */
+  /** Requirements that were not met. */
   [[nodiscard]] std::vector<std::string> limits() const;
 
-  /** What was chosen, and why. */
+  /** Prints the choice and its source. */
   void print_choice() const;
   void print_measured() const;
   [[nodiscard]] nlohmann::json to_json() const;
@@ -59,7 +59,7 @@ class Chooser {
   glm::ivec2 size_px_;
   reference::Tracer tracer_;
   measure::Requirement requirement_;
-  /** Where the choice is from. */
+  /** Source of the choice: a report or a pilot. */
   std::string source_;
   measure::Choice choice_;
   measure::SampledError measured_;

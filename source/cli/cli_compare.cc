@@ -24,7 +24,7 @@ struct CompareOptions {
   std::string difference;
   float difference_scale = 1.0F;
   std::string json;
-  /** One for each of `errors`; nothing: any error is accepted. */
+  /** One for each of `errors`; empty: any error is accepted. */
   std::array<std::optional<double>, 4> maxima;
 };
 
@@ -86,7 +86,7 @@ Status compare(const CompareOptions &options)
     write_json(options, error);
   }
   if (error.non_finite_count > 0) {
-    fmt::print(stderr, "gnomon: {}: {} values of it or of the reference are NaN or infinite\n", options.picture,
+    fmt::print(stderr, "gnomon: {}: {} values of the picture or the reference are NaN or infinite\n", options.picture,
                error.non_finite_count);
     return Status::NonFinite;
   }
@@ -111,7 +111,7 @@ Status compare(const CompareOptions &options)
 
 void add_compare(CLI::App &app, Status &status)
 {
-  CLI::App *command = app.add_subcommand("compare", "How a picture differs from its reference");
+  CLI::App *command = app.add_subcommand("compare", "Errors of a picture against a reference");
   auto o = std::make_shared<CompareOptions>();
   command->add_option("picture", o->picture, "EXR: scene-linear; PNG and others: decoded by the sRGB curve")
       ->required();

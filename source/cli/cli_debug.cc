@@ -23,7 +23,7 @@ DebugView parse_debug(const std::string &text)
   DebugView view{.kind = DebugView::Kind::Shadow, .lamp = {}, .layer = {}};
   if (text.starts_with(shadow)) {
     view.lamp = text.substr(shadow.size());
-    // Names may hold colons, too: the last one counts.
+    // Names may contain colons, so the last one separates the layer.
     const std::size_t colon = view.lamp.rfind(':');
     if (colon != std::string::npos) {
       view.layer = view.lamp.substr(colon + 1);
@@ -71,9 +71,8 @@ const gpu::Texture &shadow_picture(const DebugView &view, const scene::Scene &sc
     }
     return engine.shadow_picture(viewport, i, std::size_t(layer - layers.begin()));
   }
-  throw std::runtime_error(fmt::format("{}: {} '{}'{}; lamps with a shadow that is seen: {}", scene.path,
-                                       is_lamp ? "lamp" : "no lamp", view.lamp,
-                                       is_lamp ? " has no shadow that is seen" : "",
+  throw std::runtime_error(fmt::format("{}: {} '{}'{}; lamps with a visible shadow: {}", scene.path,
+                                       is_lamp ? "lamp" : "no lamp", view.lamp, is_lamp ? " has no visible shadow" : "",
                                        with_layers.empty() ? "none" : fmt::format("{}", fmt::join(with_layers, ", "))));
 }
 

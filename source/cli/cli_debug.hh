@@ -8,7 +8,7 @@
 
 namespace gnomon::cli {
 
-/** What --debug asks for. */
+/** The argument of --debug. */
 struct DebugView {
   enum class Kind {
     None,
@@ -19,24 +19,24 @@ struct DebugView {
   };
   Kind kind = Kind::None;
   std::string lamp;
-  /** As eevee::Engine::shadow_layers names it; empty: all. */
+  /** Name from eevee::Engine::shadow_layers; empty for all layers. */
   std::string layer;
 };
 
-/** `cascades`, or `shadow:LAMP[:LAYER]`; empty: none. \throws UsageError */
+/** Parses `cascades` or `shadow:LAMP[:LAYER]`; empty: none. \throws UsageError */
 [[nodiscard]] DebugView parse_debug(const std::string &text);
 
 /**
- * The picture of \a view, of Kind::Shadow, for the view that was drawn last. \see eevee::ShadowPicture
- * \throws std::runtime_error naming the scene and the lamps, or the lamp's layers, that there are.
+ * The picture of \a view for the view that was drawn last. \pre \a view has Kind::Shadow. \see eevee::ShadowPicture
+ * \throws std::runtime_error naming the scene and its lamps, or the lamp's layers, if there is no such lamp or layer.
  */
 [[nodiscard]] const gpu::Texture &shadow_picture(const DebugView &view, const scene::Scene &scene,
                                                  eevee::Engine &engine, draw::Viewport &viewport);
 
-/** Bytes for a PNG, of floats that are display-referred, four a pixel. */
+/** Converts display-referred floats, four for each pixel, to bytes for a PNG. */
 [[nodiscard]] std::vector<std::uint8_t> to_bytes(std::span<const float> rgba);
 
-/** The fourth of four floats a pixel, in all four. */
+/** Copies the fourth float of each pixel to the other three. */
 [[nodiscard]] std::vector<float> alpha_in_all(std::span<const float> rgba);
 
 }  // namespace gnomon::cli

@@ -37,7 +37,7 @@ struct Row {
   std::string why;
 };
 
-/** \a lines: what stands before the node's children. */
+/** \a lines: prefix of the lines of the node's children. */
 void add_rows(const eevee::FrameNode &node, const std::string &head, const std::string &lines, std::vector<Row> &rows)
 {
   Row &row = rows.emplace_back();

@@ -13,7 +13,7 @@ namespace gnomon::cli {
 
 namespace {
 
-/** Hashes values one after another; never padding, whose bytes mean nothing. */
+/** Hashes values in sequence, without padding, whose bytes are undefined. */
 class Hasher {
  public:
   Hasher()
@@ -49,7 +49,7 @@ class Hasher {
       add(value[column]);
     }
   }
-  /** Elements without padding: numbers and vectors of them. */
+  /** For elements without padding: numbers and vectors of numbers. */
   template <typename T>
   void add(const std::vector<T> &values)
   {

@@ -8,12 +8,12 @@
 namespace gnomon::cli {
 
 /**
- * Hash of everything in a scene that a picture depends on, and of the names of its lamps and cameras. Scenes that were
- * imported from the same files have the same; where the files are, and how they are encoded, makes no difference.
+ * Hash of all parts of a scene that affect pictures, and of the names of its lamps and cameras. It depends neither on
+ * the paths nor on the encoding of the files.
  */
 [[nodiscard]] std::string scene_fingerprint(const scene::Scene &scene);
 
-/** Hash of the program that runs, or "" where the system does not show it. */
+/** Hash of the running program; "" if the system does not provide it. */
 [[nodiscard]] std::string program_fingerprint();
 
 }  // namespace gnomon::cli

@@ -52,17 +52,17 @@ static void print_info(const scene::Scene &scene)
   for (const scene::PlacedCamera &camera : scene.placed_cameras()) {
     fmt::print("  camera '{}', {}{}\n", camera.name,
                camera.kind == scene::CameraKind::Perspective ? "perspective" : "orthographic",
-               scene.is_camera_default ? " (made up)" : "");
+               scene.is_camera_default ? " (added)" : "");
   }
   for (const scene::PlacedLamp &lamp : scene.placed_lamps()) {
     fmt::print("  lamp '{}', {}, {:g} {}{}\n", lamp.name, to_string(lamp.kind), lamp.intensity, unit(lamp.kind),
-               scene.is_lamp_default ? " (made up)" : "");
+               scene.is_lamp_default ? " (added)" : "");
   }
 }
 
 void add_info(CLI::App &app, Status &status)
 {
-  CLI::App *command = app.add_subcommand("info", "What a scene holds");
+  CLI::App *command = app.add_subcommand("info", "Contents of a scene");
   auto path = std::make_shared<std::string>();
   command->add_option("scene", *path, "glTF 2.0 file")->required();
   command->callback([path, &status] {

@@ -5,7 +5,7 @@
 
 namespace gnomon::cli {
 
-/** Part of the promise, not of the program yet. */
+/** A reserved subcommand that is not implemented yet. */
 static void add_unbuilt(CLI::App &app)
 {
   CLI::App *command = app.add_subcommand("view", "A window on a scene (not built yet)");
@@ -33,7 +33,7 @@ static Status run(int argc, char **argv)
     return status;
   }
   catch (const CLI::ParseError &error) {
-    // Help and version are no errors.
+    // Help and version are not errors.
     return app.exit(error) == 0 ? Status::Done : Status::Usage;
   }
   catch (const UsageError &error) {

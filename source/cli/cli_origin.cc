@@ -12,7 +12,7 @@
 
 namespace gnomon::cli {
 
-/** "" where the system does not say it in Linux's way. */
+/** Name of the processor from Linux's /proc/cpuinfo; "" if there is none. */
 static std::string processor()
 {
   std::ifstream file("/proc/cpuinfo");

@@ -5,15 +5,15 @@
 
 namespace gnomon::cli {
 
-/** Where and when figures were measured, for whoever reads them later. */
+/** Program, machine and time of a measurement. */
 struct Origin {
   /** Name and version. */
   std::string program;
-  /** That the program was built from, with "-dirty" where files were edited. */
+  /** Commit of the program, with "-dirty" if files were edited. */
   std::string commit;
-  /** UTC, "2026-11-21 19:30". */
+  /** UTC, for example "2026-11-21 19:30". */
   std::string date;
-  /** "2 cores, AMD EPYC". */
+  /** For example "2 cores, AMD EPYC". */
   std::string machine;
 };
 

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 void write_atomically(const fs::path &path, const std::function<void(const fs::path &beside)> &write)
 {
-  // The extension stays last: it tells the writer the format.
+  // The extension remains last, because it selects the format.
   const fs::path beside =
       path.parent_path() / fmt::format(".{}.{}{}", path.stem().string(), getpid(), path.extension().string());
   try {
@@ -39,7 +39,7 @@ NonFinite find_non_finite(glm::ivec2 size_px, std::span<const float> rgba)
 {
   NonFinite found;
   const auto width = std::size_t(size_px.x);
-  // From the upper row on, so that the first is the one a viewer meets first.
+  // From the upper row down, the order in which a viewer reads the picture.
   for (int y = 0; y < size_px.y; y++) {
     const std::span<const float> row = rgba.subspan(std::size_t(size_px.y - 1 - y) * width * 4, width * 4);
     for (std::size_t i = 0; i < row.size(); i++) {
@@ -51,7 +51,7 @@ NonFinite find_non_finite(glm::ivec2 size_px, std::span<const float> rgba)
   return found;
 }
 
-/** Four channels a pixel in memory, and rows from the bottom: strides walk both. */
+/** Memory has four channels for each pixel and rows from the bottom; strides convert both. */
 static bool write_rows(OIIO::ImageOutput &output, glm::ivec2 size_px, OIIO::TypeDesc type, const void *pixels)
 {
   const auto pixel_bytes = OIIO::stride_t(4 * type.size());

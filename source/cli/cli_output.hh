@@ -16,26 +16,26 @@
 namespace gnomon::cli {
 
 /**
- * Let \a write make a file beside \a path, then rename it to \a path: there is the whole file or none.
- * What \a write throws passes through, and leaves nothing behind.
+ * Calls \a write for a temporary file in the same folder and renames it to \a path, so that \a path is complete or
+ * unchanged. Exceptions of \a write are passed on, and the temporary file is removed.
  *
- * \throws std::runtime_error naming \a path where it cannot be made.
+ * \throws std::runtime_error naming \a path if it cannot be written.
  */
 void write_atomically(const std::filesystem::path &path,
                       const std::function<void(const std::filesystem::path &beside)> &write);
 
-/** What is wrong with a picture's numbers. */
+/** Non-finite values of a picture. */
 struct NonFinite {
-  /** Channels that are NaN or infinite. */
+  /** Number of channels that are NaN or infinite. */
   std::size_t count = 0;
-  /** The first such pixel, from the upper left; meaningless while count is 0. */
+  /** The first such pixel, from the upper left. \pre count > 0 */
   glm::ivec2 first_px{0};
 };
 
-/** \a rgba: four floats a pixel, rows from the bottom. */
+/** \a rgba: four floats for each pixel, rows from the bottom. */
 [[nodiscard]] NonFinite find_non_finite(glm::ivec2 size_px, std::span<const float> rgba);
 
-/** The same numbers, one by one. */
+/** The components of \a pixels. */
 [[nodiscard]] inline std::span<const float> floats(std::span<const glm::vec4> pixels)
 {
   return {reinterpret_cast<const float *>(pixels.data()), 4 * pixels.size()};
@@ -44,19 +44,19 @@ struct NonFinite {
 /** Names and values for an image's header. */
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
-/** RGB, 32-bit float, rows from the bottom, four floats a pixel of which the last is dropped. */
+/** Writes RGB as 32-bit floats. Rows from the bottom, four floats for each pixel; the fourth is dropped. */
 void write_exr(const std::filesystem::path &path, glm::ivec2 size_px, std::span<const float> rgba,
                const Metadata &metadata);
-/** RGB, 8 bits, rows from the bottom, four bytes a pixel of which the last is dropped. */
+/** Writes RGB with 8 bits. Rows from the bottom, four bytes for each pixel; the fourth is dropped. */
 void write_png(const std::filesystem::path &path, glm::ivec2 size_px, std::span<const std::uint8_t> rgba,
                const Metadata &metadata);
 
-/** Whole, or not at all. \throws std::runtime_error naming \a path where it cannot be written. */
+/** Writes the file atomically. \throws std::runtime_error naming \a path if it cannot be written. */
 void write_text(const std::filesystem::path &path, const std::string &text);
 
 /**
- * Red, green, blue and 1, rows from the bottom, as write_exr has written them.
- * \throws std::runtime_error naming \a path where it cannot be read or is of another size.
+ * Reads a file of write_exr: red, green, blue and 1, rows from the bottom.
+ * \throws std::runtime_error naming \a path if it cannot be read or has another size.
  */
 [[nodiscard]] std::vector<glm::vec4> read_exr(const std::filesystem::path &path, glm::ivec2 size_px);
 /** A picture of any size. */
@@ -66,11 +66,11 @@ struct Picture {
   std::vector<glm::vec4> pixels;
 };
 /**
- * Read an image of any format that OpenImageIO knows; integers are decoded by the sRGB curve. Of an EXR with layers,
- * the channels R, G and B. \throws std::runtime_error naming \a path where it cannot be read or has no R, G and B.
+ * Reads the channels R, G and B of an image of any format that OpenImageIO supports. Integers are decoded by the sRGB
+ * curve. \throws std::runtime_error naming \a path if it cannot be read or lacks R, G and B.
  */
 [[nodiscard]] Picture read_picture(const std::filesystem::path &path);
-/** A PNG file, as write_png writes it, without metadata. */
+/** The bytes of a PNG file like that of write_png, without metadata. */
 [[nodiscard]] std::vector<std::byte> png_bytes(glm::ivec2 size_px, std::span<const std::uint8_t> rgba);
 
 }  // namespace gnomon::cli

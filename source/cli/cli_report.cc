@@ -33,7 +33,7 @@ struct ReportOptions {
   std::vector<int> size = {480, 270};
   int rounds = 3;
   int reference_samples = 64;
-  /** Names or labels of the grid's; empty: all. */
+  /** Names or labels of techniques; empty for all. */
   std::vector<std::string> techniques;
 };
 
@@ -42,7 +42,7 @@ double seconds_since(Clock::time_point start)
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/** A bar on a terminal, and nothing in a pipe. */
+/** Shows a progress bar on a terminal; silent in a pipe. */
 class Progress {
  public:
   explicit Progress(std::size_t count) : count_(count) {}
@@ -77,7 +77,7 @@ class Progress {
   bool is_shown_ = isatty(STDERR_FILENO) != 0;
 };
 
-/** \throws UsageError naming one that the grid does not have. */
+/** The techniques with these names or labels. \throws UsageError naming one that does not exist. */
 std::vector<measure::Technique> wanted_techniques(const std::vector<std::string> &names)
 {
   const std::vector<measure::Technique> all = measure::report_techniques();
@@ -91,7 +91,7 @@ std::vector<measure::Technique> wanted_techniques(const std::vector<std::string>
     if (std::ranges::none_of(all, [&](const measure::Technique &one) { return is_called(one, name); })) {
       std::vector<std::string> labels;
       std::ranges::transform(all, std::back_inserter(labels), measure::label);
-      throw UsageError(fmt::format("--technique '{}' is none of '{}'", name, fmt::join(labels, "', '")));
+      throw UsageError(fmt::format("--technique '{}' is not one of '{}'", name, fmt::join(labels, "', '")));
     }
   }
   std::vector<measure::Technique> wanted;
@@ -101,7 +101,7 @@ std::vector<measure::Technique> wanted_techniques(const std::vector<std::string>
   return wanted;
 }
 
-/** Whether what was measured of one scene is what is asked of the other. */
+/** Whether two reports measure the same work, so that a run can continue. */
 bool is_same_work(const measure::SceneReport &one, const measure::SceneReport &other)
 {
   return one.name == other.name && one.fingerprint == other.fingerprint &&
@@ -111,12 +111,12 @@ bool is_same_work(const measure::SceneReport &one, const measure::SceneReport &o
              [](const measure::TechniqueReport &report) { return measure::label(report.technique); });
 }
 
-/** A run in its folder, written after each visit, so that another can go on with it. */
+/** A run and its folder. The folder is updated after each measurement, so that an interrupted run can be continued. */
 class Run {
  public:
   Run(gpu::Device &device, const ReportOptions &options);
 
-  /** \return number of values that were not finite. */
+  /** \return number of values that are not finite. */
   std::size_t measure_all();
 
  private:
@@ -125,11 +125,11 @@ class Run {
   void visit(const scene::Scene &scene, const reference::Tracer &tracer, measure::SceneReport &report,
              measure::TechniqueReport &technique);
   void make_reference(const scene::Scene &scene, const reference::Tracer &tracer, measure::SceneReport &report);
-  /** Once a scene. */
+  /** Prints the warning once for each scene. */
   void warn(measure::SceneReport &report, const std::string &warning) const;
   void save() const;
   void finish(measure::SceneReport &report) const;
-  /** Whether the folder holds what a run that goes on with \a report needs. */
+  /** Whether the folder has the pictures that are needed to continue \a report. */
   [[nodiscard]] bool has_pictures(const measure::SceneReport &report) const;
   [[nodiscard]] std::size_t visits_left(const measure::SceneReport &report) const;
 
@@ -137,7 +137,7 @@ class Run {
   ReportOptions options_;
   fs::path folder_;
   measure::RunReport run_;
-  /** Of the scene that is measured. */
+  /** The reference of the current scene. */
   std::vector<glm::vec4> reference_;
   double seconds_before_ = 0.0;
   Clock::time_point start_ = Clock::now();
@@ -161,7 +161,7 @@ Run::Run(gpu::Device &device, const ReportOptions &options)
   for (const std::string &path : options.scenes) {
     const std::string name = fs::path(path).stem().string();
     if (std::ranges::find(run_.scenes, name, &measure::SceneReport::name) != run_.scenes.end()) {
-      throw std::runtime_error(fmt::format("{}: another scene is called '{}', too", path, name));
+      throw std::runtime_error(fmt::format("{}: another scene has the same name, '{}'", path, name));
     }
     measure::SceneReport &scene = run_.scenes.emplace_back();
     scene.name = name;
@@ -188,11 +188,12 @@ void Run::resume()
   try {
     std::ifstream file(path);
     measure::RunReport before = measure::run_from_json(nlohmann::json::parse(file));
-    // Other builds, machines and drivers have other times.
+    // Times are comparable only for the same build, machine and driver.
     if (before.build != run_.build || before.device != run_.device || before.machine != run_.machine ||
         before.size_px != run_.size_px || before.rounds != run_.rounds ||
         before.reference_samples != run_.reference_samples) {
-      fmt::print(stderr, "gnomon: {}: of another build, machine, size, reference or number of rounds; begun anew\n",
+      fmt::print(stderr,
+                 "gnomon: {}: has another build, machine, size, reference or number of rounds; starting again\n",
                  path.string());
       return;
     }
@@ -209,7 +210,7 @@ void Run::resume()
     seconds_before_ = before.seconds;
   }
   catch (const std::exception &error) {
-    fmt::print(stderr, "gnomon: {}: cannot be gone on with: {}; begun anew\n", path.string(), error.what());
+    fmt::print(stderr, "gnomon: {}: cannot be continued: {}; starting again\n", path.string(), error.what());
   }
 }
 
@@ -393,26 +394,26 @@ Status report(const ReportOptions &options)
 void add_report(CLI::App &app, Status &status)
 {
   auto o = std::make_shared<ReportOptions>();
-  CLI::App *command = app.add_subcommand("report", "Error against run time of each shadow method, by exact rays");
+  CLI::App *command = app.add_subcommand("report", "Error against run time of each shadow technique");
   command->add_option("scenes", o->scenes, "glTF 2.0 files")->required();
   command
-      ->add_option(
-          "-o,--output", o->folder,
-          "Folder for index.html, report.csv, .json and .txt, and pictures; a run that was interrupted there is "
-          "gone on with")
+      ->add_option("-o,--output", o->folder,
+                   "Folder for index.html, report.csv, .json and .txt, and pictures; an interrupted run in it is "
+                   "continued")
       ->required();
   command->add_option("--size", o->size, "Width and height of the picture, pixels (default: 480x270)")
       ->delimiter('x')
       ->expected(2)
       ->check(CLI::Range(1, 16384));
-  command->add_option("--rounds", o->rounds, "Rounds over all methods; times are the medians")
+  command->add_option("--rounds", o->rounds, "Rounds over all techniques; times are the medians")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
   command->add_option("--technique", o->techniques, "Only these, by name or by name and size: \"hard\", \"hard 1024\"")
       ->allow_extra_args(false);
   command
-      ->add_option("--reference-samples", o->reference_samples,
-                   "Rays a pixel of the reference, even; eight times as many at its noisiest tenth")
+      ->add_option(
+          "--reference-samples", o->reference_samples,
+          "Rays per pixel of the reference, an even number; the noisiest tenth of the pixels has eight times as many")
       ->capture_default_str()
       ->check(CLI::Range(2, 65536));
   command->callback([o, &status] { status = report(*o); });

@@ -9,15 +9,15 @@
 
 namespace gnomon::cli {
 
-/** Shader files of a folder, each read once. For several threads. */
+/** Shader files of a folder, each read once. Several threads may use it. */
 class FolderFiles {
  public:
-  /** Paths are below \a folder; empty: as they stand. */
+  /** Paths are relative to \a folder; if it is empty, they are used unchanged. */
   explicit FolderFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /** Valid as long as this. */
+  /** Valid as long as this object. */
   [[nodiscard]] std::optional<std::string_view> text(std::string_view path);
-  /** Refers to this. */
+  /** Refers to this object. */
   [[nodiscard]] gpu::ShaderFiles files()
   {
     return [this](std::string_view path) { return text(path); };
@@ -29,13 +29,13 @@ class FolderFiles {
   std::map<std::string, std::optional<std::string>, std::less<>> texts_;
 };
 
-/** An include is looked for beside the file that names it, then in \a folders in order, and nowhere else. */
+/** Searches an include in the folder of the including file, and then in \a folders in order. */
 [[nodiscard]] gpu::IncludePath include_path(std::vector<std::filesystem::path> folders);
 
-/** By the file's name: `x.vert`, `x.vert.glsl`, `x_vert.glsl`, and so for `geom` and `frag`. */
+/** The stage by the file's name: `x.vert`, `x.vert.glsl` or `x_vert.glsl`; also with `geom` and `frag`. */
 [[nodiscard]] std::optional<gpu::ShaderStage> stage_of(const std::filesystem::path &path);
 
-/** The path without what stage_of() reads: what the stages of one program have in common. */
+/** The path without the part that stage_of() reads. All stages of a program have the same stem. */
 [[nodiscard]] std::string stem_of(const std::filesystem::path &path);
 
 }  // namespace gnomon::cli

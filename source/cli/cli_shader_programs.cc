@@ -32,7 +32,7 @@ std::vector<Variant> engine_variants()
 
 void throw_no_program(const std::string &name)
 {
-  throw std::runtime_error(fmt::format("no program '{}'; 'gnomon shaders list' names them", name));
+  throw std::runtime_error(fmt::format("no program '{}'; 'gnomon shaders list' lists all programs", name));
 }
 
 std::string defines_of(const gpu::ShaderDesc &desc)

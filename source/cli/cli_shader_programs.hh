@@ -37,7 +37,7 @@ struct Variant {
 
 [[nodiscard]] std::vector<Variant> engine_variants();
 
-/** For an unknown \a name. */
+/** \throws std::runtime_error for an unknown \a name. */
 [[noreturn]] void throw_no_program(const std::string &name);
 
 /** The defines, separated by spaces. */

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-/** Messages that say the same of the same line. */
+/** Equal messages about one line. */
 struct Group {
   const shader_check::CheckMessage *first = nullptr;
   std::vector<const shader_check::CheckMessage *> all;
@@ -41,7 +41,7 @@ std::string join(const std::set<std::string> &words, std::string_view separator)
   return fmt::format("{}", fmt::join(words, separator));
 }
 
-/** Which shaders and variants a message is about. */
+/** The shaders and variants of a message. */
 std::string where(const Group &group)
 {
   std::set<std::string> shaders;
@@ -80,7 +80,7 @@ std::string uri(std::string_view path)
   return path.starts_with('/') ? "file://" + text : text;
 }
 
-/** A source file need not be UTF-8; what comes from it is made so. */
+/** Source files may not be UTF-8, so invalid characters are replaced. */
 std::string dump(const json &document)
 {
   return document.dump(2, ' ', false, json::error_handler_t::replace) + "\n";

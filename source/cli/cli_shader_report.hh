@@ -16,10 +16,12 @@ struct ShaderReport {
   [[nodiscard]] bool has_errors() const;
 };
 
-/** `FILE:LINE: error: TEXT [RULE] (WHERE)`, one line for all variants that agree, then a summary. */
+/**
+ * Lines of the form `FILE:LINE: error: TEXT [RULE] (WHERE)`, one for all variants with the same message, and a summary.
+ */
 [[nodiscard]] std::string to_text(const ShaderReport &report);
 [[nodiscard]] std::string to_json(const ShaderReport &report);
-/** SARIF 2.1.0, which code hosts and editors read. */
+/** SARIF 2.1.0, a format for code hosts and editors. */
 [[nodiscard]] std::string to_sarif(const ShaderReport &report);
 
 }  // namespace gnomon::cli

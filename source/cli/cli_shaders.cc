@@ -33,7 +33,7 @@ void add_shaders(CLI::App &app, Status &status)
 {
   CLI::App *command = app.add_subcommand("shaders", "Check, list and reflect shaders");
   command->require_subcommand(1);
-  command->add_subcommand("list", "Every program and variant, and why it exists")->callback([&status] {
+  command->add_subcommand("list", "All programs and variants, and their purpose")->callback([&status] {
     print_list();
     status = Status::Done;
   });

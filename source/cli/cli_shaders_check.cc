@@ -40,7 +40,7 @@ std::vector<shader_check::CheckTarget> targets_of(const std::string &name)
   return {shader_check::CheckTarget::OpenGl, shader_check::CheckTarget::Vulkan};
 }
 
-/** A bar on a terminal; nothing in a pipe. */
+/** Shows a progress bar on a terminal; silent in a pipe. */
 void show_progress(std::size_t done, std::size_t count)
 {
   constexpr std::size_t width = 40;
@@ -49,7 +49,7 @@ void show_progress(std::size_t done, std::size_t count)
              done == count ? "\r\033[K" : "");
 }
 
-/** Check all of \a descs for all of \a targets, on all cores. */
+/** Checks all of \a descs for all of \a targets, on all cores. */
 ShaderReport check_all(const std::vector<gpu::ShaderDesc> &descs, const gpu::ShaderFiles &files,
                        const shader_check::CheckOptions &options, const std::vector<shader_check::CheckTarget> &targets)
 {
@@ -119,7 +119,7 @@ gpu::ShaderStage required_stage(const std::string &file, const std::string &stag
   if (!stage) {
     throw UsageError(
         fmt::format("{}: its name ends in none of .vert, _vert.glsl, .geom, _geom.glsl, .frag, _frag.glsl; "
-                    "--stage vert|geom|frag says what it is",
+                    "--stage vert|geom|frag sets the stage",
                     file));
   }
   return *stage;
@@ -135,7 +135,7 @@ std::string &path_of(gpu::ShaderDesc &desc, gpu::ShaderStage stage)
   return desc.fragment_path;
 }
 
-/** `NAME=VALUE` and `NAME` as a compiler's -D has them. */
+/** Converts the `NAME=VALUE` or `NAME` of -D to a define. */
 std::string define_of(const std::string &argument)
 {
   const std::size_t equals = argument.find('=');
@@ -146,7 +146,7 @@ std::string define_of(const std::string &argument)
   return name + " " + (equals == std::string::npos ? "1" : argument.substr(equals + 1));
 }
 
-/** Files of one name but for the stage are one program. */
+/** Files whose names differ only in the stage belong to one program. */
 ShaderReport check_files(const CheckArguments &arguments)
 {
   std::vector<gpu::ShaderDesc> descs;
@@ -174,7 +174,7 @@ ShaderReport check_files(const CheckArguments &arguments)
 Status check(const CheckArguments &arguments)
 {
   if (!arguments.files.empty() && !arguments.shaders.empty()) {
-    throw UsageError("--shaders is for the engine's shaders, FILES for others: not both");
+    throw UsageError("--shaders and FILES exclude each other");
   }
   if (arguments.files.empty() &&
       !(arguments.include_folders.empty() && arguments.defines.empty() && arguments.stage.empty())) {
@@ -191,13 +191,13 @@ Status check(const CheckArguments &arguments)
 
 void add_shaders_check(CLI::App &shaders, Status &status)
 {
-  CLI::App *command = shaders.add_subcommand("check", "Look for mistakes, without running anything");
+  CLI::App *command = shaders.add_subcommand("check", "Find mistakes in shaders; needs no driver");
   auto a = std::make_shared<CheckArguments>();
-  command->add_option("files", a->files, "A user's own shaders; without any, the engine's, every variant");
-  command->add_option("-I", a->include_folders, "Folder to look for includes in, after the including file's own")
+  command->add_option("files", a->files, "Shaders to check (default: all variants of the engine's shaders)");
+  command->add_option("-I", a->include_folders, "Folder to search for includes, after that of the including file")
       ->allow_extra_args(false);
   command->add_option("-D", a->defines, "NAME or NAME=VALUE, defined in every stage")->allow_extra_args(false);
-  command->add_option("--stage", a->stage, "What FILES are; otherwise their names tell")
+  command->add_option("--stage", a->stage, "Stage of FILES (default: from their names)")
       ->check(CLI::IsMember({"vert", "geom", "frag"}));
   command->add_option("--target", a->target, "opengl, vulkan, all")
       ->capture_default_str()
@@ -205,8 +205,8 @@ void add_shaders_check(CLI::App &shaders, Status &status)
   command->add_option("--format", a->format, "text, json, sarif")
       ->capture_default_str()
       ->check(CLI::IsMember({"text", "json", "sarif"}));
-  command->add_option("--shaders", a->shaders, "Folder to read the engine's shaders from, instead of the program");
-  command->add_option("--program", a->program, "Only this one of the engine's, as 'shaders list' names it");
+  command->add_option("--shaders", a->shaders, "Folder of the engine's shaders (default: those in the program)");
+  command->add_option("--program", a->program, "Check only this program of the engine, by its name in 'shaders list'");
   command->callback([a, &status] { status = check(*a); });
 }
 

@@ -14,7 +14,7 @@ namespace gnomon::cli {
 
 namespace {
 
-/** Of each block, from the first variant that reads it; check() looks at all. */
+/** Compares each block in the first variant that reads it; check() compares all variants. */
 std::vector<shader_check::BlockComparison> compare_engine_blocks(const gpu::ShaderFiles &files)
 {
   std::vector<shader_check::BlockComparison> comparisons;
@@ -69,8 +69,8 @@ Status layout(const std::string &folder)
 void add_shaders_layout(CLI::App &shaders, Status &status)
 {
   auto folder = std::make_shared<std::string>();
-  CLI::App *command = shaders.add_subcommand("layout", "Blocks as C++ and GLSL have them, side by side");
-  command->add_option("--shaders", *folder, "Folder to read the engine's shaders from, instead of the program");
+  CLI::App *command = shaders.add_subcommand("layout", "Layout of each block in C++ and in GLSL");
+  command->add_option("--shaders", *folder, "Folder of the engine's shaders (default: those in the program)");
   command->callback([folder, &status] { status = layout(*folder); });
 }
 

@@ -22,7 +22,7 @@ struct ReflectArguments {
   std::string shaders;
 };
 
-/** The variant with these defines, in any order; without any word, the one with most. */
+/** The variant with these defines, in any order; by default the one with most defines. */
 gpu::ShaderDesc find_variant(const ReflectArguments &arguments)
 {
   const auto sorted = [](const std::string &text) {
@@ -42,7 +42,7 @@ gpu::ShaderDesc find_variant(const ReflectArguments &arguments)
   const auto found = std::ranges::find_if(
       variants, [&](const Variant &variant) { return sorted(defines_of(variant.desc)) == sorted(*arguments.variant); });
   if (found == variants.end()) {
-    throw std::runtime_error(fmt::format("program '{}' has no variant '{}'; 'gnomon shaders list' names them",
+    throw std::runtime_error(fmt::format("program '{}' has no variant '{}'; 'gnomon shaders list' lists all variants",
                                          arguments.program, *arguments.variant));
   }
   return found->desc;
@@ -139,14 +139,14 @@ void reflect(const ReflectArguments &arguments)
 
 void add_shaders_reflect(CLI::App &shaders, Status &status)
 {
-  CLI::App *command = shaders.add_subcommand("reflect", "What a program reads, and where it is");
+  CLI::App *command = shaders.add_subcommand("reflect", "Blocks, textures, inputs and outputs of a program");
   auto a = std::make_shared<ReflectArguments>();
-  command->add_option("program", a->program, "As 'shaders list' names it")->required();
-  command->add_option("--variant", a->variant, "Its defines; otherwise the variant with most");
+  command->add_option("program", a->program, "Name from 'shaders list'")->required();
+  command->add_option("--variant", a->variant, "Defines of the variant (default: the variant with most)");
   command->add_option("--format", a->format, "text, json")
       ->capture_default_str()
       ->check(CLI::IsMember({"text", "json"}));
-  command->add_option("--shaders", a->shaders, "Folder to read the engine's shaders from, instead of the program");
+  command->add_option("--shaders", a->shaders, "Folder of the engine's shaders (default: those in the program)");
   command->callback([a, &status] {
     reflect(*a);
     status = Status::Done;

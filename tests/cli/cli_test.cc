@@ -108,14 +108,12 @@ TEST_F(CliTest, ADebugViewOfWhatIsNotThereNamesWhatIs)
     const std::string err = error(arguments);
     EXPECT_NE(err.find(text), std::string::npos) << err;
   };
-  expect_error(example("plaza") + " --debug shadow:LAMP",
-               "no lamp 'LAMP'; lamps with a shadow that is seen: POINT, SUN");
+  expect_error(example("plaza") + " --debug shadow:LAMP", "no lamp 'LAMP'; lamps with a visible shadow: POINT, SUN");
   expect_error(example("plaza") + " --debug shadow:POINT:6", "no layer '6'; it has: 0, 1, 2, 3, 4, 5");
   expect_error(example("plaza") + " --debug shadow:SUN:octahedral --cascades 2", "no layer 'octahedral'; it has: 0");
   expect_error(example("plaza") + " --debug shadow:POINT:0 --shadow esm", "no layer '0'; it has: octahedral");
   expect_error(example("plaza") + " --debug shadow:SUN --shadow none",
-               "lamp 'SUN' has no shadow that is seen; lamps with "
-               "a shadow that is seen: none");
+               "lamp 'SUN' has no visible shadow; lamps with a visible shadow: none");
   expect_error(example("spots") + " --debug cascades", "no sun has a shadow");
   for (const std::string view : {"shadow:SUN:0", "shadow:SUN:all", "shadow:POINT:5", "cascades"}) {
     const Finished finished =
