@@ -12,8 +12,8 @@ layout(location = 3) out vec2 surface_uv;
 layout(location = 4) out vec4 surface_color;
 
 /**
- * Where a texture is looked up; \a index: of its INPUT_ bit. Fragment shaders cannot compute it: llvmpipe's invocations outside
- * of a triangle read zeros from storage blocks, which derivatives would see.
+ * Texture coordinates of the texture with bit \a index of the INPUT_ bits. Fragment shaders cannot compute them: llvmpipe's
+ * invocations outside of a triangle read zeros from storage blocks, which makes derivatives wrong.
  */
 vec2 input_uv(uint material, int index)
 {

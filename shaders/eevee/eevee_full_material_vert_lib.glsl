@@ -21,7 +21,7 @@ void write_full_varyings()
   mat3 world_from_object = mat3(objects[draw_instance.x].world_from_object);
   vec3 tangent_ws = world_from_object * tangent.xyz;
   float length_sq = dot(tangent_ws, tangent_ws);
-  // A mirrored object turns cross(normal, tangent) around.
+  // A mirrored object reverses cross(normal, tangent).
   surface_tangent_ws = vec4(length_sq > 0.0 ? tangent_ws * inversesqrt(length_sq) : vec3(0.0),
                             determinant(world_from_object) < 0.0 ? -tangent.w : tangent.w);
 #endif

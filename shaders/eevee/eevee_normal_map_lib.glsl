@@ -15,7 +15,7 @@ Surface normal_mapped(Surface surface)
   }
   vec3 mapped = texture(normal_texture, surface_roughness_normal_uvs.zw, view.texture_lod_bias).xyz * 2.0 - 1.0;
   mapped.xy *= full_materials[surface_material].normal_scale;
-  // The interpolated vectors as they are, as MikkTSpace defines the frame.
+  // MikkTSpace defines the frame by the interpolated vectors without normalisation.
   vec3 up_ws = surface_tangent_ws.w * cross(surface_normal_ws, surface_tangent_ws.xyz);
   vec3 normal_ws = mapped.x * surface_tangent_ws.xyz + mapped.y * up_ws + mapped.z * surface_normal_ws;
   surface.normal_ws = normalized(gl_FrontFacing ? normal_ws : -normal_ws, surface.normal_ws);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Penumbrae from one map of a lamp's centre (percentage-closer soft shadows, Fernando 2005), by lookups on the receiver's plane.
 
-/** Lookups for casters, and lookups for visibility. */
+/** Number of lookups for casters, and for visibility. */
 const int PENUMBRA_SEARCH_TAPS = 12;
 const int PENUMBRA_TAPS = 20;
 
 /**
- * How wide a caster spreads the lamp's edge on the receiver, in half axes of the lamp; 0: there is no caster. For a lamp at a
- * distance that is the quotient of the distances from the caster to the receiver and to the lamp. For a sun it is the distance
- * from the caster, metres.
+ * Width of the penumbra of the caster at the lookup, in half axes of the lamp; 0 if there is no caster. For a lamp at a finite
+ * distance this is the quotient of the distances from the caster to the receiver and to the lamp. For a sun it is the distance from
+ * the caster to the receiver, metres.
  */
 float shadow_gap(LightData light, Surface surface, vec3 to_light)
 {
@@ -25,18 +25,18 @@ float shadow_gap(LightData light, Surface surface, vec3 to_light)
   return 0.0;
 }
 
-/** The point where light to \a surface, moved by \a offset across the light, meets the surface's plane. */
+/** \a surface moved by \a offset and then along the light back onto its plane. */
 Surface beside(Surface surface, vec3 to_light, vec3 offset)
 {
   vec3 n = surface.geometric_normal_ws;
   float facing = dot(n, to_light);
-  // At grazing angles the point would be far away.
+  // Limits the distance at grazing angles.
   facing = facing < 0.0 ? min(facing, -0.05) : max(facing, 0.05);
   surface.position_ws += offset - to_light * (dot(n, offset) / facing);
   return surface;
 }
 
-/** A turn that differs from pixel to pixel (Jimenez 2014, interleaved gradient noise), as cosine and sine. */
+/** Rotation of the lookups at this pixel, as cosine and sine (Jimenez 2014, interleaved gradient noise). */
 vec2 pixel_turn()
 {
   float angle = 6.2831853 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
@@ -44,9 +44,8 @@ vec2 pixel_turn()
 }
 
 /**
- * Visibility of a lamp with an extent. \a axis_x, \a axis_y: its half axes, world space; metres, or for a sun at a distance of
- * 1 m. \a search: gap of the casters that are looked for first. Casters whose penumbra does not reach the receiver are no
- * matter.
+ * Visibility of a lamp with an extent. \a axis_x, \a axis_y: its half axes, world space; metres, or for a sun at a distance of 1 m.
+ * \a search: largest shadow_gap that is searched. Casters whose penumbra does not reach the receiver are ignored.
  */
 float penumbra_visibility(LightData light, Surface surface, vec3 to_light, vec3 axis_x, vec3 axis_y, float search)
 {

@@ -20,7 +20,7 @@ struct ReceiverPlane {
   vec2 slope;
 };
 
-/** Weighted sum of the four texels from \a corner on that are lit. \a size_px: edge of the shadow within its layer. */
+/** Weighted sum of the lit ones of the four texels at \a corner. \a size_px: edge of the shadow within its layer. */
 float four_texels(sampler2DArray depths, int layer, int size_px, ReceiverPlane plane, vec2 corner, vec2 columns, vec2 rows)
 {
   corner = clamp(corner, vec2(0.0), vec2(max(size_px - 2, 0)));
@@ -66,15 +66,15 @@ float filtered_visibility(sampler2DArray depths, int layer, int size_px, int fil
   return bilinear_texels(depths, layer, size_px, plane, plane.texel);
 }
 
-/** Where a receiver is in a shadow. */
+/** Position of a receiver in a shadow layer. */
 struct ShadowPlace {
   ReceiverPlane plane;
   int layer;
-  /** false: no caster can be in the way. */
+  /** false if no caster can shadow the receiver; the other members are then undefined. */
   bool is_covered;
 };
 
-/** Depth of the caster at a place, the nearest texel's; 0 where there is none nearer than the receiver's plane. */
+/** Depth of the nearest texel at a place; 0 if it is not nearer than the receiver's plane. */
 float caster_depth(sampler2DArray depths, ShadowPlace place, int size_px)
 {
   vec2 texel = clamp(floor(place.plane.texel + 0.5), vec2(0.0), vec2(size_px - 1));
@@ -94,11 +94,11 @@ ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, ve
     return place;
   }
   float magnitude = largest(surface.position_ws) + largest(light.position_ws);
-  float lift = cube.bias * shadow_lift(cube.texel_size * w, kernel_reach(cube.filter_kind),
-                                       DEPTH_ROUNDING / cube.near * w * w, magnitude);
+  float rounding = DEPTH_ROUNDING / cube.near * w * w;
+  float normal_offset = cube.bias * shadow_normal_offset(cube.texel_size * w, kernel_reach(cube.filter_kind), rounding, magnitude);
   // Do not offset past the lamp. From behind, the plane would be reversed.
-  lift = min(lift, 0.5 * abs(dot(surface.geometric_normal_ws, from_light)));
-  from_light = lifted_position(surface, to_light, lift) - light.position_ws;
+  normal_offset = min(normal_offset, 0.5 * abs(dot(surface.geometric_normal_ws, from_light)));
+  from_light = offset_position(surface, to_light, normal_offset) - light.position_ws;
   int face = cube_face(from_light);
   vec3 p = cube_face_project(face, from_light);
   if ((cube.face_mask >> face & 1) == 0 || p.z <= 0.0) {
@@ -128,7 +128,7 @@ float shadow_cube_gap(int index, Surface surface, LightData light, vec3 to_light
 {
   ShadowCubeData cube = shadow.cubes[index];
   ShadowPlace place = cube_place(cube, surface, light, to_light);
-  // A depth is the near plane's distance over the caster's.
+  // A depth is the quotient of the near plane's distance and the caster's.
   return place.is_covered ? max(caster_depth(shadow_cubes, place, cube.size_px) / place.plane.depth - 1.0, 0.0) : 0.0;
 }
 #endif
@@ -157,14 +157,14 @@ ShadowPlace map_place(ShadowMapData map, Surface surface, vec3 to_light, out flo
   return place;
 }
 
-/** Visibility by one map. \a coverage: see map_texco. */
+/** Visibility from one map. \a coverage: see map_texco. */
 float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, out float coverage)
 {
   ShadowPlace place = map_place(map, surface, to_light, coverage);
   return place.is_covered ? filtered_visibility(shadow_maps, place.layer, map.size_px, map.filter_kind, place.plane) : 1.0;
 }
 
-/** \see shadow_gap. By the finest map that holds the receiver. */
+/** \see shadow_gap. Uses the finest map that contains the receiver. */
 float shadow_map_gap(int first, Surface surface, LightData light, vec3 to_light)
 {
   int count = shadow.maps[first].cascade_count;
@@ -177,7 +177,7 @@ float shadow_map_gap(int first, Surface surface, LightData light, vec3 to_light)
       if (light.kind != LIGHT_SUN) {
         return max(stored / place.plane.depth - 1.0, 0.0);
       }
-      // Depth for each metre towards the sun.
+      // Change of depth per metre towards the sun.
       vec3 row = vec3(map.texco_from_world[0].z, map.texco_from_world[1].z, map.texco_from_world[2].z);
       return stored > 0.0 ? max((stored - place.plane.depth) / max(dot(row, to_light), 1e-20), 0.0) : 0.0;
     }
@@ -185,7 +185,7 @@ float shadow_map_gap(int first, Surface surface, LightData light, vec3 to_light)
   return 0.0;
 }
 
-/** Distance from the receiver to the plane before all casters of a sun, metres; 0 where there is no map. */
+/** Distance from the receiver to the near plane, which is in front of all casters of a sun, metres; 0 if there is no map. */
 float sun_gap_max(int first, Surface surface, vec3 to_light)
 {
   int count = shadow.maps[first].cascade_count;
@@ -198,12 +198,12 @@ float sun_gap_max(int first, Surface surface, vec3 to_light)
   return max((1.0 - depth) / max(dot(row, to_light), 1e-20), 0.0);
 }
 
-/** Visibility by all maps of a light. \a first: the finest. */
+/** Visibility from all maps of a light. \a first: the finest. */
 float shadow_map_visibility(int first, Surface surface, vec3 to_light)
 {
   int count = shadow.maps[first].cascade_count;
   float visibility = 0.0;
-  // Weight that finer cascades have left. Points outside all cascades are lit.
+  // Weight not used by finer cascades. Points outside all cascades are lit.
   float open = 1.0;
   for (int i = 0; i < count && open > 0.0; i++) {
     float coverage;

@@ -25,11 +25,11 @@ float largest(vec3 v)
   return max(max(a.x, a.y), a.z);
 }
 
-/** The receiver, offset along its normal to the side of the light. \a to_light: unit vector. \a lift: metres. */
-vec3 lifted_position(Surface surface, vec3 to_light, float lift)
+/** The receiver, offset along its normal to the side of the light. \a to_light: unit vector. \a normal_offset: metres. */
+vec3 offset_position(Surface surface, vec3 to_light, float normal_offset)
 {
   vec3 normal_ws = surface.geometric_normal_ws;
-  return surface.position_ws + normal_ws * (dot(normal_ws, to_light) < 0.0 ? -lift : lift);
+  return surface.position_ws + normal_ws * (dot(normal_ws, to_light) < 0.0 ? -normal_offset : normal_offset);
 }
 
 /** Reach of the filter kernel from the lookup, texels. */
@@ -54,9 +54,10 @@ vec3 map_texco(ShadowMapData map, Surface surface, vec3 to_light, out float cove
 {
   coverage = 0.0;
   float w = (map.texco_from_world * vec4(surface.position_ws, 1.0)).w;
-  float lift = map.bias * shadow_lift(map.texel_size * w, kernel_reach(map.filter_kind), map.rounding * w * w,
-                                      largest(surface.position_ws) + abs(w));
-  vec4 texco = map.texco_from_world * vec4(lifted_position(surface, to_light, lift), 1.0);
+  float magnitude = largest(surface.position_ws) + abs(w);
+  float normal_offset =
+      map.bias * shadow_normal_offset(map.texel_size * w, kernel_reach(map.filter_kind), map.rounding * w * w, magnitude);
+  vec4 texco = map.texco_from_world * vec4(offset_position(surface, to_light, normal_offset), 1.0);
   if (texco.w <= 0.0 || w > map.far) {
     return vec3(0.0);
   }
@@ -66,7 +67,7 @@ vec3 map_texco(ShadowMapData map, Surface surface, vec3 to_light, out float cove
   return texco.xyz;
 }
 
-/** Weight of a cascade within the weight that finer cascades have left. The last cascade does not fade. */
+/** Fraction of the weight not used by finer cascades. The last cascade does not fade. */
 float cascade_share(bool is_last, float coverage)
 {
   return is_last ? step(1e-30, coverage) : coverage;

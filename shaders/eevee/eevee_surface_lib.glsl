@@ -6,7 +6,7 @@ struct Surface {
   /** Shading normal, on the visible side. */
   vec3 normal_ws;
 #ifdef USE_FULL_MATERIAL
-  /** The same without the normal texture. */
+  /** Shading normal without the normal texture. */
   vec3 smooth_normal_ws;
 #endif
   /** Normal of the triangle, on the visible side. */

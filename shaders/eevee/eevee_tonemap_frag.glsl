@@ -21,10 +21,10 @@ PUSH_CONSTANT_LAYOUT uniform push_constant_block
   int encoding;
   /** 2 to the exposure in stops. */
   float exposure_scale;
-  /** Makes the sum of the samples so far their mean. */
+  /** 1 / number of samples so far: converts their sum to their mean. */
   float sample_scale;
   float background_depth;
-  /** Pixels without a surface are left as they are. */
+  /** 1: pixels without a surface keep the target's content. */
   int is_over;
 };
 

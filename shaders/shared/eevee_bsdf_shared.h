@@ -46,9 +46,9 @@ SHARED_FUNCTION vec3 fresnel_schlick(vec3 f0, float f90, float cosine)
 }
 
 /**
- * Visibility of a light to the diffuse part of a surface whose normal a texture turned, so that light fades towards the
- * horizon of the smooth surface instead of ending there (Conty Estevez, Lecocq and Stein 2019, Ray Tracing Gems 12). 1 for a
- * normal that was not turned. \a normal and \a to_light form an acute angle.
+ * Visibility of a light for the diffuse part of a surface with a normal texture. Light fades towards the horizon of the smooth
+ * surface instead of ending there (Conty Estevez, Lecocq and Stein 2019, Ray Tracing Gems 12). 1 for a normal that is not
+ * perturbed. \a normal and \a to_light form an acute angle.
  */
 SHARED_FUNCTION float bump_visibility(vec3 smooth_normal, vec3 normal, vec3 to_light)
 {

@@ -8,9 +8,9 @@
 SHARED_BEGIN
 
 /**
- * A surface to be lit. An entry of `material_block` is that of a material without textures. Colours are linear. With a base
- * colour texture alone, diffuse and metal_f0 are factors of the texture, and specular_f0 and specular_f90 are those for a white
- * texture. With other textures, the surface is evaluated from FullMaterialData.
+ * Parameters of a surface for shading. An entry of `material_block` has those of a material without textures. Colours are linear.
+ * With a base colour texture only, diffuse and metal_f0 are factors of the texture, and specular_f0 and specular_f90 apply to a
+ * white texture. With other textures, the parameters are computed from FullMaterialData.
  */
 struct MaterialData {
   /** Diffuse albedo: the base colour times 1 - metallic. */
@@ -25,14 +25,14 @@ struct MaterialData {
   vec3 emissive;
   /** The surface is cut out where the alpha of its texture and its vertex colours is below this. 0: nowhere. */
   float mask_cutoff;
-  /** The part of specular_f0 that comes from the base colour of a metal. */
+  /** Part of specular_f0 due to the base colour of a metal. */
   vec3 metal_f0;
-  /** The part of the light from all around that arrives. */
+  /** Fraction of ambient light that arrives. */
   float occlusion;
 };
 SHARED_ASSERT_SIZE(MaterialData, 64)
 
-/** Bits of FullMaterialData::inputs: the texture is there. In the order of scene::texture_inputs. */
+/** Bits of FullMaterialData::inputs for present textures, in the order of scene::texture_inputs. */
 #define INPUT_BASE_COLOR 1u
 #define INPUT_METALLIC_ROUGHNESS 2u
 #define INPUT_NORMAL 4u
@@ -88,7 +88,7 @@ SHARED_FUNCTION MaterialData metallic_roughness_material(vec3 base_color, float 
   return material;
 }
 
-/** A surface whose radiance is \a radiance, whatever the light. */
+/** A surface with this radiance under any light. */
 SHARED_FUNCTION MaterialData unlit_material(vec3 radiance)
 {
   MaterialData material = metallic_roughness_material(vec3(0.0f), 0.0f, 1.0f, vec3(0.0f), 0.0f);

@@ -115,7 +115,7 @@ SHARED_FUNCTION vec3 cube_face_project(int face, vec3 v)
 SHARED_CONSTANT float DEPTH_ROUNDING = 1.2e-7f;
 
 /** Additional normal offset, in texels: at an edge between facets, the plane of one facet ends within a texel. */
-SHARED_CONSTANT float LIFT_TEXELS = 0.1f;
+SHARED_CONSTANT float NORMAL_OFFSET_TEXELS = 0.1f;
 
 /**
  * Normal offset of a receiver, metres, so that rounding does not make its plane shadow itself. It does not depend on the
@@ -125,9 +125,9 @@ SHARED_CONSTANT float LIFT_TEXELS = 0.1f;
  * four texels around a lookup. \a rounding: error of depths at the receiver, metres. \a magnitude: the largest absolute
  * world coordinate in the computation, metres.
  */
-SHARED_FUNCTION float shadow_lift(float texel, float reach, float rounding, float magnitude)
+SHARED_FUNCTION float shadow_normal_offset(float texel, float reach, float rounding, float magnitude)
 {
-  return LIFT_TEXELS * reach * texel + rounding + 1e-6f * magnitude;
+  return NORMAL_OFFSET_TEXELS * reach * texel + rounding + 1e-6f * magnitude;
 }
 
 /**

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light of a lamp with an extent, over the whole of it: form factors of disks and polygons that are cut at the horizon, and
+// Light of a lamp with an extent, integrated over the lamp: form factors of disks and polygons that are clipped at the horizon, and
 // linearly transformed cosines (Heitz, Dupuy, Hill and Neubelt 2016).
 #ifndef EEVEE_SHAPE_SHARED_H
 #define EEVEE_SHAPE_SHARED_H
@@ -8,10 +8,10 @@
 
 SHARED_BEGIN
 
-/** Texels along each axis of each of the two parts of `ltc_table`: matrices on the left, albedos on the right. */
+/** Texels along each axis of the two halves of `ltc_table`: matrices on the left, albedos on the right. */
 #define LTC_TABLE_SIZE 32
 
-/** Corners of the polygon that stands for an ellipse, and of a rectangle. */
+/** Corners of the polygon that approximates an ellipse, and of a rectangle. */
 #define ELLIPSE_CORNERS 16
 #define RECTANGLE_CORNERS 4
 
@@ -22,12 +22,12 @@ SHARED_FUNCTION float angle_of_cosine(float x)
 }
 
 /**
- * Form factor of a round lamp that faces the receiver, as seen from a surface, divided by its form factor from a surface that
- * faces it: its irradiance as a cosine. It is \a cosine while all of the lamp is above the horizon.
+ * Form factor of a round lamp that faces the receiver, divided by that for a surface that faces the lamp: the irradiance as a
+ * cosine. It equals \a cosine while the whole lamp is above the horizon.
  *
- * \a sine_sq: square of the sine of half the angle that the lamp spans, in (0, 1]. \a cosine: of the angle between the normal
- * and the direction to the lamp's centre. The result is in [0, 1]. The closed form is that of a sphere cut by a plane
- * (Quilez 2014); for a lamp of a few degrees it cancels, and a flat horizon over a flat disk takes its place.
+ * \a sine_sq: square of the sine of half the angle that the lamp spans, in (0, 1]. \a cosine: of the angle between the normal and
+ * the direction to the lamp's centre. The result is in [0, 1]. The closed form is that of a sphere cut by a plane (Quilez 2014).
+ * For a lamp of a few degrees it cancels, so a flat disk with a straight horizon replaces it.
  */
 SHARED_FUNCTION float disk_cosine(float sine_sq, float cosine)
 {
@@ -51,29 +51,29 @@ SHARED_FUNCTION float disk_cosine(float sine_sq, float cosine)
   return clamp(INV_PI * sum, 0.0f, 1.0f);
 }
 
-/** One edge's part of the flux from a polygon (Lambert 1760). Vectors of any length. */
+/** Contribution of one edge to the flux from a polygon (Lambert 1760). Vectors of any length. */
 SHARED_FUNCTION vec3 edge_flux(vec3 a, vec3 b)
 {
   a = a / max(sqrt(dot(a, a)), 1e-18f);
   b = b / max(sqrt(dot(b, b)), 1e-18f);
   vec3 across = cross(a, b);
   float sine = sqrt(dot(across, across));
-  // The quotient goes to 1 as the edge shrinks; its numerator is then 0 as well.
+  // The quotient approaches 1 for a short edge; its numerator is then 0 as well.
   return across * (0.5f * INV_PI * (atan(sine, dot(a, b)) / max(sine, 1e-18f)));
 }
 
-/** Where an edge meets a plane through the receiver. The heights over it have different signs, or one is 0. */
+/** Intersection of an edge with a plane through the receiver. The heights have different signs, or one is 0. */
 SHARED_FUNCTION vec3 edge_at_plane(vec3 a, vec3 b, float height_a, float height_b)
 {
   float rise = height_b - height_a;
   return a - (b - a) * (height_a / (abs(rise) > 1e-30f ? rise : 1e-30f));
 }
 
-/** Edges of a polygon, cut at the plane z = 0. */
+/** A polygon, clipped at the plane z = 0. */
 struct CutPolygon {
   /** Sum of the edges' flux. */
   vec3 flux;
-  /** Where the edges come up through the plane, and where they go down; 0 where they do not. */
+  /** Points where the edges rise and sink through the plane; 0 if there are none. */
   vec3 risen;
   vec3 sunk;
 };
@@ -99,26 +99,26 @@ SHARED_FUNCTION CutPolygon with_edge(CutPolygon polygon, vec3 a, vec3 b)
 }
 
 /**
- * Flux from a flat lamp, cut at the horizon of a surface with the normal +z: its direction is the mean direction of the light,
- * and z is the lamp's form factor, irradiance over π radiance, in [0, 1]. The same from both sides of the lamp.
+ * Flux from a flat lamp, clipped at the horizon of a surface with the normal +z. Its direction is the mean direction of the light,
+ * and its z is the lamp's form factor, irradiance / (π · radiance), in [0, 1]. It is the same from both sides of the lamp.
  *
- * \a center: of the lamp, relative to the receiver. \a axis_x, \a axis_y: half axes, in any directions. \a corner_count:
- * RECTANGLE_CORNERS for the parallelogram center ± axis_x ± axis_y, more for a polygon of the same area as the ellipse with
- * these axes. \a up: normal of a second plane through the receiver, under which the lamp is cut off; vec3(0, 0, 1): none.
- * Finite for all finite arguments whose squares are finite; 0 for a lamp without area or seen edge-on.
+ * \a center: centre of the lamp relative to the receiver. \a axis_x, \a axis_y: half axes, in any directions. \a corner_count:
+ * RECTANGLE_CORNERS for the parallelogram center ± axis_x ± axis_y; more for a polygon with the area of the ellipse of these axes.
+ * \a up: normal of a second clipping plane through the receiver; vec3(0, 0, 1) for none. Finite for all finite arguments whose
+ * squares are finite; 0 for a lamp without area or seen edge-on.
  */
 SHARED_FUNCTION vec3 flat_flux(vec3 center, vec3 axis_x, vec3 axis_y, int corner_count, vec3 up)
 {
   bool is_rectangle = corner_count == RECTANGLE_CORNERS;
   float distance_sq = dot(center, center);
   if (max(dot(axis_x, axis_x), dot(axis_y, axis_y)) < 1e-5f * distance_sq) {
-    // Sums over the edges of a small polygon cancel; it is a point.
+    // Sums over the edges of a small polygon cancel, so it is treated as a point.
     vec3 to_lamp = center / sqrt(distance_sq);
     float facing = abs(dot(cross(axis_x / distance_sq, axis_y), to_lamp));
     bool is_up = to_lamp.z > 0.0f && dot(to_lamp, up) > 0.0f;
     return to_lamp * (is_up ? (is_rectangle ? 4.0f * INV_PI : 1.0f) * facing : 0.0f);
   }
-  // The circle around a regular polygon of the area π, and one corner's turn. A rectangle's corners are at (±1, ±1).
+  // First corner and rotation to the next corner: of a regular polygon of area π, or of the rectangle with corners (±1, ±1).
   float step_angle = 2.0f * PI / float(corner_count);
   vec2 turn = is_rectangle ? vec2(0.0f, 1.0f) : vec2(cos(step_angle), sin(step_angle));
   vec2 at = is_rectangle ? vec2(1.0f, 1.0f) : vec2(sqrt(step_angle / turn.y), 0.0f);
@@ -150,17 +150,15 @@ SHARED_FUNCTION vec3 flat_flux(vec3 center, vec3 axis_x, vec3 axis_y, int corner
     a = b;
     height_a = height_b;
   }
-  // A convex polygon crosses a plane twice or not at all; an edge in the plane closes it. Without a crossing its ends are 0.
+  // A convex polygon crosses a plane twice or not at all. An edge in the plane closes it; without a crossing its ends are 0.
   polygon = with_edge(polygon, sunk, risen);
   vec3 flux = polygon.flux + edge_flux(polygon.sunk, polygon.risen);
-  // The sign is that of the corners' order.
+  // The sign depends on the order of the corners.
   flux = flux.z < 0.0f ? vec3(0.0f) - flux : flux;
   return vec3(flux.x, flux.y, min(flux.z, 1.0f));
 }
 
-/**
- * Where `ltc_table` is read for a surface, in the left part. \a cos_v: of the view direction, in (0, 1]. \a alpha: in (0, 1].
- */
+/** Texture coordinates in the left half of `ltc_table`. \a cos_v: cosine of the view direction, in (0, 1]. \a alpha: in (0, 1]. */
 SHARED_FUNCTION vec2 ltc_texco(float alpha, float cos_v)
 {
   vec2 at = vec2(sqrt(alpha), sqrt(max(1.0f - cos_v, 0.0f)));
@@ -168,7 +166,10 @@ SHARED_FUNCTION vec2 ltc_texco(float alpha, float cos_v)
   return texel / vec2(float(2 * LTC_TABLE_SIZE), float(LTC_TABLE_SIZE));
 }
 
-/** A vector where the lobe is a cosine around +z. \a matrix: of the table. \a v: z along the normal, x towards the viewer. */
+/**
+ * Transforms \a v to the space in which the lobe is a cosine around +z. \a matrix: from the table. \a v: z along the normal, x
+ * towards the viewer.
+ */
 SHARED_FUNCTION vec3 ltc_transformed(vec4 matrix, vec3 v)
 {
   return vec3(matrix.x * v.x + matrix.y * v.z, v.y, matrix.z * v.x + matrix.w * v.z);
@@ -181,7 +182,7 @@ SHARED_FUNCTION vec3 ltc_restored(vec4 matrix, vec3 v)
   return vec3(matrix.w * v.x - matrix.y * v.z, determinant * v.y, matrix.x * v.z - matrix.z * v.x);
 }
 
-/** The surface's normal among vectors that ltc_transformed has made, up to a factor: the lobe ends there, the cosine does not. */
+/** The surface's normal in the space of ltc_transformed, up to a factor. The lobe ends at this horizon, the cosine does not. */
 SHARED_FUNCTION vec3 ltc_up(vec4 matrix)
 {
   return vec3(-matrix.z, 0.0f, matrix.x);
@@ -197,12 +198,12 @@ SHARED_FUNCTION float ltc_density(vec4 matrix, vec3 v)
 }
 
 /**
- * Largest ratio of the lobe to the transformed cosine that is made up for. The fit is of the lobe's peak; far from it the
- * transformed cosine falls much sooner.
+ * Limit of the correction by the ratio of the lobe to the transformed cosine. The cosine is fitted at the lobe's peak and falls
+ * much faster far from it.
  */
 SHARED_CONSTANT float LTC_RATIO_MAX = 32.0f;
 
-/** Directional albedo of the lobe. \a albedo: of the table: for Fresnel terms of 1, and weighted by Schlick's fifth power. */
+/** Directional albedo of the lobe. \a albedo: from the table, for Fresnel terms of 1, and weighted by Schlick's fifth power. */
 SHARED_FUNCTION vec3 specular_albedo(vec4 albedo, vec3 f0, float f90)
 {
   return f0 * (albedo.x - albedo.y) + vec3(f90 * albedo.y);

@@ -16,12 +16,12 @@ SHARED_BEGIN
  */
 #define VIEW_TRANSFORM_AGX 2
 /**
- * Khronos's PBR Neutral tone mapper ("Khronos PBR Neutral Tone Mapper: Specification", 2024): base colours are shown as they
- * are; only highlights are compressed.
+ * Khronos's PBR Neutral tone mapper ("Khronos PBR Neutral Tone Mapper: Specification", 2024): base colours are preserved; only
+ * highlights are compressed.
  */
 #define VIEW_TRANSFORM_PBR_NEUTRAL 3
 
-/** How a target stores colours. \see draw::Encoding */
+/** Colour encoding of a target. \see draw::Encoding */
 #define ENCODING_SCENE_LINEAR 0
 #define ENCODING_DISPLAY 1
 #define ENCODING_SRGB_FORMAT 2
@@ -38,7 +38,7 @@ SHARED_FUNCTION float agx_curve(float x)
   return max(((((((15.5f * x - 40.14f) * x + 31.96f) * x - 6.868f) * x + 0.4298f) * x + 0.1191f) * x - 0.00232f), 0.0f);
 }
 
-/** The stops of AgX around 1, as logarithms to the base 2. */
+/** The range of AgX relative to 1, as logarithms to the base 2. */
 SHARED_CONSTANT float AGX_LOG_MIN = -12.47393f;
 SHARED_CONSTANT float AGX_LOG_MAX = 4.026069f;
 
@@ -49,10 +49,10 @@ SHARED_FUNCTION float agx_channel(float linear)
   return agx_curve(clamp((stops - AGX_LOG_MIN) / (AGX_LOG_MAX - AGX_LOG_MIN), 0.0f, 1.0f));
 }
 
-/** Linear light that AgX shows for \a linear, both with Rec. 709 primaries; may leave [0, 1]. */
+/** AgX of \a linear: linear light with Rec. 709 primaries, as the input; may leave [0, 1]. */
 SHARED_FUNCTION vec3 agx(vec3 linear)
 {
-  // Rec. 2020 primaries, then towards white, so that saturated light keeps detail.
+  // Rec. 2020 primaries, then the inset towards white, so that saturated light keeps detail.
   vec3 wide = vec3(dot(linear, vec3(0.6274f, 0.3293f, 0.0433f)), dot(linear, vec3(0.0691f, 0.9195f, 0.0113f)),
                    dot(linear, vec3(0.0164f, 0.0880f, 0.8956f)));
   vec3 inset = vec3(dot(wide, vec3(0.856627153f, 0.0951212405f, 0.0482516061f)),
@@ -67,7 +67,7 @@ SHARED_FUNCTION vec3 agx(vec3 linear)
               dot(shown, vec3(-0.0182f, -0.1006f, 1.1187f)));
 }
 
-/** Linear light that PBR Neutral shows for \a linear. \pre no channel is negative */
+/** PBR Neutral of \a linear: linear light. \pre no channel is negative */
 SHARED_FUNCTION vec3 pbr_neutral(vec3 linear)
 {
   float start = 0.76f;
@@ -86,7 +86,7 @@ SHARED_FUNCTION vec3 pbr_neutral(vec3 linear)
   return color + (vec3(new_peak) - color) * white;
 }
 
-/** Linear light in [0, 1] that a display shows for \a linear. \a view_transform: VIEW_TRANSFORM_… */
+/** Displayed linear light in [0, 1]. \a view_transform: VIEW_TRANSFORM_… */
 SHARED_FUNCTION vec3 displayed_light(vec3 linear, int view_transform)
 {
   vec3 mapped = linear;

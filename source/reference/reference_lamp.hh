@@ -19,7 +19,7 @@ struct LampSample {
   double irradiance = 0.0;
 };
 
-/** Whether a lamp has more than one point: a radius, an angle or an area. */
+/** Whether a lamp has a size: a radius, an angle or an area. */
 [[nodiscard]] bool has_size(const scene::Lamp &lamp);
 
 /**

@@ -174,7 +174,7 @@ glm::dvec3 Renderer::radiance(const Ray &ray, int sample, std::uint64_t key) con
   const std::vector<scene::PlacedLamp> &lamps = tracer.lamps();
   for (std::size_t i = 0; i < lamps.size(); i++) {
     const glm::dvec2 u = even_point(sample, mixed(key + i));
-    // Occlusion is of the light from all around.
+    // Occlusion applies to ambient light only.
     const double occlusion = lamps[i].kind == scene::LampKind::Hemi ? surface.occlusion : 1.0;
     sum += occlusion * lit_by(lamps[i], receiver, side * surface.shading_normal_ws, view, bsdf, u);
   }

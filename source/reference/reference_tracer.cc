@@ -420,7 +420,7 @@ Surface Tracer::surface_at(const Hit &hit) const
   surface.specular = double(material.specular) * texel(material.specular_texture, false).a;
   surface.specular_color =
       glm::dvec3(material.specular_color) * glm::dvec3(texel(material.specular_color_texture, true));
-  // Without the texture that says where it emits, it does not.
+  // A surface whose emission texture is missing does not emit.
   surface.emissive = material.emissive_texture
                          ? glm::dvec3(material.emissive) *
                                glm::dvec3(point.texture(material.emissive_texture, true).value_or(glm::dvec4(0.0)))

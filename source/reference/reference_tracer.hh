@@ -19,7 +19,7 @@ namespace gnomon::reference {
 /** Points origin + t · direction with t in [t_min, t_max]. World space, metres. */
 struct Ray {
   glm::dvec3 origin_ws{0.0};
-  /** Of any length, which is the unit of t. A ray with a zero direction hits nothing. */
+  /** Of any length; t is in units of this length. A ray with a zero direction hits nothing. */
   glm::dvec3 direction_ws{0.0};
   double t_min = 0.0;
   double t_max = std::numeric_limits<double>::infinity();
@@ -50,7 +50,7 @@ struct Surface {
   glm::dvec3 smooth_normal_ws{0.0, 0.0, 1.0};
   /** Index in Scene::objects(). */
   std::uint32_t object = 0;
-  /** Of the scene; valid until it is edited. */
+  /** A material of the scene, valid until the scene is edited. */
   const scene::Material *material = nullptr;
   /** The material's factors times its textures, at their full size, and vertex colours. Linear. */
   glm::dvec3 base_color{1.0};
@@ -59,7 +59,7 @@ struct Surface {
   double specular = 1.0;
   glm::dvec3 specular_color{1.0};
   glm::dvec3 emissive{0.0};
-  /** The part of the light from all around that arrives. */
+  /** Fraction of ambient light that arrives. */
   double occlusion = 1.0;
 };
 

@@ -59,7 +59,7 @@ inline constexpr gnomon::verify::CompiledFunction<float> compiled_functions[] = 
   FUNCTION(cube_face, vec4(cube_face(vec3(a)), 0, 0, 0))
   FUNCTION(cube_face_project, vec4(cube_face_project(int(a.w), vec3(a)), 0))
   FUNCTION(cube_uv_scale, vec4(cube_uv_scale(a.x), 0, 0, 0))
-  FUNCTION(shadow_lift, vec4(shadow_lift(a.x, a.y, a.z, a.w), 0, 0, 0))
+  FUNCTION(shadow_normal_offset, vec4(shadow_normal_offset(a.x, a.y, a.z, a.w), 0, 0, 0))
   FUNCTION(plane_depths, plane_depths(a.x, vec2(a.y, a.z), vec2(b)))
   FUNCTION(texels_lit, texels_lit(a, b))
   FUNCTION(weighted_texels, vec4(weighted_texels(a, vec2(b), vec2(b.z, b.w)), 0, 0, 0))

@@ -145,7 +145,7 @@ void add_shadow_sweeps(std::vector<Sweep> &sweeps)
                     // Three border texels on each side; for small faces an eighth of the face.
                     [](const Exact &in) { return one(in.a.x < 24.0 ? 0.75 : (in.a.x - 6.0) / in.a.x); },
                     [](const Exact &) { return one(1.0); }, 0.5, 1, 2});
-  sweeps.push_back({"shadow_lift",
+  sweeps.push_back({"shadow_normal_offset",
                     many(5000,
                          [](Random &random) {
                            return In{.a = {random.log_uniform(1e-6, 1e3), random.uniform(1, 3),

@@ -292,14 +292,15 @@ void add_near_cases(std::vector<StabilityCase> &cases)
 
 void add_shadow_cases(std::vector<StabilityCase> &cases)
 {
-  cases.push_back(case_of({"shadow", "lift over texels", "shadow_lift", "normal offset of a receiver",
+  cases.push_back(case_of({"shadow", "normal offset over texels", "shadow_normal_offset", "normal offset of a receiver",
                            "edge of a texel, m", log_steps(1e-9, 1e6, 151), [](double texel) {
                              return Arguments<float>{.a = {float(texel), 2.0F, 1e-6F, 1.0F}};
                            }}));
-  cases.push_back(case_of({"shadow", "lift over world offsets", "shadow_lift", "normal offset of a receiver",
-                           "largest coordinate, m", log_steps(1e-3, 1e8, 111), [](double offset) {
-                             return Arguments<float>{.a = {1e-3F, 1.0F, 0.0F, float(offset)}};
-                           }}));
+  cases.push_back(
+      case_of({"shadow", "normal offset over world offsets", "shadow_normal_offset", "normal offset of a receiver",
+               "largest coordinate, m", log_steps(1e-3, 1e8, 111), [](double offset) {
+                 return Arguments<float>{.a = {1e-3F, 1.0F, 0.0F, float(offset)}};
+               }}));
   cases.push_back(case_of({"shadow", "slope of a plane seen edge-on", "slope_quotient",
                            "change of depth per texel, 0 for a plane without area", "denominator",
                            zero_and_log_steps(1e-38, 1e10, 145), [](double denominator) {

@@ -6,12 +6,12 @@
 namespace gnomon::shared {
 namespace {
 
-TEST(ShadowLift, GrowsWithTexelKernelAndRounding)
+TEST(ShadowNormalOffset, GrowsWithTexelKernelAndRounding)
 {
-  EXPECT_GT(shadow_lift(0.1F, 1.0F, 0.0F, 0.0F), 0.0F);
-  EXPECT_GT(shadow_lift(0.1F, 1.0F, 0.1F, 0.0F), shadow_lift(0.1F, 1.0F, 0.0F, 0.0F));
-  EXPECT_GT(shadow_lift(0.1F, 3.0F, 0.0F, 0.0F), shadow_lift(0.1F, 1.0F, 0.0F, 0.0F));
-  EXPECT_LT(shadow_lift(0.1F, 3.0F, 0.0F, 0.0F), 0.1F) << "less than a texel: no gap at contact";
+  EXPECT_GT(shadow_normal_offset(0.1F, 1.0F, 0.0F, 0.0F), 0.0F);
+  EXPECT_GT(shadow_normal_offset(0.1F, 1.0F, 0.1F, 0.0F), shadow_normal_offset(0.1F, 1.0F, 0.0F, 0.0F));
+  EXPECT_GT(shadow_normal_offset(0.1F, 3.0F, 0.0F, 0.0F), shadow_normal_offset(0.1F, 1.0F, 0.0F, 0.0F));
+  EXPECT_LT(shadow_normal_offset(0.1F, 3.0F, 0.0F, 0.0F), 0.1F) << "less than a texel: no gap at contact";
 }
 
 TEST(TexelsLit, AreThoseThatAreNotNearer)

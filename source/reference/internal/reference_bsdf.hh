@@ -16,7 +16,7 @@ struct Bsdf {
   /** Reflectance at normal incidence (f0) and at grazing incidence (f90). */
   glm::dvec3 f0{0.0};
   double f90 = 0.0;
-  /** Of a normal texture: the normal without it, on the visible side. */
+  /** If there is a normal texture: the normal without it, on the visible side. */
   std::optional<glm::dvec3> smooth_normal{};
 };
 

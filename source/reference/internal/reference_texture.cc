@@ -114,7 +114,7 @@ glm::dvec3 MeshPoint::normal_ws(const glm::dmat3 &world_from_object) const
   if (!texel) {
     return normal;
   }
-  // glTF 2.0, 3.9.3; the frame as MikkTSpace defines it, without normalising what was interpolated.
+  // glTF 2.0, 3.9.3. MikkTSpace defines the frame by the interpolated vectors without normalisation.
   const glm::dvec4 tangent = interpolated(mesh.tangents);
   const glm::dvec3 along_u = with_length_of(world_from_object * glm::dvec3(tangent), glm::dvec3(tangent));
   const glm::dvec3 up = (tangent.w < 0.0 ? -mirrored : mirrored) * glm::cross(normal, along_u);

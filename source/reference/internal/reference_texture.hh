@@ -38,7 +38,7 @@ struct MeshPoint {
     return sum;
   }
 
-  /** The texture of a slot at the point; nothing where the texture, its image or the mesh's uvs are missing. */
+  /** The texture of a slot at the point; empty if the texture, its image or the mesh's uvs are missing. */
   [[nodiscard]] std::optional<glm::dvec4> texture(const scene::TextureSlot &slot, bool is_color) const;
   /** Base colour and alpha: the material's factors times the texture and the vertex colour. */
   [[nodiscard]] glm::dvec4 base_color() const;
