@@ -14,7 +14,7 @@ using test::Finished;
 
 class BenchTest : public test::ProgramTest {};
 
-TEST_F(BenchTest, ShadowsMeasuresAllWaysOfDrawingLayers)
+TEST_F(BenchTest, ShadowsMeasuresAllCubePasses)
 {
   const Finished finished = run("bench shadows --backend null --rounds 3 --json bench.json");
   ASSERT_EQ(finished.status, 0) << finished.err;
@@ -54,7 +54,7 @@ TEST_F(BenchTest, DrawsWritesItsFigures)
   }
 }
 
-TEST_F(BenchTest, LeftOutPutsTenScenesBesideTheFullOne)
+TEST_F(BenchTest, LeftOutComparesTenScenesWithTheFullOne)
 {
   const Finished finished = run("bench left-out --backend null --rounds 1 --json bench.json");
   ASSERT_EQ(finished.status, 0) << finished.err;

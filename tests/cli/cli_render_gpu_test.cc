@@ -40,7 +40,7 @@ TEST_F(CliRenderTest, WritesAPictureWithItsMetadata)
   EXPECT_NE(finished.out.find((folder / "out.exr").string()), std::string::npos) << "where it is: " << finished.out;
 }
 
-TEST_F(CliRenderTest, ThePngIsTheRightWayUp)
+TEST_F(CliRenderTest, PngIsUpright)
 {
   ASSERT_EQ(run("render " + example("plaza") + " -o out.png --size 64x36").status, 0);
   const auto input = OIIO::ImageInput::open((folder / "out.png").string());
@@ -94,7 +94,7 @@ TEST_F(CliRenderTest, EqualSeedsGiveEqualPictures)
   EXPECT_EQ(pixels("a.exr"), pixels("b.exr"));
 }
 
-TEST_F(CliRenderTest, TheBrightestLampThatIsLetInIsFinite)
+TEST_F(CliRenderTest, BrightestAcceptedLampGivesAFinitePicture)
 {
   write("bright.gltf", R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual"],
     "extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","intensity":1e12}]}},
@@ -110,7 +110,7 @@ TEST_F(CliRenderTest, TheBrightestLampThatIsLetInIsFinite)
   EXPECT_EQ(nlohmann::json::parse(read("run.json"))["non_finite"], 0);
 }
 
-TEST_F(CliRenderTest, WithoutAnyDriverTheAttemptsAreNamed)
+TEST_F(CliRenderTest, WithoutADriverTheErrorNamesEachAttempt)
 {
   const std::string hide =
       "env -u DISPLAY -u WAYLAND_DISPLAY __EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent '" GNOMON_PROGRAM "' ";

@@ -34,7 +34,7 @@ class CliReportTest : public test::ProgramTest {
   }
 };
 
-TEST_F(CliReportTest, WritesWhatWasMeasured)
+TEST_F(CliReportTest, WritesTheMeasurements)
 {
   const Finished finished = report("--rounds 2");
   ASSERT_EQ(finished.status, 0) << finished.err;
@@ -77,7 +77,7 @@ TEST_F(CliReportTest, WritesWhatWasMeasured)
       << read("stdout.txt");
 }
 
-TEST_F(CliReportTest, GoesOnWithWhatWasInterrupted)
+TEST_F(CliReportTest, ContinuesAnInterruptedRun)
 {
   ASSERT_EQ(report("--rounds 2").status, 0);
   json before = report_json();
@@ -110,7 +110,7 @@ TEST_F(CliReportTest, GoesOnWithWhatWasInterrupted)
   EXPECT_FALSE(read("out/index.html").empty());
 }
 
-TEST_F(CliReportTest, AnotherRunIsBegunAnew)
+TEST_F(CliReportTest, RunWithOtherSettingsStartsAgain)
 {
   ASSERT_EQ(report("--rounds 1").status, 0);
   const Finished finished = report("--rounds 2");
@@ -121,7 +121,7 @@ TEST_F(CliReportTest, AnotherRunIsBegunAnew)
   EXPECT_NE(report("--rounds 1").err.find("out/report.json: cannot be continued"), std::string::npos);
 }
 
-TEST_F(CliReportTest, AFileOfNothingIsMeasuredAndWarnedOf)
+TEST_F(CliReportTest, EmptySceneIsMeasuredWithAWarning)
 {
   write("empty.gltf", R"({"asset": {"version": "2.0"}})");
   const Finished finished = run("report empty.gltf -o out --size 8x8 --rounds 1 --technique 'hard 512'");
@@ -130,7 +130,7 @@ TEST_F(CliReportTest, AFileOfNothingIsMeasuredAndWarnedOf)
   EXPECT_FALSE(report_json().at("scenes").at(0).at("warnings").empty());
 }
 
-TEST_F(CliReportTest, ADeletedPictureIsMadeAgain)
+TEST_F(CliReportTest, DeletedPictureIsRenderedAgain)
 {
   ASSERT_EQ(report("--rounds 1").status, 0);
   ASSERT_TRUE(std::filesystem::remove(folder / "out/spots-reference.exr"));
@@ -179,7 +179,7 @@ TEST_F(CliReportTest, RenderChoosesFromAReport)
   EXPECT_NE(finished.err.find("nowhere/report.json"), std::string::npos) << finished.err;
 }
 
-TEST_F(CliReportTest, RenderChoosesByAPilot)
+TEST_F(CliReportTest, RenderChoosesFromAPilot)
 {
   Finished finished = run("render " + example("spots") + " -o a.exr --size 48x27 --json run.json --max-error 0.05");
   ASSERT_EQ(finished.status, 0) << finished.err;

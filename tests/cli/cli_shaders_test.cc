@@ -106,7 +106,7 @@ TEST_F(ShadersTest, AProgramOfTheEngineIsCleanInAllVariants)
   EXPECT_EQ(finished.err, "") << "no progress bar in a pipe";
 }
 
-TEST_F(ShadersTest, NeedNoDisplayDriverOrHome)
+TEST_F(ShadersTest, RunWithoutDisplayDriverAndHome)
 {
   copy_tree();
   const std::string program =
@@ -267,7 +267,7 @@ TEST_F(ShadersTest, AVulkanOnlyMistakePassesForOpenGl)
   EXPECT_EQ(opengl.status, 0) << opengl.out;
 }
 
-TEST_F(ShadersTest, LayoutStandsSideBySideAndAgrees)
+TEST_F(ShadersTest, LayoutOfBlocksAgreesInBothColumns)
 {
   const Finished finished = run("shaders layout");
   EXPECT_EQ(finished.status, 0) << finished.out << finished.err;
@@ -296,7 +296,7 @@ TEST_F(ShadersTest, LayoutNamesStructAndFieldThatDiffer)
       << finished.out;
 }
 
-TEST_F(ShadersTest, ReflectTellsBlocksTexturesAndStageVariables)
+TEST_F(ShadersTest, ReflectPrintsBlocksTexturesAndStageVariables)
 {
   const Finished finished = run("shaders reflect eevee_lit --variant 'USE_SHADOW_MAP USE_LIGHT' --format json");
   ASSERT_EQ(finished.status, 0) << finished.err;
@@ -369,7 +369,7 @@ TEST_F(ShadersTest, FilesOfOneNameAreLinked)
       << finished.out;
 }
 
-TEST_F(ShadersTest, AStageThatTheNameDoesNotTellIsAskedFor)
+TEST_F(ShadersTest, UnknownStageOfAFileIsWrongUsage)
 {
   write_file("user/plain.glsl", VERSION + "void main() {}\n");
   const Finished asked = run("shaders check user/plain.glsl");
@@ -429,7 +429,7 @@ TEST_F(ShadersTest, SarifHoldsRulesAndThePlace)
   EXPECT_TRUE(std::ranges::any_of(rules, [&](const nlohmann::json &rule) { return rule["id"] == result["ruleId"]; }));
 }
 
-TEST_F(ShadersTest, WrongUsageEndsWithTwoAndWhatIsMissingWithOne)
+TEST_F(ShadersTest, WrongUsageHasStatusTwoAndMissingFilesStatusOne)
 {
   for (const std::string arguments :
        {"shaders", "shaders paint", "shaders check --format xml", "shaders check --target metal", "shaders check -D A",

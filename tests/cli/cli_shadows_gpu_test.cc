@@ -63,7 +63,7 @@ class CliShadowsTest : public test::ProgramTest {
   bool has_vertex_layer = false;
 };
 
-TEST_F(CliShadowsTest, TheThreeWaysGiveTheSamePicture)
+TEST_F(CliShadowsTest, ThreeCubePassesGiveTheSamePicture)
 {
   if (!has_vertex_layer) {
     GTEST_SKIP() << "the device has no GL_ARB_shader_viewport_layer_array";
@@ -121,7 +121,7 @@ TEST_F(CliShadowsTest, AStillSceneUpdatesNoLampInTheSecondFrame)
 }
 
 // hazards.md: more lamps than slots, shadow lost without a word; and reading past the array.
-TEST_F(CliShadowsTest, AThousandLampsAreDrawnAsFarAsTheyFitAndTheOthersNamed)
+TEST_F(CliShadowsTest, LampsAboveTheLimitAreNamedAndTheOthersAreDrawn)
 {
   write("lamps.gltf", lamps_gltf(1000, "hard"));
   const std::string render = "render lamps.gltf -o out.exr --size 24x24 --samples 1 --shadow-memory 8 --json run.json";
@@ -154,7 +154,7 @@ TEST_F(CliShadowsTest, FortyThreeLampsKeepTheirShadow)
   EXPECT_NE(pixels("out.exr"), pixels("none.exr"));
 }
 
-TEST_F(CliShadowsTest, AMemoryBudgetLowersSizesAndSaysSo)
+TEST_F(CliShadowsTest, MemoryBudgetReducesSizesWithAMessage)
 {
   write("lamps.gltf", lamps_gltf(5, "pcf"));
   const std::string render =

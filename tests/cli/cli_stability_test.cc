@@ -41,7 +41,7 @@ TEST_F(CliStabilityTest, WritesARowACaseAndTheSamplesOfEach)
       << finished.out;
 }
 
-TEST_F(CliStabilityTest, AGroupThatIsNoneIsWrongUsageAndNamesThoseThereAre)
+TEST_F(CliStabilityTest, UnknownGroupIsWrongUsageAndListsTheGroups)
 {
   const test::Finished finished = run("stability --group esms -o out");
   EXPECT_EQ(finished.status, 2);
@@ -49,7 +49,7 @@ TEST_F(CliStabilityTest, AGroupThatIsNoneIsWrongUsageAndNamesThoseThereAre)
   EXPECT_EQ(file_count(), 0U);
 }
 
-TEST_F(CliStabilityTest, AFolderThatCannotBeIsNamed)
+TEST_F(CliStabilityTest, InvalidFolderIsNamed)
 {
   write("taken", "a file");
   const test::Finished finished = run("stability --group area -o taken");

@@ -18,14 +18,14 @@ using test::Finished;
 
 class CliTest : public test::ProgramTest {};
 
-TEST_F(CliTest, HelpAndVersionAreDone)
+TEST_F(CliTest, HelpAndVersionSucceed)
 {
   EXPECT_EQ(run("--help").status, 0);
   EXPECT_EQ(run("render --help").status, 0);
   EXPECT_EQ(run("--version").out, "gnomon 0.1.0\n");
 }
 
-TEST_F(CliTest, WrongUsageEndsWithTwoAndSaysWhy)
+TEST_F(CliTest, WrongUsageHasStatusTwoAndAReason)
 {
   for (const std::string arguments : {"",
                                       "paint",
@@ -53,7 +53,7 @@ TEST_F(CliTest, WrongUsageEndsWithTwoAndSaysWhy)
   }
 }
 
-TEST_F(CliTest, WhatIsNotBuiltEndsWithTwoAndSaysSo)
+TEST_F(CliTest, UnimplementedSubcommandIsWrongUsage)
 {
   for (const std::string arguments :
        {"view a.glb", "render a.glb -o a.png --frames 1-3", "render a.glb -o a.png --aov depth"}) {
@@ -63,7 +63,7 @@ TEST_F(CliTest, WhatIsNotBuiltEndsWithTwoAndSaysSo)
   }
 }
 
-TEST_F(CliTest, AMissingSceneEndsWithOneAndIsNamed)
+TEST_F(CliTest, MissingSceneIsNamedAndFails)
 {
   for (const std::string command : {"info nowhere.glb", "render nowhere.glb -o out.png --backend null"}) {
     const Finished finished = run(command);
@@ -80,14 +80,14 @@ TEST_F(CliTest, AMissingFolderIsFoundBeforeTheWork)
   EXPECT_NE(finished.err.find("nowhere/out.png"), std::string::npos) << finished.err;
 }
 
-TEST_F(CliTest, AnUnknownCameraIsAnErrorThatNamesThoseThereAre)
+TEST_F(CliTest, UnknownCameraIsAnErrorThatListsTheCameras)
 {
   const Finished finished = run("render " + example("plaza") + " --backend null --camera side");
   EXPECT_EQ(finished.status, 1);
   EXPECT_NE(finished.err.find("no camera 'side'; it has: camera"), std::string::npos) << finished.err;
 }
 
-TEST_F(CliTest, ADebugViewThatIsNoneIsWrongUsage)
+TEST_F(CliTest, InvalidDebugViewIsWrongUsage)
 {
   for (const std::string view : {"depth", "shadow", "shadow:", "shadow::1", "shadow:SUN:", "shadow:SUN:first",
                                  "shadow:SUN:-1", "cascades:SUN"}) {
@@ -97,7 +97,7 @@ TEST_F(CliTest, ADebugViewThatIsNoneIsWrongUsage)
   }
 }
 
-TEST_F(CliTest, ADebugViewOfWhatIsNotThereNamesWhatIs)
+TEST_F(CliTest, UnknownDebugViewNamesTheExistingOnes)
 {
   const auto error = [&](const std::string &arguments) {
     const Finished finished = run("render " + arguments + " --backend null --size 64x36 --shadow-size 64");
@@ -122,7 +122,7 @@ TEST_F(CliTest, ADebugViewOfWhatIsNotThereNamesWhatIs)
   }
 }
 
-TEST_F(CliTest, InfoTellsWhatAnExampleHolds)
+TEST_F(CliTest, InfoPrintsTheContentsOfAScene)
 {
   const Finished finished = run("info " + example("plaza"));
   EXPECT_EQ(finished.status, 0) << finished.err;
@@ -132,7 +132,7 @@ TEST_F(CliTest, InfoTellsWhatAnExampleHolds)
   EXPECT_NE(finished.out.find("lamp 'SUN', sun, 2 W/m²"), std::string::npos) << finished.out;
 }
 
-TEST_F(CliTest, TheNullBackendWritesNoPictureAndSaysSo)
+TEST_F(CliTest, NullBackendReportsThatItWritesNoPicture)
 {
   const Finished finished = run("render " + example("plaza") + " -o out.png --backend null --size 32x32 --samples 2");
   EXPECT_EQ(finished.status, 0) << finished.err;
@@ -140,7 +140,7 @@ TEST_F(CliTest, TheNullBackendWritesNoPictureAndSaysSo)
   EXPECT_EQ(file_count(), 0U);
 }
 
-TEST_F(CliTest, JsonHoldsTimesCountersAndWhatWasMade)
+TEST_F(CliTest, JsonHasTimesCountersAndTheFrameTree)
 {
   const Finished finished =
       run("render " + example("room") + " --backend null --size 64x32 --samples 2 --repeat 3 --json run.json");
@@ -199,7 +199,7 @@ TEST_F(CliTest, ALimitIsNamedAndFailsOnlyWhenStrict)
   EXPECT_EQ(strict.status, 4) << strict.err;
 }
 
-TEST_F(CliTest, ExplainPrintsATreeOfWhatIsThereAndWhatIsNotAndWhy)
+TEST_F(CliTest, ExplainPrintsTheFrameTreeWithReasons)
 {
   const Finished finished =
       run("render " + example("plaza") + " --backend null --size 8x8 --shadow-size 64 --explain --json run.json");
@@ -236,7 +236,7 @@ TEST_F(CliTest, UnitsAreReadable)
   EXPECT_EQ(cli::seconds_text(2.5), "2.50 s");
 }
 
-TEST_F(CliTest, AFileIsThereWholeOrNotAtAll)
+TEST_F(CliTest, FilesAreWrittenAtomically)
 {
   const std::filesystem::path path = folder / "file.txt";
   EXPECT_THROW(cli::write_atomically(path,

@@ -198,7 +198,7 @@ TEST_F(ShadingGroupTest, UnknownNamesBindNothing)
   EXPECT_EQ(recorded(), "  shader everything\n  state write_color\n  push_constants 32 bytes\n");
 }
 
-TEST_F(ShadingGroupTest, BoundAgainTheLaterHolds)
+TEST_F(ShadingGroupTest, LaterBindingOfANameReplacesTheEarlier)
 {
   const gpu::BufferRange range{block.id(), 256, 16};
   const TextureBinding binding{mask.id(), linear.id()};
@@ -219,7 +219,7 @@ TEST_F(ShadingGroupTest, BoundAgainTheLaterHolds)
             "    texture picture -> 16 = picture\n");
 }
 
-TEST_F(ShadingGroupTest, ConstantGivenAgainTheLaterHolds)
+TEST_F(ShadingGroupTest, LaterConstantReplacesTheEarlier)
 {
   const int referenced = 7;
   const auto face = [&] {

@@ -109,7 +109,7 @@ TEST(ProjectionDeathTest, DegenerateVolumeIsAnAssertionWithItsValues)
   EXPECT_DEATH(static_cast<void>(orthographic(1, -1, 1, 2)), "half size 1x-1");
 }
 
-TEST(View, KnowsItsProjection)
+TEST(View, HasItsProjection)
 {
   EXPECT_TRUE(View(glm::mat4(1), perspective(1, 1, 0.1F, 10)).is_perspective());
   EXPECT_FALSE(View(glm::mat4(1), orthographic(1, 1, 0.1F, 10)).is_perspective());

@@ -172,7 +172,7 @@ TEST(GltfMeshopt, VerticesAreThoseOfThePlainForm)
   }
 }
 
-TEST(GltfMeshopt, FiltersAreUndone)
+TEST(GltfMeshopt, FiltersAreDecoded)
 {
   const Sheet sheet;
   GltfBuilder builder = plain_sheet(sheet);
@@ -323,7 +323,7 @@ TEST(GltfDraco, DamagedDataIsNamedAndBounded)
   }
 }
 
-TEST(GltfDraco, FewBytesCannotAskForABillionVertices)
+TEST(GltfDraco, VertexCountIsLimitedByTheDataSize)
 {
   const Sheet sheet;
   const std::vector<char> whole = draco_bytes(sheet, draco::MESH_SEQUENTIAL_ENCODING);
@@ -393,7 +393,7 @@ TEST(GltfQuantized, VerticesAreWithinTheStepOfThePlainForm)
   EXPECT_NEAR(area(mesh), area(nth(import(plain_sheet(sheet)).meshes(), 0)), 1e-3);
 }
 
-TEST(GltfInstances, StandWhereNodesWouldStand)
+TEST(GltfInstances, HaveTheMatricesOfEquivalentNodes)
 {
   GltfBuilder builder = triangle_scene();
   const int translation = builder.accessor(std::vector<float>{1, 2, 3, -4, 5, -6}, Float32, "VEC3");

@@ -370,7 +370,7 @@ Scene full_scene()
   return scene;
 }
 
-TEST(GltfExport, AllThatASceneHoldsReadsBack)
+TEST(GltfExport, AllContentsOfASceneReadBack)
 {
   expect_round_trip(full_scene());
 }
@@ -402,7 +402,7 @@ TEST(GltfExport, RemovedAndUnusedThingsAreNotWritten)
   EXPECT_EQ(Description::of(gltf::import_gltf(folder.path() / "copy.glb")), expected);
 }
 
-TEST(GltfExport, WhatTheImporterAddedIsNotWritten)
+TEST(GltfExport, AdditionsOfTheImporterAreNotWritten)
 {
   const Scene scene = import(triangle_scene());
   ASSERT_TRUE(scene.is_camera_default && scene.is_lamp_default);

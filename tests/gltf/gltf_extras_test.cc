@@ -60,7 +60,7 @@ TEST(GltfColor, NormalizedIntegersAreFractions)
             glm::vec4(1, 0.2F, 0, 1));
 }
 
-TEST(GltfColor, WhatIsNotGltfIsNamed)
+TEST(GltfColor, InvalidTypesAreNamed)
 {
   const std::vector<std::uint8_t> bytes(12, 255);
   const Scene plain = import(colored_triangle(bytes, Uint8, "VEC4"));
@@ -164,12 +164,12 @@ TEST(GltfImport, OnePrimitiveOfTwoMeshesIsOneMesh)
 
 // ---- JSON ----
 
-TEST(GltfDoor, ByteOrderMarkIsSkipped)
+TEST(GltfFile, ByteOrderMarkIsSkipped)
 {
   EXPECT_EQ(import_error("\xEF\xBB\xBF" + triangle_scene().gltf()), "");
 }
 
-TEST(GltfDoor, WholeNumbersMayBeOfAnyLength)
+TEST(GltfFile, WholeNumbersMayBeOfAnyLength)
 {
   std::string text = triangle_scene().gltf();
   text.insert(1, R"("extras":[123456789012345678901234567890,-99999999999999999999,"\\\"99999999999999999999"],)");
@@ -178,7 +178,7 @@ TEST(GltfDoor, WholeNumbersMayBeOfAnyLength)
              "nodes[0].mesh: is ");
 }
 
-TEST(GltfDoor, OfPropertiesOfOneNameTheLastCounts)
+TEST(GltfFile, OfPropertiesOfOneNameTheLastCounts)
 {
   std::string text = triangle_scene().gltf();
   text.insert(1, "\"nodes\":7,\"asset\":{\"version\":\"1.0\"},");

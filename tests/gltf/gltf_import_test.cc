@@ -86,7 +86,7 @@ TEST(GltfImport, KeepsThePathAsGiven)
   EXPECT_EQ(gltf::import_gltf(path).path, path.string());
 }
 
-TEST(GltfImport, NeverLooksAtImagesThatNothingWears)
+TEST(GltfImport, UnusedImagesAreNotRead)
 {
   GltfBuilder builder = triangle_scene();
   builder.document["images"] = {
@@ -161,7 +161,7 @@ TEST(GltfNodes, EachPrimitiveIsAnObject)
   EXPECT_EQ(nth(scene.meshes(), 1).name, "pair[1]");
 }
 
-TEST(GltfNodes, DefaultSceneDecides)
+TEST(GltfNodes, OnlyTheDefaultSceneIsImported)
 {
   GltfBuilder builder = triangle_scene();
   builder.append("nodes", {{"name", "second"}, {"mesh", 0}});
@@ -174,7 +174,7 @@ TEST(GltfNodes, DefaultSceneDecides)
   EXPECT_EQ(import(builder).objects().size(), 2U);
 }
 
-TEST(GltfNodes, HundredThousandDeepIsNoTrouble)
+TEST(GltfNodes, DepthOfAHundredThousandIsSupported)
 {
   GltfBuilder builder = triangle_scene();
   constexpr int depth = 100000;
@@ -342,7 +342,7 @@ TEST(GltfImport, MissingNormalsAreFlat)
   }
 }
 
-TEST(GltfImport, BadNormalsAreMended)
+TEST(GltfImport, InvalidNormalsAreReplaced)
 {
   GltfBuilder builder;
   const float nan = std::nanf("");
@@ -376,7 +376,7 @@ TEST(GltfImport, TinyTrianglesHaveNormals)
   expect_near(mesh.normals.at(0), {0, 0, 1});
 }
 
-TEST(GltfImport, UnreadableNormalsAreMadeInstead)
+TEST(GltfImport, UnreadableNormalsAreReplaced)
 {
   GltfBuilder builder;
   const int positions = builder.positions(triangle_positions);
@@ -541,7 +541,7 @@ TEST(GltfImport, APlaneQuadKeepsItsVertices)
   EXPECT_EQ(mesh.normals[0], glm::vec3(0, 0, 1));
 }
 
-TEST(GltfImport, NormalsThatWereMadeOnPurposeStay)
+TEST(GltfImport, IntentionalNormalsAreKept)
 {
   // A blade of grass with the normal of the ground below it.
   const Mesh mesh = import_quad(0.3F, {0, 1, 0});
@@ -632,7 +632,7 @@ TEST(GltfMaterial, EmissionStaysFinite)
   EXPECT_WARNING(scene, "emissiveStrength is 1e+300");
 }
 
-TEST(GltfMaterial, LargeWholeNumbersAreNotCut)
+TEST(GltfMaterial, LargeWholeNumbersAreNotTruncated)
 {
   // Its lower 32 bits are 1.
   const auto [material, scene] = import_material(
@@ -803,7 +803,7 @@ TEST(GltfLamp, ShadowExtrasAreAbsentOrRead)
   EXPECT_EQ(import_lamp({{"type", "directional"}}, {{"gnomon_shadow", "pcf"}}).shadow.kind, scene::ShadowKind::Pcf);
 }
 
-TEST(GltfLamp, HemiIsADirectionalLightThatSaysSo)
+TEST(GltfLamp, HemiIsADirectionalLightWithAnExtra)
 {
   const PlacedLamp lamp = import_lamp({{"type", "directional"}, {"intensity", 683}}, {{"gnomon_lamp", "hemi"}});
   EXPECT_EQ(lamp.kind, LampKind::Hemi);
@@ -819,7 +819,7 @@ PlacedLamp import_area(const json &extras)
   return scene.placed_lamps().at(0);
 }
 
-TEST(GltfLamp, AreaIsMadeOfExtrasAlone)
+TEST(GltfLamp, AreaLampsAreReadFromExtras)
 {
   const PlacedLamp lamp = import_area({{"gnomon_lamp", "area"},
                                        {"gnomon_shape", "rectangle"},
@@ -850,7 +850,7 @@ TEST(GltfLamp, AreaShapes)
   EXPECT_EQ(area("ellipse").area_size_y, 3.0F);
 }
 
-TEST(GltfLamp, IdleExtrasAreNamed)
+TEST(GltfLamp, ExtrasWithoutEffectAreNamed)
 {
   GltfBuilder builder = triangle_scene();
   builder.light({{"type", "directional"}}, {{"gnomon_raduis", 1}, {"gnomon_radius", 1}});
@@ -1094,7 +1094,7 @@ TEST(GltfCamera, DefaultFramesTheVeryLargeAndSmall)
   }
 }
 
-TEST(GltfLamp, DefaultSunShinesFromOverTheShoulder)
+TEST(GltfLamp, DefaultSunShinesFromAboveAndLeftOfTheCamera)
 {
   const Scene scene = import(triangle_scene());
   EXPECT_TRUE(scene.is_lamp_default);
@@ -1119,7 +1119,7 @@ TEST(GltfImport, EmptySceneStillHasACameraAndALamp)
   EXPECT_FALSE(import(builder).is_camera_default);
 }
 
-TEST(GltfImport, LikeWarningsAreOneWithACount)
+TEST(GltfImport, EqualWarningsAreCounted)
 {
   GltfBuilder builder = triangle_scene();
   const json lines = {{"attributes", {{"POSITION", 0}}}, {"mode", 1}};

@@ -12,7 +12,7 @@ using scene::Scene;
 
 // ---- Files ----
 
-TEST(GltfDoor, MissingFileIsNamed)
+TEST(GltfFile, MissingFileIsNamed)
 {
   const TemporaryFolder folder;
   try {
@@ -24,13 +24,13 @@ TEST(GltfDoor, MissingFileIsNamed)
   }
 }
 
-TEST(GltfDoor, FolderIsNoFile)
+TEST(GltfFile, FolderIsNoFile)
 {
   const TemporaryFolder folder;
   EXPECT_THROW((void)gltf::import_gltf(folder.path()), gltf::ImportError);
 }
 
-TEST(GltfDoor, NotJson)
+TEST(GltfFile, NotJson)
 {
   EXPECT_HAS(import_error(""), "JSON: ");
   EXPECT_HAS(import_error("hello"), "JSON: parse error");
@@ -40,7 +40,7 @@ TEST(GltfDoor, NotJson)
   EXPECT_HAS(import_error(std::string(1000000, '[')), "JSON: ");
 }
 
-TEST(GltfDoor, DeepJsonInAForeignPlaceIsNoTrouble)
+TEST(GltfFile, DeepJsonInAForeignPlaceIsNoTrouble)
 {
   const int depth = 1000000;
   const std::string deep = std::string(depth, '[') + std::string(depth, ']');
@@ -49,14 +49,14 @@ TEST(GltfDoor, DeepJsonInAForeignPlaceIsNoTrouble)
              "nodes[0].mesh: is an array");
 }
 
-TEST(GltfDoor, OnlyVersionTwo)
+TEST(GltfFile, OnlyVersionTwo)
 {
   EXPECT_HAS(import_error("{}"), "asset: is missing");
   EXPECT_HAS(import_error("{\"asset\": {}}"), "asset.version: is ''");
   EXPECT_HAS(import_error("{\"asset\": {\"version\": \"1.0\"}}"), "asset.version: is '1.0', and only glTF 2.0 is read");
 }
 
-TEST(GltfDoor, GlbHeaderIsChecked)
+TEST(GltfFile, GlbHeaderIsChecked)
 {
   const std::string glb = triangle_scene().glb();
   const auto changed = [&](std::size_t at, char value) {
@@ -71,7 +71,7 @@ TEST(GltfDoor, GlbHeaderIsChecked)
   EXPECT_HAS(changed(16, 'X'), "GLB: has no JSON chunk");
 }
 
-TEST(GltfDoor, BuffersAreChecked)
+TEST(GltfFile, BuffersAreChecked)
 {
   const auto error_with = [](const json &buffer) {
     GltfBuilder builder = triangle_scene();
@@ -106,7 +106,7 @@ std::string error_after(const std::function<void(json &)> &change)
   return import_error(builder);
 }
 
-TEST(GltfDoor, EveryIndexIsChecked)
+TEST(GltfFile, EveryIndexIsChecked)
 {
   EXPECT_EQ(error_after([](json &) {}), "");
   EXPECT_HAS(error_after([](json &d) { d["scene"] = 7; }), "scene: index 7 is out of range: the file has 1 scenes");
@@ -136,7 +136,7 @@ TEST(GltfDoor, EveryIndexIsChecked)
   EXPECT_HAS(error_after([](json &d) { d["nodes"][0]["mesh"] = -1; }), "nodes[0].mesh: is -1, and must be an index");
 }
 
-TEST(GltfDoor, EveryTypeIsChecked)
+TEST(GltfFile, EveryTypeIsChecked)
 {
   EXPECT_HAS(error_after([](json &d) { d["nodes"] = 3; }), "nodes: is 3, and must be an array");
   EXPECT_HAS(error_after([](json &d) { d["nodes"][0] = 3; }), "nodes[0]: is 3, and must be an object");
@@ -167,14 +167,14 @@ TEST(GltfDoor, EveryTypeIsChecked)
   EXPECT_HAS(error_after([](json &d) { d["extensionsRequired"] = {{"a", 1}}; }), "extensionsRequired: is an object");
 }
 
-TEST(GltfDoor, PropertiesThatGltfRequiresAreChecked)
+TEST(GltfFile, PropertiesThatGltfRequiresAreChecked)
 {
   EXPECT_HAS(error_after([](json &d) { d["accessors"][0].erase("type"); }), "glTF: ");
   EXPECT_HAS(error_after([](json &d) { d["cameras"][0]["type"] = "fisheye"; }), "glTF: Invalid camera type");
   EXPECT_HAS(error_after([](json &d) { d["bufferViews"][0]["byteStride"] = 3; }), "glTF: Invalid `byteStride'");
 }
 
-TEST(GltfNodes, RingsAndSecondParentsAreErrors)
+TEST(GltfNodes, CyclesAndSecondParentsAreErrors)
 {
   EXPECT_HAS(error_after([](json &d) { d["nodes"][0]["children"] = {0}; }), "node 'thing': is its own ancestor");
   EXPECT_HAS(error_after([](json &d) {
@@ -215,7 +215,7 @@ void expect_left_out(const std::function<void(json &)> &change, const std::strin
   EXPECT_WARNING(scene, "mesh 'bad': primitive left out: " + reason);
 }
 
-TEST(GltfAccessor, AllTheWaysNotToFit)
+TEST(GltfAccessor, IncompleteElementsAreErrors)
 {
   EXPECT_EQ(import_beside([](json &) {}).objects().size(), 2U);
   expect_left_out([](json &d) { d["accessors"][1]["count"] = 4; },
@@ -307,7 +307,7 @@ TEST(GltfImport, TriangleWithoutAreaIsLeftOut)
   EXPECT_WARNING(scene, "mesh 'mesh': triangle left out: it has no area");
 }
 
-TEST(GltfImport, NothingLeftIsAnErrorWithTheReason)
+TEST(GltfImport, FileWithoutUsableContentIsAnErrorWithTheReason)
 {
   GltfBuilder builder;
   const int positions = builder.positions({0, 0, 0, NAN, 0, 0, 0, 1, 0});
@@ -337,7 +337,7 @@ TEST(GltfImport, PrimitivesOfAnUnknownCompressionAreLeftOutIfTheRestCanBeDrawn)
   EXPECT_HAS(import_error(alone), "nothing in it can be drawn, and it requires EXT_other_compression");
 }
 
-TEST(GltfImport, BufferOfAnExtensionIsNoData)
+TEST(GltfImport, BufferOfAnUnknownExtensionHasNoData)
 {
   GltfBuilder builder = triangle_scene();
   builder.document["buffers"] = {{{"byteLength", builder.bytes.size()}}};
@@ -346,7 +346,7 @@ TEST(GltfImport, BufferOfAnExtensionIsNoData)
              "it requires EXT_other: mesh 'mesh': primitive left out: accessor 0: buffer 0 holds no data");
 }
 
-TEST(SlowGltfImport, FewBytesCannotAskForEndlessWork)
+TEST(SlowGltfImport, WorkIsLimitedForSmallFiles)
 {
   // A thousand primitives share one long index accessor: a small file, but a scene of 10^9 triangles.
   GltfBuilder builder;
@@ -545,7 +545,7 @@ TEST(GltfFuzz, OddValuesAnywhereImportOrFailCleanly)
   EXPECT_GT(kept, 300);
 }
 
-TEST(GltfModels, AssimpsImportOrSayWhyNot)
+TEST(GltfModels, AssimpModelsImportOrFailWithAReason)
 {
   const std::filesystem::path root = "/usr/share/assimp/models";
   if (!std::filesystem::exists(root)) {

@@ -99,7 +99,7 @@ TEST(GltfImage, MayBeInABufferView)
   }
 }
 
-TEST(GltfImage, MayBeAFileBeside)
+TEST(GltfImage, MayBeAnExternalFile)
 {
   const TemporaryFolder folder;
   const Bytes png = four_texel_png();
@@ -157,7 +157,7 @@ TEST(GltfImage, OneThatIsUsedTwiceIsDecodedOnce)
   EXPECT_EQ(scene.textures().size(), 3U);
 }
 
-TEST(GltfImage, WhatCannotBeReadLeavesTheFactorAndIsNamed)
+TEST(GltfImage, UnreadableImagesAreNamedAndLeaveTheFactor)
 {
   EXPECT_HAS(reason({{"name", "leaf"}, {"uri", data_uri({1, 2, 3})}}), "image 'leaf': is neither PNG nor JPEG");
   EXPECT_HAS(reason({{"uri", "data:image/png;base64,"}}), "image 0: is empty");
@@ -234,7 +234,7 @@ Bytes claimed_png(std::uint32_t edge)
   return file;
 }
 
-TEST(GltfImage, SizesThatCannotBeAreRefusedBeforeAnythingIsAllocated)
+TEST(GltfImage, InvalidSizesAreRefusedBeforeAllocation)
 {
   EXPECT_HAS(reason({{"uri", data_uri(claimed_png(8000))}}), "is cut off: 8000x8000 texels cannot be in ");
   EXPECT_HAS(reason({{"uri", data_uri(claimed_png(16000))}}), "is too large, 16000x16000 texels");
@@ -244,7 +244,7 @@ TEST(GltfImage, SizesThatCannotBeAreRefusedBeforeAnythingIsAllocated)
 
 // ---- Samplers ----
 
-TEST(GltfTexture, SamplerWordsBecomeOurs)
+TEST(GltfTexture, SamplersAreConverted)
 {
   GltfBuilder builder = textured_triangle();
   const scene::Texture without = nth(import(builder).textures(), 0);
@@ -293,7 +293,7 @@ TEST(GltfUv, AreThoseOfTheVertices)
   EXPECT_EQ(uvs[2], glm::vec2(0.25F, 0.75F));
 }
 
-TEST(GltfUv, AreLeftOutWhereNothingLooksThemUp)
+TEST(GltfUv, AreLeftOutWithoutATexture)
 {
   GltfBuilder builder = textured_triangle();
   builder.document["materials"][0].erase("pbrMetallicRoughness");
@@ -338,7 +338,7 @@ TEST(GltfUv, TwoSetsAreKeptAndAThirdIsNamed)
   EXPECT_WARNING(import(builder), "its occlusionTexture is drawn as no occlusion: texCoord: 5 is a third set");
 }
 
-TEST(GltfTangent, AreTheFilesOrMade)
+TEST(GltfTangent, AreReadOrComputed)
 {
   GltfBuilder builder = textured_triangle();
   builder.document["materials"][0]["normalTexture"] = {{"index", 0}};

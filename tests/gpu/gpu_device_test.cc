@@ -166,7 +166,7 @@ TEST(Device, BatchPlaceIsFreedWithTheBatch)
   EXPECT_EQ(b.range().base_vertex, 300);
 }
 
-TEST(Counters, HoldWhatWasAskedFor)
+TEST(Counters, CountTheWorkOfASubmission)
 {
   const auto device = create_null_device();
   const Texture texture = device->create_texture({.name = "t", .width = 2, .height = 2});
@@ -320,7 +320,7 @@ TEST(Format, TexelsAreAsLargeAsTheirChannels)
   EXPECT_FALSE(is_depth(Format::R32F));
 }
 
-TEST(Live, TellsEachResourceItsBytesAndWhatWasWrittenToIt)
+TEST(Live, ListsEachResourceWithItsSizeAndWrittenBytes)
 {
   const auto device = create_null_device();
   EXPECT_EQ(device->memory_bytes(), 0U);

@@ -166,7 +166,7 @@ TEST(RangeAllocator, ShrinksToItsLastRange)
   EXPECT_EQ(allocator.capacity(), 1024U);
 }
 
-TEST(RangeAllocator, KnowsWhatIsInUse)
+TEST(RangeAllocator, CountsTheUsedElements)
 {
   RangeAllocator allocator;
   EXPECT_FALSE(allocator.is_allocated(0, 1));

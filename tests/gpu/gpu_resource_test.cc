@@ -48,7 +48,7 @@ TEST(Resource, DefaultIsEmpty)
   EXPECT_FALSE(Batch());
 }
 
-TEST(Resource, MoveHandsTheThingOverAndLeavesNothing)
+TEST(Resource, MoveTransfersTheResource)
 {
   const auto device = create_null_device();
   Buffer first = device->create_buffer({.name = "first", .size_bytes = 16});
@@ -62,7 +62,7 @@ TEST(Resource, MoveHandsTheThingOverAndLeavesNothing)
   EXPECT_EQ(device->live_resources(), std::vector<std::string>{"buffer 'first'"});
 }
 
-TEST(Resource, AssignmentFreesWhatStoodThere)
+TEST(Resource, AssignmentFreesThePreviousResource)
 {
   const auto device = create_null_device();
   Buffer kept = device->create_buffer({.name = "kept", .size_bytes = 16});

@@ -54,7 +54,7 @@ TEST(Choice, FastestWithinTheError)
   EXPECT_DOUBLE_EQ(choice.predicted_seconds, 7.0);
 }
 
-TEST(Choice, DoubtCountsTwice)
+TEST(Choice, TwoStandardErrorsAreAdded)
 {
   const std::vector<Model> models = {model("one", 0.0, 1.0, {{1, {0.05, 0.03}}, {2, {0.05, 0.01}}})};
   EXPECT_EQ(choose(models, {.error_max = 0.08, .seconds_max = {}}).sample_count, 2);
@@ -69,7 +69,7 @@ TEST(Choice, MostExactWithinTheTime)
   EXPECT_EQ(choice.sample_count, 4);
 }
 
-TEST(Choice, WhatCannotBeMetIsSaidAndComeNear)
+TEST(Choice, UnmetRequirementIsReportedWithTheNearestChoice)
 {
   const std::vector<Model> models = two_models();
   Choice choice = choose(models, {.error_max = 1e-6, .seconds_max = {}});
@@ -80,7 +80,7 @@ TEST(Choice, WhatCannotBeMetIsSaidAndComeNear)
   EXPECT_EQ(choice.predicted_seconds, 1.0);
 }
 
-TEST(Choice, ReportsModelSplitsTimes)
+TEST(Choice, ReportGivesTimesOfShadowsAndSamples)
 {
   SceneReport report;
   // What no option of the program chooses cannot be chosen.
@@ -122,7 +122,7 @@ class PixelSampleTest : public testing::Test {
   std::vector<glm::vec4> exact_;
 };
 
-TEST_F(PixelSampleTest, FindsAnErrorThatIsKnown)
+TEST_F(PixelSampleTest, ReproducesAKnownError)
 {
   // Even, so that no pixel tells more than another, and larger where the sum of x and y is odd.
   std::vector<glm::vec4> picture = exact_;
@@ -142,7 +142,7 @@ TEST_F(PixelSampleTest, FindsAnErrorThatIsKnown)
   }
 }
 
-TEST_F(PixelSampleTest, OwnNoiseIsNoError)
+TEST_F(PixelSampleTest, NoiseOfTheReferenceCancels)
 {
   // Two samples a pixel are noisy at edges; multiplied with two others, their noise is as often below 0 as above.
   double square = 0.0;
@@ -157,14 +157,14 @@ TEST_F(PixelSampleTest, OwnNoiseIsNoError)
   EXPECT_LT(std::sqrt(square), 0.4 * noise);
 }
 
-TEST_F(PixelSampleTest, NanIsNotLost)
+TEST_F(PixelSampleTest, NanPixelGivesANanError)
 {
   const std::vector<glm::vec4> picture(exact_.size(), glm::vec4(std::numeric_limits<float>::quiet_NaN()));
   const PixelSample sample(*tracer_, camera_, size_px_, exact_, 10, 1, 0);
   EXPECT_TRUE(std::isnan(sample.error(picture).rmse));
 }
 
-TEST_F(PixelSampleTest, ReferenceSpendsItsSamplesOnEdges)
+TEST_F(PixelSampleTest, ReferenceRefinesNoisyPixels)
 {
   const reference::Tracer &tracer = *tracer_;
   const ReferencePicture refined = reference_picture(tracer, camera_, size_px_, 4);

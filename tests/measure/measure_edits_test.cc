@@ -62,7 +62,7 @@ const std::map<std::string, Allowed> allowed = {
     {"resize the viewport", {lamps_bytes, 0, 1, 3}},
 };
 
-TEST(Edits, CostWhatTheyChange)
+TEST(Edits, EachCostsOnlyItsChange)
 {
   const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
   const std::vector<EditCost> costs = edit_costs(*device);

@@ -127,7 +127,7 @@ TEST(Flip, OfEqualPicturesIsNone)
   EXPECT_EQ(mean_flip(size_px, noise(1), noise(1)), 0.0);
 }
 
-TEST(Flip, IsInRangeAndTheSameFromBothSides)
+TEST(Flip, IsInRangeAndSymmetric)
 {
   const double one = mean_flip(size_px, noise(1), noise(2));
   EXPECT_GT(one, 0.0);
@@ -162,7 +162,7 @@ TEST(Flip, OfUniformGreysIsOfTheirLightness)
   }
 }
 
-TEST(Flip, OfGreenAndBlueIsOneAndNothingIsAbove)
+TEST(Flip, GreenAndBlueGiveTheLargestErrorOne)
 {
   constexpr glm::ivec2 small{4, 4};
   // Of a float's rounding.
@@ -179,7 +179,7 @@ TEST(Flip, OfGreenAndBlueIsOneAndNothingIsAbove)
   }
 }
 
-TEST(Flip, SeesABlackSquareOnGrey)
+TEST(Flip, DetectsABlackSquareOnGrey)
 {
   constexpr glm::ivec2 large{128, 64};
   const Picture plain = uniform(glm::vec3(0.2F), large);
@@ -198,12 +198,12 @@ TEST(Flip, SeesABlackSquareOnGrey)
   EXPECT_LT(flip, around);
 }
 
-TEST(Flip, HardlySeesAThousandthOfLight)
+TEST(Flip, ThousandthOfLightIsAlmostInvisible)
 {
   EXPECT_LT(mean_flip(size_px, grey(0.2F), grey(0.201F)), 0.02);
 }
 
-TEST(Flip, OfPicturesOfEqualRowsIsThatOfOneRowAndALineCountsForMoreThanASwell)
+TEST(Flip, RowsGiveTheOneDimensionalSumAndLinesCountMoreThanGradients)
 {
   const std::vector<double> plain(64, 0.3);
   std::vector<double> line = plain;
@@ -241,7 +241,7 @@ double flip_of_stripes(glm::vec3 direction, double period_px)
   return mean_flip(wide, picture, plain);
 }
 
-TEST(Flip, SeesFineStripesOfRedAndGreenButHardlyOfBlueAndYellow)
+TEST(Flip, FineStripesOfRedAndGreenCountMoreThanOfBlueAndYellow)
 {
   // What X alone and Z alone are in sRGB (Lindbloom), so that luminance does not change: 10 % of white's.
   const glm::vec3 red_green = 0.1F * 0.95047F * glm::vec3(3.24045F, -0.96927F, 0.05564F);
@@ -253,7 +253,7 @@ TEST(Flip, SeesFineStripesOfRedAndGreenButHardlyOfBlueAndYellow)
   EXPECT_GT(flip_of_stripes(blue_yellow, 24.0), 0.1);
 }
 
-TEST(Flip, OfWhatADisplayCannotShowIsNone)
+TEST(Flip, ValuesOutsideOfTheDisplayRangeHaveNoError)
 {
   EXPECT_EQ(mean_flip(size_px, uniform({1.0F, 0.0F, 0.5F}), uniform({1e30F, -7.0F, 0.5F})), 0.0);
 }

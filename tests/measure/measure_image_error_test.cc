@@ -18,7 +18,7 @@ std::vector<glm::vec4> flat(float value)
   return std::vector<glm::vec4>(count, glm::vec4(value, value, value, 1.0F));
 }
 
-TEST(ImageError, EqualPicturesHaveNone)
+TEST(ImageError, EqualPicturesHaveNoError)
 {
   const ImageError error = image_error(size_px, flat(0.5F), flat(0.5F));
   EXPECT_EQ(error.rmse, 0.0);
@@ -48,7 +48,7 @@ TEST(ImageError, MeanIsOverPixelsAndChannels)
   EXPECT_DOUBLE_EQ(error.rmse, std::sqrt(4.0 / double(3 * count)));
 }
 
-TEST(ImageError, P99LeavesOneInAHundredAbove)
+TEST(ImageError, P99IsThe99thPercentile)
 {
   // 512 pixels: the 507th of their differences is the first that 99 % are not above.
   std::vector<glm::vec4> picture = flat(0.0F);
@@ -60,7 +60,7 @@ TEST(ImageError, P99LeavesOneInAHundredAbove)
   EXPECT_EQ(image_error(size_px, picture, flat(0.0F)).p99, 1.0);
 }
 
-TEST(ImageError, NonFiniteIsCountedAndNothingElseIsClaimed)
+TEST(ImageError, NonFiniteIsCountedAndErrorsAreNan)
 {
   std::vector<glm::vec4> picture = flat(0.0F);
   picture[3].r = std::numeric_limits<float>::quiet_NaN();

@@ -31,7 +31,7 @@ TEST(Page, TextIsNotHtml)
   EXPECT_NE(html.find("alt=\"&lt;img&gt;\""), std::string::npos);
 }
 
-TEST(Page, ChartHoldsWhatItsAxesCanShow)
+TEST(Page, ChartLeavesOutPointsThatItsAxesCannotShow)
 {
   Page page("title");
   page.chart({"chart",

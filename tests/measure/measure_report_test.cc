@@ -42,7 +42,7 @@ TEST(Report, MedianAndSpread)
   EXPECT_DOUBLE_EQ(spread({5.0, 1.0, 3.0, 2.0, 4.0}), 1.0 / 3.0);
 }
 
-TEST(Report, FrontHoldsWhatNothingBeats)
+TEST(Report, FrontHasTheUndominatedPictures)
 {
   SceneReport scene = scene_of(
       {picture(1, 1.0, 0.5), picture(2, 2.0, 0.6), picture(3, 2.0, 0.3), picture(4, 3.0, 0.3), picture(5, 4.0, 0.1)});
@@ -87,7 +87,7 @@ TEST(Report, AllLampsAreWeightedByTheirPixels)
   EXPECT_EQ(all_lamps({}).wrong_fraction, 0.0);
 }
 
-TEST(Report, TechniquesHaveNamesOfTheirOwn)
+TEST(Report, TechniquesHaveUniqueLabels)
 {
   std::set<std::string> labels;
   std::set<std::string> files;
@@ -98,7 +98,7 @@ TEST(Report, TechniquesHaveNamesOfTheirOwn)
   }
 }
 
-TEST(Report, JsonHoldsAllThatARunGoesOnWith)
+TEST(Report, JsonHasAllThatContinuingARunNeeds)
 {
   RunReport run;
   run.program = "gnomon";
@@ -148,7 +148,7 @@ TEST(Report, JsonHoldsAllThatARunGoesOnWith)
   EXPECT_THROW(static_cast<void>(run_from_json(rounds)), std::exception);
 }
 
-TEST(Report, CsvHasARowAPictureAndOneLengthOfRow)
+TEST(Report, CsvHasOneRowPerPictureAndEqualColumns)
 {
   RunReport run;
   run.scenes.push_back(scene_of({picture(1, 0.5, 0.25), picture(4, 2.0, 0.125)}));

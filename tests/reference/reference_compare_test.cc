@@ -65,7 +65,7 @@ struct SquareOverPlane {
   }
 };
 
-TEST(Compare, TruthIsNotWrong)
+TEST(Compare, ExactVisibilityHasNoError)
 {
   for (const LampKind kind : {LampKind::Point, LampKind::Sun}) {
     const SquareOverPlane square(0.4F);
@@ -91,7 +91,7 @@ struct Shift {
 
 class CompareShiftTest : public testing::TestWithParam<Shift> {};
 
-TEST_P(CompareShiftTest, EdgeOffsetIsByHowMuchTheShadowsAreMoved)
+TEST_P(CompareShiftTest, EdgeOffsetIsTheShiftOfTheShadows)
 {
   const Shift shift = GetParam();
   const SquareOverPlane square(shift.tilt);
@@ -189,7 +189,7 @@ TEST(Compare, LeakAndAcneAreWrongFarFromAnyEdge)
   EXPECT_EQ(compare_visibility(tracer, sun, shaded.view(), {}).leak_count, 3U);
 }
 
-TEST(Compare, AcneOnACurvedHollowIsNotTakenForAnEdge)
+TEST(Compare, AcneInsideOfASphereIsNotAnEdge)
 {
   // The inside of a closed sphere with the lamp at its centre is lit, although every tangent plane is outside.
   std::vector<glm::vec3> corners;
@@ -221,7 +221,7 @@ TEST(Compare, AcneOnACurvedHollowIsNotTakenForAnEdge)
   EXPECT_EQ(error.acne_count, error.wrong_count);
 }
 
-TEST(Compare, WhatCannotBeJudgedIsCounted)
+TEST(Compare, ReceiversThatCannotBeComparedAreCounted)
 {
   const SquareOverPlane square(0.0F);
   const Tracer tracer(square.scene);

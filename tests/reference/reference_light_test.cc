@@ -119,7 +119,7 @@ TEST(DirectLight, NormalsAreInterpolatedAndTurnedToTheViewer)
   }
 }
 
-TEST(DirectLight, BacksOfOneSidedMaterialsAreLookedThrough)
+TEST(DirectLight, BacksOfOneSidedMaterialsAreInvisible)
 {
   scene::Scene scene;
   test::add_material(scene, glm::vec3(1.0F));
@@ -156,7 +156,7 @@ TEST(DirectLight, ClipDistancesAreDepths)
   }
 }
 
-TEST(DirectLight, CamerasFrameIsInTheMiddleAndWhole)
+TEST(DirectLight, CamerasFrameIsCentredAndCompletelyVisible)
 {
   // A rectangle that exactly fills an orthographic camera of 4 by 2. Images of other aspects show it in the middle.
   scene::Scene scene;
@@ -240,7 +240,7 @@ TEST(DirectLight, PixelFilterCrossesTilesAndThePicturesRim)
   EXPECT_NEAR(rim.pixels[7].r, filter_integral(-0.5), 1e-2);
 }
 
-TEST(DirectLight, PixelsAloneHaveTheSameFilter)
+TEST(DirectLight, SelectedPixelsHaveTheSameFilter)
 {
   // A corner of the plane: the product of the integrals of the filter beyond its two edges.
   const glm::ivec2 size_px{8, 8};

@@ -55,7 +55,7 @@ struct Place {
 
 class TracerPlaceTest : public testing::TestWithParam<Place> {};
 
-TEST_P(TracerPlaceTest, NearestHitIsThatOfAllTrianglesInLongDouble)
+TEST_P(TracerPlaceTest, NearestHitEqualsThatInLongDouble)
 {
   const Place place = GetParam();
   std::mt19937 random(7);
@@ -212,7 +212,7 @@ TEST(Tracer, NormalsStayOnTheFrontOfMirroredAndShearedObjects)
   }
 }
 
-TEST(Tracer, BacksOfOneSidedMaterialsAreLookedThroughAndCastShadows)
+TEST(Tracer, BacksOfOneSidedMaterialsAreInvisibleAndCastShadows)
 {
   scene::Scene scene;
   test::add_material(scene, glm::vec3(1.0F));
@@ -225,7 +225,7 @@ TEST(Tracer, BacksOfOneSidedMaterialsAreLookedThroughAndCastShadows)
   EXPECT_TRUE(tracer.is_blocked({0, 0.5, -1}, 0.0, {{0, 0.5, 1}, false}));
 }
 
-TEST(Tracer, MaskedMaterialBelowItsCutoffIsNotThere)
+TEST(Tracer, MaskedMaterialBelowItsCutoffIsNotHit)
 {
   for (const float alpha : {0.25F, 0.5F, 0.75F}) {
     scene::Scene scene;

@@ -157,7 +157,7 @@ TEST(Visibility, LampOnAPlaneIsHiddenFromItAndNotByIt)
   EXPECT_FALSE(is_visible(tracer, receiver_at(glm::dvec3(lamp.world_from_lamp[3]), up), lamp));
 }
 
-TEST(Visibility, ASurfaceHidesWhatIsBehindIt)
+TEST(Visibility, SurfaceHidesPointsBehindIt)
 {
   scene::Scene scene;
   add_rectangle(scene, {-10, -10}, {10, 10});
@@ -189,7 +189,7 @@ TEST(Visibility, FloatPositionsAreMovedBackOntoTheirSurface)
   }
 }
 
-TEST(Visibility, ShareOfADiskBehindAnEdgeIsThatOfACircularSegment)
+TEST(Visibility, HiddenFractionOfADiskIsACircularSegment)
 {
   // A half plane at half the height of the lamp, with its edge at x = c. It hides the part of the lamp beyond x = 2c.
   for (const double cut : {-0.4, -0.1, 0.0, 0.25}) {

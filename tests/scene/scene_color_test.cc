@@ -16,7 +16,7 @@ Mesh colored_triangle()
   return mesh;
 }
 
-TEST(SceneMeshColors, AnotherColourIsAnotherShape)
+TEST(SceneMeshColors, ChangedColoursChangeTheShapeAspect)
 {
   Scene scene;
   const Handle<Mesh> handle = scene.add(colored_triangle());

@@ -139,7 +139,7 @@ TEST(SceneHandle, NodeFunctionsThrowForStaleHandles)
   EXPECT_EQ(scene.nodes().size(), 1U);
 }
 
-TEST(SceneHandle, StaleReferencesAreNamedAndStandForNothing)
+TEST(SceneHandle, StaleReferencesAreListedAndIgnored)
 {
   Scene scene;
   const auto image = scene.add(texel());
@@ -293,7 +293,7 @@ TEST(SceneNodes, RemovalTakesTheSubtreeAndLeavesTheRest)
   EXPECT_FALSE(scene.first_child(added)) << "links of the place's former node are gone";
 }
 
-TEST(SceneNodes, HundredThousandDeepIsNoTrouble)
+TEST(SceneNodes, DepthOfAHundredThousandIsSupported)
 {
   Scene scene;
   const auto root = scene.add(at({0, 1, 0}));
@@ -618,7 +618,7 @@ void expect_refused(const T &value, const std::vector<std::pair<std::string, std
   EXPECT_EQ(scene.revision(), before) << "the value is the old one";
 }
 
-TEST(SceneEdit, ValuesThatCannotBeHeldAreRefused)
+TEST(SceneEdit, InvalidValuesAreRefused)
 {
   expect_refused<Mesh>(triangle(), {{"2 normals for 3 positions", [](Mesh &mesh) { mesh.normals.pop_back(); }},
                                     {"1 uvs for 3 positions", [](Mesh &mesh) { mesh.uvs.resize(1); }},
@@ -665,7 +665,7 @@ TEST(SceneEdit, ARefusedTransformChangesNothing)
   EXPECT_EQ(scene.world_from_node(child)[0][0], -1.0);
 }
 
-TEST(SceneEdit, AMeshOfNothingIsOne)
+TEST(SceneEdit, EmptyMeshIsValid)
 {
   Scene scene;
   const auto mesh = scene.add(Mesh());

@@ -232,7 +232,7 @@ class Editor {
   std::mt19937 random_{20261122};
 };
 
-TEST(SceneRandom, TenThousandEditsLeaveWhatAPlainModelHolds)
+TEST(SceneRandom, TenThousandEditsAgreeWithASimpleModel)
 {
   Editor editor;
   Revision revision = 0;
@@ -253,7 +253,7 @@ TEST(SceneRandom, TenThousandEditsLeaveWhatAPlainModelHolds)
 }
 
 /** Whoever compares revisions after each edit misses no change of a world matrix, and sees none that is not. */
-TEST(SceneRandom, RevisionsTellEachChangeOfAWorldMatrix)
+TEST(SceneRandom, RevisionsShowEachChangeOfAWorldMatrix)
 {
   Editor editor;
   std::map<Handle<Node>, std::pair<Revision, glm::dmat4>> seen;

@@ -45,7 +45,7 @@ void main()
 }
 )";
 
-TEST(VariantInterfaces, AreOneListAndThePartThatEachVariantReads)
+TEST(VariantInterfaces, HaveOneListAndAMaskForEachVariant)
 {
   const std::vector<VariantInterfaces> programs = interfaces(PARTS, {{}, {"A"}, {"A", "B"}});
   ASSERT_EQ(programs.size(), 1U);

@@ -103,7 +103,7 @@ TEST(LongInput, ACommentIsNoMistake)
   EXPECT_EQ(message_count(shader("", "x /*" + std::string(count, ' ') + "*/")), 0U);
 }
 
-TEST(LongInput, ALineNumberMayBeAsLargeAsItIsWritten)
+TEST(LongInput, LineNumbersMayHaveAnySize)
 {
   message_count(shader("#line 2147483647 0\nfloat a = nothing;", "x"));
   message_count(shader("#line 99999999999999999999 0\nfloat a = nothing;", "x"));

@@ -234,7 +234,7 @@ TEST(Reflect, SlotOfThePushConstantsIsTakenToo)
   expect_contains(message, "slot 8");
 }
 
-TEST(Reflect, WhatHasNoSlotIsAnErrorThatNamesIt)
+TEST(Reflect, BindingWithoutASlotIsAnErrorThatNamesIt)
 {
   const auto refusal = [](const std::string &declaration, const std::string &use) {
     return error_of([&] { reflected(VERSION + declaration + "\nvoid main() { gl_Position = " + use + "; }\n"); });

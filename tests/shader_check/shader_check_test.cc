@@ -89,7 +89,7 @@ TEST(CheckShader, MessageNamesShaderVariantAndTarget)
   EXPECT_EQ(messages[0].line, 2);
 }
 
-TEST(CheckShader, IncludeThatIsMissingAndAStageThatIsMissing)
+TEST(CheckShader, MissingIncludesAndStagesAreReported)
 {
   expect_one(check_fragment("\n#include \"lost\"\nvoid main() {}\n"), Severity::Error, "include", "frag", 2);
   const std::vector<CheckMessage> messages = check_shader({"test", "", "", "nowhere", {}}, ShaderTexts().files(), {});
@@ -110,7 +110,7 @@ TEST(CheckShader, CompileErrorsOfAllStagesAndOfEachLine)
   EXPECT_TRUE(at("frag", 2)) << to_string(messages);
 }
 
-TEST(CheckShader, WhatOneTargetForbidsIsItsErrorAlone)
+TEST(CheckShader, ErrorsOfOneTargetAreReportedForThatTargetOnly)
 {
   const std::string fragment =
       COLOR + "\nlayout(location = 3) uniform float scale;\nvoid main() { color = vec4(scale); }\n";
@@ -124,7 +124,7 @@ TEST(CheckShader, WhatOneTargetForbidsIsItsErrorAlone)
   EXPECT_FALSE(check(vertex, "").empty());
 }
 
-TEST(CheckShader, VaryingsMeetByLocation)
+TEST(CheckShader, VaryingsAreMatchedByLocation)
 {
   const std::string vertex =
       "layout(location = 2) out mat3 m; layout(location = 5) out vec2 uv;\n"
@@ -170,7 +170,7 @@ TEST(CheckShader, OutputsThatNoStageReads)
   expect_clean(check(vertex, ""));
 }
 
-TEST(CheckShader, SlotsAreOneSpaceInVulkanAndOneAKindInOpenGl)
+TEST(CheckShader, SlotsAreSharedInVulkanAndPerKindInOpenGl)
 {
   const std::string fragment = COLOR +
                                "layout(binding = 4) uniform sampler2D a;\n"
@@ -286,7 +286,7 @@ TEST(CheckShader, BlocksAreLaidOutAsInCpp)
   expect_one(check_layout(inner, block, 32, "other_block"), Severity::Error, "layout", "frag", 4);
 }
 
-TEST(CheckShader, ConversionsOfBlockMembersAreSaid)
+TEST(CheckShader, ImplicitConversionsOfBlockMembersAreReported)
 {
   const auto use = [&](const std::string &expression) {
     return check_fragment(COLOR +
@@ -301,7 +301,7 @@ TEST(CheckShader, ConversionsOfBlockMembersAreSaid)
   expect_clean(use("int i = a.count + 1; color *= vec4(a.count, i, 0, 0);"));
 }
 
-TEST(CheckShader, LoopsEndEvidently)
+TEST(CheckShader, UnboundedLoopsAreReported)
 {
   for (const char *loop :
        {"for (int i = 0; i < 4; i++) { color += x.xyzx; }", "for (int i = 3; i >= 0; i -= 1) { color += x.xyzx; }",
@@ -320,7 +320,7 @@ TEST(CheckShader, LoopsEndEvidently)
   }
 }
 
-TEST(CheckShader, MathIsGuardedWhereItCanFail)
+TEST(CheckShader, UnguardedMathIsReported)
 {
   for (const char *expression :
        {"color.x = acos(clamp(dot(x, y), -1.0, 1.0));", "color.x = sqrt(max(x.x - y.x, 0.0));", "color.x = sqrt(x.x);",
@@ -366,7 +366,7 @@ TEST(CheckShader, ManyThreadsFindTheSame)
   }
 }
 
-TEST(StageVariables, AreInputsOfTheFirstStageAndOutputsOfTheLast)
+TEST(StageVariables, AreInputsOfTheFirstAndOutputsOfTheLastStage)
 {
   ShaderTexts texts;
   texts.texts["vert"] = VERSION +

@@ -177,7 +177,7 @@ class DriverAgreement : public test::GpuDeviceTest {
   }
 };
 
-TEST_F(DriverAgreement, EveryVariantIsAcceptedByBothWithoutAWord)
+TEST_F(DriverAgreement, BothCompilersAcceptEveryVariantWithoutWarnings)
 {
   int count = 0;
   for_each_variant([&](const gpu::ShaderInterface & /*interface*/, const DriverProgram &program) {

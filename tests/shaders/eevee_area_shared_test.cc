@@ -16,7 +16,7 @@ const vec3 unit_x(1, 0, 0);
 const vec3 unit_y(0, 1, 0);
 const vec3 unit_z(0, 0, 1);
 
-TEST(RectangleSolidAngle, OfACubesFaceIsASixthOfAll)
+TEST(RectangleSolidAngle, OfACubeFaceIsASixthOfTheSphere)
 {
   for (const float size : {1e-4F, 1.0F, 1e5F}) {
     EXPECT_FLOAT_EQ(rectangle_solid_angle(size * unit_z, size * unit_x, size * unit_y), float(4.0 * pi / 6.0));
@@ -64,7 +64,7 @@ TEST(RectangleSolidAngle, GrowsToAHalfSpaceOnApproach)
 }
 
 // hazards.md: touching quads.
-TEST(RectangleSolidAngle, IsAHalfSpaceToAnEyeThatTouches)
+TEST(RectangleSolidAngle, IsAHalfSpaceForAnEyeOnTheRectangle)
 {
   for (const vec3 &center : {vec3(0), vec3(0.5F, 0, 0), vec3(0.5F, 0.5F, 0), vec3(-0.999F, 0.999F, 0)}) {
     EXPECT_FLOAT_EQ(rectangle_solid_angle(center, unit_x, unit_y), float(2.0 * pi));
@@ -83,7 +83,7 @@ TEST(RectangleSolidAngle, IsTheSameFromBothSidesAndWhicheverWayItsAxesPoint)
 }
 
 // hazards.md: edge-on and degenerate quads.
-TEST(RectangleSolidAngle, IsNothingEdgeOnAndWithoutArea)
+TEST(RectangleSolidAngle, IsZeroEdgeOnAndWithoutArea)
 {
   EXPECT_EQ(rectangle_solid_angle({3, 0, 0}, unit_x, unit_y), 0.0F);
   EXPECT_EQ(rectangle_solid_angle({3, -7, 0}, unit_x, unit_y), 0.0F);
@@ -122,7 +122,7 @@ float naive_solid_angle(const std::array<vec3, 4> &corner)
 }
 
 // The tests above detect the naive form.
-TEST(RectangleSolidAngle, NaivelyIsNoNumberEdgeOnAndNoiseFarAway)
+TEST(RectangleSolidAngle, NaiveFormFailsEdgeOnAndFarAway)
 {
   const auto corners = [](const vec3 &center) {
     return std::array<vec3, 4>{center - unit_x - unit_y, center + unit_x - unit_y, center + unit_x + unit_y,
@@ -145,7 +145,7 @@ TEST(LinePlaneDistance, IsThatOfThePointOnThePlane)
 }
 
 // hazards.md: a ray parallel to the plane.
-TEST(LinePlaneDistance, OfAParallelIsFarAndFinite)
+TEST(LinePlaneDistance, OfAParallelLineIsFiniteAndLarge)
 {
   EXPECT_EQ(line_plane_distance(vec3(0), unit_x, unit_z, unit_z), LINE_FAR);
   EXPECT_EQ(line_plane_distance(vec3(0), unit_x, vec3(0), unit_z), LINE_FAR) << "in the plane";

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kinds[] = {PROJECTION_PERSPECTIVE, PROJECTION_PERSPECTIVE_INFINITE, PROJECTION_ORTHOGRAPHIC};
 
-TEST(DepthOfDistance, IsThatOfTheViewsMatrix)
+TEST(DepthOfDistance, EqualsThatOfTheProjectionMatrix)
 {
   for (const float near : {1e-3F, 0.1F, 2.0F}) {
     for (const float far : {3.0F, 100.0F, 1e5F}) {
@@ -69,7 +69,7 @@ TEST(DepthOfDistance, FallsWithDistanceAndComesBack)
   }
 }
 
-TEST(DepthOfDistance, OfWhatIsNotInFrontIsFiniteAndNearerThanEverything)
+TEST(DepthOfDistance, BehindTheEyeIsFiniteAndNearest)
 {
   for (const float distance : {0.0F, -0.0F, -1e-3F, -1e5F, -1e30F}) {
     for (const int kind : {PROJECTION_PERSPECTIVE, PROJECTION_PERSPECTIVE_INFINITE}) {
@@ -80,7 +80,7 @@ TEST(DepthOfDistance, OfWhatIsNotInFrontIsFiniteAndNearerThanEverything)
   }
 }
 
-TEST(DistanceOfDepth, OfAClearedMapIsFiniteAndBeyondEverything)
+TEST(DistanceOfDepth, OfAClearedMapIsFiniteAndFarthest)
 {
   for (const float near : {1e-4F, 1.0F, 1e7F}) {
     const float distance = distance_of_depth(0.0F, near, 0.0F, PROJECTION_PERSPECTIVE_INFINITE);

@@ -109,7 +109,7 @@ float naive_sum(float weight_x, float x, float weight_y, float y)
 }
 
 // hazards.md: the tests above detect the naive form.
-TEST(LogSum, NaivelyIsInfiniteFrom89MetresOfSpread)
+TEST(LogSum, NaiveFormOverflowsAt89MetresOfSpread)
 {
   const float weight = 1.0F / tap_count;
   EXPECT_TRUE(std::isfinite(naive_sum(weight, 1.0F, weight, 1.0F + 88.0F)));
@@ -122,7 +122,7 @@ TEST(LogSum, NaivelyIsInfiniteFrom89MetresOfSpread)
 }
 
 // hazards.md: exp(5 d) is infinite in floats beyond 17.74 m.
-TEST(EsmVisibility, NaivelyIsInfiniteFrom18MetresAndOursIsNot)
+TEST(EsmVisibility, IsFiniteWhereTheNaiveFormOverflowsAt18Metres)
 {
   const auto naive = [](float stored, float distance) {
     return std::min(1.0F, std::exp(-5.0F * distance) * std::exp(5.0F * stored));
@@ -136,7 +136,7 @@ TEST(EsmVisibility, NaivelyIsInfiniteFrom18MetresAndOursIsNot)
 }
 
 // hazards.md: exp(5 d) is infinite in halves beyond 2.2 m.
-TEST(EsmVisibility, NaivelyIsInfiniteInHalvesFromThreeMetres)
+TEST(EsmVisibility, NaiveFormOverflowsInHalvesAtThreeMetres)
 {
   const auto half = [](float value) { return glm::unpackHalf1x16(glm::packHalf1x16(value)); };
   EXPECT_TRUE(std::isfinite(half(std::exp(5.0F * 2.2F))));
@@ -147,7 +147,7 @@ TEST(EsmVisibility, NaivelyIsInfiniteInHalvesFromThreeMetres)
 }
 
 // hazards.md: with fp16 storage of linear distance, half an ulp is 1.6 cm at 40 m; with c = 80 that is a 249 % error.
-TEST(EsmFormat, ErrorIsThatOfHalfAStepAndHalfOfWhatLinearHalvesHave)
+TEST(EsmFormat, ErrorIsHalfAStepAndHalfOfThatOfLinearHalves)
 {
   const float linear_error = std::ldexp(0.5F, 5 - 10);
   EXPECT_NEAR(linear_error, 0.016F, 4e-4F);
@@ -191,7 +191,7 @@ TEST(EsmDisk, PointsHaveTheDisksMoments)
 
 // hazards.md: with a tangent frame from an un-normalised octahedral vector the blur's angle varies by up to √3 over the
 // map.
-TEST(EsmCone, HasOneAngleAllOverTheMapAndNaivelyHasNot)
+TEST(EsmCone, HasTheSameAngleEverywhereUnlikeTheNaiveForm)
 {
   constexpr float angle = 0.01F;
   const float versine = 2.0F * std::pow(std::sin(0.5F * angle), 2.0F);

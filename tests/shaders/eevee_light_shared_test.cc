@@ -36,7 +36,7 @@ TEST(SpotMask, IsFiniteAndMonotoneForEveryAngleAndBlend)
   }
 }
 
-TEST(SpotMask, OfNarrowConesIsAsOfWideOnes)
+TEST(SpotMask, NarrowConesAreAsAccurateAsWideOnes)
 {
   // The middle of a blend of 1, for narrow cones. The cosines of these angles are 1 in float.
   for (const double angle : {1e-6, 1e-5, 1e-4, 1e-3, 0.1}) {

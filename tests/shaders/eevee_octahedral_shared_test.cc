@@ -61,7 +61,7 @@ TEST(Octahedral, RoundTripIsExactOnEdges)
   }
 }
 
-TEST(Octahedral, RoundTripIsExactOnDiagonalsButForThirds)
+TEST(Octahedral, RoundTripIsAlmostExactOnDiagonals)
 {
   for (int i = 0; i < 8; i++) {
     const vec3 v(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
@@ -137,14 +137,14 @@ TEST(OctahedralTexelWeight, SumsToTheSphere)
   EXPECT_NEAR(sum, 4.0 * 3.14159265, 1e-3 * 12.57);
 }
 
-TEST(Octahedral, OfNoVectorIsPlusZ)
+TEST(Octahedral, ZeroVectorMapsToPlusZ)
 {
   EXPECT_EQ(octahedral_from_direction(vec3(0.0F)), vec2(0.5F));
   EXPECT_EQ(octahedral_from_direction(vec3(-0.0F)), vec2(0.5F));
   EXPECT_EQ(octahedral_to_direction(vec2(0.5F)), vec3(0, 0, 1));
 }
 
-TEST(Octahedral, CornersAreMinusZAndEdgesMeetThemselvesReversed)
+TEST(Octahedral, CornersAreMinusZAndEdgesAreMirrored)
 {
   for (const float u : {0.0F, 1.0F}) {
     for (const float v : {0.0F, 1.0F}) {
@@ -170,14 +170,14 @@ vec2 naive_from_direction(vec3 v)
 }
 
 // The tests above detect the naive form.
-TEST(Octahedral, NaivelyLosesTheFoldAndTheZeroVector)
+TEST(Octahedral, NaiveFormFailsAtTheFoldAndForTheZeroVector)
 {
   EXPECT_GT(angle(octahedral_to_direction(naive_from_direction({1, 0, -1})), glm::normalize(vec3(1, 0, -1))), 0.7F);
   EXPECT_GT(angle(octahedral_to_direction(naive_from_direction({0, 0, -1})), vec3(0, 0, -1)), 1.5F);
   EXPECT_TRUE(std::isnan(naive_from_direction(vec3(0.0F)).x));
 }
 
-TEST(OctahedralTexel, InsideIsItself)
+TEST(OctahedralTexel, InsideIsUnchanged)
 {
   for (int y = 0; y < 5; y++) {
     for (int x = 0; x < 5; x++) {

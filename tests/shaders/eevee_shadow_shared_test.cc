@@ -14,7 +14,7 @@ TEST(ShadowNormalOffset, GrowsWithTexelKernelAndRounding)
   EXPECT_LT(shadow_normal_offset(0.1F, 3.0F, 0.0F, 0.0F), 0.1F) << "less than a texel: no gap at contact";
 }
 
-TEST(TexelsLit, AreThoseThatAreNotNearer)
+TEST(TexelsLit, AreTheTexelsThatAreNotNearer)
 {
   const vec4 receiver(0.5F);
   EXPECT_EQ(texels_lit(vec4(0.4F), receiver), vec4(1.0F));
@@ -23,7 +23,7 @@ TEST(TexelsLit, AreThoseThatAreNotNearer)
   EXPECT_EQ(texels_lit(receiver, receiver), vec4(1.0F));
 }
 
-TEST(WeightedTexels, TakeThoseOfTheGathersOrder)
+TEST(WeightedTexels, FollowTheOrderOfTextureGather)
 {
   // Only the upper right texel (second of the gather) is lit: weight 0.3 of the columns and 0.6 of the rows.
   EXPECT_FLOAT_EQ(weighted_texels({0, 1, 0, 0}, {0.7F, 0.3F}, {0.4F, 0.6F}), 0.18F);

@@ -53,7 +53,7 @@ double first_non_finite(const StabilityCase &one)
   return std::numeric_limits<double>::infinity();
 }
 
-TEST(StabilityCases, AreManyAndEachSaysWhatItIs)
+TEST(StabilityCases, HaveAllTexts)
 {
   std::set<std::pair<std::string, std::string>> names;
   const std::vector<StabilityCase> cases = function_stability_cases();
@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(Each, StabilityGroup, testing::ValuesIn(groups), [](con
 
 // hazards.md: exp(5 d) is infinite in floats beyond 17.74 m and in halves beyond 2.2 m; the filter in log space from 89
 // m of spread on; squares of exp() at half the distance.
-TEST(StabilityBaselines, OverflowWhereExpDoes)
+TEST(StabilityBaselines, OverflowAtTheLimitOfExp)
 {
   const std::vector<StabilityCase> cases = cases_of("esm");
   const std::map<std::string, double> thresholds = {{"naive 32f 5/m, limit of exp(c z)", 88.72 / 5.0},
@@ -108,7 +108,7 @@ TEST(StabilityBaselines, OverflowWhereExpDoes)
 }
 
 // hazards.md: halves hold linear distances too coarsely: half an ulp is 1.6 cm at 40 m.
-TEST(StabilityBaselines, LinearHalvesFailWhereHalfAnUlpWeighs)
+TEST(StabilityBaselines, LinearHalvesFailWhereHalfAnUlpMatters)
 {
   const std::vector<StabilityCase> cases = cases_of("esm");
   for (const auto &[name, exponent] : {std::pair("linear halves 16f 5/m", 5.0), {"linear halves 16f 80/m", 80.0}}) {

@@ -12,7 +12,7 @@ namespace {
 
 class StabilityImages : public test::GpuDeviceTest {};
 
-TEST_F(StabilityImages, AreThereAndTheirNamesDiffer)
+TEST_F(StabilityImages, HaveUniqueNames)
 {
   const std::vector<StabilityCase> cases = image_stability_cases(*device);
   EXPECT_GE(cases.size(), 60U);

@@ -9,7 +9,7 @@
 namespace gnomon::verify {
 namespace {
 
-TEST(StabilityInputs, EveryDoorTakesNamesOrRefuses)
+TEST(StabilityInputs, AreAcceptedReportedOrRejected)
 {
   const std::vector<StabilityCase> cases = input_stability_cases();
   EXPECT_GE(cases.size(), 40U);

@@ -20,7 +20,7 @@ StabilityCase case_of(std::vector<StabilitySample> samples, double bound, bool i
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-TEST(Stability, WorstErrorAndItsPlace)
+TEST(Stability, ReportsTheWorstErrorAndItsParameter)
 {
   const StabilityResult result = run(case_of({{1.0, 0.25}, {2.0, 0.5}, {3.0, 0.125}}, 0.5));
   EXPECT_EQ(result.worst_error, 0.5);

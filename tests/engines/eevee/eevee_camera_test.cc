@@ -92,7 +92,7 @@ TEST(CameraView, StaysFiniteForExtremeCameras)
   }
 }
 
-TEST(SampleOffset, MovesThePictureByPartsOfAPixelAtEveryDistance)
+TEST(SampleOffset, ShiftsThePictureByFractionsOfAPixel)
 {
   scene::PlacedCamera camera;
   const glm::ivec2 size{320, 200};

@@ -98,7 +98,7 @@ TEST(CubeFaceMask, OfAWideGroundLeavesOutTheFaceAbove)
   EXPECT_EQ(mask, 63U & ~(1U << 2));
 }
 
-TEST(ChangedBounds, AreThoseOfWhatCameAndWent)
+TEST(ChangedBounds, CoverAddedAndRemovedCasters)
 {
   const std::vector<Caster> before = {caster_at({0, 0, 0}, 1, 1), caster_at({5, 0, 0}, 1, 2),
                                       caster_at({9, 0, 0}, 1, 3)};

@@ -265,7 +265,7 @@ class CascadeTintGpuTest : public DebugViewGpuTest {
   static constexpr glm::vec3 second{0.4F, 1.0F, 0.4F};
 };
 
-TEST_F(CascadeTintGpuTest, WhatNoCascadeHoldsIsUnchanged)
+TEST_F(CascadeTintGpuTest, PixelsOutsideAllCascadesAreUnchanged)
 {
   add_square({0, 0, 0}, 20.0F);
   add_square({0, 0, 2}, 1.0F);

@@ -34,7 +34,7 @@ class DebugViewTest : public testing::Test {
   scene::PlacedCamera camera = test::camera_at({0, -8, 4}, {0, 0, 0});
 };
 
-TEST_F(DebugViewTest, NothingIsMadeUnasked)
+TEST_F(DebugViewTest, NothingIsCreatedWithoutARequest)
 {
   test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 4}, {0, 0.2F, -1}, 1.0F);
   Renderer renderer(*device, scene, {16, 16}, settings);
@@ -72,7 +72,7 @@ TEST_F(DebugViewTest, LayersLargerThanAScreenAreThinned)
   EXPECT_EQ(size_px(std::nullopt), glm::ivec2(2048, 1536));
 }
 
-TEST_F(DebugViewTest, LayersAreNamedByWhatALampHas)
+TEST_F(DebugViewTest, LayerNamesFollowTheLampsTechnique)
 {
   using Names = std::vector<std::string>;
   const Names cube = {"0", "1", "2", "3", "4", "5"};

@@ -102,7 +102,7 @@ TEST_F(EngineGpuTest, LightsAddUp)
               1e-3F);
 }
 
-TEST_F(EngineGpuTest, EmissionIsSeenWithoutLamps)
+TEST_F(EngineGpuTest, EmissionIsVisibleWithoutLamps)
 {
   test::edit_material(scene, 0, [&](scene::Material &material) { material.emissive = {1, 2, 3}; });
   add_square({0, 0, 0}, {0, 0, 1}, 10.0F, square);
@@ -119,7 +119,7 @@ TEST_F(EngineGpuTest, BothSidesOfATwoSidedSurfaceAreLitFromTheirSide)
   EXPECT_NEAR(render(above).middle().r, 0.8F / PI, 1e-5F);
 }
 
-TEST_F(EngineGpuTest, TheBackOfAOneSidedSurfaceIsNotSeen)
+TEST_F(EngineGpuTest, BackOfAOneSidedSurfaceIsInvisible)
 {
   test::edit_material(scene, 0, [&](scene::Material &material) { material.is_double_sided = false; });
   add_square({0, 0, 0}, {0, 0, -1}, 10.0F, square);
@@ -127,7 +127,7 @@ TEST_F(EngineGpuTest, TheBackOfAOneSidedSurfaceIsNotSeen)
   EXPECT_EQ(render(above).middle().r, 0.0F);
 }
 
-TEST_F(EngineGpuTest, OfTwoOneSidedSurfacesBackToBackTheFrontIsSeen)
+TEST_F(EngineGpuTest, FrontOfTwoOneSidedSurfacesBackToBackIsVisible)
 {
   test::edit_material(scene, 0, [&](scene::Material &material) { material.is_double_sided = false; });
   const auto green = test::add_square_mesh(scene, test::add_material(scene, {0, 1, 0}));

@@ -34,7 +34,7 @@ class EngineTest : public testing::Test {
   scene::PlacedCamera camera = test::camera_at({0, 0, 4}, {0, 0, 0});
 };
 
-TEST_F(EngineTest, MakesNothingForALampThatIsNotThere)
+TEST_F(EngineTest, CreatesNothingWithoutLamps)
 {
   Renderer renderer(*device, scene, {16, 16});
   renderer.draw(camera);
@@ -53,7 +53,7 @@ TEST_F(EngineTest, MakesNothingForALampThatIsNotThere)
   }
 }
 
-TEST_F(EngineTest, MakesWhatTheSceneAsksFor)
+TEST_F(EngineTest, CreatesTheResourcesThatTheSceneNeeds)
 {
   test::add_lamp(scene, scene::LampKind::Point, {0, 0, 2}, {0, 0, -1}, 1.0F);
   test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 2}, {0, 0, -1}, 1.0F);
@@ -105,7 +105,7 @@ TEST_F(EngineTest, MeshesAreUploadedOnceHoweverManyObjectsShareThem)
   EXPECT_EQ(device->counters().instances, 51U + 51U + 1U);
 }
 
-TEST_F(EngineTest, LeavesOutWhatTheCameraDoesNotSee)
+TEST_F(EngineTest, CullsObjectsOutsideOfTheView)
 {
   test::add_object(scene, mesh, glm::translate(glm::mat4(1.0F), glm::vec3(100, 0, 0)));
   test::add_object(scene, mesh, glm::translate(glm::mat4(1.0F), glm::vec3(0, 0, 10)));
@@ -141,7 +141,7 @@ TEST_F(EngineTest, IsMadeByTheRegistry)
   EXPECT_EQ(registry.create("eevee")->name(), "eevee");
 }
 
-TEST_F(EngineTest, LeavesNothingBehind)
+TEST_F(EngineTest, FreesAllResources)
 {
   {
     test::add_lamp(scene, scene::LampKind::Point, {0, 0, 2}, {0, 0, -1}, 1.0F);
@@ -224,7 +224,7 @@ TEST_F(EngineTest, OpaqueObjectsKeepTheirDepthProgramWhateverTheirTexture)
   EXPECT_EQ(count(text, "base_color_texture -> 32"), 3) << text;
 }
 
-TEST_F(EngineTest, WhatIsBelowItsCutoffEverywhereIsNotDrawn)
+TEST_F(EngineTest, FullyCutOutObjectsAreNotDrawn)
 {
   scene = textured_scene();
   Renderer renderer(*device, scene, {16, 16});
@@ -233,7 +233,7 @@ TEST_F(EngineTest, WhatIsBelowItsCutoffEverywhereIsNotDrawn)
   EXPECT_EQ(device->counters().instances, 6U + 6U + 1U);
 }
 
-TEST_F(EngineTest, AFailedSyncIsAnErrorToDrawAndCanBeMended)
+TEST_F(EngineTest, DrawAfterAFailedSyncIsAnErrorUntilASyncSucceeds)
 {
   test::add_lamp(scene, scene::LampKind::Point, {0, 0, 2}, {0, 0, -1}, 1.0F);
   test::add_lamp(scene, scene::LampKind::Point, {1, 0, 2}, {0, 0, -1}, 1.0F);

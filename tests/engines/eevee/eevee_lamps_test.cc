@@ -32,7 +32,7 @@ TEST(LightData, ShinesAlongTheLampsMinusZ)
 }
 
 // hazards.md: a lamp with no shadow was looked up at index -1.
-TEST(LightData, HasNoShadowUntilItIsGivenOne)
+TEST(LightData, HasNoShadowByDefault)
 {
   const shared::LightData light = light_data(lamp_of(scene::LampKind::Point));
   EXPECT_EQ(light.shadow_kind, SHADOW_NONE);
@@ -130,7 +130,7 @@ TEST(Lamps, SizedLampsAreDrawnWithoutAWarning)
   EXPECT_FLOAT_EQ(lamps.light_block.lights[0].radius_sq, 0.25F);
 }
 
-TEST(Lamps, BlackLampsTakeNoRoom)
+TEST(Lamps, BlackLampsHaveNoEntry)
 {
   std::vector<scene::PlacedLamp> placed;
   placed = {lamp_of(scene::LampKind::Sun), lamp_of(scene::LampKind::Point)};
@@ -153,7 +153,7 @@ TEST(Lamps, FeaturesAreThoseOfTheKinds)
 }
 
 // hazards.md: the lamp past the maximum was written out of range, or dropped without a word.
-TEST(Lamps, TheOneTooManyIsNamedAndTheRestUnchanged)
+TEST(Lamps, LampAboveTheLimitIsNamedAndTheOthersAreUnchanged)
 {
   std::vector<scene::PlacedLamp> placed;
   for (int i = 0; i <= LIGHT_MAX; i++) {

@@ -26,7 +26,7 @@ class LeftOutGpuTest : public test::GpuDeviceTest {
   scene::PlacedCamera away = test::camera_at({0, 0, 8}, {0, 0, 20});
 };
 
-TEST_F(LeftOutGpuTest, APictureOfNothingIsThatOfTheBackgroundBesideSomething)
+TEST_F(LeftOutGpuTest, EmptyPictureEqualsTheBackgroundOfAnother)
 {
   const draw::TargetTexture display(*device, "display", gpu::Format::RGBA8, {32, 32});
   Renderer renderer(*device, scene, {32, 32}, {.sample_count = 2});
@@ -47,7 +47,7 @@ TEST_F(LeftOutGpuTest, APictureOfNothingIsThatOfTheBackgroundBesideSomething)
   }
 }
 
-TEST_F(LeftOutGpuTest, ASunThatDarkensNothingSeenHasNoLayerAndLightsAllTheSame)
+TEST_F(LeftOutGpuTest, SunWithoutVisibleShadowsHasNoLayerAndTheSameLight)
 {
   Renderer shadowed(*device, scene, {32, 32}, {.shadow = {.map_size_px = 64}});
   Renderer plain(*device, scene, {32, 32}, {.shadow = {.kind = scene::ShadowKind::None}});

@@ -285,7 +285,7 @@ class LeftOutChange : public testing::Test {
   std::unique_ptr<gpu::Device> device = gpu::create_null_device();
 };
 
-TEST_F(LeftOutChange, WhatAnotherViewSeesIsMadeThenAndTheShadowsToo)
+TEST_F(LeftOutChange, NewlyVisibleObjectsCreateTheirResourcesAndShadows)
 {
   const measure::LeftOutCase full = measure::left_out_cases().front();
   test::Renderer renderer(*device, full.scene, {64, 36}, full.settings);
@@ -337,7 +337,7 @@ TEST_F(LeftOutChange, DrawsOutsideOfTheViewAreCountedAsCulled)
   }
 }
 
-TEST_F(LeftOutChange, WhatIsUpToDateIsKeptAndSaysSo)
+TEST_F(LeftOutChange, UpToDateShadowsAreKeptAndReported)
 {
   const measure::LeftOutCase full = measure::left_out_cases().front();
   test::Renderer renderer(*device, full.scene, {64, 36}, full.settings);
@@ -352,7 +352,7 @@ TEST_F(LeftOutChange, WhatIsUpToDateIsKeptAndSaysSo)
   EXPECT_EQ(layers("kept"), drawn);
 }
 
-TEST_F(LeftOutChange, MaterialsThatNoObjectHasAskForNothing)
+TEST_F(LeftOutChange, UnusedMaterialsCreateNothing)
 {
   scene::Scene scene;
   const auto plain = test::add_material(scene, glm::vec3(0.5F));

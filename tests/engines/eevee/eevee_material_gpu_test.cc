@@ -218,7 +218,7 @@ TEST_F(MaterialGpuTest, NormalTextureLetsNoLightThroughTheSurface)
   EXPECT_EQ(middle(), glm::vec3(0.0F));
 }
 
-TEST_F(MaterialGpuTest, OcclusionIsOfLightFromAllAroundAlone)
+TEST_F(MaterialGpuTest, OcclusionAffectsAmbientLightOnly)
 {
   test::add_lamp(scene, scene::LampKind::Hemi, {}, {0, 0, -1}, PI);
   const auto dark = texture({51, 255, 255, 255});

@@ -195,7 +195,7 @@ TEST_F(OctahedralGpu, VarianceIsExactAtAnySpread)
   fmt::print("relative variance: worst error {:.3g} of 1 + variance\n", worst);
 }
 
-TEST_F(OctahedralGpu, SeparableVarianceIsThatOfTwoDistances)
+TEST_F(OctahedralGpu, SeparableVarianceMatchesTwoDistances)
 {
   // Half of the directions at one distance, half at another: where both are in the filter, mean and variance belong to
   // one share.
@@ -260,7 +260,7 @@ TEST_F(OctahedralGpu, UnfilteredLayerHoldsTheDistanceOfItsTexelsDirection)
   }
 }
 
-TEST_F(OctahedralGpu, UnfilteredDistanceIsThatOfTheCubeToARounding)
+TEST_F(OctahedralGpu, UnfilteredDistanceEqualsThatOfTheCubeWithinRounding)
 {
   const CubeDepths cube = noise(33, 0.5F, 1.0, 1e3);
   EsmStage stage(*device, {{EsmLamp{"lamp", 2e3F, {.filter_angle = 0.0F, .size_px = 32, .format = EsmFormat::Float}}}});
@@ -510,7 +510,7 @@ TEST_F(OctahedralGpu, SeamsAreNoWorseThanTheInterior)
   }
 }
 
-TEST_F(OctahedralGpu, BorderRepeatsTheTexelThatTheMapGoesOnWith)
+TEST_F(OctahedralGpu, BorderRepeatsTheContinuationOfTheMap)
 {
   constexpr int size = 16;
   const CubeDepths cube = noise(32, 0.5F, 1.0, 9.0);
@@ -689,7 +689,7 @@ struct FurnishedRoom {
 };
 
 // hazards.md: cube face and octahedral layer coupled at 9 times the texels that are stored.
-TEST_F(OctahedralGpu, SmallestCubeThatKeepsTheErrorIsTheOneGiven)
+TEST_F(OctahedralGpu, DefaultCubeIsTheSmallestThatKeepsTheError)
 {
   constexpr int size = 64;
   const FurnishedRoom room(size);

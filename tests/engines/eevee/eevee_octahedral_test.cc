@@ -34,7 +34,7 @@ TEST_F(OctahedralStoreTest, MakesOnlyWhatIsAskedFor)
   EXPECT_EQ(store.size_bytes(), 0U);
 }
 
-TEST_F(OctahedralStoreTest, SaysWhetherLayersMustBeRecordedAgain)
+TEST_F(OctahedralStoreTest, ReportsWhetherLayersMustBeRecordedAgain)
 {
   std::vector<EsmLamp> lamps = {lamp("a", 10.0F), lamp("b", 20.0F)};
   EXPECT_TRUE(store.sync(*device, shaders, lamps));

@@ -194,7 +194,7 @@ double rms_difference(const std::vector<glm::vec4> &a, const std::vector<glm::ve
   return std::sqrt(sum / (3.0 * double(a.size())));
 }
 
-TEST_F(RandomEdits, LookLikeASceneThatWasBuiltInItsLastState)
+TEST_F(RandomEdits, GiveThePictureOfASceneBuiltInTheFinalState)
 {
   constexpr int edit_count = 10000;
   constexpr int edits_between_pictures = 500;

@@ -205,7 +205,7 @@ TEST_F(ShadowEditsTest, AnEditedMaskDrawsItsShadowAgain)
   EXPECT_EQ(updated_lamps(), 0U) << "no mask";
 }
 
-TEST_F(ShadowEditsTest, WhatWasNotSubmittedIsRecordedAgain)
+TEST_F(ShadowEditsTest, LayersThatWereNotSubmittedAreRecordedAgain)
 {
   add_lamps();
   sync(settings);

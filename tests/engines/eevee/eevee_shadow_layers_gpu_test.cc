@@ -91,7 +91,7 @@ float largest_difference(const std::vector<float> &a, const std::vector<float> &
   return largest;
 }
 
-TEST_F(ShadowLayersGpuTest, TheThreeWaysGiveTheSameTexels)
+TEST_F(ShadowLayersGpuTest, ThreeCubePassesGiveTheSameTexels)
 {
   make_garden();
   std::vector<std::vector<std::vector<float>>> layers;
@@ -160,7 +160,7 @@ float middle_distance(gpu::Device &device, const Shadows &shadows)
   return near / texels[size / 2 * size + size / 2];
 }
 
-TEST_F(ShadowLayersGpuTest, FrontOrBackFacesCastAsAskedWhateverTheMirroring)
+TEST_F(ShadowLayersGpuTest, CastingSidesFollowTheSettingAlsoForMirroredObjects)
 {
   struct Case {
     CasterFaces faces;
@@ -248,7 +248,7 @@ class ClipGpuTest : public ShadowLayersGpuTest {
   scene::PlacedCamera below = test::camera_at({0, -1, 0.5F}, {0, 0, 0}, 0.1F);
 };
 
-TEST_F(ClipGpuTest, WhatIsBeforeTheNearPlaneCastsUnlessTheLampLeavesItOut)
+TEST_F(ClipGpuTest, CastersBeforeTheNearPlaneCastUnlessClipped)
 {
   for (const scene::LampKind kind : {scene::LampKind::Point, scene::LampKind::Spot}) {
     test::remove_objects(scene);
@@ -291,7 +291,7 @@ TEST_F(ClipGpuTest, WhatIsBeforeTheNearPlaneCastsUnlessTheLampLeavesItOut)
   }
 }
 
-TEST_F(ClipGpuTest, BeyondTheClipEndNothingIsInShadow)
+TEST_F(ClipGpuTest, ReceiversBeyondTheClipEndAreLit)
 {
   for (const scene::LampKind kind : {scene::LampKind::Point, scene::LampKind::Spot}) {
     test::remove_objects(scene);

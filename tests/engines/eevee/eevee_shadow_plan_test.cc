@@ -96,7 +96,7 @@ TEST(ShadowPlan, KeepsPlacesAndSizesOfTheOtherLamps)
   }
 }
 
-TEST(ShadowPlan, GapsAreClosedWhereTheMemoryAsksForIt)
+TEST(ShadowPlan, GapsAreClosedToFitTheMemory)
 {
   const ShadowSettings settings{.cube_size_px = 64, .memory_bytes_max = 3 * cube_bytes(64)};
   const ShadowPlan before = plan_shadows(point_lamps(3), settings, {}, {});
@@ -113,7 +113,7 @@ TEST(ShadowPlan, GapsAreClosedWhereTheMemoryAsksForIt)
   EXPECT_EQ(closed.places[1].first_layer, 6);
 }
 
-TEST(ShadowPlan, WhereLimitsLeaveTooFewPlacesTheLastLampsLose)
+TEST(ShadowPlan, BeyondTheLimitsTheLastLampsLoseTheirShadow)
 {
   const ShadowPlan plan = plan_shadows(point_lamps(5), {.cube_size_px = 16}, {.array_layers_max = 18}, {});
   ASSERT_EQ(plan.places.size(), 3U);

@@ -126,7 +126,7 @@ TEST_F(ShadowsTest, TheSecondCubeBeginsAtLayerSix)
 }
 
 // hazards.md: a distance cube cleared to 0 meant an occluder at the lamp.
-TEST_F(ShadowsTest, ClearToFar)
+TEST_F(ShadowsTest, AreClearedToTheFarPlane)
 {
   // Reversed depth: far is 0.
   EXPECT_EQ(gpu::PassActions().clear_depth, 0.0F);
@@ -224,7 +224,7 @@ TEST_F(ShadowsTest, OfASunAreDrawnAgainWhenTheViewSeesMore)
   EXPECT_EQ(shadows.counters().lamps_updated, 2U);
 }
 
-TEST_F(ShadowsTest, OffMeansNothingIsMade)
+TEST_F(ShadowsTest, DisabledShadowsCreateNothing)
 {
   add_lamp(scene::LampKind::Point, "point");
   sync({.kind = scene::ShadowKind::None});
@@ -251,7 +251,7 @@ TEST_F(ShadowsTest, SizesAreLoweredEvenlyToFitTheMemory)
 }
 
 // hazards.md: more lamps than slots lost their shadow without a word.
-TEST_F(ShadowsTest, ThoseThatLoseTheirsAreNamed)
+TEST_F(ShadowsTest, LampsWithoutLayersAreNamed)
 {
   for (int i = 0; i < 5; i++) {
     add_lamp(scene::LampKind::Point, "point" + std::to_string(i));
@@ -270,7 +270,7 @@ TEST_F(ShadowsTest, ThoseThatLoseTheirsAreNamed)
   EXPECT_EQ(lamps.light_block.lights[2].shadow_kind, SHADOW_CUBE) << "the first are unchanged";
 }
 
-TEST_F(ShadowsTest, RespectTheDevicesLayers)
+TEST_F(ShadowsTest, AreLimitedByTheDevicesLayers)
 {
   const std::unique_ptr<gpu::Device> small = gpu::create_null_device({.array_layers_max = 13});
   for (int i = 0; i < 3; i++) {
@@ -282,7 +282,7 @@ TEST_F(ShadowsTest, RespectTheDevicesLayers)
   EXPECT_NE(few.limits().at(0).find("'point2'"), std::string::npos);
 }
 
-TEST_F(ShadowsTest, FortyThreeCubesInARoomKeepTheirs)
+TEST_F(ShadowsTest, FortyThreeCubesInARoomKeepTheirShadows)
 {
   for (int i = 0; i < 43; i++) {
     add_lamp(scene::LampKind::Point, "point" + std::to_string(i));

@@ -109,7 +109,7 @@ TEST(SunFit, LeavesTheGroundOutOfTheCasters)
   EXPECT_TRUE(fit_one(sun, receivers, {ground}, 1024).empty()) << "the ground alone darkens nothing";
 }
 
-TEST(SunFit, KeepsGroundAboveWhatIsSeen)
+TEST(SunFit, KeepsGroundAboveVisibleReceivers)
 {
   // A ceiling is flat too, and darkens what is below.
   EXPECT_FALSE(
@@ -259,7 +259,7 @@ TEST(Cascades, CoverWhatIsVisibleAndAreFinerNearby)
   }
 }
 
-TEST(Cascades, AsManyAsItTakesForTexelsOfAPixel)
+TEST(Cascades, CountGivesTexelsNoLargerThanPixels)
 {
   const Field field;
   const draw::View view = field.view_at({0, 2, 90});

@@ -126,7 +126,7 @@ TEST_F(TargetTest, OnlyATargetWithDepthTakesDepth)
   EXPECT_EQ(passes_of([&] { single.draw_sample(camera, target); }), sample) << "the sample's depth is the picture's";
 }
 
-TEST_F(TargetTest, OverNothingSeenTouchesNothing)
+TEST_F(TargetTest, OverWithoutVisibleObjectsChangesNothing)
 {
   SceneRenderer renderer(*device, scene, size_px);
   renderer.sync();

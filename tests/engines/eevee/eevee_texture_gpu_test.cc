@@ -105,7 +105,7 @@ TEST_F(TextureGpuTest, ATextureOnAMetalColoursItsReflection)
   EXPECT_LT(pixel.g, 1e-4F);
 }
 
-TEST_F(TextureGpuTest, MaskShowsWhatIsBehindAndCutsItsShadow)
+TEST_F(TextureGpuTest, MaskCutsTheSurfaceAndItsShadow)
 {
   for (const scene::LampKind kind : {scene::LampKind::Sun, scene::LampKind::Point}) {
     scene = {};
@@ -128,7 +128,7 @@ TEST_F(TextureGpuTest, MaskShowsWhatIsBehindAndCutsItsShadow)
   }
 }
 
-TEST_F(TextureGpuTest, WhatIsCutOutLeavesNoTrace)
+TEST_F(TextureGpuTest, CutOutSurfacesChangeNoPixel)
 {
   const auto ground = add_plain({0.5F, 0.25F, 0.75F});
   const auto ghost = add_textured(1, {255, 255, 255, 0});

@@ -141,7 +141,7 @@ TEST_F(ViewportsTest, CascadesBelongToAViewport)
   EXPECT_EQ(layers_drawn(first), before);
 }
 
-TEST_F(ViewportsTest, OneThatIsNotSyncedFollowsALampThatTheOtherTookNoteOf)
+TEST_F(ViewportsTest, UnsyncedViewportUsesALampThatAnotherSynced)
 {
   draw::Viewport first(*device, {16, 16});
   draw(first, above);
