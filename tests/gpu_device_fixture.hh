@@ -10,8 +10,8 @@
 namespace gnomon::test {
 
 /**
- * Headless device whose driver errors are exceptions, in every build. Where there is none, the running test is
- * skipped with the reason, or fails where CI is set; then nullptr, and the test (or SetUp) returns.
+ * A headless device that throws driver errors, also in release builds. If there is no driver, the test is skipped with
+ * the reason, or fails if CI is set, and the function returns nullptr; the test (or SetUp) must then return.
  */
 inline std::unique_ptr<gpu::Device> testing_gl_device()
 {
@@ -30,7 +30,7 @@ inline std::unique_ptr<gpu::Device> testing_gl_device()
   }
 }
 
-/** Base of test cases that need a device: a fresh one for each. */
+/** Base of test cases that need a device. Each test has a new one. */
 class GpuDeviceTest : public testing::Test {
  protected:
   void SetUp() override
@@ -39,7 +39,7 @@ class GpuDeviceTest : public testing::Test {
     if (device) {
       return;
     }
-    // Says again what testing_gl_device has reported, so that gtest leaves the body out.
+    // Repeats the result of testing_gl_device, so that gtest does not run the body.
     if (HasFailure()) {
       FAIL();
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `gnomon bench`, as far as it needs no driver: counts, not times.
+// `gnomon bench` without a driver: counts, not times.
 #include "cli_process.hh"
 
 #include <nlohmann/json.hpp>
@@ -29,7 +29,7 @@ TEST_F(BenchTest, ShadowsMeasuresAllCubePasses)
   ASSERT_EQ(rows.size(), 3U);
   for (auto &[casters, by_way] : rows) {
     ASSERT_EQ(by_way.size(), 4U) << casters;
-    // Every caster is in a face, few in two.
+    // Every caster is in one face, few are in two.
     EXPECT_GE(by_way["six"]["instances"], casters);
     EXPECT_LE(by_way["six"]["instances"], 3 * casters);
     for (const char *way : {"geometry", "layered"}) {

@@ -50,7 +50,7 @@ TEST(SceneFingerprint, IsThatOfTheContent)
   expect_other(scene.cameras().first(), [](scene::Camera &camera) { camera.near = 0.2F; });
 }
 
-/** A file whose buffer is beside it, under a name that a URI must encode. */
+/** A file with an external buffer, whose name must be encoded in a URI. */
 TEST(SceneFingerprint, FollowsFilesThatTheSceneNames)
 {
   const fs::path folder = fs::temp_directory_path() / ("gnomon_fingerprint_" + std::to_string(getpid()));

@@ -16,20 +16,20 @@
 namespace gnomon::test {
 
 struct Finished {
-  /** Exit status; negative: the signal that ended it. */
+  /** Exit status; the negated signal number if a signal ended the process. */
   int status = 0;
   std::string out;
   std::string err;
 };
 
-/** Runs the program under test in a folder of its own, which goes with the test. */
+/** Runs the program under test in a temporary folder, which is removed after the test. */
 class ProgramTest : public testing::Test {
  protected:
   ProgramTest()
   {
     std::string pattern = (std::filesystem::temp_directory_path() / "gnomon.XXXXXX").string();
     folder = mkdtemp(pattern.data());
-    // Not the user's: compiled shaders stay with the build.
+    // A cache in the build folder, so that the user's cache is not changed.
     setenv("XDG_CACHE_HOME", (std::filesystem::path(GNOMON_PROGRAM).parent_path() / "cache").c_str(), 1);
   }
   ~ProgramTest() override
@@ -37,7 +37,7 @@ class ProgramTest : public testing::Test {
     std::filesystem::remove_all(folder);
   }
 
-  /** \a arguments as a shell reads them. */
+  /** Runs the program. \a arguments are parsed by a shell. */
   Finished run(const std::string &arguments)
   {
     const std::string command =
@@ -45,7 +45,7 @@ class ProgramTest : public testing::Test {
     const int status = std::system(command.c_str());
     Finished finished;
     finished.status = WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
-    // A shell reports a child's signal as 128 and its number.
+    // A shell reports a signal as 128 + its number.
     finished.status = finished.status > 128 ? 128 - finished.status : finished.status;
     finished.out = read("stdout.txt");
     finished.err = read("stderr.txt");
@@ -62,7 +62,7 @@ class ProgramTest : public testing::Test {
   {
     std::ofstream(folder / name) << text;
   }
-  /** Files but those of run(). */
+  /** The files in the folder, except those that run() creates. */
   std::size_t file_count() const
   {
     std::size_t count = 0;

@@ -47,7 +47,7 @@ TEST_F(CliRenderTest, PngIsUpright)
   ASSERT_TRUE(input);
   std::vector<unsigned char> pixels(std::size_t(64) * 36 * 3);
   ASSERT_TRUE(input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, pixels.data()));
-  // Beyond the ground's far corner, in the upper left, there is nothing; in the lower left there is ground.
+  // The upper left shows the background beyond the ground's far corner; the lower left shows the ground.
   EXPECT_EQ(int(pixels[0]), 0);
   EXPECT_GT(int(pixels[std::size_t(64) * 35 * 3]), 50);
 }
@@ -75,7 +75,7 @@ TEST_F(CliRenderTest, AShadowsPictureIsGreyAndColouredAndItsExrIsInMetres)
     EXPECT_EQ(is_grey, metres[3 * i] > 0.0F) << i;
     distances += metres[3 * i] > 0.0F;
   }
-  // Below the lamp, in the lower third, there is ground everywhere; in the first row, above it, nothing.
+  // The lower third shows only the ground; the first row shows only the background.
   EXPECT_GT(distances, std::size_t(64) * 64);
   EXPECT_EQ(metres[3 * 96], 0.0F);
   EXPECT_GT(metres[3 * (256 * 160 + 96)], 0.0F);
@@ -152,7 +152,7 @@ TEST_F(CliRenderTest, TheShaderCacheChangesNoPictureWhateverIsInIt)
   EXPECT_EQ(pixels(), cold);
   EXPECT_EQ(from_cache(), 4) << "garbage was replaced";
 
-  // Root may write anywhere, so that a file in the folder's place stands for no permission.
+  // A file in place of the folder stands for missing permission, because root may write everywhere.
   for (const std::filesystem::perms mode : {std::filesystem::perms::none, std::filesystem::perms::owner_read}) {
     std::filesystem::permissions(cache, mode);
     from_cache();
@@ -165,7 +165,7 @@ TEST_F(CliRenderTest, TheShaderCacheChangesNoPictureWhateverIsInIt)
   EXPECT_EQ(pixels(), cold);
 }
 
-/** Every model of Debian's assimp-testmodels, the malformed ones included. */
+/** All models of Debian's assimp-testmodels, including the malformed ones. */
 TEST_F(CliRenderTest, TestModelsAreRenderedOrRefusedWithAMessage)
 {
   const std::filesystem::path models = "/usr/share/assimp/models";

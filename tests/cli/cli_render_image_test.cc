@@ -21,11 +21,11 @@ struct Case {
   const char *scene;
   const char *reference;
   int samples;
-  /** Root of the mean square over R, G, B. Blender EEVEE 3.4.1's own at this number of samples is the bound. */
+  /** Largest RMSE over R, G, B: that of Blender EEVEE 3.4.1 with this number of samples. */
   double rmse_max;
   /**
-   * Share of pixels with a channel off by more than 0.05: what edges explain. Measured, with room for another
-   * driver's rounding: twice what Mesa 22.3.6's rasteriser gives.
+   * Largest fraction of pixels with an error above 0.05 in a channel, at edges. Twice the value measured with Mesa
+   * 22.3.6's rasteriser, as a margin for other drivers' rounding.
    */
   double outliers_max;
 };

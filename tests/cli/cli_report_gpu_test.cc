@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `gnomon report`, and `gnomon render` that chooses by what was measured.
+// `gnomon report`, and `gnomon render` with a choice from its results.
 #include "cli_process.hh"
 #include "gpu_device_fixture.hh"
 
@@ -48,7 +48,7 @@ TEST_F(CliReportTest, WritesTheMeasurements)
     EXPECT_EQ(technique.at("lost_shadows"), 0);
     EXPECT_GT(technique.at("memory_bytes"), 256 * 256 * 4);
     EXPECT_GT(technique.at("visibility").at("facing"), 100);
-    // Three samples counts; more of them come nearer to the reference.
+    // Three numbers of samples; more samples are nearer to the reference.
     ASSERT_EQ(technique.at("pictures").size(), 3U);
     EXPECT_GT(technique.at("pictures").at(0).at("rmse"), technique.at("pictures").at(1).at("rmse"));
     for (const json &picture : technique.at("pictures")) {
@@ -66,10 +66,10 @@ TEST_F(CliReportTest, WritesTheMeasurements)
   EXPECT_NE(html.find("Pareto front"), std::string::npos);
   EXPECT_NE(html.find("data:image/png;base64,"), std::string::npos);
   EXPECT_EQ(read("out/report.txt"), finished.out.substr(0, read("out/report.txt").size()));
-  // Pictures of the front, the reference, and the four files above; nothing else is left.
+  // Pictures of the front, the reference, and the four files above; no other file.
   const auto files = std::filesystem::directory_iterator(folder / "out");
   EXPECT_EQ(std::size_t(std::distance(begin(files), end(files))), front + 5);
-  // The figures are those of the pictures.
+  // The figures match the pictures.
   EXPECT_EQ(std::system(("'" GNOMON_SOURCE "/scripts/check_report' '" + (folder / "out").string() + "' > '" +
                          (folder / "stdout.txt").string() + "'")
                             .c_str()),
@@ -81,7 +81,7 @@ TEST_F(CliReportTest, ContinuesAnInterruptedRun)
 {
   ASSERT_EQ(report("--rounds 2").status, 0);
   json before = report_json();
-  // As if the second round had not come to the second technique.
+  // As if the run had been interrupted before the second technique of the second round.
   json &technique = before.at("scenes").at(0).at("techniques").at(1);
   technique.at("step_seconds").erase(1);
   for (json &picture : technique.at("pictures")) {
@@ -90,7 +90,7 @@ TEST_F(CliReportTest, ContinuesAnInterruptedRun)
   }
   write("out/report.json", before.dump());
   std::filesystem::remove(folder / "out/index.html");
-  // Such a run still has all pictures, and only at its end those of the front alone.
+  // An interrupted run has all pictures; a complete run has only those of the front.
   for (const char *name : {"hard_512", "esm_4_256"}) {
     for (const int n : {1, 4, 16}) {
       std::filesystem::copy_file(folder / "out/spots-reference.exr",
@@ -102,7 +102,7 @@ TEST_F(CliReportTest, ContinuesAnInterruptedRun)
   ASSERT_EQ(finished.status, 0) << finished.err;
   const json after = report_json();
   const json &again = after.at("scenes").at(0).at("techniques").at(1);
-  // What there was stays, and only what was missing is measured.
+  // Existing measurements are kept, and only the missing ones are made.
   EXPECT_EQ(after.at("scenes").at(0).at("techniques").at(0), before.at("scenes").at(0).at("techniques").at(0));
   EXPECT_EQ(again.at("step_seconds").size(), 2U);
   EXPECT_EQ(again.at("pictures").at(0).at("seconds").at(0), 123.0);
@@ -164,7 +164,7 @@ TEST_F(CliReportTest, RenderChoosesFromAReport)
   EXPECT_NE(finished.out.find("expected RMSE"), std::string::npos) << finished.out;
   EXPECT_NE(finished.out.find("measured: RMSE"), std::string::npos) << finished.out;
 
-  // Nothing is so exact: the nearest is taken, and the miss is said.
+  // No technique is so exact: the nearest is chosen, and the failure is reported.
   finished = run(render + "--size 48x27 --max-error 0.00001 --strict");
   EXPECT_EQ(finished.status, 4);
   EXPECT_NE(finished.err.find("limit: RMSE 1e-05 required"), std::string::npos) << finished.err;

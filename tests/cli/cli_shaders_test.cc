@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `gnomon shaders`: mistakes planted in a copy of the engine's shaders, and shaders of a user's own.
+// `gnomon shaders`: mistakes planted in a copy of the engine's shaders, and a user's own shaders.
 #include "cli_process.hh"
 
 #include "eevee_shaders.hh"
@@ -14,7 +14,7 @@ namespace {
 
 using test::Finished;
 
-/** Line, from 1, of the first that holds \a part; 0: none. */
+/** Number of the first line that contains \a part, from 1; 0 if there is none. */
 int line_of(const std::string &text, const std::string &part)
 {
   const std::size_t at = text.find(part);
@@ -30,7 +30,7 @@ std::size_t count_of(const std::string &text, const std::string &part)
   return count;
 }
 
-/** As the engine declares them: all variants of all programs for which \a is_counted. */
+/** Number of programs and variants that the engine declares, of the programs for which \a is_counted. */
 template <typename Predicate>
 std::size_t variant_count(const Predicate &is_counted)
 {
@@ -48,7 +48,7 @@ std::size_t variant_count()
   return variant_count([](eevee::Feature) { return true; });
 }
 
-/** "12 programs, 34 variants" */
+/** For example "12 programs, 34 variants". */
 std::string programs_and_variants()
 {
   return std::to_string(eevee::shader_declarations().size()) + " programs, " + std::to_string(variant_count()) +
@@ -57,7 +57,7 @@ std::string programs_and_variants()
 
 class ShadersTest : public test::ProgramTest {
  protected:
-  /** The engine's shaders, to be broken. */
+  /** A copy of the engine's shaders for planted mistakes. */
   void copy_tree()
   {
     std::filesystem::copy(GNOMON_SOURCE "/shaders", folder / "tree", std::filesystem::copy_options::recursive);
@@ -116,7 +116,7 @@ TEST_F(ShadersTest, RunWithoutDisplayDriverAndHome)
 
 struct Planted {
   const char *name;
-  /** One of few variants that reads the edited file. */
+  /** A program with few variants that reads the edited file. */
   const char *program;
   struct Edit {
     const char *file;
@@ -124,11 +124,11 @@ struct Planted {
     const char *to;
   };
   std::vector<Edit> edits;
-  /** Where the message must point: the line that holds \a at_text after the edits. */
+  /** The line of the expected message: the one that contains \a at_text after the edits. */
   const char *at_file;
   const char *at_text;
   const char *message;
-  /** Errors in all: a mistake is reported once, not once a variant. */
+  /** Number of errors: a mistake is reported once, not once for each variant. */
   std::size_t error_count = 1;
 };
 
@@ -187,7 +187,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "shared/eevee_light_shared.h",
                 "vec4 planted",
                 "of struct 'LightData' in block 'light_block' is not in C++ [layout]",
-                // The block no longer fits, either.
+                // The block's layout also differs.
                 2},
         Planted{"PaddingRemoved",
                 "eevee_depth",
@@ -242,7 +242,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "eevee/eevee_light_lib.glsl",
                 "uniform light_block",
                 "block 'light_block' takes 16400 bytes; all devices support 16384",
-                // C++ has fewer lights, too.
+                // C++ also has fewer lights.
                 2},
         Planted{"Recursion",
                 "eevee_tonemap",
@@ -262,7 +262,7 @@ TEST_F(ShadersTest, AVulkanOnlyMistakePassesForOpenGl)
           "layout(location = 0) out vec4 display;\nlayout(location = 5) uniform float planted;\n");
   replace("eevee/eevee_tonemap_frag.glsl", "radiance.rgb * exposure_scale", "radiance.rgb * planted");
   EXPECT_EQ(run("shaders check --shaders tree --program eevee_tonemap --target vulkan").status, 1);
-  // The push constants have lost a reader of one member, which is nothing to complain about.
+  // One member of the push constants has no reader any more, which is valid.
   const Finished opengl = run("shaders check --shaders tree --program eevee_tonemap --target opengl");
   EXPECT_EQ(opengl.status, 0) << opengl.out;
 }
@@ -271,7 +271,7 @@ TEST_F(ShadersTest, LayoutOfBlocksAgreesInBothColumns)
 {
   const Finished finished = run("shaders layout");
   EXPECT_EQ(finished.status, 0) << finished.out << finished.err;
-  // std140 by hand: four vec4 of matrix, a vec3, then an int in its row.
+  // std140 layout: a matrix of four vec4, a vec3, and an int in its row.
   EXPECT_NE(finished.out.find("      64     64  view.position_ws\n      76     76  view.is_perspective\n"),
             std::string::npos)
       << finished.out;
@@ -337,7 +337,7 @@ TEST_F(ShadersTest, AUsersShaderIsCheckedFromAnyFolderWithItsIncludesAndDefines)
   write_file("user/shaders/lib/beside.glsl", "const float beside = 1.0;\n");
   write_file("user/more/far.glsl",
              "#ifdef BROKEN\nfloat broken = nothing;\n#endif\nfloat far_value() { return 2.0; }\n");
-  // As if somewhere else altogether.
+  // From a folder that is unrelated to the files.
   const std::string check = "shaders check user/shaders/sky.frag ";
   const Finished fine = run(check + "-I user/more -D COUNT=3");
   EXPECT_EQ(fine.status, 0) << fine.out << fine.err;

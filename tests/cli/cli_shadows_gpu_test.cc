@@ -26,7 +26,7 @@ class CliShadowsTest : public test::ProgramTest {
     }
     has_vertex_layer = device->limits().has_vertex_layer;
   }
-  /** A ground of 40 m and \a count point lamps above it, that ask for \a kind of shadow. */
+  /** A ground of 40 m with \a count point lamps above it that have this shadow setting. */
   static std::string lamps_gltf(int count, const std::string &kind)
   {
     test::GltfBuilder builder;
@@ -36,7 +36,7 @@ class CliShadowsTest : public test::ProgramTest {
     builder.append("materials", {{"doubleSided", true}});
     builder.node(
         {{"mesh", builder.mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}, {"material", 0}})}});
-    // A caster over each lamp's foot, the same mesh.
+    // A caster below each lamp, all with the same mesh.
     for (int i = 0; i < 9; i++) {
       builder.node({{"mesh", 0}, {"scale", {0.02, 1, 0.02}}, {"translation", {-16 + 4 * i, 0.5, -16 + 4 * i}}});
     }
@@ -120,7 +120,7 @@ TEST_F(CliShadowsTest, AStillSceneUpdatesNoLampInTheSecondFrame)
   }
 }
 
-// hazards.md: more lamps than slots, shadow lost without a word; and reading past the array.
+// hazards.md: more lamps than slots, a shadow is lost silently; the array is read past its end.
 TEST_F(CliShadowsTest, LampsAboveTheLimitAreNamedAndTheOthersAreDrawn)
 {
   write("lamps.gltf", lamps_gltf(1000, "hard"));
@@ -128,7 +128,7 @@ TEST_F(CliShadowsTest, LampsAboveTheLimitAreNamedAndTheOthersAreDrawn)
   const Finished lax = run(render);
   EXPECT_EQ(lax.status, 0) << lax.err;
   EXPECT_NE(lax.err.find("limit: 745 of 1000 lamps give no light"), std::string::npos) << lax.err;
-  // The first 255 keep their light; all the others are named.
+  // The first 255 give light; all others are named.
   EXPECT_EQ(lax.err.find("'lamp254'"), std::string::npos);
   EXPECT_NE(lax.err.find("'lamp255'"), std::string::npos);
   EXPECT_NE(lax.err.find("'lamp999'"), std::string::npos);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `gnomon stability`, as far as it needs no driver.
+// `gnomon stability` without a driver.
 #include "cli_process.hh"
 
 #include <nlohmann/json.hpp>

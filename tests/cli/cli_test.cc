@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The command line's promise, as far as it needs no driver.
+// Exit statuses, messages and files of the command line, without a driver.
 #include "cli_explain.hh"
 #include "cli_output.hh"
 #include "cli_process.hh"
@@ -150,7 +150,7 @@ TEST_F(CliTest, JsonHasTimesCountersAndTheFrameTree)
   for (const nlohmann::json &seconds : json["frame_seconds"]) {
     EXPECT_GE(seconds.get<double>(), 0.0);
   }
-  // Four point lamps, all six faces each, in the first frame alone.
+  // Four point lamps with six faces each, in the first frame only.
   EXPECT_EQ(json["frames"][0]["lamps_updated"], 4);
   EXPECT_EQ(json["frames"][0]["faces_drawn"], 24);
   EXPECT_EQ(json["frames"][1]["lamps_updated"], 0);
@@ -166,7 +166,7 @@ TEST_F(CliTest, JsonHasTimesCountersAndTheFrameTree)
   }
 }
 
-/** glTF with a point lamp and nothing else, \a count times. */
+/** A glTF file with \a count point lamps and no other content. */
 std::string lamps_gltf(int count)
 {
   nlohmann::json nodes = nlohmann::json::array();
@@ -248,7 +248,7 @@ TEST_F(CliTest, FilesAreWrittenAtomically)
   EXPECT_EQ(file_count(), 0U);
   cli::write_atomically(path, [](const std::filesystem::path &beside) { std::ofstream(beside) << "whole"; });
   EXPECT_EQ(read("file.txt"), "whole");
-  // A failure leaves the older file as it was.
+  // After a failure the old file is unchanged.
   EXPECT_THROW(cli::write_atomically(path, [](const std::filesystem::path &) { throw std::runtime_error("no"); }),
                std::runtime_error);
   EXPECT_EQ(read("file.txt"), "whole");
@@ -270,7 +270,7 @@ TEST_F(CliTest, EveryNonFiniteValueIsCountedAndTheFirstFound)
 
 TEST_F(CliTest, ExrKeepsFloatsRowsAndMetadata)
 {
-  // Two pixels wide, two high, from the bottom: the first value of each pixel tells it.
+  // A picture of 2 x 2 pixels, rows from the bottom. The first value identifies the pixel.
   const std::vector<float> rgba = {1e-6F, 0, 0, 9, 2, 0, 0, 9, 3, 0, 0, 9, 65536.5F, 7, 8, 9};
   const std::filesystem::path path = folder / "image.exr";
   cli::write_exr(path, {2, 2}, rgba, {{"gnomon:seed", "5"}});

@@ -17,13 +17,13 @@
 
 namespace gnomon::test {
 
-/** Expects every property that scene.hh promises of an imported scene. */
+/** Expects the contract of scene.hh for imported scenes. */
 inline void expect_valid(const scene::Scene &scene)
 {
   EXPECT_EQ(verify::contract_faults(scene), std::vector<std::string>());
 }
 
-/** The thing number \a index of a pool in its order. \throws std::out_of_range */
+/** Item number \a index of a pool, in its order. \throws std::out_of_range */
 template <typename T>
 const T &nth(const scene::Pool<T> &things, std::size_t index)
 {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-/** Compressed and quantised meshes, and instances, against their plain form. */
+/** Compressed and quantised meshes, and instances, compared with their uncompressed form. */
 namespace gnomon::test {
 namespace {
 
@@ -98,7 +98,7 @@ float error_of(const Mesh &mesh)
   return error;
 }
 
-/** Replaces a view by its meshopt form. */
+/** Replaces a buffer view by its meshopt form. */
 void compress(GltfBuilder &builder, int accessor, const std::string &mode, std::size_t stride,
               const std::string &filter = "NONE", const std::vector<unsigned char> &filtered = {})
 {
@@ -166,7 +166,7 @@ TEST(GltfMeshopt, VerticesAreThoseOfThePlainForm)
     const Scene scene = import_text(with_fallback(meshopt_sheet(sheet, mode)));
     EXPECT_TRUE(scene.warnings.size() == plain.warnings.size()) << scene.warnings.back();
     expect_equal(nth(scene.meshes(), 0), nth(plain.meshes(), 0));
-    // The triangle codec may turn a triangle's corners round.
+    // The triangle codec may rotate a triangle's corners.
     EXPECT_NEAR(area(nth(scene.meshes(), 0)), area(nth(plain.meshes(), 0)), 1e-9);
     EXPECT_EQ(nth(scene.meshes(), 0).indices.size(), sheet.indices.size());
   }
@@ -311,7 +311,7 @@ TEST(GltfDraco, DamagedDataIsNamedAndBounded)
       EXPECT_HAS(import_error(draco_sheet(sheet, {whole.begin(), whole.begin() + std::ptrdiff_t(cut)})),
                  "nothing in it can be drawn");
     }
-    // Any byte may be wrong. All that can be asked is an end, and a valid scene or an error.
+    // Any byte may be wrong. The import must end with a valid scene or an error.
     std::mt19937 random(7);
     for (int round = 0; round < 60; round++) {
       std::vector<char> damaged = whole;
@@ -388,7 +388,7 @@ TEST(GltfQuantized, VerticesAreWithinTheStepOfThePlainForm)
   for (glm::vec3 &position : mesh.positions) {
     position.z -= 0.2F;
   }
-  // Normals have 8 bits: half a step in each of three coordinates, and what normalising adds.
+  // Normals have 8 bits: half a step in each of three coordinates, plus the error of normalising.
   EXPECT_LT(error_of(mesh), 0.01F);
   EXPECT_NEAR(area(mesh), area(nth(import(plain_sheet(sheet)).meshes(), 0)), 1e-3);
 }
@@ -411,7 +411,7 @@ TEST(GltfInstances, HaveTheMatricesOfEquivalentNodes)
   const auto world = [&](std::size_t i) { return scene.world_from_node(objects[i].node); };
   EXPECT_EQ(glm::vec3(world(0)[3]), glm::vec3(11, 2, 3));
   EXPECT_EQ(glm::vec3(world(1)[3]), glm::vec3(6, 5, -6));
-  // A quarter turn about Z takes x to y.
+  // A quarter turn about Z maps x to y.
   EXPECT_LT(glm::distance(glm::vec3(world(1)[0]), glm::vec3(0, 2, 0)), 1e-6F);
   EXPECT_LT(glm::distance(glm::vec3(world(1)[1]), glm::vec3(-3, 0, 0)), 1e-6F);
   EXPECT_LT(glm::distance(glm::vec3(world(1)[2]), glm::vec3(0, 0, 4)), 1e-6F);

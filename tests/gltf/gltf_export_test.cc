@@ -18,7 +18,7 @@ namespace {
 using scene::Handle;
 using scene::Scene;
 
-/** A scene as text, exact to the bit: equal texts mean equal scenes, apart from the places in the pools. */
+/** A scene as text, exact to the bit: equal texts mean equal scenes, apart from the indices in the pools. */
 class Description {
  public:
   static std::string of(const Scene &scene)
@@ -67,7 +67,7 @@ class Description {
     }
     return fmt::format("{}:{:x}", values.size(), hash);
   }
-  /** Number of a thing by its first use, so that sharing shows. */
+  /** Number of a thing in the order of first use, so that sharing is visible. */
   template <typename T, typename Add>
   std::string number(std::map<Handle<T>, std::size_t> &seen, Handle<T> handle, const Add &add)
   {
@@ -162,7 +162,7 @@ std::string content_of(const std::filesystem::path &path)
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/** Both kinds of file read back as \a scene, and the same scene gives the same bytes. */
+/** Both file formats read back as \a scene, and the same scene gives the same bytes. */
 void expect_round_trip(const Scene &scene)
 {
   const TemporaryFolder folder;
@@ -222,7 +222,7 @@ scene::Mesh triangle(const std::string &name, Values &value)
   return mesh;
 }
 
-/** A lamp with a value for all that its kind has. */
+/** A lamp with a value for each property of its kind. */
 scene::Lamp lamp_of(scene::LampKind kind, Values &value)
 {
   using scene::LampKind;
@@ -303,7 +303,7 @@ Handle<scene::Material> add_material(Scene &scene, Values &value)
   return scene.add(material);
 }
 
-/** Something of everything that a scene can hold. */
+/** A scene with every type of content. */
 Scene full_scene()
 {
   Values value;
@@ -417,7 +417,7 @@ TEST(GltfExport, AdditionsOfTheImporterAreNotWritten)
 
 TEST(GltfExport, BentFlatQuadsReadBack)
 {
-  // The importer gives each triangle its own normal, and so its own corners.
+  // The importer gives each triangle its own normal, and therefore its own vertices.
   GltfBuilder builder;
   const int positions = builder.positions({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0.3F});
   const glm::vec3 n = glm::normalize(glm::cross(glm::vec3(1, 1, 0), glm::vec3(-1, 1, 0.3F)));
@@ -482,7 +482,7 @@ TEST(GltfExport, ErrorsNameTheFileAndLeaveTheOldOne)
   std::filesystem::create_directory(folder.path() / "folder.glb");
   EXPECT_HAS(export_error(scene, folder.path() / "folder.glb"), "file: cannot be replaced: ");
   EXPECT_EQ(content_of(path), "old");
-  // Nothing is left beside it.
+  // No temporary file is left.
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2);
 }
 

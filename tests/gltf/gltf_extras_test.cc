@@ -77,7 +77,7 @@ TEST(GltfColor, InvalidTypesAreNamed)
 
 TEST(GltfColor, StaysWithItsVertex)
 {
-  // Vertices 1 and 3 are in one place and differ in colour; vertex 0 is used by no triangle.
+  // Vertices 1 and 3 have the same position and different colours; vertex 0 is used by no triangle.
   const std::vector<float> positions{9, 9, 9, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1};
   const std::vector<float> colors{0.9F, 0, 0, 0.1F, 0, 0, 0.2F, 0, 0, 0.3F, 0, 0, 0.4F, 0, 0, 0.5F, 0, 0};
   const std::array<float, 6> expected{0.1F, 0.2F, 0.4F, 0.3F, 0.4F, 0.5F};

@@ -67,7 +67,7 @@ std::string reason(const json &image)
 {
   const Scene scene = import(textured_triangle(image));
   expect_valid(scene);
-  // The stand-in alone: a checkerboard.
+  // Only the stand-in: a checkerboard.
   EXPECT_EQ(nth(scene.materials(), 0).base_color_texture.texture, scene.textures().first());
   EXPECT_TRUE(scene.images().size() == 1 && scene.textures().size() == 1);
   EXPECT_EQ(nth(scene.images(), 0).texels, (Bytes{255, 0, 255, 255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 0, 255, 255}));
@@ -273,7 +273,7 @@ std::vector<glm::vec2> uvs_of(const GltfBuilder &builder)
   return nth(import(builder).meshes(), 0).uvs;
 }
 
-/** Where the base colour texture is looked up. */
+/** Texture coordinates of the base colour texture. */
 std::vector<glm::dvec2> transformed_uvs_of(const GltfBuilder &builder)
 {
   const Scene scene = import(builder);

@@ -42,7 +42,7 @@ TEST(Choice, ErrorBetweenPointsIsAPower)
 TEST(Choice, FastestWithinTheError)
 {
   const std::vector<Model> models = two_models();
-  // 0.16 / 3 takes 3 s, and the other's first sample 4 s.
+  // Three samples of the first model give 0.16 / 3 in 3 s; one sample of the other takes 4 s.
   Choice choice = choose(models, {.error_max = 0.06, .seconds_max = {}});
   EXPECT_EQ(choice.technique.name, "cheap");
   EXPECT_EQ(choice.sample_count, 3);
@@ -83,7 +83,7 @@ TEST(Choice, UnmetRequirementIsReportedWithTheNearestChoice)
 TEST(Choice, ReportGivesTimesOfShadowsAndSamples)
 {
   SceneReport report;
-  // What no option of the program chooses cannot be chosen.
+  // Techniques without command line options are not chosen.
   report.techniques.emplace_back().pictures.emplace_back().seconds = {1.0};
   TechniqueReport &technique = report.techniques.emplace_back();
   technique.technique.options = "--shadow hard";
@@ -101,7 +101,7 @@ TEST(Choice, ReportGivesTimesOfShadowsAndSamples)
   EXPECT_EQ(models[0].points.size(), 2U);
 }
 
-/** A ground with a caster over it, and its exact picture. */
+/** A ground with a caster above it, and its reference picture. */
 class PixelSampleTest : public testing::Test {
  protected:
   PixelSampleTest()
@@ -124,7 +124,7 @@ class PixelSampleTest : public testing::Test {
 
 TEST_F(PixelSampleTest, ReproducesAKnownError)
 {
-  // Even, so that no pixel tells more than another, and larger where the sum of x and y is odd.
+  // The difference is larger where x + y is odd, so that it does not depend on the position.
   std::vector<glm::vec4> picture = exact_;
   double square = 0.0;
   for (std::size_t i = 0; i < picture.size(); i++) {
@@ -136,7 +136,7 @@ TEST_F(PixelSampleTest, ReproducesAKnownError)
   for (std::uint64_t seed = 0; seed < 4; seed++) {
     const PixelSample sample(*tracer_, camera_, size_px_, exact_, 1000, 16, seed);
     const SampledError error = sample.error(picture);
-    // Four deviations: once in 16 000 by chance, and the seeds are fixed.
+    // Four standard deviations: a probability of 1 / 16 000, and the seeds are fixed.
     EXPECT_NEAR(error.rmse, rmse, 4.0 * error.standard_error) << seed;
     EXPECT_LT(error.standard_error, 0.05 * rmse) << seed;
   }
@@ -144,7 +144,8 @@ TEST_F(PixelSampleTest, ReproducesAKnownError)
 
 TEST_F(PixelSampleTest, NoiseOfTheReferenceCancels)
 {
-  // Two samples a pixel are noisy at edges; multiplied with two others, their noise is as often below 0 as above.
+  // Two samples per pixel are noisy at edges. The product of two independent estimates is as often negative as
+  // positive.
   double square = 0.0;
   constexpr int seeds = 8;
   for (std::uint64_t seed = 0; seed < seeds; seed++) {
@@ -170,7 +171,8 @@ TEST_F(PixelSampleTest, ReferenceRefinesNoisyPixels)
   const ReferencePicture refined = reference_picture(tracer, camera_, size_px_, 4);
   const reference::Picture a = reference::direct_light(tracer, camera_, size_px_, {.sample_count = 2});
   const reference::Picture b = reference::direct_light(tracer, camera_, size_px_, {.sample_count = 2, .seed = 1});
-  // Half the halves' difference is the noise of their mean: measured 0.29 of it with the noisiest tenth refined.
+  // The noise of the mean is half of the difference of the halves. Measured: 0.29 of it with the noisiest tenth
+  // refined.
   EXPECT_LT(refined.noise, 0.5 * 0.5 * image_error(size_px_, a.pixels, b.pixels).rmse);
   const reference::Picture exact = reference::direct_light(tracer, camera_, size_px_, {.sample_count = 256, .seed = 9});
   const double error = image_error(size_px_, refined.picture.pixels, exact.pixels).rmse;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Edits of a large scene: each costs what it changed, in bytes, shadows and recordings, and not what the scene holds.
+// Edits of a large scene: the bytes, shadows and recordings of each depend on the edit, not on the size of the scene.
 #include "measure_edits.hh"
 
 #include "draw_objects.hh"
@@ -16,15 +16,15 @@ constexpr std::uint64_t object_bytes = sizeof(shared::ObjectData);
 constexpr std::uint64_t material_bytes = sizeof(shared::MaterialData);
 constexpr std::uint64_t texel_bytes = 4;
 /**
- * What lamps and shadows may upload at an edit: their blocks, whole, and the draws of casters. Far below the block of
- * all objects.
+ * Largest upload of lamps and shadows for an edit: their complete blocks, and the draws of casters. It is far below the
+ * size of object_block.
  */
 constexpr std::uint64_t lamps_bytes = sizeof(shared::LightBlock) + sizeof(shared::ShadowBlock) +
                                       edited_lamp_count * sizeof(shared::ShadowRenderBlock) + 32768;
 
 struct Allowed {
   std::uint64_t upload_bytes_max = 0;
-  /** Exactly. */
+  /** Exact number of bytes. */
   std::uint64_t shadows_drawn = 0;
   std::uint64_t pass_recordings = 0;
   std::uint64_t textures_made = 0;
@@ -37,17 +37,18 @@ const std::map<std::string, Allowed> allowed = {
     {"move an object far from lamps", {object_bytes + lamps_bytes, 0, 0, 0}},
     {"hide an object", {object_bytes + lamps_bytes, 0, 1, 0}},
     {"show an object", {object_bytes + lamps_bytes, 0, 1, 0}},
-    // The block of objects may have to grow.
+    // object_block may have to grow.
     {"add an object", {(edited_object_count + 2) * object_bytes + lamps_bytes, 0, 1, 0}},
     {"remove an object", {lamps_bytes, 0, 1, 0}},
     {"give an object another mesh", {object_bytes + lamps_bytes, 0, 1, 0}},
     {"rename an object, a mesh and a material", {}},
     {"set a matrix that is set already", {}},
     {"change a material's colour", {material_bytes, 0, 0, 0}},
-    // Settings choose which side of a one-sided material casts. With the default, both, the same layers result.
+    // Settings select the sides of a one-sided material that cast shadows. With the default, both, the layers are the
+    // same.
     {"make a material one-sided", {lamps_bytes + material_bytes, edited_lamp_count, 1, 0}},
     {"change an image", {texel_bytes + lamps_bytes, 0, 1, 1}},
-    // Each lamp reaches boxes with the mask.
+    // Each lamp reaches boxes with the masked material.
     {"change a mask's cutoff", {material_bytes + lamps_bytes, edited_lamp_count, 1, 0}},
     {"change a mask's image", {texel_bytes + lamps_bytes, edited_lamp_count, 1, 1}},
     {"move a lamp", {lamps_bytes, 1, 0, 0}},
@@ -55,7 +56,7 @@ const std::map<std::string, Allowed> allowed = {
     {"rename a lamp", {lamps_bytes, 0, 0, 0}},
     {"remove a lamp", {lamps_bytes, 0, 0, 0}},
     {"add a lamp", {lamps_bytes, 1, 0, 0}},
-    // Depth, radiance and film. Meshes, images, objects and shadows are those of the first viewport.
+    // Depth, radiance and film. Meshes, images, objects and shadows are shared with the first viewport.
     {"a second viewport", {lamps_bytes, 0, 1, 3}},
     // Shadows belong to an engine.
     {"a second engine, with a viewport", {lamps_bytes, edited_lamp_count, 1, 4}},

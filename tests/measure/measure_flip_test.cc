@@ -18,8 +18,8 @@ using Picture = std::vector<glm::vec4>;
 constexpr glm::ivec2 size_px{32, 16};
 
 /**
- * Where nothing has an edge, slopes in floats are not 0 but up to 3e-8, and the error of features is their root: 1.5e-4
- * in the exponent of a value whose logarithm times itself is below 0.37. Measured: 5.4e-5.
+ * Without edges, slopes in float are up to 3e-8 instead of 0, and the error of features is their square root: 1.5e-4 in
+ * the exponent of a value v with |v ln v| below 0.37. Measured: 5.4e-5.
  */
 constexpr double tolerance = 1e-4;
 
@@ -44,7 +44,7 @@ Picture noise(unsigned seed)
   return picture;
 }
 
-/** FLIP of two greys: no filter and no feature has a part in it, and a grey's a and b are 0. */
+/** FLIP of two greys, for which filters and features have no effect, and a and b are 0. */
 double flip_of_greys(double a, double b)
 {
   const auto lightness = [](double y) {
@@ -59,11 +59,11 @@ double flip_of_greys(double a, double b)
 
 struct RowFlip {
   double flip = 0.0;
-  /** Without the features. */
+  /** FLIP without features. */
   double colour = 0.0;
 };
 
-/** FLIP of two rows of greys, all rows of a picture being the same, by sums in one dimension as the paper has them. */
+/** FLIP of two pictures with equal rows of greys, computed by one-dimensional sums as in the paper. */
 RowFlip flip_of_rows(const std::vector<double> &a, const std::vector<double> &b)
 {
   constexpr double pi = std::numbers::pi;
@@ -74,7 +74,7 @@ RowFlip flip_of_rows(const std::vector<double> &a, const std::vector<double> &b)
   const auto slope = [&gaussian](double d) { return -d * gaussian(d); };
   const auto bend = [&gaussian](double d) { return (d * d / (sigma * sigma) - 1.0) * gaussian(d); };
   const auto filtered = [](const std::vector<double> &row, int x, int radius, const auto &kernel) {
-    // What is positive and what is negative have a sum of 1 each.
+    // Positive and negative weights each have a sum of 1.
     double above = 0.0;
     double below = 0.0;
     double above_weights = 0.0;
@@ -149,7 +149,7 @@ TEST(Flip, OfPicturesThatAreTurnedIsTheSame)
     return result;
   };
   const double upright = mean_flip(size_px, noise(1), noise(2));
-  // Sums are in another order.
+  // The tolerance covers the other order of the sums.
   EXPECT_NEAR(mean_flip(size_px, half_turn(noise(1)), half_turn(noise(2))), upright, 1e-6);
   EXPECT_NEAR(mean_flip({size_px.y, size_px.x}, transposed(noise(1)), transposed(noise(2))), upright, 1e-6);
 }
@@ -165,7 +165,7 @@ TEST(Flip, OfUniformGreysIsOfTheirLightness)
 TEST(Flip, GreenAndBlueGiveTheLargestErrorOne)
 {
   constexpr glm::ivec2 small{4, 4};
-  // Of a float's rounding.
+  // Rounding in float.
   EXPECT_NEAR(mean_flip(small, uniform({0, 1, 0}, small), uniform({0, 0, 1}, small)), 1.0, 1e-6);
   for (int a = 0; a < 8; a++) {
     for (int b = 0; b < 8; b++) {
@@ -173,7 +173,7 @@ TEST(Flip, GreenAndBlueGiveTheLargestErrorOne)
       const double flip = mean_flip(small, uniform(corner(a), small), uniform(corner(b), small));
       EXPECT_LE(flip, 1.0);
       EXPECT_TRUE((flip == 0.0) == (a == b));
-      // Nor is any other pair as far apart; green and magenta come near.
+      // All other pairs are nearer; green and magenta are the next.
       EXPECT_TRUE(flip < 0.9999 || (std::min(a, b) == 2 && std::max(a, b) == 4)) << a << ", " << b << ": " << flip;
     }
   }
@@ -189,8 +189,8 @@ TEST(Flip, DetectsABlackSquareOnGrey)
       square[y * 128 + x] = glm::vec4(0.0F);
     }
   }
-  // The square is a 32nd of the picture. Within it the error is at least that of the greys, but for a seam of which the
-  // filter takes some; outside of it nothing differs further off than nine pixels.
+  // The square covers 1/32 of the picture. Inside, the error is at least that of the greys, except at the filtered rim;
+  // outside, no pixel farther than nine pixels differs.
   const double within = flip_of_greys(0.0, 0.2) * 14.0 * 14.0 / (128.0 * 64.0);
   const double around = 34.0 * 34.0 / (128.0 * 64.0);
   const double flip = mean_flip(large, square, plain);
@@ -210,7 +210,7 @@ TEST(Flip, RowsGiveTheOneDimensionalSumAndLinesCountMoreThanGradients)
   line[31] += 0.4;
   std::vector<double> step = plain;
   std::fill(step.begin() + 40, step.end(), 0.1);
-  // Its light differs as much from the plain picture's, to an eye that sees no features.
+  // A picture with the same colour difference, but without features.
   std::vector<double> swell = plain;
   for (std::size_t x = 0; x < swell.size(); x++) {
     swell[x] += 0.0033 * std::exp(-0.5 * std::pow((double(x) - 31.0) / 16.0, 2.0));
@@ -227,10 +227,10 @@ TEST(Flip, RowsGiveTheOneDimensionalSumAndLinesCountMoreThanGradients)
   EXPECT_GT(features[0], 3.0 * features[1]);
 }
 
-/** FLIP of grey, and of vertical stripes that differ from it by \a direction at most. */
+/** FLIP of grey against vertical stripes with amplitude \a direction. */
 double flip_of_stripes(glm::vec3 direction, double period_px)
 {
-  // Wide, for the edges' part to be small.
+  // Wide, so that the edges have a small effect.
   constexpr glm::ivec2 wide{240, 2};
   const Picture plain = uniform(glm::vec3(0.4F), wide);
   Picture picture = plain;
@@ -243,11 +243,11 @@ double flip_of_stripes(glm::vec3 direction, double period_px)
 
 TEST(Flip, FineStripesOfRedAndGreenCountMoreThanOfBlueAndYellow)
 {
-  // What X alone and Z alone are in sRGB (Lindbloom), so that luminance does not change: 10 % of white's.
+  // The directions of X and Z in sRGB (Lindbloom), which do not change luminance, with 10 % of white's value.
   const glm::vec3 red_green = 0.1F * 0.95047F * glm::vec3(3.24045F, -0.96927F, 0.05564F);
   const glm::vec3 blue_yellow = 0.1F * 1.08883F * glm::vec3(-0.49853F, 0.04156F, 1.05723F);
-  // A Gaussian of 1.1 pixels leaves half of a wave of six pixels. Those of 3 and of 2.4 leave a 60th of it, and
-  // three quarters of one of 24.
+  // A Gaussian of 1.1 pixels keeps half of the amplitude of a wave of six pixels. Gaussians of 3 and 2.4 pixels keep
+  // 1/60 of it, and three quarters of a wave of 24 pixels.
   EXPECT_GT(flip_of_stripes(red_green, 6.0), 0.2);
   EXPECT_LT(flip_of_stripes(blue_yellow, 6.0), 0.02);
   EXPECT_GT(flip_of_stripes(blue_yellow, 24.0), 0.1);

@@ -33,7 +33,7 @@ TEST(ImageError, OfAnEvenOffset)
   // Powers of two: exact in float.
   const ImageError error = image_error(size_px, flat(0.75F), flat(0.5F));
   EXPECT_DOUBLE_EQ(error.rmse, 0.25);
-  // Of summing 1536 roundings.
+  // Rounding of a sum of 1536 terms.
   EXPECT_NEAR(error.relative_mse, 0.0625 / (0.25 + relative_mse_floor), 1e-14);
   EXPECT_DOUBLE_EQ(error.p99, 0.25);
 }
@@ -50,7 +50,7 @@ TEST(ImageError, MeanIsOverPixelsAndChannels)
 
 TEST(ImageError, P99IsThe99thPercentile)
 {
-  // 512 pixels: the 507th of their differences is the first that 99 % are not above.
+  // 512 pixels: the 507th smallest difference is not exceeded by 99 %.
   std::vector<glm::vec4> picture = flat(0.0F);
   for (std::size_t i = 0; i < 5; i++) {
     picture[i].b = 1.0F;
@@ -79,7 +79,7 @@ TEST(ImageError, OtherSizesAreRefused)
 
 TEST(ImageError, DisplayHasTheCurveOfSrgb)
 {
-  // IEC 61966-2-1: 0.2 shows as 0.4845, what is beyond white as white.
+  // IEC 61966-2-1: 0.2 is encoded as 0.4845; values above white are clipped.
   const std::vector<glm::vec4> pixel = {glm::vec4(0.2F, 2.0F, -1.0F, 0.0F)};
   EXPECT_EQ(display_bytes(pixel), (std::vector<std::uint8_t>{124, 255, 0, 255}));
 }

@@ -21,7 +21,7 @@ PictureReport picture(int sample_count, double seconds, double rmse)
   return one;
 }
 
-/** Pictures of the grid's first technique. */
+/** Adds pictures of the first technique of the grid. */
 SceneReport scene_of(std::vector<PictureReport> pictures)
 {
   SceneReport scene;
@@ -46,7 +46,7 @@ TEST(Report, FrontHasTheUndominatedPictures)
 {
   SceneReport scene = scene_of(
       {picture(1, 1.0, 0.5), picture(2, 2.0, 0.6), picture(3, 2.0, 0.3), picture(4, 3.0, 0.3), picture(5, 4.0, 0.1)});
-  // Fastest and wholly wrong: no candidate.
+  // The fastest picture is not finite, so it is not on the front.
   scene.techniques[0].pictures.push_back(picture(6, 0.1, 0.0));
   scene.techniques[0].pictures.back().error.rmse = std::nan("");
   find_front(scene);
@@ -133,7 +133,7 @@ TEST(Report, JsonHasAllThatContinuingARunNeeds)
   EXPECT_EQ(again.scenes[0].techniques[0].technique.sample_counts, technique.technique.sample_counts);
   EXPECT_THROW(static_cast<void>(run_from_json(nlohmann::json::object())), std::exception);
 
-  // What does not fit together is no report: nothing is read past its end later.
+  // Inconsistent data is refused, so that no later code reads past its end.
   const auto throws = [&json](const std::string &path, const nlohmann::json &value) {
     nlohmann::json broken = json;
     broken[nlohmann::json::json_pointer("/scenes/0/techniques/0/" + path)] = value;
@@ -155,7 +155,7 @@ TEST(Report, CsvHasOneRowPerPictureAndEqualColumns)
   run.scenes[0].name = "say \"cheese\"";
   const std::string csv = to_csv(run);
   EXPECT_EQ(std::ranges::count(csv, '\n'), 3);
-  // Names of techniques are quoted, as some hold a comma; the first holds none.
+  // Names of techniques are quoted, because some contain a comma; the first does not.
   EXPECT_EQ(std::ranges::count(csv, ','), 3 * 24);
   EXPECT_NE(csv.find("\n\"say \"\"cheese\"\"\",\"no shadow\",0,1,"), std::string::npos) << csv;
 }

@@ -24,14 +24,14 @@ inline scene::Handle<scene::Material> add_material(scene::Scene &scene, const gl
   return scene.add(std::move(material));
 }
 
-/** Change the material that was added first. */
+/** Changes the material that was added first. */
 template <std::invocable<scene::Material &> Change>
 void edit_material(scene::Scene &scene, Change change)
 {
   scene.edit(scene.materials().first(), change);
 }
 
-/** Change the mesh that was added first. */
+/** Changes the mesh that was added first. */
 template <std::invocable<scene::Mesh &> Change>
 void edit_mesh(scene::Scene &scene, Change change)
 {
@@ -112,7 +112,7 @@ inline void add_camera(scene::Scene &scene, const scene::PlacedCamera &camera)
   scene.add(std::move(node));
 }
 
-/** In no scene. */
+/** A camera that belongs to no scene. */
 inline scene::PlacedCamera camera_at(const glm::vec3 &position, const glm::vec3 &target, float vertical_angle = 0.8F)
 {
   scene::PlacedCamera camera;

@@ -48,7 +48,7 @@ Node at(const glm::dvec3 &position, const std::string &name = "node")
   return node;
 }
 
-/** The message of the exception that \a act throws; empty where it throws none. */
+/** The message of the exception that \a act throws; empty if it throws none. */
 template <typename Exception>
 std::string message_of(const std::function<void()> &act)
 {
@@ -67,7 +67,7 @@ std::string message_of(const std::function<void()> &act)
 
 // ---- Handles ----
 
-/** The promises of handles, for one kind of thing. */
+/** Tests the properties of handles for one type of thing. */
 template <typename T>
 void expect_handles_of(const T &value)
 {
@@ -102,7 +102,7 @@ void expect_handles_of(const T &value)
   EXPECT_NE(again.key(), a.key());
   EXPECT_EQ(pool.find(a), nullptr) << kind << ": the old handle does not name the new thing";
   EXPECT_EQ(pool.index_end(), 2U);
-  // Copies of a scene have the same handles, and are edited apart.
+  // Copies of a scene have the same handles and are edited independently.
   Scene copy = scene;
   copy.remove(again);
   EXPECT_TRUE(pool.is_live(again));
@@ -175,7 +175,7 @@ TEST(SceneHandle, StaleReferencesAreListedAndIgnored)
                                       "node 'all': its camera was removed", "texture '0': its image was removed"}));
   EXPECT_TRUE(scene.objects().empty() && scene.placed_lamps().empty() && scene.placed_cameras().empty());
   EXPECT_TRUE(scene.bounds().is_empty());
-  // New things at the old places are not meant.
+  // Old handles do not identify new things at the same index.
   scene.add(triangle());
   scene.add(Lamp());
   EXPECT_TRUE(scene.objects().empty() && scene.placed_lamps().empty());
@@ -186,7 +186,7 @@ TEST(SceneHandle, StaleReferencesAreListedAndIgnored)
 
 TEST(SceneNodes, WorldMatricesAreComposedInDouble)
 {
-  // 16777217 is no float: in single precision the child would stand at 0 or 2.
+  // 16777217 is not a float: in single precision the child would be at 0 or 2.
   Scene scene;
   const auto root = scene.add(at({16777217, 0, 0}));
   const auto child = scene.add(at({-16777216, 0, 0}), root);
@@ -364,7 +364,7 @@ TEST(SceneNodes, LampsAndCamerasArePlacedWithoutScaleShearAndMirroring)
 
 // ---- Revisions ----
 
-/** The aspects of a thing whose revision differs, and is the scene's last. */
+/** The aspects of a thing whose revision differs and is the scene's last. */
 template <typename T>
 class Changes {
  public:
@@ -372,7 +372,7 @@ class Changes {
   {
     start();
   }
-  /** What has changed since the last call. */
+  /** The aspects that have changed since the last call. */
   std::vector<typename T::Aspect> take()
   {
     std::vector<typename T::Aspect> changed;
@@ -401,7 +401,7 @@ class Changes {
   std::array<Revision, std::size_t(T::Aspect::Count)> before_{};
 };
 
-/** Each change alters one aspect, and setting the same value again none. */
+/** Each change changes one aspect, and setting the same value again changes none. */
 template <typename T>
 void expect_aspects(const T &value, const std::vector<std::pair<typename T::Aspect, std::function<void(T &)>>> &edits)
 {
@@ -543,12 +543,12 @@ TEST(SceneRevision, MovingAParentChangesTheTransformsBelowAlone)
   scene.edit(root, [](Node &node) { node.is_visible = false; });
   EXPECT_EQ(of_child.take(), Aspects{Node::Aspect::Visibility});
   EXPECT_EQ(of_leaf.take(), Aspects{Node::Aspect::Visibility});
-  // A hidden node's child that is hidden itself stays as it is.
+  // A child that is hidden itself does not change with its hidden parent.
   scene.edit(child, [](Node &node) { node.is_visible = false; });
   EXPECT_TRUE(of_child.take().empty() && of_leaf.take().empty());
   scene.edit(root, [](Node &node) { node.is_visible = true; });
   EXPECT_TRUE(of_child.take().empty() && of_leaf.take().empty());
-  // A parent with the same matrix and visibility changes neither.
+  // A new parent with the same matrix and visibility changes neither aspect.
   const auto twin = scene.add(scene.nodes()[root]);
   scene.set_parent(child, twin);
   EXPECT_TRUE(of_child.take().empty() && of_leaf.take().empty());
@@ -595,7 +595,9 @@ TEST(SceneRevision, MeshBoundsFollowThePositions)
 
 // ---- Refused edits ----
 
-/** Each change is refused with a message that holds its word, by add, replace and edit; then nothing has changed. */
+/**
+ * Each change is refused by add, replace and edit, with a message that contains its word, and the scene is unchanged.
+ */
 template <typename T>
 void expect_refused(const T &value, const std::vector<std::pair<std::string, std::function<void(T &)>>> &changes)
 {
@@ -660,7 +662,7 @@ TEST(SceneEdit, ARefusedTransformChangesNothing)
   EXPECT_EQ(scene.world_from_node(child)[3], glm::dvec4(1, 2, 3, 1));
   EXPECT_EQ(scene.nodes()[root].parent_from_node[2][2], 1.0);
   EXPECT_EQ(scene.revision(), before);
-  // Singular and mirrored ones are none of these.
+  // Singular and mirrored matrices are valid.
   scene.set_transform(root, glm::scale(glm::dmat4(1.0), {-1.0, 0.0, 1.0}));
   EXPECT_EQ(scene.world_from_node(child)[0][0], -1.0);
 }

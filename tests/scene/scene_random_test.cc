@@ -14,7 +14,7 @@
 namespace gnomon::scene {
 namespace {
 
-/** What a scene has to hold, kept in the plainest way. */
+/** A simple model of the expected content of a scene. */
 struct Model {
   struct ModelNode {
     Node value;
@@ -23,7 +23,7 @@ struct Model {
   std::map<Handle<Node>, ModelNode> nodes;
   std::map<Handle<Lamp>, Lamp> lamps;
   std::map<Handle<Mesh>, Mesh> meshes;
-  /** All that were ever removed. */
+  /** All removed handles. */
   std::vector<Handle<Node>> removed_nodes;
   std::vector<Handle<Lamp>> removed_lamps;
   std::vector<Handle<Mesh>> removed_meshes;
@@ -105,7 +105,7 @@ class Editor {
   {
     return std::uniform_int_distribution<std::size_t>(0, count - 1)(random_);
   }
-  /** One of a map's handles; seldom one that names nothing. */
+  /** A random handle of a map; seldom an invalid one. */
   template <typename T, typename Value>
   Handle<T> any(const std::map<Handle<T>, Value> &things)
   {
@@ -161,7 +161,7 @@ class Editor {
   void remove_node()
   {
     const Handle<Node> root = any(model.nodes);
-    // Seldom, as with a root goes all that is below it.
+    // Seldom, because removing a root also removes its descendants.
     if (!root || below(2) == 0) {
       return;
     }
@@ -246,13 +246,13 @@ TEST(SceneRandom, TenThousandEditsAgreeWithASimpleModel)
     }
   }
   editor.check();
-  // Else little would have been tested.
+  // The random edits must have reached a scene of some size.
   EXPECT_GT(editor.model.nodes.size(), 20U);
   EXPECT_GT(editor.model.removed_nodes.size(), 1000U);
   EXPECT_GT(editor.model.removed_lamps.size(), 300U);
 }
 
-/** Whoever compares revisions after each edit misses no change of a world matrix, and sees none that is not. */
+/** Comparing revisions after each edit finds exactly the changes of world matrices. */
 TEST(SceneRandom, RevisionsShowEachChangeOfAWorldMatrix)
 {
   Editor editor;

@@ -10,7 +10,7 @@
 namespace gnomon::scene {
 namespace {
 
-/** A square from -1 to 1 that faces +Z; uvs by \a uv_of a position. */
+/** A square from -1 to 1 that faces +Z, with uvs by \a uv_of of a position. */
 template <typename UvOf>
 Mesh square(UvOf &&uv_of)
 {
@@ -47,7 +47,7 @@ TEST(Tangents, PointAlongUAndTheirSignUpTheImage)
 
 TEST(Tangents, FollowTheTransformOfTheTexture)
 {
-  // The image turned by 90 degrees counter-clockwise: its u points up on the square.
+  // The image is rotated by 90 degrees counter-clockwise: u points up on the square.
   Mesh mesh = square([](const glm::vec3 &p) { return glm::vec2(p.x, -p.y); });
   TextureSlot slot;
   slot.rotation = -std::numbers::pi_v<float> / 2;
@@ -57,7 +57,7 @@ TEST(Tangents, FollowTheTransformOfTheTexture)
   expect_all(mesh, {0, along.x > 0 ? 1 : -1, 0, 1});
 }
 
-/** The sphere's own direction of growing longitude is its tangent, and each is perpendicular to the normal. */
+/** The direction of increasing longitude is the tangent, orthogonal to the normal. */
 TEST(Tangents, OfASphereFollowItsParallels)
 {
   constexpr int columns = 32;
@@ -87,7 +87,7 @@ TEST(Tangents, OfASphereFollowItsParallels)
     const glm::vec3 along = glm::normalize(glm::vec3(-mesh.positions[i].y, mesh.positions[i].x, 0));
     EXPECT_NEAR(glm::dot(tangent, mesh.normals[i]), 0, 1e-6);
     EXPECT_NEAR(glm::length(tangent), 1, 1e-6);
-    // Triangles of a quad are not symmetric about its meridian; at the seam only one side counts.
+    // The triangles of a quad are not symmetric about its meridian; at the seam only one side contributes.
     EXPECT_GT(glm::dot(tangent, along), std::cos(0.11));
     EXPECT_EQ(mesh.tangents[i].w, 1.0F);
   }
@@ -95,7 +95,7 @@ TEST(Tangents, OfASphereFollowItsParallels)
 
 TEST(Tangents, AVertexBetweenAnImageAndItsMirrorImageIsSplit)
 {
-  // u grows towards the middle line x = 0 from both sides.
+  // u increases towards the line x = 0 from both sides.
   Mesh mesh;
   mesh.positions = {{-1, 0, 0}, {0, 0, 0}, {0, 1, 0}, {1, 0, 0}};
   mesh.normals.assign(4, {0, 0, 1});

@@ -14,7 +14,7 @@ using test::ShaderTexts;
 
 const std::string VERSION = "#version 450 core\n";
 
-/** The program "test" of \a vertex, one entry for each list of defines, keys from 0. */
+/** Entries of the program "test" with the stage \a vertex, one for each list of defines, with keys from 0. */
 std::vector<VariantInterfaces> interfaces(const std::string &vertex,
                                           const std::vector<std::vector<std::string>> &variants,
                                           const std::vector<std::uint32_t> &keys = {0, 1, 2})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lines, names and expressions of a size that no person writes: a message or none, but no end of the program.
+// Very long lines, names and expressions: they give a message or none, and never end the program.
 #include "shader_check.hh"
 #include "shader_check_reflection.hh"
 
@@ -12,10 +12,10 @@ using test::error_of;
 using test::ShaderTexts;
 
 constexpr std::size_t count = 400'000;
-/** Of a message: some more than the 400 bytes that are kept of its text. */
+/** Limit of a message's length: slightly more than the 400 bytes of its text. */
 constexpr std::size_t message_bytes_max = 600;
 
-/** A fragment shader that writes \a value, behind \a head. */
+/** A fragment shader that writes \a value, after \a head. */
 std::string shader(const std::string &head, const std::string &value)
 {
   return "#version 450 core\n" + head +
@@ -44,7 +44,7 @@ std::size_t message_count(const std::string &text)
   return messages.size();
 }
 
-/** Of reflect(); empty where there is none. */
+/** Message of reflect(); empty if there is none. */
 std::string reflection_error(const std::string &text)
 {
   const ShaderTexts texts{{{"frag", text}}};

@@ -22,7 +22,7 @@ using test::ShaderTexts;
 const std::string VERSION = "#version 450 core\n";
 const std::string EMPTY_MAIN = VERSION + "void main() {}\n";
 
-/** \a vertex is a whole file; the fragment stage has nothing to say. */
+/** Reflects a program of \a vertex, a complete file, and an empty fragment stage. */
 gpu::ShaderInterface reflected(std::string vertex, const std::string &fragment = EMPTY_MAIN, ShaderTexts texts = {})
 {
   texts.texts["vert"] = std::move(vertex);
@@ -47,7 +47,7 @@ TEST(Reflect, AnIncludeInABranchThatIsNotTakenDoesNotTakeTheFileFromOthers)
   }
 }
 
-/** Line \a line of \a path is at fault, says the message of compiling \a vertex. */
+/** Expects that the compile error of \a vertex names line \a line of \a path. */
 void expect_error_at(const std::string &vertex, const ShaderTexts &texts, const std::string &path_and_line)
 {
   const std::string message = error_of([&] { reflected(vertex, EMPTY_MAIN, texts); });
@@ -61,7 +61,7 @@ TEST(Reflect, ErrorNamesFileAndLineThroughNestedIncludes)
   const std::string wrong = "float f_wrong = undeclared_name;\n";
   const ShaderTexts fine{
       {{"outer", "#pragma once\nfloat a;\n#include \"inner\"\nfloat b;\n"}, {"inner", "float c;\n\nfloat d;\n"}}};
-  // In an include of an include; behind the inner one; in the file itself before and behind the includes.
+  // In a nested include; after it; in the file itself before and after the includes.
   ShaderTexts texts = fine;
   texts.texts["inner"] = "float c;\n\n" + wrong;
   expect_error_at(VERSION + "\n#include \"outer\"\nvoid main() {}\n", texts, "inner:3");

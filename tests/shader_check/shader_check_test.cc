@@ -15,7 +15,7 @@ using test::expect_contains;
 using test::ShaderTexts;
 
 const std::string VERSION = "#version 450 core\n";
-/** The second line is the caller's first. */
+/** The caller's text begins in line 2. */
 const std::string COLOR = "layout(location = 0) out vec4 color; ";
 
 std::vector<CheckMessage> check(const std::string &vertex, const std::string &fragment,
@@ -46,7 +46,7 @@ void expect_clean(const std::vector<CheckMessage> &messages)
   EXPECT_EQ(to_string(messages), "");
 }
 
-/** One message, of this rule at this line of the file that was given. */
+/** Expects one message with this rule at this line. */
 void expect_one(const std::vector<CheckMessage> &messages, Severity severity, std::string_view rule,
                 std::string_view file, int line)
 {
@@ -58,7 +58,7 @@ void expect_one(const std::vector<CheckMessage> &messages, Severity severity, st
   EXPECT_EQ(messages[0].line, line + 1) << to_string(messages);
 }
 
-/** The body of a function that gives \a x, a vec3 of any value, to the expression. */
+/** The body of a function with \a expression of x, a vec3 of any value. */
 std::vector<CheckMessage> check_expression(const std::string &body)
 {
   return check_fragment("layout(location = 0) in vec3 x; layout(location = 1) in vec3 y;" + COLOR +
@@ -137,7 +137,7 @@ TEST(CheckShader, VaryingsAreMatchedByLocation)
   expect_one(check("layout(location = 7) out vec3 c; void main() { gl_Position = vec4(0.0); c = vec3(0.0); }\n",
                    COLOR + "\nlayout(location = 7) in vec2 c;\n" + reads),
              Severity::Error, "varying-type", "frag", 2);
-  // What is declared only needs nobody to write it.
+  // Inputs that are declared but not read need no output.
   expect_clean(check("void main() { gl_Position = vec4(0.0); }\n",
                      COLOR + "layout(location = 7) in vec2 c; void main() { color = vec4(0.0); }\n"));
 }
@@ -166,7 +166,7 @@ TEST(CheckShader, OutputsThatNoStageReads)
   expect_one(check(vertex, COLOR + "void main() { color = vec4(0.0); }\n"), Severity::Warning, "unread-output", "vert",
              2);
   expect_clean(check(vertex, COLOR + "layout(location = 1) in vec2 uv; void main() { color = vec4(uv, uv); }\n"));
-  // Nobody knows what stands behind a stage that is checked alone.
+  // The next stage is unknown if a stage is checked alone.
   expect_clean(check(vertex, ""));
 }
 
@@ -188,7 +188,7 @@ TEST(CheckShader, SlotsAreSharedInVulkanAndPerKindInOpenGl)
                                       "layout(set = 1, binding = 4) uniform b_block { vec4 b; };\n"
                                       "void main() { color = a + b; }\n",
                               vulkan));
-  // Two stages.
+  // One message for each of the two stages.
   expect_one(check("layout(binding = 1) uniform a_block { vec4 a; }; void main() { gl_Position = a; }\n",
                    COLOR + "\nlayout(binding = 2) uniform a_block { vec4 a; }; void main() { color = a; }\n"),
              Severity::Error, "slot", "frag", 2);
@@ -201,7 +201,7 @@ TEST(CheckShader, BindingsThatNoStageReads)
              "unused-binding", "frag", 2);
   expect_one(check_fragment(COLOR + block + "vec4 idle() { return a; } void main() { color = vec4(0.0); }\n"),
              Severity::Warning, "unused-binding", "frag", 2);
-  // One stage that reads it is enough.
+  // A binding is used if one stage reads it.
   expect_clean(
       check(block + "void main() { gl_Position = a; }\n", COLOR + block + "void main() { color = vec4(0.0); }\n"));
   expect_one(check_fragment(COLOR + "layout(binding = 1)\nuniform sampler2D t; void main() { color = vec4(0.0); }\n"),
@@ -232,7 +232,7 @@ TEST(CheckShader, ArraysInBlocksFillRows)
   expect_one(block("std140", "mat3 b;"), Severity::Error, "block-array", "frag", 3);
   expect_one(block("std140", "float b[4];"), Severity::Warning, "block-array", "frag", 3);
   expect_clean(block("std140", "vec4 b[4]; mat4 c[2]; vec3 d; float e;"));
-  // In a struct of the block, too.
+  // Also in a struct of the block.
   expect_one(
       check_fragment(COLOR + "struct S {\nvec3 v[2]; }; layout(std140, binding = 1) uniform a_block { S a[2]; };\n"
                              "void main() { color = vec4(a[1].v[1], 1.0); }\n"),

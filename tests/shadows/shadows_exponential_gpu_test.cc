@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Exponential shadows of real scenes against exact rays: what doc/decisions/0005 quotes.
+// Exponential shadows of real scenes compared with ray tracing, for the figures of doc/decisions/0005.
 #include "eevee_camera.hh"
 #include "eevee_engine.hh"
 #include "gltf_import.hh"
@@ -17,10 +17,10 @@ namespace gnomon {
 namespace {
 
 constexpr glm::ivec2 size_px(640, 360);
-/** Of the pixels, across and up, one in so many is judged. */
+/** Every n-th pixel in both directions is compared. */
 constexpr int stride = 9;
 
-/** A scene's point lamps and spots, and what is seen of them. */
+/** A scene's point lamps and spots, and its visible receivers. */
 struct Judge {
   struct Point {
     std::size_t pixel = 0;
@@ -58,7 +58,7 @@ struct Judge {
             glm::dot(from_lamp, -glm::dvec3(lamp.world_from_lamp[2])) > std::cos(double(lamp.spot_outer_angle)));
   }
 
-  /** One a lamp; empty of suns. */
+  /** One for each lamp; empty for suns. */
   [[nodiscard]] std::vector<eevee::Probe> probes_of(const eevee::ShadowSettings &shadow) const
   {
     render_scene::RenderScene render_scene(device, scene);
@@ -77,7 +77,9 @@ struct Judge {
     return probes;
   }
 
-  /** Share of a cone of half opening \a angle, radians, around the ray from the lamp that reaches the receiver's plane.
+  /**
+   * Fraction of the cone around the ray from the lamp, with half opening \a angle, radians, that reaches the receiver's
+   * plane.
    */
   [[nodiscard]] double truth(const Point &point, const scene::PlacedLamp &lamp, double angle) const
   {
@@ -96,7 +98,7 @@ struct Judge {
       const double turn = std::numbers::pi * (3.0 - std::sqrt(5.0)) * i;
       const glm::dvec3 ray = axis + radius * (std::cos(turn) * across + std::sin(turn) * up);
       const double down = glm::dot(ray, r.normal_ws);
-      // What passes the plane by sees nothing of it.
+      // Rays that miss the plane do not count.
       if (down < -1e-3) {
         lit += sees(lamp_ws + ray * (glm::dot(r.position_ws - lamp_ws, r.normal_ws) / down)) ? 1.0 : 0.0;
         count++;
@@ -105,7 +107,7 @@ struct Judge {
     return count > 0 ? lit / count : sees(r.position_ws) ? 1.0 : 0.0;
   }
 
-  /** Root of the mean square of visibility less truth, over all lamps. */
+  /** RMSE of visibilities over all lamps. */
   [[nodiscard]] double error(const eevee::ShadowSettings &shadow, double truth_angle) const
   {
     const std::vector<eevee::Probe> probes = probes_of(shadow);
@@ -144,7 +146,7 @@ TEST_F(ExponentialShadows, VariancesAreNearerToTheTruthWhereTheFilterIsWide)
       const double evsm = judge.error(shadow, double(angle));
       fmt::print("{}, filter {} rad, 512 texels: visibility RMSE {:.4f} with esm, {:.4f} with evsm\n", name, angle, esm,
                  evsm);
-      // A map of more texels does as much for a narrow filter; nothing else does for a wide one.
+      // A larger map has the same effect for a narrow filter, but not for a wide one.
       EXPECT_LT(evsm, (angle > 0.0F ? 0.85 : 1.0) * esm) << name << ", " << angle;
     }
   }

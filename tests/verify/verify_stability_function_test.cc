@@ -12,7 +12,7 @@
 namespace gnomon::verify {
 namespace {
 
-/** Not asked of the list itself: that takes a while, and would be done at every start. */
+/** Written out, because creating the list of cases takes too long for the start of the test program. */
 const std::vector<std::string> groups = {"esm",  "depth", "octahedral", "cube", "lamps",   "shadow",
                                          "area", "bsdf",  "space",      "sun",  "picture", "reference"};
 
@@ -32,7 +32,7 @@ const StabilityCase &case_named(const std::vector<StabilityCase> &cases, const s
   return *found;
 }
 
-/** First parameter at which \a one is above its bound or not finite; infinity where it never is. */
+/** First parameter at which the error of \a one is above its bound or not finite; infinity if there is none. */
 double first_failure(const StabilityCase &one)
 {
   for (const StabilitySample &sample : one.run()) {
@@ -102,12 +102,12 @@ TEST(StabilityBaselines, OverflowAtTheLimitOfExp)
                                                     {"unsafe log 32f 80/m, limit of the spread", 88.72 / 80.0},
                                                     {"evsm naive 32f, limit of exp(2 c z) 5/m", 44.36 / 5.0}};
   for (const auto &[name, threshold] : thresholds) {
-    // Samples are a hundredth of the threshold apart, but for the square of the mean, which overflows with the squares.
+    // The samples are a hundredth of the threshold apart. The square of the mean overflows together with the squares.
     EXPECT_NEAR(first_non_finite(case_named(cases, name)) / threshold, 1.0, 0.0101) << name;
   }
 }
 
-// hazards.md: halves hold linear distances too coarsely: half an ulp is 1.6 cm at 40 m.
+// hazards.md: halves are too coarse for linear distances: half an ulp is 1.6 cm at 40 m.
 TEST(StabilityBaselines, LinearHalvesFailWhereHalfAnUlpMatters)
 {
   const std::vector<StabilityCase> cases = cases_of("esm");
@@ -121,7 +121,8 @@ TEST(StabilityBaselines, LinearHalvesFailWhereHalfAnUlpMatters)
   }
 }
 
-// A depth near 1 is rounded by 2^-25, of which a forward one makes distance² / near.
+// A depth near 1 has a rounding error of 2^-25. For a forward depth this is a distance error of distance² / near times
+// as much.
 TEST(StabilityBaselines, ForwardDepthsFailFromAFewNearPlanesOn)
 {
   const std::vector<StabilityCase> cases = cases_of("depth");
@@ -129,7 +130,8 @@ TEST(StabilityBaselines, ForwardDepthsFailFromAFewNearPlanesOn)
     const StabilityCase &forward = case_named(cases, "forward, " + range);
     const double near = range.starts_with("near 1 ") ? 1.0 : 0.01;
     const double expected = forward.bound * 0x1p-23 / 0x1p-25 * near;
-    // Half of it where the depth's own computation rounds as much, and a sample more where it happens to be exact.
+    // Half of it if the computation of the depth has the same rounding error, and one sample later if it happens to be
+    // exact.
     const double first = first_failure(forward);
     EXPECT_GE(first, 0.25 * expected) << range;
     EXPECT_LE(first, 2.0 * expected) << range;

@@ -22,7 +22,7 @@ TEST_F(StabilityImages, HaveUniqueNames)
   }
 }
 
-// `gnomon stability` runs all; three of each group show that they run and pass, and those that once did not are here.
+// `gnomon stability` runs all cases. The tests run three of each group, and those that failed in the past.
 TEST_F(StabilityImages, TheFirstTheMiddleAndTheLastOfEachGroupPass)
 {
   const std::set<std::string> once_failed = {"range, esm", "blend 1"};
