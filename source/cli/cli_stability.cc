@@ -123,7 +123,7 @@ Summary summary_of(std::span<const CaseResult> results)
 
 std::string to_text(const Summary &summary)
 {
-  return fmt::format("{} cases: {} passed ({} baselines seen to fail), {} failed, {} non-finite", summary.cases,
+  return fmt::format("{} cases: {} passed ({} baselines failed as expected), {} failed, {} non-finite", summary.cases,
                      summary.passed, summary.baselines, summary.failed, summary.non_finite);
 }
 

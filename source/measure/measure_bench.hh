@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-/** The benchmarks of `gnomon bench`, but for `edits` (measure_edits.hh). */
+/** The benchmarks of `gnomon bench`, except for `edits` (measure_edits.hh). */
 namespace gnomon::measure {
 
 /** Median and quartiles of measured times, seconds. */
@@ -70,7 +70,10 @@ struct DrawSeconds {
   std::vector<double> sum;
 };
 
-/** Draws with a matrix of their own, each of another mesh than the draw before. A first round is not measured. */
+/**
+ * Measures draws that each have their own matrix and another mesh than the previous draw. A first round is not
+ * measured.
+ */
 [[nodiscard]] DrawSeconds measure_draws(gpu::Device &device, int draw_count, int rounds);
 
 /** The cost of drawing one of left_out_cases(). */
@@ -78,7 +81,7 @@ struct LeftOutCost {
   std::string name;
   /** passes, draws, shaders_made, textures_made and upload_bytes of the first frame. */
   gpu::Counters counters;
-  /** Of the device after the first frame, bytes. */
+  /** Device memory after the first frame, bytes. */
   std::size_t memory_bytes = 0;
   /** One time for each round: a sync and a frame in which all resources are created. */
   std::vector<double> first_seconds;
@@ -86,7 +89,7 @@ struct LeftOutCost {
   std::vector<double> warm_seconds;
 };
 
-/** The full scene first. Each round draws each scene in turn; a first round is not measured. */
+/** Measures left_out_cases() in their order, in turn in each round. A first round is not measured. */
 [[nodiscard]] std::vector<LeftOutCost> measure_left_out(gpu::Device &device, int rounds);
 
 }  // namespace gnomon::measure

@@ -11,7 +11,10 @@ namespace gnomon::measure {
 
 namespace {
 
-/** Draws a first and some warm frames of \a one. \a cost: receives the figures, but no times if \a is_warm_up. */
+/**
+ * Draws a first frame and some warm frames of \a one. \a cost: receives the results; times only if \a is_warm_up is
+ * false.
+ */
 void draw_left_out(gpu::Device &device, const LeftOutCase &one, LeftOutCost &cost, bool is_warm_up)
 {
   constexpr glm::ivec2 size_px(640, 360);
@@ -30,7 +33,7 @@ void draw_left_out(gpu::Device &device, const LeftOutCase &one, LeftOutCost &cos
   cost.counters.textures_made = after.textures_made - before.textures_made;
   cost.counters.upload_bytes = after.upload_bytes - before.upload_bytes;
   cost.memory_bytes = device.memory_bytes();
-  // The best of a few: other programs' work only adds.
+  // The fastest of a few frames, because other programs only add time.
   double warm = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 5; i++) {
     const double warm_start = now(Clock::Wall);

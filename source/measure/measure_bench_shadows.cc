@@ -15,10 +15,10 @@ namespace gnomon::measure {
 namespace {
 
 constexpr std::array<LayerPassVariant, 4> variants = {{
-    {"culled", "a pass a face, each face's view culling all casters (no face masks)", eevee::LayerPass::Single, true},
-    {"six", "--cube-pass six: a pass a face, face masks once a lamp", eevee::LayerPass::Single},
-    {"geometry", "--cube-pass geometry: one pass, the geometry shader chooses the layer", eevee::LayerPass::Geometry},
-    {"layered", "--cube-pass layered: one pass, the vertex shader chooses it", eevee::LayerPass::Layered},
+    {"culled", "one pass for each face, whose view culls all casters (no face masks)", eevee::LayerPass::Single, true},
+    {"six", "--cube-pass six: one pass for each face, with one face mask for each caster", eevee::LayerPass::Single},
+    {"geometry", "--cube-pass geometry: one pass, the geometry shader selects the layer", eevee::LayerPass::Geometry},
+    {"layered", "--cube-pass layered: one pass, the vertex shader selects the layer", eevee::LayerPass::Layered},
 }};
 
 /** Casters on a grid, a metre apart, and a point lamp in their middle, drawn by one variant. */

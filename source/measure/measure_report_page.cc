@@ -41,7 +41,7 @@ std::string name_of(const TechniqueReport &technique, const PictureReport &pictu
 
 Chart error_against_time(const SceneReport &scene)
 {
-  Chart chart{scene.name + ": error against time", {"seconds, shadows drawn anew"}, {"RMSE"}, {}};
+  Chart chart{scene.name + ": error against time", {"seconds, including shadows"}, {"RMSE"}, {}};
   ChartSeries marked{"Pareto front", {}, true, true};
   for (const FrontPoint &point : front(scene)) {
     marked.points.push_back(

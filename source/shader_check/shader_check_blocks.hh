@@ -11,7 +11,7 @@ struct BlockComparison {
   struct Field {
     /** The name of the GLSL struct that declares the field; empty: the block itself. */
     std::string structure;
-    /** As in gpu::BlockLayout. */
+    /** Name as in gpu::BlockLayout. */
     std::string name;
     std::optional<std::size_t> cpp_offset_bytes;
     std::optional<std::size_t> glsl_offset_bytes;

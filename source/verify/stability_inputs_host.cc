@@ -14,7 +14,7 @@ namespace {
 
 using namespace measure;
 
-/** A ground, a box above it, and a lamp of each kind that has a shadow. */
+/** A ground, a box above it, and a lamp of each kind with a shadow. */
 scene::Scene lit_scene()
 {
   scene::Scene scene;
@@ -33,7 +33,7 @@ const scene::PlacedCamera &lit_camera()
   return camera;
 }
 
-/** Settings so small that a null device is asked for little. */
+/** Settings with small resources. */
 eevee::Settings small_settings(scene::ShadowKind kind = scene::ShadowKind::Hard)
 {
   eevee::Settings settings;
@@ -57,7 +57,7 @@ std::size_t non_finite(const glm::mat4 &matrix)
   return count;
 }
 
-/** What the shaders would read that is not finite. */
+/** Number of non-finite values in the blocks of shadows. */
 std::size_t shadow_block_faults(const eevee::Shadows &shadows)
 {
   std::size_t count = 0;
@@ -100,7 +100,7 @@ void add_settings_inputs(std::vector<StabilityCase> &cases)
   const auto add = [&](const char *name, const char *unit, const char *expected_text, Numbers values,
                        std::function<void(eevee::Settings &, double)> set,
                        scene::ShadowKind kind = scene::ShadowKind::Hard) {
-    cases.push_back(input_case<double>("settings", name, "frame by those settings", unit, expected_text,
+    cases.push_back(input_case<double>("settings", name, "frame with these settings", unit, expected_text,
                                        std::move(values), [set = std::move(set), kind](const double &value) {
                                          eevee::Settings settings = small_settings(kind);
                                          set(settings, value);
@@ -108,7 +108,7 @@ void add_settings_inputs(std::vector<StabilityCase> &cases)
                                        }));
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  // NaN is no parameter to print: it stands at -1e9 there.
+  // NaN has the parameter -1e9, because NaN cannot be plotted.
   const auto with_nan = [&](Numbers values) { return values + Numbers{{-1e9, nan, rejected}}; };
   const Numbers sizes = inputs({1, 2, 16, 16384}, Expected::Accepted) + inputs({-1, 0}, rejected) +
                         inputs({16385, 2147483647}, Expected::Reported);

@@ -445,7 +445,7 @@ class DocumentReader {
   }
 };
 
-/** "CODE: The JSON document has …": the code means nothing to a user. */
+/** Removes the code from "CODE: The JSON document has …", which has no meaning for a user. */
 std::string reason_of(simdjson::error_code error)
 {
   const std::string_view message = simdjson::error_message(error);
@@ -479,7 +479,7 @@ Model parse_document(std::span<const unsigned char> json)
     error = parse();
   }
   if (error == simdjson::DEPTH_ERROR) {
-    // What nobody reads may be of any depth.
+    // Parts of the document that are not read may have any depth.
     error = parser.allocate(text.size(), text.size());
     error = error == simdjson::SUCCESS ? parse() : error;
   }

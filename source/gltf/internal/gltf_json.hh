@@ -81,13 +81,13 @@ void read_numbers(const Place &place, const JsonValue &value, std::array<double,
 template <typename Read>
 struct Member {
   std::string_view key;
-  /** Takes the member's Place and JsonValue. */
+  /** Called with the member's Place and JsonValue. */
   Read read;
 };
 template <typename Read>
 Member(std::string_view, Read) -> Member<Read>;
 
-/** A member that is stored in \a target, whose type says what the member must be; an int is an index. */
+/** A member that is stored in \a target. The type of \a target determines the member's type; an int is an index. */
 template <typename T>
 auto into(std::string_view key, T &target)
 {

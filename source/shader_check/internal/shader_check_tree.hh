@@ -63,7 +63,7 @@ class FunctionFacts : public glslang::TIntermTraverser {
 
   void assign(TIntermNode *to, glslang::TIntermTyped *expression);
 
-  /** By path. */
+  /** Values by path. */
   std::map<std::string, Value> values_;
   std::set<std::string> tested_;
 };
