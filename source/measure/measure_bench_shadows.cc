@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::array<LayerPassVariant, 4> variants = {{
     {"culled", "one pass for each face, whose view culls all casters (no face masks)", eevee::LayerPass::Single, true},
-    {"six", "--cube-pass six: one pass for each face, with one face mask for each caster", eevee::LayerPass::Single},
+    {"six", "--cube-pass six: one pass for each face, with face masks computed once for each lamp",
+     eevee::LayerPass::Single},
     {"geometry", "--cube-pass geometry: one pass, the geometry shader selects the layer", eevee::LayerPass::Geometry},
     {"layered", "--cube-pass layered: one pass, the vertex shader selects the layer", eevee::LayerPass::Layered},
 }};

@@ -95,12 +95,12 @@ TEST(NormalMatrix, KeepsNormalsPerpendicularToTheSurfaceAndOutside)
       const glm::dmat3 exact(matrix);
       const glm::dvec3 transformed = glm::dmat3(normals) * n;
       ASSERT_GT(glm::length(transformed), 0);
-      // Columns are rounded to floats: the error is a share of the matrix, not of the product.
+      // Columns are rounded to float: the error is relative to the matrix, not to the product.
       const double tolerance = 1e-6 * double(largest_element(normals));
       for (const glm::dvec3 &tangent : {exact * u, exact * v}) {
         EXPECT_NEAR(glm::dot(transformed, glm::normalize(tangent)), 0, tolerance);
       }
-      // What stands off the surface outside stays outside, mirrored or not.
+      // A point outside of the surface remains outside, mirrored or not.
       EXPECT_GT(glm::dot(transformed, exact * n), 0);
     }
   }
@@ -124,7 +124,7 @@ TEST(NormalMatrix, OfAFlattenedObjectIsTheNormalOfItsPlane)
   std::mt19937 random(19);
   std::normal_distribution<float> normal;
   for (int i = 0; i < 50; i++) {
-    // Two edges span the plane, the third lies in it.
+    // Two edges span the plane, which contains the third.
     const glm::vec3 u(normal(random), normal(random), normal(random));
     const glm::vec3 v(normal(random), normal(random), normal(random));
     glm::mat4 matrix(1);
@@ -265,7 +265,7 @@ TEST(ObjectBuffer, RefusesWhatIsNotFiniteAndIsAsBefore)
   EXPECT_EQ(objects.revision(), revision);
   EXPECT_EQ(objects.world_from_object(index), glm::mat4(2));
   EXPECT_EQ(objects.volume(index).radius, 4);
-  // Nor does a removed object's place get lost.
+  // The index of a removed object is reused.
   objects.remove(index);
   EXPECT_NE(test::error_of([&] { objects.add(glm::mat4(NAN_VALUE)); }), "");
   EXPECT_EQ(objects.add(glm::mat4(1)), index);
@@ -327,7 +327,7 @@ TEST(ObjectBuffer, GrowsNowAndThenAndNeverShrinks)
 
 TEST(ObjectBuffer, TakesAllThatTheLimitHoldsAndNamesItBeyond)
 {
-  // Eight entries and a little.
+  // Slightly more than eight entries.
   gpu::Limits limits;
   limits.storage_block_bytes_max = 8 * ENTRY_BYTES + 100;
   const auto device = gpu::create_null_device(limits);
@@ -341,7 +341,7 @@ TEST(ObjectBuffer, TakesAllThatTheLimitHoldsAndNamesItBeyond)
   objects.set(1, glm::mat4(2), 0, {});
   test::expect_contains(test::error_of([&] { objects.upload(*device); }), "buffer 'object_block'");
   EXPECT_TRUE(objects.buffer()) << "what was there is lost";
-  // The next try fails too; without the object past the limit all is well, and no edit is lost.
+  // The next attempt fails, too. Without the object above the limit it succeeds, and no edit is lost.
   EXPECT_NE(test::error_of([&] { objects.upload(*device); }), "");
   objects.remove(last);
   EXPECT_EQ(uploaded_bytes(objects, *device), ENTRY_BYTES) << "the object that was set";

@@ -9,7 +9,7 @@
 
 namespace gnomon::test {
 
-/** Reads one of each kind. */
+/** A shader that reads one binding of each kind. */
 inline constexpr const char *EVERYTHING_VERT = R"(
 #include "draw/draw_object_lib.glsl"
 layout(location = 0) flat out uvec2 instance;
@@ -123,7 +123,7 @@ struct EverythingPass {
   draw::Pass pass{"everything", gpu::State::WriteColor | gpu::State::DepthNearerEqual, &objects};
 };
 
-/** All that a list holds, as text: equal where the lists are. */
+/** The complete content of a list as text. Equal texts mean equal lists. */
 inline std::string dump(const gpu::CommandList &list)
 {
   std::string text;

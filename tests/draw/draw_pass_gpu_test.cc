@@ -51,7 +51,7 @@ class PassGpu : public test::GpuDeviceTest {
 
 TEST_F(PassGpu, SerializesAsOnTheNullBackend)
 {
-  // Its batches stand where they stand on a device of their own.
+  // Batches have the same positions in the pool as on a device of their own.
   full = gpu::Batch();
   const test::EverythingPass everything(*device);
   EXPECT_EQ(everything.pass.serialize(*device), test::EverythingPass::TEXT);
@@ -151,7 +151,7 @@ void main()
 
 TEST_F(PassGpu, ObjectsReachTheShaderFieldByField)
 {
-  // One call an object; a pixel a field, as C++ wrote it.
+  // One call for each object; one pixel for each field, with the value that C++ wrote.
   const gpu::Shader shader = make_shader(*device, "object", R"(
 #include "draw/draw_object_lib.glsl"
 layout(location = 0) flat out uint object_index;

@@ -63,7 +63,7 @@ TEST(Pass, LeavesStateOffForOneRecordAlone)
   const auto device = gpu::create_null_device();
   const test::EverythingPass everything(*device);
   gpu::CommandList list;
-  // Of the pass, of the group, and one that neither has.
+  // A state bit of the pass, one of the group, and one of neither.
   everything.pass.record(View(), list, gpu::State::DepthNearerEqual | gpu::State::BlendAdd | gpu::State::DepthClamp);
   const std::string text = list.serialize(*device);
   EXPECT_NE(text.find("  state write_color cull_back\n"), std::string::npos) << text;
@@ -91,7 +91,7 @@ TEST(Pass, ClearForgetsGroupsAndKeepsTheRest)
 /** A group over the shader that reads one of each kind. */
 class ShadingGroupTest : public testing::Test {
  protected:
-  /** Records \a pass before and after \a change; whether that made a difference. */
+  /** Records \a pass before and after \a change. \return whether the lists differ. */
   template <typename Change>
   bool is_changed_by(Change &&change)
   {
@@ -189,7 +189,7 @@ TEST_F(ShadingGroupTest, UnknownNamesBindNothing)
   group.bind_texture_ref("lost", &binding);
   group.constant("lost", 1);
   group.constant_ref("lost", &large);
-  // The right name of another kind.
+  // An existing name of another kind of binding.
   group.bind_uniform("material_block", block);
   group.bind_storage("light_block", store);
   group.bind_texture("light_block", picture, sampler);
@@ -289,7 +289,7 @@ TEST_F(ShadingGroupTest, DrawsOfAGroupAreOneCommand)
   }
   group.instances(a).add(1);
   gpu::CommandList list;
-  // Behind what another pass has recorded.
+  // After the commands of another pass.
   list.draws.resize(3);
   list.instances.resize(5);
   pass.record(view, list);
@@ -311,7 +311,7 @@ TEST_F(ShadingGroupTest, CallsOfDifferentGroupsAreNotJoined)
 
 TEST_F(ShadingGroupTest, CallOfAnEmptyBatchDoesNotSwallowTheNext)
 {
-  // An empty batch takes no room: the next one stands in the same place.
+  // An empty batch takes no space: the next one has the same position.
   const gpu::Batch empty = device->create_batch({.name = "empty", .positions = {}, .normals = {}, .indices = {}});
   const gpu::Batch next = test::full_triangle(*device, 0.5F);
   ASSERT_EQ(empty.range().first_index, next.range().first_index);
@@ -349,7 +349,7 @@ TEST_F(ShadingGroupTest, InstancesChangeBetweenRecords)
   EXPECT_EQ(drawn(pass, view), "a: 8/3 9/0 4/2\n");
   instances.clear();
   EXPECT_EQ(drawn(pass, view), "");
-  // Held while more are made.
+  // The reference is kept while further groups are created.
   std::vector<InstanceCall *> more;
   for (int i = 0; i < 100; i++) {
     more.push_back(&group.instances(b));
@@ -376,7 +376,7 @@ TEST_F(ShadingGroupTest, CallOutsideTheViewIsLeftOut)
   group.call(a, 3, {{0, 0, -10}, 1});
   group.call(b, 4, {{500, 0, -10}, 1});
   group.call(a, 5, {{500, 0, -10}, -1});
-  // Across what is left out, the same batch is still one draw.
+  // Calls of the same batch become one draw, even if a culled call is between them.
   EXPECT_EQ(drawn(pass, view), "a: 1/0 3/0 5/0\n");
   EXPECT_EQ(
       drawn(pass, View(glm::lookAt(glm::vec3(0), glm::vec3(0, 0, 1), glm::vec3(0, 1, 0)), perspective(1, 1, 1, 100))),
@@ -430,7 +430,7 @@ TEST(Pass, RecordsOnOneThreadAndIsSubmittedOnAnother)
   };
   gpu::CommandList here;
   record(here);
-  // Several at once read one pass.
+  // Several threads read one pass concurrently.
   std::array<gpu::CommandList, 4> lists;
   std::vector<std::thread> threads;
   for (gpu::CommandList &list : lists) {

@@ -69,8 +69,8 @@ TEST(DepthMap, GivesTheDepthThatTheHostsProjectionGives)
         const glm::dvec4 clip = glm::dmat4(clip_from_view) * glm::dvec4(0, 0, -distance, 1);
         const double depth = clip.z / clip.w;
         const glm::dvec4 scale(map.scale);
-        // The scale has the rounding of floats. Of a parallel view, the fraction's terms are as long as its range of
-        // 1000 m, and are divided by the distance.
+        // The scale is rounded to float. For a parallel view, the terms of the fraction have the magnitude of its range
+        // of 1000 m and are divided by the distance.
         const double rounding = clip_from_view[3][3] == 1.0F ? 1000.0 * 0x1p-23 : 0.0;
         const double tolerance = 1e-6 + rounding / distance;
         EXPECT_NEAR((scale.x * depth + scale.y) / (scale.z * depth + scale.w), stored(convention.depth, -distance),

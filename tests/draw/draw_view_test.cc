@@ -65,7 +65,7 @@ TEST(Perspective, FarPlaneAtInfinityIsTheLimit)
 
 TEST(Perspective, DepthResolvesEveryDistanceAlikeAtARatioOfAMillion)
 {
-  // The point of reversed float depth: the distance that a stored depth stands for errs by a share of itself.
+  // The purpose of a reversed float depth: the error of the distance is relative to the distance.
   const double near = 1e-2;
   const double far = 1e4;
   const glm::mat4 matrix = perspective(1, 1, float(near), float(far));
@@ -180,7 +180,7 @@ std::vector<View> random_views(std::mt19937 &random, int count)
   return views;
 }
 
-/** In double, a hair inside. */
+/** In double, slightly inside. */
 bool is_inside(const View &view, const glm::dvec3 &point)
 {
   const glm::dvec4 clip = glm::dmat4(view.clip_from_world()) * glm::dvec4(point, 1);
@@ -209,7 +209,7 @@ TEST(View, CullsNoSphereThatHasAPointInTheFrustum)
       }
     }
   }
-  // Both happen, or nothing is tested.
+  // Both results must occur, otherwise nothing is tested.
   EXPECT_GT(touched, 300);
   EXPECT_GT(culled, 300);
 }

@@ -225,7 +225,7 @@ TEST_F(ViewportTest, ResizeFreesTheDepthAndTellsTheEngines)
   EXPECT_EQ(device->live_resources(), std::vector<std::string>());
   const gpu::TextureDesc &depth = viewport.depth_texture().desc();
   EXPECT_EQ(glm::ivec2(depth.width, depth.height), glm::ivec2(6, 10));
-  // The objects are as they were.
+  // The objects are unchanged.
   EXPECT_EQ(synced(viewport, {&a}), (Log{"a init", "a cache_finish"}));
 }
 

@@ -28,7 +28,7 @@ TEST(State, HasEachOfItsBitsAndNoOther)
   EXPECT_FALSE(has(state, State::None));
 }
 
-/** What the tests below draw into and with. */
+/** Resources of the tests below. */
 class CommandListTest : public testing::Test {
  protected:
   std::unique_ptr<Device> device = create_null_device();
@@ -147,7 +147,7 @@ TEST_F(CommandListDeathTest, UpdatePastTheBufferIsAnAssertion)
   EXPECT_DEATH(list.update(block, 500, std::vector<std::byte>(16)), "16 bytes at 500 do not fit into 512");
 }
 
-// The stack of seed 001, where Pop and Top of an empty one are undefined.
+// The stack of seed 001, for which Pop and Top of an empty stack are undefined.
 using FramebufferStackTest = CommandListTest;
 
 TEST_F(FramebufferStackTest, PopOnEmptyIsAnErrorAndChangesNothing)
@@ -156,7 +156,7 @@ TEST_F(FramebufferStackTest, PopOnEmptyIsAnErrorAndChangesNothing)
   expect_contains(error_of([&] { stack.pop(); }), "pop");
   EXPECT_TRUE(stack.is_empty());
   EXPECT_TRUE(list.commands().empty());
-  // And works afterwards as if nothing had been.
+  // Afterwards the stack works as before.
   stack.push("main", framebuffer, {});
   stack.pop();
   EXPECT_THROW(stack.pop(), Error);

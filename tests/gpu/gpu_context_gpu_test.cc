@@ -18,7 +18,7 @@ using test::error_of;
 using test::expect_contains;
 using test::make_shader;
 
-/** A picture that takes all kinds of resources and bindings. */
+/** A picture that uses all kinds of resources and bindings. */
 struct SmallScene {
   explicit SmallScene(Device &owner) : device(owner)
   {
@@ -119,7 +119,7 @@ TEST_F(HostContextGpu, DrawsAndStaysTheHosts)
 
 GLint integer(GLenum name)
 {
-  // The polygon mode may come as two.
+  // The query of the polygon mode may return two values.
   std::array<GLint, 2> values = {-1, -1};
   glGetIntegerv(name, values.data());
   return values[0];
@@ -135,7 +135,7 @@ GLint integer_at(GLenum name, GLuint index)
 TEST_F(HostContextGpu, HostFindsDefaultsAfterASubmission)
 {
   const auto device = create_gl_device({.context = ContextKind::Host});
-  // Deleting what is bound unbinds it, so it lives on.
+  // Deleting a bound object unbinds it, so the scene's resources exist until the end of the test.
   SmallScene scene(*device);
   EXPECT_EQ(scene.drawn(), SMALL_PICTURE);
 
@@ -339,13 +339,13 @@ TEST_F(HeadlessGpu, DriverErrorIsAnErrorOnceInADebugDevice)
   const Buffer block = device->create_buffer({.name = "block", .size_bytes = 1024});
   CommandList list;
   list.begin_pass("p", framebuffer, {});
-  // No driver has so many slots, and the validation does not know their number.
+  // No driver has this many slots, and the validation does not know the limit.
   list.bind_uniform(1 << 20, {block.id(), 0, 16});
   list.end_pass();
   const std::uint64_t passes = device->counters().passes;
   expect_contains(error_of([&] { device->submit(list); }), "submit: the driver reports");
   EXPECT_EQ(device->counters().passes, passes);
-  // It is not reported again by what is right.
+  // The error is not reported again by a valid command.
   EXPECT_EQ(small_picture(*device), SMALL_PICTURE);
 }
 
@@ -371,7 +371,7 @@ TEST_F(HeadlessGpu, ShaderThatTheDriverAloneRejectsIsAnErrorThatMakesNothing)
 
 TEST(HeadlessDeathTest, WithoutAnyWayTheErrorNamesEach)
 {
-  // In a process of its own: EGL reads its environment once.
+  // In a separate process, because EGL reads its environment once.
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   EXPECT_EXIT(
       {

@@ -18,7 +18,7 @@ constexpr Limits SMALL = {
     .uniform_offset_alignment = 16,
 };
 
-/** \a action is an error that says all \a parts, and leaves \a device as it was. */
+/** Expects an error of \a action that contains all \a parts, and an unchanged \a device. */
 template <typename Action>
 void expect_refused(Device &device, Action &&action, std::initializer_list<std::string_view> parts)
 {

@@ -13,7 +13,7 @@ using test::append_draw;
 using test::make_shader;
 using test::push_constants;
 
-/** object and value of the draw's instance, and what else a pixel knows. */
+/** Object and value of the draw's instance, and other values of a pixel. */
 constexpr const char *INSTANCE_FRAG = R"(
 layout(location = 0) flat in uvec2 instance;
 layout(location = 0) out vec4 result;
@@ -88,7 +88,7 @@ TEST_F(DrawGpu, OneCommandDrawsManyBatchesEachWithItsInstances)
   for (int x = 0; x < GRID; x++) {
     cells.push_back(cell(x, x));
     const BatchRange &range = cells.back().range();
-    // Of two instances the second is what stays.
+    // The second of two instances remains visible.
     list.draws.push_back(
         {range.index_count, 2, range.first_index, range.base_vertex, std::uint32_t(list.instances.size())});
     list.instances.push_back({7, 7});
@@ -405,7 +405,7 @@ void main()
     return submitted(list)[at(2, 2)];
   };
   EXPECT_EQ(drawn(), glm::vec4(normals[0], 1));
-  // In the same place of the pool.
+  // At the same position of the pool.
   const std::int32_t place = batch.range().base_vertex;
   batch = Batch();
   batch = cell(2, 2, 4);
@@ -431,7 +431,7 @@ void main()
 {
   result = vec4(color, 0, 1);
 })");
-  // Batches without any in between, and enough of both that the pool grows several times.
+  // Batches with and without uvs, enough of both that the pool grows several times.
   std::vector<Batch> batches;
   std::vector<Batch> others;
   const std::array<std::uint32_t, 3> indices = {0, 1, 2};

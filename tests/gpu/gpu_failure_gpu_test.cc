@@ -15,7 +15,7 @@ using test::expect_contains;
 using test::Hook;
 using test::make_shader;
 
-/** A device whose driver is made to fail. Without debug messages, as in release builds. */
+/** A device with a driver that fails on demand, without debug messages, as in release builds. */
 class FailureGpu : public test::GpuDeviceTest {
  protected:
   void SetUp() override
@@ -51,7 +51,7 @@ class FailureGpu : public test::GpuDeviceTest {
     EXPECT_EQ(gpu::read_as<glm::vec4>(*device, picture), std::vector<glm::vec4>(16, glm::vec4(value)));
   }
 
-  /** What the driver reports next, before its own errors. */
+  /** Errors that the driver reports before its own. */
   static inline std::deque<GLenum> errors;
   static inline std::size_t large_size = 0;
 
@@ -131,7 +131,7 @@ TEST_F(FailureGpu, APoolThatCannotGrowLeavesAllBatches)
     }
     EXPECT_EQ(device->live_resources(), live);
     EXPECT_EQ(device->counters().upload_bytes, uploaded);
-    // All that was there is drawn, and what fits into the pool is still taken.
+    // All existing batches are drawn, and batches that fit into the pool are still accepted.
     expect_drawn(first, 2);
     const Batch small = test::full_triangle(*device, 0.5F, "small");
     expect_drawn(small, 3);

@@ -44,7 +44,7 @@ TEST_F(RenderPassGpu, ClearsEveryFormatToItsValue)
     glm::vec4 clear;
     float tolerance;
   };
-  // Half floats hold the third exactly, floats the fourth. Rows of 7 texels are no multiple of four bytes.
+  // The third value is exact in half floats, the fourth in floats. Rows of 7 texels are not multiples of four bytes.
   for (const Case &one :
        {Case{Format::RGBA8, {0.25F, 0.5F, 0.75F, 1}, 0.501F / 255},
         Case{Format::RGBA16F, {1.5F, -2.25F, 65504, 0.125F}, 0}, Case{Format::RGBA32F, {1e30F, -3.7F, 1e-30F, 0.1F}, 0},
@@ -69,7 +69,7 @@ TEST_F(RenderPassGpu, KeepsWhatIsLoadedAndReplacesWhatIsCleared)
   const Texture depth = device->create_texture({.name = "depth", .format = Format::Depth32F, .width = 4, .height = 4});
   const Framebuffer framebuffer = device->create_framebuffer({"target", {{&color}}, {&depth}});
   run_pass(framebuffer, {.clear_color = glm::vec4(1, 2, 3, 4), .clear_depth = 0.5F});
-  // Colour and depth each on its own.
+  // Colour and depth are independent.
   run_pass(framebuffer, {.color_load = LoadAction::Load, .clear_color = glm::vec4(9), .clear_depth = 0.25F});
   expect_all(color, 0, {1, 2, 3, 4});
   expect_all(depth, 0, {0.25F, 0, 0, 0});
@@ -147,7 +147,7 @@ TEST_F(RenderPassGpu, LayerIsOneSliceAndAllLayersAreAll)
       };
       const auto value = [](int layer) { return 1.0F / float(layer + 2); };
       const int layer_count = layers;
-      // Backwards, so that a clear of all layers by mistake shows.
+      // Backwards, so that a clear of all layers would be visible.
       run_pass(framebuffer_of(all_layers), {.clear_color = glm::vec4(0.75F), .clear_depth = 0.75F});
       for (int layer = 0; layer < layer_count; layer++) {
         expect_all(texture, layer, {0.75F, 0, 0, 0});
@@ -298,7 +298,7 @@ TEST_F(RenderPassGpu, ASmallerViewportIsDrawnIntoAndTheWholeIsCleared)
       EXPECT_EQ(pixels[std::size_t(y) * 5 + std::size_t(x)].r, x < 3 && y < 2 ? 1 : 7) << x << " " << y;
     }
   }
-  // The next pass has all of it again.
+  // The next pass uses the whole framebuffer again.
   list.clear();
   draw(2, {.color_load = LoadAction::Load});
   device->submit(list);

@@ -4,8 +4,8 @@
 namespace gnomon::test {
 
 /**
- * Replaces one of epoxy's function pointers while it lives. The function must have been called before: the first call
- * sets the pointer.
+ * Replaces one of epoxy's function pointers until it is destroyed. The function must have been called before, because
+ * the first call sets the pointer.
  */
 template <typename Function>
 class Hook {

@@ -48,17 +48,17 @@ struct StateItem {
   std::function<std::vector<double>()> read;
 };
 
-/** Every value of the table, each once. */
+/** All values of the table. */
 [[nodiscard]] std::vector<StateItem> state_table();
 
-/** Set all of state_table to values that are not the initial ones, as far as OpenGL has others. */
+/** Sets all items of state_table to values that are not the initial ones, as far as OpenGL has others. */
 void set_unusual_state(const HostObjects &objects);
 
-/** Values of a table at one moment. */
+/** Values of a table at one time. */
 class StateSnapshot {
  public:
   explicit StateSnapshot(const std::vector<StateItem> &table);
-  /** "NAME: was 1, is 2" for each item that differs now. */
+  /** "NAME: was 1, is 2" for each item that has changed. */
   [[nodiscard]] std::vector<std::string> differences() const;
   [[nodiscard]] std::vector<double> value(std::size_t item) const
   {

@@ -85,7 +85,7 @@ class Xvfb {
       _exit(127);
     }
     close(ends[1]);
-    // The server writes its number once it takes connections.
+    // The server writes its number when it accepts connections.
     constexpr int timeout_ms = 30000;
     pollfd readable{.fd = ends[0], .events = POLLIN, .revents = 0};
     char digit = 0;
@@ -149,7 +149,7 @@ class GlxHostContext final : public HostContext {
   {
     return window_ && glfwGetCurrentContext() == window_;
   }
-  /** Why there is no context; empty where there is one. */
+  /** The reason for which there is no context; empty if there is one. */
   [[nodiscard]] const std::string &reason() const
   {
     return reason_;

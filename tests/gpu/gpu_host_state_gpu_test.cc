@@ -62,7 +62,7 @@ struct HostedScene {
     return commands;
   }
 
-  /** Fails where the picture is not what the list draws. */
+  /** Fails if the picture differs from the expected one. */
   void expect_picture()
   {
     EXPECT_EQ(gpu::read_as<glm::vec4>(device, picture), std::vector<glm::vec4>(16, glm::vec4(11113.0F)));
@@ -107,7 +107,7 @@ layout(location = 0) out vec4 result;
 layout(location = 1) out vec4 other;
 void main()
 {
-  // What is not bound is 0 in colour, not the host's texture.
+  // Samplers without a texture read 0, not the host's texture.
   result = color + a + b + c + texture(source, vec2(0.5)).r + texture(layers, vec3(0.5, 0.5, 1)).r +
            vec4(texture(not_bound, vec2(0.5)).rgb, 0);
   other = vec4(5);
@@ -124,7 +124,7 @@ class HostState : public test::HostContextTest {
     }
   }
 
-  /** Calls \a action, which must leave all state as it was. */
+  /** Calls \a action, which must leave all state unchanged. */
   template <typename Action>
   void expect_unchanged(const char *name, Action &&action)
   {
@@ -157,7 +157,7 @@ TEST_P(HostState, TheTableHasAllStateAndUnusualValues)
   ASSERT_EQ(glGetError(), GLenum(GL_NO_ERROR));
   const std::size_t unusual = initial.differences().size();
   fmt::print("{} rows, {} of distinct names, {} at unusual values\n", table.size(), distinct.size(), unusual);
-  // Not: queries, the debug group, and draw buffers whose blending or scissor test stays off.
+  // Excluded: queries, the debug group, and draw buffers whose blending or scissor test is off.
   EXPECT_GE(unusual, table.size() - 40);
 }
 

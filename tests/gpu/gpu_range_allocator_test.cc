@@ -14,7 +14,7 @@ namespace {
 /** Owner of each element; 0: free. */
 class Model {
  public:
-  /** First fit, as the allocator promises; nothing where none fits below \a capacity. */
+  /** First fit, as the allocator promises; empty if none fits below \a capacity. */
   [[nodiscard]] std::int64_t first_fit(std::uint32_t count, std::uint32_t capacity) const
   {
     std::uint32_t run = 0;
@@ -80,7 +80,7 @@ TEST(RangeAllocator, RandomSequenceFollowsAFirstFitModel)
         live.erase(live.begin() + std::ptrdiff_t(i));
       }
     }
-    // All freed, in any order, is one range again.
+    // After freeing all in any order there is one range again.
     const std::uint32_t capacity = allocator.capacity();
     std::shuffle(live.begin(), live.end(), random);
     for (const Range &range : live) {

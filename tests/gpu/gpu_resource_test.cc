@@ -17,7 +17,7 @@ static_assert(IS_MOVE_ONLY<Resource> && IS_MOVE_ONLY<Sampler> && IS_MOVE_ONLY<Fr
               IS_MOVE_ONLY<Batch> && IS_MOVE_ONLY<TimerQuery>);
 static_assert(!std::is_copy_constructible_v<Texture> && !std::is_copy_constructible_v<Shader>);
 
-/** One of each kind. */
+/** One resource of each kind. */
 struct Everything {
   explicit Everything(Device &device)
       : texture(device.create_texture({.name = "a texture"})),
@@ -97,7 +97,7 @@ TEST(Resource, OutlivesItsDeviceHarmlessly)
   device.reset();
   EXPECT_FALSE(everything.texture);
   EXPECT_EQ(everything.buffer.id(), 0U);
-  // Moves and assignments of what is left over.
+  // Moves and assignments of moved-from objects.
   Texture moved = std::move(everything.texture);
   EXPECT_FALSE(moved);
   moved = Texture();

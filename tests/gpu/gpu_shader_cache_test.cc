@@ -98,7 +98,7 @@ TEST_F(ShaderDiskCacheTest, AFileInTheWayOfTheFolderIsHarmless)
 TEST_F(ShaderDiskCacheTest, RemovesTheFilesThatWereUsedLeastRecently)
 {
   const auto key = [](int i) { return fmt::format("{:032x}", i); };
-  // Not of the cache.
+  // A file that does not belong to the cache.
   std::ofstream(folder / "notes.txt") << std::string(100000, ' ');
   const fs::file_time_type past = fs::file_time_type::clock::now() - std::chrono::hours(100);
   const auto set_age = [&](int i) { fs::last_write_time(folder / key(i), past + std::chrono::minutes(i)); };
@@ -120,7 +120,7 @@ TEST_F(ShaderDiskCacheTest, RemovesTheFilesThatWereUsedLeastRecently)
     EXPECT_EQ(fs::exists(folder / key(i)), i == 0 || i > 3) << i;
   }
   EXPECT_TRUE(fs::exists(folder / "notes.txt"));
-  // One that is larger than the bound remains until the next.
+  // A file larger than the bound remains until the next.
   const ShaderDiskCache tiny(folder, 1);
   tiny.store(key(20), shader);
   EXPECT_TRUE(tiny.load(key(20)));

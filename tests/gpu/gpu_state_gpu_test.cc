@@ -11,7 +11,7 @@ using test::append_draw;
 using test::make_shader;
 using test::push_constants;
 
-/** Full triangles, one after another, into a small picture. */
+/** Draws full triangles into a small picture, one after another. */
 class StateGpu : public test::GpuDeviceTest {
  protected:
   struct Draw {
@@ -39,7 +39,7 @@ class StateGpu : public test::GpuDeviceTest {
     shader = make_shader(*device, "color", test::CLIP_SPACE_VERT, test::COLOR_FRAG);
   }
 
-  /** What every pixel holds after \a draws on value -1 and depth \a clear_depth. */
+  /** Value of every pixel after \a draws, from value -1 and depth \a clear_depth. */
   Pixel drawn(const std::vector<Draw> &draws, float clear_depth = 0)
   {
     CommandList list;
@@ -98,7 +98,7 @@ TEST_F(StateGpu, NearerIsTheGreaterDepthInAnyOrder)
 TEST_F(StateGpu, EqualDepthPasses)
 {
   EXPECT_EQ(drawn({{.state = NEARER, .value = 1}, {.state = NEARER, .value = 2}}), (Pixel{2, 0.5F}));
-  // What is exactly on the far plane is nearer than, or as near as, the cleared depth.
+  // A surface exactly on the far plane is as near as the cleared depth, and passes.
   EXPECT_EQ(drawn({{.state = NEARER, .z = 0, .value = 3}}), (Pixel{3, 0}));
 }
 

@@ -19,7 +19,7 @@
 
 namespace gnomon::test {
 
-/** Message of the gpu::Error that \a action throws; empty where it throws none. */
+/** Message of the gpu::Error that \a action throws; empty if it throws none. */
 template <typename Action>
 std::string error_of(Action &&action)
 {
@@ -37,7 +37,7 @@ inline void expect_contains(std::string_view text, std::string_view part)
   EXPECT_NE(text.find(part), std::string_view::npos) << "'" << part << "' is not in:\n" << text;
 }
 
-/** Shader files of a test; below them, the program's. */
+/** Shader files of a test, with the program's as a fallback. */
 struct ShaderTexts {
   std::map<std::string, std::string, std::less<>> texts;
 
@@ -51,7 +51,7 @@ struct ShaderTexts {
   }
 };
 
-/** Of texts without `#version`; the slots are known to them. */
+/** A shader of texts without `#version`, which may use the slots. */
 inline gpu::Shader make_shader(gpu::Device &device, const std::string &name, const std::string &vertex,
                                const std::string &fragment, const std::string &geometry = "")
 {
@@ -61,7 +61,7 @@ inline gpu::Shader make_shader(gpu::Device &device, const std::string &name, con
                               shader_check::reflect);
 }
 
-/** Vertices are clip coordinates; hands on what the draw's instance holds. */
+/** Vertices are clip coordinates; passes on the values of the draw's instance. */
 inline constexpr const char *CLIP_SPACE_VERT = R"(
 layout(location = ATTRIBUTE_POSITION) in vec3 position;
 layout(location = ATTRIBUTE_DRAW_INSTANCE) in uvec2 draw_instance;
@@ -73,7 +73,7 @@ void main()
 }
 )";
 
-/** One colour, the push constant `color`. */
+/** A fragment shader with one colour, the push constant `color`. */
 inline constexpr const char *COLOR_FRAG = R"(
 PUSH_CONSTANT_LAYOUT uniform push_constant_block
 {
@@ -94,7 +94,7 @@ inline gpu::Batch full_triangle(gpu::Device &device, float z, const std::string 
   return device.create_batch({.name = name, .positions = positions, .normals = {}, .indices = indices});
 }
 
-/** The batch \a count times, its instances (\a object, 0 … count - 1). */
+/** Draws the batch \a count times, with instances (\a object, 0 … count - 1). */
 inline void append_draw(gpu::CommandList &list, const gpu::Batch &batch, std::uint32_t count = 1,
                         std::uint32_t object = 0)
 {
@@ -114,7 +114,7 @@ void push_constants(gpu::CommandList &list, const gpu::Shader &shader, const T &
   list.push_constants(shader.interface().push_constant_slot, std::as_bytes(std::span(&value, 1)));
 }
 
-/** Any format as floats; what it has no channel for is 0. */
+/** Reads any format as floats. Missing channels are 0. */
 inline std::vector<glm::vec4> decoded_texels(gpu::Device &device, const gpu::Texture &texture, int layer = 0)
 {
   const std::vector<std::byte> bytes = device.read(texture, layer);

@@ -15,7 +15,7 @@ using test::make_shader;
 
 class TextureGpu : public test::GpuDeviceTest {
  protected:
-  /** The GLSL \a expression, a vec4, for each of \a inputs; \a sampler_type `picture` is bound. */
+  /** Evaluates the GLSL \a expression, a vec4, for each of \a inputs; `picture` of \a sampler_type is bound. */
   std::vector<glm::vec4> evaluated(const std::string &sampler_type, const std::string &expression,
                                    const std::vector<glm::vec4> &inputs, const Texture &texture, const Sampler &sampler)
   {
@@ -140,7 +140,7 @@ TEST_F(TextureGpu, SrgbIsDecodedBeforeItIsFilteredAndItsAlphaIsLinear)
   const Sampler linear = device->create_sampler({.name = "linear", .filter = Filter::Linear});
   const auto values =
       evaluated("sampler2D", "texture(picture, v.xy)", {{0.25F, 0.5F, 0, 0}, {0.5F, 0.5F, 0, 0}}, texture, linear);
-  // GL allows a decoded value an error of half a step of eight bits.
+  // OpenGL allows an error of half a step of eight bits for a decoded value.
   const float tolerance = 0.5F / 255;
   EXPECT_NEAR(values[0].r, srgb_decoded(10 / 255.0F), tolerance);
   EXPECT_NEAR(values[0].g, srgb_decoded(100 / 255.0F), tolerance);
@@ -165,7 +165,7 @@ TEST_F(TextureGpu, MipmapsAreMeansOfLight)
   const auto values = evaluated("sampler2D", "textureLod(picture, v.xy, v.z)",
                                 {{0.25F, 0.25F, 1, 0}, {0.75F, 0.25F, 1, 0}, {0.5F, 0.5F, 2, 0}}, texture, sampler);
   for (const glm::vec4 &value : values) {
-    // Half of the light, which encoded is 188 of 255; half of the code would be a fifth of the light.
+    // Half of the light, which is 188 of 255 in sRGB; half of the code would be a fifth of the light.
     EXPECT_NEAR(value.r, 0.5F, 0.005F);
     EXPECT_NEAR(value.a, 0.5F, 0.005F);
   }
@@ -192,7 +192,7 @@ TEST_F(TextureGpu, MinifiedFilterIsItsOwn)
   const Texture texture = device->create_texture({.name = "ramp", .format = Format::R32F, .width = 4, .height = 1});
   upload<float>(texture, 0, {0, 1, 2, 3});
   const Sampler sampler = device->create_sampler({.name = "s", .minified = Filter::Linear});
-  // The same place seen larger, and smaller, than its texels.
+  // The same position, magnified and minified.
   const auto values = evaluated("sampler2D", "textureGrad(picture, v.xy, vec2(v.z, 0), vec2(0, v.z))",
                                 {{0.45F, 0.5F, 0.01F, 0}, {0.45F, 0.5F, 4, 0}}, texture, sampler);
   EXPECT_EQ(values[0].r, 1);
@@ -249,7 +249,7 @@ TEST_F(TextureGpu, DepthComparisonIsLitWhereTheReferenceIsNearerOrAsNear)
 TEST_F(TextureGpu, LinearDepthComparisonBlendsFourAnswers)
 {
   const Texture texture = device->create_texture({.name = "map", .format = Format::Depth32F, .width = 2, .height = 2});
-  // The reference 0.5 is behind the first alone.
+  // The reference 0.5 is behind the first layer only.
   upload<float>(texture, 0, {0.75F, 0.25F, 0.25F, 0.25F});
   const Sampler sampler =
       device->create_sampler({.name = "shadow", .filter = Filter::Linear, .is_depth_comparison = true});

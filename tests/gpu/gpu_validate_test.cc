@@ -9,7 +9,7 @@ namespace {
 using test::error_of;
 using test::expect_contains;
 
-/** Reads one of each kind of binding, and has push constants. */
+/** A shader that reads one binding of each kind and push constants. */
 constexpr const char *READING_FRAG = R"(
 PUSH_CONSTANT_LAYOUT uniform push_constant_block
 {
@@ -31,12 +31,12 @@ void main()
 }
 )";
 
-/** A list that is valid but for the change of one command. */
+/** A valid list with one changed command. */
 class Validation : public testing::Test {
  protected:
   static constexpr std::uint32_t ALIGNMENT = 16;
 
-  /** Called in the place that its name says; empty: what a valid list records there. */
+  /** Replaces the commands at the position of its name; empty: those of a valid list. */
   struct Changes {
     std::function<void()> before_pass{};
     std::function<void()> at_shader{};
@@ -72,7 +72,7 @@ class Validation : public testing::Test {
     either(changes.at_end, [&] { list.end_pass(); });
   }
 
-  /** The message names the pass and all \a parts. A submit does the same, and counts nothing. */
+  /** Expects a message with the pass and all \a parts. A submission gives the same message and counts nothing. */
   void expect_refused(const Changes &changes, std::initializer_list<std::string_view> parts)
   {
     record(changes);
@@ -106,7 +106,7 @@ TEST_F(Validation, AcceptsAValidList)
   record({});
   EXPECT_EQ(error_of([&] { validate(list, *device); }), "");
   device->submit(list);
-  // No texture at all, declared so.
+  // Texture 0, which is declared to be absent.
   record({.at_texture = [&] { list.bind_texture(16, 0, 0); }});
   EXPECT_EQ(error_of([&] { validate(list, *device); }), "");
   // Bindings stay from pass to pass; the state does not.
@@ -151,7 +151,7 @@ TEST_F(Validation, ShaderAndStateAreSet)
 {
   expect_refused({.at_shader = [] {}}, {"pass 'lit'", "(draw)", "no shader is set"});
   expect_refused({.at_state = [] {}}, {"(draw)", "shader 'reading'", "no state is set in this pass"});
-  // Of an earlier pass does not count.
+  // State of an earlier pass does not count.
   expect_refused({.at_end =
                       [&] {
                         list.end_pass();
@@ -232,7 +232,7 @@ TEST_F(Validation, StaleIdsAreFound)
   block = Buffer();
   EXPECT_EQ(device->find(ResourceKind::Buffer, old_block), nullptr);
   expect_contains(error_of([&] { validate(list, *device); }), stale(ResourceKind::Buffer, old_block));
-  // The index is used again: still stale, and not the other buffer.
+  // The index is reused: the old id is still stale and does not name the other buffer.
   block = device->create_buffer({.name = "other", .size_bytes = 64});
   ASSERT_EQ(index_of(block.id()), index_of(old_block));
   expect_contains(error_of([&] { validate(list, *device); }), stale(ResourceKind::Buffer, old_block));
@@ -279,7 +279,7 @@ TEST_F(Validation, FeedbackLoopsAreFound)
 {
   expect_refused({.at_texture = [&] { list.bind_texture(16, color.id(), sampler.id()); }},
                  {"pass 'lit'", "(draw)", "shader 'reading'", "feedback loop: texture 'hdr' at slot 16 ('radiance')"});
-  // Bound where the shader reads nothing.
+  // Bound to a slot that the shader does not read.
   record({.at_draw = [&] {
     list.bind_texture(17, color.id(), sampler.id());
     test::append_draw(list, batch);

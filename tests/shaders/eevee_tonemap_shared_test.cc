@@ -15,7 +15,7 @@ TEST(SrgbEncoded, RisesFromZeroToOne)
   float before = 0.0F;
   for (int i = 1; i <= 100000; i++) {
     const float encoded = srgb_encoded(float(i) / 100000.0F);
-    // The two pieces of the standard differ by 3e-8 where they meet.
+    // The two parts of the standard's curve differ by 3e-8 where they meet.
     ASSERT_GE(encoded, before - 1e-7F) << i;
     before = encoded;
   }

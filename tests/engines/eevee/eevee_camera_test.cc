@@ -101,7 +101,7 @@ TEST(SampleOffset, ShiftsThePictureByFractionsOfAPixel)
   for (const float z : {-0.2F, -3.0F, -1e4F}) {
     const glm::vec3 point{0.1F * z, 0.2F * z, z};
     const glm::vec2 shift_px = 0.5F * glm::vec2(size) * glm::vec2(ndc(moved, point) - ndc(view, point));
-    // The sample moves right, so what it sees moves left.
+    // The sample moves right, so its picture moves left.
     EXPECT_NEAR(shift_px.x, -0.25F, 1e-3F);
     EXPECT_NEAR(shift_px.y, 0.5F, 1e-3F);
   }

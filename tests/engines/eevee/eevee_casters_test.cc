@@ -38,7 +38,7 @@ TEST(LampNear, IsBeforeEveryCasterAndAboveZero)
 
 TEST(LampNear, OfALampInATerrainsBoxIsBeforeItsTriangles)
 {
-  // A slope 2 km wide: the box around it holds the lamp, the slope is 3 m away.
+  // A slope 2 km wide: its box contains the lamp, and the slope is 3 m away.
   scene::Mesh slope;
   slope.positions = {{-1000, -100, -1000}, {1000, 100, -1000}, {1000, 100, 1000}, {-1000, -100, 1000}};
   slope.indices = {0, 1, 2, 0, 2, 3};
@@ -52,7 +52,7 @@ TEST(LampNear, OfALampInATerrainsBoxIsBeforeItsTriangles)
   EXPECT_NEAR(lamp_near(above, infinity, {caster}), 1.5F, 1e-3F);
   EXPECT_NEAR(distance_to(caster, {900, 90, 0}), 0.0F, 1e-3F) << "on it";
   EXPECT_GT(lamp_near({900, 90, 0}, infinity, {caster}), 0.0F);
-  // Off its edge and its corner.
+  // Beside its edge and its corner.
   EXPECT_NEAR(distance_to(caster, {-1000, -90, -1000}), 10.0F, 0.2F);
 }
 

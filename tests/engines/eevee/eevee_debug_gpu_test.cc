@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Debug views against what they should show.
+// Debug views compared with known distances.
 #include "eevee_debug.hh"
 #include "eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
@@ -54,7 +54,7 @@ TEST_F(DebugViewGpuTest, FacesOfACubeHoldDistancesAlongTheirAxes)
   Renderer renderer(*device, scene, {16, 16}, settings);
   renderer.draw(test::camera_at({3, 3, 3}, {0, 0, 0}));
   const float scale = shared::cube_uv_scale(64.0F);
-  /** What the face sees at a pixel, across and down, at distance 1. */
+  /** Direction of a pixel of the face: x right, y down, at distance 1. */
   const auto seen = [&](int x, int y) { return (glm::vec2(float(x), 63.0F - float(y)) + 0.5F) / 32.0F - 1.0F; };
 
   // Below: the ground is 4 m away, the square 2 m, where x and y, which the face shows mirrored, are 1.2 and 0.6 m.
@@ -225,7 +225,7 @@ TEST_F(DebugViewGpuTest, AnOctahedralLayerHoldsDistancesFromTheLamp)
     for (int x = 0; x < 128; x++) {
       const glm::vec3 direction = shared::octahedral_to_direction((glm::vec2(x, y) + 0.5F) / 128.0F);
       if (direction.z < -0.5F) {
-        // Half a texel of the cube's face of 64, 1/64, times the slope: sqrt(3) at most.
+        // Half a texel of a cube face of 64 texels, 1/64, times the slope: at most sqrt(3).
         EXPECT_NEAR(picture.at(x, y).a * -direction.z, 4.0F, 4.0F * 0.03F) << x << ", " << y;
         grounds++;
       }
@@ -242,7 +242,7 @@ class CascadeTintGpuTest : public DebugViewGpuTest {
   /** Factors by which the tint multiplies the picture, pixel by pixel. */
   Picture tints(const scene::PlacedCamera &camera, int cascades)
   {
-    // Lights everything, so that there is something to tint in the shadow.
+    // Lights everything, so that the tint is visible in the shadow, too.
     test::add_lamp(scene, scene::LampKind::Hemi, {}, {0, 0, -1}, 1.0F);
     Settings settings;
     settings.shadow.map_size_px = 128;
@@ -296,7 +296,7 @@ TEST_F(CascadeTintGpuTest, EachCascadeHasItsColourAndFadesIntoTheNext)
     const bool is_second = glm::length(tint - second) < 1e-3F;
     first_row = is_first ? y : first_row;
     second_row = is_second && second_row == 0 ? y : second_row;
-    // Nothing but the two, in shares that add up to 1.
+    // Only the two tints, with weights that add up to 1.
     const bool is_between = first_row > 0 && second_row == 0 && !is_first;
     if (is_between) {
       EXPECT_NEAR(tint.r + tint.g, 1.4F, 1e-3F) << y;
@@ -306,7 +306,7 @@ TEST_F(CascadeTintGpuTest, EachCascadeHasItsColourAndFadesIntoTheNext)
   }
   EXPECT_GT(first_row, 20);
   EXPECT_GT(second_row, first_row);
-  // The pixel filter alone would mix two or three.
+  // The pixel filter alone would give only two or three mixed pixels.
   EXPECT_GT(fading, 4) << first_row << " to " << second_row;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What debug views make, and that they make nothing unasked.
+// Resources of debug views, which exist only on request.
 #include "eevee_test_scene.hh"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light and shadow against closed forms, on the driver.
+// Light and shadow compared with closed forms, on the driver.
 #include "eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
 #include "shader_check_reflection.hh"
@@ -55,7 +55,7 @@ TEST_F(EngineGpuTest, PointFallsWithTheSquareOfTheDistance)
 {
   add_square({0, 0, 0}, {0, 0, 1}, 10.0F, square);
   const auto lamp = test::add_lamp(scene, scene::LampKind::Point, {1, 0, 2}, {0, 0, -1}, 50.0F);
-  // The centre of the pixel right and above of the middle.
+  // Centre of the pixel to the upper right of the middle.
   const float half_pixel = 5.0F * std::tan(0.1F) / 64.0F;
   const glm::vec3 to_lamp = glm::vec3(1, 0, 2) - glm::vec3(half_pixel, half_pixel, 0);
   const float d2 = glm::dot(to_lamp, to_lamp);
@@ -136,7 +136,7 @@ TEST_F(EngineGpuTest, FrontOfTwoOneSidedSurfacesBackToBackIsVisible)
   for (const bool is_front_first : {true, false}) {
     test::remove_objects(scene);
     for (const bool is_front : {is_front_first, !is_front_first}) {
-      // Half a turn around Y keeps the vertices in the plane and shows the back.
+      // A rotation by 180° around Y keeps the vertices in the plane and shows the back.
       const glm::mat4 turn = glm::rotate(glm::mat4(1.0F), is_front ? 0.0F : PI, glm::vec3(0, 1, 0));
       test::add_object(scene, is_front ? square : green, turn);
     }
@@ -191,7 +191,7 @@ TEST_F(EngineGpuTest, SmoothMetalIsFinite)
   EXPECT_GT(render(above).middle().r, 1.0F) << "the mirror image of the sun";
 }
 
-/** Where a lamp at height 4 puts the shadow of a square of half size 1 at height 2: half size 2 on the ground. */
+/** Shadow of a square of half size 1 at height 2 from a lamp at height 4: half size 2 on the ground. */
 class ShadowGpuTest : public EngineGpuTest {
  protected:
   /** Ground pixels, not next to the shadow's edge, where visibility differs from the truth. */
@@ -203,7 +203,7 @@ class ShadowGpuTest : public EngineGpuTest {
     add_square({0, 0, 2}, {0, 0, 1}, 1.0F, square);
     scene.edit(test::add_lamp(scene, kind, {0, 0, 4}, {0, 0, -1}, 20.0F),
                [](scene::Lamp &lamp) { lamp.spot_outer_angle = 1.0F; });
-    // From below the square's height, so that it hides none of the ground.
+    // From below the square, so that it hides no part of the ground.
     scene::PlacedCamera camera = test::camera_at({0, 0, 1.9F}, {0, 0, 0}, 2.6F);
     const Picture lit = render(camera, {.shadow = {.kind = scene::ShadowKind::None}}, {256, 256});
     const Picture shadowed = render(camera, {}, {256, 256});
@@ -275,7 +275,7 @@ TEST_F(ShadowGpuTest, APlaneDoesNotDarkenItselfAtAnyAngle)
       const float elevation = degrees * PI / 180.0F;
       const glm::vec3 to_lamp(std::cos(elevation) * 0.6F, std::cos(elevation) * 0.8F, std::sin(elevation));
       add_square({0, 0, 0}, {0, 0, 1}, 4.0F, square);
-      // Without something above, the sun would need no map at all; its shadow falls away from the picture.
+      // Without a caster above, the sun would have no map. Its shadow falls outside of the picture.
       add_square({-3.9F, -3.9F, 3}, {1, 1, 0}, 0.1F, square);
       scene.edit(test::add_lamp(scene, kind, 6.0F * to_lamp, -to_lamp, 10.0F),
                  [](scene::Lamp &lamp) { lamp.spot_outer_angle = 0.6F; });
@@ -442,7 +442,7 @@ TEST_F(EngineGpuTest, DisplayIsTheViewTransformOfTheRadiance)
       const double srgb = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055;
       return 255.0 * (transform == draw::ViewTransform::Raw ? v : srgb);
     };
-    // Within rounding: half a step of 255, and a little for the driver's pow.
+    // Rounding: half a step of 255, and a margin for the driver's pow.
     EXPECT_NEAR(double(pixels[0]), encoded(0.25), 0.6);
     EXPECT_NEAR(double(pixels[1]), encoded(0.0005), 0.6);
     EXPECT_EQ(int(pixels[2]), 255);

@@ -165,7 +165,10 @@ TEST_F(EngineTest, PassesPrintWhatWasRecorded)
   EXPECT_NE(text.find("    uniform light_block -> 10 = light_block\n"), std::string::npos) << text;
 }
 
-/** Objects with: no texture, a texture, the same as a mask, and a mask that is below its cutoff everywhere. */
+/**
+ * Objects without a texture, with a texture, with the texture as a mask, and with a mask that is below its cutoff
+ * everywhere.
+ */
 scene::Scene textured_scene()
 {
   scene::Scene scene;
@@ -195,7 +198,7 @@ TEST_F(EngineTest, TexturesAreMadeOnceAndForLightOrMasksOnly)
               std::ranges::count(device->live_resources(), "texture 'image'") > 0);
     return std::ranges::count(device->live_resources(), "texture 'image'");
   };
-  // For the mask; no material reads the other image.
+  // The texture of the mask; no material reads the other image.
   EXPECT_EQ(images(), 1);
   test::edit_material(scene, 2, [&](scene::Material &material) { material.alpha_mode = scene::AlphaMode::Opaque; });
   EXPECT_EQ(images(), 0);
@@ -263,7 +266,7 @@ TEST_F(EngineTest, ShadowsAreDrawnAgainWithReloadedShaders)
   EXPECT_EQ(renderer.engine.report(renderer.viewport).shadow_counters.lamps_updated, before + 1);
 }
 
-/** Another mesh's uvs stand where it would read them. */
+/** The pool contains another mesh's uvs at its position. */
 TEST_F(EngineTest, AMeshWithoutUvsIsDrawnWithoutItsTextureAndNamed)
 {
   scene = {};

@@ -13,10 +13,10 @@
 #include <functional>
 #include <random>
 
-/** A lamp's cube made from closed forms, the layers made from it, and lookups in them. */
+/** A lamp's cube made from closed forms, its octahedral layers, and lookups in them. */
 namespace gnomon::test {
 
-/** Radial distance of the first caster, metres; infinite where there is none. */
+/** Radial distance of the first caster, metres; infinite if there is none. */
 using DistanceOf = std::function<double(const glm::dvec3 &direction)>;
 
 /** Inverse of shared::cube_face_project for (u, v, 1); not a unit vector. */
@@ -62,7 +62,7 @@ struct CubeDepths {
   }
 };
 
-/** As a rasteriser would fill them: the caster in the middle of each texel. */
+/** Depths as by a rasteriser: the caster at the centre of each texel. */
 inline CubeDepths cube_depths(int size_px, float near, const DistanceOf &distance_of, float uv_scale = 1.0F)
 {
   CubeDepths cube{size_px, near, uv_scale, {}};
@@ -111,7 +111,7 @@ class EsmStage {
     store.sync(device_, shaders_, identified);
   }
 
-  /** Upload \a cube as the \a cube_index-th of an array of two. */
+  /** Uploads \a cube as cube \a cube_index of an array of two. */
   void upload(const CubeDepths &cube, int cube_index = 0)
   {
     if (!cubes_ || cubes_.desc().width != cube.size_px) {
@@ -150,7 +150,7 @@ class EsmStage {
     return values;
   }
 
-  /** What a disk kernel of \a count taps is given, metres, before it filters: a row of taps a texel. */
+  /** Distances of the \a count taps of a disk kernel before filtering, metres: one row of taps for each texel. */
   std::vector<float> tap_distances(std::size_t index, const CubeDepths &cube, int count)
   {
     const int size = store.data(index).size;
@@ -190,7 +190,7 @@ void main()
     return gpu::read_as<float>(device_, picture);
   }
 
-  /** What shadow_esm_visibility gives, on the driver. */
+  /** Results of shadow_esm_visibility on the driver. */
   std::vector<float> visibilities(std::span<const Receiver> receivers)
   {
     constexpr int width = 256;
@@ -268,7 +268,7 @@ inline double around_distance(const glm::dvec3 &direction, const glm::dvec3 &cen
   return along + std::sqrt(std::max(along * along - glm::dot(center, center) + radius * radius, 0.0));
 }
 
-/** Distance to a ball outside of which the lamp stands; infinite past it. */
+/** Distance to a ball that does not contain the lamp; infinite beside it. */
 inline double ball_distance(const glm::dvec3 &direction, const glm::dvec3 &center, double radius)
 {
   const double along = glm::dot(direction, center);

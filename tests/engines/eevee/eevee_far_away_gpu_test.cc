@@ -12,7 +12,7 @@
 namespace gnomon::eevee {
 namespace {
 
-/** The scene's roots, and with them everything, moved by \a shift. */
+/** The scene with all roots moved by \a shift. */
 void move_all(scene::Scene &scene, const glm::dvec3 &shift)
 {
   std::vector<scene::Handle<scene::Node>> roots;
@@ -58,7 +58,7 @@ class FarAway : public test::GpuDeviceTest {
     return std::sqrt(sum / (3.0 * double(a.size())));
   }
 
-  /** Of the last picture_of. */
+  /** The origin of the last picture_of. */
   glm::dvec3 origin_ws{0.0};
 };
 
@@ -122,8 +122,8 @@ TEST_F(FarAway, AMovingCameraChangesTheOriginAndNotThePicture)
   EXPECT_EQ(renderer.render_scene().origin_ws(), glm::dvec3(0.0));
   const std::vector<glm::vec4> second = picture_at(1600.0);
   EXPECT_EQ(renderer.render_scene().origin_ws(), glm::dvec3(2048.0, 0.0, 0.0));
-  // The same arrangement stands in both places, 1600 m apart. Floats are spaced by 0.03 mm where the second one is
-  // drawn, which moves single texels of shadow edges: 1.3e-4 was measured.
+  // The same objects are at two positions, 1600 m apart. At the second one, floats have a spacing of 0.03 mm, which
+  // moves single texels of shadow edges. Measured: 1.3e-4.
   EXPECT_LE(rms_difference(first, second), 1e-3);
   EXPECT_LE(rms_difference(first, picture_at(0.0)), 1e-6) << "and back";
 }

@@ -52,7 +52,7 @@ TEST(FilmOffset, SeedsMoveTheSamples)
   EXPECT_NE(film_offset_px(0, 16, 1), film_offset_px(0, 16, 2));
 }
 
-/** What a pixel in a field of \a radiance(x, y) comes to, as the film pass computes it. */
+/** Value of a pixel for the function \a radiance(x, y), computed like the film pass. */
 template <typename Radiance>
 double filmed(int count, std::uint32_t seed, Radiance &&radiance)
 {
@@ -109,7 +109,7 @@ TEST(FilmWeights, ConvergeToTheFilterAtAnEdge)
 
 TEST(FilmWeights, ConvergeToTheFilterOfASlope)
 {
-  // Of even functions the filter leaves the mean, of odd ones nothing.
+  // The filter preserves the mean of even functions and removes odd ones.
   const auto slope = [](double x, double y) { return x + 2.0 * y; };
   EXPECT_NEAR(filmed(256, 0, slope), 0.0, 2e-2);
 }

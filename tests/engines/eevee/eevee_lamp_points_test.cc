@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Points of lamps with an extent: their mean is the lamp.
+// Points of lamps with an extent: their mean light is that of the lamp.
 #include "eevee_lamp_points.hh"
 
 #include "eevee_sobol.hh"
@@ -123,7 +123,7 @@ TEST(LampPoints, ASunsLightOnAPlaneIsTheClosedForm)
     scene::PlacedLamp lamp = lamp_of(scene::LampKind::Sun);
     lamp.angle = angle;
     for (const double tilt : {0.0, 0.05}) {
-      // All of the sun is above the horizon.
+      // The whole sun is above the horizon.
       const glm::dvec3 normal(std::sin(tilt), 0.0, std::cos(tilt));
       const double mean = mean_over(
           lamp, 16384, [&](const shared::LightData &light) { return irradiance(light, glm::dvec3(0.0), normal); });

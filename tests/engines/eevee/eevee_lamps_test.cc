@@ -31,7 +31,7 @@ TEST(LightData, ShinesAlongTheLampsMinusZ)
   EXPECT_EQ(light.color, glm::vec3(8, 4, 2));
 }
 
-// hazards.md: a lamp with no shadow was looked up at index -1.
+// hazards.md: a lamp without a shadow was looked up at index -1.
 TEST(LightData, HasNoShadowByDefault)
 {
   const shared::LightData light = light_data(lamp_of(scene::LampKind::Point));
@@ -90,7 +90,7 @@ TEST(Lamps, ScaleMakesASpotsConeElliptical)
   const Lamps lamps = make_lamps(placed);
   EXPECT_EQ(lamps.features, Feature::Light | Feature::Punctual | Feature::LampShape);
   const shared::LightShape &shape = lamps.shape_block.shapes[0];
-  // On the rim along each axis the tangent is that of the round cone times the scale.
+  // At the rim along each axis, the tangent is that of the round cone times the scale.
   const shared::LightData &light = lamps.light_block.lights[0];
   const float tangent = std::tan(placed[0].spot_outer_angle);
   for (const glm::vec3 &rim : {glm::vec3(2.0F * tangent, 0, -1), glm::vec3(0, 0.5F * tangent, -1)}) {
@@ -152,7 +152,7 @@ TEST(Lamps, FeaturesAreThoseOfTheKinds)
   EXPECT_EQ(make_lamps(placed).features, Feature::Light | Feature::Punctual);
 }
 
-// hazards.md: the lamp past the maximum was written out of range, or dropped without a word.
+// hazards.md: the lamp above the maximum was written out of range, or dropped silently.
 TEST(Lamps, LampAboveTheLimitIsNamedAndTheOthersAreUnchanged)
 {
   std::vector<scene::PlacedLamp> placed;

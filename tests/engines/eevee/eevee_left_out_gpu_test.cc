@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is left out changes no pixel, on the driver.
+// Parts that are left out change no pixel, on the driver.
 #include "eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
 
@@ -21,7 +21,7 @@ class LeftOutGpuTest : public test::GpuDeviceTest {
     test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 2}, {0, 0, -1}, 1.0F);
   }
   scene::Scene scene;
-  /** Sees the square in the middle, and nothing around it. */
+  /** Shows the square in the middle of the background. */
   scene::PlacedCamera camera = test::camera_at({0, 0, 8}, {0, 0, 0});
   scene::PlacedCamera away = test::camera_at({0, 0, 8}, {0, 0, 20});
 };
@@ -35,7 +35,7 @@ TEST_F(LeftOutGpuTest, EmptyPictureEqualsTheBackgroundOfAnother)
     EXPECT_EQ(picture.non_finite_count(), 0U);
     return std::pair(picture, device->read(display.texture()));
   };
-  // Whatever was in the pictures before.
+  // Independent of the pictures before.
   const auto [seen, seen_display] = bytes(camera);
   const auto [nothing, nothing_display] = bytes(away);
   EXPECT_GT(seen.middle().r, 0.1F);
@@ -56,7 +56,7 @@ TEST_F(LeftOutGpuTest, SunWithoutVisibleShadowsHasNoLayerAndTheSameLight)
   EXPECT_EQ(std::ranges::count(live, "texture 'shadow_maps'"), 0);
   const test::Picture b = plain.picture(camera);
   EXPECT_GT(b.middle().r, 0.1F);
-  // Two programs' roundings of a radiance below 1.
+  // Two programs round a radiance below 1 differently.
   for (std::size_t i = 0; i < a.pixels.size(); i++) {
     ASSERT_NEAR(a.pixels[i].r, b.pixels[i].r, 1e-6F);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scenes that lack one thing each: the backend's own counts and names say that nothing was made or run for it.
+// Scenes without one feature each: the backend's counts and names show that nothing was created or run for it.
 #include "eevee_test_scene.hh"
 
 #include "measure_left_out.hh"
@@ -16,13 +16,13 @@ namespace {
 
 using Names = std::set<std::string>;
 
-/** What one picture of a scene took, as the backend has it. */
+/** The backend's counts and names for one picture of a scene. */
 struct Taken {
-  /** "texture 'film'": all but framebuffers and timers, which come with these. */
+  /** Created resources, for example "texture 'film'", except framebuffers and timers, which follow from them. */
   Names resources;
-  /** Features that any program was built with: "USE_LIGHT". */
+  /** Features of all programs, for example "USE_LIGHT". */
   Names features;
-  /** Steps of the frame that a pass was run for; "shadow of POINT" whatever the layer. */
+  /** Steps of the frame with passes; "shadow of POINT" for all layers. */
   Names passes;
   std::size_t map_bytes = 0;
   std::size_t memory_bytes = 0;
@@ -45,7 +45,7 @@ Taken taken_by(const measure::LeftOutCase &of)
       continue;
     }
     if (live.name == "display") {
-      // The host's, which is no part of the frame.
+      // Created by the host, not by the frame.
       taken.memory_bytes -= live.size_bytes;
       continue;
     }
@@ -66,7 +66,7 @@ Taken taken_by(const measure::LeftOutCase &of)
   return taken;
 }
 
-/** In \a all and not in \a some. */
+/** Elements of \a all that are not in \a some. */
 Names missing(const Names &all, const Names &some)
 {
   Names names;
@@ -86,7 +86,7 @@ class LeftOut : public testing::Test {
   {
     taken.clear();
   }
-  /** Exactly these are what the full scene has and \a name lacks; it has nothing that the full one has not. */
+  /** Expects that \a name lacks exactly these parts of the full scene, and has no others. */
   static void expect_lacks(const std::string &name, const Names &resources, const Names &features, const Names &passes)
   {
     const Taken &full = taken.at("full");
@@ -132,7 +132,7 @@ TEST_F(LeftOut, TheFullSceneHasAll)
 
 TEST_F(LeftOut, NoLamp)
 {
-  // What the mask cuts out is there without light; no pass reads the opaque texture then.
+  // The mask also applies without light; then no pass reads the opaque texture.
   expect_lacks("no lamp", both(shadow_resources, {"buffer 'light_block'", "texture 'checks'"}),
                both(shadow_features, {"USE_LIGHT", "USE_PUNCTUAL", "USE_SPECULAR"}), shadow_passes);
 }
@@ -208,7 +208,7 @@ TEST_F(LeftOut, NothingCostsMoreThanInTheFullScene)
   }
 }
 
-/** \a visit each node with its path. */
+/** Calls \a visit for each node with its path. */
 template <typename Visit>
 void for_each_node(const FrameNode &node, const std::string &path, Visit &&visit)
 {
@@ -241,7 +241,7 @@ TEST_F(LeftOut, TheTreeHoldsAllThatTheBackendHas)
   }
 }
 
-/** Of a node by its path below the root. */
+/** Finds a node by its path below the root. */
 const FrameNode &node_at(const FrameNode &root, const std::vector<std::string> &path)
 {
   const FrameNode *node = &root;
@@ -296,7 +296,7 @@ TEST_F(LeftOutChange, NewlyVisibleObjectsCreateTheirResourcesAndShadows)
   EXPECT_EQ(device->pass_counts().at("lit"), 1U);
   EXPECT_EQ(renderer.engine.report(renderer.viewport).shadow_counters.lamps_updated, 3U);
   const std::uint64_t made = device->counters().shaders_made;
-  // And back: what is made stays, and is not run.
+  // After switching back, resources remain and are not used.
   renderer.draw(test::camera_at({0, 4, 20}, {0, 4, 40}));
   EXPECT_EQ(device->counters().shaders_made, made);
   EXPECT_EQ(device->pass_counts().at("lit"), 1U);
@@ -400,7 +400,7 @@ TEST_F(LeftOutChange, ASpotThatNothingVisibleLooksUpIsDrawnWhenSomethingDoes)
     renderer.draw(camera);
     return find(*find(renderer.engine.report(renderer.viewport).tree, "shadows"), "lamp0")->count;
   };
-  // The casters' box reaches from one square to the other; what the camera sees of it does not reach the cone.
+  // The box of the casters spans both squares. Its visible part does not reach the cone.
   EXPECT_EQ(layers(test::camera_at({0, 0, 4}, {0, 0, 0})), 0U);
   EXPECT_EQ(layers(test::camera_at({20, 0, 4}, {20, 0, 0})), 1U);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The inputs of materials against closed forms and against the reference, on the driver.
+// The inputs of materials compared with closed forms and with the reference, on the driver.
 #include "eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
 #include "reference_light.hh"
@@ -56,7 +56,7 @@ class MaterialGpuTest : public test::GpuDeviceTest {
   {
     return glm::vec3(render().at(8, 8));
   }
-  /** The middle of the picture by the reference. */
+  /** The middle pixel of the reference picture. */
   glm::vec3 reference_middle()
   {
     const reference::Tracer tracer(scene);
@@ -77,7 +77,7 @@ void expect_near(const glm::vec3 &value, const glm::vec3 &expected, float tolera
   }
 }
 
-/** Of llvmpipe's filter and of its sRGB table. */
+/** Tolerance of llvmpipe's filter and its sRGB table. */
 constexpr float texel_tolerance = 3e-3F;
 
 TEST_F(MaterialGpuTest, VertexColoursMultiplyTheBaseColour)
@@ -170,7 +170,7 @@ TEST_F(MaterialGpuTest, SpecularTexturesMultiplyTheFactors)
   expect_near(reference_middle(), half, 0.01F * half.r + 1e-4F);
 }
 
-/** A normal turned by 45 degrees towards +X, and a sun from +X at 45 degrees: it faces the sun. */
+/** A normal tilted by 45 degrees towards +X, and a sun from +X at 45 degrees, which it faces. */
 TEST_F(MaterialGpuTest, NormalTextureTurnsTheNormalInTheTangentFrame)
 {
   add_sun({-1, 0, -1});
@@ -181,11 +181,11 @@ TEST_F(MaterialGpuTest, NormalTextureTurnsTheNormalInTheTangentFrame)
              [&](scene::Mesh &value) { scene::make_tangents(value, scene.materials()[material].normal_texture); });
   expect_near(middle(), glm::vec3(1.0F), 1e-3F);
   expect_near(reference_middle(), glm::vec3(1.0F), 1e-3F);
-  // Away from the sun: perpendicular to it.
+  // Tilted away from the sun: orthogonal to it.
   edit([](scene::Material &value) { value.normal_scale = -1.0F; });
   expect_near(middle(), glm::vec3(0.0F), 0.02F);
   expect_near(reference_middle(), glm::vec3(0.0F), 0.02F);
-  // A mirrored object mirrors its image: the normal is still turned along the image's u, which points to -X now.
+  // A mirrored object mirrors its image: the normal is still tilted along the image's u, which now points to -X.
   edit([](scene::Material &value) { value.normal_scale = 1.0F; });
   const auto node = scene.nodes().first();
   scene.set_transform(node, glm::scale(glm::dmat4(1.0), {-4.0, 4.0, 4.0}));

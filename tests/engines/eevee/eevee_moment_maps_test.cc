@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What doc/decisions/0005 rests on: exponential, exponential variance and moment shadow maps on the same
-// shadows at equal cost. A row of a map: the cost of a square one with n texels a row is n² × channels × taps.
+// Figures for doc/decisions/0005: exponential, exponential variance and moment shadow maps on the same shadows at equal
+// cost. The test uses a row of a map; a square map with n texels in a row costs n² × channels × taps.
 #include "eevee_esm_shared.h"
 
 #include <fmt/format.h>
@@ -18,12 +18,12 @@
 namespace gnomon::eevee {
 namespace {
 
-/** Distances are in [0, 1], as is the place across. */
+/** Distances and positions are in [0, 1]. */
 using Profile = std::function<double(double x)>;
 
 struct Layout {
   const char *name;
-  /** Nearest caster or the receiver itself. */
+  /** Distance of the nearest caster or of the receiver itself. */
   Profile nearest;
   Profile receiver;
 };
@@ -35,7 +35,7 @@ std::vector<Layout> layouts()
     return [=](double x) { return x < at ? z : receiver(x); };
   };
   const Profile tilted = [](double x) { return 0.4 + 0.4 * x; };
-  // As thin as a quarter of the filter's window, at any distance, with gaps.
+  // Casters as thin as a quarter of the filter's window, at any distance, with gaps.
   const Profile leaves = [](double x) {
     const auto cell = std::uint32_t(std::max(x + 1.0, 0.0) * 100.0);
     const std::uint32_t hash = (cell * 2654435761U) >> 8U;
@@ -47,7 +47,7 @@ std::vector<Layout> layouts()
           {"between them", [=](double x) { return std::min(two(x), 0.5); }, flat(0.5)},
           {"tilted", above(0.5, 0.2, tilted), tilted},
           {"tilted, nothing above", tilted, tilted},
-          // Light bleeds through the second where it is nearer to the receiver than to the first.
+          // Light bleeds through the second caster if it is nearer to the receiver than to the first.
           {"close to the second", [](double x) { return x < 0.3   ? 0.2
                                                         : x < 0.7 ? 0.7
                                                                   : 0.8; }, flat(0.8)},
@@ -56,7 +56,7 @@ std::vector<Layout> layouts()
           {"contact", above(0.5, 0.78, flat(0.8)), flat(0.8)}};
 }
 
-/** Share of a window around \a x where the receiver sees the lamp. */
+/** Fraction of a window around \a x in which the lamp is visible from the receiver. */
 double truth(const Layout &layout, double x, double radius)
 {
   int lit = 0;
@@ -70,11 +70,11 @@ double truth(const Layout &layout, double x, double radius)
 
 using Texel = std::array<float, 4>;
 
-/** A technique: what it stores of a distance, how it filters, and what it answers. */
+/** A technique: stored values of a distance, filter, and visibility. */
 struct Technique {
   std::string name;
   int channels = 1;
-  /** Of \a distances, all of one weight. */
+  /** Filtered values of \a distances with equal weights. */
   std::function<Texel(const std::vector<float> &distances)> filtered;
   std::function<double(const Texel &texel, double distance)> visibility;
 };
@@ -128,7 +128,7 @@ Technique evsm(float positive, float negative, double cut)
           [=](const Texel &texel, double distance) {
             const double p = std::exp(positive * distance);
             const double n = -std::exp(-negative * distance);
-            // As Lauritzen has it: a least variance in proportion to the warp's slope.
+            // As in Lauritzen: a minimum variance proportional to the slope of the warp.
             const auto least = [](double c, double warped) { return std::pow(1e-3 * c * warped, 2.0); };
             const double upper = chebyshev(texel[0], texel[1], p, least(positive, p), cut);
             return negative > 0.0F ? std::min(upper, chebyshev(texel[2], texel[3], n, least(negative, n), cut)) : upper;
@@ -182,11 +182,11 @@ Technique msm(double bias)
           }};
 }
 
-/** Half of the filter's window. */
+/** Half width of the filter's window. */
 constexpr double radius = 0.02;
 constexpr int taps = 32;
 
-/** Root of the mean square error of visibilities, with \a texels a row; the edge at several places in a texel. */
+/** RMSE of visibilities with \a texels in a row; the edge is at several positions within a texel. */
 double error_of(const Technique &technique, const Layout &layout, int texels)
 {
   double squares = 0.0;
@@ -207,7 +207,7 @@ double error_of(const Technique &technique, const Layout &layout, int texels)
       const double at = (x - shift) * texels - 0.5;
       const auto low = std::size_t(std::floor(at));
       const double fraction = at - double(low);
-      // Lifted off a tilted plane by a texel, as esm_bias does.
+      // Offset from a tilted plane by a texel, as by esm_bias.
       const double slope = (layout.receiver(x + 1e-6) - layout.receiver(x)) / 1e-6;
       const double distance = layout.receiver(x) - std::abs(slope) / texels - 1e-6;
       const double visibility = (1.0 - fraction) * technique.visibility(row[low], distance) +
@@ -219,7 +219,7 @@ double error_of(const Technique &technique, const Layout &layout, int texels)
   return std::sqrt(squares / count);
 }
 
-/** Of all layouts. */
+/** RMSE over all layouts. */
 double error_of(const Technique &technique, int texels)
 {
   double squares = 0.0;
@@ -230,7 +230,7 @@ double error_of(const Technique &technique, int texels)
   return std::sqrt(squares / double(all.size()));
 }
 
-/** Nanoseconds to filter a texel. */
+/** Time to filter one texel, nanoseconds. */
 double filter_time(const Technique &technique)
 {
   std::vector<float> distances(taps, 0.5F);

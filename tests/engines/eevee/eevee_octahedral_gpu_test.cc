@@ -34,7 +34,7 @@ double log_mean(const std::vector<double> &values, const std::vector<double> &we
   return highest + std::log(sum / weight_sum) / exponent;
 }
 
-/** Depths without any order: a distance a texel, evenly spread over [\a low, \a high]. */
+/** Random depths: one distance for each texel, evenly distributed over [\a low, \a high]. */
 CubeDepths noise(int size_px, float near, double low, double high)
 {
   std::mt19937 random(5);
@@ -45,8 +45,10 @@ CubeDepths noise(int size_px, float near, double low, double high)
 
 constexpr std::array<EsmKernel, 3> kernels = {EsmKernel::Disk4, EsmKernel::Disk32, EsmKernel::Separable};
 
-/** design.md: exact to 1e-4 m at 1 km. Where exponents are small, roundings of the sum weigh more, and visibilities
- * change by 2e-6. */
+/**
+ * design.md: exact to 1e-4 m at 1 km. For small exponents the rounding of the sum has a larger effect, and visibilities
+ * change by 2e-6.
+ */
 double prefilter_tolerance(float exponent)
 {
   return exponent < 0.1F ? 2e-4 : 1e-4;
@@ -109,7 +111,7 @@ TEST_F(OctahedralGpu, SeparablePrefilterIsExactToATenthOfAMillimetreAtAKilometre
       stage.upload(cube);
       stage.record(0, cube);
       const std::vector<float> layer = stage.layer(0);
-      // What a cone of no opening sees is what the filter began with.
+      // A cone without opening gives the input of the filter.
       EsmLamp unfiltered = lamp;
       unfiltered.settings.filter_angle = 0.0F;
       unfiltered.settings.kernel = EsmKernel::Disk4;
@@ -184,8 +186,8 @@ TEST_F(OctahedralGpu, VarianceIsExactAtAnySpread)
           }
           const glm::vec4 &found = layer[std::size_t(i / size + 1) * (size + 2) + std::size_t(i % size + 1)];
           ASSERT_NEAR(found.x, mean, prefilter_tolerance(exponent)) << i;
-          // Differences of taps are exact; the exponent's product and exp() round by 1e-7 of up to c·z, where it
-          // matters.
+          // Differences of taps are exact. The product with the exponent and exp() have rounding errors of 1e-7 of up
+          // to c·z, where it matters.
           ASSERT_NEAR(found.y, variance, 1e-5 * (1.0 + variance)) << i << ", " << exponent << "/m, from " << low;
           worst = std::max(worst, std::abs(found.y - variance) / (1.0 + variance));
         }
@@ -197,8 +199,8 @@ TEST_F(OctahedralGpu, VarianceIsExactAtAnySpread)
 
 TEST_F(OctahedralGpu, SeparableVarianceMatchesTwoDistances)
 {
-  // Half of the directions at one distance, half at another: where both are in the filter, mean and variance belong to
-  // one share.
+  // Half of the directions have one distance, half another. If the filter contains both, mean and variance belong to
+  // the same fraction.
   constexpr double near = 3.0;
   constexpr double far = 4.0;
   const CubeDepths cube = test::cube_depths(64, 0.5F, [&](const glm::dvec3 &d) { return d.x > 0.1 ? near : far; });
@@ -271,10 +273,10 @@ TEST_F(OctahedralGpu, UnfilteredDistanceEqualsThatOfTheCubeWithinRounding)
   for (int i = 0; i < 32 * 32; i++) {
     const double expected = cube.distance(texel_direction({i % 32, i / 32}, 32), 2e3);
     const double found = layer[std::size_t(i / 32 + 1) * 34 + std::size_t(i % 32 + 1)];
-    // Quotient, root and product: four roundings.
+    // Four roundings: of a quotient, a root and products.
     differ += std::abs(found - expected) > 2.4e-7 * expected ? 1 : 0;
   }
-  // Where a direction is on the border of two texels or of two faces, either will do: the map's diagonals, mostly.
+  // A direction on the border of two texels or faces may use either, mostly on the diagonals of the map.
   EXPECT_LE(differ, 4 * 32);
 }
 
@@ -304,7 +306,7 @@ TEST_F(OctahedralGpu, LampsHaveTheirOwnCubesSizesAndFormats)
           << lamps[i].name;
     }
   }
-  // hazards.md: cleared to far, which a smaller map leaves to be seen. Its encoding is 1.
+  // hazards.md: the layer is cleared to far, which is visible beside a smaller map. Its encoding is 1.
   EXPECT_EQ(test::decoded_texels(*device, stage.store.texture(1), stage.store.data(1).layer).back().x, 1.0F);
   // Faces that were not drawn: +X alone, then none.
   for (std::size_t i = 0; i < lamps.size(); i++) {
@@ -338,7 +340,7 @@ TEST_F(OctahedralGpu, IsFiniteAndInRangeForAnySpreadExponentAndReceiver)
   std::mt19937 random(2);
   for (std::vector<float> &face : cube.faces) {
     for (float &depth : face) {
-      // From the near plane to nothing, each power of ten as often as the next.
+      // Depths from the near plane to 0, logarithmically uniform.
       depth = random() % 4 == 0 ? 0.0F : float(std::pow(10.0, -34.0 * double(random()) / double(std::mt19937::max())));
     }
   }
@@ -378,7 +380,7 @@ TEST_F(OctahedralGpu, HalfFloatsRoundByNoMoreThanTheirFormulas)
   for (const float exponent : {5.0F, 80.0F}) {
     std::vector<EsmLamp> lamps;
     for (const EsmFormat format : {EsmFormat::Float, EsmFormat::Half}) {
-      // Without a bias: it would be larger for halves.
+      // Without a bias, which would be larger for halves.
       lamps.push_back({"lamp", range, {.exponent = exponent, .bias = 0.0F, .size_px = 64, .format = format}});
     }
     EsmStage stage(*device, lamps);
@@ -435,7 +437,7 @@ bool is_at_border(const glm::dvec3 &direction, double angle)
   return direction.z < 0.0 && std::min(std::abs(direction.x), std::abs(direction.y)) < angle;
 }
 
-/** The same on the upper half, where the map has a crease and no seam. */
+/** The same for the upper half, where the map has a crease but no seam. */
 bool is_at_crease(const glm::dvec3 &direction, double angle)
 {
   return is_at_border(glm::dvec3(direction.x, direction.y, -direction.z), angle);
@@ -469,14 +471,14 @@ TEST_F(OctahedralGpu, SeamsAreNoWorseThanTheInterior)
                                        .kernel = kernel}}}});
     glm::dvec3 center(0.0);
     for (int scene = 0; scene < 8; scene++) {
-      // Smooth everywhere, so that what is rough is a seam; turned about, so that no seam lies where it is steepest;
-      // and each mirrored, so that what the border sees the creases have seen.
+      // A smooth function, so that only seams are rough. It is rotated, so that no seam is at its steepest part, and
+      // mirrored, so that the border and the creases cover the same values.
       center = scene % 2 == 0 ? 1.2 * test::random_direction(random) : glm::dvec3(center.x, center.y, -center.z);
       const CubeDepths cube = test::cube_depths(
           48, 0.5F, [&](const glm::dvec3 &d) { return test::around_distance(d, center, radius); }, 0.95F);
       stage.upload(cube);
       stage.record(0, cube);
-      // A receiver behind the sphere by as much as darkens it by a half: what the filter left in between shows.
+      // A receiver behind the sphere at the distance of visibility one half, which shows differences of the filter.
       std::vector<Receiver> receivers;
       for (int i = 0; i < 10000; i++) {
         const glm::dvec3 direction = test::random_direction(random);
@@ -502,7 +504,7 @@ TEST_F(OctahedralGpu, SeamsAreNoWorseThanTheInterior)
     for (std::size_t kind = 0; kind < 5; kind++) {
       fmt::print(" error {} {:.4f} (worst {:.4f})", names[kind], rms(kind), worst[kind]);
       EXPECT_GT(counts[kind], 1000);
-      // Inside are the octahedron's edges too, as are those of the border: what is at the one, may be at the other.
+      // The interior contains edges of the octahedron as the border does; their errors may be equal.
       EXPECT_LE(rms(kind), 1.1 * std::max(rms(0), rms(1))) << names[kind];
       EXPECT_LE(worst[kind], 1.1 * std::max(worst[0], worst[1])) << names[kind];
     }
@@ -548,7 +550,7 @@ TEST_F(OctahedralGpu, KernelsHaveOneSolidAngleEverywhere)
 
                                         {1, 2, 0.2}}) {
       const glm::dvec3 middle = glm::normalize(direction);
-      // With a small exponent the filter is a mean, and a paraboloid's mean is the kernel's second moment.
+      // With a small exponent the filter is a mean, and the mean of a paraboloid is the kernel's second moment.
       constexpr double scale = 20.0;
       const CubeDepths cube =
           test::cube_depths(256, 0.5F, [&](const glm::dvec3 &d) { return 1.0 + scale * (1.0 - glm::dot(d, middle)); });
@@ -570,7 +572,7 @@ TEST_F(OctahedralGpu, KernelsHaveOneSolidAngleEverywhere)
       low = std::min(low, moment);
       high = std::max(high, moment);
     }
-    // A disk's mean of 1 - cos is half of its versine; the angle goes with the root.
+    // The mean of 1 - cos over a disk is half of its versine; the angle is proportional to the square root.
     const double expected = 0.5 * (1.0 - std::cos(angle));
     fmt::print("kernel {}: blur's angle {:.3f} to {:.3f} of what was asked\n", int(kernel), std::sqrt(low / expected),
                std::sqrt(high / expected));
@@ -581,7 +583,7 @@ TEST_F(OctahedralGpu, KernelsHaveOneSolidAngleEverywhere)
   }
 }
 
-/** A plane under the lamp, and one at its side, seen at every angle. */
+/** A plane below the lamp, and one beside it, at all angles. */
 TEST_F(OctahedralGpu, LitPlaneIsLitAndCoveredPlaneIsDark)
 {
   constexpr float range = 20.0F;
@@ -643,8 +645,10 @@ TEST_F(OctahedralGpu, LitPlaneIsLitAndCoveredPlaneIsDark)
   }
 }
 
-/** Walls of a room with balls in it, and what a cone of rays, as wide as the filter of a map of \a size, sees of the
- * lamp from there. */
+/**
+ * Walls of a room with balls in it, and the visibility of the lamp from there by a cone of rays as wide as the filter
+ * of a map of \a size.
+ */
 struct FurnishedRoom {
   explicit FurnishedRoom(int size)
   {
@@ -670,7 +674,7 @@ struct FurnishedRoom {
       truths.push_back(lit / 64.0);
     }
   }
-  /** Root of the mean square of what \a settings make wrong. */
+  /** RMSE of visibilities with \a settings. */
   [[nodiscard]] double error(gpu::Device &device, const EsmSettings &settings, const CubeDepths &cube) const
   {
     EsmStage stage(device, {{EsmLamp{"lamp", 10.0F, settings}}});

@@ -62,7 +62,7 @@ TEST_F(OctahedralStoreTest, VariancesHaveTwoChannelsInAnArrayOfTheirOwn)
   const EsmSettings plain{.size_px = 64, .format = EsmFormat::Float};
   EsmSettings variance = plain;
   variance.method = EsmMethod::Evsm;
-  // Asked for or not: 16 bits would not hold them.
+  // Also if 16 bits are requested, which cannot represent them.
   variance.format = EsmFormat::Half;
   store.sync(*device, shaders, {{lamp("a", 10.0F, plain), lamp("b", 10.0F, variance)}});
   EXPECT_TRUE(store.has_variance());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A scene that was edited at random looks as one that was built in its last state.
+// A randomly edited scene gives the same picture as a scene that was built in the final state.
 #include "eevee_scene_renderer.hh"
 #include "eevee_test_scene.hh"
 
@@ -203,7 +203,7 @@ TEST_F(RandomEdits, GiveThePictureOfASceneBuiltInTheFinalState)
   SceneRenderer edited(*device, scene, size_px, settings());
   for (int i = 1; i <= edit_count; i++) {
     editor.edit();
-    // The renderer sees some states between, and skips others.
+    // The renderer is synced for some of the intermediate states only.
     if (i % 50 == 0) {
       edited.sync();
       edited.draw(camera);

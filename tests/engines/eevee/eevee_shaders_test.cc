@@ -15,7 +15,7 @@
 namespace gnomon::eevee {
 namespace {
 
-/** The generated table's. InterfaceTables tests that it equals a fresh reflection. */
+/** The interface from the generated table. InterfaceTables tests that it equals a fresh reflection. */
 gpu::ShaderInterface interface_of(const ShaderDeclaration &declaration, Feature features)
 {
   return interface_tables()[std::size_t(declaration.id)].interface_of(std::uint32_t(features));
@@ -57,7 +57,7 @@ TEST(InterfaceTables, EqualAFreshReflectionOfEachVariantWithAnyKernel)
   }
 }
 
-// hazards.md: glslang rejects gl_Layer in a vertex shader at #version 330, and takes it at 450.
+// hazards.md: glslang rejects gl_Layer in a vertex shader at #version 330, and accepts it at 450.
 TEST(ShaderVariants, ChooseTheLayerInTheVertexShaderAtVersion450)
 {
   const ShaderDeclaration &layered = shader_declarations()[std::size_t(ShaderId::ShadowLayered)];
@@ -153,7 +153,7 @@ TEST(ShaderCache, ReloadWithoutAReflectionFunctionSaysSoAndChangesNothing)
   ASSERT_EQ(failures.size(), 1U);
   EXPECT_NE(failures[0].find("shader_check::reflect"), std::string::npos) << failures[0];
   EXPECT_EQ(device->counters().shaders_made, 1U);
-  // Still of the library's files.
+  // Still from the library's files.
   EXPECT_NO_THROW(cache.get(*device, ShaderId::Lit));
 }
 

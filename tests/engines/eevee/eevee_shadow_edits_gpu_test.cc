@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Layers that an edit keeps hold the texels that a fresh scene's have, on the driver.
+// Layers that an edit keeps have the same texels as those of a fresh scene, on the driver.
 #include "eevee_test_scene.hh"
 #include "gpu/gpu_testing.hh"
 #include "gpu_device_fixture.hh"

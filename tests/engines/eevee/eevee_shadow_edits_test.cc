@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What an edit of the scene draws again: only the layers whose texels it changes.
+// An edit of the scene redraws only the layers whose texels it changes.
 #include "eevee_shadow_fixture.hh"
 
 #include "eevee_test_scene.hh"
@@ -17,7 +17,7 @@ class ShadowEditsTest : public ShadowsTest {
  protected:
   ShadowEditsTest()
   {
-    // Sees everything around the origin.
+    // Shows everything around the origin.
     view = draw::View(glm::translate(glm::mat4(1.0F), {0, 0, -60}), draw::perspective(1.0F, 1.0F, 0.1F, 2000.0F));
     casters = {box_at({0, 0, 0}, 8.0F)};
     settings.cube_size_px = 64;

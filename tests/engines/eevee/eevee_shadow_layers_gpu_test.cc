@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What stands in the layers of shadows, and when they are drawn, on the driver.
+// Contents of shadow layers, and the conditions for drawing them, on the driver.
 #include "eevee_test_scene.hh"
 #include "gpu/gpu_testing.hh"
 #include "gpu_device_fixture.hh"
@@ -110,7 +110,7 @@ TEST_F(ShadowLayersGpuTest, ThreeCubePassesGiveTheSameTexels)
   // A few faces of two cubes, a spot and the cascades.
   ASSERT_GE(layers[0].size(), 10U);
   EXPECT_EQ(layers[2], layers[0]) << "bit for bit";
-  // Mesa clips what a geometry shader gives to a wider frustum, so that triangles that cross a layer's edge are
+  // Mesa clips the output of a geometry shader to a wider frustum, so triangles that cross a layer's edge are
   // interpolated between other points.
   ASSERT_EQ(layers[1].size(), layers[0].size());
   for (std::size_t i = 0; i < layers[0].size(); i++) {
@@ -149,13 +149,13 @@ TEST_F(ShadowLayersGpuTest, ACasterIsDrawnOnceForEachFaceThatItTouches)
   }
 }
 
-/** Distance to what stands in the middle of a lamp's only map, metres; infinite: nothing. */
+/** Distance of the caster in the middle of a lamp's only map, metres; infinite if there is none. */
 float middle_distance(gpu::Device &device, const Shadows &shadows)
 {
   const shared::ShadowMapData &map = shadows.block_data().maps[0];
   const std::vector<float> texels = gpu::read_as<float>(device, shadows.scene().maps(), map.layer);
   const std::size_t size = std::size_t(map.size_px);
-  // texco_from_world holds near in the row of z: depth = near / distance.
+  // The z row of texco_from_world contains near: depth = near / distance.
   const float near = glm::length(glm::vec3(0, 0, map.texco_from_world[3][2]));
   return near / texels[size / 2 * size + size / 2];
 }
@@ -202,7 +202,7 @@ TEST_F(ShadowLayersGpuTest, EachOfThreeSpotsHasItsOwnMapAndIsLitOutsideOfIt)
     scene.edit(lamp, [&](scene::Lamp &value) {
       value.color = {i == 0 ? 1.0F : 0.0F, i == 1 ? 1.0F : 0.0F, i == 2 ? 1.0F : 0.0F};
     });
-    // So near to its lamp that it is in no other's way to the ground where all shine.
+    // Near its lamp, so that it does not hide the ground from the other lamps.
     add(square, {x, 0, 3.8F}, glm::vec3(caster_half[std::size_t(i)]));
   }
   const scene::PlacedCamera above = test::camera_at({0, 0, 30}, {0, 0, 0}, 0.4F);
@@ -235,7 +235,7 @@ TEST_F(ShadowLayersGpuTest, EachOfThreeSpotsHasItsOwnMapAndIsLitOutsideOfIt)
   EXPECT_GT(dark, 30);
 }
 
-/** How much of its unshadowed light the middle of the picture has. */
+/** Fraction of the unshadowed light in the middle of the picture. */
 class ClipGpuTest : public ShadowLayersGpuTest {
  protected:
   float middle_visibility(const ShadowSettings &shadow = {})
@@ -244,7 +244,7 @@ class ClipGpuTest : public ShadowLayersGpuTest {
     Renderer shadowed(*device, scene, {32, 32}, {.shadow = shadow});
     return shadowed.picture(below).middle().r / lit.picture(below).middle().r;
   }
-  /** Looks at the origin past what hangs above it. */
+  /** Looks at the origin from beside the caster above it. */
   scene::PlacedCamera below = test::camera_at({0, -1, 0.5F}, {0, 0, 0}, 0.1F);
 };
 
@@ -284,7 +284,7 @@ TEST_F(ClipGpuTest, CastersBeforeTheNearPlaneCastUnlessClipped)
       EXPECT_EQ(middle_visibility({.layer_pass = way}), 0.0F) << "lamp kind " << int(kind);
       scene.edit(lamp, [&](scene::Lamp &value) { value.shadow.clip_start = 0.2F; });
       EXPECT_EQ(middle_visibility({.layer_pass = way}), 1.0F) << "lamp kind " << int(kind);
-      // What begins behind the clip stays.
+      // Casters beyond the clip distance remain.
       scene.edit(lamp, [&](scene::Lamp &value) { value.shadow.clip_start = 0.05F; });
       EXPECT_EQ(middle_visibility({.layer_pass = way}), 0.0F) << "lamp kind " << int(kind);
     }
@@ -309,7 +309,7 @@ TEST_F(ClipGpuTest, ReceiversBeyondTheClipEndAreLit)
   }
 }
 
-/** Pictures of a scene that changes, against pictures of it as it is then. */
+/** Pictures of a changing scene compared with pictures of a fresh scene in the same state. */
 class ShadowCacheGpuTest : public ShadowLayersGpuTest {
  protected:
   Picture fresh_picture(const scene::PlacedCamera &from)
@@ -388,7 +388,7 @@ TEST_F(ShadowCacheGpuTest, FacesSkippedAppearWhenTheCameraTurns)
   EXPECT_EQ(renderer.picture(ahead).pixels, first.pixels) << "what was drawn before is still there";
 }
 
-/** A sun's cascades as a fresh start draws them for a camera. */
+/** A sun's cascades, newly drawn for a camera. */
 struct Cascades {
   std::vector<shared::ShadowMapData> maps;
   std::vector<std::vector<float>> texels;
@@ -405,9 +405,9 @@ struct Cascades {
     }
   }
 
-  /** What the finest cascade that holds a point says of it. */
+  /** The result of the finest cascade that contains a point. */
   struct Lookup {
-    /** -1: none holds it, or its texel's edge is too near to tell which texel it is in. */
+    /** -1 if no cascade contains it, or if it is too near the edge of its texel. */
     int cascade = -1;
     bool is_lit = true;
   };
@@ -417,7 +417,7 @@ struct Cascades {
       const int size = maps[i].size_px;
       const glm::dvec4 texco = glm::dmat4(maps[i].texco_from_world) * glm::dvec4(point, 1.0);
       const glm::dvec2 texel = glm::dvec2(texco) * double(size);
-      // Where it does not fade into the next yet.
+      // Inside the region that does not fade into the next cascade.
       if (std::min({texco.x, texco.y, 1.0 - texco.x, 1.0 - texco.y}) < 0.06) {
         continue;
       }
@@ -465,7 +465,7 @@ TEST_F(ShadowLayersGpuTest, ACameraMovedByFractionsOfATexelChangesNoStaticShadow
     }
     EXPECT_GT(compared, 20000);
     EXPECT_GT(dark, 500);
-    // Rasterisers place vertices on 1/256 of a texel: an edge that passes a texel's centre so near may fall either way.
+    // Rasterisers round vertices to 1/256 of a texel, so an edge this near to a texel's centre may be on either side.
     EXPECT_LE(changed, compared / 10000) << "of " << compared << " points, the camera moved by " << share << " texels";
   }
 }

@@ -134,7 +134,7 @@ TEST(ShadowPlan, NoLampLosesItsShadowForTheBorderOfAnOctahedralLayer)
       settings.esm.kernel = kernel;
       const ShadowPlan plan = plan_shadows(point_lamps(1), settings, {}, {});
       ASSERT_EQ(plan.places.size(), 1U) << kib << " KiB";
-      // Of 6 faces and the layer, and two textures that the separable filter works in.
+      // Bytes of 6 faces, the layer, and two textures of the separable filter.
       const ShadowRequest &given = plan.places[0].given;
       const std::size_t edge = std::size_t(given.octahedral_px + 2 * ESM_BORDER);
       const std::size_t layers = kernel == EsmKernel::Separable ? 3 : 1;

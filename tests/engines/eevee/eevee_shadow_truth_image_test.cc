@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The engine's shadows against exact rays through the same points.
+// The engine's shadows compared with ray tracing through the same points.
 #include "engines/eevee/eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
 
@@ -15,7 +15,7 @@ using test::Renderer;
 
 struct Truth {
   reference::VisibilityError error;
-  /** Receivers that the lamp sees, and that the engine darkens by more than the rounding of a kernel's weights. */
+  /** Lit receivers that the engine darkens by more than the rounding of a kernel's weights. */
   std::size_t darkened_count = 0;
 };
 
@@ -93,15 +93,14 @@ ShadowSettings settings_of(const Case &c)
 
 class ShadowTruthEach : public ShadowTruth, public testing::WithParamInterface<Case> {};
 
-/** A plane that the lamp, 3 m off along \a angle to it, sees; turned about two axes so that no texel row is along it.
- */
+/** A plane with a lamp 3 m away at \a angle, rotated about two axes so that no row of texels is parallel to it. */
 scene::Scene plane_under(scene::LampKind kind, float angle)
 {
   scene::Scene scene;
   const auto square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(1)));
   const glm::mat4 turn = glm::rotate(glm::rotate(glm::mat4(1.0F), 0.3F, {1, 2, 0.5F}), 0.7F, {0, 0, 1});
   test::add_object(scene, square, turn);
-  // Behind the plane, so that there is something that casts, and a map.
+  // A caster behind the plane, so that there is a map.
   test::add_object(scene, square, turn * glm::scale(glm::translate(glm::mat4(1.0F), {0, 0, -1}), glm::vec3(2)));
   const glm::vec3 to_lamp(turn * glm::vec4(std::cos(angle) * 0.8F, std::cos(angle) * 0.6F, std::sin(angle), 0));
   const auto lamp = test::add_lamp(scene, kind, 3.0F * to_lamp, -to_lamp, 1.0F);
@@ -109,7 +108,7 @@ scene::Scene plane_under(scene::LampKind kind, float angle)
   return scene;
 }
 
-// hazards.md: bias tuned by hand in mixed spaces; and 002's constant and slope, set for each draw.
+// hazards.md: bias tuned by hand in mixed spaces, with a constant and a slope for each draw.
 TEST_P(ShadowTruthEach, NoAcneOnPlanesFromHalfADegreeToNinety)
 {
   for (const float degrees : {0.5F, 1.0F, 2.0F, 5.0F, 10.0F, 30.0F, 60.0F, 89.0F, 90.0F}) {
@@ -117,7 +116,7 @@ TEST_P(ShadowTruthEach, NoAcneOnPlanesFromHalfADegreeToNinety)
     const glm::vec3 normal = glm::vec3(scene.objects()[0].world_from_object[2]);
     const Truth truth = compare(scene, test::camera_at(2.4F * normal, {0, 0, 0}, 0.5F), settings_of(GetParam()));
     EXPECT_EQ(truth.error.acne_count, 0U) << degrees << " degrees";
-    // Not even a shade of it.
+    // Not even partial darkening.
     EXPECT_EQ(truth.darkened_count, 0U) << degrees << " degrees";
     EXPECT_GT(truth.error.facing_count, 10000U);
   }
@@ -125,7 +124,7 @@ TEST_P(ShadowTruthEach, NoAcneOnPlanesFromHalfADegreeToNinety)
 
 TEST_P(ShadowTruthEach, LeaksAndGapsAtContactAreATexelAndAHalf)
 {
-  // A wall that stands on the ground, lit from one side.
+  // A wall on the ground, lit from one side.
   scene::Scene scene;
   const auto square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(1)));
   test::add_object(scene, square, glm::scale(glm::mat4(1.0F), glm::vec3(4)));

@@ -61,7 +61,7 @@ TEST(ShadowCubeViews, SeeEveryDirectionInTheirFace)
   for (const glm::vec3 &v : random_directions(500)) {
     const int face = shared::cube_face(v);
     const glm::vec4 clip = views[std::size_t(face)].clip_from_world() * glm::vec4(lamp + 5.0F * v, 1.0F);
-    // Inside of the border, whose texels are for filters.
+    // Inside the border, whose texels are for filters only.
     EXPECT_LE(std::abs(clip.x), clip.w * scale * 1.00001F);
     EXPECT_LE(std::abs(clip.y), clip.w * scale * 1.00001F);
     const glm::vec3 p = shared::cube_face_project(face, 5.0F * v);
@@ -125,7 +125,7 @@ TEST_F(ShadowsTest, TheSecondCubeBeginsAtLayerSix)
   EXPECT_EQ(shadows.block_data().cubes[1].layer, 6);
 }
 
-// hazards.md: a distance cube cleared to 0 meant an occluder at the lamp.
+// hazards.md: a distance cube cleared to 0 is an occluder at the lamp.
 TEST_F(ShadowsTest, AreClearedToTheFarPlane)
 {
   // Reversed depth: far is 0.
@@ -161,7 +161,7 @@ TEST_F(ShadowsTest, FacesThatNothingVisibleLooksUpAreSkippedUntilItDoes)
   casters = {box_at({0, 0, 0}, 3.0F)};
   add_lamp(scene::LampKind::Point, "point");
   sync();
-  // From inside, along -Z and narrowly: neither behind nor aside is anything seen.
+  // A narrow view from inside along -Z shows nothing behind or beside it.
   view = draw::View(glm::mat4(1.0F), draw::perspective(0.1F, 0.1F, 0.5F, 100.0F));
   update();
   EXPECT_EQ(shadows.block_data().cubes[0].face_mask, 1 << 5);
@@ -250,7 +250,7 @@ TEST_F(ShadowsTest, SizesAreLoweredEvenlyToFitTheMemory)
   EXPECT_NE(scene_shadows.limits()[0].find("lowered to 10 %"), std::string::npos) << scene_shadows.limits()[0];
 }
 
-// hazards.md: more lamps than slots lost their shadow without a word.
+// hazards.md: with more lamps than slots, shadows were lost silently.
 TEST_F(ShadowsTest, LampsWithoutLayersAreNamed)
 {
   for (int i = 0; i < 5; i++) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light of whole lamps against numerical integration, and for whatever comes.
+// Light of whole lamps compared with numerical integration, and its range for random input.
 #include "eevee_ltc_table.hh"
 
 #include "eevee_shape_shared.h"
@@ -21,7 +21,9 @@ using shared::vec4;
 constexpr double pi = std::numbers::pi;
 const vec3 up(0.0F, 0.0F, 1.0F);
 
-/** ∫ f over what is above the horizon of a flat lamp, by its solid angle; f of the unit vector to the lamp. */
+/**
+ * ∫ f over the part of a flat lamp above the horizon, by solid angle; f is a function of the unit vector to the lamp.
+ */
 template <typename F>
 double integrated(const dvec3 &center, const dvec3 &axis_x, const dvec3 &axis_y, bool is_ellipse, int count, F &&f)
 {
@@ -127,7 +129,7 @@ vec4 table_at(const vec2 &texco)
                   glm::mix(at(low.x, low.y + 1), at(low.x + 1, low.y + 1), part.x), part.y);
 }
 
-/** What eevee_lamp_shape_lib.glsl does for a Fresnel term of 1 and a radiance of 1. */
+/** The computation of eevee_lamp_shape_lib.glsl for a Fresnel term of 1 and a radiance of 1. */
 float specular(const Place &p, const vec3 &view, float alpha)
 {
   const vec4 matrix = table_at(shared::ltc_texco(alpha, view.z));
@@ -195,7 +197,7 @@ TEST(FlatFlux, IsFiniteForEveryPolygon)
   const auto vector = [&] {
     const float size = std::pow(10.0F, exponent(random));
     vec3 v(unit(random), unit(random), unit(random));
-    // Some axes and planes are met exactly.
+    // Some values are exactly on axes and planes.
     for (int i = 0; i < 3; i++) {
       v[i] = unit(random) < -0.8F ? 0.0F : v[i];
     }

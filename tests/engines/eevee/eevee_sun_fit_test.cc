@@ -50,7 +50,7 @@ VisibleRange range_of(const draw::View &view, const std::vector<Caster> &casters
   return visible_range(view, visible_corners(view, bounds_of(casters)));
 }
 
-/** A view that sees nothing in particular, for fits to given receivers. */
+/** An arbitrary view, for fits to given receivers. */
 const draw::View any_view(glm::mat4(1.0F), draw::perspective(1.0F, 1.0F, 0.1F, 100.0F));
 
 std::vector<SunFit> fit_one(const scene::PlacedLamp &lamp, const std::vector<glm::dvec3> &receivers,
@@ -111,7 +111,7 @@ TEST(SunFit, LeavesTheGroundOutOfTheCasters)
 
 TEST(SunFit, KeepsGroundAboveVisibleReceivers)
 {
-  // A ceiling is flat too, and darkens what is below.
+  // A ceiling is flat, too, and shadows the receivers below.
   EXPECT_FALSE(
       fit_one(sun_along({0, -1, 0}), {{-1, 0, -1}, {1, 0, 1}}, {caster_at({0, 4, 0}, {2, 0, 2})}, 256).empty());
 }
@@ -279,7 +279,7 @@ TEST(Cascades, KeepTheirTexelsWhenTheCameraMoves)
     for (std::size_t i = 0; i < moved.size(); i++) {
       kept += still_fits(first[i], moved[i]) ? 1 : 0;
       for (int axis = 0; axis < 2; axis++) {
-        // Of one size, and whole texels apart.
+        // They have the same size, and their offset is a whole number of texels.
         const double texel = (first[i].max[axis] - first[i].min[axis]) / 1024;
         const double moved_texel = (moved[i].max[axis] - moved[i].min[axis]) / 1024;
         if (std::abs(moved_texel / texel - 1.0) < 1e-12) {

@@ -53,7 +53,7 @@ class TargetGpuTest : public test::HostFramebufferTest {
     renderer.draw(camera, {}, display.target());
     return {size_px, gpu::read_as<std::array<std::uint8_t, 4>>(*device, display.texture())};
   }
-  /** Outside of the picture's rectangle, \a pixels are as in \a before. */
+  /** Outside of the picture's rectangle, \a pixels equal \a before. */
   static void expect_outside(const Pixels &pixels, const Pixels &before)
   {
     for (int y = 0; y < host_size_px.y; y++) {
@@ -104,11 +104,11 @@ TEST_P(TargetGpuTest, AFramebufferThatChangesEveryFrameGetsThePictureAndKeepsThe
     const Pixels pixels = host.pixels();
     expect_outside(pixels, before);
     if (is_complete) {
-      // The driver's table of sRGB against the shader's formula: one step of 255.
+      // The driver's sRGB table and the shader's formula differ by one step of 255.
       EXPECT_LE(difference(pixels, truth), encoding == draw::Encoding::Display ? 0 : 1) << "frame " << frame;
     }
     else {
-      // The middle of a plane is the same in every sample, and its mean, too.
+      // The middle of a plane is equal in all samples, and therefore in their mean.
       const std::array<int, 4> middle = pixels.at(origin_px.x + size_px.x / 2, origin_px.y + 2);
       for (std::size_t c = 0; c < 4; c++) {
         EXPECT_NEAR(middle[c], truth.at(size_px.x / 2, 2)[c], 1) << "frame " << frame;

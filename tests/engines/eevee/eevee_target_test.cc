@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Accumulation over draws, and what a target asks for, on the null backend.
+// Accumulation over draws, and passes that a target needs, on the null backend.
 #include "eevee_scene_renderer.hh"
 #include "eevee_test_scene.hh"
 
@@ -55,7 +55,7 @@ TEST_F(TargetTest, ASampleIsDrawnForEachDrawUntilThePictureIsComplete)
     EXPECT_EQ(passes_of([&] { EXPECT_EQ(renderer.draw_sample(camera, target), is_last); }), sample);
   }
   for (int i = 0; i < 3; i++) {
-    // As a host does, whether anything changed or not.
+    // Like a host that syncs in each frame.
     renderer.sync();
     EXPECT_EQ(passes_of([&] { EXPECT_TRUE(renderer.draw_sample(camera, target)); }), no_sample);
   }

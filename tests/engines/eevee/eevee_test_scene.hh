@@ -3,7 +3,7 @@
 
 #include "measure_scene.hh"
 
-/** The scenes that stability is measured on serve tests too. */
+/** Tests use the scenes of source/measure. */
 namespace gnomon::test {
 
 using measure::add_box_mesh;
@@ -18,7 +18,7 @@ using measure::Picture;
 using measure::remove_lamps;
 using measure::Renderer;
 
-/** Remove the nodes that have meshes; the last first, so that places are used in order. */
+/** Removes the nodes that have meshes; the last first, so that slots are reused in order. */
 inline void remove_objects(scene::Scene &scene)
 {
   const std::vector<scene::Object> objects = scene.objects();
@@ -27,7 +27,7 @@ inline void remove_objects(scene::Scene &scene)
   }
 }
 
-/** Edit the material number \a index of \a scene. */
+/** Edits material number \a index of \a scene. */
 template <std::invocable<scene::Material &> Change>
 void edit_material(scene::Scene &scene, std::size_t index, Change &&change)
 {

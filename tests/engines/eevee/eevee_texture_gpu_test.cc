@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Base colour textures and alpha masks against closed forms and invariants, on the driver.
+// Base colour textures and alpha masks compared with closed forms and invariants, on the driver.
 #include "eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
 
@@ -49,13 +49,13 @@ class TextureGpuTest : public test::GpuDeviceTest {
   }
 
   scene::Scene scene;
-  /** Sees x and y from -1.6 to 1.6 on the plane z = 0: 20 pixels a metre. */
+  /** Shows x and y from -1.6 to 1.6 on the plane z = 0: 20 pixels per metre. */
   scene::PlacedCamera camera = test::camera_at({0, 0, 16}, {0, 0, 0}, 2.0F * std::atan(0.1F));
 };
 
 const Settings no_shadow = {.shadow = {.kind = scene::ShadowKind::None}};
 
-/** Where \a x and \a y, metres on the plane z = 0, are in the picture. */
+/** Pixel of \a x and \a y, metres on the plane z = 0. */
 glm::vec4 at(const Picture &picture, float x, float y)
 {
   return picture.at(int(32 + 20 * x), int(32 + 20 * y));
@@ -101,7 +101,7 @@ TEST_F(TextureGpuTest, ATextureOnAMetalColoursItsReflection)
   test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, PI);
   const glm::vec4 pixel = at(render(), 0, 0);
   EXPECT_GT(pixel.r, 0.1F);
-  // What Schlick's term adds at the angle of half a degree is far below.
+  // Schlick's term at an angle of half a degree is far below.
   EXPECT_LT(pixel.g, 1e-4F);
 }
 
@@ -141,7 +141,7 @@ TEST_F(TextureGpuTest, CutOutSurfacesChangeNoPixel)
   add(post, {-1, 0, 2}, glm::vec3(0.1F));
   const Picture without = render();
   add(ghost, {0.2F, 0.1F, 0.5F}, glm::vec3(0.5F));
-  // Where its depth is that of the ground.
+  // At the depth of the ground.
   add(ghost, {0, 0, 0}, glm::vec3(2));
   EXPECT_EQ(render().pixels, without.pixels);
 }
@@ -168,7 +168,7 @@ TEST_F(TextureGpuTest, DepthAndLitPassesCutAlike)
   const Picture picture = render();
   int leaf_count = 0;
   for (const glm::vec4 &pixel : picture.pixels) {
-    // Where they differed, nothing would be drawn.
+    // If they differed, nothing would be drawn.
     ASSERT_NEAR(pixel.r + pixel.g, 1.0F, 1e-5F);
     leaf_count += pixel.r > 0.5F ? 1 : 0;
   }
@@ -200,7 +200,7 @@ TEST_F(TextureGpuTest, MirroredTwoSidedAndTurnedLeavesKeepTheirShape)
     EXPECT_EQ(corners(scaled(-1, 1, 1)), ".x..");
     EXPECT_EQ(corners(scaled(1, -1, 1)), "..x.");
     EXPECT_EQ(corners(scaled(-1, -1, 1)), "...x");
-    // From behind it is seen the other way round, if at all.
+    // From behind, the picture is mirrored, or empty for one-sided materials.
     EXPECT_EQ(corners(half_turn), is_double_sided ? ".x.." : "....");
     EXPECT_EQ(corners(scaled(1, 1, -1)), is_double_sided ? "x..." : "....");
   }

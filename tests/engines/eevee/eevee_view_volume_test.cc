@@ -56,7 +56,7 @@ TEST(VisibleCorners, HoldEveryPointThatIsInBoxAndFrustum)
     }
     touching += inside > 0;
   }
-  // The trials must not have missed what they test.
+  // The trials must contain both results.
   EXPECT_GT(touching, 60);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Several viewports of one scene, one engine: what they share, and what is each one's own.
+// Several viewports of one scene and engine: shared and separate resources.
 #include "eevee_test_scene.hh"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ class ViewportsTest : public testing::Test {
     viewport.restart();
     viewport.draw(engines, view_of(render_scene->relative(camera), viewport.size_px()));
   }
-  /** Of meshes, programs, lights, and shadows: everything but pictures and the blocks of a view. */
+  /** Bytes of shared resources: meshes, programs, lights and shadows, without pictures and view blocks. */
   std::map<std::string, std::size_t> shared_bytes() const
   {
     std::map<std::string, std::size_t> bytes;
