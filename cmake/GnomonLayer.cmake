@@ -21,8 +21,8 @@ function(gnomon_compile_settings TARGET)
   target_compile_options(${TARGET} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
     -Wnon-virtual-dtor -Woverloaded-virtual $<$<BOOL:${GNOMON_WERROR}>:-Werror>)
   if(GNOMON_SANITIZE)
-    target_compile_options(${TARGET} PUBLIC -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
-    target_link_options(${TARGET} PUBLIC -fsanitize=address,undefined)
+    target_compile_options(${TARGET} PUBLIC -fsanitize=${GNOMON_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_link_options(${TARGET} PUBLIC -fsanitize=${GNOMON_SANITIZE})
   endif()
 endfunction()
 

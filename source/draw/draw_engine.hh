@@ -3,6 +3,8 @@
 
 #include "draw_objects.hh"
 
+#include "gpu_packet.hh"
+
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -20,6 +22,10 @@ class Viewport;
  * this viewport, or a sync failed; cache_populate for each object that changed, after cache_init for every object;
  * cache_finish, which calls Viewport::restart where the picture is another one than before. Then, by Viewport::draw,
  * draw_scene as often as wanted, until the scene changes.
+ *
+ * All of these record: they need no device, and may run on another thread than the device's (\see gpu::Recording).
+ * What an engine notes as drawn or written is so once the packet is submitted. It compares gpu::Device::loss_count, and
+ * draws and writes again what a lost packet held.
  */
 class Engine {
  public:
@@ -48,6 +54,14 @@ class Engine {
    * engine draws; then write the picture so far to Viewport::target, where there is one.
    */
   virtual void draw_scene(Viewport &viewport, const View &view) = 0;
+  /**
+   * What the device reports about an earlier draw_scene of \a viewport: what it asked for by read_back, and times.
+   * \return whether the picture of that draw_scene is final; otherwise another draw_scene with the same view may differ
+   */
+  virtual bool take_feedback(Viewport & /*viewport*/, const gpu::Feedback & /*feedback*/)
+  {
+    return true;
+  }
 
  private:
   std::uint64_t id_;

@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 namespace gnomon::draw {
 
@@ -126,6 +127,9 @@ void ObjectBuffer::upload(gpu::Device &device)
     const std::size_t limit = device.limits().storage_block_bytes_max;
     const std::size_t size = std::max(bytes.size(), std::min(std::bit_ceil(bytes.size()), limit));
     buffer_ = device.create_buffer({"object_block", gpu::BufferKind::Storage, size});
+    uploaded_revision_ = 0;
+  }
+  if (std::exchange(loss_count_, device.loss_count()) != device.loss_count()) {
     uploaded_revision_ = 0;
   }
   if (uploaded_revision_ == revision_) {

@@ -98,6 +98,8 @@ class ObjectBuffer {
   std::uint64_t structure_revision_ = 0;
   /** Of the last upload. */
   std::uint64_t uploaded_revision_ = 0;
+  /** gpu::Device::loss_count then. */
+  std::uint64_t loss_count_ = 0;
   gpu::Buffer buffer_;
 };
 

@@ -127,13 +127,12 @@ void ShadingGroup::record_bindings(gpu::CommandList &list) const
     }
   }
   if (!constant_bytes_.empty()) {
-    std::vector<std::byte> constants = constant_bytes_;
+    const std::span<std::byte> constants = list.push_constants(shader_.interface().push_constant_slot, constant_bytes_);
     for (const Constant &constant : constants_) {
       if (constant.reference) {
         std::memcpy(constants.data() + constant.offset_bytes, constant.reference, constant.size_bytes);
       }
     }
-    list.push_constants(shader_.interface().push_constant_slot, constants);
   }
 }
 

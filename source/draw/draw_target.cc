@@ -28,6 +28,9 @@ void check(const Target &target, glm::ivec2 size_px)
   if (!target) {
     return;
   }
+  if (const auto *const *own = std::get_if<const gpu::Framebuffer *>(&target.framebuffer); own && !**own) {
+    throw gpu::Error("target: the framebuffer is empty: it was destroyed, or a lost packet was to create it");
+  }
   const glm::ivec2 first = target.origin_px;
   const glm::ivec2 room = size_of(target) - first;
   if (first.x < 0 || first.y < 0 || size_px.x > room.x || size_px.y > room.y) {

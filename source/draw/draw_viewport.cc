@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace gnomon::draw {
 
@@ -81,8 +82,11 @@ void Viewport::draw(std::span<Engine *const> engines, const View &view, const Ta
     restart();
   }
   try {
-    for (Engine *engine : engines) {
-      engine->draw_scene(*this, view);
+    if (device_.is_recording()) {
+      draw_sample(engines, false);
+    }
+    else {
+      draw_until_final(engines);
     }
   }
   catch (...) {
@@ -90,7 +94,40 @@ void Viewport::draw(std::span<Engine *const> engines, const View &view, const Ta
     restart();
     throw;
   }
+}
+
+void Viewport::draw_sample(std::span<Engine *const> engines, bool is_until_final)
+{
+  draws_until_final_ = is_until_final;
+  if (std::exchange(loss_count_, device_.loss_count()) != device_.loss_count()) {
+    restart();
+  }
+  for (Engine *engine : engines) {
+    engine->draw_scene(*this, view_);
+  }
   samples_drawn_ = std::min(samples_drawn_, std::numeric_limits<int>::max() - 1) + 1;
+}
+
+void Viewport::draw_until_final(std::span<Engine *const> engines)
+{
+  // Feedback of this view makes the second sample final.
+  bool is_final = false;
+  for (int i = 0; i < 2 && !is_final; i++) {
+    device_.run(packet_, [&] { draw_sample(engines, i == 0); });
+    is_final = take_feedback(engines, packet_.feedback());
+  }
+}
+
+bool Viewport::take_feedback(std::span<Engine *const> engines, const gpu::Feedback &feedback)
+{
+  bool is_final = true;
+  for (Engine *engine : engines) {
+    is_final &= engine->take_feedback(*this, feedback);
+  }
+  if (!is_final) {
+    restart();
+  }
+  return is_final;
 }
 
 }  // namespace gnomon::draw

@@ -26,7 +26,8 @@ struct EngineViewportData {
  * each engine keeps for it. Must be destroyed before its device.
  *
  * Each draw adds a sample to the picture until the engines have all that they are to draw. A picture begins anew when
- * its view or its size changes, after a sync in which an engine finds a change, and by restart().
+ * its view or its size changes, after a sync in which an engine finds a change, where a packet with samples of it is
+ * lost, and by restart().
  */
 class Viewport {
  public:
@@ -39,10 +40,21 @@ class Viewport {
    */
   void sync(std::span<Engine *const> engines, const ObjectBuffer &objects);
   /**
-   * Let \a engines draw the next sample, in order, and write the picture so far to \a target.
-   * \throws gpu::Error where \a view or its inverse is not finite, and where \a target cannot take the picture.
+   * Let \a engines draw the next sample, in order, and write the picture so far to \a target. While the device is
+   * recording, this is a part of the recording. Otherwise it is recorded and submitted now, and repeated where the
+   * device's feedback changes the picture.
+   *
+   * \throws gpu::Error where \a view or its inverse is not finite, where \a target cannot take the picture, and where
+   * the submission fails; the picture then begins anew with the next draw.
    */
   void draw(std::span<Engine *const> engines, const View &view, const Target &target = {});
+  /**
+   * Give \a engines the feedback of an earlier packet in which they drew, for the next draw. Hosts that record packets
+   * call it between submission and the next recording of that packet; draw without a recording does so itself. The
+   * picture begins anew where the feedback changes it.
+   * \return whether the picture of that packet is final
+   */
+  bool take_feedback(std::span<Engine *const> engines, const gpu::Feedback &feedback);
   /** Begin the picture anew with the next draw. */
   void restart()
   {
@@ -52,6 +64,11 @@ class Viewport {
   [[nodiscard]] int samples_drawn() const
   {
     return samples_drawn_;
+  }
+  /** Of the current draw, or of the last one. */
+  [[nodiscard]] const View &view() const
+  {
+    return view_;
   }
   /** Of the current draw, or of the last one, whose framebuffer may be gone. */
   [[nodiscard]] const Target &target() const
@@ -77,6 +94,15 @@ class Viewport {
     return bool(depth_texture_);
   }
 
+  /**
+   * During draw_scene: whether draw repeats it until the picture is final. The first draw_scene then needs to draw only
+   * what the device's feedback is made from.
+   */
+  [[nodiscard]] bool draws_until_final() const
+  {
+    return draws_until_final_;
+  }
+
   /** The first call of \a engine creates it; remove_engine destroys it. \pre always called with the same Data. */
   template <typename Data>
   Data &engine_data(const Engine &engine)
@@ -99,6 +125,10 @@ class Viewport {
   void resize(glm::ivec2 size_px);
 
  private:
+  /** \a is_until_final: \see draws_until_final */
+  void draw_sample(std::span<Engine *const> engines, bool is_until_final);
+  void draw_until_final(std::span<Engine *const> engines);
+
   gpu::Device &device_;
   glm::ivec2 size_px_;
   gpu::Texture depth_texture_;
@@ -106,6 +136,11 @@ class Viewport {
   View view_;
   Target target_;
   int samples_drawn_ = 0;
+  /** gpu::Device::loss_count when the last sample was drawn. */
+  std::uint64_t loss_count_ = 0;
+  /** For draw without a recording. */
+  gpu::Packet packet_;
+  bool draws_until_final_ = false;
   struct EngineState {
     std::unique_ptr<EngineViewportData> data;
     /** ObjectBuffer::revision at the last sync that came to its end; nothing: none did. */

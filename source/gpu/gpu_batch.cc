@@ -32,4 +32,13 @@ std::span<const std::byte> BatchDesc::bytes(VertexStream stream) const
   return {};
 }
 
+std::size_t size_bytes(const BatchDesc &desc)
+{
+  std::size_t size = desc.indices.size_bytes();
+  for (std::size_t i = 0; i < vertex_stream_count; i++) {
+    size += desc.bytes(VertexStream(i)).size();
+  }
+  return size;
+}
+
 }  // namespace gnomon::gpu

@@ -55,6 +55,9 @@ struct BatchDesc {
   [[nodiscard]] std::span<const std::byte> bytes(VertexStream stream) const;
 };
 
+/** Of all attributes and the indices. */
+[[nodiscard]] std::size_t size_bytes(const BatchDesc &desc);
+
 /** Location of a batch in the buffers of its device, for indexed draws. */
 struct BatchRange {
   std::uint32_t first_index = 0;

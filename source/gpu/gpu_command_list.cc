@@ -7,14 +7,21 @@ namespace gnomon::gpu {
 
 void CommandList::begin_pass(std::string_view name, const Framebuffer &framebuffer, const PassActions &actions)
 {
-  commands_.push_back({.kind = CommandKind::BeginPass, .id = framebuffer.id(), .first = std::uint32_t(passes_.size())});
-  passes_.push_back({std::string(name), framebuffer.id(), actions});
+  begin_pass(name, {.framebuffer = framebuffer.id(), .actions = actions});
 }
 
 void CommandList::begin_pass(std::string_view name, const HostFramebuffer &framebuffer, const PassActions &actions)
 {
-  commands_.push_back({.kind = CommandKind::BeginPass, .first = std::uint32_t(passes_.size())});
-  passes_.push_back({std::string(name), 0, actions, framebuffer});
+  begin_pass(name, {.actions = actions, .host_framebuffer = framebuffer});
+}
+
+void CommandList::begin_pass(std::string_view name, PassInfo pass)
+{
+  pass.name_first = std::uint32_t(names_.size());
+  pass.name_size = std::uint32_t(name.size());
+  names_ += name;
+  commands_.push_back({.kind = CommandKind::BeginPass, .id = pass.framebuffer, .first = std::uint32_t(passes_.size())});
+  passes_.push_back(pass);
 }
 
 void CommandList::end_pass()
@@ -49,10 +56,11 @@ void CommandList::bind_texture(int slot, ResourceId texture, ResourceId sampler)
   commands_.push_back({.kind = CommandKind::BindTexture, .slot = std::uint32_t(slot), .id = texture, .first = sampler});
 }
 
-void CommandList::push_constants(int slot, std::span<const std::byte> bytes)
+std::span<std::byte> CommandList::push_constants(int slot, std::span<const std::byte> bytes)
 {
   commands_.push_back(
       {CommandKind::PushConstants, std::uint32_t(slot), 0, append_bytes(bytes), std::uint32_t(bytes.size())});
+  return std::span(bytes_).last(bytes.size());
 }
 
 void CommandList::draw(std::uint32_t first, std::uint32_t count)
@@ -79,6 +87,7 @@ void CommandList::clear()
   instances.clear();
   commands_.clear();
   passes_.clear();
+  names_.clear();
   bytes_.clear();
 }
 
@@ -124,7 +133,7 @@ std::string CommandList::serialize(const Device &device) const
       case CommandKind::BeginPass: {
         const PassInfo &pass = passes_[command.first];
         const PassActions &a = pass.actions;
-        text += fmt::format("begin {} -> {} color {}/{} depth {}/{}{}{}{}\n", pass.name,
+        text += fmt::format("begin {} -> {} color {}/{} depth {}/{}{}{}{}\n", name_of(pass),
                             pass.host_framebuffer ? "host framebuffer" : name(ResourceKind::Framebuffer, command.id),
                             to_string(a.color_load), to_string(a.color_store), to_string(a.depth_load),
                             to_string(a.depth_store), to_string(" viewport", a.viewport),

@@ -75,8 +75,11 @@ class CommandList {
   void bind_storage(int slot, const BufferRange &range);
   /** 0 and 0: no texture. A shader that declares the texture then reads zeros, and 1 from a depth comparison. */
   void bind_texture(int slot, ResourceId texture, ResourceId sampler);
-  /** Set the content of the block push_constant_block_name of later draws, at its slot. Copies \a bytes. */
-  void push_constants(int slot, std::span<const std::byte> bytes);
+  /**
+   * Set the content of the block push_constant_block_name of later draws, at its slot. Copies \a bytes.
+   * \return the copy, which may be written until the next call
+   */
+  std::span<std::byte> push_constants(int slot, std::span<const std::byte> bytes);
   /** Draw `draws[first, first + count)` with the current shader, state and bindings. */
   void draw(std::uint32_t first, std::uint32_t count);
   /** Draw triangles of \a vertex_count vertices without attributes. */
@@ -91,10 +94,12 @@ class CommandList {
   std::vector<DrawInstance> instances;
 
   struct PassInfo {
-    std::string name;
+    /** \see name_of */
+    std::uint32_t name_first = 0;
+    std::uint32_t name_size = 0;
     /** 0: `host_framebuffer`. */
     ResourceId framebuffer = 0;
-    PassActions actions;
+    PassActions actions{};
     std::optional<HostFramebuffer> host_framebuffer{};
   };
   [[nodiscard]] const std::vector<Command> &commands() const
@@ -105,6 +110,10 @@ class CommandList {
   [[nodiscard]] const std::vector<PassInfo> &passes() const
   {
     return passes_;
+  }
+  [[nodiscard]] std::string_view name_of(const PassInfo &pass) const
+  {
+    return std::string_view(names_).substr(pass.name_first, pass.name_size);
   }
   /**
    * Data of PushConstants and Update: `first` is the offset in it and `count` the size. `slot` of Update is the offset
@@ -119,10 +128,13 @@ class CommandList {
   [[nodiscard]] std::string serialize(const Device &device) const;
 
  private:
+  void begin_pass(std::string_view name, PassInfo pass);
   std::uint32_t append_bytes(std::span<const std::byte> bytes);
 
   std::vector<Command> commands_;
   std::vector<PassInfo> passes_;
+  /** Of all passes, one after the other, so that a list that is cleared and filled again allocates nothing. */
+  std::string names_;
   std::vector<std::byte> bytes_;
 };
 

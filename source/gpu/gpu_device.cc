@@ -29,13 +29,14 @@ void Device::free_live_resources()
     message(fmt::format("{} is destroyed with its device; its owner should be destroyed first", resource));
   }
   for (std::size_t kind = 0; kind < kind_count; kind++) {
-    for (const Slot &slot : slots_[kind]) {
-      if (slot.is_live) {
-        release(ResourceKind(kind), slot.id);
-      }
+    for (const ResourceId id : existing_[kind]) {
+      destroy(ResourceKind(kind), id);
     }
   }
   link_->device = nullptr;
+  for (const std::shared_ptr<DeviceLink> &link : packet_links_) {
+    link->device = nullptr;
+  }
 }
 
 void Device::message(std::string_view text) const
@@ -61,27 +62,19 @@ Resource Device::make(ResourceKind kind, ResourceInfo info, std::string detail, 
     slots.emplace_back();
   }
   const ResourceId id = free_ids.back();
-  create(id);
-  slots[index_of(id)] = {id, true, std::move(info), std::move(detail), size_bytes, 0};
+  perform({create(id)});
+  slots_[std::size_t(kind)][index_of(id)] = {id, true, std::move(info), std::move(detail), size_bytes, 0};
   free_ids.pop_back();
-  return {link_, kind, id};
-}
-
-void Device::release(ResourceKind kind, ResourceId id)
-{
-  Slot &slot = slots_[std::size_t(kind)][index_of(id)];
-  slot.is_live = false;
-  // An index without unused generations is never used again, so that no id is issued twice.
-  constexpr std::uint32_t generation_max = (1U << (32U - resource_index_bits)) - 1U;
-  if (generation_of(id) < generation_max) {
-    free_ids_[std::size_t(kind)].push_back(id + (1U << resource_index_bits));
+  if (!recording_) {
+    return {link_, kind, id};
   }
-  if (kind == ResourceKind::Batch) {
-    free_range(std::get<BatchRange>(slot.info.desc));
+  InFlight &packet = in_flight_.back();
+  if (!packet.link) {
+    packet.link = std::make_shared<DeviceLink>(DeviceLink{this});
+    packet_links_.push_back(packet.link);
   }
-  else {
-    resource_destroy(kind, id);
-  }
+  packet.created.push_back({kind, id});
+  return {packet.link, kind, id};
 }
 
 Texture Device::create_texture(const TextureDesc &desc)
@@ -98,16 +91,23 @@ Texture Device::create_texture(const TextureDesc &desc)
   const std::string detail =
       fmt::format("{}x{}{} {}", desc.width, desc.height, desc.layers > 1 ? fmt::format("x{}", desc.layers) : "",
                   to_string(desc.format));
-  Resource resource = make(ResourceKind::Texture, {desc.name, desc}, detail, desc.size_bytes(),
-                           [&](ResourceId id) { texture_create(id, desc); });
-  counters_.textures_made++;
+  Resource resource = make(ResourceKind::Texture, {desc.name, desc}, detail, desc.size_bytes(), [&](ResourceId id) {
+    return Operation::CreateTexture{id, desc};
+  });
   return {std::move(resource), desc};
 }
 
 Sampler Device::create_sampler(const SamplerDesc &desc)
 {
-  return Sampler(
-      make(ResourceKind::Sampler, {desc.name, desc}, {}, 0, [&](ResourceId id) { sampler_create(id, desc); }));
+  return Sampler(make(ResourceKind::Sampler, {desc.name, desc}, {}, 0, [&](ResourceId id) {
+    return Operation::CreateSampler{id, desc};
+  }));
+}
+
+static AttachmentLayout layout_of(const Attachment &attachment)
+{
+  return {attachment.texture ? attachment.texture->id() : 0, attachment.layer, attachment.mip_level,
+          attachment.layer_count};
 }
 
 Framebuffer Device::create_framebuffer(const FramebufferDesc &desc)
@@ -155,8 +155,12 @@ Framebuffer Device::create_framebuffer(const FramebufferDesc &desc)
   for (const Attachment &attachment : attachments) {
     info.attachments.push_back({attachment.texture->id(), attachment.texture->desc().name});
   }
+  FramebufferLayout layout{desc.name, {}, layout_of(desc.depth), size_px};
+  std::ranges::transform(desc.colors, std::back_inserter(layout.colors), layout_of);
   return {make(ResourceKind::Framebuffer, {desc.name, std::move(info)}, {}, 0,
-               [&](ResourceId id) { framebuffer_create(id, desc); }),
+               [&](ResourceId id) {
+                 return Operation::CreateFramebuffer{id, layout};
+               }),
           size_px};
 }
 
@@ -168,7 +172,9 @@ Buffer Device::create_buffer(const BufferDesc &desc)
     throw Error("buffer '{}': {} bytes, and this device takes 1 to {}", desc.name, desc.size_bytes, max);
   }
   return {make(ResourceKind::Buffer, {desc.name, desc}, {}, desc.size_bytes,
-               [&](ResourceId id) { buffer_create(id, desc); }),
+               [&](ResourceId id) {
+                 return Operation::CreateBuffer{id, desc};
+               }),
           desc};
 }
 
@@ -179,13 +185,11 @@ Batch Device::create_batch(const BatchDesc &desc)
     throw Error("batch '{}': {} vertices and {} indices, and a batch takes {} of each", desc.name,
                 desc.positions.size(), desc.indices.size(), count_max);
   }
-  std::size_t size_bytes = desc.indices.size_bytes();
   for (std::size_t i = 0; i < vertex_stream_count; i++) {
     const std::size_t stream_bytes = desc.bytes(VertexStream(i)).size();
     GNOMON_ASSERT(stream_bytes == 0 || stream_bytes == desc.positions.size() * vertex_formats()[i].size_bytes,
                   "batch '{}': {} bytes of attribute {} for {} positions", desc.name, stream_bytes,
                   vertex_formats()[i].attribute, desc.positions.size());
-    size_bytes += stream_bytes;
   }
   GNOMON_ASSERT(std::ranges::all_of(desc.indices, [&](auto index) { return index < desc.positions.size(); }),
                 "batch '{}': an index reaches past its {} vertices", desc.name, desc.positions.size());
@@ -193,10 +197,18 @@ Batch Device::create_batch(const BatchDesc &desc)
   const std::uint32_t index_capacity = indices_.capacity();
   const BatchRange range = allocate_range(desc);
   try {
-    Resource resource = make(ResourceKind::Batch, {desc.name, range}, {}, size_bytes, [&](ResourceId /*id*/) {
-      batch_create(desc, range, vertices_.capacity(), indices_.capacity());
+    Resource resource = make(ResourceKind::Batch, {desc.name, range}, {}, size_bytes(desc), [&](ResourceId id) {
+      const BatchDesc data{.name = desc.name,
+                           .positions = kept(desc.positions),
+                           .normals = kept(desc.normals),
+                           .indices = kept(desc.indices),
+                           .uvs = kept(desc.uvs),
+                           .second_uvs = kept(desc.second_uvs),
+                           .tangents = kept(desc.tangents),
+                           .colors = kept(desc.colors)};
+      return Operation::CreateBatch{id, data, range, vertices_.capacity(), indices_.capacity()};
     });
-    count_upload(ResourceKind::Batch, resource.id(), size_bytes);
+    count_upload(ResourceKind::Batch, resource.id(), size_bytes(desc));
     return {std::move(resource), range};
   }
   catch (...) {
@@ -255,28 +267,21 @@ static void check_storage_blocks(std::string_view name, const ShaderInterface &i
 
 Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files, const ShaderReflection &reflection)
 {
-  const std::vector<ShaderSource> stages = preprocess(desc, files);
+  std::vector<ShaderSource> stages = preprocess(desc, files);
   ShaderInterface interface = reflection(desc.name, stages);
-  const std::string key = ShaderDiskCache::key_of(stages, description());
-  CachedShader shader = shader_cache_.load(key).value_or(CachedShader());
   check_storage_blocks(desc.name, interface, limits_);
   const std::string detail = fmt::format("{}", fmt::join(desc.defines, " "));
-  const std::vector<std::byte> known = shader.compiled;
-  Resource resource = make(ResourceKind::Shader, {desc.name, interface}, detail, 0,
-                           [&](ResourceId id) { shader_create(id, desc, stages, shader.compiled); });
-  const bool is_loaded = !known.empty() && shader.compiled == known;
-  if (!is_loaded && !shader.compiled.empty()) {
-    shader_cache_.store(key, shader);
-  }
-  counters_.shaders_made++;
-  counters_.shaders_from_cache += is_loaded;
+  Resource resource = make(ResourceKind::Shader, {desc.name, interface}, detail, 0, [&](ResourceId id) {
+    return Operation::CreateShader{id, desc, std::move(stages)};
+  });
   return {std::move(resource), desc.name, std::move(interface)};
 }
 
 TimerQuery Device::create_timer_query(std::string name)
 {
-  return TimerQuery(
-      make(ResourceKind::TimerQuery, {name, {}}, {}, 0, [&](ResourceId id) { timer_query_create(id, name); }));
+  return TimerQuery(make(ResourceKind::TimerQuery, {name, {}}, {}, 0, [&](ResourceId id) {
+    return Operation::CreateTimerQuery{id, name};
+  }));
 }
 
 void Device::update(const Buffer &buffer, std::size_t offset_bytes, std::span<const std::byte> bytes)
@@ -284,8 +289,8 @@ void Device::update(const Buffer &buffer, std::size_t offset_bytes, std::span<co
   GNOMON_ASSERT(buffer && offset_bytes + bytes.size() <= buffer.size_bytes(),
                 "buffer '{}': {} bytes at {} do not fit into {}", name_of(ResourceKind::Buffer, buffer.id()),
                 bytes.size(), offset_bytes, buffer.size_bytes());
+  perform({Operation::UpdateBuffer{buffer.id(), offset_bytes, kept(bytes)}});
   count_upload(ResourceKind::Buffer, buffer.id(), bytes.size());
-  buffer_update(buffer.id(), offset_bytes, bytes);
 }
 
 static std::size_t layer_size_bytes(const TextureDesc &desc)
@@ -298,15 +303,15 @@ void Device::upload(const Texture &texture, int layer, std::span<const std::byte
   const TextureDesc &desc = texture.desc();
   GNOMON_ASSERT(texture && layer >= 0 && layer < desc.layers && texels.size() == layer_size_bytes(desc),
                 "texture '{}': {} bytes to layer {}", desc.name, texels.size(), layer);
+  perform({Operation::UploadTexture{texture.id(), layer, kept(texels)}});
   count_upload(ResourceKind::Texture, texture.id(), texels.size());
-  texture_upload(texture, layer, texels);
 }
 
 void Device::generate_mipmaps(const Texture &texture)
 {
   GNOMON_ASSERT(texture && !is_depth(texture.desc().format), "texture '{}' of format {}", texture.desc().name,
                 to_string(texture.desc().format));
-  mipmaps_generate(texture);
+  perform({Operation::GenerateMipmaps{texture.id()}});
 }
 
 void Device::copy_layers(const Texture &source, const Texture &target)
@@ -316,17 +321,38 @@ void Device::copy_layers(const Texture &source, const Texture &target)
                 "copy of texture '{}' to '{}'", source.desc().name, target.desc().name);
   const TextureDesc &from = source.desc();
   const TextureDesc &to = target.desc();
-  layers_copy(source, target, {std::min(from.width, to.width), std::min(from.height, to.height)},
-              std::min(from.layers, to.layers));
+  perform({Operation::CopyLayers{source.id(),
+                                 target.id(),
+                                 {std::min(from.width, to.width), std::min(from.height, to.height)},
+                                 std::min(from.layers, to.layers)}});
 }
 
 std::vector<std::byte> Device::read(const Texture &texture, int layer)
 {
   const TextureDesc &desc = texture.desc();
+  GNOMON_ASSERT(!recording_, "a read of texture '{}' during a recording", desc.name);
   GNOMON_ASSERT(texture && layer >= 0 && layer < desc.layers, "texture '{}' has no layer {}", desc.name, layer);
   std::vector<std::byte> texels(layer_size_bytes(desc));
-  texture_read(texture, layer, texels);
+  texture_read(texture.id(), layer, texels);
   return texels;
+}
+
+void Device::read_back(const Texture &texture, int layer, std::uint64_t tag)
+{
+  const TextureDesc &desc = texture.desc();
+  GNOMON_ASSERT(recording_, "a recorded read of texture '{}' outside of a recording", desc.name);
+  GNOMON_ASSERT(texture && layer >= 0 && layer < desc.layers, "texture '{}' has no layer {}", desc.name, layer);
+  perform({Operation::ReadBack{texture.id(), layer, layer_size_bytes(desc), tag}});
+}
+
+void Device::time_begin(const TimerQuery &query)
+{
+  perform({Operation::MarkTime{query.id(), false}});
+}
+
+void Device::time_end(const TimerQuery &query)
+{
+  perform({Operation::MarkTime{query.id(), true}});
 }
 
 void Device::submit(const CommandList &list)
@@ -334,53 +360,32 @@ void Device::submit(const CommandList &list)
 #ifndef NDEBUG
   validate(list, *this);
 #endif
-  list_submit(list);
-  count(list);
+  if (recording_) {
+    perform({Operation::SubmitList{recording_->index_of(list)}});
+  }
+  else {
+    submit_now(list);
+  }
+  count_uploads(list);
+}
+
+CommandList &Device::add_list()
+{
+  GNOMON_ASSERT(recording_, "a list of a packet outside of a recording");
+  return recording_->add_list();
 }
 
 void Device::count_upload(ResourceKind kind, ResourceId id, std::size_t bytes)
 {
-  counters_.upload_bytes += bytes;
   slots_[std::size_t(kind)][index_of(id)].upload_bytes += bytes;
 }
 
-void Device::count(const CommandList &list)
+void Device::count_uploads(const CommandList &list)
 {
   for (const Command &command : list.commands()) {
-    switch (command.kind) {
-      case CommandKind::BeginPass:
-        counters_.passes++;
-        count_pass(list.passes()[command.first].name);
-        break;
-      case CommandKind::SetShader: counters_.shader_binds++; break;
-      case CommandKind::Draw:
-        for (std::uint32_t i = command.first; i < command.first + command.count; i++) {
-          const DrawIndirect &draw = list.draws[i];
-          counters_.draws++;
-          counters_.instances += draw.instance_count;
-          counters_.triangles += std::uint64_t(draw.index_count / 3) * draw.instance_count;
-        }
-        break;
-      case CommandKind::DrawProcedural:
-        counters_.draws++;
-        counters_.instances += command.count;
-        counters_.triangles += std::uint64_t(command.first / 3) * command.count;
-        break;
-      case CommandKind::Update: count_upload(ResourceKind::Buffer, command.id, command.count); break;
-      default: break;
+    if (command.kind == CommandKind::Update) {
+      count_upload(ResourceKind::Buffer, command.id, command.count);
     }
-  }
-  counters_.upload_bytes += list.draws.size() * sizeof(DrawIndirect) + list.instances.size() * sizeof(DrawInstance);
-}
-
-void Device::count_pass(const std::string &name)
-{
-  const auto known = pass_counts_.find(name);
-  if (known != pass_counts_.end()) {
-    known->second++;
-  }
-  else {
-    pass_counts_[pass_counts_.size() < pass_name_max ? name : other_passes]++;
   }
 }
 

@@ -31,6 +31,23 @@ struct FramebufferDesc {
   Attachment depth;
 };
 
+/** An Attachment by id. */
+struct AttachmentLayout {
+  /** 0: no attachment. */
+  ResourceId texture = 0;
+  int layer = 0;
+  int mip_level = 0;
+  int layer_count = 1;
+};
+
+/** A FramebufferDesc by ids, as backends create it. */
+struct FramebufferLayout {
+  std::string name;
+  std::vector<AttachmentLayout> colors;
+  AttachmentLayout depth;
+  glm::ivec2 size_px{0};
+};
+
 /** Render target of a pass, made of textures of the device. */
 class Framebuffer : public Resource {
  public:

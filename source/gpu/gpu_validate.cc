@@ -4,6 +4,8 @@
 #include "gpu_device.hh"
 
 #include <algorithm>
+#include <array>
+#include <memory_resource>
 #include <optional>
 #include <span>
 #include <vector>
@@ -41,7 +43,7 @@ class Validator {
       command_index_++;
     }
     if (pass_) {
-      throw Error("command list: pass '{}' is not ended", pass_->name);
+      throw Error("command list: pass '{}' is not ended", list_.name_of(*pass_));
     }
   }
 
@@ -59,8 +61,8 @@ class Validator {
   {
     const std::string reason = fmt::format(format, std::forward<Args>(args)...);
     throw Error("command list: {}, command {} ({}): {}",
-                pass_ ? fmt::format("pass '{}'", pass_->name) : std::string("outside of a pass"), command_index_,
-                name_of(list_.commands()[command_index_].kind), reason);
+                pass_ ? fmt::format("pass '{}'", list_.name_of(*pass_)) : std::string("outside of a pass"),
+                command_index_, name_of(list_.commands()[command_index_].kind), reason);
   }
 
   /** \a id's description; fails where it is 0 or stale. */
@@ -103,45 +105,49 @@ class Validator {
   {
     const CommandList::PassInfo &pass = list_.passes()[command.first];
     if (pass_) {
-      fail("pass '{}' begins inside it", pass.name);
+      fail("pass '{}' begins inside it", list_.name_of(pass));
     }
     pass_ = &pass;
     has_state_ = false;
     attachments_ = {};
-    std::string name = "of the host";
     glm::ivec2 size_px;
     if (pass.host_framebuffer) {
       size_px = pass.host_framebuffer->size_px;
     }
     else {
-      const ResourceInfo &info = live(ResourceKind::Framebuffer, command.id);
-      const auto &framebuffer = std::get<FramebufferInfo>(info.desc);
+      const auto &framebuffer = std::get<FramebufferInfo>(live(ResourceKind::Framebuffer, command.id).desc);
       attachments_ = framebuffer.attachments;
-      name = fmt::format("'{}'", info.name);
       size_px = framebuffer.size_px;
     }
     for (const AttachedTexture &attached : attachments_) {
       if (!device_.find(ResourceKind::Texture, attached.texture)) {
-        fail("framebuffer {}: texture '{}' that is attached to it was destroyed", name, attached.name);
+        fail("framebuffer {}: texture '{}' that is attached to it was destroyed", framebuffer_name(), attached.name);
       }
     }
-    check_rectangle(name, size_px, "viewport", pass.actions.viewport);
-    check_rectangle(name, size_px, "scissor", pass.actions.scissor);
+    check_rectangle(size_px, "viewport", pass.actions.viewport);
+    check_rectangle(size_px, "scissor", pass.actions.scissor);
   }
 
-  void check_rectangle(std::string_view framebuffer, glm::ivec2 size_px, std::string_view what,
-                       const Rectangle &rectangle) const
+  /** Of the current pass. */
+  [[nodiscard]] std::string framebuffer_name() const
+  {
+    return pass_->host_framebuffer
+               ? std::string("of the host")
+               : fmt::format("'{}'", device_.name_of(ResourceKind::Framebuffer, pass_->framebuffer));
+  }
+
+  void check_rectangle(glm::ivec2 size_px, std::string_view what, const Rectangle &rectangle) const
   {
     const glm::ivec2 first = rectangle.origin_px;
     const glm::ivec2 end = first + rectangle.size_px;
     if (!rectangle.is_whole() && (first.x < 0 || first.y < 0 || rectangle.size_px.x < 1 || rectangle.size_px.y < 1 ||
                                   end.x > size_px.x || end.y > size_px.y)) {
-      fail("framebuffer {}: a {} of {}x{} px at {},{} does not fit into {}x{} px", framebuffer, what,
+      fail("framebuffer {}: a {} of {}x{} px at {},{} does not fit into {}x{} px", framebuffer_name(), what,
            rectangle.size_px.x, rectangle.size_px.y, first.x, first.y, size_px.x, size_px.y);
     }
   }
 
-  static void set_bound(std::vector<Bound> &bounds, const Bound &bound)
+  static void set_bound(std::pmr::vector<Bound> &bounds, const Bound &bound)
   {
     const auto same = std::ranges::find(bounds, bound.slot, &Bound::slot);
     if (same == bounds.end()) {
@@ -159,7 +165,7 @@ class Validator {
     }
   }
 
-  void bind_buffer(const Command &command, BufferKind kind, std::vector<Bound> &bounds)
+  void bind_buffer(const Command &command, BufferKind kind, std::pmr::vector<Bound> &bounds)
   {
     check_slot(command.slot);
     const ResourceInfo &info = live(ResourceKind::Buffer, command.id);
@@ -213,9 +219,9 @@ class Validator {
     const auto &interface = std::get<ShaderInterface>(shader_->desc);
     for (const ShaderInterface::Binding &binding : interface.bindings) {
       const bool is_texture = binding.kind == BindingKind::Texture;
-      const std::vector<Bound> &bounds = is_texture                                  ? textures_
-                                         : binding.kind == BindingKind::UniformBlock ? uniforms_
-                                                                                     : storages_;
+      const std::pmr::vector<Bound> &bounds = is_texture                                  ? textures_
+                                              : binding.kind == BindingKind::UniformBlock ? uniforms_
+                                                                                          : storages_;
       const auto bound = std::ranges::find(bounds, binding.slot, &Bound::slot);
       if (bound == bounds.end()) {
         fail("shader '{}': {} '{}' at slot {} is not bound", shader_->name, to_string(binding.kind), binding.name,
@@ -313,9 +319,12 @@ class Validator {
   const ResourceInfo *shader_ = nullptr;
   /** In the current pass. */
   bool has_state_ = false;
-  std::vector<Bound> uniforms_;
-  std::vector<Bound> storages_;
-  std::vector<Bound> textures_;
+  // On the stack, as far as they fit: submissions allocate nothing in builds with assertions either.
+  std::array<std::byte, 4096> memory_;
+  std::pmr::monotonic_buffer_resource resource_{memory_.data(), memory_.size()};
+  std::pmr::vector<Bound> uniforms_{&resource_};
+  std::pmr::vector<Bound> storages_{&resource_};
+  std::pmr::vector<Bound> textures_{&resource_};
   std::optional<Bound> push_constants_;
 };
 

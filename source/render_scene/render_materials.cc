@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace gnomon::render_scene {
 
@@ -134,8 +135,12 @@ template <typename Entry>
 void MaterialTable::upload(gpu::Device &device, const char *name, const std::vector<Entry> &entries, Block &block)
 {
   const auto bytes = std::as_bytes(std::span(entries));
+  bool is_all_changed = std::exchange(block.loss_count, device.loss_count()) != device.loss_count();
   if (!block.buffer || block.buffer.size_bytes() != bytes.size()) {
     block.buffer = device.create_buffer({name, gpu::BufferKind::Storage, bytes.size()});
+    is_all_changed = true;
+  }
+  if (is_all_changed) {
     block.changed_begin = 0;
     block.changed_end = entries.size();
   }

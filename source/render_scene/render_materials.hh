@@ -68,6 +68,8 @@ class MaterialTable {
     /** Entries that the device has not yet, as a range; empty where the begin is not below the end. */
     std::size_t changed_begin = 0;
     std::size_t changed_end = 0;
+    /** gpu::Device::loss_count at the last upload. */
+    std::uint64_t loss_count = 0;
   };
   template <typename Entry>
   static void replace(std::vector<Entry> &entries, std::vector<Entry> changed, Block &block);

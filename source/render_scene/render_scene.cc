@@ -31,7 +31,7 @@ scene::PlacedCamera RenderScene::relative(scene::PlacedCamera camera) const
 
 void RenderScene::update()
 {
-  if (seen_ == scene_.revision() && !is_origin_changed_) {
+  if (is_up_to_date()) {
     return;
   }
   meshes_.free_removed(scene_.meshes());

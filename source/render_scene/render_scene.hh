@@ -40,6 +40,11 @@ class RenderScene {
 
   /** Take note of all edits of the scene since the last call. Needs no device. Nothing else reads the scene's edits. */
   void update();
+  /** Whether update would find nothing. */
+  [[nodiscard]] bool is_up_to_date() const
+  {
+    return seen_ == scene_.revision() && !is_origin_changed_;
+  }
   /**
    * Change the origin, metres, world space of the scene; then call update. Every matrix changes with it, so choose one
    * near the view and keep it. origin_near() suggests one.

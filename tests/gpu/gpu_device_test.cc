@@ -355,7 +355,7 @@ TEST(Live, ListsEachResourceWithItsSizeAndWrittenBytes)
   EXPECT_EQ(device->live(buffer).upload_bytes, 3U * 16U);
   EXPECT_EQ(device->live(levels).upload_bytes, 64U);
   EXPECT_EQ(device->live(layers).upload_bytes, 0U);
-  EXPECT_EQ(device->pass_counts(), (std::map<std::string, std::uint64_t>{{"pass", 2}}));
+  EXPECT_EQ(device->pass_counts(), (PassCounts{{"pass", 2}}));
   EXPECT_EQ(device->live().size(), 5U) << "the batch is gone";
   EXPECT_EQ(device->memory_bytes(), 384U + 84U + 64U);
 }

@@ -9,7 +9,7 @@
 
 namespace gnomon::eevee {
 
-draw::View view_of(const scene::PlacedCamera &camera, glm::ivec2 size_px)
+draw::View view_of(const scene::PlacedCamera &camera, glm::ivec2 size_px, const glm::dvec3 &origin_ws)
 {
   const bool is_perspective = camera.kind == scene::CameraKind::Perspective;
   const float image_aspect = float(size_px.x) / float(size_px.y);
@@ -34,7 +34,9 @@ draw::View view_of(const scene::PlacedCamera &camera, glm::ivec2 size_px)
     const float depth_max = std::max(camera.near + 1e6F * half_width, std::nextafter(camera.near, infinite));
     clip_from_view = draw::orthographic(half_width, half_height, camera.near, std::isinf(far) ? depth_max : far);
   }
-  return {glm::mat4(glm::inverse(camera.world_from_camera)), clip_from_view};
+  glm::dmat4 world_from_camera = camera.world_from_camera;
+  world_from_camera[3] -= glm::dvec4(origin_ws, 0.0);
+  return {glm::mat4(glm::inverse(world_from_camera)), clip_from_view};
 }
 
 draw::View with_sample_offset(const draw::View &view, glm::vec2 offset_px, glm::ivec2 size_px)

@@ -45,7 +45,6 @@ void Engine::init(draw::Viewport &viewport)
 {
   check(settings_);
   Data &data = viewport.engine_data<Data>(*this);
-  gpu::Device &device = viewport.device();
   data.is_synced = data.is_recorded = false;
   if (!data.psl) {
     data.psl = std::make_unique<PassList>(scene_.objects());
@@ -60,8 +59,16 @@ void Engine::init(draw::Viewport &viewport)
   }
   data.stl.film_weight_sum = film_weight_sum(settings_.sample_count, settings_.seed);
   shaders_.set_pcf(settings_.shadow.pcf);
+  take_losses(viewport);
+  make_film(viewport);
+}
+
+void Engine::make_film(draw::Viewport &viewport)
+{
+  Data &data = viewport.engine_data<Data>(*this);
+  gpu::Device &device = viewport.device();
   TextureList &txl = data.txl;
-  if (!txl.film) {
+  if (!data.fbl.film_fb) {
     txl.film = create_target(device, "film", gpu::Format::RGBA32F, viewport.size_px());
     data.fbl.film_fb = device.create_framebuffer({.name = "film_fb", .colors = {{&txl.film}}, .depth = {}});
   }
@@ -130,6 +137,7 @@ void Engine::cache_finish(draw::Viewport &viewport)
                            scene_.materials_revision(), settings_revision_,      shaders_revision_};
   if (data.stl.synced_picture != picture) {
     viewport.restart();
+    data.depth_feedback.forget();
     data.stl.synced_picture = picture;
   }
   data.is_synced = true;
@@ -156,24 +164,27 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
 {
   Data &data = viewport.engine_data<Data>(*this);
   require_sync(data.is_synced);
+  take_losses(viewport);
   follow_lamps(data);
+  make_film(viewport);
   data.target = viewport.target();
   data.sample_index = viewport.samples_drawn();
   if (data.sample_index == 0) {
     data.stl.shadows->begin_picture();
     data.stl.film_share = 0.0;
-    data.frame.clear();
+    std::ranges::for_each(data.frame, &StepRecord::reset);
     data.is_seen = data.has_picture_depth = false;
   }
-  if (!is_complete(viewport)) {
-    draw_sample(viewport, view);
+  const bool has_sample = data.sample_index < settings_.sample_count;
+  if (has_sample && !draw_sample(viewport, view)) {
+    return;
   }
   if (data.target) {
     draw_target(viewport, view);
   }
 }
 
-void Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
+bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
 {
   Data &data = viewport.engine_data<Data>(*this);
   const glm::vec2 offset_px = film_offset_px(data.sample_index, settings_.sample_count, settings_.seed);
@@ -185,13 +196,18 @@ void Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
     data.is_seen = true;
     record(viewport);
     update_view(data, sample_view);
+    sample.is_for_feedback = viewport.draws_until_final() && awaits_depths(data, view);
   }
   // A sample that sees nothing adds nothing to a picture that has begun.
   if (is_sample_seen || data.sample_index == 0) {
     draw_steps(sample, FrameStep::When::EachSample);
   }
+  if (sample.is_for_feedback) {
+    return false;
+  }
   data.stl.film_share +=
       film_share(data.sample_index, settings_.sample_count, settings_.seed, data.stl.film_weight_sum);
+  return true;
 }
 
 void Engine::draw_target(draw::Viewport &viewport, const draw::View &view)
@@ -232,6 +248,7 @@ std::optional<Probe> Engine::probe(draw::Viewport &viewport, const draw::View &v
   GNOMON_ASSERT(settings_.has_probe, "the settings ask for no probe");
   Data &data = viewport.engine_data<Data>(*this);
   require_sync(data.is_synced);
+  take_losses(viewport);
   follow_lamps(data);
   StorageList &stl = data.stl;
   const std::optional<std::size_t> light = light_of(data, lamp);
@@ -276,21 +293,6 @@ const Shadows &Engine::shadows(draw::Viewport &viewport) const
 const gpu::Texture &Engine::radiance(draw::Viewport &viewport) const
 {
   return viewport.engine_data<Data>(*this).txl.film;
-}
-
-std::vector<StepTime> Engine::take_step_times(draw::Viewport &viewport) const
-{
-  std::vector<StepTime> times;
-  for (Timing::Step &step : viewport.engine_data<Data>(*this).timing.steps) {
-    if (std::exchange(step.is_pending, false)) {
-      const std::optional<double> seconds = viewport.device().elapsed_seconds(step.query);
-      step.seconds += seconds.value_or(0.0);
-      step.taken_seconds = seconds ? std::optional(step.seconds) : std::nullopt;
-      times.push_back({step.name, step.seconds});
-    }
-    step.seconds = 0.0;
-  }
-  return times;
 }
 
 std::vector<std::string> Engine::reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files,

@@ -95,15 +95,13 @@ class Engine final : public draw::Engine {
   void cache_populate(draw::Viewport &viewport, const draw::ObjectBuffer &objects, draw::ObjectIndex object) override;
   void cache_finish(draw::Viewport &viewport) override;
   void draw_scene(draw::Viewport &viewport, const draw::View &view) override;
+  bool take_feedback(draw::Viewport &viewport, const gpu::Feedback &feedback) override;
 
   /** The scene-linear picture, RGBA32F. Complete once all samples are drawn; before, their sum lacks the others. */
   [[nodiscard]] const gpu::Texture &radiance(draw::Viewport &viewport) const;
   /** All samples of the picture are drawn: further draws would change nothing. */
-  [[nodiscard]] bool is_complete(const draw::Viewport &viewport) const
-  {
-    return viewport.samples_drawn() >= settings_.sample_count;
-  }
-  /** Times of the samples drawn since the last call. Waits for the device. Empty unless Settings::is_timed. */
+  [[nodiscard]] bool is_complete(draw::Viewport &viewport) const;
+  /** Times of the samples whose feedback came since the last call. Empty unless Settings::is_timed. */
   [[nodiscard]] std::vector<StepTime> take_step_times(draw::Viewport &viewport) const;
   /**
    * Positions, normals and the visibility of the \a lamp-th lamp of RenderScene::lamps at each pixel. Nothing where the
@@ -144,6 +142,10 @@ class Engine final : public draw::Engine {
   [[nodiscard]] std::string serialize_passes(draw::Viewport &viewport) const;
 
  private:
+  /** Create what every picture is drawn into. */
+  void make_film(draw::Viewport &viewport);
+  /** Where submitted work was lost: draw and write again all that it may have held. */
+  void take_losses(draw::Viewport &viewport);
   void sync_lamps(SharedData &shared, const gpu::Limits &device_limits);
   /** Create and record everything that a picture needs in which any object is visible, as far as it changed. */
   void record(draw::Viewport &viewport);
@@ -157,7 +159,8 @@ class Engine final : public draw::Engine {
   void record_casters(Data &data);
   void record_caster(SharedData &shared, draw::ObjectIndex object);
   void record_tonemap(draw::Viewport &viewport);
-  void draw_sample(draw::Viewport &viewport, const draw::View &view);
+  /** \return false: only what the device's feedback is made from was drawn. */
+  bool draw_sample(draw::Viewport &viewport, const draw::View &view);
   void draw_target(draw::Viewport &viewport, const draw::View &view);
   void add_casters(Data &data);
   void update_view(Data &data, const draw::View &view);

@@ -176,6 +176,8 @@ struct SharedData {
   std::optional<CastersKey> recorded;
   /** The shadows have the casters of the last sync. */
   bool has_casters = false;
+  /** gpu::Device::loss_count when the device was known to hold what is noted here. */
+  std::uint64_t loss_count = 0;
 };
 
 struct StorageList {
@@ -188,6 +190,8 @@ struct StorageList {
   bool is_collecting = false;
   /** Of the sample being drawn. */
   std::span<const LampPoint> lamp_points;
+  /** Memory for write_lamp_points. */
+  std::vector<shared::LightData> sampled_lights;
   gpu::Buffer view_block;
   gpu::BufferRange material_block;
   gpu::BufferRange full_material_block;
@@ -224,17 +228,46 @@ struct Timing {
   struct Step {
     std::string name;
     gpu::TimerQuery query;
+    /** Drawn since the last Engine::take_step_times. */
     bool is_pending = false;
-    double seconds = 0.0;
-    /** What Engine::take_step_times gave last; nothing where no time passes (null backend). */
+    /** Nothing where no time passes (null backend). */
+    std::optional<double> seconds{};
+    /** What Engine::take_step_times gave last. */
     std::optional<double> taken_seconds{};
   };
   std::vector<Step> steps;
 };
 
+/** Depths that the device reports, for suns that are fitted to them. */
+struct DepthFeedback {
+  /** The view of each of the last requests, by its tag modulo their number. */
+  std::array<glm::mat4, 4> requested_clip_from_world{};
+  std::uint64_t requested_tag = 0;
+  std::uint64_t received_tag = 0;
+  /** Depths of earlier requests are of an earlier state of the scene. */
+  std::uint64_t first_valid_tag = 1;
+  /** The view that `depths` shows; nothing: there are none. */
+  std::optional<glm::mat4> clip_from_world;
+  std::vector<float> depths;
+
+  /** The last request is not answered. */
+  [[nodiscard]] bool is_pending() const
+  {
+    return requested_tag >= first_valid_tag && received_tag < requested_tag;
+  }
+  /** The scene changed. */
+  void forget()
+  {
+    first_valid_tag = requested_tag + 1;
+    clip_from_world.reset();
+    depths.clear();
+  }
+};
+
 struct Data final : draw::EngineViewportData {
   void resized() override
   {
+    depth_feedback.forget();
     fbl = {};
     txl = {};
     is_synced = false;
@@ -248,9 +281,12 @@ struct Data final : draw::EngineViewportData {
   std::unique_ptr<PassList> psl;
   StorageList stl;
   Timing timing;
+  DepthFeedback depth_feedback;
   /** Of the draw at hand, or of the last one. */
   draw::Target target;
   int sample_index = 0;
+  /** As SharedData::loss_count. */
+  std::uint64_t loss_count = 0;
   ShadowPicture shadow_picture;
   /** The last sync came to its end, and so did what was recorded since. */
   bool is_synced = false;

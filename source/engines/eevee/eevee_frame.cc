@@ -4,8 +4,6 @@
 #include "eevee_engine_data.hh"
 #include "eevee_film.hh"
 
-#include "gpu_read.hh"
-
 #include <glm/matrix.hpp>
 
 #include <algorithm>
@@ -15,12 +13,12 @@
 
 namespace gnomon::eevee {
 
-std::string why_no_shadow(const FrameState &state, std::string no_such_lamp)
+std::string_view why_no_shadow(const FrameState &state, std::string_view no_such_lamp)
 {
   if (state.settings.shadow.kind == scene::ShadowKind::None) {
     return "shadows are off";
   }
-  return has(state.data.stl.features, Feature::Light) ? std::move(no_such_lamp) : "no lamp gives light";
+  return has(state.data.stl.features, Feature::Light) ? no_such_lamp : "no lamp gives light";
 }
 
 float pixel_size(const draw::View &view, const draw::Viewport &viewport)
@@ -41,26 +39,35 @@ shared::ViewData view_data(const draw::View &view, int sample_count)
   return data;
 }
 
-void write_lamp_points(const Data &data, gpu::CommandList &list)
+void write_lamp_points(Data &data, gpu::CommandList &list)
 {
-  for (const LampPoint &point : data.stl.lamp_points) {
-    const shared::LightData light = light_at(data.shared->lamps.light_block.lights[point.light], point);
-    list.update(data.shared->light_block,
-                offsetof(shared::LightBlock, lights) + std::size_t(point.light) * sizeof(light),
-                std::as_bytes(std::span(&light, 1)));
+  const std::span<const LampPoint> points = data.stl.lamp_points;
+  if (points.empty()) {
+    return;
   }
+  // They are in the order of the lights. One write, as each costs more than the lights in between.
+  const int first = points.front().light;
+  const int end = points.back().light + 1;
+  const shared::LightData *lights = data.shared->lamps.light_block.lights;
+  std::vector<shared::LightData> &sampled = data.stl.sampled_lights;
+  sampled.assign(lights + first, lights + end);
+  for (const LampPoint &point : points) {
+    sampled[std::size_t(point.light - first)] = light_at(lights[point.light], point);
+  }
+  list.update(data.shared->light_block,
+              offsetof(shared::LightBlock, lights) + std::size_t(first) * sizeof(shared::LightData),
+              std::as_bytes(std::span(sampled)));
 }
 
 namespace {
 
 Need need_lamp_points(const FrameState &state)
 {
-  const std::size_t count = state.data.shared->lamp_points.size();
-  if (count == 0) {
+  if (state.data.shared->lamp_points.empty()) {
     return {false, state.settings.sample_count > 1 ? "no lamp that gives light has a size"
                                                    : "one sample: lamps are lit from their centres"};
   }
-  return state.data.is_seen ? Need{true, fmt::format("{} lamps have a size: each sample sees one point of each", count)}
+  return state.data.is_seen ? Need{true, "each sample sees one point of each lamp with a size"}
                             : Need{false, nothing_seen};
 }
 
@@ -86,7 +93,7 @@ Need need_lit(const FrameState &state)
 Need need_film(const FrameState &state)
 {
   if (state.data.is_seen) {
-    return {true, fmt::format("{} samples a pixel", state.settings.sample_count)};
+    return {true, "samples of each pixel are added up"};
   }
   return {state.data.sample_index == 0, "nothing is seen: the picture is cleared"};
 }
@@ -143,7 +150,20 @@ void record_pass(const FrameStep &step, FrameSample &sample, gpu::CommandList &l
 
 void record_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
-  record_pass(step, sample, list, sample.data.fbl.depth_fb, {});
+  Data &data = sample.data;
+  record_pass(step, sample, list, data.fbl.depth_fb, {});
+  if (awaits_depths(data, sample.view)) {
+    DepthFeedback &depths = data.depth_feedback;
+    const std::uint64_t tag = ++depths.requested_tag;
+    depths.requested_clip_from_world[tag % depths.requested_clip_from_world.size()] = sample.view.clip_from_world();
+  }
+}
+
+void read_depths(FrameSample &sample)
+{
+  if (awaits_depths(sample.data, sample.view)) {
+    sample.viewport.device().read_back(sample.viewport.depth_texture(), 0, sample.data.depth_feedback.requested_tag);
+  }
 }
 
 void record_lamp_points(const FrameStep & /*step*/, FrameSample &sample, gpu::CommandList &list)
@@ -155,10 +175,10 @@ void record_lamp_points(const FrameStep & /*step*/, FrameSample &sample, gpu::Co
 
 void record_shadows(const FrameStep & /*step*/, FrameSample &sample, gpu::CommandList &list)
 {
-  gpu::Device &device = sample.viewport.device();
-  const auto read_depths = [&] { return gpu::read_as<float>(device, sample.viewport.depth_texture()); };
-  sample.data.stl.shadows->update(device, sample.view, pixel_size(sample.view, sample.viewport),
-                                  sample.data.shared->shadow_pass, list, sample.data.stl.lamp_points, read_depths);
+  const StorageList &stl = sample.data.stl;
+  sample.data.stl.shadows->update(sample.viewport.device(), sample.view, pixel_size(sample.view, sample.viewport),
+                                  sample.data.shared->shadow_pass, list, stl.lamp_points,
+                                  sample.data.depth_feedback.depths);
 }
 
 void record_lit(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
@@ -236,7 +256,15 @@ constexpr std::array<std::string_view, 1> light_block_only = {"light_block"};
 
 constexpr std::array<FrameStep, 7> steps = {{
     // Before the shadows: cascades may be fitted to the depths.
-    {"depth_prepass", FrameStep::When::EachSample, need_depth, {}, depth_only, depth_passes, record_depth},
+    {"depth_prepass",
+     FrameStep::When::EachSample,
+     need_depth,
+     {},
+     depth_only,
+     depth_passes,
+     record_depth,
+     read_depths,
+     true},
     {"lamp_points", FrameStep::When::EachSample, need_lamp_points, {}, light_block_only, {}, record_lamp_points},
     {"shadows",
      FrameStep::When::EachSample,
@@ -245,7 +273,7 @@ constexpr std::array<FrameStep, 7> steps = {{
      shadow_targets,
      {},
      record_shadows,
-     [](Data &data) { data.stl.shadows->submitted(); }},
+     [](FrameSample &sample) { sample.data.stl.shadows->submitted(); }},
     {"lit", FrameStep::When::EachSample, need_lit, shadow_targets, radiance_only, lit_passes, record_lit},
     {"film", FrameStep::When::EachSample, need_film, radiance_only, film_only, film_passes, record_film},
     {"picture_depth",
@@ -255,7 +283,7 @@ constexpr std::array<FrameStep, 7> steps = {{
      picture_depth_only,
      depth_passes,
      record_picture_depth,
-     [](Data &data) { data.has_picture_depth = true; }},
+     [](FrameSample &sample) { sample.data.has_picture_depth = true; }},
     {"tonemap", FrameStep::When::EachTarget, need_tonemap, picture_only, target_only, tonemap_passes, record_tonemap},
 }};
 
@@ -265,11 +293,11 @@ void timed(gpu::Device &device, Timing &timing, std::string_view name, Work &&wo
 {
   auto step = std::ranges::find(timing.steps, name, &Timing::Step::name);
   if (step == timing.steps.end()) {
-    timing.steps.push_back({std::string(name), device.create_timer_query(std::string(name))});
+    timing.steps.push_back({std::string(name), {}});
     step = timing.steps.end() - 1;
   }
-  if (step->is_pending) {
-    step->seconds += device.elapsed_seconds(step->query).value_or(0.0);
+  if (!step->query) {
+    step->query = device.create_timer_query(step->name);
   }
   device.time_begin(step->query);
   work();
@@ -305,7 +333,7 @@ void draw_steps(FrameSample &sample, FrameStep::When when)
     const FrameStep &step = steps[i];
     StepRecord &record = data.frame[i];
     record.passes.resize(step.passes.size());
-    if (step.when != when) {
+    if (step.when != when || (sample.is_for_feedback && !step.is_read_back)) {
       continue;
     }
     Need need = step.need(state);
@@ -317,7 +345,7 @@ void draw_steps(FrameSample &sample, FrameStep::When when)
     if (!is_needed) {
       continue;
     }
-    gpu::CommandList list;
+    gpu::CommandList &list = device.add_list();
     step.record(step, sample, list);
     const auto submit = [&] { device.submit(list); };
     if (list.commands().empty()) {
@@ -330,7 +358,7 @@ void draw_steps(FrameSample &sample, FrameStep::When when)
       submit();
     }
     if (step.submitted) {
-      step.submitted(data);
+      step.submitted(sample);
     }
   }
 }

@@ -5,6 +5,7 @@
 
 #include "draw_view_shared.h"
 
+#include <algorithm>
 #include <span>
 
 /**
@@ -26,7 +27,7 @@ struct FrameState {
 /** Whether something is drawn, and the reason either way. */
 struct Need {
   bool is_needed = false;
-  std::string reason;
+  std::string_view reason;
 };
 
 /** One sample being drawn. */
@@ -38,6 +39,8 @@ struct FrameSample {
   const draw::View &view;
   /** Moved within the pixels. */
   const draw::View &sample_view;
+  /** Only the steps whose results are read back are drawn. */
+  bool is_for_feedback = false;
 };
 
 /** Passes of one step share its target and its timing. */
@@ -63,7 +66,9 @@ struct FrameStep {
   /** Appends the step's render passes to \a list. */
   void (*record)(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);
   /** Called once the list is submitted, for steps whose results are relied on later; nullptr: nothing to do. */
-  void (*submitted)(Data &data) = nullptr;
+  void (*submitted)(FrameSample &sample) = nullptr;
+  /** The device reports its result back. */
+  bool is_read_back = false;
 };
 
 /** In the order in which they are drawn. */
@@ -79,6 +84,12 @@ struct StepRecord {
   };
   /** One for each of the step's passes. */
   std::vector<PassRecord> passes;
+
+  void reset()
+  {
+    need = {};
+    std::ranges::fill(passes, PassRecord());
+  }
 };
 
 /** Draw the steps of \a when that are needed, and store each one's need and counts in \a sample's data. */
@@ -96,10 +107,13 @@ void draw_steps(FrameSample &sample, FrameStep::When when);
 
 inline constexpr const char *nothing_seen = "nothing is seen";
 
-/** Append the entries of `light_block` for the lamp points at hand. */
-void write_lamp_points(const Data &data, gpu::CommandList &list);
+/** Append a write of the entries of `light_block` for the lamp points at hand. */
+void write_lamp_points(Data &data, gpu::CommandList &list);
 
 /** Why no lamp has a shadow; \a no_such_lamp where shadows are on and some lamp gives light. */
-[[nodiscard]] std::string why_no_shadow(const FrameState &state, std::string no_such_lamp);
+[[nodiscard]] std::string_view why_no_shadow(const FrameState &state, std::string_view no_such_lamp);
+
+/** Whether suns are fitted to depths, and the device has not reported those of \a view yet. */
+[[nodiscard]] bool awaits_depths(const Data &data, const draw::View &view);
 
 }  // namespace gnomon::eevee

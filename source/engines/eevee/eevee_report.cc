@@ -87,10 +87,11 @@ FrameNode shadow_step_node(const ReportSource &source, const Need &need)
   for (const ShadowState &state : source.data.stl.shadows->states()) {
     layers += std::uint64_t(std::popcount(state.drawn_now));
   }
-  return {.what = "shadows",
-          .is_made = layers > 0,
-          .why = layers == 0 && need.is_needed ? "every layer that is looked up is up to date" : need.reason,
-          .count = layers};
+  return {
+      .what = "shadows",
+      .is_made = layers > 0,
+      .why = layers == 0 && need.is_needed ? "every layer that is looked up is up to date" : std::string(need.reason),
+      .count = layers};
 }
 
 FrameNode pass_nodes(const ReportSource &source)
@@ -108,7 +109,7 @@ FrameNode pass_nodes(const ReportSource &source)
       node = shadow_step_node(source, record.need);
     }
     else if (step.passes.empty()) {
-      node = {.what = std::string(step.name), .is_made = record.need.is_needed, .why = record.need.reason};
+      node = {.what = std::string(step.name), .is_made = record.need.is_needed, .why = std::string(record.need.reason)};
     }
     else if (step.passes.size() == 1) {
       node = pass_node(step, record, step.passes.front(), state);
@@ -120,7 +121,7 @@ FrameNode pass_nodes(const ReportSource &source)
       for (const FramePass &pass : step.passes) {
         passes.push_back(pass_node(step, record, pass, state));
       }
-      node = folder(std::string(step.name), record.need.reason, nothing_seen, std::move(passes));
+      node = folder(std::string(step.name), std::string(record.need.reason), nothing_seen, std::move(passes));
     }
     const auto time = std::ranges::find(data.timing.steps, step.name, &Timing::Step::name);
     if (time != data.timing.steps.end()) {

@@ -26,9 +26,9 @@ FrameNode folder(std::string what, std::string why, std::string why_not, std::ve
   return node;
 }
 
-std::string why_no_shadow(const ReportSource &source, std::string no_such_lamp)
+std::string why_no_shadow(const ReportSource &source, std::string_view no_such_lamp)
 {
-  return eevee::why_no_shadow(FrameState{source.settings, source.data}, std::move(no_such_lamp));
+  return std::string(eevee::why_no_shadow(FrameState{source.settings, source.data}, no_such_lamp));
 }
 
 std::set<std::pair<scene::Handle<scene::Image>, bool>> read_images(const ReportSource &source)

@@ -48,7 +48,7 @@ struct ReportSource {
 /** The images that materials of drawable objects read, and whether for colours. */
 [[nodiscard]] std::set<std::pair<scene::Handle<scene::Image>, bool>> read_images(const ReportSource &source);
 
-[[nodiscard]] std::string why_no_shadow(const ReportSource &source, std::string no_such_lamp);
+[[nodiscard]] std::string why_no_shadow(const ReportSource &source, std::string_view no_such_lamp);
 /** Why a mesh is drawn without a texture of its material; empty: it is drawn with it. */
 [[nodiscard]] std::string why_no_texture(const scene::Mesh &mesh, const scene::TextureInput &input,
                                          const scene::TextureSlot &slot);

@@ -7,14 +7,27 @@ namespace gnomon::eevee {
 
 void SceneRenderer::sync()
 {
+  is_synced_ = false;
   render_scene_.update();
   const std::array<draw::Engine *, 1> engines = {&engine_};
   viewport_.sync(engines, render_scene_.objects());
+  is_synced_ = true;
 }
 
 draw::View SceneRenderer::view_of(const scene::PlacedCamera &camera) const
 {
-  return eevee::view_of(render_scene_.relative(camera), viewport_.size_px());
+  return eevee::view_of(camera, viewport_.size_px(), render_scene_.origin_ws());
+}
+
+bool SceneRenderer::prepare(gpu::Packet &packet, const scene::PlacedCamera &camera, const draw::Target &target)
+{
+  const std::array<draw::Engine *, 1> engines = {&engine_};
+  viewport_.take_feedback(engines, packet.feedback());
+  const gpu::Recording recording(viewport_.device(), packet);
+  if (!is_synced_ || !render_scene_.is_up_to_date()) {
+    sync();
+  }
+  return draw_sample(camera, target);
 }
 
 bool SceneRenderer::draw_sample(const scene::PlacedCamera &camera, const draw::Target &target)

@@ -11,7 +11,8 @@ namespace gnomon::eevee {
  * Renders a scene on a device: the scene's resources there, one engine, one viewport, and the order of calls that makes
  * a picture with them. For programs that need no other arrangement.
  *
- * Belongs to the device's thread. The scene may be edited between any two calls; sync takes note of the edits.
+ * The scene may be edited between any two calls; sync takes note of the edits. A program renders on the device's thread
+ * by sync and draw, or on two threads: one edits the scene and calls prepare, the device's thread submits the packets.
  */
 class SceneRenderer {
  public:
@@ -30,14 +31,23 @@ class SceneRenderer {
   void set_settings(const Settings &settings)
   {
     settings_ = settings;
+    is_synced_ = false;
     engine_.set_settings(settings);
   }
   /** Another size, from the next sync on. \throws gpu::Error as the constructor; then nothing changes. */
   void resize(glm::ivec2 size_px)
   {
     viewport_.resize(size_px);
+    is_synced_ = false;
   }
 
+  /**
+   * Take note of edits, if there are any, and record the next sample of the picture that \a camera sees, for
+   * gpu::Device::submit on the device's thread; otherwise as draw_sample. Needs no device, and may be called on another
+   * thread. Uses the feedback of \a packet's last submission, so that cascades that are fitted to depths follow the
+   * camera some frames late. The framebuffer of \a target must live until the submission.
+   */
+  bool prepare(gpu::Packet &packet, const scene::PlacedCamera &camera, const draw::Target &target = {});
   /**
    * Draw the next sample of the picture that \a camera sees, if it needs more, and write the picture so far to
    * \a target. The picture begins anew when the camera or anything that sync takes note of changes: a host calls this
@@ -76,6 +86,8 @@ class SceneRenderer {
   Engine engine_;
   draw::Viewport viewport_;
   Settings settings_;
+  /** No settings and no size were given since the last sync, and it came to its end. */
+  bool is_synced_ = false;
 };
 
 }  // namespace gnomon::eevee

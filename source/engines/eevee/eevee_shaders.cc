@@ -38,7 +38,8 @@ const gpu::Shader &ShaderCache::get(gpu::Device &device, ShaderId id, Feature fe
   const Feature reachable = has(features, Feature::Light) ? features : features & unlit_features;
   const Key key(id, reachable & declaration.features);
   const auto found = shaders_.find(key);
-  if (found != shaders_.end()) {
+  // It is empty where the packet that was to make it was lost.
+  if (found != shaders_.end() && found->second) {
     return found->second;
   }
   return shaders_[key] = make(device, key);

@@ -129,19 +129,13 @@ void GlDevice::finish()
   check("finish");
 }
 
-void GlDevice::time_begin(const TimerQuery &query)
+void GlDevice::time_mark(ResourceId query, bool is_end)
 {
   const Entry entry(*this);
-  glQueryCounter(timers_.at(query.id())[0], GL_TIMESTAMP);
+  glQueryCounter(timers_.at(query)[is_end ? 1 : 0], GL_TIMESTAMP);
 }
 
-void GlDevice::time_end(const TimerQuery &query)
-{
-  const Entry entry(*this);
-  glQueryCounter(timers_.at(query.id())[1], GL_TIMESTAMP);
-}
-
-std::optional<double> GlDevice::elapsed_seconds(const TimerQuery &query)
+std::optional<double> GlDevice::seconds_between_marks(ResourceId query)
 {
   if (timestamp_bits_ == 0) {
     return std::nullopt;
@@ -152,7 +146,7 @@ std::optional<double> GlDevice::elapsed_seconds(const TimerQuery &query)
   glBindBuffer(GL_QUERY_BUFFER, 0);
   std::array<GLuint64, 2> nanoseconds{};
   for (std::size_t i = 0; i < 2; i++) {
-    glGetQueryObjectui64v(timers_.at(query.id())[i], GL_QUERY_RESULT, &nanoseconds[i]);
+    glGetQueryObjectui64v(timers_.at(query)[i], GL_QUERY_RESULT, &nanoseconds[i]);
   }
   return double(elapsed_ticks(nanoseconds[0], nanoseconds[1], timestamp_bits_)) * 1e-9;
 }

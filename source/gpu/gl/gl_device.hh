@@ -60,9 +60,6 @@ class GlDevice final : public Device {
   ~GlDevice() override;
 
   void finish() override;
-  void time_begin(const TimerQuery &query) override;
-  void time_end(const TimerQuery &query) override;
-  std::optional<double> elapsed_seconds(const TimerQuery &query) override;
   std::string description() const override;
 
  private:
@@ -72,6 +69,10 @@ class GlDevice final : public Device {
   using PoolBuffers = std::array<GLuint, pool_count>;
   using PoolSizes = std::array<std::size_t, pool_count>;
 
+  struct GlTexture {
+    GLuint name = 0;
+    TextureDesc desc;
+  };
   struct GlFramebuffer {
     GLuint name = 0;
     GLuint color_count = 0;
@@ -125,7 +126,7 @@ class GlDevice final : public Device {
 
   void texture_create(ResourceId id, const TextureDesc &desc) override;
   void sampler_create(ResourceId id, const SamplerDesc &desc) override;
-  void framebuffer_create(ResourceId id, const FramebufferDesc &desc) override;
+  void framebuffer_create(ResourceId id, const FramebufferLayout &layout) override;
   void buffer_create(ResourceId id, const BufferDesc &desc) override;
   void batch_create(const BatchDesc &desc, const BatchRange &range, std::uint32_t vertex_capacity,
                     std::uint32_t index_capacity) override;
@@ -134,15 +135,17 @@ class GlDevice final : public Device {
   void timer_query_create(ResourceId id, const std::string &name) override;
   void resource_destroy(ResourceKind kind, ResourceId id) override;
   void buffer_update(ResourceId id, std::size_t offset_bytes, std::span<const std::byte> bytes) override;
-  void texture_upload(const Texture &texture, int layer, std::span<const std::byte> texels) override;
-  void mipmaps_generate(const Texture &texture) override;
-  void layers_copy(const Texture &source, const Texture &target, glm::ivec2 size_px, int layers) override;
-  void texture_read(const Texture &texture, int layer, std::span<std::byte> texels) override;
+  void texture_upload(ResourceId id, int layer, std::span<const std::byte> texels) override;
+  void mipmaps_generate(ResourceId id) override;
+  void layers_copy(ResourceId source, ResourceId target, glm::ivec2 size_px, int layers) override;
+  void texture_read(ResourceId id, int layer, std::span<std::byte> texels) override;
   void list_submit(const CommandList &list) override;
+  void time_mark(ResourceId query, bool is_end) override;
+  std::optional<double> seconds_between_marks(ResourceId query) override;
 
   void create_vertex_arrays();
   /** The attachment of \a framebuffer at \a point; adds a view to \a views where it needs one. */
-  void attach(GLuint framebuffer, GLenum point, const Attachment &attachment, std::vector<GLuint> &views);
+  void attach(GLuint framebuffer, GLenum point, const AttachmentLayout &attachment, std::vector<GLuint> &views);
   void grow_pools(const BatchDesc &desc, const PoolSizes &sizes);
   /** Compiles and links \a stages. \throws Error with the driver's log. */
   GLuint compile(const ShaderDesc &desc, const std::vector<ShaderSource> &stages);
@@ -155,12 +158,12 @@ class GlDevice final : public Device {
   void execute(const CommandList &list);
   /** Copies the list's draws, instances and bytes into the stream. */
   void write_stream(const CommandList &list);
-  void begin_pass(const CommandList::PassInfo &pass);
+  void begin_pass(std::string_view name, const CommandList::PassInfo &pass);
   void end_pass();
   /** The render target of \a pass. Valid until the next call. */
   [[nodiscard]] const GlFramebuffer &framebuffer_of(const CommandList::PassInfo &pass);
   /** In builds with assertions, \throws Error where the host's framebuffer cannot be drawn into. */
-  void check_host_framebuffer(const CommandList::PassInfo &pass);
+  void check_host_framebuffer(std::string_view pass_name, const CommandList::PassInfo &pass);
   void set_state(State state);
   void bind_range(const Command &command);
   void bind_texture(const Command &command);
@@ -177,7 +180,7 @@ class GlDevice final : public Device {
   GLint timestamp_bits_ = 0;
   GLuint probe_query_ = 0;
 
-  IdTable<GLuint> textures_{ResourceKind::Texture};
+  IdTable<GlTexture> textures_{ResourceKind::Texture};
   IdTable<GLuint> samplers_{ResourceKind::Sampler};
   IdTable<GlFramebuffer> framebuffers_{ResourceKind::Framebuffer};
   IdTable<GlBuffer> buffers_{ResourceKind::Buffer};

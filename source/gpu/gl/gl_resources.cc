@@ -34,12 +34,6 @@ GLint gl_min_filter(Filter filter, MipFilter mip)
   return GL_NEAREST;
 }
 
-glm::ivec2 size_of(const Attachment &attachment)
-{
-  const TextureDesc &desc = attachment.texture->desc();
-  return {std::max(desc.width >> attachment.mip_level, 1), std::max(desc.height >> attachment.mip_level, 1)};
-}
-
 }  // namespace
 
 GlFormat gl_format(Format format)
@@ -71,7 +65,7 @@ void GlDevice::texture_create(ResourceId id, const TextureDesc &desc)
   }
   label(GL_TEXTURE, texture, desc.name);
   check_or(fmt::format("texture '{}'", desc.name), [&] { glDeleteTextures(1, &texture); });
-  textures_.insert(id, texture);
+  textures_.insert(id, {texture, desc});
 }
 
 void GlDevice::sampler_create(ResourceId id, const SamplerDesc &desc)
@@ -92,10 +86,9 @@ void GlDevice::sampler_create(ResourceId id, const SamplerDesc &desc)
   samplers_.insert(id, sampler);
 }
 
-void GlDevice::attach(GLuint framebuffer, GLenum point, const Attachment &attachment, std::vector<GLuint> &views)
+void GlDevice::attach(GLuint framebuffer, GLenum point, const AttachmentLayout &attachment, std::vector<GLuint> &views)
 {
-  const GLuint texture = textures_.at(attachment.texture->id());
-  const TextureDesc &desc = attachment.texture->desc();
+  const auto &[texture, desc] = textures_.at(attachment.texture);
   if (attachment.layer_count > 1) {
     GLuint &view = views.emplace_back();
     glGenTextures(1, &view);
@@ -111,29 +104,29 @@ void GlDevice::attach(GLuint framebuffer, GLenum point, const Attachment &attach
   }
 }
 
-void GlDevice::framebuffer_create(ResourceId id, const FramebufferDesc &desc)
+void GlDevice::framebuffer_create(ResourceId id, const FramebufferLayout &layout)
 {
   const Entry entry(*this);
   GlFramebuffer framebuffer;
   glCreateFramebuffers(1, &framebuffer.name);
   std::vector<GLenum> buffers;
-  for (const Attachment &color : desc.colors) {
+  for (const AttachmentLayout &color : layout.colors) {
     buffers.push_back(GL_COLOR_ATTACHMENT0 + GLenum(buffers.size()));
     attach(framebuffer.name, buffers.back(), color, framebuffer.views);
   }
   glNamedFramebufferDrawBuffers(framebuffer.name, GLsizei(buffers.size()), buffers.data());
-  if (desc.depth.texture) {
-    attach(framebuffer.name, GL_DEPTH_ATTACHMENT, desc.depth, framebuffer.views);
+  if (layout.depth.texture != 0) {
+    attach(framebuffer.name, GL_DEPTH_ATTACHMENT, layout.depth, framebuffer.views);
   }
-  label(GL_FRAMEBUFFER, framebuffer.name, desc.name);
-  framebuffer.color_count = GLuint(desc.colors.size());
-  framebuffer.has_depth = desc.depth.texture != nullptr;
-  framebuffer.size_px = size_of(desc.colors.empty() ? desc.depth : desc.colors.front());
+  label(GL_FRAMEBUFFER, framebuffer.name, layout.name);
+  framebuffer.color_count = GLuint(layout.colors.size());
+  framebuffer.has_depth = layout.depth.texture != 0;
+  framebuffer.size_px = layout.size_px;
   framebuffers_.insert(id, framebuffer);
   const GLenum status = glCheckNamedFramebufferStatus(framebuffer.name, GL_DRAW_FRAMEBUFFER);
   if (status != GL_FRAMEBUFFER_COMPLETE) {
     resource_destroy(ResourceKind::Framebuffer, id);
-    throw Error("framebuffer '{}': the driver cannot draw into these attachments (status 0x{:x})", desc.name, status);
+    throw Error("framebuffer '{}': the driver cannot draw into these attachments (status 0x{:x})", layout.name, status);
   }
 }
 
@@ -229,7 +222,7 @@ void GlDevice::resource_destroy(ResourceKind kind, ResourceId id)
   const Entry entry(*this);
   switch (kind) {
     case ResourceKind::Texture:
-      glDeleteTextures(1, &textures_.at(id));
+      glDeleteTextures(1, &textures_.at(id).name);
       textures_.erase(id);
       break;
     case ResourceKind::Sampler:
@@ -265,13 +258,12 @@ void GlDevice::buffer_update(ResourceId id, std::size_t offset_bytes, std::span<
   glNamedBufferSubData(buffers_.at(id).name, GLintptr(offset_bytes), GLsizeiptr(bytes.size()), bytes.data());
 }
 
-void GlDevice::texture_upload(const Texture &texture, int layer, std::span<const std::byte> texels)
+void GlDevice::texture_upload(ResourceId id, int layer, std::span<const std::byte> texels)
 {
   const Entry entry(*this);
   const SavedPixelStore pixel_store(PixelTransfer::Unpack);
-  const TextureDesc &desc = texture.desc();
+  const auto &[name, desc] = textures_.at(id);
   const GlFormat format = gl_format(desc.format);
-  const GLuint name = textures_.at(texture.id());
   if (desc.kind == TextureKind::Flat) {
     glTextureSubImage2D(name, 0, 0, 0, desc.width, desc.height, format.format, format.type, texels.data());
   }
@@ -281,29 +273,31 @@ void GlDevice::texture_upload(const Texture &texture, int layer, std::span<const
   check(fmt::format("texture '{}'", desc.name));
 }
 
-void GlDevice::mipmaps_generate(const Texture &texture)
+void GlDevice::mipmaps_generate(ResourceId id)
 {
   const Entry entry(*this);
-  const std::string what = fmt::format("texture '{}'", texture.desc().name);
+  const auto &[name, desc] = textures_.at(id);
+  const std::string what = fmt::format("texture '{}'", desc.name);
   check_host_state(what);
-  glGenerateTextureMipmap(textures_.at(texture.id()));
+  glGenerateTextureMipmap(name);
   check(what);
 }
 
-void GlDevice::layers_copy(const Texture &source, const Texture &target, glm::ivec2 size_px, int layers)
+void GlDevice::layers_copy(ResourceId source, ResourceId target, glm::ivec2 size_px, int layers)
 {
   const Entry entry(*this);
-  const auto gl_kind = [](const Texture &texture) { return gl_target(texture.desc().kind); };
-  glCopyImageSubData(textures_.at(source.id()), gl_kind(source), 0, 0, 0, 0, textures_.at(target.id()), gl_kind(target),
-                     0, 0, 0, 0, size_px.x, size_px.y, layers);
-  check(fmt::format("copy of texture '{}'", source.desc().name));
+  const GlTexture &from = textures_.at(source);
+  const GlTexture &to = textures_.at(target);
+  glCopyImageSubData(from.name, gl_target(from.desc.kind), 0, 0, 0, 0, to.name, gl_target(to.desc.kind), 0, 0, 0, 0,
+                     size_px.x, size_px.y, layers);
+  check(fmt::format("copy of texture '{}'", from.desc.name));
 }
 
-void GlDevice::texture_read(const Texture &texture, int layer, std::span<std::byte> texels)
+void GlDevice::texture_read(ResourceId id, int layer, std::span<std::byte> texels)
 {
   const Entry entry(*this);
   const SavedPixelStore pixel_store(PixelTransfer::Pack);
-  const TextureDesc &desc = texture.desc();
+  const auto &[name, desc] = textures_.at(id);
   const GlFormat format = gl_format(desc.format);
   // In bands of rows, because GL counts the bytes of a read in 32 bits.
   constexpr std::size_t band_bytes_max = std::size_t(1) << 30U;
@@ -312,8 +306,8 @@ void GlDevice::texture_read(const Texture &texture, int layer, std::span<std::by
   for (int y = 0; y < desc.height; y += band_rows) {
     const int rows = std::min(band_rows, desc.height - y);
     const auto band = texels.subspan(std::size_t(y) * row_bytes, std::size_t(rows) * row_bytes);
-    glGetTextureSubImage(textures_.at(texture.id()), 0, 0, y, layer, desc.width, rows, 1, format.format, format.type,
-                         GLsizei(band.size()), band.data());
+    glGetTextureSubImage(name, 0, 0, y, layer, desc.width, rows, 1, format.format, format.type, GLsizei(band.size()),
+                         band.data());
   }
   check(fmt::format("texture '{}'", desc.name));
 }

@@ -84,7 +84,11 @@ void GlDevice::execute(const CommandList &list)
   };
   for (const Command &command : list.commands()) {
     switch (command.kind) {
-      case CommandKind::BeginPass: begin_pass(list.passes()[command.first]); break;
+      case CommandKind::BeginPass: {
+        const CommandList::PassInfo &pass = list.passes()[command.first];
+        begin_pass(list.name_of(pass), pass);
+        break;
+      }
       case CommandKind::EndPass: end_pass(); break;
       case CommandKind::SetShader:
         program_ = &programs_.at(command.id);
@@ -150,12 +154,13 @@ const GlDevice::GlFramebuffer &GlDevice::framebuffer_of(const CommandList::PassI
   return host_framebuffer_;
 }
 
-void GlDevice::check_host_framebuffer([[maybe_unused]] const CommandList::PassInfo &pass)
+void GlDevice::check_host_framebuffer([[maybe_unused]] std::string_view pass_name,
+                                      [[maybe_unused]] const CommandList::PassInfo &pass)
 {
 #ifndef NDEBUG
   const GLuint name = pass.host_framebuffer->name;
   const auto refuse = [&](std::string_view why) {
-    throw Error("pass '{}': framebuffer {} of the host {}", pass.name, name, why);
+    throw Error("pass '{}': framebuffer {} of the host {}", pass_name, name, why);
   };
   if (name != 0 && !glIsFramebuffer(name)) {
     refuse("does not exist in the current context");
@@ -180,15 +185,14 @@ void GlDevice::check_host_framebuffer([[maybe_unused]] const CommandList::PassIn
 #endif
 }
 
-void GlDevice::begin_pass(const CommandList::PassInfo &pass)
+void GlDevice::begin_pass(std::string_view name, const CommandList::PassInfo &pass)
 {
   if (pass.host_framebuffer) {
-    check_host_framebuffer(pass);
+    check_host_framebuffer(name, pass);
   }
   const GlFramebuffer &framebuffer = framebuffer_of(pass);
   if (is_debug_) {
-    glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, GLsizei(std::min<std::size_t>(pass.name.size(), 255)),
-                     pass.name.data());
+    glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, GLsizei(std::min<std::size_t>(name.size(), 255)), name.data());
   }
   pass_ = &pass;
   color_count_ = framebuffer.color_count;
@@ -300,7 +304,7 @@ void GlDevice::bind_texture(const Command &command)
     return;
   }
   bound_textures_[command.slot] = GL_TEXTURE;
-  glBindTextureUnit(command.slot, textures_.at(command.id));
+  glBindTextureUnit(command.slot, textures_.at(command.id).name);
   glBindSampler(command.slot, command.first == 0 ? 0 : samplers_.at(command.first));
 }
 

@@ -8,58 +8,104 @@ namespace {
 /** Checks and counts are done by the base class; nothing is drawn. */
 class NullDevice final : public Device {
  public:
-  NullDevice(const Limits &limits, MessageSink sink) : Device(limits, std::move(sink)) {}
+  NullDevice(const Limits &limits, MessageSink sink, NullOperation before_operation)
+      : Device(limits, std::move(sink)), before_operation_(std::move(before_operation))
+  {
+  }
   ~NullDevice() override
   {
     free_live_resources();
   }
 
   void finish() override {}
-  void time_begin(const TimerQuery & /*query*/) override {}
-  void time_end(const TimerQuery & /*query*/) override {}
-  std::optional<double> elapsed_seconds(const TimerQuery & /*query*/) override
-  {
-    return std::nullopt;
-  }
   std::string description() const override
   {
     return "null backend (records, draws nothing)";
   }
 
  private:
-  void texture_create(ResourceId /*id*/, const TextureDesc & /*desc*/) override {}
-  void sampler_create(ResourceId /*id*/, const SamplerDesc & /*desc*/) override {}
-  void framebuffer_create(ResourceId /*id*/, const FramebufferDesc & /*desc*/) override {}
-  void buffer_create(ResourceId /*id*/, const BufferDesc & /*desc*/) override {}
+  void before(std::string_view operation) const
+  {
+    if (before_operation_) {
+      before_operation_(operation);
+    }
+  }
+  void texture_create(ResourceId /*id*/, const TextureDesc & /*desc*/) override
+  {
+    before("create texture");
+  }
+  void sampler_create(ResourceId /*id*/, const SamplerDesc & /*desc*/) override
+  {
+    before("create sampler");
+  }
+  void framebuffer_create(ResourceId /*id*/, const FramebufferLayout & /*layout*/) override
+  {
+    before("create framebuffer");
+  }
+  void buffer_create(ResourceId /*id*/, const BufferDesc & /*desc*/) override
+  {
+    before("create buffer");
+  }
   void batch_create(const BatchDesc & /*desc*/, const BatchRange & /*range*/, std::uint32_t /*vertex_capacity*/,
                     std::uint32_t /*index_capacity*/) override
   {
+    before("create batch");
   }
   void shader_create(ResourceId /*id*/, const ShaderDesc & /*desc*/, const std::vector<ShaderSource> & /*stages*/,
                      std::vector<std::byte> & /*compiled*/) override
   {
+    before("create shader");
   }
-  void timer_query_create(ResourceId /*id*/, const std::string & /*name*/) override {}
-  void resource_destroy(ResourceKind /*kind*/, ResourceId /*id*/) override {}
-  void buffer_update(ResourceId /*id*/, std::size_t /*offset_bytes*/, std::span<const std::byte> /*bytes*/) override {}
-  void texture_upload(const Texture & /*texture*/, int /*layer*/, std::span<const std::byte> /*texels*/) override {}
-  void mipmaps_generate(const Texture & /*texture*/) override {}
-  void layers_copy(const Texture & /*source*/, const Texture & /*target*/, glm::ivec2 /*size_px*/,
-                   int /*layers*/) override
+  void timer_query_create(ResourceId /*id*/, const std::string & /*name*/) override
   {
+    before("create timer query");
   }
-  void texture_read(const Texture & /*texture*/, int /*layer*/, std::span<std::byte> texels) override
+  void resource_destroy(ResourceKind /*kind*/, ResourceId /*id*/) override
   {
+    before("destroy");
+  }
+  void buffer_update(ResourceId /*id*/, std::size_t /*offset_bytes*/, std::span<const std::byte> /*bytes*/) override
+  {
+    before("update");
+  }
+  void texture_upload(ResourceId /*id*/, int /*layer*/, std::span<const std::byte> /*texels*/) override
+  {
+    before("upload");
+  }
+  void mipmaps_generate(ResourceId /*id*/) override
+  {
+    before("generate mipmaps");
+  }
+  void layers_copy(ResourceId /*source*/, ResourceId /*target*/, glm::ivec2 /*size_px*/, int /*layers*/) override
+  {
+    before("copy layers");
+  }
+  void texture_read(ResourceId /*id*/, int /*layer*/, std::span<std::byte> texels) override
+  {
+    before("read");
     std::fill(texels.begin(), texels.end(), std::byte(0));
   }
-  void list_submit(const CommandList & /*list*/) override {}
+  void list_submit(const CommandList & /*list*/) override
+  {
+    before("submit");
+  }
+  void time_mark(ResourceId /*query*/, bool /*is_end*/) override
+  {
+    before("mark time");
+  }
+  std::optional<double> seconds_between_marks(ResourceId /*query*/) override
+  {
+    return std::nullopt;
+  }
+
+  NullOperation before_operation_;
 };
 
 }  // namespace
 
-std::unique_ptr<Device> create_null_device(const Limits &limits, MessageSink sink)
+std::unique_ptr<Device> create_null_device(const Limits &limits, MessageSink sink, NullOperation before_operation)
 {
-  return std::make_unique<NullDevice>(limits, std::move(sink));
+  return std::make_unique<NullDevice>(limits, std::move(sink), std::move(before_operation));
 }
 
 }  // namespace gnomon::gpu

@@ -21,11 +21,11 @@ class TargetTest : public testing::Test {
   }
   /** Passes by name that \a action runs. */
   template <typename Action>
-  std::map<std::string, std::uint64_t> passes_of(Action &&action)
+  gpu::PassCounts passes_of(Action &&action)
   {
-    const std::map<std::string, std::uint64_t> before = device->pass_counts();
+    const gpu::PassCounts before = device->pass_counts();
     action();
-    std::map<std::string, std::uint64_t> passes;
+    gpu::PassCounts passes;
     for (const auto &[name, count] : device->pass_counts()) {
       const auto earlier = before.find(name);
       const std::uint64_t runs = count - (earlier == before.end() ? 0 : earlier->second);
@@ -36,7 +36,7 @@ class TargetTest : public testing::Test {
     return passes;
   }
 
-  using Passes = std::map<std::string, std::uint64_t>;
+  using Passes = gpu::PassCounts;
   const Passes sample = {{"depth_prepass", 1}, {"lit", 1}, {"film", 1}, {"tonemap", 1}};
   const Passes no_sample = {{"tonemap", 1}};
 

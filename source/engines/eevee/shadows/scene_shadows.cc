@@ -237,6 +237,9 @@ void SceneShadows::place_maps(gpu::Device &device)
 void SceneShadows::invalidate()
 {
   for_each_slot([](ShadowSlot &slot) { slot.invalidate(~0U); });
+  for (Shadows *viewport : viewports_) {
+    viewport->is_block_written_ = false;
+  }
 }
 
 Feature SceneShadows::features() const

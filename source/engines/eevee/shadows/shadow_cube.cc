@@ -81,10 +81,10 @@ class CubeTechnique final : public ShadowTechnique {
     return key;
   }
 
-  std::vector<draw::View> lamp_views(const ShadowSlot &slot) const override
+  void set_lamp_views(ShadowSlot &slot) const override
   {
     const auto views = shadow_cube_views(slot.lamp.position_ws(), slot.near, slot.place.given.size_px);
-    return {views.begin(), views.end()};
+    slot.views.assign(views.begin(), views.end());
   }
 
   /** Faces for which some visible point is on the inner side of each of the four planes that bound the face. */

@@ -70,9 +70,9 @@ class OctahedralTechnique final : public ShadowTechnique {
     return shadow_cube_technique().texel_key(lamp);
   }
 
-  std::vector<draw::View> lamp_views(const ShadowSlot &slot) const override
+  void set_lamp_views(ShadowSlot &slot) const override
   {
-    return shadow_cube_technique().lamp_views(slot);
+    shadow_cube_technique().set_lamp_views(slot);
   }
 
   LayerMask changed_layers(LayerMask touched) const override

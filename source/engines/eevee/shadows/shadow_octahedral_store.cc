@@ -251,8 +251,9 @@ void OctahedralStore::record(gpu::CommandList &list, std::size_t index, const Es
 
   // Cleared to far and no variance, as the layer stores it: a smaller map leaves a part of it.
   const auto record_into = [&](const draw::Pass &pass, const gpu::Framebuffer &framebuffer, float far) {
-    list.begin_pass(fmt::format("{} of lamp {}", pass.name(), index), framebuffer,
-                    {.clear_color = glm::vec4(far, 0.0F, 0.0F, 0.0F)});
+    fmt::memory_buffer name;
+    fmt::format_to(std::back_inserter(name), "{} of lamp {}", pass.name(), index);
+    list.begin_pass({name.data(), name.size()}, framebuffer, {.clear_color = glm::vec4(far, 0.0F, 0.0F, 0.0F)});
     pass.record({}, list);
     list.end_pass();
   };

@@ -91,10 +91,10 @@ class SpotTechnique final : public ShadowTechnique {
     return {lamp.world_from_lamp, lamp.spot_outer_angle, lamp.shadow_range(), lamp.shadow.clip_start};
   }
 
-  std::vector<draw::View> lamp_views(const ShadowSlot &slot) const override
+  void set_lamp_views(ShadowSlot &slot) const override
   {
-    return {
-        shadow_spot_view(slot.lamp.world_from_lamp, slot.lamp.spot_outer_angle, slot.near, slot.place.given.size_px)};
+    slot.views.assign(1, shadow_spot_view(slot.lamp.world_from_lamp, slot.lamp.spot_outer_angle, slot.near,
+                                          slot.place.given.size_px));
   }
 
   /** The map, where anything visible may be within its four sides. */

@@ -3,6 +3,8 @@
 
 #include "shadow_spot.hh"
 
+#include <utility>
+
 namespace gnomon::eevee {
 
 namespace {
@@ -50,8 +52,9 @@ class SunTechnique final : public ShadowTechnique {
   void fit_views(ShadowSlot &slot, const ShadowView &view, const ShadowCasters &casters,
                  const ShadowSettings &settings) const override
   {
-    const std::vector<SunFit> fits = fit_sun(slot.lamp.world_from_lamp, view.view, view.visible, casters.list(),
-                                             slot.place.given.size_px, settings.cascades, view.pixel_size);
+    slot.new_fits = fit_sun(slot.lamp.world_from_lamp, view.view, view.visible, casters.list(),
+                            slot.place.given.size_px, settings.cascades, view.pixel_size, std::move(slot.new_fits));
+    const std::vector<SunFit> &fits = slot.new_fits;
     if (fits.size() != slot.fits.size()) {
       slot.invalidate(~0U);
     }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace gnomon::eevee {
 
@@ -169,16 +170,24 @@ void narrow_to_depths(const draw::View &view, std::span<const float> depths, Vis
   visible.far = std::clamp(1.01 * distance_of(farthest), visible.near, visible.far);
 }
 
+/** The \a i-th of cascade_splits. */
+static double cascade_split(double near, double far, int i, int count, double lambda)
+{
+  if (i == 0 || i == count) {
+    return i == 0 ? near : far;
+  }
+  const double share = double(i) / count;
+  const double even = near + (far - near) * share;
+  const double logarithmic = near > 0.0 ? near * std::pow(far / near, share) : even;
+  return lambda * logarithmic + (1.0 - lambda) * even;
+}
+
 std::vector<double> cascade_splits(double near, double far, int count, double lambda)
 {
-  std::vector<double> splits = {near};
-  for (int i = 1; i < count; i++) {
-    const double share = double(i) / count;
-    const double even = near + (far - near) * share;
-    const double logarithmic = near > 0.0 ? near * std::pow(far / near, share) : even;
-    splits.push_back(lambda * logarithmic + (1.0 - lambda) * even);
+  std::vector<double> splits;
+  for (int i = 0; i <= count; i++) {
+    splits.push_back(cascade_split(near, far, i, count, lambda));
   }
-  splits.push_back(far);
   return splits;
 }
 
@@ -216,23 +225,27 @@ Sphere slice_sphere(const draw::View &view, double near, double far)
 
 std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &view, const VisibleRange &visible,
                             const std::vector<Caster> &casters, int size_px, const CascadeSettings &settings,
-                            float pixel_size)
+                            float pixel_size, std::vector<SunFit> memory)
 {
+  std::vector<SunFit> fits = std::move(memory);
+  fits.clear();
   const std::optional<LampBox> needed = needed_box(world_from_lamp, visible.corners, casters);
   if (!needed) {
-    return {};
+    return fits;
   }
   const glm::dmat3 lamp_from_world = glm::transpose(glm::dmat3(world_from_lamp));
   const SunFit whole = fit_to(*needed, lamp_from_world, size_px);
-  const auto fits_of = [&](int count, bool &is_fine) {
-    is_fine = true;
-    std::vector<SunFit> fits;
-    const std::vector<double> splits = cascade_splits(visible.near, visible.far, count, settings.lambda);
+  /** \return whether texels are no larger than pixels. */
+  const auto make_fits = [&](int count) {
+    bool is_fine = true;
+    fits.clear();
     for (int i = 0; i < count; i++) {
-      const double pixel = view.is_perspective() ? pixel_size * splits[std::size_t(i)] : pixel_size;
+      const double slice_near = cascade_split(visible.near, visible.far, i, count, settings.lambda);
+      const double slice_far = cascade_split(visible.near, visible.far, i + 1, count, settings.lambda);
+      const double pixel = view.is_perspective() ? pixel_size * slice_near : pixel_size;
       SunFit fit = whole;
       if (i < count - 1) {
-        const Sphere sphere = slice_sphere(view, splits[std::size_t(i)], splits[std::size_t(i) + 1]);
+        const Sphere sphere = slice_sphere(view, slice_near, slice_far);
         const glm::dvec3 center = lamp_from_world * sphere.center_ws;
         LampBox box{center - sphere.radius, center + sphere.radius};
         box.min.z = needed->min.z;
@@ -247,18 +260,17 @@ std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &
       }
       fits.push_back(fit);
     }
-    return fits;
+    return is_fine;
   };
-  bool is_fine = false;
   if (settings.count > 0) {
-    return fits_of(settings.count, is_fine);
+    make_fits(settings.count);
+    return fits;
   }
-  for (int count = 1;; count++) {
-    std::vector<SunFit> fits = fits_of(count, is_fine);
-    if (is_fine || count == cascade_count_max) {
-      return fits;
-    }
+  int count = 1;
+  while (!make_fits(count) && count < cascade_count_max) {
+    count++;
   }
+  return fits;
 }
 
 bool still_fits(const SunFit &old, const SunFit &needed)

@@ -83,11 +83,13 @@ struct Sphere {
  * than it must be: while it covers what a moved camera sees it need not be drawn again, and where it is, what stands
  * still keeps its texels.
  *
- * \a pixel_size: of the picture, at distance 1 (perspective) or anywhere (orthographic), metres.
+ * \a pixel_size: of the picture, at distance 1 (perspective) or anywhere (orthographic), metres. \a memory: for the
+ * result; its content is lost.
  */
 [[nodiscard]] std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &view,
                                           const VisibleRange &visible, const std::vector<Caster> &casters, int size_px,
-                                          const CascadeSettings &settings, float pixel_size);
+                                          const CascadeSettings &settings, float pixel_size,
+                                          std::vector<SunFit> memory = {});
 
 /** Whether \a old serves where \a needed is asked for: it covers it, and its texels are not much larger. */
 [[nodiscard]] bool still_fits(const SunFit &old, const SunFit &needed);

@@ -10,6 +10,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <iterator>
 
 namespace gnomon::eevee {
 
@@ -73,7 +74,7 @@ void update_for_casters(ShadowSlot &slot, ShadowCasters &casters)
   }
   slot.invalidate(slot.place.technique->changed_layers(touched));
   if (slot.lamp.kind != scene::LampKind::Sun && update_near(slot, casters)) {
-    slot.views = slot.place.technique->lamp_views(slot);
+    slot.place.technique->set_lamp_views(slot);
     slot.invalidate(~0U);
   }
 }
@@ -82,7 +83,8 @@ LayerMask record_depths(ShadowSlot &slot, LayerMask missing, bool is_empty_drawn
 {
   gpu::CommandList &list = recording.list;
   const std::vector<Caster> &casters = recording.casters.list();
-  std::vector<std::uint8_t> caster_layers(casters.size());
+  std::vector<std::uint8_t> &caster_layers = recording.caster_layers;
+  caster_layers.assign(casters.size(), 0);
   LayerMask with_casters = 0;
   for (std::size_t i = 0; i < casters.size(); i++) {
     caster_layers[i] =
@@ -109,7 +111,15 @@ LayerMask record_depths(ShadowSlot &slot, LayerMask missing, bool is_empty_drawn
     recording.pass.record(slot.views.front(), list,
                           slot.lamp.shadow.clip_start ? gpu::State::DepthClamp : gpu::State::None);
   };
-  const auto name = [&](std::string_view what) { return fmt::format("shadow of {}, {}", slot.lamp.name, what); };
+  fmt::memory_buffer name;
+  const auto name_of = [&](std::string_view what, std::optional<int> layer = {}) {
+    name.clear();
+    fmt::format_to(std::back_inserter(name), "shadow of {}, {}", slot.lamp.name, what);
+    if (layer) {
+      fmt::format_to(std::back_inserter(name), " {}", *layer);
+    }
+    return std::string_view(name.data(), name.size());
+  };
   const ShadowRequest &given = slot.place.given;
   const std::string_view layer_name = given.array == ShadowArrayId::Maps ? "map" : "face";
   const gpu::PassActions clear{.viewport = {.size_px = glm::ivec2(given.size_px)}};
@@ -121,7 +131,7 @@ LayerMask record_depths(ShadowSlot &slot, LayerMask missing, bool is_empty_drawn
   const bool is_cleared_at_once = is_one_pass && drawn == slot.all_layers();
   for (LayerMask rest = is_cleared_at_once ? 0 : drawn; rest != 0; rest &= rest - 1) {
     const int layer = std::countr_zero(rest);
-    list.begin_pass(name(fmt::format("{} {}", layer_name, layer)),
+    list.begin_pass(name_of(layer_name, layer),
                     recording.array.framebuffer(recording.device, slot.place.first_layer + layer), clear);
     if (recording.layer_pass == LayerPass::Single) {
       record_instances(1U << layer);
@@ -129,7 +139,7 @@ LayerMask record_depths(ShadowSlot &slot, LayerMask missing, bool is_empty_drawn
     list.end_pass();
   }
   if (is_one_pass) {
-    list.begin_pass(name("all layers"),
+    list.begin_pass(name_of("all layers"),
                     recording.array.framebuffer(recording.device, slot.place.first_layer, int(slot.views.size())),
                     is_cleared_at_once ? clear : keep);
     record_instances(missing);

@@ -81,6 +81,8 @@ struct ShadowSlot {
   std::vector<draw::View> views{};
   /** Suns: what the views are fitted to; empty while no caster matters. */
   std::vector<SunFit> fits{};
+  /** Memory for the next fit. */
+  std::vector<SunFit> new_fits{};
   /** Offset of its ShadowRenderBlock in the buffer. */
   std::uint32_t render_offset_bytes = 0;
   /** Drawn and still correct. */
@@ -118,6 +120,8 @@ struct ShadowRecording {
   LayerPass layer_pass;
   /** Of the recorded work. */
   ShadowCounters &counters;
+  /** Memory for record_depths. */
+  std::vector<std::uint8_t> &caster_layers;
 };
 
 /** What sun maps are fitted to. */
@@ -164,11 +168,8 @@ class ShadowTechnique {
   {
     return false;
   }
-  /** Views that depend on the lamp alone, for a slot whose `near` is set. Empty where they follow what is seen. */
-  [[nodiscard]] virtual std::vector<draw::View> lamp_views(const ShadowSlot & /*slot*/) const
-  {
-    return {};
-  }
+  /** Set the views of a slot whose `near` is set, where they depend on the lamp alone; \see follows_view. */
+  virtual void set_lamp_views(ShadowSlot & /*slot*/) const {}
   /** Where follows_view: fit the views to what is seen; layers whose view changes are invalidated. */
   virtual void fit_views(ShadowSlot & /*slot*/, const ShadowView & /*view*/, const ShadowCasters & /*casters*/,
                          const ShadowSettings & /*settings*/) const

@@ -6,28 +6,32 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <memory_resource>
+#include <utility>
 
 namespace gnomon::eevee {
 
 namespace {
 
-using Polygon = std::vector<glm::dvec3>;
+/** They are many and small, and are freed together. */
+using Polygon = std::pmr::vector<glm::dvec3>;
+using Polygons = std::pmr::vector<Polygon>;
 
-std::vector<Polygon> box_faces(const scene::Bounds &bounds)
+Polygons box_faces(const scene::Bounds &bounds, std::pmr::memory_resource &resource)
 {
   std::array<glm::dvec3, 8> corners;
   for (int i = 0; i < 8; i++) {
     corners[std::size_t(i)] = {(i & 1) ? bounds.max.x : bounds.min.x, (i & 2) ? bounds.max.y : bounds.min.y,
                                (i & 4) ? bounds.max.z : bounds.min.z};
   }
-  std::vector<Polygon> faces;
+  Polygons faces(&resource);
   for (const auto &face : {std::array{0, 1, 3, 2}, std::array{4, 5, 7, 6}, std::array{0, 1, 5, 4},
                            std::array{2, 3, 7, 6}, std::array{0, 2, 6, 4}, std::array{1, 3, 7, 5}}) {
-    Polygon polygon;
+    Polygon &polygon = faces.emplace_back();
     for (const int corner : face) {
       polygon.push_back(corners[std::size_t(corner)]);
     }
-    faces.push_back(polygon);
   }
   return faces;
 }
@@ -35,7 +39,7 @@ std::vector<Polygon> box_faces(const scene::Bounds &bounds)
 /** The part of a polygon inside of a plane (Sutherland and Hodgman 1974); where it crosses goes to \a cut. */
 Polygon clipped(const Polygon &polygon, const glm::dvec4 &plane, Polygon &cut)
 {
-  Polygon inside;
+  Polygon inside(polygon.get_allocator());
   const auto height = [&](const glm::dvec3 &point) { return glm::dot(glm::dvec3(plane), point) + plane.w; };
   for (std::size_t i = 0; i < polygon.size(); i++) {
     const glm::dvec3 &a = polygon[i];
@@ -70,23 +74,27 @@ void sort_around(Polygon &points, const glm::dvec3 &normal)
 
 }  // namespace
 
-std::vector<glm::dvec3> visible_corners(const draw::View &view, const scene::Bounds &bounds)
+std::vector<glm::dvec3> visible_corners(const draw::View &view, const scene::Bounds &bounds,
+                                        std::vector<glm::dvec3> memory)
 {
+  std::vector<glm::dvec3> corners = std::move(memory);
+  corners.clear();
   if (bounds.is_empty()) {
-    return {};
+    return corners;
   }
-  std::vector<Polygon> faces = box_faces(bounds);
+  std::array<std::byte, std::size_t(1) << 16U> buffer;
+  std::pmr::monotonic_buffer_resource resource(buffer.data(), buffer.size());
+  Polygons faces = box_faces(bounds, resource);
   for (const glm::vec4 &plane : view.frustum_planes_ws()) {
-    Polygon cut;
+    Polygon cut(&resource);
     for (Polygon &face : faces) {
       face = clipped(face, glm::dvec4(plane), cut);
     }
     // The cut closes the solid again, so that the next plane cuts it too.
     sort_around(cut, glm::dvec3(plane));
-    faces.push_back(cut);
+    faces.push_back(std::move(cut));
     std::erase_if(faces, [](const Polygon &face) { return face.empty(); });
   }
-  std::vector<glm::dvec3> corners;
   for (const Polygon &face : faces) {
     corners.insert(corners.end(), face.begin(), face.end());
   }

@@ -47,16 +47,15 @@ void Shadows::allocate(gpu::Device &device)
   }
 }
 
-void Shadows::fit(gpu::Device &device, const draw::View &view, float pixel_size,
-                  const std::function<std::vector<float>()> &read_depths)
+void Shadows::fit(gpu::Device &device, const draw::View &view, float pixel_size, std::span<const float> depths)
 {
   const Seen seen{view.clip_from_world(), pixel_size};
   if (seen_ == seen) {
     return;
   }
-  visible_ = visible_range(view, visible_corners(view, scene_.casters_.bounds_ws()));
-  if (!slots_.empty() && scene_.settings_.cascades.is_fitted_to_depth && read_depths) {
-    narrow_to_depths(view, read_depths(), visible_);
+  visible_ = visible_range(view, visible_corners(view, scene_.casters_.bounds_ws(), std::move(visible_.corners)));
+  if (reads_depths()) {
+    narrow_to_depths(view, depths, visible_);
   }
   for (ShadowSlot &slot : slots_) {
     slot.place.technique->fit_views(slot, {view, visible_, pixel_size}, scene_.casters_, scene_.settings_);
@@ -88,7 +87,7 @@ void Shadows::place_lamps(std::span<const LampPoint> points)
     slot.lamp.world_from_lamp = point->world_from_lamp;
     slot.near = point_near(slot, point->offset);
     if (!slot.place.technique->follows_view()) {
-      slot.views = slot.place.technique->lamp_views(slot);
+      slot.place.technique->set_lamp_views(slot);
     }
     else {
       seen_.reset();
@@ -111,14 +110,13 @@ void Shadows::write_block(gpu::Device &device)
 }
 
 void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
-                     gpu::CommandList &list, std::span<const LampPoint> points,
-                     const std::function<std::vector<float>()> &read_depths)
+                     gpu::CommandList &list, std::span<const LampPoint> points, std::span<const float> depths)
 {
   // Of lists that were not submitted.
   recorded_counters_ = {};
   for_each_slot([](ShadowSlot &slot) { slot.recorded_drawn = slot.recorded_up_to_date = 0; });
   place_lamps(points);
-  fit(device, view, pixel_size, read_depths);
+  fit(device, view, pixel_size, depths);
   // Array by array: the lamps of the distance cube take turns with it.
   for (std::size_t id = 0; id < shadow_array_count; id++) {
     for_each_slot([&](ShadowSlot &slot) {
@@ -128,20 +126,26 @@ void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_si
       const ShadowTechnique &technique = *slot.place.technique;
       const LayerMask missing = technique.layers_needed(slot, visible_) & slot.all_layers() & ~slot.up_to_date;
       if (missing != 0) {
-        technique.record(slot, missing,
-                         {device, pass, list, scene_.casters_, scene_.arrays_[id], scene_.octahedral_,
-                          scene_.render_buffer_, scene_.render_block_, scene_.layer_pass_, recorded_counters_});
+        technique.record(
+            slot, missing,
+            {device, pass, list, scene_.casters_, scene_.arrays_[id], scene_.octahedral_, scene_.render_buffer_,
+             scene_.render_block_, scene_.layer_pass_, recorded_counters_, caster_layers_});
       }
     });
   }
   write_block(device);
 }
 
+bool Shadows::reads_depths() const
+{
+  return !slots_.empty() && scene_.settings_.cascades.is_fitted_to_depth;
+}
+
 void Shadows::submitted()
 {
   for_each_slot([&](ShadowSlot &slot) {
     if (slot.recorded_drawn != 0) {
-      drawn_now_[slot.lamp.key] |= slot.recorded_drawn;
+      drawn_now_.push_back({slot.lamp.key, slot.recorded_drawn});
     }
     slot.drawn |= slot.recorded_drawn;
     slot.up_to_date |= slot.recorded_up_to_date;
@@ -198,14 +202,17 @@ std::vector<ShadowState> Shadows::states() const
 {
   std::vector<ShadowState> states;
   for_each_slot([&](const ShadowSlot &slot) {
-    const auto drawn_now = drawn_now_.find(slot.lamp.key);
+    LayerMask drawn_now = 0;
+    for (const auto &[lamp, layers] : drawn_now_) {
+      drawn_now |= lamp == slot.lamp.key ? layers : 0;
+    }
     states.push_back({.light = slot.lamp.light,
                       .array = scene_.array(slot.place.given.array).name(),
                       .size_px = slot.place.given.size_px,
                       .layer_count = int(slot.views.size()),
                       .drawn = slot.drawn,
                       .up_to_date = slot.up_to_date,
-                      .drawn_now = drawn_now == drawn_now_.end() ? 0 : drawn_now->second});
+                      .drawn_now = drawn_now});
   });
   std::ranges::sort(states, {}, &ShadowState::light);
   return states;

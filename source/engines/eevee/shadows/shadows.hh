@@ -5,10 +5,11 @@
 
 #include "eevee_lamp_points.hh"
 
-#include <functional>
-#include <map>
 #include <optional>
+#include <span>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace gnomon::eevee {
 
@@ -54,16 +55,23 @@ class Shadows {
   }
   /**
    * Fit to what \a view sees and record into \a list the layers that are needed and not up to date. \a pass draws the
-   * casters' instances; \a pixel_size: see fit_sun. \a read_depths gives the picture's depths, see narrow_to_depths; it
-   * is called only where the settings and lamps ask for it and the view changed. \a points: lamps of which the shadow
-   * is that of one point; each lamp the same in all updates after a sync.
+   * casters' instances; \a pixel_size: see fit_sun. \a points: lamps of which the shadow is that of one point; each
+   * lamp the same in all updates after a sync. \a depths: of the view, or of an earlier one near it, see
+   * narrow_to_depths; read where reads_depths() and the view changed. May be empty.
    */
   void update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
-              gpu::CommandList &list, std::span<const LampPoint> points = {},
-              const std::function<std::vector<float>()> &read_depths = {});
+              gpu::CommandList &list, std::span<const LampPoint> points = {}, std::span<const float> depths = {});
+  /** Whether suns are fitted to depths. */
+  [[nodiscard]] bool reads_depths() const;
+  /** Let the next update fit suns again, although the view is the same, because it has other depths. */
+  void fit_again()
+  {
+    seen_.reset();
+  }
   /**
    * The list of the last update was submitted: what it draws is up to date from now on. Without this call the next
-   * update of any viewport records the same layers again.
+   * update of any viewport records the same layers again. Where the submission is lost later, call
+   * SceneShadows::invalidate.
    */
   void submitted();
 
@@ -106,8 +114,7 @@ class Shadows {
   /** nullptr: the light has no shadow. */
   [[nodiscard]] const ShadowSlot *slot_of(const shared::LightData &light) const;
   [[nodiscard]] ShadowInspection inspection(const ShadowSlot &slot) const;
-  void fit(gpu::Device &device, const draw::View &view, float pixel_size,
-           const std::function<std::vector<float>()> &read_depths);
+  void fit(gpu::Device &device, const draw::View &view, float pixel_size, std::span<const float> depths);
   void place_lamps(std::span<const LampPoint> points);
   void write_block(gpu::Device &device);
 
@@ -129,11 +136,13 @@ class Shadows {
   gpu::Buffer block_buffer_;
   /** block_buffer_ holds block_. */
   bool is_block_written_ = false;
-  /** Layers drawn since begin_picture, by ShadowLamp::key. */
-  std::map<std::uint64_t, LayerMask> drawn_now_;
+  /** Layers drawn since begin_picture, with ShadowLamp::key; a lamp may be there several times. */
+  std::vector<std::pair<std::uint64_t, LayerMask>> drawn_now_;
   ShadowCounters counters_;
   /** Of the recorded work. */
   ShadowCounters recorded_counters_;
+  /** \see ShadowRecording */
+  std::vector<std::uint8_t> caster_layers_;
 };
 
 }  // namespace gnomon::eevee

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+// What the device tells about submitted work: losses, depths and times.
+#include "eevee_engine.hh"
+#include "eevee_engine_data.hh"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+namespace gnomon::eevee {
+
+void Engine::take_losses(draw::Viewport &viewport)
+{
+  Data &data = viewport.engine_data<Data>(*this);
+  const std::uint64_t loss_count = viewport.device().loss_count();
+  if (data.loss_count != loss_count) {
+    data.is_recorded = false;
+    data.stl.recorded.reset();
+    data.loss_count = loss_count;
+  }
+  SharedData &shared = *data.shared;
+  if (shared.loss_count != loss_count) {
+    shared.synced.reset();
+    shared.recorded.reset();
+    shared.shadows.invalidate();
+    sync_lamps(shared, viewport.device().limits());
+    shared.loss_count = loss_count;
+  }
+}
+
+bool awaits_depths(const Data &data, const draw::View &view)
+{
+  return data.is_seen && data.stl.shadows->reads_depths() &&
+         data.depth_feedback.clip_from_world != view.clip_from_world();
+}
+
+bool Engine::is_complete(draw::Viewport &viewport) const
+{
+  return viewport.samples_drawn() >= settings_.sample_count &&
+         !viewport.engine_data<Data>(*this).depth_feedback.is_pending();
+}
+
+bool Engine::take_feedback(draw::Viewport &viewport, const gpu::Feedback &feedback)
+{
+  Data &data = viewport.engine_data<Data>(*this);
+  for (const gpu::Feedback::Time &time : feedback.times) {
+    const auto step = std::ranges::find_if(
+        data.timing.steps, [&](const Timing::Step &candidate) { return candidate.query.id() == time.query; });
+    if (step != data.timing.steps.end()) {
+      step->seconds = step->seconds.value_or(0.0) + time.seconds;
+    }
+  }
+  DepthFeedback &depths = data.depth_feedback;
+  bool is_final = true;
+  for (const gpu::Feedback::Texels &texels : feedback.texels) {
+    const bool is_depth = viewport.has_depth_texture() && viewport.depth_texture().id() == texels.texture;
+    if (!is_depth || texels.tag < depths.first_valid_tag) {
+      continue;
+    }
+    depths.received_tag = std::max(depths.received_tag, texels.tag);
+    const glm::mat4 &requested = depths.requested_clip_from_world[texels.tag % depths.requested_clip_from_world.size()];
+    // Frames of one view that were recorded before the first was answered ask for the same depths.
+    if (depths.clip_from_world != requested) {
+      depths.depths.resize(texels.bytes.size() / sizeof(float));
+      std::memcpy(depths.depths.data(), texels.bytes.data(), texels.bytes.size());
+      depths.clip_from_world = requested;
+      data.stl.shadows->fit_again();
+      is_final = false;
+    }
+  }
+  return is_final;
+}
+
+std::vector<StepTime> Engine::take_step_times(draw::Viewport &viewport) const
+{
+  std::vector<StepTime> times;
+  for (Timing::Step &step : viewport.engine_data<Data>(*this).timing.steps) {
+    if (std::exchange(step.is_pending, false)) {
+      step.taken_seconds = std::exchange(step.seconds, std::nullopt);
+      times.push_back({step.name, step.taken_seconds.value_or(0.0)});
+    }
+  }
+  return times;
+}
+
+}  // namespace gnomon::eevee

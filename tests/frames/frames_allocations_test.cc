@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// A frame like those before it allocates nothing, neither where it is prepared nor where it is submitted.
+#include "frames/frames_scene.hh"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <utility>
+
+static std::atomic<std::uint64_t> allocation_count = 0;
+
+static void *counted(void *memory)
+{
+  allocation_count++;
+  return memory ? memory : throw std::bad_alloc();
+}
+
+void *operator new(std::size_t size)
+{
+  return counted(std::malloc(size > 0 ? size : 1));
+}
+
+void *operator new(std::size_t size, std::align_val_t alignment)
+{
+  const auto align = std::size_t(alignment);
+  return counted(std::aligned_alloc(align, (size + align - 1) / align * align));
+}
+
+void operator delete(void *memory) noexcept
+{
+  std::free(memory);
+}
+
+void operator delete(void *memory, std::size_t /*size*/) noexcept
+{
+  std::free(memory);
+}
+
+void operator delete(void *memory, std::align_val_t /*alignment*/) noexcept
+{
+  std::free(memory);
+}
+
+void operator delete(void *memory, std::size_t /*size*/, std::align_val_t /*alignment*/) noexcept
+{
+  std::free(memory);
+}
+
+namespace gnomon::eevee {
+namespace {
+
+using test::FramesScene;
+
+struct Allocations {
+  std::uint64_t prepare = 0;
+  std::uint64_t submit = 0;
+};
+
+class FrameAllocations : public testing::Test {
+ protected:
+  static constexpr int frame_count = 32;
+
+  FrameAllocations()
+  {
+    // Casters far away, so that one map for all of them is coarse, and cascades follow the camera.
+    const auto mesh = measure::add_box_mesh(frames.scene, measure::add_material(frames.scene, glm::vec3(0.5F)));
+    for (int i = 0; i < 16; i++) {
+      const glm::dvec3 place(40.0 * (i % 4) - 60.0, 40.0 * (i / 4) - 60.0, 1.0);
+      measure::add_object(frames.scene, mesh, glm::translate(glm::dmat4(1.0), place));
+    }
+  }
+
+  /** Of \a frame_count frames after as many for warming up. Each writes the picture and its depth to a target. */
+  template <typename Camera>
+  Allocations of_second_round(const Settings &settings, Camera &&camera)
+  {
+    SceneRenderer renderer(*device, frames.scene, {32, 24}, settings);
+    const gpu::Texture color = device->create_texture({.name = "color", .width = 32, .height = 24});
+    const gpu::Texture depth =
+        device->create_texture({.name = "depth", .format = gpu::Format::Depth32F, .width = 32, .height = 24});
+    const gpu::Framebuffer framebuffer =
+        device->create_framebuffer({.name = "target", .colors = {{&color}}, .depth = {&depth}});
+    const draw::Target target{.framebuffer = &framebuffer,
+                              .depth = draw::HostDepth{.clip_from_view = draw::perspective(1.0F, 1.0F, 0.1F, 100.0F)}};
+    Allocations counts;
+    std::uint64_t faces_before = 0;
+    for (int round = 0; round < 2; round++) {
+      counts = {};
+      for (int frame = 0; frame < frame_count; frame++) {
+        gpu::Packet &packet = packets[std::size_t(frame % 2)];
+        const scene::PlacedCamera of_frame = camera(frame);
+        const std::uint64_t before = allocation_count;
+        if (frame % settings.sample_count == 0) {
+          renderer.viewport().restart();
+        }
+        renderer.prepare(packet, of_frame, target);
+        const std::uint64_t prepared = allocation_count;
+        device->submit(packet);
+        counts.prepare += prepared - before;
+        counts.submit += allocation_count - prepared;
+      }
+      const std::uint64_t faces = renderer.engine().shadow_counters(renderer.viewport()).faces_drawn;
+      faces_drawn = faces - std::exchange(faces_before, faces);
+      EXPECT_TRUE(round > 0 || counts.prepare > 100U) << "nothing is counted";
+    }
+    return counts;
+  }
+
+  std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  FramesScene frames;
+  std::array<gpu::Packet, 2> packets;
+  /** In the second round. */
+  std::uint64_t faces_drawn = 0;
+};
+
+/** Several samples: lamps with a size have another shadow in each. */
+TEST_F(FrameAllocations, AStillSceneAllocatesNothing)
+{
+  const Allocations counts = of_second_round({.sample_count = 4}, [](int /*frame*/) { return FramesScene::camera(0); });
+  EXPECT_EQ(counts.prepare, 0U);
+  EXPECT_EQ(counts.submit, 0U);
+}
+
+TEST_F(FrameAllocations, AMovingCameraAllocatesNothing)
+{
+  const Allocations counts =
+      of_second_round({.shadow = {.cube_size_px = 32, .map_size_px = 64, .cascades = {.count = 4}}},
+                      [](int frame) { return FramesScene::camera(frame, frame_count); });
+  EXPECT_EQ(counts.prepare, 0U);
+  EXPECT_EQ(counts.submit, 0U);
+  EXPECT_GT(faces_drawn, 0U) << "cascades follow the camera";
+}
+
+}  // namespace
+}  // namespace gnomon::eevee

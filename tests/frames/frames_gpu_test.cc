@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "frames/frames_scene.hh"
+#include "frames/frames_threads.hh"
+#include "gpu/gpu_gl_hook.hh"
+#include "gpu_device_fixture.hh"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <array>
+
+namespace gnomon::eevee {
+namespace {
+
+using test::FramesScene;
+using Frames = test::GpuDeviceTest;
+using Bytes = std::vector<std::byte>;
+
+constexpr glm::ivec2 size_px{48, 32};
+
+/** The picture of each frame. */
+std::vector<Bytes> pictures_of(gpu::Device &device, int frame_count, bool has_two_threads)
+{
+  FramesScene frames;
+  SceneRenderer renderer(device, frames.scene, size_px, test::frames_settings());
+  const std::array<draw::Engine *, 1> engines = {&renderer.engine()};
+  std::vector<Bytes> pictures;
+  constexpr std::uint64_t tag = 1000;
+  test::run_frames(
+      frame_count, has_two_threads,
+      [&](int frame, gpu::Packet &packet) {
+        renderer.viewport().take_feedback(engines, packet.feedback());
+        const gpu::Recording recording(device, packet);
+        frames.edit(frame);
+        renderer.sync();
+        renderer.draw_sample(FramesScene::camera(frame, 12));
+        device.read_back(renderer.engine().radiance(renderer.viewport()), 0, tag);
+      },
+      [&](gpu::Packet &packet) {
+        device.submit(packet);
+        pictures.push_back(std::ranges::find(packet.feedback().texels, tag, &gpu::Feedback::Texels::tag)->bytes);
+      });
+  return pictures;
+}
+
+TEST_F(Frames, OfTwoThreadsAreThoseOfOne)
+{
+  constexpr int frame_count = 20;
+  const std::vector<Bytes> expected = pictures_of(*device, frame_count, false);
+  EXPECT_NE(expected[0], expected[1]);
+  EXPECT_EQ(pictures_of(*device, frame_count, true), expected);
+}
+
+/** glGetError reports this many calls without an error, then that memory is out, once; negative: never. */
+int calls_until_error = -1;
+
+/** After the edits of the first \a edit_count frames. */
+Bytes fresh_picture(gpu::Device &device, int edit_count)
+{
+  FramesScene frames;
+  for (int frame = 0; frame < edit_count; frame++) {
+    frames.edit(frame);
+  }
+  SceneRenderer renderer(device, frames.scene, size_px, test::frames_settings());
+  renderer.sync();
+  renderer.draw(FramesScene::camera(0));
+  return device.read(renderer.engine().radiance(renderer.viewport()));
+}
+
+TEST_F(Frames, ThatFailAreFollowedByTheRightPicture)
+{
+  const std::array<Bytes, 2> expected = {fresh_picture(*device, 1), fresh_picture(*device, 2)};
+  const test::Hook hook(
+      epoxy_glGetError,
+      +[]() -> GLenum { return calls_until_error >= 0 && calls_until_error-- == 0 ? GL_OUT_OF_MEMORY : GL_NO_ERROR; });
+  int failure_count = 0;
+  for (const int calls : {0, 20, 60}) {
+    SCOPED_TRACE(calls);
+    FramesScene frames;
+    SceneRenderer renderer(*device, frames.scene, size_px, test::frames_settings());
+    frames.edit(0);
+    const auto draw = [&] {
+      renderer.sync();
+      renderer.draw(FramesScene::camera(0));
+    };
+    const auto draw_after_failure = [&] {
+      calls_until_error = calls;
+      try {
+        draw();
+      }
+      catch (const gpu::Error & /*error*/) {
+        failure_count++;
+      }
+      calls_until_error = -1;
+      draw();
+      return device->read(renderer.engine().radiance(renderer.viewport()));
+    };
+    EXPECT_EQ(draw_after_failure(), expected[0]);
+    frames.edit(1);
+    EXPECT_EQ(draw_after_failure(), expected[1]);
+  }
+  EXPECT_GT(failure_count, 3);
+}
+
+}  // namespace
+}  // namespace gnomon::eevee
