@@ -58,6 +58,16 @@ static void print_info(const scene::Scene &scene)
     fmt::print("  lamp '{}', {}, {:g} {}{}\n", lamp.name, to_string(lamp.kind), lamp.intensity, unit(lamp.kind),
                scene.is_lamp_default ? " (added)" : "");
   }
+  for (const scene::Animation &animation : scene.animations) {
+    fmt::print("  animation '{}', {:g} s, {} nodes, {} values\n", animation.name, animation.duration(),
+               animation.nodes.size(), animation.values.size());
+  }
+  for (const scene::DeformedMesh &deformed : scene.deformed_meshes) {
+    fmt::print("  deformed mesh '{}', {} vertices, {} morph targets, {}\n", scene.meshes()[deformed.mesh].name,
+               deformed.positions.size(), deformed.targets.size(),
+               deformed.skin < 0 ? "no skin"
+                                 : fmt::format("{} joints", scene.skins[std::size_t(deformed.skin)].joints.size()));
+  }
 }
 
 void add_info(CLI::App &app, Status &status)

@@ -4,6 +4,7 @@
 #include "cli_choice.hh"
 #include "cli_debug.hh"
 #include "cli_explain.hh"
+#include "cli_frames.hh"
 #include "cli_output.hh"
 
 #include "eevee_scene_renderer.hh"
@@ -46,7 +47,7 @@ struct RenderOptions {
   std::string size = "960x540";
   std::string camera;
   int samples = 16;
-  std::string frames;
+  FrameOptions frames;
   int repeat = 1;
   std::string shadow = "hard";
   int shadow_size = 0;
@@ -80,6 +81,8 @@ struct RenderResult {
   std::vector<double> frame_seconds;
   std::vector<std::vector<eevee::StepTime>> frame_steps;
   std::vector<eevee::ShadowCounters> frame_shadows;
+  /** Frames that --resume found whole. */
+  int skipped_frame_count = 0;
   double output_seconds = 0.0;
   double total_seconds = 0.0;
   std::size_t non_finite_count = 0;
@@ -110,9 +113,6 @@ bool is_png(const fs::path &path)
 void check_options(const RenderOptions &options)
 {
   const auto unbuilt = [](const std::string &what) { throw UsageError(what + " is not built yet"); };
-  if (!options.frames.empty()) {
-    unbuilt("--frames");
-  }
   if (!options.aov.empty()) {
     unbuilt("--aov");
   }
@@ -266,6 +266,7 @@ nlohmann::json to_json(const RenderOptions &options, const scene::Scene &scene, 
           {"sync_seconds", result.sync_seconds},
           {"frame_seconds", result.frame_seconds},
           {"frames", frames},
+          {"skipped_frames", result.skipped_frame_count},
           {"output_seconds", result.output_seconds},
           {"total_seconds", result.total_seconds},
           {"non_finite", result.non_finite_count},
@@ -291,14 +292,20 @@ nlohmann::json to_json(const RenderOptions &options, const scene::Scene &scene, 
 void print_summary(const RenderOptions &options, const RenderResult &result)
 {
   fmt::print("{}\n", result.device);
-  fmt::print("import {:.1f} ms, device {:.1f} ms, set-up {:.1f} ms, first frame {:.1f} ms", 1e3 * result.import_seconds,
-             1e3 * result.device_seconds, 1e3 * result.sync_seconds, 1e3 * result.frame_seconds.front());
+  fmt::print("import {:.1f} ms, device {:.1f} ms, set-up {:.1f} ms", 1e3 * result.import_seconds,
+             1e3 * result.device_seconds, 1e3 * result.sync_seconds);
+  if (!result.frame_seconds.empty()) {
+    fmt::print(", first frame {:.1f} ms", 1e3 * result.frame_seconds.front());
+  }
   if (result.frame_seconds.size() > 1) {
     std::vector<double> warm(result.frame_seconds.begin() + 1, result.frame_seconds.end());
     std::ranges::sort(warm);
     fmt::print(", warm frame {:.1f} ms (median of {})", 1e3 * warm[warm.size() / 2], warm.size());
   }
   fmt::print(", output {:.1f} ms, all {:.1f} ms\n", 1e3 * result.output_seconds, 1e3 * result.total_seconds);
+  if (result.skipped_frame_count > 0) {
+    fmt::print("{} frames were whole on disk and skipped\n", result.skipped_frame_count);
+  }
   std::vector<std::string> made;
   for (const eevee::FramePart &part : result.report.parts) {
     if (part.is_made) {
@@ -334,7 +341,7 @@ void render_frames(const RenderOptions &options, const scene::PlacedCamera &came
   target.view_transform = view_transforms.at(options.view);
   target.exposure = options.exposure;
 
-  eevee::ShadowCounters before;
+  eevee::ShadowCounters before = renderer.engine().shadow_counters(renderer.viewport());
   for (int frame = 0; frame < options.repeat; frame++) {
     const Clock::time_point start = Clock::now();
     const auto progress = [&](int samples_drawn) {
@@ -355,7 +362,7 @@ void render_frames(const RenderOptions &options, const scene::PlacedCamera &came
 /** \return Status::Done or Status::NonFinite; then nothing is written. */
 Status write_picture(const RenderOptions &options, const scene::Camera &camera, gpu::Device &device,
                      const gpu::Texture &picture, const std::optional<draw::TargetTexture> &display,
-                     RenderResult &result)
+                     const Metadata &frame_metadata, RenderResult &result)
 {
   const bool is_shadow = options.debug_view.kind == DebugView::Kind::Shadow;
   const glm::ivec2 size_px(picture.desc().width, picture.desc().height);
@@ -373,6 +380,7 @@ Status write_picture(const RenderOptions &options, const scene::Camera &camera, 
                        {"gnomon:samples", std::to_string(options.samples)},
                        {"gnomon:seed", std::to_string(options.seed)},
                        {"gnomon:device", result.device}};
+  metadata.insert(metadata.end(), frame_metadata.begin(), frame_metadata.end());
   if (!options.debug.empty()) {
     metadata.emplace_back("gnomon:debug", options.debug);
   }
@@ -397,10 +405,12 @@ Status render(RenderOptions options)
   const glm::ivec2 size_px = parse_size(options.size);
   check_folder(options.output);
   check_folder(options.json);
+  const FrameSequence frames(options.frames, options.output);
   RenderResult result;
 
-  const scene::Scene scene = gltf::import_gltf(options.scene);
-  const scene::PlacedCamera camera = find_camera(scene, options.camera);
+  scene::Scene scene = gltf::import_gltf(options.scene);
+  frames.pose(scene, 0);
+  scene::PlacedCamera camera = find_camera(scene, options.camera);
   for (const std::string &warning : scene.warnings) {
     fmt::print(stderr, "gnomon: warning: {}\n", warning);
   }
@@ -445,23 +455,37 @@ Status render(RenderOptions options)
   result.sync_seconds = seconds_since(sync_start);
 
   const std::optional<draw::TargetTexture> display = make_display(options, *device, size_px);
-  render_frames(options, camera, renderer, display, result);
-  result.report = engine.report(viewport);
-
-  const gpu::Texture &picture = options.debug_view.kind == DebugView::Kind::Shadow
-                                    ? shadow_picture(options.debug_view, scene, engine, viewport)
-                                    : engine.radiance(viewport);
-  const Clock::time_point output_start = Clock::now();
   Status status = Status::Done;
-  if (options.backend == "gl") {
-    status = write_picture(options, camera, *device, picture, display, result);
+  const Clock::time_point frames_start = Clock::now();
+  int rendered_count = 0;
+  for (int i = 0; i < frames.count() && status == Status::Done; i++) {
+    options.output = frames.path(i).string();
+    if (frames.is_done(i, size_px)) {
+      result.skipped_frame_count++;
+      continue;
+    }
+    if (i > 0) {
+      frames.pose(scene, i);
+      camera = find_camera(scene, options.camera);
+      renderer.sync();
+    }
+    render_frames(options, camera, renderer, display, result);
+    const Clock::time_point output_start = Clock::now();
+    if (options.backend == "gl") {
+      const gpu::Texture &picture = options.debug_view.kind == DebugView::Kind::Shadow
+                                        ? shadow_picture(options.debug_view, scene, engine, viewport)
+                                        : engine.radiance(viewport);
+      status = write_picture(options, camera, *device, picture, display, frames.metadata(i), result);
+    }
+    result.output_seconds += seconds_since(output_start);
+    frames.show_progress(i, ++rendered_count, seconds_since(frames_start));
   }
-  else {
+  result.report = engine.report(viewport);
+  if (options.backend != "gl") {
     fmt::print(stderr, "gnomon: the null backend draws nothing: no picture is written\n");
   }
   result.counters = device->counters();
   result.memory_bytes = device->memory_bytes();
-  result.output_seconds = seconds_since(output_start);
   result.total_seconds = seconds_since(start);
   if (chooser && status == Status::Done) {
     chooser->measure(gpu::read_as<glm::vec4>(*device, engine.radiance(viewport)), result.frame_seconds.front());
@@ -504,8 +528,17 @@ void add_render(CLI::App &app, Status &status)
   command->add_option("--size", o->size, "WIDTHxHEIGHT, pixels")->capture_default_str();
   command->add_option("--camera", o->camera, "Name of a camera; otherwise the first");
   command->add_option("--samples", o->samples, "Samples a pixel")->capture_default_str()->check(CLI::Range(1, 65536));
-  command->add_option("--frames", o->frames, "A-B: frames of an animation (not built yet)");
+  CLI::Option *frames = command->add_option(
+      "--frames", o->frames.range, "A-B or A: frames of an animation; # in -o stands for a digit of the number");
+  command->add_option("--fps", o->frames.frames_per_second, "Frames of an animation in a second; frame 0 is at 0 s")
+      ->needs(frames)
+      ->capture_default_str()
+      ->check(CLI::Range(1e-3, 1e6));
+  command->add_option("--animation", o->frames.animation, "Name of an animation; otherwise the first")->needs(frames);
+  command->add_flag("--resume", o->frames.is_resumed, "Skip frames whose files are whole and of this size")
+      ->needs(frames);
   command->add_option("--repeat", o->repeat, "Render this often, and print the time of each")
+      ->excludes(frames)
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));
   command
@@ -573,7 +606,7 @@ void add_render(CLI::App &app, Status &status)
           ->excludes(max_error);
   // What is chosen is not to be asked for, and a picture of something else has no error.
   for (const char *name : {"--samples", "--shadow", "--shadow-size", "--pcf", "--esm", "--cascades", "--cascade-lambda",
-                           "--cascade-range", "--cube-pass", "--casters", "--shadow-memory", "--debug"}) {
+                           "--cascade-range", "--cube-pass", "--casters", "--shadow-memory", "--debug", "--frames"}) {
     max_error->excludes(command->get_option(name));
     max_time->excludes(command->get_option(name));
   }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "gltf_import.hh"
 
+#include "internal/gltf_animation.hh"
 #include "internal/gltf_camera.hh"
 #include "internal/gltf_decompress.hh"
+#include "internal/gltf_deform.hh"
 #include "internal/gltf_file.hh"
 #include "internal/gltf_instances.hh"
 #include "internal/gltf_lamp.hh"
@@ -42,10 +44,11 @@ namespace {
 constexpr std::size_t object_count_max = std::size_t(1) << 22U;
 
 /** Extensions that are not needed to draw a file correctly, even if it requires them. */
-constexpr std::array<std::string_view, 12> harmless_extensions{
+constexpr std::array<std::string_view, 13> harmless_extensions{
     "KHR_lights_punctual",        "KHR_materials_specular",  "KHR_materials_emissive_strength", "KHR_materials_ior",
     "KHR_mesh_quantization",      "KHR_materials_variants",  "KHR_texture_transform",           "KHR_xmp_json_ld",
     "KHR_draco_mesh_compression", "EXT_meshopt_compression", "EXT_mesh_gpu_instancing",         "KHR_materials_unlit",
+    "KHR_animation_pointer",
 };
 
 /** Names of required extensions that are not supported; empty if there are none. */
@@ -115,6 +118,10 @@ class Importer {
     warn_about_file();
     const std::vector<int> roots = scene_roots();
     visit_nodes(roots);
+    things_.materials = meshes_.materials();
+    import_skins(file_, things_.nodes, warnings_, scene_);
+    import_animations(file_, things_, warnings_, scene_);
+    scene::deform_meshes(scene_);
     meshes_.finish();
     check_anything_kept();
     add_defaults();
@@ -127,6 +134,7 @@ class Importer {
   Warnings warnings_;
   Scene scene_;
   MeshImporter meshes_;
+  ImportedThings things_;
   std::size_t lost_node_count_ = 0;
   std::size_t object_count_ = 0;
 
@@ -139,9 +147,6 @@ class Importer {
   {
     if (const std::string names = unknown_required_extensions(file_); !names.empty()) {
       warnings_.add("extensionsRequired", names + " is not supported: elements that need it are left out");
-    }
-    if (file_.model.has_animations) {
-      warnings_.add("animations", "are not played: nodes keep their static transforms");
     }
   }
 
@@ -249,20 +254,38 @@ class Importer {
     node.parent_from_node = parent_from_node;
     read_flags(file_.model.nodes[index], index, node);
     const std::vector<glm::dmat4> instances = instances_of(index);
+    const std::size_t first_deformed = scene_.deformed_meshes.size();
     if (instances.empty()) {
       import_meshes(index, world, node);
     }
     if (std::optional<Lamp> lamp = lamp_on(file_, index, warnings_)) {
       node.lamp = scene_.add(std::move(*lamp));
+      things_.lamps[file_.model.nodes[index].light].push_back(node.lamp);
     }
     if (std::optional<Camera> camera = camera_on(file_, index, warnings_)) {
       node.camera = scene_.add(std::move(*camera));
+      things_.cameras[file_.model.nodes[index].camera].push_back(node.camera);
     }
     const Handle<Node> handle = scene_.add(std::move(node), parent);
+    things_.nodes.emplace(index, handle);
+    set_deformed_node(index, handle, first_deformed);
     for (std::size_t i = 0; i < instances.size(); i++) {
       import_instance(index, i, handle, instances[i], world * instances[i]);
     }
     return handle;
+  }
+
+  /** Gives the node's deformed meshes, which stand at \a first and after it, the node and its morph weights. */
+  void set_deformed_node(int index, Handle<Node> handle, std::size_t first)
+  {
+    const Model::Node &node = file_.model.nodes[index];
+    for (std::size_t i = first; i < scene_.deformed_meshes.size(); i++) {
+      scene_.deformed_meshes[i].node = handle;
+    }
+    if (first < scene_.deformed_meshes.size()) {
+      const std::vector<double> &weights = node.weights.empty() ? file_.model.meshes[node.mesh].weights : node.weights;
+      scene::set_morph_weights(scene_, handle, weights);
+    }
   }
 
   /** Empty if the node has no instances. */
@@ -303,10 +326,9 @@ class Importer {
     if (node.mesh < 0) {
       return;
     }
-    if (node.skin >= 0) {
-      warnings_.add_counted(node_label(index), 1, "its skin is not applied");
-    }
-    for (const Handle<Mesh> mesh : meshes_.meshes_of(node.mesh)) {
+    const bool is_own = is_deformed(file_.model, node) && !node.instances;
+    for (const Handle<Mesh> mesh :
+         is_own ? meshes_.deformed_meshes_of(node.mesh, node.skin) : meshes_.meshes_of(node.mesh)) {
       if (!is_usable(transformed(scene_.meshes()[mesh].bounds, world))) {
         warnings_.add_counted(node_label(index), 1, "object left out: it reaches beyond 1e12 m");
         continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "scene_animation.hh"
 #include "scene_pool.hh"
 #include "scene_types.hh"
 
@@ -85,6 +86,10 @@ class Scene {
   bool is_lamp_default = false;
   /** Import warnings. Each names the element and the reason. */
   std::vector<std::string> warnings{};
+  /** Played by pose(). */
+  std::vector<Animation> animations{};
+  std::vector<Skin> skins{};
+  std::vector<DeformedMesh> deformed_meshes{};
 
   [[nodiscard]] const Pool<Node> &nodes() const
   {

@@ -485,19 +485,6 @@ TEST(GltfImport, LeftOverVerticesAreCounted)
   EXPECT_WARNING(scene, "mesh 'mesh': vertex left over at the end: it makes no triangle (2 times)");
 }
 
-TEST(GltfImport, MorphsSkinsAndAnimationsAreNamed)
-{
-  GltfBuilder builder = triangle_scene();
-  builder.document["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}};
-  builder.document["skins"] = {{{"joints", {0}}}};
-  builder.document["nodes"][0]["skin"] = 0;
-  builder.document["animations"] = {{{"channels", json::array()}}};
-  const Scene scene = import(builder);
-  EXPECT_WARNING(scene, "mesh 'mesh': morph targets are not applied");
-  EXPECT_WARNING(scene, "node 'thing': its skin is not applied");
-  EXPECT_WARNING(scene, "animations: are not played");
-}
-
 // ---- Flat facets ----
 
 /** Two triangles of a quad whose fourth corner is \a lift above the plane of the others. All corners have \a normal. */

@@ -326,7 +326,7 @@ TEST(GltfImport, PrimitivesOfAnUnknownCompressionAreLeftOutIfTheRestCanBeDrawn)
   };
   const Scene scene = import_beside([&](json &document) { compress(document, 1, 1, 2); });
   EXPECT_EQ(scene.objects().size(), 1U);
-  EXPECT_WARNING(scene, "extensionsRequired: EXT_other_compression is not known");
+  EXPECT_WARNING(scene, "extensionsRequired: EXT_other_compression is not supported");
   EXPECT_WARNING(scene, "mesh 'bad': primitive left out: POSITION: is compressed by EXT_other_compression");
 
   GltfBuilder alone;

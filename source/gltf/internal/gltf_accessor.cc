@@ -35,6 +35,15 @@ T loaded(const unsigned char *bytes)
   return value;
 }
 
+std::uint32_t loaded_integer(const unsigned char *bytes, std::size_t size)
+{
+  switch (size) {
+    case 1: return loaded<std::uint8_t>(bytes);
+    case 2: return loaded<std::uint16_t>(bytes);
+    default: return loaded<std::uint32_t>(bytes);
+  }
+}
+
 /** glTF 2.0, section 3.11: -1 has two representations in a signed normalised integer. */
 template <typename T>
 float from_integer(const unsigned char *bytes, bool is_normalized)
@@ -61,6 +70,7 @@ TypeName name_of(Model::ElementType type)
     case Model::ElementType::Vec2: return {2, "VEC2"};
     case Model::ElementType::Vec3: return {3, "VEC3"};
     case Model::ElementType::Vec4: return {4, "VEC4"};
+    case Model::ElementType::Matrix4: return {16, "MAT4"};
     case Model::ElementType::Matrix: break;
   }
   return {16, "matrix"};
@@ -139,9 +149,7 @@ void AccessorReader::read_sparse(const File &file)
   sparse_indices_.resize(count);
   for (std::size_t i = 0; i < count; i++) {
     const unsigned char *bytes = indices.data() + i * index_size;
-    sparse_indices_[i] = index_size == 1   ? loaded<std::uint8_t>(bytes)
-                         : index_size == 2 ? loaded<std::uint16_t>(bytes)
-                                           : loaded<std::uint32_t>(bytes);
+    sparse_indices_[i] = loaded_integer(bytes, index_size);
     if (sparse_indices_[i] >= accessor_.count || (i > 0 && sparse_indices_[i] <= sparse_indices_[i - 1])) {
       throw Fault(what_, "its sparse indices do not ascend, or one is out of range");
     }
@@ -200,6 +208,24 @@ glm::vec4 AccessorReader::vec4(std::size_t index) const
   return {component(bytes), component(bytes + size), component(bytes + 2 * size), component(bytes + 3 * size)};
 }
 
+float AccessorReader::scalar(std::size_t index) const
+{
+  const unsigned char *bytes = element(index);
+  return bytes == nullptr ? 0.0F : component(bytes);
+}
+
+glm::mat4 AccessorReader::mat4(std::size_t index) const
+{
+  glm::mat4 matrix(0.0F);
+  if (const unsigned char *bytes = element(index)) {
+    const std::size_t size = element_size_ / 16;
+    for (int i = 0; i < 16; i++) {
+      matrix[i / 4][i % 4] = component(bytes + std::size_t(i) * size);
+    }
+  }
+  return matrix;
+}
+
 glm::vec4 AccessorReader::color(std::size_t index) const
 {
   return accessor_.type == Model::ElementType::Vec3 ? glm::vec4(vec3(index), 1.0F) : vec4(index);
@@ -221,14 +247,19 @@ bool AccessorReader::is_unsigned() const
 std::uint32_t AccessorReader::integer(std::size_t index) const
 {
   const unsigned char *bytes = element(index);
-  if (bytes == nullptr) {
-    return 0;
+  return bytes == nullptr ? 0 : loaded_integer(bytes, element_size_);
+}
+
+std::array<std::uint32_t, 4> AccessorReader::integers(std::size_t index) const
+{
+  std::array<std::uint32_t, 4> values{};
+  if (const unsigned char *bytes = element(index)) {
+    const std::size_t size = element_size_ / 4;
+    for (std::size_t i = 0; i < 4; i++) {
+      values[i] = loaded_integer(bytes + i * size, size);
+    }
   }
-  switch (element_size_) {
-    case 1: return loaded<std::uint8_t>(bytes);
-    case 2: return loaded<std::uint16_t>(bytes);
-    default: return loaded<std::uint32_t>(bytes);
-  }
+  return values;
 }
 
 }  // namespace gnomon::gltf

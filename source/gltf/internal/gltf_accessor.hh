@@ -3,10 +3,12 @@
 
 #include "internal/gltf_file.hh"
 
+#include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -49,6 +51,12 @@ class AccessorReader {
   [[nodiscard]] glm::vec2 vec2(std::size_t index) const;
   /** The same for a VEC4. */
   [[nodiscard]] glm::vec4 vec4(std::size_t index) const;
+  /** The same of a SCALAR. */
+  [[nodiscard]] float scalar(std::size_t index) const;
+  /** The same of a MAT4. */
+  [[nodiscard]] glm::mat4 mat4(std::size_t index) const;
+  /** Element of a VEC4 of unsigned integers. \pre index < count(), and is_unsigned(). */
+  [[nodiscard]] std::array<std::uint32_t, 4> integers(std::size_t index) const;
   /** Element of a VEC3 or VEC4 of colours; the alpha of a VEC3 is 1. */
   [[nodiscard]] glm::vec4 color(std::size_t index) const;
   /**

@@ -65,10 +65,10 @@ class DocumentReader {
     read_array("samplers", model_.samplers, read_sampler);
     read_array("images", model_.images, read_image);
     read_array("extensionsRequired", model_.extensions_required, read_required_extension);
-    if (const JsonValue *value = root("animations")) {
-      JsonArray array;
-      model_.has_animations = value->get(array) != simdjson::SUCCESS || size_of(array) > 0;
-    }
+    read_array("skins", model_.skins,
+               [this](const auto &at, const auto &value, auto &one) { read_skin(at, value, one); });
+    read_array("animations", model_.animations,
+               [this](const auto &at, const auto &value, auto &one) { read_animation(at, value, one); });
     return std::move(model_);
   }
 
@@ -139,6 +139,16 @@ class DocumentReader {
                   }};
   }
 
+  static auto into_numbers(std::string_view key, std::vector<double> &target)
+  {
+    return Member{key, [&target](const Place &place, const JsonValue &value) {
+                    target.clear();
+                    for (const JsonValue element : array_at(place, value, "an array of numbers")) {
+                      target.push_back(number_at({place.outer, place.key, target.size()}, element));
+                    }
+                  }};
+  }
+
   [[noreturn]] static void fail_incomplete(const Place &place, const std::string &missing)
   {
     throw Fault("glTF", place.text() + ": has no " + missing);
@@ -177,7 +187,7 @@ class DocumentReader {
                                       const JsonValue &matrix) { read_numbers(at, matrix, node.matrix.emplace()); }},
                  into("translation", node.translation), into("rotation", node.rotation), into("scale", node.scale),
                  into_index("mesh", node.mesh, "meshes"), into_index("camera", node.camera, "cameras"),
-                 into_index("skin", node.skin, "skins"),
+                 into_index("skin", node.skin, "skins"), into_numbers("weights", node.weights),
                  Member{"extensions", [&](const Place &at,
                                           const JsonValue &extensions) { read_node_extensions(at, extensions, node); }},
                  Member{"extras", [&](const Place &, const JsonValue &member) { extras = member; }});
@@ -258,7 +268,7 @@ class DocumentReader {
   void read_mesh(const Place &place, const JsonValue &value, Model::Mesh &mesh) const
   {
     bool has_primitives = false;
-    read_members(place, value, into_name(mesh.name),
+    read_members(place, value, into_name(mesh.name), into_numbers("weights", mesh.weights),
                  Member{"primitives", [&](const Place &at, const JsonValue &member) {
                           JsonArray primitives;
                           has_primitives = member.get(primitives) == simdjson::SUCCESS;
@@ -291,9 +301,14 @@ class DocumentReader {
         Member{"attributes",
                [&](const Place &at, const JsonValue &attributes) {
                  has_attributes = true;
-                 read_attributes(at, attributes, primitive);
+                 read_attributes(at, attributes, primitive.attributes);
                }},
-        Member{"targets", [&](const Place &, const JsonValue &) { primitive.has_targets = true; }},
+        Member{"targets",
+               [&](const Place &at, const JsonValue &targets) {
+                 read_elements(
+                     at, array_at(at, targets), primitive.targets,
+                     [this](const Place &in, const JsonValue &one, auto &target) { read_attributes(in, one, target); });
+               }},
         Member{"extensions",
                [&](const Place &at, const JsonValue &extensions) { for_members(at, extensions, read_compression); }},
         Member{"extras", [&](const Place &at, const JsonValue &extras) {
@@ -321,13 +336,13 @@ class DocumentReader {
     }
   }
 
-  void read_attributes(const Place &place, const JsonValue &value, Model::Primitive &primitive) const
+  void read_attributes(const Place &place, const JsonValue &value, std::map<std::string, int, std::less<>> &read) const
   {
-    primitive.attributes.clear();
+    read.clear();
     for_members(place, value, [&](std::string_view key, const Place &at, const JsonValue &accessor) {
       if (key == "POSITION" || key == "NORMAL" || key == "TANGENT" || key == "COLOR_0" ||
-          key.starts_with("TEXCOORD_")) {
-        primitive.attributes.insert_or_assign(std::string(key), index_into("accessors", at, accessor));
+          key.starts_with("TEXCOORD_") || key.starts_with("JOINTS_") || key.starts_with("WEIGHTS_")) {
+        read.insert_or_assign(std::string(key), index_into("accessors", at, accessor));
       }
     });
   }
@@ -362,7 +377,7 @@ class DocumentReader {
         std::pair{"SCALAR", Model::ElementType::Scalar}, std::pair{"VEC2", Model::ElementType::Vec2},
         std::pair{"VEC3", Model::ElementType::Vec3},     std::pair{"VEC4", Model::ElementType::Vec4},
         std::pair{"MAT2", Model::ElementType::Matrix},   std::pair{"MAT3", Model::ElementType::Matrix},
-        std::pair{"MAT4", Model::ElementType::Matrix}};
+        std::pair{"MAT4", Model::ElementType::Matrix4}};
     const std::string name = string_at(place, value);
     const auto *const found =
         std::find_if(types.begin(), types.end(), [&](const auto &type) { return type.first == name; });
@@ -426,6 +441,52 @@ class DocumentReader {
   {
     read_members(place, value, into("byteLength", buffer.byte_length),
                  Member{"uri", [&](const Place &at, const JsonValue &uri) { buffer.uri = string_at(at, uri); }});
+  }
+
+  void read_skin(const Place &place, const JsonValue &value, Model::Skin &skin) const
+  {
+    read_members(place, value, into_name(skin.name), into_indices("joints", skin.joints, "nodes"),
+                 into_index("inverseBindMatrices", skin.inverse_bind_matrices, "accessors"));
+  }
+
+  void read_animation(const Place &place, const JsonValue &value, Model::Animation &animation) const
+  {
+    const auto read_sampler = [this](const Place &at, const JsonValue &one, Model::AnimationSampler &sampler) {
+      read_members(at, one, into_index("input", sampler.input, "accessors"),
+                   into_index("output", sampler.output, "accessors"), into("interpolation", sampler.interpolation));
+      if (sampler.input < 0 || sampler.output < 0) {
+        fail_incomplete(at, sampler.input < 0 ? "input" : "output");
+      }
+    };
+    const auto read_target = [this](const Place &at, const JsonValue &one, Model::AnimationChannel &channel) {
+      read_members(at, one, into_index("node", channel.node, "nodes"), into("path", channel.path),
+                   Member{"extensions", [&](const Place &in, const JsonValue &extensions) {
+                            read_members(in, extensions,
+                                         Member{"KHR_animation_pointer", [&](const Place &of, const JsonValue &member) {
+                                                  read_members(of, member, into("pointer", channel.pointer));
+                                                }});
+                          }});
+    };
+    read_members(place, value, into_name(animation.name),
+                 Member{"samplers",
+                        [&](const Place &at, const JsonValue &member) {
+                          read_elements(at, array_at(at, member), animation.samplers, read_sampler);
+                        }},
+                 Member{"channels", [&](const Place &at, const JsonValue &member) {
+                          read_elements(at, array_at(at, member), animation.channels,
+                                        [&](const Place &in, const JsonValue &one, Model::AnimationChannel &channel) {
+                                          read_members(in, one, into("sampler", channel.sampler),
+                                                       Member{"target", [&](const Place &of, const JsonValue &target) {
+                                                                read_target(of, target, channel);
+                                                              }});
+                                        });
+                        }});
+    for (const Model::AnimationChannel &channel : animation.channels) {
+      if (std::size_t(channel.sampler) >= animation.samplers.size()) {
+        throw Fault(place.text() + ".channels",
+                    channel.sampler < 0 ? "one has no sampler" : "a sampler's index is out of range");
+      }
+    }
   }
 
   void read_lights()

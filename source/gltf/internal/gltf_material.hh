@@ -31,6 +31,11 @@ class MaterialImporter {
     return uv_sets_.at(material);
   }
 
+  [[nodiscard]] const std::map<int, scene::Handle<scene::Material>> &handles() const
+  {
+    return handle_of_;
+  }
+
   /** Decodes the images. Call it once, at the end. Damaged images are replaced by stand-ins. */
   void finish();
 

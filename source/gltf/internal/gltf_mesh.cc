@@ -2,6 +2,7 @@
 #include "internal/gltf_mesh.hh"
 
 #include "internal/gltf_accessor.hh"
+#include "internal/gltf_deform.hh"
 #include "internal/gltf_facets.hh"
 #include "internal/gltf_triangles.hh"
 #include "scene_tangents.hh"
@@ -221,6 +222,16 @@ class PrimitiveReader {
     return colors;
   }
 
+  [[nodiscard]] bool has_normals() const
+  {
+    return normals_.has_value();
+  }
+  /** The vertex of the file for each vertex of the mesh that read() has given. */
+  [[nodiscard]] const std::vector<std::uint32_t> &file_vertices() const
+  {
+    return file_vertices_;
+  }
+
  private:
   static constexpr Model::ElementType vec3_type = Model::ElementType::Vec3;
   const File &file_;
@@ -232,7 +243,6 @@ class PrimitiveReader {
   /** Empty for a primitive without indices. */
   std::optional<AccessorReader> indices_;
   Losses losses_;
-  /** For each vertex of the mesh its index in the file. */
   std::vector<std::uint32_t> file_vertices_;
 
   [[nodiscard]] int position_accessor() const
@@ -437,7 +447,36 @@ void MeshImporter::import_primitive(int gltf_mesh, std::size_t primitive_index, 
     }
     return;
   }
+  place->second = read_primitive(gltf_mesh, primitive_index, std::nullopt);
+  if (place->second) {
+    meshes.push_back(place->second);
+  }
+}
+
+std::vector<Handle<Mesh>> MeshImporter::deformed_meshes_of(int gltf_mesh, int skin)
+{
+  std::vector<Handle<Mesh>> meshes;
+  const Model::Mesh &source = file_.model.meshes[gltf_mesh];
+  for (std::size_t i = 0; i < source.primitives.size(); i++) {
+    primitive_count_++;
+    if (!is_drawn(source.primitives[i].mode)) {
+      warnings_.add_counted(label("mesh", source.name, static_cast<std::size_t>(gltf_mesh)), 1,
+                            mode_reason(source.primitives[i].mode));
+    }
+    else if (const Handle<Mesh> mesh = read_primitive(gltf_mesh, i, skin)) {
+      meshes.push_back(mesh);
+    }
+  }
+  return meshes;
+}
+
+Handle<Mesh> MeshImporter::read_primitive(int gltf_mesh, std::size_t primitive_index, std::optional<int> deforming_skin)
+{
+  const Model::Mesh &source = file_.model.meshes[gltf_mesh];
+  const Model::Primitive &primitive = source.primitives[primitive_index];
+  const std::string what = label("mesh", source.name, static_cast<std::size_t>(gltf_mesh));
   Mesh mesh;
+  std::optional<scene::DeformedMesh> deformed;
   try {
     PrimitiveReader reader(file_, primitive, what, warnings_);
     spend(reader.element_count());
@@ -450,28 +489,38 @@ void MeshImporter::import_primitive(int gltf_mesh, std::size_t primitive_index, 
       mesh.second_uvs = uv_sets.size() < 2 ? std::vector<glm::vec2>() : reader.read_uvs(uv_sets[1]);
       if (scene_.materials()[mesh.material].normal_texture) {
         mesh.tangents = reader.read_tangents();
+        if (mesh.tangents.empty() && deforming_skin) {
+          scene::make_tangents(mesh, scene_.materials()[mesh.material].normal_texture);
+        }
+      }
+      if (deforming_skin) {
+        spend(reader.file_vertices().size() * deformed_width(primitive, *deforming_skin >= 0));
+        deformed = read_deformed(file_, primitive, *deforming_skin, mesh, reader.file_vertices(), what, warnings_);
+        deformed->has_flat_normals = !reader.has_normals();
       }
     }
   }
   catch (const Fault &fault) {
     warnings_.add_counted(what, 1, std::string("primitive left out: ") + fault.what());
-    return;
+    return {};
   }
   if (mesh.indices.empty()) {
     // The lost triangles have been reported.
-    return;
+    return {};
+  }
+  mesh.name = primitive_name(source, gltf_mesh, primitive_index);
+  if (deformed) {
+    // Its vertices stay those of the rest shape, so facets are left as the file has them.
+    deformed->mesh = scene_.add(std::move(mesh));
+    scene_.deformed_meshes.push_back(std::move(*deformed));
+    return scene_.deformed_meshes.back().mesh;
   }
   flatten_facets(mesh);
   const scene::TextureSlot &normal_texture = scene_.materials()[mesh.material].normal_texture;
   if (normal_texture && mesh.tangents.empty()) {
     scene::make_tangents(mesh, normal_texture);
   }
-  mesh.name = name;
-  if (primitive.has_targets) {
-    warnings_.add(what, "morph targets are not applied");
-  }
-  place->second = scene_.add(std::move(mesh));
-  meshes.push_back(place->second);
+  return scene_.add(std::move(mesh));
 }
 
 }  // namespace gnomon::gltf

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -29,6 +30,18 @@ class MeshImporter {
 
   /** The scene's meshes for the primitives of a mesh of the file, without those that cannot be drawn. */
   [[nodiscard]] const std::vector<scene::Handle<scene::Mesh>> &meshes_of(int gltf_mesh);
+
+  /**
+   * The same for a node whose mesh is deformed: meshes of its own, with their rest shapes in Scene::deformed_meshes.
+   * Set DeformedMesh::node of those that were appended. \param skin: of the file; -1: none.
+   */
+  [[nodiscard]] std::vector<scene::Handle<scene::Mesh>> deformed_meshes_of(int gltf_mesh, int skin);
+
+  /** The scene's material for each material of the file that a mesh has. */
+  [[nodiscard]] const std::map<int, scene::Handle<scene::Material>> &materials() const
+  {
+    return materials_.handles();
+  }
 
   /** Decodes the images of materials. Call it once, at the end. */
   void finish()
@@ -57,6 +70,9 @@ class MeshImporter {
   std::uint64_t element_count_ = 0;
 
   void import_primitive(int gltf_mesh, std::size_t primitive_index, std::vector<scene::Handle<scene::Mesh>> &meshes);
+  /** An empty deform: of a mesh that is not deformed. \return a handle that names nothing where it is left out. */
+  [[nodiscard]] scene::Handle<scene::Mesh> read_primitive(int gltf_mesh, std::size_t primitive_index,
+                                                          std::optional<int> deforming_skin);
   void spend(std::uint64_t element_count);
 };
 

@@ -20,7 +20,8 @@ namespace gnomon::gltf {
 struct Model {
   enum ComponentType { Byte = 5120, UnsignedByte, Short, UnsignedShort, UnsignedInt = 5125, Float };
   enum PrimitiveMode { Points, Lines, LineLoop, LineStrip, Triangles, TriangleStrip, TriangleFan };
-  enum class ElementType { Scalar, Vec2, Vec3, Vec4, Matrix };
+  /** Matrix: MAT2 or MAT3. */
+  enum class ElementType { Scalar, Vec2, Vec3, Vec4, Matrix, Matrix4 };
 
   /** EXT_meshopt_compression of a buffer view. */
   struct Meshopt {
@@ -68,13 +69,14 @@ struct Model {
     std::map<std::string, int, std::less<>> attributes;
   };
   struct Primitive {
-    /** Accessor of each attribute: POSITION, NORMAL, TANGENT, COLOR_0 and TEXCOORD_n. */
+    /** Accessor of each attribute: POSITION, NORMAL, TANGENT, COLOR_0, TEXCOORD_n, JOINTS_n and WEIGHTS_n. */
     std::map<std::string, int, std::less<>> attributes;
     int indices = -1;
     int material = -1;
     /** Unchecked: may be a value outside of PrimitiveMode. */
     int mode = Triangles;
-    bool has_targets = false;
+    /** Accessors of each morph target: POSITION, NORMAL and TANGENT. */
+    std::vector<std::map<std::string, int, std::less<>>> targets;
     std::optional<Draco> draco;
     /** Name of the unsupported extension that holds the data instead of the accessors; empty if there is none. */
     std::string compression;
@@ -84,6 +86,8 @@ struct Model {
   struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
+    /** Weights of the morph targets; empty: all 0. */
+    std::vector<double> weights;
   };
   using Extra = std::variant<bool, double, std::string, std::vector<double>>;
   /** EXT_mesh_gpu_instancing: accessors with one element for each instance; -1: absent. */
@@ -105,8 +109,33 @@ struct Model {
     int skin = -1;
     int light = -1;
     std::optional<Instances> instances;
+    /** Override the mesh's weights; empty if absent. */
+    std::vector<double> weights;
     /** Extras whose key begins with "gnomon_". */
     std::map<std::string, Extra, std::less<>> extras;
+  };
+  struct Skin {
+    std::string name;
+    std::vector<int> joints;
+    /** An accessor; -1: all identity. */
+    int inverse_bind_matrices = -1;
+  };
+  struct AnimationSampler {
+    int input = -1;
+    int output = -1;
+    std::string interpolation = "LINEAR";
+  };
+  struct AnimationChannel {
+    int sampler = -1;
+    int node = -1;
+    std::string path;
+    /** The pointer of KHR_animation_pointer; empty if absent. */
+    std::string pointer;
+  };
+  struct Animation {
+    std::string name;
+    std::vector<AnimationSampler> samplers;
+    std::vector<AnimationChannel> channels;
   };
   struct TextureSlot {
     int index = -1;
@@ -202,7 +231,8 @@ struct Model {
   std::vector<Image> images;
   std::vector<Camera> cameras;
   std::vector<Light> lights;
-  bool has_animations = false;
+  std::vector<Skin> skins;
+  std::vector<Animation> animations;
 };
 
 }  // namespace gnomon::gltf

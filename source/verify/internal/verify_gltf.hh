@@ -87,7 +87,7 @@ class GltfBuilder {
   template <typename T>
   int accessor(const std::vector<T> &values, Component component, const std::string &type, json more = json::object())
   {
-    const std::size_t width = type == "VEC3" ? 3 : type == "VEC2" ? 2 : 1;
+    const std::size_t width = type == "MAT4" ? 16 : type == "VEC4" ? 4 : type == "VEC3" ? 3 : type == "VEC2" ? 2 : 1;
     json accessor = {{"bufferView", view(values)},
                      {"componentType", int(component)},
                      {"count", values.size() / width},

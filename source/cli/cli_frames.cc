@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#include "cli_frames.hh"
+
+#include "cli.hh"
+
+#include <fmt/format.h>
+
+#include <unistd.h>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+namespace gnomon::cli {
+
+FrameSequence::FrameSequence(FrameOptions options, std::filesystem::path output)
+    : options_(std::move(options)), output_(std::move(output))
+{
+  if (!is_animated()) {
+    return;
+  }
+  const std::string &text = options_.range;
+  const char *end = text.data() + text.size();
+  const auto [after_first, first_error] = std::from_chars(text.data(), end, first_);
+  const bool has_last = first_error == std::errc() && after_first != end && *after_first == '-';
+  const auto [after_last, last_error] = std::from_chars(has_last ? after_first + 1 : text.data(), end, last_);
+  if (first_error != std::errc() || last_error != std::errc() || after_last != end || first_ < 0 || last_ < first_) {
+    throw UsageError(fmt::format("--frames '{}' is neither A-B nor A with whole numbers 0 <= A <= B", text));
+  }
+  const std::string name = output_.filename().string();
+  if (!name.empty() && count() > 1 && name.find('#') == name.npos) {
+    throw UsageError(fmt::format("-o '{}' has no # for the number of the frame, as frame_####.exr has", name));
+  }
+}
+
+std::filesystem::path FrameSequence::path(int index) const
+{
+  std::string name = output_.filename().string();
+  const std::size_t last = name.rfind('#');
+  if (!is_animated() || last == name.npos) {
+    return output_;
+  }
+  std::size_t first = last;
+  while (first > 0 && name[first - 1] == '#') {
+    first--;
+  }
+  const std::size_t width = last - first + 1;
+  name.replace(first, width, fmt::format("{:0{}}", number(index), width));
+  return output_.parent_path() / name;
+}
+
+Metadata FrameSequence::metadata(int index) const
+{
+  return is_animated() ? Metadata{{"gnomon:frame", std::to_string(number(index))},
+                                  {"gnomon:seconds", fmt::format("{:g}", seconds(index))}}
+                       : Metadata();
+}
+
+bool FrameSequence::is_done(int index, glm::ivec2 size_px) const
+{
+  const std::filesystem::path file = path(index);
+  if (!options_.is_resumed || !std::filesystem::exists(file)) {
+    return false;
+  }
+  try {
+    return read_picture(file).size_px == size_px;
+  }
+  catch (const std::runtime_error &) {
+    // A file that another program has cut short is rendered again.
+    return false;
+  }
+}
+
+void FrameSequence::pose(scene::Scene &scene, int index) const
+{
+  if (!is_animated()) {
+    return;
+  }
+  std::vector<std::string> names;
+  for (const scene::Animation &animation : scene.animations) {
+    if (options_.animation.empty() || animation.name == options_.animation) {
+      scene::pose(scene, animation, seconds(index));
+      return;
+    }
+    names.push_back(animation.name);
+  }
+  throw std::runtime_error(names.empty() ? fmt::format("{}: it has no animation for --frames", scene.path)
+                                         : fmt::format("{}: no animation '{}'; it has: {}", scene.path,
+                                                       options_.animation, fmt::join(names, ", ")));
+}
+
+void FrameSequence::show_progress(int index, int rendered_count, double rendered_seconds) const
+{
+  if (!is_animated() || isatty(STDERR_FILENO) == 0) {
+    return;
+  }
+  const bool is_last = index + 1 == count();
+  const double left = rendered_seconds / std::max(rendered_count, 1) * double(count() - index - 1);
+  fmt::print(stderr, "\r\033[Kframe {} ({}/{}), {:.0f} s left{}", number(index), index + 1, count(), left,
+             is_last ? "\r\033[K" : "");
+}
+
+}  // namespace gnomon::cli

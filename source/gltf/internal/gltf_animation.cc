@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: MIT
+#include "internal/gltf_animation.hh"
+
+#include "internal/gltf_accessor.hh"
+#include "internal/gltf_node.hh"
+#include "internal/gltf_units.hh"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <tuple>
+
+namespace gnomon::gltf {
+
+using scene::AnimatedNode;
+using scene::AnimatedProperty;
+using scene::AnimatedValue;
+using scene::Handle;
+using scene::Interpolation;
+using scene::SharedTrack;
+using scene::Track;
+
+namespace {
+
+/** Numbers in all tracks of a file. Accessors without data cost a file nothing, so its size does not limit them. */
+constexpr std::size_t value_count_max = std::size_t(1) << 26U;
+
+/** A property that KHR_animation_pointer names, after the index of its thing. */
+struct Pointer {
+  std::string_view collection;
+  std::string_view path;
+  AnimatedProperty property;
+};
+
+constexpr std::array<Pointer, 14> pointers = {{
+    {"materials", "pbrMetallicRoughness/baseColorFactor", AnimatedProperty::BaseColor},
+    {"materials", "pbrMetallicRoughness/metallicFactor", AnimatedProperty::Metallic},
+    {"materials", "pbrMetallicRoughness/roughnessFactor", AnimatedProperty::Roughness},
+    {"materials", "emissiveFactor", AnimatedProperty::Emissive},
+    {"materials", "extensions/KHR_materials_emissive_strength/emissiveStrength", AnimatedProperty::Emissive},
+    {"materials", "alphaCutoff", AnimatedProperty::AlphaCutoff},
+    {"materials", "normalTexture/scale", AnimatedProperty::NormalScale},
+    {"materials", "occlusionTexture/strength", AnimatedProperty::OcclusionStrength},
+    {"cameras", "perspective/yfov", AnimatedProperty::VerticalAngle},
+    {"cameras", "orthographic/xmag", AnimatedProperty::HalfWidth},
+    {"cameras", "orthographic/ymag", AnimatedProperty::HalfHeight},
+    {"lights", "color", AnimatedProperty::LampColor},
+    {"lights", "intensity", AnimatedProperty::LampIntensity},
+    {"lights", "range", AnimatedProperty::LampRange},
+}};
+
+/** "/materials/3/alphaCutoff" as ("materials", 3, "alphaCutoff"). */
+struct PointerParts {
+  std::string_view collection;
+  int index = -1;
+  std::string_view path;
+};
+
+std::optional<PointerParts> parts_of(std::string_view pointer)
+{
+  constexpr std::string_view lights = "/extensions/KHR_lights_punctual";
+  if (pointer.starts_with(lights)) {
+    pointer.remove_prefix(lights.size());
+  }
+  if (!pointer.starts_with('/')) {
+    return std::nullopt;
+  }
+  pointer.remove_prefix(1);
+  const std::size_t first = pointer.find('/');
+  const std::size_t second = first == pointer.npos ? first : pointer.find('/', first + 1);
+  if (second == pointer.npos) {
+    return std::nullopt;
+  }
+  PointerParts parts{pointer.substr(0, first), -1, pointer.substr(second + 1)};
+  const std::string_view index = pointer.substr(first + 1, second - first - 1);
+  const auto [end, error] = std::from_chars(index.data(), index.data() + index.size(), parts.index);
+  return error == std::errc() && end == index.data() + index.size() ? std::optional(parts) : std::nullopt;
+}
+
+class AnimationImporter {
+ public:
+  AnimationImporter(const File &file, const ImportedThings &things, Warnings &warnings, scene::Scene &scene)
+      : file_(file), things_(things), warnings_(warnings), scene_(scene)
+  {
+  }
+
+  void import()
+  {
+    for (std::size_t i = 0; i < file_.model.animations.size(); i++) {
+      import_animation(i);
+    }
+  }
+
+ private:
+  using TrackKey = std::tuple<int, int, std::string, std::size_t>;
+
+  const File &file_;
+  const ImportedThings &things_;
+  Warnings &warnings_;
+  scene::Scene &scene_;
+  std::map<TrackKey, SharedTrack> tracks_;
+  std::size_t value_count_ = 0;
+
+  void import_animation(std::size_t index)
+  {
+    const Model::Animation &source = file_.model.animations[index];
+    const std::string what = label("animation", source.name, index);
+    scene::Animation animation;
+    animation.name = source.name.empty() ? "animation " + std::to_string(index) : source.name;
+    std::map<int, std::size_t> node_places;
+    for (const Model::AnimationChannel &channel : source.channels) {
+      try {
+        import_channel(source, channel, node_places, animation);
+      }
+      catch (const Fault &fault) {
+        warnings_.add_counted(what, 1, std::string("channel left out: ") + fault.what());
+      }
+    }
+    if (!animation.nodes.empty() || !animation.values.empty()) {
+      scene_.animations.push_back(std::move(animation));
+    }
+  }
+
+  void import_channel(const Model::Animation &source, const Model::AnimationChannel &channel,
+                      std::map<int, std::size_t> &node_places, scene::Animation &animation)
+  {
+    const Model::AnimationSampler &sampler = source.samplers[std::size_t(channel.sampler)];
+    if (channel.pointer.empty()) {
+      if (channel.node >= 0) {
+        import_node_channel(sampler, channel.node, channel.path, node_places, animation);
+      }
+      // glTF lets extensions have targets of their own: a channel without a node says nothing.
+      return;
+    }
+    const std::optional<PointerParts> parts = parts_of(channel.pointer);
+    if (parts && parts->collection == "nodes") {
+      import_node_channel(sampler, parts->index, std::string(parts->path), node_places, animation);
+      return;
+    }
+    const auto *const pointer = std::ranges::find_if(pointers, [&](const Pointer &one) {
+      return parts && one.collection == parts->collection && one.path == parts->path;
+    });
+    if (pointer == pointers.end()) {
+      throw Fault("pointer", "'" + printable(channel.pointer) + "' is not played");
+    }
+    import_value_channel(sampler, *parts, *pointer, animation);
+  }
+
+  void import_node_channel(const Model::AnimationSampler &sampler, int node, const std::string &path,
+                           std::map<int, std::size_t> &node_places, scene::Animation &animation)
+  {
+    const auto handle = things_.nodes.find(node);
+    if (handle == things_.nodes.end()) {
+      throw Fault("target", "its node is not in the scene");
+    }
+    const Model::Node &source = file_.model.nodes[std::size_t(node)];
+    const auto weight_count = [&] {
+      const std::size_t count = source.mesh < 0 || file_.model.meshes[std::size_t(source.mesh)].primitives.empty()
+                                    ? 0
+                                    : file_.model.meshes[std::size_t(source.mesh)].primitives.front().targets.size();
+      if (count == 0) {
+        throw Fault("weights", "its node has no morph targets");
+      }
+      return count;
+    };
+    AnimatedNode animated;
+    if (path == "translation") {
+      animated.translation_track = track(sampler, 3, Model::ElementType::Vec3);
+    }
+    else if (path == "rotation") {
+      animated.rotation_track = track(sampler, 4, Model::ElementType::Vec4);
+    }
+    else if (path == "scale") {
+      animated.scale_track = track(sampler, 3, Model::ElementType::Vec3);
+    }
+    else if (path == "weights") {
+      animated.weights_track = track(sampler, weight_count(), Model::ElementType::Scalar);
+    }
+    else {
+      throw Fault("target", "its path '" + printable(path) + "' is not played");
+    }
+    const auto [place, is_new] = node_places.try_emplace(node, animation.nodes.size());
+    if (is_new) {
+      AnimatedNode &rest = animation.nodes.emplace_back();
+      rest.node = handle->second;
+      rest.translation = {source.translation[0], source.translation[1], source.translation[2]};
+      rest.scale = {source.scale[0], source.scale[1], source.scale[2]};
+      const glm::dvec4 r(source.rotation[0], source.rotation[1], source.rotation[2], source.rotation[3]);
+      if (is_rotation(r)) {
+        rest.rotation = glm::normalize(glm::dquat(r.w, r.x, r.y, r.z));
+      }
+    }
+    AnimatedNode &target = animation.nodes[place->second];
+    for (SharedTrack AnimatedNode::*member : {&AnimatedNode::translation_track, &AnimatedNode::rotation_track,
+                                              &AnimatedNode::scale_track, &AnimatedNode::weights_track}) {
+      if (animated.*member) {
+        target.*member = animated.*member;
+      }
+    }
+  }
+
+  void import_value_channel(const Model::AnimationSampler &sampler, const PointerParts &parts, const Pointer &pointer,
+                            scene::Animation &animation)
+  {
+    constexpr std::array<Model::ElementType, 5> types = {Model::ElementType::Scalar, Model::ElementType::Scalar,
+                                                         Model::ElementType::Vec2, Model::ElementType::Vec3,
+                                                         Model::ElementType::Vec4};
+    AnimatedValue value;
+    value.property = pointer.property;
+    // emissiveStrength is one number, which scales the three of the factor.
+    const bool is_strength = pointer.path.ends_with("emissiveStrength");
+    const std::size_t width = is_strength ? 1 : width_of(pointer.property);
+    value.track = track(sampler, width, types[width]);
+    bool has_target = false;
+    const auto add = [&](auto handle, const glm::dvec3 &factor) {
+      value.target = handle;
+      value.factor = factor;
+      animation.values.push_back(value);
+      has_target = true;
+    };
+    if (parts.collection == "materials") {
+      if (const auto found = things_.materials.find(parts.index); found != things_.materials.end()) {
+        const Model::Material &source = file_.model.materials[std::size_t(parts.index)];
+        const glm::dvec3 emissive(source.emissive[0], source.emissive[1], source.emissive[2]);
+        add(found->second, is_strength                                      ? emissive
+                           : pointer.property == AnimatedProperty::Emissive ? glm::dvec3(source.emissive_strength)
+                                                                            : glm::dvec3(1.0));
+      }
+    }
+    else if (parts.collection == "lights") {
+      const bool is_intensity = pointer.property == AnimatedProperty::LampIntensity;
+      if (const auto found = things_.lamps.find(parts.index); found != things_.lamps.end()) {
+        for (const Handle<scene::Lamp> lamp : found->second) {
+          add(lamp, glm::dvec3(is_intensity ? 1.0 / lumen_per_watt : 1.0));
+        }
+      }
+    }
+    else if (const auto found = things_.cameras.find(parts.index); found != things_.cameras.end()) {
+      for (const Handle<scene::Camera> camera : found->second) {
+        add(camera, glm::dvec3(1.0));
+      }
+    }
+    if (!has_target) {
+      throw Fault("pointer", "the thing that it animates is not in the scene");
+    }
+  }
+
+  SharedTrack track(const Model::AnimationSampler &sampler, std::size_t width, Model::ElementType type)
+  {
+    const auto [place, is_new] =
+        tracks_.try_emplace({sampler.input, sampler.output, sampler.interpolation, width}, nullptr);
+    if (is_new) {
+      place->second = read_track(sampler, width, type);
+    }
+    if (!place->second) {
+      throw Fault("sampler", "cannot be read");
+    }
+    return place->second;
+  }
+
+  SharedTrack read_track(const Model::AnimationSampler &sampler, std::size_t width, Model::ElementType type)
+  {
+    auto read = std::make_shared<Track>();
+    read->width = width;
+    read->interpolation = sampler.interpolation == "STEP"          ? Interpolation::Step
+                          : sampler.interpolation == "CUBICSPLINE" ? Interpolation::CubicSpline
+                                                                   : Interpolation::Linear;
+    if (read->interpolation == Interpolation::Linear && sampler.interpolation != "LINEAR") {
+      throw Fault("interpolation", "'" + printable(sampler.interpolation) + "' is not one of glTF 2.0");
+    }
+    const AccessorReader input(file_, sampler.input, Model::ElementType::Scalar);
+    const AccessorReader output(file_, sampler.output, type);
+    // Morph weights are one scalar after the other.
+    const std::size_t elements_of_value = type == Model::ElementType::Scalar ? width : 1;
+    const std::size_t parts = read->interpolation == Interpolation::CubicSpline ? 3 : 1;
+    if (input.count() == 0 || output.count() / (parts * elements_of_value) != input.count() ||
+        output.count() % (parts * elements_of_value) != 0) {
+      throw Fault("sampler", "its numbers of times and values do not match");
+    }
+    value_count_ += input.count() * (1 + parts * width);
+    if (value_count_ > value_count_max) {
+      throw Fault("animations", "have more than " + std::to_string(value_count_max) + " numbers");
+    }
+    for (std::size_t i = 0; i < input.count(); i++) {
+      const float seconds = input.scalar(i);
+      // False for NaN, too.
+      if (!(seconds >= 0.0F) || !std::isfinite(seconds) || (i > 0 && !(seconds > read->times.back()))) {
+        throw Fault("sampler", "its times do not ascend from 0, or one is not finite");
+      }
+      read->times.push_back(seconds);
+    }
+    for (std::size_t i = 0; i < output.count(); i++) {
+      const glm::vec4 value = type == Model::ElementType::Scalar ? glm::vec4(output.scalar(i))
+                              : type == Model::ElementType::Vec3 ? glm::vec4(output.vec3(i), 0.0F)
+                                                                 : output.vec4(i);
+      for (std::size_t k = 0; k < width / elements_of_value; k++) {
+        if (!std::isfinite(value[int(k)])) {
+          throw Fault("sampler", "a value is not finite");
+        }
+        read->values.push_back(value[int(k)]);
+      }
+    }
+    return read;
+  }
+};
+
+}  // namespace
+
+void import_animations(const File &file, const ImportedThings &things, Warnings &warnings, scene::Scene &scene)
+{
+  AnimationImporter(file, things, warnings, scene).import();
+}
+
+}  // namespace gnomon::gltf

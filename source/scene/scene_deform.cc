@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include "scene_animation.hh"
+
+#include "scene.hh"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gnomon::scene {
+
+namespace {
+
+/** \a fallback where \a vector has no direction. */
+glm::vec3 unit_or(const glm::dvec3 &vector, const glm::vec3 &fallback)
+{
+  const double length = glm::length(vector);
+  return length > 0.0 && std::isfinite(length) ? glm::vec3(vector / length) : fallback;
+}
+
+/** The vertices of one mesh on their way from the rest shape to the pose. */
+struct Shape {
+  std::vector<glm::dvec3> positions;
+  std::vector<glm::dvec3> normals;
+  std::vector<glm::dvec3> tangents;
+};
+
+Shape morphed(const DeformedMesh &deformed)
+{
+  Shape shape{{deformed.positions.begin(), deformed.positions.end()},
+              {deformed.normals.begin(), deformed.normals.end()},
+              {deformed.tangents.begin(), deformed.tangents.end()}};
+  const auto add = [](std::vector<glm::dvec3> &sum, const std::vector<glm::vec3> &differences, double weight) {
+    for (std::size_t i = 0; i < std::min(sum.size(), differences.size()); i++) {
+      sum[i] += weight * glm::dvec3(differences[i]);
+    }
+  };
+  for (std::size_t i = 0; i < deformed.targets.size(); i++) {
+    if (deformed.weights[i] != 0.0) {
+      add(shape.positions, deformed.targets[i].positions, deformed.weights[i]);
+      add(shape.normals, deformed.targets[i].normals, deformed.weights[i]);
+      add(shape.tangents, deformed.targets[i].tangents, deformed.weights[i]);
+    }
+  }
+  return shape;
+}
+
+/** The matrix of each joint: from the mesh at rest to the node's space. A removed joint stays where it was bound. */
+std::vector<glm::dmat4> joint_matrices(const Scene &scene, const Skin &skin, Handle<Node> node)
+{
+  const glm::dmat4 &world_from_node = scene.world_from_node(node);
+  // glTF ignores the transform of a skinned node, so it is taken back. A singular one cannot be.
+  const bool is_singular = !(std::abs(glm::determinant(world_from_node)) > 0.0);
+  const glm::dmat4 node_from_world = is_singular ? glm::dmat4(1.0) : glm::inverse(world_from_node);
+  std::vector<glm::dmat4> matrices;
+  for (std::size_t i = 0; i < skin.joints.size(); i++) {
+    matrices.push_back(scene.nodes().is_live(skin.joints[i])
+                           ? node_from_world * scene.world_from_node(skin.joints[i]) * skin.joint_from_mesh[i]
+                           : glm::dmat4(1.0));
+  }
+  return matrices;
+}
+
+/** Cofactors: the transform of normals, without a division that a flat matrix would not survive. */
+glm::dmat3 normal_matrix(const glm::dmat3 &m)
+{
+  return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
+}
+
+void skin_vertices(const DeformedMesh &deformed, const std::vector<glm::dmat4> &joints, Shape &shape)
+{
+  for (std::size_t vertex = 0; vertex < shape.positions.size(); vertex++) {
+    glm::dmat4 matrix(0.0);
+    for (std::size_t set = 0; set < deformed.joint_sets; set++) {
+      const JointWeights &influence = deformed.joint_weights[vertex * deformed.joint_sets + set];
+      for (int i = 0; i < 4; i++) {
+        if (influence.weights[i] != 0.0F) {
+          matrix += double(influence.weights[i]) * joints[influence.joints[std::size_t(i)]];
+        }
+      }
+    }
+    shape.positions[vertex] = glm::dvec3(matrix * glm::dvec4(shape.positions[vertex], 1.0));
+    const glm::dmat3 linear(matrix);
+    // A mirroring matrix turns cofactors around.
+    const double side = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
+    shape.normals[vertex] = side * (normal_matrix(linear) * shape.normals[vertex]);
+    if (!shape.tangents.empty()) {
+      shape.tangents[vertex] = linear * shape.tangents[vertex];
+    }
+  }
+}
+
+void make_flat_normals(Shape &shape, const std::vector<std::uint32_t> &indices)
+{
+  for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+    const glm::dvec3 &a = shape.positions[indices[i]];
+    const glm::dvec3 normal = glm::cross(shape.positions[indices[i + 1]] - a, shape.positions[indices[i + 2]] - a);
+    for (std::size_t corner = 0; corner < 3; corner++) {
+      shape.normals[indices[i + corner]] = normal;
+    }
+  }
+}
+
+void deform(Scene &scene, DeformedMesh &deformed)
+{
+  std::vector<glm::dmat4> joints;
+  if (deformed.skin >= 0) {
+    joints = joint_matrices(scene, scene.skins[std::size_t(deformed.skin)], deformed.node);
+  }
+  if (joints == deformed.deformed_by_joints && deformed.weights == deformed.deformed_by_weights) {
+    return;
+  }
+  deformed.deformed_by_joints = std::move(joints);
+  deformed.deformed_by_weights = deformed.weights;
+  const Mesh &current = scene.meshes()[deformed.mesh];
+  Shape shape = morphed(deformed);
+  if (deformed.skin >= 0) {
+    skin_vertices(deformed, deformed.deformed_by_joints, shape);
+  }
+  if (deformed.has_flat_normals) {
+    make_flat_normals(shape, current.indices);
+  }
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;
+  std::vector<glm::vec4> tangents;
+  for (std::size_t i = 0; i < shape.positions.size(); i++) {
+    positions.emplace_back(shape.positions[i]);
+    normals.push_back(unit_or(shape.normals[i], deformed.normals[i]));
+    if (!shape.tangents.empty()) {
+      tangents.emplace_back(unit_or(shape.tangents[i], glm::vec3(deformed.tangents[i])), deformed.tangents[i].w);
+    }
+  }
+  // A pose that does not change the mesh is no edit: nothing is uploaded and no shadow is drawn.
+  if (positions == current.positions && normals == current.normals && tangents == current.tangents) {
+    return;
+  }
+  scene.edit(deformed.mesh, [&](Mesh &mesh) {
+    mesh.positions = std::move(positions);
+    mesh.normals = std::move(normals);
+    mesh.tangents = std::move(tangents);
+  });
+}
+
+}  // namespace
+
+void set_morph_weights(Scene &scene, Handle<Node> node, std::span<const double> weights)
+{
+  for (DeformedMesh &deformed : scene.deformed_meshes) {
+    if (deformed.node == node) {
+      for (std::size_t i = 0; i < deformed.weights.size(); i++) {
+        deformed.weights[i] = i < weights.size() ? weights[i] : 0.0;
+      }
+    }
+  }
+}
+
+void deform_meshes(Scene &scene)
+{
+  for (DeformedMesh &deformed : scene.deformed_meshes) {
+    if (scene.meshes().is_live(deformed.mesh) && scene.nodes().is_live(deformed.node)) {
+      deform(scene, deformed);
+    }
+  }
+}
+
+}  // namespace gnomon::scene

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// `gnomon render --frames`.
+#include "cli_process.hh"
+#include "gltf/gltf_builder.hh"
+#include "gpu_device_fixture.hh"
+
+#include <nlohmann/json.hpp>
+
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+
+namespace gnomon {
+namespace {
+
+using test::Finished;
+using test::Float32;
+
+class FramesTest : public test::ProgramTest {
+ protected:
+  void SetUp() override
+  {
+    if (!test::testing_gl_device()) {
+      GTEST_SKIP() << "no device to render with";
+    }
+    // A triangle that fills the picture at 0 s, and has left it at 1 s.
+    test::GltfBuilder builder = test::triangle_scene();
+    builder.document["nodes"][0]["scale"] = {20, 20, 1};
+    builder.document["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};
+    builder.node({{"camera", 0}, {"translation", {5, 5, 3}}});
+    builder.light({{"type", "directional"}, {"intensity", 2000.0}});
+    const int input = builder.accessor(std::vector<float>{0, 1}, Float32, "SCALAR");
+    const int output = builder.accessor(std::vector<float>{0, 0, 0, 100, 0, 0}, Float32, "VEC3");
+    builder.document["animations"] = {
+        {{"name", "leave"},
+         {"samplers", {{{"input", input}, {"output", output}}}},
+         {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
+    write("moving.gltf", builder.gltf());
+  }
+
+  [[nodiscard]] float brightest(const std::string &name) const
+  {
+    std::vector<float> values(std::size_t(16) * 9 * 3);
+    const auto input = OIIO::ImageInput::open((folder / name).string());
+    if (!input || !input->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, values.data())) {
+      return -1.0F;
+    }
+    return *std::ranges::max_element(values);
+  }
+  Finished render(const std::string &arguments)
+  {
+    return run("render moving.gltf --size 16x9 --samples 1 " + arguments);
+  }
+};
+
+TEST_F(FramesTest, EachFrameIsAFileOfItsTime)
+{
+  const Finished finished = render("-o frame_###.exr --frames 0-2 --fps 2 --animation leave");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  EXPECT_EQ(file_count(), 4U) << "the scene and three frames";
+  EXPECT_GT(brightest("frame_000.exr"), 0.1F);
+  EXPECT_EQ(brightest("frame_002.exr"), 0.0F);
+  const auto last = OIIO::ImageInput::open((folder / "frame_002.exr").string());
+  ASSERT_TRUE(last);
+  EXPECT_EQ(last->spec().get_string_attribute("gnomon:seconds"), "1");
+}
+
+TEST_F(FramesTest, ResumeRendersWhatIsMissingOrCutShort)
+{
+  const std::string frames = "-o f#.exr --frames 1-3 --fps 10 --json run.json";
+  ASSERT_EQ(render(frames).status, 0);
+  const std::filesystem::path cut = folder / "f2.exr";
+  std::filesystem::resize_file(cut, std::filesystem::file_size(cut) / 2);
+  std::filesystem::remove(folder / "f3.exr");
+  const Finished finished = render(frames + " --resume");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  EXPECT_EQ(nlohmann::json::parse(read("run.json"))["skipped_frames"], 1);
+  for (const char *name : {"f1.exr", "f2.exr", "f3.exr"}) {
+    EXPECT_GE(brightest(name), 0.0F) << name;
+  }
+  EXPECT_EQ(render(frames + " --resume").status, 0) << "nothing is left to render";
+  EXPECT_EQ(nlohmann::json::parse(read("run.json"))["skipped_frames"], 3);
+}
+
+TEST_F(FramesTest, WrongUseIsNamed)
+{
+  for (const char *range : {"3-1", "-1-2", "1-", "a", "1-2x"}) {
+    const Finished finished = render(std::string("-o f#.exr --frames=") + range);
+    EXPECT_EQ(finished.status, 2) << range;
+    EXPECT_NE(finished.err.find("--frames '"), std::string::npos) << finished.err;
+  }
+  const Finished without_place = render("-o f.exr --frames 1-2");
+  EXPECT_EQ(without_place.status, 2);
+  EXPECT_NE(without_place.err.find("has no #"), std::string::npos) << without_place.err;
+  const Finished unknown = render("-o f#.exr --frames 1-2 --animation walk");
+  EXPECT_EQ(unknown.status, 1);
+  EXPECT_NE(unknown.err.find("no animation 'walk'; it has: leave"), std::string::npos) << unknown.err;
+  EXPECT_EQ(file_count(), 1U) << "nothing was written";
+}
+
+}  // namespace
+}  // namespace gnomon
