@@ -6,16 +6,14 @@
 #include "shared/eevee_light_shared.h"
 #include "shared/eevee_shape_shared.h"
 #include "shared/slots_shared.h"
+#ifdef USE_SPECULAR
+#  include "eevee/eevee_ltc_lib.glsl"
+#endif
 
 layout(std140, binding = LIGHT_SHAPE_BLOCK_SLOT) uniform light_shape_block
 {
   LightShapeBlock light_shapes;
 };
-
-#ifdef USE_SPECULAR
-layout(binding = LTC_TABLE_SLOT) uniform sampler2D ltc_table;
-
-#endif
 
 /** Axes at the shaded point: the normal is z, the view direction is in the plane of x and z. Unit vectors. */
 struct ShadingFrame {

@@ -12,6 +12,9 @@
 #ifdef USE_LAMP_SHAPE
 #  include "eevee/eevee_lamp_shape_lib.glsl"
 #endif
+#ifdef USE_WORLD
+#  include "eevee/eevee_world_lib.glsl"
+#endif
 #ifdef USE_SHADOW_ESM
 #  include "eevee/eevee_esm_lib.glsl"
 #endif
@@ -93,7 +96,7 @@ CenterLight center_light(int index, Surface surface)
   LightData light = light_data.lights[index];
   CenterLight center = CenterLight(-light.forward_ws, 1.0, 1.0);
 #ifdef USE_PUNCTUAL
-  if (light.kind != LIGHT_SUN) {
+  if (light.kind != LIGHT_SUN && light.kind != LIGHT_WORLD) {
     vec3 vector = light.position_ws - surface.position_ws;
     center.distance_sq = dot(vector, vector);
     // At the lamp itself the direction is undefined. The zero vector gives no light.
@@ -140,6 +143,14 @@ vec3 point_radiance(int index, MaterialData material, Surface surface)
   if (visibility <= 0.0) {
     return vec3(0.0);
   }
+#if defined(USE_WORLD) && defined(USE_SPECULAR)
+  if (light.kind == LIGHT_WORLD) {
+    return visibility * world_reflected(light, material, surface, center.to_light, cos_l);
+  }
+  if (light.kind == LIGHT_SUN) {
+    material.alpha = max(material.alpha, sqrt(light.radius_sq));
+  }
+#endif
   return light.color * (center.irradiance * visibility) * reflected(material, surface, center.to_light, cos_l);
 }
 
@@ -233,7 +244,11 @@ vec3 direct_light(MaterialData material, Surface surface)
   shading.ltc_matrix = textureLod(ltc_table, ltc_texco(material.alpha, cos_v), 0.0);
 #endif
 #endif
+#ifdef USE_WORLD
+  vec3 sum = world_light(material, surface);
+#else
   vec3 sum = vec3(0.0);
+#endif
   for (int i = 0; i < min(light_data.light_count, LIGHT_MAX); i++) {
 #ifdef USE_LAMP_SHAPE
     if (light_shapes.shapes[i].extent > 0.0) {

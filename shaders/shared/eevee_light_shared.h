@@ -11,8 +11,10 @@ SHARED_BEGIN
 #define LIGHT_SUN 1
 #define LIGHT_SPOT 2
 #define LIGHT_HEMI 3
-#define LIGHT_RECTANGLE 4
-#define LIGHT_ELLIPSE 5
+/** A direction of the world beside its suns, in one sample of a picture. */
+#define LIGHT_WORLD 4
+#define LIGHT_RECTANGLE 5
+#define LIGHT_ELLIPSE 6
 
 /** LightData::shadow_kind. */
 #define SHADOW_NONE 0
@@ -27,11 +29,14 @@ struct LightData {
   /** LIGHT_… */
   int kind;
   /**
-   * Linear RGB: irradiance, W/m² (sun, hemi), or radiant intensity, W/sr: in every direction (point, spot), or straight
+   * Linear RGB: irradiance, W/m² (sun, hemi, world), or radiant intensity, W/sr: in every direction (point, spot), or straight
    * ahead, with the cosine law (rectangle, ellipse).
    */
   vec3 color;
-  /** Point, spot: square of the radius, m². 0: a point. */
+  /**
+   * Point, spot: square of the radius, m². 0: a point. Sun: the least square of alpha that its highlight is drawn with.
+   * World: the solid angle that the direction stands for, sr.
+   */
   float radius_sq;
   /** Unit vector in which the lamp emits. */
   vec3 forward_ws;

@@ -184,6 +184,15 @@ std::string scene_fingerprint(const scene::Scene &scene)
   for (const scene::PlacedLamp &lamp : scene.placed_lamps()) {
     add(hash, lamp);
   }
+  if (const std::optional<scene::World> &world = scene.world()) {
+    hash.add(world->color);
+    hash.add(world->strength);
+    hash.add(world->rotation);
+    if (world->picture) {
+      hash.add(world->picture->width);
+      hash.add(world->picture->texels);
+    }
+  }
   for (const scene::PlacedCamera &camera : scene.placed_cameras()) {
     add(hash, camera);
   }

@@ -6,6 +6,7 @@
 #include "cli_explain.hh"
 #include "cli_frames.hh"
 #include "cli_output.hh"
+#include "cli_world.hh"
 
 #include "eevee_scene_renderer.hh"
 #include "gltf_import.hh"
@@ -70,6 +71,7 @@ struct RenderOptions {
   ChoiceOptions choice;
   bool is_strict = false;
   std::uint32_t seed = 0;
+  WorldOptions world;
 };
 
 /** What was measured, for people and for --json. */
@@ -411,6 +413,10 @@ Status render(RenderOptions options)
   scene::Scene scene = gltf::import_gltf(options.scene);
   frames.pose(scene, 0);
   scene::PlacedCamera camera = find_camera(scene, options.camera);
+  const bool is_default_studio = light_by_world(scene, camera, options.world);
+  constexpr glm::vec3 light_grey(0.6F);
+  const eevee::Background background = background_of(
+      options.world, is_default_studio && is_png(options.output) ? std::optional(light_grey) : std::nullopt);
   for (const std::string &warning : scene.warnings) {
     fmt::print(stderr, "gnomon: warning: {}\n", warning);
   }
@@ -431,6 +437,8 @@ Status render(RenderOptions options)
   }
   const Clock::time_point sync_start = Clock::now();
   eevee::Settings settings = engine_settings(options);
+  // The error of a choice is that of surfaces.
+  settings.background = chooser ? eevee::Background() : background;
   if (chooser) {
     settings.shadow = chooser->choice().technique.settings;
   }
@@ -595,6 +603,7 @@ void add_render(CLI::App &app, Status &status)
       ->check(CLI::IsMember({"gl", "null"}));
   command->add_flag("--explain", o->is_explained, "Print what the frame is made of, and what was left out");
   command->add_option("--json", o->json, "Write times, counters, limits, what was made and left out");
+  add_world_options(*command, o->world);
   CLI::Option *max_error =
       command
           ->add_option("--max-error", o->choice.error_max,
@@ -606,7 +615,7 @@ void add_render(CLI::App &app, Status &status)
           ->excludes(max_error);
   // What is chosen is not to be asked for, and a picture of something else has no error.
   for (const char *name : {"--samples", "--shadow", "--shadow-size", "--pcf", "--esm", "--cascades", "--cascade-lambda",
-                           "--cascade-range", "--cube-pass", "--casters", "--shadow-memory", "--debug", "--frames"}) {
+                           "--cascade-range", "--cube-pass", "--casters", "--shadow-memory", "--debug", "--frames", "--background"}) {
     max_error->excludes(command->get_option(name));
     max_time->excludes(command->get_option(name));
   }

@@ -6,6 +6,7 @@
 #include "internal/reference_bsdf.hh"
 #include "internal/reference_parallel.hh"
 #include "internal/reference_random.hh"
+#include "internal/reference_world.hh"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -126,7 +127,12 @@ struct Renderer {
   const Tracer &tracer;
   CameraRays rays;
   const DirectLightSettings &settings;
+  /** Nothing: the scene has no world, or it is black. */
+  std::optional<WorldSampler> world;
 
+  Renderer(const Tracer &tracer_, const CameraRays &rays_, const DirectLightSettings &settings_);
+  [[nodiscard]] glm::dvec3 lit_by_world(const Receiver &receiver, const glm::dvec3 &normal, const glm::dvec3 &view,
+                                        const Bsdf &bsdf, int sample, std::uint64_t key) const;
   [[nodiscard]] glm::dvec3 radiance(const Ray &ray, int sample, std::uint64_t key) const;
   [[nodiscard]] glm::dvec3 lit_by(const scene::PlacedLamp &lamp, const Receiver &receiver, const glm::dvec3 &normal,
                                   const glm::dvec3 &view, const Bsdf &bsdf, const glm::dvec2 &u) const;
@@ -153,6 +159,40 @@ glm::dvec3 Renderer::lit_by(const scene::PlacedLamp &lamp, const Receiver &recei
   return scattered * color * sample.irradiance;
 }
 
+Renderer::Renderer(const Tracer &tracer_, const CameraRays &rays_, const DirectLightSettings &settings_)
+    : tracer(tracer_), rays(rays_), settings(settings_)
+{
+  if (const std::optional<scene::World> &given = tracer.scene().world()) {
+    world.emplace(*given);
+    if (world->is_black()) {
+      world.reset();
+    }
+  }
+}
+
+/**
+ * One direction by the world's light, and where the surface is specular one by its lobe, together by the balance
+ * heuristic (Veach and Guibas 1995).
+ */
+glm::dvec3 Renderer::lit_by_world(const Receiver &receiver, const glm::dvec3 &normal, const glm::dvec3 &view,
+                                  const Bsdf &bsdf, int sample, std::uint64_t key) const
+{
+  const bool is_specular = bsdf.f90 > 0.0;
+  const auto light_from = [&](const glm::dvec3 &to_world) {
+    const double density = world->density(to_world) + (is_specular ? lobe_density(bsdf, normal, view, to_world) : 0.0);
+    const glm::dvec3 scattered = reflected(bsdf, normal, view, to_world);
+    if (!(density > 0.0) || scattered == glm::dvec3(0.0) || !is_visible(tracer, receiver, LightPoint{to_world, true})) {
+      return glm::dvec3(0.0);
+    }
+    return scattered * world->radiance(to_world) / density;
+  };
+  glm::dvec3 sum = light_from(world->sample(even_point(sample, mixed(key))).to_world_ws);
+  if (is_specular) {
+    sum += light_from(lobe_direction(bsdf, normal, view, even_point(sample, mixed(key + 1))));
+  }
+  return sum;
+}
+
 glm::dvec3 Renderer::radiance(const Ray &ray, int sample, std::uint64_t key) const
 {
   const std::optional<Hit> hit = tracer.closest(ray, Faces::Drawn);
@@ -177,6 +217,9 @@ glm::dvec3 Renderer::radiance(const Ray &ray, int sample, std::uint64_t key) con
     // Occlusion applies to ambient light only.
     const double occlusion = lamps[i].kind == scene::LampKind::Hemi ? surface.occlusion : 1.0;
     sum += occlusion * lit_by(lamps[i], receiver, side * surface.shading_normal_ws, view, bsdf, u);
+  }
+  if (world) {
+    sum += lit_by_world(receiver, side * surface.shading_normal_ws, view, bsdf, sample, mixed(key + lamps.size()));
   }
   return sum;
 }
@@ -218,7 +261,7 @@ Picture direct_light(const Tracer &tracer, const scene::PlacedCamera &camera, gl
                      const DirectLightSettings &settings)
 {
   check(size_px, settings);
-  const Renderer renderer{tracer, CameraRays(camera, size_px), settings};
+  const Renderer renderer(tracer, CameraRays(camera, size_px), settings);
   Picture picture{size_px, std::vector<glm::vec4>(std::size_t(size_px.x) * std::size_t(size_px.y))};
   // Each tile also renders the ring of pixels around it, which adds one sixteenth.
   constexpr int tile_px = 64;
@@ -242,7 +285,7 @@ std::vector<glm::vec4> direct_light(const Tracer &tracer, const scene::PlacedCam
                                     std::span<const glm::ivec2> pixels, const DirectLightSettings &settings)
 {
   check(size_px, settings);
-  const Renderer renderer{tracer, CameraRays(camera, size_px), settings};
+  const Renderer renderer(tracer, CameraRays(camera, size_px), settings);
   std::vector<glm::vec4> light(pixels.size());
   parallel_for(pixels.size(), settings.thread_count, [&](std::size_t i) {
     const std::uint64_t key = pixel_key(settings.seed, pixels[i]);

@@ -137,8 +137,8 @@ void RenderScene::update_lamps()
 {
   using enum scene::Node::Aspect;
   const scene::Pool<scene::Node> &nodes = scene_.nodes();
-  const scene::Revision latest =
-      std::max({scene_.lamps().latest(), nodes.latest(Transform), nodes.latest(Content), nodes.latest(Visibility)});
+  const scene::Revision latest = std::max({scene_.lamps().latest(), nodes.latest(Transform), nodes.latest(Content),
+                                           nodes.latest(Visibility), scene_.world_revision()});
   if (latest <= seen_ && !is_origin_changed_) {
     return;
   }
@@ -146,7 +146,15 @@ void RenderScene::update_lamps()
   for (scene::PlacedLamp &lamp : lamps) {
     lamp.world_from_lamp[3] -= glm::dvec4(origin_ws_, 0.0);
   }
-  if (lamps != lamps_) {
+  const bool is_world_new = scene_.world_revision() > seen_;
+  if (is_world_new) {
+    world_revision_++;
+    world_ = scene_.world() ? std::make_shared<const WorldLight>(world_light(*scene_.world())) : nullptr;
+    if (world_ && world_->is_black()) {
+      world_.reset();
+    }
+  }
+  if (lamps != lamps_ || is_world_new) {
     lamps_ = std::move(lamps);
     lamps_revision_++;
   }

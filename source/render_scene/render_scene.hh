@@ -4,6 +4,7 @@
 #include "render_images.hh"
 #include "render_materials.hh"
 #include "render_meshes.hh"
+#include "render_world.hh"
 
 #include "draw_objects.hh"
 
@@ -105,6 +106,16 @@ class RenderScene {
   {
     return materials_revision_;
   }
+  /** The scene's world; nullptr: there is none, or it is black. */
+  [[nodiscard]] const std::shared_ptr<const WorldLight> &world() const
+  {
+    return world_;
+  }
+  /** Different after each update that found the world changed. */
+  [[nodiscard]] std::uint64_t world_revision() const
+  {
+    return world_revision_;
+  }
   /** The camera, relative to origin_ws(). */
   [[nodiscard]] scene::PlacedCamera relative(scene::PlacedCamera camera) const;
 
@@ -161,6 +172,8 @@ class RenderScene {
   std::vector<NodeObjects> node_objects_;
   scene::Bounds bounds_;
   std::vector<scene::PlacedLamp> lamps_;
+  std::shared_ptr<const WorldLight> world_;
+  std::uint64_t world_revision_ = 0;
   std::uint64_t lamps_revision_ = 0;
   std::uint64_t passes_revision_ = 0;
   std::uint64_t materials_revision_ = 0;

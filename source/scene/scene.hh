@@ -4,6 +4,7 @@
 #include "scene_animation.hh"
 #include "scene_pool.hh"
 #include "scene_types.hh"
+#include "scene_world.hh"
 
 #include <concepts>
 
@@ -150,6 +151,19 @@ class Scene {
     return revision_;
   }
 
+  /** Light from everywhere; nothing: there is none. */
+  [[nodiscard]] const std::optional<World> &world() const
+  {
+    return world_;
+  }
+  /** Of the last set_world that changed it. */
+  [[nodiscard]] Revision world_revision() const
+  {
+    return world_revision_;
+  }
+  /** \throws InvalidEdit for a factor that is negative or no number, or a picture without texels; nothing changes. */
+  void set_world(std::optional<World> world);
+
   /** Adds a thing. \throws InvalidEdit if the value is invalid; the scene is then unchanged. */
   Handle<Mesh> add(Mesh mesh);
   Handle<Image> add(Image image);
@@ -264,6 +278,8 @@ class Scene {
   }
 
   Revision revision_ = 0;
+  std::optional<World> world_;
+  Revision world_revision_ = 0;
   Pool<Node> nodes_;
   std::vector<NodeLinks> links_;
   Pool<Mesh> meshes_;

@@ -56,6 +56,34 @@ TEST(DirectLight, LambertianPlaneIsAlbedoOverPiTimesIrradiance)
                albedo * irradiance / std::numbers::pi + glm::dvec3(0, 0, 2), 2e-5);
 }
 
+TEST(DirectLight, AWorldOfOneRadianceGivesAPlaneItsAlbedoTimesThat)
+{
+  scene::Scene scene;
+  test::add_material(scene, {0.25F, 0.5F, 1.0F});
+  add_rectangle(scene, {-10, -10}, {10, 10});
+  scene.set_world(scene::World{.color = {1.0F, 2.0F, 0.0F}});
+  expect_color(seen(scene, test::camera_at({2, 1, 5}, {0, 0, 0}, narrow), 4096), {0.25, 1.0, 0.0}, 2e-3);
+}
+
+TEST(DirectLight, AWorldsBrightTexelIsASun)
+{
+  // One texel at azimuth 0 and an elevation of 45°, of solid angle 2.45e-3 sr, blended to those beside it.
+  scene::WorldPicture picture{128, 64, std::vector<glm::vec3>(128 * 64, glm::vec3(0.0F))};
+  picture.texels[16 * 128 + 64] = glm::vec3(1000.0F);
+  scene::Scene scene;
+  test::add_material(scene, glm::vec3(1.0F));
+  add_rectangle(scene, {-10, -10}, {10, 10});
+  scene.set_world(scene::World{.rotation = float(0.5 * std::numbers::pi),
+                               .picture = std::make_shared<const scene::WorldPicture>(std::move(picture))});
+  // Turned, it is at -Z; the plane faces +Z, and its back is lit.
+  const double step = std::numbers::pi / 64.0;
+  const double elevation = std::numbers::pi / 2.0 - 16.5 * step;
+  const double irradiance = 1000.0 * step * step * std::cos(elevation) * std::cos(elevation);
+  const double radiance = irradiance / std::numbers::pi;
+  expect_color(seen(scene, test::camera_at({0, 0, -5}, {0, 0, 0}, narrow), 4096), glm::dvec3(radiance), 0.01);
+  expect_color(seen(scene, test::camera_at({0, 0, 5}, {0, 0, 0}, narrow), 256), glm::dvec3(0.0), 0.01);
+}
+
 TEST(DirectLight, MicrofacetLobeHasItsPeakAtNormalIncidence)
 {
   for (const float metallic : {0.0F, 1.0F}) {

@@ -7,6 +7,7 @@
 #include "eevee_light_shared.h"
 #include "eevee_material_shared.h"
 #include "eevee_shadow_shared.h"
+#include "eevee_world_shared.h"
 
 #include <array>
 
@@ -83,6 +84,14 @@ constexpr auto light_shape_fields = std::to_array<Field>({
     {"light_shapes.shapes[0]._pad0", offsetof(LightShape, _pad0)},
 });
 
+constexpr auto world_fields = std::to_array<Field>({
+    {"world.harmonics", offsetof(WorldBlock, harmonics)},
+    {"world.is_sampled", offsetof(WorldBlock, is_sampled)},
+    {"world.alpha_sampled", offsetof(WorldBlock, alpha_sampled)},
+    {"world._pad0", offsetof(WorldBlock, _pad0)},
+    {"world._pad1", offsetof(WorldBlock, _pad1)},
+});
+
 constexpr std::size_t maps_offset = offsetof(ShadowBlock, maps);
 constexpr auto shadow_fields = std::to_array<Field>({
     {"shadow.cubes[0].near", offsetof(ShadowCubeData, near)},
@@ -119,13 +128,14 @@ constexpr auto esm_fields = std::to_array<Field>({
     {"esm.lamps[0]._pad0", offsetof(EsmData, _pad0)},
 });
 
-constexpr std::array<gpu::BlockLayout, 9> layouts = {{
+constexpr std::array<gpu::BlockLayout, 10> layouts = {{
     {"view_block", sizeof(ViewData), view_fields},
     {"object_block", sizeof(ObjectData), object_fields},
     {"material_block", sizeof(MaterialData), material_fields},
     {"full_material_block", sizeof(FullMaterialData), full_material_fields},
     {"light_block", sizeof(LightBlock), light_fields},
     {"light_shape_block", sizeof(LightShapeBlock), light_shape_fields},
+    {"world_block", sizeof(WorldBlock), world_fields},
     {"shadow_block", sizeof(ShadowBlock), shadow_fields},
     {"shadow_render_block", sizeof(ShadowRenderBlock), shadow_render_fields},
     {"esm_block", sizeof(EsmBlock), esm_fields},

@@ -87,13 +87,22 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
   shared.is_light_block_written = false;
   shared.revision++;
   const LampShading shading = settings_.sample_count > 1 ? LampShading::Point : LampShading::Whole;
-  shared.lamps = make_lamps(scene_.lamps(), shading);
-  shared.shadows.sync(device_limits, shadow_lamps(scene_.lamps(), shared.lamps, shading), scene_.bounds(),
+  const std::shared_ptr<const render_scene::WorldLight> &world = scene_.world();
+  shared.placed.assign(scene_.lamps().begin(), scene_.lamps().end());
+  if (world) {
+    std::ranges::copy(world_lamps(*world, shading), std::back_inserter(shared.placed));
+  }
+  shared.lamps = make_lamps(shared.placed, shading);
+  if (world) {
+    mark_world(shared.lamps, scene_.lamps().size() + world->suns.size());
+  }
+  shared.shadows.sync(device_limits, shadow_lamps(shared.placed, shared.lamps, shading), scene_.bounds(),
                       shared.lamps.light_block, settings_.shadow);
   const scene::Bounds &bounds_ws = scene_.bounds();
   shared.lamp_points =
       shading == LampShading::Point
-          ? LampPoints(scene_.lamps(), shared.lamps, bounds_ws.is_empty() ? glm::vec3(0.0F) : bounds_ws.center())
+          ? LampPoints(shared.placed, shared.lamps, bounds_ws.is_empty() ? glm::vec3(0.0F) : bounds_ws.center(), world,
+                       settings_.sample_count)
           : LampPoints();
   shared.tinted_light = settings_.has_cascade_tint ? first_sun_with_maps(shared.lamps) : std::nullopt;
   shared.synced = key;
@@ -103,7 +112,7 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
 static void follow_lamps(Data &data)
 {
   if (data.stl.shared_revision != data.shared->revision) {
-    data.stl.features = data.shared->lamps.features | data.shared->shadows.features();
+    data.stl.features = with_world(data.shared->lamps.features | data.shared->shadows.features());
     data.stl.shared_revision = data.shared->revision;
     data.is_recorded = false;
   }
@@ -189,8 +198,10 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
   Data &data = viewport.engine_data<Data>(*this);
   const glm::vec2 offset_px = film_offset_px(data.sample_index, settings_.sample_count, settings_.seed);
   const draw::View sample_view = with_sample_offset(view, offset_px, viewport.size_px());
-  const bool is_sample_seen = std::ranges::any_of(
-      data.stl.objects, [&](draw::ObjectIndex object) { return sample_view.touches(scene_.objects().volume(object)); });
+  const bool is_sample_seen =
+      has_background(settings_, scene_) || std::ranges::any_of(data.stl.objects, [&](draw::ObjectIndex object) {
+        return sample_view.touches(scene_.objects().volume(object));
+      });
   FrameSample sample{data, settings_, viewport, view, sample_view};
   if (is_sample_seen) {
     data.is_seen = true;

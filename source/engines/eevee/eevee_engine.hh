@@ -15,8 +15,23 @@
 
 namespace gnomon::eevee {
 
+/** What a picture shows where there is no surface. */
+struct Background {
+  enum class Kind {
+    /** Transparent black. */
+    None,
+    Color,
+    /** The scene's world; where it has none, as None. */
+    World,
+  };
+  Kind kind = Kind::None;
+  /** Of Kind::Color: linear radiance. */
+  glm::vec3 color{0.0F};
+};
+
 struct Settings {
   ShadowSettings shadow{};
+  Background background{};
   /** Samples for each pixel of a picture, at least 1. */
   int sample_count = 1;
   /** Selects the arrangement of the samples. */
@@ -156,6 +171,7 @@ class Engine final : public draw::Engine {
   /** The textures of \a set that a program of \a material_class reads. */
   void bind_textures(draw::ShadingGroup &group, render_scene::MaterialClass material_class, const TextureSet &set);
   void record_film(draw::Viewport &viewport);
+  void record_background(draw::Viewport &viewport);
   void record_casters(Data &data);
   void record_caster(SharedData &shared, draw::ObjectIndex object);
   void record_tonemap(draw::Viewport &viewport);

@@ -5,6 +5,7 @@
 #include "eevee_frame.hh"
 #include "eevee_lamp_points.hh"
 #include "eevee_lamps.hh"
+#include "eevee_world.hh"
 #include "shadows/shadows.hh"
 
 #include "draw_viewport.hh"
@@ -46,6 +47,7 @@ struct PassList {
       : depth_pass("depth_pass", gpu::State::WriteDepth | gpu::State::DepthNearerEqual, &objects),
         depth_pass_cull("depth_pass_cull", gpu::State::WriteDepth | gpu::State::DepthNearerEqual | gpu::State::CullBack,
                         &objects),
+        background_pass("background_pass", gpu::State::WriteColor | gpu::State::DepthEqual),
         lit_pass("lit_pass", gpu::State::WriteColor | gpu::State::DepthEqual, &objects),
         probe_pass("probe_pass", gpu::State::WriteColor | gpu::State::DepthEqual, &objects),
         tint_pass("tint_pass", gpu::State::WriteColor | gpu::State::DepthEqual | gpu::State::BlendMultiply, &objects),
@@ -55,6 +57,7 @@ struct PassList {
   }
   draw::Pass depth_pass;
   draw::Pass depth_pass_cull;
+  draw::Pass background_pass;
   draw::Pass lit_pass;
   draw::Pass probe_pass;
   draw::Pass tint_pass;
@@ -77,6 +80,11 @@ struct PassesKey {
   gpu::ResourceId light_block = 0;
   gpu::ResourceId light_shape_block = 0;
   gpu::ResourceId ltc_table = 0;
+  gpu::ResourceId world_block = 0;
+  gpu::ResourceId world_levels = 0;
+  gpu::ResourceId world_picture = 0;
+  /** Of what the background shows of it. */
+  std::uint64_t world = 0;
   Feature features = Feature::None;
   std::optional<int> tinted_light;
 
@@ -145,6 +153,8 @@ struct SharedData {
                     &objects)
   {
   }
+  /** The scene's, and those that stand for its world. */
+  std::vector<scene::PlacedLamp> placed;
   Lamps lamps;
   /** Of lamps with an extent; empty where a picture has one sample, which is lit from their centres. */
   LampPoints lamp_points;
@@ -159,6 +169,8 @@ struct SharedData {
   /** Where a specular surface is lit by a lamp that is shaded as a whole. */
   gpu::Texture ltc_table;
   gpu::Sampler ltc_sampler;
+  /** Where a world shines. */
+  WorldResources world;
   bool is_light_block_written = false;
   /** Draws the casters of any lamp. */
   draw::Pass shadow_pass;
@@ -216,6 +228,10 @@ struct StorageList {
   /** Of the sample being drawn; the film pass reads it by reference. */
   glm::vec4 film_columns{0.0F};
   glm::vec4 film_rows{0.0F};
+  /** The same for the background; \see eevee_background_frag.glsl */
+  glm::vec4 background_corner{0.0F};
+  glm::vec4 background_across{0.0F};
+  glm::vec4 background_up{0.0F};
   double film_weight_sum = 0.0;
   /** Part of the whole picture's weight that the samples drawn so far have. */
   double film_share = 0.0;

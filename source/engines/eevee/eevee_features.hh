@@ -33,6 +33,8 @@ enum class Feature : std::uint32_t {
   FullMaterial = 1U << 11,
   /** The target of the picture takes depth. */
   TargetDepth = 1U << 12,
+  /** Light from all around, beside that of lamps. */
+  World = 1U << 13,
 };
 
 constexpr Feature operator|(Feature a, Feature b)

@@ -89,6 +89,16 @@ Need need_lit(const FrameState &state)
   return state.data.is_seen ? Need{true, "objects in the view"} : Need{false, nothing_seen};
 }
 
+Need need_background(const FrameState &state)
+{
+  using enum Background::Kind;
+  if (state.settings.background.kind == None) {
+    return {false, "none was asked for"};
+  }
+  return (*state.data.psl).background_pass.is_empty() ? Need{false, "the scene has no world"}
+                                                      : Need{true, "pixels without a surface"};
+}
+
 /** A picture in which nothing is seen is cleared once. */
 Need need_film(const FrameState &state)
 {
@@ -186,6 +196,23 @@ void record_lit(const FrameStep &step, FrameSample &sample, gpu::CommandList &li
   record_pass(step, sample, list, sample.data.fbl.main_fb, {.depth_load = gpu::LoadAction::Load});
 }
 
+void record_background(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
+{
+  StorageList &stl = sample.data.stl;
+  const glm::dmat4 projection(sample.sample_view.clip_from_view());
+  const glm::dmat3 world_from_view = glm::transpose(glm::dmat3(sample.sample_view.view_from_world()));
+  const glm::dvec2 size_px(sample.viewport.size_px());
+  // What is at (x, y) in the frame, from -1 to 1, at a depth of 1.
+  const bool is_perspective = sample.sample_view.is_perspective();
+  const glm::dvec2 scale = is_perspective ? 1.0 / glm::dvec2(projection[0][0], projection[1][1]) : glm::dvec2(0.0);
+  const glm::dvec2 middle = is_perspective ? scale * glm::dvec2(projection[2][0], projection[2][1]) : glm::dvec2(0.0);
+  stl.background_corner = glm::vec4(glm::vec3(world_from_view * glm::dvec3(middle - scale, -1.0)), 0.0F);
+  stl.background_across = glm::vec4(glm::vec3(world_from_view * glm::dvec3(2.0 * scale.x / size_px.x, 0.0, 0.0)), 0.0F);
+  stl.background_up = glm::vec4(glm::vec3(world_from_view * glm::dvec3(0.0, 2.0 * scale.y / size_px.y, 0.0)), 0.0F);
+  record_pass(step, sample, list, sample.data.fbl.main_fb,
+              {.color_load = gpu::LoadAction::Load, .depth_load = gpu::LoadAction::Load});
+}
+
 void record_film(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
   StorageList &stl = sample.data.stl;
@@ -236,6 +263,10 @@ constexpr std::array<FramePass, 2> lit_passes = {{
      }},
 }};
 
+constexpr std::array<FramePass, 1> background_passes = {
+    {{&PassList::background_pass, "pixels without a surface",
+      [](const FrameState &) -> std::string { return nothing_seen; }}}};
+
 constexpr std::array<FramePass, 1> film_passes = {
     {{&PassList::film_pass, "samples", [](const FrameState &) -> std::string { return nothing_seen; }}}};
 
@@ -254,7 +285,7 @@ constexpr std::span target_only = std::span(pictures).subspan(4, 1);
 
 constexpr std::array<std::string_view, 1> light_block_only = {"light_block"};
 
-constexpr std::array<FrameStep, 7> steps = {{
+constexpr std::array<FrameStep, 8> steps = {{
     // Before the shadows: cascades may be fitted to the depths.
     {"depth_prepass",
      FrameStep::When::EachSample,
@@ -275,6 +306,8 @@ constexpr std::array<FrameStep, 7> steps = {{
      record_shadows,
      [](FrameSample &sample) { sample.data.stl.shadows->submitted(); }},
     {"lit", FrameStep::When::EachSample, need_lit, shadow_targets, radiance_only, lit_passes, record_lit},
+    {"background", FrameStep::When::EachSample, need_background, depth_only, radiance_only, background_passes,
+     record_background},
     {"film", FrameStep::When::EachSample, need_film, radiance_only, film_only, film_passes, record_film},
     {"picture_depth",
      FrameStep::When::EachTarget,

@@ -2,6 +2,7 @@
 #include "eevee_lamp_points.hh"
 
 #include "eevee_sobol.hh"
+#include "eevee_world.hh"
 
 #include <glm/geometric.hpp>
 
@@ -108,29 +109,60 @@ glm::mat4 point_of(const scene::PlacedLamp &lamp, const glm::vec3 &place, const 
   return moved;
 }
 
-LampPoints::LampPoints(std::span<const scene::PlacedLamp> placed, const Lamps &lamps, const glm::vec3 &toward_ws)
-    : toward_ws_(toward_ws)
+LampPoints::LampPoints(std::span<const scene::PlacedLamp> placed, const Lamps &lamps, const glm::vec3 &toward_ws,
+                       std::shared_ptr<const render_scene::WorldLight> world, int sample_count)
+    : world_(std::move(world)), sample_count_(sample_count), toward_ws_(toward_ws)
 {
+  const std::size_t world_first = placed.size() - (world_ ? world_lamps(*world_, LampShading::Point).size() : 0);
   for (int i = 0; i < lamps.light_block.light_count; i++) {
-    const scene::PlacedLamp &lamp = placed[lamps.lamp_index[std::size_t(i)]];
-    if (has_extent(lamp)) {
-      sized_.push_back({i, lamp});
+    const std::size_t index = lamps.lamp_index[std::size_t(i)];
+    const scene::PlacedLamp &lamp = placed[index];
+    if (!has_extent(lamp)) {
+      continue;
+    }
+    const shared::LightData &light = lamps.light_block.lights[i];
+    Sized &sized = sized_.emplace_back(Sized{i, lamp, light.color, light.radius_sq});
+    if (index >= world_first) {
+      const std::size_t part = index - world_first;
+      const std::size_t sun_count = world_->suns.size();
+      sized.world = part < sun_count ? &world_->suns[part].directions : &world_->rest_directions;
+      sized.direction = part < sun_count ? 0 : std::uint32_t(part - sun_count);
+      sized.direction_count = part < sun_count ? 1 : world_direction_count;
     }
   }
+}
+
+LampPoint LampPoints::world_point(const Sized &sized, std::uint32_t index, std::uint32_t seed) const
+{
+  const std::uint32_t stream = mixed_bits(seed) + std::uint32_t(sized.light) - sized.direction;
+  const glm::vec3 place = sobol_point(index * sized.direction_count + sized.direction, stream);
+  const render_scene::WorldDirection direction = sized.world->at(glm::dvec2(place));
+  const double count = sized.direction_count;
+  LampPoint point{.light = sized.light,
+                  .world_from_lamp = turned(sized.lamp.world_from_lamp, -direction.to_world),
+                  .color = glm::vec3(direction.irradiance / count)};
+  // A lobe of this alpha spans 4 π alpha².
+  const double alpha_sq = world_lobe_directions * sized.world->solid_angle() / (4.0 * pi * sample_count_);
+  point.radius_sq = float(sized.direction_count > 1 ? direction.solid_angle / count : alpha_sq);
+  return point;
 }
 
 std::span<const LampPoint> LampPoints::sample(std::uint32_t index, std::uint32_t seed)
 {
   points_.clear();
   for (const Sized &sized : sized_) {
+    if (sized.world) {
+      points_.push_back(world_point(sized, index, seed));
+      continue;
+    }
     const glm::vec3 place = sobol_point(index, mixed_bits(seed) + std::uint32_t(sized.light));
     // The mean of directions over a cone of half angle a is (1 + cos a) / 2 long.
     const double weight =
         sized.lamp.kind == scene::LampKind::Sun ? 2.0 / (1.0 + std::cos(half_angle(sized.lamp))) : 1.0;
     const glm::mat4 world_from_lamp = point_of(sized.lamp, place, toward_ws_);
     const glm::vec3 center_ws(sized.lamp.world_from_lamp[3]);
-    points_.push_back(
-        {sized.light, world_from_lamp, glm::distance(glm::vec3(world_from_lamp[3]), center_ws), float(weight)});
+    points_.push_back({sized.light, world_from_lamp, glm::distance(glm::vec3(world_from_lamp[3]), center_ws),
+                       float(weight) * sized.color, sized.radius_sq});
   }
   return points_;
 }
@@ -139,7 +171,7 @@ std::span<const LampPoint> LampPoints::centers()
 {
   points_.clear();
   for (const Sized &sized : sized_) {
-    points_.push_back({sized.light, glm::mat4(sized.lamp.world_from_lamp), 0.0F, 1.0F});
+    points_.push_back({sized.light, glm::mat4(sized.lamp.world_from_lamp), 0.0F, sized.color, sized.radius_sq});
   }
   return points_;
 }
@@ -148,7 +180,8 @@ shared::LightData light_at(shared::LightData light, const LampPoint &point)
 {
   light.position_ws = glm::vec3(point.world_from_lamp[3]);
   light.forward_ws = -glm::vec3(point.world_from_lamp[2]);
-  light.color *= point.weight;
+  light.color = point.color;
+  light.radius_sq = point.radius_sq;
   return light;
 }
 

@@ -3,9 +3,12 @@
 
 #include "eevee_lamps.hh"
 
+#include "render_world.hh"
+
 #include <glm/mat4x4.hpp>
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 namespace gnomon::eevee {
@@ -18,8 +21,9 @@ struct LampPoint {
   glm::mat4 world_from_lamp{1.0F};
   /** Distance of the point from the lamp's centre, metres. 0 for a sun. */
   float offset = 0.0F;
-  /** Factor of the lamp's colour. */
-  float weight = 1.0F;
+  /** As LightData has them. */
+  glm::vec3 color{0.0F};
+  float radius_sq = 0.0F;
 };
 
 /** Whether \a lamp is more than a point or a single direction. */
@@ -43,7 +47,12 @@ struct LampPoint {
 class LampPoints {
  public:
   LampPoints() = default;
-  LampPoints(std::span<const scene::PlacedLamp> placed, const Lamps &lamps, const glm::vec3 &toward_ws);
+  /**
+   * \a world: of the last lamps in \a placed, those that world_lamps gave; nullptr: there is none.
+   * \a sample_count: of the picture.
+   */
+  LampPoints(std::span<const scene::PlacedLamp> placed, const Lamps &lamps, const glm::vec3 &toward_ws,
+             std::shared_ptr<const render_scene::WorldLight> world = {}, int sample_count = 1);
 
   [[nodiscard]] bool empty() const
   {
@@ -62,9 +71,21 @@ class LampPoints {
   struct Sized {
     int light = 0;
     scene::PlacedLamp lamp;
+    /** As the lamp's centre has them. */
+    glm::vec3 color{0.0F};
+    float radius_sq = 0.0F;
+    /** Of a lamp that stands for a part of the world; otherwise nullptr. */
+    const render_scene::WorldDistribution *world = nullptr;
+    /** Of the directions that share a distribution in one sample. */
+    std::uint32_t direction = 0;
+    std::uint32_t direction_count = 1;
   };
+  [[nodiscard]] LampPoint world_point(const Sized &sized, std::uint32_t index, std::uint32_t seed) const;
+
+  std::shared_ptr<const render_scene::WorldLight> world_;
   std::vector<Sized> sized_;
   std::vector<LampPoint> points_;
+  int sample_count_ = 1;
   glm::vec3 toward_ws_{0.0F};
 };
 

@@ -38,7 +38,7 @@ shared::LightData light_data(const scene::PlacedLamp &lamp)
   light.position_ws = glm::vec3(lamp.world_from_lamp[3]);
   // An area lamp of radiance P / (4 A) has P / 4 straight ahead.
   light.color = lamp.color * (lamp.kind == scene::LampKind::Area ? 0.25F * lamp.intensity : lamp.intensity);
-  light.radius_sq = lamp.radius * lamp.radius;
+  light.radius_sq = lamp.kind == scene::LampKind::Sun ? 0.0F : lamp.radius * lamp.radius;
   light.forward_ws = -glm::vec3(lamp.world_from_lamp[2]);
   // Finite for every range: times a distance of 0 it must be 0.
   constexpr float range_sq_min = std::numeric_limits<float>::min();

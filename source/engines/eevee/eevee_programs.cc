@@ -9,7 +9,7 @@ namespace gnomon::eevee {
 
 namespace {
 
-constexpr std::array<FeatureDefine, 13> feature_table = {
+constexpr std::array<FeatureDefine, 14> feature_table = {
     {{Feature::Light, "USE_LIGHT", "something shines"},
      {Feature::Punctual, "USE_PUNCTUAL", "a point, spot or area lamp shines"},
      {Feature::Specular, "USE_SPECULAR", "a material reflects specularly"},
@@ -23,12 +23,13 @@ constexpr std::array<FeatureDefine, 13> feature_table = {
      {Feature::LampShape, "USE_LAMP_SHAPE", "a lamp has an extent, or a spot's cone is an ellipse"},
      {Feature::FullMaterial, "USE_FULL_MATERIAL",
       "a material has other textures than base colour, a transform or a second set of uvs, or a mesh has colours"},
-     {Feature::TargetDepth, "USE_TARGET_DEPTH", "the target takes depth"}}};
+     {Feature::TargetDepth, "USE_TARGET_DEPTH", "the target takes depth"},
+     {Feature::World, "USE_WORLD", "a world shines"}}};
 
 /** Features that make no difference without light. */
 constexpr Feature light_features = Feature::Light | Feature::Punctual | Feature::Specular | Feature::ShadowCube |
                                    Feature::ShadowMap | Feature::ShadowPcf | Feature::ShadowEsm | Feature::ShadowEvsm |
-                                   Feature::LampShape;
+                                   Feature::LampShape | Feature::World;
 /** Features that the visibility of a lamp depends on. */
 constexpr Feature shadow_features = Feature::Light | Feature::Punctual | Feature::ShadowCube | Feature::ShadowMap |
                                     Feature::ShadowPcf | Feature::ShadowEsm | Feature::ShadowEvsm;
@@ -36,7 +37,7 @@ constexpr Feature shadow_features = Feature::Light | Feature::Punctual | Feature
 /** Features that alpha depends on. */
 constexpr Feature alpha_features = Feature::AlphaMask | Feature::FullMaterial;
 
-constexpr std::array<ShaderDeclaration, 17> declarations = {{
+constexpr std::array<ShaderDeclaration, 19> declarations = {{
     {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl", alpha_features,
      Feature::None, "depth of what is seen, so that each pixel is lit once"},
     {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
@@ -53,6 +54,11 @@ constexpr std::array<ShaderDeclaration, 17> declarations = {{
      shadow_features, Feature::Light, "position, normal and visibility of one lamp, for comparison with the reference"},
     {ShaderId::Film, "eevee_film", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_film_frag.glsl", Feature::None,
      Feature::None, "sum of several samples a pixel"},
+    {ShaderId::BackgroundColor, "eevee_background_color", "draw/draw_fullscreen_vert.glsl", "",
+     "eevee/eevee_background_frag.glsl", Feature::None, Feature::None, "one colour where there is no surface"},
+    {ShaderId::BackgroundWorld, "eevee_background_world", "draw/draw_fullscreen_vert.glsl", "",
+     "eevee/eevee_background_frag.glsl", Feature::None, Feature::None, "the world where there is no surface",
+     "BACKGROUND_WORLD"},
     {ShaderId::Tonemap, "eevee_tonemap", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_tonemap_frag.glsl",
      Feature::TargetDepth, Feature::None, "the picture as its target stores it"},
     {ShaderId::EsmDistance, "eevee_esm_distance", "draw/draw_fullscreen_vert.glsl", "",
@@ -89,6 +95,11 @@ bool is_possible(Feature features, const ShaderDeclaration &declaration)
   }
   if (!has(features, Feature::Light)) {
     return (features & light_features) == Feature::None;
+  }
+  // Beside a world, features that go together in most scenes always do, so that there are fewer programs.
+  if (has(features, Feature::World) && (has(features, Feature::Punctual) != has(features, Feature::LampShape) ||
+                                        has(features, Feature::ShadowEsm) != has(features, Feature::ShadowEvsm))) {
+    return false;
   }
   // Cubes and exponential maps are for point lamps and spots. Percentage-closer filtering reads a cube or a map.
   return (has(features, Feature::Punctual) || !has(features, Feature::ShadowCube | Feature::ShadowEsm)) &&

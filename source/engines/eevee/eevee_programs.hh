@@ -19,6 +19,8 @@ enum class ShaderId {
   Lit,
   Probe,
   Film,
+  BackgroundColor,
+  BackgroundWorld,
   Tonemap,
   EsmDistance,
   EsmDisk4,

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace gnomon::eevee {
 
@@ -28,6 +29,13 @@ void bind_lit(draw::ShadingGroup &group, Data &data)
   group.bind_uniform("light_block", data.shared->light_block);
   if (has(stl.features, Feature::LampShape)) {
     group.bind_uniform("light_shape_block", data.shared->light_shape_block);
+  }
+  const WorldResources &world = data.shared->world;
+  if (world.block) {
+    group.bind_uniform("world_block", world.block);
+  }
+  if (world.levels) {
+    group.bind_texture("world_levels", world.levels, world.sampler);
   }
   if (data.shared->ltc_table) {
     group.bind_texture("ltc_table", data.shared->ltc_table, data.shared->ltc_sampler);
@@ -82,10 +90,13 @@ void Engine::make_blocks(draw::Viewport &viewport)
     stl.materials_features_revision = materials;
   }
   scene_.upload(has(stl.material_features, Feature::FullMaterial));
+  update_world_picture(shared.world, device, scene_, settings_);
   if (!has(stl.features, Feature::Light)) {
     shared.light_block = {};
     shared.light_shape_block = {};
     shared.ltc_table = {};
+    shared.world.block = {};
+    shared.world.levels = {};
     return;
   }
   stl.features = stl.features | (stl.material_features & Feature::Specular);
@@ -101,7 +112,8 @@ void Engine::make_blocks(draw::Viewport &viewport)
         device.create_buffer({"light_shape_block", gpu::BufferKind::Uniform, sizeof(shared::LightShapeBlock)});
     shared.is_light_block_written = false;
   }
-  const bool has_ltc = has(stl.features, Feature::LampShape) && has(stl.features, Feature::Specular);
+  update_world(shared.world, device, scene_, stl.features, settings_.sample_count);
+  const bool has_ltc = has(stl.features, Feature::LampShape | Feature::World) && has(stl.features, Feature::Specular);
   if (!has_ltc) {
     shared.ltc_table = {};
   }
@@ -117,6 +129,25 @@ void Engine::make_blocks(draw::Viewport &viewport)
       device.update(shared.light_shape_block, shared.lamps.shape_block);
     }
   }
+}
+
+void Engine::record_background(draw::Viewport &viewport)
+{
+  Data &data = viewport.engine_data<Data>(*this);
+  StorageList &stl = data.stl;
+  const WorldResources &world = data.shared->world;
+  const bool is_picture = bool(world.picture);
+  draw::ShadingGroup &group = data.psl->background_pass.group(
+      shaders_.get(viewport.device(), is_picture ? ShaderId::BackgroundWorld : ShaderId::BackgroundColor));
+  group.constant("color", glm::vec4(background_color(settings_, scene_), 0.0F));
+  if (is_picture) {
+    group.bind_texture("world_picture", world.picture, world.picture_sampler);
+    group.constant_ref("corner", &stl.background_corner);
+    group.constant_ref("across", &stl.background_across);
+    group.constant_ref("up", &stl.background_up);
+    group.constant("turn", scene_.scene().world()->rotation / (2.0F * std::numbers::pi_v<float>));
+  }
+  group.call_procedural();
 }
 
 void Engine::record_film(draw::Viewport &viewport)
@@ -205,6 +236,10 @@ void Engine::record(draw::Viewport &viewport)
       .light_block = shared.light_block.id(),
       .light_shape_block = shared.light_shape_block.id(),
       .ltc_table = shared.ltc_table.id(),
+      .world_block = shared.world.block.id(),
+      .world_levels = shared.world.levels.id(),
+      .world_picture = shared.world.picture.id(),
+      .world = has_background(settings_, scene_) ? scene_.scene().world_revision() : 0,
       .features = stl.features,
       .tinted_light = shared.tinted_light,
   };
@@ -231,6 +266,9 @@ void Engine::record_passes(draw::Viewport &viewport)
   stl.is_mirrored.assign(scene_.objects().index_end(), false);
   for (const draw::ObjectIndex object : stl.objects) {
     record_object(viewport, object);
+  }
+  if (has_background(settings_, scene_)) {
+    record_background(viewport);
   }
   record_film(viewport);
 }

@@ -143,7 +143,7 @@ void add_layers(FrameNode &lamp, const char *what, bool is_made, std::uint32_t m
 
 FrameNode lamp_node(const ReportSource &source, std::size_t index, const std::vector<ShadowState> &states)
 {
-  const scene::PlacedLamp &lamp = source.render_scene.lamps()[index];
+  const scene::PlacedLamp &lamp = source.data.shared->placed[index];
   const Lamps &lamps = source.data.shared->lamps;
   FrameNode node{.what = lamp.name};
   const auto light = std::ranges::find(lamps.lamp_index, std::uint32_t(index));
@@ -178,7 +178,7 @@ FrameNode shadow_nodes(const ReportSource &source)
 {
   const std::vector<ShadowState> states = source.data.stl.shadows->states();
   std::vector<FrameNode> lamps;
-  for (std::size_t i = 0; i < source.render_scene.lamps().size(); i++) {
+  for (std::size_t i = 0; i < source.data.shared->placed.size(); i++) {
     lamps.push_back(lamp_node(source, i, states));
   }
   return folder("shadows", "layers by lamp", why_no_shadow(source, "no lamp has a layer that is drawn"),
@@ -253,7 +253,7 @@ Report Engine::report(draw::Viewport &viewport) const
   report.shadow_counters = stl.shadows->counters();
   report.pass_recordings = stl.pass_recordings;
   for (int i = 0; i < lamps.light_block.light_count; i++) {
-    const scene::PlacedLamp &lamp = scene_.lamps()[lamps.lamp_index[std::size_t(i)]];
+    const scene::PlacedLamp &lamp = shared.placed[lamps.lamp_index[std::size_t(i)]];
     const bool is_asked_for = shadow_kind(lamp, settings_.shadow) != scene::ShadowKind::None;
     report.lost_shadow_count += is_asked_for && lamps.light_block.lights[i].shadow_kind == SHADOW_NONE ? 1 : 0;
   }

@@ -54,8 +54,10 @@ FrameNode target_nodes(const ReportSource &source)
                                       : "nothing is seen that a caster could darken";
   };
   add(source.data.shared->ltc_table, "ltc_table", "specular light of lamps with an extent",
-      source.has(Feature::LampShape) ? why_no_feature(source, Feature::Specular)
-                                     : why_no_feature(source, Feature::LampShape));
+      source.has(Feature::LampShape | Feature::World) ? why_no_feature(source, Feature::Specular)
+                                                      : why_no_feature(source, Feature::LampShape));
+  add(source.data.shared->world.levels, "world_levels", "what specular surfaces mirror of the world",
+      source.has(Feature::World) ? why_no_feature(source, Feature::Specular) : why_no_feature(source, Feature::World));
   add(shadows.cubes(), "shadow_cubes", fmt::format("{} point lamps or wide spots", shadows.cube_count()),
       why_no_layers(Feature::ShadowCube));
   add(shadows.maps(), "shadow_maps", fmt::format("{} suns or spots", shadows.map_count()),
@@ -96,6 +98,7 @@ FrameNode block_nodes(const ReportSource &source)
       fmt::format("{} lights", source.data.shared->lamps.light_block.light_count), "no lamp gives light");
   add(source.data.shared->light_shape_block, "light_shape_block", "extents and axes of lamps",
       why_no_feature(source, Feature::LampShape));
+  add(source.data.shared->world.block, "world_block", "light from all around", why_no_feature(source, Feature::World));
   add(stl.shadows->block(), "shadow_block", "shadows of depths",
       source.has(any_shadow) ? "all shadows are exponential" : no_shadow);
   add(stl.shadows->scene().render_blocks(), "shadow_render_block", "views that casters are drawn with", no_shadow);

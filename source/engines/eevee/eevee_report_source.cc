@@ -84,6 +84,7 @@ std::string why_no_feature(const ReportSource &source, Feature feature)
     case Feature::BaseColorTexture:
       return source.data.is_recorded ? "no material that is drawn has a texture" : nothing_seen;
     case Feature::LampShape: return "no lamp has an extent, and no spot's cone is an ellipse";
+    case Feature::World: return "the scene has no world";
     case Feature::FullMaterial: return source.data.is_recorded ? no_full_material : nothing_seen;
     case Feature::AlphaMask: return source.data.is_recorded ? "no texture's alpha cuts a material out" : nothing_seen;
     default: return "";
@@ -102,6 +103,9 @@ std::string why_no_program(const ReportSource &source, ShaderId id)
       return source.data.shared->tinted_light
                  ? nothing_seen
                  : (source.settings.has_cascade_tint ? "no sun has a shadow" : "not asked for");
+    case ShaderId::BackgroundColor:
+    case ShaderId::BackgroundWorld:
+      return source.settings.background.kind == Background::Kind::None ? "no background was asked for" : nothing_seen;
     case ShaderId::Tonemap: return source.data.target ? nothing_seen : no_target;
     default: break;
   }

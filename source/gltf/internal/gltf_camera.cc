@@ -4,7 +4,9 @@
 #include "internal/gltf_node.hh"
 #include "internal/gltf_units.hh"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -106,11 +108,30 @@ PlacedCamera default_camera(const Bounds &bounds)
   // At least the spacing of floats at the scene's position, and at least the smallest length.
   const double reach = glm::length(center);
   const double radius = bounds.is_empty() ? 1.0 : std::max({double(bounds.radius()), 1e-6 * reach, 1e3 * length_min});
+  const glm::dvec3 half =
+      bounds.is_empty() ? glm::dvec3(radius) : glm::max(0.5 * glm::dvec3(bounds.max - bounds.min), 1e-3 * radius);
   const glm::dvec3 forward = glm::normalize(glm::dvec3(-0.6, -0.45, -1.0));
-  // The sphere around the scene fits with a margin into a frame that is at least as wide as high.
-  const double distance = 1.05 * radius / std::sin(0.5 * double(camera.vertical_angle));
-  camera.world_from_camera = looking(center - distance * forward, forward, {0, 1, 0});
-  camera.near = static_cast<float>(0.5 * (distance - radius));
+  const glm::dmat4 axes = looking(center, forward, {0, 1, 0});
+  // The box around the scene fits, with a margin, into a frame that is at least as wide as high.
+  const double slope = std::tan(0.5 * double(camera.vertical_angle)) / 1.12;
+  glm::dvec2 low(std::numeric_limits<double>::infinity());
+  glm::dvec2 high(-low);
+  double nearest = 0.0;
+  for (int corner = 0; corner < 8; corner++) {
+    const glm::dvec3 from_center((corner & 1) != 0 ? half.x : -half.x, (corner & 2) != 0 ? half.y : -half.y,
+                                 (corner & 4) != 0 ? half.z : -half.z);
+    const glm::dvec3 at(glm::transpose(glm::dmat3(axes)) * from_center);
+    // At the distance d from the centre's plane, what is seen reaches to (d - z) · slope.
+    low = glm::min(low, glm::dvec2(at) - at.z * slope);
+    high = glm::max(high, glm::dvec2(at) + at.z * slope);
+    nearest = std::max(nearest, at.z);
+  }
+  const glm::dvec2 middle = 0.5 * (low + high);
+  const glm::dvec2 size = 0.5 * (high - low);
+  const double distance = std::max(std::max(size.x, size.y) / slope, nearest + 0.1 * radius);
+  const glm::dvec3 position(axes * glm::dvec4(middle, distance, 1.0));
+  camera.world_from_camera = looking(position, forward, {0, 1, 0});
+  camera.near = static_cast<float>(0.5 * (distance - nearest));
   camera.far = static_cast<float>(distance + 2.0 * radius);
   return camera;
 }

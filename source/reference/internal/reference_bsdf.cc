@@ -2,6 +2,7 @@
 #include "internal/reference_bsdf.hh"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 // This header defines `float` as double, so it must come last.
@@ -38,6 +39,35 @@ glm::dvec3 reflected(const Bsdf &bsdf, const glm::dvec3 &normal, const glm::dvec
   const double lobe = shared_double::ggx_lobe(cos_l, cos_v, cos_h, bsdf.alpha);
   const double seen = bsdf.smooth_normal ? shared_double::bump_visibility(*bsdf.smooth_normal, normal, to_light) : 1.0;
   return (bsdf.diffuse * (seen * kept / std::numbers::pi) + fresnel * lobe) * cos_l;
+}
+
+glm::dvec3 lobe_direction(const Bsdf &bsdf, const glm::dvec3 &normal, const glm::dvec3 &view, const glm::dvec2 &u)
+{
+  const glm::dvec3 helper = std::abs(normal.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+  const glm::dvec3 x = glm::normalize(glm::cross(helper, normal));
+  const glm::dvec3 y = glm::cross(normal, x);
+  // Walter et al. 2007, eq. 35 and 36.
+  const double slope_sq = bsdf.alpha * bsdf.alpha * u.x / (1.0 - u.x);
+  const double cos_h = 1.0 / std::sqrt(1.0 + slope_sq);
+  const double sin_h = std::sqrt(slope_sq) * cos_h;
+  const double angle = 2.0 * std::numbers::pi * u.y;
+  const glm::dvec3 half_vector = sin_h * (std::cos(angle) * x + std::sin(angle) * y) + cos_h * normal;
+  return 2.0 * glm::dot(view, half_vector) * half_vector - view;
+}
+
+double lobe_density(const Bsdf &bsdf, const glm::dvec3 &normal, const glm::dvec3 &view, const glm::dvec3 &to_light)
+{
+  const glm::dvec3 sum = to_light + view;
+  const double length = glm::length(sum);
+  if (!(length > 0.0)) {
+    return 0.0;
+  }
+  const glm::dvec3 half_vector = sum / length;
+  const double cos_h = glm::dot(normal, half_vector);
+  const double across = glm::dot(view, half_vector);
+  return cos_h > 0.0 && across > 0.0
+             ? shared_double::ggx_distribution(std::min(cos_h, 1.0), bsdf.alpha) * cos_h / (4.0 * across)
+             : 0.0;
 }
 
 }  // namespace gnomon::reference

@@ -26,4 +26,14 @@ struct Bsdf {
 [[nodiscard]] glm::dvec3 reflected(const Bsdf &bsdf, const glm::dvec3 &normal, const glm::dvec3 &view,
                                    const glm::dvec3 &to_light);
 
+/**
+ * A direction that the specular lobe reflects to \a view, for \a u in [0, 1)²: normals by GGX's distribution times
+ * their cosine. It may lie below the surface.
+ */
+[[nodiscard]] glm::dvec3 lobe_direction(const Bsdf &bsdf, const glm::dvec3 &normal, const glm::dvec3 &view,
+                                        const glm::dvec2 &u);
+/** Density of lobe_direction, 1/sr. */
+[[nodiscard]] double lobe_density(const Bsdf &bsdf, const glm::dvec3 &normal, const glm::dvec3 &view,
+                                  const glm::dvec3 &to_light);
+
 }  // namespace gnomon::reference

@@ -38,6 +38,8 @@ std::vector<ShadowLamp> shadow_lamps(std::span<const scene::PlacedLamp> placed, 
   std::vector<ShadowLamp> result;
   for (int i = 0; i < lamps.light_block.light_count; i++) {
     const scene::PlacedLamp &lamp = placed[lamps.lamp_index[std::size_t(i)]];
+    const bool is_sampled = shading == LampShading::Point && has_extent(lamp);
+    constexpr float smooth_angle = 0.2F;
     result.push_back({.key = lamp.node.key(),
                       .light = i,
                       .name = lamp.name,
@@ -46,7 +48,8 @@ std::vector<ShadowLamp> shadow_lamps(std::span<const scene::PlacedLamp> placed, 
                       .spot_outer_angle = widest_half_angle(lamp),
                       .range = lamp.range,
                       .shadow = lamp.shadow,
-                      .is_sampled = shading == LampShading::Point && has_extent(lamp)});
+                      .is_sampled = is_sampled,
+                      .is_smooth = is_sampled && lamp.kind == scene::LampKind::Sun && lamp.angle > smooth_angle});
   }
   return result;
 }
@@ -259,7 +262,7 @@ ShadowPlan plan_shadows(std::span<const ShadowLamp> lamps, const ShadowSettings 
     place.technique = &technique_of(lamp, place.kind);
     place.given = place.technique->request(lamp, place.kind, settings);
     if (lamp.is_sampled && !lamp.shadow.size) {
-      place.given.size_px = std::max(place.given.size_px / 2, 1);
+      place.given.size_px = std::max(place.given.size_px / (lamp.is_smooth ? 4 : 2), 1);
     }
     const std::size_t array = index_of(place.given.array);
     if (entries[array] + place.given.entry_count > entries_max[array]) {

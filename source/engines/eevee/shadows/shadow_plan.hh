@@ -35,6 +35,8 @@ struct ShadowLamp {
   scene::LampShadow shadow{};
   /** Each sample of a picture has the shadow of another point of the lamp. */
   bool is_sampled = false;
+  /** The same of a sun so wide that no edge of its shadow is sharp: one small map serves all that is seen. */
+  bool is_smooth = false;
 
   [[nodiscard]] glm::vec3 position_ws() const
   {
@@ -113,7 +115,7 @@ struct ShadowPlan {
  * shadows need more than ShadowSettings::memory_bytes_max, all sizes are lowered by one factor, to 16 texels at least,
  * because layers of one array have one size; if that does not suffice, the last lamps lose their shadow.
  *
- * Lamps that are sampled have half the size that the settings give: their errors average out.
+ * Lamps that are sampled have half the size that the settings give, smooth ones a quarter: their errors average out.
  *
  * \a viewport_count: viewports that draw the lamps; each has layers of its own where the technique follows the view.
  * \a previous: the last plan. A lamp that has a place in it keeps it. Only where the gaps that removed lamps leave

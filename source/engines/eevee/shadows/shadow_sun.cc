@@ -9,6 +9,12 @@ namespace gnomon::eevee {
 
 namespace {
 
+/** \see CascadeSettings::count */
+int cascade_count(const ShadowLamp &lamp, const ShadowSettings &settings)
+{
+  return lamp.is_smooth ? 1 : settings.cascades.count;
+}
+
 class SunTechnique final : public ShadowTechnique {
  public:
   bool serves(const ShadowLamp &lamp, scene::ShadowKind /*kind*/) const override
@@ -29,7 +35,7 @@ class SunTechnique final : public ShadowTechnique {
   ShadowRequest request(const ShadowLamp &lamp, scene::ShadowKind /*kind*/,
                         const ShadowSettings &settings) const override
   {
-    const int cascades = settings.cascades.count > 0 ? settings.cascades.count : cascade_count_max;
+    const int cascades = cascade_count(lamp, settings) > 0 ? cascade_count(lamp, settings) : cascade_count_max;
     return {.array = ShadowArrayId::Maps,
             .layer_count_max = cascades,
             .entry_count = cascades,
@@ -52,8 +58,10 @@ class SunTechnique final : public ShadowTechnique {
   void fit_views(ShadowSlot &slot, const ShadowView &view, const ShadowCasters &casters,
                  const ShadowSettings &settings) const override
   {
+    CascadeSettings cascades = settings.cascades;
+    cascades.count = cascade_count(slot.lamp, settings);
     slot.new_fits = fit_sun(slot.lamp.world_from_lamp, view.view, view.visible, casters.list(),
-                            slot.place.given.size_px, settings.cascades, view.pixel_size, std::move(slot.new_fits));
+                            slot.place.given.size_px, cascades, view.pixel_size, std::move(slot.new_fits));
     const std::vector<SunFit> &fits = slot.new_fits;
     if (fits.size() != slot.fits.size()) {
       slot.invalidate(~0U);

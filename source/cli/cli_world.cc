@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "cli_world.hh"
+
+#include "cli.hh"
+#include "cli_output.hh"
+
+#include "scene_studio.hh"
+
+#include <fmt/format.h>
+#include <glm/trigonometric.hpp>
+
+#include <charconv>
+#include <cmath>
+
+namespace gnomon::cli {
+
+void add_world_options(CLI::App &command, WorldOptions &options)
+{
+  command.add_option("--world", options.world,
+                     "What lights the scene from all around: an equirectangular HDR or EXR picture, a radiance R,G,B, "
+                     "studio, or none (default: the scene's own; studio where it has neither lamps nor world)");
+  command.add_option("--world-strength", options.strength, "Factor of the world's radiance")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0F, 1e6F));
+  command.add_option("--world-rotation", options.rotation_degrees, "Turn the world around the vertical axis, degrees")
+      ->capture_default_str()
+      ->check(CLI::Range(-360.0F, 360.0F));
+  command.add_option("--background", options.background,
+                     "What is seen where there is no surface: none (transparent black), world, or a radiance R,G,B "
+                     "(default: none; in a PNG, a light grey behind what the default studio lights)");
+}
+
+std::optional<glm::vec3> parse_color(const std::string &text)
+{
+  glm::vec3 color(0.0F);
+  const char *at = text.data();
+  const char *end = text.data() + text.size();
+  for (int i = 0; i < 3; i++) {
+    const auto [after, error] = std::from_chars(at, end, color[i]);
+    const bool is_last = i == 2;
+    if (error != std::errc() || !(color[i] >= 0.0F) || std::isinf(color[i]) ||
+        (is_last ? after != end : after == end || *after != ',')) {
+      return std::nullopt;
+    }
+    at = after + (is_last ? 0 : 1);
+  }
+  return color;
+}
+
+static scene::World read_world(const std::string &path)
+{
+  const Picture file = read_picture(path);
+  scene::WorldPicture picture{file.size_px.x, file.size_px.y, {}};
+  picture.texels.reserve(file.pixels.size());
+  for (int y = file.size_px.y - 1; y >= 0; y--) {
+    for (int x = 0; x < file.size_px.x; x++) {
+      const glm::vec4 &pixel = file.pixels[std::size_t(y) * std::size_t(file.size_px.x) + std::size_t(x)];
+      for (int i = 0; i < 3; i++) {
+        if (!(pixel[i] >= 0.0F) || std::isinf(pixel[i])) {
+          throw std::runtime_error(
+              fmt::format("{}: texel {}, {} from the top left is {}, and must be a number of at "
+                          "least 0",
+                          path, x, file.size_px.y - 1 - y, pixel[i]));
+        }
+      }
+      picture.texels.emplace_back(pixel);
+    }
+  }
+  return {.picture = std::make_shared<const scene::WorldPicture>(std::move(picture))};
+}
+
+bool light_by_world(scene::Scene &scene, const scene::PlacedCamera &camera, const WorldOptions &options)
+{
+  const bool is_default = options.world.empty();
+  if (options.world == "none") {
+    scene.set_world(std::nullopt);
+    return false;
+  }
+  std::optional<scene::World> world = scene.world();
+  const bool is_default_studio = is_default && !world && scene.is_lamp_default;
+  if (options.world == "studio" || is_default_studio) {
+    world = scene::studio_world(camera.world_from_camera);
+  }
+  else if (const std::optional<glm::vec3> color = parse_color(options.world)) {
+    world = scene::World{.color = *color};
+  }
+  else if (!is_default) {
+    world = read_world(options.world);
+  }
+  if (!world) {
+    return false;
+  }
+  world->strength *= options.strength;
+  world->rotation += glm::radians(options.rotation_degrees);
+  scene.set_world(std::move(world));
+  if (scene.is_lamp_default) {
+    scene.remove(scene.placed_lamps().front().node);
+    scene.is_lamp_default = false;
+    std::erase_if(scene.warnings,
+                  [](const std::string &line) { return line.find("has no lamp") != std::string::npos; });
+    if (is_default_studio) {
+      scene.warnings.push_back("scene: has no lamp and no world: a studio lights it (--world none: a sun)");
+    }
+  }
+  return is_default_studio;
+}
+
+eevee::Background background_of(const WorldOptions &options, std::optional<glm::vec3> default_color)
+{
+  using Kind = eevee::Background::Kind;
+  if (options.background.empty()) {
+    return default_color ? eevee::Background{Kind::Color, *default_color} : eevee::Background();
+  }
+  if (options.background == "none" || options.background == "world") {
+    return {options.background == "none" ? Kind::None : Kind::World};
+  }
+  const std::optional<glm::vec3> color = parse_color(options.background);
+  if (!color) {
+    throw UsageError(fmt::format("--background '{}' is none of none, world and a radiance R,G,B", options.background));
+  }
+  return {Kind::Color, *color};
+}
+
+}  // namespace gnomon::cli

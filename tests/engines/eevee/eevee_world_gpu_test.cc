@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+// A world's light against closed forms and the reference, on the driver.
+#include "eevee_test_scene.hh"
+#include "eevee_world.hh"
+#include "gpu_device_fixture.hh"
+#include "reference_light.hh"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace gnomon::eevee {
+namespace {
+
+/** A square in the plane z = 0 that fills the view, and a world. */
+class WorldGpuTest : public test::GpuDeviceTest {
+ protected:
+  WorldGpuTest()
+  {
+    material = test::add_material(scene, {0.25F, 0.5F, 1.0F});
+    test::add_object(scene, test::add_square_mesh(scene, material), glm::scale(glm::dmat4(1.0), glm::dvec3(4.0)));
+  }
+  glm::vec3 middle(int sample_count)
+  {
+    test::Renderer renderer(*device, scene, {8, 8}, {.shadow = {.map_size_px = 256}, .sample_count = sample_count});
+    const test::Picture picture = renderer.picture(camera);
+    EXPECT_EQ(picture.non_finite_count(), 0U);
+    return glm::vec3(picture.middle());
+  }
+  glm::vec3 reference_middle(int sample_count = 4096)
+  {
+    const reference::Tracer tracer(scene);
+    const std::vector<glm::ivec2> pixels = {{4, 4}};
+    return glm::vec3(reference::direct_light(tracer, camera, {8, 8}, pixels, {.sample_count = sample_count}).front());
+  }
+  /** A picture of \a radiance in the half of all directions where \a axis is above 0, and \a other elsewhere. */
+  void add_half_world(int axis, const glm::vec3 &radiance, const glm::vec3 &other)
+  {
+    scene::WorldPicture picture{128, 64, {}};
+    for (int y = 0; y < picture.height; y++) {
+      for (int x = 0; x < picture.width; x++) {
+        const glm::dvec3 v = render_scene::direction_of((x + 0.5) / picture.width, 1.0 - (y + 0.5) / picture.height);
+        picture.texels.push_back(v[axis] > 0.0 ? radiance : other);
+      }
+    }
+    scene.set_world(scene::World{.picture = std::make_shared<const scene::WorldPicture>(std::move(picture))});
+  }
+
+  scene::Scene scene;
+  scene::Handle<scene::Material> material;
+  scene::PlacedCamera camera = test::camera_at({0.1, 0.1, 16}, {0.1, 0.1, 0}, 0.02F);
+};
+
+void expect_near(const glm::vec3 &value, const glm::vec3 &expected, float relative)
+{
+  for (int i = 0; i < 3; i++) {
+    EXPECT_NEAR(value[i], expected[i], relative * expected[i]) << "channel " << i;
+  }
+}
+
+TEST_F(WorldGpuTest, OfOneRadianceGivesAPlaneItsAlbedoTimesThat)
+{
+  scene.set_world(scene::World{.color = {2.0F, 1.0F, 0.5F}, .strength = 1.5F});
+  const glm::vec3 expected(0.75F, 0.75F, 0.75F);
+  expect_near(middle(1), expected, 1e-3F);
+  // 64 directions, half of them below the plane.
+  expect_near(middle(16), expected, 0.03F);
+  expect_near(reference_middle(), expected, 2e-3F);
+}
+
+TEST_F(WorldGpuTest, WhiteFurnaceOfAMetal)
+{
+  scene.set_world(scene::World{});
+  for (const float roughness : {0.1F, 0.4F, 1.0F}) {
+    scene.edit(material, [&](scene::Material &value) {
+      value.base_color = glm::vec3(1.0F);
+      value.metallic = 1.0F;
+      value.roughness = roughness;
+    });
+    // What a single scattering keeps: near 1 where it is smooth, and less than a third of it at a roughness of 1.
+    const glm::vec3 expected = reference_middle(2048);
+    EXPECT_GT(expected.r, roughness < 0.2F ? 0.99F : 0.3F);
+    EXPECT_LT(expected.r, 1.005F);
+    expect_near(middle(1), expected, 0.01F);
+    expect_near(middle(32), expected, 0.05F);
+  }
+}
+
+TEST_F(WorldGpuTest, LightFromOneSideIsWhereThePictureHasIt)
+{
+  // The plane sees the half space of +Z, of which a half shines that has +X: all of it, and none when the plane is
+  // turned.
+  add_half_world(2, glm::vec3(1.0F), glm::vec3(0.0F));
+  expect_near(middle(1), {0.25F, 0.5F, 1.0F}, 0.03F);
+  expect_near(reference_middle(), {0.25F, 0.5F, 1.0F}, 0.01F);
+  add_half_world(0, glm::vec3(1.0F), glm::vec3(0.0F));
+  expect_near(middle(1), {0.125F, 0.25F, 0.5F}, 0.02F);
+  expect_near(middle(16), {0.125F, 0.25F, 0.5F}, 0.05F);
+  expect_near(reference_middle(), {0.125F, 0.25F, 0.5F}, 0.01F);
+  scene.set_world([&] {
+    scene::World turned = *scene.world();
+    // +X comes to -Z: below the plane.
+    turned.rotation = float(0.5 * std::numbers::pi);
+    return turned;
+  }());
+  EXPECT_LT(middle(1).b, 0.03F);
+  EXPECT_LT(middle(16).b, 0.02F);
+  EXPECT_LT(reference_middle().b, 0.01F);
+}
+
+TEST_F(WorldGpuTest, OcclusionConvergesToTheReference)
+{
+  // A wall across the plane hides half of the sky, less what is above it.
+  test::add_object(
+      scene, test::add_square_mesh(scene, material),
+      glm::dmat4(glm::dvec4(0, 1, 0, 0), glm::dvec4(0, 0, 1, 0), glm::dvec4(1, 0, 0, 0), glm::dvec4(0.6, 0, 1, 1)));
+  add_half_world(1, {1.0F, 0.8F, 0.6F}, {0.3F, 0.3F, 0.6F});
+  const glm::vec3 expected = reference_middle();
+  EXPECT_LT(expected.b, 0.55F);
+  expect_near(middle(64), expected, 0.04F);
+}
+
+TEST_F(WorldGpuTest, BlackIsNoWorldAndCompilesNothingOfIt)
+{
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, 1.0F);
+  scene.set_world(scene::World{.strength = 0.0F});
+  test::Renderer renderer(*device, scene, {8, 8}, {.sample_count = 2});
+  static_cast<void>(renderer.picture(camera));
+  for (const std::string &name : device->live_resources()) {
+    EXPECT_EQ(name.find("world"), std::string::npos) << name;
+  }
+}
+
+}  // namespace
+}  // namespace gnomon::eevee
