@@ -614,8 +614,9 @@ void add_render(CLI::App &app, Status &status)
           ->check(CLI::Range(1e-3, 1e9))
           ->excludes(max_error);
   // What is chosen is not to be asked for, and a picture of something else has no error.
-  for (const char *name : {"--samples", "--shadow", "--shadow-size", "--pcf", "--esm", "--cascades", "--cascade-lambda",
-                           "--cascade-range", "--cube-pass", "--casters", "--shadow-memory", "--debug", "--frames", "--background"}) {
+  for (const char *name :
+       {"--samples", "--shadow", "--shadow-size", "--pcf", "--esm", "--cascades", "--cascade-lambda", "--cascade-range",
+        "--cube-pass", "--casters", "--shadow-memory", "--debug", "--frames", "--background"}) {
     max_error->excludes(command->get_option(name));
     max_time->excludes(command->get_option(name));
   }
