@@ -3,11 +3,11 @@
 
 #include "cli_shader_files.hh"
 
-#include "eevee_programs.hh"
+#include "gpu_shader.hh"
 
 namespace gnomon::cli {
 
-/** The engine's shader files: those in the program, or those of a folder. */
+/** The engines' shader files: those in the program, or those of a folder. */
 class EngineFiles {
  public:
   /** \a folder: empty for the program's own. \throws std::runtime_error if it does not exist. */
@@ -29,13 +29,18 @@ class EngineFiles {
   gpu::ShaderFiles files_;
 };
 
-/** One variant of a program of the engine. */
+/** One variant of a program of an engine. */
 struct Variant {
-  const eevee::ShaderDeclaration *declaration;
+  /** Why the program exists. */
+  std::string_view purpose;
+  /** Its name is the program's. */
   gpu::ShaderDesc desc;
 };
 
+/** Of all engines; variants of one program follow each other. */
 [[nodiscard]] std::vector<Variant> engine_variants();
+/** Number of programs among \a variants. */
+[[nodiscard]] std::size_t program_count(const std::vector<Variant> &variants);
 
 /** \throws std::runtime_error for an unknown \a name. */
 [[noreturn]] void throw_no_program(const std::string &name);

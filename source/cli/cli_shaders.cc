@@ -3,6 +3,8 @@
 
 #include "cli_shader_programs.hh"
 
+#include "eevee_programs.hh"
+
 #include <fmt/format.h>
 
 namespace gnomon::cli {
@@ -11,20 +13,21 @@ namespace {
 
 void print_list()
 {
-  std::size_t variant_count = 0;
-  for (const eevee::ShaderDeclaration &declaration : eevee::shader_declarations()) {
-    fmt::print("{}: {}\n  {}\n  {}\n", declaration.name, declaration.purpose, declaration.vertex_path,
-               declaration.fragment_path);
-    for (const eevee::Feature features : eevee::shader_variants(declaration)) {
-      const std::string defines = defines_of(eevee::shader_desc(declaration, features));
-      fmt::print("    {}\n", defines.empty() ? "(no define)" : defines);
-      variant_count++;
+  const std::vector<Variant> variants = engine_variants();
+  std::string_view program;
+  for (const Variant &variant : variants) {
+    if (variant.desc.name != program) {
+      program = variant.desc.name;
+      fmt::print("{}: {}\n  {}\n  {}\n", program, variant.purpose, variant.desc.vertex_path,
+                 variant.desc.fragment_path);
     }
+    const std::string defines = defines_of(variant.desc);
+    fmt::print("    {}\n", defines.empty() ? "(no define)" : defines);
   }
   for (const eevee::FeatureDefine &define : eevee::feature_defines()) {
     fmt::print("{}: where {}\n", define.define, define.purpose);
   }
-  fmt::print("{} programs, {} variants\n", eevee::shader_declarations().size(), variant_count);
+  fmt::print("{} programs, {} variants\n", program_count(variants), variants.size());
 }
 
 }  // namespace

@@ -93,9 +93,10 @@ ShaderReport check_engine(const CheckArguments &arguments)
 {
   const EngineFiles files(arguments.shaders);
   std::vector<gpu::ShaderDesc> descs;
-  for (Variant &variant : engine_variants()) {
-    if (arguments.program.empty() || variant.declaration->name == arguments.program) {
-      descs.push_back(std::move(variant.desc));
+  const std::vector<Variant> variants = engine_variants();
+  for (const Variant &variant : variants) {
+    if (arguments.program.empty() || variant.desc.name == arguments.program) {
+      descs.push_back(variant.desc);
     }
   }
   if (descs.empty()) {
@@ -105,7 +106,7 @@ ShaderReport check_engine(const CheckArguments &arguments)
   options.blocks = eevee::block_layouts();
   options.is_block_size_strict = true;
   ShaderReport report = check_all(descs, files.files(), options, targets_of(arguments.target));
-  report.program_count = arguments.program.empty() ? eevee::shader_declarations().size() : 1;
+  report.program_count = arguments.program.empty() ? program_count(variants) : 1;
   for (shader_check::CheckMessage &message : report.messages) {
     message.file = files.shown(message.file);
   }

@@ -32,7 +32,7 @@ gpu::ShaderDesc find_variant(const ReflectArguments &arguments)
     return words;
   };
   std::vector<Variant> variants = engine_variants();
-  std::erase_if(variants, [&](const Variant &variant) { return variant.declaration->name != arguments.program; });
+  std::erase_if(variants, [&](const Variant &variant) { return variant.desc.name != arguments.program; });
   if (variants.empty()) {
     throw_no_program(arguments.program);
   }

@@ -77,8 +77,11 @@ void Viewport::draw(std::span<Engine *const> engines, const View &view, const Ta
   }
   check(target, size_px_);
   target_ = target;
-  if (view != view_) {
+  std::vector<std::uint64_t> drawn_by;
+  std::ranges::transform(engines, std::back_inserter(drawn_by), &Engine::id);
+  if (view != view_ || drawn_by != drawn_by_) {
     view_ = view;
+    drawn_by_ = std::move(drawn_by);
     restart();
   }
   try {

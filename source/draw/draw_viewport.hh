@@ -26,8 +26,8 @@ struct EngineViewportData {
  * each engine keeps for it. Must be destroyed before its device.
  *
  * Each draw adds a sample to the picture until the engines have all that they are to draw. A picture begins anew when
- * its view or its size changes, after a sync in which an engine finds a change, where a packet with samples of it is
- * lost, and by restart().
+ * its view, its size or its engines change, after a sync in which an engine finds a change, where a packet with samples
+ * of it is lost, and by restart().
  */
 class Viewport {
  public:
@@ -134,6 +134,8 @@ class Viewport {
   gpu::Texture depth_texture_;
   /** Of the samples drawn. */
   View view_;
+  /** Engine::id of the engines that drew them. */
+  std::vector<std::uint64_t> drawn_by_;
   Target target_;
   int samples_drawn_ = 0;
   /** gpu::Device::loss_count when the last sample was drawn. */

@@ -69,11 +69,14 @@ Changes changes(const Material &a, const Material &b)
                             same_bytes(a.roughness, b.roughness) && same_bytes(a.specular, b.specular) &&
                             same_bytes(a.specular_color, b.specular_color) && same_bytes(a.emissive, b.emissive) &&
                             same_bytes(a.normal_scale, b.normal_scale) &&
-                            same_bytes(a.occlusion_strength, b.occlusion_strength) && a.is_unlit == b.is_unlit;
+                            same_bytes(a.occlusion_strength, b.occlusion_strength);
   const bool same_coverage = same_bytes(a.alpha, b.alpha) && a.alpha_mode == b.alpha_mode &&
                              same_bytes(a.alpha_cutoff, b.alpha_cutoff) && a.is_double_sided == b.is_double_sided;
-  const bool same_textures = std::ranges::all_of(
-      texture_inputs, [&](const TextureInput &input) { return same_slot(a.*input.slot, b.*input.slot); });
+  // An unlit material reads fewer textures.
+  const bool same_textures =
+      a.is_unlit == b.is_unlit && std::ranges::all_of(texture_inputs, [&](const TextureInput &input) {
+        return same_slot(a.*input.slot, b.*input.slot);
+      });
   return bit_if(a.name != b.name, Name) | bit_if(!same_surface, Surface) | bit_if(!same_coverage, Coverage) |
          bit_if(!same_textures, Textures);
 }

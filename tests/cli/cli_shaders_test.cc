@@ -2,6 +2,7 @@
 // `gnomon shaders`: mistakes planted in a copy of the engine's shaders, and a user's own shaders.
 #include "cli_process.hh"
 
+#include "cli_shader_programs.hh"
 #include "eevee_shaders.hh"
 
 #include <nlohmann/json.hpp>
@@ -31,28 +32,11 @@ std::size_t count_of(const std::string &text, const std::string &part)
 }
 
 /** Number of programs and variants that the engine declares, of the programs for which \a is_counted. */
-template <typename Predicate>
-std::size_t variant_count(const Predicate &is_counted)
-{
-  std::size_t count = 0;
-  for (const eevee::ShaderDeclaration &declaration : eevee::shader_declarations()) {
-    for (const eevee::Feature features : eevee::shader_variants(declaration)) {
-      count += is_counted(features) ? 1 : 0;
-    }
-  }
-  return count;
-}
-
-std::size_t variant_count()
-{
-  return variant_count([](eevee::Feature) { return true; });
-}
-
-/** For example "12 programs, 34 variants". */
+/** For example "12 programs, 34 variants"; of all engines. */
 std::string programs_and_variants()
 {
-  return std::to_string(eevee::shader_declarations().size()) + " programs, " + std::to_string(variant_count()) +
-         " variants";
+  const std::vector<cli::Variant> variants = cli::engine_variants();
+  return std::to_string(cli::program_count(variants)) + " programs, " + std::to_string(variants.size()) + " variants";
 }
 
 class ShadersTest : public test::ProgramTest {

@@ -462,7 +462,7 @@ TEST(SceneRevision, EachEditChangesItsAspectAlone)
        {Material::Aspect::Coverage, [](Material &material) { material.is_double_sided = true; }},
        {Material::Aspect::Surface, [](Material &material) { material.normal_scale = 0.5F; }},
        {Material::Aspect::Surface, [](Material &material) { material.occlusion_strength = 0.5F; }},
-       {Material::Aspect::Surface, [](Material &material) { material.is_unlit = true; }},
+       {Material::Aspect::Textures, [](Material &material) { material.is_unlit = true; }},
        {Material::Aspect::Textures,
         [](Material &material) {
           material.base_color_texture = Handle<Texture>{7, 1};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The engine's programs as data. The build generates their interfaces from it (interface_tool/), so that this header
+// The engine's programs as data. The build generates their interfaces from it (../interface_tool/), so that this header
 // may use no other header of the engine but eevee_features.hh.
 #pragma once
 

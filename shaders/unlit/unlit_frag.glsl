@@ -1,0 +1,68 @@
+#version 450 core
+// SPDX-License-Identifier: MIT
+// A surface without light: its base colour and what it emits, black where the depth camera does not see it.
+#include "eevee/eevee_material_lib.glsl"
+#if defined(USE_FULL_MATERIAL)
+#  include "eevee/eevee_full_material_lib.glsl"
+#elif defined(USE_BASE_COLOR_TEXTURE)
+#  include "draw/draw_view_lib.glsl"
+#  include "eevee/eevee_base_color_lib.glsl"
+#endif
+#ifdef USE_DEPTH_CAMERA
+#  include "unlit/unlit_depth_camera_lib.glsl"
+
+layout(binding = DEPTH_SLOT) uniform sampler2D depth_texture;
+
+layout(location = 0) in vec4 depth_camera_position;
+
+/**
+ * 1 where something is between the depth camera and the surface, otherwise 0. The receiver is a plane in (u, v, depth), whatever the
+ * projection, so its depth at the middle of the texel follows from the derivatives (Isidoro 2006, receiver plane depth bias).
+ */
+float shadow()
+{
+  vec3 place = depth_camera_position.xyz / depth_camera_position.w;
+  vec2 texels = vec2(textureSize(depth_texture, 0));
+  vec2 texel = (0.5 * place.xy + 0.5) * texels;
+  // Before any branch: neighbours take part in derivatives.
+  vec3 across = dFdx(vec3(texel, place.z));
+  vec3 up = dFdy(vec3(texel, place.z));
+  if (depth_camera_position.w <= 0.0 || place.z > 1.0 || any(lessThan(texel, vec2(0.0))) ||
+      any(greaterThanEqual(texel, texels))) {
+    return 0.0;
+  }
+  float area = across.x * up.y - across.y * up.x;
+  vec2 slope = vec2(across.z * up.y - up.z * across.y, up.z * across.x - across.z * up.x);
+  vec2 to_middle = floor(texel) + 0.5 - texel;
+  // Seen edge-on, the plane has no depth of its own at the middle of the texel.
+  float depth = place.z + (area != 0.0 ? dot(slope / area, to_middle) : 0.0);
+  float stored = texelFetch(depth_texture, ivec2(texel), 0).r;
+  // Reversed: a nearer surface has a greater depth.
+  return stored > depth + depth_tolerance.x * place.z + depth_tolerance.y ? 1.0 : 0.0;
+}
+#endif
+
+layout(location = 0) out vec4 radiance;
+
+void main()
+{
+#ifdef USE_FULL_MATERIAL
+  MaterialData material = full_material();
+#else
+  MaterialData material = materials[surface_material];
+#endif
+  vec3 color = material.diffuse + material.metal_f0;
+#ifdef USE_BASE_COLOR_TEXTURE
+  color *= texture(base_color_texture, surface_uv, view.texture_lod_bias).rgb;
+#endif
+  color += material.emissive;
+#ifdef USE_DEPTH_CAMERA
+  color *= 1.0 - shadow();
+#endif
+  radiance = vec4(color, 1.0);
+#if defined(USE_FULL_MATERIAL) || defined(USE_BASE_COLOR_TEXTURE)
+  if (is_cut_out(materials[surface_material].mask_cutoff)) {
+    discard;
+  }
+#endif
+}

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// A tool of the build: writes the interfaces of an engine's programs to a file.
+#include "eevee_programs.hh"
+#include "unlit_programs.hh"
+
+#include "shader_check_interfaces.hh"
+#include "shader_files.hh"
+
+#include <exception>
+#include <fstream>
+
+namespace {
+
+using namespace gnomon;
+using Entries = std::vector<shader_check::TableEntry>;
+
+Entries eevee_entries()
+{
+  // Kernels that take each branch of the lookup. Others differ from these in numbers only.
+  constexpr eevee::PcfKernel kernels[] = {{.width = 3}, {.width = 0}};
+  Entries entries;
+  for (const eevee::ShaderDeclaration &declaration : eevee::shader_declarations()) {
+    for (const eevee::Feature features : eevee::shader_variants(declaration)) {
+      for (const eevee::PcfKernel &kernel : kernels) {
+        gpu::ShaderDesc desc = eevee::shader_desc(declaration, features, kernel);
+        if (entries.empty() || entries.back().desc.name != desc.name || entries.back().desc.defines != desc.defines) {
+          entries.push_back({std::uint32_t(features), std::move(desc)});
+        }
+      }
+    }
+  }
+  return entries;
+}
+
+Entries unlit_entries()
+{
+  Entries entries;
+  for (const unlit::ShaderDeclaration &declaration : unlit::shader_declarations()) {
+    for (const unlit::Feature features : unlit::shader_variants(declaration)) {
+      entries.push_back({std::uint32_t(features), unlit::shader_desc(declaration, features)});
+    }
+  }
+  return entries;
+}
+
+}  // namespace
+
+int main(int argument_count, char **arguments)
+{
+  const std::string engine = argument_count == 3 ? arguments[1] : "";
+  if (engine != "eevee" && engine != "unlit") {
+    fmt::print(stderr, "usage: {} eevee|unlit OUTPUT.cc\n", arguments[0]);
+    return 2;
+  }
+  try {
+    const auto programs =
+        shader_check::variant_interfaces(engine == "eevee" ? eevee_entries() : unlit_entries(), shaders::file);
+    std::ofstream file(arguments[2]);
+    file << shader_check::table_source(programs, engine + "_interfaces.hh", "gnomon::" + engine + "::interface_tables");
+    file.close();
+    if (!file) {
+      throw gpu::Error("{} cannot be written", arguments[2]);
+    }
+  }
+  catch (const std::exception &error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,420 @@
+// SPDX-License-Identifier: MIT
+#include "unlit_engine.hh"
+
+#include "unlit_depth_camera.hh"
+#include "unlit_interfaces.hh"
+
+#include "draw_target_pass.hh"
+#include "draw_view_shared.h"
+#include "gpu_framebuffer_stack.hh"
+#include "render_camera.hh"
+#include "render_surfaces.hh"
+#include "shader_files.hh"
+
+#include <algorithm>
+#include <tuple>
+
+namespace gnomon::unlit {
+
+namespace {
+
+using gpu::State;
+using render_scene::MaterialClass;
+
+Feature feature_of(MaterialClass material_class)
+{
+  switch (material_class) {
+    case MaterialClass::BaseColor: return Feature::BaseColorTexture;
+    case MaterialClass::Full: return Feature::FullMaterial;
+    default: return Feature::None;
+  }
+}
+
+Feature mask_features(MaterialClass mask_class)
+{
+  return mask_class == MaterialClass::Plain ? Feature::None
+                                            : Feature::AlphaMask | (feature_of(mask_class) & Feature::FullMaterial);
+}
+
+/** Blocks of the render scene, which passes read by reference. */
+struct SceneBlocks {
+  gpu::BufferRange objects;
+  gpu::BufferRange materials;
+  gpu::BufferRange full_materials;
+
+  void update(const render_scene::RenderScene &scene, const draw::ObjectBuffer &object_buffer)
+  {
+    objects = {object_buffer.buffer().id()};
+    materials = {scene.materials().buffer().id()};
+    full_materials = {scene.materials().full_buffer().id()};
+  }
+  void bind(draw::ShadingGroup &group) const
+  {
+    group.bind_storage_ref("object_block", &objects);
+    group.bind_storage_ref("material_block", &materials);
+    group.bind_storage_ref("full_material_block", &full_materials);
+  }
+};
+
+/** Of everything that recorded passes depend on. */
+struct PassesKey {
+  std::uint64_t structure = 0;
+  std::uint64_t passes = 0;
+  std::uint64_t settings = 0;
+  gpu::ResourceId depth_texture = 0;
+
+  bool operator==(const PassesKey &) const = default;
+};
+
+/** Of everything that a picture depends on, beside its view and size. */
+struct PictureKey {
+  std::uint64_t objects = 0;
+  std::uint64_t lamps = 0;
+  std::uint64_t passes = 0;
+  std::uint64_t materials = 0;
+  std::uint64_t settings = 0;
+
+  bool operator==(const PictureKey &) const = default;
+};
+
+/** Of everything that the depth camera's picture depends on, beside its size. */
+struct DepthKey {
+  std::uint64_t objects = 0;
+  std::uint64_t passes = 0;
+  draw::View view;
+
+  bool operator==(const DepthKey &) const = default;
+};
+
+gpu::Buffer create_view_block(gpu::Device &device, const char *name)
+{
+  return device.create_buffer({name, gpu::BufferKind::Uniform, sizeof(shared::ViewData)});
+}
+
+/** Without what only lit surfaces read. */
+void update_view_block(gpu::Device &device, const gpu::Buffer &block, const draw::View &view)
+{
+  shared::ViewData data{};
+  data.clip_from_world = view.clip_from_world();
+  device.update(block, data);
+}
+
+}  // namespace
+
+/** A viewport's. */
+struct Data final : draw::EngineViewportData {
+  void resized() override
+  {
+    framebuffer = {};
+    radiance = {};
+  }
+
+  std::vector<draw::ObjectIndex> objects;
+  /** Between cache_init and cache_finish. */
+  bool is_collecting = false;
+  /** By ObjectIndex, as recorded. */
+  std::vector<bool> is_mirrored;
+  bool is_winding_changed = false;
+  bool needs_full_materials = false;
+  bool is_seen = false;
+  gpu::Texture radiance;
+  gpu::Framebuffer framebuffer;
+  gpu::Buffer view_block;
+  gpu::Sampler nearest;
+  SceneBlocks blocks;
+  std::optional<draw::Pass> surfaces;
+  draw::TargetPass target_pass;
+  PassesKey recorded;
+  std::optional<PictureKey> synced_picture;
+};
+
+struct Engine::DepthCamera {
+  draw::View view;
+  glm::mat4 clip_from_world{1.0F};
+  /** \see unlit_depth_camera_lib.glsl */
+  glm::vec2 tolerance{0.0F};
+  gpu::Texture texture;
+  gpu::Framebuffer framebuffer;
+  gpu::Buffer view_block;
+  SceneBlocks blocks;
+  std::optional<draw::Pass> casters;
+  PassesKey recorded;
+  /** Of the picture in the texture; nothing: none. */
+  std::optional<DepthKey> drawn;
+};
+
+static PictureKey picture_key(render_scene::RenderScene &scene, std::uint64_t settings)
+{
+  return {scene.objects().revision(), scene.lamps_revision(), scene.passes_revision(), scene.materials_revision(),
+          settings};
+}
+
+Engine::Engine(render_scene::RenderScene &scene, const Settings &settings) : scene_(scene), settings_(settings) {}
+
+Engine::~Engine() = default;
+
+const gpu::Shader &Engine::shader(gpu::Device &device, ShaderId id, Feature features)
+{
+  const ShaderDeclaration &declaration = shader_declarations()[std::size_t(id)];
+  const Feature variant = features & declaration.features;
+  gpu::Shader &shader = shaders_[{id, variant}];
+  if (!shader) {
+    shader = device.create_shader(shader_desc(declaration, variant), shaders::file,
+                                  [&](std::string_view, const std::vector<gpu::ShaderSource> &) {
+                                    return interface_tables()[std::size_t(id)].interface_of(std::uint32_t(variant));
+                                  });
+  }
+  return shader;
+}
+
+void Engine::init(draw::Viewport &viewport)
+{
+  if (settings_.depth_size_px.x < 1 || settings_.depth_size_px.y < 1) {
+    throw gpu::Error("unlit: a depth camera's picture of {}x{} pixels is not at least 1x1", settings_.depth_size_px.x,
+                     settings_.depth_size_px.y);
+  }
+  viewport.engine_data<Data>(*this);
+}
+
+void Engine::cache_init(draw::Viewport &viewport)
+{
+  Data &data = viewport.engine_data<Data>(*this);
+  data.objects.clear();
+  data.is_collecting = true;
+}
+
+void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectBuffer &objects, draw::ObjectIndex object)
+{
+  Data &data = viewport.engine_data<Data>(*this);
+  if (data.is_collecting) {
+    data.objects.push_back(object);
+  }
+  else if (object < data.is_mirrored.size()) {
+    data.is_winding_changed |= data.is_mirrored[object] != draw::is_mirrored(objects.world_from_object(object));
+  }
+}
+
+void Engine::cache_finish(draw::Viewport &viewport)
+{
+  Data &data = viewport.engine_data<Data>(*this);
+  data.is_collecting = false;
+  const PictureKey picture = picture_key(scene_, settings_revision_);
+  if (data.synced_picture != picture) {
+    data.synced_picture = picture;
+    viewport.restart();
+  }
+}
+
+void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
+{
+  Data &data = viewport.engine_data<Data>(*this);
+  if (!data.synced_picture) {
+    throw gpu::Error("unlit: nothing to draw, as the viewport was not synced");
+  }
+  if (viewport.samples_drawn() == 0) {
+    draw_sample(viewport, data, view);
+  }
+  const draw::Target &target = viewport.target();
+  if (!target) {
+    return;
+  }
+  const Feature features = target.depth ? Feature::TargetDepth : Feature::None;
+  data.target_pass.set(
+      target, {.radiance = data.radiance, .depth = &viewport.depth_texture(), .clip_from_view = view.clip_from_view()},
+      shader(viewport.device(), ShaderId::Target, features), data.nearest);
+  // Black is black whatever the transform, and has no alpha: a picture of nothing takes a clear.
+  const gpu::LoadAction load = data.is_seen ? gpu::LoadAction::Load : gpu::LoadAction::Clear;
+  gpu::CommandList list;
+  draw::begin_pass(list, "unlit target", target, viewport.size_px(),
+                   {.color_load = load,
+                    .depth_load = target.depth ? load : gpu::LoadAction::Load,
+                    .clear_depth = data.target_pass.background_depth()});
+  if (data.is_seen) {
+    data.target_pass.record(list);
+  }
+  list.end_pass();
+  viewport.device().submit(list);
+}
+
+/** What the depth camera sees goes to its render texture in the middle of the viewport's pass, where it is out of date.
+ */
+void Engine::draw_sample(draw::Viewport &viewport, Data &data, const draw::View &view)
+{
+  gpu::Device &device = viewport.device();
+  if (!data.framebuffer) {
+    data.radiance = device.create_texture({.name = "unlit_radiance",
+                                           .format = gpu::Format::RGBA16F,
+                                           .width = viewport.size_px().x,
+                                           .height = viewport.size_px().y});
+    data.framebuffer = device.create_framebuffer(
+        {.name = "unlit_fb", .colors = {{&data.radiance}}, .depth = {&viewport.depth_texture()}});
+    data.view_block = create_view_block(device, "unlit_view_block");
+    data.nearest = device.create_sampler({.name = "unlit_nearest"});
+    data.recorded = {};
+  }
+  data.is_seen = std::ranges::any_of(
+      data.objects, [&](draw::ObjectIndex object) { return view.touches(scene_.objects().volume(object)); });
+  gpu::CommandList list;
+  gpu::FramebufferStack stack(list);
+  DepthKey depth{scene_.objects().revision(), scene_.passes_revision(), {}};
+  bool is_depth_drawn = false;
+  if (data.is_seen) {
+    update_depth_camera(device, data.objects);
+    record(data, device);
+    update_view_block(device, data.view_block, view);
+    if (depth_camera_) {
+      depth.view = depth_camera_->view;
+      is_depth_drawn = depth_camera_->drawn != depth;
+    }
+  }
+  stack.push("unlit", data.framebuffer, {});
+  if (is_depth_drawn) {
+    stack.push("unlit depth camera", depth_camera_->framebuffer, {});
+    depth_camera_->casters->record(depth_camera_->view, list);
+    stack.pop();
+  }
+  if (data.is_seen) {
+    data.surfaces->record(view, list);
+  }
+  stack.pop();
+  device.submit(list);
+  if (is_depth_drawn) {
+    depth_camera_->drawn = depth;
+  }
+}
+
+/** Where it stands, its texture, and its passes, as far as they changed. */
+void Engine::update_depth_camera(gpu::Device &device, std::span<const draw::ObjectIndex> objects)
+{
+  std::optional<draw::View> view;
+  if (settings_.has_shadow && settings_.depth_camera) {
+    view = render_scene::view_of(*settings_.depth_camera, settings_.depth_size_px, scene_.origin_ws());
+  }
+  else if (settings_.has_shadow) {
+    // Lamps and bounds are relative to the origin.
+    for (const scene::PlacedLamp &lamp : scene_.lamps()) {
+      if (const auto camera = depth_camera_of(lamp, scene_.bounds())) {
+        view = render_scene::view_of(*camera, settings_.depth_size_px);
+        break;
+      }
+    }
+  }
+  if (!view) {
+    depth_camera_.reset();
+    return;
+  }
+  if (!depth_camera_) {
+    depth_camera_ = std::make_unique<DepthCamera>();
+  }
+  DepthCamera &camera = *depth_camera_;
+  camera.view = *view;
+  camera.clip_from_world = view->clip_from_world();
+  // A perspective depth is near / distance: its rounding error is a part of it. A parallel one is a part of the range.
+  camera.tolerance = view->is_perspective() ? glm::vec2(1e-5F, 0.0F) : glm::vec2(0.0F, 1e-6F);
+  const glm::ivec2 size_px = settings_.depth_size_px;
+  if (!camera.texture || camera.texture.desc().width != size_px.x || camera.texture.desc().height != size_px.y) {
+    camera.drawn.reset();
+    camera.framebuffer = {};
+    camera.texture = device.create_texture(
+        {.name = "unlit_depth_camera", .format = gpu::Format::Depth32F, .width = size_px.x, .height = size_px.y});
+    camera.framebuffer =
+        device.create_framebuffer({.name = "unlit_depth_camera_fb", .colors = {}, .depth = {&camera.texture}});
+    camera.view_block = create_view_block(device, "unlit_depth_view_block");
+  }
+  update_view_block(device, camera.view_block, camera.view);
+  const PassesKey key{.structure = scene_.objects().structure_revision(),
+                      .passes = scene_.passes_revision(),
+                      .settings = settings_revision_,
+                      .depth_texture = camera.texture.id()};
+  if (camera.recorded == key) {
+    return;
+  }
+  camera.recorded = {};
+  camera.casters.emplace("unlit depth camera", State::WriteDepth | State::DepthNearerEqual, &scene_.objects());
+  std::map<std::pair<MaterialClass, render_scene::TextureSet>, draw::ShadingGroup *> groups;
+  for (const draw::ObjectIndex index : objects) {
+    const render_scene::RenderObject &object = scene_.object(index);
+    if (!object.casts_shadow) {
+      continue;
+    }
+    const scene::Mesh &mesh = scene_.scene().meshes()[object.mesh];
+    const MaterialClass cut_out = render_scene::mask_class(scene_.scene(), mesh);
+    const render_scene::TextureSet textures = render_scene::textures_of(scene_.scene(), mesh, cut_out);
+    draw::ShadingGroup *&group = groups[{cut_out, textures}];
+    if (!group) {
+      group = &camera.casters->group(shader(device, ShaderId::Depth, mask_features(cut_out)));
+      group->bind_uniform("view_block", camera.view_block);
+      camera.blocks.bind(*group);
+      render_scene::bind_textures(*group, scene_, cut_out, textures);
+    }
+    group->call(scene_.batch(object.mesh, render_scene::streams_of(cut_out)), index);
+  }
+  camera.recorded = key;
+}
+
+void Engine::record(Data &data, gpu::Device &device)
+{
+  const scene::Scene &scene = scene_.scene();
+  const PassesKey key{.structure = scene_.objects().structure_revision(),
+                      .passes = scene_.passes_revision(),
+                      .settings = settings_revision_,
+                      .depth_texture = depth_camera_ ? depth_camera_->texture.id() : 0};
+  if (data.recorded != key || std::exchange(data.is_winding_changed, false)) {
+    data.recorded = {};
+    data.needs_full_materials = false;
+    data.surfaces.emplace("unlit", State::WriteColor | State::WriteDepth | State::DepthNearerEqual, &scene_.objects());
+    data.is_mirrored.assign(scene_.objects().index_end(), false);
+    std::map<std::tuple<Feature, State, render_scene::TextureSet>, draw::ShadingGroup *> groups;
+    for (const draw::ObjectIndex index : data.objects) {
+      const render_scene::RenderObject &object = scene_.object(index);
+      const scene::Mesh &mesh = scene.meshes()[object.mesh];
+      const MaterialClass surface = render_scene::material_class(scene, mesh);
+      data.needs_full_materials |= surface == MaterialClass::Full;
+      data.is_mirrored[index] = draw::is_mirrored(scene_.objects().world_from_object(index));
+      const bool is_receiver = depth_camera_ && object.receives_shadow;
+      const Feature features = feature_of(surface) | (is_receiver ? Feature::DepthCamera : Feature::None);
+      const State state = (scene.material_of(mesh).is_double_sided ? State::None : State::CullBack) |
+                          (data.is_mirrored[index] ? State::FrontClockwise : State::None);
+      const render_scene::TextureSet textures = render_scene::textures_of(scene, mesh, surface);
+      draw::ShadingGroup *&group = groups[{features, state, textures}];
+      if (!group) {
+        group = &data.surfaces->group(shader(device, ShaderId::Surface, features));
+        group->state_enable(state);
+        group->bind_uniform("view_block", data.view_block);
+        data.blocks.bind(*group);
+        render_scene::bind_textures(*group, scene_, surface, textures);
+        if (is_receiver) {
+          group->bind_texture("depth_texture", depth_camera_->texture, data.nearest);
+          group->constant_ref("clip_from_world", &depth_camera_->clip_from_world);
+          group->constant_ref("depth_tolerance", &depth_camera_->tolerance);
+        }
+      }
+      group->call(scene_.batch(object.mesh, render_scene::streams_of(surface)), index);
+    }
+    data.recorded = key;
+  }
+  scene_.upload(data.needs_full_materials);
+  data.blocks.update(scene_, scene_.objects());
+  if (depth_camera_) {
+    depth_camera_->blocks.update(scene_, scene_.objects());
+  }
+}
+
+const gpu::Texture &Engine::radiance(draw::Viewport &viewport) const
+{
+  const Data &data = viewport.engine_data<Data>(*this);
+  GNOMON_ASSERT(data.radiance, "unlit: the viewport was never drawn");
+  return data.radiance;
+}
+
+const gpu::Texture *Engine::depth_camera_texture() const
+{
+  return depth_camera_ ? &depth_camera_->texture : nullptr;
+}
+
+draw::EngineType engine_type(render_scene::RenderScene &scene, const Settings &settings)
+{
+  return {"unlit", [&scene, settings] { return std::make_unique<Engine>(scene, settings); }};
+}
+
+}  // namespace gnomon::unlit

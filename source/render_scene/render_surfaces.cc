@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include "render_surfaces.hh"
+
+namespace gnomon::render_scene {
+
+/** Inputs that a program of the class reads: the first of scene::texture_inputs. */
+static std::size_t input_count(MaterialClass material_class)
+{
+  switch (material_class) {
+    case MaterialClass::BaseColor: return 1;
+    case MaterialClass::Full: return scene::texture_inputs.size();
+    default: return 0;
+  }
+}
+
+MeshStreams streams_of(MaterialClass material_class)
+{
+  switch (material_class) {
+    case MaterialClass::BaseColor: return MeshStreams::Uvs;
+    case MaterialClass::Full: return MeshStreams::All;
+    default: return MeshStreams::Shape;
+  }
+}
+
+TextureSet textures_of(const scene::Scene &scene, const scene::Mesh &mesh, MaterialClass material_class)
+{
+  const scene::Material &material = scene.material_of(mesh);
+  TextureSet set;
+  for (std::size_t i = 0; i < input_count(material_class); i++) {
+    const scene::TextureSlot &slot = material.*scene::texture_inputs[i].slot;
+    set[i] = is_drawable(scene, slot.texture) ? slot.texture : scene::Handle<scene::Texture>();
+  }
+  return set;
+}
+
+MaterialClass mask_class(const scene::Scene &scene, const scene::Mesh &mesh)
+{
+  return is_masked(scene, mesh) ? material_class(scene, mesh) : MaterialClass::Plain;
+}
+
+void bind_textures(draw::ShadingGroup &group, RenderScene &scene, MaterialClass material_class, const TextureSet &set)
+{
+  for (std::size_t i = 0; i < input_count(material_class); i++) {
+    const scene::TextureInput &input = scene::texture_inputs[i];
+    const auto [image, sampler] = scene.texture(set[i], input.is_color);
+    group.bind_texture(input.name, image, sampler);
+  }
+}
+
+}  // namespace gnomon::render_scene

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+#include "unlit_engine.hh"
+
+#include "eevee_engine.hh"
+#include "engines/eevee/eevee_test_scene.hh"
+#include "gpu_device_fixture.hh"
+#include "gpu_read.hh"
+#include "render_camera.hh"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/packing.hpp>
+
+namespace gnomon::unlit {
+namespace {
+
+constexpr glm::vec3 ground_color(0.75F, 0.5F, 0.25F);
+
+class UnlitGpuTest : public test::GpuDeviceTest {
+ protected:
+  void SetUp() override
+  {
+    GpuDeviceTest::SetUp();
+    if (device) {
+      render_scene.emplace(*device, scene);
+      viewport.emplace(*device, size_px);
+    }
+  }
+  /** An engine's picture of the scene, by draws as often as it needs. */
+  void draw(draw::Engine &engine, int draw_count = 1)
+  {
+    render_scene->update();
+    const std::array<draw::Engine *, 1> engines = {&engine};
+    viewport->sync(engines, render_scene->objects());
+    for (int i = 0; i < draw_count; i++) {
+      viewport->draw(engines, render_scene::view_of(camera, size_px));
+    }
+  }
+  test::Picture picture(Engine &engine)
+  {
+    draw(engine);
+    test::Picture picture{size_px, {}};
+    for (const std::uint64_t texel : gpu::read_as<std::uint64_t>(*device, engine.radiance(*viewport))) {
+      picture.pixels.push_back(glm::unpackHalf4x16(texel));
+    }
+    EXPECT_EQ(picture.non_finite_count(), 0U);
+    return picture;
+  }
+  void add_ground()
+  {
+    test::add_object(scene, test::add_square_mesh(scene, test::add_material(scene, ground_color)),
+                     glm::scale(glm::dmat4(1), glm::dvec3(2)));
+  }
+  /** Where the ray through the middle of a pixel meets the plane of this z. */
+  [[nodiscard]] glm::dvec2 hit(int x, int y, double z) const
+  {
+    const glm::dmat4 view_from_clip = glm::inverse(glm::dmat4(render_scene::view_of(camera, size_px).clip_from_view()));
+    const glm::dvec2 ndc = 2.0 * (glm::dvec2(x, y) + 0.5) / glm::dvec2(size_px) - 1.0;
+    const glm::dvec4 near = view_from_clip * glm::dvec4(ndc, 1, 1);
+    const glm::dvec3 eye(camera.world_from_camera[3]);
+    const glm::dvec3 way(camera.world_from_camera * glm::dvec4(glm::dvec3(near) / near.w, 0));
+    return glm::dvec2(eye + way * ((z - eye.z) / way.z));
+  }
+
+  static constexpr glm::ivec2 size_px{64, 48};
+  scene::Scene scene;
+  scene::PlacedCamera camera = test::camera_at({0, -5, 6}, {0, 0, 0});
+  std::optional<render_scene::RenderScene> render_scene;
+  std::optional<draw::Viewport> viewport;
+};
+
+TEST_F(UnlitGpuTest, TheGroundIsItsColorAndBlackWhereTheCasterHidesItFromTheDepthCamera)
+{
+  add_ground();
+  test::add_object(scene, test::add_square_mesh(scene, test::add_material(scene, {0, 0, 1})),
+                   glm::scale(glm::translate(glm::dmat4(1), {0, 0, 1}), glm::dvec3(0.5)));
+  const glm::dvec2 slant(0.9, 0.4);
+  test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 2}, {slant, -1}, 1.0F);
+  Engine engine(*render_scene);
+  const test::Picture unlit = picture(engine);
+  // A texel of the depth camera, whose picture is as wide as the scene's sphere, at the slant of the light.
+  constexpr double margin = 2 * 3.1 / 1024 * 1.5;
+  int shadowed = 0;
+  int lit = 0;
+  for (int y = 0; y < size_px.y; y++) {
+    for (int x = 0; x < size_px.x; x++) {
+      const glm::dvec2 ground = glm::abs(hit(x, y, 0));
+      const glm::dvec2 caster = glm::abs(hit(x, y, 1));
+      // Distance of a place from the edge of a square around the middle, negative inside.
+      const auto outside = [](glm::dvec2 place, double half) {
+        return std::max(std::abs(place.x), std::abs(place.y)) - half;
+      };
+      if (outside(ground, 2) > -1e-3 || outside(caster, 0.5) < 1e-3) {
+        continue;
+      }
+      const double from_shadow = outside(hit(x, y, 0) - slant, 0.5);
+      if (std::abs(from_shadow) < margin) {
+        continue;
+      }
+      (from_shadow < 0 ? shadowed : lit)++;
+      const glm::vec3 expected = from_shadow < 0 ? glm::vec3(0) : ground_color;
+      EXPECT_EQ(unlit.at(x, y), glm::vec4(expected, 1)) << x << ", " << y;
+    }
+  }
+  EXPECT_GT(shadowed, 30);
+  EXPECT_GT(lit, 500);
+}
+
+/** Without the receiver's plane, half of each coarse texel would hide itself. */
+TEST_F(UnlitGpuTest, APlaneThatACoarseDepthCameraSeesAtASlantHidesNothingOfItself)
+{
+  add_ground();
+  for (const scene::LampKind kind : {scene::LampKind::Spot, scene::LampKind::Sun, scene::LampKind::Point}) {
+    test::remove_lamps(scene);
+    test::add_lamp(scene, kind, {-6, 1, 1.5}, {6, -1, -1.5}, 1.0F);
+    Engine engine(*render_scene, {.depth_size_px = {48, 32}});
+    const test::Picture unlit = picture(engine);
+    for (const glm::vec4 &pixel : unlit.pixels) {
+      if (pixel.a > 0) {
+        EXPECT_EQ(pixel, glm::vec4(ground_color, 1)) << int(kind);
+      }
+    }
+    viewport->remove_engine(engine);
+  }
+}
+
+TEST_F(UnlitGpuTest, TexturesTintTheBaseColorAndUnlitMaterialsAreShownToo)
+{
+  const auto material = test::add_material(scene, {0.5F, 1, 1});
+  const std::vector<std::uint8_t> red_and_green = {255, 0, 0, 255, 0, 255, 0, 255};
+  scene.edit(material, [&](scene::Material &one) {
+    one.base_color_texture = {test::add_texture(scene, 2, red_and_green)};
+    one.emissive = {0, 0, 0.25F};
+  });
+  test::add_object(scene, test::add_square_mesh(scene, material), glm::scale(glm::dmat4(1), glm::dvec3(3)));
+  Engine engine(*render_scene);
+  const test::Picture textured = picture(engine);
+  EXPECT_EQ(textured.at(size_px.x / 4, size_px.y / 2), glm::vec4(0.5F, 0, 0.25F, 1));
+  EXPECT_EQ(textured.at(3 * size_px.x / 4, size_px.y / 2), glm::vec4(0, 1, 0.25F, 1));
+  scene.edit(material, [](scene::Material &one) { one.is_unlit = true; });
+  EXPECT_EQ(picture(engine).at(size_px.x / 4, size_px.y / 2), glm::vec4(0.5F, 0, 0, 1));
+}
+
+TEST_F(UnlitGpuTest, AViewportThatWasUnlitIsLitAsBefore)
+{
+  add_ground();
+  test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 2}, {0.3F, 0, -1}, 1.0F);
+  constexpr int sample_count = 2;
+  eevee::Engine lit(*render_scene, {.shadow = {.map_size_px = 64}, .sample_count = sample_count});
+  Engine unlit(*render_scene);
+  draw(lit, sample_count);
+  const auto before = gpu::read_as<glm::vec4>(*device, lit.radiance(*viewport));
+  const glm::vec4 ground = picture(unlit).middle();
+  EXPECT_EQ(ground, glm::vec4(ground_color, 1));
+  // A camera that moved meanwhile.
+  camera = test::camera_at({1, -5, 6}, {0, 0, 0});
+  draw(lit, sample_count);
+  camera = test::camera_at({0, -5, 6}, {0, 0, 0});
+  EXPECT_EQ(picture(unlit).middle(), ground);
+  draw(lit, sample_count);
+  EXPECT_EQ(gpu::read_as<glm::vec4>(*device, lit.radiance(*viewport)), before);
+}
+
+}  // namespace
+}  // namespace gnomon::unlit
