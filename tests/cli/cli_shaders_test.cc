@@ -31,7 +31,6 @@ std::size_t count_of(const std::string &text, const std::string &part)
   return count;
 }
 
-/** Number of programs and variants that the engine declares, of the programs for which \a is_counted. */
 /** For example "12 programs, 34 variants"; of all engines. */
 std::string programs_and_variants()
 {

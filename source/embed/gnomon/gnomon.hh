@@ -5,6 +5,7 @@
 #include "gltf_import.hh"
 #include "gpu_device.hh"
 #include "scene.hh"
+#include "unlit_engine.hh"
 
 /**
  * All that a host needs to show a lit scene in its own window. doc/embedding.md explains it; examples/ has programs.
