@@ -77,11 +77,10 @@ void Viewport::draw(std::span<Engine *const> engines, const View &view, const Ta
   }
   check(target, size_px_);
   target_ = target;
-  std::vector<std::uint64_t> drawn_by;
-  std::ranges::transform(engines, std::back_inserter(drawn_by), &Engine::id);
-  if (view != view_ || drawn_by != drawn_by_) {
+  if (view != view_ || !std::ranges::equal(engines, drawn_by_, {}, &Engine::id)) {
     view_ = view;
-    drawn_by_ = std::move(drawn_by);
+    drawn_by_.clear();
+    std::ranges::transform(engines, std::back_inserter(drawn_by_), &Engine::id);
     restart();
   }
   try {

@@ -52,8 +52,6 @@ struct StepTime {
 
 struct Data;
 struct SharedData;
-/** What a group reads of each of scene::texture_inputs; names nothing where it reads none. */
-using TextureSet = std::array<scene::Handle<scene::Texture>, scene::texture_inputs.size()>;
 
 /** The surface at the middle of each pixel and the visibility of one lamp there; rows from the bottom. */
 struct Probe {
@@ -168,8 +166,6 @@ class Engine final : public draw::Engine {
   void make_blocks(draw::Viewport &viewport);
   void record_passes(draw::Viewport &viewport);
   void record_object(draw::Viewport &viewport, draw::ObjectIndex object);
-  /** The textures of \a set that a program of \a material_class reads. */
-  void bind_textures(draw::ShadingGroup &group, render_scene::MaterialClass material_class, const TextureSet &set);
   void record_film(draw::Viewport &viewport);
   void record_background(draw::Viewport &viewport);
   void record_casters(Data &data);

@@ -9,6 +9,7 @@
 #include "shadows/shadows.hh"
 
 #include "draw_viewport.hh"
+#include "render_surfaces.hh"
 
 #include <array>
 #include <map>
@@ -66,7 +67,7 @@ struct PassList {
 };
 
 /** What calls of one group have in common: pass, shader, state beside the pass's, textures of the material. */
-using GroupKey = std::tuple<const draw::Pass *, gpu::ResourceId, gpu::State, TextureSet>;
+using GroupKey = std::tuple<const draw::Pass *, gpu::ResourceId, gpu::State, render_scene::TextureSet>;
 
 /** Revisions of everything that recorded passes depend on. */
 struct PassesKey {

@@ -18,6 +18,7 @@ namespace {
 
 using gpu::State;
 using render_scene::MaterialClass;
+using render_scene::TextureSet;
 
 void bind_lit(draw::ShadingGroup &group, Data &data)
 {
@@ -273,18 +274,6 @@ void Engine::record_passes(draw::Viewport &viewport)
   record_film(viewport);
 }
 
-void Engine::bind_textures(draw::ShadingGroup &group, MaterialClass material_class, const TextureSet &set)
-{
-  const std::size_t count = material_class == MaterialClass::Plain       ? 0
-                            : material_class == MaterialClass::BaseColor ? 1
-                                                                         : set.size();
-  for (std::size_t i = 0; i < count; i++) {
-    const scene::TextureInput &input = scene::texture_inputs[i];
-    const auto [image, sampler] = scene_.texture(set[i], input.is_color);
-    group.bind_texture(input.name, image, sampler);
-  }
-}
-
 void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
 {
   Data &data = viewport.engine_data<Data>(*this);
@@ -294,7 +283,7 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
   const render_scene::RenderObject &object = scene_.object(index);
   const scene::Mesh &mesh = scene.meshes()[object.mesh];
   const scene::Material &material = scene.material_of(mesh);
-  const MaterialClass cut_out = mask_class(scene, mesh);
+  const MaterialClass cut_out = render_scene::mask_class(scene, mesh);
   const MaterialClass material_class = render_scene::material_class(scene, mesh);
   // Without light the base colour makes no difference.
   const bool is_colorless = material_class == MaterialClass::BaseColor && cut_out == MaterialClass::Plain &&
@@ -312,13 +301,13 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
       group = &pass.group(shader);
       group->state_enable(state | winding);
       bind(*group);
-      bind_textures(*group, read, textures);
+      render_scene::bind_textures(*group, scene_, read, textures);
     }
     group->call(batch, index);
   };
-  const TextureSet alpha_textures = cut_out == MaterialClass::Plain ? TextureSet() : textures_of(scene, mesh, true);
-  const TextureSet surface_textures =
-      surface == MaterialClass::Plain ? TextureSet() : textures_of(scene, mesh, surface == MaterialClass::BaseColor);
+  const TextureSet alpha_textures =
+      cut_out == MaterialClass::Plain ? TextureSet() : textures_of(scene, mesh, MaterialClass::BaseColor);
+  const TextureSet surface_textures = textures_of(scene, mesh, surface);
   const auto bind_surface = [&data](draw::ShadingGroup &group) { bind_lit(group, data); };
   // A surface that receives no shadow is lit as if no lamp had one.
   const Feature lighting = object.receives_shadow ? stl.features : without_shadows(stl.features);

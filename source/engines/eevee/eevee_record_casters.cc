@@ -12,6 +12,7 @@ namespace {
 
 using gpu::State;
 using render_scene::MaterialClass;
+using render_scene::TextureSet;
 
 ShaderId shadow_shader(LayerPass layer_pass)
 {
@@ -110,7 +111,7 @@ void Engine::record_caster(SharedData &shared, draw::ObjectIndex index)
   const scene::Scene &scene = scene_.scene();
   const scene::Mesh &mesh = scene.meshes()[object.mesh];
   const scene::Material &material = scene.material_of(mesh);
-  const MaterialClass cut_out = mask_class(scene, mesh);
+  const MaterialClass cut_out = render_scene::mask_class(scene, mesh);
   shared.is_mirrored[index] = draw::is_mirrored(scene_.objects().world_from_object(index));
   const State winding = shared.is_mirrored[index] ? State::FrontClockwise : State::None;
   draw::InstanceCall *&instances = shared.caster_calls[{object.mesh, winding}];
@@ -120,7 +121,8 @@ void Engine::record_caster(SharedData &shared, draw::ObjectIndex index)
     const State faces = material.is_double_sided ? State::None : culled_state(settings_.shadow.caster_faces);
     // Without culling the winding makes no difference.
     const State state = faces == State::None ? State::None : faces | winding;
-    const TextureSet textures = cut_out == MaterialClass::Plain ? TextureSet() : textures_of(scene, mesh, true);
+    const TextureSet textures =
+        cut_out == MaterialClass::Plain ? TextureSet() : textures_of(scene, mesh, MaterialClass::BaseColor);
     draw::ShadingGroup *&group = shared.groups[{&shared.shadow_pass, shader.id(), state, textures}];
     if (!group) {
       group = &shared.shadow_pass.group(shader);
@@ -129,7 +131,7 @@ void Engine::record_caster(SharedData &shared, draw::ObjectIndex index)
       group->bind_storage_ref("material_block", &shared.material_block);
       group->bind_storage_ref("full_material_block", &shared.full_material_block);
       group->bind_uniform_ref("shadow_render_block", shared.shadows.render_block());
-      bind_textures(*group, cut_out, textures);
+      render_scene::bind_textures(*group, scene_, cut_out, textures);
     }
     instances = &group->instances(scene_.batch(object.mesh, streams_of(cut_out)));
   }

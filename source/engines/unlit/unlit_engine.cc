@@ -61,6 +61,7 @@ struct PassesKey {
   std::uint64_t structure = 0;
   std::uint64_t passes = 0;
   std::uint64_t settings = 0;
+  std::uint64_t losses = 0;
   gpu::ResourceId depth_texture = 0;
 
   bool operator==(const PassesKey &) const = default;
@@ -81,6 +82,7 @@ struct PictureKey {
 struct DepthKey {
   std::uint64_t objects = 0;
   std::uint64_t passes = 0;
+  std::uint64_t losses = 0;
   draw::View view;
 
   bool operator==(const DepthKey &) const = default;
@@ -256,7 +258,7 @@ void Engine::draw_sample(draw::Viewport &viewport, Data &data, const draw::View 
       data.objects, [&](draw::ObjectIndex object) { return view.touches(scene_.objects().volume(object)); });
   gpu::CommandList list;
   gpu::FramebufferStack stack(list);
-  DepthKey depth{scene_.objects().revision(), scene_.passes_revision(), {}};
+  DepthKey depth{scene_.objects().revision(), scene_.passes_revision(), device.loss_count(), {}};
   bool is_depth_drawn = false;
   if (data.is_seen) {
     update_depth_camera(device, data.objects);
@@ -325,6 +327,7 @@ void Engine::update_depth_camera(gpu::Device &device, std::span<const draw::Obje
   const PassesKey key{.structure = scene_.objects().structure_revision(),
                       .passes = scene_.passes_revision(),
                       .settings = settings_revision_,
+                      .losses = device.loss_count(),
                       .depth_texture = camera.texture.id()};
   if (camera.recorded == key) {
     return;
@@ -339,7 +342,8 @@ void Engine::update_depth_camera(gpu::Device &device, std::span<const draw::Obje
     }
     const scene::Mesh &mesh = scene_.scene().meshes()[object.mesh];
     const MaterialClass cut_out = render_scene::mask_class(scene_.scene(), mesh);
-    const render_scene::TextureSet textures = render_scene::textures_of(scene_.scene(), mesh, cut_out);
+    const render_scene::TextureSet textures = render_scene::textures_of(
+        scene_.scene(), mesh, cut_out == MaterialClass::Plain ? cut_out : MaterialClass::BaseColor);
     draw::ShadingGroup *&group = groups[{cut_out, textures}];
     if (!group) {
       group = &camera.casters->group(shader(device, ShaderId::Depth, mask_features(cut_out)));
@@ -358,6 +362,7 @@ void Engine::record(Data &data, gpu::Device &device)
   const PassesKey key{.structure = scene_.objects().structure_revision(),
                       .passes = scene_.passes_revision(),
                       .settings = settings_revision_,
+                      .losses = device.loss_count(),
                       .depth_texture = depth_camera_ ? depth_camera_->texture.id() : 0};
   if (data.recorded != key || std::exchange(data.is_winding_changed, false)) {
     data.recorded = {};
