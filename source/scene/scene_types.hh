@@ -120,7 +120,8 @@ struct Material {
   static constexpr std::string_view kind_name = "material";
   /**
    * Surface: factors of the shading. Coverage: properties that decide which parts of a surface, and of its shadow,
-   * exist: alpha mode, alpha, cutoff, sides. Textures: textures, their transforms, and is_unlit, by which fewer are read.
+   * exist: alpha mode, alpha, cutoff, sides. Textures: textures, their transforms, and is_unlit, by which fewer are
+   * read.
    */
   enum class Aspect { Name, Surface, Coverage, Textures, Count };
 
