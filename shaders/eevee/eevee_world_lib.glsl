@@ -35,7 +35,7 @@ vec3 world_mirrored(MaterialData material, Surface surface, vec3 albedo)
 {
   vec3 mirrored = 2.0 * dot(surface.normal_ws, surface.view_ws) * surface.normal_ws - surface.view_ws;
   // A rough lobe leans towards the normal (Lagarde and de Rousiers 2014, 4.9.3).
-  float lean = (1.0 - material.alpha) * (sqrt(1.0 - material.alpha) + material.alpha);
+  float lean = (1.0 - material.alpha) * (sqrt(max(1.0 - material.alpha, 0.0)) + material.alpha);
   return albedo * world_radiance(mix(surface.normal_ws, mirrored, lean), material.alpha);
 }
 
