@@ -3,12 +3,13 @@ set(GNOMON_PCH_HEADERS <algorithm> <array> <chrono> <cmath> <cstdint> <filesyste
   <set> <span> <sstream> <string> <string_view> <tuple> <variant> <vector>
   <fmt/format.h> <glm/glm.hpp> <glm/gtc/matrix_transform.hpp> <glm/gtc/quaternion.hpp>)
 
-# gnomon_pch_target(NAME LIBRARIES [HEADERS...]): a target whose precompiled headers others reuse.
-function(gnomon_pch_target NAME LIBRARIES)
+# gnomon_pch_target(NAME KIND LIBRARIES [HEADERS...]): a target whose precompiled headers others reuse. KIND: LIBRARY, or TEST as for
+# gnomon_compile_settings.
+function(gnomon_pch_target NAME KIND LIBRARIES)
   set(SOURCE ${CMAKE_CURRENT_BINARY_DIR}/${NAME}.cc)
   file(CONFIGURE OUTPUT ${SOURCE} CONTENT "")
   add_library(${NAME} OBJECT ${SOURCE})
-  gnomon_compile_settings(${NAME})
+  gnomon_compile_settings(${NAME} ${KIND})
   target_link_libraries(${NAME} PRIVATE ${LIBRARIES})
   target_precompile_headers(${NAME} PRIVATE ${GNOMON_PCH_HEADERS} ${ARGN})
 endfunction()
@@ -21,8 +22,8 @@ function(gnomon_reuse_pch TARGET PCH_TARGET)
 endfunction()
 
 if(GNOMON_PCH)
-  gnomon_pch_target(gnomon_pch "fmt::fmt;glm::glm")
+  gnomon_pch_target(gnomon_pch LIBRARY "fmt::fmt;glm::glm")
   if(GNOMON_TESTS)
-    gnomon_pch_target(gnomon_test_pch "fmt::fmt;glm::glm;GTest::gtest" <gtest/gtest.h>)
+    gnomon_pch_target(gnomon_test_pch TEST "fmt::fmt;glm::glm;GTest::gtest" <gtest/gtest.h>)
   endif()
 endif()
