@@ -479,10 +479,11 @@ Status render(RenderOptions options)
     }
     render_frames(options, camera, renderer, display, result);
     const Clock::time_point output_start = Clock::now();
+    // Without a driver, too: it reports layers that do not exist.
+    const gpu::Texture &picture = options.debug_view.kind == DebugView::Kind::Shadow
+                                      ? shadow_picture(options.debug_view, scene, engine, viewport)
+                                      : engine.radiance(viewport);
     if (options.backend == "gl") {
-      const gpu::Texture &picture = options.debug_view.kind == DebugView::Kind::Shadow
-                                        ? shadow_picture(options.debug_view, scene, engine, viewport)
-                                        : engine.radiance(viewport);
       status = write_picture(options, camera, *device, picture, display, frames.metadata(i), result);
     }
     result.output_seconds += seconds_since(output_start);
