@@ -9,7 +9,7 @@
 
 namespace gnomon::cli {
 
-/** Of `--world` and what goes with it. */
+/** The options of `gnomon render` for the world and the background. */
 struct WorldOptions {
   /** A file, a colour, "studio" or "none"; empty: the scene's own, or the studio where it has neither lamps nor world.
    */

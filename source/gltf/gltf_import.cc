@@ -327,6 +327,9 @@ class Importer {
       return;
     }
     const bool is_own = is_deformed(file_.model, node) && !node.instances;
+    if (node.instances && is_deformed(file_.model, node)) {
+      warnings_.add(node_label(index), "its instances are drawn without skin and morph targets");
+    }
     for (const Handle<Mesh> mesh :
          is_own ? meshes_.deformed_meshes_of(node.mesh, node.skin) : meshes_.meshes_of(node.mesh)) {
       if (!is_usable(transformed(scene_.meshes()[mesh].bounds, world))) {

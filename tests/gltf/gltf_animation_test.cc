@@ -203,6 +203,11 @@ TEST(GltfAnimation, DamagedSkinsAreNamedAndFinite)
       zero.accessor(std::vector<float>(12, 0.0F), Float32, "VEC4");
   EXPECT_WARNING(import(zero), "vertex bound to the first joint: its weights have no sum (3 times)");
 
+  // Vertices without weights would be bound to the first joint, which does not exist.
+  GltfBuilder no_joints = zero;
+  no_joints.document["skins"][0]["joints"] = json::array();
+  EXPECT_WARNING(import(no_joints), "its skin is not applied: joints: the skin has none");
+
   GltfBuilder out_of_range = skinned_triangle();
   out_of_range.document["skins"][0]["joints"] = {1};
   EXPECT_WARNING(import(out_of_range), "its skin is not applied: JOINTS: a joint's index is out of range");

@@ -100,6 +100,9 @@ void read_joints(const File &file, const Model::Primitive &primitive, int skin, 
   const std::size_t joint_count = file.model.skins[std::size_t(skin)].joints.size();
   std::uint64_t bad_weights = 0;
   try {
+    if (joint_count == 0) {
+      throw Fault("joints", "the skin has none");
+    }
     const std::vector<JointSet> sets = open_sets(file, primitive, vertex_count);
     for (const std::uint32_t vertex : vertices) {
       const std::size_t first = deformed.joint_weights.size();
