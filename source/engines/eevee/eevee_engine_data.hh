@@ -16,7 +16,7 @@
 #include <memory>
 #include <tuple>
 
-/** What the engine keeps in a viewport. For the engine's own files. */
+/** The engine's data in a viewport. Internal to the engine. */
 namespace gnomon::eevee {
 
 inline gpu::Texture create_target(gpu::Device &device, const char *name, gpu::Format format, glm::ivec2 size_px)
@@ -34,9 +34,9 @@ struct FramebufferList {
 
 struct TextureList {
   gpu::Texture radiance;
-  /** Sum of the weighted samples. */
+  /** Weighted sum of the samples. */
   gpu::Texture film;
-  /** Without the samples' offsets. Made where a target takes the depth of several samples. */
+  /** Depth of the view without sample offsets. Created if a target has depth and a picture has several samples. */
   gpu::Texture picture_depth;
   gpu::Texture probe_position;
   gpu::Texture probe_normal;
@@ -66,7 +66,7 @@ struct PassList {
   draw::Pass tonemap;
 };
 
-/** What calls of one group have in common: pass, shader, state beside the pass's, textures of the material. */
+/** The calls of one group share the pass, the shader, the additional state and the material's textures. */
 using GroupKey = std::tuple<const draw::Pass *, gpu::ResourceId, gpu::State, render_scene::TextureSet>;
 
 /** Revisions of everything that recorded passes depend on. */
@@ -75,7 +75,7 @@ struct PassesKey {
   std::uint64_t passes = 0;
   std::uint64_t settings = 0;
   std::uint64_t shaders = 0;
-  /** Of shadows whose textures and blocks are bound by value. */
+  /** Revision of the exponential shadows, whose textures and blocks are bound by value. 0 if there are none. */
   std::uint64_t exponential_lamps = 0;
   gpu::ResourceId shadow_block = 0;
   gpu::ResourceId light_block = 0;
@@ -84,7 +84,7 @@ struct PassesKey {
   gpu::ResourceId world_block = 0;
   gpu::ResourceId world_levels = 0;
   gpu::ResourceId world_picture = 0;
-  /** Of what the background shows of it. */
+  /** Scene::world_revision if there is a background, otherwise 0. */
   std::uint64_t world = 0;
   Feature features = Feature::None;
   std::optional<int> tinted_light;
@@ -104,7 +104,7 @@ struct ShadowsKey {
   bool operator==(const ShadowsKey &) const = default;
 };
 
-/** Revisions of everything that the picture depends on, beside its view and size. */
+/** Revisions of everything that the picture depends on, except the view and the size. */
 struct PictureKey {
   std::uint64_t objects = 0;
   std::uint64_t lamps = 0;
@@ -116,10 +116,10 @@ struct PictureKey {
   bool operator==(const PictureKey &) const = default;
 };
 
-/** What the tonemap pass was recorded for. */
+/** Properties of the target for which the tonemap pass was recorded. */
 struct TonemapKey {
   gpu::State state = gpu::State::None;
-  /** 0: the target takes no depth. */
+  /** 0 if the target has no depth. */
   gpu::ResourceId depth_texture = 0;
 
   bool operator==(const TonemapKey &) const = default;
@@ -147,94 +147,94 @@ struct CastersKey {
   bool operator==(const CastersKey &) const = default;
 };
 
-/** What the engine keeps for all viewports of its scene. It goes with the last of them. */
+/** Data that all viewports of a scene share. It is destroyed with the last viewport. */
 struct SharedData {
   explicit SharedData(draw::ObjectBuffer &objects)
       : shadow_pass("shadow_pass", gpu::State::WriteDepth | gpu::State::DepthNearerEqual | gpu::State::DepthClamp,
                     &objects)
   {
   }
-  /** The scene's, and those that stand for its world. */
+  /** The lamps of the scene, followed by the lamps of world_lamps. */
   std::vector<scene::PlacedLamp> placed;
   Lamps lamps;
-  /** Of lamps with an extent; empty where a picture has one sample, which is lit from their centres. */
+  /** Points of lamps with an extent. Empty if a picture has one sample: then these lamps are shaded as a whole. */
   LampPoints lamp_points;
   SceneShadows shadows;
   std::optional<ShadowsKey> synced;
   /** Increased by each sync of the lamps. */
   std::uint64_t revision = 0;
-  /** In light_block: the sun whose cascades are shown; nothing where there is none, or where it was not asked for. */
+  /** Index in light_block of the sun of Settings::has_cascade_tint. Empty without this setting or such a sun. */
   std::optional<int> tinted_light;
   gpu::Buffer light_block;
   gpu::Buffer light_shape_block;
-  /** Where a specular surface is lit by a lamp that is shaded as a whole. */
+  /** Empty unless the scene has specular materials, and lamps with Feature::LampShape or a world. */
   gpu::Texture ltc_table;
   gpu::Sampler ltc_sampler;
-  /** Where a world shines. */
+  /** Empty without a world. */
   WorldResources world;
   bool is_light_block_written = false;
-  /** Draws the casters of any lamp. */
+  /** Draws the casters; all lamps share it. */
   draw::Pass shadow_pass;
   gpu::BufferRange object_block;
   gpu::BufferRange material_block;
   gpu::BufferRange full_material_block;
-  /** Of shadow_pass; made when the first object needs them. */
+  /** The groups of shadow_pass. */
   std::map<GroupKey, draw::ShadingGroup *> groups;
-  /** For each mesh and winding of casters, the call in shadow_pass. */
+  /** The call in shadow_pass for each mesh and winding. */
   std::map<std::pair<scene::Handle<scene::Mesh>, gpu::State>, draw::InstanceCall *> caster_calls;
-  /** By object index: the call of a caster; nullptr for objects that cast no shadow. */
+  /** By object index: the call of the caster; nullptr for objects that cast no shadow. */
   std::vector<draw::InstanceCall *> caster_of;
-  /** By object index: the caster was recorded for a mirrored matrix. */
+  /** By object index: whether the caster was recorded with a mirrored matrix. */
   std::vector<bool> is_mirrored;
   std::optional<CastersKey> recorded;
-  /** The shadows have the casters of the last sync. */
+  /** Whether `shadows` has the casters of the last sync. */
   bool has_casters = false;
-  /** gpu::Device::loss_count when the device was known to hold what is noted here. */
+  /** gpu::Device::loss_count up to which lost submissions were handled. */
   std::uint64_t loss_count = 0;
 };
 
 struct StorageList {
-  /** Made by the first sync. */
+  /** Created by the first sync. */
   std::optional<Shadows> shadows;
   Feature features = Feature::None;
-  /** Drawable objects, in the order of their first cache_populate; recorded when a view touches any of them. */
+  /** Drawable objects in the order of their first cache_populate. Recorded when at least one of them is visible. */
   std::vector<draw::ObjectIndex> objects;
-  /** cache_init was called, and cache_finish not yet. */
+  /** True between cache_init and cache_finish. */
   bool is_collecting = false;
-  /** Of the sample being drawn. */
+  /** Lamp points of the sample that is being drawn. */
   std::span<const LampPoint> lamp_points;
-  /** Memory for write_lamp_points. */
+  /** Temporary memory of write_lamp_points. */
   std::vector<shared::LightData> sampled_lights;
   gpu::Buffer view_block;
   gpu::BufferRange material_block;
   gpu::BufferRange full_material_block;
   gpu::BufferRange object_block;
-  /** Made when the first object needs them. */
+  /** The groups of the passes that draw objects. */
   std::map<GroupKey, draw::ShadingGroup *> groups;
-  /** By object index: passes were recorded for a mirrored matrix. */
+  /** By object index: whether the passes were recorded with a mirrored matrix. */
   std::vector<bool> is_mirrored;
-  /** An object changed in a way that passes depend on. */
+  /** The matrix of an object became mirrored or ceased to be mirrored since the passes were recorded. */
   bool is_winding_changed = false;
   std::optional<PassesKey> recorded;
-  /** \see Report */
+  /** \see Report::pass_recordings */
   std::uint64_t pass_recordings = 0;
-  /** SharedData::revision that features and passes follow. */
+  /** SharedData::revision from which `features` was derived. */
   std::uint64_t shared_revision = 0;
-  /** Of the material table. */
+  /** Sum of the revisions from which `material_features` was derived. */
   std::uint64_t materials_features_revision = ~std::uint64_t(0);
-  /** Specular and FullMaterial, as the materials need them. */
+  /** Features that the materials of the drawable objects need. */
   Feature material_features = Feature::None;
-  /** In light_block, of the probe being drawn. */
+  /** Index in light_block of the light that is being probed. */
   int probed_light = 0;
-  /** Of the sample being drawn; the film pass reads it by reference. */
+  /** Filter weights of the current sample. The film pass reads them by reference. */
   glm::vec4 film_columns{0.0F};
   glm::vec4 film_rows{0.0F};
-  /** The same for the background; \see eevee_background_frag.glsl */
+  /** View rays of the current sample. The background pass reads them by reference. \see eevee_background_frag.glsl */
   glm::vec4 background_corner{0.0F};
   glm::vec4 background_across{0.0F};
   glm::vec4 background_up{0.0F};
   double film_weight_sum = 0.0;
-  /** Part of the whole picture's weight that the samples drawn so far have. */
+  /** Fraction of the total filter weight that the samples drawn so far have, in [0, 1]. */
   double film_share = 0.0;
   std::optional<PictureKey> synced_picture;
   std::optional<TonemapKey> tonemap_recorded;
@@ -245,34 +245,34 @@ struct Timing {
   struct Step {
     std::string name;
     gpu::TimerQuery query;
-    /** Drawn since the last Engine::take_step_times. */
+    /** The step was drawn since the last call of Engine::take_step_times. */
     bool is_pending = false;
-    /** Nothing where no time passes (null backend). */
+    /** Empty if the backend measures no times (null backend). */
     std::optional<double> seconds{};
-    /** What Engine::take_step_times gave last. */
+    /** The last result of Engine::take_step_times. */
     std::optional<double> taken_seconds{};
   };
   std::vector<Step> steps;
 };
 
-/** Depths that the device reports, for suns that are fitted to them. */
+/** Depths of the pre-pass that are read back, to fit the cascades of suns to them. */
 struct DepthFeedback {
-  /** The view of each of the last requests, by its tag modulo their number. */
+  /** The views of the last requests, indexed by the tag modulo the size of the array. */
   std::array<glm::mat4, 4> requested_clip_from_world{};
   std::uint64_t requested_tag = 0;
   std::uint64_t received_tag = 0;
-  /** Depths of earlier requests are of an earlier state of the scene. */
+  /** Requests with lower tags belong to an earlier state of the scene and are ignored. */
   std::uint64_t first_valid_tag = 1;
-  /** The view that `depths` shows; nothing: there are none. */
+  /** The view of `depths`. Empty if there are no depths. */
   std::optional<glm::mat4> clip_from_world;
   std::vector<float> depths;
 
-  /** The last request is not answered. */
+  /** Whether the last request has no result yet. */
   [[nodiscard]] bool is_pending() const
   {
     return requested_tag >= first_valid_tag && received_tag < requested_tag;
   }
-  /** The scene changed. */
+  /** Discard the depths and all pending requests, because the scene or the size changed. */
   void forget()
   {
     first_valid_tag = requested_tag + 1;
@@ -291,7 +291,7 @@ struct Data final : draw::EngineViewportData {
     stl.recorded.reset();
     stl.tonemap_recorded.reset();
   }
-  /** Made by the first sync; it must outlive the shadows of the viewport. */
+  /** Created by the first sync. It must outlive StorageList::shadows. */
   std::shared_ptr<SharedData> shared;
   FramebufferList fbl;
   TextureList txl;
@@ -299,21 +299,21 @@ struct Data final : draw::EngineViewportData {
   StorageList stl;
   Timing timing;
   DepthFeedback depth_feedback;
-  /** Of the draw at hand, or of the last one. */
+  /** The target of the current draw, or of the last draw. */
   draw::Target target;
   int sample_index = 0;
-  /** As SharedData::loss_count. */
+  /** gpu::Device::loss_count up to which lost submissions of this viewport were handled. */
   std::uint64_t loss_count = 0;
   ShadowPicture shadow_picture;
-  /** The last sync came to its end, and so did what was recorded since. */
+  /** The last sync and the recording after it did not fail. Otherwise drawing throws. */
   bool is_synced = false;
-  /** A view touched an object since the last sync: passes, programs and targets are up to date. */
+  /** Passes, programs and targets are up to date: an object or a background was visible since the last sync. */
   bool is_recorded = false;
-  /** A sample of the picture at hand did. */
+  /** An object or a background was visible in at least one sample of the current picture. */
   bool is_seen = false;
-  /** TextureList::picture_depth is of the picture at hand. */
+  /** TextureList::picture_depth holds the depth of the current picture. */
   bool has_picture_depth = false;
-  /** One for each of frame_steps(), of the picture at hand; empty before the first sample. */
+  /** One entry for each of frame_steps(), for the current picture. Empty before the first sample. */
   std::vector<StepRecord> frame;
 };
 

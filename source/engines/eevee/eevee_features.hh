@@ -7,33 +7,36 @@
 
 namespace gnomon::eevee {
 
-/** What a frame may need. The scene decides which; programs, passes and targets follow. */
+/** Features that a frame may need, derived from the scene. Programs, passes and targets depend on them. */
 enum class Feature : std::uint32_t {
   None = 0,
-  /** Any light at all. */
+  /** At least one lamp or the world gives light. */
   Light = 1U << 0,
-  /** Point, spot or area lamps. */
+  /** At least one point, spot or area lamp gives light. */
   Punctual = 1U << 1,
+  /** At least one material has specular reflection. */
   Specular = 1U << 2,
+  /** Cube shadow maps of point lamps, area lamps and wide spots. */
   ShadowCube = 1U << 3,
+  /** Planar shadow maps of suns and spots. */
   ShadowMap = 1U << 4,
-  /** Percentage-closer filtering of them. */
+  /** Percentage-closer filtering of cube or planar shadow maps. */
   ShadowPcf = 1U << 5,
   /** Octahedral exponential shadow maps. */
   ShadowEsm = 1U << 6,
-  /** Of the material: its base colour is looked up. */
+  /** Per material: a texture gives the base colour. */
   BaseColorTexture = 1U << 7,
-  /** Of the material: its texture's alpha cuts some of it out. */
+  /** Per material: fragments whose alpha is below the material's cutoff are discarded. */
   AlphaMask = 1U << 8,
-  /** Some of the octahedral maps hold variances. */
+  /** At least one octahedral map is an exponential variance shadow map. */
   ShadowEvsm = 1U << 9,
-  /** Lamps that are shaded as a whole, area lamps, or spots of elliptical cones. */
+  /** At least one lamp with an extent is shaded as a whole (LampShading::Whole), or a spot has an elliptical cone. */
   LampShape = 1U << 10,
-  /** Of the material: render_scene::MaterialClass::Full. Excludes BaseColorTexture. */
+  /** Per material: its class is render_scene::MaterialClass::Full. Excludes BaseColorTexture. */
   FullMaterial = 1U << 11,
-  /** The target of the picture takes depth. */
+  /** The target of the picture has a depth buffer that the engine writes. */
   TargetDepth = 1U << 12,
-  /** Light from all around, beside that of lamps. */
+  /** The scene's world gives light. */
   World = 1U << 13,
 };
 
@@ -50,26 +53,26 @@ constexpr bool has(Feature mask, Feature bit)
   return (mask & bit) != Feature::None;
 }
 
-/** Something is drawn from a lamp. */
+/** At least one lamp has a shadow. */
 inline constexpr Feature any_shadow = Feature::ShadowCube | Feature::ShadowMap | Feature::ShadowEsm;
 
-/** As if no lamp cast a shadow. */
+/** \a features without those of shadows. */
 constexpr Feature without_shadows(Feature features)
 {
   return Feature(std::uint32_t(features) & ~std::uint32_t(any_shadow | Feature::ShadowPcf | Feature::ShadowEvsm));
 }
 
-/** The texels that percentage-closer filtering reads. */
+/** The kernel of percentage-closer filtering. */
 struct PcfKernel {
-  /** Edge of a square of texels: 1, 3 or 5; 0: a disk of radius 2 instead. */
+  /** Edge of the square kernel, texels: 1, 3 or 5. 0 selects a disk with a radius of 2 texels. */
   int width = 3;
-  /** Lookups on the disk, 1 to 64. */
+  /** Number of bilinear lookups on the disk, 1 to 64. Not used by the square kernels. */
   int taps = 16;
 
   bool operator==(const PcfKernel &) const = default;
 };
 
-/** A part of a frame that was made or left out, and the reason. */
+/** A part of a frame, whether the engine made it, and the reason. */
 struct FramePart {
   std::string what;
   bool is_made = false;

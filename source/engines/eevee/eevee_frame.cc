@@ -34,7 +34,8 @@ shared::ViewData view_data(const draw::View &view, int sample_count)
   data.position_ws = glm::vec3(world_from_view[3]);
   data.is_perspective = view.is_perspective() ? 1 : 0;
   data.back_ws = glm::normalize(glm::vec3(world_from_view[2]));
-  // The distance between samples, in pixels, is the root of the area of each.
+  // With n samples for each pixel, a sample covers 1/n of the pixel's area, so that the samples are n^-1/2 pixels
+  // apart.
   data.texture_lod_bias = -0.5F * std::log2(float(sample_count));
   return data;
 }
@@ -45,7 +46,7 @@ void write_lamp_points(Data &data, gpu::CommandList &list)
   if (points.empty()) {
     return;
   }
-  // They are in the order of the lights. One write, as each costs more than the lights in between.
+  // The points are in the order of the lights. One write of the whole range costs less than one write for each point.
   const int first = points.front().light;
   const int end = points.back().light + 1;
   const shared::LightData *lights = data.shared->lamps.light_block.lights;
@@ -99,7 +100,7 @@ Need need_background(const FrameState &state)
                                                       : Need{true, "pixels without a surface"};
 }
 
-/** A picture in which nothing is seen is cleared once. */
+/** A picture without visible objects and without a background is cleared once, with the first sample. */
 Need need_film(const FrameState &state)
 {
   if (state.data.is_seen) {
@@ -135,12 +136,12 @@ Need need_tonemap(const FrameState &state)
              : Need{true, "nothing is seen: the target's rectangle is cleared"};
 }
 
-/** Appends the calls of \a step's passes that \a view sees. */
+/** Appends the visible calls of the passes of \a step to \a list. */
 void record_passes(const FrameStep &step, FrameSample &sample, const draw::View &view, gpu::CommandList &list)
 {
   Data &data = sample.data;
   StepRecord &record = data.frame[std::size_t(&step - frame_steps().data())];
-  // Of a picture in which nothing is seen, clearing is all that is left.
+  // A picture without visible objects and without a background is only cleared.
   for (std::size_t i = 0; data.is_seen && i < step.passes.size(); i++) {
     const draw::RecordCounts counts = ((*data.psl).*step.passes[i].pass).record(view, list);
     record.passes[i].runs += counts.drawn > 0 ? 1 : 0;
@@ -149,7 +150,7 @@ void record_passes(const FrameStep &step, FrameSample &sample, const draw::View 
   }
 }
 
-/** A render pass that draws what the sample's view sees. */
+/** Appends a render pass that draws the calls that are visible in the sample's view. */
 void record_pass(const FrameStep &step, FrameSample &sample, gpu::CommandList &list,
                  const gpu::Framebuffer &framebuffer, const gpu::PassActions &actions)
 {
@@ -202,7 +203,8 @@ void record_background(const FrameStep &step, FrameSample &sample, gpu::CommandL
   const glm::dmat4 projection(sample.sample_view.clip_from_view());
   const glm::dmat3 world_from_view = glm::transpose(glm::dmat3(sample.sample_view.view_from_world()));
   const glm::dvec2 size_px(sample.viewport.size_px());
-  // What is at (x, y) in the frame, from -1 to 1, at a depth of 1.
+  // The view ray through the normalized device coordinates (x, y) is (middle + scale * (x, y), -1) in view space. In an
+  // orthographic view all rays are parallel.
   const bool is_perspective = sample.sample_view.is_perspective();
   const glm::dvec2 scale = is_perspective ? 1.0 / glm::dvec2(projection[0][0], projection[1][1]) : glm::dvec2(0.0);
   const glm::dvec2 middle = is_perspective ? scale * glm::dvec2(projection[2][0], projection[2][1]) : glm::dvec2(0.0);
@@ -235,7 +237,7 @@ void record_picture_depth(const FrameStep &step, FrameSample &sample, gpu::Comma
 
 void record_tonemap(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
-  // Black is black whatever the transform, and has no alpha: a picture of nothing takes a clear.
+  // A picture without visible objects is transparent black. Every view transform keeps black, so that a clear suffices.
   const gpu::LoadAction load = sample.data.is_seen ? gpu::LoadAction::Load : gpu::LoadAction::Clear;
   const draw::Target &target = sample.data.target;
   draw::begin_pass(list, step.name, target, sample.viewport.size_px(),
@@ -286,7 +288,7 @@ constexpr std::span target_only = std::span(pictures).subspan(4, 1);
 constexpr std::array<std::string_view, 1> light_block_only = {"light_block"};
 
 constexpr std::array<FrameStep, 8> steps = {{
-    // Before the shadows: cascades may be fitted to the depths.
+    // The depth pre-pass comes before the shadows because cascades may be fitted to its depths.
     {"depth_prepass",
      FrameStep::When::EachSample,
      need_depth,
@@ -320,7 +322,7 @@ constexpr std::array<FrameStep, 8> steps = {{
     {"tonemap", FrameStep::When::EachTarget, need_tonemap, picture_only, target_only, tonemap_passes, record_tonemap},
 }};
 
-/** The device's time for what \a work submits, added to the step's. */
+/** Measures the device time of the submissions of \a work with the timer query of the step \a name. */
 template <typename Work>
 void timed(gpu::Device &device, Timing &timing, std::string_view name, Work &&work)
 {
@@ -371,7 +373,7 @@ void draw_steps(FrameSample &sample, FrameStep::When when)
     }
     Need need = step.need(state);
     const bool is_needed = need.is_needed;
-    // Over the samples of a picture: needed where any sample needs it.
+    // The record of a picture says "needed" if at least one sample needed the step.
     if (is_needed || !record.need.is_needed) {
       record.need = std::move(need);
     }
@@ -382,7 +384,7 @@ void draw_steps(FrameSample &sample, FrameStep::When when)
     step.record(step, sample, list);
     const auto submit = [&] { device.submit(list); };
     if (list.commands().empty()) {
-      // Nothing was out of date.
+      // Every shadow layer was up to date.
     }
     else if (sample.settings.is_timed) {
       timed(device, data.timing, step.name, submit);

@@ -10,7 +10,7 @@
 
 /**
  * The frame as an ordered list of steps. Drawing, timings, `--explain`, `--json` and serialize_passes all read this
- * list: a new pass is one entry here, and a member of PassList. For the engine's own files.
+ * list. A new pass needs one entry in the list and one member of PassList. Internal to the engine.
  */
 namespace gnomon::eevee {
 
@@ -18,71 +18,71 @@ struct Data;
 struct FramebufferList;
 struct PassList;
 
-/** What the needs of steps and passes depend on. */
+/** The state from which the needs of steps and passes are decided. */
 struct FrameState {
   const Settings &settings;
   const Data &data;
 };
 
-/** Whether something is drawn, and the reason either way. */
+/** Whether a step is needed, and the reason why it is or is not. */
 struct Need {
   bool is_needed = false;
   std::string_view reason;
 };
 
-/** One sample being drawn. */
+/** The sample that is being drawn. */
 struct FrameSample {
   Data &data;
   const Settings &settings;
   draw::Viewport &viewport;
-  /** Of the picture. */
+  /** The view of the picture, without the sample's offset. */
   const draw::View &view;
-  /** Moved within the pixels. */
+  /** The view with the sample's offset within the pixel. */
   const draw::View &sample_view;
-  /** Only the steps whose results are read back are drawn. */
+  /** If true, only the steps with `is_read_back` are drawn. */
   bool is_for_feedback = false;
 };
 
-/** Passes of one step share its target and its timing. */
+/** A pass of a step. The passes of one step share a target and a timer. */
 struct FramePass {
   draw::Pass PassList::*pass;
-  /** Why it draws. */
+  /** The reason to draw the pass, for reports. */
   std::string_view purpose;
-  /** Why nothing was recorded into it. */
+  /** Returns the reason why the pass has no calls, for reports. */
   std::string (*why_empty)(const FrameState &);
 };
 
 struct FrameStep {
   std::string_view name;
-  /** Whether it is drawn for samples of the picture, or for draws that have a target. */
+  /** EachSample: drawn with each sample of the picture. EachTarget: drawn with each draw that has a target. */
   enum class When { EachSample, EachTarget } when;
-  /** Decided before each sample in which it may be drawn. */
+  /** Decides whether the step is drawn. Called before each sample or target. */
   Need (*need)(const FrameState &);
-  /** Names of the targets that it reads and writes, as reports have them. */
+  /** Names of the resources that the step reads and writes, as in reports. */
   std::span<const std::string_view> reads;
   std::span<const std::string_view> writes;
-  /** Drawn in this order. */
+  /** In the order in which they are drawn. */
   std::span<const FramePass> passes;
   /** Appends the step's render passes to \a list. */
   void (*record)(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);
-  /** Called once the list is submitted, for steps whose results are relied on later; nullptr: nothing to do. */
+  /** Called after the submission of the list; may be nullptr. */
   void (*submitted)(FrameSample &sample) = nullptr;
-  /** The device reports its result back. */
+  /** The result of the step is read back to the host. */
   bool is_read_back = false;
 };
 
-/** In the order in which they are drawn. */
+/** All steps, in the order in which they are drawn. */
 [[nodiscard]] std::span<const FrameStep> frame_steps();
 
-/** Results of a step in the picture at hand, over its samples. */
+/** Record of a step over the samples of the current picture. */
 struct StepRecord {
   Need need;
   struct PassRecord {
-    /** Samples in which it drew anything. */
+    /** Number of samples in which the pass drew at least one call. */
     std::uint64_t runs = 0;
     draw::RecordCounts counts;
   };
-  /** One for each of the step's passes. */
+  /** One entry for each of FrameStep::passes. */
   std::vector<PassRecord> passes;
 
   void reset()
@@ -92,28 +92,28 @@ struct StepRecord {
   }
 };
 
-/** Draw the steps of \a when that are needed, and store each one's need and counts in \a sample's data. */
+/** Draw the needed steps of \a when, and store the need and the counts of each step in Data::frame. */
 void draw_steps(FrameSample &sample, FrameStep::When when);
 
-/** The reason for a pass, from its record. */
+/** The reason why \a pass was drawn or not, for reports. */
 [[nodiscard]] std::string reason_of(const FramePass &pass, const StepRecord::PassRecord &record,
                                     const FrameState &state);
 
-/** Edge of a pixel at distance 1, or, orthographic, anywhere, metres. */
+/** Edge of a pixel, metres: at a distance of 1 m for perspective views, at any distance for orthographic views. */
 [[nodiscard]] float pixel_size(const draw::View &view, const draw::Viewport &viewport);
 
-/** Content of view_block. */
+/** The content of `view_block`. \a sample_count: samples for each pixel. */
 [[nodiscard]] shared::ViewData view_data(const draw::View &view, int sample_count);
 
 inline constexpr const char *nothing_seen = "nothing is seen";
 
-/** Append a write of the entries of `light_block` for the lamp points at hand. */
+/** Append a write of the `light_block` entries of StorageList::lamp_points to \a list. */
 void write_lamp_points(Data &data, gpu::CommandList &list);
 
-/** Why no lamp has a shadow; \a no_such_lamp where shadows are on and some lamp gives light. */
+/** The reason why no lamp has a shadow: \a no_such_lamp if shadows are enabled and at least one lamp gives light. */
 [[nodiscard]] std::string_view why_no_shadow(const FrameState &state, std::string_view no_such_lamp);
 
-/** Whether suns are fitted to depths, and the device has not reported those of \a view yet. */
+/** Whether suns are fitted to depths and the host does not have the depths of \a view yet. */
 [[nodiscard]] bool awaits_depths(const Data &data, const draw::View &view);
 
 }  // namespace gnomon::eevee

@@ -10,24 +10,24 @@
 
 namespace gnomon::eevee {
 
-/** A part of what a frame consists of, or was spared; its children are parts of it. */
+/** A node of the report of a frame: a part that was made or left out. Its children are parts of it. */
 struct FrameNode {
   std::string what;
   bool is_made = false;
-  /** The reason why it was made, or why it was left out. */
+  /** The reason why the part was made or left out. */
   std::string why{};
-  /** On the device; of a node with children, theirs together. */
+  /** Size on the device. For a node with children, the sum of their sizes. */
   std::optional<std::size_t> bytes{};
-  /** Written by the host since it was made. */
+  /** Bytes that the host wrote since the creation of the resource. */
   std::optional<std::uint64_t> upload_bytes{};
-  /** On the device, in the last picture whose times were taken. */
+  /** Device time in the last picture that was timed. */
   std::optional<double> seconds{};
-  /** Of what `what` names: programs, runs, layers, instances. */
+  /** The number of items that `what` names: programs, runs, layers or instances. */
   std::optional<std::uint64_t> count{};
   std::vector<FrameNode> children{};
 };
 
-/** The child called \a what; nullptr: there is none. */
+/** The child of \a node with the name \a what; nullptr if there is none. */
 [[nodiscard]] const FrameNode *find(const FrameNode &node, std::string_view what);
 
 }  // namespace gnomon::eevee

@@ -5,11 +5,12 @@
 
 #include "render_surfaces.hh"
 
-/** What a class of materials needs of programs. For the engine's own files. */
+/** Program features that a class of materials needs. Internal to the engine. */
 namespace gnomon::eevee {
 
+/** The feature of programs that shade a material. */
 [[nodiscard]] Feature feature_of(render_scene::MaterialClass material_class);
-/** For programs that only cut out. */
+/** The features of programs that only apply the alpha mask (depth and shadow passes). */
 [[nodiscard]] Feature mask_features(render_scene::MaterialClass mask_class);
 
 }  // namespace gnomon::eevee

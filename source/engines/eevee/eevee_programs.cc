@@ -26,7 +26,7 @@ constexpr std::array<FeatureDefine, 14> feature_table = {
      {Feature::TargetDepth, "USE_TARGET_DEPTH", "the target takes depth"},
      {Feature::World, "USE_WORLD", "a world shines"}}};
 
-/** Features that make no difference without light. */
+/** Features that only affect lighting. Variants without Feature::Light have none of them. */
 constexpr Feature light_features = Feature::Light | Feature::Punctual | Feature::Specular | Feature::ShadowCube |
                                    Feature::ShadowMap | Feature::ShadowPcf | Feature::ShadowEsm | Feature::ShadowEvsm |
                                    Feature::LampShape | Feature::World;
@@ -84,10 +84,11 @@ constexpr std::array<ShaderDeclaration, 19> declarations = {{
      "which cascades of a sun each pixel reads"},
 }};
 
-/** Whether a scene can need this mask of a program's, and no smaller mask gives the same program. */
+/** Whether a scene can need \a features, and no smaller mask gives the same program. */
 bool is_possible(Feature features, const ShaderDeclaration &declaration)
 {
-  // A full material's program reads the base colour texture, too. Without light, only alpha makes a difference.
+  // Variants for full materials always read the base colour texture. In programs that only test alpha, a full
+  // material makes a difference only with an alpha mask.
   if (has(features, Feature::FullMaterial) &&
       (has(features, Feature::BaseColorTexture) ||
        (has(declaration.features, Feature::AlphaMask) && !has(features, Feature::AlphaMask)))) {
@@ -96,12 +97,14 @@ bool is_possible(Feature features, const ShaderDeclaration &declaration)
   if (!has(features, Feature::Light)) {
     return (features & light_features) == Feature::None;
   }
-  // Beside a world, features that go together in most scenes always do, so that there are fewer programs.
+  // With a world, Punctual implies LampShape and ShadowEsm implies ShadowEvsm, and vice versa. Most scenes need these
+  // features together, and the rule reduces the number of variants. \see with_world
   if (has(features, Feature::World) && (has(features, Feature::Punctual) != has(features, Feature::LampShape) ||
                                         has(features, Feature::ShadowEsm) != has(features, Feature::ShadowEvsm))) {
     return false;
   }
-  // Cubes and exponential maps are for point lamps and spots. Percentage-closer filtering reads a cube or a map.
+  // Cubes and exponential maps exist for point, spot and area lamps only. Percentage-closer filtering reads a cube or a
+  // planar map.
   return (has(features, Feature::Punctual) || !has(features, Feature::ShadowCube | Feature::ShadowEsm)) &&
          (has(features, Feature::ShadowCube | Feature::ShadowMap) || !has(features, Feature::ShadowPcf)) &&
          (has(features, Feature::ShadowEsm) || !has(features, Feature::ShadowEvsm));

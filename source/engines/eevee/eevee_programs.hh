@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The engine's programs as data. The build generates their interfaces from it (../interface_tool/), so that this header
-// may use no other header of the engine but eevee_features.hh.
+// Declarations of the engine's shader programs. The build generates the interfaces of the programs from these
+// declarations (../interface_tool/). For this reason the header may include only eevee_features.hh of the engine.
 #pragma once
 
 #include "eevee_features.hh"
@@ -33,29 +33,29 @@ enum class ShaderId {
   DebugCascades,
 };
 
-/** A program of the engine as data. The engine, the build, the checks and the tests read it. */
+/** Declaration of a shader program. The engine, the build, the shader checks and the tests read it. */
 struct ShaderDeclaration {
   ShaderId id;
   std::string_view name;
   std::string_view vertex_path;
-  /** Empty: none. */
+  /** Empty if the program has no geometry shader. */
   std::string_view geometry_path;
   std::string_view fragment_path;
-  /** The features that the program has variants for. Others make no difference to it. */
+  /** The features for which the program has variants. Other features do not change the program. */
   Feature features;
-  /** The subset of `features` that all variants have. */
+  /** The subset of `features` that is set in all variants. */
   Feature required;
-  /** Why it exists. */
+  /** The purpose of the program, for reports. */
   std::string_view purpose;
-  /** "NAME value" or "NAME", defined in each variant; empty: none. */
+  /** A define of all variants, as "NAME value" or "NAME". Empty if there is none. */
   std::string_view define{};
 };
 
-/** The define of a feature. */
+/** The preprocessor define of a feature. */
 struct FeatureDefine {
   Feature feature;
   const char *define;
-  /** The condition under which a scene needs it. */
+  /** The condition under which a scene needs the feature, for reports. */
   std::string_view purpose;
 };
 
@@ -65,10 +65,10 @@ struct FeatureDefine {
 /** One entry for each ShaderId, in order. */
 [[nodiscard]] std::span<const ShaderDeclaration> shader_declarations();
 
-/** The variants of \a declaration that a scene can need. Impossible and equivalent masks are left out. */
+/** The feature masks of \a declaration that a scene can need, without impossible masks and without duplicates. */
 [[nodiscard]] std::vector<Feature> shader_variants(const ShaderDeclaration &declaration);
 
-/** One variant, ready for gpu::Device::create_shader. \a pcf matters with Feature::ShadowPcf only. */
+/** The description of one variant for gpu::Device::create_shader. \a pcf is used only with Feature::ShadowPcf. */
 [[nodiscard]] gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature features,
                                           const PcfKernel &pcf = {});
 

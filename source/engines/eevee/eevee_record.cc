@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Creates what a frame draws with, and records its passes: each as far as it changed since the last sync.
+// Creates the resources of a frame and records its passes. Unchanged resources and passes are kept from the last sync.
 #include "eevee_engine.hh"
 #include "eevee_engine_data.hh"
 
@@ -46,7 +46,7 @@ void bind_lit(draw::ShadingGroup &group, Data &data)
 
 }  // namespace
 
-/** The targets of a picture in which any object is visible. */
+/** Create the targets of a picture with a visible object or a background. */
 void Engine::make_targets(draw::Viewport &viewport)
 {
   Data &data = viewport.engine_data<Data>(*this);
@@ -162,7 +162,7 @@ void Engine::record_film(draw::Viewport &viewport)
   film.call_procedural();
 }
 
-/** For the target at hand, unless the pass was recorded for one like it. */
+/** Record the tonemap pass for the current target, unless the recorded pass suits it. */
 void Engine::record_tonemap(draw::Viewport &viewport)
 {
   Data &data = viewport.engine_data<Data>(*this);
@@ -216,7 +216,7 @@ void Engine::record(draw::Viewport &viewport)
   if (data.is_recorded) {
     return;
   }
-  // Until it comes to its end: a part of it must not be drawn.
+  // If an exception ends the recording, the incomplete passes must not be drawn.
   data.is_synced = false;
   StorageList &stl = data.stl;
   SharedData &shared = *data.shared;
@@ -285,7 +285,7 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
   const scene::Material &material = scene.material_of(mesh);
   const MaterialClass cut_out = render_scene::mask_class(scene, mesh);
   const MaterialClass material_class = render_scene::material_class(scene, mesh);
-  // Without light the base colour makes no difference.
+  // Without light, the base colour has no effect on an opaque surface.
   const bool is_colorless = material_class == MaterialClass::BaseColor && cut_out == MaterialClass::Plain &&
                             !has(stl.features, Feature::Light);
   const MaterialClass surface = is_colorless ? MaterialClass::Plain : material_class;
@@ -293,7 +293,7 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
   stl.is_mirrored[index] = draw::is_mirrored(scene_.objects().world_from_object(index));
   const State winding = stl.is_mirrored[index] ? State::FrontClockwise : State::None;
 
-  /** Appends a call to the group of a pass; \a bind fills in a new group. */
+  /** Appends a call to a group of \a pass. \a bind binds the resources of a new group. */
   const auto call = [&](draw::Pass &pass, const gpu::Shader &shader, State state, MaterialClass read,
                         const TextureSet &textures, const auto &bind) {
     draw::ShadingGroup *&group = stl.groups[{&pass, shader.id(), state | winding, textures}];
@@ -309,13 +309,14 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
       cut_out == MaterialClass::Plain ? TextureSet() : textures_of(scene, mesh, MaterialClass::BaseColor);
   const TextureSet surface_textures = textures_of(scene, mesh, surface);
   const auto bind_surface = [&data](draw::ShadingGroup &group) { bind_lit(group, data); };
-  // A surface that receives no shadow is lit as if no lamp had one.
+  // An object that receives no shadows is drawn with a program without shadow lookups.
   const Feature lighting = object.receives_shadow ? stl.features : without_shadows(stl.features);
   const gpu::Shader &depth_shader = shaders_.get(device, ShaderId::Depth, mask_features(cut_out));
   const gpu::Shader &lit_shader = shaders_.get(device, ShaderId::Lit, lighting | feature_of(surface));
   call(material.is_double_sided ? data.psl->depth_pass : data.psl->depth_pass_cull, depth_shader, State::None, cut_out,
        alpha_textures, bind_surface);
-  // At the same depth as the front of another face, the back must not be drawn over it.
+  // The depth test of the lit pass is "equal": a back face at the depth of a front face of another triangle must be
+  // culled.
   const State side = material.is_double_sided ? State::None : State::CullBack;
   call(data.psl->lit_pass, lit_shader, side, surface, surface_textures, bind_surface);
   if (data.shared->tinted_light) {

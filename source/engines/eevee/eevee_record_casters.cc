@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Records the pass that draws the casters of shadows, and tells the shadows which casters there are.
+// Records the pass that draws shadow casters, and gives the list of casters to SceneShadows.
 #include "eevee_engine.hh"
 #include "eevee_engine_data.hh"
 #include "eevee_material_variants.hh"
@@ -32,7 +32,7 @@ State culled_state(CasterFaces faces)
   }
 }
 
-/** What a caster's shadow depends on, as plain numbers. */
+/** Hash of all values that the shadow of a caster depends on. */
 std::uint64_t caster_fingerprint(const scene::Scene &scene, const render_scene::RenderObject &object,
                                  const glm::mat4 &world_from_object)
 {
@@ -78,7 +78,7 @@ std::uint64_t caster_fingerprint(const scene::Scene &scene, const render_scene::
 
 }  // namespace
 
-/** The pass that draws casters, where what it depends on changed. */
+/** Record the pass that draws casters if one of its inputs changed. */
 void Engine::record_casters(Data &data)
 {
   SharedData &shared = *data.shared;
@@ -119,7 +119,7 @@ void Engine::record_caster(SharedData &shared, draw::ObjectIndex index)
     const gpu::Shader &shader =
         shaders_.get(scene_.device(), shadow_shader(shared.shadows.layer_pass()), mask_features(cut_out));
     const State faces = material.is_double_sided ? State::None : culled_state(settings_.shadow.caster_faces);
-    // Without culling the winding makes no difference.
+    // Without culling the winding has no effect.
     const State state = faces == State::None ? State::None : faces | winding;
     const TextureSet textures =
         cut_out == MaterialClass::Plain ? TextureSet() : textures_of(scene, mesh, MaterialClass::BaseColor);
@@ -138,7 +138,7 @@ void Engine::record_caster(SharedData &shared, draw::ObjectIndex index)
   shared.caster_of[index] = instances;
 }
 
-/** The casters as they stand, for the shadows to compare with those that they were drawn with. */
+/** Give the current casters to SceneShadows, which compares them with those of the last sync. */
 void Engine::add_casters(Data &data)
 {
   SharedData &shared = *data.shared;
