@@ -15,12 +15,12 @@
 
 namespace gnomon::gpu {
 
-/** The attributes of vertices. The comments of BatchDesc say what they hold. */
+/** Vertex attributes. BatchDesc documents their content. */
 enum class VertexStream : std::uint8_t { Position, Normal, Uv, SecondUv, Tangent, Color };
 
-/** How a stream lies in its buffer, and where shaders read it. */
+/** Memory layout and shader location of a vertex stream. */
 struct VertexFormat {
-  /** In `shaders/shared/slots_shared.h`. */
+  /** Attribute location, from `shaders/shared/slots_shared.h`. */
   std::uint32_t attribute;
   int component_count;
   enum class Type : std::uint8_t { Float, Snorm16, Unorm16 } type;
@@ -29,36 +29,39 @@ struct VertexFormat {
 
 inline constexpr std::size_t vertex_stream_count = 6;
 
-/** One for each VertexStream, in order. */
+/** The formats, indexed by VertexStream. */
 [[nodiscard]] const std::array<VertexFormat, vertex_stream_count> &vertex_formats();
 
 /**
- * Triangles with vertex attributes. Shaders read them at the locations of `shaders/shared/slots_shared.h`.
- * All batches of a device share one set of buffers, so that one command draws many of them.
+ * Triangles with vertex attributes. Shaders read the attributes at the locations of `shaders/shared/slots_shared.h`.
+ * All batches of a device share one set of buffers, so that one command can draw many batches.
  */
 struct BatchDesc {
   std::string name;
   std::span<const glm::vec3> positions;
-  /** One for each position, or none: the shader then reads zeros. */
+  /** One for each position, or empty. If empty, shaders read zeros. */
   std::span<const glm::vec3> normals;
   /** Three for each triangle, each less than positions.size(). */
   std::span<const std::uint32_t> indices;
-  /** These have one for each position, or none: then no shader may read them. */
+  /**
+   * First set of texture coordinates. This and the following streams have one value for each position, or are empty. If
+   * a stream is empty, no shader that draws the batch may read it.
+   */
   std::span<const glm::vec2> uvs{};
   std::span<const glm::vec2> second_uvs{};
-  /** Signed, normalised: 32767 stands for 1. xyz: unit vector. w: 1 or -1. */
+  /** Signed normalised: 32767 is 1. xyz: unit vector. w: 1 or -1, the sign of the bitangent. */
   std::span<const glm::i16vec4> tangents{};
-  /** Unsigned, normalised: 65535 stands for 1. */
+  /** Unsigned normalised: 65535 is 1. */
   std::span<const glm::u16vec4> colors{};
 
-  /** A stream's values; empty where there are none. */
+  /** The values of a stream; may be empty. */
   [[nodiscard]] std::span<const std::byte> bytes(VertexStream stream) const;
 };
 
-/** Of all attributes and the indices. */
+/** Bytes of all attributes and indices. */
 [[nodiscard]] std::size_t size_bytes(const BatchDesc &desc);
 
-/** Location of a batch in the buffers of its device, for indexed draws. */
+/** Location of a batch in the shared vertex and index buffers, for indexed draws. */
 struct BatchRange {
   std::uint32_t first_index = 0;
   std::uint32_t index_count = 0;
@@ -66,11 +69,11 @@ struct BatchRange {
   std::uint32_t vertex_count = 0;
 };
 
-/** Owner of triangles on the device. */
+/** Owns triangles on the device. */
 class Batch : public Resource {
  public:
   Batch() = default;
-  /** Constant during the lifetime of the batch. */
+  /** Does not change during the lifetime of the batch. */
   [[nodiscard]] const BatchRange &range() const
   {
     return range_;

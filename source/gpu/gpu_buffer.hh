@@ -9,16 +9,16 @@
 namespace gnomon::gpu {
 
 enum class BufferKind : std::uint8_t {
-  /** For uniform blocks. */
+  /** Can be bound to uniform blocks. */
   Uniform,
-  /** For storage blocks; also for many uniform blocks of one kind, each of which is bound as a range. */
+  /** Can be bound to storage blocks and to uniform blocks. May be larger than one uniform block and bound in ranges. */
   Storage,
 };
 
 struct BufferDesc {
   std::string name;
   BufferKind kind = BufferKind::Uniform;
-  /** Above 0. The content is undefined until written. */
+  /** Greater than 0. The content is undefined until it is written. */
   std::size_t size_bytes = 0;
 };
 
@@ -45,12 +45,12 @@ class Buffer : public Resource {
   BufferKind kind_ = BufferKind::Uniform;
 };
 
-/** A range of a buffer that can be bound to a block. */
+/** A part of a buffer that can be bound to a block. */
 struct BufferRange {
   ResourceId buffer = 0;
   /** A multiple of Limits::uniform_offset_alignment. */
   std::uint32_t offset_bytes = 0;
-  /** 0: to the end. */
+  /** 0: up to the end of the buffer. */
   std::uint32_t size_bytes = 0;
 };
 

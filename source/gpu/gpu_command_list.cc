@@ -113,7 +113,7 @@ static std::string_view to_string(StoreAction action)
   return action == StoreAction::Store ? "store" : "dont_care";
 }
 
-/** " viewport 4x3 at 1,2"; empty for the whole framebuffer. */
+/** Returns text such as " viewport 4x3 at 1,2", or an empty string for the whole framebuffer. */
 static std::string to_string(std::string_view what, const Rectangle &rectangle)
 {
   if (rectangle.is_whole()) {

@@ -26,15 +26,15 @@ enum class CommandKind : std::uint32_t {
   Update,
 };
 
-/** Vertex input `draw_instance` of one instance of a draw. */
+/** Per-instance vertex input `draw_instance`. */
 struct DrawInstance {
-  /** Index in the object block. */
+  /** Index of an object in `object_block`. */
   std::uint32_t object = 0;
-  /** Meaning defined by the shader, such as the ordinal of an instance or a cube face. */
+  /** The shader defines its meaning, for example a cube face. */
   std::uint32_t value = 0;
 };
 
-/** An indexed draw, in the layout of indirect draws in OpenGL and Vulkan. */
+/** An indexed draw, in the memory layout of indirect draws in OpenGL and Vulkan. */
 struct DrawIndirect {
   std::uint32_t index_count = 0;
   std::uint32_t instance_count = 0;
@@ -44,7 +44,7 @@ struct DrawIndirect {
   std::uint32_t first_instance = 0;
 };
 
-/** The meaning of `slot`, `id`, `first` and `count` depends on the kind; see the functions of CommandList. */
+/** One command. The meaning of `slot`, `id`, `first` and `count` depends on the kind; see CommandList. */
 struct Command {
   CommandKind kind = CommandKind::EndPass;
   std::uint32_t slot = 0;
@@ -54,18 +54,18 @@ struct Command {
 };
 
 /**
- * Work for a device as plain data: flat arrays that name resources by id. A list may be recorded on one thread and
- * submitted on another, submitted several times, printed and compared. It keeps no resource alive; validate() and
+ * Commands for a device as plain data: flat arrays that name resources by id. A list may be recorded on one thread and
+ * submitted on another, and it may be submitted several times and printed. It keeps no resource alive; validate() and
  * Device::submit report ids of destroyed resources.
  *
- * Draws must be recorded between begin_pass and end_pass, updates outside of passes. Shader, bindings and push
- * constants stay in effect until they are replaced or the list ends. The state must be set in each pass.
+ * Record draws between begin_pass and end_pass, and updates outside of passes. Shader, bindings and push constants stay
+ * in effect until they are replaced or the list ends. The state must be set in each pass.
  */
 class CommandList {
  public:
-  /** Begin to draw into \a framebuffer. \a actions: the treatment of its content, and the viewport. */
+  /** Begin a pass that draws into \a framebuffer. */
   void begin_pass(std::string_view name, const Framebuffer &framebuffer, const PassActions &actions);
-  /** The same for a framebuffer of the host's. LoadAction::DontCare keeps the content. */
+  /** The same for a framebuffer of the host. LoadAction::DontCare and StoreAction::DontCare keep its content. */
   void begin_pass(std::string_view name, const HostFramebuffer &framebuffer, const PassActions &actions);
   void end_pass();
 
@@ -73,23 +73,26 @@ class CommandList {
   void set_state(State state);
   void bind_uniform(int slot, const BufferRange &range);
   void bind_storage(int slot, const BufferRange &range);
-  /** 0 and 0: no texture. A shader that declares the texture then reads zeros, and 1 from a depth comparison. */
+  /**
+   * \a texture and \a sampler may both be 0: a lookup then returns zeros, and a depth comparison with a reference of at
+   * least 0 returns 1.
+   */
   void bind_texture(int slot, ResourceId texture, ResourceId sampler);
   /**
-   * Set the content of the block push_constant_block_name of later draws, at its slot. Copies \a bytes.
-   * \return the copy, which may be written until the next call
+   * Set the content of the push-constant block for the following draws. \a slot: ShaderInterface::push_constant_slot.
+   * \return the copy of \a bytes in this list, which the caller may change until the next call
    */
   std::span<std::byte> push_constants(int slot, std::span<const std::byte> bytes);
-  /** Draw `draws[first, first + count)` with the current shader, state and bindings. */
+  /** Draw the entries [first, first + count) of `draws` with the current shader, state and bindings. */
   void draw(std::uint32_t first, std::uint32_t count);
-  /** Draw triangles of \a vertex_count vertices without attributes. */
+  /** Draw triangles without vertex attributes. \a vertex_count: three for each triangle */
   void draw_procedural(std::uint32_t vertex_count, std::uint32_t instance_count);
-  /** Write \a bytes to the buffer, in order with the other commands. They are copied now. */
+  /** Write \a bytes to \a buffer between the preceding and the following commands. The bytes are copied now. */
   void update(const Buffer &buffer, std::size_t offset_bytes, std::span<const std::byte> bytes);
 
   void clear();
 
-  /** Appended by the caller, before the draw() that refers to them. */
+  /** The caller appends entries before it calls the draw() that refers to them. */
   std::vector<DrawIndirect> draws;
   std::vector<DrawInstance> instances;
 
@@ -97,7 +100,7 @@ class CommandList {
     /** \see name_of */
     std::uint32_t name_first = 0;
     std::uint32_t name_size = 0;
-    /** 0: `host_framebuffer`. */
+    /** 0: the pass draws into `host_framebuffer`. */
     ResourceId framebuffer = 0;
     PassActions actions{};
     std::optional<HostFramebuffer> host_framebuffer{};
@@ -106,7 +109,7 @@ class CommandList {
   {
     return commands_;
   }
-  /** Indexed by `first` of BeginPass. */
+  /** Indexed by Command::first of BeginPass. */
   [[nodiscard]] const std::vector<PassInfo> &passes() const
   {
     return passes_;
@@ -116,15 +119,15 @@ class CommandList {
     return std::string_view(names_).substr(pass.name_first, pass.name_size);
   }
   /**
-   * Data of PushConstants and Update: `first` is the offset in it and `count` the size. `slot` of Update is the offset
-   * in the written buffer.
+   * Data of the commands PushConstants and Update. Command::first is the offset in this array and Command::count the
+   * size. Command::slot of Update is the offset in the written buffer.
    */
   [[nodiscard]] const std::vector<std::byte> &bytes() const
   {
     return bytes_;
   }
 
-  /** One line for each command. \a device supplies the names of the resources. */
+  /** Text with one line for each command. \a device supplies the names of the resources. */
   [[nodiscard]] std::string serialize(const Device &device) const;
 
  private:
@@ -133,7 +136,7 @@ class CommandList {
 
   std::vector<Command> commands_;
   std::vector<PassInfo> passes_;
-  /** Of all passes, one after the other, so that a list that is cleared and filled again allocates nothing. */
+  /** Names of all passes in one string, so that refilling a cleared list allocates no memory. */
   std::string names_;
   std::vector<std::byte> bytes_;
 };

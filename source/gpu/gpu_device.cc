@@ -213,7 +213,7 @@ Batch Device::create_batch(const BatchDesc &desc)
   }
   catch (...) {
     free_range(range);
-    // The backend may not have grown its buffers, and smaller batches still fit into them.
+    // The backend may have failed to grow its buffers. Smaller batches still fit into the old capacity.
     vertices_.shrink(vertex_capacity);
     indices_.shrink(index_capacity);
     throw;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The part of a device that runs on its thread.
+// The functions of Device that run on the device's thread.
 #include "gpu_device.hh"
 
 namespace gnomon::gpu {
@@ -157,7 +157,7 @@ void Device::set_existing(ResourceKind kind, ResourceId id)
 void Device::destroy(ResourceKind kind, ResourceId id)
 {
   std::vector<ResourceId> &existing = existing_[std::size_t(kind)];
-  // What a lost packet was to create does not exist.
+  // A resource of a lost packet may never have been created.
   if (id != 0 && index_of(id) < existing.size() && existing[index_of(id)] == id) {
     existing[index_of(id)] = 0;
     resource_destroy(kind, id);

@@ -9,8 +9,8 @@
 namespace gnomon::gpu {
 
 /**
- * Bad input or device. The message names the object, the file where there is one, and the reason.
- * The object whose function throws is left as it was before the call, unless the function documents otherwise.
+ * Reports invalid input or a failure of the device. The message names the object, the file if there is one, and the
+ * reason. The object whose function throws is unchanged, unless the function documents otherwise.
  */
 struct Error : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -22,7 +22,7 @@ struct Error : std::runtime_error {
   }
 };
 
-/** The driver reports that the context is lost. The device and its resources can only be destroyed. */
+/** Reports that the driver has lost the context. The device and its resources can then only be destroyed. */
 struct DeviceLost : Error {
   using Error::Error;
 };
@@ -33,8 +33,9 @@ struct DeviceLost : Error {
 }  // namespace gnomon::gpu
 
 /**
- * Checks a contract between programmers. The condition is followed by an fmt format string and its values.
- * The check remains in release builds, so it must not be used in a loop over draws.
+ * Aborts if the condition is false. For preconditions that only a programming error can violate. The arguments after
+ * the condition are an fmt format string and its values. The check is also compiled in release builds, so do not use it
+ * in loops over draws.
  */
 #define GNOMON_ASSERT(condition, ...) \
   ((condition) ? void(0) : ::gnomon::gpu::assertion_failed(__FILE__, __LINE__, #condition, fmt::format(__VA_ARGS__)))

@@ -10,17 +10,20 @@
 
 namespace gnomon::gpu {
 
-/** Attaches every layer of the texture; the shader selects one by `gl_Layer`. */
+/** Value of Attachment::layer that attaches all layers of the texture. The shader selects one with `gl_Layer`. */
 inline constexpr int all_layers = -1;
 
+/** A part of a texture that a framebuffer draws into. */
 struct Attachment {
-  /** nullptr: no attachment. Must outlive the framebuffer. */
+  /** nullptr: no attachment; allowed for depth only. The texture must outlive the framebuffer. */
   const Texture *texture = nullptr;
-  /** One layer, or all_layers. */
+  /** Index of one layer, or all_layers. */
   int layer = 0;
   int mip_level = 0;
-  /** More than 1: attaches this many layers from `layer` on. `gl_Layer` 0 is `layer`, and passes clear these layers
-   * only. */
+  /**
+   * Greater than 1: attaches this number of layers, beginning with `layer`. `gl_Layer` 0 selects `layer`, and passes
+   * clear only the attached layers. Must be 1 with all_layers.
+   */
   int layer_count = 1;
 };
 
@@ -31,7 +34,7 @@ struct FramebufferDesc {
   Attachment depth;
 };
 
-/** An Attachment by id. */
+/** An Attachment that names its texture by id. */
 struct AttachmentLayout {
   /** 0: no attachment. */
   ResourceId texture = 0;
@@ -40,7 +43,7 @@ struct AttachmentLayout {
   int layer_count = 1;
 };
 
-/** A FramebufferDesc by ids, as backends create it. */
+/** A FramebufferDesc that names its textures by id. Input of the backends. */
 struct FramebufferLayout {
   std::string name;
   std::vector<AttachmentLayout> colors;
@@ -48,7 +51,7 @@ struct FramebufferLayout {
   glm::ivec2 size_px{0};
 };
 
-/** Render target of a pass, made of textures of the device. */
+/** Render target of a pass. Its attachments are textures of the device. */
 class Framebuffer : public Resource {
  public:
   Framebuffer() = default;
@@ -64,19 +67,19 @@ class Framebuffer : public Resource {
 };
 
 /**
- * A framebuffer of the host's, in a device of ContextKind::Host: another render target of a pass. Plain data, which may
- * name another framebuffer in every frame. It may be multisampled: all samples of a pixel are written alike.
+ * A framebuffer that the host created, as the render target of a pass. Requires ContextKind::Host. This is plain data:
+ * the host may pass a different framebuffer in each frame. It may be multisampled; a draw that covers a pixel
+ * completely writes the same value to all of its samples.
  */
 struct HostFramebuffer {
-  /** OpenGL's name; 0: the default framebuffer. Only the first of its draw buffers is written. */
+  /** OpenGL name; 0: the default framebuffer. Only its first draw buffer is written. */
   std::uint32_t name = 0;
   glm::ivec2 size_px{0};
 };
 
-/** From the lower left corner. */
+/** A rectangle of a framebuffer, in pixels from its lower left corner. The default is the whole framebuffer. */
 struct Rectangle {
   glm::ivec2 origin_px{0};
-  /** 0: the whole framebuffer. */
   glm::ivec2 size_px{0};
 
   [[nodiscard]] bool is_whole() const
@@ -89,25 +92,28 @@ enum class LoadAction : std::uint8_t {
   /** Keep the content. */
   Load,
   Clear,
-  /** The content may be lost: every pixel will be written, or none will be read. */
+  /** The content becomes undefined. Use it if the pass writes all pixels, or if no pixel is read. */
   DontCare,
 };
 
 enum class StoreAction : std::uint8_t { Store, DontCare };
 
-/** Treatment of the attachments at the begin and at the end of a render pass; the same for all colour attachments. */
+/** Settings of a render pass. All colour attachments are loaded, cleared and stored in the same way. */
 struct PassActions {
   LoadAction color_load = LoadAction::Clear;
   StoreAction color_store = StoreAction::Store;
   glm::vec4 clear_color{0.0F};
   LoadAction depth_load = LoadAction::Clear;
   StoreAction depth_store = StoreAction::Store;
-  /** Reversed depth: 0 is far. */
+  /** Depth is reversed: 0 is the far plane. */
   float clear_depth = 0.0F;
   Rectangle viewport{};
-  /** Draws and clears change only this part. */
+  /** Draws and clears write only inside this rectangle. */
   Rectangle scissor{};
-  /** Attachments of an sRGB format encode what is drawn, and blend linear colours. Otherwise they store it as it is. */
+  /**
+   * true: attachments of an sRGB format encode colours when they are written, and blend linear colours. false: colours
+   * are stored unchanged.
+   */
   bool is_srgb_encoded = false;
 };
 

@@ -6,20 +6,20 @@
 namespace gnomon::gpu {
 
 /**
- * Nested render passes: push suspends the current pass, pop resumes it with its content kept.
+ * Records nested render passes into a command list. push() ends the current pass and begins another; pop() ends that
+ * pass and begins the previous one again with its content loaded.
  *
- * Records into \a list, which must outlive the stack. A pass that discards an attachment at its end cannot be
- * suspended.
+ * The list must outlive the stack. A pass with StoreAction::DontCare cannot be suspended.
  */
 class FramebufferStack {
  public:
   explicit FramebufferStack(CommandList &list) : list_(list) {}
 
-  /** \a framebuffer must live until it is popped. \throws Error where the current pass cannot be suspended. */
+  /** \a framebuffer must live until it is popped. \throws Error if the current pass cannot be suspended */
   void push(std::string name, const Framebuffer &framebuffer, const PassActions &actions);
-  /** \throws Error for an empty stack; nothing changes then. */
+  /** \throws Error if the stack is empty; nothing changes then */
   void pop();
-  /** \throws Error for an empty stack. */
+  /** The framebuffer of the current pass. \throws Error if the stack is empty */
   [[nodiscard]] const Framebuffer &top() const;
   [[nodiscard]] bool is_empty() const
   {

@@ -6,11 +6,11 @@
 namespace gnomon::gpu {
 
 /**
- * The interfaces of all variants of one program, as constant data that the build generates
- * (shader_check_interfaces.hh), so that a host needs no shader compiler but the driver's.
+ * The interfaces of all variants of one program. The build generates them as constant data
+ * (shader_check_interfaces.hh), so a host needs no shader compiler other than the driver's.
  *
- * The variants share one list of bindings: a name has one slot and one layout in all of them. A variant reads a part of
- * the list. The part is exact, because binding a name that a variant does not read must do nothing.
+ * All variants share one list of bindings: a name has the same slot and layout in each of them. Each variant lists
+ * exactly the bindings that it reads, because binding any other name must have no effect.
  */
 struct InterfaceTable {
   /** As ShaderInterface::Member. */
@@ -26,27 +26,27 @@ struct InterfaceTable {
     int slot;
     std::uint32_t size_bytes;
     std::span<const Member> members;
-    /** Of all variants. */
+    /** Mask of the stages that read the binding in any variant. */
     std::uint32_t stages = 0;
   };
   struct Variant {
-    /** Chosen by the engine: its features as bits. */
+    /** Identifies the variant; the engine's feature bits. */
     std::uint32_t key;
-    /** Bit i is set: the variant reads bindings[i]. */
+    /** Mask: bit i is set if the variant reads bindings[i]. */
     std::uint64_t bindings;
     bool has_push_constants;
   };
 
   /** ShaderDesc::name of all variants. */
   std::string_view name;
-  /** Of all variants; sorted by kind, then slot; at most 64. */
+  /** Bindings of all variants, sorted by kind and then by slot; at most 64. */
   std::span<const Binding> bindings;
   std::span<const Member> push_constant_members;
   std::uint32_t push_constant_size_bytes;
   int push_constant_slot;
   std::span<const Variant> variants;
 
-  /** \throws Error if no variant has the key. */
+  /** Interface of the variant with \a key. \throws Error if it does not exist */
   [[nodiscard]] ShaderInterface interface_of(std::uint32_t key) const;
 };
 

@@ -205,7 +205,7 @@ void Device::take_losses()
   const std::uint64_t losses = losses_;
   const std::uint64_t executed = executed_serial_;
   if (losses != losses_taken_) {
-    // Every other packet was recorded before the loss was known, and is not executed.
+    // All packets after the last executed one were recorded before the loss was known and will not be executed.
     for (const InFlight &packet : in_flight_) {
       if (packet.serial > executed && packet.link) {
         for (const Operation::Resource &resource : packet.created) {
@@ -215,7 +215,7 @@ void Device::take_losses()
       }
     }
     in_flight_.clear();
-    // The backend may not have grown its buffers, and smaller batches still fit into them.
+    // The backend may have failed to grow its buffers. Smaller batches still fit into the old capacity.
     vertices_.shrink(0);
     indices_.shrink(0);
     losses_taken_ = losses;
@@ -244,7 +244,7 @@ bool Device::free_slot(ResourceKind kind, ResourceId id)
     return false;
   }
   slot.is_live = false;
-  // An index without unused generations is never used again, so that no id is issued twice.
+  // An index whose generations are used up is not reused, so that no id is issued twice.
   constexpr std::uint32_t generation_max = (1U << (32U - resource_index_bits)) - 1U;
   if (generation_of(id) < generation_max) {
     free_ids_[std::size_t(kind)].push_back(id + (1U << resource_index_bits));

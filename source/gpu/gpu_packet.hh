@@ -16,11 +16,11 @@
 
 namespace gnomon::gpu {
 
-/** What the device reports back about a submitted packet: the results of read_back and of timers, in order. */
+/** Results of a submitted packet: read texels and measured times, each in the order of recording. */
 struct Feedback {
   struct Texels {
     ResourceId texture = 0;
-    /** As given to Device::read_back. */
+    /** The tag that was passed to Device::read_back. */
     std::uint64_t tag = 0;
     /** Rows from the bottom, tightly packed. */
     std::vector<std::byte> bytes;
@@ -30,7 +30,7 @@ struct Feedback {
     double seconds = 0.0;
   };
   std::vector<Texels> texels;
-  /** Nothing where the device has no timer. */
+  /** Empty if the device has no timer. */
   std::vector<Time> times;
 
   void clear()
@@ -40,7 +40,7 @@ struct Feedback {
   }
 };
 
-/** Copies of uploaded data. Spans of it stay valid until clear. */
+/** Memory for copies of uploaded data. Returned spans stay valid until clear(). */
 class PacketMemory {
  public:
   template <typename T>
@@ -48,8 +48,9 @@ class PacketMemory {
   {
     return {reinterpret_cast<const T *>(copy_bytes(std::as_bytes(values))), values.size()};
   }
-  /** Keeps a block that is large enough for the same data again, unless that is above kept_bytes_max. */
+  /** Keeps one block with room for the same data, unless its size exceeds kept_bytes_max. */
   void clear();
+  /** Whether the copies exceed kept_bytes_max. */
   [[nodiscard]] bool is_large() const
   {
     return size_bytes_ > kept_bytes_max;
@@ -67,19 +68,19 @@ class PacketMemory {
   void add_block(std::size_t size);
 
   std::vector<Block> blocks_;
-  /** In the last block. */
+  /** Used bytes of the last block. */
   std::size_t used_ = 0;
-  /** Of all blocks. */
+  /** Bytes of all blocks. */
   std::size_t size_bytes_ = 0;
 };
 
-/** For std::visit: one function for each alternative. */
+/** A visitor for std::visit that is made of one function for each alternative. */
 template <typename... Functions>
 struct Overloaded : Functions... {
   using Functions::operator()...;
 };
 
-/** One call of a Device as data. Resources are named by id; spans point to data of the caller, or of a packet. */
+/** A recorded call of a Device. It names resources by id. Its spans refer to data of the caller or of the packet. */
 struct Operation {
   struct CreateTexture {
     ResourceId id;
@@ -115,7 +116,7 @@ struct Operation {
   };
   struct Resource {
     ResourceKind kind = ResourceKind::Texture;
-    /** 0: none. */
+    /** 0: no resource. */
     ResourceId id = 0;
   };
   struct Destroy {
@@ -150,7 +151,7 @@ struct Operation {
     std::size_t size_bytes;
     std::uint64_t tag;
   };
-  /** A list of the packet, by index. */
+  /** Executes the packet's list with this index. */
   struct SubmitList {
     std::size_t list;
   };
@@ -159,74 +160,76 @@ struct Operation {
                SubmitList>
       call;
 
-  /** None for a batch: it is a part of buffers that all batches share. */
+  /** The resource that the call creates. Empty for batches, which are ranges of shared buffers. */
   [[nodiscard]] Resource created() const;
 };
 
 /**
- * Work for a device as data: resources to create and destroy, uploads and command lists, in order.
+ * Recorded work for a device: creation and destruction of resources, uploads and command lists, in order.
  *
- * A packet is recorded on one thread (\see Recording) and executed by Device::submit on the device's thread. The host
- * passes it from thread to thread and back; only one thread may use it at a time. A host that prepares one frame while
- * the device's thread submits another uses two packets in turn. A packet keeps its memory for the next recording.
+ * A packet is recorded on one thread (\see Recording) and executed by Device::submit on the device's thread. Only one
+ * thread may use a packet at a time. To record a frame while the device's thread submits the previous one, alternate
+ * between two packets. A packet keeps its memory for the next recording.
  */
 class Packet {
  public:
   Packet() = default;
   Packet(const Packet &) = delete;
   Packet &operator=(const Packet &) = delete;
-  /** A packet that was recorded and not submitted counts as lost; \see Device::loss_count. No submit may run then. */
+  /** A pending packet counts as lost (\see Device::loss_count). \pre Device::submit is not running */
   ~Packet();
 
-  /** Recorded, and not submitted. */
+  /** Whether the packet was recorded and not yet submitted. */
   [[nodiscard]] bool is_pending() const
   {
     return is_pending_;
   }
   /**
-   * Of the last submission of this packet; empty where that failed. With n packets in turn, it is n frames old in the
-   * next recording.
+   * Results of the last submission of this packet; empty if the submission failed. If n packets are used in turn, they
+   * are n frames old when the packet is recorded again.
    */
   [[nodiscard]] const Feedback &feedback() const
   {
     return feedback_;
   }
-  /** One line for each call, and the commands of the lists. To be called on the thread that recorded it. */
+  /** Text with one line for each call and each command of the lists. Call it on the recording thread. */
   [[nodiscard]] std::string serialize(const Device &device) const;
 
  private:
   friend class Device;
 
   CommandList &add_list();
-  /** Adds a copy where \a list is none of the packet's. */
+  /** Index of \a list. A list that is not part of the packet is copied into it. */
   std::size_t index_of(const CommandList &list);
   void clear();
 
   std::vector<Operation> operations_;
-  /** The first list_count_ are in use; the others keep their memory. */
+  /** The first list_count_ lists are in use. The others keep their memory for later recordings. */
   std::vector<std::unique_ptr<CommandList>> lists_;
   std::size_t list_count_ = 0;
   PacketMemory memory_;
   Feedback feedback_;
   bool is_pending_ = false;
-  /** \see Device::run */
+  /** Whether operations may be executed during the recording. \see Device::run */
   bool is_executed_early_ = false;
-  /** Operations that were executed, successfully or not. */
+  /** Number of executed operations, including one that failed. */
   std::size_t executed_count_ = 0;
   bool has_failed_ = false;
-  /** Of the device that it was recorded for. */
+  /** Link of the device that the packet was recorded for. */
   std::shared_ptr<DeviceLink> link_;
-  /** Above those of all packets that were recorded for the device before. */
+  /** Increases with each recording for the same device. */
   std::uint64_t serial_ = 0;
   /** Device::loss_count at the begin of the recording. */
   std::uint64_t loss_count_ = 0;
 };
 
 /**
- * While it exists, calls of \a device on this thread go into \a packet instead of to the graphics API, so that they
- * need no current context. What they return is usable at once; resources exist on the device after the submission.
+ * While a Recording exists, calls of \a device on this thread are recorded into \a packet instead of being executed, so
+ * they need no current context. Returned resources can be used in the recording at once; they exist on the device after
+ * the submission.
  *
- * Forgets the packet's earlier content. Feedback stays readable until the next submission.
+ * The constructor clears the previous content of the packet, except for its feedback. A packet that is still pending
+ * counts as lost. \pre no other Recording of the device exists
  */
 class Recording {
  public:

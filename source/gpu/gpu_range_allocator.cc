@@ -13,7 +13,7 @@ std::uint32_t RangeAllocator::allocate(std::uint32_t count)
 {
   auto range = std::find_if(free_.begin(), free_.end(), [&](const auto &entry) { return entry.second >= count; });
   if (range == free_.end()) {
-    // A free range at the end is extended, so that the array grows by the missing elements only.
+    // Extend a free range at the end, so that the array grows only by the missing elements.
     const bool has_tail = !free_.empty() && free_.rbegin()->first + free_.rbegin()->second == capacity_;
     const std::uint32_t first = has_tail ? free_.rbegin()->first : capacity_;
     const std::uint64_t end = std::uint64_t(first) + count;

@@ -6,22 +6,22 @@
 
 namespace gnomon::gpu {
 
-/** Allocates ranges of a growing array: first fit, adjacent free ranges merged. */
+/** Allocates ranges of a growing array. It uses the first free range that fits and merges adjacent free ranges. */
 class RangeAllocator {
  public:
-  /** Elements that the array can have. */
+  /** Maximum number of elements of the array. */
   static constexpr std::uint32_t capacity_max = 1U << 31U;
 
   /**
-   * Start of \a count free elements. Where there are none, capacity() grows to a power of two.
-   * \throws Error where that would exceed capacity_max; nothing changes then.
+   * Allocate \a count elements and return the index of the first. If no free range is large enough, capacity() grows to
+   * a power of two. \throws Error if the capacity would exceed capacity_max; nothing changes then
    */
   [[nodiscard]] std::uint32_t allocate(std::uint32_t count);
-  /** \pre allocate returned \a first for \a count. */
+  /** Free a range. \pre allocate(count) returned \a first */
   void free(std::uint32_t first, std::uint32_t count);
-  /** Reduce capacity() to \a capacity, or to the end of the last range in use if that is higher. */
+  /** Reduce capacity() to \a capacity, or to the end of the last allocated range if that is higher. */
   void shrink(std::uint32_t capacity);
-  /** Whether all of the \a count elements from \a first on are in use. */
+  /** Whether all \a count elements from \a first on are allocated. */
   [[nodiscard]] bool is_allocated(std::uint32_t first, std::uint32_t count) const;
   [[nodiscard]] std::uint32_t capacity() const
   {
@@ -29,7 +29,7 @@ class RangeAllocator {
   }
 
  private:
-  /** Free ranges: first element to count. No two are adjacent. */
+  /** Maps the first element of each free range to its count. No two ranges are adjacent. */
   std::map<std::uint32_t, std::uint32_t> free_;
   std::uint32_t capacity_ = 0;
 };

@@ -9,7 +9,7 @@
 
 namespace gnomon::gpu {
 
-/** Device::read as values of T, such as float for each channel, or glm::vec4 for each texel of RGBA32F. */
+/** Calls Device::read and returns the bytes as values of T, for example float channels or glm::vec4 texels. */
 template <typename T>
 [[nodiscard]] std::vector<T> read_as(Device &device, const Texture &texture, int layer = 0)
 {

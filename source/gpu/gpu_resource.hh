@@ -12,18 +12,18 @@ class Device;
 
 enum class ResourceKind : std::uint8_t { Texture, Sampler, Framebuffer, Buffer, Batch, Shader, TimerQuery };
 
-/** "texture", "sampler", … */
+/** Returns "texture", "sampler" and so on. */
 [[nodiscard]] std::string_view to_string(ResourceKind kind);
 
 /**
- * Names a resource of one kind within its device, in command lists. 0: none.
+ * Identifies a resource within its device and kind. 0: no resource.
  *
- * The lower bits are an index, the upper bits a generation that increases whenever the index is used again. A device
- * never issues an id twice, so the id of a destroyed resource never names another resource.
+ * The lower bits are an index, the upper bits a generation that increases when the index is reused. A device never
+ * issues an id twice for one kind, so the id of a destroyed resource never identifies another resource.
  */
 using ResourceId = std::uint32_t;
 inline constexpr unsigned resource_index_bits = 20;
-/** Live resources of one kind that a device can hold. */
+/** Maximum number of live resources of one kind. */
 inline constexpr std::uint32_t resource_count_max = (1U << resource_index_bits) - 1U;
 
 [[nodiscard]] constexpr std::uint32_t index_of(ResourceId id)
@@ -35,18 +35,18 @@ inline constexpr std::uint32_t resource_count_max = (1U << resource_index_bits) 
   return id >> resource_index_bits;
 }
 
-/** Shared by a device and its resources, so that a resource may outlive its device. */
+/** Shared by a device and its resources. It allows a resource to outlive its device. */
 struct DeviceLink {
-  /** nullptr once the device is destroyed. */
+  /** nullptr after the device was destroyed, or after the packet that creates the resources was lost. */
   Device *device = nullptr;
 };
 
 /**
- * Owner of one object on the device; the base of Texture, Buffer, Batch and the like.
+ * Owns one object on the device. Base class of Texture, Buffer, Batch and so on.
  *
- * Move-only. Its destructor frees the object and must run on the device's thread. A resource that is
- * default-constructed, moved from, or older than its device's destruction is empty: it converts to `false` and its id
- * is 0.
+ * Move-only. The destructor frees the object; it may run where calls of the device may be made (\see Device). A
+ * resource is empty if it was default-constructed or moved from, if its device was destroyed, or if the packet that
+ * creates it was lost. An empty resource converts to `false` and its id is 0.
  */
 class Resource {
  public:

@@ -43,16 +43,16 @@ const ShaderInterface::Member *ShaderInterface::find_push_constant(std::string_v
 
 namespace {
 
-/** A position in a source, as a compiler's message begins with it. */
+/** The source position of a compiler message. */
 struct LogPosition {
   int file = 0;
   int line = 0;
-  /** Where it begins, and what follows it. */
+  /** Offset of the position in the line, and the text after the position. */
   std::size_t begin = 0;
   std::string_view rest;
 };
 
-/** The position at \a begin: `FILE:LINE` (glslang, Mesa) or, where \a has_parentheses, `FILE(LINE)` (NVIDIA). */
+/** Parse the position at \a begin: `FILE:LINE` (glslang, Mesa) or, if \a has_parentheses, `FILE(LINE)` (NVIDIA). */
 std::optional<LogPosition> log_position_at(std::string_view line, std::size_t begin, bool has_parentheses)
 {
   TextScanner scanner(line.substr(begin));
@@ -68,7 +68,7 @@ std::optional<LogPosition> log_position_at(std::string_view line, std::size_t be
   return LogPosition{*file, *number, begin, scanner.rest()};
 }
 
-/** The first position of \a line: at its start, or behind `ERROR: ` or `WARNING: `. */
+/** Find the position of the message \a line: at its start, or after `ERROR: ` or `WARNING: `. */
 std::optional<LogPosition> log_position(std::string_view line)
 {
   if (const auto position = log_position_at(line, 0, true)) {
@@ -104,7 +104,7 @@ std::string ShaderSource::name_files(std::string_view log) const
 
 namespace {
 
-/** Expands one stage. */
+/** Expands the includes and defines of one stage. */
 class Preprocessor {
  public:
   Preprocessor(const ShaderDesc &desc, const ShaderFiles &files, const IncludePath &include_path, ShaderStage stage)
@@ -155,7 +155,7 @@ class Preprocessor {
       }
     }
     open_files_.pop_back();
-    // What a file leaves open is the compiler's to report.
+    // The compiler reports branches that the file does not close.
     branches_.resize(outer_branches);
   }
 
@@ -180,7 +180,7 @@ class Preprocessor {
     }
   }
 
-  /** Behind the name of the directive. */
+  /** A scanner at the text after the name of the directive. */
   static TextScanner behind_directive(std::string_view line)
   {
     TextScanner scanner(line);
@@ -193,7 +193,7 @@ class Preprocessor {
   {
     return behind_directive(line).take_word();
   }
-  /** NAMED of `#include "NAMED"`; empty where the line has another form, which the compiler reports. */
+  /** NAMED of `#include "NAMED"`. Empty if the line has another form; the compiler then reports it. */
   static std::string_view included_name(std::string_view line)
   {
     TextScanner scanner = behind_directive(line);
@@ -207,7 +207,7 @@ class Preprocessor {
     if (std::ranges::find(open_files_, path) != open_files_.end() || is_included(path)) {
       return;
     }
-    // Only the compiler knows whether an earlier `#include`, in some other branch, was an active one.
+    // An earlier `#include` in another branch may be inactive. Only the compiler knows, so the guard below decides.
     const auto index = std::ranges::find(source_.files, path) - source_.files.begin();
     for (Branch &branch : branches_) {
       branch.has_include = true;
@@ -218,7 +218,7 @@ class Preprocessor {
     included_.emplace_back(path, open_branches());
   }
 
-  /** Whether the file stands before here, in branches that all hold here too. */
+  /** Whether the file was already included, inside branches that are all open here too. */
   bool is_included(const std::string &path) const
   {
     const std::vector<int> here = open_branches();
@@ -240,7 +240,7 @@ class Preprocessor {
     return numbers;
   }
 
-  /** The name that `#ifndef NAME` or `#define NAME`, as \a directive says, has alone behind it. */
+  /** NAME of a line `#ifndef NAME` or `#define NAME`, according to \a directive; empty for all other lines. */
   static std::string_view guard_name(std::string_view line, std::string_view directive)
   {
     TextScanner scanner = behind_directive(line);
@@ -248,7 +248,7 @@ class Preprocessor {
     return directive_of(line) == directive && scanner.is_at_end() ? name : std::string_view();
   }
 
-  /** Index of an `#ifndef X` that always holds, because `#define X` follows it; lines.size() where there is none. */
+  /** Index of the line `#ifndef X` of an include guard, which `#define X` follows; lines.size() if there is none. */
   static std::size_t include_guard(const std::vector<std::string> &lines)
   {
     const auto next = [&](std::size_t i) {
@@ -267,8 +267,8 @@ class Preprocessor {
   }
 
   /**
-   * Keep the stack of open branches. True: \a line ends one that holds an include, so that the lines after it are
-   * miscounted where the branch is not taken, `#line` and all.
+   * Update the stack of open branches. \return true if \a line ends a branch that contains an include: if the compiler
+   * skips that branch, it also skips the `#line` directives in it, so the position must be set again
    */
   bool follow_branch(const std::string &line, bool is_include_guard)
   {
@@ -294,13 +294,13 @@ class Preprocessor {
     source_.text += fmt::format("#line {} {}\n", next_line, file);
   }
 
-  /** From an #if, #elif or #else to the next of them or the #endif. */
+  /** The lines from an #if, #elif or #else to the next #elif, #else or #endif. */
   struct Branch {
-    /** No other has it. */
+    /** Unique within the stage. */
     int number = 0;
-    /** A file's include guard. */
+    /** Whether it is an include guard, which always holds. */
     bool is_always = false;
-    /** In it, or in an earlier branch of the same #if. */
+    /** Whether it, or an earlier branch of the same #if, contains an include. */
     bool has_include = false;
   };
 
@@ -308,7 +308,7 @@ class Preprocessor {
   const ShaderFiles &files_;
   const IncludePath &include_path_;
   ShaderSource source_;
-  /** Being expanded, outermost first. */
+  /** Files that are being expanded, outermost first. */
   std::vector<std::string> open_files_;
   std::vector<std::pair<std::string, std::vector<int>>> included_;
   std::vector<Branch> branches_;

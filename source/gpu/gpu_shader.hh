@@ -13,16 +13,16 @@
 
 namespace gnomon::gpu {
 
-/** Returns the text of a shader file by its path below `shaders/`; empty where there is no such file. */
+/** Returns the text of the shader file at \a path, relative to `shaders/`; empty if the file does not exist. */
 using ShaderFiles = std::function<std::optional<std::string_view>(std::string_view path)>;
 
-/** Returns the path that `#include "NAMED"` in the file \a includer refers to. */
+/** Returns the path that `#include "NAMED"` in the file \a includer refers to, where NAMED is \a named. */
 using IncludePath = std::function<std::string(std::string_view named, std::string_view includer)>;
 
 /** Description of a shader program. */
 struct ShaderDesc {
   std::string name;
-  /** Paths below `shaders/`. The geometry path may be empty. Each file begins with `#version 450 core`. */
+  /** Paths relative to `shaders/`. The geometry path may be empty. Each file must begin with `#version 450 core`. */
   std::string vertex_path;
   std::string geometry_path;
   std::string fragment_path;
@@ -34,50 +34,50 @@ enum class BindingKind : std::uint8_t { UniformBlock, StorageBlock, Texture };
 
 [[nodiscard]] std::string_view to_string(BindingKind kind);
 
-/** Name of the block of small per-group values; see ShaderInterface::push_constant_members. */
+/** GLSL name of the block that holds push constants. \see ShaderInterface::push_constant_members */
 inline constexpr std::string_view push_constant_block_name = "push_constant_block";
 
 /**
- * Inputs of a shader by name. glslang reflects them (shader_check_reflection.hh), so that they do not depend on the
+ * Named inputs of a shader. They are reflected by glslang (shader_check_reflection.hh), so they do not depend on the
  * driver.
  */
 struct ShaderInterface {
   struct Member {
-    /** Name of a block's member with arrays and structs resolved, such as `lights[0].color`. */
+    /** Path of a member within its block, such as `lights[0].color`. */
     std::string name;
     std::uint32_t offset_bytes = 0;
-    /** Up to the next member, including padding. */
+    /** Distance to the next member, including padding. */
     std::uint32_t size_bytes = 0;
 
     bool operator==(const Member &) const = default;
   };
   struct Binding {
-    /** Name of the block, not of its instance; name of the sampler. */
+    /** Name of the block (not of its instance) or of the sampler. */
     std::string name;
     BindingKind kind = BindingKind::UniformBlock;
     /** `layout(binding = …)`. */
     int slot = 0;
     /** Blocks: std140 size. Textures: 0. */
     std::uint32_t size_bytes = 0;
-    /** Blocks: sorted by offset; of an array, the first element only. */
+    /** Blocks: sorted by offset. Of an array, only the first element is listed. Textures: empty. */
     std::vector<Member> members;
-    /** Stages that read it: bit 0 vertex, bit 1 geometry, bit 2 fragment; 0: not known. */
+    /** Mask of the stages that read the binding: bit 0 vertex, bit 1 geometry, bit 2 fragment; 0: unknown. */
     std::uint32_t stages = 0;
 
-    /** Without `stages`: variants of one program read a block in different stages. */
+    /** Ignores `stages`, because variants of a program may read a block in different stages. */
     bool operator==(const Binding &other) const
     {
       return std::tie(name, kind, slot, size_bytes, members) ==
              std::tie(other.name, other.kind, other.slot, other.size_bytes, other.members);
     }
   };
-  /** Sorted by kind, then slot, without the push-constant block. */
+  /** Sorted by kind and then by slot. Excludes the push-constant block. */
   std::vector<Binding> bindings;
-  /** Members of the block push_constant_block_name, by offset. */
+  /** Members of the block push_constant_block_name, sorted by offset. */
   std::vector<Member> push_constant_members;
   /** 0: the shader has no such block. */
   std::uint32_t push_constant_size_bytes = 0;
-  /** Uniform slot of the block, for an API without push constants. */
+  /** Uniform slot of the block in an API without push constants. */
   int push_constant_slot = 0;
 
   bool operator==(const ShaderInterface &) const = default;
@@ -87,21 +87,21 @@ struct ShaderInterface {
   [[nodiscard]] const Member *find_push_constant(std::string_view name) const;
 };
 
-/** The layout of a block as C++ has it; shader_check compares it with GLSL's. */
+/** Layout of a block in C++. shader_check compares it with the layout in GLSL. */
 struct BlockLayout {
   struct Field {
-    /** As in ShaderInterface::Member; of an array the first element: `light_data.lights[0].color`. */
+    /** Path as in ShaderInterface::Member. Of an array, the first element: `light_data.lights[0].color`. */
     std::string_view name;
     std::size_t offset_bytes;
   };
-  /** The name of the block in GLSL. */
+  /** Name of the block in GLSL. */
   std::string_view name;
-  /** Of a storage block that is an array: the size of one entry. */
+  /** Size of the block; of a storage block that is an array, the size of one element. */
   std::size_t size_bytes;
   std::span<const Field> fields;
 };
 
-/** A linked program. */
+/** A linked shader program. */
 class Shader : public Resource {
  public:
   Shader() = default;
@@ -128,18 +128,18 @@ enum class ShaderStage : std::uint8_t { Vertex, Geometry, Fragment };
 
 [[nodiscard]] std::string_view to_string(ShaderStage stage);
 
-/** Source of one stage with includes resolved, as glslang and the driver compile it. */
+/** Source of one stage after preprocess(). glslang and the driver compile this text. */
 struct ShaderSource {
   ShaderStage stage = ShaderStage::Vertex;
   std::string text;
-  /** Path by source string number of `#line`. */
+  /** Paths of the files, indexed by the source string number of `#line`. */
   std::vector<std::string> files;
 
-  /** \a log with `N:LINE` or `N(LINE)` at the start of a message replaced by `FILE:LINE`. */
+  /** Returns \a log with the position `N:LINE` or `N(LINE)` of each message replaced by `FILE:LINE`. */
   [[nodiscard]] std::string name_files(std::string_view log) const;
 };
 
-/** A mistake in a shader file; the message begins with `FILE:LINE: `. */
+/** An error in a shader file. The message begins with `FILE:LINE: `. */
 struct SourceError : Error {
   SourceError(std::string source_file, int source_line, std::string_view reason)
       : Error("{}:{}: {}", source_file, source_line, reason),
@@ -154,19 +154,19 @@ struct SourceError : Error {
 };
 
 /**
- * Insert includes and defines. Without \a include_path, `#include "PATH"` refers to a path below `shaders/`. Each file
- * is included once in a stage, so that headers need no guard and cycles end.
+ * Resolve includes and insert the defines of \a desc. Without \a include_path, `#include "PATH"` names a path relative
+ * to `shaders/`. A stage includes each file once, so headers need no include guard and cyclic includes end.
  *
- * \throws SourceError for an include that does not exist and for a stage without `#version`; Error for a stage's file
- * that does not exist.
+ * \throws SourceError if an included file does not exist or a stage has no `#version`; Error if the file of a stage
+ * does not exist
  */
 [[nodiscard]] std::vector<ShaderSource> preprocess(const ShaderDesc &desc, const ShaderFiles &files,
                                                    const IncludePath &include_path = {});
 
 /**
- * Returns the interface of the program \a name with these \a stages, or throws Error. A table that the build generates
- * gives it for an engine's own shaders (gpu_interface_table.hh). For shaders that are known at run time only, pass
- * shader_check::reflect, which needs the library gnomon::shader_check.
+ * Returns the interface of the program \a name with these \a stages, or throws Error. The engines' shaders use a table
+ * that the build generates (gpu_interface_table.hh). For shaders that are known only at run time, use
+ * shader_check::reflect from the library gnomon::shader_check.
  */
 using ShaderReflection = std::function<ShaderInterface(std::string_view name, const std::vector<ShaderSource> &stages)>;
 

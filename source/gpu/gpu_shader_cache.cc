@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/** Identifies the file format. Files of another version are not read. */
+/** First bytes of a file, including the version of the format. */
 constexpr std::string_view magic = "gnomon shader 3\n";
 
 std::uint64_t checksum(std::span<const std::uint8_t> bytes)
@@ -59,7 +59,7 @@ std::optional<CachedShader> ShaderDiskCache::load(const std::string &key) const
     return std::nullopt;
   }
   std::ifstream file(folder_ / key, std::ios::binary);
-  // Through a stream's operator: reading what is no file would throw from an iterator.
+  // operator<< sets a fail bit if the path is not a regular file, whereas stream iterators would throw.
   std::ostringstream whole;
   whole << file.rdbuf();
   const std::string content = whole.str();
@@ -73,7 +73,7 @@ std::optional<CachedShader> ShaderDiskCache::load(const std::string &key) const
   if (checksum(body) != expected) {
     return std::nullopt;
   }
-  // Marks the file as used, for trim.
+  // trim() reads this time to find the least recently used files.
   std::error_code ignored;
   fs::last_write_time(folder_ / key, fs::file_time_type::clock::now(), ignored);
   try {
@@ -93,7 +93,7 @@ void ShaderDiskCache::store(const std::string &key, const CachedShader &shader) 
   const std::uint64_t sum = checksum(body);
   std::error_code failed;
   fs::create_directories(folder_, failed);
-  // Written beside and renamed, so that another process finds a complete file or none.
+  // Write a temporary file and rename it, so that other processes never read an incomplete file.
   const fs::path beside = folder_ / fmt::format("{}.{}", key, getpid());
   std::ofstream file(beside, std::ios::binary);
   file.write(magic.data(), std::streamsize(magic.size()));
@@ -111,7 +111,7 @@ void ShaderDiskCache::store(const std::string &key, const CachedShader &shader) 
 
 namespace {
 
-/** Whether \a name is a key, or a key and a process id: a file that a process left unfinished. */
+/** Whether \a name is a key (KEY), or the name of a temporary file of store() (KEY.PROCESS_ID). */
 bool is_cache_file(const std::string &name)
 {
   constexpr std::size_t key_size = 32;
@@ -150,7 +150,7 @@ void ShaderDiskCache::trim(const fs::path &kept) const
     if (total <= size_bytes_max_) {
       break;
     }
-    // A file that another process is writing is newer than most; losing it costs one compilation.
+    // Removing a temporary file of another process is harmless: its shader is compiled again.
     if (entry.path != kept && fs::remove(entry.path, failed)) {
       total -= entry.size_bytes;
     }

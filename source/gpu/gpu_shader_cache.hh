@@ -10,46 +10,47 @@ namespace gnomon::gpu {
 
 /** A compiled shader in the backend's own form. */
 struct CachedShader {
-  /** Empty: the backend has none. */
+  /** Empty if the backend has no compiled form. */
   std::vector<std::byte> compiled{};
 };
 
 /**
- * Compiled shaders on disk, one file each. A file that is missing, truncated, changed or of another version is ignored,
- * and a failure to write is ignored. The state of the folder therefore never changes a picture or ends a program.
+ * Cache of compiled shaders on disk, one file for each shader. Files that are missing, truncated, modified or of
+ * another version are ignored, and so are failures to write. The state of the folder therefore affects neither results
+ * nor errors.
  *
- * The files together stay below a bound: storing one removes the files that were used least recently. Files whose names
- * are not those of the cache are neither counted nor removed.
+ * After each store, the least recently used files are removed until the total size is within the limit. The cache
+ * neither counts nor removes files whose names do not match its own.
  */
 class ShaderDiskCache {
  public:
   static constexpr std::uintmax_t size_bytes_default = std::uintmax_t(64) << 20U;
 
-  /** \a folder is created by the first store; empty: nothing is kept. */
+  /** \a folder: created by the first store; empty: the cache is disabled. \a size_bytes_max: total size of the files */
   explicit ShaderDiskCache(std::filesystem::path folder, std::uintmax_t size_bytes_max = size_bytes_default)
       : folder_(std::move(folder)), size_bytes_max_(size_bytes_max)
   {
   }
 
   /**
-   * Hash of everything that the result depends on: the preprocessed \a stages, which contain the defines, and \a
-   * driver, a text that identifies the driver. 32 hexadecimal digits.
+   * Key of a compiled shader: a hash of the preprocessed \a stages, which contain the defines, and of the text
+   * \a driver, which identifies the driver. 32 hexadecimal digits.
    */
   [[nodiscard]] static std::string key_of(const std::vector<ShaderSource> &stages, std::string_view driver);
 
   [[nodiscard]] std::optional<CachedShader> load(const std::string &key) const;
-  /** A shader without a binary is not stored. */
+  /** Does nothing if \a shader has no compiled form. */
   void store(const std::string &key, const CachedShader &shader) const;
 
  private:
-  /** Remove the least recently used files until the rest fits; \a kept is not removed. */
+  /** Remove the least recently used files until the total size is within the limit. Never removes \a kept. */
   void trim(const std::filesystem::path &kept) const;
 
   std::filesystem::path folder_;
   std::uintmax_t size_bytes_max_;
 };
 
-/** `$XDG_CACHE_HOME/gnomon` or `~/.cache/gnomon`; empty where neither variable is set. */
+/** `$XDG_CACHE_HOME/gnomon` or `$HOME/.cache/gnomon`; empty if neither variable is set. */
 [[nodiscard]] std::filesystem::path default_shader_cache_folder();
 
 }  // namespace gnomon::gpu

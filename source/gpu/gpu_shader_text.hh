@@ -8,14 +8,14 @@
 namespace gnomon::gpu {
 
 /**
- * Reads a line from left to right.
+ * Scans a line from left to right.
  *
- * Shader lines and compiler messages may be of any length. std::regex recurses once per character and overflows the
- * stack on lines of some 100 KB, so that nothing here uses it.
+ * Lines may have any length. std::regex is not used, because it recurses once per character and overflows the stack on
+ * lines of about 100 KB.
  */
 class TextScanner {
  public:
-  /** \a text must outlive this. */
+  /** \a text must outlive the scanner. */
   explicit TextScanner(std::string_view text) : rest_(text) {}
 
   [[nodiscard]] std::string_view rest() const
@@ -23,23 +23,23 @@ class TextScanner {
     return rest_;
   }
   TextScanner &skip_space();
-  /** Skip \a prefix if the rest begins with it; false otherwise. */
+  /** Skip \a prefix. \return false, without skipping, if the rest does not begin with it */
   bool take(std::string_view prefix);
-  /** Letters, digits and `_`; empty if the rest begins with none. */
+  /** Skip and return the leading letters, digits and `_`; may be empty. */
   std::string_view take_word();
-  /** Decimal digits. Nothing, and no progress, if there are none or if the number exceeds an int. */
+  /** Skip and return a decimal number. Skips nothing if there is none or if it exceeds an int. */
   std::optional<int> take_number();
-  /** Whether only white space or a `//` comment follows. */
+  /** Whether the rest is empty, white space or a `//` comment. */
   [[nodiscard]] bool is_at_end() const;
 
  private:
   std::string_view rest_;
 };
 
-/** Whether \a c may stand in an identifier. */
+/** Whether \a c is a letter, a digit or `_`. */
 [[nodiscard]] bool is_word_character(char c);
 
-/** The NAME of a line `#NAME …`; empty for all other lines. */
+/** Returns NAME for a line `#NAME …`, and an empty string for all other lines. */
 [[nodiscard]] std::string_view directive_of(std::string_view line);
 
 }  // namespace gnomon::gpu

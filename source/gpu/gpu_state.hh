@@ -6,28 +6,28 @@
 
 namespace gnomon::gpu {
 
-/** Fixed-function state of a draw, as a mask. A bit that is not set disables its function. */
+/** Mask of fixed-function state. A bit that is not set disables its function. */
 enum class State : std::uint32_t {
   None = 0,
   WriteColor = 1U << 0,
   WriteDepth = 1U << 1,
-  /** Depth test: passes where the depth is nearer than or equal to the stored depth. */
+  /** Depth test: passes if the depth is nearer than or equal to the stored depth (reversed depth: >=). */
   DepthNearerEqual = 1U << 2,
-  /** Depth test: passes where the depth equals the stored depth. */
+  /** Depth test: passes if the depth equals the stored depth. */
   DepthEqual = 1U << 3,
   CullBack = 1U << 4,
   CullFront = 1U << 5,
-  /** Front faces have clockwise vertices: for objects whose matrix mirrors. */
+  /** Front faces have clockwise vertices. For objects whose matrix mirrors. */
   FrontClockwise = 1U << 6,
-  /** The colour is added to the stored colour. */
+  /** Blending: stored + colour. */
   BlendAdd = 1U << 7,
-  /** Geometry before the near plane or behind the far plane is drawn at the depth of that plane instead of clipped. */
+  /** Geometry in front of the near plane or beyond the far plane is drawn at that plane's depth instead of clipped. */
   DepthClamp = 1U << 8,
-  /** The stored colour is multiplied by the colour. */
+  /** Blending: stored * colour. */
   BlendMultiply = 1U << 9,
-  /** The colour, which is premultiplied by its alpha, lies over the stored colour. */
+  /** Blending: colour + (1 - alpha) * stored. The colour must be premultiplied by its alpha. */
   BlendOver = 1U << 10,
-  /** Depth test: passes where the depth is less than or equal to the stored depth. For a host's depth. */
+  /** Depth test: passes if the depth is less than or equal to the stored depth. For depth buffers of the host. */
   DepthLessEqual = 1U << 11,
 };
 
@@ -44,7 +44,7 @@ constexpr bool has(State mask, State bit)
   return (std::uint32_t(mask) & std::uint32_t(bit)) != 0;
 }
 
-/** "write_depth depth_nearer_equal"; "none" for an empty mask. */
+/** Returns the names of the bits, such as "write_depth depth_nearer_equal", or "none" for an empty mask. */
 [[nodiscard]] std::string to_string(State mask);
 
 }  // namespace gnomon::gpu

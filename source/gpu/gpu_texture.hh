@@ -9,19 +9,19 @@
 
 namespace gnomon::gpu {
 
-/** Texel formats. Depth32F is used for every depth, RGBA32F for scene-linear radiance. */
+/** Texel formats. Depth32F is used for all depth, RGBA32F for scene-linear radiance. */
 enum class Format : std::uint8_t {
   /** Display-referred colour, [0, 1]. */
   RGBA8,
-  /** sRGB-encoded colour, which a lookup decodes before it filters, and linear alpha. */
+  /** sRGB-encoded colour and linear alpha. A texture lookup decodes the colour before filtering. */
   SRGB8A8,
-  /** Scene-linear radiance where half floats suffice; the largest value is 65504. */
+  /** Scene-linear radiance with half precision; the largest value is 65504. */
   RGBA16F,
   RGBA32F,
-  /** A distance in metres. */
+  /** Distances in metres. */
   R16F,
   R32F,
-  /** A mean and a spread. */
+  /** Mean and spread of exponential variance shadow maps. */
   RG32F,
   /** Reversed clip-space depth: 1 at the near plane, 0 at the far one. */
   Depth32F,
@@ -38,15 +38,15 @@ struct TextureDesc {
   std::string name;
   TextureKind kind = TextureKind::Flat;
   Format format = Format::RGBA8;
-  /** Pixels, at least 1. */
+  /** Texels of level 0, at least 1. */
   int width = 1;
   int height = 1;
-  /** Array: number of slices. Flat: 1. */
+  /** Array: number of layers. Flat: 1. */
   int layers = 1;
-  /** Levels of the mip chain; 1: no smaller levels. */
+  /** Number of mip levels, level 0 included; at least 1. */
   int mip_levels = 1;
 
-  /** Of all levels and layers. */
+  /** Bytes of all levels and layers. */
   [[nodiscard]] std::size_t size_bytes() const;
 };
 
@@ -66,20 +66,21 @@ class Texture : public Resource {
 
 enum class Filter : std::uint8_t { Nearest, Linear };
 enum class Wrap : std::uint8_t { ClampToEdge, Repeat, MirroredRepeat };
-/** Filter between the levels of a mip chain. None: level 0 only. */
+/** Filter between mip levels. None: samples level 0 only. */
 enum class MipFilter : std::uint8_t { None, Nearest, Linear };
 
 struct SamplerDesc {
   std::string name;
   Filter filter = Filter::Nearest;
-  /** Filter where texels are smaller than pixels; absent: the same as `filter`. */
+  /** Filter for minification, where texels are smaller than pixels; absent: same as `filter`. */
   std::optional<Filter> minified{};
   MipFilter mip = MipFilter::None;
   Wrap wrap_u = Wrap::ClampToEdge;
   Wrap wrap_v = Wrap::ClampToEdge;
   /**
-   * For `sampler2DShadow` and `sampler2DArrayShadow`: a lookup returns 1 where the reference is greater than or equal
-   * to the stored depth (depth is reversed: nearer or as near), otherwise 0. Filter::Linear interpolates four results.
+   * For `sampler2DShadow` and `sampler2DArrayShadow`: a lookup returns 1 if the reference is greater than or equal to
+   * the stored depth, otherwise 0. Because depth is reversed, 1 means at least as near. Filter::Linear interpolates the
+   * results of four comparisons.
    */
   bool is_depth_comparison = false;
 };

@@ -48,11 +48,11 @@ class Validator {
   }
 
  private:
-  /** A bound buffer range or texture of one slot. */
+  /** The buffer range, texture or push constants of one slot. */
   struct Bound {
     int slot = 0;
     ResourceId id = 0;
-    /** Buffers: bytes that the shader can read. */
+    /** Buffers and push constants: size of the bound range. Textures: 0. */
     std::size_t size_bytes = 0;
   };
 
@@ -65,7 +65,7 @@ class Validator {
                 command_index_, name_of(list_.commands()[command_index_].kind), reason);
   }
 
-  /** \a id's description; fails where it is 0 or stale. */
+  /** Description of the resource \a id. Fails if \a id is 0 or stale. */
   const ResourceInfo &live(ResourceKind kind, ResourceId id) const
   {
     const ResourceInfo *info = id == 0 ? nullptr : device_.find(kind, id);
@@ -128,7 +128,7 @@ class Validator {
     check_rectangle(size_px, "scissor", pass.actions.scissor);
   }
 
-  /** Of the current pass. */
+  /** Name of the current pass's framebuffer, for messages. */
   [[nodiscard]] std::string framebuffer_name() const
   {
     return pass_->host_framebuffer
@@ -314,12 +314,12 @@ class Validator {
   std::size_t command_index_ = 0;
   /** nullptr: outside of a pass. */
   const CommandList::PassInfo *pass_ = nullptr;
-  /** Of the pass's framebuffer. */
+  /** Attachments of the current pass's framebuffer. */
   std::span<const AttachedTexture> attachments_;
   const ResourceInfo *shader_ = nullptr;
-  /** In the current pass. */
+  /** Whether the current pass has set a state. */
   bool has_state_ = false;
-  // On the stack, as far as they fit: submissions allocate nothing in builds with assertions either.
+  // Memory of the vectors below. It usually suffices, so that validation allocates no heap memory.
   std::array<std::byte, 4096> memory_;
   std::pmr::monotonic_buffer_resource resource_{memory_.data(), memory_.size()};
   std::pmr::vector<Bound> uniforms_{&resource_};

@@ -6,17 +6,20 @@
 namespace gnomon::gpu {
 
 /**
- * Checks \a list against the resources and limits of \a device, before a backend sees it. Device::submit calls this in
- * builds with assertions (without NDEBUG), for every backend.
+ * Check \a list against the resources and limits of \a device. Device::submit calls this for every backend in builds
+ * with assertions (without NDEBUG).
  *
- * Checked are: the nesting of passes; draws and updates where they are not allowed; ids of destroyed resources; the
- * kind, size, alignment and range of bound buffers; bindings and push constants that the current shader declares and
- * the list does not supply; textures that are sampled while they are attached to the framebuffer; draws that read
- * beyond the list's arrays or outside of the vertex and index data of live batches.
+ * The function reports:
+ * - passes that are nested or not ended, draws outside of passes, and updates inside of passes;
+ * - draws for which no state was set in the same pass;
+ * - ids of destroyed resources;
+ * - bound buffers whose kind, size, alignment or range is wrong;
+ * - viewports and scissors outside of the framebuffer;
+ * - bindings and push constants that the current shader declares but the list does not set;
+ * - textures that are sampled while they are attached to the framebuffer;
+ * - draws that read beyond the arrays of the list or outside of the vertex and index data of live batches.
  *
- * Bindings stay in effect until they are replaced or the list ends. State is reset at the begin of each pass.
- *
- * \throws Error naming the pass, the command, the resource and the reason, for the first violation.
+ * \throws Error for the first violation, naming the pass, the command, the resource and the reason
  */
 void validate(const CommandList &list, const Device &device);
 

@@ -20,7 +20,7 @@ namespace gnomon::gpu {
 
 namespace {
 
-/** Reasons of failure of the kinds of context that were tried. */
+/** Reasons for which the tried kinds of context failed. */
 using Attempts = std::vector<std::string>;
 
 bool has_extension(EGLDisplay display, const char *name)
@@ -40,7 +40,7 @@ class EglContext final : public GlContext {
     if (eglGetCurrentContext() == context_) {
       eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     }
-    // The display belongs to the process: terminating it would destroy other contexts.
+    // Do not terminate the display: the whole process shares it, and other contexts would be destroyed.
     eglDestroyContext(display_, context_);
   }
   std::string description() const override
@@ -82,11 +82,11 @@ std::unique_ptr<GlContext> create_on(EGLDisplay display, const std::string &way,
   std::array<EGLint, 11> wanted = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
                                    EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                    EGL_CONTEXT_OPENGL_DEBUG, is_debug ? EGL_TRUE : EGL_FALSE,
-                                   // So that a reset of the GPU is reported.
+                                   // Required for glGetGraphicsResetStatus to report a reset of the GPU.
                                    EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET, EGL_NONE};
   EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, wanted.data());
   if (context == EGL_NO_CONTEXT) {
-    // Some drivers do not support the notification.
+    // Try again without reset notification, which some drivers do not support.
     wanted[8] = EGL_NONE;
     context = eglCreateContext(display, config, EGL_NO_CONTEXT, wanted.data());
   }
@@ -119,7 +119,7 @@ std::unique_ptr<GlContext> create_surfaceless(bool is_debug, Attempts &attempts)
 
 struct EglDevice {
   EGLDeviceEXT device = nullptr;
-  /** "EGL device 0 (/dev/dri/card0)". */
+  /** For example "EGL device 0 (/dev/dri/card0)". */
   std::string name;
   bool is_software = false;
 };
@@ -171,7 +171,7 @@ std::unique_ptr<GlContext> create_on_devices(bool is_software, bool is_debug, At
 
 std::unique_ptr<GlContext> create_on_hardware(bool is_debug, Attempts &attempts)
 {
-  // The variable of Mesa by which a user asks for its rasteriser.
+  // Mesa's environment variable that requests software rasterisation.
   const char *software = std::getenv("LIBGL_ALWAYS_SOFTWARE");
   if (software && *software && std::strcmp(software, "0") != 0 && std::strcmp(software, "false") != 0) {
     attempts.emplace_back("EGL device: LIBGL_ALWAYS_SOFTWARE is set");
@@ -245,8 +245,8 @@ std::unique_ptr<GlContext> create_headless_context(bool is_debug)
 namespace {
 
 /**
- * glXGetCurrentContext of a library that is loaded already; nullptr where none is. A host may have loaded it without
- * making its symbols global, as GLFW does, so RTLD_DEFAULT does not suffice. Nothing is loaded here.
+ * Address of glXGetCurrentContext in a library that is already loaded; nullptr if there is none. Hosts may load the
+ * library without making its symbols global, as GLFW does, so RTLD_DEFAULT does not suffice. Loads no library.
  */
 void *loaded_glx_function()
 {
@@ -257,7 +257,7 @@ void *loaded_glx_function()
   for (const char *library : {"libGLX.so.0", "libGL.so.1", "libGL.so"}) {
     if (void *handle = dlopen(library, RTLD_LAZY | RTLD_NOLOAD)) {
       void *function = dlsym(handle, name);
-      // The host's own reference keeps the library loaded.
+      // The library stays loaded, because the host holds a reference too.
       dlclose(handle);
       if (function) {
         return function;

@@ -6,7 +6,7 @@
 
 namespace gnomon::gpu {
 
-/** An OpenGL 4.5 core context. It is current on the thread that created it until it is destroyed. */
+/** An OpenGL 4.5 core context. It stays current on the thread that created it until it is destroyed. */
 class GlContext {
  public:
   virtual ~GlContext() = default;
@@ -15,12 +15,12 @@ class GlContext {
 };
 
 /**
- * Tries a hardware EGL device, EGL without a surface, a software EGL device and a hidden window, in this order.
- * \throws Error naming each kind of context that was tried and the reason of its failure.
+ * Create a context with a hardware EGL device, EGL without a surface, a software EGL device or a hidden window. The
+ * kinds are tried in this order. \throws Error naming each kind and the reason why it failed
  */
 [[nodiscard]] std::unique_ptr<GlContext> create_headless_context(bool is_debug);
 
-/** Whether a context of EGL or GLX is current on this thread. */
+/** Whether an EGL or GLX context is current on this thread. */
 [[nodiscard]] bool has_current_context();
 
 }  // namespace gnomon::gpu

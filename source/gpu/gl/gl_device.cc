@@ -53,7 +53,7 @@ GlDevice::Entry::~Entry()
   if (--device_.entry_depth_ > 0 || device_.context_) {
     return;
   }
-  // The host must not take errors of this device for its own.
+  // Clear the errors of this device, so that the host does not read them as its own.
   for (const GLenum error : take_gl_errors()) {
     device_.message(fmt::format("the driver reports {}", gl_error_name(error)));
   }
@@ -105,7 +105,7 @@ GlDevice::~GlDevice()
 void GlDevice::create_vertex_arrays()
 {
   glCreateVertexArrays(1, &vertex_array_);
-  // A stream's attribute is enabled with the first batch that has the stream.
+  // grow_pools() enables the attribute of a stream when the first batch has that stream.
   for (const VertexFormat &format : vertex_formats()) {
     const GLenum type = format.type == VertexFormat::Type::Float     ? GL_FLOAT
                         : format.type == VertexFormat::Type::Snorm16 ? GL_SHORT
@@ -118,7 +118,7 @@ void GlDevice::create_vertex_arrays()
   glVertexArrayAttribIFormat(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, 2, GL_UNSIGNED_INT, 0);
   glVertexArrayAttribBinding(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, ATTRIBUTE_DRAW_INSTANCE);
   glVertexArrayBindingDivisor(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, 1);
-  // Procedural draws need a vertex array too, and must not read the batches' attributes.
+  // Procedural draws need a vertex array, too, but one that does not read the attributes of batches.
   glCreateVertexArrays(1, &empty_vertex_array_);
 }
 
@@ -141,7 +141,7 @@ std::optional<double> GlDevice::seconds_between_marks(ResourceId query)
     return std::nullopt;
   }
   const Entry entry(*this);
-  // With a buffer bound to this target, results would be written into it.
+  // If a buffer were bound to this target, the results would be written into that buffer.
   const SavedBufferBinding saved(GL_QUERY_BUFFER);
   glBindBuffer(GL_QUERY_BUFFER, 0);
   std::array<GLuint64, 2> nanoseconds{};
@@ -164,7 +164,7 @@ std::string GlDevice::description() const
 void GLAPIENTRY GlDevice::receive_message(GLenum /*source*/, GLenum type, GLuint /*id*/, GLenum severity,
                                           GLsizei /*length*/, const GLchar *text, const void *user)
 {
-  // An exception must not pass through the driver: errors wait for check().
+  // Exceptions must not propagate through the driver, so errors are stored until check().
   auto *device = static_cast<GlDevice *>(const_cast<void *>(user));
   if (type == GL_DEBUG_TYPE_ERROR || type == GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR) {
     device->driver_errors_.emplace_back(text);
@@ -230,7 +230,7 @@ std::unique_ptr<Device> create_gl_device(const GlDeviceDesc &desc)
 {
   std::unique_ptr<GlContext> context;
   if (desc.context == ContextKind::Headless) {
-    // The new context would replace it, and its owner would then draw and free in the wrong context.
+    // The new context would become current instead, and the owner of the other context would use the wrong one.
     if (has_current_context()) {
       throw Error("a context is current on this thread already, of another device or of a host");
     }

@@ -19,10 +19,10 @@ struct GlFormat {
 };
 [[nodiscard]] GlFormat gl_format(Format format);
 
-/** Nanoseconds from \a begin to \a end of a counter of \a bits bits, which may have wrapped once. */
+/** Difference \a end - \a begin of a counter with \a bits bits that may have wrapped once; nanoseconds. */
 [[nodiscard]] std::uint64_t elapsed_ticks(std::uint64_t begin, std::uint64_t end, int bits);
 
-/** Backend's objects by resource id. */
+/** Objects of the backend, looked up by resource id. */
 template <typename T>
 class IdTable {
  public:
@@ -36,7 +36,7 @@ class IdTable {
     entries_[index_of(id)] = {id, std::move(value)};
     return entries_[index_of(id)].second;
   }
-  /** \throws Error for 0 and for the id of a destroyed resource. */
+  /** \throws Error if \a id is 0 or the id of a destroyed resource */
   [[nodiscard]] T &at(ResourceId id)
   {
     if (id == 0 || index_of(id) >= entries_.size() || entries_[index_of(id)].first != id) {
@@ -63,7 +63,7 @@ class GlDevice final : public Device {
   std::string description() const override;
 
  private:
-  /** The pools of vertices, by VertexStream, come first. */
+  /** A pool is a buffer that all batches share: one for each VertexStream, and a last one for the indices. */
   static constexpr std::size_t index_pool = vertex_stream_count;
   static constexpr std::size_t pool_count = vertex_stream_count + 1;
   using PoolBuffers = std::array<GLuint, pool_count>;
@@ -78,7 +78,7 @@ class GlDevice final : public Device {
     GLuint color_count = 0;
     bool has_depth = false;
     glm::ivec2 size_px{0};
-    /** Texture views of attachments that are a range of layers. */
+    /** Texture views of the attachments that are ranges of layers. Owned. */
     std::vector<GLuint> views;
   };
   struct GlBuffer {
@@ -88,7 +88,7 @@ class GlDevice final : public Device {
   /** A sampler that a program declares. */
   struct DeclaredSampler {
     GLuint unit = 0;
-    /** Of the texture: GL_TEXTURE_2D or GL_TEXTURE_2D_ARRAY. */
+    /** Texture target: GL_TEXTURE_2D or GL_TEXTURE_2D_ARRAY. */
     GLenum target = GL_NONE;
     bool is_comparison = false;
   };
@@ -96,12 +96,15 @@ class GlDevice final : public Device {
     GLuint name = 0;
     std::vector<DeclaredSampler> samplers;
   };
-  /** A texture of one texel and its sampler, for declared samplers that a list does not bind. */
+  /** A texture of one black texel with a sampler, for declared samplers to which a list binds no texture. */
   struct Dummy {
     GLuint texture = 0;
     GLuint sampler = 0;
   };
-  /** A function of this class that the host calls. Nested entries do nothing. */
+  /**
+   * Scope of a public call into a device that uses the host's context. The outermost scope takes the host's pending
+   * OpenGL errors and raises them again at its end. Nested scopes do nothing.
+   */
   class Entry {
    public:
     explicit Entry(GlDevice &device);
@@ -116,11 +119,11 @@ class GlDevice final : public Device {
 
   static void GLAPIENTRY receive_message(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
                                          const GLchar *text, const void *user);
-  /** \throws Error with all that the driver reported since the last check; DeviceLost. */
+  /** \throws Error with the errors that the driver has reported since the last check; DeviceLost */
   void check(std::string_view what);
-  /** As check; where it throws, \a destroy is called first. */
+  /** Calls check(). If it throws, calls \a destroy before rethrowing. */
   void check_or(std::string_view what, const std::function<void()> &destroy);
-  /** In builds with assertions, \throws Error where the host's state cannot be saved. */
+  /** In builds with assertions, \throws Error if the host's state cannot be saved. */
   void check_host_state(std::string_view what);
   static void label(GLenum kind, GLuint name, const std::string &text);
 
@@ -144,25 +147,25 @@ class GlDevice final : public Device {
   std::optional<double> seconds_between_marks(ResourceId query) override;
 
   void create_vertex_arrays();
-  /** The attachment of \a framebuffer at \a point; adds a view to \a views where it needs one. */
+  /** Attaches a texture to \a framebuffer at \a point. If this needs a texture view, appends it to \a views. */
   void attach(GLuint framebuffer, GLenum point, const AttachmentLayout &attachment, std::vector<GLuint> &views);
   void grow_pools(const BatchDesc &desc, const PoolSizes &sizes);
-  /** Compiles and links \a stages. \throws Error with the driver's log. */
+  /** Compiles and links \a stages. \throws Error with the driver's log */
   GLuint compile(const ShaderDesc &desc, const std::vector<ShaderSource> &stages);
-  /** 0: the driver does not accept \a compiled. */
+  /** Creates a program from its compiled form. \return 0 if the driver does not accept \a compiled */
   GLuint load_compiled(const std::vector<std::byte> &compiled);
   static std::vector<DeclaredSampler> declared_samplers(GLuint program);
   const Dummy &dummy(const DeclaredSampler &sampler);
 
   void collect_slots(const CommandList &list);
   void execute(const CommandList &list);
-  /** Copies the list's draws, instances and bytes into the stream. */
+  /** Begins a stream segment for \a list and copies its draws and instances into it. */
   void write_stream(const CommandList &list);
   void begin_pass(std::string_view name, const CommandList::PassInfo &pass);
   void end_pass();
-  /** The render target of \a pass. Valid until the next call. */
+  /** The render target of \a pass. The reference is valid until the next call. */
   [[nodiscard]] const GlFramebuffer &framebuffer_of(const CommandList::PassInfo &pass);
-  /** In builds with assertions, \throws Error where the host's framebuffer cannot be drawn into. */
+  /** In builds with assertions, \throws Error if the host's framebuffer cannot be drawn into. */
   void check_host_framebuffer(std::string_view pass_name, const CommandList::PassInfo &pass);
   void set_state(State state);
   void bind_range(const Command &command);
@@ -171,13 +174,14 @@ class GlDevice final : public Device {
   void complete_textures();
 
   std::unique_ptr<GlContext> context_;
-  /** Driver errors come as messages. Never in a host's context, whose messages go to the host. */
+  /** Whether the driver reports errors as debug messages. Always false in a host's context. */
   bool is_debug_;
   std::vector<std::string> driver_errors_;
   int entry_depth_ = 0;
   bool is_lost_ = false;
-  /** Of the GL_TIMESTAMP counter; 0: there is no timer. */
+  /** Bits of the GL_TIMESTAMP counter; 0: the driver has no timer. */
   GLint timestamp_bits_ = 0;
+  /** \see unsaveable_state */
   GLuint probe_query_ = 0;
 
   IdTable<GlTexture> textures_{ResourceKind::Texture};
@@ -187,26 +191,27 @@ class GlDevice final : public Device {
   IdTable<GlProgram> programs_{ResourceKind::Shader};
   IdTable<std::array<GLuint, 2>> timers_{ResourceKind::TimerQuery};
 
-  /** By target (2D, 2D array), then by whether the sampler compares. */
+  /** Indexed by target (2D, 2D array) and by whether the sampler compares depths. */
   std::array<std::array<Dummy, 2>, 2> dummies_{};
 
   GLuint vertex_array_ = 0;
   GLuint empty_vertex_array_ = 0;
   PoolBuffers pool_{};
-  /** Bytes. */
+  /** Sizes of the pools in bytes. */
   PoolSizes pool_size_{};
   StreamRing stream_;
-  /** Offset of the list's draws in the stream's buffer. */
+  /** Byte offset of the list's draws in the stream's buffer. */
   std::size_t draws_offset_ = 0;
 
   UsedSlots used_slots_;
-  /** The pass between begin_pass and end_pass. */
+  /** The open pass; nullptr outside of passes. */
   const CommandList::PassInfo *pass_ = nullptr;
+  /** Number of colour attachments of the pass. */
   GLuint color_count_ = 0;
-  /** Of the pass, where it draws into one. */
+  /** Returned by framebuffer_of for passes that draw into a host framebuffer. */
   GlFramebuffer host_framebuffer_;
   const GlProgram *program_ = nullptr;
-  /** By unit: GL_NONE, GL_TEXTURE for a texture of the list, or the target of the bound dummy. */
+  /** Indexed by texture unit: GL_NONE, GL_TEXTURE for a texture of the list, or the target of the bound dummy. */
   std::vector<GLenum> bound_textures_;
 };
 

@@ -135,7 +135,8 @@ void GlDevice::buffer_create(ResourceId id, const BufferDesc &desc)
   const Entry entry(*this);
   GLuint buffer = 0;
   glCreateBuffers(1, &buffer);
-  // Not by name: Mesa's rasteriser delays updates until earlier draws are done only where it knows the target.
+  // Bind the buffer instead of using glNamedBufferData: llvmpipe delays updates until earlier draws have finished only
+  // if it knows the buffer's target.
   const GLenum target = desc.kind == BufferKind::Uniform ? GL_UNIFORM_BUFFER : GL_SHADER_STORAGE_BUFFER;
   {
     const SavedBufferBinding saved(target);
@@ -156,7 +157,7 @@ void GlDevice::grow_pools(const BatchDesc &desc, const PoolSizes &sizes)
       glNamedBufferData(grown[i], GLsizeiptr(sizes[i]), nullptr, GL_STATIC_DRAW);
     }
   }
-  // The buffers in use are replaced only once all new ones are known to exist.
+  // Replace the old buffers only after all new buffers were created successfully.
   check_or(fmt::format("batch '{}': {} bytes of vertices and {} of indices in all", desc.name,
                        std::reduce(sizes.begin(), sizes.begin() + vertex_stream_count), sizes[index_pool]),
            [&] { glDeleteBuffers(GLsizei(grown.size()), grown.data()); });
@@ -184,10 +185,10 @@ void GlDevice::batch_create(const BatchDesc &desc, const BatchRange &range, std:
                             std::uint32_t index_capacity)
 {
   const Entry entry(*this);
-  // A stream's pool is created for the first batch that has the stream, and grown for such batches only.
+  // The pool of a stream is created for the first batch with that stream. Only batches with the stream grow it.
   PoolSizes sizes = pool_size_;
   const auto need = [&sizes](std::size_t pool, std::size_t bytes) { sizes[pool] = std::max(sizes[pool], bytes); };
-  // Normals that a batch does not have are read as zeros.
+  // A batch without normals gets zeros.
   const std::vector<glm::vec3> zeros(desc.normals.empty() ? desc.positions.size() : 0, glm::vec3(0.0F));
   std::array<std::span<const std::byte>, vertex_stream_count> streams;
   for (std::size_t i = 0; i < vertex_stream_count; i++) {
@@ -299,7 +300,7 @@ void GlDevice::texture_read(ResourceId id, int layer, std::span<std::byte> texel
   const SavedPixelStore pixel_store(PixelTransfer::Pack);
   const auto &[name, desc] = textures_.at(id);
   const GlFormat format = gl_format(desc.format);
-  // In bands of rows, because GL counts the bytes of a read in 32 bits.
+  // Read bands of rows, because OpenGL counts the bytes of a read with 32 bits.
   constexpr std::size_t band_bytes_max = std::size_t(1) << 30U;
   const std::size_t row_bytes = texels.size() / std::size_t(desc.height);
   const int band_rows = int(std::max<std::size_t>(band_bytes_max / row_bytes, 1));

@@ -45,7 +45,7 @@ bool is_linked(GLuint program)
   return linked == GL_TRUE;
 }
 
-/** The driver's format number, then its binary; empty where the driver gives none. */
+/** The driver's format number followed by its program binary; empty if the driver provides none. */
 std::vector<std::byte> compiled_form(GLuint program)
 {
   GLint size = 0;
@@ -69,7 +69,7 @@ GLuint GlDevice::compile(const ShaderDesc &desc, const std::vector<ShaderSource>
   const GLuint program = glCreateProgram();
   const auto failed = [&](const std::string &reason) {
     glDeleteProgram(program);
-    // The driver reports the same again as a message.
+    // The driver has reported the same error as a debug message.
     driver_errors_.clear();
     throw Error("shader '{}': {}", desc.name, reason);
   };
@@ -79,7 +79,7 @@ GLuint GlDevice::compile(const ShaderDesc &desc, const std::vector<ShaderSource>
     glShaderSource(shader, 1, &text, nullptr);
     glCompileShader(shader);
     glAttachShader(program, shader);
-    // Deleted together with the program.
+    // Marks the shader for deletion together with the program.
     glDeleteShader(shader);
     GLint is_compiled = 0;
     glGetShaderiv(shader, GL_COMPILE_STATUS, &is_compiled);
@@ -108,7 +108,7 @@ GLuint GlDevice::load_compiled(const std::vector<std::byte> &compiled)
   if (is_linked(program)) {
     return program;
   }
-  // Of an older driver, for example: not an error of the caller.
+  // The binary may come from another driver version. This is not an error, so discard what the driver reported.
   glDeleteProgram(program);
   driver_errors_.clear();
   static_cast<void>(take_gl_errors());
@@ -126,7 +126,7 @@ void GlDevice::shader_create(ResourceId id, const ShaderDesc &desc, const std::v
   }
   label(GL_PROGRAM, program.name, desc.name);
   program.samplers = declared_samplers(program.name);
-  // Created here, so that a submit creates nothing.
+  // Create the dummies now, so that a submission creates no objects.
   for (const DeclaredSampler &sampler : program.samplers) {
     static_cast<void>(dummy(sampler));
   }

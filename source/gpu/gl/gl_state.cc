@@ -9,7 +9,7 @@ namespace gnomon::gpu {
 
 namespace {
 
-/** Capabilities that set_draw_defaults() or command lists set, all to disabled at first. */
+/** Capabilities that set_draw_defaults() disables. Command lists enable some of them. */
 constexpr std::array<GLenum, 26> used_capabilities = {
     GL_COLOR_LOGIC_OP,
     GL_CULL_FACE,
@@ -52,7 +52,7 @@ constexpr std::array<GLenum, 2> blend_equations = {GL_BLEND_EQUATION_RGB, GL_BLE
 
 GLint integer(GLenum name)
 {
-  // Some drivers return two polygon modes.
+  // Some drivers return two values for GL_POLYGON_MODE.
   std::array<GLint, 2> values{};
   glGetIntegerv(name, values.data());
   return values[0];
@@ -100,7 +100,7 @@ std::string gl_error_name(GLenum error)
 std::vector<GLenum> take_gl_errors()
 {
   std::vector<GLenum> errors;
-  // A lost context may report its error without end.
+  // After the context is lost, glGetError may return errors endlessly.
   constexpr std::size_t error_max = 32;
   for (GLenum error = glGetError(); error != GL_NO_ERROR && errors.size() < error_max; error = glGetError()) {
     errors.push_back(error);
@@ -174,7 +174,7 @@ void set_draw_defaults()
   for (const GLenum capability : used_capabilities) {
     glDisable(capability);
   }
-  // Of all viewports: while one of them is tested, Mesa 22.3 loses draws into the others.
+  // Disable the test for all viewports: if it is enabled for one of them, Mesa 22.3 drops draws into the others.
   glDisable(GL_SCISSOR_TEST);
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   glDepthRangeIndexed(0, 0.0, 1.0);
@@ -250,7 +250,7 @@ SavedDrawState::~SavedDrawState()
   }
   glActiveTexture(GLenum(active_texture_));
   for (const IndexedBuffer &saved : indexed_buffers_) {
-    // A size of 0 stands for the whole buffer, whatever its size becomes.
+    // A size of 0 means that the whole buffer is bound, even if its size changes later.
     if (saved.buffer == 0 || saved.size_bytes == 0) {
       glBindBufferBase(saved.target, saved.slot, GLuint(saved.buffer));
     }
@@ -259,7 +259,7 @@ SavedDrawState::~SavedDrawState()
                         GLsizeiptr(saved.size_bytes));
     }
   }
-  // After the indexed bindings, which set these too.
+  // Restore these after the indexed bindings, because binding an index changes them too.
   glBindBuffer(GL_UNIFORM_BUFFER, GLuint(uniform_buffer_));
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, GLuint(storage_buffer_));
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, GLuint(indirect_buffer_));

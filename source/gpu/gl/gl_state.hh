@@ -10,19 +10,19 @@
 
 namespace gnomon::gpu {
 
-/** "GL_INVALID_ENUM", … */
+/** Returns "GL_INVALID_ENUM" and so on. */
 [[nodiscard]] std::string gl_error_name(GLenum error);
 
-/** All errors that are pending in the current context, oldest first. None is pending afterwards. */
+/** Get and clear all errors that are pending in the current context, oldest first; at most 32. */
 [[nodiscard]] std::vector<GLenum> take_gl_errors();
 
 /**
- * Make \a error pending again, without a debug message. \return false where OpenGL offers no way to raise it: any other
- * than GL_INVALID_ENUM, GL_INVALID_VALUE and GL_INVALID_OPERATION.
+ * Make \a error pending again, without a debug message. \return false if OpenGL offers no way to raise it, that is, for
+ * errors other than GL_INVALID_ENUM, GL_INVALID_VALUE and GL_INVALID_OPERATION
  */
 bool raise_gl_error(GLenum error);
 
-/** Saves the binding of the buffer target \a target, without its index, and restores it on destruction. */
+/** Saves the non-indexed buffer binding of a target, and restores it on destruction. */
 class SavedBufferBinding {
  public:
   explicit SavedBufferBinding(GLenum target);
@@ -37,7 +37,10 @@ class SavedBufferBinding {
 
 enum class PixelTransfer { Pack, Unpack };
 
-/** Sets tightly packed rows in client memory for transfers in one direction. Restores the state on destruction. */
+/**
+ * Sets up pixel transfers in one direction with tightly packed rows in client memory. Restores the previous state on
+ * destruction.
+ */
 class SavedPixelStore {
  public:
   explicit SavedPixelStore(PixelTransfer transfer);
@@ -52,31 +55,33 @@ class SavedPixelStore {
   std::array<GLint, parameter_count> values_{};
 };
 
-/** Indexed state that a command list changes. */
+/** Indices of the indexed state that a command list changes. */
 struct UsedSlots {
   std::vector<GLuint> uniform_slots;
   std::vector<GLuint> storage_slots;
   std::vector<GLuint> texture_units;
-  /** Draw buffers from 0 on. */
+  /** Number of used draw buffers, beginning with draw buffer 0. */
   GLuint color_count = 0;
 
-  /** Add \a slot to \a slots, unless it is in it. */
+  /** Add \a slot to \a slots if it is not in it. */
   static void add(std::vector<GLuint> &slots, GLuint slot);
   void clear();
 };
 
-/** Set all state that affects draws and clears, and that command lists do not set themselves, to the initial values. */
+/** Set all state that affects draws and clears and that command lists do not set themselves. */
 void set_draw_defaults();
 
 /**
- * All state of the current context that set_draw_defaults() and a command list change. Saved on construction, restored
- * on destruction.
- *
- * This is: program, vertex array, draw framebuffer; the bindings of the indirect, uniform and storage buffers, with
- * their indexed bindings at the used slots; texture (2D, 2D array) and sampler of the used units; active texture;
- * viewport, scissor box and depth range of viewport 0; scissor tests; clip control; the capabilities of gl_state.cc;
- * blending and colour mask of the used draw buffers; depth function and mask; cull face, front face, polygon mode;
- * provoking vertex. Everything else is not changed by a submit.
+ * Saves all state of the current context that set_draw_defaults() and a command list change, and restores it on
+ * destruction. A submission changes no other state. The saved state is:
+ * - program, vertex array and draw framebuffer;
+ * - bindings of the indirect, uniform and storage buffers, and the indexed bindings of the used slots;
+ * - textures (2D, 2D array) and samplers of the used units, and the active texture unit;
+ * - viewport, scissor box and depth range of viewport 0, and the scissor tests of all viewports;
+ * - clip control, polygon mode and provoking vertex;
+ * - the capabilities listed in gl_state.cc;
+ * - blending and colour mask of the used draw buffers;
+ * - depth function, depth mask, cull face and front face.
  */
 class SavedDrawState {
  public:
@@ -111,7 +116,7 @@ class SavedDrawState {
   std::vector<TextureUnit> texture_units_;
   std::vector<ColorBuffer> color_buffers_;
   std::vector<GLboolean> capabilities_;
-  /** By viewport. */
+  /** Indexed by viewport. */
   std::vector<GLboolean> scissor_tests_;
   GLint active_texture_ = 0;
   GLint program_ = 0;
@@ -134,11 +139,11 @@ class SavedDrawState {
 };
 
 /**
- * The reason why draws of a library would disturb the host, or be disturbed by it: an active query, active transform
- * feedback or conditional rendering. Empty: none.
+ * Describes active state of the host that cannot be saved and that draws would affect, or that would affect draws: a
+ * query, transform feedback or conditional rendering. Returns an empty string if there is none.
  *
- * OpenGL has no query for conditional rendering; beginning it fails while it is active. \a probe_query is the query
- * object for this attempt: created where it is 0, owned by the caller.
+ * OpenGL cannot query conditional rendering, but beginning it fails while it is active. \a probe_query: the query
+ * object for this attempt; created if it is 0; owned by the caller
  */
 [[nodiscard]] std::string unsaveable_state(GLuint &probe_query);
 

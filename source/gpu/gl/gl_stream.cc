@@ -66,7 +66,7 @@ void StreamRing::destroy()
     glDeleteSync(fence);
     fence = nullptr;
   }
-  // Unmaps it too.
+  // This also unmaps the buffer.
   glDeleteBuffers(1, &buffer_);
   buffer_ = 0;
   mapped_ = nullptr;

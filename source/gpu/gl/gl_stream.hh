@@ -10,9 +10,9 @@
 namespace gnomon::gpu {
 
 /**
- * A persistently mapped buffer for data that one submit writes and its draws read: draws, instances, push constants and
- * buffer updates. It consists of segments that are used in turn, one for each submit. A segment is written again once
- * the device has finished the submit that used it before.
+ * A persistently mapped buffer for the data of a submission: draws, instances, push constants and buffer updates. It
+ * consists of segments that submissions use in turn. A segment is reused after the device has finished the submission
+ * that used it before.
  */
 class StreamRing {
  public:
@@ -20,13 +20,13 @@ class StreamRing {
   StreamRing(const StreamRing &) = delete;
   StreamRing &operator=(const StreamRing &) = delete;
 
-  /** Takes the next segment; waits for the device where it still reads it. */
+  /** Begins the next segment, with room for \a size_bytes. Waits if the device still reads it. */
   void begin(std::size_t size_bytes);
   /** Copies \a bytes into the segment. \return their offset in buffer(), a multiple of \a alignment */
   std::size_t write(std::span<const std::byte> bytes, std::size_t alignment);
-  /** To be called after the last command that reads the segment. */
+  /** Ends the segment. Call this after the last command that reads it. */
   void end();
-  /** To be called while the context is current. */
+  /** Frees the buffer. \pre the context is current */
   void destroy();
 
   [[nodiscard]] GLuint buffer() const
@@ -37,15 +37,14 @@ class StreamRing {
  private:
   static constexpr std::size_t segment_count = 3;
 
-  /** The segments of the new buffer are not in use; the driver keeps the old one until the device has finished with it.
-   */
+  /** Replaces the buffer by a larger one. The driver keeps the old buffer until the device no longer uses it. */
   void grow(std::size_t size_bytes);
 
   GLuint buffer_ = 0;
   std::byte *mapped_ = nullptr;
   std::size_t segment_bytes_ = 0;
   std::size_t segment_ = 0;
-  /** Next byte of the current segment, from the begin of the buffer. */
+  /** Offset in the buffer of the next byte to write. */
   std::size_t next_ = 0;
   std::array<GLsync, segment_count> fences_{};
 };

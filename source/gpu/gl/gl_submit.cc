@@ -28,7 +28,7 @@ void GlDevice::collect_slots(const CommandList &list)
   for (const Command &command : list.commands()) {
     switch (command.kind) {
       case CommandKind::BeginPass:
-        // Of a host's framebuffer, the draw buffers above the first are masked.
+        // In a pass of a host framebuffer (id 0), begin_pass masks all draw buffers except for the first.
         used_slots_.color_count =
             std::max(used_slots_.color_count, command.id == 0 ? GLuint(limits().color_attachment_max)
                                                               : framebuffers_.at(command.id).color_count);
@@ -168,7 +168,7 @@ void GlDevice::check_host_framebuffer([[maybe_unused]] std::string_view pass_nam
   if (glCheckNamedFramebufferStatus(name, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
     refuse("is not complete");
   }
-  // Drivers disagree on the encoding of the default framebuffer.
+  // The default framebuffer is not checked, because drivers disagree on its encoding.
   if (name != 0 && pass.actions.is_srgb_encoded) {
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, name);
     GLint buffer = GL_NONE;
@@ -210,7 +210,7 @@ void GlDevice::begin_pass(std::string_view name, const CommandList::PassInfo &pa
   for (GLuint i = 1; pass.host_framebuffer && i < GLuint(limits().color_attachment_max); i++) {
     glColorMaski(i, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   }
-  // Clears obey the write masks.
+  // Clears respect the write masks.
   set_state(State::WriteColor | State::WriteDepth);
   std::vector<GLenum> discarded;
   for (GLuint i = 0; i < framebuffer.color_count; i++) {
@@ -258,7 +258,7 @@ void GlDevice::end_pass()
 void GlDevice::set_state(State state)
 {
   glDepthMask(GLboolean(has(state, State::WriteDepth)));
-  // Depth is written only while the test is enabled.
+  // OpenGL writes depth only if the depth test is enabled, so GL_ALWAYS is used to write without a test.
   const GLenum function = has(state, State::DepthEqual)         ? GL_EQUAL
                           : has(state, State::DepthNearerEqual) ? GL_GEQUAL
                           : has(state, State::DepthLessEqual)   ? GL_LEQUAL
@@ -269,7 +269,7 @@ void GlDevice::set_state(State state)
   glCullFace(has(state, State::CullFront) ? GL_FRONT : GL_BACK);
   glFrontFace(has(state, State::FrontClockwise) ? GL_CW : GL_CCW);
   set_capability(GL_DEPTH_CLAMP, has(state, State::DepthClamp));
-  // By draw buffer, so that a host's state of the other draw buffers is left alone.
+  // Set blending for each used draw buffer, so that the host's state of the other draw buffers is unchanged.
   const auto mask = GLboolean(has(state, State::WriteColor));
   const bool is_multiplied = has(state, State::BlendMultiply);
   const GLenum stored = is_multiplied ? GL_ZERO : has(state, State::BlendOver) ? GL_ONE_MINUS_SRC_ALPHA : GL_ONE;

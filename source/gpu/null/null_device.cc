@@ -5,7 +5,7 @@ namespace gnomon::gpu {
 
 namespace {
 
-/** Checks and counts are done by the base class; nothing is drawn. */
+/** Draws nothing. The base class checks and counts. */
 class NullDevice final : public Device {
  public:
   NullDevice(const Limits &limits, MessageSink sink, NullOperation before_operation)
