@@ -8,7 +8,8 @@
 #include "unlit_engine.hh"
 
 /**
- * All that a host needs to show a lit scene in its own window. doc/embedding.md explains it; examples/ has programs.
+ * The header for hosts: includes everything that a host needs to show a lit scene in its own window. See
+ * doc/embedding.md for an explanation and examples/ for complete programs.
  *
  *     auto device = gnomon::gpu::create_gl_device({.context = gnomon::gpu::ContextKind::Host});
  *     gnomon::scene::Scene scene = gnomon::gltf::import_gltf("scene.glb");
@@ -17,6 +18,6 @@
  *     renderer.sync();
  *     renderer.draw_sample(camera, {.framebuffer = gnomon::gpu::HostFramebuffer{.size_px = size_px}});
  *
- * Lifetimes: the device and the scene outlive the renderer. All are used on the thread of the host's context, which is
- * current in every call, and left as it was.
+ * Lifetimes: the device and the scene must outlive the renderer. Threads: all calls are made on the thread of the
+ * host's OpenGL context, which must be current. Gnomon leaves the state of the context as it was.
  */

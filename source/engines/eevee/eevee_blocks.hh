@@ -5,7 +5,7 @@
 
 namespace gnomon::eevee {
 
-/** Every block that the engine fills, field by field as C++ has it: what checks and tests compare GLSL with. */
+/** The C++ layouts of all blocks that the engine fills. Checks and tests compare the layouts in GLSL with them. */
 [[nodiscard]] std::span<const gpu::BlockLayout> block_layouts();
 
 }  // namespace gnomon::eevee

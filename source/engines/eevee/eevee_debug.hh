@@ -5,27 +5,30 @@
 
 namespace gnomon::eevee {
 
-/** Longer edge of a picture of shadow layers, pixels: larger layers are thinned to every so many texels. */
+/** Maximum edge of a picture of shadow layers, pixels. Larger layers are subsampled to fit. */
 inline constexpr int shadow_picture_edge_max_px = 2048;
 
 /**
- * Pictures of the layers of lamps' shadows, for people who look for mistakes. Made by the device, for a host to show
- * or to read. Nothing is made before the first is asked for. Must go before its device.
+ * Draws pictures of the shadow layers of a lamp, for debugging. GPU resources are created by the first call of draw.
+ * Must be destroyed before its device.
  */
 class ShadowPicture {
  public:
   /**
-   * Draw one layer of \a layers, or, without \a layer, all: a cube's six as the box unfolds, seen from outside; others
-   * side by side. A cube's face has its first row of texels above, as cube maps have; others have it below.
+   * Draw one layer of \a layers, or all layers if \a layer is empty. All six faces of a cube are drawn as an unfolded
+   * cube, seen from outside; other layers are drawn side by side. The first row of texels is at the top for cube faces,
+   * as in cube maps, and at the bottom for other layers.
    *
-   * \return RGBA32F, until the next call. rgb: what to look at, display-referred: near dark, far bright (linear for
-   * suns, else by the distance's square root), blue where nothing was drawn, red where the layer was not drawn at all.
-   * a: distance in metres, 0 where there is none: along the face's axis for cubes and spots, along the light from where
-   * its first caster may be for suns, from the lamp for octahedral layers. \pre \a layer is one of them
+   * \return an RGBA32F texture, valid until the next call. rgb: a display-referred colour. Near surfaces are dark and
+   * far surfaces are bright (linear in the distance for suns, in its square root for other lamps), texels without a
+   * caster are blue, layers that were not drawn are red. a: the distance in metres, or 0 for texels without one. It is
+   * measured along the face's axis for cubes and spots, along the light from the near plane of the coarsest cascade for
+   * suns, and from the lamp for octahedral layers.
+   * \pre layers.count is above 0, and \a layer is below it.
    */
   const gpu::Texture &draw(gpu::Device &device, ShaderCache &shaders, const ShadowLayers &layers,
                            std::optional<int> layer);
-  /** Empty before the first draw. */
+  /** The last picture; empty before the first call of draw. */
   [[nodiscard]] const gpu::Texture &texture() const
   {
     return texture_;

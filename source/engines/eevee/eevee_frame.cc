@@ -66,7 +66,7 @@ Need need_lamp_points(const FrameState &state)
 {
   if (state.data.shared->lamp_points.empty()) {
     return {false, state.settings.sample_count > 1 ? "no lamp that gives light has a size"
-                                                   : "one sample: lamps are lit from their centres"};
+                                                   : "one sample: each lamp is shaded as a whole"};
   }
   return state.data.is_seen ? Need{true, "each sample sees one point of each lamp with a size"}
                             : Need{false, nothing_seen};

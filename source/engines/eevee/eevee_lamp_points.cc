@@ -16,13 +16,13 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/** Of a sun, radians: at most a right angle. */
+/** Half the angular diameter of a sun, radians, at most π/2. */
 double half_angle(const scene::Lamp &lamp)
 {
   return std::min(0.5 * double(lamp.angle), 0.5 * pi);
 }
 
-/** The square [0, 1)² on the unit disk, areas kept in proportion (Shirley and Chiu 1997). */
+/** Area-preserving map from xy of \a place in [0, 1)² to the unit disk (Shirley and Chiu 1997). */
 glm::dvec2 on_disk(const glm::vec3 &place)
 {
   const glm::dvec2 square = 2.0 * glm::dvec2(place) - 1.0;
@@ -35,7 +35,7 @@ glm::dvec2 on_disk(const glm::vec3 &place)
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-/** Unit vectors, the last along \a z. */
+/** An orthonormal basis whose third vector is the unit vector \a z. */
 glm::dmat3 axes_around(const glm::dvec3 &z)
 {
   const glm::dvec3 helper = std::abs(z.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
@@ -43,7 +43,7 @@ glm::dmat3 axes_around(const glm::dvec3 &z)
   return {x, glm::cross(z, x), z};
 }
 
-/** In the ball of radius 1, of density ∝ (1 - ρ²)^(-1/2): even over the disk, and an arcsine across it. */
+/** A point in the unit ball with a density ∝ (1 - ρ²)^(-1/2): uniform on the disk in xy, arcsine-distributed in z. */
 glm::dvec3 in_ball(const glm::vec3 &place)
 {
   const glm::dvec2 disk = on_disk(place);
@@ -51,13 +51,13 @@ glm::dvec3 in_ball(const glm::vec3 &place)
   return {disk, half_chord * std::sin(pi * (double(place.z) - 0.5))};
 }
 
-/** \a world_from_lamp turned so that it shines along \a forward_ws. */
+/** \a world_from_lamp rotated so that the lamp shines along the unit vector \a forward_ws. */
 glm::dmat4 turned(const glm::dmat4 &world_from_lamp, const glm::dvec3 &forward_ws)
 {
   const glm::dvec3 z = -forward_ws;
   glm::dvec3 x(world_from_lamp[0]);
   glm::dvec3 y(world_from_lamp[1]);
-  // Whichever is farther from the axis stays as it is, as far as it can.
+  // The axis that is more perpendicular to the new direction keeps its direction as far as possible.
   if (std::abs(glm::dot(x, z)) < std::abs(glm::dot(y, z))) {
     x = glm::normalize(x - z * glm::dot(x, z));
     y = glm::cross(z, x);
@@ -141,7 +141,7 @@ LampPoint LampPoints::world_point(const Sized &sized, std::uint32_t index, std::
   LampPoint point{.light = sized.light,
                   .world_from_lamp = turned(sized.lamp.world_from_lamp, -direction.to_world),
                   .color = glm::vec3(direction.irradiance / count)};
-  // A lobe of this alpha spans 4 π alpha².
+  // A lobe with the roughness alpha has a solid angle of about 4 π alpha².
   const double alpha_sq = world_lobe_directions * sized.world->solid_angle() / (4.0 * pi * sample_count_);
   point.radius_sq = float(sized.direction_count > 1 ? direction.solid_angle / count : alpha_sq);
   return point;
@@ -156,7 +156,7 @@ std::span<const LampPoint> LampPoints::sample(std::uint32_t index, std::uint32_t
       continue;
     }
     const glm::vec3 place = sobol_point(index, mixed_bits(seed) + std::uint32_t(sized.light));
-    // The mean of directions over a cone of half angle a is (1 + cos a) / 2 long.
+    // The mean of the unit vectors in a cone of half angle a has the length (1 + cos a) / 2.
     const double weight =
         sized.lamp.kind == scene::LampKind::Sun ? 2.0 / (1.0 + std::cos(half_angle(sized.lamp))) : 1.0;
     const glm::mat4 world_from_lamp = point_of(sized.lamp, place, toward_ws_);

@@ -13,43 +13,46 @@
 
 namespace gnomon::eevee {
 
-/** A point of a lamp, which stands for all of it in one sample of a picture. */
+/** A point of a lamp with an extent. In one sample of a picture, the point replaces the lamp. */
 struct LampPoint {
-  /** In light_block. */
+  /** Index in light_block. */
   int light = 0;
-  /** The lamp, moved to the point; of a sun, turned to a direction of it. */
+  /** Matrix of the lamp, moved to the point. For a sun, rotated to a direction within its cone. */
   glm::mat4 world_from_lamp{1.0F};
   /** Distance of the point from the lamp's centre, metres. 0 for a sun. */
   float offset = 0.0F;
-  /** As LightData has them. */
+  /** Values of the members of LightData with the same names. */
   glm::vec3 color{0.0F};
   float radius_sq = 0.0F;
 };
 
-/** Whether \a lamp is more than a point or a single direction. */
+/** Whether \a lamp has an extent: a point or spot with a radius, a sun with an angle, or an area lamp. */
 [[nodiscard]] bool has_extent(const scene::Lamp &lamp);
 
 /**
- * The point of \a lamp for the place \a place in [0, 1)³; the mean over all places is the lamp. \a toward_ws: where
- * most receivers are; points are spread most evenly as seen from there.
+ * The matrix of \a lamp for the sample position \a place in [0, 1)³. The mean over all positions converges to the light
+ * of the whole lamp. \a toward_ws: centre of the receivers. Stratified positions stay stratified on the disk that faces
+ * this point.
  *
- * A point lamp and a spot are the disk of their radius r that is turned to each receiver. Points in the ball of density
- * ∝ (r² - ρ²)^(-1/2) are spread evenly over that disk from every side. With the fall-off 1 / (d² + r²) from the point,
- * a mean over the ball is too small by 1.25 (r / d)⁴ of it: by 1e-4 at d = 10.6 r.
+ * Point lamps and spots: for each receiver, the lamp is a disk of radius r that faces the receiver. Points in the ball
+ * of radius r with a density ∝ (r² - ρ²)^(-1/2) project to a uniform distribution on this disk from every direction.
+ * With the fall-off 1 / (d² + r²) from the point, the mean over the ball is too small by the fraction 1.25 (r / d)⁴,
+ * for example 1e-4 at d = 10.6 r.
  *
- * An area lamp is spread evenly over its rectangle or ellipse.
+ * Area lamps: points have a uniform distribution over the rectangle or ellipse.
  *
- * A sun is a cone of one radiance: directions are spread evenly over its solid angle.
+ * Suns: the lamp is a cone of constant radiance. Directions have a uniform distribution over its solid angle.
  */
 [[nodiscard]] glm::mat4 point_of(const scene::PlacedLamp &lamp, const glm::vec3 &place, const glm::vec3 &toward_ws);
 
-/** Of each light of \a lamps that has an extent. */
+/** Samples points of all lamps with an extent. */
 class LampPoints {
  public:
   LampPoints() = default;
   /**
-   * \a world: of the last lamps in \a placed, those that world_lamps gave; nullptr: there is none.
-   * \a sample_count: of the picture.
+   * \a placed: the list from which \a lamps was made. \a toward_ws: centre of the receivers, \see point_of.
+   * \a world: the world whose world_lamps are the last entries of \a placed; nullptr if there is none.
+   * \a sample_count: samples for each pixel of the picture.
    */
   LampPoints(std::span<const scene::PlacedLamp> placed, const Lamps &lamps, const glm::vec3 &toward_ws,
              std::shared_ptr<const render_scene::WorldLight> world = {}, int sample_count = 1);
@@ -62,21 +65,21 @@ class LampPoints {
   {
     return sized_.size();
   }
-  /** The points of a sample; the same for the same \a seed. The result is valid until the next call. */
+  /** The points of the \a index-th sample, in the order of the lights. Deterministic. Valid until the next call. */
   [[nodiscard]] std::span<const LampPoint> sample(std::uint32_t index, std::uint32_t seed);
-  /** The lamps' centres. Valid as above. */
+  /** The centres of the lamps, in the order of the lights. Valid until the next call. */
   [[nodiscard]] std::span<const LampPoint> centers();
 
  private:
   struct Sized {
     int light = 0;
     scene::PlacedLamp lamp;
-    /** As the lamp's centre has them. */
+    /** Values of LightData for the lamp's centre. */
     glm::vec3 color{0.0F};
     float radius_sq = 0.0F;
-    /** Of a lamp that stands for a part of the world; otherwise nullptr. */
+    /** Distribution of directions, for a lamp of world_lamps; otherwise nullptr. */
     const render_scene::WorldDistribution *world = nullptr;
-    /** Of the directions that share a distribution in one sample. */
+    /** Index and number of the lamps that share the distribution. */
     std::uint32_t direction = 0;
     std::uint32_t direction_count = 1;
   };
@@ -89,7 +92,7 @@ class LampPoints {
   glm::vec3 toward_ws_{0.0F};
 };
 
-/** \a light as \a point has it. */
+/** \a light with the position, the direction, the colour and the radius of \a point. */
 [[nodiscard]] shared::LightData light_at(shared::LightData light, const LampPoint &point);
 
 }  // namespace gnomon::eevee

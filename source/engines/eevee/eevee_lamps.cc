@@ -36,11 +36,12 @@ shared::LightData light_data(const scene::PlacedLamp &lamp)
   shared::LightData light{};
   light.kind = light_kind(lamp);
   light.position_ws = glm::vec3(lamp.world_from_lamp[3]);
-  // An area lamp of radiance P / (4 A) has P / 4 straight ahead.
+  // An area lamp with the intensity P and the area A has the radiance P / (4 A), and so the radiant intensity P / 4
+  // along its axis.
   light.color = lamp.color * (lamp.kind == scene::LampKind::Area ? 0.25F * lamp.intensity : lamp.intensity);
   light.radius_sq = lamp.kind == scene::LampKind::Sun ? 0.0F : lamp.radius * lamp.radius;
   light.forward_ws = -glm::vec3(lamp.world_from_lamp[2]);
-  // Finite for every range: times a distance of 0 it must be 0.
+  // The value must be finite for every range, because the shader multiplies it by squared distances that may be 0.
   constexpr float range_sq_min = std::numeric_limits<float>::min();
   light.range_inv_sq = lamp.range > 0.0F ? 1.0F / std::max(lamp.range * lamp.range, range_sq_min) : 0.0F;
   if (lamp.kind == scene::LampKind::Spot) {
@@ -69,7 +70,7 @@ shared::LightShape light_shape(const scene::PlacedLamp &lamp, LampShading shadin
       break;
     }
     case scene::LampKind::Sun: {
-      // The tangent of a right angle has no float.
+      // The limit is just below π/2, whose tangent is infinite.
       constexpr float half_angle_max = 1.57F;
       shape.extent = is_whole ? std::tan(std::min(0.5F * lamp.angle, half_angle_max)) : 0.0F;
       break;
@@ -86,7 +87,7 @@ shared::LightShape light_shape(const scene::PlacedLamp &lamp, LampShading shadin
   return shape;
 }
 
-/** What the shaders need to shade \a lamp. */
+/** Features that the shading of \a lamp needs. */
 static Feature features_of(const scene::PlacedLamp &lamp, const shared::LightShape &shape)
 {
   const bool has_distance =

@@ -12,33 +12,33 @@ namespace gnomon::eevee {
 
 /** How lamps with a radius, an angle or an area are shaded. */
 enum class LampShading {
-  /** The whole lamp at once, by formulas. */
+  /** Closed-form shading of the whole lamp. */
   Whole,
-  /** One point of it, where LightData has the lamp; the mean over many points is the lamp. */
+  /** Shading of one point of the lamp, at the position in LightData. The mean over many points gives the whole lamp. */
   Point,
 };
 
-/** A lamp's entry of `light_block`, without a shadow: shadow set-up fills that in. */
+/** The entry of a lamp in `light_block`, without its shadow. SceneShadows::sync writes the members of the shadow. */
 [[nodiscard]] shared::LightData light_data(const scene::PlacedLamp &lamp);
-/** A lamp's entry of `light_shape_block`. */
+/** The entry of a lamp in `light_shape_block`. */
 [[nodiscard]] shared::LightShape light_shape(const scene::PlacedLamp &lamp, LampShading shading);
 
-/** Lamps as the shaders read them. */
+/** The data of all lamps that give light, in the layout of the shaders. */
 struct Lamps {
   shared::LightBlock light_block{};
-  /** Read where `features` has LampShape. */
+  /** Read by the shaders only with Feature::LampShape. */
   shared::LightShapeBlock shape_block{};
-  /** For each light of the block, the index of its lamp in the list that make_lamps was given. */
+  /** For each light of the block, the index of its lamp in the argument of make_lamps. */
   std::vector<std::uint32_t> lamp_index;
-  /** Features that the lamps ask for; shadows not among them. */
+  /** Features that the lamps need, without those of shadows. */
   Feature features = Feature::None;
-  /** One for each lamp that cannot be drawn. */
+  /** One message for each lamp that cannot be drawn. */
   std::vector<std::string> warnings;
-  /** Lamps past LIGHT_MAX, named. */
+  /** A message with the names of the lamps that exceed LIGHT_MAX. */
   std::vector<std::string> limits;
 };
 
-/** Lamps that give no light (black, intensity 0, no area) take no entry. */
+/** The data of \a lamps. Lamps that give no light (black, intensity 0, no area) get no entry. */
 [[nodiscard]] Lamps make_lamps(std::span<const scene::PlacedLamp> lamps, LampShading shading = LampShading::Whole);
 
 }  // namespace gnomon::eevee

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a frame consists of, and what it was spared, from the state that the engine itself went by.
+// The report of a frame: the parts that were made or left out. It reads the same state as the drawing code.
 #include "eevee_report_source.hh"
 
 #include <fmt/ranges.h>
@@ -17,7 +17,7 @@ const FrameNode *find(const FrameNode &node, std::string_view what)
 
 namespace {
 
-/** "LIGHT|PUNCTUAL", and the purpose of each. */
+/** The name of a variant, for example "LIGHT|PUNCTUAL", and the purposes of its features. */
 std::pair<std::string, std::string> variant_text(Feature features, std::string_view purpose)
 {
   std::vector<std::string_view> names;
@@ -132,7 +132,7 @@ FrameNode pass_nodes(const ReportSource &source)
   return folder("passes", "runs of the last picture", nothing_seen, std::move(nodes));
 }
 
-/** Layers of one kind of a lamp's; none: no node. */
+/** Add a child for the layers in \a mask to the node \a lamp, unless \a mask is 0. */
 void add_layers(FrameNode &lamp, const char *what, bool is_made, std::uint32_t mask, const char *why)
 {
   if (mask != 0) {
@@ -192,7 +192,7 @@ FrameNode draw_nodes(const ReportSource &source)
     const FrameStep &step = frame_steps()[i];
     for (std::size_t j = 0; j < step.passes.size(); j++) {
       const draw::RecordCounts counts = source.data.frame[i].passes[j].counts;
-      // Steps that draw over the whole picture draw no objects.
+      // Steps with one pass draw a full-screen triangle and no objects.
       if (counts.drawn + counts.culled == 0 || step.passes.size() == 1) {
         continue;
       }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The part of a report about targets, blocks, meshes and textures.
+// The nodes of a report for targets, blocks, meshes and textures.
 #include "eevee_report_source.hh"
 
 #include <fmt/format.h>
@@ -140,7 +140,7 @@ FrameNode texture_nodes(const ReportSource &source)
   for (const auto &[handle, image] : source.scene().images()) {
     for (const bool is_color : {true, false}) {
       const gpu::Texture *made = source.render_scene.images().find(handle, is_color);
-      // An image that nothing reads has one node.
+      // An image without a reader gets one node instead of two (colour and data).
       const bool is_read = read.contains({handle, is_color});
       if (!made && !is_read && (!is_color || read.contains({handle, false}))) {
         continue;

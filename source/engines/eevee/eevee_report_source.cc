@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reasons why a frame was spared something.
+// Reasons why parts of a frame were left out.
 #include "eevee_report_source.hh"
 
 #include <fmt/format.h>

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-/** Parts of Engine::report: the state that it reads, and reasons. For the engine's own files. */
+/** Parts of Engine::report: its input state, and the reasons that it gives. Internal to the engine. */
 namespace gnomon::eevee {
 
 inline constexpr const char *no_target = "no target was given";
@@ -42,21 +42,24 @@ struct ReportSource {
   }
 };
 
-/** A node of which any child is made is made, too; its bytes and seconds are the sums of theirs. */
+/** A node with children. It is made if at least one child is made. Its bytes and seconds are the sums of its children.
+ */
 [[nodiscard]] FrameNode folder(std::string what, std::string why, std::string why_not, std::vector<FrameNode> children);
 
-/** The images that materials of drawable objects read, and whether for colours. */
+/** The images that the materials of drawable objects read. The bool is true for colours and false for data. */
 [[nodiscard]] std::set<std::pair<scene::Handle<scene::Image>, bool>> read_images(const ReportSource &source);
 
+/** \see why_no_shadow in eevee_frame.hh */
 [[nodiscard]] std::string why_no_shadow(const ReportSource &source, std::string_view no_such_lamp);
-/** Why a mesh is drawn without a texture of its material; empty: it is drawn with it. */
+/** The reason why a mesh is drawn without a texture of its material; empty if it is drawn with the texture. */
 [[nodiscard]] std::string why_no_texture(const scene::Mesh &mesh, const scene::TextureInput &input,
                                          const scene::TextureSlot &slot);
+/** The reason why no program has \a feature. \pre no program has it */
 [[nodiscard]] std::string why_no_feature(const ReportSource &source, Feature feature);
-/** Why no variant of a program was made. \pre none was */
+/** The reason why no variant of a program was created. \pre no variant was created */
 [[nodiscard]] std::string why_no_program(const ReportSource &source, ShaderId id);
 
-// Nodes of the frame's tree for what is on the device.
+// Nodes of the report for resources on the device.
 
 [[nodiscard]] FrameNode target_nodes(const ReportSource &source);
 [[nodiscard]] FrameNode block_nodes(const ReportSource &source);

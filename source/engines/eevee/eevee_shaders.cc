@@ -8,11 +8,11 @@ namespace gnomon::eevee {
 
 namespace {
 
-/** Features that make a difference without light, too. */
+/** Features that also affect programs without Feature::Light. */
 constexpr Feature unlit_features =
     Feature::BaseColorTexture | Feature::AlphaMask | Feature::FullMaterial | Feature::TargetDepth;
 
-/** The interface of a variant from the table that the build generated. */
+/** A reflection function that returns the interface of a variant from the table that the build generated. */
 gpu::ShaderReflection generated_reflection(ShaderId id, Feature features)
 {
   return [id, features](std::string_view, const std::vector<gpu::ShaderSource> &) {
@@ -38,7 +38,7 @@ const gpu::Shader &ShaderCache::get(gpu::Device &device, ShaderId id, Feature fe
   const Feature reachable = has(features, Feature::Light) ? features : features & unlit_features;
   const Key key(id, reachable & declaration.features);
   const auto found = shaders_.find(key);
-  // It is empty where the packet that was to make it was lost.
+  // The program is empty if the packet that contained its creation was lost.
   if (found != shaders_.end() && found->second) {
     return found->second;
   }

@@ -27,10 +27,10 @@ std::uint32_t reversed_bits(std::uint32_t value)
   return ((value >> 1U) & 0x55555555U) | ((value & 0x55555555U) << 1U);
 }
 
-/** Owen scrambling of a number's bits: each bit is flipped as a hash of the higher bits says. */
+/** Owen scrambling of \a value: a hash of the higher bits decides whether a bit is flipped. */
 std::uint32_t scrambled(std::uint32_t value, std::uint32_t seed)
 {
-  // Laine and Karras 2011, on reversed bits; each step lets a bit depend on lower ones only.
+  // The hash of Laine and Karras (2011) on the reversed bits. In each of its steps, a bit depends on lower bits only.
   value = reversed_bits(value);
   value += seed;
   value ^= value * 0x6C50B47CU;

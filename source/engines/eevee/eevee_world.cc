@@ -23,11 +23,11 @@ std::vector<scene::PlacedLamp> world_lamps(const render_scene::WorldLight &world
     lamp.name = "world direction " + std::to_string(i + 1);
     lamp.kind = scene::LampKind::Sun;
     lamp.intensity = 1.0F;
-    // All around: no one direction stands for it.
+    // The lamp covers the whole sphere, so that has_extent is true and LampPoints samples it.
     lamp.angle = float(2.0 * std::numbers::pi);
   }
   for (std::size_t i = 0; i < lamps.size(); i++) {
-    // No node has it: the index is past those of any pool.
+    // These lamps have no node. Indices in this range are never used by a pool.
     lamps[i].node.index = 0xffffff00U + std::uint32_t(i);
   }
   return lamps;
@@ -117,7 +117,7 @@ glm::vec3 background_color(const Settings &settings, const render_scene::RenderS
              : scene.scene().world()->strength * scene.scene().world()->color;
 }
 
-/** \a picture with rows from the bottom, and no edge longer than \a size_max: of wider ones every n-th texel. */
+/** The texels of \a picture, rows from the bottom. Takes every n-th texel if an edge is longer than \a size_max. */
 static std::pair<glm::ivec2, std::vector<glm::vec4>> texels_of(const scene::WorldPicture &picture, int size_max)
 {
   const int step = (std::max(picture.width, picture.height) + size_max - 1) / size_max;

@@ -6,56 +6,56 @@
 #include "gpu_device.hh"
 #include "render_scene.hh"
 
-/** Light from the scene's world, and the world as a background. \see render_world.hh */
+/** Light of the scene's world, and the background of a picture. \see render_world.hh */
 namespace gnomon::eevee {
 
 struct Settings;
 
-/** Directions of a world's rest in each sample of a picture that has several. */
+/** Number of directions of WorldLight::rest in each sample of a picture with several samples. */
 inline constexpr int world_direction_count = 4;
-/** Directions that a lobe must hold, over all samples, for its sum over them to be smooth. */
+/** A specular lobe is lit by sampled directions if it contains at least this number of them over all samples. */
 inline constexpr double world_lobe_directions = 12.0;
 
 /**
- * The lamps that light a scene with \a world, which no node has. Whole: its suns. Point: its suns and
- * `world_direction_count` directions of the rest, each of which a sample turns to a place of its own.
+ * Lamps without a node that light a scene with \a world. LampShading::Whole: the suns of the world. LampShading::Point:
+ * also `world_direction_count` lamps for WorldLight::rest, to which LampPoints gives a new direction in each sample.
  */
 [[nodiscard]] std::vector<scene::PlacedLamp> world_lamps(const render_scene::WorldLight &world, LampShading shading);
 
-/** \a lamps are lit by a world; those whose index is \a first or more are directions of it. */
+/** Add the features of a world to \a lamps, and set LIGHT_WORLD for lamps whose index is at least \a first. */
 void mark_world(Lamps &lamps, std::size_t first);
 
-/** \a features as programs have them: fewer variants where a world shines. */
+/** \a features, with a world extended to a mask for which programs have a variant. \see shader_variants */
 [[nodiscard]] Feature with_world(Feature features);
 
-/** What shaders read of a world. */
+/** Resources of a world that shaders read. */
 struct WorldResources {
   gpu::Buffer block;
-  /** Where a specular surface mirrors it. */
+  /** Prefiltered levels for specular reflection. Empty without specular materials. */
   gpu::Texture levels;
   gpu::Sampler sampler;
-  /** RenderScene::world_revision that both are of. */
+  /** RenderScene::world_revision from which `block` and `levels` were made. */
   std::uint64_t revision = 0;
   int sample_count = 0;
-  /** What the background shows, rows from the bottom. */
+  /** The picture of the background, rows from the bottom. */
   gpu::Texture picture;
   gpu::Sampler picture_sampler;
-  /** Scene::world_revision that it is of. */
+  /** Scene::world_revision from which `picture` was made. */
   std::uint64_t picture_revision = 0;
 };
 
 /**
- * Make what \a features need of the scene's world, and free the rest. \a sample_count: of a picture.
- * \pre the scene has a world where \a features have World
+ * Create the resources of the scene's world that \a features need, and free the others. \a sample_count: samples for
+ * each pixel. \pre with Feature::World, the scene has a world
  */
 void update_world(WorldResources &resources, gpu::Device &device, const render_scene::RenderScene &scene,
                   Feature features, int sample_count);
 
-/** Whether anything is drawn where there is no surface. */
+/** Whether pixels without a surface show a background. */
 [[nodiscard]] bool has_background(const Settings &settings, const render_scene::RenderScene &scene);
-/** Its radiance, or a factor of the world's picture. \pre there is a background */
+/** The radiance of the background, or the factor of the world's picture. \pre has_background */
 [[nodiscard]] glm::vec3 background_color(const Settings &settings, const render_scene::RenderScene &scene);
-/** Make the picture that the background shows, and free one that it does not. */
+/** Create the picture of the background if it is shown and changed; free it if it is not shown. */
 void update_world_picture(WorldResources &resources, gpu::Device &device, const render_scene::RenderScene &scene,
                           const Settings &settings);
 

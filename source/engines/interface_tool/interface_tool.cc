@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A tool of the build: writes the interfaces of an engine's programs to a file.
+// A build tool that writes the interfaces of an engine's programs to a source file.
 #include "eevee_programs.hh"
 #include "unlit_programs.hh"
 
@@ -16,7 +16,7 @@ using Entries = std::vector<shader_check::TableEntry>;
 
 Entries eevee_entries()
 {
-  // Kernels that take each branch of the lookup. Others differ from these in numbers only.
+  // These two kernels cover both branches of the PCF lookup. Other kernels differ only in constants.
   constexpr eevee::PcfKernel kernels[] = {{.width = 3}, {.width = 0}};
   Entries entries;
   for (const eevee::ShaderDeclaration &declaration : eevee::shader_declarations()) {

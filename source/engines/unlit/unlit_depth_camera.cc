@@ -10,10 +10,10 @@ namespace gnomon::unlit {
 
 namespace {
 
-/** Of lamps that shine to all sides. */
+/** Field of view for point and area lamps, radians: 60 degrees. */
 constexpr float wide_angle = 1.0471976F;
 
-/** \a lamp, turned to \a middle. */
+/** The matrix of a camera at \a lamp that looks at \a middle. */
 glm::dmat4 turned(const scene::PlacedLamp &lamp, const glm::dvec3 &middle)
 {
   const glm::dvec3 position(lamp.world_from_lamp[3]);
@@ -50,7 +50,7 @@ std::optional<scene::PlacedCamera> depth_camera_of(const scene::PlacedLamp &lamp
   }
   camera.near = 0.01F * radius;
   if (lamp.kind == scene::LampKind::Spot) {
-    // A cone of half a turn has no picture.
+    // A perspective view must be narrower than π.
     camera.vertical_angle = std::min(2.0F * lamp.spot_outer_angle, 3.0F);
   }
   else {

@@ -8,9 +8,12 @@
 namespace gnomon::unlit {
 
 /**
- * A camera that sees what \a lamp shines on: the cone of a spot; for a sun a parallel view that holds all of
- * \a bounds_ws; for other lamps a view of 60 degrees towards the middle of the bounds, or along the lamp where it is
- * there. Nothing for a hemi lamp, and where there is nothing to be seen. World space of the scene.
+ * A camera that covers the lit side of the objects in \a bounds_ws, as seen from \a lamp. For a spot, the camera has
+ * the spot's opening angle. For a sun, it is orthographic and contains all of \a bounds_ws. For point and area lamps,
+ * it has a field of view of 60 degrees towards the centre of the bounds, or along the lamp's axis if the lamp is at the
+ * centre.
+ *
+ * \return the camera in the coordinates of \a lamp and \a bounds_ws; nothing for a hemi lamp and for empty bounds.
  */
 [[nodiscard]] std::optional<scene::PlacedCamera> depth_camera_of(const scene::PlacedLamp &lamp,
                                                                  const scene::Bounds &bounds_ws);

@@ -36,7 +36,7 @@ Feature mask_features(MaterialClass mask_class)
                                             : Feature::AlphaMask | (feature_of(mask_class) & Feature::FullMaterial);
 }
 
-/** Blocks of the render scene, which passes read by reference. */
+/** Blocks of the render scene. Passes read them by reference. */
 struct SceneBlocks {
   gpu::BufferRange objects;
   gpu::BufferRange materials;
@@ -56,7 +56,7 @@ struct SceneBlocks {
   }
 };
 
-/** Of everything that recorded passes depend on. */
+/** Revisions of everything that recorded passes depend on. */
 struct PassesKey {
   std::uint64_t structure = 0;
   std::uint64_t passes = 0;
@@ -67,7 +67,7 @@ struct PassesKey {
   bool operator==(const PassesKey &) const = default;
 };
 
-/** Of everything that a picture depends on, beside its view and size. */
+/** Revisions of everything that a picture depends on, except its view and size. */
 struct PictureKey {
   std::uint64_t objects = 0;
   std::uint64_t lamps = 0;
@@ -78,7 +78,7 @@ struct PictureKey {
   bool operator==(const PictureKey &) const = default;
 };
 
-/** Of everything that the depth camera's picture depends on, beside its size. */
+/** Revisions of everything that the depth camera's picture depends on, except its size. */
 struct DepthKey {
   std::uint64_t objects = 0;
   std::uint64_t passes = 0;
@@ -93,7 +93,7 @@ gpu::Buffer create_view_block(gpu::Device &device, const char *name)
   return device.create_buffer({name, gpu::BufferKind::Uniform, sizeof(shared::ViewData)});
 }
 
-/** Without what only lit surfaces read. */
+/** Writes clip_from_world. A texture_lod_bias of 0 suits one sample; only lit surfaces read the other members. */
 void update_view_block(gpu::Device &device, const gpu::Buffer &block, const draw::View &view)
 {
   shared::ViewData data{};
@@ -103,7 +103,7 @@ void update_view_block(gpu::Device &device, const gpu::Buffer &block, const draw
 
 }  // namespace
 
-/** A viewport's. */
+/** The engine's data in a viewport. */
 struct Data final : draw::EngineViewportData {
   void resized() override
   {
@@ -112,9 +112,9 @@ struct Data final : draw::EngineViewportData {
   }
 
   std::vector<draw::ObjectIndex> objects;
-  /** Between cache_init and cache_finish. */
+  /** True between cache_init and cache_finish. */
   bool is_collecting = false;
-  /** By ObjectIndex, as recorded. */
+  /** By object index: whether the passes were recorded with a mirrored matrix. */
   std::vector<bool> is_mirrored;
   bool is_winding_changed = false;
   bool needs_full_materials = false;
@@ -141,7 +141,7 @@ struct Engine::DepthCamera {
   SceneBlocks blocks;
   std::optional<draw::Pass> casters;
   PassesKey recorded;
-  /** Of the picture in the texture; nothing: none. */
+  /** Key of the picture in the texture; empty if the texture has no content. */
   std::optional<DepthKey> drawn;
 };
 
@@ -224,7 +224,7 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
   data.target_pass.set(
       target, {.radiance = data.radiance, .depth = &viewport.depth_texture(), .clip_from_view = view.clip_from_view()},
       shader(viewport.device(), ShaderId::Target, features), data.nearest);
-  // Black is black whatever the transform, and has no alpha: a picture of nothing takes a clear.
+  // A picture without visible objects is transparent black. Every view transform keeps black, so that a clear suffices.
   const gpu::LoadAction load = data.is_seen ? gpu::LoadAction::Load : gpu::LoadAction::Clear;
   gpu::CommandList list;
   draw::begin_pass(list, "unlit target", target, viewport.size_px(),
@@ -238,8 +238,7 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
   viewport.device().submit(list);
 }
 
-/** What the depth camera sees goes to its render texture in the middle of the viewport's pass, where it is out of date.
- */
+/** If the depth camera's render texture is out of date, it is drawn as a nested pass within the viewport's pass. */
 void Engine::draw_sample(draw::Viewport &viewport, Data &data, const draw::View &view)
 {
   gpu::Device &device = viewport.device();
@@ -285,7 +284,7 @@ void Engine::draw_sample(draw::Viewport &viewport, Data &data, const draw::View 
   }
 }
 
-/** Where it stands, its texture, and its passes, as far as they changed. */
+/** Update the view, the texture and the passes of the depth camera as far as their inputs changed. */
 void Engine::update_depth_camera(gpu::Device &device, std::span<const draw::ObjectIndex> objects)
 {
   std::optional<draw::View> view;
@@ -293,7 +292,7 @@ void Engine::update_depth_camera(gpu::Device &device, std::span<const draw::Obje
     view = render_scene::view_of(*settings_.depth_camera, settings_.depth_size_px, scene_.origin_ws());
   }
   else if (settings_.has_shadow) {
-    // Lamps and bounds are relative to the origin.
+    // Lamps and bounds are already relative to the origin of the render scene.
     for (const scene::PlacedLamp &lamp : scene_.lamps()) {
       if (const auto camera = depth_camera_of(lamp, scene_.bounds())) {
         view = render_scene::view_of(*camera, settings_.depth_size_px);
@@ -311,7 +310,8 @@ void Engine::update_depth_camera(gpu::Device &device, std::span<const draw::Obje
   DepthCamera &camera = *depth_camera_;
   camera.view = *view;
   camera.clip_from_world = view->clip_from_world();
-  // A perspective depth is near / distance: its rounding error is a part of it. A parallel one is a part of the range.
+  // A perspective depth is near / distance, and its rounding error is relative to the depth. The error of an
+  // orthographic depth is relative to the depth range.
   camera.tolerance = view->is_perspective() ? glm::vec2(1e-5F, 0.0F) : glm::vec2(0.0F, 1e-6F);
   const glm::ivec2 size_px = settings_.depth_size_px;
   if (!camera.texture || camera.texture.desc().width != size_px.x || camera.texture.desc().height != size_px.y) {

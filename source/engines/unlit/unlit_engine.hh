@@ -15,30 +15,35 @@ namespace gnomon::unlit {
 
 struct Settings {
   /**
-   * What it does not see is black; its field of view ends at the edges of its picture. World space of the scene.
-   * Nothing: depth_camera_of the first lamp that has one.
+   * The camera that casts the shadow, in world space of the scene. Surfaces that are occluded from this camera are
+   * black; surfaces outside the sides of its frustum are not darkened. If empty, the engine uses depth_camera_of the
+   * first lamp that has one.
    */
   std::optional<scene::PlacedCamera> depth_camera{};
-  /** false: no depth camera, no shadow. */
+  /** Enables the depth camera and its shadow. */
   bool has_shadow = true;
-  /** Of the render texture that the depth camera renders into, pixels, at least 1x1. */
+  /** Size of the depth camera's render texture, pixels, at least 1x1. */
   glm::ivec2 depth_size_px{1024, 1024};
 };
 
 struct Data;
 
 /**
- * Shows surfaces without light: base colour, its texture, vertex colours, and what they emit. A depth camera renders
- * the scene into a texture, once for all viewports and again when something that it sees changes; surfaces that it does
- * not see are black. One sample a pixel, and no film: a quick view for editors, and an example of a second engine.
+ * Draws surfaces without lighting: base colour, its texture, vertex colours and emission. A depth camera renders the
+ * scene into a texture, which all viewports share and which is rendered again when the objects or the camera change.
+ * Surfaces that receive shadows and are occluded from the depth camera are black. A picture has one sample for each
+ * pixel. The engine is a fast preview for editors, and an example of a second engine.
  */
 class Engine final : public draw::Engine {
  public:
-  /** \a scene must outlive the engine. After an edit of the scene: as for eevee::Engine. */
+  /**
+   * \a scene must outlive the engine. After an edit of the scene call render_scene::RenderScene::update, then
+   * draw::Viewport::sync with the objects of \a scene.
+   */
   explicit Engine(render_scene::RenderScene &scene, const Settings &settings = {});
   ~Engine() override;
 
-  /** Other settings, from the next draw::Viewport::sync on. */
+  /** Set other settings. They take effect with the next draw::Viewport::sync. */
   void set_settings(const Settings &settings)
   {
     settings_ = settings;
@@ -55,9 +60,9 @@ class Engine final : public draw::Engine {
   void cache_finish(draw::Viewport &viewport) override;
   void draw_scene(draw::Viewport &viewport, const draw::View &view) override;
 
-  /** The scene-linear picture, RGBA16F. \pre a draw of the viewport has taken place */
+  /** The scene-linear picture, RGBA16F. \pre the viewport was drawn at least once */
   [[nodiscard]] const gpu::Texture &radiance(draw::Viewport &viewport) const;
-  /** Its depths as the last draw saw them; nothing: there is no depth camera. */
+  /** The depth camera's render texture, Depth32F; nullptr if there is no depth camera. */
   [[nodiscard]] const gpu::Texture *depth_camera_texture() const;
 
  private:
@@ -72,11 +77,11 @@ class Engine final : public draw::Engine {
   Settings settings_;
   std::uint64_t settings_revision_ = 1;
   std::map<std::pair<ShaderId, Feature>, gpu::Shader> shaders_;
-  /** Of all viewports. */
+  /** Shared by all viewports; nullptr if there is none. */
   std::unique_ptr<DepthCamera> depth_camera_;
 };
 
-/** For a host's registry; engines that it creates read \a scene, which must outlive them. */
+/** The entry of this engine in a host's registry. \a scene must outlive all engines that the entry creates. */
 [[nodiscard]] draw::EngineType engine_type(render_scene::RenderScene &scene, const Settings &settings = {});
 
 }  // namespace gnomon::unlit

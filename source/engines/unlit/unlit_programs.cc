@@ -25,7 +25,7 @@ constexpr std::array<std::pair<Feature, const char *>, 5> defines = {{
     {Feature::TargetDepth, "USE_TARGET_DEPTH"},
 }};
 
-/** A full material's program reads the base colour texture, too. Depth depends on a material by its mask alone. */
+/** Variants for full materials always read the base colour texture. Depth programs read materials only for the mask. */
 bool is_possible(Feature features, const ShaderDeclaration &declaration)
 {
   return !has(features, Feature::FullMaterial) ||

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The engine's programs as data. The build generates their interfaces from it, so that this header may use no other
-// header of the engine.
+// Declarations of the engine's shader programs. The build generates the interfaces of the programs from these
+// declarations. For this reason the header must not include other headers of the engine.
 #pragma once
 
 #include "gpu_shader.hh"
@@ -11,7 +11,7 @@ namespace gnomon::unlit {
 
 enum class ShaderId { Depth, Surface, Target };
 
-/** What programs have variants for. */
+/** Features for which programs have variants. */
 enum class Feature : std::uint32_t {
   None = 0,
   BaseColorTexture = 1U << 0,
@@ -34,23 +34,23 @@ constexpr bool has(Feature mask, Feature any)
   return (mask & any) != Feature::None;
 }
 
-/** One program. */
+/** Declaration of a shader program. */
 struct ShaderDeclaration {
   ShaderId id;
   std::string_view name;
   std::string_view vertex_path;
   std::string_view fragment_path;
-  /** The features that the program has variants for. */
+  /** The features for which the program has variants. */
   Feature features;
-  /** Why it exists. */
+  /** The purpose of the program, for reports. */
   std::string_view purpose;
 };
 
 /** One entry for each ShaderId, in order. */
 [[nodiscard]] std::span<const ShaderDeclaration> shader_declarations();
-/** The variants of \a declaration that a scene can need. */
+/** The feature masks of \a declaration that a scene can need. */
 [[nodiscard]] std::vector<Feature> shader_variants(const ShaderDeclaration &declaration);
-/** One variant, ready for gpu::Device::create_shader. */
+/** The description of one variant for gpu::Device::create_shader. */
 [[nodiscard]] gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature features);
 
 }  // namespace gnomon::unlit
