@@ -21,11 +21,11 @@ static LayerPass best_layer_pass(LayerPass asked, const gpu::Limits &limits)
   return limits.has_vertex_layer ? LayerPass::Layered : LayerPass::Geometry;
 }
 
-/** The octahedral store checks the settings of exponential maps. \throws gpu::Error */
+/** Check all settings except those of exponential maps, which OctahedralStore checks. \throws gpu::Error */
 static void check(const ShadowSettings &settings)
 {
   const auto check_range = [](const char *setting, auto value, auto low, auto high) {
-    // false for NaN too.
+    // The negated condition also rejects NaN.
     if (!(value >= low && value <= high)) {
       throw gpu::Error("shadow settings: {} {} is not in [{}, {}]", setting, value, low, high);
     }
@@ -44,7 +44,7 @@ static void check(const ShadowSettings &settings)
   }
 }
 
-/** Take the layers that \a slot's lamp had in \a before, if their texels still are what they should be. */
+/** Move the layers of the same lamp from \a before to \a slot if their texels are still valid. */
 static void take_over(ShadowSlot &slot, std::vector<ShadowSlot> &before)
 {
   const auto found =
@@ -99,7 +99,7 @@ void SceneShadows::sync(const gpu::Limits &device_limits, std::span<const Shadow
   const std::vector<std::string> octahedral_limits = OctahedralStore::limits_of(device_limits, esm_lamps);
   limits_.insert(limits_.end(), octahedral_limits.begin(), octahedral_limits.end());
 
-  // Nothing throws from here on, so that a sync that fails leaves the shadows as they were.
+  // The code below does not throw, so that a failed sync leaves the shadows unchanged.
   layer_pass_ = layer_pass;
   plan_ = std::move(plan);
   esm_lamps_ = std::move(esm_lamps);
@@ -141,7 +141,7 @@ void SceneShadows::resize(gpu::Device &device, ShadowArrayId id, int layers)
   for_each_slot([&](const ShadowSlot &slot) {
     if (slot.place.given.array == id) {
       size_px = std::max(size_px, slot.place.given.size_px);
-      // The cube is a scratch: no lamp needs its texels after its layer was filtered.
+      // The distance cube is temporary: its texels are not needed after the octahedral layer was filtered.
       has_content = has_content || (slot.drawn != 0 && id != ShadowArrayId::DistanceCube);
     }
   });
@@ -171,7 +171,7 @@ void SceneShadows::allocate(gpu::Device &device, ShaderCache &shaders)
   place_render_blocks(device);
 }
 
-/** A block for each lamp; viewports take turns with it, as a list writes it before each use. */
+/** Assign one block to each lamp. Viewports share it, because each command list writes it before each use. */
 void SceneShadows::place_render_blocks(gpu::Device &device)
 {
   const std::uint32_t alignment = device.limits().uniform_offset_alignment;
@@ -182,7 +182,7 @@ void SceneShadows::place_render_blocks(gpu::Device &device)
     render_buffer_ = {};
   }
   else if (!render_buffer_ || render_buffer_.size_bytes() != size) {
-    // A buffer of many blocks may be larger than one block may be, so it is a storage buffer.
+    // The buffer is a storage buffer because the size of uniform buffers is limited to that of one block.
     render_buffer_ = device.create_buffer({"shadow_render_block", gpu::BufferKind::Storage, size});
   }
 }
@@ -198,7 +198,8 @@ void SceneShadows::finish()
   casters_.distances().keep_only(positions_ws, casters_.list());
 }
 
-/** Give each map its layers. Layers keep their places, except those of a sun that needs more where there is no gap. */
+/** Assign layers to each map. Layers keep their place, except those of a sun that grows and has no gap after its run.
+ */
 void SceneShadows::place_maps(gpu::Device &device)
 {
   if (map_count() == 0) {
@@ -220,16 +221,17 @@ void SceneShadows::place_maps(gpu::Device &device)
   const auto grows = [&](const ShadowSlot &slot) {
     return int(slot.views.size()) > map_runs_.count_of({slot.lamp.key, slot.viewport});
   };
-  // Layers that are not needed any more first, for those that grow.
+  // Place the runs that do not grow first, because they may release layers for those that grow.
   place_all([&](const ShadowSlot &slot) { return !grows(slot); });
   place_all(grows);
   if (map_runs_.end() > plan_.map_layers_max) {
-    // The gaps do not fit into the limits.
+    // With the gaps between runs, the array exceeds the limit. Place all runs again without gaps.
     map_runs_.clear();
     layers_max = 0;
     place_all([](const ShadowSlot & /*slot*/) { return true; });
   }
-  // Layers that a wider view of the same lamps needed stay for the next such view.
+  // The array keeps its layers, up to the maximum of the current lamps, so that a view that needs more cascades than
+  // the last view seldom needs a new texture.
   const int layers_now = array(ShadowArrayId::Maps).layer_count();
   resize(device, ShadowArrayId::Maps, std::max(map_runs_.end(), std::min(layers_now, layers_max)));
 }

@@ -17,12 +17,12 @@ class Shadows;
 
 /**
  * Shadow maps of a scene's lamps on a device, for all viewports: the plan, the casters, the textures, and the layers
- * that depend on no view. Shadows is the part of one viewport.
+ * that do not depend on a view. The class Shadows holds the part that belongs to one viewport.
  *
- * Order of calls: sync; once anything is seen, allocate, add_caster for each, finish; then Shadows::update of any
- * viewport. A layer is drawn again where its lamp's place, direction, cone, range, size or method changes, where a
- * caster that touches it changes, or where its view follows what is seen. The lamp's name, colour, intensity, bias and
- * filter change no texel.
+ * Order of calls: sync; when an object is visible: allocate, add_caster for each caster, finish; then Shadows::update
+ * of any viewport. A layer is drawn again if the position, direction, cone, range, shadow size or method of its lamp
+ * changes, if a caster that touches the layer changes, or if the layer is fitted to a view and the fit changes. The
+ * lamp's name, colour, intensity, bias and PCF filter do not affect texels.
  */
 class SceneShadows {
  public:
@@ -31,48 +31,49 @@ class SceneShadows {
   SceneShadows &operator=(const SceneShadows &) = delete;
 
   /**
-   * Plan the shadows of \a lamps and write shadow_kind and shadow_index of their entries in \a light_block. Creates
-   * nothing on the device. \a bounds_ws: of the scene.
+   * Plan the shadows of \a lamps, and write shadow_kind and shadow_index of their entries in \a light_block. Creates no
+   * resources on the device. \a bounds_ws: bounds of the scene.
    *
-   * \throws gpu::Error naming lamp and setting where a setting is out of range.
+   * \throws gpu::Error if a setting is out of range. It names the setting, and the lamp if the setting is that of a
+   * lamp. Nothing has changed then.
    */
   void sync(const gpu::Limits &device_limits, std::span<const ShadowLamp> lamps, const scene::Bounds &bounds_ws,
             shared::LightBlock &light_block, const ShadowSettings &settings);
-  /** Create what the last sync planned, and free what is not needed any more. \a shaders: for the filter passes. */
+  /** Create the resources of the plan and free those that are no longer needed. \a shaders: for the filter passes. */
   void allocate(gpu::Device &device, ShaderCache &shaders);
   void add_caster(const Caster &caster)
   {
     casters_.add(caster);
   }
-  /** After the last caster. */
+  /** To be called after the last add_caster. */
   void finish();
-  /** Draw everything again, because the shaders changed, for example. */
+  /** Mark all layers as out of date, for example because the shaders changed. */
   void invalidate();
 
-  /** Changes with each viewport that comes or goes: then another sync is due, as each has maps of its own. */
+  /** Changes when a viewport is added or removed. Another sync is then required, because each viewport has own maps. */
   [[nodiscard]] std::uint64_t viewports_revision() const
   {
     return viewports_revision_;
   }
 
-  /** To be bound by reference in the pass that draws casters, as `shadow_render_block`. */
+  /** The buffer range for `shadow_render_block` of the pass that draws casters. It must be bound by reference. */
   [[nodiscard]] const gpu::BufferRange *render_block() const
   {
     return &render_block_;
   }
-  /** The method that the shader of the pass that draws casters must have; never Best. */
+  /** The method that the shaders of the pass that draws casters must implement. Never LayerPass::Best. */
   [[nodiscard]] LayerPass layer_pass() const
   {
     return layer_pass_;
   }
-  /** What the shaders need for the lamps' shadows; valid after sync. */
+  /** Features that shaders need for the shadows of the lamps. Valid after sync. */
   [[nodiscard]] Feature features() const;
 
   [[nodiscard]] const gpu::Texture &cubes() const
   {
     return array(ShadowArrayId::Cubes).texture();
   }
-  /** Created by the first update: the number of layers depends on the views. */
+  /** Created by the first Shadows::update, because the number of layers depends on the views. */
   [[nodiscard]] const gpu::Texture &maps() const
   {
     return array(ShadowArrayId::Maps).texture();
@@ -81,7 +82,7 @@ class SceneShadows {
   {
     return array(ShadowArrayId::DistanceCube).texture();
   }
-  /** The views that casters are drawn with, one block for each lamp. */
+  /** The buffer with the matrices for drawing casters: one ShadowRenderBlock for each lamp with a shadow. */
   [[nodiscard]] const gpu::Buffer &render_blocks() const
   {
     return render_buffer_;
@@ -95,7 +96,7 @@ class SceneShadows {
   {
     return limits_;
   }
-  /** Triangles of casters visited to find near planes. */
+  /** Number of triangles that were visited to compute the distances of near planes, since the start. */
   [[nodiscard]] std::uint64_t triangles_visited() const
   {
     return casters_.distances().triangles_visited();
@@ -121,7 +122,7 @@ class SceneShadows {
     return arrays_[std::size_t(id)];
   }
   [[nodiscard]] std::size_t lamp_count(ShadowArrayId id) const;
-  /** Calls \a action with the slots of all viewports and those that they share. */
+  /** Calls \a action with the shared slots and with the slots of all viewports. */
   template <typename Action>
   void for_each_slot(Action &&action);
   void resize(gpu::Device &device, ShadowArrayId id, int layers);
@@ -131,20 +132,20 @@ class SceneShadows {
   ShadowSettings settings_;
   LayerPass layer_pass_ = LayerPass::Single;
   ShadowPlan plan_;
-  /** Of the lamps whose layers serve all viewports, in the order of the lamps. */
+  /** Slots of the lamps whose layers all viewports share, in the order of the lamps. */
   std::vector<ShadowSlot> slots_;
   std::vector<Shadows *> viewports_;
   std::uint64_t viewports_revision_ = 0;
-  /** LayerOwner::viewport of the last one that came. */
+  /** LayerOwner::viewport of the viewport that was added last. */
   std::uint64_t last_viewport_ = 0;
   ShadowCasters casters_;
-  /** By ShadowArrayId. */
+  /** Indexed by ShadowArrayId. */
   std::array<LayerArray, shadow_array_count> arrays_ = {LayerArray("shadow_cubes", gpu::Format::Depth32F),
                                                         LayerArray("shadow_maps", gpu::Format::Depth32F),
                                                         LayerArray("shadow_distance_cube", gpu::Format::Depth32F)};
   std::array<draw::TextureBinding, shadow_array_count> bindings_;
   LayerRuns map_runs_;
-  /** What each lamp with an octahedral layer asks for. */
+  /** The requests of the lamps with an octahedral layer. */
   std::vector<EsmLamp> esm_lamps_;
   OctahedralStore octahedral_;
   gpu::Sampler sampler_;

@@ -44,7 +44,8 @@ float distance_to(const scene::Bounds &box, const glm::vec3 &position_ws)
   return glm::distance(position_ws, glm::clamp(position_ws, box.min, box.max));
 }
 
-/** Of the nearest point of a triangle: of its plane's, if that is in it, or else of its edges'. */
+/** Distance from \a p to a triangle: to its plane if the projection of \a p is inside the triangle, else to its edges.
+ */
 static double distance_to_triangle(const glm::dvec3 &p, const glm::dvec3 &a, const glm::dvec3 &b, const glm::dvec3 &c)
 {
   const glm::dvec3 normal = glm::cross(b - a, c - a);
@@ -124,7 +125,7 @@ float lamp_near(const glm::vec3 &position_ws, float range, const std::vector<Cas
   float near = 0.5F * range;
   for (const Caster &caster : casters) {
     const float distance = distances ? distances->distance(caster, position_ws) : distance_to(caster, position_ws);
-    // Along a face's axis what is at this distance is nearer, by up to the square root of 3.
+    // A point at this distance may be nearer along a face's axis, by a factor of up to the square root of 3.
     near = std::min(near, std::max(0.5F * distance, 1e-4F * caster.bounds_ws.radius()));
   }
   return std::isinf(near) ? near_min : std::max(near, near_min);

@@ -21,97 +21,100 @@ namespace gnomon::eevee {
 struct Caster {
   scene::Bounds bounds_ws;
   draw::ObjectIndex object = draw::object_identity;
-  /** The call of its mesh in the pass that draws casters; lives as long as that pass. */
+  /** The call of the mesh in the pass that draws casters. It must live as long as that pass. */
   draw::InstanceCall *instances = nullptr;
-  /** Of everything that its shadow depends on: a different number means a different shadow. */
+  /** Hash of everything that the shadow depends on. A shadow with the same fingerprint has the same texels. */
   std::uint64_t fingerprint = 0;
-  /** Read where a lamp is inside of the box, until ShadowCasters::finish returns. nullptr: only the box is known. */
+  /**
+   * Mesh for the distance to lamps that are inside the bounds. Must live until SceneShadows::finish returns. nullptr:
+   * the distance of these lamps is 0.
+   */
   const scene::Mesh *mesh = nullptr;
   const glm::mat4 *world_from_object = nullptr;
 };
 
-/** Hash of plain numbers, for Caster::fingerprint. */
+/** Hash of \a bytes, for Caster::fingerprint. */
 [[nodiscard]] std::uint64_t fingerprint_of(std::span<const std::byte> bytes);
 
 /**
- * Boxes of the casters that are in only one of the lists, by fingerprint: where shadows change. A caster that moved
- * gives its old box and its new one.
+ * Bounds of the casters whose fingerprint is in only one of the lists: the regions in which shadows change. A caster
+ * that moved contributes its old bounds and its new bounds.
  */
 [[nodiscard]] std::vector<scene::Bounds> changed_bounds(const std::vector<Caster> &before,
                                                         const std::vector<Caster> &after);
 
-/** Distance of the nearest point of a box, metres; 0 inside. */
+/** Distance from \a position_ws to the nearest point of \a box, metres; 0 inside. */
 [[nodiscard]] float distance_to(const scene::Bounds &box, const glm::vec3 &position_ws);
 
-/** Distance of the nearest point of a caster, metres: of its box, or, from inside the box, of its triangles. */
+/** Distance from \a position_ws to the caster's bounds, metres; inside the bounds, to the nearest triangle. */
 [[nodiscard]] float distance_to(const Caster &caster, const glm::vec3 &position_ws);
 
 /**
- * Distances from lamps to the triangles of casters, kept while the lamp's position and the caster's fingerprint stay.
- * Without it each sync would visit every triangle of each caster that surrounds a lamp.
+ * Cache of distances from lamps to the triangles of casters. The key is the position of the lamp and the fingerprint of
+ * the caster. Without the cache, each sync would visit all triangles of each caster whose bounds contain a lamp.
  */
 class CasterDistances {
  public:
   /** \see distance_to */
   float distance(const Caster &caster, const glm::vec3 &position_ws);
-  /** Forget the distances from other positions and those of other casters. */
+  /** Remove all distances except those from \a positions_ws to \a casters. */
   void keep_only(std::span<const glm::vec3> positions_ws, const std::vector<Caster> &casters);
-  /** Triangles whose distance was computed, since the start. */
+  /** Number of triangles whose distance was computed, since the start. */
   [[nodiscard]] std::uint64_t triangles_visited() const
   {
     return triangles_visited_;
   }
 
  private:
-  /** Bits of a position, so that keys are ordered for every number. */
+  /** Bits of a position. They have a total order for all values, including NaN. */
   using Position = std::array<std::uint32_t, 3>;
-  /** Metres, by the lamp's position and the caster's fingerprint. */
+  /** Distances in metres. */
   std::map<std::pair<Position, std::uint64_t>, float> distances_;
   std::uint64_t triangles_visited_ = 0;
 };
 
 /**
- * Distance of a lamp's near plane, metres, for the best precision: the error of depths grows with the square of
- * distance over near. It is as large as the nearest caster permits; where the lamp is on a caster, a small part of that
- * caster's size. What is nearer is drawn on the near plane and still casts.
+ * Distance of a lamp's near plane, metres. It is chosen as large as possible, because the error of depths grows with
+ * distance² / near: half the distance to the nearest caster, but at least 1e-4 of the radius of that caster's bounds,
+ * for lamps on the surface of a caster. Casters in front of the near plane are clamped to it and still cast shadows.
  *
- * \a range: casters beyond it are ignored, metres.
+ * \a range: the range of the lamp, metres; casters beyond it have no effect. \a distances: optional cache.
  */
 [[nodiscard]] float lamp_near(const glm::vec3 &position_ws, float range, const std::vector<Caster> &casters,
                               CasterDistances *distances = nullptr);
 
-/** The casters of one sync and how they differ from those of the last sync. */
+/** The casters of one sync, and their difference from those of the last sync. */
 class ShadowCasters {
  public:
-  /** Start the next list. After a sync that failed, the difference is to the last complete list. */
+  /** Start the next list. If the last list was not finished, the difference refers to the last finished list. */
   void begin();
   void add(const Caster &caster)
   {
     casters_.push_back(caster);
   }
-  /** After the last caster. */
+  /** To be called after the last caster. */
   void finish();
 
   [[nodiscard]] const std::vector<Caster> &list() const
   {
     return casters_;
   }
-  /** Around all casters. Empty without casters. */
+  /** Bounds of all casters. Empty without casters. */
   [[nodiscard]] const scene::Bounds &bounds_ws() const
   {
     return bounds_ws_;
   }
-  /** A sphere around each caster. */
+  /** Bounding spheres, in the order of list(). */
   [[nodiscard]] const std::vector<draw::CullingVolume> &volumes() const
   {
     return volumes_;
   }
-  /** The calls of the casters, each once. */
+  /** The calls of the casters, without duplicates. */
   [[nodiscard]] const std::vector<draw::InstanceCall *> &calls() const
   {
     return calls_;
   }
-  /** \see changed_bounds */
+  /** Result of changed_bounds for the last list and this list. */
   [[nodiscard]] const std::vector<scene::Bounds> &changed() const
   {
     return changed_;
@@ -128,7 +131,7 @@ class ShadowCasters {
  private:
   std::vector<Caster> casters_;
   std::vector<Caster> before_;
-  /** casters_ is complete: finish was called since begin. */
+  /** finish was called since begin. */
   bool is_finished_ = false;
   scene::Bounds bounds_ws_;
   std::vector<draw::CullingVolume> volumes_;
@@ -138,13 +141,14 @@ class ShadowCasters {
 };
 
 /**
- * The faces of a cube that a box touches, bit i for face i; never one too few.
+ * The faces of a cube that a box touches: bit i for face i. Conservative: the mask may contain additional faces.
  *
- * \a bounds: from the lamp, metres. \a half_size: of a face at distance 1, at least 1.
+ * \a bounds: relative to the lamp, metres. \a half_size: half the edge of a face at distance 1, at least 1.
  */
 [[nodiscard]] inline std::uint32_t cube_face_mask(const scene::Bounds &bounds, float half_size)
 {
-  // A face's pyramid is where h · a >= |b| and h · a >= |c|: along its axis at its farthest, across at its nearest.
+  // The pyramid of a face contains the points with h · a >= |b| and h · a >= |c|, where a is the coordinate along the
+  // face's axis. The test uses the largest a, and the smallest |b| and |c| of the box.
   const glm::vec3 nearest = glm::max(bounds.min, -bounds.max);
   const glm::vec3 farthest = glm::max(bounds.max, -bounds.min);
   const glm::vec3 across(std::max(nearest.y, nearest.z), std::max(nearest.x, nearest.z),

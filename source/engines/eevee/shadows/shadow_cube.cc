@@ -9,7 +9,8 @@
 
 namespace gnomon::eevee {
 
-// Columns. Each comment says what the face shows to the right, upwards and against its axis.
+// The matrices are given by columns. Each comment gives the world axes to the right, up and backwards in the face's
+// view.
 const std::array<glm::mat4, 6> cubefacemat = {
     glm::mat4({0, 0, -1, 0}, {0, -1, 0, 0}, {-1, 0, 0, 0}, {0, 0, 0, 1}),  // +X: -z, -y, -x
     glm::mat4({0, 0, 1, 0}, {0, -1, 0, 0}, {1, 0, 0, 0}, {0, 0, 0, 1}),    // -X: z, -y, x
@@ -35,14 +36,14 @@ std::array<draw::View, 6> shadow_cube_views(const glm::vec3 &position_ws, float 
 
 namespace {
 
-/** Whether any direction through \a face of the cube is on the side that a flat lamp shines to. */
+/** Whether \a face contains a direction in the emitting half-space of an area lamp. */
 bool reaches_ahead(const ShadowLamp &lamp, std::size_t face)
 {
   const glm::vec3 forward_ws = -glm::vec3(lamp.world_from_lamp[2]);
   const int axis = int(face / 2);
   const float along = face % 2 == 0 ? forward_ws[axis] : -forward_ws[axis];
   const float across = std::abs(forward_ws[(axis + 1) % 3]) + std::abs(forward_ws[(axis + 2) % 3]);
-  // Of the corner of the face that is farthest ahead. A face that is drawn in vain does no harm.
+  // The test uses the corner of the face that is farthest along the lamp's axis. It is conservative.
   return along + across > -1e-5F;
 }
 
@@ -76,7 +77,7 @@ class CubeTechnique final : public ShadowTechnique {
   ShadowTexelKey texel_key(const ShadowLamp &lamp) const override
   {
     ShadowTexelKey key{.range = lamp.shadow_range(), .clip_start = lamp.shadow.clip_start};
-    // The faces' axes are the world's.
+    // The faces are aligned with the world axes, so that only the position of the lamp matters.
     key.world_from_lamp[3] = lamp.world_from_lamp[3];
     return key;
   }
@@ -87,11 +88,11 @@ class CubeTechnique final : public ShadowTechnique {
     slot.views.assign(views.begin(), views.end());
   }
 
-  /** Faces for which some visible point is on the inner side of each of the four planes that bound the face. */
+  /** Conservative: the faces that have, for each of their four side planes, a visible corner on the inner side. */
   LayerMask layers_needed(const ShadowSlot &slot, const VisibleRange &visible) const override
   {
     const glm::dvec3 position_ws(slot.lamp.position_ws());
-    // Bit i of each: some corner is on the inner side of the i-th plane.
+    // For each face, bit i: at least one corner is on the inner side of the i-th plane.
     std::array<std::uint32_t, 6> within{};
     for (const glm::dvec3 &corner : visible.corners) {
       const glm::dvec3 v = corner - position_ws;
@@ -129,7 +130,7 @@ class CubeTechnique final : public ShadowTechnique {
 
   void record(ShadowSlot &slot, LayerMask missing, const ShadowRecording &recording) const override
   {
-    // A face without a caster is not looked up: see ShadowCubeData::face_mask.
+    // Faces without a caster are not cleared, because lookups skip them. \see ShadowCubeData::face_mask
     record_depths(slot, missing, false, recording);
   }
 

@@ -7,25 +7,26 @@
 
 namespace gnomon::eevee {
 
-/** Owner of layers: a lamp, or a lamp in one viewport. */
+/** Owner of a run of layers: a lamp, or a lamp in one viewport. */
 struct LayerOwner {
   /** ShadowLamp::key. */
   std::uint64_t lamp = 0;
-  /** Of the viewport; 0: the layers serve all viewports. */
+  /** Identity of the viewport. 0: all viewports share the layers. */
   std::uint64_t viewport = 0;
 
   bool operator==(const LayerOwner &) const = default;
 };
 
-/** Runs of layers in an array, each with one owner. A run keeps its first layer while its owner lives. */
+/** Allocates runs of consecutive layers of an array texture. Each run has one owner. */
 class LayerRuns {
  public:
   /**
-   * The first layer of \a owner's run, which has \a count layers afterwards. A run that has to grow, and cannot at its
-   * place, gets another place. \a count 0 releases the run; the result is then 0.
+   * Set the size of \a owner's run to \a count layers, or create the run. A run keeps its first layer, unless it has to
+   * grow and the next layers are in use. \a count 0 releases the run.
+   * \return the first layer of the run; 0 if \a count is 0.
    */
   int place(const LayerOwner &owner, int count);
-  /** 0: \a owner has no run. */
+  /** Number of layers of \a owner's run; 0 if there is none. */
   [[nodiscard]] int count_of(const LayerOwner &owner) const;
   /** Release the runs of all owners that are not in \a owners. */
   void keep_only(std::span<const LayerOwner> owners);
@@ -34,7 +35,7 @@ class LayerRuns {
   {
     runs_.clear();
   }
-  /** One past the last layer in use: the layers that the array must have. */
+  /** One past the last layer in use: the number of layers that the array needs. */
   [[nodiscard]] int end() const
   {
     return runs_.empty() ? 0 : runs_.back().first + runs_.back().count;

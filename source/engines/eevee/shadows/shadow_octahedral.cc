@@ -77,19 +77,19 @@ class OctahedralTechnique final : public ShadowTechnique {
 
   LayerMask changed_layers(LayerMask touched) const override
   {
-    // The cube that the layer was made from holds another lamp's depths by now.
+    // A change makes all faces necessary, because the shared cube no longer holds the depths of this lamp.
     return touched == 0 ? 0U : ~0U;
   }
 
   LayerMask layers_needed(const ShadowSlot &slot, const VisibleRange & /*visible*/) const override
   {
-    // The filter reads across the edges of faces.
+    // The filter reads across the edges of faces, so that every face is needed.
     return slot.all_layers();
   }
 
   void write_block(const ShadowSlot & /*slot*/, shared::ShadowBlock & /*block*/) const override
   {
-    // The octahedral store has a block of its own.
+    // The octahedral store writes its own block, `esm_block`.
   }
 
   void record(ShadowSlot &slot, LayerMask missing, const ShadowRecording &recording) const override

@@ -6,19 +6,19 @@
 namespace gnomon::eevee {
 
 /**
- * One octahedral layer of filtered distances, made from the faces of a cube that all such lamps share: exponential
- * shadows of point lamps and spots.
+ * Exponential shadow maps of point, spot and area lamps: one octahedral layer of filtered distances for each lamp. It
+ * is made from a temporary cube that all these lamps share.
  */
 [[nodiscard]] const ShadowTechnique &shadow_octahedral_technique();
 
 /**
- * How far a lamp's exponential shadow has to reach in a scene of \a bounds_ws, metres: to the scene's end, where the
- * lamp's range is not nearer. In steps of a quarter of a power of 2, so that an object that moves seldom changes the
- * exponents derived from it.
+ * The range of a lamp's exponential shadow, metres: the distance of the farthest corner of \a bounds_ws (bounds of the
+ * scene), limited by the range of the lamp. The distance is rounded up to a power of 2^(1/4), so that moving objects
+ * seldom change the exponent that is derived from the range.
  */
 [[nodiscard]] float esm_range(const ShadowLamp &lamp, const scene::Bounds &bounds_ws);
 
-/** What a lamp with a place asks of the octahedral store. \a bounds_ws: of the scene. */
+/** The request of a lamp to the octahedral store. \a bounds_ws: bounds of the scene. */
 [[nodiscard]] EsmLamp esm_lamp(const ShadowLamp &lamp, const ShadowPlace &place, const scene::Bounds &bounds_ws,
                                const ShadowSettings &settings);
 

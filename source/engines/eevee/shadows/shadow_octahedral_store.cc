@@ -35,7 +35,7 @@ int esm_cube_size_px(int size_px)
 
 namespace {
 
-/** \throws gpu::Error unless \a value is in [low, high]; false for what is no number. */
+/** \throws gpu::Error unless \a value is in [low, high]. NaN is out of range. */
 template <typename T>
 void check_range(const EsmLamp &lamp, const char *setting, T value, T low, T high, const char *unit)
 {
@@ -44,7 +44,7 @@ void check_range(const EsmLamp &lamp, const char *setting, T value, T low, T hig
   }
 }
 
-/** All but the layer. \throws gpu::Error */
+/** The entry of \a lamp in esm_block, without the layer. \throws gpu::Error if a setting is out of range */
 shared::EsmData make_data(const EsmLamp &lamp)
 {
   const EsmSettings &settings = lamp.settings;
@@ -111,7 +111,7 @@ OctahedralStore::Plan OctahedralStore::plan(const gpu::Limits &device_limits, st
     }
   };
   place();
-  // Gaps that removed lamps left stay for the next lamps, but not where many layers would be unused.
+  // Gaps of removed lamps are kept for new lamps, unless more than half of the layers would be unused.
   for (std::size_t format = 0; format < runs.size(); format++) {
     if (runs[format].end() > std::min(2 * int(owners[format].size()), int(most))) {
       runs[format].clear();
@@ -133,7 +133,7 @@ bool OctahedralStore::has_texels(const Slot &slot, const shared::EsmData &data) 
     return false;
   }
   shared::EsmData old_data = block_.lamps[old - slots_.begin()];
-  // Lookups alone read the bias.
+  // The bias does not affect texels, because only lookups read it.
   old_data.bias = data.bias;
   return std::memcmp(&old_data, &data, sizeof(data)) == 0;
 }
@@ -249,7 +249,7 @@ void OctahedralStore::record(gpu::CommandList &list, std::size_t index, const Es
   recorded_.cube_size_px = cube.size_px > 0 ? cube.size_px : cube.texture.desc().width;
   recorded_.cube = {cube.texture.id(), sampler_.id()};
 
-  // Cleared to far and no variance, as the layer stores it: a smaller map leaves a part of it.
+  // The clear colour is the encoded range and a variance of 0. A map that is smaller than the layer leaves it there.
   const auto record_into = [&](const draw::Pass &pass, const gpu::Framebuffer &framebuffer, float far) {
     fmt::memory_buffer name;
     fmt::format_to(std::back_inserter(name), "{} of lamp {}", pass.name(), index);
@@ -273,7 +273,7 @@ void OctahedralStore::record(gpu::CommandList &list, std::size_t index, const Es
 void OctahedralStore::bind(draw::ShadingGroup &group) const
 {
   GNOMON_ASSERT(!slots_.empty(), "no lamp has an octahedral layer");
-  // An array that no lamp asked for is not made, and not read.
+  // Arrays without layers do not exist. Their slots get another array, which shaders do not read there.
   const gpu::Texture &some =
       std::ranges::find_if(arrays_, [](const LayerArray &array) { return bool(array.texture()); })->texture();
   const auto texture_of = [&](int format) -> const gpu::Texture & {

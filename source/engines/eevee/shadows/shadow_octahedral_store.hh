@@ -13,104 +13,109 @@
 
 namespace gnomon::eevee {
 
-/** What a layer holds of its distances. */
+/** The content of a layer. */
 enum class EsmMethod {
-  /** The mean of exp(c·z): sharp, and lit behind a caster over a length of 1 / c. */
+  /** The mean of exp(c·z) for distances z. Shadows are sharp, but light leaks over a length of 1 / c behind a caster.
+   */
   Esm,
   /**
-   * And its variance: an exponential variance shadow map, in two channels. Better where the filter is wide, at twice
-   * the memory.
+   * The mean and the variance of exp(c·z) in two channels: an exponential variance shadow map. It is more accurate for
+   * wide filters and needs twice the memory.
    */
   Evsm,
 };
 
-/** How a layer is filtered. All are exact in log space: filtered is exp(exponent · distance). */
+/** The filter of a layer. All filters average exp(exponent · distance), in log space to prevent an overflow. */
 enum class EsmKernel {
-  /** Cones of one solid angle, sampled by 4 and by 32 taps; the cost is taps × texels. */
+  /** A cone of constant solid angle, sampled by 4 or 32 taps. The cost is proportional to taps × texels. */
   Disk4,
   Disk32,
   /**
-   * A Gaussian along rows, then along columns, with the disk's variance: for wide filters. Its shape follows the map's
-   * texels: its angle is 0.88 to 1.23 of the disk's over the map.
+   * For wide filters: a Gaussian with the variance of the disk, along rows and then along columns. Its shape follows
+   * the texels of the map, so that its angle varies between 0.88 and 1.23 of the disk's angle.
    */
   Separable,
 };
 
 enum class EsmFormat {
-  /** Half where it rounds visibilities by esm_half_error_max at most. */
+  /** Half if its rounding changes visibilities by at most esm_half_error_max, otherwise Float. */
   Auto,
   Half,
   Float,
 };
 
-/** Most that 16 bits may change a visibility without a word. */
+/** Maximum error of visibilities by 16-bit rounding. OctahedralStore::limits reports larger errors. */
 inline constexpr float esm_half_error_max = 0.02F;
 
-/** What one lamp asks for. */
+/** Settings of one lamp's exponential shadow map. */
 struct EsmSettings {
   EsmMethod method = EsmMethod::Esm;
-  /** 1/m, 0.01 to 1e4; nothing: esm_exponent. */
+  /** Exponent, 1/m, 0.01 to 1e4. Default: esm_exponent. */
   std::optional<float> exponent{};
-  /** Scale of shared::esm_bias, 0 to 1e3. */
+  /** Factor of shared::esm_bias, 0 to 1e3. */
   float bias = 1.0F;
-  /** Half the opening of the filter's cone, radians, 0 to 0.5; nothing: esm_filter_angle. */
+  /** Half the opening angle of the filter cone, radians, 0 to 0.5. Default: esm_filter_angle. */
   std::optional<float> filter_angle{};
-  /** Edge of the map, texels, 4 to 8192. */
+  /** Edge of the map without its border, texels, 4 to 8192. */
   int size_px = 512;
-  /** Of Esm; Evsm has 32 bits. */
+  /** Format of EsmMethod::Esm. EsmMethod::Evsm always has 32 bits. */
   EsmFormat format = EsmFormat::Auto;
-  /** Over the derived angle four taps are as good as 32, in a quarter of the time. */
+  /** With the default filter angle, Disk4 has the quality of Disk32 in a quarter of the time. */
   EsmKernel kernel = EsmKernel::Disk4;
 };
 
-/** Half a texel of mean solid angle, radians: the cone is a texel across, as lookups blend four texels anyhow. */
+/**
+ * Default of EsmSettings::filter_angle, radians: half the mean angle of a texel, so that the cone has the diameter of a
+ * texel. A wider cone is not needed, because lookups blend four texels. \a size_px: edge of the map, texels.
+ */
 [[nodiscard]] float esm_filter_angle(int size_px);
 
 /**
- * 1/m. Over a cone of half opening a, a plane tilted by 45° spreads over ± a·d at distance d, and the filter's weights
- * over exp(± c·a·d). With a larger exponent c the farthest tap wins, and shadows shrink by the cone; with a smaller one
- * light comes through behind near casters, over a length of 1 / c. At half the range c·a·d is 0.5 for Esm, where a is a
- * texel at least, and 1/16 for Evsm, whose bound needs no steepness: found by sweeps against exact rays
- * (doc/decisions/0005).
+ * Default of EsmSettings::exponent, 1/m. Within a cone of half angle a, the distances of a plane that is tilted by 45°
+ * vary by ± a·d at distance d, and the filter weights vary by factors of exp(± c·a·d) with the exponent c. If c is too
+ * large, the farthest tap dominates and shadows shrink by the radius of the cone. If c is too small, light leaks behind
+ * near casters, over a length of 1 / c. The result makes c·a·d at half the range equal to 0.5 for Esm, where a is at
+ * least the mean angle of a texel, and to 1/16 for Evsm, whose bound does not need a large exponent. The two values
+ * were found by comparison with ray casting (doc/decisions/0005).
  */
 [[nodiscard]] float esm_exponent(EsmMethod method, float filter_angle, int size_px, float range);
 
-/** Edge of the cube's faces that serves a map of \a size_px, pixels: doc/decisions/0005. */
+/** Edge of the cube faces for an octahedral map with the edge \a size_px, texels. \see doc/decisions/0005 */
 [[nodiscard]] int esm_cube_size_px(int size_px);
 
-/** A lamp that wants a layer. */
+/** The request of a lamp for a layer. */
 struct EsmLamp {
-  /** Named in messages. */
+  /** For messages. */
   std::string name;
-  /** Metres, above 0, at most 1e30: no farther does it cast or receive a shadow. */
+  /** Maximum distance of casters and receivers, metres, 1e-6 to 1e30. */
   float range = 0.0F;
   EsmSettings settings{};
-  /** Identity of the lamp: the same in each sync, different for every lamp. */
+  /** Identity of the lamp: unique, and the same in each sync. */
   std::uint64_t key = 0;
 };
 
-/** The depths that a layer is made from: reversed, depth = near / distance along the face's axis, and 0 where nothing
- * is. */
+/** The cube of depths from which a layer is made. Depth = near / distance along the face's axis; 0 for empty texels. */
 struct EsmCube {
   /** Depth32F array of square layers. */
   const gpu::Texture &texture;
-  /** The six faces follow it, in OpenGL's order. */
+  /** Layer of the first of six faces, in OpenGL's order. */
   int first_layer = 0;
-  /** Metres, above 0. */
+  /** Distance of the near plane, metres, above 0. */
   float near = 0.0F;
-  /** Bit f: face f was drawn. What others show is as far as the range. */
+  /** Bit f: face f was drawn. The other faces contain no caster: their distance is the lamp's range. */
   unsigned face_mask = 0x3F;
-  /** Share of a face's image that 90° take, in (0, 1]. */
+  /** Fraction of a face's width that its 90° cover, in (0, 1]. \see shared::cube_uv_scale */
   float uv_scale = 1.0F;
-  /** Edge of a face, in the lower left corner of its layer, texels. 0: the whole layer. */
+  /** Edge of a face in the lower left corner of its layer, texels. 0: the face fills the layer. */
   int size_px = 0;
 };
 
 /**
- * Octahedral exponential shadow maps: for each lamp a layer with the filtered distance to the first caster in each
- * direction, which shadow_esm_visibility of eevee_esm_lib.glsl reads.
+ * Octahedral exponential shadow maps. Each lamp has a layer with the filtered distance to the first caster in each
+ * direction, for the function shadow_esm_visibility of eevee_esm_lib.glsl.
  *
- * Order: sync; then record whenever a lamp's cube has changed; bind in what is lit. Must go before its device.
+ * Order of calls: sync; then record whenever the depths around a lamp have changed; bind for groups that shade
+ * surfaces. Must be destroyed before its device.
  */
 class OctahedralStore {
  public:
@@ -119,65 +124,66 @@ class OctahedralStore {
   OctahedralStore &operator=(const OctahedralStore &) = delete;
 
   /**
-   * Give each of \a lamps a layer; the index is that in \a lamps and in `esm_block`. Lamps beyond size() have none and
-   * are named in limits(). To be called again after a reload of \a shaders, which must outlive the store.
+   * Assign a layer to each of \a lamps. The index of a lamp in \a lamps is also its index in `esm_block`. Lamps from
+   * index size() on have no layer, and limits() names them. To be called again after a reload of \a shaders. \a shaders
+   * must outlive the store.
    *
-   * A lamp keeps its layer and its texels from one sync to the next while nothing changes that they depend on.
+   * A lamp keeps its layer and texels over several syncs while the values that they depend on do not change.
    *
-   * \return whether any layer must be recorded; \see must_record
-   * \throws gpu::Error naming lamp, setting and value; nothing has changed then.
+   * \return whether at least one layer must be recorded; \see must_record
+   * \throws gpu::Error with the lamp, the setting and its value if a setting is out of range; nothing has changed then.
    */
   bool sync(gpu::Device &device, ShaderCache &shaders, std::span<const EsmLamp> lamps);
 
-  /** What limits() would be after a sync, without making anything. \throws gpu::Error as sync */
+  /** The result of limits() after a sync, without the creation of resources. \throws gpu::Error as sync */
   [[nodiscard]] static std::vector<std::string> limits_of(const gpu::Limits &device_limits,
                                                           std::span<const EsmLamp> lamps)
   {
     return plan(device_limits, lamps, {}).limits;
   }
 
-  /** Whether the layer of the \a index-th lamp has to be recorded since the last sync. */
+  /** Whether the last sync requires that the layer of the \a index-th lamp is recorded. */
   [[nodiscard]] bool must_record(std::size_t index) const
   {
     return slots_[index].must_record;
   }
 
-  /** Append the passes that make the layer of the \a index-th lamp. \pre index below size() */
+  /** Append the passes that draw the layer of the \a index-th lamp to \a list. \pre \a index is below size() */
   void record(gpu::CommandList &list, std::size_t index, const EsmCube &cube);
 
-  /** `esm_block`, `shadow_esm`, `shadow_esm_half` and `shadow_evsm`, by value. \pre size() is above 0 */
+  /** Bind `esm_block`, `shadow_esm`, `shadow_esm_half` and `shadow_evsm` by value. \pre size() is above 0 */
   void bind(draw::ShadingGroup &group) const;
 
-  /** Whether any lamp has EsmMethod::Evsm: then lookups need USE_SHADOW_EVSM. */
+  /** Whether at least one lamp has EsmMethod::Evsm. Lookups then need USE_SHADOW_EVSM. */
   [[nodiscard]] bool has_variance() const
   {
     return bool(arrays_[ESM_VARIANCE].texture());
   }
-  /** Lamps that have a layer. */
+  /** Number of lamps that have a layer. */
   [[nodiscard]] std::size_t size() const
   {
     return slots_.size();
   }
-  /** What the lamp was given, derived values in place. */
+  /** The entry of the \a index-th lamp in `esm_block`, with derived values for the settings that were not given. */
   [[nodiscard]] const shared::EsmData &data(std::size_t index) const
   {
     return block_.lamps[index];
   }
-  /** The array that holds the lamp's layer: R32F, R16F, or RG32F of Evsm. */
+  /** The array texture of the lamp's layer: R32F, R16F, or RG32F for Evsm. */
   [[nodiscard]] const gpu::Texture &texture(std::size_t index) const
   {
     return array_of(index).texture();
   }
-  /** Of layers and of what filtering needs besides. */
+  /** Memory of all textures, including those of the separable filter. */
   [[nodiscard]] std::size_t size_bytes() const;
-  /** All that is made, layers first. */
+  /** All textures that exist; the arrays of layers come first. */
   [[nodiscard]] std::vector<const gpu::Texture *> textures() const;
   /** `esm_block`; empty until a lamp has a layer. */
   [[nodiscard]] const gpu::Buffer &block() const
   {
     return block_buffer_;
   }
-  /** Lamps without a layer, and those whose visibility 16 bits round by more than esm_half_error_max; named. */
+  /** Messages that name lamps without a layer, and lamps whose 16-bit rounding error exceeds esm_half_error_max. */
   [[nodiscard]] const std::vector<std::string> &limits() const
   {
     return limits_;
@@ -191,28 +197,29 @@ class OctahedralStore {
     EsmMethod method = EsmMethod::Esm;
     bool must_record = true;
   };
-  /** What the separable filter works in: a texture and what draws into it. */
+  /** A temporary texture of the separable filter, and its framebuffer. */
   struct Scratch {
     gpu::Texture texture;
     gpu::Framebuffer framebuffer;
   };
 
-  /** The result of planning, before anything is created for it. */
+  /** The result of planning, before the creation of resources. */
   struct Plan {
     std::vector<Slot> slots;
     shared::EsmBlock block{};
     std::vector<std::string> limits;
-    /** By ESM_…: layers in use, and the edge that they need. */
+    /** Indexed by ESM_…: the layers in use. */
     Runs runs;
+    /** Indexed by ESM_…: the edge of the array's layers, with borders. */
     std::array<int, 3> sizes{};
-    /** 0: no lamp needs any. */
+    /** Edge of the temporary textures. 0 if no lamp has a separable filter. */
     int scratch_size = 0;
     gpu::Format scratch_format = gpu::Format::R32F;
   };
 
-  /** \a runs: the layers of the last sync. */
+  /** \a runs: layers in use after the last sync. */
   [[nodiscard]] static Plan plan(const gpu::Limits &device_limits, std::span<const EsmLamp> lamps, Runs runs);
-  /** Whether the lamp in \a slot of a new plan has the texels that it needs. */
+  /** Whether the texels of the lamp from the last sync are valid for \a slot of a new plan. */
   [[nodiscard]] bool has_texels(const Slot &slot, const shared::EsmData &data) const;
   [[nodiscard]] const draw::Pass &pass_of(const Slot &slot) const;
   [[nodiscard]] const LayerArray &array_of(std::size_t index) const
@@ -225,12 +232,12 @@ class OctahedralStore {
   std::vector<Slot> slots_;
   shared::EsmBlock block_{};
   gpu::Buffer block_buffer_;
-  /** By ESM_…: floats, halves, variances. */
+  /** Indexed by ESM_…. */
   Runs runs_;
   std::array<LayerArray, 3> arrays_ = {LayerArray("shadow_esm", gpu::Format::R32F),
                                        LayerArray("shadow_esm_half", gpu::Format::R16F),
                                        LayerArray("shadow_evsm", gpu::Format::RG32F)};
-  /** Distances, and their rows filtered. */
+  /** The first texture holds distances, the second holds the distances after the filter along rows. */
   std::array<Scratch, 2> scratch_;
   gpu::Sampler sampler_;
   draw::Pass disk4_{"esm_disk4", gpu::State::WriteColor};
@@ -240,7 +247,7 @@ class OctahedralStore {
   draw::Pass evsm_disk4_{"evsm_disk4", gpu::State::WriteColor};
   draw::Pass evsm_disk32_{"evsm_disk32", gpu::State::WriteColor};
   draw::Pass evsm_separable_{"evsm_separable", gpu::State::WriteColor};
-  /** What the passes read when they are recorded. */
+  /** Values that the passes read by reference. */
   struct {
     int lamp = 0;
     int first_layer = 0;
@@ -252,7 +259,7 @@ class OctahedralStore {
     draw::TextureBinding cube;
     draw::TextureBinding source;
   } recorded_;
-  /** Of the last sync; framebuffers are created when first drawn into. */
+  /** The device of the last sync, for framebuffers, which are created on first use. */
   gpu::Device *device_ = nullptr;
   std::vector<std::string> limits_;
 };

@@ -25,7 +25,7 @@ float ShadowLamp::shadow_range() const
   return std::min(range > 0.0F ? range : infinity, shadow.clip_end.value_or(infinity));
 }
 
-/** Of the round cone around a spot's elliptical one, radians. */
+/** Half angle of the smallest circular cone that contains a spot's elliptical cone, radians. */
 static float widest_half_angle(const scene::PlacedLamp &lamp)
 {
   const glm::dvec2 scale = lamp.kind == scene::LampKind::Spot ? scene::spot_scale(lamp) : glm::dvec2(1.0);
@@ -81,7 +81,7 @@ constexpr std::size_t index_of(ShadowArrayId array)
   return std::size_t(array);
 }
 
-/** A request with its sizes scaled by \a scale, not below the least sizes. */
+/** \a request with its sizes multiplied by \a scale, but not reduced below the minimum sizes. */
 ShadowRequest scaled(ShadowRequest request, float scale)
 {
   const auto lowered = [scale](int size, int least) {
@@ -92,7 +92,7 @@ ShadowRequest scaled(ShadowRequest request, float scale)
   return request;
 }
 
-/** What a plan is made for. */
+/** Inputs of a plan. */
 struct Conditions {
   std::span<const ShadowLamp> lamps;
   const ShadowSettings &settings;
@@ -100,13 +100,13 @@ struct Conditions {
   int viewport_count = 1;
 };
 
-/** Most layers that the lamp of \a place may have in its array, for all viewports. */
+/** Maximum number of layers of one lamp in its array, over all viewports. */
 int layers_max(const ShadowPlace &place, const Conditions &conditions)
 {
   return place.given.layer_count_max * (place.technique->follows_view() ? conditions.viewport_count : 1);
 }
 
-/** Device memory of \a places whose requests are scaled by \a scale, bytes. */
+/** Device memory of \a places if their sizes are multiplied by \a scale, bytes. */
 std::size_t bytes_needed(const std::vector<ShadowPlace> &places, float scale, const Conditions &conditions)
 {
   std::array<std::size_t, shadow_array_count> edges{};
@@ -125,14 +125,14 @@ std::size_t bytes_needed(const std::vector<ShadowPlace> &places, float scale, co
       octahedral_layers++;
     }
   }
-  // All lamps with octahedral layers share one cube.
+  // All lamps with octahedral layers share one temporary cube.
   std::size_t &cube_layers = layers[index_of(ShadowArrayId::DistanceCube)];
   cube_layers = std::min<std::size_t>(cube_layers, 6);
   std::size_t bytes = 0;
   for (std::size_t i = 0; i < shadow_array_count; i++) {
     bytes += edges[i] * edges[i] * layers[i] * sizeof(float);
   }
-  // Octahedral layers as if none had 16 bits, and two textures that a separable filter works in.
+  // All octahedral layers count as 32-bit layers. A separable filter needs two temporary textures.
   octahedral_layers += conditions.settings.esm.kernel == EsmKernel::Separable ? 2 : 0;
   return bytes + octahedral_edge * octahedral_edge * octahedral_texel_bytes * octahedral_layers;
 }
@@ -157,7 +157,7 @@ void warn_of_settings_without_effect(const ShadowLamp &lamp, const ShadowSetting
   }
 }
 
-/** Lower the sizes of \a plan, or drop its last places, until it needs no more than the settings allow. */
+/** Reduce the sizes of \a plan, or remove its last places, until it fits into ShadowSettings::memory_bytes_max. */
 void fit_memory(ShadowPlan &plan, const Conditions &conditions)
 {
   const auto needs = [&](float scale) { return bytes_needed(plan.places, scale, conditions); };
@@ -169,7 +169,7 @@ void fit_memory(ShadowPlan &plan, const Conditions &conditions)
   float scale = float(std::sqrt(double(most) / double(needed)));
   std::vector<std::string> lost;
   if (needs(0.0F) <= most) {
-    // Borders and least sizes do not scale, so that the square root may be too large.
+    // Borders and minimum sizes do not scale, so that the square root may be too large. Find the scale by bisection.
     float high = scale;
     float low = needs(scale) <= most ? scale : 0.0F;
     for (int i = 0; i < 24 && low < high; i++) {
@@ -194,7 +194,7 @@ void fit_memory(ShadowPlan &plan, const Conditions &conditions)
   }
 }
 
-/** Give each cube its layers, and tell how many layers maps may have. */
+/** Assign layers to cubes, and compute map_layers_max. */
 void place_layers(ShadowPlan &plan, const Conditions &conditions)
 {
   const auto owner = [&](const ShadowPlace &place) { return LayerOwner{conditions.lamps[place.lamp].key}; };
@@ -219,7 +219,7 @@ void place_layers(ShadowPlan &plan, const Conditions &conditions)
     }
   };
   place_cubes();
-  // What the limits leave for gaps.
+  // Memory that the limit leaves for gaps.
   const std::size_t bytes = bytes_needed(plan.places, 1.0F, conditions);
   const std::size_t most = conditions.settings.memory_bytes_max;
   std::size_t spare_bytes = most - std::min(bytes, most);
@@ -244,7 +244,7 @@ ShadowPlan plan_shadows(std::span<const ShadowLamp> lamps, const ShadowSettings 
   const Conditions conditions{lamps, settings, device_limits, viewport_count};
   const std::array<int, shadow_array_count> entries_max = {
       std::min(SHADOW_CUBE_MAX, device_limits.array_layers_max / 6),
-      // As if all of them were cascades.
+      // Conservative: this assumes that all maps follow the view, so that each viewport has its own layers.
       std::min(SHADOW_MAP_MAX, device_limits.array_layers_max / std::max(viewport_count, 1)),
       std::min(ESM_MAX, device_limits.array_layers_max)};
   ShadowPlan plan;

@@ -18,9 +18,9 @@ namespace gnomon::eevee {
 
 class ShadowTechnique;
 
-/** A light that may cast a shadow, with everything that its shadow depends on. */
+/** A lamp that may cast a shadow, with everything that its shadow depends on. */
 struct ShadowLamp {
-  /** Identity of the lamp instance: the same in each sync while the lamp exists, different for every lamp. */
+  /** Identity of the lamp instance: unique, and the same in each sync while the lamp exists. */
   std::uint64_t key = 0;
   /** Index in light_block. */
   int light = 0;
@@ -28,100 +28,109 @@ struct ShadowLamp {
   std::string name{};
   scene::LampKind kind = scene::LampKind::Point;
   glm::mat4 world_from_lamp{1.0F};
-  /** Spot: half the opening angle, radians; of an elliptical cone, the widest. */
+  /** Spots: half the opening angle, radians. For an elliptical cone, half the largest opening angle. */
   float spot_outer_angle = 0.0F;
-  /** Metres. 0: no limit. */
+  /** Range of the lamp, metres. 0: no limit. */
   float range = 0.0F;
   scene::LampShadow shadow{};
-  /** Each sample of a picture has the shadow of another point of the lamp. */
+  /** The lamp has an extent, and each sample of a picture has the shadow of another point of the lamp. */
   bool is_sampled = false;
-  /** The same of a sun so wide that no edge of its shadow is sharp: one small map serves all that is seen. */
+  /** A sampled sun whose angle is so large that its shadow has no sharp edges. One map of lower resolution suffices. */
   bool is_smooth = false;
 
   [[nodiscard]] glm::vec3 position_ws() const
   {
     return glm::vec3(world_from_lamp[3]);
   }
-  /** Distance beyond which nothing casts or receives the lamp's shadow, metres; infinite for suns and without limits.
-   */
+  /** Maximum distance of casters and receivers, metres. Infinite for suns, and for lamps without range and clip_end. */
   [[nodiscard]] float shadow_range() const;
 };
 
-/** The lights of \a lamps, in their order. The key is the node's; \a placed is the list that \a lamps was made from. */
+/**
+ * The lamps of all lights, in the order of the lights. \a placed: the list from which \a lamps was made. The key of a
+ * lamp is the key of its node.
+ */
 [[nodiscard]] std::vector<ShadowLamp> shadow_lamps(std::span<const scene::PlacedLamp> placed, const Lamps &lamps,
                                                    LampShading shading = LampShading::Whole);
 
-/** The kind that the lamp asks for, or else that of \a settings. A sun that asks for Esm or Evsm has Pcf. */
+/**
+ * The shadow kind of a lamp: \a asked, or else the kind of \a settings. None if \a settings disable shadows and for
+ * hemi lamps. Pcf for a sun that requests Esm or Evsm.
+ */
 [[nodiscard]] scene::ShadowKind shadow_kind(scene::LampKind lamp, std::optional<scene::ShadowKind> asked,
                                             const ShadowSettings &settings);
 [[nodiscard]] scene::ShadowKind shadow_kind(const scene::Lamp &lamp, const ShadowSettings &settings);
 
-/** The arrays of depths. All layers of an array have the size of its largest shadow. */
+/** The array textures of depths. All layers of an array have the size of the largest shadow in the array. */
 enum class ShadowArrayId : std::uint8_t {
   Cubes,
   Maps,
-  /** The six faces that all octahedral layers are made from, one lamp after the other. */
+  /** The six faces of the temporary cube for octahedral layers. All lamps use the same layers, one after the other. */
   DistanceCube,
 };
 inline constexpr std::size_t shadow_array_count = 3;
 
-/** What a technique needs for one lamp. */
+/** The resources that a technique requests for one lamp. */
 struct ShadowRequest {
   ShadowArrayId array = ShadowArrayId::Cubes;
-  /** Most layers that the lamp may have in the array; for each viewport, where the technique follows the view. */
+  /** Maximum number of layers in the array; for each viewport, if the technique's layers follow the view. */
   int layer_count_max = 0;
-  /** Entries in the technique's list in the uniform block. */
+  /** Number of entries in the uniform block. */
   int entry_count = 1;
   /** Edge of each layer, texels. */
   int size_px = 0;
-  /** Edge of the octahedral layer without its border, texels; 0: there is none. */
+  /** Edge of the octahedral layer without its border, texels. 0 if there is none. */
   int octahedral_px = 0;
   int octahedral_texel_bytes = 0;
 };
 
-/** What a lamp gets. */
+/** The planned resources of one lamp's shadow. */
 struct ShadowPlace {
-  /** Index in the planned lamps. */
+  /** Index in the argument `lamps` of plan_shadows. */
   std::size_t lamp = 0;
-  /** In ShadowPlan::places. */
+  /** Index in ShadowPlan::places. */
   std::size_t index = 0;
   const ShadowTechnique *technique = nullptr;
   scene::ShadowKind kind = scene::ShadowKind::Hard;
-  /** The request, its sizes lowered to the device's and the memory's limits. */
+  /** The request, with sizes reduced to the limits of the device and of the memory. */
   ShadowRequest given{};
-  /** First entry in the technique's list in the uniform block. The order of the lamps; a new entry redraws nothing. */
+  /** First entry in the uniform block, in the order of the lamps. A change of the entry does not invalidate layers. */
   int entry = 0;
-  /** In the array. Maps: -1, because their number depends on the view; \see LayerRuns. */
+  /** First layer in the array. -1 for maps: their layers are assigned later because their number depends on the view.
+   */
   int first_layer = 0;
 };
 
 struct ShadowPlan {
   /** In the order of the lamps. */
   std::vector<ShadowPlace> places;
-  /** Layers of the array of cubes. */
+  /** Layers in use of ShadowArrayId::Cubes. */
   LayerRuns cubes;
-  /** Most layers that the array of maps may have, gaps between runs included. */
+  /** Maximum number of layers of ShadowArrayId::Maps, including gaps between runs. */
   int map_layers_max = 0;
-  /** Lamps that ask for something without effect. */
+  /** Messages about settings of lamps that have no effect. */
   std::vector<std::string> warnings;
-  /** Lamps that lost their shadow and sizes that were lowered, with the limit that was hit. */
+  /** Messages about lamps without a shadow and reduced sizes, with the limit that caused them. */
   std::vector<std::string> limits;
 };
 
 /**
- * Decide which of \a lamps have a shadow, its technique, size and place. Needs no device.
+ * Plan the shadows of \a lamps: their techniques, sizes and layers. Needs no device.
  *
- * Priority is the order of \a lamps: where a limit leaves no place for all, the last lamps lose their shadow. Where the
- * shadows need more than ShadowSettings::memory_bytes_max, all sizes are lowered by one factor, to 16 texels at least,
- * because layers of one array have one size; if that does not suffice, the last lamps lose their shadow.
+ * The order of \a lamps is their priority. If a limit is exceeded, the last lamps lose their shadow. If the shadows
+ * need more than ShadowSettings::memory_bytes_max, all sizes are reduced by the same factor (layers of one array have
+ * one size), to at least 16 texels for depths and 4 texels for octahedral layers. If this does not suffice, the last
+ * lamps lose their shadow.
  *
- * Lamps that are sampled have half the size that the settings give, smooth ones a quarter: their errors average out.
+ * Sampled lamps without a size of their own have half the size of the settings, and smooth lamps a quarter, because
+ * errors of the samples average out.
  *
- * \a viewport_count: viewports that draw the lamps; each has layers of its own where the technique follows the view.
- * \a previous: the last plan. A lamp that has a place in it keeps it. Only where the gaps that removed lamps leave
- * would exceed the memory or the device's layers, places are given anew.
+ * \a viewport_count: number of viewports that draw the lamps. Each viewport has its own layers of techniques whose
+ * layers follow the view.
+ * \a previous: the last plan. Lamps keep their layers of cubes, unless the gaps of removed lamps would exceed the
+ * memory or the device's number of layers. Then all cubes get new layers.
  *
- * \throws gpu::Error naming the lamp and the setting that is out of range.
+ * \throws gpu::Error with the name of the lamp if the size of its shadow is out of range.
  */
 [[nodiscard]] ShadowPlan plan_shadows(std::span<const ShadowLamp> lamps, const ShadowSettings &settings,
                                       const gpu::Limits &device_limits, const ShadowPlan &previous,

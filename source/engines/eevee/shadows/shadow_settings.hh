@@ -8,7 +8,7 @@
 
 namespace gnomon::eevee {
 
-/** How the layers of a lamp are drawn. The texels are the same. */
+/** The method for drawing the layers of a lamp. All methods give the same texels. */
 enum class LayerPass {
   /** The best method that the device supports. */
   Best,
@@ -20,23 +20,25 @@ enum class LayerPass {
   Layered,
 };
 
-/** The sides of one-sided casters that are drawn. Two-sided materials are always drawn from both sides. */
+/** The faces of one-sided casters that are drawn. Both faces of two-sided materials are always drawn. */
 enum class CasterFaces { All, Front, Back };
 
-/** Per-lamp settings (scene::LampShadow) override these, except that `None` here disables all shadows. */
+/** Settings of shadows. Settings of a lamp (scene::LampShadow) override them, except that `None` disables all shadows.
+ */
 struct ShadowSettings {
-  /** Hard: the bilinear blend of the four texels around a lookup. Pcf: the mean of several such blends. */
+  /** Hard: bilinear blend of the four texels around a lookup. Pcf: percentage-closer filtering with `pcf`. */
   scene::ShadowKind kind = scene::ShadowKind::Hard;
-  /** Edge of a cube face and of a map, pixels, at least 1. */
+  /** Edge of a cube face, texels, at least 1. */
   int cube_size_px = 1024;
+  /** Edge of a planar map, texels, at least 1. */
   int map_size_px = 2048;
   PcfKernel pcf{};
-  /** Of Esm and Evsm, for point lamps and spots. The method in it is not used: `kind` selects it. */
+  /** Settings of Esm and Evsm for all lamps except suns. EsmSettings::method is not used: `kind` selects the method. */
   EsmSettings esm{};
   CascadeSettings cascades{};
   LayerPass layer_pass = LayerPass::Best;
   CasterFaces caster_faces = CasterFaces::All;
-  /** \see plan_shadows */
+  /** Maximum device memory of all shadow layers, bytes. \see plan_shadows */
   std::size_t memory_bytes_max = std::size_t(1) << 30U;
 };
 

@@ -30,7 +30,7 @@ void write_map_data(const ShadowSlot &slot, shared::ShadowBlock &block)
     const glm::mat4 &projection = view.clip_from_view();
     data.texco_from_world = texcomat * view.clip_from_world();
     data.texel_size = 2.0F / (float(size_px) * std::min(projection[0][0], projection[1][1]));
-    // Reversed: near / w where w is a distance, and (far - z) / (far - near) for a sun.
+    // Reversed depth: near / w for a spot, where w is a distance, and (far - z) / (far - near) for a sun.
     data.rounding = shared::DEPTH_ROUNDING / (view.is_perspective() ? projection[3][2] : projection[2][2]);
     data.far = view.is_perspective() ? slot.lamp.shadow.clip_end.value_or(shadow_far_none) : shadow_far_none;
     data.bias = slot.lamp.shadow.bias.value_or(1.0F);
@@ -40,7 +40,7 @@ void write_map_data(const ShadowSlot &slot, shared::ShadowBlock &block)
     data.size_px = size_px;
   }
   if (slot.views.empty()) {
-    // Without a map everything is lit.
+    // A cascade_count of 0 makes all receivers lit.
     block.maps[slot.place.entry].cascade_count = 0;
   }
 }
@@ -97,14 +97,14 @@ class SpotTechnique final : public ShadowTechnique {
                                           slot.place.given.size_px));
   }
 
-  /** The map, where anything visible may be within its four sides. */
+  /** Conservative: the map is needed unless all visible corners are outside of one of its four side planes. */
   LayerMask layers_needed(const ShadowSlot &slot, const VisibleRange &visible) const override
   {
     const glm::dvec3 position_ws(slot.lamp.position_ws());
     const std::span sides = std::span(slot.views.front().frustum_planes_ws()).first(4);
     const bool is_outside = std::ranges::any_of(sides, [&](const glm::vec4 &side) {
       return std::ranges::all_of(visible.corners, [&](const glm::dvec3 &corner) {
-        // The plane's own rounding grows with the coordinates; a map that is drawn in vain does no harm.
+        // The rounding error of the plane grows with the coordinates.
         const double slack = 1e-4 * (glm::length(corner) + glm::length(position_ws));
         return glm::dot(glm::dvec3(side), corner) + double(side.w) < -slack;
       });
@@ -119,7 +119,7 @@ class SpotTechnique final : public ShadowTechnique {
 
   void record(ShadowSlot &slot, LayerMask missing, const ShadowRecording &recording) const override
   {
-    // A map without a caster is not looked up: see ShadowMapData::cascade_count.
+    // A map without a caster is not cleared, because lookups skip it. \see ShadowMapData::cascade_count
     record_depths(slot, missing, false, recording);
   }
 

@@ -12,7 +12,7 @@ bool LayerArray::resize(gpu::Device &device, int size_px, int layers, bool has_c
     return false;
   }
   if (!has_content || layers == 0) {
-    // The old texture first, so that both need not fit into memory.
+    // Free the old texture first, so that both textures need not fit into memory.
     framebuffers_.clear();
     texture_ = {};
   }

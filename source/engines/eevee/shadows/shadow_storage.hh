@@ -11,27 +11,27 @@
 namespace gnomon::eevee {
 
 /**
- * An array texture whose layers keep their places, and their texels, while its size changes. Shadows smaller than the
- * array's edge lie in the lower left corner of their layers.
+ * An array texture whose layers keep their index and their texels when the array is resized. Shadows that are smaller
+ * than the array's edge are in the lower left corner of their layers.
  *
  * Must be destroyed before its device.
  */
 class LayerArray {
  public:
-  /** \a format: of depth or of colour. */
+  /** \a format: a depth or a colour format. */
   LayerArray(std::string name, gpu::Format format) : name_(std::move(name)), format_(format) {}
 
   /**
-   * Have \a layers layers with an edge of \a size_px texels; 0 layers free the texture. Where the old texels are kept,
-   * both textures exist until they are copied.
+   * Resize the array to \a layers layers with an edge of \a size_px texels. 0 layers free the texture.
    *
-   * \a has_content: whether any layer holds texels that are needed.
-   * \return whether the texture is a new one. \throws gpu::Error; the array is then unchanged, or empty where it had no
-   * content.
+   * \a has_content: whether at least one layer contains texels that are still needed. They are copied, and both
+   * textures exist during the copy. \return whether the texture changed. \throws gpu::Error if the texture cannot be
+   * created. The array is then unchanged, or empty without \a has_content.
    */
   bool resize(gpu::Device &device, int size_px, int layers, bool has_content);
 
-  /** What draws into \a count layers from \a first on; made when first asked for. \a count 1: into that layer alone. */
+  /** A framebuffer of \a count layers from \a first on. Created on first use. \a count 1: a framebuffer of one layer.
+   */
   [[nodiscard]] const gpu::Framebuffer &framebuffer(gpu::Device &device, int first, int count = 1);
 
   [[nodiscard]] const std::string &name() const
@@ -52,7 +52,7 @@ class LayerArray {
   std::string name_;
   gpu::Format format_;
   gpu::Texture texture_;
-  /** By first layer and count. */
+  /** Indexed by the first layer and the count. */
   std::map<std::pair<int, int>, gpu::Framebuffer> framebuffers_;
 };
 

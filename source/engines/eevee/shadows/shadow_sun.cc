@@ -45,7 +45,7 @@ class SunTechnique final : public ShadowTechnique {
   ShadowTexelKey texel_key(const ShadowLamp &lamp) const override
   {
     ShadowTexelKey key{.world_from_lamp = lamp.world_from_lamp, .range = lamp.shadow_range()};
-    // A sun has a direction and no position.
+    // The position of a sun has no effect.
     key.world_from_lamp[3] = glm::vec4(0, 0, 0, 1);
     return key;
   }
@@ -79,7 +79,7 @@ class SunTechnique final : public ShadowTechnique {
 
   LayerMask layers_needed(const ShadowSlot &slot, const VisibleRange & /*visible*/) const override
   {
-    // The maps are fitted to what is visible.
+    // The maps are fitted to the visible range, so that all of them are needed.
     return slot.all_layers();
   }
 
@@ -90,7 +90,7 @@ class SunTechnique final : public ShadowTechnique {
 
   void record(ShadowSlot &slot, LayerMask missing, const ShadowRecording &recording) const override
   {
-    // A cascade without a caster is looked up like the others, so that it has to be cleared.
+    // Lookups read cascades without a caster, too, so that they must be cleared.
     record_depths(slot, missing, true, recording);
   }
 

@@ -5,7 +5,7 @@
 
 namespace gnomon::eevee {
 
-/** One to four maps of depths that follow what is seen: suns. \see fit_sun */
+/** Cascaded shadow maps of suns: one to four maps that are fitted to the visible range. \see fit_sun */
 [[nodiscard]] const ShadowTechnique &shadow_sun_technique();
 
 }  // namespace gnomon::eevee

@@ -14,14 +14,14 @@ namespace gnomon::eevee {
 
 namespace {
 
-/** Of a map's extent, to each side: how far a camera may move before the map is drawn again. */
+/** Fraction of a map's extent that is added on each side, so that the camera can move before the map is drawn again. */
 constexpr double slack = 1.0 / 32.0;
-/** A map's extent is a power of this, so that a fit that changes a little keeps its texels. */
+/** Map extents are powers of this number, so that small changes of the fit keep the size of the texels. */
 const double extent_step = std::exp2(1.0 / 8.0);
-/** Around what is needed, for the filter's kernel. */
+/** Margin around the needed box for the filter kernel, texels. */
 constexpr double margin_texels = 4.0;
 
-/** A box in double, in a lamp's axes. */
+/** A box in the axes of a lamp, in double precision. */
 struct LampBox {
   glm::dvec3 min{std::numeric_limits<double>::infinity()};
   glm::dvec3 max{-std::numeric_limits<double>::infinity()};
@@ -45,13 +45,13 @@ LampBox box_in(const glm::dmat3 &lamp_from_world, const scene::Bounds &bounds)
 }
 
 /**
- * Whether a caster may darken any receiver. One that is flat along an axis cannot where all receivers are on its lit
- * side: the ground of most scenes, which would stretch the map over everything.
+ * Whether a caster may shadow at least one receiver. A caster that is flat along an axis cannot if all receivers are on
+ * its lit side. This excludes the ground of most scenes, which would extend the maps over the whole scene.
  */
 bool can_darken(const scene::Bounds &caster, const scene::Bounds &receivers, const glm::vec3 &forward_ws)
 {
   for (int axis = 0; axis < 3; axis++) {
-    // Flat to rounding: what is thin in a wide scene still casts.
+    // The tolerance covers rounding only, so that thin casters in large scenes are not excluded.
     const float own_tolerance = 1e-6F * std::max(std::abs(caster.min[axis]), std::abs(caster.max[axis]));
     const float tolerance = own_tolerance + 1e-7F * receivers.radius();
     const bool is_flat = caster.max[axis] - caster.min[axis] <= own_tolerance;
@@ -64,12 +64,14 @@ bool can_darken(const scene::Bounds &caster, const scene::Bounds &receivers, con
   return true;
 }
 
-/** What all maps of a sun have to hold: where receivers and casters overlap, from the first caster to the last
- * receiver. */
+/**
+ * The box that all maps of a sun must cover: across the light, the intersection of receivers and casters; along the
+ * light, from the first caster to the last receiver. Empty if no caster can shadow a receiver.
+ */
 std::optional<LampBox> needed_box(const glm::mat4 &world_from_lamp, const std::vector<glm::dvec3> &receivers_ws,
                                   const std::vector<Caster> &casters)
 {
-  // Directions only: a sun is nowhere.
+  // A sun has directions only; its position has no effect.
   const glm::dmat3 from_world = glm::transpose(glm::dmat3(world_from_lamp));
   const glm::vec3 forward_ws = -glm::vec3(world_from_lamp[2]);
   scene::Bounds receiver_bounds;
@@ -89,7 +91,7 @@ std::optional<LampBox> needed_box(const glm::mat4 &world_from_lamp, const std::v
     }
   }
   LampBox needed{glm::max(receivers.min, above.min), glm::min(receivers.max, above.max)};
-  // The lamp shines along -Z: what darkens is above, up to the highest caster.
+  // The lamp shines along -Z, so that the casters of a receiver have larger z.
   needed.max.z = above.max.z;
   needed.min.z = receivers.min.z;
   if (receivers_ws.empty() || !(needed.min.x <= needed.max.x && needed.min.y <= needed.max.y)) {
@@ -104,7 +106,7 @@ SunFit fit_to(const LampBox &needed, const glm::dmat3 &lamp_from_world, int size
   fit.needed_min = needed.min;
   fit.needed_max = needed.max;
   const glm::dvec3 extent = needed.max - needed.min;
-  // Never an empty box.
+  // The lower limit prevents an empty box.
   const double size = std::max({extent.x, extent.y, extent.z, 1e-6});
   const double share = std::max(1.0 - 2.0 * margin_texels / size_px, 0.5);
   for (int axis = 0; axis < 2; axis++) {
@@ -140,7 +142,7 @@ VisibleRange visible_range(const draw::View &view, std::vector<glm::dvec3> corne
     visible.far = std::max(visible.far, distance);
   }
   if (view.is_perspective()) {
-    // Corners on the near plane come out a rounding before it.
+    // Rounding may place corners of the near plane in front of it.
     visible.near = std::max(visible.near, 1e-6 * std::max(visible.far, 1e-6));
   }
   visible.corners = std::move(corners);
@@ -165,12 +167,12 @@ void narrow_to_depths(const draw::View &view, std::span<const float> depths, Vis
     return view.is_perspective() ? projection[3][2] / (depth + projection[2][2])
                                  : (projection[3][2] - depth) / projection[2][2];
   };
-  // Samples of the same pixel see a little more.
+  // The margin of 1% covers the sample offsets within a pixel, which change the depths slightly.
   visible.near = std::clamp(0.99 * distance_of(nearest), visible.near, visible.far);
   visible.far = std::clamp(1.01 * distance_of(farthest), visible.near, visible.far);
 }
 
-/** The \a i-th of cascade_splits. */
+/** The \a i-th number of cascade_splits. */
 static double cascade_split(double near, double far, int i, int count, double lambda)
 {
   if (i == 0 || i == count) {
@@ -194,7 +196,7 @@ std::vector<double> cascade_splits(double near, double far, int count, double la
 Sphere slice_sphere(const draw::View &view, double near, double far)
 {
   const glm::dmat4 projection(view.clip_from_view());
-  // The middle and the corners of the frame at a distance, in view space.
+  // The four corners and the centre (index 4) of the frustum's cross section at a distance, in view space.
   const auto frame_at = [&](double distance) {
     std::array<glm::dvec3, 5> points;
     for (std::size_t i = 0; i < 5; i++) {
@@ -209,7 +211,7 @@ Sphere slice_sphere(const draw::View &view, double near, double far)
   };
   const auto front = frame_at(near);
   const auto back = frame_at(far);
-  // On the axis, where the near corners are as far away as the far ones.
+  // The centre is the point on the axis with the same distance to the near corners and the far corners.
   const double length = std::max(glm::distance(front[4], back[4]), 1e-12);
   const double front_sq = glm::dot(front[0] - front[4], front[0] - front[4]);
   const double back_sq = glm::dot(back[0] - back[4], back[0] - back[4]);
@@ -253,7 +255,7 @@ std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &
         fit = fit_to(box, lamp_from_world, size_px);
       }
       is_fine = is_fine && std::min(fit.texel(size_px), whole.texel(size_px)) <= pixel;
-      // One that shows all is no coarser than this slice's: the rest is not needed.
+      // If the last cascade is no coarser than the cascade of this slice, it replaces this and all other slices.
       if (i == count - 1 || fit.texel(size_px) >= whole.texel(size_px)) {
         fits.push_back(whole);
         break;
@@ -275,7 +277,7 @@ std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &
 
 bool still_fits(const SunFit &old, const SunFit &needed)
 {
-  // Extents grow in steps: within two of them nothing is gained.
+  // Extents change in steps. A difference of two steps does not justify drawing the map again.
   const double size_ratio_max = std::pow(extent_step, 2.5);
   const glm::dvec3 old_size = old.max - old.min;
   const glm::dvec3 size = needed.max - needed.min;

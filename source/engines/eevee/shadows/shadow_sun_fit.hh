@@ -14,28 +14,33 @@
 
 namespace gnomon::eevee {
 
-/** As many maps as a sun may have. */
+/** Maximum number of cascades of a sun. */
 inline constexpr int cascade_count_max = 4;
 
-/** How a sun's shadow is spread over what is seen. */
+/** The distribution of a sun's cascades over the visible range. */
 struct CascadeSettings {
-  /** Maps a sun, 1 to cascade_count_max; 0: as many as it takes for texels no larger than pixels, at most the largest.
+  /**
+   * Number of cascades, 1 to cascade_count_max. 0: the smallest number for which texels are no larger than pixels, at
+   * most cascade_count_max.
    */
   int count = 0;
-  /** Between even splits of the distance (0) and even splits of its logarithm (1). */
+  /** Blend of uniform splits (0) and logarithmic splits (1) of the distance. \see cascade_splits */
   float lambda = 0.8F;
-  /** Split the distances that the picture's depths have, and not those that the scene's box could have. Takes the depth
-   * prepass first, and waits for it whenever the view changes. */
+  /**
+   * Fit the splits to the depths of the picture instead of the visible part of the casters' bounds. The depths are read
+   * back after the depth pre-pass whenever the view changes. draw::Viewport::draw waits for them. Recorded packets use
+   * the depths of an earlier packet, so that cascades follow the camera some frames later.
+   */
   bool is_fitted_to_depth = false;
 };
 
-/** A sun's view, and what it holds. */
+/** The view of one cascade, and the box that it covers. */
 struct SunFit {
   draw::View view;
-  /** In the lamp's axes, metres: the rectangle across and the range along the light. */
+  /** The covered box in the lamp's axes, metres: xy is perpendicular to the light, z is along the light. */
   glm::dvec3 min{0.0};
   glm::dvec3 max{0.0};
-  /** The part of it that has to be there; the rest is slack. */
+  /** The part of the box that is needed. The rest is slack for movements of the camera. */
   glm::dvec3 needed_min{0.0};
   glm::dvec3 needed_max{0.0};
 
@@ -46,52 +51,55 @@ struct SunFit {
   }
 };
 
-/** What is seen, for a sun to be fitted to. */
+/** The visible part of the casters' bounds, to which cascades are fitted. */
 struct VisibleRange {
-  /** Corners of what is visible, world space. \see visible_corners */
+  /** Corners of the visible part, world space. \see visible_corners */
   std::vector<glm::dvec3> corners;
-  /** Distances along the view's direction, metres, that hold all of it; above 0 in perspective. */
+  /** Range of distances along the view direction, metres. Above 0 in perspective. */
   double near = 0.0;
   double far = 0.0;
 };
 
-/** Of \a corners, in \a view. */
+/** The visible range with \a corners, seen by \a view. */
 [[nodiscard]] VisibleRange visible_range(const draw::View &view, std::vector<glm::dvec3> corners);
 
-/** Narrow \a visible's near and far to what \a depths hold: a picture's reversed depths, 0 where there is nothing. */
+/** Narrow near and far of \a visible to the range of \a depths: reversed depths of a picture, 0 without a surface. */
 void narrow_to_depths(const draw::View &view, std::span<const float> depths, VisibleRange &visible);
 
 /**
- * Ends of \a count slices of [near, far], count + 1 numbers: the practical split scheme (Zhang et al. 2006),
- * λ · near · (far / near)^(i / count) + (1 - λ) · (near + (far - near) · i / count). Even where near is not above 0.
+ * The count + 1 limits of \a count slices of [near, far], by the practical split scheme (Zhang et al. 2006):
+ * λ · near · (far / near)^(i / count) + (1 - λ) · (near + (far - near) · i / count). Uniform if near is not above 0.
  */
 [[nodiscard]] std::vector<double> cascade_splits(double near, double far, int count, double lambda);
 
-/** Smallest sphere around what \a view shows from distance \a near to \a far. World space, metres. */
+/** A sphere. World space, metres. */
 struct Sphere {
   glm::dvec3 center_ws{0.0};
   double radius = 0.0;
 };
+/** The smallest sphere around the part of the frustum of \a view from the distance \a near to \a far, metres. */
 [[nodiscard]] Sphere slice_sphere(const draw::View &view, double near, double far);
 
 /**
- * Maps of a sun, from fine to coarse: all but the last around a slice of the distance, the last around everything that
- * a caster can darken and \a visible holds; each from the first caster along the light to the last receiver. None
- * where nothing can be darkened; fewer where a slice's map would be no finer than the last.
+ * Fit the cascades of a sun. The result is ordered from fine to coarse. The last cascade covers all visible receivers
+ * that a caster can shadow; each other cascade covers one slice of the view distance. Along the light, each cascade
+ * extends from the first caster to the last receiver. The result is empty if no caster can shadow a visible receiver.
+ * It has fewer cascades than requested if the cascade of a slice would be no finer than the last cascade.
  *
- * A map's extent changes in steps, its texels stand on a grid that is fixed in the world, and it is a little larger
- * than it must be: while it covers what a moved camera sees it need not be drawn again, and where it is, what stands
- * still keeps its texels.
+ * The extent of a cascade changes in steps, its texels are aligned to a grid that is fixed in the world, and it is a
+ * little larger than necessary. A cascade therefore need not be drawn again after small movements of the camera, and
+ * texels of objects that do not move are stable when it is drawn again.
  *
- * \a pixel_size: of the picture, at distance 1 (perspective) or anywhere (orthographic), metres. \a memory: for the
- * result; its content is lost.
+ * \a size_px: edge of a map, texels. \a pixel_size: edge of a pixel of the picture, metres: at a distance of 1 m
+ * (perspective) or at any distance (orthographic). \a memory: its capacity is reused for the result; its content is
+ * discarded.
  */
 [[nodiscard]] std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &view,
                                           const VisibleRange &visible, const std::vector<Caster> &casters, int size_px,
                                           const CascadeSettings &settings, float pixel_size,
                                           std::vector<SunFit> memory = {});
 
-/** Whether \a old serves where \a needed is asked for: it covers it, and its texels are not much larger. */
+/** Whether \a old can replace \a needed: it covers the needed box, and its texels are not much larger. */
 [[nodiscard]] bool still_fits(const SunFit &old, const SunFit &needed);
 
 }  // namespace gnomon::eevee

@@ -47,7 +47,7 @@ LayerMask touched_layers(const ShadowSlot &slot, const scene::Bounds &bounds_ws,
   return layers;
 }
 
-/** Move the near plane to where \a casters permit. \return whether it moved, or nothing depends on where it was. */
+/** Update the near plane for \a casters. \return whether it changed, or no layer is up to date. */
 static bool update_near(ShadowSlot &slot, ShadowCasters &casters)
 {
   const glm::vec3 position_ws = slot.lamp.position_ws();
@@ -58,7 +58,7 @@ static bool update_near(ShadowSlot &slot, ShadowCasters &casters)
   }
   const std::optional<float> clip_start = slot.lamp.shadow.clip_start;
   const float needed = clip_start ? *clip_start : lamp_near(position_ws, range, casters.list(), &casters.distances());
-  // A near plane before all casters serves; up to a factor of 2 it costs little precision.
+  // A near plane in front of all casters can be kept. Up to a factor of 2, the loss of precision is small.
   if (slot.up_to_date != 0 && slot.near <= needed && slot.near >= 0.5F * needed) {
     return false;
   }
@@ -107,7 +107,8 @@ LayerMask record_depths(ShadowSlot &slot, LayerMask missing, bool is_empty_drawn
         recording.counters.caster_draws++;
       }
     }
-    // Casters nearer than the near plane are drawn on it, unless the lamp asks for them to be left out.
+    // Casters in front of the near plane are clamped to it, unless the lamp has a clip_start. The pass state has depth
+    // clamping; the argument is the state to remove.
     recording.pass.record(slot.views.front(), list,
                           slot.lamp.shadow.clip_start ? gpu::State::DepthClamp : gpu::State::None);
   };
@@ -127,7 +128,7 @@ LayerMask record_depths(ShadowSlot &slot, LayerMask missing, bool is_empty_drawn
   keep.depth_load = gpu::LoadAction::Load;
   const LayerMask drawn = is_empty_drawn ? missing : with_casters;
   const bool is_one_pass = recording.layer_pass != LayerPass::Single && with_casters != 0;
-  // One clear of all layers is cheaper than one clear for each; but layers that stay must not be cleared.
+  // One clear of all layers is cheaper than one clear for each layer, but must not clear valid layers.
   const bool is_cleared_at_once = is_one_pass && drawn == slot.all_layers();
   for (LayerMask rest = is_cleared_at_once ? 0 : drawn; rest != 0; rest &= rest - 1) {
     const int layer = std::countr_zero(rest);

@@ -16,49 +16,51 @@
 
 namespace gnomon::eevee {
 
-/** Bit i: layer i of a lamp's shadow. */
+/** A set of layers of a lamp's shadow: bit i is set for layer i. */
 using LayerMask = std::uint32_t;
 
-/** Counts since the shadows were created; of submitted work. */
+/** Counters of submitted work since the creation of the shadows. */
 struct ShadowCounters {
-  /** Lamps of which any layer was drawn. */
+  /** Number of updates of a lamp in which at least one layer was drawn. */
   std::uint64_t lamps_updated = 0;
-  /** Layers drawn: faces of cubes, maps, cascades. */
+  /** Number of layers drawn: faces of cubes, maps of spots, cascades of suns. */
   std::uint64_t faces_drawn = 0;
-  /** Layers of updated lamps that were not drawn: they hold no caster, or nothing visible looks them up. */
+  /** Number of layers of updated lamps that were not drawn, because they are up to date, empty or not needed. */
   std::uint64_t faces_skipped = 0;
-  /** Instances of casters drawn; a caster counts once for each layer that it touches. */
+  /** Number of caster instances drawn. A caster counts once for each layer that it touches. */
   std::uint64_t caster_draws = 0;
 };
 
-/** The layers of one light, for inspection. */
+/** Description of the layers of one light, for debugging views. */
 struct ShadowLayers {
-  /** Number of layers; 0 where nothing is seen that the light's casters could darken. */
+  /** Number of layers. 0 if no caster of the light can shadow a visible surface. */
   int count = 0;
-  /** The array that holds them, from `first_layer` on. nullptr while count is 0. */
+  /** The array texture of the layers; nullptr if count is 0. */
   const gpu::Texture *texture = nullptr;
+  /** Index of the first layer in `texture`. */
   int first_layer = 0;
-  /** Edge of each, texels, in the lower left corner of its layer after `border` texels. */
+  /** Edge of the shadow in each layer without its border, texels. It is in the lower left corner of the layer. */
   int size_px = 0;
+  /** Width of the border around the shadow, texels. */
   int border = 0;
-  /** Six faces, in OpenGL's order. */
+  /** The layers are the six faces of a cube, in OpenGL's order. */
   bool is_cube = false;
-  /** Layers that were drawn. */
+  /** The layers that were drawn. */
   LayerMask drawn = 0;
-  /** PROJECTION_… that the depths were made by. */
+  /** Projection of the depths, PROJECTION_… */
   int projection = PROJECTION_PERSPECTIVE_INFINITE;
-  /** ESM_…: the layer holds distances instead; -1: depths. */
+  /** Format of an octahedral layer of distances, ESM_…; -1 for layers of depths. */
   int esm_format = -1;
   /**
-   * Distances that depths 1 and 0 stand for, metres: one for each cascade, from the first caster; one for all layers of
-   * other lamps, from the lamp.
+   * The distances of the depths 1 (x) and 0 (y), metres. For suns, one entry for each cascade, measured along the light
+   * from the near plane of the coarsest cascade. For other lamps, one entry for all layers, measured from the lamp.
    */
   std::vector<glm::vec2> near_far;
-  /** Distances that hold all casters, metres, as far as the lamp reaches. */
+  /** Range of distances that contains all casters within the lamp's range, metres. */
   glm::vec2 shown{0.0F};
 };
 
-/** Everything about a lamp that its texels depend on, beside the casters, the sizes and the view. */
+/** Properties of a lamp that its texels depend on. Texels also depend on casters, sizes and the view. */
 struct ShadowTexelKey {
   glm::mat4 world_from_lamp{1.0F};
   float spot_outer_angle = 0.0F;
@@ -68,28 +70,29 @@ struct ShadowTexelKey {
   bool operator==(const ShadowTexelKey &) const = default;
 };
 
-/** A lamp's shadow: its place and the state of its layers. */
+/** The shadow of a lamp: its planned resources and the state of its layers. */
 struct ShadowSlot {
   ShadowLamp lamp{};
   ShadowPlace place{};
   /** LayerOwner::viewport. */
   std::uint64_t viewport = 0;
-  /** Distance of the near plane, metres; that for the lamp's centre, where the lamp is at one of its points. */
+  /** Distance of the near plane at the current position of the lamp, metres. */
   float near = 0.0F;
+  /** Distance of the near plane at the lamp's centre, metres. It differs from `near` for lamps at a LampPoint. */
   float center_near = 0.0F;
-  /** One for each layer. */
+  /** The view of each layer. */
   std::vector<draw::View> views{};
-  /** Suns: what the views are fitted to; empty while no caster matters. */
+  /** Suns: the fit of each view. Empty if no caster can shadow a visible surface. */
   std::vector<SunFit> fits{};
-  /** Memory for the next fit. */
+  /** Temporary memory for the next fit. */
   std::vector<SunFit> new_fits{};
-  /** Offset of its ShadowRenderBlock in the buffer. */
+  /** Offset of the slot's ShadowRenderBlock in the buffer. */
   std::uint32_t render_offset_bytes = 0;
-  /** Drawn and still correct. */
+  /** Layers that were drawn and are still valid. */
   LayerMask drawn = 0;
-  /** The same, and the layers that have nothing in them to draw. */
+  /** Layers that need not be drawn: those of `drawn`, and layers without a caster. */
   LayerMask up_to_date = 0;
-  /** What a command list that was not submitted yet makes of `drawn` and `up_to_date`. */
+  /** Layers that the submission of the last command list adds to `drawn` and `up_to_date`. */
   LayerMask recorded_drawn = 0;
   LayerMask recorded_up_to_date = 0;
 
@@ -97,7 +100,7 @@ struct ShadowSlot {
   {
     return (1U << views.size()) - 1U;
   }
-  /** \a layers must be drawn again. */
+  /** Mark \a layers as out of date. */
   void invalidate(LayerMask layers)
   {
     drawn &= ~layers;
@@ -105,26 +108,26 @@ struct ShadowSlot {
   }
 };
 
-/** What a technique records with. */
+/** Arguments of ShadowTechnique::record. */
 struct ShadowRecording {
   gpu::Device &device;
-  /** Draws the casters' instances. */
+  /** The pass that draws the instances of the casters. */
   const draw::Pass &pass;
   gpu::CommandList &list;
   const ShadowCasters &casters;
   LayerArray &array;
   OctahedralStore &octahedral;
   const gpu::Buffer &render_buffer;
-  /** What `pass` reads as `shadow_render_block`. */
+  /** The range that `pass` reads by reference as `shadow_render_block`. */
   gpu::BufferRange &render_block;
   LayerPass layer_pass;
-  /** Of the recorded work. */
+  /** Counters of the recorded work. */
   ShadowCounters &counters;
-  /** Memory for record_depths. */
+  /** Temporary memory of record_depths. */
   std::vector<std::uint8_t> &caster_layers;
 };
 
-/** What sun maps are fitted to. */
+/** The view to which the maps of suns are fitted. */
 struct ShadowView {
   const draw::View &view;
   const VisibleRange &visible;
@@ -132,7 +135,7 @@ struct ShadowView {
   float pixel_size;
 };
 
-/** What inspection reads beside the slot. */
+/** Arguments of the inspection functions in addition to the slot. */
 struct ShadowInspection {
   const shared::ShadowBlock &block;
   const OctahedralStore &octahedral;
@@ -141,8 +144,8 @@ struct ShadowInspection {
 };
 
 /**
- * One method of storing a lamp's shadow. Objects have no state; shadow_techniques() lists them all, and nothing else
- * names them.
+ * A method of storing and drawing the shadow of a lamp. Techniques have no state. shadow_techniques() lists all of
+ * them, and the rest of the engine uses them only through this interface.
  */
 class ShadowTechnique {
  public:
@@ -151,11 +154,11 @@ class ShadowTechnique {
   ShadowTechnique &operator=(const ShadowTechnique &) = delete;
   virtual ~ShadowTechnique() = default;
 
-  /** Whether it is the technique of \a lamp's shadow of \a kind. Exactly one technique is. */
+  /** Whether this technique draws shadows of \a kind for \a lamp. Exactly one technique returns true. */
   [[nodiscard]] virtual bool serves(const ShadowLamp &lamp, scene::ShadowKind kind) const = 0;
-  /** SHADOW_… of LightData::shadow_kind. */
+  /** The value for LightData::shadow_kind, SHADOW_… */
   [[nodiscard]] virtual int light_shadow_kind() const = 0;
-  /** What the shaders need. */
+  /** Features that the shaders need. */
   [[nodiscard]] virtual Feature features(scene::ShadowKind kind) const = 0;
   [[nodiscard]] virtual ShadowRequest request(const ShadowLamp &lamp, scene::ShadowKind kind,
                                               const ShadowSettings &settings) const = 0;
@@ -163,19 +166,20 @@ class ShadowTechnique {
 
   // Views.
 
-  /** Whether the layers follow what a viewport sees, so that each viewport has layers of its own. */
+  /** Whether the layers are fitted to the view, so that each viewport has its own layers. */
   [[nodiscard]] virtual bool follows_view() const
   {
     return false;
   }
-  /** Set the views of a slot whose `near` is set, where they depend on the lamp alone; \see follows_view. */
+  /** For techniques without follows_view: set the views of \a slot from its lamp and its `near`. */
   virtual void set_lamp_views(ShadowSlot & /*slot*/) const {}
-  /** Where follows_view: fit the views to what is seen; layers whose view changes are invalidated. */
+  /** For techniques with follows_view: fit the views of \a slot to \a view, and invalidate layers whose view changes.
+   */
   virtual void fit_views(ShadowSlot & /*slot*/, const ShadowView & /*view*/, const ShadowCasters & /*casters*/,
                          const ShadowSettings & /*settings*/) const
   {
   }
-  /** Layers that a caster changes if it changes \a touched. */
+  /** The layers that become out of date if a caster that touches the layers \a touched changes. */
   [[nodiscard]] virtual LayerMask changed_layers(LayerMask touched) const
   {
     return touched;
@@ -183,22 +187,22 @@ class ShadowTechnique {
 
   // Layers needed.
 
-  /** Layers that something visible may look up. */
+  /** The layers that visible surfaces may look up. Conservative. */
   [[nodiscard]] virtual LayerMask layers_needed(const ShadowSlot &slot, const VisibleRange &visible) const = 0;
 
   // Block data.
 
-  /** Write the slot's entries. */
+  /** Write the entries of \a slot in \a block. */
   virtual void write_block(const ShadowSlot &slot, shared::ShadowBlock &block) const = 0;
 
   // Recording.
 
-  /** Record \a missing layers. Sets recorded_drawn and recorded_up_to_date of \a slot. */
+  /** Record the drawing of the layers \a missing. Sets recorded_drawn and recorded_up_to_date of \a slot. */
   virtual void record(ShadowSlot &slot, LayerMask missing, const ShadowRecording &recording) const = 0;
 
   // Inspection.
 
-  /** Edge of a texel at a place, across the light, metres; 0: the shadow does not reach it. */
+  /** Edge of a texel at a position, perpendicular to the light, metres; 0 if no layer contains the position. */
   [[nodiscard]] virtual double texel_size(const ShadowSlot &slot, const ShadowInspection &inspection,
                                           const glm::dvec3 &position_ws) const = 0;
   [[nodiscard]] virtual ShadowLayers layers(const ShadowSlot &slot, const ShadowInspection &inspection) const = 0;
@@ -206,28 +210,28 @@ class ShadowTechnique {
 
 /** All techniques. */
 [[nodiscard]] std::span<const ShadowTechnique *const> shadow_techniques();
-/** \pre \a kind is not None */
+/** The technique for \a kind and \a lamp. \pre \a kind is not None */
 [[nodiscard]] const ShadowTechnique &technique_of(const ShadowLamp &lamp, scene::ShadowKind kind);
 
-/** ShadowCubeData::far and ShadowMapData::far of a shadow without an end. */
+/** The value of ShadowCubeData::far and ShadowMapData::far for shadows without clip_end. */
 inline constexpr float shadow_far_none = std::numeric_limits<float>::max();
 
-/** Layers of \a slot that a caster touches. \a volume: the sphere around \a bounds_ws. */
+/** The layers of \a slot that a caster touches. \a volume: the bounding sphere of \a bounds_ws. */
 [[nodiscard]] LayerMask touched_layers(const ShadowSlot &slot, const scene::Bounds &bounds_ws,
                                        const draw::CullingVolume &volume);
 
-/** Take note of \a casters: invalidate the layers that their changes touch, and move the near plane where it has to. */
+/** Invalidate the layers of \a slot that changed casters touch, and update the near plane. */
 void update_for_casters(ShadowSlot &slot, ShadowCasters &casters);
 
 /**
- * Draw the casters into \a missing layers of the slot's array, by one pass or several.
+ * Record the passes that draw casters into the layers \a missing of the slot's array.
  *
- * \a is_empty_drawn: layers without a caster are cleared, too; else they are left as they are.
- * \return the layers that were drawn.
+ * \a is_empty_drawn: whether layers without a caster are cleared. Otherwise they are not drawn.
+ * \return the layers that are drawn.
  */
 LayerMask record_depths(ShadowSlot &slot, LayerMask missing, bool is_empty_drawn, const ShadowRecording &recording);
 
-/** ShadowLayers of layers of depths around or from a lamp, as far as they do not depend on the technique. */
+/** The members of ShadowLayers that are the same for all techniques with layers of depths. */
 [[nodiscard]] ShadowLayers depth_layers(const ShadowSlot &slot, const ShadowInspection &inspection);
 /** Distance from the lamp to the farthest corner of \a bounds_ws along each axis, metres. */
 [[nodiscard]] glm::vec3 reach_from(const glm::vec3 &position_ws, const scene::Bounds &bounds_ws);

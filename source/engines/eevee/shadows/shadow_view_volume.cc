@@ -14,7 +14,7 @@ namespace gnomon::eevee {
 
 namespace {
 
-/** They are many and small, and are freed together. */
+/** The many small polygons use one memory resource, which frees them together. */
 using Polygon = std::pmr::vector<glm::dvec3>;
 using Polygons = std::pmr::vector<Polygon>;
 
@@ -36,7 +36,7 @@ Polygons box_faces(const scene::Bounds &bounds, std::pmr::memory_resource &resou
   return faces;
 }
 
-/** The part of a polygon inside of a plane (Sutherland and Hodgman 1974); where it crosses goes to \a cut. */
+/** Clips a polygon by a plane (Sutherland and Hodgman 1974). Appends the intersections of edges and plane to \a cut. */
 Polygon clipped(const Polygon &polygon, const glm::dvec4 &plane, Polygon &cut)
 {
   Polygon inside(polygon.get_allocator());
@@ -58,7 +58,7 @@ Polygon clipped(const Polygon &polygon, const glm::dvec4 &plane, Polygon &cut)
   return inside;
 }
 
-/** Order the points of a convex polygon around their middle. */
+/** Sort the points of a convex polygon by their angle around the centre. */
 void sort_around(Polygon &points, const glm::dvec3 &normal)
 {
   glm::dvec3 middle(0.0);
@@ -90,7 +90,7 @@ std::vector<glm::dvec3> visible_corners(const draw::View &view, const scene::Bou
     for (Polygon &face : faces) {
       face = clipped(face, glm::dvec4(plane), cut);
     }
-    // The cut closes the solid again, so that the next plane cuts it too.
+    // The face in the clipping plane closes the solid, so that the next plane can clip it.
     sort_around(cut, glm::dvec3(plane));
     faces.push_back(std::move(cut));
     std::erase_if(faces, [](const Polygon &face) { return face.empty(); });

@@ -67,13 +67,14 @@ void Shadows::fit(gpu::Device &device, const draw::View &view, float pixel_size,
 /** Distance of the near plane from a point of a lamp that is \a offset away from its centre, metres. */
 static float point_near(const ShadowSlot &slot, float offset)
 {
-  // The nearest caster is at twice the near plane's distance, or farther. What is nearer than the plane still casts.
+  // The nearest caster is at least twice as far away as the near plane of the centre, \see lamp_near. Casters in front
+  // of the near plane still cast shadows.
   return slot.lamp.shadow.clip_start
              ? slot.center_near
              : std::max(slot.center_near - 0.5F * offset, std::min(slot.center_near, 0.1F * offset));
 }
 
-/** Move the lamps to \a points: their layers are those of another place then. */
+/** Move the lamps to \a points. Layers of lamps that move become out of date. */
 void Shadows::place_lamps(std::span<const LampPoint> points)
 {
   if (points.empty()) {
@@ -112,12 +113,12 @@ void Shadows::write_block(gpu::Device &device)
 void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
                      gpu::CommandList &list, std::span<const LampPoint> points, std::span<const float> depths)
 {
-  // Of lists that were not submitted.
+  // Discard the records of lists that were not submitted.
   recorded_counters_ = {};
   for_each_slot([](ShadowSlot &slot) { slot.recorded_drawn = slot.recorded_up_to_date = 0; });
   place_lamps(points);
   fit(device, view, pixel_size, depths);
-  // Array by array: the lamps of the distance cube take turns with it.
+  // Lamps are recorded array by array. The lamps of the distance cube use the same layers one after the other.
   for (std::size_t id = 0; id < shadow_array_count; id++) {
     for_each_slot([&](ShadowSlot &slot) {
       if (std::size_t(slot.place.given.array) != id) {

@@ -13,87 +13,89 @@
 
 namespace gnomon::eevee {
 
-/** Which layers of a light are drawn, and which are not, for reports. */
+/** The state of the layers of a light, for reports. */
 struct ShadowState {
-  /** In light_block. */
+  /** Index in light_block. */
   int light = 0;
-  /** The array of the layers: "shadow_cubes", "shadow_maps" or "shadow_distance_cube". */
+  /** Name of the array of the layers: "shadow_cubes", "shadow_maps" or "shadow_distance_cube". */
   std::string_view array;
-  /** Edge of each, texels. */
+  /** Edge of each layer, texels. */
   int size_px = 0;
-  /** 0: a sun, of which nothing is seen that its casters could darken; or nothing was ever seen. */
+  /** 0 if the layers were never needed, or for a sun if no caster can shadow a visible surface. */
   int layer_count = 0;
-  /** Drawn and still correct. */
+  /** Layers that were drawn and are still valid. */
   LayerMask drawn = 0;
-  /** The same, and the layers that hold no caster. Nothing visible looks up the other layers. */
+  /** The layers of `drawn`, and needed layers without a caster. After an update, no other layer is needed. */
   LayerMask up_to_date = 0;
-  /** Drawn for this viewport since begin_picture. */
+  /** Layers that were drawn for this viewport since begin_picture. */
   LayerMask drawn_now = 0;
 };
 
 /**
- * Shadows of a scene's lamps in one viewport: what it sees, the layers that follow that, and the block that lookups
- * read.
+ * The part of SceneShadows that belongs to one viewport: the visible range, the layers that are fitted to the view, and
+ * the block for lookups.
  *
- * Order of calls, after those of SceneShadows: allocate, bind; then, for each view, update and, once the list that it
- * recorded into is submitted, submitted.
+ * Order of calls, after those of SceneShadows: allocate and bind; then for each view: update, submission of the command
+ * list, submitted.
  */
 class Shadows {
  public:
-  /** \a scene must outlive it. */
+  /** \a scene must outlive the object. */
   explicit Shadows(SceneShadows &scene);
   Shadows(const Shadows &) = delete;
   Shadows &operator=(const Shadows &) = delete;
   ~Shadows();
 
-  /** Create what the last SceneShadows::sync asks for, and free what is not needed any more. */
+  /** Create the resources for the last SceneShadows::sync, and free those that are no longer needed. */
   void allocate(gpu::Device &device);
-  /** Start of a picture, for ShadowState::drawn_now. */
+  /** To be called at the start of a picture. Resets ShadowState::drawn_now. */
   void begin_picture()
   {
     drawn_now_.clear();
   }
   /**
-   * Fit to what \a view sees and record into \a list the layers that are needed and not up to date. \a pass draws the
-   * casters' instances; \a pixel_size: see fit_sun. \a points: lamps of which the shadow is that of one point; each
-   * lamp the same in all updates after a sync. \a depths: of the view, or of an earlier one near it, see
-   * narrow_to_depths; read where reads_depths() and the view changed. May be empty.
+   * Fit the layers to \a view, and record the layers that are needed and out of date into \a list.
+   *
+   * \a pixel_size: see fit_sun. \a pass: draws the instances of the casters. \a points: points of lamps with an extent;
+   * the shadow of these lamps is cast from the point. After a sync, all updates must have points of the same lamps.
+   * \a depths: depths of \a view or of a recent view, see narrow_to_depths; may be empty. They are used if
+   * reads_depths() and the view changed.
    */
   void update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
               gpu::CommandList &list, std::span<const LampPoint> points = {}, std::span<const float> depths = {});
   /** Whether suns are fitted to depths. */
   [[nodiscard]] bool reads_depths() const;
-  /** Let the next update fit suns again, although the view is the same, because it has other depths. */
+  /** Make the next update fit the suns again even if the view does not change, because new depths are available. */
   void fit_again()
   {
     seen_.reset();
   }
   /**
-   * The list of the last update was submitted: what it draws is up to date from now on. Without this call the next
-   * update of any viewport records the same layers again. Where the submission is lost later, call
+   * To be called after the submission of the last update's list: marks its layers as up to date. Without this call, the
+   * next update of any viewport records the same layers again. If the submission is lost later, call
    * SceneShadows::invalidate.
    */
   void submitted();
 
-  /** Everything that lookups read, for a group whose shader has SceneShadows::features. */
+  /** Bind the resources for shadow lookups to a group whose shader has SceneShadows::features. */
   void bind(draw::ShadingGroup &group) const;
-  /** `shadow_block`, empty without cubes and maps. */
+  /** The buffer of `shadow_block`. Empty without cubes and maps. */
   [[nodiscard]] const gpu::Buffer &block() const
   {
     return block_buffer_;
   }
-  /** Content of `shadow_block`, as of the last update. */
+  /** The content of `shadow_block` after the last update. */
   [[nodiscard]] const shared::ShadowBlock &block_data() const
   {
     return block_;
   }
-  /** Edge of a texel of a light's shadow at a place, across the light, metres; 0: it has none there. */
+  /** Edge of a texel of a light's shadow at a position, perpendicular to the light, metres; 0 if there is none. */
   [[nodiscard]] double texel_size(const shared::LightData &light, const glm::dvec3 &position_ws) const;
-  /** Of a light that casts a shadow, as of the last update. */
+  /** The layers of \a light after the last update. Nothing if the light has no shadow. */
   [[nodiscard]] std::optional<ShadowLayers> layers(const shared::LightData &light) const;
-  /** Of each light that casts a shadow, in the order of the lights. */
+  /** The state of each light with a shadow, in the order of the lights. */
   [[nodiscard]] std::vector<ShadowState> states() const;
-  /** Of the work that this viewport submitted. */
+  /** Counters of the work that this viewport submitted. */
   [[nodiscard]] const ShadowCounters &counters() const
   {
     return counters_;
@@ -106,12 +108,12 @@ class Shadows {
  private:
   friend class SceneShadows;
 
-  /** Calls \a action with each slot that this viewport reads. */
+  /** Calls \a action with the shared slots and the slots of this viewport. */
   template <typename Action>
   void for_each_slot(Action &&action);
   template <typename Action>
   void for_each_slot(Action &&action) const;
-  /** nullptr: the light has no shadow. */
+  /** The slot of \a light; nullptr if the light has no shadow. */
   [[nodiscard]] const ShadowSlot *slot_of(const shared::LightData &light) const;
   [[nodiscard]] ShadowInspection inspection(const ShadowSlot &slot) const;
   void fit(gpu::Device &device, const draw::View &view, float pixel_size, std::span<const float> depths);
@@ -121,9 +123,9 @@ class Shadows {
   SceneShadows &scene_;
   /** LayerOwner::viewport. */
   std::uint64_t id_ = 0;
-  /** Of the lamps whose layers follow the view, in the order of the lamps. */
+  /** Slots of the lamps whose layers follow the view, in the order of the lamps. */
   std::vector<ShadowSlot> slots_;
-  /** What visible_ was computed for. */
+  /** Inputs of visible_. */
   struct Seen {
     glm::mat4 clip_from_world{1.0F};
     float pixel_size = 0.0F;
@@ -134,14 +136,14 @@ class Shadows {
   VisibleRange visible_;
   shared::ShadowBlock block_{};
   gpu::Buffer block_buffer_;
-  /** block_buffer_ holds block_. */
+  /** block_buffer_ contains block_. */
   bool is_block_written_ = false;
-  /** Layers drawn since begin_picture, with ShadowLamp::key; a lamp may be there several times. */
+  /** ShadowLamp::key and layers drawn since begin_picture. A lamp may have several entries. */
   std::vector<std::pair<std::uint64_t, LayerMask>> drawn_now_;
   ShadowCounters counters_;
-  /** Of the recorded work. */
+  /** Counters of recorded work that is not submitted yet. */
   ShadowCounters recorded_counters_;
-  /** \see ShadowRecording */
+  /** \see ShadowRecording::caster_layers */
   std::vector<std::uint8_t> caster_layers_;
 };
 
