@@ -16,16 +16,20 @@ namespace gnomon::draw {
 class Viewport;
 
 /**
- * A way to draw a scene. What belongs to one viewport is kept in Viewport::engine_data.
+ * Draws a scene. One engine may serve many viewports; it stores the data of a viewport in Viewport::engine_data.
  *
- * Call order, by Viewport::sync: init; cache_init, if objects were added or removed since the engine's last sync of
- * this viewport, or a sync failed; cache_populate for each object that changed, after cache_init for every object;
- * cache_finish, which calls Viewport::restart where the picture is another one than before. Then, by Viewport::draw,
- * draw_scene as often as wanted, until the scene changes.
+ * After each edit of the scene, Viewport::sync calls these functions in this order:
+ * 1. init;
+ * 2. cache_init, if this is the first sync of the viewport, if objects were added or removed since the last one, or if
+ *    the last one failed;
+ * 3. cache_populate for each changed object, or for every object after cache_init;
+ * 4. cache_finish.
  *
- * All of these record: they need no device, and may run on another thread than the device's (\see gpu::Recording).
- * What an engine notes as drawn or written is so once the packet is submitted. It compares gpu::Device::loss_count, and
- * draws and writes again what a lost packet held.
+ * Viewport::draw then calls draw_scene any number of times.
+ *
+ * All these functions may run during a gpu::Recording, on a thread other than the device's. Work that an engine has
+ * recorded is not executed before the packet is submitted, and may be lost. An engine must compare
+ * gpu::Device::loss_count and repeat lost work.
  */
 class Engine {
  public:
@@ -34,29 +38,29 @@ class Engine {
   Engine &operator=(const Engine &) = delete;
   virtual ~Engine() = default;
 
-  /** Of this engine alone, in this process: its address may be another's later. */
+  /** Unique within the process. Unlike the address, it is never reused. */
   [[nodiscard]] std::uint64_t id() const
   {
     return id_;
   }
 
   [[nodiscard]] virtual std::string_view name() const = 0;
-  /** Make or check what does not depend on the objects. */
+  /** Create or update everything that does not depend on the objects. */
   virtual void init(Viewport &viewport) = 0;
-  /** Forget all objects. */
+  /** Remove all objects from the engine's caches. */
   virtual void cache_init(Viewport &viewport) = 0;
-  /** \a object was added or has changed; \a objects has its matrix and volume. */
+  /** Add or update \a object. \a objects holds its matrix, volume and value. */
   virtual void cache_populate(Viewport &viewport, const ObjectBuffer &objects, ObjectIndex object) = 0;
-  /** All objects are known. */
+  /** Finish the sync, after all objects are known. Calls Viewport::restart if the picture changes. */
   virtual void cache_finish(Viewport &viewport) = 0;
   /**
-   * Draw the sample Viewport::samples_drawn of the picture, 0 being the first, unless the picture has all that the
-   * engine draws; then write the picture so far to Viewport::target, where there is one.
+   * Draw sample number Viewport::samples_drawn (the first is 0), unless all samples of the picture are drawn. Then
+   * write the mean of the samples to Viewport::target, if there is a target.
    */
   virtual void draw_scene(Viewport &viewport, const View &view) = 0;
   /**
-   * What the device reports about an earlier draw_scene of \a viewport: what it asked for by read_back, and times.
-   * \return whether the picture of that draw_scene is final; otherwise another draw_scene with the same view may differ
+   * Receive the results of an earlier draw_scene of \a viewport: texels requested by read_back, and measured times.
+   * \return true if the picture of that draw_scene is final; false if another draw_scene with the same view may differ
    */
   virtual bool take_feedback(Viewport & /*viewport*/, const gpu::Feedback & /*feedback*/)
   {
@@ -67,17 +71,18 @@ class Engine {
   std::uint64_t id_;
 };
 
-/** How to make an engine; a host registers those it wants, with the scene they are to read. */
+/** Name and factory of an engine. The factory passes the scene to the engine. */
 struct EngineType {
   std::string name;
   std::function<std::unique_ptr<Engine>()> create;
 };
 
+/** The engines that a host makes available, by name. */
 class EngineRegistry {
  public:
-  /** \throws gpu::Error where the name is taken; nothing changes then. */
+  /** \throws gpu::Error if the name is already registered; nothing changes then */
   void add(EngineType type);
-  /** \throws gpu::Error naming the registered engines where \a name is none of them. */
+  /** \throws gpu::Error naming the registered engines if \a name is not registered */
   [[nodiscard]] std::unique_ptr<Engine> create(std::string_view name) const;
   [[nodiscard]] std::vector<std::string> names() const;
 

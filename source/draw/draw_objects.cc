@@ -116,14 +116,14 @@ void ObjectBuffer::write(ObjectIndex index, const glm::mat4 &world_from_object, 
 
 void ObjectBuffer::upload(gpu::Device &device)
 {
-  // Removed objects at the end take no room: a scene that lost what was past the limit fits again.
+  // Omit removed objects at the end, so that a scene fits again after its number of objects was reduced to the limit.
   ObjectIndex end = index_end();
   while (!is_live(end - 1)) {
     end--;
   }
   const auto bytes = std::as_bytes(std::span(objects_).first(end));
   if (!buffer_ || buffer_.size_bytes() < bytes.size()) {
-    // Capacity for more objects, as far as the device allows.
+    // Reserve capacity for more objects, up to the limit of the device.
     const std::size_t limit = device.limits().storage_block_bytes_max;
     const std::size_t size = std::max(bytes.size(), std::min(std::bit_ceil(bytes.size()), limit));
     buffer_ = device.create_buffer({"object_block", gpu::BufferKind::Storage, size});
@@ -135,7 +135,7 @@ void ObjectBuffer::upload(gpu::Device &device)
   if (uploaded_revision_ == revision_) {
     return;
   }
-  // One write for each run of changed objects; a few unchanged ones in between are cheaper than another write.
+  // Write each run of changed objects at once. Including up to gap_max unchanged objects is cheaper than another write.
   constexpr ObjectIndex gap_max = 16;
   const auto is_changed = [&](ObjectIndex index) { return revisions_[index] > uploaded_revision_; };
   for (ObjectIndex first = 0; first < end; first++) {

@@ -13,31 +13,34 @@
 
 namespace gnomon::draw {
 
-/** Index of an object in `object_block`; a call hands it to the vertex shader. */
+/** Index of an object in `object_block`. Calls pass it to the vertex shader. */
 using ObjectIndex = std::uint32_t;
 
-/** The identity matrix; calls without a matrix of their own use it. */
+/** Index of an object with the identity matrix, which always exists. */
 inline constexpr ObjectIndex object_identity = 0;
 
 /**
- * The objects of one scene on one device: matrices, culling volumes and one value each. `object_block` in GLSL.
+ * The objects of one scene on one device. Each object has a matrix, a culling volume and a value. `object_block` in
+ * GLSL.
  *
- * An object keeps its index until it is removed. Revisions tell what changed: a viewport hands an engine only the
- * objects that changed since the engine's last sync. Passes read volumes when they are recorded, so that a moved object
- * needs no pass to be rebuilt.
+ * An object keeps its index until it is removed. Viewport::sync uses the revisions to pass only changed objects to an
+ * engine. Pass::record reads the culling volumes, so passes need not be rebuilt when an object moves.
  */
 class ObjectBuffer {
  public:
   ObjectBuffer();
 
   /**
-   * \a value is for the engine's shaders to interpret; eevee's is the index of the material.
-   * \throws gpu::Error where the matrix is not finite, or the volume is not a number; nothing changes then.
+   * Add an object. \a value: the engine's shaders define its meaning; for eevee it is the index of the material.
+   * \throws gpu::Error if the matrix is not finite or the volume contains NaN; nothing changes then
    */
   ObjectIndex add(const glm::mat4 &world_from_object, std::uint32_t value = 0, const CullingVolume &volume = {});
-  /** Change an object. The same values again change nothing. \pre \a index is of add, and not removed \throws as add */
+  /**
+   * Change an object. The revision increases only if a value differs. \pre is_live(index)
+   * \throws gpu::Error under the same conditions as add
+   */
   void set(ObjectIndex index, const glm::mat4 &world_from_object, std::uint32_t value, const CullingVolume &volume);
-  /** Its index may be used again by add, which takes the least free one. \pre as set */
+  /** Remove an object. add() reuses the lowest free index. \pre is_live(index), and not object_identity */
   void remove(ObjectIndex index);
 
   [[nodiscard]] const glm::mat4 &world_from_object(ObjectIndex index) const
@@ -52,35 +55,35 @@ class ObjectBuffer {
   {
     return index < revisions_.size() && revisions_[index] != 0;
   }
-  /** The edit that changed the object last; 0: it was removed. */
+  /** Value of revision() after the last edit of this object; 0: the object was removed. */
   [[nodiscard]] std::uint64_t revision(ObjectIndex index) const
   {
     return revisions_[index];
   }
-  /** The last edit of any object. */
+  /** Increases with each edit of an object. */
   [[nodiscard]] std::uint64_t revision() const
   {
     return revision_;
   }
-  /** The last edit that added or removed an object. */
+  /** Value of revision() after the last edit that added or removed an object. */
   [[nodiscard]] std::uint64_t structure_revision() const
   {
     return structure_revision_;
   }
-  /** Above every index in use. */
+  /** Greater than all indices in use. */
   [[nodiscard]] ObjectIndex index_end() const
   {
     return ObjectIndex(objects_.size());
   }
-  /** Objects, the identity among them. */
+  /** Number of live objects, including object_identity. */
   [[nodiscard]] std::size_t size() const
   {
     return objects_.size() - free_.size();
   }
 
-  /** Write what changed since the last upload to the device. \throws gpu::Error past the limit of a storage block. */
+  /** Write the objects that have changed since the last upload. \throws gpu::Error if they exceed a storage block */
   void upload(gpu::Device &device);
-  /** Valid after upload. */
+  /** The buffer of `object_block`. Valid after upload(). */
   [[nodiscard]] const gpu::Buffer &buffer() const
   {
     return buffer_;
@@ -92,25 +95,25 @@ class ObjectBuffer {
   std::vector<shared::ObjectData> objects_;
   std::vector<CullingVolume> volumes_;
   std::vector<std::uint64_t> revisions_;
-  /** A heap with the least index first, so that indices, and with them the order of drawing, depend on few edits. */
+  /** Unused indices as a heap with the lowest first, so that indices and drawing order depend on few edits. */
   std::vector<ObjectIndex> free_;
   std::uint64_t revision_ = 0;
   std::uint64_t structure_revision_ = 0;
-  /** Of the last upload. */
+  /** revision() at the last upload. */
   std::uint64_t uploaded_revision_ = 0;
-  /** gpu::Device::loss_count then. */
+  /** gpu::Device::loss_count at the last upload. */
   std::uint64_t loss_count_ = 0;
   gpu::Buffer buffer_;
 };
 
 /**
- * Columns of the matrix that takes object-space normals to world space, up to scale: the cofactors of the
- * upper 3x3, which exist for singular matrices too, and keep normals on the outside of mirrored objects.
- * The largest element is 1 unless all are 0.
+ * The matrix that transforms normals from object space to world space, up to a positive factor. It is the cofactor
+ * matrix of the upper 3x3, which also exists for singular matrices, negated for mirroring matrices so that normals keep
+ * pointing outwards. The largest magnitude of its elements is 1, unless all are 0.
  */
 [[nodiscard]] glm::mat3 normal_matrix(const glm::mat4 &world_from_object);
 
-/** Whether the matrix turns front faces inside out: its determinant is negative. */
+/** Whether the matrix reverses the winding of faces, that is, its determinant is negative. */
 [[nodiscard]] bool is_mirrored(const glm::mat4 &world_from_object);
 
 /** Whether all elements are finite. */

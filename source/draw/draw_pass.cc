@@ -22,7 +22,7 @@ void ShadingGroup::bind(gpu::BindingKind kind, std::string_view name, const Valu
   if (!found) {
     return;
   }
-  // Bound again, the later one holds.
+  // A later binding of the same name replaces the earlier one.
   const auto same = std::ranges::find_if(
       bindings_, [&](const Binding &binding) { return binding.kind == kind && binding.slot == found->slot; });
   if (same != bindings_.end()) {
@@ -71,7 +71,7 @@ ShadingGroup::Constant *ShadingGroup::constant_entry(std::string_view name, std:
   }
   GNOMON_ASSERT(size_bytes <= member->size_bytes, "constant '{}' of shader '{}' takes {} bytes, not {}", name,
                 shader_.name(), member->size_bytes, size_bytes);
-  // Given again, the later one holds.
+  // A later value of the same constant replaces the earlier one.
   const auto same = std::ranges::find(constants_, member->offset_bytes, &Constant::offset_bytes);
   if (same != constants_.end()) {
     same->size_bytes = size_bytes;
@@ -141,9 +141,10 @@ RecordCounts ShadingGroup::collect_draws(const View &view, gpu::CommandList &lis
   const std::size_t first_instance_of_all = list.instances.size();
   RecordCounts counts;
   list.instances.reserve(list.instances.size() + calls_.size());
-  bool has_draw = false;  // The last of list.draws is this group's: the same batch again makes it longer.
+  // Whether the last entry of list.draws belongs to this group. A call of the same batch then adds an instance to it.
+  bool has_draw = false;
   for (const Call &call : calls_) {
-    // A volume of the call's own goes before the object's.
+    // A volume given with the call takes precedence over the object's volume.
     const bool is_object_volume = call.volume.radius < 0.0F && objects_ && call.object < objects_->index_end();
     if (!view.touches(is_object_volume ? objects_->volume(call.object) : call.volume)) {
       counts.culled++;
@@ -151,7 +152,7 @@ RecordCounts ShadingGroup::collect_draws(const View &view, gpu::CommandList &lis
     }
     const auto first_instance = std::uint32_t(list.instances.size());
     list.instances.push_back({call.object, 0});
-    // An empty batch begins where the next one does: the count tells them apart.
+    // Compare the counts too, because an empty batch has the same first index as the batch after it.
     if (has_draw && list.draws.back().first_index == call.batch.first_index &&
         list.draws.back().index_count == call.batch.index_count) {
       list.draws.back().instance_count++;

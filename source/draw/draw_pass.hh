@@ -12,33 +12,33 @@
 #include <variant>
 
 /**
- * Pass > ShadingGroup > call.
+ * A Pass contains ShadingGroups, and a ShadingGroup contains draw calls.
  *
- * A pass is recorded once, as plain data, on any thread, and drawn as often as wanted, each time for a View, by
- * Pass::record, which appends to a gpu::CommandList. Names are resolved when they are bound, never when drawn.
- * Each binding is **by value** (copied now) or **by reference** (`_ref`: a pointer is kept, and what it points to is
- * read at each record, so that one pass draws one lamp after another).
+ * A pass is built once, as plain data, on any thread. Pass::record then appends it to a gpu::CommandList for a View,
+ * any number of times. Binding names are resolved when they are bound, not when they are recorded. A binding is either
+ * **by value** (copied when it is bound) or **by reference** (`_ref`: the group keeps a pointer and reads the value at
+ * each Pass::record). Bindings by reference allow one pass to draw, for example, the shadow maps of many lamps.
  */
 namespace gnomon::draw {
 
-/** What is bound to a texture slot. */
+/** A texture and a sampler, to be bound to a texture slot. */
 struct TextureBinding {
   gpu::ResourceId texture = 0;
   gpu::ResourceId sampler = 0;
 };
 
-/** What Pass::record did with a pass's calls. */
+/** Numbers of instances that Pass::record has drawn and culled. */
 struct RecordCounts {
-  /** Instances drawn: each call's own, and those of instance calls; a procedural call is one. */
+  /** Drawn instances: one for each call and each procedural call, and all instances of instance calls. */
   std::uint64_t drawn = 0;
-  /** Instances left out, as the view does not touch their volume. */
+  /** Calls that were not drawn because their culling volume is outside of the view. */
   std::uint64_t culled = 0;
 };
 
-/** Instances of a batch that may be added and removed after the call was made. Lives as long as its pass. */
+/** Draws a batch once for each added instance. Instances may change between records. Lives as long as its group. */
 class InstanceCall {
  public:
-  /** One more instance: an object, and a value for the shader to interpret. */
+  /** Add an instance. \a value: gpu::DrawInstance::value; the shader defines its meaning */
   void add(ObjectIndex object, std::uint32_t value = 0)
   {
     instances_.push_back({object, value});
@@ -55,11 +55,12 @@ class InstanceCall {
 };
 
 /**
- * Calls that share a shader and bindings. Drawn in this order: calls, instances, procedural calls. Made by Pass::group;
- * lives as long as its pass. The shader must live until the last record; what is bound by value until the last
- * submission.
+ * Draw calls that share a shader and bindings. They are drawn in this order: calls, instance calls, procedural calls.
+ * Pass::group creates groups; a group lives until Pass::clear or the end of the pass. The shader and values bound by
+ * reference must live until the last record; batches and bound resources until the last submission.
  *
- * A name that the shader does not read is no error and binds nothing: the compiler may have dropped it.
+ * Binding a name that the shader does not read has no effect and is not an error, because the compiler may have removed
+ * the name. Binding a name again replaces its value.
  */
 class ShadingGroup {
  public:
@@ -70,7 +71,7 @@ class ShadingGroup {
   void bind_texture(std::string_view name, const gpu::Texture &texture, const gpu::Sampler &sampler);
   void bind_texture_ref(std::string_view name, const TextureBinding *binding);
 
-  /** A member of the push-constant block. \pre T is as large as the member: int, float, vectors, matrices. */
+  /** Set a member of the push-constant block. \pre T has the member's type: int, float, a vector or a matrix */
   template <typename T>
   void constant(std::string_view name, const T &value)
   {
@@ -87,24 +88,27 @@ class ShadingGroup {
     }
   }
 
-  /** Bits in addition to the pass's. */
+  /** Add bits to the state of the pass for this group. */
   void state_enable(gpu::State state)
   {
     state_ = state_ | state;
   }
 
-  /** Draw the batch once, with a matrix. \pre the pass has an ObjectBuffer. */
+  /**
+   * Draw the batch once with its own matrix. Adds an object to the pass's ObjectBuffer, which Pass::clear does not
+   * remove. \pre the pass has an ObjectBuffer
+   */
   void call(const gpu::Batch &batch, const glm::mat4 &world_from_object);
   /**
-   * The same with an object of the pass's ObjectBuffer. Left out for views that do not touch the volume that the object
-   * has there when the pass is recorded.
+   * Draw the batch once for an object of the pass's ObjectBuffer. Pass::record culls the call with the volume that the
+   * object has at that time.
    */
   void call(const gpu::Batch &batch, ObjectIndex object = object_identity);
-  /** Left out for views that do not touch \a volume. */
+  /** Draw the batch once. Pass::record culls the call with \a volume instead of the object's volume. */
   void call(const gpu::Batch &batch, ObjectIndex object, const CullingVolume &volume);
-  /** Instances to be added until the pass is recorded, and changed between records. */
+  /** Draw the batch for instances that the caller adds to the returned call. They are not culled. */
   InstanceCall &instances(const gpu::Batch &batch);
-  /** \a count triangles whose vertices the shader makes up. */
+  /** Draw triangles without vertex attributes. The vertex shader computes their vertices. */
   void call_procedural(std::uint32_t triangle_count = 1, std::uint32_t instance_count = 1);
 
  private:
@@ -124,10 +128,9 @@ class ShadingGroup {
     std::string name;
     std::uint32_t offset_bytes;
     std::size_t size_bytes;
-    /** nullptr: by value, in constant_bytes_. */
+    /** nullptr: the value is in constant_bytes_. */
     const void *reference = nullptr;
   };
-  /** What is drawn: no more than a draw costs. */
   struct Call {
     gpu::BatchRange batch;
     ObjectIndex object = object_identity;
@@ -142,10 +145,10 @@ class ShadingGroup {
 
   template <typename Value>
   void bind(gpu::BindingKind kind, std::string_view name, const Value &value);
-  /** Of the name, made at the first ask; nullptr where the shader has none. */
+  /** The entry of the constant \a name, created by the first call; nullptr if the shader has no such constant. */
   [[nodiscard]] Constant *constant_entry(std::string_view name, std::size_t size_bytes);
   void record_bindings(gpu::CommandList &list) const;
-  /** Appends to the list's draws, not to its commands. */
+  /** Appends to the list's draws and instances, but not to its commands. */
   RecordCounts collect_draws(const View &view, gpu::CommandList &list) const;
 
   const gpu::Shader &shader_;
@@ -153,28 +156,29 @@ class ShadingGroup {
   gpu::State state_ = gpu::State::None;
   std::vector<Binding> bindings_;
   std::vector<Constant> constants_;
-  /** The whole push-constant block. */
+  /** Content of the push-constant block. */
   std::vector<std::byte> constant_bytes_;
   std::vector<Call> calls_;
-  /** Deque: the caller holds references. */
+  /** A deque, because callers hold references to its elements. */
   std::deque<InstanceCall> instance_calls_;
   std::vector<ProceduralCall> procedural_calls_;
 };
 
+/** Shading groups that are drawn in order with a common state. */
 class Pass {
  public:
-  /** \a objects: where calls with a matrix put it; nullptr where there are none. Must outlive the pass. */
+  /** \a objects: the objects of the calls; nullptr: all calls use object_identity. Must outlive the pass. */
   Pass(std::string name, gpu::State state, ObjectBuffer *objects = nullptr);
 
-  /** A new group, drawn after those before it. */
+  /** Append a group. Groups are drawn in the order of their creation. */
   ShadingGroup &group(const gpu::Shader &shader);
-  /** Forget groups and calls; the name and state stay. */
+  /** Remove all groups and calls. The name and the state stay. */
   void clear();
 
   /**
-   * Append what \a view sees of the pass: to be called between begin_pass and end_pass of \a list. State bits in
-   * \a without are left off this time. Of a group whose calls draw nothing, nothing is
-   * appended.
+   * Append the commands that draw the pass for \a view to \a list. Omits calls that are culled, and groups whose calls
+   * are all culled. \a without: bits to remove from the state, for this record only
+   * \pre called between begin_pass and end_pass of \a list
    */
   RecordCounts record(const View &view, gpu::CommandList &list, gpu::State without = gpu::State::None) const;
 
@@ -186,7 +190,7 @@ class Pass {
   {
     return groups_.empty();
   }
-  /** What was recorded, as text; resources by the names \a device has for them. The same on every backend. */
+  /** Text of the groups and calls. \a device supplies the names of resources. Does not depend on the backend. */
   [[nodiscard]] std::string serialize(const gpu::Device &device) const;
 
  private:

@@ -14,7 +14,7 @@ glm::ivec2 size_of(const Target &target)
   return own ? (*own)->size_px() : std::get<gpu::HostFramebuffer>(target.framebuffer).size_px;
 }
 
-/** How much the host's z / w grows with the view's z: its sign is all that counts. 0: not at all. */
+/** Has the sign of the derivative of the host's z / w by the view's z. 0: z / w does not depend on the view's z. */
 double depth_slope(const HostDepth &host)
 {
   const glm::dmat4 &clip = host.clip_from_view;
@@ -37,7 +37,7 @@ void check(const Target &target, glm::ivec2 size_px)
     throw gpu::Error("target: a picture of {}x{} px at {},{} does not fit into its {}x{} px", size_px.x, size_px.y,
                      first.x, first.y, size_of(target).x, size_of(target).y);
   }
-  // Its power of 2 is finite, and no denormal.
+  // Within this limit, 2^exposure is finite and not denormal.
   constexpr float exposure_max = 120.0F;
   if (!(std::abs(target.exposure) <= exposure_max)) {
     throw gpu::Error("target: exposure {} is not in [{}, {}]", target.exposure, -exposure_max, exposure_max);
@@ -69,7 +69,8 @@ void begin_pass(gpu::CommandList &list, std::string_view name, const Target &tar
 
 DepthMap depth_map(const glm::mat4 &clip_from_view, const HostDepth &host)
 {
-  // The view's z of a depth d, as the fraction (from[3][3] d - from[3][2]) / (from[2][2] - from[2][3] d).
+  // The view's z of a depth d is (from[3][3] d - from[3][2]) / (from[2][2] - from[2][3] d). row() inserts this into a
+  // row of the host's projection and multiplies by the denominator.
   const glm::dmat4 from(clip_from_view);
   const glm::dmat4 &to = host.clip_from_view;
   const auto row = [&](int i) {
@@ -81,11 +82,11 @@ DepthMap depth_map(const glm::mat4 &clip_from_view, const HostDepth &host)
   const double scale = (host.range.y - host.range.x) / (1.0 - low);
   const double offset = host.range.x - scale * low;
   const glm::dvec2 stored = scale * z + offset * w;
-  // Of the view's z, which decreases with the distance.
+  // The view's z decreases with the distance, so a negative slope means that the host's z / w increases with it.
   const bool is_far_upper = depth_slope(host) < 0.0;
   const double far = is_far_upper ? host.range.y : host.range.x;
   const double near = is_far_upper ? host.range.x : host.range.y;
-  // The fraction's common factor is free: the largest number becomes 1.
+  // Numerator and denominator may be scaled by a common factor. Scale the largest number to 1.
   const double largest = std::max({std::abs(stored.x), std::abs(stored.y), std::abs(w.x), std::abs(w.y)});
   return {glm::vec4(glm::dvec4(stored, w) / largest), float(far), near < far};
 }

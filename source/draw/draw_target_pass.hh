@@ -7,8 +7,8 @@
 namespace gnomon::draw {
 
 /**
- * Writes pictures to targets: a pass that is recorded again only where a target differs in kind from the one before.
- * Engines own one for each viewport, and the program for it, eevee_tonemap_frag.glsl.
+ * Writes pictures to targets. The pass is built again only if the textures, the shader or the state differ from the
+ * previous target's. An engine owns one TargetPass for each viewport, and its shader (eevee_tonemap_frag.glsl).
  */
 class TargetPass {
  public:
@@ -16,36 +16,36 @@ class TargetPass {
   TargetPass(const TargetPass &) = delete;
   TargetPass &operator=(const TargetPass &) = delete;
 
-  /** A picture to be written. */
+  /** A rendered picture. */
   struct Picture {
-    /** Scene-linear radiance and alpha, multiplied by `scale`. */
+    /** Scene-linear radiance, premultiplied by alpha, and alpha. The shader multiplies all channels by `scale`. */
     const gpu::Texture &radiance;
     float scale = 1.0F;
-    /** For targets that take depth: reversed, 0 where nothing is seen. */
+    /** Reversed depth; 0 in pixels without a surface. Needed only if Target::depth is set. */
     const gpu::Texture *depth = nullptr;
-    /** That the depth is of. */
+    /** The projection that `depth` was drawn with. */
     glm::mat4 clip_from_view{1.0F};
   };
 
   /**
-   * The next record is of \a picture for \a target. \a shader: the program, with USE_TARGET_DEPTH where the target
-   * takes depth. \a nearest: a sampler without filter. Both textures, the shader and the sampler must live until the
-   * last submission. \throws gpu::Error as depth_map
+   * Prepare to write \a picture to \a target. \a shader: eevee_tonemap, with USE_TARGET_DEPTH if Target::depth is set.
+   * \a nearest: a sampler with Filter::Nearest. The textures, the shader and the sampler must live until the last
+   * submission. \pre check() accepts \a target
    */
   void set(const Target &target, const Picture &picture, const gpu::Shader &shader, const gpu::Sampler &nearest);
-  /** Draws the picture: to be called between begin_pass and end_pass. */
+  /** Append the commands that draw the picture. \pre called between begin_pass and end_pass of \a list */
   void record(gpu::CommandList &list) const
   {
     pass_.record({}, list);
   }
-  /** Where nothing is seen: the depth to clear a target to that takes depth. */
+  /** The depth that pixels without a surface have in the target; for clearing its depth. */
   [[nodiscard]] float background_depth() const
   {
     return constants_.depth.background;
   }
 
  private:
-  /** Read by reference. \see eevee_tonemap_frag.glsl */
+  /** Push constants of eevee_tonemap_frag.glsl, bound by reference. */
   struct Constants {
     DepthMap depth;
     glm::ivec2 origin_px{0};
@@ -55,7 +55,7 @@ class TargetPass {
     float sample_scale = 1.0F;
     int is_over = 0;
   };
-  /** What the pass was recorded for. */
+  /** The inputs that the pass was built for. */
   struct Key {
     gpu::State state = gpu::State::None;
     gpu::ResourceId radiance = 0;

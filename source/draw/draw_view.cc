@@ -17,7 +17,8 @@ View::View(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view)
       clip_from_world_(clip_from_view * view_from_world)
 {
   const glm::mat4 rows = glm::transpose(clip_from_world_);
-  // Gribb and Hartmann 2001, with z in [0, w] reversed: near is z <= w, far z >= 0.
+  // Gribb and Hartmann 2001, for reversed z in [0, w]: a point is inside the near plane if z <= w, and inside the far
+  // plane if z >= 0.
   frustum_planes_ws_ = {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1],
                         rows[3] - rows[1], rows[3] - rows[2], rows[2]};
   for (glm::vec4 &plane : frustum_planes_ws_) {
@@ -28,7 +29,7 @@ View::View(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view)
 
 bool View::touches(const CullingVolume &volume) const
 {
-  // Far from the origin the products round by more than small spheres measure.
+  // Far from the origin, rounding errors of the products exceed the radius of small spheres.
   const float slack =
       1e-6F * (std::abs(volume.center_ws.x) + std::abs(volume.center_ws.y) + std::abs(volume.center_ws.z));
   return volume.radius < 0.0F || std::ranges::all_of(frustum_planes_ws_, [&](const glm::vec4 &plane) {
@@ -45,7 +46,7 @@ glm::mat4 perspective(float half_width, float half_height, float near, float far
   clip_from_view[0][0] = 1.0F / half_width;
   clip_from_view[1][1] = 1.0F / half_height;
   clip_from_view[2][3] = -1.0F;
-  // z_clip = a · z_view + b with z_clip / w = 1 at near, 0 at far; for far → infinity a → 0, b → near.
+  // z_clip = a · z_view + b, where z_clip / w is 1 at near and 0 at far. For far → ∞: a → 0 and b → near.
   const double n = near;
   const double f = far;
   clip_from_view[2][2] = std::isinf(far) ? 0.0F : float(n / (f - n));

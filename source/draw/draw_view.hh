@@ -9,18 +9,21 @@
 
 namespace gnomon::draw {
 
-/** Sphere around what a call draws: the call is left out where a view does not touch it. World space, metres. */
+/** Bounding sphere of a draw call, for culling. World space, metres. */
 struct CullingVolume {
   glm::vec3 center_ws{0.0F};
-  /** Negative: never culled. */
+  /** Negative: the call is never culled. */
   float radius = -1.0F;
 };
 
-/** Where a pass is seen from. */
+/** Position, direction and projection from which a pass is drawn. */
 class View {
  public:
   View() : View(glm::mat4(1.0F), glm::mat4(1.0F)) {}
-  /** Both finite. \a clip_from_view maps the near plane to z = w and the far one to 0 (reversed depth). */
+  /**
+   * View space looks along -Z. \a clip_from_view maps the near plane to z = w and the far plane to z = 0 (reversed
+   * depth). \pre both matrices are finite
+   */
   View(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view);
 
   [[nodiscard]] const glm::mat4 &view_from_world() const
@@ -40,14 +43,14 @@ class View {
     return clip_from_view_[3][3] == 0.0F;
   }
   /**
-   * Left, right, bottom, top, near, far: a point is inside where dot(plane, (point, 1)) >= 0. The normals
-   * are unit vectors. An infinite far plane is (0, 0, 0, 1): everything is inside.
+   * Left, right, bottom, top, near and far plane. A point is inside if dot(plane, (point, 1)) >= 0. The normals are
+   * unit vectors. An infinite far plane is (0, 0, 0, 1), so that all points are inside.
    */
   [[nodiscard]] const std::array<glm::vec4, 6> &frustum_planes_ws() const
   {
     return frustum_planes_ws_;
   }
-  /** Whether any of the sphere may be in the frustum: no false no, rare false yes near the edges. */
+  /** Whether the sphere may intersect the frustum. Spheres outside near an edge may return true. */
   [[nodiscard]] bool touches(const CullingVolume &volume) const;
   bool operator==(const View &) const = default;
 
@@ -59,12 +62,12 @@ class View {
 };
 
 /**
- * Camera to reversed clip space, z / w in [0, 1], near at 1. \a half_width and \a half_height are
- * measured on the plane at distance 1. \pre all above 0; far above near, or infinite.
+ * Perspective projection with reversed depth: z / w is 1 at the near plane and 0 at the far plane. \a half_width and
+ * \a half_height: half the size of the frustum at distance 1. \pre all arguments > 0; far > near; far may be infinite
  */
 [[nodiscard]] glm::mat4 perspective(float half_width, float half_height, float near, float far);
 
-/** The same for parallel projection: near at 1, far at 0. \pre half sizes above 0, far above near. */
+/** Orthographic projection with reversed depth: 1 at the near plane, 0 at the far. \pre half sizes > 0, far > near */
 [[nodiscard]] glm::mat4 orthographic(float half_width, float half_height, float near, float far);
 
 }  // namespace gnomon::draw

@@ -30,7 +30,7 @@ void Viewport::resize(glm::ivec2 size_px)
   }
   size_px_ = size_px;
   restart();
-  // Framebuffers go before the textures that they draw into.
+  // Framebuffers must be destroyed before their textures.
   for (auto &[id, engine] : engines_) {
     if (engine.data) {
       engine.data->resized();
@@ -51,7 +51,7 @@ const gpu::Texture &Viewport::depth_texture()
 void Viewport::sync(std::span<Engine *const> engines, const ObjectBuffer &objects)
 {
   for (Engine *engine : engines) {
-    // Until it comes to its end: the engine may have seen a part of the objects.
+    // Clear the revision until the sync is complete: if it fails, the engine may know only some of the objects.
     const std::optional<std::uint64_t> seen = std::exchange(engines_[engine->id()].synced_revision, std::nullopt);
     const bool is_anew = !seen || objects.structure_revision() > *seen;
     engine->init(*this);
@@ -92,7 +92,7 @@ void Viewport::draw(std::span<Engine *const> engines, const View &view, const Ta
     }
   }
   catch (...) {
-    // A part of a sample must not stay in the picture.
+    // Discard the picture, because a sample may be drawn only partly.
     restart();
     throw;
   }
@@ -112,7 +112,7 @@ void Viewport::draw_sample(std::span<Engine *const> engines, bool is_until_final
 
 void Viewport::draw_until_final(std::span<Engine *const> engines)
 {
-  // Feedback of this view makes the second sample final.
+  // The first draw yields the feedback of this view, with which the second draw is final.
   bool is_final = false;
   for (int i = 0; i < 2 && !is_final; i++) {
     device_.run(packet_, [&] { draw_sample(engines, i == 0); });

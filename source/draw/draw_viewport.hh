@@ -14,63 +14,66 @@
 
 namespace gnomon::draw {
 
-/** Base of what an engine keeps in a viewport: its framebuffer, texture, pass and storage lists (`fbl txl psl stl`). */
+/** Base class of the data that an engine stores for a viewport, such as textures, framebuffers and passes. */
 struct EngineViewportData {
   virtual ~EngineViewportData() = default;
-  /** Destroy everything that depends on the size of the picture. The next sync makes it anew. */
+  /** Destroy everything that depends on the size of the picture. The next sync creates it again. */
   virtual void resized() = 0;
 };
 
 /**
- * One picture of a scene on a device: its size, the samples drawn so far, the depth that all engines share, and what
- * each engine keeps for it. Must be destroyed before its device.
+ * Draws a picture of a scene with one or more engines. Owns the depth texture that the engines share and the data that
+ * each engine stores for this picture. Must be destroyed before its device.
  *
- * Each draw adds a sample to the picture until the engines have all that they are to draw. A picture begins anew when
- * its view, its size or its engines change, after a sync in which an engine finds a change, where a packet with samples
- * of it is lost, and by restart().
+ * Each draw adds one sample to the picture until the engines have drawn all their samples. The next draw starts the
+ * picture again with its first sample if:
+ * - the view, the size or the engines change;
+ * - an engine finds a change during sync();
+ * - a packet with samples of the picture was lost;
+ * - the feedback of the device changes the picture;
+ * - restart() was called.
  */
 class Viewport {
  public:
-  /** \throws gpu::Error where size_px is below 1x1, or above what a texture of the device may have. */
+  /** \throws gpu::Error if a dimension of \a size_px is less than 1 or exceeds Limits::texture_size_max */
   Viewport(gpu::Device &device, glm::ivec2 size_px);
 
   /**
-   * Let each engine take note of the objects that changed since its last sync of this viewport. Call it after every
-   * edit of the scene. \a objects must be the same buffer each time.
+   * Update the engines with the objects that have changed since their last sync of this viewport. Call this after every
+   * edit of the scene. \a objects must be the same buffer in each call.
    */
   void sync(std::span<Engine *const> engines, const ObjectBuffer &objects);
   /**
-   * Let \a engines draw the next sample, in order, and write the picture so far to \a target. While the device is
-   * recording, this is a part of the recording. Otherwise it is recorded and submitted now, and repeated where the
-   * device's feedback changes the picture.
+   * Draw the next sample with \a engines, in order, and write the mean of all samples to \a target. While the device is
+   * recording, the commands become part of the recording. Otherwise they are submitted at once, and drawn a second time
+   * if the feedback of the device changes the picture.
    *
-   * \throws gpu::Error where \a view or its inverse is not finite, where \a target cannot take the picture, and where
-   * the submission fails; the picture then begins anew with the next draw.
+   * \throws gpu::Error if \a view or its inverse is not finite, if \a target cannot hold the picture, or if the
+   * submission fails. If drawing or submitting fails, the next draw starts the picture again.
    */
   void draw(std::span<Engine *const> engines, const View &view, const Target &target = {});
   /**
-   * Give \a engines the feedback of an earlier packet in which they drew, for the next draw. Hosts that record packets
-   * call it between submission and the next recording of that packet; draw without a recording does so itself. The
-   * picture begins anew where the feedback changes it.
-   * \return whether the picture of that packet is final
+   * Pass the feedback of a submitted packet to the \a engines that drew in it. Hosts that record packets call this
+   * after the submission and before the packet is recorded again. Without a recording, draw() calls it.
+   * \return true if the picture of that packet is final; false if the next draw starts the picture again
    */
   bool take_feedback(std::span<Engine *const> engines, const gpu::Feedback &feedback);
-  /** Begin the picture anew with the next draw. */
+  /** Start the picture again with the next draw. */
   void restart()
   {
     samples_drawn_ = 0;
   }
-  /** Draws since the picture began. */
+  /** Number of draws since the picture was started. */
   [[nodiscard]] int samples_drawn() const
   {
     return samples_drawn_;
   }
-  /** Of the current draw, or of the last one. */
+  /** View of the current or the last draw. */
   [[nodiscard]] const View &view() const
   {
     return view_;
   }
-  /** Of the current draw, or of the last one, whose framebuffer may be gone. */
+  /** Target of the current or the last draw. The framebuffer of the last draw may no longer exist. */
   [[nodiscard]] const Target &target() const
   {
     return target_;
@@ -85,8 +88,8 @@ class Viewport {
     return size_px_;
   }
   /**
-   * The depth of the picture, for engines to attach to their framebuffers. The first call creates it.
-   * \throws gpu::Error where the device cannot hold it.
+   * Depth texture of the picture, which engines attach to their framebuffers. The first call creates it.
+   * \throws gpu::Error if the device cannot create the texture
    */
   [[nodiscard]] const gpu::Texture &depth_texture();
   [[nodiscard]] bool has_depth_texture() const
@@ -95,15 +98,15 @@ class Viewport {
   }
 
   /**
-   * During draw_scene: whether draw repeats it until the picture is final. The first draw_scene then needs to draw only
-   * what the device's feedback is made from.
+   * During draw_scene: true if draw() calls draw_scene a second time unless the feedback of this call is final. The
+   * engine may then draw only the part that the feedback depends on.
    */
   [[nodiscard]] bool draws_until_final() const
   {
     return draws_until_final_;
   }
 
-  /** The first call of \a engine creates it; remove_engine destroys it. \pre always called with the same Data. */
+  /** The data of \a engine. The first call creates it; remove_engine destroys it. \pre Data is the same in each call */
   template <typename Data>
   Data &engine_data(const Engine &engine)
   {
@@ -113,14 +116,14 @@ class Viewport {
     }
     return static_cast<Data &>(*data);
   }
-  /** Destroy everything that \a engine keeps in this viewport. An engine that the viewport does not know is ignored. */
+  /** Destroy the data of \a engine in this viewport. Does nothing if the engine has no data here. */
   void remove_engine(const Engine &engine)
   {
     engines_.erase(engine.id());
   }
   /**
-   * Change the size of the picture. Engines then need another sync. Everything that depended on the size is destroyed.
-   * \throws gpu::Error as the constructor; then nothing changes.
+   * Change the size of the picture and destroy everything that depends on it. Call sync() before the next draw.
+   * \throws gpu::Error under the same conditions as the constructor; nothing changes then
    */
   void resize(glm::ivec2 size_px);
 
@@ -132,20 +135,20 @@ class Viewport {
   gpu::Device &device_;
   glm::ivec2 size_px_;
   gpu::Texture depth_texture_;
-  /** Of the samples drawn. */
+  /** View of the drawn samples. */
   View view_;
-  /** Engine::id of the engines that drew them. */
+  /** Engine::id of the engines that drew the samples. */
   std::vector<std::uint64_t> drawn_by_;
   Target target_;
   int samples_drawn_ = 0;
   /** gpu::Device::loss_count when the last sample was drawn. */
   std::uint64_t loss_count_ = 0;
-  /** For draw without a recording. */
+  /** Used by draw() without a recording. */
   gpu::Packet packet_;
   bool draws_until_final_ = false;
   struct EngineState {
     std::unique_ptr<EngineViewportData> data;
-    /** ObjectBuffer::revision at the last sync that came to its end; nothing: none did. */
+    /** ObjectBuffer::revision at the last sync; empty if there was none or if the last one failed. */
     std::optional<std::uint64_t> synced_revision;
   };
   /** By Engine::id. */
