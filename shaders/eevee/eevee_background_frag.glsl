@@ -1,6 +1,6 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// What is seen where there is no surface.
+// The background of pixels without a surface.
 #include "shared/eevee_world_shared.h"
 #include "shared/slots_shared.h"
 
@@ -11,14 +11,14 @@ layout(binding = WORLD_PICTURE_SLOT) uniform sampler2D world_picture;
 
 PUSH_CONSTANT_LAYOUT uniform push_constant_block
 {
-  /** rgb: radiance, or what the picture's is multiplied by. */
+  /** rgb: radiance, or factor of the picture. */
   vec4 color;
 #ifdef BACKGROUND_WORLD
-  /** Direction seen in the lower left corner, and its change for each pixel across and up; world space, of any length. */
+  /** View direction at the lower left corner, and its change per pixel to the right and up. World space, any length. */
   vec4 corner;
   vec4 across;
   vec4 up;
-  /** The picture's rotation, in turns. */
+  /** Rotation of the picture, in turns. */
   float turn;
 #endif
 };

@@ -8,13 +8,13 @@ layout(location = 4) in vec4 surface_color;
 
 layout(binding = BASE_COLOR_SLOT) uniform sampler2D base_color_texture;
 
-/** The material is the same for all of a triangle, so branches on it keep the derivatives of uvs defined. */
+/** The material is constant over a triangle, so branches on it keep the derivatives of texture coordinates defined. */
 bool has_input(uint input_bit)
 {
   return (full_materials[surface_material].inputs & input_bit) != 0u;
 }
 
-/** The same as that of eevee_base_color_lib.glsl. */
+/** As is_cut_out of eevee_base_color_lib.glsl. The alpha is multiplied by that of the vertex colour. */
 bool is_cut_out(float mask_cutoff)
 {
   if (mask_cutoff <= 0.0) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// For fragment shaders: the surface from all of a material's textures and vertex colours.
+// For fragment shaders: the shading parameters of a surface from all textures of its material and from vertex colours.
 #include "draw/draw_view_lib.glsl"
 #include "eevee/eevee_full_alpha_lib.glsl"
 

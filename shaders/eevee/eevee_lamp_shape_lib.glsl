@@ -15,14 +15,14 @@ layout(std140, binding = LIGHT_SHAPE_BLOCK_SLOT) uniform light_shape_block
   LightShapeBlock light_shapes;
 };
 
-/** Axes at the shaded point: the normal is z, the view direction is in the plane of x and z. Unit vectors. */
+/** Orthonormal axes at the shaded point: z is the normal, and the view direction is in the plane of x and z. */
 struct ShadingFrame {
   vec3 x_ws;
   vec3 y_ws;
   vec3 z_ws;
 };
 
-/** A unit vector across the unit vector \a n. */
+/** A unit vector perpendicular to the unit vector \a n. */
 vec3 any_across(vec3 n)
 {
   return normalize(abs(n.z) < 0.9 ? vec3(n.y, -n.x, 0.0) : vec3(0.0, n.z, -n.y));
@@ -47,11 +47,11 @@ struct FlatLamp {
   vec3 axis_x;
   vec3 axis_y;
   int corner_count;
-  /** Radiance where the light's colour is 1. */
+  /** Radiance for a light colour of 1. */
   float radiance;
 };
 
-/** A rectangle or an ellipse. */
+/** The flat lamp of a rectangle or an ellipse. */
 FlatLamp area_lamp(LightData light, LightShape shape, ShadingFrame frame, Surface surface)
 {
   bool is_rectangle = light.kind == LIGHT_RECTANGLE;
@@ -63,23 +63,24 @@ FlatLamp area_lamp(LightData light, LightShape shape, ShadingFrame frame, Surfac
 }
 
 /**
- * The disk that stands for a point, a spot or a sun, turned to the shaded point. \a to_light: unit vector to its centre.
- * \a tangent: radius over distance. \a irradiance: on a surface that faces it, where the light's colour is 1.
+ * The disk that represents a point, spot or sun. It faces the shaded point. \a to_light: unit vector to its centre.
+ * \a tangent: radius / distance. \a irradiance: irradiance for a light colour of 1 on a surface that faces the disk.
  */
 FlatLamp round_lamp(vec3 to_light, float tangent, float irradiance, ShadingFrame frame)
 {
   vec3 center = in_frame(frame, to_light);
   vec3 axis_x = any_across(center) * tangent;
-  // Radiance times π sin².
+  // The irradiance of a disk is its radiance times π sin².
   float sine_sq = tangent * tangent / (1.0 + tangent * tangent);
   return FlatLamp(center, axis_x, cross(center, axis_x), ELLIPSE_CORNERS, irradiance * INV_PI / max(sine_sq, 1e-30));
 }
 
 #ifdef USE_SPECULAR
 /**
- * Radiance that the specular lobe of \a material sends to the viewer, where the light's colour is 1: what the transformed
- * cosine of \a ltc_matrix sends, times the ratio of the lobe to it in the mean direction of that light. For a lamp that is
- * small in the lobe that is the lobe itself, and for a lobe that is small in the lamp the ratio is the lobe's albedo.
+ * Specular radiance towards the viewer for a light colour of 1. It is the integral of the transformed cosine of
+ * \a ltc_matrix over the lamp, times the ratio of the lobe to the transformed cosine in the mean direction of the light. If
+ * the lamp is small relative to the lobe, the result is the value of the lobe. If the lobe is small relative to the lamp,
+ * the ratio is the albedo of the lobe.
  */
 vec3 specular_of(FlatLamp lamp, MaterialData material, vec4 ltc_matrix, vec3 view)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Direct light at a surface.
+// Direct lighting of a surface.
 #include "eevee/eevee_surface_lib.glsl"
 #include "shared/eevee_bsdf_shared.h"
 #include "shared/eevee_light_shared.h"
@@ -68,7 +68,7 @@ vec3 reflected(MaterialData material, Surface surface, vec3 to_light, float cos_
 #endif
 }
 
-/** Diffuse radiance for an irradiance of 1 by light from \a to_light: without what the surface reflects specularly. */
+/** Diffuse radiance for an irradiance of 1 from \a to_light, reduced by the fraction that is reflected specularly. */
 vec3 diffuse_share(MaterialData material, Surface surface, vec3 to_light)
 {
 #ifdef USE_SPECULAR
@@ -82,12 +82,13 @@ vec3 diffuse_share(MaterialData material, Surface surface, vec3 to_light)
 #endif
 }
 
-/** The light that falls from the centre of a lamp. */
+/** The light from the centre of a lamp. */
 struct CenterLight {
-  /** Unit vector; zero at the lamp itself. */
+  /** Unit vector to the lamp; the zero vector at the position of the lamp. */
   vec3 to_light;
+  /** Square of the distance to the lamp, m²; 1 for suns. */
   float distance_sq;
-  /** On a surface that faces the lamp, where the light's colour is 1. */
+  /** Irradiance for a light colour of 1 on a surface that faces the lamp. */
   float irradiance;
 };
 
@@ -99,7 +100,7 @@ CenterLight center_light(int index, Surface surface)
   if (light.kind != LIGHT_SUN && light.kind != LIGHT_WORLD) {
     vec3 vector = light.position_ws - surface.position_ws;
     center.distance_sq = dot(vector, vector);
-    // At the lamp itself the direction is undefined. The zero vector gives no light.
+    // At the position of the lamp the direction is undefined. The zero vector gives no light.
     center.to_light = center.distance_sq > 0.0 ? vector * inversesqrt(center.distance_sq) : vec3(0.0);
     center.irradiance = distance_falloff(center.distance_sq, light.radius_sq, light.range_inv_sq);
     if (light.kind == LIGHT_SPOT) {
@@ -119,7 +120,7 @@ CenterLight center_light(int index, Surface surface)
   return center;
 }
 
-/** Radiance towards the viewer from the light \a index, shaded as the one point at its centre, W/(sr m²). */
+/** Radiance towards the viewer from the light \a index, shaded as a point at its centre, W/(sr m²). */
 vec3 point_radiance(int index, MaterialData material, Surface surface)
 {
   LightData light = light_data.lights[index];
@@ -133,7 +134,7 @@ vec3 point_radiance(int index, MaterialData material, Surface surface)
     return vec3(0.0);
   }
 #ifdef USE_FULL_MATERIAL
-  // A normal texture turns no surface towards a light behind it.
+  // A surface receives no light from behind, whatever its normal texture.
   if (dot(surface.geometric_normal_ws, center.to_light) <= 0.0) {
     return vec3(0.0);
   }
@@ -155,7 +156,7 @@ vec3 point_radiance(int index, MaterialData material, Surface surface)
 }
 
 #ifdef USE_LAMP_SHAPE
-/** What all lamps that are shaded as a whole share at one point. */
+/** Values at the shaded point that are the same for all lamps that are shaded as a whole. */
 struct ShapeShading {
   ShadingFrame frame;
 #ifdef USE_SPECULAR
@@ -170,7 +171,7 @@ float shape_visibility(LightData light, LightShape shape, Surface surface, Cente
   if (light.shadow_kind != SHADOW_CUBE && light.shadow_kind != SHADOW_MAP) {
     return light_visibility(light, surface, center.to_light);
   }
-  // A caster half way to the lamp spreads its edge by the lamp's size.
+  // The search extends to a gap of 1: that of a caster half way to the lamp, whose penumbra is as wide as the lamp.
   float search = 1.0;
   vec3 axis_x = shape.axis_x_ws;
   vec3 axis_y = shape.axis_y_ws;
@@ -184,7 +185,7 @@ float shape_visibility(LightData light, LightShape shape, Surface surface, Cente
   }
 #endif
   if (light.kind == LIGHT_RECTANGLE) {
-    // The taps are on a disk: of the same second moments as the rectangle.
+    // The taps are on an ellipse. The factor 2 / √3 gives it the second moments of the rectangle.
     axis_x *= 1.1547;
     axis_y *= 1.1547;
   }
@@ -192,7 +193,7 @@ float shape_visibility(LightData light, LightShape shape, Surface surface, Cente
 }
 #endif
 
-/** The same from a lamp that is shaded as a whole. */
+/** Radiance towards the viewer from the light \a index, shaded as a whole, W/(sr m²). */
 vec3 shape_radiance(int index, MaterialData material, Surface surface, ShapeShading shading)
 {
   LightData light = light_data.lights[index];
@@ -208,7 +209,7 @@ vec3 shape_radiance(int index, MaterialData material, Surface surface, ShapeShad
     irradiance = lamp.radiance * PI * flat_flux(lamp.center, lamp.axis_x, lamp.axis_y, lamp.corner_count, vec3(0.0, 0.0, 1.0)).z;
   }
   else {
-    // Nearer than a billionth of its radius a lamp fills the half space all the same.
+    // The limits prevent an overflow. At a distance of 1e-9 radii, the lamp already fills the half space.
     float tangent = min(shape.extent * inversesqrt(max(center.distance_sq, 1e-30)), 1e9);
     lamp = round_lamp(center.to_light, tangent, center.irradiance, shading.frame);
     float sine_sq = tangent * tangent / (1.0 + tangent * tangent);

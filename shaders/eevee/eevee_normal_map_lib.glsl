@@ -7,7 +7,7 @@ layout(location = 5) in vec4 surface_tangent_ws;
 
 layout(binding = NORMAL_SLOT) uniform sampler2D normal_texture;
 
-/** \a surface with the normal of the material's normal texture. A mesh without tangents keeps its own. */
+/** \a surface with the normal of the material's normal texture. The normal is unchanged if the mesh has no tangents. */
 Surface normal_mapped(Surface surface)
 {
   if (!has_input(INPUT_NORMAL) || surface_tangent_ws.xyz == vec3(0.0)) {

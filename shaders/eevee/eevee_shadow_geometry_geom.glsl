@@ -1,6 +1,6 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// Passes a caster on to its layer, for devices whose vertex shaders cannot select the layer.
+// Selects the layer of a caster's triangle, for devices whose vertex shaders cannot select the layer.
 
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 3) out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// For vertex shaders: a caster in the layer (face or cascade) that the value of its instance selects.
+// For vertex shaders: the position of a caster in a shadow layer (face or cascade). The value of the instance is the layer.
 #include "draw/draw_object_lib.glsl"
 #include "shared/eevee_shadow_shared.h"
 #ifdef USE_ALPHA_MASK

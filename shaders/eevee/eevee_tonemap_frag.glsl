@@ -21,8 +21,9 @@ PUSH_CONSTANT_LAYOUT uniform push_constant_block
   int encoding;
   /** 2 to the exposure in stops. */
   float exposure_scale;
-  /** 1 / number of samples so far: converts their sum to their mean. */
+  /** 1 / fraction of the filter weights that the samples so far have: converts their weighted sum to their mean. */
   float sample_scale;
+  /** Depth that the target gets for pixels without a surface. */
   float background_depth;
   /** 1: pixels without a surface keep the target's content. */
   int is_over;

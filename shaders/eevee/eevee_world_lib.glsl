@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light of the world beside its suns.
+// Light of the world without its suns, which are lights of light_block.
 #include "eevee/eevee_surface_lib.glsl"
 #include "shared/eevee_light_shared.h"
 #include "shared/eevee_world_shared.h"
@@ -16,7 +16,7 @@ layout(std140, binding = WORLD_BLOCK_SLOT) uniform world_block
 #ifdef USE_SPECULAR
 layout(binding = WORLD_LEVELS_SLOT) uniform sampler2DArray world_levels;
 
-/** Mean radiance over a lobe of \a alpha around the unit vector \a direction. */
+/** Mean radiance of the world over a lobe of \a alpha around the unit vector \a direction. */
 vec3 world_radiance(vec3 direction, float alpha)
 {
   vec2 texco = equirectangular(direction);
@@ -28,13 +28,13 @@ vec3 world_radiance(vec3 direction, float alpha)
 }
 
 /**
- * Radiance that the specular lobe of \a material sends to the viewer, as if nothing stood in the way. The split sum (Karis
- * 2013): what the lobe sees on average, times its \a albedo.
+ * Specular radiance of the world towards the viewer without occlusion, by the split-sum approximation (Karis 2013): the
+ * mean radiance over the lobe, times the \a albedo of the lobe.
  */
 vec3 world_mirrored(MaterialData material, Surface surface, vec3 albedo)
 {
   vec3 mirrored = 2.0 * dot(surface.normal_ws, surface.view_ws) * surface.normal_ws - surface.view_ws;
-  // A rough lobe leans towards the normal (Lagarde and de Rousiers 2014, 4.9.3).
+  // The dominant direction of a rough lobe is closer to the normal (Lagarde and de Rousiers 2014, 4.9.3).
   float lean = (1.0 - material.alpha) * (sqrt(max(1.0 - material.alpha, 0.0)) + material.alpha);
   return albedo * world_radiance(mix(surface.normal_ws, mirrored, lean), material.alpha);
 }
@@ -47,21 +47,21 @@ vec4 albedo_table(Surface surface, float alpha)
 #endif
 
 #ifdef USE_SPECULAR
-/** What all directions of the world share at one point. */
+/** Values at the shaded point that are the same for all sampled directions of the world. */
 struct WorldShading {
-  /** What the specular lobe mirrors by the levels, for each unit of the lobe of `alpha`. */
+  /** Specular radiance from `world_levels`, divided by the albedo of a lobe of `alpha` with Fresnel terms of 1. */
   vec3 mirrored;
-  /** Of a lobe that the directions can draw. */
+  /** Alpha of the lobe for sampled directions: at least WorldBlock::alpha_sampled. */
   float alpha;
-  /** Of the specular light that comes from the levels. */
+  /** Fraction of the specular light that comes from `world_levels`. */
   float level_share;
 };
 
-/** Of the shaded point; world_light sets it. */
+/** Set by world_light. */
 WorldShading world_shading;
 #endif
 
-/** Radiance of the world's light towards the viewer, W/(sr m²), where it is not sampled; otherwise 0. Sets world_shading. */
+/** Radiance of the world towards the viewer, W/(sr m²); 0 if the world is sampled. Sets world_shading for samples. */
 vec3 world_light(MaterialData material, Surface surface)
 {
 #ifdef USE_SPECULAR
@@ -89,8 +89,8 @@ vec3 world_light(MaterialData material, Surface surface)
 
 #ifdef USE_SPECULAR
 /**
- * Radiance towards the viewer of a direction of the world, where nothing stands in its way. A lobe that is narrower than
- * the directions lie apart mirrors the levels, as far as the directions in a wider lobe are open.
+ * Radiance towards the viewer from a sampled direction of the world, without occlusion. A lobe that is too narrow for the
+ * sampled directions reads `world_levels` instead. The directions within a wider lobe then determine its visibility.
  */
 vec3 world_reflected(LightData light, MaterialData material, Surface surface, vec3 to_light, float cos_l)
 {

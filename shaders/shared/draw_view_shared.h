@@ -15,7 +15,7 @@ struct ViewData {
   int is_perspective;
   /** Unit vector opposite to the view direction. */
   vec3 back_ws;
-  /** Added to the mip level of materials' textures: several samples a pixel resolve smaller texels. */
+  /** Added to the mip level of material textures, because several samples per pixel resolve smaller texels. */
   float texture_lod_bias;
 };
 SHARED_ASSERT_SIZE(ViewData, 96)

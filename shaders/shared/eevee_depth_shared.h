@@ -18,12 +18,12 @@ SHARED_CONSTANT float DEPTH_DIVISOR_MIN = 1e-30f;
 /**
  * Reversed depth of a point at \a distance metres along the view's axis: 1 at \a near, 0 at \a far, outside [0, 1] beyond them.
  *
- * \a near, \a far: metres, far above near. In perspective, near is above 0 and below 1e8. A point that is not in front of the
- * eye of a perspective has a finite depth above 1, nearer than all others.
+ * \a near, \a far: metres, \a far is greater than \a near. In perspective, near is above 0 and below 1e8, and a point that is
+ * not in front of the eye has a finite depth above 1, which is nearer than all others.
  */
 SHARED_FUNCTION float depth_of_distance(float distance, float near, float far, int projection)
 {
-  // Points behind the eye of a perspective have no depth. They get that of the eye.
+  // In perspective, points behind the eye have no depth. They get the depth of the eye.
   float in_front = projection == PROJECTION_ORTHOGRAPHIC ? distance : max(distance, DEPTH_DIVISOR_MIN);
   float from_far = (far - in_front) / max(far - near, DEPTH_DIVISOR_MIN);
   if (projection == PROJECTION_ORTHOGRAPHIC) {

@@ -11,7 +11,7 @@ SHARED_BEGIN
 #define LIGHT_SUN 1
 #define LIGHT_SPOT 2
 #define LIGHT_HEMI 3
-/** A direction of the world beside its suns, in one sample of a picture. */
+/** A sampled direction of the world without its suns. */
 #define LIGHT_WORLD 4
 #define LIGHT_RECTANGLE 5
 #define LIGHT_ELLIPSE 6
@@ -29,26 +29,26 @@ struct LightData {
   /** LIGHT_… */
   int kind;
   /**
-   * Linear RGB: irradiance, W/m² (sun, hemi, world), or radiant intensity, W/sr: in every direction (point, spot), or straight
-   * ahead, with the cosine law (rectangle, ellipse).
+   * Linear RGB. Sun, hemi, world: irradiance, W/m². Point, spot: radiant intensity, W/sr. Rectangle, ellipse: radiant
+   * intensity along forward_ws, W/sr; other directions follow the cosine law.
    */
   vec3 color;
   /**
-   * Point, spot: square of the radius, m². 0: a point. Sun: the least square of alpha that its highlight is drawn with.
-   * World: the solid angle that the direction stands for, sr.
+   * Point, spot: square of the radius, m². 0: a point. Sun: minimum alpha² of the specular lobe for its highlight (used
+   * with a world). World: solid angle that the direction represents, sr.
    */
   float radius_sq;
-  /** Unit vector in which the lamp emits. */
+  /** Unit vector along the axis of the lamp, in the direction of emission. */
   vec3 forward_ws;
   /** 1 / range², 1/m². 0: no limit. */
   float range_inv_sq;
-  /** Spot: 1 - cos of half the opening angle. The cosine of a narrow cone would round to 1. */
+  /** Spot: 1 - cos of half the opening angle. It is stored instead of the cosine, which would round to 1 for narrow cones. */
   float spot_drop_outer;
   /** Spot: 1 / (spot_drop_outer · blend), finite. */
   float spot_inv_width;
   /** SHADOW_… */
   int shadow_kind;
-  /** Index in the array of shadow_kind in `shadow_block`; -1: none. */
+  /** Index of the first entry: in ShadowBlock::cubes, ShadowBlock::maps or EsmBlock::lamps, by shadow_kind. -1: none. */
   int shadow_index;
 };
 SHARED_ASSERT_SIZE(LightData, 64)
@@ -66,25 +66,25 @@ struct LightBlock {
 SHARED_ASSERT_SIZE(LightBlock, 16 + LIGHT_MAX * 64)
 SHARED_ASSERT(LIGHT_MAX == (UNIFORM_BLOCK_BYTES_MAX - 16) / sizeof(LightData))
 
-/** A lamp's extent and axes: an entry of `light_shape_block`, which exists where some lamp needs it. */
+/** Extent and axes of a lamp: an entry of `light_shape_block`, which exists only with USE_LAMP_SHAPE. */
 struct LightShape {
   /**
-   * Rectangle, ellipse: from the centre to the middle of an edge, or to the rim, metres. Spot: a unit vector across the
-   * axis divided by spot_scale, so that the cone is round in these coordinates.
+   * Rectangle, ellipse: vector from the centre to the middle of an edge or to the rim, metres. Spot: a unit vector
+   * perpendicular to the spot's axis, divided by spot_scale, so that the cone is circular in these coordinates.
    */
   vec3 axis_x_ws;
   /**
    * Above 0: the lamp is shaded as a whole. Point, spot: radius, metres. Sun: tangent of half its angular diameter.
-   * Rectangle, ellipse: 1. 0: it is shaded as the one point at LightData::position_ws, or in the direction forward_ws.
+   * Rectangle, ellipse: 1. 0: the lamp is shaded as a point at LightData::position_ws, or by the direction forward_ws.
    */
   float extent;
-  /** As axis_x_ws, at a right angle to it. */
+  /** As axis_x_ws, for the other axis. */
   vec3 axis_y_ws;
   float _pad0;
 };
 SHARED_ASSERT_SIZE(LightShape, 32)
 
-/** As many as `light_block` holds, in the same order. */
+/** Content of `light_shape_block`: one entry for each light of `light_block`, in the same order. */
 struct LightShapeBlock {
   LightShape shapes[LIGHT_MAX];
 };
@@ -107,8 +107,8 @@ SHARED_FUNCTION float one_minus_cos(vec3 a, vec3 b)
 }
 
 /**
- * 1 - cos of the angle to a spot's axis, for spot_mask, where the cone is an ellipse. \a axis_x, \a axis_y: of
- * LightShape. \a from_light: unit vector.
+ * The value `drop` of spot_mask for a spot with an elliptical cone: 1 - cos of the angle to the axis, in coordinates in
+ * which the cone is circular. \a from_light: unit vector. \a axis_x, \a axis_y: from LightShape.
  */
 SHARED_FUNCTION float elliptic_drop(vec3 from_light, vec3 forward, vec3 axis_x, vec3 axis_y)
 {

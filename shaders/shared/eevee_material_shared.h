@@ -27,7 +27,7 @@ struct MaterialData {
   float mask_cutoff;
   /** Part of specular_f0 due to the base colour of a metal. */
   vec3 metal_f0;
-  /** Fraction of ambient light that arrives. */
+  /** Fraction of ambient light that reaches the surface: 1 without occlusion. */
   float occlusion;
 };
 SHARED_ASSERT_SIZE(MaterialData, 64)
@@ -40,7 +40,7 @@ SHARED_ASSERT_SIZE(MaterialData, 64)
 #define INPUT_EMISSIVE 16u
 #define INPUT_SPECULAR 32u
 #define INPUT_SPECULAR_COLOR 64u
-/** The base colour is the radiance. */
+/** Unlit material: its radiance is the base colour. */
 #define INPUT_UNLIT 128u
 #define INPUT_TEXTURE_COUNT 7
 
@@ -88,7 +88,7 @@ SHARED_FUNCTION MaterialData metallic_roughness_material(vec3 base_color, float 
   return material;
 }
 
-/** A surface with this radiance under any light. */
+/** A surface that emits \a radiance and reflects no light. */
 SHARED_FUNCTION MaterialData unlit_material(vec3 radiance)
 {
   MaterialData material = metallic_roughness_material(vec3(0.0f), 0.0f, 1.0f, vec3(0.0f), 0.0f);

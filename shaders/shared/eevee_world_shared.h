@@ -6,23 +6,23 @@
 
 SHARED_BEGIN
 
-/** Layers of `world_levels`: what a mirror of roughness layer / (count - 1) shows. */
+/** Layers of `world_levels`: the world, prefiltered for a roughness of layer / (count - 1). */
 #define WORLD_LEVEL_COUNT 8
 
-/** Content of `world_block`: what is left of the world beside its suns, which are lights like others. */
+/** Content of `world_block`: the world without its suns, which are lights of `light_block`. */
 struct WorldBlock {
-  /** rgb: irradiance over π as a polynomial of the normal; see world_irradiance. */
+  /** rgb: coefficients of irradiance / π as a polynomial of the normal. \see world_irradiance */
   vec4 harmonics[9];
-  /** 1: lights of LIGHT_WORLD give its light, and the harmonics are not read. */
+  /** 1: lights of the kind LIGHT_WORLD sample the world, and the harmonics are not read. */
   int is_sampled;
-  /** Of a lobe that holds enough of those directions to be drawn by them. Narrower ones are drawn by the levels. */
+  /** Minimum alpha of a lobe that contains enough sampled directions. Narrower lobes read `world_levels`. */
   float alpha_sampled;
   int _pad0;
   int _pad1;
 };
 SHARED_ASSERT_SIZE(WorldBlock, 160)
 
-/** Irradiance over π on a surface with the unit vector \a n as its normal (Ramamoorthi and Hanrahan 2001), at least 0. */
+/** Irradiance / π on a surface with the unit normal \a n (Ramamoorthi and Hanrahan 2001). At least 0. */
 SHARED_FUNCTION vec3 world_irradiance(WorldBlock world, vec3 n)
 {
   vec4 sum = world.harmonics[0] + world.harmonics[1] * n.y + world.harmonics[2] * n.z + world.harmonics[3] * n.x +
@@ -32,7 +32,7 @@ SHARED_FUNCTION vec3 world_irradiance(WorldBlock world, vec3 n)
   return max(vec3(sum), vec3(0.0f));
 }
 
-/** Where a direction is in an equirectangular picture, from the left and from the bottom. Any length but 0. */
+/** Coordinates of a direction in an equirectangular picture, from the left and the bottom, in [0, 1]. \a v: any length but 0. */
 SHARED_FUNCTION vec2 equirectangular(vec3 v)
 {
   float across = sqrt(v.x * v.x + v.z * v.z);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The depth camera.
+// Constants of the depth camera.
 #include "shared/slots_shared.h"
 
 PUSH_CONSTANT_LAYOUT uniform push_constant_block
 {
-  /** Of the depth camera. */
+  /** Matrix of the depth camera. */
   mat4 clip_from_world;
-  /** A surface is shadowed where it is farther than the stored depth by more than x times its depth, plus y: rounding. */
+  /** Tolerance for rounding: x is relative to the surface's depth, y is absolute. */
   vec2 depth_tolerance;
 };

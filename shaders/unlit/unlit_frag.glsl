@@ -1,6 +1,6 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// A surface without light: its base colour and what it emits, black where the depth camera does not see it.
+// A surface without lighting: its base colour and emission, black if it is occluded from the depth camera.
 #include "eevee/eevee_material_lib.glsl"
 #if defined(USE_FULL_MATERIAL)
 #  include "eevee/eevee_full_material_lib.glsl"
@@ -16,15 +16,16 @@ layout(binding = DEPTH_SLOT) uniform sampler2D depth_texture;
 layout(location = 0) in vec4 depth_camera_position;
 
 /**
- * 1 where something is between the depth camera and the surface, otherwise 0. The receiver is a plane in (u, v, depth), whatever the
- * projection, so its depth at the middle of the texel follows from the derivatives (Isidoro 2006, receiver plane depth bias).
+ * 1 if the surface is occluded from the depth camera, otherwise 0; 0 also outside the sides of the camera's frustum. With every
+ * projection, the receiver is a plane in (u, v, depth), so that its depth at the centre of the texel follows from the derivatives
+ * (Isidoro 2006, receiver plane depth bias).
  */
 float shadow()
 {
   vec3 place = depth_camera_position.xyz / depth_camera_position.w;
   vec2 texels = vec2(textureSize(depth_texture, 0));
   vec2 texel = (0.5 * place.xy + 0.5) * texels;
-  // Before any branch: neighbours take part in derivatives.
+  // Derivatives need the neighbouring pixels, so they are computed before any branch.
   vec3 across = dFdx(vec3(texel, place.z));
   vec3 up = dFdy(vec3(texel, place.z));
   if (depth_camera_position.w <= 0.0 || place.z > 1.0 || any(lessThan(texel, vec2(0.0))) ||
@@ -34,10 +35,10 @@ float shadow()
   float area = across.x * up.y - across.y * up.x;
   vec2 slope = vec2(across.z * up.y - up.z * across.y, up.z * across.x - across.z * up.x);
   vec2 to_middle = floor(texel) + 0.5 - texel;
-  // Seen edge-on, the plane has no depth of its own at the middle of the texel.
+  // If the plane is seen edge-on, its depth at the centre of the texel is undefined.
   float depth = place.z + (area != 0.0 ? dot(slope / area, to_middle) : 0.0);
   float stored = texelFetch(depth_texture, ivec2(texel), 0).r;
-  // Reversed: a nearer surface has a greater depth.
+  // Depths are reversed: a nearer surface has a greater depth.
   return stored > depth + depth_tolerance.x * place.z + depth_tolerance.y ? 1.0 : 0.0;
 }
 #endif

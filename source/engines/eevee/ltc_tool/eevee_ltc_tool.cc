@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Fits linearly transformed cosines to the engine's GGX lobe (Heitz, Dupuy, Hill and Neubelt 2016), integrates its
-// albedo, and writes both as the table that eevee_ltc_table.hh declares. Run it after a change of the lobe; the result
-// is committed:
+// albedo, and writes both as the table that eevee_ltc_table.hh declares. After a change of the lobe, run it and commit
+// the result:
 //   gnomon_eevee_ltc_tool source/engines/eevee/eevee_ltc_table.cc
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -27,7 +27,7 @@ using std::numbers::pi;
 
 constexpr int size = LTC_TABLE_SIZE;
 
-/** The lobe for one view direction: its value times the cosine, and its samples. */
+/** The GGX lobe for one view direction. */
 struct Lobe {
   vec3 view;
   double alpha;
@@ -129,7 +129,7 @@ Albedo albedo_of(const Lobe &lobe, int count)
   return sum;
 }
 
-/** Mean cubed difference of the two, over samples of both. */
+/** Mean cubed difference of \a albedo times \a ltc and \a lobe. The samples are drawn from both distributions. */
 double error_of(const Ltc &ltc, const Lobe &lobe, double albedo)
 {
   constexpr int count = 20;
@@ -147,7 +147,7 @@ double error_of(const Ltc &ltc, const Lobe &lobe, double albedo)
   return sum / (count * count);
 }
 
-/** Minimum of \a f over three numbers (Nelder and Mead 1965). */
+/** The position of a minimum of \a f, a function of three numbers (Nelder and Mead 1965). */
 template <typename F>
 std::array<double, 3> minimized(std::array<double, 3> start, double step, F &&f)
 {
@@ -257,7 +257,7 @@ int main(int argument_count, char **arguments)
       table[texel + size] = {albedo.whole, albedo.schlick, 0.0, 0.0};
     }
   }
-  // The hemispherical mean of the albedo, for light that is reflected more than once; the same in each row.
+  // The hemispherical mean of the albedo, for multiple scattering. It is the same in each row.
   for (int column = 0; column < size; column++) {
     double sum = 0.0;
     constexpr int steps = 32;
