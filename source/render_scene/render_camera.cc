@@ -13,7 +13,7 @@ draw::View view_of(const scene::PlacedCamera &camera, glm::ivec2 size_px, const 
 {
   const bool is_perspective = camera.kind == scene::CameraKind::Perspective;
   const float image_aspect = float(size_px.x) / float(size_px.y);
-  // A float just below pi has a tangent on the other side of infinity.
+  // The float nearest to π exceeds π, so the tangent of its half would be negative.
   constexpr float angle_max = 3.1415F;
   float half_height = is_perspective ? std::tan(0.5F * std::min(camera.vertical_angle, angle_max)) : camera.half_height;
   const float frame_aspect = !is_perspective        ? camera.half_width / camera.half_height
@@ -30,7 +30,7 @@ draw::View view_of(const scene::PlacedCamera &camera, glm::ivec2 size_px, const 
     clip_from_view = draw::perspective(half_width, half_height, camera.near, far);
   }
   else {
-    // A parallel view of endless depth has no finite matrix; this one has a million times its width.
+    // An orthographic projection of infinite depth has no finite matrix. Use a depth of a million half widths instead.
     const float depth_max = std::max(camera.near + 1e6F * half_width, std::nextafter(camera.near, infinite));
     clip_from_view = draw::orthographic(half_width, half_height, camera.near, std::isinf(far) ? depth_max : far);
   }

@@ -9,8 +9,8 @@
 namespace gnomon::render_scene {
 
 /**
- * What \a camera sees in an image of \a size_px, in coordinates relative to \a origin_ws. Where the image's aspect
- * differs from the camera's own, the camera's frame is in the middle and wholly visible.
+ * The view of \a camera for an image of \a size_px, in coordinates relative to \a origin_ws. If the image's aspect
+ * ratio differs from the camera's, the camera's frame is centred in the image and completely visible.
  */
 [[nodiscard]] draw::View view_of(const scene::PlacedCamera &camera, glm::ivec2 size_px,
                                  const glm::dvec3 &origin_ws = glm::dvec3(0.0));

@@ -41,7 +41,7 @@ gpu::Texture make_image(gpu::Device &device, const scene::Image &image, bool is_
                              .width = int(image.width),
                              .height = int(image.height),
                              .mip_levels = int(std::bit_width(std::max(image.width, image.height)))});
-  // The first row has v = 0 in the scene and on the device.
+  // Rows need not be reversed: v = 0 is the first row both in the scene and on the device.
   device.upload(texture, 0, std::as_bytes(std::span(image.texels)));
   if (texture.desc().mip_levels > 1) {
     device.generate_mipmaps(texture);
@@ -80,7 +80,7 @@ const gpu::Sampler &Images::sampler(gpu::Device &device, const scene::Texture &t
                             std::uint32_t(texture.wrap_v) << 16U;
   gpu::Sampler &sampler = samplers_[key];
   if (!sampler) {
-    // Textures of any image share it.
+    // The name mentions no image, because textures of different images share the sampler.
     sampler = device.create_sampler({.name = "texture_sampler",
                                      .filter = gpu_filter(texture.magnified),
                                      .minified = gpu_filter(texture.minified),

@@ -11,9 +11,9 @@
 namespace gnomon::render_scene {
 
 /**
- * The images and samplers of a scene on one device. An image is uploaded and mip-mapped when a pass first reads it, and
- * again when its content changes. It is uploaded a second time where one material takes it for colours, and another for
- * data. Textures with equal sampling share a sampler.
+ * The images and samplers of a scene on one device. An image is uploaded, with mip levels, when a pass first reads it,
+ * and again after its content has changed. An image that is used both for colours and for data has one texture for each
+ * use. Textures with the same sampling settings share a sampler.
  */
 class Images {
  public:
@@ -22,16 +22,17 @@ class Images {
     const gpu::Sampler &sampler;
   };
   /**
-   * \a handle's image and sampler; one white texel unless is_drawable. The references hold until the image changes, or
-   * until free_removed. \a is_color: \see scene::TextureInput. \throws gpu::Error where the device cannot hold the
-   * image.
+   * Image and sampler of the texture \a handle; a white texel if the texture is not drawable. The references are valid
+   * until the next get() after an edit of the scene's images, or until free_removed().
+   * \a is_color: \see scene::TextureInput
+   * \throws gpu::Error if the device cannot create the image
    */
   Lookup get(gpu::Device &device, const scene::Scene &scene, scene::Handle<scene::Texture> handle, bool is_color);
-  /** An image on the device; nullptr: no pass read it like that. */
+  /** The texture of an image; nullptr if no pass has read the image with this value of \a is_color. */
   [[nodiscard]] const gpu::Texture *find(scene::Handle<scene::Image> handle, bool is_color = true) const;
-  /** Images on the device. */
+  /** Number of textures that images have on the device. */
   [[nodiscard]] std::size_t count() const;
-  /** Free images that were removed. */
+  /** Free the textures of images that were removed from the scene. */
   void free_removed(const scene::Pool<scene::Image> &images);
 
  private:
@@ -42,14 +43,14 @@ class Images {
     scene::Handle<scene::Image> handle;
     scene::Revision content = 0;
   };
-  /** By Handle::index: images of data, and of colours. */
+  /** Indexed by is_color and Handle::index. */
   std::array<std::vector<Entry>, 2> entries_;
   gpu::Texture white_;
-  /** By the sampler's settings. */
+  /** By the sampler's settings, packed into a number. */
   std::map<std::uint32_t, gpu::Sampler> samplers_;
 };
 
-/** Whether \a handle names a texture of \a scene whose image is there. */
+/** Whether \a handle is a texture of \a scene and its image exists. */
 [[nodiscard]] bool is_drawable(const scene::Scene &scene, scene::Handle<scene::Texture> handle);
 
 }  // namespace gnomon::render_scene

@@ -114,7 +114,7 @@ void MaterialTable::replace(std::vector<Entry> &entries, std::vector<Entry> chan
 void MaterialTable::update(const scene::Scene &scene)
 {
   const scene::Pool<scene::Material> &materials = scene.materials();
-  // A removed image changes which textures are there.
+  // Textures and images count too, because removing one changes which textures can be drawn.
   const scene::Revision latest =
       std::max({materials.latest(), scene.textures().latest(), scene.images().latest(scene::Image::Aspect::Content)});
   if (!entries_.empty() && latest == seen_) {

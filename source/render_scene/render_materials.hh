@@ -8,43 +8,47 @@
 
 namespace gnomon::render_scene {
 
-/** Whether any part of the surface can be above the cutoff; a texture's alpha is at most 1. */
+/**
+ * Whether the material can draw any pixel. false: the alpha factor of a masked material is below its cutoff, and
+ * textures and vertex colours cannot increase alpha.
+ */
 [[nodiscard]] bool is_drawable(const scene::Material &material);
 
-/** The inputs of a surface, from the fewest. Programs have a variant for each. */
+/** The kinds of surface inputs, with the fewest inputs first. Each class has its own shader variants. */
 enum class MaterialClass : std::uint8_t {
-  /** Factors alone. */
+  /** Only the factors of the material. */
   Plain,
-  /** And a base colour texture, at the first set of uvs as they are. */
+  /** Also a base colour texture, with the first set of uvs and without a uv transform. */
   BaseColor,
-  /** Any textures, either set of uvs, transforms of uvs, vertex colours. */
+  /** Any textures, both sets of uvs, uv transforms and vertex colours. */
   Full
 };
 
-/** Whether \a mesh is drawn with \a slot of its material: the texture, its image, and the mesh's uvs are there. */
+/** Whether \a slot can be drawn on \a mesh: the texture, its image and the mesh's uvs exist. */
 [[nodiscard]] bool is_drawable(const scene::Scene &scene, const scene::Mesh &mesh, const scene::TextureSlot &slot);
 
-/** The class of a mesh with its material. Textures that cannot be drawn do not count. */
+/** The class of a mesh with its material. Ignores textures that cannot be drawn. */
 [[nodiscard]] MaterialClass material_class(const scene::Scene &scene, const scene::Mesh &mesh);
 
-/** Whether a texture or vertex colours may cut some of the surface out, so that a pass must read alpha. */
+/** Whether a texture or vertex colours may mask parts of the surface, so that depth passes must read alpha. */
 [[nodiscard]] bool is_masked(const scene::Scene &scene, const scene::Mesh &mesh);
 
-/** The material without its textures. One that emits by a texture does not emit then. */
+/** The material without its textures. Emission is 0 if the material has an emissive texture. */
 [[nodiscard]] shared::MaterialData material_data(const scene::Material &material);
+/** The material with its textures and uv transforms. Emission is 0 if its emissive texture cannot be drawn. */
 [[nodiscard]] shared::FullMaterialData full_material_data(const scene::Scene &scene, const scene::Material &material);
 
-/** `material_block` and `full_material_block`: the materials of a scene on one device, by place_of. */
+/** `material_block` and `full_material_block`: the materials of a scene on one device. */
 class MaterialTable {
  public:
-  /** Index of a material's entry. The default material's is 0; a stale handle stands for it. */
+  /** Index of a material's entry. Stale handles get the default material, whose index is 0. */
   [[nodiscard]] static std::uint32_t place_of(const scene::Scene &scene, scene::Handle<scene::Material> material);
 
-  /** Compute the entries of the materials that changed. */
+  /** Recompute the entries if materials, textures or images have changed. */
   void update(const scene::Scene &scene);
   /**
-   * Write what changed to the device; full_material_block where \a needs_full or it was needed before. \throws
-   * gpu::Error past the limit of a storage block.
+   * Write the changed entries to the device. `full_material_block` is created when \a needs_full is first true.
+   * \throws gpu::Error if a block exceeds the limit of the device
    */
   void upload(gpu::Device &device, bool needs_full);
   /** `material_block`; valid after upload. */
@@ -52,7 +56,7 @@ class MaterialTable {
   {
     return entries_block_.buffer;
   }
-  /** `full_material_block`; names nothing unless it was needed. */
+  /** `full_material_block`; empty until upload() was called with needs_full. */
   [[nodiscard]] const gpu::Buffer &full_buffer() const
   {
     return full_block_.buffer;
@@ -65,12 +69,13 @@ class MaterialTable {
  private:
   struct Block {
     gpu::Buffer buffer;
-    /** Entries that the device has not yet, as a range; empty where the begin is not below the end. */
+    /** Range of the entries that must be uploaded; empty if changed_begin >= changed_end. */
     std::size_t changed_begin = 0;
     std::size_t changed_end = 0;
     /** gpu::Device::loss_count at the last upload. */
     std::uint64_t loss_count = 0;
   };
+  /** Replaces \a entries by \a changed and extends the block's range by the entries that differ. */
   template <typename Entry>
   static void replace(std::vector<Entry> &entries, std::vector<Entry> changed, Block &block);
   template <typename Entry>
@@ -80,6 +85,7 @@ class MaterialTable {
   std::vector<shared::FullMaterialData> full_entries_;
   Block entries_block_;
   Block full_block_;
+  /** Latest revision of the materials, textures and images at the last update(). */
   scene::Revision seen_ = 0;
 };
 

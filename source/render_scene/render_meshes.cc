@@ -54,7 +54,7 @@ const gpu::Batch &Meshes::get(gpu::Device &device, const scene::Pool<scene::Mesh
   Entry &entry = entries_[handle.index];
   const bool is_same = entry.batch && entry.handle == handle && entry.shape == shape;
   if (!is_same || streams > entry.streams) {
-    // Once it has a stream it keeps it: another viewport may read it.
+    // Keep the streams that were uploaded before, because other viewports may read them.
     const MeshStreams all = is_same ? std::max(streams, entry.streams) : streams;
     entry = {make_batch(device, mesh, all), handle, shape, all};
   }

@@ -10,7 +10,7 @@ namespace gnomon::render_scene {
 
 glm::dvec3 origin_near(const glm::dvec3 &position_ws, const glm::dvec3 &current)
 {
-  // Within 1.5 steps of the origin, floats are spaced by at most 0.12 mm. A power of two: multiples are exact.
+  // Within 1.5 steps of the origin, floats are spaced by at most 0.12 mm. Multiples of a power of two are exact.
   constexpr double step_m = 1024.0;
   const glm::dvec3 offset = glm::abs(position_ws - current);
   return std::max({offset.x, offset.y, offset.z}) <= step_m ? current : step_m * glm::round(position_ws / step_m);
@@ -70,7 +70,7 @@ void RenderScene::update_objects()
     }
   }
   node_objects_.resize(nodes.index_end());
-  // Rare enough to look at every node: an edited mesh or material may be any node's.
+  // Update every node if a mesh or material was edited, because any node may use it. Such edits are rare.
   const bool is_anew = is_origin_changed_ || std::max(meshes, materials) > seen_;
   for (const auto &[handle, node] : nodes) {
     if (is_anew || nodes.revision(handle, Transform) > seen_ || nodes.revision(handle, Content) > seen_ ||
@@ -113,7 +113,7 @@ void RenderScene::update_node(scene::Handle<scene::Node> handle, const scene::No
   }
 }
 
-/** \a index: object_identity for a new object; then the index that it gets. */
+/** \a index: the object to change; object_identity adds an object and sets \a index to its index. */
 void RenderScene::write_object(draw::ObjectIndex &index, scene::Handle<scene::Node> node,
                                scene::Handle<scene::Mesh> mesh)
 {

@@ -11,14 +11,14 @@
 #include <span>
 
 /**
- * A scene's resources on one device, shared by all viewports and engines there.
+ * The resources of a scene on one device. All viewports and engines on the device share them.
  *
- * Scene edits reach the device in two steps: RenderScene::update compares revisions and needs no device; resources are
- * created and written when a pass that reads them is drawn.
+ * Scene edits reach the device in two steps: RenderScene::update finds the changes by comparing revisions and frees the
+ * resources of removed meshes and images. Resources are created and written when a pass needs them.
  */
 namespace gnomon::render_scene {
 
-/** A mesh at a node, by its index in objects(). */
+/** A mesh at a node. \see RenderScene::object */
 struct RenderObject {
   scene::Handle<scene::Node> node;
   scene::Handle<scene::Mesh> mesh;
@@ -29,26 +29,31 @@ struct RenderObject {
 };
 
 /**
- * Coordinates that reach the device are single precision, and relative to origin_ws(): matrices, lamps and cameras
- * given by this class have it subtracted. Engines call that space world space.
+ * The resources of a scene on one device, and the scene's objects, lamps and world for engines.
+ *
+ * The device uses single-precision coordinates relative to origin_ws(). The matrices, bounds, lamps and cameras that
+ * this class returns are relative to this origin. Engines call this space world space.
  */
 class RenderScene {
  public:
-  /** \a scene must outlive this; this must be destroyed before \a device. Both may serve several RenderScenes. */
+  /**
+   * \a scene must outlive this object, and this object must be destroyed before \a device. A scene or a device may be
+   * used by several RenderScenes.
+   */
   RenderScene(gpu::Device &device, const scene::Scene &scene) : device_(device), scene_(scene) {}
   RenderScene(const RenderScene &) = delete;
   RenderScene &operator=(const RenderScene &) = delete;
 
-  /** Take note of all edits of the scene since the last call. Needs no device. Nothing else reads the scene's edits. */
+  /** Update objects, lamps, materials and revisions for all edits of the scene since the last call. */
   void update();
-  /** Whether update would find nothing. */
+  /** Whether the scene and the origin are unchanged since the last update(). */
   [[nodiscard]] bool is_up_to_date() const
   {
     return seen_ == scene_.revision() && !is_origin_changed_;
   }
   /**
-   * Change the origin, metres, world space of the scene; then call update. Every matrix changes with it, so choose one
-   * near the view and keep it. origin_near() suggests one.
+   * Set the origin, in metres and the scene's world space, and call update() afterwards. A new origin changes all
+   * matrices, so choose an origin near the view and keep it while possible. \see origin_near
    */
   void set_origin(const glm::dvec3 &origin_ws)
   {
@@ -68,62 +73,64 @@ class RenderScene {
   {
     return device_;
   }
-  /** All visible meshes at their nodes. An object's value is its material's place in materials(). */
+  /** The visible meshes at their nodes. The value of an object is the index of its material in materials(). */
   [[nodiscard]] draw::ObjectBuffer &objects()
   {
     return objects_;
   }
-  /** \pre \a index is of objects(), and live */
+  /** The mesh and node of an object. \pre objects().is_live(index), and not object_identity */
   [[nodiscard]] const RenderObject &object(draw::ObjectIndex index) const
   {
     return render_objects_[index];
   }
-  /** The box around all objects, relative to origin_ws(). */
+  /** Bounding box of all objects, relative to origin_ws(). */
   [[nodiscard]] const scene::Bounds &bounds() const
   {
     return bounds_;
   }
-  /** All visible lamps, in the order of Scene::placed_lamps. */
+  /** The visible lamps in the order of Scene::placed_lamps, relative to origin_ws(). */
   [[nodiscard]] std::span<const scene::PlacedLamp> lamps() const
   {
     return lamps_;
   }
-  /** Different after each update that found a lamp changed, added, moved or removed. */
+  /** Increases when update() finds that a lamp or the world has changed. */
   [[nodiscard]] std::uint64_t lamps_revision() const
   {
     return lamps_revision_;
   }
   /**
-   * Different after each update that found a change by which passes must be recorded again: a mesh's shape or material,
-   * a material's coverage or textures, an image, a sampler. Objects have a revision of their own.
+   * Increases when update() finds a change after which passes must be built again: the shape or material of a mesh, the
+   * coverage or textures of a material, an image, or the settings of a texture. For objects, see
+   * draw::ObjectBuffer::revision.
    */
   [[nodiscard]] std::uint64_t passes_revision() const
   {
     return passes_revision_;
   }
-  /** Different after each update that found a factor of a material changed. */
+  /** Increases when update() finds that a factor of a material has changed. */
   [[nodiscard]] std::uint64_t materials_revision() const
   {
     return materials_revision_;
   }
-  /** The scene's world; nullptr: there is none, or it is black. */
+  /** The light of the scene's world; nullptr if the scene has no world or the world is black. */
   [[nodiscard]] const std::shared_ptr<const WorldLight> &world() const
   {
     return world_;
   }
-  /** Different after each update that found the world changed. */
+  /** Increases when update() finds that the world has changed. */
   [[nodiscard]] std::uint64_t world_revision() const
   {
     return world_revision_;
   }
-  /** The camera, relative to origin_ws(). */
+  /** Returns \a camera with its position relative to origin_ws(). */
   [[nodiscard]] scene::PlacedCamera relative(scene::PlacedCamera camera) const;
 
+  /** \see Meshes::get */
   [[nodiscard]] const gpu::Batch &batch(scene::Handle<scene::Mesh> mesh, MeshStreams streams)
   {
     return meshes_.get(device_, scene_.meshes(), mesh, streams);
   }
-  /** \a is_color: \see scene::TextureInput. A texture that cannot be drawn is white. */
+  /** \see Images::get */
   [[nodiscard]] Images::Lookup texture(scene::Handle<scene::Texture> texture, bool is_color)
   {
     return images_.get(device_, scene_, texture, is_color);
@@ -141,13 +148,13 @@ class RenderScene {
     return materials_;
   }
   /**
-   * Write object_block, material_block and, where \a needs_full_materials, full_material_block, as far as they changed.
-   * \throws gpu::Error past the device's limits.
+   * Write the changed parts of `object_block`, `material_block` and, if \a needs_full_materials, `full_material_block`.
+   * \throws gpu::Error if a block exceeds the limit of the device
    */
   void upload(bool needs_full_materials);
 
  private:
-  /** One node's objects. */
+  /** The objects of one node. */
   struct NodeObjects {
     scene::Handle<scene::Node> node;
     std::vector<draw::ObjectIndex> objects;
@@ -166,9 +173,9 @@ class RenderScene {
   /** Scene::revision of the last update. */
   scene::Revision seen_ = 0;
   draw::ObjectBuffer objects_;
-  /** By draw::ObjectIndex. */
+  /** Indexed by draw::ObjectIndex. */
   std::vector<RenderObject> render_objects_{1};
-  /** By Handle::index of the node. */
+  /** Indexed by Handle::index of the node. */
   std::vector<NodeObjects> node_objects_;
   scene::Bounds bounds_;
   std::vector<scene::PlacedLamp> lamps_;
@@ -183,8 +190,8 @@ class RenderScene {
 };
 
 /**
- * An origin for a view at \a position_ws: the nearest multiple of a step of 1024 m in each coordinate, and \a current
- * as long as it is within that step of the position, so that a moving camera changes the origin seldom.
+ * An origin for a view at \a position_ws. Returns \a current while each coordinate of the position is within 1024 m of
+ * it, so that a moving camera rarely changes the origin. Otherwise each coordinate is the nearest multiple of 1024 m.
  */
 [[nodiscard]] glm::dvec3 origin_near(const glm::dvec3 &position_ws, const glm::dvec3 &current);
 

@@ -3,7 +3,7 @@
 
 namespace gnomon::render_scene {
 
-/** Inputs that a program of the class reads: the first of scene::texture_inputs. */
+/** Number of texture inputs that shaders of the class read. They are the first ones of scene::texture_inputs. */
 static std::size_t input_count(MaterialClass material_class)
 {
   switch (material_class) {

@@ -7,21 +7,22 @@
 
 #include <array>
 
-/** What a class of materials needs of meshes and shading groups. For engines. */
+/** The vertex streams and textures that shading groups need for each MaterialClass. For engines. */
 namespace gnomon::render_scene {
 
-/** What a group reads of each of scene::texture_inputs; names nothing where it reads none. */
+/** The textures of a group, one for each of scene::texture_inputs. An empty handle means that there is no texture. */
 using TextureSet = std::array<scene::Handle<scene::Texture>, scene::texture_inputs.size()>;
 
+/** The vertex streams that shaders of \a material_class read. */
 [[nodiscard]] MeshStreams streams_of(MaterialClass material_class);
 
-/** The textures that a program of \a material_class reads, as far as they can be drawn. */
+/** The drawable textures of the mesh's material that shaders of \a material_class read. */
 [[nodiscard]] TextureSet textures_of(const scene::Scene &scene, const scene::Mesh &mesh, MaterialClass material_class);
 
-/** What a program reads that tells where a surface is cut out: nothing, or a texture and vertex colours. */
+/** The class for depth passes: material_class() if the surface is masked, otherwise Plain. */
 [[nodiscard]] MaterialClass mask_class(const scene::Scene &scene, const scene::Mesh &mesh);
 
-/** Bind the textures of \a set that a program of \a material_class reads. */
+/** Bind the textures of \a set that shaders of \a material_class read. Missing textures are white. */
 void bind_textures(draw::ShadingGroup &group, RenderScene &scene, MaterialClass material_class, const TextureSet &set);
 
 }  // namespace gnomon::render_scene

@@ -20,7 +20,7 @@ double luminance(const glm::dvec3 &color)
   return glm::dot(color, glm::dvec3(0.2126, 0.7152, 0.0722));
 }
 
-/** Radiance of \a world at \a u from the left and \a v from the bottom; bilinear. */
+/** Bilinearly interpolated radiance of \a world. \a u: from the left. \a v: from the bottom. */
 glm::dvec3 radiance_at(const scene::World &world, double u, double v)
 {
   const glm::dvec3 factor = double(world.strength) * glm::dvec3(world.color);
@@ -44,7 +44,7 @@ glm::dvec3 radiance_at(const scene::World &world, double u, double v)
           t * ((1.0 - s) * glm::dvec3(picture.at(left, bottom)) + s * glm::dvec3(picture.at(right, bottom))));
 }
 
-/** Mean radiance over a texel of a grid, from \a fine by \a fine places, so that nothing small is missed. */
+/** Mean radiance over a texel of a grid of \a size, from \a fine by \a fine samples. */
 glm::dvec3 mean_radiance(const scene::World &world, int x, int y, glm::ivec2 size, int fine)
 {
   glm::dvec3 sum(0.0);
@@ -56,7 +56,7 @@ glm::dvec3 mean_radiance(const scene::World &world, int x, int y, glm::ivec2 siz
   return sum / double(fine * fine);
 }
 
-/** Texels of a picture for each edge of a texel of WorldLight::size. */
+/** Number of texels of the picture along one edge of a texel of WorldLight::size. */
 int texels_across(const scene::World &world)
 {
   const int width = world.picture ? world.picture->width : 1;
@@ -70,27 +70,27 @@ glm::dvec3 direction_of_texel(std::size_t texel, glm::ivec2 size)
   return direction_of((column + 0.5) / size.x, (row + 0.5) / size.y);
 }
 
-/** Texels that are connected and bright. */
+/** A connected region of bright texels. */
 struct Patch {
-  /** Row by row. */
+  /** Indices of the texels in a grid of WorldLight::size, ascending. */
   std::vector<std::size_t> texels;
-  /** Of a grid that is `fine` times as fine. */
+  /** The same region in a grid with `fine` times the resolution. */
   int fine = 1;
   std::vector<WorldDistribution::Texel> fine_texels;
-  /** Sums over the solid angle, of radiance, of its luminance, of the square of that, and of direction by luminance. */
+  /** Integrals over the solid angle of radiance, luminance, squared luminance, and direction times luminance. */
   glm::dvec3 flux{0.0};
   double light = 0.0;
   double contrast = 0.0;
   glm::dvec3 direction{0.0};
 
-  /** Of a disk of one radiance, sr: the faint rim of a patch does not widen it much. */
+  /** Effective solid angle, sr. A faint rim increases it only a little. \see WorldDistribution::solid_angle */
   [[nodiscard]] double solid_angle() const
   {
     return light * light / contrast;
   }
 };
 
-/** The texels that are brighter than \a threshold and connected with \a start; \a is_seen takes note of them. */
+/** Finds the texels that are brighter than \a threshold and connected with \a start. Marks them in \a is_seen. */
 std::vector<std::size_t> connected(const std::vector<glm::vec3> &radiance, std::size_t start, double threshold,
                                    std::vector<bool> &is_seen)
 {
@@ -116,7 +116,7 @@ std::vector<std::size_t> connected(const std::vector<glm::vec3> &radiance, std::
   return found;
 }
 
-/** A patch of \a texels, as finely as the picture has it. */
+/** Makes a patch of \a texels, with up to 8 times the resolution if the picture has it. */
 Patch patch_of(const scene::World &world, std::vector<std::size_t> texels)
 {
   Patch patch;
@@ -152,7 +152,7 @@ WorldLight::Sun sun_of(Patch patch, std::size_t index)
   lamp.kind = scene::LampKind::Sun;
   const double half_angle = 2.0 * std::asin(std::min(std::sqrt(patch.solid_angle() / (4.0 * pi)), 0.5));
   lamp.angle = float(2.0 * half_angle);
-  // π sin² of the radiance.
+  // Irradiance of a disk of uniform radiance: π sin²(half angle) times the radiance.
   const double sine = std::sin(half_angle);
   lamp.intensity = 1.0F;
   lamp.color = glm::vec3(patch.flux / patch.solid_angle() * pi * sine * sine);
@@ -176,7 +176,8 @@ std::array<glm::vec3, 9> harmonics_of(const std::vector<glm::vec3> &radiance)
       sum[k] += solid_angle * basis[k] * glm::dvec3(radiance[i]);
     }
   }
-  // Squares of the basis' normalisations, times the cosine lobe's 1, 2/3 and 1/4.
+  // Squares of the normalisation constants of the basis. The loop multiplies them by the factors of the cosine lobe
+  // divided by π: 1, 2/3 and 1/4.
   constexpr std::array<double, 9> squares = {1.0 / (4.0 * pi),  3.0 / (4.0 * pi),  3.0 / (4.0 * pi),
                                              3.0 / (4.0 * pi),  15.0 / (4.0 * pi), 15.0 / (4.0 * pi),
                                              5.0 / (16.0 * pi), 15.0 / (4.0 * pi), 15.0 / (16.0 * pi)};
@@ -188,14 +189,14 @@ std::array<glm::vec3, 9> harmonics_of(const std::vector<glm::vec3> &radiance)
   return result;
 }
 
-/** A part of the sphere, for prefiltering. */
+/** A region of the sphere, for prefiltering. */
 struct Cell {
   glm::vec3 direction{0.0F};
   glm::vec3 flux{0.0F};
   float solid_angle = 0.0F;
 };
 
-/** Cells of \a step by \a step texels of \a picture. */
+/** Divides \a picture into cells of \a step by \a step texels. */
 std::vector<Cell> cells_of(std::span<const glm::vec3> picture, int step)
 {
   std::vector<Cell> cells;
@@ -216,18 +217,19 @@ std::vector<Cell> cells_of(std::span<const glm::vec3> picture, int step)
   return cells;
 }
 
-/** The lobe of \a alpha along each cell's direction, over \a cells of a grid of \a size. */
+/** Filters \a cells, a grid of \a size, with the GGX lobe of \a alpha around the direction of each cell. */
 std::vector<glm::vec3> lobes(const std::vector<Cell> &cells, glm::ivec2 size, float alpha)
 {
   const float a2 = alpha * alpha;
-  // There a lobe has fallen to a 200th of its peak, where sin² of the half vector is about 13 a².
+  // Cut the lobe where it has fallen to 1/200 of its peak, that is, where sin² of the half vector's angle is about
+  // 13 a².
   const float cosine_least = 1.0F - std::min(2.0F * 13.0F * a2, 1.0F);
   const double reach = std::acos(double(cosine_least));
   const int rows = int(std::ceil(reach / pi * size.y));
   std::vector<glm::vec3> result(cells.size());
   for (int y = 0; y < size.y; y++) {
     const double latitude = std::abs((y + 0.5) / size.y - 0.5) * pi;
-    // Of a cap around a point, the farthest from it around the axis.
+    // The largest difference in longitude between the centre of a spherical cap and a point of the cap.
     const double turn = latitude + reach < 0.5 * pi ? std::asin(std::sin(reach) / std::cos(latitude)) : pi;
     const int columns = std::min(int(std::ceil(turn / (2.0 * pi) * size.x)), size.x / 2);
     for (int x = 0; x < size.x; x++) {
@@ -239,7 +241,7 @@ std::vector<glm::vec3> lobes(const std::vector<Cell> &cells, glm::ivec2 size, fl
           const Cell &cell = cells[std::size_t(b * size.x + (a + size.x) % size.x)];
           const float cosine = cell.direction.x * normal.x + cell.direction.y * normal.y + cell.direction.z * normal.z;
           if (cosine > cosine_least) {
-            // Seen along the normal, the half vector's cos² is (1 + cos) / 2.
+            // For a view along the normal, cos² of the half vector's angle is (1 + cosine) / 2.
             const float h_sq = 0.5F + 0.5F * cosine;
             const float t = (1.0F - h_sq) + a2 * h_sq;
             const float weight = cosine / (t * t);
@@ -254,7 +256,7 @@ std::vector<glm::vec3> lobes(const std::vector<Cell> &cells, glm::ivec2 size, fl
   return result;
 }
 
-/** \a coarse, whose texels are \a step as wide, in WorldLight::size; bilinear. */
+/** Enlarges \a coarse by the factor \a step to WorldLight::size, with bilinear interpolation. */
 std::vector<glm::vec3> enlarged(const std::vector<glm::vec3> &coarse, int step)
 {
   const glm::ivec2 size = WorldLight::size / step;
@@ -342,7 +344,7 @@ WorldDirection WorldDistribution::at(const glm::dvec2 &place) const
   const double start = found == first ? 0.0 : *(found - 1);
   const double weight = *found - start;
   const Texel &texel = texels_[index];
-  // Evenly over the texel's solid angle.
+  // Distribute the directions uniformly over the texel's solid angle.
   const double across = std::clamp((place.x * row_sum - start) / weight, 0.0, 1.0);
   const double up = std::clamp((place.y * sum - row_start) / row_sum, 0.0, 1.0);
   const double low = std::sin((double(texel.y) / size_.y - 0.5) * pi);
@@ -370,7 +372,7 @@ WorldLight world_light(const scene::World &world)
       light.rest.emplace_back(radiance);
     }
   }
-  // What is much brighter than the mean casts a shadow that one sees.
+  // Regions that are much brighter than the mean cast visible shadows.
   constexpr double bright = 4.0;
   std::vector<Patch> patches;
   std::vector<bool> is_seen(light.rest.size(), false);
@@ -382,7 +384,7 @@ WorldLight world_light(const scene::World &world)
   std::ranges::sort(patches, std::ranges::greater(), &Patch::light);
   for (Patch &patch : patches) {
     const double share = patch.light / (4.0 * pi * mean);
-    // Wider than 40° it is no sun.
+    // A sun must give at least 0.5 % of the light and be at most 40° wide (0.38 sr).
     if (share < 0.005 || patch.solid_angle() > 0.38 || int(light.suns.size()) == WorldLight::sun_max) {
       continue;
     }
@@ -405,7 +407,7 @@ std::vector<std::vector<glm::vec3>> prefiltered(std::span<const glm::vec3> pictu
   std::vector<std::vector<glm::vec3>> levels = {{picture.begin(), picture.end()}};
   for (int level = 1; level < level_count; level++) {
     const float roughness = float(level) / float(level_count - 1);
-    // Cells a few times finer than the lobe.
+    // Choose cells that are several times smaller than the lobe.
     const int step = roughness < 0.2F ? 1 : roughness < 0.4F ? 2 : roughness < 0.6F ? 4 : 8;
     levels.push_back(enlarged(lobes(cells_of(picture, step), WorldLight::size / step, roughness * roughness), step));
   }

@@ -11,52 +11,58 @@
 
 namespace gnomon::render_scene {
 
-/** Unit vector at \a u from the left and \a v from the bottom of an equirectangular picture. */
+/**
+ * Unit vector of a point of an equirectangular picture. \a u in [0, 1] from the left, \a v in [0, 1] from the bottom.
+ * \see scene::WorldPicture
+ */
 [[nodiscard]] glm::dvec3 direction_of(double u, double v);
-/** Solid angle of a texel in row \a y from the bottom of \a height, sr. */
+/** Solid angle in sr of a texel in row \a y, counted from the bottom, of a picture of \a width by \a height texels. */
 [[nodiscard]] double texel_solid_angle(int y, int width, int height);
 
-/** A direction that stands for a part of a world. */
+/** A sampled direction of a world. */
 struct WorldDirection {
   /** Unit vector from the scene to the world. */
   glm::dvec3 to_world{0.0, 1.0, 0.0};
-  /** Irradiance on a surface that faces it, W/m²: radiance over density. */
+  /** Radiance divided by the probability density, W/m²: irradiance of a surface perpendicular to the direction. */
   glm::dvec3 irradiance{0.0};
-  /** Solid angle that it stands for, sr: 1 over density. */
+  /** 1 divided by the probability density, sr: the solid angle that the sample represents. */
   double solid_angle = 0.0;
 };
 
-/** Directions in proportion to the light of some texels of an equirectangular grid. */
+/** Samples directions of an equirectangular picture with a density proportional to its luminance. */
 class WorldDistribution {
  public:
   struct Texel {
-    /** From the left and from the bottom. */
+    /** Column from the left and row from the bottom. */
     int x = 0;
     int y = 0;
     glm::vec3 radiance{0.0F};
   };
   WorldDistribution() = default;
   /**
-   * \a texels: row by row. \a even_share: in [0, 1], of the directions that are spread evenly over the texels' solid
-   * angle; the others go by luminance.
+   * \a size: the size of the picture. \a texels: the sampled texels, sorted by row and then by column. \a even_share:
+   * the fraction of the samples, in [0, 1], that are distributed uniformly over the solid angle of the texels.
    */
   WorldDistribution(glm::ivec2 size, std::vector<Texel> texels, double even_share);
 
-  /** No texel gives light. */
+  /** Whether all texels are black. */
   [[nodiscard]] bool empty() const
   {
     return texels_.empty();
   }
-  /** Of a disk of one radiance that gives as much light, sr. */
+  /** Effective solid angle, sr: (∫ L dω)² / ∫ L² dω for the luminance L. Equals that of a uniformly bright disk. */
   [[nodiscard]] double solid_angle() const
   {
     return solid_angle_;
   }
-  /** For \a place in [0, 1)². The mean over all places is the light of the texels. \pre not empty */
+  /**
+   * The direction for the random numbers \a place in [0, 1)². The mean irradiance over all places is the integral of
+   * the radiance over the texels. \pre not empty
+   */
   [[nodiscard]] WorldDirection at(const glm::dvec2 &place) const;
 
  private:
-  /** Texels of one row: the first, and the sum of weights up to the end of the row. */
+  /** The texels [first, end) of one row, and the sum of the weights of all texels before `end`. */
   struct Row {
     std::size_t first = 0;
     std::size_t end = 0;
@@ -65,37 +71,37 @@ class WorldDistribution {
   glm::ivec2 size_{0};
   double solid_angle_ = 0.0;
   std::vector<Texel> texels_;
-  /** Of the texels of a row up to each one. */
+  /** For each texel, the sum of the weights of its row up to and including this texel. */
   std::vector<double> cumulative_;
   std::vector<Row> rows_;
 };
 
 /**
- * A world as an engine lights a scene with it: suns in the place of what is small and bright, which cast shadows, and a
- * smooth rest. Both together are the world.
+ * The light of a world, split for rendering. Small bright regions of the picture become suns, which cast shadows. The
+ * other texels are the rest. The sum of the suns and the rest is the world.
  */
 struct WorldLight {
-  /** Texels of `rest`, which `prefiltered` gives too. */
+  /** Size of `rest` and of the pictures of prefiltered(), in texels. */
   static constexpr glm::ivec2 size{256, 128};
-  /** Most suns. */
+  /** Maximum number of suns. */
   static constexpr int sun_max = 8;
 
   struct Sun {
-    /** Its angle is that under which a disk of one radiance gives as much light. */
+    /** A sun lamp with the irradiance and the effective solid angle of the region. */
     scene::PlacedLamp lamp;
-    /** The sun as the picture has it. */
+    /** The region of the picture. */
     WorldDistribution directions;
   };
-  /** The brightest first. */
+  /** Sorted by light, brightest first. */
   std::vector<Sun> suns;
-  /** The world without its suns, equirectangular, rows from the bottom. Where a sun was it is black. */
+  /** Radiance of the rest as an equirectangular picture, rows from the bottom. Texels of suns are black. */
   std::vector<glm::vec3> rest;
-  /** Empty where the rest is black. */
+  /** Empty if the rest is black. */
   WorldDistribution rest_directions;
   /**
-   * Irradiance of the rest over π, in real spherical harmonics up to the second order: with the basis of Ramamoorthi
-   * and Hanrahan (2001) multiplied in, so that it is a polynomial 1, y, z, x, xy, yz, 3z² - 1, xz, x² - y² of the
-   * normal.
+   * Irradiance of the rest divided by π, in real spherical harmonics up to order 2 (Ramamoorthi and Hanrahan 2001). The
+   * constants of the basis are multiplied in: these are the coefficients of the polynomials 1, y, z, x, xy, yz,
+   * 3z² - 1, xz and x² - y² of the normal.
    */
   std::array<glm::vec3, 9> harmonics{};
 
@@ -105,11 +111,12 @@ struct WorldLight {
   }
 };
 
+/** Splits \a world into suns and the rest. */
 [[nodiscard]] WorldLight world_light(const scene::World &world);
 
 /**
- * A picture of WorldLight::size as a mirror of rising roughness shows it, seen along the normal: one for each of
- * \a level_count levels, of roughness level / (level_count - 1). Level 0 is the picture itself.
+ * Filters \a picture, of WorldLight::size, with the GGX lobe of each of \a level_count roughness levels, for a view
+ * along the normal. The roughness of a level is level / (level_count - 1). Level 0 is the unfiltered picture.
  */
 [[nodiscard]] std::vector<std::vector<glm::vec3>> prefiltered(std::span<const glm::vec3> picture, int level_count);
 
