@@ -12,13 +12,13 @@ namespace gnomon::scene {
 
 namespace {
 
-/** A segment of a track: the keys around a time, and the place between them. */
+/** The two keys around a time, and the position between them. */
 struct Segment {
   std::size_t first = 0;
   std::size_t second = 0;
-  /** In [0, 1]. */
+  /** Position between the keys, in [0, 1]. */
   double t = 0.0;
-  /** Between the keys, seconds. */
+  /** Time between the keys, seconds. */
   double length = 0.0;
 };
 
@@ -42,7 +42,7 @@ void Track::evaluate(double seconds, std::span<double> out) const
 {
   const Segment s = segment_at(times, seconds);
   if (interpolation == Interpolation::CubicSpline) {
-    // Hermite spline of glTF 2.0, appendix C. Each key: in-tangent, value, out-tangent.
+    // Hermite spline (glTF 2.0, appendix C). Each key has an in-tangent, a value and an out-tangent.
     const float *first = values.data() + 3 * width * s.first;
     const float *second = values.data() + 3 * width * s.second;
     const double t = s.t;
@@ -175,7 +175,7 @@ void set_property(Lamp &lamp, AnimatedProperty property, const glm::dvec4 &value
 
 void set_property(Camera &camera, AnimatedProperty property, const glm::dvec4 &value)
 {
-  // A spline may leave the range of its keys.
+  // Clamp the values, because a spline may exceed the range of its keys.
   constexpr double angle_min = 1e-5;
   constexpr double angle_max = 3.1415;
   constexpr double length_min = 1e-12;

@@ -17,30 +17,45 @@
 #include <variant>
 #include <vector>
 
-/** Animations, skins and morph targets, as glTF 2.0 defines them. Scene::animations and Scene::deformed_meshes. */
+/**
+ * Animations, skins and morph targets as defined by glTF 2.0. \see Scene::animations, Scene::skins,
+ * Scene::deformed_meshes
+ */
 namespace gnomon::scene {
 
-/** How a value between two keys is computed (glTF 2.0, appendix C). */
+/** Interpolation between two keys (glTF 2.0, appendix C). */
 enum class Interpolation { Step, Linear, CubicSpline };
 
-/** Keys of one animated value of \ref width numbers. Immutable after import, and shared between channels. */
+/** The keys of one animated value, which consists of `width` numbers. Immutable after import; channels share tracks. */
 struct Track {
   Interpolation interpolation = Interpolation::Linear;
   std::size_t width = 1;
-  /** Seconds, at least 0, strictly ascending; not empty. */
+  /** Times of the keys in seconds: at least 0, strictly ascending, not empty. */
   std::vector<float> times;
-  /** Finite. width numbers for each key; with CubicSpline 3 · width: the in-tangent, the value and the out-tangent. */
+  /**
+   * Finite numbers. Step and Linear: `width` for each key. CubicSpline: 3 · `width` for each key, which are the
+   * in-tangent, the value and the out-tangent.
+   */
   std::vector<float> values;
 
-  /** The value at \a seconds; before the first and after the last key that key's value. \pre out.size() == width */
+  /**
+   * Compute the value at \a seconds. Before the first key and after the last key, the value is constant.
+   * \pre out.size() == width
+   */
   void evaluate(double seconds, std::span<double> out) const;
-  /** The same of rotations, as a unit quaternion by the shorter way. \pre width == 4: x, y, z, w */
+  /**
+   * Compute a rotation at \a seconds as a unit quaternion. Linear interpolation is spherical and takes the shorter arc.
+   * \pre width == 4: x, y, z, w
+   */
   [[nodiscard]] glm::dquat evaluate_rotation(double seconds) const;
 };
 
 using SharedTrack = std::shared_ptr<const Track>;
 
-/** A node with an animated transform or animated morph weights. Null tracks leave the value below. */
+/**
+ * A node with an animated transform or animated morph weights. If the track of a transform component is null, the
+ * component has the constant value stored here. If `weights_track` is null, the morph weights do not change.
+ */
 struct AnimatedNode {
   Handle<Node> node{};
   glm::dvec3 translation{0.0};
@@ -49,13 +64,13 @@ struct AnimatedNode {
   SharedTrack translation_track;
   SharedTrack rotation_track;
   SharedTrack scale_track;
-  /** One number for each morph target of the node's meshes. */
+  /** Has one number for each morph target of the node's meshes. */
   SharedTrack weights_track;
 };
 
 /** A property of a material, lamp or camera that can be animated (KHR_animation_pointer). */
 enum class AnimatedProperty {
-  /** Material::base_color and alpha: 4 numbers. */
+  /** Material::base_color and Material::alpha. */
   BaseColor,
   Metallic,
   Roughness,
@@ -72,13 +87,14 @@ enum class AnimatedProperty {
   HalfHeight,
 };
 
-/** Numbers that a property has in a track. */
+/** Number of components of a property: 4 for BaseColor, 3 for other colours, otherwise 1. */
 [[nodiscard]] std::size_t width_of(AnimatedProperty property);
 
+/** A property of a material, lamp or camera, and the track that animates it. */
 struct AnimatedValue {
   std::variant<Handle<Material>, Handle<Lamp>, Handle<Camera>> target;
   AnimatedProperty property = AnimatedProperty::BaseColor;
-  /** Multiplied with the track's values: the conversion of units. */
+  /** Factors of the first three numbers of the track, for the conversion of units. */
   glm::dvec3 factor{1.0};
   SharedTrack track;
 };
@@ -88,36 +104,37 @@ struct Animation {
   std::vector<AnimatedNode> nodes;
   std::vector<AnimatedValue> values;
 
-  /** The time of the last key, seconds; 0 without keys. */
+  /** Time of the last key in seconds; 0 if there are no tracks. */
   [[nodiscard]] double duration() const;
 };
 
-/** The joints of a skinned mesh. */
+/** The joints of skinned meshes. */
 struct Skin {
   std::string name;
+  /** A joint that is not in the scene has a stale or empty handle. */
   std::vector<Handle<Node>> joints;
   /** Inverse bind matrices, one for each joint. */
   std::vector<glm::dmat4> joint_from_mesh;
 };
 
-/** Differences to the rest shape at weight 1, one for each vertex. Empty: none. */
+/** Differences from the rest shape at weight 1, one for each vertex. An empty array means no differences. */
 struct MorphTarget {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;
   std::vector<glm::vec3> tangents;
 };
 
-/** The joints of one vertex, by their place in Skin::joints, and their weights. The sum of all weights of a vertex
- * is 1. */
+/** Up to four joints of one vertex and their weights. The weights of all sets of a vertex add up to 1. */
 struct JointWeights {
+  /** Indices in Skin::joints. */
   std::array<std::uint16_t, 4> joints{};
   glm::vec4 weights{0.0F};
 };
 
 /**
- * The rest shape of a mesh that morph targets and joints deform. The mesh belongs to one node. Vertices are deformed by
- * linear blend skinning (glTF 2.0, section 3.7.3) on the CPU, once for each pose: shadows, culling, picking and the
- * reference all read the deformed mesh.
+ * The rest shape of a mesh that is deformed by morph targets or joints. Only one node uses the mesh. The CPU deforms
+ * the vertices once for each pose with linear blend skinning (glTF 2.0, section 3.7.3). Shadows, culling, picking and
+ * the reference renderer read the deformed mesh.
  */
 struct DeformedMesh {
   Handle<Mesh> mesh{};
@@ -125,17 +142,17 @@ struct DeformedMesh {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;
   std::vector<glm::vec4> tangents;
-  /** The file has no normals: they are those of the deformed triangles, of which no two share a vertex. */
+  /** true: each vertex has the normal of its deformed triangle. No two triangles may then share a vertex. */
   bool has_flat_normals = false;
   std::vector<MorphTarget> targets;
-  /** One for each target. */
+  /** Current weights, one for each target. */
   std::vector<double> weights;
-  /** Place in Scene::skins; -1: none, and the mesh follows its node. */
+  /** Index in Scene::skins; -1: the mesh has no skin and moves with its node. */
   int skin = -1;
-  /** joint_sets entries for each vertex, one after the other. */
+  /** `joint_sets` consecutive entries for each vertex. */
   std::vector<JointWeights> joint_weights;
   std::size_t joint_sets = 0;
-  /** The joints' matrices and the weights of the last deform_meshes(), which skips a mesh where they are the same. */
+  /** Joint matrices and weights of the last deformation. deform_meshes() skips the mesh if they are unchanged. */
   std::vector<glm::dmat4> deformed_by_joints;
   std::vector<double> deformed_by_weights;
 };
@@ -143,15 +160,15 @@ struct DeformedMesh {
 class Scene;
 
 /**
- * Sets all values that \a animation animates to those at \a seconds, and deforms the meshes. Things that were removed
- * are skipped. Values that do not change are no edit.
+ * Set all values that \a animation animates to their values at \a seconds, and deform the meshes. Skips nodes,
+ * materials, lamps and cameras that were removed. A value that does not change is not an edit of the scene.
  */
 void pose(Scene &scene, const Animation &animation, double seconds);
 
-/** Sets the morph weights of all meshes of \a node. Missing weights are 0. Call deform_meshes() afterwards. */
+/** Set the morph weights of all meshes of \a node. Missing weights are 0. Call deform_meshes() afterwards. */
 void set_morph_weights(Scene &scene, Handle<Node> node, std::span<const double> weights);
 
-/** Deforms the meshes by the joints' matrices and the morph weights. Call it after edits of joints or weights. */
+/** Deform all meshes in Scene::deformed_meshes. Call this after joints have moved or weights have changed. */
 void deform_meshes(Scene &scene);
 
 }  // namespace gnomon::scene

@@ -13,14 +13,14 @@ namespace gnomon::scene {
 
 namespace {
 
-/** \a fallback where \a vector has no direction. */
+/** The unit vector in the direction of \a vector; \a fallback if the length of \a vector is 0 or not finite. */
 glm::vec3 unit_or(const glm::dvec3 &vector, const glm::vec3 &fallback)
 {
   const double length = glm::length(vector);
   return length > 0.0 && std::isfinite(length) ? glm::vec3(vector / length) : fallback;
 }
 
-/** The vertices of one mesh on their way from the rest shape to the pose. */
+/** The vertices of one mesh during the deformation. */
 struct Shape {
   std::vector<glm::dvec3> positions;
   std::vector<glm::dvec3> normals;
@@ -47,11 +47,15 @@ Shape morphed(const DeformedMesh &deformed)
   return shape;
 }
 
-/** The matrix of each joint: from the mesh at rest to the node's space. A removed joint stays where it was bound. */
+/**
+ * For each joint, the matrix from the rest shape of the mesh to the node's space. A removed joint has the identity
+ * matrix, so it does not deform the mesh.
+ */
 std::vector<glm::dmat4> joint_matrices(const Scene &scene, const Skin &skin, Handle<Node> node)
 {
   const glm::dmat4 &world_from_node = scene.world_from_node(node);
-  // glTF ignores the transform of a skinned node, so it is taken back. A singular one cannot be.
+  // glTF ignores the transform of a skinned node, so multiply by its inverse. A singular transform has no inverse and
+  // is not cancelled.
   const bool is_singular = !(std::abs(glm::determinant(world_from_node)) > 0.0);
   const glm::dmat4 node_from_world = is_singular ? glm::dmat4(1.0) : glm::inverse(world_from_node);
   std::vector<glm::dmat4> matrices;
@@ -63,7 +67,7 @@ std::vector<glm::dmat4> joint_matrices(const Scene &scene, const Skin &skin, Han
   return matrices;
 }
 
-/** Cofactors: the transform of normals, without a division that a flat matrix would not survive. */
+/** The cofactor matrix, which transforms normals. It needs no division, so it exists for singular matrices, too. */
 glm::dmat3 normal_matrix(const glm::dmat3 &m)
 {
   return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
@@ -83,7 +87,7 @@ void skin_vertices(const DeformedMesh &deformed, const std::vector<glm::dmat4> &
     }
     shape.positions[vertex] = glm::dvec3(matrix * glm::dvec4(shape.positions[vertex], 1.0));
     const glm::dmat3 linear(matrix);
-    // A mirroring matrix turns cofactors around.
+    // The cofactors of a mirroring matrix reverse normals. Reverse them again.
     const double side = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
     shape.normals[vertex] = side * (normal_matrix(linear) * shape.normals[vertex]);
     if (!shape.tangents.empty()) {
@@ -132,7 +136,7 @@ void deform(Scene &scene, DeformedMesh &deformed)
       tangents.emplace_back(unit_or(shape.tangents[i], glm::vec3(deformed.tangents[i])), deformed.tangents[i].w);
     }
   }
-  // A pose that does not change the mesh is no edit: nothing is uploaded and no shadow is drawn.
+  // Do not edit the mesh if it does not change, so that it is not uploaded and shadows are not drawn again.
   if (positions == current.positions && normals == current.normals && tangents == current.tangents) {
     return;
   }

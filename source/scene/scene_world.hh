@@ -9,31 +9,32 @@
 
 namespace gnomon::scene {
 
-/** Radiance from all directions, W/(sr m²), as an equirectangular picture. */
+/** Radiance from all directions in W/(sr m²) as an equirectangular picture. */
 struct WorldPicture {
-  /** Both above 0. */
+  /** Size in texels; both greater than 0. */
   int width = 0;
   int height = 0;
   /**
-   * width · height texels, finite and at least 0, rows from the top. The direction (x, y, z) in glTF's axes is at
+   * width · height texels, finite and at least 0, rows from the top. The unit vector (x, y, z), in glTF's axes, is at
    * u = 0.5 + atan2(z, x) / 2π from the left and v = 0.5 + asin(y) / π from the bottom.
    */
   std::vector<glm::vec3> texels{};
 
+  /** The texel in column \a x from the left and row \a y from the top. */
   [[nodiscard]] const glm::vec3 &at(int x, int y) const
   {
     return texels[std::size_t(y) * std::size_t(width) + std::size_t(x)];
   }
 };
 
-/** Light from infinitely far away, from every direction. */
+/** Light from infinitely distant surroundings. The radiance is `color` · `strength` · `picture`. */
 struct World {
-  /** Linear: the radiance where there is no picture, and a factor of the picture. */
+  /** Linear colour. */
   glm::vec3 color{1.0F};
   float strength = 1.0F;
-  /** Turns the picture around the y axis, radians: what was at +x comes to -z at π/2. */
+  /** Rotation of the picture around the y axis, radians. A rotation by π/2 moves the texel at +x to -z. */
   float rotation = 0.0F;
-  /** nullptr: the same radiance from everywhere. */
+  /** nullptr: the radiance is the same in all directions, `color` · `strength`. */
   std::shared_ptr<const WorldPicture> picture{};
 
   bool operator==(const World &) const = default;

@@ -27,10 +27,13 @@ using scene::Track;
 
 namespace {
 
-/** Numbers in all tracks of a file. Accessors without data cost a file nothing, so its size does not limit them. */
+/**
+ * Maximum number of values in all tracks of a file. The size of a file does not limit their number, because accessors
+ * without data take no space.
+ */
 constexpr std::size_t value_count_max = std::size_t(1) << 26U;
 
-/** A property that KHR_animation_pointer names, after the index of its thing. */
+/** A supported pointer "/COLLECTION/INDEX/PATH" of KHR_animation_pointer, without the index. */
 struct Pointer {
   std::string_view collection;
   std::string_view path;
@@ -54,7 +57,7 @@ constexpr std::array<Pointer, 14> pointers = {{
     {"lights", "range", AnimatedProperty::LampRange},
 }};
 
-/** "/materials/3/alphaCutoff" as ("materials", 3, "alphaCutoff"). */
+/** The parts of a pointer: "/materials/3/alphaCutoff" has the parts "materials", 3 and "alphaCutoff". */
 struct PointerParts {
   std::string_view collection;
   int index = -1;
@@ -134,7 +137,7 @@ class AnimationImporter {
       if (channel.node >= 0) {
         import_node_channel(sampler, channel.node, channel.path, node_places, animation);
       }
-      // glTF lets extensions have targets of their own: a channel without a node says nothing.
+      // A channel without a node is valid and ignored, because its target may be defined by an extension.
       return;
     }
     const std::optional<PointerParts> parts = parts_of(channel.pointer);
@@ -212,7 +215,7 @@ class AnimationImporter {
                                                          Model::ElementType::Vec4};
     AnimatedValue value;
     value.property = pointer.property;
-    // emissiveStrength is one number, which scales the three of the factor.
+    // emissiveStrength is one number, which is multiplied by the three numbers of emissiveFactor.
     const bool is_strength = pointer.path.ends_with("emissiveStrength");
     const std::size_t width = is_strength ? 1 : width_of(pointer.property);
     value.track = track(sampler, width, types[width]);
@@ -275,7 +278,7 @@ class AnimationImporter {
     }
     const AccessorReader input(file_, sampler.input, Model::ElementType::Scalar);
     const AccessorReader output(file_, sampler.output, type);
-    // Morph weights are one scalar after the other.
+    // The morph weights of a key are consecutive scalars.
     const std::size_t elements_of_value = type == Model::ElementType::Scalar ? width : 1;
     const std::size_t parts = read->interpolation == Interpolation::CubicSpline ? 3 : 1;
     if (input.count() == 0 || output.count() / (parts * elements_of_value) != input.count() ||
@@ -288,7 +291,7 @@ class AnimationImporter {
     }
     for (std::size_t i = 0; i < input.count(); i++) {
       const float seconds = input.scalar(i);
-      // False for NaN, too.
+      // The negated comparisons also reject NaN.
       if (!(seconds >= 0.0F) || !std::isfinite(seconds) || (i > 0 && !(seconds > read->times.back()))) {
         throw Fault("sampler", "its times do not ascend from 0, or one is not finite");
       }

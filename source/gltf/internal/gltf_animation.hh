@@ -8,10 +8,16 @@
 #include <map>
 #include <vector>
 
-/** Animations of nodes, and of materials, lamps and cameras by KHR_animation_pointer. Internal to source/gltf. */
+/**
+ * Import of animations: of nodes, and with KHR_animation_pointer of materials, lamps and cameras. Internal to
+ * source/gltf.
+ */
 namespace gnomon::gltf {
 
-/** The things of the scene for those of the file. A lamp or camera of the file is one of the scene for each node. */
+/**
+ * Maps indices in the file to handles in the scene. A lamp or camera of the file becomes one lamp or camera of the
+ * scene for each node that uses it.
+ */
 struct ImportedThings {
   std::map<int, scene::Handle<scene::Node>> nodes;
   std::map<int, std::vector<scene::Handle<scene::Lamp>>> lamps;
@@ -19,7 +25,7 @@ struct ImportedThings {
   std::map<int, scene::Handle<scene::Material>> materials;
 };
 
-/** Appends the file's animations to \a scene. Channels that cannot be played are left out with a warning. */
+/** Append the file's animations to \a scene. Omits channels that are invalid or not supported, with a warning. */
 void import_animations(const File &file, const ImportedThings &things, Warnings &warnings, scene::Scene &scene);
 
 }  // namespace gnomon::gltf

@@ -22,7 +22,7 @@ bool is_finite(const glm::vec3 &v)
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/** Empty where the target has no such attribute. */
+/** Read an attribute of a morph target. Returns an empty vector if the target does not have it. */
 std::vector<glm::vec3> read_differences(const File &file, const Attributes &target, const char *name,
                                         std::span<const std::uint32_t> vertices, std::size_t vertex_count)
 {
@@ -48,7 +48,7 @@ void read_targets(const File &file, const Model::Primitive &primitive, std::span
                   std::size_t vertex_count, const std::string &what, Warnings &warnings, DeformedMesh &deformed)
 {
   for (const Attributes &target : primitive.targets) {
-    // A target that is left out keeps its place, so that the weights of the others stay theirs.
+    // Keep an empty entry for a target that cannot be read, so that the indices of the weights stay valid.
     scene::MorphTarget &read = deformed.targets.emplace_back();
     try {
       read = {read_differences(file, target, "POSITION", vertices, vertex_count),
@@ -113,7 +113,7 @@ void read_joints(const File &file, const Model::Primitive &primitive, int skin, 
         const glm::vec4 weights = set.weights.vec4(vertex);
         for (int i = 0; i < 4; i++) {
           const std::uint32_t joint = joints[std::size_t(i)];
-          // False for NaN, too. A joint without weight may have any index.
+          // The negated comparison also skips NaN. The index of a joint without a weight is not checked.
           if (!(weights[i] > 0.0F) || !std::isfinite(weights[i])) {
             continue;
           }
@@ -126,7 +126,7 @@ void read_joints(const File &file, const Model::Primitive &primitive, int skin, 
         }
       }
       if (!(sum > 0.0)) {
-        // The first joint moves what no joint claims.
+        // Bind a vertex without weights to the first joint.
         deformed.joint_weights[first].weights.x = 1.0F;
         sum = 1.0;
         bad_weights++;
