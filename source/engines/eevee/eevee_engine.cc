@@ -19,7 +19,7 @@ namespace gnomon::eevee {
 
 namespace {
 
-/** In light_block. */
+/** Index in light_block of the first sun with shadow maps. */
 std::optional<int> first_sun_with_maps(const Lamps &lamps)
 {
   for (int i = 0; i < lamps.light_block.light_count; i++) {
@@ -33,7 +33,7 @@ std::optional<int> first_sun_with_maps(const Lamps &lamps)
 
 }  // namespace
 
-/** \throws gpu::Error for those of the frame; those of shadows are the shadows' business. */
+/** Check all settings except those of shadows, which SceneShadows::sync checks. \throws gpu::Error */
 static void check(const Settings &settings)
 {
   if (settings.sample_count < 1) {
@@ -74,7 +74,7 @@ void Engine::make_film(draw::Viewport &viewport)
   }
 }
 
-/** Which lamps give light, and which have a shadow of which kind and size. Needs no device. */
+/** Update the lights and plan their shadows if their inputs changed. Creates no resources on the device. */
 void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
 {
   const ShadowsKey key{scene_.lamps_revision(), scene_.objects().revision(), scene_.passes_revision(),
@@ -108,7 +108,7 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
   shared.synced = key;
 }
 
-/** Take note of the last sync of the lamps, which another viewport may have asked for. */
+/** Update the features of the viewport after the last sync of the lamps, which another viewport may have made. */
 static void follow_lamps(Data &data)
 {
   if (data.stl.shared_revision != data.shared->revision) {
@@ -160,7 +160,7 @@ static void require_sync(bool is_synced)
   }
 }
 
-/** Write what every pass of a sample reads. */
+/** Update the blocks that all passes of a sample read. */
 void Engine::update_view(Data &data, const draw::View &view)
 {
   data.stl.object_block = data.shared->object_block = {scene_.objects().buffer().id()};
@@ -209,7 +209,7 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
     update_view(data, sample_view);
     sample.is_for_feedback = viewport.draws_until_final() && awaits_depths(data, view);
   }
-  // A sample that sees nothing adds nothing to a picture that has begun.
+  // The first sample is always drawn, because it clears the picture. Later samples are skipped if nothing is visible.
   if (is_sample_seen || data.sample_index == 0) {
     draw_steps(sample, FrameStep::When::EachSample);
   }

@@ -21,11 +21,11 @@ struct Background {
     /** Transparent black. */
     None,
     Color,
-    /** The scene's world; where it has none, as None. */
+    /** The world of the scene. The same as None if the scene has no world. */
     World,
   };
   Kind kind = Kind::None;
-  /** Of Kind::Color: linear radiance. */
+  /** Linear radiance of Kind::Color. */
   glm::vec3 color{0.0F};
 };
 
@@ -92,7 +92,7 @@ class Engine final : public draw::Engine {
    */
   Engine(render_scene::RenderScene &scene, const Settings &settings) : scene_(scene), settings_(settings) {}
 
-  /** Other settings, from the next draw::Viewport::sync on, which must come before the next draw. */
+  /** Set other settings. They take effect with the next draw::Viewport::sync, which must precede the next draw. */
   void set_settings(const Settings &settings)
   {
     settings_ = settings;
@@ -160,7 +160,7 @@ class Engine final : public draw::Engine {
   /** Where submitted work was lost: draw and write again all that it may have held. */
   void take_losses(draw::Viewport &viewport);
   void sync_lamps(SharedData &shared, const gpu::Limits &device_limits);
-  /** Create and record everything that a picture needs in which any object is visible, as far as it changed. */
+  /** Create the resources and record the passes of a picture with a visible object, as far as their inputs changed. */
   void record(draw::Viewport &viewport);
   void make_targets(draw::Viewport &viewport);
   void make_blocks(draw::Viewport &viewport);
@@ -171,7 +171,7 @@ class Engine final : public draw::Engine {
   void record_casters(Data &data);
   void record_caster(SharedData &shared, draw::ObjectIndex object);
   void record_tonemap(draw::Viewport &viewport);
-  /** \return false: only what the device's feedback is made from was drawn. */
+  /** \return false if only the steps for the device's feedback were drawn, because the feedback changes the picture. */
   bool draw_sample(draw::Viewport &viewport, const draw::View &view);
   void draw_target(draw::Viewport &viewport, const draw::View &view);
   void add_casters(Data &data);
@@ -180,14 +180,14 @@ class Engine final : public draw::Engine {
   render_scene::RenderScene &scene_;
   Settings settings_;
   std::uint64_t settings_revision_ = 0;
-  /** Of all viewports. */
+  /** Shared by all viewports. */
   ShaderCache shaders_;
   std::uint64_t shaders_revision_ = 0;
-  /** Of the viewports, which own it. */
+  /** Owned by the viewports that draw with this engine. */
   std::weak_ptr<SharedData> shared_;
 };
 
-/** For a host's registry; engines that it creates read \a scene, which must outlive them. */
+/** The entry of this engine in a host's registry. \a scene must outlive all engines that the entry creates. */
 [[nodiscard]] draw::EngineType engine_type(render_scene::RenderScene &scene, const Settings &settings);
 
 }  // namespace gnomon::eevee

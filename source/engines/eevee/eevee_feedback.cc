@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the device tells about submitted work: losses, depths and times.
+// Feedback of the device about submitted work: losses, depths and times.
 #include "eevee_engine.hh"
 #include "eevee_engine_data.hh"
 
@@ -59,7 +59,7 @@ bool Engine::take_feedback(draw::Viewport &viewport, const gpu::Feedback &feedba
     }
     depths.received_tag = std::max(depths.received_tag, texels.tag);
     const glm::mat4 &requested = depths.requested_clip_from_world[texels.tag % depths.requested_clip_from_world.size()];
-    // Frames of one view that were recorded before the first was answered ask for the same depths.
+    // Several frames of one view may have requested the same depths before the first request was answered.
     if (depths.clip_from_world != requested) {
       depths.depths.resize(texels.bytes.size() / sizeof(float));
       std::memcpy(depths.depths.data(), texels.bytes.data(), texels.bytes.size());

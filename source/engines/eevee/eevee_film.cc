@@ -30,7 +30,7 @@ glm::vec2 film_offset_px(int index, int count, std::uint32_t seed)
 
 namespace {
 
-/** What one sample gives to a pixel from itself and its neighbours on one axis. */
+/** Filter weights, along one axis, of the samples in the previous pixel, the pixel itself and the next pixel. */
 glm::dvec3 axis_weights(double offset_px)
 {
   return {filter_weight(offset_px - 1.0), filter_weight(offset_px), filter_weight(offset_px + 1.0)};

@@ -8,11 +8,10 @@
 
 namespace gnomon::eevee {
 
-/** Width over which the pixel filter falls to nothing, pixels: Blackman-Harris of 1.5 px in Cycles' and EEVEE's terms.
- */
+/** Diameter of the pixel filter's support, pixels. Cycles and EEVEE define it as a filter width of 1.5 px. */
 inline constexpr double filter_support_px = 3.0;
 
-/** Blackman-Harris (Harris 1978): 1 in the middle, 0 from half the support on. */
+/** The Blackman-Harris window (Harris 1978): 1 at the centre, 0 from filter_support_px / 2 on. */
 [[nodiscard]] double filter_weight(double distance_px);
 
 /**

@@ -42,8 +42,7 @@ struct ReportSource {
   }
 };
 
-/** A node with children. It is made if at least one child is made. Its bytes and seconds are the sums of its children.
- */
+/** A node with children. It is made if at least one child is made. Its bytes and seconds are the sums of theirs. */
 [[nodiscard]] FrameNode folder(std::string what, std::string why, std::string why_not, std::vector<FrameNode> children);
 
 /** The images that the materials of drawable objects read. The bool is true for colours and false for data. */

@@ -8,33 +8,35 @@
 namespace gnomon::eevee {
 
 /**
- * Renders a scene on a device: the scene's resources there, one engine, one viewport, and the order of calls that makes
- * a picture with them. For programs that need no other arrangement.
+ * Renders a scene on a device. It owns the resources of the scene on the device, one engine and one viewport, and makes
+ * their calls in the required order. Programs with several engines or viewports use these classes directly.
  *
- * The scene may be edited between any two calls; sync takes note of the edits. A program renders on the device's thread
- * by sync and draw, or on two threads: one edits the scene and calls prepare, the device's thread submits the packets.
+ * The scene may be edited between any two calls; sync applies the edits. A program either calls sync and draw on the
+ * device's thread, or uses two threads: one edits the scene and calls prepare, and the device's thread submits the
+ * packets.
  */
 class SceneRenderer {
  public:
   /**
    * \a device and \a scene must outlive the renderer. Call sync before the first draw.
-   * \throws gpu::Error where \a size_px is not one that the device can draw.
+   * \throws gpu::Error if the device does not support pictures of \a size_px.
    */
   SceneRenderer(gpu::Device &device, const scene::Scene &scene, glm::ivec2 size_px, const Settings &settings = {})
       : render_scene_(device, scene), engine_(render_scene_, settings), viewport_(device, size_px), settings_(settings)
   {
   }
 
-  /** Take note of edits of the scene and of other settings. \throws gpu::Error naming what cannot be drawn. */
+  /** Apply edits of the scene and new settings. \throws gpu::Error that names the cause if they cannot be drawn. */
   void sync();
-  /** Other settings, from the next sync on. */
+  /** Set other settings. They take effect with the next sync. */
   void set_settings(const Settings &settings)
   {
     settings_ = settings;
     is_synced_ = false;
     engine_.set_settings(settings);
   }
-  /** Another size, from the next sync on. \throws gpu::Error as the constructor; then nothing changes. */
+  /** Set another size. It takes effect with the next sync. \throws gpu::Error as the constructor; nothing changes then.
+   */
   void resize(glm::ivec2 size_px)
   {
     viewport_.resize(size_px);
@@ -42,16 +44,16 @@ class SceneRenderer {
   }
 
   /**
-   * Take note of edits, if there are any, and record the next sample of the picture that \a camera sees, for
-   * gpu::Device::submit on the device's thread; otherwise as draw_sample. Needs no device, and may be called on another
-   * thread. Uses the feedback of \a packet's last submission, so that cascades that are fitted to depths follow the
-   * camera some frames late. The framebuffer of \a target must live until the submission.
+   * Sync if necessary, and record the next sample of the picture of \a camera into \a packet, for gpu::Device::submit
+   * on the device's thread. Otherwise as draw_sample. This function does not use the device and may be called on
+   * another thread. It takes the feedback of the last submission of \a packet, so that cascades that are fitted to
+   * depths follow the camera some frames later. The framebuffer of \a target must live until the submission.
    */
   bool prepare(gpu::Packet &packet, const scene::PlacedCamera &camera, const draw::Target &target = {});
   /**
-   * Draw the next sample of the picture that \a camera sees, if it needs more, and write the picture so far to
-   * \a target. The picture begins anew when the camera or anything that sync takes note of changes: a host calls this
-   * once a frame. \return whether the picture is complete, so that further calls would change nothing
+   * Draw the next sample of the picture of \a camera, unless the picture is complete, and write the mean of its samples
+   * to \a target. The picture restarts if the camera changes or if sync applies a change. A host calls this function
+   * once per frame. \return whether the picture is complete, so that further calls would not change it
    */
   bool draw_sample(const scene::PlacedCamera &camera, const draw::Target &target = {});
   /** Called after each sample with the samples drawn so far; false: draw no more. May be empty. */
@@ -62,7 +64,7 @@ class SceneRenderer {
    */
   bool draw(const scene::PlacedCamera &camera, const Progress &progress = {}, const draw::Target &target = {});
 
-  /** What \a camera sees, in the coordinates of the render scene. */
+  /** The view of \a camera in the coordinates of the render scene. */
   [[nodiscard]] draw::View view_of(const scene::PlacedCamera &camera) const;
   [[nodiscard]] const Settings &settings() const
   {
@@ -86,7 +88,7 @@ class SceneRenderer {
   Engine engine_;
   draw::Viewport viewport_;
   Settings settings_;
-  /** No settings and no size were given since the last sync, and it came to its end. */
+  /** The last sync succeeded, and settings and size have not changed since. */
   bool is_synced_ = false;
 };
 

@@ -198,8 +198,7 @@ void SceneShadows::finish()
   casters_.distances().keep_only(positions_ws, casters_.list());
 }
 
-/** Assign layers to each map. Layers keep their place, except those of a sun that grows and has no gap after its run.
- */
+/** Assign layers to each map. A run keeps its layers unless it has to grow and the next layers are in use. */
 void SceneShadows::place_maps(gpu::Device &device)
 {
   if (map_count() == 0) {

@@ -44,8 +44,7 @@ float distance_to(const scene::Bounds &box, const glm::vec3 &position_ws)
   return glm::distance(position_ws, glm::clamp(position_ws, box.min, box.max));
 }
 
-/** Distance from \a p to a triangle: to its plane if the projection of \a p is inside the triangle, else to its edges.
- */
+/** Distance from \a p to a triangle: to its plane if \a p projects into the triangle, otherwise to its edges. */
 static double distance_to_triangle(const glm::dvec3 &p, const glm::dvec3 &a, const glm::dvec3 &b, const glm::dvec3 &c)
 {
   const glm::dvec3 normal = glm::cross(b - a, c - a);

@@ -15,8 +15,7 @@ namespace gnomon::eevee {
 
 /** The content of a layer. */
 enum class EsmMethod {
-  /** The mean of exp(c·z) for distances z. Shadows are sharp, but light leaks over a length of 1 / c behind a caster.
-   */
+  /** The mean of exp(c·z) for distances z. Shadows are sharp, but light leaks behind casters over a length of 1 / c. */
   Esm,
   /**
    * The mean and the variance of exp(c·z) in two channels: an exponential variance shadow map. It is more accurate for

@@ -23,8 +23,7 @@ enum class LayerPass {
 /** The faces of one-sided casters that are drawn. Both faces of two-sided materials are always drawn. */
 enum class CasterFaces { All, Front, Back };
 
-/** Settings of shadows. Settings of a lamp (scene::LampShadow) override them, except that `None` disables all shadows.
- */
+/** Settings of shadows. Those of a lamp (scene::LampShadow) override them, except that `None` disables all shadows. */
 struct ShadowSettings {
   /** Hard: bilinear blend of the four texels around a lookup. Pcf: percentage-closer filtering with `pcf`. */
   scene::ShadowKind kind = scene::ShadowKind::Hard;

@@ -30,8 +30,7 @@ class LayerArray {
    */
   bool resize(gpu::Device &device, int size_px, int layers, bool has_content);
 
-  /** A framebuffer of \a count layers from \a first on. Created on first use. \a count 1: a framebuffer of one layer.
-   */
+  /** A framebuffer of \a count layers from \a first on, created on first use. It is not layered if \a count is 1. */
   [[nodiscard]] const gpu::Framebuffer &framebuffer(gpu::Device &device, int first, int count = 1);
 
   [[nodiscard]] const std::string &name() const

@@ -173,8 +173,7 @@ class ShadowTechnique {
   }
   /** For techniques without follows_view: set the views of \a slot from its lamp and its `near`. */
   virtual void set_lamp_views(ShadowSlot & /*slot*/) const {}
-  /** For techniques with follows_view: fit the views of \a slot to \a view, and invalidate layers whose view changes.
-   */
+  /** For techniques with follows_view: fit the views of \a slot to \a view; invalidate layers whose view changes. */
   virtual void fit_views(ShadowSlot & /*slot*/, const ShadowView & /*view*/, const ShadowCasters & /*casters*/,
                          const ShadowSettings & /*settings*/) const
   {
