@@ -30,7 +30,7 @@ FrameSequence::FrameSequence(FrameOptions options, std::filesystem::path output)
   }
   const std::string name = output_.filename().string();
   if (!name.empty() && count() > 1 && name.find('#') == name.npos) {
-    throw UsageError(fmt::format("-o '{}' has no # for the number of the frame, as frame_####.exr has", name));
+    throw UsageError(fmt::format("-o '{}' has no # for the frame number; use a name such as frame_####.exr", name));
   }
 }
 
@@ -67,7 +67,7 @@ bool FrameSequence::is_done(int index, glm::ivec2 size_px) const
     return read_picture(file).size_px == size_px;
   }
   catch (const std::runtime_error &) {
-    // A file that another program has cut short is rendered again.
+    // The file is incomplete, for example because the program was interrupted. Render it again.
     return false;
   }
 }
@@ -85,9 +85,10 @@ void FrameSequence::pose(scene::Scene &scene, int index) const
     }
     names.push_back(animation.name);
   }
-  throw std::runtime_error(names.empty() ? fmt::format("{}: it has no animation for --frames", scene.path)
-                                         : fmt::format("{}: no animation '{}'; it has: {}", scene.path,
-                                                       options_.animation, fmt::join(names, ", ")));
+  throw std::runtime_error(
+      names.empty()
+          ? fmt::format("{}: --frames needs an animation, and the scene has none", scene.path)
+          : fmt::format("{}: no animation '{}'; it has: {}", scene.path, options_.animation, fmt::join(names, ", ")));
 }
 
 void FrameSequence::show_progress(int index, int rendered_count, double rendered_seconds) const

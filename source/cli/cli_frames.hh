@@ -11,23 +11,24 @@
 
 namespace gnomon::cli {
 
-/** The options of `gnomon render` for the frames of an animation. */
+/** Options of `gnomon render` for the frames of an animation. */
 struct FrameOptions {
   /** "A-B" or "A"; empty: one picture without an animation. */
   std::string range;
   double frames_per_second = 24.0;
-  /** Empty: the scene's first. */
+  /** Name of the animation; empty: the scene's first. */
   std::string animation;
+  /** Whether to skip frames whose files are complete. */
   bool is_resumed = false;
 };
 
-/** The numbers, times and files of the frames of one command. */
+/** Numbers, times and files of the frames that one command renders. */
 class FrameSequence {
  public:
-  /** \throws UsageError where the range is not one, or the output's name has no place for the number. */
+  /** \throws UsageError if the range is invalid, or if there are several frames and the output's name has no # */
   FrameSequence(FrameOptions options, std::filesystem::path output);
 
-  /** false: one picture, of the scene as its file has it. */
+  /** false: the command renders one picture without an animation. */
   [[nodiscard]] bool is_animated() const
   {
     return !options_.range.empty();
@@ -36,26 +37,27 @@ class FrameSequence {
   {
     return last_ - first_ + 1;
   }
-  /** The number of the frame at a place from 0 to count() - 1. */
+  /** Number of a frame. \a index: from 0 to count() - 1, also in the following functions */
   [[nodiscard]] int number(int index) const
   {
     return first_ + index;
   }
+  /** Time of a frame. Frame number 0 is at 0 s. */
   [[nodiscard]] double seconds(int index) const
   {
     return double(number(index)) / options_.frames_per_second;
   }
-  /** The output's name with its last run of # replaced by the number, with at least as many digits. */
+  /** The output's path. The last run of # in its name is replaced by the frame number, padded with zeros. */
   [[nodiscard]] std::filesystem::path path(int index) const;
-  /** The number and the time for the header of the frame's picture; empty for one picture without an animation. */
+  /** Frame number and time for the header of the picture; empty without an animation. */
   [[nodiscard]] Metadata metadata(int index) const;
-  /** Whether the frame need not be rendered: --resume was given, and its file can be read whole and has that size. */
+  /** Whether the frame can be skipped: --resume was given, and its file is readable and has the size \a size_px. */
   [[nodiscard]] bool is_done(int index, glm::ivec2 size_px) const;
 
-  /** Sets \a scene to the frame's time. \throws std::runtime_error where the scene has no such animation. */
+  /** Poses \a scene at the frame's time. \throws std::runtime_error if the scene does not have the animation */
   void pose(scene::Scene &scene, int index) const;
 
-  /** On a terminal: the frame, and an estimate of the time left from the frames that were rendered. */
+  /** Prints the frame and an estimate of the remaining time, if stderr is a terminal. */
   void show_progress(int index, int rendered_count, double rendered_seconds) const;
 
  private:

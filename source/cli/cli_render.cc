@@ -36,7 +36,7 @@ double seconds_since(Clock::time_point start)
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/** Names of `--view`. */
+/** Values of `--view`. */
 const std::map<std::string, draw::ViewTransform> view_transforms = {{"standard", draw::ViewTransform::Standard},
                                                                     {"raw", draw::ViewTransform::Raw},
                                                                     {"agx", draw::ViewTransform::Agx},
@@ -74,7 +74,7 @@ struct RenderOptions {
   WorldOptions world;
 };
 
-/** What was measured, for people and for --json. */
+/** Measurements for the printed summary and for --json. */
 struct RenderResult {
   std::string device;
   double import_seconds = 0.0;
@@ -83,13 +83,13 @@ struct RenderResult {
   std::vector<double> frame_seconds;
   std::vector<std::vector<eevee::StepTime>> frame_steps;
   std::vector<eevee::ShadowCounters> frame_shadows;
-  /** Frames that --resume found whole. */
+  /** Number of frames that --resume skipped. */
   int skipped_frame_count = 0;
   double output_seconds = 0.0;
   double total_seconds = 0.0;
   std::size_t non_finite_count = 0;
   gpu::Counters counters;
-  /** Of what lives on the device at the end. */
+  /** Device memory of all resources at the end. */
   std::size_t memory_bytes = 0;
   eevee::Report report;
 };
@@ -125,10 +125,10 @@ void check_options(const RenderOptions &options)
     throw UsageError(fmt::format("--cascade-lambda {} is not from 0 to 1", options.cascade_lambda));
   }
   if (options.choice.is_asked() && options.backend != "gl") {
-    throw UsageError("--max-error and --max-time take a picture to measure: --backend gl");
+    throw UsageError("--max-error and --max-time measure a rendered picture and need --backend gl");
   }
   if (!options.choice.report_folder.empty() && !options.choice.is_asked()) {
-    throw UsageError("--report serves --max-error and --max-time, and neither is given");
+    throw UsageError("--report needs --max-error or --max-time");
   }
   if (options.output.empty() && options.backend == "gl") {
     throw UsageError("-o OUT.exr or -o OUT.png is required");
@@ -139,7 +139,7 @@ void check_options(const RenderOptions &options)
   }
 }
 
-/** Before any work: a picture that could not be stored is not worth rendering. */
+/** Checks that \a path can be written, before the program renders. */
 void check_folder(const fs::path &path)
 {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -177,8 +177,8 @@ eevee::PcfKernel parse_pcf(const std::string &text)
 }
 
 /**
- * From so many samples a pixel on, the edges of shadows are what is left of the error, and texels half as wide halve
- * it; their drawing is spread over the samples.
+ * With at least this number of samples per pixel, most of the remaining error is at the edges of shadows. Halving the
+ * size of shadow texels halves this error, and the cost of drawing them is spread over the samples.
  */
 constexpr int fine_shadow_samples = 16;
 
@@ -306,7 +306,7 @@ void print_summary(const RenderOptions &options, const RenderResult &result)
   }
   fmt::print(", output {:.1f} ms, all {:.1f} ms\n", 1e3 * result.output_seconds, 1e3 * result.total_seconds);
   if (result.skipped_frame_count > 0) {
-    fmt::print("{} frames were whole on disk and skipped\n", result.skipped_frame_count);
+    fmt::print("{} frames were skipped, because their files are complete\n", result.skipped_frame_count);
   }
   std::vector<std::string> made;
   for (const eevee::FramePart &part : result.report.parts) {
@@ -327,7 +327,7 @@ void show_progress(int done, int count)
   }
 }
 
-/** What a PNG holds: the picture as a display shows it. Nothing where the output is something else. */
+/** The texture for the display-referred picture of a PNG. Empty for other outputs and for --debug shadow. */
 std::optional<draw::TargetTexture> make_display(const RenderOptions &options, gpu::Device &device, glm::ivec2 size_px)
 {
   if (!is_png(options.output) || options.debug_view.kind == DebugView::Kind::Shadow) {
@@ -361,7 +361,7 @@ void render_frames(const RenderOptions &options, const scene::PlacedCamera &came
   }
 }
 
-/** \return Status::Done or Status::NonFinite; then nothing is written. */
+/** \return Status::Done, or Status::NonFinite if the picture has non-finite values; it is then not written */
 Status write_picture(const RenderOptions &options, const scene::Camera &camera, gpu::Device &device,
                      const gpu::Texture &picture, const std::optional<draw::TargetTexture> &display,
                      const Metadata &frame_metadata, RenderResult &result)
@@ -437,13 +437,13 @@ Status render(RenderOptions options)
   }
   const Clock::time_point sync_start = Clock::now();
   eevee::Settings settings = engine_settings(options);
-  // The error of a choice is that of surfaces.
+  // --max-error applies to surfaces, so the picture is rendered without a background.
   settings.background = chooser ? eevee::Background() : background;
   if (chooser) {
     settings.shadow = chooser->choice().technique.settings;
   }
   if (options.debug_view.kind == DebugView::Kind::Shadow) {
-    // The first sample draws the shadows, of the size that all samples have.
+    // Draw only one sample. It draws the shadow maps with the same size as all further samples.
     options.samples = settings.sample_count = 1;
   }
   eevee::SceneRenderer renderer(*device, scene, size_px, settings);
@@ -458,7 +458,7 @@ Status render(RenderOptions options)
     fmt::print(stderr, "gnomon: limit: {}\n", limit);
   }
   if (options.debug_view.kind == DebugView::Kind::Cascades && !engine.tinted_sun(viewport)) {
-    throw std::runtime_error(fmt::format("{}: no sun has a shadow, and so there are no cascades", scene.path));
+    throw std::runtime_error(fmt::format("{}: no sun has a shadow, so there are no cascades", scene.path));
   }
   result.sync_seconds = seconds_since(sync_start);
 
@@ -479,7 +479,7 @@ Status render(RenderOptions options)
     }
     render_frames(options, camera, renderer, display, result);
     const Clock::time_point output_start = Clock::now();
-    // Without a driver, too: it reports layers that do not exist.
+    // Also called for the null backend, because shadow_picture reports layers that do not exist.
     const gpu::Texture &picture = options.debug_view.kind == DebugView::Kind::Shadow
                                       ? shadow_picture(options.debug_view, scene, engine, viewport)
                                       : engine.radiance(viewport);
@@ -533,88 +533,98 @@ void add_render(CLI::App &app, Status &status)
   auto o = std::make_shared<RenderOptions>();
   CLI::App *command = app.add_subcommand("render", "Light a scene and write the picture");
   command->add_option("scene", o->scene, "glTF 2.0 file")->required();
-  command->add_option("-o,--output", o->output, "OUT.exr: scene-linear floats; OUT.png: through the view transform");
+  command->add_option("-o,--output", o->output,
+                      "OUT.exr: scene-linear floats; OUT.png: display colours after the view transform");
   command->add_option("--size", o->size, "WIDTHxHEIGHT, pixels")->capture_default_str();
-  command->add_option("--camera", o->camera, "Name of a camera; otherwise the first");
-  command->add_option("--samples", o->samples, "Samples a pixel")->capture_default_str()->check(CLI::Range(1, 65536));
+  command->add_option("--camera", o->camera, "Name of the camera (default: the first)");
+  command->add_option("--samples", o->samples, "Samples per pixel")->capture_default_str()->check(CLI::Range(1, 65536));
   CLI::Option *frames = command->add_option(
-      "--frames", o->frames.range, "A-B or A: frames of an animation; # in -o stands for a digit of the number");
-  command->add_option("--fps", o->frames.frames_per_second, "Frames of an animation in a second; frame 0 is at 0 s")
+      "--frames", o->frames.range, "Frames A-B or A of an animation; the frame number replaces the # characters in -o");
+  command->add_option("--fps", o->frames.frames_per_second, "Frames per second of an animation; frame 0 is at 0 s")
       ->needs(frames)
       ->capture_default_str()
       ->check(CLI::Range(1e-3, 1e6));
-  command->add_option("--animation", o->frames.animation, "Name of an animation; otherwise the first")->needs(frames);
-  command->add_flag("--resume", o->frames.is_resumed, "Skip frames whose files are whole and of this size")
+  command->add_option("--animation", o->frames.animation, "Name of the animation (default: the first)")->needs(frames);
+  command->add_flag("--resume", o->frames.is_resumed, "Skip frames whose files are complete and have the same size")
       ->needs(frames);
-  command->add_option("--repeat", o->repeat, "Render this often, and print the time of each")
+  command->add_option("--repeat", o->repeat, "Number of times to render the picture, to measure its time")
       ->excludes(frames)
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));
   command
       ->add_option("--shadow", o->shadow,
-                   "none, hard, pcf, esm, evsm, where a lamp's gnomon_shadow says nothing; none is for all")
+                   "Shadows of lamps without gnomon_shadow: none, hard, pcf, esm, evsm; none disables all shadows")
       ->capture_default_str()
       ->check(CLI::IsMember({"none", "hard", "pcf", "esm", "evsm"}));
   command
       ->add_option(
           "--shadow-size", o->shadow_size,
-          "Edge of cube faces, maps and octahedral layers, pixels (default: 1024, 2048, 512; twice that from 16 "
-          "samples")
+          "Width of cube faces, maps and octahedral layers, pixels (default: 1024, 2048, 512; twice that with at least "
+          "16 samples)")
       ->check(CLI::Range(1, 16384));
-  command->add_option("--pcf", o->pcf, "Kernel of --shadow pcf: 1, 3x3, 5x5, or disk:N for N lookups on a disk")
+  command->add_option("--pcf", o->pcf, "Filter kernel of --shadow pcf: 1, 3x3, 5x5, or disk:N for N lookups on a disk")
       ->capture_default_str();
-  command->add_option("--esm", o->esm, "Taps that --shadow esm and evsm are filtered with: 4, 32, or separable")
+  command->add_option("--esm", o->esm, "Filter taps of --shadow esm and evsm: 4, 32, or separable")
       ->capture_default_str()
       ->check(CLI::IsMember({"4", "32", "separable"}));
   command
-      ->add_option("--cascades", o->cascades, "Maps a sun; 0: as many as its texels need to be no larger than pixels")
+      ->add_option("--cascades", o->cascades,
+                   "Shadow maps of each sun; 0: as many as needed for texels no larger than pixels")
       ->capture_default_str()
       ->check(CLI::Range(0, eevee::cascade_count_max));
-  command->add_option("--cascade-lambda", o->cascade_lambda, "Splits of the distance: 0 even, 1 logarithmic")
+  command
+      ->add_option("--cascade-lambda", o->cascade_lambda,
+                   "Distribution of the cascades over the distance: 0 even, 1 logarithmic")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0));
   command
       ->add_option("--cascade-range", o->cascade_range,
-                   "What is split: view, what the camera could see of the scene; depth, what it sees")
+                   "Range that the cascades cover: view, the scene within the camera's frustum; depth, the visible "
+                   "surfaces")
       ->capture_default_str()
       ->check(CLI::IsMember({"view", "depth"}));
   command
       ->add_option("--cube-pass", o->cube_pass,
-                   "How the layers of a lamp are drawn: six (a pass each), geometry or layered (one pass), best")
+                   "Drawing of the layers of a lamp: six (one pass for each), geometry or layered (one pass for all), "
+                   "best")
       ->capture_default_str()
       ->check(CLI::IsMember({"best", "six", "geometry", "layered"}));
-  command->add_option("--casters", o->casters, "Sides of one-sided materials that throw shadows: all, front, back")
+  command->add_option("--casters", o->casters, "Faces of one-sided materials that cast shadows: all, front, back")
       ->capture_default_str()
       ->check(CLI::IsMember({"all", "front", "back"}));
-  command->add_option("--shadow-memory", o->shadow_memory, "MiB that shadow layers may take; sizes are lowered to fit")
+  command
+      ->add_option("--shadow-memory", o->shadow_memory,
+                   "Maximum memory of shadow layers, MiB; their sizes are reduced to fit")
       ->capture_default_str()
       ->check(CLI::Range(1, 1 << 20));
   command->add_option("--debug", o->debug,
-                      "shadow:LAMP[:LAYER]: distances in a shadow's layers (a cube's face, a cascade, octahedral, all)"
-                      " instead of the picture; cascades: the picture, tinted by the cascade each pixel reads");
-  command->add_option("--aov", o->aov, "Further layers to write (not built yet)");
+                      "shadow:LAMP[:LAYER]: distances in the layers of a shadow (a cube face, a cascade, octahedral, "
+                      "all) instead of the picture; cascades: the picture, tinted by the cascade that a pixel reads");
+  command->add_option("--aov", o->aov, "Additional layers to write (not built yet)");
   command->add_option("--view", o->view, "View transform of a PNG: standard, raw, agx, pbr-neutral")
       ->capture_default_str()
       ->check(CLI::IsMember(view_transforms));
-  command->add_option("--exposure", o->exposure, "Stops, for a PNG")
+  command->add_option("--exposure", o->exposure, "Exposure of a PNG, stops")
       ->capture_default_str()
       ->check(CLI::Range(-64.0, 64.0));
-  command->add_option("--backend", o->backend, "gl, or null: record only, without a driver")
+  command->add_option("--backend", o->backend, "gl, or null: record without a driver and draw nothing")
       ->capture_default_str()
       ->check(CLI::IsMember({"gl", "null"}));
-  command->add_flag("--explain", o->is_explained, "Print what the frame is made of, and what was left out");
-  command->add_option("--json", o->json, "Write times, counters, limits, what was made and left out");
+  command->add_flag("--explain", o->is_explained, "Print the parts of the frame, and the parts that were left out");
+  command->add_option("--json", o->json, "Write times, counters, limits, and the parts that were made and left out");
   add_world_options(*command, o->world);
   CLI::Option *max_error =
       command
           ->add_option("--max-error", o->choice.error_max,
-                       "Choose shadows and samples: the fastest with at most that RMSE against exact rays")
+                       "Choose the fastest shadows and samples with at most this RMSE against ray tracing")
           ->check(CLI::Range(1e-6, 1e6));
   CLI::Option *max_time =
-      command->add_option("--max-time", o->choice.milliseconds_max, "Or the most exact within so many ms a picture")
+      command
+          ->add_option("--max-time", o->choice.milliseconds_max,
+                       "Choose the most exact shadows and samples within this time for a picture, ms")
           ->check(CLI::Range(1e-3, 1e9))
           ->excludes(max_error);
-  // What is chosen is not to be asked for, and a picture of something else has no error.
+  // These options set what is chosen automatically, or change the picture so that its error cannot be measured.
   for (const char *name :
        {"--samples", "--shadow", "--shadow-size", "--pcf", "--esm", "--cascades", "--cascade-lambda", "--cascade-range",
         "--cube-pass", "--casters", "--shadow-memory", "--debug", "--frames", "--background"}) {
@@ -622,9 +632,9 @@ void add_render(CLI::App &app, Status &status)
     max_time->excludes(command->get_option(name));
   }
   command->add_option("--report", o->choice.report_folder,
-                      "Folder of gnomon report, to choose from; otherwise a pilot is rendered");
-  command->add_flag("--strict", o->is_strict, "End with status 4 where a limit was hit");
-  command->add_option("--seed", o->seed, "Another arrangement of the samples")->capture_default_str();
+                      "Folder of gnomon report to choose from (default: render a pilot)");
+  command->add_flag("--strict", o->is_strict, "End with status 4 if a limit was hit");
+  command->add_option("--seed", o->seed, "Seed of the sample pattern")->capture_default_str();
   command->callback([o, &status] { status = render(*o); });
 }
 

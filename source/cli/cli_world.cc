@@ -17,17 +17,19 @@ namespace gnomon::cli {
 void add_world_options(CLI::App &command, WorldOptions &options)
 {
   command.add_option("--world", options.world,
-                     "What lights the scene from all around: an equirectangular HDR or EXR picture, a radiance R,G,B, "
-                     "studio, or none (default: the scene's own; studio where it has neither lamps nor world)");
+                     "World that lights the scene: an equirectangular HDR or EXR picture, a radiance R,G,B, studio, or "
+                     "none (default: the scene's own; studio if the scene has neither lamps nor a world)");
   command.add_option("--world-strength", options.strength, "Factor of the world's radiance")
       ->capture_default_str()
       ->check(CLI::Range(0.0F, 1e6F));
-  command.add_option("--world-rotation", options.rotation_degrees, "Turn the world around the vertical axis, degrees")
+  command
+      .add_option("--world-rotation", options.rotation_degrees,
+                  "Rotation of the world around the vertical axis, degrees")
       ->capture_default_str()
       ->check(CLI::Range(-360.0F, 360.0F));
   command.add_option("--background", options.background,
-                     "What is seen where there is no surface: none (transparent black), world, or a radiance R,G,B "
-                     "(default: none; in a PNG, a light grey behind what the default studio lights)");
+                     "Background of pixels without a surface: none (transparent black), world, or a radiance R,G,B "
+                     "(default: none; light grey in a PNG that the default studio lights)");
 }
 
 std::optional<glm::vec3> parse_color(const std::string &text)
@@ -58,9 +60,8 @@ static scene::World read_world(const std::string &path)
       for (int i = 0; i < 3; i++) {
         if (!(pixel[i] >= 0.0F) || std::isinf(pixel[i])) {
           throw std::runtime_error(
-              fmt::format("{}: texel {}, {} from the top left is {}, and must be a number of at "
-                          "least 0",
-                          path, x, file.size_px.y - 1 - y, pixel[i]));
+              fmt::format("{}: texel {}, {} from the top left is {}; texels must be finite and at least 0", path, x,
+                          file.size_px.y - 1 - y, pixel[i]));
         }
       }
       picture.texels.emplace_back(pixel);
@@ -99,7 +100,8 @@ bool light_by_world(scene::Scene &scene, const scene::PlacedCamera &camera, cons
     std::erase_if(scene.warnings,
                   [](const std::string &line) { return line.find("has no lamp") != std::string::npos; });
     if (is_default_studio) {
-      scene.warnings.push_back("scene: has no lamp and no world: a studio lights it (--world none: a sun)");
+      scene.warnings.push_back(
+          "scene: has no lamp and no world; the studio world lights it (--world none uses a sun instead)");
     }
   }
   return is_default_studio;
@@ -116,7 +118,7 @@ eevee::Background background_of(const WorldOptions &options, std::optional<glm::
   }
   const std::optional<glm::vec3> color = parse_color(options.background);
   if (!color) {
-    throw UsageError(fmt::format("--background '{}' is none of none, world and a radiance R,G,B", options.background));
+    throw UsageError(fmt::format("--background '{}' is not none, world or a radiance R,G,B", options.background));
   }
   return {Kind::Color, *color};
 }
