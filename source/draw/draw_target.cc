@@ -29,7 +29,7 @@ void check(const Target &target, glm::ivec2 size_px)
     return;
   }
   if (const auto *const *own = std::get_if<const gpu::Framebuffer *>(&target.framebuffer); own && !**own) {
-    throw gpu::Error("target: the framebuffer is empty: it was destroyed, or a lost packet was to create it");
+    throw gpu::Error("target: the framebuffer is empty: it was destroyed, or the packet that creates it was lost");
   }
   const glm::ivec2 first = target.origin_px;
   const glm::ivec2 room = size_of(target) - first;

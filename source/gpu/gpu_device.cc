@@ -56,7 +56,7 @@ Resource Device::make(ResourceKind kind, ResourceInfo info, std::string detail, 
   std::vector<ResourceId> &free_ids = free_ids_[std::size_t(kind)];
   if (free_ids.empty()) {
     if (slots.size() > resource_count_max) {
-      throw Error("{} '{}': a device has ids for {} of them", to_string(kind), info.name, resource_count_max);
+      throw Error("{} '{}': a device can hold at most {} of them", to_string(kind), info.name, resource_count_max);
     }
     free_ids.push_back(ResourceId(slots.size()));
     slots.emplace_back();
@@ -81,7 +81,7 @@ Texture Device::create_texture(const TextureDesc &desc)
 {
   const auto in_range = [&](std::string_view what, int value, int max) {
     if (value < 1 || value > max) {
-      throw Error("texture '{}': {} is {}, and this device takes 1 to {}", desc.name, what, value, max);
+      throw Error("texture '{}': {} is {}, but this device supports 1 to {}", desc.name, what, value, max);
     }
   };
   in_range("width", desc.width, limits_.texture_size_max);
@@ -113,7 +113,7 @@ static AttachmentLayout layout_of(const Attachment &attachment)
 Framebuffer Device::create_framebuffer(const FramebufferDesc &desc)
 {
   if (int(desc.colors.size()) > limits_.color_attachment_max) {
-    throw Error("framebuffer '{}': {} colour attachments, and this device takes {}", desc.name, desc.colors.size(),
+    throw Error("framebuffer '{}': {} colour attachments, but this device supports {}", desc.name, desc.colors.size(),
                 limits_.color_attachment_max);
   }
   std::vector<Attachment> attachments = desc.colors;
@@ -121,7 +121,7 @@ Framebuffer Device::create_framebuffer(const FramebufferDesc &desc)
     attachments.push_back(desc.depth);
   }
   if (attachments.empty()) {
-    throw Error("framebuffer '{}': nothing to draw into", desc.name);
+    throw Error("framebuffer '{}': it has no attachments", desc.name);
   }
   glm::ivec2 size_px{0};
   for (const Attachment &attachment : attachments) {
@@ -169,7 +169,7 @@ Buffer Device::create_buffer(const BufferDesc &desc)
   const std::size_t max =
       desc.kind == BufferKind::Uniform ? limits_.uniform_block_bytes_max : limits_.storage_block_bytes_max;
   if (desc.size_bytes == 0 || desc.size_bytes > max) {
-    throw Error("buffer '{}': {} bytes, and this device takes 1 to {}", desc.name, desc.size_bytes, max);
+    throw Error("buffer '{}': {} bytes, but this device supports 1 to {}", desc.name, desc.size_bytes, max);
   }
   return {make(ResourceKind::Buffer, {desc.name, desc}, {}, desc.size_bytes,
                [&](ResourceId id) {
@@ -182,7 +182,7 @@ Batch Device::create_batch(const BatchDesc &desc)
 {
   constexpr std::size_t count_max = std::size_t(1) << 28U;
   if (desc.positions.size() > count_max || desc.indices.size() > count_max) {
-    throw Error("batch '{}': {} vertices and {} indices, and a batch takes {} of each", desc.name,
+    throw Error("batch '{}': {} vertices and {} indices, but a batch can have at most {} of each", desc.name,
                 desc.positions.size(), desc.indices.size(), count_max);
   }
   for (std::size_t i = 0; i < vertex_stream_count; i++) {
@@ -259,7 +259,7 @@ static void check_storage_blocks(std::string_view name, const ShaderInterface &i
       return binding.kind == BindingKind::StorageBlock && (binding.stages & (1U << unsigned(stage))) != 0;
     });
     if (count > max) {
-      throw Error("shader '{}': {} storage blocks in the {} stage, and this device supports {}", name, count,
+      throw Error("shader '{}': {} storage blocks in the {} stage, but this device supports {}", name, count,
                   to_string(stage), max);
     }
   }

@@ -116,7 +116,7 @@ class Preprocessor {
   {
     append_file(path, {}, 0);
     if (!has_version_) {
-      throw SourceError(path, 1, fmt::format("shader '{}': a stage begins with '#version 450 core'", desc_.name));
+      throw SourceError(path, 1, fmt::format("shader '{}': a stage must begin with '#version 450 core'", desc_.name));
     }
     return std::move(source_);
   }

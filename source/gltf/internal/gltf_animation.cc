@@ -249,7 +249,7 @@ class AnimationImporter {
       }
     }
     if (!has_target) {
-      throw Fault("pointer", "the thing that it animates is not in the scene");
+      throw Fault("pointer", "its target is not in the scene");
     }
   }
 
@@ -283,11 +283,11 @@ class AnimationImporter {
     const std::size_t parts = read->interpolation == Interpolation::CubicSpline ? 3 : 1;
     if (input.count() == 0 || output.count() / (parts * elements_of_value) != input.count() ||
         output.count() % (parts * elements_of_value) != 0) {
-      throw Fault("sampler", "its numbers of times and values do not match");
+      throw Fault("sampler", "the numbers of times and values do not match");
     }
     value_count_ += input.count() * (1 + parts * width);
     if (value_count_ > value_count_max) {
-      throw Fault("animations", "have more than " + std::to_string(value_count_max) + " numbers");
+      throw Fault("animations", "have more than " + std::to_string(value_count_max) + " values");
     }
     for (std::size_t i = 0; i < input.count(); i++) {
       const float seconds = input.scalar(i);

@@ -215,7 +215,7 @@ void GlDevice::check_host_state([[maybe_unused]] std::string_view what)
   if (!context_) {
     const std::string reason = unsaveable_state(probe_query_);
     if (!reason.empty()) {
-      throw Error("{}: {}, and cannot be saved", what, reason);
+      throw Error("{}: {}; this state cannot be saved", what, reason);
     }
   }
 #endif
@@ -232,17 +232,17 @@ std::unique_ptr<Device> create_gl_device(const GlDeviceDesc &desc)
   if (desc.context == ContextKind::Headless) {
     // The new context would become current instead, and the owner of the other context would use the wrong one.
     if (has_current_context()) {
-      throw Error("a context is current on this thread already, of another device or of a host");
+      throw Error("another context, of a device or of the host, is already current on this thread");
     }
     context = create_headless_context(desc.is_debug);
   }
   else if (!has_current_context()) {
-    throw Error("no OpenGL context of the host's is current on this thread");
+    throw Error("no OpenGL context of the host is current on this thread");
   }
   constexpr int version_needed = 45;
   const int version = epoxy_gl_version();
   if (version < version_needed) {
-    throw Error("OpenGL {}.{} is needed, and the {} context has {}.{}", version_needed / 10, version_needed % 10,
+    throw Error("OpenGL {}.{} is needed, but the {} context has {}.{}", version_needed / 10, version_needed % 10,
                 context ? "headless" : "host's", version / 10, version % 10);
   }
   return std::make_unique<GlDevice>(std::move(context), desc);
