@@ -77,7 +77,7 @@ Need need_shadows(const FrameState &state)
   if (!has(state.data.stl.features, any_shadow)) {
     return {false, why_no_shadow(state, "no lamp casts a shadow")};
   }
-  return state.data.is_seen ? Need{true, "layers that were not up to date"} : Need{false, nothing_seen};
+  return state.data.is_seen ? Need{true, "some layers were out of date"} : Need{false, nothing_seen};
 }
 
 Need need_depth(const FrameState &state)
@@ -94,7 +94,7 @@ Need need_background(const FrameState &state)
 {
   using enum Background::Kind;
   if (state.settings.background.kind == None) {
-    return {false, "none was asked for"};
+    return {false, "the settings have no background"};
   }
   return (*state.data.psl).background_pass.is_empty() ? Need{false, "the scene has no world"}
                                                       : Need{true, "pixels without a surface"};
@@ -115,7 +115,7 @@ Need need_picture_depth(const FrameState &state)
     return {false, "no target takes depth"};
   }
   if (state.settings.sample_count == 1) {
-    return {false, "the one sample's depth is the picture's"};
+    return {false, "the depth of the only sample is that of the picture"};
   }
   return !state.data.is_seen            ? Need{false, nothing_seen}
          : state.data.has_picture_depth ? Need{false, "it is up to date"}

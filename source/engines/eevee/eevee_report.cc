@@ -66,8 +66,8 @@ FrameNode program_nodes(const ReportSource &source)
                                : source.data.is_recorded ? why_no_feature(source, define.feature)
                                                          : nothing_seen});
   }
-  programs.insert(programs.begin(),
-                  folder("features", "what variants have", "no program that is made has any", std::move(features)));
+  programs.insert(programs.begin(), folder("features", "features of the variants", "no created program has a feature",
+                                           std::move(features)));
   FrameNode node = folder("programs", "what passes draw with", nothing_seen, std::move(programs));
   node.count = source.shaders.size();
   return node;
@@ -87,11 +87,10 @@ FrameNode shadow_step_node(const ReportSource &source, const Need &need)
   for (const ShadowState &state : source.data.stl.shadows->states()) {
     layers += std::uint64_t(std::popcount(state.drawn_now));
   }
-  return {
-      .what = "shadows",
-      .is_made = layers > 0,
-      .why = layers == 0 && need.is_needed ? "every layer that is looked up is up to date" : std::string(need.reason),
-      .count = layers};
+  return {.what = "shadows",
+          .is_made = layers > 0,
+          .why = layers == 0 && need.is_needed ? "all needed layers are up to date" : std::string(need.reason),
+          .count = layers};
 }
 
 FrameNode pass_nodes(const ReportSource &source)
@@ -155,14 +154,14 @@ FrameNode lamp_node(const ReportSource &source, std::size_t index, const std::ve
   if (state == states.end()) {
     node.why = source.settings.shadow.kind == scene::ShadowKind::None ? "shadows are off"
                : shadow_kind(lamp, source.settings.shadow) == scene::ShadowKind::None
-                   ? "it asks for none"
+                   ? "it requests no shadow"
                    : "a limit was hit: see the limits";
     return node;
   }
   node.is_made = state->drawn != 0;
   node.count = std::uint64_t(std::popcount(state->drawn));
   if (state->layer_count == 0) {
-    node.why = source.data.is_recorded ? "nothing is seen that a caster could darken" : nothing_seen;
+    node.why = source.data.is_recorded ? "no caster can shadow a visible surface" : nothing_seen;
     return node;
   }
   node.why = fmt::format("{} layers of {}x{} in {}", state->layer_count, state->size_px, state->size_px, state->array);
@@ -170,7 +169,7 @@ FrameNode lamp_node(const ReportSource &source, std::size_t index, const std::ve
   add_layers(node, "drawn", true, state->drawn_now & all, "not up to date");
   add_layers(node, "kept", false, state->drawn & ~state->drawn_now & all, "up to date");
   add_layers(node, "empty", false, state->up_to_date & ~state->drawn & all, "no caster in it");
-  add_layers(node, "not looked up", false, ~state->up_to_date & all, "nothing visible looks there");
+  add_layers(node, "not looked up", false, ~state->up_to_date & all, "no visible surface reads them");
   return node;
 }
 
@@ -275,7 +274,7 @@ Report Engine::report(draw::Viewport &viewport) const
   part("shadow_cubes", bool(shadows.cubes()), fmt::format("{} point lamps or wide spots", shadows.cube_count()),
        has(f, Feature::ShadowCube) ? nothing_seen : no_shadow);
   part("shadow_maps", bool(shadows.maps()), fmt::format("{} suns or spots", shadows.map_count()),
-       has(f, Feature::ShadowMap) ? why_not("nothing is seen that a caster could darken") : no_shadow);
+       has(f, Feature::ShadowMap) ? why_not("no caster can shadow a visible surface") : no_shadow);
   part("shadow_esm", shadows.octahedral().size() > 0,
        fmt::format("{} point lamps or spots", shadows.octahedral().size()),
        has(f, Feature::ShadowEsm) ? nothing_seen : no_shadow);

@@ -36,7 +36,7 @@ FrameNode target_nodes(const ReportSource &source)
   add(txl.film, "film", "the picture", "");
   targets.push_back({.what = "target",
                      .is_made = bool(source.data.target),
-                     .why = source.data.target ? "the host's, of the last draw" : no_target});
+                     .why = source.data.target ? "the target of the last draw" : no_target});
   add(txl.picture_depth, "picture_depth", "the target takes depth", "no target takes the depth of several samples");
   if (source.viewport.has_depth_texture()) {
     add(source.viewport.depth_texture(), "depth", "each pixel is lit once", "");
@@ -51,18 +51,18 @@ FrameNode target_nodes(const ReportSource &source)
   const auto why_no_layers = [&](Feature feature) {
     return !source.has(feature)       ? why_no_feature(source, feature)
            : !source.data.is_recorded ? nothing_seen
-                                      : "nothing is seen that a caster could darken";
+                                      : "no caster can shadow a visible surface";
   };
   add(source.data.shared->ltc_table, "ltc_table", "specular light of lamps with an extent",
       source.has(Feature::LampShape | Feature::World) ? why_no_feature(source, Feature::Specular)
                                                       : why_no_feature(source, Feature::LampShape));
-  add(source.data.shared->world.levels, "world_levels", "what specular surfaces mirror of the world",
+  add(source.data.shared->world.levels, "world_levels", "specular reflection of the world",
       source.has(Feature::World) ? why_no_feature(source, Feature::Specular) : why_no_feature(source, Feature::World));
   add(shadows.cubes(), "shadow_cubes", fmt::format("{} point lamps or wide spots", shadows.cube_count()),
       why_no_layers(Feature::ShadowCube));
   add(shadows.maps(), "shadow_maps", fmt::format("{} suns or spots", shadows.map_count()),
       why_no_layers(Feature::ShadowMap));
-  add(shadows.distance_cube(), "shadow_distance_cube", "on the way to octahedral layers",
+  add(shadows.distance_cube(), "shadow_distance_cube", "temporary depths for octahedral layers",
       why_no_layers(Feature::ShadowEsm));
   if (shadows.octahedral().textures().empty()) {
     add({}, "shadow_esm", "", why_no_layers(Feature::ShadowEsm));
@@ -156,8 +156,8 @@ FrameNode texture_nodes(const ReportSource &source)
       }
     }
   }
-  return folder("textures", "what materials look up", images.empty() ? "no material has one" : "none is looked up",
-                std::move(images));
+  return folder("textures", "images of the materials' textures",
+                images.empty() ? "no material has one" : "no texture is read", std::move(images));
 }
 
 }  // namespace gnomon::eevee

@@ -95,7 +95,7 @@ std::string why_no_program(const ReportSource &source, ShaderId id)
 {
   const std::string no_esm = why_no_feature(source, Feature::ShadowEsm);
   const std::string no_evsm = why_no_feature(source, Feature::ShadowEvsm);
-  const std::string other_kernel = "exponential shadows are filtered otherwise";
+  const std::string other_kernel = "exponential shadows use another filter";
   switch (id) {
     case ShaderId::Probe: return source.settings.has_probe ? "no lamp was probed" : "not asked for";
     case ShaderId::DebugShadow: return "not asked for";
@@ -116,7 +116,7 @@ std::string why_no_program(const ReportSource &source, ShaderId id)
     case ShaderId::Shadow:
     case ShaderId::ShadowLayered:
     case ShaderId::ShadowGeometry:
-      return source.has(any_shadow) ? "another way of drawing a lamp's layers is used"
+      return source.has(any_shadow) ? "another method draws the layers"
                                     : why_no_shadow(source, "no lamp casts a shadow");
     case ShaderId::EsmDistance:
     case ShaderId::EsmDisk4:

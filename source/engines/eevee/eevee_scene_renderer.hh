@@ -35,8 +35,7 @@ class SceneRenderer {
     is_synced_ = false;
     engine_.set_settings(settings);
   }
-  /** Set another size. It takes effect with the next sync. \throws gpu::Error as the constructor; nothing changes then.
-   */
+  /** Set another size, effective with the next sync. \throws gpu::Error as the constructor; nothing changes then. */
   void resize(glm::ivec2 size_px)
   {
     viewport_.resize(size_px);

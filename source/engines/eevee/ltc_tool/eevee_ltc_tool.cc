@@ -216,7 +216,7 @@ int main(int argument_count, char **arguments)
 {
   std::FILE *file = argument_count == 2 ? std::fopen(arguments[1], "w") : nullptr;
   if (!file) {
-    std::fprintf(stderr, "usage: gnomon_eevee_ltc_tool OUTPUT.cc, which can be written\n");
+    std::fprintf(stderr, "usage: gnomon_eevee_ltc_tool OUTPUT.cc (a file that can be written)\n");
     return 2;
   }
   std::vector<glm::dvec4> table(2 * size * size);

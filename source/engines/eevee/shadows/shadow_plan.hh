@@ -96,8 +96,7 @@ struct ShadowPlace {
   ShadowRequest given{};
   /** First entry in the uniform block, in the order of the lamps. A change of the entry does not invalidate layers. */
   int entry = 0;
-  /** First layer in the array. -1 for maps, whose layers are assigned later because their number depends on the view.
-   */
+  /** First layer in the array. -1 for maps: their layers are assigned later, as their number depends on the view. */
   int first_layer = 0;
 };
 
