@@ -44,11 +44,12 @@ using MessageSink = std::function<void(std::string_view message)>;
  * names the resource, and it creates nothing. Resources should be destroyed before their device. A device reports the
  * names of resources that still exist to its message sink and frees them.
  *
- * **Threads.** The device's thread is the thread that created the device. While no Recording exists, all functions must
- * be called on this thread, and a call takes effect at once. While a Recording exists, calls are recorded into its
- * packet: they check descriptions, issue ids and copy data. The recording thread, which may be any thread, then makes
- * these calls and destroys resources. Meanwhile the device's thread may call only the functions marked "device's
- * thread".
+ * **Threads.** The device's thread is the thread that created the device.
+ * - While no Recording exists, calls take effect at once. They must be made on the device's thread, and no packet may
+ * be pending.
+ * - While a Recording exists, calls are recorded into its packet: they check descriptions, issue ids and copy data.
+ * They must be made on one thread, the recording thread, which may be any thread. Resources may be destroyed only on
+ * this thread. Meanwhile the device's thread may call only the functions marked "device's thread".
  *
  * A resource that is destroyed while packets are pending and no Recording exists is freed after these packets.
  *
