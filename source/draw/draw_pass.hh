@@ -104,7 +104,10 @@ class ShadingGroup {
    * object has at that time.
    */
   void call(const gpu::Batch &batch, ObjectIndex object = object_identity);
-  /** Draw the batch once. Pass::record culls the call with \a volume instead of the object's volume. */
+  /**
+   * Draw the batch once. Pass::record culls the call with \a volume instead of the object's volume, unless the radius
+   * of \a volume is negative.
+   */
   void call(const gpu::Batch &batch, ObjectIndex object, const CullingVolume &volume);
   /** Draw the batch for instances that the caller adds to the returned call. They are not culled. */
   InstanceCall &instances(const gpu::Batch &batch);
