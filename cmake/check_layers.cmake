@@ -14,20 +14,23 @@ set(source/gltf source/scene)
 set(source/render_scene source/draw source/gpu source/scene shaders)
 set(source/engines/eevee source/render_scene source/draw source/gpu source/scene shaders)
 set(source/engines/unlit source/render_scene source/draw source/gpu source/scene shaders)
+set(source/engines/overlay source/render_scene source/draw source/gpu source/scene shaders)
 # A program of the build. The engine itself must not use shader_check.
-set(source/engines/interface_tool source/engines/eevee source/engines/unlit source/shader_check source/gpu shaders)
-set(source/embed source/engines/eevee source/engines/unlit source/render_scene source/draw source/gpu source/gltf source/scene shaders)
+set(source/engines/interface_tool source/engines/eevee source/engines/unlit source/engines/overlay source/shader_check source/gpu shaders)
+set(source/embed source/engines/eevee source/engines/unlit source/engines/overlay source/render_scene source/draw source/gpu source/gltf source/scene shaders)
 set(source/reference source/scene shaders)
 set(source/measure source/engines/eevee source/render_scene source/reference source/draw source/gpu source/gltf
   source/scene shaders)
 set(source/verify source/measure source/engines/eevee source/render_scene source/reference source/draw source/gpu source/gltf
   source/scene shaders)
-set(source/cli source/verify source/measure source/engines/eevee source/engines/unlit source/render_scene source/reference source/draw source/shader_check source/gpu
+set(source/cli source/view source/verify source/measure source/engines/eevee source/engines/unlit source/engines/overlay source/render_scene source/reference source/draw source/shader_check source/gpu
   source/gltf source/scene shaders)
+set(source/view source/engines/eevee source/engines/unlit source/engines/overlay source/render_scene source/draw source/gpu source/gltf
+  source/scene shaders)
 set(shaders "")
 # A folder within another layer's folder comes after it.
 set(LAYERS source/gpu source/shader_check source/draw source/scene source/gltf source/render_scene source/engines/eevee
-  source/engines/unlit source/engines/interface_tool source/embed source/reference source/measure source/verify source/cli shaders)
+  source/engines/unlit source/engines/overlay source/engines/interface_tool source/embed source/reference source/measure source/verify source/view source/cli shaders)
 
 set(VIOLATIONS 0)
 # violation(FILE INCLUDE WHY): reports a violation. INCLUDE: the text of the line.
@@ -79,8 +82,8 @@ foreach(FILE ${FILES})
     continue()
   endif()
 
-  # Examples and tests act as the host, which owns the context.
-  if(FILE MATCHES "^(source/gpu/gl|examples|tests)/")
+  # The window, examples and tests act as the host, which owns the context.
+  if(FILE MATCHES "^(source/gpu/gl|source/view|examples|tests)/")
     set(GL_HEADER "^$")
   else()
     set(GL_HEADER "^(GL[0-9]*|GLES[0-9]*|EGL|KHR|GLFW|epoxy)/")

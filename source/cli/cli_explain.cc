@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli_explain.hh"
 
+#include "eevee_frame_text.hh"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -8,23 +10,6 @@
 #include <vector>
 
 namespace gnomon::cli {
-
-std::string bytes_text(std::uint64_t bytes)
-{
-  if (bytes < 1024) {
-    return fmt::format("{} B", bytes);
-  }
-  return bytes < std::uint64_t(1) << 20U ? fmt::format("{:.1f} KiB", double(bytes) / 0x1p10)
-                                         : fmt::format("{:.1f} MiB", double(bytes) / 0x1p20);
-}
-
-std::string seconds_text(double seconds)
-{
-  if (seconds >= 1.0) {
-    return fmt::format("{:.2f} s", seconds);
-  }
-  return seconds >= 1e-3 ? fmt::format("{:.1f} ms", 1e3 * seconds) : fmt::format("{:.0f} us", 1e6 * seconds);
-}
 
 namespace {
 
@@ -43,11 +28,11 @@ void add_rows(const eevee::FrameNode &node, const std::string &head, const std::
   Row &row = rows.emplace_back();
   row.what = fmt::format("{}{} {}", head, node.is_made ? '+' : '-', node.what);
   row.count = node.count ? fmt::format("{}", *node.count) : "";
-  row.bytes = node.bytes ? bytes_text(*node.bytes) : "";
-  row.seconds = node.seconds && node.is_made ? seconds_text(*node.seconds) : "";
+  row.bytes = node.bytes ? eevee::bytes_text(*node.bytes) : "";
+  row.seconds = node.seconds && node.is_made ? eevee::seconds_text(*node.seconds) : "";
   row.why = node.why;
   if (node.upload_bytes) {
-    row.why += fmt::format(" ({} uploaded)", bytes_text(*node.upload_bytes));
+    row.why += fmt::format(" ({} uploaded)", eevee::bytes_text(*node.upload_bytes));
   }
   for (const eevee::FrameNode &child : node.children) {
     const bool is_last = &child == &node.children.back();

@@ -9,12 +9,6 @@
 
 namespace gnomon::cli {
 
-/** For example "5.9 MiB"; below 1 KiB in bytes. */
-[[nodiscard]] std::string bytes_text(std::uint64_t bytes);
-
-/** For example "12.3 ms"; in µs, ms or s. */
-[[nodiscard]] std::string seconds_text(double seconds);
-
 /**
  * One line for each node in columns: `+` made or `-` left out, name, count, bytes, device time and reason. Nodes that
  * are left out keep their position in the tree.

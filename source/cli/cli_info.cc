@@ -2,6 +2,7 @@
 #include "cli.hh"
 
 #include "gltf_import.hh"
+#include "scene_units.hh"
 
 #include <fmt/format.h>
 
@@ -15,18 +16,6 @@ static const char *to_string(scene::LampKind kind)
     case scene::LampKind::Spot: return "spot";
     case scene::LampKind::Hemi: return "hemi";
     case scene::LampKind::Area: return "area";
-  }
-  return "?";
-}
-
-static const char *unit(scene::LampKind kind)
-{
-  switch (kind) {
-    case scene::LampKind::Point:
-    case scene::LampKind::Spot: return "W/sr";
-    case scene::LampKind::Sun:
-    case scene::LampKind::Hemi: return "W/m²";
-    case scene::LampKind::Area: return "W";
   }
   return "?";
 }
@@ -55,8 +44,8 @@ static void print_info(const scene::Scene &scene)
                scene.is_camera_default ? " (added)" : "");
   }
   for (const scene::PlacedLamp &lamp : scene.placed_lamps()) {
-    fmt::print("  lamp '{}', {}, {:g} {}{}\n", lamp.name, to_string(lamp.kind), lamp.intensity, unit(lamp.kind),
-               scene.is_lamp_default ? " (added)" : "");
+    fmt::print("  lamp '{}', {}, {:g} {}{}\n", lamp.name, to_string(lamp.kind), lamp.intensity,
+               scene::intensity_unit(lamp.kind), scene.is_lamp_default ? " (added)" : "");
   }
   for (const scene::Animation &animation : scene.animations) {
     fmt::print("  animation '{}', {:g} s, {} nodes, {} values\n", animation.name, animation.duration(),

@@ -5,14 +5,6 @@
 
 namespace gnomon::cli {
 
-/** A reserved subcommand that is not implemented yet. */
-static void add_unbuilt(CLI::App &app)
-{
-  CLI::App *command = app.add_subcommand("view", "A window on a scene (not built yet)");
-  command->allow_extras();
-  command->callback([] { throw UsageError("'view' is not built yet"); });
-}
-
 static Status run(int argc, char **argv)
 {
   CLI::App app("gnomon " GNOMON_VERSION ": lights a glTF scene with an EEVEE-style draw-manager engine", "gnomon");
@@ -27,7 +19,7 @@ static Status run(int argc, char **argv)
   add_stability(app, status);
   add_shaders(app, status);
   add_bench(app);
-  add_unbuilt(app);
+  add_view(app);
   try {
     app.parse(argc, argv);
     return status;

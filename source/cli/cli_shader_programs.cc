@@ -2,6 +2,7 @@
 #include "cli_shader_programs.hh"
 
 #include "eevee_programs.hh"
+#include "overlay_programs.hh"
 #include "shader_files.hh"
 #include "unlit_programs.hh"
 
@@ -22,19 +23,23 @@ EngineFiles::EngineFiles(const std::string &folder) : prefix_(folder.empty() ? "
   files_ = folder.empty() ? gpu::ShaderFiles(shaders::file) : folder_.files();
 }
 
+/** The functions of the engine are found by the type of \a declarations. */
+template <typename Declaration>
+static void add_variants(std::span<const Declaration> declarations, std::vector<Variant> &variants)
+{
+  for (const Declaration &declaration : declarations) {
+    for (const auto features : shader_variants(declaration)) {
+      variants.push_back({declaration.purpose, shader_desc(declaration, features)});
+    }
+  }
+}
+
 std::vector<Variant> engine_variants()
 {
   std::vector<Variant> variants;
-  for (const eevee::ShaderDeclaration &declaration : eevee::shader_declarations()) {
-    for (const eevee::Feature features : eevee::shader_variants(declaration)) {
-      variants.push_back({declaration.purpose, eevee::shader_desc(declaration, features)});
-    }
-  }
-  for (const unlit::ShaderDeclaration &declaration : unlit::shader_declarations()) {
-    for (const unlit::Feature features : unlit::shader_variants(declaration)) {
-      variants.push_back({declaration.purpose, unlit::shader_desc(declaration, features)});
-    }
-  }
+  add_variants(eevee::shader_declarations(), variants);
+  add_variants(unlit::shader_declarations(), variants);
+  add_variants(overlay::shader_declarations(), variants);
   return variants;
 }
 

@@ -4,6 +4,7 @@
 #include "eevee_scene_renderer.hh"
 #include "gltf_import.hh"
 #include "gpu_device.hh"
+#include "overlay.hh"
 #include "scene.hh"
 #include "unlit_engine.hh"
 

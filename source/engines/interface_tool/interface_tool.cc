@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A build tool that writes the interfaces of an engine's programs to a source file.
 #include "eevee_programs.hh"
+#include "overlay_programs.hh"
 #include "unlit_programs.hh"
 
 #include "shader_check_interfaces.hh"
@@ -32,15 +33,30 @@ Entries eevee_entries()
   return entries;
 }
 
-Entries unlit_entries()
+/** Of an engine whose variants differ by their features alone: the functions are found by the type of \a declarations.
+ */
+template <typename Declaration>
+Entries entries_of(std::span<const Declaration> declarations)
 {
   Entries entries;
-  for (const unlit::ShaderDeclaration &declaration : unlit::shader_declarations()) {
-    for (const unlit::Feature features : unlit::shader_variants(declaration)) {
-      entries.push_back({std::uint32_t(features), unlit::shader_desc(declaration, features)});
+  for (const Declaration &declaration : declarations) {
+    for (const auto features : shader_variants(declaration)) {
+      entries.push_back({std::uint32_t(features), shader_desc(declaration, features)});
     }
   }
   return entries;
+}
+
+/** Nothing: there is no such engine. */
+Entries entries_of(std::string_view engine)
+{
+  if (engine == "eevee") {
+    return eevee_entries();
+  }
+  if (engine == "unlit") {
+    return entries_of(unlit::shader_declarations());
+  }
+  return engine == "overlay" ? entries_of(overlay::shader_declarations()) : Entries();
 }
 
 }  // namespace
@@ -48,13 +64,13 @@ Entries unlit_entries()
 int main(int argument_count, char **arguments)
 {
   const std::string engine = argument_count == 3 ? arguments[1] : "";
-  if (engine != "eevee" && engine != "unlit") {
-    fmt::print(stderr, "usage: {} eevee|unlit OUTPUT.cc\n", arguments[0]);
+  const Entries entries = entries_of(std::string_view(engine));
+  if (entries.empty()) {
+    fmt::print(stderr, "usage: {} eevee|unlit|overlay OUTPUT.cc\n", arguments[0]);
     return 2;
   }
   try {
-    const auto programs =
-        shader_check::variant_interfaces(engine == "eevee" ? eevee_entries() : unlit_entries(), shaders::file);
+    const auto programs = shader_check::variant_interfaces(entries, shaders::file);
     std::ofstream file(arguments[2]);
     file << shader_check::table_source(programs, engine + "_interfaces.hh", "gnomon::" + engine + "::interface_tables");
     file.close();

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#include "cli.hh"
+
+#ifdef GNOMON_VIEW
+#include "cli_output.hh"
+
+#include "view.hh"
+#endif
+
+namespace gnomon::cli {
+
+#ifdef GNOMON_VIEW
+void add_view(CLI::App &app)
+{
+  CLI::App *command = app.add_subcommand("view", "A window on a scene: look at it, edit it, save it");
+  const auto o = std::make_shared<view::Options>();
+  command->add_option("scene", o->scene, "glTF 2.0 file; others can be dropped on the window");
+  command->add_option("--script", o->script, "Run the commands of a file, then end");
+  command->add_option("--screenshot", o->screenshot,
+                      "Write the window to a PNG when its pictures are complete, then end");
+  command->callback([o] {
+    o->writers.png = [](const auto &path, glm::ivec2 size_px, std::span<const std::uint8_t> rgba) {
+      write_png(path, size_px, rgba, {});
+    };
+    o->writers.exr = [](const auto &path, glm::ivec2 size_px, std::span<const float> rgba) {
+      write_exr(path, size_px, rgba, {{"gnomon:units", "scene-linear radiance, W/(sr m^2)"}});
+    };
+    view::run(*o);
+  });
+}
+#else
+void add_view(CLI::App &app)
+{
+  CLI::App *command = app.add_subcommand("view", "A window on a scene (left out of this build)");
+  command->allow_extras();
+  command->callback([] { throw UsageError("'view' is left out of this build: cmake -DGNOMON_VIEW=ON"); });
+}
+#endif
+
+}  // namespace gnomon::cli

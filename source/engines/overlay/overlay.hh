@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "overlay_programs.hh"
+
+#include "draw_pass.hh"
+#include "draw_target.hh"
+#include "render_scene.hh"
+
+#include <array>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+
+/** What an editor needs beside a picture: what is under a pixel, and a line around what is selected. */
+namespace gnomon::overlay {
+
+/** The surface at the middle of a pixel. */
+struct Hit {
+  scene::Handle<scene::Node> node;
+  scene::Handle<scene::Mesh> mesh;
+  /** World space of the scene, metres. */
+  glm::dvec3 position_ws{0.0};
+};
+
+/**
+ * Picks and outlines the objects of a render scene, in pictures of any engine and viewport: a picture is given by its
+ * view (SceneRenderer::view_of, draw::Viewport::view) and its size. What the first call of each function needs is
+ * created by it, and nothing before.
+ *
+ * Objects are as render_scene::RenderScene::update found them. Each function throws gpu::Error where the scene was
+ * edited since. Device's thread, and not while the device is recording.
+ */
+class Overlay {
+ public:
+  /** \a scene must outlive the overlay. */
+  explicit Overlay(render_scene::RenderScene &scene) : scene_(scene) {}
+
+  /**
+   * The nearest surface at the middle of \a pixel_px, from the lower left corner; nothing: there is none, or the pixel
+   * is not in the picture. Parts that an alpha mask cuts out, back faces of one-sided materials and invisible nodes are
+   * no surface. Draws the objects that the pixel can see into one pixel, and waits for it.
+   */
+  [[nodiscard]] std::optional<Hit> pick(const draw::View &view, glm::ivec2 size_px, glm::ivec2 pixel_px);
+  /**
+   * Draw a line around each visible object of \a nodes over the content of \a target, also where other objects hide it.
+   * \a color: not premultiplied, and stored as Target::encoding stores; the view transform does not change it.
+   * Target::composition and depth have no effect. \throws gpu::Error as draw::check
+   */
+  void draw_outline(const draw::View &view, glm::ivec2 size_px, std::span<const scene::Handle<scene::Node>> nodes,
+                    const glm::vec4 &color, const draw::Target &target);
+
+ private:
+  /** Textures with the object and the depth at each pixel. */
+  struct ObjectsTarget {
+    gpu::Texture objects;
+    gpu::Texture depth;
+    gpu::Framebuffer framebuffer;
+  };
+  using IsDrawn = std::function<bool(const render_scene::RenderObject &object)>;
+
+  void check_up_to_date() const;
+  const gpu::Shader &shader(ShaderId id, Feature features);
+  void make(ObjectsTarget &target, glm::ivec2 size_px);
+  /**
+   * Append a pass that draws what \a view sees of the objects that \a is_drawn accepts into \a target.
+   * \return whether there is anything
+   */
+  bool record_objects(const draw::View &view, glm::ivec2 size_px, const IsDrawn &is_drawn, ObjectsTarget &target,
+                      gpu::CommandList &list);
+
+  render_scene::RenderScene &scene_;
+  std::map<std::pair<ShaderId, Feature>, gpu::Shader> shaders_;
+  gpu::Buffer view_block_;
+  gpu::Sampler nearest_;
+  ObjectsTarget pixel_;
+  ObjectsTarget mask_;
+};
+
+/** \a view, restricted to one pixel of a picture of \a size_px, from the lower left corner. */
+[[nodiscard]] draw::View view_of_pixel(const draw::View &view, glm::ivec2 size_px, glm::ivec2 pixel_px);
+
+}  // namespace gnomon::overlay

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include "overlay_programs.hh"
+
+#include <array>
+
+namespace gnomon::overlay {
+
+namespace {
+
+constexpr std::array<Feature, 3> mask_variants = {Feature::None, Feature::AlphaMask,
+                                                  Feature::AlphaMask | Feature::FullMaterial};
+constexpr std::array<Feature, 1> one_variant = {Feature::None};
+
+constexpr std::array<ShaderDeclaration, 2> declarations = {{
+    {ShaderId::Objects, "overlay_objects", "overlay/overlay_objects_vert.glsl", "overlay/overlay_objects_frag.glsl",
+     mask_variants, "the object at each pixel"},
+    {ShaderId::Outline, "overlay_outline", "draw/draw_fullscreen_vert.glsl", "overlay/overlay_outline_frag.glsl",
+     one_variant, "a line around each object"},
+}};
+
+}  // namespace
+
+std::span<const ShaderDeclaration> shader_declarations()
+{
+  return declarations;
+}
+
+gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature features)
+{
+  gpu::ShaderDesc desc;
+  desc.name = declaration.name;
+  desc.vertex_path = declaration.vertex_path;
+  desc.fragment_path = declaration.fragment_path;
+  if ((features & Feature::AlphaMask) != Feature::None) {
+    desc.defines.emplace_back("USE_ALPHA_MASK");
+  }
+  if ((features & Feature::FullMaterial) != Feature::None) {
+    desc.defines.emplace_back("USE_FULL_MATERIAL");
+  }
+  return desc;
+}
+
+}  // namespace gnomon::overlay

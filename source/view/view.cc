@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "view.hh"
+
+#include "view_script.hh"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <stdexcept>
+
+namespace gnomon::view {
+
+void run(const Options &options)
+{
+  // Before a window opens for nothing.
+  std::optional<Script> script;
+  if (!options.script.empty()) {
+    script.emplace(options.script);
+  }
+  App app(options);
+  if (!options.scene.empty()) {
+    app.open(options.scene);
+  }
+  bool is_screenshot_asked = false;
+  bool is_laid_out = false;
+  while (!app.is_closed()) {
+    if (script) {
+      script->step(app);
+    }
+    app.draw_frame();
+    const bool is_automatic = script || !options.screenshot.empty();
+    if (!is_automatic || (script && !script->is_done())) {
+      continue;
+    }
+    if (options.screenshot.empty() || is_screenshot_asked) {
+      break;
+    }
+    // The first frame lays out the window.
+    if (app.is_complete() && is_laid_out) {
+      app.request_screenshot(options.screenshot);
+      is_screenshot_asked = true;
+    }
+    is_laid_out = true;
+  }
+  if (script && app.driver_error_count() > 0) {
+    throw std::runtime_error(fmt::format("view: the driver reported {} errors; the last message: {}",
+                                         app.driver_error_count(), app.messages().back().text));
+  }
+}
+
+}  // namespace gnomon::view

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+#include "view_app.hh"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <utility>
+
+namespace gnomon::view {
+
+namespace {
+
+/** After an event, until the user interface has its final layout. */
+constexpr int settling_frames = 3;
+
+constexpr Side sides[] = {Side::Front, Side::Right, Side::Top, Side::Front};
+
+}  // namespace
+
+App::App(const Options &options) : writers_(options.writers), window_(options.size_px, !options.script.empty())
+{
+  device_ = gpu::create_gl_device({.context = gpu::ContextKind::Host,
+                                   .sink = [this](std::string_view text) { message(std::string(text), false); }});
+  viewports_.push_back(std::make_unique<Viewport>(*device_));
+}
+
+App::~App() = default;
+
+void App::message(std::string text, bool is_error)
+{
+  messages_.push_back({std::move(text), is_error});
+  frames_to_draw_ = settling_frames;
+}
+
+bool App::open(const std::filesystem::path &path)
+{
+  try {
+    scene::Scene scene = Document::read(path);
+    const Settings settings = document_ ? document_->settings() : default_settings();
+    for (const std::unique_ptr<Viewport> &viewport : viewports_) {
+      viewport->close();
+    }
+    document_.reset();
+    document_ = std::make_unique<Document>(*device_, std::move(scene), settings);
+    for (std::size_t i = 0; i < viewports_.size(); i++) {
+      viewports_[i]->look_at(*document_);
+    }
+    const std::size_t count = document_->scene().warnings.size();
+    message(count == 0 ? fmt::format("{} is open", path.string())
+                       : fmt::format("{} is open, with {} warnings", path.string(), count),
+            false);
+    return true;
+  }
+  catch (const std::exception &error) {
+    message(error.what(), true);
+    return false;
+  }
+}
+
+bool App::save(const std::filesystem::path &path)
+{
+  if (!document_) {
+    return false;
+  }
+  try {
+    document_->save(path);
+    message(document_->scene().world()
+                ? fmt::format("{} is written, without the world, which glTF does not have", path.string())
+                : fmt::format("{} is written", path.string()),
+            false);
+    return true;
+  }
+  catch (const std::exception &error) {
+    message(error.what(), true);
+    return false;
+  }
+}
+
+void App::save_picture(const std::filesystem::path &path)
+{
+  if (!document_ || !active().viewport()) {
+    throw std::runtime_error(fmt::format("{}: there is no picture to write", path.string()));
+  }
+  if (path.extension() == ".exr") {
+    writers_.exr(path, active().size_px(), active().radiance(*document_));
+  }
+  else if (path.extension() == ".png") {
+    writers_.png(path, active().size_px(), active().pixels());
+  }
+  else {
+    throw std::runtime_error(fmt::format("{}: ends in neither .exr nor .png", path.string()));
+  }
+  message(fmt::format("{} is written", path.string()), false);
+}
+
+void App::undo()
+{
+  if (document_ && !document_->undo()) {
+    message("There is nothing to undo", false);
+  }
+}
+
+void App::redo()
+{
+  if (document_ && !document_->redo()) {
+    message("There is nothing to redo", false);
+  }
+}
+
+void App::frame(bool is_all)
+{
+  if (document_) {
+    active().navigation.frame(is_all ? document_->scene().bounds() : document_->selected_bounds());
+  }
+}
+
+void App::set_viewport_count(int count)
+{
+  while (viewports_.size() > std::size_t(count)) {
+    viewports_.pop_back();
+  }
+  while (viewports_.size() < std::size_t(count)) {
+    auto viewport = std::make_unique<Viewport>(*device_);
+    viewport->navigation = viewports_.front()->navigation;
+    if (document_) {
+      viewport->navigation.look_from(sides[viewports_.size() % std::size(sides)]);
+      viewport->navigation.frame(document_->scene().bounds());
+    }
+    viewports_.push_back(std::move(viewport));
+  }
+  active_ = std::min(active_, viewports_.size() - 1);
+}
+
+void App::ask(std::string title, std::string path, std::function<void(const std::string &)> answer)
+{
+  path.resize(4096);
+  question_ = PathQuestion{std::move(title), std::move(path), std::move(answer)};
+  is_question_new_ = true;
+}
+
+std::string App::default_path(const char *suffix) const
+{
+  std::filesystem::path path = document_ ? document_->scene().path : "scene";
+  return path.replace_extension().string() + suffix;
+}
+
+void App::ask_save()
+{
+  // The file that was opened is not replaced by chance: the export leaves out what the import did not take.
+  ask("Save as glTF", default_path(".edited.glb"), [this](const std::string &path) { save(path); });
+}
+
+void App::take_key(const KeyPress &press)
+{
+  const bool is_control = (press.mods & GLFW_MOD_CONTROL) != 0;
+  const bool is_shift = (press.mods & GLFW_MOD_SHIFT) != 0;
+  Navigation &navigation = active().navigation;
+  switch (press.key) {
+    case GLFW_KEY_Z:
+      if (is_control) {
+        is_shift ? redo() : undo();
+      }
+      return;
+    case GLFW_KEY_Y:
+      if (is_control) {
+        redo();
+      }
+      return;
+    case GLFW_KEY_S:
+      if (is_control && document_) {
+        ask_save();
+      }
+      return;
+    case GLFW_KEY_O:
+      if (is_control) {
+        ask("Open", default_path(".glb"), [this](const std::string &path) { open(path); });
+      }
+      return;
+    case GLFW_KEY_1:
+    case GLFW_KEY_KP_1: navigation.look_from(is_control ? Side::Back : Side::Front); return;
+    case GLFW_KEY_3:
+    case GLFW_KEY_KP_3: navigation.look_from(is_control ? Side::Left : Side::Right); return;
+    case GLFW_KEY_7:
+    case GLFW_KEY_KP_7: navigation.look_from(is_control ? Side::Bottom : Side::Top); return;
+    case GLFW_KEY_5:
+    case GLFW_KEY_KP_5: navigation.toggle_orthographic(); return;
+    case GLFW_KEY_0:
+    case GLFW_KEY_KP_0:
+      if (document_) {
+        active().look_at(*document_);
+      }
+      return;
+    case GLFW_KEY_PERIOD:
+    case GLFW_KEY_KP_DECIMAL: frame(false); return;
+    case GLFW_KEY_HOME: frame(true); return;
+    case GLFW_KEY_H:
+      if (document_ && document_->scene().nodes().is_live(document_->selected)) {
+        document_->edit(document_->selected, [](scene::Node &node) { node.is_visible = !node.is_visible; });
+      }
+      return;
+    default: return;
+  }
+}
+
+void App::take_events()
+{
+  for (const KeyPress &press : window_.take_keys()) {
+    take_key(press);
+  }
+  for (const std::filesystem::path &path : window_.take_dropped()) {
+    open(path);
+  }
+  for (const std::string &text : window_.take_driver_messages()) {
+    driver_error_count_++;
+    message("OpenGL: " + text, true);
+  }
+  if (document_ && !ImGui::IsAnyItemActive()) {
+    document_->history().end_gesture();
+  }
+}
+
+void App::draw_frame()
+{
+  const bool waits = is_still();
+  window_.begin_frame(waits);
+  frames_to_draw_ = waits ? settling_frames : std::max(0, frames_to_draw_ - 1);
+  take_events();
+  is_complete_ = true;
+  if (document_) {
+    render_scene::RenderScene &render_scene = document_->render_scene();
+    const glm::dvec3 eye(active().navigation.camera(0.0).world_from_camera[3]);
+    render_scene.set_origin(render_scene::origin_near(eye, render_scene.origin_ws()));
+    render_scene.update();
+    window_.set_title(fmt::format("{}{} - gnomon", document_->scene().path, document_->is_saved() ? "" : "*"));
+  }
+  show_window();
+  window_.end_frame();
+  if (!screenshot_.empty()) {
+    const std::filesystem::path path = std::exchange(screenshot_, {});
+    writers_.png(path, window_.size_px(), window_.read_pixels());
+  }
+  window_.swap();
+}
+
+}  // namespace gnomon::view

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "view_document.hh"
+
+#include "gltf_export.hh"
+#include "gltf_import.hh"
+#include "scene_studio.hh"
+#include "unlit_engine.hh"
+
+namespace gnomon::view {
+
+Document::Document(gpu::Device &device, scene::Scene scene, const Settings &settings)
+    : scene_(std::move(scene)),
+      render_scene_(device, scene_),
+      overlay_(render_scene_),
+      settings_(settings),
+      saved_revision_(scene_.revision())
+{
+  registry_.add(eevee::engine_type(render_scene_, settings_.eevee));
+  registry_.add(unlit::engine_type(render_scene_));
+  engine_names_ = registry_.names();
+}
+
+scene::Scene Document::read(const std::filesystem::path &path)
+{
+  scene::Scene scene = gltf::import_gltf(path);
+  if (scene.is_lamp_default && !scene.world()) {
+    scene.set_world(scene::studio_world(scene.placed_cameras().front().world_from_camera));
+    scene.remove(scene.placed_lamps().front().node);
+    scene.is_lamp_default = false;
+  }
+  return scene;
+}
+
+void Document::save(const std::filesystem::path &path)
+{
+  gltf::export_gltf(scene_, path);
+  scene_.path = path.string();
+  saved_revision_ = scene_.revision();
+}
+
+draw::Engine &Document::engine(const std::string &name)
+{
+  std::unique_ptr<draw::Engine> &engine = engines_[name];
+  if (!engine) {
+    engine = registry_.create(name);
+    if (auto *eevee = dynamic_cast<eevee::Engine *>(engine.get())) {
+      eevee->set_settings(settings_.eevee);
+    }
+  }
+  return *engine;
+}
+
+eevee::Engine *Document::eevee()
+{
+  const auto found = engines_.find("eevee");
+  return found == engines_.end() ? nullptr : dynamic_cast<eevee::Engine *>(found->second.get());
+}
+
+void Document::set_settings(const Settings &settings)
+{
+  settings_ = settings;
+  settings_revision_++;
+  if (eevee::Engine *engine = eevee()) {
+    engine->set_settings(settings_.eevee);
+  }
+}
+
+std::vector<scene::Handle<scene::Node>> Document::selected_nodes() const
+{
+  std::vector<scene::Handle<scene::Node>> nodes;
+  if (scene_.nodes().is_live(selected)) {
+    nodes.push_back(selected);
+  }
+  for (std::size_t i = 0; i < nodes.size(); i++) {
+    for (scene::Handle<scene::Node> child = scene_.first_child(nodes[i]); child; child = scene_.next_sibling(child)) {
+      nodes.push_back(child);
+    }
+  }
+  return nodes;
+}
+
+scene::Bounds Document::selected_bounds() const
+{
+  scene::Bounds bounds;
+  for (const scene::Handle<scene::Node> handle : selected_nodes()) {
+    const scene::Node &node = scene_.nodes()[handle];
+    const glm::dmat4 &world = scene_.world_from_node(handle);
+    for (const scene::Handle<scene::Mesh> mesh : node.meshes) {
+      if (const scene::Mesh *value = scene_.meshes().find(mesh)) {
+        bounds.extend(scene::transformed(value->bounds, glm::mat4(world)));
+      }
+    }
+    if (node.lamp || node.camera) {
+      bounds.extend(glm::vec3(world[3]));
+    }
+  }
+  return bounds.is_empty() ? scene_.bounds() : bounds;
+}
+
+scene::Handle<scene::Node> Document::find(const std::string &name) const
+{
+  for (const auto &[handle, node] : scene_.nodes()) {
+    if (node.name == name) {
+      return handle;
+    }
+  }
+  return {};
+}
+
+}  // namespace gnomon::view

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "view_history.hh"
+#include "view_settings.hh"
+
+#include "draw_engine.hh"
+#include "eevee_engine.hh"
+#include "overlay.hh"
+#include "render_scene.hh"
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace gnomon::view {
+
+/** An open scene on a device, with the engines that show it, its undo history and what is selected. */
+class Document {
+ public:
+  /** \a device must outlive the document, and the document the viewports that show it. */
+  Document(gpu::Device &device, scene::Scene scene, const Settings &settings);
+
+  /** A scene from a file; one that has neither lamps nor a world is lit by a studio. \throws gltf::ImportError */
+  [[nodiscard]] static scene::Scene read(const std::filesystem::path &path);
+  /** \throws gltf::ExportError */
+  void save(const std::filesystem::path &path);
+
+  [[nodiscard]] const scene::Scene &scene() const
+  {
+    return scene_;
+  }
+  template <typename T, std::invocable<T &> Change>
+  void edit(scene::Handle<T> thing, Change &&change)
+  {
+    history_.edit(scene_, thing, change);
+  }
+  void set_world(std::optional<scene::World> world)
+  {
+    history_.set_world(scene_, std::move(world));
+  }
+  bool undo()
+  {
+    return history_.undo(scene_);
+  }
+  bool redo()
+  {
+    return history_.redo(scene_);
+  }
+  [[nodiscard]] History &history()
+  {
+    return history_;
+  }
+  [[nodiscard]] bool is_saved() const
+  {
+    return saved_revision_ == scene_.revision();
+  }
+
+  [[nodiscard]] render_scene::RenderScene &render_scene()
+  {
+    return render_scene_;
+  }
+  [[nodiscard]] overlay::Overlay &overlay()
+  {
+    return overlay_;
+  }
+  [[nodiscard]] const std::vector<std::string> &engine_names() const
+  {
+    return engine_names_;
+  }
+  /** The first call makes it. \throws gpu::Error naming the engines where there is none of that name */
+  [[nodiscard]] draw::Engine &engine(const std::string &name);
+  /** The engine with lamps and shadows; nullptr: no viewport has used it. */
+  [[nodiscard]] eevee::Engine *eevee();
+
+  [[nodiscard]] const Settings &settings() const
+  {
+    return settings_;
+  }
+  void set_settings(const Settings &settings);
+  [[nodiscard]] std::uint64_t settings_revision() const
+  {
+    return settings_revision_;
+  }
+
+  /** An invalid handle: nothing. */
+  scene::Handle<scene::Node> selected{};
+  /** The selected node and its descendants. */
+  [[nodiscard]] std::vector<scene::Handle<scene::Node>> selected_nodes() const;
+  /** The box around the selected nodes, a lamp being a point; around the scene where nothing is selected. */
+  [[nodiscard]] scene::Bounds selected_bounds() const;
+  /** The first node of that name; an invalid handle: there is none. */
+  [[nodiscard]] scene::Handle<scene::Node> find(const std::string &name) const;
+
+ private:
+  scene::Scene scene_;
+  History history_;
+  render_scene::RenderScene render_scene_;
+  draw::EngineRegistry registry_;
+  std::vector<std::string> engine_names_;
+  std::map<std::string, std::unique_ptr<draw::Engine>> engines_;
+  overlay::Overlay overlay_;
+  Settings settings_;
+  std::uint64_t settings_revision_ = 0;
+  scene::Revision saved_revision_ = 0;
+};
+
+}  // namespace gnomon::view

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "view_canvas.hh"
+#include "view_document.hh"
+#include "view_properties.hh"
+#include "view_viewport.hh"
+
+#include <string>
+
+/** What the window shows beside the viewports. Each function draws items of the current window. */
+namespace gnomon::view {
+
+/** The rows of a table with \a thing's properties. \return whether the user changed \a thing */
+template <typename T>
+bool show_properties(T &thing);
+
+/** The nodes as a tree: a click selects, a box hides. */
+class SceneTree {
+ public:
+  void show(Document &document);
+
+ private:
+  void show_node(Document &document, scene::Handle<scene::Node> handle);
+  char filter_[64] = "";
+};
+
+/** The selected node: its placement, flags, lamp and materials. */
+void show_selection(Document &document);
+/** Light from everywhere. */
+void show_world(Document &document);
+/** Settings of all viewports. */
+void show_settings(Document &document);
+
+/** Of what a panel shows: it is made anew where this differs, as it takes time. */
+struct PanelKey {
+  scene::Revision scene = 0;
+  std::uint64_t settings = 0;
+  int samples_drawn = -1;
+  scene::Handle<scene::Node> selected{};
+  int layer = 0;
+
+  bool operator==(const PanelKey &) const = default;
+};
+
+/** The frame of a viewport as a list, with bytes, times and reasons, and what is not drawn. */
+class FramePanel {
+ public:
+  void show(Document &document, Viewport &viewport);
+
+ private:
+  eevee::Report report_;
+  PanelKey shown_;
+};
+
+/** The layers of the selected lamp's shadow. */
+class ShadowPanel {
+ public:
+  /** \a device: of the document. \throws gpu::Error */
+  void show(Document &document, Viewport &viewport, gpu::Device &device);
+
+ private:
+  /** \pre the lamp has layers */
+  void read(eevee::Engine &engine, Viewport &viewport, std::size_t lamp, gpu::Device &device);
+
+  Canvas canvas_;
+  PanelKey shown_;
+  /** 0: all layers, then one after the other. */
+  int layer_ = 0;
+};
+
+}  // namespace gnomon::view

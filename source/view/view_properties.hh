@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "view_settings.hh"
+
+#include "scene.hh"
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+/** What can be edited of a thing, as tables: panels show them, and scripts set them by name. */
+namespace gnomon::view {
+
+/** One or three numbers, in the units in which they are shown. */
+template <typename T>
+struct NumberProperty {
+  /** In scripts. */
+  const char *name;
+  const char *label;
+  std::function<const char *(const T &)> unit;
+  int width;
+  double min;
+  double max;
+  std::function<double(const T &, int)> get;
+  std::function<void(T &, int, double)> set;
+  bool is_color = false;
+  /** Empty: always. */
+  std::function<bool(const T &)> applies{};
+};
+
+/** One of several. With two options, "off" and "on", a check box. */
+template <typename T>
+struct ChoiceProperty {
+  const char *name;
+  const char *label;
+  std::vector<const char *> options;
+  std::function<int(const T &)> get;
+  std::function<void(T &, int)> set;
+  std::function<bool(const T &)> applies{};
+};
+
+template <typename T>
+struct Properties {
+  std::vector<ChoiceProperty<T>> choices;
+  std::vector<NumberProperty<T>> numbers;
+};
+
+/** Position, rotation and scale of a node in its parent. */
+struct Placement {
+  /** Metres. */
+  glm::dvec3 position{0.0};
+  /** Degrees: around x first, then y, then z. */
+  glm::dvec3 rotation{0.0};
+  /** A mirrored node's is negative along x. */
+  glm::dvec3 scale{1.0};
+
+  bool operator==(const Placement &) const = default;
+};
+/** A shear of the matrix is not part of it. */
+[[nodiscard]] Placement placement_of(const glm::dmat4 &parent_from_node);
+/** \a parent_from_node with another placement. Only another rotation or scale removes its shear. */
+[[nodiscard]] glm::dmat4 placed(const glm::dmat4 &parent_from_node, const Placement &placement);
+
+/** For Placement, scene::Node, scene::Lamp, scene::Material, scene::World and Settings. */
+template <typename T>
+[[nodiscard]] const Properties<T> &properties();
+
+/**
+ * Set the property \a name of \a thing to what \a words say, as scripts do.
+ * \return false: \a T has no such property, or it does not apply
+ * \throws std::runtime_error where the words are not as many numbers within the limits, or none of the options
+ */
+template <typename T>
+bool set_property(T &thing, const std::string &name, std::span<const std::string> words);
+
+}  // namespace gnomon::view

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include "view_panels.hh"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+namespace gnomon::view {
+
+namespace {
+
+/** The label in the first column; the next item fills the second. */
+void begin_row(const char *label)
+{
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(label);
+  ImGui::TableNextColumn();
+  ImGui::SetNextItemWidth(-1.0F);
+}
+
+template <typename T>
+bool show_choice(const ChoiceProperty<T> &property, T &thing)
+{
+  const int current = property.get(thing);
+  if (property.options.size() == 2 && std::strcmp(property.options[0], "off") == 0) {
+    bool is_on = current == 1;
+    if (ImGui::Checkbox("", &is_on)) {
+      property.set(thing, is_on ? 1 : 0);
+      return true;
+    }
+    return false;
+  }
+  int chosen = current;
+  if (ImGui::Combo("", &chosen, property.options.data(), int(property.options.size())) && chosen != current) {
+    property.set(thing, chosen);
+    return true;
+  }
+  return false;
+}
+
+template <typename T>
+bool show_color(const NumberProperty<T> &property, T &thing)
+{
+  std::array<float, 3> color{};
+  for (int i = 0; i < 3; i++) {
+    color[std::size_t(i)] = float(property.get(thing, i));
+  }
+  if (!ImGui::ColorEdit3("", color.data(), ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR)) {
+    return false;
+  }
+  for (int i = 0; i < 3; i++) {
+    property.set(thing, i, std::clamp(double(color[std::size_t(i)]), property.min, property.max));
+  }
+  return true;
+}
+
+template <typename T>
+bool show_number(const NumberProperty<T> &property, T &thing)
+{
+  std::array<double, 3> values{};
+  double largest = 0.0;
+  for (int i = 0; i < property.width; i++) {
+    values[std::size_t(i)] = property.get(thing, i);
+    largest = std::max(largest, std::abs(values[std::size_t(i)]));
+  }
+  const std::array<double, 3> before = values;
+  // A drag of a hundred pixels changes a number by about half of it.
+  const auto speed = float(0.005 * std::max(largest, 0.01 * std::min(property.max, 100.0)));
+  const char *unit = property.unit(thing);
+  const std::string format = fmt::format("{}{}{}", largest >= 1e4 ? "%.5g" : "%.4g", *unit ? " " : "", unit);
+  if (!ImGui::DragScalarN("", ImGuiDataType_Double, values.data(), property.width, speed, &property.min, &property.max,
+                          format.c_str(), ImGuiSliderFlags_AlwaysClamp)) {
+    return false;
+  }
+  // The others keep every digit.
+  for (int i = 0; i < property.width; i++) {
+    const auto at = std::size_t(i);
+    if (values[at] != before[at] && std::isfinite(values[at])) {
+      property.set(thing, i, values[at]);
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+template <typename T>
+bool show_properties(T &thing)
+{
+  if (!ImGui::BeginTable("properties", 2)) {
+    return false;
+  }
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 8.0F * ImGui::GetFontSize());
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
+  bool is_changed = false;
+  const auto show = [&](const auto &property, auto &&item) {
+    if (!property.applies || property.applies(thing)) {
+      ImGui::PushID(property.name);
+      begin_row(property.label);
+      is_changed |= item();
+      ImGui::PopID();
+    }
+  };
+  for (const ChoiceProperty<T> &property : properties<T>().choices) {
+    show(property, [&] { return show_choice(property, thing); });
+  }
+  for (const NumberProperty<T> &property : properties<T>().numbers) {
+    show(property, [&] { return property.is_color ? show_color(property, thing) : show_number(property, thing); });
+  }
+  ImGui::EndTable();
+  return is_changed;
+}
+
+template bool show_properties(Placement &);
+template bool show_properties(scene::Node &);
+template bool show_properties(scene::Lamp &);
+template bool show_properties(scene::Material &);
+template bool show_properties(scene::World &);
+template bool show_properties(Settings &);
+
+}  // namespace gnomon::view

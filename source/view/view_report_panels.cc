@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#include "view_panels.hh"
+
+#include "eevee_frame_text.hh"
+#include "gpu_read.hh"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gnomon::view {
+
+namespace {
+
+void show_text(const std::string &text)
+{
+  ImGui::TextUnformatted(text.data(), text.data() + text.size());
+}
+
+PanelKey key_of(Document &document, const Viewport &viewport, int layer = 0)
+{
+  return {document.scene().revision(), document.settings_revision(), viewport.samples_drawn(), document.selected,
+          layer};
+}
+
+/** The first sample of a picture and the last, so that the panel takes little of the others' time. */
+bool is_worth_showing(const Document &document, const Viewport &viewport)
+{
+  return viewport.samples_drawn() <= 1 || viewport.samples_drawn() >= document.settings().eevee.sample_count;
+}
+
+void show_part(const eevee::FrameNode &node)
+{
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  const bool is_leaf = node.children.empty();
+  if (!node.is_made) {
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+  }
+  const bool is_open =
+      ImGui::TreeNodeEx(node.what.c_str(), ImGuiTreeNodeFlags_SpanFullWidth | (is_leaf ? ImGuiTreeNodeFlags_Leaf : 0));
+  if (ImGui::IsItemHovered() && !node.why.empty()) {
+    ImGui::SetTooltip("%s", node.why.c_str());
+  }
+  ImGui::TableNextColumn();
+  show_text(node.count ? fmt::format("{}", *node.count) : "");
+  ImGui::TableNextColumn();
+  show_text(node.bytes ? eevee::bytes_text(*node.bytes) : "");
+  ImGui::TableNextColumn();
+  show_text(node.seconds && node.is_made ? eevee::seconds_text(*node.seconds) : "");
+  ImGui::TableNextColumn();
+  show_text(node.why);
+  if (!node.is_made) {
+    ImGui::PopStyleColor();
+  }
+  if (is_open) {
+    for (const eevee::FrameNode &child : node.children) {
+      show_part(child);
+    }
+    ImGui::TreePop();
+  }
+}
+
+void show_lines(const char *title, const std::vector<std::string> &lines)
+{
+  if (!lines.empty() && ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen)) {
+    for (const std::string &line : lines) {
+      ImGui::TextWrapped("%s", line.c_str());
+    }
+  }
+}
+
+}  // namespace
+
+void FramePanel::show(Document &document, Viewport &viewport)
+{
+  eevee::Engine *engine = document.eevee();
+  if (!engine || !viewport.viewport() || viewport.engine != "eevee") {
+    ImGui::TextDisabled("The list is of viewports that eevee draws.");
+    return;
+  }
+  if (const PanelKey key = key_of(document, viewport); key != shown_ && is_worth_showing(document, viewport)) {
+    report_ = engine->report(*viewport.viewport());
+    shown_ = key;
+  }
+  show_lines("Warnings", report_.warnings);
+  show_lines("Limits", report_.limits);
+  show_lines("The file", document.scene().warnings);
+  const ImGuiTableFlags flags = ImGuiTableFlags_Resizable | ImGuiTableFlags_ScrollY | ImGuiTableFlags_ScrollX |
+                                ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit;
+  if (ImGui::BeginTable("frame", 5, flags)) {
+    ImGui::TableSetupScrollFreeze(1, 1);
+    for (const char *name : {"Part", "Count", "Bytes", "Time", "Why"}) {
+      ImGui::TableSetupColumn(name);
+    }
+    ImGui::TableHeadersRow();
+    for (const eevee::FrameNode &part : report_.tree.children) {
+      show_part(part);
+    }
+    ImGui::EndTable();
+  }
+}
+
+void ShadowPanel::show(Document &document, Viewport &viewport, gpu::Device &device)
+{
+  eevee::Engine *engine = document.eevee();
+  const auto lamps = document.render_scene().lamps();
+  const auto lamp = std::ranges::find(lamps, document.selected, &scene::PlacedLamp::node);
+  if (!engine || !viewport.viewport() || viewport.engine != "eevee" || lamp == lamps.end()) {
+    ImGui::TextDisabled("Select a lamp, in a viewport that eevee draws.");
+    return;
+  }
+  const auto index = std::size_t(lamp - lamps.begin());
+  std::vector<std::string> layers = engine->shadow_layers(*viewport.viewport(), index);
+  if (layers.empty()) {
+    ImGui::TextDisabled("'%s' has no shadow that is seen.", lamp->name.c_str());
+    return;
+  }
+  layers.insert(layers.begin(), "all");
+  layer_ = std::min(layer_, int(layers.size()) - 1);
+  if (ImGui::BeginCombo("Layer", layers[std::size_t(layer_)].c_str())) {
+    for (int i = 0; i < int(layers.size()); i++) {
+      if (ImGui::Selectable(layers[std::size_t(i)].c_str(), i == layer_)) {
+        layer_ = i;
+      }
+    }
+    ImGui::EndCombo();
+  }
+  const PanelKey key = key_of(document, viewport, layer_);
+  if (key != shown_ &&
+      (is_worth_showing(document, viewport) || key.selected != shown_.selected || layer_ != shown_.layer)) {
+    read(*engine, viewport, index, device);
+    shown_ = key;
+  }
+  const glm::vec2 size_px(canvas_.size_px());
+  const ImVec2 space = ImGui::GetContentRegionAvail();
+  const glm::vec2 room(space.x, std::max(100.0F, space.y - ImGui::GetTextLineHeightWithSpacing()));
+  canvas_.show(size_px * std::min(room.x / size_px.x, room.y / size_px.y));
+  ImGui::TextDisabled("Near is dark, far is bright; %.0fx%.0f px", double(size_px.x), double(size_px.y));
+}
+
+void ShadowPanel::read(eevee::Engine &engine, Viewport &viewport, std::size_t lamp, gpu::Device &device)
+{
+  const gpu::Texture &picture = engine.shadow_picture(
+      *viewport.viewport(), lamp, layer_ == 0 ? std::nullopt : std::optional(std::size_t(layer_ - 1)));
+  const std::vector<float> values = gpu::read_as<float>(device, picture);
+  std::vector<std::uint8_t> bytes(values.size());
+  std::ranges::transform(values, bytes.begin(),
+                         [](float value) { return std::uint8_t(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F))); });
+  // The alpha channel has the distance in metres.
+  for (std::size_t i = 3; i < bytes.size(); i += 4) {
+    bytes[i] = 255;
+  }
+  canvas_.upload({picture.desc().width, picture.desc().height}, bytes);
+}
+
+}  // namespace gnomon::view

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+#include "view_panels.hh"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+
+namespace gnomon::view {
+
+namespace {
+
+const char *kind_of(const scene::Node &node)
+{
+  if (node.lamp) {
+    return "lamp";
+  }
+  if (node.camera) {
+    return "camera";
+  }
+  return node.meshes.empty() ? "" : "mesh";
+}
+
+bool contains(const std::string &text, const char *part)
+{
+  const std::string_view wanted(part);
+  const auto is_same = [](char a, char b) { return std::tolower(a) == std::tolower(b); };
+  return !std::ranges::search(text, wanted, is_same).empty() || wanted.empty();
+}
+
+bool header(const std::string &text)
+{
+  return ImGui::CollapsingHeader(text.c_str(), ImGuiTreeNodeFlags_DefaultOpen);
+}
+
+}  // namespace
+
+void SceneTree::show_node(Document &document, scene::Handle<scene::Node> handle)
+{
+  const scene::Scene &scene = document.scene();
+  const scene::Node &node = scene.nodes()[handle];
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::PushID(int(handle.index));
+  const bool is_leaf = !scene.first_child(handle) || *filter_ != '\0';
+  const ImGuiTreeNodeFlags flags = ImGuiTreeNodeFlags_OpenOnArrow | ImGuiTreeNodeFlags_SpanAvailWidth |
+                                   ImGuiTreeNodeFlags_DefaultOpen |
+                                   (handle == document.selected ? ImGuiTreeNodeFlags_Selected : 0) |
+                                   (is_leaf ? ImGuiTreeNodeFlags_Leaf | ImGuiTreeNodeFlags_NoTreePushOnOpen : 0);
+  const bool is_shown = scene.is_visible(handle);
+  if (!is_shown) {
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+  }
+  const bool is_open = ImGui::TreeNodeEx("node", flags, "%s", node.name.empty() ? "(no name)" : node.name.c_str());
+  if (!is_shown) {
+    ImGui::PopStyleColor();
+  }
+  if (ImGui::IsItemClicked() && !ImGui::IsItemToggledOpen()) {
+    document.selected = handle;
+  }
+  ImGui::TableNextColumn();
+  ImGui::TextDisabled("%s", kind_of(node));
+  ImGui::TableNextColumn();
+  bool is_visible = node.is_visible;
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0.0F, 0.0F});
+  if (ImGui::Checkbox("##visible", &is_visible)) {
+    document.edit(handle, [&](scene::Node &edited) { edited.is_visible = is_visible; });
+  }
+  ImGui::PopStyleVar();
+  if (is_open && !is_leaf) {
+    for (scene::Handle<scene::Node> child = scene.first_child(handle); child; child = scene.next_sibling(child)) {
+      show_node(document, child);
+    }
+    ImGui::TreePop();
+  }
+  ImGui::PopID();
+}
+
+void SceneTree::show(Document &document)
+{
+  ImGui::SetNextItemWidth(-1.0F);
+  ImGui::InputTextWithHint("##filter", "Filter", filter_, sizeof(filter_));
+  if (!ImGui::BeginTable("tree", 3, ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg)) {
+    return;
+  }
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed);
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed);
+  const scene::Scene &scene = document.scene();
+  for (const auto &[handle, node] : scene.nodes()) {
+    const bool is_row = *filter_ != '\0' ? contains(node.name, filter_) : !scene.parent(handle);
+    if (is_row) {
+      show_node(document, handle);
+    }
+  }
+  ImGui::EndTable();
+}
+
+void show_selection(Document &document)
+{
+  const scene::Scene &scene = document.scene();
+  const scene::Handle<scene::Node> selected = document.selected;
+  if (!scene.nodes().is_live(selected)) {
+    ImGui::TextDisabled("Nothing is selected.");
+    return;
+  }
+  scene::Node node = scene.nodes()[selected];
+  if (header(fmt::format("Node: {}###node", node.name))) {
+    ImGui::PushID("placement");
+    const Placement before = placement_of(node.parent_from_node);
+    Placement placement = before;
+    if (show_properties(placement)) {
+      document.edit(selected,
+                    [&](scene::Node &edited) { edited.parent_from_node = placed(edited.parent_from_node, placement); });
+    }
+    ImGui::PopID();
+    node = scene.nodes()[selected];
+    if (show_properties(node)) {
+      document.edit(selected, [&](scene::Node &edited) { edited = node; });
+    }
+  }
+  if (const scene::Lamp *lamp = scene.lamps().find(node.lamp);
+      lamp && header(fmt::format("Lamp: {}###lamp", lamp->name))) {
+    ImGui::PushID("lamp");
+    scene::Lamp edited = *lamp;
+    if (show_properties(edited)) {
+      document.edit(node.lamp, [&](scene::Lamp &one) { one = edited; });
+    }
+    ImGui::PopID();
+  }
+  std::vector<scene::Handle<scene::Material>> shown;
+  for (const scene::Handle<scene::Mesh> mesh : node.meshes) {
+    const scene::Mesh *value = scene.meshes().find(mesh);
+    const scene::Material *material = value ? scene.materials().find(value->material) : nullptr;
+    if (!material || std::ranges::find(shown, value->material) != shown.end()) {
+      continue;
+    }
+    shown.push_back(value->material);
+    ImGui::PushID(int(value->material.index));
+    if (header(fmt::format("Material: {}###material", material->name))) {
+      scene::Material edited = *material;
+      if (show_properties(edited)) {
+        document.edit(value->material, [&](scene::Material &one) { one = edited; });
+      }
+    }
+    ImGui::PopID();
+  }
+}
+
+void show_world(Document &document)
+{
+  const bool has_world = document.scene().world().has_value();
+  bool is_on = has_world;
+  if (ImGui::Checkbox("Light from everywhere", &is_on) && is_on != has_world) {
+    document.set_world(is_on ? std::optional(scene::World{}) : std::nullopt);
+    return;
+  }
+  if (has_world) {
+    scene::World world = *document.scene().world();
+    ImGui::TextDisabled("%s",
+                        world.picture ? "A picture, turned around the vertical axis" : "The same from everywhere");
+    if (show_properties(world)) {
+      document.set_world(world);
+    }
+  }
+}
+
+void show_settings(Document &document)
+{
+  Settings settings = document.settings();
+  if (show_properties(settings)) {
+    document.set_settings(settings);
+  }
+}
+
+}  // namespace gnomon::view

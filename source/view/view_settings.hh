@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "draw_target.hh"
+#include "eevee_engine.hh"
+
+namespace gnomon::view {
+
+/** Of all viewports. */
+struct Settings {
+  eevee::Settings eevee{};
+  draw::ViewTransform view_transform = draw::ViewTransform::PbrNeutral;
+  /** Stops. */
+  float exposure = 0.0F;
+};
+
+/** What the window starts with. */
+[[nodiscard]] inline Settings default_settings()
+{
+  Settings settings;
+  settings.eevee.sample_count = 32;
+  return settings;
+}
+
+}  // namespace gnomon::view

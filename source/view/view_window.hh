@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <glm/vec2.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+struct GLFWwindow;
+
+namespace gnomon::view {
+
+/** A key that was pressed: GLFW_KEY_… and a mask of GLFW_MOD_…. */
+struct KeyPress {
+  int key = 0;
+  int mods = 0;
+
+  bool operator==(const KeyPress &) const = default;
+};
+
+/** The window, its OpenGL context, which is current while it exists, and the user interface's state. One at a time. */
+class Window {
+ public:
+  /**
+   * \a is_debug: the driver reports its errors to take_driver_messages.
+   * \throws std::runtime_error where there is no display, or no OpenGL 4.5 core context
+   */
+  Window(glm::ivec2 size_px, bool is_debug);
+  Window(const Window &) = delete;
+  Window &operator=(const Window &) = delete;
+  ~Window();
+
+  /** Wait for an event, or take those that are there, and begin a frame of the user interface. */
+  void begin_frame(bool waits);
+  /** Draw the user interface into the back buffer. */
+  void end_frame();
+  /** Show the back buffer. */
+  void swap();
+  /** The back buffer: rows from the bottom, four bytes each. */
+  [[nodiscard]] std::vector<std::uint8_t> read_pixels() const;
+
+  [[nodiscard]] bool is_closed() const;
+  [[nodiscard]] glm::ivec2 size_px() const;
+  void resize(glm::ivec2 size_px);
+  void set_title(const std::string &title);
+
+  /** Keys that were pressed since the last call, other than while a field of the user interface had them. */
+  [[nodiscard]] std::vector<KeyPress> take_keys();
+  /** Files that were dropped on the window. */
+  [[nodiscard]] std::vector<std::filesystem::path> take_dropped();
+  /** Errors that the driver reported. */
+  [[nodiscard]] std::vector<std::string> take_driver_messages();
+
+ private:
+  GLFWwindow *window_ = nullptr;
+  std::vector<KeyPress> keys_;
+  std::vector<std::filesystem::path> dropped_;
+  std::vector<std::string> driver_messages_;
+};
+
+}  // namespace gnomon::view

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+#include "view_history.hh"
+#include "view_navigation.hh"
+#include "view_properties.hh"
+#include "view_script.hh"
+
+#include <gtest/gtest.h>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace gnomon::view {
+namespace {
+
+TEST(ViewHistoryTest, EachGestureIsUndoneAndRedoneAsOneAndANewEditForgetsWhatWasUndone)
+{
+  scene::Scene scene;
+  History history;
+  const auto node = scene.add(scene::Node{.name = "node"});
+  const auto lamp = scene.add(scene::Lamp{.name = "lamp"});
+  for (const float intensity : {2.0F, 3.0F, 4.0F}) {
+    history.edit(scene, lamp, [&](scene::Lamp &edited) { edited.intensity = intensity; });
+  }
+  EXPECT_EQ(history.undo_count(), 1U);
+  history.edit(scene, node, [](scene::Node &edited) { edited.is_visible = false; });
+  history.end_gesture();
+  history.edit(scene, node, [](scene::Node &edited) { edited.name = "other"; });
+  history.set_world(scene, scene::World{.strength = 2.0F});
+  history.edit(scene, node, [](scene::Node & /*edited*/) {});
+  EXPECT_EQ(history.undo_count(), 4U);
+
+  EXPECT_TRUE(history.undo(scene));
+  EXPECT_FALSE(scene.world());
+  EXPECT_TRUE(history.undo(scene));
+  EXPECT_EQ(scene.nodes()[node].name, "node");
+  EXPECT_FALSE(scene.is_visible(node));
+  EXPECT_TRUE(history.undo(scene));
+  EXPECT_TRUE(scene.is_visible(node));
+  EXPECT_TRUE(history.undo(scene));
+  EXPECT_EQ(scene.lamps()[lamp].intensity, 1.0F);
+  EXPECT_FALSE(history.undo(scene));
+  EXPECT_TRUE(history.redo(scene));
+  EXPECT_EQ(scene.lamps()[lamp].intensity, 4.0F);
+  history.edit(scene, lamp, [](scene::Lamp &edited) { edited.intensity = 5.0F; });
+  EXPECT_EQ(history.redo_count(), 0U);
+  EXPECT_TRUE(history.undo(scene));
+  EXPECT_EQ(scene.lamps()[lamp].intensity, 4.0F);
+}
+
+TEST(ViewHistoryTest, AnInvalidEditChangesNothingAndIsNotRemembered)
+{
+  scene::Scene scene;
+  History history;
+  const auto node = scene.add(scene::Node{.name = "node"});
+  EXPECT_THROW(history.edit(scene, node, [](scene::Node &edited) { edited.parent_from_node[3][0] = NAN; }),
+               scene::InvalidEdit);
+  EXPECT_EQ(history.undo_count(), 0U);
+}
+
+/** Where a camera sees a point: x and y in [-1, 1] within the picture of a square. */
+glm::dvec2 seen(const scene::PlacedCamera &camera, const glm::dvec3 &point)
+{
+  const glm::dvec3 view(glm::inverse(camera.world_from_camera) * glm::dvec4(point, 1.0));
+  const double half_height = camera.kind == scene::CameraKind::Orthographic
+                                 ? double(camera.half_height)
+                                 : -view.z * std::tan(0.5 * double(camera.vertical_angle));
+  return glm::dvec2(view) / half_height;
+}
+
+scene::Bounds box(const glm::vec3 &min, const glm::vec3 &max)
+{
+  return {min, max};
+}
+
+TEST(ViewNavigationTest, TurningAndTheLensKeepThePointInTheMiddleAndFramingShowsAllOfABox)
+{
+  Navigation navigation;
+  const scene::Bounds bounds = box({10, 0, 5}, {14, 1, 6});
+  navigation.frame(bounds);
+  for (int step = 0; step < 8; step++) {
+    navigation.orbit({0.7, 0.3});
+    for (int projection = 0; projection < 2; projection++) {
+      navigation.toggle_orthographic();
+      const scene::PlacedCamera camera = navigation.camera(10.0);
+      EXPECT_LT(glm::length(seen(camera, bounds.center())), 1e-5);
+      double largest = 0.0;
+      for (const double x : {10.0, 14.0}) {
+        for (const double y : {0.0, 1.0}) {
+          for (const double z : {5.0, 6.0}) {
+            largest = std::max(largest, glm::length(seen(camera, {x, y, z})));
+          }
+        }
+      }
+      EXPECT_LT(largest, 1.0);
+    }
+  }
+}
+
+TEST(ViewNavigationTest, PanningMovesThePointWithThePointerAndKeysLookAlongTheAxes)
+{
+  Navigation navigation;
+  navigation.frame(box({-1, -1, -1}, {1, 1, 1}));
+  navigation.orbit({0.4, -0.2});
+  navigation.pan({0.25, -0.1});
+  const glm::dvec2 moved = seen(navigation.camera(2.0), {0, 0, 0});
+  EXPECT_NEAR(moved.x, 0.5, 1e-6);
+  EXPECT_NEAR(moved.y, -0.2, 1e-6);
+  const std::pair<Side, glm::dvec3> towards[] = {{Side::Front, {0, 0, -1}}, {Side::Back, {0, 0, 1}},
+                                                 {Side::Right, {-1, 0, 0}}, {Side::Left, {1, 0, 0}},
+                                                 {Side::Top, {0, -1, 0}},   {Side::Bottom, {0, 1, 0}}};
+  for (const auto &[side, direction] : towards) {
+    navigation.look_from(side);
+    const glm::dvec3 forward(-navigation.camera(1.0).world_from_camera[2]);
+    EXPECT_LT(glm::distance(forward, direction), 1e-12) << int(side);
+  }
+}
+
+TEST(ViewNavigationTest, ASceneCameraIsLookedThroughAsItIs)
+{
+  scene::PlacedCamera camera;
+  camera.world_from_camera = glm::inverse(glm::lookAt(glm::dvec3(3, 4, 5), glm::dvec3(0, 1, 0), glm::dvec3(0, 1, 0)));
+  camera.vertical_angle = 0.5F;
+  camera.aspect = 1.5F;
+  Navigation navigation;
+  navigation.look_through(camera, box({-1, -1, -1}, {1, 1, 1}));
+  scene::PlacedCamera same = navigation.camera(2.0);
+  EXPECT_EQ(same.vertical_angle, camera.vertical_angle);
+  EXPECT_EQ(same.aspect, camera.aspect);
+  for (int i = 0; i < 4; i++) {
+    EXPECT_LT(glm::distance(same.world_from_camera[i], camera.world_from_camera[i]), 1e-12) << i;
+  }
+  camera.kind = scene::CameraKind::Orthographic;
+  camera.half_width = camera.half_height = 3.0F;
+  navigation.look_through(camera, box({-1, -1, -1}, {1, 1, 1}));
+  same = navigation.camera(2.0);
+  EXPECT_NEAR(same.half_height, 3.0F, 1e-5F);
+  EXPECT_LT(glm::distance(seen(same, {1, 1, 1}), seen(camera, {1, 1, 1})), 1e-6);
+}
+
+TEST(ViewPropertiesTest, APlacementIsReadAndWrittenAndMovingKeepsAShear)
+{
+  glm::dmat4 matrix = glm::translate(glm::dmat4(1), {1, 2, 3});
+  matrix = glm::rotate(matrix, glm::radians(30.0), {0, 0, 1});
+  matrix = glm::rotate(matrix, glm::radians(-20.0), {0, 1, 0});
+  matrix = glm::rotate(matrix, glm::radians(10.0), {1, 0, 0});
+  matrix = glm::scale(matrix, {-2, 3, 0.5});
+  Placement placement = placement_of(matrix);
+  EXPECT_LT(glm::distance(placement.position, {1, 2, 3}), 1e-12);
+  EXPECT_LT(glm::distance(placement.scale, {-2, 3, 0.5}), 1e-12);
+  EXPECT_LT(glm::distance(placement.rotation, {10, -20, 30}), 1e-9);
+  placement.rotation = {0, 0, 0};
+  const glm::dmat4 straight = placed(matrix, placement);
+  EXPECT_LT(glm::distance(glm::dvec3(straight[1]), {0, 3, 0}), 1e-12);
+
+  glm::dmat4 sheared(1.0);
+  sheared[1][0] = 0.5;
+  Placement moved = placement_of(sheared);
+  moved.position.x = 7.0;
+  glm::dmat4 expected = sheared;
+  expected[3][0] = 7.0;
+  EXPECT_EQ(placed(sheared, moved), expected);
+}
+
+TEST(ViewPropertiesTest, EveryNumberIsWhatWasSetWithinItsLimitsAndEveryChoiceToo)
+{
+  const auto check = [](auto thing) {
+    using T = decltype(thing);
+    for (const auto &property : properties<T>().numbers) {
+      for (int i = 0; i < property.width; i++) {
+        for (const double value : {property.min, property.max, 0.5 * property.min + 0.5 * property.max}) {
+          property.set(thing, i, value);
+          EXPECT_NEAR(property.get(thing, i), value, 1e-6 * std::abs(value) + 0.5) << property.name;
+        }
+      }
+    }
+    for (const auto &property : properties<T>().choices) {
+      for (int value = 0; value < int(property.options.size()); value++) {
+        property.set(thing, value);
+        EXPECT_EQ(property.get(thing), value) << property.name;
+      }
+    }
+  };
+  check(scene::Lamp());
+  check(scene::Material());
+  check(scene::Node());
+  check(scene::World());
+  check(Placement());
+  check(Settings());
+}
+
+TEST(ViewPropertiesTest, WordsSetAPropertyAndWrongOnesAreNamed)
+{
+  scene::Lamp lamp;
+  const auto set = [&](const std::string &name, const std::vector<std::string> &words) {
+    return set_property(lamp, name, std::span(words));
+  };
+  EXPECT_TRUE(set("kind", {"spot"}));
+  EXPECT_TRUE(set("cone", {"90"}));
+  EXPECT_FLOAT_EQ(lamp.spot_outer_angle, glm::radians(45.0F));
+  EXPECT_TRUE(set("color", {"1", "0.5", "0"}));
+  EXPECT_EQ(lamp.color, glm::vec3(1, 0.5F, 0));
+  EXPECT_TRUE(set("shadow", {"none"}));
+  EXPECT_EQ(lamp.shadow.kind, scene::ShadowKind::None);
+  EXPECT_FALSE(set("angle", {"1"})) << "of a sun";
+  EXPECT_FALSE(set("sweetness", {"1"}));
+  const scene::Lamp before = lamp;
+  for (const auto &[name, words] :
+       std::vector<std::pair<std::string, std::vector<std::string>>>{{"power", {"-1"}},
+                                                                     {"power", {"nan"}},
+                                                                     {"power", {"1", "2"}},
+                                                                     {"color", {"1", "2", "0"}},
+                                                                     {"kind", {"torch"}},
+                                                                     {"kind", {}}}) {
+    EXPECT_THROW(set(name, words), std::runtime_error) << name;
+  }
+  EXPECT_EQ(lamp, before);
+}
+
+TEST(ViewScriptTest, WordsAreSeparatedBySpacesQuotesKeepThemAndCommentsEndALine)
+{
+  const std::vector<ScriptLine> lines = parse_script("open \"a file.glb\"  # first\n\n\t set  color 1 \"\" 3\r\n#none");
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].number, 1);
+  EXPECT_EQ(lines[0].words, (std::vector<std::string>{"open", "a file.glb"}));
+  EXPECT_EQ(lines[1].number, 3);
+  EXPECT_EQ(lines[1].words, (std::vector<std::string>{"set", "color", "1", "", "3"}));
+  EXPECT_THROW(parse_script("open \"a"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace gnomon::view
