@@ -21,7 +21,7 @@ PUSH_CONSTANT_LAYOUT uniform push_constant_block
   int encoding;
   /** 2 to the exposure in stops. */
   float exposure_scale;
-  /** 1 / fraction of the filter weights that the samples so far have: converts their weighted sum to their mean. */
+  /** Factor from the stored weighted sum of the samples to their mean. */
   float sample_scale;
   /** Depth that the target gets for pixels without a surface. */
   float background_depth;

@@ -3,6 +3,8 @@
 
 #include "cli.hh"
 
+#include "eevee_inspection.hh"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -50,7 +52,7 @@ const gpu::Texture &shadow_picture(const DebugView &view, const scene::Scene &sc
   bool is_lamp = false;
   const std::vector<scene::PlacedLamp> lamps = scene.placed_lamps();
   for (std::size_t i = 0; i < lamps.size(); i++) {
-    const std::vector<std::string> layers = engine.shadow_layers(viewport, i);
+    const std::vector<std::string> layers = eevee::Inspection(engine, viewport).shadow_layers(i);
     if (!layers.empty()) {
       with_layers.push_back(lamps[i].name);
     }
@@ -62,14 +64,14 @@ const gpu::Texture &shadow_picture(const DebugView &view, const scene::Scene &sc
       continue;
     }
     if (view.layer.empty()) {
-      return engine.shadow_picture(viewport, i);
+      return eevee::Inspection(engine, viewport).shadow_picture(i);
     }
     const auto layer = std::ranges::find(layers, view.layer);
     if (layer == layers.end()) {
       throw std::runtime_error(fmt::format("{}: the shadow of lamp '{}' has no layer '{}'; it has: {}", scene.path,
                                            view.lamp, view.layer, fmt::join(layers, ", ")));
     }
-    return engine.shadow_picture(viewport, i, std::size_t(layer - layers.begin()));
+    return eevee::Inspection(engine, viewport).shadow_picture(i, std::size_t(layer - layers.begin()));
   }
   throw std::runtime_error(fmt::format("{}: {} '{}'{}; lamps with a visible shadow: {}", scene.path,
                                        is_lamp ? "lamp" : "no lamp", view.lamp, is_lamp ? " has no visible shadow" : "",

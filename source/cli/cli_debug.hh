@@ -19,7 +19,7 @@ struct DebugView {
   };
   Kind kind = Kind::None;
   std::string lamp;
-  /** Name from eevee::Engine::shadow_layers; empty for all layers. */
+  /** Name from eevee::Inspection::shadow_layers; empty for all layers. */
   std::string layer;
 };
 

@@ -48,6 +48,8 @@ struct RenderOptions {
   std::string size = "960x540";
   std::string camera;
   int samples = 16;
+  /** Seconds for each picture; infinity without --time-limit, otherwise `samples` may be 0: no limit. */
+  double seconds_max = std::numeric_limits<double>::infinity();
   FrameOptions frames;
   int repeat = 1;
   std::string shadow = "hard";
@@ -77,6 +79,8 @@ struct RenderOptions {
 /** Measurements for the printed summary and for --json. */
 struct RenderResult {
   std::string device;
+  /** Of the last picture. */
+  int samples_drawn = 0;
   double import_seconds = 0.0;
   double device_seconds = 0.0;
   double sync_seconds = 0.0;
@@ -212,7 +216,7 @@ eevee::ShadowSettings shadow_settings(const RenderOptions &options)
     settings.map_size_px = options.shadow_size;
     settings.esm.size_px = std::clamp(options.shadow_size, 4, 8192);
   }
-  else if (options.samples >= fine_shadow_samples) {
+  else if (options.samples == 0 || options.samples >= fine_shadow_samples) {
     settings.cube_size_px *= 2;
     settings.map_size_px *= 2;
     settings.esm.size_px *= 2;
@@ -224,7 +228,8 @@ eevee::Settings engine_settings(const RenderOptions &options)
 {
   eevee::Settings settings;
   settings.shadow = shadow_settings(options);
-  settings.sample_count = options.samples;
+  // The number of samples that fit into a time is not known beforehand.
+  settings.sample_count = std::isfinite(options.seconds_max) ? 0 : options.samples;
   settings.seed = options.seed;
   settings.has_cascade_tint = options.debug_view.kind == DebugView::Kind::Cascades;
   settings.is_timed = !options.json.empty() || options.is_explained;
@@ -260,7 +265,7 @@ nlohmann::json to_json(const RenderOptions &options, const scene::Scene &scene, 
           {"output", options.output},
           {"camera", camera.name},
           {"size", options.size},
-          {"samples", options.samples},
+          {"samples", result.samples_drawn},
           {"seed", options.seed},
           {"device", result.device},
           {"import_seconds", result.import_seconds},
@@ -322,8 +327,15 @@ void print_summary(const RenderOptions &options, const RenderResult &result)
 
 void show_progress(int done, int count)
 {
-  if (count > 1 && isatty(STDERR_FILENO)) {
-    fmt::print(stderr, "\r{}/{} samples{}", done, count, done == count ? "\r\033[K" : "");
+  if (count != 1 && isatty(STDERR_FILENO)) {
+    fmt::print(stderr, "\r\033[K{}{} samples", done, count > 0 ? fmt::format("/{}", count) : "");
+  }
+}
+
+void end_progress(int count)
+{
+  if (count != 1 && isatty(STDERR_FILENO)) {
+    fmt::print(stderr, "\r\033[K");
   }
 }
 
@@ -343,18 +355,19 @@ void render_frames(const RenderOptions &options, const scene::PlacedCamera &came
   target.view_transform = view_transforms.at(options.view);
   target.exposure = options.exposure;
 
-  eevee::ShadowCounters before = renderer.engine().shadow_counters(renderer.viewport());
+  eevee::ShadowCounters before = renderer.inspect().shadow_counters();
   for (int frame = 0; frame < options.repeat; frame++) {
     const Clock::time_point start = Clock::now();
     const auto progress = [&](int samples_drawn) {
       show_progress(samples_drawn, options.samples);
-      return true;
+      return samples_drawn != options.samples;
     };
-    renderer.draw(camera, progress, target);
+    result.samples_drawn = renderer.draw(camera, {.progress = progress, .seconds_max = options.seconds_max}, target);
+    end_progress(options.samples);
     renderer.viewport().device().finish();
     result.frame_seconds.push_back(seconds_since(start));
-    result.frame_steps.push_back(renderer.engine().take_step_times(renderer.viewport()));
-    const eevee::ShadowCounters now = renderer.engine().shadow_counters(renderer.viewport());
+    result.frame_steps.push_back(renderer.inspect().take_step_times());
+    const eevee::ShadowCounters now = renderer.inspect().shadow_counters();
     result.frame_shadows.push_back({now.lamps_updated - before.lamps_updated, now.faces_drawn - before.faces_drawn,
                                     now.faces_skipped - before.faces_skipped, now.caster_draws - before.caster_draws});
     before = now;
@@ -363,12 +376,12 @@ void render_frames(const RenderOptions &options, const scene::PlacedCamera &came
 
 /** \return Status::Done, or Status::NonFinite if the picture has non-finite values; it is then not written */
 Status write_picture(const RenderOptions &options, const scene::Camera &camera, gpu::Device &device,
-                     const gpu::Texture &picture, const std::optional<draw::TargetTexture> &display,
-                     const Metadata &frame_metadata, RenderResult &result)
+                     std::span<const glm::vec4> pixels, glm::ivec2 size_px,
+                     const std::optional<draw::TargetTexture> &display, const Metadata &frame_metadata,
+                     RenderResult &result)
 {
   const bool is_shadow = options.debug_view.kind == DebugView::Kind::Shadow;
-  const glm::ivec2 size_px(picture.desc().width, picture.desc().height);
-  const std::vector<float> values = gpu::read_as<float>(device, picture);
+  const std::span<const float> values = floats(pixels);
   const NonFinite non_finite = find_non_finite(size_px, values);
   result.non_finite_count = non_finite.count;
   if (non_finite.count > 0) {
@@ -379,7 +392,7 @@ Status write_picture(const RenderOptions &options, const scene::Camera &camera, 
   }
   Metadata metadata = {{"gnomon:scene", options.scene},
                        {"gnomon:camera", camera.name},
-                       {"gnomon:samples", std::to_string(options.samples)},
+                       {"gnomon:samples", std::to_string(result.samples_drawn)},
                        {"gnomon:seed", std::to_string(options.seed)},
                        {"gnomon:device", result.device}};
   metadata.insert(metadata.end(), frame_metadata.begin(), frame_metadata.end());
@@ -394,7 +407,8 @@ Status write_picture(const RenderOptions &options, const scene::Camera &camera, 
   else {
     metadata.emplace_back("gnomon:units",
                           is_shadow ? "metres, 0 where nothing was drawn" : "scene-linear radiance, W/(sr m^2)");
-    write_exr(options.output, size_px, is_shadow ? alpha_in_all(values) : values, metadata);
+    const std::vector<float> distances = is_shadow ? alpha_in_all(values) : std::vector<float>();
+    write_exr(options.output, size_px, is_shadow ? distances : values, metadata);
   }
   return Status::Done;
 }
@@ -450,14 +464,14 @@ Status render(RenderOptions options)
   eevee::Engine &engine = renderer.engine();
   draw::Viewport &viewport = renderer.viewport();
   renderer.sync();
-  result.report = engine.report(viewport);
+  result.report = eevee::Inspection(engine, viewport).report();
   for (const std::string &warning : result.report.warnings) {
     fmt::print(stderr, "gnomon: warning: {}\n", warning);
   }
   for (const std::string &limit : result.report.limits) {
     fmt::print(stderr, "gnomon: limit: {}\n", limit);
   }
-  if (options.debug_view.kind == DebugView::Kind::Cascades && !engine.tinted_sun(viewport)) {
+  if (options.debug_view.kind == DebugView::Kind::Cascades && !eevee::Inspection(engine, viewport).tinted_sun()) {
     throw std::runtime_error(fmt::format("{}: no sun has a shadow, so there are no cascades", scene.path));
   }
   result.sync_seconds = seconds_since(sync_start);
@@ -480,16 +494,21 @@ Status render(RenderOptions options)
     render_frames(options, camera, renderer, display, result);
     const Clock::time_point output_start = Clock::now();
     // Also called for the null backend, because shadow_picture reports layers that do not exist.
-    const gpu::Texture &picture = options.debug_view.kind == DebugView::Kind::Shadow
-                                      ? shadow_picture(options.debug_view, scene, engine, viewport)
-                                      : engine.radiance(viewport);
-    if (options.backend == "gl") {
-      status = write_picture(options, camera, *device, picture, display, frames.metadata(i), result);
+    if (options.debug_view.kind == DebugView::Kind::Shadow) {
+      const gpu::Texture &picture = shadow_picture(options.debug_view, scene, engine, viewport);
+      if (options.backend == "gl") {
+        status = write_picture(options, camera, *device, gpu::read_as<glm::vec4>(*device, picture),
+                               {picture.desc().width, picture.desc().height}, display, frames.metadata(i), result);
+      }
+    }
+    else if (options.backend == "gl") {
+      status = write_picture(options, camera, *device, renderer.read_picture(), size_px, display, frames.metadata(i),
+                             result);
     }
     result.output_seconds += seconds_since(output_start);
     frames.show_progress(i, ++rendered_count, seconds_since(frames_start));
   }
-  result.report = engine.report(viewport);
+  result.report = eevee::Inspection(engine, viewport).report();
   if (options.backend != "gl") {
     fmt::print(stderr, "gnomon: the null backend draws nothing: no picture is written\n");
   }
@@ -497,7 +516,7 @@ Status render(RenderOptions options)
   result.memory_bytes = device->memory_bytes();
   result.total_seconds = seconds_since(start);
   if (chooser && status == Status::Done) {
-    chooser->measure(gpu::read_as<glm::vec4>(*device, engine.radiance(viewport)), result.frame_seconds.front());
+    chooser->measure(renderer.read_picture(), result.frame_seconds.front());
     for (const std::string &limit : chooser->limits()) {
       fmt::print(stderr, "gnomon: limit: {}\n", limit);
       result.report.limits.push_back(limit);
@@ -537,7 +556,15 @@ void add_render(CLI::App &app, Status &status)
                       "OUT.exr: scene-linear floats; OUT.png: display colours after the view transform");
   command->add_option("--size", o->size, "WIDTHxHEIGHT, pixels")->capture_default_str();
   command->add_option("--camera", o->camera, "Name of the camera (default: the first)");
-  command->add_option("--samples", o->samples, "Samples per pixel")->capture_default_str()->check(CLI::Range(1, 65536));
+  CLI::Option *samples = command->add_option("--samples", o->samples, "Samples per pixel")
+                             ->capture_default_str()
+                             ->check(CLI::Range(1, 65536));
+  CLI::Option *time_limit =
+      command
+          ->add_option(
+              "--time-limit", o->seconds_max,
+              "Time for each picture, s: draw samples until it has passed; --samples, if given, is an upper limit")
+          ->check(CLI::Range(1e-3, 1e9));
   CLI::Option *frames = command->add_option(
       "--frames", o->frames.range, "Frames A-B or A of an animation; the frame number replaces the # characters in -o");
   command->add_option("--fps", o->frames.frames_per_second, "Frames per second of an animation; frame 0 is at 0 s")
@@ -626,8 +653,8 @@ void add_render(CLI::App &app, Status &status)
           ->excludes(max_error);
   // These options set what is chosen automatically, or change the picture so that its error cannot be measured.
   for (const char *name :
-       {"--samples", "--shadow", "--shadow-size", "--pcf", "--esm", "--cascades", "--cascade-lambda", "--cascade-range",
-        "--cube-pass", "--casters", "--shadow-memory", "--debug", "--frames", "--background"}) {
+       {"--samples", "--time-limit", "--shadow", "--shadow-size", "--pcf", "--esm", "--cascades", "--cascade-lambda",
+        "--cascade-range", "--cube-pass", "--casters", "--shadow-memory", "--debug", "--frames", "--background"}) {
     max_error->excludes(command->get_option(name));
     max_time->excludes(command->get_option(name));
   }
@@ -635,7 +662,12 @@ void add_render(CLI::App &app, Status &status)
                       "Folder of gnomon report to choose from (default: render a pilot)");
   command->add_flag("--strict", o->is_strict, "End with status 4 if a limit was hit");
   command->add_option("--seed", o->seed, "Seed of the sample pattern")->capture_default_str();
-  command->callback([o, &status] { status = render(*o); });
+  command->callback([o, samples, time_limit, &status] {
+    if (time_limit->count() > 0 && samples->count() == 0) {
+      o->samples = 0;
+    }
+    status = render(*o);
+  });
 }
 
 }  // namespace gnomon::cli

@@ -272,7 +272,13 @@ Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files, c
   check_storage_blocks(desc.name, interface, limits_);
   const std::string detail = fmt::format("{}", fmt::join(desc.defines, " "));
   Resource resource = make(ResourceKind::Shader, {desc.name, interface}, detail, 0, [&](ResourceId id) {
-    return Operation::CreateShader{id, desc, std::move(stages)};
+    std::vector<std::string> samplers;
+    for (const ShaderInterface::Binding &binding : interface.bindings) {
+      if (binding.kind == BindingKind::Texture) {
+        samplers.push_back(binding.name);
+      }
+    }
+    return Operation::CreateShader{id, desc, std::move(stages), std::move(samplers)};
   });
   return {std::move(resource), desc.name, std::move(interface)};
 }

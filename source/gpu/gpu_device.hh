@@ -222,8 +222,7 @@ class Device {
    * \a compiled: the backend's own compiled form from an earlier run, or empty. A backend that cannot use it compiles
    * \a stages and replaces \a compiled by a new form, or by an empty one if the backend has no such form.
    */
-  virtual void shader_create(ResourceId id, const ShaderDesc &desc, const std::vector<ShaderSource> &stages,
-                             std::vector<std::byte> &compiled) = 0;
+  virtual void shader_create(const Operation::CreateShader &create, std::vector<std::byte> &compiled) = 0;
   virtual void timer_query_create(ResourceId id, const std::string &name) = 0;
   /** Never called for batches, which are ranges of the shared buffers. */
   virtual void resource_destroy(ResourceKind kind, ResourceId id) = 0;

@@ -116,7 +116,7 @@ void Device::execute(const Operation::CreateShader &create)
   const std::string key = ShaderDiskCache::key_of(create.stages, description());
   CachedShader shader = shader_cache_.load(key).value_or(CachedShader());
   const std::vector<std::byte> known = shader.compiled;
-  shader_create(create.id, create.desc, create.stages, shader.compiled);
+  shader_create(create, shader.compiled);
   const bool is_loaded = !known.empty() && shader.compiled == known;
   if (!is_loaded && !shader.compiled.empty()) {
     shader_cache_.store(key, shader);

@@ -109,6 +109,8 @@ struct Operation {
     ResourceId id;
     ShaderDesc desc;
     std::vector<ShaderSource> stages;
+    /** Names of the samplers that the shader declares. */
+    std::vector<std::string> samplers;
   };
   struct CreateTimerQuery {
     ResourceId id;

@@ -77,7 +77,7 @@ class EditedScene {
       }
     };
     const gpu::Counters before = device_.counters();
-    const std::uint64_t recordings_before = engine.report(viewport).pass_recordings;
+    const std::uint64_t recordings_before = eevee::Inspection(engine, viewport).report().pass_recordings;
     const std::uint64_t lamps_before = lamps_updated(viewport, engine);
     change();
     if (&viewport == &renderer->viewport()) {
@@ -94,7 +94,7 @@ class EditedScene {
     return {std::move(edit),
             edited.upload_bytes - before.upload_bytes - still_bytes,
             shadows_drawn,
-            engine.report(viewport).pass_recordings - recordings_before,
+            eevee::Inspection(engine, viewport).report().pass_recordings - recordings_before,
             edited.textures_made - before.textures_made,
             edited.shaders_made - before.shaders_made};
   }
@@ -129,7 +129,7 @@ class EditedScene {
   /** 0 before the first sync. */
   static std::uint64_t lamps_updated(draw::Viewport &viewport, eevee::Engine &engine)
   {
-    return engine.report(viewport).shadow_counters.lamps_updated;
+    return eevee::Inspection(engine, viewport).report().shadow_counters.lamps_updated;
   }
 
   gpu::Device &device_;

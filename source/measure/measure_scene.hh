@@ -206,15 +206,24 @@ class Renderer {
   {
     renderer_.sync();
   }
-  /** Draws all samples of a picture and writes it to \a target. */
-  void draw(const scene::PlacedCamera &camera, const draw::Target &target = {})
+  /** Draws a picture and writes it to \a target. */
+  void draw(const scene::PlacedCamera &camera, const draw::Target &target = {}, const eevee::DrawLimits &limits = {})
   {
-    renderer_.draw(camera, {}, target);
+    renderer_.draw(camera, limits, target);
   }
   Picture picture(const scene::PlacedCamera &camera, const draw::Target &target = {})
   {
     draw(camera, target);
-    return {viewport.size_px(), gpu::read_as<glm::vec4>(viewport.device(), engine.radiance(viewport))};
+    return picture();
+  }
+  /** The last picture that was drawn. */
+  Picture picture()
+  {
+    return {viewport.size_px(), renderer_.read_picture()};
+  }
+  [[nodiscard]] eevee::Inspection inspect()
+  {
+    return renderer_.inspect();
   }
 
  private:

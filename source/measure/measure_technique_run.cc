@@ -52,7 +52,7 @@ std::map<std::string, double> TechniqueRenderer::step_seconds()
   set(1, true);
   draw();
   std::map<std::string, double> seconds;
-  for (const eevee::StepTime &step : renderer_.engine().take_step_times(renderer_.viewport())) {
+  for (const eevee::StepTime &step : renderer_.inspect().take_step_times()) {
     seconds[step.step] = step.seconds;
   }
   return seconds;
@@ -68,7 +68,7 @@ double TechniqueRenderer::picture_seconds(int sample_count)
 
 std::vector<glm::vec4> TechniqueRenderer::picture()
 {
-  return gpu::read_as<glm::vec4>(renderer_.viewport().device(), renderer_.engine().radiance(renderer_.viewport()));
+  return renderer_.read_picture();
 }
 
 void TechniqueRenderer::set(int sample_count, bool is_timed)
@@ -77,7 +77,7 @@ void TechniqueRenderer::set(int sample_count, bool is_timed)
   settings_.is_timed = is_timed;
   renderer_.set_settings(settings_);
   renderer_.sync();
-  renderer_.engine().invalidate_shadows(renderer_.viewport());
+  renderer_.inspect().invalidate_shadows();
   renderer_.viewport().device().finish();
 }
 
@@ -95,7 +95,8 @@ std::vector<LampError> TechniqueRenderer::lamp_errors(const reference::Tracer &t
   const glm::dvec3 origin_ws = renderer_.render_scene().origin_ws();
   const std::span<const scene::PlacedLamp> lamps = renderer_.render_scene().lamps();
   for (std::size_t i_lamp = 0; i_lamp < lamps.size(); i_lamp++) {
-    const std::optional<eevee::Probe> probe = engine.probe(viewport, renderer_.view_of(camera_), i_lamp);
+    const std::optional<eevee::Probe> probe =
+        eevee::Inspection(engine, viewport).probe(renderer_.view_of(camera_), i_lamp);
     if (!probe) {
       continue;
     }
@@ -115,7 +116,7 @@ std::vector<LampError> TechniqueRenderer::lamp_errors(const reference::Tracer &t
     }
     reference::CompareSettings settings;
     settings.texel_size_m = [&](const glm::dvec3 &position_ws) {
-      return engine.shadow_texel_size(viewport, i_lamp, position_ws - origin_ws);
+      return eevee::Inspection(engine, viewport).shadow_texel_size(i_lamp, position_ws - origin_ws);
     };
     errors.push_back(
         {lamp.name, reference::compare_visibility(tracer, lamp, {positions, normals, visibility}, settings)});

@@ -198,7 +198,12 @@ void pose(Scene &scene, const Animation &animation, double seconds)
   }
   for (const AnimatedValue &animated : animation.values) {
     glm::dvec4 value(0.0);
-    animated.track->evaluate(seconds, {&value.x, width_of(animated.property)});
+    const std::size_t width = animated.track->width;
+    animated.track->evaluate(seconds, {&value.x, width});
+    if (width == 1) {
+      // A strength, which multiplies each component of the factor.
+      value = glm::dvec4(value.x);
+    }
     value = glm::dvec4(animated.factor * glm::dvec3(value), value.w);
     std::visit(
         [&]<typename T>(Handle<T> handle) {

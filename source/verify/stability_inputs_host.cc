@@ -87,9 +87,9 @@ Outcome draw_on_null(const scene::Scene &scene, const eevee::Settings &settings,
     target.exposure = *exposure;
   }
   Renderer renderer(*device, scene, size_px, settings);
-  renderer.draw(lit_camera(), target);
-  const eevee::Report report = renderer.engine.report(renderer.viewport);
-  Outcome outcome{shadow_block_faults(renderer.engine.shadows(renderer.viewport)), report.limits};
+  renderer.draw(lit_camera(), target, {.progress = [](int samples_drawn) { return samples_drawn < 64; }});
+  const eevee::Report report = renderer.inspect().report();
+  Outcome outcome{shadow_block_faults(renderer.inspect().shadows()), report.limits};
   outcome.messages.insert(outcome.messages.end(), report.warnings.begin(), report.warnings.end());
   return outcome;
 }
@@ -158,7 +158,8 @@ void add_settings_inputs(std::vector<StabilityCase> &cases)
   add(
       "pcf taps", "lookups", "pcf", inputs({1, 64}, Expected::Accepted) + inputs({-1, 0, 65, 1e6}, rejected),
       [](eevee::Settings &s, double v) { s.shadow.pcf = {.width = 0, .taps = int(v)}; }, scene::ShadowKind::Pcf);
-  add("samples", "samples a pixel", "sample_count", inputs({1, 2, 64}, Expected::Accepted) + inputs({-1, 0}, rejected),
+  add("samples", "samples a pixel", "sample_count",
+      inputs({0, 1, 2, 64}, Expected::Accepted) + inputs({-1, -100}, rejected),
       [](eevee::Settings &s, double v) { s.sample_count = int(v); });
   cases.push_back(input_case<double>(
       "settings", "exposure", "frame with this target", "stops", "exposure",
@@ -299,22 +300,22 @@ void add_host_call_inputs(std::vector<StabilityCase> &cases)
                                       return draw_on_null(scene, small_settings(shadow));
                                     }));
   }
-  cases.push_back(
-      input_case<float>("host", "culling volumes", "frame of an object with this radius", float_kinds, "object 2",
-                        float_inputs({2, 3, 4, 5, 6, 7}, Expected::Rejected), [](const float &radius) {
-                          const scene::Scene scene = lit_scene();
-                          const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
-                          Renderer renderer(*device, scene, {16, 16}, small_settings());
-                          draw::ObjectBuffer &objects = renderer.render_scene.objects();
-                          const draw::ObjectIndex last = objects.index_end() - 1;
-                          draw::CullingVolume volume = objects.volume(last);
-                          volume.radius = radius;
-                          objects.set(last, objects.world_from_object(last), 0, volume);
-                          const std::array<draw::Engine *, 1> engines = {&renderer.engine};
-                          renderer.viewport.sync(engines, objects);
-                          renderer.draw(lit_camera());
-                          return Outcome{shadow_block_faults(renderer.engine.shadows(renderer.viewport)), {}};
-                        }));
+  cases.push_back(input_case<float>("host", "culling volumes", "frame of an object with this radius", float_kinds,
+                                    "object 2", float_inputs({2, 3, 4, 5, 6, 7}, Expected::Rejected),
+                                    [](const float &radius) {
+                                      const scene::Scene scene = lit_scene();
+                                      const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+                                      Renderer renderer(*device, scene, {16, 16}, small_settings());
+                                      draw::ObjectBuffer &objects = renderer.render_scene.objects();
+                                      const draw::ObjectIndex last = objects.index_end() - 1;
+                                      draw::CullingVolume volume = objects.volume(last);
+                                      volume.radius = radius;
+                                      objects.set(last, objects.world_from_object(last), 0, volume);
+                                      const std::array<draw::Engine *, 1> engines = {&renderer.engine};
+                                      renderer.viewport.sync(engines, objects);
+                                      renderer.draw(lit_camera());
+                                      return Outcome{shadow_block_faults(renderer.inspect().shadows()), {}};
+                                    }));
   // A view without an inverse is refused.
   std::vector<Input<int>> views = matrix_inputs(6);
   cases.push_back(
@@ -325,7 +326,7 @@ void add_host_call_inputs(std::vector<StabilityCase> &cases)
         const draw::View view = eevee::view_of(lit_camera(), {16, 16});
         const std::array<draw::Engine *, 1> engines = {&renderer.engine};
         renderer.viewport.draw(engines, {odd_matrix(kind) * view.view_from_world(), view.clip_from_view()});
-        return Outcome{shadow_block_faults(renderer.engine.shadows(renderer.viewport)), {}};
+        return Outcome{shadow_block_faults(renderer.inspect().shadows()), {}};
       }));
   cases.push_back(input_case<glm::vec2>(
       "host", "near and far", "frame of a camera with near and far", "far / near", "",
@@ -344,8 +345,7 @@ void add_host_call_inputs(std::vector<StabilityCase> &cases)
         Renderer renderer(*device, scene, {16, 16}, small_settings());
         renderer.draw(camera);
         const draw::View view = eevee::view_of(camera, {16, 16});
-        return Outcome{
-            non_finite(view.clip_from_world()) + shadow_block_faults(renderer.engine.shadows(renderer.viewport)), {}};
+        return Outcome{non_finite(view.clip_from_world()) + shadow_block_faults(renderer.inspect().shadows()), {}};
       }));
 }
 

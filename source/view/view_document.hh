@@ -5,7 +5,7 @@
 #include "view_settings.hh"
 
 #include "draw_engine.hh"
-#include "eevee_engine.hh"
+#include "eevee_inspection.hh"
 #include "overlay.hh"
 #include "render_scene.hh"
 

@@ -82,7 +82,7 @@ void FramePanel::show(Document &document, Viewport &viewport)
     return;
   }
   if (const PanelKey key = key_of(document, viewport); key != shown_ && is_worth_showing(document, viewport)) {
-    report_ = engine->report(*viewport.viewport());
+    report_ = eevee::Inspection(*engine, *viewport.viewport()).report();
     shown_ = key;
   }
   show_lines("Warnings", report_.warnings);
@@ -113,7 +113,7 @@ void ShadowPanel::show(Document &document, Viewport &viewport, gpu::Device &devi
     return;
   }
   const auto index = std::size_t(lamp - lamps.begin());
-  std::vector<std::string> layers = engine->shadow_layers(*viewport.viewport(), index);
+  std::vector<std::string> layers = eevee::Inspection(*engine, *viewport.viewport()).shadow_layers(index);
   if (layers.empty()) {
     ImGui::TextDisabled("'%s' has no shadow that is seen.", lamp->name.c_str());
     return;
@@ -143,8 +143,9 @@ void ShadowPanel::show(Document &document, Viewport &viewport, gpu::Device &devi
 
 void ShadowPanel::read(eevee::Engine &engine, Viewport &viewport, std::size_t lamp, gpu::Device &device)
 {
-  const gpu::Texture &picture = engine.shadow_picture(
-      *viewport.viewport(), lamp, layer_ == 0 ? std::nullopt : std::optional(std::size_t(layer_ - 1)));
+  const gpu::Texture &picture =
+      eevee::Inspection(engine, *viewport.viewport())
+          .shadow_picture(lamp, layer_ == 0 ? std::nullopt : std::optional(std::size_t(layer_ - 1)));
   const std::vector<float> values = gpu::read_as<float>(device, picture);
   std::vector<std::uint8_t> bytes(values.size());
   std::ranges::transform(values, bytes.begin(),

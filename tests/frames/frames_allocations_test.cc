@@ -101,7 +101,7 @@ class FrameAllocations : public testing::Test {
         counts.prepare += prepared - before;
         counts.submit += allocation_count - prepared;
       }
-      const std::uint64_t faces = renderer.engine().shadow_counters(renderer.viewport()).faces_drawn;
+      const std::uint64_t faces = renderer.inspect().shadow_counters().faces_drawn;
       faces_drawn = faces - std::exchange(faces_before, faces);
       EXPECT_TRUE(round > 0 || counts.prepare > 100U) << "nothing is counted";
     }

@@ -30,7 +30,7 @@ class FrameFailure : public testing::Test {
   static LayerMask layers_up_to_date(SceneRenderer &renderer)
   {
     LayerMask layers = 0;
-    for (const ShadowState &state : renderer.engine().shadows(renderer.viewport()).states()) {
+    for (const ShadowState &state : renderer.inspect().shadows().states()) {
       layers |= state.up_to_date;
     }
     return layers;
@@ -95,7 +95,7 @@ TEST_F(FrameFailure, ALaterPictureThatFailsIsDrawnAgain)
     renderer.sync();
     renderer.draw(FramesScene::camera(0));
     const std::vector<std::string> live = device->live_resources();
-    const std::uint64_t faces = renderer.engine().shadow_counters(renderer.viewport()).faces_drawn;
+    const std::uint64_t faces = renderer.inspect().shadow_counters().faces_drawn;
     // Moves a box: some of its lamps' layers are drawn.
     frames.edit(0);
     renderer.sync();
@@ -104,7 +104,7 @@ TEST_F(FrameFailure, ALaterPictureThatFailsIsDrawnAgain)
     renderer.draw(FramesScene::camera(0));
     EXPECT_EQ(device->live_resources(), live);
     // All layers of the first picture, as the lost packet may have written any.
-    EXPECT_GE(renderer.engine().shadow_counters(renderer.viewport()).faces_drawn, 2 * faces);
+    EXPECT_GE(renderer.inspect().shadow_counters().faces_drawn, 2 * faces);
     EXPECT_NE(layers_up_to_date(renderer), 0U);
   }
 }

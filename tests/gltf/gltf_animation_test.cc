@@ -145,7 +145,7 @@ TEST(GltfAnimation, PointersAnimateLampsMaterialsAndCameras)
 {
   GltfBuilder builder = triangle_scene();
   builder.document["meshes"][0]["primitives"][0]["material"] = 0;
-  builder.append("materials", {{"name", "paint"}});
+  builder.append("materials", {{"name", "paint"}, {"emissiveFactor", {1.0, 0.5, 0.25}}});
   builder.light({{"type", "point"}, {"intensity", 683.0}});
   builder.document["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.1}}}}};
   builder.node({{"camera", 0}});
@@ -155,6 +155,8 @@ TEST(GltfAnimation, PointersAnimateLampsMaterialsAndCameras)
   add_channel(builder, pointer("/extensions/KHR_lights_punctual/lights/0/intensity"), {0, 1}, {683, 1366}, "SCALAR");
   add_channel(builder, pointer("/materials/0/pbrMetallicRoughness/baseColorFactor"), {0, 1}, {1, 1, 1, 1, 0, 1, 1, 1},
               "VEC4");
+  add_channel(builder, pointer("/materials/0/extensions/KHR_materials_emissive_strength/emissiveStrength"), {0, 1},
+              {2, 4}, "SCALAR");
   add_channel(builder, pointer("/cameras/0/perspective/yfov"), {0, 1}, {1, 0.5F}, "SCALAR");
   add_channel(builder, pointer("/nodes/0/scale"), {0, 1}, {1, 1, 1, 3, 3, 3}, "VEC3");
   add_channel(builder, pointer("/materials/0/name"), {0, 1}, {1, 2}, "SCALAR");
@@ -163,6 +165,7 @@ TEST(GltfAnimation, PointersAnimateLampsMaterialsAndCameras)
   scene::pose(scene, scene.animations[0], 0.5);
   EXPECT_FLOAT_EQ(nth(scene.lamps(), 0).intensity, 1.5F);
   EXPECT_EQ(nth(scene.materials(), 0).base_color, glm::vec3(0.5F, 1, 1));
+  EXPECT_EQ(nth(scene.materials(), 0).emissive, glm::vec3(3.0F, 1.5F, 0.75F));
   EXPECT_FLOAT_EQ(nth(scene.cameras(), 0).vertical_angle, 0.75F);
   EXPECT_EQ(scene.objects()[0].world_from_object[1], glm::dvec4(0, 2, 0, 0));
 }

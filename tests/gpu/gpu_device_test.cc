@@ -89,8 +89,8 @@ TEST(Device, RefusesFramebuffersThatDoNotFitByName)
       static_cast<void>(device->create_framebuffer({"target", colors, depth_attachment}));
     };
   };
-  expect_refused(*device, make({{&color}, {&color}, {&color}}), {"framebuffer 'target'", "3 colour", "takes 2"});
-  expect_refused(*device, make({}), {"framebuffer 'target'", "nothing"});
+  expect_refused(*device, make({{&color}, {&color}, {&color}}), {"framebuffer 'target'", "3 colour", "supports 2"});
+  expect_refused(*device, make({}), {"framebuffer 'target'", "no attachments"});
   expect_refused(*device, make({{&depth}}), {"framebuffer 'target'", "'depth'", "Depth32F", "colour"});
   expect_refused(*device, make({}, {&color}), {"framebuffer 'target'", "'color'", "RGBA8", "depth"});
   expect_refused(*device, make({{&color}, {&small}}), {"framebuffer 'target'", "'small'", "4x2", "8x4"});

@@ -3,7 +3,7 @@
 #include "measure_edits.hh"
 
 #include "draw_objects.hh"
-#include "eevee_engine.hh"
+#include "eevee_inspection.hh"
 
 #include <gtest/gtest.h>
 

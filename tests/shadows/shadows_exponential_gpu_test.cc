@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Exponential shadows of real scenes compared with ray tracing, for the figures of doc/decisions/0005.
 #include "eevee_camera.hh"
-#include "eevee_engine.hh"
+#include "eevee_inspection.hh"
 #include "gltf_import.hh"
 #include "gpu_device_fixture.hh"
 #include "reference_visibility.hh"
@@ -71,7 +71,7 @@ struct Judge {
     std::vector<eevee::Probe> probes(tracer.lamps().size());
     for (std::size_t lamp = 0; lamp < tracer.lamps().size(); lamp++) {
       if (tracer.lamps()[lamp].kind != scene::LampKind::Sun) {
-        probes[lamp] = engine.probe(viewport, view, lamp).value_or(eevee::Probe{});
+        probes[lamp] = eevee::Inspection(engine, viewport).probe(view, lamp).value_or(eevee::Probe{});
       }
     }
     return probes;

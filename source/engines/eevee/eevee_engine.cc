@@ -7,13 +7,11 @@
 #include "eevee_frame.hh"
 
 #include "draw_view_shared.h"
-#include "gpu_read.hh"
 
 #include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace gnomon::eevee {
 
@@ -36,8 +34,8 @@ std::optional<int> first_sun_with_maps(const Lamps &lamps)
 /** Check all settings except those of shadows, which SceneShadows::sync checks. \throws gpu::Error */
 static void check(const Settings &settings)
 {
-  if (settings.sample_count < 1) {
-    throw gpu::Error("eevee: sample_count {} is not at least 1", settings.sample_count);
+  if (settings.sample_count < 0) {
+    throw gpu::Error("eevee: sample_count {} is negative", settings.sample_count);
   }
 }
 
@@ -86,7 +84,7 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
   shared.has_casters = false;
   shared.is_light_block_written = false;
   shared.revision++;
-  const LampShading shading = settings_.sample_count > 1 ? LampShading::Point : LampShading::Whole;
+  const LampShading shading = settings_.planned_sample_count() > 1 ? LampShading::Point : LampShading::Whole;
   const std::shared_ptr<const render_scene::WorldLight> &world = scene_.world();
   shared.placed.assign(scene_.lamps().begin(), scene_.lamps().end());
   if (world) {
@@ -102,7 +100,7 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
   shared.lamp_points =
       shading == LampShading::Point
           ? LampPoints(shared.placed, shared.lamps, bounds_ws.is_empty() ? glm::vec3(0.0F) : bounds_ws.center(), world,
-                       settings_.sample_count)
+                       settings_.planned_sample_count())
           : LampPoints();
   shared.tinted_light = settings_.has_cascade_tint ? first_sun_with_maps(shared.lamps) : std::nullopt;
   shared.synced = key;
@@ -152,12 +150,15 @@ void Engine::cache_finish(draw::Viewport &viewport)
   data.is_synced = true;
 }
 
-/** What a failed sync leaves can be synced again, and not be drawn. */
-static void require_sync(bool is_synced)
+/** Take note of changes since the sync that other viewports or the device made. */
+void Engine::begin_draw(draw::Viewport &viewport)
 {
-  if (!is_synced) {
+  Data &data = viewport.engine_data<Data>(*this);
+  if (!data.is_synced) {
     throw gpu::Error("eevee: nothing to draw, as the last sync of the viewport failed");
   }
+  take_losses(viewport);
+  follow_lamps(data);
 }
 
 /** Update the blocks that all passes of a sample read. */
@@ -166,15 +167,13 @@ void Engine::update_view(Data &data, const draw::View &view)
   data.stl.object_block = data.shared->object_block = {scene_.objects().buffer().id()};
   data.stl.material_block = data.shared->material_block = {scene_.materials().buffer().id()};
   data.stl.full_material_block = data.shared->full_material_block = {scene_.materials().full_buffer().id()};
-  scene_.device().update(data.stl.view_block, view_data(view, settings_.sample_count));
+  scene_.device().update(data.stl.view_block, view_data(view, settings_, data.sample_index));
 }
 
 void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
 {
   Data &data = viewport.engine_data<Data>(*this);
-  require_sync(data.is_synced);
-  take_losses(viewport);
-  follow_lamps(data);
+  begin_draw(viewport);
   make_film(viewport);
   data.target = viewport.target();
   data.sample_index = viewport.samples_drawn();
@@ -182,10 +181,9 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
     data.stl.shadows->begin_picture();
     data.stl.film_share = 0.0;
     std::ranges::for_each(data.frame, &StepRecord::reset);
-    data.is_seen = data.has_picture_depth = false;
+    data.is_seen = data.has_picture_depth = data.is_finished = false;
   }
-  const bool has_sample = data.sample_index < settings_.sample_count;
-  if (has_sample && !draw_sample(viewport, view)) {
+  if (!has_all_samples(data, data.sample_index) && !draw_sample(viewport, view)) {
     return;
   }
   if (data.target) {
@@ -225,13 +223,12 @@ void Engine::draw_target(draw::Viewport &viewport, const draw::View &view)
 {
   Data &data = viewport.engine_data<Data>(*this);
   TonemapConstants &constants = data.stl.tonemap;
-  const bool is_last = data.sample_index + 1 >= settings_.sample_count;
   constants.origin_px = data.target.origin_px;
   constants.view_transform = int(data.target.view_transform);
   constants.encoding = int(data.target.encoding);
   constants.exposure_scale =
       data.target.encoding == draw::Encoding::SceneLinear ? 1.0F : std::exp2(data.target.exposure);
-  constants.sample_scale = is_last ? 1.0F : float(1.0 / data.stl.film_share);
+  constants.sample_scale = sample_scale(data, data.sample_index + 1);
   constants.is_over = data.target.composition == draw::Composition::Over ? 1 : 0;
   if (data.target.depth) {
     constants.depth = draw::depth_map(view.clip_from_view(), *data.target.depth);
@@ -243,136 +240,49 @@ void Engine::draw_target(draw::Viewport &viewport, const draw::View &view)
   draw_steps(sample, FrameStep::When::EachTarget);
 }
 
-/** In light_block. Nothing where the lamp gives no light, or the viewport was never synced. */
-static std::optional<std::size_t> light_of(const Data &data, std::size_t lamp)
-{
-  if (!data.shared) {
-    return std::nullopt;
-  }
-  const Lamps &lamps = data.shared->lamps;
-  const auto found = std::ranges::find(lamps.lamp_index, std::uint32_t(lamp));
-  return found == lamps.lamp_index.end() ? std::nullopt : std::optional(std::size_t(found - lamps.lamp_index.begin()));
-}
-
-std::optional<Probe> Engine::probe(draw::Viewport &viewport, const draw::View &view, std::size_t lamp)
-{
-  GNOMON_ASSERT(settings_.has_probe, "the settings ask for no probe");
-  Data &data = viewport.engine_data<Data>(*this);
-  require_sync(data.is_synced);
-  take_losses(viewport);
-  follow_lamps(data);
-  StorageList &stl = data.stl;
-  const std::optional<std::size_t> light = light_of(data, lamp);
-  if (!light || stl.objects.empty()) {
-    return std::nullopt;
-  }
-  record(viewport);
-  const auto &[fbl, txl, psl] = std::tie(data.fbl, data.txl, data.psl);
-  gpu::Device &device = viewport.device();
-  stl.probed_light = int(*light);
-  update_view(data, view);
-  gpu::CommandList list;
-  stl.lamp_points = data.shared->lamp_points.centers();
-  write_lamp_points(data, list);
-  stl.shadows->update(device, view, pixel_size(view, viewport), data.shared->shadow_pass, list, stl.lamp_points);
-  list.begin_pass("depth_prepass", fbl.depth_fb, {});
-  psl->depth_pass.record(view, list);
-  psl->depth_pass_cull.record(view, list);
-  list.end_pass();
-  list.begin_pass("probe", fbl.probe_fb, {.depth_load = gpu::LoadAction::Load});
-  psl->probe_pass.record(view, list);
-  list.end_pass();
-  device.submit(list);
-  stl.shadows->submitted();
-  return Probe{gpu::read_as<glm::vec4>(device, txl.probe_position), gpu::read_as<glm::vec4>(device, txl.probe_normal)};
-}
-
-double Engine::shadow_texel_size(draw::Viewport &viewport, std::size_t lamp, const glm::dvec3 &position_ws) const
-{
-  const Data &data = viewport.engine_data<Data>(*this);
-  const std::optional<std::size_t> light = light_of(data, lamp);
-  return light ? data.stl.shadows->texel_size(data.shared->lamps.light_block.lights[*light], position_ws) : 0.0;
-}
-
-const Shadows &Engine::shadows(draw::Viewport &viewport) const
-{
-  const Data &data = viewport.engine_data<Data>(*this);
-  GNOMON_ASSERT(data.stl.shadows, "the viewport was never synced");
-  return *data.stl.shadows;
-}
-
 const gpu::Texture &Engine::radiance(draw::Viewport &viewport) const
 {
   return viewport.engine_data<Data>(*this).txl.film;
 }
 
-std::vector<std::string> Engine::reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files,
-                                                gpu::ShaderReflection reflection)
+float Engine::sample_scale(const Data &data, int samples_drawn) const
 {
-  invalidate_shadows(viewport);
-  shaders_revision_++;
-  return shaders_.reload(viewport.device(), std::move(files), std::move(reflection));
+  const bool has_counted_samples = settings_.sample_count > 0 && samples_drawn >= settings_.sample_count;
+  return (has_counted_samples && !data.is_finished) || data.stl.film_share == 0.0 ? 1.0F
+                                                                                  : float(1.0 / data.stl.film_share);
 }
 
-void Engine::invalidate_shadows(draw::Viewport &viewport) const
+float Engine::radiance_scale(draw::Viewport &viewport) const
+{
+  return sample_scale(viewport.engine_data<Data>(*this), viewport.samples_drawn());
+}
+
+bool Engine::has_all_samples(const Data &data, int samples_drawn) const
+{
+  return data.is_finished || (settings_.sample_count > 0 && samples_drawn >= settings_.sample_count);
+}
+
+bool Engine::is_complete(draw::Viewport &viewport) const
+{
+  const Data &data = viewport.engine_data<Data>(*this);
+  return has_all_samples(data, viewport.samples_drawn()) && !data.depth_feedback.is_pending();
+}
+
+void Engine::finish(draw::Viewport &viewport) const
+{
+  Data &data = viewport.engine_data<Data>(*this);
+  data.is_finished =
+      data.is_finished || (viewport.samples_drawn() > 0 && !has_all_samples(data, viewport.samples_drawn()));
+}
+
+std::vector<std::string> Engine::reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files,
+                                                gpu::ShaderReflection reflection)
 {
   if (const Data &data = viewport.engine_data<Data>(*this); data.shared) {
     data.shared->shadows.invalidate();
   }
-}
-
-std::string Engine::serialize_passes(draw::Viewport &viewport) const
-{
-  const Data &data = viewport.engine_data<Data>(*this);
-  std::string text;
-  if (!data.psl) {
-    return text;
-  }
-  text += data.shared->shadow_pass.serialize(viewport.device());
-  // Some steps draw passes of earlier steps again.
-  std::set<const draw::Pass *> printed;
-  for (const FrameStep &step : frame_steps()) {
-    for (const FramePass &pass : step.passes) {
-      const draw::Pass &recorded = (*data.psl).*pass.pass;
-      text += printed.insert(&recorded).second ? recorded.serialize(viewport.device()) : std::string();
-    }
-  }
-  text += data.psl->probe_pass.serialize(viewport.device());
-  return text;
-}
-
-static std::optional<ShadowLayers> layers_of(const Data &data, std::size_t lamp)
-{
-  const std::optional<std::size_t> light = light_of(data, lamp);
-  return light ? data.stl.shadows->layers(data.shared->lamps.light_block.lights[*light]) : std::nullopt;
-}
-
-std::vector<std::string> Engine::shadow_layers(draw::Viewport &viewport, std::size_t lamp) const
-{
-  const std::optional<ShadowLayers> layers = layers_of(viewport.engine_data<Data>(*this), lamp);
-  std::vector<std::string> names;
-  for (int i = 0; layers && i < layers->count; i++) {
-    names.push_back(layers->esm_format >= 0 ? "octahedral" : std::to_string(i));
-  }
-  return names;
-}
-
-const gpu::Texture &Engine::shadow_picture(draw::Viewport &viewport, std::size_t lamp, std::optional<std::size_t> layer)
-{
-  Data &data = viewport.engine_data<Data>(*this);
-  const std::optional<ShadowLayers> layers = layers_of(data, lamp);
-  GNOMON_ASSERT(layers, "lamp {} has no shadow", lamp);
-  return data.shadow_picture.draw(viewport.device(), shaders_, *layers,
-                                  layer ? std::optional(int(*layer)) : std::nullopt);
-}
-
-std::optional<std::size_t> Engine::tinted_sun(draw::Viewport &viewport) const
-{
-  const Data &data = viewport.engine_data<Data>(*this);
-  if (!data.shared || !data.shared->tinted_light) {
-    return std::nullopt;
-  }
-  return data.shared->lamps.lamp_index[std::size_t(*data.shared->tinted_light)];
+  shaders_revision_++;
+  return shaders_.reload(viewport.device(), std::move(files), std::move(reflection));
 }
 
 draw::EngineType engine_type(render_scene::RenderScene &scene, const Settings &settings)

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "eevee_features.hh"
-#include "eevee_frame_tree.hh"
 #include "eevee_shaders.hh"
 #include "shadows/shadows.hh"
 
@@ -29,60 +28,43 @@ struct Background {
   glm::vec3 color{0.0F};
 };
 
+/** Number of samples for which pictures without a sample count are approximated. \see Settings::sample_count */
+inline constexpr int open_ended_sample_count = 256;
+
 struct Settings {
   ShadowSettings shadow{};
   Background background{};
-  /** Samples for each pixel of a picture, at least 1. */
+  /**
+   * Samples for each pixel of a complete picture. 0: no limit; the host ends the picture with Engine::finish.
+   * Approximations that depend on the number of samples then assume `open_ended_sample_count`.
+   */
   int sample_count = 1;
-  /** Selects the arrangement of the samples. */
+  /** Selects the random sequence of sample positions and lamp points. */
   std::uint32_t seed = 0;
   /** Measure the time of each step on the device. */
   bool is_timed = false;
   /** Multiply the picture by a colour for each cascade of the first sun that has a shadow. */
   bool has_cascade_tint = false;
-  /** Engine::probe may be called. */
+  /** Enables Inspection::probe, which needs additional targets and a pass. */
   bool has_probe = false;
-};
 
-/** Seconds that the device spent on a step of the frame, summed over the samples of a picture. */
-struct StepTime {
-  std::string step;
-  double seconds = 0.0;
+  [[nodiscard]] int planned_sample_count() const
+  {
+    return sample_count == 0 ? open_ended_sample_count : sample_count;
+  }
 };
 
 struct Data;
 struct SharedData;
 
-/** The surface at the middle of each pixel and the visibility of one lamp there; rows from the bottom. */
-struct Probe {
-  /** xyz: position in the coordinates of the render scene, metres; w: visibility of the lamp by its shadow, in [0, 1].
-   */
-  std::vector<glm::vec4> position_visibility;
-  /** xyz: normal of the triangle on the visible side; w: 1. All 0 where there is no surface. */
-  std::vector<glm::vec4> normal;
-};
-
-/** The content of one viewport's picture: warnings, limits, and everything that was made or left out. */
-struct Report {
-  std::vector<std::string> warnings;
-  std::vector<std::string> limits;
-  /** Lamps that give light and request a shadow, and have none because of a limit. */
-  int lost_shadow_count = 0;
-  std::vector<FramePart> parts;
-  /** "frame": programs, passes, targets, blocks, meshes, textures, shadows and draws, as of the last picture. */
-  FrameNode tree;
-  ShadowCounters shadow_counters;
-  /** How often the passes were recorded since the first sync of the viewport. */
-  std::uint64_t pass_recordings = 0;
-};
-
 /**
- * Lights a scene with its lamps and their shadow maps. GPU resources are created by the first draw in which an object
- * is visible; a view of nothing costs a clear. eevee_frame.cc lists the steps of a frame.
+ * Draws a scene lit by its lamps with shadow maps and by its world. GPU resources are created by the first draw in
+ * which an object or a background is visible. A view without both costs one clear. eevee_frame.cc lists the steps of a
+ * frame.
  *
- * One picture takes `sample_count` calls of draw_scene (through draw::Viewport::draw) with one view. The engine offsets
- * the samples within the pixels. Further calls draw no sample; each call writes the mean of the samples so far to the
- * viewport's target, where there is one.
+ * Each call of draw_scene (through draw::Viewport::draw) with the same view draws one sample, until the picture has
+ * `sample_count` samples or finish ends it. The engine offsets the samples within the pixels. Each call writes the mean
+ * of the samples so far to the viewport's target, if it has one.
  */
 class Engine final : public draw::Engine {
  public:
@@ -110,54 +92,32 @@ class Engine final : public draw::Engine {
   void draw_scene(draw::Viewport &viewport, const draw::View &view) override;
   bool take_feedback(draw::Viewport &viewport, const gpu::Feedback &feedback) override;
 
-  /** The scene-linear picture, RGBA32F. Complete once all samples are drawn; before, their sum lacks the others. */
+  /** The scene-linear picture, RGBA32F, to be multiplied by radiance_scale. */
   [[nodiscard]] const gpu::Texture &radiance(draw::Viewport &viewport) const;
-  /** All samples of the picture are drawn: further draws would change nothing. */
+  /** Factor from radiance to the mean of the samples so far. 1 if the picture has Settings::sample_count samples. */
+  [[nodiscard]] float radiance_scale(draw::Viewport &viewport) const;
+  /** Whether the picture has all of its samples, so that further draws would not change it. */
   [[nodiscard]] bool is_complete(draw::Viewport &viewport) const;
-  /** Times of the samples whose feedback came since the last call. Empty unless Settings::is_timed. */
-  [[nodiscard]] std::vector<StepTime> take_step_times(draw::Viewport &viewport) const;
   /**
-   * Positions, normals and the visibility of the \a lamp-th lamp of RenderScene::lamps at each pixel. Nothing where the
-   * lamp gives no light, or no object is there. \pre Settings::has_probe
+   * End the current picture with the samples drawn so far. Further draws add no sample until the picture begins anew;
+   * they write the picture to their target. No effect on a picture without samples.
    */
-  [[nodiscard]] std::optional<Probe> probe(draw::Viewport &viewport, const draw::View &view, std::size_t lamp);
-  /** Edge of a texel of that lamp's shadow at a position, perpendicular to the light, metres; 0: it has none there. */
-  [[nodiscard]] double shadow_texel_size(draw::Viewport &viewport, std::size_t lamp,
-                                         const glm::dvec3 &position_ws) const;
+  void finish(draw::Viewport &viewport) const;
   /**
-   * Names of the layers of that lamp's shadow in the last picture: "0" to "5" for faces of a cube in OpenGL's order,
-   * "0" and up for cascades of a sun from the finest, "0" for a spot, "octahedral". Empty where the lamp has no shadow.
-   */
-  [[nodiscard]] std::vector<std::string> shadow_layers(draw::Viewport &viewport, std::size_t lamp) const;
-  /** A picture of one layer, by index, or of all layers. \see ShadowPicture::draw \pre shadow_layers is not empty */
-  [[nodiscard]] const gpu::Texture &shadow_picture(draw::Viewport &viewport, std::size_t lamp,
-                                                   std::optional<std::size_t> layer = std::nullopt);
-  /** Index in RenderScene::lamps of the sun whose cascades Settings::has_cascade_tint shows; valid after a sync. */
-  [[nodiscard]] std::optional<std::size_t> tinted_sun(draw::Viewport &viewport) const;
-  /** The shadow layers, as of the last draw. \pre the viewport was synced */
-  [[nodiscard]] const Shadows &shadows(draw::Viewport &viewport) const;
-  /** Linear in the size of the scene: call it for reports, not for every frame. Before the first sync it is empty. */
-  [[nodiscard]] Report report(draw::Viewport &viewport) const;
-  /** Of the shadow layers that this viewport's draws were the first to need. \pre the viewport was synced */
-  [[nodiscard]] const ShadowCounters &shadow_counters(draw::Viewport &viewport) const
-  {
-    return shadows(viewport).counters();
-  }
-  /**
-   * Compile the programs again, from \a files; for hosts that edit shaders. Call draw::Viewport::sync after it.
-   * \return one message for each program that failed and stays as it was. \see ShaderCache::reload
+   * Compile all programs again from \a files, for hosts that edit shaders. Then call draw::Viewport::sync.
+   * \return one message for each program that does not compile and keeps its last state. \see ShaderCache::reload
    */
   std::vector<std::string> reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files,
                                           gpu::ShaderReflection reflection);
-  /** Mark all shadows as out of date, to measure the cost of drawing them. */
-  void invalidate_shadows(draw::Viewport &viewport) const;
-  /** The recorded passes as text; empty before the first draw in which an object is visible. */
-  [[nodiscard]] std::string serialize_passes(draw::Viewport &viewport) const;
 
  private:
-  /** Create what every picture is drawn into. */
+  friend class Inspection;
+
+  /** Create the film and its framebuffer. */
   void make_film(draw::Viewport &viewport);
-  /** Where submitted work was lost: draw and write again all that it may have held. */
+  /** Start of a draw. \throws gpu::Error if the last sync of the viewport failed; another sync is then required. */
+  void begin_draw(draw::Viewport &viewport);
+  /** If submitted work was lost, invalidate all results that it may have contained. */
   void take_losses(draw::Viewport &viewport);
   void sync_lamps(SharedData &shared, const gpu::Limits &device_limits);
   /** Create the resources and record the passes of a picture with a visible object, as far as their inputs changed. */
@@ -176,6 +136,9 @@ class Engine final : public draw::Engine {
   void draw_target(draw::Viewport &viewport, const draw::View &view);
   void add_casters(Data &data);
   void update_view(Data &data, const draw::View &view);
+  [[nodiscard]] bool has_all_samples(const Data &data, int samples_drawn) const;
+  /** \see radiance_scale */
+  [[nodiscard]] float sample_scale(const Data &data, int samples_drawn) const;
 
   render_scene::RenderScene &scene_;
   Settings settings_;

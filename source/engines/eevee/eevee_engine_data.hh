@@ -234,7 +234,7 @@ struct StorageList {
   glm::vec4 background_across{0.0F};
   glm::vec4 background_up{0.0F};
   double film_weight_sum = 0.0;
-  /** Fraction of the total filter weight that the samples drawn so far have, in [0, 1]. */
+  /** Sum of the filter weights of the samples drawn so far, in units of `film_weight_sum`. */
   double film_share = 0.0;
   std::optional<PictureKey> synced_picture;
   std::optional<TonemapKey> tonemap_recorded;
@@ -245,11 +245,11 @@ struct Timing {
   struct Step {
     std::string name;
     gpu::TimerQuery query;
-    /** The step was drawn since the last call of Engine::take_step_times. */
+    /** The step was drawn since the last call of Inspection::take_step_times. */
     bool is_pending = false;
     /** Empty if the backend measures no times (null backend). */
     std::optional<double> seconds{};
-    /** The last result of Engine::take_step_times. */
+    /** The last result of Inspection::take_step_times. */
     std::optional<double> taken_seconds{};
   };
   std::vector<Step> steps;
@@ -311,6 +311,8 @@ struct Data final : draw::EngineViewportData {
   bool is_recorded = false;
   /** An object or a background was visible in at least one sample of the current picture. */
   bool is_seen = false;
+  /** Engine::finish ended the current picture. */
+  bool is_finished = false;
   /** TextureList::picture_depth holds the depth of the current picture. */
   bool has_picture_depth = false;
   /** One entry for each of frame_steps(), for the current picture. Empty before the first sample. */

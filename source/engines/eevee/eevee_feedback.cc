@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <utility>
 
 namespace gnomon::eevee {
 
@@ -32,12 +31,6 @@ bool awaits_depths(const Data &data, const draw::View &view)
 {
   return data.is_seen && data.stl.shadows->reads_depths() &&
          data.depth_feedback.clip_from_world != view.clip_from_world();
-}
-
-bool Engine::is_complete(draw::Viewport &viewport) const
-{
-  return viewport.samples_drawn() >= settings_.sample_count &&
-         !viewport.engine_data<Data>(*this).depth_feedback.is_pending();
 }
 
 bool Engine::take_feedback(draw::Viewport &viewport, const gpu::Feedback &feedback)
@@ -69,18 +62,6 @@ bool Engine::take_feedback(draw::Viewport &viewport, const gpu::Feedback &feedba
     }
   }
   return is_final;
-}
-
-std::vector<StepTime> Engine::take_step_times(draw::Viewport &viewport) const
-{
-  std::vector<StepTime> times;
-  for (Timing::Step &step : viewport.engine_data<Data>(*this).timing.steps) {
-    if (std::exchange(step.is_pending, false)) {
-      step.taken_seconds = std::exchange(step.seconds, std::nullopt);
-      times.push_back({step.name, step.taken_seconds.value_or(0.0)});
-    }
-  }
-  return times;
 }
 
 }  // namespace gnomon::eevee

@@ -15,16 +15,35 @@ double filter_weight(double distance_px)
   return 0.35875 + 0.48829 * std::cos(a) + 0.14128 * std::cos(2.0 * a) + 0.01168 * std::cos(3.0 * a);
 }
 
+/** The van der Corput sequence in base 2: the binary digits of \a index, reversed behind the binary point. In [0, 1).
+ */
+static double radical_inverse(std::uint32_t index)
+{
+  double inverse = 0.0;
+  for (double digit = 0.5; index != 0; index >>= 1, digit *= 0.5) {
+    inverse += (index & 1) != 0 ? digit : 0.0;
+  }
+  return inverse;
+}
+
 glm::vec2 film_offset_px(int index, int count, std::uint32_t seed)
 {
-  if (count <= 1) {
+  if (count == 1) {
     return {0.0F, 0.0F};
   }
-  // A lattice of rank 1 by the golden ratio; a seed moves it around the unit square.
-  constexpr double golden = 0.6180339887498949;
+  // A seed moves the lattice around the unit square.
   const double shift_x = double(seed * 2654435761U) / 4294967296.0;
   const double shift_y = double(seed * 2246822519U) / 4294967296.0;
   const auto fraction = [](double value) { return value - std::floor(value); };
+  if (count == 0) {
+    // An extensible lattice in base 2. Its generating vector is that of Cools, Kuo and Nuyens, "Constructing embedded
+    // lattice rules for multivariate integration", 2006.
+    constexpr double generator = 182667.0;
+    const double inverse = radical_inverse(std::uint32_t(index));
+    return {float(fraction(inverse + 0.5 + shift_x) - 0.5), float(fraction(inverse * generator + 0.5 + shift_y) - 0.5)};
+  }
+  // A lattice of rank 1 by the golden ratio.
+  constexpr double golden = 0.6180339887498949;
   return {float(fraction((index + 0.5) / count + shift_x) - 0.5), float(fraction(index * golden + shift_y) - 0.5)};
 }
 
@@ -45,6 +64,9 @@ double sum(const glm::dvec3 &weights)
 
 double film_weight_sum(int count, std::uint32_t seed)
 {
+  if (count == 0) {
+    return film_share(0, 1, seed, 1.0);
+  }
   double total = 0.0;
   for (int i = 0; i < count; i++) {
     total += film_share(i, count, seed, 1.0);

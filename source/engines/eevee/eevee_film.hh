@@ -15,8 +15,10 @@ inline constexpr double filter_support_px = 3.0;
 [[nodiscard]] double filter_weight(double distance_px);
 
 /**
- * Where in each pixel the \a index-th of \a count samples lies, from its centre, in [-0.5, 0.5) pixels. One sample is
- * at the centre. More are a lattice that fills the square evenly; another \a seed shifts it.
+ * Offset of the \a index-th of \a count samples from the centre of its pixel, in [-0.5, 0.5) pixels. A single sample is
+ * at the centre. Several samples form a lattice that covers the square evenly. \a count 0 selects a lattice sequence
+ * for an unknown number of samples: all of its prefixes cover the square evenly. \a seed shifts the lattice or
+ * sequence.
  */
 [[nodiscard]] glm::vec2 film_offset_px(int index, int count, std::uint32_t seed);
 
@@ -26,16 +28,20 @@ struct FilmWeights {
   glm::vec3 rows{0.0F};
 };
 
-/** What the weights of all \a count samples amount to, before they are divided by it. */
+/**
+ * Sum of the unnormalised weights of all \a count samples: the divisor of film_weights. For \a count 0, the weight of a
+ * single sample at the centre, so that the weights of n samples sum to about n.
+ */
 [[nodiscard]] double film_weight_sum(int count, std::uint32_t seed);
 
 /**
- * \see film_offset_px. A pixel is the filter's mean of all samples that lie within its support, its neighbours' too:
- * the weights of all samples sum to 1. \a weight_sum: film_weight_sum of the same count and seed.
+ * Weights of the \a index-th sample. A pixel is the filtered mean of all samples within the filter's support around its
+ * centre, including samples in neighbouring pixels. With a known count, the weights of all samples sum to 1.
+ * \a weight_sum: film_weight_sum of the same count and seed.
  */
 [[nodiscard]] FilmWeights film_weights(int index, int count, std::uint32_t seed, double weight_sum);
 
-/** The sum of one sample's weights. Those of all samples sum to 1. */
+/** Sum of film_weights of the \a index-th sample over its nine pixels. */
 [[nodiscard]] double film_share(int index, int count, std::uint32_t seed, double weight_sum);
 
 }  // namespace gnomon::eevee

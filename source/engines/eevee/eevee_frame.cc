@@ -26,7 +26,7 @@ float pixel_size(const draw::View &view, const draw::Viewport &viewport)
   return 2.0F / (view.clip_from_view()[1][1] * float(viewport.size_px().y));
 }
 
-shared::ViewData view_data(const draw::View &view, int sample_count)
+shared::ViewData view_data(const draw::View &view, const Settings &settings, int sample_index)
 {
   const glm::mat4 world_from_view(glm::inverse(glm::dmat4(view.view_from_world())));
   shared::ViewData data{};
@@ -36,6 +36,7 @@ shared::ViewData view_data(const draw::View &view, int sample_count)
   data.back_ws = glm::normalize(glm::vec3(world_from_view[2]));
   // With n samples for each pixel, a sample covers 1/n of the pixel's area, so that the samples are n^-1/2 pixels
   // apart.
+  const int sample_count = settings.sample_count == 0 ? sample_index + 1 : settings.sample_count;
   data.texture_lod_bias = -0.5F * std::log2(float(sample_count));
   return data;
 }
@@ -65,8 +66,8 @@ namespace {
 Need need_lamp_points(const FrameState &state)
 {
   if (state.data.shared->lamp_points.empty()) {
-    return {false, state.settings.sample_count > 1 ? "no lamp that gives light has a size"
-                                                   : "one sample: each lamp is shaded as a whole"};
+    return {false, state.settings.sample_count != 1 ? "no lamp that gives light has a size"
+                                                    : "one sample: each lamp is shaded as a whole"};
   }
   return state.data.is_seen ? Need{true, "each sample sees one point of each lamp with a size"}
                             : Need{false, nothing_seen};
@@ -228,7 +229,7 @@ void record_film(const FrameStep &step, FrameSample &sample, gpu::CommandList &l
 
 void record_picture_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
-  const shared::ViewData block = view_data(sample.view, sample.settings.sample_count);
+  const shared::ViewData block = view_data(sample.view, sample.settings, sample.data.sample_index);
   list.update(sample.data.stl.view_block, 0, std::as_bytes(std::span(&block, 1)));
   list.begin_pass(step.name, sample.data.fbl.picture_depth_fb, {});
   record_passes(step, sample, sample.view, list);

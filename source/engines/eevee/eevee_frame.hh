@@ -103,7 +103,7 @@ void draw_steps(FrameSample &sample, FrameStep::When when);
 [[nodiscard]] float pixel_size(const draw::View &view, const draw::Viewport &viewport);
 
 /** The content of `view_block`. \a sample_count: samples for each pixel. */
-[[nodiscard]] shared::ViewData view_data(const draw::View &view, int sample_count);
+[[nodiscard]] shared::ViewData view_data(const draw::View &view, const Settings &settings, int sample_index);
 
 inline constexpr const char *nothing_seen = "nothing is seen";
 

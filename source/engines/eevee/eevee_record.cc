@@ -113,7 +113,7 @@ void Engine::make_blocks(draw::Viewport &viewport)
         device.create_buffer({"light_shape_block", gpu::BufferKind::Uniform, sizeof(shared::LightShapeBlock)});
     shared.is_light_block_written = false;
   }
-  update_world(shared.world, device, scene_, stl.features, settings_.sample_count);
+  update_world(shared.world, device, scene_, stl.features, settings_.planned_sample_count());
   const bool has_ltc = has(stl.features, Feature::LampShape | Feature::World) && has(stl.features, Feature::Specular);
   if (!has_ltc) {
     shared.ltc_table = {};
@@ -170,7 +170,7 @@ void Engine::record_tonemap(draw::Viewport &viewport)
   TextureList &txl = data.txl;
   gpu::Device &device = viewport.device();
   const draw::Target &target = data.target;
-  const bool has_own_depth = target.depth && settings_.sample_count > 1;
+  const bool has_own_depth = target.depth && settings_.sample_count != 1;
   if (has_own_depth && !txl.picture_depth) {
     txl.picture_depth = create_target(device, "picture_depth", gpu::Format::Depth32F, viewport.size_px());
     data.fbl.picture_depth_fb =

@@ -2,6 +2,8 @@
 // The report of a frame: the parts that were made or left out. It reads the same state as the drawing code.
 #include "eevee_report_source.hh"
 
+#include "eevee_inspection.hh"
+
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -215,9 +217,12 @@ FrameNode draw_nodes(const ReportSource &source)
 
 }  // namespace
 
-Report Engine::report(draw::Viewport &viewport) const
+Report Inspection::report() const
 {
-  const Data &data = viewport.engine_data<Data>(*this);
+  const Data &data = engine_data();
+  render_scene::RenderScene &scene = engine_.scene_;
+  const ShaderCache &shaders = engine_.shaders_;
+  const Settings &settings = engine_.settings_;
   const StorageList &stl = data.stl;
   Report report;
   if (!data.psl) {
@@ -229,18 +234,18 @@ Report Engine::report(draw::Viewport &viewport) const
   const SceneShadows &shadows = shared.shadows;
   report.warnings = lamps.warnings;
   report.warnings.insert(report.warnings.end(), shadows.warnings().begin(), shadows.warnings().end());
-  for (std::string &line : scene_.scene().stale_references()) {
+  for (std::string &line : scene.scene().stale_references()) {
     report.warnings.push_back(std::move(line));
   }
   std::set<scene::Handle<scene::Mesh>> meshes;
   for (const draw::ObjectIndex object : stl.objects) {
-    const scene::Handle<scene::Mesh> handle = scene_.object(object).mesh;
+    const scene::Handle<scene::Mesh> handle = scene.object(object).mesh;
     if (!meshes.insert(handle).second) {
       continue;
     }
-    const scene::Mesh &mesh = scene_.scene().meshes()[handle];
+    const scene::Mesh &mesh = scene.scene().meshes()[handle];
     for (const scene::TextureInput &input : scene::texture_inputs) {
-      const std::string why = why_no_texture(mesh, input, scene_.scene().material_of(mesh).*input.slot);
+      const std::string why = why_no_texture(mesh, input, scene.scene().material_of(mesh).*input.slot);
       if (!why.empty()) {
         report.warnings.push_back(
             fmt::format("mesh '{}': {}; its material's {} is not drawn", mesh.name, why, input.name));
@@ -253,11 +258,11 @@ Report Engine::report(draw::Viewport &viewport) const
   report.pass_recordings = stl.pass_recordings;
   for (int i = 0; i < lamps.light_block.light_count; i++) {
     const scene::PlacedLamp &lamp = shared.placed[lamps.lamp_index[std::size_t(i)]];
-    const bool is_asked_for = shadow_kind(lamp, settings_.shadow) != scene::ShadowKind::None;
+    const bool is_asked_for = shadow_kind(lamp, settings.shadow) != scene::ShadowKind::None;
     report.lost_shadow_count += is_asked_for && lamps.light_block.lights[i].shadow_kind == SHADOW_NONE ? 1 : 0;
   }
 
-  const ReportSource source{scene_, shaders_, settings_, data, viewport};
+  const ReportSource source{scene, shaders, settings, data, viewport_};
   report.tree = folder("frame", "the picture", "",
                        {program_nodes(source), pass_nodes(source), target_nodes(source), block_nodes(source),
                         mesh_nodes(source), texture_nodes(source), shadow_nodes(source), draw_nodes(source)});
@@ -267,7 +272,7 @@ Report Engine::report(draw::Viewport &viewport) const
   };
   const Feature f = stl.features;
   const bool is_recorded = data.is_recorded;
-  const std::string no_shadow = settings_.shadow.kind == scene::ShadowKind::None ? "shadows are off" : "no such lamp";
+  const std::string no_shadow = settings.shadow.kind == scene::ShadowKind::None ? "shadows are off" : "no such lamp";
   const auto why_not = [&](std::string reason) { return is_recorded ? std::move(reason) : nothing_seen; };
   part("light_block", bool(shared.light_block), fmt::format("{} lights", lamps.light_block.light_count),
        has(f, Feature::Light) ? nothing_seen : "no lamp gives light");
@@ -284,18 +289,21 @@ Report Engine::report(draw::Viewport &viewport) const
        why_not("no object with a two-sided material"));
   part("depth_pass_cull", !data.psl->depth_pass_cull.is_empty(), "one-sided materials",
        why_not("no object with a one-sided material"));
-  part("base colour textures", scene_.images().count() > 0,
-       fmt::format("{} images that materials look up", scene_.images().count()),
+  part("base colour textures", scene.images().count() > 0,
+       fmt::format("{} images that materials look up", scene.images().count()),
        why_not("no lit or cut out material has one"));
   part("specular in eevee_lit", has(f, Feature::Specular), "a material reflects",
        has(f, Feature::Light) ? why_not("every material is Lambertian") : "no lamp gives light");
   part("cascade tint", !data.psl->tint_pass.is_empty(), "asked for",
-       !settings_.has_cascade_tint ? "not asked for"
-       : shared.tinted_light       ? nothing_seen
-                                   : "no sun has a shadow");
-  part("film", is_recorded, fmt::format("{} samples a pixel", settings_.sample_count), nothing_seen);
+       !settings.has_cascade_tint ? "not asked for"
+       : shared.tinted_light      ? nothing_seen
+                                  : "no sun has a shadow");
+  part("film", is_recorded,
+       settings.sample_count == 0 ? "samples until the host ends the picture"
+                                  : fmt::format("{} samples a pixel", settings.sample_count),
+       nothing_seen);
   part("tonemap", !data.psl->tonemap.is_empty(), "a target was given", data.target ? nothing_seen : no_target);
-  part("programs", shaders_.size() > 0, fmt::format("{} programs", shaders_.size()), nothing_seen);
+  part("programs", shaders.size() > 0, fmt::format("{} programs", shaders.size()), nothing_seen);
   return report;
 }
 

@@ -4,13 +4,14 @@
 #include "eevee_engine.hh"
 #include "eevee_engine_data.hh"
 #include "eevee_frame.hh"
+#include "eevee_frame_tree.hh"
 
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-/** Parts of Engine::report: its input state, and the reasons that it gives. Internal to the engine. */
+/** Parts of Inspection::report: its input state, and the reasons that it gives. Internal to the engine. */
 namespace gnomon::eevee {
 
 inline constexpr const char *no_target = "no target was given";

@@ -3,6 +3,13 @@
 
 #include "eevee_camera.hh"
 
+#include "gpu_read.hh"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
 namespace gnomon::eevee {
 
 void SceneRenderer::sync()
@@ -43,16 +50,45 @@ bool SceneRenderer::draw_sample(const scene::PlacedCamera &camera, const draw::T
   return engine_.is_complete(viewport_);
 }
 
-bool SceneRenderer::draw(const scene::PlacedCamera &camera, const Progress &progress, const draw::Target &target)
+int SceneRenderer::draw(const scene::PlacedCamera &camera, const DrawLimits &limits, const draw::Target &target)
 {
+  using Seconds = std::chrono::duration<double>;
+  const bool is_timed = std::isfinite(limits.seconds_max);
+  if (settings_.sample_count == 0 && !limits.progress && !is_timed) {
+    throw gpu::Error("eevee: nothing limits the number of samples of the picture");
+  }
+  const auto start = std::chrono::steady_clock::now();
   viewport_.restart();
-  for (int i = 0; i < settings_.sample_count; i++) {
-    draw_sample(camera, i + 1 == settings_.sample_count ? target : draw::Target());
-    if (progress && !progress(i + 1)) {
-      return i + 1 == settings_.sample_count;
+  double seconds = 0.0;
+  for (int i = 1;; i++) {
+    const bool is_last = i == settings_.sample_count;
+    draw_sample(camera, is_last ? target : draw::Target());
+    bool is_ended = limits.progress && !limits.progress(i);
+    if (is_last) {
+      return i;
+    }
+    if (is_timed) {
+      viewport_.device().finish();
+      const double sample_start = std::exchange(seconds, Seconds(std::chrono::steady_clock::now() - start).count());
+      is_ended = is_ended || seconds + (seconds - sample_start) > limits.seconds_max;
+    }
+    if (is_ended) {
+      engine_.finish(viewport_);
+      if (target) {
+        draw_sample(camera, target);
+      }
+      return i;
     }
   }
-  return true;
+}
+
+std::vector<glm::vec4> SceneRenderer::read_picture()
+{
+  std::vector<glm::vec4> picture = gpu::read_as<glm::vec4>(viewport_.device(), engine_.radiance(viewport_));
+  if (const float scale = engine_.radiance_scale(viewport_); scale != 1.0F) {
+    std::ranges::transform(picture, picture.begin(), [&](const glm::vec4 &pixel) { return pixel * scale; });
+  }
+  return picture;
 }
 
 }  // namespace gnomon::eevee

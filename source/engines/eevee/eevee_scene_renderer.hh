@@ -1,11 +1,24 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "eevee_engine.hh"
+#include "eevee_inspection.hh"
 
 #include <functional>
+#include <limits>
+#include <vector>
 
 namespace gnomon::eevee {
+
+/** Conditions that end a picture before it has Settings::sample_count samples. Each picture has at least one. */
+struct DrawLimits {
+  /** Called after each sample with the number of samples drawn. Returns false to end the picture. May be empty. */
+  std::function<bool(int samples_drawn)> progress{};
+  /**
+   * Maximum wall time, seconds. No further sample is drawn if it would exceed this time, estimated from the time of
+   * the last sample. If the value is finite, draw waits for the device after each sample.
+   */
+  double seconds_max = std::numeric_limits<double>::infinity();
+};
 
 /**
  * Renders a scene on a device. It owns the resources of the scene on the device, one engine and one viewport, and makes
@@ -55,13 +68,14 @@ class SceneRenderer {
    * once per frame. \return whether the picture is complete, so that further calls would not change it
    */
   bool draw_sample(const scene::PlacedCamera &camera, const draw::Target &target = {});
-  /** Called after each sample with the samples drawn so far; false: draw no more. May be empty. */
-  using Progress = std::function<bool(int samples_drawn)>;
   /**
-   * Draw all samples of a picture anew and write it to \a target.
-   * \return whether it is whole: \a progress stopped it otherwise, and the target is as it was
+   * Draw a picture anew, until it is complete or \a limits end it, and write the mean of its samples to \a target.
+   * \return the number of samples
+   * \throws gpu::Error as draw_sample, and if neither the settings nor \a limits limit the number of samples
    */
-  bool draw(const scene::PlacedCamera &camera, const Progress &progress = {}, const draw::Target &target = {});
+  int draw(const scene::PlacedCamera &camera, const DrawLimits &limits = {}, const draw::Target &target = {});
+  /** The mean of the samples drawn so far: scene-linear RGBA, rows from the bottom. Waits for the device. */
+  [[nodiscard]] std::vector<glm::vec4> read_picture();
 
   /** The view of \a camera in the coordinates of the render scene. */
   [[nodiscard]] draw::View view_of(const scene::PlacedCamera &camera) const;
@@ -76,6 +90,10 @@ class SceneRenderer {
   [[nodiscard]] Engine &engine()
   {
     return engine_;
+  }
+  [[nodiscard]] Inspection inspect()
+  {
+    return {engine_, viewport_};
   }
   [[nodiscard]] draw::Viewport &viewport()
   {

@@ -133,8 +133,7 @@ class GlDevice final : public Device {
   void buffer_create(ResourceId id, const BufferDesc &desc) override;
   void batch_create(const BatchDesc &desc, const BatchRange &range, std::uint32_t vertex_capacity,
                     std::uint32_t index_capacity) override;
-  void shader_create(ResourceId id, const ShaderDesc &desc, const std::vector<ShaderSource> &stages,
-                     std::vector<std::byte> &compiled) override;
+  void shader_create(const Operation::CreateShader &create, std::vector<std::byte> &compiled) override;
   void timer_query_create(ResourceId id, const std::string &name) override;
   void resource_destroy(ResourceKind kind, ResourceId id) override;
   void buffer_update(ResourceId id, std::size_t offset_bytes, std::span<const std::byte> bytes) override;
@@ -154,7 +153,7 @@ class GlDevice final : public Device {
   GLuint compile(const ShaderDesc &desc, const std::vector<ShaderSource> &stages);
   /** Creates a program from its compiled form. \return 0 if the driver does not accept \a compiled */
   GLuint load_compiled(const std::vector<std::byte> &compiled);
-  static std::vector<DeclaredSampler> declared_samplers(GLuint program);
+  static std::vector<DeclaredSampler> declared_samplers(GLuint program, const std::vector<std::string> &names);
   const Dummy &dummy(const DeclaredSampler &sampler);
 
   void collect_slots(const CommandList &list);

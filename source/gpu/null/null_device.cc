@@ -51,8 +51,7 @@ class NullDevice final : public Device {
   {
     before("create batch");
   }
-  void shader_create(ResourceId /*id*/, const ShaderDesc & /*desc*/, const std::vector<ShaderSource> & /*stages*/,
-                     std::vector<std::byte> & /*compiled*/) override
+  void shader_create(const Operation::CreateShader & /*create*/, std::vector<std::byte> & /*compiled*/) override
   {
     before("create shader");
   }

@@ -26,7 +26,7 @@ class TechniqueRenderer {
   [[nodiscard]] std::vector<LampError> lamp_errors(const reference::Tracer &tracer);
   [[nodiscard]] eevee::Report report()
   {
-    return renderer_.engine().report(renderer_.viewport());
+    return renderer_.inspect().report();
   }
 
  private:

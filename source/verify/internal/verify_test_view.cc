@@ -129,7 +129,7 @@ Picture TestViewRenderer::draw(const TestView &test_view, const DrawSettings &se
 eevee::Report TestViewRenderer::report(const DrawSettings &settings)
 {
   Renderer &renderer = *stages_.at(settings).renderer;
-  return renderer.engine.report(renderer.viewport);
+  return renderer.inspect().report();
 }
 
 Picture truth(const TestView &test_view, const DrawSettings &settings)

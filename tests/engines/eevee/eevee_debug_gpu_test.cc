@@ -29,7 +29,7 @@ class DebugViewGpuTest : public test::GpuDeviceTest {
   }
   Picture shadow(Renderer &renderer, std::optional<std::size_t> layer)
   {
-    return read(renderer.engine.shadow_picture(renderer.viewport, 0, layer));
+    return read(renderer.inspect().shadow_picture(0, layer));
   }
   static bool is_blue(const glm::vec4 &pixel)
   {
@@ -140,7 +140,7 @@ TEST_F(DebugViewGpuTest, CascadesHoldDistancesAlongTheLightFromOnePlane)
   settings.shadow.cascades.count = 3;
   Renderer renderer(*device, scene, {64, 64}, settings);
   renderer.draw(test::camera_at({0, -6, 3}, {0, 10, 0}));
-  const std::size_t count = renderer.engine.shadow_layers(renderer.viewport, 0).size();
+  const std::size_t count = renderer.inspect().shadow_layers(0).size();
   ASSERT_EQ(count, 3U);
   const Picture all = shadow(renderer, std::nullopt);
   ASSERT_EQ(all.size_px, glm::ivec2(3 * 128, 128));
@@ -217,7 +217,7 @@ TEST_F(DebugViewGpuTest, AnOctahedralLayerHoldsDistancesFromTheLamp)
   settings.shadow.esm.filter_angle = 0.0F;
   Renderer renderer(*device, scene, {16, 16}, settings);
   renderer.draw(test::camera_at({3, 3, 3}, {0, 0, 0}));
-  EXPECT_EQ(renderer.engine.shadow_layers(renderer.viewport, 0), std::vector<std::string>{"octahedral"});
+  EXPECT_EQ(renderer.inspect().shadow_layers(0), std::vector<std::string>{"octahedral"});
   const Picture picture = shadow(renderer, 0);
   ASSERT_EQ(picture.size_px, glm::ivec2(128, 128));
   int grounds = 0;

@@ -41,7 +41,7 @@ TEST_F(DebugViewTest, NothingIsCreatedWithoutARequest)
   renderer.draw(camera);
   EXPECT_FALSE(has_live("shadow_picture"));
   EXPECT_FALSE(has_live("eevee_debug"));
-  EXPECT_FALSE(renderer.engine.tinted_sun(renderer.viewport));
+  EXPECT_FALSE(renderer.inspect().tinted_sun());
 }
 
 TEST_F(DebugViewTest, APictureOfAShadowTakesOneProgramAndOneTexture)
@@ -50,12 +50,12 @@ TEST_F(DebugViewTest, APictureOfAShadowTakesOneProgramAndOneTexture)
   Renderer renderer(*device, scene, {16, 16}, settings);
   renderer.draw(camera);
   const gpu::Counters before = device->counters();
-  EXPECT_EQ(renderer.engine.shadow_picture(renderer.viewport, 0, 3).desc().width, 32);
-  EXPECT_EQ(renderer.engine.shadow_picture(renderer.viewport, 0, 5).desc().width, 32);
+  EXPECT_EQ(renderer.inspect().shadow_picture(0, 3).desc().width, 32);
+  EXPECT_EQ(renderer.inspect().shadow_picture(0, 5).desc().width, 32);
   EXPECT_EQ(device->counters().shaders_made, before.shaders_made + 1);
   EXPECT_EQ(device->counters().textures_made, before.textures_made + 1);
   EXPECT_EQ(device->counters().passes, before.passes + 2);
-  EXPECT_EQ(renderer.engine.report(renderer.viewport).shadow_counters.lamps_updated, 1U) << "no shadow is drawn again";
+  EXPECT_EQ(renderer.inspect().report().shadow_counters.lamps_updated, 1U) << "no shadow is drawn again";
 }
 
 TEST_F(DebugViewTest, LayersLargerThanAScreenAreThinned)
@@ -65,7 +65,7 @@ TEST_F(DebugViewTest, LayersLargerThanAScreenAreThinned)
   Renderer renderer(*device, scene, {16, 16}, settings);
   renderer.draw(camera);
   const auto size_px = [&](std::optional<std::size_t> layer) {
-    const gpu::TextureDesc &desc = renderer.engine.shadow_picture(renderer.viewport, 0, layer).desc();
+    const gpu::TextureDesc &desc = renderer.inspect().shadow_picture(0, layer).desc();
     return glm::ivec2(desc.width, desc.height);
   };
   EXPECT_EQ(size_px(0), glm::ivec2(2048, 2048));
@@ -88,7 +88,7 @@ TEST_F(DebugViewTest, LayerNamesFollowTheLampsTechnique)
              [](scene::Lamp &lamp) { lamp.spot_outer_angle = 1.5F; });
   Renderer renderer(*device, scene, {16, 16}, settings);
   renderer.draw(camera);
-  const auto names = [&](std::size_t lamp) { return renderer.engine.shadow_layers(renderer.viewport, lamp); };
+  const auto names = [&](std::size_t lamp) { return renderer.inspect().shadow_layers(lamp); };
   EXPECT_EQ(names(0), cube);
   EXPECT_EQ(names(1), Names{});
   EXPECT_EQ(names(2), Names{"octahedral"});
@@ -103,7 +103,7 @@ TEST_F(DebugViewTest, TheTintIsOfTheFirstSunWithAShadow)
   test::add_lamp(scene, scene::LampKind::Spot, {0, 0, 4}, {0, 0, -1}, 1.0F);
   Renderer renderer(*device, scene, {16, 16}, settings);
   renderer.draw(camera);
-  EXPECT_FALSE(renderer.engine.tinted_sun(renderer.viewport));
+  EXPECT_FALSE(renderer.inspect().tinted_sun());
   EXPECT_FALSE(has_live("eevee_debug")) << "a spot's map is no cascade";
 
   scene.edit(test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 4}, {0, 0.2F, -1}, 1.0F),
@@ -111,7 +111,7 @@ TEST_F(DebugViewTest, TheTintIsOfTheFirstSunWithAShadow)
   test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 4}, {0, 0.2F, -1}, 1.0F);
   renderer.sync();
   renderer.draw(camera);
-  EXPECT_EQ(renderer.engine.tinted_sun(renderer.viewport), std::optional<std::size_t>(2));
+  EXPECT_EQ(renderer.inspect().tinted_sun(), std::optional<std::size_t>(2));
   EXPECT_TRUE(has_live("eevee_debug_cascades"));
 }
 

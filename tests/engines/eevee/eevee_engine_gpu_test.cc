@@ -20,12 +20,13 @@ constexpr float PI = std::numbers::pi_v<float>;
 class EngineGpuTest : public test::GpuDeviceTest {
  protected:
   /** A square of half size \a half at \a center, facing \a normal. */
-  void add_square(const glm::vec3 &center, const glm::vec3 &normal, float half, scene::Handle<scene::Mesh> mesh)
+  scene::Handle<scene::Node> add_square(const glm::vec3 &center, const glm::vec3 &normal, float half,
+                                        scene::Handle<scene::Mesh> mesh)
   {
     const glm::vec3 up = std::abs(glm::normalize(normal).y) < 0.9F ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
     const glm::mat4 world_from_square =
         glm::inverse(glm::lookAt(center, center - normal, up)) * glm::scale(glm::mat4(1.0F), glm::vec3(half));
-    test::add_object(scene, mesh, world_from_square);
+    return test::add_object(scene, mesh, world_from_square);
   }
   Picture render(const scene::PlacedCamera &camera, const Settings &settings = {}, glm::ivec2 size_px = {64, 64})
   {
@@ -345,6 +346,24 @@ TEST_F(ShadowGpuTest, OutsideOfTheSunsMapIsLit)
   EXPECT_LT(dark, 20) << "of 4096 pixels, for a square of 0.4 m on a ground of 40 m";
 }
 
+TEST_F(ShadowGpuTest, ASurfaceThatCastsNoShadowReceivesThoseOfCastersOutsideTheView)
+{
+  const scene::Handle<scene::Node> ground = add_square({0, 0, 0}, {0, 0, 1}, 20.0F, square);
+  add_square({0, 0, 10}, {0, 0, 1}, 1.0F, square);
+  scene.edit(ground, [](scene::Node &node) { node.casts_shadow = false; });
+  // It sees the shadow only.
+  const scene::PlacedCamera camera = test::camera_at({0, 0, 2}, {0, 0, 0}, 0.2F);
+  for (const scene::LampKind kind : {scene::LampKind::Sun, scene::LampKind::Spot, scene::LampKind::Point}) {
+    test::remove_lamps(scene);
+    scene.edit(test::add_lamp(scene, kind, {0, 0, 20}, {0, 0, -1}, 100.0F),
+               [](scene::Lamp &lamp) { lamp.spot_outer_angle = 0.4F; });
+    EXPECT_GT(render(camera, {.shadow = {.kind = scene::ShadowKind::None}}).middle().r, 0.0F);
+    for (const scene::ShadowKind shadow : {scene::ShadowKind::Hard, scene::ShadowKind::Esm}) {
+      EXPECT_LT(render(camera, {.shadow = {.kind = shadow}}).middle().r, 1e-4F) << int(kind) << ' ' << int(shadow);
+    }
+  }
+}
+
 TEST_F(ShadowGpuTest, SamplesConvergeToASmoothEdge)
 {
   add_square({0, 0, 0}, {0, 0, 1}, 20.0F, square);
@@ -363,6 +382,15 @@ TEST_F(ShadowGpuTest, SamplesConvergeToASmoothEdge)
   const double error_1 = rmse(render(camera, {.sample_count = 1}), truth);
   const double error_16 = rmse(render(camera, {.sample_count = 16}), truth);
   EXPECT_LT(error_16, 0.25 * error_1);
+
+  // Without a count, the picture so far is one of that many samples.
+  Renderer renderer(*device, scene, truth.size_px, {.sample_count = 0});
+  const auto drawn = [&](int count) {
+    renderer.draw(camera, {}, {.progress = [=](int samples) { return samples < count; }});
+    return renderer.picture();
+  };
+  EXPECT_LT(rmse(drawn(16), truth), 1.25 * error_16);
+  EXPECT_EQ(rmse(drawn(1), render(camera, {.sample_count = 1})), 0.0) << "both samples are at the pixels' centres";
 }
 
 TEST_F(EngineGpuTest, RecordsTheSamePassesAsTheNullBackend)
@@ -377,9 +405,9 @@ TEST_F(EngineGpuTest, RecordsTheSamePassesAsTheNullBackend)
   Renderer null(*null_device, scene, {16, 16});
   gl.draw(above, gl_target.target());
   null.draw(above, null_target.target());
-  const std::string passes = gl.engine.serialize_passes(gl.viewport);
+  const std::string passes = gl.inspect().serialize_passes();
   EXPECT_NE(passes.find("group eevee_lit"), std::string::npos) << passes;
-  EXPECT_EQ(passes, null.engine.serialize_passes(null.viewport));
+  EXPECT_EQ(passes, null.inspect().serialize_passes());
 }
 
 TEST_F(EngineGpuTest, EveryVariantIsAcceptedByTheDriver)
@@ -457,7 +485,7 @@ TEST_F(EngineGpuTest, StepTimesAreMeasured)
   Renderer renderer(*device, scene, {64, 64}, {.is_timed = true});
   renderer.draw(above);
   std::vector<std::string> names;
-  for (const StepTime &step : renderer.engine.take_step_times(renderer.viewport)) {
+  for (const StepTime &step : renderer.inspect().take_step_times()) {
     names.push_back(step.step);
     EXPECT_GE(step.seconds, 0.0);
     EXPECT_LT(step.seconds, 60.0);

@@ -38,7 +38,7 @@ TEST_F(EngineTest, CreatesNothingWithoutLamps)
 {
   Renderer renderer(*device, scene, {16, 16});
   renderer.draw(camera);
-  const Report report = renderer.engine.report(renderer.viewport);
+  const Report report = renderer.inspect().report();
   for (const char *what : {"light_block", "shadow_cubes", "shadow_maps", "shadow_pass", "depth_pass_cull",
                            "specular in eevee_lit", "tonemap"}) {
     EXPECT_FALSE(is_made(report, what)) << what;
@@ -64,7 +64,7 @@ TEST_F(EngineTest, CreatesTheResourcesThatTheSceneNeeds)
   const draw::TargetTexture display(*device, "display", gpu::Format::RGBA8, {16, 16});
   Renderer renderer(*device, scene, {16, 16}, settings);
   renderer.draw(camera, display.target());
-  const Report report = renderer.engine.report(renderer.viewport);
+  const Report report = renderer.inspect().report();
   for (const char *what : {"light_block", "shadow_cubes", "shadow_pass", "depth_pass", "depth_pass_cull",
                            "specular in eevee_lit", "film", "tonemap"}) {
     EXPECT_TRUE(is_made(report, what)) << what;
@@ -86,9 +86,9 @@ TEST_F(EngineTest, DrawsShadowsOnceForAStillScene)
   settings.shadow.map_size_px = 32;
   Renderer renderer(*device, scene, {16, 16}, settings);
   renderer.draw(camera);
-  EXPECT_EQ(renderer.engine.report(renderer.viewport).shadow_counters.lamps_updated, 2U);
+  EXPECT_EQ(renderer.inspect().report().shadow_counters.lamps_updated, 2U);
   renderer.draw(camera);
-  EXPECT_EQ(renderer.engine.report(renderer.viewport).shadow_counters.lamps_updated, 2U);
+  EXPECT_EQ(renderer.inspect().report().shadow_counters.lamps_updated, 2U);
 }
 
 TEST_F(EngineTest, MeshesAreUploadedOnceHoweverManyObjectsShareThem)
@@ -158,7 +158,7 @@ TEST_F(EngineTest, PassesPrintWhatWasRecorded)
   test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 2}, {0, 0, -1}, 1.0F);
   Renderer renderer(*device, scene, {16, 16}, {.shadow = {.map_size_px = 16}});
   renderer.draw(camera);
-  const std::string text = renderer.engine.serialize_passes(renderer.viewport);
+  const std::string text = renderer.inspect().serialize_passes();
   EXPECT_NE(text.find("shadow_pass [write_depth depth_nearer_equal depth_clamp]\n  group eevee_shadow_layered\n"),
             std::string::npos);
   EXPECT_NE(text.find("    uniform shadow_render_block -> 12 by reference\n"), std::string::npos) << text;
@@ -194,7 +194,7 @@ TEST_F(EngineTest, TexturesAreMadeOnceAndForLightOrMasksOnly)
   const auto images = [&] {
     Renderer renderer(*device, scene, {16, 16}, {.shadow = {.kind = scene::ShadowKind::None}});
     renderer.draw(camera);
-    EXPECT_EQ(is_made(renderer.engine.report(renderer.viewport), "base colour textures"),
+    EXPECT_EQ(is_made(renderer.inspect().report(), "base colour textures"),
               std::ranges::count(device->live_resources(), "texture 'image'") > 0);
     return std::ranges::count(device->live_resources(), "texture 'image'");
   };
@@ -212,7 +212,7 @@ TEST_F(EngineTest, OpaqueObjectsKeepTheirDepthProgramWhateverTheirTexture)
   test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, 1.0F);
   Renderer renderer(*device, scene, {16, 16}, {.shadow = {.map_size_px = 16}});
   renderer.draw(camera);
-  const std::string text = renderer.engine.serialize_passes(renderer.viewport);
+  const std::string text = renderer.inspect().serialize_passes();
   const auto count = [](const std::string &where, const std::string &what) {
     int found = 0;
     for (std::size_t at = where.find(what); at != where.npos; at = where.find(what, at + 1)) {
@@ -259,11 +259,11 @@ TEST_F(EngineTest, ShadowsAreDrawnAgainWithReloadedShaders)
   test::add_lamp(scene, scene::LampKind::Point, {0, 0, 2}, {0, 0, -1}, 1.0F);
   Renderer renderer(*device, scene, {16, 16}, {.shadow = {.cube_size_px = 16}});
   renderer.draw(camera);
-  const std::uint64_t before = renderer.engine.report(renderer.viewport).shadow_counters.lamps_updated;
+  const std::uint64_t before = renderer.inspect().report().shadow_counters.lamps_updated;
   EXPECT_TRUE(renderer.engine.reload_shaders(renderer.viewport, shaders::file, shader_check::reflect).empty());
   renderer.sync();
   renderer.draw(camera);
-  EXPECT_EQ(renderer.engine.report(renderer.viewport).shadow_counters.lamps_updated, before + 1);
+  EXPECT_EQ(renderer.inspect().report().shadow_counters.lamps_updated, before + 1);
 }
 
 /** The pool contains another mesh's uvs at its position. */
@@ -279,7 +279,7 @@ TEST_F(EngineTest, AMeshWithoutUvsIsDrawnWithoutItsTextureAndNamed)
   Renderer renderer(*device, scene, {16, 16});
   renderer.draw(camera);
   EXPECT_EQ(std::ranges::count(device->live_resources(), "texture 'image'"), 0);
-  const std::vector<std::string> warnings = renderer.engine.report(renderer.viewport).warnings;
+  const std::vector<std::string> warnings = renderer.inspect().report().warnings;
   EXPECT_EQ(warnings,
             std::vector<std::string>{"mesh 'square': it has no uvs; its material's base_color_texture is not drawn"});
 }
@@ -289,7 +289,7 @@ TEST_F(EngineTest, StaleHandlesAreNamed)
   scene.remove(scene.materials().first());
   Renderer renderer(*device, scene, {16, 16});
   renderer.draw(camera);
-  const std::vector<std::string> warnings = renderer.engine.report(renderer.viewport).warnings;
+  const std::vector<std::string> warnings = renderer.inspect().report().warnings;
   EXPECT_EQ(warnings, std::vector<std::string>{"mesh 'square': its material was removed"});
 }
 

@@ -28,6 +28,13 @@ void move_all(scene::Scene &scene, const glm::dvec3 &shift)
   }
 }
 
+scene::Scene load(const std::string &name)
+{
+  const std::string folder =
+      name == "forest" ? std::string(GNOMON_TEST_DATA) + "/scenes/" : std::string(GNOMON_SOURCE) + "/examples/scenes/";
+  return gltf::import_gltf(folder + name + ".glb");
+}
+
 class FarAway : public test::GpuDeviceTest {
  protected:
   static constexpr glm::ivec2 size_px{160, 90};
@@ -46,7 +53,7 @@ class FarAway : public test::GpuDeviceTest {
     }
     renderer.draw(camera);
     origin_ws = renderer.render_scene().origin_ws();
-    return gpu::read_as<glm::vec4>(*device, renderer.engine().radiance(renderer.viewport()));
+    return renderer.read_picture();
   }
   static double rms_difference(const std::vector<glm::vec4> &a, const std::vector<glm::vec4> &b)
   {
@@ -64,8 +71,8 @@ class FarAway : public test::GpuDeviceTest {
 
 TEST_F(FarAway, APictureIsTheSameWhereTheShiftIsAMultipleOfTheOriginsStep)
 {
-  for (const char *name : {"plaza", "spots"}) {
-    scene::Scene scene = gltf::import_gltf(std::string(GNOMON_SOURCE) + "/examples/scenes/" + name + ".glb");
+  for (const char *name : {"plaza", "spots", "forest"}) {
+    scene::Scene scene = load(name);
     const std::vector<glm::vec4> near = picture_of(scene, scene.placed_cameras().front());
     move_all(scene, {1048576.0, 0.0, -524288.0});
     const std::vector<glm::vec4> far = picture_of(scene, scene.placed_cameras().front());
@@ -75,8 +82,8 @@ TEST_F(FarAway, APictureIsTheSameWhereTheShiftIsAMultipleOfTheOriginsStep)
 
 TEST_F(FarAway, TheErrorAgainstTheReferenceIsTheSameAnywhereAndAfterAChangeOfTheOrigin)
 {
-  for (const char *name : {"plaza", "spots"}) {
-    const scene::Scene near = gltf::import_gltf(std::string(GNOMON_SOURCE) + "/examples/scenes/" + name + ".glb");
+  for (const char *name : {"plaza", "spots", "forest"}) {
+    const scene::Scene near = load(name);
     const scene::PlacedCamera near_camera = near.placed_cameras().front();
     const std::vector<glm::vec4> truth =
         reference::direct_light(reference::Tracer(near), near_camera, size_px, {.sample_count = 4}).pixels;
@@ -116,7 +123,7 @@ TEST_F(FarAway, AMovingCameraChangesTheOriginAndNotThePicture)
     scene::PlacedCamera camera = test::camera_at({0, 0, 8}, {0, 0, 0});
     camera.world_from_camera[3].x += x;
     renderer.draw(camera);
-    return gpu::read_as<glm::vec4>(*device, renderer.engine().radiance(renderer.viewport()));
+    return renderer.read_picture();
   };
   const std::vector<glm::vec4> first = picture_at(0.0);
   EXPECT_EQ(renderer.render_scene().origin_ws(), glm::dvec3(0.0));

@@ -202,7 +202,7 @@ class LampSamplesTest : public testing::Test {
   }
   std::uint64_t lamps_updated(const test::Renderer &renderer, draw::Viewport &viewport) const
   {
-    return renderer.engine.shadow_counters(viewport).lamps_updated;
+    return Inspection(renderer.engine, viewport).shadow_counters().lamps_updated;
   }
   static const FrameNode *step(const Report &report, std::string_view name)
   {
@@ -222,7 +222,7 @@ TEST_F(LampSamplesTest, ALampWithoutAnExtentIsDrawnOnce)
   renderer.draw(camera);
   renderer.draw(camera);
   EXPECT_EQ(lamps_updated(renderer, renderer.viewport), 1U);
-  const Report report = renderer.engine.report(renderer.viewport);
+  const Report report = renderer.inspect().report();
   EXPECT_FALSE(step(report, "lamp_points")->is_made);
   EXPECT_EQ(step(report, "lamp_points")->why, "no lamp that gives light has a size");
 }
@@ -241,7 +241,7 @@ TEST_F(LampSamplesTest, ALampWithAnExtentIsDrawnInEachSampleAndNoOtherLamp)
     EXPECT_EQ(lamps_updated(renderer, renderer.viewport), 1U + 4U);
     renderer.draw(camera);
     EXPECT_EQ(lamps_updated(renderer, renderer.viewport), 1U + 8U);
-    const Report report = renderer.engine.report(renderer.viewport);
+    const Report report = renderer.inspect().report();
     EXPECT_TRUE(step(report, "lamp_points")->is_made);
     EXPECT_TRUE(report.warnings.empty()) << report.warnings.front();
     settings.sample_count = 1;

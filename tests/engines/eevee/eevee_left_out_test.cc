@@ -62,7 +62,7 @@ Taken taken_by(const measure::LeftOutCase &of)
     taken.passes.insert(name.substr(0, name.find(',')));
   }
   taken.counters = device->counters();
-  taken.tree = renderer.engine.report(renderer.viewport).tree;
+  taken.tree = renderer.inspect().report().tree;
   return taken;
 }
 
@@ -294,7 +294,7 @@ TEST_F(LeftOutChange, NewlyVisibleObjectsCreateTheirResourcesAndShadows)
   renderer.draw(full.scene.placed_cameras().front());
   EXPECT_EQ(device->counters().passes - device->pass_counts().at("film"), device->counters().passes - 2U);
   EXPECT_EQ(device->pass_counts().at("lit"), 1U);
-  EXPECT_EQ(renderer.engine.report(renderer.viewport).shadow_counters.lamps_updated, 3U);
+  EXPECT_EQ(renderer.inspect().report().shadow_counters.lamps_updated, 3U);
   const std::uint64_t made = device->counters().shaders_made;
   // After switching back, resources remain and are not used.
   renderer.draw(test::camera_at({0, 4, 20}, {0, 4, 40}));
@@ -330,7 +330,7 @@ TEST_F(LeftOutChange, DrawsOutsideOfTheViewAreCountedAsCulled)
   }
   test::Renderer renderer(*device, scene, {16, 16}, {.sample_count = 2});
   renderer.draw(test::camera_at({0, 0, 4}, {0, 0, 0}));
-  const FrameNode tree = renderer.engine.report(renderer.viewport).tree;
+  const FrameNode tree = renderer.inspect().report().tree;
   for (const char *pass : {"depth_pass", "lit_pass"}) {
     EXPECT_EQ(node_at(tree, {"draws", pass}).count, 2U) << "one, in two samples";
     EXPECT_EQ(node_at(tree, {"draws", pass, "culled"}).count, 4U);
@@ -343,7 +343,7 @@ TEST_F(LeftOutChange, UpToDateShadowsAreKeptAndReported)
   test::Renderer renderer(*device, full.scene, {64, 36}, full.settings);
   const auto layers = [&](const char *state) {
     renderer.draw(full.scene.placed_cameras().front());
-    const FrameNode tree = renderer.engine.report(renderer.viewport).tree;
+    const FrameNode tree = renderer.inspect().report().tree;
     EXPECT_EQ(node_at(tree, {"passes", "shadows"}).is_made, std::string(state) == "drawn");
     return node_at(tree, {"shadows", "POINT", state}).count.value_or(0);
   };
@@ -376,7 +376,7 @@ TEST_F(LeftOutChange, UvsAreUploadedWithTheLightThatNeedsThem)
   test::add_object(scene, test::add_square_mesh(scene, textured), glm::mat4(1.0F));
   const auto mesh_bytes = [&](test::Renderer &renderer) {
     renderer.draw(test::camera_at({0, 0, 4}, {0, 0, 0}));
-    return find(renderer.engine.report(renderer.viewport).tree, "meshes")->bytes;
+    return find(renderer.inspect().report().tree, "meshes")->bytes;
   };
   test::Renderer renderer(*device, scene, {16, 16});
   const std::size_t bare = 4U * 2U * sizeof(glm::vec3) + 6U * sizeof(std::uint32_t);
@@ -398,7 +398,7 @@ TEST_F(LeftOutChange, ASpotThatNothingVisibleLooksUpIsDrawnWhenSomethingDoes)
   test::Renderer renderer(*device, scene, {16, 16});
   const auto layers = [&](const scene::PlacedCamera &camera) {
     renderer.draw(camera);
-    return find(*find(renderer.engine.report(renderer.viewport).tree, "shadows"), "lamp0")->count;
+    return find(*find(renderer.inspect().report().tree, "shadows"), "lamp0")->count;
   };
   // The box of the casters spans both squares. Its visible part does not reach the cone.
   EXPECT_EQ(layers(test::camera_at({0, 0, 4}, {0, 0, 0})), 0U);
@@ -414,7 +414,7 @@ TEST_F(LeftOutChange, ExponentialShadowsAloneTakeNoBlockOfDepths)
   renderer.draw(full.scene.placed_cameras().front());
   EXPECT_TRUE(std::ranges::count(device->live_resources(), "buffer 'esm_block'") == 1);
   EXPECT_TRUE(std::ranges::count(device->live_resources(), "buffer 'shadow_block'") == 0);
-  EXPECT_EQ(renderer.engine.report(renderer.viewport).tree.bytes, device->memory_bytes());
+  EXPECT_EQ(renderer.inspect().report().tree.bytes, device->memory_bytes());
 }
 
 }  // namespace

@@ -179,7 +179,7 @@ class RandomEdits : public test::GpuDeviceTest {
   {
     renderer.sync();
     renderer.draw(camera);
-    return gpu::read_as<glm::vec4>(*device, renderer.engine().radiance(renderer.viewport()));
+    return renderer.read_picture();
   }
   scene::PlacedCamera camera = test::camera_at({0, -7, 7}, {0, 0, 0.5F});
 };
@@ -256,7 +256,7 @@ TEST_F(RandomEdits, TwoViewportsOfOneSceneDrawItFromOneCopy)
   SceneRenderer alone(*device, scene, {54, 54}, settings());
   alone.sync();
   alone.draw(other);
-  EXPECT_EQ(gpu::read_as<glm::vec4>(*device, alone.engine().radiance(alone.viewport())), from_second);
+  EXPECT_EQ(alone.read_picture(), from_second);
 }
 
 }  // namespace

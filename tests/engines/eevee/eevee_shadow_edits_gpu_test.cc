@@ -32,10 +32,10 @@ TEST_F(ShadowEditsGpuTest, LayersKeepTheirTexelsWhereTheirArrayGrowsAndShrinks)
     test::Renderer renderer(*device, scene, {64, 48}, settings);
     renderer.draw(camera);
     const auto expect_as_fresh = [&](const char *edit, std::uint64_t updated) {
-      const std::uint64_t before = renderer.engine.shadows(renderer.viewport).counters().lamps_updated;
+      const std::uint64_t before = renderer.inspect().shadows().counters().lamps_updated;
       renderer.sync();
       const test::Picture edited = renderer.picture(camera);
-      EXPECT_EQ(renderer.engine.shadows(renderer.viewport).counters().lamps_updated, before + updated) << edit;
+      EXPECT_EQ(renderer.inspect().shadows().counters().lamps_updated, before + updated) << edit;
       test::Renderer fresh(*device, scene, {64, 48}, settings);
       EXPECT_EQ(edited.pixels, fresh.picture(camera).pixels) << edit << ", bit for bit";
     };

@@ -187,10 +187,10 @@ TEST_F(ShadowEditsTest, AnEditedMaskDrawsItsShadowAgain)
   test::add_lamp(garden, scene::LampKind::Point, {0, 0, 3}, {0, 0, -1}, 20.0F);
   test::Renderer renderer(*device, garden, {16, 16});
   const auto updated_lamps = [&] {
-    const std::uint64_t before = renderer.engine.shadows(renderer.viewport).counters().lamps_updated;
+    const std::uint64_t before = renderer.inspect().shadows().counters().lamps_updated;
     renderer.sync();
     renderer.draw(test::camera_at({0, -4, 4}, {0, 0, 0}));
-    return renderer.engine.shadows(renderer.viewport).counters().lamps_updated - before;
+    return renderer.inspect().shadows().counters().lamps_updated - before;
   };
   EXPECT_EQ(updated_lamps(), 1U);
   EXPECT_EQ(updated_lamps(), 0U);

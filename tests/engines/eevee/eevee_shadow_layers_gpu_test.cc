@@ -102,7 +102,7 @@ TEST_F(ShadowLayersGpuTest, ThreeCubePassesGiveTheSameTexels)
         *device, scene, {48, 32},
         {.shadow = {.cube_size_px = 96, .map_size_px = 128, .cascades = {.count = 4}, .layer_pass = way}});
     pictures.push_back(renderer.picture(camera));
-    const Shadows &shadows = renderer.engine.shadows(renderer.viewport);
+    const Shadows &shadows = renderer.inspect().shadows();
     ASSERT_EQ(shadows.scene().layer_pass(), way);
     layers.push_back(drawn_layers(*device, shadows));
     counters.push_back(shadows.counters());
@@ -137,10 +137,10 @@ TEST_F(ShadowLayersGpuTest, ACasterIsDrawnOnceForEachFaceThatItTouches)
   for (const LayerPass way : {LayerPass::Single, LayerPass::Geometry, LayerPass::Layered}) {
     Renderer renderer(*device, scene, {16, 16}, {.shadow = {.cube_size_px = 64, .layer_pass = way}});
     renderer.draw(camera);
-    const auto layers = drawn_layers(*device, renderer.engine.shadows(renderer.viewport));
+    const auto layers = drawn_layers(*device, renderer.inspect().shadows());
     six = six.empty() ? layers : six;
     EXPECT_EQ(layers, six) << "bit for bit";
-    const ShadowCounters counters = renderer.engine.report(renderer.viewport).shadow_counters;
+    const ShadowCounters counters = renderer.inspect().report().shadow_counters;
     EXPECT_EQ(counters.faces_drawn, 6U);
     EXPECT_EQ(counters.caster_draws, 6U) << "and not 36";
     for (const std::vector<float> &layer : layers) {
@@ -181,7 +181,7 @@ TEST_F(ShadowLayersGpuTest, CastingSidesFollowTheSettingAlsoForMirroredObjects)
                    [](scene::Lamp &lamp) { lamp.spot_outer_angle = 0.5F; });
         Renderer renderer(*device, scene, {8, 8}, {.shadow = {.map_size_px = 64, .caster_faces = one.faces}});
         renderer.draw(camera);
-        EXPECT_NEAR(middle_distance(*device, renderer.engine.shadows(renderer.viewport)),
+        EXPECT_NEAR(middle_distance(*device, renderer.inspect().shadows()),
                     is_two_sided ? one.two_sided : one.one_sided, 1e-4F)
             << "faces " << int(one.faces) << ", scale " << scale.x << " " << scale.y << " " << scale.z
             << (is_two_sided ? ", two-sided" : "");
@@ -211,7 +211,7 @@ TEST_F(ShadowLayersGpuTest, EachOfThreeSpotsHasItsOwnMapAndIsLitOutsideOfIt)
   Renderer unshadowed(*device, scene, size_px, {.shadow = {.kind = scene::ShadowKind::None}});
   const Picture picture = renderer.picture(above);
   const Picture lit = unshadowed.picture(above);
-  EXPECT_EQ(renderer.engine.shadows(renderer.viewport).scene().map_count(), 3U);
+  EXPECT_EQ(renderer.inspect().shadows().scene().map_count(), 3U);
   // Half a picture is 30 · tan(0.2) = 6.08 m; a caster's shadow is 20 times as large as it.
   const float px_m = 2.0F * 30.0F * std::tan(0.2F) / 128.0F;
   int dark = 0;
@@ -278,7 +278,7 @@ TEST_F(ClipGpuTest, CastersBeforeTheNearPlaneCastUnlessClipped)
       scene.edit(lamp, [](scene::Lamp &value) { value.shadow.clip_start.reset(); });
       Renderer renderer(*device, scene, {8, 8}, {.shadow = {.layer_pass = way}});
       renderer.draw(below);
-      const shared::ShadowBlock &block = renderer.engine.shadows(renderer.viewport).block_data();
+      const shared::ShadowBlock &block = renderer.inspect().shadows().block_data();
       const float near = kind == scene::LampKind::Point ? block.cubes[0].near : block.maps[0].texco_from_world[3][2];
       ASSERT_GT(std::abs(near), 0.2F) << "the caster, at 0.1, is before the near plane";
       EXPECT_EQ(middle_visibility({.layer_pass = way}), 0.0F) << "lamp kind " << int(kind);
@@ -319,7 +319,7 @@ class ShadowCacheGpuTest : public ShadowLayersGpuTest {
   }
   static std::uint64_t lamps_updated(Renderer &renderer)
   {
-    return renderer.engine.report(renderer.viewport).shadow_counters.lamps_updated;
+    return renderer.inspect().report().shadow_counters.lamps_updated;
   }
   Settings settings{.shadow = {.cube_size_px = 128, .map_size_px = 256}};
 };
@@ -378,10 +378,10 @@ TEST_F(ShadowCacheGpuTest, FacesSkippedAppearWhenTheCameraTurns)
   const scene::PlacedCamera behind = test::camera_at({0, 0.2F, 1}, {0, -9, 0.5F}, 0.5F);
   Renderer renderer(*device, scene, {48, 32}, settings);
   const Picture first = renderer.picture(ahead);
-  const ShadowCounters before = renderer.engine.report(renderer.viewport).shadow_counters;
+  const ShadowCounters before = renderer.inspect().report().shadow_counters;
   EXPECT_GT(before.faces_skipped, 0U);
   const Picture turned = renderer.picture(behind);
-  const ShadowCounters after = renderer.engine.report(renderer.viewport).shadow_counters;
+  const ShadowCounters after = renderer.inspect().report().shadow_counters;
   EXPECT_GT(after.faces_drawn, before.faces_drawn);
   EXPECT_LE(after.faces_drawn, 12U) << "none twice";
   EXPECT_EQ(turned.pixels, fresh_picture(behind).pixels);
@@ -398,7 +398,7 @@ struct Cascades {
   {
     Renderer renderer(device, scene, {48, 32}, {.shadow = settings});
     renderer.draw(camera);
-    const Shadows &shadows = renderer.engine.shadows(renderer.viewport);
+    const Shadows &shadows = renderer.inspect().shadows();
     for (int i = 0; i < shadows.block_data().maps[0].cascade_count; i++) {
       maps.push_back(shadows.block_data().maps[i]);
       texels.push_back(gpu::read_as<float>(device, shadows.scene().maps(), maps.back().layer));

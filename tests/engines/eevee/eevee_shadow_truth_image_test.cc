@@ -29,7 +29,7 @@ class ShadowTruth : public test::GpuDeviceTest {
     settings.has_probe = true;
     Renderer renderer(*device, scene, size_px, settings);
     const scene::PlacedLamp lamp = scene.placed_lamps().front();
-    const std::optional<Probe> probe = renderer.engine.probe(renderer.viewport, view_of(camera, size_px), 0);
+    const std::optional<Probe> probe = renderer.inspect().probe(view_of(camera, size_px), 0);
     EXPECT_TRUE(probe);
     std::vector<glm::dvec3> positions;
     std::vector<glm::vec3> normals;
@@ -48,7 +48,7 @@ class ShadowTruth : public test::GpuDeviceTest {
     }
     reference::CompareSettings compare;
     compare.texel_size_m = [&](const glm::dvec3 &position_ws) {
-      return renderer.engine.shadow_texel_size(renderer.viewport, 0, position_ws);
+      return renderer.inspect().shadow_texel_size(0, position_ws);
     };
     truth.error = reference::compare_visibility(tracer, lamp, {positions, normals, visibility}, compare);
     return truth;

@@ -64,6 +64,41 @@ TEST_F(TargetTest, ASampleIsDrawnForEachDrawUntilThePictureIsComplete)
       << "a whole picture, which is drawn anew";
 }
 
+TEST_F(TargetTest, APictureWithoutALimitEndsWhenTheHostEndsIt)
+{
+  SceneRenderer renderer(*device, scene, size_px, {.sample_count = 0});
+  renderer.sync();
+  renderer.engine().finish(renderer.viewport());
+  for (int i = 0; i < 300; i++) {
+    ASSERT_FALSE(renderer.draw_sample(camera));
+  }
+  // A sample at the centre of its pixel, which is the unit, has 7 % more weight than the mean of all samples.
+  EXPECT_NEAR(renderer.engine().radiance_scale(renderer.viewport()) * 300.0, 1.07, 0.01);
+  renderer.engine().finish(renderer.viewport());
+  EXPECT_EQ(passes_of([&] { EXPECT_TRUE(renderer.draw_sample(camera, target)); }), no_sample);
+  camera = test::camera_at({0, 1, 4}, {0, 0, 0});
+  EXPECT_EQ(passes_of([&] { EXPECT_FALSE(renderer.draw_sample(camera, target)); }), sample) << "another picture";
+
+  // The callback ends it, and the picture is written without another sample.
+  const auto stop_at_5 = [](int samples_drawn) { return samples_drawn < 5; };
+  EXPECT_EQ(passes_of([&] { EXPECT_EQ(renderer.draw(camera, {.progress = stop_at_5}, target), 5); }),
+            (Passes{{"depth_prepass", 5}, {"lit", 5}, {"film", 5}, {"tonemap", 1}}));
+  EXPECT_EQ(renderer.draw(camera, {.seconds_max = 0.0}), 1) << "no time at all: one sample";
+  EXPECT_THROW(renderer.draw(camera), gpu::Error) << "it would never end";
+}
+
+TEST_F(TargetTest, ThePictureOfAKnownCountCanBeEndedEarly)
+{
+  SceneRenderer renderer(*device, scene, size_px, {.sample_count = 8});
+  renderer.sync();
+  const auto stop_at_3 = [](int samples_drawn) { return samples_drawn < 3; };
+  EXPECT_EQ(passes_of([&] { EXPECT_EQ(renderer.draw(camera, {.progress = stop_at_3}, target), 3); }),
+            (Passes{{"depth_prepass", 3}, {"lit", 3}, {"film", 3}, {"tonemap", 1}}));
+  EXPECT_GT(renderer.engine().radiance_scale(renderer.viewport()), 1.5F);
+  EXPECT_EQ(renderer.draw(camera), 8);
+  EXPECT_EQ(renderer.engine().radiance_scale(renderer.viewport()), 1.0F);
+}
+
 TEST_F(TargetTest, EachChangeBeginsThePictureAnewAndNothingElseDoes)
 {
   SceneRenderer renderer(*device, scene, size_px, {.sample_count = 4});
@@ -115,7 +150,7 @@ TEST_F(TargetTest, OnlyATargetWithDepthTakesDepth)
   EXPECT_EQ(passes_of([&] { renderer.draw_sample(camera, target); }), with_depth);
   EXPECT_TRUE(has("picture_depth"));
   EXPECT_EQ(passes_of([&] { renderer.draw_sample(camera, target); }), no_sample);
-  const FrameNode tree = renderer.engine().report(renderer.viewport()).tree;
+  const FrameNode tree = renderer.inspect().report().tree;
   EXPECT_TRUE(find(*find(tree, "targets"), "target")->is_made);
   EXPECT_TRUE(find(*find(tree, "passes"), "picture_depth")->is_made);
   camera = test::camera_at({0, 1, 4}, {0, 0, 0});

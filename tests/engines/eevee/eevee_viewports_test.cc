@@ -51,9 +51,9 @@ class ViewportsTest : public testing::Test {
     }
     return bytes;
   }
-  std::uint64_t layers_drawn(draw::Viewport &viewport) const
+  std::uint64_t layers_drawn(draw::Viewport &viewport)
   {
-    return engine->shadow_counters(viewport).faces_drawn;
+    return Inspection(*engine, viewport).shadow_counters().faces_drawn;
   }
 
   std::unique_ptr<gpu::Device> device = gpu::create_null_device();
@@ -85,8 +85,8 @@ TEST_F(ViewportsTest, ShadowsThatFollowNoViewAreDrawnAndKeptOnce)
   EXPECT_EQ(shared_bytes(), with_one);
   EXPECT_EQ(layers_drawn(second), 0U);
   EXPECT_EQ(layers_drawn(first), drawn);
-  EXPECT_EQ(engine->shadows(first).block_data().cubes[0].face_mask,
-            engine->shadows(second).block_data().cubes[0].face_mask);
+  EXPECT_EQ(Inspection(*engine, first).shadows().block_data().cubes[0].face_mask,
+            Inspection(*engine, second).shadows().block_data().cubes[0].face_mask);
 }
 
 TEST_F(ViewportsTest, AnEditIsDrawnByTheFirstViewportThatNeedsIt)
@@ -110,19 +110,19 @@ TEST_F(ViewportsTest, CascadesBelongToAViewport)
 {
   draw::Viewport first(*device, {16, 16});
   draw(first, above);
-  EXPECT_EQ(engine->shadows(first).scene().maps().desc().layers, 2) << "the spot's and the sun's";
+  EXPECT_EQ(Inspection(*engine, first).shadows().scene().maps().desc().layers, 2) << "the spot's and the sun's";
   const std::uint64_t drawn = layers_drawn(first);
   {
     draw::Viewport second(*device, {16, 16});
     draw(second, beside);
     EXPECT_EQ(layers_drawn(second), 1U) << "the sun's, fitted to the second view";
-    EXPECT_EQ(engine->shadows(first).scene().maps().desc().layers, 3);
+    EXPECT_EQ(Inspection(*engine, first).shadows().scene().maps().desc().layers, 3);
     draw(first, above);
     draw(second, beside);
     EXPECT_EQ(layers_drawn(first), drawn) << "the second's is another layer";
     EXPECT_EQ(layers_drawn(second), 1U);
     const auto layer_of = [&](draw::Viewport &viewport, std::size_t map) {
-      return engine->shadows(viewport).block_data().maps[map].layer;
+      return Inspection(*engine, viewport).shadows().block_data().maps[map].layer;
     };
     EXPECT_EQ(layer_of(first, 0), layer_of(second, 0)) << "the spot's";
     EXPECT_NE(layer_of(first, 1), layer_of(second, 1)) << "the sun's";
@@ -137,7 +137,7 @@ TEST_F(ViewportsTest, CascadesBelongToAViewport)
   }
   const std::uint64_t before = layers_drawn(first);
   draw(first, above);
-  EXPECT_EQ(engine->shadows(first).scene().maps().desc().layers, 2) << "the memory returns";
+  EXPECT_EQ(Inspection(*engine, first).shadows().scene().maps().desc().layers, 2) << "the memory returns";
   EXPECT_EQ(layers_drawn(first), before);
 }
 
@@ -150,7 +150,7 @@ TEST_F(ViewportsTest, UnsyncedViewportUsesALampThatAnotherSynced)
   draw::Viewport second(*device, {16, 16});
   draw(second, beside);
   first.draw(engines, view_of(render_scene->relative(above), first.size_px()));
-  EXPECT_EQ(engine->shadows(first).states().size(), 5U);
+  EXPECT_EQ(Inspection(*engine, first).shadows().states().size(), 5U);
 }
 
 TEST_F(ViewportsTest, NothingStaysAfterTheLastViewport)

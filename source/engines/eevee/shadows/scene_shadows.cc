@@ -103,6 +103,7 @@ void SceneShadows::sync(const gpu::Limits &device_limits, std::span<const Shadow
   layer_pass_ = layer_pass;
   plan_ = std::move(plan);
   esm_lamps_ = std::move(esm_lamps);
+  bounds_ws_ = bounds_ws;
   casters_.begin();
   const bool is_kept = settings.caster_faces == settings_.caster_faces;
   settings_ = settings;

@@ -139,6 +139,8 @@ class SceneShadows {
   /** LayerOwner::viewport of the viewport that was added last. */
   std::uint64_t last_viewport_ = 0;
   ShadowCasters casters_;
+  /** Bounds of all objects: those that cast no shadow can receive one. */
+  scene::Bounds bounds_ws_;
   /** Indexed by ShadowArrayId. */
   std::array<LayerArray, shadow_array_count> arrays_ = {LayerArray("shadow_cubes", gpu::Format::Depth32F),
                                                         LayerArray("shadow_maps", gpu::Format::Depth32F),

@@ -53,7 +53,10 @@ void Shadows::fit(gpu::Device &device, const draw::View &view, float pixel_size,
   if (seen_ == seen) {
     return;
   }
-  visible_ = visible_range(view, visible_corners(view, scene_.casters_.bounds_ws(), std::move(visible_.corners)));
+  // A visible surface is inside of these bounds, whether it casts a shadow or not.
+  scene::Bounds surfaces_ws = scene_.bounds_ws_;
+  surfaces_ws.extend(scene_.casters_.bounds_ws());
+  visible_ = visible_range(view, visible_corners(view, surfaces_ws, std::move(visible_.corners)));
   if (reads_depths()) {
     narrow_to_depths(view, depths, visible_);
   }

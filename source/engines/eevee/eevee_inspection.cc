@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_inspection.hh"
+
+#include "eevee_engine_data.hh"
+#include "eevee_frame.hh"
+
+#include "gpu_read.hh"
+
+#include <algorithm>
+#include <set>
+#include <tuple>
+#include <utility>
+
+namespace gnomon::eevee {
+
+Data &Inspection::engine_data() const
+{
+  return viewport_.engine_data<Data>(engine_);
+}
+
+/** Index in light_block. Empty where the lamp gives no light, or the viewport was never synced. */
+static std::optional<std::size_t> light_of(const Data &data, std::size_t lamp)
+{
+  if (!data.shared) {
+    return std::nullopt;
+  }
+  const Lamps &lamps = data.shared->lamps;
+  const auto found = std::ranges::find(lamps.lamp_index, std::uint32_t(lamp));
+  return found == lamps.lamp_index.end() ? std::nullopt : std::optional(std::size_t(found - lamps.lamp_index.begin()));
+}
+
+std::optional<Probe> Inspection::probe(const draw::View &view, std::size_t lamp) const
+{
+  GNOMON_ASSERT(engine_.settings_.has_probe, "the settings ask for no probe");
+  Data &data = engine_data();
+  engine_.begin_draw(viewport_);
+  StorageList &stl = data.stl;
+  const std::optional<std::size_t> light = light_of(data, lamp);
+  if (!light || stl.objects.empty()) {
+    return std::nullopt;
+  }
+  engine_.record(viewport_);
+  const auto &[fbl, txl, psl] = std::tie(data.fbl, data.txl, data.psl);
+  gpu::Device &device = viewport_.device();
+  stl.probed_light = int(*light);
+  engine_.update_view(data, view);
+  gpu::CommandList list;
+  stl.lamp_points = data.shared->lamp_points.centers();
+  write_lamp_points(data, list);
+  stl.shadows->update(device, view, pixel_size(view, viewport_), data.shared->shadow_pass, list, stl.lamp_points);
+  list.begin_pass("depth_prepass", fbl.depth_fb, {});
+  psl->depth_pass.record(view, list);
+  psl->depth_pass_cull.record(view, list);
+  list.end_pass();
+  list.begin_pass("probe", fbl.probe_fb, {.depth_load = gpu::LoadAction::Load});
+  psl->probe_pass.record(view, list);
+  list.end_pass();
+  device.submit(list);
+  stl.shadows->submitted();
+  return Probe{gpu::read_as<glm::vec4>(device, txl.probe_position), gpu::read_as<glm::vec4>(device, txl.probe_normal)};
+}
+
+double Inspection::shadow_texel_size(std::size_t lamp, const glm::dvec3 &position_ws) const
+{
+  const Data &data = engine_data();
+  const std::optional<std::size_t> light = light_of(data, lamp);
+  return light ? data.stl.shadows->texel_size(data.shared->lamps.light_block.lights[*light], position_ws) : 0.0;
+}
+
+const Shadows &Inspection::shadows() const
+{
+  const Data &data = engine_data();
+  GNOMON_ASSERT(data.stl.shadows, "the viewport was never synced");
+  return *data.stl.shadows;
+}
+
+void Inspection::invalidate_shadows() const
+{
+  if (const Data &data = engine_data(); data.shared) {
+    data.shared->shadows.invalidate();
+  }
+}
+
+std::string Inspection::serialize_passes() const
+{
+  const Data &data = engine_data();
+  std::string text;
+  if (!data.psl) {
+    return text;
+  }
+  text += data.shared->shadow_pass.serialize(viewport_.device());
+  // Some steps draw passes of earlier steps again.
+  std::set<const draw::Pass *> printed;
+  for (const FrameStep &step : frame_steps()) {
+    for (const FramePass &pass : step.passes) {
+      const draw::Pass &recorded = (*data.psl).*pass.pass;
+      text += printed.insert(&recorded).second ? recorded.serialize(viewport_.device()) : std::string();
+    }
+  }
+  text += data.psl->probe_pass.serialize(viewport_.device());
+  return text;
+}
+
+static std::optional<ShadowLayers> layers_of(const Data &data, std::size_t lamp)
+{
+  const std::optional<std::size_t> light = light_of(data, lamp);
+  return light ? data.stl.shadows->layers(data.shared->lamps.light_block.lights[*light]) : std::nullopt;
+}
+
+std::vector<std::string> Inspection::shadow_layers(std::size_t lamp) const
+{
+  const std::optional<ShadowLayers> layers = layers_of(engine_data(), lamp);
+  std::vector<std::string> names;
+  for (int i = 0; layers && i < layers->count; i++) {
+    names.push_back(layers->esm_format >= 0 ? "octahedral" : std::to_string(i));
+  }
+  return names;
+}
+
+const gpu::Texture &Inspection::shadow_picture(std::size_t lamp, std::optional<std::size_t> layer) const
+{
+  Data &data = engine_data();
+  const std::optional<ShadowLayers> layers = layers_of(data, lamp);
+  GNOMON_ASSERT(layers, "lamp {} has no shadow", lamp);
+  return data.shadow_picture.draw(viewport_.device(), engine_.shaders_, *layers,
+                                  layer ? std::optional(int(*layer)) : std::nullopt);
+}
+
+std::optional<std::size_t> Inspection::tinted_sun() const
+{
+  const Data &data = engine_data();
+  if (!data.shared || !data.shared->tinted_light) {
+    return std::nullopt;
+  }
+  return data.shared->lamps.lamp_index[std::size_t(*data.shared->tinted_light)];
+}
+
+std::vector<StepTime> Inspection::take_step_times() const
+{
+  std::vector<StepTime> times;
+  for (Timing::Step &step : engine_data().timing.steps) {
+    if (std::exchange(step.is_pending, false)) {
+      step.taken_seconds = std::exchange(step.seconds, std::nullopt);
+      times.push_back({step.name, step.taken_seconds.value_or(0.0)});
+    }
+  }
+  return times;
+}
+
+}  // namespace gnomon::eevee

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "eevee_engine.hh"
+#include "eevee_frame_tree.hh"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gnomon::eevee {
+
+/** Device time of a step of the frame in seconds, summed over the samples of a picture. */
+struct StepTime {
+  std::string step;
+  double seconds = 0.0;
+};
+
+/** The surface at the centre of each pixel, and the visibility of one lamp there. Rows from the bottom. */
+struct Probe {
+  /** xyz: position in the coordinates of the render scene, metres. w: visibility of the lamp, in [0, 1]. */
+  std::vector<glm::vec4> position_visibility;
+  /** xyz: normal of the triangle on its visible side. w: 1. All components are 0 for pixels without a surface. */
+  std::vector<glm::vec4> normal;
+};
+
+/** Report of the last picture of a viewport: warnings, exceeded limits, and the parts that were made or left out. */
+struct Report {
+  std::vector<std::string> warnings;
+  std::vector<std::string> limits;
+  /** Number of lamps that give light and request a shadow, but have none because of a limit. */
+  int lost_shadow_count = 0;
+  std::vector<FramePart> parts;
+  /** The node "frame": programs, passes, targets, blocks, meshes, textures, shadows and draws of the last picture. */
+  FrameNode tree;
+  ShadowCounters shadow_counters;
+  /** Number of recordings of the passes since the first sync of the viewport. */
+  std::uint64_t pass_recordings = 0;
+};
+
+/**
+ * Observes an engine in one viewport, for reports, tests, measurements and the shadow inspector of an editor. No
+ * picture needs it. It holds two references only: construct one where it is used. \see SceneRenderer::inspect
+ *
+ * Call it on the device's thread. probe and shadow_picture submit work, and must not be called while the device records
+ * a packet.
+ */
+class Inspection {
+ public:
+  /** Both references must outlive this object. */
+  Inspection(Engine &engine, draw::Viewport &viewport) : engine_(engine), viewport_(viewport) {}
+
+  /** A report of the last picture; empty before the first sync. The cost is linear in the size of the scene. */
+  [[nodiscard]] Report report() const;
+  /** Times of the samples whose feedback was taken since the last call. Empty unless Settings::is_timed. */
+  [[nodiscard]] std::vector<StepTime> take_step_times() const;
+  /** The recorded passes as text. Empty before the first draw in which an object is visible. */
+  [[nodiscard]] std::string serialize_passes() const;
+  /**
+   * Positions, normals and the visibility of the \a lamp-th lamp of RenderScene::lamps at each pixel. Empty where the
+   * lamp gives no light, or there are no objects. \pre Settings::has_probe
+   */
+  [[nodiscard]] std::optional<Probe> probe(const draw::View &view, std::size_t lamp) const;
+  /** The shadow layers after the last draw. \pre the viewport was synced */
+  [[nodiscard]] const Shadows &shadows() const;
+  /** Counters of the shadow layers that this viewport drew. Viewports share layers. \pre the viewport was synced */
+  [[nodiscard]] const ShadowCounters &shadow_counters() const
+  {
+    return shadows().counters();
+  }
+  /**
+   * Edge of a texel of the lamp's shadow at a position, perpendicular to the light, metres. 0 where the lamp has no
+   * shadow there.
+   */
+  [[nodiscard]] double shadow_texel_size(std::size_t lamp, const glm::dvec3 &position_ws) const;
+  /**
+   * Names of the layers of the lamp's shadow in the last picture: "0" to "5" for faces of a cube in OpenGL's order,
+   * "0" and up for cascades of a sun from the finest, "0" for a spot, "octahedral". Empty where the lamp has no shadow.
+   */
+  [[nodiscard]] std::vector<std::string> shadow_layers(std::size_t lamp) const;
+  /**
+   * A picture of one layer, by index, or of all layers. The texture is valid until the next call.
+   * \see ShadowPicture::draw \pre shadow_layers is not empty
+   */
+  [[nodiscard]] const gpu::Texture &shadow_picture(std::size_t lamp,
+                                                   std::optional<std::size_t> layer = std::nullopt) const;
+  /** Index in RenderScene::lamps of the sun whose cascades Settings::has_cascade_tint shows. Valid after a sync. */
+  [[nodiscard]] std::optional<std::size_t> tinted_sun() const;
+  /** Mark all shadows as out of date, to measure the cost of drawing them. */
+  void invalidate_shadows() const;
+
+ private:
+  [[nodiscard]] Data &engine_data() const;
+
+  Engine &engine_;
+  draw::Viewport &viewport_;
+};
+
+}  // namespace gnomon::eevee
