@@ -27,8 +27,9 @@ void run(const Options &options)
     if (script) {
       script->step(app);
     }
-    app.draw_frame();
-    const bool is_automatic = script || !options.screenshot.empty();
+    const bool is_scripted = script && !script->is_done();
+    const bool is_automatic = is_scripted || (script && !app.is_staying()) || !options.screenshot.empty();
+    app.draw_frame(!is_automatic);
     if (!is_automatic || (script && !script->is_done())) {
       continue;
     }

@@ -221,9 +221,9 @@ void App::take_events()
   }
 }
 
-void App::draw_frame()
+void App::draw_frame(bool may_wait)
 {
-  const bool waits = is_still();
+  const bool waits = may_wait && is_complete_ && frames_to_draw_ == 0;
   window_.begin_frame(waits);
   frames_to_draw_ = waits ? settling_frames : std::max(0, frames_to_draw_ - 1);
   take_events();

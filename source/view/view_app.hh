@@ -26,8 +26,11 @@ class App {
   explicit App(const Options &options);
   ~App();
 
-  /** Take events, draw what has changed, and show it. */
-  void draw_frame();
+  /**
+   * Take events, draw what has changed, and show it. \a may_wait: where another frame would show the same, first wait
+   * for an event.
+   */
+  void draw_frame(bool may_wait);
   [[nodiscard]] bool is_closed() const
   {
     return is_quit_ || window_.is_closed();
@@ -36,11 +39,6 @@ class App {
   [[nodiscard]] bool is_complete() const
   {
     return is_complete_;
-  }
-  /** Further frames would show the same until something happens. */
-  [[nodiscard]] bool is_still() const
-  {
-    return is_complete_ && frames_to_draw_ == 0;
   }
 
   /** Open a file. A file that cannot be read is an error message, and what was open stays. \return whether it is open
@@ -59,6 +57,15 @@ class App {
   void quit()
   {
     is_quit_ = true;
+  }
+  /** Keep the window open after the script. */
+  void stay()
+  {
+    is_staying_ = true;
+  }
+  [[nodiscard]] bool is_staying() const
+  {
+    return is_staying_;
   }
   void undo();
   void redo();
@@ -135,6 +142,7 @@ class App {
   /** The user interface takes some frames to settle after an event. */
   int frames_to_draw_ = 3;
   bool is_quit_ = false;
+  bool is_staying_ = false;
   std::vector<Message> messages_;
   int driver_error_count_ = 0;
   std::filesystem::path screenshot_;

@@ -307,6 +307,12 @@ const std::map<std::string, Command> commands = {
         app.save_picture(words[0]);
         return Need::Nothing;
       }}},
+    {"stay",
+     {"", 0, 0,
+      [](App &app, Words) {
+        app.stay();
+        return Need::Nothing;
+      }}},
     {"quit",
      {"", 0, 0,
       [](App &app, Words) {

@@ -169,7 +169,11 @@ void Window::resize(glm::ivec2 size_px)
 
 void Window::set_title(const std::string &title)
 {
-  glfwSetWindowTitle(window_, title.c_str());
+  // Each change is an event, which would end the next wait.
+  if (title != title_) {
+    title_ = title;
+    glfwSetWindowTitle(window_, title.c_str());
+  }
 }
 
 std::vector<KeyPress> Window::take_keys()

@@ -55,6 +55,7 @@ class Window {
 
  private:
   GLFWwindow *window_ = nullptr;
+  std::string title_;
   std::vector<KeyPress> keys_;
   std::vector<std::filesystem::path> dropped_;
   std::vector<std::string> driver_messages_;
