@@ -7,6 +7,7 @@ endif()
 find_package(nlohmann_json REQUIRED)
 if(GNOMON_PROGRAM)
   find_package(CLI11 REQUIRED)
+  pkg_check_modules(OpenEXR REQUIRED IMPORTED_TARGET OpenEXR)
   # Draws the plots in the pages that the program writes.
   find_file(GNOMON_CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js /usr/share/nodejs/chart.js/dist REQUIRED)
   pkg_check_modules(imgui QUIET IMPORTED_TARGET imgui)
@@ -22,4 +23,7 @@ if(GNOMON_PROGRAM)
 endif()
 if(GNOMON_TESTS)
   find_package(GTest REQUIRED)
+  # Another reader of the files that the program writes. Its CMake file in Debian 12 refers to folders of packages that it does not
+  # depend on.
+  pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO)
 endif()

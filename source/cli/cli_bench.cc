@@ -5,6 +5,7 @@
 
 #include "measure_bench.hh"
 #include "measure_edits.hh"
+#include "measure_start.hh"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -17,6 +18,7 @@ namespace gnomon::cli {
 namespace {
 
 struct BenchOptions {
+  std::string scene;
   std::string backend = "gl";
   int rounds = 21;
   std::string json;
@@ -198,6 +200,30 @@ void bench_edits(const BenchOptions &options)
                             {"rows", json}});
 }
 
+void bench_start(const BenchOptions &options)
+{
+  const std::vector<measure::StartCost> costs = measure::measure_start(
+      {std::filesystem::read_symlink("/proc/self/exe"), options.scene, options.backend, options.rounds});
+  fmt::print(
+      "Whole processes in turn: milliseconds, median [quartiles] of {} rounds, the difference to the first, and the\n"
+      "largest memory. render: 640x360, one sample, to an EXR file; backend {}.\n\n",
+      options.rounds, options.backend);
+  fmt::print("{:<22}  {:<30} {:>9} {:>8}\n", "process", "from start to end", "-true", "MiB");
+  const double base = measure::spread_of(costs.front().seconds).median;
+  nlohmann::json json = nlohmann::json::array();
+  for (const measure::StartCost &row : costs) {
+    const measure::Spread spread = measure::spread_of(row.seconds);
+    fmt::print("{:<22}  {:<30} {:>9.1f} {:>8.1f}\n", row.what, to_text(spread, 1e-3), 1e3 * (spread.median - base),
+               double(row.peak_bytes) / 0x1p20);
+    json.push_back({{"what", row.what}, {"seconds", to_json(spread)}, {"peak_bytes", row.peak_bytes}});
+  }
+  write_json(options.json, {{"program", "gnomon " GNOMON_VERSION},
+                            {"bench", "start"},
+                            {"rounds", options.rounds},
+                            {"backend", options.backend},
+                            {"rows", json}});
+}
+
 }  // namespace
 
 void add_bench(CLI::App &app)
@@ -218,7 +244,13 @@ void add_bench(CLI::App &app)
       ->capture_default_str()
       ->check(CLI::IsMember({"gl", "null"}));
   left_out->callback([o] { bench_left_out(*o); });
-  for (CLI::App *bench : {shadows, draws, left_out}) {
+  CLI::App *start = command->add_subcommand("start", "What starting the program costs, up to a first picture");
+  start->add_option("scene", o->scene, "glTF 2.0 file (default: a scene made in place)");
+  start->add_option("--backend", o->backend, "gl, or null: without a driver and a picture")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"gl", "null"}));
+  start->callback([o] { bench_start(*o); });
+  for (CLI::App *bench : {shadows, draws, left_out, start}) {
     bench->add_option("--rounds", o->rounds, "Measured rounds, after one that warms up")
         ->capture_default_str()
         ->check(CLI::Range(1, 100000));

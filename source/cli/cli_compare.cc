@@ -2,6 +2,7 @@
 #include "cli.hh"
 
 #include "cli_output.hh"
+#include "cli_picture.hh"
 
 #include "measure_image_error.hh"
 
@@ -113,7 +114,7 @@ void add_compare(CLI::App &app, Status &status)
 {
   CLI::App *command = app.add_subcommand("compare", "Errors of a picture against a reference");
   auto o = std::make_shared<CompareOptions>();
-  command->add_option("picture", o->picture, "EXR: scene-linear; PNG and others: decoded by the sRGB curve")
+  command->add_option("picture", o->picture, "EXR, HDR: scene-linear; PNG, JPEG: decoded by the sRGB curve")
       ->required();
   command->add_option("reference", o->reference, "A picture of the same size")->required();
   for (std::size_t i = 0; i < errors.size(); i++) {

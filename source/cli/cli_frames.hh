@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "cli_output.hh"
+#include "cli_picture.hh"
 #include "scene.hh"
 
 #include <glm/vec2.hpp>

@@ -6,6 +6,7 @@
 #include "cli_explain.hh"
 #include "cli_frames.hh"
 #include "cli_output.hh"
+#include "cli_picture.hh"
 #include "cli_world.hh"
 
 #include "eevee_scene_renderer.hh"

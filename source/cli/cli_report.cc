@@ -4,6 +4,7 @@
 #include "cli_fingerprint.hh"
 #include "cli_origin.hh"
 #include "cli_output.hh"
+#include "cli_picture.hh"
 
 #include "gltf_import.hh"
 #include "measure_reference.hh"

@@ -5,6 +5,7 @@
 #include "cli_shader_report.hh"
 
 #include "eevee_blocks.hh"
+#include "scene_parallel.hh"
 
 #include <unistd.h>
 #include <algorithm>
@@ -56,26 +57,18 @@ ShaderReport check_all(const std::vector<gpu::ShaderDesc> &descs, const gpu::Sha
   const auto start = std::chrono::steady_clock::now();
   const std::size_t job_count = descs.size() * targets.size();
   std::vector<std::vector<shader_check::CheckMessage>> results(job_count);
-  std::atomic<std::size_t> next = 0;
   std::atomic<std::size_t> done = 0;
-  const auto work = [&](bool has_bar) {
-    for (std::size_t i = next++; i < job_count; i = next++) {
-      shader_check::CheckOptions job = options;
-      job.target = targets[i % targets.size()];
-      results[i] = shader_check::check_shader(descs[i / targets.size()], files, job);
-      done++;
-      if (has_bar) {
-        show_progress(done, job_count);
-      }
-    }
-  };
   const bool is_terminal = isatty(STDERR_FILENO) != 0;
-  std::vector<std::jthread> threads;
-  for (std::size_t i = 1; i < std::min<std::size_t>(std::thread::hardware_concurrency(), job_count); i++) {
-    threads.emplace_back(work, false);
-  }
-  work(is_terminal);
-  threads.clear();
+  const std::thread::id bar_thread = std::this_thread::get_id();
+  scene::parallel_for(job_count, 0, [&](std::size_t i) {
+    shader_check::CheckOptions job = options;
+    job.target = targets[i % targets.size()];
+    results[i] = shader_check::check_shader(descs[i / targets.size()], files, job);
+    done++;
+    if (is_terminal && std::this_thread::get_id() == bar_thread) {
+      show_progress(done, job_count);
+    }
+  });
   if (is_terminal) {
     show_progress(job_count, job_count);
   }

@@ -2,7 +2,7 @@
 #include "cli.hh"
 
 #ifdef GNOMON_VIEW
-#include "cli_output.hh"
+#include "cli_picture.hh"
 
 #include "view.hh"
 #endif

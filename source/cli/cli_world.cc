@@ -2,7 +2,7 @@
 #include "cli_world.hh"
 
 #include "cli.hh"
-#include "cli_output.hh"
+#include "cli_picture.hh"
 
 #include "scene_studio.hh"
 

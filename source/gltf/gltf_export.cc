@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf_export.hh"
 
+#include "image_base64.hh"
 #include "internal/gltf_camera.hh"
 #include "internal/gltf_report.hh"
 #include "internal/gltf_write_buffer.hh"
@@ -218,24 +219,6 @@ class SceneWriter {
   }
 };
 
-std::string base64(const std::vector<unsigned char> &bytes)
-{
-  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; k++) {
-      group = group << 8U | (k < count ? bytes[i + k] : 0U);
-    }
-    for (std::size_t k = 0; k < 4; k++) {
-      text += k > count ? '=' : digits[group >> (18 - 6 * k) & 63U];
-    }
-  }
-  return text;
-}
-
 void add_u32(std::string &text, std::size_t value)
 {
   for (unsigned shift = 0; shift < 32; shift += 8) {
@@ -270,7 +253,7 @@ std::string file_of(const Scene &scene, bool is_binary)
   JsonText document = writer.document();
   if (!writer.bytes().empty()) {
     const std::string uri =
-        is_binary ? "" : ",\"uri\":\"data:application/octet-stream;base64," + base64(writer.bytes()) + '"';
+        is_binary ? "" : ",\"uri\":\"data:application/octet-stream;base64," + image::base64(writer.bytes()) + '"';
     document.add("buffers", "[{\"byteLength\":" + std::to_string(writer.bytes().size()) + uri + "}]");
   }
   return is_binary ? glb_of(document.object(), writer.bytes()) : document.object() + '\n';

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "measure_page.hh"
 
+#include "image_base64.hh"
 #include "internal/page_files.hh"
 
-#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -111,9 +111,9 @@ void Page::compare(const Comparison &comparison)
 {
   body_ += fmt::format("<figure class=\"compare\"><figcaption>{}</figcaption>\n", escaped(comparison.title));
   for (const Comparison::Picture &picture : comparison.pictures) {
-    const std::string bytes(reinterpret_cast<const char *>(picture.png.data()), picture.png.size());
-    body_ += fmt::format("<img alt=\"{}\" src=\"data:image/png;base64,{}\">\n", escaped(picture.name),
-                         OIIO::Strutil::base64_encode(bytes));
+    const std::span bytes(reinterpret_cast<const unsigned char *>(picture.png.data()), picture.png.size());
+    body_ +=
+        fmt::format("<img alt=\"{}\" src=\"data:image/png;base64,{}\">\n", escaped(picture.name), image::base64(bytes));
   }
   body_ += "</figure>\n";
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "reference_compare.hh"
 
-#include "internal/reference_parallel.hh"
 #include "internal/reference_random.hh"
+#include "scene_parallel.hh"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -165,7 +165,7 @@ VisibilityError compare_visibility(const Tracer &tracer, const scene::PlacedLamp
   const ReceiverComparer comparer{tracer, lamp, settings, lamp_center(lamp)};
   std::vector<ReceiverResult> results(count);
   constexpr std::size_t chunk = 1024;
-  parallel_for((count + chunk - 1) / chunk, settings.thread_count, [&](std::size_t part) {
+  scene::parallel_for((count + chunk - 1) / chunk, settings.thread_count, [&](std::size_t part) {
     for (std::size_t i = part * chunk; i < std::min((part + 1) * chunk, count); i++) {
       results[i] =
           comparer.compare(shaded.positions_ws[i], glm::dvec3(shaded.normals_ws[i]), double(shaded.visibility[i]), i);

@@ -4,9 +4,9 @@
 #include "reference_visibility.hh"
 
 #include "internal/reference_bsdf.hh"
-#include "internal/reference_parallel.hh"
 #include "internal/reference_random.hh"
 #include "internal/reference_world.hh"
+#include "scene_parallel.hh"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -269,7 +269,7 @@ Picture direct_light(const Tracer &tracer, const scene::PlacedCamera &camera, gl
   const std::size_t tile_count = std::size_t(tiles.x) * std::size_t(tiles.y);
   std::mutex mutex;
   std::size_t tiles_done = 0;
-  parallel_for(tile_count, settings.thread_count, [&](std::size_t i) {
+  scene::parallel_for(tile_count, settings.thread_count, [&](std::size_t i) {
     const glm::ivec2 low = tile_px * glm::ivec2(i % std::size_t(tiles.x), i / std::size_t(tiles.x));
     renderer.render_tile(low, glm::min(low + tile_px, size_px), picture);
     const std::scoped_lock lock(mutex);
@@ -287,7 +287,7 @@ std::vector<glm::vec4> direct_light(const Tracer &tracer, const scene::PlacedCam
   check(size_px, settings);
   const Renderer renderer(tracer, CameraRays(camera, size_px), settings);
   std::vector<glm::vec4> light(pixels.size());
-  parallel_for(pixels.size(), settings.thread_count, [&](std::size_t i) {
+  scene::parallel_for(pixels.size(), settings.thread_count, [&](std::size_t i) {
     const std::uint64_t key = pixel_key(settings.seed, pixels[i]);
     glm::dvec3 sum(0.0);
     for (int sample = 0; sample < settings.sample_count; sample++) {

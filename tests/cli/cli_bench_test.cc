@@ -70,5 +70,19 @@ TEST_F(BenchTest, LeftOutComparesTenScenesWithTheFullOne)
   }
 }
 
+TEST_F(BenchTest, StartRunsTheProgramBesideAnEmptyProcess)
+{
+  const Finished finished = run("bench start --backend null --rounds 1 --json bench.json");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const json bench = json::parse(read("bench.json"));
+  ASSERT_EQ(bench["rows"].size(), 5U);
+  EXPECT_EQ(bench["rows"][0]["what"], "/bin/true");
+  for (const json &row : bench["rows"]) {
+    EXPECT_GT(row["seconds"]["median"], 0.0) << row;
+    EXPECT_GE(row["peak_bytes"], bench["rows"][0]["peak_bytes"]) << row;
+  }
+  EXPECT_EQ(run("bench start absent.glb --backend null --rounds 1").status, 1);
+}
+
 }  // namespace
 }  // namespace gnomon

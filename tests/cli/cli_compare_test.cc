@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli_output.hh"
+#include "cli_picture.hh"
 #include "cli_process.hh"
 
 #include <nlohmann/json.hpp>

@@ -2,6 +2,7 @@
 // Exit statuses, messages and files of the command line, without a driver.
 #include "cli_explain.hh"
 #include "cli_output.hh"
+#include "cli_picture.hh"
 #include "cli_process.hh"
 
 #include "eevee_frame_text.hh"
@@ -10,7 +11,13 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <functional>
 #include <limits>
+#include <random>
+#include <utility>
 
 namespace gnomon {
 namespace {
@@ -25,6 +32,17 @@ TEST_F(CliTest, HelpAndVersionSucceed)
   EXPECT_EQ(run("--help").status, 0);
   EXPECT_EQ(run("render --help").status, 0);
   EXPECT_EQ(run("--version").out, "gnomon 0.1.0\n");
+}
+
+TEST_F(CliTest, StartsWithoutTheHundredsOfLibrariesOfAnImageLibrary)
+{
+  // The loader lists all libraries, those of libraries too, and runs nothing.
+  ASSERT_EQ(std::system(("LD_TRACE_LOADED_OBJECTS=1 '" GNOMON_PROGRAM "' > '" + folder.string() + "/list'").c_str()),
+            0);
+  const std::string list = read("list");
+  EXPECT_NE(list.find("libEGL"), std::string::npos) << list;
+  EXPECT_EQ(list.find("libOpenImageIO"), std::string::npos) << list;
+  EXPECT_LT(std::ranges::count(list, '\n'), 60) << list;
 }
 
 TEST_F(CliTest, WrongUsageHasStatusTwoAndAReason)
@@ -282,6 +300,192 @@ TEST_F(CliTest, ExrKeepsFloatsRowsAndMetadata)
   std::vector<float> read(12);
   ASSERT_TRUE(input->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, read.data()));
   EXPECT_EQ(read, (std::vector<float>{3, 0, 0, 65536.5F, 7, 8, 1e-6F, 0, 0, 2, 0, 0}));
+}
+
+// ---- Pictures: OpenImageIO is another reader and writer of the same formats ----
+
+/** Red, green and blue of a file, rows from the top. */
+template <typename Value>
+std::vector<Value> values_in(const std::filesystem::path &path)
+{
+  const auto input = OIIO::ImageInput::open(path.string());
+  if (!input) {
+    ADD_FAILURE() << OIIO::geterror();
+    return {};
+  }
+  std::vector<Value> values(std::size_t(input->spec().width) * std::size_t(input->spec().height) * 3);
+  EXPECT_TRUE(input->read_image(0, 0, 0, 3, OIIO::BaseTypeFromC<Value>::value, values.data())) << input->geterror();
+  return values;
+}
+
+template <typename Value>
+void write_values(const std::filesystem::path &path, const OIIO::ImageSpec &spec, const std::vector<Value> &values)
+{
+  const auto output = OIIO::ImageOutput::create(path.string());
+  ASSERT_TRUE(output && output->open(path.string(), spec) &&
+              output->write_image(OIIO::BaseTypeFromC<Value>::value, values.data()) && output->close())
+      << path;
+}
+
+/** The same, of a picture with rows from the bottom. */
+std::vector<float> values_in(const cli::Picture &picture)
+{
+  std::vector<float> values;
+  for (int y = picture.size_px.y; y-- > 0;) {
+    for (int x = 0; x < picture.size_px.x; x++) {
+      const glm::vec4 &pixel = picture.pixels[std::size_t(y * picture.size_px.x + x)];
+      EXPECT_EQ(pixel.a, 1.0F);
+      values.insert(values.end(), {pixel.r, pixel.g, pixel.b});
+    }
+  }
+  return values;
+}
+
+TEST_F(CliTest, ExrKeepsTheBitsOfEveryFloat)
+{
+  constexpr glm::ivec2 size_px(37, 41);
+  std::mt19937 random(1);
+  std::vector<float> rgba(std::size_t(4) * 37 * 41);
+  for (float &value : rgba) {
+    do {
+      value = std::bit_cast<float>(std::uint32_t(random()));
+    } while (std::isnan(value));
+  }
+  rgba[0] = -0.0F;
+  rgba[1] = std::numeric_limits<float>::denorm_min();
+  cli::write_exr(folder / "a.exr", size_px, rgba, {});
+  const std::vector<float> ours = values_in(cli::read_picture(folder / "a.exr"));
+  const std::vector<float> others = values_in<float>(folder / "a.exr");
+  ASSERT_EQ(ours.size(), others.size());
+  for (std::size_t i = 0; i < ours.size(); i++) {
+    const std::size_t row = 40 - i / 3 / 37;
+    const auto expected = std::bit_cast<std::uint32_t>(rgba[4 * (row * 37 + i / 3 % 37) + i % 3]);
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(ours[i]), expected) << i;
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(others[i]), expected) << i;
+  }
+}
+
+TEST_F(CliTest, PicturesOfOtherProgramsAreReadAsAnotherLibraryReadsThem)
+{
+  constexpr int width = 40;
+  constexpr int height = 23;
+  std::mt19937 random(2);
+  std::vector<float> floats(std::size_t(4) * width * height);
+  std::ranges::generate(floats, [&] { return float(random() % 4096) / 1024.0F; });
+  OIIO::ImageSpec spec(width, height, 4, OIIO::TypeDesc::HALF);
+  // A window within a larger picture.
+  spec.x = 7;
+  spec.y = -3;
+  spec.full_width = 100;
+  spec.full_height = 100;
+  for (const char *compression : {"none", "rle", "zips", "piz", "dwaa"}) {
+    spec.attribute("compression", compression);
+    write_values(folder / "a.exr", spec, floats);
+    EXPECT_EQ(values_in(cli::read_picture(folder / "a.exr")), values_in<float>(folder / "a.exr")) << compression;
+  }
+  spec = OIIO::ImageSpec(width, height, 4, OIIO::TypeDesc::HALF);
+  spec.tile_width = spec.tile_height = 16;
+  write_values(folder / "tiles.exr", spec, floats);
+  EXPECT_EQ(values_in(cli::read_picture(folder / "tiles.exr")), values_in<float>(folder / "tiles.exr"));
+
+  std::vector<float> rgb(std::size_t(3) * width * height);
+  std::ranges::generate(rgb, [&] { return std::ldexp(float(random() % 256), int(random() % 40) - 20); });
+  write_values(folder / "a.hdr", OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::FLOAT), rgb);
+  EXPECT_EQ(values_in(cli::read_picture(folder / "a.hdr")), values_in<float>(folder / "a.hdr"));
+
+  const auto linear = [](float coded) {
+    return coded <= 0.04045F ? coded / 12.92F : std::pow((coded + 0.055F) / 1.055F, 2.4F);
+  };
+  std::vector<std::uint16_t> deep(std::size_t(3) * width * height);
+  std::ranges::generate(deep, [&] { return std::uint16_t(random()); });
+  for (const auto &[name, type] : {std::pair("8.png", OIIO::TypeDesc::UINT8),
+                                   {"16.png", OIIO::TypeDesc::UINT16},
+                                   // Both decode with the same library.
+                                   {"a.jpg", OIIO::TypeDesc::UINT8}}) {
+    write_values(folder / name, OIIO::ImageSpec(width, height, 3, type), deep);
+    const std::vector<float> ours = values_in(cli::read_picture(folder / name));
+    const std::vector<float> others = values_in<float>(folder / name);
+    ASSERT_EQ(ours.size(), others.size());
+    for (std::size_t i = 0; i < ours.size(); i++) {
+      ASSERT_NEAR(ours[i], linear(others[i]), 1e-6F) << name << ' ' << i;
+    }
+  }
+}
+
+TEST_F(CliTest, PngKeepsBytesAndMetadata)
+{
+  const std::vector<std::uint8_t> rgba = {1, 2, 3, 9, 4, 5, 6, 9, 7, 8, 9, 9, 10, 11, 255, 9};
+  cli::write_png(folder / "a.png", {2, 2}, rgba, {{"gnomon:camera", "Größe"}, {"gnomon:scene", ""}});
+  EXPECT_EQ(values_in<std::uint8_t>(folder / "a.png"),
+            (std::vector<std::uint8_t>{7, 8, 9, 10, 11, 255, 1, 2, 3, 4, 5, 6}));
+  const auto input = OIIO::ImageInput::open((folder / "a.png").string());
+  ASSERT_TRUE(input);
+  EXPECT_EQ(input->spec().nchannels, 3);
+  EXPECT_EQ(input->spec().get_string_attribute("gnomon:camera"), "Größe");
+  EXPECT_EQ(input->spec().get_string_attribute("Software"), "gnomon 0.1.0");
+}
+
+TEST_F(CliTest, DamagedPicturesAreNamedOrRead)
+{
+  constexpr glm::ivec2 size_px(31, 17);
+  std::mt19937 random(3);
+  std::vector<float> rgba(std::size_t(4) * 31 * 17);
+  std::ranges::generate(rgba, [&] { return float(random() % 1000); });
+  cli::write_exr(folder / "a.exr", size_px, rgba, {});
+  write_values(folder / "a.hdr", OIIO::ImageSpec(31, 17, 3, OIIO::TypeDesc::FLOAT), rgba);
+  cli::write_png(folder / "a.png", size_px, std::vector<std::uint8_t>(rgba.begin(), rgba.end()), {});
+  write_values(folder / "a.jpg", OIIO::ImageSpec(31, 17, 3, OIIO::TypeDesc::UINT8), rgba);
+  for (const std::string name : {"a.exr", "a.hdr", "a.png", "a.jpg"}) {
+    const std::string whole = read(name);
+    for (std::size_t size = 0; size + 16 < whole.size(); size += 1 + whole.size() / 50) {
+      write(name, whole.substr(0, size));
+      try {
+        (void)cli::read_picture(folder / name);
+        ADD_FAILURE() << name << " of " << size << " bytes of " << whole.size() << " was read";
+      }
+      catch (const std::runtime_error &error) {
+        EXPECT_TRUE(std::string(error.what()).starts_with((folder / name).string())) << error.what();
+      }
+    }
+    for (int i = 0; i < 60; i++) {
+      std::string damaged = whole;
+      for (int k = 0; k < 4; k++) {
+        damaged[random() % (i % 2 == 0 ? std::min<std::size_t>(whole.size(), 64) : whole.size())] = char(random());
+      }
+      write(name, damaged);
+      try {
+        (void)cli::read_picture(folder / name);
+      }
+      catch (const std::runtime_error &) {
+      }
+    }
+  }
+  write("text.exr", "not a picture");
+  EXPECT_NE(run("compare text.exr text.exr").err.find("text.exr: is none of EXR, Radiance HDR, PNG and JPEG"),
+            std::string::npos);
+  write_values(folder / "grey.exr", OIIO::ImageSpec(31, 17, 1, OIIO::TypeDesc::FLOAT), rgba);
+  EXPECT_NE(run("compare grey.exr grey.exr").err.find("grey.exr: has no channels R, G and B"), std::string::npos);
+}
+
+TEST_F(CliTest, APictureThatCannotBeWrittenIsNamed)
+{
+  const std::vector<float> rgba(4 * 4, 1.0F);
+  for (const auto &write_file : {std::function([&](const std::filesystem::path &path) {
+                                   cli::write_exr(path, {2, 2}, rgba, {});
+                                 }),
+                                 std::function([&](const std::filesystem::path &path) {
+                                   cli::write_png(path, {2, 2}, std::vector<std::uint8_t>(16), {});
+                                 })}) {
+    const std::filesystem::path path = folder / "absent" / "a.exr";
+    try {
+      write_file(path);
+      ADD_FAILURE();
+    }
+    catch (const std::runtime_error &error) {
+      EXPECT_NE(std::string(error.what()).find(path.string() + ": cannot be written"), std::string::npos)
+          << error.what();
+    }
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "image_decoder.hh"
 #include "scene.hh"
 
 #include <cstdint>
@@ -24,16 +25,17 @@ class ImageDecoder {
    * texels.
    */
   ImageDecoder(std::span<const unsigned char> bytes, std::string what, std::uint64_t texel_count_max);
-  ImageDecoder(ImageDecoder &&) noexcept;
-  ~ImageDecoder();
 
-  [[nodiscard]] std::uint64_t texel_count() const;
+  [[nodiscard]] std::uint64_t texel_count() const
+  {
+    return std::uint64_t(file_->width()) * file_->height();
+  }
   /** Decodes the image, without a name. Several decoders may run concurrently. \throws Fault for a damaged file. */
   [[nodiscard]] scene::Image read();
 
  private:
-  struct Input;
-  std::unique_ptr<Input> input_;
+  std::string what_;
+  std::unique_ptr<image::Decoder> file_;
 };
 
 }  // namespace gnomon::gltf

@@ -3,10 +3,8 @@
 
 #include "internal/gltf_accessor.hh"
 #include "internal/gltf_sampler.hh"
+#include "scene_parallel.hh"
 
-#include <OpenImageIO/parallel.h>
-
-#include <exception>
 #include <span>
 #include <string>
 #include <vector>
@@ -165,17 +163,12 @@ Handle<Image> TextureImporter::import_image(int gltf_image)
 std::map<Handle<Image>, Fault> TextureImporter::decode()
 {
   std::vector<std::variant<Image, Fault>> results(pending_.size());
-  OIIO::parallel_for(std::int64_t(0), std::int64_t(pending_.size()), [&](std::int64_t i) {
-    const auto index = static_cast<std::size_t>(i);
+  scene::parallel_for(pending_.size(), 0, [&](std::size_t i) {
     try {
-      results[index] = pending_[index].decoder.read();
+      results[i] = pending_[i].decoder.read();
     }
     catch (const Fault &fault) {
-      results[index] = fault;
-    }
-    catch (const std::exception &error) {
-      // No exception may leave a thread.
-      results[index] = Fault("image " + std::to_string(index), printable(error.what()));
+      results[i] = fault;
     }
   });
   std::map<Handle<Image>, Fault> damaged;

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "internal/gltf_write_buffer.hh"
 
+#include "image_png.hh"
 #include "internal/gltf_report.hh"
-
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
-#include <memory>
 
 namespace gnomon::gltf {
 
@@ -22,19 +18,12 @@ int WrittenBuffer::add_view(std::span<const unsigned char> content)
 
 std::vector<unsigned char> png_of(const scene::Image &image, const std::string &what)
 {
-  OIIO::Filesystem::IOVecOutput bytes;
-  OIIO::ImageSpec spec(int(image.width), int(image.height), 4, OIIO::TypeDesc::UINT8);
-  // Texels are written as they are, not multiplied by alpha.
-  spec.attribute("oiio:UnassociatedAlpha", 1);
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("image.png");
-  if (!output) {
-    throw Fault(what, "cannot be encoded: " + printable(OIIO::geterror()));
+  try {
+    return image::png_file(image.width, image.height, 4, image.texels);
   }
-  if (!output->set_ioproxy(&bytes) || !output->open("image.png", spec) ||
-      !output->write_image(OIIO::TypeDesc::UINT8, image.texels.data()) || !output->close()) {
-    throw Fault(what, "cannot be encoded: " + printable(output->geterror()));
+  catch (const image::Error &error) {
+    throw Fault(what, printable(error.what()));
   }
-  return bytes.buffer();
 }
 
 }  // namespace gnomon::gltf

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "image_base64.hh"
+
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
@@ -18,21 +20,7 @@ using nlohmann::json;
 
 enum Component : int { Int8 = 5120, Uint8 = 5121, Int16 = 5122, Uint16 = 5123, Uint32 = 5125, Float32 = 5126 };
 
-inline std::string base64(const std::vector<unsigned char> &bytes)
-{
-  constexpr const char *digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string result;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; k++) {
-      group = group << 8U | (i + k < bytes.size() ? bytes[i + k] : 0U);
-    }
-    for (std::size_t k = 0; k < 4; k++) {
-      result += i + k > bytes.size() ? '=' : digits[group >> (18 - 6 * k) & 63U];
-    }
-  }
-  return result;
-}
+using image::base64;
 
 /** A temporary folder that is removed by the destructor. */
 class TemporaryFolder {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace gnomon::reference {
+namespace gnomon::scene {
 
 /**
  * Calls \a work once with each index from 0 to count - 1, in any order, on \a thread_count threads (0: one for each
@@ -12,4 +12,4 @@ namespace gnomon::reference {
  */
 void parallel_for(std::size_t count, unsigned thread_count, const std::function<void(std::size_t index)> &work);
 
-}  // namespace gnomon::reference
+}  // namespace gnomon::scene

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "internal/reference_parallel.hh"
+#include "scene_parallel.hh"
 
 #include <algorithm>
 #include <atomic>
@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace gnomon::reference {
+namespace gnomon::scene {
 
 void parallel_for(std::size_t count, unsigned thread_count, const std::function<void(std::size_t index)> &work)
 {
@@ -42,4 +42,4 @@ void parallel_for(std::size_t count, unsigned thread_count, const std::function<
   }
 }
 
-}  // namespace gnomon::reference
+}  // namespace gnomon::scene

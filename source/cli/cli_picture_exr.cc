@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "internal/cli_picture_formats.hh"
+
+#include "cli_output.hh"
+
+#include <fmt/format.h>
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStdIO.h>
+#include <ImfStringAttribute.h>
+#include <ImfTestFile.h>
+
+#include <array>
+#include <fstream>
+#include <stdexcept>
+
+namespace gnomon::cli {
+
+namespace fs = std::filesystem;
+
+static constexpr std::array<const char *, 3> channel_names = {"R", "G", "B"};
+
+/** Channels of pixels of four floats in rows from the bottom. OpenEXR counts rows from the top, the first being \a
+ * first. */
+static Imf::FrameBuffer frame_buffer(char *pixels, glm::ivec2 size_px, Imath::V2i first)
+{
+  constexpr std::ptrdiff_t pixel_bytes = 4 * sizeof(float);
+  const std::ptrdiff_t row_bytes = pixel_bytes * size_px.x;
+  char *top = pixels + row_bytes * (size_px.y - 1);
+  // The address of pixel (0, 0), which may be outside of the picture.
+  const auto origin = reinterpret_cast<std::uintptr_t>(top) - std::uintptr_t(pixel_bytes * first.x) +
+                      std::uintptr_t(row_bytes * first.y);
+  Imf::FrameBuffer buffer;
+  for (std::size_t i = 0; i < channel_names.size(); i++) {
+    buffer.insert(channel_names[i], Imf::Slice(Imf::FLOAT, reinterpret_cast<char *>(origin + i * sizeof(float)),
+                                               std::size_t(pixel_bytes), std::size_t(-row_bytes)));
+  }
+  return buffer;
+}
+
+void write_exr(const fs::path &path, glm::ivec2 size_px, std::span<const float> rgba, const Metadata &metadata)
+{
+  Imf::Header header(size_px.x, size_px.y);
+  for (const char *name : channel_names) {
+    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  }
+  header.insert("Software", Imf::StringAttribute("gnomon " GNOMON_VERSION));
+  for (const auto &[name, value] : metadata) {
+    header.insert(name, Imf::StringAttribute(value));
+  }
+  write_atomically(path, [&](const fs::path &beside) {
+    try {
+      std::ofstream file(beside, std::ios::binary);
+      if (!file) {
+        throw std::runtime_error("the file cannot be created");
+      }
+      {
+        Imf::StdOFStream stream(file, beside.c_str());
+        Imf::OutputFile output(stream, header);
+        // OpenEXR does not write to it.
+        char *pixels = const_cast<char *>(reinterpret_cast<const char *>(rgba.data()));
+        output.setFrameBuffer(frame_buffer(pixels, size_px, {0, 0}));
+        output.writePixels(size_px.y);
+      }
+      // What its destructor writes, too.
+      if (!file.flush()) {
+        throw std::runtime_error("the disk may be full");
+      }
+    }
+    catch (const std::exception &error) {
+      throw std::runtime_error(fmt::format("{}: cannot be written: {}", path.string(), error.what()));
+    }
+  });
+}
+
+std::optional<Picture> read_exr_picture(const fs::path &path)
+{
+  if (!Imf::isOpenExrFile(path.c_str())) {
+    return std::nullopt;
+  }
+  Imf::InputFile input(path.c_str());
+  const Imath::Box2i window = input.header().dataWindow();
+  const auto edge = [](int min, int max) { return std::int64_t(max) - min + 1; };
+  check_edges(edge(window.min.x, window.max.x), edge(window.min.y, window.max.y));
+  for (const char *name : channel_names) {
+    const Imf::Channel *channel = input.header().channels().findChannel(name);
+    if (channel == nullptr) {
+      throw std::runtime_error("has no channels R, G and B");
+    }
+    if (channel->xSampling != 1 || channel->ySampling != 1) {
+      throw std::runtime_error(fmt::format("channel {} has fewer pixels than the picture", name));
+    }
+  }
+  if (!input.isComplete()) {
+    throw std::runtime_error("is cut off");
+  }
+  Picture picture{{edge(window.min.x, window.max.x), edge(window.min.y, window.max.y)}, {}};
+  picture.pixels.assign(std::size_t(picture.size_px.x) * std::size_t(picture.size_px.y), glm::vec4(1.0F));
+  input.setFrameBuffer(frame_buffer(reinterpret_cast<char *>(picture.pixels.data()), picture.size_px, window.min));
+  input.readPixels(window.min.y, window.max.y);
+  return picture;
+}
+
+}  // namespace gnomon::cli
