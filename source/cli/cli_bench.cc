@@ -206,7 +206,8 @@ void bench_start(const BenchOptions &options)
       {std::filesystem::read_symlink("/proc/self/exe"), options.scene, options.backend, options.rounds});
   fmt::print(
       "Whole processes in turn: milliseconds, median [quartiles] of {} rounds, the difference to the first, and the\n"
-      "largest memory. render: 640x360, one sample, to an EXR file; backend {}.\n\n",
+      "largest memory, which is at least that of this process. render: 640x360, one sample, to an EXR file; backend "
+      "{}.\n\n",
       options.rounds, options.backend);
   fmt::print("{:<22}  {:<30} {:>9} {:>8}\n", "process", "from start to end", "-true", "MiB");
   const double base = measure::spread_of(costs.front().seconds).median;

@@ -13,7 +13,7 @@ struct StartCost {
   std::string what;
   /** One time for each round, wall clock. */
   std::vector<double> seconds;
-  /** Largest resident memory of all rounds. */
+  /** Largest resident memory of all rounds. The system counts that of the measuring process before the start, too. */
   std::size_t peak_bytes = 0;
 };
 
