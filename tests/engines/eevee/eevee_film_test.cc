@@ -114,11 +114,10 @@ TEST(FilmWeights, KeepAnEvenPictureAsItIs)
   EXPECT_NEAR(share, 1.0, 1e-12) << "the film holds the picture without a division";
 }
 
-/** The filter's mean of a function, by a fine grid. */
-template <typename Radiance>
+/** The filter's mean of a function, by a grid of \a N x \a N points. */
+template <int N = 600, typename Radiance>
 double filtered(Radiance &&radiance)
 {
-  constexpr int N = 600;
   double sum = 0.0;
   double weights = 0.0;
   for (int j = 0; j < N; j++) {
@@ -153,7 +152,8 @@ double edge_error(int drawn, int count)
     for (int i = 0; i < directions * positions; i++) {
       const double angle = 0.1 + i % directions * 0.523;
       const double distance = -0.8 + i / directions * 0.2;
-      all.push_back(filtered([=](double x, double y) { return x * std::cos(angle) + y * std::sin(angle) > distance; }));
+      all.push_back(
+          filtered<150>([=](double x, double y) { return x * std::cos(angle) + y * std::sin(angle) > distance; }));
     }
     return all;
   }();
