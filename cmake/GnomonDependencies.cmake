@@ -8,6 +8,9 @@ find_package(nlohmann_json REQUIRED)
 if(GNOMON_PROGRAM)
   find_package(CLI11 REQUIRED)
   pkg_check_modules(OpenEXR REQUIRED IMPORTED_TARGET OpenEXR)
+  # For a module of the program, and for tests as another reader of the files that the program writes. Its CMake file in Debian 12
+  # refers to folders of packages that it does not depend on.
+  pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO)
   # Draws the plots in the pages that the program writes.
   find_file(GNOMON_CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js /usr/share/nodejs/chart.js/dist REQUIRED)
   pkg_check_modules(imgui QUIET IMPORTED_TARGET imgui)
@@ -23,7 +26,4 @@ if(GNOMON_PROGRAM)
 endif()
 if(GNOMON_TESTS)
   find_package(GTest REQUIRED)
-  # Another reader of the files that the program writes. Its CMake file in Debian 12 refers to folders of packages that it does not
-  # depend on.
-  pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO)
 endif()

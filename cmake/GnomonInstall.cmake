@@ -39,4 +39,5 @@ install(FILES ${PROJECT_BINARY_DIR}/gnomon.pc DESTINATION ${CMAKE_INSTALL_LIBDIR
 
 if(GNOMON_PROGRAM)
   install(TARGETS gnomon)
+  install(TARGETS gnomon_oiio DESTINATION ${CMAKE_INSTALL_LIBDIR}/gnomon)
 endif()

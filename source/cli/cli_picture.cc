@@ -2,6 +2,7 @@
 #include "cli_picture.hh"
 
 #include "internal/cli_picture_formats.hh"
+#include "internal/cli_picture_module.hh"
 
 #include "cli_output.hh"
 
@@ -12,12 +13,10 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <memory>
 #include <stdexcept>
-#include <string_view>
 
 namespace gnomon::cli {
 
@@ -64,11 +63,6 @@ std::vector<std::byte> png_bytes(glm::ivec2 size_px, std::span<const std::uint8_
   return {view.begin(), view.end()};
 }
 
-static float linear_of_srgb(float encoded)
-{
-  return encoded <= 0.04045F ? encoded / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
-}
-
 /** Of red, green, blue and one more in rows from the top. */
 template <typename Value, typename Convert>
 static Picture picture_of(glm::ivec2 size_px, const Value *values, Convert linear_of)
@@ -83,14 +77,6 @@ static Picture picture_of(glm::ivec2 size_px, const Value *values, Convert linea
     }
   }
   return picture;
-}
-
-void check_edges(std::int64_t width, std::int64_t height)
-{
-  constexpr int edge_max = 32768;
-  if (width < 1 || height < 1 || width > edge_max || height > edge_max) {
-    throw std::runtime_error(fmt::format("has {}x{} pixels: an edge may have 1 to {}", width, height, edge_max));
-  }
 }
 
 static Picture read_coded_picture(const Bytes &file)
@@ -112,12 +98,8 @@ static Picture read_any_picture(const fs::path &path)
   if (!stream.seekg(0).read(reinterpret_cast<char *>(file.data()), size)) {
     throw std::runtime_error(fmt::format("cannot be read: {}", std::strerror(errno)));
   }
-  const std::string_view text(reinterpret_cast<const char *>(file.data()), file.size());
-  if (text.starts_with("#?RADIANCE\n") || text.starts_with("#?RGBE\n")) {
-    return read_hdr_picture(file);
-  }
   if (image::format_of(file) == image::Format::None) {
-    throw std::runtime_error("is none of EXR, Radiance HDR, PNG and JPEG");
+    return read_by_module(path);
   }
   return read_coded_picture(file);
 }

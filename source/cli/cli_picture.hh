@@ -38,9 +38,9 @@ struct Picture {
 };
 
 /**
- * Reads R, G and B of an EXR, Radiance HDR, PNG or JPEG file. The format is that of its first bytes. PNG and JPEG are
- * decoded by the sRGB curve.
- * \throws std::runtime_error naming \a path if it cannot be read, is cut off, or lacks R, G or B.
+ * Reads R, G and B. The format is that of the first bytes: EXR, PNG or JPEG, or another one that OpenImageIO reads,
+ * such as Radiance HDR. Integer values are decoded by the sRGB curve. \throws std::runtime_error naming \a path if it
+ * cannot be read, is cut off, or lacks R, G or B.
  */
 [[nodiscard]] Picture read_picture(const std::filesystem::path &path);
 /** The same for a picture whose size is known. \throws std::runtime_error also for another size. */

@@ -38,10 +38,10 @@ class ProgramTest : public testing::Test {
   }
 
   /** Runs the program. \a arguments are parsed by a shell. */
-  Finished run(const std::string &arguments)
+  Finished run(const std::string &arguments, const std::filesystem::path &program = GNOMON_PROGRAM)
   {
-    const std::string command =
-        "cd '" + folder.string() + "' && '" GNOMON_PROGRAM "' " + arguments + " > stdout.txt 2> stderr.txt < /dev/null";
+    const std::string command = "cd '" + folder.string() + "' && '" + program.string() + "' " + arguments +
+                                " > stdout.txt 2> stderr.txt < /dev/null";
     const int status = std::system(command.c_str());
     Finished finished;
     finished.status = WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);

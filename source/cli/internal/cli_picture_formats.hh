@@ -3,16 +3,31 @@
 
 #include "cli_picture.hh"
 
-#include <optional>
+#include <fmt/format.h>
 
-/** One function for each format of read_picture(), which adds the file's name to what they throw. */
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+/** The parts of read_picture(), which adds the file's name to what they throw. */
 namespace gnomon::cli {
 
 /** So that a damaged header does not ask for all memory. \throws std::runtime_error for too small and large edges. */
-void check_edges(std::int64_t width, std::int64_t height);
+inline void check_edges(std::int64_t width, std::int64_t height)
+{
+  constexpr int edge_max = 32768;
+  if (width < 1 || height < 1 || width > edge_max || height > edge_max) {
+    throw std::runtime_error(fmt::format("has {}x{} pixels: an edge may have 1 to {}", width, height, edge_max));
+  }
+}
+
+/** The inverse of the sRGB curve. */
+[[nodiscard]] inline float linear_of_srgb(float encoded)
+{
+  return encoded <= 0.04045F ? encoded / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
+}
 
 /** Nothing if \a path is not an EXR file. */
 [[nodiscard]] std::optional<Picture> read_exr_picture(const std::filesystem::path &path);
-[[nodiscard]] Picture read_hdr_picture(std::span<const unsigned char> file);
 
 }  // namespace gnomon::cli
