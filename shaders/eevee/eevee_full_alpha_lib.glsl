@@ -14,6 +14,12 @@ bool has_input(uint input_bit)
   return (full_materials[surface_material].inputs & input_bit) != 0u;
 }
 
+/** Opacity of a blended surface in [0, 1]. \a texel: alpha of its base colour texture. */
+float blended_opacity(float texel)
+{
+  return clamp(full_materials[surface_material].opacity * surface_color.a * texel, 0.0, 1.0);
+}
+
 /** As is_cut_out of eevee_base_color_lib.glsl. The alpha is multiplied by that of the vertex colour. */
 bool is_cut_out(float mask_cutoff)
 {

@@ -10,6 +10,10 @@ layout(location = ATTRIBUTE_COLOR) in vec4 color;
 layout(location = 2) flat out uint surface_material;
 layout(location = 3) out vec2 surface_uv;
 layout(location = 4) out vec4 surface_color;
+#ifdef USE_OPACITY_THRESHOLD
+/** Index in object_block. */
+layout(location = 5) flat out uint surface_object;
+#endif
 
 /**
  * Texture coordinates of the texture with bit \a index of the INPUT_ bits. Fragment shaders cannot compute them: llvmpipe's
@@ -28,4 +32,7 @@ void write_material_varyings()
   surface_material = objects[draw_instance.x].value;
   surface_uv = input_uv(surface_material, 0);
   surface_color = color;
+#ifdef USE_OPACITY_THRESHOLD
+  surface_object = draw_instance.x;
+#endif
 }

@@ -13,6 +13,16 @@ layout(binding = EMISSIVE_SLOT) uniform sampler2D emissive_texture;
 layout(binding = SPECULAR_SLOT) uniform sampler2D specular_texture;
 layout(binding = SPECULAR_COLOR_SLOT) uniform sampler2D specular_color_texture;
 
+/** Part of the light from behind that the surface covers; 1 unless the material is blended. */
+float surface_opacity()
+{
+  if (!has_input(INPUT_BLENDED)) {
+    return 1.0;
+  }
+  float texel = has_input(INPUT_BASE_COLOR) ? texture(base_color_texture, surface_uv, view.texture_lod_bias).a : 1.0;
+  return blended_opacity(texel);
+}
+
 MaterialData full_material()
 {
   FullMaterialData full = full_materials[surface_material];

@@ -36,6 +36,9 @@ void main()
   sum += direct_light(material, surface);
 #endif
   radiance = vec4(sum, 1.0);
+#ifdef USE_FULL_MATERIAL
+  radiance *= surface_opacity();
+#endif
 #if defined(USE_FULL_MATERIAL) || defined(USE_BASE_COLOR_TEXTURE)
   // Another surface may have the same depth, so the depth test alone does not reject a masked fragment.
   if (is_cut_out(materials[surface_material].mask_cutoff)) {

@@ -16,6 +16,10 @@ layout(location = 3) out vec2 surface_uv;
 layout(location = 4) in vec4 caster_color[];
 layout(location = 4) out vec4 surface_color;
 #  endif
+#  ifdef USE_OPACITY_THRESHOLD
+layout(location = 5) flat in uint caster_object[];
+layout(location = 5) flat out uint surface_object;
+#  endif
 #endif
 
 void main()
@@ -28,6 +32,9 @@ void main()
     surface_uv = caster_uv[i];
 #  ifdef USE_FULL_MATERIAL
     surface_color = caster_color[i];
+#  endif
+#  ifdef USE_OPACITY_THRESHOLD
+    surface_object = caster_object[i];
 #  endif
 #endif
     EmitVertex();

@@ -25,7 +25,10 @@ PUSH_CONSTANT_LAYOUT uniform push_constant_block
   float sample_scale;
   /** Depth that the target gets for pixels without a surface. */
   float background_depth;
-  /** 1: pixels without a surface keep the target's content. */
+  /**
+   * 1 over the target's content: pixels without depth keep it. 2: only those pixels are drawn, for blended surfaces with nothing
+   * behind them.
+   */
   int is_over;
 };
 
@@ -45,7 +48,7 @@ void main()
   display = vec4(color, clamp(radiance.a, 0.0, 1.0));
 #ifdef USE_TARGET_DEPTH
   float depth = texelFetch(depth_texture, pixel, 0).r;
-  if (depth == 0.0 && is_over != 0) {
+  if (is_over != 0 && (depth == 0.0) != (is_over == 2)) {
     discard;
   }
   float stored = (depth_scale.x * depth + depth_scale.y) / (depth_scale.z * depth + depth_scale.w);

@@ -42,6 +42,8 @@ SHARED_ASSERT_SIZE(MaterialData, 64)
 #define INPUT_SPECULAR_COLOR 64u
 /** Unlit material: its radiance is the base colour. */
 #define INPUT_UNLIT 128u
+/** The surface is blended over what is behind it. */
+#define INPUT_BLENDED 256u
 #define INPUT_TEXTURE_COUNT 7
 
 /** An entry of `full_material_block`: factors of the textures and of vertex colours. */
@@ -56,7 +58,8 @@ struct FullMaterialData {
   float occlusion_strength;
   /** INPUT_ bits. */
   uint inputs;
-  float _pad0;
+  /** Factor of a blended surface's opacity. */
+  float opacity;
   /** Two rows for each texture. It is looked up at xyz · (u, v, 1); w of the first row: 0 for the first set of uvs, 1 for the second. */
   vec4 uv_rows[2 * INPUT_TEXTURE_COUNT];
 };

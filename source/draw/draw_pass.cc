@@ -187,29 +187,38 @@ ShadingGroup &Pass::group(const gpu::Shader &shader)
 void Pass::clear()
 {
   groups_.clear();
+  order_.reset();
+}
+
+RecordCounts Pass::record_group(const ShadingGroup &group, const View &view, gpu::CommandList &list,
+                                gpu::State without) const
+{
+  const std::size_t first_draw = list.draws.size();
+  const RecordCounts counts = group.collect_draws(view, list);
+  const bool has_calls = !group.calls_.empty() || !group.instance_calls_.empty();
+  if (has_calls && counts.drawn == 0) {
+    return counts;
+  }
+  list.set_shader(group.shader_.id());
+  list.set_state(gpu::without(state_ | group.state_, without));
+  group.record_bindings(list);
+  if (list.draws.size() > first_draw) {
+    list.draw(std::uint32_t(first_draw), std::uint32_t(list.draws.size() - first_draw));
+  }
+  for (const ShadingGroup::ProceduralCall &call : group.procedural_calls_) {
+    list.draw_procedural(call.triangle_count * 3, call.instance_count);
+  }
+  return counts;
 }
 
 RecordCounts Pass::record(const View &view, gpu::CommandList &list, gpu::State without) const
 {
   RecordCounts counts;
-  for (const ShadingGroup &group : groups_) {
-    const std::size_t first_draw = list.draws.size();
-    const RecordCounts of_group = group.collect_draws(view, list);
+  const std::size_t count = order_ ? order_->size() : groups_.size();
+  for (std::size_t i = 0; i < count; i++) {
+    const RecordCounts of_group = record_group(groups_[order_ ? (*order_)[i] : i], view, list, without);
     counts.drawn += of_group.drawn;
     counts.culled += of_group.culled;
-    const bool has_calls = !group.calls_.empty() || !group.instance_calls_.empty();
-    if (has_calls && of_group.drawn == 0) {
-      continue;
-    }
-    list.set_shader(group.shader_.id());
-    list.set_state(gpu::without(state_ | group.state_, without));
-    group.record_bindings(list);
-    if (list.draws.size() > first_draw) {
-      list.draw(std::uint32_t(first_draw), std::uint32_t(list.draws.size() - first_draw));
-    }
-    for (const ShadingGroup::ProceduralCall &call : group.procedural_calls_) {
-      list.draw_procedural(call.triangle_count * 3, call.instance_count);
-    }
   }
   return counts;
 }

@@ -8,8 +8,10 @@
 
 #include <cstring>
 #include <deque>
+#include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 /**
  * A Pass contains ShadingGroups, and a ShadingGroup contains draw calls.
@@ -189,6 +191,17 @@ class Pass {
   {
     return name_;
   }
+  /** Draw the groups in the order of these indices, counted as they were made; an index may be missing. */
+  void set_order(std::vector<std::uint32_t> order)
+  {
+    order_ = std::move(order);
+  }
+
+  /** Whether its calls draw objects. */
+  [[nodiscard]] bool has_objects() const
+  {
+    return objects_ != nullptr;
+  }
   [[nodiscard]] bool is_empty() const
   {
     return groups_.empty();
@@ -197,10 +210,15 @@ class Pass {
   [[nodiscard]] std::string serialize(const gpu::Device &device) const;
 
  private:
+  RecordCounts record_group(const ShadingGroup &group, const View &view, gpu::CommandList &list,
+                            gpu::State without) const;
+
   std::string name_;
   gpu::State state_;
   ObjectBuffer *objects_;
   std::deque<ShadingGroup> groups_;
+  /** Nothing: in the order in which they were made. */
+  std::optional<std::vector<std::uint32_t>> order_;
 };
 
 }  // namespace gnomon::draw

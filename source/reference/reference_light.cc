@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <numbers>
 #include <stdexcept>
@@ -133,7 +134,10 @@ struct Renderer {
   Renderer(const Tracer &tracer_, const CameraRays &rays_, const DirectLightSettings &settings_);
   [[nodiscard]] glm::dvec3 lit_by_world(const Receiver &receiver, const glm::dvec3 &normal, const glm::dvec3 &view,
                                         const Bsdf &bsdf, int sample, std::uint64_t key) const;
-  [[nodiscard]] glm::dvec3 radiance(const Ray &ray, int sample, std::uint64_t key) const;
+  [[nodiscard]] glm::dvec3 radiance(Ray ray, int sample, std::uint64_t key) const;
+  /** From the surface alone, as if it were opaque. \a view: towards the viewer, unit vector. */
+  [[nodiscard]] glm::dvec3 radiance_of(const Surface &surface, const glm::dvec3 &view, int sample,
+                                       std::uint64_t key) const;
   [[nodiscard]] glm::dvec3 lit_by(const scene::PlacedLamp &lamp, const Receiver &receiver, const glm::dvec3 &normal,
                                   const glm::dvec3 &view, const Bsdf &bsdf, const glm::dvec2 &u) const;
   void render_tile(const glm::ivec2 &low_px, const glm::ivec2 &high_px, Picture &picture) const;
@@ -153,10 +157,11 @@ glm::dvec3 Renderer::lit_by(const scene::PlacedLamp &lamp, const Receiver &recei
     return glm::dvec3(0.0);
   }
   const glm::dvec3 scattered = reflected(bsdf, normal, view, sample.to_light_ws);
-  if (scattered == glm::dvec3(0.0) || (casts_shadow(lamp) && !is_visible(tracer, receiver, sample.point))) {
+  if (scattered == glm::dvec3(0.0)) {
     return glm::dvec3(0.0);
   }
-  return scattered * color * sample.irradiance;
+  const double visible = casts_shadow(lamp) ? visible_part(tracer, receiver, sample.point) : 1.0;
+  return scattered * color * (sample.irradiance * visible);
 }
 
 Renderer::Renderer(const Tracer &tracer_, const CameraRays &rays_, const DirectLightSettings &settings_)
@@ -181,10 +186,10 @@ glm::dvec3 Renderer::lit_by_world(const Receiver &receiver, const glm::dvec3 &no
   const auto light_from = [&](const glm::dvec3 &to_world) {
     const double density = world->density(to_world) + (is_specular ? lobe_density(bsdf, normal, view, to_world) : 0.0);
     const glm::dvec3 scattered = reflected(bsdf, normal, view, to_world);
-    if (!(density > 0.0) || scattered == glm::dvec3(0.0) || !is_visible(tracer, receiver, LightPoint{to_world, true})) {
+    if (!(density > 0.0) || scattered == glm::dvec3(0.0)) {
       return glm::dvec3(0.0);
     }
-    return scattered * world->radiance(to_world) / density;
+    return visible_part(tracer, receiver, LightPoint{to_world, true}) * scattered * world->radiance(to_world) / density;
   };
   glm::dvec3 sum = light_from(world->sample(even_point(sample, mixed(key))).to_world_ws);
   if (is_specular) {
@@ -193,14 +198,27 @@ glm::dvec3 Renderer::lit_by_world(const Receiver &receiver, const glm::dvec3 &no
   return sum;
 }
 
-glm::dvec3 Renderer::radiance(const Ray &ray, int sample, std::uint64_t key) const
+glm::dvec3 Renderer::radiance(Ray ray, int sample, std::uint64_t key) const
 {
-  const std::optional<Hit> hit = tracer.closest(ray, Faces::Drawn);
-  if (!hit) {
-    return glm::dvec3(0.0);
+  constexpr double least_open = 1e-6;
+  glm::dvec3 sum(0.0);
+  // The part of what is behind the surfaces so far that is seen through them.
+  double open = 1.0;
+  while (open > least_open) {
+    const std::optional<Hit> hit = tracer.closest(ray, Faces::Drawn);
+    if (!hit) {
+      break;
+    }
+    const Surface surface = tracer.surface_at(*hit);
+    sum += open * surface.opacity * radiance_of(surface, -glm::normalize(ray.direction_ws), sample, key);
+    open *= 1.0 - surface.opacity;
+    ray.t_min = std::nextafter(hit->t, std::numeric_limits<double>::infinity());
   }
-  const Surface surface = tracer.surface_at(*hit);
-  const glm::dvec3 view = -glm::normalize(ray.direction_ws);
+  return sum;
+}
+
+glm::dvec3 Renderer::radiance_of(const Surface &surface, const glm::dvec3 &view, int sample, std::uint64_t key) const
+{
   const double side = glm::dot(surface.geometric_normal_ws, view) < 0.0 ? -1.0 : 1.0;
   const Receiver receiver{surface.position_ws, side * surface.geometric_normal_ws, surface.error_m};
   if (surface.material->is_unlit) {

@@ -102,8 +102,8 @@ struct Tracer::Tree {
   {
     return {scene, mesh_of(triangle), triangle.vertices, weights};
   }
-  /** false if the material is masked and cut out at this point. */
-  [[nodiscard]] bool is_opaque_at(const Triangle &triangle, const glm::dvec3 &weights) const;
+  /** In [0, 1]. 0 if the material is masked and cut out at this point; between 0 and 1 only if it is blended. */
+  [[nodiscard]] double opacity_at(const Triangle &triangle, const glm::dvec3 &weights) const;
 
   /** The part of a ray inside the tree's box, as an Embree ray. */
   struct Clipped {
@@ -133,6 +133,7 @@ struct BlockedQuery : RTCIntersectContext {
   const glm::dvec3 &point;
   double error_m;
   const LightPoint &light;
+  double transmission = 1.0;
 };
 
 }  // namespace
@@ -142,11 +143,15 @@ void Tracer::Tree::fail(const std::string &reason) const
   throw std::runtime_error(fmt::format("{}: cannot build the ray tracing tree: {}", scene.path, reason));
 }
 
-bool Tracer::Tree::is_opaque_at(const Triangle &triangle, const glm::dvec3 &weights) const
+double Tracer::Tree::opacity_at(const Triangle &triangle, const glm::dvec3 &weights) const
 {
   const scene::Material &material = material_of(triangle);
-  return material.alpha_mode != scene::AlphaMode::Mask ||
-         point_on(triangle, weights).base_color().a >= double(material.alpha_cutoff);
+  switch (material.alpha_mode) {
+    case scene::AlphaMode::Mask:
+      return point_on(triangle, weights).base_color().a >= double(material.alpha_cutoff) ? 1.0 : 0.0;
+    case scene::AlphaMode::Blend: return std::clamp(point_on(triangle, weights).base_color().a, 0.0, 1.0);
+    default: return 1.0;
+  }
 }
 
 void Tracer::Tree::add_object(std::uint32_t index)
@@ -256,7 +261,7 @@ void Tracer::Tree::build()
     if (query.faces == Faces::Drawn && rise > 0.0 && !self.material_of(triangle).is_double_sided) {
       return;
     }
-    if (!self.is_opaque_at(triangle, *weights)) {
+    if (self.opacity_at(triangle, *weights) == 0.0) {
       return;
     }
     query.best = Hit{t, a->primID, *weights};
@@ -269,7 +274,7 @@ void Tracer::Tree::build()
 
   const auto occluded = [](const RTCOccludedFunctionNArguments *a) {
     const Tree &self = *static_cast<const Tree *>(a->geometryUserPtr);
-    const auto &query = *static_cast<BlockedQuery *>(a->context);
+    auto &query = *static_cast<BlockedQuery *>(a->context);
     const Triangle &triangle = self.triangles[a->primID];
     const std::optional<glm::dvec3> weights = line_triangle(query.sheared, triangle.corners);
     if (!weights) {
@@ -286,7 +291,10 @@ void Tracer::Tree::build()
     const double end_error = query.light.is_direction ? 16.0 * double_rounding * plane.edge_product * glm::length(end)
                                                       : plane.height_error(end, triangle.error_m);
     const bool is_between = std::abs(end_height) > end_error && (height < 0.0) != (end_height < 0.0);
-    if (is_between && self.is_opaque_at(triangle, *weights)) {
+    if (is_between) {
+      query.transmission *= 1.0 - self.opacity_at(triangle, *weights);
+    }
+    if (query.transmission == 0.0) {
       // Embree's convention for a blocked ray.
       reinterpret_cast<RTCRay *>(a->ray)->tfar = -std::numeric_limits<float>::infinity();
     }
@@ -371,19 +379,19 @@ std::optional<Hit> Tracer::closest(const Ray &ray, Faces faces) const
   return query.best;
 }
 
-bool Tracer::is_blocked(const glm::dvec3 &point_ws, double error_m, const LightPoint &light) const
+double Tracer::transmission(const glm::dvec3 &point_ws, double error_m, const LightPoint &light) const
 {
   const glm::dvec3 direction = light.is_direction ? light.vector_ws : light.vector_ws - point_ws;
   const Ray ray{point_ws, direction, 0.0, light.is_direction ? std::numeric_limits<double>::infinity() : 1.0};
   const std::optional<Tree::Clipped> clipped = tree_->clipped(ray);
   if (!clipped) {
-    return false;
+    return 1.0;
   }
   BlockedQuery query{{}, {point_ws, direction}, point_ws, error_m, light};
   rtcInitIntersectContext(&query);
   RTCRay occluded = clipped->ray;
   rtcOccluded1(tree_->tree, &query, &occluded);
-  return occluded.tfar < 0.0F;
+  return query.transmission;
 }
 
 Surface Tracer::surface_at(const Hit &hit) const
@@ -415,6 +423,7 @@ Surface Tracer::surface_at(const Hit &hit) const
   };
   const glm::dvec4 roughness_metallic = texel(material.metallic_roughness_texture, false);
   surface.base_color = glm::dvec3(point.base_color());
+  surface.opacity = tree_->opacity_at(triangle, hit.weights);
   surface.metallic = double(material.metallic) * roughness_metallic.b;
   surface.roughness = double(material.roughness) * roughness_metallic.g;
   surface.specular = double(material.specular) * texel(material.specular_texture, false).a;

@@ -61,6 +61,8 @@ struct Surface {
   glm::dvec3 emissive{0.0};
   /** Fraction of ambient light that arrives. */
   double occlusion = 1.0;
+  /** Part of the light from behind that the surface covers, in [0, 1]. 1 unless the material is blended. */
+  double opacity = 1.0;
 };
 
 /** A point of a lamp: the end of a shadow ray. */
@@ -84,7 +86,7 @@ enum class Faces {
  * The tree is Embree's. It works in float, in coordinates in which the scene fills [-1, 1], with boxes larger than all
  * of its rounding errors. The intersection with a triangle is decided in double. The results therefore do not depend on
  * the tree, on the number of threads, or on the scene's position and scale. Masked materials are not hit where they are
- * cut out. Blended materials are opaque. Triangles without area are ignored.
+ * cut out, and blended ones not where they are wholly transparent. Triangles without area are ignored.
  *
  * All functions may be called by several threads concurrently. The scene must outlive the tracer and must not change.
  */
@@ -100,14 +102,20 @@ class Tracer {
   [[nodiscard]] std::optional<Hit> closest(const Ray &ray, Faces faces) const;
 
   /**
-   * Whether a triangle lies between a point and a point of a lamp.
+   * The part of the light of a point of a lamp that reaches a point, in [0, 1]: 0 if an opaque triangle lies between
+   * them, otherwise the product of 1 - opacity over the blended triangles there. Their colour does not tint the light.
    *
    * A triangle whose plane contains either point, within rounding, does not block. This excludes the triangle that
    * \a point_ws is on, triangles in its plane, and the surface that the lamp is mounted on. No other triangle is
    * excluded, so that a caster that touches the receiver darkens it up to the line of contact. \a error_m: largest
    * possible error of \a point_ws, metres.
    */
-  [[nodiscard]] bool is_blocked(const glm::dvec3 &point_ws, double error_m, const LightPoint &light) const;
+  [[nodiscard]] double transmission(const glm::dvec3 &point_ws, double error_m, const LightPoint &light) const;
+  /** Whether no light arrives. \see transmission */
+  [[nodiscard]] bool is_blocked(const glm::dvec3 &point_ws, double error_m, const LightPoint &light) const
+  {
+    return transmission(point_ws, error_m, light) == 0.0;
+  }
 
   [[nodiscard]] Surface surface_at(const Hit &hit) const;
 

@@ -63,9 +63,14 @@ std::optional<Receiver> find_receiver(const Tracer &tracer, const glm::dvec3 &po
                   surface.error_m};
 }
 
+double visible_part(const Tracer &tracer, const Receiver &receiver, const LightPoint &light)
+{
+  return cos_to(receiver, light) > 0.0 ? tracer.transmission(receiver.position_ws, receiver.error_m, light) : 0.0;
+}
+
 bool is_visible(const Tracer &tracer, const Receiver &receiver, const LightPoint &light)
 {
-  return cos_to(receiver, light) > 0.0 && !tracer.is_blocked(receiver.position_ws, receiver.error_m, light);
+  return visible_part(tracer, receiver, light) > 0.0;
 }
 
 bool is_visible(const Tracer &tracer, const Receiver &receiver, const scene::PlacedLamp &lamp)
@@ -81,11 +86,14 @@ bool is_facing(const Receiver &receiver, const scene::PlacedLamp &lamp)
 Estimate visibility(const Tracer &tracer, const Receiver &receiver, const scene::PlacedLamp &lamp, int sample_count,
                     std::uint64_t seed)
 {
-  if (!has_size(lamp) || !casts_shadow(lamp)) {
-    return {is_visible(tracer, receiver, lamp) ? 1.0 : 0.0, 0.0};
+  if (!casts_shadow(lamp)) {
+    return {1.0, 0.0};
+  }
+  if (!has_size(lamp)) {
+    return {visible_part(tracer, receiver, lamp_center(lamp)), 0.0};
   }
   return mean_over_square(sample_count, seed, [&](const glm::dvec2 &u) {
-    return is_visible(tracer, receiver, sample_lamp(lamp, receiver.position_ws, u).point) ? 1.0 : 0.0;
+    return visible_part(tracer, receiver, sample_lamp(lamp, receiver.position_ws, u).point);
   });
 }
 
@@ -99,10 +107,10 @@ Estimate irradiance(const Tracer &tracer, const Receiver &receiver, const scene:
   const auto value = [&](const glm::dvec2 &u) {
     const LampSample sample = sample_lamp(lamp, receiver.position_ws, u);
     const double cosine = glm::dot(receiver.normal_ws, sample.to_light_ws);
-    if (!(cosine > 0.0) || (casts_shadow(lamp) && !is_visible(tracer, receiver, sample.point))) {
+    if (!(cosine > 0.0)) {
       return 0.0;
     }
-    return sample.irradiance * cosine;
+    return sample.irradiance * cosine * (casts_shadow(lamp) ? visible_part(tracer, receiver, sample.point) : 1.0);
   };
   if (!has_size(lamp)) {
     return {value({0.5, 0.5}), 0.0};

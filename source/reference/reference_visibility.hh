@@ -28,8 +28,13 @@ struct Receiver {
                                                     const glm::dvec3 &normal_ws);
 
 /**
- * Whether a point of a lamp is visible from \a receiver: it is above the receiver's plane, and no triangle is between
- * them. Both sides of a triangle cast shadows, as in a shadow map that draws all faces.
+ * The part of the light of a point of a lamp that reaches \a receiver, in [0, 1]: 0 if the point is below the receiver's
+ * plane. \see Tracer::transmission. Both sides of a triangle cast shadows, as in a shadow map that draws all faces.
+ */
+[[nodiscard]] double visible_part(const Tracer &tracer, const Receiver &receiver, const LightPoint &light);
+
+/**
+ * Whether any of its light does: no opaque triangle is between them.
  */
 [[nodiscard]] bool is_visible(const Tracer &tracer, const Receiver &receiver, const LightPoint &light);
 

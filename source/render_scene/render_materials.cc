@@ -15,7 +15,22 @@ namespace gnomon::render_scene {
 
 bool is_drawable(const scene::Material &material)
 {
-  return material.alpha_mode != scene::AlphaMode::Mask || material.alpha >= material.alpha_cutoff;
+  switch (material.alpha_mode) {
+    case scene::AlphaMode::Mask: return material.alpha >= material.alpha_cutoff;
+    case scene::AlphaMode::Blend: return material.alpha > 0.0F;
+    default: return true;
+  }
+}
+
+bool is_blended(const scene::Scene &scene, const scene::Mesh &mesh)
+{
+  const scene::Material &material = scene.material_of(mesh);
+  if (material.alpha_mode != scene::AlphaMode::Blend) {
+    return false;
+  }
+  const scene::Handle<scene::Texture> texture = material.base_color_texture.texture;
+  return material.alpha < 1.0F || !mesh.colors.empty() ||
+         (is_drawable(scene, texture) && !scene.images()[scene.textures()[texture].image].is_opaque);
 }
 
 bool is_drawable(const scene::Scene &scene, const scene::Mesh &mesh, const scene::TextureSlot &slot)
@@ -37,7 +52,7 @@ MaterialClass material_class(const scene::Scene &scene, const scene::Mesh &mesh)
     }
     return input.slot != &scene::Material::normal_texture || !mesh.tangents.empty();
   });
-  if (is_full || !mesh.colors.empty()) {
+  if (is_full || !mesh.colors.empty() || is_blended(scene, mesh)) {
     return MaterialClass::Full;
   }
   return is_drawable(scene, mesh, base_color) ? MaterialClass::BaseColor : MaterialClass::Plain;
@@ -79,6 +94,10 @@ shared::FullMaterialData full_material_data(const scene::Scene &scene, const sce
   data.normal_scale = material.normal_scale;
   data.occlusion_strength = material.occlusion_strength;
   data.inputs = material.is_unlit ? INPUT_UNLIT : 0U;
+  if (material.alpha_mode == scene::AlphaMode::Blend) {
+    data.inputs |= INPUT_BLENDED;
+    data.opacity = material.alpha;
+  }
   for (std::size_t i = 0; i < scene::texture_inputs.size(); i++) {
     const scene::TextureSlot &slot = material.*scene::texture_inputs[i].slot;
     if (is_drawable(scene, slot.texture)) {

@@ -9,10 +9,16 @@
 namespace gnomon::render_scene {
 
 /**
- * Whether the material can draw any pixel. false: the alpha factor of a masked material is below its cutoff, and
- * textures and vertex colours cannot increase alpha.
+ * Whether the material can draw any pixel. false: the alpha factor of a masked material is below its cutoff, or that of
+ * a blended material is 0; textures and vertex colours cannot increase alpha.
  */
 [[nodiscard]] bool is_drawable(const scene::Material &material);
+
+/**
+ * Whether the mesh is blended over what is behind it. false: another alpha mode, or all of it is opaque by its factor
+ * and its texture.
+ */
+[[nodiscard]] bool is_blended(const scene::Scene &scene, const scene::Mesh &mesh);
 
 /** The kinds of surface inputs, with the fewest inputs first. Each class has its own shader variants. */
 enum class MaterialClass : std::uint8_t {
@@ -20,7 +26,7 @@ enum class MaterialClass : std::uint8_t {
   Plain,
   /** Also a base colour texture, with the first set of uvs and without a uv transform. */
   BaseColor,
-  /** Any textures, both sets of uvs, uv transforms and vertex colours. */
+  /** Any textures, both sets of uvs, uv transforms, vertex colours and blending. */
   Full
 };
 

@@ -182,6 +182,16 @@ void check(const Material & /*material*/) {}
 void check(const Lamp & /*lamp*/) {}
 void check(const Camera & /*camera*/) {}
 
+bool is_opaque(const Image &image)
+{
+  for (std::size_t alpha = 3; alpha < image.texels.size(); alpha += 4) {
+    if (image.texels[alpha] != 255) {
+      return false;
+    }
+  }
+  return true;
+}
+
 Bounds bounds_of(const Mesh &mesh)
 {
   Bounds bounds;
@@ -201,6 +211,9 @@ void Scene::replace_value(Handle<T> handle, T value)
   check(value);
   if constexpr (std::same_as<T, Mesh>) {
     value.bounds = bounds_of(value);
+  }
+  if constexpr (std::same_as<T, Image>) {
+    value.is_opaque = is_opaque(value);
   }
   things.writable(handle) = std::move(value);
   if (changed == 0) {
@@ -224,6 +237,7 @@ Handle<Mesh> Scene::add(Mesh mesh)
 Handle<Image> Scene::add(Image image)
 {
   check(image);
+  image.is_opaque = is_opaque(image);
   return images_.add(std::move(image), ++revision_);
 }
 

@@ -60,6 +60,8 @@ struct Image {
   std::uint32_t height = 0;
   /** 4 · width · height bytes; rows from the top, where v is 0. */
   std::vector<std::uint8_t> texels{};
+  /** The alpha of every texel is 255. Scene::add and Scene::replace compute it. */
+  bool is_opaque = false;
 };
 
 enum class TextureWrap { Repeat, MirroredRepeat, ClampToEdge };

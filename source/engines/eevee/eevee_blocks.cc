@@ -55,7 +55,7 @@ constexpr auto full_material_fields = std::to_array<Field>({
     {"full_materials[0].normal_scale", offsetof(FullMaterialData, normal_scale)},
     {"full_materials[0].occlusion_strength", offsetof(FullMaterialData, occlusion_strength)},
     {"full_materials[0].inputs", offsetof(FullMaterialData, inputs)},
-    {"full_materials[0]._pad0", offsetof(FullMaterialData, _pad0)},
+    {"full_materials[0].opacity", offsetof(FullMaterialData, opacity)},
     {"full_materials[0].uv_rows", offsetof(FullMaterialData, uv_rows)},
 });
 

@@ -5,6 +5,7 @@
 #include "eevee_engine_data.hh"
 #include "eevee_film.hh"
 #include "eevee_frame.hh"
+#include "eevee_material_variants.hh"
 
 #include "draw_view_shared.h"
 
@@ -94,8 +95,11 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
   if (world) {
     mark_world(shared.lamps, scene_.lamps().size() + world->suns.size());
   }
+  ShadowSettings shadow = settings_.shadow;
+  // Blended surfaces receive shadows, and no depth buffer has them.
+  shadow.cascades.is_fitted_to_depth &= !has_blended(scene_.scene());
   shared.shadows.sync(device_limits, shadow_lamps(shared.placed, shared.lamps, shading), scene_.bounds(),
-                      shared.lamps.light_block, settings_.shadow);
+                      shared.lamps.light_block, shadow);
   const scene::Bounds &bounds_ws = scene_.bounds();
   shared.lamp_points =
       shading == LampShading::Point
@@ -204,6 +208,7 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
   if (is_sample_seen) {
     data.is_seen = true;
     record(viewport);
+    order_blended(data, sample_view);
     update_view(data, sample_view);
     sample.is_for_feedback = viewport.draws_until_final() && awaits_depths(data, view);
   }

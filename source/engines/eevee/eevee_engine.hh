@@ -8,6 +8,7 @@
 #include "draw_engine.hh"
 #include "draw_viewport.hh"
 #include "render_scene.hh"
+#include "render_surfaces.hh"
 
 #include <memory>
 #include <optional>
@@ -126,6 +127,11 @@ class Engine final : public draw::Engine {
   void make_blocks(draw::Viewport &viewport);
   void record_passes(draw::Viewport &viewport);
   void record_object(draw::Viewport &viewport, draw::ObjectIndex object);
+  /** Append the calls of an object that is blended: its backs, if they are drawn, and its fronts. */
+  void record_blended(Data &data, draw::ObjectIndex object, const gpu::Shader &shader,
+                      const render_scene::TextureSet &textures, const gpu::Batch &batch);
+  /** Let the blended objects be drawn from back to front, as \a view sees them. */
+  void order_blended(Data &data, const draw::View &view);
   void record_film(draw::Viewport &viewport);
   void record_background(draw::Viewport &viewport);
   void record_casters(Data &data);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "eevee_blend_order.hh"
 #include "eevee_debug.hh"
 #include "eevee_frame.hh"
 #include "eevee_lamp_points.hh"
@@ -50,6 +51,7 @@ struct PassList {
                         &objects),
         background_pass("background_pass", gpu::State::WriteColor | gpu::State::DepthEqual),
         lit_pass("lit_pass", gpu::State::WriteColor | gpu::State::DepthEqual, &objects),
+        blend_pass("blend_pass", gpu::State::WriteColor | gpu::State::DepthNearerEqual | gpu::State::BlendOver, &objects),
         probe_pass("probe_pass", gpu::State::WriteColor | gpu::State::DepthEqual, &objects),
         tint_pass("tint_pass", gpu::State::WriteColor | gpu::State::DepthEqual | gpu::State::BlendMultiply, &objects),
         film_pass("film_pass", gpu::State::WriteColor | gpu::State::BlendAdd),
@@ -60,6 +62,8 @@ struct PassList {
   draw::Pass depth_pass_cull;
   draw::Pass background_pass;
   draw::Pass lit_pass;
+  /** A group or two for each blended object. */
+  draw::Pass blend_pass;
   draw::Pass probe_pass;
   draw::Pass tint_pass;
   draw::Pass film_pass;
@@ -184,6 +188,9 @@ struct SharedData {
   std::map<std::pair<scene::Handle<scene::Mesh>, gpu::State>, draw::InstanceCall *> caster_calls;
   /** By object index: the call of the caster; nullptr for objects that cast no shadow. */
   std::vector<draw::InstanceCall *> caster_of;
+  /** Sample for which blended casters are drawn; shadow_pass reads both by reference. */
+  int sample_index = 0;
+  int sample_seed = 0;
   /** By object index: whether the caster was recorded with a mirrored matrix. */
   std::vector<bool> is_mirrored;
   std::optional<CastersKey> recorded;
@@ -191,6 +198,25 @@ struct SharedData {
   bool has_casters = false;
   /** gpu::Device::loss_count up to which lost submissions were handled. */
   std::uint64_t loss_count = 0;
+};
+
+/** The groups of an object in PassList::blend_pass. */
+struct BlendedObject {
+  draw::ObjectIndex object = draw::object_identity;
+  std::uint32_t first_group = 0;
+  std::uint32_t group_count = 0;
+};
+
+/** What the order of blended objects depends on. */
+struct BlendOrderKey {
+  /** \see back_to_front */
+  glm::vec4 eye_ws{0.0F};
+  std::uint64_t objects = 0;
+  std::uint64_t recording = 0;
+  /** Indices in StorageList::blended. */
+  std::vector<std::uint32_t> visible{};
+
+  bool operator==(const BlendOrderKey &) const = default;
 };
 
 struct StorageList {
@@ -211,6 +237,10 @@ struct StorageList {
   gpu::BufferRange object_block;
   /** The groups of the passes that draw objects. */
   std::map<GroupKey, draw::ShadingGroup *> groups;
+  /** The objects of PassList::blend_pass. */
+  std::vector<BlendedObject> blended;
+  std::uint32_t blended_group_count = 0;
+  std::optional<BlendOrderKey> blend_ordered;
   /** By object index: whether the passes were recorded with a mirrored matrix. */
   std::vector<bool> is_mirrored;
   /** The matrix of an object became mirrored or ceased to be mirrored since the passes were recorded. */
@@ -318,5 +348,8 @@ struct Data final : draw::EngineViewportData {
   /** One entry for each of frame_steps(), for the current picture. Empty before the first sample. */
   std::vector<StepRecord> frame;
 };
+
+/** Bind what a program that lights surfaces reads, beside the textures of the material. */
+void bind_lit(draw::ShadingGroup &group, Data &data);
 
 }  // namespace gnomon::eevee

@@ -102,6 +102,15 @@ Need need_background(const FrameState &state)
 }
 
 /** A picture without visible objects and without a background is cleared once, with the first sample. */
+Need need_blend(const FrameState &state)
+{
+  if (!state.data.is_seen) {
+    return {false, nothing_seen};
+  }
+  return (*state.data.psl).blend_pass.is_empty() ? Need{false, "no material that is drawn is blended"}
+                                                 : Need{true, "blended objects, from back to front"};
+}
+
 Need need_film(const FrameState &state)
 {
   if (state.data.is_seen) {
@@ -188,14 +197,26 @@ void record_lamp_points(const FrameStep & /*step*/, FrameSample &sample, gpu::Co
 void record_shadows(const FrameStep & /*step*/, FrameSample &sample, gpu::CommandList &list)
 {
   const StorageList &stl = sample.data.stl;
+  SharedData &shared = *sample.data.shared;
+  if (sample.settings.sample_count > 1) {
+    stl.shadows->invalidate_blended();
+  }
+  shared.sample_index = sample.data.sample_index;
+  shared.sample_seed = int(sample.settings.seed);
   sample.data.stl.shadows->update(sample.viewport.device(), sample.view, pixel_size(sample.view, sample.viewport),
-                                  sample.data.shared->shadow_pass, list, stl.lamp_points,
+                                  shared.shadow_pass, list, stl.lamp_points,
                                   sample.data.depth_feedback.depths);
 }
 
 void record_lit(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
   record_pass(step, sample, list, sample.data.fbl.main_fb, {.depth_load = gpu::LoadAction::Load});
+}
+
+void record_blend(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
+{
+  record_pass(step, sample, list, sample.data.fbl.main_fb,
+              {.color_load = gpu::LoadAction::Load, .depth_load = gpu::LoadAction::Load});
 }
 
 void record_background(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
@@ -270,6 +291,10 @@ constexpr std::array<FramePass, 1> background_passes = {
     {{&PassList::background_pass, "pixels without a surface",
       [](const FrameState &) -> std::string { return nothing_seen; }}}};
 
+constexpr std::array<FramePass, 1> blend_passes = {
+    {{&PassList::blend_pass, "blended objects, from back to front",
+      [](const FrameState &) -> std::string { return nothing_seen; }}}};
+
 constexpr std::array<FramePass, 1> film_passes = {
     {{&PassList::film_pass, "samples", [](const FrameState &) -> std::string { return nothing_seen; }}}};
 
@@ -288,7 +313,7 @@ constexpr std::span target_only = std::span(pictures).subspan(4, 1);
 
 constexpr std::array<std::string_view, 1> light_block_only = {"light_block"};
 
-constexpr std::array<FrameStep, 8> steps = {{
+constexpr std::array<FrameStep, 9> steps = {{
     // The depth pre-pass comes before the shadows because cascades may be fitted to its depths.
     {"depth_prepass",
      FrameStep::When::EachSample,
@@ -311,6 +336,7 @@ constexpr std::array<FrameStep, 8> steps = {{
     {"lit", FrameStep::When::EachSample, need_lit, shadow_targets, radiance_only, lit_passes, record_lit},
     {"background", FrameStep::When::EachSample, need_background, depth_only, radiance_only, background_passes,
      record_background},
+    {"blend", FrameStep::When::EachSample, need_blend, shadow_targets, radiance_only, blend_passes, record_blend},
     {"film", FrameStep::When::EachSample, need_film, radiance_only, film_only, film_passes, record_film},
     {"picture_depth",
      FrameStep::When::EachTarget,

@@ -21,4 +21,14 @@ Feature mask_features(MaterialClass mask_class)
                                              : Feature::AlphaMask;
 }
 
+bool has_blended(const scene::Scene &scene)
+{
+  for (const auto &[handle, material] : scene.materials()) {
+    if (material.alpha_mode == scene::AlphaMode::Blend) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace gnomon::eevee

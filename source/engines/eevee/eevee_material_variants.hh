@@ -13,4 +13,7 @@ namespace gnomon::eevee {
 /** The features of programs that only apply the alpha mask (depth and shadow passes). */
 [[nodiscard]] Feature mask_features(render_scene::MaterialClass mask_class);
 
+/** Whether the scene has a material that may be blended. */
+[[nodiscard]] bool has_blended(const scene::Scene &scene);
+
 }  // namespace gnomon::eevee

@@ -9,7 +9,7 @@ namespace gnomon::eevee {
 
 namespace {
 
-constexpr std::array<FeatureDefine, 14> feature_table = {
+constexpr std::array<FeatureDefine, 15> feature_table = {
     {{Feature::Light, "USE_LIGHT", "something shines"},
      {Feature::Punctual, "USE_PUNCTUAL", "a point, spot or area lamp shines"},
      {Feature::Specular, "USE_SPECULAR", "a material reflects specularly"},
@@ -18,13 +18,14 @@ constexpr std::array<FeatureDefine, 14> feature_table = {
      {Feature::ShadowPcf, "USE_SHADOW_PCF", "a shadow is filtered by percentage-closer lookups"},
      {Feature::ShadowEsm, "USE_SHADOW_ESM", "a point lamp or a spot casts exponential shadows"},
      {Feature::BaseColorTexture, "USE_BASE_COLOR_TEXTURE", "a material's base colour has a texture"},
-     {Feature::AlphaMask, "USE_ALPHA_MASK", "a texture's alpha cuts a material out"},
+     {Feature::AlphaMask, "USE_ALPHA_MASK", "alpha cuts a material out, or lets light through it"},
      {Feature::ShadowEvsm, "USE_SHADOW_EVSM", "a point lamp or a spot casts exponential variance shadows"},
      {Feature::LampShape, "USE_LAMP_SHAPE", "a lamp has an extent, or a spot's cone is an ellipse"},
      {Feature::FullMaterial, "USE_FULL_MATERIAL",
       "a material has other textures than base colour, a transform or a second set of uvs, or a mesh has colours"},
      {Feature::TargetDepth, "USE_TARGET_DEPTH", "the target takes depth"},
-     {Feature::World, "USE_WORLD", "a world shines"}}};
+     {Feature::World, "USE_WORLD", "a world shines"},
+     {Feature::OpacityThreshold, "USE_OPACITY_THRESHOLD", "a blended material casts shadows"}}};
 
 /** Features that only affect lighting. Variants without Feature::Light have none of them. */
 constexpr Feature light_features = Feature::Light | Feature::Punctual | Feature::Specular | Feature::ShadowCube |
@@ -36,16 +37,18 @@ constexpr Feature shadow_features = Feature::Light | Feature::Punctual | Feature
 
 /** Features that alpha depends on. */
 constexpr Feature alpha_features = Feature::AlphaMask | Feature::FullMaterial;
+constexpr Feature caster_features = alpha_features | Feature::OpacityThreshold;
 
 constexpr std::array<ShaderDeclaration, 19> declarations = {{
     {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl", alpha_features,
      Feature::None, "depth of what is seen, so that each pixel is lit once"},
     {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
-     alpha_features, Feature::None, "depth of what a lamp sees, a layer a pass"},
+     caster_features, Feature::None, "depth of what a lamp sees, a layer a pass"},
     {ShaderId::ShadowLayered, "eevee_shadow_layered", "eevee/eevee_shadow_layered_vert.glsl", "",
-     "eevee/eevee_depth_frag.glsl", alpha_features, Feature::None, "depth of what a lamp sees, all layers in one pass"},
+     "eevee/eevee_depth_frag.glsl", caster_features, Feature::None,
+     "depth of what a lamp sees, all layers in one pass"},
     {ShaderId::ShadowGeometry, "eevee_shadow_geometry", "eevee/eevee_shadow_geometry_vert.glsl",
-     "eevee/eevee_shadow_geometry_geom.glsl", "eevee/eevee_depth_frag.glsl", alpha_features, Feature::None,
+     "eevee/eevee_shadow_geometry_geom.glsl", "eevee/eevee_depth_frag.glsl", caster_features, Feature::None,
      "the same where vertex shaders cannot choose a layer"},
     {ShaderId::Lit, "eevee_lit", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_lit_frag.glsl",
      light_features | Feature::BaseColorTexture | Feature::FullMaterial, Feature::None,
@@ -92,6 +95,11 @@ bool is_possible(Feature features, const ShaderDeclaration &declaration)
   if (has(features, Feature::FullMaterial) &&
       (has(features, Feature::BaseColorTexture) ||
        (has(declaration.features, Feature::AlphaMask) && !has(features, Feature::AlphaMask)))) {
+    return false;
+  }
+  // Blended casters read what masks read.
+  if (has(features, Feature::OpacityThreshold) &&
+      (features & alpha_features) != alpha_features) {
     return false;
   }
   if (!has(features, Feature::Light)) {

@@ -20,6 +20,8 @@ using gpu::State;
 using render_scene::MaterialClass;
 using render_scene::TextureSet;
 
+}  // namespace
+
 void bind_lit(draw::ShadingGroup &group, Data &data)
 {
   StorageList &stl = data.stl;
@@ -43,8 +45,6 @@ void bind_lit(draw::ShadingGroup &group, Data &data)
   }
   stl.shadows->bind(group);
 }
-
-}  // namespace
 
 /** Create the targets of a picture with a visible object or a background. */
 void Engine::make_targets(draw::Viewport &viewport)
@@ -191,22 +191,30 @@ void Engine::record_tonemap(draw::Viewport &viewport)
   }
   stl.tonemap_recorded.reset();
   data.psl->tonemap.clear();
-  draw::ShadingGroup &tonemap = data.psl->tonemap.group(
-      shaders_.get(device, ShaderId::Tonemap, target.depth ? Feature::TargetDepth : Feature::None));
-  tonemap.state_enable(state);
-  tonemap.bind_texture("radiance_texture", txl.film, txl.nearest);
-  if (target.depth) {
-    tonemap.bind_texture("depth_texture", depth_texture, txl.nearest);
+  const auto add_group = [&](State group_state) -> draw::ShadingGroup & {
+    draw::ShadingGroup &tonemap = data.psl->tonemap.group(
+        shaders_.get(device, ShaderId::Tonemap, target.depth ? Feature::TargetDepth : Feature::None));
+    tonemap.state_enable(group_state);
+    tonemap.bind_texture("radiance_texture", txl.film, txl.nearest);
+    if (target.depth) {
+      tonemap.bind_texture("depth_texture", depth_texture, txl.nearest);
+    }
+    tonemap.constant_ref("origin_px", &stl.tonemap.origin_px);
+    tonemap.constant_ref("view_transform", &stl.tonemap.view_transform);
+    tonemap.constant_ref("encoding", &stl.tonemap.encoding);
+    tonemap.constant_ref("exposure_scale", &stl.tonemap.exposure_scale);
+    tonemap.constant_ref("sample_scale", &stl.tonemap.sample_scale);
+    tonemap.constant_ref("depth_scale", &stl.tonemap.depth.scale);
+    tonemap.constant_ref("background_depth", &stl.tonemap.depth.background);
+    tonemap.constant_ref("is_over", &stl.tonemap.is_over);
+    tonemap.call_procedural();
+    return tonemap;
+  };
+  add_group(state);
+  if (is_over && target.depth && !stl.blended.empty()) {
+    // Blended surfaces have no depth to compare with the target's.
+    add_group(State::BlendOver).constant("is_over", 2);
   }
-  tonemap.constant_ref("origin_px", &stl.tonemap.origin_px);
-  tonemap.constant_ref("view_transform", &stl.tonemap.view_transform);
-  tonemap.constant_ref("encoding", &stl.tonemap.encoding);
-  tonemap.constant_ref("exposure_scale", &stl.tonemap.exposure_scale);
-  tonemap.constant_ref("sample_scale", &stl.tonemap.sample_scale);
-  tonemap.constant_ref("depth_scale", &stl.tonemap.depth.scale);
-  tonemap.constant_ref("background_depth", &stl.tonemap.depth.background);
-  tonemap.constant_ref("is_over", &stl.tonemap.is_over);
-  tonemap.call_procedural();
   stl.tonemap_recorded = key;
 }
 
@@ -264,6 +272,8 @@ void Engine::record_passes(draw::Viewport &viewport)
   stl.pass_recordings++;
   stl.tonemap_recorded.reset();
   stl.groups.clear();
+  stl.blended.clear();
+  stl.blended_group_count = 0;
   stl.is_mirrored.assign(scene_.objects().index_end(), false);
   for (const draw::ObjectIndex object : stl.objects) {
     record_object(viewport, object);
@@ -311,8 +321,12 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
   const auto bind_surface = [&data](draw::ShadingGroup &group) { bind_lit(group, data); };
   // An object that receives no shadows is drawn with a program without shadow lookups.
   const Feature lighting = object.receives_shadow ? stl.features : without_shadows(stl.features);
-  const gpu::Shader &depth_shader = shaders_.get(device, ShaderId::Depth, mask_features(cut_out));
   const gpu::Shader &lit_shader = shaders_.get(device, ShaderId::Lit, lighting | feature_of(surface));
+  if (render_scene::is_blended(scene, mesh)) {
+    record_blended(data, index, lit_shader, surface_textures, batch);
+    return;
+  }
+  const gpu::Shader &depth_shader = shaders_.get(device, ShaderId::Depth, mask_features(cut_out));
   call(material.is_double_sided ? data.psl->depth_pass : data.psl->depth_pass_cull, depth_shader, State::None, cut_out,
        alpha_textures, bind_surface);
   // The depth test of the lit pass is "equal": a back face at the depth of a front face of another triangle must be

@@ -43,6 +43,7 @@ std::uint64_t caster_fingerprint(const scene::Scene &scene, const render_scene::
     std::uint64_t mesh;
     scene::Revision shape;
     std::uint64_t is_double_sided;
+    std::uint64_t alpha_mode;
     std::uint64_t texture;
     scene::Revision image_of_texture;
     scene::Revision sampler;
@@ -58,7 +59,8 @@ std::uint64_t caster_fingerprint(const scene::Scene &scene, const render_scene::
   key.mesh = object.mesh.key();
   key.shape = scene.meshes().revision(object.mesh, scene::Mesh::Aspect::Shape);
   key.is_double_sided = material.is_double_sided ? 1 : 0;
-  if (render_scene::is_masked(scene, mesh)) {
+  if (render_scene::is_masked(scene, mesh) || render_scene::is_blended(scene, mesh)) {
+    key.alpha_mode = std::uint64_t(material.alpha_mode);
     const scene::TextureSlot &slot = material.base_color_texture;
     if (render_scene::is_drawable(scene, mesh, slot)) {
       key.texture = slot.texture.key();
@@ -111,13 +113,15 @@ void Engine::record_caster(SharedData &shared, draw::ObjectIndex index)
   const scene::Scene &scene = scene_.scene();
   const scene::Mesh &mesh = scene.meshes()[object.mesh];
   const scene::Material &material = scene.material_of(mesh);
-  const MaterialClass cut_out = render_scene::mask_class(scene, mesh);
+  const bool is_blended = render_scene::is_blended(scene, mesh);
+  const MaterialClass cut_out = is_blended ? MaterialClass::Full : render_scene::mask_class(scene, mesh);
   shared.is_mirrored[index] = draw::is_mirrored(scene_.objects().world_from_object(index));
   const State winding = shared.is_mirrored[index] ? State::FrontClockwise : State::None;
   draw::InstanceCall *&instances = shared.caster_calls[{object.mesh, winding}];
   if (!instances) {
     const gpu::Shader &shader =
-        shaders_.get(scene_.device(), shadow_shader(shared.shadows.layer_pass()), mask_features(cut_out));
+        shaders_.get(scene_.device(), shadow_shader(shared.shadows.layer_pass()),
+                     mask_features(cut_out) | (is_blended ? Feature::OpacityThreshold : Feature::None));
     const State faces = material.is_double_sided ? State::None : culled_state(settings_.shadow.caster_faces);
     // Without culling the winding has no effect.
     const State state = faces == State::None ? State::None : faces | winding;
@@ -131,6 +135,8 @@ void Engine::record_caster(SharedData &shared, draw::ObjectIndex index)
       group->bind_storage_ref("material_block", &shared.material_block);
       group->bind_storage_ref("full_material_block", &shared.full_material_block);
       group->bind_uniform_ref("shadow_render_block", shared.shadows.render_block());
+      group->constant_ref("sample_index", &shared.sample_index);
+      group->constant_ref("sample_seed", &shared.sample_seed);
       render_scene::bind_textures(*group, scene_, cut_out, textures);
     }
     instances = &group->instances(scene_.batch(object.mesh, streams_of(cut_out)));
@@ -148,7 +154,8 @@ void Engine::add_casters(Data &data)
       const glm::mat4 &world_from_object = scene_.objects().world_from_object(index);
       shared.shadows.add_caster({object.bounds, index, instances,
                                  caster_fingerprint(scene_.scene(), object, world_from_object),
-                                 &scene_.scene().meshes()[object.mesh], &world_from_object});
+                                 &scene_.scene().meshes()[object.mesh], &world_from_object,
+                                 render_scene::is_blended(scene_.scene(), scene_.scene().meshes()[object.mesh])});
     }
   }
   shared.shadows.finish();

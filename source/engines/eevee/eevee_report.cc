@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The report of a frame: the parts that were made or left out. It reads the same state as the drawing code.
+#include "eevee_material_variants.hh"
 #include "eevee_report_source.hh"
 
 #include "eevee_inspection.hh"
@@ -193,11 +194,10 @@ FrameNode draw_nodes(const ReportSource &source)
     const FrameStep &step = frame_steps()[i];
     for (std::size_t j = 0; j < step.passes.size(); j++) {
       const draw::RecordCounts counts = source.data.frame[i].passes[j].counts;
-      // Steps with one pass draw a full-screen triangle and no objects.
-      if (counts.drawn + counts.culled == 0 || step.passes.size() == 1) {
+      const draw::Pass &pass = (*source.data.psl).*step.passes[j].pass;
+      if (counts.drawn + counts.culled == 0 || !pass.has_objects()) {
         continue;
       }
-      const draw::Pass &pass = (*source.data.psl).*step.passes[j].pass;
       FrameNode &node = passes.emplace_back(FrameNode{.what = pass.name(),
                                                       .is_made = counts.drawn > 0,
                                                       .why = counts.drawn > 0 ? "in the view" : "outside of the view",
@@ -234,6 +234,10 @@ Report Inspection::report() const
   const SceneShadows &shadows = shared.shadows;
   report.warnings = lamps.warnings;
   report.warnings.insert(report.warnings.end(), shadows.warnings().begin(), shadows.warnings().end());
+  if (settings.shadow.cascades.is_fitted_to_depth && has_blended(scene.scene())) {
+    report.warnings.emplace_back(
+        "cascades are not fitted to depths: blended materials receive shadows, and have no depth");
+  }
   for (std::string &line : scene.scene().stale_references()) {
     report.warnings.push_back(std::move(line));
   }
@@ -254,6 +258,10 @@ Report Inspection::report() const
   }
   report.limits = lamps.limits;
   report.limits.insert(report.limits.end(), shadows.limits().begin(), shadows.limits().end());
+  if (stl.blend_ordered && stl.blend_ordered->visible.size() > blend_order_exact_max) {
+    report.limits.push_back(fmt::format("{} blended objects are in the view: more than {} are ordered by distance alone",
+                                        stl.blend_ordered->visible.size(), blend_order_exact_max));
+  }
   report.shadow_counters = stl.shadows->counters();
   report.pass_recordings = stl.pass_recordings;
   for (int i = 0; i < lamps.light_block.light_count; i++) {

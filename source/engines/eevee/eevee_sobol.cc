@@ -1,43 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_sobol.hh"
 
+#include "eevee_sequence_shared.h"
+
 #include <array>
 
 namespace gnomon::eevee {
 
-std::uint32_t mixed_bits(std::uint32_t value)
-{
-  // The finalizer of MurmurHash3 (A. Appleby, public domain).
-  value ^= value >> 16U;
-  value *= 0x85EBCA6BU;
-  value ^= value >> 13U;
-  value *= 0xC2B2AE35U;
-  value ^= value >> 16U;
-  return value;
-}
-
 namespace {
 
-std::uint32_t reversed_bits(std::uint32_t value)
-{
-  value = (value >> 16U) | (value << 16U);
-  value = ((value >> 8U) & 0x00FF00FFU) | ((value & 0x00FF00FFU) << 8U);
-  value = ((value >> 4U) & 0x0F0F0F0FU) | ((value & 0x0F0F0F0FU) << 4U);
-  value = ((value >> 2U) & 0x33333333U) | ((value & 0x33333333U) << 2U);
-  return ((value >> 1U) & 0x55555555U) | ((value & 0x55555555U) << 1U);
-}
+using shared::mixed_bits;
+using shared::reversed_bits;
+using shared::scrambled_from_below;
+using shared::to_unit;
 
 /** Owen scrambling of \a value: a hash of the higher bits decides whether a bit is flipped. */
 std::uint32_t scrambled(std::uint32_t value, std::uint32_t seed)
 {
-  // The hash of Laine and Karras (2011) on the reversed bits. In each of its steps, a bit depends on lower bits only.
-  value = reversed_bits(value);
-  value += seed;
-  value ^= value * 0x6C50B47CU;
-  value ^= value * 0xB82F1E52U;
-  value ^= value * 0xC7AFE638U;
-  value ^= value * 0x8D22F6E6U;
-  return reversed_bits(value);
+  return reversed_bits(scrambled_from_below(reversed_bits(value), seed));
 }
 
 using Directions = std::array<std::uint32_t, 32>;
@@ -70,11 +50,6 @@ std::uint32_t sobol(std::uint32_t index, const Directions &directions)
     value ^= (index >> k & 1U) != 0 ? directions[k] : 0U;
   }
   return value;
-}
-
-float to_unit(std::uint32_t value)
-{
-  return float(value >> 8U) * 0x1p-24F;
 }
 
 }  // namespace

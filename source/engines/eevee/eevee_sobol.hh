@@ -17,7 +17,4 @@ namespace gnomon::eevee {
  */
 [[nodiscard]] glm::vec3 sobol_point(std::uint32_t index, std::uint32_t seed);
 
-/** A hash of \a value. Consecutive values have unrelated results. */
-[[nodiscard]] std::uint32_t mixed_bits(std::uint32_t value);
-
 }  // namespace gnomon::eevee

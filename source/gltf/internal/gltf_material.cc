@@ -133,9 +133,6 @@ class MaterialReader {
     else if (source_.alpha_mode != "OPAQUE") {
       warnings_.add(what_, "alphaMode '" + printable(source_.alpha_mode) + "' is unknown, taken for OPAQUE");
     }
-    if (result_.alpha_mode == AlphaMode::Blend) {
-      warnings_.add(what_, "alphaMode " + source_.alpha_mode + " is drawn opaque for now");
-    }
   }
 
   /** Clamps to the range in which floats still distinguish texels. */

@@ -138,6 +138,7 @@ void ShadowCasters::begin()
   casters_.clear();
   volumes_.clear();
   calls_.clear();
+  blended_.clear();
   changed_.clear();
 }
 
@@ -147,7 +148,11 @@ void ShadowCasters::finish()
   bounds_ws_ = {};
   volumes_.clear();
   calls_.clear();
+  blended_.clear();
   for (const Caster &caster : casters_) {
+    if (caster.is_blended) {
+      blended_.push_back(volumes_.size());
+    }
     bounds_ws_.extend(caster.bounds_ws);
     volumes_.push_back({caster.bounds_ws.center(), caster.bounds_ws.radius()});
     calls_.push_back(caster.instances);

@@ -31,6 +31,8 @@ struct Caster {
    */
   const scene::Mesh *mesh = nullptr;
   const glm::mat4 *world_from_object = nullptr;
+  /** It lets a part of the light through: each sample of a picture has another shadow of it. */
+  bool is_blended = false;
 };
 
 /** Hash of \a bytes, for Caster::fingerprint. */
@@ -114,6 +116,11 @@ class ShadowCasters {
   {
     return calls_;
   }
+  /** Indices in list() of those that are blended. */
+  [[nodiscard]] const std::vector<std::size_t> &blended() const
+  {
+    return blended_;
+  }
   /** Result of changed_bounds for the last list and this list. */
   [[nodiscard]] const std::vector<scene::Bounds> &changed() const
   {
@@ -136,6 +143,7 @@ class ShadowCasters {
   scene::Bounds bounds_ws_;
   std::vector<draw::CullingVolume> volumes_;
   std::vector<draw::InstanceCall *> calls_;
+  std::vector<std::size_t> blended_;
   std::vector<scene::Bounds> changed_;
   CasterDistances distances_;
 };

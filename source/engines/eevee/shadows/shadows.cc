@@ -140,6 +140,18 @@ void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_si
   write_block(device);
 }
 
+void Shadows::invalidate_blended()
+{
+  const ShadowCasters &casters = scene_.casters_;
+  for_each_slot([&](ShadowSlot &slot) {
+    LayerMask touched = 0;
+    for (const std::size_t i : casters.blended()) {
+      touched |= touched_layers(slot, casters.list()[i].bounds_ws, casters.volumes()[i]);
+    }
+    slot.invalidate(slot.place.technique->changed_layers(touched));
+  });
+}
+
 bool Shadows::reads_depths() const
 {
   return !slots_.empty() && scene_.settings_.cascades.is_fitted_to_depth;

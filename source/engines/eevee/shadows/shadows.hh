@@ -63,6 +63,8 @@ class Shadows {
    */
   void update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
               gpu::CommandList &list, std::span<const LampPoint> points = {}, std::span<const float> depths = {});
+  /** Draw the layers that blended casters touch again: they hold one sample of them. */
+  void invalidate_blended();
   /** Whether suns are fitted to depths. */
   [[nodiscard]] bool reads_depths() const;
   /** Make the next update fit the suns again even if the view does not change, because new depths are available. */

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// For fragment shaders: blended casters, which let a part of the light through. A shadow layer stores one depth, so each texel is
+// either covered or not in one sample; over the samples it is covered as often as the opacity says.
+#include "eevee/eevee_full_alpha_lib.glsl"
+#include "shared/eevee_sequence_shared.h"
+
+/** \see eevee_full_alpha_vert_lib.glsl */
+layout(location = 5) flat in uint surface_object;
+
+PUSH_CONSTANT_LAYOUT uniform push_constant_block
+{
+  /** Of the picture. */
+  int sample_index;
+  int sample_seed;
+};
+
+bool is_let_through()
+{
+  float texel = has_input(INPUT_BASE_COLOR) ? textureLod(base_color_texture, surface_uv, 0.0).a : 1.0;
+  uint occluder = 2u * surface_object + (gl_FrontFacing ? 1u : 0u);
+  return blended_opacity(texel) <= opacity_threshold(uint(gl_FragCoord.x), uint(gl_FragCoord.y), occluder, uint(sample_index),
+                                                     uint(sample_seed));
+}

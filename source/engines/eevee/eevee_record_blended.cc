@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// Records the pass that blends objects over what is behind them, and orders it.
+#include "eevee_engine.hh"
+#include "eevee_engine_data.hh"
+#include "eevee_frame.hh"
+
+#include <algorithm>
+#include <utility>
+
+namespace gnomon::eevee {
+
+void Engine::record_blended(Data &data, draw::ObjectIndex object, const gpu::Shader &shader,
+                            const render_scene::TextureSet &textures, const gpu::Batch &batch)
+{
+  using gpu::State;
+  StorageList &stl = data.stl;
+  const scene::Mesh &mesh = scene_.scene().meshes()[scene_.object(object).mesh];
+  const State winding = stl.is_mirrored[object] ? State::FrontClockwise : State::None;
+  BlendedObject &blended = stl.blended.emplace_back(BlendedObject{object, stl.blended_group_count, 0});
+  const auto add_side = [&](State culled) {
+    draw::ShadingGroup &group = data.psl->blend_pass.group(shader);
+    group.state_enable(culled | winding);
+    bind_lit(group, data);
+    render_scene::bind_textures(group, scene_, render_scene::MaterialClass::Full, textures);
+    group.call(batch, object);
+    blended.group_count++;
+    stl.blended_group_count++;
+  };
+  // The backs of a convex object are behind its fronts.
+  if (scene_.scene().material_of(mesh).is_double_sided) {
+    add_side(State::CullFront);
+  }
+  add_side(State::CullBack);
+}
+
+void Engine::order_blended(Data &data, const draw::View &view)
+{
+  StorageList &stl = data.stl;
+  if (stl.blended.empty()) {
+    return;
+  }
+  const shared::ViewData seen_from = view_data(view, 1);
+  BlendOrderKey key{.eye_ws = seen_from.is_perspective != 0 ? glm::vec4(seen_from.position_ws, 1.0F)
+                                                            : glm::vec4(seen_from.back_ws, 0.0F),
+                    .objects = scene_.objects().revision(),
+                    .recording = stl.pass_recordings,
+                    .visible = {}};
+  std::vector<std::uint32_t> hidden;
+  for (std::uint32_t i = 0; i < stl.blended.size(); i++) {
+    const bool is_visible = view.touches(scene_.objects().volume(stl.blended[i].object));
+    (is_visible ? key.visible : hidden).push_back(i);
+  }
+  if (stl.blend_ordered == key) {
+    return;
+  }
+  std::vector<scene::Bounds> boxes;
+  boxes.reserve(key.visible.size());
+  for (const std::uint32_t i : key.visible) {
+    boxes.push_back(scene_.object(stl.blended[i].object).bounds);
+  }
+  std::vector<std::uint32_t> groups;
+  const auto add_groups = [&](std::uint32_t i) {
+    const BlendedObject &blended = stl.blended[i];
+    for (std::uint32_t group = 0; group < blended.group_count; group++) {
+      groups.push_back(blended.first_group + group);
+    }
+  };
+  for (const std::uint32_t place : back_to_front(boxes, key.eye_ws)) {
+    add_groups(key.visible[place]);
+  }
+  std::ranges::for_each(hidden, add_groups);
+  data.psl->blend_pass.set_order(std::move(groups));
+  stl.blend_ordered = std::move(key);
+}
+
+}  // namespace gnomon::eevee
