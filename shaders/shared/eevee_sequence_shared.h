@@ -42,13 +42,20 @@ SHARED_FUNCTION uint scrambled_from_below(uint value, uint seed)
   return value;
 }
 
+/** Owen scrambling of \a value: a hash of the higher bits decides whether a bit is flipped. */
+SHARED_FUNCTION uint scrambled(uint value, uint seed)
+{
+  return reversed_bits(scrambled_from_below(reversed_bits(value), seed));
+}
+
 /**
- * Point \a index of the van der Corput sequence in base 2, Owen-scrambled by \a seed: of any 2^k points that start at a multiple
- * of 2^k, one is in each interval of 2^-k. Sequences of different seeds are independent of each other.
+ * Point \a index of the van der Corput sequence in base 2, Owen-scrambled and in an order shuffled by \a seed: of any 2^k points
+ * that start at a multiple of 2^k, one is in each interval of 2^-k. Sequences of different seeds are independent of each other,
+ * for which scrambling alone does not suffice (Burley 2020, Practical Hash-based Owen Scrambling).
  */
 SHARED_FUNCTION uint scrambled_van_der_corput(uint index, uint seed)
 {
-  return reversed_bits(scrambled_from_below(index, seed));
+  return reversed_bits(scrambled_from_below(scrambled(index, mixed_bits(seed)), seed));
 }
 
 /** In [0, 1). */

@@ -37,7 +37,8 @@ struct Picture {
  * `doc/conventions.md` defines frame, clip distances, pixel filter, units and materials. Each pixel is the weighted
  * mean of all samples within 1.5 pixels of its centre. Normals are interpolated. A lamp behind the plane of the
  * triangle gives no light, even if the interpolated normal faces it. The backs of one-sided materials are invisible
- * to the camera but cast shadows. A blended surface covers what is behind it, and shades light, by its alpha. Hemi lamps, and lamps whose shadow setting is None, cast no shadow.
+ * to the camera but cast shadows. A blended surface covers what is behind it, and shades light, by its alpha. Hemi
+ * lamps, and lamps whose shadow setting is None, cast no shadow.
  *
  * \throws std::invalid_argument for a size or a number of samples below 1.
  */

@@ -28,8 +28,9 @@ struct Receiver {
                                                     const glm::dvec3 &normal_ws);
 
 /**
- * The part of the light of a point of a lamp that reaches \a receiver, in [0, 1]: 0 if the point is below the receiver's
- * plane. \see Tracer::transmission. Both sides of a triangle cast shadows, as in a shadow map that draws all faces.
+ * The part of the light of a point of a lamp that reaches \a receiver, in [0, 1]: 0 if the point is below the
+ * receiver's plane. \see Tracer::transmission. Both sides of a triangle cast shadows, as in a shadow map that draws all
+ * faces.
  */
 [[nodiscard]] double visible_part(const Tracer &tracer, const Receiver &receiver, const LightPoint &light);
 

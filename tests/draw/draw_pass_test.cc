@@ -20,6 +20,33 @@ TEST(Pass, SerializesEveryKindOfBindingAndCall)
   EXPECT_EQ(everything.pass.serialize(*device), test::EverythingPass::TEXT);
 }
 
+TEST(Pass, DrawsItsGroupsInTheOrderThatIsSet)
+{
+  const auto device = gpu::create_null_device();
+  const gpu::Shader shader = make_shader(*device, "everything", test::EVERYTHING_VERT, test::EVERYTHING_FRAG);
+  Pass pass("pass", gpu::State::WriteColor);
+  for (const gpu::State state : {gpu::State::CullBack, gpu::State::CullFront, gpu::State::WriteDepth}) {
+    draw::ShadingGroup &group = pass.group(shader);
+    group.state_enable(state);
+    group.call_procedural();
+  }
+  const auto recorded = [&] {
+    gpu::CommandList list;
+    pass.record(View(), list);
+    return list.serialize(*device);
+  };
+  const std::string as_made = recorded();
+  EXPECT_LT(as_made.find("cull_back"), as_made.find("cull_front"));
+  pass.set_order({2, 1});
+  const std::string ordered = recorded();
+  EXPECT_EQ(ordered.find("cull_back"), std::string::npos);
+  EXPECT_LT(ordered.find("write_depth"), ordered.find("cull_front"));
+  pass.clear();
+  pass.group(shader).call_procedural();
+  gpu::CommandList list;
+  EXPECT_EQ(pass.record(View(), list).drawn, 1U) << "another set of groups has an order of its own";
+}
+
 TEST(Pass, RecordsWhatItHoldsInOrder)
 {
   const auto device = gpu::create_null_device();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "reference_light.hh"
 #include "reference_test_scene.hh"
+#include "reference_visibility.hh"
 
 #include <gtest/gtest.h>
 
@@ -54,6 +55,43 @@ TEST(DirectLight, LambertianPlaneIsAlbedoOverPiTimesIrradiance)
   // The tolerance covers the float rounding of camera matrices.
   expect_color(seen(scene, test::camera_at({2, 1, 5}, {0, 0, 0}, narrow)),
                albedo * irradiance / std::numbers::pi + glm::dvec3(0, 0, 2), 2e-5);
+}
+
+TEST(DirectLight, BlendedSurfacesCoverByTheirAlphaAndShadeByIt)
+{
+  // Three panes over a plane, none of them first in the scene by distance, and one between the plane and the lamp
+  // alone.
+  scene::Scene scene;
+  const auto floor = test::add_material(scene, glm::vec3(0.5F));
+  add_rectangle(scene, {-10, -10}, {10, 10});
+  const auto add_pane = [&](const glm::vec3 &center, const glm::vec3 &emissive, float alpha) {
+    const auto material = test::add_material(scene, glm::vec3(0.0F));
+    scene.edit(material, [&](scene::Material &value) {
+      value.emissive = emissive;
+      value.alpha_mode = scene::AlphaMode::Blend;
+      value.alpha = alpha;
+    });
+    scene.edit(add_rectangle(scene, {-0.2F, -0.2F}, {0.2F, 0.2F}, placed(center)),
+               [&](scene::Mesh &mesh) { mesh.material = material; });
+  };
+  add_pane({0, 0, 2}, {1, 0, 0}, 0.25F);
+  add_pane({0, 0, 3}, {0, 1, 0}, 0.5F);
+  add_pane({0, 0, 1}, {0, 0, 1}, 0.75F);
+  add_pane({0, 0, 2.5F}, {9, 9, 9}, 0.0F);
+  add_pane({0, 1, 1}, {9, 9, 9}, 0.6F);
+  ASSERT_TRUE(scene.materials().is_live(floor));
+  // The ray to the lamp meets the last pane alone.
+  scene::PlacedLamp lamp = lamp_at(LampKind::Point, {0, 4, 4});
+  lamp.intensity = 32.0F * std::numbers::sqrt2_v<float>;
+  add_lamp(scene, lamp);
+  const double under = 0.5 / std::numbers::pi * 0.4;
+  const glm::dvec3 expected =
+      0.5 * glm::dvec3(0, 1, 0) +
+      0.5 * (0.25 * glm::dvec3(1, 0, 0) + 0.75 * (0.75 * glm::dvec3(0, 0, 1) + 0.25 * glm::dvec3(under)));
+  expect_color(seen(scene, test::camera_at({0, 0, 9}, {0, 0, 0}, narrow)), expected, 1e-4);
+  const Tracer tracer(scene);
+  EXPECT_NEAR(visibility(tracer, receiver_at({0, 0, 0}, {0, 0, 1}), tracer.lamps().front(), 1, 0).mean, 0.4, 1e-7);
+  EXPECT_TRUE(is_visible(tracer, receiver_at({0, 0, 0}, {0, 0, 1}), tracer.lamps().front()));
 }
 
 TEST(DirectLight, AWorldOfOneRadianceGivesAPlaneItsAlbedoTimesThat)

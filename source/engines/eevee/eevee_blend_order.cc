@@ -17,12 +17,8 @@ bool is_behind(const scene::Bounds &a, const scene::Bounds &b, const glm::vec4 &
   bool is_before = false;
   for (int axis = 0; axis < 3; axis++) {
     const bool is_parallel = eye_ws.w == 0.0F;
-    const auto is_eye_below = [&](float place) {
-      return is_parallel ? eye_ws[axis] < 0.0F : eye_ws[axis] <= place;
-    };
-    const auto is_eye_above = [&](float place) {
-      return is_parallel ? eye_ws[axis] > 0.0F : eye_ws[axis] >= place;
-    };
+    const auto is_eye_below = [&](float place) { return is_parallel ? eye_ws[axis] < 0.0F : eye_ws[axis] <= place; };
+    const auto is_eye_above = [&](float place) { return is_parallel ? eye_ws[axis] > 0.0F : eye_ws[axis] >= place; };
     if (b.max[axis] <= a.min[axis]) {
       is_behind |= is_eye_below(a.min[axis]);
       is_before |= is_eye_above(b.max[axis]);

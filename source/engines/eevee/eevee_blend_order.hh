@@ -11,7 +11,8 @@
 
 namespace gnomon::eevee {
 
-/** More boxes than this are ordered by distance alone, because the exact order takes time by the square of their number. */
+/** More boxes than this are ordered by distance alone, because the exact order takes time by the square of their
+ * number. */
 inline constexpr std::size_t blend_order_exact_max = 1024;
 
 /**

@@ -196,16 +196,15 @@ void record_lamp_points(const FrameStep & /*step*/, FrameSample &sample, gpu::Co
 
 void record_shadows(const FrameStep & /*step*/, FrameSample &sample, gpu::CommandList &list)
 {
-  const StorageList &stl = sample.data.stl;
+  StorageList &stl = sample.data.stl;
   SharedData &shared = *sample.data.shared;
   if (sample.settings.sample_count > 1) {
     stl.shadows->invalidate_blended();
   }
   shared.sample_index = sample.data.sample_index;
   shared.sample_seed = int(sample.settings.seed);
-  sample.data.stl.shadows->update(sample.viewport.device(), sample.view, pixel_size(sample.view, sample.viewport),
-                                  shared.shadow_pass, list, stl.lamp_points,
-                                  sample.data.depth_feedback.depths);
+  stl.shadows->update(sample.viewport.device(), sample.view, pixel_size(sample.view, sample.viewport),
+                      shared.shadow_pass, list, stl.lamp_points, sample.data.depth_feedback.depths);
 }
 
 void record_lit(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
@@ -291,9 +290,8 @@ constexpr std::array<FramePass, 1> background_passes = {
     {{&PassList::background_pass, "pixels without a surface",
       [](const FrameState &) -> std::string { return nothing_seen; }}}};
 
-constexpr std::array<FramePass, 1> blend_passes = {
-    {{&PassList::blend_pass, "blended objects, from back to front",
-      [](const FrameState &) -> std::string { return nothing_seen; }}}};
+constexpr std::array<FramePass, 1> blend_passes = {{{&PassList::blend_pass, "blended objects, from back to front",
+                                                     [](const FrameState &) -> std::string { return nothing_seen; }}}};
 
 constexpr std::array<FramePass, 1> film_passes = {
     {{&PassList::film_pass, "samples", [](const FrameState &) -> std::string { return nothing_seen; }}}};

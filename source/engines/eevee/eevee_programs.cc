@@ -98,8 +98,7 @@ bool is_possible(Feature features, const ShaderDeclaration &declaration)
     return false;
   }
   // Blended casters read what masks read.
-  if (has(features, Feature::OpacityThreshold) &&
-      (features & alpha_features) != alpha_features) {
+  if (has(features, Feature::OpacityThreshold) && (features & alpha_features) != alpha_features) {
     return false;
   }
   if (!has(features, Feature::Light)) {
@@ -133,13 +132,16 @@ std::span<const ShaderDeclaration> shader_declarations()
 std::vector<Feature> shader_variants(const ShaderDeclaration &declaration)
 {
   std::vector<Feature> variants;
-  for (std::uint32_t mask = 0; mask < 1U << feature_table.size(); mask++) {
+  // All subsets of the program's features in ascending order.
+  const auto all = std::uint32_t(declaration.features);
+  std::uint32_t mask = 0;
+  do {
     const auto features = Feature(mask);
-    if ((features & declaration.features) == features && (features & declaration.required) == declaration.required &&
-        is_possible(features, declaration)) {
+    if ((features & declaration.required) == declaration.required && is_possible(features, declaration)) {
       variants.push_back(features);
     }
-  }
+    mask = (mask - all) & all;
+  } while (mask != 0);
   return variants;
 }
 

@@ -9,8 +9,8 @@ namespace gnomon::eevee {
 namespace {
 
 /** Features that also affect programs without Feature::Light. */
-constexpr Feature unlit_features =
-    Feature::BaseColorTexture | Feature::AlphaMask | Feature::FullMaterial | Feature::TargetDepth;
+constexpr Feature unlit_features = Feature::BaseColorTexture | Feature::AlphaMask | Feature::FullMaterial |
+                                   Feature::TargetDepth | Feature::OpacityThreshold;
 
 /** A reflection function that returns the interface of a variant from the table that the build generated. */
 gpu::ShaderReflection generated_reflection(ShaderId id, Feature features)

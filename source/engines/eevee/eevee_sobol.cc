@@ -11,14 +11,8 @@ namespace {
 
 using shared::mixed_bits;
 using shared::reversed_bits;
-using shared::scrambled_from_below;
+using shared::scrambled;
 using shared::to_unit;
-
-/** Owen scrambling of \a value: a hash of the higher bits decides whether a bit is flipped. */
-std::uint32_t scrambled(std::uint32_t value, std::uint32_t seed)
-{
-  return reversed_bits(scrambled_from_below(reversed_bits(value), seed));
-}
 
 using Directions = std::array<std::uint32_t, 32>;
 
