@@ -9,6 +9,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
+#include <algorithm>
+
 namespace gnomon::eevee {
 namespace {
 
@@ -286,6 +288,41 @@ TEST_P(TargetGpuTest, OverLiesOnTheHostsContentWhereItIsNearer)
     }
   }
   EXPECT_GT(empty, 0);
+}
+
+TEST_P(TargetGpuTest, BlendedSurfacesLieOverTheHostsContentAndChangeNoDepth)
+{
+  test::remove_objects(scene);
+  const auto glass = test::add_material(scene, glm::vec3(0.0F));
+  scene.edit(glass, [](scene::Material &material) {
+    material.emissive = {0.9F, 0.4F, 0.1F};
+    material.alpha_mode = scene::AlphaMode::Blend;
+    material.alpha = 0.6F;
+  });
+  test::add_object(scene, test::add_square_mesh(scene, glass), glm::scale(glm::dmat4(1), glm::dvec3(200)));
+  SceneRenderer renderer(*device, scene, size_px, settings);
+  renderer.sync();
+  const HostTexture replaced(host_size_px, GL_RGBA8, 0);
+  renderer.draw(camera, {}, target_of(replaced, draw::Encoding::Display));
+  const Pixels picture = replaced.pixels();
+  const HostTexture host(host_size_px, GL_RGBA8, 0);
+  const Pixels before = host.pixels();
+  host.clear_depth(0.25F);
+  draw::Target over = target_of(host, draw::Encoding::Display);
+  over.composition = draw::Composition::Over;
+  over.depth = draw::HostDepth{.clip_from_view = glm::perspectiveRH_NO(0.6, 4.0 / 3.0, 0.5, 1000.0)};
+  renderer.draw_sample(camera, over);
+  const Pixels pixels = host.pixels();
+  expect_outside(pixels, before);
+  EXPECT_TRUE(std::ranges::all_of(host.depths(), [](float depth) { return std::abs(depth - 0.25F) < 1e-6F; }));
+  for (int y = origin_px.y; y < origin_px.y + size_px.y; y++) {
+    for (int x = origin_px.x; x < origin_px.x + size_px.x; x++) {
+      ASSERT_NEAR(picture.at(x, y)[3], 0.6 * 255.0, 1);
+      for (std::size_t c = 0; c < 3; c++) {
+        EXPECT_NEAR(pixels.at(x, y)[c], std::min(picture.at(x, y)[c] + 0.4 * before.at(x, y)[c], 255.0), 2);
+      }
+    }
+  }
 }
 
 }  // namespace
