@@ -104,6 +104,7 @@ class Tracer {
   /**
    * The part of the light of a point of a lamp that reaches a point, in [0, 1]: 0 if an opaque triangle lies between
    * them, otherwise the product of 1 - opacity over the blended triangles there. Their colour does not tint the light.
+   * A ray through an edge that two blended triangles share meets both.
    *
    * A triangle whose plane contains either point, within rounding, does not block. This excludes the triangle that
    * \a point_ws is on, triangles in its plane, and the surface that the lamp is mounted on. No other triangle is
