@@ -198,7 +198,7 @@ void record_shadows(const FrameStep & /*step*/, FrameSample &sample, gpu::Comman
 {
   StorageList &stl = sample.data.stl;
   SharedData &shared = *sample.data.shared;
-  if (sample.settings.sample_count > 1) {
+  if (sample.settings.planned_sample_count() > 1) {
     stl.shadows->invalidate_blended();
   }
   shared.sample_index = sample.data.sample_index;

@@ -238,7 +238,7 @@ TEST_F(BlendScene, TheTreeNamesThePassOrTheReason)
   const auto node = [&](const char *folder, const char *what) {
     renderer.sync();
     renderer.draw(test::camera_at({0, 0, 9}, {0, 0, 0}));
-    const FrameNode tree = renderer.engine.report(renderer.viewport).tree;
+    const FrameNode tree = renderer.inspect().report().tree;
     const FrameNode *found = find(*find(tree, folder), what);
     return found ? *found : FrameNode();
   };
@@ -257,7 +257,7 @@ TEST_F(BlendScene, SamplesRedrawOnlyTheLayersThatBlendedCastersTouch)
   const auto layers_drawn = [&](int sample_count) {
     test::Renderer renderer(*device, scene, {32, 32}, {.sample_count = sample_count});
     renderer.draw(test::camera_at({0, 0, 9}, {0, 0, 0}));
-    return renderer.engine.shadow_counters(renderer.viewport).faces_drawn;
+    return renderer.inspect().report().shadow_counters.faces_drawn;
   };
   test::remove_lamps(scene);
   test::add_lamp(scene, scene::LampKind::Point, {0, 0, 3}, {0, 0, -1}, 1.0F);
@@ -279,13 +279,13 @@ TEST_F(BlendScene, CascadesAreNotFittedToDepthsThatLackBlendedSurfaces)
   settings.shadow.cascades.is_fitted_to_depth = true;
   test::Renderer renderer(*device, scene, {32, 32}, settings);
   renderer.draw(test::camera_at({0, 0, 9}, {0, 0, 0}));
-  EXPECT_TRUE(renderer.engine.shadows(renderer.viewport).reads_depths());
-  EXPECT_TRUE(renderer.engine.report(renderer.viewport).warnings.empty());
+  EXPECT_TRUE(renderer.inspect().shadows().reads_depths());
+  EXPECT_TRUE(renderer.inspect().report().warnings.empty());
   set(scene::AlphaMode::Blend, 0.5F);
   renderer.sync();
   renderer.draw(test::camera_at({0, 0, 9}, {0, 0, 0}));
-  EXPECT_FALSE(renderer.engine.shadows(renderer.viewport).reads_depths());
-  EXPECT_EQ(renderer.engine.report(renderer.viewport).warnings.size(), 1U);
+  EXPECT_FALSE(renderer.inspect().shadows().reads_depths());
+  EXPECT_EQ(renderer.inspect().report().warnings.size(), 1U);
 }
 
 }  // namespace
