@@ -5,7 +5,10 @@
 
 layout(location = 2) flat in uint surface_material;
 
+// Blended casters read their opacity from full_material_block.
+#ifndef USE_OPACITY_THRESHOLD
 layout(std140, binding = MATERIAL_BLOCK_SLOT) readonly buffer material_block
 {
   MaterialData materials[];
 };
+#endif

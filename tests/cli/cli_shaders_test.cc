@@ -173,12 +173,11 @@ INSTANTIATE_TEST_SUITE_P(
                 // The block's layout also differs.
                 2},
         Planted{"PaddingRemoved",
-                "eevee_depth",
-                {{"shared/eevee_material_shared.h", "  float _pad0;\n", ""}},
-                "shared/eevee_material_shared.h",
-                "struct FullMaterialData",
-                "field 'full_materials[0]._pad0' of struct 'FullMaterialData' in block 'full_material_block' is in C++ "
-                "only [layout]"},
+                "eevee_esm_separable",
+                {{"shared/eevee_esm_shared.h", "  int _pad0;\n", ""}},
+                "shared/eevee_esm_shared.h",
+                "struct EsmData",
+                "field 'esm.lamps[0]._pad0' of struct 'EsmData' in block 'esm_block' is in C++ only [layout]"},
         Planted{"FieldsReordered",
                 "eevee_debug_cascades",
                 {{"shared/eevee_light_shared.h", "float spot_drop_outer;", "float planted;"},
@@ -267,14 +266,13 @@ TEST_F(ShadersTest, LayoutOfBlocksAgreesInBothColumns)
 TEST_F(ShadersTest, LayoutNamesStructAndFieldThatDiffer)
 {
   copy_tree();
-  replace("shared/eevee_material_shared.h", "  float _pad0;\n", "  float planted;\n");
-  const int line = line_of(read("tree/shared/eevee_material_shared.h"), "planted");
+  replace("shared/eevee_esm_shared.h", "  int _pad0;\n", "  int planted;\n");
+  const int line = line_of(read("tree/shared/eevee_esm_shared.h"), "planted");
   const Finished finished = run("shaders layout --shaders tree");
   EXPECT_EQ(finished.status, 1);
-  EXPECT_NE(finished.out.find("     -     60  full_materials[0].planted  <-- differs"), std::string::npos)
-      << finished.out;
-  EXPECT_NE(finished.out.find("tree/shared/eevee_material_shared.h:" + std::to_string(line) +
-                              ": error: field 'full_materials[0].planted' of struct 'FullMaterialData'"),
+  EXPECT_NE(finished.out.find("     -     28  esm.lamps[0].planted  <-- differs"), std::string::npos) << finished.out;
+  EXPECT_NE(finished.out.find("tree/shared/eevee_esm_shared.h:" + std::to_string(line) +
+                              ": error: field 'esm.lamps[0].planted' of struct 'EsmData'"),
             std::string::npos)
       << finished.out;
 }

@@ -101,7 +101,6 @@ Need need_background(const FrameState &state)
                                                       : Need{true, "pixels without a surface"};
 }
 
-/** A picture without visible objects and without a background is cleared once, with the first sample. */
 Need need_blend(const FrameState &state)
 {
   if (!state.data.is_seen) {
@@ -111,6 +110,7 @@ Need need_blend(const FrameState &state)
                                                  : Need{true, "blended objects, from back to front"};
 }
 
+/** A picture without visible objects and without a background is cleared once, with the first sample. */
 Need need_film(const FrameState &state)
 {
   if (state.data.is_seen) {
