@@ -17,6 +17,8 @@ endfunction()
 # gnomon_reuse_pch(TARGET PCH_TARGET): the compile settings of both must be equal.
 function(gnomon_reuse_pch TARGET PCH_TARGET)
   if(GNOMON_PCH)
+    # For targets that do not link the library, too.
+    target_compile_definitions(${TARGET} PRIVATE $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
     target_precompile_headers(${TARGET} REUSE_FROM ${PCH_TARGET})
   endif()
 endfunction()
