@@ -8,6 +8,8 @@ find_package(nlohmann_json REQUIRED)
 if(GNOMON_PROGRAM)
   find_package(CLI11 REQUIRED)
   pkg_check_modules(OpenEXR REQUIRED IMPORTED_TARGET OpenEXR)
+  # Debian's has -pthread, which glibc does not need, and with which precompiled headers do not match.
+  set_property(TARGET PkgConfig::OpenEXR PROPERTY INTERFACE_COMPILE_OPTIONS "")
   # For a module of the program, and for tests as another reader of the files that the program writes. Its CMake file in Debian 12
   # refers to folders of packages that it does not depend on.
   pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO)
