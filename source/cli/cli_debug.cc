@@ -3,8 +3,6 @@
 
 #include "cli.hh"
 
-#include "eevee_inspection.hh"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -45,14 +43,14 @@ DebugView parse_debug(const std::string &text)
   return view;
 }
 
-const gpu::Texture &shadow_picture(const DebugView &view, const scene::Scene &scene, eevee::Engine &engine,
-                                   draw::Viewport &viewport)
+const gpu::Texture &shadow_picture(const DebugView &view, const scene::Scene &scene,
+                                   const eevee::Inspection &inspection)
 {
   std::vector<std::string> with_layers;
   bool is_lamp = false;
   const std::vector<scene::PlacedLamp> lamps = scene.placed_lamps();
   for (std::size_t i = 0; i < lamps.size(); i++) {
-    const std::vector<std::string> layers = eevee::Inspection(engine, viewport).shadow_layers(i);
+    const std::vector<std::string> layers = inspection.shadow_layers(i);
     if (!layers.empty()) {
       with_layers.push_back(lamps[i].name);
     }
@@ -64,14 +62,14 @@ const gpu::Texture &shadow_picture(const DebugView &view, const scene::Scene &sc
       continue;
     }
     if (view.layer.empty()) {
-      return eevee::Inspection(engine, viewport).shadow_picture(i);
+      return inspection.shadow_picture(i);
     }
     const auto layer = std::ranges::find(layers, view.layer);
     if (layer == layers.end()) {
       throw std::runtime_error(fmt::format("{}: the shadow of lamp '{}' has no layer '{}'; it has: {}", scene.path,
                                            view.lamp, view.layer, fmt::join(layers, ", ")));
     }
-    return eevee::Inspection(engine, viewport).shadow_picture(i, std::size_t(layer - layers.begin()));
+    return inspection.shadow_picture(i, std::size_t(layer - layers.begin()));
   }
   throw std::runtime_error(fmt::format("{}: {} '{}'{}; lamps with a visible shadow: {}", scene.path,
                                        is_lamp ? "lamp" : "no lamp", view.lamp, is_lamp ? " has no visible shadow" : "",

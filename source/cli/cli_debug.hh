@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "eevee_engine.hh"
+#include "eevee_inspection.hh"
 
 #include <string>
 #include <string_view>
@@ -31,7 +31,7 @@ struct DebugView {
  * \throws std::runtime_error naming the scene and its lamps, or the lamp's layers, if there is no such lamp or layer.
  */
 [[nodiscard]] const gpu::Texture &shadow_picture(const DebugView &view, const scene::Scene &scene,
-                                                 eevee::Engine &engine, draw::Viewport &viewport);
+                                                 const eevee::Inspection &inspection);
 
 /** Converts display-referred floats, four for each pixel, to bytes for a PNG. */
 [[nodiscard]] std::vector<std::uint8_t> to_bytes(std::span<const float> rgba);

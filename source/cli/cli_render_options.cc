@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: MIT
+#include "cli_render_options.hh"
+
+#include "cli.hh"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+namespace gnomon::cli {
+
+namespace {
+
+/** Values of `--view`. */
+const std::map<std::string, draw::ViewTransform> view_transforms = {{"standard", draw::ViewTransform::Standard},
+                                                                    {"raw", draw::ViewTransform::Raw},
+                                                                    {"agx", draw::ViewTransform::Agx},
+                                                                    {"pbr-neutral", draw::ViewTransform::PbrNeutral}};
+
+eevee::PcfKernel parse_pcf(const std::string &text)
+{
+  if (text == "1" || text == "3x3" || text == "5x5") {
+    return {.width = text[0] - '0', .taps = 0};
+  }
+  constexpr std::string_view disk = "disk:";
+  int taps = 0;
+  const bool is_disk = text.rfind(disk, 0) == 0;
+  const char *end = text.data() + text.size();
+  const auto [after, error] = std::from_chars(text.data() + (is_disk ? disk.size() : text.size()), end, taps);
+  if (!is_disk || error != std::errc() || after != end || taps < 1 || taps > 64) {
+    throw UsageError(fmt::format("--pcf '{}' is none of 1, 3x3, 5x5 and disk:N with N from 1 to 64", text));
+  }
+  return {.width = 0, .taps = taps};
+}
+
+/**
+ * With at least this number of samples per pixel, most of the remaining error is at the edges of shadows. Halving the
+ * size of shadow texels halves this error, and the cost of drawing them is spread over the samples.
+ */
+constexpr int fine_shadow_samples = 16;
+
+eevee::ShadowSettings shadow_settings(const RenderOptions &options)
+{
+  static const std::map<std::string, scene::ShadowKind> kinds = {{"none", scene::ShadowKind::None},
+                                                                 {"hard", scene::ShadowKind::Hard},
+                                                                 {"pcf", scene::ShadowKind::Pcf},
+                                                                 {"esm", scene::ShadowKind::Esm},
+                                                                 {"evsm", scene::ShadowKind::Evsm}};
+  static const std::map<std::string, eevee::EsmKernel> kernels = {
+      {"4", eevee::EsmKernel::Disk4}, {"32", eevee::EsmKernel::Disk32}, {"separable", eevee::EsmKernel::Separable}};
+  static const std::map<std::string, eevee::LayerPass> passes = {{"best", eevee::LayerPass::Best},
+                                                                 {"six", eevee::LayerPass::Single},
+                                                                 {"geometry", eevee::LayerPass::Geometry},
+                                                                 {"layered", eevee::LayerPass::Layered}};
+  static const std::map<std::string, eevee::CasterFaces> faces = {
+      {"all", eevee::CasterFaces::All}, {"front", eevee::CasterFaces::Front}, {"back", eevee::CasterFaces::Back}};
+  eevee::ShadowSettings settings;
+  settings.kind = kinds.at(options.shadow);
+  settings.esm.kernel = kernels.at(options.esm);
+  settings.pcf = parse_pcf(options.pcf);
+  settings.cascades.count = options.cascades;
+  settings.cascades.lambda = options.cascade_lambda;
+  settings.cascades.is_fitted_to_depth = options.cascade_range == "depth";
+  settings.layer_pass = passes.at(options.cube_pass);
+  settings.caster_faces = faces.at(options.casters);
+  settings.memory_bytes_max = std::size_t(options.shadow_memory) << 20U;
+  if (options.shadow_size > 0) {
+    settings.cube_size_px = options.shadow_size;
+    settings.map_size_px = options.shadow_size;
+    settings.esm.size_px = std::clamp(options.shadow_size, 4, 8192);
+  }
+  else if (options.samples == 0 || options.samples >= fine_shadow_samples) {
+    settings.cube_size_px *= 2;
+    settings.map_size_px *= 2;
+    settings.esm.size_px *= 2;
+  }
+  return settings;
+}
+
+}  // namespace
+
+glm::ivec2 RenderOptions::size_px() const
+{
+  const std::string &text = size;
+  glm::ivec2 pixels{0};
+  const char *end = text.data() + text.size();
+  const auto [after_width, width_error] = std::from_chars(text.data(), end, pixels.x);
+  const bool has_x = width_error == std::errc() && after_width != end && *after_width == 'x';
+  const auto [after_height, height_error] = std::from_chars(has_x ? after_width + 1 : end, end, pixels.y);
+  if (!has_x || height_error != std::errc() || after_height != end || pixels.x < 1 || pixels.y < 1) {
+    throw UsageError(fmt::format("--size '{}' is not WIDTHxHEIGHT in pixels", text));
+  }
+  return pixels;
+}
+
+bool RenderOptions::is_png() const
+{
+  return std::filesystem::path(output).extension() == ".png";
+}
+
+draw::ViewTransform RenderOptions::view_transform() const
+{
+  return view_transforms.at(view);
+}
+
+void RenderOptions::check() const
+{
+  const auto unbuilt = [](const std::string &what) { throw UsageError(what + " is not built yet"); };
+  if (!aov.empty()) {
+    unbuilt("--aov");
+  }
+  if (!std::isfinite(exposure)) {
+    throw UsageError(fmt::format("--exposure {} is not a number of stops", exposure));
+  }
+  if (!std::isfinite(cascade_lambda)) {
+    throw UsageError(fmt::format("--cascade-lambda {} is not from 0 to 1", cascade_lambda));
+  }
+  if (choice.is_asked() && backend != "gl") {
+    throw UsageError("--max-error and --max-time measure a rendered picture and need --backend gl");
+  }
+  if (!choice.report_folder.empty() && !choice.is_asked()) {
+    throw UsageError("--report needs --max-error or --max-time");
+  }
+  if (output.empty() && backend == "gl") {
+    throw UsageError("-o OUT.exr or -o OUT.png is required");
+  }
+  if (!output.empty() && !is_png() && std::filesystem::path(output).extension() != ".exr") {
+    throw UsageError(fmt::format("-o '{}' ends in neither .exr nor .png", output));
+  }
+}
+
+eevee::Settings RenderOptions::engine_settings() const
+{
+  eevee::Settings settings;
+  settings.shadow = shadow_settings(*this);
+  // The number of samples that fit into a time is not known beforehand.
+  settings.sample_count = std::isfinite(seconds_max) ? 0 : samples;
+  settings.seed = seed;
+  settings.has_cascade_tint = debug_view.kind == DebugView::Kind::Cascades;
+  settings.is_timed = !json.empty() || is_explained;
+  return settings;
+}
+
+void add_render_options(CLI::App &command, RenderOptions &options)
+{
+  command.add_option("scene", options.scene, "glTF 2.0 file")->required();
+  command.add_option("-o,--output", options.output,
+                     "OUT.exr: scene-linear floats; OUT.png: display colours after the view transform");
+  command.add_option("--size", options.size, "WIDTHxHEIGHT, pixels")->capture_default_str();
+  command.add_option("--camera", options.camera, "Name of the camera (default: the first)");
+  CLI::Option *samples = command.add_option("--samples", options.samples, "Samples per pixel")
+                             ->capture_default_str()
+                             ->check(CLI::Range(1, 65536));
+  CLI::Option *time_limit =
+      command
+          .add_option(
+              "--time-limit", options.seconds_max,
+              "Time for each picture, s: draw samples until it has passed; --samples, if given, is an upper limit")
+          ->check(CLI::Range(1e-3, 1e9));
+  CLI::Option *frames =
+      command.add_option("--frames", options.frames.range,
+                         "Frames A-B or A of an animation; the frame number replaces the # characters in -o");
+  command.add_option("--fps", options.frames.frames_per_second, "Frames per second of an animation; frame 0 is at 0 s")
+      ->needs(frames)
+      ->capture_default_str()
+      ->check(CLI::Range(1e-3, 1e6));
+  command.add_option("--animation", options.frames.animation, "Name of the animation (default: the first)")
+      ->needs(frames);
+  command
+      .add_flag("--resume", options.frames.is_resumed, "Skip frames whose files are complete and have the same size")
+      ->needs(frames);
+  command.add_option("--repeat", options.repeat, "Number of times to render the picture, to measure its time")
+      ->excludes(frames)
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000));
+  command
+      .add_option("--shadow", options.shadow,
+                  "Shadows of lamps without gnomon_shadow: none, hard, pcf, esm, evsm; none disables all shadows")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"none", "hard", "pcf", "esm", "evsm"}));
+  command
+      .add_option(
+          "--shadow-size", options.shadow_size,
+          "Width of cube faces, maps and octahedral layers, pixels (default: 1024, 2048, 512; twice that with at least "
+          "16 samples)")
+      ->check(CLI::Range(1, 16384));
+  command
+      .add_option("--pcf", options.pcf, "Filter kernel of --shadow pcf: 1, 3x3, 5x5, or disk:N for N lookups on a disk")
+      ->capture_default_str();
+  command.add_option("--esm", options.esm, "Filter taps of --shadow esm and evsm: 4, 32, or separable")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"4", "32", "separable"}));
+  command
+      .add_option("--cascades", options.cascades,
+                  "Shadow maps of each sun; 0: as many as needed for texels no larger than pixels")
+      ->capture_default_str()
+      ->check(CLI::Range(0, eevee::cascade_count_max));
+  command
+      .add_option("--cascade-lambda", options.cascade_lambda,
+                  "Distribution of the cascades over the distance: 0 even, 1 logarithmic")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+  command
+      .add_option("--cascade-range", options.cascade_range,
+                  "Range that the cascades cover: view, the scene within the camera's frustum; depth, the visible "
+                  "surfaces")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"view", "depth"}));
+  command
+      .add_option("--cube-pass", options.cube_pass,
+                  "Drawing of the layers of a lamp: six (one pass for each), geometry or layered (one pass for all), "
+                  "best")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"best", "six", "geometry", "layered"}));
+  command.add_option("--casters", options.casters, "Faces of one-sided materials that cast shadows: all, front, back")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"all", "front", "back"}));
+  command
+      .add_option("--shadow-memory", options.shadow_memory,
+                  "Maximum memory of shadow layers, MiB; their sizes are reduced to fit")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1 << 20));
+  command.add_option("--debug", options.debug,
+                     "shadow:LAMP[:LAYER]: distances in the layers of a shadow (a cube face, a cascade, octahedral, "
+                     "all) instead of the picture; cascades: the picture, tinted by the cascade that a pixel reads");
+  command.add_option("--aov", options.aov, "Additional layers to write (not built yet)");
+  command.add_option("--view", options.view, "View transform of a PNG: standard, raw, agx, pbr-neutral")
+      ->capture_default_str()
+      ->check(CLI::IsMember(view_transforms));
+  command.add_option("--exposure", options.exposure, "Exposure of a PNG, stops")
+      ->capture_default_str()
+      ->check(CLI::Range(-64.0, 64.0));
+  command.add_option("--backend", options.backend, "gl, or null: record without a driver and draw nothing")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"gl", "null"}));
+  command.add_flag("--explain", options.is_explained, "Print the parts of the frame, and the parts that were left out");
+  command.add_option("--json", options.json,
+                     "Write times, counters, limits, and the parts that were made and left out");
+  add_world_options(command, options.world);
+  CLI::Option *max_error =
+      command
+          .add_option("--max-error", options.choice.error_max,
+                      "Choose the fastest shadows and samples with at most this RMSE against ray tracing")
+          ->check(CLI::Range(1e-6, 1e6));
+  CLI::Option *max_time =
+      command
+          .add_option("--max-time", options.choice.milliseconds_max,
+                      "Choose the most exact shadows and samples within this time for a picture, ms")
+          ->check(CLI::Range(1e-3, 1e9))
+          ->excludes(max_error);
+  // These options set what is chosen automatically, or change the picture so that its error cannot be measured.
+  for (const char *name :
+       {"--samples", "--time-limit", "--shadow", "--shadow-size", "--pcf", "--esm", "--cascades", "--cascade-lambda",
+        "--cascade-range", "--cube-pass", "--casters", "--shadow-memory", "--debug", "--frames", "--background"}) {
+    max_error->excludes(command.get_option(name));
+    max_time->excludes(command.get_option(name));
+  }
+  command.add_option("--report", options.choice.report_folder,
+                     "Folder of gnomon report to choose from (default: render a pilot)");
+  command.add_flag("--strict", options.is_strict, "End with status 4 if a limit was hit");
+  command.add_option("--seed", options.seed, "Seed of the sample pattern")->capture_default_str();
+  command.parse_complete_callback([&options, samples, time_limit] {
+    if (time_limit->count() > 0 && samples->count() == 0) {
+      options.samples = 0;
+    }
+  });
+}
+
+}  // namespace gnomon::cli

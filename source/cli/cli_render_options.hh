@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "cli_choice.hh"
+#include "cli_debug.hh"
+#include "cli_frames.hh"
+#include "cli_world.hh"
+
+#include "draw_target.hh"
+#include "eevee_engine.hh"
+
+#include <CLI/App.hpp>
+
+#include <limits>
+
+namespace gnomon::cli {
+
+/** Options of `gnomon render`. Texts are checked by CLI11 or by check(). */
+struct RenderOptions {
+  std::string scene;
+  std::string output;
+  std::string size = "960x540";
+  std::string camera;
+  int samples = 16;
+  /** Seconds for each picture; infinity without --time-limit, otherwise `samples` may be 0: no limit. */
+  double seconds_max = std::numeric_limits<double>::infinity();
+  FrameOptions frames;
+  int repeat = 1;
+  std::string shadow = "hard";
+  int shadow_size = 0;
+  std::string pcf = "3x3";
+  std::string esm = "4";
+  int cascades = 0;
+  float cascade_lambda = eevee::CascadeSettings().lambda;
+  std::string cascade_range = "view";
+  std::string cube_pass = "best";
+  std::string casters = "all";
+  int shadow_memory = 1024;
+  std::string debug;
+  DebugView debug_view;
+  std::string aov;
+  std::string view = "pbr-neutral";
+  float exposure = 0.0F;
+  std::string backend = "gl";
+  bool is_explained = false;
+  std::string json;
+  ChoiceOptions choice;
+  bool is_strict = false;
+  std::uint32_t seed = 0;
+  WorldOptions world;
+
+  /** \throws UsageError where an option's value is invalid, or does not go with another option */
+  void check() const;
+  /** Whether the output is display-referred. */
+  [[nodiscard]] bool is_png() const;
+  /** Whether a rendered picture is written. The null backend has none. */
+  [[nodiscard]] bool has_picture() const
+  {
+    return backend == "gl";
+  }
+  [[nodiscard]] bool is_shadow_shown() const
+  {
+    return debug_view.kind == DebugView::Kind::Shadow;
+  }
+  /** Pixels. \throws UsageError where `size` is not a size */
+  [[nodiscard]] glm::ivec2 size_px() const;
+  [[nodiscard]] draw::ViewTransform view_transform() const;
+  /** Without the background, which depends on the scene. */
+  [[nodiscard]] eevee::Settings engine_settings() const;
+};
+
+/** Adds the options to \a command, which fills \a options. Both must outlive the parsing. */
+void add_render_options(CLI::App &command, RenderOptions &options);
+
+}  // namespace gnomon::cli
