@@ -11,6 +11,8 @@ PUSH_CONSTANT_LAYOUT uniform push_constant_block
   /** Weights of the left, middle and right column, and of the lower, middle and upper row. */
   vec4 column_weights;
   vec4 row_weights;
+  /** Pixel of the radiance that is the lower left pixel of the picture. */
+  ivec2 radiance_origin_px;
 };
 
 layout(location = 0) out vec4 sum;
@@ -22,8 +24,8 @@ void main()
   sum = vec4(0.0);
   for (int y = 0; y < 3; y++) {
     for (int x = 0; x < 3; x++) {
-      // Pixels at the edge of the picture are repeated beyond it.
-      ivec2 neighbour = clamp(pixel + ivec2(x, y) - 1, ivec2(0), last);
+      // Pixels at the edge are repeated where the device has no room for a guard band.
+      ivec2 neighbour = clamp(radiance_origin_px + pixel + ivec2(x, y) - 1, ivec2(0), last);
       sum += texelFetch(radiance_texture, neighbour, 0) * (column_weights[x] * row_weights[y]);
     }
   }

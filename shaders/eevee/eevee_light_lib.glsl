@@ -97,7 +97,12 @@ CenterLight center_light(int index, Surface surface)
   LightData light = light_data.lights[index];
   CenterLight center = CenterLight(-light.forward_ws, 1.0, 1.0);
 #ifdef USE_PUNCTUAL
-  if (light.kind != LIGHT_SUN && light.kind != LIGHT_WORLD) {
+#ifdef USE_WORLD
+  bool is_distant = light.kind == LIGHT_SUN || light.kind == LIGHT_WORLD;
+#else
+  bool is_distant = light.kind == LIGHT_SUN;
+#endif
+  if (!is_distant) {
     vec3 vector = light.position_ws - surface.position_ws;
     center.distance_sq = dot(vector, vector);
     // At the position of the lamp the direction is undefined. The zero vector gives no light.

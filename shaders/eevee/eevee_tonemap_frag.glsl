@@ -15,6 +15,10 @@ PUSH_CONSTANT_LAYOUT uniform push_constant_block
   vec4 depth_scale;
   /** Lower left corner of the picture in the target. */
   ivec2 origin_px;
+  /** Pixel of the radiance that is the lower left pixel of the picture. */
+  ivec2 radiance_origin_px;
+  /** The same of the depth. */
+  ivec2 depth_origin_px;
   /** VIEW_TRANSFORM_… */
   int view_transform;
   /** ENCODING_… */
@@ -37,7 +41,7 @@ layout(location = 0) out vec4 display;
 void main()
 {
   ivec2 pixel = ivec2(gl_FragCoord.xy) - origin_px;
-  vec4 radiance = texelFetch(radiance_texture, pixel, 0) * sample_scale;
+  vec4 radiance = texelFetch(radiance_texture, radiance_origin_px + pixel, 0) * sample_scale;
   vec3 color = radiance.rgb * exposure_scale;
   if (encoding == ENCODING_DISPLAY) {
     color = view_transformed(color, view_transform);
@@ -47,7 +51,7 @@ void main()
   }
   display = vec4(color, clamp(radiance.a, 0.0, 1.0));
 #ifdef USE_TARGET_DEPTH
-  float depth = texelFetch(depth_texture, pixel, 0).r;
+  float depth = texelFetch(depth_texture, depth_origin_px + pixel, 0).r;
   if (is_over != 0 && (depth == 0.0) != (is_over == 2)) {
     discard;
   }

@@ -28,6 +28,7 @@ struct UsageError : std::runtime_error {
 void add_render(CLI::App &app, Status &status);
 void add_info(CLI::App &app, Status &status);
 void add_compare(CLI::App &app, Status &status);
+void add_merge(CLI::App &app, Status &status);
 void add_report(CLI::App &app, Status &status);
 void add_stability(CLI::App &app, Status &status);
 void add_shaders(CLI::App &app, Status &status);

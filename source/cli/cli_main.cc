@@ -15,6 +15,7 @@ static Status run(int argc, char **argv)
   add_render(app, status);
   add_info(app, status);
   add_compare(app, status);
+  add_merge(app, status);
   add_report(app, status);
   add_stability(app, status);
   add_shaders(app, status);

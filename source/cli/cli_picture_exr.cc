@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "internal/cli_exr_file.hh"
 #include "internal/cli_picture_formats.hh"
 
 #include "cli_output.hh"
@@ -42,16 +43,13 @@ static Imf::FrameBuffer frame_buffer(char *pixels, glm::ivec2 size_px, Imath::V2
   return buffer;
 }
 
-void write_exr(const fs::path &path, glm::ivec2 size_px, std::span<const float> rgba, const Metadata &metadata)
+void write_exr_file(const fs::path &path, Imf::Header header, const Imf::FrameBuffer &pixels, const Metadata &metadata)
 {
-  Imf::Header header(size_px.x, size_px.y);
-  for (const char *name : channel_names) {
-    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-  }
   header.insert("Software", Imf::StringAttribute("gnomon " GNOMON_VERSION));
   for (const auto &[name, value] : metadata) {
     header.insert(name, Imf::StringAttribute(value));
   }
+  const Imath::Box2i &window = header.dataWindow();
   write_atomically(path, [&](const fs::path &beside) {
     try {
       std::ofstream file(beside, std::ios::binary);
@@ -61,12 +59,10 @@ void write_exr(const fs::path &path, glm::ivec2 size_px, std::span<const float> 
       {
         Imf::StdOFStream stream(file, beside.c_str());
         Imf::OutputFile output(stream, header);
-        // OpenEXR does not write to it.
-        char *pixels = const_cast<char *>(reinterpret_cast<const char *>(rgba.data()));
-        output.setFrameBuffer(frame_buffer(pixels, size_px, {0, 0}));
-        output.writePixels(size_px.y);
+        output.setFrameBuffer(pixels);
+        output.writePixels(window.max.y - window.min.y + 1);
       }
-      // What its destructor writes, too.
+      // The destructor of the output writes, too.
       if (!file.flush()) {
         throw std::runtime_error("the disk may be full");
       }
@@ -75,6 +71,17 @@ void write_exr(const fs::path &path, glm::ivec2 size_px, std::span<const float> 
       throw std::runtime_error(fmt::format("{}: cannot be written: {}", path.string(), error.what()));
     }
   });
+}
+
+void write_exr(const fs::path &path, glm::ivec2 size_px, std::span<const float> rgba, const Metadata &metadata)
+{
+  Imf::Header header(size_px.x, size_px.y);
+  for (const char *name : channel_names) {
+    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  }
+  // OpenEXR does not write to it.
+  char *pixels = const_cast<char *>(reinterpret_cast<const char *>(rgba.data()));
+  write_exr_file(path, std::move(header), frame_buffer(pixels, size_px, {0, 0}), metadata);
 }
 
 std::optional<Picture> read_exr_picture(const fs::path &path)

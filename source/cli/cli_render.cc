@@ -2,6 +2,7 @@
 #include "cli.hh"
 
 #include "cli_explain.hh"
+#include "cli_exr_part.hh"
 #include "cli_output.hh"
 #include "cli_picture.hh"
 #include "cli_render_options.hh"
@@ -82,15 +83,16 @@ void render_frames(const RenderOptions &options, const scene::PlacedCamera &came
   target.view_transform = options.view_transform();
   target.exposure = options.exposure;
 
+  const int sample_count = renderer.settings().drawn_sample_count();
   eevee::ShadowCounters before = renderer.inspect().shadow_counters();
   for (int frame = 0; frame < options.repeat; frame++) {
     const Clock::time_point start = Clock::now();
     const auto progress = [&](int samples_drawn) {
-      show_progress(samples_drawn, options.samples);
-      return samples_drawn != options.samples;
+      show_progress(samples_drawn, sample_count);
+      return samples_drawn != sample_count;
     };
     result.samples_drawn = renderer.draw(camera, {.progress = progress, .seconds_max = options.seconds_max}, target);
-    end_progress(options.samples);
+    end_progress(sample_count);
     renderer.viewport().device().finish();
     result.frame_seconds.push_back(seconds_since(start));
     result.frame_steps.push_back(renderer.inspect().take_step_times());
@@ -101,11 +103,50 @@ void render_frames(const RenderOptions &options, const scene::PlacedCamera &came
   }
 }
 
+/** The rectangle \a region of a picture that is \a width_px wide. Rows from the bottom. */
+std::vector<glm::vec4> cropped(std::vector<glm::vec4> pixels, int width_px, const gpu::Rectangle &region)
+{
+  if (pixels.size() == std::size_t(region.size_px.x) * std::size_t(region.size_px.y)) {
+    return pixels;
+  }
+  std::vector<glm::vec4> crop;
+  for (int y = region.origin_px.y; y < region.origin_px.y + region.size_px.y; y++) {
+    const auto row = pixels.begin() + std::ptrdiff_t(y) * width_px + region.origin_px.x;
+    crop.insert(crop.end(), row, row + region.size_px.x);
+  }
+  return crop;
+}
+
+/** Writes the \a pixels of options.region() for `gnomon merge`. */
+void write_part(const RenderOptions &options, std::span<const glm::vec4> pixels, double sample_share, Metadata metadata)
+{
+  const glm::ivec2 whole_px = options.size_px();
+  const gpu::Rectangle region = options.region();
+  metadata.emplace_back(share_metadata, fmt::format("{}", sample_share));
+  metadata.emplace_back(part_metadata, fmt::format("tile '{}', samples '{}'", options.tile, options.sample_range));
+  ExrPart part{whole_px,
+               region.size_px,
+               {region.origin_px.x, whole_px.y - region.origin_px.y - region.size_px.y},
+               {},
+               std::move(metadata)};
+  constexpr std::string_view names = "RGB";
+  for (std::size_t i = 0; i < names.size(); i++) {
+    std::vector<float> &channel = part.channels[std::string(1, names[i])];
+    channel.reserve(pixels.size());
+    for (int y = region.size_px.y - 1; y >= 0; y--) {
+      const auto row = pixels.subspan(std::size_t(y) * std::size_t(region.size_px.x), std::size_t(region.size_px.x));
+      std::ranges::transform(row, std::back_inserter(channel),
+                             [&](const glm::vec4 &pixel) { return pixel[glm::length_t(i)]; });
+    }
+  }
+  write_exr_part(options.output, part);
+}
+
 /** \return Status::Done, or Status::NonFinite if the picture has non-finite values; it is then not written */
 Status write_picture(const RenderOptions &options, const scene::Camera &camera, gpu::Device &device,
                      std::span<const glm::vec4> pixels, glm::ivec2 size_px,
-                     const std::optional<draw::TargetTexture> &display, const Metadata &frame_metadata,
-                     RenderResult &result)
+                     const std::optional<draw::TargetTexture> &display, double sample_share,
+                     const Metadata &frame_metadata, RenderResult &result)
 {
   const bool is_shadow = options.is_shadow_shown();
   const std::span<const float> values = floats(pixels);
@@ -119,7 +160,7 @@ Status write_picture(const RenderOptions &options, const scene::Camera &camera, 
   }
   Metadata metadata = {{"gnomon:scene", options.scene},
                        {"gnomon:camera", camera.name},
-                       {"gnomon:samples", std::to_string(result.samples_drawn)},
+                       {"gnomon:samples", std::to_string(options.is_part() ? options.samples : result.samples_drawn)},
                        {"gnomon:seed", std::to_string(options.seed)},
                        {"gnomon:device", result.device}};
   metadata.insert(metadata.end(), frame_metadata.begin(), frame_metadata.end());
@@ -134,6 +175,10 @@ Status write_picture(const RenderOptions &options, const scene::Camera &camera, 
   else {
     metadata.emplace_back("gnomon:units",
                           is_shadow ? "metres, 0 where nothing was drawn" : "scene-linear radiance, W/(sr m^2)");
+    if (options.is_part()) {
+      write_part(options, pixels, sample_share, std::move(metadata));
+      return Status::Done;
+    }
     const std::vector<float> distances = is_shadow ? alpha_in_all(values) : std::vector<float>();
     write_exr(options.output, size_px, is_shadow ? distances : values, metadata);
   }
@@ -185,10 +230,12 @@ Status render_sequence(RenderOptions options, const FrameSequence &frames, scene
       shadow = &shadow_picture(options.debug_view, scene, renderer.inspect());
     }
     if (options.has_picture()) {
-      status = write_picture(options, camera, device,
-                             shadow ? gpu::read_as<glm::vec4>(device, *shadow) : renderer.read_picture(),
-                             shadow ? glm::ivec2(shadow->desc().width, shadow->desc().height) : size_px, display,
-                             frames.metadata(i), result);
+      const gpu::Rectangle region = renderer.viewport().region();
+      const glm::ivec2 written_px = shadow ? glm::ivec2(shadow->desc().width, shadow->desc().height) : region.size_px;
+      status = write_picture(
+          options, camera, device,
+          shadow ? gpu::read_as<glm::vec4>(device, *shadow) : cropped(renderer.read_picture(), size_px.x, region),
+          written_px, display, renderer.engine().sample_share(renderer.viewport()), frames.metadata(i), result);
     }
     result.output_seconds += seconds_since(output_start);
     frames.show_progress(i, ++rendered_count, seconds_since(start));
@@ -241,6 +288,7 @@ Status render(RenderOptions options)
   }
   eevee::SceneRenderer renderer(*device, scene, size_px, settings);
   renderer.sync();
+  renderer.viewport().set_region(options.region());
   const eevee::Inspection inspection = renderer.inspect();
   result.report = inspection.report();
   print_messages("warning", result.report.warnings);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <optional>
 
 namespace gnomon::cli {
 
@@ -82,18 +83,46 @@ eevee::ShadowSettings shadow_settings(const RenderOptions &options)
 
 }  // namespace
 
+/** Two numbers from 0 with \a separator between them. Empty for any other text. */
+static std::optional<glm::ivec2> parse_pair(std::string_view text, char separator)
+{
+  glm::ivec2 pair{0};
+  const char *end = text.data() + text.size();
+  const auto [after_first, first_error] = std::from_chars(text.data(), end, pair.x);
+  if (first_error != std::errc() || after_first == end || *after_first != separator) {
+    return std::nullopt;
+  }
+  const auto [after_second, second_error] = std::from_chars(after_first + 1, end, pair.y);
+  if (second_error != std::errc() || after_second != end || pair.x < 0 || pair.y < 0) {
+    return std::nullopt;
+  }
+  return pair;
+}
+
 glm::ivec2 RenderOptions::size_px() const
 {
-  const std::string &text = size;
-  glm::ivec2 pixels{0};
-  const char *end = text.data() + text.size();
-  const auto [after_width, width_error] = std::from_chars(text.data(), end, pixels.x);
-  const bool has_x = width_error == std::errc() && after_width != end && *after_width == 'x';
-  const auto [after_height, height_error] = std::from_chars(has_x ? after_width + 1 : end, end, pixels.y);
-  if (!has_x || height_error != std::errc() || after_height != end || pixels.x < 1 || pixels.y < 1) {
-    throw UsageError(fmt::format("--size '{}' is not WIDTHxHEIGHT in pixels", text));
+  const std::optional<glm::ivec2> pixels = parse_pair(size, 'x');
+  if (!pixels || pixels->x < 1 || pixels->y < 1) {
+    throw UsageError(fmt::format("--size '{}' is not WIDTHxHEIGHT in pixels", size));
   }
-  return pixels;
+  return *pixels;
+}
+
+gpu::Rectangle RenderOptions::region() const
+{
+  const glm::ivec2 whole_px = size_px();
+  if (tile.empty()) {
+    return {{0, 0}, whole_px};
+  }
+  const std::optional<glm::ivec2> part = parse_pair(tile, '/');
+  if (!part || part->x < 1 || part->x > part->y || part->y > whole_px.y) {
+    throw UsageError(fmt::format("--tile '{}' is not I/N with I from 1 to N and N up to the {} rows of the picture",
+                                 tile, whole_px.y));
+  }
+  const auto row_of = [&](int index) { return int(std::int64_t(whole_px.y) * index / part->y); };
+  const int top = row_of(part->x - 1);
+  const int end = row_of(part->x);
+  return {{0, whole_px.y - end}, {whole_px.x, end - top}};
 }
 
 bool RenderOptions::is_png() const
@@ -127,6 +156,9 @@ void RenderOptions::check() const
   if (output.empty() && backend == "gl") {
     throw UsageError("-o OUT.exr or -o OUT.png is required");
   }
+  if (is_part() && (is_png() || !debug.empty())) {
+    throw UsageError("--tile and --sample-range write parts of a picture to OUT.exr, without --debug");
+  }
   if (!output.empty() && !is_png() && std::filesystem::path(output).extension() != ".exr") {
     throw UsageError(fmt::format("-o '{}' ends in neither .exr nor .png", output));
   }
@@ -138,6 +170,15 @@ eevee::Settings RenderOptions::engine_settings() const
   settings.shadow = shadow_settings(*this);
   // The number of samples that fit into a time is not known beforehand.
   settings.sample_count = std::isfinite(seconds_max) ? 0 : samples;
+  if (!sample_range.empty()) {
+    const std::optional<glm::ivec2> range = parse_pair(sample_range, '-');
+    if (!range || range->x > range->y || range->y >= samples) {
+      throw UsageError(fmt::format("--sample-range '{}' is not A-B with A up to B, and B less than the {} samples",
+                                   sample_range, samples));
+    }
+    settings.sample_first = range->x;
+    settings.sample_end = range->y + 1;
+  }
   settings.seed = seed;
   settings.has_cascade_tint = debug_view.kind == DebugView::Kind::Cascades;
   settings.is_timed = !json.empty() || is_explained;
@@ -160,6 +201,13 @@ void add_render_options(CLI::App &command, RenderOptions &options)
               "--time-limit", options.seconds_max,
               "Time for each picture, s: draw samples until it has passed; --samples, if given, is an upper limit")
           ->check(CLI::Range(1e-3, 1e9));
+  command
+      .add_option("--sample-range", options.sample_range,
+                  "Draw only the samples A-B of --samples, counted from 0; `gnomon merge` joins the parts")
+      ->excludes(time_limit);
+  command.add_option("--tile", options.tile,
+                     "Draw only the I-th of N strips of the picture, I/N, counted from 1 at the top; `gnomon merge` "
+                     "joins them");
   CLI::Option *frames =
       command.add_option("--frames", options.frames.range,
                          "Frames A-B or A of an animation; the frame number replaces the # characters in -o");
@@ -252,9 +300,9 @@ void add_render_options(CLI::App &command, RenderOptions &options)
           ->check(CLI::Range(1e-3, 1e9))
           ->excludes(max_error);
   // These options set what is chosen automatically, or change the picture so that its error cannot be measured.
-  for (const char *name :
-       {"--samples", "--time-limit", "--shadow", "--shadow-size", "--pcf", "--esm", "--cascades", "--cascade-lambda",
-        "--cascade-range", "--cube-pass", "--casters", "--shadow-memory", "--debug", "--frames", "--background"}) {
+  for (const char *name : {"--samples", "--time-limit", "--shadow", "--shadow-size", "--pcf", "--esm", "--cascades",
+                           "--cascade-lambda", "--cascade-range", "--cube-pass", "--casters", "--shadow-memory",
+                           "--debug", "--frames", "--background", "--sample-range", "--tile"}) {
     max_error->excludes(command.get_option(name));
     max_time->excludes(command.get_option(name));
   }

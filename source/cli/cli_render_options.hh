@@ -24,6 +24,10 @@ struct RenderOptions {
   int samples = 16;
   /** Seconds for each picture; infinity without --time-limit, otherwise `samples` may be 0: no limit. */
   double seconds_max = std::numeric_limits<double>::infinity();
+  /** "A-B": the samples to draw, of `samples`, counted from 0; empty: all. */
+  std::string sample_range;
+  /** "I/N": the I-th of N strips of rows from the top, counted from 1; empty: the whole picture. */
+  std::string tile;
   FrameOptions frames;
   int repeat = 1;
   std::string shadow = "hard";
@@ -64,6 +68,13 @@ struct RenderOptions {
   }
   /** Pixels. \throws UsageError where `size` is not a size */
   [[nodiscard]] glm::ivec2 size_px() const;
+  /** Whether only a part of the picture is rendered, to be joined with the others by `gnomon merge`. */
+  [[nodiscard]] bool is_part() const
+  {
+    return !sample_range.empty() || !tile.empty();
+  }
+  /** The pixels of --tile; the whole picture without it. \throws UsageError where it is invalid */
+  [[nodiscard]] gpu::Rectangle region() const;
   [[nodiscard]] draw::ViewTransform view_transform() const;
   /** Without the background, which depends on the scene. */
   [[nodiscard]] eevee::Settings engine_settings() const;

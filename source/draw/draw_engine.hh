@@ -55,7 +55,7 @@ class Engine {
   virtual void cache_finish(Viewport &viewport) = 0;
   /**
    * Draw sample number Viewport::samples_drawn (the first is 0), unless all samples of the picture are drawn. Then
-   * write the mean of the samples to Viewport::target, if there is a target.
+   * write the mean of the samples to Viewport::target, if there is a target. \a view: of the picture and its guard band
    */
   virtual void draw_scene(Viewport &viewport, const View &view) = 0;
   /**

@@ -55,9 +55,10 @@ void check(const Target &target, glm::ivec2 size_px)
 }
 
 void begin_pass(gpu::CommandList &list, std::string_view name, const Target &target, glm::ivec2 size_px,
-                gpu::PassActions actions)
+                const gpu::Rectangle &region, gpu::PassActions actions)
 {
-  actions.viewport = actions.scissor = {target.origin_px, size_px};
+  actions.viewport = {target.origin_px, size_px};
+  actions.scissor = {target.origin_px + region.origin_px, region.size_px};
   actions.is_srgb_encoded = target.encoding == Encoding::SrgbFormat && target.view_transform != ViewTransform::Raw;
   if (const auto *const *own = std::get_if<const gpu::Framebuffer *>(&target.framebuffer)) {
     list.begin_pass(name, **own, actions);

@@ -86,9 +86,9 @@ struct Target {
 /** \throws gpu::Error if a picture of \a size_px cannot be written to \a target */
 void check(const Target &target, glm::ivec2 size_px);
 
-/** Begin a pass that draws only into the rectangle of a picture of \a size_px in \a target. */
+/** Begin a pass that writes only the \a region of a picture of \a size_px to \a target. */
 void begin_pass(gpu::CommandList &list, std::string_view name, const Target &target, glm::ivec2 size_px,
-                gpu::PassActions actions);
+                const gpu::Rectangle &region, gpu::PassActions actions);
 
 /** Maps the depth d of a picture to the host's depth: (scale.x d + scale.y) / (scale.z d + scale.w). */
 struct DepthMap {

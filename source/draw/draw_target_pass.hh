@@ -7,8 +7,9 @@
 namespace gnomon::draw {
 
 /**
- * Writes pictures to targets. The pass is built again only if the textures, the shader or the state differ from the
- * previous target's. An engine owns one TargetPass for each viewport, and its shader (eevee_tonemap_frag.glsl).
+ * Writes pictures to targets by a pass of the engine's. The pass is built again only if the textures, the shader or the
+ * state differ from the previous target's. An engine owns one TargetPass for each viewport, and its shader
+ * (eevee_tonemap_frag.glsl).
  */
 class TargetPass {
  public:
@@ -20,23 +21,30 @@ class TargetPass {
   struct Picture {
     /** Scene-linear radiance, premultiplied by alpha, and alpha. The shader multiplies all channels by `scale`. */
     const gpu::Texture &radiance;
+    /** Pixel of `radiance` that is the lower left pixel of the picture. */
+    glm::ivec2 radiance_origin_px{0};
     float scale = 1.0F;
     /** Reversed depth; 0 in pixels without a surface. Needed only if Target::depth is set. */
     const gpu::Texture *depth = nullptr;
+    glm::ivec2 depth_origin_px{0};
     /** The projection that `depth` was drawn with. */
     glm::mat4 clip_from_view{1.0F};
+    /** Whether pixels with radiance may have no depth: blended surfaces with nothing behind them. */
+    bool has_blended = false;
   };
 
   /**
-   * Prepare to write \a picture to \a target. \a shader: eevee_tonemap, with USE_TARGET_DEPTH if Target::depth is set.
-   * \a nearest: a sampler with Filter::Nearest. The textures, the shader and the sampler must live until the last
-   * submission. \pre check() accepts \a target
+   * Build \a pass, which has State::WriteColor, to write \a picture to \a target. It must be the same pass in each
+   * call. \a shader: eevee_tonemap, with USE_TARGET_DEPTH if Target::depth is set. \a nearest: a sampler with
+   * Filter::Nearest. This object, the textures, the shader and the sampler must live until the last submission.
+   * \pre check() accepts \a target
    */
-  void set(const Target &target, const Picture &picture, const gpu::Shader &shader, const gpu::Sampler &nearest);
-  /** Append the commands that draw the picture. \pre called between begin_pass and end_pass of \a list */
-  void record(gpu::CommandList &list) const
+  void set(Pass &pass, const Target &target, const Picture &picture, const gpu::Shader &shader,
+           const gpu::Sampler &nearest);
+  /** The next call of set builds the pass. Call it after clearing the pass. */
+  void reset()
   {
-    pass_.record({}, list);
+    recorded_ = {};
   }
   /** The depth that pixels without a surface have in the target; for clearing its depth. */
   [[nodiscard]] float background_depth() const
@@ -49,6 +57,8 @@ class TargetPass {
   struct Constants {
     DepthMap depth;
     glm::ivec2 origin_px{0};
+    glm::ivec2 radiance_origin_px{0};
+    glm::ivec2 depth_origin_px{0};
     int view_transform = 0;
     int encoding = 0;
     float exposure_scale = 1.0F;
@@ -62,11 +72,11 @@ class TargetPass {
     /** 0: the target takes no depth. */
     gpu::ResourceId depth = 0;
     gpu::ResourceId shader = 0;
+    bool has_blended = false;
 
     bool operator==(const Key &) const = default;
   };
 
-  Pass pass_{"target", gpu::State::WriteColor};
   Constants constants_;
   Key recorded_;
 };

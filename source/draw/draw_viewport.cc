@@ -17,7 +17,15 @@ static void check_size(const gpu::Device &device, glm::ivec2 size_px)
   }
 }
 
-Viewport::Viewport(gpu::Device &device, glm::ivec2 size_px) : device_(device), size_px_(size_px)
+/** The pixel filter reads the neighbours of each pixel. */
+static glm::ivec2 guard_of(const gpu::Device &device, glm::ivec2 size_px)
+{
+  const int most = device.limits().texture_size_max;
+  return {size_px.x + 2 <= most ? 1 : 0, size_px.y + 2 <= most ? 1 : 0};
+}
+
+Viewport::Viewport(gpu::Device &device, glm::ivec2 size_px)
+    : device_(device), size_px_(size_px), guard_px_(guard_of(device, size_px))
 {
   check_size(device, size_px);
 }
@@ -29,6 +37,8 @@ void Viewport::resize(glm::ivec2 size_px)
     return;
   }
   size_px_ = size_px;
+  guard_px_ = guard_of(device_, size_px);
+  region_ = {};
   restart();
   // Framebuffers must be destroyed before their textures.
   for (auto &[id, engine] : engines_) {
@@ -39,11 +49,48 @@ void Viewport::resize(glm::ivec2 size_px)
   depth_texture_ = {};
 }
 
+void Viewport::set_region(const gpu::Rectangle &region)
+{
+  const glm::ivec2 first_px = region.origin_px;
+  const glm::ivec2 last_px = first_px + region.size_px - 1;
+  if (!region.is_whole() && (first_px.x < 0 || first_px.y < 0 || last_px.x < first_px.x || last_px.y < first_px.y ||
+                             last_px.x >= size_px_.x || last_px.y >= size_px_.y)) {
+    throw gpu::Error("viewport: a region of {}x{} px at {},{} is not within the picture of {}x{} px", region.size_px.x,
+                     region.size_px.y, first_px.x, first_px.y, size_px_.x, size_px_.y);
+  }
+  if (region != region_) {
+    region_ = region;
+    restart();
+  }
+}
+
+gpu::Rectangle Viewport::drawn_region() const
+{
+  if (region_.is_whole()) {
+    return {};
+  }
+  const glm::ivec2 first_px = glm::max(region_.origin_px + guard_px_ - 1, glm::ivec2(0));
+  const glm::ivec2 end_px = glm::min(region_.origin_px + guard_px_ + region_.size_px + 1, drawn_size_px());
+  return {first_px, end_px - first_px};
+}
+
+View Viewport::drawn_view(const View &view) const
+{
+  const glm::vec2 scale = glm::vec2(size_px_) / glm::vec2(drawn_size_px());
+  glm::mat4 clip_from_view = view.clip_from_view();
+  for (int column = 0; column < 4; column++) {
+    clip_from_view[column][0] *= scale.x;
+    clip_from_view[column][1] *= scale.y;
+  }
+  return {view.view_from_world(), clip_from_view};
+}
+
 const gpu::Texture &Viewport::depth_texture()
 {
   if (!depth_texture_) {
+    const glm::ivec2 drawn_px = drawn_size_px();
     depth_texture_ = device_.create_texture(
-        {.name = "depth", .format = gpu::Format::Depth32F, .width = size_px_.x, .height = size_px_.y});
+        {.name = "depth", .format = gpu::Format::Depth32F, .width = drawn_px.x, .height = drawn_px.y});
   }
   return depth_texture_;
 }
@@ -104,8 +151,9 @@ void Viewport::draw_sample(std::span<Engine *const> engines, bool is_until_final
   if (std::exchange(loss_count_, device_.loss_count()) != device_.loss_count()) {
     restart();
   }
+  const View drawn = drawn_view(view_);
   for (Engine *engine : engines) {
-    engine->draw_scene(*this, view_);
+    engine->draw_scene(*this, drawn);
   }
   samples_drawn_ = std::min(samples_drawn_, std::numeric_limits<int>::max() - 1) + 1;
 }

@@ -25,13 +25,15 @@ struct EngineViewportData {
  * Draws a picture of a scene with one or more engines. Owns the depth texture that the engines share and the data that
  * each engine stores for this picture. Must be destroyed before its device.
  *
+ * Engines draw a guard band of pixels around the picture, so that the pixel filter finds samples beyond its edges.
+ *
  * Each draw adds one sample to the picture until the engines have drawn all their samples. The next draw starts the
  * picture again with its first sample if:
  * - the view, the size or the engines change;
  * - an engine finds a change during sync();
  * - a packet with samples of the picture was lost;
  * - the feedback of the device changes the picture;
- * - restart() was called.
+ * - restart() was called, or set_region() with another region.
  */
 class Viewport {
  public:
@@ -68,7 +70,7 @@ class Viewport {
   {
     return samples_drawn_;
   }
-  /** View of the current or the last draw. */
+  /** View of the picture, without the guard band, in the current or the last draw. */
   [[nodiscard]] const View &view() const
   {
     return view_;
@@ -88,7 +90,36 @@ class Viewport {
     return size_px_;
   }
   /**
-   * Depth texture of the picture, which engines attach to their framebuffers. The first call creates it.
+   * Width of the guard band at the vertical and at the horizontal edges. 0 along an axis for which the device's
+   * textures have no room.
+   */
+  [[nodiscard]] glm::ivec2 guard_px() const
+  {
+    return guard_px_;
+  }
+  /** Size of the picture with its guard band: that of the textures which engines draw the scene into. */
+  [[nodiscard]] glm::ivec2 drawn_size_px() const
+  {
+    return size_px_ + 2 * guard_px_;
+  }
+  /**
+   * Draw only these pixels of the picture, and write only these to targets; an empty size selects the whole picture.
+   * Culling, shadows and filters remain those of the whole picture, so that each pixel has the same value as in a whole
+   * picture. Outside of the region, the engines' textures are undefined. resize() selects the whole picture again.
+   * \throws gpu::Error if the region is not within the picture; nothing changes then
+   */
+  void set_region(const gpu::Rectangle &region);
+  /** The pixels of the picture that are drawn. */
+  [[nodiscard]] gpu::Rectangle region() const
+  {
+    return region_.is_whole() ? gpu::Rectangle{{0, 0}, size_px_} : region_;
+  }
+  /** The pixels of textures of drawn_size_px() that the region's pixels depend on, for PassActions::scissor. */
+  [[nodiscard]] gpu::Rectangle drawn_region() const;
+  /** The picture's \a view, widened by the guard band. Engine::draw_scene gets this view. */
+  [[nodiscard]] View drawn_view(const View &view) const;
+  /**
+   * Depth texture of drawn_size_px(), which engines attach to their framebuffers. The first call creates it.
    * \throws gpu::Error if the device cannot create the texture
    */
   [[nodiscard]] const gpu::Texture &depth_texture();
@@ -134,6 +165,8 @@ class Viewport {
 
   gpu::Device &device_;
   glm::ivec2 size_px_;
+  glm::ivec2 guard_px_;
+  gpu::Rectangle region_;
   gpu::Texture depth_texture_;
   /** View of the drawn samples. */
   View view_;

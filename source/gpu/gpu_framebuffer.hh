@@ -86,6 +86,7 @@ struct Rectangle {
   {
     return origin_px == glm::ivec2(0) && size_px == glm::ivec2(0);
   }
+  bool operator==(const Rectangle &) const = default;
 };
 
 enum class LoadAction : std::uint8_t {

@@ -94,6 +94,68 @@ TEST_F(CliRenderTest, EqualSeedsGiveEqualPictures)
   EXPECT_EQ(pixels("a.exr"), pixels("b.exr"));
 }
 
+/** All values of a picture. */
+std::vector<float> values_of(const std::filesystem::path &path)
+{
+  const auto input = OIIO::ImageInput::open(path.string());
+  if (!input) {
+    return {};
+  }
+  const OIIO::ImageSpec &spec = input->spec();
+  std::vector<float> values(std::size_t(spec.width) * std::size_t(spec.height) * std::size_t(spec.nchannels));
+  input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data());
+  return values;
+}
+
+TEST_F(CliRenderTest, MergedTilesAreTheWholePictureBitForBit)
+{
+  const std::string render = "render " + example("plaza") + " --size 64x35 --samples 2 -o ";
+  ASSERT_EQ(run(render + "whole.exr").status, 0);
+  for (const std::string tile : {"1", "2", "3"}) {
+    ASSERT_EQ(run(render + "part" + tile + ".exr --tile " + tile + "/3").status, 0);
+  }
+  EXPECT_EQ(values_of(folder / "part1.exr").size(), values_of(folder / "whole.exr").size() * 11 / 35);
+  const Finished merged = run("merge part3.exr part1.exr part2.exr -o merged.exr");
+  ASSERT_EQ(merged.status, 0) << merged.err;
+  EXPECT_EQ(values_of(folder / "merged.exr"), values_of(folder / "whole.exr"));
+
+  const Finished incomplete = run("merge part3.exr part1.exr -o incomplete.exr");
+  EXPECT_EQ(incomplete.status, 1);
+  EXPECT_NE(
+      incomplete.err.find("pixel (0, 11) from the upper left has 0 of its samples: a part of the picture is missing"),
+      std::string::npos)
+      << incomplete.err;
+  const Finished doubled = run("merge part1.exr part2.exr part3.exr part2.exr -o doubled.exr");
+  EXPECT_EQ(doubled.status, 1);
+  EXPECT_NE(doubled.err.find("two parts contain the same samples"), std::string::npos) << doubled.err;
+  ASSERT_EQ(run("render " + example("plaza") + " --size 64x35 --samples 2 --seed 7 -o other.exr --tile 2/3").status, 0);
+  const Finished other = run("merge part1.exr other.exr part3.exr -o mixed.exr");
+  EXPECT_EQ(other.status, 1);
+  EXPECT_NE(other.err.find("other.exr: not a part of the same picture as part1.exr: gnomon:seed is '7', not '0'"),
+            std::string::npos)
+      << other.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "mixed.exr"));
+}
+
+TEST_F(CliRenderTest, MergedRangesOfSamplesAreTheWholePictureToRounding)
+{
+  const std::string render = "render " + example("plaza") + " --size 64x36 --samples 6 -o ";
+  ASSERT_EQ(run(render + "whole.exr").status, 0);
+  ASSERT_EQ(run(render + "low.exr --sample-range 0-1").status, 0);
+  ASSERT_EQ(run(render + "high.exr --sample-range 2-5").status, 0);
+  const Finished merged = run("merge low.exr high.exr -o merged.exr");
+  ASSERT_EQ(merged.status, 0) << merged.err;
+  const std::vector<float> parts = values_of(folder / "merged.exr");
+  const std::vector<float> whole = values_of(folder / "whole.exr");
+  ASSERT_EQ(parts.size(), whole.size());
+  float largest = 0.0F;
+  for (std::size_t i = 0; i < whole.size(); i++) {
+    largest = std::max(largest, std::abs(parts[i] - whole[i]) / (std::abs(whole[i]) + 1e-3F));
+  }
+  EXPECT_LE(largest, 1e-5F);
+  EXPECT_NE(values_of(folder / "low.exr"), whole);
+}
+
 TEST_F(CliRenderTest, BrightestAcceptedLampGivesAFinitePicture)
 {
   write("bright.gltf", R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual"],

@@ -132,7 +132,7 @@ TEST(Target, ItsPassIsLimitedToTheRectangle)
     encoded.encoding = encoding;
     encoded.view_transform = transform;
     gpu::CommandList list;
-    begin_pass(list, "tonemap", encoded, {8, 4}, {});
+    begin_pass(list, "tonemap", encoded, {8, 4}, {{0, 0}, {8, 4}}, {});
     list.end_pass();
     return list.serialize(*device);
   };

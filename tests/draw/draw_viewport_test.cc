@@ -224,9 +224,33 @@ TEST_F(ViewportTest, ResizeFreesTheDepthAndTellsTheEngines)
   EXPECT_EQ(viewport.engine_data<LoggingEngine::Data>(b).resizes, 1);
   EXPECT_EQ(device->live_resources(), std::vector<std::string>());
   const gpu::TextureDesc &depth = viewport.depth_texture().desc();
-  EXPECT_EQ(glm::ivec2(depth.width, depth.height), glm::ivec2(6, 10));
+  EXPECT_EQ(glm::ivec2(depth.width, depth.height), glm::ivec2(8, 12)) << "with a guard band of one pixel";
   // The objects are unchanged.
   EXPECT_EQ(synced(viewport, {&a}), (Log{"a init", "a cache_finish"}));
+}
+
+TEST_F(ViewportTest, WithoutRoomForAGuardBandThereIsNone)
+{
+  gpu::Limits limits;
+  limits.texture_size_max = 16;
+  const auto small = gpu::create_null_device(limits);
+  Viewport viewport(*small, {16, 14});
+  EXPECT_EQ(viewport.guard_px(), glm::ivec2(0, 1));
+  EXPECT_EQ(viewport.drawn_size_px(), glm::ivec2(16, 16));
+  EXPECT_NO_THROW(static_cast<void>(viewport.depth_texture()));
+  viewport.resize({14, 8});
+  EXPECT_EQ(viewport.drawn_size_px(), glm::ivec2(16, 10));
+}
+
+TEST_F(ViewportTest, ARegionNeedsTheNeighboursOfItsPixels)
+{
+  Viewport viewport(*device, {8, 4});
+  EXPECT_EQ(viewport.region(), (gpu::Rectangle{{0, 0}, {8, 4}}));
+  EXPECT_TRUE(viewport.drawn_region().is_whole());
+  viewport.set_region({{2, 0}, {3, 4}});
+  EXPECT_EQ(viewport.drawn_region(), (gpu::Rectangle{{2, 0}, {5, 6}}));
+  viewport.resize({6, 4});
+  EXPECT_TRUE(viewport.drawn_region().is_whole());
 }
 
 TEST_F(ViewportTest, ResizeToASizePastTheLimitChangesNothing)
@@ -281,7 +305,7 @@ TEST(Viewport, SharesADepthOfItsSize)
   Viewport viewport(*device, {8, 4});
   EXPECT_FALSE(viewport.has_depth_texture()) << "no engine asked for it";
   const gpu::TextureDesc &depth = viewport.depth_texture().desc();
-  EXPECT_EQ(glm::ivec2(depth.width, depth.height), glm::ivec2(8, 4));
+  EXPECT_EQ(glm::ivec2(depth.width, depth.height), glm::ivec2(10, 6)) << "with a guard band of one pixel";
   EXPECT_EQ(depth.format, gpu::Format::Depth32F);
   EXPECT_EQ(viewport.size_px(), glm::ivec2(8, 4));
 }

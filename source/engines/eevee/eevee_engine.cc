@@ -38,6 +38,12 @@ static void check(const Settings &settings)
   if (settings.sample_count < 0) {
     throw gpu::Error("eevee: sample_count {} is negative", settings.sample_count);
   }
+  const bool is_whole = settings.sample_first == 0 && settings.sample_end == 0;
+  if (!is_whole && (settings.sample_first < 0 || settings.drawn_sample_count() < 1 ||
+                    settings.sample_first + settings.drawn_sample_count() > settings.sample_count)) {
+    throw gpu::Error("eevee: samples {} to {} are not within the {} samples of the picture", settings.sample_first,
+                     settings.sample_end, settings.sample_count);
+  }
 }
 
 void Engine::init(draw::Viewport &viewport)
@@ -180,14 +186,14 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
   begin_draw(viewport);
   make_film(viewport);
   data.target = viewport.target();
-  data.sample_index = viewport.samples_drawn();
-  if (data.sample_index == 0) {
+  data.sample_index = settings_.sample_first + viewport.samples_drawn();
+  if (viewport.samples_drawn() == 0) {
     data.stl.shadows->begin_picture();
     data.stl.film_share = 0.0;
     std::ranges::for_each(data.frame, &StepRecord::reset);
     data.is_seen = data.has_picture_depth = data.is_finished = false;
   }
-  if (!has_all_samples(data, data.sample_index) && !draw_sample(viewport, view)) {
+  if (!has_all_samples(data, viewport.samples_drawn()) && !draw_sample(viewport, view)) {
     return;
   }
   if (data.target) {
@@ -199,7 +205,7 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
 {
   Data &data = viewport.engine_data<Data>(*this);
   const glm::vec2 offset_px = film_offset_px(data.sample_index, settings_.sample_count, settings_.seed);
-  const draw::View sample_view = with_sample_offset(view, offset_px, viewport.size_px());
+  const draw::View sample_view = with_sample_offset(view, offset_px, viewport.drawn_size_px());
   const bool is_sample_seen =
       has_background(settings_, scene_) || std::ranges::any_of(data.stl.objects, [&](draw::ObjectIndex object) {
         return sample_view.touches(scene_.objects().volume(object));
@@ -213,7 +219,7 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
     sample.is_for_feedback = viewport.draws_until_final() && awaits_depths(data, view);
   }
   // The first sample is always drawn, because it clears the picture. Later samples are skipped if nothing is visible.
-  if (is_sample_seen || data.sample_index == 0) {
+  if (is_sample_seen || viewport.samples_drawn() == 0) {
     draw_steps(sample, FrameStep::When::EachSample);
   }
   if (sample.is_for_feedback) {
@@ -227,19 +233,8 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
 void Engine::draw_target(draw::Viewport &viewport, const draw::View &view)
 {
   Data &data = viewport.engine_data<Data>(*this);
-  TonemapConstants &constants = data.stl.tonemap;
-  constants.origin_px = data.target.origin_px;
-  constants.view_transform = int(data.target.view_transform);
-  constants.encoding = int(data.target.encoding);
-  constants.exposure_scale =
-      data.target.encoding == draw::Encoding::SceneLinear ? 1.0F : std::exp2(data.target.exposure);
-  constants.sample_scale = sample_scale(data, data.sample_index + 1);
-  constants.is_over = data.target.composition == draw::Composition::Over ? 1 : 0;
-  if (data.target.depth) {
-    constants.depth = draw::depth_map(view.clip_from_view(), *data.target.depth);
-  }
   if (data.is_seen) {
-    record_tonemap(viewport);
+    record_tonemap(viewport, view);
   }
   FrameSample sample{data, settings_, viewport, view, view};
   draw_steps(sample, FrameStep::When::EachTarget);
@@ -262,9 +257,14 @@ float Engine::radiance_scale(draw::Viewport &viewport) const
   return sample_scale(viewport.engine_data<Data>(*this), viewport.samples_drawn());
 }
 
+double Engine::sample_share(draw::Viewport &viewport) const
+{
+  return viewport.engine_data<Data>(*this).stl.film_share;
+}
+
 bool Engine::has_all_samples(const Data &data, int samples_drawn) const
 {
-  return data.is_finished || (settings_.sample_count > 0 && samples_drawn >= settings_.sample_count);
+  return data.is_finished || (settings_.sample_count > 0 && samples_drawn >= settings_.drawn_sample_count());
 }
 
 bool Engine::is_complete(draw::Viewport &viewport) const

@@ -40,6 +40,12 @@ struct Settings {
    * Approximations that depend on the number of samples then assume `open_ended_sample_count`.
    */
   int sample_count = 1;
+  /**
+   * Draw only the samples from `sample_first` to `sample_end` - 1 of the picture, for pictures that are drawn in parts;
+   * `sample_end` 0: to the last. \pre 0 <= sample_first < sample_end <= sample_count, or both are 0. \see sample_share
+   */
+  int sample_first = 0;
+  int sample_end = 0;
   /** Selects the random sequence of sample positions and lamp points. */
   std::uint32_t seed = 0;
   /** Measure the time of each step on the device. */
@@ -52,6 +58,11 @@ struct Settings {
   [[nodiscard]] int planned_sample_count() const
   {
     return sample_count == 0 ? open_ended_sample_count : sample_count;
+  }
+  /** Number of samples that are drawn, of a picture with a known number of samples; otherwise 0. */
+  [[nodiscard]] int drawn_sample_count() const
+  {
+    return (sample_end == 0 ? sample_count : sample_end) - sample_first;
   }
 };
 
@@ -97,6 +108,11 @@ class Engine final : public draw::Engine {
   [[nodiscard]] const gpu::Texture &radiance(draw::Viewport &viewport) const;
   /** Factor from radiance to the mean of the samples so far. 1 if the picture has Settings::sample_count samples. */
   [[nodiscard]] float radiance_scale(draw::Viewport &viewport) const;
+  /**
+   * Sum of the filter weights of the samples so far, as a share of those of all Settings::sample_count samples: 1 for a
+   * whole picture. A picture is the mean of its parts, weighted by their shares.
+   */
+  [[nodiscard]] double sample_share(draw::Viewport &viewport) const;
   /** Whether the picture has all of its samples, so that further draws would not change it. */
   [[nodiscard]] bool is_complete(draw::Viewport &viewport) const;
   /**
@@ -136,7 +152,7 @@ class Engine final : public draw::Engine {
   void record_background(draw::Viewport &viewport);
   void record_casters(Data &data);
   void record_caster(SharedData &shared, draw::ObjectIndex object);
-  void record_tonemap(draw::Viewport &viewport);
+  void record_tonemap(draw::Viewport &viewport, const draw::View &view);
   /** \return false if only the steps for the device's feedback were drawn, because the feedback changes the picture. */
   bool draw_sample(draw::Viewport &viewport, const draw::View &view);
   void draw_target(draw::Viewport &viewport, const draw::View &view);

@@ -9,6 +9,7 @@
 #include "eevee_world.hh"
 #include "shadows/shadows.hh"
 
+#include "draw_target_pass.hh"
 #include "draw_viewport.hh"
 #include "render_surfaces.hh"
 
@@ -119,26 +120,6 @@ struct PictureKey {
   std::uint64_t shaders = 0;
 
   bool operator==(const PictureKey &) const = default;
-};
-
-/** Properties of the target for which the tonemap pass was recorded. */
-struct TonemapKey {
-  gpu::State state = gpu::State::None;
-  /** 0 if the target has no depth. */
-  gpu::ResourceId depth_texture = 0;
-
-  bool operator==(const TonemapKey &) const = default;
-};
-
-/** The tonemap pass reads these by reference. \see eevee_tonemap_frag.glsl */
-struct TonemapConstants {
-  draw::DepthMap depth;
-  glm::ivec2 origin_px{0};
-  int view_transform = 0;
-  int encoding = 0;
-  float exposure_scale = 1.0F;
-  float sample_scale = 1.0F;
-  int is_over = 0;
 };
 
 /** Revisions of everything that the recorded casters depend on. */
@@ -268,8 +249,7 @@ struct StorageList {
   /** Sum of the filter weights of the samples drawn so far, in units of `film_weight_sum`. */
   double film_share = 0.0;
   std::optional<PictureKey> synced_picture;
-  std::optional<TonemapKey> tonemap_recorded;
-  TonemapConstants tonemap;
+  draw::TargetPass target_pass;
 };
 
 struct Timing {
@@ -320,7 +300,7 @@ struct Data final : draw::EngineViewportData {
     txl = {};
     is_synced = false;
     stl.recorded.reset();
-    stl.tonemap_recorded.reset();
+    stl.target_pass.reset();
   }
   /** Created by the first sync. It must outlive StorageList::shadows. */
   std::shared_ptr<SharedData> shared;

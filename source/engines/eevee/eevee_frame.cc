@@ -23,7 +23,7 @@ std::string_view why_no_shadow(const FrameState &state, std::string_view no_such
 
 float pixel_size(const draw::View &view, const draw::Viewport &viewport)
 {
-  return 2.0F / (view.clip_from_view()[1][1] * float(viewport.size_px().y));
+  return 2.0F / (view.clip_from_view()[1][1] * float(viewport.drawn_size_px().y));
 }
 
 shared::ViewData view_data(const draw::View &view, const Settings &settings, int sample_index)
@@ -116,7 +116,7 @@ Need need_film(const FrameState &state)
   if (state.data.is_seen) {
     return {true, "samples of each pixel are added up"};
   }
-  return {state.data.sample_index == 0, "nothing is seen: the picture is cleared"};
+  return {state.data.sample_index == state.settings.sample_first, "nothing is seen: the picture is cleared"};
 }
 
 Need need_picture_depth(const FrameState &state)
@@ -160,10 +160,11 @@ void record_passes(const FrameStep &step, FrameSample &sample, const draw::View 
   }
 }
 
-/** Appends a render pass that draws the calls that are visible in the sample's view. */
+/** Appends a render pass that draws the calls that are visible in the sample's view, within the viewport's region. */
 void record_pass(const FrameStep &step, FrameSample &sample, gpu::CommandList &list,
-                 const gpu::Framebuffer &framebuffer, const gpu::PassActions &actions)
+                 const gpu::Framebuffer &framebuffer, gpu::PassActions actions)
 {
+  actions.scissor = sample.viewport.drawn_region();
   list.begin_pass(step.name, framebuffer, actions);
   record_passes(step, sample, sample.sample_view, list);
   list.end_pass();
@@ -172,8 +173,13 @@ void record_pass(const FrameStep &step, FrameSample &sample, gpu::CommandList &l
 void record_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
   Data &data = sample.data;
-  record_pass(step, sample, list, data.fbl.depth_fb, {});
-  if (awaits_depths(data, sample.view)) {
+  const bool is_awaited = awaits_depths(data, sample.view);
+  // Cascades are fitted to the depths of the whole picture.
+  list.begin_pass(step.name, data.fbl.depth_fb,
+                  {.scissor = is_awaited ? gpu::Rectangle() : sample.viewport.drawn_region()});
+  record_passes(step, sample, sample.sample_view, list);
+  list.end_pass();
+  if (is_awaited) {
     DepthFeedback &depths = data.depth_feedback;
     const std::uint64_t tag = ++depths.requested_tag;
     depths.requested_clip_from_world[tag % depths.requested_clip_from_world.size()] = sample.view.clip_from_world();
@@ -223,7 +229,7 @@ void record_background(const FrameStep &step, FrameSample &sample, gpu::CommandL
   StorageList &stl = sample.data.stl;
   const glm::dmat4 projection(sample.sample_view.clip_from_view());
   const glm::dmat3 world_from_view = glm::transpose(glm::dmat3(sample.sample_view.view_from_world()));
-  const glm::dvec2 size_px(sample.viewport.size_px());
+  const glm::dvec2 size_px(sample.viewport.drawn_size_px());
   // The view ray through the normalized device coordinates (x, y) is (middle + scale * (x, y), -1) in view space. In an
   // orthographic view all rays are parallel.
   const bool is_perspective = sample.sample_view.is_perspective();
@@ -243,8 +249,12 @@ void record_film(const FrameStep &step, FrameSample &sample, gpu::CommandList &l
       film_weights(sample.data.sample_index, sample.settings.sample_count, sample.settings.seed, stl.film_weight_sum);
   stl.film_columns = glm::vec4(weights.columns, 0.0F);
   stl.film_rows = glm::vec4(weights.rows, 0.0F);
-  const gpu::LoadAction load = sample.data.sample_index == 0 ? gpu::LoadAction::Clear : gpu::LoadAction::Load;
-  record_pass(step, sample, list, sample.data.fbl.film_fb, {.color_load = load});
+  const bool is_first = sample.data.sample_index == sample.settings.sample_first;
+  list.begin_pass(
+      step.name, sample.data.fbl.film_fb,
+      {.color_load = is_first ? gpu::LoadAction::Clear : gpu::LoadAction::Load, .scissor = sample.viewport.region()});
+  record_passes(step, sample, sample.sample_view, list);
+  list.end_pass();
 }
 
 void record_picture_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
@@ -261,10 +271,10 @@ void record_tonemap(const FrameStep &step, FrameSample &sample, gpu::CommandList
   // A picture without visible objects is transparent black. Every view transform keeps black, so that a clear suffices.
   const gpu::LoadAction load = sample.data.is_seen ? gpu::LoadAction::Load : gpu::LoadAction::Clear;
   const draw::Target &target = sample.data.target;
-  draw::begin_pass(list, step.name, target, sample.viewport.size_px(),
+  draw::begin_pass(list, step.name, target, sample.viewport.size_px(), sample.viewport.region(),
                    {.color_load = load,
                     .depth_load = target.depth ? load : gpu::LoadAction::Load,
-                    .clear_depth = sample.data.stl.tonemap.depth.background});
+                    .clear_depth = sample.data.stl.target_pass.background_depth()});
   record_passes(step, sample, sample.view, list);
   list.end_pass();
 }

@@ -35,7 +35,7 @@ struct FrameSample {
   Data &data;
   const Settings &settings;
   draw::Viewport &viewport;
-  /** The view of the picture, without the sample's offset. */
+  /** The view of the picture and its guard band, without the sample's offset. */
   const draw::View &view;
   /** The view with the sample's offset within the pixel. */
   const draw::View &sample_view;

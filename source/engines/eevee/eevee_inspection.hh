@@ -60,7 +60,7 @@ class Inspection {
    * Positions, normals and the visibility of the \a lamp-th lamp of RenderScene::lamps at each pixel. Empty where the
    * lamp gives no light, or there are no objects. \pre Settings::has_probe
    */
-  [[nodiscard]] std::optional<Probe> probe(const draw::View &view, std::size_t lamp) const;
+  [[nodiscard]] std::optional<Probe> probe(const draw::View &picture_view, std::size_t lamp) const;
   /** The shadow layers after the last draw. \pre the viewport was synced */
   [[nodiscard]] const Shadows &shadows() const;
   /** Counters of the shadow layers that this viewport drew. Viewports share layers. \pre the viewport was synced */

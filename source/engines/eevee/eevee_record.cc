@@ -55,7 +55,7 @@ void Engine::make_targets(draw::Viewport &viewport)
   TextureList &txl = data.txl;
   StorageList &stl = data.stl;
   if (!txl.radiance) {
-    txl.radiance = create_target(device, "radiance", gpu::Format::RGBA32F, viewport.size_px());
+    txl.radiance = create_target(device, "radiance", gpu::Format::RGBA32F, viewport.drawn_size_px());
     fbl.depth_fb = device.create_framebuffer({.name = "depth_fb", .colors = {}, .depth = {&viewport.depth_texture()}});
     fbl.main_fb = device.create_framebuffer(
         {.name = "main_fb", .colors = {{&txl.radiance}}, .depth = {&viewport.depth_texture()}});
@@ -63,8 +63,8 @@ void Engine::make_targets(draw::Viewport &viewport)
     txl.nearest = device.create_sampler({.name = "nearest"});
   }
   if (settings_.has_probe && !txl.probe_position) {
-    txl.probe_position = create_target(device, "probe_position", gpu::Format::RGBA32F, viewport.size_px());
-    txl.probe_normal = create_target(device, "probe_normal", gpu::Format::RGBA32F, viewport.size_px());
+    txl.probe_position = create_target(device, "probe_position", gpu::Format::RGBA32F, viewport.drawn_size_px());
+    txl.probe_normal = create_target(device, "probe_normal", gpu::Format::RGBA32F, viewport.drawn_size_px());
     fbl.probe_fb = device.create_framebuffer({.name = "probe_fb",
                                               .colors = {{&txl.probe_position}, {&txl.probe_normal}},
                                               .depth = {&viewport.depth_texture()}});
@@ -157,13 +157,14 @@ void Engine::record_film(draw::Viewport &viewport)
   StorageList &stl = data.stl;
   draw::ShadingGroup &film = data.psl->film_pass.group(shaders_.get(viewport.device(), ShaderId::Film));
   film.bind_texture("radiance_texture", data.txl.radiance, data.txl.nearest);
+  film.constant("radiance_origin_px", viewport.guard_px());
   film.constant_ref("column_weights", &stl.film_columns);
   film.constant_ref("row_weights", &stl.film_rows);
   film.call_procedural();
 }
 
-/** Record the tonemap pass for the current target, unless the recorded pass suits it. */
-void Engine::record_tonemap(draw::Viewport &viewport)
+/** Record the tonemap pass for the current target. */
+void Engine::record_tonemap(draw::Viewport &viewport, const draw::View &view)
 {
   Data &data = viewport.engine_data<Data>(*this);
   StorageList &stl = data.stl;
@@ -172,50 +173,20 @@ void Engine::record_tonemap(draw::Viewport &viewport)
   const draw::Target &target = data.target;
   const bool has_own_depth = target.depth && settings_.sample_count != 1;
   if (has_own_depth && !txl.picture_depth) {
-    txl.picture_depth = create_target(device, "picture_depth", gpu::Format::Depth32F, viewport.size_px());
+    txl.picture_depth = create_target(device, "picture_depth", gpu::Format::Depth32F, viewport.drawn_size_px());
     data.fbl.picture_depth_fb =
         device.create_framebuffer({.name = "picture_depth_fb", .colors = {}, .depth = {&txl.picture_depth}});
   }
   const gpu::Texture &depth_texture = has_own_depth ? txl.picture_depth : viewport.depth_texture();
-  const bool is_over = target.composition == draw::Composition::Over;
-  State state = is_over ? State::BlendOver : State::None;
-  if (target.depth) {
-    state = state | State::WriteDepth;
-    if (is_over) {
-      state = state | (stl.tonemap.depth.is_near_smaller ? State::DepthLessEqual : State::DepthNearerEqual);
-    }
-  }
-  const TonemapKey key{state, target.depth ? depth_texture.id() : 0};
-  if (stl.tonemap_recorded == key) {
-    return;
-  }
-  stl.tonemap_recorded.reset();
-  data.psl->tonemap.clear();
-  const auto add_group = [&](State group_state) -> draw::ShadingGroup & {
-    draw::ShadingGroup &tonemap = data.psl->tonemap.group(
-        shaders_.get(device, ShaderId::Tonemap, target.depth ? Feature::TargetDepth : Feature::None));
-    tonemap.state_enable(group_state);
-    tonemap.bind_texture("radiance_texture", txl.film, txl.nearest);
-    if (target.depth) {
-      tonemap.bind_texture("depth_texture", depth_texture, txl.nearest);
-    }
-    tonemap.constant_ref("origin_px", &stl.tonemap.origin_px);
-    tonemap.constant_ref("view_transform", &stl.tonemap.view_transform);
-    tonemap.constant_ref("encoding", &stl.tonemap.encoding);
-    tonemap.constant_ref("exposure_scale", &stl.tonemap.exposure_scale);
-    tonemap.constant_ref("sample_scale", &stl.tonemap.sample_scale);
-    tonemap.constant_ref("depth_scale", &stl.tonemap.depth.scale);
-    tonemap.constant_ref("background_depth", &stl.tonemap.depth.background);
-    tonemap.constant_ref("is_over", &stl.tonemap.is_over);
-    tonemap.call_procedural();
-    return tonemap;
-  };
-  add_group(state);
-  if (is_over && target.depth && !stl.blended.empty()) {
-    // Blended surfaces have no depth to compare with the target's.
-    add_group(State::BlendOver).constant("is_over", 2);
-  }
-  stl.tonemap_recorded = key;
+  const Feature features = target.depth ? Feature::TargetDepth : Feature::None;
+  stl.target_pass.set(data.psl->tonemap, target,
+                      {.radiance = txl.film,
+                       .scale = sample_scale(data, viewport.samples_drawn() + 1),
+                       .depth = &depth_texture,
+                       .depth_origin_px = viewport.guard_px(),
+                       .clip_from_view = view.clip_from_view(),
+                       .has_blended = !stl.blended.empty()},
+                      shaders_.get(device, ShaderId::Tonemap, features), txl.nearest);
 }
 
 void Engine::record(draw::Viewport &viewport)
@@ -270,7 +241,7 @@ void Engine::record_passes(draw::Viewport &viewport)
   StorageList &stl = data.stl;
   data.psl = std::make_unique<PassList>(scene_.objects());
   stl.pass_recordings++;
-  stl.tonemap_recorded.reset();
+  stl.target_pass.reset();
   stl.groups.clear();
   stl.blended.clear();
   stl.blended_group_count = 0;

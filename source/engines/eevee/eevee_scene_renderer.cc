@@ -61,7 +61,7 @@ int SceneRenderer::draw(const scene::PlacedCamera &camera, const DrawLimits &lim
   viewport_.restart();
   double seconds = 0.0;
   for (int i = 1;; i++) {
-    const bool is_last = i == settings_.sample_count;
+    const bool is_last = i == settings_.drawn_sample_count();
     draw_sample(camera, is_last ? target : draw::Target());
     bool is_ended = limits.progress && !limits.progress(i);
     if (is_last) {

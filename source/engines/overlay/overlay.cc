@@ -194,7 +194,7 @@ void Overlay::draw_outline(const draw::View &view, glm::ivec2 size_px,
   group.constant("origin_px", target.origin_px);
   group.constant("picture_size_px", size_px);
   group.call_procedural();
-  draw::begin_pass(list, "overlay outline", target, size_px,
+  draw::begin_pass(list, "overlay outline", target, size_px, {{0, 0}, size_px},
                    {.color_load = gpu::LoadAction::Load, .depth_load = gpu::LoadAction::Load});
   pass.record({}, list);
   list.end_pass();

@@ -125,6 +125,7 @@ struct Data final : draw::EngineViewportData {
   gpu::Sampler nearest;
   SceneBlocks blocks;
   std::optional<draw::Pass> surfaces;
+  draw::Pass target{"target", gpu::State::WriteColor};
   draw::TargetPass target_pass;
   PassesKey recorded;
   std::optional<PictureKey> synced_picture;
@@ -221,18 +222,22 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
     return;
   }
   const Feature features = target.depth ? Feature::TargetDepth : Feature::None;
-  data.target_pass.set(
-      target, {.radiance = data.radiance, .depth = &viewport.depth_texture(), .clip_from_view = view.clip_from_view()},
-      shader(viewport.device(), ShaderId::Target, features), data.nearest);
+  data.target_pass.set(data.target, target,
+                       {.radiance = data.radiance,
+                        .radiance_origin_px = viewport.guard_px(),
+                        .depth = &viewport.depth_texture(),
+                        .depth_origin_px = viewport.guard_px(),
+                        .clip_from_view = view.clip_from_view()},
+                       shader(viewport.device(), ShaderId::Target, features), data.nearest);
   // A picture without visible objects is transparent black. Every view transform keeps black, so that a clear suffices.
   const gpu::LoadAction load = data.is_seen ? gpu::LoadAction::Load : gpu::LoadAction::Clear;
   gpu::CommandList list;
-  draw::begin_pass(list, "unlit target", target, viewport.size_px(),
+  draw::begin_pass(list, "unlit target", target, viewport.size_px(), viewport.region(),
                    {.color_load = load,
                     .depth_load = target.depth ? load : gpu::LoadAction::Load,
                     .clear_depth = data.target_pass.background_depth()});
   if (data.is_seen) {
-    data.target_pass.record(list);
+    data.target.record(view, list);
   }
   list.end_pass();
   viewport.device().submit(list);
@@ -245,8 +250,8 @@ void Engine::draw_sample(draw::Viewport &viewport, Data &data, const draw::View 
   if (!data.framebuffer) {
     data.radiance = device.create_texture({.name = "unlit_radiance",
                                            .format = gpu::Format::RGBA16F,
-                                           .width = viewport.size_px().x,
-                                           .height = viewport.size_px().y});
+                                           .width = viewport.drawn_size_px().x,
+                                           .height = viewport.drawn_size_px().y});
     data.framebuffer = device.create_framebuffer(
         {.name = "unlit_fb", .colors = {{&data.radiance}}, .depth = {&viewport.depth_texture()}});
     data.view_block = create_view_block(device, "unlit_view_block");
@@ -268,7 +273,7 @@ void Engine::draw_sample(draw::Viewport &viewport, Data &data, const draw::View 
       is_depth_drawn = depth_camera_->drawn != depth;
     }
   }
-  stack.push("unlit", data.framebuffer, {});
+  stack.push("unlit", data.framebuffer, {.scissor = viewport.drawn_region()});
   if (is_depth_drawn) {
     stack.push("unlit depth camera", depth_camera_->framebuffer, {});
     depth_camera_->casters->record(depth_camera_->view, list);

@@ -133,6 +133,7 @@ TEST_F(DebugViewGpuTest, CascadesHoldDistancesAlongTheLightFromOnePlane)
 {
   add_square({0, 0, 0}, 100.0F);
   add_square({0, 0, 2}, 1.0F);
+  add_square({0, 15, 2}, 1.0F);
   add_square({0, 60, 2}, 1.0F);
   test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 4}, {0, 0, -1}, 20.0F);
   Settings settings;

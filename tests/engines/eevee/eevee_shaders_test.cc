@@ -161,7 +161,7 @@ TEST(ShaderCache, ReloadedShadersHaveTheInterfaceOfTheNewFiles)
 {
   const auto device = gpu::create_null_device();
   ShaderCache cache;
-  ASSERT_EQ(cache.get(*device, ShaderId::Film).interface().push_constant_size_bytes, 32U);
+  ASSERT_EQ(cache.get(*device, ShaderId::Film).interface().push_constant_size_bytes, 48U);
   const std::string path = "eevee/eevee_film_frag.glsl";
   std::string edited(*shaders::file(path));
   const std::string line = "  vec4 row_weights;\n";
@@ -171,7 +171,7 @@ TEST(ShaderCache, ReloadedShadersHaveTheInterfaceOfTheNewFiles)
     return file == path ? std::optional<std::string_view>(edited) : shaders::file(file);
   };
   EXPECT_EQ(cache.reload(*device, files, shader_check::reflect), std::vector<std::string>());
-  EXPECT_EQ(cache.get(*device, ShaderId::Film).interface().push_constant_size_bytes, 48U);
+  EXPECT_EQ(cache.get(*device, ShaderId::Film).interface().push_constant_size_bytes, 64U);
 }
 
 }  // namespace

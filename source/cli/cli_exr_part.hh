@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "cli_picture.hh"
+
+#include <map>
+
+namespace gnomon::cli {
+
+/** Metadata of a part: the share of the picture's samples that it contains (Engine::sample_share), and its description.
+ */
+inline constexpr const char *share_metadata = "gnomon:sample_share";
+inline constexpr const char *part_metadata = "gnomon:part";
+
+/** An EXR file with a part of a picture, or with the whole. Rows from the top, as in the file. */
+struct ExrPart {
+  glm::ivec2 whole_size_px{0};
+  glm::ivec2 size_px{0};
+  /** The upper left pixel of the part, from the upper left of the picture. */
+  glm::ivec2 first_px{0};
+  /** By name, for example "R". Each has one value for each pixel of the part. */
+  std::map<std::string, std::vector<float>> channels;
+  Metadata metadata;
+};
+
+/** \throws std::runtime_error naming \a path if it is no EXR file of 32-bit floats, is cut off, or exceeds the picture
+ */
+[[nodiscard]] ExrPart read_exr_part(const std::filesystem::path &path);
+/** Writes the file atomically. \throws std::runtime_error naming \a path if it cannot be written */
+void write_exr_part(const std::filesystem::path &path, const ExrPart &part);
+
+/** The value of \a name; empty if there is none. */
+[[nodiscard]] std::string metadata_value(const Metadata &metadata, const std::string &name);
+
+}  // namespace gnomon::cli
