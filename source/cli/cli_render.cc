@@ -7,6 +7,7 @@
 #include "cli_picture.hh"
 #include "cli_render_options.hh"
 #include "cli_render_report.hh"
+#include "cli_time.hh"
 
 #include "eevee_scene_renderer.hh"
 #include "gltf_import.hh"
@@ -16,7 +17,6 @@
 #include <nlohmann/json.hpp>
 
 #include <unistd.h>
-#include <chrono>
 #include <optional>
 
 namespace gnomon::cli {
@@ -24,13 +24,6 @@ namespace gnomon::cli {
 namespace fs = std::filesystem;
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start)
-{
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /** Checks that \a path can be written, before the program renders. */
 void check_folder(const fs::path &path)

@@ -4,6 +4,7 @@
 #include "cli_fingerprint.hh"
 #include "cli_origin.hh"
 #include "cli_output.hh"
+#include "cli_time.hh"
 #include "cli_picture.hh"
 
 #include "gltf_import.hh"
@@ -26,8 +27,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 struct ReportOptions {
   std::vector<std::string> scenes;
   std::string folder;
@@ -37,11 +36,6 @@ struct ReportOptions {
   /** Names or labels of techniques; empty for all. */
   std::vector<std::string> techniques;
 };
-
-double seconds_since(Clock::time_point start)
-{
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /** Shows a progress bar on a terminal; silent in a pipe. */
 class Progress {

@@ -30,9 +30,8 @@ draw::View view_of(const scene::PlacedCamera &camera, glm::ivec2 size_px, const 
     clip_from_view = draw::perspective(half_width, half_height, camera.near, far);
   }
   else {
-    // An orthographic projection of infinite depth has no finite matrix. With a depth of 10 000 half widths, the rounding of
-    // depths (2^-24) is 0.0006 half widths, less than a pixel.
-    const float depth_max = std::max(camera.near + 1e4F * half_width, std::nextafter(camera.near, infinite));
+    // An orthographic projection of infinite depth has no finite matrix. Use a depth of a million half widths instead.
+    const float depth_max = std::max(camera.near + 1e6F * half_width, std::nextafter(camera.near, infinite));
     clip_from_view = draw::orthographic(half_width, half_height, camera.near, std::isinf(far) ? depth_max : far);
   }
   glm::dmat4 world_from_camera = camera.world_from_camera;

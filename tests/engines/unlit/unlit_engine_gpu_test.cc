@@ -39,8 +39,13 @@ class UnlitGpuTest : public test::GpuDeviceTest {
   {
     draw(engine);
     test::Picture picture{size_px, {}};
-    for (const std::uint64_t texel : gpu::read_as<std::uint64_t>(*device, engine.radiance(*viewport))) {
-      picture.pixels.push_back(glm::unpackHalf4x16(texel));
+    const std::vector<std::uint64_t> drawn = gpu::read_as<std::uint64_t>(*device, engine.radiance(*viewport));
+    for (int y = 0; y < size_px.y; y++) {
+      for (int x = 0; x < size_px.x; x++) {
+        const glm::ivec2 texel_px = viewport->guard_px() + glm::ivec2(x, y);
+        picture.pixels.push_back(
+            glm::unpackHalf4x16(drawn[std::size_t(texel_px.y * viewport->drawn_size_px().x + texel_px.x)]));
+      }
     }
     EXPECT_EQ(picture.non_finite_count(), 0U);
     return picture;
