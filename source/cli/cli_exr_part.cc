@@ -39,7 +39,7 @@ static glm::ivec2 size_of(const Imath::Box2i &window)
   return {window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
 }
 
-ExrPart read_exr_part(const fs::path &path)
+ExrPart read_exr_part(const fs::path &path, ExrContent content)
 {
   try {
     Imf::InputFile input(path.c_str());
@@ -60,15 +60,20 @@ ExrPart read_exr_part(const fs::path &path)
           channel.channel().ySampling != 1) {
         throw std::runtime_error(fmt::format("channel {} does not have a 32-bit float for each pixel", channel.name()));
       }
-      part.channels[channel.name()].resize(std::size_t(part.size_px.x) * std::size_t(part.size_px.y));
+      std::vector<float> &values = part.channels[channel.name()];
+      if (content == ExrContent::All) {
+        values.resize(std::size_t(part.size_px.x) * std::size_t(part.size_px.y));
+      }
     }
     for (auto attribute = header.begin(); attribute != header.end(); ++attribute) {
       if (const auto *text = dynamic_cast<const Imf::StringAttribute *>(&attribute.attribute())) {
         part.metadata.emplace_back(attribute.name(), text->value());
       }
     }
-    input.setFrameBuffer(frame_buffer(part, {window.min.x, window.min.y}));
-    input.readPixels(window.min.y, window.max.y);
+    if (content == ExrContent::All) {
+      input.setFrameBuffer(frame_buffer(part, {window.min.x, window.min.y}));
+      input.readPixels(window.min.y, window.max.y);
+    }
     return part;
   }
   catch (const std::exception &error) {

@@ -7,10 +7,10 @@
 
 namespace gnomon::cli {
 
-/** Metadata of a part: the share of the picture's samples that it contains (Engine::sample_share), and its description.
- */
+/** Metadata of a part: the share of the picture's samples that it contains (Engine::sample_share). */
 inline constexpr const char *share_metadata = "gnomon:sample_share";
-inline constexpr const char *part_metadata = "gnomon:part";
+/** "A-B": the first and the last sample that it contains. */
+inline constexpr const char *range_metadata = "gnomon:sample_range";
 
 /** An EXR file with a part of a picture, or with the whole. Rows from the top, as in the file. */
 struct ExrPart {
@@ -23,9 +23,12 @@ struct ExrPart {
   Metadata metadata;
 };
 
+/** Whether to read pixels. Without them, channels have names only. */
+enum class ExrContent { Header, All };
+
 /** \throws std::runtime_error naming \a path if it is no EXR file of 32-bit floats, is cut off, or exceeds the picture
  */
-[[nodiscard]] ExrPart read_exr_part(const std::filesystem::path &path);
+[[nodiscard]] ExrPart read_exr_part(const std::filesystem::path &path, ExrContent content = ExrContent::All);
 /** Writes the file atomically. \throws std::runtime_error naming \a path if it cannot be written */
 void write_exr_part(const std::filesystem::path &path, const ExrPart &part);
 

@@ -6,11 +6,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
+#include <iterator>
+#include <limits>
 #include <memory>
 #include <set>
 #include <stdexcept>
+#include <string_view>
 
 namespace gnomon::cli {
 
@@ -24,7 +29,7 @@ struct MergeOptions {
 /** Metadata that may differ between the parts of one picture. */
 bool is_of_part(const std::string &name)
 {
-  return name == share_metadata || name == part_metadata || name == "gnomon:device";
+  return name == share_metadata || name == range_metadata || name == "gnomon:device";
 }
 
 /** \throws std::runtime_error naming \a path if it is not a part of the same picture as \a first */
@@ -56,8 +61,13 @@ void check_same_picture(const std::string &path, const ExrPart &part, const std:
     }
   }
   for (const std::string &name : names) {
-    if (metadata_value(part.metadata, name) != metadata_value(first.metadata, name)) {
-      fail(name, metadata_value(part.metadata, name), metadata_value(first.metadata, name));
+    // The folder of the scene may differ between machines.
+    const auto value_of = [&](const ExrPart &one) {
+      const std::string value = metadata_value(one.metadata, name);
+      return name == "gnomon:scene" ? std::filesystem::path(value).filename().string() : value;
+    };
+    if (value_of(part) != value_of(first)) {
+      fail(name, value_of(part), value_of(first));
     }
   }
 }
@@ -66,15 +76,45 @@ void check_same_picture(const std::string &path, const ExrPart &part, const std:
 double share_of(const std::string &path, const ExrPart &part)
 {
   const std::string text = metadata_value(part.metadata, share_metadata);
-  if (text.empty()) {
-    return 1.0;
-  }
-  char *end = nullptr;
-  const double share = std::strtod(text.c_str(), &end);
-  if (*end != '\0' || !(share > 0.0 && share <= 1.0 + 1e-9)) {
+  double share = 1.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), share);
+  if (!text.empty() &&
+      (error != std::errc() || end != text.data() + text.size() || !(share > 0.0 && share <= 1.0 + 1e-9))) {
     throw std::runtime_error(fmt::format("{}: {} '{}' is not a share from 0 to 1", path, share_metadata, text));
   }
   return share;
+}
+
+/** The samples of \a part, from the first to the last. A file without a range contains all samples. */
+glm::ivec2 samples_of(const std::string &path, const ExrPart &part)
+{
+  const std::string text = metadata_value(part.metadata, range_metadata);
+  glm::ivec2 range{0, std::numeric_limits<int>::max()};
+  const char *end = text.data() + text.size();
+  const auto [middle, first_error] = std::from_chars(text.data(), end, range.x);
+  const bool has_last = first_error == std::errc() && middle != end && *middle == '-';
+  const auto [after, last_error] = std::from_chars(has_last ? middle + 1 : end, end, range.y);
+  if (!text.empty() && (!has_last || last_error != std::errc() || after != end)) {
+    throw std::runtime_error(fmt::format("{}: {} '{}' is not A-B", path, range_metadata, text));
+  }
+  return range;
+}
+
+/** \throws std::runtime_error if both parts contain a sample of a pixel. */
+void check_disjoint(const std::string &path, const ExrPart &part, const std::string &other_path, const ExrPart &other)
+{
+  const auto overlap = [](int first, int end, int other_first, int other_end) {
+    return first < other_end && other_first < end;
+  };
+  const glm::ivec2 range = samples_of(path, part);
+  const glm::ivec2 other_range = samples_of(other_path, other);
+  const glm::ivec2 end_px = part.first_px + part.size_px;
+  const glm::ivec2 other_end_px = other.first_px + other.size_px;
+  if (overlap(part.first_px.x, end_px.x, other.first_px.x, other_end_px.x) &&
+      overlap(part.first_px.y, end_px.y, other.first_px.y, other_end_px.y) && range.x <= other_range.y &&
+      other_range.x <= range.y) {
+    throw std::runtime_error(fmt::format("{} and {} contain the same samples", path, other_path));
+  }
 }
 
 /** Pictures of several channels, whose pixels are sums over parts. */
@@ -116,15 +156,15 @@ class Merger {
     }
   }
 
-  /** \throws std::runtime_error if samples of a pixel are missing, or several parts contain them */
+  /** \throws std::runtime_error if samples of a pixel are missing */
   [[nodiscard]] ExrPart merged() const
   {
     for (std::size_t i = 0; i < shares_.size(); i++) {
       if (std::abs(shares_[i] - 1.0) > share_tolerance) {
         throw std::runtime_error(
-            fmt::format("pixel ({}, {}) from the upper left has {:.4g} of its samples: {}",
-                        i % std::size_t(whole_size_px_.x), i / std::size_t(whole_size_px_.x), shares_[i],
-                        shares_[i] < 1.0 ? "a part of the picture is missing" : "two parts contain the same samples"));
+            fmt::format("pixel ({}, {}) from the upper left has {:.6g} of its samples: a part of the "
+                        "picture is missing",
+                        i % std::size_t(whole_size_px_.x), i / std::size_t(whole_size_px_.x), shares_[i]));
       }
     }
     ExrPart whole{whole_size_px_, whole_size_px_, {0, 0}, {}, {}};
@@ -153,12 +193,25 @@ Status merge(const MergeOptions &options)
   if (std::filesystem::path(options.output).extension() != ".exr") {
     throw UsageError(fmt::format("-o '{}' does not end in .exr", options.output));
   }
-  const ExrPart first = read_exr_part(options.parts.front());
+  // The headers are compared first, so that memory is only allocated for a picture whose pixels are all there.
+  std::vector<ExrPart> headers;
+  std::int64_t pixel_count = 0;
+  for (std::size_t i = 0; i < options.parts.size(); i++) {
+    headers.push_back(read_exr_part(options.parts[i], ExrContent::Header));
+    check_same_picture(options.parts[i], headers[i], options.parts.front(), headers.front());
+    for (std::size_t other = 0; other < i; other++) {
+      check_disjoint(options.parts[other], headers[other], options.parts[i], headers[i]);
+    }
+    pixel_count += std::int64_t(headers[i].size_px.x) * headers[i].size_px.y;
+  }
+  const ExrPart &first = headers.front();
+  if (pixel_count < std::int64_t(first.whole_size_px.x) * first.whole_size_px.y) {
+    throw std::runtime_error(fmt::format("the parts have {} pixels, and the picture has {}x{}: a part is missing",
+                                         pixel_count, first.whole_size_px.x, first.whole_size_px.y));
+  }
   Merger merger(first);
   for (const std::string &path : options.parts) {
-    const ExrPart part = read_exr_part(path);
-    check_same_picture(path, part, options.parts.front(), first);
-    merger.add(path, part);
+    merger.add(path, read_exr_part(path));
   }
   ExrPart whole = merger.merged();
   std::ranges::copy_if(first.metadata, std::back_inserter(whole.metadata),

@@ -76,7 +76,7 @@ void render_frames(const RenderOptions &options, const scene::PlacedCamera &came
   target.view_transform = options.view_transform();
   target.exposure = options.exposure;
 
-  const int sample_count = renderer.settings().drawn_sample_count();
+  const int sample_count = options.sample_range.empty() ? options.samples : renderer.settings().drawn_sample_count();
   eevee::ShadowCounters before = renderer.inspect().shadow_counters();
   for (int frame = 0; frame < options.repeat; frame++) {
     const Clock::time_point start = Clock::now();
@@ -96,27 +96,15 @@ void render_frames(const RenderOptions &options, const scene::PlacedCamera &came
   }
 }
 
-/** The rectangle \a region of a picture that is \a width_px wide. Rows from the bottom. */
-std::vector<glm::vec4> cropped(std::vector<glm::vec4> pixels, int width_px, const gpu::Rectangle &region)
-{
-  if (pixels.size() == std::size_t(region.size_px.x) * std::size_t(region.size_px.y)) {
-    return pixels;
-  }
-  std::vector<glm::vec4> crop;
-  for (int y = region.origin_px.y; y < region.origin_px.y + region.size_px.y; y++) {
-    const auto row = pixels.begin() + std::ptrdiff_t(y) * width_px + region.origin_px.x;
-    crop.insert(crop.end(), row, row + region.size_px.x);
-  }
-  return crop;
-}
-
 /** Writes the \a pixels of options.region() for `gnomon merge`. */
 void write_part(const RenderOptions &options, std::span<const glm::vec4> pixels, double sample_share, Metadata metadata)
 {
   const glm::ivec2 whole_px = options.size_px();
   const gpu::Rectangle region = options.region();
   metadata.emplace_back(share_metadata, fmt::format("{}", sample_share));
-  metadata.emplace_back(part_metadata, fmt::format("tile '{}', samples '{}'", options.tile, options.sample_range));
+  const glm::ivec2 range = options.sample_bounds();
+  metadata.emplace_back(range_metadata, fmt::format("{}-{}", range.x, range.y));
+  metadata.emplace_back("gnomon:settings", options.settings_text());
   ExrPart part{whole_px,
                region.size_px,
                {region.origin_px.x, whole_px.y - region.origin_px.y - region.size_px.y},
@@ -227,7 +215,7 @@ Status render_sequence(RenderOptions options, const FrameSequence &frames, scene
       const glm::ivec2 written_px = shadow ? glm::ivec2(shadow->desc().width, shadow->desc().height) : region.size_px;
       status = write_picture(
           options, camera, device,
-          shadow ? gpu::read_as<glm::vec4>(device, *shadow) : cropped(renderer.read_picture(), size_px.x, region),
+          shadow ? gpu::read_as<glm::vec4>(device, *shadow) : gpu::cropped(renderer.read_picture(), size_px.x, region),
           written_px, display, renderer.engine().sample_share(renderer.viewport()), frames.metadata(i), result);
     }
     result.output_seconds += seconds_since(output_start);

@@ -125,6 +125,31 @@ gpu::Rectangle RenderOptions::region() const
   return {{0, whole_px.y - end}, {whole_px.x, end - top}};
 }
 
+glm::ivec2 RenderOptions::sample_bounds() const
+{
+  if (sample_range.empty()) {
+    return {0, samples - 1};
+  }
+  const std::optional<glm::ivec2> bounds = parse_pair(sample_range, '-');
+  if (!bounds || bounds->x > bounds->y || bounds->y >= samples) {
+    throw UsageError(fmt::format("--sample-range '{}' is not A-B with A up to B, and B less than the {} samples",
+                                 sample_range, samples));
+  }
+  return *bounds;
+}
+
+std::string RenderOptions::settings_text() const
+{
+  return fmt::format(
+      "--shadow {} --shadow-size {} --pcf {} --esm {} --cascades {} --cascade-lambda {} --cascade-range {} --cube-pass "
+      "{} "
+      "--casters {} --shadow-memory {} --world '{}' --world-strength {} --world-rotation {} --background '{}' "
+      "--animation '{}' --fps {}",
+      shadow, shadow_size, pcf, esm, cascades, cascade_lambda, cascade_range, cube_pass, casters, shadow_memory,
+      world.world, world.strength, world.rotation_degrees, world.background, frames.animation,
+      frames.frames_per_second);
+}
+
 bool RenderOptions::is_png() const
 {
   return std::filesystem::path(output).extension() == ".png";
@@ -156,9 +181,11 @@ void RenderOptions::check() const
   if (output.empty() && backend == "gl") {
     throw UsageError("-o OUT.exr or -o OUT.png is required");
   }
-  if (is_part() && (is_png() || !debug.empty())) {
-    throw UsageError("--tile and --sample-range write parts of a picture to OUT.exr, without --debug");
+  if (is_part() && (is_png() || !debug.empty() || frames.is_resumed)) {
+    throw UsageError("--tile and --sample-range write parts of a picture to OUT.exr, without --debug and --resume");
   }
+  static_cast<void>(region());
+  static_cast<void>(sample_bounds());
   if (!output.empty() && !is_png() && std::filesystem::path(output).extension() != ".exr") {
     throw UsageError(fmt::format("-o '{}' ends in neither .exr nor .png", output));
   }
@@ -171,13 +198,9 @@ eevee::Settings RenderOptions::engine_settings() const
   // The number of samples that fit into a time is not known beforehand.
   settings.sample_count = std::isfinite(seconds_max) ? 0 : samples;
   if (!sample_range.empty()) {
-    const std::optional<glm::ivec2> range = parse_pair(sample_range, '-');
-    if (!range || range->x > range->y || range->y >= samples) {
-      throw UsageError(fmt::format("--sample-range '{}' is not A-B with A up to B, and B less than the {} samples",
-                                   sample_range, samples));
-    }
-    settings.sample_first = range->x;
-    settings.sample_end = range->y + 1;
+    const glm::ivec2 bounds = sample_bounds();
+    settings.sample_first = bounds.x;
+    settings.sample_end = bounds.y + 1;
   }
   settings.seed = seed;
   settings.has_cascade_tint = debug_view.kind == DebugView::Kind::Cascades;
@@ -205,9 +228,11 @@ void add_render_options(CLI::App &command, RenderOptions &options)
       .add_option("--sample-range", options.sample_range,
                   "Draw only the samples A-B of --samples, counted from 0; `gnomon merge` joins the parts")
       ->excludes(time_limit);
-  command.add_option("--tile", options.tile,
-                     "Draw only the I-th of N strips of the picture, I/N, counted from 1 at the top; `gnomon merge` "
-                     "joins them");
+  command
+      .add_option("--tile", options.tile,
+                  "Draw only the I-th of N strips of the picture, I/N, counted from 1 at the top; `gnomon merge` "
+                  "joins them")
+      ->excludes(time_limit);
   CLI::Option *frames =
       command.add_option("--frames", options.frames.range,
                          "Frames A-B or A of an animation; the frame number replaces the # characters in -o");

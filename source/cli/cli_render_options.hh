@@ -75,6 +75,10 @@ struct RenderOptions {
   }
   /** The pixels of --tile; the whole picture without it. \throws UsageError where it is invalid */
   [[nodiscard]] gpu::Rectangle region() const;
+  /** The first and the last sample to draw. \throws UsageError where --sample-range is invalid */
+  [[nodiscard]] glm::ivec2 sample_bounds() const;
+  /** The options that parts of one picture must have in common. */
+  [[nodiscard]] std::string settings_text() const;
   [[nodiscard]] draw::ViewTransform view_transform() const;
   /** Without the background, which depends on the scene. */
   [[nodiscard]] eevee::Settings engine_settings() const;

@@ -4,8 +4,8 @@
 #include "cli_fingerprint.hh"
 #include "cli_origin.hh"
 #include "cli_output.hh"
-#include "cli_time.hh"
 #include "cli_picture.hh"
+#include "cli_time.hh"
 
 #include "gltf_import.hh"
 #include "measure_reference.hh"

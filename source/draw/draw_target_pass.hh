@@ -7,8 +7,8 @@
 namespace gnomon::draw {
 
 /**
- * Writes pictures to targets by a pass of the engine's. The pass is built again only if the textures, the shader or the
- * state differ from the previous target's. An engine owns one TargetPass for each viewport, and its shader
+ * Writes pictures to targets by a pass that the engine owns. The pass is built again only if the textures, the shader
+ * or the state differ from the previous target's. An engine owns one TargetPass for each viewport, and its shader
  * (eevee_tonemap_frag.glsl).
  */
 class TargetPass {
@@ -41,15 +41,10 @@ class TargetPass {
    */
   void set(Pass &pass, const Target &target, const Picture &picture, const gpu::Shader &shader,
            const gpu::Sampler &nearest);
-  /** The next call of set builds the pass. Call it after clearing the pass. */
+  /** Make the next set() build the pass again. Call this after the pass was cleared or replaced. */
   void reset()
   {
     recorded_ = {};
-  }
-  /** The depth that pixels without a surface have in the target; for clearing its depth. */
-  [[nodiscard]] float background_depth() const
-  {
-    return constants_.depth.background;
   }
 
  private:

@@ -58,8 +58,9 @@ void Viewport::set_region(const gpu::Rectangle &region)
     throw gpu::Error("viewport: a region of {}x{} px at {},{} is not within the picture of {}x{} px", region.size_px.x,
                      region.size_px.y, first_px.x, first_px.y, size_px_.x, size_px_.y);
   }
-  if (region != region_) {
-    region_ = region;
+  const bool is_whole = region == gpu::Rectangle{{0, 0}, size_px_};
+  if (const gpu::Rectangle changed = is_whole ? gpu::Rectangle() : region; changed != region_) {
+    region_ = changed;
     restart();
   }
 }

@@ -20,4 +20,20 @@ template <typename T>
   return values;
 }
 
+/** The \a region of \a texels, which have \a width_px columns. */
+template <typename T>
+[[nodiscard]] std::vector<T> cropped(std::vector<T> texels, int width_px, const Rectangle &region)
+{
+  if (texels.size() == std::size_t(region.size_px.x) * std::size_t(region.size_px.y)) {
+    return texels;
+  }
+  std::vector<T> crop;
+  crop.reserve(std::size_t(region.size_px.x) * std::size_t(region.size_px.y));
+  for (int y = region.origin_px.y; y < region.origin_px.y + region.size_px.y; y++) {
+    const auto row = texels.begin() + std::ptrdiff_t(y) * width_px + region.origin_px.x;
+    crop.insert(crop.end(), row, row + region.size_px.x);
+  }
+  return crop;
+}
+
 }  // namespace gnomon::gpu

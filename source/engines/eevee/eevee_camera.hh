@@ -11,7 +11,7 @@ using render_scene::view_of;
 
 /**
  * \a view with its samples moved from the pixel centres by \a offset_px: pixels, positive to the right and up.
- * \a size_px: size of the picture.
+ * \a size_px: size of the picture that \a view shows.
  */
 [[nodiscard]] draw::View with_sample_offset(const draw::View &view, glm::vec2 offset_px, glm::ivec2 size_px);
 

@@ -48,9 +48,9 @@ static void check(const Settings &settings)
 
 void Engine::init(draw::Viewport &viewport)
 {
-  check(settings_);
   Data &data = viewport.engine_data<Data>(*this);
   data.is_synced = data.is_recorded = false;
+  check(settings_);
   if (!data.psl) {
     data.psl = std::make_unique<PassList>(scene_.objects());
   }
@@ -204,8 +204,11 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
 bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
 {
   Data &data = viewport.engine_data<Data>(*this);
-  const glm::vec2 offset_px = film_offset_px(data.sample_index, settings_.sample_count, settings_.seed);
-  const draw::View sample_view = with_sample_offset(view, offset_px, viewport.drawn_size_px());
+  const auto view_of_sample = [&](int index) {
+    const glm::vec2 offset_px = film_offset_px(index, settings_.sample_count, settings_.seed);
+    return with_sample_offset(view, offset_px, viewport.drawn_size_px());
+  };
+  draw::View sample_view = view_of_sample(data.sample_index);
   const bool is_sample_seen =
       has_background(settings_, scene_) || std::ranges::any_of(data.stl.objects, [&](draw::ObjectIndex object) {
         return sample_view.touches(scene_.objects().volume(object));
@@ -214,9 +217,13 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
   if (is_sample_seen) {
     data.is_seen = true;
     record(viewport);
+    sample.is_for_feedback = viewport.draws_until_final() && awaits_depths(data, view);
+    if (sample.is_for_feedback) {
+      // Cascades are fitted to the same depths, whatever range of samples is drawn.
+      sample_view = view_of_sample(0);
+    }
     order_blended(data, sample_view);
     update_view(data, sample_view);
-    sample.is_for_feedback = viewport.draws_until_final() && awaits_depths(data, view);
   }
   // The first sample is always drawn, because it clears the picture. Later samples are skipped if nothing is visible.
   if (is_sample_seen || viewport.samples_drawn() == 0) {
@@ -247,7 +254,8 @@ const gpu::Texture &Engine::radiance(draw::Viewport &viewport) const
 
 float Engine::sample_scale(const Data &data, int samples_drawn) const
 {
-  const bool has_counted_samples = settings_.sample_count > 0 && samples_drawn >= settings_.sample_count;
+  const bool has_counted_samples = settings_.sample_count > 0 && samples_drawn >= settings_.sample_count &&
+                                   settings_.drawn_sample_count() == settings_.sample_count;
   return (has_counted_samples && !data.is_finished) || data.stl.film_share == 0.0 ? 1.0F
                                                                                   : float(1.0 / data.stl.film_share);
 }

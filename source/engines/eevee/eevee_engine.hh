@@ -104,13 +104,17 @@ class Engine final : public draw::Engine {
   void draw_scene(draw::Viewport &viewport, const draw::View &view) override;
   bool take_feedback(draw::Viewport &viewport, const gpu::Feedback &feedback) override;
 
-  /** The scene-linear picture, RGBA32F, to be multiplied by radiance_scale. */
+  /**
+   * The scene-linear picture, RGBA32F, to be multiplied by radiance_scale. Pixels outside of draw::Viewport::region are
+   * undefined.
+   */
   [[nodiscard]] const gpu::Texture &radiance(draw::Viewport &viewport) const;
   /** Factor from radiance to the mean of the samples so far. 1 if the picture has Settings::sample_count samples. */
   [[nodiscard]] float radiance_scale(draw::Viewport &viewport) const;
   /**
    * Sum of the filter weights of the samples so far, as a share of those of all Settings::sample_count samples: 1 for a
-   * whole picture. A picture is the mean of its parts, weighted by their shares.
+   * whole picture. A picture is the mean of its parts, weighted by their shares. Not a share if Settings::sample_count
+   * is 0.
    */
   [[nodiscard]] double sample_share(draw::Viewport &viewport) const;
   /** Whether the picture has all of its samples, so that further draws would not change it. */

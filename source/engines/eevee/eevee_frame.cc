@@ -160,11 +160,10 @@ void record_passes(const FrameStep &step, FrameSample &sample, const draw::View 
   }
 }
 
-/** Appends a render pass that draws the calls that are visible in the sample's view, within the viewport's region. */
+/** Appends a render pass that draws the calls that are visible in the sample's view. */
 void record_pass(const FrameStep &step, FrameSample &sample, gpu::CommandList &list,
-                 const gpu::Framebuffer &framebuffer, gpu::PassActions actions)
+                 const gpu::Framebuffer &framebuffer, const gpu::PassActions &actions)
 {
-  actions.scissor = sample.viewport.drawn_region();
   list.begin_pass(step.name, framebuffer, actions);
   record_passes(step, sample, sample.sample_view, list);
   list.end_pass();
@@ -175,10 +174,8 @@ void record_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &
   Data &data = sample.data;
   const bool is_awaited = awaits_depths(data, sample.view);
   // Cascades are fitted to the depths of the whole picture.
-  list.begin_pass(step.name, data.fbl.depth_fb,
-                  {.scissor = is_awaited ? gpu::Rectangle() : sample.viewport.drawn_region()});
-  record_passes(step, sample, sample.sample_view, list);
-  list.end_pass();
+  record_pass(step, sample, list, data.fbl.depth_fb,
+              {.scissor = is_awaited ? gpu::Rectangle() : sample.viewport.drawn_region()});
   if (is_awaited) {
     DepthFeedback &depths = data.depth_feedback;
     const std::uint64_t tag = ++depths.requested_tag;
@@ -215,13 +212,16 @@ void record_shadows(const FrameStep & /*step*/, FrameSample &sample, gpu::Comman
 
 void record_lit(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
-  record_pass(step, sample, list, sample.data.fbl.main_fb, {.depth_load = gpu::LoadAction::Load});
+  record_pass(step, sample, list, sample.data.fbl.main_fb,
+              {.depth_load = gpu::LoadAction::Load, .scissor = sample.viewport.drawn_region()});
 }
 
 void record_blend(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
   record_pass(step, sample, list, sample.data.fbl.main_fb,
-              {.color_load = gpu::LoadAction::Load, .depth_load = gpu::LoadAction::Load});
+              {.color_load = gpu::LoadAction::Load,
+               .depth_load = gpu::LoadAction::Load,
+               .scissor = sample.viewport.drawn_region()});
 }
 
 void record_background(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
@@ -239,7 +239,9 @@ void record_background(const FrameStep &step, FrameSample &sample, gpu::CommandL
   stl.background_across = glm::vec4(glm::vec3(world_from_view * glm::dvec3(2.0 * scale.x / size_px.x, 0.0, 0.0)), 0.0F);
   stl.background_up = glm::vec4(glm::vec3(world_from_view * glm::dvec3(0.0, 2.0 * scale.y / size_px.y, 0.0)), 0.0F);
   record_pass(step, sample, list, sample.data.fbl.main_fb,
-              {.color_load = gpu::LoadAction::Load, .depth_load = gpu::LoadAction::Load});
+              {.color_load = gpu::LoadAction::Load,
+               .depth_load = gpu::LoadAction::Load,
+               .scissor = sample.viewport.drawn_region()});
 }
 
 void record_film(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
@@ -250,18 +252,16 @@ void record_film(const FrameStep &step, FrameSample &sample, gpu::CommandList &l
   stl.film_columns = glm::vec4(weights.columns, 0.0F);
   stl.film_rows = glm::vec4(weights.rows, 0.0F);
   const bool is_first = sample.data.sample_index == sample.settings.sample_first;
-  list.begin_pass(
-      step.name, sample.data.fbl.film_fb,
+  record_pass(
+      step, sample, list, sample.data.fbl.film_fb,
       {.color_load = is_first ? gpu::LoadAction::Clear : gpu::LoadAction::Load, .scissor = sample.viewport.region()});
-  record_passes(step, sample, sample.sample_view, list);
-  list.end_pass();
 }
 
 void record_picture_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
   const shared::ViewData block = view_data(sample.view, sample.settings, sample.data.sample_index);
   list.update(sample.data.stl.view_block, 0, std::as_bytes(std::span(&block, 1)));
-  list.begin_pass(step.name, sample.data.fbl.picture_depth_fb, {});
+  list.begin_pass(step.name, sample.data.fbl.picture_depth_fb, {.scissor = sample.viewport.drawn_region()});
   record_passes(step, sample, sample.view, list);
   list.end_pass();
 }
@@ -271,10 +271,11 @@ void record_tonemap(const FrameStep &step, FrameSample &sample, gpu::CommandList
   // A picture without visible objects is transparent black. Every view transform keeps black, so that a clear suffices.
   const gpu::LoadAction load = sample.data.is_seen ? gpu::LoadAction::Load : gpu::LoadAction::Clear;
   const draw::Target &target = sample.data.target;
-  draw::begin_pass(list, step.name, target, sample.viewport.size_px(), sample.viewport.region(),
-                   {.color_load = load,
-                    .depth_load = target.depth ? load : gpu::LoadAction::Load,
-                    .clear_depth = sample.data.stl.target_pass.background_depth()});
+  draw::begin_pass(
+      list, step.name, target, sample.viewport.size_px(), sample.viewport.region(),
+      {.color_load = load,
+       .depth_load = target.depth ? load : gpu::LoadAction::Load,
+       .clear_depth = target.depth ? draw::depth_map(sample.view.clip_from_view(), *target.depth).background : 0.0F});
   record_passes(step, sample, sample.view, list);
   list.end_pass();
 }

@@ -29,20 +29,6 @@ static std::optional<std::size_t> light_of(const Data &data, std::size_t lamp)
   return found == lamps.lamp_index.end() ? std::nullopt : std::optional(std::size_t(found - lamps.lamp_index.begin()));
 }
 
-/** The pixels of the picture from those of the picture and its guard band. */
-static std::vector<glm::vec4> without_guard_band(const draw::Viewport &viewport, const std::vector<glm::vec4> &drawn)
-{
-  const glm::ivec2 size_px = viewport.size_px();
-  const glm::ivec2 guard_px = viewport.guard_px();
-  std::vector<glm::vec4> pixels;
-  pixels.reserve(std::size_t(size_px.x) * std::size_t(size_px.y));
-  for (int y = 0; y < size_px.y; y++) {
-    const auto row = drawn.begin() + std::ptrdiff_t(y + guard_px.y) * viewport.drawn_size_px().x + guard_px.x;
-    pixels.insert(pixels.end(), row, row + size_px.x);
-  }
-  return pixels;
-}
-
 std::optional<Probe> Inspection::probe(const draw::View &picture_view, std::size_t lamp) const
 {
   GNOMON_ASSERT(engine_.settings_.has_probe, "the settings ask for no probe");
@@ -72,8 +58,11 @@ std::optional<Probe> Inspection::probe(const draw::View &picture_view, std::size
   list.end_pass();
   device.submit(list);
   stl.shadows->submitted();
-  return Probe{without_guard_band(viewport_, gpu::read_as<glm::vec4>(device, txl.probe_position)),
-               without_guard_band(viewport_, gpu::read_as<glm::vec4>(device, txl.probe_normal))};
+  const auto read = [&](const gpu::Texture &texture) {
+    return gpu::cropped(gpu::read_as<glm::vec4>(device, texture), viewport_.drawn_size_px().x,
+                        {viewport_.guard_px(), viewport_.size_px()});
+  };
+  return Probe{read(txl.probe_position), read(txl.probe_normal)};
 }
 
 double Inspection::shadow_texel_size(std::size_t lamp, const glm::dvec3 &position_ws) const

@@ -9,7 +9,7 @@
 
 namespace gnomon::eevee {
 
-/** Conditions that end a picture before it has Settings::sample_count samples. Each picture has at least one. */
+/** Conditions that end a picture before it has all its samples. Each picture has at least one. */
 struct DrawLimits {
   /** Called after each sample with the number of samples drawn. Returns false to end the picture. May be empty. */
   std::function<bool(int samples_drawn)> progress{};
@@ -74,7 +74,10 @@ class SceneRenderer {
    * \throws gpu::Error as draw_sample, and if neither the settings nor \a limits limit the number of samples
    */
   int draw(const scene::PlacedCamera &camera, const DrawLimits &limits = {}, const draw::Target &target = {});
-  /** The mean of the samples drawn so far: scene-linear RGBA, rows from the bottom. Waits for the device. */
+  /**
+   * The mean of the samples drawn so far: scene-linear RGBA, rows from the bottom. Waits for the device. Pixels outside
+   * of draw::Viewport::region are undefined.
+   */
   [[nodiscard]] std::vector<glm::vec4> read_picture();
 
   /** The view of \a camera in the coordinates of the render scene. */

@@ -232,10 +232,11 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
   // A picture without visible objects is transparent black. Every view transform keeps black, so that a clear suffices.
   const gpu::LoadAction load = data.is_seen ? gpu::LoadAction::Load : gpu::LoadAction::Clear;
   gpu::CommandList list;
-  draw::begin_pass(list, "unlit target", target, viewport.size_px(), viewport.region(),
-                   {.color_load = load,
-                    .depth_load = target.depth ? load : gpu::LoadAction::Load,
-                    .clear_depth = data.target_pass.background_depth()});
+  draw::begin_pass(
+      list, "unlit target", target, viewport.size_px(), viewport.region(),
+      {.color_load = load,
+       .depth_load = target.depth ? load : gpu::LoadAction::Load,
+       .clear_depth = target.depth ? draw::depth_map(view.clip_from_view(), *target.depth).background : 0.0F});
   if (data.is_seen) {
     data.target.record(view, list);
   }

@@ -118,7 +118,11 @@ TEST_F(PicturePartsTest, RangesOfSamplesAddUpToTheWholePicture)
 {
   scene::PlacedCamera camera = test::camera_at({0.3F, -5, 6}, {0, 0, 0}, float(vertical_angle));
   scene.edit(test::handle_at(scene.lamps(), 0), [](scene::Lamp &lamp) { lamp.radius = 0.4F; });
-  Settings settings{.shadow = {.cube_size_px = 128}, .sample_count = 16, .seed = 3};
+  // A sun whose cascades are fitted to the depths that the first sample sees.
+  test::add_lamp(scene, scene::LampKind::Sun, {4, 3, 8}, {-0.4, -0.3, -0.8}, 2.0F);
+  Settings settings{.shadow = {.cube_size_px = 128, .map_size_px = 128, .cascades = {.is_fitted_to_depth = true}},
+                    .sample_count = 16,
+                    .seed = 3};
   SceneRenderer renderer(*device, scene, size_px, settings);
   renderer.sync();
   renderer.draw(camera);
@@ -133,6 +137,10 @@ TEST_F(PicturePartsTest, RangesOfSamplesAddUpToTheWholePicture)
     renderer.sync();
     EXPECT_EQ(renderer.draw(camera), 4);
     const std::vector<glm::vec4> picture = renderer.read_picture();
+    for (int i = 0; part == 0 && i < 16; i++) {
+      renderer.draw_sample(camera);
+    }
+    EXPECT_TRUE(part > 0 || renderer.read_picture() == picture) << "a host goes on drawing";
     const double part_share = renderer.engine().sample_share(renderer.viewport());
     for (std::size_t i = 0; i < sum.size(); i++) {
       sum[i] += float(part_share) * picture[i];

@@ -247,6 +247,10 @@ TEST_P(TargetGpuTest, TheHostsGeometryIsHiddenByWhatIsNearer)
     }
     EXPECT_GT(hidden, size_px.x * size_px.y / 5);
     EXPECT_LT(hidden, size_px.x * size_px.y * 4 / 5);
+    host.clear_depth(0.5F);
+    renderer.draw(test::camera_at(eye, eye + glm::dvec3(0, 1, 10), 0.6F), {}, target);
+    const float seen = host.depths()[std::size_t((origin_px.y + 1) * host_size_px.x + origin_px.x + 1)];
+    EXPECT_EQ(seen, is_reversed ? 0.0F : 1.0F) << "nothing is seen: the host's farthest depth";
   }
 }
 
