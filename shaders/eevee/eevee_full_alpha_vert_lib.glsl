@@ -15,16 +15,20 @@ layout(location = 4) out vec4 surface_color;
 layout(location = 5) flat out uint surface_object;
 #endif
 
+/** Texture coordinates from two rows of FullMaterialData::uv_rows. */
+vec2 transformed_uv(vec4 row_u, vec4 row_v)
+{
+  vec3 mesh_uv = vec3(row_u.w == 0.0 ? uv : second_uv, 1.0);
+  return vec2(dot(row_u.xyz, mesh_uv), dot(row_v.xyz, mesh_uv));
+}
+
 /**
  * Texture coordinates of the texture with bit \a index of the INPUT_ bits. Fragment shaders cannot compute them: llvmpipe's
  * invocations outside of a triangle read zeros from storage blocks, which makes derivatives wrong.
  */
 vec2 input_uv(uint material, int index)
 {
-  vec4 row_u = full_materials[material].uv_rows[2 * index];
-  vec4 row_v = full_materials[material].uv_rows[2 * index + 1];
-  vec3 mesh_uv = vec3(row_u.w == 0.0 ? uv : second_uv, 1.0);
-  return vec2(dot(row_u.xyz, mesh_uv), dot(row_v.xyz, mesh_uv));
+  return transformed_uv(full_materials[material].uv_rows[2 * index], full_materials[material].uv_rows[2 * index + 1]);
 }
 
 void write_material_varyings()

@@ -10,6 +10,18 @@ layout(location = 5) out vec4 surface_tangent_ws;
 layout(location = 6) out vec4 surface_roughness_normal_uvs;
 layout(location = 7) out vec4 surface_occlusion_emissive_uvs;
 layout(location = 8) out vec4 surface_specular_uvs;
+#ifdef USE_LAYERS
+#  include "eevee/eevee_layer_block_lib.glsl"
+
+layout(location = 9) out vec4 surface_coat_uvs;
+layout(location = 10) out vec4 surface_sheen_uvs;
+
+/** As input_uv, of the texture with number \a index in LayerData. */
+vec2 layer_uv(uint material, int index)
+{
+  return transformed_uv(layer_materials[material].uv_rows[2 * index], layer_materials[material].uv_rows[2 * index + 1]);
+}
+#endif
 
 void write_full_varyings()
 {
@@ -17,6 +29,10 @@ void write_full_varyings()
   surface_roughness_normal_uvs = vec4(input_uv(material, 1), input_uv(material, 2));
   surface_occlusion_emissive_uvs = vec4(input_uv(material, 3), input_uv(material, 4));
   surface_specular_uvs = vec4(input_uv(material, 5), input_uv(material, 6));
+#ifdef USE_LAYERS
+  surface_coat_uvs = vec4(layer_uv(material, 0), layer_uv(material, 1));
+  surface_sheen_uvs = vec4(layer_uv(material, 2), layer_uv(material, 3));
+#endif
 #ifdef USE_LIGHT
   mat3 world_from_object = mat3(objects[draw_instance.x].world_from_object);
   vec3 tangent_ws = world_from_object * tangent.xyz;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Direct lighting of a surface.
 #include "eevee/eevee_surface_lib.glsl"
+#ifdef USE_LAYERS
+#  include "shared/eevee_area_shared.h"
+#endif
 #include "shared/eevee_bsdf_shared.h"
 #include "shared/eevee_light_shared.h"
 #include "shared/eevee_material_shared.h"
@@ -48,6 +51,52 @@ float light_visibility(LightData light, Surface surface, vec3 to_light)
 
 #if defined(USE_LAMP_SHAPE) && defined(USE_SHADOW)
 #  include "eevee/eevee_penumbra_lib.glsl"
+#endif
+
+#ifdef USE_LAYERS
+/** The layers over the base of a material: sheen, and a coat over both. */
+struct Layers {
+  /** Part of the light that the coat reflects; the rest passes it. */
+  float coat_share;
+  MaterialData coat_material;
+  /** With the normal of the coat, which ignores the normal texture. */
+  Surface coat_surface;
+  vec3 sheen_color;
+  float sheen_alpha;
+  /** Directional albedo of the sheen. */
+  vec3 sheen_albedo;
+  /** Part of the light that the sheen leaves to the base. */
+  float base_share;
+#ifdef USE_WORLD
+  WorldShading coat_world;
+#endif
+};
+
+/** \see set_layers */
+Layers layers;
+
+/** Sets the layers that direct_light lights. */
+void set_layers(Layers value)
+{
+  layers = value;
+}
+
+/** Radiance of all layers. \a base, \a sheen, \a coat: that of each of them as if it lay on top. */
+vec3 layered(vec3 base, vec3 sheen, vec3 coat)
+{
+  return mix(layers.base_share * base + sheen, coat, layers.coat_share);
+}
+
+/** BRDF of the sheen, 1/sr. \a cos_l: mean cosine of the incident light, in [0, 1]. */
+vec3 sheen_brdf(Surface surface, vec3 to_light, float cos_l)
+{
+  // Where a part of a lamp is below the horizon, the mean direction of the rest is above its centre's.
+  vec3 mean_direction = to_light + (cos_l - dot(surface.normal_ws, to_light)) * surface.normal_ws;
+  vec3 half_vector = direction_or_zero(direction_or_zero(mean_direction) + surface.view_ws);
+  float cos_v = max(dot(surface.normal_ws, surface.view_ws), 1e-4);
+  float cos_h = clamp(dot(surface.normal_ws, half_vector), 0.0, 1.0);
+  return layers.sheen_color * sheen_lobe(cos_l, cos_v, cos_h, layers.sheen_alpha);
+}
 #endif
 
 /** BRDF towards the viewer, 1/sr, times the cosine of the incident light. */
@@ -131,11 +180,23 @@ vec3 point_radiance(int index, MaterialData material, Surface surface)
   LightData light = light_data.lights[index];
   if (light.kind == LIGHT_HEMI) {
     float irradiance = material.occlusion * hemi_irradiance(-dot(surface.normal_ws, light.forward_ws));
+#ifdef USE_LAYERS
+    material.diffuse = layered(material.diffuse, layers.sheen_albedo, vec3(0.0));
+#endif
     return material.diffuse * light.color * (INV_PI * irradiance);
   }
   CenterLight center = center_light(index, surface);
   float cos_l = dot(surface.normal_ws, center.to_light);
-  if (cos_l <= 0.0 || center.irradiance <= 0.0) {
+#ifdef USE_LAYERS
+  MaterialData coat = layers.coat_material;
+  float cos_coat = dot(layers.coat_surface.normal_ws, center.to_light);
+  bool is_turned_away = max(cos_l, cos_coat) <= 0.0;
+  cos_l = max(cos_l, 0.0);
+  cos_coat = max(cos_coat, 0.0);
+#else
+  bool is_turned_away = cos_l <= 0.0;
+#endif
+  if (is_turned_away || center.irradiance <= 0.0) {
     return vec3(0.0);
   }
 #ifdef USE_FULL_MATERIAL
@@ -151,13 +212,26 @@ vec3 point_radiance(int index, MaterialData material, Surface surface)
   }
 #if defined(USE_WORLD) && defined(USE_SPECULAR)
   if (light.kind == LIGHT_WORLD) {
-    return visibility * world_reflected(light, material, surface, center.to_light, cos_l);
+    vec3 radiance = world_reflected(light, material, surface, world_shading, center.to_light, cos_l);
+#ifdef USE_LAYERS
+    radiance = layered(radiance, light.color * cos_l * sheen_brdf(surface, center.to_light, cos_l),
+                       world_reflected(light, coat, layers.coat_surface, layers.coat_world, center.to_light, cos_coat));
+#endif
+    return visibility * radiance;
   }
   if (light.kind == LIGHT_SUN) {
     material.alpha = max(material.alpha, sqrt(light.radius_sq));
+#ifdef USE_LAYERS
+    coat.alpha = max(coat.alpha, sqrt(light.radius_sq));
+#endif
   }
 #endif
-  return light.color * (center.irradiance * visibility) * reflected(material, surface, center.to_light, cos_l);
+  vec3 brdf_cos = reflected(material, surface, center.to_light, cos_l);
+#ifdef USE_LAYERS
+  brdf_cos = layered(brdf_cos, cos_l * sheen_brdf(surface, center.to_light, cos_l),
+                     reflected(coat, layers.coat_surface, center.to_light, cos_coat));
+#endif
+  return light.color * (center.irradiance * visibility) * brdf_cos;
 }
 
 #ifdef USE_LAMP_SHAPE
@@ -168,6 +242,27 @@ struct ShapeShading {
   vec4 ltc_matrix;
 #endif
 };
+
+ShapeShading shape_shading(MaterialData material, Surface surface)
+{
+  ShapeShading shading;
+  shading.frame = shading_frame(surface);
+#ifdef USE_SPECULAR
+  float cos_v = clamp(dot(surface.normal_ws, surface.view_ws), 1e-4, 1.0);
+  shading.ltc_matrix = textureLod(ltc_table, ltc_texco(material.alpha, cos_v), 0.0);
+#endif
+  return shading;
+}
+
+#ifdef USE_LAYERS
+/** That of the coat. \see shade_coat */
+ShapeShading coat_shading;
+
+void shade_coat()
+{
+  coat_shading = shape_shading(layers.coat_material, layers.coat_surface);
+}
+#endif
 
 #ifdef USE_SHADOW
 /** Visibility of a lamp that is shaded as a whole. */
@@ -198,6 +293,34 @@ float shape_visibility(LightData light, LightShape shape, Surface surface, Cente
 }
 #endif
 
+/** A lamp in the axes of a shading frame, and its irradiance for a light colour of 1. */
+struct ShapeLight {
+  FlatLamp lamp;
+  float irradiance;
+  /** Mean cosine of the incident light. */
+  float cosine;
+};
+
+ShapeLight shape_light(LightData light, LightShape shape, Surface surface, ShadingFrame frame, CenterLight center)
+{
+  ShapeLight result;
+  if (light.kind >= LIGHT_RECTANGLE) {
+    FlatLamp lamp = area_lamp(light, shape, frame, surface);
+    result.lamp = lamp;
+    vec3 flux = flat_flux(lamp.center, lamp.axis_x, lamp.axis_y, lamp.corner_count, vec3(0.0, 0.0, 1.0));
+    result.irradiance = lamp.radiance * PI * flux.z;
+    result.cosine = clamp(flux.z * inversesqrt(max(dot(flux, flux), 1e-30)), 0.0, 1.0);
+    return result;
+  }
+  // The limits prevent an overflow. At a distance of 1e-9 radii, the lamp already fills the half space.
+  float tangent = min(shape.extent * inversesqrt(max(center.distance_sq, 1e-30)), 1e9);
+  result.lamp = round_lamp(center.to_light, tangent, center.irradiance, frame);
+  float sine_sq = tangent * tangent / (1.0 + tangent * tangent);
+  result.cosine = disk_cosine(max(sine_sq, 1e-30), dot(frame.z_ws, center.to_light));
+  result.irradiance = center.irradiance * result.cosine;
+  return result;
+}
+
 /** Radiance towards the viewer from the light \a index, shaded as a whole, W/(sr m²). */
 vec3 shape_radiance(int index, MaterialData material, Surface surface, ShapeShading shading)
 {
@@ -207,19 +330,13 @@ vec3 shape_radiance(int index, MaterialData material, Surface surface, ShapeShad
   if (center.irradiance <= 0.0 || center.distance_sq <= 0.0) {
     return vec3(0.0);
   }
-  FlatLamp lamp;
-  float irradiance;
-  if (light.kind >= LIGHT_RECTANGLE) {
-    lamp = area_lamp(light, shape, shading.frame, surface);
-    irradiance = lamp.radiance * PI * flat_flux(lamp.center, lamp.axis_x, lamp.axis_y, lamp.corner_count, vec3(0.0, 0.0, 1.0)).z;
-  }
-  else {
-    // The limits prevent an overflow. At a distance of 1e-9 radii, the lamp already fills the half space.
-    float tangent = min(shape.extent * inversesqrt(max(center.distance_sq, 1e-30)), 1e9);
-    lamp = round_lamp(center.to_light, tangent, center.irradiance, shading.frame);
-    float sine_sq = tangent * tangent / (1.0 + tangent * tangent);
-    irradiance = center.irradiance * disk_cosine(max(sine_sq, 1e-30), dot(surface.normal_ws, center.to_light));
-  }
+  ShapeLight base_light = shape_light(light, shape, surface, shading.frame, center);
+  float irradiance = base_light.irradiance;
+#ifdef USE_LAYERS
+  // The lamp may be above the horizon of the coat only.
+  ShapeLight coat_light = shape_light(light, shape, layers.coat_surface, coat_shading.frame, center);
+  irradiance = max(irradiance, coat_light.irradiance);
+#endif
   if (irradiance <= 0.0) {
     return vec3(0.0);
   }
@@ -231,9 +348,15 @@ vec3 shape_radiance(int index, MaterialData material, Surface surface, ShapeShad
   if (visibility <= 0.0) {
     return vec3(0.0);
   }
-  vec3 radiance = diffuse_share(material, surface, center.to_light) * irradiance;
+  vec3 radiance = diffuse_share(material, surface, center.to_light) * base_light.irradiance;
 #ifdef USE_SPECULAR
-  radiance += specular_of(lamp, material, shading.ltc_matrix, in_frame(shading.frame, surface.view_ws));
+  radiance += specular_of(base_light.lamp, material, shading.ltc_matrix, in_frame(shading.frame, surface.view_ws));
+#endif
+#ifdef USE_LAYERS
+  // The lobe of sheen is wide, so its value in the mean direction of the lamp is taken for all of the lamp.
+  radiance = layered(radiance, base_light.irradiance * sheen_brdf(surface, center.to_light, base_light.cosine),
+                     specular_of(coat_light.lamp, layers.coat_material, coat_shading.ltc_matrix,
+                                 in_frame(coat_shading.frame, surface.view_ws)));
 #endif
   return light.color * visibility * radiance;
 }
@@ -243,14 +366,20 @@ vec3 shape_radiance(int index, MaterialData material, Surface surface, ShapeShad
 vec3 direct_light(MaterialData material, Surface surface)
 {
 #ifdef USE_LAMP_SHAPE
-  ShapeShading shading;
-  shading.frame = shading_frame(surface);
-#ifdef USE_SPECULAR
-  float cos_v = clamp(dot(surface.normal_ws, surface.view_ws), 1e-4, 1.0);
-  shading.ltc_matrix = textureLod(ltc_table, ltc_texco(material.alpha, cos_v), 0.0);
+  ShapeShading shading = shape_shading(material, surface);
+#ifdef USE_LAYERS
+  shade_coat();
 #endif
 #endif
-#ifdef USE_WORLD
+#if defined(USE_WORLD) && defined(USE_LAYERS)
+  vec3 coat = world_light(layers.coat_material, layers.coat_surface);
+  layers.coat_world = world_shading;
+  vec3 base = world_light(material, surface);
+  // The lobe of sheen is wide: its mean radiance is that of a cosine around the normal.
+  bool is_sampled = world.is_sampled != 0;
+  vec3 mean = is_sampled ? vec3(0.0) : material.occlusion * world_irradiance(world, surface.normal_ws);
+  vec3 sum = layered(base, layers.sheen_albedo * mean, coat);
+#elif defined(USE_WORLD)
   vec3 sum = world_light(material, surface);
 #else
   vec3 sum = vec3(0.0);

@@ -14,6 +14,9 @@
 #  include "eevee/eevee_light_lib.glsl"
 #  include "eevee/eevee_surface_frag_lib.glsl"
 #endif
+#ifdef USE_LAYERS
+#  include "eevee/eevee_layers_lib.glsl"
+#endif
 
 layout(location = 0) out vec4 radiance;
 
@@ -32,6 +35,10 @@ void main()
   Surface surface = make_surface();
 #  ifdef USE_FULL_MATERIAL
   surface = normal_mapped(surface);
+#  endif
+#  ifdef USE_LAYERS
+  set_layers(make_layers(surface));
+  sum *= 1.0 - layers.coat_share;
 #  endif
   sum += direct_light(material, surface);
 #endif

@@ -57,7 +57,7 @@ struct WorldShading {
   float level_share;
 };
 
-/** Set by world_light. */
+/** Of the last call of world_light. */
 WorldShading world_shading;
 #endif
 
@@ -92,7 +92,7 @@ vec3 world_light(MaterialData material, Surface surface)
  * Radiance towards the viewer from a sampled direction of the world, without occlusion. A lobe that is too narrow for the
  * sampled directions reads `world_levels` instead. The directions within a wider lobe then determine its visibility.
  */
-vec3 world_reflected(LightData light, MaterialData material, Surface surface, vec3 to_light, float cos_l)
+vec3 world_reflected(LightData light, MaterialData material, Surface surface, WorldShading shading, vec3 to_light, float cos_l)
 {
   vec3 half_vector = to_light + surface.view_ws;
   float length_sq = dot(half_vector, half_vector);
@@ -101,9 +101,9 @@ vec3 world_reflected(LightData light, MaterialData material, Surface surface, ve
   float cos_h = clamp(dot(surface.normal_ws, half_vector), 0.0, 1.0);
   vec3 fresnel = fresnel_schlick(material.specular_f0, material.specular_f90, dot(surface.view_ws, half_vector));
   float kept = 1.0 - max(max(fresnel.r, fresnel.g), fresnel.b);
-  float lobe = ggx_lobe(cos_l, cos_v, cos_h, world_shading.alpha) * cos_l;
-  vec3 specular = light.color * fresnel * (lobe * (1.0 - world_shading.level_share)) +
-                  world_shading.mirrored * (light.radius_sq * lobe * world_shading.level_share);
+  float lobe = ggx_lobe(cos_l, cos_v, cos_h, shading.alpha) * cos_l;
+  vec3 specular = light.color * fresnel * (lobe * (1.0 - shading.level_share)) +
+                  shading.mirrored * (light.radius_sq * lobe * shading.level_share);
   return light.color * material.diffuse * (INV_PI * kept * cos_l) + specular;
 }
 #endif

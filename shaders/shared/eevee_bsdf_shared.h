@@ -37,6 +37,31 @@ SHARED_FUNCTION float ggx_lobe(float cos_l, float cos_v, float cos_h, float alph
   return ggx_distribution(cos_h, alpha) * ggx_masking_over_2cos(cos_l, alpha) * ggx_masking_over_2cos(cos_v, alpha);
 }
 
+/** Least alpha of sheen. For a smaller one, nearly all of the lobe is below the directions that pixels resolve. */
+SHARED_CONSTANT float SHEEN_ALPHA_MIN = 5e-3f;
+
+/** Distribution of the normals of fibres, 1/sr (Estevez and Kulla 2017, eq. 2). \a alpha: in [SHEEN_ALPHA_MIN, 1]. */
+SHARED_FUNCTION float charlie_distribution(float cos_h, float alpha)
+{
+  float sine_sq = clamp((1.0f - cos_h) * (1.0f + cos_h), 0.0f, 1.0f);
+  return 0.5f * INV_PI * (2.0f + 1.0f / alpha) * pow(sine_sq, 0.5f / alpha);
+}
+
+/**
+ * Lobe of sheen without its colour, 1/sr, with the visibility of Neubelt and Pettineo (2013). \a cos_l: in [0, 1]. \a cos_v: in
+ * (0, 1]. Its albedo exceeds 1 at grazing angles where alpha is small; \see sheen_bounded.
+ */
+SHARED_FUNCTION float sheen_lobe(float cos_l, float cos_v, float cos_h, float alpha)
+{
+  return charlie_distribution(cos_h, alpha) / (4.0f * (cos_l + cos_v - cos_l * cos_v));
+}
+
+/** Factor of a sheen lobe with the directional albedo \a albedo, so that it reflects no more light than it receives. */
+SHARED_FUNCTION float sheen_bounded(float albedo)
+{
+  return 1.0f / max(albedo, 1.0f);
+}
+
 /** Schlick's approximation of Fresnel reflectance (1994). \a cosine: between the half vector and the view direction. */
 SHARED_FUNCTION vec3 fresnel_schlick(vec3 f0, float f90, float cosine)
 {

@@ -40,11 +40,17 @@ SHARED_ASSERT_SIZE(MaterialData, 64)
 #define INPUT_EMISSIVE 16u
 #define INPUT_SPECULAR 32u
 #define INPUT_SPECULAR_COLOR 64u
+#define INPUT_COAT 128u
+#define INPUT_COAT_ROUGHNESS 256u
+#define INPUT_SHEEN_COLOR 512u
+#define INPUT_SHEEN_ROUGHNESS 1024u
 /** Unlit material: its radiance is the base colour. */
-#define INPUT_UNLIT 128u
+#define INPUT_UNLIT 65536u
 /** The surface is blended over what is behind it. */
-#define INPUT_BLENDED 256u
-#define INPUT_TEXTURE_COUNT 7
+#define INPUT_BLENDED 131072u
+/** Textures of FullMaterialData, and after them those of LayerData. */
+#define FULL_TEXTURE_COUNT 7
+#define LAYER_TEXTURE_COUNT 4
 
 /** An entry of `full_material_block`: factors of the textures and of vertex colours. */
 struct FullMaterialData {
@@ -61,9 +67,22 @@ struct FullMaterialData {
   /** Factor of a blended surface's opacity. */
   float opacity;
   /** Two rows for each texture. It is looked up at xyz · (u, v, 1); w of the first row: 0 for the first set of uvs, 1 for the second. */
-  vec4 uv_rows[2 * INPUT_TEXTURE_COUNT];
+  vec4 uv_rows[2 * FULL_TEXTURE_COUNT];
 };
-SHARED_ASSERT_SIZE(FullMaterialData, 64 + 32 * INPUT_TEXTURE_COUNT)
+SHARED_ASSERT_SIZE(FullMaterialData, 64 + 32 * FULL_TEXTURE_COUNT)
+
+/** An entry of `layer_block`: factors of the layers over the base of a material (KHR_materials_clearcoat, KHR_materials_sheen). */
+struct LayerData {
+  vec3 sheen_color;
+  float sheen_roughness;
+  float coat;
+  float coat_roughness;
+  float _pad0;
+  float _pad1;
+  /** As FullMaterialData::uv_rows. */
+  vec4 uv_rows[2 * LAYER_TEXTURE_COUNT];
+};
+SHARED_ASSERT_SIZE(LayerData, 32 + 32 * LAYER_TEXTURE_COUNT)
 
 /**
  * Reflectance at grazing incidence from the reflectance at normal incidence. It fades below 2 %, so that a surface with a
@@ -89,6 +108,21 @@ SHARED_FUNCTION MaterialData metallic_roughness_material(vec3 base_color, float 
   material.metal_f0 = base_color * metallic;
   material.occlusion = 1.0f;
   return material;
+}
+
+/** The coat of a surface as a material: a lobe without Fresnel terms. */
+SHARED_FUNCTION MaterialData coat_material(float roughness)
+{
+  MaterialData material = metallic_roughness_material(vec3(0.0f), 0.0f, roughness, vec3(0.0f), 0.0f);
+  material.specular_f0 = vec3(1.0f);
+  material.specular_f90 = 1.0f;
+  return material;
+}
+
+/** Part of the light that a coat reflects, by KHR_materials_clearcoat. \a cos_v: between the coat's normal and the viewer. */
+SHARED_FUNCTION float coat_reflectance(float coat, float cos_v)
+{
+  return coat * fresnel_schlick(vec3(0.04f), 1.0f, cos_v).x;
 }
 
 /** A surface that emits \a radiance and reflects no light. */

@@ -15,6 +15,7 @@
 #define OBJECT_BLOCK_SLOT 0
 #define MATERIAL_BLOCK_SLOT 1
 #define FULL_MATERIAL_BLOCK_SLOT 2
+#define LAYER_BLOCK_SLOT 3
 
 #define PUSH_CONSTANT_SLOT 8
 #define VIEW_BLOCK_SLOT 9
@@ -45,6 +46,10 @@
 #define EMISSIVE_SLOT 36
 #define SPECULAR_SLOT 37
 #define SPECULAR_COLOR_SLOT 38
+#define COAT_SLOT 39
+#define COAT_ROUGHNESS_SLOT 40
+#define SHEEN_COLOR_SLOT 41
+#define SHEEN_ROUGHNESS_SLOT 42
 
 /** Layout of the block of small values of a group: push constants if the API has them, else a uniform block. */
 #ifdef VULKAN

@@ -26,6 +26,9 @@ Chooser::Chooser(const ChoiceOptions &options, gpu::Device &device, const scene:
   else {
     requirement_.seconds_max = 1e-3 * options.milliseconds_max;
   }
+  for (const std::string &line : reference::untraced_layers(scene)) {
+    fmt::print(stderr, "gnomon: warning: {}\n", line);
+  }
   std::vector<measure::Model> models;
   if (!options.report_folder.empty()) {
     models = models_of_report(device);

@@ -109,6 +109,10 @@ void add(Hasher &hash, const scene::Scene &scene, const scene::Material &materia
   hash.add(material.normal_scale);
   hash.add(material.occlusion_strength);
   hash.add(material.is_unlit);
+  hash.add(material.coat);
+  hash.add(material.coat_roughness);
+  hash.add(material.sheen_color);
+  hash.add(material.sheen_roughness);
   for (const scene::TextureInput &input : scene::texture_inputs) {
     add(hash, scene, material.*input.slot);
   }

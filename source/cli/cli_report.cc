@@ -301,6 +301,9 @@ void Run::measure(measure::SceneReport &report)
     for (const std::string &warning : scene.warnings) {
       warn(report, warning);
     }
+    for (const std::string &line : reference::untraced_layers(scene)) {
+      warn(report, line);
+    }
     measure::remove_shadow_settings(scene);
     const reference::Tracer tracer(scene);
     make_reference(scene, tracer, report);

@@ -13,7 +13,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 namespace gnomon::reference {
@@ -451,6 +453,26 @@ const std::vector<scene::PlacedLamp> &Tracer::lamps() const
 const scene::Scene &Tracer::scene() const
 {
   return tree_->scene;
+}
+
+std::vector<std::string> untraced_layers(const scene::Scene &scene)
+{
+  std::set<scene::Handle<scene::Material>> materials;
+  for (const scene::Object &object : scene.objects()) {
+    materials.insert(scene.meshes()[object.mesh].material);
+  }
+  std::vector<std::string> lines;
+  for (const scene::Handle<scene::Material> handle : materials) {
+    const scene::Material *material = scene.materials().find(handle);
+    if (material != nullptr && (material->has_coat() || material->has_sheen())) {
+      const std::string_view layer = !material->has_sheen() ? "coat"
+                                     : material->has_coat() ? "coat and sheen"
+                                                            : "sheen";
+      lines.push_back(
+          fmt::format("material '{}': the reference does not trace its {}; errors contain it", material->name, layer));
+    }
+  }
+  return lines;
 }
 
 double position_error(const glm::dvec3 &position_ws)

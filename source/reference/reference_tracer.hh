@@ -9,6 +9,8 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 /**
  * Exact visibility and direct light by ray tracing: the ground truth for engines. All values are computed in double
@@ -131,6 +133,9 @@ class Tracer {
   struct Tree;
   std::unique_ptr<Tree> tree_;
 };
+
+/** One line for each material of a visible mesh that has layers, which the tracer leaves out. */
+[[nodiscard]] std::vector<std::string> untraced_layers(const scene::Scene &scene);
 
 /** Largest error of a position, metres, that was computed in double from positions of similar magnitude. */
 [[nodiscard]] double position_error(const glm::dvec3 &position_ws);

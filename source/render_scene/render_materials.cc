@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <span>
 #include <utility>
 
 namespace gnomon::render_scene {
@@ -41,8 +42,12 @@ bool is_drawable(const scene::Scene &scene, const scene::Mesh &mesh, const scene
 MaterialClass material_class(const scene::Scene &scene, const scene::Mesh &mesh)
 {
   const scene::Material &material = scene.material_of(mesh);
+  if (material.has_coat() || material.has_sheen()) {
+    return MaterialClass::Layered;
+  }
   const scene::TextureSlot &base_color = material.base_color_texture;
-  const bool is_full = std::ranges::any_of(scene::texture_inputs, [&](const scene::TextureInput &input) {
+  const auto full_inputs = std::span(scene::texture_inputs).first<FULL_TEXTURE_COUNT>();
+  const bool is_full = std::ranges::any_of(full_inputs, [&](const scene::TextureInput &input) {
     const scene::TextureSlot &slot = material.*input.slot;
     if (!is_drawable(scene, mesh, slot)) {
       return false;
@@ -80,6 +85,17 @@ shared::MaterialData material_data(const scene::Material &material)
   return data;
 }
 
+/** Writes two rows for each texture input from number \a first on, as many as \a rows has. */
+static void write_uv_rows(const scene::Material &material, std::size_t first, std::span<glm::vec4> rows)
+{
+  for (std::size_t i = 0; i < rows.size(); i++) {
+    const scene::TextureSlot &slot = material.*scene::texture_inputs[first + i / 2].slot;
+    const glm::dmat3x2 uv_from_mesh = slot.uv_from_mesh();
+    const int row = int(i % 2);
+    rows[i] = {uv_from_mesh[0][row], uv_from_mesh[1][row], uv_from_mesh[2][row], slot.uv_set};
+  }
+}
+
 shared::FullMaterialData full_material_data(const scene::Scene &scene, const scene::Material &material)
 {
   shared::FullMaterialData data{};
@@ -103,12 +119,19 @@ shared::FullMaterialData full_material_data(const scene::Scene &scene, const sce
     if (is_drawable(scene, slot.texture)) {
       data.inputs |= 1U << i;
     }
-    const glm::dmat3x2 uv_from_mesh = slot.uv_from_mesh();
-    for (int row = 0; row < 2; row++) {
-      data.uv_rows[2 * i + std::size_t(row)] = {uv_from_mesh[0][row], uv_from_mesh[1][row], uv_from_mesh[2][row],
-                                                slot.uv_set};
-    }
   }
+  write_uv_rows(material, 0, data.uv_rows);
+  return data;
+}
+
+shared::LayerData layer_data(const scene::Material &material)
+{
+  shared::LayerData data{};
+  data.coat = material.coat;
+  data.coat_roughness = material.coat_roughness;
+  data.sheen_color = material.sheen_color;
+  data.sheen_roughness = material.sheen_roughness;
+  write_uv_rows(material, FULL_TEXTURE_COUNT, data.uv_rows);
   return data;
 }
 
@@ -141,12 +164,15 @@ void MaterialTable::update(const scene::Scene &scene)
   }
   std::vector<shared::MaterialData> entries(materials.index_end() + 1, material_data({}));
   std::vector<shared::FullMaterialData> full_entries(entries.size(), full_material_data(scene, {}));
+  std::vector<shared::LayerData> layer_entries(entries.size(), layer_data({}));
   for (const auto &[handle, material] : materials) {
     entries[handle.index + 1] = material_data(material);
     full_entries[handle.index + 1] = full_material_data(scene, material);
+    layer_entries[handle.index + 1] = layer_data(material);
   }
   replace(entries_, std::move(entries), entries_block_);
   replace(full_entries_, std::move(full_entries), full_block_);
+  replace(layer_entries_, std::move(layer_entries), layer_block_);
   seen_ = latest;
 }
 
@@ -171,11 +197,14 @@ void MaterialTable::upload(gpu::Device &device, const char *name, const std::vec
   }
 }
 
-void MaterialTable::upload(gpu::Device &device, bool needs_full)
+void MaterialTable::upload(gpu::Device &device, MaterialClass widest)
 {
   upload(device, "material_block", entries_, entries_block_);
-  if (needs_full || full_block_.buffer) {
+  if (widest >= MaterialClass::Full || full_block_.buffer) {
     upload(device, "full_material_block", full_entries_, full_block_);
+  }
+  if (widest == MaterialClass::Layered || layer_block_.buffer) {
+    upload(device, "layer_block", layer_entries_, layer_block_);
   }
 }
 

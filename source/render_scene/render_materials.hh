@@ -26,8 +26,10 @@ enum class MaterialClass : std::uint8_t {
   Plain,
   /** Also a base colour texture, with the first set of uvs and without a uv transform. */
   BaseColor,
-  /** Any textures, both sets of uvs, uv transforms, vertex colours and blending. */
-  Full
+  /** The textures of FullMaterialData, both sets of uvs, uv transforms, vertex colours and blending. */
+  Full,
+  /** Also a coat or sheen, with their textures. */
+  Layered
 };
 
 /** Whether \a slot can be drawn on \a mesh: the texture, its image and the mesh's uvs exist. */
@@ -43,8 +45,10 @@ enum class MaterialClass : std::uint8_t {
 [[nodiscard]] shared::MaterialData material_data(const scene::Material &material);
 /** The material with its textures and uv transforms. Emission is 0 if its emissive texture cannot be drawn. */
 [[nodiscard]] shared::FullMaterialData full_material_data(const scene::Scene &scene, const scene::Material &material);
+/** The layers over the base of the material. */
+[[nodiscard]] shared::LayerData layer_data(const scene::Material &material);
 
-/** `material_block` and `full_material_block`: the materials of a scene on one device. */
+/** `material_block`, `full_material_block` and `layer_block`: the materials of a scene on one device. */
 class MaterialTable {
  public:
   /** Index of a material's entry. Stale handles get the default material, whose index is 0. */
@@ -53,19 +57,25 @@ class MaterialTable {
   /** Recompute the entries if materials, textures or images have changed. */
   void update(const scene::Scene &scene);
   /**
-   * Write the changed entries to the device. `full_material_block` is created when \a needs_full is first true.
+   * Write the changed entries to the device. \a widest: the class with the most inputs that shaders read.
+   * `full_material_block` and `layer_block` are created when a class first needs them.
    * \throws gpu::Error if a block exceeds the limit of the device
    */
-  void upload(gpu::Device &device, bool needs_full);
+  void upload(gpu::Device &device, MaterialClass widest);
   /** `material_block`; valid after upload. */
   [[nodiscard]] const gpu::Buffer &buffer() const
   {
     return entries_block_.buffer;
   }
-  /** `full_material_block`; empty until upload() was called with needs_full. */
+  /** `full_material_block`; empty until upload() was called with MaterialClass::Full or Layered. */
   [[nodiscard]] const gpu::Buffer &full_buffer() const
   {
     return full_block_.buffer;
+  }
+  /** `layer_block`; empty until upload() was called with MaterialClass::Layered. */
+  [[nodiscard]] const gpu::Buffer &layer_buffer() const
+  {
+    return layer_block_.buffer;
   }
   [[nodiscard]] const shared::MaterialData &operator[](std::uint32_t place) const
   {
@@ -89,8 +99,10 @@ class MaterialTable {
 
   std::vector<shared::MaterialData> entries_;
   std::vector<shared::FullMaterialData> full_entries_;
+  std::vector<shared::LayerData> layer_entries_;
   Block entries_block_;
   Block full_block_;
+  Block layer_block_;
   /** Latest revision of the materials, textures and images at the last update(). */
   scene::Revision seen_ = 0;
 };

@@ -172,10 +172,10 @@ void RenderScene::update_revisions()
   materials_revision_ += materials.latest(Material::Surface) > seen_ ? 1 : 0;
 }
 
-void RenderScene::upload(bool needs_full_materials)
+void RenderScene::upload(MaterialClass widest)
 {
   objects_.upload(device_);
-  materials_.upload(device_, needs_full_materials);
+  materials_.upload(device_, widest);
 }
 
 }  // namespace gnomon::render_scene

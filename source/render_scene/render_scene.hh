@@ -148,10 +148,10 @@ class RenderScene {
     return materials_;
   }
   /**
-   * Write the changed parts of `object_block`, `material_block` and, if \a needs_full_materials, `full_material_block`.
+   * Write the changed parts of `object_block` and of the blocks of materials. \see MaterialTable::upload
    * \throws gpu::Error if a block exceeds the limit of the device
    */
-  void upload(bool needs_full_materials);
+  void upload(MaterialClass widest);
 
  private:
   /** The objects of one node. */

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "render_surfaces.hh"
 
+#include <algorithm>
+
 namespace gnomon::render_scene {
 
 /** Number of texture inputs that shaders of the class read. They are the first ones of scene::texture_inputs. */
@@ -8,7 +10,8 @@ static std::size_t input_count(MaterialClass material_class)
 {
   switch (material_class) {
     case MaterialClass::BaseColor: return 1;
-    case MaterialClass::Full: return scene::texture_inputs.size();
+    case MaterialClass::Full: return FULL_TEXTURE_COUNT;
+    case MaterialClass::Layered: return scene::texture_inputs.size();
     default: return 0;
   }
 }
@@ -17,7 +20,8 @@ MeshStreams streams_of(MaterialClass material_class)
 {
   switch (material_class) {
     case MaterialClass::BaseColor: return MeshStreams::Uvs;
-    case MaterialClass::Full: return MeshStreams::All;
+    case MaterialClass::Full:
+    case MaterialClass::Layered: return MeshStreams::All;
     default: return MeshStreams::Shape;
   }
 }
@@ -35,7 +39,7 @@ TextureSet textures_of(const scene::Scene &scene, const scene::Mesh &mesh, Mater
 
 MaterialClass mask_class(const scene::Scene &scene, const scene::Mesh &mesh)
 {
-  return is_masked(scene, mesh) ? material_class(scene, mesh) : MaterialClass::Plain;
+  return is_masked(scene, mesh) ? std::min(material_class(scene, mesh), MaterialClass::Full) : MaterialClass::Plain;
 }
 
 void bind_textures(draw::ShadingGroup &group, RenderScene &scene, MaterialClass material_class, const TextureSet &set)

@@ -19,7 +19,7 @@ using TextureSet = std::array<scene::Handle<scene::Texture>, scene::texture_inpu
 /** The drawable textures of the mesh's material that shaders of \a material_class read. */
 [[nodiscard]] TextureSet textures_of(const scene::Scene &scene, const scene::Mesh &mesh, MaterialClass material_class);
 
-/** The class for depth passes: material_class() if the surface is masked, otherwise Plain. */
+/** The class for depth passes: material_class(), at most Full, if the surface is masked; otherwise Plain. */
 [[nodiscard]] MaterialClass mask_class(const scene::Scene &scene, const scene::Mesh &mesh);
 
 /** Bind the textures of \a set that shaders of \a material_class read. Missing textures are white. */

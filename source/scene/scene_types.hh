@@ -115,15 +115,15 @@ struct TextureSlot {
 enum class AlphaMode { Opaque, Mask, Blend };
 
 /**
- * Metallic-roughness surface of glTF 2.0 with KHR_materials_specular and KHR_materials_unlit. All factors are in [0,
- * 1]. A mesh without the uvs of a slot is drawn without its texture.
+ * Metallic-roughness surface of glTF 2.0 with KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen and
+ * KHR_materials_unlit. All factors are in [0, 1]. A mesh without the uvs of a slot is drawn without its texture.
  */
 struct Material {
   static constexpr std::string_view kind_name = "material";
   /**
    * Surface: factors of the shading. Coverage: properties that decide which parts of a surface, and of its shadow,
-   * exist: alpha mode, alpha, cutoff, sides. Textures: textures, their transforms, and is_unlit, by which fewer are
-   * read.
+   * exist: alpha mode, alpha, cutoff, sides. Textures: textures, their transforms, and is_unlit, has_coat and
+   * has_sheen, on which the textures that are read depend.
    */
   enum class Aspect { Name, Surface, Coverage, Textures, Count };
 
@@ -153,6 +153,22 @@ struct Material {
   TextureSlot specular_texture{};
   /** Multiplied with specular_color. */
   TextureSlot specular_color_texture{};
+  /** Part of the surface under a clear coat of index 1.5. 0: no coat. */
+  float coat = 0.0F;
+  /** Perceptual. The coat is smooth where the base has a normal texture. */
+  float coat_roughness = 0.0F;
+  /** Red is multiplied with coat. */
+  TextureSlot coat_texture{};
+  /** Green is multiplied with coat_roughness. */
+  TextureSlot coat_roughness_texture{};
+  /** Reflectance of fibres on the base, under the coat. Black: no sheen. */
+  glm::vec3 sheen_color{0.0F};
+  /** Perceptual. */
+  float sheen_roughness = 0.0F;
+  /** Multiplied with sheen_color. */
+  TextureSlot sheen_color_texture{};
+  /** Alpha is multiplied with sheen_roughness. */
+  TextureSlot sheen_roughness_texture{};
   /** Scene-linear radiance, W/(sr m²) per channel. May exceed 1. */
   glm::vec3 emissive{0.0F};
   /** Multiplied with emissive. */
@@ -164,6 +180,15 @@ struct Material {
   float alpha_cutoff = 0.5F;
   /** false: back faces are not drawn and cast no light. */
   bool is_double_sided = false;
+
+  [[nodiscard]] bool has_coat() const
+  {
+    return coat > 0.0F && !is_unlit;
+  }
+  [[nodiscard]] bool has_sheen() const
+  {
+    return sheen_color != glm::vec3(0.0F) && !is_unlit;
+  }
 };
 
 /** One of a material's texture slots. */
@@ -176,7 +201,7 @@ struct TextureInput {
 };
 
 /** All texture slots. */
-inline constexpr std::array<TextureInput, 7> texture_inputs = {{
+inline constexpr std::array<TextureInput, 11> texture_inputs = {{
     {&Material::base_color_texture, "base_color_texture", true},
     {&Material::metallic_roughness_texture, "metallic_roughness_texture", false},
     {&Material::normal_texture, "normal_texture", false},
@@ -184,6 +209,10 @@ inline constexpr std::array<TextureInput, 7> texture_inputs = {{
     {&Material::emissive_texture, "emissive_texture", true},
     {&Material::specular_texture, "specular_texture", false},
     {&Material::specular_color_texture, "specular_color_texture", true},
+    {&Material::coat_texture, "coat_texture", false},
+    {&Material::coat_roughness_texture, "coat_roughness_texture", false},
+    {&Material::sheen_color_texture, "sheen_color_texture", true},
+    {&Material::sheen_roughness_texture, "sheen_roughness_texture", false},
 }};
 
 /** Indexed triangles of one material (a glTF primitive). Object space, metres. */

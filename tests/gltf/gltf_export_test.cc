@@ -126,10 +126,11 @@ class Description {
       textures += fmt::format(" {} {} {:a}{}{}", texture_number(slot), slot.uv_set, slot.rotation,
                               numbers(slot.offset, 2), numbers(slot.scale, 2));
     }
-    line("material {} '{}'{} {:a} textures{} {:a} {:a} {:a}{}{} {} {:a} {} {:a} {:a} {}", number_of, m.name,
-         numbers(m.base_color, 3), m.alpha, textures, m.metallic, m.roughness, m.specular, numbers(m.specular_color, 3),
-         numbers(m.emissive, 3), int(m.alpha_mode), m.alpha_cutoff, m.is_double_sided, m.normal_scale,
-         m.occlusion_strength, m.is_unlit);
+    line("material {} '{}'{} {:a} textures{} {:a} {:a} {:a}{}{} {} {:a} {} {:a} {:a} {} {:a} {:a}{} {:a}", number_of,
+         m.name, numbers(m.base_color, 3), m.alpha, textures, m.metallic, m.roughness, m.specular,
+         numbers(m.specular_color, 3), numbers(m.emissive, 3), int(m.alpha_mode), m.alpha_cutoff, m.is_double_sided,
+         m.normal_scale, m.occlusion_strength, m.is_unlit, m.coat, m.coat_roughness, numbers(m.sheen_color, 3),
+         m.sheen_roughness);
   }
 
   std::string texture_number(const scene::TextureSlot &slot)
@@ -300,6 +301,10 @@ Handle<scene::Material> add_material(Scene &scene, Values &value)
   material.normal_scale = value(-1, 2);
   material.occlusion_strength = value(0, 1);
   material.is_unlit = true;
+  material.coat = value(0, 1);
+  material.coat_roughness = value(0, 1);
+  material.sheen_color = value.color();
+  material.sheen_roughness = value(0, 1);
   return scene.add(material);
 }
 

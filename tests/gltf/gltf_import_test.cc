@@ -676,11 +676,49 @@ TEST(GltfMaterial, UnlitIsRead)
   EXPECT_NO_WARNING(scene, "unlit");
 }
 
+TEST(GltfMaterial, CoatAndSheenAreRead)
+{
+  const auto [material, scene] = import_material(
+      {{"extensions",
+        {{"KHR_materials_clearcoat", {{"clearcoatFactor", 0.5}, {"clearcoatRoughnessFactor", 2}}},
+         {"KHR_materials_sheen", {{"sheenColorFactor", {0.1, 0.2, 0.3}}, {"sheenRoughnessFactor", 0.4}}}}}});
+  EXPECT_TRUE(material.has_coat() && material.has_sheen());
+  EXPECT_EQ(material.coat, 0.5F);
+  EXPECT_EQ(material.coat_roughness, 1.0F);
+  EXPECT_EQ(material.sheen_color, glm::vec3(0.1F, 0.2F, 0.3F));
+  EXPECT_EQ(material.sheen_roughness, 0.4F);
+  EXPECT_WARNING(scene, "material 'paint': clearcoatRoughnessFactor is 2, clamped to 1");
+  EXPECT_NO_WARNING(scene, "is not drawn");
+}
+
+TEST(GltfMaterial, TexturesOfAbsentLayersAreNotRead)
+{
+  const json slot = {{"index", 0}};
+  const auto import_coat = [&](double factor) {
+    return import_material({{"extensions",
+                             {{"KHR_materials_clearcoat",
+                               {{"clearcoatFactor", factor},
+                                {"clearcoatTexture", slot},
+                                {"clearcoatRoughnessTexture", slot},
+                                {"clearcoatNormalTexture", slot}}},
+                              {"KHR_materials_sheen", {{"sheenColorTexture", slot}}}}}});
+  };
+  const auto [bare, bare_scene] = import_coat(0);
+  EXPECT_FALSE(bare.has_coat() || bare.coat_texture || bare.coat_roughness_texture || bare.sheen_color_texture);
+  EXPECT_EQ(bare_scene.images().size(), 0U);
+  EXPECT_NO_WARNING(bare_scene, "material 'paint'");
+  const auto [coated, coated_scene] = import_coat(1);
+  EXPECT_TRUE(coated.coat_texture && coated.coat_roughness_texture && !coated.sheen_color_texture);
+  EXPECT_WARNING(coated_scene, "material 'paint': its clearcoatTexture is drawn as the factor alone: ");
+  EXPECT_WARNING(coated_scene, "material 'paint': its clearcoatNormalTexture is not drawn");
+}
+
 TEST(GltfMaterial, ForeignModelsAreNamed)
 {
   const auto [material, scene] = import_material(
-      {{"extensions", {{"KHR_materials_clearcoat", json::object()}, {"KHR_materials_transmission", {{"a", {1, 2}}}}}}});
-  EXPECT_WARNING(scene, "material 'paint': KHR_materials_clearcoat is not drawn");
+      {{"extensions",
+        {{"KHR_materials_iridescence", json::object()}, {"KHR_materials_transmission", {{"a", {1, 2}}}}}}});
+  EXPECT_WARNING(scene, "material 'paint': KHR_materials_iridescence is not drawn");
   EXPECT_WARNING(scene, "material 'paint': KHR_materials_transmission is not drawn");
 }
 

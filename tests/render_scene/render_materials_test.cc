@@ -199,6 +199,35 @@ TEST(MaterialClassTest, EachInputHasTheLeastClassThatReadsIt)
   EXPECT_EQ(square.material_class(), MaterialClass::Plain);
   square.edit_mesh([](scene::Mesh &mesh) { mesh.colors.assign(4, glm::vec4(1.0F)); });
   EXPECT_EQ(square.material_class(), MaterialClass::Full);
+  square.edit([&](scene::Material &material) {
+    material.coat_roughness = 0.5F;
+    material.coat_texture = square.texture;
+    material.sheen_roughness = 0.5F;
+  });
+  EXPECT_EQ(square.material_class(), MaterialClass::Full) << "it has neither a coat nor sheen";
+  square.edit([](scene::Material &material) { material.coat = 0.5F; });
+  EXPECT_EQ(square.material_class(), MaterialClass::Layered);
+  square.edit([](scene::Material &material) { material.is_unlit = true; });
+  EXPECT_EQ(square.material_class(), MaterialClass::Full);
+}
+
+TEST(LayerData, HasTheFactorsAndTheUvsOfItsTextures)
+{
+  scene::Material material;
+  material.coat = 0.25F;
+  material.coat_roughness = 0.5F;
+  material.sheen_color = {0.1F, 0.2F, 0.3F};
+  material.sheen_roughness = 0.75F;
+  material.coat_texture.offset = {1.0F, 2.0F};
+  material.sheen_roughness_texture.uv_set = 1;
+  const shared::LayerData data = layer_data(material);
+  EXPECT_EQ(data.coat, 0.25F);
+  EXPECT_EQ(data.coat_roughness, 0.5F);
+  EXPECT_EQ(data.sheen_color, material.sheen_color);
+  EXPECT_EQ(data.sheen_roughness, 0.75F);
+  EXPECT_EQ(data.uv_rows[0], glm::vec4(1, 0, 1, 0));
+  EXPECT_EQ(data.uv_rows[1], glm::vec4(0, 1, 2, 0));
+  EXPECT_EQ(data.uv_rows[6].w, 1.0F);
 }
 
 TEST(MaterialData, WithoutItsEmissiveTextureAMaterialDoesNotEmit)

@@ -72,7 +72,7 @@ class RenderSceneTest : public testing::Test {
     const std::uint64_t before = device->counters().upload_bytes;
     change();
     render_scene.update();
-    render_scene.upload(false);
+    render_scene.upload(MaterialClass::Plain);
     return device->counters().upload_bytes - before;
   }
   std::uint64_t uploads_of_batch(scene::Handle<scene::Mesh> handle, MeshStreams streams = MeshStreams::Shape)

@@ -448,33 +448,41 @@ TEST(SceneRevision, EachEditChangesItsAspectAlone)
                               {Camera::Aspect::Lens, [](Camera &camera) { camera.half_width = 3.0F; }},
                               {Camera::Aspect::Lens, [](Camera &camera) { camera.half_height = 3.0F; }}});
   expect_aspects<Material>(
-      {},
-      {{Material::Aspect::Name, [](Material &material) { material.name = "renamed"; }},
-       {Material::Aspect::Surface, [](Material &material) { material.base_color.r = 0.5F; }},
-       {Material::Aspect::Surface, [](Material &material) { material.metallic = 0.5F; }},
-       {Material::Aspect::Surface, [](Material &material) { material.roughness = 0.5F; }},
-       {Material::Aspect::Surface, [](Material &material) { material.specular = 0.5F; }},
-       {Material::Aspect::Surface, [](Material &material) { material.specular_color.b = 0.5F; }},
-       {Material::Aspect::Surface, [](Material &material) { material.emissive.b = 0.5F; }},
-       {Material::Aspect::Coverage, [](Material &material) { material.alpha = 0.5F; }},
-       {Material::Aspect::Coverage, [](Material &material) { material.alpha_mode = AlphaMode::Mask; }},
-       {Material::Aspect::Coverage, [](Material &material) { material.alpha_cutoff = 0.25F; }},
-       {Material::Aspect::Coverage, [](Material &material) { material.is_double_sided = true; }},
-       {Material::Aspect::Surface, [](Material &material) { material.normal_scale = 0.5F; }},
-       {Material::Aspect::Surface, [](Material &material) { material.occlusion_strength = 0.5F; }},
-       {Material::Aspect::Textures, [](Material &material) { material.is_unlit = true; }},
-       {Material::Aspect::Textures,
-        [](Material &material) {
-          material.base_color_texture = Handle<Texture>{7, 1};
-        }},
-       {Material::Aspect::Textures,
-        [](Material &material) {
-          material.specular_color_texture = Handle<Texture>{7, 1};
-        }},
-       {Material::Aspect::Textures, [](Material &material) { material.normal_texture.uv_set = 1; }},
-       {Material::Aspect::Textures, [](Material &material) { material.emissive_texture.offset.y = 1.0F; }},
-       {Material::Aspect::Textures, [](Material &material) { material.occlusion_texture.rotation = 1.0F; }},
-       {Material::Aspect::Textures, [](Material &material) { material.metallic_roughness_texture.scale.x = 2.0F; }}});
+      {}, {{Material::Aspect::Name, [](Material &material) { material.name = "renamed"; }},
+           {Material::Aspect::Surface, [](Material &material) { material.base_color.r = 0.5F; }},
+           {Material::Aspect::Surface, [](Material &material) { material.metallic = 0.5F; }},
+           {Material::Aspect::Surface, [](Material &material) { material.roughness = 0.5F; }},
+           {Material::Aspect::Surface, [](Material &material) { material.specular = 0.5F; }},
+           {Material::Aspect::Surface, [](Material &material) { material.specular_color.b = 0.5F; }},
+           {Material::Aspect::Surface, [](Material &material) { material.emissive.b = 0.5F; }},
+           {Material::Aspect::Coverage, [](Material &material) { material.alpha = 0.5F; }},
+           {Material::Aspect::Coverage, [](Material &material) { material.alpha_mode = AlphaMode::Mask; }},
+           {Material::Aspect::Coverage, [](Material &material) { material.alpha_cutoff = 0.25F; }},
+           {Material::Aspect::Coverage, [](Material &material) { material.is_double_sided = true; }},
+           {Material::Aspect::Surface, [](Material &material) { material.normal_scale = 0.5F; }},
+           {Material::Aspect::Surface, [](Material &material) { material.occlusion_strength = 0.5F; }},
+           {Material::Aspect::Textures, [](Material &material) { material.is_unlit = true; }},
+           {Material::Aspect::Textures,
+            [](Material &material) {
+              material.base_color_texture = Handle<Texture>{7, 1};
+            }},
+           {Material::Aspect::Textures,
+            [](Material &material) {
+              material.specular_color_texture = Handle<Texture>{7, 1};
+            }},
+           {Material::Aspect::Textures, [](Material &material) { material.normal_texture.uv_set = 1; }},
+           {Material::Aspect::Textures, [](Material &material) { material.emissive_texture.offset.y = 1.0F; }},
+           {Material::Aspect::Textures, [](Material &material) { material.occlusion_texture.rotation = 1.0F; }},
+           {Material::Aspect::Textures, [](Material &material) { material.metallic_roughness_texture.scale.x = 2.0F; }},
+           {Material::Aspect::Textures, [](Material &material) { material.sheen_roughness_texture.scale.x = 2.0F; }}});
+  Material layered;
+  layered.coat = 1.0F;
+  layered.sheen_color = glm::vec3(1.0F);
+  expect_aspects<Material>(layered,
+                           {{Material::Aspect::Surface, [](Material &material) { material.coat = 0.5F; }},
+                            {Material::Aspect::Surface, [](Material &material) { material.coat_roughness = 0.5F; }},
+                            {Material::Aspect::Surface, [](Material &material) { material.sheen_color.r = 0.5F; }},
+                            {Material::Aspect::Surface, [](Material &material) { material.sheen_roughness = 0.5F; }}});
   expect_aspects<Texture>({}, {{Texture::Aspect::Image,
                                 [](Texture &texture) {
                                   texture.image = {7, 1};

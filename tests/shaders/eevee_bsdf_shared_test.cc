@@ -76,6 +76,25 @@ TEST(GgxLobe, IsFiniteAtTheEnds)
   }
 }
 
+TEST(CharlieDistribution, ProjectsToOne)
+{
+  for (const float alpha : {SHEEN_ALPHA_MIN, 0.1F, 0.5F, 1.0F}) {
+    const double area = hemisphere_integral([&](double c) { return double(charlie_distribution(float(c), alpha)); });
+    EXPECT_NEAR(area, 1.0, 1e-3) << "alpha " << alpha;
+  }
+}
+
+TEST(SheenLobe, IsReciprocalAndFiniteAtTheEnds)
+{
+  EXPECT_FLOAT_EQ(sheen_lobe(0.3F, 0.8F, 0.6F, 0.4F), sheen_lobe(0.8F, 0.3F, 0.6F, 0.4F));
+  for (const float alpha : {SHEEN_ALPHA_MIN, 1.0F}) {
+    for (const float cos_h : {0.0F, 1.0F}) {
+      EXPECT_TRUE(std::isfinite(sheen_lobe(0.0F, 1e-4F, cos_h, alpha)));
+      EXPECT_TRUE(std::isfinite(sheen_lobe(1.0F, 1.0F, cos_h, alpha)));
+    }
+  }
+}
+
 TEST(FresnelSchlick, GoesFromNormalToGrazing)
 {
   const vec3 f0(0.04F, 0.5F, 1.0F);

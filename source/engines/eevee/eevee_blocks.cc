@@ -59,6 +59,16 @@ constexpr auto full_material_fields = std::to_array<Field>({
     {"full_materials[0].uv_rows", offsetof(FullMaterialData, uv_rows)},
 });
 
+constexpr auto layer_fields = std::to_array<Field>({
+    {"layer_materials[0].sheen_color", offsetof(LayerData, sheen_color)},
+    {"layer_materials[0].sheen_roughness", offsetof(LayerData, sheen_roughness)},
+    {"layer_materials[0].coat", offsetof(LayerData, coat)},
+    {"layer_materials[0].coat_roughness", offsetof(LayerData, coat_roughness)},
+    {"layer_materials[0]._pad0", offsetof(LayerData, _pad0)},
+    {"layer_materials[0]._pad1", offsetof(LayerData, _pad1)},
+    {"layer_materials[0].uv_rows", offsetof(LayerData, uv_rows)},
+});
+
 constexpr std::size_t lights_offset = offsetof(LightBlock, lights);
 constexpr auto light_fields = std::to_array<Field>({
     {"light_data.light_count", offsetof(LightBlock, light_count)},
@@ -128,11 +138,12 @@ constexpr auto esm_fields = std::to_array<Field>({
     {"esm.lamps[0]._pad0", offsetof(EsmData, _pad0)},
 });
 
-constexpr std::array<gpu::BlockLayout, 10> layouts = {{
+constexpr std::array<gpu::BlockLayout, 11> layouts = {{
     {"view_block", sizeof(ViewData), view_fields},
     {"object_block", sizeof(ObjectData), object_fields},
     {"material_block", sizeof(MaterialData), material_fields},
     {"full_material_block", sizeof(FullMaterialData), full_material_fields},
+    {"layer_block", sizeof(LayerData), layer_fields},
     {"light_block", sizeof(LightBlock), light_fields},
     {"light_shape_block", sizeof(LightShapeBlock), light_shape_fields},
     {"world_block", sizeof(WorldBlock), world_fields},

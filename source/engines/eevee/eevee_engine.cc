@@ -120,7 +120,7 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
 static void follow_lamps(Data &data)
 {
   if (data.stl.shared_revision != data.shared->revision) {
-    data.stl.features = with_world(data.shared->lamps.features | data.shared->shadows.features());
+    data.stl.features = with_variant(data.shared->lamps.features | data.shared->shadows.features());
     data.stl.shared_revision = data.shared->revision;
     data.is_recorded = false;
   }
@@ -177,6 +177,7 @@ void Engine::update_view(Data &data, const draw::View &view)
   data.stl.object_block = data.shared->object_block = {scene_.objects().buffer().id()};
   data.stl.material_block = data.shared->material_block = {scene_.materials().buffer().id()};
   data.stl.full_material_block = data.shared->full_material_block = {scene_.materials().full_buffer().id()};
+  data.stl.layer_block = {scene_.materials().layer_buffer().id()};
   scene_.device().update(data.stl.view_block, view_data(view, settings_, data.sample_index));
 }
 

@@ -216,6 +216,7 @@ struct StorageList {
   gpu::Buffer view_block;
   gpu::BufferRange material_block;
   gpu::BufferRange full_material_block;
+  gpu::BufferRange layer_block;
   gpu::BufferRange object_block;
   /** The groups of the passes that draw objects. */
   std::map<GroupKey, draw::ShadingGroup *> groups;
@@ -234,7 +235,8 @@ struct StorageList {
   std::uint64_t shared_revision = 0;
   /** Sum of the revisions from which `material_features` was derived. */
   std::uint64_t materials_features_revision = ~std::uint64_t(0);
-  /** Features that the materials of the drawable objects need. */
+  /** The class with the most inputs, and the features, that the materials of the drawable objects need. */
+  render_scene::MaterialClass widest_class = render_scene::MaterialClass::Plain;
   Feature material_features = Feature::None;
   /** Index in light_block of the light that is being probed. */
   int probed_light = 0;

@@ -40,6 +40,8 @@ enum class Feature : std::uint32_t {
   World = 1U << 13,
   /** Per material: it is blended, and its shadow layers hold the part of it that its opacity says. */
   OpacityThreshold = 1U << 14,
+  /** Per material: its class is render_scene::MaterialClass::Layered. */
+  Layers = 1U << 15,
 };
 
 constexpr Feature operator|(Feature a, Feature b)
@@ -62,6 +64,12 @@ inline constexpr Feature any_shadow = Feature::ShadowCube | Feature::ShadowMap |
 constexpr Feature without_shadows(Feature features)
 {
   return Feature(std::uint32_t(features) & ~std::uint32_t(any_shadow | Feature::ShadowPcf | Feature::ShadowEvsm));
+}
+
+/** \a features without those of single materials that lie over others. */
+constexpr Feature without_layers(Feature features)
+{
+  return Feature(std::uint32_t(features) & ~std::uint32_t(Feature::Layers));
 }
 
 /** The kernel of percentage-closer filtering. */

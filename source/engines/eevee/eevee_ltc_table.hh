@@ -9,7 +9,8 @@ namespace gnomon::eevee {
  * The content of the texture `ltc_table`: 2 · LTC_TABLE_SIZE by LTC_TABLE_SIZE texels in RGBA32F. In each half, columns
  * are the square root of alpha, 0 to 1, and rows are the square root of 1 - cos of the view direction, 0 to 1. The left
  * half contains the matrix of ltc_transformed. The right half contains the directional albedo of the lobe, the same
- * albedo weighted by Schlick's fifth power, and the hemispherical mean of the albedo. ltc_tool/ generates the table.
+ * albedo weighted by Schlick's fifth power, the hemispherical mean of the albedo, and the directional albedo of a sheen
+ * lobe. ltc_tool/ generates the table.
  */
 [[nodiscard]] std::span<const float> ltc_table();
 

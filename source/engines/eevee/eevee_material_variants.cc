@@ -10,6 +10,7 @@ Feature feature_of(MaterialClass material_class)
   switch (material_class) {
     case MaterialClass::BaseColor: return Feature::BaseColorTexture;
     case MaterialClass::Full: return Feature::FullMaterial;
+    case MaterialClass::Layered: return Feature::FullMaterial | Feature::Layers;
     default: return Feature::None;
   }
 }

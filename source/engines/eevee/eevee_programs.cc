@@ -9,7 +9,7 @@ namespace gnomon::eevee {
 
 namespace {
 
-constexpr std::array<FeatureDefine, 15> feature_table = {
+constexpr std::array<FeatureDefine, 16> feature_table = {
     {{Feature::Light, "USE_LIGHT", "something shines"},
      {Feature::Punctual, "USE_PUNCTUAL", "a point, spot or area lamp shines"},
      {Feature::Specular, "USE_SPECULAR", "a material reflects specularly"},
@@ -25,7 +25,8 @@ constexpr std::array<FeatureDefine, 15> feature_table = {
       "a material has other textures than base colour, a transform or a second set of uvs, or a mesh has colours"},
      {Feature::TargetDepth, "USE_TARGET_DEPTH", "the target takes depth"},
      {Feature::World, "USE_WORLD", "a world shines"},
-     {Feature::OpacityThreshold, "USE_OPACITY_THRESHOLD", "a blended material casts shadows"}}};
+     {Feature::OpacityThreshold, "USE_OPACITY_THRESHOLD", "a blended material casts shadows"},
+     {Feature::Layers, "USE_LAYERS", "a material has a clear coat or sheen"}}};
 
 /** Features that only affect lighting. Variants without Feature::Light have none of them. */
 constexpr Feature light_features = Feature::Light | Feature::Punctual | Feature::Specular | Feature::ShadowCube |
@@ -51,7 +52,7 @@ constexpr std::array<ShaderDeclaration, 19> declarations = {{
      "eevee/eevee_shadow_geometry_geom.glsl", "eevee/eevee_depth_frag.glsl", caster_features, Feature::None,
      "the same where vertex shaders cannot choose a layer"},
     {ShaderId::Lit, "eevee_lit", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_lit_frag.glsl",
-     light_features | Feature::BaseColorTexture | Feature::FullMaterial, Feature::None,
+     light_features | Feature::BaseColorTexture | Feature::FullMaterial | Feature::Layers, Feature::None,
      "light that surfaces send to the viewer"},
     {ShaderId::Probe, "eevee_probe", "eevee/eevee_surface_vert.glsl", "", "eevee/eevee_probe_frag.glsl",
      shadow_features, Feature::Light, "position, normal and visibility of one lamp, for comparison with the reference"},
@@ -102,12 +103,17 @@ bool is_possible(Feature features, const ShaderDeclaration &declaration)
     return false;
   }
   if (!has(features, Feature::Light)) {
-    return (features & light_features) == Feature::None;
+    return !has(features, light_features | Feature::Layers);
   }
-  // With a world, Punctual implies LampShape and ShadowEsm implies ShadowEvsm, and vice versa. Most scenes need these
-  // features together, and the rule reduces the number of variants. \see with_world
-  if (has(features, Feature::World) && (has(features, Feature::Punctual) != has(features, Feature::LampShape) ||
-                                        has(features, Feature::ShadowEsm) != has(features, Feature::ShadowEvsm))) {
+  // Layers lie over full materials, and reflect.
+  if (has(features, Feature::Layers) && (!has(features, Feature::FullMaterial) || !has(features, Feature::Specular))) {
+    return false;
+  }
+  // With a world or with layers, Punctual implies LampShape and ShadowEsm implies ShadowEvsm, and vice versa. Most
+  // scenes need these features together, and the rule reduces the number of variants. \see with_variant
+  if (has(features, Feature::World | Feature::Layers) &&
+      (has(features, Feature::Punctual) != has(features, Feature::LampShape) ||
+       has(features, Feature::ShadowEsm) != has(features, Feature::ShadowEvsm))) {
     return false;
   }
   // Cubes and exponential maps exist for point, spot and area lamps only. Percentage-closer filtering reads a cube or a
@@ -127,6 +133,20 @@ std::span<const FeatureDefine> feature_defines()
 std::span<const ShaderDeclaration> shader_declarations()
 {
   return declarations;
+}
+
+Feature with_variant(Feature features)
+{
+  if (!has(features, Feature::World | Feature::Layers)) {
+    return features;
+  }
+  if (has(features, Feature::Punctual | Feature::LampShape)) {
+    features = features | Feature::Punctual | Feature::LampShape;
+  }
+  if (has(features, Feature::ShadowEsm)) {
+    features = features | Feature::ShadowEvsm;
+  }
+  return features;
 }
 
 std::vector<Feature> shader_variants(const ShaderDeclaration &declaration)

@@ -65,6 +65,12 @@ struct FeatureDefine {
 /** One entry for each ShaderId, in order. */
 [[nodiscard]] std::span<const ShaderDeclaration> shader_declarations();
 
+/**
+ * The features of a frame, extended to a mask for which programs have a variant. \a features: those of its lamps, its
+ * world and its materials.
+ */
+[[nodiscard]] Feature with_variant(Feature features);
+
 /** The feature masks of \a declaration that a scene can need, without impossible masks and without duplicates. */
 [[nodiscard]] std::vector<Feature> shader_variants(const ShaderDeclaration &declaration);
 

@@ -29,6 +29,7 @@ void bind_lit(draw::ShadingGroup &group, Data &data)
   group.bind_storage_ref("object_block", &stl.object_block);
   group.bind_storage_ref("material_block", &stl.material_block);
   group.bind_storage_ref("full_material_block", &stl.full_material_block);
+  group.bind_storage_ref("layer_block", &stl.layer_block);
   group.bind_uniform("light_block", data.shared->light_block);
   if (has(stl.features, Feature::LampShape)) {
     group.bind_uniform("light_shape_block", data.shared->light_shape_block);
@@ -81,16 +82,20 @@ void Engine::make_blocks(draw::Viewport &viewport)
       scene_.materials_revision() + scene_.passes_revision() + scene_.objects().structure_revision();
   if (stl.materials_features_revision != materials) {
     stl.material_features = Feature::None;
+    stl.widest_class = MaterialClass::Plain;
     for (const draw::ObjectIndex object : stl.objects) {
       const scene::Mesh &mesh = scene_.scene().meshes()[scene_.object(object).mesh];
       const std::uint32_t place = render_scene::MaterialTable::place_of(scene_.scene(), mesh.material);
-      stl.material_features = stl.material_features |
-                              (scene_.materials()[place].specular_f90 > 0.0F ? Feature::Specular : Feature::None) |
-                              feature_of(render_scene::material_class(scene_.scene(), mesh));
+      const MaterialClass material_class = render_scene::material_class(scene_.scene(), mesh);
+      const bool is_specular =
+          scene_.materials()[place].specular_f90 > 0.0F || material_class == MaterialClass::Layered;
+      stl.material_features =
+          stl.material_features | (is_specular ? Feature::Specular : Feature::None) | feature_of(material_class);
+      stl.widest_class = std::max(stl.widest_class, material_class);
     }
     stl.materials_features_revision = materials;
   }
-  scene_.upload(has(stl.material_features, Feature::FullMaterial));
+  scene_.upload(stl.widest_class);
   update_world_picture(shared.world, device, scene_, settings_);
   if (!has(stl.features, Feature::Light)) {
     shared.light_block = {};
@@ -100,7 +105,9 @@ void Engine::make_blocks(draw::Viewport &viewport)
     shared.world.levels = {};
     return;
   }
-  stl.features = stl.features | (stl.material_features & Feature::Specular);
+  const bool has_layers = has(stl.material_features, Feature::Layers);
+  stl.features = with_variant(shared.lamps.features | shared.shadows.features() |
+                              (stl.material_features & (Feature::Specular | Feature::Layers)));
   if (!shared.light_block) {
     shared.light_block = device.create_buffer({"light_block", gpu::BufferKind::Uniform, sizeof(shared::LightBlock)});
     shared.is_light_block_written = false;
@@ -114,7 +121,8 @@ void Engine::make_blocks(draw::Viewport &viewport)
     shared.is_light_block_written = false;
   }
   update_world(shared.world, device, scene_, stl.features, settings_.planned_sample_count());
-  const bool has_ltc = has(stl.features, Feature::LampShape | Feature::World) && has(stl.features, Feature::Specular);
+  const bool has_ltc =
+      has_layers || (has(stl.features, Feature::LampShape | Feature::World) && has(stl.features, Feature::Specular));
   if (!has_ltc) {
     shared.ltc_table = {};
   }
@@ -291,7 +299,8 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
   const TextureSet surface_textures = textures_of(scene, mesh, surface);
   const auto bind_surface = [&data](draw::ShadingGroup &group) { bind_lit(group, data); };
   // An object that receives no shadows is drawn with a program without shadow lookups.
-  const Feature lighting = object.receives_shadow ? stl.features : without_shadows(stl.features);
+  const Feature frame = without_layers(stl.features);
+  const Feature lighting = object.receives_shadow ? frame : without_shadows(frame);
   const gpu::Shader &lit_shader = shaders_.get(device, ShaderId::Lit, lighting | feature_of(surface));
   if (render_scene::is_blended(scene, mesh)) {
     record_blended(data, index, lit_shader, surface_textures, batch);

@@ -53,7 +53,7 @@ FrameNode target_nodes(const ReportSource &source)
            : !source.data.is_recorded ? nothing_seen
                                       : "no caster can shadow a visible surface";
   };
-  add(source.data.shared->ltc_table, "ltc_table", "specular light of lamps with an extent",
+  add(source.data.shared->ltc_table, "ltc_table", "specular light of lamps with an extent and of the world; sheen",
       source.has(Feature::LampShape | Feature::World) ? why_no_feature(source, Feature::Specular)
                                                       : why_no_feature(source, Feature::LampShape));
   add(source.data.shared->world.levels, "world_levels", "specular reflection of the world",
@@ -94,6 +94,8 @@ FrameNode block_nodes(const ReportSource &source)
   add(source.render_scene.materials().full_buffer(), "full_material_block",
       fmt::format("{} materials", source.scene().materials().size()),
       source.data.is_recorded ? no_full_material : nothing_seen);
+  add(source.render_scene.materials().layer_buffer(), "layer_block",
+      fmt::format("{} materials", source.scene().materials().size()), why_no_feature(source, Feature::Layers));
   add(source.data.shared->light_block, "light_block",
       fmt::format("{} lights", source.data.shared->lamps.light_block.light_count), "no lamp gives light");
   add(source.data.shared->light_shape_block, "light_shape_block", "extents and axes of lamps",

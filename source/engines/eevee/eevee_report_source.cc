@@ -87,6 +87,7 @@ std::string why_no_feature(const ReportSource &source, Feature feature)
     case Feature::World: return "the scene has no world";
     case Feature::OpacityThreshold: return why_no_shadow(source, "no blended material casts a shadow");
     case Feature::FullMaterial: return source.data.is_recorded ? no_full_material : nothing_seen;
+    case Feature::Layers: return source.data.is_recorded ? "no material has a coat or sheen" : nothing_seen;
     case Feature::AlphaMask: return source.data.is_recorded ? "no texture's alpha cuts a material out" : nothing_seen;
     default: return "";
   }

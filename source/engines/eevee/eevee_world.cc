@@ -43,20 +43,6 @@ void mark_world(Lamps &lamps, std::size_t first)
   }
 }
 
-Feature with_world(Feature features)
-{
-  if (!has(features, Feature::World)) {
-    return features;
-  }
-  if (has(features, Feature::Punctual | Feature::LampShape)) {
-    features = features | Feature::Punctual | Feature::LampShape;
-  }
-  if (has(features, Feature::ShadowEsm)) {
-    features = features | Feature::ShadowEvsm;
-  }
-  return features;
-}
-
 void update_world(WorldResources &resources, gpu::Device &device, const render_scene::RenderScene &scene,
                   Feature features, int sample_count)
 {

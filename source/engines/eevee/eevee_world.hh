@@ -25,9 +25,6 @@ inline constexpr double world_lobe_directions = 12.0;
 /** Add the features of a world to \a lamps, and set LIGHT_WORLD for lamps whose index is at least \a first. */
 void mark_world(Lamps &lamps, std::size_t first);
 
-/** \a features, with a world extended to a mask for which programs have a variant. \see shader_variants */
-[[nodiscard]] Feature with_world(Feature features);
-
 /** Resources of a world that shaders read. */
 struct WorldResources {
   gpu::Buffer block;

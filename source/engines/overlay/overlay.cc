@@ -12,6 +12,7 @@
 #include <glm/matrix.hpp>
 #include <glm/vector_relational.hpp>
 
+#include <algorithm>
 #include <tuple>
 #include <unordered_set>
 
@@ -25,7 +26,8 @@ static Feature mask_features(MaterialClass mask_class)
   switch (mask_class) {
     case MaterialClass::Plain: return Feature::None;
     case MaterialClass::BaseColor: return Feature::AlphaMask;
-    case MaterialClass::Full: break;
+    case MaterialClass::Full:
+    case MaterialClass::Layered: break;
   }
   return Feature::AlphaMask | Feature::FullMaterial;
 }
@@ -99,7 +101,7 @@ bool Overlay::record_objects(const draw::View &view, glm::ivec2 size_px, const I
   gpu::BufferRange material_block;
   gpu::BufferRange full_material_block;
   std::map<std::tuple<MaterialClass, State, render_scene::TextureSet>, draw::ShadingGroup *> groups;
-  bool needs_full_materials = false;
+  MaterialClass widest = MaterialClass::Plain;
   for (draw::ObjectIndex index = draw::object_identity + 1; index < objects.index_end(); index++) {
     if (!objects.is_live(index) || !is_drawn(scene_.object(index)) || !view.touches(objects.volume(index))) {
       continue;
@@ -111,7 +113,7 @@ bool Overlay::record_objects(const draw::View &view, glm::ivec2 size_px, const I
         render_scene::textures_of(scene, mesh, cut_out == MaterialClass::Plain ? cut_out : MaterialClass::BaseColor);
     const State state = (scene.material_of(mesh).is_double_sided ? State::None : State::CullBack) |
                         (draw::is_mirrored(objects.world_from_object(index)) ? State::FrontClockwise : State::None);
-    needs_full_materials |= cut_out == MaterialClass::Full;
+    widest = std::max(widest, cut_out);
     draw::ShadingGroup *&group = groups[{cut_out, state, textures}];
     if (!group) {
       if (!view_block_) {
@@ -131,7 +133,7 @@ bool Overlay::record_objects(const draw::View &view, glm::ivec2 size_px, const I
   if (groups.empty()) {
     return false;
   }
-  scene_.upload(needs_full_materials);
+  scene_.upload(widest);
   object_block = {objects.buffer().id()};
   material_block = {scene_.materials().buffer().id()};
   full_material_block = {scene_.materials().full_buffer().id()};

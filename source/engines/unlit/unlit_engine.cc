@@ -117,7 +117,8 @@ struct Data final : draw::EngineViewportData {
   /** By object index: whether the passes were recorded with a mirrored matrix. */
   std::vector<bool> is_mirrored;
   bool is_winding_changed = false;
-  bool needs_full_materials = false;
+  /** The class of materials with the most inputs. */
+  MaterialClass widest = MaterialClass::Plain;
   bool is_seen = false;
   gpu::Texture radiance;
   gpu::Framebuffer framebuffer;
@@ -372,15 +373,15 @@ void Engine::record(Data &data, gpu::Device &device)
                       .depth_texture = depth_camera_ ? depth_camera_->texture.id() : 0};
   if (data.recorded != key || std::exchange(data.is_winding_changed, false)) {
     data.recorded = {};
-    data.needs_full_materials = false;
+    data.widest = MaterialClass::Plain;
     data.surfaces.emplace("unlit", State::WriteColor | State::WriteDepth | State::DepthNearerEqual, &scene_.objects());
     data.is_mirrored.assign(scene_.objects().index_end(), false);
     std::map<std::tuple<Feature, State, render_scene::TextureSet>, draw::ShadingGroup *> groups;
     for (const draw::ObjectIndex index : data.objects) {
       const render_scene::RenderObject &object = scene_.object(index);
       const scene::Mesh &mesh = scene.meshes()[object.mesh];
-      const MaterialClass surface = render_scene::material_class(scene, mesh);
-      data.needs_full_materials |= surface == MaterialClass::Full;
+      const MaterialClass surface = std::min(render_scene::material_class(scene, mesh), MaterialClass::Full);
+      data.widest = std::max(data.widest, surface);
       data.is_mirrored[index] = draw::is_mirrored(scene_.objects().world_from_object(index));
       const bool is_receiver = depth_camera_ && object.receives_shadow;
       const Feature features = feature_of(surface) | (is_receiver ? Feature::DepthCamera : Feature::None);
@@ -404,7 +405,7 @@ void Engine::record(Data &data, gpu::Device &device)
     }
     data.recorded = key;
   }
-  scene_.upload(data.needs_full_materials);
+  scene_.upload(data.widest);
   data.blocks.update(scene_, scene_.objects());
   if (depth_camera_) {
     depth_camera_->blocks.update(scene_, scene_.objects());

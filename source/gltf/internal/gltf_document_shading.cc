@@ -44,12 +44,37 @@ void read_specular(const Place &place, const JsonValue &value, Model::Material &
                into_slot("specularColorTexture", material.specular_color_texture));
 }
 
+void read_coat(const Place &place, const JsonValue &value, Model::Material &material)
+{
+  Model::TextureSlot normal_texture;
+  read_members(place, value, into("clearcoatFactor", material.coat),
+               into("clearcoatRoughnessFactor", material.coat_roughness),
+               into_slot("clearcoatTexture", material.coat_texture),
+               into_slot("clearcoatRoughnessTexture", material.coat_roughness_texture),
+               into_slot("clearcoatNormalTexture", normal_texture));
+  material.has_coat_normal_texture = normal_texture.index >= 0;
+}
+
+void read_sheen(const Place &place, const JsonValue &value, Model::Material &material)
+{
+  read_members(place, value, into("sheenColorFactor", material.sheen_color),
+               into("sheenRoughnessFactor", material.sheen_roughness),
+               into_slot("sheenColorTexture", material.sheen_color_texture),
+               into_slot("sheenRoughnessTexture", material.sheen_roughness_texture));
+}
+
 void read_material_extensions(const Place &place, const JsonValue &value, Model::Material &material)
 {
   for_members(place, value, [&](std::string_view name, const Place &at, const JsonValue &extension) {
     material.extensions.emplace_back(name);
     if (name == "KHR_materials_specular") {
       read_specular(at, extension, material);
+    }
+    else if (name == "KHR_materials_clearcoat") {
+      read_coat(at, extension, material);
+    }
+    else if (name == "KHR_materials_sheen") {
+      read_sheen(at, extension, material);
     }
     else if (name == "KHR_materials_emissive_strength") {
       read_members(at, extension, into("emissiveStrength", material.emissive_strength));

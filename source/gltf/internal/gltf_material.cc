@@ -40,6 +40,7 @@ class MaterialReader {
   {
     read_metallic_roughness();
     read_specular();
+    read_layers();
     read_emissive();
     read_alpha();
     read_textures();
@@ -115,6 +116,30 @@ class MaterialReader {
     return static_cast<float>(root * root / default_reflectance);
   }
 
+  void read_layers()
+  {
+    result_.coat = clamped("clearcoatFactor", source_.coat, 1.0);
+    result_.coat_roughness = clamped("clearcoatRoughnessFactor", source_.coat_roughness, 1.0);
+    result_.sheen_color = clamped("sheenColorFactor", vec3(source_.sheen_color), 1.0);
+    result_.sheen_roughness = clamped("sheenRoughnessFactor", source_.sheen_roughness, 1.0);
+    if (source_.has_coat_normal_texture && result_.coat > 0.0F) {
+      warnings_.add(what_, "its clearcoatNormalTexture is not drawn: the coat is as smooth as the mesh");
+    }
+  }
+
+  /** Whether the material's factors let the texture have an effect. Other textures are not decoded. */
+  [[nodiscard]] bool is_read(const SlotName &name) const
+  {
+    const auto is_one_of = [&](auto... slots) { return ((name.target == slots) || ...); };
+    if (is_one_of(&Material::coat_texture, &Material::coat_roughness_texture)) {
+      return result_.coat > 0.0F;
+    }
+    if (is_one_of(&Material::sheen_color_texture, &Material::sheen_roughness_texture)) {
+      return result_.sheen_color != glm::vec3(0.0F);
+    }
+    return true;
+  }
+
   void read_emissive()
   {
     const float strength = clamped("emissiveStrength", source_.emissive_strength, large);
@@ -153,7 +178,7 @@ class MaterialReader {
     std::set<int> sets;
     for (const SlotName &name : slot_names) {
       const Model::TextureSlot &slot = source_.*name.source;
-      if (slot.index >= 0) {
+      if (slot.index >= 0 && is_read(name)) {
         sets.insert(slot.set);
       }
     }
@@ -163,7 +188,7 @@ class MaterialReader {
     }
     for (const SlotName &name : slot_names) {
       const Model::TextureSlot &slot = source_.*name.source;
-      if (slot.index >= 0) {
+      if (slot.index >= 0 && is_read(name)) {
         result_.*name.target = read_slot(name, slot);
       }
     }
@@ -192,8 +217,10 @@ class MaterialReader {
 
   void warn_extensions()
   {
-    constexpr std::array read_or_without_effect{"KHR_materials_specular", "KHR_materials_emissive_strength",
-                                                "KHR_materials_ior", "KHR_materials_variants", "KHR_materials_unlit"};
+    constexpr std::array read_or_without_effect{"KHR_materials_clearcoat", "KHR_materials_emissive_strength",
+                                                "KHR_materials_ior",       "KHR_materials_sheen",
+                                                "KHR_materials_specular",  "KHR_materials_unlit",
+                                                "KHR_materials_variants"};
     for (const std::string &name : source_.extensions) {
       if (std::find(read_or_without_effect.begin(), read_or_without_effect.end(), name) ==
           read_or_without_effect.end()) {

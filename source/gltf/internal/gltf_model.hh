@@ -156,6 +156,10 @@ struct Model {
     TextureSlot emissive_texture;
     TextureSlot specular_texture;
     TextureSlot specular_color_texture;
+    TextureSlot coat_texture;
+    TextureSlot coat_roughness_texture;
+    TextureSlot sheen_color_texture;
+    TextureSlot sheen_roughness_texture;
     double metallic = 1.0;
     double roughness = 1.0;
     std::array<double, 3> emissive{0.0, 0.0, 0.0};
@@ -163,6 +167,11 @@ struct Model {
     double specular = 1.0;
     std::array<double, 3> specular_color{1.0, 1.0, 1.0};
     std::optional<double> ior;
+    double coat = 0.0;
+    double coat_roughness = 0.0;
+    bool has_coat_normal_texture = false;
+    std::array<double, 3> sheen_color{0.0, 0.0, 0.0};
+    double sheen_roughness = 0.0;
     std::string alpha_mode = "OPAQUE";
     double alpha_cutoff = 0.5;
     bool is_double_sided = false;

@@ -23,7 +23,7 @@ struct SlotName {
 };
 
 /** In the order of scene::texture_inputs. */
-inline constexpr std::array<SlotName, 7> slot_names = {{
+inline constexpr std::array<SlotName, 11> slot_names = {{
     {"baseColorTexture",
      &Model::Material::base_color_texture,
      &scene::Material::base_color_texture,
@@ -57,6 +57,26 @@ inline constexpr std::array<SlotName, 7> slot_names = {{
     {"specularColorTexture",
      &Model::Material::specular_color_texture,
      &scene::Material::specular_color_texture,
+     {255, 255, 255, 255},
+     "the factor alone"},
+    {"clearcoatTexture",
+     &Model::Material::coat_texture,
+     &scene::Material::coat_texture,
+     {255, 255, 255, 255},
+     "the factor alone"},
+    {"clearcoatRoughnessTexture",
+     &Model::Material::coat_roughness_texture,
+     &scene::Material::coat_roughness_texture,
+     {255, 255, 255, 255},
+     "the factor alone"},
+    {"sheenColorTexture",
+     &Model::Material::sheen_color_texture,
+     &scene::Material::sheen_color_texture,
+     {255, 255, 255, 255},
+     "the factor alone"},
+    {"sheenRoughnessTexture",
+     &Model::Material::sheen_roughness_texture,
+     &scene::Material::sheen_roughness_texture,
      {255, 255, 255, 255},
      "the factor alone"},
 }};

@@ -164,6 +164,22 @@ int MeshWriter::material(Handle<Material> handle)
     add_slot(specular, "specularColorTexture", material.specular_color_texture, what);
     add_extension("KHR_materials_specular", specular.object());
   }
+  if (material.coat > 0.0F) {
+    JsonText coat;
+    coat.add("clearcoatFactor", json_number(material.coat, what));
+    coat.add("clearcoatRoughnessFactor", json_number(material.coat_roughness, what));
+    add_slot(coat, "clearcoatTexture", material.coat_texture, what);
+    add_slot(coat, "clearcoatRoughnessTexture", material.coat_roughness_texture, what);
+    add_extension("KHR_materials_clearcoat", coat.object());
+  }
+  if (material.sheen_color != glm::vec3(0.0F)) {
+    JsonText sheen;
+    sheen.add("sheenColorFactor", json_numbers(material.sheen_color, what));
+    sheen.add("sheenRoughnessFactor", json_number(material.sheen_roughness, what));
+    add_slot(sheen, "sheenColorTexture", material.sheen_color_texture, what);
+    add_slot(sheen, "sheenRoughnessTexture", material.sheen_roughness_texture, what);
+    add_extension("KHR_materials_sheen", sheen.object());
+  }
   if (strength != 1.0F) {
     add_extension("KHR_materials_emissive_strength", "{\"emissiveStrength\":" + json_number(strength, what) + '}');
   }

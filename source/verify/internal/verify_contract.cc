@@ -105,8 +105,10 @@ void check_mesh(const scene::Scene &scene, const scene::Mesh &mesh, Checker &che
 
 void check_material(const scene::Scene &scene, const scene::Material &material, Checker &checker)
 {
-  for (const float factor : {material.base_color.x, material.base_color.y, material.base_color.z, material.alpha,
-                             material.metallic, material.roughness, material.specular, material.alpha_cutoff}) {
+  for (const float factor :
+       {material.base_color.x, material.base_color.y, material.base_color.z, material.alpha, material.metallic,
+        material.roughness, material.specular, material.alpha_cutoff, material.coat, material.coat_roughness,
+        material.sheen_color.x, material.sheen_color.y, material.sheen_color.z, material.sheen_roughness}) {
     checker.check(factor >= 0.0F && factor <= 1.0F, "with factors in [0, 1]");
   }
   checker.check(is_finite(material.specular_color) && is_finite(material.emissive), "of finite colours");

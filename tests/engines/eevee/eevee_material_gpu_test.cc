@@ -5,9 +5,12 @@
 #include "reference_light.hh"
 #include "scene_tangents.hh"
 
+#include "eevee_bsdf_shared.h"
+
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <utility>
 
 namespace gnomon::eevee {
 namespace {
@@ -260,6 +263,199 @@ TEST_F(MaterialGpuTest, AMeshWithoutUvsDoesNotEmitByATexture)
   scene.edit(mesh, [](scene::Mesh &value) { value.uvs.clear(); });
   EXPECT_EQ(middle(), glm::vec3(0.0F));
   EXPECT_EQ(reference_middle(), glm::vec3(0.0F));
+}
+
+/** The square seen at 60 degrees, under a sun that it almost mirrors. */
+class LayersGpuTest : public MaterialGpuTest {
+ protected:
+  LayersGpuTest()
+  {
+    camera = test::camera_at(glm::dvec3(0.1, 0.1, 0) + 16.0 * glm::dvec3(to_view), {0.1, 0.1, 0}, 0.001F);
+  }
+  void add_mirrored_sun()
+  {
+    add_sun(-to_light);
+  }
+  /** The sun's light from a lobe, for a Fresnel term of 1. */
+  [[nodiscard]] float ggx(float roughness) const
+  {
+    return PI * to_light.z * shared::ggx_lobe(to_light.z, to_view.z, half_vector.z, roughness * roughness);
+  }
+
+  glm::vec3 to_view = {0.866025F, 0.0F, 0.5F};
+  glm::vec3 to_light = glm::normalize(glm::vec3(-0.7F, 0.1F, 0.5F));
+  glm::vec3 half_vector = glm::normalize(to_light + to_view);
+};
+
+TEST_F(LayersGpuTest, ACoatReflectsByItsRoughnessAndDimsTheBase)
+{
+  add_mirrored_sun();
+  for (const float roughness : {0.4F, 0.7F}) {
+    edit([&](scene::Material &value) {
+      value.base_color = {0.5F, 0.25F, 0.125F};
+      value.coat = 0.75F;
+      value.coat_roughness = roughness;
+    });
+    const float share = 0.75F * (0.04F + 0.96F * std::pow(1.0F - to_view.z, 5.0F));
+    const glm::vec3 base = to_light.z * glm::vec3(0.5F, 0.25F, 0.125F);
+    const glm::vec3 expected = (1.0F - share) * base + share * ggx(roughness);
+    expect_near(middle(), expected, 2e-3F * expected.r);
+  }
+}
+
+TEST_F(LayersGpuTest, ACoatDimsEmission)
+{
+  add_sun({0, 0, 1});
+  edit([](scene::Material &value) {
+    value.emissive = glm::vec3(1.0F);
+    value.coat = 1.0F;
+    value.is_double_sided = false;
+  });
+  scene.edit(scene.lamps().first(), [](scene::Lamp &lamp) { lamp.shadow.kind = scene::ShadowKind::None; });
+  expect_near(middle(), glm::vec3(1.0F - (0.04F + 0.96F / 32.0F)), 1e-3F);
+}
+
+TEST_F(LayersGpuTest, SheenIsThatOfFibresAndLeavesTheRestToTheBase)
+{
+  add_mirrored_sun();
+  const glm::vec3 color(0.25F, 0.5F, 1.0F);
+  for (const float roughness : {0.3F, 0.5F, 1.0F}) {
+    edit([&](scene::Material &value) {
+      value.base_color = glm::vec3(0.5F);
+      value.sheen_color = color;
+      value.sheen_roughness = roughness;
+    });
+    const float alpha = roughness * roughness;
+    double albedo = 0.0;
+    constexpr int count = 256;
+    for (int i = 0; i < count; i++) {
+      for (int j = 0; j < count; j++) {
+        const float cos_l = (float(i) + 0.5F) / count;
+        const float azimuth = 2.0F * PI * (float(j) + 0.5F) / count;
+        const float sin_l = std::sqrt(1.0F - cos_l * cos_l);
+        const glm::vec3 direction(sin_l * std::cos(azimuth), sin_l * std::sin(azimuth), cos_l);
+        const float cos_h = glm::normalize(direction + to_view).z;
+        albedo += 2.0 * PI / (count * count) * cos_l * shared::sheen_lobe(cos_l, to_view.z, cos_h, alpha);
+      }
+    }
+    ASSERT_LT(albedo, 1.0);
+    const float lobe = PI * to_light.z * shared::sheen_lobe(to_light.z, to_view.z, half_vector.z, alpha);
+    const glm::vec3 expected = color * lobe + (1.0F - float(albedo)) * 0.5F * to_light.z;
+    // The albedo is interpolated in a table.
+    expect_near(middle(), expected, 5e-3F * expected.b);
+  }
+}
+
+TEST_F(LayersGpuTest, TexturesMultiplyTheFactorsOfLayers)
+{
+  add_mirrored_sun();
+  const auto layered = [&](float coat, float coat_roughness, float sheen, float sheen_roughness) {
+    edit([&](scene::Material &value) {
+      value.base_color = glm::vec3(0.0F);
+      value.coat = coat;
+      value.coat_roughness = coat_roughness;
+      value.sheen_color = {0.5F, sheen, 0.5F};
+      value.sheen_roughness = sheen_roughness;
+    });
+    return middle();
+  };
+  const glm::vec3 expected = layered(0.8F * 153.0F / 255.0F, 0.9F * 102.0F / 255.0F, 0.25F, 0.8F * 204.0F / 255.0F);
+  const auto data = texture({153, 102, 0, 204});
+  // 188 is 0.503 in linear values.
+  const auto color = texture({255, 188, 255, 255});
+  edit([&](scene::Material &value) {
+    value.coat_texture = value.coat_roughness_texture = value.sheen_roughness_texture = data;
+    value.sheen_color_texture = color;
+  });
+  const glm::vec3 textured = layered(0.8F, 0.9F, 0.5F, 0.8F);
+  expect_near(textured, expected, 0.01F * expected.r);
+  // Each texture has an effect.
+  for (scene::TextureSlot scene::Material::*slot :
+       {&scene::Material::coat_texture, &scene::Material::coat_roughness_texture, &scene::Material::sheen_color_texture,
+        &scene::Material::sheen_roughness_texture}) {
+    scene::TextureSlot kept;
+    edit([&](scene::Material &value) { kept = std::exchange(value.*slot, {}); });
+    EXPECT_GT(glm::length(middle() - textured), 1e-4F);
+    edit([&](scene::Material &value) { value.*slot = kept; });
+  }
+}
+
+TEST_F(LayersGpuTest, WithoutTheirFactorsLayersChangeNoBit)
+{
+  add_mirrored_sun();
+  test::add_lamp(scene, scene::LampKind::Point, {1, 1, 1}, {0, 0, -1}, 5.0F);
+  edit([](scene::Material &value) { value.specular_color = glm::vec3(1.0F); });
+  const Picture plain = render();
+  edit([&](scene::Material &value) {
+    value.coat_roughness = 0.5F;
+    value.coat_texture = texture({255, 255, 255, 255});
+    value.sheen_roughness = 0.5F;
+  });
+  const Picture picture = render();
+  edit([&](scene::Material &value) { value.coat = 1.0F; });
+  const Picture coated = render();
+  bool is_coat_seen = false;
+  for (int y = 0; y < 16; y++) {
+    for (int x = 0; x < 16; x++) {
+      EXPECT_EQ(picture.at(x, y), plain.at(x, y));
+      is_coat_seen |= coated.at(x, y) != plain.at(x, y);
+    }
+  }
+  EXPECT_TRUE(is_coat_seen);
+}
+
+TEST_F(LayersGpuTest, ACoatIsAsSmoothAsTheMesh)
+{
+  add_mirrored_sun();
+  edit([&](scene::Material &value) {
+    value.base_color = glm::vec3(0.0F);
+    value.coat = 1.0F;
+    value.coat_roughness = 0.3F;
+  });
+  const glm::vec3 smooth = middle();
+  ASSERT_GT(smooth.r, 0.05F);
+  // The base is turned away from the sun.
+  edit([&](scene::Material &value) { value.normal_texture = texture({255, 128, 140, 255}); });
+  scene.edit(mesh,
+             [&](scene::Mesh &value) { scene::make_tangents(value, scene.materials()[material].normal_texture); });
+  expect_near(middle(), smooth, 1e-5F);
+}
+
+/** Each lobe alone, from one frame and from samples of the lamp. */
+TEST_F(LayersGpuTest, OneFrameOfAnAreaLampIsNearTheMeanOfItsSamples)
+{
+  const auto ratio = [&](const glm::vec3 &direction, const auto &change) {
+    test::remove_lamps(scene);
+    const auto lamp = test::add_lamp(scene, scene::LampKind::Area, 2.0F * direction, -direction, 10.0F);
+    scene.edit(lamp, [](scene::Lamp &value) { value.shadow.kind = scene::ShadowKind::None; });
+    edit([&](scene::Material &value) {
+      value.base_color = glm::vec3(0.0F);
+      value.coat = 0.0F;
+      value.sheen_color = glm::vec3(0.0F);
+      change(value);
+    });
+    const auto pixel = [&](int sample_count) {
+      Renderer renderer(*device, scene, {4, 4}, {.sample_count = sample_count});
+      return renderer.picture(camera).middle().r;
+    };
+    const float mean = pixel(256);
+    EXPECT_GT(mean, 1e-3F);
+    return pixel(1) / mean;
+  };
+  for (const float roughness : {0.3F, 0.6F}) {
+    EXPECT_NEAR(ratio(to_light,
+                      [&](scene::Material &value) {
+                        value.coat = 1.0F;
+                        value.coat_roughness = roughness;
+                      }),
+                1.0F, 0.06F);
+    EXPECT_NEAR(ratio({0.8F, 0.3F, 0.5F},
+                      [&](scene::Material &value) {
+                        value.sheen_color = glm::vec3(1.0F);
+                        value.sheen_roughness = roughness;
+                      }),
+                1.0F, 0.1F);
+  }
 }
 
 }  // namespace

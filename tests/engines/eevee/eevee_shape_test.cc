@@ -129,6 +129,30 @@ vec4 table_at(const vec2 &texco)
                   glm::mix(at(low.x, low.y + 1), at(low.x + 1, low.y + 1), part.x), part.y);
 }
 
+TEST(LtcTable, HasTheAlbedoOfSheen)
+{
+  constexpr int count = 512;
+  for (const float roughness : {0.15F, 0.3F, 0.55F, 1.0F}) {
+    for (const float cos_v : {0.06F, 0.25F, 0.7F, 1.0F}) {
+      const vec3 view(std::sqrt(1.0F - cos_v * cos_v), 0.0F, cos_v);
+      const float alpha = roughness * roughness;
+      double albedo = 0.0;
+      for (int i = 0; i < count; i++) {
+        for (int j = 0; j < count; j++) {
+          const float cos_l = (float(i) + 0.5F) / count;
+          const float sin_l = std::sqrt(1.0F - cos_l * cos_l);
+          const float azimuth = 3.14159265F * (float(j) + 0.5F) / count;
+          const vec3 light(sin_l * std::cos(azimuth), sin_l * std::sin(azimuth), cos_l);
+          albedo += double(cos_l) * shared::sheen_lobe(cos_l, cos_v, glm::normalize(light + view).z, alpha);
+        }
+      }
+      albedo *= 2.0 * 3.14159265 / (count * count);
+      EXPECT_NEAR(table_at(shared::ltc_texco(alpha, cos_v) + vec2(0.5F, 0.0F)).w, albedo, 0.01 + 0.02 * albedo)
+          << roughness << ' ' << cos_v;
+    }
+  }
+}
+
 /** The computation of eevee_lamp_shape_lib.glsl for a Fresnel term of 1 and a radiance of 1. */
 float specular(const Place &p, const vec3 &view, float alpha)
 {

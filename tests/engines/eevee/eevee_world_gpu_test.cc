@@ -87,6 +87,35 @@ TEST_F(WorldGpuTest, WhiteFurnaceOfAMetal)
   }
 }
 
+/** Under layers that reflect all light, a white surface sends out no more light than it receives. */
+TEST_F(WorldGpuTest, WhiteFurnaceOfLayers)
+{
+  scene.set_world(scene::World{});
+  for (const float angle : {0.0F, 1.0F, 1.4F}) {
+    camera = test::camera_at(glm::dvec3(0.1, 0.1, 0) + 16.0 * glm::dvec3(std::sin(angle), 0.0, std::cos(angle)),
+                             {0.1, 0.1, 0}, 0.01F);
+    for (const float roughness : {0.1F, 0.6F}) {
+      for (const bool has_sheen : {false, true}) {
+        scene.edit(material, [&](scene::Material &value) {
+          value.base_color = glm::vec3(1.0F);
+          value.coat = has_sheen ? 0.0F : 1.0F;
+          value.coat_roughness = roughness;
+          value.sheen_color = glm::vec3(has_sheen ? 1.0F : 0.0F);
+          value.sheen_roughness = roughness;
+        });
+        const float one_frame = middle(1).r;
+        EXPECT_LT(one_frame, 1.002F) << angle << ' ' << roughness << ' ' << has_sheen;
+        // Rough coats lose what would be scattered again among their microfacets.
+        EXPECT_GT(one_frame, roughness < 0.5F ? 0.9F : 0.8F) << angle << ' ' << roughness << ' ' << has_sheen;
+        // Few sampled directions are in a lobe that is seen at a grazing angle.
+        if (angle == 1.0F) {
+          EXPECT_NEAR(middle(64).r, one_frame, 0.06F) << roughness << ' ' << has_sheen;
+        }
+      }
+    }
+  }
+}
+
 TEST_F(WorldGpuTest, LightFromOneSideIsWhereThePictureHasIt)
 {
   // The plane sees the half space of +Z, of which a half shines that has +X: all of it, and none when the plane is

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Fits linearly transformed cosines to the engine's GGX lobe (Heitz, Dupuy, Hill and Neubelt 2016), integrates its
-// albedo, and writes both as the table that eevee_ltc_table.hh declares. After a change of the lobe, run it and commit
-// the result:
+// albedo and that of sheen, and writes all three as the table that eevee_ltc_table.hh declares. After a change of the
+// lobe, run it and commit the result:
 //   gnomon_eevee_ltc_tool source/engines/eevee/eevee_ltc_table.cc
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -125,6 +125,22 @@ Albedo albedo_of(const Lobe &lobe, int count)
       sum.schlick += weight * m * m * m * m * m;
       sum.mean_direction += weight * light;
     }
+  });
+  return sum;
+}
+
+/** Directional albedo of a sheen lobe without its colour. */
+double sheen_albedo(const vec3 &view, double alpha)
+{
+  constexpr int count = 256;
+  double sum = 0.0;
+  for_grid(count, [&](const vec2 &u) {
+    // Most points are near the horizon, where the lobe is high.
+    const double angle = 0.5 * pi * (1.0 - u.x * u.x);
+    const vec3 light(std::sin(angle) * std::cos(pi * u.y), std::sin(angle) * std::sin(pi * u.y), std::cos(angle));
+    const double cos_h = normalize(light + view).z;
+    const double solid_angle = 2.0 * pi * std::sin(angle) * pi * u.x / (count * count);
+    sum += sheen_lobe(light.z, view.z, cos_h, alpha) * light.z * solid_angle;
   });
   return sum;
 }
@@ -254,7 +270,8 @@ int main(int argument_count, char **arguments)
       const glm::dmat3 inverse = ltc.cosine_from_lobe / ltc.cosine_from_lobe[1][1];
       const std::size_t texel = std::size_t(row) * 2 * size + std::size_t(column);
       table[texel] = {inverse[0][0], inverse[2][0], inverse[0][2], inverse[2][2]};
-      table[texel + size] = {albedo.whole, albedo.schlick, 0.0, 0.0};
+      table[texel + size] = {albedo.whole, albedo.schlick, 0.0,
+                             sheen_albedo(lobe.view, std::max(roughness * roughness, double(SHEEN_ALPHA_MIN)))};
     }
   }
   // The hemispherical mean of the albedo, for multiple scattering. It is the same in each row.

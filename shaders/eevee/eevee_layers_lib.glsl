@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// For fragment shaders: the layers over the base of a material, from their factors and textures.
+#include "eevee/eevee_full_material_lib.glsl"
+#include "eevee/eevee_layer_block_lib.glsl"
+#include "eevee/eevee_light_lib.glsl"
+#include "eevee/eevee_ltc_lib.glsl"
+
+layout(location = 9) in vec4 surface_coat_uvs;
+layout(location = 10) in vec4 surface_sheen_uvs;
+
+layout(binding = COAT_SLOT) uniform sampler2D coat_texture;
+layout(binding = COAT_ROUGHNESS_SLOT) uniform sampler2D coat_roughness_texture;
+layout(binding = SHEEN_COLOR_SLOT) uniform sampler2D sheen_color_texture;
+layout(binding = SHEEN_ROUGHNESS_SLOT) uniform sampler2D sheen_roughness_texture;
+
+/** \a surface: with the normal of the base. */
+Layers make_layers(Surface surface)
+{
+  LayerData data = layer_materials[surface_material];
+  Layers result;
+  float coat_roughness = data.coat_roughness;
+  if (has_input(INPUT_COAT_ROUGHNESS)) {
+    coat_roughness *= texture(coat_roughness_texture, surface_coat_uvs.zw, view.texture_lod_bias).g;
+  }
+  result.coat_material = coat_material(coat_roughness);
+  result.coat_surface = surface;
+  result.coat_surface.normal_ws = surface.smooth_normal_ws;
+  float coat = data.coat;
+  if (has_input(INPUT_COAT)) {
+    coat *= texture(coat_texture, surface_coat_uvs.xy, view.texture_lod_bias).r;
+  }
+  result.coat_share = coat_reflectance(coat, max(dot(surface.smooth_normal_ws, surface.view_ws), 0.0));
+  vec3 sheen_color = data.sheen_color;
+  if (has_input(INPUT_SHEEN_COLOR)) {
+    sheen_color *= texture(sheen_color_texture, surface_sheen_uvs.xy, view.texture_lod_bias).rgb;
+  }
+  float sheen_roughness = data.sheen_roughness;
+  if (has_input(INPUT_SHEEN_ROUGHNESS)) {
+    sheen_roughness *= texture(sheen_roughness_texture, surface_sheen_uvs.zw, view.texture_lod_bias).a;
+  }
+  result.sheen_alpha = max(sheen_roughness * sheen_roughness, SHEEN_ALPHA_MIN);
+  float cos_v = clamp(dot(surface.normal_ws, surface.view_ws), 1e-4, 1.0);
+  float albedo = textureLod(ltc_table, ltc_texco(result.sheen_alpha, cos_v) + vec2(0.5, 0.0), 0.0).w;
+  result.sheen_color = sheen_color * sheen_bounded(albedo);
+  result.sheen_albedo = result.sheen_color * albedo;
+  result.base_share = 1.0 - max(max(result.sheen_albedo.r, result.sheen_albedo.g), result.sheen_albedo.b);
+  return result;
+}
