@@ -174,6 +174,16 @@ void print_messages(std::string_view kind, const std::vector<std::string> &texts
   }
 }
 
+scene::Scene import_scene(const RenderOptions &options)
+{
+  try {
+    return gltf::import_gltf(options.scene, {.variant = options.variant});
+  }
+  catch (const gltf::UnknownVariant &unknown) {
+    throw UsageError(unknown.what());
+  }
+}
+
 std::unique_ptr<gpu::Device> create_device(const RenderOptions &options)
 {
   if (!options.has_picture()) {
@@ -235,7 +245,7 @@ Status render(RenderOptions options)
   const FrameSequence frames(options.frames, options.output);
   RenderResult result;
 
-  scene::Scene scene = gltf::import_gltf(options.scene);
+  scene::Scene scene = import_scene(options);
   frames.pose(scene, 0);
   const scene::PlacedCamera camera = find_camera(scene, options.camera);
   const bool is_default_studio = light_by_world(scene, camera, options.world);

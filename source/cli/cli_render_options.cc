@@ -215,6 +215,7 @@ void add_render_options(CLI::App &command, RenderOptions &options)
                      "OUT.exr: scene-linear floats; OUT.png: display colours after the view transform");
   command.add_option("--size", options.size, "WIDTHxHEIGHT, pixels")->capture_default_str();
   command.add_option("--camera", options.camera, "Name of the camera (default: the first)");
+  command.add_option("--variant", options.variant, "Name of the variant of materials (KHR_materials_variants)");
   CLI::Option *samples = command.add_option("--samples", options.samples, "Samples per pixel")
                              ->capture_default_str()
                              ->check(CLI::Range(1, 65536));

@@ -21,6 +21,8 @@ struct RenderOptions {
   std::string output;
   std::string size = "960x540";
   std::string camera;
+  /** Variant of the materials; empty: none. */
+  std::string variant;
   int samples = 16;
   /** Seconds for each picture; infinity without --time-limit, otherwise `samples` may be 0: no limit. */
   double seconds_max = std::numeric_limits<double>::infinity();

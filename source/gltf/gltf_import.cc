@@ -44,11 +44,23 @@ namespace {
 constexpr std::size_t object_count_max = std::size_t(1) << 22U;
 
 /** Extensions that are not needed to draw a file correctly, even if it requires them. */
-constexpr std::array<std::string_view, 13> harmless_extensions{
-    "KHR_lights_punctual",        "KHR_materials_specular",  "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_mesh_quantization",      "KHR_materials_variants",  "KHR_texture_transform",           "KHR_xmp_json_ld",
-    "KHR_draco_mesh_compression", "EXT_meshopt_compression", "EXT_mesh_gpu_instancing",         "KHR_materials_unlit",
+constexpr std::array<std::string_view, 16> harmless_extensions{
+    "KHR_lights_punctual",
+    "KHR_materials_specular",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_mesh_quantization",
+    "KHR_materials_variants",
+    "KHR_texture_transform",
+    "KHR_xmp_json_ld",
+    "KHR_draco_mesh_compression",
+    "EXT_meshopt_compression",
+    "EXT_mesh_gpu_instancing",
+    "KHR_materials_unlit",
     "KHR_animation_pointer",
+    "KHR_materials_clearcoat",
+    "KHR_materials_sheen",
+    "KHR_materials_pbrSpecularGlossiness",
 };
 
 /** Names of required extensions that are not supported; empty if there are none. */
@@ -386,15 +398,42 @@ class Importer {
   }
 };
 
+/** Gives each primitive the material that it has in the variant \a name. \throws UnknownVariant, without a path */
+void select_variant(Model &model, const std::string &name)
+{
+  const auto found = std::find(model.variants.begin(), model.variants.end(), name);
+  if (found == model.variants.end()) {
+    std::string names;
+    for (const std::string &one : model.variants) {
+      names += (names.empty() ? "'" : ", '") + printable(one) + '\'';
+    }
+    throw UnknownVariant("has no variant '" + printable(name) + "'; " +
+                         (names.empty() ? "it has none" : "it has " + names));
+  }
+  const int variant = static_cast<int>(found - model.variants.begin());
+  for (Model::Mesh &mesh : model.meshes) {
+    for (Model::Primitive &primitive : mesh.primitives) {
+      for (const Model::VariantMaterial &mapping : primitive.variant_materials) {
+        if (std::find(mapping.variants.begin(), mapping.variants.end(), variant) != mapping.variants.end()) {
+          primitive.material = mapping.material;
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 
-Scene import_gltf(const std::filesystem::path &path)
+Scene import_gltf(const std::filesystem::path &path, const ImportOptions &options)
 {
   const auto failed = [&path](std::string_view reason) {
     return ImportError(path.string() + ": " + std::string(reason));
   };
   try {
     File file = load_file(path);
+    if (!options.variant.empty()) {
+      select_variant(file.model, options.variant);
+    }
     Warnings warnings;
     decompress(file, warnings);
     Scene scene = Importer(file, std::move(warnings)).import();
@@ -403,6 +442,9 @@ Scene import_gltf(const std::filesystem::path &path)
   }
   catch (const Fault &fault) {
     throw failed(fault.what());
+  }
+  catch (const UnknownVariant &unknown) {
+    throw UnknownVariant(path.string() + ": " + unknown.what());
   }
   catch (const std::bad_alloc &) {
     throw failed("there is not enough memory for it");

@@ -5,12 +5,23 @@
 
 #include <filesystem>
 #include <stdexcept>
+#include <string>
 
 namespace gnomon::gltf {
 
 /** Thrown if a file cannot be imported. The message names the file and the reason. */
 struct ImportError : std::runtime_error {
   using std::runtime_error::runtime_error;
+};
+
+/** Thrown if a file has no variant of the name that ImportOptions asks for. The message lists those that it has. */
+struct UnknownVariant : ImportError {
+  using ImportError::ImportError;
+};
+
+struct ImportOptions {
+  /** Name of the variant whose materials are imported (KHR_materials_variants); empty: the materials of no variant. */
+  std::string variant{};
 };
 
 /**
@@ -21,7 +32,8 @@ struct ImportError : std::runtime_error {
  * reported in Scene::warnings. A camera and a lamp are added if the file has none.
  *
  * \throws ImportError if the file is missing, unreadable or malformed, or if nothing in it can be drawn.
+ * \throws UnknownVariant
  */
-[[nodiscard]] scene::Scene import_gltf(const std::filesystem::path &path);
+[[nodiscard]] scene::Scene import_gltf(const std::filesystem::path &path, const ImportOptions &options = {});
 
 }  // namespace gnomon::gltf

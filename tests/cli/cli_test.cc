@@ -104,6 +104,13 @@ TEST_F(CliTest, UnknownCameraIsAnErrorThatListsTheCameras)
   EXPECT_NE(finished.err.find("no camera 'side'; it has: camera"), std::string::npos) << finished.err;
 }
 
+TEST_F(CliTest, UnknownVariantIsWrongUsage)
+{
+  const Finished finished = run("render " + example("plaza") + " --backend null --variant night");
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_NE(finished.err.find("has no variant 'night'; it has none"), std::string::npos) << finished.err;
+}
+
 TEST_F(CliTest, InvalidDebugViewIsWrongUsage)
 {
   for (const std::string view : {"depth", "shadow", "shadow:", "shadow::1", "shadow:SUN:", "shadow:SUN:first",

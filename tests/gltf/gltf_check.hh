@@ -41,10 +41,11 @@ inline std::string object_name(const scene::Scene &scene, std::size_t index)
   return scene.nodes()[scene.objects().at(index).node].name;
 }
 
-inline scene::Scene import_text(const std::string &content, const std::string &name = "scene.gltf")
+inline scene::Scene import_text(const std::string &content, const std::string &name = "scene.gltf",
+                                const gltf::ImportOptions &options = {})
 {
   const TemporaryFolder folder;
-  scene::Scene result = gltf::import_gltf(folder.write(name, content));
+  scene::Scene result = gltf::import_gltf(folder.write(name, content), options);
   expect_valid(result);
   return result;
 }

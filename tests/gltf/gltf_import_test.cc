@@ -676,6 +676,22 @@ TEST(GltfMaterial, UnlitIsRead)
   EXPECT_NO_WARNING(scene, "unlit");
 }
 
+TEST(GltfMaterial, SpecularGlossinessIsConverted)
+{
+  const auto [material, scene] = import_material({{"pbrMetallicRoughness", {{"baseColorFactor", {1, 0, 0, 1}}}},
+                                                  {"extensions",
+                                                   {{"KHR_materials_pbrSpecularGlossiness",
+                                                     {{"diffuseFactor", {0.1, 0.2, 0.3, 0.4}},
+                                                      {"specularFactor", {0.5, 0.04, 0}},
+                                                      {"glossinessFactor", 0.75}}}}}});
+  EXPECT_EQ(material.base_color, glm::vec3(0.1F, 0.2F, 0.3F));
+  EXPECT_EQ(material.alpha, 0.4F);
+  EXPECT_EQ(material.metallic, 0.0F);
+  EXPECT_EQ(material.roughness, 0.25F);
+  EXPECT_EQ(material.specular_color, glm::vec3(12.5F, 1.0F, 0.0F)) << "in units of 4 %";
+  EXPECT_NO_WARNING(scene, "material 'paint'");
+}
+
 TEST(GltfMaterial, CoatAndSheenAreRead)
 {
   const auto [material, scene] = import_material(
@@ -720,6 +736,36 @@ TEST(GltfMaterial, ForeignModelsAreNamed)
         {{"KHR_materials_iridescence", json::object()}, {"KHR_materials_transmission", {{"a", {1, 2}}}}}}});
   EXPECT_WARNING(scene, "material 'paint': KHR_materials_iridescence is not drawn");
   EXPECT_WARNING(scene, "material 'paint': KHR_materials_transmission is not drawn");
+}
+
+TEST(GltfMaterial, AVariantReplacesTheMaterialsThatItMaps)
+{
+  GltfBuilder builder = triangle_scene();
+  builder.append("materials", {{"name", "plain"}});
+  builder.append("materials", {{"name", "red"}});
+  json &primitive = builder.document["meshes"][0]["primitives"][0];
+  primitive["material"] = 0;
+  primitive["extensions"]["KHR_materials_variants"]["mappings"] = {{{"material", 1}, {"variants", {1, 2}}}};
+  builder.document["extensions"]["KHR_materials_variants"]["variants"] = {
+      {{"name", "day"}}, {{"name", "night"}}, {{"name", "dusk"}}};
+  const auto material_of = [&](const std::string &variant) {
+    const Scene scene = import_text(builder.gltf(), "scene.gltf", {.variant = variant});
+    EXPECT_EQ(scene.materials().size(), 1U) << variant;
+    return scene.material_of(nth(scene.meshes(), 0)).name;
+  };
+  EXPECT_EQ(material_of(""), "plain");
+  EXPECT_EQ(material_of("day"), "plain") << "it maps nothing";
+  EXPECT_EQ(material_of("night"), "red");
+  EXPECT_EQ(material_of("dusk"), "red");
+  try {
+    static_cast<void>(import_text(builder.gltf(), "scene.gltf", {.variant = "noon"}));
+    ADD_FAILURE() << "there is no such variant";
+  }
+  catch (const gltf::UnknownVariant &unknown) {
+    EXPECT_NE(std::string(unknown.what()).find("has no variant 'noon'; it has 'day', 'night', 'dusk'"),
+              std::string::npos)
+        << unknown.what();
+  }
 }
 
 TEST(GltfMaterial, UnusedOnesAreNeitherKeptNorNamed)

@@ -87,6 +87,31 @@ TEST(GltfImage, TexelsAreTheFilesFromTheTopNotMultipliedByAlpha)
   EXPECT_EQ(image.texels, four_texels);
 }
 
+/** Alphas of 255, 128, 64 and 0, times a glossiness of 0.5. */
+TEST(GltfImage, GlossinessIsConvertedToRoughness)
+{
+  GltfBuilder builder = textured_triangle();
+  json &material = builder.document["materials"][0];
+  material = {{"name", "paint"}};
+  material["extensions"]["KHR_materials_pbrSpecularGlossiness"] = {{"glossinessFactor", 0.5},
+                                                                   {"specularGlossinessTexture", {{"index", 0}}}};
+  const Scene scene = import(builder);
+  const scene::Material &converted = nth(scene.materials(), 0);
+  EXPECT_EQ(converted.roughness, 1.0F);
+  const auto texels_of = [&](const scene::TextureSlot &of) {
+    return scene.images()[scene.textures()[of.texture].image].texels;
+  };
+  EXPECT_EQ(texels_of(converted.specular_color_texture), four_texels);
+  EXPECT_EQ(texels_of(converted.metallic_roughness_texture),
+            (Bytes{0, 128, 0, 255, 0, 191, 0, 255, 0, 223, 0, 255, 0, 255, 0, 255}));
+  EXPECT_EQ(scene.images().size(), 2U);
+  builder.document["images"][0]["uri"] = "missing.png";
+  const Scene damaged = import(builder);
+  EXPECT_WARNING(damaged, "material 'paint': its metallicRoughnessTexture is drawn as no metal");
+  EXPECT_WARNING(damaged, "material 'paint': its specularColorTexture is drawn as the factor alone");
+  EXPECT_EQ(nth(damaged.materials(), 0).roughness, 0.5F) << "the factor's";
+}
+
 TEST(GltfImage, MayBeInABufferView)
 {
   GltfBuilder builder = textured_triangle(json::object());

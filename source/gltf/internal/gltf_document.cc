@@ -47,7 +47,7 @@ class DocumentReader {
     if (const JsonValue *value = root("scene")) {
       model_.scene = index_into("scenes", {nullptr, "scene"}, *value);
     }
-    read_lights();
+    read_extensions();
     read_array("scenes", model_.scenes,
                [this](const auto &at, const auto &value, auto &one) { read_scene(at, value, one); });
     read_array("buffers", model_.buffers, read_buffer);
@@ -74,7 +74,7 @@ class DocumentReader {
 
  private:
   std::map<std::string_view, JsonValue> root_;
-  /** Lengths of the top-level arrays and of "lights". */
+  /** Lengths of the top-level arrays, of "lights" and of "variants". */
   std::map<std::string_view, std::size_t> sizes_;
   Model model_;
 
@@ -287,9 +287,19 @@ class DocumentReader {
   void read_primitive(const Place &place, const JsonValue &value, Model::Primitive &primitive) const
   {
     bool has_attributes = false;
-    const auto read_compression = [&](std::string_view name, const Place &at, const JsonValue &extension) {
+    const auto read_variants = [&](const Place &at, const JsonValue &mappings) {
+      read_elements(at, array_at(at, mappings), primitive.variant_materials,
+                    [this](const Place &in, const JsonValue &one, Model::VariantMaterial &mapping) {
+                      read_members(in, one, into_index("material", mapping.material, "materials"),
+                                   into_indices("variants", mapping.variants, "variants"));
+                    });
+    };
+    const auto read_extension = [&](std::string_view name, const Place &at, const JsonValue &extension) {
       if (name == "KHR_draco_mesh_compression") {
         read_draco(at, extension, primitive.draco.emplace());
+      }
+      else if (name == "KHR_materials_variants") {
+        read_members(at, extension, Member{"mappings", read_variants});
       }
       else if (name.find("compression") != name.npos) {
         primitive.compression = name;
@@ -310,7 +320,7 @@ class DocumentReader {
                      [this](const Place &in, const JsonValue &one, auto &target) { read_attributes(in, one, target); });
                }},
         Member{"extensions",
-               [&](const Place &at, const JsonValue &extensions) { for_members(at, extensions, read_compression); }},
+               [&](const Place &at, const JsonValue &extensions) { for_members(at, extensions, read_extension); }},
         Member{"extras", [&](const Place &at, const JsonValue &extras) {
                  if (extras.is_object()) {
                    read_members(at, extras, Member{"gnomon_name", [&](const Place &in, const JsonValue &name) {
@@ -489,7 +499,7 @@ class DocumentReader {
     }
   }
 
-  void read_lights()
+  void read_extensions()
   {
     const JsonValue *extensions = root("extensions");
     if (extensions == nullptr) {
@@ -498,11 +508,21 @@ class DocumentReader {
     const auto read_array_of_lights = [&](const Place &at, const JsonValue &lights) {
       read_elements(at, array_at(at, lights), model_.lights, read_light);
     };
+    const auto read_array_of_variants = [&](const Place &at, const JsonValue &variants) {
+      read_elements(
+          at, array_at(at, variants), model_.variants,
+          [](const Place &in, const JsonValue &one, std::string &name) { read_members(in, one, into_name(name)); });
+    };
     read_members({nullptr, "extensions"}, *extensions,
-                 Member{"KHR_lights_punctual", [&](const Place &at, const JsonValue &punctual) {
+                 Member{"KHR_lights_punctual",
+                        [&](const Place &at, const JsonValue &punctual) {
                           read_members(at, punctual, Member{"lights", read_array_of_lights});
+                        }},
+                 Member{"KHR_materials_variants", [&](const Place &at, const JsonValue &variants) {
+                          read_members(at, variants, Member{"variants", read_array_of_variants});
                         }});
     sizes_["lights"] = model_.lights.size();
+    sizes_["variants"] = model_.variants.size();
   }
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 namespace gnomon::gltf {
 
@@ -63,12 +64,51 @@ void read_sheen(const Place &place, const JsonValue &value, Model::Material &mat
                into_slot("sheenRoughnessTexture", material.sheen_roughness_texture));
 }
 
-void read_material_extensions(const Place &place, const JsonValue &value, Model::Material &material)
+/** KHR_materials_pbrSpecularGlossiness. */
+struct SpecularGlossiness {
+  std::array<double, 4> diffuse{1.0, 1.0, 1.0, 1.0};
+  std::array<double, 3> specular{1.0, 1.0, 1.0};
+  double glossiness = 1.0;
+  Model::TextureSlot diffuse_texture;
+  Model::TextureSlot specular_glossiness_texture;
+};
+
+/**
+ * A dielectric whose specular colour gives the same reflectance at normal incidence. It replaces pbrMetallicRoughness
+ * and KHR_materials_specular, as the extension says.
+ */
+void convert(const SpecularGlossiness &source, Model::Material &material)
+{
+  // Reflectance of a dielectric without a specular colour.
+  constexpr double dielectric = 0.04;
+  material.base_color = source.diffuse;
+  material.base_color_texture = source.diffuse_texture;
+  material.metallic = 0.0;
+  material.roughness = 1.0 - source.glossiness;
+  material.specular = 1.0;
+  material.specular_texture = {};
+  for (std::size_t i = 0; i < 3; i++) {
+    material.specular_color[i] = source.specular[i] / dielectric;
+  }
+  material.specular_color_texture = source.specular_glossiness_texture;
+  material.metallic_roughness_texture = source.specular_glossiness_texture;
+  material.glossiness = source.glossiness;
+  material.ior.reset();
+}
+
+void read_material_extensions(const Place &place, const JsonValue &value, Model::Material &material,
+                              std::optional<SpecularGlossiness> &specular_glossiness)
 {
   for_members(place, value, [&](std::string_view name, const Place &at, const JsonValue &extension) {
     material.extensions.emplace_back(name);
     if (name == "KHR_materials_specular") {
       read_specular(at, extension, material);
+    }
+    else if (name == "KHR_materials_pbrSpecularGlossiness") {
+      SpecularGlossiness &read = specular_glossiness.emplace();
+      read_members(at, extension, into("diffuseFactor", read.diffuse), into("specularFactor", read.specular),
+                   into("glossinessFactor", read.glossiness), into_slot("diffuseTexture", read.diffuse_texture),
+                   into_slot("specularGlossinessTexture", read.specular_glossiness_texture));
     }
     else if (name == "KHR_materials_clearcoat") {
       read_coat(at, extension, material);
@@ -118,6 +158,7 @@ void read_lens(const Place &place, const JsonValue &value, const std::map<std::s
 
 void read_material(const Place &place, const JsonValue &value, Model::Material &material)
 {
+  std::optional<SpecularGlossiness> specular_glossiness;
   const auto read_roughness = [&](const Place &at, const JsonValue &roughness) {
     read_members(at, roughness, into("baseColorFactor", material.base_color), into("metallicFactor", material.metallic),
                  into("roughnessFactor", material.roughness),
@@ -131,8 +172,11 @@ void read_material(const Place &place, const JsonValue &value, Model::Material &
                into_slot("occlusionTexture", material.occlusion_texture, "strength", &material.occlusion_strength),
                into_slot("emissiveTexture", material.emissive_texture),
                Member{"extensions", [&](const Place &at, const JsonValue &extensions) {
-                        read_material_extensions(at, extensions, material);
+                        read_material_extensions(at, extensions, material, specular_glossiness);
                       }});
+  if (specular_glossiness) {
+    convert(*specular_glossiness, material);
+  }
 }
 
 void read_texture(const Place &place, const JsonValue &value, Model::Texture &texture)

@@ -203,7 +203,11 @@ class MaterialReader {
         throw Fault("texCoord", std::to_string(slot.set) + " is a third set of texture coordinates");
       }
       result.uv_set = static_cast<int>(set - uv_sets_.begin());
-      result.texture = textures_.handle_of(slot.index);
+      const bool is_glossiness = source_.glossiness && name.target == &Material::metallic_roughness_texture;
+      result.texture =
+          is_glossiness ? textures_.roughness_of(slot.index, *source_.glossiness) : textures_.handle_of(slot.index);
+      // The derived image contains the factor.
+      result_.roughness = is_glossiness ? 1.0F : result_.roughness;
     }
     catch (const Fault &fault) {
       result.texture = stand_ins_.texture_of(name);
@@ -218,9 +222,9 @@ class MaterialReader {
   void warn_extensions()
   {
     constexpr std::array read_or_without_effect{"KHR_materials_clearcoat", "KHR_materials_emissive_strength",
-                                                "KHR_materials_ior",       "KHR_materials_sheen",
-                                                "KHR_materials_specular",  "KHR_materials_unlit",
-                                                "KHR_materials_variants"};
+                                                "KHR_materials_ior",       "KHR_materials_pbrSpecularGlossiness",
+                                                "KHR_materials_sheen",     "KHR_materials_specular",
+                                                "KHR_materials_unlit",     "KHR_materials_variants"};
     for (const std::string &name : source_.extensions) {
       if (std::find(read_or_without_effect.begin(), read_or_without_effect.end(), name) ==
           read_or_without_effect.end()) {

@@ -68,6 +68,11 @@ struct Model {
     /** Unique id in the compressed mesh for each attribute name. */
     std::map<std::string, int, std::less<>> attributes;
   };
+  /** KHR_materials_variants: the material of a primitive for some of Model::variants. */
+  struct VariantMaterial {
+    int material = -1;
+    std::vector<int> variants;
+  };
   struct Primitive {
     /** Accessor of each attribute: POSITION, NORMAL, TANGENT, COLOR_0, TEXCOORD_n, JOINTS_n and WEIGHTS_n. */
     std::map<std::string, int, std::less<>> attributes;
@@ -78,6 +83,7 @@ struct Model {
     /** Accessors of each morph target: POSITION, NORMAL and TANGENT. */
     std::vector<std::map<std::string, int, std::less<>>> targets;
     std::optional<Draco> draco;
+    std::vector<VariantMaterial> variant_materials;
     /** Name of the unsupported extension that holds the data instead of the accessors; empty if there is none. */
     std::string compression;
     /** The extra gnomon_name; empty if absent. */
@@ -167,6 +173,8 @@ struct Model {
     double specular = 1.0;
     std::array<double, 3> specular_color{1.0, 1.0, 1.0};
     std::optional<double> ior;
+    /** KHR_materials_pbrSpecularGlossiness: the roughness texture has glossiness in its alpha, scaled by this. */
+    std::optional<double> glossiness;
     double coat = 0.0;
     double coat_roughness = 0.0;
     bool has_coat_normal_texture = false;
@@ -225,6 +233,8 @@ struct Model {
   };
 
   std::vector<std::string> extensions_required;
+  /** Names of KHR_materials_variants. */
+  std::vector<std::string> variants;
   /** -1: absent. */
   int scene = -1;
   /** The roots of each scene. */

@@ -5,6 +5,7 @@
 #include "internal/gltf_sampler.hh"
 #include "scene_parallel.hh"
 
+#include <algorithm>
 #include <span>
 #include <string>
 #include <vector>
@@ -121,6 +122,32 @@ Handle<Texture> TextureImporter::handle_of(int gltf_texture)
   return handle_of_.emplace(gltf_texture, scene_.add(texture)).first->second;
 }
 
+Handle<Texture> TextureImporter::roughness_of(int gltf_texture, double glossiness)
+{
+  const auto [place, is_new] = roughness_of_.try_emplace({gltf_texture, glossiness});
+  if (!is_new && place->second) {
+    return place->second;
+  }
+  Texture texture = scene_.textures()[handle_of(gltf_texture)];
+  const Handle<Image> source = texture.image;
+  texture.image = scene_.add(Image{"roughness of " + scene_.images()[source].name, 1, 1, {0, 0, 0, 0}});
+  derived_.push_back({texture.image, source, glossiness});
+  return place->second = scene_.add(texture);
+}
+
+/** \see TextureImporter::roughness_of */
+static Image roughness_image(const Image &source, double glossiness, const std::string &name)
+{
+  Image image{name, source.width, source.height, source.texels};
+  for (std::size_t i = 0; i < image.texels.size(); i += 4) {
+    const double roughness = 255.0 - std::clamp(glossiness, 0.0, 1.0) * source.texels[i + 3];
+    image.texels[i] = image.texels[i + 2] = 0;
+    image.texels[i + 1] = static_cast<std::uint8_t>(roughness + 0.5);
+    image.texels[i + 3] = 255;
+  }
+  return image;
+}
+
 Handle<Image> TextureImporter::image_of(int gltf_image)
 {
   const Model::Image &source = file_.model.images[gltf_image];
@@ -183,6 +210,15 @@ std::map<Handle<Image>, Fault> TextureImporter::decode()
     scene_.replace(handle, std::move(image));
   }
   pending_.clear();
+  for (const Roughness &derived : derived_) {
+    if (const auto found = damaged.find(derived.source); found != damaged.end()) {
+      damaged.emplace(derived.handle, found->second);
+      continue;
+    }
+    scene_.replace(derived.handle, roughness_image(scene_.images()[derived.source], derived.glossiness,
+                                                   scene_.images()[derived.handle].name));
+  }
+  derived_.clear();
   return damaged;
 }
 

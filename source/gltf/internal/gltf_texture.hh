@@ -33,6 +33,12 @@ class TextureImporter {
    */
   [[nodiscard]] scene::Handle<scene::Texture> handle_of(int gltf_texture);
 
+  /**
+   * A texture whose green is 1 - \a glossiness · alpha of the file's texture and whose blue is 0, for
+   * KHR_materials_pbrSpecularGlossiness. \throws Fault as handle_of
+   */
+  [[nodiscard]] scene::Handle<scene::Texture> roughness_of(int gltf_texture, double glossiness);
+
   /** Decodes all images, on all processors. \return the damaged images, with the reason. */
   [[nodiscard]] std::map<scene::Handle<scene::Image>, Fault> decode();
 
@@ -44,10 +50,19 @@ class TextureImporter {
     ImageDecoder decoder;
   };
 
+  /** An image that decode() derives from another. \see roughness_of */
+  struct Roughness {
+    scene::Handle<scene::Image> handle;
+    scene::Handle<scene::Image> source;
+    double glossiness = 1.0;
+  };
+
   const File &file_;
   Warnings &warnings_;
   scene::Scene &scene_;
   std::map<int, scene::Handle<scene::Texture>> handle_of_;
+  std::map<std::pair<int, double>, scene::Handle<scene::Texture>> roughness_of_;
+  std::vector<Roughness> derived_;
   /** By URI and buffer view, because several images may refer to the same data. */
   std::map<std::pair<std::string, int>, std::variant<scene::Handle<scene::Image>, Fault>> image_of_;
   std::vector<Pending> pending_;
