@@ -34,6 +34,8 @@ PUSH_CONSTANT_LAYOUT uniform push_constant_block
    * behind them.
    */
   int is_over;
+  /** 1: the colour is not multiplied by alpha. */
+  int is_straight;
 };
 
 layout(location = 0) out vec4 display;
@@ -42,6 +44,10 @@ void main()
 {
   ivec2 pixel = ivec2(gl_FragCoord.xy) - origin_px;
   vec4 radiance = texelFetch(radiance_texture, radiance_origin_px + pixel, 0) * sample_scale;
+  float alpha = clamp(radiance.a, 0.0, 1.0);
+  if (is_straight != 0 && alpha > 0.0) {
+    radiance.rgb /= alpha;
+  }
   vec3 color = radiance.rgb * exposure_scale;
   if (encoding == ENCODING_DISPLAY) {
     color = view_transformed(color, view_transform);
@@ -49,7 +55,7 @@ void main()
   else if (encoding == ENCODING_SRGB_FORMAT) {
     color = displayed_light(color, view_transform);
   }
-  display = vec4(color, clamp(radiance.a, 0.0, 1.0));
+  display = vec4(color, alpha);
 #ifdef USE_TARGET_DEPTH
   float depth = texelFetch(depth_texture, depth_origin_px + pixel, 0).r;
   if (is_over != 0 && (depth == 0.0) != (is_over == 2)) {

@@ -10,6 +10,7 @@
 #include "image_png.hh"
 
 #include <fmt/format.h>
+#include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <cerrno>
@@ -24,27 +25,29 @@ namespace fs = std::filesystem;
 
 using Bytes = std::vector<unsigned char>;
 
-static Bytes rgb_png(glm::ivec2 size_px, std::span<const std::uint8_t> rgba, const Metadata &metadata)
+static Bytes png_of(glm::ivec2 size_px, std::span<const std::uint8_t> rgba, const Metadata &metadata, Alpha alpha)
 {
-  std::vector<std::uint8_t> rgb;
-  rgb.reserve(rgba.size() / 4 * 3);
+  const int channel_count = alpha == Alpha::Written ? 4 : 3;
+  std::vector<std::uint8_t> texels;
+  texels.reserve(rgba.size() / 4 * std::size_t(channel_count));
   const auto width = std::size_t(size_px.x);
   for (auto y = std::size_t(size_px.y); y-- > 0;) {
     for (std::size_t x = 0; x < width; x++) {
       const std::uint8_t *pixel = &rgba[4 * (y * width + x)];
-      rgb.insert(rgb.end(), pixel, pixel + 3);
+      texels.insert(texels.end(), pixel, pixel + channel_count);
     }
   }
-  return image::png_file(std::uint32_t(size_px.x), std::uint32_t(size_px.y), 3, rgb, metadata);
+  return image::png_file(std::uint32_t(size_px.x), std::uint32_t(size_px.y), channel_count, texels, metadata);
 }
 
-void write_png(const fs::path &path, glm::ivec2 size_px, std::span<const std::uint8_t> rgba, const Metadata &metadata)
+void write_png(const fs::path &path, glm::ivec2 size_px, std::span<const std::uint8_t> rgba, const Metadata &metadata,
+               Alpha alpha)
 {
   Metadata all = {{"Software", "gnomon " GNOMON_VERSION}};
   all.insert(all.end(), metadata.begin(), metadata.end());
   write_atomically(path, [&](const fs::path &beside) {
     try {
-      const Bytes bytes = rgb_png(size_px, rgba, all);
+      const Bytes bytes = png_of(size_px, rgba, all, alpha);
       std::ofstream file(beside, std::ios::binary);
       if (!file.write(reinterpret_cast<const char *>(bytes.data()), std::streamsize(bytes.size())).flush()) {
         throw image::Error("the disk may be full");
@@ -58,33 +61,28 @@ void write_png(const fs::path &path, glm::ivec2 size_px, std::span<const std::ui
 
 std::vector<std::byte> png_bytes(glm::ivec2 size_px, std::span<const std::uint8_t> rgba)
 {
-  const Bytes bytes = rgb_png(size_px, rgba, {});
+  const Bytes bytes = png_of(size_px, rgba, {}, Alpha::Dropped);
   const auto view = std::as_bytes(std::span(bytes));
   return {view.begin(), view.end()};
-}
-
-/** Of red, green, blue and one more in rows from the top. */
-template <typename Value, typename Convert>
-static Picture picture_of(glm::ivec2 size_px, const Value *values, Convert linear_of)
-{
-  Picture picture{size_px, {}};
-  picture.pixels.reserve(std::size_t(size_px.x) * std::size_t(size_px.y));
-  for (auto y = std::size_t(size_px.y); y-- > 0;) {
-    const Value *row = values + 4 * y * std::size_t(size_px.x);
-    for (std::size_t x = 0; x < std::size_t(size_px.x); x++) {
-      const Value *pixel = row + 4 * x;
-      picture.pixels.emplace_back(linear_of(pixel[0]), linear_of(pixel[1]), linear_of(pixel[2]), 1.0F);
-    }
-  }
-  return picture;
 }
 
 static Picture read_coded_picture(const Bytes &file)
 {
   const std::unique_ptr<image::Decoder> decoder = image::open_decoder(file);
   check_edges(decoder->width(), decoder->height());
-  return picture_of(glm::ivec2(decoder->width(), decoder->height()), decoder->read_rgba16().data(),
-                    [](std::uint16_t value) { return linear_of_srgb(float(value) / 65535.0F); });
+  Picture picture{glm::ivec2(decoder->width(), decoder->height()), {}};
+  const auto width = std::size_t(picture.size_px.x);
+  picture.pixels.reserve(width * std::size_t(picture.size_px.y));
+  const std::vector<std::uint16_t> texels = decoder->read_rgba16();
+  const auto linear_of = [](std::uint16_t value) { return linear_of_srgb(float(value) / 65535.0F); };
+  for (auto y = std::size_t(picture.size_px.y); y-- > 0;) {
+    for (std::size_t x = 0; x < width; x++) {
+      const std::uint16_t *texel = &texels[4 * (y * width + x)];
+      const glm::vec3 color(linear_of(texel[0]), linear_of(texel[1]), linear_of(texel[2]));
+      picture.pixels.emplace_back(color * (float(texel[3]) / 65535.0F), 1.0F);
+    }
+  }
+  return picture;
 }
 
 static Picture read_any_picture(const fs::path &path)

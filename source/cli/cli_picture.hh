@@ -18,16 +18,20 @@ namespace gnomon::cli {
 /** Names and values for a picture's header. */
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
+/** What becomes of the fourth value of each pixel. */
+enum class Alpha { Dropped, Written };
+
 /**
- * Writes RGB as 32-bit floats. Rows from the bottom, four floats for each pixel; the fourth is dropped.
- * \throws std::runtime_error naming \a path if it cannot be written; so do the next two.
+ * Writes 32-bit floats in the channels R, G, B and, if it is written, A, by which colours are multiplied. Rows from the
+ * bottom, four floats for each pixel.
+ * \throws std::runtime_error naming \a path if it cannot be written; so does write_png.
  */
 void write_exr(const std::filesystem::path &path, glm::ivec2 size_px, std::span<const float> rgba,
-               const Metadata &metadata);
-/** Writes RGB with 8 bits. Rows from the bottom, four bytes for each pixel; the fourth is dropped. */
+               const Metadata &metadata, Alpha alpha = Alpha::Dropped);
+/** Writes 8 bits a channel. Rows from the bottom, four bytes for each pixel; colours are not multiplied by alpha. */
 void write_png(const std::filesystem::path &path, glm::ivec2 size_px, std::span<const std::uint8_t> rgba,
-               const Metadata &metadata);
-/** The bytes of a PNG file like that of write_png, without metadata. */
+               const Metadata &metadata, Alpha alpha = Alpha::Dropped);
+/** The bytes of a PNG file like that of write_png, without metadata and alpha. */
 [[nodiscard]] std::vector<std::byte> png_bytes(glm::ivec2 size_px, std::span<const std::uint8_t> rgba);
 
 /** A picture of any size. */
@@ -39,7 +43,8 @@ struct Picture {
 
 /**
  * Reads R, G and B. The format is that of the first bytes: EXR, PNG or JPEG, or another one that OpenImageIO reads,
- * such as Radiance HDR. Integer values are decoded by the sRGB curve. \throws std::runtime_error naming \a path if it
+ * such as Radiance HDR. Integer values are decoded by the sRGB curve and, if the file has alpha, multiplied by it: what
+ * is transparent is black. \throws std::runtime_error naming \a path if it
  * cannot be read, is cut off, or lacks R, G or B.
  */
 [[nodiscard]] Picture read_picture(const std::filesystem::path &path);

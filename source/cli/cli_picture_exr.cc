@@ -23,11 +23,13 @@ namespace gnomon::cli {
 
 namespace fs = std::filesystem;
 
-static constexpr std::array<const char *, 3> channel_names = {"R", "G", "B"};
+static constexpr std::array<const char *, 4> channel_names = {"R", "G", "B", "A"};
+static constexpr std::span rgb_names = std::span(channel_names).first<3>();
 
-/** Channels of pixels of four floats in rows from the bottom. OpenEXR counts rows from the top, the first being \a
- * first. */
-static Imf::FrameBuffer frame_buffer(char *pixels, glm::ivec2 size_px, Imath::V2i first)
+/** Channels \a names of pixels of four floats in rows from the bottom. OpenEXR counts rows from the top, the first
+ * being \a first. */
+static Imf::FrameBuffer frame_buffer(std::span<const char *const> names, char *pixels, glm::ivec2 size_px,
+                                     Imath::V2i first)
 {
   constexpr std::ptrdiff_t pixel_bytes = 4 * sizeof(float);
   const std::ptrdiff_t row_bytes = pixel_bytes * size_px.x;
@@ -36,9 +38,9 @@ static Imf::FrameBuffer frame_buffer(char *pixels, glm::ivec2 size_px, Imath::V2
   const auto origin = reinterpret_cast<std::uintptr_t>(top) - std::uintptr_t(pixel_bytes * first.x) +
                       std::uintptr_t(row_bytes * first.y);
   Imf::FrameBuffer buffer;
-  for (std::size_t i = 0; i < channel_names.size(); i++) {
-    buffer.insert(channel_names[i], Imf::Slice(Imf::FLOAT, reinterpret_cast<char *>(origin + i * sizeof(float)),
-                                               std::size_t(pixel_bytes), std::size_t(-row_bytes)));
+  for (std::size_t i = 0; i < names.size(); i++) {
+    buffer.insert(names[i], Imf::Slice(Imf::FLOAT, reinterpret_cast<char *>(origin + i * sizeof(float)),
+                                       std::size_t(pixel_bytes), std::size_t(-row_bytes)));
   }
   return buffer;
 }
@@ -73,15 +75,17 @@ void write_exr_file(const fs::path &path, Imf::Header header, const Imf::FrameBu
   });
 }
 
-void write_exr(const fs::path &path, glm::ivec2 size_px, std::span<const float> rgba, const Metadata &metadata)
+void write_exr(const fs::path &path, glm::ivec2 size_px, std::span<const float> rgba, const Metadata &metadata,
+               Alpha alpha)
 {
+  const auto names = std::span<const char *const>(channel_names).first(alpha == Alpha::Written ? 4 : 3);
   Imf::Header header(size_px.x, size_px.y);
-  for (const char *name : channel_names) {
+  for (const char *name : names) {
     header.channels().insert(name, Imf::Channel(Imf::FLOAT));
   }
   // OpenEXR does not write to it.
   char *pixels = const_cast<char *>(reinterpret_cast<const char *>(rgba.data()));
-  write_exr_file(path, std::move(header), frame_buffer(pixels, size_px, {0, 0}), metadata);
+  write_exr_file(path, std::move(header), frame_buffer(names, pixels, size_px, {0, 0}), metadata);
 }
 
 std::optional<Picture> read_exr_picture(const fs::path &path)
@@ -93,7 +97,7 @@ std::optional<Picture> read_exr_picture(const fs::path &path)
   const Imath::Box2i window = input.header().dataWindow();
   const auto edge = [](int min, int max) { return std::int64_t(max) - min + 1; };
   check_edges(edge(window.min.x, window.max.x), edge(window.min.y, window.max.y));
-  for (const char *name : channel_names) {
+  for (const char *name : rgb_names) {
     const Imf::Channel *channel = input.header().channels().findChannel(name);
     if (channel == nullptr) {
       throw std::runtime_error("has no channels R, G and B");
@@ -107,7 +111,8 @@ std::optional<Picture> read_exr_picture(const fs::path &path)
   }
   Picture picture{{edge(window.min.x, window.max.x), edge(window.min.y, window.max.y)}, {}};
   picture.pixels.assign(std::size_t(picture.size_px.x) * std::size_t(picture.size_px.y), glm::vec4(1.0F));
-  input.setFrameBuffer(frame_buffer(reinterpret_cast<char *>(picture.pixels.data()), picture.size_px, window.min));
+  input.setFrameBuffer(
+      frame_buffer(rgb_names, reinterpret_cast<char *>(picture.pixels.data()), picture.size_px, window.min));
   input.readPixels(window.min.y, window.max.y);
   return picture;
 }

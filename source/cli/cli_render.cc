@@ -10,6 +10,7 @@
 #include "cli_time.hh"
 
 #include "eevee_scene_renderer.hh"
+#include "eevee_world.hh"
 #include "gltf_import.hh"
 #include "gpu_read.hh"
 
@@ -69,12 +70,21 @@ std::optional<draw::TargetTexture> make_display(const RenderOptions &options, gp
   return std::make_optional<draw::TargetTexture>(device, "display", gpu::Format::RGBA8, size_px);
 }
 
+/** Pictures without a background are written with alpha. */
+Alpha alpha_of(const RenderOptions &options, eevee::SceneRenderer &renderer)
+{
+  return options.is_shadow_shown() || eevee::has_background(renderer.settings(), renderer.render_scene())
+             ? Alpha::Dropped
+             : Alpha::Written;
+}
+
 void render_frames(const RenderOptions &options, const scene::PlacedCamera &camera, eevee::SceneRenderer &renderer,
                    const std::optional<draw::TargetTexture> &display, RenderResult &result)
 {
   draw::Target target = display ? display->target() : draw::Target();
   target.view_transform = options.view_transform();
   target.exposure = options.exposure;
+  target.composition = draw::Composition::ReplaceStraight;
 
   const int sample_count = options.sample_range.empty() ? options.samples : renderer.settings().drawn_sample_count();
   eevee::ShadowCounters before = renderer.inspect().shadow_counters();
@@ -97,7 +107,8 @@ void render_frames(const RenderOptions &options, const scene::PlacedCamera &came
 }
 
 /** Writes the \a pixels of options.region() for `gnomon merge`. */
-void write_part(const RenderOptions &options, std::span<const glm::vec4> pixels, double sample_share, Metadata metadata)
+void write_part(const RenderOptions &options, std::span<const glm::vec4> pixels, Alpha alpha, double sample_share,
+                Metadata metadata)
 {
   const glm::ivec2 whole_px = options.size_px();
   const gpu::Rectangle region = options.region();
@@ -110,7 +121,7 @@ void write_part(const RenderOptions &options, std::span<const glm::vec4> pixels,
                {region.origin_px.x, whole_px.y - region.origin_px.y - region.size_px.y},
                {},
                std::move(metadata)};
-  constexpr std::string_view names = "RGB";
+  const std::string_view names = alpha == Alpha::Written ? "RGBA" : "RGB";
   for (std::size_t i = 0; i < names.size(); i++) {
     std::vector<float> &channel = part.channels[std::string(1, names[i])];
     channel.reserve(pixels.size());
@@ -126,7 +137,7 @@ void write_part(const RenderOptions &options, std::span<const glm::vec4> pixels,
 /** \return Status::Done, or Status::NonFinite if the picture has non-finite values; it is then not written */
 Status write_picture(const RenderOptions &options, const scene::Camera &camera, gpu::Device &device,
                      std::span<const glm::vec4> pixels, glm::ivec2 size_px,
-                     const std::optional<draw::TargetTexture> &display, double sample_share,
+                     const std::optional<draw::TargetTexture> &display, Alpha alpha, double sample_share,
                      const Metadata &frame_metadata, RenderResult &result)
 {
   const bool is_shadow = options.is_shadow_shown();
@@ -151,17 +162,17 @@ Status write_picture(const RenderOptions &options, const scene::Camera &camera, 
   if (options.is_png()) {
     metadata.emplace_back("gnomon:units", fmt::format("display-referred, {}", is_shadow ? "raw" : options.view));
     write_png(options.output, size_px,
-              display ? gpu::read_as<std::uint8_t>(device, display->texture()) : to_bytes(values), metadata);
+              display ? gpu::read_as<std::uint8_t>(device, display->texture()) : to_bytes(values), metadata, alpha);
   }
   else {
     metadata.emplace_back("gnomon:units",
                           is_shadow ? "metres, 0 where nothing was drawn" : "scene-linear radiance, W/(sr m^2)");
     if (options.is_part()) {
-      write_part(options, pixels, sample_share, std::move(metadata));
+      write_part(options, pixels, alpha, sample_share, std::move(metadata));
       return Status::Done;
     }
     const std::vector<float> distances = is_shadow ? alpha_in_all(values) : std::vector<float>();
-    write_exr(options.output, size_px, is_shadow ? distances : values, metadata);
+    write_exr(options.output, size_px, is_shadow ? distances : values, metadata, alpha);
   }
   return Status::Done;
 }
@@ -226,7 +237,8 @@ Status render_sequence(RenderOptions options, const FrameSequence &frames, scene
       status = write_picture(
           options, camera, device,
           shadow ? gpu::read_as<glm::vec4>(device, *shadow) : gpu::cropped(renderer.read_picture(), size_px.x, region),
-          written_px, display, renderer.engine().sample_share(renderer.viewport()), frames.metadata(i), result);
+          written_px, display, alpha_of(options, renderer), renderer.engine().sample_share(renderer.viewport()),
+          frames.metadata(i), result);
     }
     result.output_seconds += seconds_since(output_start);
     frames.show_progress(i, ++rendered_count, seconds_since(start));

@@ -27,9 +27,10 @@ void add_world_options(CLI::App &command, WorldOptions &options)
                   "Rotation of the world around the vertical axis, degrees")
       ->capture_default_str()
       ->check(CLI::Range(-360.0F, 360.0F));
-  command.add_option("--background", options.background,
-                     "Background of pixels without a surface: none (transparent black), world, or a radiance R,G,B "
-                     "(default: none; light grey in a PNG that the default studio lights)");
+  command.add_option(
+      "--background", options.background,
+      "Background of pixels without a surface: none (transparent: the file has alpha), world, or a radiance R,G,B "
+      "(default: none; light grey in a PNG that the default studio lights)");
 }
 
 std::optional<glm::vec3> parse_color(const std::string &text)

@@ -46,6 +46,11 @@ enum class Composition {
   /** Replaces colour, alpha and, with Target::depth, depth. Pixels without a surface get the host's farthest depth. */
   Replace,
   /**
+   * As Replace, but the colour is not multiplied by alpha, as PNG files store it. Exposure and view transform apply to
+   * the colour of the surfaces that cover a part of the pixel.
+   */
+  ReplaceStraight,
+  /**
    * Blends the picture over the content: colour + (1 - alpha) * content, and the same for alpha. With Target::depth, a
    * pixel changes only if the picture's surface is at least as near as the stored depth, and its depth is then written.
    * Pixels without a surface do not change.

@@ -19,6 +19,7 @@ void TargetPass::set(Pass &pass, const Target &target, const Picture &picture, c
   constants_.exposure_scale = target.encoding == Encoding::SceneLinear ? 1.0F : std::exp2(target.exposure);
   constants_.sample_scale = picture.scale;
   constants_.is_over = is_over ? 1 : 0;
+  constants_.is_straight = target.composition == Composition::ReplaceStraight ? 1 : 0;
   State state = is_over ? State::BlendOver : State::None;
   if (target.depth) {
     constants_.depth = depth_map(picture.clip_from_view, *target.depth);
@@ -52,6 +53,7 @@ void TargetPass::set(Pass &pass, const Target &target, const Picture &picture, c
     group.constant_ref("depth_scale", &constants_.depth.scale);
     group.constant_ref("background_depth", &constants_.depth.background);
     group.constant_ref("is_over", &constants_.is_over);
+    group.constant_ref("is_straight", &constants_.is_straight);
     group.call_procedural();
     return group;
   };

@@ -59,6 +59,7 @@ class TargetPass {
     float exposure_scale = 1.0F;
     float sample_scale = 1.0F;
     int is_over = 0;
+    int is_straight = 0;
   };
   /** The inputs that the pass was built for. */
   struct Key {

@@ -45,11 +45,29 @@ TEST_F(CliRenderTest, PngIsUpright)
   ASSERT_EQ(run("render " + example("plaza") + " -o out.png --size 64x36").status, 0);
   const auto input = OIIO::ImageInput::open((folder / "out.png").string());
   ASSERT_TRUE(input);
-  std::vector<unsigned char> pixels(std::size_t(64) * 36 * 3);
-  ASSERT_TRUE(input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, pixels.data()));
+  ASSERT_EQ(input->spec().nchannels, 4);
+  std::vector<unsigned char> pixels(std::size_t(64) * 36 * 4);
+  ASSERT_TRUE(input->read_image(0, 0, 0, 4, OIIO::TypeDesc::UINT8, pixels.data()));
   // The upper left shows the background beyond the ground's far corner; the lower left shows the ground.
   EXPECT_EQ(int(pixels[0]), 0);
-  EXPECT_GT(int(pixels[std::size_t(64) * 35 * 3]), 50);
+  EXPECT_EQ(int(pixels[3]), 0);
+  EXPECT_GT(int(pixels[std::size_t(64) * 35 * 4]), 50);
+  EXPECT_EQ(int(pixels[std::size_t(64) * 35 * 4 + 3]), 255);
+}
+
+TEST_F(CliRenderTest, APictureHasAlphaUnlessItHasABackground)
+{
+  const std::string render = "render " + example("plaza") + " --size 48x27 --samples 4 ";
+  ASSERT_EQ(run(render + "-o a.exr").status, 0);
+  ASSERT_EQ(run(render + "-o black.exr --background 0,0,0").status, 0);
+  ASSERT_EQ(run(render + "-o black.png --background 0,0,0").status, 0);
+  const auto channels = [&](const std::string &name) {
+    return OIIO::ImageInput::open((folder / name).string())->spec().nchannels;
+  };
+  EXPECT_EQ(channels("a.exr"), 4);
+  EXPECT_EQ(channels("black.exr"), 3);
+  EXPECT_EQ(channels("black.png"), 3);
+  EXPECT_EQ(run("compare a.exr black.exr --max-rmse 1e-7").status, 0) << "colours are multiplied by alpha";
 }
 
 TEST_F(CliRenderTest, AShadowsPictureIsGreyAndColouredAndItsExrIsInMetres)

@@ -434,6 +434,34 @@ TEST_F(CliTest, PngKeepsBytesAndMetadata)
   EXPECT_EQ(input->spec().get_string_attribute("Software"), "gnomon 0.1.0");
 }
 
+TEST_F(CliTest, AlphaIsWrittenAsEachFormatStoresItAndReadAsOverBlack)
+{
+  // One column, rows from the bottom.
+  const std::vector<std::uint8_t> coded = {188, 0, 255, 51, 1, 2, 3, 255};
+  cli::write_png(folder / "a.png", {1, 2}, coded, {}, cli::Alpha::Written);
+  const std::vector<float> linear = {0.5F, 0.0F, 0.25F, 0.5F, 1.0F, 2.0F, 3.0F, 1.0F};
+  cli::write_exr(folder / "a.exr", {1, 2}, linear, {}, cli::Alpha::Written);
+  OIIO::ImageSpec as_stored;
+  as_stored.attribute("oiio:UnassociatedAlpha", 1);
+  const auto png = OIIO::ImageInput::open((folder / "a.png").string(), &as_stored);
+  const auto exr = OIIO::ImageInput::open((folder / "a.exr").string());
+  ASSERT_TRUE(png && exr);
+  EXPECT_EQ(png->spec().channelnames, (std::vector<std::string>{"R", "G", "B", "A"}));
+  EXPECT_EQ(exr->spec().channelnames, (std::vector<std::string>{"R", "G", "B", "A"}));
+  std::vector<std::uint8_t> bytes(8);
+  ASSERT_TRUE(png->read_image(0, 0, 0, 4, OIIO::TypeDesc::UINT8, bytes.data()));
+  EXPECT_EQ(bytes, (std::vector<std::uint8_t>{1, 2, 3, 255, 188, 0, 255, 51}));
+  std::vector<float> values(8);
+  ASSERT_TRUE(exr->read_image(0, 0, 0, 4, OIIO::TypeDesc::FLOAT, values.data()));
+  EXPECT_EQ(values, (std::vector<float>{1.0F, 2.0F, 3.0F, 1.0F, 0.5F, 0.0F, 0.25F, 0.5F}));
+
+  const cli::Picture over_black = cli::read_picture(folder / "a.png");
+  EXPECT_NEAR(over_black.pixels[0].r, 0.2F * 0.50289F, 1e-5F);
+  EXPECT_NEAR(over_black.pixels[0].b, 0.2F, 1e-6F);
+  EXPECT_EQ(over_black.pixels[0].a, 1.0F);
+  EXPECT_EQ(cli::read_picture(folder / "a.exr").pixels[0], glm::vec4(0.5F, 0.0F, 0.25F, 1.0F));
+}
+
 TEST_F(CliTest, DamagedPicturesAreNamedOrRead)
 {
   constexpr glm::ivec2 size_px(31, 17);

@@ -294,6 +294,39 @@ TEST_P(TargetGpuTest, OverLiesOnTheHostsContentWhereItIsNearer)
   EXPECT_GT(empty, 0);
 }
 
+TEST_P(TargetGpuTest, StraightColorsAreThoseOfTheSurfaces)
+{
+  test::remove_objects(scene);
+  const auto glass = test::add_material(scene, glm::vec3(0.0F));
+  scene.edit(glass, [](scene::Material &material) {
+    material.emissive = {1.5F, 0.5F, 0.0F};
+    material.alpha_mode = scene::AlphaMode::Blend;
+    material.alpha = 0.25F;
+    material.specular = 0.0F;
+  });
+  test::add_object(scene, test::add_square_mesh(scene, glass), glm::dmat4(1));
+  SceneRenderer renderer(*device, scene, size_px, settings);
+  renderer.sync();
+  const draw::TargetTexture display(*device, "display", gpu::Format::RGBA8, size_px);
+  draw::Target target = display.target();
+  target.composition = draw::Composition::ReplaceStraight;
+  target.exposure = -1.0F;
+  renderer.draw(camera, {}, target);
+  const Pixels pixels{size_px, gpu::read_as<std::array<std::uint8_t, 4>>(*device, display.texture())};
+  // 0.75 and 0.25 by sRGB's transfer function.
+  EXPECT_EQ(pixels.at(size_px.x / 2, size_px.y / 2), (std::array<int, 4>{225, 137, 0, 64}));
+  EXPECT_EQ(pixels.at(0, size_px.y - 1), (std::array<int, 4>{0, 0, 0, 0}));
+  int edge = 0;
+  for (int i = 0; i < size_px.x * size_px.y; i++) {
+    const std::array<int, 4> pixel = pixels.at(i % size_px.x, i / size_px.x);
+    edge += pixel[3] > 0 && pixel[3] < 64;
+    if (pixel[3] > 0) {
+      EXPECT_EQ(pixel[0], 225) << "also where it covers a part of the pixel, " << i;
+    }
+  }
+  EXPECT_GT(edge, 4);
+}
+
 TEST_P(TargetGpuTest, BlendedSurfacesLieOverTheHostsContentAndChangeNoDepth)
 {
   test::remove_objects(scene);
