@@ -12,6 +12,9 @@ layout(location = 2) flat out uint surface_material;
 #ifdef USE_LIGHT
 #  include "eevee/eevee_surface_vert_lib.glsl"
 #endif
+#ifdef WRITES_OBJECT
+layout(location = 9) flat out uint surface_object;
+#endif
 
 invariant gl_Position;
 
@@ -29,5 +32,8 @@ void main()
 #endif
 #ifdef USE_LIGHT
   write_surface_varyings(position_ws.xyz);
+#endif
+#ifdef WRITES_OBJECT
+  surface_object = draw_instance.x;
 #endif
 }

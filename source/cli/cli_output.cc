@@ -33,16 +33,16 @@ void write_atomically(const fs::path &path, const std::function<void(const fs::p
   }
 }
 
-NonFinite find_non_finite(glm::ivec2 size_px, std::span<const float> rgba)
+NonFinite find_non_finite(glm::ivec2 size_px, std::span<const float> values, std::size_t channel_count)
 {
   NonFinite found;
-  const auto width = std::size_t(size_px.x);
+  const std::size_t row_size = std::size_t(size_px.x) * channel_count;
   // From the upper row down, the order in which a viewer reads the picture.
   for (int y = 0; y < size_px.y; y++) {
-    const std::span<const float> row = rgba.subspan(std::size_t(size_px.y - 1 - y) * width * 4, width * 4);
+    const std::span<const float> row = values.subspan(std::size_t(size_px.y - 1 - y) * row_size, row_size);
     for (std::size_t i = 0; i < row.size(); i++) {
       if (!std::isfinite(row[i]) && found.count++ == 0) {
-        found.first_px = {int(i / 4), y};
+        found.first_px = {int(i / channel_count), y};
       }
     }
   }

@@ -29,8 +29,9 @@ struct NonFinite {
   glm::ivec2 first_px{0};
 };
 
-/** \a rgba: four floats for each pixel, rows from the bottom. */
-[[nodiscard]] NonFinite find_non_finite(glm::ivec2 size_px, std::span<const float> rgba);
+/** \a values: \a channel_count floats for each pixel, rows from the bottom. */
+[[nodiscard]] NonFinite find_non_finite(glm::ivec2 size_px, std::span<const float> values,
+                                        std::size_t channel_count = 4);
 
 /** The components of \a pixels. */
 [[nodiscard]] inline std::span<const float> floats(std::span<const glm::vec4> pixels)

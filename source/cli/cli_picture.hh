@@ -21,13 +21,23 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 /** What becomes of the fourth value of each pixel. */
 enum class Alpha { Dropped, Written };
 
+/** A layer of an EXR file beside the picture. */
+struct Layer {
+  /** The first part of the names of its channels. */
+  std::string name;
+  /** The last part, one letter for each channel: "RGB" gives the channels NAME.R, NAME.G and NAME.B. */
+  std::string channels;
+  /** A value for each channel of each pixel, rows from the bottom. */
+  std::vector<float> values;
+};
+
 /**
  * Writes 32-bit floats in the channels R, G, B and, if it is written, A, by which colours are multiplied. Rows from the
- * bottom, four floats for each pixel.
+ * bottom, four floats for each pixel. \pre layers have different names
  * \throws std::runtime_error naming \a path if it cannot be written; so does write_png.
  */
 void write_exr(const std::filesystem::path &path, glm::ivec2 size_px, std::span<const float> rgba,
-               const Metadata &metadata, Alpha alpha = Alpha::Dropped);
+               const Metadata &metadata, Alpha alpha = Alpha::Dropped, std::span<const Layer> layers = {});
 /** Writes 8 bits a channel. Rows from the bottom, four bytes for each pixel; colours are not multiplied by alpha. */
 void write_png(const std::filesystem::path &path, glm::ivec2 size_px, std::span<const std::uint8_t> rgba,
                const Metadata &metadata, Alpha alpha = Alpha::Dropped);

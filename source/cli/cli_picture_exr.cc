@@ -15,7 +15,6 @@
 #include <ImfStringAttribute.h>
 #include <ImfTestFile.h>
 
-#include <array>
 #include <fstream>
 #include <stdexcept>
 
@@ -23,26 +22,25 @@ namespace gnomon::cli {
 
 namespace fs = std::filesystem;
 
-static constexpr std::array<const char *, 4> channel_names = {"R", "G", "B", "A"};
-static constexpr std::span rgb_names = std::span(channel_names).first<3>();
+using Names = std::vector<std::string>;
 
-/** Channels \a names of pixels of four floats in rows from the bottom. OpenEXR counts rows from the top, the first
- * being \a first. */
-static Imf::FrameBuffer frame_buffer(std::span<const char *const> names, char *pixels, glm::ivec2 size_px,
-                                     Imath::V2i first)
+/**
+ * Adds channels of pixels of \a value_count floats in rows from the bottom: \a names are those of the first values.
+ * OpenEXR counts rows from the top, the first being \a first.
+ */
+static void add_channels(Imf::FrameBuffer &buffer, const Names &names, std::size_t value_count, char *pixels,
+                         glm::ivec2 size_px, Imath::V2i first)
 {
-  constexpr std::ptrdiff_t pixel_bytes = 4 * sizeof(float);
+  const auto pixel_bytes = std::ptrdiff_t(value_count * sizeof(float));
   const std::ptrdiff_t row_bytes = pixel_bytes * size_px.x;
   char *top = pixels + row_bytes * (size_px.y - 1);
   // The address of pixel (0, 0), which may be outside of the picture.
   const auto origin = reinterpret_cast<std::uintptr_t>(top) - std::uintptr_t(pixel_bytes * first.x) +
                       std::uintptr_t(row_bytes * first.y);
-  Imf::FrameBuffer buffer;
   for (std::size_t i = 0; i < names.size(); i++) {
     buffer.insert(names[i], Imf::Slice(Imf::FLOAT, reinterpret_cast<char *>(origin + i * sizeof(float)),
                                        std::size_t(pixel_bytes), std::size_t(-row_bytes)));
   }
-  return buffer;
 }
 
 void write_exr_file(const fs::path &path, Imf::Header header, const Imf::FrameBuffer &pixels, const Metadata &metadata)
@@ -76,16 +74,27 @@ void write_exr_file(const fs::path &path, Imf::Header header, const Imf::FrameBu
 }
 
 void write_exr(const fs::path &path, glm::ivec2 size_px, std::span<const float> rgba, const Metadata &metadata,
-               Alpha alpha)
+               Alpha alpha, std::span<const Layer> layers)
 {
-  const auto names = std::span<const char *const>(channel_names).first(alpha == Alpha::Written ? 4 : 3);
   Imf::Header header(size_px.x, size_px.y);
-  for (const char *name : names) {
-    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  Imf::FrameBuffer buffer;
+  const auto add = [&](const Names &names, std::size_t value_count, std::span<const float> values) {
+    for (const std::string &name : names) {
+      header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    }
+    // OpenEXR does not write to the pixels.
+    char *pixels = const_cast<char *>(reinterpret_cast<const char *>(values.data()));
+    add_channels(buffer, names, value_count, pixels, size_px, {0, 0});
+  };
+  add(alpha == Alpha::Written ? Names{"R", "G", "B", "A"} : Names{"R", "G", "B"}, 4, rgba);
+  for (const Layer &layer : layers) {
+    Names names;
+    for (const char channel : layer.channels) {
+      names.push_back(fmt::format("{}.{}", layer.name, channel));
+    }
+    add(names, names.size(), layer.values);
   }
-  // OpenEXR does not write to it.
-  char *pixels = const_cast<char *>(reinterpret_cast<const char *>(rgba.data()));
-  write_exr_file(path, std::move(header), frame_buffer(names, pixels, size_px, {0, 0}), metadata);
+  write_exr_file(path, std::move(header), buffer, metadata);
 }
 
 std::optional<Picture> read_exr_picture(const fs::path &path)
@@ -97,7 +106,8 @@ std::optional<Picture> read_exr_picture(const fs::path &path)
   const Imath::Box2i window = input.header().dataWindow();
   const auto edge = [](int min, int max) { return std::int64_t(max) - min + 1; };
   check_edges(edge(window.min.x, window.max.x), edge(window.min.y, window.max.y));
-  for (const char *name : rgb_names) {
+  const Names names = {"R", "G", "B"};
+  for (const std::string &name : names) {
     const Imf::Channel *channel = input.header().channels().findChannel(name);
     if (channel == nullptr) {
       throw std::runtime_error("has no channels R, G and B");
@@ -111,8 +121,9 @@ std::optional<Picture> read_exr_picture(const fs::path &path)
   }
   Picture picture{{edge(window.min.x, window.max.x), edge(window.min.y, window.max.y)}, {}};
   picture.pixels.assign(std::size_t(picture.size_px.x) * std::size_t(picture.size_px.y), glm::vec4(1.0F));
-  input.setFrameBuffer(
-      frame_buffer(rgb_names, reinterpret_cast<char *>(picture.pixels.data()), picture.size_px, window.min));
+  Imf::FrameBuffer buffer;
+  add_channels(buffer, names, 4, reinterpret_cast<char *>(picture.pixels.data()), picture.size_px, window.min);
+  input.setFrameBuffer(buffer);
   input.readPixels(window.min.y, window.max.y);
   return picture;
 }

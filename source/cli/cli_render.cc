@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli.hh"
 
+#include "cli_aov.hh"
 #include "cli_explain.hh"
 #include "cli_exr_part.hh"
 #include "cli_output.hh"
@@ -18,6 +19,8 @@
 #include <nlohmann/json.hpp>
 
 #include <unistd.h>
+#include <algorithm>
+#include <iterator>
 #include <optional>
 
 namespace gnomon::cli {
@@ -134,20 +137,32 @@ void write_part(const RenderOptions &options, std::span<const glm::vec4> pixels,
   write_exr_part(options.output, part);
 }
 
+/** Counts non-finite values of the picture or of a layer, and prints where the first is. */
+std::size_t count_non_finite(const RenderOptions &options, std::string_view what, glm::ivec2 size_px,
+                             std::span<const float> values, std::size_t channel_count)
+{
+  const NonFinite found = find_non_finite(size_px, values, channel_count);
+  if (found.count > 0) {
+    fmt::print(stderr, "gnomon: {}: {} values of {} are not finite, the first at pixel ({}, {}); not written\n",
+               options.scene, found.count, what, found.first_px.x, found.first_px.y);
+  }
+  return found.count;
+}
+
 /** \return Status::Done, or Status::NonFinite if the picture has non-finite values; it is then not written */
 Status write_picture(const RenderOptions &options, const scene::Camera &camera, gpu::Device &device,
                      std::span<const glm::vec4> pixels, glm::ivec2 size_px,
-                     const std::optional<draw::TargetTexture> &display, Alpha alpha, double sample_share,
-                     const Metadata &frame_metadata, RenderResult &result)
+                     const std::optional<draw::TargetTexture> &display, Alpha alpha, const AovLayers &aov,
+                     double sample_share, const Metadata &frame_metadata, RenderResult &result)
 {
   const bool is_shadow = options.is_shadow_shown();
   const std::span<const float> values = floats(pixels);
-  const NonFinite non_finite = find_non_finite(size_px, values);
-  result.non_finite_count = non_finite.count;
-  if (non_finite.count > 0) {
-    fmt::print(stderr,
-               "gnomon: {}: {} values of the picture are not finite, the first at pixel ({}, {}); not written\n",
-               options.scene, non_finite.count, non_finite.first_px.x, non_finite.first_px.y);
+  result.non_finite_count = count_non_finite(options, "the picture", size_px, values, 4);
+  for (const Layer &layer : aov.layers) {
+    result.non_finite_count += count_non_finite(options, fmt::format("the layer '{}'", layer.name), size_px,
+                                                layer.values, layer.channels.size());
+  }
+  if (result.non_finite_count > 0) {
     return Status::NonFinite;
   }
   Metadata metadata = {{"gnomon:scene", options.scene},
@@ -156,6 +171,7 @@ Status write_picture(const RenderOptions &options, const scene::Camera &camera, 
                        {"gnomon:seed", std::to_string(options.seed)},
                        {"gnomon:device", result.device}};
   metadata.insert(metadata.end(), frame_metadata.begin(), frame_metadata.end());
+  metadata.insert(metadata.end(), aov.metadata.begin(), aov.metadata.end());
   if (!options.debug.empty()) {
     metadata.emplace_back("gnomon:debug", options.debug);
   }
@@ -172,7 +188,7 @@ Status write_picture(const RenderOptions &options, const scene::Camera &camera, 
       return Status::Done;
     }
     const std::vector<float> distances = is_shadow ? alpha_in_all(values) : std::vector<float>();
-    write_exr(options.output, size_px, is_shadow ? distances : values, metadata, alpha);
+    write_exr(options.output, size_px, is_shadow ? distances : values, metadata, alpha, aov.layers);
   }
   return Status::Done;
 }
@@ -204,7 +220,7 @@ std::unique_ptr<gpu::Device> create_device(const RenderOptions &options)
 }
 
 /** Renders and writes all frames of the sequence. */
-Status render_sequence(RenderOptions options, const FrameSequence &frames, scene::Scene &scene,
+Status render_sequence(RenderOptions options, const FrameSequence &frames, const Aov &aov, scene::Scene &scene,
                        scene::PlacedCamera camera, eevee::SceneRenderer &renderer, RenderResult &result)
 {
   gpu::Device &device = renderer.viewport().device();
@@ -234,11 +250,16 @@ Status render_sequence(RenderOptions options, const FrameSequence &frames, scene
     if (options.has_picture()) {
       const gpu::Rectangle region = renderer.viewport().region();
       const glm::ivec2 written_px = shadow ? glm::ivec2(shadow->desc().width, shadow->desc().height) : region.size_px;
-      status = write_picture(
-          options, camera, device,
-          shadow ? gpu::read_as<glm::vec4>(device, *shadow) : gpu::cropped(renderer.read_picture(), size_px.x, region),
-          written_px, display, alpha_of(options, renderer), renderer.engine().sample_share(renderer.viewport()),
-          frames.metadata(i), result);
+      const std::vector<glm::vec4> picture =
+          shadow ? gpu::read_as<glm::vec4>(device, *shadow) : gpu::cropped(renderer.read_picture(), size_px.x, region);
+      const double sample_share = renderer.engine().sample_share(renderer.viewport());
+      if (!aov.empty()) {
+        // The report is that of the picture, not that of the layers.
+        result.report = renderer.inspect().report();
+      }
+      status =
+          write_picture(options, camera, device, picture, written_px, display, alpha_of(options, renderer),
+                        aov.render(renderer, camera, result.samples_drawn), sample_share, frames.metadata(i), result);
     }
     result.output_seconds += seconds_since(output_start);
     frames.show_progress(i, ++rendered_count, seconds_since(start));
@@ -255,6 +276,7 @@ Status render(RenderOptions options)
   check_folder(options.output);
   check_folder(options.json);
   const FrameSequence frames(options.frames, options.output);
+  const Aov aov(options.aov);
   RenderResult result;
 
   scene::Scene scene = import_scene(options);
@@ -264,6 +286,8 @@ Status render(RenderOptions options)
   constexpr glm::vec3 light_grey(0.6F);
   const eevee::Background background =
       background_of(options.world, is_default_studio && options.is_png() ? std::optional(light_grey) : std::nullopt);
+  aov.check(scene);
+  std::ranges::copy(aov.warnings(scene), std::back_inserter(scene.warnings));
   print_messages("warning", scene.warnings);
   result.import_seconds = seconds_since(start);
 
@@ -301,8 +325,10 @@ Status render(RenderOptions options)
   }
   result.sync_seconds = seconds_since(sync_start);
 
-  const Status status = render_sequence(options, frames, scene, camera, renderer, result);
-  result.report = inspection.report();
+  const Status status = render_sequence(options, frames, aov, scene, camera, renderer, result);
+  if (aov.empty()) {
+    result.report = inspection.report();
+  }
   if (!options.has_picture()) {
     fmt::print(stderr, "gnomon: the null backend draws nothing: no picture is written\n");
   }

@@ -2,6 +2,7 @@
 #include "cli_render_options.hh"
 
 #include "cli.hh"
+#include "cli_aov.hh"
 
 #include <fmt/format.h>
 
@@ -162,9 +163,8 @@ draw::ViewTransform RenderOptions::view_transform() const
 
 void RenderOptions::check() const
 {
-  const auto unbuilt = [](const std::string &what) { throw UsageError(what + " is not built yet"); };
-  if (!aov.empty()) {
-    unbuilt("--aov");
+  if (!aov.empty() && is_png()) {
+    throw UsageError("--aov writes layers of an EXR file; a PNG has none");
   }
   if (!std::isfinite(exposure)) {
     throw UsageError(fmt::format("--exposure {} is not a number of stops", exposure));
@@ -181,8 +181,9 @@ void RenderOptions::check() const
   if (output.empty() && backend == "gl") {
     throw UsageError("-o OUT.exr or -o OUT.png is required");
   }
-  if (is_part() && (is_png() || !debug.empty() || frames.is_resumed)) {
-    throw UsageError("--tile and --sample-range write parts of a picture to OUT.exr, without --debug and --resume");
+  if (is_part() && (is_png() || !debug.empty() || !aov.empty() || frames.is_resumed)) {
+    throw UsageError(
+        "--tile and --sample-range write parts of a picture to OUT.exr, without --debug, --aov and --resume");
   }
   static_cast<void>(region());
   static_cast<void>(sample_bounds());
@@ -300,7 +301,10 @@ void add_render_options(CLI::App &command, RenderOptions &options)
   command.add_option("--debug", options.debug,
                      "shadow:LAMP[:LAYER]: distances in the layers of a shadow (a cube face, a cascade, octahedral, "
                      "all) instead of the picture; cascades: the picture, tinted by the cascade that a pixel reads");
-  command.add_option("--aov", options.aov, "Additional layers to write (not built yet)");
+  command
+      .add_option("--aov", options.aov,
+                  fmt::format("Layers of the EXR beside the picture, separated by commas: {}", aov_names()))
+      ->excludes(command.get_option("--debug"));
   command.add_option("--view", options.view, "View transform of a PNG: standard, raw, agx, pbr-neutral")
       ->capture_default_str()
       ->check(CLI::IsMember(view_transforms));
@@ -328,7 +332,7 @@ void add_render_options(CLI::App &command, RenderOptions &options)
   // These options set what is chosen automatically, or change the picture so that its error cannot be measured.
   for (const char *name : {"--samples", "--time-limit", "--shadow", "--shadow-size", "--pcf", "--esm", "--cascades",
                            "--cascade-lambda", "--cascade-range", "--cube-pass", "--casters", "--shadow-memory",
-                           "--debug", "--frames", "--background", "--sample-range", "--tile"}) {
+                           "--debug", "--frames", "--background", "--sample-range", "--tile", "--aov"}) {
     max_error->excludes(command.get_option(name));
     max_time->excludes(command.get_option(name));
   }

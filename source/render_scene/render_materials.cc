@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -153,6 +154,15 @@ void MaterialTable::replace(std::vector<Entry> &entries, std::vector<Entry> chan
   entries = std::move(changed);
 }
 
+static scene::Material without_emission(scene::Material material)
+{
+  material.emissive = glm::vec3(0.0F);
+  if (material.is_unlit) {
+    material.base_color = glm::vec3(0.0F);
+  }
+  return material;
+}
+
 void MaterialTable::update(const scene::Scene &scene)
 {
   const scene::Pool<scene::Material> &materials = scene.materials();
@@ -166,9 +176,12 @@ void MaterialTable::update(const scene::Scene &scene)
   std::vector<shared::FullMaterialData> full_entries(entries.size(), full_material_data(scene, {}));
   std::vector<shared::LayerData> layer_entries(entries.size(), layer_data({}));
   for (const auto &[handle, material] : materials) {
-    entries[handle.index + 1] = material_data(material);
-    full_entries[handle.index + 1] = full_material_data(scene, material);
-    layer_entries[handle.index + 1] = layer_data(material);
+    const std::optional<scene::Material> dark =
+        emission_ == Emission::LeftOut ? std::optional(without_emission(material)) : std::nullopt;
+    const scene::Material &shown = dark ? *dark : material;
+    entries[handle.index + 1] = material_data(shown);
+    full_entries[handle.index + 1] = full_material_data(scene, shown);
+    layer_entries[handle.index + 1] = layer_data(shown);
   }
   replace(entries_, std::move(entries), entries_block_);
   replace(full_entries_, std::move(full_entries), full_block_);

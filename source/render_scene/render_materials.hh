@@ -51,6 +51,10 @@ enum class MaterialClass : std::uint8_t {
 /** `material_block`, `full_material_block` and `layer_block`: the materials of a scene on one device. */
 class MaterialTable {
  public:
+  /** LeftOut: as if no material emitted light. */
+  enum class Emission { Kept, LeftOut };
+  explicit MaterialTable(Emission emission = Emission::Kept) : emission_(emission) {}
+
   /** Index of a material's entry. Stale handles get the default material, whose index is 0. */
   [[nodiscard]] static std::uint32_t place_of(const scene::Scene &scene, scene::Handle<scene::Material> material);
 
@@ -97,6 +101,7 @@ class MaterialTable {
   template <typename Entry>
   static void upload(gpu::Device &device, const char *name, const std::vector<Entry> &entries, Block &block);
 
+  Emission emission_;
   std::vector<shared::MaterialData> entries_;
   std::vector<shared::FullMaterialData> full_entries_;
   std::vector<shared::LayerData> layer_entries_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Exit statuses, messages and files of the command line, without a driver.
+#include "cli_cryptomatte.hh"
 #include "cli_explain.hh"
 #include "cli_output.hh"
 #include "cli_picture.hh"
@@ -73,11 +74,68 @@ TEST_F(CliTest, WrongUsageHasStatusTwoAndAReason)
   }
 }
 
-TEST_F(CliTest, AnUnimplementedOptionIsWrongUsage)
+TEST_F(CliTest, LayersThatThereAreNotAreNamedWithThoseThatThereAre)
 {
-  const Finished finished = run("render a.glb -o a.png --aov depth");
-  EXPECT_EQ(finished.status, 2);
-  EXPECT_NE(finished.err.find("not built yet"), std::string::npos) << finished.err;
+  const Finished png = run("render a.glb -o a.png --aov depth");
+  EXPECT_EQ(png.status, 2);
+  EXPECT_NE(png.err.find("a PNG has none"), std::string::npos) << png.err;
+  for (const std::string name : {"motion", "", "depth.Sun", "combined.", "lights"}) {
+    const Finished unknown = run("render a.glb -o a.exr --aov albedo," + name);
+    EXPECT_EQ(unknown.status, 2) << name;
+    EXPECT_NE(unknown.err.find("no layer '" + name + "'; there are: combined, depth,"), std::string::npos)
+        << unknown.err;
+  }
+  const std::string render = "render " + example("plaza") + " -o a.exr --backend null --size 8x8 --aov ";
+  const Finished lamp = run(render + "light.NOBODY");
+  EXPECT_EQ(lamp.status, 1);
+  EXPECT_NE(lamp.err.find("no lamp 'NOBODY'; visible lamps: POINT, SUN"), std::string::npos) << lamp.err;
+  EXPECT_EQ(run(render + "light,visibility.SUN,crypto_object").status, 0);
+}
+
+// ---- Cryptomatte ----
+
+TEST(Cryptomatte, HashesAndIdsAreThoseOfTheSpecification)
+{
+  EXPECT_EQ(cli::murmur_hash3(""), 0U);
+  EXPECT_EQ(cli::murmur_hash3("hello"), 0x248BFA47U);
+  EXPECT_EQ(cli::murmur_hash3("The quick brown fox jumps over the lazy dog"), 0x2E4FF723U);
+  EXPECT_FLOAT_EQ(cli::cryptomatte_id("hello"), 6.0705627102400005616e-17F);
+  EXPECT_FLOAT_EQ(cli::cryptomatte_id("cube"), -4.08461912519e+15F);
+  EXPECT_FLOAT_EQ(cli::cryptomatte_id("sphere"), 2.79018604383e+15F);
+  EXPECT_FLOAT_EQ(cli::cryptomatte_id("plane"), 3.66557617593e-11F);
+  // A hash with an exponent of infinities and NaN.
+  ASSERT_EQ(cli::murmur_hash3("454"), 0xFFBFFB25U);
+  EXPECT_EQ(std::bit_cast<std::uint32_t>(cli::cryptomatte_id("454")), 0xFF3FFB25U);
+}
+
+TEST(Cryptomatte, RanksAreByCoverageAndEqualNamesAreOneThing)
+{
+  const std::vector<std::string> names = {"", "cube", "sphere", "cube", "a", "b", "c", "d", "e"};
+  const std::vector<std::vector<std::pair<std::uint32_t, float>>> pixels = {
+      {{2, 0.5F}, {1, 0.3F}, {3, 0.25F}},
+      {},
+      {{1, 0.3F}, {2, 0.2F}, {4, 0.15F}, {5, 0.1F}, {6, 0.09F}, {7, 0.08F}, {8, 0.01F}}};
+  const cli::Cryptomatte matte = cli::make_cryptomatte("CryptoObject", pixels, names);
+  ASSERT_EQ(matte.layers.size(), 3U);
+  EXPECT_EQ(matte.layers[2].name, "CryptoObject02");
+  EXPECT_EQ(matte.layers[0].channels, "RGBA");
+  const float cube = cli::cryptomatte_id("cube");
+  const float sphere = cli::cryptomatte_id("sphere");
+  EXPECT_EQ(matte.layers[0].values,
+            (std::vector<float>{cube, 0.55F, sphere, 0.5F, 0, 0, 0, 0, cube, 0.3F, sphere, 0.2F}));
+  EXPECT_EQ(matte.layers[2].values[11], 0.08F) << "the seventh thing is left out";
+  const auto entry = [&](const std::string &name) {
+    // The first seven digits of the hash of CryptoObject.
+    const auto found =
+        std::ranges::find(matte.metadata, "cryptomatte/3ae39a5/" + name, &std::pair<std::string, std::string>::first);
+    return found == matte.metadata.end() ? "" : found->second;
+  };
+  EXPECT_EQ(entry("name"), "CryptoObject");
+  EXPECT_EQ(entry("hash"), "MurmurHash3_32");
+  EXPECT_EQ(entry("conversion"), "uint32_to_float32");
+  const auto manifest = nlohmann::json::parse(entry("manifest"));
+  EXPECT_EQ(manifest.size(), 7U);
+  EXPECT_EQ(manifest["cube"], fmt::format("{:08x}", std::bit_cast<std::uint32_t>(cube)));
 }
 
 TEST_F(CliTest, MissingSceneIsNamedAndFails)
@@ -307,6 +365,28 @@ TEST_F(CliTest, ExrKeepsFloatsRowsAndMetadata)
   std::vector<float> read(12);
   ASSERT_TRUE(input->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, read.data()));
   EXPECT_EQ(read, (std::vector<float>{3, 0, 0, 65536.5F, 7, 8, 1e-6F, 0, 0, 2, 0, 0}));
+}
+
+TEST_F(CliTest, LayersOfAnExrAreNamedByLayerAndChannel)
+{
+  // One column, rows from the bottom.
+  const std::vector<float> rgba = {1, 2, 3, 4, 5, 6, 7, 8};
+  const std::vector<cli::Layer> layers = {{"light.Lamp.001", "RGB", {11, 12, 13, 14, 15, 16}},
+                                          {"depth", "Z", {21, 22}}};
+  cli::write_exr(folder / "a.exr", {1, 2}, rgba, {}, cli::Alpha::Written, layers);
+  const auto input = OIIO::ImageInput::open((folder / "a.exr").string());
+  ASSERT_TRUE(input) << OIIO::geterror();
+  const OIIO::ImageSpec &spec = input->spec();
+  ASSERT_EQ(spec.nchannels, 8);
+  std::vector<float> read(16);
+  ASSERT_TRUE(input->read_image(0, 0, 0, 8, OIIO::TypeDesc::FLOAT, read.data()));
+  const auto top = [&](const std::string &name) { return read[std::size_t(spec.channelindex(name))]; };
+  EXPECT_EQ(top("R"), 5.0F);
+  EXPECT_EQ(top("A"), 8.0F);
+  EXPECT_EQ(top("light.Lamp.001.R"), 14.0F);
+  EXPECT_EQ(top("light.Lamp.001.B"), 16.0F);
+  EXPECT_EQ(top("depth.Z"), 22.0F);
+  EXPECT_EQ(cli::read_picture(folder / "a.exr").pixels[0], glm::vec4(1, 2, 3, 1)) << "others read the picture";
 }
 
 // ---- Pictures: OpenImageIO is another reader and writer of the same formats ----

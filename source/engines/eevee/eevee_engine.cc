@@ -112,6 +112,17 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
           ? LampPoints(shared.placed, shared.lamps, bounds_ws.is_empty() ? glm::vec3(0.0F) : bounds_ws.center(), world,
                        settings_.planned_sample_count())
           : LampPoints();
+  shared.is_light_left_out.clear();
+  for (int i = 0; i < shared.lamps.light_block.light_count; i++) {
+    const std::size_t lamp = shared.lamps.lamp_index[std::size_t(i)];
+    const bool is_lamp = lamp < scene_.lamps().size();
+    const bool is_kept = settings_.light.has(is_lamp ? LightPart::Kind::Lamp : LightPart::Kind::World) &&
+                         (settings_.light.kind != LightPart::Kind::Lamp || settings_.light.lamp == lamp);
+    shared.is_light_left_out.push_back(!is_kept);
+    if (!is_kept) {
+      leave_out(shared.lamps.light_block.lights[i]);
+    }
+  }
   shared.tinted_light = settings_.has_cascade_tint ? first_sun_with_maps(shared.lamps) : std::nullopt;
   shared.synced = key;
 }
@@ -175,9 +186,11 @@ void Engine::begin_draw(draw::Viewport &viewport)
 void Engine::update_view(Data &data, const draw::View &view)
 {
   data.stl.object_block = data.shared->object_block = {scene_.objects().buffer().id()};
-  data.stl.material_block = data.shared->material_block = {scene_.materials().buffer().id()};
-  data.stl.full_material_block = data.shared->full_material_block = {scene_.materials().full_buffer().id()};
-  data.stl.layer_block = {scene_.materials().layer_buffer().id()};
+  const render_scene::MaterialTable &materials =
+      settings_.light.has(LightPart::Kind::Emission) ? scene_.materials() : *data.shared->materials_without_emission;
+  data.stl.material_block = data.shared->material_block = {materials.buffer().id()};
+  data.stl.full_material_block = data.shared->full_material_block = {materials.full_buffer().id()};
+  data.stl.layer_block = {materials.layer_buffer().id()};
   scene_.device().update(data.stl.view_block, view_data(view, settings_, data.sample_index));
 }
 

@@ -29,12 +29,36 @@ struct Background {
   glm::vec3 color{0.0F};
 };
 
+/** A part of the light of a picture. The parts of all lamps, of the world and of emission sum to the picture. */
+struct LightPart {
+  enum class Kind {
+    All,
+    /** One lamp. */
+    Lamp,
+    /** The world and the background. */
+    World,
+    /** Light that surfaces emit, as far as the camera sees it directly. */
+    Emission,
+  };
+  Kind kind = Kind::All;
+  /** Index in RenderScene::lamps, for Kind::Lamp. */
+  std::size_t lamp = 0;
+
+  [[nodiscard]] bool has(Kind part) const
+  {
+    return kind == Kind::All || kind == part;
+  }
+};
+
 /** Number of samples for which pictures without a sample count are approximated. \see Settings::sample_count */
 inline constexpr int open_ended_sample_count = 256;
 
 struct Settings {
   ShadowSettings shadow{};
   Background background{};
+  /** The samples are those of the picture with all light: shadows, points of lamps and blended surfaces are the same.
+   */
+  LightPart light{};
   /**
    * Samples for each pixel of a complete picture. 0: no limit; the host ends the picture with Engine::finish.
    * Approximations that depend on the number of samples then assume `open_ended_sample_count`.
@@ -54,6 +78,8 @@ struct Settings {
   bool has_cascade_tint = false;
   /** Enables Inspection::probe, which needs additional targets and a pass. */
   bool has_probe = false;
+  /** Enables Inspection::surfaces, which needs additional targets and a pass. */
+  bool has_surfaces = false;
 
   [[nodiscard]] int planned_sample_count() const
   {

@@ -32,6 +32,7 @@ struct FramebufferList {
   gpu::Framebuffer film_fb;
   gpu::Framebuffer picture_depth_fb;
   gpu::Framebuffer probe_fb;
+  gpu::Framebuffer surfaces_fb;
 };
 
 struct TextureList {
@@ -42,6 +43,9 @@ struct TextureList {
   gpu::Texture picture_depth;
   gpu::Texture probe_position;
   gpu::Texture probe_normal;
+  gpu::Texture surface_position;
+  gpu::Texture surface_normal;
+  gpu::Texture surface_albedo;
   gpu::Sampler nearest;
 };
 
@@ -55,6 +59,7 @@ struct PassList {
         blend_pass("blend_pass", gpu::State::WriteColor | gpu::State::DepthNearerEqual | gpu::State::BlendOver,
                    &objects),
         probe_pass("probe_pass", gpu::State::WriteColor | gpu::State::DepthEqual, &objects),
+        surfaces_pass("surfaces_pass", gpu::State::WriteColor | gpu::State::DepthEqual, &objects),
         tint_pass("tint_pass", gpu::State::WriteColor | gpu::State::DepthEqual | gpu::State::BlendMultiply, &objects),
         film_pass("film_pass", gpu::State::WriteColor | gpu::State::BlendAdd),
         tonemap("tonemap", gpu::State::WriteColor)
@@ -67,6 +72,7 @@ struct PassList {
   /** A group or two for each blended object. */
   draw::Pass blend_pass;
   draw::Pass probe_pass;
+  draw::Pass surfaces_pass;
   draw::Pass tint_pass;
   draw::Pass film_pass;
   draw::Pass tonemap;
@@ -143,6 +149,10 @@ struct SharedData {
   /** The lamps of the scene, followed by the lamps of world_lamps. */
   std::vector<scene::PlacedLamp> placed;
   Lamps lamps;
+  /** By index in light_block: whether the light is not in Settings::light. */
+  std::vector<bool> is_light_left_out;
+  /** Empty unless Settings::light has no emission. */
+  std::optional<render_scene::MaterialTable> materials_without_emission;
   /** Points of lamps with an extent. Empty if a picture has one sample: then these lamps are shaded as a whole. */
   LampPoints lamp_points;
   SceneShadows shadows;

@@ -54,7 +54,11 @@ void write_lamp_points(Data &data, gpu::CommandList &list)
   std::vector<shared::LightData> &sampled = data.stl.sampled_lights;
   sampled.assign(lights + first, lights + end);
   for (const LampPoint &point : points) {
-    sampled[std::size_t(point.light - first)] = light_at(lights[point.light], point);
+    shared::LightData &light = sampled[std::size_t(point.light - first)];
+    light = light_at(lights[point.light], point);
+    if (data.shared->is_light_left_out[std::size_t(point.light)]) {
+      leave_out(light);
+    }
   }
   list.update(data.shared->light_block,
               offsetof(shared::LightBlock, lights) + std::size_t(first) * sizeof(shared::LightData),

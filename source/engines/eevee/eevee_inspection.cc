@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <set>
-#include <tuple>
 #include <utility>
 
 namespace gnomon::eevee {
@@ -29,7 +28,28 @@ static std::optional<std::size_t> light_of(const Data &data, std::size_t lamp)
   return found == lamps.lamp_index.end() ? std::nullopt : std::optional(std::size_t(found - lamps.lamp_index.begin()));
 }
 
-std::optional<Probe> Inspection::probe(const draw::View &picture_view, std::size_t lamp) const
+/** Append passes that draw the depths of \a view, and \a pass where they are equal. */
+static void record_at_depths(Data &data, const draw::View &view, std::string_view name, draw::Pass &pass,
+                             const gpu::Framebuffer &framebuffer, gpu::CommandList &list)
+{
+  list.begin_pass("depth_prepass", data.fbl.depth_fb, {});
+  data.psl->depth_pass.record(view, list);
+  data.psl->depth_pass_cull.record(view, list);
+  list.end_pass();
+  list.begin_pass(name, framebuffer, {.depth_load = gpu::LoadAction::Load});
+  pass.record(view, list);
+  list.end_pass();
+}
+
+/** The pixels of the picture from a texture with a guard band. */
+static std::vector<glm::vec4> read_picture(const draw::Viewport &viewport, const gpu::Texture &texture)
+{
+  return gpu::cropped(gpu::read_as<glm::vec4>(viewport.device(), texture), viewport.drawn_size_px().x,
+                      {viewport.guard_px(), viewport.size_px()});
+}
+
+std::optional<Probe> Inspection::probe(const draw::View &picture_view, std::size_t lamp,
+                                       std::optional<int> sample) const
 {
   GNOMON_ASSERT(engine_.settings_.has_probe, "the settings ask for no probe");
   Data &data = engine_data();
@@ -40,29 +60,44 @@ std::optional<Probe> Inspection::probe(const draw::View &picture_view, std::size
     return std::nullopt;
   }
   engine_.record(viewport_);
-  const auto &[fbl, txl, psl] = std::tie(data.fbl, data.txl, data.psl);
   gpu::Device &device = viewport_.device();
   const draw::View view = viewport_.drawn_view(picture_view);
   stl.probed_light = int(*light);
   engine_.update_view(data, view);
   gpu::CommandList list;
-  stl.lamp_points = data.shared->lamp_points.centers();
+  SharedData &shared = *data.shared;
+  if (sample) {
+    shared.sample_index = *sample;
+    shared.sample_seed = int(engine_.settings_.seed);
+    stl.shadows->invalidate_blended();
+  }
+  stl.lamp_points =
+      sample ? shared.lamp_points.sample(std::uint32_t(*sample), engine_.settings_.seed) : shared.lamp_points.centers();
   write_lamp_points(data, list);
-  stl.shadows->update(device, view, pixel_size(view, viewport_), data.shared->shadow_pass, list, stl.lamp_points);
-  list.begin_pass("depth_prepass", fbl.depth_fb, {});
-  psl->depth_pass.record(view, list);
-  psl->depth_pass_cull.record(view, list);
-  list.end_pass();
-  list.begin_pass("probe", fbl.probe_fb, {.depth_load = gpu::LoadAction::Load});
-  psl->probe_pass.record(view, list);
-  list.end_pass();
+  stl.shadows->update(device, view, pixel_size(view, viewport_), shared.shadow_pass, list, stl.lamp_points);
+  record_at_depths(data, view, "probe", data.psl->probe_pass, data.fbl.probe_fb, list);
   device.submit(list);
   stl.shadows->submitted();
-  const auto read = [&](const gpu::Texture &texture) {
-    return gpu::cropped(gpu::read_as<glm::vec4>(device, texture), viewport_.drawn_size_px().x,
-                        {viewport_.guard_px(), viewport_.size_px()});
-  };
-  return Probe{read(txl.probe_position), read(txl.probe_normal)};
+  return Probe{read_picture(viewport_, data.txl.probe_position), read_picture(viewport_, data.txl.probe_normal)};
+}
+
+std::optional<Surfaces> Inspection::surfaces(const draw::View &picture_view) const
+{
+  GNOMON_ASSERT(engine_.settings_.has_surfaces, "the settings ask for no surfaces");
+  Data &data = engine_data();
+  engine_.begin_draw(viewport_);
+  if (data.stl.objects.empty()) {
+    return std::nullopt;
+  }
+  engine_.record(viewport_);
+  const draw::View view = viewport_.drawn_view(picture_view);
+  engine_.update_view(data, view);
+  gpu::Device &device = viewport_.device();
+  gpu::CommandList list;
+  record_at_depths(data, view, "surfaces", data.psl->surfaces_pass, data.fbl.surfaces_fb, list);
+  device.submit(list);
+  return Surfaces{read_picture(viewport_, data.txl.surface_position), read_picture(viewport_, data.txl.surface_normal),
+                  read_picture(viewport_, data.txl.surface_albedo)};
 }
 
 double Inspection::shadow_texel_size(std::size_t lamp, const glm::dvec3 &position_ws) const
@@ -103,6 +138,7 @@ std::string Inspection::serialize_passes() const
     }
   }
   text += data.psl->probe_pass.serialize(viewport_.device());
+  text += data.psl->surfaces_pass.serialize(viewport_.device());
   return text;
 }
 

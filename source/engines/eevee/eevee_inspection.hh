@@ -24,6 +24,16 @@ struct Probe {
   std::vector<glm::vec4> normal;
 };
 
+/** The opaque surface at the centre of each pixel. Rows from the bottom; all values are 0 without a surface. */
+struct Surfaces {
+  /** xyz: position in the coordinates of the render scene. w: distance from the eye along the view axis. Metres. */
+  std::vector<glm::vec4> position_depth;
+  /** xyz: shading normal on the visible side, world space, unit length. w: the object's draw::ObjectIndex. */
+  std::vector<glm::vec4> normal_object;
+  /** rgb: linear base colour; 0 for unlit materials. a: roughness. */
+  std::vector<glm::vec4> albedo_roughness;
+};
+
 /** Report of the last picture of a viewport: warnings, exceeded limits, and the parts that were made or left out. */
 struct Report {
   std::vector<std::string> warnings;
@@ -58,9 +68,13 @@ class Inspection {
   [[nodiscard]] std::string serialize_passes() const;
   /**
    * Positions, normals and the visibility of the \a lamp-th lamp of RenderScene::lamps at each pixel. Empty where the
-   * lamp gives no light, or there are no objects. \pre Settings::has_probe
+   * lamp gives no light, or there are no objects. \a sample: sees the point of a lamp with an extent that this sample
+   * of the picture sees, and the centre without it, or if the picture has one sample. \pre Settings::has_probe
    */
-  [[nodiscard]] std::optional<Probe> probe(const draw::View &picture_view, std::size_t lamp) const;
+  [[nodiscard]] std::optional<Probe> probe(const draw::View &picture_view, std::size_t lamp,
+                                           std::optional<int> sample = std::nullopt) const;
+  /** The opaque surfaces that \a picture_view sees. Empty if there are no objects. \pre Settings::has_surfaces */
+  [[nodiscard]] std::optional<Surfaces> surfaces(const draw::View &picture_view) const;
   /** The shadow layers after the last draw. \pre the viewport was synced */
   [[nodiscard]] const Shadows &shadows() const;
   /** Counters of the shadow layers that this viewport drew. Viewports share layers. \pre the viewport was synced */

@@ -54,6 +54,12 @@ shared::LightData light_data(const scene::PlacedLamp &lamp)
   return light;
 }
 
+void leave_out(shared::LightData &light)
+{
+  // Sampled directions of the world also reflect `world_levels`, which are then black: update_world.
+  light.color = glm::vec3(0.0F);
+}
+
 shared::LightShape light_shape(const scene::PlacedLamp &lamp, LampShading shading)
 {
   shared::LightShape shape{};

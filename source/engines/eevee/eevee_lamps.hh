@@ -23,6 +23,9 @@ enum class LampShading {
 /** The entry of a lamp in `light_shape_block`. */
 [[nodiscard]] shared::LightShape light_shape(const scene::PlacedLamp &lamp, LampShading shading);
 
+/** Let \a light give no light. Its shadow and its points stay as they are. */
+void leave_out(shared::LightData &light);
+
 /** The data of all lamps that give light, in the layout of the shaders. */
 struct Lamps {
   shared::LightBlock light_block{};

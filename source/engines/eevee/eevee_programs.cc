@@ -40,7 +40,7 @@ constexpr Feature shadow_features = Feature::Light | Feature::Punctual | Feature
 constexpr Feature alpha_features = Feature::AlphaMask | Feature::FullMaterial;
 constexpr Feature caster_features = alpha_features | Feature::OpacityThreshold;
 
-constexpr std::array<ShaderDeclaration, 19> declarations = {{
+constexpr std::array<ShaderDeclaration, 20> declarations = {{
     {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl", alpha_features,
      Feature::None, "depth of what is seen, so that each pixel is lit once"},
     {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
@@ -86,6 +86,9 @@ constexpr std::array<ShaderDeclaration, 19> declarations = {{
     {ShaderId::DebugCascades, "eevee_debug_cascades", "eevee/eevee_surface_vert.glsl", "",
      "eevee/eevee_debug_cascades_frag.glsl", Feature::Light, Feature::Light,
      "which cascades of a sun each pixel reads"},
+    {ShaderId::Surfaces, "eevee_surfaces", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_surfaces_frag.glsl",
+     Feature::Light | Feature::BaseColorTexture | Feature::FullMaterial, Feature::Light,
+     "position, normal, object, albedo and roughness of surfaces, for compositing", "WRITES_OBJECT"},
 }};
 
 /** Whether a scene can need \a features, and no smaller mask gives the same program. */

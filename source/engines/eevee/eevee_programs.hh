@@ -31,6 +31,7 @@ enum class ShaderId {
   EvsmSeparable,
   DebugShadow,
   DebugCascades,
+  Surfaces,
 };
 
 /** Declaration of a shader program. The engine, the build, the shader checks and the tests read it. */

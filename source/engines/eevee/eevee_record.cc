@@ -70,6 +70,15 @@ void Engine::make_targets(draw::Viewport &viewport)
                                               .colors = {{&txl.probe_position}, {&txl.probe_normal}},
                                               .depth = {&viewport.depth_texture()}});
   }
+  if (settings_.has_surfaces && !txl.surface_position) {
+    txl.surface_position = create_target(device, "surface_position", gpu::Format::RGBA32F, viewport.drawn_size_px());
+    txl.surface_normal = create_target(device, "surface_normal", gpu::Format::RGBA32F, viewport.drawn_size_px());
+    txl.surface_albedo = create_target(device, "surface_albedo", gpu::Format::RGBA32F, viewport.drawn_size_px());
+    fbl.surfaces_fb =
+        device.create_framebuffer({.name = "surfaces_fb",
+                                   .colors = {{&txl.surface_position}, {&txl.surface_normal}, {&txl.surface_albedo}},
+                                   .depth = {&viewport.depth_texture()}});
+  }
 }
 
 void Engine::make_blocks(draw::Viewport &viewport)
@@ -96,6 +105,17 @@ void Engine::make_blocks(draw::Viewport &viewport)
     stl.materials_features_revision = materials;
   }
   scene_.upload(stl.widest_class);
+  if (settings_.light.has(LightPart::Kind::Emission)) {
+    shared.materials_without_emission.reset();
+  }
+  else {
+    using render_scene::MaterialTable;
+    MaterialTable &dark = shared.materials_without_emission
+                              ? *shared.materials_without_emission
+                              : shared.materials_without_emission.emplace(MaterialTable::Emission::LeftOut);
+    dark.update(scene_.scene());
+    dark.upload(device, stl.widest_class);
+  }
   update_world_picture(shared.world, device, scene_, settings_);
   if (!has(stl.features, Feature::Light)) {
     shared.light_block = {};
@@ -120,7 +140,7 @@ void Engine::make_blocks(draw::Viewport &viewport)
         device.create_buffer({"light_shape_block", gpu::BufferKind::Uniform, sizeof(shared::LightShapeBlock)});
     shared.is_light_block_written = false;
   }
-  update_world(shared.world, device, scene_, stl.features, settings_.planned_sample_count());
+  update_world(shared.world, device, scene_, stl.features, settings_);
   const bool has_ltc =
       has_layers || (has(stl.features, Feature::LampShape | Feature::World) && has(stl.features, Feature::Specular));
   if (!has_ltc) {
@@ -284,7 +304,7 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
 
   /** Appends a call to a group of \a pass. \a bind binds the resources of a new group. */
   const auto call = [&](draw::Pass &pass, const gpu::Shader &shader, State state, MaterialClass read,
-                        const TextureSet &textures, const auto &bind) {
+                        const TextureSet &textures, const gpu::Batch &batch_read, const auto &bind) {
     draw::ShadingGroup *&group = stl.groups[{&pass, shader.id(), state | winding, textures}];
     if (!group) {
       group = &pass.group(shader);
@@ -292,7 +312,7 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
       bind(*group);
       render_scene::bind_textures(*group, scene_, read, textures);
     }
-    group->call(batch, index);
+    group->call(batch_read, index);
   };
   const TextureSet alpha_textures =
       cut_out == MaterialClass::Plain ? TextureSet() : textures_of(scene, mesh, MaterialClass::BaseColor);
@@ -308,21 +328,27 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
   }
   const gpu::Shader &depth_shader = shaders_.get(device, ShaderId::Depth, mask_features(cut_out));
   call(material.is_double_sided ? data.psl->depth_pass : data.psl->depth_pass_cull, depth_shader, State::None, cut_out,
-       alpha_textures, bind_surface);
+       alpha_textures, batch, bind_surface);
   // The depth test of the lit pass is "equal": a back face at the depth of a front face of another triangle must be
   // culled.
   const State side = material.is_double_sided ? State::None : State::CullBack;
-  call(data.psl->lit_pass, lit_shader, side, surface, surface_textures, bind_surface);
+  call(data.psl->lit_pass, lit_shader, side, surface, surface_textures, batch, bind_surface);
   if (data.shared->tinted_light) {
     call(data.psl->tint_pass, shaders_.get(device, ShaderId::DebugCascades, stl.features), side, MaterialClass::Plain,
-         {}, [&data](draw::ShadingGroup &group) {
+         {}, batch, [&data](draw::ShadingGroup &group) {
            bind_lit(group, data);
            group.constant("tinted_light", *data.shared->tinted_light);
          });
   }
+  if (settings_.has_surfaces) {
+    // The program reads normals, and colours even where nothing gives light.
+    call(data.psl->surfaces_pass, shaders_.get(device, ShaderId::Surfaces, Feature::Light | feature_of(material_class)),
+         side, material_class, textures_of(scene, mesh, material_class),
+         scene_.batch(object.mesh, streams_of(material_class)), bind_surface);
+  }
   if (settings_.has_probe && has(stl.features, Feature::Light)) {
     call(data.psl->probe_pass, shaders_.get(device, ShaderId::Probe, stl.features), side, MaterialClass::Plain, {},
-         [&data](draw::ShadingGroup &group) {
+         batch, [&data](draw::ShadingGroup &group) {
            bind_lit(group, data);
            group.constant_ref("probed_light", &data.stl.probed_light);
          });

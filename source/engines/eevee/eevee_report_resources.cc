@@ -47,6 +47,11 @@ FrameNode target_nodes(const ReportSource &source)
   add(txl.radiance, "radiance", "one sample, before the pixel filter", nothing_seen);
   add(txl.probe_position, "probe_position", "asked for", source.settings.has_probe ? nothing_seen : not_asked);
   add(txl.probe_normal, "probe_normal", "asked for", source.settings.has_probe ? nothing_seen : not_asked);
+  for (const auto &[texture, name] : {std::pair(&txl.surface_position, "surface_position"),
+                                      {&txl.surface_normal, "surface_normal"},
+                                      {&txl.surface_albedo, "surface_albedo"}}) {
+    add(*texture, name, "asked for", source.settings.has_surfaces ? nothing_seen : not_asked);
+  }
   add(source.data.shadow_picture.texture(), "shadow_picture", "asked for", not_asked);
   const auto why_no_layers = [&](Feature feature) {
     return !source.has(feature)       ? why_no_feature(source, feature)

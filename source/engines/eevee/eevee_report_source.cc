@@ -100,6 +100,7 @@ std::string why_no_program(const ReportSource &source, ShaderId id)
   const std::string other_kernel = "exponential shadows use another filter";
   switch (id) {
     case ShaderId::Probe: return source.settings.has_probe ? "no lamp was probed" : "not asked for";
+    case ShaderId::Surfaces: return source.settings.has_surfaces ? nothing_seen : "not asked for";
     case ShaderId::DebugShadow: return "not asked for";
     case ShaderId::DebugCascades:
       return source.data.shared->tinted_light

@@ -44,10 +44,13 @@ void mark_world(Lamps &lamps, std::size_t first)
 }
 
 void update_world(WorldResources &resources, gpu::Device &device, const render_scene::RenderScene &scene,
-                  Feature features, int sample_count)
+                  Feature features, const Settings &settings)
 {
   using render_scene::WorldLight;
-  if (std::exchange(resources.revision, scene.world_revision()) != scene.world_revision() ||
+  const int sample_count = settings.planned_sample_count();
+  const bool is_black = !settings.light.has(LightPart::Kind::World);
+  if (std::exchange(resources.is_black, is_black) != is_black ||
+      std::exchange(resources.revision, scene.world_revision()) != scene.world_revision() ||
       std::exchange(resources.sample_count, sample_count) != sample_count || !has(features, Feature::World)) {
     resources.block = {};
     resources.levels = {};
@@ -58,7 +61,7 @@ void update_world(WorldResources &resources, gpu::Device &device, const render_s
   const WorldLight &world = *scene.world();
   if (!resources.block) {
     shared::WorldBlock block{};
-    for (std::size_t i = 0; i < world.harmonics.size(); i++) {
+    for (std::size_t i = 0; i < world.harmonics.size() && !is_black; i++) {
       block.harmonics[i] = glm::vec4(world.harmonics[i], 0.0F);
     }
     block.is_sampled = sample_count > 1 ? 1 : 0;
@@ -83,7 +86,7 @@ void update_world(WorldResources &resources, gpu::Device &device, const render_s
       std::vector<glm::vec4> texels;
       texels.reserve(levels[i].size());
       for (const glm::vec3 &texel : levels[i]) {
-        texels.emplace_back(texel, 1.0F);
+        texels.emplace_back(is_black ? glm::vec3(0.0F) : texel, 1.0F);
       }
       device.upload(resources.levels, int(i), std::as_bytes(std::span(texels)));
     }
@@ -92,8 +95,9 @@ void update_world(WorldResources &resources, gpu::Device &device, const render_s
 
 bool has_background(const Settings &settings, const render_scene::RenderScene &scene)
 {
-  return settings.background.kind == Background::Kind::Color ||
-         (settings.background.kind == Background::Kind::World && scene.scene().world());
+  return settings.light.has(LightPart::Kind::World) &&
+         (settings.background.kind == Background::Kind::Color ||
+          (settings.background.kind == Background::Kind::World && scene.scene().world()));
 }
 
 glm::vec3 background_color(const Settings &settings, const render_scene::RenderScene &scene)

@@ -34,6 +34,8 @@ struct WorldResources {
   /** RenderScene::world_revision from which `block` and `levels` were made. */
   std::uint64_t revision = 0;
   int sample_count = 0;
+  /** The light of the world is left out: `block` and `levels` hold black. */
+  bool is_black = false;
   /** The picture of the background, rows from the bottom. */
   gpu::Texture picture;
   gpu::Sampler picture_sampler;
@@ -42,11 +44,11 @@ struct WorldResources {
 };
 
 /**
- * Create the resources of the scene's world that \a features need, and free the others. \a sample_count: samples for
- * each pixel. \pre with Feature::World, the scene has a world
+ * Create the resources of the scene's world that \a features need, and free the others.
+ * \pre with Feature::World, the scene has a world
  */
 void update_world(WorldResources &resources, gpu::Device &device, const render_scene::RenderScene &scene,
-                  Feature features, int sample_count);
+                  Feature features, const Settings &settings);
 
 /** Whether pixels without a surface show a background. */
 [[nodiscard]] bool has_background(const Settings &settings, const render_scene::RenderScene &scene);

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "eevee_scene_renderer.hh"
+
+#include <utility>
+
+/**
+ * Layers of a picture for compositing: parts of its light, and what its surfaces are. They are rendered after the
+ * picture, from the same samples with the same pixel filter, so that they fit it at edges. Blended surfaces have light,
+ * but are no surfaces here: the opaque surface behind them is.
+ */
+namespace gnomon::eevee {
+
+/** Layers that render_surface_layers makes. */
+struct SurfaceRequest {
+  /** SurfaceLayers::position_depth and normal. */
+  bool has_centers = false;
+  /** SurfaceLayers::albedo_roughness. */
+  bool has_means = false;
+  /** SurfaceLayers::objects. */
+  bool has_objects = false;
+  /** Indices in RenderScene::lamps. */
+  std::vector<std::size_t> visible_lamps{};
+};
+
+/** An object, and the part of a pixel that it covers. */
+using Coverage = std::pair<draw::ObjectIndex, float>;
+
+/** One entry for each pixel, rows from the bottom. Layers that were not asked for are empty. */
+struct SurfaceLayers {
+  /** Surfaces::position_depth and normal_object at the centre of the pixel: no mean of two surfaces is on either. */
+  std::vector<glm::vec4> position_depth;
+  std::vector<glm::vec4> normal;
+  /** Surfaces::albedo_roughness, filtered as the picture is: multiplied by the coverage of the pixel. */
+  std::vector<glm::vec4> albedo_roughness;
+  /** The objects that cover the pixel, in no order. */
+  std::vector<std::vector<Coverage>> objects;
+  /** Visibility of each of SurfaceRequest::visible_lamps, filtered and multiplied by the coverage likewise. */
+  std::vector<std::vector<float>> visibilities;
+};
+
+/**
+ * The picture of \a camera with a part of its light. \a sample_count: samples of the picture.
+ * Afterwards, the renderer is synced with its settings, and its picture begins anew. So are the next function's.
+ */
+[[nodiscard]] std::vector<glm::vec4> render_light_layer(SceneRenderer &renderer, const scene::PlacedCamera &camera,
+                                                        int sample_count, const LightPart &light);
+
+[[nodiscard]] SurfaceLayers render_surface_layers(SceneRenderer &renderer, const scene::PlacedCamera &camera,
+                                                  int sample_count, const SurfaceRequest &request);
+
+}  // namespace gnomon::eevee

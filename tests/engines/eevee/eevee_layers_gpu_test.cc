@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+// Layers of pictures: parts of the light sum to the whole, and surfaces are where they are.
+#include "eevee_layers.hh"
+#include "eevee_test_scene.hh"
+#include "gpu_device_fixture.hh"
+
+#include "scene_studio.hh"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace gnomon::eevee {
+namespace {
+
+using Pixels = std::vector<glm::vec4>;
+using Kind = LightPart::Kind;
+
+constexpr glm::ivec2 size_px(28, 20);
+
+double rms(const Pixels &pixels)
+{
+  double sum = 0.0;
+  for (const glm::vec4 &pixel : pixels) {
+    sum += double(glm::dot(glm::vec3(pixel), glm::vec3(pixel)));
+  }
+  return std::sqrt(sum / (3.0 * double(pixels.size())));
+}
+
+Pixels sum_of(const Pixels &a, const Pixels &b, float factor = 1.0F)
+{
+  Pixels sum = a;
+  std::ranges::transform(a, b, sum.begin(), [&](const glm::vec4 &x, const glm::vec4 &y) { return x + factor * y; });
+  return sum;
+}
+
+class LayersGpuTest : public test::GpuDeviceTest {
+ protected:
+  LayersGpuTest()
+  {
+    ground = test::add_material(scene, {0.8F, 0.5F, 0.2F});
+    test::edit_material(scene, 0, [](scene::Material &material) {
+      material.specular_color = glm::vec3(1.0F);
+      material.roughness = 0.3F;
+    });
+    test::add_object(scene, test::add_square_mesh(scene, ground), glm::scale(glm::dmat4(1), glm::dvec3(2)));
+    metal = test::add_material(scene, {0.9F, 0.9F, 0.4F});
+    scene.edit(metal, [&](scene::Material &material) {
+      material.metallic = 1.0F;
+      material.roughness = 0.5F;
+      material.emissive = {0.1F, 0.0F, 0.2F};
+      material.base_color_texture.texture = test::add_texture(scene, 2, std::vector<std::uint8_t>(16, 128));
+    });
+    test::add_object(scene, test::add_box_mesh(scene, metal),
+                     glm::scale(glm::translate(glm::dmat4(1), {0.3, 0, 0.5}), glm::dvec3(0.5)));
+    test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 2}, {0.7F, -0.3F, -1}, 1.0F);
+    scene::Lamp area;
+    area.name = "area";
+    area.kind = scene::LampKind::Area;
+    area.intensity = 20.0F;
+    test::add_lamp(scene, area, glm::translate(glm::dmat4(1), {-1, 0, 3}));
+  }
+  /** Things that only light needs: what is blended, unlit, and a world with suns. */
+  void add_more_light()
+  {
+    const auto glass = test::add_material(scene, glm::vec3(0.4F));
+    scene.edit(glass, [](scene::Material &material) {
+      material.emissive = {0.0F, 0.3F, 0.0F};
+      material.alpha_mode = scene::AlphaMode::Blend;
+      material.alpha = 0.4F;
+    });
+    test::add_object(scene, test::add_square_mesh(scene, glass),
+                     glm::scale(glm::translate(glm::dmat4(1), {-0.5, -0.5, 1.2}), glm::dvec3(0.7)));
+    const auto unlit = test::add_material(scene, {0.2F, 0.3F, 0.9F});
+    scene.edit(unlit, [](scene::Material &material) { material.is_unlit = true; });
+    test::add_object(scene, test::add_box_mesh(scene, unlit),
+                     glm::scale(glm::translate(glm::dmat4(1), {-1.2, 0.8, 0.2}), glm::dvec3(0.2)));
+    scene.set_world(scene::studio_world(camera.world_from_camera));
+  }
+
+  scene::Scene scene;
+  scene::Handle<scene::Material> ground;
+  scene::Handle<scene::Material> metal;
+  scene::PlacedCamera camera = test::camera_at({0, -5, 4}, {0, 0, 0}, 0.6F);
+};
+
+TEST_F(LayersGpuTest, PartsOfTheLightSumToThePicture)
+{
+  add_more_light();
+  // 0: a picture without a known number of samples, of which 3 are drawn.
+  for (const int sample_count : {1, 4, 0}) {
+    const int drawn = sample_count == 0 ? 3 : sample_count;
+    Settings settings{.shadow = {.cube_size_px = 64, .map_size_px = 128}, .sample_count = sample_count, .seed = 5};
+    settings.background.kind = Background::Kind::World;
+    SceneRenderer renderer(*device, scene, size_px, settings);
+    renderer.sync();
+    renderer.draw(camera, {.progress = [&](int samples) { return samples < drawn; }});
+    const Pixels whole = renderer.read_picture();
+    Pixels sum(whole.size(), glm::vec4(0.0F));
+    for (const LightPart &part :
+         {LightPart{Kind::Lamp, 0}, LightPart{Kind::Lamp, 1}, LightPart{Kind::Emission}, LightPart{Kind::World}}) {
+      const Pixels layer = render_light_layer(renderer, camera, drawn, part);
+      EXPECT_GT(rms(layer), 0.01 * rms(whole)) << int(part.kind) << ' ' << part.lamp;
+      EXPECT_LT(rms(layer), 0.995 * rms(whole)) << int(part.kind) << ' ' << part.lamp;
+      sum = sum_of(sum, layer);
+    }
+    EXPECT_LE(rms(sum_of(sum, whole, -1.0F)), 1e-5 * rms(whole)) << sample_count << " samples";
+    renderer.draw(camera, {.progress = [&](int samples) { return samples < drawn; }});
+    EXPECT_EQ(renderer.read_picture(), whole) << "the layers leave the renderer as it was";
+  }
+}
+
+TEST_F(LayersGpuTest, ALampsLightIsThePictureOfTheSceneWithThatLampAlone)
+{
+  const Settings settings{.shadow = {.map_size_px = 128}, .sample_count = 4};
+  SceneRenderer renderer(*device, scene, size_px, settings);
+  renderer.sync();
+  renderer.draw(camera);
+  const Pixels layer = render_light_layer(renderer, camera, 4, {Kind::Lamp, 0});
+  test::remove_lamps(scene, [](const scene::Lamp &lamp) { return lamp.name == "area"; });
+  scene.edit(metal, [](scene::Material &material) { material.emissive = glm::vec3(0.0F); });
+  SceneRenderer alone(*device, scene, size_px, settings);
+  alone.sync();
+  alone.draw(camera);
+  EXPECT_LE(rms(sum_of(layer, alone.read_picture(), -1.0F)), 1e-6);
+}
+
+TEST_F(LayersGpuTest, SurfacesAreWhereTheyAreAndCoverWhatThePictureCovers)
+{
+  const Settings settings{.shadow = {.cube_size_px = 64, .map_size_px = 128}, .sample_count = 8};
+  SceneRenderer renderer(*device, scene, size_px, settings);
+  renderer.sync();
+  renderer.draw(camera);
+  const Pixels picture = renderer.read_picture();
+  const SurfaceLayers layers = render_surface_layers(
+      renderer, camera, 8, {.has_centers = true, .has_means = true, .has_objects = true, .visible_lamps = {0}});
+  const draw::View view = renderer.view_of(camera);
+  const glm::vec3 eye(0, -5, 4);
+  const glm::vec3 axis = glm::normalize(-eye);
+  int boxes = 0;
+  int shadows = 0;
+  for (int i = 0; i < size_px.x * size_px.y; i++) {
+    const auto pixel = std::size_t(i);
+    float coverage = 0.0F;
+    glm::vec4 expected(0.0F);
+    for (const auto &[object, share] : layers.objects[pixel]) {
+      coverage += share;
+      // The texture's texels are 128 of 255 in sRGB.
+      expected += share * (object == 1 ? glm::vec4(0.8F, 0.5F, 0.2F, 0.3F)
+                                       : glm::vec4(glm::vec3(0.9F, 0.9F, 0.4F) * 0.21586F, 0.5F));
+    }
+    const glm::ivec2 place(i % size_px.x, i / size_px.x);
+    const bool is_rim = place.x == 0 || place.y == 0 || place.x == size_px.x - 1 || place.y == size_px.y - 1;
+    if (!is_rim) {
+      EXPECT_NEAR(coverage, picture[pixel].a, 1e-5F) << i;
+    }
+    for (int c = 0; c < 4; c++) {
+      EXPECT_NEAR(layers.albedo_roughness[pixel][c], expected[c], 5e-3F * expected[c] + 1e-6F)
+          << i << ": the driver decodes sRGB by a table";
+    }
+    EXPECT_GE(layers.visibilities[0][pixel], 0.0F);
+    EXPECT_LE(layers.visibilities[0][pixel], coverage + 1e-5F);
+
+    const glm::vec4 &normal = layers.normal[pixel];
+    const glm::vec3 position(layers.position_depth[pixel]);
+    if (normal.w == 0.0F) {
+      EXPECT_EQ(layers.position_depth[pixel], glm::vec4(0.0F));
+      continue;
+    }
+    EXPECT_NEAR(layers.position_depth[pixel].w, glm::dot(axis, position - eye), 1e-5F);
+    const glm::vec4 clip = view.clip_from_world() * glm::vec4(position, 1.0F);
+    const glm::vec2 seen_px = (0.5F * glm::vec2(clip) / clip.w + 0.5F) * glm::vec2(size_px);
+    EXPECT_NEAR(seen_px.x, float(place.x) + 0.5F, 1e-3F);
+    EXPECT_NEAR(seen_px.y, float(place.y) + 0.5F, 1e-3F);
+    if (normal.w == 1.0F) {
+      EXPECT_NEAR(position.z, 0.0F, 1e-5F);
+      EXPECT_EQ(glm::vec3(normal), glm::vec3(0, 0, 1));
+      shadows += layers.visibilities[0][pixel] < 0.01F;
+    }
+    else {
+      boxes++;
+      const glm::vec3 from_center = glm::abs(position - glm::vec3(0.3F, 0.0F, 0.5F)) * 2.0F;
+      EXPECT_NEAR(std::max({from_center.x, from_center.y, from_center.z}), 1.0F, 1e-4F);
+    }
+  }
+  EXPECT_GT(boxes, 20);
+  EXPECT_GT(shadows, 2);
+}
+
+}  // namespace
+}  // namespace gnomon::eevee
