@@ -3,7 +3,7 @@
 
 #include "cli_picture.hh"
 
-#include "eevee_layers.hh"
+#include "eevee_picture_layers.hh"
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "eevee_layers.hh"
+#include "eevee_picture_layers.hh"
 
 #include "eevee_camera.hh"
 #include "eevee_film.hh"

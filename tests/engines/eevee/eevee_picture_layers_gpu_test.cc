@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Layers of pictures: parts of the light sum to the whole, and surfaces are where they are.
-#include "eevee_layers.hh"
+#include "eevee_picture_layers.hh"
 #include "eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
 
@@ -36,9 +36,9 @@ Pixels sum_of(const Pixels &a, const Pixels &b, float factor = 1.0F)
   return sum;
 }
 
-class LayersGpuTest : public test::GpuDeviceTest {
+class PictureLayersGpuTest : public test::GpuDeviceTest {
  protected:
-  LayersGpuTest()
+  PictureLayersGpuTest()
   {
     ground = test::add_material(scene, {0.8F, 0.5F, 0.2F});
     test::edit_material(scene, 0, [](scene::Material &material) {
@@ -86,7 +86,7 @@ class LayersGpuTest : public test::GpuDeviceTest {
   scene::PlacedCamera camera = test::camera_at({0, -5, 4}, {0, 0, 0}, 0.6F);
 };
 
-TEST_F(LayersGpuTest, PartsOfTheLightSumToThePicture)
+TEST_F(PictureLayersGpuTest, PartsOfTheLightSumToThePicture)
 {
   add_more_light();
   // 0: a picture without a known number of samples, of which 3 are drawn.
@@ -112,7 +112,7 @@ TEST_F(LayersGpuTest, PartsOfTheLightSumToThePicture)
   }
 }
 
-TEST_F(LayersGpuTest, ALampsLightIsThePictureOfTheSceneWithThatLampAlone)
+TEST_F(PictureLayersGpuTest, ALampsLightIsThePictureOfTheSceneWithThatLampAlone)
 {
   const Settings settings{.shadow = {.map_size_px = 128}, .sample_count = 4};
   SceneRenderer renderer(*device, scene, size_px, settings);
@@ -127,7 +127,7 @@ TEST_F(LayersGpuTest, ALampsLightIsThePictureOfTheSceneWithThatLampAlone)
   EXPECT_LE(rms(sum_of(layer, alone.read_picture(), -1.0F)), 1e-6);
 }
 
-TEST_F(LayersGpuTest, SurfacesAreWhereTheyAreAndCoverWhatThePictureCovers)
+TEST_F(PictureLayersGpuTest, SurfacesAreWhereTheyAreAndCoverWhatThePictureCovers)
 {
   const Settings settings{.shadow = {.cube_size_px = 64, .map_size_px = 128}, .sample_count = 8};
   SceneRenderer renderer(*device, scene, size_px, settings);
