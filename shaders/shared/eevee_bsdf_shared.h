@@ -37,7 +37,7 @@ SHARED_FUNCTION float ggx_lobe(float cos_l, float cos_v, float cos_h, float alph
   return ggx_distribution(cos_h, alpha) * ggx_masking_over_2cos(cos_l, alpha) * ggx_masking_over_2cos(cos_v, alpha);
 }
 
-/** Least alpha of sheen. For a smaller one, nearly all of the lobe is below the directions that pixels resolve. */
+/** Least alpha of sheen. For a smaller one, nearly all of the lobe lies at grazing angles that pixels do not resolve. */
 SHARED_CONSTANT float SHEEN_ALPHA_MIN = 5e-3f;
 
 /** Distribution of the normals of fibres, 1/sr (Estevez and Kulla 2017, eq. 2). \a alpha: in [SHEEN_ALPHA_MIN, 1]. */

@@ -127,6 +127,11 @@ void Aov::check(const scene::Scene &scene) const
   const std::vector<scene::PlacedLamp> lamps = scene.placed_lamps();
   for (const std::string_view layer : lamp_names) {
     for (const std::string &name : lamps_of(std::string(layer), lamps)) {
+      // OpenEXR cuts longer names off. A dot, a dot and a letter are added.
+      if (layer.size() + name.size() + 3 > 255) {
+        throw std::runtime_error(fmt::format("{}: --aov {}: the name of lamp '{}' is too long for a channel of an EXR",
+                                             scene.path, layer, name));
+      }
       const std::size_t count = lamps_named(lamps, name).size();
       if (count == 0) {
         std::set<std::string> names;
@@ -149,15 +154,22 @@ std::vector<std::string> Aov::warnings(const scene::Scene &scene) const
   std::ranges::copy_if(names_, std::back_inserter(layers), [](const std::string &name) {
     return std::ranges::find(surface_names, layer_kind(name)) != surface_names.end();
   });
-  bool has_blended = false;
-  for (const auto &[handle, mesh] : scene.meshes()) {
-    has_blended |= render_scene::is_blended(scene, mesh);
+  const bool has_blended = std::ranges::any_of(scene.objects(), [&](const scene::Object &object) {
+    const scene::Mesh &mesh = scene.meshes()[object.mesh];
+    return render_scene::is_blended(scene, mesh) && render_scene::is_drawable(scene.material_of(mesh));
+  });
+  std::vector<std::string> warnings;
+  if (!layers.empty() && has_blended) {
+    warnings.push_back(
+        fmt::format("--aov {}: blended surfaces are not in these layers; the opaque surface behind them is",
+                    fmt::join(layers, ",")));
   }
-  if (layers.empty() || !has_blended) {
-    return {};
+  for (const char *name : {"light", "visibility"}) {
+    if (has(name) && scene.placed_lamps().empty()) {
+      warnings.push_back(fmt::format("--aov {}: the scene has no lamps, so there are no such layers", name));
+    }
   }
-  return {fmt::format("--aov {}: blended surfaces are not in these layers; the opaque surface behind them is",
-                      fmt::join(layers, ","))};
+  return warnings;
 }
 
 void Aov::add_light(eevee::SceneRenderer &renderer, const scene::PlacedCamera &camera, int sample_count,

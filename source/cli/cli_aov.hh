@@ -26,7 +26,8 @@ class Aov {
   {
     return names_.empty();
   }
-  /** \throws std::runtime_error that lists the lamps of \a scene if a layer names another, or one name for several. */
+  /** \throws std::runtime_error that lists the lamps of \a scene if a layer names a lamp that is not there, or a
+   * visibility layer a name that several lamps have. */
   void check(const scene::Scene &scene) const;
   /** Warnings about things in \a scene that the layers do not show. */
   [[nodiscard]] std::vector<std::string> warnings(const scene::Scene &scene) const;

@@ -241,27 +241,31 @@ Status render_sequence(RenderOptions options, const FrameSequence &frames, const
       renderer.sync();
     }
     render_frames(options, camera, renderer, display, result);
-    const Clock::time_point output_start = Clock::now();
     // Also called for the null backend, because shadow_picture reports layers that do not exist.
     const gpu::Texture *shadow = nullptr;
     if (options.is_shadow_shown()) {
       shadow = &shadow_picture(options.debug_view, scene, renderer.inspect());
     }
+    if (!aov.empty()) {
+      // The layers draw other pictures.
+      result.report = renderer.inspect().report();
+    }
+    const Clock::time_point output_start = Clock::now();
+    double layer_seconds = 0.0;
     if (options.has_picture()) {
       const gpu::Rectangle region = renderer.viewport().region();
       const glm::ivec2 written_px = shadow ? glm::ivec2(shadow->desc().width, shadow->desc().height) : region.size_px;
       const std::vector<glm::vec4> picture =
           shadow ? gpu::read_as<glm::vec4>(device, *shadow) : gpu::cropped(renderer.read_picture(), size_px.x, region);
       const double sample_share = renderer.engine().sample_share(renderer.viewport());
-      if (!aov.empty()) {
-        // The report is that of the picture, not that of the layers.
-        result.report = renderer.inspect().report();
-      }
-      status =
-          write_picture(options, camera, device, picture, written_px, display, alpha_of(options, renderer),
-                        aov.render(renderer, camera, result.samples_drawn), sample_share, frames.metadata(i), result);
+      const Clock::time_point layers_start = Clock::now();
+      const AovLayers layers = aov.render(renderer, camera, result.samples_drawn);
+      layer_seconds = seconds_since(layers_start);
+      status = write_picture(options, camera, device, picture, written_px, display, alpha_of(options, renderer), layers,
+                             sample_share, frames.metadata(i), result);
     }
-    result.output_seconds += seconds_since(output_start);
+    result.layer_seconds += layer_seconds;
+    result.output_seconds += seconds_since(output_start) - layer_seconds;
     frames.show_progress(i, ++rendered_count, seconds_since(start));
   }
   return status;

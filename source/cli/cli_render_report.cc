@@ -49,6 +49,7 @@ nlohmann::json to_json(const RenderOptions &options, const scene::Scene &scene, 
           {"frame_seconds", result.frame_seconds},
           {"frames", frames},
           {"skipped_frames", result.skipped_frame_count},
+          {"layer_seconds", result.layer_seconds},
           {"output_seconds", result.output_seconds},
           {"total_seconds", result.total_seconds},
           {"non_finite", result.non_finite_count},
@@ -83,6 +84,9 @@ void print_summary(const RenderOptions &options, const RenderResult &result)
     std::vector<double> warm(result.frame_seconds.begin() + 1, result.frame_seconds.end());
     std::ranges::sort(warm);
     fmt::print(", warm frame {:.1f} ms (median of {})", 1e3 * warm[warm.size() / 2], warm.size());
+  }
+  if (!options.aov.empty()) {
+    fmt::print(", layers {:.1f} ms", 1e3 * result.layer_seconds);
   }
   fmt::print(", output {:.1f} ms, all {:.1f} ms\n", 1e3 * result.output_seconds, 1e3 * result.total_seconds);
   if (result.skipped_frame_count > 0) {

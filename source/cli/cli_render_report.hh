@@ -23,6 +23,8 @@ struct RenderResult {
   std::vector<eevee::ShadowCounters> frame_shadows;
   /** Number of frames that --resume skipped. */
   int skipped_frame_count = 0;
+  /** Of the layers of --aov. */
+  double layer_seconds = 0.0;
   double output_seconds = 0.0;
   double total_seconds = 0.0;
   std::size_t non_finite_count = 0;

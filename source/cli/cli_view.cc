@@ -23,7 +23,7 @@ void add_view(CLI::App &app)
       write_png(path, size_px, rgba, {});
     };
     o->writers.exr = [](const auto &path, glm::ivec2 size_px, std::span<const float> rgba) {
-      write_exr(path, size_px, rgba, {{"gnomon:units", "scene-linear radiance, W/(sr m^2)"}});
+      write_exr(path, size_px, rgba, {{"gnomon:units", "scene-linear radiance, W/(sr m^2)"}}, Alpha::Written);
     };
     view::run(*o);
   });

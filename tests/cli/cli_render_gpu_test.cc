@@ -125,6 +125,48 @@ std::vector<float> values_of(const std::filesystem::path &path)
   return values;
 }
 
+TEST_F(CliRenderTest, LayersAreThoseOfThePicture)
+{
+  const Finished finished = run("render " + example("plaza") +
+                                " --size 32x18 --samples 2 --world 0.1,0.2,0.3 --background world -o out.exr --aov "
+                                "light,world,emission,depth,position,normal,albedo,roughness,visibility,crypto_object,"
+                                "crypto_material");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const auto input = OIIO::ImageInput::open((folder / "out.exr").string());
+  ASSERT_TRUE(input);
+  const OIIO::ImageSpec &spec = input->spec();
+  const std::vector<float> values = values_of(folder / "out.exr");
+  const auto at = [&](const std::string &channel, std::size_t pixel) {
+    EXPECT_GE(spec.channelindex(channel), 0) << channel;
+    return values[pixel * std::size_t(spec.nchannels) + std::size_t(std::max(spec.channelindex(channel), 0))];
+  };
+  std::vector<std::string> lights;
+  for (const std::string &name : spec.channelnames) {
+    if (name.ends_with(".R") && (name.starts_with("light.") || name == "world.R" || name == "emission.R")) {
+      lights.push_back(name);
+    }
+  }
+  ASSERT_GE(lights.size(), 4U);
+  int sky_count = 0;
+  for (std::size_t pixel = 0; pixel < std::size_t(32) * 18; pixel++) {
+    float sum = 0.0F;
+    for (const std::string &name : lights) {
+      sum += at(name, pixel);
+    }
+    EXPECT_NEAR(at("R", pixel), sum, 1e-5F * sum) << pixel;
+    const bool is_sky = at("normal.X", pixel) == 0.0F && at("normal.Y", pixel) == 0.0F && at("normal.Z", pixel) == 0.0F;
+    sky_count += is_sky ? 1 : 0;
+    EXPECT_EQ(at("depth.Z", pixel) == 1e10F, is_sky) << pixel;
+    // The largest coverage of a pixel is the first, and all of them are at most 1.
+    const float first = at("CryptoObject00.G", pixel);
+    const float second = at("CryptoObject00.A", pixel);
+    EXPECT_GE(first, second);
+    EXPECT_LE(first + second, 1.0F + 1e-5F);
+  }
+  EXPECT_GT(sky_count, 2);
+  EXPECT_LT(sky_count, 16 * 18);
+}
+
 TEST_F(CliRenderTest, ATimeLimitKeepsTheLimitOfSamples)
 {
   const std::string render = "render " + example("plaza") + " --size 16x8 --time-limit 100 --json out.json -o out.exr";

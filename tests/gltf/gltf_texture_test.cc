@@ -105,11 +105,16 @@ TEST(GltfImage, GlossinessIsConvertedToRoughness)
   EXPECT_EQ(texels_of(converted.metallic_roughness_texture),
             (Bytes{0, 128, 0, 255, 0, 191, 0, 255, 0, 223, 0, 255, 0, 255, 0, 255}));
   EXPECT_EQ(scene.images().size(), 2U);
-  builder.document["images"][0]["uri"] = "missing.png";
-  const Scene damaged = import(builder);
-  EXPECT_WARNING(damaged, "material 'paint': its metallicRoughnessTexture is drawn as no metal");
-  EXPECT_WARNING(damaged, "material 'paint': its specularColorTexture is drawn as the factor alone");
-  EXPECT_EQ(nth(damaged.materials(), 0).roughness, 0.5F) << "the factor's";
+  // A file that is not there, and one whose header is whole and whose texels are not.
+  Bytes cut = four_texel_png();
+  cut.resize(cut.size() - 20);
+  for (const std::string &uri : {std::string("missing.png"), data_uri(cut)}) {
+    builder.document["images"][0]["uri"] = uri;
+    const Scene damaged = import(builder);
+    EXPECT_WARNING(damaged, "material 'paint': its metallicRoughnessTexture is drawn as no metal");
+    EXPECT_WARNING(damaged, "material 'paint': its specularColorTexture is drawn as the factor alone");
+    EXPECT_EQ(nth(damaged.materials(), 0).roughness, 0.5F) << "the factor's";
+  }
 }
 
 TEST(GltfImage, MayBeInABufferView)

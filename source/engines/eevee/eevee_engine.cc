@@ -186,8 +186,8 @@ void Engine::begin_draw(draw::Viewport &viewport)
 void Engine::update_view(Data &data, const draw::View &view)
 {
   data.stl.object_block = data.shared->object_block = {scene_.objects().buffer().id()};
-  const render_scene::MaterialTable &materials =
-      settings_.light.has(LightPart::Kind::Emission) ? scene_.materials() : *data.shared->materials_without_emission;
+  const std::optional<render_scene::MaterialTable> &dark = data.shared->materials_without_emission;
+  const render_scene::MaterialTable &materials = dark ? *dark : scene_.materials();
   data.stl.material_block = data.shared->material_block = {materials.buffer().id()};
   data.stl.full_material_block = data.shared->full_material_block = {materials.full_buffer().id()};
   data.stl.layer_block = {materials.layer_buffer().id()};

@@ -32,7 +32,7 @@ enum class Feature : std::uint32_t {
   ShadowEvsm = 1U << 9,
   /** At least one lamp with an extent is shaded as a whole (LampShading::Whole), or a spot has an elliptical cone. */
   LampShape = 1U << 10,
-  /** Per material: its class is render_scene::MaterialClass::Full. Excludes BaseColorTexture. */
+  /** Per material: its class is render_scene::MaterialClass::Full or Layered. Excludes BaseColorTexture. */
   FullMaterial = 1U << 11,
   /** The target of the picture has a depth buffer that the engine writes. */
   TargetDepth = 1U << 12,
@@ -66,7 +66,7 @@ constexpr Feature without_shadows(Feature features)
   return Feature(std::uint32_t(features) & ~std::uint32_t(any_shadow | Feature::ShadowPcf | Feature::ShadowEvsm));
 }
 
-/** \a features without those of single materials that lie over others. */
+/** \a features without Feature::Layers, which belongs to single materials. */
 constexpr Feature without_layers(Feature features)
 {
   return Feature(std::uint32_t(features) & ~std::uint32_t(Feature::Layers));

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_inspection.hh"
 
+#include "eevee_camera.hh"
 #include "eevee_engine_data.hh"
+#include "eevee_film.hh"
 #include "eevee_frame.hh"
 
 #include "gpu_read.hh"
@@ -48,6 +50,18 @@ static std::vector<glm::vec4> read_picture(const draw::Viewport &viewport, const
                       {viewport.guard_px(), viewport.size_px()});
 }
 
+/** The view of the \a sample-th sample of the picture, whose index \a data gets. Without it, \a drawn_view. */
+static draw::View view_of_sample(Data &data, const draw::Viewport &viewport, const Settings &settings,
+                                 const draw::View &drawn_view, std::optional<int> sample)
+{
+  if (!sample) {
+    return drawn_view;
+  }
+  data.sample_index = *sample;
+  return with_sample_offset(drawn_view, film_offset_px(*sample, settings.sample_count, settings.seed),
+                            viewport.drawn_size_px());
+}
+
 std::optional<Probe> Inspection::probe(const draw::View &picture_view, std::size_t lamp,
                                        std::optional<int> sample) const
 {
@@ -62,8 +76,9 @@ std::optional<Probe> Inspection::probe(const draw::View &picture_view, std::size
   engine_.record(viewport_);
   gpu::Device &device = viewport_.device();
   const draw::View view = viewport_.drawn_view(picture_view);
+  const draw::View sample_view = view_of_sample(data, viewport_, engine_.settings_, view, sample);
   stl.probed_light = int(*light);
-  engine_.update_view(data, view);
+  engine_.update_view(data, sample_view);
   gpu::CommandList list;
   SharedData &shared = *data.shared;
   if (sample) {
@@ -74,14 +89,16 @@ std::optional<Probe> Inspection::probe(const draw::View &picture_view, std::size
   stl.lamp_points =
       sample ? shared.lamp_points.sample(std::uint32_t(*sample), engine_.settings_.seed) : shared.lamp_points.centers();
   write_lamp_points(data, list);
-  stl.shadows->update(device, view, pixel_size(view, viewport_), shared.shadow_pass, list, stl.lamp_points);
-  record_at_depths(data, view, "probe", data.psl->probe_pass, data.fbl.probe_fb, list);
+  const std::span<const float> depths =
+      sample ? std::span<const float>(data.depth_feedback.depths) : std::span<const float>();
+  stl.shadows->update(device, view, pixel_size(view, viewport_), shared.shadow_pass, list, stl.lamp_points, depths);
+  record_at_depths(data, sample_view, "probe", data.psl->probe_pass, data.fbl.probe_fb, list);
   device.submit(list);
   stl.shadows->submitted();
   return Probe{read_picture(viewport_, data.txl.probe_position), read_picture(viewport_, data.txl.probe_normal)};
 }
 
-std::optional<Surfaces> Inspection::surfaces(const draw::View &picture_view) const
+std::optional<Surfaces> Inspection::surfaces(const draw::View &picture_view, std::optional<int> sample) const
 {
   GNOMON_ASSERT(engine_.settings_.has_surfaces, "the settings ask for no surfaces");
   Data &data = engine_data();
@@ -90,7 +107,8 @@ std::optional<Surfaces> Inspection::surfaces(const draw::View &picture_view) con
     return std::nullopt;
   }
   engine_.record(viewport_);
-  const draw::View view = viewport_.drawn_view(picture_view);
+  const draw::View view =
+      view_of_sample(data, viewport_, engine_.settings_, viewport_.drawn_view(picture_view), sample);
   engine_.update_view(data, view);
   gpu::Device &device = viewport_.device();
   gpu::CommandList list;

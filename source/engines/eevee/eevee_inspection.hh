@@ -68,13 +68,17 @@ class Inspection {
   [[nodiscard]] std::string serialize_passes() const;
   /**
    * Positions, normals and the visibility of the \a lamp-th lamp of RenderScene::lamps at each pixel. Empty where the
-   * lamp gives no light, or there are no objects. \a sample: sees the point of a lamp with an extent that this sample
-   * of the picture sees, and the centre without it, or if the picture has one sample. \pre Settings::has_probe
+   * lamp gives no light, or there are no objects. \a sample: at the positions and with the points of lamps of this
+   * sample of the picture; without it, at the centres of pixels and with the centres of lamps. \pre Settings::has_probe
    */
   [[nodiscard]] std::optional<Probe> probe(const draw::View &picture_view, std::size_t lamp,
                                            std::optional<int> sample = std::nullopt) const;
-  /** The opaque surfaces that \a picture_view sees. Empty if there are no objects. \pre Settings::has_surfaces */
-  [[nodiscard]] std::optional<Surfaces> surfaces(const draw::View &picture_view) const;
+  /**
+   * The opaque surfaces that \a picture_view sees. Empty if there are no objects. \a sample: at the positions of this
+   * sample of the picture; without it, at the centres of pixels. \pre Settings::has_surfaces
+   */
+  [[nodiscard]] std::optional<Surfaces> surfaces(const draw::View &picture_view,
+                                                 std::optional<int> sample = std::nullopt) const;
   /** The shadow layers after the last draw. \pre the viewport was synced */
   [[nodiscard]] const Shadows &shadows() const;
   /** Counters of the shadow layers that this viewport drew. Viewports share layers. \pre the viewport was synced */

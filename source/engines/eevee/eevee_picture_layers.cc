@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_picture_layers.hh"
 
-#include "eevee_camera.hh"
 #include "eevee_film.hh"
 
 #include <glm/common.hpp>
@@ -18,7 +17,6 @@ class OtherSettings {
   OtherSettings(SceneRenderer &renderer, const Settings &settings) : renderer_(renderer), own_(renderer.settings())
   {
     renderer_.set_settings(settings);
-    renderer_.sync();
   }
   OtherSettings(const OtherSettings &) = delete;
   OtherSettings &operator=(const OtherSettings &) = delete;
@@ -74,6 +72,7 @@ std::vector<glm::vec4> render_light_layer(SceneRenderer &renderer, const scene::
   std::vector<glm::vec4> picture;
   {
     const OtherSettings other(renderer, settings);
+    renderer.sync();
     renderer.draw(camera, {.progress = [&](int samples_drawn) { return samples_drawn < sample_count; }});
     picture = renderer.read_picture();
   }
@@ -88,12 +87,10 @@ static void add_sample(SceneRenderer &renderer, const draw::View &view, int samp
   const Settings &settings = renderer.settings();
   const glm::ivec2 size_px = renderer.viewport().size_px();
   const Inspection inspection = renderer.inspect();
-  const glm::vec2 offset_px = film_offset_px(sample, settings.sample_count, settings.seed);
-  const draw::View sample_view = with_sample_offset(view, offset_px, size_px);
   const FilmWeights weights = film_weights(sample, settings.sample_count, settings.seed, weight_sum);
   for (std::size_t i = 0; i < request.visible_lamps.size(); i++) {
     std::vector<float> &sum = layers.visibilities[i];
-    if (const std::optional<Probe> probe = inspection.probe(sample_view, request.visible_lamps[i], sample)) {
+    if (const std::optional<Probe> probe = inspection.probe(view, request.visible_lamps[i], sample)) {
       for_each_weight(size_px, weights, [&](std::size_t pixel, std::size_t neighbour, float weight) {
         sum[pixel] += weight * probe->position_visibility[neighbour].w;
       });
@@ -102,7 +99,7 @@ static void add_sample(SceneRenderer &renderer, const draw::View &view, int samp
   if (!request.has_means && !request.has_objects) {
     return;
   }
-  const std::optional<Surfaces> surfaces = inspection.surfaces(sample_view);
+  const std::optional<Surfaces> surfaces = inspection.surfaces(view, sample);
   if (!surfaces) {
     return;
   }
@@ -126,6 +123,7 @@ SurfaceLayers render_surface_layers(SceneRenderer &renderer, const scene::Placed
   SurfaceLayers layers;
   {
     const OtherSettings other(renderer, settings);
+    renderer.sync();
     // The origin of the render scene follows the camera with the first sample.
     renderer.draw_sample(camera);
     const draw::View view = renderer.view_of(camera);

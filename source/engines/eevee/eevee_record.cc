@@ -294,9 +294,9 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
   const scene::Material &material = scene.material_of(mesh);
   const MaterialClass cut_out = render_scene::mask_class(scene, mesh);
   const MaterialClass material_class = render_scene::material_class(scene, mesh);
-  // Without light, the base colour has no effect on an opaque surface.
+  // Without light, the base colour has no effect on an opaque surface, except in Inspection::surfaces.
   const bool is_colorless = material_class == MaterialClass::BaseColor && cut_out == MaterialClass::Plain &&
-                            !has(stl.features, Feature::Light);
+                            !has(stl.features, Feature::Light) && !settings_.has_surfaces;
   const MaterialClass surface = is_colorless ? MaterialClass::Plain : material_class;
   const gpu::Batch &batch = scene_.batch(object.mesh, streams_of(surface));
   stl.is_mirrored[index] = draw::is_mirrored(scene_.objects().world_from_object(index));
@@ -304,7 +304,7 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
 
   /** Appends a call to a group of \a pass. \a bind binds the resources of a new group. */
   const auto call = [&](draw::Pass &pass, const gpu::Shader &shader, State state, MaterialClass read,
-                        const TextureSet &textures, const gpu::Batch &batch_read, const auto &bind) {
+                        const TextureSet &textures, const auto &bind) {
     draw::ShadingGroup *&group = stl.groups[{&pass, shader.id(), state | winding, textures}];
     if (!group) {
       group = &pass.group(shader);
@@ -312,7 +312,7 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
       bind(*group);
       render_scene::bind_textures(*group, scene_, read, textures);
     }
-    group->call(batch_read, index);
+    group->call(batch, index);
   };
   const TextureSet alpha_textures =
       cut_out == MaterialClass::Plain ? TextureSet() : textures_of(scene, mesh, MaterialClass::BaseColor);
@@ -328,27 +328,26 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
   }
   const gpu::Shader &depth_shader = shaders_.get(device, ShaderId::Depth, mask_features(cut_out));
   call(material.is_double_sided ? data.psl->depth_pass : data.psl->depth_pass_cull, depth_shader, State::None, cut_out,
-       alpha_textures, batch, bind_surface);
+       alpha_textures, bind_surface);
   // The depth test of the lit pass is "equal": a back face at the depth of a front face of another triangle must be
   // culled.
   const State side = material.is_double_sided ? State::None : State::CullBack;
-  call(data.psl->lit_pass, lit_shader, side, surface, surface_textures, batch, bind_surface);
+  call(data.psl->lit_pass, lit_shader, side, surface, surface_textures, bind_surface);
   if (data.shared->tinted_light) {
     call(data.psl->tint_pass, shaders_.get(device, ShaderId::DebugCascades, stl.features), side, MaterialClass::Plain,
-         {}, batch, [&data](draw::ShadingGroup &group) {
+         {}, [&data](draw::ShadingGroup &group) {
            bind_lit(group, data);
            group.constant("tinted_light", *data.shared->tinted_light);
          });
   }
   if (settings_.has_surfaces) {
-    // The program reads normals, and colours even where nothing gives light.
-    call(data.psl->surfaces_pass, shaders_.get(device, ShaderId::Surfaces, Feature::Light | feature_of(material_class)),
-         side, material_class, textures_of(scene, mesh, material_class),
-         scene_.batch(object.mesh, streams_of(material_class)), bind_surface);
+    // The program reads normals also where nothing gives light.
+    call(data.psl->surfaces_pass, shaders_.get(device, ShaderId::Surfaces, Feature::Light | feature_of(surface)), side,
+         surface, surface_textures, bind_surface);
   }
   if (settings_.has_probe && has(stl.features, Feature::Light)) {
-    call(data.psl->probe_pass, shaders_.get(device, ShaderId::Probe, stl.features), side, MaterialClass::Plain, {},
-         batch, [&data](draw::ShadingGroup &group) {
+    call(data.psl->probe_pass, shaders_.get(device, ShaderId::Probe, lighting), side, MaterialClass::Plain, {},
+         [&data](draw::ShadingGroup &group) {
            bind_lit(group, data);
            group.constant_ref("probed_light", &data.stl.probed_light);
          });

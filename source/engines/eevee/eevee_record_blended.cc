@@ -21,7 +21,7 @@ void Engine::record_blended(Data &data, draw::ObjectIndex object, const gpu::Sha
     draw::ShadingGroup &group = data.psl->blend_pass.group(shader);
     group.state_enable(culled | winding);
     bind_lit(group, data);
-    render_scene::bind_textures(group, scene_, render_scene::MaterialClass::Full, textures);
+    render_scene::bind_textures(group, scene_, render_scene::material_class(scene_.scene(), mesh), textures);
     group.call(batch, object);
     blended.group_count++;
     stl.blended_group_count++;

@@ -65,7 +65,8 @@ void update_world(WorldResources &resources, gpu::Device &device, const render_s
       block.harmonics[i] = glm::vec4(world.harmonics[i], 0.0F);
     }
     block.is_sampled = sample_count > 1 ? 1 : 0;
-    block.alpha_sampled = float(std::sqrt(world_lobe_directions / (double(world_direction_count) * sample_count)));
+    const double lobe_share = world_lobe_directions / (double(world_direction_count) * sample_count);
+    block.alpha_sampled = float(std::sqrt(std::min(lobe_share, 1.0)));
     resources.block = device.create_buffer({"world_block", gpu::BufferKind::Uniform, sizeof(block)});
     device.update(resources.block, block);
   }

@@ -255,6 +255,9 @@ Handle<Material> MaterialImporter::handle_of(int gltf_material)
     const Model::Material &source = file_.model.materials[gltf_material];
     MaterialReader reader(source, static_cast<std::size_t>(gltf_material), textures_, stand_ins_, warnings_);
     place->second = scene_.add(reader.read());
+    if (source.glossiness) {
+      factor_roughness_.emplace(place->second, float(1.0 - std::clamp(*source.glossiness, 0.0, 1.0)));
+    }
     uv_sets_.emplace(place->second, reader.uv_sets());
   }
   return place->second;
@@ -274,6 +277,10 @@ void MaterialImporter::finish()
       const auto found = texture != nullptr ? damaged.find(texture->image) : damaged.end();
       if (found != damaged.end()) {
         slot.texture = stand_ins_.texture_of(name);
+        const auto factor = factor_roughness_.find(handle);
+        if (name.target == &Material::metallic_roughness_texture && factor != factor_roughness_.end()) {
+          changed.roughness = factor->second;
+        }
         warnings_.add("material '" + printable(material.name) + '\'', reason_of(name, found->second));
       }
     }

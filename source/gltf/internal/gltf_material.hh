@@ -47,6 +47,8 @@ class MaterialImporter {
   StandIns stand_ins_;
   std::map<scene::Handle<scene::Material>, std::vector<int>> uv_sets_;
   std::map<int, scene::Handle<scene::Material>> handle_of_;
+  /** Roughness without the texture, of materials whose roughness texture contains the factor. */
+  std::map<scene::Handle<scene::Material>, float> factor_roughness_;
 };
 
 }  // namespace gnomon::gltf

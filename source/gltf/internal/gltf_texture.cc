@@ -130,6 +130,15 @@ Handle<Texture> TextureImporter::roughness_of(int gltf_texture, double glossines
   }
   Texture texture = scene_.textures()[handle_of(gltf_texture)];
   const Handle<Image> source = texture.image;
+  const auto decoded = std::ranges::find(pending_, source, &Pending::handle);
+  if (decoded != pending_.end()) {
+    const std::uint64_t texel_count = decoded->decoder.texel_count();
+    if (texel_count > texel_count_max - texel_count_) {
+      throw Fault("its image", "is too large for an image of roughness: all images together may have " +
+                                   std::to_string(texel_count_max) + " texels");
+    }
+    texel_count_ += texel_count;
+  }
   texture.image = scene_.add(Image{"roughness of " + scene_.images()[source].name, 1, 1, {0, 0, 0, 0}});
   derived_.push_back({texture.image, source, glossiness});
   return place->second = scene_.add(texture);

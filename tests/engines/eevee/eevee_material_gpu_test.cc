@@ -380,6 +380,25 @@ TEST_F(LayersGpuTest, TexturesMultiplyTheFactorsOfLayers)
   }
 }
 
+TEST_F(LayersGpuTest, ABlendedSurfaceHasTheSameLayers)
+{
+  add_mirrored_sun();
+  edit([&](scene::Material &value) {
+    value.base_color = {0.5F, 0.25F, 0.125F};
+    value.coat = 1.0F;
+    value.coat_roughness = 0.5F;
+    value.coat_texture = texture({153, 255, 255, 255});
+    value.sheen_color = glm::vec3(0.25F);
+    value.sheen_roughness = 0.5F;
+  });
+  const glm::vec3 opaque = middle();
+  edit([](scene::Material &value) {
+    value.alpha_mode = scene::AlphaMode::Blend;
+    value.alpha = 0.5F;
+  });
+  expect_near(middle(), 0.5F * opaque, 1e-5F);
+}
+
 TEST_F(LayersGpuTest, WithoutTheirFactorsLayersChangeNoBit)
 {
   add_mirrored_sun();

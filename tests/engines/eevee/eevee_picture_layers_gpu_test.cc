@@ -70,6 +70,7 @@ class PictureLayersGpuTest : public test::GpuDeviceTest {
       material.emissive = {0.0F, 0.3F, 0.0F};
       material.alpha_mode = scene::AlphaMode::Blend;
       material.alpha = 0.4F;
+      material.sheen_color = glm::vec3(0.7F);
     });
     test::add_object(scene, test::add_square_mesh(scene, glass),
                      glm::scale(glm::translate(glm::dmat4(1), {-0.5, -0.5, 1.2}), glm::dvec3(0.7)));
@@ -77,6 +78,7 @@ class PictureLayersGpuTest : public test::GpuDeviceTest {
     scene.edit(unlit, [](scene::Material &material) { material.is_unlit = true; });
     test::add_object(scene, test::add_box_mesh(scene, unlit),
                      glm::scale(glm::translate(glm::dmat4(1), {-1.2, 0.8, 0.2}), glm::dvec3(0.2)));
+    scene.edit(metal, [](scene::Material &material) { material.coat = 1.0F; });
     scene.set_world(scene::studio_world(camera.world_from_camera));
   }
 
@@ -187,6 +189,76 @@ TEST_F(PictureLayersGpuTest, SurfacesAreWhereTheyAreAndCoverWhatThePictureCovers
   }
   EXPECT_GT(boxes, 20);
   EXPECT_GT(shadows, 2);
+}
+
+/** Of a surface with the same light everywhere, a pixel's light is the visible share of its light without shadows. */
+TEST_F(PictureLayersGpuTest, VisibilityIsTheShareOfTheLightThatArrives)
+{
+  scene.edit(ground, [](scene::Material &material) { material.specular = 0.0F; });
+  // A sun that covers a disk, so that each sample sees another point of it.
+  scene.edit(test::handle_at(scene.lamps(), 0), [](scene::Lamp &lamp) { lamp.angle = 0.1F; });
+  for (const bool is_fitted : {false, true}) {
+    Settings settings{.shadow = {.map_size_px = 128, .cascades = {.is_fitted_to_depth = is_fitted}}, .sample_count = 4};
+    SceneRenderer renderer(*device, scene, size_px, settings);
+    renderer.sync();
+    renderer.draw(camera);
+    const Pixels lit = render_light_layer(renderer, camera, 4, {Kind::Lamp, 0});
+    const SurfaceLayers layers =
+        render_surface_layers(renderer, camera, 4, {.has_objects = true, .visible_lamps = {0}});
+    settings.shadow.kind = scene::ShadowKind::None;
+    renderer.set_settings(settings);
+    renderer.sync();
+    const Pixels unshadowed = render_light_layer(renderer, camera, 4, {Kind::Lamp, 0});
+    int partial = 0;
+    for (std::size_t i = 0; i < lit.size(); i++) {
+      const auto &objects = layers.objects[i];
+      const glm::ivec2 place(int(i) % size_px.x, int(i) / size_px.x);
+      const bool is_rim = place.x == 0 || place.y == 0 || place.x == size_px.x - 1 || place.y == size_px.y - 1;
+      if (is_rim || objects.size() != 1 || objects[0].first != 1) {
+        continue;
+      }
+      const float visible = layers.visibilities[0][i] / objects[0].second;
+      // The cosines of the sun's points differ by up to 7 %. The largest difference is 0.003.
+      EXPECT_NEAR(lit[i].r / unshadowed[i].r, visible, 5e-3F) << place.x << ", " << place.y;
+      partial += visible > 0.05F && visible < 0.95F;
+    }
+    EXPECT_GE(partial, 8);
+  }
+}
+
+TEST_F(PictureLayersGpuTest, SurfacesThatReceiveNoShadowSeeTheWholeLamp)
+{
+  for (const scene::Object &object : scene.objects()) {
+    scene.edit(object.node, [](scene::Node &node) { node.receives_shadow = false; });
+  }
+  SceneRenderer renderer(*device, scene, size_px, {.shadow = {.map_size_px = 128}});
+  renderer.sync();
+  renderer.draw(camera);
+  const SurfaceLayers layers = render_surface_layers(renderer, camera, 1, {.has_objects = true, .visible_lamps = {0}});
+  for (std::size_t i = 0; i < layers.objects.size(); i++) {
+    float coverage = 0.0F;
+    for (const auto &[object, share] : layers.objects[i]) {
+      coverage += share;
+    }
+    ASSERT_NEAR(layers.visibilities[0][i], coverage, 1e-5F) << i;
+  }
+}
+
+TEST_F(PictureLayersGpuTest, TexturesAreInTheAlbedoAlsoWithoutLight)
+{
+  test::remove_lamps(scene);
+  SceneRenderer renderer(*device, scene, size_px);
+  renderer.sync();
+  renderer.draw(camera);
+  const SurfaceLayers layers = render_surface_layers(renderer, camera, 1, {.has_means = true, .has_objects = true});
+  int boxes = 0;
+  for (std::size_t i = 0; i < layers.objects.size(); i++) {
+    if (layers.objects[i].size() == 1 && layers.objects[i][0].first == 2) {
+      boxes++;
+      EXPECT_NEAR(layers.albedo_roughness[i].r, 0.9F * 0.21586F * layers.objects[i][0].second, 2e-3F);
+    }
+  }
+  EXPECT_GT(boxes, 5);
 }
 
 }  // namespace
