@@ -469,7 +469,8 @@ std::vector<std::string> untraced_layers(const scene::Scene &scene)
                                      : material->has_coat() ? "coat and sheen"
                                                             : "sheen";
       lines.push_back(
-          fmt::format("material '{}': the reference does not trace its {}; the errors include this difference", material->name, layer));
+          fmt::format("material '{}': the reference does not trace its {}; the errors include this difference",
+                      material->name, layer));
     }
   }
   return lines;
