@@ -18,7 +18,7 @@ namespace gnomon::cli {
 /** Names and values for a picture's header. */
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
-/** What becomes of the fourth value of each pixel. */
+/** Whether the fourth value of each pixel is written. */
 enum class Alpha { Dropped, Written };
 
 /** A layer of an EXR file beside the picture. */
@@ -53,9 +53,9 @@ struct Picture {
 
 /**
  * Reads R, G and B. The format is that of the first bytes: EXR, PNG or JPEG, or another one that OpenImageIO reads,
- * such as Radiance HDR. Integer values are decoded by the sRGB curve and, if the file has alpha, multiplied by it: what
- * is transparent is black. \throws std::runtime_error naming \a path if it
- * cannot be read, is cut off, or lacks R, G or B.
+ * such as Radiance HDR. Integer values are decoded by the sRGB curve. Those of a PNG with alpha are then multiplied by
+ * it, so that transparent pixels are black. \throws std::runtime_error naming \a path if it cannot be read, is cut off,
+ * or lacks R, G or B.
  */
 [[nodiscard]] Picture read_picture(const std::filesystem::path &path);
 /** The same for a picture whose size is known. \throws std::runtime_error also for another size. */

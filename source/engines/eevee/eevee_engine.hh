@@ -56,7 +56,9 @@ inline constexpr int open_ended_sample_count = 256;
 struct Settings {
   ShadowSettings shadow{};
   Background background{};
-  /** The samples are those of the picture with all light: shadows, points of lamps and blended surfaces are the same.
+  /**
+   * Draw only this part of the light. Sample positions, shadows, points of lamps and blended surfaces remain those of
+   * the picture with all light.
    */
   LightPart light{};
   /**
