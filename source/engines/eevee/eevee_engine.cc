@@ -218,11 +218,7 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
 bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
 {
   Data &data = viewport.engine_data<Data>(*this);
-  const auto view_of_sample = [&](int index) {
-    const glm::vec2 offset_px = film_offset_px(index, settings_.sample_count, settings_.seed);
-    return with_sample_offset(view, offset_px, viewport.drawn_size_px());
-  };
-  draw::View sample_view = view_of_sample(data.sample_index);
+  draw::View sample_view = view_of_sample(view, viewport, settings_, data.sample_index);
   const bool is_sample_seen =
       has_background(settings_, scene_) || std::ranges::any_of(data.stl.objects, [&](draw::ObjectIndex object) {
         return sample_view.touches(scene_.objects().volume(object));
@@ -234,7 +230,7 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
     sample.is_for_feedback = viewport.draws_until_final() && awaits_depths(data, view);
     if (sample.is_for_feedback) {
       // Cascades are fitted to the same depths, whatever range of samples is drawn.
-      sample_view = view_of_sample(0);
+      sample_view = view_of_sample(view, viewport, settings_, 0);
     }
     order_blended(data, sample_view);
     update_view(data, sample_view);

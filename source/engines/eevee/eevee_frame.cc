@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_frame.hh"
 
+#include "eevee_camera.hh"
 #include "eevee_engine_data.hh"
 #include "eevee_film.hh"
 
@@ -24,6 +25,13 @@ std::string_view why_no_shadow(const FrameState &state, std::string_view no_such
 float pixel_size(const draw::View &view, const draw::Viewport &viewport)
 {
   return 2.0F / (view.clip_from_view()[1][1] * float(viewport.drawn_size_px().y));
+}
+
+draw::View view_of_sample(const draw::View &drawn_view, const draw::Viewport &viewport, const Settings &settings,
+                          int index)
+{
+  return with_sample_offset(drawn_view, film_offset_px(index, settings.sample_count, settings.seed),
+                            viewport.drawn_size_px());
 }
 
 shared::ViewData view_data(const draw::View &view, const Settings &settings, int sample_index)

@@ -102,6 +102,10 @@ void draw_steps(FrameSample &sample, FrameStep::When when);
 /** Edge of a pixel, metres: at a distance of 1 m for perspective views, at any distance for orthographic views. */
 [[nodiscard]] float pixel_size(const draw::View &view, const draw::Viewport &viewport);
 
+/** The view of the \a index-th sample of the picture. \a drawn_view: of the picture and its guard band. */
+[[nodiscard]] draw::View view_of_sample(const draw::View &drawn_view, const draw::Viewport &viewport,
+                                        const Settings &settings, int index);
+
 /** The content of `view_block`. \a sample_count: samples for each pixel. */
 [[nodiscard]] shared::ViewData view_data(const draw::View &view, const Settings &settings, int sample_index);
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_inspection.hh"
 
-#include "eevee_camera.hh"
 #include "eevee_engine_data.hh"
-#include "eevee_film.hh"
 #include "eevee_frame.hh"
 
 #include "gpu_read.hh"
@@ -50,16 +48,15 @@ static std::vector<glm::vec4> read_picture(const draw::Viewport &viewport, const
                       {viewport.guard_px(), viewport.size_px()});
 }
 
-/** The view of the \a sample-th sample of the picture, whose index \a data gets. Without it, \a drawn_view. */
-static draw::View view_of_sample(Data &data, const draw::Viewport &viewport, const Settings &settings,
-                                 const draw::View &drawn_view, std::optional<int> sample)
+/** The view of a sample of the picture, whose index \a data gets. Without \a sample, \a drawn_view. */
+static draw::View inspected_view(Data &data, const draw::View &drawn_view, const draw::Viewport &viewport,
+                                 const Settings &settings, std::optional<int> sample)
 {
   if (!sample) {
     return drawn_view;
   }
   data.sample_index = *sample;
-  return with_sample_offset(drawn_view, film_offset_px(*sample, settings.sample_count, settings.seed),
-                            viewport.drawn_size_px());
+  return view_of_sample(drawn_view, viewport, settings, *sample);
 }
 
 std::optional<Probe> Inspection::probe(const draw::View &picture_view, std::size_t lamp,
@@ -76,7 +73,7 @@ std::optional<Probe> Inspection::probe(const draw::View &picture_view, std::size
   engine_.record(viewport_);
   gpu::Device &device = viewport_.device();
   const draw::View view = viewport_.drawn_view(picture_view);
-  const draw::View sample_view = view_of_sample(data, viewport_, engine_.settings_, view, sample);
+  const draw::View sample_view = inspected_view(data, view, viewport_, engine_.settings_, sample);
   stl.probed_light = int(*light);
   engine_.update_view(data, sample_view);
   gpu::CommandList list;
@@ -108,7 +105,7 @@ std::optional<Surfaces> Inspection::surfaces(const draw::View &picture_view, std
   }
   engine_.record(viewport_);
   const draw::View view =
-      view_of_sample(data, viewport_, engine_.settings_, viewport_.drawn_view(picture_view), sample);
+      inspected_view(data, viewport_.drawn_view(picture_view), viewport_, engine_.settings_, sample);
   engine_.update_view(data, view);
   gpu::Device &device = viewport_.device();
   gpu::CommandList list;
