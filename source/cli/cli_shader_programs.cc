@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "cli_shader_programs.hh"
 
+#include "eevee_blocks.hh"
 #include "eevee_programs.hh"
+#include "overlay_blocks.hh"
 #include "overlay_programs.hh"
 #include "shader_files.hh"
 #include "unlit_programs.hh"
@@ -41,6 +43,18 @@ std::vector<Variant> engine_variants()
   add_variants(unlit::shader_declarations(), variants);
   add_variants(overlay::shader_declarations(), variants);
   return variants;
+}
+
+const std::vector<gpu::BlockLayout> &engine_blocks()
+{
+  static const std::vector<gpu::BlockLayout> blocks = [] {
+    const auto first = eevee::block_layouts();
+    std::vector<gpu::BlockLayout> all(first.begin(), first.end());
+    const auto others = overlay::block_layouts();
+    all.insert(all.end(), others.begin(), others.end());
+    return all;
+  }();
+  return blocks;
 }
 
 std::size_t program_count(const std::vector<Variant> &variants)

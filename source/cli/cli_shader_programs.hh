@@ -4,6 +4,7 @@
 #include "cli_shader_files.hh"
 
 #include "gpu_shader.hh"
+#include "shader_check_files.hh"
 
 namespace gnomon::cli {
 
@@ -25,7 +26,7 @@ class EngineFiles {
 
  private:
   std::string prefix_;
-  FolderFiles folder_;
+  shader_check::FolderFiles folder_;
   gpu::ShaderFiles files_;
 };
 
@@ -39,6 +40,8 @@ struct Variant {
 
 /** Of all engines; variants of one program follow each other. */
 [[nodiscard]] std::vector<Variant> engine_variants();
+/** The C++ layouts of the blocks of all engines. */
+[[nodiscard]] const std::vector<gpu::BlockLayout> &engine_blocks();
 /** Number of programs among \a variants. */
 [[nodiscard]] std::size_t program_count(const std::vector<Variant> &variants);
 

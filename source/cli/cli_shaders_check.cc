@@ -4,7 +4,6 @@
 #include "cli_shader_programs.hh"
 #include "cli_shader_report.hh"
 
-#include "eevee_blocks.hh"
 #include "scene_parallel.hh"
 
 #include <unistd.h>
@@ -96,7 +95,7 @@ ShaderReport check_engine(const CheckArguments &arguments)
     throw_no_program(arguments.program);
   }
   shader_check::CheckOptions options;
-  options.blocks = eevee::block_layouts();
+  options.blocks = engine_blocks();
   options.is_block_size_strict = true;
   ShaderReport report = check_all(descs, files.files(), options, targets_of(arguments.target));
   report.program_count = arguments.program.empty() ? program_count(variants) : 1;
@@ -157,7 +156,7 @@ ShaderReport check_files(const CheckArguments &arguments)
     }
     path_of(*desc, stage) = file;
   }
-  FolderFiles files{fs::path()};
+  shader_check::FolderFiles files{fs::path()};
   shader_check::CheckOptions options;
   options.include_path = include_path({arguments.include_folders.begin(), arguments.include_folders.end()});
   ShaderReport report = check_all(descs, files.files(), options, targets_of(arguments.target));

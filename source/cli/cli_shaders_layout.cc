@@ -3,7 +3,6 @@
 
 #include "cli_shader_programs.hh"
 
-#include "eevee_blocks.hh"
 #include "shader_check_blocks.hh"
 
 #include <fmt/format.h>
@@ -20,13 +19,13 @@ std::vector<shader_check::BlockComparison> compare_engine_blocks(const gpu::Shad
   std::vector<shader_check::BlockComparison> comparisons;
   for (const Variant &variant : engine_variants()) {
     for (shader_check::BlockComparison &comparison :
-         shader_check::compare_blocks(variant.desc, files, eevee::block_layouts())) {
+         shader_check::compare_blocks(variant.desc, files, engine_blocks())) {
       if (std::ranges::find(comparisons, comparison.block, &shader_check::BlockComparison::block) ==
           comparisons.end()) {
         comparisons.push_back(std::move(comparison));
       }
     }
-    if (comparisons.size() == eevee::block_layouts().size()) {
+    if (comparisons.size() == engine_blocks().size()) {
       break;
     }
   }
@@ -55,7 +54,7 @@ Status layout(const std::string &folder)
       status = Status::Failed;
     }
   }
-  for (const gpu::BlockLayout &block : eevee::block_layouts()) {
+  for (const gpu::BlockLayout &block : engine_blocks()) {
     if (std::ranges::find(comparisons, block.name, &shader_check::BlockComparison::block) == comparisons.end()) {
       fmt::print("error: block '{}' is read by no shader [layout]\n", block.name);
       status = Status::Failed;

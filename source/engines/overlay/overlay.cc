@@ -65,6 +65,14 @@ const gpu::Shader &Overlay::shader(ShaderId id, Feature features)
   return shader;
 }
 
+const gpu::Sampler &Overlay::nearest()
+{
+  if (!nearest_) {
+    nearest_ = scene_.device().create_sampler({.name = "overlay_nearest"});
+  }
+  return nearest_;
+}
+
 /** At least of \a size_px. */
 void Overlay::make(ObjectsTarget &target, glm::ivec2 size_px)
 {
@@ -186,12 +194,9 @@ void Overlay::draw_outline(const draw::View &view, glm::ivec2 size_px,
   if (!target || chosen.empty() || !record_objects(view, size_px, is_chosen, mask_, list)) {
     return;
   }
-  if (!nearest_) {
-    nearest_ = scene_.device().create_sampler({.name = "overlay_nearest"});
-  }
   draw::Pass pass("overlay outline", State::WriteColor | State::BlendOver);
   draw::ShadingGroup &group = pass.group(shader(ShaderId::Outline, Feature::None));
-  group.bind_texture("objects_texture", mask_.objects, nearest_);
+  group.bind_texture("objects_texture", mask_.objects, nearest());
   group.constant("color", color);
   group.constant("origin_px", target.origin_px);
   group.constant("picture_size_px", size_px);

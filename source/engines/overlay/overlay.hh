@@ -13,7 +13,8 @@
 #include <optional>
 #include <span>
 
-/** What an editor needs beside a picture: what is under a pixel, and a line around what is selected. */
+/** What an editor needs beside a picture: what is under a pixel, a line around what is selected, and lines in the
+ * scene. */
 namespace gnomon::overlay {
 
 /** The surface at the middle of a pixel. */
@@ -24,10 +25,24 @@ struct Hit {
   glm::dvec3 position_ws{0.0};
 };
 
+/** A straight line between two points. */
+struct Line {
+  /** World space of the scene, metres, as is to_ws. */
+  glm::dvec3 from_ws{0.0};
+  glm::dvec3 to_ws{0.0};
+  /** Not premultiplied, and stored as Target::encoding stores; the view transform does not change it. */
+  glm::vec4 color{1.0F};
+  /** On the screen, whatever the distance; above 0. */
+  float width_px = 1.5F;
+  /** Drawn also where objects hide it. */
+  bool is_on_top = false;
+};
+
 /**
  * Picks and outlines the objects of a render scene, in pictures of any engine and viewport: a picture is given by its
  * view (SceneRenderer::view_of, draw::Viewport::view) and its size. What the first call of each function needs is
- * created by it, and nothing before.
+ * created by it, and nothing before. A host with several viewports may use one overlay for all; with one for each,
+ * lines of pictures that refine at the same time need fewer passes.
  *
  * Objects are as render_scene::RenderScene::update found them. Each function throws gpu::Error where the scene was
  * edited since. Device's thread, and not while the device is recording.
@@ -51,12 +66,29 @@ class Overlay {
   void draw_outline(const draw::View &view, glm::ivec2 size_px, std::span<const scene::Handle<scene::Node>> nodes,
                     const glm::vec4 &color, const draw::Target &target);
 
+  /**
+   * Draw \a lines over the content of \a target, in order. What is beyond the near plane or the picture's edge is left
+   * out. Lines that are not on top are hidden by the scene's objects, as pick() sees them, whatever depth the target
+   * has; for them the objects are drawn once more when the view, the size or the scene changes. Target::composition and
+   * depth have no effect. \throws gpu::Error as draw::check, and for a line that is not finite or has no width
+   */
+  void draw_lines(const draw::View &view, glm::ivec2 size_px, std::span<const Line> lines, const draw::Target &target);
+
  private:
   /** Textures with the object and the depth at each pixel. */
   struct ObjectsTarget {
     gpu::Texture objects;
     gpu::Texture depth;
     gpu::Framebuffer framebuffer;
+  };
+  /** What a target with all objects depends on. */
+  struct ObjectsKey {
+    draw::View view;
+    glm::ivec2 size_px{0};
+    scene::Revision scene = 0;
+    std::uint64_t loss_count = 0;
+
+    bool operator==(const ObjectsKey &) const = default;
   };
   using IsDrawn = std::function<bool(const render_scene::RenderObject &object)>;
 
@@ -70,12 +102,23 @@ class Overlay {
   bool record_objects(const draw::View &view, glm::ivec2 size_px, const IsDrawn &is_drawn, ObjectsTarget &target,
                       gpu::CommandList &list);
 
+  /** Draw all objects into hiding_, unless they are there. \return whether there is one */
+  bool update_hiding(const draw::View &view, glm::ivec2 size_px);
+  void upload(std::span<const Line> lines);
+  const gpu::Sampler &nearest();
+
   render_scene::RenderScene &scene_;
   std::map<std::pair<ShaderId, Feature>, gpu::Shader> shaders_;
   gpu::Buffer view_block_;
   gpu::Sampler nearest_;
   ObjectsTarget pixel_;
   ObjectsTarget mask_;
+  /** All objects, for lines that they hide. */
+  ObjectsTarget hiding_;
+  ObjectsKey hiding_key_;
+  bool has_hiding_ = false;
+  /** Content of line_block. */
+  gpu::Buffer line_block_;
 };
 
 /** \a view, restricted to one pixel of a picture of \a size_px, from the lower left corner. */

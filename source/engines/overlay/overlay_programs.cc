@@ -10,12 +10,15 @@ namespace {
 constexpr std::array<Feature, 3> mask_variants = {Feature::None, Feature::AlphaMask,
                                                   Feature::AlphaMask | Feature::FullMaterial};
 constexpr std::array<Feature, 1> one_variant = {Feature::None};
+constexpr std::array<Feature, 2> line_variants = {Feature::None, Feature::HiddenLines};
 
-constexpr std::array<ShaderDeclaration, 2> declarations = {{
+constexpr std::array<ShaderDeclaration, 3> declarations = {{
     {ShaderId::Objects, "overlay_objects", "overlay/overlay_objects_vert.glsl", "overlay/overlay_objects_frag.glsl",
      mask_variants, "the object at each pixel"},
     {ShaderId::Outline, "overlay_outline", "draw/draw_fullscreen_vert.glsl", "overlay/overlay_outline_frag.glsl",
      one_variant, "a line around each object"},
+    {ShaderId::Lines, "overlay_lines", "overlay/overlay_lines_vert.glsl", "overlay/overlay_lines_frag.glsl",
+     line_variants, "lines in world space"},
 }};
 
 }  // namespace
@@ -36,6 +39,9 @@ gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature featur
   }
   if ((features & Feature::FullMaterial) != Feature::None) {
     desc.defines.emplace_back("USE_FULL_MATERIAL");
+  }
+  if ((features & Feature::HiddenLines) != Feature::None) {
+    desc.defines.emplace_back("USE_HIDDEN_LINES");
   }
   return desc;
 }

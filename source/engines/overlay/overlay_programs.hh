@@ -9,7 +9,7 @@
 
 namespace gnomon::overlay {
 
-enum class ShaderId { Objects, Outline };
+enum class ShaderId { Objects, Outline, Lines };
 
 /** What programs have variants for. */
 enum class Feature : std::uint32_t {
@@ -17,6 +17,8 @@ enum class Feature : std::uint32_t {
   AlphaMask = 1U << 0,
   /** The mask reads more than the base colour texture; with AlphaMask alone. */
   FullMaterial = 1U << 1,
+  /** Objects hide lines. */
+  HiddenLines = 1U << 2,
 };
 
 constexpr Feature operator|(Feature a, Feature b)

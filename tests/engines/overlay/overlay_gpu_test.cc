@@ -48,8 +48,9 @@ class OverlayGpuTest : public test::GpuDeviceTest {
     const glm::dmat4 place = glm::translate(glm::dmat4(1), {0, 0, z});
     return test::add_object(scene, test::add_square_mesh(scene, material), glm::scale(place, glm::dvec3(half_size)));
   }
-  /** Colours of a target of 80x60 pixels, with the picture at 10, 15, after an outline over transparent black. */
-  test::Picture outline(std::span<const scene::Handle<scene::Node>> nodes)
+  /** Colours of a target of 80x60 pixels, with the picture at 10, 15, after \a draw over transparent black. */
+  template <typename Draw>
+  test::Picture drawn(Draw &&draw)
   {
     render_scene->update();
     const draw::TargetTexture texture(*device, "target", gpu::Format::RGBA32F, {80, 60});
@@ -59,8 +60,23 @@ class OverlayGpuTest : public test::GpuDeviceTest {
     device->submit(clear);
     draw::Target target = texture.target();
     target.origin_px = {10, 15};
-    overlay->draw_outline(view(), size_px, nodes, line_color, target);
+    draw(target);
     return {{80, 60}, gpu::read_as<glm::vec4>(*device, texture.texture())};
+  }
+  test::Picture outline(std::span<const scene::Handle<scene::Node>> nodes)
+  {
+    return drawn(
+        [&](const draw::Target &target) { overlay->draw_outline(view(), size_px, nodes, line_color, target); });
+  }
+  test::Picture lines(const std::vector<Line> &lines)
+  {
+    return drawn([&](const draw::Target &target) { overlay->draw_lines(view(), size_px, lines, target); });
+  }
+  /** Where the camera sees a point, in pixels of the target. */
+  [[nodiscard]] glm::dvec2 seen(const glm::dvec3 &position_ws) const
+  {
+    const glm::dvec4 clip = glm::dmat4(view().clip_from_world()) * glm::dvec4(position_ws, 1.0);
+    return glm::dvec2(10, 15) + (0.5 * glm::dvec2(clip) / clip.w + 0.5) * glm::dvec2(size_px);
   }
 
   scene::Scene scene;
@@ -206,6 +222,107 @@ TEST_F(OverlayGpuTest, AnOutlineEndsAtTheEdgeOfThePicture)
   const auto square = add_square(0, test::add_material(scene, glm::vec3(0.5F)), 100.0);
   for (const glm::vec4 &pixel : outline(std::span(&square, 1)).pixels) {
     EXPECT_EQ(pixel, glm::vec4(0)) << "all of the picture is inside of the object";
+  }
+}
+
+TEST_F(OverlayGpuTest, ALineHasItsColorAndItsWidthOnTheScreenAtEveryDistanceBetweenItsEnds)
+{
+  for (const double z : {0.0, 2.5}) {
+    for (const float width : {1.0F, 3.0F}) {
+      const Line line{{-0.7, 0.3, z}, {0.6, 0.3, z}, line_color, width};
+      const test::Picture picture = lines({line});
+      const glm::dvec2 from = seen(line.from_ws);
+      const glm::dvec2 to = seen(line.to_ws);
+      ASSERT_GT(to.x - from.x, 8.0);
+      for (int x = 0; x < 80; x++) {
+        double covered_px = 0.0;
+        for (int y = 0; y < 60; y++) {
+          const glm::vec4 pixel = picture.at(x, y);
+          covered_px += double(pixel.a);
+          EXPECT_EQ(glm::vec3(pixel), pixel.a * glm::vec3(line_color));
+          EXPECT_TRUE(pixel.a == 0.0F || std::abs(y + 0.5 - from.y) <= 0.5 * double(width) + 1.0) << x << ", " << y;
+        }
+        // Its ends reach beyond the points by half of the width.
+        const double reach = 0.5 * double(width);
+        if (x + 0.5 > from.x - reach && x + 0.5 < to.x + reach) {
+          EXPECT_NEAR(covered_px, double(width), 1e-3) << x;
+        }
+        else {
+          EXPECT_EQ(covered_px, 0.0) << x;
+        }
+      }
+    }
+  }
+}
+
+TEST_F(OverlayGpuTest, ObjectsHideLinesBehindThemThatAreNotOnTop)
+{
+  const auto square = add_square(0, test::add_material(scene, glm::vec3(0.5F)), 0.5);
+  const auto line = [](double z, bool is_on_top) {
+    return Line{{-0.9, 0, z}, {0.9, 0, z}, line_color, 1.0F, is_on_top};
+  };
+  const auto middle = [&](const test::Picture &picture) { return picture.at(10 + 30, 15 + 20).a; };
+  const auto beside = [&](const test::Picture &picture) { return picture.at(int(seen({-0.8, 0, 0}).x), 15 + 20).a; };
+  const test::Picture behind = lines({line(-0.1, false)});
+  EXPECT_EQ(middle(behind), 0.0F);
+  EXPECT_GT(beside(behind), 0.4F);
+  EXPECT_GT(middle(lines({line(0.1, false)})), 0.4F) << "before the object";
+  EXPECT_GT(middle(lines({line(0.0, false)})), 0.4F) << "on the object";
+  EXPECT_GT(middle(lines({line(-0.1, true)})), 0.4F) << "on top";
+  // Of both kinds in one call.
+  EXPECT_GT(middle(lines({line(-0.1, true), line(-0.2, false)})), 0.4F);
+  // What is drawn of the objects is as they are now.
+  scene.set_transform(square, glm::translate(glm::dmat4(1), {0, 5, 0}));
+  EXPECT_GT(middle(lines({line(-0.1, false)})), 0.4F) << "the object has moved";
+}
+
+TEST_F(OverlayGpuTest, ALineThatBeginsBehindTheEyeIsDrawnFromTheNearPlaneOn)
+{
+  // Below the eye, from behind it to far away: it comes from the lower edge and ends near the middle.
+  const test::Picture picture = lines({{{0, -0.5, 20}, {0, -0.5, -400}, line_color, 2.0F}});
+  const int end_y = int(seen({0, -0.5, -400}).y);
+  for (int y = 0; y < 60; y++) {
+    const float alpha = picture.at(10 + 30, y).a;
+    if (y >= 15 && y < end_y - 1) {
+      EXPECT_GT(alpha, 0.9F) << y;
+    }
+    else if (y < 15 || y > end_y + 1) {
+      EXPECT_EQ(alpha, 0.0F) << y;
+    }
+  }
+  for (const glm::vec4 &pixel : lines({{{1, 0, 20}, {-1, 0, 7}, line_color, 2.0F}}).pixels) {
+    EXPECT_EQ(pixel, glm::vec4(0)) << "all of it is behind the eye";
+  }
+}
+
+TEST_F(OverlayGpuTest, NothingIsMadeWithoutLinesAndLinesOnTopDrawNoObject)
+{
+  add_square(0, test::add_material(scene, glm::vec3(0.5F)));
+  // What the target needs.
+  lines({});
+  EXPECT_EQ(device->counters().shaders_made, 0U);
+  EXPECT_EQ(device->memory_bytes(), 0U);
+  lines({{{-1, 0, 0}, {1, 0, 0}, line_color, 1.0F, true}});
+  EXPECT_EQ(device->counters().shaders_made, 1U);
+  EXPECT_FALSE(device->pass_counts().contains("overlay objects"));
+  // Objects are drawn for the first picture alone.
+  for (int i = 0; i < 3; i++) {
+    lines({{{-1, 0, 0}, {1, 0, 0}}});
+  }
+  EXPECT_EQ(device->pass_counts().at("overlay objects"), 1U);
+}
+
+TEST_F(OverlayGpuTest, LinesThatAreNotFiniteOrHaveNoWidthAreNamed)
+{
+  for (const Line &wrong : {Line{{NAN, 0, 0}, {1, 0, 0}}, Line{{0, 0, 0}, {1, INFINITY, 0}},
+                            Line{{0, 0, 0}, {1, 0, 0}, line_color, 0.0F}}) {
+    try {
+      lines({{{0, 0, 0}, {1, 0, 0}}, wrong});
+      ADD_FAILURE();
+    }
+    catch (const gpu::Error &error) {
+      EXPECT_NE(std::string_view(error.what()).find("line 1 "), std::string_view::npos) << error.what();
+    }
   }
 }
 
