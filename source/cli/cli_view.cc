@@ -18,6 +18,8 @@ void add_view(CLI::App &app)
   command->add_option("--script", o->script, "Run the commands of a file, then end");
   command->add_option("--screenshot", o->screenshot,
                       "Write the window to a PNG when its pictures are complete, then end");
+  command->add_option("--shaders", o->shaders,
+                      "Folder with the engine's shaders, which are compiled again when a file changes");
   command->callback([o] {
     o->writers.png = [](const auto &path, glm::ivec2 size_px, std::span<const std::uint8_t> rgba) {
       write_png(path, size_px, rgba, {});

@@ -25,6 +25,8 @@ struct Options {
   std::filesystem::path script{};
   /** Written when all viewports are complete, after the script; then the program ends. Empty: none. */
   std::filesystem::path screenshot{};
+  /** A folder as the repository's `shaders`, whose files may be edited meanwhile. Empty: those of the build. */
+  std::filesystem::path shaders{};
   glm::ivec2 size_px{1440, 860};
   ImageWriters writers{};
 };
@@ -32,8 +34,8 @@ struct Options {
 /**
  * Open a window, and return when it is closed or the script has ended. Broken files and invalid values are messages in
  * the window.
- * \throws std::runtime_error where there is no display, where a command of the script fails, naming the file and the
- * line, and, with a script, where the driver reports an error
+ * \throws std::runtime_error where there is no display or no folder with shaders, where a command of the script fails,
+ * naming the file and the line, and, with a script, where the driver reports an error
  */
 void run(const Options &options);
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "view_app.hh"
 
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace gnomon::view {
@@ -24,6 +23,9 @@ App::App(const Options &options) : writers_(options.writers), window_(options.si
   device_ = gpu::create_gl_device({.context = gpu::ContextKind::Host,
                                    .sink = [this](std::string_view text) { message(std::string(text), false); }});
   viewports_.push_back(std::make_unique<Viewport>(*device_));
+  if (!options.shaders.empty()) {
+    use_shaders(options.shaders);
+  }
 }
 
 App::~App() = default;
@@ -39,6 +41,7 @@ bool App::open(const std::filesystem::path &path)
   try {
     scene::Scene scene = Document::read(path);
     const Settings settings = document_ ? document_->settings() : default_settings();
+    end_fly(true);
     for (const std::unique_ptr<Viewport> &viewport : viewports_) {
       viewport->close();
     }
@@ -95,6 +98,35 @@ void App::save_picture(const std::filesystem::path &path)
   message(fmt::format("{} is written", path.string()), false);
 }
 
+void App::use_shaders(const std::filesystem::path &folder)
+{
+  shader_watch_.emplace(folder);
+  update_shaders();
+}
+
+void App::update_shaders()
+{
+  if (!shader_watch_ || !document_ || (!shader_watch_->has_changed() && document_->has_own_shaders())) {
+    return;
+  }
+  const auto uses_eevee = [](const auto &viewport) { return viewport->viewport() && viewport->engine == "eevee"; };
+  const auto found = std::ranges::find_if(viewports_, uses_eevee);
+  std::vector<std::string> failures;
+  if (found != viewports_.end()) {
+    failures = document_->reload_shaders(*(*found)->viewport(), shader_watch_->files());
+  }
+  else {
+    draw::Viewport none(*device_, glm::ivec2(1));
+    failures = document_->reload_shaders(none, shader_watch_->files());
+  }
+  for (const std::string &failure : failures) {
+    message(failure, true);
+  }
+  if (failures.empty()) {
+    message(fmt::format("The shaders of {} are loaded", shader_watch_->folder().string()), false);
+  }
+}
+
 void App::undo()
 {
   if (document_ && !document_->undo()) {
@@ -116,8 +148,17 @@ void App::frame(bool is_all)
   }
 }
 
+void App::look_through_camera()
+{
+  if (document_) {
+    active().look_at(*document_);
+  }
+}
+
 void App::set_viewport_count(int count)
 {
+  end_fly(true);
+  end_transform(true);
   while (viewports_.size() > std::size_t(count)) {
     viewports_.pop_back();
   }
@@ -146,62 +187,18 @@ std::string App::default_path(const char *suffix) const
   return path.replace_extension().string() + suffix;
 }
 
-void App::ask_save()
+void App::ask_open()
 {
-  // The file that was opened is not replaced by chance: the export leaves out what the import did not take.
-  ask("Save as glTF", default_path(".edited.glb"), [this](const std::string &path) { save(path); });
+  ask("Open", default_path(".glb"), [this](const std::string &path) { open(path); });
 }
 
-void App::take_key(const KeyPress &press)
+void App::ask_save()
 {
-  const bool is_control = (press.mods & GLFW_MOD_CONTROL) != 0;
-  const bool is_shift = (press.mods & GLFW_MOD_SHIFT) != 0;
-  Navigation &navigation = active().navigation;
-  switch (press.key) {
-    case GLFW_KEY_Z:
-      if (is_control) {
-        is_shift ? redo() : undo();
-      }
-      return;
-    case GLFW_KEY_Y:
-      if (is_control) {
-        redo();
-      }
-      return;
-    case GLFW_KEY_S:
-      if (is_control && document_) {
-        ask_save();
-      }
-      return;
-    case GLFW_KEY_O:
-      if (is_control) {
-        ask("Open", default_path(".glb"), [this](const std::string &path) { open(path); });
-      }
-      return;
-    case GLFW_KEY_1:
-    case GLFW_KEY_KP_1: navigation.look_from(is_control ? Side::Back : Side::Front); return;
-    case GLFW_KEY_3:
-    case GLFW_KEY_KP_3: navigation.look_from(is_control ? Side::Left : Side::Right); return;
-    case GLFW_KEY_7:
-    case GLFW_KEY_KP_7: navigation.look_from(is_control ? Side::Bottom : Side::Top); return;
-    case GLFW_KEY_5:
-    case GLFW_KEY_KP_5: navigation.toggle_orthographic(); return;
-    case GLFW_KEY_0:
-    case GLFW_KEY_KP_0:
-      if (document_) {
-        active().look_at(*document_);
-      }
-      return;
-    case GLFW_KEY_PERIOD:
-    case GLFW_KEY_KP_DECIMAL: frame(false); return;
-    case GLFW_KEY_HOME: frame(true); return;
-    case GLFW_KEY_H:
-      if (document_ && document_->scene().nodes().is_live(document_->selected)) {
-        document_->edit(document_->selected, [](scene::Node &node) { node.is_visible = !node.is_visible; });
-      }
-      return;
-    default: return;
+  if (!document_) {
+    return;
   }
+  // The file that was opened is not replaced by chance: the export leaves out what the import did not take.
+  ask("Save as glTF", default_path(".edited.glb"), [this](const std::string &path) { save(path); });
 }
 
 void App::take_events()
@@ -216,7 +213,8 @@ void App::take_events()
     driver_error_count_++;
     message("OpenGL: " + text, true);
   }
-  if (document_ && !ImGui::IsAnyItemActive()) {
+  step_fly();
+  if (document_ && !document_->operation() && !ImGui::IsAnyItemActive()) {
     document_->history().end_gesture();
   }
 }
@@ -224,10 +222,12 @@ void App::take_events()
 void App::draw_frame(bool may_wait)
 {
   const bool waits = may_wait && is_complete_ && frames_to_draw_ == 0;
-  window_.begin_frame(waits);
+  constexpr double shader_seconds = 0.5;
+  window_.begin_frame(waits, shader_watch_ ? shader_seconds : 0.0);
   frames_to_draw_ = waits ? settling_frames : std::max(0, frames_to_draw_ - 1);
   take_events();
   is_complete_ = true;
+  update_shaders();
   if (document_) {
     render_scene::RenderScene &render_scene = document_->render_scene();
     const glm::dvec3 eye(active().navigation.camera(0.0).world_from_camera[3]);

@@ -4,6 +4,7 @@
 #include "view.hh"
 #include "view_document.hh"
 #include "view_panels.hh"
+#include "view_shader_watch.hh"
 #include "view_viewport.hh"
 #include "view_window.hh"
 
@@ -54,6 +55,11 @@ class App {
     screenshot_ = path;
     frames_to_draw_ = std::max(frames_to_draw_, 1);
   }
+  /**
+   * Compile the shaders of a folder, now and whenever a file of it changes. What is wrong with them is a message.
+   * \throws std::runtime_error where there is no such folder
+   */
+  void use_shaders(const std::filesystem::path &folder);
   void quit()
   {
     is_quit_ = true;
@@ -70,6 +76,27 @@ class App {
   void undo();
   void redo();
   void frame(bool is_all);
+  void look_through_camera();
+
+  /** Do what a key does. */
+  void take_key(const KeyPress &press);
+  /** Lets the selected node follow the pointer in the active viewport; a message where that is not possible. */
+  void begin_transform(TransformKind kind);
+  /** \a change: returns whether it has changed the operation. No effect where none has begun. */
+  void change_transform(const std::function<bool(TransformOperation &operation)> &change);
+  void end_transform(bool is_kept);
+  /** At the point that the active viewport turns around; a camera where its eye is. \pre a document */
+  void add(const Addition &addition);
+  /** \return false: nothing is selected, which is a message */
+  bool remove_selected();
+  bool duplicate_selected();
+  /** Keys and pointer move the eye of the active viewport, until Enter, Escape or a button. */
+  void begin_fly();
+  void end_fly(bool is_kept);
+  /** Show a menu, or a window that asks for a path. */
+  void ask_addition();
+  void ask_open();
+  void ask_save();
 
   /** 1, 2 or 4. */
   void set_viewport_count(int count);
@@ -116,16 +143,22 @@ class App {
     std::function<void(const std::string &)> answer;
   };
   void take_events();
-  void take_key(const KeyPress &press);
+  void step_fly();
+  void update_shaders();
   void ask(std::string title, std::string path, std::function<void(const std::string &)> answer);
-  void ask_save();
   [[nodiscard]] std::string default_path(const char *suffix) const;
+  // view_menus.cc
+  void show_menu();
+  void show_edit_menu();
+  void show_view_menu();
+  void show_additions();
+  void show_addition_popup();
   // view_layout.cc
   void show_window();
-  void show_menu();
   void show_left(float height);
   void show_viewports(float width, float height);
   void show_viewport(std::size_t index, glm::vec2 size);
+  void show_viewport_header(Viewport &viewport);
   void show_tabs();
   void show_status();
   void show_question();
@@ -146,8 +179,11 @@ class App {
   std::vector<Message> messages_;
   int driver_error_count_ = 0;
   std::filesystem::path screenshot_;
+  /** Nothing: those of the build. */
+  std::optional<ShaderWatch> shader_watch_;
   std::optional<PathQuestion> question_;
   bool is_question_new_ = false;
+  bool is_addition_asked_ = false;
 
   SceneTree scene_tree_;
   FramePanel frame_panel_;

@@ -4,16 +4,13 @@
 #include "gltf_export.hh"
 #include "gltf_import.hh"
 #include "scene_studio.hh"
+#include "shader_check_reflection.hh"
 #include "unlit_engine.hh"
 
 namespace gnomon::view {
 
 Document::Document(gpu::Device &device, scene::Scene scene, const Settings &settings)
-    : scene_(std::move(scene)),
-      render_scene_(device, scene_),
-      overlay_(render_scene_),
-      settings_(settings),
-      saved_revision_(scene_.revision())
+    : scene_(std::move(scene)), render_scene_(device, scene_), settings_(settings), saved_revision_(scene_.revision())
 {
   registry_.add(eevee::engine_type(render_scene_, settings_.eevee));
   registry_.add(unlit::engine_type(render_scene_));
@@ -54,6 +51,15 @@ eevee::Engine *Document::eevee()
 {
   const auto found = engines_.find("eevee");
   return found == engines_.end() ? nullptr : dynamic_cast<eevee::Engine *>(found->second.get());
+}
+
+std::vector<std::string> Document::reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files)
+{
+  auto &eevee = dynamic_cast<eevee::Engine &>(engine("eevee"));
+  has_own_shaders_ = true;
+  // Viewports are synced again.
+  settings_revision_++;
+  return eevee.reload_shaders(viewport, std::move(files), shader_check::reflect);
 }
 
 void Document::set_settings(const Settings &settings)

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "view_additions.hh"
 #include "view_history.hh"
 #include "view_settings.hh"
+#include "view_transform.hh"
 
 #include "draw_engine.hh"
 #include "eevee_inspection.hh"
-#include "overlay.hh"
 #include "render_scene.hh"
 
 #include <map>
@@ -40,18 +41,37 @@ class Document {
   {
     history_.set_world(scene_, std::move(world));
   }
-  bool undo()
-  {
-    return history_.undo(scene_);
-  }
-  bool redo()
-  {
-    return history_.redo(scene_);
-  }
+  /** A node that comes back is selected. */
+  bool undo();
+  bool redo();
   [[nodiscard]] History &history()
   {
     return history_;
   }
+
+  /** Selects what it adds. \see view::add */
+  void add(const Addition &addition, const glm::dvec3 &position_ws, const glm::dmat4 &world_from_view);
+  /** With its descendants. \return false: nothing is selected */
+  bool remove_selected();
+  /** Selects the copy. \return false: nothing is selected */
+  bool duplicate_selected();
+
+  /** Let the selected node follow the pointer in a picture. \throws as TransformOperation */
+  void begin_transform(const Transform &transform, const PictureMap &map, const glm::dvec2 &pointer);
+  /** nullptr: none has begun. Call update_transform after changing it. */
+  [[nodiscard]] TransformOperation *operation()
+  {
+    return operation_ ? &*operation_ : nullptr;
+  }
+  /** Edit the node as the operation says. */
+  void update_transform();
+  /** Its edits are one step for undo; if it is not kept, the node is as it was. No effect where none has begun. */
+  void end_transform(bool is_kept);
+  /** The gizmo at the selected node; nothing: none. */
+  std::optional<TransformKind> gizmo = TransformKind::Move;
+  /** Of the axes of the gizmo, and those that transforms begin with. */
+  Orientation orientation = Orientation::World;
+
   [[nodiscard]] bool is_saved() const
   {
     return saved_revision_ == scene_.revision();
@@ -61,10 +81,6 @@ class Document {
   {
     return render_scene_;
   }
-  [[nodiscard]] overlay::Overlay &overlay()
-  {
-    return overlay_;
-  }
   [[nodiscard]] const std::vector<std::string> &engine_names() const
   {
     return engine_names_;
@@ -73,6 +89,17 @@ class Document {
   [[nodiscard]] draw::Engine &engine(const std::string &name);
   /** The engine with lamps and shadows; nullptr: no viewport has used it. */
   [[nodiscard]] eevee::Engine *eevee();
+
+  /**
+   * Compile the programs of the engine with lamps and shadows from other files. \a viewport: one that it draws in, if
+   * any does. \return a message for each program that does not compile and stays as it was
+   */
+  std::vector<std::string> reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files);
+  /** Whether reload_shaders was called. */
+  [[nodiscard]] bool has_own_shaders() const
+  {
+    return has_own_shaders_;
+  }
 
   [[nodiscard]] const Settings &settings() const
   {
@@ -100,9 +127,10 @@ class Document {
   draw::EngineRegistry registry_;
   std::vector<std::string> engine_names_;
   std::map<std::string, std::unique_ptr<draw::Engine>> engines_;
-  overlay::Overlay overlay_;
+  std::optional<TransformOperation> operation_;
   Settings settings_;
   std::uint64_t settings_revision_ = 0;
+  bool has_own_shaders_ = false;
   scene::Revision saved_revision_ = 0;
 };
 

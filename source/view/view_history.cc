@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "view_history.hh"
 
+#include <ranges>
+
 namespace gnomon::view {
+
+using scene::Handle;
+using scene::Node;
 
 void History::set_world(scene::Scene &scene, std::optional<scene::World> world)
 {
@@ -17,6 +22,69 @@ void History::set_world(scene::Scene &scene, std::optional<scene::World> world)
   add(WorldChange{before, std::move(world)});
 }
 
+History::SubtreeChange History::subtree(const scene::Scene &scene, Handle<Node> root)
+{
+  SubtreeChange change;
+  change.members.push_back({root, scene.parent(root), scene.nodes()[root]});
+  for (std::size_t i = 0; i < change.members.size(); i++) {
+    const Handle<Node> parent = change.members[i].node;
+    for (Handle<Node> child = scene.first_child(parent); child; child = scene.next_sibling(child)) {
+      change.members.push_back({child, parent, scene.nodes()[child]});
+    }
+  }
+  return change;
+}
+
+void History::note_added(const scene::Scene &scene, Handle<Node> root)
+{
+  SubtreeChange change = subtree(scene, root);
+  change.is_addition = true;
+  add(std::move(change));
+  end_gesture();
+}
+
+void History::remove(scene::Scene &scene, Handle<Node> root)
+{
+  SubtreeChange change = subtree(scene, root);
+  remove_members(scene, change);
+  add(std::move(change));
+  end_gesture();
+}
+
+void History::remove_members(scene::Scene &scene, const SubtreeChange &change)
+{
+  // The last first, so that all have the same places in the scene's order when they are brought back.
+  for (const SubtreeChange::Member &member : std::views::reverse(change.members)) {
+    scene.remove(member.node);
+  }
+}
+
+void History::rename(Handle<Node> old_node, Handle<Node> node)
+{
+  for (Change &change : changes_) {
+    if (auto *edited = std::get_if<ThingChange<Node>>(&change); edited && edited->thing == old_node) {
+      edited->thing = node;
+    }
+    if (auto *moved = std::get_if<SubtreeChange>(&change)) {
+      for (SubtreeChange::Member &member : moved->members) {
+        member.node = member.node == old_node ? node : member.node;
+        member.parent = member.parent == old_node ? node : member.parent;
+      }
+    }
+  }
+}
+
+void History::add_members(scene::Scene &scene, std::size_t index)
+{
+  const std::size_t count = std::get<SubtreeChange>(changes_[index]).members.size();
+  for (std::size_t i = 0; i < count; i++) {
+    // Renaming changes the parents of the next ones, too.
+    const SubtreeChange::Member member = std::get<SubtreeChange>(changes_[index]).members[i];
+    rename(member.node, scene.add(member.value, member.parent));
+  }
+  restored_ = std::get<SubtreeChange>(changes_[index]).members.front().node;
+}
+
 void History::add(Change change)
 {
   changes_.erase(changes_.begin() + std::ptrdiff_t(done_count_), changes_.end());
@@ -25,19 +93,36 @@ void History::add(Change change)
   is_in_gesture_ = true;
 }
 
-void History::apply(scene::Scene &scene, const Change &change, bool is_undone)
+void History::apply(scene::Scene &scene, std::size_t index, bool is_undone)
 {
+  restored_ = {};
+  if (const auto *subtree = std::get_if<SubtreeChange>(&changes_[index])) {
+    if (subtree->is_addition == is_undone) {
+      remove_members(scene, *subtree);
+    }
+    else {
+      add_members(scene, index);
+    }
+    return;
+  }
   std::visit(
       [&](const auto &one) {
-        const auto &value = is_undone ? one.before : one.after;
         if constexpr (requires { one.thing; }) {
-          scene.replace(one.thing, value);
+          scene.replace(one.thing, is_undone ? one.before : one.after);
         }
-        else {
-          scene.set_world(value);
+        else if constexpr (requires { one.before; }) {
+          scene.set_world(is_undone ? one.before : one.after);
         }
       },
-      change);
+      changes_[index]);
+}
+
+void History::revert_gesture(scene::Scene &scene)
+{
+  if (is_in_gesture_ && undo(scene)) {
+    changes_.erase(changes_.begin() + std::ptrdiff_t(done_count_), changes_.end());
+  }
+  is_in_gesture_ = false;
 }
 
 bool History::undo(scene::Scene &scene)
@@ -45,7 +130,7 @@ bool History::undo(scene::Scene &scene)
   if (done_count_ == 0) {
     return false;
   }
-  apply(scene, changes_[done_count_ - 1], true);
+  apply(scene, done_count_ - 1, true);
   done_count_--;
   is_in_gesture_ = false;
   return true;
@@ -56,7 +141,7 @@ bool History::redo(scene::Scene &scene)
   if (done_count_ == changes_.size()) {
     return false;
   }
-  apply(scene, changes_[done_count_], false);
+  apply(scene, done_count_, false);
   done_count_++;
   is_in_gesture_ = false;
   return true;

@@ -10,8 +10,9 @@
 namespace gnomon::view {
 
 /**
- * Edits of one scene that can be undone: of nodes, lamps, materials and the world. Each keeps the value before and
- * after it, so that undoing is an edit like any other. What it edits may not be removed from the scene.
+ * Edits of one scene that can be undone: of nodes, lamps, materials and the world, and nodes that are added and
+ * removed. Each keeps the values before and after it, so that undoing is an edit like any other. Nodes may be added and
+ * removed only by this class; lamps, cameras, meshes and materials may not be removed.
  */
 class History {
  public:
@@ -34,15 +35,26 @@ class History {
     add(ThingChange<T>{thing, before, std::move(after)});
   }
   void set_world(scene::Scene &scene, std::optional<scene::World> world);
+  /** Takes note of \a root, which was just added with its descendants. */
+  void note_added(const scene::Scene &scene, scene::Handle<scene::Node> root);
+  /** Removes \a root with its descendants. Their lamps, cameras and meshes stay in the scene. */
+  void remove(scene::Scene &scene, scene::Handle<scene::Node> root);
   /** Further edits of the same thing are undone separately. Until then they are one, as a slider makes them. */
   void end_gesture()
   {
     is_in_gesture_ = false;
   }
+  /** Undo what was edited since the last end_gesture, and forget it. */
+  void revert_gesture(scene::Scene &scene);
 
   /** \return whether there was anything to undo, or to redo */
   bool undo(scene::Scene &scene);
   bool redo(scene::Scene &scene);
+  /** The node that the last undo or redo brought back; an invalid handle: none. */
+  [[nodiscard]] scene::Handle<scene::Node> restored() const
+  {
+    return restored_;
+  }
   [[nodiscard]] std::size_t undo_count() const
   {
     return done_count_;
@@ -63,8 +75,19 @@ class History {
     std::optional<scene::World> before;
     std::optional<scene::World> after;
   };
-  using Change =
-      std::variant<ThingChange<scene::Node>, ThingChange<scene::Lamp>, ThingChange<scene::Material>, WorldChange>;
+  /** A node with its descendants, parents before their children. */
+  struct SubtreeChange {
+    struct Member {
+      scene::Handle<scene::Node> node;
+      scene::Handle<scene::Node> parent;
+      scene::Node value;
+    };
+    std::vector<Member> members;
+    /** The change added them; otherwise it removed them. */
+    bool is_addition = false;
+  };
+  using Change = std::variant<ThingChange<scene::Node>, ThingChange<scene::Lamp>, ThingChange<scene::Material>,
+                              WorldChange, SubtreeChange>;
 
   /** The last change, if it is of that kind and of the same gesture; otherwise nullptr. */
   template <typename Kind>
@@ -74,12 +97,18 @@ class History {
     return is_last ? std::get_if<Kind>(&changes_.back()) : nullptr;
   }
   void add(Change change);
-  static void apply(scene::Scene &scene, const Change &change, bool is_undone);
+  void apply(scene::Scene &scene, std::size_t index, bool is_undone);
+  [[nodiscard]] static SubtreeChange subtree(const scene::Scene &scene, scene::Handle<scene::Node> root);
+  static void remove_members(scene::Scene &scene, const SubtreeChange &change);
+  void add_members(scene::Scene &scene, std::size_t index);
+  /** A node that was removed has another handle once it is brought back. */
+  void rename(scene::Handle<scene::Node> old_node, scene::Handle<scene::Node> node);
 
   std::vector<Change> changes_;
   /** The others were undone. */
   std::size_t done_count_ = 0;
   bool is_in_gesture_ = false;
+  scene::Handle<scene::Node> restored_{};
 };
 
 }  // namespace gnomon::view

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "view_app.hh"
 
-#include <fmt/format.h>
 #include <imgui.h>
 
 #include <utility>
@@ -31,6 +30,24 @@ void show_splitter(const char *name, float height, float sign, float &width)
   ImGui::SameLine(0.0F, 0.0F);
 }
 
+/** Which gizmo is shown, and along whose axes. */
+void show_gizmo_choice(Document &document)
+{
+  constexpr std::array<const char *, 4> kinds = {"No gizmo", "Move", "Rotate", "Scale"};
+  int kind = document.gizmo ? 1 + int(*document.gizmo) : 0;
+  ImGui::SetNextItemWidth(90.0F);
+  if (ImGui::Combo("##gizmo", &kind, kinds.data(), int(kinds.size()))) {
+    document.gizmo = kind == 0 ? std::nullopt : std::optional(TransformKind(kind - 1));
+  }
+  ImGui::SameLine();
+  constexpr std::array<const char *, 2> orientations = {"World", "Local"};
+  int orientation = int(document.orientation);
+  ImGui::SetNextItemWidth(70.0F);
+  if (ImGui::Combo("##orientation", &orientation, orientations.data(), int(orientations.size()))) {
+    document.orientation = Orientation(orientation);
+  }
+}
+
 }  // namespace
 
 void App::try_draw(Viewport &viewport)
@@ -46,11 +63,8 @@ void App::try_draw(Viewport &viewport)
   }
 }
 
-void App::show_viewport(std::size_t index, glm::vec2 size)
+void App::show_viewport_header(Viewport &viewport)
 {
-  Viewport &viewport = *viewports_[index];
-  ImGui::PushID(int(index));
-  ImGui::BeginChild("viewport", {size.x, size.y}, false, ImGuiWindowFlags_NoScrollbar);
   ImGui::SetNextItemWidth(80.0F);
   if (ImGui::BeginCombo("##engine", viewport.engine.c_str())) {
     for (const std::string &name : document_->engine_names()) {
@@ -73,14 +87,31 @@ void App::show_viewport(std::size_t index, glm::vec2 size)
   ImGui::SameLine();
   const int samples = viewport.engine == "eevee" ? document_->settings().eevee.sample_count : 1;
   ImGui::TextDisabled("%d/%d", std::min(viewport.samples_drawn(), samples), samples);
+  ImGui::SameLine();
+  show_gizmo_choice(*document_);
+}
+
+void App::show_viewport(std::size_t index, glm::vec2 size)
+{
+  Viewport &viewport = *viewports_[index];
+  ImGui::PushID(int(index));
+  ImGui::BeginChild("viewport", {size.x, size.y}, false, ImGuiWindowFlags_NoScrollbar);
+  show_viewport_header(viewport);
   const ImVec2 space = ImGui::GetContentRegionAvail();
   const glm::vec2 picture = glm::max(glm::floor(glm::vec2(space.x, space.y)), 1.0F);
   viewport.set_size(glm::ivec2(picture));
   try_draw(viewport);
   const ImVec2 moved = ImGui::GetIO().MouseDelta;
-  if (viewport.show(*document_, picture, index == active_ && viewports_.size() > 1) &&
-      (moved.x != 0.0F || moved.y != 0.0F)) {
-    active_ = index;
+  try {
+    const bool is_pointed = viewport.show(*document_, picture, index == active_ && viewports_.size() > 1);
+    if (is_pointed && (moved.x != 0.0F || moved.y != 0.0F) && !active().fly && !document_->operation()) {
+      active_ = index;
+    }
+  }
+  catch (const std::exception &error) {
+    // What the pointer asked for is not possible.
+    document_->end_transform(false);
+    message(error.what(), true);
   }
   ImGui::EndChild();
   ImGui::PopID();
@@ -169,67 +200,6 @@ bool App::show_tab(const std::string &name)
   return is_one;
 }
 
-void App::show_menu()
-{
-  if (!ImGui::BeginMenuBar()) {
-    return;
-  }
-  if (ImGui::BeginMenu("File")) {
-    if (ImGui::MenuItem("Open...", "Ctrl+O")) {
-      ask("Open", default_path(".glb"), [this](const std::string &path) { open(path); });
-    }
-    if (ImGui::MenuItem("Save as...", "Ctrl+S", false, document_ != nullptr)) {
-      ask_save();
-    }
-    if (ImGui::MenuItem("Save picture...", nullptr, false, document_ != nullptr)) {
-      ask("Save the viewport as EXR or PNG", default_path(".exr"), [this](const std::string &path) {
-        try {
-          save_picture(path);
-        }
-        catch (const std::exception &error) {
-          message(error.what(), true);
-        }
-      });
-    }
-    if (ImGui::MenuItem("Quit")) {
-      quit();
-    }
-    ImGui::EndMenu();
-  }
-  if (ImGui::BeginMenu("Edit", document_ != nullptr)) {
-    if (ImGui::MenuItem("Undo", "Ctrl+Z", false, document_->history().undo_count() > 0)) {
-      undo();
-    }
-    if (ImGui::MenuItem("Redo", "Ctrl+Shift+Z", false, document_->history().redo_count() > 0)) {
-      redo();
-    }
-    ImGui::EndMenu();
-  }
-  if (ImGui::BeginMenu("View", document_ != nullptr)) {
-    for (const int count : {1, 2, 4}) {
-      const std::string text = count == 1 ? "One viewport" : fmt::format("{} viewports", count);
-      if (ImGui::MenuItem(text.c_str(), nullptr, viewport_count() == count)) {
-        set_viewport_count(count);
-      }
-    }
-    ImGui::Separator();
-    if (ImGui::MenuItem("Frame selected", ".")) {
-      frame(false);
-    }
-    if (ImGui::MenuItem("Frame all", "Home")) {
-      frame(true);
-    }
-    if (ImGui::MenuItem("Perspective / parallel", "5")) {
-      active().navigation.toggle_orthographic();
-    }
-    if (ImGui::MenuItem("Scene's camera", "0")) {
-      active().look_at(*document_);
-    }
-    ImGui::EndMenu();
-  }
-  ImGui::EndMenuBar();
-}
-
 void App::show_status()
 {
   if (messages_.empty()) {
@@ -309,6 +279,7 @@ void App::show_window()
   ImGui::EndChild();
   show_status();
   show_question();
+  show_addition_popup();
   ImGui::End();
   ImGui::PopStyleVar();
 }

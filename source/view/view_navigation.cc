@@ -93,6 +93,19 @@ void Navigation::toggle_orthographic()
   is_orthographic_ = !is_orthographic_;
 }
 
+void Navigation::move(const glm::dvec3 &way)
+{
+  target_ws_ += world_from_view_ * way;
+}
+
+void Navigation::turn(glm::dvec2 angles)
+{
+  const glm::dvec3 to_eye(0.0, 0.0, distance_);
+  const glm::dvec3 eye = target_ws_ + world_from_view_ * to_eye;
+  orbit(angles);
+  target_ws_ = eye - world_from_view_ * to_eye;
+}
+
 scene::PlacedCamera Navigation::camera(double extent) const
 {
   scene::PlacedCamera camera;

@@ -27,9 +27,18 @@ class Navigation {
   /** Multiply the distance. \pre factor > 0 */
   void zoom(double factor);
   void toggle_orthographic();
+  /** Move the eye, and the point with it: right, up and back, metres. */
+  void move(const glm::dvec3 &way);
+  /** Turn the head, as orbit, but around the eye. */
+  void turn(glm::dvec2 angles);
 
   /** The camera that \a extent, the radius of the scene, is seen with. */
   [[nodiscard]] scene::PlacedCamera camera(double extent) const;
+  /** From the eye to the point, metres. */
+  [[nodiscard]] double distance() const
+  {
+    return distance_;
+  }
   /** World space, metres: the point that the camera turns around. */
   [[nodiscard]] const glm::dvec3 &target_ws() const
   {

@@ -12,6 +12,8 @@ struct Settings {
   draw::ViewTransform view_transform = draw::ViewTransform::PbrNeutral;
   /** Stops. */
   float exposure = 0.0F;
+  /** A picture is complete once it has its samples, or after this time. 0: no limit. */
+  float seconds_max = 0.0F;
 };
 
 /** What the window starts with. */

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "view_viewport.hh"
 
+#include "view_icons.hh"
+
 #include "draw_target.hh"
 #include "gpu_read.hh"
 #include "render_camera.hh"
-
-#include <imgui.h>
-
-#include <cmath>
 
 namespace gnomon::view {
 
@@ -15,17 +13,17 @@ namespace {
 
 constexpr glm::vec4 outline_color(1.0F, 0.55F, 0.1F, 1.0F);
 constexpr glm::vec4 backdrop(0.22F, 0.22F, 0.23F, 1.0F);
-constexpr float lamp_radius_px = 6.0F;
-/** Of a pointer that moves by the picture's height. */
-constexpr double orbit_angle = 3.0;
 
 }  // namespace
 
 void Viewport::close()
 {
   viewport_.reset();
+  overlay_.reset();
   synced_ = {};
   is_complete_ = false;
+  is_transforming_ = false;
+  fly.reset();
 }
 
 void Viewport::look_at(const Document &document)
@@ -39,6 +37,18 @@ void Viewport::look_at(const Document &document)
   navigation.look_through(cameras.front(), bounds);
 }
 
+Viewport::OverlayKey Viewport::overlay_key(Document &document) const
+{
+  if (!has_overlays) {
+    return {};
+  }
+  OverlayKey key{true, document.selected, document.gizmo, document.orientation, pointed_, {}};
+  if (document.operation()) {
+    key.operation = document.operation()->transform();
+  }
+  return key;
+}
+
 bool Viewport::draw(Document &document)
 {
   render_scene::RenderScene &render_scene = document.render_scene();
@@ -47,13 +57,15 @@ bool Viewport::draw(Document &document)
   const bool is_synced = is_same && !has_failed_;
   const scene::PlacedCamera camera = navigation.camera(double(document.scene().bounds().radius()));
   const draw::View view = render_scene::view_of(camera, size_px_, render_scene.origin_ws());
-  if (is_same && is_complete_ && view == drawn_view_ && outlined_ == document.selected) {
+  const OverlayKey overlays = overlay_key(document);
+  if (is_same && is_complete_ && view == drawn_view_ && overlaid_ == overlays) {
     return true;
   }
   // Noted first: what cannot be drawn is tried again when something changes.
   synced_ = key;
   drawn_view_ = view;
-  outlined_ = document.selected;
+  map_ = PictureMap(view, render_scene.origin_ws(), size_px_);
+  overlaid_ = overlays;
   is_complete_ = true;
   has_failed_ = true;
 
@@ -61,6 +73,7 @@ bool Viewport::draw(Document &document)
   canvas_.clear(backdrop);
   if (!viewport_) {
     viewport_ = std::make_unique<draw::Viewport>(device_, size_px_);
+    overlay_.emplace(render_scene);
   }
   if (viewport_->size_px() != size_px_) {
     viewport_->resize(size_px_);
@@ -73,12 +86,41 @@ bool Viewport::draw(Document &document)
   target.composition = draw::Composition::Over;
   target.view_transform = document.settings().view_transform;
   target.exposure = document.settings().exposure;
+  const auto now = std::chrono::steady_clock::now();
   viewport_->draw(std::span(&one, 1), view, target);
-  document.overlay().draw_outline(view, size_px_, document.selected_nodes(), outline_color, target);
+  started_ = viewport_->samples_drawn() <= 1 ? now : started_;
+  draw_overlays(document, target);
   auto *eevee = dynamic_cast<eevee::Engine *>(one);
+  if (eevee) {
+    limit_time(document, *eevee);
+  }
   has_failed_ = false;
   is_complete_ = !eevee || eevee->is_complete(*viewport_);
   return is_complete_;
+}
+
+void Viewport::limit_time(const Document &document, eevee::Engine &eevee)
+{
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - started_;
+  const float seconds_max = document.settings().seconds_max;
+  if (seconds_max > 0.0F && passed.count() > double(seconds_max)) {
+    eevee.finish(*viewport_);
+  }
+}
+
+void Viewport::draw_overlays(Document &document, const draw::Target &target)
+{
+  if (!has_overlays) {
+    return;
+  }
+  overlay_->draw_outline(drawn_view_, size_px_, document.selected_nodes(), outline_color, target);
+  std::vector<overlay::Line> lines = icon_lines(document.scene(), map_, document.selected);
+  const std::optional<Gizmo> gizmo = gizmo_of(document);
+  if (document.operation() || gizmo) {
+    const auto more = document.operation() ? axis_lines(*document.operation(), map_) : gizmo->lines(map_, pointed_);
+    lines.insert(lines.end(), more.begin(), more.end());
+  }
+  overlay_->draw_lines(drawn_view_, size_px_, lines, target);
 }
 
 std::vector<float> Viewport::radiance(Document &document)
@@ -89,101 +131,6 @@ std::vector<float> Viewport::radiance(Document &document)
   draw::Engine *one = &document.engine(engine);
   viewport_->draw(std::span(&one, 1), drawn_view_, target);
   return gpu::read_as<float>(device_, picture.texture());
-}
-
-std::optional<glm::vec2> Viewport::place_of(const scene::PlacedLamp &lamp) const
-{
-  const glm::vec4 clip = drawn_view_.clip_from_world() * glm::vec4(glm::vec3(lamp.world_from_lamp[3]), 1.0F);
-  if (!(clip.w > 0.0F)) {
-    return std::nullopt;
-  }
-  const glm::vec2 ndc = glm::vec2(clip) / clip.w;
-  if (std::abs(ndc.x) > 1.0F || std::abs(ndc.y) > 1.0F) {
-    return std::nullopt;
-  }
-  return glm::vec2(0.5F + 0.5F * ndc.x, 0.5F - 0.5F * ndc.y) * glm::vec2(size_px_);
-}
-
-void Viewport::pick(Document &document, glm::ivec2 pixel_px)
-{
-  for (const scene::PlacedLamp &lamp : document.render_scene().lamps()) {
-    const std::optional<glm::vec2> place = place_of(lamp);
-    if (place && glm::distance(*place, glm::vec2(pixel_px) + 0.5F) <= lamp_radius_px + 2.0F) {
-      document.selected = lamp.node;
-      return;
-    }
-  }
-  const glm::ivec2 from_below(pixel_px.x, size_px_.y - 1 - pixel_px.y);
-  const std::optional<overlay::Hit> hit = document.overlay().pick(drawn_view_, size_px_, from_below);
-  document.selected = hit ? hit->node : scene::Handle<scene::Node>();
-}
-
-void Viewport::show_overlays(Document &document, glm::vec2 corner, glm::vec2 size)
-{
-  ImDrawList &list = *ImGui::GetWindowDrawList();
-  list.PushClipRect({corner.x, corner.y}, {corner.x + size.x, corner.y + size.y}, true);
-  for (const scene::PlacedLamp &lamp : document.render_scene().lamps()) {
-    if (const std::optional<glm::vec2> place = place_of(lamp)) {
-      const ImVec2 middle(corner.x + place->x, corner.y + place->y);
-      const bool is_selected = lamp.node == document.selected;
-      const ImU32 color = is_selected ? IM_COL32(255, 150, 40, 255) : IM_COL32(255, 245, 200, 220);
-      list.AddCircle(middle, lamp_radius_px, IM_COL32(0, 0, 0, 160), 0, 3.5F);
-      list.AddCircle(middle, lamp_radius_px, color, 0, 1.5F);
-      list.AddCircleFilled(middle, 2.0F, color);
-    }
-  }
-  list.PopClipRect();
-}
-
-void Viewport::take_pointer(Document &document, glm::vec2 corner)
-{
-  const ImGuiIO &io = ImGui::GetIO();
-  const glm::dvec2 moved = glm::dvec2(io.MouseDelta.x, io.MouseDelta.y) / double(size_px_.y);
-  const bool is_hovered = ImGui::IsItemHovered();
-  if (is_hovered && io.MouseWheel != 0.0F) {
-    navigation.zoom(std::pow(0.85, double(io.MouseWheel)));
-  }
-  if (ImGui::IsItemActivated()) {
-    is_dragged_ = false;
-  }
-  if (ImGui::IsItemActive() && (io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F)) {
-    // With Alt, the left button stands for the middle one, as Blender's emulation of three buttons.
-    const bool turns =
-        ImGui::IsMouseDown(ImGuiMouseButton_Middle) || (io.KeyAlt && ImGui::IsMouseDown(ImGuiMouseButton_Left));
-    is_dragged_ |= turns || ImGui::IsMouseDragging(ImGuiMouseButton_Left);
-    if (turns && io.KeyShift) {
-      navigation.pan({moved.x, -moved.y});
-    }
-    else if (turns && io.KeyCtrl) {
-      navigation.zoom(std::exp(2.0 * moved.y));
-    }
-    else if (turns) {
-      navigation.orbit(-orbit_angle * moved);
-    }
-  }
-  if (is_hovered && ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !is_dragged_ && !io.KeyAlt) {
-    pick(document, glm::ivec2(int(io.MousePos.x - corner.x), int(io.MousePos.y - corner.y)));
-  }
-}
-
-bool Viewport::show(Document &document, glm::vec2 size, bool is_active)
-{
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const glm::vec2 corner(at.x, at.y);
-  set_size(glm::ivec2(size));
-  canvas_.show(size);
-  ImGui::SetCursorScreenPos(at);
-  ImGui::InvisibleButton("picture", {size.x, size.y},
-                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle);
-  const bool is_hovered = ImGui::IsItemHovered();
-  if (viewport_) {
-    take_pointer(document, corner);
-    show_overlays(document, corner, size);
-  }
-  if (is_active) {
-    ImGui::GetWindowDrawList()->AddRect(at, {at.x + size.x, at.y + size.y}, IM_COL32(90, 130, 190, 255));
-  }
-  return is_hovered;
 }
 
 }  // namespace gnomon::view

@@ -3,10 +3,12 @@
 
 #include "view_canvas.hh"
 #include "view_document.hh"
-#include "view_navigation.hh"
+#include "view_fly.hh"
+#include "view_gizmo.hh"
 
 #include "draw_viewport.hh"
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,6 +35,13 @@ class Viewport {
 
   /** Select what is at a pixel of the picture, from its upper left corner. \pre draw */
   void pick(Document &document, glm::ivec2 pixel_px);
+  /** Let the selected node follow the pointer. \pre draw \throws as TransformOperation */
+  void begin_transform(Document &document, TransformKind kind);
+  /**
+   * Drag the handle of the gizmo that is at \a from_px to \a to_px, both pixels as for pick.
+   * \return false: there is no handle \pre draw
+   */
+  bool drag_handle(Document &document, const glm::dvec2 &from_px, const glm::dvec2 &to_px);
   /** The picture so far: scene-linear, rows from the bottom, four floats each. \pre draw */
   [[nodiscard]] std::vector<float> radiance(Document &document);
   /** What the window shows of it: rows from the bottom, four bytes each. */
@@ -62,7 +71,11 @@ class Viewport {
   }
 
   Navigation navigation;
+  /** Nothing: the camera stands. */
+  std::optional<Fly> fly;
   std::string engine = "eevee";
+  /** Show lamps, cameras, the outline of what is selected, and the gizmo. */
+  bool has_overlays = true;
 
  private:
   /** All that a picture depends on. */
@@ -75,23 +88,57 @@ class Viewport {
 
     bool operator==(const Key &) const = default;
   };
-  void show_overlays(Document &document, glm::vec2 corner, glm::vec2 size);
+  /** All that is drawn over it depends on, beside the scene and the view. */
+  struct OverlayKey {
+    bool is_shown = false;
+    scene::Handle<scene::Node> selected{};
+    std::optional<TransformKind> gizmo{};
+    Orientation orientation = Orientation::World;
+    std::optional<TransformAxis> pointed{};
+    std::optional<Transform> operation{};
+
+    bool operator==(const OverlayKey &) const = default;
+  };
+  [[nodiscard]] OverlayKey overlay_key(Document &document) const;
+  /** End a picture whose time is over. */
+  void limit_time(const Document &document, eevee::Engine &eevee);
+  void draw_overlays(Document &document, const draw::Target &target);
+  void show_lamps(Document &document, glm::vec2 corner, glm::vec2 size);
   void take_pointer(Document &document, glm::vec2 corner);
-  /** Where the middle of \a lamp is, pixels from the upper left corner; nothing: not in the picture. */
-  [[nodiscard]] std::optional<glm::vec2> place_of(const scene::PlacedLamp &lamp) const;
+  void take_navigation(bool is_hovered);
+  /** \return whether there is an operation, which the pointer then acts on alone */
+  bool take_operation(Document &document);
+  /** At the selected node; nothing: it is not shown. */
+  [[nodiscard]] std::optional<Gizmo> gizmo_of(Document &document) const;
+  /** Where a point is in the picture, as pick counts; nothing: not in it. */
+  [[nodiscard]] std::optional<glm::vec2> place_of(const glm::dvec3 &position_ws) const;
 
   gpu::Device &device_;
   Canvas canvas_;
   std::unique_ptr<draw::Viewport> viewport_;
+  /** Of the document's scene; of this viewport alone, as it keeps what its view shows. */
+  std::optional<overlay::Overlay> overlay_;
   glm::ivec2 size_px_{320, 240};
   Key synced_;
   draw::View drawn_view_;
-  scene::Handle<scene::Node> outlined_;
+  /** Of drawn_view_. */
+  PictureMap map_;
+  /** Of samples_drawn() above 0: when the first was begun. */
+  std::chrono::steady_clock::time_point started_;
+  OverlayKey overlaid_;
   bool is_complete_ = false;
   /** The last draw threw. */
   bool has_failed_ = false;
   /** Whether the pointer has moved since its button went down. */
   bool is_dragged_ = false;
+  /** In pixels, as pick counts. */
+  glm::dvec2 pointer_px_{0.0};
+  /** The handle of the gizmo under the pointer. */
+  std::optional<TransformAxis> pointed_;
+  /** The document's operation began here. */
+  bool is_transforming_ = false;
+  /** It is a handle that is dragged, until the button is released. */
+  bool is_handle_dragged_ = false;
 };
 
 }  // namespace gnomon::view

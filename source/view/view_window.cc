@@ -121,9 +121,17 @@ Window::~Window()
   glfwTerminate();
 }
 
-void Window::begin_frame(bool waits)
+void Window::begin_frame(bool waits, double seconds_max)
 {
-  waits ? glfwWaitEvents() : glfwPollEvents();
+  if (!waits) {
+    glfwPollEvents();
+  }
+  else if (seconds_max > 0.0) {
+    glfwWaitEventsTimeout(seconds_max);
+  }
+  else {
+    glfwWaitEvents();
+  }
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
@@ -174,6 +182,16 @@ void Window::set_title(const std::string &title)
     title_ = title;
     glfwSetWindowTitle(window_, title.c_str());
   }
+}
+
+bool Window::is_key_down(int key) const
+{
+  return !ImGui::GetIO().WantTextInput && glfwGetKey(window_, key) == GLFW_PRESS;
+}
+
+void Window::capture_pointer(bool is_captured)
+{
+  glfwSetInputMode(window_, GLFW_CURSOR, is_captured ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
 }
 
 std::vector<KeyPress> Window::take_keys()

@@ -32,8 +32,11 @@ class Window {
   Window &operator=(const Window &) = delete;
   ~Window();
 
-  /** Wait for an event, or take those that are there, and begin a frame of the user interface. */
-  void begin_frame(bool waits);
+  /**
+   * Wait for an event, or take those that are there, and begin a frame of the user interface. \a seconds_max: waits no
+   * longer; 0: without end
+   */
+  void begin_frame(bool waits, double seconds_max);
   /** Draw the user interface into the back buffer. */
   void end_frame();
   /** Show the back buffer. */
@@ -45,6 +48,11 @@ class Window {
   [[nodiscard]] glm::ivec2 size_px() const;
   void resize(glm::ivec2 size_px);
   void set_title(const std::string &title);
+
+  /** GLFW_KEY_…; false while a field of the user interface has the keys. */
+  [[nodiscard]] bool is_key_down(int key) const;
+  /** Hide the pointer, and let it move without end. */
+  void capture_pointer(bool is_captured);
 
   /** Keys that were pressed since the last call, other than while a field of the user interface had them. */
   [[nodiscard]] std::vector<KeyPress> take_keys();

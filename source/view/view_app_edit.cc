@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+// What changes the scene and the camera, for keys, menus and scripts.
+#include "view_app.hh"
+#include "view_keys.hh"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <utility>
+
+namespace gnomon::view {
+
+void App::take_key(const KeyPress &press)
+{
+  if (active().fly) {
+    if (press.key == GLFW_KEY_ENTER || press.key == GLFW_KEY_ESCAPE) {
+      end_fly(press.key == GLFW_KEY_ENTER);
+    }
+    return;
+  }
+  if (document_ && document_->operation()) {
+    run_transform_key(*this, press);
+    return;
+  }
+  run_key(*this, press);
+}
+
+void App::begin_transform(TransformKind kind)
+{
+  if (!document_ || !active().viewport() || !document_->scene().nodes().is_live(document_->selected)) {
+    message("Nothing is selected", false);
+    return;
+  }
+  try {
+    active().begin_transform(*document_, kind);
+  }
+  catch (const std::exception &error) {
+    message(error.what(), true);
+  }
+}
+
+void App::change_transform(const std::function<bool(TransformOperation &operation)> &change)
+{
+  TransformOperation *operation = document_ ? document_->operation() : nullptr;
+  try {
+    if (operation && change(*operation)) {
+      document_->update_transform();
+    }
+  }
+  catch (const std::exception &error) {
+    message(error.what(), true);
+  }
+}
+
+void App::end_transform(bool is_kept)
+{
+  if (document_) {
+    document_->end_transform(is_kept);
+  }
+}
+
+void App::add(const Addition &addition)
+{
+  const Navigation &navigation = active().navigation;
+  document_->add(addition, navigation.target_ws(), navigation.camera(0.0).world_from_camera);
+}
+
+bool App::remove_selected()
+{
+  const bool is_removed = document_ && document_->remove_selected();
+  if (!is_removed) {
+    message("Nothing is selected", false);
+  }
+  return is_removed;
+}
+
+bool App::duplicate_selected()
+{
+  const bool is_duplicated = document_ && document_->duplicate_selected();
+  if (!is_duplicated) {
+    message("Nothing is selected", false);
+  }
+  return is_duplicated;
+}
+
+void App::begin_fly()
+{
+  if (document_) {
+    active().fly.emplace(active().navigation);
+    window_.capture_pointer(true);
+    message("Fly: W A S D, Q and E to move; Shift: fast; wheel: speed; Enter or left button: stay; Escape: back",
+            false);
+  }
+}
+
+void App::end_fly(bool is_kept)
+{
+  if (std::optional<Fly> fly = std::exchange(active().fly, std::nullopt)) {
+    active().navigation = is_kept ? active().navigation : fly->before();
+    window_.capture_pointer(false);
+  }
+}
+
+void App::step_fly()
+{
+  Viewport &viewport = active();
+  if (!viewport.fly) {
+    return;
+  }
+  const ImGuiIO &io = ImGui::GetIO();
+  const auto is_down = [&](int key) { return window_.is_key_down(key) ? 1.0 : 0.0; };
+  FlyInput input;
+  input.direction = {is_down(GLFW_KEY_D) - is_down(GLFW_KEY_A), is_down(GLFW_KEY_E) - is_down(GLFW_KEY_Q),
+                     is_down(GLFW_KEY_S) - is_down(GLFW_KEY_W)};
+  input.looked = glm::dvec2(io.MouseDelta.x, io.MouseDelta.y) / double(viewport.size_px().y);
+  input.wheel = double(io.MouseWheel);
+  input.is_fast = io.KeyShift;
+  input.seconds = double(io.DeltaTime);
+  viewport.fly->step(viewport.navigation, input);
+  // Keys that are held are no events.
+  frames_to_draw_ = std::max(frames_to_draw_, 1);
+  const bool is_left = ImGui::IsMouseClicked(ImGuiMouseButton_Left);
+  if (is_left || ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
+    end_fly(is_left);
+  }
+}
+
+void App::ask_addition()
+{
+  is_addition_asked_ = document_ != nullptr;
+}
+
+}  // namespace gnomon::view

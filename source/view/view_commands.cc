@@ -1,0 +1,423 @@
+// SPDX-License-Identifier: MIT
+#include "view_commands.hh"
+
+#include "view_keys.hh"
+
+#include <fmt/format.h>
+#include <glm/trigonometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace gnomon::view {
+
+namespace {
+
+double number(const std::string &word)
+{
+  double value = 0.0;
+  const char *end = word.data() + word.size();
+  const auto [after, error] = std::from_chars(word.data(), end, value);
+  if (error != std::errc() || after != end || !(std::abs(value) < 1e12)) {
+    throw std::runtime_error(fmt::format("'{}' is not a number", word));
+  }
+  return value;
+}
+
+int integer(const std::string &word, int min, int max)
+{
+  const double value = number(word);
+  if (value != double(int(value)) || value < min || value > max) {
+    throw std::runtime_error(fmt::format("'{}' is not an integer from {} to {}", word, min, max));
+  }
+  return int(value);
+}
+
+glm::ivec2 pixel(const std::string &x, const std::string &y)
+{
+  return {integer(x, 0, 16384), integer(y, 0, 16384)};
+}
+
+/** The index of \a word among \a names. */
+template <std::size_t count>
+int choice(const std::array<const char *, count> &names, const std::string &word, const char *what)
+{
+  const auto found = std::ranges::find(names, word, [](const char *name) { return std::string_view(name); });
+  if (found == names.end()) {
+    throw std::runtime_error(fmt::format("'{}' is no {}", word, what));
+  }
+  return int(found - names.begin());
+}
+
+Document &document(App &app)
+{
+  if (!app.document()) {
+    throw std::runtime_error("no scene is open");
+  }
+  return *app.document();
+}
+
+/** A viewport that has a picture. */
+Viewport &drawn_viewport(App &app)
+{
+  document(app);
+  if (!app.active().viewport()) {
+    throw std::runtime_error("there is no picture yet: wait");
+  }
+  return app.active();
+}
+
+/** \throws the last message where \a is_done is false */
+void require(App &app, bool is_done)
+{
+  if (!is_done) {
+    throw std::runtime_error(app.messages().back().text);
+  }
+}
+
+void open(App &app, Words words)
+{
+  require(app, app.open(words[0]));
+}
+
+void drop(App &app, Words words)
+{
+  app.open(words[0]);
+}
+
+void save(App &app, Words words)
+{
+  document(app);
+  require(app, app.save(words[0]));
+}
+
+void resize(App &app, Words words)
+{
+  app.window().resize({integer(words[0], 1, 16384), integer(words[1], 1, 16384)});
+}
+
+void set_viewports(App &app, Words words)
+{
+  const int count = integer(words[0], 1, 4);
+  if (count == 3) {
+    throw std::runtime_error("'3' viewports have no layout: 1, 2 or 4");
+  }
+  app.set_viewport_count(count);
+}
+
+void set_active(App &app, Words words)
+{
+  app.set_active(integer(words[0], 1, app.viewport_count()) - 1);
+}
+
+void use_engine(App &app, Words words)
+{
+  const std::vector<std::string> &names = document(app).engine_names();
+  if (std::ranges::find(names, words[0]) == names.end()) {
+    throw std::runtime_error(fmt::format("there is no engine '{}'", words[0]));
+  }
+  app.active().engine = words[0];
+}
+
+void look_through(App &app, Words words)
+{
+  for (const scene::PlacedCamera &camera : document(app).scene().placed_cameras()) {
+    if (camera.name == words[0]) {
+      app.active().navigation.look_through(camera, app.document()->scene().bounds());
+      return;
+    }
+  }
+  throw std::runtime_error(fmt::format("{}: has no camera '{}'", app.document()->scene().path, words[0]));
+}
+
+void look_from(App &app, Words words)
+{
+  constexpr std::array sides = {"front", "back", "left", "right", "top", "bottom"};
+  app.active().navigation.look_from(Side(choice(sides, words[0], "side")));
+}
+
+void toggle_orthographic(App &app, Words /*words*/)
+{
+  app.active().navigation.toggle_orthographic();
+}
+
+void orbit(App &app, Words words)
+{
+  app.active().navigation.orbit(glm::radians(glm::dvec2(number(words[0]), number(words[1]))));
+}
+
+void pan(App &app, Words words)
+{
+  app.active().navigation.pan({number(words[0]), number(words[1])});
+}
+
+void zoom(App &app, Words words)
+{
+  app.active().navigation.zoom(std::max(1e-6, number(words[0])));
+}
+
+void fly(App &app, Words words)
+{
+  app.active().navigation.move({number(words[0]), number(words[1]), -number(words[2])});
+}
+
+void turn(App &app, Words words)
+{
+  app.active().navigation.turn(glm::radians(glm::dvec2(number(words[0]), number(words[1]))));
+}
+
+void frame(App &app, Words words)
+{
+  document(app);
+  app.frame(!words.empty());
+}
+
+void select(App &app, Words words)
+{
+  const scene::Handle<scene::Node> node = document(app).find(words[0]);
+  if (!node) {
+    throw std::runtime_error(fmt::format("{}: has no node '{}'", app.document()->scene().path, words[0]));
+  }
+  app.document()->selected = node;
+}
+
+void pick(App &app, Words words)
+{
+  drawn_viewport(app).pick(document(app), pixel(words[0], words[1]));
+}
+
+void expect_selected(App &app, Words words)
+{
+  const scene::Node *node = document(app).scene().nodes().find(app.document()->selected);
+  const std::string name = node ? node->name : "";
+  if (name != (words.empty() ? "" : words[0])) {
+    throw std::runtime_error(fmt::format("'{}' is selected", name));
+  }
+}
+
+/** Of the selected node: its placement, flags, lamp or first material. \return whether it has the property */
+bool set_of_selected(Document &document, const std::string &name, Words values)
+{
+  const scene::Scene &scene = document.scene();
+  if (!scene.nodes().is_live(document.selected)) {
+    throw std::runtime_error("nothing is selected");
+  }
+  scene::Node node = scene.nodes()[document.selected];
+  Placement placement = placement_of(node.parent_from_node);
+  if (set_property(placement, name, values)) {
+    node.parent_from_node = placed(node.parent_from_node, placement);
+  }
+  else if (!set_property(node, name, values)) {
+    if (const scene::Lamp *lamp = scene.lamps().find(node.lamp)) {
+      scene::Lamp edited = *lamp;
+      const bool is_set = set_property(edited, name, values);
+      document.edit(node.lamp, [&](scene::Lamp &one) { one = edited; });
+      return is_set;
+    }
+    const scene::Mesh *mesh = node.meshes.empty() ? nullptr : scene.meshes().find(node.meshes.front());
+    const scene::Material *material = mesh ? scene.materials().find(mesh->material) : nullptr;
+    if (!material) {
+      return false;
+    }
+    scene::Material edited = *material;
+    const bool is_set = set_property(edited, name, values);
+    document.edit(mesh->material, [&](scene::Material &one) { one = edited; });
+    return is_set;
+  }
+  document.edit(document.selected, [&](scene::Node &one) { one = node; });
+  return true;
+}
+
+/** "world.NAME", "render.NAME", or a property of the selected node. */
+void set(App &app, Words words)
+{
+  Document &edited = document(app);
+  const std::string &name = words[0];
+  const Words values = words.subspan(1);
+  bool is_set = false;
+  if (name.starts_with("world.")) {
+    scene::World world = edited.scene().world().value_or(scene::World{});
+    is_set = set_property(world, name.substr(6), values);
+    edited.set_world(world);
+  }
+  else if (name.starts_with("render.")) {
+    Settings settings = edited.settings();
+    is_set = set_property(settings, name.substr(7), values);
+    edited.set_settings(settings);
+  }
+  else {
+    is_set = set_of_selected(edited, name, values);
+  }
+  edited.history().end_gesture();
+  if (!is_set) {
+    throw std::runtime_error(fmt::format("there is no property '{}'", name));
+  }
+}
+
+void undo(App &app, Words /*words*/)
+{
+  app.undo();
+}
+
+void redo(App &app, Words /*words*/)
+{
+  app.redo();
+}
+
+void press_keys(App &app, Words words)
+{
+  for (const std::string &word : words) {
+    const std::optional<KeyPress> press = key_of(word);
+    if (!press) {
+      throw std::runtime_error(fmt::format("'{}' is no key", word));
+    }
+    app.take_key(*press);
+  }
+}
+
+void drag_handle(App &app, Words words)
+{
+  if (!drawn_viewport(app).drag_handle(document(app), pixel(words[0], words[1]), pixel(words[2], words[3]))) {
+    throw std::runtime_error(fmt::format("no handle of a gizmo is at {}, {}", words[0], words[1]));
+  }
+}
+
+void set_gizmo(App &app, Words words)
+{
+  constexpr std::array kinds = {"none", "move", "rotate", "scale"};
+  const int kind = choice(kinds, words[0], "gizmo");
+  document(app).gizmo = kind == 0 ? std::nullopt : std::optional(TransformKind(kind - 1));
+}
+
+void set_orientation(App &app, Words words)
+{
+  constexpr std::array orientations = {"world", "local"};
+  document(app).orientation = Orientation(choice(orientations, words[0], "orientation"));
+}
+
+void set_overlays(App &app, Words words)
+{
+  constexpr std::array off_on = {"off", "on"};
+  app.active().has_overlays = choice(off_on, words[0], "choice of off and on") == 1;
+}
+
+void use_shaders(App &app, Words words)
+{
+  app.use_shaders(words[0]);
+}
+
+void add(App &app, Words words)
+{
+  document(app);
+  const auto all = additions();
+  const auto found = std::ranges::find(all, words[0], &Addition::name);
+  if (found == all.end()) {
+    throw std::runtime_error(fmt::format("'{}' cannot be added", words[0]));
+  }
+  app.add(*found);
+}
+
+void remove(App &app, Words /*words*/)
+{
+  require(app, app.remove_selected());
+}
+
+void duplicate(App &app, Words /*words*/)
+{
+  require(app, app.duplicate_selected());
+}
+
+void show_tab(App &app, Words words)
+{
+  if (!app.show_tab(words[0])) {
+    throw std::runtime_error(fmt::format("there is no tab '{}'", words[0]));
+  }
+}
+
+void expect_message(App &app, Words words)
+{
+  const std::vector<Message> &messages = app.messages();
+  if (messages.empty() || messages.back().text.find(words[0]) == std::string::npos) {
+    throw std::runtime_error(fmt::format("the last message is not about '{}' but '{}'", words[0],
+                                         messages.empty() ? "" : messages.back().text));
+  }
+}
+
+void wait(App & /*app*/, Words /*words*/) {}
+
+void save_screenshot(App &app, Words words)
+{
+  app.request_screenshot(words[0]);
+}
+
+void save_picture(App &app, Words words)
+{
+  app.save_picture(words[0]);
+}
+
+void stay(App &app, Words /*words*/)
+{
+  app.stay();
+}
+
+void quit(App &app, Words /*words*/)
+{
+  app.quit();
+}
+
+constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
+
+constexpr std::array commands = std::to_array<Command>({
+    {"open", "FILE", 1, 1, Need::Frame, open},
+    {"drop", "FILE", 1, 1, Need::Frame, drop},
+    {"save", "FILE", 1, 1, Need::Frame, save},
+    {"size", "WIDTH HEIGHT", 2, 2, Need::Frame, resize},
+    {"viewports", "1|2|4", 1, 1, Need::Frame, set_viewports},
+    {"active", "INDEX", 1, 1, Need::Nothing, set_active},
+    {"engine", "NAME", 1, 1, Need::Nothing, use_engine},
+    {"overlays", "on|off", 1, 1, Need::Nothing, set_overlays},
+    {"camera", "NAME", 1, 1, Need::Nothing, look_through},
+    {"look", "front|back|left|right|top|bottom", 1, 1, Need::Nothing, look_from},
+    {"orthographic", "", 0, 0, Need::Nothing, toggle_orthographic},
+    {"orbit", "DEGREES DEGREES", 2, 2, Need::Nothing, orbit},
+    {"pan", "RIGHT UP", 2, 2, Need::Nothing, pan},
+    {"zoom", "FACTOR", 1, 1, Need::Nothing, zoom},
+    {"fly", "RIGHT UP FORWARD", 3, 3, Need::Nothing, fly},
+    {"turn", "DEGREES DEGREES", 2, 2, Need::Nothing, turn},
+    {"frame", "[all]", 0, 1, Need::Nothing, frame},
+    {"select", "NODE", 1, 1, Need::Nothing, select},
+    {"pick", "X Y", 2, 2, Need::Nothing, pick},
+    {"selected", "[NODE]", 0, 1, Need::Nothing, expect_selected},
+    {"set", "PROPERTY VALUE...", 2, 4, Need::Nothing, set},
+    {"undo", "", 0, 0, Need::Nothing, undo},
+    {"redo", "", 0, 0, Need::Nothing, redo},
+    {"key", "KEY...", 1, any, Need::Nothing, press_keys},
+    {"gizmo", "none|move|rotate|scale", 1, 1, Need::Nothing, set_gizmo},
+    {"orientation", "world|local", 1, 1, Need::Nothing, set_orientation},
+    {"drag", "X Y TO_X TO_Y", 4, 4, Need::Nothing, drag_handle},
+    {"add", "KIND", 1, 1, Need::Nothing, add},
+    {"remove", "", 0, 0, Need::Nothing, remove},
+    {"duplicate", "", 0, 0, Need::Nothing, duplicate},
+    {"shaders", "FOLDER", 1, 1, Need::Nothing, use_shaders},
+    {"tab", "NAME", 1, 1, Need::Frame, show_tab},
+    {"message", "TEXT", 1, 1, Need::Nothing, expect_message},
+    {"wait", "", 0, 0, Need::Pictures, wait},
+    {"screenshot", "FILE", 1, 1, Need::Frame, save_screenshot},
+    {"picture", "FILE", 1, 1, Need::Nothing, save_picture},
+    {"stay", "", 0, 0, Need::Nothing, stay},
+    {"quit", "", 0, 0, Need::Frame, quit},
+});
+
+}  // namespace
+
+const Command *find_command(std::string_view name)
+{
+  const auto found = std::ranges::find(commands, name, &Command::name);
+  return found == commands.end() ? nullptr : &*found;
+}
+
+}  // namespace gnomon::view

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// Edits of what is selected.
+#include "view_document.hh"
+
+namespace gnomon::view {
+
+bool Document::undo()
+{
+  const bool is_undone = history_.undo(scene_);
+  selected = history_.restored() ? history_.restored() : selected;
+  return is_undone;
+}
+
+bool Document::redo()
+{
+  const bool is_redone = history_.redo(scene_);
+  selected = history_.restored() ? history_.restored() : selected;
+  return is_redone;
+}
+
+void Document::add(const Addition &addition, const glm::dvec3 &position_ws, const glm::dmat4 &world_from_view)
+{
+  selected = view::add(scene_, addition, position_ws, world_from_view);
+  history_.note_added(scene_, selected);
+}
+
+bool Document::remove_selected()
+{
+  if (!scene_.nodes().is_live(selected)) {
+    return false;
+  }
+  history_.remove(scene_, selected);
+  selected = {};
+  return true;
+}
+
+bool Document::duplicate_selected()
+{
+  if (!scene_.nodes().is_live(selected)) {
+    return false;
+  }
+  selected = duplicate(scene_, selected);
+  history_.note_added(scene_, selected);
+  return true;
+}
+
+void Document::begin_transform(const Transform &transform, const PictureMap &map, const glm::dvec2 &pointer)
+{
+  end_transform(true);
+  operation_.emplace(scene_, selected, transform, map, pointer);
+  history_.end_gesture();
+}
+
+void Document::update_transform()
+{
+  if (operation_ && !scene_.nodes().is_live(operation_->node())) {
+    operation_.reset();
+  }
+  if (operation_) {
+    const glm::dmat4 moved = operation_->parent_from_node();
+    edit(operation_->node(), [&](scene::Node &node) { node.parent_from_node = moved; });
+  }
+}
+
+void Document::end_transform(bool is_kept)
+{
+  if (!operation_) {
+    return;
+  }
+  operation_.reset();
+  if (is_kept) {
+    history_.end_gesture();
+  }
+  else {
+    history_.revert_gesture(scene_);
+  }
+}
+
+}  // namespace gnomon::view

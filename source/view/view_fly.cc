@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#include "view_fly.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gnomon::view {
+
+namespace {
+
+/** Of a pointer that moves by the picture's height; radians. */
+constexpr double look_angle = 1.5;
+constexpr double fast_factor = 5.0;
+constexpr double wheel_factor = 1.2;
+/** A frame that took longer is a step of this time, so that nobody flies through walls unseen. */
+constexpr double seconds_max = 0.1;
+
+}  // namespace
+
+void Fly::step(Navigation &navigation, const FlyInput &input)
+{
+  speed_ = std::clamp(speed_ * std::pow(wheel_factor, input.wheel), 1e-4, 1e6);
+  navigation.turn(-look_angle * input.looked);
+  const double metres = speed_ * (input.is_fast ? fast_factor : 1.0) * std::min(input.seconds, seconds_max);
+  navigation.move(metres * input.direction);
+}
+
+}  // namespace gnomon::view

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "view_picture_map.hh"
+
+#include "overlay.hh"
+#include "scene.hh"
+
+namespace gnomon::view {
+
+/**
+ * Lines that show the visible lamps and cameras of \a scene in the picture of \a map: the size of point lamps, the
+ * direction of suns, the cone of spots, the surface of area lamps, the frame of cameras. What is \a selected is
+ * highlighted. Parts without a size of their own have the same size on the screen at every distance. A camera that the
+ * picture looks through is left out.
+ */
+[[nodiscard]] std::vector<overlay::Line> icon_lines(const scene::Scene &scene, const PictureMap &map,
+                                                    scene::Handle<scene::Node> selected);
+
+}  // namespace gnomon::view

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: MIT
+#include "view_transform.hh"
+
+#include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace gnomon::view {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+/** The pointer's distances from a node below it, in pixels, are not used as a factor. */
+constexpr double distance_min_px = 4.0;
+
+int index_of(TransformAxis axis)
+{
+  return std::max(0, int(axis) - 1);
+}
+
+/** Where on the line through \a position_ws the point is that is nearest to \a ray; metres along \a axis_ws. */
+double nearest_on_axis(const Ray &ray, const glm::dvec3 &position_ws, const glm::dvec3 &axis_ws)
+{
+  const glm::dvec3 to_eye = ray.origin_ws - position_ws;
+  const double cosine = glm::dot(axis_ws, ray.direction_ws);
+  const double across = 1.0 - cosine * cosine;
+  // An axis along the line of sight: the pointer says nothing about it.
+  if (across < 1e-4) {
+    return 0.0;
+  }
+  return (glm::dot(axis_ws, to_eye) - cosine * glm::dot(ray.direction_ws, to_eye)) / across;
+}
+
+/** Where \a ray meets a plane. */
+glm::dvec3 on_plane(const Ray &ray, const glm::dvec3 &position_ws, const glm::dvec3 &normal_ws)
+{
+  const double along = glm::dot(ray.direction_ws, normal_ws);
+  const double distance = std::abs(along) > 1e-9 ? glm::dot(position_ws - ray.origin_ws, normal_ws) / along : 0.0;
+  return ray.origin_ws + distance * ray.direction_ws;
+}
+
+/** In (-pi, pi]. */
+double wrapped(double angle)
+{
+  return std::remainder(angle, 2.0 * pi);
+}
+
+}  // namespace
+
+glm::dvec3 axis_ws(const glm::dmat4 &world_from_node, TransformAxis axis, Orientation orientation)
+{
+  const int index = index_of(axis);
+  glm::dvec3 unit(0.0);
+  unit[index] = 1.0;
+  if (orientation == Orientation::World) {
+    return unit;
+  }
+  const glm::dvec3 own(world_from_node[index]);
+  const double length = glm::length(own);
+  return length > 0.0 && std::isfinite(length) ? own / length : unit;
+}
+
+glm::dmat4 rotated(const glm::dmat4 &world_from_node, const glm::dvec3 &axis_ws, double angle)
+{
+  glm::dmat4 result = glm::rotate(glm::dmat4(1.0), angle, axis_ws) * world_from_node;
+  result[3] = world_from_node[3];
+  return result;
+}
+
+glm::dmat4 scaled(const glm::dmat4 &world_from_node, const Transform &transform, double factor)
+{
+  glm::dmat4 result = world_from_node;
+  const int index = index_of(transform.axis);
+  for (int column = 0; column < 3; column++) {
+    if (transform.axis == TransformAxis::All) {
+      result[column] *= factor;
+    }
+    else if (transform.orientation == Orientation::World) {
+      result[column][index] *= factor;
+    }
+    else if (column == index) {
+      result[column] *= factor;
+    }
+  }
+  return result;
+}
+
+TransformOperation::TransformOperation(const scene::Scene &scene, scene::Handle<scene::Node> node,
+                                       const Transform &transform, const PictureMap &map, const glm::dvec2 &pointer)
+    : node_(node),
+      transform_(transform),
+      first_orientation_(transform.orientation),
+      map_(map),
+      start_ws_(scene.world_from_node(node)),
+      start_pointer_(pointer),
+      pointer_(pointer)
+{
+  if (const scene::Handle<scene::Node> parent = scene.parent(node)) {
+    const glm::dmat4 &world_from_parent = scene.world_from_node(parent);
+    if (glm::determinant(glm::dmat3(world_from_parent)) == 0.0) {
+      throw std::runtime_error(fmt::format("node '{}': cannot be moved, as the matrix of its parent has no inverse",
+                                           scene.nodes()[node].name));
+    }
+    parent_from_world_ = glm::inverse(world_from_parent);
+  }
+}
+
+void TransformOperation::toggle_axis(TransformAxis axis)
+{
+  if (transform_.axis != axis) {
+    transform_.axis = axis;
+    transform_.orientation = first_orientation_;
+  }
+  else if (transform_.orientation == first_orientation_) {
+    transform_.orientation = first_orientation_ == Orientation::World ? Orientation::Local : Orientation::World;
+  }
+  else {
+    transform_.axis = TransformAxis::All;
+    transform_.orientation = first_orientation_;
+  }
+}
+
+void TransformOperation::point(const glm::dvec2 &pointer)
+{
+  if (const std::optional<glm::dvec2> middle = map_.pixel_of(position_ws())) {
+    const glm::dvec2 before = pointer_ - *middle;
+    const glm::dvec2 now = pointer - *middle;
+    // Pixels count downwards.
+    pointer_angle_ -= wrapped(std::atan2(now.y, now.x) - std::atan2(before.y, before.x));
+  }
+  pointer_ = pointer;
+}
+
+bool TransformOperation::type(char character)
+{
+  if ((character >= '0' && character <= '9') || (character == '.' && typed_.find('.') == std::string::npos)) {
+    typed_ += character;
+  }
+  else if (character == '-') {
+    typed_ = typed_.starts_with('-') ? typed_.substr(1) : "-" + typed_;
+  }
+  else if (character == '\b') {
+    typed_ = typed_.substr(0, typed_.size() - std::min<std::size_t>(typed_.size(), 1));
+  }
+  else {
+    return false;
+  }
+  return true;
+}
+
+std::optional<double> TransformOperation::typed() const
+{
+  if (typed_.empty()) {
+    return std::nullopt;
+  }
+  // A number that has only begun, such as "-", is 0. Its characters are those that type() takes.
+  double value = 0.0;
+  double place = 0.0;
+  for (const char character : typed_) {
+    if (character == '.') {
+      place = 1.0;
+    }
+    else if (character != '-' && place == 0.0) {
+      value = 10.0 * value + (character - '0');
+    }
+    else if (character != '-') {
+      place *= 0.1;
+      value += place * (character - '0');
+    }
+  }
+  value = std::min(value, 1e9);
+  return typed_.starts_with('-') ? -value : value;
+}
+
+glm::dvec3 TransformOperation::way_ws() const
+{
+  const glm::dvec3 axis = view::axis_ws(start_ws_, transform_.axis, transform_.orientation);
+  if (const std::optional<double> metres = typed()) {
+    return *metres * axis;
+  }
+  const Ray from = map_.ray_through(start_pointer_);
+  const Ray to = map_.ray_through(pointer_);
+  if (transform_.axis == TransformAxis::All) {
+    const glm::dvec3 normal = map_.axis_ws(2);
+    return on_plane(to, position_ws(), normal) - on_plane(from, position_ws(), normal);
+  }
+  return (nearest_on_axis(to, position_ws(), axis) - nearest_on_axis(from, position_ws(), axis)) * axis;
+}
+
+glm::dvec3 TransformOperation::rotation_axis_ws() const
+{
+  return transform_.axis == TransformAxis::All ? map_.towards_eye(position_ws())
+                                               : view::axis_ws(start_ws_, transform_.axis, transform_.orientation);
+}
+
+double TransformOperation::angle() const
+{
+  if (const std::optional<double> degrees = typed()) {
+    return *degrees * pi / 180.0;
+  }
+  // Around an axis that points away from the eye, the scene turns clockwise.
+  return glm::dot(rotation_axis_ws(), map_.towards_eye(position_ws())) >= 0.0 ? pointer_angle_ : -pointer_angle_;
+}
+
+double TransformOperation::factor() const
+{
+  if (const std::optional<double> value = typed()) {
+    return *value;
+  }
+  const std::optional<glm::dvec2> middle = map_.pixel_of(position_ws());
+  if (!middle) {
+    return 1.0;
+  }
+  return glm::distance(pointer_, *middle) / std::max(glm::distance(start_pointer_, *middle), distance_min_px);
+}
+
+glm::dmat4 TransformOperation::parent_from_node() const
+{
+  glm::dmat4 world = start_ws_;
+  switch (transform_.kind) {
+    case TransformKind::Move: world[3] += glm::dvec4(way_ws(), 0.0); break;
+    case TransformKind::Rotate: world = rotated(start_ws_, rotation_axis_ws(), angle()); break;
+    case TransformKind::Scale: world = scaled(start_ws_, transform_, factor()); break;
+  }
+  glm::dmat4 result = parent_from_world_ * world;
+  // Exactly affine, whatever rounding does.
+  for (int column = 0; column < 4; column++) {
+    result[column][3] = column == 3 ? 1.0 : 0.0;
+  }
+  return result;
+}
+
+std::string TransformOperation::text() const
+{
+  std::string where;
+  if (transform_.axis != TransformAxis::All) {
+    where = fmt::format("{}{}{}", transform_.kind == TransformKind::Rotate ? " around " : " along ",
+                        transform_.orientation == Orientation::Local ? "its " : "", "XYZ"[index_of(transform_.axis)]);
+  }
+  const std::string cursor = typed_.empty() ? "" : fmt::format("  [{}]", typed_);
+  switch (transform_.kind) {
+    case TransformKind::Move: {
+      const glm::dvec3 way = way_ws();
+      return fmt::format("Move{}: {:.4g}, {:.4g}, {:.4g} m{}", where, way.x, way.y, way.z, cursor);
+    }
+    case TransformKind::Rotate: return fmt::format("Rotate{}: {:.4g}°{}", where, angle() * 180.0 / pi, cursor);
+    case TransformKind::Scale: break;
+  }
+  return fmt::format("Scale{}: {:.4g}{}", where, factor(), cursor);
+}
+
+}  // namespace gnomon::view

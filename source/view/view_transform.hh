@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "view_picture_map.hh"
+
+#include "scene.hh"
+
+#include <optional>
+#include <string>
+
+namespace gnomon::view {
+
+enum class TransformKind { Move, Rotate, Scale };
+
+/** All: in the plane of the picture, around the line of sight, or along all axes. */
+enum class TransformAxis { All, X, Y, Z };
+
+/** Of the axes: those of the world, or of the node. */
+enum class Orientation { World, Local };
+
+struct Transform {
+  TransformKind kind = TransformKind::Move;
+  TransformAxis axis = TransformAxis::All;
+  Orientation orientation = Orientation::World;
+
+  bool operator==(const Transform &) const = default;
+};
+
+/** Unit vector of an axis of the node. All stands for X. An axis of the node that has no length is the world's. */
+[[nodiscard]] glm::dvec3 axis_ws(const glm::dmat4 &world_from_node, TransformAxis axis, Orientation orientation);
+/** \a world_from_node, turned around an axis through its position; radians. */
+[[nodiscard]] glm::dmat4 rotated(const glm::dmat4 &world_from_node, const glm::dvec3 &axis_ws, double angle);
+/** \a world_from_node, scaled from its position along the axis of \a transform. The world's axes may shear it. */
+[[nodiscard]] glm::dmat4 scaled(const glm::dmat4 &world_from_node, const Transform &transform, double factor);
+
+/**
+ * A node that follows the pointer, or a number that is typed, from begin to end. It changes nothing itself: the matrix
+ * is the result so far.
+ */
+class TransformOperation {
+ public:
+  /**
+   * \a map: the picture in which the \a pointer moves, which must stay the same.
+   * \throws std::runtime_error where the matrix of the node's parent has no inverse; scene::StaleHandle
+   */
+  TransformOperation(const scene::Scene &scene, scene::Handle<scene::Node> node, const Transform &transform,
+                     const PictureMap &map, const glm::dvec2 &pointer);
+
+  [[nodiscard]] scene::Handle<scene::Node> node() const
+  {
+    return node_;
+  }
+  [[nodiscard]] const Transform &transform() const
+  {
+    return transform_;
+  }
+  /** Where the node was, world space. */
+  [[nodiscard]] const glm::dmat4 &start_ws() const
+  {
+    return start_ws_;
+  }
+  /** Keep to an axis. The one that it keeps to already: of the other orientation, and then to none. */
+  void toggle_axis(TransformAxis axis);
+  void point(const glm::dvec2 &pointer);
+  /**
+   * A digit or '.' is appended to the number, '-' changes its sign, '\b' removes the last character. The number is used
+   * instead of the pointer: metres along the axis (All: along X), degrees, or a factor.
+   * \return false: no such character; nothing changes
+   */
+  bool type(char character);
+
+  /** Of the node as it is to be. */
+  [[nodiscard]] glm::dmat4 parent_from_node() const;
+  /** For the user: "Move along X: 1.5 m". */
+  [[nodiscard]] std::string text() const;
+
+ private:
+  [[nodiscard]] glm::dvec3 position_ws() const
+  {
+    return glm::dvec3(start_ws_[3]);
+  }
+  [[nodiscard]] std::optional<double> typed() const;
+  [[nodiscard]] glm::dvec3 way_ws() const;
+  /** Radians. */
+  [[nodiscard]] double angle() const;
+  [[nodiscard]] double factor() const;
+  [[nodiscard]] glm::dvec3 rotation_axis_ws() const;
+
+  scene::Handle<scene::Node> node_;
+  Transform transform_;
+  Orientation first_orientation_;
+  PictureMap map_;
+  glm::dmat4 parent_from_world_{1.0};
+  glm::dmat4 start_ws_{1.0};
+  glm::dvec2 start_pointer_;
+  glm::dvec2 pointer_;
+  /** Of the pointer around the node, radians, counter-clockwise on the screen; more than a turn where it goes around.
+   */
+  double pointer_angle_ = 0.0;
+  std::string typed_;
+};
+
+}  // namespace gnomon::view

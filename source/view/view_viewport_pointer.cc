@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+// What the pointer does in a viewport.
+#include "view_viewport.hh"
+
+#include <imgui.h>
+
+#include <cmath>
+
+namespace gnomon::view {
+
+namespace {
+
+constexpr float lamp_radius_px = 6.0F;
+/** Of a pointer that moves by the picture's height. */
+constexpr double orbit_angle = 3.0;
+
+}  // namespace
+
+std::optional<glm::vec2> Viewport::place_of(const glm::dvec3 &position_ws) const
+{
+  const std::optional<glm::dvec2> pixel = map_.pixel_of(position_ws);
+  const bool is_inside =
+      pixel && pixel->x >= 0.0 && pixel->y >= 0.0 && pixel->x <= double(size_px_.x) && pixel->y <= double(size_px_.y);
+  return is_inside ? std::optional(glm::vec2(*pixel)) : std::nullopt;
+}
+
+void Viewport::pick(Document &document, glm::ivec2 pixel_px)
+{
+  const auto is_at = [&](const glm::dmat4 &world) {
+    const std::optional<glm::vec2> place = place_of(glm::dvec3(world[3]));
+    return place && glm::distance(*place, glm::vec2(pixel_px) + 0.5F) <= lamp_radius_px + 2.0F;
+  };
+  if (has_overlays) {
+    for (const scene::PlacedLamp &lamp : document.scene().placed_lamps()) {
+      if (is_at(lamp.world_from_lamp)) {
+        document.selected = lamp.node;
+        return;
+      }
+    }
+    for (const scene::PlacedCamera &camera : document.scene().placed_cameras()) {
+      if (is_at(camera.world_from_camera) && document.scene().is_visible(camera.node)) {
+        document.selected = camera.node;
+        return;
+      }
+    }
+  }
+  const glm::ivec2 from_below(pixel_px.x, size_px_.y - 1 - pixel_px.y);
+  const std::optional<overlay::Hit> hit = overlay_->pick(drawn_view_, size_px_, from_below);
+  document.selected = hit ? hit->node : scene::Handle<scene::Node>();
+}
+
+std::optional<Gizmo> Viewport::gizmo_of(Document &document) const
+{
+  if (!document.gizmo || !document.scene().nodes().is_live(document.selected)) {
+    return std::nullopt;
+  }
+  return Gizmo{document.scene().world_from_node(document.selected), *document.gizmo, document.orientation};
+}
+
+void Viewport::begin_transform(Document &document, TransformKind kind)
+{
+  document.begin_transform({kind, TransformAxis::All, document.orientation}, map_, pointer_px_);
+  is_transforming_ = true;
+  is_handle_dragged_ = false;
+}
+
+bool Viewport::drag_handle(Document &document, const glm::dvec2 &from_px, const glm::dvec2 &to_px)
+{
+  const std::optional<Gizmo> gizmo = gizmo_of(document);
+  const std::optional<TransformAxis> axis = gizmo ? gizmo->handle_at(map_, from_px) : std::nullopt;
+  if (!axis) {
+    return false;
+  }
+  document.begin_transform({gizmo->kind, *axis, gizmo->orientation}, map_, from_px);
+  document.operation()->point(to_px);
+  document.update_transform();
+  document.end_transform(true);
+  return true;
+}
+
+void Viewport::show_lamps(Document &document, glm::vec2 corner, glm::vec2 size)
+{
+  ImDrawList &list = *ImGui::GetWindowDrawList();
+  list.PushClipRect({corner.x, corner.y}, {corner.x + size.x, corner.y + size.y}, true);
+  for (const scene::PlacedLamp &lamp : document.scene().placed_lamps()) {
+    if (const std::optional<glm::vec2> place = place_of(glm::dvec3(lamp.world_from_lamp[3]))) {
+      const ImVec2 middle(corner.x + place->x, corner.y + place->y);
+      const bool is_selected = lamp.node == document.selected;
+      const ImU32 color = is_selected ? IM_COL32(255, 150, 40, 255) : IM_COL32(255, 245, 200, 220);
+      list.AddCircle(middle, lamp_radius_px, IM_COL32(0, 0, 0, 160), 0, 3.5F);
+      list.AddCircle(middle, lamp_radius_px, color, 0, 1.5F);
+      list.AddCircleFilled(middle, 2.0F, color);
+    }
+  }
+  list.PopClipRect();
+}
+
+bool Viewport::take_operation(Document &document)
+{
+  TransformOperation *operation = document.operation();
+  is_transforming_ &= operation != nullptr;
+  if (!is_transforming_) {
+    return operation != nullptr;
+  }
+  const ImGuiIO &io = ImGui::GetIO();
+  if (io.MouseDelta.x != 0.0F || io.MouseDelta.y != 0.0F) {
+    operation->point(pointer_px_);
+    document.update_transform();
+  }
+  const bool is_done =
+      is_handle_dragged_ ? ImGui::IsMouseReleased(ImGuiMouseButton_Left) : ImGui::IsMouseClicked(ImGuiMouseButton_Left);
+  if (is_done || ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
+    document.end_transform(is_done);
+    // The release of the button selects nothing.
+    is_dragged_ = true;
+  }
+  return true;
+}
+
+void Viewport::take_navigation(bool is_hovered)
+{
+  const ImGuiIO &io = ImGui::GetIO();
+  const glm::dvec2 moved = glm::dvec2(io.MouseDelta.x, io.MouseDelta.y) / double(size_px_.y);
+  if (is_hovered && io.MouseWheel != 0.0F) {
+    navigation.zoom(std::pow(0.85, double(io.MouseWheel)));
+  }
+  if (!ImGui::IsItemActive() || (io.MouseDelta.x == 0.0F && io.MouseDelta.y == 0.0F)) {
+    return;
+  }
+  // With Alt, the left button stands for the middle one, as Blender's emulation of three buttons.
+  const bool turns =
+      ImGui::IsMouseDown(ImGuiMouseButton_Middle) || (io.KeyAlt && ImGui::IsMouseDown(ImGuiMouseButton_Left));
+  is_dragged_ |= turns || ImGui::IsMouseDragging(ImGuiMouseButton_Left);
+  if (turns && io.KeyShift) {
+    navigation.pan({moved.x, -moved.y});
+  }
+  else if (turns && io.KeyCtrl) {
+    navigation.zoom(std::exp(2.0 * moved.y));
+  }
+  else if (turns) {
+    navigation.orbit(-orbit_angle * moved);
+  }
+}
+
+void Viewport::take_pointer(Document &document, glm::vec2 corner)
+{
+  const ImGuiIO &io = ImGui::GetIO();
+  const bool is_hovered = ImGui::IsItemHovered();
+  // Without a pointer, keys begin in the middle.
+  pointer_px_ = ImGui::IsMousePosValid() ? glm::dvec2(io.MousePos.x - corner.x, io.MousePos.y - corner.y)
+                                         : 0.5 * glm::dvec2(size_px_);
+  if (fly) {
+    return;
+  }
+  if (ImGui::IsItemActivated()) {
+    is_dragged_ = false;
+  }
+  if (take_operation(document)) {
+    pointed_.reset();
+    return;
+  }
+  if (!ImGui::IsItemActive()) {
+    const std::optional<Gizmo> gizmo = is_hovered && has_overlays ? gizmo_of(document) : std::nullopt;
+    pointed_ = gizmo ? gizmo->handle_at(map_, pointer_px_) : std::nullopt;
+  }
+  if (ImGui::IsItemActivated() && pointed_ && !io.KeyAlt && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
+    document.begin_transform({*document.gizmo, *pointed_, document.orientation}, map_, pointer_px_);
+    is_transforming_ = true;
+    is_handle_dragged_ = true;
+    return;
+  }
+  take_navigation(is_hovered);
+  if (is_hovered && ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !is_dragged_ && !io.KeyAlt) {
+    pick(document, glm::ivec2(pointer_px_));
+  }
+}
+
+bool Viewport::show(Document &document, glm::vec2 size, bool is_active)
+{
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const glm::vec2 corner(at.x, at.y);
+  set_size(glm::ivec2(size));
+  canvas_.show(size);
+  ImGui::SetCursorScreenPos(at);
+  ImGui::InvisibleButton("picture", {size.x, size.y},
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle);
+  const bool is_hovered = ImGui::IsItemHovered();
+  if (viewport_) {
+    take_pointer(document, corner);
+    if (has_overlays) {
+      show_lamps(document, corner, size);
+    }
+    if (is_transforming_ && document.operation()) {
+      const std::string text = document.operation()->text();
+      ImGui::GetWindowDrawList()->AddText({at.x + 9.0F, at.y + 7.0F}, IM_COL32(0, 0, 0, 200), text.c_str());
+      ImGui::GetWindowDrawList()->AddText({at.x + 8.0F, at.y + 6.0F}, IM_COL32(255, 255, 255, 255), text.c_str());
+    }
+  }
+  if (is_active) {
+    ImGui::GetWindowDrawList()->AddRect(at, {at.x + size.x, at.y + size.y}, IM_COL32(90, 130, 190, 255));
+  }
+  return is_hovered;
+}
+
+}  // namespace gnomon::view
