@@ -1,7 +1,7 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// Two triangles for each line: a rectangle on the screen, with half a pixel more at each side for a soft edge. Its ends
-// reach beyond the line's by half of the width, so that lines with a common end join.
+// Two triangles for each line: a rectangle on the screen, with half a pixel more at each side for a soft edge. It ends where
+// the line does, so that the lines of a curve hardly overlap, and their soft edges are blended once.
 #include "overlay/overlay_lines_lib.glsl"
 #include "shared/overlay_line_shared.h"
 
@@ -62,7 +62,6 @@ void main()
   vec2 along = length_px > 0.0 ? way_px / length_px : vec2(1.0, 0.0);
   vec2 across = vec2(-along.y, along.x);
   vec4 end = is_to ? to : from;
-  vec2 pixel =
-      pixel_of(end) + across * line_across_px + along * (is_to ? line_half_width_px : -line_half_width_px);
+  vec2 pixel = pixel_of(end) + across * line_across_px;
   gl_Position = vec4(2.0 * pixel / vec2(picture_size_px) - 1.0, end.z / end.w, 1.0);
 }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::array all_axes = {TransformAxis::X, TransformAxis::Y, TransformAxis::Z, TransformAxis::All};
 /** Indexed by TransformAxis. */
-constexpr std::array<glm::vec4, 4> colors = {glm::vec4(0.9F, 0.9F, 0.9F, 0.8F), glm::vec4(0.95F, 0.25F, 0.3F, 1.0F),
+constexpr std::array<glm::vec4, 4> colors = {glm::vec4(0.85F, 0.85F, 0.85F, 1.0F), glm::vec4(0.95F, 0.25F, 0.3F, 1.0F),
                                              glm::vec4(0.5F, 0.8F, 0.15F, 1.0F), glm::vec4(0.25F, 0.55F, 1.0F, 1.0F)};
 constexpr glm::vec4 pointed_color(1.0F, 0.9F, 0.35F, 1.0F);
 

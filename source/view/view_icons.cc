@@ -11,8 +11,8 @@ namespace gnomon::view {
 
 namespace {
 
-constexpr glm::vec4 lamp_color(1.0F, 0.93F, 0.7F, 0.8F);
-constexpr glm::vec4 camera_color(0.75F, 0.85F, 1.0F, 0.8F);
+constexpr glm::vec4 lamp_color(0.9F, 0.84F, 0.63F, 1.0F);
+constexpr glm::vec4 camera_color(0.68F, 0.77F, 0.9F, 1.0F);
 constexpr glm::vec4 selected_color(1.0F, 0.6F, 0.15F, 1.0F);
 
 /** Lengths on the screen, pixels. */
@@ -104,7 +104,7 @@ void add_spot(const Place &place, const scene::PlacedLamp &lamp)
     // From here to the edge the light becomes weaker: scene::Lamp::spot_blend.
     const double inner = std::acos(std::cos(outer) + (1.0 - std::cos(outer)) * double(lamp.spot_blend));
     LineBrush faint = place.brush;
-    faint.color.a *= 0.5F;
+    faint.color = glm::vec4(0.6F * glm::vec3(faint.color), 1.0F);
     faint.path(rim(inner), true);
   }
 }

@@ -30,24 +30,6 @@ void show_splitter(const char *name, float height, float sign, float &width)
   ImGui::SameLine(0.0F, 0.0F);
 }
 
-/** Which gizmo is shown, and along whose axes. */
-void show_gizmo_choice(Document &document)
-{
-  constexpr std::array<const char *, 4> kinds = {"No gizmo", "Move", "Rotate", "Scale"};
-  int kind = document.gizmo ? 1 + int(*document.gizmo) : 0;
-  ImGui::SetNextItemWidth(90.0F);
-  if (ImGui::Combo("##gizmo", &kind, kinds.data(), int(kinds.size()))) {
-    document.gizmo = kind == 0 ? std::nullopt : std::optional(TransformKind(kind - 1));
-  }
-  ImGui::SameLine();
-  constexpr std::array<const char *, 2> orientations = {"World", "Local"};
-  int orientation = int(document.orientation);
-  ImGui::SetNextItemWidth(70.0F);
-  if (ImGui::Combo("##orientation", &orientation, orientations.data(), int(orientations.size()))) {
-    document.orientation = Orientation(orientation);
-  }
-}
-
 }  // namespace
 
 void App::try_draw(Viewport &viewport)
@@ -87,8 +69,6 @@ void App::show_viewport_header(Viewport &viewport)
   ImGui::SameLine();
   const int samples = viewport.engine == "eevee" ? document_->settings().eevee.sample_count : 1;
   ImGui::TextDisabled("%d/%d", std::min(viewport.samples_drawn(), samples), samples);
-  ImGui::SameLine();
-  show_gizmo_choice(*document_);
 }
 
 void App::show_viewport(std::size_t index, glm::vec2 size)

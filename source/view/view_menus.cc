@@ -4,9 +4,31 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <array>
 #include <utility>
 
 namespace gnomon::view {
+
+namespace {
+
+/** Which gizmo is shown, and along whose axes. */
+void show_gizmo_choice(Document &document)
+{
+  constexpr std::array<const char *, 4> kinds = {"No gizmo", "Move", "Rotate", "Scale"};
+  int kind = document.gizmo ? 1 + int(*document.gizmo) : 0;
+  ImGui::SetNextItemWidth(90.0F);
+  if (ImGui::Combo("##gizmo", &kind, kinds.data(), int(kinds.size()))) {
+    document.gizmo = kind == 0 ? std::nullopt : std::optional(TransformKind(kind - 1));
+  }
+  constexpr std::array<const char *, 2> orientations = {"World", "Local"};
+  int orientation = int(document.orientation);
+  ImGui::SetNextItemWidth(70.0F);
+  if (ImGui::Combo("##orientation", &orientation, orientations.data(), int(orientations.size()))) {
+    document.orientation = Orientation(orientation);
+  }
+}
+
+}  // namespace
 
 void App::show_additions()
 {
@@ -129,6 +151,10 @@ void App::show_menu()
   if (ImGui::BeginMenu("View", document_ != nullptr)) {
     show_view_menu();
     ImGui::EndMenu();
+  }
+  if (document_) {
+    ImGui::Separator();
+    show_gizmo_choice(*document_);
   }
   ImGui::EndMenuBar();
 }
