@@ -190,7 +190,10 @@ void App::show_status()
   if (last.is_error) {
     ImGui::PushStyleColor(ImGuiCol_Text, {1.0F, 0.45F, 0.35F, 1.0F});
   }
-  ImGui::TextUnformatted(last.text.c_str());
+  // The line has room for one; compilers write several.
+  std::string line = last.text;
+  std::ranges::replace(line, '\n', ' ');
+  ImGui::TextUnformatted(line.c_str());
   if (last.is_error) {
     ImGui::PopStyleColor();
   }
