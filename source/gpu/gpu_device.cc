@@ -336,6 +336,8 @@ void Device::copy_layers(const Texture &source, const Texture &target)
 std::vector<std::byte> Device::read(const Texture &texture, int layer)
 {
   const TextureDesc &desc = texture.desc();
+  GNOMON_ASSERT(std::this_thread::get_id() == thread_, "texture '{}' is read on another thread than the device's",
+                desc.name);
   GNOMON_ASSERT(!recording_, "a read of texture '{}' during a recording", desc.name);
   GNOMON_ASSERT(texture && layer >= 0 && layer < desc.layers, "texture '{}' has no layer {}", desc.name, layer);
   std::vector<std::byte> texels(layer_size_bytes(desc));

@@ -6,6 +6,7 @@ namespace gnomon::gpu {
 
 void Device::submit(Packet &packet)
 {
+  GNOMON_ASSERT(std::this_thread::get_id() == thread_, "a packet is submitted on another thread than the device's");
   GNOMON_ASSERT(packet.is_pending_ && packet.link_->device == this, "the packet is not recorded for this device");
   packet.is_pending_ = false;
   try {
@@ -133,6 +134,7 @@ void Device::execute_list(const CommandList &list)
 
 void Device::submit_now(const CommandList &list)
 {
+  GNOMON_ASSERT(std::this_thread::get_id() == thread_, "a list is submitted on another thread than the device's");
   GNOMON_ASSERT(done_serial_ == serial_, "a submit outside of a recording, while a packet is pending");
   destroy_queued();
   try {

@@ -187,6 +187,8 @@ void Device::perform(Operation operation)
     }
     return;
   }
+  GNOMON_ASSERT(std::this_thread::get_id() == thread_,
+                "a call outside of a recording, on another thread than the device's");
   GNOMON_ASSERT(done_serial_ == serial_, "a call outside of a recording, while a packet is pending");
   destroy_queued();
   execute(operation, nullptr);

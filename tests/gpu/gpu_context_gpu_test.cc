@@ -117,6 +117,22 @@ TEST_F(HostContextGpu, DrawsAndStaysTheHosts)
   EXPECT_GE(major, 4) << "the context does not work any more";
 }
 
+#ifndef NDEBUG
+TEST_F(HostContextGpu, CallsInAnotherContextStopTheProgram)
+{
+  const auto device = create_gl_device({.context = ContextKind::Host});
+  const char *message = "the context in which the device was made is not current";
+  {
+    const test::EglHostContext other;
+    ASSERT_TRUE(other.is_current());
+    EXPECT_DEATH(static_cast<void>(device->create_texture({.name = "t"})), message);
+  }
+  EXPECT_DEATH(device->finish(), message);
+  host.make_current();
+  EXPECT_EQ(small_picture(*device), SMALL_PICTURE);
+}
+#endif
+
 GLint integer(GLenum name)
 {
   // The query of the polygon mode may return two values.

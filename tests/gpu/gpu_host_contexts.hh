@@ -44,7 +44,7 @@ class EglHostContext final : public HostContext {
         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
     context_ = eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted.data());
     if (context_ != EGL_NO_CONTEXT) {
-      eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);
+      make_current();
     }
   }
   ~EglHostContext() override
@@ -53,6 +53,10 @@ class EglHostContext final : public HostContext {
       eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
       eglDestroyContext(display_, context_);
     }
+  }
+  void make_current() const
+  {
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);
   }
   [[nodiscard]] bool is_current() const override
   {

@@ -2,6 +2,7 @@
 #include "gpu/gpu_testing.hh"
 
 #include <algorithm>
+#include <thread>
 
 namespace gnomon::gpu {
 namespace {
@@ -329,6 +330,25 @@ TEST(Packet, OutlivesItsDevice)
     texture = device->create_texture({.name = "t"});
   }
   EXPECT_FALSE(texture);
+}
+
+TEST(DeviceDeathTest, CallsOnAnotherThreadStopTheProgramUnlessTheyAreRecorded)
+{
+  const auto device = create_null_device();
+  const auto on_another_thread = [](auto &&call) { std::thread(call).join(); };
+  const auto create = [&] { static_cast<void>(device->create_sampler({.name = "s"})); };
+  const Texture texture = device->create_texture({.name = "t"});
+  Packet packet;
+  on_another_thread([&] {
+    const Recording recording(*device, packet);
+    create();
+  });
+  const char *message = "another thread than the device's";
+  EXPECT_DEATH(on_another_thread([&] { device->submit(packet); }), message);
+  device->submit(packet);
+  EXPECT_DEATH(on_another_thread(create), message);
+  EXPECT_DEATH(on_another_thread([&] { device->submit(CommandList()); }), message);
+  EXPECT_DEATH(on_another_thread([&] { static_cast<void>(device->read(texture)); }), message);
 }
 
 TEST(PacketMemoryTest, SpansStayWhileMoreIsCopied)

@@ -11,6 +11,7 @@
 #include <dlfcn.h>
 
 #include <array>
+#include <atomic>
 #include <cstdlib>
 #include <cstring>
 #include <optional>
@@ -269,14 +270,19 @@ void *loaded_glx_function()
 
 }  // namespace
 
-bool has_current_context()
+const void *current_context()
 {
-  if (eglGetCurrentContext() != EGL_NO_CONTEXT) {
-    return true;
+  if (const void *context = eglGetCurrentContext()) {
+    return context;
   }
   using GetCurrent = void *(*)();
-  const auto get_current = reinterpret_cast<GetCurrent>(loaded_glx_function());
-  return get_current && get_current();
+  // The host may load the library later.
+  static std::atomic<void *> found = nullptr;
+  if (!found) {
+    found = loaded_glx_function();
+  }
+  const auto get_current = reinterpret_cast<GetCurrent>(found.load());
+  return get_current ? get_current() : nullptr;
 }
 
 }  // namespace gnomon::gpu

@@ -20,7 +20,7 @@ class GlContext {
  */
 [[nodiscard]] std::unique_ptr<GlContext> create_headless_context(bool is_debug);
 
-/** Whether an EGL or GLX context is current on this thread. */
-[[nodiscard]] bool has_current_context();
+/** The EGL or GLX context that is current on this thread; nullptr if there is none. */
+[[nodiscard]] const void *current_context();
 
 }  // namespace gnomon::gpu

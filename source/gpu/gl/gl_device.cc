@@ -43,6 +43,10 @@ std::uint64_t elapsed_ticks(std::uint64_t begin, std::uint64_t end, int bits)
 
 GlDevice::Entry::Entry(GlDevice &device) : device_(device)
 {
+#ifndef NDEBUG
+  GNOMON_ASSERT(device.entry_depth_ > 0 || current_context() == device.made_in_,
+                "the context in which the device was made is not current on this thread");
+#endif
   if (device.entry_depth_++ == 0 && !device.context_) {
     host_errors_ = take_gl_errors();
   }
@@ -231,12 +235,12 @@ std::unique_ptr<Device> create_gl_device(const GlDeviceDesc &desc)
   std::unique_ptr<GlContext> context;
   if (desc.context == ContextKind::Headless) {
     // The new context would become current instead, and the owner of the other context would use the wrong one.
-    if (has_current_context()) {
+    if (current_context()) {
       throw Error("another context, of a device or of the host, is already current on this thread");
     }
     context = create_headless_context(desc.is_debug);
   }
-  else if (!has_current_context()) {
+  else if (!current_context()) {
     throw Error("no OpenGL context of the host is current on this thread");
   }
   constexpr int version_needed = 45;

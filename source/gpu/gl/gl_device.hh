@@ -173,6 +173,8 @@ class GlDevice final : public Device {
   void complete_textures();
 
   std::unique_ptr<GlContext> context_;
+  /** The context that was current when the device was made, and is in each call. */
+  const void *const made_in_ = current_context();
   /** Whether the driver reports errors as debug messages. Always false in a host's context. */
   bool is_debug_;
   std::vector<std::string> driver_errors_;
