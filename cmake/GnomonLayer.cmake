@@ -20,6 +20,13 @@ endfunction()
 function(gnomon_compile_settings TARGET)
   target_compile_features(${TARGET} PUBLIC cxx_std_20)
   set_target_properties(${TARGET} PROPERTIES CXX_EXTENSIONS OFF)
+  # The module for Python links the static libraries. Not for code of tests and programs, which stays as the compiler makes it by
+  # default. A function that another library could replace is not inlined; none replaces ours.
+  get_target_property(TYPE ${TARGET} TYPE)
+  if(GNOMON_PYTHON AND NOT TYPE STREQUAL "EXECUTABLE" AND NOT "TEST" IN_LIST ARGN)
+    set_target_properties(${TARGET} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_compile_options(${TARGET} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>)
+  endif()
   target_compile_options(${TARGET} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
     -Wnon-virtual-dtor -Woverloaded-virtual $<$<BOOL:${GNOMON_WERROR}>:-Werror>)
   if(GNOMON_SANITIZE)

@@ -28,10 +28,12 @@ set(source/cli source/view source/verify source/measure source/engines/eevee sou
   source/gltf source/image source/scene shaders)
 set(source/view source/engines/eevee source/engines/unlit source/engines/overlay source/render_scene source/draw source/shader_check source/gpu source/gltf
   source/scene shaders)
+set(source/python source/measure source/reference source/embed source/engines/eevee source/engines/unlit source/engines/overlay source/render_scene source/draw
+  source/gpu source/gltf source/scene shaders)
 set(shaders "")
 # A folder within another layer's folder comes after it.
 set(LAYERS source/gpu source/shader_check source/draw source/scene source/image source/gltf source/render_scene source/engines/eevee
-  source/engines/unlit source/engines/overlay source/engines/interface_tool source/embed source/reference source/measure source/verify source/view source/cli shaders)
+  source/engines/unlit source/engines/overlay source/engines/interface_tool source/embed source/reference source/measure source/verify source/view source/cli source/python shaders)
 
 set(VIOLATIONS 0)
 # violation(FILE INCLUDE WHY): reports a violation. INCLUDE: the text of the line.

@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: MIT
+# Types of the module. help(gnomon.Lamp) and the like have units and ranges. Properties are also arguments of edit() and add_...().
+from os import PathLike
+from typing import Any, Literal, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Vector = tuple[float, float, float]
+Background = None | Literal["world"] | Sequence[float]
+
+class Error(Exception): ...
+class FileError(Error): ...
+class StaleHandle(Error): ...
+class InvalidEdit(Error): ...
+class DeviceError(Error): ...
+class DeviceLost(DeviceError): ...
+
+class _Enum:
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> int: ...
+
+class LampKind(_Enum):
+    POINT: LampKind
+    SUN: LampKind
+    SPOT: LampKind
+    HEMI: LampKind
+    AREA: LampKind
+
+class AreaShape(_Enum):
+    RECTANGLE: AreaShape
+    ELLIPSE: AreaShape
+
+class ShadowKind(_Enum):
+    NONE: ShadowKind
+    HARD: ShadowKind
+    PCF: ShadowKind
+    ESM: ShadowKind
+    EVSM: ShadowKind
+
+class AlphaMode(_Enum):
+    OPAQUE: AlphaMode
+    MASK: AlphaMode
+    BLEND: AlphaMode
+
+class CameraKind(_Enum):
+    PERSPECTIVE: CameraKind
+    ORTHOGRAPHIC: CameraKind
+
+class Lamp:
+    name: str
+    kind: LampKind
+    color: Vector
+    intensity: float
+    radius: float
+    angle: float
+    spot_outer_angle: float
+    spot_blend: float
+    range: float
+    area_shape: AreaShape
+    area_size_x: float
+    area_size_y: float
+    shadow_kind: ShadowKind | None
+    shadow_size_px: int | None
+    def edit(self, **properties: Any) -> None: ...
+
+class Material:
+    name: str
+    base_color: Vector
+    alpha: float
+    alpha_mode: AlphaMode
+    alpha_cutoff: float
+    metallic: float
+    roughness: float
+    normal_scale: float
+    occlusion_strength: float
+    specular: float
+    specular_color: Vector
+    coat: float
+    coat_roughness: float
+    sheen_color: Vector
+    sheen_roughness: float
+    emissive: Vector
+    is_unlit: bool
+    is_double_sided: bool
+    def edit(self, **properties: Any) -> None: ...
+
+class Camera:
+    name: str
+    kind: CameraKind
+    vertical_angle: float
+    aspect: float
+    half_width: float
+    half_height: float
+    near: float
+    far: float
+    def edit(self, **properties: Any) -> None: ...
+
+class Mesh:
+    name: str
+    material: Material | None
+    def edit(self, **properties: Any) -> None: ...
+
+class Node:
+    name: str
+    @property
+    def parent_from_node(self) -> NDArray[np.float64]: ...
+    @parent_from_node.setter
+    def parent_from_node(self, value: ArrayLike) -> None: ...
+    position: Vector
+    meshes: list[Mesh]
+    lamp: Lamp | None
+    camera: Camera | None
+    is_visible: bool
+    casts_shadow: bool
+    receives_shadow: bool
+    parent: Node | None
+    @property
+    def world_from_node(self) -> NDArray[np.float64]: ...
+    def edit(self, **properties: Any) -> None: ...
+
+class Scene:
+    def __init__(self) -> None: ...
+    @property
+    def nodes(self) -> list[Node]: ...
+    @property
+    def meshes(self) -> list[Mesh]: ...
+    @property
+    def materials(self) -> list[Material]: ...
+    @property
+    def lamps(self) -> list[Lamp]: ...
+    @property
+    def cameras(self) -> list[Camera]: ...
+    @property
+    def warnings(self) -> list[str]: ...
+    @property
+    def bounds(self) -> tuple[Vector, Vector] | None: ...
+    def add_node(self, parent: Node | None = None, **properties: Any) -> Node: ...
+    def add_mesh(
+        self,
+        positions: NDArray[np.float32],
+        normals: NDArray[np.float32],
+        triangles: NDArray[np.uint32],
+        **properties: Any,
+    ) -> Mesh: ...
+    def add_material(self, **properties: Any) -> Material: ...
+    def add_lamp(self, **properties: Any) -> Lamp: ...
+    def add_camera(self, **properties: Any) -> Camera: ...
+    def remove(self, thing: Node | Mesh | Material | Lamp | Camera) -> None: ...
+    def set_world(
+        self,
+        color: Sequence[float] = (1.0, 1.0, 1.0),
+        strength: float = 1.0,
+        rotation: float = 0.0,
+        picture: NDArray[np.float32] | None = None,
+    ) -> None: ...
+    def remove_world(self) -> None: ...
+    def save(self, path: str | PathLike[str]) -> None: ...
+
+class Device:
+    def __init__(self) -> None: ...
+    @property
+    def description(self) -> str: ...
+    @property
+    def memory_bytes(self) -> int: ...
+
+class Report:
+    @property
+    def warnings(self) -> list[str]: ...
+    @property
+    def limits(self) -> list[str]: ...
+    @property
+    def sample_count(self) -> int: ...
+    @property
+    def frame_seconds(self) -> float: ...
+    @property
+    def memory_bytes(self) -> int: ...
+
+class Renderer:
+    sample_count: int
+    seed: int
+    background: Background
+    shadow_kind: ShadowKind
+    cube_size_px: int
+    map_size_px: int
+    esm_size_px: int
+    cascade_count: int
+    shadow_bytes_max: int
+    size: tuple[int, int]
+    def __init__(self, device: Device, scene: Scene, size: tuple[int, int], **properties: Any) -> None: ...
+    def render(self, camera: Node | None = None, seconds_max: float = ...) -> NDArray[np.float32]: ...
+    def report(self) -> Report: ...
+
+def load(path: str | PathLike[str], variant: str = "") -> Scene: ...
+
+# Where Gnomon is built with its reference.
+class ImageError:
+    @property
+    def rmse(self) -> float: ...
+    @property
+    def relative_mse(self) -> float: ...
+    @property
+    def p99(self) -> float: ...
+    @property
+    def flip(self) -> float: ...
+    @property
+    def non_finite_count(self) -> int: ...
+
+def trace(
+    scene: Scene, size: tuple[int, int], camera: Node | None = None, sample_count: int = 64
+) -> tuple[NDArray[np.float32], float]: ...
+def image_error(picture: NDArray[np.float32], reference: NDArray[np.float32]) -> ImageError: ...

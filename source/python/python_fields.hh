@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "python_scene.hh"
+#include "python_values.hh"
+
+#include <fmt/ranges.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace gnomon::python {
+
+inline constexpr double infinite = std::numeric_limits<double>::infinity();
+inline constexpr double float_max = std::numeric_limits<float>::max();
+
+/** A property in Python of values of type T. */
+template <typename T>
+struct Field {
+  std::string name;
+  std::string doc;
+  std::function<py::object(const ScenePtr &scene, const T &value)> get;
+  /** \throws py::cast_error for a value of another type; py::value_error with the reason for one out of range */
+  std::function<void(const ScenePtr &scene, T &value, py::handle set)> set;
+};
+
+template <typename T>
+using Fields = std::vector<Field<T>>;
+
+/** In the constructors below, \a access is a member of T, or a function that returns a reference to a part of a T. */
+template <typename T, typename Access>
+[[nodiscard]] Field<T> plain_field(std::string name, Access access, std::string doc)
+{
+  using Value = std::decay_t<std::invoke_result_t<Access, T &>>;
+  return {
+      std::move(name), std::move(doc),
+      [=](const ScenePtr & /*scene*/, const T &value) { return py::cast(std::invoke(access, value)); },
+      [=](const ScenePtr & /*scene*/, T &value, py::handle set) { std::invoke(access, value) = set.cast<Value>(); }};
+}
+
+/** A number from \a low to \a high, or a vector of such numbers. */
+template <typename T, typename Access>
+[[nodiscard]] Field<T> number_field(std::string name, Access access, double low, double high, std::string doc)
+{
+  using Value = std::decay_t<std::invoke_result_t<Access, T &>>;
+  Field<T> field = plain_field<T>(std::move(name), access, std::move(doc));
+  field.set = [=](const ScenePtr & /*scene*/, T &value, py::handle set) {
+    const auto number = set.cast<Value>();
+    const auto check = [&](double component) {
+      // The negated condition also refuses NaN.
+      if (!(component >= low && component <= high)) {
+        throw py::value_error(high < float_max ? fmt::format("{:g} is not from {:g} to {:g}", component, low, high)
+                                               : fmt::format("{:g} is not a number of at least {:g}", component, low));
+      }
+    };
+    if constexpr (std::is_arithmetic_v<Value>) {
+      check(double(number));
+    }
+    else {
+      for (glm::length_t i = 0; i < Value::length(); i++) {
+        check(double(number[i]));
+      }
+    }
+    std::invoke(access, value) = number;
+  };
+  return field;
+}
+
+template <typename T>
+[[nodiscard]] std::string label_of(const T &value)
+{
+  return fmt::format("{} '{}'", T::kind_name, value.name);
+}
+
+/** The handle of \a thing. \throws scene::StaleHandle; scene::InvalidEdit if it is not one of \a scene */
+template <typename U>
+[[nodiscard]] scene::Handle<U> handle_of(const ScenePtr &scene, const Thing<U> &thing)
+{
+  const U &value = thing.value();
+  if (thing.scene != scene) {
+    throw scene::InvalidEdit(label_of(value) + " is of another scene");
+  }
+  return thing.handle;
+}
+
+/** Another thing of the scene, or None. */
+template <typename T, typename U>
+[[nodiscard]] Field<T> thing_field(std::string name, scene::Handle<U> T::*member, std::string doc)
+{
+  return {std::move(name), std::move(doc),
+          [=](const ScenePtr &scene, const T &value) {
+            const bool is_there = scene->scene.pool<U>().is_live(value.*member);
+            return is_there ? py::cast(Thing<U>{scene, value.*member}) : py::object(py::none());
+          },
+          [=](const ScenePtr &scene, T &value, py::handle set) {
+            value.*member = set.is_none() ? scene::Handle<U>() : handle_of(scene, set.cast<const Thing<U> &>());
+          }};
+}
+
+/** Sets the properties of \a value that \a values names. \a label: names the value in messages */
+template <typename T>
+void set_fields(const Fields<T> &fields, const std::string &label, const ScenePtr &scene, T &value,
+                const py::dict &values)
+{
+  for (const std::pair<py::handle, py::handle> &entry : values) {
+    const auto name = entry.first.cast<std::string>();
+    const py::handle set = entry.second;
+    const auto field = std::ranges::find(fields, name, &Field<T>::name);
+    if (field == fields.end()) {
+      std::vector<std::string> names;
+      std::ranges::transform(fields, std::back_inserter(names), &Field<T>::name);
+      throw py::type_error(fmt::format("{} has no property '{}'; it has: {}", label, name, fmt::join(names, ", ")));
+    }
+    try {
+      field->set(scene, value, set);
+    }
+    catch (const py::cast_error & /*error*/) {
+      throw py::type_error(fmt::format("{}: {} cannot be {}", label, name, std::string(py::repr(set))));
+    }
+    catch (const py::value_error &error) {
+      throw scene::InvalidEdit(fmt::format("{}: {} {}", label, name, error.what()));
+    }
+  }
+}
+
+}  // namespace gnomon::python

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+#include "python_fields.hh"
+#include "python_renderer.hh"
+
+#include "gltf_export.hh"
+#include "gltf_import.hh"
+
+namespace gnomon::python {
+
+namespace {
+
+using eevee::Background;
+using eevee::Settings;
+
+const Fields<Settings> settings_fields = {
+    plain_field<Settings>("sample_count", &Settings::sample_count,
+                          "Samples for each pixel. 0: as many as fit into the `seconds_max` of render()."),
+    plain_field<Settings>("seed", &Settings::seed, "Selects the random positions of the samples."),
+    {"background", "What is seen without a surface: None (transparent), 'world', or a radiance (r, g, b), W/(sr m²).",
+     [](const ScenePtr & /*scene*/, const Settings &settings) -> py::object {
+       switch (settings.background.kind) {
+         case Background::Kind::None: return py::none();
+         case Background::Kind::World: return py::str("world");
+         case Background::Kind::Color: break;
+       }
+       return py::cast(settings.background.color);
+     },
+     [](const ScenePtr & /*scene*/, Settings &settings, py::handle set) {
+       if (set.is_none()) {
+         settings.background = {};
+       }
+       else if (py::isinstance<py::str>(set)) {
+         if (set.cast<std::string>() != "world") {
+           throw py::value_error("is neither None, 'world' nor three numbers");
+         }
+         settings.background = {Background::Kind::World};
+       }
+       else {
+         Background background{Background::Kind::Color};
+         const Field<Background> color = number_field<Background>("color", &Background::color, 0, float_max, "");
+         color.set(nullptr, background, set);
+         settings.background = background;
+       }
+     }},
+    plain_field<Settings>(
+        "shadow_kind", [](auto &settings) -> auto & { return settings.shadow.kind; },
+        "ShadowKind of lamps without one of their own. NONE: no lamp has a shadow."),
+    plain_field<Settings>(
+        "cube_size_px", [](auto &settings) -> auto & { return settings.shadow.cube_size_px; },
+        "Texels along an edge of a cube's face, for points and wide spots."),
+    plain_field<Settings>(
+        "map_size_px", [](auto &settings) -> auto & { return settings.shadow.map_size_px; },
+        "Texels along an edge of a map, for spots and suns."),
+    plain_field<Settings>(
+        "esm_size_px", [](auto &settings) -> auto & { return settings.shadow.esm.size_px; },
+        "Texels along an edge of an octahedral map, for ESM and EVSM, 4 to 8192."),
+    plain_field<Settings>(
+        "cascade_count", [](auto &settings) -> auto & { return settings.shadow.cascades.count; },
+        "Maps of each sun, 1 to 4. 0: as many as are needed for texels no larger than pixels."),
+    plain_field<Settings>(
+        "shadow_bytes_max", [](auto &settings) -> auto & { return settings.shadow.memory_bytes_max; },
+        "Most memory of all shadow maps, bytes; their sizes are reduced to fit."),
+};
+
+void set_settings(Renderer &renderer, const py::dict &values)
+{
+  Settings settings = renderer.settings();
+  set_fields(settings_fields, "renderer", renderer.scene(), settings, values);
+  renderer.use().set_settings(settings);
+}
+
+std::shared_ptr<Renderer> make_renderer(const std::shared_ptr<Device> &device, const ScenePtr &scene,
+                                        const glm::ivec2 &size_px, const py::kwargs &values)
+{
+  Settings settings{.sample_count = 16};
+  set_fields(settings_fields, "renderer", scene, settings, values);
+  return std::make_shared<Renderer>(device, scene, size_px, settings);
+}
+
+py::array_t<float> render(Renderer &renderer, const std::optional<Thing<scene::Node>> &camera, double seconds_max)
+{
+  const scene::PlacedCamera placed = camera_at(renderer.scene(), camera);
+  if (!(seconds_max > 0.0)) {
+    throw py::value_error(fmt::format("render: seconds_max {} is not above 0", seconds_max));
+  }
+  const glm::ivec2 size_px = renderer.size_px();
+  bool is_interrupted = false;
+  const auto progress = [&](int /*samples_drawn*/) {
+    const py::gil_scoped_acquire locked;
+    is_interrupted = PyErr_CheckSignals() != 0;
+    return !is_interrupted;
+  };
+  std::vector<glm::vec4> pixels;
+  {
+    const Reading reading(renderer.scene());
+    const py::gil_scoped_release unlocked;
+    pixels = renderer.render(placed, {.progress = progress, .seconds_max = seconds_max});
+  }
+  if (is_interrupted) {
+    throw py::error_already_set();
+  }
+  return picture_array(std::move(pixels), size_px);
+}
+
+/** Each message of these errors names the object or file and the reason. */
+void define_errors(py::module_ &module)
+{
+  const py::exception<std::exception> base(module, "Error", PyExc_Exception);
+  py::register_exception<gltf::ImportError>(module, "FileError", base.ptr());
+  static const py::handle file_error = module.attr("FileError");
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      std::rethrow_exception(thrown);
+    }
+    catch (const gltf::ExportError &error) {
+      PyErr_SetString(file_error.ptr(), error.what());
+    }
+  });
+  py::register_exception<scene::StaleHandle>(module, "StaleHandle", base.ptr());
+  py::register_exception<scene::InvalidEdit>(module, "InvalidEdit", base.ptr());
+  const auto device_error = py::register_exception<gpu::Error>(module, "DeviceError", base.ptr());
+  py::register_exception<gpu::DeviceLost>(module, "DeviceLost", device_error.ptr());
+}
+
+}  // namespace
+
+py::array_t<float> picture_array(std::vector<glm::vec4> pixels, glm::ivec2 size_px)
+{
+  auto owned = std::make_unique<std::vector<glm::vec4>>(std::move(pixels));
+  constexpr auto value_bytes = py::ssize_t(sizeof(float));
+  constexpr auto pixel_bytes = py::ssize_t(sizeof(glm::vec4));
+  const py::ssize_t row_bytes = pixel_bytes * size_px.x;
+  const float *top = &(owned->end() - size_px.x)->x;
+  const py::capsule owner(owned.get(), [](void *vector) { delete static_cast<std::vector<glm::vec4> *>(vector); });
+  static_cast<void>(owned.release());
+  return {{py::ssize_t(size_px.y), py::ssize_t(size_px.x), py::ssize_t(4)},
+          {-row_bytes, pixel_bytes, value_bytes},
+          top,
+          owner};
+}
+
+void define_renderer(py::module_ &module)
+{
+  py::class_<Device, std::shared_ptr<Device>>(module, "Device",
+                                              "A GPU, or a software rasteriser, without a window. It and its renderers "
+                                              "are used on one thread: the one that made "
+                                              "it.")
+      .def(py::init<>(), "Raises DeviceError, which names each kind of context that was tried and why it failed.")
+      .def_property_readonly(
+          "description", [](Device &device) { return device.use().description(); }, "API, driver and kind of context.")
+      .def_property_readonly(
+          "memory_bytes", [](Device &device) { return device.use().memory_bytes(); },
+          "Content of all textures, buffers and meshes on the device, bytes.");
+
+  py::class_<Report>(module, "Report", "Facts about a renderer's last picture.")
+      .def_readonly("warnings", &Report::warnings, "One text for each thing that is not drawn.")
+      .def_readonly("limits", &Report::limits, "One text for each limit that was reached.")
+      .def_readonly("sample_count", &Report::sample_count, "Samples drawn for each pixel.")
+      .def_readonly("frame_seconds", &Report::frame_seconds, "Wall time of the picture, from the scene to pixels, s.")
+      .def_readonly("memory_bytes", &Report::memory_bytes, "Content of everything on the device, bytes.");
+
+  py::class_<Renderer, std::shared_ptr<Renderer>> renderer(
+      module, "Renderer",
+      "Draws a scene lit by its lamps and its world. A change of the scene or of a property takes effect with the next "
+      "render(), which repeats only the work that depends on it.");
+  renderer.def(py::init(&make_renderer), py::arg("device"), py::arg("scene"), py::arg("size"),
+               "`size`: width and height, pixels. Further arguments set properties; sample_count is 16 without one.");
+  for (const Field<Settings> &field : settings_fields) {
+    renderer.def_property(
+        field.name.c_str(), [&field](const Renderer &owner) { return field.get(owner.scene(), owner.settings()); },
+        [&field](Renderer &owner, const py::object &value) {
+          py::dict values;
+          values[field.name.c_str()] = value;
+          set_settings(owner, values);
+        },
+        field.doc.c_str());
+  }
+  renderer.def_property(
+      "size", &Renderer::size_px, [](Renderer &owner, const glm::ivec2 &size_px) { owner.use().resize(size_px); },
+      "Width and height of the picture, pixels.");
+  renderer.def("render", &render, py::arg("camera") = py::none(), py::arg("seconds_max") = infinite,
+               "Draw a picture: an array of height x width x 4 float32 that owns its memory. Red, green and blue are "
+               "scene-linear radiance, W/(sr m²), multiplied by alpha; the top row is the first.\n\n"
+               "`camera`: a node that has one; None: the first of the scene. `seconds_max`: end the picture with fewer "
+               "samples, s. Other threads of the interpreter run meanwhile.");
+  renderer.def("report", &Renderer::report, "A Report on the last picture.");
+}
+
+}  // namespace gnomon::python
+
+PYBIND11_MODULE(_gnomon, module)
+{
+  using namespace gnomon::python;
+  // Classes and errors carry the name of the package.
+  module.attr("__name__") = "gnomon";
+  define_errors(module);
+  define_scene(module);
+  define_renderer(module);
+#ifdef GNOMON_PYTHON_REFERENCE
+  define_reference(module);
+#endif
+}

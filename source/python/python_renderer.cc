@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "python_renderer.hh"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+namespace gnomon::python {
+
+Device::Device() : device_(gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()})) {}
+
+Device::~Device()
+{
+  if (std::this_thread::get_id() != thread_) {
+    // Its context cannot be current here. Not to free it is the lesser harm.
+    std::fputs("gnomon: a device is not freed, because the last reference to it is dropped on another thread\n",
+               stderr);
+    static_cast<void>(device_.release());
+    static_cast<void>(new std::vector<std::shared_ptr<void>>(std::move(left_)));
+  }
+}
+
+/** Sets Device::is_drawing as long as it exists. */
+class Drawing {
+ public:
+  explicit Drawing(Device &device) : device_(device)
+  {
+    device_.is_drawing = true;
+  }
+  ~Drawing()
+  {
+    device_.is_drawing = false;
+  }
+  Drawing(const Drawing &) = delete;
+  Drawing &operator=(const Drawing &) = delete;
+
+ private:
+  Device &device_;
+};
+
+gpu::Device &Device::use()
+{
+  if (std::this_thread::get_id() != thread_) {
+    throw gpu::Error("the device was made on another thread, and can be used only there");
+  }
+  if (is_drawing) {
+    throw gpu::Error("the device is drawing");
+  }
+  const std::lock_guard lock(mutex_);
+  left_.clear();
+  return *device_;
+}
+
+void Device::dispose(std::shared_ptr<void> resources)
+{
+  if (std::this_thread::get_id() != thread_ || is_drawing) {
+    const std::lock_guard lock(mutex_);
+    left_.push_back(std::move(resources));
+  }
+}
+
+Renderer::Renderer(std::shared_ptr<Device> device, ScenePtr scene, glm::ivec2 size_px, const eevee::Settings &settings)
+    : device_(std::move(device))
+{
+  gpu::Device &used = device_->use();
+  const scene::Scene &drawn = scene->scene;
+  state_ = std::shared_ptr<State>(new State{std::move(scene), {used, drawn, size_px, settings}});
+}
+
+Renderer::~Renderer()
+{
+  device_->dispose(std::move(state_));
+}
+
+eevee::SceneRenderer &Renderer::use()
+{
+  device_->use();
+  return state_->renderer;
+}
+
+std::vector<glm::vec4> Renderer::render(const scene::PlacedCamera &camera, const eevee::DrawLimits &limits)
+{
+  eevee::SceneRenderer &renderer = use();
+  if (settings().sample_count == 0 && !std::isfinite(limits.seconds_max)) {
+    throw gpu::Error("renderer: neither sample_count nor seconds_max limits the samples of the picture");
+  }
+  const Drawing drawing(*device_);
+  const auto start = std::chrono::steady_clock::now();
+  renderer.sync();
+  samples_drawn_ = renderer.draw(camera, limits);
+  renderer.viewport().device().finish();
+  frame_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return renderer.read_picture();
+}
+
+Report Renderer::report()
+{
+  eevee::Report report = use().inspect().report();
+  return {std::move(report.warnings), std::move(report.limits), samples_drawn_, frame_seconds_,
+          device_->use().memory_bytes()};
+}
+
+}  // namespace gnomon::python

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "python_scene.hh"
+
+#include "eevee_scene_renderer.hh"
+
+#include <mutex>
+#include <thread>
+
+namespace gnomon::python {
+
+/**
+ * A device with a context of its own. Its thread is the one that constructs it, and all others get an error. Python may
+ * drop the last reference to an object on any thread; what belongs to the device is then freed by the next call on its
+ * thread.
+ */
+class Device {
+ public:
+  /** \throws gpu::Error */
+  Device();
+  ~Device();
+  Device(const Device &) = delete;
+  Device &operator=(const Device &) = delete;
+
+  /** \throws gpu::Error on other threads, and during a draw */
+  gpu::Device &use();
+  /** Destroys \a resources on the device's thread. */
+  void dispose(std::shared_ptr<void> resources);
+  /** During a draw, in which the interpreter may run handlers of signals. */
+  bool is_drawing = false;
+
+ private:
+  const std::thread::id thread_ = std::this_thread::get_id();
+  std::unique_ptr<gpu::Device> device_;
+  std::mutex mutex_;
+  /** What was left on other threads. */
+  std::vector<std::shared_ptr<void>> left_;
+};
+
+/** A picture's facts. */
+struct Report {
+  std::vector<std::string> warnings;
+  std::vector<std::string> limits;
+  int sample_count = 0;
+  double frame_seconds = 0.0;
+  std::size_t memory_bytes = 0;
+};
+
+/** Draws one scene on one device. All functions are called on the device's thread. */
+class Renderer {
+ public:
+  Renderer(std::shared_ptr<Device> device, ScenePtr scene, glm::ivec2 size_px, const eevee::Settings &settings);
+  ~Renderer();
+  Renderer(const Renderer &) = delete;
+  Renderer &operator=(const Renderer &) = delete;
+
+  /**
+   * The picture: scene-linear RGBA, rows from the bottom. Called without the interpreter's lock, while a Reading of the
+   * scene exists. \a limits ends a picture of no known number of samples.
+   */
+  std::vector<glm::vec4> render(const scene::PlacedCamera &camera, const eevee::DrawLimits &limits);
+  [[nodiscard]] Report report();
+  /** \throws gpu::Error */
+  eevee::SceneRenderer &use();
+  [[nodiscard]] const ScenePtr &scene() const
+  {
+    return state_->scene;
+  }
+  [[nodiscard]] const eevee::Settings &settings() const
+  {
+    return state_->renderer.settings();
+  }
+  [[nodiscard]] glm::ivec2 size_px()
+  {
+    return state_->renderer.viewport().size_px();
+  }
+
+ private:
+  struct State {
+    /** Outlives the renderer. */
+    ScenePtr scene;
+    eevee::SceneRenderer renderer;
+  };
+
+  std::shared_ptr<Device> device_;
+  std::shared_ptr<State> state_;
+  int samples_drawn_ = 0;
+  double frame_seconds_ = 0.0;
+};
+
+}  // namespace gnomon::python

@@ -1,0 +1,386 @@
+// SPDX-License-Identifier: MIT
+#include "python_fields.hh"
+
+#include "gltf_export.hh"
+#include "gltf_import.hh"
+
+#include <pybind11/stl/filesystem.h>
+
+#include <numbers>
+
+namespace gnomon::python {
+
+namespace {
+
+using scene::Camera;
+using scene::Lamp;
+using scene::Material;
+using scene::Mesh;
+using scene::Node;
+using std::numbers::pi;
+
+const Fields<Lamp> lamp_fields = {
+    plain_field<Lamp>("name", &Lamp::name, "For messages and files."),
+    plain_field<Lamp>("kind", &Lamp::kind, "A LampKind."),
+    number_field<Lamp>("color", &Lamp::color, 0, float_max, "Linear red, green and blue, at least 0."),
+    number_field<Lamp>(
+        "intensity", &Lamp::intensity, 0, float_max,
+        "Point and spot: radiant intensity, W/sr. Sun: irradiance on a surface that faces it, W/m²; hemi "
+        "the same, of a sky over the half space behind it. Area: power, W. At least 0."),
+    number_field<Lamp>("radius", &Lamp::radius, 0, 1e12, "Point and spot: radius, m, at least 0. 0: a hard shadow."),
+    number_field<Lamp>("angle", &Lamp::angle, 0, pi, "Sun: angular diameter, rad, 0 to π. 0: a hard shadow."),
+    number_field<Lamp>("spot_outer_angle", &Lamp::spot_outer_angle, 1e-9, 0.5 * pi + 1e-6,
+                       "Spot: half the opening angle, rad, above 0 to π/2."),
+    number_field<Lamp>("spot_blend", &Lamp::spot_blend, 0, 1, "Spot: width of the soft edge, 0 to 1. 0: a hard edge."),
+    number_field<Lamp>("range", &Lamp::range, 0, float_max,
+                       "Point and spot: no light beyond, m, at least 0. 0: no limit."),
+    plain_field<Lamp>("area_shape", &Lamp::area_shape, "Area: an AreaShape."),
+    number_field<Lamp>("area_size_x", &Lamp::area_size_x, 1e-9, 1e9, "Area: full edge length or diameter, m, above 0."),
+    number_field<Lamp>("area_size_y", &Lamp::area_size_y, 1e-9, 1e9, "Area: full edge length or diameter, m, above 0."),
+    plain_field<Lamp>(
+        "shadow_kind", [](auto &lamp) -> auto & { return lamp.shadow.kind; },
+        "A ShadowKind. None: that of the renderer."),
+    plain_field<Lamp>(
+        "shadow_size_px", [](auto &lamp) -> auto & { return lamp.shadow.size; },
+        "Texels along an edge of the depth map or of a cube's face, 1 to 16384. None: that of the renderer."),
+};
+
+const Fields<Material> material_fields = {
+    plain_field<Material>("name", &Material::name, "For messages and files."),
+    number_field<Material>("base_color", &Material::base_color, 0, 1, "Linear red, green and blue, 0 to 1."),
+    number_field<Material>("alpha", &Material::alpha, 0, 1, "0 to 1; has an effect by alpha_mode."),
+    plain_field<Material>("alpha_mode", &Material::alpha_mode, "An AlphaMode."),
+    number_field<Material>("alpha_cutoff", &Material::alpha_cutoff, 0, float_max,
+                           "AlphaMode.MASK: the surface is cut out where alpha is below."),
+    number_field<Material>("metallic", &Material::metallic, 0, 1, "0 to 1."),
+    number_field<Material>("roughness", &Material::roughness, 0, 1, "Perceptual, 0 to 1."),
+    number_field<Material>("normal_scale", &Material::normal_scale, -float_max, float_max,
+                           "Factor of the normal texture's red and green."),
+    number_field<Material>("occlusion_strength", &Material::occlusion_strength, 0, 1, "0: no occlusion; to 1."),
+    number_field<Material>("specular", &Material::specular, 0, 1,
+                           "Factor of dielectric reflection, 0 to 1. 0: a Lambertian surface."),
+    number_field<Material>("specular_color", &Material::specular_color, 0, float_max,
+                           "Tint of dielectric reflection, at least 0."),
+    number_field<Material>("coat", &Material::coat, 0, 1, "Part of the surface under a clear coat, 0 to 1."),
+    number_field<Material>("coat_roughness", &Material::coat_roughness, 0, 1, "Perceptual, 0 to 1."),
+    number_field<Material>("sheen_color", &Material::sheen_color, 0, 1, "Reflectance of fibres, 0 to 1."),
+    number_field<Material>("sheen_roughness", &Material::sheen_roughness, 0, 1, "Perceptual, 0 to 1."),
+    number_field<Material>("emissive", &Material::emissive, 0, float_max,
+                           "Emitted radiance, W/(sr m²), red, green and blue, at least 0."),
+    plain_field<Material>("is_unlit", &Material::is_unlit, "The radiance is the base colour."),
+    plain_field<Material>("is_double_sided", &Material::is_double_sided, "False: back faces are not drawn."),
+};
+
+/** Far beyond any use, and within what a projection in single precision can hold. */
+constexpr double camera_length_max = 1e9;
+constexpr double camera_length_min = 1e-9;
+
+const Fields<Camera> camera_fields = {
+    plain_field<Camera>("name", &Camera::name, "For messages and files."),
+    plain_field<Camera>("kind", &Camera::kind, "A CameraKind."),
+    number_field<Camera>("vertical_angle", &Camera::vertical_angle, 1e-6, 3.1415,
+                         "Perspective: full vertical angle, rad, above 0 and below π."),
+    number_field<Camera>("aspect", &Camera::aspect, 0, 1e6,
+                         "Perspective: width / height of the frame. 0: that of the picture."),
+    number_field<Camera>("half_width", &Camera::half_width, camera_length_min, camera_length_max,
+                         "Orthographic: half the width of the frame, m, above 0."),
+    number_field<Camera>("half_height", &Camera::half_height, camera_length_min, camera_length_max,
+                         "Orthographic: half the height of the frame, m, above 0."),
+    number_field<Camera>("near", &Camera::near, -camera_length_max, camera_length_max,
+                         "Distance of the near plane, m; above 0 where perspective."),
+    number_field<Camera>("far", &Camera::far, 0, float_max, "Distance of the far plane, m. 0: infinite."),
+};
+
+const Fields<Mesh> mesh_fields = {
+    plain_field<Mesh>("name", &Mesh::name, "For messages and files."),
+    thing_field<Mesh, Material>("material", &Mesh::material, "A Material. None: the default material."),
+};
+
+const Fields<Node> node_fields = {
+    plain_field<Node>("name", &Node::name, "For messages and files."),
+    plain_field<Node>("parent_from_node", &Node::parent_from_node,
+                      "Matrix of 4x4 float64, [row, column], m: column 3 is the position. Read-only; assign another."),
+    {"position", "Position relative to the parent, m: column 3 of parent_from_node.",
+     [](const ScenePtr & /*scene*/, const Node &node) { return py::cast(glm::dvec3(node.parent_from_node[3])); },
+     [](const ScenePtr & /*scene*/, Node &node, py::handle set) {
+       node.parent_from_node[3] = glm::dvec4(set.cast<glm::dvec3>(), 1.0);
+     }},
+    {"meshes", "A list of the meshes at the node. Assign another list to change it.",
+     [](const ScenePtr &scene, const Node &node) {
+       py::list meshes;
+       for (const scene::Handle<Mesh> mesh : node.meshes) {
+         if (scene->scene.meshes().is_live(mesh)) {
+           meshes.append(Thing<Mesh>{scene, mesh});
+         }
+       }
+       return py::object(std::move(meshes));
+     },
+     [](const ScenePtr &scene, Node &node, py::handle set) {
+       std::vector<scene::Handle<Mesh>> meshes;
+       for (const Thing<Mesh> &mesh : set.cast<std::vector<Thing<Mesh>>>()) {
+         meshes.push_back(handle_of(scene, mesh));
+       }
+       node.meshes = std::move(meshes);
+     }},
+    thing_field<Node, Lamp>("lamp", &Node::lamp, "A Lamp that shines along the node's -Z axis, or None."),
+    thing_field<Node, Camera>("camera", &Node::camera, "A Camera that looks along the node's -Z axis, or None."),
+    plain_field<Node>("is_visible", &Node::is_visible,
+                      "False: neither the node nor its descendants are drawn or shine."),
+    plain_field<Node>("casts_shadow", &Node::casts_shadow, "Whether the node's meshes cast shadows."),
+    plain_field<Node>("receives_shadow", &Node::receives_shadow, "Whether the node's meshes receive shadows."),
+};
+
+/** What no single field can check. */
+template <typename T>
+void check(const T & /*value*/)
+{
+}
+
+void check(const Camera &camera)
+{
+  if (camera.kind == scene::CameraKind::Perspective && camera.near < camera_length_min) {
+    throw scene::InvalidEdit(fmt::format("camera '{}': near {} is not above 0", camera.name, camera.near));
+  }
+}
+
+template <typename T>
+void edit(const Fields<T> &fields, const Thing<T> &thing, const py::dict &values)
+{
+  T value = thing.value();
+  set_fields(fields, label_of(value), thing.scene, value, values);
+  check(value);
+  thing.scene->edited().replace(thing.handle, std::move(value));
+}
+
+/** A new value with the properties of \a values. */
+template <typename T>
+T made(const Fields<T> &fields, const ScenePtr &scene, const py::dict &values, T value = {})
+{
+  set_fields(fields, std::string(T::kind_name), scene, value, values);
+  check(value);
+  return value;
+}
+
+template <typename T>
+void define_thing(py::module_ &module, const char *name, const char *doc, const Fields<T> &fields)
+{
+  py::class_<Thing<T>> type(module, name, doc);
+  for (const Field<T> &field : fields) {
+    type.def_property(
+        field.name.c_str(), [&field](const Thing<T> &thing) { return field.get(thing.scene, thing.value()); },
+        [&field, &fields](const Thing<T> &thing, const py::object &value) {
+          py::dict values;
+          values[field.name.c_str()] = value;
+          edit(fields, thing, values);
+        },
+        field.doc.c_str());
+  }
+  type.def(
+      "edit", [&fields](const Thing<T> &thing, const py::kwargs &values) { edit(fields, thing, values); },
+      "Set several properties in one edit: all of them, or none if one is invalid.");
+  type.def("__eq__", [](const Thing<T> &thing, const py::object &other) {
+    return py::isinstance<Thing<T>>(other) && thing == other.cast<const Thing<T> &>();
+  });
+  type.def("__hash__", [](const Thing<T> &thing) {
+    return std::hash<ScenePtr>()(thing.scene) ^ std::hash<scene::Handle<T>>()(thing.handle);
+  });
+  type.def("__repr__", [name](const Thing<T> &thing) {
+    const scene::Scene &scene = thing.scene->scene;
+    const T *value = scene.pool<T>().find(thing.handle);
+    return value ? fmt::format("<gnomon.{} '{}'>", name, value->name) : fmt::format("<gnomon.{}, removed>", name);
+  });
+}
+
+template <typename T>
+std::vector<Thing<T>> things_of(const ScenePtr &scene)
+{
+  std::vector<Thing<T>> things;
+  for (const auto &item : scene->scene.pool<T>()) {
+    things.push_back({scene, item.handle});
+  }
+  return things;
+}
+
+/** Adds a property that lists the things of a type, and functions that add one and remove one. */
+template <typename T>
+void define_pool(py::class_<SharedScene, ScenePtr> &type, const char *list_name)
+{
+  type.def_property_readonly(list_name, &things_of<T>, "All of the scene, in the order of their addition.");
+  type.def(
+      "remove", [](const ScenePtr &scene, const Thing<T> &thing) { scene->edited().remove(handle_of(scene, thing)); },
+      py::arg("thing"),
+      "Remove a thing; a node with its descendants. Its handles become stale, and what refers to it goes without.");
+}
+
+template <typename T>
+void define_add(py::class_<SharedScene, ScenePtr> &type, const char *name, const Fields<T> &fields, const char *doc)
+{
+  type.def(
+      name,
+      [&fields](const ScenePtr &scene, const py::kwargs &values) {
+        return Thing<T>{scene, scene->edited().add(made(fields, scene, values))};
+      },
+      doc);
+}
+
+Thing<Node> add_node(const ScenePtr &scene, const std::optional<Thing<Node>> &parent, const py::kwargs &values)
+{
+  const scene::Handle<Node> above = parent ? handle_of(scene, *parent) : scene::Handle<Node>();
+  return {scene, scene->edited().add(made(node_fields, scene, values), above)};
+}
+
+Thing<Mesh> add_mesh(const ScenePtr &scene, const py::array &positions, const py::array &normals,
+                     const py::array &triangles, const py::kwargs &values)
+{
+  Mesh mesh;
+  mesh.positions = rows_of<glm::vec3>(positions, "positions");
+  mesh.normals = rows_of<glm::vec3>(normals, "normals");
+  for (const glm::uvec3 &triangle : rows_of<glm::uvec3>(triangles, "triangles")) {
+    mesh.indices.insert(mesh.indices.end(), {triangle.x, triangle.y, triangle.z});
+  }
+  return {scene, scene->edited().add(made(mesh_fields, scene, values, std::move(mesh)))};
+}
+
+void set_world(const ScenePtr &scene, const glm::vec3 &color, float strength, float rotation, const py::object &picture)
+{
+  scene::World world{color, strength, rotation, nullptr};
+  if (!picture.is_none()) {
+    const auto texels = picture.cast<py::array>();
+    if (texels.ndim() != 3) {
+      throw py::value_error("picture: is not an array of height, width and three channels");
+    }
+    const auto rows = py::array(texels.attr("reshape")(-1, texels.shape(2)));
+    world.picture = std::make_shared<const scene::WorldPicture>(
+        scene::WorldPicture{int(texels.shape(1)), int(texels.shape(0)), rows_of<glm::vec3>(rows, "picture")});
+  }
+  scene->edited().set_world(std::move(world));
+}
+
+ScenePtr load(const std::filesystem::path &path, const std::string &variant)
+{
+  const auto scene = std::make_shared<SharedScene>();
+  const py::gil_scoped_release unlocked;
+  scene->scene = gltf::import_gltf(path, {.variant = variant});
+  return scene;
+}
+
+void save(const ScenePtr &scene, const std::filesystem::path &path)
+{
+  const Reading reading(scene);
+  const py::gil_scoped_release unlocked;
+  gltf::export_gltf(scene->scene, path);
+}
+
+void define_enums(py::module_ &module)
+{
+  using scene::AlphaMode;
+  using scene::AreaShape;
+  using scene::CameraKind;
+  using scene::LampKind;
+  using scene::ShadowKind;
+  py::enum_<LampKind>(module, "LampKind", "Kind of a lamp.")
+      .value("POINT", LampKind::Point)
+      .value("SUN", LampKind::Sun)
+      .value("SPOT", LampKind::Spot)
+      .value("HEMI", LampKind::Hemi)
+      .value("AREA", LampKind::Area);
+  py::enum_<AreaShape>(module, "AreaShape", "Shape of an area lamp.")
+      .value("RECTANGLE", AreaShape::Rectangle)
+      .value("ELLIPSE", AreaShape::Ellipse);
+  py::enum_<ShadowKind>(module, "ShadowKind", "Method of a lamp's shadow. doc/shadows.md explains them.")
+      .value("NONE", ShadowKind::None)
+      .value("HARD", ShadowKind::Hard)
+      .value("PCF", ShadowKind::Pcf)
+      .value("ESM", ShadowKind::Esm)
+      .value("EVSM", ShadowKind::Evsm);
+  py::enum_<AlphaMode>(module, "AlphaMode", "How a material's alpha is used.")
+      .value("OPAQUE", AlphaMode::Opaque)
+      .value("MASK", AlphaMode::Mask)
+      .value("BLEND", AlphaMode::Blend);
+  py::enum_<CameraKind>(module, "CameraKind", "Projection of a camera.")
+      .value("PERSPECTIVE", CameraKind::Perspective)
+      .value("ORTHOGRAPHIC", CameraKind::Orthographic);
+}
+
+}  // namespace
+
+scene::PlacedCamera camera_at(const ScenePtr &scene, const std::optional<Thing<Node>> &node)
+{
+  const scene::Handle<Node> wanted = node ? handle_of(scene, *node) : scene::Handle<Node>();
+  for (scene::PlacedCamera &camera : scene->scene.placed_cameras()) {
+    if (!node || camera.node == wanted) {
+      return std::move(camera);
+    }
+  }
+  throw scene::InvalidEdit(node ? label_of(node->value()) + ": has no camera"
+                                : fmt::format("scene '{}': has no camera", scene->scene.path));
+}
+
+void define_scene(py::module_ &module)
+{
+  define_enums(module);
+  py::class_<SharedScene, ScenePtr> type(
+      module, "Scene",
+      "Nodes, meshes, materials, lamps and cameras. World space is right-handed, in metres.\n\n"
+      "Things are handles: their properties read and edit the scene, and raise StaleHandle once the thing is removed.");
+  define_thing(module, "Lamp", "A lamp. It shines along the -Z axis of the nodes that have it.", lamp_fields);
+  define_thing(module, "Material", "A metallic-roughness surface of glTF 2.0.", material_fields);
+  define_thing(module, "Camera", "A camera. It looks along the -Z axis of the nodes that have it, +Y up.",
+               camera_fields);
+  define_thing(module, "Mesh", "Triangles of one material.", mesh_fields);
+  define_thing(module, "Node", "A position in the scene with its contents. Nodes form trees.", node_fields);
+  py::reinterpret_borrow<py::class_<Thing<Node>>>(module.attr("Node"))
+      .def_property_readonly(
+          "world_from_node", [](const Thing<Node> &node) { return node.scene->scene.world_from_node(node.handle); },
+          "Product of all matrices from the root to the node: 4x4 float64, [row, column], m. Read-only.")
+      .def_property(
+          "parent",
+          [](const Thing<Node> &node) {
+            const scene::Handle<Node> parent = node.scene->scene.parent(node.handle);
+            return parent ? std::optional(Thing<Node>{node.scene, parent}) : std::nullopt;
+          },
+          [](const Thing<Node> &node, const std::optional<Thing<Node>> &parent) {
+            node.scene->edited().set_parent(node.handle,
+                                            parent ? handle_of(node.scene, *parent) : scene::Handle<Node>());
+          },
+          "A Node, or None for a root. A change keeps parent_from_node.");
+
+  type.def(py::init<>(), "A scene without content.");
+  define_pool<Node>(type, "nodes");
+  define_pool<Mesh>(type, "meshes");
+  define_pool<Material>(type, "materials");
+  define_pool<Lamp>(type, "lamps");
+  define_pool<Camera>(type, "cameras");
+  define_add(type, "add_lamp", lamp_fields,
+             "Add a lamp with these properties. It gives light at the nodes that have it.");
+  define_add(type, "add_material", material_fields, "Add a material with these properties.");
+  define_add(type, "add_camera", camera_fields,
+             "Add a camera with these properties. It is used at the nodes that have it.");
+  type.def("add_node", &add_node, py::arg("parent") = py::none(),
+           "Add a node with these properties, as the last child of `parent` or as a root.");
+  type.def("add_mesh", &add_mesh, py::arg("positions"), py::arg("normals"), py::arg("triangles"),
+           "Add a mesh: `positions` (m) and `normals` (unit vectors) are arrays of N x 3 float32, `triangles` of M x 3 "
+           "uint32 indices, counter-clockwise as seen from the front. It is drawn at the nodes that have it.");
+  type.def("set_world", &set_world, py::arg("color") = glm::vec3(1.0F), py::arg("strength") = 1.0F,
+           py::arg("rotation") = 0.0F, py::arg("picture") = py::none(),
+           "Light from all around: color · strength · picture, W/(sr m²). `rotation`: around +Y, rad. `picture`: "
+           "equirectangular, height x width x 3 float32, with the top row first; None: uniform.");
+  type.def(
+      "remove_world", [](const ScenePtr &scene) { scene->edited().set_world(std::nullopt); },
+      "Remove the light from all around.");
+  type.def("save", &save, py::arg("path"), "Write the scene as glTF 2.0: .gltf or .glb. Raises FileError.");
+  type.def_property_readonly(
+      "warnings", [](const ScenePtr &scene) { return scene->scene.warnings; },
+      "One text for each thing in the file that is not read.");
+  type.def_property_readonly(
+      "bounds",
+      [](const ScenePtr &scene) {
+        const scene::Bounds bounds = scene->scene.bounds();
+        return bounds.is_empty() ? std::nullopt : std::optional(std::pair(bounds.min, bounds.max));
+      },
+      "Lowest and highest corner of the box around all visible meshes, m. None if there are none.");
+  module.def("load", &load, py::arg("path"), py::arg("variant") = "",
+             "Read a glTF 2.0 file. `variant`: name of a variant of its materials. Raises FileError.");
+}
+
+}  // namespace gnomon::python

@@ -1,0 +1,379 @@
+# SPDX-License-Identifier: MIT
+"""The module `gnomon`. GNOMON_SOURCE: the repository's root; GNOMON_PROGRAM: the program."""
+
+import ast
+import gc
+import inspect
+import math
+import os
+import re
+import signal
+import subprocess
+import tempfile
+import threading
+import unittest
+
+import gnomon
+import numpy
+import OpenImageIO
+
+PLAZA = "examples/scenes/plaza.glb"
+SMALL = {"sample_count": 2, "cube_size_px": 64, "map_size_px": 64, "esm_size_px": 64}
+
+
+def square_scene(intensity=math.pi):
+    """A grey square that fills the picture, under a sun that it faces. Its radiance is base colour / π times irradiance."""
+    scene = gnomon.Scene()
+    material = scene.add_material(name="grey", base_color=(0.5, 0.25, 0.125), metallic=0.0, specular=0.0)
+    mesh = scene.add_mesh(
+        numpy.array([(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)], numpy.float32),
+        numpy.array([(0, 0, 1)] * 4, numpy.float32),
+        numpy.array([(0, 1, 2), (0, 2, 3)], numpy.uint32),
+        material=material)
+    scene.add_node(name="square", meshes=[mesh])
+    scene.add_node(name="sun", lamp=scene.add_lamp(name="sun", kind=gnomon.LampKind.SUN, intensity=intensity))
+    scene.add_node(name="eye", camera=scene.add_camera(name="eye", vertical_angle=0.4), position=(0, 0, 4))
+    return scene
+
+
+def read_exr(path):
+    return OpenImageIO.ImageInput.open(path).read_image("float")
+
+
+class Scenes(unittest.TestCase):
+    def test_values_that_are_set_are_read(self):
+        scene = square_scene()
+        lamp = scene.lamps[0]
+        lamp.edit(color=(1, 0.5, 0.25), intensity=3, shadow_kind=gnomon.ShadowKind.ESM)
+        self.assertEqual((lamp.color, lamp.intensity), ((1.0, 0.5, 0.25), 3.0))
+        self.assertEqual(lamp.shadow_kind, gnomon.ShadowKind.ESM)
+        lamp.shadow_kind = None
+        self.assertIsNone(lamp.shadow_kind)
+        node = scene.nodes[1]
+        self.assertEqual(node.lamp, lamp)
+        self.assertNotEqual(node.lamp, node)
+        node.position = (1, 2, 3)
+        child = scene.add_node(node, name="child", position=(1, 0, 0))
+        self.assertEqual(child.parent, node)
+        self.assertEqual(child.world_from_node[:3, 3].tolist(), [2, 2, 3])
+        child.parent = None
+        self.assertEqual(child.world_from_node[:3, 3].tolist(), [1, 0, 0])
+        turn = numpy.array([(0, -1, 0, 5), (1, 0, 0, 6), (0, 0, 1, 7), (0, 0, 0, 1)])
+        child.parent_from_node = turn
+        self.assertTrue((child.world_from_node == turn).all())
+        self.assertEqual(child.position, (5, 6, 7))
+        low, high = scene.bounds
+        self.assertEqual((low, high), ((-9, -9, 0), (9, 9, 0)))
+
+    def test_every_property_takes_its_own_value(self):
+        scene = square_scene()
+        for things in (scene.nodes, scene.meshes, scene.materials, scene.lamps, scene.cameras):
+            thing = things[0]
+            names = [name for name, member in inspect.getmembers(type(thing)) if isinstance(member, property)]
+            for name in names:
+                if name != "world_from_node":
+                    before = getattr(thing, name)
+                    setattr(thing, name, before)
+                    self.assertTrue(numpy.all(getattr(thing, name) == before), name)
+
+    def test_arrays_and_tuples_cannot_be_changed_in_place(self):
+        node = square_scene().nodes[0]
+        with self.assertRaises(ValueError):
+            node.parent_from_node[0, 3] = 1
+        with self.assertRaises(TypeError):
+            node.position[0] = 1
+
+    def test_removed_things_are_stale(self):
+        scene = square_scene()
+        lamp, node, other = scene.lamps[0], scene.nodes[1], square_scene()
+        scene.remove(lamp)
+        self.assertIsNone(node.lamp)
+        for use in (lambda: lamp.intensity, lambda: setattr(lamp, "intensity", 1), lambda: lamp.edit(),
+                    lambda: scene.remove(lamp), lambda: setattr(node, "lamp", lamp)):
+            with self.assertRaisesRegex(gnomon.StaleHandle, "lamp of handle .* was removed"):
+                use()
+        self.assertEqual(repr(lamp), "<gnomon.Lamp, removed>")
+        self.assertEqual(repr(node), "<gnomon.Node 'sun'>")
+        with self.assertRaisesRegex(gnomon.InvalidEdit, "lamp 'sun' is of another scene"):
+            node.lamp = other.lamps[0]
+        scene.remove(node)
+        with self.assertRaises(gnomon.StaleHandle):
+            node.world_from_node
+
+    def test_wrong_values_are_named_and_change_nothing(self):
+        scene = square_scene()
+        lamp, camera, node = scene.lamps[0], scene.cameras[0], scene.nodes[0]
+        for error, text, use in (
+                (gnomon.InvalidEdit, "lamp 'sun': intensity -1 is not", lambda: lamp.edit(angle=0.1, intensity=-1)),
+                (gnomon.InvalidEdit, "lamp 'sun': color nan is not", lambda: lamp.edit(angle=0.1, color=(1, math.nan, 1))),
+                (TypeError, "lamp 'sun': intensity cannot be 'much'", lambda: lamp.edit(angle=0.1, intensity="much")),
+                (TypeError, r"lamp 'sun': color cannot be \(1, 2\)", lambda: lamp.edit(angle=0.1, color=(1, 2))),
+                (TypeError, "lamp 'sun' has no property 'power'; it has: name, kind", lambda: lamp.edit(angle=0.1, power=1)),
+                (gnomon.InvalidEdit, "camera 'eye': near -1 is not above 0", lambda: setattr(camera, "near", -1)),
+                (gnomon.InvalidEdit, "camera 'eye': vertical_angle 4 ", lambda: setattr(camera, "vertical_angle", 4)),
+                (gnomon.InvalidEdit, "node 'square': its matrix is not", lambda: setattr(node, "position", (math.inf, 0, 0))),
+                (gnomon.InvalidEdit, "node", lambda: setattr(node, "parent", node)),
+                (TypeError, "node 'square': parent_from_node", lambda: setattr(node, "parent_from_node", [1, 2])),
+                (gnomon.InvalidEdit, "world", lambda: scene.set_world(strength=-1))):
+            with self.assertRaisesRegex(error, text):
+                use()
+        self.assertEqual((lamp.angle, camera.near), (0, numpy.float32(0.1)))
+        with self.assertRaises(AttributeError):
+            lamp.power = 1
+
+    def test_arrays_of_meshes_are_not_converted(self):
+        scene = gnomon.Scene()
+        corners, normals = numpy.zeros((3, 3), numpy.float32), numpy.ones((3, 3), numpy.float32)
+        triangle = numpy.array([(0, 1, 2)], numpy.uint32)
+        for error, text, arrays in ((TypeError, "positions.*float64", (corners.astype(float), normals, triangle)),
+                                    (ValueError, "normals", (corners, normals[:, :2], triangle)),
+                                    (TypeError, "triangles.*int64", (corners, normals, triangle.astype(int))),
+                                    (gnomon.InvalidEdit, "2 normals for 3", (corners, normals[:2], triangle)),
+                                    (gnomon.InvalidEdit, "index 3", (corners, normals, triangle + numpy.uint32(1)))):
+            with self.assertRaisesRegex(error, text):
+                scene.add_mesh(*arrays)
+        self.assertEqual(scene.meshes, [])
+
+    def test_files(self):
+        with tempfile.TemporaryDirectory() as folder:
+            broken = os.path.join(folder, "broken.glb")
+            with open(broken, "wb") as file:
+                file.write(b"glTF or not")
+            for path in (broken, os.path.join(folder, "none.glb")):
+                with self.assertRaisesRegex(gnomon.FileError, re.escape(path)):
+                    gnomon.load(path)
+            scene = square_scene()
+            saved = os.path.join(folder, "saved.glb")
+            scene.save(saved)
+            loaded = gnomon.load(saved)
+            self.assertEqual([node.name for node in loaded.nodes], ["square", "sun", "eye"])
+            self.assertEqual(loaded.materials[0].base_color, (0.5, 0.25, 0.125))
+            with self.assertRaisesRegex(gnomon.FileError, "nowhere"):
+                scene.save(os.path.join(folder, "nowhere", "saved.glb"))
+
+
+class Pictures(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.device = gnomon.Device()
+
+    @classmethod
+    def tearDownClass(cls):
+        del cls.device
+        gc.collect()
+
+    def test_radiance_is_that_of_the_closed_form(self):
+        renderer = gnomon.Renderer(self.device, square_scene(), (32, 18), **SMALL)
+        picture = renderer.render()
+        self.assertEqual((picture.shape, picture.dtype), ((18, 32, 4), numpy.float32))
+        numpy.testing.assert_allclose(picture, numpy.broadcast_to((0.5, 0.25, 0.125, 1), picture.shape), rtol=1e-5)
+
+    def test_first_row_is_the_top(self):
+        scene = square_scene()
+        scene.nodes[0].position = (0, -9, 0)
+        picture = gnomon.Renderer(self.device, scene, (32, 18), **SMALL).render()
+        self.assertEqual(picture[0, :, 3].max(), 0)
+        self.assertAlmostEqual(float(picture[-1, :, 3].min()), 1, 6)
+
+    def test_array_owns_its_memory(self):
+        renderer = gnomon.Renderer(self.device, square_scene(), (32, 18), **SMALL)
+        picture = renderer.render()
+        self.assertEqual(type(picture.base).__name__, "PyCapsule")
+        kept = picture.copy()
+        renderer.render()
+        renderer.size = (16, 16)
+        self.assertEqual(renderer.render().shape, (16, 16, 4))
+        del renderer
+        gc.collect()
+        self.assertTrue((picture == kept).all())
+
+    def test_equal_the_files_of_the_program(self):
+        scene = gnomon.load(PLAZA)
+        renderer = gnomon.Renderer(self.device, scene, (96, 54), **SMALL | {"sample_count": 3, "seed": 7})
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "picture.exr")
+            command = [os.environ["GNOMON_PROGRAM"], "render", PLAZA, "-o", path, "--size", "96x54", "--samples", "3",
+                       "--shadow-size", "64", "--seed", "7"]
+            subprocess.run(command, check=True, capture_output=True)
+            expected = read_exr(path)
+            self.assertTrue((renderer.render() == expected).all())
+            renderer.background = (0.5, 0.25, 1)
+            subprocess.run(command + ["--background", "0.5,0.25,1"], check=True, capture_output=True)
+            self.assertTrue((renderer.render()[:, :, :3] == read_exr(path)).all())
+        renderer.seed = 8
+        renderer.background = None
+        self.assertTrue((renderer.render() != expected).any())
+
+    def test_settings_that_cannot_be_drawn(self):
+        scene = square_scene()
+        renderer = gnomon.Renderer(self.device, scene, (32, 18), **SMALL)
+        for error, text, values in ((gnomon.DeviceError, "sample_count -1", {"sample_count": -1}),
+                                    (gnomon.DeviceError, "map_size_px 0", {"map_size_px": 0}),
+                                    (gnomon.DeviceError, "sample_count nor seconds_max", {"sample_count": 0})):
+            before = {name: getattr(renderer, name) for name in values}
+            for name, value in values.items():
+                setattr(renderer, name, value)
+            with self.assertRaisesRegex(error, text):
+                renderer.render()
+            for name, value in before.items():
+                setattr(renderer, name, value)
+        with self.assertRaisesRegex(gnomon.InvalidEdit, "renderer: background"):
+            renderer.background = "sky"
+        with self.assertRaisesRegex(gnomon.DeviceError, "0x5"):
+            renderer.size = (0, 5)
+        with self.assertRaisesRegex(gnomon.InvalidEdit, "node 'square': has no camera"):
+            renderer.render(scene.nodes[0])
+        with self.assertRaisesRegex(gnomon.InvalidEdit, "node 'eye' is of another scene"):
+            renderer.render(square_scene().nodes[2])
+        with self.assertRaises(ValueError):
+            renderer.render(seconds_max=math.nan)
+        self.assertEqual(renderer.render().shape, (18, 32, 4))
+
+    def test_other_threads(self):
+        scene = square_scene()
+        renderer = gnomon.Renderer(self.device, scene, (32, 18), **SMALL)
+        outcomes = []
+
+        def use():
+            try:
+                renderer.render()
+            except gnomon.DeviceError as error:
+                outcomes.append(str(error))
+
+        thread = threading.Thread(target=use)
+        thread.start()
+        thread.join()
+        self.assertEqual(len(outcomes), 1)
+        self.assertIn("another thread", outcomes[0])
+
+        # The last reference may be dropped anywhere.
+        renderer.render()
+        holder = [renderer]
+        del renderer
+        before = self.device.memory_bytes
+        thread = threading.Thread(target=holder.clear)
+        thread.start()
+        thread.join()
+        self.assertLess(self.device.memory_bytes, before)
+
+    def test_others_run_while_one_draws(self):
+        scene = square_scene()
+        renderer = gnomon.Renderer(self.device, scene, (32, 18), **SMALL | {"sample_count": 0})
+        errors = []
+        is_done = threading.Event()
+
+        def edit():
+            while not is_done.is_set() and not errors:
+                try:
+                    scene.lamps[0].intensity = 1
+                except gnomon.InvalidEdit as error:
+                    errors.append(str(error))
+
+        thread = threading.Thread(target=edit)
+        thread.start()
+        picture = renderer.render(seconds_max=0.3)
+        is_done.set()
+        thread.join()
+        self.assertEqual(errors, ["the scene cannot be edited while it is drawn or read"])
+        self.assertTrue(numpy.isfinite(picture).all())
+        self.assertGreaterEqual(renderer.report().sample_count, 1)
+
+    def test_signals_end_a_picture(self):
+        renderer = gnomon.Renderer(self.device, square_scene(), (32, 18), **SMALL | {"sample_count": 0})
+        seen = []
+
+        def interrupt(*_):
+            try:
+                renderer.render()
+            except gnomon.DeviceError as error:
+                seen.append(str(error))
+            raise KeyboardInterrupt
+
+        before = signal.signal(signal.SIGALRM, interrupt)
+        signal.setitimer(signal.ITIMER_REAL, 0.05)
+        try:
+            with self.assertRaises(KeyboardInterrupt):
+                renderer.render(seconds_max=100)
+        finally:
+            signal.signal(signal.SIGALRM, before)
+        self.assertEqual(seen, ["the device is drawing"])
+        renderer.sample_count = 2
+        self.assertEqual(renderer.render().shape, (18, 32, 4))
+
+    def test_error_against_rays(self):
+        scene = square_scene()
+        picture = gnomon.Renderer(self.device, scene, (32, 18), **SMALL).render()
+        exact, noise = gnomon.trace(scene, (32, 18), sample_count=2)
+        self.assertLess(noise, 1e-6)
+        self.assertLess(gnomon.image_error(picture, exact).rmse, 1e-5)
+        self.assertAlmostEqual(gnomon.image_error(picture + numpy.float32(0.5), exact).rmse, 0.5, 5)
+        # Rows are compared with rows, whatever the strides.
+        self.assertEqual(gnomon.image_error(picture, picture.copy()).rmse, 0)
+        broken = picture.copy()
+        broken[3, 5, 1] = math.nan
+        self.assertEqual(gnomon.image_error(broken, exact).non_finite_count, 1)
+        with self.assertRaisesRegex(ValueError, "31x18"):
+            gnomon.image_error(picture, exact[:, 1:])
+        with self.assertRaisesRegex(ValueError, "sample_count 3"):
+            gnomon.trace(scene, (32, 18), sample_count=3)
+
+
+class Page(unittest.TestCase):
+    """The examples of doc/python.md, in order."""
+
+    def test_examples(self):
+        with open("doc/python.md", encoding="utf-8") as file:
+            examples = re.findall(r"```python\n(.*?)```", file.read(), re.DOTALL)
+        names = {}
+        for example in examples:
+            exec(example, names)
+        self.assertLessEqual(len(examples[0].strip().splitlines()), 15)
+        pictures = names["pictures"]
+        self.assertEqual(len(pictures), 24)
+        for before, after in zip(pictures, pictures[1:]):
+            self.assertTrue(numpy.isfinite(after).all())
+            self.assertGreater(abs(before - after).max(), 1e-3)
+        self.assertLess(names["error"].rmse, 0.02)
+        built = gnomon.Renderer(names["device"], names["built"], (16, 16), **SMALL).render()
+        self.assertAlmostEqual(float(built[8, 8, 0]), 0.5, 5)
+        # Only one device can exist at a time.
+        with self.assertRaisesRegex(gnomon.DeviceError, "already current"):
+            gnomon.Device()
+        names.clear()
+
+
+class Stub(unittest.TestCase):
+    """The stub has what the module has, and all of it has a documentation."""
+
+    def test_names(self):
+        with open("source/python/gnomon/__init__.pyi", encoding="utf-8") as file:
+            body = ast.parse(file.read()).body
+        stub = {}
+        for node in body:
+            if isinstance(node, ast.FunctionDef):
+                stub[node.name] = None
+            elif isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                members = {getattr(member, "name", None) or getattr(getattr(member, "target", None), "id", None)
+                           for member in node.body}
+                stub[node.name] = {name for name in members if name and not name.startswith("_")}
+        module = {}
+        for name, value in vars(gnomon).items():
+            if name.startswith("_"):
+                continue
+            module[name] = None
+            self.assertTrue(value.__doc__ or issubclass(value, gnomon.Error), name)
+            self.assertEqual(value.__module__, "gnomon", name)
+            if inspect.isclass(value):
+                own = {each: member for each, member in vars(value).items() if not each.startswith("_")}
+                if hasattr(value, "__members__"):
+                    own = value.__members__
+                else:
+                    for each, member in own.items():
+                        self.assertTrue(inspect.getdoc(member), f"{name}.{each}")
+                module[name] = set(own)
+        self.assertEqual(stub, module)
+
+
+if __name__ == "__main__":
+    os.chdir(os.environ["GNOMON_SOURCE"])
+    unittest.main()
