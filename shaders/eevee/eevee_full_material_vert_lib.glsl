@@ -15,6 +15,11 @@ layout(location = 8) out vec4 surface_specular_uvs;
 
 layout(location = 9) out vec4 surface_coat_uvs;
 layout(location = 10) out vec4 surface_sheen_uvs;
+#  ifdef USE_TRANSMISSION
+layout(location = 11) out vec4 surface_transmission_uvs;
+/** Of directions. */
+layout(location = 12) flat out mat3 surface_object_from_world;
+#  endif
 
 /** As input_uv, of the texture with number \a index in LayerData. */
 vec2 layer_uv(uint material, int index)
@@ -32,6 +37,10 @@ void write_full_varyings()
 #ifdef USE_LAYERS
   surface_coat_uvs = vec4(layer_uv(material, 0), layer_uv(material, 1));
   surface_sheen_uvs = vec4(layer_uv(material, 2), layer_uv(material, 3));
+#  ifdef USE_TRANSMISSION
+  surface_transmission_uvs = vec4(layer_uv(material, 4), layer_uv(material, 5));
+  surface_object_from_world = inverse(mat3(objects[draw_instance.x].world_from_object));
+#  endif
 #endif
 #ifdef USE_LIGHT
   mat3 world_from_object = mat3(objects[draw_instance.x].world_from_object);

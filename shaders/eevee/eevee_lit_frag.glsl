@@ -17,6 +17,9 @@
 #ifdef USE_LAYERS
 #  include "eevee/eevee_layers_lib.glsl"
 #endif
+#ifdef USE_TRANSMISSION
+#  include "eevee/eevee_transmission_lib.glsl"
+#endif
 
 layout(location = 0) out vec4 radiance;
 
@@ -31,6 +34,7 @@ void main()
   material = tinted(material, texture(base_color_texture, surface_uv, view.texture_lod_bias).rgb);
 #endif
   vec3 sum = material.emissive;
+  float alpha = 1.0;
 #ifdef USE_LIGHT
   Surface surface = make_surface();
 #  ifdef USE_FULL_MATERIAL
@@ -40,9 +44,15 @@ void main()
   set_layers(make_layers(surface));
   sum *= 1.0 - layers.coat_share;
 #  endif
+#  ifdef USE_TRANSMISSION
+  Transmission transmission = make_transmission(material, surface);
+  material.diffuse *= 1.0 - transmission.part;
+  sum += layered(transmission.radiance, vec3(0.0), vec3(0.0));
+  alpha = transmission.alpha;
+#  endif
   sum += direct_light(material, surface);
 #endif
-  radiance = vec4(sum, 1.0);
+  radiance = vec4(sum, alpha);
 #ifdef USE_FULL_MATERIAL
   radiance *= surface_opacity();
 #endif

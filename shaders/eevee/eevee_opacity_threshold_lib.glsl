@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// For fragment shaders: blended casters, which let a part of the light through. A shadow layer stores one depth, so each texel is
-// either covered or not in one sample; over the samples it is covered as often as the opacity says.
+// For fragment shaders: casters that are blended or transmit light, which let a part of the light through. A shadow layer stores one
+// depth, so each texel is either covered or not in one sample; over the samples it is covered as often as the opacity says.
 #include "eevee/eevee_full_alpha_lib.glsl"
 #include "shared/eevee_sequence_shared.h"
 
@@ -14,10 +14,20 @@ PUSH_CONSTANT_LAYOUT uniform push_constant_block
   int sample_seed;
 };
 
+/** Part of the light that does not pass. Of light that is transmitted, the colour is lost. */
+float caster_opacity()
+{
+  vec4 texel = has_input(INPUT_BASE_COLOR) ? textureLod(base_color_texture, surface_uv, 0.0) : vec4(1.0);
+  if (has_input(INPUT_BLENDED)) {
+    return blended_opacity(texel.a);
+  }
+  FullMaterialData full = full_materials[surface_material];
+  return 1.0 - (1.0 - full.opacity) * luminance(full.base_color * surface_color.rgb * texel.rgb);
+}
+
 bool is_let_through()
 {
-  float texel = has_input(INPUT_BASE_COLOR) ? textureLod(base_color_texture, surface_uv, 0.0).a : 1.0;
   uint occluder = 2u * surface_object + (gl_FrontFacing ? 1u : 0u);
-  return blended_opacity(texel) <= opacity_threshold(uint(gl_FragCoord.x), uint(gl_FragCoord.y), occluder, uint(sample_index),
-                                                     uint(sample_seed));
+  return caster_opacity() <= opacity_threshold(uint(gl_FragCoord.x), uint(gl_FragCoord.y), occluder, uint(sample_index),
+                                                uint(sample_seed));
 }

@@ -44,13 +44,16 @@ SHARED_ASSERT_SIZE(MaterialData, 64)
 #define INPUT_COAT_ROUGHNESS 256u
 #define INPUT_SHEEN_COLOR 512u
 #define INPUT_SHEEN_ROUGHNESS 1024u
+#define INPUT_TRANSMISSION 2048u
+#define INPUT_THICKNESS 4096u
 /** Unlit material: its radiance is the base colour. */
 #define INPUT_UNLIT 65536u
 /** The surface is blended over what is behind it. */
 #define INPUT_BLENDED 131072u
-/** Textures of FullMaterialData, and after them those of LayerData. */
+/** Textures of FullMaterialData, and after them those of LayerData: first of coats and sheen, then of transmission. */
 #define FULL_TEXTURE_COUNT 7
 #define LAYER_TEXTURE_COUNT 4
+#define TRANSMISSION_TEXTURE_COUNT 2
 
 /** An entry of `full_material_block`: factors of the textures and of vertex colours. */
 struct FullMaterialData {
@@ -64,25 +67,33 @@ struct FullMaterialData {
   float occlusion_strength;
   /** INPUT_ bits. */
   uint inputs;
-  /** Factor of a blended surface's opacity. */
+  /** Factor of a blended surface's opacity. Of another one, for shadows: 1 - the part of white light that a white surface transmits. */
   float opacity;
   /** Two rows for each texture. It is looked up at xyz · (u, v, 1); w of the first row: 0 for the first set of uvs, 1 for the second. */
   vec4 uv_rows[2 * FULL_TEXTURE_COUNT];
 };
 SHARED_ASSERT_SIZE(FullMaterialData, 64 + 32 * FULL_TEXTURE_COUNT)
 
-/** An entry of `layer_block`: factors of the layers over the base of a material (KHR_materials_clearcoat, KHR_materials_sheen). */
+/**
+ * An entry of `layer_block`: factors of the layers over the base of a material (KHR_materials_clearcoat, KHR_materials_sheen) and of
+ * the light that passes the base (KHR_materials_transmission, KHR_materials_volume).
+ */
 struct LayerData {
   vec3 sheen_color;
   float sheen_roughness;
   float coat;
   float coat_roughness;
-  float _pad0;
-  float _pad1;
+  float transmission;
+  /** Object space, at least 0. */
+  float thickness;
+  /** Absorption coefficient, 1/m. */
+  vec3 absorption;
+  /** Index of refraction, at least 1. */
+  float ior;
   /** As FullMaterialData::uv_rows. */
-  vec4 uv_rows[2 * LAYER_TEXTURE_COUNT];
+  vec4 uv_rows[2 * (LAYER_TEXTURE_COUNT + TRANSMISSION_TEXTURE_COUNT)];
 };
-SHARED_ASSERT_SIZE(LayerData, 32 + 32 * LAYER_TEXTURE_COUNT)
+SHARED_ASSERT_SIZE(LayerData, 48 + 32 * (LAYER_TEXTURE_COUNT + TRANSMISSION_TEXTURE_COUNT))
 
 /**
  * Reflectance at grazing incidence from the reflectance at normal incidence. It fades below 2 %, so that a surface with a
@@ -123,6 +134,38 @@ SHARED_FUNCTION MaterialData coat_material(float roughness)
 SHARED_FUNCTION float coat_reflectance(float coat, float cos_v)
 {
   return coat * fresnel_schlick(vec3(0.04f), 1.0f, cos_v).x;
+}
+
+/** Luminance of a linear colour with Rec. 709 primaries. */
+SHARED_FUNCTION float luminance(vec3 color)
+{
+  return 0.2126f * color.x + 0.7152f * color.y + 0.0722f * color.z;
+}
+
+/**
+ * Absorption coefficient, 1/m, of a medium that leaves the part \a left of light after \a distance_m metres (Beer-Lambert). Where
+ * \a left is 0, nothing is left after any length.
+ */
+SHARED_FUNCTION vec3 absorption_of(vec3 left, float distance_m)
+{
+  return vec3(left.x > 0.0f ? -log(left.x) / distance_m : 1e30f, left.y > 0.0f ? -log(left.y) / distance_m : 1e30f,
+              left.z > 0.0f ? -log(left.z) / distance_m : 1e30f);
+}
+
+/** Part of the light that is left after \a length_m metres. */
+SHARED_FUNCTION vec3 beer_lambert(vec3 absorption, float length_m)
+{
+  return exp(vec3(0.0f) - absorption * length_m);
+}
+
+/**
+ * Mip level of a picture of \a height_px that transmission through a surface of \a roughness reads. The blur is a part of the picture: 2^(10
+ * (r - 1)) of its height with r = roughness · clamp(2 ior - 2, 0, 1), as in Khronos's sample viewer, whose picture has 1024 texels.
+ */
+SHARED_FUNCTION float transmission_level(float roughness, float ior, float height_px)
+{
+  float scaled = roughness * clamp(2.0f * ior - 2.0f, 0.0f, 1.0f);
+  return max(log(height_px) * 1.44269504f - 10.0f * (1.0f - scaled), 0.0f);
 }
 
 /** A surface that emits \a radiance and reflects no light. */

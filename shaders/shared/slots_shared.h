@@ -39,6 +39,7 @@
 #define LTC_TABLE_SLOT 44
 #define WORLD_LEVELS_SLOT 45
 #define WORLD_PICTURE_SLOT 46
+#define BEHIND_SLOT 48
 
 #define BASE_COLOR_SLOT 32
 #define METALLIC_ROUGHNESS_SLOT 33
@@ -51,6 +52,8 @@
 #define COAT_ROUGHNESS_SLOT 40
 #define SHEEN_COLOR_SLOT 41
 #define SHEEN_ROUGHNESS_SLOT 42
+#define TRANSMISSION_SLOT 43
+#define THICKNESS_SLOT 47
 
 /** Layout of the block of small values of a group: push constants if the API has them, else a uniform block. */
 #ifdef VULKAN

@@ -113,6 +113,11 @@ void add(Hasher &hash, const scene::Scene &scene, const scene::Material &materia
   hash.add(material.coat_roughness);
   hash.add(material.sheen_color);
   hash.add(material.sheen_roughness);
+  hash.add(material.transmission);
+  hash.add(material.thickness);
+  hash.add(material.ior);
+  hash.add(material.attenuation_distance);
+  hash.add(material.attenuation_color);
   for (const scene::TextureInput &input : scene::texture_inputs) {
     add(hash, scene, material.*input.slot);
   }

@@ -5,7 +5,7 @@
 #include "internal/reference_triangle.hh"
 
 #include <embree3/rtcore.h>
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -16,6 +16,7 @@
 #include <set>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace gnomon::reference {
@@ -464,13 +465,21 @@ std::vector<std::string> untraced_layers(const scene::Scene &scene)
   std::vector<std::string> lines;
   for (const scene::Handle<scene::Material> handle : materials) {
     const scene::Material *material = scene.materials().find(handle);
-    if (material != nullptr && (material->has_coat() || material->has_sheen())) {
-      const std::string_view layer = !material->has_sheen() ? "coat"
-                                     : material->has_coat() ? "coat and sheen"
-                                                            : "sheen";
+    if (material == nullptr) {
+      continue;
+    }
+    std::vector<std::string_view> layers;
+    for (const auto &[has_layer, name] : {std::pair(material->has_coat(), "coat"),
+                                          {material->has_sheen(), "sheen"},
+                                          {material->has_transmission(), "transmission"}}) {
+      if (has_layer) {
+        layers.emplace_back(name);
+      }
+    }
+    if (!layers.empty()) {
       lines.push_back(
           fmt::format("material '{}': the reference does not trace its {}; the errors include this difference",
-                      material->name, layer));
+                      material->name, fmt::join(layers, " and ")));
     }
   }
   return lines;

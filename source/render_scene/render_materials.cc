@@ -35,6 +35,27 @@ bool is_blended(const scene::Scene &scene, const scene::Mesh &mesh)
          (is_drawable(scene, texture) && !scene.images()[scene.textures()[texture].image].is_opaque);
 }
 
+bool lets_light_through(const scene::Scene &scene, const scene::Mesh &mesh)
+{
+  const scene::Material &material = scene.material_of(mesh);
+  return is_blended(scene, mesh) || (material.has_transmission() && material.alpha_mode == scene::AlphaMode::Opaque &&
+                                     !is_drawable(scene, mesh, material.transmission_texture));
+}
+
+/** Absorption coefficient of the material's volume, 1/m. */
+static glm::vec3 absorption(const scene::Material &material)
+{
+  return material.attenuation_distance > 0.0F
+             ? shared::absorption_of(material.attenuation_color, material.attenuation_distance)
+             : glm::vec3(0.0F);
+}
+
+float transmitted_part(const scene::Material &material)
+{
+  return material.transmission * (1.0F - material.metallic) *
+         shared::luminance(shared::beer_lambert(absorption(material), material.thickness));
+}
+
 bool is_drawable(const scene::Scene &scene, const scene::Mesh &mesh, const scene::TextureSlot &slot)
 {
   return is_drawable(scene, slot.texture) && !mesh.uv_set(slot.uv_set).empty();
@@ -43,6 +64,9 @@ bool is_drawable(const scene::Scene &scene, const scene::Mesh &mesh, const scene
 MaterialClass material_class(const scene::Scene &scene, const scene::Mesh &mesh)
 {
   const scene::Material &material = scene.material_of(mesh);
+  if (material.has_transmission()) {
+    return MaterialClass::Transmissive;
+  }
   if (material.has_coat() || material.has_sheen()) {
     return MaterialClass::Layered;
   }
@@ -115,6 +139,9 @@ shared::FullMaterialData full_material_data(const scene::Scene &scene, const sce
     data.inputs |= INPUT_BLENDED;
     data.opacity = material.alpha;
   }
+  else {
+    data.opacity = 1.0F - (material.has_transmission() ? transmitted_part(material) : 0.0F);
+  }
   for (std::size_t i = 0; i < scene::texture_inputs.size(); i++) {
     const scene::TextureSlot &slot = material.*scene::texture_inputs[i].slot;
     if (is_drawable(scene, slot.texture)) {
@@ -132,6 +159,11 @@ shared::LayerData layer_data(const scene::Material &material)
   data.coat_roughness = material.coat_roughness;
   data.sheen_color = material.sheen_color;
   data.sheen_roughness = material.sheen_roughness;
+  data.transmission = material.transmission;
+  // Longer ways and larger indices would overflow in float. NaN becomes the first argument.
+  data.thickness = std::clamp(std::max(0.0F, material.thickness), 0.0F, 1e9F);
+  data.ior = std::clamp(std::max(1.0F, material.ior), 1.0F, 1e9F);
+  data.absorption = absorption(material);
   write_uv_rows(material, FULL_TEXTURE_COUNT, data.uv_rows);
   return data;
 }
@@ -216,7 +248,7 @@ void MaterialTable::upload(gpu::Device &device, MaterialClass widest)
   if (widest >= MaterialClass::Full || full_block_.buffer) {
     upload(device, "full_material_block", full_entries_, full_block_);
   }
-  if (widest == MaterialClass::Layered || layer_block_.buffer) {
+  if (widest >= MaterialClass::Layered || layer_block_.buffer) {
     upload(device, "layer_block", layer_entries_, layer_block_);
   }
 }

@@ -20,6 +20,15 @@ namespace gnomon::render_scene {
  */
 [[nodiscard]] bool is_blended(const scene::Scene &scene, const scene::Mesh &mesh);
 
+/**
+ * Whether shadows of the mesh let a part of the light through: it is blended, or transmits light. A material with a
+ * transmission texture casts the shadow of an opaque one, and a masked one that of what its mask leaves.
+ */
+[[nodiscard]] bool lets_light_through(const scene::Scene &scene, const scene::Mesh &mesh);
+
+/** Part of white light that passes a white surface of the material, without its textures; for shadows. */
+[[nodiscard]] float transmitted_part(const scene::Material &material);
+
 /** The kinds of surface inputs, with the fewest inputs first. Each class has its own shader variants. */
 enum class MaterialClass : std::uint8_t {
   /** Only the factors of the material. */
@@ -29,7 +38,9 @@ enum class MaterialClass : std::uint8_t {
   /** The textures of FullMaterialData, both sets of uvs, uv transforms, vertex colours and blending. */
   Full,
   /** Also a coat or sheen, with their textures. */
-  Layered
+  Layered,
+  /** Also transmission, with its textures. */
+  Transmissive
 };
 
 /** Whether \a slot can be drawn on \a mesh: the texture, its image and the mesh's uvs exist. */
@@ -45,7 +56,7 @@ enum class MaterialClass : std::uint8_t {
 [[nodiscard]] shared::MaterialData material_data(const scene::Material &material);
 /** The material with its textures and uv transforms. Emission is 0 if its emissive texture cannot be drawn. */
 [[nodiscard]] shared::FullMaterialData full_material_data(const scene::Scene &scene, const scene::Material &material);
-/** The layers over the base of the material. */
+/** The layers over the base of the material, and its transmission. */
 [[nodiscard]] shared::LayerData layer_data(const scene::Material &material);
 
 /** `material_block`, `full_material_block` and `layer_block`: the materials of a scene on one device. */
@@ -71,12 +82,12 @@ class MaterialTable {
   {
     return entries_block_.buffer;
   }
-  /** `full_material_block`; empty until upload() was called with MaterialClass::Full or Layered. */
+  /** `full_material_block`; empty until upload() was called with MaterialClass::Full or a later class. */
   [[nodiscard]] const gpu::Buffer &full_buffer() const
   {
     return full_block_.buffer;
   }
-  /** `layer_block`; empty until upload() was called with MaterialClass::Layered. */
+  /** `layer_block`; empty until upload() was called with MaterialClass::Layered or a later class. */
   [[nodiscard]] const gpu::Buffer &layer_buffer() const
   {
     return layer_block_.buffer;

@@ -11,7 +11,8 @@ static std::size_t input_count(MaterialClass material_class)
   switch (material_class) {
     case MaterialClass::BaseColor: return 1;
     case MaterialClass::Full: return FULL_TEXTURE_COUNT;
-    case MaterialClass::Layered: return scene::texture_inputs.size();
+    case MaterialClass::Layered: return FULL_TEXTURE_COUNT + LAYER_TEXTURE_COUNT;
+    case MaterialClass::Transmissive: return scene::texture_inputs.size();
     default: return 0;
   }
 }
@@ -21,7 +22,8 @@ MeshStreams streams_of(MaterialClass material_class)
   switch (material_class) {
     case MaterialClass::BaseColor: return MeshStreams::Uvs;
     case MaterialClass::Full:
-    case MaterialClass::Layered: return MeshStreams::All;
+    case MaterialClass::Layered:
+    case MaterialClass::Transmissive: return MeshStreams::All;
     default: return MeshStreams::Shape;
   }
 }

@@ -115,15 +115,17 @@ struct TextureSlot {
 enum class AlphaMode { Opaque, Mask, Blend };
 
 /**
- * Metallic-roughness surface of glTF 2.0 with KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen and
- * KHR_materials_unlit. All factors are in [0, 1]. A mesh without the uvs of a slot is drawn without its texture.
+ * Metallic-roughness surface of glTF 2.0 with KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen,
+ * KHR_materials_transmission, KHR_materials_volume and KHR_materials_unlit. Factors without another range are in [0,
+ * 1]. A mesh without the uvs of a slot is drawn without its texture.
  */
 struct Material {
   static constexpr std::string_view kind_name = "material";
   /**
    * Surface: factors of the shading. Coverage: properties that decide which parts of a surface, and of its shadow,
-   * exist: alpha mode, alpha, cutoff, sides. Textures: textures, their transforms, and is_unlit, has_coat and
-   * has_sheen, on which the textures that are read depend.
+   * exist: alpha mode, alpha, cutoff, sides, and where light is transmitted, the factors that it is multiplied by.
+   * Textures: textures, their transforms, and is_unlit, has_coat, has_sheen and has_transmission, on which the textures
+   * that are read depend.
    */
   enum class Aspect { Name, Surface, Coverage, Textures, Count };
 
@@ -169,6 +171,22 @@ struct Material {
   TextureSlot sheen_color_texture{};
   /** Alpha is multiplied with sheen_roughness. */
   TextureSlot sheen_roughness_texture{};
+  /** Part of the light that enters the base and passes it instead of being scattered. 0: opaque. */
+  float transmission = 0.0F;
+  /** Red is multiplied with transmission. */
+  TextureSlot transmission_texture{};
+  /**
+   * Length of the light's way inside of the object, object space, at least 0. 0: a thin wall, which does not refract.
+   * Used with transmission only, as the following members.
+   */
+  float thickness = 0.0F;
+  /** Green is multiplied with thickness. */
+  TextureSlot thickness_texture{};
+  /** Index of refraction of the volume, at least 1. It does not change the reflection: that is `specular_color`. */
+  float ior = 1.5F;
+  /** Metres after which `attenuation_color` is left of white light; 0: nothing is absorbed. */
+  float attenuation_distance = 0.0F;
+  glm::vec3 attenuation_color{1.0F};
   /** Scene-linear radiance, W/(sr m²) per channel. May exceed 1. */
   glm::vec3 emissive{0.0F};
   /** Multiplied with emissive. */
@@ -189,6 +207,10 @@ struct Material {
   {
     return sheen_color != glm::vec3(0.0F) && !is_unlit;
   }
+  [[nodiscard]] bool has_transmission() const
+  {
+    return transmission > 0.0F && !is_unlit;
+  }
 };
 
 /** One of a material's texture slots. */
@@ -201,7 +223,7 @@ struct TextureInput {
 };
 
 /** All texture slots. */
-inline constexpr std::array<TextureInput, 11> texture_inputs = {{
+inline constexpr std::array<TextureInput, 13> texture_inputs = {{
     {&Material::base_color_texture, "base_color_texture", true},
     {&Material::metallic_roughness_texture, "metallic_roughness_texture", false},
     {&Material::normal_texture, "normal_texture", false},
@@ -213,6 +235,8 @@ inline constexpr std::array<TextureInput, 11> texture_inputs = {{
     {&Material::coat_roughness_texture, "coat_roughness_texture", false},
     {&Material::sheen_color_texture, "sheen_color_texture", true},
     {&Material::sheen_roughness_texture, "sheen_roughness_texture", false},
+    {&Material::transmission_texture, "transmission_texture", false},
+    {&Material::thickness_texture, "thickness_texture", false},
 }};
 
 /** Indexed triangles of one material (a glTF primitive). Object space, metres. */

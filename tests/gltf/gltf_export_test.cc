@@ -126,11 +126,13 @@ class Description {
       textures += fmt::format(" {} {} {:a}{}{}", texture_number(slot), slot.uv_set, slot.rotation,
                               numbers(slot.offset, 2), numbers(slot.scale, 2));
     }
-    line("material {} '{}'{} {:a} textures{} {:a} {:a} {:a}{}{} {} {:a} {} {:a} {:a} {} {:a} {:a}{} {:a}", number_of,
-         m.name, numbers(m.base_color, 3), m.alpha, textures, m.metallic, m.roughness, m.specular,
-         numbers(m.specular_color, 3), numbers(m.emissive, 3), int(m.alpha_mode), m.alpha_cutoff, m.is_double_sided,
-         m.normal_scale, m.occlusion_strength, m.is_unlit, m.coat, m.coat_roughness, numbers(m.sheen_color, 3),
-         m.sheen_roughness);
+    line(
+        "material {} '{}'{} {:a} textures{} {:a} {:a} {:a}{}{} {} {:a} {} {:a} {:a} {} {:a} {:a}{} {:a} {:a} {:a} {:a} "
+        "{:a}{}",
+        number_of, m.name, numbers(m.base_color, 3), m.alpha, textures, m.metallic, m.roughness, m.specular,
+        numbers(m.specular_color, 3), numbers(m.emissive, 3), int(m.alpha_mode), m.alpha_cutoff, m.is_double_sided,
+        m.normal_scale, m.occlusion_strength, m.is_unlit, m.coat, m.coat_roughness, numbers(m.sheen_color, 3),
+        m.sheen_roughness, m.transmission, m.thickness, m.ior, m.attenuation_distance, numbers(m.attenuation_color, 3));
   }
 
   std::string texture_number(const scene::TextureSlot &slot)
@@ -305,6 +307,10 @@ Handle<scene::Material> add_material(Scene &scene, Values &value)
   material.coat_roughness = value(0, 1);
   material.sheen_color = value.color();
   material.sheen_roughness = value(0, 1);
+  material.transmission = value(0.1F, 1);
+  material.thickness = value(0.1F, 9);
+  material.attenuation_distance = value(0.1F, 9);
+  material.attenuation_color = value.color();
   return scene.add(material);
 }
 
@@ -378,6 +384,32 @@ Scene full_scene()
 TEST(GltfExport, AllContentsOfASceneReadBack)
 {
   expect_round_trip(full_scene());
+}
+
+TEST(GltfExport, AnIndexOfRefractionIsWrittenApartFromTheSpecularColour)
+{
+  Values value;
+  for (const float ior : {1.0F, 1.33F, 2.4F}) {
+    Scene scene;
+    scene::Material water;
+    water.name = "water";
+    water.transmission = 1.0F;
+    water.ior = ior;
+    // What the importer makes of a specular colour of (1, 0.5, 0.25).
+    const float root = (ior - 1.0F) / (ior + 1.0F);
+    water.specular_color = glm::vec3(1.0F, 0.5F, 0.25F) * (root * root / 0.04F);
+    scene::Mesh mesh = triangle("drop", value);
+    mesh.material = scene.add(water);
+    scene::Node node;
+    node.meshes = {scene.add(mesh)};
+    scene.add(node);
+    const TemporaryFolder folder;
+    gltf::export_gltf(scene, folder.path() / "copy.glb");
+    const Scene copy = gltf::import_gltf(folder.path() / "copy.glb");
+    const scene::Material &read = (*copy.materials().begin()).value;
+    EXPECT_EQ(read.ior, ior);
+    EXPECT_LE(glm::distance(read.specular_color, water.specular_color), 1e-6F * glm::length(water.specular_color));
+  }
 }
 
 TEST(GltfExport, AnEditedSceneReadsBack)

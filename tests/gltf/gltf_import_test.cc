@@ -732,10 +732,51 @@ TEST(GltfMaterial, TexturesOfAbsentLayersAreNotRead)
 TEST(GltfMaterial, ForeignModelsAreNamed)
 {
   const auto [material, scene] = import_material(
-      {{"extensions",
-        {{"KHR_materials_iridescence", json::object()}, {"KHR_materials_transmission", {{"a", {1, 2}}}}}}});
+      {{"extensions", {{"KHR_materials_iridescence", json::object()}, {"KHR_materials_dispersion", {{"a", {1, 2}}}}}}});
   EXPECT_WARNING(scene, "material 'paint': KHR_materials_iridescence is not drawn");
-  EXPECT_WARNING(scene, "material 'paint': KHR_materials_transmission is not drawn");
+  EXPECT_WARNING(scene, "material 'paint': KHR_materials_dispersion is not drawn");
+}
+
+TEST(GltfMaterial, TransmissionAndVolumeAreRead)
+{
+  const json slot = {{"index", 0}};
+  const auto import_glass = [&](const json &transmission, const json &volume, double ior) {
+    return import_material({{"extensions",
+                             {{"KHR_materials_transmission", transmission},
+                              {"KHR_materials_volume", volume},
+                              {"KHR_materials_ior", {{"ior", ior}}}}}});
+  };
+  const auto [glass, scene] = import_glass({{"transmissionFactor", 0.5}, {"transmissionTexture", slot}},
+                                           {{"thicknessFactor", 0.25},
+                                            {"thicknessTexture", slot},
+                                            {"attenuationDistance", 3},
+                                            {"attenuationColor", {0.5, 1, 0}}},
+                                           2.0);
+  EXPECT_TRUE(glass.has_transmission());
+  EXPECT_EQ(glass.transmission, 0.5F);
+  EXPECT_EQ(glass.thickness, 0.25F);
+  EXPECT_EQ(glass.ior, 2.0F);
+  EXPECT_EQ(glass.attenuation_distance, 3.0F);
+  EXPECT_EQ(glass.attenuation_color, glm::vec3(0.5F, 1.0F, 0.0F));
+  EXPECT_TRUE(glass.transmission_texture && glass.thickness_texture);
+  EXPECT_NO_WARNING(scene, "KHR_materials");
+
+  const auto [odd, odd_scene] =
+      import_glass({{"transmissionFactor", 2}},
+                   {{"thicknessFactor", -1}, {"thicknessTexture", slot}, {"attenuationDistance", 0}}, 0.5);
+  EXPECT_EQ(odd.transmission, 1.0F);
+  EXPECT_EQ(odd.thickness, 0.0F);
+  EXPECT_EQ(odd.ior, 1.0F);
+  EXPECT_EQ(odd.attenuation_distance, 0.0F);
+  EXPECT_FALSE(odd.thickness_texture) << "it has no effect";
+  EXPECT_WARNING(odd_scene, "material 'paint': transmissionFactor is 2, clamped to 1");
+  EXPECT_WARNING(odd_scene, "material 'paint': thicknessFactor is -1, clamped to 0");
+  EXPECT_WARNING(odd_scene, "material 'paint': attenuationDistance is 0, not above 0; nothing is absorbed");
+  EXPECT_WARNING(odd_scene, "material 'paint': ior is 0.5, clamped to 1");
+  const auto [opaque, opaque_scene] = import_glass({{"transmissionTexture", slot}}, {{"thicknessTexture", slot}}, 0.0);
+  EXPECT_FALSE(opaque.has_transmission() || opaque.transmission_texture || opaque.thickness_texture);
+  EXPECT_EQ(opaque.ior, 1.5F) << "what reflects all light refracts none";
+  EXPECT_EQ(opaque.specular_color, glm::vec3(25.0F));
 }
 
 TEST(GltfMaterial, AVariantReplacesTheMaterialsThatItMaps)

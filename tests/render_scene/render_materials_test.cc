@@ -207,6 +207,8 @@ TEST(MaterialClassTest, EachInputHasTheLeastClassThatReadsIt)
   EXPECT_EQ(square.material_class(), MaterialClass::Full) << "it has neither a coat nor sheen";
   square.edit([](scene::Material &material) { material.coat = 0.5F; });
   EXPECT_EQ(square.material_class(), MaterialClass::Layered);
+  square.edit([](scene::Material &material) { material.transmission = 0.5F; });
+  EXPECT_EQ(square.material_class(), MaterialClass::Transmissive);
   square.edit([](scene::Material &material) { material.is_unlit = true; });
   EXPECT_EQ(square.material_class(), MaterialClass::Full);
 }
@@ -228,6 +230,28 @@ TEST(LayerData, HasTheFactorsAndTheUvsOfItsTextures)
   EXPECT_EQ(data.uv_rows[0], glm::vec4(1, 0, 1, 0));
   EXPECT_EQ(data.uv_rows[1], glm::vec4(0, 1, 2, 0));
   EXPECT_EQ(data.uv_rows[6].w, 1.0F);
+}
+
+TEST(LayerData, HasTheVolume)
+{
+  scene::Material material;
+  material.transmission = 0.5F;
+  material.thickness = 2.0F;
+  material.ior = 1.25F;
+  material.attenuation_distance = 4.0F;
+  material.attenuation_color = {1.0F, 0.25F, 0.0F};
+  material.thickness_texture.offset = {3.0F, 2.0F};
+  const shared::LayerData data = layer_data(material);
+  EXPECT_EQ(data.transmission, 0.5F);
+  EXPECT_EQ(data.thickness, 2.0F);
+  EXPECT_EQ(data.ior, 1.25F);
+  EXPECT_EQ(data.uv_rows[10].z, 3.0F);
+  const glm::vec3 left = shared::beer_lambert(data.absorption, 2.0F);
+  EXPECT_EQ(left.x, 1.0F);
+  EXPECT_FLOAT_EQ(left.y, 0.5F);
+  EXPECT_EQ(left.z, 0.0F) << "black after any length";
+  material.attenuation_distance = 0.0F;
+  EXPECT_EQ(layer_data(material).absorption, glm::vec3(0.0F));
 }
 
 TEST(MaterialData, WithoutItsEmissiveTextureAMaterialDoesNotEmit)

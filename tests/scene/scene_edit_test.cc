@@ -483,6 +483,11 @@ TEST(SceneRevision, EachEditChangesItsAspectAlone)
                             {Material::Aspect::Surface, [](Material &material) { material.coat_roughness = 0.5F; }},
                             {Material::Aspect::Surface, [](Material &material) { material.sheen_color.r = 0.5F; }},
                             {Material::Aspect::Surface, [](Material &material) { material.sheen_roughness = 0.5F; }}});
+  expect_aspects<Material>(
+      {}, {{Material::Aspect::Surface, [](Material &material) { material.thickness = 0.5F; }},
+           {Material::Aspect::Surface, [](Material &material) { material.ior = 1.25F; }},
+           {Material::Aspect::Surface, [](Material &material) { material.attenuation_color.g = 0.5F; }},
+           {Material::Aspect::Surface, [](Material &material) { material.attenuation_distance = 0.5F; }}});
   expect_aspects<Texture>({}, {{Texture::Aspect::Image,
                                 [](Texture &texture) {
                                   texture.image = {7, 1};

@@ -64,8 +64,10 @@ constexpr auto layer_fields = std::to_array<Field>({
     {"layer_materials[0].sheen_roughness", offsetof(LayerData, sheen_roughness)},
     {"layer_materials[0].coat", offsetof(LayerData, coat)},
     {"layer_materials[0].coat_roughness", offsetof(LayerData, coat_roughness)},
-    {"layer_materials[0]._pad0", offsetof(LayerData, _pad0)},
-    {"layer_materials[0]._pad1", offsetof(LayerData, _pad1)},
+    {"layer_materials[0].transmission", offsetof(LayerData, transmission)},
+    {"layer_materials[0].thickness", offsetof(LayerData, thickness)},
+    {"layer_materials[0].absorption", offsetof(LayerData, absorption)},
+    {"layer_materials[0].ior", offsetof(LayerData, ior)},
     {"layer_materials[0].uv_rows", offsetof(LayerData, uv_rows)},
 });
 

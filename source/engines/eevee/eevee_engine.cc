@@ -102,8 +102,8 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
     mark_world(shared.lamps, scene_.lamps().size() + world->suns.size());
   }
   ShadowSettings shadow = settings_.shadow;
-  // Blended surfaces receive shadows, and no depth buffer has them.
-  shadow.cascades.is_fitted_to_depth &= !has_blended(scene_.scene());
+  // These surfaces receive shadows, and the depths that are read back do not have them.
+  shadow.cascades.is_fitted_to_depth &= !has_surfaces_without_depth(scene_.scene());
   shared.shadows.sync(device_limits, shadow_lamps(shared.placed, shared.lamps, shading), scene_.bounds(),
                       shared.lamps.light_block, shadow);
   const scene::Bounds &bounds_ws = scene_.bounds();
@@ -224,8 +224,13 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
         return sample_view.touches(scene_.objects().volume(object));
       });
   FrameSample sample{data, settings_, viewport, view, sample_view};
+  data.is_transmission_seen = false;
   if (is_sample_seen) {
     data.is_seen = true;
+    sync_materials(data.stl);
+    data.is_transmission_seen = std::ranges::any_of(data.stl.transmissive, [&](const TransmissiveObject &transmissive) {
+      return sample_view.touches(scene_.objects().volume(transmissive.object));
+    });
     record(viewport);
     sample.is_for_feedback = viewport.draws_until_final() && awaits_depths(data, view);
     if (sample.is_for_feedback) {

@@ -96,6 +96,7 @@ struct Settings {
 
 struct Data;
 struct SharedData;
+struct StorageList;
 
 /**
  * Draws a scene lit by its lamps with shadow maps and by its world. GPU resources are created by the first draw in
@@ -172,6 +173,8 @@ class Engine final : public draw::Engine {
   /** Create the resources and record the passes of a picture with a visible object, as far as their inputs changed. */
   void record(draw::Viewport &viewport);
   void make_targets(draw::Viewport &viewport);
+  /** Derive StorageList::material_features, widest_class and transmissive if their inputs changed. */
+  void sync_materials(StorageList &stl) const;
   void make_blocks(draw::Viewport &viewport);
   void record_passes(draw::Viewport &viewport);
   void record_object(draw::Viewport &viewport, draw::ObjectIndex object);

@@ -37,6 +37,9 @@ struct FramebufferList {
 
 struct TextureList {
   gpu::Texture radiance;
+  /** Copy of `radiance` before what transmits light is drawn. Created when that is first seen; \see make_behind. */
+  gpu::Texture behind;
+  gpu::Sampler behind_sampler;
   /** Weighted sum of the samples. */
   gpu::Texture film;
   /** Depth of the view without sample offsets. Created if a target has depth and a picture has several samples. */
@@ -58,6 +61,9 @@ struct PassList {
         lit_pass("lit_pass", gpu::State::WriteColor | gpu::State::DepthEqual, &objects),
         blend_pass("blend_pass", gpu::State::WriteColor | gpu::State::DepthNearerEqual | gpu::State::BlendOver,
                    &objects),
+        transmission_depth_pass("transmission_depth_pass", gpu::State::WriteDepth | gpu::State::DepthNearerEqual,
+                                &objects),
+        transmission_pass("transmission_pass", gpu::State::WriteColor | gpu::State::DepthEqual, &objects),
         probe_pass("probe_pass", gpu::State::WriteColor | gpu::State::DepthEqual, &objects),
         surfaces_pass("surfaces_pass", gpu::State::WriteColor | gpu::State::DepthEqual, &objects),
         tint_pass("tint_pass", gpu::State::WriteColor | gpu::State::DepthEqual | gpu::State::BlendMultiply, &objects),
@@ -71,6 +77,8 @@ struct PassList {
   draw::Pass lit_pass;
   /** A group or two for each blended object. */
   draw::Pass blend_pass;
+  draw::Pass transmission_depth_pass;
+  draw::Pass transmission_pass;
   draw::Pass probe_pass;
   draw::Pass surfaces_pass;
   draw::Pass tint_pass;
@@ -96,6 +104,7 @@ struct PassesKey {
   gpu::ResourceId world_block = 0;
   gpu::ResourceId world_levels = 0;
   gpu::ResourceId world_picture = 0;
+  gpu::ResourceId behind = 0;
   /** Scene::world_revision if there is a background, otherwise 0. */
   std::uint64_t world = 0;
   Feature features = Feature::None;
@@ -197,6 +206,15 @@ struct BlendedObject {
   draw::ObjectIndex object = draw::object_identity;
   std::uint32_t first_group = 0;
   std::uint32_t group_count = 0;
+  /** It reads TextureList::behind. */
+  bool is_transmissive = false;
+};
+
+/** A drawable object whose material transmits light. */
+struct TransmissiveObject {
+  draw::ObjectIndex object = draw::object_identity;
+  /** It is in PassList::blend_pass; otherwise in transmission_pass. */
+  bool is_blended = false;
 };
 
 /** What the order of blended objects depends on. */
@@ -207,6 +225,8 @@ struct BlendOrderKey {
   std::uint64_t recording = 0;
   /** Indices in StorageList::blended. */
   std::vector<std::uint32_t> visible{};
+  /** The visible objects of transmission_pass. */
+  std::vector<draw::ObjectIndex> transmissive{};
 
   bool operator==(const BlendOrderKey &) const = default;
 };
@@ -234,6 +254,12 @@ struct StorageList {
   std::vector<BlendedObject> blended;
   std::uint32_t blended_group_count = 0;
   std::optional<BlendOrderKey> blend_ordered;
+  /** Groups of PassList::blend_pass behind all that transmits light, from back to front, and the rest of the groups. */
+  std::vector<std::uint32_t> groups_behind;
+  std::vector<std::uint32_t> groups_in_front;
+  std::vector<TransmissiveObject> transmissive;
+  /** At least one object of `transmissive` is not smooth, so that TextureList::behind has mip levels. */
+  bool is_transmission_rough = false;
   /** By object index: whether the passes were recorded with a mirrored matrix. */
   std::vector<bool> is_mirrored;
   /** The matrix of an object became mirrored or ceased to be mirrored since the passes were recorded. */
@@ -334,6 +360,8 @@ struct Data final : draw::EngineViewportData {
   bool is_recorded = false;
   /** An object or a background was visible in at least one sample of the current picture. */
   bool is_seen = false;
+  /** An object of StorageList::transmissive is in the view of the current sample. */
+  bool is_transmission_seen = false;
   /** Engine::finish ended the current picture. */
   bool is_finished = false;
   /** TextureList::picture_depth holds the depth of the current picture. */
@@ -341,6 +369,9 @@ struct Data final : draw::EngineViewportData {
   /** One entry for each of frame_steps(), for the current picture. Empty before the first sample. */
   std::vector<StepRecord> frame;
 };
+
+/** Create TextureList::behind, with as many mip levels as the materials need. */
+void make_behind(Data &data, const draw::Viewport &viewport);
 
 /** Bind what a program that lights surfaces reads, beside the textures of the material. */
 void bind_lit(draw::ShadingGroup &group, Data &data);

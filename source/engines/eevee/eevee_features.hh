@@ -32,7 +32,7 @@ enum class Feature : std::uint32_t {
   ShadowEvsm = 1U << 9,
   /** At least one lamp with an extent is shaded as a whole (LampShading::Whole), or a spot has an elliptical cone. */
   LampShape = 1U << 10,
-  /** Per material: its class is render_scene::MaterialClass::Full or Layered. Excludes BaseColorTexture. */
+  /** Per material: its class is render_scene::MaterialClass::Full or a later one. Excludes BaseColorTexture. */
   FullMaterial = 1U << 11,
   /** The target of the picture has a depth buffer that the engine writes. */
   TargetDepth = 1U << 12,
@@ -40,8 +40,10 @@ enum class Feature : std::uint32_t {
   World = 1U << 13,
   /** Per material: it is blended, and its shadow layers hold the part of it that its opacity says. */
   OpacityThreshold = 1U << 14,
-  /** Per material: its class is render_scene::MaterialClass::Layered. */
+  /** Per material: its class is render_scene::MaterialClass::Layered or Transmissive. */
   Layers = 1U << 15,
+  /** Per material: its class is render_scene::MaterialClass::Transmissive. */
+  Transmission = 1U << 16,
 };
 
 constexpr Feature operator|(Feature a, Feature b)
@@ -64,12 +66,6 @@ inline constexpr Feature any_shadow = Feature::ShadowCube | Feature::ShadowMap |
 constexpr Feature without_shadows(Feature features)
 {
   return Feature(std::uint32_t(features) & ~std::uint32_t(any_shadow | Feature::ShadowPcf | Feature::ShadowEvsm));
-}
-
-/** \a features without Feature::Layers, which belongs to single materials. */
-constexpr Feature without_layers(Feature features)
-{
-  return Feature(std::uint32_t(features) & ~std::uint32_t(Feature::Layers));
 }
 
 /** The kernel of percentage-closer filtering. */

@@ -1,76 +1,43 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_frame.hh"
 
-#include "eevee_camera.hh"
 #include "eevee_engine_data.hh"
 #include "eevee_film.hh"
+#include "eevee_transmission.hh"
 
 #include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstddef>
 
 namespace gnomon::eevee {
 
-std::string_view why_no_shadow(const FrameState &state, std::string_view no_such_lamp)
+/** Appends the visible calls of the passes of \a step to \a list. */
+static void record_passes(const FrameStep &step, FrameSample &sample, const draw::View &view, gpu::CommandList &list)
 {
-  if (state.settings.shadow.kind == scene::ShadowKind::None) {
-    return "shadows are off";
+  Data &data = sample.data;
+  StepRecord &record = data.frame[std::size_t(&step - frame_steps().data())];
+  // A picture without visible objects and without a background is only cleared.
+  for (std::size_t i = 0; data.is_seen && i < step.passes.size(); i++) {
+    const draw::RecordCounts counts = ((*data.psl).*step.passes[i].pass).record(view, list);
+    record.passes[i].runs += counts.drawn > 0 ? 1 : 0;
+    record.passes[i].counts.drawn += counts.drawn;
+    record.passes[i].counts.culled += counts.culled;
   }
-  return has(state.data.stl.features, Feature::Light) ? no_such_lamp : "no lamp gives light";
 }
 
-float pixel_size(const draw::View &view, const draw::Viewport &viewport)
+void record_pass(const FrameStep &step, FrameSample &sample, gpu::CommandList &list,
+                 const gpu::Framebuffer &framebuffer, const gpu::PassActions &actions)
 {
-  return 2.0F / (view.clip_from_view()[1][1] * float(viewport.drawn_size_px().y));
+  list.begin_pass(step.name, framebuffer, actions);
+  record_passes(step, sample, sample.sample_view, list);
+  list.end_pass();
 }
 
-draw::View view_of_sample(const draw::View &drawn_view, const draw::Viewport &viewport, const Settings &settings,
-                          int index)
+/** What steps before the transmission of light draw: all of the picture, where that reads other pixels. */
+static gpu::Rectangle read_region(const FrameSample &sample)
 {
-  return with_sample_offset(drawn_view, film_offset_px(index, settings.sample_count, settings.seed),
-                            viewport.drawn_size_px());
-}
-
-shared::ViewData view_data(const draw::View &view, const Settings &settings, int sample_index)
-{
-  const glm::mat4 world_from_view(glm::inverse(glm::dmat4(view.view_from_world())));
-  shared::ViewData data{};
-  data.clip_from_world = view.clip_from_world();
-  data.position_ws = glm::vec3(world_from_view[3]);
-  data.is_perspective = view.is_perspective() ? 1 : 0;
-  data.back_ws = glm::normalize(glm::vec3(world_from_view[2]));
-  // With n samples for each pixel, a sample covers 1/n of the pixel's area, so that the samples are n^-1/2 pixels
-  // apart.
-  const int sample_count = settings.sample_count == 0 ? sample_index + 1 : settings.sample_count;
-  data.texture_lod_bias = -0.5F * std::log2(float(sample_count));
-  return data;
-}
-
-void write_lamp_points(Data &data, gpu::CommandList &list)
-{
-  const std::span<const LampPoint> points = data.stl.lamp_points;
-  if (points.empty()) {
-    return;
-  }
-  // The points are in the order of the lights. One write of the whole range costs less than one write for each point.
-  const int first = points.front().light;
-  const int end = points.back().light + 1;
-  const shared::LightData *lights = data.shared->lamps.light_block.lights;
-  std::vector<shared::LightData> &sampled = data.stl.sampled_lights;
-  sampled.assign(lights + first, lights + end);
-  for (const LampPoint &point : points) {
-    shared::LightData &light = sampled[std::size_t(point.light - first)];
-    light = light_at(lights[point.light], point);
-    if (data.shared->is_light_left_out[std::size_t(point.light)]) {
-      leave_out(light);
-    }
-  }
-  list.update(data.shared->light_block,
-              offsetof(shared::LightBlock, lights) + std::size_t(first) * sizeof(shared::LightData),
-              std::as_bytes(std::span(sampled)));
+  return sample.data.is_transmission_seen ? gpu::Rectangle() : sample.viewport.drawn_region();
 }
 
 namespace {
@@ -158,36 +125,12 @@ Need need_tonemap(const FrameState &state)
              : Need{true, "nothing is seen: the target's rectangle is cleared"};
 }
 
-/** Appends the visible calls of the passes of \a step to \a list. */
-void record_passes(const FrameStep &step, FrameSample &sample, const draw::View &view, gpu::CommandList &list)
-{
-  Data &data = sample.data;
-  StepRecord &record = data.frame[std::size_t(&step - frame_steps().data())];
-  // A picture without visible objects and without a background is only cleared.
-  for (std::size_t i = 0; data.is_seen && i < step.passes.size(); i++) {
-    const draw::RecordCounts counts = ((*data.psl).*step.passes[i].pass).record(view, list);
-    record.passes[i].runs += counts.drawn > 0 ? 1 : 0;
-    record.passes[i].counts.drawn += counts.drawn;
-    record.passes[i].counts.culled += counts.culled;
-  }
-}
-
-/** Appends a render pass that draws the calls that are visible in the sample's view. */
-void record_pass(const FrameStep &step, FrameSample &sample, gpu::CommandList &list,
-                 const gpu::Framebuffer &framebuffer, const gpu::PassActions &actions)
-{
-  list.begin_pass(step.name, framebuffer, actions);
-  record_passes(step, sample, sample.sample_view, list);
-  list.end_pass();
-}
-
 void record_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
   Data &data = sample.data;
   const bool is_awaited = awaits_depths(data, sample.view);
   // Cascades are fitted to the depths of the whole picture.
-  record_pass(step, sample, list, data.fbl.depth_fb,
-              {.scissor = is_awaited ? gpu::Rectangle() : sample.viewport.drawn_region()});
+  record_pass(step, sample, list, data.fbl.depth_fb, {.scissor = is_awaited ? gpu::Rectangle() : read_region(sample)});
   if (is_awaited) {
     DepthFeedback &depths = data.depth_feedback;
     const std::uint64_t tag = ++depths.requested_tag;
@@ -225,7 +168,7 @@ void record_shadows(const FrameStep & /*step*/, FrameSample &sample, gpu::Comman
 void record_lit(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
   record_pass(step, sample, list, sample.data.fbl.main_fb,
-              {.depth_load = gpu::LoadAction::Load, .scissor = sample.viewport.drawn_region()});
+              {.depth_load = gpu::LoadAction::Load, .scissor = read_region(sample)});
 }
 
 void record_blend(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
@@ -250,10 +193,9 @@ void record_background(const FrameStep &step, FrameSample &sample, gpu::CommandL
   stl.background_corner = glm::vec4(glm::vec3(world_from_view * glm::dvec3(middle - scale, -1.0)), 0.0F);
   stl.background_across = glm::vec4(glm::vec3(world_from_view * glm::dvec3(2.0 * scale.x / size_px.x, 0.0, 0.0)), 0.0F);
   stl.background_up = glm::vec4(glm::vec3(world_from_view * glm::dvec3(0.0, 2.0 * scale.y / size_px.y, 0.0)), 0.0F);
-  record_pass(step, sample, list, sample.data.fbl.main_fb,
-              {.color_load = gpu::LoadAction::Load,
-               .depth_load = gpu::LoadAction::Load,
-               .scissor = sample.viewport.drawn_region()});
+  record_pass(
+      step, sample, list, sample.data.fbl.main_fb,
+      {.color_load = gpu::LoadAction::Load, .depth_load = gpu::LoadAction::Load, .scissor = read_region(sample)});
 }
 
 void record_film(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
@@ -299,6 +241,17 @@ constexpr std::array<FramePass, 2> depth_passes = {{
      [](const FrameState &) -> std::string { return "no object with a one-sided material"; }},
 }};
 
+constexpr std::string (*no_transmission)(const FrameState &) = [](const FrameState &) -> std::string {
+  return "no object that is not blended transmits light";
+};
+
+constexpr std::array<FramePass, 2> transmission_passes = {{
+    {&PassList::transmission_depth_pass, "the nearest surface alone is seen", no_transmission},
+    {&PassList::transmission_pass, "objects in the view", no_transmission},
+}};
+
+constexpr std::array<FramePass, 3> picture_depth_passes = {{depth_passes[0], depth_passes[1], transmission_passes[0]}};
+
 constexpr std::array<FramePass, 2> lit_passes = {{
     {&PassList::lit_pass, "objects in the view", [](const FrameState &) -> std::string { return nothing_seen; }},
     {&PassList::tint_pass, "asked for",
@@ -316,6 +269,10 @@ constexpr std::array<FramePass, 1> background_passes = {
 constexpr std::array<FramePass, 1> blend_passes = {{{&PassList::blend_pass, "blended objects, from back to front",
                                                      [](const FrameState &) -> std::string { return nothing_seen; }}}};
 
+constexpr std::array<FramePass, 1> blend_behind_passes = {
+    {{&PassList::blend_pass, "blended objects that are seen through others",
+      [](const FrameState &) -> std::string { return nothing_seen; }}}};
+
 constexpr std::array<FramePass, 1> film_passes = {
     {{&PassList::film_pass, "samples", [](const FrameState &) -> std::string { return nothing_seen; }}}};
 
@@ -324,17 +281,19 @@ constexpr std::array<FramePass, 1> tonemap_passes = {
 
 constexpr std::array<std::string_view, 4> shadow_targets = {"shadow_cubes", "shadow_maps", "shadow_distance_cube",
                                                             "shadow_esm"};
-constexpr std::array<std::string_view, 5> pictures = {"depth", "radiance", "film", "picture_depth", "target"};
+constexpr std::array<std::string_view, 6> pictures = {"depth", "radiance", "film", "picture_depth", "target", "behind"};
 constexpr std::span depth_only = std::span(pictures).first(1);
 constexpr std::span radiance_only = std::span(pictures).subspan(1, 1);
 constexpr std::span film_only = std::span(pictures).subspan(2, 1);
 constexpr std::span picture_depth_only = std::span(pictures).subspan(3, 1);
 constexpr std::span picture_only = std::span(pictures).subspan(2, 2);
 constexpr std::span target_only = std::span(pictures).subspan(4, 1);
+constexpr std::span behind_only = std::span(pictures).subspan(5, 1);
+constexpr std::span depth_and_radiance = std::span(pictures).first(2);
 
 constexpr std::array<std::string_view, 1> light_block_only = {"light_block"};
 
-constexpr std::array<FrameStep, 9> steps = {{
+constexpr std::array<FrameStep, 12> steps = {{
     // The depth pre-pass comes before the shadows because cascades may be fitted to its depths.
     {"depth_prepass",
      FrameStep::When::EachSample,
@@ -357,6 +316,18 @@ constexpr std::array<FrameStep, 9> steps = {{
     {"lit", FrameStep::When::EachSample, need_lit, shadow_targets, radiance_only, lit_passes, record_lit},
     {"background", FrameStep::When::EachSample, need_background, depth_only, radiance_only, background_passes,
      record_background},
+    {"blend_behind", FrameStep::When::EachSample, need_blend_behind, shadow_targets, radiance_only, blend_behind_passes,
+     record_blend_behind},
+    {.name = "behind",
+     .when = FrameStep::When::EachSample,
+     .need = need_behind,
+     .reads = radiance_only,
+     .writes = behind_only,
+     .passes = {},
+     .record = [](const FrameStep &, FrameSample &, gpu::CommandList &) {},
+     .work = copy_behind},
+    {"transmission", FrameStep::When::EachSample, need_transmission, behind_only, depth_and_radiance,
+     transmission_passes, record_transmission},
     {"blend", FrameStep::When::EachSample, need_blend, shadow_targets, radiance_only, blend_passes, record_blend},
     {"film", FrameStep::When::EachSample, need_film, radiance_only, film_only, film_passes, record_film},
     {"picture_depth",
@@ -364,7 +335,7 @@ constexpr std::array<FrameStep, 9> steps = {{
      need_picture_depth,
      {},
      picture_depth_only,
-     depth_passes,
+     picture_depth_passes,
      record_picture_depth,
      [](FrameSample &sample) { sample.data.has_picture_depth = true; }},
     {"tonemap", FrameStep::When::EachTarget, need_tonemap, picture_only, target_only, tonemap_passes, record_tonemap},
@@ -430,8 +401,15 @@ void draw_steps(FrameSample &sample, FrameStep::When when)
     }
     gpu::CommandList &list = device.add_list();
     step.record(step, sample, list);
-    const auto submit = [&] { device.submit(list); };
-    if (list.commands().empty()) {
+    const auto submit = [&] {
+      if (!list.commands().empty()) {
+        device.submit(list);
+      }
+      if (step.work) {
+        step.work(sample);
+      }
+    };
+    if (list.commands().empty() && !step.work) {
       // Every shadow layer was up to date.
     }
     else if (sample.settings.is_timed) {

@@ -69,6 +69,8 @@ struct FrameStep {
   void (*submitted)(FrameSample &sample) = nullptr;
   /** The result of the step is read back to the host. */
   bool is_read_back = false;
+  /** Work on the device that command lists cannot hold, after the list; may be nullptr. */
+  void (*work)(FrameSample &sample) = nullptr;
 };
 
 /** All steps, in the order in which they are drawn. */
@@ -94,6 +96,10 @@ struct StepRecord {
 
 /** Draw the needed steps of \a when, and store the need and the counts of each step in Data::frame. */
 void draw_steps(FrameSample &sample, FrameStep::When when);
+
+/** Append a render pass that draws the calls of the step's passes that are visible in the sample's view. */
+void record_pass(const FrameStep &step, FrameSample &sample, gpu::CommandList &list,
+                 const gpu::Framebuffer &framebuffer, const gpu::PassActions &actions);
 
 /** The reason why \a pass was drawn or not, for reports. */
 [[nodiscard]] std::string reason_of(const FramePass &pass, const StepRecord::PassRecord &record,

@@ -11,6 +11,7 @@ Feature feature_of(MaterialClass material_class)
     case MaterialClass::BaseColor: return Feature::BaseColorTexture;
     case MaterialClass::Full: return Feature::FullMaterial;
     case MaterialClass::Layered: return Feature::FullMaterial | Feature::Layers;
+    case MaterialClass::Transmissive: return Feature::FullMaterial | Feature::Layers | Feature::Transmission;
     default: return Feature::None;
   }
 }
@@ -22,10 +23,10 @@ Feature mask_features(MaterialClass mask_class)
                                              : Feature::AlphaMask;
 }
 
-bool has_blended(const scene::Scene &scene)
+bool has_surfaces_without_depth(const scene::Scene &scene)
 {
   for (const auto &[handle, material] : scene.materials()) {
-    if (material.alpha_mode == scene::AlphaMode::Blend) {
+    if (material.alpha_mode == scene::AlphaMode::Blend || material.has_transmission()) {
       return true;
     }
   }

@@ -13,7 +13,7 @@ namespace gnomon::eevee {
 /** The features of programs that only apply the alpha mask (depth and shadow passes). */
 [[nodiscard]] Feature mask_features(render_scene::MaterialClass mask_class);
 
-/** Whether the scene has a material that may be blended. */
-[[nodiscard]] bool has_blended(const scene::Scene &scene);
+/** Whether the scene has a material that may be blended or that transmits light: depth_prepass does not draw these. */
+[[nodiscard]] bool has_surfaces_without_depth(const scene::Scene &scene);
 
 }  // namespace gnomon::eevee

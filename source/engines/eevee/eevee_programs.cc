@@ -9,7 +9,7 @@ namespace gnomon::eevee {
 
 namespace {
 
-constexpr std::array<FeatureDefine, 16> feature_table = {
+constexpr std::array<FeatureDefine, 17> feature_table = {
     {{Feature::Light, "USE_LIGHT", "something shines"},
      {Feature::Punctual, "USE_PUNCTUAL", "a point, spot or area lamp shines"},
      {Feature::Specular, "USE_SPECULAR", "a material reflects specularly"},
@@ -26,7 +26,8 @@ constexpr std::array<FeatureDefine, 16> feature_table = {
      {Feature::TargetDepth, "USE_TARGET_DEPTH", "the target takes depth"},
      {Feature::World, "USE_WORLD", "a world shines"},
      {Feature::OpacityThreshold, "USE_OPACITY_THRESHOLD", "a blended material casts shadows"},
-     {Feature::Layers, "USE_LAYERS", "a material has a clear coat or sheen"}}};
+     {Feature::Layers, "USE_LAYERS", "a material has a clear coat or sheen, or transmits light"},
+     {Feature::Transmission, "USE_TRANSMISSION", "a material transmits light"}}};
 
 /** Features that only affect lighting. Variants without Feature::Light have none of them. */
 constexpr Feature light_features = Feature::Light | Feature::Punctual | Feature::Specular | Feature::ShadowCube |
@@ -52,8 +53,8 @@ constexpr std::array<ShaderDeclaration, 20> declarations = {{
      "eevee/eevee_shadow_geometry_geom.glsl", "eevee/eevee_depth_frag.glsl", caster_features, Feature::None,
      "the same where vertex shaders cannot choose a layer"},
     {ShaderId::Lit, "eevee_lit", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_lit_frag.glsl",
-     light_features | Feature::BaseColorTexture | Feature::FullMaterial | Feature::Layers, Feature::None,
-     "light that surfaces send to the viewer"},
+     light_features | Feature::BaseColorTexture | Feature::FullMaterial | Feature::Layers | Feature::Transmission,
+     Feature::None, "light that surfaces send to the viewer"},
     {ShaderId::Probe, "eevee_probe", "eevee/eevee_surface_vert.glsl", "", "eevee/eevee_probe_frag.glsl",
      shadow_features, Feature::Light, "position, normal and visibility of one lamp, for comparison with the reference"},
     {ShaderId::Film, "eevee_film", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_film_frag.glsl", Feature::None,
@@ -106,10 +107,17 @@ bool is_possible(Feature features, const ShaderDeclaration &declaration)
     return false;
   }
   if (!has(features, Feature::Light)) {
-    return !has(features, light_features | Feature::Layers);
+    return !has(features, light_features | Feature::Layers | Feature::Transmission);
   }
   // Layers lie over full materials, and reflect.
   if (has(features, Feature::Layers) && (!has(features, Feature::FullMaterial) || !has(features, Feature::Specular))) {
+    return false;
+  }
+  // Transmission is one class of materials with layers. Where maps or cubes are read, it implies their filter, which
+  // reduces the number of variants. \see with_variant
+  if (has(features, Feature::Transmission) &&
+      (!has(features, Feature::Layers) ||
+       has(features, Feature::ShadowCube | Feature::ShadowMap) != has(features, Feature::ShadowPcf))) {
     return false;
   }
   // With a world or with layers, Punctual implies LampShape and ShadowEsm implies ShadowEvsm, and vice versa. Most
@@ -140,6 +148,13 @@ std::span<const ShaderDeclaration> shader_declarations()
 
 Feature with_variant(Feature features)
 {
+  if (has(features, Feature::Transmission)) {
+    // Also without lamps, the way of the light behind depends on normals and on the reflectance.
+    features = features | Feature::Light | Feature::Specular;
+    if (has(features, Feature::ShadowCube | Feature::ShadowMap)) {
+      features = features | Feature::ShadowPcf;
+    }
+  }
   if (!has(features, Feature::World | Feature::Layers)) {
     return features;
   }

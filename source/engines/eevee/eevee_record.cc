@@ -31,7 +31,7 @@ void bind_lit(draw::ShadingGroup &group, Data &data)
   group.bind_storage_ref("full_material_block", &stl.full_material_block);
   group.bind_storage_ref("layer_block", &stl.layer_block);
   group.bind_uniform("light_block", data.shared->light_block);
-  if (has(stl.features, Feature::LampShape)) {
+  if (data.shared->light_shape_block) {
     group.bind_uniform("light_shape_block", data.shared->light_shape_block);
   }
   const WorldResources &world = data.shared->world;
@@ -43,6 +43,9 @@ void bind_lit(draw::ShadingGroup &group, Data &data)
   }
   if (data.shared->ltc_table) {
     group.bind_texture("ltc_table", data.shared->ltc_table, data.shared->ltc_sampler);
+  }
+  if (data.txl.behind) {
+    group.bind_texture("behind", data.txl.behind, data.txl.behind_sampler);
   }
   stl.shadows->bind(group);
 }
@@ -63,6 +66,9 @@ void Engine::make_targets(draw::Viewport &viewport)
     stl.view_block = device.create_buffer({"view_block", gpu::BufferKind::Uniform, sizeof(shared::ViewData)});
     txl.nearest = device.create_sampler({.name = "nearest"});
   }
+  if (data.is_transmission_seen) {
+    make_behind(data, viewport);
+  }
   if (settings_.has_probe && !txl.probe_position) {
     txl.probe_position = create_target(device, "probe_position", gpu::Format::RGBA32F, viewport.drawn_size_px());
     txl.probe_normal = create_target(device, "probe_normal", gpu::Format::RGBA32F, viewport.drawn_size_px());
@@ -81,29 +87,40 @@ void Engine::make_targets(draw::Viewport &viewport)
   }
 }
 
+void Engine::sync_materials(StorageList &stl) const
+{
+  const std::uint64_t materials =
+      scene_.materials_revision() + scene_.passes_revision() + scene_.objects().structure_revision();
+  if (stl.materials_features_revision == materials) {
+    return;
+  }
+  stl.material_features = Feature::None;
+  stl.widest_class = MaterialClass::Plain;
+  stl.transmissive.clear();
+  stl.is_transmission_rough = false;
+  for (const draw::ObjectIndex object : stl.objects) {
+    const scene::Mesh &mesh = scene_.scene().meshes()[scene_.object(object).mesh];
+    const std::uint32_t place = render_scene::MaterialTable::place_of(scene_.scene(), mesh.material);
+    const MaterialClass material_class = render_scene::material_class(scene_.scene(), mesh);
+    const bool is_specular = scene_.materials()[place].specular_f90 > 0.0F || material_class >= MaterialClass::Layered;
+    stl.material_features =
+        stl.material_features | (is_specular ? Feature::Specular : Feature::None) | feature_of(material_class);
+    stl.widest_class = std::max(stl.widest_class, material_class);
+    if (material_class == MaterialClass::Transmissive) {
+      stl.transmissive.push_back({object, render_scene::is_blended(scene_.scene(), mesh)});
+      stl.is_transmission_rough |= scene_.scene().material_of(mesh).roughness > 0.0F;
+    }
+  }
+  stl.materials_features_revision = materials;
+}
+
 void Engine::make_blocks(draw::Viewport &viewport)
 {
   Data &data = viewport.engine_data<Data>(*this);
   StorageList &stl = data.stl;
   SharedData &shared = *data.shared;
   gpu::Device &device = viewport.device();
-  const std::uint64_t materials =
-      scene_.materials_revision() + scene_.passes_revision() + scene_.objects().structure_revision();
-  if (stl.materials_features_revision != materials) {
-    stl.material_features = Feature::None;
-    stl.widest_class = MaterialClass::Plain;
-    for (const draw::ObjectIndex object : stl.objects) {
-      const scene::Mesh &mesh = scene_.scene().meshes()[scene_.object(object).mesh];
-      const std::uint32_t place = render_scene::MaterialTable::place_of(scene_.scene(), mesh.material);
-      const MaterialClass material_class = render_scene::material_class(scene_.scene(), mesh);
-      const bool is_specular =
-          scene_.materials()[place].specular_f90 > 0.0F || material_class == MaterialClass::Layered;
-      stl.material_features =
-          stl.material_features | (is_specular ? Feature::Specular : Feature::None) | feature_of(material_class);
-      stl.widest_class = std::max(stl.widest_class, material_class);
-    }
-    stl.materials_features_revision = materials;
-  }
+  sync_materials(stl);
   scene_.upload(stl.widest_class);
   if (settings_.light.has(LightPart::Kind::Emission)) {
     shared.materials_without_emission.reset();
@@ -117,7 +134,14 @@ void Engine::make_blocks(draw::Viewport &viewport)
     dark.upload(device, stl.widest_class);
   }
   update_world_picture(shared.world, device, scene_, settings_);
-  if (!has(stl.features, Feature::Light)) {
+  if (has(stl.features, Feature::Light)) {
+    stl.features =
+        with_variant(shared.lamps.features | shared.shadows.features() | (stl.material_features & Feature::Specular));
+  }
+  // What the programs of some materials read, beyond those of the frame.
+  const Feature layers = Feature::Layers | (data.txl.behind ? Feature::Transmission : Feature::None);
+  const Feature read = with_variant(stl.features | (stl.material_features & layers));
+  if (!has(read, Feature::Light)) {
     shared.light_block = {};
     shared.light_shape_block = {};
     shared.ltc_table = {};
@@ -125,14 +149,11 @@ void Engine::make_blocks(draw::Viewport &viewport)
     shared.world.levels = {};
     return;
   }
-  const bool has_layers = has(stl.material_features, Feature::Layers);
-  stl.features = with_variant(shared.lamps.features | shared.shadows.features() |
-                              (stl.material_features & (Feature::Specular | Feature::Layers)));
   if (!shared.light_block) {
     shared.light_block = device.create_buffer({"light_block", gpu::BufferKind::Uniform, sizeof(shared::LightBlock)});
     shared.is_light_block_written = false;
   }
-  if (!has(stl.features, Feature::LampShape)) {
+  if (!has(read, Feature::LampShape)) {
     shared.light_shape_block = {};
   }
   else if (!shared.light_shape_block) {
@@ -141,8 +162,8 @@ void Engine::make_blocks(draw::Viewport &viewport)
     shared.is_light_block_written = false;
   }
   update_world(shared.world, device, scene_, stl.features, settings_);
-  const bool has_ltc =
-      has_layers || (has(stl.features, Feature::LampShape | Feature::World) && has(stl.features, Feature::Specular));
+  const bool has_ltc = has(read, Feature::Layers) ||
+                       (has(stl.features, Feature::LampShape | Feature::World) && has(stl.features, Feature::Specular));
   if (!has_ltc) {
     shared.ltc_table = {};
   }
@@ -220,7 +241,7 @@ void Engine::record_tonemap(draw::Viewport &viewport, const draw::View &view)
 void Engine::record(draw::Viewport &viewport)
 {
   Data &data = viewport.engine_data<Data>(*this);
-  if (data.is_recorded) {
+  if (data.is_recorded && (data.txl.behind || !data.is_transmission_seen)) {
     return;
   }
   // If an exception ends the recording, the incomplete passes must not be drawn.
@@ -247,6 +268,7 @@ void Engine::record(draw::Viewport &viewport)
       .world_block = shared.world.block.id(),
       .world_levels = shared.world.levels.id(),
       .world_picture = shared.world.picture.id(),
+      .behind = data.txl.behind.id(),
       .world = has_background(settings_, scene_) ? scene_.scene().world_revision() : 0,
       .features = stl.features,
       .tinted_light = shared.tinted_light,
@@ -319,21 +341,35 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
   const TextureSet surface_textures = textures_of(scene, mesh, surface);
   const auto bind_surface = [&data](draw::ShadingGroup &group) { bind_lit(group, data); };
   // An object that receives no shadows is drawn with a program without shadow lookups.
-  const Feature frame = without_layers(stl.features);
-  const Feature lighting = object.receives_shadow ? frame : without_shadows(frame);
-  const gpu::Shader &lit_shader = shaders_.get(device, ShaderId::Lit, lighting | feature_of(surface));
+  const Feature lighting = object.receives_shadow ? stl.features : without_shadows(stl.features);
+  // Without the picture behind it, nothing that transmits light is in the view.
+  const bool is_transmissive = surface == MaterialClass::Transmissive;
+  const gpu::Shader *lit_shader =
+      is_transmissive && !data.txl.behind
+          ? nullptr
+          : &shaders_.get(device, ShaderId::Lit, with_variant(lighting | feature_of(surface)));
   if (render_scene::is_blended(scene, mesh)) {
-    record_blended(data, index, lit_shader, surface_textures, batch);
+    if (lit_shader) {
+      record_blended(data, index, *lit_shader, surface_textures, batch);
+    }
     return;
   }
-  const gpu::Shader &depth_shader = shaders_.get(device, ShaderId::Depth, mask_features(cut_out));
-  call(material.is_double_sided ? data.psl->depth_pass : data.psl->depth_pass_cull, depth_shader, State::None, cut_out,
-       alpha_textures, bind_surface);
   // The depth test of the lit pass is "equal": a back face at the depth of a front face of another triangle must be
   // culled.
   const State side = material.is_double_sided ? State::None : State::CullBack;
-  call(data.psl->lit_pass, lit_shader, side, surface, surface_textures, bind_surface);
-  if (data.shared->tinted_light) {
+  const gpu::Shader &depth_shader = shaders_.get(device, ShaderId::Depth, mask_features(cut_out));
+  if (is_transmissive) {
+    call(data.psl->transmission_depth_pass, depth_shader, side, cut_out, alpha_textures, bind_surface);
+  }
+  else {
+    call(material.is_double_sided ? data.psl->depth_pass : data.psl->depth_pass_cull, depth_shader, State::None,
+         cut_out, alpha_textures, bind_surface);
+  }
+  if (lit_shader) {
+    call(is_transmissive ? data.psl->transmission_pass : data.psl->lit_pass, *lit_shader, side, surface,
+         surface_textures, bind_surface);
+  }
+  if (data.shared->tinted_light && !is_transmissive) {
     call(data.psl->tint_pass, shaders_.get(device, ShaderId::DebugCascades, stl.features), side, MaterialClass::Plain,
          {}, [&data](draw::ShadingGroup &group) {
            bind_lit(group, data);

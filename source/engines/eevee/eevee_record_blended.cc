@@ -16,7 +16,8 @@ void Engine::record_blended(Data &data, draw::ObjectIndex object, const gpu::Sha
   StorageList &stl = data.stl;
   const scene::Mesh &mesh = scene_.scene().meshes()[scene_.object(object).mesh];
   const State winding = stl.is_mirrored[object] ? State::FrontClockwise : State::None;
-  BlendedObject &blended = stl.blended.emplace_back(BlendedObject{object, stl.blended_group_count, 0});
+  const bool is_transmissive = scene_.scene().material_of(mesh).has_transmission();
+  BlendedObject &blended = stl.blended.emplace_back(BlendedObject{object, stl.blended_group_count, 0, is_transmissive});
   const auto add_side = [&](State culled) {
     draw::ShadingGroup &group = data.psl->blend_pass.group(shader);
     group.state_enable(culled | winding);
@@ -44,32 +45,50 @@ void Engine::order_blended(Data &data, const draw::View &view)
                                                             : glm::vec4(seen_from.back_ws, 0.0F),
                     .objects = scene_.objects().revision(),
                     .recording = stl.pass_recordings,
-                    .visible = {}};
+                    .visible = {},
+                    .transmissive = {}};
   std::vector<std::uint32_t> hidden;
   for (std::uint32_t i = 0; i < stl.blended.size(); i++) {
     const bool is_visible = view.touches(scene_.objects().volume(stl.blended[i].object));
     (is_visible ? key.visible : hidden).push_back(i);
   }
+  for (const TransmissiveObject &transmissive : stl.transmissive) {
+    if (!transmissive.is_blended && view.touches(scene_.objects().volume(transmissive.object))) {
+      key.transmissive.push_back(transmissive.object);
+    }
+  }
   if (stl.blend_ordered == key) {
     return;
   }
   std::vector<scene::Bounds> boxes;
-  boxes.reserve(key.visible.size());
+  boxes.reserve(key.visible.size() + key.transmissive.size());
   for (const std::uint32_t i : key.visible) {
     boxes.push_back(scene_.object(stl.blended[i].object).bounds);
   }
-  std::vector<std::uint32_t> groups;
-  const auto add_groups = [&](std::uint32_t i) {
-    const BlendedObject &blended = stl.blended[i];
+  for (const draw::ObjectIndex object : key.transmissive) {
+    boxes.push_back(scene_.object(object).bounds);
+  }
+  stl.groups_behind.clear();
+  stl.groups_in_front.clear();
+  const auto add_groups = [](std::vector<std::uint32_t> &groups, const BlendedObject &blended) {
     for (std::uint32_t group = 0; group < blended.group_count; group++) {
       groups.push_back(blended.first_group + group);
     }
   };
+  bool is_behind = data.is_transmission_seen;
   for (const std::uint32_t place : back_to_front(boxes, key.eye_ws)) {
-    add_groups(key.visible[place]);
+    if (place >= key.visible.size()) {
+      is_behind = false;
+      continue;
+    }
+    const BlendedObject &blended = stl.blended[key.visible[place]];
+    is_behind = is_behind && !blended.is_transmissive;
+    add_groups(is_behind ? stl.groups_behind : stl.groups_in_front, blended);
   }
-  std::ranges::for_each(hidden, add_groups);
-  data.psl->blend_pass.set_order(std::move(groups));
+  for (const std::uint32_t i : hidden) {
+    add_groups(stl.groups_in_front, stl.blended[i]);
+  }
+  data.psl->blend_pass.set_order(stl.groups_in_front);
   stl.blend_ordered = std::move(key);
 }
 

@@ -54,12 +54,13 @@ std::uint64_t caster_fingerprint(const scene::Scene &scene, const render_scene::
     int uv_set;
     float alpha;
     float alpha_cutoff;
+    glm::vec4 transmitted;
   } key{};
   key.world_from_object = world_from_object;
   key.mesh = object.mesh.key();
   key.shape = scene.meshes().revision(object.mesh, scene::Mesh::Aspect::Shape);
   key.is_double_sided = material.is_double_sided ? 1 : 0;
-  if (render_scene::is_masked(scene, mesh) || render_scene::is_blended(scene, mesh)) {
+  if (render_scene::is_masked(scene, mesh) || render_scene::lets_light_through(scene, mesh)) {
     key.alpha_mode = std::uint64_t(material.alpha_mode);
     const scene::TextureSlot &slot = material.base_color_texture;
     if (render_scene::is_drawable(scene, mesh, slot)) {
@@ -74,6 +75,9 @@ std::uint64_t caster_fingerprint(const scene::Scene &scene, const render_scene::
     }
     key.alpha = material.alpha;
     key.alpha_cutoff = material.alpha_cutoff;
+    if (material.has_transmission()) {
+      key.transmitted = {material.base_color, render_scene::transmitted_part(material)};
+    }
   }
   return fingerprint_of(std::as_bytes(std::span(&key, 1)));
 }
@@ -113,15 +117,15 @@ void Engine::record_caster(SharedData &shared, draw::ObjectIndex index)
   const scene::Scene &scene = scene_.scene();
   const scene::Mesh &mesh = scene.meshes()[object.mesh];
   const scene::Material &material = scene.material_of(mesh);
-  const bool is_blended = render_scene::is_blended(scene, mesh);
-  const MaterialClass cut_out = is_blended ? MaterialClass::Full : render_scene::mask_class(scene, mesh);
+  const bool is_open = render_scene::lets_light_through(scene, mesh);
+  const MaterialClass cut_out = is_open ? MaterialClass::Full : render_scene::mask_class(scene, mesh);
   shared.is_mirrored[index] = draw::is_mirrored(scene_.objects().world_from_object(index));
   const State winding = shared.is_mirrored[index] ? State::FrontClockwise : State::None;
   draw::InstanceCall *&instances = shared.caster_calls[{object.mesh, winding}];
   if (!instances) {
     const gpu::Shader &shader =
         shaders_.get(scene_.device(), shadow_shader(shared.shadows.layer_pass()),
-                     mask_features(cut_out) | (is_blended ? Feature::OpacityThreshold : Feature::None));
+                     mask_features(cut_out) | (is_open ? Feature::OpacityThreshold : Feature::None));
     const State faces = material.is_double_sided ? State::None : culled_state(settings_.shadow.caster_faces);
     // Without culling the winding has no effect.
     const State state = faces == State::None ? State::None : faces | winding;
@@ -152,10 +156,10 @@ void Engine::add_casters(Data &data)
     if (draw::InstanceCall *instances = shared.caster_of[index]) {
       const render_scene::RenderObject &object = scene_.object(index);
       const glm::mat4 &world_from_object = scene_.objects().world_from_object(index);
-      shared.shadows.add_caster({object.bounds, index, instances,
-                                 caster_fingerprint(scene_.scene(), object, world_from_object),
-                                 &scene_.scene().meshes()[object.mesh], &world_from_object,
-                                 render_scene::is_blended(scene_.scene(), scene_.scene().meshes()[object.mesh])});
+      shared.shadows.add_caster(
+          {object.bounds, index, instances, caster_fingerprint(scene_.scene(), object, world_from_object),
+           &scene_.scene().meshes()[object.mesh], &world_from_object,
+           render_scene::lets_light_through(scene_.scene(), scene_.scene().meshes()[object.mesh])});
     }
   }
   shared.shadows.finish();

@@ -234,9 +234,9 @@ Report Inspection::report() const
   const SceneShadows &shadows = shared.shadows;
   report.warnings = lamps.warnings;
   report.warnings.insert(report.warnings.end(), shadows.warnings().begin(), shadows.warnings().end());
-  if (settings.shadow.cascades.is_fitted_to_depth && has_blended(scene.scene())) {
+  if (settings.shadow.cascades.is_fitted_to_depth && has_surfaces_without_depth(scene.scene())) {
     report.warnings.emplace_back(
-        "cascades are not fitted to depths: blended materials receive shadows, and have no depth");
+        "cascades are not fitted to depths: blended and transmissive materials receive shadows, and are drawn later");
   }
   for (std::string &line : scene.scene().stale_references()) {
     report.warnings.push_back(std::move(line));

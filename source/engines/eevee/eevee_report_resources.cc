@@ -45,6 +45,7 @@ FrameNode target_nodes(const ReportSource &source)
     add({}, "depth", "", nothing_seen);
   }
   add(txl.radiance, "radiance", "one sample, before the pixel filter", nothing_seen);
+  add(txl.behind, "behind", "what is seen through surfaces", why_no_feature(source, Feature::Transmission));
   add(txl.probe_position, "probe_position", "asked for", source.settings.has_probe ? nothing_seen : not_asked);
   add(txl.probe_normal, "probe_normal", "asked for", source.settings.has_probe ? nothing_seen : not_asked);
   for (const auto &[texture, name] : {std::pair(&txl.surface_position, "surface_position"),

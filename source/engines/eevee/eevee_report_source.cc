@@ -63,6 +63,9 @@ std::string why_no_feature(const ReportSource &source, Feature feature)
   if (feature == Feature::BaseColorTexture && source.data.is_recorded && read_images(source).empty()) {
     return "no material that is drawn has a texture";
   }
+  if (feature == Feature::Transmission) {
+    return source.data.is_recorded ? "nothing in the view transmits light" : nothing_seen;
+  }
   if (feature == Feature::Light || !source.has(Feature::Light)) {
     const bool is_mask = feature == Feature::AlphaMask;
     if (!source.data.is_recorded &&
@@ -87,7 +90,8 @@ std::string why_no_feature(const ReportSource &source, Feature feature)
     case Feature::World: return "the scene has no world";
     case Feature::OpacityThreshold: return why_no_shadow(source, "no blended material casts a shadow");
     case Feature::FullMaterial: return source.data.is_recorded ? no_full_material : nothing_seen;
-    case Feature::Layers: return source.data.is_recorded ? "no material has a coat or sheen" : nothing_seen;
+    case Feature::Layers:
+      return source.data.is_recorded ? "no material has a coat or sheen, or transmits light" : nothing_seen;
     case Feature::AlphaMask: return source.data.is_recorded ? "no texture's alpha cuts a material out" : nothing_seen;
     default: return "";
   }

@@ -27,7 +27,8 @@ static Feature mask_features(MaterialClass mask_class)
     case MaterialClass::Plain: return Feature::None;
     case MaterialClass::BaseColor: return Feature::AlphaMask;
     case MaterialClass::Full:
-    case MaterialClass::Layered: break;
+    case MaterialClass::Layered:
+    case MaterialClass::Transmissive: break;
   }
   return Feature::AlphaMask | Feature::FullMaterial;
 }

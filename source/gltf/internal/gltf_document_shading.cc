@@ -64,6 +64,23 @@ void read_sheen(const Place &place, const JsonValue &value, Model::Material &mat
                into_slot("sheenRoughnessTexture", material.sheen_roughness_texture));
 }
 
+void read_transmission(const Place &place, const JsonValue &value, Model::Material &material)
+{
+  read_members(place, value, into("transmissionFactor", material.transmission),
+               into_slot("transmissionTexture", material.transmission_texture));
+}
+
+void read_volume(const Place &place, const JsonValue &value, Model::Material &material)
+{
+  read_members(place, value, into("thicknessFactor", material.thickness),
+               into_slot("thicknessTexture", material.thickness_texture),
+               Member{"attenuationDistance",
+                      [&](const Place &at, const JsonValue &distance) {
+                        material.attenuation_distance = number_at(at, distance);
+                      }},
+               into("attenuationColor", material.attenuation_color));
+}
+
 /** KHR_materials_pbrSpecularGlossiness. */
 struct SpecularGlossiness {
   std::array<double, 4> diffuse{1.0, 1.0, 1.0, 1.0};
@@ -115,6 +132,12 @@ void read_material_extensions(const Place &place, const JsonValue &value, Model:
     }
     else if (name == "KHR_materials_sheen") {
       read_sheen(at, extension, material);
+    }
+    else if (name == "KHR_materials_transmission") {
+      read_transmission(at, extension, material);
+    }
+    else if (name == "KHR_materials_volume") {
+      read_volume(at, extension, material);
     }
     else if (name == "KHR_materials_emissive_strength") {
       read_members(at, extension, into("emissiveStrength", material.emissive_strength));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "internal/gltf_material.hh"
 
+#include "internal/gltf_units.hh"
+
 #include <glm/common.hpp>
 
 #include <algorithm>
@@ -41,6 +43,7 @@ class MaterialReader {
     read_metallic_roughness();
     read_specular();
     read_layers();
+    read_transmission();
     read_emissive();
     read_alpha();
     read_textures();
@@ -97,23 +100,20 @@ class MaterialReader {
     result_.specular = clamped("specularFactor", source_.specular, 1.0);
     result_.specular_color = clamped("specularColorFactor", vec3(source_.specular_color), large);
     if (source_.ior) {
-      result_.specular_color *= reflectance_ratio(*source_.ior);
+      const double ior = *source_.ior == 0.0 ? 0.0 : clamped_ior(*source_.ior);
+      result_.specular_color *= reflectance_ratio(ior);
+      // What reflects all light refracts none.
+      result_.ior = ior == 0.0 ? result_.ior : static_cast<float>(ior);
     }
   }
 
-  /**
-   * An index of refraction other than 1.5 scales the reflectance at normal incidence, as the specular colour does. It
-   * is therefore multiplied into the specular colour. 0 means full reflection at all angles.
-   */
-  float reflectance_ratio(double ior)
+  double clamped_ior(double ior)
   {
-    if (ior != 0.0 && ior < 1.0) {
-      warnings_.add(what_, "ior is " + text(ior) + ", clamped to 1");
-      ior = 1.0;
+    const double result = std::clamp(ior, 1.0, large);
+    if (result != ior) {
+      warnings_.add(what_, "ior is " + text(ior) + ", clamped to " + text(result));
     }
-    constexpr double default_reflectance = 0.04;
-    const double root = (ior - 1.0) / (ior + 1.0);
-    return static_cast<float>(root * root / default_reflectance);
+    return result;
   }
 
   void read_layers()
@@ -127,6 +127,24 @@ class MaterialReader {
     }
   }
 
+  void read_transmission()
+  {
+    result_.transmission = clamped("transmissionFactor", source_.transmission, 1.0);
+    result_.thickness = clamped("thicknessFactor", source_.thickness, large);
+    result_.attenuation_color = clamped("attenuationColor", vec3(source_.attenuation_color), 1.0);
+    if (!source_.attenuation_distance) {
+      return;
+    }
+    const double distance = *source_.attenuation_distance;
+    if (distance > 0.0) {
+      // Above the least float: 0 means that nothing is absorbed.
+      result_.attenuation_distance = static_cast<float>(std::clamp(distance, 1.0 / large, large));
+    }
+    else {
+      warnings_.add(what_, "attenuationDistance is " + text(distance) + ", not above 0; nothing is absorbed");
+    }
+  }
+
   /** Whether the material's factors let the texture have an effect. Other textures are not decoded. */
   [[nodiscard]] bool is_read(const SlotName &name) const
   {
@@ -136,6 +154,12 @@ class MaterialReader {
     }
     if (is_one_of(&Material::sheen_color_texture, &Material::sheen_roughness_texture)) {
       return result_.sheen_color != glm::vec3(0.0F);
+    }
+    if (is_one_of(&Material::transmission_texture)) {
+      return result_.transmission > 0.0F;
+    }
+    if (is_one_of(&Material::thickness_texture)) {
+      return result_.transmission > 0.0F && result_.thickness > 0.0F;
     }
     return true;
   }
@@ -221,10 +245,11 @@ class MaterialReader {
 
   void warn_extensions()
   {
-    constexpr std::array read_or_without_effect{"KHR_materials_clearcoat", "KHR_materials_emissive_strength",
-                                                "KHR_materials_ior",       "KHR_materials_pbrSpecularGlossiness",
-                                                "KHR_materials_sheen",     "KHR_materials_specular",
-                                                "KHR_materials_unlit",     "KHR_materials_variants"};
+    constexpr std::array read_or_without_effect{"KHR_materials_clearcoat",    "KHR_materials_emissive_strength",
+                                                "KHR_materials_ior",          "KHR_materials_pbrSpecularGlossiness",
+                                                "KHR_materials_sheen",        "KHR_materials_specular",
+                                                "KHR_materials_transmission", "KHR_materials_unlit",
+                                                "KHR_materials_variants",     "KHR_materials_volume"};
     for (const std::string &name : source_.extensions) {
       if (std::find(read_or_without_effect.begin(), read_or_without_effect.end(), name) ==
           read_or_without_effect.end()) {

@@ -166,6 +166,8 @@ struct Model {
     TextureSlot coat_roughness_texture;
     TextureSlot sheen_color_texture;
     TextureSlot sheen_roughness_texture;
+    TextureSlot transmission_texture;
+    TextureSlot thickness_texture;
     double metallic = 1.0;
     double roughness = 1.0;
     std::array<double, 3> emissive{0.0, 0.0, 0.0};
@@ -180,6 +182,10 @@ struct Model {
     bool has_coat_normal_texture = false;
     std::array<double, 3> sheen_color{0.0, 0.0, 0.0};
     double sheen_roughness = 0.0;
+    double transmission = 0.0;
+    double thickness = 0.0;
+    std::optional<double> attenuation_distance;
+    std::array<double, 3> attenuation_color{1.0, 1.0, 1.0};
     std::string alpha_mode = "OPAQUE";
     double alpha_cutoff = 0.5;
     bool is_double_sided = false;

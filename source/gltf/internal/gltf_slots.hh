@@ -23,7 +23,7 @@ struct SlotName {
 };
 
 /** In the order of scene::texture_inputs. */
-inline constexpr std::array<SlotName, 11> slot_names = {{
+inline constexpr std::array<SlotName, 13> slot_names = {{
     {"baseColorTexture",
      &Model::Material::base_color_texture,
      &scene::Material::base_color_texture,
@@ -77,6 +77,16 @@ inline constexpr std::array<SlotName, 11> slot_names = {{
     {"sheenRoughnessTexture",
      &Model::Material::sheen_roughness_texture,
      &scene::Material::sheen_roughness_texture,
+     {255, 255, 255, 255},
+     "the factor alone"},
+    {"transmissionTexture",
+     &Model::Material::transmission_texture,
+     &scene::Material::transmission_texture,
+     {255, 255, 255, 255},
+     "the factor alone"},
+    {"thicknessTexture",
+     &Model::Material::thickness_texture,
+     &scene::Material::thickness_texture,
      {255, 255, 255, 255},
      "the factor alone"},
 }};

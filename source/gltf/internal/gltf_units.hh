@@ -13,4 +13,14 @@ constexpr double large = 1e12;
 /** Smallest positive length. The square of a smaller one would underflow in float. */
 constexpr double length_min = 1e-12;
 
+/**
+ * Reflectance at normal incidence of an index of refraction over that of 1.5, which is 0.04. The scene multiplies the
+ * specular colour by it. \a ior: 0 stands for infinity, at which all light is reflected.
+ */
+constexpr float reflectance_ratio(double ior)
+{
+  const double root = (ior - 1.0) / (ior + 1.0);
+  return static_cast<float>(root * root / 0.04);
+}
+
 }  // namespace gnomon::gltf

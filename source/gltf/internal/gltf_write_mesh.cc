@@ -4,9 +4,11 @@
 #include "internal/gltf_model.hh"
 #include "internal/gltf_report.hh"
 #include "internal/gltf_sampler.hh"
+#include "internal/gltf_units.hh"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace gnomon::gltf {
 
@@ -49,6 +51,24 @@ int gl_minified(TextureFilter filter, MipFilter mip)
     case MipFilter::Linear: break;
   }
   return is_linear ? gl_linear_mipmap_linear : gl_nearest_mipmap_linear;
+}
+
+/** What glTF separates, and the importer multiplies. */
+struct IorAndColor {
+  /** Absent: glTF's default of 1.5. */
+  std::optional<float> ior;
+  glm::vec3 specular_color;
+};
+
+/** An index that reflects nothing cannot be written with a specular colour that reflects; the colour is kept. */
+IorAndColor without_ior(const Material &material)
+{
+  const float ratio = reflectance_ratio(material.ior);
+  const bool is_black = material.specular_color == glm::vec3(0.0F);
+  if (material.ior == Material().ior || !(material.ior >= 1.0F) || (ratio == 0.0F && !is_black)) {
+    return {std::nullopt, material.specular_color};
+  }
+  return {material.ior, ratio == 0.0F ? glm::vec3(1.0F) : material.specular_color / ratio};
 }
 
 /** A power of two, by which emission above 1 is divided without rounding; 1 for other emission. */
@@ -155,11 +175,15 @@ int MeshWriter::material(Handle<Material> handle)
     extensions.insert(name);
     used.add(name, value);
   };
-  if (material.specular != 1.0F || material.specular_color != glm::vec3(1.0F) || material.specular_texture ||
+  const IorAndColor split = without_ior(material);
+  if (split.ior) {
+    add_extension("KHR_materials_ior", "{\"ior\":" + json_number(*split.ior, what) + '}');
+  }
+  if (material.specular != 1.0F || split.specular_color != glm::vec3(1.0F) || material.specular_texture ||
       material.specular_color_texture) {
     JsonText specular;
     specular.add("specularFactor", json_number(material.specular, what));
-    specular.add("specularColorFactor", json_numbers(material.specular_color, what));
+    specular.add("specularColorFactor", json_numbers(split.specular_color, what));
     add_slot(specular, "specularTexture", material.specular_texture, what);
     add_slot(specular, "specularColorTexture", material.specular_color_texture, what);
     add_extension("KHR_materials_specular", specular.object());
@@ -179,6 +203,22 @@ int MeshWriter::material(Handle<Material> handle)
     add_slot(sheen, "sheenColorTexture", material.sheen_color_texture, what);
     add_slot(sheen, "sheenRoughnessTexture", material.sheen_roughness_texture, what);
     add_extension("KHR_materials_sheen", sheen.object());
+  }
+  if (material.transmission > 0.0F) {
+    JsonText transmission;
+    transmission.add("transmissionFactor", json_number(material.transmission, what));
+    add_slot(transmission, "transmissionTexture", material.transmission_texture, what);
+    add_extension("KHR_materials_transmission", transmission.object());
+  }
+  if (material.thickness > 0.0F || material.attenuation_distance > 0.0F) {
+    JsonText volume;
+    volume.add("thicknessFactor", json_number(material.thickness, what));
+    add_slot(volume, "thicknessTexture", material.thickness_texture, what);
+    volume.add("attenuationColor", json_numbers(material.attenuation_color, what));
+    if (material.attenuation_distance > 0.0F) {
+      volume.add("attenuationDistance", json_number(material.attenuation_distance, what));
+    }
+    add_extension("KHR_materials_volume", volume.object());
   }
   if (strength != 1.0F) {
     add_extension("KHR_materials_emissive_strength", "{\"emissiveStrength\":" + json_number(strength, what) + '}');

@@ -108,8 +108,13 @@ void check_material(const scene::Scene &scene, const scene::Material &material, 
   for (const float factor :
        {material.base_color.x, material.base_color.y, material.base_color.z, material.alpha, material.metallic,
         material.roughness, material.specular, material.alpha_cutoff, material.coat, material.coat_roughness,
-        material.sheen_color.x, material.sheen_color.y, material.sheen_color.z, material.sheen_roughness}) {
+        material.sheen_color.x, material.sheen_color.y, material.sheen_color.z, material.sheen_roughness,
+        material.transmission, material.attenuation_color.x, material.attenuation_color.y,
+        material.attenuation_color.z}) {
     checker.check(factor >= 0.0F && factor <= 1.0F, "with factors in [0, 1]");
+  }
+  for (const float value : {material.thickness, material.ior - 1.0F, material.attenuation_distance}) {
+    checker.check(std::isfinite(value) && value >= 0.0F, "with a finite thickness, index and distance in range");
   }
   checker.check(is_finite(material.specular_color) && is_finite(material.emissive), "of finite colours");
   for (const scene::TextureInput &input : scene::texture_inputs) {

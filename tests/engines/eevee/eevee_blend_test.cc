@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Order of blended objects, and that scenes without them take nothing for them.
+// Order of blended objects, and that scenes without them, and without what transmits light, take nothing for them.
 #include "eevee_blend_order.hh"
 #include "eevee_test_scene.hh"
 
@@ -249,6 +249,66 @@ TEST_F(BlendScene, TheTreeNamesThePassOrTheReason)
   EXPECT_EQ(node("draws", "blend_pass").count, 2U) << "back and front";
   set(scene::AlphaMode::Blend, 0.0F);
   EXPECT_EQ(node("passes", "blend").is_made, false) << "it is not there at all";
+}
+
+TEST_F(BlendScene, OnlyWhatTransmitsLightInTheViewTakesSomethingForIt)
+{
+  const std::set<std::string> opaque = taken_by(scene);
+  scene.edit(material, [](scene::Material &value) {
+    value.thickness = 1.0F;
+    value.roughness = 0.0F;
+  });
+  EXPECT_EQ(taken_by(scene), opaque) << "no factor";
+  scene.edit(material, [](scene::Material &value) { value.transmission = 0.5F; });
+  const auto has = [&](std::string_view part) {
+    const std::set<std::string> taken = taken_by(scene);
+    return std::ranges::any_of(taken, [&](const std::string &what) { return what.find(part) != std::string::npos; });
+  };
+  EXPECT_TRUE(has("USE_TRANSMISSION") && has("behind: 32x32") && has("transmission x2"));
+  EXPECT_FALSE(has("5 levels")) << "it is smooth";
+  scene.edit(pane, [](scene::Node &node) { node.parent_from_node[3].x = 50.0; });
+  EXPECT_FALSE(has("USE_TRANSMISSION") || has("behind: ") || has("transmission x")) << "out of the view";
+}
+
+TEST_F(BlendScene, TheTreeNamesTheStepsOfTransmission)
+{
+  const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  test::Renderer renderer(*device, scene, {32, 32});
+  const auto step = [&](const char *name) {
+    renderer.sync();
+    renderer.draw(test::camera_at({0, 0, 9}, {0, 0, 0}));
+    return *find(*find(renderer.inspect().report().tree, "passes"), name);
+  };
+  EXPECT_EQ(step("behind").why, "no material that is drawn transmits light");
+  scene.edit(material, [](scene::Material &value) { value.transmission = 0.5F; });
+  EXPECT_TRUE(step("behind").is_made && step("transmission").is_made && !step("blend_behind").is_made);
+  // The pane that is blended now shows a copy, and nothing else does.
+  set(scene::AlphaMode::Blend, 0.5F);
+  EXPECT_TRUE(step("behind").is_made && step("blend").is_made && !step("transmission").is_made);
+  scene.edit(pane, [](scene::Node &node) { node.parent_from_node[3].x = 50.0; });
+  EXPECT_EQ(step("behind").why, "nothing in the view transmits light");
+}
+
+TEST_F(BlendScene, AnObjectWithLayersLeavesThePlainProgramsAsTheyAre)
+{
+  const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  const auto variants = [&] {
+    test::Renderer renderer(*device, scene, {32, 32});
+    renderer.draw(test::camera_at({0, 0, 9}, {0, 0, 0}));
+    std::set<std::string> names;
+    for (const FrameNode &variant : find(*find(renderer.inspect().report().tree, "programs"), "eevee_lit")->children) {
+      names.insert(variant.what);
+    }
+    return names;
+  };
+  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 5}, {0, 0, -1}, 1.0F);
+  scene.edit(material, [](scene::Material &value) { value.specular_color = glm::vec3(1.0F); });
+  const std::set<std::string> plain = variants();
+  ASSERT_EQ(plain.size(), 1U);
+  scene.edit(material, [](scene::Material &value) { value.coat = 1.0F; });
+  const std::set<std::string> coated = variants();
+  EXPECT_EQ(coated.size(), 2U);
+  EXPECT_TRUE(coated.contains(*plain.begin())) << *plain.begin();
 }
 
 TEST_F(BlendScene, SamplesRedrawOnlyTheLayersThatBlendedCastersTouch)

@@ -62,7 +62,7 @@ class PictureLayersGpuTest : public test::GpuDeviceTest {
     area.intensity = 20.0F;
     test::add_lamp(scene, area, glm::translate(glm::dmat4(1), {-1, 0, 3}));
   }
-  /** Things that only light needs: what is blended, unlit, and a world with suns. */
+  /** Things that only light needs: what is blended, clear, unlit, and a world with suns. */
   void add_more_light()
   {
     const auto glass = test::add_material(scene, glm::vec3(0.4F));
@@ -74,6 +74,15 @@ class PictureLayersGpuTest : public test::GpuDeviceTest {
     });
     test::add_object(scene, test::add_square_mesh(scene, glass),
                      glm::scale(glm::translate(glm::dmat4(1), {-0.5, -0.5, 1.2}), glm::dvec3(0.7)));
+    const auto clear = test::add_material(scene, {0.7F, 0.9F, 0.8F});
+    scene.edit(clear, [](scene::Material &material) {
+      material.specular_color = glm::vec3(1.0F);
+      material.transmission = 0.9F;
+      material.thickness = 0.4F;
+      material.roughness = 0.2F;
+    });
+    test::add_object(scene, test::add_box_mesh(scene, clear),
+                     glm::scale(glm::translate(glm::dmat4(1), {0.9, -0.9, 0.5}), glm::dvec3(0.4)));
     const auto unlit = test::add_material(scene, {0.2F, 0.3F, 0.9F});
     scene.edit(unlit, [](scene::Material &material) { material.is_unlit = true; });
     test::add_object(scene, test::add_box_mesh(scene, unlit),

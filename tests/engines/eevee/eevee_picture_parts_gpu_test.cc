@@ -87,7 +87,17 @@ TEST_F(PicturePartsTest, RegionsAreBitForBitThoseOfTheWholePicture)
   // A sun whose cascades are fitted to the depths of the whole picture, too.
   test::add_lamp(scene, scene::LampKind::Sun, {4, 3, 8}, {-0.4, -0.3, -0.8}, 2.0F);
   const scene::PlacedCamera camera = test::camera_at({0.3F, -5, 6}, {0, 0, 0}, float(vertical_angle));
-  for (const bool is_fitted : {true, false}) {
+  for (const auto &[is_fitted, has_glass] : {std::pair(true, false), {false, false}, {false, true}}) {
+    if (has_glass) {
+      // It shows pixels far from its own.
+      const auto glass = test::add_material(scene, glm::vec3(0.9F));
+      scene.edit(glass, [](scene::Material &material) {
+        material.transmission = material.thickness = 1.0F;
+        material.roughness = 0.8F;
+      });
+      test::add_object(scene, test::add_box_mesh(scene, glass),
+                       glm::scale(glm::translate(glm::dmat4(1), {0, -1, 1.5}), glm::dvec3(1.2)));
+    }
     const Settings settings{
         .shadow = {.cube_size_px = 128, .map_size_px = 128, .cascades = {.is_fitted_to_depth = is_fitted}},
         .sample_count = 3};

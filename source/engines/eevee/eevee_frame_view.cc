@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// What several steps of a frame and Inspection use: the view of a sample, and the points of its lamps.
+#include "eevee_camera.hh"
+#include "eevee_engine_data.hh"
+#include "eevee_film.hh"
+#include "eevee_frame.hh"
+
+#include <glm/matrix.hpp>
+
+#include <cmath>
+#include <cstddef>
+
+namespace gnomon::eevee {
+
+std::string_view why_no_shadow(const FrameState &state, std::string_view no_such_lamp)
+{
+  if (state.settings.shadow.kind == scene::ShadowKind::None) {
+    return "shadows are off";
+  }
+  return has(state.data.stl.features, Feature::Light) ? no_such_lamp : "no lamp gives light";
+}
+
+float pixel_size(const draw::View &view, const draw::Viewport &viewport)
+{
+  return 2.0F / (view.clip_from_view()[1][1] * float(viewport.drawn_size_px().y));
+}
+
+draw::View view_of_sample(const draw::View &drawn_view, const draw::Viewport &viewport, const Settings &settings,
+                          int index)
+{
+  return with_sample_offset(drawn_view, film_offset_px(index, settings.sample_count, settings.seed),
+                            viewport.drawn_size_px());
+}
+
+shared::ViewData view_data(const draw::View &view, const Settings &settings, int sample_index)
+{
+  const glm::mat4 world_from_view(glm::inverse(glm::dmat4(view.view_from_world())));
+  shared::ViewData data{};
+  data.clip_from_world = view.clip_from_world();
+  data.position_ws = glm::vec3(world_from_view[3]);
+  data.is_perspective = view.is_perspective() ? 1 : 0;
+  data.back_ws = glm::normalize(glm::vec3(world_from_view[2]));
+  // With n samples for each pixel, a sample covers 1/n of the pixel's area, so that the samples are n^-1/2 pixels
+  // apart.
+  const int sample_count = settings.sample_count == 0 ? sample_index + 1 : settings.sample_count;
+  data.texture_lod_bias = -0.5F * std::log2(float(sample_count));
+  return data;
+}
+
+void write_lamp_points(Data &data, gpu::CommandList &list)
+{
+  const std::span<const LampPoint> points = data.stl.lamp_points;
+  if (points.empty()) {
+    return;
+  }
+  // The points are in the order of the lights. One write of the whole range costs less than one write for each point.
+  const int first = points.front().light;
+  const int end = points.back().light + 1;
+  const shared::LightData *lights = data.shared->lamps.light_block.lights;
+  std::vector<shared::LightData> &sampled = data.stl.sampled_lights;
+  sampled.assign(lights + first, lights + end);
+  for (const LampPoint &point : points) {
+    shared::LightData &light = sampled[std::size_t(point.light - first)];
+    light = light_at(lights[point.light], point);
+    if (data.shared->is_light_left_out[std::size_t(point.light)]) {
+      leave_out(light);
+    }
+  }
+  list.update(data.shared->light_block,
+              offsetof(shared::LightBlock, lights) + std::size_t(first) * sizeof(shared::LightData),
+              std::as_bytes(std::span(sampled)));
+}
+
+}  // namespace gnomon::eevee

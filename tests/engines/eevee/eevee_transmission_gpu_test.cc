@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: MIT
+// Light that passes surfaces, compared with closed forms, on the driver.
+#include "eevee_test_scene.hh"
+#include "gpu_device_fixture.hh"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace gnomon::eevee {
+namespace {
+
+using test::Picture;
+using test::Renderer;
+
+constexpr glm::ivec2 size_px(24, 24);
+
+/** An unlit square behind a plate that transmits light, both across the view. */
+class TransmissionGpuTest : public test::GpuDeviceTest {
+ protected:
+  TransmissionGpuTest()
+  {
+    const auto unlit = test::add_material(scene, glm::vec3(1.0F));
+    scene.edit(unlit, [](scene::Material &value) { value.is_unlit = true; });
+    ground = test::add_square_mesh(scene, unlit);
+    test::add_object(scene, ground, glm::scale(glm::dmat4(1), glm::dvec3(half_size)));
+    glass = test::add_material(scene, glm::vec3(1.0F));
+    edit([](scene::Material &value) {
+      value.roughness = 0.0F;
+      value.transmission = 1.0F;
+      value.ior = 1.0F;
+    });
+  }
+  /** Radiance of the ground at its corners, in the order of add_square_mesh. It is linear if opposite sums are equal.
+   */
+  void set_ground(const std::array<glm::vec3, 4> &corners)
+  {
+    scene.edit(ground, [&](scene::Mesh &mesh) {
+      mesh.colors.clear();
+      for (const glm::vec3 &corner : corners) {
+        mesh.colors.emplace_back(corner, 1.0F);
+      }
+    });
+  }
+  void add_plate(const glm::dmat4 &world_from_plate)
+  {
+    test::add_object(scene, test::add_square_mesh(scene, glass), world_from_plate);
+  }
+  static glm::dmat4 at_height(double z, const glm::dvec3 &scale = glm::dvec3(2))
+  {
+    return glm::scale(glm::translate(glm::dmat4(1), glm::dvec3(0, 0, z)), scale);
+  }
+  template <typename Change>
+  void edit(Change &&change)
+  {
+    scene.edit(glass, change);
+  }
+  Picture render(const Settings &settings = {})
+  {
+    Renderer renderer(*device, scene, size_px, settings);
+    Picture picture = renderer.picture(camera);
+    EXPECT_EQ(picture.non_finite_count(), 0U);
+    return picture;
+  }
+
+  static constexpr double half_size = 4.0;
+  scene::Scene scene;
+  scene::Handle<scene::Mesh> ground;
+  scene::Handle<scene::Material> glass;
+  scene::PlacedCamera camera = test::camera_at({0, 0, 5}, {0, 0, 0}, 0.6F);
+};
+
+const std::array<glm::vec3, 4> gradient = {{{0, 0, 0.5F}, {1, 0, 0.5F}, {1, 1, 0.5F}, {0, 1, 0.5F}}};
+
+double largest_difference(const Picture &a, const Picture &b)
+{
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.pixels.size(); i++) {
+    largest = std::max(largest, double(glm::distance(a.pixels[i], b.pixels[i])));
+  }
+  return largest;
+}
+
+void expect_near(const glm::vec3 &value, const glm::vec3 &expected, float tolerance)
+{
+  for (int i = 0; i < 3; i++) {
+    EXPECT_NEAR(value[i], expected[i], tolerance) << "channel " << i;
+  }
+}
+
+TEST_F(TransmissionGpuTest, AThinWallThatReflectsAndAbsorbsNothingIsNotSeen)
+{
+  // A checkerboard with edges at all places in pixels. The index of a thin wall does not refract.
+  const auto checks = test::add_texture(
+      scene, 3, {255, 0, 0, 255, 9, 99, 255, 255, 0, 255, 0, 255, 7, 7, 7, 255, 200, 0, 90, 255, 255, 255, 255, 255});
+  scene.edit(scene.meshes()[ground].material,
+             [&](scene::Material &value) { value.base_color_texture.texture = checks; });
+  scene.edit(ground, [](scene::Mesh &mesh) { mesh.uvs = {{0, 4}, {4, 4}, {4, 0}, {0, 0}}; });
+  for (const bool is_lit : {false, true}) {
+    if (is_lit) {
+      test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 5}, {0.3F, 0, -1}, 3.0F);
+    }
+    for (const Settings &settings : {Settings{}, Settings{.sample_count = 3}}) {
+      test::remove_objects(scene);
+      test::add_object(scene, ground, glm::scale(glm::dmat4(1), glm::dvec3(half_size)));
+      const Picture bare = render(settings);
+      add_plate(at_height(1.0));
+      for (const float ior : {1.0F, 1.5F}) {
+        edit([&](scene::Material &value) { value.ior = ior; });
+        EXPECT_LE(largest_difference(render(settings), bare), 1e-6);
+      }
+    }
+  }
+}
+
+TEST_F(TransmissionGpuTest, AbsorptionIsBeerLambertsOverTheWayInTheScaledObject)
+{
+  set_ground({{{2, 1, 0.5F}, {2, 1, 0.5F}, {2, 1, 0.5F}, {2, 1, 0.5F}}});
+  // Along the plate's normal, its third axis is the scale of the way.
+  add_plate(at_height(1.0, {2, 2, 3}));
+  for (const float roughness : {0.0F, 0.5F}) {
+    for (const float thickness : {0.0F, 0.2F, 1.0F}) {
+      edit([&](scene::Material &value) {
+        value.roughness = roughness;
+        value.thickness = thickness;
+        value.ior = 1.5F;
+        value.attenuation_distance = 0.5F;
+        value.attenuation_color = {0.25F, 0.5F, 1.0F};
+        value.base_color = {1.0F, 0.5F, 0.75F};
+      });
+      const float way_m = 3.0F * thickness;
+      const glm::vec3 left(std::pow(0.25F, 2.0F * way_m), std::pow(0.5F, 2.0F * way_m), 1.0F);
+      const glm::vec3 expected = glm::vec3(2.0F, 0.5F, 0.375F) * left;
+      // At the middle pixel, the way is 1.0006 times that along the axis.
+      expect_near(glm::vec3(render().middle()), expected, 2e-3F * expected.b);
+    }
+  }
+}
+
+TEST_F(TransmissionGpuTest, AThickPlateShowsWhatIsBehindTheEndOfTheRefractedRay)
+{
+  set_ground(gradient);
+  constexpr double thickness = 0.6;
+  constexpr double ior = 1.4;
+  add_plate(at_height(1.0, glm::dvec3(1.0)));
+  edit([&](scene::Material &value) {
+    value.thickness = thickness;
+    value.ior = ior;
+  });
+  camera = test::camera_at({0.5F, -2.0F, 5}, {0, 0, 1}, 0.3F);
+  const Picture picture = render();
+  const glm::dmat4 world_from_camera = camera.world_from_camera;
+  const glm::dvec3 eye(world_from_camera[3]);
+  for (const glm::ivec2 pixel : {glm::ivec2(4, 4), glm::ivec2(12, 12), glm::ivec2(19, 6)}) {
+    const glm::dvec2 ndc = (2.0 * glm::dvec2(pixel) + 1.0) / double(size_px.x) - 1.0;
+    const double reach = std::tan(0.5 * 0.3);
+    const glm::dvec3 ray = glm::normalize(glm::dvec3(world_from_camera * glm::dvec4(reach * ndc, -1.0, 0.0)));
+    const glm::dvec3 hit = eye + ray * ((1.0 - eye.z) / ray.z);
+    // Snell's law for the normal (0, 0, 1).
+    glm::dvec3 inside(ray.x / ior, ray.y / ior, 0.0);
+    inside.z = -std::sqrt(1.0 - inside.x * inside.x - inside.y * inside.y);
+    const glm::dvec3 exit = hit + thickness * inside;
+    const glm::dvec3 behind = eye + (exit - eye) * (-eye.z / (exit.z - eye.z));
+    const glm::vec3 expected(glm::dvec3(0.5 + 0.5 * behind.x / half_size, 0.5 + 0.5 * behind.y / half_size, 0.5));
+    // The lookup is linear between pixels, which a projection is not.
+    expect_near(glm::vec3(picture.at(pixel.x, pixel.y)), expected, 1e-4F);
+    const glm::dvec3 straight = eye + ray * (-eye.z / ray.z);
+    EXPECT_GT(glm::distance(behind, straight), 0.08) << "the test tells refraction from a thin wall";
+  }
+}
+
+TEST_F(TransmissionGpuTest, ARoughWallShowsTheMeanOfWhatIsBehind)
+{
+  set_ground(gradient);
+  camera.kind = scene::CameraKind::Orthographic;
+  camera.half_width = camera.half_height = 1.0F;
+  camera.far = 20.0F;
+  add_plate(at_height(1.0));
+  const auto pixel_with = [&](float roughness) {
+    edit([&](scene::Material &value) {
+      value.roughness = roughness;
+      value.ior = 1.5F;
+    });
+    return glm::vec3(render().at(1, 22));
+  };
+  // The picture is symmetrical about its middle, where the ground has its mean.
+  const glm::vec3 smooth = pixel_with(0.0F);
+  const glm::vec3 half = pixel_with(0.8F);
+  expect_near(pixel_with(1.0F), glm::vec3(0.5F), 1e-4F);
+  EXPECT_GT(half.x, smooth.x + 0.01F);
+  EXPECT_LT(half.x, 0.5F);
+}
+
+TEST_F(TransmissionGpuTest, TransmissionTakesLightFromTheDiffusePartAndReflectionFromBoth)
+{
+  set_ground({{glm::vec3(0.5F), glm::vec3(0.5F), glm::vec3(0.5F), glm::vec3(0.5F)}});
+  test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 5}, {0, 0, -1}, std::numbers::pi_v<float>);
+  add_plate(at_height(1.0));
+  const auto texture = test::add_texture(scene, 1, {102, 0, 0, 0});
+  edit([&](scene::Material &value) {
+    value.base_color = glm::vec3(0.8F);
+    value.transmission = 0.5F;
+    value.transmission_texture.texture = texture;
+  });
+  scene.edit(test::handle_at(scene.meshes(), 1), [](scene::Mesh &mesh) { mesh.uvs.assign(4, glm::vec2(0.5F)); });
+  // 0.2 passes; 0.8 is scattered, and the radiance of a white surface is 1.
+  expect_near(glm::vec3(render().middle()), glm::vec3(0.8F * (0.2F * 0.5F + 0.8F)), 1e-4F);
+  // A surface that reflects 4 % transmits 96 %. Its highlight is not in the direction of the camera.
+  test::remove_lamps(scene);
+  edit([](scene::Material &value) {
+    value.specular_color = glm::vec3(1.0F);
+    value.transmission_texture = {};
+    value.transmission = 1.0F;
+  });
+  expect_near(glm::vec3(render().middle()), glm::vec3(0.8F * 0.96F * 0.5F), 2e-3F);
+}
+
+TEST_F(TransmissionGpuTest, WithoutItsFactorTransmissionChangesNoBit)
+{
+  test::add_lamp(scene, scene::LampKind::Point, {1, 1, 4}, {0, 0, -1}, 20.0F);
+  add_plate(at_height(1.0));
+  edit([](scene::Material &value) { value.transmission = 0.0F; });
+  const Picture plain = render();
+  edit([&](scene::Material &value) {
+    value.transmission_texture.texture = test::add_texture(scene, 1, {255, 255, 255, 255});
+    value.thickness_texture = value.transmission_texture;
+    value.thickness = 1.0F;
+    value.ior = 2.0F;
+    value.attenuation_color = {0.5F, 0.1F, 0.2F};
+    value.attenuation_distance = 0.1F;
+  });
+  EXPECT_EQ(render().pixels, plain.pixels);
+  edit([](scene::Material &value) { value.transmission = 0.01F; });
+  EXPECT_NE(render().pixels, plain.pixels);
+}
+
+TEST_F(TransmissionGpuTest, BlendedSurfacesAreSeenBehindAndInFront)
+{
+  set_ground({{glm::vec3(0.5F), glm::vec3(0.5F), glm::vec3(0.5F), glm::vec3(0.5F)}});
+  const auto add_pane = [&](double z, const glm::vec3 &emissive) {
+    const auto material = test::add_material(scene, glm::vec3(0.0F));
+    scene.edit(material, [&](scene::Material &value) {
+      value.emissive = emissive;
+      value.alpha_mode = scene::AlphaMode::Blend;
+      value.alpha = 0.5F;
+    });
+    test::add_object(scene, test::add_square_mesh(scene, material), at_height(z));
+  };
+  add_pane(2.0, {0, 0, 1});
+  add_plate(at_height(1.0));
+  add_pane(0.5, {1, 0, 0});
+  const glm::vec3 tint(0.8F, 0.6F, 0.4F);
+  edit([&](scene::Material &value) { value.base_color = tint; });
+  const glm::vec3 behind = tint * (0.5F * glm::vec3(1, 0, 0) + 0.5F * glm::vec3(0.5F));
+  expect_near(glm::vec3(render().middle()), 0.5F * glm::vec3(0, 0, 1) + 0.5F * behind, 1e-5F);
+  // The plate may itself be blended over what is behind it.
+  edit([](scene::Material &value) {
+    value.alpha_mode = scene::AlphaMode::Blend;
+    value.alpha = 0.25F;
+  });
+  const glm::vec3 partly = (0.25F * tint + 0.75F) * (0.5F * glm::vec3(1, 0, 0) + 0.5F * glm::vec3(0.5F));
+  expect_near(glm::vec3(render().middle()), 0.5F * glm::vec3(0, 0, 1) + 0.5F * partly, 1e-5F);
+}
+
+TEST_F(TransmissionGpuTest, BeforeATransparentBackgroundAlphaIsWhatDoesNotPass)
+{
+  test::remove_objects(scene);
+  add_plate(at_height(1.0));
+  edit([](scene::Material &value) {
+    value.base_color = {0.9F, 0.6F, 0.3F};
+    value.transmission = 0.5F;
+  });
+  const glm::vec4 pixel = render().middle();
+  expect_near(glm::vec3(pixel), glm::vec3(0.0F), 0.0F);
+  EXPECT_NEAR(pixel.w, 1.0F - 0.5F * 0.6F, 1e-5F);
+  Settings settings;
+  settings.background = {.kind = Background::Kind::Color, .color = {1.0F, 2.0F, 3.0F}};
+  expect_near(glm::vec3(render(settings).middle()), 0.5F * glm::vec3(0.9F, 1.2F, 0.9F), 1e-5F);
+  EXPECT_NEAR(render(settings).middle().w, 1.0F, 1e-5F);
+}
+
+TEST_F(TransmissionGpuTest, ShadowsAreAsDarkAsThePartThatDoesNotPass)
+{
+  // The plate is beside the view, where its shadow falls.
+  const auto white = test::add_material(scene, glm::vec3(1.0F));
+  scene.edit(ground, [&](scene::Mesh &mesh) { mesh.material = white; });
+  test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 5}, {-1, 0, -1},
+                 std::numbers::sqrt2_v<float> * std::numbers::pi_v<float>);
+  add_plate(glm::scale(glm::translate(glm::dmat4(1), glm::dvec3(3, 0, 3)), glm::dvec3(1)));
+  camera = test::camera_at({0, 0, 5}, {0, 0, 0}, 0.1F);
+  const auto shadow_with = [&](const auto &change) {
+    edit(change);
+    return render({.shadow = {.map_size_px = 64}, .sample_count = 64}).middle().x;
+  };
+  // The standard deviation of 64 stratified thresholds is below 1/64; the pixel filter averages several texels.
+  EXPECT_NEAR(shadow_with([](scene::Material &value) {
+                value.base_color = {1.0F, 0.5F, 0.0F};
+              }),
+              0.2126F + 0.5F * 0.7152F, 0.02F);
+  EXPECT_NEAR(shadow_with([](scene::Material &value) { value.transmission = 0.5F; }), 0.5F * (0.2126F + 0.5F * 0.7152F),
+              0.02F);
+  EXPECT_NEAR(shadow_with([&](scene::Material &value) {
+                value.transmission_texture.texture = test::add_texture(scene, 1, {255, 255, 255, 255});
+              }),
+              0.5F * (0.2126F + 0.5F * 0.7152F), 0.02F)
+      << "the mesh has no uvs";
+  scene.edit(test::handle_at(scene.meshes(), 1), [](scene::Mesh &mesh) { mesh.uvs.assign(4, glm::vec2(0.5F)); });
+  EXPECT_EQ(shadow_with([](scene::Material & /*value*/) {}), 0.0F) << "a texture's part is not known to shadows";
+}
+
+TEST_F(TransmissionGpuTest, HostileValuesStayFinite)
+{
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  set_ground(gradient);
+  test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 5}, {0.3F, 0, -1}, 1.0F);
+  add_plate(at_height(1.0));
+  test::add_object(scene, test::add_box_mesh(scene, glass), at_height(0.5, {0.5, 0.5, 0.0}));
+  Renderer renderer(*device, scene, size_px);
+  const auto expect_finite = [&](const auto &change) {
+    const scene::Material kept = scene.materials()[glass];
+    edit(change);
+    renderer.sync();
+    EXPECT_EQ(renderer.picture(camera).non_finite_count(), 0U);
+    edit([&](scene::Material &value) { value = kept; });
+  };
+  for (const float extreme : {0.0F, -1.0F, 1e-30F, 1e30F, infinity, nan}) {
+    SCOPED_TRACE(extreme);
+    expect_finite([&](scene::Material &value) { value.ior = extreme; });
+    expect_finite([&](scene::Material &value) {
+      value.ior = extreme;
+      value.thickness = 1.0F;
+      value.roughness = 1.0F;
+    });
+    expect_finite([&](scene::Material &value) { value.thickness = extreme; });
+    expect_finite([&](scene::Material &value) {
+      value.thickness = 1.0F;
+      value.attenuation_distance = extreme;
+      value.attenuation_color = {0.0F, 0.5F, 1.0F};
+    });
+    expect_finite([&](scene::Material &value) {
+      value.thickness = extreme;
+      value.attenuation_distance = 1.0F;
+      value.attenuation_color = {extreme, 0.0F, 1.0F};
+    });
+  }
+}
+
+}  // namespace
+}  // namespace gnomon::eevee
