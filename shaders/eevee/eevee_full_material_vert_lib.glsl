@@ -19,6 +19,8 @@ layout(location = 10) out vec4 surface_sheen_uvs;
 layout(location = 11) out vec4 surface_transmission_uvs;
 /** Of directions. */
 layout(location = 12) flat out mat3 surface_object_from_world;
+/** Factor of roughness; whether a texture is multiplied with it; index of refraction. */
+layout(location = 15) flat out vec3 surface_lens;
 #  endif
 
 /** As input_uv, of the texture with number \a index in LayerData. */
@@ -40,6 +42,8 @@ void write_full_varyings()
 #  ifdef USE_TRANSMISSION
   surface_transmission_uvs = vec4(layer_uv(material, 4), layer_uv(material, 5));
   surface_object_from_world = inverse(mat3(objects[draw_instance.x].world_from_object));
+  bool has_roughness_texture = (full_materials[material].inputs & INPUT_METALLIC_ROUGHNESS) != 0u;
+  surface_lens = vec3(full_materials[material].roughness, has_roughness_texture ? 1.0 : 0.0, layer_materials[material].ior);
 #  endif
 #endif
 #ifdef USE_LIGHT

@@ -9,6 +9,11 @@
 
 layout(location = 11) in vec4 surface_transmission_uvs;
 layout(location = 12) flat in mat3 surface_object_from_world;
+/**
+ * Mip levels are computed from it alone: llvmpipe takes the level of several invocations from one of them, which may be outside of the
+ * triangle and reads zeros from storage blocks.
+ */
+layout(location = 15) flat in vec3 surface_lens;
 
 layout(binding = TRANSMISSION_SLOT) uniform sampler2D transmission_texture;
 layout(binding = THICKNESS_SLOT) uniform sampler2D thickness_texture;
@@ -69,7 +74,7 @@ Transmission make_transmission(MaterialData material, Surface surface)
   vec2 texco = gl_FragCoord.xy / size;
   float way_m = 0.0;
   if (thickness > 0.0) {
-    vec3 inside_ws = refract(-surface.view_ws, surface.normal_ws, 1.0 / data.ior);
+    vec3 inside_ws = refract(-surface.view_ws, surface.normal_ws, 1.0 / surface_lens.z);
     // A way of 1 m in world space, measured in object space. A matrix that flattens the object has no inverse.
     float shrunk = length(surface_object_from_world * inside_ws);
     way_m = shrunk > 1e-9 && shrunk < 1e9 ? thickness / shrunk : 0.0;
@@ -81,9 +86,11 @@ Transmission make_transmission(MaterialData material, Surface surface)
   vec3 albedo = specular_albedo(table, material.specular_f0, material.specular_f90);
   float entering = clamp(1.0 - max(max(albedo.r, albedo.g), albedo.b), 0.0, 1.0);
   vec3 passed = result.part * entering * material.diffuse * beer_lambert(data.absorption, way_m);
-  // A material of roughness 0 has the least alpha.
-  float roughness = sqrt(max(material.alpha - ALPHA_MIN, 0.0));
-  vec4 from_behind = behind_at(texco, transmission_level(roughness, data.ior, size.y));
+  float roughness = surface_lens.x;
+  if (surface_lens.y != 0.0) {
+    roughness *= texture(metallic_roughness_texture, surface_roughness_normal_uvs.xy, view.texture_lod_bias).g;
+  }
+  vec4 from_behind = behind_at(texco, transmission_level(roughness, surface_lens.z, size.y));
   result.radiance = passed * from_behind.rgb;
   result.alpha = 1.0 - dot(passed, vec3(1.0 / 3.0)) * (1.0 - from_behind.a);
   return result;

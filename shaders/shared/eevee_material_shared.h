@@ -148,14 +148,16 @@ SHARED_FUNCTION float luminance(vec3 color)
  */
 SHARED_FUNCTION vec3 absorption_of(vec3 left, float distance_m)
 {
-  return vec3(left.x > 0.0f ? -log(left.x) / distance_m : 1e30f, left.y > 0.0f ? -log(left.y) / distance_m : 1e30f,
-              left.z > 0.0f ? -log(left.z) / distance_m : 1e30f);
+  return vec3(left.x > 0.0f ? max(-log(left.x) / distance_m, 0.0f) : 1e30f,
+              left.y > 0.0f ? max(-log(left.y) / distance_m, 0.0f) : 1e30f,
+              left.z > 0.0f ? max(-log(left.z) / distance_m, 0.0f) : 1e30f);
 }
 
 /** Part of the light that is left after \a length_m metres. */
 SHARED_FUNCTION vec3 beer_lambert(vec3 absorption, float length_m)
 {
-  return exp(vec3(0.0f) - absorption * length_m);
+  // Of more, floats keep nothing. The product may be infinite, whose exponential is NaN on some devices.
+  return exp(vec3(0.0f) - min(absorption * length_m, vec3(100.0f)));
 }
 
 /**

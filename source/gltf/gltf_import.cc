@@ -44,7 +44,7 @@ namespace {
 constexpr std::size_t object_count_max = std::size_t(1) << 22U;
 
 /** Extensions that are not needed to draw a file correctly, even if it requires them. */
-constexpr std::array<std::string_view, 16> harmless_extensions{
+constexpr std::array<std::string_view, 18> harmless_extensions{
     "KHR_lights_punctual",        "KHR_materials_specular",  "KHR_materials_emissive_strength",
     "KHR_materials_ior",          "KHR_mesh_quantization",   "KHR_materials_variants",
     "KHR_texture_transform",      "KHR_xmp_json_ld",         "KHR_draco_mesh_compression",

@@ -50,10 +50,17 @@ static glm::vec3 absorption(const scene::Material &material)
              : glm::vec3(0.0F);
 }
 
+/** In the range that floats of the device hold. */
+static float thickness(const scene::Material &material)
+{
+  // NaN becomes the first argument.
+  return std::clamp(std::max(0.0F, material.thickness), 0.0F, 1e9F);
+}
+
 float transmitted_part(const scene::Material &material)
 {
   return material.transmission * (1.0F - material.metallic) *
-         shared::luminance(shared::beer_lambert(absorption(material), material.thickness));
+         shared::luminance(shared::beer_lambert(absorption(material), thickness(material)));
 }
 
 bool is_drawable(const scene::Scene &scene, const scene::Mesh &mesh, const scene::TextureSlot &slot)
@@ -160,8 +167,7 @@ shared::LayerData layer_data(const scene::Material &material)
   data.sheen_color = material.sheen_color;
   data.sheen_roughness = material.sheen_roughness;
   data.transmission = material.transmission;
-  // Longer ways and larger indices would overflow in float. NaN becomes the first argument.
-  data.thickness = std::clamp(std::max(0.0F, material.thickness), 0.0F, 1e9F);
+  data.thickness = thickness(material);
   data.ior = std::clamp(std::max(1.0F, material.ior), 1.0F, 1e9F);
   data.absorption = absorption(material);
   write_uv_rows(material, FULL_TEXTURE_COUNT, data.uv_rows);
