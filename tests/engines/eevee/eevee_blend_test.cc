@@ -264,7 +264,7 @@ TEST_F(BlendScene, OnlyWhatTransmitsLightInTheViewTakesSomethingForIt)
     const std::set<std::string> taken = taken_by(scene);
     return std::ranges::any_of(taken, [&](const std::string &what) { return what.find(part) != std::string::npos; });
   };
-  EXPECT_TRUE(has("USE_TRANSMISSION") && has("behind: 32x32") && has("transmission x2"));
+  EXPECT_TRUE(has("USE_TRANSMISSION") && has("behind: ") && has("transmission x2"));
   EXPECT_FALSE(has("5 levels")) << "it is smooth";
   scene.edit(pane, [](scene::Node &node) { node.parent_from_node[3].x = 50.0; });
   EXPECT_FALSE(has("USE_TRANSMISSION") || has("behind: ") || has("transmission x")) << "out of the view";
@@ -295,8 +295,9 @@ TEST_F(BlendScene, AnObjectWithLayersLeavesThePlainProgramsAsTheyAre)
   const auto variants = [&] {
     test::Renderer renderer(*device, scene, {32, 32});
     renderer.draw(test::camera_at({0, 0, 9}, {0, 0, 0}));
+    const FrameNode tree = renderer.inspect().report().tree;
     std::set<std::string> names;
-    for (const FrameNode &variant : find(*find(renderer.inspect().report().tree, "programs"), "eevee_lit")->children) {
+    for (const FrameNode &variant : find(*find(tree, "programs"), "eevee_lit")->children) {
       names.insert(variant.what);
     }
     return names;
