@@ -5,7 +5,6 @@
 #include <glm/mat3x3.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <functional>
 #include <utility>
@@ -123,9 +122,10 @@ void ObjectBuffer::upload(gpu::Device &device)
   }
   const auto bytes = std::as_bytes(std::span(objects_).first(end));
   if (!buffer_ || buffer_.size_bytes() < bytes.size()) {
-    // Reserve capacity for more objects, up to the limit of the device.
+    // Reserve capacity for more objects, up to the limit of the device: little at first, twice the size where a scene grows.
     const std::size_t limit = device.limits().storage_block_bytes_max;
-    const std::size_t size = std::max(bytes.size(), std::min(std::bit_ceil(bytes.size()), limit));
+    const std::size_t reserve = buffer_ ? bytes.size() : std::max(bytes.size() / 8, 16 * sizeof(shared::ObjectData));
+    const std::size_t size = std::max(bytes.size(), std::min(bytes.size() + reserve, limit));
     buffer_ = device.create_buffer({"object_block", gpu::BufferKind::Storage, size});
     uploaded_revision_ = 0;
   }
