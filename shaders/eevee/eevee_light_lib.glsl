@@ -27,16 +27,24 @@ layout(std140, binding = LIGHT_BLOCK_SLOT) uniform light_block
   LightBlock light_data;
 };
 
-/** Visibility of a light, 1 lit and 0 in shadow. \a to_light: unit vector. */
-float light_visibility(LightData light, Surface surface, vec3 to_light)
+// Which lights a loop visits. Callers pass a constant, so that the compiler removes the lookups of shadows that these lights cannot
+// have. llvmpipe evaluates all code that is left, whatever its conditions.
+#define LIGHTS_ALL 0
+/** The first LightBlock::cube_light_count lights: their shadows are cubes or exponential, if they have any. */
+#define LIGHTS_WITH_CUBES 1
+/** The other lights: their shadows are maps or exponential, if they have any. */
+#define LIGHTS_WITH_MAPS 2
+
+/** Visibility of a light, 1 lit and 0 in shadow. \a lights: LIGHTS_…. \a to_light: unit vector. */
+float light_visibility(LightData light, const int lights, Surface surface, vec3 to_light)
 {
 #ifdef USE_SHADOW_CUBE
-  if (light.shadow_kind == SHADOW_CUBE) {
+  if (lights != LIGHTS_WITH_MAPS && light.shadow_kind == SHADOW_CUBE) {
     return shadow_cube_visibility(light.shadow_index, surface, light, to_light);
   }
 #endif
 #ifdef USE_SHADOW_MAP
-  if (light.shadow_kind == SHADOW_MAP) {
+  if (lights != LIGHTS_WITH_CUBES && light.shadow_kind == SHADOW_MAP) {
     return shadow_map_visibility(light.shadow_index, surface, to_light);
   }
 #endif
@@ -141,7 +149,7 @@ struct CenterLight {
   float irradiance;
 };
 
-CenterLight center_light(int index, Surface surface)
+CenterLight center_light(int index, const int lights, Surface surface)
 {
   LightData light = light_data.lights[index];
   CenterLight center = CenterLight(-light.forward_ws, 1.0, 1.0);
@@ -151,7 +159,7 @@ CenterLight center_light(int index, Surface surface)
 #else
   bool is_distant = light.kind == LIGHT_SUN;
 #endif
-  if (!is_distant) {
+  if (lights == LIGHTS_WITH_CUBES || !is_distant) {
     vec3 vector = light.position_ws - surface.position_ws;
     center.distance_sq = dot(vector, vector);
     // At the position of the lamp the direction is undefined. The zero vector gives no light.
@@ -166,7 +174,7 @@ CenterLight center_light(int index, Surface surface)
 #endif
       center.irradiance *= spot_mask(drop, light.spot_drop_outer, light.spot_inv_width);
     }
-    if (light.kind >= LIGHT_RECTANGLE) {
+    if (lights != LIGHTS_WITH_MAPS && light.kind >= LIGHT_RECTANGLE) {
       center.irradiance *= max(-dot(center.to_light, light.forward_ws), 0.0);
     }
   }
@@ -175,17 +183,17 @@ CenterLight center_light(int index, Surface surface)
 }
 
 /** Radiance towards the viewer from the light \a index, shaded as a point at its centre, W/(sr m²). */
-vec3 point_radiance(int index, MaterialData material, Surface surface)
+vec3 point_radiance(int index, const int lights, MaterialData material, Surface surface)
 {
   LightData light = light_data.lights[index];
-  if (light.kind == LIGHT_HEMI) {
+  if (lights != LIGHTS_WITH_CUBES && light.kind == LIGHT_HEMI) {
     float irradiance = material.occlusion * hemi_irradiance(-dot(surface.normal_ws, light.forward_ws));
 #ifdef USE_LAYERS
     material.diffuse = layered(material.diffuse, layers.sheen_albedo, vec3(0.0));
 #endif
     return material.diffuse * light.color * (INV_PI * irradiance);
   }
-  CenterLight center = center_light(index, surface);
+  CenterLight center = center_light(index, lights, surface);
   float cos_l = dot(surface.normal_ws, center.to_light);
 #ifdef USE_LAYERS
   MaterialData coat = layers.coat_material;
@@ -206,12 +214,12 @@ vec3 point_radiance(int index, MaterialData material, Surface surface)
   }
   material.diffuse *= bump_visibility(surface.smooth_normal_ws, surface.normal_ws, center.to_light);
 #endif
-  float visibility = light_visibility(light, surface, center.to_light);
+  float visibility = light_visibility(light, lights, surface, center.to_light);
   if (visibility <= 0.0) {
     return vec3(0.0);
   }
 #if defined(USE_WORLD) && defined(USE_SPECULAR)
-  if (light.kind == LIGHT_WORLD) {
+  if (lights != LIGHTS_WITH_CUBES && light.kind == LIGHT_WORLD) {
     vec3 radiance = world_reflected(light, material, surface, world_shading, center.to_light, cos_l);
 #ifdef USE_LAYERS
     radiance = layered(radiance, light.color * cos_l * sheen_brdf(surface, center.to_light, cos_l),
@@ -254,42 +262,39 @@ ShapeShading shape_shading(MaterialData material, Surface surface)
   return shading;
 }
 
+/** Of the base of the material. Set by direct_light. */
+ShapeShading base_shading;
 #ifdef USE_LAYERS
-/** That of the coat. \see shade_coat */
+/** Of its coat. */
 ShapeShading coat_shading;
-
-void shade_coat()
-{
-  coat_shading = shape_shading(layers.coat_material, layers.coat_surface);
-}
 #endif
 
 #ifdef USE_SHADOW
 /** Visibility of a lamp that is shaded as a whole. */
-float shape_visibility(LightData light, LightShape shape, Surface surface, CenterLight center)
+float shape_visibility(LightData light, const int lights, LightShape shape, Surface surface, CenterLight center)
 {
   if (light.shadow_kind != SHADOW_CUBE && light.shadow_kind != SHADOW_MAP) {
-    return light_visibility(light, surface, center.to_light);
+    return light_visibility(light, lights, surface, center.to_light);
   }
   // The search extends to a gap of 1: that of a caster half way to the lamp, whose penumbra is as wide as the lamp.
   float search = 1.0;
   vec3 axis_x = shape.axis_x_ws;
   vec3 axis_y = shape.axis_y_ws;
-  if (light.kind < LIGHT_RECTANGLE) {
+  if (lights == LIGHTS_WITH_MAPS || light.kind < LIGHT_RECTANGLE) {
     axis_x = any_across(center.to_light) * shape.extent;
     axis_y = cross(center.to_light, axis_x);
   }
 #ifdef USE_SHADOW_MAP
-  if (light.kind == LIGHT_SUN) {
+  if (lights != LIGHTS_WITH_CUBES && light.kind == LIGHT_SUN) {
     search = 0.3 * sun_gap_max(light.shadow_index, surface, center.to_light);
   }
 #endif
-  if (light.kind == LIGHT_RECTANGLE) {
+  if (lights != LIGHTS_WITH_MAPS && light.kind == LIGHT_RECTANGLE) {
     // The taps are on an ellipse. The factor 2 / √3 gives it the second moments of the rectangle.
     axis_x *= 1.1547;
     axis_y *= 1.1547;
   }
-  return penumbra_visibility(light, surface, center.to_light, axis_x, axis_y, search);
+  return penumbra_visibility(light, lights, surface, center.to_light, axis_x, axis_y, search);
 }
 #endif
 
@@ -301,10 +306,10 @@ struct ShapeLight {
   float cosine;
 };
 
-ShapeLight shape_light(LightData light, LightShape shape, Surface surface, ShadingFrame frame, CenterLight center)
+ShapeLight shape_light(LightData light, const int lights, LightShape shape, Surface surface, ShadingFrame frame, CenterLight center)
 {
   ShapeLight result;
-  if (light.kind >= LIGHT_RECTANGLE) {
+  if (lights != LIGHTS_WITH_MAPS && light.kind >= LIGHT_RECTANGLE) {
     FlatLamp lamp = area_lamp(light, shape, frame, surface);
     result.lamp = lamp;
     vec3 flux = flat_flux(lamp.center, lamp.axis_x, lamp.axis_y, lamp.corner_count, vec3(0.0, 0.0, 1.0));
@@ -322,35 +327,35 @@ ShapeLight shape_light(LightData light, LightShape shape, Surface surface, Shadi
 }
 
 /** Radiance towards the viewer from the light \a index, shaded as a whole, W/(sr m²). */
-vec3 shape_radiance(int index, MaterialData material, Surface surface, ShapeShading shading)
+vec3 shape_radiance(int index, const int lights, MaterialData material, Surface surface)
 {
   LightData light = light_data.lights[index];
   LightShape shape = light_shapes.shapes[index];
-  CenterLight center = center_light(index, surface);
+  CenterLight center = center_light(index, lights, surface);
   if (center.irradiance <= 0.0 || center.distance_sq <= 0.0) {
     return vec3(0.0);
   }
-  ShapeLight base_light = shape_light(light, shape, surface, shading.frame, center);
+  ShapeLight base_light = shape_light(light, lights, shape, surface, base_shading.frame, center);
   float irradiance = base_light.irradiance;
 #ifdef USE_LAYERS
   // The lamp may be above the horizon of the coat only.
-  ShapeLight coat_light = shape_light(light, shape, layers.coat_surface, coat_shading.frame, center);
+  ShapeLight coat_light = shape_light(light, lights, shape, layers.coat_surface, coat_shading.frame, center);
   irradiance = max(irradiance, coat_light.irradiance);
 #endif
   if (irradiance <= 0.0) {
     return vec3(0.0);
   }
 #ifdef USE_SHADOW
-  float visibility = shape_visibility(light, shape, surface, center);
+  float visibility = shape_visibility(light, lights, shape, surface, center);
 #else
-  float visibility = light_visibility(light, surface, center.to_light);
+  float visibility = light_visibility(light, lights, surface, center.to_light);
 #endif
   if (visibility <= 0.0) {
     return vec3(0.0);
   }
   vec3 radiance = diffuse_share(material, surface, center.to_light) * base_light.irradiance;
 #ifdef USE_SPECULAR
-  radiance += specular_of(base_light.lamp, material, shading.ltc_matrix, in_frame(shading.frame, surface.view_ws));
+  radiance += specular_of(base_light.lamp, material, base_shading.ltc_matrix, in_frame(base_shading.frame, surface.view_ws));
 #endif
 #ifdef USE_LAYERS
   // The lobe of sheen is wide, so its value in the mean direction of the lamp is taken for all of the lamp.
@@ -362,13 +367,35 @@ vec3 shape_radiance(int index, MaterialData material, Surface surface, ShapeShad
 }
 #endif
 
+/** Radiance towards the viewer from the lights \a first to \a end - 1, W/(sr m²). \a lights: which these are, LIGHTS_…. */
+vec3 lights_radiance(int first, int end, const int lights, MaterialData material, Surface surface)
+{
+  vec3 sum = vec3(0.0);
+  int i = first;
+  if (i < end) {
+    // The test is at the end: for a test at the start, llvmpipe evaluates the body once more and discards the result.
+    do {
+#ifdef USE_LAMP_SHAPE
+      if (light_shapes.shapes[i].extent > 0.0) {
+        sum += shape_radiance(i, lights, material, surface);
+      }
+      else
+#endif
+      {
+        sum += point_radiance(i, lights, material, surface);
+      }
+    } while (++i < end);
+  }
+  return sum;
+}
+
 /** Radiance towards the viewer from all lights, W/(sr m²). */
 vec3 direct_light(MaterialData material, Surface surface)
 {
 #ifdef USE_LAMP_SHAPE
-  ShapeShading shading = shape_shading(material, surface);
+  base_shading = shape_shading(material, surface);
 #ifdef USE_LAYERS
-  shade_coat();
+  coat_shading = shape_shading(layers.coat_material, layers.coat_surface);
 #endif
 #endif
 #if defined(USE_WORLD) && defined(USE_LAYERS)
@@ -384,14 +411,12 @@ vec3 direct_light(MaterialData material, Surface surface)
 #else
   vec3 sum = vec3(0.0);
 #endif
-  for (int i = 0; i < min(light_data.light_count, LIGHT_MAX); i++) {
-#ifdef USE_LAMP_SHAPE
-    if (light_shapes.shapes[i].extent > 0.0) {
-      sum += shape_radiance(i, material, surface, shading);
-      continue;
-    }
+  int count = min(light_data.light_count, LIGHT_MAX);
+#if defined(USE_SHADOW_CUBE) && defined(USE_SHADOW_MAP)
+  int cube_count = min(light_data.cube_light_count, count);
+  sum += lights_radiance(0, cube_count, LIGHTS_WITH_CUBES, material, surface);
+  return sum + lights_radiance(cube_count, count, LIGHTS_WITH_MAPS, material, surface);
+#else
+  return sum + lights_radiance(0, count, LIGHTS_ALL, material, surface);
 #endif
-    sum += point_radiance(i, material, surface);
-  }
-  return sum;
 }

@@ -10,15 +10,15 @@ const int PENUMBRA_TAPS = 20;
  * distance this is the quotient of the distances from the caster to the receiver and to the lamp. For a sun it is the distance from
  * the caster to the receiver, metres.
  */
-float shadow_gap(LightData light, Surface surface, vec3 to_light)
+float shadow_gap(LightData light, const int lights, Surface surface, vec3 to_light)
 {
 #ifdef USE_SHADOW_CUBE
-  if (light.shadow_kind == SHADOW_CUBE) {
+  if (lights != LIGHTS_WITH_MAPS && light.shadow_kind == SHADOW_CUBE) {
     return shadow_cube_gap(light.shadow_index, surface, light, to_light);
   }
 #endif
 #ifdef USE_SHADOW_MAP
-  if (light.shadow_kind == SHADOW_MAP) {
+  if (lights != LIGHTS_WITH_CUBES && light.shadow_kind == SHADOW_MAP) {
     return shadow_map_gap(light.shadow_index, surface, light, to_light);
   }
 #endif
@@ -47,29 +47,30 @@ vec2 pixel_turn()
  * Visibility of a lamp with an extent. \a axis_x, \a axis_y: its half axes, world space; metres, or for a sun at a distance of 1 m.
  * \a search: largest shadow_gap that is searched. Casters whose penumbra does not reach the receiver are ignored.
  */
-float penumbra_visibility(LightData light, Surface surface, vec3 to_light, vec3 axis_x, vec3 axis_y, float search)
+float penumbra_visibility(LightData light, const int lights, Surface surface, vec3 to_light, vec3 axis_x, vec3 axis_y, float search)
 {
   vec2 turn = pixel_turn();
   float gaps = 0.0;
   float count = 0.0;
-  for (int i = 0; i < PENUMBRA_SEARCH_TAPS; i++) {
+  int i = 0;
+  do {
     vec2 tap = vogel_disk(i, PENUMBRA_SEARCH_TAPS);
     tap = vec2(tap.x * turn.x - tap.y * turn.y, tap.x * turn.y + tap.y * turn.x);
-    float gap = shadow_gap(light, beside(surface, to_light, (tap.x * axis_x + tap.y * axis_y) * search), to_light);
+    float gap = shadow_gap(light, lights, beside(surface, to_light, (tap.x * axis_x + tap.y * axis_y) * search), to_light);
     if (gap > 0.0 && gap >= length(tap) * search) {
       gaps += gap;
       count += 1.0;
     }
-  }
-  if (count == 0.0) {
-    return light_visibility(light, surface, to_light);
-  }
-  float gap = gaps / count;
+  } while (++i < PENUMBRA_SEARCH_TAPS);
+  // Without a caster, one lookup at the receiver.
+  int tap_count = count > 0.0 ? PENUMBRA_TAPS : 1;
+  float gap = gaps / max(count, 1.0);
   float sum = 0.0;
-  for (int i = 0; i < PENUMBRA_TAPS; i++) {
+  i = 0;
+  do {
     vec2 tap = vogel_disk(i, PENUMBRA_TAPS);
     tap = vec2(tap.x * turn.x - tap.y * turn.y, tap.x * turn.y + tap.y * turn.x);
-    sum += light_visibility(light, beside(surface, to_light, (tap.x * axis_x + tap.y * axis_y) * gap), to_light);
-  }
-  return sum / float(PENUMBRA_TAPS);
+    sum += light_visibility(light, lights, beside(surface, to_light, (tap.x * axis_x + tap.y * axis_y) * gap), to_light);
+  } while (++i < tap_count);
+  return sum / float(tap_count);
 }

@@ -168,21 +168,27 @@ float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, out 
 float shadow_map_gap(int first, Surface surface, LightData light, vec3 to_light)
 {
   int count = shadow.maps[first].cascade_count;
-  for (int i = 0; i < count; i++) {
-    ShadowMapData map = shadow.maps[first + i];
-    float coverage;
-    ShadowPlace place = map_place(map, surface, to_light, coverage);
-    if (place.is_covered) {
-      float stored = caster_depth(shadow_maps, place, map.size_px);
-      if (light.kind != LIGHT_SUN) {
-        return max(stored / place.plane.depth - 1.0, 0.0);
+  float gap = 0.0;
+  bool is_covered = false;
+  int i = 0;
+  if (count > 0) {
+    // The test is at the end as in lights_radiance.
+    do {
+      ShadowMapData map = shadow.maps[first + i];
+      float coverage;
+      ShadowPlace place = map_place(map, surface, to_light, coverage);
+      is_covered = place.is_covered;
+      if (is_covered) {
+        float stored = caster_depth(shadow_maps, place, map.size_px);
+        // Change of depth per metre towards a sun.
+        vec3 row = vec3(map.texco_from_world[0].z, map.texco_from_world[1].z, map.texco_from_world[2].z);
+        gap = light.kind != LIGHT_SUN ? stored / place.plane.depth - 1.0 :
+              stored > 0.0            ? (stored - place.plane.depth) / max(dot(row, to_light), 1e-20) :
+                                        0.0;
       }
-      // Change of depth per metre towards the sun.
-      vec3 row = vec3(map.texco_from_world[0].z, map.texco_from_world[1].z, map.texco_from_world[2].z);
-      return stored > 0.0 ? max((stored - place.plane.depth) / max(dot(row, to_light), 1e-20), 0.0) : 0.0;
-    }
+    } while (++i < count && !is_covered);
   }
-  return 0.0;
+  return max(gap, 0.0);
 }
 
 /** Distance from the receiver to the near plane, which is in front of all casters of a sun, metres; 0 if there is no map. */
@@ -205,12 +211,16 @@ float shadow_map_visibility(int first, Surface surface, vec3 to_light)
   float visibility = 0.0;
   // Weight not used by finer cascades. Points outside all cascades are lit.
   float open = 1.0;
-  for (int i = 0; i < count && open > 0.0; i++) {
-    float coverage;
-    float lit = one_map_visibility(shadow.maps[first + i], surface, to_light, coverage);
-    float share = cascade_share(i == count - 1, coverage);
-    visibility += open * share * lit;
-    open *= 1.0 - share;
+  int i = 0;
+  if (count > 0) {
+    // The test is at the end as in lights_radiance.
+    do {
+      float coverage;
+      float lit = one_map_visibility(shadow.maps[first + i], surface, to_light, coverage);
+      float share = cascade_share(i == count - 1, coverage);
+      visibility += open * share * lit;
+      open *= 1.0 - share;
+    } while (++i < count && open > 0.0);
   }
   return visibility + open;
 }

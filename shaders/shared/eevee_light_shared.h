@@ -58,9 +58,10 @@ SHARED_ASSERT_SIZE(LightData, 64)
 
 struct LightBlock {
   int light_count;
+  /** Number of lights whose shadow may be a cube: points, areas and wide spots. They are the first in `lights`. */
+  int cube_light_count;
   int _pad0;
   int _pad1;
-  int _pad2;
   LightData lights[LIGHT_MAX];
 };
 SHARED_ASSERT_SIZE(LightBlock, 16 + LIGHT_MAX * 64)

@@ -74,9 +74,9 @@ constexpr auto layer_fields = std::to_array<Field>({
 constexpr std::size_t lights_offset = offsetof(LightBlock, lights);
 constexpr auto light_fields = std::to_array<Field>({
     {"light_data.light_count", offsetof(LightBlock, light_count)},
+    {"light_data.cube_light_count", offsetof(LightBlock, cube_light_count)},
     {"light_data._pad0", offsetof(LightBlock, _pad0)},
     {"light_data._pad1", offsetof(LightBlock, _pad1)},
-    {"light_data._pad2", offsetof(LightBlock, _pad2)},
     {"light_data.lights[0].position_ws", lights_offset + offsetof(LightData, position_ws)},
     {"light_data.lights[0].kind", lights_offset + offsetof(LightData, kind)},
     {"light_data.lights[0].color", lights_offset + offsetof(LightData, color)},

@@ -122,7 +122,7 @@ LampPoints::LampPoints(std::span<const scene::PlacedLamp> placed, const Lamps &l
       continue;
     }
     const shared::LightData &light = lamps.light_block.lights[i];
-    Sized &sized = sized_.emplace_back(Sized{i, lamp, light.color, light.radius_sq});
+    Sized &sized = sized_.emplace_back(Sized{i, std::uint32_t(index), lamp, light.color, light.radius_sq});
     if (index >= world_first) {
       const std::size_t part = index - world_first;
       const std::size_t sun_count = world_->suns.size();
@@ -135,7 +135,7 @@ LampPoints::LampPoints(std::span<const scene::PlacedLamp> placed, const Lamps &l
 
 LampPoint LampPoints::world_point(const Sized &sized, std::uint32_t index, std::uint32_t seed) const
 {
-  const std::uint32_t stream = shared::mixed_bits(seed) + std::uint32_t(sized.light) - sized.direction;
+  const std::uint32_t stream = shared::mixed_bits(seed) + sized.stream - sized.direction;
   const glm::vec3 place = sobol_point(index * sized.direction_count + sized.direction, stream);
   const render_scene::WorldDirection direction = sized.world->at(glm::dvec2(place));
   const double count = sized.direction_count;
@@ -156,7 +156,7 @@ std::span<const LampPoint> LampPoints::sample(std::uint32_t index, std::uint32_t
       points_.push_back(world_point(sized, index, seed));
       continue;
     }
-    const glm::vec3 place = sobol_point(index, shared::mixed_bits(seed) + std::uint32_t(sized.light));
+    const glm::vec3 place = sobol_point(index, shared::mixed_bits(seed) + sized.stream);
     // The mean of the unit vectors in a cone of half angle a has the length (1 + cos a) / 2.
     const double weight =
         sized.lamp.kind == scene::LampKind::Sun ? 2.0 / (1.0 + std::cos(half_angle(sized.lamp))) : 1.0;

@@ -73,6 +73,8 @@ class LampPoints {
  private:
   struct Sized {
     int light = 0;
+    /** Selects the sequence of points: the index of the lamp in `placed`. */
+    std::uint32_t stream = 0;
     scene::PlacedLamp lamp;
     /** Values of LightData for the lamp's centre. */
     glm::vec3 color{0.0F};

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_lamps.hh"
 
+#include "shadows/shadow_cube.hh"
+#include "shadows/shadow_plan.hh"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -118,14 +121,21 @@ Lamps make_lamps(std::span<const scene::PlacedLamp> placed, LampShading shading)
           "lamp '{}': the scale of its node leaves it no area that can be drawn; it gives no light", lamp.name));
       continue;
     }
-    if (lamps.light_block.light_count == LIGHT_MAX) {
+    if (lamps.lamp_index.size() == LIGHT_MAX) {
       dropped.push_back(lamp.name);
       continue;
     }
+    lamps.lamp_index.push_back(i);
+  }
+  const auto first_other = std::ranges::stable_partition(lamps.lamp_index, [&](std::uint32_t lamp) {
+    return has_cube(placed[lamp].kind, widest_half_angle(placed[lamp]));
+  });
+  lamps.light_block.cube_light_count = int(first_other.begin() - lamps.lamp_index.begin());
+  for (const std::uint32_t index : lamps.lamp_index) {
+    const scene::PlacedLamp &lamp = placed[index];
     const int light = lamps.light_block.light_count++;
     lamps.light_block.lights[light] = light_data(lamp);
     lamps.shape_block.shapes[light] = light_shape(lamp, shading);
-    lamps.lamp_index.push_back(i);
     lamps.features = lamps.features | features_of(lamp, lamps.shape_block.shapes[light]);
   }
   if (!dropped.empty()) {

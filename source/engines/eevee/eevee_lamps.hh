@@ -41,7 +41,10 @@ struct Lamps {
   std::vector<std::string> limits;
 };
 
-/** The data of \a lamps. Lamps that give no light (black, intensity 0, no area) get no entry. */
+/**
+ * The data of \a lamps. Lamps with has_cube are first; both groups keep the order of \a lamps. Lamps that give no light
+ * (black, intensity 0, no area) get no entry.
+ */
 [[nodiscard]] Lamps make_lamps(std::span<const scene::PlacedLamp> lamps, LampShading shading = LampShading::Whole);
 
 }  // namespace gnomon::eevee

@@ -81,7 +81,7 @@ TEST(LampPoints, ABallIsAnEvenDiskFromEverySide)
   }
 }
 
-/** Irradiance on a surface at \a position_ws, without a shadow, as light_radiance has it. */
+/** Irradiance on a surface at \a position_ws, without a shadow, as point_radiance has it. */
 double irradiance(const shared::LightData &light, const glm::dvec3 &position_ws, const glm::dvec3 &normal_ws)
 {
   const double color = light.color.r;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_lamps.hh"
 
+#include "shadows/shadow_plan.hh"
+
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -110,8 +112,9 @@ TEST(Lamps, LampsShadedAsPointsHaveNoExtent)
   placed[1].angle = 0.2F;
   const Lamps whole = make_lamps(placed, LampShading::Whole);
   EXPECT_FLOAT_EQ(whole.shape_block.shapes[0].extent, 0.5F);
-  EXPECT_FLOAT_EQ(whole.shape_block.shapes[1].extent, std::tan(0.1F));
-  EXPECT_GT(whole.shape_block.shapes[2].extent, 0.0F);
+  // The area is before the sun, as its shadow is a cube.
+  EXPECT_GT(whole.shape_block.shapes[1].extent, 0.0F);
+  EXPECT_FLOAT_EQ(whole.shape_block.shapes[2].extent, std::tan(0.1F));
   const Lamps point = make_lamps(placed, LampShading::Point);
   for (int i = 0; i < 3; i++) {
     EXPECT_EQ(point.shape_block.shapes[i].extent, 0.0F);
@@ -172,6 +175,51 @@ TEST(Lamps, LampAboveTheLimitIsNamedAndTheOthersAreUnchanged)
 
   placed.pop_back();
   EXPECT_TRUE(make_lamps(placed).limits.empty());
+}
+
+// Shaders visit the lights whose shadows are cubes, and the others, in loops of their own.
+TEST(Lamps, LampsWithCubesAreBeforeTheOthers)
+{
+  std::vector<scene::PlacedLamp> placed;
+  using enum scene::LampKind;
+  const std::vector<scene::LampKind> kinds = {Sun, Point, Hemi, Area, Spot, Point, Spot};
+  for (std::size_t i = 0; i < kinds.size(); i++) {
+    placed.push_back(lamp_of(kinds[i]));
+    placed.back().radius = 0.5F + float(i);
+  }
+  placed[5].intensity = 0.0F;
+  placed[6].spot_outer_angle = 1.3F;
+  const Lamps lamps = make_lamps(placed);
+  EXPECT_EQ(lamps.lamp_index, (std::vector<std::uint32_t>{1, 3, 6, 0, 2, 4}));
+  EXPECT_EQ(lamps.light_block.cube_light_count, 3);
+  ASSERT_EQ(lamps.light_block.light_count, 6);
+  EXPECT_EQ(lamps.light_block.lights[0].kind, LIGHT_POINT);
+  EXPECT_EQ(lamps.light_block.lights[1].kind, LIGHT_RECTANGLE);
+  EXPECT_EQ(lamps.light_block.lights[2].kind, LIGHT_SPOT);
+  EXPECT_EQ(lamps.light_block.lights[3].kind, LIGHT_SUN);
+  EXPECT_EQ(lamps.light_block.lights[4].kind, LIGHT_HEMI);
+  EXPECT_EQ(lamps.light_block.lights[5].kind, LIGHT_SPOT);
+  EXPECT_EQ(lamps.shape_block.shapes[0].extent, 1.5F);
+  EXPECT_EQ(lamps.shape_block.shapes[5].extent, 4.5F);
+
+  // plan_shadows gives memory to the first lamps of the scene, whatever their kind.
+  const std::vector<ShadowLamp> shadows = shadow_lamps(placed, lamps);
+  ASSERT_EQ(shadows.size(), 6U);
+  EXPECT_EQ(shadows[0].kind, Sun);
+  EXPECT_EQ(shadows[0].light, 3);
+  EXPECT_EQ(shadows[5].light, 2);
+}
+
+TEST(Lamps, SpotThatItsScaleMakesWideHasACube)
+{
+  std::vector<scene::PlacedLamp> placed;
+  placed = {lamp_of(scene::LampKind::Sun), lamp_of(scene::LampKind::Spot)};
+  placed[1].spot_outer_angle = 0.9F;
+  EXPECT_EQ(make_lamps(placed).light_block.cube_light_count, 0);
+  placed[1].scale = {3.0, 1.0, 1.0};
+  const Lamps lamps = make_lamps(placed);
+  EXPECT_EQ(lamps.light_block.cube_light_count, 1);
+  EXPECT_EQ(lamps.light_block.lights[0].kind, LIGHT_SPOT);
 }
 
 }  // namespace

@@ -34,6 +34,12 @@ std::array<draw::View, 6> shadow_cube_views(const glm::vec3 &position_ws, float 
   return views;
 }
 
+bool has_cube(scene::LampKind kind, float spot_outer_angle)
+{
+  const bool is_wide = kind == scene::LampKind::Spot && spot_outer_angle > spot_map_angle_max;
+  return kind == scene::LampKind::Point || kind == scene::LampKind::Area || is_wide;
+}
+
 namespace {
 
 /** Whether \a face contains a direction in the emitting half-space of an area lamp. */
@@ -52,8 +58,7 @@ class CubeTechnique final : public ShadowTechnique {
   bool serves(const ShadowLamp &lamp, scene::ShadowKind kind) const override
   {
     const bool is_depth = kind == scene::ShadowKind::Hard || kind == scene::ShadowKind::Pcf;
-    const bool is_wide = lamp.kind == scene::LampKind::Spot && lamp.spot_outer_angle > spot_map_angle_max;
-    return is_depth && (lamp.kind == scene::LampKind::Point || lamp.kind == scene::LampKind::Area || is_wide);
+    return is_depth && has_cube(lamp.kind, lamp.spot_outer_angle);
   }
 
   int light_shadow_kind() const override

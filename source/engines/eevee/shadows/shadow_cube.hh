@@ -16,6 +16,12 @@ extern const std::array<glm::mat4, 6> cubefacemat;
  */
 [[nodiscard]] std::array<draw::View, 6> shadow_cube_views(const glm::vec3 &position_ws, float near, int size_px);
 
+/**
+ * Whether hard and percentage-closer shadows of a lamp are in a cube: those of points, areas, and spots wider than
+ * spot_map_angle_max. \a spot_outer_angle: see ShadowLamp.
+ */
+[[nodiscard]] bool has_cube(scene::LampKind kind, float spot_outer_angle);
+
 /** Cube shadow maps of point lamps, area lamps, and spots wider than spot_map_angle_max. */
 [[nodiscard]] const ShadowTechnique &shadow_cube_technique();
 

@@ -25,8 +25,7 @@ float ShadowLamp::shadow_range() const
   return std::min(range > 0.0F ? range : infinity, shadow.clip_end.value_or(infinity));
 }
 
-/** Half angle of the smallest circular cone that contains a spot's elliptical cone, radians. */
-static float widest_half_angle(const scene::PlacedLamp &lamp)
+float widest_half_angle(const scene::PlacedLamp &lamp)
 {
   const glm::dvec2 scale = lamp.kind == scene::LampKind::Spot ? scene::spot_scale(lamp) : glm::dvec2(1.0);
   const double widest = std::max(scale.x, scale.y);
@@ -51,6 +50,8 @@ std::vector<ShadowLamp> shadow_lamps(std::span<const scene::PlacedLamp> placed, 
                       .is_sampled = is_sampled,
                       .is_smooth = is_sampled && lamp.kind == scene::LampKind::Sun && lamp.angle > smooth_angle});
   }
+  // light_block has another order.
+  std::ranges::sort(result, {}, [&](const ShadowLamp &lamp) { return lamps.lamp_index[std::size_t(lamp.light)]; });
   return result;
 }
 

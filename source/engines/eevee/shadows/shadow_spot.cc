@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "shadow_spot.hh"
 
+#include "shadow_cube.hh"
+
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -66,7 +68,7 @@ class SpotTechnique final : public ShadowTechnique {
   bool serves(const ShadowLamp &lamp, scene::ShadowKind kind) const override
   {
     const bool is_depth = kind == scene::ShadowKind::Hard || kind == scene::ShadowKind::Pcf;
-    return is_depth && lamp.kind == scene::LampKind::Spot && !(lamp.spot_outer_angle > spot_map_angle_max);
+    return is_depth && lamp.kind == scene::LampKind::Spot && !has_cube(lamp.kind, lamp.spot_outer_angle);
   }
 
   int light_shadow_kind() const override
