@@ -122,7 +122,8 @@ void ObjectBuffer::upload(gpu::Device &device)
   }
   const auto bytes = std::as_bytes(std::span(objects_).first(end));
   if (!buffer_ || buffer_.size_bytes() < bytes.size()) {
-    // Reserve capacity for more objects, up to the limit of the device: little at first, twice the size where a scene grows.
+    // Reserve capacity for more objects, up to the limit of the device: little at first, twice the size where a scene
+    // grows.
     const std::size_t limit = device.limits().storage_block_bytes_max;
     const std::size_t reserve = buffer_ ? bytes.size() : std::max(bytes.size() / 8, 16 * sizeof(shared::ObjectData));
     const std::size_t size = std::max(bytes.size(), std::min(bytes.size() + reserve, limit));

@@ -50,8 +50,8 @@ struct ShadowLamp {
 [[nodiscard]] float widest_half_angle(const scene::PlacedLamp &lamp);
 
 /**
- * The lamps of all lights, in the order of \a placed, which is their priority. \a placed: the list from which \a lamps was made. The key of a
- * lamp is the key of its node.
+ * The lamps of all lights, in the order of \a placed, which is their priority. \a placed: the list from which \a lamps
+ * was made. The key of a lamp is the key of its node.
  */
 [[nodiscard]] std::vector<ShadowLamp> shadow_lamps(std::span<const scene::PlacedLamp> placed, const Lamps &lamps,
                                                    LampShading shading = LampShading::Whole);
