@@ -262,12 +262,19 @@ ShapeShading shape_shading(MaterialData material, Surface surface)
   return shading;
 }
 
-/** Of the base of the material. Set by direct_light. */
+/** Of the base of the material, and of its coat. \see shade_shapes */
 ShapeShading base_shading;
 #ifdef USE_LAYERS
-/** Of its coat. */
 ShapeShading coat_shading;
 #endif
+
+void shade_shapes(MaterialData material, Surface surface)
+{
+  base_shading = shape_shading(material, surface);
+#ifdef USE_LAYERS
+  coat_shading = shape_shading(layers.coat_material, layers.coat_surface);
+#endif
+}
 
 #ifdef USE_SHADOW
 /** Visibility of a lamp that is shaded as a whole. */
@@ -393,10 +400,7 @@ vec3 lights_radiance(int first, int end, const int lights, MaterialData material
 vec3 direct_light(MaterialData material, Surface surface)
 {
 #ifdef USE_LAMP_SHAPE
-  base_shading = shape_shading(material, surface);
-#ifdef USE_LAYERS
-  coat_shading = shape_shading(layers.coat_material, layers.coat_surface);
-#endif
+  shade_shapes(material, surface);
 #endif
 #if defined(USE_WORLD) && defined(USE_LAYERS)
   vec3 coat = world_light(layers.coat_material, layers.coat_surface);
