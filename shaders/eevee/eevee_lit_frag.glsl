@@ -47,8 +47,10 @@ void main()
 #  ifdef USE_TRANSMISSION
   Transmission transmission = make_transmission(material, surface);
   material.diffuse *= 1.0 - transmission.part;
-  sum += layered(transmission.radiance, vec3(0.0), vec3(0.0));
-  alpha = transmission.alpha;
+  vec3 passed = layered(transmission.passed, vec3(0.0), vec3(0.0));
+  sum += passed * transmission.behind.rgb;
+  // 1 - what the surface passes of what is behind a transparent picture, as the mean of red, green and blue.
+  alpha = 1.0 - dot(passed, vec3(1.0 / 3.0)) * (1.0 - transmission.behind.a);
 #  endif
   sum += direct_light(material, surface);
 #endif

@@ -51,10 +51,10 @@ vec4 behind_at(vec2 texco, float level)
 struct Transmission {
   /** Part of the light in the base that passes instead of being scattered. */
   float part;
-  /** Towards the viewer, W/(sr m²), as if no layer lay over the base. */
-  vec3 radiance;
-  /** Alpha of the surface: 1 - what it passes of what is behind a transparent picture, as the mean of red, green and blue. */
-  float alpha;
+  /** What the base passes of the radiance behind it, as if no layer lay over it. */
+  vec3 passed;
+  /** Radiance towards the viewer, W/(sr m²), and alpha of what is behind. */
+  vec4 behind;
 };
 
 /** \a material: with the diffuse albedo of a surface without transmission. */
@@ -85,13 +85,11 @@ Transmission make_transmission(MaterialData material, Surface surface)
   vec4 table = textureLod(ltc_table, ltc_texco(material.alpha, cos_v) + vec2(0.5, 0.0), 0.0);
   vec3 albedo = specular_albedo(table, material.specular_f0, material.specular_f90);
   float entering = clamp(1.0 - max(max(albedo.r, albedo.g), albedo.b), 0.0, 1.0);
-  vec3 passed = result.part * entering * material.diffuse * beer_lambert(data.absorption, way_m);
+  result.passed = result.part * entering * material.diffuse * beer_lambert(data.absorption, way_m);
   float roughness = surface_lens.x;
   if (surface_lens.y != 0.0) {
     roughness *= texture(metallic_roughness_texture, surface_roughness_normal_uvs.xy, view.texture_lod_bias).g;
   }
-  vec4 from_behind = behind_at(texco, transmission_level(roughness, surface_lens.z, size.y));
-  result.radiance = passed * from_behind.rgb;
-  result.alpha = 1.0 - dot(passed, vec3(1.0 / 3.0)) * (1.0 - from_behind.a);
+  result.behind = behind_at(texco, transmission_level(roughness, surface_lens.z, size.y));
   return result;
 }

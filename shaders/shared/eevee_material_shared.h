@@ -148,9 +148,10 @@ SHARED_FUNCTION float luminance(vec3 color)
  */
 SHARED_FUNCTION vec3 absorption_of(vec3 left, float distance_m)
 {
-  return vec3(left.x > 0.0f ? max(-log(left.x) / distance_m, 0.0f) : 1e30f,
-              left.y > 0.0f ? max(-log(left.y) / distance_m, 0.0f) : 1e30f,
-              left.z > 0.0f ? max(-log(left.z) / distance_m, 0.0f) : 1e30f);
+  // The quotient overflows for the smallest distances.
+  return vec3(left.x > 0.0f ? clamp(-log(left.x) / distance_m, 0.0f, 1e30f) : 1e30f,
+              left.y > 0.0f ? clamp(-log(left.y) / distance_m, 0.0f, 1e30f) : 1e30f,
+              left.z > 0.0f ? clamp(-log(left.z) / distance_m, 0.0f, 1e30f) : 1e30f);
 }
 
 /** Part of the light that is left after \a length_m metres. */
@@ -162,12 +163,13 @@ SHARED_FUNCTION vec3 beer_lambert(vec3 absorption, float length_m)
 
 /**
  * Mip level of a picture of \a height_px that transmission through a surface of \a roughness reads. The blur is a part of the picture: 2^(10
- * (r - 1)) of its height with r = roughness · clamp(2 ior - 2, 0, 1), as in Khronos's sample viewer, whose picture has 1024 texels.
+ * (r - 1)) of its height with r = roughness · clamp(2 ior - 2, 0, 1), as in Khronos's sample viewer, whose picture has 1024 texels in height and width.
  */
 SHARED_FUNCTION float transmission_level(float roughness, float ior, float height_px)
 {
   float scaled = roughness * clamp(2.0f * ior - 2.0f, 0.0f, 1.0f);
-  return max(log(height_px) * 1.44269504f - 10.0f * (1.0f - scaled), 0.0f);
+  // The limit keeps smooth surfaces sharp in pictures of more than 1024 pixels.
+  return clamp(log(height_px) * 1.44269504f - 10.0f * (1.0f - scaled), 0.0f, 20.0f * scaled);
 }
 
 /** A surface that emits \a radiance and reflects no light. */

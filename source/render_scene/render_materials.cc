@@ -59,7 +59,7 @@ static float thickness(const scene::Material &material)
 
 float transmitted_part(const scene::Material &material)
 {
-  return material.transmission * (1.0F - material.metallic) *
+  return std::clamp(std::max(0.0F, material.transmission), 0.0F, 1.0F) * (1.0F - material.metallic) *
          shared::luminance(shared::beer_lambert(absorption(material), thickness(material)));
 }
 
@@ -166,7 +166,7 @@ shared::LayerData layer_data(const scene::Material &material)
   data.coat_roughness = material.coat_roughness;
   data.sheen_color = material.sheen_color;
   data.sheen_roughness = material.sheen_roughness;
-  data.transmission = material.transmission;
+  data.transmission = std::clamp(std::max(0.0F, material.transmission), 0.0F, 1.0F);
   data.thickness = thickness(material);
   data.ior = std::clamp(std::max(1.0F, material.ior), 1.0F, 1e9F);
   data.absorption = absorption(material);

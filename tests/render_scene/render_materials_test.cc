@@ -269,5 +269,16 @@ TEST(MaterialData, WithoutItsEmissiveTextureAMaterialDoesNotEmit)
   EXPECT_EQ(full().emissive, glm::vec3(0.0F));
 }
 
+// A rough surface elsewhere gives the copy of the picture its mip levels, whatever its height.
+TEST(TransmissionLevel, IsZeroForSmoothSurfacesAndAFractionOfTheHeightForRoughOnes)
+{
+  for (const float height_px : {16.0F, 1024.0F, 2160.0F, 16384.0F}) {
+    EXPECT_EQ(shared::transmission_level(0.0F, 1.5F, height_px), 0.0F);
+    EXPECT_EQ(shared::transmission_level(0.7F, 1.0F, height_px), 0.0F);
+    EXPECT_NEAR(shared::transmission_level(1.0F, 1.5F, height_px), std::log2(height_px), 1e-4F);
+  }
+  EXPECT_NEAR(shared::transmission_level(0.5F, 1.5F, 1024.0F), 5.0F, 1e-4F);
+}
+
 }  // namespace
 }  // namespace gnomon::render_scene

@@ -66,7 +66,10 @@ void Engine::make_targets(draw::Viewport &viewport)
     stl.view_block = device.create_buffer({"view_block", gpu::BufferKind::Uniform, sizeof(shared::ViewData)});
     txl.nearest = device.create_sampler({.name = "nearest"});
   }
-  if (data.is_transmission_seen) {
+  if (stl.transmissive.empty()) {
+    txl.behind = {};
+  }
+  else if (data.is_transmission_seen || txl.behind) {
     make_behind(data, viewport);
   }
   if (settings_.has_probe && !txl.probe_position) {
@@ -138,9 +141,9 @@ void Engine::make_blocks(draw::Viewport &viewport)
     stl.features =
         with_variant(shared.lamps.features | shared.shadows.features() | (stl.material_features & Feature::Specular));
   }
-  // What the programs of some materials read, beyond those of the frame.
-  const Feature layers = Feature::Layers | (data.txl.behind ? Feature::Transmission : Feature::None);
-  const Feature read = with_variant(stl.features | (stl.material_features & layers));
+  // What the programs of some materials read, beyond those of the frame. It is the same for all viewports, as they
+  // share the blocks.
+  const Feature read = with_variant(stl.features | (stl.material_features & (Feature::Layers | Feature::Transmission)));
   if (!has(read, Feature::Light)) {
     shared.light_block = {};
     shared.light_shape_block = {};

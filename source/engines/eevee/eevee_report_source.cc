@@ -88,7 +88,8 @@ std::string why_no_feature(const ReportSource &source, Feature feature)
       return source.data.is_recorded ? "no material that is drawn has a texture" : nothing_seen;
     case Feature::LampShape: return "no lamp has an extent, and no spot's cone is an ellipse";
     case Feature::World: return "the scene has no world";
-    case Feature::OpacityThreshold: return why_no_shadow(source, "no blended material casts a shadow");
+    case Feature::OpacityThreshold:
+      return why_no_shadow(source, "no material that is blended or transmits light casts a shadow");
     case Feature::FullMaterial: return source.data.is_recorded ? no_full_material : nothing_seen;
     case Feature::Layers:
       return source.data.is_recorded ? "no material has a coat or sheen, or transmits light" : nothing_seen;

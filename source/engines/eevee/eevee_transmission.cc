@@ -14,7 +14,7 @@ void make_behind(Data &data, const draw::Viewport &viewport)
   TextureList &txl = data.txl;
   const glm::ivec2 size_px = viewport.drawn_size_px();
   const int levels = data.stl.is_transmission_rough ? std::bit_width(unsigned(std::max(size_px.x, size_px.y))) : 1;
-  if (txl.behind && txl.behind.desc().mip_levels >= levels) {
+  if (txl.behind && txl.behind.desc().mip_levels == levels) {
     return;
   }
   txl.behind = device.create_texture({.name = "behind",

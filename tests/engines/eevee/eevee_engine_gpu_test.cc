@@ -430,7 +430,7 @@ TEST_F(EngineGpuTest, AnEditedShaderIsReloadedAndABadEditKeepsTheLastGoodOne)
   const std::string path = "eevee/eevee_lit_frag.glsl";
   const std::string original(*shaders::file(path));
   std::string edited = original;
-  const std::string line = "radiance = vec4(sum, 1.0);";
+  const std::string line = "radiance = vec4(sum, alpha);";
   ASSERT_NE(edited.find(line), std::string::npos);
   const auto reload = [&](const std::string &replacement) {
     edited = original;

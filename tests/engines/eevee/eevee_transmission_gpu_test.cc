@@ -325,7 +325,7 @@ TEST_F(TransmissionGpuTest, HostileValuesStayFinite)
     EXPECT_EQ(renderer.picture(camera).non_finite_count(), 0U);
     edit([&](scene::Material &value) { value = kept; });
   };
-  for (const float extreme : {0.0F, -1.0F, 1e-30F, 1e30F, infinity, nan}) {
+  for (const float extreme : {0.0F, -1.0F, std::numeric_limits<float>::denorm_min(), 1e-30F, 1e30F, infinity, nan}) {
     SCOPED_TRACE(extreme);
     expect_finite([&](scene::Material &value) {
       value.ior = extreme;
