@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <exception>
 #include <semaphore>
+#include <stdexcept>
 #include <thread>
 
 using namespace gnomon;
@@ -92,6 +93,9 @@ try {
   }
   constexpr glm::ivec2 size_px(320, 180);
   scene::Scene scene = gltf::import_gltf(argv[1]);
+  if (scene.placed_lamps().empty() || scene.placed_cameras().empty()) {
+    throw std::runtime_error("the scene has no visible lamp or no camera");
+  }
   const auto device = gpu::create_gl_device();
   const draw::TargetTexture picture(*device, "picture", gpu::Format::RGBA8, size_px);
   eevee::SceneRenderer renderer(*device, scene, size_px, {.sample_count = 8});

@@ -12,8 +12,13 @@
 #include "shader_check_reflection.hh"
 #include "shader_files.hh"
 
+#include <array>
 #include <cstdio>
+#include <exception>
+#include <memory>
+#include <optional>
 #include <set>
+#include <string_view>
 
 using namespace gnomon;
 
@@ -62,8 +67,8 @@ class FacingEngine final : public draw::Engine {
     if (!data.view_block) {
       data.surface_shader = shader(device, "facing", "facing_vert.glsl", "facing_frag.glsl");
       data.target_shader = shader(device, "target", "draw/draw_fullscreen_vert.glsl", "eevee/eevee_tonemap_frag.glsl");
-      data.view_block = device.create_buffer({"view", gpu::BufferKind::Uniform, sizeof(shared::ViewData)});
       data.nearest = device.create_sampler({.name = "nearest"});
+      data.view_block = device.create_buffer({"view", gpu::BufferKind::Uniform, sizeof(shared::ViewData)});
     }
     if (!data.framebuffer) {
       const glm::ivec2 size_px = viewport.drawn_size_px();

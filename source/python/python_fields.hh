@@ -121,6 +121,10 @@ void set_fields(const Fields<T> &fields, const std::string &label, const ScenePt
     catch (const py::cast_error & /*error*/) {
       throw py::type_error(fmt::format("{}: {} cannot be {}", label, name, std::string(py::repr(set))));
     }
+    // Thrown for None, and not a cast_error.
+    catch (const py::reference_cast_error & /*error*/) {
+      throw py::type_error(fmt::format("{}: {} cannot be {}", label, name, std::string(py::repr(set))));
+    }
     catch (const py::value_error &error) {
       throw scene::InvalidEdit(fmt::format("{}: {} {}", label, name, error.what()));
     }

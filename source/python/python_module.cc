@@ -156,14 +156,15 @@ void define_renderer(py::module_ &module)
       .def_readonly("warnings", &Report::warnings, "One text for each thing that is not drawn.")
       .def_readonly("limits", &Report::limits, "One text for each limit that was reached.")
       .def_readonly("sample_count", &Report::sample_count, "Samples drawn for each pixel.")
-      .def_readonly("frame_seconds", &Report::frame_seconds, "Wall time of the picture, from the scene to pixels, s.")
+      .def_readonly("frame_seconds", &Report::frame_seconds,
+                    "Wall time of the picture until the device is done, without the copy of its pixels, s.")
       .def_readonly("memory_bytes", &Report::memory_bytes, "Content of everything on the device, bytes.");
 
   py::class_<Renderer, std::shared_ptr<Renderer>> renderer(
       module, "Renderer",
       "Draws a scene lit by its lamps and its world. A change of the scene or of a property takes effect with the next "
       "render(), which repeats only the work that depends on it.");
-  renderer.def(py::init(&make_renderer), py::arg("device"), py::arg("scene"), py::arg("size"),
+  renderer.def(py::init(&make_renderer), py::arg("device").none(false), py::arg("scene").none(false), py::arg("size"),
                "`size`: width and height, pixels. Further arguments set properties; sample_count is 16 without one.");
   for (const Field<Settings> &field : settings_fields) {
     renderer.def_property(

@@ -67,7 +67,8 @@ void define_reference(py::module_ &module)
       .def_readonly("non_finite_count", &ImageError::non_finite_count,
                     "Values of either picture that are not finite. If there are any, the errors are NaN.");
   module.def(
-      "trace", &trace, py::arg("scene"), py::arg("size"), py::arg("camera") = py::none(), py::arg("sample_count") = 64,
+      "trace", &trace, py::arg("scene").none(false), py::arg("size"), py::arg("camera") = py::none(),
+      py::arg("sample_count") = 64,
       "The exact picture by ray tracing, of the direct light that Renderer draws: an array as render() gives it, "
       "with alpha 1, and the RMSE of its own noise. `size`: width and height, pixels. `sample_count`: rays for "
       "each pixel, even; more where there is noise. The background is black.");

@@ -205,7 +205,8 @@ std::vector<Thing<T>> things_of(const ScenePtr &scene)
 template <typename T>
 void define_pool(py::class_<SharedScene, ScenePtr> &type, const char *list_name)
 {
-  type.def_property_readonly(list_name, &things_of<T>, "All of the scene, in the order of their addition.");
+  type.def_property_readonly(list_name, &things_of<T>,
+                             "All of the scene. A new one may take the place of one that was removed.");
   type.def(
       "remove", [](const ScenePtr &scene, const Thing<T> &thing) { scene->edited().remove(handle_of(scene, thing)); },
       py::arg("thing"),
@@ -218,15 +219,18 @@ void define_add(py::class_<SharedScene, ScenePtr> &type, const char *name, const
   type.def(
       name,
       [&fields](const ScenePtr &scene, const py::kwargs &values) {
-        return Thing<T>{scene, scene->edited().add(made(fields, scene, values))};
+        // Before edited(): conversions run the caller's code, which may let another thread draw.
+        T value = made(fields, scene, values);
+        return Thing<T>{scene, scene->edited().add(std::move(value))};
       },
       doc);
 }
 
 Thing<Node> add_node(const ScenePtr &scene, const std::optional<Thing<Node>> &parent, const py::kwargs &values)
 {
+  Node node = made(node_fields, scene, values);
   const scene::Handle<Node> above = parent ? handle_of(scene, *parent) : scene::Handle<Node>();
-  return {scene, scene->edited().add(made(node_fields, scene, values), above)};
+  return {scene, scene->edited().add(std::move(node), above)};
 }
 
 Thing<Mesh> add_mesh(const ScenePtr &scene, const py::array &positions, const py::array &normals,
@@ -238,7 +242,8 @@ Thing<Mesh> add_mesh(const ScenePtr &scene, const py::array &positions, const py
   for (const glm::uvec3 &triangle : rows_of<glm::uvec3>(triangles, "triangles")) {
     mesh.indices.insert(mesh.indices.end(), {triangle.x, triangle.y, triangle.z});
   }
-  return {scene, scene->edited().add(made(mesh_fields, scene, values, std::move(mesh)))};
+  mesh = made(mesh_fields, scene, values, std::move(mesh));
+  return {scene, scene->edited().add(std::move(mesh))};
 }
 
 void set_world(const ScenePtr &scene, const glm::vec3 &color, float strength, float rotation, const py::object &picture)

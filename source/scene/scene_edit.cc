@@ -441,6 +441,13 @@ void Scene::set_world(std::optional<World> world)
                     picture->texels.size() != std::size_t(picture->width) * std::size_t(picture->height))) {
       throw InvalidEdit("world: its picture has no texels, or not as many as its size says");
     }
+    const auto is_radiance = [](float x) { return x >= 0.0F && std::isfinite(x); };
+    const auto is_texel = [&](const glm::vec3 &texel) {
+      return is_radiance(texel.r) && is_radiance(texel.g) && is_radiance(texel.b);
+    };
+    if (picture && !std::ranges::all_of(picture->texels, is_texel)) {
+      throw InvalidEdit("world: a texel of its picture is negative or not finite");
+    }
   }
   if (world != world_) {
     world_ = std::move(world);

@@ -692,5 +692,16 @@ TEST(SceneEdit, EmptyMeshIsValid)
   EXPECT_TRUE(scene.bounds().is_empty());
 }
 
+TEST(SceneWorld, PictureWithATexelThatIsNoRadianceIsRefused)
+{
+  Scene scene;
+  for (const float texel : {-1.0F, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    World world;
+    world.picture = std::make_shared<const WorldPicture>(WorldPicture{2, 1, {glm::vec3(1.0F), glm::vec3(1, texel, 1)}});
+    EXPECT_THROW(scene.set_world(world), InvalidEdit) << texel;
+  }
+  EXPECT_FALSE(scene.world());
+}
+
 }  // namespace
 }  // namespace gnomon::scene

@@ -247,12 +247,14 @@ Report Inspection::report() const
     if (!meshes.insert(handle).second) {
       continue;
     }
-    const scene::Mesh &mesh = scene.scene().meshes()[handle];
+    // The objects are those of the last sync, and the mesh may have been removed since.
+    const scene::Mesh *mesh = scene.scene().meshes().find(handle);
     for (const scene::TextureInput &input : scene::texture_inputs) {
-      const std::string why = why_no_texture(mesh, input, scene.scene().material_of(mesh).*input.slot);
+      const std::string why =
+          mesh ? why_no_texture(*mesh, input, scene.scene().material_of(*mesh).*input.slot) : std::string();
       if (!why.empty()) {
         report.warnings.push_back(
-            fmt::format("mesh '{}': {}; its material's {} is not drawn", mesh.name, why, input.name));
+            fmt::format("mesh '{}': {}; its material's {} is not drawn", mesh->name, why, input.name));
       }
     }
   }
