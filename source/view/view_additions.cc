@@ -195,10 +195,14 @@ Handle<Node> duplicate(Scene &scene, Handle<Node> root)
                              node.name.find_first_not_of("0123456789", dot + 1) == std::string::npos;
     node.name = free_name(scene, is_numbered ? node.name.substr(0, dot) : node.name);
     if (const Lamp *lamp = scene.lamps().find(node.lamp)) {
-      node.lamp = scene.add(Lamp(*lamp));
+      Lamp own(*lamp);
+      own.name = node.name;
+      node.lamp = scene.add(std::move(own));
     }
     if (const scene::Camera *camera = scene.cameras().find(node.camera)) {
-      node.camera = scene.add(scene::Camera(*camera));
+      scene::Camera own(*camera);
+      own.name = node.name;
+      node.camera = scene.add(std::move(own));
     }
     return scene.add(std::move(node), parent);
   };

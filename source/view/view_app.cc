@@ -203,8 +203,11 @@ void App::ask_save()
 
 void App::take_events()
 {
+  const bool is_asking = question_ || is_addition_asked_ || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
   for (const KeyPress &press : window_.take_keys()) {
-    take_key(press);
+    if (!is_asking) {
+      take_key(press);
+    }
   }
   for (const std::filesystem::path &path : window_.take_dropped()) {
     open(path);

@@ -26,8 +26,6 @@ constexpr double tip_width_px = 4.5;
 constexpr double all_px = 12.0;
 constexpr double sight_ring_px = 92.0;
 constexpr double reach_px = 7.0;
-/** Cosine to the line of sight above which an arrow is too short to be dragged. */
-constexpr double along_sight = 0.97;
 
 using Path = std::vector<glm::dvec3>;
 

@@ -26,6 +26,7 @@ History::SubtreeChange History::subtree(const scene::Scene &scene, Handle<Node> 
 {
   SubtreeChange change;
   change.members.push_back({root, scene.parent(root), scene.nodes()[root]});
+  change.next = scene.next_sibling(root);
   for (std::size_t i = 0; i < change.members.size(); i++) {
     const Handle<Node> parent = change.members[i].node;
     for (Handle<Node> child = scene.first_child(parent); child; child = scene.next_sibling(child)) {
@@ -70,6 +71,7 @@ void History::rename(Handle<Node> old_node, Handle<Node> node)
         member.node = member.node == old_node ? node : member.node;
         member.parent = member.parent == old_node ? node : member.parent;
       }
+      moved->next = moved->next == old_node ? node : moved->next;
     }
   }
 }
@@ -82,7 +84,15 @@ void History::add_members(scene::Scene &scene, std::size_t index)
     const SubtreeChange::Member member = std::get<SubtreeChange>(changes_[index]).members[i];
     rename(member.node, scene.add(member.value, member.parent));
   }
-  restored_ = std::get<SubtreeChange>(changes_[index]).members.front().node;
+  const SubtreeChange &change = std::get<SubtreeChange>(changes_[index]);
+  restored_ = change.members.front().node;
+  // It is the last child now. What was behind it before moves behind it again.
+  const Handle<Node> parent = change.members.front().parent;
+  for (Handle<Node> child = change.next; parent && child && child != restored_;) {
+    const Handle<Node> following = scene.next_sibling(child);
+    scene.set_parent(child, parent);
+    child = following;
+  }
 }
 
 void History::add(Change change)
@@ -95,7 +105,6 @@ void History::add(Change change)
 
 void History::apply(scene::Scene &scene, std::size_t index, bool is_undone)
 {
-  restored_ = {};
   if (const auto *subtree = std::get_if<SubtreeChange>(&changes_[index])) {
     if (subtree->is_addition == is_undone) {
       remove_members(scene, *subtree);
@@ -127,6 +136,7 @@ void History::revert_gesture(scene::Scene &scene)
 
 bool History::undo(scene::Scene &scene)
 {
+  restored_ = {};
   if (done_count_ == 0) {
     return false;
   }
@@ -138,6 +148,7 @@ bool History::undo(scene::Scene &scene)
 
 bool History::redo(scene::Scene &scene)
 {
+  restored_ = {};
   if (done_count_ == changes_.size()) {
     return false;
   }

@@ -83,6 +83,8 @@ class History {
       scene::Node value;
     };
     std::vector<Member> members;
+    /** The next child of the same parent; none if there is none. */
+    scene::Handle<scene::Node> next;
     /** The change added them; otherwise it removed them. */
     bool is_addition = false;
   };

@@ -137,7 +137,7 @@ std::optional<KeyPress> key_of(std::string_view name)
 
 void run_key(App &app, const KeyPress &press)
 {
-  const KeyPress wanted{without_block(press.key), press.mods & (ctrl | shift)};
+  const KeyPress wanted{without_block(press.key), press.mods & (ctrl | shift | GLFW_MOD_ALT)};
   const auto found = std::ranges::find(bindings, wanted, &Binding::press);
   if (found != bindings.end()) {
     found->run(app);

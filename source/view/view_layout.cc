@@ -35,6 +35,8 @@ void show_splitter(const char *name, float height, float sign, float &width)
 void App::try_draw(Viewport &viewport)
 {
   try {
+    // The menus, the tree and the viewports before this one may have edited the scene in this frame.
+    document_->render_scene().update();
     is_complete_ &= viewport.draw(*document_);
   }
   catch (const gpu::DeviceLost &) {
@@ -60,9 +62,12 @@ void App::show_viewport_header(Viewport &viewport)
   ImGui::SetNextItemWidth(140.0F);
   if (ImGui::BeginCombo("##camera", "Camera")) {
     for (const scene::PlacedCamera &camera : document_->scene().placed_cameras()) {
+      // Names are not unique.
+      ImGui::PushID(int(camera.node.index));
       if (ImGui::Selectable(camera.name.c_str())) {
         viewport.navigation.look_through(camera, document_->scene().bounds());
       }
+      ImGui::PopID();
     }
     ImGui::EndCombo();
   }

@@ -17,7 +17,8 @@ PictureMap::PictureMap(const draw::View &view, const glm::dvec3 &origin_ws, glm:
 std::optional<glm::dvec2> PictureMap::pixel_of(const glm::dvec3 &position_ws) const
 {
   const glm::dvec4 clip = clip_from_view_ * (view_from_world_ * glm::dvec4(position_ws, 1.0));
-  if (!(clip.w > 0.0)) {
+  // Depth is reversed: in front of the near plane, it is above 1.
+  if (!(clip.w > 0.0) || clip.z > clip.w) {
     return std::nullopt;
   }
   return (0.5 + 0.5 * glm::dvec2(clip.x, -clip.y) / clip.w) * size_px_;

@@ -101,7 +101,10 @@ TransformOperation::TransformOperation(const scene::Scene &scene, scene::Handle<
 {
   if (const scene::Handle<scene::Node> parent = scene.parent(node)) {
     const glm::dmat4 &world_from_parent = scene.world_from_node(parent);
-    if (glm::determinant(glm::dmat3(world_from_parent)) == 0.0) {
+    const glm::dmat3 axes(world_from_parent);
+    const double edges = glm::length(axes[0]) * glm::length(axes[1]) * glm::length(axes[2]);
+    // Rounding leaves singular matrices a small determinant.
+    if (!(std::abs(glm::determinant(axes)) > 1e-12 * edges)) {
       throw std::runtime_error(fmt::format("node '{}': cannot be moved, as the matrix of its parent has no inverse",
                                            scene.nodes()[node].name));
     }
@@ -187,6 +190,12 @@ glm::dvec3 TransformOperation::way_ws() const
   if (transform_.axis == TransformAxis::All) {
     const glm::dvec3 normal = map_.axis_ws(2);
     return on_plane(to, position_ws(), normal) - on_plane(from, position_ws(), normal);
+  }
+  const double to_eye = glm::dot(axis, map_.towards_eye(position_ws()));
+  if (std::abs(to_eye) > along_sight) {
+    // The nearest point of the axis to the pointer's ray is the eye. Up moves away from it instead.
+    const double up_m = (start_pointer_.y - pointer_.y) * map_.metres_per_pixel(position_ws());
+    return (to_eye > 0.0 ? -up_m : up_m) * axis;
   }
   return (nearest_on_axis(to, position_ws(), axis) - nearest_on_axis(from, position_ws(), axis)) * axis;
 }

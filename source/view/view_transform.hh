@@ -26,6 +26,9 @@ struct Transform {
   bool operator==(const Transform &) const = default;
 };
 
+/** Cosine to the line of sight above which an axis is too short on the screen for the pointer to follow it. */
+inline constexpr double along_sight = 0.97;
+
 /** Unit vector of an axis of the node. All stands for X. An axis of the node that has no length is the world's. */
 [[nodiscard]] glm::dvec3 axis_ws(const glm::dmat4 &world_from_node, TransformAxis axis, Orientation orientation);
 /** \a world_from_node, turned around an axis through its position; radians. */

@@ -131,6 +131,8 @@ class Viewport {
   bool has_failed_ = false;
   /** Whether the pointer has moved since its button went down. */
   bool is_dragged_ = false;
+  /** In the last frame, in any viewport. */
+  bool had_operation_ = false;
   /** In pixels, as pick counts. */
   glm::dvec2 pointer_px_{0.0};
   /** The handle of the gizmo under the pointer. */

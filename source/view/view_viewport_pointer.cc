@@ -5,6 +5,7 @@
 #include <imgui.h>
 
 #include <cmath>
+#include <utility>
 
 namespace gnomon::view {
 
@@ -150,10 +151,15 @@ void Viewport::take_pointer(Document &document, glm::vec2 corner)
   pointer_px_ = ImGui::IsMousePosValid() ? glm::dvec2(io.MousePos.x - corner.x, io.MousePos.y - corner.y)
                                          : 0.5 * glm::dvec2(size_px_);
   if (fly) {
+    pointed_.reset();
+    // The release of the button that ends the flight selects nothing.
+    is_dragged_ = true;
     return;
   }
+  const bool had_operation = std::exchange(had_operation_, document.operation() != nullptr);
   if (ImGui::IsItemActivated()) {
-    is_dragged_ = false;
+    // A press that ended the operation of another viewport selects nothing.
+    is_dragged_ = had_operation;
   }
   if (take_operation(document)) {
     pointed_.reset();
@@ -167,10 +173,12 @@ void Viewport::take_pointer(Document &document, glm::vec2 corner)
     document.begin_transform({*document.gizmo, *pointed_, document.orientation}, map_, pointer_px_);
     is_transforming_ = true;
     is_handle_dragged_ = true;
+    is_dragged_ = true;
     return;
   }
   take_navigation(is_hovered);
-  if (is_hovered && ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !is_dragged_ && !io.KeyAlt) {
+  if (is_hovered && ImGui::IsItemDeactivated() && ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !is_dragged_ &&
+      !io.KeyAlt) {
     pick(document, glm::ivec2(pointer_px_));
   }
 }

@@ -192,6 +192,9 @@ bool Window::is_key_down(int key) const
 void Window::capture_pointer(bool is_captured)
 {
   glfwSetInputMode(window_, GLFW_CURSOR, is_captured ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
+  // A pointer that is not seen points at nothing.
+  int &flags = ImGui::GetIO().ConfigFlags;
+  flags = is_captured ? flags | ImGuiConfigFlags_NoMouse : flags & ~ImGuiConfigFlags_NoMouse;
 }
 
 std::vector<KeyPress> Window::take_keys()

@@ -27,7 +27,7 @@ struct Hit {
 
 /** A straight line between two points. */
 struct Line {
-  /** World space of the scene, metres, as is to_ws. */
+  /** World space of the scene, metres, below 1e18, as is to_ws. */
   glm::dvec3 from_ws{0.0};
   glm::dvec3 to_ws{0.0};
   /** Not premultiplied, and stored as Target::encoding stores; the view transform does not change it. */
@@ -84,6 +84,8 @@ class Overlay {
   /** What a target with all objects depends on. */
   struct ObjectsKey {
     draw::View view;
+    /** `view` is relative to it. */
+    glm::dvec3 origin_ws{0.0};
     glm::ivec2 size_px{0};
     scene::Revision scene = 0;
     std::uint64_t loss_count = 0;

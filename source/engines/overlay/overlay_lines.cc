@@ -12,20 +12,29 @@ using gpu::State;
 
 namespace {
 
-bool is_finite(const glm::dvec3 &position)
+/** Squares of larger coordinates are infinite in a float. */
+bool is_drawable(const glm::dvec3 &position)
 {
-  return std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(position.z);
+  constexpr double limit = 1e18;
+  return std::abs(position.x) < limit && std::abs(position.y) < limit && std::abs(position.z) < limit;
+}
+
+bool is_finite(const glm::vec4 &color)
+{
+  return std::isfinite(color.r) && std::isfinite(color.g) && std::isfinite(color.b) && std::isfinite(color.a);
 }
 
 void check(std::span<const Line> lines)
 {
   const auto wrong = std::ranges::find_if(lines, [](const Line &line) {
-    return !is_finite(line.from_ws) || !is_finite(line.to_ws) || !(line.width_px > 0.0F && line.width_px < 1e4F);
+    return !is_drawable(line.from_ws) || !is_drawable(line.to_ws) || !is_finite(line.color) ||
+           !(line.width_px > 0.0F && line.width_px < 1e4F);
   });
   if (wrong != lines.end()) {
-    throw gpu::Error("overlay: line {} from {}, {}, {} to {}, {}, {}, {} px wide, is not finite or has no width",
-                     wrong - lines.begin(), wrong->from_ws.x, wrong->from_ws.y, wrong->from_ws.z, wrong->to_ws.x,
-                     wrong->to_ws.y, wrong->to_ws.z, wrong->width_px);
+    throw gpu::Error(
+        "overlay: line {} from {}, {}, {} to {}, {}, {}, {} px wide, is not finite, is beyond 1e18 m or has no width",
+        wrong - lines.begin(), wrong->from_ws.x, wrong->from_ws.y, wrong->from_ws.z, wrong->to_ws.x, wrong->to_ws.y,
+        wrong->to_ws.z, wrong->width_px);
   }
 }
 
@@ -34,7 +43,7 @@ void check(std::span<const Line> lines)
 bool Overlay::update_hiding(const draw::View &view, glm::ivec2 size_px)
 {
   gpu::Device &device = scene_.device();
-  const ObjectsKey key{view, size_px, scene_.scene().revision(), device.loss_count()};
+  const ObjectsKey key{view, scene_.origin_ws(), size_px, scene_.scene().revision(), device.loss_count()};
   if (key != hiding_key_) {
     hiding_key_ = {};
     gpu::CommandList list;
@@ -59,7 +68,9 @@ void Overlay::upload(std::span<const Line> lines)
   const auto bytes = std::as_bytes(std::span(data));
   if (!line_block_ || line_block_.size_bytes() < bytes.size()) {
     // Room for twice as many, so that a growing number of lines makes few buffers.
-    line_block_ = scene_.device().create_buffer({"overlay_line_block", gpu::BufferKind::Storage, 2 * bytes.size()});
+    const std::size_t limit = scene_.device().limits().storage_block_bytes_max;
+    const std::size_t size = std::max(bytes.size(), std::min(2 * bytes.size(), limit));
+    line_block_ = scene_.device().create_buffer({"overlay_line_block", gpu::BufferKind::Storage, size});
   }
   scene_.device().update(line_block_, 0, bytes);
 }
