@@ -156,56 +156,11 @@ Offsets offsets_of(const std::vector<gpu::ShaderInterface::Member> &members)
   return offsets;
 }
 
+/** Compares one variant after another with the driver, and collects what some variant must have. */
 class DriverAgreement : public test::GpuDeviceTest {
  protected:
-  /** Calls \a check for every variant, with the interfaces of glslang and of the driver. */
-  template <typename Check>
-  void for_each_variant(Check &&check)
+  void check_blocks(const gpu::ShaderInterface &interface, const DriverProgram &program)
   {
-    for (const ShaderDeclaration &declaration : shader_declarations()) {
-      for (const Feature features : shader_variants(declaration)) {
-        const gpu::ShaderDesc desc = shader_desc(declaration, features);
-        SCOPED_TRACE(fmt::format("{} {}", desc.name, fmt::join(desc.defines, " ")));
-        const std::vector<gpu::ShaderSource> stages = gpu::preprocess(desc, shaders::file);
-        gpu::ShaderInterface interface;
-        ASSERT_NO_THROW(interface = shader_check::reflect(desc.name, stages)) << "glslang";
-        const DriverProgram program(stages);
-        ASSERT_TRUE(program.is_linked()) << device->description() << ":\n" << program.log();
-        check(interface, program);
-      }
-    }
-  }
-};
-
-TEST_F(DriverAgreement, BothCompilersAcceptEveryVariantWithoutWarnings)
-{
-  int count = 0;
-  for_each_variant([&](const gpu::ShaderInterface & /*interface*/, const DriverProgram &program) {
-    EXPECT_EQ(program.log(), "");
-    count++;
-  });
-  RecordProperty("variants", count);
-  EXPECT_GE(count, int(shader_declarations().size()));
-}
-
-TEST_F(DriverAgreement, BlocksHaveTheSameSlotSizeAndOffsets)
-{
-  std::set<std::string> declared;
-  std::set<std::string> compared;
-  const auto compare = [&](const std::string &name, int slot, std::uint32_t size_bytes, const Offsets &offsets,
-                           const std::map<std::string, DriverProgram::Block> &blocks) {
-    declared.insert(name);
-    const auto found = blocks.find(name);
-    if (found == blocks.end()) {
-      // This variant does not use it. Another variant must.
-      return;
-    }
-    compared.insert(name);
-    EXPECT_EQ(found->second.slot, slot) << name;
-    EXPECT_EQ(found->second.size_bytes, int(size_bytes)) << name;
-    EXPECT_EQ(found->second.offsets, offsets) << name;
-  };
-  for_each_variant([&](const gpu::ShaderInterface &interface, const DriverProgram &program) {
     std::set<std::string> names;
     for (const BindingKind kind : {BindingKind::UniformBlock, BindingKind::StorageBlock}) {
       const auto blocks = program.blocks(kind);
@@ -224,28 +179,21 @@ TEST_F(DriverAgreement, BlocksHaveTheSameSlotSizeAndOffsets)
         EXPECT_TRUE(names.contains(name)) << "the driver alone knows " << name;
       }
     }
-  });
-  EXPECT_EQ(compared, declared);
-}
+  }
 
-TEST_F(DriverAgreement, TexturesHaveTheSameSlot)
-{
-  int count = 0;
-  for_each_variant([&](const gpu::ShaderInterface &interface, const DriverProgram &program) {
+  void check_textures(const gpu::ShaderInterface &interface, const DriverProgram &program)
+  {
     for (const auto &[name, slot] : program.textures()) {
       const gpu::ShaderInterface::Binding *binding = interface.find(BindingKind::Texture, name);
       ASSERT_NE(binding, nullptr) << name;
       EXPECT_EQ(binding->slot, slot) << name;
-      count++;
+      texture_count_++;
     }
-  });
-  EXPECT_GT(count, 0);
-}
+  }
 
-TEST_F(DriverAgreement, BlocksAreThoseOfCpp)
-{
-  std::set<std::string_view> seen;
-  for_each_variant([&](const gpu::ShaderInterface & /*interface*/, const DriverProgram &program) {
+  /** Compares the driver's blocks with the structs of C++. */
+  void check_structs(const DriverProgram &program)
+  {
     for (const BindingKind kind : {BindingKind::UniformBlock, BindingKind::StorageBlock}) {
       for (const auto &[name, block] : program.blocks(kind)) {
         const auto layout = std::ranges::find(block_layouts(), name, &gpu::BlockLayout::name);
@@ -253,7 +201,7 @@ TEST_F(DriverAgreement, BlocksAreThoseOfCpp)
           EXPECT_EQ(name, gpu::push_constant_block_name) << "no struct of C++ is compared with it";
           continue;
         }
-        seen.insert(layout->name);
+        structs_.insert(layout->name);
         // Arrays without a size are reported with one element.
         EXPECT_EQ(std::size_t(block.size_bytes), layout->size_bytes) << name;
         Offsets offsets;
@@ -263,8 +211,52 @@ TEST_F(DriverAgreement, BlocksAreThoseOfCpp)
         EXPECT_EQ(block.offsets, offsets) << name;
       }
     }
-  });
-  EXPECT_EQ(seen.size(), block_layouts().size());
+  }
+
+  /** Names of blocks that some variant declares, and of those that the driver has in some variant. */
+  std::set<std::string> declared_;
+  std::set<std::string> compared_;
+  std::set<std::string_view> structs_;
+  int texture_count_ = 0;
+
+ private:
+  void compare(const std::string &name, int slot, std::uint32_t size_bytes, const Offsets &offsets,
+               const std::map<std::string, DriverProgram::Block> &blocks)
+  {
+    declared_.insert(name);
+    const auto found = blocks.find(name);
+    if (found == blocks.end()) {
+      // This variant does not use it. Another variant must.
+      return;
+    }
+    compared_.insert(name);
+    EXPECT_EQ(found->second.slot, slot) << name;
+    EXPECT_EQ(found->second.size_bytes, int(size_bytes)) << name;
+    EXPECT_EQ(found->second.offsets, offsets) << name;
+  }
+};
+
+// One test, as the compilers take nearly all of its time.
+TEST_F(DriverAgreement, BothCompilersAcceptEveryVariantWithoutWarningsAndHaveTheSameInterface)
+{
+  for (const ShaderDeclaration &declaration : shader_declarations()) {
+    for (const Feature features : shader_variants(declaration)) {
+      const gpu::ShaderDesc desc = shader_desc(declaration, features);
+      SCOPED_TRACE(fmt::format("{} {}", desc.name, fmt::join(desc.defines, " ")));
+      const std::vector<gpu::ShaderSource> stages = gpu::preprocess(desc, shaders::file);
+      gpu::ShaderInterface interface;
+      ASSERT_NO_THROW(interface = shader_check::reflect(desc.name, stages)) << "glslang";
+      const DriverProgram program(stages);
+      ASSERT_TRUE(program.is_linked()) << device->description() << ":\n" << program.log();
+      EXPECT_EQ(program.log(), "");
+      check_blocks(interface, program);
+      check_textures(interface, program);
+      check_structs(program);
+    }
+  }
+  EXPECT_EQ(compared_, declared_);
+  EXPECT_GT(texture_count_, 0);
+  EXPECT_EQ(structs_.size(), block_layouts().size());
 }
 
 }  // namespace
