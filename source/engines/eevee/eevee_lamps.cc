@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace gnomon::eevee {
 
@@ -127,10 +128,9 @@ Lamps make_lamps(std::span<const scene::PlacedLamp> placed, LampShading shading)
     }
     lamps.lamp_index.push_back(i);
   }
-  const auto first_other = std::ranges::stable_partition(lamps.lamp_index, [&](std::uint32_t lamp) {
-    return has_cube(placed[lamp].kind, widest_half_angle(placed[lamp]));
-  });
-  lamps.light_block.cube_light_count = int(first_other.begin() - lamps.lamp_index.begin());
+  const auto is_cube = [&](std::uint32_t lamp) { return has_cube(placed[lamp].kind, widest_half_angle(placed[lamp])); };
+  std::ranges::sort(lamps.lamp_index, {}, [&](std::uint32_t lamp) { return std::pair(!is_cube(lamp), lamp); });
+  lamps.light_block.cube_light_count = int(std::ranges::count_if(lamps.lamp_index, is_cube));
   for (const std::uint32_t index : lamps.lamp_index) {
     const scene::PlacedLamp &lamp = placed[index];
     const int light = lamps.light_block.light_count++;
