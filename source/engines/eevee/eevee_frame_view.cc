@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What several steps of a frame and Inspection use: the view of a sample, and the points of its lamps.
+// Functions that several steps of a frame and Inspection share: the view of a sample, the points of its lamps, reasons.
 #include "eevee_camera.hh"
 #include "eevee_engine_data.hh"
 #include "eevee_film.hh"
