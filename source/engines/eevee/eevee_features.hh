@@ -38,8 +38,7 @@ enum class Feature : std::uint32_t {
   TargetDepth = 1U << 12,
   /** The scene's world gives light. */
   World = 1U << 13,
-  /** Per material: it is blended or transmits light, and its shadow layers hold the part of it that its opacity says.
-   */
+  /** Per material: it is blended or transmits light. Its shadow layers hold the part of it that its opacity says. */
   OpacityThreshold = 1U << 14,
   /** Per material: its class is render_scene::MaterialClass::Layered or Transmissive. */
   Layers = 1U << 15,
