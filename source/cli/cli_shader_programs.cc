@@ -2,10 +2,13 @@
 #include "cli_shader_programs.hh"
 
 #include "eevee_blocks.hh"
+#include "eevee_interfaces.hh"
 #include "eevee_programs.hh"
 #include "overlay_blocks.hh"
+#include "overlay_interfaces.hh"
 #include "overlay_programs.hh"
 #include "shader_files.hh"
+#include "unlit_interfaces.hh"
 #include "unlit_programs.hh"
 
 #include <fmt/ranges.h>
@@ -27,11 +30,13 @@ EngineFiles::EngineFiles(const std::string &folder) : prefix_(folder.empty() ? "
 
 /** The functions of the engine are found by the type of \a declarations. */
 template <typename Declaration>
-static void add_variants(std::span<const Declaration> declarations, std::vector<Variant> &variants)
+static void add_variants(std::span<const Declaration> declarations, std::span<const gpu::InterfaceTable> interfaces,
+                         std::vector<Variant> &variants)
 {
   for (const Declaration &declaration : declarations) {
     for (const auto features : shader_variants(declaration)) {
-      variants.push_back({declaration.purpose, shader_desc(declaration, features)});
+      variants.push_back({declaration.purpose, shader_desc(declaration, features),
+                          interfaces[std::size_t(declaration.id)].interface_of(std::uint32_t(features))});
     }
   }
 }
@@ -39,9 +44,9 @@ static void add_variants(std::span<const Declaration> declarations, std::vector<
 std::vector<Variant> engine_variants()
 {
   std::vector<Variant> variants;
-  add_variants(eevee::shader_declarations(), variants);
-  add_variants(unlit::shader_declarations(), variants);
-  add_variants(overlay::shader_declarations(), variants);
+  add_variants(eevee::shader_declarations(), eevee::interface_tables(), variants);
+  add_variants(unlit::shader_declarations(), unlit::interface_tables(), variants);
+  add_variants(overlay::shader_declarations(), overlay::interface_tables(), variants);
   return variants;
 }
 

@@ -36,6 +36,8 @@ struct Variant {
   std::string_view purpose;
   /** Its name is the program's. */
   gpu::ShaderDesc desc;
+  /** The inputs that the variant of the shaders in the program has. */
+  gpu::ShaderInterface interface;
 };
 
 /** Of all engines; variants of one program follow each other. */

@@ -13,21 +13,51 @@ namespace gnomon::cli {
 
 namespace {
 
-/** Compares each block in the first variant that reads it; check() compares all variants. */
-std::vector<shader_check::BlockComparison> compare_engine_blocks(const gpu::ShaderFiles &files)
+using Comparisons = std::vector<shader_check::BlockComparison>;
+
+bool has_block(const Comparisons &comparisons, std::string_view name)
 {
-  std::vector<shader_check::BlockComparison> comparisons;
-  for (const Variant &variant : engine_variants()) {
+  return std::ranges::find(comparisons, name, &shader_check::BlockComparison::block) != comparisons.end();
+}
+
+/** Whether the shader in the program reads a block of the engines that is not in \a comparisons. */
+bool reads_another_block(const Variant &variant, const Comparisons &comparisons)
+{
+  return std::ranges::any_of(engine_blocks(), [&](const gpu::BlockLayout &block) {
+    return !has_block(comparisons, block.name) &&
+           std::ranges::find(variant.interface.bindings, block.name, &gpu::ShaderInterface::Binding::name) !=
+               variant.interface.bindings.end();
+  });
+}
+
+/** Compares each block in one variant that reads it; check() compares all variants. */
+Comparisons compare_engine_blocks(const gpu::ShaderFiles &files)
+{
+  Comparisons comparisons;
+  const auto compare = [&](const Variant &variant) {
     for (shader_check::BlockComparison &comparison :
          shader_check::compare_blocks(variant.desc, files, engine_blocks())) {
-      if (std::ranges::find(comparisons, comparison.block, &shader_check::BlockComparison::block) ==
-          comparisons.end()) {
+      if (!has_block(comparisons, comparison.block)) {
         comparisons.push_back(std::move(comparison));
       }
     }
+  };
+  const std::vector<Variant> variants = engine_variants();
+  std::vector<const Variant *> others;
+  for (const Variant &variant : variants) {
+    if (reads_another_block(variant, comparisons)) {
+      compare(variant);
+    }
+    else {
+      others.push_back(&variant);
+    }
+  }
+  // Shaders of a folder may read a block in other variants than those in the program do.
+  for (const Variant *variant : others) {
     if (comparisons.size() == engine_blocks().size()) {
       break;
     }
+    compare(*variant);
   }
   return comparisons;
 }
@@ -38,7 +68,7 @@ Status layout(const std::string &folder)
   const auto offset = [](std::optional<std::size_t> bytes) {
     return bytes ? std::to_string(*bytes) : std::string("-");
   };
-  const std::vector<shader_check::BlockComparison> comparisons = compare_engine_blocks(files.files());
+  const Comparisons comparisons = compare_engine_blocks(files.files());
   Status status = Status::Done;
   for (const shader_check::BlockComparison &comparison : comparisons) {
     fmt::print("{}: {} bytes in C++, {} in GLSL\n     C++   GLSL\n", comparison.block, comparison.cpp_size_bytes,
@@ -55,7 +85,7 @@ Status layout(const std::string &folder)
     }
   }
   for (const gpu::BlockLayout &block : engine_blocks()) {
-    if (std::ranges::find(comparisons, block.name, &shader_check::BlockComparison::block) == comparisons.end()) {
+    if (!has_block(comparisons, block.name)) {
       fmt::print("error: block '{}' is read by no shader [layout]\n", block.name);
       status = Status::Failed;
     }

@@ -11,6 +11,7 @@
 #include "internal/gltf_mesh.hh"
 #include "internal/gltf_node.hh"
 #include "internal/gltf_report.hh"
+#include "internal/gltf_units.hh"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

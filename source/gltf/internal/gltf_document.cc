@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "internal/gltf_document.hh"
 
+#include "internal/gltf_document_buffers.hh"
 #include "internal/gltf_document_shading.hh"
 #include "internal/gltf_json.hh"
 
@@ -41,11 +42,11 @@ class DocumentReader {
          {"scenes", "nodes", "meshes", "skins", "accessors", "bufferViews", "buffers", "materials", "cameras",
           "textures", "samplers", "images", "extensionsRequired"}) {
       if (const JsonValue *value = root(key)) {
-        sizes_[key] = size_of(array_at({nullptr, key}, *value));
+        indices_.set_size(key, size_of(array_at({nullptr, key}, *value)));
       }
     }
     if (const JsonValue *value = root("scene")) {
-      model_.scene = index_into("scenes", {nullptr, "scene"}, *value);
+      model_.scene = indices_.index_into("scenes", {nullptr, "scene"}, *value);
     }
     read_extensions();
     read_array("scenes", model_.scenes,
@@ -56,11 +57,11 @@ class DocumentReader {
     read_array("meshes", model_.meshes,
                [this](const auto &at, const auto &value, auto &one) { read_mesh(at, value, one); });
     read_array("accessors", model_.accessors,
-               [this](const auto &at, const auto &value, auto &one) { read_accessor(at, value, one); });
+               [this](const auto &at, const auto &value, auto &one) { read_accessor(at, value, indices_, one); });
     read_array("materials", model_.materials, read_material);
     read_array("cameras", model_.cameras, read_camera);
     read_array("bufferViews", model_.buffer_views,
-               [this](const auto &at, const auto &value, auto &one) { read_buffer_view(at, value, one); });
+               [this](const auto &at, const auto &value, auto &one) { read_buffer_view(at, value, indices_, one); });
     read_array("textures", model_.textures, read_texture);
     read_array("samplers", model_.samplers, read_sampler);
     read_array("images", model_.images, read_image);
@@ -74,8 +75,7 @@ class DocumentReader {
 
  private:
   std::map<std::string_view, JsonValue> root_;
-  /** Lengths of the top-level arrays, of "lights" and of "variants". */
-  std::map<std::string_view, std::size_t> sizes_;
+  DocumentIndices indices_;
   Model model_;
 
   [[nodiscard]] const JsonValue *root(std::string_view key) const
@@ -105,40 +105,6 @@ class DocumentReader {
     }
   }
 
-  [[nodiscard]] int index_into(std::string_view array, const Place &place, const JsonValue &value) const
-  {
-    const int index = index_at(place, value);
-    const auto found = sizes_.find(array);
-    const std::size_t size = found == sizes_.end() ? 0 : found->second;
-    if (static_cast<std::size_t>(index) >= size) {
-      throw Fault(place.text(), "index " + std::to_string(index) + " is out of range: the file has " +
-                                    std::to_string(size) + ' ' + std::string(array));
-    }
-    return index;
-  }
-
-  [[nodiscard]] std::vector<int> indices_into(std::string_view array, const Place &place, const JsonValue &value) const
-  {
-    std::vector<int> indices;
-    for (const JsonValue element : array_at(place, value, "an array of indices")) {
-      indices.push_back(index_into(array, {place.outer, place.key, indices.size()}, element));
-    }
-    return indices;
-  }
-
-  auto into_index(std::string_view key, int &target, std::string_view array) const
-  {
-    return Member{key, [this, &target, array](const Place &place, const JsonValue &value) {
-                    target = index_into(array, place, value);
-                  }};
-  }
-  auto into_indices(std::string_view key, std::vector<int> &target, std::string_view array) const
-  {
-    return Member{key, [this, &target, array](const Place &place, const JsonValue &value) {
-                    target = indices_into(array, place, value);
-                  }};
-  }
-
   static auto into_numbers(std::string_view key, std::vector<double> &target)
   {
     return Member{key, [&target](const Place &place, const JsonValue &value) {
@@ -147,11 +113,6 @@ class DocumentReader {
                       target.push_back(number_at({place.outer, place.key, target.size()}, element));
                     }
                   }};
-  }
-
-  [[noreturn]] static void fail_incomplete(const Place &place, const std::string &missing)
-  {
-    throw Fault("glTF", place.text() + ": has no " + missing);
   }
 
   void check_asset() const
@@ -174,7 +135,7 @@ class DocumentReader {
 
   void read_scene(const Place &place, const JsonValue &value, std::vector<int> &roots) const
   {
-    read_members(place, value, into_indices("nodes", roots, "nodes"));
+    read_members(place, value, indices_.into_indices("nodes", roots, "nodes"));
   }
 
   // ---- Nodes ----
@@ -182,15 +143,16 @@ class DocumentReader {
   void read_node(const Place &place, const JsonValue &value, Model::Node &node) const
   {
     std::optional<JsonValue> extras;
-    read_members(place, value, into_name(node.name), into_indices("children", node.children, "nodes"),
-                 Member{"matrix", [&](const Place &at,
-                                      const JsonValue &matrix) { read_numbers(at, matrix, node.matrix.emplace()); }},
-                 into("translation", node.translation), into("rotation", node.rotation), into("scale", node.scale),
-                 into_index("mesh", node.mesh, "meshes"), into_index("camera", node.camera, "cameras"),
-                 into_index("skin", node.skin, "skins"), into_numbers("weights", node.weights),
-                 Member{"extensions", [&](const Place &at,
-                                          const JsonValue &extensions) { read_node_extensions(at, extensions, node); }},
-                 Member{"extras", [&](const Place &, const JsonValue &member) { extras = member; }});
+    read_members(
+        place, value, into_name(node.name), indices_.into_indices("children", node.children, "nodes"),
+        Member{"matrix",
+               [&](const Place &at, const JsonValue &matrix) { read_numbers(at, matrix, node.matrix.emplace()); }},
+        into("translation", node.translation), into("rotation", node.rotation), into("scale", node.scale),
+        indices_.into_index("mesh", node.mesh, "meshes"), indices_.into_index("camera", node.camera, "cameras"),
+        indices_.into_index("skin", node.skin, "skins"), into_numbers("weights", node.weights),
+        Member{"extensions",
+               [&](const Place &at, const JsonValue &extensions) { read_node_extensions(at, extensions, node); }},
+        Member{"extras", [&](const Place &, const JsonValue &member) { extras = member; }});
     // After the name, which messages about extras include.
     if (extras) {
       read_extras(place, *extras, node);
@@ -202,18 +164,19 @@ class DocumentReader {
     read_members(place, value,
                  Member{"KHR_lights_punctual",
                         [&](const Place &at, const JsonValue &extension) {
-                          read_members(at, extension, into_index("light", node.light, "lights"));
+                          read_members(at, extension, indices_.into_index("light", node.light, "lights"));
                         }},
                  Member{"EXT_mesh_gpu_instancing", [&](const Place &at, const JsonValue &extension) {
                           Model::Instances &instances = node.instances.emplace();
-                          read_members(at, extension,
-                                       Member{"attributes", [&](const Place &in, const JsonValue &attributes) {
-                                                read_members(
-                                                    in, attributes,
-                                                    into_index("TRANSLATION", instances.translation, "accessors"),
-                                                    into_index("ROTATION", instances.rotation, "accessors"),
-                                                    into_index("SCALE", instances.scale, "accessors"));
-                                              }});
+                          read_members(
+                              at, extension,
+                              Member{"attributes", [&](const Place &in, const JsonValue &attributes) {
+                                       read_members(
+                                           in, attributes,
+                                           indices_.into_index("TRANSLATION", instances.translation, "accessors"),
+                                           indices_.into_index("ROTATION", instances.rotation, "accessors"),
+                                           indices_.into_index("SCALE", instances.scale, "accessors"));
+                                     }});
                         }});
   }
 
@@ -290,8 +253,8 @@ class DocumentReader {
     const auto read_variants = [&](const Place &at, const JsonValue &mappings) {
       read_elements(at, array_at(at, mappings), primitive.variant_materials,
                     [this](const Place &in, const JsonValue &one, Model::VariantMaterial &mapping) {
-                      read_members(in, one, into_index("material", mapping.material, "materials"),
-                                   into_indices("variants", mapping.variants, "variants"));
+                      read_members(in, one, indices_.into_index("material", mapping.material, "materials"),
+                                   indices_.into_indices("variants", mapping.variants, "variants"));
                     });
     };
     const auto read_extension = [&](std::string_view name, const Place &at, const JsonValue &extension) {
@@ -306,8 +269,8 @@ class DocumentReader {
       }
     };
     read_members(
-        place, value, into_index("indices", primitive.indices, "accessors"),
-        into_index("material", primitive.material, "materials"), into("mode", primitive.mode),
+        place, value, indices_.into_index("indices", primitive.indices, "accessors"),
+        indices_.into_index("material", primitive.material, "materials"), into("mode", primitive.mode),
         Member{"attributes",
                [&](const Place &at, const JsonValue &attributes) {
                  has_attributes = true;
@@ -335,7 +298,7 @@ class DocumentReader {
 
   void read_draco(const Place &place, const JsonValue &value, Model::Draco &draco) const
   {
-    read_members(place, value, into_index("bufferView", draco.buffer_view, "bufferViews"),
+    read_members(place, value, indices_.into_index("bufferView", draco.buffer_view, "bufferViews"),
                  Member{"attributes", [&](const Place &at, const JsonValue &attributes) {
                           for_members(at, attributes, [&](std::string_view key, const Place &in, const JsonValue &id) {
                             draco.attributes.insert_or_assign(std::string(key), index_at(in, id));
@@ -352,124 +315,29 @@ class DocumentReader {
     for_members(place, value, [&](std::string_view key, const Place &at, const JsonValue &accessor) {
       if (key == "POSITION" || key == "NORMAL" || key == "TANGENT" || key == "COLOR_0" ||
           key.starts_with("TEXCOORD_") || key.starts_with("JOINTS_") || key.starts_with("WEIGHTS_")) {
-        read.insert_or_assign(std::string(key), index_into("accessors", at, accessor));
+        read.insert_or_assign(std::string(key), indices_.index_into("accessors", at, accessor));
       }
     });
   }
 
-  // ---- Accessors ----
-
-  void read_accessor(const Place &place, const JsonValue &value, Model::Accessor &accessor) const
-  {
-    std::optional<std::uint64_t> component_type;
-    std::optional<std::uint64_t> count;
-    std::optional<Model::ElementType> type;
-    read_members(place, value, into_index("bufferView", accessor.buffer_view, "bufferViews"),
-                 into("byteOffset", accessor.byte_offset), into("normalized", accessor.is_normalized),
-                 Member{"componentType",
-                        [&](const Place &at, const JsonValue &member) { component_type = size_at(at, member); }},
-                 Member{"count", [&](const Place &at, const JsonValue &member) { count = size_at(at, member); }},
-                 Member{"type", [&](const Place &at, const JsonValue &member) { type = element_type(at, member); }},
-                 Member{"sparse", [&](const Place &at, const JsonValue &member) {
-                          read_sparse(at, member, accessor.sparse.emplace());
-                        }});
-    if (!component_type || !count || !type) {
-      fail_incomplete(place, !type ? "type" : !count ? "count" : "componentType");
-    }
-    accessor.component_type = *component_type;
-    accessor.count = *count;
-    accessor.type = *type;
-  }
-
-  static Model::ElementType element_type(const Place &place, const JsonValue &value)
-  {
-    constexpr std::array types{
-        std::pair{"SCALAR", Model::ElementType::Scalar}, std::pair{"VEC2", Model::ElementType::Vec2},
-        std::pair{"VEC3", Model::ElementType::Vec3},     std::pair{"VEC4", Model::ElementType::Vec4},
-        std::pair{"MAT2", Model::ElementType::Matrix},   std::pair{"MAT3", Model::ElementType::Matrix},
-        std::pair{"MAT4", Model::ElementType::Matrix4}};
-    const std::string name = string_at(place, value);
-    const auto *const found =
-        std::find_if(types.begin(), types.end(), [&](const auto &type) { return type.first == name; });
-    if (found == types.end()) {
-      fail(place, value, "a type of glTF 2.0");
-    }
-    return found->second;
-  }
-
-  void read_sparse(const Place &place, const JsonValue &value, Model::Sparse &sparse) const
-  {
-    const auto into_part = [this](std::string_view key, Model::SparsePart &part) {
-      return Member{key, [this, &part](const Place &at, const JsonValue &member) {
-                      read_members(at, member, into_index("bufferView", part.buffer_view, "bufferViews"),
-                                   into("byteOffset", part.byte_offset), into("componentType", part.component_type));
-                      if (part.buffer_view < 0) {
-                        fail_incomplete(at, "bufferView");
-                      }
-                    }};
-    };
-    read_members(place, value, into("count", sparse.count), into_part("indices", sparse.indices),
-                 into_part("values", sparse.values));
-    if (sparse.indices.buffer_view < 0 || sparse.values.buffer_view < 0) {
-      throw Fault(place.text(), sparse.indices.buffer_view < 0 ? "has no indices" : "has no values");
-    }
-  }
-
-  void read_buffer_view(const Place &place, const JsonValue &value, Model::BufferView &view) const
-  {
-    std::optional<std::uint64_t> length;
-    read_members(place, value, into_index("buffer", view.buffer, "buffers"), into("byteOffset", view.byte_offset),
-                 into("byteStride", view.byte_stride),
-                 Member{"byteLength", [&](const Place &at, const JsonValue &member) { length = size_at(at, member); }},
-                 Member{"extensions", [&](const Place &at, const JsonValue &extensions) {
-                          read_members(at, extensions,
-                                       Member{"EXT_meshopt_compression", [&](const Place &in, const JsonValue &member) {
-                                                read_meshopt(in, member, view.meshopt.emplace());
-                                              }});
-                        }});
-    if (view.buffer < 0 || !length) {
-      fail_incomplete(place, view.buffer < 0 ? "buffer" : "byteLength");
-    }
-    view.byte_length = *length;
-    if (view.byte_stride > 252 || view.byte_stride % 4 != 0) {
-      throw Fault("glTF", "Invalid `byteStride' of " + place.text() + ": " + std::to_string(view.byte_stride) +
-                              " is not a multiple of 4 up to 252");
-    }
-  }
-
-  void read_meshopt(const Place &place, const JsonValue &value, Model::Meshopt &meshopt) const
-  {
-    read_members(place, value, into_index("buffer", meshopt.buffer, "buffers"), into("byteOffset", meshopt.byte_offset),
-                 into("byteLength", meshopt.byte_length), into("byteStride", meshopt.byte_stride),
-                 into("count", meshopt.count), into("mode", meshopt.mode), into("filter", meshopt.filter));
-    if (meshopt.buffer < 0) {
-      fail_incomplete(place, "buffer");
-    }
-  }
-
-  static void read_buffer(const Place &place, const JsonValue &value, Model::Buffer &buffer)
-  {
-    read_members(place, value, into("byteLength", buffer.byte_length),
-                 Member{"uri", [&](const Place &at, const JsonValue &uri) { buffer.uri = string_at(at, uri); }});
-  }
-
   void read_skin(const Place &place, const JsonValue &value, Model::Skin &skin) const
   {
-    read_members(place, value, into_name(skin.name), into_indices("joints", skin.joints, "nodes"),
-                 into_index("inverseBindMatrices", skin.inverse_bind_matrices, "accessors"));
+    read_members(place, value, into_name(skin.name), indices_.into_indices("joints", skin.joints, "nodes"),
+                 indices_.into_index("inverseBindMatrices", skin.inverse_bind_matrices, "accessors"));
   }
 
   void read_animation(const Place &place, const JsonValue &value, Model::Animation &animation) const
   {
     const auto read_sampler = [this](const Place &at, const JsonValue &one, Model::AnimationSampler &sampler) {
-      read_members(at, one, into_index("input", sampler.input, "accessors"),
-                   into_index("output", sampler.output, "accessors"), into("interpolation", sampler.interpolation));
+      read_members(at, one, indices_.into_index("input", sampler.input, "accessors"),
+                   indices_.into_index("output", sampler.output, "accessors"),
+                   into("interpolation", sampler.interpolation));
       if (sampler.input < 0 || sampler.output < 0) {
         fail_incomplete(at, sampler.input < 0 ? "input" : "output");
       }
     };
     const auto read_target = [this](const Place &at, const JsonValue &one, Model::AnimationChannel &channel) {
-      read_members(at, one, into_index("node", channel.node, "nodes"), into("path", channel.path),
+      read_members(at, one, indices_.into_index("node", channel.node, "nodes"), into("path", channel.path),
                    Member{"extensions", [&](const Place &in, const JsonValue &extensions) {
                             read_members(in, extensions,
                                          Member{"KHR_animation_pointer", [&](const Place &of, const JsonValue &member) {
@@ -521,8 +389,8 @@ class DocumentReader {
                  Member{"KHR_materials_variants", [&](const Place &at, const JsonValue &variants) {
                           read_members(at, variants, Member{"variants", read_array_of_variants});
                         }});
-    sizes_["lights"] = model_.lights.size();
-    sizes_["variants"] = model_.variants.size();
+    indices_.set_size("lights", model_.lights.size());
+    indices_.set_size("variants", model_.variants.size());
   }
 };
 

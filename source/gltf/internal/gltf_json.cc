@@ -51,6 +51,11 @@ void fail(const Place &place, const JsonValue &value, std::string_view wanted)
   throw Fault(place.text(), "is " + quoted(value) + ", and must be " + std::string(wanted));
 }
 
+void fail_incomplete(const Place &place, const std::string &missing)
+{
+  throw Fault("glTF", place.text() + ": has no " + missing);
+}
+
 JsonObject object_at(const Place &place, const JsonValue &value)
 {
   JsonObject object;

@@ -44,6 +44,9 @@ using JsonArray = simdjson::dom::array;
 /** \throws Fault: "place: is value, and must be wanted". */
 [[noreturn]] void fail(const Place &place, const JsonValue &value, std::string_view wanted);
 
+/** \throws Fault: "place: has no missing". */
+[[noreturn]] void fail_incomplete(const Place &place, const std::string &missing);
+
 /** The functions below throw a Fault that names the place, if the value has another type or is out of range. */
 [[nodiscard]] JsonObject object_at(const Place &place, const JsonValue &value);
 /** \a wanted: expected type, for the message. */

@@ -16,12 +16,6 @@
 /** Internal to source/gltf. */
 namespace gnomon::gltf {
 
-/**
- * Largest accepted coordinate, metres. Its square and its cube are finite in float, and so are all lengths, areas and
- * volumes of an imported scene.
- */
-constexpr double coordinate_max = 1e12;
-
 /** Adds meshes to a scene, one for each glTF primitive, at its first use. */
 class MeshImporter {
  public:

@@ -10,6 +10,12 @@ constexpr double lumen_per_watt = 683.0;
 /** Upper limit of numbers for which glTF defines none. Products of a few such numbers are finite in float. */
 constexpr double large = 1e12;
 
+/**
+ * Largest accepted coordinate, metres. Its square and its cube are finite in float, and so are all lengths, areas and
+ * volumes of an imported scene.
+ */
+constexpr double coordinate_max = 1e12;
+
 /** Smallest positive length. The square of a smaller one would underflow in float. */
 constexpr double length_min = 1e-12;
 

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: MIT
+#include "internal/gltf_primitive.hh"
+
+#include "internal/gltf_units.hh"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace gnomon::gltf {
+
+using scene::Mesh;
+
+namespace {
+
+/** Largest texture coordinate. Beyond it floats do not distinguish texels. */
+constexpr float uv_max = 1e6F;
+
+bool is_uv(const glm::vec2 &uv)
+{
+  // False for NaN too.
+  return std::abs(uv.x) <= uv_max && std::abs(uv.y) <= uv_max;
+}
+
+/** Clamps each component to [0, 1]; NaN becomes 0. */
+glm::vec4 limited_color(const glm::vec4 &color)
+{
+  glm::vec4 limited;
+  for (int i = 0; i < 4; i++) {
+    limited[i] = color[i] >= 0.0F ? std::min(color[i], 1.0F) : 0.0F;
+  }
+  return limited;
+}
+
+bool is_position(const glm::vec3 &position)
+{
+  const glm::vec3 size = glm::abs(position);
+  // False for NaN too.
+  return size.x <= coordinate_max && size.y <= coordinate_max && size.z <= coordinate_max;
+}
+
+/** Twice the area times the unit normal, in double, so that no product of floats underflows or overflows. */
+glm::dvec3 area_vector(const glm::vec3 &a, const glm::vec3 &b, const glm::vec3 &c)
+{
+  const glm::dvec3 origin(a);
+  return glm::cross(glm::dvec3(b) - origin, glm::dvec3(c) - origin);
+}
+
+/** \a vector must not be zero. Its squared length may leave double's range. */
+glm::vec3 unit(const glm::dvec3 &vector)
+{
+  const glm::dvec3 size = glm::abs(vector);
+  return glm::vec3(glm::normalize(vector / std::max({size.x, size.y, size.z})));
+}
+
+std::uint32_t vertex_count(std::size_t count)
+{
+  if (count > std::numeric_limits<std::uint32_t>::max()) {
+    throw Fault("count", "is too large");
+  }
+  return static_cast<std::uint32_t>(count);
+}
+
+}  // namespace
+
+PrimitiveReader::PrimitiveReader(const File &file, const Model::Primitive &primitive, std::string what,
+                                 Warnings &warnings)
+    : file_(file),
+      primitive_(primitive),
+      what_(std::move(what)),
+      warnings_(warnings),
+      positions_(file, position_accessor(), vec3_type)
+{
+  if (positions_.is_all_zero()) {
+    throw Fault("POSITION", primitive_.compression.empty() ? "holds no data"
+                                                           : "is compressed by " + printable(primitive_.compression));
+  }
+  if (primitive.indices >= 0) {
+    indices_.emplace(file, primitive.indices, Model::ElementType::Scalar);
+    if (!indices_->is_unsigned()) {
+      throw Fault("indices", "are not unsigned integers");
+    }
+    if (indices_->is_all_zero() && !primitive_.compression.empty()) {
+      throw Fault("indices", "are compressed by " + printable(primitive_.compression));
+    }
+  }
+  open_normals(file);
+}
+
+std::uint64_t PrimitiveReader::element_count() const
+{
+  return positions_.count() + (indices_ ? indices_->count() : 0);
+}
+
+Mesh PrimitiveReader::read()
+{
+  std::vector<Triangle> triangles = kept_triangles();
+  Mesh mesh;
+  if (normals_) {
+    share_vertices(triangles, mesh);
+  }
+  else {
+    unshare_vertices(triangles, mesh);
+  }
+  for (const glm::vec3 &position : mesh.positions) {
+    mesh.bounds.extend(position);
+  }
+  if (triangles.empty() && losses_ == Losses{}) {
+    throw Fault("POSITION", "makes no triangle");
+  }
+  losses_.report(warnings_, what_);
+  return mesh;
+}
+
+std::vector<glm::vec2> PrimitiveReader::read_uvs(int set)
+{
+  std::vector<glm::vec2> uvs(file_vertices_.size(), glm::vec2(0.0F));
+  const std::string attribute = "TEXCOORD_" + std::to_string(set);
+  try {
+    const auto found = primitive_.attributes.find(attribute);
+    if (found == primitive_.attributes.end()) {
+      throw Fault(attribute, "is missing");
+    }
+    const AccessorReader reader(file_, found->second, Model::ElementType::Vec2);
+    if (reader.count() != positions_.count()) {
+      throw Fault(attribute, "count differs from that of POSITION");
+    }
+    Losses losses;
+    for (std::size_t i = 0; i < uvs.size(); i++) {
+      const glm::vec2 uv = reader.vec2(file_vertices_[i]);
+      losses.bad_uvs += is_uv(uv) ? 0 : 1;
+      uvs[i] = is_uv(uv) ? uv : glm::vec2(0.0F);
+    }
+    losses.report(warnings_, what_);
+  }
+  catch (const Fault &fault) {
+    warnings_.add(what_, std::string("its texture is drawn as the colour of one corner: ") + fault.what());
+  }
+  return uvs;
+}
+
+std::vector<glm::vec4> PrimitiveReader::read_tangents()
+{
+  const auto found = primitive_.attributes.find("TANGENT");
+  // glTF ignores the tangents of a primitive without normals.
+  if (found == primitive_.attributes.end() || !normals_) {
+    return {};
+  }
+  std::vector<glm::vec4> tangents;
+  try {
+    const AccessorReader reader(file_, found->second, Model::ElementType::Vec4);
+    if (reader.count() != positions_.count()) {
+      throw Fault("TANGENT", "count differs from that of POSITION");
+    }
+    for (const std::uint32_t vertex : file_vertices_) {
+      const glm::vec4 tangent = reader.vec4(vertex);
+      const glm::vec3 direction = unit_or_zero(glm::vec3(tangent));
+      if (direction == glm::vec3(0.0F)) {
+        throw Fault("TANGENT", "one is zero or not finite");
+      }
+      tangents.emplace_back(direction, tangent.w < 0.0F ? -1.0F : 1.0F);
+    }
+  }
+  catch (const Fault &fault) {
+    tangents.clear();
+    warnings_.add(what_, std::string("tangents made instead: ") + fault.what());
+  }
+  return tangents;
+}
+
+std::vector<glm::vec4> PrimitiveReader::read_colors()
+{
+  const auto found = primitive_.attributes.find("COLOR_0");
+  if (found == primitive_.attributes.end()) {
+    return {};
+  }
+  std::vector<glm::vec4> colors;
+  try {
+    const bool is_vec3 = file_.model.accessors[found->second].type == vec3_type;
+    const AccessorReader reader(file_, found->second, is_vec3 ? vec3_type : Model::ElementType::Vec4);
+    if (reader.count() != positions_.count()) {
+      throw Fault("COLOR_0", "count differs from that of POSITION");
+    }
+    if (!reader.is_color()) {
+      throw Fault("COLOR_0", "holds neither floats nor normalized unsigned integers of 8 or 16 bits");
+    }
+    Losses losses;
+    for (const std::uint32_t vertex : file_vertices_) {
+      const glm::vec4 color = reader.color(vertex);
+      colors.push_back(limited_color(color));
+      losses.bad_colors += colors.back() == color ? 0 : 1;
+    }
+    losses.report(warnings_, what_);
+  }
+  catch (const Fault &fault) {
+    warnings_.add(what_, std::string("its vertex colours are left out: ") + fault.what());
+  }
+  return colors;
+}
+
+int PrimitiveReader::position_accessor() const
+{
+  const auto found = primitive_.attributes.find("POSITION");
+  if (found == primitive_.attributes.end()) {
+    throw Fault("POSITION", "is missing");
+  }
+  return found->second;
+}
+
+void PrimitiveReader::open_normals(const File &file)
+{
+  const auto found = primitive_.attributes.find("NORMAL");
+  if (found == primitive_.attributes.end()) {
+    return;
+  }
+  try {
+    normals_.emplace(file, found->second, vec3_type);
+    if (normals_->count() != positions_.count()) {
+      throw Fault("NORMAL", "count differs from that of POSITION");
+    }
+  }
+  catch (const Fault &fault) {
+    normals_.reset();
+    warnings_.add(what_, std::string("flat normals made instead: ") + fault.what());
+  }
+}
+
+std::vector<Triangle> PrimitiveReader::kept_triangles()
+{
+  const std::uint32_t count = vertex_count(indices_ ? indices_->count() : positions_.count());
+  std::vector<Triangle> triangles = triangles_of(primitive_.mode, count, losses_);
+  const auto is_lost = [this](Triangle &triangle) {
+    if (indices_) {
+      std::transform(triangle.begin(), triangle.end(), triangle.begin(),
+                     [this](std::uint32_t place) { return indices_->integer(place); });
+    }
+    return is_left_out(triangle);
+  };
+  // The order matters, and is_lost modifies its argument, so std::remove_if cannot be used.
+  std::size_t kept = 0;
+  for (Triangle &triangle : triangles) {
+    if (!is_lost(triangle)) {
+      triangles[kept++] = triangle;
+    }
+  }
+  triangles.resize(kept);
+  return triangles;
+}
+
+bool PrimitiveReader::is_left_out(const Triangle &triangle)
+{
+  if (std::any_of(triangle.begin(), triangle.end(), [this](std::uint32_t v) { return v >= positions_.count(); })) {
+    losses_.out_of_range++;
+    return true;
+  }
+  const auto [a, b, c] = triangle;
+  if (primitive_.mode != Model::Triangles && (a == b || b == c || c == a)) {
+    // Degenerate triangles join strips. They are not counted as lost.
+    return true;
+  }
+  const std::array corners{positions_.vec3(a), positions_.vec3(b), positions_.vec3(c)};
+  if (!std::all_of(corners.begin(), corners.end(), is_position)) {
+    losses_.non_finite++;
+    return true;
+  }
+  if (area_vector(corners[0], corners[1], corners[2]) == glm::dvec3(0.0)) {
+    losses_.flat++;
+    return true;
+  }
+  return false;
+}
+
+void PrimitiveReader::share_vertices(const std::vector<Triangle> &triangles, Mesh &mesh)
+{
+  constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> new_index(positions_.count(), unused);
+  for (const Triangle &triangle : triangles) {
+    for (const std::uint32_t vertex : triangle) {
+      new_index[vertex] = 0;
+    }
+  }
+  for (std::size_t vertex = 0; vertex < new_index.size(); vertex++) {
+    if (new_index[vertex] != unused) {
+      new_index[vertex] = static_cast<std::uint32_t>(mesh.positions.size());
+      file_vertices_.push_back(static_cast<std::uint32_t>(vertex));
+      mesh.positions.push_back(positions_.vec3(vertex));
+      mesh.normals.push_back(unit_or_zero(normals_->vec3(vertex)));
+    }
+  }
+  mesh.indices.reserve(3 * triangles.size());
+  for (const Triangle &triangle : triangles) {
+    for (const std::uint32_t vertex : triangle) {
+      mesh.indices.push_back(new_index[vertex]);
+    }
+  }
+  replace_zero_normals(mesh);
+}
+
+void PrimitiveReader::unshare_vertices(const std::vector<Triangle> &triangles, Mesh &mesh)
+{
+  const std::size_t count = 3 * triangles.size();
+  mesh.positions.reserve(count);
+  mesh.normals.reserve(count);
+  mesh.indices.reserve(count);
+  for (const Triangle &triangle : triangles) {
+    for (const std::uint32_t vertex : triangle) {
+      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+      file_vertices_.push_back(vertex);
+      mesh.positions.push_back(positions_.vec3(vertex));
+    }
+    const glm::vec3 *corners = mesh.positions.data() + mesh.positions.size() - 3;
+    mesh.normals.insert(mesh.normals.end(), 3, unit(area_vector(corners[0], corners[1], corners[2])));
+  }
+}
+
+glm::vec3 PrimitiveReader::unit_or_zero(const glm::vec3 &normal)
+{
+  const bool is_usable =
+      std::isfinite(normal.x) && std::isfinite(normal.y) && std::isfinite(normal.z) && normal != glm::vec3(0.0F);
+  if (!is_usable) {
+    return glm::vec3(0.0F);
+  }
+  // Vectors of unit length within rounding are kept unchanged, so that an exported scene is imported exactly.
+  constexpr double rounding = 1e-6;
+  const glm::dvec3 vector(normal);
+  return std::abs(glm::dot(vector, vector) - 1.0) <= rounding ? normal : unit(vector);
+}
+
+void PrimitiveReader::replace_zero_normals(Mesh &mesh)
+{
+  for (std::size_t i = 0; i < mesh.indices.size(); i++) {
+    glm::vec3 &normal = mesh.normals[mesh.indices[i]];
+    if (normal == glm::vec3(0.0F)) {
+      const std::uint32_t *corners = mesh.indices.data() + i / 3 * 3;
+      normal = unit(area_vector(mesh.positions[corners[0]], mesh.positions[corners[1]], mesh.positions[corners[2]]));
+      losses_.bad_normals++;
+    }
+  }
+}
+
+}  // namespace gnomon::gltf
