@@ -66,7 +66,7 @@ class FacingEngine final : public draw::Engine {
     gpu::Device &device = viewport.device();
     if (!data.view_block) {
       data.surface_shader = shader(device, "facing", "facing_vert.glsl", "facing_frag.glsl");
-      data.target_shader = shader(device, "target", "draw/draw_fullscreen_vert.glsl", "eevee/eevee_tonemap_frag.glsl");
+      data.target_shader = shader(device, "target", "draw/draw_fullscreen_vert.glsl", "draw/draw_target_frag.glsl");
       data.nearest = device.create_sampler({.name = "nearest"});
       data.view_block = device.create_buffer({"view", gpu::BufferKind::Uniform, sizeof(shared::ViewData)});
     }

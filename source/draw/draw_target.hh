@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "eevee_tonemap_shared.h"
+#include "draw_view_transform_shared.h"
 #include "gpu_device.hh"
 
 #include <glm/mat4x4.hpp>
@@ -18,7 +18,7 @@
  */
 namespace gnomon::draw {
 
-/** Conversion of scene-linear light to display colours. \see eevee_tonemap_shared.h */
+/** Conversion of scene-linear light to display colours. \see draw_view_transform_shared.h */
 enum class ViewTransform {
   /** Clips linear light to [0, 1] and applies sRGB's transfer function. */
   Standard = VIEW_TRANSFORM_STANDARD,

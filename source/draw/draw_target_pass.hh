@@ -9,7 +9,7 @@ namespace gnomon::draw {
 /**
  * Writes pictures to targets by a pass that the engine owns. The pass is built again only if the textures, the shader
  * or the state differ from the previous target's. An engine owns one TargetPass for each viewport, and its shader
- * (eevee_tonemap_frag.glsl).
+ * (draw_target_frag.glsl).
  */
 class TargetPass {
  public:
@@ -48,7 +48,7 @@ class TargetPass {
   }
 
  private:
-  /** Push constants of eevee_tonemap_frag.glsl, bound by reference. */
+  /** Push constants of draw_target_frag.glsl, bound by reference. */
   struct Constants {
     DepthMap depth;
     glm::ivec2 origin_px{0};

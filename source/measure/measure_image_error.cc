@@ -3,7 +3,7 @@
 
 #include "measure_flip.hh"
 
-#include "eevee_tonemap_shared.h"
+#include "draw_view_transform_shared.h"
 
 #include <fmt/format.h>
 

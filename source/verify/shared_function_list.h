@@ -8,7 +8,7 @@
 #include "eevee_light_shared.h"
 #include "eevee_octahedral_shared.h"
 #include "eevee_shadow_shared.h"
-#include "eevee_tonemap_shared.h"
+#include "draw_view_transform_shared.h"
 
 namespace SHARED_NAMESPACE {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "internal/shared_function_sweeps.hh"
 
-#include "eevee_tonemap_shared.h"
+#include "draw_view_transform_shared.h"
 
 #include <glm/common.hpp>
 

@@ -2,9 +2,9 @@
 // Pictures from samples to files: sizes from 1 to 16384 pixels, numbers of samples, view transforms.
 #include "internal/stability_cases.hh"
 
+#include "draw_view_transform_shared.h"
 #include "eevee_camera.hh"
 #include "eevee_film.hh"
-#include "eevee_tonemap_shared.h"
 
 #include <fmt/format.h>
 #include <glm/vector_relational.hpp>

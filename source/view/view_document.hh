@@ -4,7 +4,7 @@
 #include "view_additions.hh"
 #include "view_history.hh"
 #include "view_settings.hh"
-#include "view_transform.hh"
+#include "view_transform_operation.hh"
 
 #include "draw_engine.hh"
 #include "eevee_inspection.hh"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "view_transform.hh"
+#include "view_transform_operation.hh"
 
 #include "overlay.hh"
 

@@ -150,13 +150,12 @@ INSTANTIATE_TEST_SUITE_P(
                 "shared/draw_view_shared.h",
                 "const float planted",
                 "syntax error"},
-        Planted{
-            "TypeMismatch",
-            "eevee_tonemap",
-            {{"eevee/eevee_tonemap_frag.glsl", "void main()\n{\n", "void main()\n{\n  vec2 planted = vec3(1.0);\n"}},
-            "eevee/eevee_tonemap_frag.glsl",
-            "vec2 planted",
-            "cannot convert"},
+        Planted{"TypeMismatch",
+                "eevee_tonemap",
+                {{"draw/draw_target_frag.glsl", "void main()\n{\n", "void main()\n{\n  vec2 planted = vec3(1.0);\n"}},
+                "draw/draw_target_frag.glsl",
+                "vec2 planted",
+                "cannot convert"},
         Planted{"MissingVarying",
                 "eevee_debug_cascades",
                 {{"eevee/eevee_surface_vert_lib.glsl", "layout(location = 0) out vec3 surface_position_ws;\n", ""},
@@ -196,11 +195,11 @@ INSTANTIATE_TEST_SUITE_P(
         Planted{
             "SlotUsedTwice",
             "eevee_tonemap",
-            {{"eevee/eevee_tonemap_frag.glsl", "layout(location = 0) out vec4 display;\n",
+            {{"draw/draw_target_frag.glsl", "layout(location = 0) out vec4 display;\n",
               "layout(location = 0) out vec4 display;\nlayout(binding = RADIANCE_SLOT) uniform sampler2D planted;\n"},
-             {"eevee/eevee_tonemap_frag.glsl", "= texelFetch(radiance_texture,",
+             {"draw/draw_target_frag.glsl", "= texelFetch(radiance_texture,",
               "= texelFetch(planted, ivec2(0), 0) + texelFetch(radiance_texture,"}},
-            "eevee/eevee_tonemap_frag.glsl",
+            "draw/draw_target_frag.glsl",
             "uniform sampler2D planted",
             "has slot 18, as texture 'radiance_texture' has [slot]"},
         Planted{"OneFeatureBitOnly",
@@ -212,10 +211,10 @@ INSTANTIATE_TEST_SUITE_P(
                 "'undeclared_name' : undeclared identifier [compile] (eevee_depth, "},
         Planted{"VulkanOnly",
                 "eevee_tonemap",
-                {{"eevee/eevee_tonemap_frag.glsl", "layout(location = 0) out vec4 display;\n",
+                {{"draw/draw_target_frag.glsl", "layout(location = 0) out vec4 display;\n",
                   "layout(location = 0) out vec4 display;\nlayout(location = 5) uniform float planted;\n"},
-                 {"eevee/eevee_tonemap_frag.glsl", "radiance.rgb * exposure_scale", "radiance.rgb * planted"}},
-                "eevee/eevee_tonemap_frag.glsl",
+                 {"draw/draw_target_frag.glsl", "radiance.rgb * exposure_scale", "radiance.rgb * planted"}},
+                "draw/draw_target_frag.glsl",
                 "uniform float planted",
                 "(eevee_tonemap, 2 variants; Vulkan 1.2)"},
         Planted{"BlockTooLarge",
@@ -226,23 +225,23 @@ INSTANTIATE_TEST_SUITE_P(
                 "block 'light_block' takes 16400 bytes; all devices support 16384",
                 // C++ also has fewer lights.
                 2},
-        Planted{"Recursion",
-                "eevee_tonemap",
-                {{"shared/eevee_tonemap_shared.h", "SHARED_END",
-                  "float planted(float x)\n{\n  return x < 1.0 ? x : planted(x - 1.0);\n}\nSHARED_END"},
-                 {"eevee/eevee_tonemap_frag.glsl", "radiance.rgb * exposure_scale",
-                  "radiance.rgb * planted(exposure_scale)"}},
-                "shared/eevee_tonemap_shared.h",
-                "float planted(float x)",
-                "function 'planted' calls itself"}),
+        Planted{
+            "Recursion",
+            "eevee_tonemap",
+            {{"shared/draw_view_transform_shared.h", "SHARED_END",
+              "float planted(float x)\n{\n  return x < 1.0 ? x : planted(x - 1.0);\n}\nSHARED_END"},
+             {"draw/draw_target_frag.glsl", "radiance.rgb * exposure_scale", "radiance.rgb * planted(exposure_scale)"}},
+            "shared/draw_view_transform_shared.h",
+            "float planted(float x)",
+            "function 'planted' calls itself"}),
     [](const auto &test) { return test.param.name; });
 
 TEST_F(ShadersTest, AVulkanOnlyMistakePassesForOpenGl)
 {
   copy_tree();
-  replace("eevee/eevee_tonemap_frag.glsl", "layout(location = 0) out vec4 display;\n",
+  replace("draw/draw_target_frag.glsl", "layout(location = 0) out vec4 display;\n",
           "layout(location = 0) out vec4 display;\nlayout(location = 5) uniform float planted;\n");
-  replace("eevee/eevee_tonemap_frag.glsl", "radiance.rgb * exposure_scale", "radiance.rgb * planted");
+  replace("draw/draw_target_frag.glsl", "radiance.rgb * exposure_scale", "radiance.rgb * planted");
   EXPECT_EQ(run("shaders check --shaders tree --program eevee_tonemap --target vulkan").status, 1);
   // One member of the push constants has no reader any more, which is valid.
   const Finished opengl = run("shaders check --shaders tree --program eevee_tonemap --target opengl");

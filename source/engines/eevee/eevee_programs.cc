@@ -64,7 +64,7 @@ constexpr std::array<ShaderDeclaration, 20> declarations = {{
     {ShaderId::BackgroundWorld, "eevee_background_world", "draw/draw_fullscreen_vert.glsl", "",
      "eevee/eevee_background_frag.glsl", Feature::None, Feature::None, "the world where there is no surface",
      "BACKGROUND_WORLD"},
-    {ShaderId::Tonemap, "eevee_tonemap", "draw/draw_fullscreen_vert.glsl", "", "eevee/eevee_tonemap_frag.glsl",
+    {ShaderId::Tonemap, "eevee_tonemap", "draw/draw_fullscreen_vert.glsl", "", "draw/draw_target_frag.glsl",
      Feature::TargetDepth, Feature::None, "the picture as its target stores it"},
     {ShaderId::EsmDistance, "eevee_esm_distance", "draw/draw_fullscreen_vert.glsl", "",
      "eevee/eevee_esm_distance_frag.glsl", Feature::None, Feature::None, "distances from a lamp on an octahedral map"},

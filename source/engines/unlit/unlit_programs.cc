@@ -13,7 +13,7 @@ constexpr std::array<ShaderDeclaration, 3> declarations = {{
     {ShaderId::Surface, "unlit_surface", "unlit/unlit_vert.glsl", "unlit/unlit_frag.glsl",
      Feature::BaseColorTexture | Feature::FullMaterial | Feature::DepthCamera,
      "surfaces without light, with the depth camera's shadow"},
-    {ShaderId::Target, "unlit_target", "draw/draw_fullscreen_vert.glsl", "eevee/eevee_tonemap_frag.glsl",
+    {ShaderId::Target, "unlit_target", "draw/draw_fullscreen_vert.glsl", "draw/draw_target_frag.glsl",
      Feature::TargetDepth, "the picture as its target stores it"},
 }};
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "shadow_layer_array.hh"
 #include "shadow_layer_runs.hh"
-#include "shadow_storage.hh"
 
 #include "eevee_shaders.hh"
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "shadow_casters.hh"
+#include "shadow_layer_array.hh"
 #include "shadow_plan.hh"
-#include "shadow_storage.hh"
 #include "shadow_sun_fit.hh"
 
 #include "eevee_depth_shared.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "shadow_storage.hh"
+#include "shadow_layer_array.hh"
 
 #include <fmt/format.h>
 

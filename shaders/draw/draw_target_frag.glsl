@@ -1,7 +1,7 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
 // Writes the picture to a target: applies exposure, view transform and, where the target has depth, the host's convention.
-#include "shared/eevee_tonemap_shared.h"
+#include "shared/draw_view_transform_shared.h"
 #include "shared/slots_shared.h"
 
 layout(binding = RADIANCE_SLOT) uniform sampler2D radiance_texture;

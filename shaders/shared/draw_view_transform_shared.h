@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#ifndef EEVEE_TONEMAP_SHARED_H
-#define EEVEE_TONEMAP_SHARED_H
+#ifndef DRAW_VIEW_TRANSFORM_SHARED_H
+#define DRAW_VIEW_TRANSFORM_SHARED_H
 
 #include "shared/shared_types.h"
 

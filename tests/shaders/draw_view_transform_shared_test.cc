@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "eevee_tonemap_shared.h"
+#include "draw_view_transform_shared.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "view_transform.hh"
+#include "view_transform_operation.hh"
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
