@@ -67,7 +67,7 @@ class SharedFunctionGpu : public GpuDeviceTest, public testing::WithParamInterfa
   {
     std::string text = "#version 450 core\n";
     for (const std::string_view path : shaders::paths()) {
-      if (path.starts_with("shared/eevee_")) {
+      if (path.starts_with("shared/draw_") || path.starts_with("shared/eevee_")) {
         text += fmt::format("#include \"{}\"\n", path);
       }
     }
