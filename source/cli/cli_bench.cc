@@ -2,6 +2,7 @@
 #include "cli.hh"
 
 #include "cli_output.hh"
+#include "cli_world.hh"
 
 #include "measure_bench.hh"
 #include "measure_edits.hh"
@@ -22,6 +23,7 @@ struct BenchOptions {
   std::string backend = "gl";
   int rounds = 21;
   std::string json;
+  WorldOptions world;
 };
 
 nlohmann::json to_json(const measure::Spread &spread)
@@ -202,8 +204,9 @@ void bench_edits(const BenchOptions &options)
 
 void bench_start(const BenchOptions &options)
 {
-  const std::vector<measure::StartCost> costs = measure::measure_start(
-      {std::filesystem::read_symlink("/proc/self/exe"), options.scene, options.backend, options.rounds});
+  const std::vector<measure::StartCost> costs =
+      measure::measure_start({std::filesystem::read_symlink("/proc/self/exe"), options.scene,
+                              arguments_of(options.world), options.backend, options.rounds});
   fmt::print(
       "Whole processes in turn: milliseconds, median [quartiles] of {} rounds, the difference to the first, and the\n"
       "largest memory, which is at least that of this process. render: 640x360, one sample, to an EXR file; backend "
@@ -250,6 +253,7 @@ void add_bench(CLI::App &app)
   start->add_option("--backend", o->backend, "gl, or null: without a driver and a picture")
       ->capture_default_str()
       ->check(CLI::IsMember({"gl", "null"}));
+  add_world_options(*start, o->world);
   start->callback([o] { bench_start(*o); });
   for (CLI::App *bench : {shadows, draws, left_out, start}) {
     bench->add_option("--rounds", o->rounds, "Measured rounds, after one that warms up")

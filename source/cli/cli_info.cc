@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli.hh"
+#include "cli_world.hh"
 
-#include "gltf_import.hh"
 #include "scene_units.hh"
 
 #include <fmt/format.h>
@@ -20,7 +20,8 @@ static const char *to_string(scene::LampKind kind)
   return "?";
 }
 
-static void print_info(const scene::Scene &scene)
+/** \a is_world_default: the studio was added. */
+static void print_info(const scene::Scene &scene, bool is_world_default)
 {
   const std::vector<scene::Object> objects = scene.objects();
   std::size_t triangles = 0;
@@ -47,6 +48,9 @@ static void print_info(const scene::Scene &scene)
     fmt::print("  lamp '{}', {}, {:g} {}{}\n", lamp.name, to_string(lamp.kind), lamp.intensity,
                scene::intensity_unit(lamp.kind), scene.is_lamp_default ? " (added)" : "");
   }
+  if (scene.world()) {
+    fmt::print("  world, {}{}\n", world_text(*scene.world()), is_world_default ? " (added)" : "");
+  }
   for (const scene::Animation &animation : scene.animations) {
     fmt::print("  animation '{}', {:g} s, {} nodes, {} values\n", animation.name, animation.duration(),
                animation.nodes.size(), animation.values.size());
@@ -62,14 +66,17 @@ static void print_info(const scene::Scene &scene)
 void add_info(CLI::App &app, Status &status)
 {
   CLI::App *command = app.add_subcommand("info", "Contents of a scene");
-  auto path = std::make_shared<std::string>();
+  const auto path = std::make_shared<std::string>();
+  const auto world = std::make_shared<WorldOptions>();
   command->add_option("scene", *path, "glTF 2.0 file")->required();
-  command->callback([path, &status] {
-    const scene::Scene scene = gltf::import_gltf(*path);
+  add_world_options(*command, *world);
+  command->callback([path, world, &status] {
+    scene::Scene scene = import_scene(*path);
+    const bool is_world_default = light_by_world(scene, scene.placed_cameras().front(), *world);
     for (const std::string &warning : scene.warnings) {
       fmt::print(stderr, "gnomon: warning: {}\n", warning);
     }
-    print_info(scene);
+    print_info(scene, is_world_default);
     status = Status::Done;
   });
 }

@@ -12,7 +12,6 @@
 
 #include "eevee_scene_renderer.hh"
 #include "eevee_world.hh"
-#include "gltf_import.hh"
 #include "gpu_read.hh"
 
 #include <fmt/format.h>
@@ -201,16 +200,6 @@ void print_messages(std::string_view kind, const std::vector<std::string> &texts
   }
 }
 
-scene::Scene import_scene(const RenderOptions &options)
-{
-  try {
-    return gltf::import_gltf(options.scene, {.variant = options.variant});
-  }
-  catch (const gltf::UnknownVariant &unknown) {
-    throw UsageError(unknown.what());
-  }
-}
-
 std::unique_ptr<gpu::Device> create_device(const RenderOptions &options)
 {
   if (!options.has_picture()) {
@@ -283,13 +272,13 @@ Status render(RenderOptions options)
   const Aov aov(options.aov);
   RenderResult result;
 
-  scene::Scene scene = import_scene(options);
+  scene::Scene scene = import_scene(options.scene, options.variant);
   frames.pose(scene, 0);
   const scene::PlacedCamera camera = find_camera(scene, options.camera);
   const bool is_default_studio = light_by_world(scene, camera, options.world);
   constexpr glm::vec3 light_grey(0.6F);
-  const eevee::Background background =
-      background_of(options.world, is_default_studio && options.is_png() ? std::optional(light_grey) : std::nullopt);
+  const eevee::Background background = background_of(
+      options.background, is_default_studio && options.is_png() ? std::optional(light_grey) : std::nullopt);
   aov.check(scene);
   std::ranges::copy(aov.warnings(scene), std::back_inserter(scene.warnings));
   print_messages("warning", scene.warnings);

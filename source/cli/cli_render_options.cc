@@ -147,8 +147,7 @@ std::string RenderOptions::settings_text() const
       "--casters {} --shadow-memory {} --world '{}' --world-strength {} --world-rotation {} --background '{}' "
       "--animation '{}' --fps {}",
       shadow, shadow_size, pcf, esm, cascades, cascade_lambda, cascade_range, cube_pass, casters, shadow_memory,
-      world.world, world.strength, world.rotation_degrees, world.background, frames.animation,
-      frames.frames_per_second);
+      world.world, world.strength, world.rotation_degrees, background, frames.animation, frames.frames_per_second);
 }
 
 bool RenderOptions::is_png() const
@@ -318,6 +317,7 @@ void add_render_options(CLI::App &command, RenderOptions &options)
   command.add_option("--json", options.json,
                      "Write times, counters, limits, and the parts that were made and left out");
   add_world_options(command, options.world);
+  add_background_option(command, options.background);
   CLI::Option *max_error =
       command
           .add_option("--max-error", options.choice.error_max,

@@ -54,6 +54,8 @@ struct RenderOptions {
   bool is_strict = false;
   std::uint32_t seed = 0;
   WorldOptions world;
+  /** "none", "world" or a radiance R,G,B. Empty: none, or light grey in a PNG that the default studio lights. */
+  std::string background;
 
   /** \throws UsageError where an option's value is invalid, or does not go with another option */
   void check() const;

@@ -6,8 +6,8 @@
 #include "cli_output.hh"
 #include "cli_picture.hh"
 #include "cli_time.hh"
+#include "cli_world.hh"
 
-#include "gltf_import.hh"
 #include "measure_reference.hh"
 #include "measure_report.hh"
 
@@ -35,6 +35,7 @@ struct ReportOptions {
   int reference_samples = 64;
   /** Names or labels of techniques; empty for all. */
   std::vector<std::string> techniques;
+  WorldOptions world;
 };
 
 /** Shows a progress bar on a terminal; silent in a pipe. */
@@ -115,6 +116,8 @@ class Run {
   std::size_t measure_all();
 
  private:
+  /** A scene with its lamps' own shadow settings, in the world of the options. */
+  [[nodiscard]] scene::Scene lit_scene(const std::string &path) const;
   void resume();
   void measure(measure::SceneReport &report);
   void visit(const scene::Scene &scene, const reference::Tracer &tracer, measure::SceneReport &report,
@@ -161,7 +164,9 @@ Run::Run(gpu::Device &device, const ReportOptions &options)
     measure::SceneReport &scene = run_.scenes.emplace_back();
     scene.name = name;
     scene.path = path;
-    scene.fingerprint = scene_fingerprint(gltf::import_gltf(path));
+    const scene::Scene lit = lit_scene(path);
+    scene.fingerprint = scene_fingerprint(lit);
+    scene.world = lit.world() ? world_text(*lit.world()) : "";
     for (const measure::Technique &technique : techniques) {
       measure::TechniqueReport &report = scene.techniques.emplace_back();
       report.technique = technique;
@@ -172,6 +177,13 @@ Run::Run(gpu::Device &device, const ReportOptions &options)
   }
   fs::create_directories(folder_);
   resume();
+}
+
+scene::Scene Run::lit_scene(const std::string &path) const
+{
+  scene::Scene scene = import_scene(path);
+  light_by_world(scene, scene.placed_cameras().front(), options_.world);
+  return scene;
 }
 
 void Run::resume()
@@ -297,7 +309,7 @@ void Run::visit(const scene::Scene &scene, const reference::Tracer &tracer, meas
 void Run::measure(measure::SceneReport &report)
 {
   if (visits_left(report) > 0) {
-    scene::Scene scene = gltf::import_gltf(report.path);
+    scene::Scene scene = lit_scene(report.path);
     for (const std::string &warning : scene.warnings) {
       warn(report, warning);
     }
@@ -414,6 +426,7 @@ void add_report(CLI::App &app, Status &status)
           "Rays per pixel of the reference, an even number; the noisiest tenth of the pixels has eight times as many")
       ->capture_default_str()
       ->check(CLI::Range(2, 65536));
+  add_world_options(*command, o->world);
   command->callback([o, &status] { status = report(*o); });
 }
 

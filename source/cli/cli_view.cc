@@ -3,6 +3,7 @@
 
 #ifdef GNOMON_VIEW
 #include "cli_picture.hh"
+#include "cli_world.hh"
 
 #include "view.hh"
 #endif
@@ -27,6 +28,7 @@ void add_view(CLI::App &app)
     o->writers.exr = [](const auto &path, glm::ivec2 size_px, std::span<const float> rgba) {
       write_exr(path, size_px, rgba, {{"gnomon:units", "scene-linear radiance, W/(sr m^2)"}}, Alpha::Written);
     };
+    o->read_picture = read_world_picture;
     view::run(*o);
   });
 }

@@ -4,6 +4,7 @@
 #include "cli.hh"
 #include "cli_picture.hh"
 
+#include "gltf_import.hh"
 #include "scene_studio.hh"
 
 #include <fmt/format.h>
@@ -27,8 +28,22 @@ void add_world_options(CLI::App &command, WorldOptions &options)
                   "Rotation of the world around the vertical axis, degrees")
       ->capture_default_str()
       ->check(CLI::Range(-360.0F, 360.0F));
+}
+
+std::vector<std::string> arguments_of(const WorldOptions &options)
+{
+  std::vector<std::string> arguments = {"--world-strength", fmt::format("{}", options.strength), "--world-rotation",
+                                        fmt::format("{}", options.rotation_degrees)};
+  if (!options.world.empty()) {
+    arguments.insert(arguments.end(), {"--world", options.world});
+  }
+  return arguments;
+}
+
+void add_background_option(CLI::App &command, std::string &background)
+{
   command.add_option(
-      "--background", options.background,
+      "--background", background,
       "Background of pixels without a surface: none (transparent: the file has alpha), world, or a radiance R,G,B "
       "(default: none; light grey in a PNG that the default studio lights)");
 }
@@ -50,25 +65,39 @@ std::optional<glm::vec3> parse_color(const std::string &text)
   return color;
 }
 
-static scene::World read_world(const std::string &path)
+scene::WorldPicture read_world_picture(const std::filesystem::path &path)
 {
   const Picture file = read_picture(path);
-  scene::WorldPicture picture{file.size_px.x, file.size_px.y, {}};
+  scene::WorldPicture picture{file.size_px.x, file.size_px.y, {}, path.string()};
   picture.texels.reserve(file.pixels.size());
   for (int y = file.size_px.y - 1; y >= 0; y--) {
     for (int x = 0; x < file.size_px.x; x++) {
-      const glm::vec4 &pixel = file.pixels[std::size_t(y) * std::size_t(file.size_px.x) + std::size_t(x)];
-      for (int i = 0; i < 3; i++) {
-        if (!(pixel[i] >= 0.0F) || std::isinf(pixel[i])) {
-          throw std::runtime_error(
-              fmt::format("{}: texel {}, {} from the top left is {}; texels must be finite and at least 0", path, x,
-                          file.size_px.y - 1 - y, pixel[i]));
-        }
-      }
-      picture.texels.emplace_back(pixel);
+      picture.texels.emplace_back(file.pixels[std::size_t(y) * std::size_t(file.size_px.x) + std::size_t(x)]);
     }
   }
-  return {.picture = std::make_shared<const scene::WorldPicture>(std::move(picture))};
+  return picture;
+}
+
+scene::Scene import_scene(const std::string &path, const std::string &variant)
+{
+  try {
+    return gltf::import_gltf(path, {.variant = variant, .read_picture = read_world_picture});
+  }
+  catch (const gltf::UnknownVariant &unknown) {
+    throw UsageError(unknown.what());
+  }
+}
+
+std::string world_text(const scene::World &world)
+{
+  if (!world.picture) {
+    const glm::vec3 radiance = world.color * world.strength;
+    return fmt::format("{:g}, {:g}, {:g} W/(sr m²)", radiance.r, radiance.g, radiance.b);
+  }
+  const scene::WorldPicture &picture = *world.picture;
+  return fmt::format("picture{}, {}x{}, color {:g}, {:g}, {:g}, strength {:g}, rotation {:g}°",
+                     picture.path.empty() ? "" : " '" + picture.path + "'", picture.width, picture.height,
+                     world.color.r, world.color.g, world.color.b, world.strength, glm::degrees(world.rotation));
 }
 
 bool light_by_world(scene::Scene &scene, const scene::PlacedCamera &camera, const WorldOptions &options)
@@ -87,7 +116,7 @@ bool light_by_world(scene::Scene &scene, const scene::PlacedCamera &camera, cons
     world = scene::World{.color = *color};
   }
   else if (!is_default) {
-    world = read_world(options.world);
+    world = scene::World{.picture = std::make_shared<const scene::WorldPicture>(read_world_picture(options.world))};
   }
   if (!world) {
     return false;
@@ -108,18 +137,18 @@ bool light_by_world(scene::Scene &scene, const scene::PlacedCamera &camera, cons
   return is_default_studio;
 }
 
-eevee::Background background_of(const WorldOptions &options, std::optional<glm::vec3> default_color)
+eevee::Background background_of(const std::string &option, std::optional<glm::vec3> default_color)
 {
   using Kind = eevee::Background::Kind;
-  if (options.background.empty()) {
+  if (option.empty()) {
     return default_color ? eevee::Background{Kind::Color, *default_color} : eevee::Background();
   }
-  if (options.background == "none" || options.background == "world") {
-    return {options.background == "none" ? Kind::None : Kind::World};
+  if (option == "none" || option == "world") {
+    return {option == "none" ? Kind::None : Kind::World};
   }
-  const std::optional<glm::vec3> color = parse_color(options.background);
+  const std::optional<glm::vec3> color = parse_color(option);
   if (!color) {
-    throw UsageError(fmt::format("--background '{}' is not none, world or a radiance R,G,B", options.background));
+    throw UsageError(fmt::format("--background '{}' is not none, world or a radiance R,G,B", option));
   }
   return {Kind::Color, *color};
 }

@@ -5,11 +5,13 @@
 
 #include <CLI/App.hpp>
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 namespace gnomon::cli {
 
-/** Options of `gnomon render` for the world and the background. */
+/** Options for the world, of all commands that light a scene. */
 struct WorldOptions {
   /**
    * A file, a radiance R,G,B, "studio" or "none". Empty: the scene's own world, or the studio if the scene has neither
@@ -19,11 +21,26 @@ struct WorldOptions {
   /** Factor of the world's radiance. */
   float strength = 1.0F;
   float rotation_degrees = 0.0F;
-  /** "none", "world" or a radiance R,G,B. Empty: none, or light grey in a PNG that the default studio lights. */
-  std::string background;
 };
 
 void add_world_options(CLI::App &command, WorldOptions &options);
+/** The arguments that give another process these options. */
+[[nodiscard]] std::vector<std::string> arguments_of(const WorldOptions &options);
+
+/** Adds `--background`: "none", "world" or a radiance R,G,B. Empty: not given. */
+void add_background_option(CLI::App &command, std::string &background);
+
+/**
+ * Imports a scene, with the picture of its own world. \a variant: of the materials; empty: none
+ * \throws gltf::ImportError, and UsageError if there is no such variant
+ */
+[[nodiscard]] scene::Scene import_scene(const std::string &path, const std::string &variant = {});
+
+/** An equirectangular picture. \throws std::runtime_error naming \a path, as read_picture */
+[[nodiscard]] scene::WorldPicture read_world_picture(const std::filesystem::path &path);
+
+/** One line for people: its picture, or its radiance. */
+[[nodiscard]] std::string world_text(const scene::World &world);
 
 /**
  * Set the world of \a scene according to \a options. If the scene then has a world, the default lamp that the importer
@@ -33,11 +50,8 @@ void add_world_options(CLI::App &command, WorldOptions &options);
  */
 bool light_by_world(scene::Scene &scene, const scene::PlacedCamera &camera, const WorldOptions &options);
 
-/**
- * The background according to \a options. \a default_color: the background if the options have none; may be empty.
- * \throws UsageError
- */
-[[nodiscard]] eevee::Background background_of(const WorldOptions &options, std::optional<glm::vec3> default_color);
+/** The background of `--background`. \a default_color: if \a option is empty; may be empty. \throws UsageError */
+[[nodiscard]] eevee::Background background_of(const std::string &option, std::optional<glm::vec3> default_color);
 
 /** Parses "R,G,B" with finite numbers of at least 0. Returns an empty value for any other text. */
 [[nodiscard]] std::optional<glm::vec3> parse_color(const std::string &text);

@@ -8,6 +8,7 @@
 #include "internal/gltf_write_json.hh"
 #include "internal/gltf_write_lamp.hh"
 #include "internal/gltf_write_mesh.hh"
+#include "internal/gltf_write_world.hh"
 
 #include <array>
 #include <fstream>
@@ -17,6 +18,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <unistd.h>
@@ -33,7 +35,11 @@ namespace {
 
 class SceneWriter {
  public:
-  explicit SceneWriter(const Scene &scene) : scene_(scene), meshes_(scene, buffer_) {}
+  /** \a folder: that of the file */
+  SceneWriter(const Scene &scene, std::filesystem::path folder)
+      : scene_(scene), folder_(std::move(folder)), meshes_(scene, buffer_)
+  {
+  }
 
   /** The document without the member "buffers", which depends on the file format. */
   JsonText document()
@@ -51,7 +57,7 @@ class SceneWriter {
     document.add("asset", R"({"generator":"Gnomon","version":"2.0"})");
     add_extensions(document);
     document.add("scene", "0");
-    document.add("scenes", roots.empty() ? "[{}]" : "[{\"nodes\":" + roots.array() + "}]");
+    document.add("scenes", '[' + scene_json(roots) + ']');
     const auto add = [&document](std::string_view key, const JsonText &array) {
       if (!array.empty()) {
         document.add(key, array.array());
@@ -76,6 +82,7 @@ class SceneWriter {
 
  private:
   const Scene &scene_;
+  std::filesystem::path folder_;
   WrittenBuffer buffer_;
   MeshWriter meshes_;
   JsonText cameras_;
@@ -117,6 +124,20 @@ class SceneWriter {
         at = next;
       }
     }
+  }
+
+  std::string scene_json(const JsonText &roots)
+  {
+    JsonText json;
+    if (!roots.empty()) {
+      json.add("nodes", roots.array());
+    }
+    if (scene_.world()) {
+      JsonText extras;
+      add_world_extras(*scene_.world(), folder_, buffer_, extras);
+      json.add("extras", extras.object());
+    }
+    return json.object();
   }
 
   std::string node_json(Handle<Node> handle)
@@ -247,9 +268,10 @@ std::string glb_of(std::string json, const std::vector<unsigned char> &bytes)
   return result;
 }
 
-std::string file_of(const Scene &scene, bool is_binary)
+/** \a folder: that of the file */
+std::string file_of(const Scene &scene, const std::filesystem::path &folder, bool is_binary)
 {
-  SceneWriter writer(scene);
+  SceneWriter writer(scene, folder);
   JsonText document = writer.document();
   if (!writer.bytes().empty()) {
     const std::string uri =
@@ -297,7 +319,7 @@ void export_gltf(const Scene &scene, const std::filesystem::path &path)
     throw failed("the name ends neither in .gltf nor in .glb");
   }
   try {
-    write_file(path, file_of(scene, extension == ".glb"));
+    write_file(path, file_of(scene, path.parent_path(), extension == ".glb"));
   }
   catch (const Fault &fault) {
     throw failed(fault.what());

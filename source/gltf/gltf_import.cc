@@ -12,6 +12,7 @@
 #include "internal/gltf_node.hh"
 #include "internal/gltf_report.hh"
 #include "internal/gltf_units.hh"
+#include "internal/gltf_world.hh"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -45,13 +46,14 @@ namespace {
 constexpr std::size_t object_count_max = std::size_t(1) << 22U;
 
 /** Extensions that are not needed to draw a file correctly, even if it requires them. */
-constexpr std::array<std::string_view, 18> harmless_extensions{
+constexpr std::array<std::string_view, 19> harmless_extensions{
     "KHR_lights_punctual",        "KHR_materials_specular",  "KHR_materials_emissive_strength",
     "KHR_materials_ior",          "KHR_mesh_quantization",   "KHR_materials_variants",
     "KHR_texture_transform",      "KHR_xmp_json_ld",         "KHR_draco_mesh_compression",
     "EXT_meshopt_compression",    "EXT_mesh_gpu_instancing", "KHR_materials_unlit",
     "KHR_animation_pointer",      "KHR_materials_clearcoat", "KHR_materials_sheen",
     "KHR_materials_transmission", "KHR_materials_volume",    "KHR_materials_pbrSpecularGlossiness",
+    "EXT_lights_image_based",
 };
 
 /** Names of required extensions that are not supported; empty if there are none. */
@@ -111,8 +113,8 @@ bool is_usable(const Bounds &bounds)
 
 class Importer {
  public:
-  Importer(const File &file, Warnings warnings)
-      : file_(file), warnings_(std::move(warnings)), meshes_(file, warnings_, scene_)
+  Importer(const File &file, const ReadPicture &read_picture, Warnings warnings)
+      : file_(file), read_picture_(read_picture), warnings_(std::move(warnings)), meshes_(file, warnings_, scene_)
   {
   }
 
@@ -127,6 +129,7 @@ class Importer {
     scene::deform_meshes(scene_);
     meshes_.finish();
     check_anything_kept();
+    import_world(file_, visible_nodes(), read_picture_, warnings_, scene_);
     add_defaults();
     scene_.warnings = warnings_.messages();
     return std::move(scene_);
@@ -134,6 +137,7 @@ class Importer {
 
  private:
   const File &file_;
+  const ReadPicture &read_picture_;
   Warnings warnings_;
   Scene scene_;
   MeshImporter meshes_;
@@ -193,7 +197,8 @@ class Importer {
   {
     const std::vector<int> parent = parents();
     std::vector<int> roots;
-    if (file_.model.scenes.empty()) {
+    const Model::Scene *source = file_.model.default_scene();
+    if (source == nullptr) {
       for (std::size_t i = 0; i < parent.size(); i++) {
         if (parent[i] < 0) {
           roots.push_back(static_cast<int>(i));
@@ -201,7 +206,7 @@ class Importer {
       }
       return roots;
     }
-    roots = file_.model.scenes[std::max(file_.model.scene, 0)];
+    roots = source->roots;
     std::vector<bool> is_listed(parent.size(), false);
     for (const int root : roots) {
       if (parent[root] >= 0) {
@@ -347,6 +352,17 @@ class Importer {
     }
   }
 
+  [[nodiscard]] std::vector<int> visible_nodes() const
+  {
+    std::vector<int> indices;
+    for (const auto &[index, handle] : things_.nodes) {
+      if (scene_.is_visible(handle)) {
+        indices.push_back(index);
+      }
+    }
+    return indices;
+  }
+
   /** A file without drawable elements is a valid scene. A file whose elements are all unusable is an error. */
   void check_anything_kept()
   {
@@ -374,7 +390,7 @@ class Importer {
       scene_.add(std::move(node));
       warnings_.add("scene", "has no camera: one was added that shows the whole scene, with +Y up");
     }
-    if (scene_.lamps().empty()) {
+    if (scene_.lamps().empty() && !scene_.world()) {
       scene_.is_lamp_default = true;
       const PlacedCamera camera = scene_.placed_cameras().front();
       const PlacedLamp sun = default_sun(camera);
@@ -427,7 +443,7 @@ Scene import_gltf(const std::filesystem::path &path, const ImportOptions &option
     }
     Warnings warnings;
     decompress(file, warnings);
-    Scene scene = Importer(file, std::move(warnings)).import();
+    Scene scene = Importer(file, options.read_picture, std::move(warnings)).import();
     scene.path = path.string();
     return scene;
   }

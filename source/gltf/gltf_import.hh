@@ -4,6 +4,7 @@
 #include "scene.hh"
 
 #include <filesystem>
+#include <functional>
 #include <stdexcept>
 #include <string>
 
@@ -19,17 +20,25 @@ struct UnknownVariant : ImportError {
   using ImportError::ImportError;
 };
 
+/**
+ * Reads the equirectangular picture of a world from a file, which is regular and at most 4 GiB large. Throws an
+ * exception whose message names the reason.
+ */
+using ReadPicture = std::function<scene::WorldPicture(const std::filesystem::path &path)>;
+
 struct ImportOptions {
   /** Name of the variant whose materials are imported (KHR_materials_variants); empty: the materials of no variant. */
   std::string variant{};
+  /** For worlds whose picture is a file. Without it, they are left out, with a warning. */
+  ReadPicture read_picture{};
 };
 
 /**
  * Reads a glTF 2.0 file: `.gltf` with external files or data URIs, or `.glb`.
  *
  * The node tree of the default scene keeps its local transforms. Each mesh primitive becomes a mesh of its nodes.
- * `doc/conventions.md` defines units and the extras of nodes (`gnomon_*`). Unsupported elements are left out and
- * reported in Scene::warnings. A camera and a lamp are added if the file has none.
+ * `doc/conventions.md` defines units and extras (`gnomon_*`). Unsupported elements are left out and reported in
+ * Scene::warnings. A camera is added if the file has none, and a lamp if it has neither a lamp nor a world.
  *
  * \throws ImportError if the file is missing, unreadable or malformed, or if nothing in it can be drawn.
  * \throws UnknownVariant

@@ -277,6 +277,7 @@ nlohmann::json to_json(const SceneReport &report)
   return {{"scene", report.name},
           {"path", report.path.string()},
           {"fingerprint", report.fingerprint},
+          {"world", report.world},
           {"reference_noise", report.reference_noise},
           {"reference_seconds", report.reference_seconds},
           {"warnings", report.warnings},
@@ -290,6 +291,7 @@ SceneReport scene_from_json(const nlohmann::json &json)
   json.at("scene").get_to(report.name);
   report.path = json.at("path").get<std::string>();
   json.at("fingerprint").get_to(report.fingerprint);
+  json.at("world").get_to(report.world);
   json.at("reference_noise").get_to(report.reference_noise);
   json.at("reference_seconds").get_to(report.reference_seconds);
   json.at("warnings").get_to(report.warnings);
@@ -347,10 +349,10 @@ RunReport run_from_json(const nlohmann::json &json)
 std::string to_text(const SceneReport &scene)
 {
   std::string text = fmt::format(
-      "\n{}, reference's noise {:.5f}; * on the front of time and RMSE\n{:24} {:>10} {:>9} {:>8} "
+      "\n{}{}, reference's noise {:.5f}; * on the front of time and RMSE\n{:24} {:>10} {:>9} {:>8} "
       "{:>8} {:>8} {:>5} {:>5}  RMSE (ms) at 1, 4, 16 and 64 samples\n",
-      scene.name, scene.reference_noise, "technique", "shadows ms", "sample ms", "MiB", "wrong %", "error %", "leak",
-      "acne");
+      scene.name, scene.world.empty() ? "" : ", world: " + scene.world, scene.reference_noise, "technique",
+      "shadows ms", "sample ms", "MiB", "wrong %", "error %", "leak", "acne");
   for (const TechniqueReport &one : scene.techniques) {
     const reference::VisibilityError e = all_lamps(one.lamps);
     const double shadows = step_seconds(one, "shadows");

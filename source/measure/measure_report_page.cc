@@ -198,6 +198,9 @@ std::string to_html(const RunReport &run, const ReadPicture &read, const MakePng
     page.heading(scene.name);
     page.paragraph(fmt::format("{}. The reference's own noise is {:.5f} (RMSE); it took {:.0f} s.", scene.path.string(),
                                scene.reference_noise, scene.reference_seconds));
+    if (!scene.world.empty()) {
+      page.paragraph("World: " + scene.world);
+    }
     for (const std::string &warning : scene.warnings) {
       page.paragraph("Warning: " + warning);
     }

@@ -115,17 +115,21 @@ std::vector<StartCost> measure_start(const StartSettings &settings)
     gltf::export_gltf(left_out_cases().front().scene, scene);
   }
   const std::string program = settings.program.string();
-  const Words render = {program,
-                        "render",
-                        scene.string(),
-                        "--size",
-                        "640x360",
-                        "--samples",
-                        "1",
-                        "--backend",
-                        settings.backend,
-                        "-o",
-                        (folder.path / "picture.exr").string()};
+  Words render = {program,
+                  "render",
+                  scene.string(),
+                  "--size",
+                  "640x360",
+                  "--samples",
+                  "1",
+                  "--backend",
+                  settings.backend,
+                  "-o",
+                  (folder.path / "picture.exr").string()};
+  Words info = {program, "info", scene.string()};
+  for (Words *const command : {&info, &render}) {
+    command->insert(command->end(), settings.scene_arguments.begin(), settings.scene_arguments.end());
+  }
   struct Case {
     const char *what;
     Words command;
@@ -133,7 +137,7 @@ std::vector<StartCost> measure_start(const StartSettings &settings)
   };
   const std::vector<Case> cases = {{"/bin/true", {"/bin/true"}, false},
                                    {"--version", {program, "--version"}, false},
-                                   {"info", {program, "info", scene.string()}, false},
+                                   {"info", info, false},
                                    {"render, filled caches", render, false},
                                    {"render, empty caches", render, true}};
   std::vector<StartCost> costs;

@@ -22,6 +22,8 @@ struct StartSettings {
   std::filesystem::path program;
   /** A glTF file; empty: a scene made in place. */
   std::filesystem::path scene;
+  /** Further arguments of `info` and `render`, for the scene's light. */
+  std::vector<std::string> scene_arguments;
   /** "gl", or "null": without a driver. */
   std::string backend = "gl";
   int rounds = 21;

@@ -161,7 +161,7 @@ class Scene {
   {
     return world_revision_;
   }
-  /** \throws InvalidEdit for a factor that is negative or no number, or a picture without texels; nothing changes. */
+  /** \throws InvalidEdit with the reason of fault_of; nothing changes. */
   void set_world(std::optional<World> world);
 
   /** Adds a thing. \throws InvalidEdit if the value is invalid; the scene is then unchanged. */

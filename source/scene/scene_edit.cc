@@ -430,24 +430,8 @@ void Scene::update_subtree(Handle<Node> node, Revision revision)
 
 void Scene::set_world(std::optional<World> world)
 {
-  if (world) {
-    const auto is_factor = [](float x) { return x >= 0.0F && x <= 1e30F; };
-    if (!is_factor(world->color.r) || !is_factor(world->color.g) || !is_factor(world->color.b) ||
-        !is_factor(world->strength) || !std::isfinite(world->rotation)) {
-      throw InvalidEdit("world: its colour and strength must be numbers of at least 0, and its rotation a number");
-    }
-    const WorldPicture *picture = world->picture.get();
-    if (picture && (picture->width < 1 || picture->height < 1 ||
-                    picture->texels.size() != std::size_t(picture->width) * std::size_t(picture->height))) {
-      throw InvalidEdit("world: its picture has no texels, or not as many as its size says");
-    }
-    const auto is_radiance = [](float x) { return x >= 0.0F && std::isfinite(x); };
-    const auto is_texel = [&](const glm::vec3 &texel) {
-      return is_radiance(texel.r) && is_radiance(texel.g) && is_radiance(texel.b);
-    };
-    if (picture && !std::ranges::all_of(picture->texels, is_texel)) {
-      throw InvalidEdit("world: a texel of its picture is negative or not finite");
-    }
+  if (const std::string fault = world ? fault_of(*world) : std::string(); !fault.empty()) {
+    throw InvalidEdit("world: " + fault);
   }
   if (world != world_) {
     world_ = std::move(world);

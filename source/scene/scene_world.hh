@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace gnomon::scene {
@@ -19,6 +20,8 @@ struct WorldPicture {
    * u = 0.5 + atan2(z, x) / 2π from the left and v = 0.5 + asin(y) / π from the bottom.
    */
   std::vector<glm::vec3> texels{};
+  /** The file that the picture was read from. A scene that is written refers to it. Empty: there is none. */
+  std::string path{};
 
   /** The texel in column \a x from the left and row \a y from the top. */
   [[nodiscard]] const glm::vec3 &at(int x, int y) const
@@ -39,5 +42,8 @@ struct World {
 
   bool operator==(const World &) const = default;
 };
+
+/** Why Scene::set_world refuses \a world; empty: it does not. */
+[[nodiscard]] std::string fault_of(const World &world);
 
 }  // namespace gnomon::scene

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gltf_import.hh"
+
 #include <glm/vec2.hpp>
 
 #include <cstdint>
@@ -29,6 +31,8 @@ struct Options {
   std::filesystem::path shaders{};
   glm::ivec2 size_px{1440, 860};
   ImageWriters writers{};
+  /** For ImportOptions::read_picture. */
+  gltf::ReadPicture read_picture{};
 };
 
 /**

@@ -18,7 +18,8 @@ constexpr Side sides[] = {Side::Front, Side::Right, Side::Top, Side::Front};
 
 }  // namespace
 
-App::App(const Options &options) : writers_(options.writers), window_(options.size_px, !options.script.empty())
+App::App(const Options &options)
+    : writers_(options.writers), read_picture_(options.read_picture), window_(options.size_px, !options.script.empty())
 {
   device_ = gpu::create_gl_device({.context = gpu::ContextKind::Host,
                                    .sink = [this](std::string_view text) { message(std::string(text), false); }});
@@ -39,7 +40,7 @@ void App::message(std::string text, bool is_error)
 bool App::open(const std::filesystem::path &path)
 {
   try {
-    scene::Scene scene = Document::read(path);
+    scene::Scene scene = Document::read(path, read_picture_);
     const Settings settings = document_ ? document_->settings() : default_settings();
     end_fly(true);
     for (const std::unique_ptr<Viewport> &viewport : viewports_) {
@@ -69,10 +70,7 @@ bool App::save(const std::filesystem::path &path)
   }
   try {
     document_->save(path);
-    message(document_->scene().world()
-                ? fmt::format("{} is written, without the world, which glTF does not have", path.string())
-                : fmt::format("{} is written", path.string()),
-            false);
+    message(fmt::format("{} is written", path.string()), false);
     return true;
   }
   catch (const std::exception &error) {

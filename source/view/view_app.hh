@@ -165,6 +165,7 @@ class App {
   void try_draw(Viewport &viewport);
 
   ImageWriters writers_;
+  gltf::ReadPicture read_picture_;
   Window window_;
   std::unique_ptr<gpu::Device> device_;
   std::unique_ptr<Document> document_;

@@ -2,7 +2,6 @@
 #include "view_document.hh"
 
 #include "gltf_export.hh"
-#include "gltf_import.hh"
 #include "scene_studio.hh"
 #include "shader_check_reflection.hh"
 #include "unlit_engine.hh"
@@ -17,9 +16,9 @@ Document::Document(gpu::Device &device, scene::Scene scene, const Settings &sett
   engine_names_ = registry_.names();
 }
 
-scene::Scene Document::read(const std::filesystem::path &path)
+scene::Scene Document::read(const std::filesystem::path &path, const gltf::ReadPicture &read_picture)
 {
-  scene::Scene scene = gltf::import_gltf(path);
+  scene::Scene scene = gltf::import_gltf(path, {.read_picture = read_picture});
   if (scene.is_lamp_default && !scene.world()) {
     scene.set_world(scene::studio_world(scene.placed_cameras().front().world_from_camera));
     scene.remove(scene.placed_lamps().front().node);

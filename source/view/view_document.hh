@@ -8,6 +8,7 @@
 
 #include "draw_engine.hh"
 #include "eevee_inspection.hh"
+#include "gltf_import.hh"
 #include "render_scene.hh"
 
 #include <map>
@@ -24,7 +25,7 @@ class Document {
   Document(gpu::Device &device, scene::Scene scene, const Settings &settings);
 
   /** A scene from a file; one that has neither lamps nor a world is lit by a studio. \throws gltf::ImportError */
-  [[nodiscard]] static scene::Scene read(const std::filesystem::path &path);
+  [[nodiscard]] static scene::Scene read(const std::filesystem::path &path, const gltf::ReadPicture &read_picture);
   /** \throws gltf::ExportError */
   void save(const std::filesystem::path &path);
 

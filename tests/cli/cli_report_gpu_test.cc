@@ -130,6 +130,21 @@ TEST_F(CliReportTest, EmptySceneIsMeasuredWithAWarning)
   EXPECT_FALSE(report_json().at("scenes").at(0).at("warnings").empty());
 }
 
+/** Without the world, the pictures would have a half of the reference's light. */
+TEST_F(CliReportTest, TheWorldOfTheOptionsLightsPicturesAndReference)
+{
+  const Finished finished = run("report " + example("spots") +
+                                " -o out --size 48x27 --reference-samples 16 --technique 'hard 512' --rounds 1 "
+                                "--world 0.5,0.5,0.5 --world-strength 2");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const json scene = report_json().at("scenes").at(0);
+  EXPECT_EQ(scene.at("world"), "1, 1, 1 W/(sr m²)");
+  EXPECT_NE(finished.out.find("spots, world: 1, 1, 1 W"), std::string::npos) << finished.out;
+  const json &pictures = scene.at("techniques").at(0).at("pictures");
+  EXPECT_LT(pictures.at(2).at("rmse"), 0.05);
+  EXPECT_EQ(pictures.at(2).at("non_finite"), 0);
+}
+
 TEST_F(CliReportTest, DeletedPictureIsRenderedAgain)
 {
   ASSERT_EQ(report("--rounds 1").status, 0);
@@ -147,6 +162,9 @@ TEST_F(CliReportTest, WrongUsage)
   finished = run("report missing.glb -o out");
   EXPECT_EQ(finished.status, 1);
   EXPECT_NE(finished.err.find("missing.glb"), std::string::npos) << finished.err;
+  finished = report("--world nowhere.hdr");
+  EXPECT_EQ(finished.status, 1);
+  EXPECT_NE(finished.err.find("nowhere.hdr: "), std::string::npos) << finished.err;
   EXPECT_EQ(run("report " + example("spots") + " " + example("spots") + " -o out").status, 1);
 }
 

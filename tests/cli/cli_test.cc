@@ -214,6 +214,46 @@ TEST_F(CliTest, InfoPrintsTheContentsOfAScene)
   EXPECT_NE(finished.out.find("lamp 'SUN', sun, 2 W/m²"), std::string::npos) << finished.out;
 }
 
+TEST_F(CliTest, AScenesOwnWorldIsUsedAndOptionsOverrideIt)
+{
+  const auto write_scene = [this](const std::string &world) {
+    write("scene.gltf", R"({"asset": {"version": "2.0"}, "scenes": [{"extras": {"gnomon_world": )" + world + "}}]}");
+  };
+  const auto info = [this](const std::string &options) {
+    const Finished finished = run("info scene.gltf " + options);
+    EXPECT_EQ(finished.status, 0) << finished.err;
+    return finished.out + finished.err;
+  };
+  write_scene("[0.25, 0.5, 1]");
+  EXPECT_NE(info("").find("  world, 0.25, 0.5, 1 W/(sr m²)\n"), std::string::npos) << info("");
+  EXPECT_NE(info("--world-strength 2").find("world, 0.5, 1, 2 W"), std::string::npos);
+  EXPECT_NE(info("--world 1,2,3").find("world, 1, 2, 3 W"), std::string::npos);
+  EXPECT_EQ(info("--world none").find("world,"), std::string::npos);
+  std::vector<float> texels(4 * 8, 0.5F);
+  cli::write_exr(folder / "sky.exr", {4, 2}, texels, {});
+  write_scene("\"sky.exr\"");
+  EXPECT_NE(info("").find("world, picture 'sky.exr', 4x2"), std::string::npos) << info("");
+  EXPECT_EQ(run("render scene.gltf --backend null --size 16x9 --samples 1").status, 0);
+  // The second texel of the last row, which is the first of the file's.
+  texels[4] = std::numeric_limits<float>::quiet_NaN();
+  cli::write_exr(folder / "sky.exr", {4, 2}, texels, {});
+  EXPECT_NE(info("").find("scene: its world is left out: its picture 'sky.exr': texel 1, 1 from the top left is nan"),
+            std::string::npos)
+      << info("");
+  write("sky.exr", "no picture");
+  EXPECT_NE(info("").find("scene: its world is left out: sky.exr: "), std::string::npos) << info("");
+  for (const char *command : {"info", "render --backend null"}) {
+    const Finished finished = run(std::string(command) + " scene.gltf --world nowhere.hdr");
+    EXPECT_EQ(finished.status, 1) << command;
+    EXPECT_NE(finished.err.find("nowhere.hdr: "), std::string::npos) << finished.err;
+  }
+  const Finished bench = run("bench start scene.gltf --rounds 1 --backend null --world nowhere.hdr");
+  EXPECT_EQ(bench.status, 1);
+  EXPECT_NE(bench.err.find("info scene.gltf --world-strength 1 --world-rotation 0 --world nowhere.hdr: failed"),
+            std::string::npos)
+      << bench.err;
+}
+
 TEST_F(CliTest, NullBackendReportsThatItWritesNoPicture)
 {
   const Finished finished = run("render " + example("plaza") + " -o out.png --backend null --size 32x32 --samples 2");

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <random>
 
@@ -27,6 +28,12 @@ class Description {
     for (const auto &[handle, node] : scene.nodes()) {
       if (!scene.parent(handle)) {
         description.add_node(handle, 0);
+      }
+    }
+    if (const std::optional<scene::World> &world = scene.world()) {
+      description.line("world{} {:a} {:a}", numbers(world->color, 3), world->strength, world->rotation);
+      if (const scene::WorldPicture *picture = world->picture.get()) {
+        description.line("  picture {}x{} {}", picture->width, picture->height, values(picture->texels));
       }
     }
     return fmt::format("default camera {} lamp {}\n{}", scene.is_camera_default, scene.is_lamp_default,
@@ -378,12 +385,60 @@ Scene full_scene()
     node.camera = scene.add(camera);
     scene.add(node);
   }
+  scene::WorldPicture sky{4, 2, {}};
+  for (int i = 0; i < 8; i++) {
+    sky.texels.push_back(value.color(1e5F));
+  }
+  scene.set_world(
+      scene::World{value.color(), value(0, 3), value(-7, 7), std::make_shared<const scene::WorldPicture>(sky)});
   return scene;
 }
 
 TEST(GltfExport, AllContentsOfASceneReadBack)
 {
   expect_round_trip(full_scene());
+}
+
+TEST(GltfExport, AUniformWorldReadsBackAndIsTheOnlyLight)
+{
+  Scene scene;
+  scene.set_world(scene::World{.color = {0.1F, 0.2F, 0.3F}, .strength = 1e30F, .rotation = -0.1F});
+  scene::Node node;
+  node.name = "eye";
+  node.camera = scene.add(scene::Camera{.name = "eye"});
+  scene.add(node);
+  expect_round_trip(scene);
+}
+
+TEST(GltfExport, APictureOfAWorldStaysInItsFile)
+{
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path() / "all skies");
+  std::filesystem::create_directories(folder.path() / "scenes");
+  const std::filesystem::path sky = folder.write("all skies/50% \"blue\" ü.hdr", "sky");
+  scene::WorldPicture picture{1, 1, {{1, 2, 3}}, sky.string()};
+  Scene scene;
+  scene.set_world(scene::World{.strength = 2.0F, .picture = std::make_shared<const scene::WorldPicture>(picture)});
+  const std::filesystem::path path = folder.path() / "scenes" / "scene.gltf";
+  const auto read_again = [&] {
+    gltf::export_gltf(scene, path);
+    return gltf::import_gltf(path, {.read_picture = [&](const std::filesystem::path &file) {
+                               EXPECT_EQ(content_of(file), "sky");
+                               return scene::WorldPicture{1, 1, {{4, 5, 6}}};
+                             }});
+  };
+  Scene copy = read_again();
+  ASSERT_TRUE(copy.world() && copy.world()->picture) << all_warnings(copy);
+  EXPECT_EQ(copy.world()->strength, 2.0F);
+  EXPECT_EQ(copy.world()->picture->texels, (std::vector<glm::vec3>{{4, 5, 6}}));
+  EXPECT_TRUE(std::filesystem::equivalent(copy.world()->picture->path, sky));
+  EXPECT_EQ(json::parse(content_of(path))["scenes"][0]["extras"]["gnomon_world"],
+            "../all%20skies/50%25%20%22blue%22%20%C3%BC.hdr");
+  // Where the file has gone, the texels are written.
+  std::filesystem::remove(sky);
+  copy = read_again();
+  ASSERT_TRUE(copy.world() && copy.world()->picture) << all_warnings(copy);
+  EXPECT_EQ(copy.world()->picture->texels, picture.texels);
 }
 
 TEST(GltfExport, AnIndexOfRefractionIsWrittenApartFromTheSpecularColour)

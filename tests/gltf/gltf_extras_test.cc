@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/gltf_check.hh"
+#include "image_file.hh"
+
+#include <glm/gtc/quaternion.hpp>
 
 #include <array>
+#include <cmath>
+#include <filesystem>
 #include <limits>
+#include <numbers>
+#include <stdexcept>
 
 namespace gnomon::test {
 namespace {
@@ -147,6 +154,352 @@ TEST(GltfNodes, NamesOfLampsAndCamerasAreExtras)
   EXPECT_EQ((*scene.lamps().begin()).value.name, "bulb");
   EXPECT_EQ((*scene.cameras().begin()).value.name, "eye");
   EXPECT_NO_WARNING(scene, "gnomon_");
+}
+
+// ---- Worlds ----
+
+/** A triangle in a scene with these extras. */
+GltfBuilder scene_with(const json &extras)
+{
+  GltfBuilder builder = triangle_scene();
+  builder.document["scenes"][0]["extras"] = extras;
+  return builder;
+}
+
+std::string error_with(const json &extras)
+{
+  return import_error(scene_with(extras));
+}
+
+/** Imports a scene with these extras from \a folder. The picture of its world has one texel, of red \a red. */
+Scene import_with_picture(const TemporaryFolder &folder, const json &extras, float red = 1.0F)
+{
+  const auto read_picture = [red](const std::filesystem::path &) { return scene::WorldPicture{1, 1, {{red, 2, 3}}}; };
+  return gltf::import_gltf(folder.write("scene.gltf", scene_with(extras).gltf()), {.read_picture = read_picture});
+}
+
+TEST(GltfWorld, ColourStrengthAndRotationAreExtrasOfTheScene)
+{
+  const Scene scene = import(scene_with({{"gnomon_world", {0.25, 0.5, 1}},
+                                         {"gnomon_world_color", {1, 2, 0}},
+                                         {"gnomon_world_strength", 3},
+                                         {"gnomon_world_rotation", -0.5}}));
+  const scene::World expected{.color = {0.25F, 1, 0}, .strength = 3, .rotation = -0.5F};
+  EXPECT_EQ(scene.world(), expected);
+  // No lamp is added.
+  EXPECT_TRUE(scene.lamps().empty());
+  EXPECT_FALSE(scene.is_lamp_default);
+  EXPECT_NO_WARNING(scene, "has no lamp");
+  EXPECT_FALSE(import(triangle_scene()).world());
+}
+
+TEST(GltfWorld, IsOfTheSceneOrOfTheFirstVisibleNodeThatHasOne)
+{
+  GltfBuilder builder = triangle_scene();
+  builder.node({{"name", "hidden"}, {"extras", {{"gnomon_world", {9, 9, 9}}, {"gnomon_visible", false}}}});
+  builder.node({{"name", "sky"}, {"extras", {{"gnomon_world", {1, 1, 1}}}}});
+  builder.node({{"name", "other"}, {"extras", {{"gnomon_world", {2, 2, 2}}}}});
+  const Scene of_node = import(builder);
+  EXPECT_EQ(of_node.world(), scene::World());
+  EXPECT_WARNING(of_node, "node 'other': its world has no effect, because node 'sky' has one");
+  EXPECT_NO_WARNING(of_node, "not a lamp");
+  builder.document["scenes"][0]["extras"] = {{"gnomon_world", {3, 3, 3}}};
+  const Scene of_scene = import(builder);
+  EXPECT_EQ(of_scene.world(), scene::World{.color = glm::vec3(3.0F)});
+  EXPECT_WARNING(of_scene, "node 'sky': its world has no effect, because scene has one");
+}
+
+TEST(GltfWorld, ExtrasOfTheWrongTypeOrOutOfRangeAreErrors)
+{
+  EXPECT_HAS(error_with({{"gnomon_world", true}}),
+             "scene: gnomon_world is true, and must be three numbers or the name of a file");
+  EXPECT_HAS(error_with({{"gnomon_world", {1, 2}}}), "scene: gnomon_world is an array, and must be three numbers");
+  EXPECT_HAS(error_with({{"gnomon_world", {1, -1, 2}}}), "scene: gnomon_world is -1, and must be from 0 to 1e+30");
+  EXPECT_HAS(error_with({{"gnomon_world", json::object()}}), "extra gnomon_world is an object, and must be");
+  EXPECT_HAS(error_with({{"gnomon_world", {1, 1, 1}}, {"gnomon_world_strength", "a"}}),
+             "scene: gnomon_world_strength is 'a', and must be a number");
+  EXPECT_HAS(error_with({{"gnomon_world", {1, 1, 1}}, {"gnomon_world_strength", 1e31}}), "gnomon_world_strength is");
+  EXPECT_HAS(error_with({{"gnomon_world", {1, 1, 1}}, {"gnomon_world_rotation", 1e39}}), "gnomon_world_rotation is");
+  EXPECT_HAS(error_with({{"gnomon_world", {1e30, 1, 1}}, {"gnomon_world_color", {1e30, 1, 1}}}), "world: its colour");
+  EXPECT_HAS(error_with({{"gnomon_world_accessor", 0}}),
+             "gnomon_world_width is absent, and must be present where gnomon_world_accessor is");
+  EXPECT_HAS(error_with({{"gnomon_world_accessor", 0.5}, {"gnomon_world_width", 1}}), "must be a whole number");
+  EXPECT_HAS(error_with({{"gnomon_world_accessor", 0}, {"gnomon_world_width", 0}}), "gnomon_world_width is 0");
+  EXPECT_HAS(error_with({{"gnomon_world", "a"}, {"gnomon_world_accessor", 0}, {"gnomon_world_width", 1}}),
+             "gnomon_world_accessor is 0, and must be absent beside gnomon_world");
+  const Scene idle = import(scene_with({{"gnomon_world_strength", 2}, {"gnomon_wolrd", 1}}));
+  EXPECT_WARNING(idle, "scene: its extras of a world have no effect without gnomon_world");
+  EXPECT_WARNING(idle, "scene: extra 'gnomon_wolrd' is unknown");
+  EXPECT_FALSE(idle.world());
+}
+
+TEST(GltfWorld, APictureIsAFileBesideTheScene)
+{
+  const TemporaryFolder folder;
+  static_cast<void>(folder.write("blue sky.hdr", "any"));
+  const Scene scene = import_with_picture(folder, {{"gnomon_world", "blue%20sky.hdr"}, {"gnomon_world_strength", 2}});
+  ASSERT_TRUE(scene.world() && scene.world()->picture) << all_warnings(scene);
+  EXPECT_EQ(scene.world()->strength, 2.0F);
+  EXPECT_EQ(scene.world()->picture->texels, (std::vector<glm::vec3>{{1, 2, 3}}));
+  EXPECT_EQ(scene.world()->picture->path, (folder.path() / "blue sky.hdr").string());
+}
+
+TEST(GltfWorld, IsLeftOutWhereItsPictureCannotBeUsed)
+{
+  const TemporaryFolder folder;
+  const std::string file = folder.write("sky.hdr", "any");
+  const auto expect_left_out = [](const Scene &scene, const std::string &reason) {
+    expect_valid(scene);
+    EXPECT_FALSE(scene.world());
+    EXPECT_WARNING(scene, "scene: its world is left out: " + reason);
+    // It is lit as a scene without a world.
+    EXPECT_TRUE(scene.is_lamp_default);
+  };
+  const auto expect_refused = [&](const char *name, const std::string &reason) {
+    expect_left_out(import_with_picture(folder, {{"gnomon_world", name}}), reason);
+  };
+  expect_refused("nowhere.hdr", "picture 'nowhere.hdr': there is no such file");
+  expect_refused(".", "picture '.': is not a file");
+  expect_refused("../../../../../../../dev/zero", "picture");
+  expect_refused("/etc/passwd", "picture '/etc/passwd': is not a file beside the scene");
+  expect_refused("http://a/b.hdr", "picture 'http://a/b.hdr': is not a file beside the scene");
+  expect_refused("data:image/vnd.radiance;base64,AAAA", "picture: is a data URI");
+  expect_refused("", "picture ''");
+  const json extras = {{"gnomon_world", "sky.hdr"}};
+  expect_left_out(import_with_picture(folder, extras, -1.0F),
+                  "its picture '" + file + "': texel 0, 0 from the top left is -1; texels must be finite");
+  expect_left_out(import_with_picture(folder, extras, std::numeric_limits<float>::infinity()),
+                  "its picture '" + file + "': texel 0, 0 from the top left is inf");
+  const std::filesystem::path scene = folder.write("scene.gltf", scene_with(extras).gltf());
+  expect_left_out(gltf::import_gltf(scene), "picture 'sky.hdr': this program reads no pictures of worlds");
+  expect_left_out(gltf::import_gltf(scene, {.read_picture = [](const auto &) -> scene::WorldPicture {
+                                      throw std::runtime_error("has no channels");
+                                    }}),
+                  "has no channels");
+  expect_left_out(
+      gltf::import_gltf(scene, {.read_picture = [](const auto &) -> scene::WorldPicture { throw std::bad_alloc(); }}),
+      "there is not enough memory");
+  expect_left_out(gltf::import_gltf(scene, {.read_picture =
+                                                [](const auto &) {
+                                                  return scene::WorldPicture{3, 2, {}};
+                                                }}),
+                  "its picture '" + file + "': has no texels, or not as many as its size says");
+}
+
+TEST(GltfWorld, APictureMayBeAnAccessor)
+{
+  const auto import_with = [](const std::vector<float> &texels, int width, const json &more = json::object()) {
+    GltfBuilder builder = triangle_scene();
+    const int accessor = builder.accessor(texels, Float32, "VEC3", more);
+    builder.document["scenes"][0]["extras"] = {{"gnomon_world_accessor", accessor}, {"gnomon_world_width", width}};
+    return import(builder);
+  };
+  const std::vector<float> four{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  const Scene scene = import_with(four, 2);
+  ASSERT_TRUE(scene.world() && scene.world()->picture) << all_warnings(scene);
+  EXPECT_EQ(scene.world()->picture->width, 2);
+  EXPECT_EQ(scene.world()->picture->height, 2);
+  EXPECT_EQ(scene.world()->picture->at(1, 0), glm::vec3(4, 5, 6));
+  EXPECT_EQ(scene.world()->picture->at(0, 1), glm::vec3(7, 8, 9));
+  const auto expect_left_out = [](const Scene &damaged, const std::string &reason) {
+    EXPECT_FALSE(damaged.world());
+    EXPECT_WARNING(damaged, "scene: its world is left out: " + reason);
+  };
+  expect_left_out(import_with(four, 3), "accessor 1: its 4 elements are not rows of 3 texels");
+  expect_left_out(import_with(four, 5), "accessor 1: its 4 elements are not rows of 5 texels");
+  expect_left_out(import_with({}, 1), "accessor 1");
+  expect_left_out(import_with(four, 2, {{"count", 1 << 30}}), "accessor 1: runs past the end");
+  expect_left_out(import_with({1, 2, 3, 4, std::numeric_limits<float>::quiet_NaN(), 6}, 2),
+                  "its picture: texel 1, 0 from the top left is nan");
+  expect_left_out(import(scene_with({{"gnomon_world_accessor", 7}, {"gnomon_world_width", 1}})),
+                  "gnomon_world_accessor: index 7 is out of range: the file has 1");
+  GltfBuilder scalars = triangle_scene();
+  const int accessor = scalars.accessor(four, Float32, "SCALAR");
+  scalars.document["scenes"][0]["extras"] = {{"gnomon_world_accessor", accessor}, {"gnomon_world_width", 1}};
+  expect_left_out(import(scalars), "accessor 1: must be a VEC3");
+}
+
+/** The texel of the picture that is nearest to a direction. */
+glm::vec3 texel_in(const scene::WorldPicture &picture, const glm::vec3 &direction)
+{
+  const glm::vec3 unit = glm::normalize(direction);
+  constexpr float pi = std::numbers::pi_v<float>;
+  const float u = 0.5F + std::atan2(unit.z, unit.x) / (2.0F * pi);
+  const float v = 0.5F + std::asin(unit.y) / pi;
+  return picture.at(std::min(int(u * float(picture.width)), picture.width - 1),
+                    std::min(int((1.0F - v) * float(picture.height)), picture.height - 1));
+}
+
+constexpr int face_edge = 8;
+
+/** Faces of one grey each, 10, 20 ... 60 of 255, with 255 in the quarter at the upper left corner. */
+std::vector<unsigned char> face_png(int face)
+{
+  std::vector<std::uint8_t> texels;
+  for (int i = 0; i < face_edge * face_edge; i++) {
+    const bool is_marked = i % face_edge < face_edge / 2 && i / face_edge < face_edge / 2;
+    texels.insert(texels.end(), 3, std::uint8_t(is_marked ? 255 : 10 * (face + 1)));
+  }
+  return image_file("png", face_edge, face_edge, 3, texels);
+}
+
+/** A triangle in an image-based light. */
+GltfBuilder image_lit_scene()
+{
+  GltfBuilder builder = triangle_scene();
+  json faces = json::array();
+  for (int face = 0; face < 6; face++) {
+    faces.push_back(builder.append("images", {{"uri", "data:image/png;base64," + base64(face_png(face))}}));
+  }
+  builder.document["extensions"]["EXT_lights_image_based"]["lights"] = {
+      {{"name", "sky"}, {"intensity", 3}, {"specularImageSize", face_edge}, {"specularImages", {faces, {7, 7}}}}};
+  builder.document["scenes"][0]["extensions"]["EXT_lights_image_based"]["light"] = 0;
+  builder.document["extensionsRequired"] = {"EXT_lights_image_based"};
+  return builder;
+}
+
+json &image_light(GltfBuilder &builder)
+{
+  return builder.document["extensions"]["EXT_lights_image_based"]["lights"][0];
+}
+
+float linear_of(int encoded)
+{
+  const double value = encoded / 255.0;
+  return float(value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4));
+}
+
+/** OpenGL 4.6, table 8.19: the direction to the place (s, t) of a face, both from -1 to 1. */
+glm::vec3 face_direction(int face, float s, float t)
+{
+  const std::array<glm::vec3, 6> directions = {glm::vec3(1, -t, -s), {-1, -t, s}, {s, 1, t},
+                                               {s, -1, -t},          {s, -t, 1},  {-s, -t, -1}};
+  return directions[std::size_t(face)];
+}
+
+TEST(GltfWorld, AnImageBasedLightIsItsCubeMap)
+{
+  const Scene scene = import(image_lit_scene());
+  EXPECT_NO_WARNING(scene, "EXT_lights_image_based");
+  EXPECT_NO_WARNING(scene, "has no lamp");
+  ASSERT_TRUE(scene.world() && scene.world()->picture) << all_warnings(scene);
+  EXPECT_EQ(scene.world()->strength, 3.0F);
+  const scene::WorldPicture &picture = *scene.world()->picture;
+  EXPECT_EQ(picture.width, 4 * face_edge);
+  EXPECT_EQ(picture.height, 2 * face_edge);
+  for (int face = 0; face < 6; face++) {
+    for (const auto &[s, t] : {std::pair(-0.5F, -0.5F), {0.5F, -0.5F}, {-0.5F, 0.5F}, {0.5F, 0.5F}}) {
+      const float expected = linear_of(s < 0.0F && t < 0.0F ? 255 : 10 * (face + 1));
+      EXPECT_NEAR(texel_in(picture, face_direction(face, s, t)).g, expected, 1e-6F) << face << ": " << s << ", " << t;
+    }
+  }
+}
+
+/** The mean over the sphere is that of the faces, so that no light is lost or gained. */
+TEST(GltfWorld, AnImageBasedLightKeepsItsLight)
+{
+  const Scene scene = import(image_lit_scene());
+  const scene::WorldPicture &picture = *scene.world()->picture;
+  double light = 0.0;
+  double weights = 0.0;
+  for (int y = 0; y < picture.height; y++) {
+    const double weight = std::sin((y + 0.5) / picture.height * std::numbers::pi);
+    for (int x = 0; x < picture.width; x++) {
+      light += weight * double(picture.at(x, y).r);
+      weights += weight;
+    }
+  }
+  double expected = 0.25;
+  for (int face = 0; face < 6; face++) {
+    expected += 0.75 / 6.0 * double(linear_of(10 * (face + 1)));
+  }
+  // The marked quarters are blurred at their inner edges, which differ in distance.
+  EXPECT_NEAR(light / weights, expected, 0.01 * expected);
+}
+
+TEST(GltfWorld, TheRotationTurnsAnImageBasedLight)
+{
+  GltfBuilder builder = image_lit_scene();
+  const glm::quat turn = glm::normalize(glm::quat(0.9F, 0.1F, -0.3F, 0.2F));
+  image_light(builder)["rotation"] = {turn.x, turn.y, turn.z, turn.w};
+  const Scene turned = import(builder);
+  for (int face = 0; face < 6; face++) {
+    const glm::vec3 direction = turn * face_direction(face, 0.5F, 0.5F);
+    EXPECT_NEAR(texel_in(*turned.world()->picture, direction).g, linear_of(10 * (face + 1)), 1e-6F) << face;
+  }
+  // What was at +X is at -Z after a quarter turn around +Y, as for the rotation of any world.
+  const double half = std::sqrt(0.5);
+  image_light(builder)["rotation"] = {0, half, 0, half};
+  EXPECT_NEAR(texel_in(*import(builder).world()->picture, {0.5F, -0.5F, -1}).g, linear_of(10), 1e-6F);
+  image_light(builder)["rotation"] = {0, 0, 0, 0};
+  const Scene unturned = import(builder);
+  EXPECT_WARNING(unturned, "image-based light 'sky': its rotation has no length and is not used");
+  EXPECT_NEAR(texel_in(*unturned.world()->picture, {1, -0.5F, -0.5F}).g, linear_of(10), 1e-6F);
+}
+
+TEST(GltfWorld, AlphaDividesTheColoursOfAnImageBasedLight)
+{
+  GltfBuilder builder = image_lit_scene();
+  const auto set_alpha = [&builder](std::uint8_t alpha) {
+    const std::vector<std::uint8_t> texels{200, 100, 0, alpha};
+    const std::string uri = "data:image/png;base64," + base64(image_file("png", 1, 1, 4, texels));
+    for (json &image : builder.document["images"]) {
+      image["uri"] = uri;
+    }
+    const Scene scene = import(builder);
+    return scene.world()->picture->at(0, 0);
+  };
+  const glm::vec3 color(linear_of(200), linear_of(100), 0.0F);
+  for (const int alpha : {255, 51, 1, 0}) {
+    const float factor = 255.0F / float(std::max(alpha, 1));
+    EXPECT_LE(glm::distance(set_alpha(std::uint8_t(alpha)), color * factor), 1e-6F * factor) << alpha;
+  }
+}
+
+TEST(GltfWorld, ADamagedImageBasedLightIsNamed)
+{
+  const auto expect_left_out = [](const GltfBuilder &builder, const std::string &reason) {
+    const Scene scene = import(builder);
+    EXPECT_FALSE(scene.world());
+    EXPECT_TRUE(scene.is_lamp_default);
+    EXPECT_WARNING(scene, "image-based light 'sky': its world is left out: " + reason);
+  };
+  GltfBuilder builder = image_lit_scene();
+  builder.document["images"][3]["uri"] = "nowhere.png";
+  expect_left_out(builder, "image 3 'nowhere.png': there is no such file");
+  builder = image_lit_scene();
+  builder.document["images"][3]["uri"] =
+      "data:image/png;base64," + base64(image_file<std::uint8_t>("png", 1, 2, 3, {1, 2, 3, 4, 5, 6}));
+  expect_left_out(builder, "image-based light 'sky': its faces are not squares of one size: one has 1x2 texels");
+  builder = image_lit_scene();
+  image_light(builder)["specularImages"][0] = {0, 1, 2, 3, 4, 9};
+  expect_left_out(builder, "image-based light 'sky': image of a face: index 9 is out of range: the file has 6");
+  image_light(builder)["specularImages"][0] = {0, 1, 2, 3, 4};
+  expect_left_out(builder, "image-based light 'sky': its specularImages begin with 5 images, and must with 6");
+  image_light(builder).erase("specularImages");
+  expect_left_out(builder, "image-based light 'sky': its specularImages begin with 0 images");
+  builder = image_lit_scene();
+  image_light(builder)["intensity"] = -1;
+  expect_left_out(builder, "its intensity is -1, and must be from 0 to 1e+30");
+  image_light(builder)["intensity"] = "a";
+  EXPECT_HAS(import_error(builder), "extensions.EXT_lights_image_based.lights[0].intensity: is \"a\"");
+  builder = image_lit_scene();
+  image_light(builder)["specularImages"] = {{0, "a"}};
+  EXPECT_HAS(import_error(builder), "specularImages[0]: is \"a\", and must be an index");
+}
+
+TEST(GltfWorld, ExtrasPrecedeAnImageBasedLight)
+{
+  GltfBuilder builder = image_lit_scene();
+  builder.document["scenes"][0]["extras"] = {{"gnomon_world", {1, 1, 1}}};
+  const Scene scene = import(builder);
+  EXPECT_EQ(scene.world(), scene::World());
+  EXPECT_WARNING(scene, "image-based light 'sky': has no effect, because scene has a world");
+  builder = image_lit_scene();
+  builder.light({{"type", "point"}});
+  EXPECT_WARNING(import(builder), "image-based light 'sky': its values are radiances in W/(sr m2)");
+  builder.document["scenes"][0]["extensions"]["EXT_lights_image_based"]["light"] = 1;
+  EXPECT_HAS(import_error(builder), "light: index 1 is out of range: the file has 1 image-based lights");
 }
 
 TEST(GltfImport, OnePrimitiveOfTwoMeshesIsOneMesh)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/gltf_check.hh"
+#include "image_png.hh"
 
 #include <cstdlib>
 #include <functional>
@@ -418,6 +419,19 @@ GltfBuilder rich_scene()
   builder.node(
       {{"name", "panel"},
        {"extras", {{"gnomon_lamp", "area"}, {"gnomon_shape", "disk"}, {"gnomon_size_x", 2}, {"gnomon_power", 9}}}});
+  const int sky = builder.accessor(std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 9, 0, 1, 2}, Float32, "VEC3");
+  json &scene = builder.document["scenes"][0];
+  scene["extras"] = {{"gnomon_world_accessor", sky},
+                     {"gnomon_world_width", 2},
+                     {"gnomon_world_color", {1, 2, 3}},
+                     {"gnomon_world_strength", 2},
+                     {"gnomon_world_rotation", 1}};
+  // Used if the extras are not.
+  const std::vector<std::uint8_t> texel{1, 2, 3, 4};
+  builder.append("images", {{"bufferView", builder.view(image::png_file(1, 1, 4, texel))}});
+  builder.document["extensions"]["EXT_lights_image_based"]["lights"] = {
+      {{"rotation", {0, 0.6, 0, 0.8}}, {"intensity", 2}, {"specularImages", {{0, 0, 0, 0, 0, 0}}}}};
+  scene["extensions"]["EXT_lights_image_based"]["light"] = 0;
   return builder;
 }
 
@@ -532,6 +546,9 @@ TEST(GltfFuzz, OddValuesAnywhereImportOrFailCleanly)
   int kept = 0;
   for (int i = 0; i < 6000; i++) {
     GltfBuilder builder = original;
+    if (i % 2 == 0) {
+      builder.document["scenes"][0].erase("extras");
+    }
     replace_some_value(builder.document, random);
     const std::filesystem::path path = folder.write("scene.gltf", builder.gltf());
     try {

@@ -12,12 +12,16 @@
 /** The parts of read_picture(), which adds the file's name to what they throw. */
 namespace gnomon::cli {
 
-/** So that a damaged header does not ask for all memory. \throws std::runtime_error for too small and large edges. */
+/** So that a damaged header does not ask for all memory. \throws std::runtime_error for too few and too many pixels. */
 inline void check_edges(std::int64_t width, std::int64_t height)
 {
   constexpr int edge_max = 32768;
   if (width < 1 || height < 1 || width > edge_max || height > edge_max) {
     throw std::runtime_error(fmt::format("has {}x{} pixels: an edge may have 1 to {}", width, height, edge_max));
+  }
+  constexpr std::int64_t pixel_count_max = std::int64_t(1) << 28U;
+  if (width * height > pixel_count_max) {
+    throw std::runtime_error(fmt::format("has {}x{} pixels, which are more than {}", width, height, pixel_count_max));
   }
 }
 

@@ -74,6 +74,9 @@ class DocumentReader {
   }
 
  private:
+  /** Stands for the array of EXT_lights_image_based among the arrays of the document. */
+  static constexpr std::string_view image_lights = "image-based lights";
+
   std::map<std::string_view, JsonValue> root_;
   DocumentIndices indices_;
   Model model_;
@@ -133,9 +136,18 @@ class DocumentReader {
     name = string_at(place, value);
   }
 
-  void read_scene(const Place &place, const JsonValue &value, std::vector<int> &roots) const
+  void read_scene(const Place &place, const JsonValue &value, Model::Scene &scene) const
   {
-    read_members(place, value, indices_.into_indices("nodes", roots, "nodes"));
+    const auto read_image_based = [&](const Place &at, const JsonValue &extension) {
+      read_members(at, extension, indices_.into_index("light", scene.image_light, image_lights));
+    };
+    read_members(place, value, indices_.into_indices("nodes", scene.roots, "nodes"),
+                 Member{"extensions",
+                        [&](const Place &at, const JsonValue &extensions) {
+                          read_members(at, extensions, Member{"EXT_lights_image_based", read_image_based});
+                        }},
+                 Member{"extras",
+                        [&](const Place &, const JsonValue &extras) { read_extras(place, "", extras, scene.extras); }});
   }
 
   // ---- Nodes ----
@@ -155,7 +167,7 @@ class DocumentReader {
         Member{"extras", [&](const Place &, const JsonValue &member) { extras = member; }});
     // After the name, which messages about extras include.
     if (extras) {
-      read_extras(place, *extras, node);
+      read_extras(place, node.name, *extras, node.extras);
     }
   }
 
@@ -181,23 +193,23 @@ class DocumentReader {
   }
 
   /** Extras that are not an object belong to another program and are ignored. */
-  static void read_extras(const Place &place, const JsonValue &value, Model::Node &node)
+  static void read_extras(const Place &place, const std::string &name, const JsonValue &value, Model::Extras &extras)
   {
-    JsonObject extras;
-    if (value.get(extras) != simdjson::SUCCESS) {
+    JsonObject object;
+    if (value.get(object) != simdjson::SUCCESS) {
       return;
     }
-    for (const auto [key, extra] : extras) {
+    for (const auto [key, extra] : object) {
       if (!key.starts_with("gnomon_")) {
         continue;
       }
       std::optional<Model::Extra> read = extra_of(extra);
       if (!read) {
-        const std::string name = node.name.empty() ? "" : " '" + printable(node.name) + "'";
-        throw Fault(place.text() + name, "extra " + printable(key) + " is " + quoted(extra) +
+        const std::string what = name.empty() ? "" : " '" + printable(name) + "'";
+        throw Fault(place.text() + what, "extra " + printable(key) + " is " + quoted(extra) +
                                              ", and must be a number, a string or a few numbers");
       }
-      node.extras.insert_or_assign(std::string(key), std::move(*read));
+      extras.insert_or_assign(std::string(key), std::move(*read));
     }
   }
 
@@ -376,6 +388,9 @@ class DocumentReader {
     const auto read_array_of_lights = [&](const Place &at, const JsonValue &lights) {
       read_elements(at, array_at(at, lights), model_.lights, read_light);
     };
+    const auto read_array_of_image_lights = [&](const Place &at, const JsonValue &lights) {
+      read_elements(at, array_at(at, lights), model_.image_lights, read_image_light);
+    };
     const auto read_array_of_variants = [&](const Place &at, const JsonValue &variants) {
       read_elements(
           at, array_at(at, variants), model_.variants,
@@ -386,10 +401,15 @@ class DocumentReader {
                         [&](const Place &at, const JsonValue &punctual) {
                           read_members(at, punctual, Member{"lights", read_array_of_lights});
                         }},
+                 Member{"EXT_lights_image_based",
+                        [&](const Place &at, const JsonValue &image_based) {
+                          read_members(at, image_based, Member{"lights", read_array_of_image_lights});
+                        }},
                  Member{"KHR_materials_variants", [&](const Place &at, const JsonValue &variants) {
                           read_members(at, variants, Member{"variants", read_array_of_variants});
                         }});
     indices_.set_size("lights", model_.lights.size());
+    indices_.set_size(image_lights, model_.image_lights.size());
     indices_.set_size("variants", model_.variants.size());
   }
 };

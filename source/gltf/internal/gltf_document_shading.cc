@@ -262,4 +262,21 @@ void read_light(const Place &place, const JsonValue &value, Model::Light &light)
   }
 }
 
+void read_image_light(const Place &place, const JsonValue &value, Model::ImageLight &light)
+{
+  const auto read_images = [&light](const Place &at, const JsonValue &levels) {
+    light.faces.clear();
+    const JsonArray array = array_at(at, levels);
+    if (array.begin() == array.end()) {
+      return;
+    }
+    const Place full_size{at.outer, at.key, 0};
+    for (const JsonValue face : array_at(full_size, *array.begin(), "an array of indices")) {
+      light.faces.push_back(index_at(full_size, face));
+    }
+  };
+  read_members(place, value, into_name(light.name), into("intensity", light.intensity),
+               into("rotation", light.rotation), Member{"specularImages", read_images});
+}
+
 }  // namespace gnomon::gltf

@@ -16,5 +16,6 @@ void read_sampler(const Place &place, const JsonValue &value, Model::Sampler &sa
 void read_image(const Place &place, const JsonValue &value, Model::Image &image);
 void read_camera(const Place &place, const JsonValue &value, Model::Camera &camera);
 void read_light(const Place &place, const JsonValue &value, Model::Light &light);
+void read_image_light(const Place &place, const JsonValue &value, Model::ImageLight &light);
 
 }  // namespace gnomon::gltf

@@ -28,8 +28,8 @@ static_assert(std::endian::native == std::endian::little,
 /** Largest size of a .glb, which is also the limit for other files. */
 constexpr std::uintmax_t file_size_max = std::uintmax_t(4) << 30U;
 
-/** Reads a file. \a what: its name in messages. Devices and pipes are refused, because reading one might never end. */
-Bytes read_bytes(const std::filesystem::path &path, const std::string &what)
+/** \a what: the name of the file in messages. Refuses devices and pipes, because reading one might never end. */
+std::uintmax_t size_of_file(const std::filesystem::path &path, const std::string &what)
 {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
@@ -44,6 +44,13 @@ Bytes read_bytes(const std::filesystem::path &path, const std::string &what)
   if (error || size > file_size_max) {
     throw Fault(what, error ? error.message() : "is larger than 4 GiB");
   }
+  return size;
+}
+
+/** \throws Fault, as size_of_file */
+Bytes read_bytes(const std::filesystem::path &path, const std::string &what)
+{
+  const std::uintmax_t size = size_of_file(path, what);
   Bytes bytes;
   bytes.reserve(size + document_padding());
   bytes.resize(size);
@@ -287,6 +294,16 @@ File load_file(const std::filesystem::path &path)
     buffer_loader.load(buffer);
   }
   return file;
+}
+
+std::filesystem::path path_of_uri(const std::filesystem::path &folder, const std::string &what, const std::string &uri)
+{
+  if (is_data_uri(uri)) {
+    throw Fault(what, "is a data URI, and must be the name of a file");
+  }
+  FileBeside file = file_beside(folder, what, uri);
+  static_cast<void>(size_of_file(file.path, file.what));
+  return std::move(file.path);
 }
 
 std::vector<unsigned char> bytes_of_uri(const std::filesystem::path &folder, const std::string &what,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "internal/gltf_model.hh"
+#include "internal/gltf_report.hh"
 
 #include <cstddef>
 #include <filesystem>
@@ -23,6 +24,26 @@ struct File {
   /** Memory that `buffers` refers to. A list, because its elements do not move. */
   std::list<std::vector<unsigned char>> storage;
 };
+
+/** Element \a index of an array of the model. \throws Fault that names \a what, if there is none. */
+template <typename Elements>
+const auto &element(const Elements &elements, int index, const std::string &what)
+{
+  if (index < 0 || static_cast<std::size_t>(index) >= elements.size()) {
+    throw Fault(what, index < 0 ? "is missing"
+                                : "index " + std::to_string(index) + " is out of range: the file has " +
+                                      std::to_string(elements.size()));
+  }
+  return elements[static_cast<std::size_t>(index)];
+}
+
+/**
+ * The path of the file, relative to \a folder, to which a URI refers.
+ *
+ * \throws Fault that names \a what, if there is no such file, or if it is not regular or larger than 4 GiB.
+ */
+[[nodiscard]] std::filesystem::path path_of_uri(const std::filesystem::path &folder, const std::string &what,
+                                                const std::string &uri);
 
 /**
  * The bytes of a URI: a decoded data URI, or a file relative to \a folder.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "internal/gltf_image.hh"
 
+#include "internal/gltf_accessor.hh"
 #include "internal/gltf_report.hh"
 
 namespace gnomon::gltf {
@@ -16,6 +17,20 @@ constexpr std::uint32_t edge_max = 16384;
 constexpr std::uint64_t expansion_max = 1032;
 
 }  // namespace
+
+EncodedImage encoded_image(const File &file, const Model::Image &image, const std::string &what)
+{
+  EncodedImage encoded;
+  if (!image.uri.empty()) {
+    encoded.storage = bytes_of_uri(file.folder, what, image.uri);
+    encoded.bytes = encoded.storage;
+  }
+  else {
+    static_cast<void>(element(file.model.buffer_views, image.buffer_view, what + ": bufferView"));
+    encoded.bytes = view_bytes(file, image.buffer_view, 0, what);
+  }
+  return encoded;
+}
 
 ImageDecoder::ImageDecoder(std::span<const unsigned char> bytes, std::string what, std::uint64_t texel_count_max)
     : what_(std::move(what))

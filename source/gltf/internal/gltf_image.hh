@@ -2,15 +2,27 @@
 #pragma once
 
 #include "image_decoder.hh"
+#include "internal/gltf_file.hh"
 #include "scene.hh"
 
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 /** Internal to source/gltf. */
 namespace gnomon::gltf {
+
+/** The bytes of an image file. Moving it keeps them where they are; it must not be copied. */
+struct EncodedImage {
+  /** Empty if the bytes are in one of the glTF file's buffers. */
+  std::vector<unsigned char> storage;
+  std::span<const unsigned char> bytes;
+};
+
+/** \throws Fault that names \a what, if the bytes of \a image are not there. */
+[[nodiscard]] EncodedImage encoded_image(const File &file, const Model::Image &image, const std::string &what);
 
 /**
  * A PNG or JPEG file in memory. 16-bit values are rounded to 8 bits, grey is expanded to RGB, and a missing alpha is

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "internal/gltf_lamp.hh"
 
+#include "internal/gltf_extra.hh"
 #include "internal/gltf_node.hh"
-#include "internal/gltf_units.hh"
 
 #include <algorithm>
 #include <array>
@@ -29,23 +29,6 @@ constexpr double angle_tolerance = 1e-6;
 /** Smallest half angle of a cone, rad. For smaller angles 1 - cos would underflow in float. */
 constexpr double cone_min = 1e-9;
 
-struct Range {
-  double min;
-  double max;
-
-  [[nodiscard]] bool contains(double value) const
-  {
-    return value >= min && value <= max;
-  }
-  [[nodiscard]] std::string text() const
-  {
-    return "from " + gltf::text(min) + " to " + gltf::text(max);
-  }
-};
-
-constexpr Range not_negative{0.0, large};
-constexpr Range length_range{length_min, large};
-
 /** All supported extras, with the lamps to which they apply. */
 struct Extra {
   std::string_view key;
@@ -53,10 +36,10 @@ struct Extra {
 };
 
 /** Reads the lamp on one node; every message names it. */
-class LampReader {
+class LampReader : private ExtraReader {
  public:
   LampReader(const Model::Node &node, std::string name, Warnings &warnings)
-      : extras_(node.extras), what_("lamp '" + printable(name) + "'"), warnings_(warnings)
+      : ExtraReader(node.extras, "lamp '" + printable(name) + "'"), warnings_(warnings)
   {
     lamp_.name = std::move(name);
   }
@@ -106,68 +89,15 @@ class LampReader {
       lamp_.area_size_y = lamp_.area_size_x;
     }
     lamp_.intensity = number("gnomon_power", 1.0, not_negative);
-    read_area_color();
+    lamp_.color = color("gnomon_color", lamp_.color, not_negative);
     read_shadow(lamp_.shadow);
     warn_idle_extras();
     return lamp_;
   }
 
  private:
-  const std::map<std::string, Model::Extra, std::less<>> &extras_;
-  std::string what_;
   Warnings &warnings_;
   Lamp lamp_;
-
-  [[noreturn]] void fail(std::string_view key, const std::string &value, const std::string &wanted) const
-  {
-    throw Fault(what_, std::string(key) + " is " + value + ", and must be " + wanted);
-  }
-
-  float checked(const char *key, double value, const Range &range) const
-  {
-    if (!range.contains(value)) {
-      fail(key, text(value), range.text());
-    }
-    return static_cast<float>(value);
-  }
-
-  [[nodiscard]] const Model::Extra *find(std::string_view key) const
-  {
-    const auto found = extras_.find(key);
-    return found == extras_.end() ? nullptr : &found->second;
-  }
-
-  std::optional<double> number_if_any(const char *key, const Range &range) const
-  {
-    const Model::Extra *extra = find(key);
-    if (extra == nullptr) {
-      return std::nullopt;
-    }
-    const double *number = std::get_if<double>(extra);
-    if (number == nullptr) {
-      fail(key, written(*extra), "a number " + range.text());
-    }
-    static_cast<void>(checked(key, *number, range));
-    return *number;
-  }
-
-  float number(const char *key, double fallback, const Range &range) const
-  {
-    return static_cast<float>(number_if_any(key, range).value_or(fallback));
-  }
-
-  std::string string(const char *key, const char *fallback) const
-  {
-    const Model::Extra *extra = find(key);
-    if (extra == nullptr) {
-      return fallback;
-    }
-    const std::string *text = std::get_if<std::string>(extra);
-    if (text == nullptr) {
-      fail(key, written(*extra), "a string");
-    }
-    return *text;
-  }
 
   /** The enumerator of \a Word at the index of the extra's value in \a words; empty if the key is absent. */
   template <typename Word>
@@ -195,14 +125,9 @@ class LampReader {
     return value ? std::optional(static_cast<float>(*value)) : std::nullopt;
   }
 
-  /** Blender may write whole numbers as floats. */
   std::optional<int> texels(const char *key) const
   {
-    const std::optional<double> value = number_if_any(key, {1.0, 16384.0});
-    if (value && *value != std::floor(*value)) {
-      fail(key, text(*value), "a whole number");
-    }
-    return value ? std::optional(static_cast<int>(*value)) : std::nullopt;
+    return whole_if_any(key, {1.0, 16384.0});
   }
 
   void read_shadow(LampShadow &shadow) const
@@ -256,22 +181,6 @@ class LampReader {
     return std::clamp(blend, 0.0, 1.0);
   }
 
-  void read_area_color()
-  {
-    constexpr const char *key = "gnomon_color";
-    const Model::Extra *extra = find(key);
-    if (extra == nullptr) {
-      return;
-    }
-    const auto *color = std::get_if<std::vector<double>>(extra);
-    if (color == nullptr || color->size() != 3) {
-      fail(key, written(*extra), "three numbers");
-    }
-    for (std::size_t i = 0; i < 3; i++) {
-      lamp_.color[int(i)] = checked(key, (*color)[i], not_negative);
-    }
-  }
-
   /** Warns about misspelt and inapplicable extras, which would have no effect. */
   void warn_idle_extras() const
   {
@@ -297,17 +206,17 @@ class LampReader {
         {"gnomon_esm_size", casts_shadow},
         {"gnomon_esm_format", casts_shadow},
     }};
-    for (const auto &[key, value] : extras_) {
+    for (const auto &[key, value] : extras()) {
       if (is_node_extra(key)) {
         continue;
       }
       const std::string_view name = key;
       const auto extra = std::find_if(known.begin(), known.end(), [&](const Extra &e) { return e.key == name; });
       if (extra == known.end()) {
-        warnings_.add(what_, "extra '" + printable(key) + "' is unknown");
+        warnings_.add(what(), "extra '" + printable(key) + "' is unknown");
       }
       else if (std::find(extra->kinds.begin(), extra->kinds.end(), lamp_.kind) == extra->kinds.end()) {
-        warnings_.add(what_, "extra '" + key + "' does not apply to this kind of lamp");
+        warnings_.add(what(), "extra '" + key + "' does not apply to this kind of lamp");
       }
     }
   }

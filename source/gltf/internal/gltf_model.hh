@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -96,6 +97,8 @@ struct Model {
     std::vector<double> weights;
   };
   using Extra = std::variant<bool, double, std::string, std::vector<double>>;
+  /** Those whose key begins with "gnomon_". */
+  using Extras = std::map<std::string, Extra, std::less<>>;
   /** EXT_mesh_gpu_instancing: accessors with one element for each instance; -1: absent. */
   struct Instances {
     int translation = -1;
@@ -117,8 +120,7 @@ struct Model {
     std::optional<Instances> instances;
     /** Override the mesh's weights; empty if absent. */
     std::vector<double> weights;
-    /** Extras whose key begins with "gnomon_". */
-    std::map<std::string, Extra, std::less<>> extras;
+    Extras extras;
   };
   struct Skin {
     std::string name;
@@ -238,13 +240,26 @@ struct Model {
     double outer_cone_angle = 0.78539816339744831;
   };
 
+  /** A light of EXT_lights_image_based, whose other members are not used. */
+  struct ImageLight {
+    std::string name;
+    std::array<double, 4> rotation{0.0, 0.0, 0.0, 1.0};
+    double intensity = 1.0;
+    /** Images of the faces +X, -X, +Y, -Y, +Z and -Z in full size. Neither their number nor their range is checked. */
+    std::vector<int> faces;
+  };
+  struct Scene {
+    std::vector<int> roots;
+    int image_light = -1;
+    Extras extras;
+  };
+
   std::vector<std::string> extensions_required;
   /** Names of KHR_materials_variants. */
   std::vector<std::string> variants;
   /** -1: absent. */
   int scene = -1;
-  /** The roots of each scene. */
-  std::vector<std::vector<int>> scenes;
+  std::vector<Scene> scenes;
   std::vector<Node> nodes;
   std::vector<Mesh> meshes;
   std::vector<Accessor> accessors;
@@ -256,8 +271,15 @@ struct Model {
   std::vector<Image> images;
   std::vector<Camera> cameras;
   std::vector<Light> lights;
+  std::vector<ImageLight> image_lights;
   std::vector<Skin> skins;
   std::vector<Animation> animations;
+
+  /** That of `scene`, or the first; nullptr: the file has none. */
+  [[nodiscard]] const Scene *default_scene() const
+  {
+    return scenes.empty() ? nullptr : &scenes[static_cast<std::size_t>(scene < 0 ? 0 : scene)];
+  }
 };
 
 }  // namespace gnomon::gltf

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "internal/gltf_node.hh"
 
+#include "internal/gltf_extra.hh"
 #include "internal/gltf_report.hh"
+#include "internal/gltf_world.hh"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -27,7 +29,7 @@ constexpr std::array<std::string_view, 5> node_extras{"gnomon_visible", "gnomon_
 
 bool is_node_extra(std::string_view key)
 {
-  return std::find(node_extras.begin(), node_extras.end(), key) != node_extras.end();
+  return is_world_extra(key) || std::find(node_extras.begin(), node_extras.end(), key) != node_extras.end();
 }
 
 void read_flags(const Model::Node &source, int index, scene::Node &node)
@@ -80,18 +82,6 @@ std::string thing_name(const Model::Node &node, const char *key, const std::stri
     return node.name;
   }
   return fallback.empty() ? std::string(kind) + " on node " + std::to_string(index) : fallback;
-}
-
-std::string written(const Model::Extra &extra)
-{
-  if (const auto *number = std::get_if<double>(&extra)) {
-    return text(*number);
-  }
-  if (const auto *string = std::get_if<std::string>(&extra)) {
-    return '\'' + printable(*string) + '\'';
-  }
-  const auto *boolean = std::get_if<bool>(&extra);
-  return boolean == nullptr ? "an array" : *boolean ? "true" : "false";
 }
 
 }  // namespace gnomon::gltf

@@ -31,7 +31,4 @@ void read_flags(const Model::Node &source, int index, scene::Node &node);
 [[nodiscard]] std::string thing_name(const Model::Node &node, const char *key, const std::string &fallback,
                                      const char *kind, int index);
 
-/** The text of an extra for messages. */
-[[nodiscard]] std::string written(const Model::Extra &extra);
-
 }  // namespace gnomon::gltf

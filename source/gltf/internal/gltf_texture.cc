@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "internal/gltf_texture.hh"
 
-#include "internal/gltf_accessor.hh"
 #include "internal/gltf_sampler.hh"
 #include "scene_parallel.hh"
 
 #include <algorithm>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -86,18 +84,6 @@ class SamplerReader {
   /** The file does not specify the filter. */
   static constexpr int absent = -1;
 };
-
-/** \throws Fault that names \a what, if the file has no element \a index. */
-template <typename Elements>
-const auto &element(const Elements &elements, int index, const std::string &what)
-{
-  if (index < 0 || static_cast<std::size_t>(index) >= elements.size()) {
-    throw Fault(what, index < 0 ? "is missing"
-                                : "index " + std::to_string(index) + " is out of range: the file has " +
-                                      std::to_string(elements.size()));
-  }
-  return elements[static_cast<std::size_t>(index)];
-}
 
 }  // namespace
 
@@ -179,20 +165,12 @@ Handle<Image> TextureImporter::import_image(int gltf_image)
 {
   const Model::Image &source = file_.model.images[gltf_image];
   const std::string what = label("image", source.name, static_cast<std::size_t>(gltf_image));
-  std::vector<unsigned char> storage;
-  std::span<const unsigned char> bytes;
-  if (!source.uri.empty()) {
-    bytes = storage = bytes_of_uri(file_.folder, what, source.uri);
-  }
-  else {
-    element(file_.model.buffer_views, source.buffer_view, what + ": bufferView");
-    bytes = view_bytes(file_, source.buffer_view, 0, what);
-  }
-  ImageDecoder decoder(bytes, what, texel_count_max - texel_count_);
+  EncodedImage encoded = encoded_image(file_, source, what);
+  ImageDecoder decoder(encoded.bytes, what, texel_count_max - texel_count_);
   texel_count_ += decoder.texel_count();
   const Handle<Image> handle =
       scene_.add(Image{source.name.empty() ? "image " + std::to_string(gltf_image) : source.name, 1, 1, {0, 0, 0, 0}});
-  pending_.push_back({handle, std::move(storage), std::move(decoder)});
+  pending_.push_back({handle, std::move(encoded.storage), std::move(decoder)});
   return handle;
 }
 
