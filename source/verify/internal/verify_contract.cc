@@ -214,7 +214,8 @@ std::vector<std::string> contract_faults(const scene::Scene &scene)
     checker.check(false, "possible after an import");
   }
   checker.element("scene");
-  checker.check(!scene.lamps().empty() && !cameras.empty(), "with a lamp and a camera");
+  checker.check(!scene.lamps().empty() || scene.world(), "with a lamp or a world");
+  checker.check(!cameras.empty(), "with a camera");
   checker.check(scene.objects().empty() || std::isfinite(scene.bounds().radius()), "of finite bounds");
   for (const std::string &warning : scene.warnings) {
     checker.element("warning '" + warning + "'");
