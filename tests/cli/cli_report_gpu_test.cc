@@ -130,7 +130,7 @@ TEST_F(CliReportTest, EmptySceneIsMeasuredWithAWarning)
   EXPECT_FALSE(report_json().at("scenes").at(0).at("warnings").empty());
 }
 
-/** Without the world, the pictures would have a half of the reference's light. */
+/** The reference's noise is 0.08. Without the world, the reference or the pictures would lack 0.7. */
 TEST_F(CliReportTest, TheWorldOfTheOptionsLightsPicturesAndReference)
 {
   const Finished finished = run("report " + example("spots") +
@@ -141,7 +141,7 @@ TEST_F(CliReportTest, TheWorldOfTheOptionsLightsPicturesAndReference)
   EXPECT_EQ(scene.at("world"), "1, 1, 1 W/(sr m²)");
   EXPECT_NE(finished.out.find("spots, world: 1, 1, 1 W"), std::string::npos) << finished.out;
   const json &pictures = scene.at("techniques").at(0).at("pictures");
-  EXPECT_LT(pictures.at(2).at("rmse"), 0.05);
+  EXPECT_LT(pictures.at(2).at("rmse"), 0.12);
   EXPECT_EQ(pictures.at(2).at("non_finite"), 0);
 }
 
