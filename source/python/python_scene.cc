@@ -384,10 +384,8 @@ void define_scene(py::module_ &module)
         return bounds.is_empty() ? std::nullopt : std::optional(std::pair(bounds.min, bounds.max));
       },
       "Lowest and highest corner of the box around all visible meshes, m. None if there are none.");
-  module.def(
-      "load", &load, py::arg("path"), py::arg("variant") = "",
-      "Read a glTF 2.0 file. `variant`: name of a variant of its materials. A world whose picture is a file is left "
-      "out, with a warning. Raises FileError.");
+  module.def("load", &load, py::arg("path"), py::arg("variant") = "",
+             "Read a glTF 2.0 file. `variant`: name of a variant of its materials. Raises FileError.");
 }
 
 }  // namespace gnomon::python
