@@ -32,8 +32,8 @@ void add_merge(CLI::App &app, Status &status);
 void add_report(CLI::App &app, Status &status);
 void add_stability(CLI::App &app, Status &status);
 void add_shaders(CLI::App &app, Status &status);
-/** Their status is Done unless they throw. */
-void add_bench(CLI::App &app);
+void add_bench(CLI::App &app, Status &status);
+/** Its status is Done unless it throws. */
 void add_view(CLI::App &app);
 
 }  // namespace gnomon::cli

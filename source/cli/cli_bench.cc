@@ -6,6 +6,7 @@
 
 #include "measure_bench.hh"
 #include "measure_edits.hh"
+#include "measure_light.hh"
 #include "measure_start.hh"
 
 #include <fmt/format.h>
@@ -22,6 +23,7 @@ struct BenchOptions {
   std::string scene;
   std::string backend = "gl";
   int rounds = 21;
+  int points = 256;
   std::string json;
   WorldOptions world;
 };
@@ -228,9 +230,62 @@ void bench_start(const BenchOptions &options)
                             {"rows", json}});
 }
 
+nlohmann::json to_json(const measure::LightErrors &errors)
+{
+  return {{"median", errors.median}, {"p95", errors.p95}, {"largest", errors.largest}, {"bad", errors.bad_count}};
+}
+
+Status bench_light(const BenchOptions &options)
+{
+  const std::vector<measure::LightErrorRow> rows = measure::light_errors(options.points);
+  fmt::print(
+      "Light of a whole lamp in one frame, without shadows: errors against numerical integration, relative to the\n"
+      "integral, or to 1 % of the largest integral of the same lamp, size, distance and roughness if that is more. "
+      "Lamps\n"
+      "face the shaded point. size: half the longer axis, or the radius. elevation: of the centre. {} points an "
+      "integral;\n"
+      "+-: largest standard error of the integrals. bad: results that are negative or not finite. The second "
+      "approximation\n"
+      "is a baseline, which the engine does not use.\n",
+      2 * measure::integral_set_count * options.points);
+  nlohmann::json json = nlohmann::json::array();
+  std::size_t bad_count = 0;
+  std::string light;
+  for (const measure::LightErrorRow &row : rows) {
+    if (row.light != light) {
+      light = row.light;
+      const bool is_diffuse = light == "diffuse";
+      fmt::print("\n{:<20} {:>5} {:>8}  {:<32}  {}\n", light, "", "",
+                 is_diffuse ? "form factor" : "transformed cosines",
+                 is_diffuse ? "all light from the centre" : "representative point");
+      fmt::print("{:<20} {:>5} {:>8}", "", "cases", "+-");
+      for (int i = 0; i < 2; i++) {
+        fmt::print("  {:>8} {:>8} {:>8} {:>5}", "median", "p95", "largest", "bad");
+      }
+      fmt::print("\n");
+    }
+    fmt::print("{:<20} {:>5} {:>8.5f}", row.parameter + " " + row.value, row.case_count, row.integral_error);
+    for (const measure::LightErrors &errors : {row.whole, row.point}) {
+      fmt::print("  {:>8.5f} {:>8.5f} {:>8.5f} {:>5}", errors.median, errors.p95, errors.largest, errors.bad_count);
+    }
+    fmt::print("\n");
+    bad_count += row.whole.bad_count;
+    json.push_back({{"light", row.light},
+                    {"parameter", row.parameter},
+                    {"value", row.value},
+                    {"cases", row.case_count},
+                    {"integral_error", row.integral_error},
+                    {"whole", to_json(row.whole)},
+                    {"point", to_json(row.point)}});
+  }
+  write_json(options.json,
+             {{"program", "gnomon " GNOMON_VERSION}, {"bench", "light"}, {"points", options.points}, {"rows", json}});
+  return bad_count > 0 ? Status::NonFinite : Status::Done;
+}
+
 }  // namespace
 
-void add_bench(CLI::App &app)
+void add_bench(CLI::App &app, Status &status)
 {
   CLI::App *command = app.add_subcommand("bench", "Measure the engine's parts on scenes made in place");
   command->require_subcommand(1);
@@ -261,6 +316,13 @@ void add_bench(CLI::App &app)
         ->check(CLI::Range(1, 100000));
     bench->add_option("--json", o->json, "Write the figures, in seconds");
   }
+  CLI::App *light = command->add_subcommand(
+      "light", "Errors of the light of lamps with a size in one frame, against numerical integration");
+  light->add_option("--points", o->points, "Points in each of the sets of an integral")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1 << 20));
+  light->add_option("--json", o->json, "Write the errors");
+  light->callback([o, &status] { status = bench_light(*o); });
   CLI::App *edits = command->add_subcommand("edits", "The work that each kind of edit of a large scene causes");
   edits->add_option("--json", o->json, "Write the figures");
   edits->callback([o] { bench_edits(*o); });

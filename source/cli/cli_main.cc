@@ -19,7 +19,7 @@ static Status run(int argc, char **argv)
   add_report(app, status);
   add_stability(app, status);
   add_shaders(app, status);
-  add_bench(app);
+  add_bench(app, status);
   add_view(app);
   try {
     app.parse(argc, argv);

@@ -70,6 +70,24 @@ TEST_F(BenchTest, LeftOutComparesTenScenesWithTheFullOne)
   }
 }
 
+TEST_F(BenchTest, LightComparesApproximationsWithIntegrals)
+{
+  const Finished finished = run("bench light --points 1 --json bench.json");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const json bench = json::parse(read("bench.json"));
+  std::map<std::string, int> rows;
+  for (const json &row : bench["rows"]) {
+    rows[row["light"]]++;
+    EXPECT_GT(row["cases"], 0) << row;
+    for (const char *approximation : {"whole", "point"}) {
+      EXPECT_EQ(row[approximation]["bad"], 0) << row;
+      EXPECT_LE(row[approximation]["median"], row[approximation]["p95"]) << row;
+      EXPECT_LE(row[approximation]["p95"], row[approximation]["largest"]) << row;
+    }
+  }
+  EXPECT_EQ(rows, (std::map<std::string, int>{{"diffuse", 14}, {"specular", 23}}));
+}
+
 TEST_F(BenchTest, StartRunsTheProgramBesideAnEmptyProcess)
 {
   const Finished finished = run("bench start --backend null --rounds 1 --json bench.json");
