@@ -2,6 +2,7 @@
 // Points of lamps with an extent: their mean light is that of the lamp.
 #include "eevee_lamp_points.hh"
 
+#include "eevee_closed_forms.hh"
 #include "eevee_sobol.hh"
 #include "eevee_test_scene.hh"
 
@@ -132,18 +133,6 @@ TEST(LampPoints, ASunsLightOnAPlaneIsTheClosedForm)
   }
 }
 
-/** Irradiance of a polygon of radiance 1 (Lambert 1760): half the sum over its edges of angle times normal. */
-double lambert_irradiance(const std::vector<glm::dvec3> &corners, const glm::dvec3 &position_ws)
-{
-  double sum = 0.0;
-  for (std::size_t i = 0; i < corners.size(); i++) {
-    const glm::dvec3 a = glm::normalize(corners[i] - position_ws);
-    const glm::dvec3 b = glm::normalize(corners[(i + 1) % corners.size()] - position_ws);
-    sum += std::acos(glm::dot(a, b)) * glm::dot(glm::normalize(glm::cross(a, b)), up);
-  }
-  return std::abs(0.5 * sum);
-}
-
 TEST(LampPoints, AnAreaLampsLightOnAPlaneIsTheClosedForm)
 {
   scene::PlacedLamp lamp = lamp_of(scene::LampKind::Area);
@@ -155,18 +144,14 @@ TEST(LampPoints, AnAreaLampsLightOnAPlaneIsTheClosedForm)
   const auto mean = [&] {
     return mean_over(lamp, 65536, [&](const shared::LightData &light) { return irradiance(light, position_ws, up); });
   };
-  std::vector<glm::dvec3> corners = {center + glm::dvec3(1, 0.5, 0), center + glm::dvec3(-1, 0.5, 0),
-                                     center + glm::dvec3(-1, -0.5, 0), center + glm::dvec3(1, -0.5, 0)};
+  const glm::dvec3 axis_x(1.0, 0.0, 0.0);
+  const glm::dvec3 axis_y(0.0, 0.5, 0.0);
   // Radiance P / (4 A).
-  EXPECT_NEAR(mean() / (10.0 / (4.0 * 2.0) * lambert_irradiance(corners, position_ws)), 1.0, 1e-4);
+  const double rectangle = test::lambert_irradiance(test::rectangle_corners(center, axis_x, axis_y), position_ws);
+  EXPECT_NEAR(mean() / (10.0 / (4.0 * 2.0) * rectangle), 1.0, 1e-4);
   lamp.area_shape = scene::AreaShape::Ellipse;
-  corners.clear();
-  constexpr int count = 20000;
-  for (int i = 0; i < count; i++) {
-    const double turn = 2.0 * pi * i / count;
-    corners.push_back(center + glm::dvec3(std::cos(turn), 0.5 * std::sin(turn), 0.0));
-  }
-  EXPECT_NEAR(mean() / (10.0 / (4.0 * 0.5 * pi) * lambert_irradiance(corners, position_ws)), 1.0, 1e-4);
+  const double ellipse = test::lambert_irradiance(test::ellipse_corners(center, axis_x, axis_y), position_ws);
+  EXPECT_NEAR(mean() / (10.0 / (4.0 * 0.5 * pi) * ellipse), 1.0, 1e-4);
 }
 
 TEST(LampPoints, TurnASunsAxesAndKeepThemOrthonormal)

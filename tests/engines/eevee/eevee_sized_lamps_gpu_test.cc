@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: MIT
+// Light and penumbrae of lamps compared with closed forms, on the driver.
+#include "eevee_closed_forms.hh"
+#include "eevee_picture_layers.hh"
+#include "eevee_test_scene.hh"
+#include "gpu_device_fixture.hh"
+
+#include "measure_light.hh"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace gnomon::eevee {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/** A camera that looks down from \a height_m at the origin, at a square of \a half_m by that times \a aspect. */
+scene::PlacedCamera camera_above(double height_m, double half_m, double aspect = 1.0)
+{
+  scene::PlacedCamera camera = test::camera_at({0.0F, 0.0F, float(height_m)}, {0.0F, 0.0F, 0.0F});
+  camera.kind = scene::CameraKind::Orthographic;
+  camera.half_width = float(half_m);
+  camera.half_height = float(half_m * aspect);
+  camera.near = float(0.1 * height_m);
+  camera.far = float(2.0 * height_m);
+  return camera;
+}
+
+struct PlacedLight {
+  std::string name;
+  scene::Lamp lamp{};
+  glm::dmat4 world_from_lamp{1.0};
+  /** On a surface at the origin that faces +z. */
+  double irradiance = 0.0;
+};
+
+/** \a position, with -z towards \a target and an arbitrary turn around it. */
+glm::dmat4 turned_to(const glm::dvec3 &position, const glm::dvec3 &target)
+{
+  return glm::inverse(glm::lookAt(position, target, glm::dvec3(0.3, 1.0, 0.2)));
+}
+
+/**
+ * One lamp of each kind, with a size of \a size metres where it has one. Each is completely above the horizon of the
+ * origin, and the origin is completely in the cones of sized spots.
+ */
+std::vector<PlacedLight> lamps_of_each_kind(double size)
+{
+  const glm::dvec3 at(0.6, -0.3, 1.5);
+  const double distance_sq = glm::dot(at, at);
+  const double cosine = at.z / std::sqrt(distance_sq);
+  const double radius = double(float(size));
+  const auto lamp_of = [&](scene::LampKind kind) {
+    scene::Lamp lamp;
+    lamp.kind = kind;
+    lamp.intensity = 2.0F;
+    return lamp;
+  };
+  std::vector<PlacedLight> lights;
+  scene::Lamp point = lamp_of(scene::LampKind::Point);
+  lights.push_back({"point", point, turned_to(at, {}), 2.0 * cosine / distance_sq});
+  point.radius = float(size);
+  lights.push_back({"sphere", point, turned_to(at, {}), 2.0 * cosine / (distance_sq + radius * radius)});
+
+  scene::Lamp spot = lamp_of(scene::LampKind::Spot);
+  spot.spot_outer_angle = 0.5F;
+  spot.spot_blend = 0.6F;
+  // The origin is in the soft edge of the cone.
+  const glm::dvec3 aside = at + glm::normalize(glm::cross(at, glm::dvec3(0, 1, 0))) * (0.4 * std::sqrt(distance_sq));
+  const glm::dmat4 world_from_spot = turned_to(at, aside - at);
+  const double cos_axis = glm::dot(glm::dvec3(world_from_spot[2]), at) / std::sqrt(distance_sq);
+  const double cos_outer = std::cos(double(0.5F));
+  const double t = std::clamp((cos_axis - cos_outer) / ((1.0 - cos_outer) * double(0.6F)), 0.0, 1.0);
+  lights.push_back({"spot", spot, world_from_spot, 2.0 * cosine / distance_sq * t * t * (3.0 - 2.0 * t)});
+  spot.radius = float(size);
+  spot.spot_outer_angle = 1.0F;
+  spot.spot_blend = 0.1F;
+  lights.push_back({"sized spot", spot, turned_to(at, {}), 2.0 * cosine / (distance_sq + radius * radius)});
+
+  scene::Lamp sun = lamp_of(scene::LampKind::Sun);
+  lights.push_back({"sun", sun, turned_to(at, {}), 2.0 * cosine});
+  sun.angle = float(size);
+  lights.push_back({"sun with an angle", sun, turned_to(at, {}), 2.0 * cosine});
+  lights.push_back({"hemi", lamp_of(scene::LampKind::Hemi), turned_to(at, {}), 1.0 + cosine});
+
+  for (const bool is_ellipse : {false, true}) {
+    // Square and disk, rectangle and ellipse.
+    for (const double aspect : {1.0, 0.5}) {
+      for (const glm::dvec3 &target : {glm::dvec3(0.0), glm::dvec3(at.x, at.y, 0.0)}) {
+        scene::Lamp area = lamp_of(scene::LampKind::Area);
+        area.area_shape = is_ellipse ? scene::AreaShape::Ellipse : scene::AreaShape::Rectangle;
+        area.area_size_x = float(2.0 * size);
+        area.area_size_y = float(2.0 * aspect * size);
+        const glm::dmat4 world_from_lamp = turned_to(at, target);
+        const glm::dvec3 axis_x = size * glm::dvec3(world_from_lamp[0]);
+        const glm::dvec3 axis_y = aspect * size * glm::dvec3(world_from_lamp[1]);
+        const auto corners =
+            is_ellipse ? test::ellipse_corners(at, axis_x, axis_y) : test::rectangle_corners(at, axis_x, axis_y);
+        // Radiance P / (4 A).
+        const double radiance = 2.0 / (4.0 * (is_ellipse ? pi : 4.0) * aspect * size * size);
+        lights.push_back({std::string(is_ellipse ? "ellipse" : "rectangle") + (aspect == 1.0 ? " of equal axes" : "") +
+                              (target == glm::dvec3(0.0) ? ", facing" : ", level"),
+                          area, world_from_lamp, radiance * test::lambert_irradiance(corners, glm::dvec3(0.0))});
+      }
+    }
+  }
+  return lights;
+}
+
+class LampLightTest : public test::GpuDeviceTest {
+ protected:
+  LampLightTest()
+  {
+    test::add_object(scene, test::add_square_mesh(scene, material), glm::scale(glm::dmat4(1.0), glm::dvec3(20.0)));
+  }
+  /** Compares the light of lamps on the ground with their irradiances. */
+  void expect_irradiances(const std::vector<PlacedLight> &lights, int sample_count, double tolerance)
+  {
+    // Three lamps at a time, one in each channel.
+    for (std::size_t first = 0; first < lights.size(); first += 3) {
+      test::remove_lamps(scene);
+      const std::size_t end = std::min(first + 3, lights.size());
+      for (std::size_t i = first; i < end; i++) {
+        scene::Lamp lamp = lights[i].lamp;
+        lamp.name = lights[i].name;
+        lamp.color = glm::vec3(0.0F);
+        lamp.color[int(i - first)] = 1.0F;
+        test::add_lamp(scene, lamp, lights[i].world_from_lamp);
+      }
+      test::Renderer renderer(*device, scene, {5, 5},
+                              {.shadow = {.kind = scene::ShadowKind::None}, .sample_count = sample_count});
+      const test::Picture picture = renderer.picture(camera_above(1.0, 1e-4));
+      ASSERT_EQ(picture.non_finite_count(), 0U);
+      for (std::size_t i = first; i < end; i++) {
+        EXPECT_NEAR(double(picture.middle()[int(i - first)]) * pi / lights[i].irradiance, 1.0, tolerance)
+            << lights[i].name;
+      }
+    }
+  }
+
+  scene::Scene scene;
+  scene::Handle<scene::Material> material = test::add_material(scene, glm::vec3(1.0F));
+};
+
+TEST_F(LampLightTest, OfOneFrameIsTheClosedForm)
+{
+  for (const double size : {0.05, 0.8}) {
+    SCOPED_TRACE(size);
+    expect_irradiances(lamps_of_each_kind(size), 1, 1e-3);
+  }
+}
+
+TEST_F(LampLightTest, OfSamplesConvergesToTheClosedForm)
+{
+  // A tenth of the distance, at which the bias of points in a ball is 2e-5 (decision 0012).
+  expect_irradiances(lamps_of_each_kind(0.1), 1024, 1e-4);
+}
+
+TEST_F(LampLightTest, SpecularOfOneFrameIsTheMeasuredApproximation)
+{
+  const double view_angle = 0.8;
+  const glm::dvec3 view(std::sin(view_angle), 0.0, std::cos(view_angle));
+  scene::PlacedCamera camera = camera_above(1.0, 1e-4);
+  camera.world_from_camera = glm::inverse(glm::lookAt(view, glm::dvec3(0.0), glm::dvec3(0, 1, 0)));
+  const glm::dvec3 center(-1.0, 0.4, 1.2);
+  const glm::dmat4 world_from_lamp = turned_to(center, {});
+  for (const float roughness : {0.3F, 0.7F}) {
+    scene.edit(material, [&](scene::Material &value) {
+      value.metallic = 1.0F;
+      value.roughness = roughness;
+    });
+    const double alpha = double(roughness) * double(roughness);
+    for (const bool is_ellipse : {false, true}) {
+      test::remove_lamps(scene);
+      scene::Lamp lamp;
+      lamp.kind = scene::LampKind::Area;
+      lamp.area_shape = is_ellipse ? scene::AreaShape::Ellipse : scene::AreaShape::Rectangle;
+      lamp.area_size_x = 1.0F;
+      lamp.area_size_y = 0.5F;
+      // For a radiance of 1.
+      lamp.intensity = float(is_ellipse ? 0.5 * pi : 2.0);
+      test::add_lamp(scene, lamp, world_from_lamp);
+      test::Renderer renderer(*device, scene, {5, 5}, {.shadow = {.kind = scene::ShadowKind::None}});
+      const double expected = measure::whole_specular(
+          {.outline = is_ellipse ? measure::LampOutline::Ellipse : measure::LampOutline::Rectangle,
+           .center = center,
+           .axis_x = 0.5 * glm::dvec3(world_from_lamp[0]),
+           .axis_y = 0.25 * glm::dvec3(world_from_lamp[1])},
+          {.alpha = alpha, .view = view});
+      EXPECT_GT(expected, 0.01);
+      EXPECT_NEAR(double(renderer.picture(camera).middle().r) / expected, 1.0, 1e-3) << roughness;
+    }
+  }
+}
+
+struct PenumbraLamp {
+  const char *name;
+  scene::LampKind kind;
+  scene::AreaShape shape = scene::AreaShape::Rectangle;
+};
+
+void PrintTo(const PenumbraLamp &lamp, std::ostream *stream)
+{
+  *stream << lamp.name;
+}
+
+/**
+ * A ground, and above it a half plane whose straight edge is below the centre of a lamp that is 1 m high. The ratio of
+ * a case is that of the widths of penumbra and lamp, which by similar triangles is that of the distances from the edge
+ * to the ground and to the lamp. Of a sun, it is that of the penumbra's width and the height of the edge.
+ */
+class PenumbraTest : public test::GpuDeviceTest, public testing::WithParamInterface<PenumbraLamp> {
+ protected:
+  PenumbraTest()
+  {
+    ground = test::add_object(scene, square, glm::dmat4(1.0));
+    half_plane = test::add_object(scene, square, glm::dmat4(1.0));
+  }
+  void place(double ratio)
+  {
+    const PenumbraLamp &param = GetParam();
+    scene::Lamp lamp;
+    lamp.kind = param.kind;
+    lamp.area_shape = param.shape;
+    double radius = 0.0;
+    // Enough for ten texels in half of the penumbra.
+    double texels = 512.0;
+    if (param.kind == scene::LampKind::Sun) {
+      edge_m = 0.5;
+      half_m = 0.5 * ratio * edge_m;
+      const double angle = std::atan(0.5 * ratio);
+      lamp.angle = float(2.0 * angle);
+      // The mean of |tan t cos φ| over the directions at angles up to `angle`.
+      mean_offset_m = edge_m * 2.0 / pi * (std::log((1.0 + std::sin(angle)) / std::cos(angle)) - std::sin(angle)) /
+                      (1.0 - std::cos(angle));
+    }
+    else {
+      edge_m = ratio / (1.0 + ratio);
+      // Lamps that are balls are small beside their distance to the edge (decision 0012).
+      radius = param.kind == scene::LampKind::Area ? 0.3 : 0.1 * (1.0 - edge_m);
+      half_m = ratio * radius;
+      mean_offset_m = param.kind == scene::LampKind::Area && param.shape == scene::AreaShape::Rectangle
+                          ? half_m / 2.0
+                          : half_m * 4.0 / (3.0 * pi);
+      lamp.radius = float(radius);
+      lamp.area_size_x = float(2.0 * radius);
+      lamp.area_size_y = float(radius);
+      const double cone = 1.2 * (3.5 * half_m + radius);
+      lamp.spot_outer_angle = float(std::atan(cone));
+      texels = param.kind == scene::LampKind::Spot ? 20.0 * cone / half_m : 20.0 * (half_m + 1.0 / half_m);
+    }
+    lamp.shadow.size = std::clamp(int(texels), 256, 2048);
+    test::remove_lamps(scene);
+    test::add_lamp(scene, lamp, glm::translate(glm::dmat4(1.0), {0, 0, 1}));
+    const double extent_m = 4.0 * (half_m + radius);
+    scene.set_transform(ground, glm::scale(glm::dmat4(1.0), glm::dvec3(extent_m)));
+    scene.set_transform(half_plane,
+                        glm::scale(glm::translate(glm::dmat4(1.0), {-extent_m, 0.0, edge_m}), glm::dvec3(extent_m)));
+    // From below the half plane.
+    camera = camera_above(0.5 * edge_m, 2.5 * half_m, double(size_px.y) / size_px.x);
+  }
+  /** Of the penumbra and the true one: the mean distance from the edge's shadow, weighted by the slope of visibility.
+   */
+  [[nodiscard]] double width_ratio(const std::vector<float> &visibilities) const
+  {
+    // Three times as wide as half of the penumbra, in the middle of the picture.
+    const int row = size_px.y / 2 - 8;
+    const int column = size_px.x / 5;
+    double sum = 0.0;
+    for (int x = column; x < size_px.x - column; x++) {
+      double visibility = 0.0;
+      for (int y = row; y < row + 16; y++) {
+        visibility += double(visibilities.at(std::size_t(y * size_px.x + x))) / 16.0;
+      }
+      sum += std::abs(visibility - (x < size_px.x / 2 ? 0.0 : 1.0));
+    }
+    return sum * 5.0 * half_m / size_px.x / mean_offset_m;
+  }
+  double width_ratio_of_samples(double ratio, int sample_count)
+  {
+    place(ratio);
+    SceneRenderer renderer(*device, scene, size_px, {.sample_count = sample_count});
+    renderer.sync();
+    return width_ratio(render_surface_layers(renderer, camera, sample_count, {.visible_lamps = {0}}).visibilities[0]);
+  }
+  double width_ratio_of_one_frame(double ratio)
+  {
+    place(ratio);
+    const test::Picture shadowed = test::Renderer(*device, scene, size_px).picture(camera);
+    const test::Picture lit =
+        test::Renderer(*device, scene, size_px, {.shadow = {.kind = scene::ShadowKind::None}}).picture(camera);
+    EXPECT_EQ(shadowed.non_finite_count() + lit.non_finite_count(), 0U);
+    std::vector<float> visibilities;
+    for (std::size_t i = 0; i < lit.pixels.size(); i++) {
+      EXPECT_GT(lit.pixels[i].r, 0.0F);
+      visibilities.push_back(shadowed.pixels[i].r / lit.pixels[i].r);
+    }
+    return width_ratio(visibilities);
+  }
+
+  scene::Scene scene;
+  scene::Handle<scene::Mesh> square = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(1.0F)));
+  scene::Handle<scene::Node> ground;
+  scene::Handle<scene::Node> half_plane;
+  scene::PlacedCamera camera;
+  /** The picture is five times as wide as half of the penumbra. */
+  glm::ivec2 size_px{96, 16};
+  /** Height of the edge, half the width of the penumbra, and its mean distance from the middle. */
+  double edge_m = 0.0;
+  double half_m = 0.0;
+  double mean_offset_m = 0.0;
+};
+
+TEST_P(PenumbraTest, OfSamplesIsAsWideAsSimilarTrianglesSay)
+{
+  for (const double ratio : {0.1, 1.0}) {
+    EXPECT_NEAR(width_ratio_of_samples(ratio, 128), 1.0, 0.01) << ratio;
+  }
+}
+
+TEST_P(PenumbraTest, OfOneFrameIsAsWideAsSimilarTrianglesSay)
+{
+  if (GetParam().kind == scene::LampKind::Sun) {
+    // The lookups of pixels near the edges of the picture are outside of the sun's map.
+    size_px.y = size_px.x;
+    for (const double ratio : {0.05, 0.5}) {
+      place(ratio);
+      // Three times as high as the edge, and parallel to the light, so that it casts no shadow.
+      const glm::dvec3 above(-2.0 * half_m, 0.0, 2.0 * edge_m);
+      const glm::dmat4 upright = glm::rotate(glm::translate(glm::dmat4(1.0), above), 0.5 * pi, glm::dvec3(0, 1, 0));
+      const auto mast = test::add_object(scene, square, glm::scale(upright, glm::dvec3(edge_m, 0.1 * half_m, 1.0)));
+      EXPECT_NEAR(width_ratio_of_one_frame(ratio), 1.0, 0.1) << ratio;
+      scene.remove(mast);
+    }
+    return;
+  }
+  for (const double ratio : {0.6, 1.0, 1.4}) {
+    EXPECT_NEAR(width_ratio_of_one_frame(ratio), 1.0, 0.1) << ratio;
+  }
+}
+
+using SlowPenumbraTest = PenumbraTest;
+
+TEST_P(SlowPenumbraTest, OfSamplesIsAsWideAsSimilarTrianglesSay)
+{
+  // Texels of a cube are too wide for smaller ratios.
+  const bool has_map = GetParam().kind == scene::LampKind::Spot || GetParam().kind == scene::LampKind::Sun;
+  const double least = GetParam().kind == scene::LampKind::Area ? 0.03 : has_map ? 0.01 : 0.1;
+  for (const double ratio : {0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0}) {
+    if (ratio >= least) {
+      EXPECT_NEAR(width_ratio_of_samples(ratio, 256), 1.0, 0.01) << ratio;
+    }
+  }
+}
+
+const PenumbraLamp penumbra_lamps[] = {
+    {"Point", scene::LampKind::Point},
+    {"Spot", scene::LampKind::Spot},
+    {"Sun", scene::LampKind::Sun},
+    {"Rectangle", scene::LampKind::Area},
+    {"Ellipse", scene::LampKind::Area, scene::AreaShape::Ellipse},
+};
+const auto penumbra_name = [](const testing::TestParamInfo<PenumbraLamp> &test) {
+  return std::string(test.param.name);
+};
+
+INSTANTIATE_TEST_SUITE_P(Each, PenumbraTest, testing::ValuesIn(penumbra_lamps), penumbra_name);
+INSTANTIATE_TEST_SUITE_P(Each, SlowPenumbraTest, testing::ValuesIn(penumbra_lamps), penumbra_name);
+
+}  // namespace
+}  // namespace gnomon::eevee
