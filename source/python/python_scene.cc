@@ -65,6 +65,17 @@ const Fields<Material> material_fields = {
     number_field<Material>("coat_roughness", &Material::coat_roughness, 0, 1, "Perceptual, 0 to 1."),
     number_field<Material>("sheen_color", &Material::sheen_color, 0, 1, "Reflectance of fibres, 0 to 1."),
     number_field<Material>("sheen_roughness", &Material::sheen_roughness, 0, 1, "Perceptual, 0 to 1."),
+    number_field<Material>(
+        "transmission", &Material::transmission, 0, 1,
+        "Part of the light that passes the surface, 0 (opaque) to 1. The other values of glass need it."),
+    number_field<Material>(
+        "thickness", &Material::thickness, 0, float_max,
+        "Length of the light's way inside of the object, object space. 0: a thin wall, no refraction."),
+    number_field<Material>("ior", &Material::ior, 1, float_max,
+                           "Index of refraction of the volume, at least 1. It does not change the reflection."),
+    number_field<Material>("attenuation_distance", &Material::attenuation_distance, 0, float_max,
+                           "Metres after which attenuation_color is left of white light. 0: nothing is absorbed."),
+    number_field<Material>("attenuation_color", &Material::attenuation_color, 0, 1, "Red, green and blue, 0 to 1."),
     number_field<Material>("emissive", &Material::emissive, 0, float_max,
                            "Emitted radiance, W/(sr m²), red, green and blue, at least 0."),
     plain_field<Material>("is_unlit", &Material::is_unlit, "The radiance is the base colour."),

@@ -168,6 +168,12 @@ class Pictures(unittest.TestCase):
         self.assertEqual((picture.shape, picture.dtype), ((18, 32, 4), numpy.float32))
         numpy.testing.assert_allclose(picture, numpy.broadcast_to((0.5, 0.25, 0.125, 1), picture.shape), rtol=1e-5)
 
+    def test_light_that_passes_is_not_scattered(self):
+        scene = square_scene()
+        scene.materials[0].transmission = 0.75
+        picture = gnomon.Renderer(self.device, scene, (32, 18), **SMALL).render()[:, :, :3]
+        numpy.testing.assert_allclose(picture, numpy.broadcast_to((0.125, 0.0625, 0.03125), picture.shape), rtol=1e-5)
+
     def test_first_row_is_the_top(self):
         scene = square_scene()
         scene.nodes[0].position = (0, -9, 0)

@@ -82,6 +82,11 @@ class Material:
     coat_roughness: float
     sheen_color: Vector
     sheen_roughness: float
+    transmission: float
+    thickness: float
+    ior: float
+    attenuation_distance: float
+    attenuation_color: Vector
     emissive: Vector
     is_unlit: bool
     is_double_sided: bool
