@@ -14,9 +14,13 @@ function(gnomon_pch_target NAME KIND LIBRARIES)
   target_precompile_headers(${NAME} PRIVATE ${GNOMON_PCH_HEADERS} ${ARGN})
 endfunction()
 
-# gnomon_reuse_pch(TARGET PCH_TARGET): the compile settings of both must be equal.
+# gnomon_reuse_pch(TARGET PCH_TARGET): the compile settings of both must be equal. Also compiles several files of the target as one,
+# which parses their other headers and instantiates their templates once. Names in anonymous namespaces must be unique in the target.
 function(gnomon_reuse_pch TARGET PCH_TARGET)
   if(GNOMON_PCH)
+    set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+    # Other builds warn of these in a file alone.
+    target_compile_options(${TARGET} PRIVATE -Wno-shadow -Wno-subobject-linkage)
     # For targets that do not link the library, too.
     target_compile_definitions(${TARGET} PRIVATE $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
     target_precompile_headers(${TARGET} REUSE_FROM ${PCH_TARGET})

@@ -12,8 +12,6 @@ namespace gnomon::measure {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 /** Surfaces at less than half a degree to the light receive less than 1 % of it and are not compared. */
 constexpr double compared_cosine_min = 0.0087;
 
@@ -61,9 +59,9 @@ std::map<std::string, double> TechniqueRenderer::step_seconds()
 double TechniqueRenderer::picture_seconds(int sample_count)
 {
   set(sample_count, false);
-  const Clock::time_point start = Clock::now();
+  const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
   draw();
-  return std::chrono::duration<double>(Clock::now() - start).count();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 std::vector<glm::vec4> TechniqueRenderer::picture()

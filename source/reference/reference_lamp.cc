@@ -12,7 +12,7 @@ namespace gnomon::reference {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 /** Light does not increase below a distance of a micrometre and stays finite, as in `eevee_light_shared.h`. */
 constexpr double distance_sq_min = 1e-12;
 

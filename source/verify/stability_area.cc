@@ -15,7 +15,7 @@ namespace gnomon::verify {
 
 namespace {
 
-constexpr const char *group = "area";
+constexpr const char *area_group = "area";
 const glm::dvec3 unit_x(1, 0, 0);
 const glm::dvec3 unit_y(0, 1, 0);
 
@@ -41,8 +41,8 @@ void add_area_cases(std::vector<StabilityCase> &cases)
   const auto add = [&](const std::string &name, const std::string &parameter, std::vector<double> steps, auto center_at,
                        auto right_at, auto up_at) {
     cases.push_back(case_of(
-        {group, name, "rectangle_solid_angle", "solid angle of a rectangle, relative to its size and its condition",
-         parameter, std::move(steps),
+        {area_group, name, "rectangle_solid_angle",
+         "solid angle of a rectangle, relative to its size and its condition", parameter, std::move(steps),
          [=](double x) {
            return Arguments<float>{
                .a = glm::vec4(center_at(x), 0.0F), .b = glm::vec4(right_at(x), 0.0F), .c = glm::vec4(up_at(x), 0.0F)};
@@ -79,7 +79,7 @@ void add_area_cases(std::vector<StabilityCase> &cases)
 
   const auto add_angle = [&](const std::string &name, bool is_baseline, double bound, const std::string &parameter,
                              std::vector<double> steps, std::function<double(double)> error_at) {
-    cases.push_back({.group = group,
+    cases.push_back({.group = area_group,
                      .name = name,
                      .quantity = "solid angle of a rectangle",
                      .parameter = parameter,
@@ -107,7 +107,7 @@ void add_area_cases(std::vector<StabilityCase> &cases)
                 return std::abs((is_naive ? naive_solid_angle(center) : ours(center)) / (2.0 * std::numbers::pi) - 1.0);
               });
   }
-  cases.push_back({.group = group,
+  cases.push_back({.group = area_group,
                    .name = "no area, edge-on, touched outside",
                    .quantity = "solid angle: 0",
                    .parameter = "distance, m",
@@ -128,7 +128,7 @@ void add_area_cases(std::vector<StabilityCase> &cases)
                    })});
   for (const double height : {0.0, 1e-6, 1.0}) {
     cases.push_back(
-        {.group = group,
+        {.group = area_group,
          .name = fmt::format("grazing line from {:g} m", height),
          .quantity = "distance of a line's intersection with a plane, at most LINE_FAR",
          .parameter = "rise of the line",

@@ -16,7 +16,7 @@ namespace gnomon::verify {
 
 namespace {
 
-constexpr const char *group = "bsdf";
+constexpr const char *bsdf_group = "bsdf";
 constexpr std::array<float, 5> roughnesses = {0.0F, 0.04F, 0.2F, 0.5F, 1.0F};
 
 float alpha_of(float roughness)
@@ -42,23 +42,23 @@ void add_bsdf_cases(std::vector<StabilityCase> &cases)
     const float alpha = alpha_of(roughness);
     const std::string of = fmt::format("roughness {:g}", roughness);
     cases.push_back(
-        case_of({group, "distribution near its peak, " + of, "ggx_distribution", "GGX distribution of normals",
+        case_of({bsdf_group, "distribution near its peak, " + of, "ggx_distribution", "GGX distribution of normals",
                  "1 - cosine of the half vector", log_steps(1e-7, 1.0, 113), [=](double versine) {
                    return Arguments<float>{.a = {float(1.0 - versine), alpha, 0.0F, 0.0F}};
                  }}));
-    cases.push_back(case_of({group, "masking to grazing, " + of, "ggx_masking_over_2cos", "Smith's masking over 2 cos",
-                             "cosine", log_steps(1e-6, 1.0, 121), [=](double cosine) {
+    cases.push_back(case_of({bsdf_group, "masking to grazing, " + of, "ggx_masking_over_2cos",
+                             "Smith's masking over 2 cos", "cosine", log_steps(1e-6, 1.0, 121), [=](double cosine) {
                                return Arguments<float>{.a = {float(cosine), alpha, 0.0F, 0.0F}};
                              }}));
     cases.push_back(
-        case_of({group, "lobe to grazing, " + of, "ggx_lobe", "microfacet lobe, same view and light direction",
+        case_of({bsdf_group, "lobe to grazing, " + of, "ggx_lobe", "microfacet lobe, same view and light direction",
                  "cosine of view and light", log_steps(1e-6, 1.0, 121), [=](double cosine) {
                    return Arguments<float>{.a = {float(cosine), float(cosine), 1.0F, alpha}};
                  }}));
   }
   for (const bool is_textbook : {true, false}) {
     cases.push_back(
-        {.group = group,
+        {.group = bsdf_group,
          .name = is_textbook ? "distribution as in textbooks, alpha to 1e-6" : "distribution, alpha to ALPHA_MIN",
          .quantity = "GGX distribution of normals, 0.001 rad from its peak",
          .parameter = "alpha",
@@ -78,7 +78,7 @@ void add_bsdf_cases(std::vector<StabilityCase> &cases)
            return std::abs(given / truth - 1.0) / float_epsilon;
          })});
   }
-  cases.push_back({.group = group,
+  cases.push_back({.group = bsdf_group,
                    .name = "distribution's normalisation",
                    .quantity = "projected area of all microfacets: 1",
                    .parameter = "alpha",
@@ -102,12 +102,12 @@ void add_bsdf_cases(std::vector<StabilityCase> &cases)
                      return std::abs(sum - 1.0);
                    })});
   for (const float f0 : {0.0F, 0.04F, 1.0F}) {
-    cases.push_back(case_of({group, fmt::format("Fresnel of {:g}", f0), "fresnel_schlick", "Schlick's reflection",
+    cases.push_back(case_of({bsdf_group, fmt::format("Fresnel of {:g}", f0), "fresnel_schlick", "Schlick's reflection",
                              "cosine", even_steps(-0.001, 1.001, 101), [=](double cosine) {
                                return Arguments<float>{.a = {f0, f0, f0, 1.0F}, .b = {float(cosine), 0.0F, 0.0F, 0.0F}};
                              }}));
   }
-  cases.push_back({.group = group,
+  cases.push_back({.group = bsdf_group,
                    .name = "materials of every roughness",
                    .quantity = "alpha of material_block: roughness², in [ALPHA_MIN, 1]",
                    .parameter = "roughness",
@@ -119,7 +119,7 @@ void add_bsdf_cases(std::vector<StabilityCase> &cases)
                      return std::abs(double(alpha_of(float(roughness))) / truth - 1.0) / float_epsilon;
                    })});
   cases.push_back(
-      {.group = group,
+      {.group = bsdf_group,
        .name = "specular colours of 0 to the largest",
        .quantity = "reflection of material_block: finite, in [0, 1]",
        .parameter = "specular colour",

@@ -16,7 +16,7 @@ namespace gnomon::verify {
 
 namespace {
 
-constexpr const char *group = "depth";
+constexpr const char *depth_group = "depth";
 constexpr const char *distance_parameter = "distance, m";
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
@@ -74,7 +74,7 @@ void add_perspective_cases(std::vector<StabilityCase> &cases)
 {
   const auto add = [&](const std::string &name, bool is_baseline, double near, double far, auto error) {
     cases.push_back(
-        {.group = group,
+        {.group = depth_group,
          .name = name,
          .quantity = "distance, as a depth and back",
          .parameter = distance_parameter,
@@ -106,7 +106,7 @@ void add_matrix_cases(std::vector<StabilityCase> &cases)
     const double near = 1e-2;
     const double far = near * ratio;
     // Two roundings of the terms of z, and one of the quotient.
-    cases.push_back({.group = group,
+    cases.push_back({.group = depth_group,
                      .name = fmt::format("perspective matrix, far/near {:g}", ratio),
                      .quantity = "distance, from the depth of the matrix",
                      .parameter = distance_parameter,
@@ -118,7 +118,7 @@ void add_matrix_cases(std::vector<StabilityCase> &cases)
                        return matrix_error(matrix, float(d)) / d;
                      })});
   }
-  cases.push_back({.group = group,
+  cases.push_back({.group = depth_group,
                    .name = "perspective matrix, near to 1e-6 m",
                    .quantity = "distance of 0.7 m, from the depth of the matrix with an infinite far plane",
                    .parameter = "near plane, m",
@@ -130,7 +130,7 @@ void add_matrix_cases(std::vector<StabilityCase> &cases)
                    })});
   for (const double near : {-1e6, 0.0, 1e-6}) {
     const double far = 1e6;
-    cases.push_back({.group = group,
+    cases.push_back({.group = depth_group,
                      .name = fmt::format("orthographic matrix, near {:g} m", near),
                      .quantity = "distance, from the depth of the matrix, relative to the range",
                      .parameter = distance_parameter,
@@ -149,7 +149,7 @@ void add_other_cases(std::vector<StabilityCase> &cases)
   for (const double ratio : {10.0, 1e9}) {
     const float near = 1e-2F;
     const auto far = float(near * ratio);
-    cases.push_back({.group = group,
+    cases.push_back({.group = depth_group,
                      .name = fmt::format("parallel, far/near {:g}", ratio),
                      .quantity = "distance, as a depth and back, relative to the far plane's",
                      .parameter = distance_parameter,
@@ -162,7 +162,7 @@ void add_other_cases(std::vector<StabilityCase> &cases)
   }
   for (const int projection : {PROJECTION_PERSPECTIVE, PROJECTION_PERSPECTIVE_INFINITE}) {
     const std::string name = projection == PROJECTION_PERSPECTIVE ? "far finite" : "far infinite";
-    cases.push_back({.group = group,
+    cases.push_back({.group = depth_group,
                      .name = "behind the eye, " + name,
                      .quantity = "depth: finite and nearer than everything",
                      .parameter = "distance behind, m",
@@ -173,7 +173,7 @@ void add_other_cases(std::vector<StabilityCase> &cases)
                        const float depth = shared::depth_of_distance(float(-behind), 0.1F, 100.0F, projection);
                        return std::isfinite(depth) ? violated(depth > 1.0F) : double(depth);
                      })});
-    cases.push_back({.group = group,
+    cases.push_back({.group = depth_group,
                      .name = "cleared, " + name,
                      .quantity = "distance of depth 0: finite and larger than that of depth 1e-6",
                      .parameter = "near plane, m",
@@ -188,7 +188,7 @@ void add_other_cases(std::vector<StabilityCase> &cases)
                      })});
   }
   for (const double lambda : {0.0, 0.8, 1.0}) {
-    cases.push_back({.group = group,
+    cases.push_back({.group = depth_group,
                      .name = fmt::format("cascade splits, lambda {:g}", lambda),
                      .quantity = "ends of four slices from 1e-6 m: in order, from near to far",
                      .parameter = "far/near",

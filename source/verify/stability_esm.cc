@@ -20,7 +20,7 @@ namespace gnomon::verify {
 
 namespace {
 
-constexpr const char *group = "esm";
+constexpr const char *esm_group = "esm";
 /** Exponents, 1/m: the limits for a lamp, and 5 and 80 of the two seeds. */
 constexpr std::array<float, 5> exponents = {0.01F, 1.0F, 5.0F, 80.0F, 1e4F};
 /** Largest x with a finite exp(x) in float and in half. */
@@ -127,7 +127,7 @@ void add_filter_cases(std::vector<StabilityCase> &cases)
                        const std::string &parameter, int count, std::vector<double> steps, auto taps_at) {
     const char *form_name = form == Form::Naive ? "naive" : form == Form::Unsafe ? "unsafe log" : "safe";
     cases.push_back(
-        {.group = group,
+        {.group = esm_group,
          .name = fmt::format("{} {} {:g}/m, {}", form_name, storage_name(is_half), exponent, swept_name),
          .quantity = fmt::format("filtered distance of a layer for {} taps", count),
          .parameter = parameter,
@@ -170,7 +170,7 @@ void add_format_cases(std::vector<StabilityCase> &cases)
       }
       return worst;
     };
-    const StabilityCase common{.group = group,
+    const StabilityCase common{.group = esm_group,
                                .name = "",
                                .quantity = "visibility of a lit receiver, from a stored distance",
                                .parameter = "range of the lamp, m",
@@ -248,7 +248,7 @@ void add_variance_cases(std::vector<StabilityCase> &cases)
     };
     const auto add = [&](const std::string &name, bool is_baseline, const std::string &parameter,
                          std::vector<double> steps, std::function<double(double)> error_at) {
-      cases.push_back({.group = group,
+      cases.push_back({.group = esm_group,
                        .name = fmt::format("{} {:g}/m", name, exponent),
                        .quantity = "relative variance of exp(c z) over 32 taps",
                        .parameter = parameter,
@@ -272,10 +272,10 @@ void add_variance_cases(std::vector<StabilityCase> &cases)
   }
 }
 
-void add_visibility_cases(std::vector<StabilityCase> &cases)
+void add_esm_visibility_cases(std::vector<StabilityCase> &cases)
 {
   for (const float exponent : exponents) {
-    cases.push_back(case_of({group, fmt::format("visibility {:g}/m", exponent), "esm_visibility",
+    cases.push_back(case_of({esm_group, fmt::format("visibility {:g}/m", exponent), "esm_visibility",
                              "visibility of a receiver behind a caster at 10 m", "distance behind the caster, m",
                              log_steps(1e-6, 1e6, 121),
                              [=](double behind) {
@@ -286,7 +286,7 @@ void add_visibility_cases(std::vector<StabilityCase> &cases)
   }
   for (const float variance : {1e-6F, 1e-2F, 31.0F}) {
     cases.push_back(case_of(
-        {group, fmt::format("evsm visibility, variance {:g}", variance), "esm_variance_visibility",
+        {esm_group, fmt::format("evsm visibility, variance {:g}", variance), "esm_variance_visibility",
          "visibility by Chebyshev's bound, caster at 10 m, 80/m", "distance behind the caster, m",
          log_steps(1e-6, 1e6, 121),
          [=](double behind) {
@@ -298,13 +298,13 @@ void add_visibility_cases(std::vector<StabilityCase> &cases)
   }
   for (const float distance : {1e-3F, 1.0F, 1e6F}) {
     cases.push_back(
-        case_of({group, fmt::format("bias at {:g} m, grazing", distance), "esm_bias", "normal offset of a receiver",
+        case_of({esm_group, fmt::format("bias at {:g} m, grazing", distance), "esm_bias", "normal offset of a receiver",
                  "cosine to the lamp", log_steps(1e-6, 1.0, 121), [=](double cosine) {
                    return Arguments<float>{.a = {distance, float(cosine), 2e-3F, 0.0F}};
                  }}));
   }
   for (const eevee::EsmMethod method : {eevee::EsmMethod::Esm, eevee::EsmMethod::Evsm}) {
-    cases.push_back({.group = group,
+    cases.push_back({.group = esm_group,
                      .name = method == eevee::EsmMethod::Esm ? "derived exponent of esm" : "derived exponent of evsm",
                      .quantity = "exponent for the range, with maps of 4 to 8192 px, in [0.01, 1e4]",
                      .parameter = "range of the lamp, m",
@@ -345,7 +345,7 @@ void add_cone_cases(std::vector<StabilityCase> &cases)
     return std::atan(angle * double(norm));
   };
   for (const bool is_naive : {true, false}) {
-    cases.push_back({.group = group,
+    cases.push_back({.group = esm_group,
                      .name = is_naive ? "cone of a vector not normalised" : "cone",
                      .quantity = "opening of the filter's cone, of 0.01 rad",
                      .parameter = "angle from the map's middle to its diagonal, rad",
@@ -363,7 +363,7 @@ void add_cone_cases(std::vector<StabilityCase> &cases)
   for (const float wide : {1e-8F, 0.12F, 2.0F}) {
     for (const double pole : {1.0, -1.0}) {
       cases.push_back(case_of(
-          {group, fmt::format("cone of versine {:g} near {}Z", wide, pole > 0.0 ? '+' : '-'), "esm_cone_direction",
+          {esm_group, fmt::format("cone of versine {:g} near {}Z", wide, pole > 0.0 ? '+' : '-'), "esm_cone_direction",
            "direction in the cone", "axis' angle from the pole, rad", log_steps(1e-8, 0.5 * std::numbers::pi, 101),
            [=](double tilt) {
              return Arguments<float>{.a = {float(std::sin(tilt)), 0.0F, float(pole * std::cos(tilt)), 0.0F},
@@ -382,7 +382,7 @@ void add_esm_cases(std::vector<StabilityCase> &cases)
   add_filter_cases(cases);
   add_format_cases(cases);
   add_variance_cases(cases);
-  add_visibility_cases(cases);
+  add_esm_visibility_cases(cases);
   add_cone_cases(cases);
 }
 

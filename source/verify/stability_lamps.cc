@@ -20,7 +20,7 @@ namespace gnomon::verify {
 
 namespace {
 
-constexpr const char *group = "lamps";
+constexpr const char *lamps_group = "lamps";
 constexpr double degree = std::numbers::pi / 180.0;
 
 /** 1 - cos, without cancellation. */
@@ -47,14 +47,14 @@ void add_spot_cases(std::vector<StabilityCase> &cases)
   for (const double cone : {0.0, 1.0, 45.0, 90.0, 120.0, 179.0, 180.0}) {
     const auto drop_outer = float(one_minus_cos(0.5 * cone * degree));
     for (const float blend : {0.0F, 1e-6F, 0.5F, 1.0F}) {
-      cases.push_back(case_of({group, fmt::format("cone of {:g}°, blend {:g}", cone, blend), "spot_mask",
+      cases.push_back(case_of({lamps_group, fmt::format("cone of {:g}°, blend {:g}", cone, blend), "spot_mask",
                                "transmission of a spot's cone", "angle from the axis, rad",
                                angles_around(0.5 * cone * degree), [=](double angle) {
                                  return Arguments<float>{.a = {float(one_minus_cos(angle)), drop_outer, blend, 0.0F}};
                                }}));
     }
   }
-  cases.push_back({.group = group,
+  cases.push_back({.group = lamps_group,
                    .name = "cones of 0 to 180°, blends of 0 to 1",
                    .quantity = "transmission: finite, in [0, 1], and not rising away from the axis",
                    .parameter = "opening, degrees",
@@ -76,7 +76,7 @@ void add_spot_cases(std::vector<StabilityCase> &cases)
                      return worst;
                    })});
   for (const double cone : {1e-6, 1e-3, 0.1, 2.0, 20.0, 180.0}) {
-    cases.push_back({.group = group,
+    cases.push_back({.group = lamps_group,
                      .name = fmt::format("engine's cone of {:g}°", cone),
                      .quantity = "transmission of a spot with a blend of 1, from its entry of light_block",
                      .parameter = "angle from the axis, rad",
@@ -98,7 +98,7 @@ void add_spot_cases(std::vector<StabilityCase> &cases)
                        return std::abs(mask - t * t * (3.0 - 2.0 * t)) / float_epsilon;
                      })});
   }
-  cases.push_back({.group = group,
+  cases.push_back({.group = lamps_group,
                    .name = "spot's view, narrow to wide",
                    .quantity = "position in the map of a receiver on the cone's edge: inside",
                    .parameter = "half of the opening, rad",
@@ -122,7 +122,7 @@ void add_falloff_cases(std::vector<StabilityCase> &cases)
 {
   for (const float radius : {0.0F, 1e-4F, 1.0F}) {
     for (const float range : {0.0F, 1e-3F, 1e4F}) {
-      cases.push_back(case_of({group, fmt::format("fall-off, radius {:g} m, range {:g} m", radius, range),
+      cases.push_back(case_of({lamps_group, fmt::format("fall-off, radius {:g} m, range {:g} m", radius, range),
                                "distance_falloff", "irradiance of a lamp of 1 W/sr", "distance, m",
                                zero_and_log_steps(1e-8, 1e8, 161), [=](double distance) {
                                  return Arguments<float>{.a = {float(distance * distance), radius * radius,
@@ -130,7 +130,7 @@ void add_falloff_cases(std::vector<StabilityCase> &cases)
                                }}));
     }
   }
-  cases.push_back({.group = group,
+  cases.push_back({.group = lamps_group,
                    .name = "ranges of 1e-30 to 1e30 m",
                    .quantity = "irradiance at the lamp's position and at 1 m: finite, and equal to the closed form",
                    .parameter = "range, m",
@@ -147,7 +147,7 @@ void add_falloff_cases(std::vector<StabilityCase> &cases)
                      // The window's slope is 4 where it closes.
                      return std::max(std::abs(at_lamp / 1e12 - 1.0), std::abs(away - window));
                    })});
-  cases.push_back({.group = group,
+  cases.push_back({.group = lamps_group,
                    .name = "radii of 1e-30 to 1e12 m",
                    .quantity = "irradiance of a lamp of 1 W/sr at its own position: 1 / radius², at most 1e12",
                    .parameter = "radius, m",
@@ -161,7 +161,7 @@ void add_falloff_cases(std::vector<StabilityCase> &cases)
                      const double truth = 1.0 / std::max(std::pow(double(lamp.radius), 2.0), 1e-12);
                      return std::abs(given / truth - 1.0) / float_epsilon;
                    })});
-  cases.push_back(case_of({group, "hemi", "hemi_irradiance", "visible fraction of a uniform sky from a surface",
+  cases.push_back(case_of({lamps_group, "hemi", "hemi_irradiance", "visible fraction of a uniform sky from a surface",
                            "angle from the sky's axis, rad", even_steps(0.0, std::numbers::pi, 91), [](double angle) {
                              return Arguments<float>{.a = {float(std::cos(angle)), 0.0F, 0.0F, 0.0F}};
                            }}));
@@ -172,7 +172,7 @@ void add_count_cases(std::vector<StabilityCase> &cases)
   const std::vector<double> counts = {0, 1, 2, LIGHT_MAX - 1, LIGHT_MAX, LIGHT_MAX + 1, LIGHT_MAX + 2, 4 * LIGHT_MAX};
   for (const scene::LampKind kind : {scene::LampKind::Point, scene::LampKind::Sun, scene::LampKind::Spot}) {
     const char *name = kind == scene::LampKind::Point ? "points" : kind == scene::LampKind::Sun ? "suns" : "spots";
-    cases.push_back({.group = group,
+    cases.push_back({.group = lamps_group,
                      .name = fmt::format("0, 1, max and max+1 {}", name),
                      .quantity = "entries of light_block that differ from the lamp of their index, and lamps above the "
                                  "limit that are not named",
@@ -225,7 +225,7 @@ void add_near_cases(std::vector<StabilityCase> &cases)
 {
   constexpr float infinite = std::numeric_limits<float>::infinity();
   for (const double size : {1e-3, 1.0, 1e5}) {
-    cases.push_back({.group = group,
+    cases.push_back({.group = lamps_group,
                      .name = fmt::format("near plane before a caster of {:g} m", size),
                      .quantity =
                          "lamp's near plane: above 0, and nearer than the caster along a face's diagonal or 1e-4 "
@@ -243,7 +243,7 @@ void add_near_cases(std::vector<StabilityCase> &cases)
                                   : double(near);
                      })});
   }
-  cases.push_back({.group = group,
+  cases.push_back({.group = lamps_group,
                    .name = "lamp inside a caster's box",
                    .quantity = "distance of the nearest triangle",
                    .parameter = "distance, m",
@@ -256,7 +256,7 @@ void add_near_cases(std::vector<StabilityCase> &cases)
                      const double found = eevee::distance_to(below.caster, glm::vec3(0.0F));
                      return std::abs(found / double(float(distance)) - 1.0) / float_epsilon;
                    })});
-  cases.push_back({.group = group,
+  cases.push_back({.group = lamps_group,
                    .name = "collinear and zero-area casters",
                    .quantity = "distance of a lamp from a triangle that is a line, and a point",
                    .parameter = "length of the triangle, m",
@@ -277,7 +277,7 @@ void add_near_cases(std::vector<StabilityCase> &cases)
                      const double found = eevee::distance_to(caster, {0.0F, 1.0F, 0.0F});
                      return std::abs(found - 1.0) / float_epsilon;
                    })});
-  cases.push_back({.group = group,
+  cases.push_back({.group = lamps_group,
                    .name = "range without a caster",
                    .quantity = "lamp's near plane: above 0, before the range",
                    .parameter = "range, m",

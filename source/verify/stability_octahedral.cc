@@ -18,7 +18,7 @@ namespace gnomon::verify {
 
 namespace {
 
-constexpr const char *group = "octahedral";
+constexpr const char *octahedral_group = "octahedral";
 /**
  * Error bound, rad: coordinates near 1 are rounded to 6e-8, which is twice as much on the octahedron and up to three
  * times more on the sphere, in two axes.
@@ -62,7 +62,7 @@ void add_round_trip_cases(std::vector<StabilityCase> &cases)
 {
   const auto add = [&](const std::string &name, const std::string &parameter, std::vector<double> steps,
                        std::function<double(double)> error_at, double bound = angle_bound, bool is_baseline = false) {
-    cases.push_back({.group = group,
+    cases.push_back({.group = octahedral_group,
                      .name = name,
                      .quantity = "direction, converted to the map and back",
                      .parameter = parameter,
@@ -150,7 +150,7 @@ void add_round_trip_cases(std::vector<StabilityCase> &cases)
         },
         angle_bound, is_naive);
   }
-  cases.push_back({.group = group,
+  cases.push_back({.group = octahedral_group,
                    .name = "vectors of every length, denormal to the largest",
                    .quantity = "point of the map: in [0, 1]",
                    .parameter = "length",
@@ -171,7 +171,7 @@ void add_round_trip_cases(std::vector<StabilityCase> &cases)
 void add_texel_cases(std::vector<StabilityCase> &cases)
 {
   const std::vector<double> sizes = {1, 2, 3, 4, 7, 16, 31, 64, 257, 512, 1024, 4096, 8192, 16384};
-  cases.push_back({.group = group,
+  cases.push_back({.group = octahedral_group,
                    .name = "border of maps of 1 to 16384 px",
                    .quantity = "texel that continues the map beyond an edge or corner: inside the map, and in the "
                                "mirrored direction",
@@ -207,7 +207,7 @@ void add_texel_cases(std::vector<StabilityCase> &cases)
                      }
                      return worst;
                    })});
-  cases.push_back({.group = group,
+  cases.push_back({.group = octahedral_group,
                    .name = "solid angles of all texels",
                    .quantity = "sum of the texels' solid angles, of 4 pi",
                    .parameter = "size of the map, px",

@@ -17,7 +17,7 @@ namespace gnomon::verify {
 
 namespace {
 
-constexpr const char *group = "picture";
+constexpr const char *picture_group = "picture";
 
 }  // namespace
 
@@ -25,7 +25,7 @@ void add_picture_cases(std::vector<StabilityCase> &cases)
 {
   const std::vector<double> sizes = {1, 2, 3, 5, 16, 64, 255, 256, 1000, 1024, 1920, 4096, 8191, 8192, 16383, 16384};
   cases.push_back(
-      {.group = group,
+      {.group = picture_group,
        .name = "samples of pictures of 1 px to 16384",
        .quantity = "offset of the picture for a sample at half a pixel",
        .parameter = "width and height, px",
@@ -49,7 +49,7 @@ void add_picture_cases(std::vector<StabilityCase> &cases)
          return worst / (float_epsilon * size);
        })});
   cases.push_back(
-      {.group = group,
+      {.group = picture_group,
        .name = "pictures of any shape",
        .quantity = "camera's frame of 3:2: completely visible and as large as possible",
        .parameter = "width / height",
@@ -74,7 +74,7 @@ void add_picture_cases(std::vector<StabilityCase> &cases)
          return worst;
        })});
   const std::vector<double> counts = {1, 2, 3, 4, 5, 7, 16, 31, 64, 100, 256, 1000, 1024, 4096, 16384};
-  cases.push_back({.group = group,
+  cases.push_back({.group = picture_group,
                    .name = "pixel filter of 1 to 16384 samples",
                    .quantity = "sum of all samples' weights: 1",
                    .parameter = "samples",
@@ -97,7 +97,7 @@ void add_picture_cases(std::vector<StabilityCase> &cases)
                      }
                      return worst;
                    })});
-  cases.push_back({.group = group,
+  cases.push_back({.group = picture_group,
                    .name = "sample places of 1 to 16384 samples",
                    .quantity = "position in the pixel: in [-0.5, 0.5]",
                    .parameter = "samples",
@@ -114,15 +114,15 @@ void add_picture_cases(std::vector<StabilityCase> &cases)
                      }
                      return worst;
                    })});
-  cases.push_back(case_of({group, "sRGB from denormals to 1", "srgb_encoded", "encoded value", "linear value",
+  cases.push_back(case_of({picture_group, "sRGB from denormals to 1", "srgb_encoded", "encoded value", "linear value",
                            log_steps(1.5e-45, 1.0, 180),
                            [](double linear) { return Arguments<float>{.a = glm::vec4(float(linear))}; }}));
   for (const auto &[transform, name] :
        {std::pair(VIEW_TRANSFORM_STANDARD, "standard"), std::pair(VIEW_TRANSFORM_RAW, "raw")}) {
     for (const double sign : {-1.0, 1.0}) {
       cases.push_back(case_of(
-          {group, fmt::format("view {} of {} radiance", name, sign < 0.0 ? "negative" : "huge"), "view_transformed",
-           "displayed value", "radiance", log_steps(1e-38, 3e38, 153), [=](double radiance) {
+          {picture_group, fmt::format("view {} of {} radiance", name, sign < 0.0 ? "negative" : "huge"),
+           "view_transformed", "displayed value", "radiance", log_steps(1e-38, 3e38, 153), [=](double radiance) {
              return Arguments<float>{.a = glm::vec4(glm::vec3(float(sign * radiance)), float(transform))};
            }}));
     }
@@ -134,7 +134,7 @@ void add_picture_cases(std::vector<StabilityCase> &cases)
   for (const auto &[transform, name] :
        {std::pair(VIEW_TRANSFORM_AGX, "agx"), std::pair(VIEW_TRANSFORM_PBR_NEUTRAL, "pbr-neutral")}) {
     for (const glm::vec3 &tint : {glm::vec3(1.0F), glm::vec3(1.0F, 0.0F, 0.0F), glm::vec3(0.1F, 0.4F, 1.0F)}) {
-      cases.push_back({.group = group,
+      cases.push_back({.group = picture_group,
                        .name = fmt::format("view {} of ({:g} {:g} {:g})", name, tint.r, tint.g, tint.b),
                        .quantity = "displayed values: in [0, 1], the largest not falling",
                        .parameter = "radiance",

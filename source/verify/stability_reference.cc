@@ -19,7 +19,7 @@ namespace gnomon::verify {
 
 namespace {
 
-constexpr const char *group = "reference";
+constexpr const char *reference_group = "reference";
 /** Largest relative error of one rounding in double. */
 constexpr double rounding = 0x1p-53;
 
@@ -65,7 +65,7 @@ void add_tracer_cases(std::vector<StabilityCase> &cases)
 {
   const auto add = [&](const std::string &name, const std::string &quantity, const std::string &parameter,
                        std::vector<double> steps, double bound, std::function<double(double)> error_at) {
-    cases.push_back({.group = group,
+    cases.push_back({.group = reference_group,
                      .name = name,
                      .quantity = quantity,
                      .parameter = parameter,
@@ -128,11 +128,11 @@ void add_tracer_cases(std::vector<StabilityCase> &cases)
       });
 }
 
-void add_visibility_cases(std::vector<StabilityCase> &cases)
+void add_reference_visibility_cases(std::vector<StabilityCase> &cases)
 {
   const auto add = [&](const std::string &name, const std::string &quantity, const std::string &parameter,
                        std::vector<double> steps, std::function<double(double)> error_at) {
-    cases.push_back({.group = group,
+    cases.push_back({.group = reference_group,
                      .name = name,
                      .quantity = quantity,
                      .parameter = parameter,
@@ -183,7 +183,7 @@ void add_light_cases(std::vector<StabilityCase> &cases)
       }
       const char *name = kind == scene::LampKind::Point ? "point" : kind == scene::LampKind::Spot ? "spot" : "area";
       cases.push_back(
-          {.group = group,
+          {.group = reference_group,
            .name = fmt::format("{} lamp at a receiver, radius {:g} m", name, radius),
            .quantity = "irradiance on the lamp's axis from its centre",
            .parameter = "distance, m",
@@ -210,7 +210,7 @@ void add_light_cases(std::vector<StabilityCase> &cases)
 void add_reference_cases(std::vector<StabilityCase> &cases)
 {
   add_tracer_cases(cases);
-  add_visibility_cases(cases);
+  add_reference_visibility_cases(cases);
   add_light_cases(cases);
 }
 

@@ -23,7 +23,7 @@ namespace gnomon::verify {
 
 namespace {
 
-constexpr const char *group = "space";
+constexpr const char *space_group = "space";
 constexpr const char *offset_parameter = "world offset, m";
 using Long3 = glm::vec<3, long double>;
 
@@ -77,7 +77,7 @@ void add_normal_cases(std::vector<StabilityCase> &cases)
   const auto add = [&](const std::string &name, const std::string &parameter, std::vector<double> steps,
                        auto matrix_at) {
     cases.push_back(
-        {.group = group,
+        {.group = space_group,
          .name = "normals, " + name,
          .quantity = "world-space normal with its sign",
          .parameter = parameter,
@@ -102,7 +102,7 @@ void add_normal_cases(std::vector<StabilityCase> &cases)
   add("far away", offset_parameter, offsets(),
       [](double offset) { return glm::translate(glm::dmat4(1.0), glm::dvec3(offset, -offset, offset)); });
   for (const int rank : {0, 1, 2}) {
-    cases.push_back({.group = group,
+    cases.push_back({.group = space_group,
                      .name = fmt::format("normals, singular of rank {}", rank),
                      .quantity = rank == 2 ? "normal of the plane that the object is flattened to" : "normals: 0",
                      .parameter = "scale",
@@ -128,7 +128,7 @@ void add_normal_cases(std::vector<StabilityCase> &cases)
                        return glm::length(glm::cross(glm::normalize(z), glm::normalize(glm::dvec3(-1, 0, 1))));
                      })});
   }
-  cases.push_back({.group = group,
+  cases.push_back({.group = space_group,
                    .name = "mirrored or not",
                    .quantity = "orientation of objects that are scaled and sheared",
                    .parameter = "scale of one axis",
@@ -171,7 +171,7 @@ void add_view_cases(std::vector<StabilityCase> &cases)
 {
   for (const scene::CameraKind kind : {scene::CameraKind::Perspective, scene::CameraKind::Orthographic}) {
     const std::string name = kind == scene::CameraKind::Perspective ? "perspective" : "parallel";
-    cases.push_back({.group = group,
+    cases.push_back({.group = space_group,
                      .name = name + " camera far from the origin",
                      .quantity = "position in the picture of a point 100 m away",
                      .parameter = offset_parameter,
@@ -185,7 +185,7 @@ void add_view_cases(std::vector<StabilityCase> &cases)
                        camera.kind = kind;
                        return place_error(camera, {0.3, 0.2, -100.0}) / (float_epsilon * (1.0 + offset / 100.0));
                      })});
-    cases.push_back({.group = group,
+    cases.push_back({.group = space_group,
                      .name = name + " camera at scales of 1e-4 to 1e5",
                      .quantity = "position in the picture of a point",
                      .parameter = "scale",
@@ -201,7 +201,7 @@ void add_view_cases(std::vector<StabilityCase> &cases)
                        return place_error(camera, scale * glm::dvec3(0.3, 0.2, -5.0)) / float_epsilon;
                      })});
     for (const bool is_far : {false, true}) {
-      cases.push_back({.group = group,
+      cases.push_back({.group = space_group,
                        .name = fmt::format("culling, {}, {}", name, is_far ? "far from the origin" : "scaled"),
                        .quantity = "visible points whose spheres are culled",
                        .parameter = is_far ? offset_parameter : "scale",
@@ -241,7 +241,7 @@ void add_view_cases(std::vector<StabilityCase> &cases)
                        })});
     }
   }
-  cases.push_back({.group = group,
+  cases.push_back({.group = space_group,
                    .name = "views through singular matrices",
                    .quantity = "frustum planes of flattened, sheared, mirrored and zero views: finite",
                    .parameter = "scale of one axis",
@@ -263,7 +263,7 @@ void add_view_cases(std::vector<StabilityCase> &cases)
                      }
                      return worst;
                    })});
-  cases.push_back({.group = group,
+  cases.push_back({.group = space_group,
                    .name = "angles of a camera, 1e-6 rad to pi",
                    .quantity = "height of the frame at distance 1",
                    .parameter = "vertical angle, rad",
@@ -292,7 +292,7 @@ void add_view_cases(std::vector<StabilityCase> &cases)
 void add_bounds_cases(std::vector<StabilityCase> &cases)
 {
   cases.push_back(
-      {.group = group,
+      {.group = space_group,
        .name = "boxes far from the origin",
        .quantity = "distance of a rotated box's corners outside of its world box",
        .parameter = offset_parameter,
@@ -316,7 +316,7 @@ void add_bounds_cases(std::vector<StabilityCase> &cases)
          }
          return worst / (float_epsilon * (offset + 4.0));
        })});
-  cases.push_back({.group = group,
+  cases.push_back({.group = space_group,
                    .name = "visible part of a box around the camera, near to 1e-6 m",
                    .quantity = "camera inside geometry: the visible range is finite, in front of it and not empty",
                    .parameter = "near plane, m",
@@ -333,7 +333,7 @@ void add_bounds_cases(std::vector<StabilityCase> &cases)
                    })});
   for (const bool is_far : {false, true}) {
     cases.push_back(
-        {.group = group,
+        {.group = space_group,
          .name = fmt::format("visible part of a box, {}", is_far ? "far from the origin" : "scaled"),
          .quantity = "distance of its corners outside of the frustum and the box, relative to the box's size",
          .parameter = is_far ? offset_parameter : "scale",

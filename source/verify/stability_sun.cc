@@ -18,7 +18,7 @@ namespace gnomon::verify {
 
 namespace {
 
-constexpr const char *group = "sun";
+constexpr const char *sun_group = "sun";
 constexpr int size_px = 1024;
 
 /** A sun with \a elevation above the horizon, rad. +Y is up. */
@@ -111,7 +111,7 @@ void add_sun_cases(std::vector<StabilityCase> &cases)
 {
   for (const double elevation : {1e-6, 0.1, 0.5 * std::numbers::pi}) {
     const std::string of = fmt::format("sun at {:.3g} rad", elevation);
-    cases.push_back({.group = group,
+    cases.push_back({.group = sun_group,
                      .name = "scene at scales of 1e-4 to 1e5, " + of,
                      .quantity = "distance of casters outside of their map",
                      .parameter = "scale",
@@ -122,7 +122,7 @@ void add_sun_cases(std::vector<StabilityCase> &cases)
                        const Field field(glm::dvec3(0.0), scale, 0.1 * scale, 1e3 * scale);
                        return outside_of(field.fits(elevation, 1).at(0), field.casters);
                      })});
-    cases.push_back({.group = group,
+    cases.push_back({.group = sun_group,
                      .name = "texels at scales of 1e-4 to 1e5, " + of,
                      .quantity = "texel relative to that of scale 1: extents are rounded to steps of 2^(1/8)",
                      .parameter = "scale",
@@ -136,7 +136,7 @@ void add_sun_cases(std::vector<StabilityCase> &cases)
                        };
                        return std::abs(std::log2(texel_at(scale) / scale / texel_at(1.0)));
                      })});
-    cases.push_back({.group = group,
+    cases.push_back({.group = sun_group,
                      .name = "scene at world offsets, " + of,
                      .quantity = "distance of casters outside of their map",
                      .parameter = "world offset, m",
@@ -151,7 +151,7 @@ void add_sun_cases(std::vector<StabilityCase> &cases)
                        return outside_of(field.fits(elevation, 1).at(0), field.casters);
                      })});
   }
-  cases.push_back({.group = group,
+  cases.push_back({.group = sun_group,
                    .name = "elevations of 1e-9 to 90°",
                    .quantity = "all maps: finite, with texels above 0",
                    .parameter = "elevation, rad",
@@ -163,7 +163,7 @@ void add_sun_cases(std::vector<StabilityCase> &cases)
                      return violated(!fits.empty() && std::ranges::all_of(fits, is_finite));
                    })});
   cases.push_back(
-      {.group = group,
+      {.group = sun_group,
        .name = "views of any depth",
        .quantity = "cascades: finite, from fine to coarse, the last one around the whole scene",
        .parameter = "far/near",
@@ -187,7 +187,7 @@ void add_sun_cases(std::vector<StabilityCase> &cases)
        })});
   for (const bool is_flat : {false, true}) {
     cases.push_back(
-        {.group = group,
+        {.group = sun_group,
          .name = is_flat ? "flat casters" : "casters of a point",
          .quantity = "map of a caster without height or size above its receiver: finite, and contains the caster",
          .parameter = is_flat ? "size of the caster, m" : "distance above the receiver, m",

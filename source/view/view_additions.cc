@@ -22,7 +22,7 @@ using scene::Scene;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /** A square of four vertices around \a center; \a x and \a y are half its edges, and it faces where x and y turn. */
 void add_square(Mesh &mesh, const glm::vec3 &center, const glm::vec3 &x, const glm::vec3 &y)

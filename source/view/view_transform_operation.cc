@@ -13,7 +13,7 @@ namespace gnomon::view {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 /** The pointer's distances from a node below it, in pixels, are not used as a factor. */
 constexpr double distance_min_px = 4.0;
 

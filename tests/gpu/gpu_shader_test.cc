@@ -7,8 +7,7 @@ namespace {
 using test::error_of;
 using test::expect_contains;
 using test::ShaderTexts;
-
-const std::string VERSION = "#version 450 core\n";
+using test::VERSION;
 
 std::string preprocessed(const ShaderTexts &texts, std::vector<std::string> defines = {})
 {

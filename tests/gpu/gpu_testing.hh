@@ -37,6 +37,9 @@ inline void expect_contains(std::string_view text, std::string_view part)
   EXPECT_NE(text.find(part), std::string_view::npos) << "'" << part << "' is not in:\n" << text;
 }
 
+/** The first line of a complete shader file. */
+inline const std::string VERSION = "#version 450 core\n";
+
 /** Shader files of a test, with the program's as a fallback. */
 struct ShaderTexts {
   std::map<std::string, std::string, std::less<>> texts;

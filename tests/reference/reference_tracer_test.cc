@@ -48,16 +48,16 @@ double hit_in_long_double(const Ray &ray, const std::array<glm::dvec3, 3> &corne
   return inside > 0.0L && t >= 0.0L ? double(t) : std::numeric_limits<double>::infinity();
 }
 
-struct Place {
+struct TracerPlace {
   double offset;
   double scale;
 };
 
-class TracerPlaceTest : public testing::TestWithParam<Place> {};
+class TracerPlaceTest : public testing::TestWithParam<TracerPlace> {};
 
 TEST_P(TracerPlaceTest, NearestHitEqualsThatInLongDouble)
 {
-  const Place place = GetParam();
+  const TracerPlace place = GetParam();
   std::mt19937 random(7);
   // Large and tiny triangles together. Float boxes must not lose any.
   std::vector<glm::vec3> corners;
@@ -106,8 +106,8 @@ TEST_P(TracerPlaceTest, NearestHitEqualsThatInLongDouble)
 }
 
 INSTANTIATE_TEST_SUITE_P(Places, TracerPlaceTest,
-                         testing::Values(Place{0.0, 1.0}, Place{0.0, 1e-4}, Place{0.0, 1e5}, Place{1048576.0, 1.0},
-                                         Place{1048576.0, 1e-2}));
+                         testing::Values(TracerPlace{0.0, 1.0}, TracerPlace{0.0, 1e-4}, TracerPlace{0.0, 1e5},
+                                         TracerPlace{1048576.0, 1.0}, TracerPlace{1048576.0, 1e-2}));
 
 TEST(Tracer, RaysDoNotSlipBetweenTrianglesThatShareAnEdge)
 {

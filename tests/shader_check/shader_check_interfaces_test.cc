@@ -11,8 +11,7 @@ namespace {
 using test::error_of;
 using test::expect_contains;
 using test::ShaderTexts;
-
-const std::string VERSION = "#version 450 core\n";
+using test::VERSION;
 
 /** Entries of the program "test" with the stage \a vertex, one for each list of defines, with keys from 0. */
 std::vector<VariantInterfaces> interfaces(const std::string &vertex,

@@ -18,8 +18,8 @@ namespace {
 using test::error_of;
 using test::expect_contains;
 using test::ShaderTexts;
+using test::VERSION;
 
-const std::string VERSION = "#version 450 core\n";
 const std::string EMPTY_MAIN = VERSION + "void main() {}\n";
 
 /** Reflects a program of \a vertex, a complete file, and an empty fragment stage. */

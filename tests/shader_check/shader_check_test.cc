@@ -13,8 +13,8 @@ namespace {
 
 using test::expect_contains;
 using test::ShaderTexts;
+using test::VERSION;
 
-const std::string VERSION = "#version 450 core\n";
 /** The caller's text begins in line 2. */
 const std::string COLOR = "layout(location = 0) out vec4 color; ";
 

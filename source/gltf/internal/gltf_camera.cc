@@ -25,7 +25,7 @@ using scene::PlacedLamp;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /** Describes an invalid number of a camera; empty if there is none. Checks the floats that will be used. */
 std::string camera_fault(const Camera &camera)

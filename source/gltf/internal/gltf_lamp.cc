@@ -23,7 +23,7 @@ using scene::ShadowKind;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 /** Angles may have been rounded to float. */
 constexpr double angle_tolerance = 1e-6;
 /** Smallest half angle of a cone, rad. For smaller angles 1 - cos would underflow in float. */

@@ -24,7 +24,7 @@ namespace {
  * Limit of texels. Millions of texels may be compressed to a few kilobytes, so the size of the file does not limit
  * them.
  */
-constexpr std::uint64_t texel_count_max = std::uint64_t(1) << 27U;
+constexpr std::uint64_t scene_texel_count_max = std::uint64_t(1) << 27U;
 
 /** Reads one sampler. Unknown values are replaced by those of a texture without a sampler. */
 class SamplerReader {
@@ -119,9 +119,9 @@ Handle<Texture> TextureImporter::roughness_of(int gltf_texture, double glossines
   const auto decoded = std::ranges::find(pending_, source, &Pending::handle);
   if (decoded != pending_.end()) {
     const std::uint64_t texel_count = decoded->decoder.texel_count();
-    if (texel_count > texel_count_max - texel_count_) {
+    if (texel_count > scene_texel_count_max - texel_count_) {
       throw Fault("its image", "is too large for an image of roughness: all images together may have " +
-                                   std::to_string(texel_count_max) + " texels");
+                                   std::to_string(scene_texel_count_max) + " texels");
     }
     texel_count_ += texel_count;
   }
@@ -166,7 +166,7 @@ Handle<Image> TextureImporter::import_image(int gltf_image)
   const Model::Image &source = file_.model.images[gltf_image];
   const std::string what = label("image", source.name, static_cast<std::size_t>(gltf_image));
   EncodedImage encoded = encoded_image(file_, source, what);
-  ImageDecoder decoder(encoded.bytes, what, texel_count_max - texel_count_);
+  ImageDecoder decoder(encoded.bytes, what, scene_texel_count_max - texel_count_);
   texel_count_ += decoder.texel_count();
   const Handle<Image> handle =
       scene_.add(Image{source.name.empty() ? "image " + std::to_string(gltf_image) : source.name, 1, 1, {0, 0, 0, 0}});

@@ -22,6 +22,11 @@ void check_finite(double value, std::string_view what)
 
 }  // namespace
 
+std::string what_of(const char *kind, const std::string &name)
+{
+  return std::string(kind) + " '" + printable(name) + '\'';
+}
+
 std::string json_string(std::string_view text, std::string_view what)
 {
   constexpr std::size_t size_max = 1024;

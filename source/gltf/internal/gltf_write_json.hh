@@ -11,6 +11,9 @@
 /** JSON text. Internal to source/gltf. */
 namespace gnomon::gltf {
 
+/** The kind and the name of a thing of the scene, for messages. */
+[[nodiscard]] std::string what_of(const char *kind, const std::string &name);
+
 /** A quoted string. \throws Fault that names \a what if \a text is not UTF-8 or has more than 1024 bytes. */
 [[nodiscard]] std::string json_string(std::string_view text, std::string_view what);
 

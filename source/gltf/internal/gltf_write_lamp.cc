@@ -19,12 +19,7 @@ using scene::LampShadow;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
-std::string what_of(const char *kind, const std::string &name)
-{
-  return std::string(kind) + " '" + printable(name) + '\'';
-}
+using std::numbers::pi;
 
 std::string quoted_word(std::string_view word)
 {

@@ -24,11 +24,6 @@ using scene::TextureWrap;
 
 namespace {
 
-std::string what_of(const char *kind, const std::string &name)
-{
-  return std::string(kind) + " '" + printable(name) + '\'';
-}
-
 /** The name that the importer gives to a primitive without a name. */
 std::string derived_name(const std::string &mesh_name, std::size_t primitive, std::size_t primitive_count)
 {

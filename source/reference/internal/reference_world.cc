@@ -11,7 +11,7 @@ namespace gnomon::reference {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double luminance(const glm::dvec3 &color)
 {

@@ -15,7 +15,7 @@ namespace {
 using test::Picture;
 using test::Renderer;
 
-constexpr float PI = std::numbers::pi_v<float>;
+using std::numbers::pi;
 
 class EngineGpuTest : public test::GpuDeviceTest {
  protected:
@@ -46,7 +46,7 @@ TEST_F(EngineGpuTest, SunIsAlbedoOverPiTimesCosine)
   add_square({0, 0, 0}, {0, 0, 1}, 10.0F, square);
   test::add_lamp(scene, scene::LampKind::Sun, {}, {0, std::sin(0.7F), -std::cos(0.7F)}, 3.0F);
   const glm::vec4 pixel = render(above).middle();
-  const float expected = 3.0F * std::cos(0.7F) / PI;
+  const float expected = 3.0F * std::cos(0.7F) / float(pi);
   EXPECT_NEAR(pixel.r, 0.8F * expected, 1e-5F);
   EXPECT_NEAR(pixel.g, 0.4F * expected, 1e-5F);
   EXPECT_NEAR(pixel.b, 0.2F * expected, 1e-5F);
@@ -61,9 +61,9 @@ TEST_F(EngineGpuTest, PointFallsWithTheSquareOfTheDistance)
   const glm::vec3 to_lamp = glm::vec3(1, 0, 2) - glm::vec3(half_pixel, half_pixel, 0);
   const float d2 = glm::dot(to_lamp, to_lamp);
   const float cosine = 2.0F / std::sqrt(d2);
-  EXPECT_NEAR(render(above).middle().r, 0.8F / PI * 50.0F * cosine / d2, 2e-3F);
+  EXPECT_NEAR(render(above).middle().r, 0.8F / float(pi) * 50.0F * cosine / d2, 2e-3F);
   scene.edit(lamp, [&](scene::Lamp &value) { value.radius = 0.5F; });
-  EXPECT_NEAR(render(above).middle().r, 0.8F / PI * 50.0F * cosine / (d2 + 0.25F), 2e-3F);
+  EXPECT_NEAR(render(above).middle().r, 0.8F / float(pi) * 50.0F * cosine / (d2 + 0.25F), 2e-3F);
 }
 
 TEST_F(EngineGpuTest, SpotIsMaskedByItsCone)
@@ -74,7 +74,7 @@ TEST_F(EngineGpuTest, SpotIsMaskedByItsCone)
   scene.edit(lamp, [&](scene::Lamp &value) { value.spot_blend = 0.0F; });
   const scene::PlacedCamera wide = test::camera_at({0, 0, 5}, {0, 0, 0}, 1.0F);
   const Picture picture = render(wide, {}, {128, 128});
-  const float plain = 0.8F / PI * 50.0F / 16.0F;
+  const float plain = 0.8F / float(pi) * 50.0F / 16.0F;
   EXPECT_NEAR(picture.middle().r, plain, 2e-2F * plain);
   const float pixel_m = 2.0F * 5.0F * std::tan(0.5F) / 128.0F;
   const auto edge_px = int(4.0F * std::tan(0.3F) / pixel_m);
@@ -89,7 +89,7 @@ TEST_F(EngineGpuTest, HemiLightsByTheTiltedSky)
     test::remove_lamps(scene);
     add_square({0, 0, 0}, {0, 0, 1}, 10.0F, square);
     test::add_lamp(scene, scene::LampKind::Hemi, {}, {std::sin(tilt), 0, -std::cos(tilt)}, 2.0F);
-    EXPECT_NEAR(render(above).middle().r, 0.8F / PI * 2.0F * (0.5F + 0.5F * std::cos(tilt)), 1e-5F) << tilt;
+    EXPECT_NEAR(render(above).middle().r, 0.8F / float(pi) * 2.0F * (0.5F + 0.5F * std::cos(tilt)), 1e-5F) << tilt;
   }
 }
 
@@ -99,8 +99,8 @@ TEST_F(EngineGpuTest, LightsAddUp)
   for (int i = 0; i < LIGHT_MAX; i++) {
     test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, 0.1F);
   }
-  EXPECT_NEAR(render(above, {.shadow = {.kind = scene::ShadowKind::None}}).middle().r, 0.8F / PI * 0.1F * LIGHT_MAX,
-              1e-3F);
+  EXPECT_NEAR(render(above, {.shadow = {.kind = scene::ShadowKind::None}}).middle().r,
+              0.8F / float(pi) * 0.1F * LIGHT_MAX, 1e-3F);
 }
 
 TEST_F(EngineGpuTest, EmissionIsVisibleWithoutLamps)
@@ -117,7 +117,7 @@ TEST_F(EngineGpuTest, BothSidesOfATwoSidedSurfaceAreLitFromTheirSide)
 {
   add_square({0, 0, 0}, {0, 0, -1}, 10.0F, square);
   test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, 1.0F);
-  EXPECT_NEAR(render(above).middle().r, 0.8F / PI, 1e-5F);
+  EXPECT_NEAR(render(above).middle().r, 0.8F / float(pi), 1e-5F);
 }
 
 TEST_F(EngineGpuTest, BackOfAOneSidedSurfaceIsInvisible)
@@ -138,11 +138,11 @@ TEST_F(EngineGpuTest, FrontOfTwoOneSidedSurfacesBackToBackIsVisible)
     test::remove_objects(scene);
     for (const bool is_front : {is_front_first, !is_front_first}) {
       // A rotation by 180° around Y keeps the vertices in the plane and shows the back.
-      const glm::mat4 turn = glm::rotate(glm::mat4(1.0F), is_front ? 0.0F : PI, glm::vec3(0, 1, 0));
+      const glm::mat4 turn = glm::rotate(glm::mat4(1.0F), is_front ? 0.0F : float(pi), glm::vec3(0, 1, 0));
       test::add_object(scene, is_front ? square : green, turn);
     }
     const glm::vec4 pixel = render(above, {.shadow = {.kind = scene::ShadowKind::None}}).middle();
-    EXPECT_NEAR(pixel.r, 0.8F / PI, 1e-4F) << "the red front " << (is_front_first ? "first" : "last");
+    EXPECT_NEAR(pixel.r, 0.8F / float(pi), 1e-4F) << "the red front " << (is_front_first ? "first" : "last");
   }
 }
 
@@ -273,7 +273,7 @@ TEST_F(ShadowGpuTest, APlaneDoesNotDarkenItselfAtAnyAngle)
     for (const float degrees : {0.5F, 1.0F, 3.0F, 10.0F, 30.0F, 45.0F, 60.0F, 89.0F, 90.0F}) {
       test::remove_objects(scene);
       test::remove_lamps(scene);
-      const float elevation = degrees * PI / 180.0F;
+      const float elevation = degrees * float(pi) / 180.0F;
       const glm::vec3 to_lamp(std::cos(elevation) * 0.6F, std::cos(elevation) * 0.8F, std::sin(elevation));
       add_square({0, 0, 0}, {0, 0, 1}, 4.0F, square);
       // Without a caster above, the sun would have no map. Its shadow falls outside of the picture.

@@ -18,7 +18,7 @@
 namespace gnomon::eevee {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(SobolPoint, OneOfEachAlignedPowerOfTwoIsInEachCell)
 {

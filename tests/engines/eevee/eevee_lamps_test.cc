@@ -10,7 +10,7 @@
 namespace gnomon::eevee {
 namespace {
 
-scene::PlacedLamp lamp_of(scene::LampKind kind)
+scene::PlacedLamp unit_lamp(scene::LampKind kind)
 {
   scene::PlacedLamp lamp;
   lamp.name = "lamp";
@@ -23,7 +23,7 @@ scene::PlacedLamp lamp_of(scene::LampKind kind)
 
 TEST(LightData, ShinesAlongTheLampsMinusZ)
 {
-  scene::PlacedLamp lamp = lamp_of(scene::LampKind::Spot);
+  scene::PlacedLamp lamp = unit_lamp(scene::LampKind::Spot);
   lamp.world_from_lamp =
       lamp.world_from_lamp * glm::rotate(glm::dmat4(1.0), 0.5 * 3.14159265358979, glm::dvec3(1, 0, 0));
   const shared::LightData light = light_data(lamp);
@@ -36,14 +36,14 @@ TEST(LightData, ShinesAlongTheLampsMinusZ)
 // hazards.md: a lamp without a shadow was looked up at index -1.
 TEST(LightData, HasNoShadowByDefault)
 {
-  const shared::LightData light = light_data(lamp_of(scene::LampKind::Point));
+  const shared::LightData light = light_data(unit_lamp(scene::LampKind::Point));
   EXPECT_EQ(light.shadow_kind, SHADOW_NONE);
   EXPECT_EQ(light.shadow_index, -1);
 }
 
 TEST(LightData, IsFiniteForEveryRange)
 {
-  scene::PlacedLamp lamp = lamp_of(scene::LampKind::Point);
+  scene::PlacedLamp lamp = unit_lamp(scene::LampKind::Point);
   for (const float range : {1e-45F, 1e-30F, 1.0F, 1e30F}) {
     lamp.range = range;
     const shared::LightData light = light_data(lamp);
@@ -56,7 +56,7 @@ TEST(LightData, IsFiniteForEveryRange)
 TEST(Lamps, AreaLampsAreScaledByTheirNode)
 {
   std::vector<scene::PlacedLamp> placed;
-  placed = {lamp_of(scene::LampKind::Area)};
+  placed = {unit_lamp(scene::LampKind::Area)};
   placed[0].area_shape = scene::AreaShape::Ellipse;
   placed[0].area_size_x = 3.0F;
   placed[0].area_size_y = 2.0F;
@@ -73,7 +73,7 @@ TEST(Lamps, AreaLampsAreScaledByTheirNode)
 TEST(Lamps, AreaLampsWithoutAreaAreNamedAndLeftOut)
 {
   std::vector<scene::PlacedLamp> placed;
-  placed = {lamp_of(scene::LampKind::Area), lamp_of(scene::LampKind::Sun)};
+  placed = {unit_lamp(scene::LampKind::Area), unit_lamp(scene::LampKind::Sun)};
   placed[0].scale.y = 0.0;
   const Lamps lamps = make_lamps(placed);
   EXPECT_EQ(lamps.light_block.light_count, 1);
@@ -85,7 +85,7 @@ TEST(Lamps, AreaLampsWithoutAreaAreNamedAndLeftOut)
 TEST(Lamps, ScaleMakesASpotsConeElliptical)
 {
   std::vector<scene::PlacedLamp> placed;
-  placed = {lamp_of(scene::LampKind::Spot)};
+  placed = {unit_lamp(scene::LampKind::Spot)};
   placed[0].scale = {3.0, 3.0, 3.0};
   EXPECT_EQ(make_lamps(placed).features, Feature::Light | Feature::Punctual);
   placed[0].scale = {2.0, 0.5, 1.0};
@@ -107,7 +107,7 @@ TEST(Lamps, ScaleMakesASpotsConeElliptical)
 TEST(Lamps, LampsShadedAsPointsHaveNoExtent)
 {
   std::vector<scene::PlacedLamp> placed;
-  placed = {lamp_of(scene::LampKind::Point), lamp_of(scene::LampKind::Sun), lamp_of(scene::LampKind::Area)};
+  placed = {unit_lamp(scene::LampKind::Point), unit_lamp(scene::LampKind::Sun), unit_lamp(scene::LampKind::Area)};
   placed[0].radius = 0.5F;
   placed[1].angle = 0.2F;
   const Lamps whole = make_lamps(placed, LampShading::Whole);
@@ -124,7 +124,7 @@ TEST(Lamps, LampsShadedAsPointsHaveNoExtent)
 TEST(Lamps, SizedLampsAreDrawnWithoutAWarning)
 {
   std::vector<scene::PlacedLamp> placed;
-  placed = {lamp_of(scene::LampKind::Point), lamp_of(scene::LampKind::Sun)};
+  placed = {unit_lamp(scene::LampKind::Point), unit_lamp(scene::LampKind::Sun)};
   placed[0].radius = 0.5F;
   placed[1].angle = 0.1F;
   const Lamps lamps = make_lamps(placed);
@@ -136,7 +136,7 @@ TEST(Lamps, SizedLampsAreDrawnWithoutAWarning)
 TEST(Lamps, BlackLampsHaveNoEntry)
 {
   std::vector<scene::PlacedLamp> placed;
-  placed = {lamp_of(scene::LampKind::Sun), lamp_of(scene::LampKind::Point)};
+  placed = {unit_lamp(scene::LampKind::Sun), unit_lamp(scene::LampKind::Point)};
   placed[0].intensity = 0.0F;
   placed[1].color = glm::vec3(0.0F);
   const Lamps lamps = make_lamps(placed);
@@ -147,11 +147,11 @@ TEST(Lamps, BlackLampsHaveNoEntry)
 TEST(Lamps, FeaturesAreThoseOfTheKinds)
 {
   std::vector<scene::PlacedLamp> placed;
-  placed = {lamp_of(scene::LampKind::Sun)};
+  placed = {unit_lamp(scene::LampKind::Sun)};
   EXPECT_EQ(make_lamps(placed).features, Feature::Light);
-  placed = {lamp_of(scene::LampKind::Hemi)};
+  placed = {unit_lamp(scene::LampKind::Hemi)};
   EXPECT_EQ(make_lamps(placed).features, Feature::Light);
-  placed = {lamp_of(scene::LampKind::Spot)};
+  placed = {unit_lamp(scene::LampKind::Spot)};
   EXPECT_EQ(make_lamps(placed).features, Feature::Light | Feature::Punctual);
 }
 
@@ -160,7 +160,7 @@ TEST(Lamps, LampAboveTheLimitIsNamedAndTheOthersAreUnchanged)
 {
   std::vector<scene::PlacedLamp> placed;
   for (int i = 0; i <= LIGHT_MAX; i++) {
-    placed.push_back(lamp_of(scene::LampKind::Point));
+    placed.push_back(unit_lamp(scene::LampKind::Point));
     placed.back().name = "lamp" + std::to_string(i);
     placed.back().intensity = float(i + 1);
   }
@@ -184,7 +184,7 @@ TEST(Lamps, LampsWithCubesAreBeforeTheOthers)
   using enum scene::LampKind;
   const std::vector<scene::LampKind> kinds = {Sun, Point, Hemi, Area, Spot, Point, Spot};
   for (std::size_t i = 0; i < kinds.size(); i++) {
-    placed.push_back(lamp_of(kinds[i]));
+    placed.push_back(unit_lamp(kinds[i]));
     placed.back().radius = 0.5F + float(i);
   }
   placed[5].intensity = 0.0F;
@@ -213,7 +213,7 @@ TEST(Lamps, LampsWithCubesAreBeforeTheOthers)
 TEST(Lamps, SpotThatItsScaleMakesWideHasACube)
 {
   std::vector<scene::PlacedLamp> placed;
-  placed = {lamp_of(scene::LampKind::Sun), lamp_of(scene::LampKind::Spot)};
+  placed = {unit_lamp(scene::LampKind::Sun), unit_lamp(scene::LampKind::Spot)};
   placed[1].spot_outer_angle = 0.9F;
   EXPECT_EQ(make_lamps(placed).light_block.cube_light_count, 0);
   placed[1].scale = {3.0, 1.0, 1.0};

@@ -19,7 +19,7 @@ using test::Picture;
 using test::Renderer;
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr float PI = std::numbers::pi_v<float>;
+using std::numbers::pi;
 
 /** A white Lambertian square that fills the view, and a sun that lights it with radiance 1. */
 class MaterialGpuTest : public test::GpuDeviceTest {
@@ -36,7 +36,7 @@ class MaterialGpuTest : public test::GpuDeviceTest {
   }
   void add_sun(const glm::vec3 &forward = {0, 0, -1})
   {
-    test::add_lamp(scene, scene::LampKind::Sun, {}, forward, PI);
+    test::add_lamp(scene, scene::LampKind::Sun, {}, forward, float(pi));
   }
   template <typename Change>
   void edit(Change &&change)
@@ -73,13 +73,6 @@ class MaterialGpuTest : public test::GpuDeviceTest {
   scene::PlacedCamera camera = test::camera_at({0.1, 0.1, 16}, {0.1, 0.1, 0}, 0.05F);
 };
 
-void expect_near(const glm::vec3 &value, const glm::vec3 &expected, float tolerance)
-{
-  for (int i = 0; i < 3; i++) {
-    EXPECT_NEAR(value[i], expected[i], tolerance) << "channel " << i;
-  }
-}
-
 /** Tolerance of llvmpipe's filter and its sRGB table. */
 constexpr float texel_tolerance = 3e-3F;
 
@@ -88,8 +81,8 @@ TEST_F(MaterialGpuTest, VertexColoursMultiplyTheBaseColour)
   add_sun();
   edit([](scene::Material &value) { value.base_color = {1.0F, 0.5F, 0.25F}; });
   scene.edit(mesh, [](scene::Mesh &value) { value.colors.assign(4, {0.5F, 0.25F, 1.0F, 1.0F}); });
-  expect_near(middle(), {0.5F, 0.125F, 0.25F}, 1e-4F);
-  expect_near(reference_middle(), {0.5F, 0.125F, 0.25F}, 1e-5F);
+  test::expect_near(middle(), {0.5F, 0.125F, 0.25F}, 1e-4F);
+  test::expect_near(reference_middle(), {0.5F, 0.125F, 0.25F}, 1e-5F);
 }
 
 TEST_F(MaterialGpuTest, VertexAlphaCutsAMaskAndItsShadow)
@@ -100,8 +93,8 @@ TEST_F(MaterialGpuTest, VertexAlphaCutsAMaskAndItsShadow)
   const auto ground = test::add_material(scene, glm::vec3(0.5F));
   test::add_object(scene, test::add_square_mesh(scene, ground),
                    glm::translate(glm::scale(glm::dmat4(1.0), glm::dvec3(4.0)), glm::dvec3(0, 0, -0.5)));
-  expect_near(middle(), glm::vec3(0.5F), 1e-4F);
-  expect_near(reference_middle(), glm::vec3(0.5F), 1e-5F);
+  test::expect_near(middle(), glm::vec3(0.5F), 1e-4F);
+  test::expect_near(reference_middle(), glm::vec3(0.5F), 1e-5F);
 }
 
 TEST_F(MaterialGpuTest, EachSlotHasItsOwnSetAndTransform)
@@ -109,15 +102,15 @@ TEST_F(MaterialGpuTest, EachSlotHasItsOwnSetAndTransform)
   add_sun();
   const auto halves = texture({255, 0, 0, 255, 0, 255, 0, 255});
   edit([&](scene::Material &value) { value.base_color_texture = halves; });
-  expect_near(middle(), {0, 1, 0}, texel_tolerance);
+  test::expect_near(middle(), {0, 1, 0}, texel_tolerance);
   edit([](scene::Material &value) { value.base_color_texture.offset.x = 0.5F; });
-  expect_near(middle(), {1, 0, 0}, texel_tolerance);
-  expect_near(reference_middle(), {1, 0, 0}, 1e-5F);
+  test::expect_near(middle(), {1, 0, 0}, texel_tolerance);
+  test::expect_near(reference_middle(), {1, 0, 0}, 1e-5F);
   edit([](scene::Material &value) { value.base_color_texture.uv_set = 1; });
-  expect_near(middle(), {1, 0, 0}, texel_tolerance);
+  test::expect_near(middle(), {1, 0, 0}, texel_tolerance);
   edit([](scene::Material &value) { value.base_color_texture.offset.x = 0.0F; });
-  expect_near(middle(), {0, 1, 0}, texel_tolerance);
-  expect_near(reference_middle(), {0, 1, 0}, 1e-5F);
+  test::expect_near(middle(), {0, 1, 0}, texel_tolerance);
+  test::expect_near(reference_middle(), {0, 1, 0}, 1e-5F);
 }
 
 TEST_F(MaterialGpuTest, EmissiveTextureMultipliesTheFactorAlsoWithoutLight)
@@ -126,8 +119,8 @@ TEST_F(MaterialGpuTest, EmissiveTextureMultipliesTheFactorAlsoWithoutLight)
     value.emissive = {2.0F, 1.0F, 1.0F};
     value.emissive_texture = texture({255, 0, 255, 255});
   });
-  expect_near(middle(), {2, 0, 1}, 2 * texel_tolerance);
-  expect_near(reference_middle(), {2, 0, 1}, 1e-5F);
+  test::expect_near(middle(), {2, 0, 1}, 2 * texel_tolerance);
+  test::expect_near(reference_middle(), {2, 0, 1}, 1e-5F);
 }
 
 TEST_F(MaterialGpuTest, MetallicRoughnessTexturesAreLinearAndMultiplyTheFactors)
@@ -148,8 +141,8 @@ TEST_F(MaterialGpuTest, MetallicRoughnessTexturesAreLinearAndMultiplyTheFactors)
     value.roughness = 0.8F;
     value.metallic_roughness_texture = texture({7, 128, 204, 255});
   });
-  expect_near(middle(), expected, texel_tolerance);
-  expect_near(reference_middle(), expected, texel_tolerance);
+  test::expect_near(middle(), expected, texel_tolerance);
+  test::expect_near(reference_middle(), expected, texel_tolerance);
 }
 
 TEST_F(MaterialGpuTest, SpecularTexturesMultiplyTheFactors)
@@ -169,31 +162,31 @@ TEST_F(MaterialGpuTest, SpecularTexturesMultiplyTheFactors)
     value.specular_texture = texture({0, 0, 0, 128});
     value.specular_color_texture = texture({255, 188, 255, 255});
   });
-  expect_near(middle(), half, 0.01F * half.r + 1e-4F);
-  expect_near(reference_middle(), half, 0.01F * half.r + 1e-4F);
+  test::expect_near(middle(), half, 0.01F * half.r + 1e-4F);
+  test::expect_near(reference_middle(), half, 0.01F * half.r + 1e-4F);
 }
 
 /** A normal tilted by 45 degrees towards +X, and a sun from +X at 45 degrees, which it faces. */
 TEST_F(MaterialGpuTest, NormalTextureTurnsTheNormalInTheTangentFrame)
 {
   add_sun({-1, 0, -1});
-  expect_near(middle(), glm::vec3(std::sqrt(0.5F)), 1e-3F);
+  test::expect_near(middle(), glm::vec3(std::sqrt(0.5F)), 1e-3F);
   const auto tilted = texture({218, 128, 218, 255});
   edit([&](scene::Material &value) { value.normal_texture = tilted; });
   scene.edit(mesh,
              [&](scene::Mesh &value) { scene::make_tangents(value, scene.materials()[material].normal_texture); });
-  expect_near(middle(), glm::vec3(1.0F), 1e-3F);
-  expect_near(reference_middle(), glm::vec3(1.0F), 1e-3F);
+  test::expect_near(middle(), glm::vec3(1.0F), 1e-3F);
+  test::expect_near(reference_middle(), glm::vec3(1.0F), 1e-3F);
   // Tilted away from the sun: orthogonal to it.
   edit([](scene::Material &value) { value.normal_scale = -1.0F; });
-  expect_near(middle(), glm::vec3(0.0F), 0.02F);
-  expect_near(reference_middle(), glm::vec3(0.0F), 0.02F);
+  test::expect_near(middle(), glm::vec3(0.0F), 0.02F);
+  test::expect_near(reference_middle(), glm::vec3(0.0F), 0.02F);
   // A mirrored object mirrors its image: the normal is still tilted along the image's u, which now points to -X.
   edit([](scene::Material &value) { value.normal_scale = 1.0F; });
   const auto node = scene.nodes().first();
   scene.set_transform(node, glm::scale(glm::dmat4(1.0), {-4.0, 4.0, 4.0}));
-  expect_near(middle(), glm::vec3(0.0F), 0.02F);
-  expect_near(reference_middle(), glm::vec3(0.0F), 0.02F);
+  test::expect_near(middle(), glm::vec3(0.0F), 0.02F);
+  test::expect_near(reference_middle(), glm::vec3(0.0F), 0.02F);
 }
 
 TEST_F(MaterialGpuTest, GreenOfANormalTexturePointsUpTheImageAlsoMirrored)
@@ -203,10 +196,10 @@ TEST_F(MaterialGpuTest, GreenOfANormalTexturePointsUpTheImageAlsoMirrored)
   edit([&](scene::Material &value) { value.normal_texture = texture({128, 218, 218, 255}); });
   scene.edit(mesh,
              [&](scene::Mesh &value) { scene::make_tangents(value, scene.materials()[material].normal_texture); });
-  expect_near(middle(), glm::vec3(1.0F), 1e-3F);
+  test::expect_near(middle(), glm::vec3(1.0F), 1e-3F);
   scene.set_transform(scene.nodes().first(), glm::scale(glm::dmat4(1.0), {-4.0, 4.0, 4.0}));
-  expect_near(middle(), glm::vec3(1.0F), 1e-3F);
-  expect_near(reference_middle(), glm::vec3(1.0F), 1e-3F);
+  test::expect_near(middle(), glm::vec3(1.0F), 1e-3F);
+  test::expect_near(reference_middle(), glm::vec3(1.0F), 1e-3F);
 }
 
 TEST_F(MaterialGpuTest, NormalTextureLetsNoLightThroughTheSurface)
@@ -223,19 +216,19 @@ TEST_F(MaterialGpuTest, NormalTextureLetsNoLightThroughTheSurface)
 
 TEST_F(MaterialGpuTest, OcclusionAffectsAmbientLightOnly)
 {
-  test::add_lamp(scene, scene::LampKind::Hemi, {}, {0, 0, -1}, PI);
+  test::add_lamp(scene, scene::LampKind::Hemi, {}, {0, 0, -1}, float(pi));
   const auto dark = texture({51, 255, 255, 255});
   edit([&](scene::Material &value) {
     value.occlusion_texture = dark;
     value.occlusion_strength = 0.5F;
   });
   // 1 + 0.5 (0.2 - 1).
-  expect_near(middle(), glm::vec3(0.6F), texel_tolerance);
-  expect_near(reference_middle(), glm::vec3(0.6F), 1e-5F);
+  test::expect_near(middle(), glm::vec3(0.6F), texel_tolerance);
+  test::expect_near(reference_middle(), glm::vec3(0.6F), 1e-5F);
   test::remove_lamps(scene, [](const scene::Lamp &) { return true; });
   add_sun();
-  expect_near(middle(), glm::vec3(1.0F), 1e-3F);
-  expect_near(reference_middle(), glm::vec3(1.0F), 1e-5F);
+  test::expect_near(middle(), glm::vec3(1.0F), 1e-3F);
+  test::expect_near(reference_middle(), glm::vec3(1.0F), 1e-5F);
 }
 
 TEST_F(MaterialGpuTest, UnlitIsTheBaseColourWhateverTheLight)
@@ -245,13 +238,13 @@ TEST_F(MaterialGpuTest, UnlitIsTheBaseColourWhateverTheLight)
     value.base_color = {0.25F, 0.5F, 0.75F};
     value.emissive = glm::vec3(9.0F);
   });
-  expect_near(middle(), {0.25F, 0.5F, 0.75F}, 1e-6F);
+  test::expect_near(middle(), {0.25F, 0.5F, 0.75F}, 1e-6F);
   add_sun();
-  expect_near(middle(), {0.25F, 0.5F, 0.75F}, 1e-6F);
-  expect_near(reference_middle(), {0.25F, 0.5F, 0.75F}, 1e-6F);
+  test::expect_near(middle(), {0.25F, 0.5F, 0.75F}, 1e-6F);
+  test::expect_near(reference_middle(), {0.25F, 0.5F, 0.75F}, 1e-6F);
   edit([&](scene::Material &value) { value.base_color_texture = texture({255, 0, 255, 255}); });
-  expect_near(middle(), {0.25F, 0.0F, 0.75F}, texel_tolerance);
-  expect_near(reference_middle(), {0.25F, 0.0F, 0.75F}, 1e-6F);
+  test::expect_near(middle(), {0.25F, 0.0F, 0.75F}, texel_tolerance);
+  test::expect_near(reference_middle(), {0.25F, 0.0F, 0.75F}, 1e-6F);
 }
 
 TEST_F(MaterialGpuTest, AMeshWithoutUvsDoesNotEmitByATexture)
@@ -279,7 +272,7 @@ class LayersGpuTest : public MaterialGpuTest {
   /** The sun's light from a lobe, for a Fresnel term of 1. */
   [[nodiscard]] float ggx(float roughness) const
   {
-    return PI * to_light.z * shared::ggx_lobe(to_light.z, to_view.z, half_vector.z, roughness * roughness);
+    return float(pi) * to_light.z * shared::ggx_lobe(to_light.z, to_view.z, half_vector.z, roughness * roughness);
   }
 
   glm::vec3 to_view = {0.866025F, 0.0F, 0.5F};
@@ -299,7 +292,7 @@ TEST_F(LayersGpuTest, ACoatReflectsByItsRoughnessAndDimsTheBase)
     const float share = 0.75F * (0.04F + 0.96F * std::pow(1.0F - to_view.z, 5.0F));
     const glm::vec3 base = to_light.z * glm::vec3(0.5F, 0.25F, 0.125F);
     const glm::vec3 expected = (1.0F - share) * base + share * ggx(roughness);
-    expect_near(middle(), expected, 2e-3F * expected.r);
+    test::expect_near(middle(), expected, 2e-3F * expected.r);
   }
 }
 
@@ -312,7 +305,7 @@ TEST_F(LayersGpuTest, ACoatDimsEmission)
     value.is_double_sided = false;
   });
   scene.edit(scene.lamps().first(), [](scene::Lamp &lamp) { lamp.shadow.kind = scene::ShadowKind::None; });
-  expect_near(middle(), glm::vec3(1.0F - (0.04F + 0.96F / 32.0F)), 1e-3F);
+  test::expect_near(middle(), glm::vec3(1.0F - (0.04F + 0.96F / 32.0F)), 1e-3F);
 }
 
 TEST_F(LayersGpuTest, SheenIsThatOfFibresAndLeavesTheRestToTheBase)
@@ -331,18 +324,18 @@ TEST_F(LayersGpuTest, SheenIsThatOfFibresAndLeavesTheRestToTheBase)
     for (int i = 0; i < count; i++) {
       for (int j = 0; j < count; j++) {
         const float cos_l = (float(i) + 0.5F) / count;
-        const float azimuth = 2.0F * PI * (float(j) + 0.5F) / count;
+        const float azimuth = 2.0F * float(pi) * (float(j) + 0.5F) / count;
         const float sin_l = std::sqrt(1.0F - cos_l * cos_l);
         const glm::vec3 direction(sin_l * std::cos(azimuth), sin_l * std::sin(azimuth), cos_l);
         const float cos_h = glm::normalize(direction + to_view).z;
-        albedo += 2.0 * PI / (count * count) * cos_l * shared::sheen_lobe(cos_l, to_view.z, cos_h, alpha);
+        albedo += 2.0 * float(pi) / (count * count) * cos_l * shared::sheen_lobe(cos_l, to_view.z, cos_h, alpha);
       }
     }
     ASSERT_LT(albedo, 1.0);
-    const float lobe = PI * to_light.z * shared::sheen_lobe(to_light.z, to_view.z, half_vector.z, alpha);
+    const float lobe = float(pi) * to_light.z * shared::sheen_lobe(to_light.z, to_view.z, half_vector.z, alpha);
     const glm::vec3 expected = color * lobe + (1.0F - float(albedo)) * 0.5F * to_light.z;
     // The albedo is interpolated in a table.
-    expect_near(middle(), expected, 5e-3F * expected.b);
+    test::expect_near(middle(), expected, 5e-3F * expected.b);
   }
 }
 
@@ -368,7 +361,7 @@ TEST_F(LayersGpuTest, TexturesMultiplyTheFactorsOfLayers)
     value.sheen_color_texture = color;
   });
   const glm::vec3 textured = layered(0.8F, 0.9F, 0.5F, 0.8F);
-  expect_near(textured, expected, 0.01F * expected.r);
+  test::expect_near(textured, expected, 0.01F * expected.r);
   // Each texture has an effect.
   for (scene::TextureSlot scene::Material::*slot :
        {&scene::Material::coat_texture, &scene::Material::coat_roughness_texture, &scene::Material::sheen_color_texture,
@@ -396,7 +389,7 @@ TEST_F(LayersGpuTest, ABlendedSurfaceHasTheSameLayers)
     value.alpha_mode = scene::AlphaMode::Blend;
     value.alpha = 0.5F;
   });
-  expect_near(middle(), 0.5F * opaque, 1e-5F);
+  test::expect_near(middle(), 0.5F * opaque, 1e-5F);
 }
 
 TEST_F(LayersGpuTest, WithoutTheirFactorsLayersChangeNoBit)
@@ -437,7 +430,7 @@ TEST_F(LayersGpuTest, ACoatIsAsSmoothAsTheMesh)
   edit([&](scene::Material &value) { value.normal_texture = texture({255, 128, 140, 255}); });
   scene.edit(mesh,
              [&](scene::Mesh &value) { scene::make_tangents(value, scene.materials()[material].normal_texture); });
-  expect_near(middle(), smooth, 1e-5F);
+  test::expect_near(middle(), smooth, 1e-5F);
 }
 
 /** Each lobe alone, from one frame and from samples of the lamp. */

@@ -18,7 +18,7 @@ namespace {
 using Pixels = std::vector<glm::vec4>;
 using Kind = LightPart::Kind;
 
-constexpr glm::ivec2 size_px(28, 20);
+constexpr glm::ivec2 layers_size_px(28, 20);
 
 double rms(const Pixels &pixels)
 {
@@ -105,7 +105,7 @@ TEST_F(PictureLayersGpuTest, PartsOfTheLightSumToThePicture)
     const int drawn = sample_count == 0 ? 3 : sample_count;
     Settings settings{.shadow = {.cube_size_px = 64, .map_size_px = 128}, .sample_count = sample_count, .seed = 5};
     settings.background.kind = Background::Kind::World;
-    SceneRenderer renderer(*device, scene, size_px, settings);
+    SceneRenderer renderer(*device, scene, layers_size_px, settings);
     renderer.sync();
     renderer.draw(camera, {.progress = [&](int samples) { return samples < drawn; }});
     const Pixels whole = renderer.read_picture();
@@ -126,13 +126,13 @@ TEST_F(PictureLayersGpuTest, PartsOfTheLightSumToThePicture)
 TEST_F(PictureLayersGpuTest, ALampsLightIsThePictureOfTheSceneWithThatLampAlone)
 {
   const Settings settings{.shadow = {.map_size_px = 128}, .sample_count = 4};
-  SceneRenderer renderer(*device, scene, size_px, settings);
+  SceneRenderer renderer(*device, scene, layers_size_px, settings);
   renderer.sync();
   renderer.draw(camera);
   const Pixels layer = render_light_layer(renderer, camera, 4, {Kind::Lamp, 0});
   test::remove_lamps(scene, [](const scene::Lamp &lamp) { return lamp.name == "area"; });
   scene.edit(metal, [](scene::Material &material) { material.emissive = glm::vec3(0.0F); });
-  SceneRenderer alone(*device, scene, size_px, settings);
+  SceneRenderer alone(*device, scene, layers_size_px, settings);
   alone.sync();
   alone.draw(camera);
   EXPECT_LE(rms(sum_of(layer, alone.read_picture(), -1.0F)), 1e-6);
@@ -141,7 +141,7 @@ TEST_F(PictureLayersGpuTest, ALampsLightIsThePictureOfTheSceneWithThatLampAlone)
 TEST_F(PictureLayersGpuTest, SurfacesAreWhereTheyAreAndCoverWhatThePictureCovers)
 {
   const Settings settings{.shadow = {.cube_size_px = 64, .map_size_px = 128}, .sample_count = 8};
-  SceneRenderer renderer(*device, scene, size_px, settings);
+  SceneRenderer renderer(*device, scene, layers_size_px, settings);
   renderer.sync();
   renderer.draw(camera);
   const Pixels picture = renderer.read_picture();
@@ -152,7 +152,7 @@ TEST_F(PictureLayersGpuTest, SurfacesAreWhereTheyAreAndCoverWhatThePictureCovers
   const glm::vec3 axis = glm::normalize(-eye);
   int boxes = 0;
   int shadows = 0;
-  for (int i = 0; i < size_px.x * size_px.y; i++) {
+  for (int i = 0; i < layers_size_px.x * layers_size_px.y; i++) {
     const auto pixel = std::size_t(i);
     float coverage = 0.0F;
     glm::vec4 expected(0.0F);
@@ -162,8 +162,9 @@ TEST_F(PictureLayersGpuTest, SurfacesAreWhereTheyAreAndCoverWhatThePictureCovers
       expected += share * (object == 1 ? glm::vec4(0.8F, 0.5F, 0.2F, 0.3F)
                                        : glm::vec4(glm::vec3(0.9F, 0.9F, 0.4F) * 0.21586F, 0.5F));
     }
-    const glm::ivec2 place(i % size_px.x, i / size_px.x);
-    const bool is_rim = place.x == 0 || place.y == 0 || place.x == size_px.x - 1 || place.y == size_px.y - 1;
+    const glm::ivec2 place(i % layers_size_px.x, i / layers_size_px.x);
+    const bool is_rim =
+        place.x == 0 || place.y == 0 || place.x == layers_size_px.x - 1 || place.y == layers_size_px.y - 1;
     if (!is_rim) {
       EXPECT_NEAR(coverage, picture[pixel].a, 1e-5F) << i;
     }
@@ -182,7 +183,7 @@ TEST_F(PictureLayersGpuTest, SurfacesAreWhereTheyAreAndCoverWhatThePictureCovers
     }
     EXPECT_NEAR(layers.position_depth[pixel].w, glm::dot(axis, position - eye), 1e-5F);
     const glm::vec4 clip = view.clip_from_world() * glm::vec4(position, 1.0F);
-    const glm::vec2 seen_px = (0.5F * glm::vec2(clip) / clip.w + 0.5F) * glm::vec2(size_px);
+    const glm::vec2 seen_px = (0.5F * glm::vec2(clip) / clip.w + 0.5F) * glm::vec2(layers_size_px);
     EXPECT_NEAR(seen_px.x, float(place.x) + 0.5F, 1e-3F);
     EXPECT_NEAR(seen_px.y, float(place.y) + 0.5F, 1e-3F);
     if (normal.w == 1.0F) {
@@ -208,7 +209,7 @@ TEST_F(PictureLayersGpuTest, VisibilityIsTheShareOfTheLightThatArrives)
   scene.edit(test::handle_at(scene.lamps(), 0), [](scene::Lamp &lamp) { lamp.angle = 0.1F; });
   for (const bool is_fitted : {false, true}) {
     Settings settings{.shadow = {.map_size_px = 128, .cascades = {.is_fitted_to_depth = is_fitted}}, .sample_count = 4};
-    SceneRenderer renderer(*device, scene, size_px, settings);
+    SceneRenderer renderer(*device, scene, layers_size_px, settings);
     renderer.sync();
     renderer.draw(camera);
     const Pixels lit = render_light_layer(renderer, camera, 4, {Kind::Lamp, 0});
@@ -221,8 +222,9 @@ TEST_F(PictureLayersGpuTest, VisibilityIsTheShareOfTheLightThatArrives)
     int partial = 0;
     for (std::size_t i = 0; i < lit.size(); i++) {
       const auto &objects = layers.objects[i];
-      const glm::ivec2 place(int(i) % size_px.x, int(i) / size_px.x);
-      const bool is_rim = place.x == 0 || place.y == 0 || place.x == size_px.x - 1 || place.y == size_px.y - 1;
+      const glm::ivec2 place(int(i) % layers_size_px.x, int(i) / layers_size_px.x);
+      const bool is_rim =
+          place.x == 0 || place.y == 0 || place.x == layers_size_px.x - 1 || place.y == layers_size_px.y - 1;
       if (is_rim || objects.size() != 1 || objects[0].first != 1) {
         continue;
       }
@@ -240,7 +242,7 @@ TEST_F(PictureLayersGpuTest, SurfacesThatReceiveNoShadowSeeTheWholeLamp)
   for (const scene::Object &object : scene.objects()) {
     scene.edit(object.node, [](scene::Node &node) { node.receives_shadow = false; });
   }
-  SceneRenderer renderer(*device, scene, size_px, {.shadow = {.map_size_px = 128}});
+  SceneRenderer renderer(*device, scene, layers_size_px, {.shadow = {.map_size_px = 128}});
   renderer.sync();
   renderer.draw(camera);
   const SurfaceLayers layers = render_surface_layers(renderer, camera, 1, {.has_objects = true, .visible_lamps = {0}});
@@ -256,7 +258,7 @@ TEST_F(PictureLayersGpuTest, SurfacesThatReceiveNoShadowSeeTheWholeLamp)
 TEST_F(PictureLayersGpuTest, TexturesAreInTheAlbedoAlsoWithoutLight)
 {
   test::remove_lamps(scene);
-  SceneRenderer renderer(*device, scene, size_px);
+  SceneRenderer renderer(*device, scene, layers_size_px);
   renderer.sync();
   renderer.draw(camera);
   const SurfaceLayers layers = render_surface_layers(renderer, camera, 1, {.has_means = true, .has_objects = true});

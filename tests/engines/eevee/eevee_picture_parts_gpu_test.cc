@@ -13,7 +13,7 @@ namespace {
 
 using test::Picture;
 
-constexpr glm::ivec2 size_px(40, 30);
+constexpr glm::ivec2 whole_size_px(40, 30);
 constexpr int margin_px = 12;
 constexpr double vertical_angle = 0.7;
 
@@ -34,7 +34,7 @@ class PicturePartsTest : public test::GpuDeviceTest {
   Picture picture(glm::ivec2 size, bool is_perspective)
   {
     scene::PlacedCamera camera = test::camera_at({0.3F, -5, 6}, {0, 0, 0}, float(vertical_angle));
-    const double height = double(size.y) / double(size_px.y);
+    const double height = double(size.y) / double(whole_size_px.y);
     if (is_perspective) {
       camera.vertical_angle = float(2.0 * std::atan(height * std::tan(0.5 * vertical_angle)));
     }
@@ -56,9 +56,9 @@ double difference(const Picture &picture, const Picture &larger, int distance_px
 {
   double sum = 0.0;
   int count = 0;
-  for (int y = 0; y < size_px.y; y++) {
-    for (int x = 0; x < size_px.x; x++) {
-      if (std::min({x, y, size_px.x - 1 - x, size_px.y - 1 - y}) == distance_px) {
+  for (int y = 0; y < whole_size_px.y; y++) {
+    for (int x = 0; x < whole_size_px.x; x++) {
+      if (std::min({x, y, whole_size_px.x - 1 - x, whole_size_px.y - 1 - y}) == distance_px) {
         const glm::vec4 delta = picture.at(x, y) - larger.at(x + margin_px, y + margin_px);
         sum += double(glm::dot(delta, delta));
         count++;
@@ -71,10 +71,10 @@ double difference(const Picture &picture, const Picture &larger, int distance_px
 TEST_F(PicturePartsTest, APictureIsTheCropOfALargerOneWithTheSamePixels)
 {
   for (const bool is_perspective : {true, false}) {
-    const Picture small = picture(size_px, is_perspective);
-    const Picture large = picture(size_px + 2 * margin_px, is_perspective);
+    const Picture small = picture(whole_size_px, is_perspective);
+    const Picture large = picture(whole_size_px + 2 * margin_px, is_perspective);
     EXPECT_EQ(small.non_finite_count(), 0U);
-    for (int distance_px = 0; distance_px < size_px.y / 2; distance_px++) {
+    for (int distance_px = 0; distance_px < whole_size_px.y / 2; distance_px++) {
       // Roundings of two projections move edges by 1e-5 of a pixel. Without a guard band the rim differs by 0.05.
       EXPECT_LE(difference(small, large, distance_px), 2e-3)
           << distance_px << " px from the edge, " << (is_perspective ? "perspective" : "orthographic");
@@ -101,13 +101,13 @@ TEST_F(PicturePartsTest, RegionsAreBitForBitThoseOfTheWholePicture)
     const Settings settings{
         .shadow = {.cube_size_px = 128, .map_size_px = 128, .cascades = {.is_fitted_to_depth = is_fitted}},
         .sample_count = 3};
-    SceneRenderer renderer(*device, scene, size_px, settings);
+    SceneRenderer renderer(*device, scene, whole_size_px, settings);
     renderer.sync();
     renderer.draw(camera);
     const std::vector<glm::vec4> whole = renderer.read_picture();
     for (const gpu::Rectangle region : {gpu::Rectangle{{0, 0}, {40, 7}}, gpu::Rectangle{{0, 7}, {17, 23}},
                                         gpu::Rectangle{{17, 7}, {23, 23}}, gpu::Rectangle{{39, 29}, {1, 1}}}) {
-      SceneRenderer part(*device, scene, size_px, settings);
+      SceneRenderer part(*device, scene, whole_size_px, settings);
       part.sync();
       part.viewport().set_region(region);
       part.draw(camera);
@@ -115,7 +115,7 @@ TEST_F(PicturePartsTest, RegionsAreBitForBitThoseOfTheWholePicture)
       std::size_t differing_count = 0;
       for (int y = region.origin_px.y; y < region.origin_px.y + region.size_px.y; y++) {
         for (int x = region.origin_px.x; x < region.origin_px.x + region.size_px.x; x++) {
-          const std::size_t i = std::size_t(y * size_px.x + x);
+          const std::size_t i = std::size_t(y * whole_size_px.x + x);
           differing_count += drawn[i] == whole[i] ? 0 : 1;
         }
       }
@@ -133,7 +133,7 @@ TEST_F(PicturePartsTest, RangesOfSamplesAddUpToTheWholePicture)
   Settings settings{.shadow = {.cube_size_px = 128, .map_size_px = 128, .cascades = {.is_fitted_to_depth = true}},
                     .sample_count = 16,
                     .seed = 3};
-  SceneRenderer renderer(*device, scene, size_px, settings);
+  SceneRenderer renderer(*device, scene, whole_size_px, settings);
   renderer.sync();
   renderer.draw(camera);
   const std::vector<glm::vec4> whole = renderer.read_picture();
@@ -167,7 +167,7 @@ TEST_F(PicturePartsTest, RangesOfSamplesAddUpToTheWholePicture)
 
 TEST_F(PicturePartsTest, PartsOutsideOfThePictureAreErrors)
 {
-  SceneRenderer renderer(*device, scene, size_px);
+  SceneRenderer renderer(*device, scene, whole_size_px);
   for (const gpu::Rectangle region : {gpu::Rectangle{{0, 0}, {41, 1}}, gpu::Rectangle{{-1, 0}, {4, 4}},
                                       gpu::Rectangle{{3, 3}, {0, 4}}, gpu::Rectangle{{3, 30}, {1, 1}}}) {
     EXPECT_THROW(renderer.viewport().set_region(region), gpu::Error);

@@ -17,8 +17,8 @@ using glm::dvec3;
 using shared::vec2;
 using shared::vec3;
 using shared::vec4;
-constexpr double pi = std::numbers::pi;
-const vec3 up(0.0F, 0.0F, 1.0F);
+using std::numbers::pi;
+const vec3 plane_normal(0.0F, 0.0F, 1.0F);
 
 /**
  * ∫ f over the part of a flat lamp above the horizon, by solid angle; f is a function of the unit vector to the lamp.
@@ -54,7 +54,7 @@ double form_factor(const dvec3 &center, const dvec3 &axis_x, const dvec3 &axis_y
 float flat_z(const dvec3 &center, const dvec3 &axis_x, const dvec3 &axis_y, bool is_ellipse)
 {
   return shared::flat_flux(vec3(center), vec3(axis_x), vec3(axis_y), is_ellipse ? ELLIPSE_CORNERS : RECTANGLE_CORNERS,
-                           up)
+                           plane_normal)
       .z;
 }
 
@@ -90,7 +90,8 @@ TEST(FlatFlux, IsNearlyTheIrradianceOfAnEllipse)
 TEST(FlatFlux, PointsWhereTheLightComesFrom)
 {
   for (const Place &p : places) {
-    const vec3 flux = shared::flat_flux(vec3(p.center), vec3(p.axis_x), vec3(p.axis_y), RECTANGLE_CORNERS, up);
+    const vec3 flux =
+        shared::flat_flux(vec3(p.center), vec3(p.axis_x), vec3(p.axis_y), RECTANGLE_CORNERS, plane_normal);
     for (int axis = 0; axis < 3; axis++) {
       const double truth =
           integrated(p.center, p.axis_x, p.axis_y, false, 400, [axis](const dvec3 &v) { return v[axis] / pi; });
@@ -205,7 +206,7 @@ TEST(FlatFlux, IsFiniteForEveryPolygon)
     const vec3 axis_x = vector();
     const vec3 axis_y = i % 16 == 0 ? 2.0F * axis_x : vector();
     const int corners = i % 8 == 0 ? ELLIPSE_CORNERS : RECTANGLE_CORNERS;
-    const vec3 flux = shared::flat_flux(center, axis_x, axis_y, corners, i % 3 == 0 ? vector() : up);
+    const vec3 flux = shared::flat_flux(center, axis_x, axis_y, corners, i % 3 == 0 ? vector() : plane_normal);
     const bool is_good = std::isfinite(flux.x) && std::isfinite(flux.y) && flux.z >= 0.0F && flux.z <= 1.0F;
     bad += is_good ? 0 : 1;
   }

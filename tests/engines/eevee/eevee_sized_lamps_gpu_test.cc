@@ -17,7 +17,7 @@
 namespace gnomon::eevee {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /** A camera that looks down from \a height_m at the origin, at a square of \a half_m by that times \a aspect. */
 scene::PlacedCamera camera_above(double height_m, double half_m, double aspect = 1.0)

@@ -17,7 +17,7 @@ namespace {
 using test::HostTexture;
 using test::Pixels;
 
-constexpr glm::ivec2 size_px(24, 18);
+constexpr glm::ivec2 target_size_px(24, 18);
 constexpr glm::ivec2 host_size_px(37, 29);
 constexpr glm::ivec2 origin_px(7, 5);
 constexpr glm::dvec3 eye(0, -5, 4);
@@ -36,7 +36,7 @@ class TargetGpuTest : public test::HostFramebufferTest {
   static bool is_inside(int x, int y)
   {
     const glm::ivec2 pixel = glm::ivec2(x, y) - origin_px;
-    return pixel.x >= 0 && pixel.y >= 0 && pixel.x < size_px.x && pixel.y < size_px.y;
+    return pixel.x >= 0 && pixel.y >= 0 && pixel.x < target_size_px.x && pixel.y < target_size_px.y;
   }
   static draw::Target target_of(const HostTexture &host, draw::Encoding encoding)
   {
@@ -49,11 +49,11 @@ class TargetGpuTest : public test::HostFramebufferTest {
   /** The whole picture as an 8-bit display shows it. */
   Pixels offline()
   {
-    const draw::TargetTexture display(*device, "display", gpu::Format::RGBA8, size_px);
-    SceneRenderer renderer(*device, scene, size_px, settings);
+    const draw::TargetTexture display(*device, "display", gpu::Format::RGBA8, target_size_px);
+    SceneRenderer renderer(*device, scene, target_size_px, settings);
     renderer.sync();
     renderer.draw(camera, {}, display.target());
-    return {size_px, gpu::read_as<std::array<std::uint8_t, 4>>(*device, display.texture())};
+    return {target_size_px, gpu::read_as<std::array<std::uint8_t, 4>>(*device, display.texture())};
   }
   /** Outside of the picture's rectangle, \a pixels equal \a before. */
   static void expect_outside(const Pixels &pixels, const Pixels &before)
@@ -70,8 +70,8 @@ class TargetGpuTest : public test::HostFramebufferTest {
   static int difference(const Pixels &pixels, const Pixels &picture)
   {
     int largest = 0;
-    for (int y = 0; y < size_px.y; y++) {
-      for (int x = 0; x < size_px.x; x++) {
+    for (int y = 0; y < target_size_px.y; y++) {
+      for (int x = 0; x < target_size_px.x; x++) {
         const std::array<int, 4> a = pixels.at(origin_px.x + x, origin_px.y + y);
         const std::array<int, 4> b = picture.at(x, y);
         for (std::size_t c = 0; c < 4; c++) {
@@ -93,8 +93,8 @@ INSTANTIATE_TEST_SUITE_P(, TargetGpuTest, testing::Values(test::HostKind::Egl, t
 TEST_P(TargetGpuTest, AFramebufferThatChangesEveryFrameGetsThePictureAndKeepsTheRest)
 {
   const Pixels truth = offline();
-  ASSERT_GT(truth.at(size_px.x / 2, 2)[0], 100);
-  SceneRenderer renderer(*device, scene, size_px, settings);
+  ASSERT_GT(truth.at(target_size_px.x / 2, 2)[0], 100);
+  SceneRenderer renderer(*device, scene, target_size_px, settings);
   renderer.sync();
   std::vector<std::unique_ptr<HostTexture>> hosts;
   for (int frame = 0; frame < 6; frame++) {
@@ -111,9 +111,9 @@ TEST_P(TargetGpuTest, AFramebufferThatChangesEveryFrameGetsThePictureAndKeepsThe
     }
     else {
       // The middle of a plane is equal in all samples, and therefore in their mean.
-      const std::array<int, 4> middle = pixels.at(origin_px.x + size_px.x / 2, origin_px.y + 2);
+      const std::array<int, 4> middle = pixels.at(origin_px.x + target_size_px.x / 2, origin_px.y + 2);
       for (std::size_t c = 0; c < 4; c++) {
-        EXPECT_NEAR(middle[c], truth.at(size_px.x / 2, 2)[c], 1) << "frame " << frame;
+        EXPECT_NEAR(middle[c], truth.at(target_size_px.x / 2, 2)[c], 1) << "frame " << frame;
       }
     }
   }
@@ -122,9 +122,9 @@ TEST_P(TargetGpuTest, AFramebufferThatChangesEveryFrameGetsThePictureAndKeepsThe
 
 TEST_P(TargetGpuTest, SceneLinearIsTheRadiance)
 {
-  SceneRenderer renderer(*device, scene, size_px, settings);
+  SceneRenderer renderer(*device, scene, target_size_px, settings);
   renderer.sync();
-  const draw::TargetTexture linear(*device, "linear", gpu::Format::RGBA32F, size_px);
+  const draw::TargetTexture linear(*device, "linear", gpu::Format::RGBA32F, target_size_px);
   draw::Target target = linear.target();
   target.encoding = draw::Encoding::SceneLinear;
   target.exposure = 3.0F;
@@ -194,11 +194,11 @@ TEST_P(TargetGpuTest, TheHostsGeometryIsHiddenByWhatIsNearer)
   test::remove_objects(scene);
   const auto plain = test::add_material(scene, {0.8F, 0.5F, 0.2F});
   test::add_object(scene, test::add_square_mesh(scene, plain), glm::scale(glm::dmat4(1), glm::dvec3(200)));
-  SceneRenderer renderer(*device, scene, size_px, settings);
+  SceneRenderer renderer(*device, scene, target_size_px, settings);
   renderer.sync();
   const draw::View view = renderer.view_of(camera);
   const double tan_y = 1.0 / double(view.clip_from_view()[1][1]);
-  const double aspect = double(size_px.x) / double(size_px.y);
+  const double aspect = double(target_size_px.x) / double(target_size_px.y);
   const double angle = 2.0 * std::atan(tan_y);
   glm::dmat4 reversed(0.0);
   reversed[0][0] = 1.0 / (tan_y * aspect);
@@ -218,7 +218,7 @@ TEST_P(TargetGpuTest, TheHostsGeometryIsHiddenByWhatIsNearer)
     const Pixels picture = host.pixels();
     const std::vector<float> depths = host.depths();
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, host.framebuffer().name);
-    glViewport(origin_px.x, origin_px.y, size_px.x, size_px.y);
+    glViewport(origin_px.x, origin_px.y, target_size_px.x, target_size_px.y);
     glClipControl(GL_LOWER_LEFT, is_reversed ? GL_ZERO_TO_ONE : GL_NEGATIVE_ONE_TO_ONE);
     constexpr float host_distance = 6.5F;
     program.draw(glm::mat4(depth.clip_from_view), host_distance, is_reversed ? GL_GREATER : GL_LESS);
@@ -227,9 +227,9 @@ TEST_P(TargetGpuTest, TheHostsGeometryIsHiddenByWhatIsNearer)
     const Pixels composed = host.pixels();
     expect_outside(composed, picture);
     int hidden = 0;
-    for (int y = 0; y < size_px.y; y++) {
-      for (int x = 0; x < size_px.x; x++) {
-        const glm::dvec2 ndc = 2.0 * (glm::dvec2(x, y) + 0.5) / glm::dvec2(size_px) - 1.0;
+    for (int y = 0; y < target_size_px.y; y++) {
+      for (int x = 0; x < target_size_px.x; x++) {
+        const glm::dvec2 ndc = 2.0 * (glm::dvec2(x, y) + 0.5) / glm::dvec2(target_size_px) - 1.0;
         const glm::dvec3 along_vs(ndc.x * tan_y * aspect, ndc.y * tan_y, -1.0);
         const glm::dvec3 along_ws = glm::dmat3(camera.world_from_camera) * along_vs;
         const double distance = eye.z / -along_ws.z;
@@ -245,8 +245,8 @@ TEST_P(TargetGpuTest, TheHostsGeometryIsHiddenByWhatIsNearer)
             << x << ", " << y << " at " << distance << " m";
       }
     }
-    EXPECT_GT(hidden, size_px.x * size_px.y / 5);
-    EXPECT_LT(hidden, size_px.x * size_px.y * 4 / 5);
+    EXPECT_GT(hidden, target_size_px.x * target_size_px.y / 5);
+    EXPECT_LT(hidden, target_size_px.x * target_size_px.y * 4 / 5);
     host.clear_depth(0.5F);
     renderer.draw(test::camera_at(eye, eye + glm::dvec3(0, 1, 10), 0.6F), {}, target);
     const float seen = host.depths()[std::size_t((origin_px.y + 1) * host_size_px.x + origin_px.x + 1)];
@@ -256,7 +256,7 @@ TEST_P(TargetGpuTest, TheHostsGeometryIsHiddenByWhatIsNearer)
 
 TEST_P(TargetGpuTest, OverLiesOnTheHostsContentWhereItIsNearer)
 {
-  SceneRenderer renderer(*device, scene, size_px, settings);
+  SceneRenderer renderer(*device, scene, target_size_px, settings);
   renderer.sync();
   const HostTexture replaced(host_size_px, GL_RGBA8, 0);
   const draw::Target target = target_of(replaced, draw::Encoding::Display);
@@ -305,20 +305,20 @@ TEST_P(TargetGpuTest, StraightColorsAreThoseOfTheSurfaces)
     material.specular = 0.0F;
   });
   test::add_object(scene, test::add_square_mesh(scene, glass), glm::dmat4(1));
-  SceneRenderer renderer(*device, scene, size_px, settings);
+  SceneRenderer renderer(*device, scene, target_size_px, settings);
   renderer.sync();
-  const draw::TargetTexture display(*device, "display", gpu::Format::RGBA8, size_px);
+  const draw::TargetTexture display(*device, "display", gpu::Format::RGBA8, target_size_px);
   draw::Target target = display.target();
   target.composition = draw::Composition::ReplaceStraight;
   target.exposure = -1.0F;
   renderer.draw(camera, {}, target);
-  const Pixels pixels{size_px, gpu::read_as<std::array<std::uint8_t, 4>>(*device, display.texture())};
+  const Pixels pixels{target_size_px, gpu::read_as<std::array<std::uint8_t, 4>>(*device, display.texture())};
   // 0.75 and 0.25 by sRGB's transfer function.
-  EXPECT_EQ(pixels.at(size_px.x / 2, size_px.y / 2), (std::array<int, 4>{225, 137, 0, 64}));
-  EXPECT_EQ(pixels.at(0, size_px.y - 1), (std::array<int, 4>{0, 0, 0, 0}));
+  EXPECT_EQ(pixels.at(target_size_px.x / 2, target_size_px.y / 2), (std::array<int, 4>{225, 137, 0, 64}));
+  EXPECT_EQ(pixels.at(0, target_size_px.y - 1), (std::array<int, 4>{0, 0, 0, 0}));
   int edge = 0;
-  for (int i = 0; i < size_px.x * size_px.y; i++) {
-    const std::array<int, 4> pixel = pixels.at(i % size_px.x, i / size_px.x);
+  for (int i = 0; i < target_size_px.x * target_size_px.y; i++) {
+    const std::array<int, 4> pixel = pixels.at(i % target_size_px.x, i / target_size_px.x);
     edge += pixel[3] > 0 && pixel[3] < 64;
     if (pixel[3] > 0) {
       EXPECT_EQ(pixel[0], 225) << "also where it covers a part of the pixel, " << i;
@@ -337,7 +337,7 @@ TEST_P(TargetGpuTest, BlendedSurfacesLieOverTheHostsContentAndChangeNoDepth)
     material.alpha = 0.6F;
   });
   test::add_object(scene, test::add_square_mesh(scene, glass), glm::scale(glm::dmat4(1), glm::dvec3(200)));
-  SceneRenderer renderer(*device, scene, size_px, settings);
+  SceneRenderer renderer(*device, scene, target_size_px, settings);
   renderer.sync();
   const HostTexture replaced(host_size_px, GL_RGBA8, 0);
   renderer.draw(camera, {}, target_of(replaced, draw::Encoding::Display));
@@ -352,8 +352,8 @@ TEST_P(TargetGpuTest, BlendedSurfacesLieOverTheHostsContentAndChangeNoDepth)
   const Pixels pixels = host.pixels();
   expect_outside(pixels, before);
   EXPECT_TRUE(std::ranges::all_of(host.depths(), [](float depth) { return std::abs(depth - 0.25F) < 1e-6F; }));
-  for (int y = origin_px.y; y < origin_px.y + size_px.y; y++) {
-    for (int x = origin_px.x; x < origin_px.x + size_px.x; x++) {
+  for (int y = origin_px.y; y < origin_px.y + target_size_px.y; y++) {
+    for (int x = origin_px.x; x < origin_px.x + target_size_px.x; x++) {
       ASSERT_NEAR(picture.at(x, y)[3], 0.6 * 255.0, 1);
       for (std::size_t c = 0; c < 3; c++) {
         EXPECT_NEAR(pixels.at(x, y)[c], std::min(picture.at(x, y)[c] + 0.4 * before.at(x, y)[c], 255.0), 2);

@@ -3,6 +3,8 @@
 
 #include "measure_scene.hh"
 
+#include <gtest/gtest.h>
+
 /** Tests use the scenes of source/measure. */
 namespace gnomon::test {
 
@@ -32,6 +34,13 @@ template <std::invocable<scene::Material &> Change>
 void edit_material(scene::Scene &scene, std::size_t index, Change &&change)
 {
   scene.edit(handle_at(scene.materials(), index), change);
+}
+
+inline void expect_near(const glm::vec3 &value, const glm::vec3 &expected, float tolerance)
+{
+  for (int i = 0; i < 3; i++) {
+    EXPECT_NEAR(value[i], expected[i], tolerance) << "channel " << i;
+  }
 }
 
 }  // namespace gnomon::test

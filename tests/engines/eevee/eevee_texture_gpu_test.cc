@@ -16,7 +16,7 @@ using test::Picture;
 using test::Renderer;
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr float PI = std::numbers::pi_v<float>;
+using std::numbers::pi;
 
 class TextureGpuTest : public test::GpuDeviceTest {
  protected:
@@ -79,7 +79,7 @@ TEST_F(TextureGpuTest, BaseColourIsTheFactorTimesTheDecodedTexelUpright)
   const auto mesh = add_textured(2, four_colours(0), scene::AlphaMode::Opaque);
   test::edit_material(scene, 0, [&](scene::Material &material) { material.base_color = {0.5F, 0.25F, 1.0F}; });
   add(mesh, {0, 0, 0});
-  test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, PI);
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, float(pi));
   const Picture picture = render();
   // llvmpipe decodes through a table of eight bits and more.
   const float tolerance = 2e-3F;
@@ -98,7 +98,7 @@ TEST_F(TextureGpuTest, ATextureOnAMetalColoursItsReflection)
     material.roughness = 0.7F;
   });
   add(mesh, {0, 0, 0});
-  test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, PI);
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, float(pi));
   const glm::vec4 pixel = at(render(), 0, 0);
   EXPECT_GT(pixel.r, 0.1F);
   // Schlick's term at an angle of half a degree is far below.
@@ -193,7 +193,7 @@ TEST_F(TextureGpuTest, MirroredTwoSidedAndTurnedLeavesKeepTheirShape)
     return seen;
   };
   const auto scaled = [](float x, float y, float z) { return glm::scale(glm::mat4(1.0F), glm::vec3(x, y, z)); };
-  const glm::mat4 half_turn = glm::rotate(glm::mat4(1.0F), PI, glm::vec3(0, 1, 0));
+  const glm::mat4 half_turn = glm::rotate(glm::mat4(1.0F), float(pi), glm::vec3(0, 1, 0));
   for (const bool is_double_sided : {true, false}) {
     test::edit_material(scene, 0, [&](scene::Material &material) { material.is_double_sided = is_double_sided; });
     EXPECT_EQ(corners(scaled(1, 1, 1)), "x...");
@@ -216,7 +216,7 @@ TEST_F(TextureGpuTest, TransformedCoordinatesWrapAsTheSamplerSays)
     }
   });
   add(mesh, {0, 0, 0});
-  test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, PI);
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {0, 0, -1}, float(pi));
   const auto is_red = [&](scene::TextureWrap wrap, float x) {
     scene.edit(scene.textures().first(), [&](scene::Texture &texture) { texture.wrap_u = wrap; });
     return at(render(), x, 0.5F).r > 0.1F;

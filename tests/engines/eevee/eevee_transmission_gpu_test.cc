@@ -18,7 +18,7 @@ namespace {
 using test::Picture;
 using test::Renderer;
 
-constexpr glm::ivec2 size_px(24, 24);
+constexpr glm::ivec2 square_size_px(24, 24);
 
 /** An unlit square behind a plate that transmits light, both across the view. */
 class TransmissionGpuTest : public test::GpuDeviceTest {
@@ -62,7 +62,7 @@ class TransmissionGpuTest : public test::GpuDeviceTest {
   }
   Picture render(const Settings &settings = {})
   {
-    Renderer renderer(*device, scene, size_px, settings);
+    Renderer renderer(*device, scene, square_size_px, settings);
     Picture picture = renderer.picture(camera);
     EXPECT_EQ(picture.non_finite_count(), 0U);
     return picture;
@@ -84,13 +84,6 @@ double largest_difference(const Picture &a, const Picture &b)
     largest = std::max(largest, double(glm::distance(a.pixels[i], b.pixels[i])));
   }
   return largest;
-}
-
-void expect_near(const glm::vec3 &value, const glm::vec3 &expected, float tolerance)
-{
-  for (int i = 0; i < 3; i++) {
-    EXPECT_NEAR(value[i], expected[i], tolerance) << "channel " << i;
-  }
 }
 
 TEST_F(TransmissionGpuTest, AThinWallThatReflectsAndAbsorbsNothingIsNotSeen)
@@ -133,7 +126,7 @@ TEST_F(TransmissionGpuTest, AbsorptionIsBeerLambertsOverTheWayInTheScaledObject)
       const glm::vec3 left(std::pow(0.25F, 2.0F * way_m), std::pow(0.5F, 2.0F * way_m), 1.0F);
       const glm::vec3 expected = radiance * glm::vec3(1.0F, 0.5F, 0.75F) * left;
       // At the middle pixel, the way is 1.0006 times that along the axis.
-      expect_near(glm::vec3(render().middle()), expected, 2e-3F * expected.b);
+      test::expect_near(glm::vec3(render().middle()), expected, 2e-3F * expected.b);
     }
   }
 }
@@ -153,7 +146,7 @@ TEST_F(TransmissionGpuTest, AThickPlateShowsWhatIsBehindTheEndOfTheRefractedRay)
   const glm::dmat4 world_from_camera = camera.world_from_camera;
   const glm::dvec3 eye(world_from_camera[3]);
   for (const glm::ivec2 pixel : {glm::ivec2(4, 4), glm::ivec2(12, 12), glm::ivec2(19, 6)}) {
-    const glm::dvec2 ndc = (2.0 * glm::dvec2(pixel) + 1.0) / double(size_px.x) - 1.0;
+    const glm::dvec2 ndc = (2.0 * glm::dvec2(pixel) + 1.0) / double(square_size_px.x) - 1.0;
     const double reach = std::tan(0.5 * 0.3);
     const glm::dvec3 ray = glm::normalize(glm::dvec3(world_from_camera * glm::dvec4(reach * ndc, -1.0, 0.0)));
     const glm::dvec3 hit = eye + ray * ((1.0 - eye.z) / ray.z);
@@ -164,7 +157,7 @@ TEST_F(TransmissionGpuTest, AThickPlateShowsWhatIsBehindTheEndOfTheRefractedRay)
     const glm::dvec3 behind = eye + (exit - eye) * (-eye.z / (exit.z - eye.z));
     const glm::vec3 expected(glm::dvec3(0.5 + 0.5 * behind.x / half_size, 0.5 + 0.5 * behind.y / half_size, 0.5));
     // The lookup is linear between pixels, which a projection is not.
-    expect_near(glm::vec3(picture.at(pixel.x, pixel.y)), expected, 1e-4F);
+    test::expect_near(glm::vec3(picture.at(pixel.x, pixel.y)), expected, 1e-4F);
     const glm::dvec3 straight = eye + ray * (-eye.z / ray.z);
     EXPECT_GT(glm::distance(behind, straight), 0.08) << "the test tells refraction from a thin wall";
   }
@@ -187,7 +180,7 @@ TEST_F(TransmissionGpuTest, ARoughWallShowsTheMeanOfWhatIsBehind)
   // The picture is symmetrical about its middle, where the ground has its mean.
   const glm::vec3 smooth = pixel_with(0.0F);
   const glm::vec3 half = pixel_with(0.8F);
-  expect_near(pixel_with(1.0F), glm::vec3(0.5F), 1e-4F);
+  test::expect_near(pixel_with(1.0F), glm::vec3(0.5F), 1e-4F);
   EXPECT_GT(half.x, smooth.x + 0.01F);
   EXPECT_LT(half.x, 0.5F);
 }
@@ -205,7 +198,7 @@ TEST_F(TransmissionGpuTest, TransmissionTakesLightFromTheDiffusePartAndReflectio
   });
   scene.edit(test::handle_at(scene.meshes(), 1), [](scene::Mesh &mesh) { mesh.uvs.assign(4, glm::vec2(0.5F)); });
   // 0.2 passes; 0.8 is scattered, and the radiance of a white surface is 1.
-  expect_near(glm::vec3(render().middle()), glm::vec3(0.8F * (0.2F * 0.5F + 0.8F)), 1e-4F);
+  test::expect_near(glm::vec3(render().middle()), glm::vec3(0.8F * (0.2F * 0.5F + 0.8F)), 1e-4F);
   // A surface that reflects 4 % transmits 96 %. Its highlight is not in the direction of the camera.
   test::remove_lamps(scene);
   edit([](scene::Material &value) {
@@ -213,7 +206,7 @@ TEST_F(TransmissionGpuTest, TransmissionTakesLightFromTheDiffusePartAndReflectio
     value.transmission_texture = {};
     value.transmission = 1.0F;
   });
-  expect_near(glm::vec3(render().middle()), glm::vec3(0.8F * 0.96F * 0.5F), 2e-3F);
+  test::expect_near(glm::vec3(render().middle()), glm::vec3(0.8F * 0.96F * 0.5F), 2e-3F);
 }
 
 TEST_F(TransmissionGpuTest, WithoutItsFactorTransmissionChangesNoBit)
@@ -253,14 +246,14 @@ TEST_F(TransmissionGpuTest, BlendedSurfacesAreSeenBehindAndInFront)
   const glm::vec3 tint(0.8F, 0.6F, 0.4F);
   edit([&](scene::Material &value) { value.base_color = tint; });
   const glm::vec3 behind = tint * (0.5F * glm::vec3(1, 0, 0) + 0.5F * glm::vec3(0.5F));
-  expect_near(glm::vec3(render().middle()), 0.5F * glm::vec3(0, 0, 1) + 0.5F * behind, 1e-5F);
+  test::expect_near(glm::vec3(render().middle()), 0.5F * glm::vec3(0, 0, 1) + 0.5F * behind, 1e-5F);
   // The plate may itself be blended over what is behind it.
   edit([](scene::Material &value) {
     value.alpha_mode = scene::AlphaMode::Blend;
     value.alpha = 0.25F;
   });
   const glm::vec3 partly = (0.25F * tint + 0.75F) * (0.5F * glm::vec3(1, 0, 0) + 0.5F * glm::vec3(0.5F));
-  expect_near(glm::vec3(render().middle()), 0.5F * glm::vec3(0, 0, 1) + 0.5F * partly, 1e-5F);
+  test::expect_near(glm::vec3(render().middle()), 0.5F * glm::vec3(0, 0, 1) + 0.5F * partly, 1e-5F);
 }
 
 TEST_F(TransmissionGpuTest, BeforeATransparentBackgroundAlphaIsWhatDoesNotPass)
@@ -272,11 +265,11 @@ TEST_F(TransmissionGpuTest, BeforeATransparentBackgroundAlphaIsWhatDoesNotPass)
     value.transmission = 0.5F;
   });
   const glm::vec4 pixel = render().middle();
-  expect_near(glm::vec3(pixel), glm::vec3(0.0F), 0.0F);
+  test::expect_near(glm::vec3(pixel), glm::vec3(0.0F), 0.0F);
   EXPECT_NEAR(pixel.w, 1.0F - 0.5F * 0.6F, 1e-5F);
   Settings settings;
   settings.background = {.kind = Background::Kind::Color, .color = {1.0F, 2.0F, 3.0F}};
-  expect_near(glm::vec3(render(settings).middle()), 0.5F * glm::vec3(0.9F, 1.2F, 0.9F), 1e-5F);
+  test::expect_near(glm::vec3(render(settings).middle()), 0.5F * glm::vec3(0.9F, 1.2F, 0.9F), 1e-5F);
   EXPECT_NEAR(render(settings).middle().w, 1.0F, 1e-5F);
 }
 
@@ -317,7 +310,7 @@ TEST_F(TransmissionGpuTest, HostileValuesStayFinite)
   test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 5}, {0.3F, 0, -1}, 1.0F);
   add_plate(at_height(1.0));
   test::add_object(scene, test::add_box_mesh(scene, glass), at_height(0.5, {0.5, 0.5, 0.0}));
-  Renderer renderer(*device, scene, size_px);
+  Renderer renderer(*device, scene, square_size_px);
   const auto expect_finite = [&](const auto &change) {
     const scene::Material kept = scene.materials()[glass];
     edit(change);

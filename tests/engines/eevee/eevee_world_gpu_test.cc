@@ -52,7 +52,7 @@ class WorldGpuTest : public test::GpuDeviceTest {
   scene::PlacedCamera camera = test::camera_at({0.1, 0.1, 16}, {0.1, 0.1, 0}, 0.02F);
 };
 
-void expect_near(const glm::vec3 &value, const glm::vec3 &expected, float relative)
+void expect_relative(const glm::vec3 &value, const glm::vec3 &expected, float relative)
 {
   for (int i = 0; i < 3; i++) {
     EXPECT_NEAR(value[i], expected[i], relative * expected[i]) << "channel " << i;
@@ -63,10 +63,10 @@ TEST_F(WorldGpuTest, OfOneRadianceGivesAPlaneItsAlbedoTimesThat)
 {
   scene.set_world(scene::World{.color = {2.0F, 1.0F, 0.5F}, .strength = 1.5F});
   const glm::vec3 expected(0.75F, 0.75F, 0.75F);
-  expect_near(middle(1), expected, 1e-3F);
+  expect_relative(middle(1), expected, 1e-3F);
   // 64 directions, half of them below the plane.
-  expect_near(middle(16), expected, 0.03F);
-  expect_near(reference_middle(), expected, 2e-3F);
+  expect_relative(middle(16), expected, 0.03F);
+  expect_relative(reference_middle(), expected, 2e-3F);
 }
 
 TEST_F(WorldGpuTest, WhiteFurnaceOfAMetal)
@@ -82,8 +82,8 @@ TEST_F(WorldGpuTest, WhiteFurnaceOfAMetal)
     const glm::vec3 expected = reference_middle(2048);
     EXPECT_GT(expected.r, roughness < 0.2F ? 0.99F : 0.3F);
     EXPECT_LT(expected.r, 1.005F);
-    expect_near(middle(1), expected, 0.01F);
-    expect_near(middle(32), expected, 0.05F);
+    expect_relative(middle(1), expected, 0.01F);
+    expect_relative(middle(32), expected, 0.05F);
   }
 }
 
@@ -121,12 +121,12 @@ TEST_F(WorldGpuTest, LightFromOneSideIsWhereThePictureHasIt)
   // The plane sees the half space of +Z, of which a half shines that has +X: all of it, and none when the plane is
   // turned.
   add_half_world(2, glm::vec3(1.0F), glm::vec3(0.0F));
-  expect_near(middle(1), {0.25F, 0.5F, 1.0F}, 0.03F);
-  expect_near(reference_middle(), {0.25F, 0.5F, 1.0F}, 0.01F);
+  expect_relative(middle(1), {0.25F, 0.5F, 1.0F}, 0.03F);
+  expect_relative(reference_middle(), {0.25F, 0.5F, 1.0F}, 0.01F);
   add_half_world(0, glm::vec3(1.0F), glm::vec3(0.0F));
-  expect_near(middle(1), {0.125F, 0.25F, 0.5F}, 0.02F);
-  expect_near(middle(16), {0.125F, 0.25F, 0.5F}, 0.05F);
-  expect_near(reference_middle(), {0.125F, 0.25F, 0.5F}, 0.01F);
+  expect_relative(middle(1), {0.125F, 0.25F, 0.5F}, 0.02F);
+  expect_relative(middle(16), {0.125F, 0.25F, 0.5F}, 0.05F);
+  expect_relative(reference_middle(), {0.125F, 0.25F, 0.5F}, 0.01F);
   scene.set_world([&] {
     scene::World turned = *scene.world();
     // +X comes to -Z: below the plane.
@@ -147,7 +147,7 @@ TEST_F(WorldGpuTest, OcclusionConvergesToTheReference)
   add_half_world(1, {1.0F, 0.8F, 0.6F}, {0.3F, 0.3F, 0.6F});
   const glm::vec3 expected = reference_middle();
   EXPECT_LT(expected.b, 0.55F);
-  expect_near(middle(64), expected, 0.04F);
+  expect_relative(middle(64), expected, 0.04F);
 }
 
 TEST_F(WorldGpuTest, BlackIsNoWorldAndCompilesNothingOfIt)
