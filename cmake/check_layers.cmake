@@ -6,14 +6,15 @@
 cmake_minimum_required(VERSION 3.25)
 
 # The layers that each layer may use. A header belongs to the listed folder that contains it.
-set(source/gpu shaders)
+set(source/trace "")
+set(source/gpu source/trace shaders)
 set(source/shader_check source/gpu shaders)
 set(source/draw source/gpu shaders)
 set(source/scene "")
 set(source/image "")
-set(source/gltf source/scene source/image)
+set(source/gltf source/scene source/image source/trace)
 set(source/render_scene source/draw source/gpu source/scene shaders)
-set(source/engines/eevee source/render_scene source/draw source/gpu source/scene shaders)
+set(source/engines/eevee source/render_scene source/draw source/gpu source/scene source/trace shaders)
 set(source/engines/unlit source/render_scene source/draw source/gpu source/scene shaders)
 set(source/engines/overlay source/render_scene source/draw source/gpu source/scene shaders)
 # A program of the build. The engine itself must not use shader_check.
@@ -25,14 +26,14 @@ set(source/measure source/engines/eevee source/render_scene source/reference sou
 set(source/verify source/measure source/engines/eevee source/render_scene source/reference source/draw source/gpu source/gltf
   source/image source/scene shaders)
 set(source/cli source/view source/verify source/measure source/engines/eevee source/engines/unlit source/engines/overlay source/render_scene source/reference source/draw source/shader_check source/gpu
-  source/gltf source/image source/scene shaders)
+  source/gltf source/image source/scene source/trace shaders)
 set(source/view source/engines/eevee source/engines/unlit source/engines/overlay source/render_scene source/draw source/shader_check source/gpu source/gltf
   source/scene shaders)
 set(source/python source/measure source/reference source/embed source/engines/eevee source/engines/unlit source/engines/overlay source/render_scene source/draw
   source/gpu source/gltf source/scene shaders)
 set(shaders "")
 # A folder within another layer's folder comes after it.
-set(LAYERS source/gpu source/shader_check source/draw source/scene source/image source/gltf source/render_scene source/engines/eevee
+set(LAYERS source/trace source/gpu source/shader_check source/draw source/scene source/image source/gltf source/render_scene source/engines/eevee
   source/engines/unlit source/engines/overlay source/engines/interface_tool source/embed source/reference source/measure source/verify source/view source/cli source/python shaders)
 
 set(VIOLATIONS 0)

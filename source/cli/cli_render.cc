@@ -9,16 +9,19 @@
 #include "cli_render_options.hh"
 #include "cli_render_report.hh"
 #include "cli_time.hh"
+#include "cli_trace.hh"
 
 #include "eevee_scene_renderer.hh"
 #include "eevee_world.hh"
 #include "gpu_read.hh"
+#include "trace.hh"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <unistd.h>
 #include <algorithm>
+#include <future>
 #include <iterator>
 #include <optional>
 
@@ -96,6 +99,7 @@ void render_frames(const RenderOptions &options, const scene::PlacedCamera &came
       show_progress(samples_drawn, sample_count);
       return samples_drawn != sample_count;
     };
+    const trace::Span span("picture");
     result.samples_drawn = renderer.draw(camera, {.progress = progress, .seconds_max = options.seconds_max}, target);
     end_progress(sample_count);
     renderer.viewport().device().finish();
@@ -154,6 +158,7 @@ Status write_picture(const RenderOptions &options, const scene::Camera &camera, 
                      const std::optional<draw::TargetTexture> &display, Alpha alpha, const AovLayers &aov,
                      double sample_share, const Metadata &frame_metadata, RenderResult &result)
 {
+  const trace::Span span("write picture");
   const bool is_shadow = options.is_shadow_shown();
   const std::span<const float> values = floats(pixels);
   result.non_finite_count = count_non_finite(options, "the picture", size_px, values, 4);
@@ -202,10 +207,41 @@ void print_messages(std::string_view kind, const std::vector<std::string> &texts
 
 std::unique_ptr<gpu::Device> create_device(const RenderOptions &options)
 {
+  const trace::Span span("device");
   if (!options.has_picture()) {
     return gpu::create_null_device();
   }
   return gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()});
+}
+
+struct Input {
+  std::unique_ptr<gpu::Device> device;
+  scene::Scene scene;
+};
+
+/** Imports the scene on another thread while the device is created. Both must not fail; the scene's error is the first.
+ */
+Input create_device_and_import(const RenderOptions &options, RenderResult &result)
+{
+  std::future<scene::Scene> imported = std::async(std::launch::async, [&] {
+    const Clock::time_point start = Clock::now();
+    scene::Scene scene = import_scene(options.scene, options.variant);
+    result.import_seconds = seconds_since(start);
+    return scene;
+  });
+  Input input;
+  try {
+    const Clock::time_point start = Clock::now();
+    input.device = create_device(options);
+    result.device = input.device->description();
+    result.device_seconds = seconds_since(start);
+  }
+  catch (...) {
+    static_cast<void>(imported.get());
+    throw;
+  }
+  input.scene = imported.get();
+  return input;
 }
 
 /** Renders and writes all frames of the sequence. */
@@ -263,16 +299,18 @@ Status render_sequence(RenderOptions options, const FrameSequence &frames, const
 Status render(RenderOptions options)
 {
   const Clock::time_point start = Clock::now();
+  const TraceFile trace_file(options.trace);
   options.check();
   options.debug_view = parse_debug(options.debug);
   const glm::ivec2 size_px = options.size_px();
   check_folder(options.output);
   check_folder(options.json);
+  check_folder(options.trace);
   const FrameSequence frames(options.frames, options.output);
   const Aov aov(options.aov);
   RenderResult result;
 
-  scene::Scene scene = import_scene(options.scene, options.variant);
+  auto [device, scene] = create_device_and_import(options, result);
   frames.pose(scene, 0);
   const scene::PlacedCamera camera = find_camera(scene, options.camera);
   const bool is_default_studio = light_by_world(scene, camera, options.world);
@@ -282,12 +320,6 @@ Status render(RenderOptions options)
   aov.check(scene);
   std::ranges::copy(aov.warnings(scene), std::back_inserter(scene.warnings));
   print_messages("warning", scene.warnings);
-  result.import_seconds = seconds_since(start);
-
-  const Clock::time_point device_start = Clock::now();
-  const std::unique_ptr<gpu::Device> device = create_device(options);
-  result.device = device->description();
-  result.device_seconds = seconds_since(device_start);
 
   std::unique_ptr<Chooser> chooser;
   if (options.choice.is_asked()) {
@@ -338,6 +370,7 @@ Status render(RenderOptions options)
     const nlohmann::json json = to_json(options, scene, camera, result, chooser.get());
     write_text(options.json, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   }
+  trace_file.write();
   if (status == Status::Done) {
     print_summary(options, result);
     if (chooser) {

@@ -50,6 +50,7 @@ struct RenderOptions {
   std::string backend = "gl";
   bool is_explained = false;
   std::string json;
+  std::string trace;
   ChoiceOptions choice;
   bool is_strict = false;
   std::uint32_t seed = 0;

@@ -13,6 +13,7 @@
 #include "internal/gltf_report.hh"
 #include "internal/gltf_units.hh"
 #include "internal/gltf_world.hh"
+#include "trace.hh"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -436,6 +437,7 @@ Scene import_gltf(const std::filesystem::path &path, const ImportOptions &option
   const auto failed = [&path](std::string_view reason) {
     return ImportError(path.string() + ": " + std::string(reason));
   };
+  const trace::Span span("import", path.filename().string());
   try {
     File file = load_file(path);
     if (!options.variant.empty()) {

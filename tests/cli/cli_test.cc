@@ -17,6 +17,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <random>
 #include <utility>
 
@@ -307,6 +308,31 @@ std::string lamps_gltf(int count)
       {"scenes", {{{"nodes", roots}}}},
       {"scene", 0}};
   return gltf.dump();
+}
+
+TEST_F(CliTest, TraceHasTheTimesOfTheParts)
+{
+  const Finished finished =
+      run("render " + example("plaza") + " --backend null --size 8x8 --shadow-size 64 --trace trace.json");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const nlohmann::json events = nlohmann::json::parse(read("trace.json"))["traceEvents"];
+  std::map<std::string, nlohmann::json> by_name;
+  for (const nlohmann::json &event : events) {
+    EXPECT_EQ(event["ph"], "X");
+    EXPECT_GE(event["ts"].get<double>(), 0.0) << event;
+    EXPECT_GE(event["dur"].get<double>(), 0.0) << event;
+    by_name[event["name"]] = event;
+  }
+  for (const char *name :
+       {"process start and options", "import", "read and parse", "device", "sync", "picture", "lit"}) {
+    EXPECT_TRUE(by_name.contains(name)) << name;
+  }
+  EXPECT_EQ(by_name["import"]["args"]["of"], "plaza.glb");
+  EXPECT_NE(by_name["import"]["tid"], by_name["device"]["tid"]) << "the scene is imported beside the device's creation";
+  const auto end = [](const nlohmann::json &event) { return event["ts"].get<double>() + event["dur"].get<double>(); };
+  EXPECT_GE(by_name["device"]["ts"], end(by_name["process start and options"]));
+  EXPECT_GE(by_name["picture"]["ts"], end(by_name["import"]));
+  EXPECT_GE(end(by_name["picture"]), end(by_name["lit"]));
 }
 
 TEST_F(CliTest, ALimitIsNamedAndFailsOnlyWhenStrict)

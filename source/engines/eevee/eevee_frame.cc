@@ -5,6 +5,8 @@
 #include "eevee_film.hh"
 #include "eevee_transmission.hh"
 
+#include "trace.hh"
+
 #include <glm/matrix.hpp>
 
 #include <algorithm>
@@ -399,6 +401,7 @@ void draw_steps(FrameSample &sample, FrameStep::When when)
     if (!is_needed) {
       continue;
     }
+    const trace::Span span(step.name);
     gpu::CommandList &list = device.add_list();
     step.record(step, sample, list);
     const auto submit = [&] {

@@ -4,6 +4,7 @@
 #include "eevee_camera.hh"
 
 #include "gpu_read.hh"
+#include "trace.hh"
 
 #include <algorithm>
 #include <chrono>
@@ -14,6 +15,7 @@ namespace gnomon::eevee {
 
 void SceneRenderer::sync()
 {
+  const trace::Span span("sync");
   is_synced_ = false;
   render_scene_.update();
   const std::array<draw::Engine *, 1> engines = {&engine_};

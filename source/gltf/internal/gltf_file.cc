@@ -3,6 +3,7 @@
 
 #include "internal/gltf_document.hh"
 #include "internal/gltf_report.hh"
+#include "trace.hh"
 
 #include <algorithm>
 #include <array>
@@ -280,6 +281,7 @@ class BufferLoader {
 
 File load_file(const std::filesystem::path &path)
 {
+  const trace::Span span("read and parse");
   File file;
   file.storage.push_back(read_bytes(path, "file"));
   Bytes &storage = file.storage.back();

@@ -3,6 +3,7 @@
 
 #include "internal/gltf_sampler.hh"
 #include "scene_parallel.hh"
+#include "trace.hh"
 
 #include <algorithm>
 #include <string>
@@ -178,6 +179,7 @@ std::map<Handle<Image>, Fault> TextureImporter::decode()
 {
   std::vector<std::variant<Image, Fault>> results(pending_.size());
   scene::parallel_for(pending_.size(), 0, [&](std::size_t i) {
+    const trace::Span span("decode image", scene_.images()[pending_[i].handle].name);
     try {
       results[i] = pending_[i].decoder.read();
     }

@@ -2,6 +2,7 @@
 #include "gl_context.hh"
 
 #include "gpu_error.hh"
+#include "trace.hh"
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -234,6 +235,7 @@ std::unique_ptr<GlContext> create_hidden_window(bool is_debug, Attempts &attempt
 
 std::unique_ptr<GlContext> create_headless_context(bool is_debug)
 {
+  const trace::Span span("OpenGL context");
   Attempts attempts;
   for (const auto create : {create_on_hardware, create_surfaceless, create_on_software, create_hidden_window}) {
     if (auto context = create(is_debug, attempts)) {

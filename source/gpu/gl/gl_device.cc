@@ -2,6 +2,7 @@
 #include "gl_device.hh"
 
 #include "slots_shared.h"
+#include "trace.hh"
 
 #include <fmt/ranges.h>
 
@@ -128,6 +129,7 @@ void GlDevice::create_vertex_arrays()
 
 void GlDevice::finish()
 {
+  const trace::Span span("wait for the device");
   const Entry entry(*this);
   glFinish();
   check("finish");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gl_device.hh"
 
+#include "trace.hh"
+
 #include <algorithm>
 #include <numeric>
 
@@ -53,6 +55,7 @@ GlFormat gl_format(Format format)
 
 void GlDevice::texture_create(ResourceId id, const TextureDesc &desc)
 {
+  const trace::Span span("create texture", desc.name);
   const Entry entry(*this);
   GLuint texture = 0;
   glCreateTextures(gl_target(desc.kind), 1, &texture);
@@ -132,6 +135,7 @@ void GlDevice::framebuffer_create(ResourceId id, const FramebufferLayout &layout
 
 void GlDevice::buffer_create(ResourceId id, const BufferDesc &desc)
 {
+  const trace::Span span("create buffer", desc.name);
   const Entry entry(*this);
   GLuint buffer = 0;
   glCreateBuffers(1, &buffer);
@@ -184,6 +188,7 @@ void GlDevice::grow_pools(const BatchDesc &desc, const PoolSizes &sizes)
 void GlDevice::batch_create(const BatchDesc &desc, const BatchRange &range, std::uint32_t vertex_capacity,
                             std::uint32_t index_capacity)
 {
+  const trace::Span span("create batch", desc.name);
   const Entry entry(*this);
   // The pool of a stream is created for the first batch with that stream. Only batches with the stream grow it.
   PoolSizes sizes = pool_size_;

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "gl_device.hh"
 
+#include "trace.hh"
+
+#include <fmt/ranges.h>
+
 #include <cstring>
 #include <optional>
 
@@ -117,6 +121,8 @@ GLuint GlDevice::load_compiled(const std::vector<std::byte> &compiled)
 
 void GlDevice::shader_create(const Operation::CreateShader &create, std::vector<std::byte> &compiled)
 {
+  const trace::Span span(compiled.empty() ? "compile program" : "load program",
+                         fmt::format("{} {}", create.desc.name, fmt::join(create.desc.defines, " ")));
   const Entry entry(*this);
   GlProgram program{load_compiled(compiled), {}};
   if (program.name == 0) {

@@ -2,6 +2,7 @@
 #include "gl_device.hh"
 
 #include "slots_shared.h"
+#include "trace.hh"
 
 #include <algorithm>
 #include <optional>
@@ -49,6 +50,7 @@ void GlDevice::collect_slots(const CommandList &list)
 
 void GlDevice::list_submit(const CommandList &list)
 {
+  const trace::Span span("submit", list.passes().empty() ? std::string_view() : list.name_of(list.passes().front()));
   const Entry entry(*this);
   check_host_state("submit");
   {
