@@ -316,8 +316,9 @@ void add_render_options(CLI::App &command, RenderOptions &options)
   command.add_flag("--explain", options.is_explained, "Print the parts of the frame, and the parts that were left out");
   command.add_option("--json", options.json,
                      "Write times, counters, limits, and the parts that were made and left out");
-  command.add_option("--trace", options.trace,
-                     "Write the times of the parts of the process, in Chrome's trace format (chrome://tracing, Perfetto)");
+  command.add_option(
+      "--trace", options.trace,
+      "Write the times of the parts of the process, in Chrome's trace format (chrome://tracing, Perfetto)");
   add_world_options(command, options.world);
   add_background_option(command, options.background);
   CLI::Option *max_error =
