@@ -115,9 +115,10 @@ void add_compare(CLI::App &app, Status &status)
   CLI::App *command = app.add_subcommand("compare", "Errors of a picture against a reference");
   auto o = std::make_shared<CompareOptions>();
   command
-      ->add_option("picture", o->picture,
-                   "EXR, HDR: scene-linear; PNG, JPEG: decoded by the sRGB curve. Transparent pixels are compared as "
-                   "if over black")
+      ->add_option(
+          "picture", o->picture,
+          "EXR, HDR: scene-linear; PNG, JPEG, WebP: decoded by the sRGB curve. Transparent pixels are compared as "
+          "if over black")
       ->required();
   command->add_option("reference", o->reference, "A picture of the same size")->required();
   for (std::size_t i = 0; i < errors.size(); i++) {

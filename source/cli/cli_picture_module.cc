@@ -27,7 +27,7 @@ static ReadModulePicture *load_reader()
   void *function = module ? dlsym(module, read_module_picture_name) : nullptr;
   if (!function) {
     throw std::runtime_error(
-        fmt::format("is none of EXR, PNG and JPEG, and the module for other formats cannot be loaded: {}", dlerror()));
+        fmt::format("is none of EXR, PNG, JPEG and WebP, and the module for other formats cannot be loaded: {}", dlerror()));
   }
   return reinterpret_cast<ReadModulePicture *>(function);
 }

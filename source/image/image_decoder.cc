@@ -15,11 +15,19 @@ static bool begins_with(std::span<const unsigned char> bytes, std::string_view s
                     [](char a, unsigned char b) { return static_cast<unsigned char>(a) == b; });
 }
 
+/** A RIFF container: its length comes between both names. */
+static bool is_webp(std::span<const unsigned char> file)
+{
+  constexpr std::size_t name_start = 8;
+  return begins_with(file, "RIFF") && file.size() > name_start && begins_with(file.subspan(name_start), "WEBP");
+}
+
 Format format_of(std::span<const unsigned char> file)
 {
   using namespace std::string_view_literals;
   return begins_with(file, "\x89PNG\r\n\x1A\n"sv) ? Format::Png
          : begins_with(file, "\xFF\xD8\xFF"sv)    ? Format::Jpeg
+         : is_webp(file)                          ? Format::Webp
                                                   : Format::None;
 }
 
@@ -36,9 +44,10 @@ std::unique_ptr<Decoder> open_decoder(std::span<const unsigned char> file)
   switch (format_of(file)) {
     case Format::Png: return open_png(file);
     case Format::Jpeg: return open_jpeg(file);
+    case Format::Webp: return open_webp(file);
     case Format::None: break;
   }
-  throw Error(file.empty() ? "is empty" : "is neither PNG nor JPEG");
+  throw Error(file.empty() ? "is empty" : "is none of PNG, JPEG and WebP");
 }
 
 }  // namespace gnomon::image

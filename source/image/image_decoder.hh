@@ -11,14 +11,15 @@
 namespace gnomon::image {
 
 /** A file format that open_decoder() reads. */
-enum class Format { None, Png, Jpeg };
+enum class Format { None, Png, Jpeg, Webp };
 
 /** By the first bytes of a file. */
 [[nodiscard]] Format format_of(std::span<const unsigned char> file);
 
 /**
- * One PNG or JPEG file. Texels are those that the file stores: colour profiles and gamma values are ignored, and
- * colours are not multiplied by alpha. Several decoders may run concurrently, each on one thread at a time.
+ * One PNG, JPEG or WebP file, without animation. Texels are those that the file stores: colour profiles and gamma
+ * values are ignored, and colours are not multiplied by alpha. Several decoders may run concurrently, each on one
+ * thread at a time.
  */
 class Decoder {
  public:

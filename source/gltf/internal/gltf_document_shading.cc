@@ -204,7 +204,13 @@ void read_material(const Place &place, const JsonValue &value, Model::Material &
 
 void read_texture(const Place &place, const JsonValue &value, Model::Texture &texture)
 {
-  read_members(place, value, into_name(texture.name), into("sampler", texture.sampler), into("source", texture.source));
+  read_members(place, value, into_name(texture.name), into("sampler", texture.sampler), into("source", texture.source),
+               Member{"extensions", [&](const Place &at, const JsonValue &extensions) {
+                        read_members(at, extensions,
+                                     Member{"EXT_texture_webp", [&](const Place &in, const JsonValue &webp) {
+                                              read_members(in, webp, into("source", texture.webp_source));
+                                            }});
+                      }});
 }
 
 void read_sampler(const Place &place, const JsonValue &value, Model::Sampler &sampler)

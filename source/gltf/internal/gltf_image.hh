@@ -25,8 +25,8 @@ struct EncodedImage {
 [[nodiscard]] EncodedImage encoded_image(const File &file, const Model::Image &image, const std::string &what);
 
 /**
- * A PNG or JPEG file in memory. 16-bit values are rounded to 8 bits, grey is expanded to RGB, and a missing alpha is
- * opaque. Colour profiles and gamma values are ignored, as glTF requires.
+ * A PNG, JPEG or WebP file in memory. 16-bit values are rounded to 8 bits, grey is expanded to RGB, and a missing alpha
+ * is opaque. Colour profiles and gamma values are ignored, as glTF requires.
  */
 class ImageDecoder {
  public:

@@ -199,6 +199,8 @@ struct Model {
     std::string name;
     int sampler = -1;
     int source = -1;
+    /** The image of EXT_texture_webp, for which `source` is the fallback. */
+    int webp_source = -1;
   };
   /** Values are OpenGL's enumerants. */
   struct Sampler {

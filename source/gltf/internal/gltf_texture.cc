@@ -100,12 +100,11 @@ Handle<Texture> TextureImporter::handle_of(int gltf_texture)
   }
   const Model::Texture &source = element(file_.model.textures, gltf_texture, "texture");
   const std::string what = label("texture", source.name, static_cast<std::size_t>(gltf_texture));
-  element(file_.model.images, source.source, what + ": source");
   Texture texture;
   if (source.sampler >= 0) {
     SamplerReader(what, warnings_).read(element(file_.model.samplers, source.sampler, what + ": sampler"), texture);
   }
-  texture.image = image_of(source.source);
+  texture.image = image_of(source, what);
   return handle_of_.emplace(gltf_texture, scene_.add(texture)).first->second;
 }
 
@@ -144,9 +143,25 @@ static Image roughness_image(const Image &source, double glossiness, const std::
   return image;
 }
 
-Handle<Image> TextureImporter::image_of(int gltf_image)
+Handle<Image> TextureImporter::image_of(const Model::Texture &texture, const std::string &what)
 {
-  const Model::Image &source = file_.model.images[gltf_image];
+  if (texture.webp_source >= 0) {
+    try {
+      return image_of(texture.webp_source, what + ": source of EXT_texture_webp");
+    }
+    catch (const Fault &fault) {
+      if (texture.source < 0) {
+        throw;
+      }
+      warnings_.add(what, std::string("its fallback is drawn: ") + fault.what());
+    }
+  }
+  return image_of(texture.source, what + ": source");
+}
+
+Handle<Image> TextureImporter::image_of(int gltf_image, const std::string &what)
+{
+  const Model::Image &source = element(file_.model.images, gltf_image, what);
   const auto [place, is_new] = image_of_.try_emplace({source.uri, source.buffer_view});
   if (is_new) {
     try {

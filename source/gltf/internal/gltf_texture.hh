@@ -69,8 +69,13 @@ class TextureImporter {
   /** Texels of all images so far. */
   std::uint64_t texel_count_ = 0;
 
-  /** Imports each image once; later calls return the same handle or throw the same Fault. */
-  scene::Handle<scene::Image> image_of(int gltf_image);
+  /** The image of EXT_texture_webp; the texture's other one if that is absent, or its header cannot be read. */
+  scene::Handle<scene::Image> image_of(const Model::Texture &texture, const std::string &what);
+  /**
+   * Imports each image once; later calls return the same handle or throw the same Fault. \a what names the reference,
+   * whose index may be out of range.
+   */
+  scene::Handle<scene::Image> image_of(int gltf_image, const std::string &what);
   scene::Handle<scene::Image> import_image(int gltf_image);
 };
 
