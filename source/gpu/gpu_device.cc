@@ -99,6 +99,15 @@ Texture Device::create_texture(const TextureDesc &desc)
 
 Sampler Device::create_sampler(const SamplerDesc &desc)
 {
+  if (desc.anisotropy < 1 || desc.anisotropy > limits_.anisotropy_max) {
+    throw Error("sampler '{}': anisotropy is {}, but this device supports 1 to {}", desc.name, desc.anisotropy,
+                limits_.anisotropy_max);
+  }
+  const bool is_linear = desc.filter == Filter::Linear && desc.minified.value_or(desc.filter) == Filter::Linear;
+  if (desc.anisotropy > 1 && (!is_linear || desc.mip == MipFilter::None)) {
+    throw Error("sampler '{}': anisotropy is {}, which needs linear filters and mip levels", desc.name,
+                desc.anisotropy);
+  }
   return Sampler(make(ResourceKind::Sampler, {desc.name, desc}, {}, 0, [&](ResourceId id) {
     return Operation::CreateSampler{id, desc};
   }));

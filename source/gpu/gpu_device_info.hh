@@ -19,6 +19,10 @@ struct Limits {
   std::size_t uniform_block_bytes_max = 65536;
   std::size_t storage_block_bytes_max = std::size_t(1) << 27U;
   int color_attachment_max = 8;
+  /** Largest SamplerDesc::anisotropy; 1 where the device has none. */
+  int anisotropy_max = 16;
+  /** The driver draws on the CPU. Mesa's takes the time of each texel under a footprint for an anisotropic lookup. */
+  bool is_software = false;
   /** Alignment in bytes of BufferRange::offset_bytes, for uniform and storage blocks. */
   std::uint32_t uniform_offset_alignment = 256;
   /** Maximum number of storage blocks in each stage. OpenGL guarantees 8 in the fragment stage and 0 in the others. */

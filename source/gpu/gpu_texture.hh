@@ -78,6 +78,12 @@ struct SamplerDesc {
   Wrap wrap_u = Wrap::ClampToEdge;
   Wrap wrap_v = Wrap::ClampToEdge;
   /**
+   * Largest ratio of the length of a pixel's footprint to its width that is filtered without blur across it: 1 (every
+   * footprint counts as a circle) to Limits::anisotropy_max. Above 1, both filters must be linear and mip levels read:
+   * OpenGL does not define the others.
+   */
+  int anisotropy = 1;
+  /**
    * For `sampler2DShadow` and `sampler2DArrayShadow`: a lookup returns 1 if the reference is greater than or equal to
    * the stored depth, otherwise 0. Because depth is reversed, 1 means at least as near. Filter::Linear interpolates the
    * results of four comparisons.

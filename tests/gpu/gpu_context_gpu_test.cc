@@ -314,6 +314,7 @@ TEST_F(HeadlessGpu, LimitsAreAtLeastWhatOpenGlPromises)
   EXPECT_GE(limits.uniform_block_bytes_max, 16384U);
   EXPECT_GE(limits.storage_block_bytes_max, std::size_t(1) << 27U);
   EXPECT_GE(limits.color_attachment_max, 8);
+  EXPECT_GE(limits.anisotropy_max, 1);
   EXPECT_LE(limits.uniform_offset_alignment, 256U);
   EXPECT_GT(limits.uniform_offset_alignment, 0U);
 }

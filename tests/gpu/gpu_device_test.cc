@@ -63,6 +63,30 @@ TEST(Device, TakesTexturesAtItsLimits)
   EXPECT_EQ(device->counters().textures_made, 2U);
 }
 
+TEST(Device, RefusesAnisotropyPastItsLimitsByName)
+{
+  const auto device = create_null_device({.anisotropy_max = 8});
+  SamplerDesc desc{.name = "plane", .filter = Filter::Linear, .mip = MipFilter::Linear, .anisotropy = 8};
+  EXPECT_TRUE(device->create_sampler(desc));
+  const auto refuse = [&](std::initializer_list<std::string_view> parts) {
+    expect_refused(
+        *device, [&] { static_cast<void>(device->create_sampler(desc)); }, parts);
+  };
+  for (const int anisotropy : {-1, 0, 9}) {
+    desc.anisotropy = anisotropy;
+    refuse({"sampler 'plane'", fmt::format("anisotropy is {},", anisotropy), "1 to 8"});
+  }
+  desc.anisotropy = 2;
+  desc.mip = MipFilter::None;
+  refuse({"sampler 'plane'", "anisotropy is 2", "linear filters and mip levels"});
+  desc.mip = MipFilter::Linear;
+  desc.minified = Filter::Nearest;
+  refuse({"sampler 'plane'", "linear filters and mip levels"});
+  desc.minified = Filter::Linear;
+  desc.filter = Filter::Nearest;
+  refuse({"sampler 'plane'", "linear filters and mip levels"});
+}
+
 TEST(Device, RefusesBuffersPastItsLimitsByName)
 {
   const auto device = create_null_device(SMALL);

@@ -127,6 +127,41 @@ TEST_F(TextureGpu, FilterIsTheNearestOrTheBlend)
   }
 }
 
+/** Bands of four rows of 0 and 1 in turn, below a footprint of 8 texels in a row and one across: its own, or both. */
+TEST_F(TextureGpu, AnisotropyFiltersAlongTheFootprintOnly)
+{
+  if (device->limits().anisotropy_max < 8) {
+    GTEST_SKIP() << "the device has no anisotropic filter";
+  }
+  constexpr int edge = 64;
+  const Texture texture =
+      device->create_texture({.name = "rows", .format = Format::RGBA8, .width = edge, .height = edge, .mip_levels = 7});
+  std::vector<std::uint8_t> texels;
+  for (int i = 0; i < edge * edge; i++) {
+    texels.insert(texels.end(), 4, i / edge / 4 % 2 == 0 ? 0 : 255);
+  }
+  upload(texture, 0, texels);
+  device->generate_mipmaps(texture);
+  SamplerDesc desc{.name = "linear", .filter = Filter::Linear, .mip = MipFilter::Linear};
+  // The derivatives of the place: 8 texels along u for a pixel to the right, and one along v for a pixel up.
+  const auto band = [&](int index, const Sampler &sampler) {
+    const double middle = 4.0 * index + 2.0 - 0.5;
+    const std::string place = fmt::format("vec2(8.0 * gl_FragCoord.x, gl_FragCoord.y + {:.1f}) / 64.0", middle);
+    return evaluated("sampler2D", "texture(picture, " + place + ")", {glm::vec4(0.0F), glm::vec4(0.0F)}, texture,
+                     sampler)[0]
+        .r;
+  };
+  const Sampler isotropic = device->create_sampler(desc);
+  // Means of 8 bits.
+  EXPECT_NEAR(band(4, isotropic), 0.5F, 1.0F / 255);
+  EXPECT_NEAR(band(5, isotropic), 0.5F, 1.0F / 255);
+  desc.anisotropy = 8;
+  const Sampler anisotropic = device->create_sampler(desc);
+  // OpenGL leaves the method open, which may read neighbouring rows, too.
+  EXPECT_LT(band(4, anisotropic), 0.25F);
+  EXPECT_GT(band(5, anisotropic), 0.75F);
+}
+
 /** sRGB, IEC 61966-2-1. */
 float srgb_decoded(float encoded)
 {

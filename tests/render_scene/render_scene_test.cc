@@ -206,6 +206,25 @@ TEST_F(RenderSceneTest, AnImageIsUploadedOnceAndAgainWhereItsContentChanged)
             1);
 }
 
+TEST_F(RenderSceneTest, LinearTexturesAreAnisotropicWhereTheDeviceFiltersThemItself)
+{
+  const auto texture = add_texture(scene, 1, std::vector<std::uint8_t>(4, 255));
+  const auto anisotropy = [&](const gpu::Limits &limits) {
+    const auto on_device = gpu::create_null_device(limits);
+    RenderScene on_limits(*on_device, scene);
+    const gpu::ResourceId sampler = on_limits.texture(texture, true).sampler.id();
+    return std::get<gpu::SamplerDesc>(on_device->find(gpu::ResourceKind::Sampler, sampler)->desc).anisotropy;
+  };
+  EXPECT_EQ(anisotropy({}), 1) << "nearest";
+  scene.edit(texture, [](scene::Texture &value) {
+    value.magnified = value.minified = scene::TextureFilter::Linear;
+    value.mip = scene::MipFilter::Linear;
+  });
+  EXPECT_EQ(anisotropy({}), 8);
+  EXPECT_EQ(anisotropy({.anisotropy_max = 2}), 2);
+  EXPECT_EQ(anisotropy({.is_software = true}), 1);
+}
+
 TEST_F(RenderSceneTest, AFailedUploadLeavesWhatWasThere)
 {
   // The null device accepts every batch, but not every image.

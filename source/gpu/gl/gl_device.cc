@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <string_view>
 
 namespace gnomon::gpu {
 
@@ -25,11 +26,22 @@ Limits query_limits()
   limits.uniform_block_bytes_max = std::size_t(get(GL_MAX_UNIFORM_BLOCK_SIZE));
   limits.storage_block_bytes_max = std::size_t(get(GL_MAX_SHADER_STORAGE_BLOCK_SIZE));
   limits.color_attachment_max = std::min(get(GL_MAX_COLOR_ATTACHMENTS), get(GL_MAX_DRAW_BUFFERS));
+  // OpenGL 4.6 has it; before, only extensions have.
+  if (epoxy_gl_version() >= 46 || epoxy_has_gl_extension("GL_ARB_texture_filter_anisotropic") ||
+      epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic")) {
+    limits.anisotropy_max = std::max(get(GL_MAX_TEXTURE_MAX_ANISOTROPY), 1);
+  }
+  else {
+    limits.anisotropy_max = 1;
+  }
   limits.uniform_offset_alignment =
       std::uint32_t(std::max(get(GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT), get(GL_SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT)));
   limits.vertex_storage_block_max = get(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS);
   limits.geometry_storage_block_max = get(GL_MAX_GEOMETRY_SHADER_STORAGE_BLOCKS);
   limits.fragment_storage_block_max = get(GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS);
+  const GLubyte *renderer = glGetString(GL_RENDERER);
+  const std::string_view name = renderer != nullptr ? reinterpret_cast<const char *>(renderer) : "";
+  limits.is_software = name.starts_with("llvmpipe") || name.starts_with("softpipe");
   limits.has_vertex_layer = epoxy_has_gl_extension("GL_ARB_shader_viewport_layer_array");
   return limits;
 }

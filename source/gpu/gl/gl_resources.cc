@@ -81,6 +81,9 @@ void GlDevice::sampler_create(ResourceId id, const SamplerDesc &desc)
   glSamplerParameteri(sampler, GL_TEXTURE_WRAP_S, gl_wrap(desc.wrap_u));
   glSamplerParameteri(sampler, GL_TEXTURE_WRAP_T, gl_wrap(desc.wrap_v));
   glSamplerParameteri(sampler, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
+  if (desc.anisotropy > 1) {
+    glSamplerParameterf(sampler, GL_TEXTURE_MAX_ANISOTROPY, float(desc.anisotropy));
+  }
   if (desc.is_depth_comparison) {
     glSamplerParameteri(sampler, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
     glSamplerParameteri(sampler, GL_TEXTURE_COMPARE_FUNC, GL_GEQUAL);
