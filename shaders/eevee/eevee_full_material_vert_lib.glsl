@@ -50,8 +50,12 @@ void write_full_varyings()
   mat3 world_from_object = mat3(objects[draw_instance.x].world_from_object);
   vec3 tangent_ws = world_from_object * tangent.xyz;
   float length_sq = dot(tangent_ws, tangent_ws);
+  bool has_normal_texture = (full_materials[material].inputs & INPUT_NORMAL) != 0u;
+  float scale = has_normal_texture ? full_materials[material].normal_scale : 0.0;
+  // A negative factor turns both axes of the texture around.
+  tangent_ws *= length_sq > 0.0 ? inversesqrt(length_sq) : 0.0;
+  surface_tangent_ws.xyz = scale < 0.0 ? -tangent_ws : tangent_ws;
   // A mirrored object reverses cross(normal, tangent).
-  surface_tangent_ws = vec4(length_sq > 0.0 ? tangent_ws * inversesqrt(length_sq) : vec3(0.0),
-                            determinant(world_from_object) < 0.0 ? -tangent.w : tangent.w);
+  surface_tangent_ws.w = (determinant(world_from_object) < 0.0 ? -tangent.w : tangent.w) * (1.0 + abs(scale));
 #endif
 }

@@ -4,6 +4,7 @@
 #include "eevee/eevee_layer_block_lib.glsl"
 #include "eevee/eevee_light_lib.glsl"
 #include "eevee/eevee_ltc_lib.glsl"
+#include "eevee/eevee_surface_frag_lib.glsl"
 
 layout(location = 9) in vec4 surface_coat_uvs;
 layout(location = 10) in vec4 surface_sheen_uvs;
@@ -25,6 +26,7 @@ Layers make_layers(Surface surface)
   result.coat_material = coat_material(coat_roughness);
   result.coat_surface = surface;
   result.coat_surface.normal_ws = surface.smooth_normal_ws;
+  result.coat_material.alpha = sampled_alpha(result.coat_material.alpha, result.coat_surface);
   float coat = data.coat;
   if (has_input(INPUT_COAT)) {
     coat *= texture(coat_texture, surface_coat_uvs.xy, view.texture_lod_bias).r;

@@ -40,6 +40,9 @@ void main()
 #  ifdef USE_FULL_MATERIAL
   surface = normal_mapped(surface);
 #  endif
+#  ifdef USE_SPECULAR
+  material.alpha = sampled_alpha(material.alpha, surface);
+#  endif
 #  ifdef USE_LAYERS
   set_layers(make_layers(surface));
   sum *= 1.0 - layers.coat_share;

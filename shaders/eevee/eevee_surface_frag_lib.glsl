@@ -2,6 +2,9 @@
 // For fragment shaders: the shaded point, from the outputs of eevee_surface_vert_lib.glsl.
 #include "draw/draw_view_lib.glsl"
 #include "eevee/eevee_surface_lib.glsl"
+#ifdef USE_SPECULAR
+#  include "shared/eevee_bsdf_shared.h"
+#endif
 
 layout(location = 0) in vec3 surface_position_ws;
 layout(location = 1) in vec3 surface_normal_ws;
@@ -12,6 +15,20 @@ vec3 normalized(vec3 v, vec3 fallback)
   float length_sq = dot(v, v);
   return length_sq > 0.0 ? v * inversesqrt(length_sq) : fallback;
 }
+
+#ifdef USE_SPECULAR
+/** Alpha for the mean of the lobes under a sample's share of a pixel. */
+float sampled_alpha(float alpha, Surface surface)
+{
+  vec3 change_x = dFdx(surface.normal_ws);
+  vec3 change_y = dFdy(surface.normal_ws);
+  // n^-2 for n samples, as the bias of textures is -0.5 log2(n). A sample has 1/n of the area of a pixel, and so of the variance.
+  // Of that, the samples beside it see a part: with 1/n alone, the error of four and more is larger than without a filter.
+  float share = exp2(4.0 * view.texture_lod_bias);
+  float change_sq = dot(change_x, change_x) + dot(change_y, change_y);
+  return filtered_alpha(alpha, change_sq, dot(surface.normal_ws, surface.view_ws), share);
+}
+#endif
 
 Surface make_surface()
 {

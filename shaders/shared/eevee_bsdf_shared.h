@@ -37,6 +37,24 @@ SHARED_FUNCTION float ggx_lobe(float cos_l, float cos_v, float cos_h, float alph
   return ggx_distribution(cos_h, alpha) * ggx_masking_over_2cos(cos_l, alpha) * ggx_masking_over_2cos(cos_v, alpha);
 }
 
+/** Variance of a place in a square of one pixel along an axis, px². The pixel filter spreads the squares of the pixels. */
+SHARED_CONSTANT float PIXEL_VARIANCE = 1.0f / 12.0f;
+/** Largest variance of normals under a pixel, along each of two axes: neighbours that differ by more are those of an edge. */
+SHARED_CONSTANT float NORMAL_VARIANCE_MAX = 0.09f;
+
+/**
+ * Alpha of the mean of the GGX lobes under a pixel, whose normals differ (Tokuyoshi and Kaplanyan 2019, Improved Geometric Specular
+ * Antialiasing). \a change_sq: square of the change of the normal from pixel to pixel, the sum of that to the right and that up.
+ * \a cos_v: between normal and viewer. At the rim of a round body, normals differ along the line of sight alone, where a round
+ * lobe of that variance would light the rim by lamps from all sides. \a share: of the variance of these normals: 1 for one sample,
+ * and 0 for infinitely many.
+ */
+SHARED_FUNCTION float filtered_alpha(float alpha, float change_sq, float cos_v, float share)
+{
+  float variance = min(0.5f * PIXEL_VARIANCE * change_sq * (cos_v * cos_v), NORMAL_VARIANCE_MAX) * share;
+  return min(sqrt(alpha * alpha + 2.0f * variance), 1.0f);
+}
+
 /** Least alpha of sheen. For a smaller one, nearly all of the lobe lies at grazing angles that pixels do not resolve. */
 SHARED_CONSTANT float SHEEN_ALPHA_MIN = 5e-3f;
 
