@@ -15,6 +15,7 @@ layout(location = 8) out vec4 surface_specular_uvs;
 
 layout(location = 9) out vec4 surface_coat_uvs;
 layout(location = 10) out vec4 surface_sheen_uvs;
+layout(location = 16) out vec2 surface_anisotropy_uv;
 #  ifdef USE_TRANSMISSION
 layout(location = 11) out vec4 surface_transmission_uvs;
 /** Of directions. */
@@ -39,8 +40,9 @@ void write_full_varyings()
 #ifdef USE_LAYERS
   surface_coat_uvs = vec4(layer_uv(material, 0), layer_uv(material, 1));
   surface_sheen_uvs = vec4(layer_uv(material, 2), layer_uv(material, 3));
+  surface_anisotropy_uv = layer_uv(material, 4);
 #  ifdef USE_TRANSMISSION
-  surface_transmission_uvs = vec4(layer_uv(material, 4), layer_uv(material, 5));
+  surface_transmission_uvs = vec4(layer_uv(material, 5), layer_uv(material, 6));
   surface_object_from_world = inverse(mat3(objects[draw_instance.x].world_from_object));
   bool has_roughness_texture = (full_materials[material].inputs & INPUT_METALLIC_ROUGHNESS) != 0u;
   surface_lens = vec3(full_materials[material].roughness, has_roughness_texture ? 1.0 : 0.0, layer_materials[material].ior);

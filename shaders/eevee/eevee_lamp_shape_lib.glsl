@@ -22,12 +22,6 @@ struct ShadingFrame {
   vec3 z_ws;
 };
 
-/** A unit vector perpendicular to the unit vector \a n. */
-vec3 any_across(vec3 n)
-{
-  return normalize(abs(n.z) < 0.9 ? vec3(n.y, -n.x, 0.0) : vec3(0.0, n.z, -n.y));
-}
-
 ShadingFrame shading_frame(Surface surface)
 {
   vec3 across = surface.view_ws - surface.normal_ws * dot(surface.normal_ws, surface.view_ws);

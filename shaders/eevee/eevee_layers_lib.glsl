@@ -4,21 +4,57 @@
 #include "eevee/eevee_layer_block_lib.glsl"
 #include "eevee/eevee_light_lib.glsl"
 #include "eevee/eevee_ltc_lib.glsl"
+#include "eevee/eevee_normal_map_lib.glsl"
 #include "eevee/eevee_surface_frag_lib.glsl"
 
 layout(location = 9) in vec4 surface_coat_uvs;
 layout(location = 10) in vec4 surface_sheen_uvs;
+layout(location = 16) in vec2 surface_anisotropy_uv;
 
 layout(binding = COAT_SLOT) uniform sampler2D coat_texture;
 layout(binding = COAT_ROUGHNESS_SLOT) uniform sampler2D coat_roughness_texture;
 layout(binding = SHEEN_COLOR_SLOT) uniform sampler2D sheen_color_texture;
 layout(binding = SHEEN_ROUGHNESS_SLOT) uniform sampler2D sheen_roughness_texture;
+layout(binding = ANISOTROPY_SLOT) uniform sampler2D anisotropy_texture;
 
-/** \a surface: with the normal of the base. */
-Layers make_layers(Surface surface)
+/** The lobe of the base, whose alpha without anisotropy is \a alpha. */
+BaseLobe make_base_lobe(float alpha, Surface surface)
+{
+  vec3 anisotropy = layer_materials[surface_material].anisotropy;
+  vec2 direction = anisotropy.xy;
+  if (has_input(INPUT_ANISOTROPY)) {
+    vec3 texel = texture(anisotropy_texture, surface_anisotropy_uv, view.texture_lod_bias).xyz;
+    vec2 turned = texel.xy * 2.0 - 1.0;
+    direction = vec2(direction.x * turned.x - direction.y * turned.y, direction.y * turned.x + direction.x * turned.y);
+    anisotropy.z *= texel.z;
+  }
+  vec3 normal = surface.normal_ws;
+  vec3 up_ws = sign(surface_tangent_ws.w) * cross(surface_normal_ws, surface_tangent_ws.xyz);
+  vec3 along = direction.x * surface_tangent_ws.xyz + direction.y * up_ws;
+  along -= dot(along, normal) * normal;
+  // Of one step of 8 bits. The mesh may have no tangents, and the texture no direction.
+  const float least_sq = 1e-5;
+  float length_sq = dot(along, along);
+  BaseLobe lobe;
+  float strength = length_sq > least_sq ? anisotropy.z : 0.0;
+  along = length_sq > least_sq ? along * inversesqrt(length_sq) : any_across(normal);
+  lobe.alphas = anisotropic_alphas(alpha, strength);
+  vec3 across = cross(normal, along);
+  lobe.lobe_from_world = transpose(mat3(along, across, normal));
+  // Of a smooth surface, the normal of a cylinder along the smoother direction, as in Khronos's sample viewer.
+  vec3 round_normal = surface.view_ws - dot(surface.view_ws, across) * across;
+  float bend = 1.0 - strength * (1.0 - sqrt(alpha));
+  bend *= bend;
+  lobe.bent_normal_ws = normalized(mix(normalized(round_normal, normal), normal, bend * bend), normal);
+  return lobe;
+}
+
+/** \a surface: with the normal of the base. \a alpha: of the base, without anisotropy. */
+Layers make_layers(float alpha, Surface surface)
 {
   LayerData data = layer_materials[surface_material];
   Layers result;
+  result.base_lobe = make_base_lobe(alpha, surface);
   float coat_roughness = data.coat_roughness;
   if (has_input(INPUT_COAT_ROUGHNESS)) {
     coat_roughness *= texture(coat_roughness_texture, surface_coat_uvs.zw, view.texture_lod_bias).g;

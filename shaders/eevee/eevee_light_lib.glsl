@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Direct lighting of a surface.
 #include "eevee/eevee_surface_lib.glsl"
-#ifdef USE_LAYERS
+#ifdef USE_SPECULAR
 #  include "shared/eevee_area_shared.h"
 #endif
 #include "shared/eevee_bsdf_shared.h"
@@ -17,6 +17,9 @@
 #endif
 #ifdef USE_WORLD
 #  include "eevee/eevee_world_lib.glsl"
+#endif
+#ifdef USE_LAYERS
+#  include "eevee/eevee_layered_lib.glsl"
 #endif
 #ifdef USE_SHADOW_ESM
 #  include "eevee/eevee_esm_lib.glsl"
@@ -62,63 +65,40 @@ float light_visibility(LightData light, const int lights, Surface surface, vec3 
 #endif
 
 #ifdef USE_LAYERS
-/** The layers over the base of a material: sheen, and a coat over both. */
-struct Layers {
-  /** Part of the light that the coat reflects; the rest passes it. */
-  float coat_share;
-  MaterialData coat_material;
-  /** With the normal of the coat, which ignores the normal texture. */
-  Surface coat_surface;
-  vec3 sheen_color;
-  float sheen_alpha;
-  /** Directional albedo of the sheen. */
-  vec3 sheen_albedo;
-  /** Part of the light that the sheen leaves to the base. */
-  float base_share;
-#ifdef USE_WORLD
-  WorldShading coat_world;
+/** GGX lobe of the base without Fresnel, 1/sr. \a alphas: those of layers.base_lobe, or larger ones for a lamp with a size. */
+float base_specular_lobe(vec2 alphas, Surface surface, vec3 to_light, float cos_l, vec3 half_vector)
+{
+  mat3 lobe_from_world = layers.base_lobe.lobe_from_world;
+  vec3 light = vec3((lobe_from_world * to_light).xy, cos_l);
+  vec3 viewer = vec3((lobe_from_world * surface.view_ws).xy, max(dot(surface.normal_ws, surface.view_ws), 1e-4));
+  vec3 middle = vec3((lobe_from_world * half_vector).xy, clamp(dot(surface.normal_ws, half_vector), 0.0, 1.0));
+  return anisotropic_ggx_lobe(light, viewer, middle, alphas);
+}
 #endif
-};
 
-/** \see set_layers */
-Layers layers;
-
-/** Sets the layers that direct_light lights. */
-void set_layers(Layers value)
+#ifdef USE_SPECULAR
+/** GGX lobe without Fresnel, 1/sr. \a is_base: that of the base of the material. \a alpha_min: least alpha for this light. */
+float specular_lobe(float alpha, float alpha_min, Surface surface, vec3 to_light, float cos_l, vec3 half_vector, const bool is_base)
 {
-  layers = value;
-}
-
-/** Radiance of all layers. \a base, \a sheen, \a coat: that of each of them as if it lay on top. */
-vec3 layered(vec3 base, vec3 sheen, vec3 coat)
-{
-  return mix(layers.base_share * base + sheen, coat, layers.coat_share);
-}
-
-/** BRDF of the sheen, 1/sr. \a cos_l: mean cosine of the incident light, in [0, 1]. */
-vec3 sheen_brdf(Surface surface, vec3 to_light, float cos_l)
-{
-  // Where a part of a lamp is below the horizon, the mean direction of the rest is above its centre's.
-  vec3 mean_direction = to_light + (cos_l - dot(surface.normal_ws, to_light)) * surface.normal_ws;
-  vec3 half_vector = direction_or_zero(direction_or_zero(mean_direction) + surface.view_ws);
+#ifdef USE_LAYERS
+  if (is_base) {
+    return base_specular_lobe(max(layers.base_lobe.alphas, vec2(alpha_min)), surface, to_light, cos_l, half_vector);
+  }
+#endif
   float cos_v = max(dot(surface.normal_ws, surface.view_ws), 1e-4);
   float cos_h = clamp(dot(surface.normal_ws, half_vector), 0.0, 1.0);
-  return layers.sheen_color * sheen_lobe(cos_l, cos_v, cos_h, layers.sheen_alpha);
+  return ggx_lobe(cos_l, cos_v, cos_h, max(alpha, alpha_min));
 }
 #endif
 
-/** BRDF towards the viewer, 1/sr, times the cosine of the incident light. */
-vec3 reflected(MaterialData material, Surface surface, vec3 to_light, float cos_l)
+/** BRDF towards the viewer, 1/sr, times the cosine of the incident light. \see specular_lobe */
+vec3 reflected(MaterialData material, float alpha_min, Surface surface, vec3 to_light, float cos_l, const bool is_base)
 {
 #ifdef USE_SPECULAR
-  vec3 half_vector = to_light + surface.view_ws;
-  float length_sq = dot(half_vector, half_vector);
-  float cos_v = max(dot(surface.normal_ws, surface.view_ws), 1e-4);
-  half_vector *= length_sq > 0.0 ? inversesqrt(length_sq) : 0.0;
-  float cos_h = clamp(dot(surface.normal_ws, half_vector), 0.0, 1.0);
+  vec3 half_vector = direction_or_zero(to_light + surface.view_ws);
   vec3 fresnel = fresnel_schlick(material.specular_f0, material.specular_f90, dot(surface.view_ws, half_vector));
   float kept = 1.0 - max(max(fresnel.r, fresnel.g), fresnel.b);
-  vec3 specular = fresnel * ggx_lobe(cos_l, cos_v, cos_h, material.alpha);
+  vec3 specular = fresnel * specular_lobe(material.alpha, alpha_min, surface, to_light, cos_l, half_vector, is_base);
   return (material.diffuse * (INV_PI * kept) + specular) * cos_l;
 #else
   return material.diffuse * (INV_PI * cos_l);
@@ -218,26 +198,27 @@ vec3 point_radiance(int index, const int lights, MaterialData material, Surface 
   if (visibility <= 0.0) {
     return vec3(0.0);
   }
+  float alpha_min = 0.0;
 #if defined(USE_WORLD) && defined(USE_SPECULAR)
   if (lights != LIGHTS_WITH_CUBES && light.kind == LIGHT_WORLD) {
-    vec3 radiance = world_reflected(light, material, surface, world_shading, center.to_light, cos_l);
+    vec3 half_vector = direction_or_zero(center.to_light + surface.view_ws);
+    float lobe = specular_lobe(material.alpha, world.alpha_sampled, surface, center.to_light, cos_l, half_vector, true);
+    vec3 radiance = world_reflected(light, material, surface, world_shading, half_vector, lobe, cos_l);
 #ifdef USE_LAYERS
+    lobe = specular_lobe(coat.alpha, world.alpha_sampled, layers.coat_surface, center.to_light, cos_coat, half_vector, false);
     radiance = layered(radiance, light.color * cos_l * sheen_brdf(surface, center.to_light, cos_l),
-                       world_reflected(light, coat, layers.coat_surface, layers.coat_world, center.to_light, cos_coat));
+                       world_reflected(light, coat, layers.coat_surface, layers.coat_world, half_vector, lobe, cos_coat));
 #endif
     return visibility * radiance;
   }
   if (light.kind == LIGHT_SUN) {
-    material.alpha = max(material.alpha, sqrt(light.radius_sq));
-#ifdef USE_LAYERS
-    coat.alpha = max(coat.alpha, sqrt(light.radius_sq));
-#endif
+    alpha_min = sqrt(light.radius_sq);
   }
 #endif
-  vec3 brdf_cos = reflected(material, surface, center.to_light, cos_l);
+  vec3 brdf_cos = reflected(material, alpha_min, surface, center.to_light, cos_l, true);
 #ifdef USE_LAYERS
   brdf_cos = layered(brdf_cos, cos_l * sheen_brdf(surface, center.to_light, cos_l),
-                     reflected(coat, layers.coat_surface, center.to_light, cos_coat));
+                     reflected(coat, alpha_min, layers.coat_surface, center.to_light, cos_coat, false));
 #endif
   return light.color * (center.irradiance * visibility) * brdf_cos;
 }
@@ -311,6 +292,10 @@ struct ShapeLight {
   float irradiance;
   /** Mean cosine of the incident light. */
   float cosine;
+#ifdef USE_LAYERS
+  /** Square of the tangent of half the lamp's angular size; for area lamps, about that of a disk that faces the surface. */
+  float tangent_sq;
+#endif
 };
 
 ShapeLight shape_light(LightData light, const int lights, LightShape shape, Surface surface, ShadingFrame frame, CenterLight center)
@@ -322,6 +307,9 @@ ShapeLight shape_light(LightData light, const int lights, LightShape shape, Surf
     vec3 flux = flat_flux(lamp.center, lamp.axis_x, lamp.axis_y, lamp.corner_count, vec3(0.0, 0.0, 1.0));
     result.irradiance = lamp.radiance * PI * flux.z;
     result.cosine = clamp(flux.z * inversesqrt(max(dot(flux, flux), 1e-30)), 0.0, 1.0);
+#ifdef USE_LAYERS
+    result.tangent_sq = length(cross(shape.axis_x_ws, shape.axis_y_ws)) / max(center.distance_sq, 1e-9);
+#endif
     return result;
   }
   // The limits prevent an overflow. At a distance of 1e-9 radii, the lamp already fills the half space.
@@ -330,8 +318,26 @@ ShapeLight shape_light(LightData light, const int lights, LightShape shape, Surf
   float sine_sq = tangent * tangent / (1.0 + tangent * tangent);
   result.cosine = disk_cosine(max(sine_sq, 1e-30), dot(frame.z_ws, center.to_light));
   result.irradiance = center.irradiance * result.cosine;
+#ifdef USE_LAYERS
+  result.tangent_sq = tangent * tangent;
+#endif
   return result;
 }
+
+#ifdef USE_LAYERS
+/**
+ * Specular radiance of the base for a light colour of 1: its lobe towards the centre of the lamp, widened by the lamp's size. The
+ * half vectors of a disk of tangent t fill a disk of slopes up to t/2, and a lobe of alpha t/2 has their density at its centre.
+ */
+vec3 anisotropic_specular_of(ShapeLight light, MaterialData material, Surface surface, vec3 to_light)
+{
+  vec3 half_vector = direction_or_zero(to_light + surface.view_ws);
+  vec3 fresnel = fresnel_schlick(material.specular_f0, material.specular_f90, dot(surface.view_ws, half_vector));
+  vec2 alphas = layers.base_lobe.alphas;
+  alphas = min(sqrt(alphas * alphas + 0.25 * light.tangent_sq), vec2(1.0));
+  return fresnel * (light.irradiance * base_specular_lobe(alphas, surface, to_light, max(light.cosine, 1e-4), half_vector));
+}
+#endif
 
 /** Radiance towards the viewer from the light \a index, shaded as a whole, W/(sr m²). */
 vec3 shape_radiance(int index, const int lights, MaterialData material, Surface surface)
@@ -362,7 +368,13 @@ vec3 shape_radiance(int index, const int lights, MaterialData material, Surface 
   }
   vec3 radiance = diffuse_share(material, surface, center.to_light) * base_light.irradiance;
 #ifdef USE_SPECULAR
-  radiance += specular_of(base_light.lamp, material, base_shading.ltc_matrix, in_frame(base_shading.frame, surface.view_ws));
+  vec3 specular = specular_of(base_light.lamp, material, base_shading.ltc_matrix, in_frame(base_shading.frame, surface.view_ws));
+#ifdef USE_LAYERS
+  if (layers.base_lobe.alphas.x > layers.base_lobe.alphas.y) {
+    specular = anisotropic_specular_of(base_light, material, surface, center.to_light);
+  }
+#endif
+  radiance += specular;
 #endif
 #ifdef USE_LAYERS
   // The lobe of sheen is wide, so its value in the mean direction of the lamp is taken for all of the lamp.
@@ -403,15 +415,15 @@ vec3 direct_light(MaterialData material, Surface surface)
   shade_shapes(material, surface);
 #endif
 #if defined(USE_WORLD) && defined(USE_LAYERS)
-  vec3 coat = world_light(layers.coat_material, layers.coat_surface);
+  vec3 coat = world_light(layers.coat_material, layers.coat_surface, layers.coat_surface.normal_ws);
   layers.coat_world = world_shading;
-  vec3 base = world_light(material, surface);
+  vec3 base = world_light(material, surface, layers.base_lobe.bent_normal_ws);
   // The lobe of sheen is wide: its mean radiance is that of a cosine around the normal.
   bool is_sampled = world.is_sampled != 0;
   vec3 mean = is_sampled ? vec3(0.0) : material.occlusion * world_irradiance(world, surface.normal_ws);
   vec3 sum = layered(base, layers.sheen_albedo * mean, coat);
 #elif defined(USE_WORLD)
-  vec3 sum = world_light(material, surface);
+  vec3 sum = world_light(material, surface, surface.normal_ws);
 #else
   vec3 sum = vec3(0.0);
 #endif

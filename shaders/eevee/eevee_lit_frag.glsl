@@ -44,7 +44,9 @@ void main()
   material.alpha = sampled_alpha(material.alpha, surface);
 #  endif
 #  ifdef USE_LAYERS
-  set_layers(make_layers(surface));
+  set_layers(make_layers(material.alpha, surface));
+  // For all that knows round lobes only: one of the same height at its centre.
+  material.alpha = sqrt(layers.base_lobe.alphas.x * layers.base_lobe.alphas.y);
   sum *= 1.0 - layers.coat_share;
 #  endif
 #  ifdef USE_TRANSMISSION

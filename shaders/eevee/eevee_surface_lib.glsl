@@ -14,3 +14,9 @@ struct Surface {
   /** Towards the viewer. */
   vec3 view_ws;
 };
+
+/** A unit vector perpendicular to the unit vector \a n. */
+vec3 any_across(vec3 n)
+{
+  return normalize(abs(n.z) < 0.9 ? vec3(n.y, -n.x, 0.0) : vec3(0.0, n.z, -n.y));
+}

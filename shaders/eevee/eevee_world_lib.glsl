@@ -29,14 +29,14 @@ vec3 world_radiance(vec3 direction, float alpha)
 
 /**
  * Specular radiance of the world towards the viewer without occlusion, by the split-sum approximation (Karis 2013): the
- * mean radiance over the lobe, times the \a albedo of the lobe.
+ * mean radiance over the lobe, times the \a albedo of the lobe. \a normal_ws: at which the view is mirrored.
  */
-vec3 world_mirrored(MaterialData material, Surface surface, vec3 albedo)
+vec3 world_mirrored(MaterialData material, Surface surface, vec3 normal_ws, vec3 albedo)
 {
-  vec3 mirrored = 2.0 * dot(surface.normal_ws, surface.view_ws) * surface.normal_ws - surface.view_ws;
+  vec3 mirrored = 2.0 * dot(normal_ws, surface.view_ws) * normal_ws - surface.view_ws;
   // The dominant direction of a rough lobe is closer to the normal (Lagarde and de Rousiers 2014, 4.9.3).
   float lean = (1.0 - material.alpha) * (sqrt(max(1.0 - material.alpha, 0.0)) + material.alpha);
-  return albedo * world_radiance(mix(surface.normal_ws, mirrored, lean), material.alpha);
+  return albedo * world_radiance(mix(normal_ws, mirrored, lean), material.alpha);
 }
 
 vec4 albedo_table(Surface surface, float alpha)
@@ -51,8 +51,6 @@ vec4 albedo_table(Surface surface, float alpha)
 struct WorldShading {
   /** Specular radiance from `world_levels`, divided by the albedo of a lobe of `alpha` with Fresnel terms of 1. */
   vec3 mirrored;
-  /** Alpha of the lobe for sampled directions: at least WorldBlock::alpha_sampled. */
-  float alpha;
   /** Fraction of the specular light that comes from `world_levels`. */
   float level_share;
 };
@@ -61,27 +59,29 @@ struct WorldShading {
 WorldShading world_shading;
 #endif
 
-/** Radiance of the world towards the viewer, W/(sr m²); 0 if the world is sampled. Sets world_shading for samples. */
-vec3 world_light(MaterialData material, Surface surface)
+/**
+ * Radiance of the world towards the viewer, W/(sr m²); 0 if the world is sampled. Sets world_shading for samples.
+ * \a mirror_ws: normal at which the view is mirrored.
+ */
+vec3 world_light(MaterialData material, Surface surface, vec3 mirror_ws)
 {
 #ifdef USE_SPECULAR
   vec3 albedo = specular_albedo(albedo_table(surface, material.alpha), material.specular_f0, material.specular_f90);
 #endif
   if (world.is_sampled != 0) {
 #ifdef USE_SPECULAR
-    world_shading.alpha = max(material.alpha, world.alpha_sampled);
     world_shading.level_share = 1.0 - smoothstep(0.7, 1.0, material.alpha / world.alpha_sampled);
     world_shading.mirrored = vec3(0.0);
     if (world_shading.level_share > 0.0) {
-      float whole = specular_albedo(albedo_table(surface, world_shading.alpha), vec3(1.0), 1.0).r;
-      world_shading.mirrored = world_mirrored(material, surface, albedo) / max(whole, 1e-4);
+      float whole = specular_albedo(albedo_table(surface, max(material.alpha, world.alpha_sampled)), vec3(1.0), 1.0).r;
+      world_shading.mirrored = world_mirrored(material, surface, mirror_ws, albedo) / max(whole, 1e-4);
     }
 #endif
     return vec3(0.0);
   }
   vec3 diffuse = material.diffuse * material.occlusion * world_irradiance(world, surface.normal_ws);
 #ifdef USE_SPECULAR
-  return diffuse * (1.0 - max(max(albedo.r, albedo.g), albedo.b)) + world_mirrored(material, surface, albedo);
+  return diffuse * (1.0 - max(max(albedo.r, albedo.g), albedo.b)) + world_mirrored(material, surface, mirror_ws, albedo);
 #else
   return diffuse;
 #endif
@@ -91,17 +91,14 @@ vec3 world_light(MaterialData material, Surface surface)
 /**
  * Radiance towards the viewer from a sampled direction of the world, without occlusion. A lobe that is too narrow for the
  * sampled directions reads `world_levels` instead. The directions within a wider lobe then determine its visibility.
+ * \a lobe: in this direction, 1/sr, with an alpha of at least WorldBlock::alpha_sampled.
  */
-vec3 world_reflected(LightData light, MaterialData material, Surface surface, WorldShading shading, vec3 to_light, float cos_l)
+vec3 world_reflected(LightData light, MaterialData material, Surface surface, WorldShading shading, vec3 half_vector, float lobe,
+                     float cos_l)
 {
-  vec3 half_vector = to_light + surface.view_ws;
-  float length_sq = dot(half_vector, half_vector);
-  float cos_v = max(dot(surface.normal_ws, surface.view_ws), 1e-4);
-  half_vector *= length_sq > 0.0 ? inversesqrt(length_sq) : 0.0;
-  float cos_h = clamp(dot(surface.normal_ws, half_vector), 0.0, 1.0);
   vec3 fresnel = fresnel_schlick(material.specular_f0, material.specular_f90, dot(surface.view_ws, half_vector));
   float kept = 1.0 - max(max(fresnel.r, fresnel.g), fresnel.b);
-  float lobe = ggx_lobe(cos_l, cos_v, cos_h, shading.alpha) * cos_l;
+  lobe *= cos_l;
   vec3 specular = light.color * fresnel * (lobe * (1.0 - shading.level_share)) +
                   shading.mirrored * (light.radius_sq * lobe * shading.level_share);
   return light.color * material.diffuse * (INV_PI * kept * cos_l) + specular;

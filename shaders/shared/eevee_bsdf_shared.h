@@ -37,6 +37,31 @@ SHARED_FUNCTION float ggx_lobe(float cos_l, float cos_v, float cos_h, float alph
   return ggx_distribution(cos_h, alpha) * ggx_masking_over_2cos(cos_l, alpha) * ggx_masking_over_2cos(cos_v, alpha);
 }
 
+/** As ggx_masking_over_2cos, for \a direction in the axes of anisotropic_ggx_lobe. */
+SHARED_FUNCTION float anisotropic_masking_over_2cos(vec3 direction, vec2 alphas)
+{
+  vec3 stretched = vec3(alphas.x * direction.x, alphas.y * direction.y, direction.z);
+  return 1.0f / (direction.z + sqrt(dot(stretched, stretched)));
+}
+
+/**
+ * As ggx_lobe, with an alpha for each of two axes in the surface (Burley 2012, Physically Based Shading at Disney; Heitz 2014).
+ * The unit vectors are in the axes of \a alphas and the normal, z, which is in (0, 1].
+ */
+SHARED_FUNCTION float anisotropic_ggx_lobe(vec3 to_light, vec3 to_viewer, vec3 half_vector, vec2 alphas)
+{
+  vec3 shrunk = vec3(half_vector.x / alphas.x, half_vector.y / alphas.y, half_vector.z);
+  float t = dot(shrunk, shrunk);
+  return anisotropic_masking_over_2cos(to_light, alphas) * anisotropic_masking_over_2cos(to_viewer, alphas) /
+         (PI * alphas.x * alphas.y * t * t);
+}
+
+/** Alphas of a lobe whose least alpha is \a alpha, along its rougher axis and across it (KHR_materials_anisotropy). */
+SHARED_FUNCTION vec2 anisotropic_alphas(float alpha, float anisotropy)
+{
+  return vec2(alpha + (1.0f - alpha) * (anisotropy * anisotropy), alpha);
+}
+
 /** Variance of a place in a square of one pixel along an axis, px². The pixel filter spreads the squares of the pixels. */
 SHARED_CONSTANT float PIXEL_VARIANCE = 1.0f / 12.0f;
 /** Largest variance of normals under a pixel, along each of two axes: neighbours that differ by more are those of an edge. */

@@ -44,15 +44,16 @@ SHARED_ASSERT_SIZE(MaterialData, 64)
 #define INPUT_COAT_ROUGHNESS 256u
 #define INPUT_SHEEN_COLOR 512u
 #define INPUT_SHEEN_ROUGHNESS 1024u
-#define INPUT_TRANSMISSION 2048u
-#define INPUT_THICKNESS 4096u
+#define INPUT_ANISOTROPY 2048u
+#define INPUT_TRANSMISSION 4096u
+#define INPUT_THICKNESS 8192u
 /** Unlit material: its radiance is the base colour. */
 #define INPUT_UNLIT 65536u
 /** The surface is blended over what is behind it. */
 #define INPUT_BLENDED 131072u
-/** Textures of FullMaterialData, and after them those of LayerData: first of coats and sheen, then of transmission. */
+/** Textures of FullMaterialData, and after them those of LayerData: first of coats, sheen and anisotropy, then of transmission. */
 #define FULL_TEXTURE_COUNT 7
-#define LAYER_TEXTURE_COUNT 4
+#define LAYER_TEXTURE_COUNT 5
 #define TRANSMISSION_TEXTURE_COUNT 2
 
 /** An entry of `full_material_block`: factors of the textures and of vertex colours. */
@@ -75,8 +76,9 @@ struct FullMaterialData {
 SHARED_ASSERT_SIZE(FullMaterialData, 64 + 32 * FULL_TEXTURE_COUNT)
 
 /**
- * An entry of `layer_block`: factors of the layers over the base of a material (KHR_materials_clearcoat, KHR_materials_sheen) and of
- * the light that passes the base (KHR_materials_transmission, KHR_materials_volume).
+ * An entry of `layer_block`: factors of the layers over the base of a material (KHR_materials_clearcoat, KHR_materials_sheen), of
+ * the base's anisotropy (KHR_materials_anisotropy) and of the light that passes the base (KHR_materials_transmission,
+ * KHR_materials_volume).
  */
 struct LayerData {
   vec3 sheen_color;
@@ -90,10 +92,13 @@ struct LayerData {
   vec3 absorption;
   /** Index of refraction, at least 1. */
   float ior;
+  /** xy: cosine and sine of the angle from the tangent to the rougher direction. z: strength, in [0, 1]. */
+  vec3 anisotropy;
+  float _pad0;
   /** As FullMaterialData::uv_rows. */
   vec4 uv_rows[2 * (LAYER_TEXTURE_COUNT + TRANSMISSION_TEXTURE_COUNT)];
 };
-SHARED_ASSERT_SIZE(LayerData, 48 + 32 * (LAYER_TEXTURE_COUNT + TRANSMISSION_TEXTURE_COUNT))
+SHARED_ASSERT_SIZE(LayerData, 64 + 32 * (LAYER_TEXTURE_COUNT + TRANSMISSION_TEXTURE_COUNT))
 
 /**
  * Reflectance at grazing incidence from the reflectance at normal incidence. It fades below 2 %, so that a surface with a

@@ -54,6 +54,7 @@
 #define SHEEN_ROUGHNESS_SLOT 42
 #define TRANSMISSION_SLOT 43
 #define THICKNESS_SLOT 47
+#define ANISOTROPY_SLOT 49
 
 /** Layout of the block of small values of a group: push constants if the API has them, else a uniform block. */
 #ifdef VULKAN

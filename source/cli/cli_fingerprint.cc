@@ -113,6 +113,8 @@ void add(Hasher &hash, const scene::Scene &scene, const scene::Material &materia
   hash.add(material.coat_roughness);
   hash.add(material.sheen_color);
   hash.add(material.sheen_roughness);
+  hash.add(material.anisotropy);
+  hash.add(material.anisotropy_rotation);
   hash.add(material.transmission);
   hash.add(material.thickness);
   hash.add(material.ior);

@@ -47,14 +47,14 @@ namespace {
 constexpr std::size_t object_count_max = std::size_t(1) << 22U;
 
 /** Extensions that are not needed to draw a file correctly, even if it requires them. */
-constexpr std::array<std::string_view, 20> harmless_extensions{
+constexpr std::array<std::string_view, 21> harmless_extensions{
     "KHR_lights_punctual",        "KHR_materials_specular",  "KHR_materials_emissive_strength",
     "KHR_materials_ior",          "KHR_mesh_quantization",   "KHR_materials_variants",
     "KHR_texture_transform",      "KHR_xmp_json_ld",         "KHR_draco_mesh_compression",
     "EXT_meshopt_compression",    "EXT_mesh_gpu_instancing", "KHR_materials_unlit",
     "KHR_animation_pointer",      "KHR_materials_clearcoat", "KHR_materials_sheen",
     "KHR_materials_transmission", "KHR_materials_volume",    "KHR_materials_pbrSpecularGlossiness",
-    "EXT_lights_image_based",     "EXT_texture_webp",
+    "EXT_lights_image_based",     "EXT_texture_webp",        "KHR_materials_anisotropy",
 };
 
 /** Names of required extensions that are not supported; empty if there are none. */

@@ -65,6 +65,10 @@ const Fields<Material> material_fields = {
     number_field<Material>("coat_roughness", &Material::coat_roughness, 0, 1, "Perceptual, 0 to 1."),
     number_field<Material>("sheen_color", &Material::sheen_color, 0, 1, "Reflectance of fibres, 0 to 1."),
     number_field<Material>("sheen_roughness", &Material::sheen_roughness, 0, 1, "Perceptual, 0 to 1."),
+    number_field<Material>("anisotropy", &Material::anisotropy, 0, 1,
+                           "How much rougher the base is along one direction, 0 to 1. Meshes need tangents."),
+    number_field<Material>("anisotropy_rotation", &Material::anisotropy_rotation, -float_max, float_max,
+                           "Angle of that direction from the tangent, radians, counter-clockwise."),
     number_field<Material>(
         "transmission", &Material::transmission, 0, 1,
         "Part of the light that passes the surface, 0 (opaque) to 1. The other values of glass need it."),

@@ -471,6 +471,7 @@ std::vector<std::string> untraced_layers(const scene::Scene &scene)
     std::vector<std::string_view> layers;
     for (const auto &[has_layer, name] : {std::pair(material->has_coat(), "coat"),
                                           {material->has_sheen(), "sheen"},
+                                          {material->has_anisotropy(), "anisotropy"},
                                           {material->has_transmission(), "transmission"}}) {
       if (has_layer) {
         layers.emplace_back(name);

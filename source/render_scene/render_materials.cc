@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <span>
@@ -74,7 +75,7 @@ MaterialClass material_class(const scene::Scene &scene, const scene::Mesh &mesh)
   if (material.has_transmission()) {
     return MaterialClass::Transmissive;
   }
-  if (material.has_coat() || material.has_sheen()) {
+  if (material.has_coat() || material.has_sheen() || (material.has_anisotropy() && !mesh.tangents.empty())) {
     return MaterialClass::Layered;
   }
   const scene::TextureSlot &base_color = material.base_color_texture;
@@ -166,6 +167,8 @@ shared::LayerData layer_data(const scene::Material &material)
   data.coat_roughness = material.coat_roughness;
   data.sheen_color = material.sheen_color;
   data.sheen_roughness = material.sheen_roughness;
+  data.anisotropy = {std::cos(material.anisotropy_rotation), std::sin(material.anisotropy_rotation),
+                     std::clamp(std::max(0.0F, material.anisotropy), 0.0F, 1.0F)};
   data.transmission = std::clamp(std::max(0.0F, material.transmission), 0.0F, 1.0F);
   data.thickness = thickness(material);
   data.ior = std::clamp(std::max(1.0F, material.ior), 1.0F, 1e9F);

@@ -37,7 +37,7 @@ enum class MaterialClass : std::uint8_t {
   BaseColor,
   /** The textures of FullMaterialData, both sets of uvs, uv transforms, vertex colours and blending. */
   Full,
-  /** Also a coat or sheen, with their textures. */
+  /** Also a coat, sheen or anisotropy, with their textures. */
   Layered,
   /** Also transmission, with its textures. */
   Transmissive
@@ -56,7 +56,7 @@ enum class MaterialClass : std::uint8_t {
 [[nodiscard]] shared::MaterialData material_data(const scene::Material &material);
 /** The material with its textures and uv transforms. Emission is 0 if its emissive texture cannot be drawn. */
 [[nodiscard]] shared::FullMaterialData full_material_data(const scene::Scene &scene, const scene::Material &material);
-/** The layers over the base of the material, and its transmission. */
+/** The layers over the base of the material, its anisotropy and its transmission. */
 [[nodiscard]] shared::LayerData layer_data(const scene::Material &material);
 
 /** `material_block`, `full_material_block` and `layer_block`: the materials of a scene on one device. */

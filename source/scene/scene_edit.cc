@@ -65,14 +65,15 @@ bool same_slot(const TextureSlot &a, const TextureSlot &b)
 Changes changes(const Material &a, const Material &b)
 {
   using enum Material::Aspect;
-  const bool same_surface = same_bytes(a.base_color, b.base_color) && same_bytes(a.metallic, b.metallic) &&
-                            same_bytes(a.roughness, b.roughness) && same_bytes(a.specular, b.specular) &&
-                            same_bytes(a.specular_color, b.specular_color) && same_bytes(a.emissive, b.emissive) &&
-                            same_bytes(a.normal_scale, b.normal_scale) && same_bytes(a.coat, b.coat) &&
-                            same_bytes(a.coat_roughness, b.coat_roughness) &&
-                            same_bytes(a.sheen_color, b.sheen_color) &&
-                            same_bytes(a.sheen_roughness, b.sheen_roughness) &&
-                            same_bytes(a.occlusion_strength, b.occlusion_strength) && same_bytes(a.ior, b.ior);
+  const bool same_surface =
+      same_bytes(a.base_color, b.base_color) && same_bytes(a.metallic, b.metallic) &&
+      same_bytes(a.roughness, b.roughness) && same_bytes(a.specular, b.specular) &&
+      same_bytes(a.specular_color, b.specular_color) && same_bytes(a.emissive, b.emissive) &&
+      same_bytes(a.normal_scale, b.normal_scale) && same_bytes(a.coat, b.coat) &&
+      same_bytes(a.coat_roughness, b.coat_roughness) && same_bytes(a.sheen_color, b.sheen_color) &&
+      same_bytes(a.sheen_roughness, b.sheen_roughness) && same_bytes(a.anisotropy, b.anisotropy) &&
+      same_bytes(a.anisotropy_rotation, b.anisotropy_rotation) &&
+      same_bytes(a.occlusion_strength, b.occlusion_strength) && same_bytes(a.ior, b.ior);
   const bool same_volume = same_bytes(a.transmission, b.transmission) && same_bytes(a.thickness, b.thickness) &&
                            same_bytes(a.attenuation_distance, b.attenuation_distance) &&
                            same_bytes(a.attenuation_color, b.attenuation_color);
@@ -83,11 +84,11 @@ Changes changes(const Material &a, const Material &b)
   const bool same_coverage = same_bytes(a.alpha, b.alpha) && a.alpha_mode == b.alpha_mode && same_shadow &&
                              same_bytes(a.alpha_cutoff, b.alpha_cutoff) && a.is_double_sided == b.is_double_sided;
   // An unlit material, and one without layers, reads fewer textures.
-  const bool same_textures = a.is_unlit == b.is_unlit && a.has_coat() == b.has_coat() &&
-                             a.has_sheen() == b.has_sheen() && a.has_transmission() == b.has_transmission() &&
-                             std::ranges::all_of(texture_inputs, [&](const TextureInput &input) {
-                               return same_slot(a.*input.slot, b.*input.slot);
-                             });
+  const bool same_textures =
+      a.is_unlit == b.is_unlit && a.has_coat() == b.has_coat() && a.has_sheen() == b.has_sheen() &&
+      a.has_anisotropy() == b.has_anisotropy() && a.has_transmission() == b.has_transmission() &&
+      std::ranges::all_of(texture_inputs,
+                          [&](const TextureInput &input) { return same_slot(a.*input.slot, b.*input.slot); });
   return bit_if(a.name != b.name, Name) | bit_if(!same_surface || !same_volume, Surface) |
          bit_if(!same_coverage, Coverage) | bit_if(!same_textures, Textures);
 }

@@ -116,16 +116,16 @@ enum class AlphaMode { Opaque, Mask, Blend };
 
 /**
  * Metallic-roughness surface of glTF 2.0 with KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen,
- * KHR_materials_transmission, KHR_materials_volume and KHR_materials_unlit. Factors without another range are in [0,
- * 1]. A mesh without the uvs of a slot is drawn without its texture.
+ * KHR_materials_anisotropy, KHR_materials_transmission, KHR_materials_volume and KHR_materials_unlit. Factors without
+ * another range are in [0, 1]. A mesh without the uvs of a slot is drawn without its texture.
  */
 struct Material {
   static constexpr std::string_view kind_name = "material";
   /**
    * Surface: factors of the shading. Coverage: properties that decide which parts of a surface, and of its shadow,
    * exist: alpha mode, alpha, cutoff, sides, and where light is transmitted, the factors that it is multiplied by.
-   * Textures: textures, their transforms, and is_unlit, has_coat, has_sheen and has_transmission, on which the textures
-   * that are read depend.
+   * Textures: textures, their transforms, and is_unlit, has_coat, has_sheen, has_anisotropy and has_transmission, on
+   * which the textures that are read depend.
    */
   enum class Aspect { Name, Surface, Coverage, Textures, Count };
 
@@ -171,6 +171,15 @@ struct Material {
   TextureSlot sheen_color_texture{};
   /** Alpha is multiplied with sheen_roughness. */
   TextureSlot sheen_roughness_texture{};
+  /**
+   * How much rougher the base is along one direction of the surface: alpha there is mix(alpha, 1, anisotropy²). 0: the
+   * same in all directions. Needs Mesh::tangents. The coat is not affected.
+   */
+  float anisotropy = 0.0F;
+  /** Angle of that direction from the tangent, radians, counter-clockwise on the upright image. Any finite value. */
+  float anisotropy_rotation = 0.0F;
+  /** Red and green, mapped to [-1, 1]: the direction before the rotation. Blue is multiplied with anisotropy. */
+  TextureSlot anisotropy_texture{};
   /** Part of the light that enters the base and passes it instead of being scattered. 0: opaque. */
   float transmission = 0.0F;
   /** Red is multiplied with transmission. */
@@ -207,6 +216,10 @@ struct Material {
   {
     return sheen_color != glm::vec3(0.0F) && !is_unlit;
   }
+  [[nodiscard]] bool has_anisotropy() const
+  {
+    return anisotropy > 0.0F && !is_unlit;
+  }
   [[nodiscard]] bool has_transmission() const
   {
     return transmission > 0.0F && !is_unlit;
@@ -223,7 +236,7 @@ struct TextureInput {
 };
 
 /** All texture slots. */
-inline constexpr std::array<TextureInput, 13> texture_inputs = {{
+inline constexpr std::array<TextureInput, 14> texture_inputs = {{
     {&Material::base_color_texture, "base_color_texture", true},
     {&Material::metallic_roughness_texture, "metallic_roughness_texture", false},
     {&Material::normal_texture, "normal_texture", false},
@@ -235,6 +248,7 @@ inline constexpr std::array<TextureInput, 13> texture_inputs = {{
     {&Material::coat_roughness_texture, "coat_roughness_texture", false},
     {&Material::sheen_color_texture, "sheen_color_texture", true},
     {&Material::sheen_roughness_texture, "sheen_roughness_texture", false},
+    {&Material::anisotropy_texture, "anisotropy_texture", false},
     {&Material::transmission_texture, "transmission_texture", false},
     {&Material::thickness_texture, "thickness_texture", false},
 }};
@@ -257,7 +271,7 @@ struct Mesh {
   std::vector<glm::vec2> second_uvs{};
   /**
    * Unit vectors along u of the normal texture, one for each position. w is 1 or -1: w · cross(normal, tangent) points
-   * up in the image, against v. Empty if the material has no normal texture. \see make_tangents
+   * up in the image, against v. Empty if the material has neither a normal texture nor anisotropy. \see make_tangents
    */
   std::vector<glm::vec4> tangents{};
   /** Multiplied with the material's base colour and alpha: linear, in [0, 1], one for each position. Empty: white. */

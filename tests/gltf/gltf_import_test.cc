@@ -707,6 +707,27 @@ TEST(GltfMaterial, CoatAndSheenAreRead)
   EXPECT_NO_WARNING(scene, "is not drawn");
 }
 
+TEST(GltfMaterial, AnisotropyIsReadAndItsTextureOnlyWithIt)
+{
+  const auto import_anisotropy = [](double strength) {
+    return import_material({{"extensions",
+                             {{"KHR_materials_anisotropy",
+                               {{"anisotropyStrength", strength},
+                                {"anisotropyRotation", 0.25},
+                                {"anisotropyTexture", {{"index", 0}}}}}}}});
+  };
+  const auto [material, scene] = import_anisotropy(2);
+  EXPECT_TRUE(material.has_anisotropy());
+  EXPECT_EQ(material.anisotropy, 1.0F);
+  EXPECT_EQ(material.anisotropy_rotation, 0.25F);
+  EXPECT_WARNING(scene, "material 'paint': anisotropyStrength is 2, clamped to 1");
+  EXPECT_WARNING(scene, "material 'paint': its anisotropyTexture is drawn as the factor alone: ");
+  EXPECT_NO_WARNING(scene, "KHR_materials_anisotropy is not drawn");
+  const auto [bare, bare_scene] = import_anisotropy(0);
+  EXPECT_FALSE(bare.has_anisotropy() || bare.anisotropy_texture);
+  EXPECT_NO_WARNING(bare_scene, "material 'paint'");
+}
+
 TEST(GltfMaterial, TexturesOfAbsentLayersAreNotRead)
 {
   const json slot = {{"index", 0}};

@@ -126,6 +126,26 @@ TEST(GltfTangent, AreReadOrComputed)
   EXPECT_WARNING(import(builder), "mesh 'mesh': tangents made instead: TANGENT: one is zero or not finite");
 }
 
+TEST(GltfTangent, AnisotropyAloneHasThemWithoutTheUvs)
+{
+  GltfBuilder builder = textured_triangle();
+  builder.document["materials"][0] = {{"name", "brushed"}};
+  builder.document["materials"][0]["extensions"]["KHR_materials_anisotropy"] = {{"anisotropyStrength", 0.5}};
+  json &attributes = builder.document["meshes"][0]["primitives"][0]["attributes"];
+  attributes["NORMAL"] = builder.positions({0, 0, 1, 0, 0, 1, 0, 0, 1});
+  const auto mesh_of = [&] { return nth(import(builder).meshes(), 0); };
+  // u grows along +X.
+  const scene::Mesh made = mesh_of();
+  ASSERT_EQ(made.tangents.size(), 3U);
+  EXPECT_NEAR(made.tangents[0].x, 1.0F, 1e-6F);
+  EXPECT_TRUE(made.uvs.empty()) << "no texture reads them";
+  attributes.erase("TEXCOORD_0");
+  EXPECT_TRUE(mesh_of().tangents.empty());
+  EXPECT_WARNING(import(builder), "mesh 'mesh': anisotropy is not drawn: there is neither TANGENT nor TEXCOORD_0");
+  attributes["TANGENT"] = builder.accessor(std::vector<float>{0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1}, Float32, "VEC4");
+  EXPECT_EQ(mesh_of().tangents, std::vector<glm::vec4>(3, {0, 1, 0, 1}));
+}
+
 TEST(GltfUv, TransformScalesTurnsThenMoves)
 {
   GltfBuilder builder = textured_triangle();

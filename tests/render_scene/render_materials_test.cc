@@ -207,6 +207,13 @@ TEST(MaterialClassTest, EachInputHasTheLeastClassThatReadsIt)
   EXPECT_EQ(square.material_class(), MaterialClass::Full) << "it has neither a coat nor sheen";
   square.edit([](scene::Material &material) { material.coat = 0.5F; });
   EXPECT_EQ(square.material_class(), MaterialClass::Layered);
+  square.edit([](scene::Material &material) {
+    material.coat = 0.0F;
+    material.anisotropy = 0.5F;
+  });
+  EXPECT_EQ(square.material_class(), MaterialClass::Layered);
+  square.edit_mesh([](scene::Mesh &mesh) { mesh.tangents.clear(); });
+  EXPECT_EQ(square.material_class(), MaterialClass::Full) << "it has no tangents";
   square.edit([](scene::Material &material) { material.transmission = 0.5F; });
   EXPECT_EQ(square.material_class(), MaterialClass::Transmissive);
   square.edit([](scene::Material &material) { material.is_unlit = true; });
@@ -232,6 +239,19 @@ TEST(LayerData, HasTheFactorsAndTheUvsOfItsTextures)
   EXPECT_EQ(data.uv_rows[6].w, 1.0F);
 }
 
+TEST(LayerData, HasTheDirectionOfTheAnisotropy)
+{
+  scene::Material material;
+  material.anisotropy = 0.25F;
+  material.anisotropy_rotation = 0.5F;
+  material.anisotropy_texture.uv_set = 1;
+  const shared::LayerData data = layer_data(material);
+  EXPECT_FLOAT_EQ(data.anisotropy.x, std::cos(0.5F));
+  EXPECT_FLOAT_EQ(data.anisotropy.y, std::sin(0.5F));
+  EXPECT_EQ(data.anisotropy.z, 0.25F);
+  EXPECT_EQ(data.uv_rows[8].w, 1.0F);
+}
+
 TEST(LayerData, HasTheVolume)
 {
   scene::Material material;
@@ -245,7 +265,7 @@ TEST(LayerData, HasTheVolume)
   EXPECT_EQ(data.transmission, 0.5F);
   EXPECT_EQ(data.thickness, 2.0F);
   EXPECT_EQ(data.ior, 1.25F);
-  EXPECT_EQ(data.uv_rows[10].z, 3.0F);
+  EXPECT_EQ(data.uv_rows[12].z, 3.0F);
   const glm::vec3 left = shared::beer_lambert(data.absorption, 2.0F);
   EXPECT_EQ(left.x, 1.0F);
   EXPECT_FLOAT_EQ(left.y, 0.5F);

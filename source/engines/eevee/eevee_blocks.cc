@@ -68,6 +68,8 @@ constexpr auto layer_fields = std::to_array<Field>({
     {"layer_materials[0].thickness", offsetof(LayerData, thickness)},
     {"layer_materials[0].absorption", offsetof(LayerData, absorption)},
     {"layer_materials[0].ior", offsetof(LayerData, ior)},
+    {"layer_materials[0].anisotropy", offsetof(LayerData, anisotropy)},
+    {"layer_materials[0]._pad0", offsetof(LayerData, _pad0)},
     {"layer_materials[0].uv_rows", offsetof(LayerData, uv_rows)},
 });
 

@@ -26,7 +26,7 @@ constexpr std::array<FeatureDefine, 17> feature_table = {
      {Feature::TargetDepth, "USE_TARGET_DEPTH", "the target takes depth"},
      {Feature::World, "USE_WORLD", "a world shines"},
      {Feature::OpacityThreshold, "USE_OPACITY_THRESHOLD", "a blended material casts shadows"},
-     {Feature::Layers, "USE_LAYERS", "a material has a clear coat or sheen, or transmits light"},
+     {Feature::Layers, "USE_LAYERS", "a material has a clear coat, sheen or anisotropy, or transmits light"},
      {Feature::Transmission, "USE_TRANSMISSION", "a material transmits light"}}};
 
 /** Features that only affect lighting. Variants without Feature::Light have none of them. */

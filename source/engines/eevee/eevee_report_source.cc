@@ -92,7 +92,7 @@ std::string why_no_feature(const ReportSource &source, Feature feature)
       return why_no_shadow(source, "no material that is blended or transmits light casts a shadow");
     case Feature::FullMaterial: return source.data.is_recorded ? no_full_material : nothing_seen;
     case Feature::Layers:
-      return source.data.is_recorded ? "no material has a coat or sheen, or transmits light" : nothing_seen;
+      return source.data.is_recorded ? "no material has a coat, sheen or anisotropy, or transmits light" : nothing_seen;
     case Feature::AlphaMask: return source.data.is_recorded ? "no texture's alpha cuts a material out" : nothing_seen;
     default: return "";
   }

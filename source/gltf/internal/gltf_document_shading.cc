@@ -64,6 +64,13 @@ void read_sheen(const Place &place, const JsonValue &value, Model::Material &mat
                into_slot("sheenRoughnessTexture", material.sheen_roughness_texture));
 }
 
+void read_anisotropy(const Place &place, const JsonValue &value, Model::Material &material)
+{
+  read_members(place, value, into("anisotropyStrength", material.anisotropy),
+               into("anisotropyRotation", material.anisotropy_rotation),
+               into_slot("anisotropyTexture", material.anisotropy_texture));
+}
+
 void read_transmission(const Place &place, const JsonValue &value, Model::Material &material)
 {
   read_members(place, value, into("transmissionFactor", material.transmission),
@@ -132,6 +139,9 @@ void read_material_extensions(const Place &place, const JsonValue &value, Model:
     }
     else if (name == "KHR_materials_sheen") {
       read_sheen(at, extension, material);
+    }
+    else if (name == "KHR_materials_anisotropy") {
+      read_anisotropy(at, extension, material);
     }
     else if (name == "KHR_materials_transmission") {
       read_transmission(at, extension, material);

@@ -123,6 +123,8 @@ class MaterialReader {
     result_.coat_roughness = clamped("clearcoatRoughnessFactor", source_.coat_roughness, 1.0);
     result_.sheen_color = clamped("sheenColorFactor", vec3(source_.sheen_color), 1.0);
     result_.sheen_roughness = clamped("sheenRoughnessFactor", source_.sheen_roughness, 1.0);
+    result_.anisotropy = clamped("anisotropyStrength", source_.anisotropy, 1.0);
+    result_.anisotropy_rotation = limited("anisotropyRotation", source_.anisotropy_rotation);
     if (source_.has_coat_normal_texture && result_.coat > 0.0F) {
       warnings_.add(what_, "its clearcoatNormalTexture is not drawn: the coat is as smooth as the mesh");
     }
@@ -155,6 +157,9 @@ class MaterialReader {
     }
     if (is_one_of(&Material::sheen_color_texture, &Material::sheen_roughness_texture)) {
       return result_.sheen_color != glm::vec3(0.0F);
+    }
+    if (is_one_of(&Material::anisotropy_texture)) {
+      return result_.anisotropy > 0.0F;
     }
     if (is_one_of(&Material::transmission_texture)) {
       return result_.transmission > 0.0F;
@@ -246,11 +251,11 @@ class MaterialReader {
 
   void warn_extensions()
   {
-    constexpr std::array read_or_without_effect{"KHR_materials_clearcoat",    "KHR_materials_emissive_strength",
-                                                "KHR_materials_ior",          "KHR_materials_pbrSpecularGlossiness",
-                                                "KHR_materials_sheen",        "KHR_materials_specular",
-                                                "KHR_materials_transmission", "KHR_materials_unlit",
-                                                "KHR_materials_variants",     "KHR_materials_volume"};
+    constexpr std::array read_or_without_effect{
+        "KHR_materials_anisotropy", "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
+        "KHR_materials_ior",        "KHR_materials_sheen",     "KHR_materials_pbrSpecularGlossiness",
+        "KHR_materials_specular",   "KHR_materials_unlit",     "KHR_materials_transmission",
+        "KHR_materials_variants",   "KHR_materials_volume"};
     for (const std::string &name : source_.extensions) {
       if (std::find(read_or_without_effect.begin(), read_or_without_effect.end(), name) ==
           read_or_without_effect.end()) {

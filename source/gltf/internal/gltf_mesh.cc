@@ -36,6 +36,14 @@ std::string primitive_name(const Model::Mesh &mesh, int mesh_index, std::size_t 
   return mesh.primitives.size() > 1 ? name + '[' + std::to_string(primitive_index) + ']' : name;
 }
 
+/** The slot whose uvs the tangents follow, which may have no texture; nullptr if the material needs no tangents. */
+const scene::TextureSlot *tangent_slot(const scene::Material &material)
+{
+  return material.normal_texture     ? &material.normal_texture
+         : material.has_anisotropy() ? &material.anisotropy_texture
+                                     : nullptr;
+}
+
 }  // namespace
 
 MeshImporter::MeshImporter(const File &file, Warnings &warnings, Scene &scene)
@@ -113,6 +121,8 @@ Handle<Mesh> MeshImporter::read_primitive(int gltf_mesh, std::size_t primitive_i
   const std::string what = label("mesh", source.name, static_cast<std::size_t>(gltf_mesh));
   Mesh mesh;
   std::optional<scene::DeformedMesh> deformed;
+  /** The uvs are not those of a texture. */
+  bool has_uvs_for_tangents = false;
   try {
     PrimitiveReader reader(file_, primitive, what, warnings_);
     spend(reader.element_count());
@@ -123,13 +133,16 @@ Handle<Mesh> MeshImporter::read_primitive(int gltf_mesh, std::size_t primitive_i
       const std::vector<int> &uv_sets = materials_.uv_sets(mesh.material);
       mesh.uvs = uv_sets.empty() ? std::vector<glm::vec2>() : reader.read_uvs(uv_sets[0]);
       mesh.second_uvs = uv_sets.size() < 2 ? std::vector<glm::vec2>() : reader.read_uvs(uv_sets[1]);
-      if (scene_.materials()[mesh.material].normal_texture) {
+      if (const scene::TextureSlot *slot = tangent_slot(scene_.materials()[mesh.material])) {
         mesh.tangents = reader.read_tangents();
-        if (mesh.tangents.empty() && deforming_skin) {
-          scene::make_tangents(mesh, scene_.materials()[mesh.material].normal_texture);
+        has_uvs_for_tangents =
+            mesh.tangents.empty() && mesh.uv_set(slot->uv_set).empty() && primitive.attributes.contains("TEXCOORD_0");
+        if (has_uvs_for_tangents) {
+          mesh.uvs = reader.read_uvs(0);
         }
       }
       if (deforming_skin) {
+        make_missing_tangents(mesh, has_uvs_for_tangents, what);
         spend(reader.file_vertices().size() * deformed_width(primitive, *deforming_skin >= 0));
         deformed = read_deformed(file_, primitive, *deforming_skin, mesh, reader.file_vertices(), what, warnings_);
         deformed->has_flat_normals = !reader.has_normals();
@@ -152,11 +165,24 @@ Handle<Mesh> MeshImporter::read_primitive(int gltf_mesh, std::size_t primitive_i
     return scene_.deformed_meshes.back().mesh;
   }
   flatten_facets(mesh);
-  const scene::TextureSlot &normal_texture = scene_.materials()[mesh.material].normal_texture;
-  if (normal_texture && mesh.tangents.empty()) {
-    scene::make_tangents(mesh, normal_texture);
-  }
+  make_missing_tangents(mesh, has_uvs_for_tangents, what);
   return scene_.add(std::move(mesh));
+}
+
+void MeshImporter::make_missing_tangents(Mesh &mesh, bool drops_uvs, const std::string &what)
+{
+  const scene::TextureSlot *slot = tangent_slot(scene_.materials()[mesh.material]);
+  if (slot == nullptr || !mesh.tangents.empty()) {
+    return;
+  }
+  if (mesh.uv_set(slot->uv_set).empty()) {
+    warnings_.add(what, "anisotropy is not drawn: there is neither TANGENT nor TEXCOORD_0");
+    return;
+  }
+  scene::make_tangents(mesh, *slot);
+  if (drops_uvs) {
+    mesh.uvs.clear();
+  }
 }
 
 }  // namespace gnomon::gltf

@@ -67,6 +67,8 @@ class MeshImporter {
   /** An empty deform: of a mesh that is not deformed. \return a handle that names nothing where it is left out. */
   [[nodiscard]] scene::Handle<scene::Mesh> read_primitive(int gltf_mesh, std::size_t primitive_index,
                                                           std::optional<int> deforming_skin);
+  /** \a drops_uvs: no texture reads the uvs, so that they are removed afterwards. */
+  void make_missing_tangents(scene::Mesh &mesh, bool drops_uvs, const std::string &what);
   void spend(std::uint64_t element_count);
 };
 

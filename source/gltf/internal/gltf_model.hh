@@ -168,6 +168,7 @@ struct Model {
     TextureSlot coat_roughness_texture;
     TextureSlot sheen_color_texture;
     TextureSlot sheen_roughness_texture;
+    TextureSlot anisotropy_texture;
     TextureSlot transmission_texture;
     TextureSlot thickness_texture;
     double metallic = 1.0;
@@ -184,6 +185,8 @@ struct Model {
     bool has_coat_normal_texture = false;
     std::array<double, 3> sheen_color{0.0, 0.0, 0.0};
     double sheen_roughness = 0.0;
+    double anisotropy = 0.0;
+    double anisotropy_rotation = 0.0;
     double transmission = 0.0;
     double thickness = 0.0;
     std::optional<double> attenuation_distance;

@@ -23,7 +23,7 @@ struct SlotName {
 };
 
 /** In the order of scene::texture_inputs. */
-inline constexpr std::array<SlotName, 13> slot_names = {{
+inline constexpr std::array<SlotName, 14> slot_names = {{
     {"baseColorTexture",
      &Model::Material::base_color_texture,
      &scene::Material::base_color_texture,
@@ -78,6 +78,11 @@ inline constexpr std::array<SlotName, 13> slot_names = {{
      &Model::Material::sheen_roughness_texture,
      &scene::Material::sheen_roughness_texture,
      {255, 255, 255, 255},
+     "the factor alone"},
+    {"anisotropyTexture",
+     &Model::Material::anisotropy_texture,
+     &scene::Material::anisotropy_texture,
+     {255, 128, 255, 255},
      "the factor alone"},
     {"transmissionTexture",
      &Model::Material::transmission_texture,

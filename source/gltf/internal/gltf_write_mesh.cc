@@ -199,6 +199,13 @@ int MeshWriter::material(Handle<Material> handle)
     add_slot(sheen, "sheenRoughnessTexture", material.sheen_roughness_texture, what);
     add_extension("KHR_materials_sheen", sheen.object());
   }
+  if (material.anisotropy > 0.0F) {
+    JsonText anisotropy;
+    anisotropy.add("anisotropyStrength", json_number(material.anisotropy, what));
+    anisotropy.add("anisotropyRotation", json_number(material.anisotropy_rotation, what));
+    add_slot(anisotropy, "anisotropyTexture", material.anisotropy_texture, what);
+    add_extension("KHR_materials_anisotropy", anisotropy.object());
+  }
   if (material.transmission > 0.0F) {
     JsonText transmission;
     transmission.add("transmissionFactor", json_number(material.transmission, what));

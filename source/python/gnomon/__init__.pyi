@@ -82,6 +82,8 @@ class Material:
     coat_roughness: float
     sheen_color: Vector
     sheen_roughness: float
+    anisotropy: float
+    anisotropy_rotation: float
     transmission: float
     thickness: float
     ior: float

@@ -83,8 +83,9 @@ void check_mesh(const scene::Scene &scene, const scene::Mesh &mesh, Checker &che
                                       [](const glm::vec2 &uv) { return std::isfinite(uv.x) && std::isfinite(uv.y); }),
                   "with finite texture coordinates");
   }
-  checker.check(mesh.tangents.empty() == !material.normal_texture,
-                "with tangents just where its material has a normal texture");
+  checker.check(!mesh.tangents.empty() || !material.normal_texture, "with tangents for its normal texture");
+  checker.check(mesh.tangents.empty() || material.normal_texture || material.has_anisotropy(),
+                "with tangents only where its material has a normal texture or anisotropy");
   checker.check(std::ranges::all_of(mesh.tangents,
                                     [](const glm::vec4 &t) {
                                       return std::abs(glm::length(glm::vec3(t)) - 1.0F) <= 1e-5F &&
@@ -109,13 +110,14 @@ void check_material(const scene::Scene &scene, const scene::Material &material, 
        {material.base_color.x, material.base_color.y, material.base_color.z, material.alpha, material.metallic,
         material.roughness, material.specular, material.alpha_cutoff, material.coat, material.coat_roughness,
         material.sheen_color.x, material.sheen_color.y, material.sheen_color.z, material.sheen_roughness,
-        material.transmission, material.attenuation_color.x, material.attenuation_color.y,
+        material.anisotropy, material.transmission, material.attenuation_color.x, material.attenuation_color.y,
         material.attenuation_color.z}) {
     checker.check(factor >= 0.0F && factor <= 1.0F, "with factors in [0, 1]");
   }
   for (const float value : {material.thickness, material.ior - 1.0F, material.attenuation_distance}) {
     checker.check(std::isfinite(value) && value >= 0.0F, "with a finite thickness, index and distance in range");
   }
+  checker.check(std::isfinite(material.anisotropy_rotation), "with a finite rotation");
   checker.check(is_finite(material.specular_color) && is_finite(material.emissive), "of finite colours");
   for (const scene::TextureInput &input : scene::texture_inputs) {
     const scene::TextureSlot &slot = material.*input.slot;
