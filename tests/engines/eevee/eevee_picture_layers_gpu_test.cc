@@ -15,12 +15,12 @@
 namespace gnomon::eevee {
 namespace {
 
-using Pixels = std::vector<glm::vec4>;
+using Radiances = std::vector<glm::vec4>;
 using Kind = LightPart::Kind;
 
 constexpr glm::ivec2 layers_size_px(28, 20);
 
-double rms(const Pixels &pixels)
+double rms(const Radiances &pixels)
 {
   double sum = 0.0;
   for (const glm::vec4 &pixel : pixels) {
@@ -29,9 +29,9 @@ double rms(const Pixels &pixels)
   return std::sqrt(sum / (3.0 * double(pixels.size())));
 }
 
-Pixels sum_of(const Pixels &a, const Pixels &b, float factor = 1.0F)
+Radiances sum_of(const Radiances &a, const Radiances &b, float factor = 1.0F)
 {
-  Pixels sum = a;
+  Radiances sum = a;
   std::ranges::transform(a, b, sum.begin(), [&](const glm::vec4 &x, const glm::vec4 &y) { return x + factor * y; });
   return sum;
 }
@@ -108,11 +108,11 @@ TEST_F(PictureLayersGpuTest, PartsOfTheLightSumToThePicture)
     SceneRenderer renderer(*device, scene, layers_size_px, settings);
     renderer.sync();
     renderer.draw(camera, {.progress = [&](int samples) { return samples < drawn; }});
-    const Pixels whole = renderer.read_picture();
-    Pixels sum(whole.size(), glm::vec4(0.0F));
+    const Radiances whole = renderer.read_picture();
+    Radiances sum(whole.size(), glm::vec4(0.0F));
     for (const LightPart &part :
          {LightPart{Kind::Lamp, 0}, LightPart{Kind::Lamp, 1}, LightPart{Kind::Emission}, LightPart{Kind::World}}) {
-      const Pixels layer = render_light_layer(renderer, camera, drawn, part);
+      const Radiances layer = render_light_layer(renderer, camera, drawn, part);
       EXPECT_GT(rms(layer), 0.01 * rms(whole)) << int(part.kind) << ' ' << part.lamp;
       EXPECT_LT(rms(layer), 0.995 * rms(whole)) << int(part.kind) << ' ' << part.lamp;
       sum = sum_of(sum, layer);
@@ -129,7 +129,7 @@ TEST_F(PictureLayersGpuTest, ALampsLightIsThePictureOfTheSceneWithThatLampAlone)
   SceneRenderer renderer(*device, scene, layers_size_px, settings);
   renderer.sync();
   renderer.draw(camera);
-  const Pixels layer = render_light_layer(renderer, camera, 4, {Kind::Lamp, 0});
+  const Radiances layer = render_light_layer(renderer, camera, 4, {Kind::Lamp, 0});
   test::remove_lamps(scene, [](const scene::Lamp &lamp) { return lamp.name == "area"; });
   scene.edit(metal, [](scene::Material &material) { material.emissive = glm::vec3(0.0F); });
   SceneRenderer alone(*device, scene, layers_size_px, settings);
@@ -144,7 +144,7 @@ TEST_F(PictureLayersGpuTest, SurfacesAreWhereTheyAreAndCoverWhatThePictureCovers
   SceneRenderer renderer(*device, scene, layers_size_px, settings);
   renderer.sync();
   renderer.draw(camera);
-  const Pixels picture = renderer.read_picture();
+  const Radiances picture = renderer.read_picture();
   const SurfaceLayers layers = render_surface_layers(
       renderer, camera, 8, {.has_centers = true, .has_means = true, .has_objects = true, .visible_lamps = {0}});
   const draw::View view = renderer.view_of(camera);
@@ -212,13 +212,13 @@ TEST_F(PictureLayersGpuTest, VisibilityIsTheShareOfTheLightThatArrives)
     SceneRenderer renderer(*device, scene, layers_size_px, settings);
     renderer.sync();
     renderer.draw(camera);
-    const Pixels lit = render_light_layer(renderer, camera, 4, {Kind::Lamp, 0});
+    const Radiances lit = render_light_layer(renderer, camera, 4, {Kind::Lamp, 0});
     const SurfaceLayers layers =
         render_surface_layers(renderer, camera, 4, {.has_objects = true, .visible_lamps = {0}});
     settings.shadow.kind = scene::ShadowKind::None;
     renderer.set_settings(settings);
     renderer.sync();
-    const Pixels unshadowed = render_light_layer(renderer, camera, 4, {Kind::Lamp, 0});
+    const Radiances unshadowed = render_light_layer(renderer, camera, 4, {Kind::Lamp, 0});
     int partial = 0;
     for (std::size_t i = 0; i < lit.size(); i++) {
       const auto &objects = layers.objects[i];
