@@ -38,12 +38,6 @@ eevee::PcfKernel parse_pcf(const std::string &text)
   return {.width = 0, .taps = taps};
 }
 
-/**
- * With at least this number of samples per pixel, most of the remaining error is at the edges of shadows. Halving the
- * size of shadow texels halves this error, and the cost of drawing them is spread over the samples.
- */
-constexpr int fine_shadow_samples = 16;
-
 eevee::ShadowSettings shadow_settings(const RenderOptions &options)
 {
   static const std::map<std::string, scene::ShadowKind> kinds = {{"none", scene::ShadowKind::None},
@@ -65,7 +59,12 @@ eevee::ShadowSettings shadow_settings(const RenderOptions &options)
   settings.pcf = parse_pcf(options.pcf);
   settings.cascades.count = options.cascades;
   settings.cascades.lambda = options.cascade_lambda;
-  settings.cascades.is_fitted_to_depth = options.cascade_range == "depth";
+  if (options.cascade_range != "auto") {
+    settings.cascades.is_fitted_to_depth = options.cascade_range == "depth";
+  }
+  else if (options.samples == 0) {
+    settings.cascades.is_fitted_to_depth = true;
+  }
   settings.layer_pass = passes.at(options.cube_pass);
   settings.caster_faces = faces.at(options.casters);
   settings.memory_bytes_max = std::size_t(options.shadow_memory) << 20U;
@@ -74,11 +73,12 @@ eevee::ShadowSettings shadow_settings(const RenderOptions &options)
     settings.map_size_px = options.shadow_size;
     settings.esm.size_px = std::clamp(options.shadow_size, 4, 8192);
   }
-  else if (options.samples == 0 || options.samples >= fine_shadow_samples) {
+  else if (options.samples == 0 || options.samples >= eevee::fitted_sample_count) {
     settings.cube_size_px *= 2;
     settings.map_size_px *= 2;
     settings.esm.size_px *= 2;
   }
+  settings.cascades.can_resize = options.shadow_size == 0;
   return settings;
 }
 
@@ -279,10 +279,10 @@ void add_render_options(CLI::App &command, RenderOptions &options)
       ->check(CLI::Range(0.0, 1.0));
   command
       .add_option("--cascade-range", options.cascade_range,
-                  "Range that the cascades cover: view, the scene within the camera's frustum; depth, the visible "
-                  "surfaces")
+                  "What the cascades cover: view, the scene within the camera's frustum; depth, the visible surfaces; "
+                  "auto, depth with at least 16 samples")
       ->capture_default_str()
-      ->check(CLI::IsMember({"view", "depth"}));
+      ->check(CLI::IsMember({"auto", "view", "depth"}));
   command
       .add_option("--cube-pass", options.cube_pass,
                   "Drawing of the layers of a lamp: six (one pass for each), geometry or layered (one pass for all), "

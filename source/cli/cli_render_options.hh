@@ -38,7 +38,7 @@ struct RenderOptions {
   std::string esm = "4";
   int cascades = 0;
   float cascade_lambda = eevee::CascadeSettings().lambda;
-  std::string cascade_range = "view";
+  std::string cascade_range = "auto";
   std::string cube_pass = "best";
   std::string casters = "all";
   int shadow_memory = 1024;

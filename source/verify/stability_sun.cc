@@ -102,7 +102,7 @@ bool is_finite(const eevee::SunFit &fit)
       return false;
     }
   }
-  return fit.texel(size_px) > 0.0;
+  return fit.texel() > 0.0;
 }
 
 }  // namespace
@@ -132,7 +132,7 @@ void add_sun_cases(std::vector<StabilityCase> &cases)
                      .bound = 0.126,
                      .run = swept(log_steps(1e-4, 1e5, 91), [=](double scale) {
                        const auto texel_at = [&](double s) {
-                         return Field(glm::dvec3(0.0), s, 0.1 * s, 1e3 * s).fits(elevation, 1).at(0).texel(size_px);
+                         return Field(glm::dvec3(0.0), s, 0.1 * s, 1e3 * s).fits(elevation, 1).at(0).texel();
                        };
                        return std::abs(std::log2(texel_at(scale) / scale / texel_at(1.0)));
                      })});
@@ -162,29 +162,29 @@ void add_sun_cases(std::vector<StabilityCase> &cases)
                      const std::vector<eevee::SunFit> fits = Field(glm::dvec3(0.0), 1.0, 0.1, 1e3).fits(elevation, 4);
                      return violated(!fits.empty() && std::ranges::all_of(fits, is_finite));
                    })});
-  cases.push_back(
-      {.group = sun_group,
-       .name = "views of any depth",
-       .quantity = "cascades: finite, from fine to coarse, the last one around the whole scene",
-       .parameter = "far/near",
-       .reference = "closed form",
-       .unit = violation_unit,
-       .bound = 0.0,
-       .run = swept(log_steps(1.1, 1e9, 91), [](double ratio) {
-         const Field field(glm::dvec3(0.0), 1.0, 1e-6, 1e-6 * ratio);
-         eevee::VisibleRange range = field.visible;
-         range.near = range.far / ratio;
-         double worst = 0.0;
-         for (int count = 1; count <= eevee::cascade_count_max; count++) {
-           const std::vector<eevee::SunFit> fits =
-               eevee::fit_sun(glm::mat4(sun_at(0.5).world_from_lamp), field.view, range, field.casters, size_px,
-                              {.count = count}, field.pixel_size);
-           const bool is_sorted =
-               std::ranges::is_sorted(fits, {}, [](const eevee::SunFit &fit) { return fit.texel(size_px); });
-           worst = std::max(worst, violated(!fits.empty() && is_sorted && std::ranges::all_of(fits, is_finite)));
-         }
-         return worst;
-       })});
+  cases.push_back({.group = sun_group,
+                   .name = "views of any depth",
+                   .quantity = "cascades: finite, from fine to coarse, the last one around the whole scene",
+                   .parameter = "far/near",
+                   .reference = "closed form",
+                   .unit = violation_unit,
+                   .bound = 0.0,
+                   .run = swept(log_steps(1.1, 1e9, 91), [](double ratio) {
+                     const Field field(glm::dvec3(0.0), 1.0, 1e-6, 1e-6 * ratio);
+                     eevee::VisibleRange range = field.visible;
+                     range.near = range.far / ratio;
+                     double worst = 0.0;
+                     for (int count = 1; count <= eevee::cascade_count_max; count++) {
+                       const std::vector<eevee::SunFit> fits =
+                           eevee::fit_sun(glm::mat4(sun_at(0.5).world_from_lamp), field.view, range, field.casters,
+                                          size_px, {.count = count}, field.pixel_size);
+                       const bool is_sorted =
+                           std::ranges::is_sorted(fits, {}, [](const eevee::SunFit &fit) { return fit.texel(); });
+                       worst = std::max(worst,
+                                        violated(!fits.empty() && is_sorted && std::ranges::all_of(fits, is_finite)));
+                     }
+                     return worst;
+                   })});
   for (const bool is_flat : {false, true}) {
     cases.push_back(
         {.group = sun_group,

@@ -307,13 +307,13 @@ struct Timing {
 /** Depths of the pre-pass that are read back, to fit the cascades of suns to them. */
 struct DepthFeedback {
   /** The views of the last requests, indexed by the tag modulo the size of the array. */
-  std::array<glm::mat4, 4> requested_clip_from_world{};
+  std::array<draw::View, 4> requested_views{};
   std::uint64_t requested_tag = 0;
   std::uint64_t received_tag = 0;
   /** Requests with lower tags belong to an earlier state of the scene and are ignored. */
   std::uint64_t first_valid_tag = 1;
   /** The view of `depths`. Empty if there are no depths. */
-  std::optional<glm::mat4> clip_from_world;
+  std::optional<draw::View> view;
   std::vector<float> depths;
 
   /** Whether the last request has no result yet. */
@@ -321,11 +321,16 @@ struct DepthFeedback {
   {
     return requested_tag >= first_valid_tag && received_tag < requested_tag;
   }
+  /** \a size_px: of the depth texture. */
+  [[nodiscard]] PictureDepths picture(glm::ivec2 size_px) const
+  {
+    return {depths, size_px, view.value_or(draw::View())};
+  }
   /** Discard the depths and all pending requests, because the scene or the size changed. */
   void forget()
   {
     first_valid_tag = requested_tag + 1;
-    clip_from_world.reset();
+    view.reset();
     depths.clear();
   }
 };

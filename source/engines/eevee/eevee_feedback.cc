@@ -29,8 +29,7 @@ void Engine::take_losses(draw::Viewport &viewport)
 
 bool awaits_depths(const Data &data, const draw::View &view)
 {
-  return data.is_seen && data.stl.shadows->reads_depths() &&
-         data.depth_feedback.clip_from_world != view.clip_from_world();
+  return data.is_seen && data.stl.shadows->reads_depths() && data.depth_feedback.view != view;
 }
 
 bool Engine::take_feedback(draw::Viewport &viewport, const gpu::Feedback &feedback)
@@ -51,12 +50,12 @@ bool Engine::take_feedback(draw::Viewport &viewport, const gpu::Feedback &feedba
       continue;
     }
     depths.received_tag = std::max(depths.received_tag, texels.tag);
-    const glm::mat4 &requested = depths.requested_clip_from_world[texels.tag % depths.requested_clip_from_world.size()];
+    const draw::View &requested = depths.requested_views[texels.tag % depths.requested_views.size()];
     // Several frames of one view may have requested the same depths before the first request was answered.
-    if (depths.clip_from_world != requested) {
+    if (depths.view != requested) {
       depths.depths.resize(texels.bytes.size() / sizeof(float));
       std::memcpy(depths.depths.data(), texels.bytes.data(), texels.bytes.size());
-      depths.clip_from_world = requested;
+      depths.view = requested;
       data.stl.shadows->fit_again();
       is_final = false;
     }

@@ -136,7 +136,7 @@ void record_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &
   if (is_awaited) {
     DepthFeedback &depths = data.depth_feedback;
     const std::uint64_t tag = ++depths.requested_tag;
-    depths.requested_clip_from_world[tag % depths.requested_clip_from_world.size()] = sample.view.clip_from_world();
+    depths.requested_views[tag % depths.requested_views.size()] = sample.view;
   }
 }
 
@@ -164,7 +164,8 @@ void record_shadows(const FrameStep & /*step*/, FrameSample &sample, gpu::Comman
   shared.sample_index = sample.data.sample_index;
   shared.sample_seed = int(sample.settings.seed);
   stl.shadows->update(sample.viewport.device(), sample.view, pixel_size(sample.view, sample.viewport),
-                      shared.shadow_pass, list, stl.lamp_points, sample.data.depth_feedback.depths);
+                      shared.shadow_pass, list, stl.lamp_points,
+                      sample.data.depth_feedback.picture(sample.viewport.drawn_size_px()));
 }
 
 void record_lit(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)

@@ -87,8 +87,7 @@ std::optional<Probe> Inspection::probe(const draw::View &picture_view, std::size
   stl.lamp_points =
       sample ? shared.lamp_points.sample(std::uint32_t(*sample), engine_.settings_.seed) : shared.lamp_points.centers();
   write_lamp_points(data, list);
-  const std::span<const float> depths =
-      sample ? std::span<const float>(data.depth_feedback.depths) : std::span<const float>();
+  const PictureDepths depths = sample ? data.depth_feedback.picture(viewport_.drawn_size_px()) : PictureDepths();
   stl.shadows->update(device, view, pixel_size(view, viewport_), shared.shadow_pass, list, stl.lamp_points, depths);
   record_at_depths(data, sample_view, "probe", data.psl->probe_pass, data.fbl.probe_fb, list);
   device.submit(list);

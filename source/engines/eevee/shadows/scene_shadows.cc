@@ -68,6 +68,7 @@ static void take_over(ShadowSlot &slot, std::vector<ShadowSlot> &before)
   }
   slot.near = old.near;
   slot.center_near = old.center_near;
+  slot.size_px = old.size_px;
   slot.views = std::move(old.views);
   slot.fits = std::move(old.fits);
   slot.drawn = old.drawn;
@@ -112,7 +113,8 @@ void SceneShadows::sync(const gpu::Limits &device_limits, std::span<const Shadow
     std::vector<ShadowSlot> before = std::exchange(slots, {});
     for (const ShadowPlace &place : plan_.places) {
       if (place.technique->follows_view() == (viewport != 0)) {
-        slots.push_back({.lamp = lamps[place.lamp], .place = place, .viewport = viewport});
+        slots.push_back(
+            {.lamp = lamps[place.lamp], .place = place, .size_px = place.given.size_px, .viewport = viewport});
         if (is_kept) {
           take_over(slots.back(), before);
         }
@@ -141,12 +143,17 @@ void SceneShadows::resize(gpu::Device &device, ShadowArrayId id, int layers)
   bool has_content = false;
   for_each_slot([&](const ShadowSlot &slot) {
     if (slot.place.given.array == id) {
-      size_px = std::max(size_px, slot.place.given.size_px);
+      size_px = std::max(size_px, slot.size_px);
       // The distance cube is temporary: its texels are not needed after the octahedral layer was filtered.
       has_content = has_content || (slot.drawn != 0 && id != ShadowArrayId::DistanceCube);
     }
   });
   LayerArray &array = arrays_[std::size_t(id)];
+  const int size_now = array.texture() ? array.texture().desc().width : 0;
+  if (settings_.cascades.can_resize && size_now >= size_px && size_now <= size_px + size_px / 2) {
+    // Small changes of the needed size do not justify a new texture.
+    size_px = size_now;
+  }
   array.resize(device, size_px, layers, has_content);
   bindings_[std::size_t(id)] =
       array.texture() ? draw::TextureBinding{array.texture().id(), sampler_.id()} : draw::TextureBinding{};

@@ -24,7 +24,7 @@ draw::View shadow_spot_view(const glm::mat4 &world_from_lamp, float outer_angle,
 
 void write_map_data(const ShadowSlot &slot, shared::ShadowBlock &block)
 {
-  const int size_px = slot.place.given.size_px;
+  const int size_px = slot.size_px;
   const bool has_layers = (slot.drawn | slot.recorded_drawn) != 0;
   for (std::size_t i = 0; i < slot.views.size(); i++) {
     shared::ShadowMapData &data = block.maps[std::size_t(slot.place.entry) + i];

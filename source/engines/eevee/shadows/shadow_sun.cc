@@ -3,6 +3,7 @@
 
 #include "shadow_spot.hh"
 
+#include <cmath>
 #include <utility>
 
 namespace gnomon::eevee {
@@ -13,6 +14,19 @@ namespace {
 int cascade_count(const ShadowLamp &lamp, const ShadowSettings &settings)
 {
   return lamp.is_smooth ? 1 : settings.cascades.count;
+}
+
+/** Whether the maps of \a lamp are fitted to depths. The maps of a sampled lamp serve one sample only. */
+bool is_fitted(const ShadowLamp &lamp, const ShadowSettings &settings)
+{
+  return settings.cascades.is_fitted_to_depth.value_or(false) && !lamp.is_sampled;
+}
+
+/** \see CascadeSettings::can_resize */
+bool is_resized(const ShadowLamp &lamp, const ShadowSettings &settings)
+{
+  return settings.cascades.can_resize && is_fitted(lamp, settings) && cascade_count(lamp, settings) != 1 &&
+         !lamp.shadow.size;
 }
 
 class SunTechnique final : public ShadowTechnique {
@@ -36,10 +50,11 @@ class SunTechnique final : public ShadowTechnique {
                         const ShadowSettings &settings) const override
   {
     const int cascades = cascade_count(lamp, settings) > 0 ? cascade_count(lamp, settings) : cascade_count_max;
+    const double growth = is_resized(lamp, settings) ? resize_step : 1.0;
     return {.array = ShadowArrayId::Maps,
             .layer_count_max = cascades,
             .entry_count = cascades,
-            .size_px = lamp.shadow.size.value_or(settings.map_size_px)};
+            .size_px = int(std::lround(growth * lamp.shadow.size.value_or(settings.map_size_px)))};
   }
 
   ShadowTexelKey texel_key(const ShadowLamp &lamp) const override
@@ -60,11 +75,16 @@ class SunTechnique final : public ShadowTechnique {
   {
     CascadeSettings cascades = settings.cascades;
     cascades.count = cascade_count(slot.lamp, settings);
+    cascades.is_fitted_to_depth = is_fitted(slot.lamp, settings);
+    cascades.can_resize = is_resized(slot.lamp, settings);
     slot.new_fits = fit_sun(slot.lamp.world_from_lamp, view.view, view.visible, casters.list(),
                             slot.place.given.size_px, cascades, view.pixel_size, std::move(slot.new_fits));
     const std::vector<SunFit> &fits = slot.new_fits;
     if (fits.size() != slot.fits.size()) {
       slot.invalidate(~0U);
+    }
+    if (!fits.empty()) {
+      slot.size_px = fits.front().size_px;
     }
     slot.fits.resize(fits.size());
     slot.views.resize(fits.size());

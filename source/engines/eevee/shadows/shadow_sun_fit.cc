@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "shadow_sun_fit.hh"
 
+#include "shadow_sun_slices.hh"
+
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -100,22 +102,37 @@ std::optional<LampBox> needed_box(const glm::mat4 &world_from_lamp, const std::v
   return needed;
 }
 
-SunFit fit_to(const LampBox &needed, const glm::dmat3 &lamp_from_world, int size_px)
+/** Fraction of the texels across a map that are inside of the margin. */
+double inner_share(int size_px)
+{
+  return std::max(1.0 - 2.0 * margin_texels / size_px, 0.5);
+}
+
+/** \a lamp_from_world: to the axes of the box. \a is_stable: whether the extent has slack and steps, and the corner a
+ * grid. */
+SunFit fit_to(const LampBox &needed, const glm::dmat3 &lamp_from_world, int size_px, bool is_stable)
 {
   SunFit fit;
+  fit.size_px = size_px;
   fit.needed_min = needed.min;
   fit.needed_max = needed.max;
   const glm::dvec3 extent = needed.max - needed.min;
   // The lower limit prevents an empty box.
   const double size = std::max({extent.x, extent.y, extent.z, 1e-6});
-  const double share = std::max(1.0 - 2.0 * margin_texels / size_px, 0.5);
   for (int axis = 0; axis < 2; axis++) {
-    const double wanted = std::max(extent[axis] * (1.0 + 2.0 * slack), 1e-4 * size) / share;
-    const double stepped = std::pow(extent_step, std::ceil(std::log(wanted) / std::log(extent_step) - 1e-9));
-    const double texel = stepped / size_px;
+    const double slack_factor = is_stable ? 1.0 + 2.0 * slack : 1.0;
+    const double wanted = std::max(extent[axis] * slack_factor, 1e-4 * size) / inner_share(size_px);
     const double center = 0.5 * (needed.min[axis] + needed.max[axis]);
-    fit.min[axis] = std::floor((center - 0.5 * stepped) / texel) * texel;
-    fit.max[axis] = fit.min[axis] + stepped;
+    if (is_stable) {
+      const double stepped = std::pow(extent_step, std::ceil(std::log(wanted) / std::log(extent_step) - 1e-9));
+      const double texel = stepped / size_px;
+      fit.min[axis] = std::floor((center - 0.5 * stepped) / texel) * texel;
+      fit.max[axis] = fit.min[axis] + stepped;
+    }
+    else {
+      fit.min[axis] = center - 0.5 * wanted;
+      fit.max[axis] = center + 0.5 * wanted;
+    }
   }
   fit.min.z = needed.min.z - slack * size;
   fit.max.z = needed.max.z + slack * size;
@@ -147,29 +164,6 @@ VisibleRange visible_range(const draw::View &view, std::vector<glm::dvec3> corne
   }
   visible.corners = std::move(corners);
   return visible;
-}
-
-void narrow_to_depths(const draw::View &view, std::span<const float> depths, VisibleRange &visible)
-{
-  const glm::dmat4 projection(view.clip_from_view());
-  float nearest = 0.0F;
-  float farthest = std::numeric_limits<float>::max();
-  for (const float depth : depths) {
-    if (depth > 0.0F) {
-      nearest = std::max(nearest, depth);
-      farthest = std::min(farthest, depth);
-    }
-  }
-  if (nearest == 0.0F) {
-    return;
-  }
-  const auto distance_of = [&](double depth) {
-    return view.is_perspective() ? projection[3][2] / (depth + projection[2][2])
-                                 : (projection[3][2] - depth) / projection[2][2];
-  };
-  // The margin of 1% covers the sample offsets within a pixel, which change the depths slightly.
-  visible.near = std::clamp(0.99 * distance_of(nearest), visible.near, visible.far);
-  visible.far = std::clamp(1.01 * distance_of(farthest), visible.near, visible.far);
 }
 
 /** The \a i-th number of cascade_splits. */
@@ -225,6 +219,66 @@ Sphere slice_sphere(const draw::View &view, double near, double far)
   return sphere;
 }
 
+namespace {
+
+/** Slices for a sun's maps, and the edge of the maps, texels. */
+struct SlicePlan {
+  const SunSlices *slices;
+  int size_px;
+};
+
+/**
+ * The smallest number of slices that suffices. \a size_px: edge of the maps that `choices` were made for, texels.
+ * \a size_max_px: the largest edge, for the largest number of slices.
+ */
+SlicePlan plan_slices(const std::vector<SunSlices> &choices, int size_px, int size_max_px,
+                      const CascadeSettings &settings)
+{
+  const auto sufficient = std::ranges::find_if(
+      choices, [](const SunSlices &slices) { return slices.error <= texel_in_pixels_max * texel_in_pixels_max; });
+  const SunSlices &chosen = settings.count > 0 || sufficient == choices.end() ? choices.back() : *sufficient;
+  if (!settings.can_resize) {
+    return {&chosen, size_px};
+  }
+  // Below 1, the error is proportional to the area of a texel.
+  const double factor = texel_in_pixels / std::sqrt(std::max(chosen.error, 1e-12));
+  const double size = size_px / std::pow(resize_step, std::floor(std::log(factor) / std::log(resize_step)));
+  return {&chosen, int(std::clamp(std::ceil(size), std::min(128.0, double(size_px)),
+                                  double(&chosen == &choices.back() ? size_max_px : size_px)))};
+}
+
+/** Fill \a fits with cascades around the clusters of \a visible, and one around \a needed behind them. */
+void fit_to_clusters(const LampBox &needed, const glm::dmat3 &lamp_from_world, const draw::View &view,
+                     const VisibleRange &visible, int size_max_px, const CascadeSettings &settings, float pixel_size,
+                     std::vector<SunFit> &fits)
+{
+  const int size_px = settings.can_resize ? std::max(int(std::lround(size_max_px / resize_step)), 1) : size_max_px;
+  const SunFit whole = fit_to(needed, lamp_from_world, size_px, false);
+  const std::vector<SunSlices> choices = sun_slices(visible.clusters,
+                                                    {.lamp_from_world = lamp_from_world,
+                                                     .whole_min = glm::dvec2(needed.min),
+                                                     .whole_max = glm::dvec2(needed.max),
+                                                     .whole_texel = glm::dvec2(whole.max - whole.min) / double(size_px),
+                                                     .slice_px = inner_share(size_px) * size_px,
+                                                     .is_perspective = view.is_perspective(),
+                                                     .pixel_size = pixel_size},
+                                                    (settings.count > 0 ? settings.count : cascade_count_max) - 1);
+  const SlicePlan plan = plan_slices(choices, size_px, size_max_px, settings);
+  const SunFit last = fit_to(needed, lamp_from_world, plan.size_px, false);
+  for (const SunSlice &slice : plan.slices->slices) {
+    const LampBox box{{slice.min, needed.min.z}, {slice.max, needed.max.z}};
+    SunFit fit = fit_to(box, turned(lamp_from_world, slice.turn), plan.size_px, false);
+    fit.turn = slice.turn;
+    if (fit.texel() < last.texel()) {
+      fits.push_back(std::move(fit));
+    }
+  }
+  std::ranges::sort(fits, {}, [&](const SunFit &fit) { return fit.texel(); });
+  fits.push_back(last);
+}
+
+}  // namespace
+
 std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &view, const VisibleRange &visible,
                             const std::vector<Caster> &casters, int size_px, const CascadeSettings &settings,
                             float pixel_size, std::vector<SunFit> memory)
@@ -236,7 +290,12 @@ std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &
     return fits;
   }
   const glm::dmat3 lamp_from_world = glm::transpose(glm::dmat3(world_from_lamp));
-  const SunFit whole = fit_to(*needed, lamp_from_world, size_px);
+  // One map must cover all receivers.
+  if (settings.is_fitted_to_depth.value_or(false) && settings.count != 1 && !visible.clusters.empty()) {
+    fit_to_clusters(*needed, lamp_from_world, view, visible, size_px, settings, pixel_size, fits);
+    return fits;
+  }
+  const SunFit whole = fit_to(*needed, lamp_from_world, size_px, true);
   /** \return whether texels are no larger than pixels. */
   const auto make_fits = [&](int count) {
     bool is_fine = true;
@@ -252,11 +311,11 @@ std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &
         LampBox box{center - sphere.radius, center + sphere.radius};
         box.min.z = needed->min.z;
         box.max.z = needed->max.z;
-        fit = fit_to(box, lamp_from_world, size_px);
+        fit = fit_to(box, lamp_from_world, size_px, true);
       }
-      is_fine = is_fine && std::min(fit.texel(size_px), whole.texel(size_px)) <= pixel;
+      is_fine = is_fine && std::min(fit.texel(), whole.texel()) <= pixel;
       // If the last cascade is no coarser than the cascade of this slice, it replaces this and all other slices.
-      if (i == count - 1 || fit.texel(size_px) >= whole.texel(size_px)) {
+      if (i == count - 1 || fit.texel() >= whole.texel()) {
         fits.push_back(whole);
         break;
       }
@@ -281,7 +340,8 @@ bool still_fits(const SunFit &old, const SunFit &needed)
   const double size_ratio_max = std::pow(extent_step, 2.5);
   const glm::dvec3 old_size = old.max - old.min;
   const glm::dvec3 size = needed.max - needed.min;
-  return glm::all(glm::lessThanEqual(old.min, needed.needed_min)) &&
+  return old.turn == needed.turn && old.size_px == needed.size_px &&
+         glm::all(glm::lessThanEqual(old.min, needed.needed_min)) &&
          glm::all(glm::greaterThanEqual(old.max, needed.needed_max)) && old_size.x <= size_ratio_max * size.x &&
          old_size.y <= size_ratio_max * size.y;
 }

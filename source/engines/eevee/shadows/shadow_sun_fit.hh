@@ -2,14 +2,14 @@
 #pragma once
 
 #include "shadow_casters.hh"
+#include "shadow_visible_clusters.hh"
 
 #include "draw_view.hh"
 #include "scene.hh"
 
 #include <glm/common.hpp>
 
-#include <array>
-#include <span>
+#include <optional>
 #include <vector>
 
 namespace gnomon::eevee {
@@ -17,27 +17,56 @@ namespace gnomon::eevee {
 /** Maximum number of cascades of a sun. */
 inline constexpr int cascade_count_max = 4;
 
+/**
+ * With at least this number of samples for each pixel, most of the remaining error is at the edges of shadows, and the
+ * time to read depths and to draw maps again is spread over the samples.
+ */
+inline constexpr int fitted_sample_count = 16;
+
 /** The distribution of a sun's cascades over the visible range. */
 struct CascadeSettings {
   /**
-   * Number of cascades, 1 to cascade_count_max. 0: the smallest number for which texels are no larger than pixels, at
-   * most cascade_count_max.
+   * Number of cascades, 1 to cascade_count_max. 0: the smallest number for which texels are no larger than pixels, or
+   * texel_in_pixels_max if they are fitted to depths; at most cascade_count_max.
    */
   int count = 0;
   /** Blend of uniform splits (0) and logarithmic splits (1) of the distance. \see cascade_splits */
   float lambda = 0.8F;
   /**
-   * Fit the splits to the depths of the picture instead of the visible part of the casters' bounds. The depths are read
-   * back after the depth pre-pass whenever the view changes. draw::Viewport::draw waits for them. Recorded packets use
-   * the depths of an earlier packet, so that cascades follow the camera some frames later.
+   * Fit all cascades but the last to the surfaces in the picture instead of slices of the view: the splits, positions,
+   * directions and extents with the least error, \see sun_slices. `lambda` has no effect then. The depths of the
+   * picture are read back after the depth pre-pass whenever the view changes. draw::Viewport::draw waits for them.
+   * Recorded packets use the depths of an earlier packet, so that cascades follow the camera some frames later.
+   *
+   * Empty: if the picture has a known number of at least fitted_sample_count samples.
    */
-  bool is_fitted_to_depth = false;
+  std::optional<bool> is_fitted_to_depth{};
+  /**
+   * Whether cascades that are fitted to depths have maps of other sizes than asked for: smaller where texels would be
+   * smaller than texel_in_pixels, and larger by resize_step where the largest number of cascades has larger texels.
+   * Not for lamps with a size of their own.
+   */
+  bool can_resize = false;
 };
+
+/**
+ * Edge of the texels, in pixels, for which cascades around visible surfaces suffice. Larger texels need one more
+ * cascade. \see SunSlices::error
+ */
+inline constexpr double texel_in_pixels_max = 0.2;
+/** Maps whose texels would be smaller are made smaller. */
+inline constexpr double texel_in_pixels = 0.125;
+/** Sizes of maps change by powers of this factor. */
+inline constexpr double resize_step = 1.189207115;
 
 /** The view of one cascade, and the box that it covers. */
 struct SunFit {
   draw::View view;
-  /** The covered box in the lamp's axes, metres: xy is perpendicular to the light, z is along the light. */
+  /** Edge of the map, texels. The same for all cascades of a sun. */
+  int size_px = 0;
+  /** Angle from the lamp's axes to those of the box, around the light, radians. \see turned */
+  double turn = 0.0;
+  /** The covered box in its axes, metres: xy is perpendicular to the light, z is along the light. */
   glm::dvec3 min{0.0};
   glm::dvec3 max{0.0};
   /** The part of the box that is needed. The rest is slack for movements of the camera. */
@@ -45,7 +74,7 @@ struct SunFit {
   glm::dvec3 needed_max{0.0};
 
   /** Longer edge of a texel, metres. */
-  [[nodiscard]] double texel(int size_px) const
+  [[nodiscard]] double texel() const
   {
     return glm::max(max.x - min.x, max.y - min.y) / size_px;
   }
@@ -58,13 +87,12 @@ struct VisibleRange {
   /** Range of distances along the view direction, metres. Above 0 in perspective. */
   double near = 0.0;
   double far = 0.0;
+  /** The surfaces that the picture shows, if cascades are fitted to them. */
+  std::vector<VisibleCluster> clusters{};
 };
 
 /** The visible range with \a corners, seen by \a view. */
 [[nodiscard]] VisibleRange visible_range(const draw::View &view, std::vector<glm::dvec3> corners);
-
-/** Narrow near and far of \a visible to the range of \a depths: reversed depths of a picture, 0 without a surface. */
-void narrow_to_depths(const draw::View &view, std::span<const float> depths, VisibleRange &visible);
 
 /**
  * The count + 1 limits of \a count slices of [near, far], by the practical split scheme (Zhang et al. 2006):
@@ -86,20 +114,24 @@ struct Sphere {
  * extends from the first caster to the last receiver. The result is empty if no caster can shadow a visible receiver.
  * It has fewer cascades than requested if the cascade of a slice would be no finer than the last cascade.
  *
- * The extent of a cascade changes in steps, its texels are aligned to a grid that is fixed in the world, and it is a
- * little larger than necessary. A cascade therefore need not be drawn again after small movements of the camera, and
- * texels of objects that do not move are stable when it is drawn again.
+ * With VisibleRange::clusters, each other cascade is a rectangle around the clusters of some distances, as small as
+ * possible, \see sun_slices. It fits one picture: it has no slack, and its texels are on no grid.
  *
- * \a size_px: edge of a map, texels. \a pixel_size: edge of a pixel of the picture, metres: at a distance of 1 m
- * (perspective) or at any distance (orthographic). \a memory: its capacity is reused for the result; its content is
- * discarded.
+ * Otherwise the extent of a cascade changes in steps, its texels are aligned to a grid that is fixed in the world, and
+ * it is a little larger than necessary. A cascade therefore need not be drawn again after small movements of the
+ * camera, and texels of objects that do not move are stable when it is drawn again.
+ *
+ * \a size_px: edge of a map, texels; resize_step times the size asked for if maps can have other sizes. \a pixel_size:
+ * edge of a pixel of the picture, metres: at a distance of 1 m (perspective) or at any distance (orthographic). \a
+ * memory: its capacity is reused for the result; its content is discarded.
  */
 [[nodiscard]] std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &view,
                                           const VisibleRange &visible, const std::vector<Caster> &casters, int size_px,
                                           const CascadeSettings &settings, float pixel_size,
                                           std::vector<SunFit> memory = {});
 
-/** Whether \a old can replace \a needed: it covers the needed box, and its texels are not much larger. */
+/** Whether \a old can replace \a needed: it has the same axes and covers the needed box, and its texels are not much
+ * larger. */
 [[nodiscard]] bool still_fits(const SunFit &old, const SunFit &needed);
 
 }  // namespace gnomon::eevee

@@ -123,7 +123,7 @@ LayerMask record_depths(ShadowSlot &slot, LayerMask missing, bool is_empty_drawn
   };
   const ShadowRequest &given = slot.place.given;
   const std::string_view layer_name = given.array == ShadowArrayId::Maps ? "map" : "face";
-  const gpu::PassActions clear{.viewport = {.size_px = glm::ivec2(given.size_px)}};
+  const gpu::PassActions clear{.viewport = {.size_px = glm::ivec2(slot.size_px)}};
   gpu::PassActions keep = clear;
   keep.depth_load = gpu::LoadAction::Load;
   const LayerMask drawn = is_empty_drawn ? missing : with_casters;
@@ -167,7 +167,7 @@ ShadowLayers depth_layers(const ShadowSlot &slot, const ShadowInspection &inspec
   layers.count = int(slot.views.size());
   layers.texture = layers.count > 0 ? &inspection.array.texture() : nullptr;
   layers.first_layer = slot.place.first_layer;
-  layers.size_px = slot.place.given.size_px;
+  layers.size_px = slot.size_px;
   layers.drawn = slot.drawn;
   if (slot.lamp.kind != scene::LampKind::Sun) {
     const glm::vec3 reach = reach_from(slot.lamp.position_ws(), inspection.caster_bounds_ws);

@@ -74,6 +74,8 @@ struct ShadowTexelKey {
 struct ShadowSlot {
   ShadowLamp lamp{};
   ShadowPlace place{};
+  /** Edge of the layers in use, texels. At most that of `place`. \see CascadeSettings::can_resize */
+  int size_px = 0;
   /** LayerOwner::viewport. */
   std::uint64_t viewport = 0;
   /** Distance of the near plane at the current position of the lamp, metres. */

@@ -47,7 +47,7 @@ void Shadows::allocate(gpu::Device &device)
   }
 }
 
-void Shadows::fit(gpu::Device &device, const draw::View &view, float pixel_size, std::span<const float> depths)
+void Shadows::fit(gpu::Device &device, const draw::View &view, float pixel_size, const PictureDepths &depths)
 {
   const Seen seen{view.clip_from_world(), pixel_size};
   if (seen_ == seen) {
@@ -56,10 +56,14 @@ void Shadows::fit(gpu::Device &device, const draw::View &view, float pixel_size,
   // A visible surface is inside of these bounds, whether it casts a shadow or not.
   scene::Bounds surfaces_ws = scene_.bounds_ws_;
   surfaces_ws.extend(scene_.casters_.bounds_ws());
+  std::vector<VisibleCluster> clusters = std::move(visible_.clusters);
   visible_ = visible_range(view, visible_corners(view, surfaces_ws, std::move(visible_.corners)));
-  if (reads_depths()) {
-    narrow_to_depths(view, depths, visible_);
+  // The points of a sun change with each sample, and the depths do not.
+  if (!has_clusters_ || depths.depths.empty() || !reads_depths()) {
+    clusters = visible_clusters(reads_depths() ? depths : PictureDepths(), std::move(clusters));
+    has_clusters_ = !depths.depths.empty();
   }
+  visible_.clusters = std::move(clusters);
   for (ShadowSlot &slot : slots_) {
     slot.place.technique->fit_views(slot, {view, visible_, pixel_size}, scene_.casters_, scene_.settings_);
   }
@@ -114,7 +118,7 @@ void Shadows::write_block(gpu::Device &device)
 }
 
 void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
-                     gpu::CommandList &list, std::span<const LampPoint> points, std::span<const float> depths)
+                     gpu::CommandList &list, std::span<const LampPoint> points, const PictureDepths &depths)
 {
   // Discard the records of lists that were not submitted.
   recorded_counters_ = {};
@@ -154,7 +158,8 @@ void Shadows::invalidate_blended()
 
 bool Shadows::reads_depths() const
 {
-  return !slots_.empty() && scene_.settings_.cascades.is_fitted_to_depth;
+  return scene_.settings_.cascades.is_fitted_to_depth.value_or(false) &&
+         std::ranges::any_of(slots_, [](const ShadowSlot &slot) { return !slot.lamp.is_sampled; });
 }
 
 void Shadows::submitted()
@@ -224,7 +229,7 @@ std::vector<ShadowState> Shadows::states() const
     }
     states.push_back({.light = slot.lamp.light,
                       .array = scene_.array(slot.place.given.array).name(),
-                      .size_px = slot.place.given.size_px,
+                      .size_px = slot.size_px,
                       .layer_count = int(slot.views.size()),
                       .drawn = slot.drawn,
                       .up_to_date = slot.up_to_date,

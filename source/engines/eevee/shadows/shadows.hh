@@ -58,11 +58,11 @@ class Shadows {
    *
    * \a pixel_size: see fit_sun. \a pass: draws the instances of the casters. \a points: points of lamps with an extent;
    * the shadow of these lamps is cast from the point. After a sync, all updates must have points of the same lamps.
-   * \a depths: depths of \a view or of a recent view, see narrow_to_depths; may be empty. They are used if
-   * reads_depths() and the view changed.
+   * \a depths: of \a view or of a recent view; may be empty. They are used if reads_depths(). The caller must call
+   * fit_again when they change.
    */
   void update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
-              gpu::CommandList &list, std::span<const LampPoint> points = {}, std::span<const float> depths = {});
+              gpu::CommandList &list, std::span<const LampPoint> points = {}, const PictureDepths &depths = {});
   /** Draw the layers that blended casters touch again: they hold one sample of them. */
   void invalidate_blended();
   /** Whether suns are fitted to depths. */
@@ -71,6 +71,7 @@ class Shadows {
   void fit_again()
   {
     seen_.reset();
+    has_clusters_ = false;
   }
   /**
    * To be called after the submission of the last update's list: marks its layers as up to date. Without this call, the
@@ -118,7 +119,7 @@ class Shadows {
   /** The slot of \a light; nullptr if the light has no shadow. */
   [[nodiscard]] const ShadowSlot *slot_of(const shared::LightData &light) const;
   [[nodiscard]] ShadowInspection inspection(const ShadowSlot &slot) const;
-  void fit(gpu::Device &device, const draw::View &view, float pixel_size, std::span<const float> depths);
+  void fit(gpu::Device &device, const draw::View &view, float pixel_size, const PictureDepths &depths);
   void place_lamps(std::span<const LampPoint> points);
   void write_block(gpu::Device &device);
 
@@ -136,6 +137,8 @@ class Shadows {
   };
   std::optional<Seen> seen_;
   VisibleRange visible_;
+  /** VisibleRange::clusters of visible_ are those of the last depths. */
+  bool has_clusters_ = false;
   shared::ShadowBlock block_{};
   gpu::Buffer block_buffer_;
   /** block_buffer_ contains block_. */
