@@ -183,6 +183,10 @@ TEST_F(FrameSamples, StartAgainWhereADrawWithoutARecordingFails)
 /** Two packets in turn: the depths of the first frame come after the second, and the picture starts again with them. */
 TEST_F(FrameSamples, StartAgainWithTheDepthsOfTheView)
 {
+  // The maps of suns with an angle are not fitted to depths.
+  for (std::size_t i = 0; i < frames.scene.lamps().size(); i++) {
+    frames.scene.edit(measure::handle_at(frames.scene.lamps(), i), [](scene::Lamp &lamp) { lamp.angle = 0.0F; });
+  }
   Settings with_depths = settings();
   with_depths.shadow.cascades.is_fitted_to_depth = true;
   renderer.set_settings(with_depths);
