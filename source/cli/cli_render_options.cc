@@ -59,12 +59,11 @@ eevee::ShadowSettings shadow_settings(const RenderOptions &options)
   settings.pcf = parse_pcf(options.pcf);
   settings.cascades.count = options.cascades;
   settings.cascades.lambda = options.cascade_lambda;
-  if (options.cascade_range != "auto") {
-    settings.cascades.is_fitted_to_depth = options.cascade_range == "depth";
-  }
-  else if (options.samples == 0) {
-    settings.cascades.is_fitted_to_depth = true;
-  }
+  // With this number of samples, most of the remaining error is at the edges of shadows. The time to read depths and to
+  // draw finer maps is spread over the samples.
+  constexpr int fine_shadow_samples = 16;
+  const bool is_fine = options.samples == 0 || options.samples >= fine_shadow_samples;
+  settings.cascades.is_fitted_to_depth = options.cascade_range == "auto" ? is_fine : options.cascade_range == "depth";
   settings.layer_pass = passes.at(options.cube_pass);
   settings.caster_faces = faces.at(options.casters);
   settings.memory_bytes_max = std::size_t(options.shadow_memory) << 20U;
@@ -73,7 +72,7 @@ eevee::ShadowSettings shadow_settings(const RenderOptions &options)
     settings.map_size_px = options.shadow_size;
     settings.esm.size_px = std::clamp(options.shadow_size, 4, 8192);
   }
-  else if (options.samples == 0 || options.samples >= eevee::fitted_sample_count) {
+  else if (is_fine) {
     settings.cube_size_px *= 2;
     settings.map_size_px *= 2;
     settings.esm.size_px *= 2;

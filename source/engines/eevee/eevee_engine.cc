@@ -103,9 +103,7 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
   }
   ShadowSettings shadow = settings_.shadow;
   // These surfaces receive shadows, and the depths that are read back do not have them.
-  shadow.cascades.is_fitted_to_depth =
-      shadow.cascades.is_fitted_to_depth.value_or(settings_.sample_count >= fitted_sample_count) &&
-      !has_surfaces_without_depth(scene_.scene());
+  shadow.cascades.is_fitted_to_depth &= !has_surfaces_without_depth(scene_.scene());
   shared.shadows.sync(device_limits, shadow_lamps(shared.placed, shared.lamps, shading), scene_.bounds(),
                       shared.lamps.light_block, shadow);
   const scene::Bounds &bounds_ws = scene_.bounds();

@@ -221,7 +221,7 @@ TEST(SunSlices, ContainRunsOfRangesWithLessErrorEachTime)
       const glm::dvec2 texel = slice < count ? (choice.slices[slice].max - choice.slices[slice].min) / 500.0
                                              : slice_conditions().whole_texel;
       const double q = std::sqrt(0.5 * glm::dot(texel, texel)) / (pixel / pixels);
-      error += pixel * std::min(q * q, q);
+      error += pixel * q * q;
       weight += pixel;
     }
     EXPECT_NEAR(error / weight, choice.error, 1e-9);
@@ -346,7 +346,7 @@ double mean_error(const std::vector<SunFit> &fits, const SeenGroundPicture &pict
     const glm::dvec3 middle = 0.5 * (cluster.corners_ws[0] + cluster.corners_ws[7]);
     if (const SunFit *fit = map_of(fits, middle)) {
       const double q = fit->texel() / (pixel * cluster.distance);
-      sum += cluster.pixel_count * cluster.distance * std::min(q * q, q);
+      sum += cluster.pixel_count * cluster.distance * q * q;
       weight += cluster.pixel_count * cluster.distance;
     }
   }

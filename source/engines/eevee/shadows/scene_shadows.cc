@@ -150,7 +150,8 @@ void SceneShadows::resize(gpu::Device &device, ShadowArrayId id, int layers)
   });
   LayerArray &array = arrays_[std::size_t(id)];
   const int size_now = array.texture() ? array.texture().desc().width : 0;
-  if (settings_.cascades.can_resize && size_now >= size_px && size_now <= size_px + size_px / 2) {
+  if (id == ShadowArrayId::Maps && settings_.cascades.can_resize && size_now >= size_px &&
+      size_now <= size_px + size_px / 2) {
     // Small changes of the needed size do not justify a new texture.
     size_px = size_now;
   }

@@ -19,7 +19,7 @@ int cascade_count(const ShadowLamp &lamp, const ShadowSettings &settings)
 /** Whether the maps of \a lamp are fitted to depths. The maps of a sampled lamp serve one sample only. */
 bool is_fitted(const ShadowLamp &lamp, const ShadowSettings &settings)
 {
-  return settings.cascades.is_fitted_to_depth.value_or(false) && !lamp.is_sampled;
+  return settings.cascades.is_fitted_to_depth && !lamp.is_sampled;
 }
 
 /** \see CascadeSettings::can_resize */

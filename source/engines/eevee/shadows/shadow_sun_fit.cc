@@ -113,6 +113,7 @@ double inner_share(int size_px)
 SunFit fit_to(const LampBox &needed, const glm::dmat3 &lamp_from_world, int size_px, bool is_stable)
 {
   SunFit fit;
+  fit.is_stable = is_stable;
   fit.size_px = size_px;
   fit.needed_min = needed.min;
   fit.needed_max = needed.max;
@@ -291,7 +292,7 @@ std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &
   }
   const glm::dmat3 lamp_from_world = glm::transpose(glm::dmat3(world_from_lamp));
   // One map must cover all receivers.
-  if (settings.is_fitted_to_depth.value_or(false) && settings.count != 1 && !visible.clusters.empty()) {
+  if (settings.is_fitted_to_depth && settings.count != 1 && !visible.clusters.empty()) {
     fit_to_clusters(*needed, lamp_from_world, view, visible, size_px, settings, pixel_size, fits);
     return fits;
   }
@@ -336,6 +337,10 @@ std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &
 
 bool still_fits(const SunFit &old, const SunFit &needed)
 {
+  if (!needed.is_stable) {
+    // A picture must not depend on the pictures before it.
+    return old.turn == needed.turn && old.size_px == needed.size_px && old.min == needed.min && old.max == needed.max;
+  }
   // Extents change in steps. A difference of two steps does not justify drawing the map again.
   const double size_ratio_max = std::pow(extent_step, 2.5);
   const glm::dvec3 old_size = old.max - old.min;

@@ -17,12 +17,6 @@ namespace gnomon::eevee {
 /** Maximum number of cascades of a sun. */
 inline constexpr int cascade_count_max = 4;
 
-/**
- * With at least this number of samples for each pixel, most of the remaining error is at the edges of shadows, and the
- * time to read depths and to draw maps again is spread over the samples.
- */
-inline constexpr int fitted_sample_count = 16;
-
 /** The distribution of a sun's cascades over the visible range. */
 struct CascadeSettings {
   /**
@@ -37,10 +31,9 @@ struct CascadeSettings {
    * directions and extents with the least error, \see sun_slices. `lambda` has no effect then. The depths of the
    * picture are read back after the depth pre-pass whenever the view changes. draw::Viewport::draw waits for them.
    * Recorded packets use the depths of an earlier packet, so that cascades follow the camera some frames later.
-   *
-   * Empty: if the picture has a known number of at least fitted_sample_count samples.
+   * For pictures of one camera: the edges of the shadows move when the camera moves.
    */
-  std::optional<bool> is_fitted_to_depth{};
+  bool is_fitted_to_depth = false;
   /**
    * Whether cascades that are fitted to depths have maps of other sizes than asked for: smaller where texels would be
    * smaller than texel_in_pixels, and larger by resize_step where the largest number of cascades has larger texels.
@@ -62,6 +55,8 @@ inline constexpr double resize_step = 1.189207115;
 /** The view of one cascade, and the box that it covers. */
 struct SunFit {
   draw::View view;
+  /** Whether the box has slack for movements of the camera. */
+  bool is_stable = true;
   /** Edge of the map, texels. The same for all cascades of a sun. */
   int size_px = 0;
   /** Angle from the lamp's axes to those of the box, around the light, radians. \see turned */

@@ -89,8 +89,7 @@ VisibleRanges visible_ranges(std::span<const VisibleCluster> clusters, const Sli
 /** Error of the pixels of a range if texels have the edges \a texel. \see SunSlices::error */
 double range_error(const SurfaceRange &range, const glm::dvec2 &texel)
 {
-  const double q = std::sqrt(0.5 * glm::dot(texel, texel)) / range.pixel;
-  return range.weight() * std::min(q * q, q);
+  return range.weight() * 0.5 * glm::dot(texel, texel) / (range.pixel * range.pixel);
 }
 
 /** A choice of slices for the ranges up to some range. */

@@ -24,7 +24,7 @@ struct SunSlice {
 struct SunSlices {
   std::vector<SunSlice> slices;
   /**
-   * Mean over the visible surfaces of q², or of q above 1. q: edge of the texels that a pixel looks up, in pixels (the
+   * Mean over the visible surfaces of q². q: edge of the texels that a pixel looks up, in pixels (the
    * root mean square of both edges). The weight of a pixel is its edge on the surface, because it crosses as many edges
    * of shadows. 0 if no visible surface can be in shadow.
    */

@@ -47,6 +47,19 @@ void Shadows::allocate(gpu::Device &device)
   }
 }
 
+/** \a view with one more pixel on each side: samples lie beside the centres of pixels. \a pixel_size: \see fit_sun */
+static draw::View widened(const draw::View &view, float pixel_size)
+{
+  glm::mat4 clip_from_view = view.clip_from_view();
+  for (int axis = 0; axis < 2; axis++) {
+    const float factor = 1.0F / (1.0F + pixel_size * std::abs(clip_from_view[axis][axis]));
+    for (int column = 0; column < 4; column++) {
+      clip_from_view[column][axis] *= factor;
+    }
+  }
+  return {view.view_from_world(), clip_from_view};
+}
+
 void Shadows::fit(gpu::Device &device, const draw::View &view, float pixel_size, const PictureDepths &depths)
 {
   const Seen seen{view.clip_from_world(), pixel_size};
@@ -57,7 +70,8 @@ void Shadows::fit(gpu::Device &device, const draw::View &view, float pixel_size,
   scene::Bounds surfaces_ws = scene_.bounds_ws_;
   surfaces_ws.extend(scene_.casters_.bounds_ws());
   std::vector<VisibleCluster> clusters = std::move(visible_.clusters);
-  visible_ = visible_range(view, visible_corners(view, surfaces_ws, std::move(visible_.corners)));
+  visible_ = visible_range(view, visible_corners(reads_depths() ? widened(view, pixel_size) : view, surfaces_ws,
+                                                 std::move(visible_.corners)));
   // The points of a sun change with each sample, and the depths do not.
   if (!has_clusters_ || depths.depths.empty() || !reads_depths()) {
     clusters = visible_clusters(reads_depths() ? depths : PictureDepths(), std::move(clusters));
@@ -158,7 +172,7 @@ void Shadows::invalidate_blended()
 
 bool Shadows::reads_depths() const
 {
-  return scene_.settings_.cascades.is_fitted_to_depth.value_or(false) &&
+  return scene_.settings_.cascades.is_fitted_to_depth &&
          std::ranges::any_of(slots_, [](const ShadowSlot &slot) { return !slot.lamp.is_sampled; });
 }
 
