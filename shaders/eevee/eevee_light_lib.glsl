@@ -38,17 +38,20 @@ layout(std140, binding = LIGHT_BLOCK_SLOT) uniform light_block
 /** The other lights: their shadows are maps or exponential, if they have any. */
 #define LIGHTS_WITH_MAPS 2
 
-/** Visibility of a light, 1 lit and 0 in shadow. \a lights: LIGHTS_…. \a to_light: unit vector. */
-float light_visibility(LightData light, const int lights, Surface surface, vec3 to_light)
+/**
+ * Visibility of a light, 1 lit and 0 in shadow. \a lights: LIGHTS_…. \a to_light: unit vector. \a offset: 0 at the receiver,
+ * \see ShadowPlace; ignored by SHADOW_ESM.
+ */
+float light_visibility(LightData light, const int lights, Surface surface, vec3 to_light, vec3 offset)
 {
 #ifdef USE_SHADOW_CUBE
   if (lights != LIGHTS_WITH_MAPS && light.shadow_kind == SHADOW_CUBE) {
-    return shadow_cube_visibility(light.shadow_index, surface, light, to_light);
+    return shadow_cube_visibility(light.shadow_index, surface, light, to_light, offset);
   }
 #endif
 #ifdef USE_SHADOW_MAP
   if (lights != LIGHTS_WITH_CUBES && light.shadow_kind == SHADOW_MAP) {
-    return shadow_map_visibility(light.shadow_index, surface, to_light);
+    return shadow_map_visibility(light.shadow_index, surface, to_light, offset);
   }
 #endif
 #ifdef USE_SHADOW_ESM
@@ -194,7 +197,7 @@ vec3 point_radiance(int index, const int lights, MaterialData material, Surface 
   }
   material.diffuse *= bump_visibility(surface.smooth_normal_ws, surface.normal_ws, center.to_light);
 #endif
-  float visibility = light_visibility(light, lights, surface, center.to_light);
+  float visibility = light_visibility(light, lights, surface, center.to_light, vec3(0.0));
   if (visibility <= 0.0) {
     return vec3(0.0);
   }
@@ -262,27 +265,24 @@ void shade_shapes(MaterialData material, Surface surface)
 float shape_visibility(LightData light, const int lights, LightShape shape, Surface surface, CenterLight center)
 {
   if (light.shadow_kind != SHADOW_CUBE && light.shadow_kind != SHADOW_MAP) {
-    return light_visibility(light, lights, surface, center.to_light);
+    return light_visibility(light, lights, surface, center.to_light, vec3(0.0));
   }
-  // The search extends to a gap of 1: that of a caster half way to the lamp, whose penumbra is as wide as the lamp.
-  float search = 1.0;
   vec3 axis_x = shape.axis_x_ws;
   vec3 axis_y = shape.axis_y_ws;
+  float sun_drop = 0.0;
   if (lights == LIGHTS_WITH_MAPS || light.kind < LIGHT_RECTANGLE) {
     axis_x = any_across(center.to_light) * shape.extent;
     axis_y = cross(center.to_light, axis_x);
   }
-#ifdef USE_SHADOW_MAP
   if (lights != LIGHTS_WITH_CUBES && light.kind == LIGHT_SUN) {
-    search = 0.3 * sun_gap_max(light.shadow_index, surface, center.to_light);
+    sun_drop = 1.0 - inversesqrt(1.0 + shape.extent * shape.extent);
   }
-#endif
   if (lights != LIGHTS_WITH_MAPS && light.kind == LIGHT_RECTANGLE) {
     // The taps are on an ellipse. The factor 2 / √3 gives it the second moments of the rectangle.
     axis_x *= 1.1547;
     axis_y *= 1.1547;
   }
-  return penumbra_visibility(light, lights, surface, center.to_light, axis_x, axis_y, search);
+  return penumbra_visibility(light, lights, surface, center.to_light, axis_x, axis_y, sun_drop);
 }
 #endif
 
@@ -361,7 +361,7 @@ vec3 shape_radiance(int index, const int lights, MaterialData material, Surface 
 #ifdef USE_SHADOW
   float visibility = shape_visibility(light, lights, shape, surface, center);
 #else
-  float visibility = light_visibility(light, lights, surface, center.to_light);
+  float visibility = light_visibility(light, lights, surface, center.to_light, vec3(0.0));
 #endif
   if (visibility <= 0.0) {
     return vec3(0.0);

@@ -1,39 +1,53 @@
 // SPDX-License-Identifier: MIT
 // Penumbrae from one map of a lamp's centre (percentage-closer soft shadows, Fernando 2005), by lookups on the receiver's plane.
+//
+// A caster's gap is the width of its penumbra, as a fraction of the lamp's: the quotient of its distances to the receiver and to the
+// lamp. For a sun it is its distance to the receiver, metres. The map shows a caster that covers the point p of the lamp at the offset
+// gap · p from the receiver, so that it darkens the receiver if p is on the lamp.
 
-/** Number of lookups for casters, and for visibility. */
-const int PENUMBRA_SEARCH_TAPS = 12;
+/** Largest number of lookups for casters, and number of lookups for visibility. */
+const int PENUMBRA_SEARCH_TAPS = 17;
 const int PENUMBRA_TAPS = 20;
+/** Casters at up to this multiple of their penumbra's half width are evaluated: those next to the lookup may be nearer. */
+const float PENUMBRA_REACH = 3.0;
+/** From a lookup for casters to the next one: a turn by the golden angle, and a radius that is smaller by the factor 1.6. */
+const vec2 PENUMBRA_SEARCH_STEP = vec2(-0.7373688, 0.6754903) / 1.6;
 
-/**
- * Width of the penumbra of the caster at the lookup, in half axes of the lamp; 0 if there is no caster. For a lamp at a finite
- * distance this is the quotient of the distances from the caster to the receiver and to the lamp. For a sun it is the distance from
- * the caster to the receiver, metres.
- */
-float shadow_gap(LightData light, const int lights, Surface surface, vec3 to_light)
+/** Gap of the caster at \a offset from the receiver, \see ShadowPlace; 0 if there is none. */
+float shadow_gap(LightData light, const int lights, Surface surface, vec3 to_light, vec3 offset)
 {
 #ifdef USE_SHADOW_CUBE
   if (lights != LIGHTS_WITH_MAPS && light.shadow_kind == SHADOW_CUBE) {
-    return shadow_cube_gap(light.shadow_index, surface, light, to_light);
+    return shadow_cube_gap(light.shadow_index, surface, light, to_light, offset);
   }
 #endif
 #ifdef USE_SHADOW_MAP
   if (lights != LIGHTS_WITH_CUBES && light.shadow_kind == SHADOW_MAP) {
-    return shadow_map_gap(light.shadow_index, surface, light, to_light);
+    return shadow_map_gap(light.shadow_index, surface, light, to_light, offset);
   }
 #endif
   return 0.0;
 }
 
-/** \a surface moved by \a offset and then along the light back onto its plane. */
-Surface beside(Surface surface, vec3 to_light, vec3 offset)
+/** x: edge of a texel at the receiver, metres. y: 1.5 times the largest gap, or more. */
+vec2 shadow_search(LightData light, const int lights, Surface surface, vec3 to_light)
 {
-  vec3 n = surface.geometric_normal_ws;
-  float facing = dot(n, to_light);
-  // Limits the distance at grazing angles.
-  facing = facing < 0.0 ? min(facing, -0.05) : max(facing, 0.05);
-  surface.position_ws += offset - to_light * (dot(n, offset) / facing);
-  return surface;
+#ifdef USE_SHADOW_CUBE
+  if (lights != LIGHTS_WITH_MAPS && light.shadow_kind == SHADOW_CUBE) {
+    return shadow_cube_search(light.shadow_index, surface, light);
+  }
+#endif
+#ifdef USE_SHADOW_MAP
+  if (lights != LIGHTS_WITH_CUBES && light.shadow_kind == SHADOW_MAP) {
+    return shadow_map_search(light.shadow_index, surface, light, to_light);
+  }
+#endif
+  return vec2(0.0);
+}
+
+vec2 complex_product(vec2 a, vec2 b)
+{
+  return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
 }
 
 /** Rotation of the lookups at this pixel, as cosine and sine (Jimenez 2014, interleaved gradient noise). */
@@ -45,32 +59,42 @@ vec2 pixel_turn()
 
 /**
  * Visibility of a lamp with an extent. \a axis_x, \a axis_y: its half axes, world space; metres, or for a sun at a distance of 1 m.
- * \a search: largest shadow_gap that is searched. Casters whose penumbra does not reach the receiver are ignored.
+ * \a sun_drop: 1 - cos of half the angle of a sun; 0 for other lamps.
  */
-float penumbra_visibility(LightData light, const int lights, Surface surface, vec3 to_light, vec3 axis_x, vec3 axis_y, float search)
+float penumbra_visibility(LightData light, const int lights, Surface surface, vec3 to_light, vec3 axis_x, vec3 axis_y, float sun_drop)
 {
   vec2 turn = pixel_turn();
-  float gaps = 0.0;
+  // The radii of the lookups for casters are a geometric series, from the outermost caster inwards to a texel, because the nearest and
+  // the farthest caster may have penumbrae of very different widths.
+  vec2 search = shadow_search(light, lights, surface, to_light);
+  float innermost = search.x * inversesqrt(max(dot(axis_x, axis_x), dot(axis_y, axis_y)));
+  vec2 tap = turn * (light.kind == LIGHT_SUN ? search.y : min(search.y, 15.0));
+  float radius = length(tap);
   float count = 0.0;
+  float inverse_gaps = 0.0;
   int i = 0;
   do {
-    vec2 tap = vogel_disk(i, PENUMBRA_SEARCH_TAPS);
-    tap = vec2(tap.x * turn.x - tap.y * turn.y, tap.x * turn.y + tap.y * turn.x);
-    float gap = shadow_gap(light, lights, beside(surface, to_light, (tap.x * axis_x + tap.y * axis_y) * search), to_light);
-    if (gap > 0.0 && gap >= length(tap) * search) {
-      gaps += gap;
+    float gap = shadow_gap(light, lights, surface, to_light, tap.x * axis_x + tap.y * axis_y);
+    if (gap > 0.0 && radius <= PENUMBRA_REACH * gap) {
       count += 1.0;
+      inverse_gaps += 1.0 / gap;
     }
-  } while (++i < PENUMBRA_SEARCH_TAPS);
+    tap = complex_product(tap, PENUMBRA_SEARCH_STEP);
+    radius = length(tap);
+  } while (++i < PENUMBRA_SEARCH_TAPS && radius > innermost);
   // Without a caster, one lookup at the receiver.
   int tap_count = count > 0.0 ? PENUMBRA_TAPS : 1;
-  float gap = gaps / max(count, 1.0);
+  // The harmonic mean is nearer to the gaps of near casters, whose shadows have the most visible edges.
+  float gap = count / max(inverse_gaps, 1e-30);
+  float sun_scale = gap * (1.0 - sun_drop) * inversesqrt(max(2.0 - sun_drop, 1.0));
   float sum = 0.0;
   i = 0;
   do {
-    vec2 tap = vogel_disk(i, PENUMBRA_TAPS);
-    tap = vec2(tap.x * turn.x - tap.y * turn.y, tap.x * turn.y + tap.y * turn.x);
-    sum += light_visibility(light, lights, beside(surface, to_light, (tap.x * axis_x + tap.y * axis_y) * gap), to_light);
+    vec2 point = complex_product(vogel_disk(i, PENUMBRA_TAPS), turn);
+    // For a sun, points of equal solid angles: 1 - cos is proportional to the square of the radius.
+    float drop = sun_drop * dot(point, point);
+    point *= sun_scale * sqrt(max(2.0 - drop, 1.0)) / max(1.0 - drop, 1e-6);
+    sum += light_visibility(light, lights, surface, to_light, point.x * axis_x + point.y * axis_y);
   } while (++i < tap_count);
   return sum / float(tap_count);
 }

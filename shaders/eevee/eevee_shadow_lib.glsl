@@ -18,6 +18,8 @@ struct ReceiverPlane {
   float depth;
   /** Change of depth for each texel, across and up. */
   vec2 slope;
+  /** Casters with smaller depths do not shadow the receiver, even if they are in front of the plane. */
+  float least_depth;
 };
 
 /** Weighted sum of the lit ones of the four texels at \a corner. \a size_px: edge of the shadow within its layer. */
@@ -26,7 +28,8 @@ float four_texels(sampler2DArray depths, int layer, int size_px, ReceiverPlane p
   corner = clamp(corner, vec2(0.0), vec2(max(size_px - 2, 0)));
   // Gather at the corner that the four texels share, so that rounding cannot select other texels.
   vec4 stored = textureGather(depths, vec3((corner + 1.0) / vec2(textureSize(depths, 0).xy), float(layer)));
-  return weighted_texels(texels_lit(stored, plane_depths(plane.depth, plane.slope, corner - plane.texel)), columns, rows);
+  vec4 depths_of_plane = plane_depths(plane.depth, plane.slope, corner - plane.texel);
+  return weighted_texels(texels_lit(stored, max(depths_of_plane, vec4(plane.least_depth))), columns, rows);
 }
 
 /** Bilinear blend of the four texels around \a texel. */
@@ -66,24 +69,41 @@ float filtered_visibility(sampler2DArray depths, int layer, int size_px, int fil
   return bilinear_texels(depths, layer, size_px, plane, plane.texel);
 }
 
-/** Position of a receiver in a shadow layer. */
+/**
+ * A lookup in a shadow layer. Lookups for penumbrae are offset from the receiver: in a plane through the receiver that is parallel
+ * to the lamp, or for a sun perpendicular to its light.
+ */
 struct ShadowPlace {
   ReceiverPlane plane;
+  /** Depth of that plane at the lookup. Only casters with greater depths are between the receiver and the lamp. */
+  float receiver_depth;
   int layer;
-  /** false if no caster can shadow the receiver; the other members are then undefined. */
+  /** false if there is no caster at the lookup; the other members are then undefined. */
   bool is_covered;
 };
 
-/** Depth of the nearest texel at a place; 0 if it is not nearer than the receiver's plane. */
+/** Depth of the nearest texel at a place; 0 if it is not nearer than the receiver and its plane. */
 float caster_depth(sampler2DArray depths, ShadowPlace place, int size_px)
 {
   vec2 texel = clamp(floor(place.plane.texel + 0.5), vec2(0.0), vec2(size_px - 1));
   float stored = texelFetch(depths, ivec3(ivec2(texel), place.layer), 0).r;
-  return stored > place.plane.depth + dot(place.plane.slope, texel - place.plane.texel) ? stored : 0.0;
+  float plane_depth = place.plane.depth + dot(place.plane.slope, texel - place.plane.texel);
+  return stored > max(plane_depth, place.receiver_depth) ? stored : 0.0;
+}
+
+/**
+ * ReceiverPlane::least_depth of a lookup with an offset. It excludes casters behind the receiver, which are in front of its plane if
+ * the plane is tilted. The plane is deeper by at most the slope within the reach of the kernel, so that an offset of 0 excludes none.
+ */
+float least_depth(ShadowPlace place, vec3 offset, int filter_kind)
+{
+  float slope = abs(place.plane.slope.x) + abs(place.plane.slope.y);
+  return offset == vec3(0.0) ? 0.0 : place.receiver_depth - kernel_reach(filter_kind) * slope;
 }
 
 #ifdef USE_SHADOW_CUBE
-ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, vec3 to_light)
+/** \a offset: \see ShadowPlace. */
+ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, vec3 to_light, vec3 offset)
 {
   ShadowPlace place;
   place.is_covered = false;
@@ -99,73 +119,99 @@ ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, ve
   // Do not offset past the lamp. From behind, the plane would be reversed.
   normal_offset = min(normal_offset, 0.5 * abs(dot(surface.geometric_normal_ws, from_light)));
   from_light = offset_position(surface, to_light, normal_offset) - light.position_ws;
-  int face = cube_face(from_light);
-  vec3 p = cube_face_project(face, from_light);
+  int face = cube_face(from_light + offset);
+  vec3 p = cube_face_project(face, from_light + offset);
   if ((cube.face_mask >> face & 1) == 0 || p.z <= 0.0) {
     return place;
   }
   // A plane n · p = c has 1 / z = (n.x · x/z + n.y · y/z + n.z) / c.
   vec3 n = cube_face_project(face, surface.geometric_normal_ws);
+  float per_metre = slope_quotient(cube.near, dot(surface.geometric_normal_ws, from_light));
   float size = float(cube.size_px);
+  place.receiver_depth = cube.near / p.z;
   place.plane.texel = (p.xy / p.z * (0.5 * cube_uv_scale(size)) + 0.5) * size - 0.5;
-  place.plane.depth = cube.near / p.z;
-  place.plane.slope = n.xy * (slope_quotient(cube.near, dot(n, p)) * cube.texel_size);
+  place.plane.depth = place.receiver_depth + dot(surface.geometric_normal_ws, offset) * per_metre / p.z;
+  place.plane.slope = n.xy * (per_metre * cube.texel_size);
+  place.plane.least_depth = least_depth(place, offset, cube.filter_kind);
   place.layer = cube.layer + face;
   place.is_covered = true;
   return place;
 }
 
-float shadow_cube_visibility(int index, Surface surface, LightData light, vec3 to_light)
+float shadow_cube_visibility(int index, Surface surface, LightData light, vec3 to_light, vec3 offset)
 {
   ShadowCubeData cube = shadow.cubes[index];
-  ShadowPlace place = cube_place(cube, surface, light, to_light);
+  ShadowPlace place = cube_place(cube, surface, light, to_light, offset);
   return place.is_covered ? filtered_visibility(shadow_cubes, place.layer, cube.size_px, cube.filter_kind, place.plane)
                           : 1.0;
 }
 
 /** \see shadow_gap */
-float shadow_cube_gap(int index, Surface surface, LightData light, vec3 to_light)
+float shadow_cube_gap(int index, Surface surface, LightData light, vec3 to_light, vec3 offset)
 {
   ShadowCubeData cube = shadow.cubes[index];
-  ShadowPlace place = cube_place(cube, surface, light, to_light);
+  ShadowPlace place = cube_place(cube, surface, light, to_light, offset);
   // A depth is the quotient of the near plane's distance and the caster's.
-  return place.is_covered ? max(caster_depth(shadow_cubes, place, cube.size_px) / place.plane.depth - 1.0, 0.0) : 0.0;
+  return place.is_covered ? max(caster_depth(shadow_cubes, place, cube.size_px) / place.receiver_depth - 1.0, 0.0) : 0.0;
+}
+
+/** \see shadow_search */
+vec2 shadow_cube_search(int index, Surface surface, LightData light)
+{
+  ShadowCubeData cube = shadow.cubes[index];
+  vec3 from_light = surface.position_ws - light.position_ws;
+  return vec2(cube.texel_size * largest(from_light), length(from_light) / cube.near);
 }
 #endif
 
 #ifdef USE_SHADOW_MAP
-/** \a coverage: see map_texco. */
-ShadowPlace map_place(ShadowMapData map, Surface surface, vec3 to_light, out float coverage)
+/** \a offset: \see ShadowPlace. \a coverage: \see map_coverage. */
+ShadowPlace map_place(ShadowMapData map, Surface surface, vec3 to_light, vec3 offset, out float coverage)
 {
   ShadowPlace place;
-  vec3 texco = map_texco(map, surface, to_light, coverage);
+  vec4 receiver = map_receiver(map, surface, to_light);
+  vec4 lookup = receiver + map.texco_from_world * vec4(offset, 0.0);
+  coverage = receiver.w > 0.0 ? map_coverage(lookup) : 0.0;
   place.is_covered = coverage > 0.0;
   if (!place.is_covered) {
     return place;
   }
+  vec3 texco = receiver.xyz / receiver.w;
   // Derivatives of the map's coordinates along two directions on the receiver's plane: d(q / w) = (dq - q / w · dw) / w.
   vec3 n = surface.geometric_normal_ws;
   vec3 tangent = normalize(abs(n.z) < 0.9 ? vec3(n.y, -n.x, 0.0) : vec3(0.0, n.z, -n.y));
   vec4 along = map.texco_from_world * vec4(tangent, 0.0);
   vec4 across = map.texco_from_world * vec4(cross(n, tangent), 0.0);
   vec3 normal = cross(along.xyz - texco * along.w, across.xyz - texco * across.w);
+  vec2 slope = vec2(slope_quotient(-normal.x, normal.z), slope_quotient(-normal.y, normal.z));
   float size = float(map.size_px);
-  place.plane.texel = texco.xy * size - 0.5;
-  place.plane.depth = texco.z;
-  place.plane.slope = vec2(slope_quotient(-normal.x, normal.z), slope_quotient(-normal.y, normal.z)) / size;
+  vec2 moved = lookup.xy / lookup.w - texco.xy;
+  place.receiver_depth = lookup.z / lookup.w;
+  place.plane.texel = lookup.xy / lookup.w * size - 0.5;
+  // The depth of a plane is affine over a map, in perspective too.
+  place.plane.depth = texco.z + dot(slope, moved);
+  place.plane.slope = slope / size;
+  place.plane.least_depth = least_depth(place, offset, map.filter_kind);
   place.layer = map.layer;
   return place;
 }
 
-/** Visibility from one map. \a coverage: see map_texco. */
-float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, out float coverage)
+/** Visibility from one map. \a coverage: \see map_coverage. */
+float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, vec3 offset, out float coverage)
 {
-  ShadowPlace place = map_place(map, surface, to_light, coverage);
+  ShadowPlace place = map_place(map, surface, to_light, offset, coverage);
   return place.is_covered ? filtered_visibility(shadow_maps, place.layer, map.size_px, map.filter_kind, place.plane) : 1.0;
 }
 
-/** \see shadow_gap. Uses the finest map that contains the receiver. */
-float shadow_map_gap(int first, Surface surface, LightData light, vec3 to_light)
+/** Change of depth for each metre towards a sun. */
+float depth_per_metre(ShadowMapData map, vec3 to_light)
+{
+  vec3 row = vec3(map.texco_from_world[0].z, map.texco_from_world[1].z, map.texco_from_world[2].z);
+  return max(dot(row, to_light), 1e-20);
+}
+
+/** \see shadow_gap. Uses the finest map that contains the lookup. */
+float shadow_map_gap(int first, Surface surface, LightData light, vec3 to_light, vec3 offset)
 {
   int count = shadow.maps[first].cascade_count;
   float gap = 0.0;
@@ -176,36 +222,33 @@ float shadow_map_gap(int first, Surface surface, LightData light, vec3 to_light)
     do {
       ShadowMapData map = shadow.maps[first + i];
       float coverage;
-      ShadowPlace place = map_place(map, surface, to_light, coverage);
+      ShadowPlace place = map_place(map, surface, to_light, offset, coverage);
       is_covered = place.is_covered;
       if (is_covered) {
         float stored = caster_depth(shadow_maps, place, map.size_px);
-        // Change of depth per metre towards a sun.
-        vec3 row = vec3(map.texco_from_world[0].z, map.texco_from_world[1].z, map.texco_from_world[2].z);
-        gap = light.kind != LIGHT_SUN ? stored / place.plane.depth - 1.0 :
-              stored > 0.0            ? (stored - place.plane.depth) / max(dot(row, to_light), 1e-20) :
-                                        0.0;
+        gap = light.kind == LIGHT_SUN ? (stored - place.receiver_depth) / depth_per_metre(map, to_light) :
+                                        stored / place.receiver_depth - 1.0;
       }
     } while (++i < count && !is_covered);
   }
   return max(gap, 0.0);
 }
 
-/** Distance from the receiver to the near plane, which is in front of all casters of a sun, metres; 0 if there is no map. */
-float sun_gap_max(int first, Surface surface, vec3 to_light)
+/** \see shadow_search */
+vec2 shadow_map_search(int first, Surface surface, LightData light, vec3 to_light)
 {
-  int count = shadow.maps[first].cascade_count;
-  if (count == 0) {
-    return 0.0;
+  ShadowMapData map = shadow.maps[first];
+  if (map.cascade_count == 0) {
+    return vec2(0.0);
   }
-  mat4 texco_from_world = shadow.maps[first + count - 1].texco_from_world;
-  vec3 row = vec3(texco_from_world[0].z, texco_from_world[1].z, texco_from_world[2].z);
-  float depth = dot(row, surface.position_ws) + texco_from_world[3].z;
-  return max((1.0 - depth) / max(dot(row, to_light), 1e-20), 0.0);
+  vec4 receiver = map.texco_from_world * vec4(surface.position_ws, 1.0);
+  return light.kind == LIGHT_SUN ?
+             vec2(map.texel_size, 1.5 * max((1.0 - receiver.z) / depth_per_metre(map, to_light), 0.0)) :
+             max(vec2(map.texel_size * receiver.w, receiver.w / receiver.z), vec2(0.0));
 }
 
-/** Visibility from all maps of a light. \a first: the finest. */
-float shadow_map_visibility(int first, Surface surface, vec3 to_light)
+/** Visibility from all maps of a light. \a first: the finest. \a offset: \see ShadowPlace. */
+float shadow_map_visibility(int first, Surface surface, vec3 to_light, vec3 offset)
 {
   int count = shadow.maps[first].cascade_count;
   float visibility = 0.0;
@@ -216,7 +259,7 @@ float shadow_map_visibility(int first, Surface surface, vec3 to_light)
     // The test is at the end as in lights_radiance.
     do {
       float coverage;
-      float lit = one_map_visibility(shadow.maps[first + i], surface, to_light, coverage);
+      float lit = one_map_visibility(shadow.maps[first + i], surface, to_light, offset, coverage);
       float share = cascade_share(i == count - 1, coverage);
       visibility += open * share * lit;
       open *= 1.0 - share;

@@ -47,24 +47,27 @@ float kernel_reach(int filter_kind)
 const float CASCADE_FADE = 0.1;
 
 /**
- * Coordinates and depth of the receiver in a map, after the division by w. \a coverage: 0 outside the map, 1 inside except
- * near the edge of the map.
+ * The receiver in a map, with its normal offset: xy across the map, [0, 1] inside, and z its depth, all times w. w is 0 where
+ * receivers are lit.
  */
-vec3 map_texco(ShadowMapData map, Surface surface, vec3 to_light, out float coverage)
+vec4 map_receiver(ShadowMapData map, Surface surface, vec3 to_light)
 {
-  coverage = 0.0;
   float w = (map.texco_from_world * vec4(surface.position_ws, 1.0)).w;
   float magnitude = largest(surface.position_ws) + abs(w);
   float normal_offset =
       map.bias * shadow_normal_offset(map.texel_size * w, kernel_reach(map.filter_kind), map.rounding * w * w, magnitude);
-  vec4 texco = map.texco_from_world * vec4(offset_position(surface, to_light, normal_offset), 1.0);
-  if (texco.w <= 0.0 || w > map.far) {
-    return vec3(0.0);
+  vec4 receiver = map.texco_from_world * vec4(offset_position(surface, to_light, normal_offset), 1.0);
+  return w > map.far ? vec4(0.0) : receiver;
+}
+
+/** 0 outside the map, 1 inside except near the edge of the map. \a texco: times w, as map_receiver returns it. */
+float map_coverage(vec4 texco)
+{
+  if (texco.w <= 0.0) {
+    return 0.0;
   }
-  texco.xyz /= texco.w;
-  vec2 from_edge = min(texco.xy, 1.0 - texco.xy);
-  coverage = clamp(min(from_edge.x, from_edge.y) / (0.5 * CASCADE_FADE), 0.0, 1.0);
-  return texco.xyz;
+  vec2 from_edge = min(texco.xy, texco.w - texco.xy) / texco.w;
+  return clamp(min(from_edge.x, from_edge.y) / (0.5 * CASCADE_FADE), 0.0, 1.0);
 }
 
 /** Fraction of the weight not used by finer cascades. The last cascade does not fade. */

@@ -172,6 +172,21 @@ TEST_F(ShadowsTest, FacesThatNothingVisibleLooksUpAreSkippedUntilItDoes)
   EXPECT_EQ(shadows.block_data().cubes[0].face_mask, 1 << 5 | 1 << 4);
 }
 
+TEST_F(ShadowsTest, FacesThatOnlyPenumbrasLookUpAreDrawn)
+{
+  // All that is visible is in the face at -Z, and a part of the first box is in the face at -Y.
+  casters = {box_at({0, -1.3F, -1.4F}, 0.25F), box_at({0, -2, -2.5F}, 0.1F)};
+  view = draw::View(glm::lookAt(glm::vec3(0, 0, -2.5F), {0, -2, -2.5F}, {0, 0, -1}),
+                    draw::perspective(0.01F, 0.01F, 0.5F, 100.0F));
+  for (const float radius : {0.0F, 0.03F, 0.5F}) {
+    placed.clear();
+    add_lamp(scene::LampKind::Point, "point").radius = radius;
+    sync();
+    update();
+    EXPECT_EQ((shadows.block_data().cubes[0].face_mask & 1 << 3) != 0, radius == 0.5F) << radius;
+  }
+}
+
 TEST_F(ShadowsTest, AMovedCasterUpdatesTheLampsInWhoseRangeItWasOrIs)
 {
   view = draw::View(glm::translate(glm::mat4(1.0F), {0, 0, -60}), draw::perspective(1.0F, 1.0F, 0.1F, 1000.0F));

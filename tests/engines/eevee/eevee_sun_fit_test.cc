@@ -96,6 +96,44 @@ TEST(SunFit, HoldsEveryCasterOfAVisibleReceiver)
   }
 }
 
+TEST(SunFit, HoldsEveryCasterWhosePenumbraIsVisible)
+{
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+  const auto point = [&] { return glm::vec3(unit(random), unit(random), unit(random)); };
+  int held = 0;
+  for (int trial = 0; trial < 100; trial++) {
+    const scene::PlacedLamp lamp = sun_along(point() + glm::vec3(0, -1.5F, 0));
+    const glm::vec3 to_light(lamp.world_from_lamp[2]);
+    const float tangent = 0.6F * std::abs(unit(random));
+    const Caster caster = caster_at(4.0F * point(), glm::vec3(1.0F));
+    std::vector<glm::dvec3> receivers;
+    for (int i = 0; i < 4; i++) {
+      receivers.emplace_back(4.0F * point() + glm::vec3(0, -6, 0));
+    }
+    const std::vector<SunFit> fits =
+        fit_sun(glm::mat4(lamp.world_from_lamp), any_view, visible_range(any_view, receivers), {caster}, 512,
+                {.count = 1}, 0.001F, {}, double(tangent));
+    // A point of the caster in the cone of the sun above a receiver is in the map.
+    for (int i = 0; i < 200; i++) {
+      const glm::vec3 p = caster.bounds_ws.center() + point();
+      for (const glm::dvec3 &receiver : receivers) {
+        const glm::vec3 v = p - glm::vec3(receiver);
+        const float along = glm::dot(v, to_light);
+        if (along > 0.0F && glm::length(v - along * to_light) < tangent * along) {
+          ASSERT_FALSE(fits.empty()) << "trial " << trial;
+          const glm::vec4 clip = fits.back().view.clip_from_world() * glm::vec4(p, 1.0F);
+          ASSERT_LE(std::max(std::abs(clip.x), std::abs(clip.y)), 1.0F) << "trial " << trial;
+          ASSERT_GE(clip.z, 0.0F);
+          ASSERT_LE(clip.z, 1.0F);
+          held++;
+        }
+      }
+    }
+  }
+  EXPECT_GT(held, 1000);
+}
+
 TEST(SunFit, LeavesTheGroundOutOfTheCasters)
 {
   const Caster ground = caster_at({0, 0, 0}, {100, 0, 100});

@@ -3,9 +3,12 @@
 
 #include "shadow_spot.hh"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace gnomon::eevee {
 
@@ -101,7 +104,10 @@ class CubeTechnique final : public ShadowTechnique {
     std::array<std::uint32_t, 6> within{};
     for (const glm::dvec3 &corner : visible.corners) {
       const glm::dvec3 v = corner - position_ws;
-      const double slack = 1e-5 * (std::abs(v.x) + std::abs(v.y) + std::abs(v.z));
+      // Of a lamp that is shaded as a whole, lookups are offset from the receiver by up to 15 half axes: search radius
+      // in eevee_penumbra_lib.glsl. The difference of two components changes by √2 times the offset.
+      const double offset = slot.lamp.extent * std::min(glm::length(v) / slot.near, 15.0);
+      const double slack = 1e-5 * (std::abs(v.x) + std::abs(v.y) + std::abs(v.z)) + std::numbers::sqrt2 * offset;
       for (std::size_t face = 0; face < 6; face++) {
         const std::size_t axis = face / 2;
         const double along = (face % 2 == 0 ? v[int(axis)] : -v[int(axis)]) + slack;

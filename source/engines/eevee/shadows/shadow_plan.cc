@@ -10,6 +10,8 @@
 
 #include <fmt/ranges.h>
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -37,6 +39,9 @@ std::vector<ShadowLamp> shadow_lamps(std::span<const scene::PlacedLamp> placed, 
   std::vector<ShadowLamp> result;
   for (int i = 0; i < lamps.light_block.light_count; i++) {
     const scene::PlacedLamp &lamp = placed[lamps.lamp_index[std::size_t(i)]];
+    const shared::LightShape &shape = lamps.shape_block.shapes[i];
+    const bool is_area = lamp.kind == scene::LampKind::Area;
+    const float longest = std::max(glm::length(shape.axis_x_ws), glm::length(shape.axis_y_ws));
     const bool is_sampled = shading == LampShading::Point && has_extent(lamp);
     constexpr float smooth_angle = 0.2F;
     result.push_back({.key = lamp.node.key(),
@@ -47,6 +52,7 @@ std::vector<ShadowLamp> shadow_lamps(std::span<const scene::PlacedLamp> placed, 
                       .spot_outer_angle = widest_half_angle(lamp),
                       .range = lamp.range,
                       .shadow = lamp.shadow,
+                      .extent = is_area && shape.extent > 0.0F ? longest : shape.extent,
                       .is_sampled = is_sampled,
                       .is_smooth = is_sampled && lamp.kind == scene::LampKind::Sun && lamp.angle > smooth_angle});
   }

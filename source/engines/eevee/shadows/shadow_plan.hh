@@ -33,6 +33,11 @@ struct ShadowLamp {
   /** Range of the lamp, metres. 0: no limit. */
   float range = 0.0F;
   scene::LampShadow shadow{};
+  /**
+   * Above 0: the lamp is shaded as a whole, so that its lookups reach beyond visible receivers. Half of its longest
+   * edge or axis, metres; for a sun, the tangent of half its angle.
+   */
+  float extent = 0.0F;
   /** The lamp has an extent, and each sample of a picture has the shadow of another point of the lamp. */
   bool is_sampled = false;
   /** A sampled sun whose angle is so large that its shadow has no sharp edges. One map of lower resolution suffices. */

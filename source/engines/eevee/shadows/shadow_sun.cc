@@ -77,8 +77,9 @@ class SunTechnique final : public ShadowTechnique {
     cascades.count = cascade_count(slot.lamp, settings);
     cascades.is_fitted_to_depth = is_fitted(slot.lamp, settings);
     cascades.can_resize = is_resized(slot.lamp, settings);
-    slot.new_fits = fit_sun(slot.lamp.world_from_lamp, view.view, view.visible, casters.list(),
-                            slot.place.given.size_px, cascades, view.pixel_size, std::move(slot.new_fits));
+    slot.new_fits =
+        fit_sun(slot.lamp.world_from_lamp, view.view, view.visible, casters.list(), slot.place.given.size_px, cascades,
+                view.pixel_size, std::move(slot.new_fits), slot.lamp.extent);
     const std::vector<SunFit> &fits = slot.new_fits;
     if (fits.size() != slot.fits.size()) {
       slot.invalidate(~0U);

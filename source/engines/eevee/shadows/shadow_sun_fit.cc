@@ -68,10 +68,11 @@ bool can_darken(const scene::Bounds &caster, const scene::Bounds &receivers, con
 
 /**
  * The box that all maps of a sun must cover: across the light, the intersection of receivers and casters; along the
- * light, from the first caster to the last receiver. Empty if no caster can shadow a receiver.
+ * light, from the first caster to the last receiver. Empty if no caster can shadow a receiver. Around the receivers,
+ * it has a margin as wide as half of the penumbra of each caster. \a tangent: \see fit_sun.
  */
 std::optional<LampBox> needed_box(const glm::mat4 &world_from_lamp, const std::vector<glm::dvec3> &receivers_ws,
-                                  const std::vector<Caster> &casters)
+                                  const std::vector<Caster> &casters, double tangent)
 {
   // A sun has directions only; its position has no effect.
   const glm::dmat3 from_world = glm::transpose(glm::dmat3(world_from_lamp));
@@ -85,16 +86,17 @@ std::optional<LampBox> needed_box(const glm::mat4 &world_from_lamp, const std::v
   LampBox above;
   for (const Caster &caster : casters) {
     const LampBox box = box_in(from_world, caster.bounds_ws);
-    const bool overlaps = box.min.x <= receivers.max.x && box.max.x >= receivers.min.x &&
-                          box.min.y <= receivers.max.y && box.max.y >= receivers.min.y && box.max.z >= receivers.min.z;
+    // The lamp shines along -Z, so that the casters of a receiver have larger z.
+    const glm::dvec3 margin(glm::dvec2(tangent * std::max(box.max.z - receivers.min.z, 0.0)), 0.0);
+    const glm::dvec3 min = glm::max(box.min, receivers.min - margin);
+    const glm::dvec3 max = glm::min(box.max, receivers.max + margin);
+    const bool overlaps = min.x <= max.x && min.y <= max.y && box.max.z >= receivers.min.z;
     if (overlaps && can_darken(caster.bounds_ws, receiver_bounds, forward_ws)) {
-      above.extend(box.min);
-      above.extend(box.max);
+      above.extend({min.x, min.y, box.min.z});
+      above.extend({max.x, max.y, box.max.z});
     }
   }
-  LampBox needed{glm::max(receivers.min, above.min), glm::min(receivers.max, above.max)};
-  // The lamp shines along -Z, so that the casters of a receiver have larger z.
-  needed.max.z = above.max.z;
+  LampBox needed = above;
   needed.min.z = receivers.min.z;
   if (receivers_ws.empty() || !(needed.min.x <= needed.max.x && needed.min.y <= needed.max.y)) {
     return std::nullopt;
@@ -282,11 +284,11 @@ void fit_to_clusters(const LampBox &needed, const glm::dmat3 &lamp_from_world, c
 
 std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &view, const VisibleRange &visible,
                             const std::vector<Caster> &casters, int size_px, const CascadeSettings &settings,
-                            float pixel_size, std::vector<SunFit> memory)
+                            float pixel_size, std::vector<SunFit> memory, double tangent)
 {
   std::vector<SunFit> fits = std::move(memory);
   fits.clear();
-  const std::optional<LampBox> needed = needed_box(world_from_lamp, visible.corners, casters);
+  const std::optional<LampBox> needed = needed_box(world_from_lamp, visible.corners, casters, tangent);
   if (!needed) {
     return fits;
   }

@@ -118,12 +118,14 @@ struct Sphere {
  *
  * \a size_px: edge of a map, texels; resize_step times the size asked for if maps can have other sizes. \a pixel_size:
  * edge of a pixel of the picture, metres: at a distance of 1 m (perspective) or at any distance (orthographic). \a
- * memory: its capacity is reused for the result; its content is discarded.
+ * memory: its capacity is reused for the result; its content is discarded. \a tangent: of half the angle of a sun that
+ * is shaded as a whole. The last cascade then also covers the casters whose penumbrae reach a visible receiver. 0 for
+ * other suns.
  */
 [[nodiscard]] std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &view,
                                           const VisibleRange &visible, const std::vector<Caster> &casters, int size_px,
                                           const CascadeSettings &settings, float pixel_size,
-                                          std::vector<SunFit> memory = {});
+                                          std::vector<SunFit> memory = {}, double tangent = 0.0);
 
 /** Whether \a old can replace \a needed: it has the same axes and covers the needed box, and its texels are not much
  * larger. */
