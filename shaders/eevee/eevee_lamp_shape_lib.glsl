@@ -74,10 +74,11 @@ FlatLamp round_lamp(vec3 to_light, float tangent, float irradiance, ShadingFrame
  * Specular radiance towards the viewer for a light colour of 1. It is the integral of the transformed cosine of
  * \a ltc_matrix over the lamp, times the ratio of the lobe to the transformed cosine in the mean direction of the light. If
  * the lamp is small relative to the lobe, the result is the value of the lobe. If the lobe is small relative to the lamp,
- * the ratio is the albedo of the lobe.
+ * the ratio is the albedo of the lobe. \a frame: of \a surface.
  */
-vec3 specular_of(FlatLamp lamp, MaterialData material, vec4 ltc_matrix, vec3 view)
+vec3 specular_of(FlatLamp lamp, MaterialData material, Surface surface, ShadingFrame frame, vec4 ltc_matrix)
 {
+  vec3 view = in_frame(frame, surface.view_ws);
   vec3 flux = flat_flux(ltc_transformed(ltc_matrix, lamp.center), ltc_transformed(ltc_matrix, lamp.axis_x),
                         ltc_transformed(ltc_matrix, lamp.axis_y), lamp.corner_count, ltc_up(ltc_matrix));
   vec3 to_light = direction_or_zero(ltc_restored(ltc_matrix, flux));
@@ -89,6 +90,13 @@ vec3 specular_of(FlatLamp lamp, MaterialData material, vec4 ltc_matrix, vec3 vie
   float lobe = ggx_lobe(to_light.z, max(view.z, 1e-4), cos_h, material.alpha) * to_light.z;
   float ratio = min(lobe / max(ltc_density(ltc_matrix, to_light), 1e-30), LTC_RATIO_MAX);
   vec3 fresnel = fresnel_schlick(material.specular_f0, material.specular_f90, dot(view, half_vector));
+#ifdef USE_MULTISCATTER
+  // The ratio in one direction is wrong for a lamp that covers most of the lobe. All of the lobe is its albedo, which is known here.
+  float covered = ltc_covered(ltc_matrix, flux.z);
+  vec3 whole = single_albedo(surface.multiscatter.view, material.specular_f0, material.specular_f90);
+  return lamp.radiance * mix(fresnel * (flux.z * ratio), whole * covered, covered);
+#else
   return fresnel * (lamp.radiance * flux.z * ratio);
+#endif
 }
 #endif

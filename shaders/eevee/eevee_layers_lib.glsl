@@ -63,6 +63,9 @@ Layers make_layers(float alpha, Surface surface)
   result.coat_surface = surface;
   result.coat_surface.normal_ws = surface.smooth_normal_ws;
   result.coat_material.alpha = sampled_alpha(result.coat_material.alpha, result.coat_surface);
+#ifdef USE_MULTISCATTER
+  result.coat_surface.multiscatter = multiscatter_of(result.coat_material, result.coat_surface);
+#endif
   float coat = data.coat;
   if (has_input(INPUT_COAT)) {
     coat *= texture(coat_texture, surface_coat_uvs.xy, view.texture_lod_bias).r;

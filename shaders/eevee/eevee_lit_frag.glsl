@@ -49,6 +49,9 @@ void main()
   material.alpha = sqrt(layers.base_lobe.alphas.x * layers.base_lobe.alphas.y);
   sum *= 1.0 - layers.coat_share;
 #  endif
+#  ifdef USE_MULTISCATTER
+  surface.multiscatter = multiscatter_of(material, surface);
+#  endif
 #  ifdef USE_TRANSMISSION
   Transmission transmission = make_transmission(material, surface);
   material.diffuse *= 1.0 - transmission.part;

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: MIT
+#ifdef USE_MULTISCATTER
+#  include "shared/eevee_multiscatter_shared.h"
+#endif
 
 /** The shaded point. World space; all vectors have unit length. */
 struct Surface {
@@ -13,6 +16,10 @@ struct Surface {
   vec3 geometric_normal_ws;
   /** Towards the viewer. */
   vec3 view_ws;
+#ifdef USE_MULTISCATTER
+  /** \see multiscatter_of */
+  Multiscatter multiscatter;
+#endif
 };
 
 /** A unit vector perpendicular to the unit vector \a n. */

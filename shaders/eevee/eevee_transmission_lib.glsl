@@ -81,10 +81,15 @@ Transmission make_transmission(MaterialData material, Surface surface)
     vec4 exit = view.clip_from_world * vec4(surface.position_ws + way_m * inside_ws, 1.0);
     texco = exit.w > 0.0 ? clamp(0.5 * exit.xy / exit.w + 0.5, vec2(0.0), vec2(1.0)) : texco;
   }
+#ifdef USE_MULTISCATTER
+  float entering = unreflected(surface.multiscatter.view, material.specular_f0, material.specular_f90,
+                               surface.multiscatter.color);
+#else
   float cos_v = clamp(dot(surface.normal_ws, surface.view_ws), 1e-4, 1.0);
   vec4 table = textureLod(ltc_table, ltc_texco(material.alpha, cos_v) + vec2(0.5, 0.0), 0.0);
   vec3 albedo = specular_albedo(table, material.specular_f0, material.specular_f90);
   float entering = clamp(1.0 - max(max(albedo.r, albedo.g), albedo.b), 0.0, 1.0);
+#endif
   result.passed = result.part * entering * material.diffuse * beer_lambert(data.absorption, way_m);
   float roughness = surface_lens.x;
   if (surface_lens.y != 0.0) {

@@ -4,7 +4,9 @@
 #include "shared/eevee_light_shared.h"
 #include "shared/eevee_world_shared.h"
 #include "shared/slots_shared.h"
-#ifdef USE_SPECULAR
+#if defined(USE_MULTISCATTER)
+#  include "eevee/eevee_multiscatter_lib.glsl"
+#elif defined(USE_SPECULAR)
 #  include "eevee/eevee_ltc_lib.glsl"
 #endif
 
@@ -39,10 +41,15 @@ vec3 world_mirrored(MaterialData material, Surface surface, vec3 normal_ws, vec3
   return albedo * world_radiance(mix(normal_ws, mirrored, lean), material.alpha);
 }
 
-vec4 albedo_table(Surface surface, float alpha)
+/** Directional albedo of a lobe of \a alpha. */
+vec3 albedo_of(Surface surface, float alpha, vec3 f0, float f90)
 {
   float cos_v = clamp(dot(surface.normal_ws, surface.view_ws), 1e-4, 1.0);
-  return textureLod(ltc_table, ltc_texco(alpha, cos_v) + vec2(0.5, 0.0), 0.0);
+#  ifdef USE_MULTISCATTER
+  return single_albedo(lobe_albedo(multiscatter_texel(alpha, cos_v), alpha, cos_v), f0, f90);
+#  else
+  return specular_albedo(textureLod(ltc_table, ltc_texco(alpha, cos_v) + vec2(0.5, 0.0), 0.0), f0, f90);
+#  endif
 }
 #endif
 
@@ -66,21 +73,28 @@ WorldShading world_shading;
 vec3 world_light(MaterialData material, Surface surface, vec3 mirror_ws)
 {
 #ifdef USE_SPECULAR
-  vec3 albedo = specular_albedo(albedo_table(surface, material.alpha), material.specular_f0, material.specular_f90);
+  vec3 albedo = albedo_of(surface, material.alpha, material.specular_f0, material.specular_f90);
 #endif
   if (world.is_sampled != 0) {
 #ifdef USE_SPECULAR
     world_shading.level_share = 1.0 - smoothstep(0.7, 1.0, material.alpha / world.alpha_sampled);
     world_shading.mirrored = vec3(0.0);
     if (world_shading.level_share > 0.0) {
-      float whole = specular_albedo(albedo_table(surface, max(material.alpha, world.alpha_sampled)), vec3(1.0), 1.0).r;
+      float whole = albedo_of(surface, max(material.alpha, world.alpha_sampled), vec3(1.0), 1.0).r;
       world_shading.mirrored = world_mirrored(material, surface, mirror_ws, albedo) / max(whole, 1e-4);
     }
 #endif
     return vec3(0.0);
   }
   vec3 diffuse = material.diffuse * material.occlusion * world_irradiance(world, surface.normal_ws);
-#ifdef USE_SPECULAR
+#if defined(USE_MULTISCATTER)
+  Multiscatter multiscatter = surface.multiscatter;
+  diffuse *= unreflected(multiscatter.view, material.specular_f0, material.specular_f90, multiscatter.color);
+  // Its lobe is wide, so that it reflects the mean radiance around the normal.
+  vec3 multiple = multiscatter.color * (multiscatter.view.missing * material.occlusion);
+  return diffuse + multiple * world_irradiance(world, surface.normal_ws) +
+         world_mirrored(material, surface, mirror_ws, albedo);
+#elif defined(USE_SPECULAR)
   return diffuse * (1.0 - max(max(albedo.r, albedo.g), albedo.b)) + world_mirrored(material, surface, mirror_ws, albedo);
 #else
   return diffuse;
@@ -97,10 +111,14 @@ vec3 world_reflected(LightData light, MaterialData material, Surface surface, Wo
                      float cos_l)
 {
   vec3 fresnel = fresnel_schlick(material.specular_f0, material.specular_f90, dot(surface.view_ws, half_vector));
-  float kept = 1.0 - max(max(fresnel.r, fresnel.g), fresnel.b);
   lobe *= cos_l;
   vec3 specular = light.color * fresnel * (lobe * (1.0 - shading.level_share)) +
                   shading.mirrored * (light.radius_sq * lobe * shading.level_share);
+#  ifdef USE_MULTISCATTER
+  return light.color * smooth_brdf(material, surface, cos_l) * cos_l + specular;
+#  else
+  float kept = 1.0 - max(max(fresnel.r, fresnel.g), fresnel.b);
   return light.color * material.diffuse * (INV_PI * kept * cos_l) + specular;
+#  endif
 }
 #endif

@@ -51,6 +51,16 @@ SHARED_FUNCTION float disk_cosine(float sine_sq, float cosine)
   return clamp(INV_PI * sum, 0.0f, 1.0f);
 }
 
+/**
+ * Mean cosine of the light of a round lamp, weighted by the irradiance: exact where the surface faces the lamp, and while the lamp
+ * is small. \a cosine: disk_cosine. \a sine_sq: as there.
+ */
+SHARED_FUNCTION float mean_cosine(float cosine, float sine_sq)
+{
+  float rim = sqrt(max(1.0f - sine_sq, 0.0f));
+  return cosine * (2.0f / 3.0f) * (1.0f + rim + rim * rim) / (1.0f + rim);
+}
+
 /** Contribution of one edge to the flux from a polygon (Lambert 1760). Vectors of any length. */
 SHARED_FUNCTION vec3 edge_flux(vec3 a, vec3 b)
 {
@@ -202,6 +212,18 @@ SHARED_FUNCTION float ltc_density(vec4 matrix, vec3 v)
  * much faster far from it.
  */
 SHARED_CONSTANT float LTC_RATIO_MAX = 32.0f;
+
+/**
+ * Part of the transformed cosine above the surface's horizon that a lamp covers, in [0, 1]. \a flux: z of flat_flux of the transformed
+ * lamp.
+ */
+SHARED_FUNCTION float ltc_covered(vec4 matrix, float flux)
+{
+  // Both planes of flat_flux leave a wedge of directions.
+  vec3 up = ltc_up(matrix);
+  float above = 0.5f + 0.5f * up.z / max(sqrt(dot(up, up)), 1e-18f);
+  return min(flux / max(above, 1e-6f), 1.0f);
+}
 
 /** Directional albedo of the lobe. \a albedo: from the table, for Fresnel terms of 1, and weighted by Schlick's fifth power. */
 SHARED_FUNCTION vec3 specular_albedo(vec4 albedo, vec3 f0, float f90)

@@ -17,8 +17,13 @@ namespace gnomon::cli {
 namespace fs = std::filesystem;
 
 Chooser::Chooser(const ChoiceOptions &options, gpu::Device &device, const scene::Scene &scene,
-                 const scene::PlacedCamera &camera, glm::ivec2 size_px)
-    : options_(options), scene_(scene), camera_(camera), size_px_(size_px), tracer_(scene)
+                 const scene::PlacedCamera &camera, glm::ivec2 size_px, bool has_multiscatter)
+    : options_(options),
+      scene_(scene),
+      camera_(camera),
+      size_px_(size_px),
+      has_multiscatter_(has_multiscatter),
+      tracer_(scene)
 {
   if (options.error_max > 0.0) {
     requirement_.error_max = options.error_max;
@@ -35,7 +40,7 @@ Chooser::Chooser(const ChoiceOptions &options, gpu::Device &device, const scene:
     source_ = fmt::format("report {}", options.report_folder);
   }
   if (models.empty()) {
-    measure::Pilot pilot = measure::run_pilot(device, scene, camera, size_px, tracer_, requirement_);
+    measure::Pilot pilot = measure::run_pilot(device, scene, camera, size_px, tracer_, requirement_, has_multiscatter_);
     models = std::move(pilot.models);
     source_ = fmt::format("a pilot of {} pictures in {:.1f} s", pilot.picture_count, pilot.seconds);
   }
@@ -71,6 +76,9 @@ std::vector<measure::Model> Chooser::models_of_report(const gpu::Device &device)
   if (run.build != program_fingerprint() || run.device != device.description() || run.machine != here.machine) {
     return unknown("its times are those of another build, machine or driver");
   }
+  if (run.has_multiscatter != has_multiscatter_) {
+    return unknown(fmt::format("its pictures have --specular {}", measure::specular_text(run)));
+  }
   const bool has_lamp_settings = std::ranges::any_of(tracer_.lamps(), [](const scene::Lamp &lamp) {
     return lamp.shadow.kind != scene::ShadowKind::None && lamp.shadow != scene::LampShadow();
   });
@@ -85,7 +93,8 @@ void Chooser::measure(std::span<const glm::vec4> picture, double seconds)
   measured_seconds_ = seconds;
   constexpr int pixel_count = 4096;
   constexpr int sample_count = 64;
-  const measure::PixelSample sample(tracer_, camera_, size_px_, picture, pixel_count, sample_count, 1);
+  const measure::PixelSample sample(tracer_, camera_, size_px_, picture, pixel_count, sample_count, 1,
+                                    has_multiscatter_);
   measured_ = sample.error(picture);
 }
 

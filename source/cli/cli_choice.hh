@@ -30,10 +30,11 @@ class Chooser {
  public:
   /**
    * Chooses from the report, if it contains the scene at that size, and otherwise from a pilot on \a device. All
-   * references must outlive the chooser. \throws std::runtime_error naming the report if it cannot be read.
+   * references must outlive the chooser. \a has_multiscatter: see eevee::Settings. \throws std::runtime_error naming
+   * the report if it cannot be read.
    */
   Chooser(const ChoiceOptions &options, gpu::Device &device, const scene::Scene &scene,
-          const scene::PlacedCamera &camera, glm::ivec2 size_px);
+          const scene::PlacedCamera &camera, glm::ivec2 size_px, bool has_multiscatter);
 
   [[nodiscard]] const measure::Choice &choice() const
   {
@@ -57,6 +58,7 @@ class Chooser {
   const scene::Scene &scene_;
   const scene::PlacedCamera &camera_;
   glm::ivec2 size_px_;
+  bool has_multiscatter_;
   reference::Tracer tracer_;
   measure::Requirement requirement_;
   /** Source of the choice: a report or a pilot. */

@@ -323,7 +323,7 @@ Status render(RenderOptions options)
 
   std::unique_ptr<Chooser> chooser;
   if (options.choice.is_asked()) {
-    chooser = std::make_unique<Chooser>(options.choice, *device, scene, camera, size_px);
+    chooser = std::make_unique<Chooser>(options.choice, *device, scene, camera, size_px, options.specular == "multi");
     chooser->print_choice();
     options.samples = chooser->choice().sample_count;
   }

@@ -143,10 +143,11 @@ std::string RenderOptions::settings_text() const
   return fmt::format(
       "--shadow {} --shadow-size {} --pcf {} --esm {} --cascades {} --cascade-lambda {} --cascade-range {} --cube-pass "
       "{} "
-      "--casters {} --shadow-memory {} --world '{}' --world-strength {} --world-rotation {} --background '{}' "
-      "--animation '{}' --fps {}",
+      "--casters {} --shadow-memory {} --specular {} --world '{}' --world-strength {} --world-rotation {} --background "
+      "'{}' --animation '{}' --fps {}",
       shadow, shadow_size, pcf, esm, cascades, cascade_lambda, cascade_range, cube_pass, casters, shadow_memory,
-      world.world, world.strength, world.rotation_degrees, background, frames.animation, frames.frames_per_second);
+      specular, world.world, world.strength, world.rotation_degrees, background, frames.animation,
+      frames.frames_per_second);
 }
 
 bool RenderOptions::is_png() const
@@ -202,9 +203,20 @@ eevee::Settings RenderOptions::engine_settings() const
     settings.sample_end = bounds.y + 1;
   }
   settings.seed = seed;
+  settings.has_multiscatter = specular == "multi";
   settings.has_cascade_tint = debug_view.kind == DebugView::Kind::Cascades;
   settings.is_timed = !json.empty() || is_explained;
   return settings;
+}
+
+void add_specular_option(CLI::App &command, std::string &specular)
+{
+  command
+      .add_option(
+          "--specular", specular,
+          "Reflections of light among microfacets: single, as glTF's model, or multi: rough surfaces lose no light")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"single", "multi"}));
 }
 
 void add_render_options(CLI::App &command, RenderOptions &options)
@@ -296,6 +308,7 @@ void add_render_options(CLI::App &command, RenderOptions &options)
                   "Maximum memory of shadow layers, MiB; their sizes are reduced to fit")
       ->capture_default_str()
       ->check(CLI::Range(1, 1 << 20));
+  add_specular_option(command, options.specular);
   command.add_option("--debug", options.debug,
                      "shadow:LAMP[:LAYER]: distances in the layers of a shadow (a cube face, a cascade, octahedral, "
                      "all) instead of the picture; cascades: the picture, tinted by the cascade that a pixel reads");

@@ -47,6 +47,8 @@ struct RenderOptions {
   std::string aov;
   std::string view = "pbr-neutral";
   float exposure = 0.0F;
+  /** "single" or "multi". \see eevee::Settings::has_multiscatter */
+  std::string specular = "single";
   std::string backend = "gl";
   bool is_explained = false;
   std::string json;
@@ -88,6 +90,9 @@ struct RenderOptions {
   /** Without the background, which depends on the scene. */
   [[nodiscard]] eevee::Settings engine_settings() const;
 };
+
+/** Adds `--specular`, for all commands that render. */
+void add_specular_option(CLI::App &command, std::string &specular);
 
 /** Adds the options to \a command, which fills \a options. Both must outlive the parsing. */
 void add_render_options(CLI::App &command, RenderOptions &options);

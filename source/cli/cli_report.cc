@@ -5,6 +5,7 @@
 #include "cli_origin.hh"
 #include "cli_output.hh"
 #include "cli_picture.hh"
+#include "cli_render_options.hh"
 #include "cli_time.hh"
 #include "cli_world.hh"
 
@@ -36,6 +37,7 @@ struct ReportOptions {
   /** Names or labels of techniques; empty for all. */
   std::vector<std::string> techniques;
   WorldOptions world;
+  std::string specular = "single";
 };
 
 /** Shows a progress bar on a terminal; silent in a pipe. */
@@ -154,6 +156,7 @@ Run::Run(gpu::Device &device, const ReportOptions &options)
   run_.date = where.date;
   run_.rounds = options.rounds;
   run_.reference_samples = options.reference_samples;
+  run_.has_multiscatter = options.specular == "multi";
   run_.size_px = {options.size[0], options.size[1]};
   const std::vector<measure::Technique> techniques = wanted_techniques(options.techniques);
   for (const std::string &path : options.scenes) {
@@ -198,9 +201,10 @@ void Run::resume()
     // Times are comparable only for the same build, machine and driver.
     if (before.build != run_.build || before.device != run_.device || before.machine != run_.machine ||
         before.size_px != run_.size_px || before.rounds != run_.rounds ||
-        before.reference_samples != run_.reference_samples) {
+        before.reference_samples != run_.reference_samples || before.has_multiscatter != run_.has_multiscatter) {
       fmt::print(stderr,
-                 "gnomon: {}: has another build, machine, size, reference or number of rounds; starting again\n",
+                 "gnomon: {}: has another build, machine, size, reference, --specular or number of rounds; starting "
+                 "again\n",
                  path.string());
       return;
     }
@@ -259,8 +263,8 @@ void Run::make_reference(const scene::Scene &scene, const reference::Tracer &tra
   }
   progress_->begin_next(report.name + ": reference");
   const Clock::time_point start = Clock::now();
-  const measure::ReferencePicture reference =
-      measure::reference_picture(tracer, scene.placed_cameras().front(), run_.size_px, options_.reference_samples);
+  const measure::ReferencePicture reference = measure::reference_picture(
+      tracer, scene.placed_cameras().front(), run_.size_px, options_.reference_samples, run_.has_multiscatter);
   report.reference_noise = reference.noise;
   write_exr(folder_ / measure::reference_file(report), run_.size_px, floats(reference.picture.pixels),
             {{"gnomon:scene", report.path.string()}, {"gnomon:units", "scene-linear radiance, W/(sr m^2)"}});
@@ -282,8 +286,8 @@ void Run::visit(const scene::Scene &scene, const reference::Tracer &tracer, meas
   const bool is_first = technique.step_seconds.empty();
   progress_->begin_next(fmt::format("{}: {}", report.name, measure::label(technique.technique)));
   measure::TechniqueResult result;
-  const measure::TechniqueTimes times = measure::measure_technique(device_, scene, technique.technique, run_.size_px,
-                                                                   is_first ? &tracer : nullptr, result);
+  const measure::TechniqueTimes times = measure::measure_technique(
+      device_, scene, technique.technique, run_.size_px, is_first ? &tracer : nullptr, result, run_.has_multiscatter);
   technique.step_seconds.push_back(times.step_seconds);
   for (std::size_t i = 0; i < technique.pictures.size(); i++) {
     technique.pictures[i].seconds.push_back(times.picture_seconds[i]);
@@ -362,9 +366,9 @@ std::size_t Run::measure_all()
   const auto read = [this](const std::string &file) { return read_exr(folder_ / file, run_.size_px); };
   write_text(folder_ / "index.html", measure::to_html(run_, read, png_bytes));
   std::size_t non_finite = 0;
-  std::string text =
-      fmt::format("{} ({}), {}, {}, {}, {}x{}, {} rounds, {:.0f} s\n", run_.program, run_.commit, run_.date,
-                  run_.machine, run_.device, run_.size_px.x, run_.size_px.y, run_.rounds, run_.seconds);
+  std::string text = fmt::format("{} ({}), {}, {}, {}, {}x{}, {} rounds, --specular {}, {:.0f} s\n", run_.program,
+                                 run_.commit, run_.date, run_.machine, run_.device, run_.size_px.x, run_.size_px.y,
+                                 run_.rounds, measure::specular_text(run_), run_.seconds);
   for (const measure::SceneReport &scene : run_.scenes) {
     text += measure::to_text(scene);
   }
@@ -427,6 +431,7 @@ void add_report(CLI::App &app, Status &status)
       ->capture_default_str()
       ->check(CLI::Range(2, 65536));
   add_world_options(*command, o->world);
+  add_specular_option(*command, o->specular);
   command->callback([o, &status] { status = report(*o); });
 }
 

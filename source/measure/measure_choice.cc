@@ -45,7 +45,8 @@ std::vector<double> contrast(std::span<const glm::vec4> picture, glm::ivec2 size
 }  // namespace
 
 PixelSample::PixelSample(const reference::Tracer &tracer, const scene::PlacedCamera &camera, glm::ivec2 size_px,
-                         std::span<const glm::vec4> guide, int pixel_count, int sample_count, std::uint64_t seed)
+                         std::span<const glm::vec4> guide, int pixel_count, int sample_count, std::uint64_t seed,
+                         bool has_multiscatter)
 {
   const std::vector<double> contrasts = contrast(guide, size_px);
   double sum = 0.0;
@@ -72,8 +73,9 @@ PixelSample::PixelSample(const reference::Tracer &tracer, const scene::PlacedCam
     }
   }
   for (std::size_t half = 0; half < 2; half++) {
-    light_[half] = reference::direct_light(tracer, camera, size_px, places,
-                                           {.sample_count = sample_count, .seed = 2 * seed + half + 1});
+    light_[half] = reference::direct_light(
+        tracer, camera, size_px, places,
+        {.sample_count = sample_count, .seed = 2 * seed + half + 1, .has_multiscatter = has_multiscatter});
   }
 }
 
@@ -150,7 +152,7 @@ Choice choose(std::span<const Model> models, const Requirement &requirement)
 }
 
 Pilot run_pilot(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera, glm::ivec2 size_px,
-                const reference::Tracer &tracer, const Requirement &requirement)
+                const reference::Tracer &tracer, const Requirement &requirement, bool has_multiscatter)
 {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
@@ -161,11 +163,11 @@ Pilot run_pilot(gpu::Device &device, const scene::Scene &scene, const scene::Pla
   std::unique_ptr<PixelSample> sample;
   double best_seconds = std::numeric_limits<double>::infinity();
   for (const Technique &technique : pilot_techniques()) {
-    TechniqueRenderer renderer(device, scene, camera, technique, size_px);
+    TechniqueRenderer renderer(device, scene, camera, technique, size_px, has_multiscatter);
     renderer.warm_up(false);
     if (!sample) {
-      sample =
-          std::make_unique<PixelSample>(tracer, camera, size_px, renderer.picture(), pixel_count, reference_samples, 0);
+      sample = std::make_unique<PixelSample>(tracer, camera, size_px, renderer.picture(), pixel_count,
+                                             reference_samples, 0, has_multiscatter);
     }
     Model model{technique, 0.0, 0.0, {}};
     double first_seconds = 0.0;

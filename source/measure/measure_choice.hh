@@ -33,11 +33,13 @@ struct SampledError {
 class PixelSample {
  public:
   /**
-   * \a guide: a picture of the scene; it may be noisy. \a seed: selects the pixels and the rays.
+   * \a guide: a picture of the scene; it may be noisy. \a seed: selects the pixels and the rays. \a has_multiscatter:
+   * see reference::DirectLightSettings.
    * \pre sample_count >= 1, pixel_count >= 2
    */
   PixelSample(const reference::Tracer &tracer, const scene::PlacedCamera &camera, glm::ivec2 size_px,
-              std::span<const glm::vec4> guide, int pixel_count, int sample_count, std::uint64_t seed);
+              std::span<const glm::vec4> guide, int pixel_count, int sample_count, std::uint64_t seed,
+              bool has_multiscatter = false);
 
   /** Error of \a picture, which has the size given to the constructor. NaN if a sampled pixel is NaN. */
   [[nodiscard]] SampledError error(std::span<const glm::vec4> picture) const;
@@ -101,11 +103,12 @@ struct Pilot {
 
 /**
  * Renders pictures with pilot_techniques() and 1, 2, 4, ... samples, no more than \a requirement needs. Per-lamp shadow
- * settings apply.
+ * settings apply. \a has_multiscatter: of pictures and reference, see eevee::Settings.
  * \throws what rendering throws, and std::runtime_error if no picture is finite.
  */
 [[nodiscard]] Pilot run_pilot(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera,
-                              glm::ivec2 size_px, const reference::Tracer &tracer, const Requirement &requirement);
+                              glm::ivec2 size_px, const reference::Tracer &tracer, const Requirement &requirement,
+                              bool has_multiscatter = false);
 
 /**
  * The models of a report's techniques. Pictures with NaN or infinity and techniques without command line options are

@@ -2,8 +2,10 @@
 #include "measure_light.hh"
 
 #include "eevee_ltc_table.hh"
+#include "eevee_multiscatter_table.hh"
 
 #include "eevee_area_shared.h"
+#include "eevee_multiscatter_shared.h"
 #include "eevee_shape_shared.h"
 
 #include <glm/common.hpp>
@@ -84,11 +86,9 @@ double lobe_cosine(const SpecularLobe &lobe, const glm::dvec3 &to_light)
 
 }  // namespace
 
-glm::vec4 ltc_texel(const glm::vec2 &texco)
+/** The texel of \a table at \a texel, whose middles are at whole numbers. */
+static glm::vec4 filtered(std::span<const float> table, const glm::ivec2 &size, const vec2 &texel)
 {
-  const std::span<const float> table = eevee::ltc_table();
-  const glm::ivec2 size(2 * LTC_TABLE_SIZE, LTC_TABLE_SIZE);
-  const vec2 texel = texco * vec2(size) - 0.5F;
   const glm::ivec2 low(glm::floor(texel));
   const vec2 part = texel - vec2(low);
   const auto at = [&](const glm::ivec2 &offset) {
@@ -97,6 +97,19 @@ glm::vec4 ltc_texel(const glm::vec2 &texco)
     return vec4(texels[0], texels[1], texels[2], texels[3]);
   };
   return glm::mix(glm::mix(at({0, 0}), at({1, 0}), part.x), glm::mix(at({0, 1}), at({1, 1}), part.x), part.y);
+}
+
+glm::vec4 ltc_texel(const glm::vec2 &texco)
+{
+  const glm::ivec2 size(2 * LTC_TABLE_SIZE, LTC_TABLE_SIZE);
+  return filtered(eevee::ltc_table(), size, texco * vec2(size) - 0.5F);
+}
+
+glm::vec4 multiscatter_texel(double alpha, double cosine)
+{
+  const vec2 place = shared::multiscatter_place(float(alpha), float(cosine));
+  return filtered(eevee::multiscatter_table(), glm::ivec2(MULTISCATTER_TABLE_SIZE),
+                  place * float(MULTISCATTER_TABLE_SIZE - 1));
 }
 
 double whole_diffuse(const LampShape &lamp)
@@ -110,7 +123,7 @@ double whole_diffuse(const LampShape &lamp)
   return double(shared::flat_flux(vec3(lamp.center), vec3(lamp.axis_x), vec3(lamp.axis_y), corner_count(lamp), up).z);
 }
 
-double whole_specular(const LampShape &lamp, const SpecularLobe &lobe)
+WholeSpecular whole_specular(const LampShape &lamp, const SpecularLobe &lobe)
 {
   const vec3 view(lobe.view);
   const auto alpha = float(lobe.alpha);
@@ -120,12 +133,20 @@ double whole_specular(const LampShape &lamp, const SpecularLobe &lobe)
       shared::ltc_transformed(matrix, vec3(lamp.axis_y)), corner_count(lamp), shared::ltc_up(matrix));
   const vec3 to_light = shared::direction_or_zero(shared::ltc_restored(matrix, flux));
   if (flux.z <= 0.0F || to_light.z <= 0.0F) {
-    return 0.0;
+    return {};
   }
   const auto lobe_value = float(lobe_cosine(lobe, glm::dvec3(to_light)));
   const float ratio =
       std::min(lobe_value / std::max(shared::ltc_density(matrix, to_light), 1e-30F), shared::LTC_RATIO_MAX);
-  return double(flux.z * ratio);
+  return {double(flux.z * ratio), glm::dvec3(to_light), double(shared::ltc_covered(matrix, flux.z))};
+}
+
+double whole_specular_multi(const LampShape &lamp, const SpecularLobe &lobe)
+{
+  const WholeSpecular whole = whole_specular(lamp, lobe);
+  const vec4 texel = multiscatter_texel(lobe.alpha, lobe.view.z);
+  const double albedo = 1.0 - double(shared::lobe_albedo(texel, float(lobe.alpha), float(lobe.view.z)).missing);
+  return glm::mix(whole.light, albedo * whole.covered, whole.covered);
 }
 
 double point_diffuse(const LampShape &lamp)

@@ -61,9 +61,19 @@ inline constexpr int integral_set_count = 8;
 [[nodiscard]] Integral integrated_diffuse(const LampShape &lamp, int point_count);
 [[nodiscard]] Integral integrated_specular(const LampShape &lamp, const SpecularLobe &lobe, int point_count);
 
+struct WholeSpecular {
+  double light = 0.0;
+  /** Mean direction of the light that is reflected, for the Fresnel term. Unit vector; zero if there is no light. */
+  glm::dvec3 to_light{0.0};
+  /** Part of the lobe that the lamp covers. */
+  double covered = 0.0;
+};
+
 /** As the engine has them: the form factor, and linearly transformed cosines. \see eevee_lamp_shape_lib.glsl */
 [[nodiscard]] double whole_diffuse(const LampShape &lamp);
-[[nodiscard]] double whole_specular(const LampShape &lamp, const SpecularLobe &lobe);
+[[nodiscard]] WholeSpecular whole_specular(const LampShape &lamp, const SpecularLobe &lobe);
+/** As the engine has it with multiple scattering, without the light that is scattered again. */
+[[nodiscard]] double whole_specular_multi(const LampShape &lamp, const SpecularLobe &lobe);
 
 /**
  * Baselines, which the engine does not use. Diffuse: all light comes from the centre. Specular: all light comes from
@@ -76,6 +86,9 @@ inline constexpr int integral_set_count = 8;
 
 /** The texel of `ltc_table` at \a texco, filtered as the device does. \see ltc_texco */
 [[nodiscard]] glm::vec4 ltc_texel(const glm::vec2 &texco);
+
+/** The texel of `multiscatter_table`, filtered as the device does. \see multiscatter_place */
+[[nodiscard]] glm::vec4 multiscatter_texel(double alpha, double cosine);
 
 /** Errors of an approximation over some cases. */
 struct LightErrors {
@@ -100,6 +113,8 @@ struct LightErrorRow {
   double integral_error = 0.0;
   /** whole_diffuse or whole_specular. */
   LightErrors whole{};
+  /** whole_diffuse or whole_specular_multi. */
+  LightErrors multi{};
   /** point_diffuse or point_specular. */
   LightErrors point{};
 };

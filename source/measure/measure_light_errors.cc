@@ -44,6 +44,7 @@ struct LightCase {
 
   Integral integral{};
   double whole = 0.0;
+  double multi = 0.0;
   double point = 0.0;
   /** What an error is relative to. */
   double scale = 0.0;
@@ -102,14 +103,15 @@ void compute(std::vector<LightCase> &cases, int point_count)
     const LampShape lamp = shape_of(one);
     if (one.is_diffuse()) {
       one.integral = integrated_diffuse(lamp, point_count);
-      one.whole = whole_diffuse(lamp);
+      one.whole = one.multi = whole_diffuse(lamp);
       one.point = point_diffuse(lamp);
     }
     else {
       const double view = glm::radians(one.view);
       const SpecularLobe lobe{one.roughness * one.roughness, {std::sin(view), 0.0, std::cos(view)}};
       one.integral = integrated_specular(lamp, lobe, point_count);
-      one.whole = whole_specular(lamp, lobe);
+      one.whole = whole_specular(lamp, lobe).light;
+      one.multi = whole_specular_multi(lamp, lobe);
       one.point = point_specular(lamp, lobe);
     }
     largest = std::max(largest, one.integral.value);
@@ -173,6 +175,7 @@ std::vector<LightErrorRow> light_errors(int point_count)
       }
       row.case_count = chosen.size();
       row.whole = errors_of(chosen, &LightCase::whole);
+      row.multi = errors_of(chosen, &LightCase::multi);
       row.point = errors_of(chosen, &LightCase::point);
       rows.push_back(std::move(row));
     };

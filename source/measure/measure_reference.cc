@@ -52,7 +52,7 @@ std::vector<glm::ivec2> noisiest(const Halves &halves, std::size_t count)
 }  // namespace
 
 ReferencePicture reference_picture(const reference::Tracer &tracer, const scene::PlacedCamera &camera,
-                                   glm::ivec2 size_px, int sample_count)
+                                   glm::ivec2 size_px, int sample_count, bool has_multiscatter)
 {
   constexpr std::size_t noisy_share = 10;
   constexpr int noisy_samples = 8;
@@ -60,13 +60,16 @@ ReferencePicture reference_picture(const reference::Tracer &tracer, const scene:
   constexpr std::uint64_t first_seed = std::uint64_t(1) << 32U;
   Halves halves;
   for (std::size_t i = 0; i < 2; i++) {
-    halves[i] =
-        reference::direct_light(tracer, camera, size_px, {.sample_count = sample_count / 2, .seed = first_seed + i});
+    halves[i] = reference::direct_light(
+        tracer, camera, size_px,
+        {.sample_count = sample_count / 2, .seed = first_seed + i, .has_multiscatter = has_multiscatter});
   }
   const std::vector<glm::ivec2> noisy = noisiest(halves, halves[0].pixels.size() / noisy_share);
   for (std::size_t i = 0; i < 2; i++) {
-    const std::vector<glm::vec4> light = reference::direct_light(
-        tracer, camera, size_px, noisy, {.sample_count = noisy_samples * sample_count / 2, .seed = first_seed + 2 + i});
+    const std::vector<glm::vec4> light = reference::direct_light(tracer, camera, size_px, noisy,
+                                                                 {.sample_count = noisy_samples * sample_count / 2,
+                                                                  .seed = first_seed + 2 + i,
+                                                                  .has_multiscatter = has_multiscatter});
     for (std::size_t j = 0; j < noisy.size(); j++) {
       halves[i].pixels[std::size_t(noisy[j].y) * std::size_t(size_px.x) + std::size_t(noisy[j].x)] = light[j];
     }

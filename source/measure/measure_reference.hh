@@ -15,10 +15,11 @@ struct ReferencePicture {
 
 /**
  * The reference for picture errors: reference::direct_light with \a sample_count samples for each pixel, and eight
- * times as many in the tenth of the pixels where the noise is largest.
+ * times as many in the tenth of the pixels where the noise is largest. \a has_multiscatter: see
+ * reference::DirectLightSettings.
  * \pre sample_count is even and at least 2
  */
 [[nodiscard]] ReferencePicture reference_picture(const reference::Tracer &tracer, const scene::PlacedCamera &camera,
-                                                 glm::ivec2 size_px, int sample_count);
+                                                 glm::ivec2 size_px, int sample_count, bool has_multiscatter = false);
 
 }  // namespace gnomon::measure

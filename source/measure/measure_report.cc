@@ -303,6 +303,11 @@ SceneReport scene_from_json(const nlohmann::json &json)
 
 }  // namespace
 
+std::string specular_text(const RunReport &run)
+{
+  return run.has_multiscatter ? "multi" : "single";
+}
+
 nlohmann::json to_json(const RunReport &run)
 {
   nlohmann::json scenes = nlohmann::json::array();
@@ -318,6 +323,7 @@ nlohmann::json to_json(const RunReport &run)
           {"size", {run.size_px.x, run.size_px.y}},
           {"rounds", run.rounds},
           {"reference_samples", run.reference_samples},
+          {"specular", specular_text(run)},
           {"seconds", run.seconds},
           {"scenes", scenes}};
 }
@@ -334,6 +340,7 @@ RunReport run_from_json(const nlohmann::json &json)
   run.size_px = {json.at("size").at(0).get<int>(), json.at("size").at(1).get<int>()};
   json.at("rounds").get_to(run.rounds);
   json.at("reference_samples").get_to(run.reference_samples);
+  run.has_multiscatter = json.at("specular") == "multi";
   json.at("seconds").get_to(run.seconds);
   for (const nlohmann::json &scene : json.at("scenes")) {
     run.scenes.push_back(scene_from_json(scene));

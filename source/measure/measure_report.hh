@@ -67,6 +67,8 @@ struct RunReport {
   glm::ivec2 size_px{0};
   int rounds = 0;
   int reference_samples = 0;
+  /** Of pictures and references. \see eevee::Settings */
+  bool has_multiscatter = false;
   /** Wall time spent so far. */
   double seconds = 0.0;
   std::vector<SceneReport> scenes;
@@ -97,6 +99,9 @@ struct Convergence {
 
 /** One for each Technique::name. */
 [[nodiscard]] std::vector<Convergence> convergence(const SceneReport &report);
+
+/** The value of `--specular`. */
+[[nodiscard]] std::string specular_text(const RunReport &run);
 
 /** A table for a terminal. */
 [[nodiscard]] std::string to_text(const SceneReport &scene);

@@ -186,8 +186,9 @@ Comparison front_pictures(const RunReport &run, const SceneReport &scene, const 
 std::string to_html(const RunReport &run, const ReadPicture &read, const MakePng &make_png)
 {
   Page page("Gnomon: error against run time");
-  page.paragraph(fmt::format("{} ({}), {}. {}, {}. {}x{} pixels, {} rounds, {:.0f} s in all.", run.program, run.commit,
-                             run.date, run.machine, run.device, run.size_px.x, run.size_px.y, run.rounds, run.seconds));
+  page.paragraph(fmt::format("{} ({}), {}. {}, {}. {}x{} pixels, {} rounds, --specular {}, {:.0f} s in all.",
+                             run.program, run.commit, run.date, run.machine, run.device, run.size_px.x, run.size_px.y,
+                             run.rounds, specular_text(run), run.seconds));
   page.paragraph(
       "Each technique is measured once a round. Times are medians over the rounds, ± half the interquartile range. A "
       "picture's time runs from its first draw to its last pixel and includes drawing its shadows, but no compilation. "

@@ -33,8 +33,10 @@ bool is_lit_at(const scene::PlacedLamp &lamp, const glm::dvec3 &position_ws, con
 }  // namespace
 
 TechniqueRenderer::TechniqueRenderer(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera,
-                                     const Technique &technique, glm::ivec2 size_px)
-    : camera_(camera), settings_{.shadow = technique.settings}, renderer_(device, scene, size_px, settings_)
+                                     const Technique &technique, glm::ivec2 size_px, bool has_multiscatter)
+    : camera_(camera),
+      settings_{.shadow = technique.settings, .has_multiscatter = has_multiscatter},
+      renderer_(device, scene, size_px, settings_)
 {
 }
 
@@ -132,12 +134,13 @@ void remove_shadow_settings(scene::Scene &scene)
 }
 
 TechniqueTimes measure_technique(gpu::Device &device, const scene::Scene &scene, const Technique &technique,
-                                 glm::ivec2 size_px, const reference::Tracer *tracer, TechniqueResult &result)
+                                 glm::ivec2 size_px, const reference::Tracer *tracer, TechniqueResult &result,
+                                 bool has_multiscatter)
 {
   const scene::PlacedCamera camera = scene.placed_cameras().front();
   if (tracer) {
     // In a renderer of its own, so that the probe's memory is not counted.
-    TechniqueRenderer probed(device, scene, camera, technique, size_px);
+    TechniqueRenderer probed(device, scene, camera, technique, size_px, has_multiscatter);
     probed.warm_up(true);
     result = {};
     result.lamps = probed.lamp_errors(*tracer);
@@ -146,7 +149,7 @@ TechniqueTimes measure_technique(gpu::Device &device, const scene::Scene &scene,
     result.limits = report.limits;
     result.lost_shadow_count = report.lost_shadow_count;
   }
-  TechniqueRenderer renderer(device, scene, camera, technique, size_px);
+  TechniqueRenderer renderer(device, scene, camera, technique, size_px, has_multiscatter);
   renderer.warm_up(false);
   TechniqueTimes times;
   times.step_seconds = renderer.step_seconds();

@@ -49,10 +49,11 @@ void remove_shadow_settings(scene::Scene &scene);
 /**
  * Renders pictures of \a scene with a technique, through its first camera, and measures their times. A picture is drawn
  * before, so that nothing is compiled during the measurement. \a tracer: the reference, of the same scene. If it is
- * null, only times are measured and \a result is unchanged.
+ * null, only times are measured and \a result is unchanged. \a has_multiscatter: see eevee::Settings.
  */
 [[nodiscard]] TechniqueTimes measure_technique(gpu::Device &device, const scene::Scene &scene,
                                                const Technique &technique, glm::ivec2 size_px,
-                                               const reference::Tracer *tracer, TechniqueResult &result);
+                                               const reference::Tracer *tracer, TechniqueResult &result,
+                                               bool has_multiscatter = false);
 
 }  // namespace gnomon::measure

@@ -16,6 +16,9 @@ const Fields<Settings> settings_fields = {
     plain_field<Settings>("sample_count", &Settings::sample_count,
                           "Samples for each pixel. 0: as many as fit into the `seconds_max` of render()."),
     plain_field<Settings>("seed", &Settings::seed, "Selects the random positions of the samples."),
+    plain_field<Settings>("has_multiscatter", &Settings::has_multiscatter,
+                          "Microfacets reflect light more than once, so that rough surfaces lose none. False: once, as "
+                          "glTF's model has it."),
     {"background", "What is seen without a surface: None (transparent), 'world', or a radiance (r, g, b), W/(sr m²).",
      [](const ScenePtr & /*scene*/, const Settings &settings) -> py::object {
        switch (settings.background.kind) {

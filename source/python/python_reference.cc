@@ -11,7 +11,7 @@
 namespace gnomon::python {
 
 static py::tuple trace(const ScenePtr &scene, const glm::ivec2 &size_px,
-                       const std::optional<Thing<scene::Node>> &camera, int sample_count)
+                       const std::optional<Thing<scene::Node>> &camera, int sample_count, bool has_multiscatter)
 {
   constexpr int edge_max = 1 << 14;
   if (size_px.x < 1 || size_px.y < 1 || size_px.x > edge_max || size_px.y > edge_max) {
@@ -26,7 +26,8 @@ static py::tuple trace(const ScenePtr &scene, const glm::ivec2 &size_px,
   {
     const Reading reading(scene);
     const py::gil_scoped_release unlocked;
-    traced = measure::reference_picture(reference::Tracer(scene->scene), placed, size_px, sample_count);
+    traced =
+        measure::reference_picture(reference::Tracer(scene->scene), placed, size_px, sample_count, has_multiscatter);
   }
   return py::make_tuple(picture_array(std::move(traced.picture.pixels), size_px), traced.noise);
 }
@@ -68,10 +69,10 @@ void define_reference(py::module_ &module)
                     "Values of either picture that are not finite. If there are any, the errors are NaN.");
   module.def(
       "trace", &trace, py::arg("scene").none(false), py::arg("size"), py::arg("camera") = py::none(),
-      py::arg("sample_count") = 64,
+      py::arg("sample_count") = 64, py::arg("has_multiscatter") = false,
       "The exact picture by ray tracing, of the direct light that Renderer draws: an array as render() gives it, "
       "with alpha 1, and the RMSE of its own noise. `size`: width and height, pixels. `sample_count`: rays for "
-      "each pixel, even; more where there is noise. The background is black.");
+      "each pixel, even; more where there is noise. `has_multiscatter`: as of Renderer. The background is black.");
   module.def("image_error", &image_error, py::arg("picture"), py::arg("reference"),
              "Compare two arrays of the same size, as render() and trace() give them.");
 }

@@ -225,6 +225,7 @@ glm::dvec3 Renderer::radiance_of(const Surface &surface, const glm::dvec3 &view,
     return surface.base_color;
   }
   Bsdf bsdf = make_bsdf(surface);
+  bsdf.multiscatter = settings.has_multiscatter ? &multiscatter_table() : nullptr;
   if (surface.shading_normal_ws != surface.smooth_normal_ws) {
     bsdf.smooth_normal = side * surface.smooth_normal_ws;
   }

@@ -19,6 +19,8 @@ struct DirectLightSettings {
   std::uint64_t seed = 0;
   /** 0: one thread for each processor. */
   unsigned thread_count = 0;
+  /** \see eevee::Settings::has_multiscatter */
+  bool has_multiscatter = false;
   /** Called repeatedly, by one thread at a time, with the completed fraction in (0, 1]. May be empty. */
   std::function<void(double share_done)> progress{};
 };

@@ -155,6 +155,12 @@ Properties<Settings> make_settings_properties()
                           {}});
   made.choices.push_back(
       choice("transform", "View transform", {"standard", "raw", "agx", "pbr-neutral"}, &Settings::view_transform));
+  made.choices.push_back({"specular",
+                          "Specular",
+                          {"single", "multi"},
+                          [](const Settings &settings) { return int(settings.eevee.has_multiscatter); },
+                          [](Settings &settings, int value) { settings.eevee.has_multiscatter = value == 1; },
+                          {}});
   made.choices.push_back({"cascades",
                           "Show cascades",
                           off_on,

@@ -75,6 +75,18 @@ class ProgramTest : public testing::Test {
   std::filesystem::path folder;
 };
 
+/** A glTF file: a white metal of roughness 1 in the plane y = 0, under a sun of 2 W/m². */
+inline constexpr const char *rough_metal_gltf = R"({"asset":{"version":"2.0"},
+  "extensionsUsed":["KHR_lights_punctual"],
+  "extensions":{"KHR_lights_punctual":{"lights":[{"type":"directional","intensity":1366}]}},
+  "buffers":[{"uri":"data:application/octet-stream;base64,AACAvwAAAAAAAIA/AACAPwAAAAAAAIA/AAAAAAAAAAAAAIC/","byteLength":36}],
+  "bufferViews":[{"buffer":0,"byteLength":36}],
+  "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[-1,0,-1],"max":[1,0,1]}],
+  "materials":[{"doubleSided":true}],
+  "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
+  "nodes":[{"mesh":0},{"rotation":[-0.70710678,0,0,0.70710678],"extensions":{"KHR_lights_punctual":{"light":0}}}],
+  "scenes":[{"nodes":[0,1]}],"scene":0})";
+
 /** A scene of the repository. */
 inline std::string example(const std::string &name)
 {

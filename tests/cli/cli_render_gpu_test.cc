@@ -240,6 +240,25 @@ TEST_F(CliRenderTest, BrightestAcceptedLampGivesAFinitePicture)
   EXPECT_EQ(nlohmann::json::parse(read("run.json"))["non_finite"], 0);
 }
 
+TEST_F(CliRenderTest, AWhiteMetalIsWhiteInAWhiteWorldWithMultipleScattering)
+{
+  write("metal.gltf", test::rough_metal_gltf);
+  const std::string render = "render metal.gltf --world 1,1,1 --size 9x9 --samples 1 ";
+  const auto middle = [&](const std::string &name) { return values_of(folder / name).at(4 * (4 * 9 + 4)); };
+  ASSERT_EQ(run(render + "-o single.exr").status, 0);
+  ASSERT_EQ(run(render + "-o multi.exr --specular multi").status, 0);
+  // Without the sun, which is brighter with multiple scattering, too.
+  ASSERT_EQ(run(render + "-o sun.exr --specular multi --world none").status, 0);
+  EXPECT_LT(middle("single.exr"), 0.8F);
+  EXPECT_NEAR(middle("multi.exr") - middle("sun.exr"), 1.0F, 2e-3F);
+  // Parts of both are not parts of one picture.
+  ASSERT_EQ(run(render + "-o low.exr --tile 1/2").status, 0);
+  ASSERT_EQ(run(render + "-o high.exr --tile 2/2 --specular multi").status, 0);
+  const Finished merged = run("merge low.exr high.exr -o mixed.exr");
+  EXPECT_EQ(merged.status, 1);
+  EXPECT_NE(merged.err.find("--specular multi"), std::string::npos) << merged.err;
+}
+
 TEST_F(CliRenderTest, WithoutADriverTheErrorNamesEachAttempt)
 {
   const std::string hide =

@@ -145,6 +145,22 @@ TEST_F(CliReportTest, TheWorldOfTheOptionsLightsPicturesAndReference)
   EXPECT_EQ(pictures.at(2).at("non_finite"), 0);
 }
 
+TEST_F(CliReportTest, MultipleScatteringIsInPicturesAndReference)
+{
+  write("metal.gltf", test::rough_metal_gltf);
+  const std::string options = " -o out --size 32x18 --reference-samples 16 --technique 'no shadow' --rounds 1 ";
+  for (const std::string specular : {"single", "multi"}) {
+    ASSERT_EQ(run("report metal.gltf" + options + "--specular " + specular).status, 0);
+    EXPECT_EQ(report_json().at("specular"), specular);
+    EXPECT_NE(read("out/report.txt").find("--specular " + specular), std::string::npos);
+    // The edges of the plane. With the other model, the surface would differ by 0.2 or more.
+    EXPECT_LT(report_json().at("scenes").at(0).at("techniques").at(0).at("pictures").at(2).at("rmse"), 0.02);
+  }
+  const Finished finished = run("render metal.gltf -o a.exr --size 32x18 --max-error 0.1 --report out --json run.json");
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_NE(finished.err.find("--specular multi"), std::string::npos) << finished.err;
+}
+
 TEST_F(CliReportTest, DeletedPictureIsRenderedAgain)
 {
   ASSERT_EQ(report("--rounds 1").status, 0);

@@ -62,6 +62,7 @@ TEST_F(CliTest, WrongUsageHasStatusTwoAndAReason)
                                       "render x.glb -o x.png --samples 0",
                                       "render x.glb -o x.png --samples many",
                                       "render x.glb -o x.png --shadow soft",
+                                      "render x.glb -o x.png --specular double",
                                       "render x.glb -o x.png --what",
                                       "render x.glb -o x.png --backend vulkan",
                                       "render x.glb -o x.png --shadow-size -4",

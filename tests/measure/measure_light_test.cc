@@ -79,7 +79,7 @@ TEST(LightApproximations, OfASmallLampAreTheIntegral)
     for (const double roughness : {0.4, 0.8}) {
       const SpecularLobe lobe = lobe_of(roughness, 0.6);
       const double specular = integrated_specular(lamp, lobe, 64).value;
-      EXPECT_NEAR(whole_specular(lamp, lobe) / specular, 1.0, 1e-3);
+      EXPECT_NEAR(whole_specular(lamp, lobe).light / specular, 1.0, 1e-3);
       EXPECT_NEAR(point_specular(lamp, lobe) / specular, 1.0, 2e-3);
     }
   }

@@ -110,6 +110,7 @@ TEST(Report, JsonHasAllThatContinuingARunNeeds)
   run.rounds = 3;
   run.build = "fedc";
   run.reference_samples = 64;
+  run.has_multiscatter = true;
   run.seconds = 12.5;
   run.scenes.push_back(scene_of({picture(1, 0.5, 0.25), picture(4, 2.0, 0.125), picture(16, 8.0, 0.0625)}));
   SceneReport &scene = run.scenes[0];
@@ -129,6 +130,7 @@ TEST(Report, JsonHasAllThatContinuingARunNeeds)
   const nlohmann::json json = to_json(run);
   const RunReport again = run_from_json(nlohmann::json::parse(json.dump()));
   EXPECT_EQ(to_json(again), json);
+  EXPECT_TRUE(again.has_multiscatter);
   EXPECT_TRUE(std::isnan(again.scenes[0].techniques[0].pictures[1].error.rmse));
   EXPECT_EQ(again.scenes[0].techniques[0].technique.sample_counts, technique.technique.sample_counts);
   EXPECT_THROW(static_cast<void>(run_from_json(nlohmann::json::object())), std::exception);

@@ -104,6 +104,56 @@ TEST(DirectLight, AWorldOfOneRadianceGivesAPlaneItsAlbedoTimesThat)
   expect_color(seen(scene, test::camera_at({2, 1, 5}, {0, 0, 0}, narrow), 4096), {0.25, 1.0, 0.0}, 2e-3);
 }
 
+/** A plane of one material, of which the cameras of the tests of multiple scattering see one point. */
+scene::Scene plane_of(const glm::vec3 &color, float metallic, float roughness)
+{
+  scene::Scene scene;
+  test::add_material(scene, color);
+  test::edit_material(scene, [&](scene::Material &material) {
+    material.specular_color = glm::vec3(1.0F);
+    material.metallic = metallic;
+    material.roughness = roughness;
+  });
+  add_rectangle(scene, {-10, -10}, {10, 10});
+  return scene;
+}
+
+TEST(DirectLight, WhiteFurnaceWithMultipleScattering)
+{
+  for (const float metallic : {0.0F, 1.0F}) {
+    for (const float roughness : {0.03F, 0.2F, 0.6F, 1.0F}) {
+      scene::Scene scene = plane_of(glm::vec3(1.0F), metallic, roughness);
+      scene.set_world(scene::World{});
+      const Tracer tracer(scene);
+      for (const float angle : {0.0F, 1.0F, 1.4F}) {
+        const auto camera = test::camera_at({5.0F * std::sin(angle), 0.0F, 5.0F * std::cos(angle)}, {0, 0, 0}, narrow);
+        const auto picture = direct_light(tracer, camera, {1, 1}, {.sample_count = 4096, .has_multiscatter = true});
+        EXPECT_NEAR(picture.pixels.front().r, 1.0F, 5e-3F) << metallic << ' ' << roughness << ' ' << angle;
+      }
+    }
+  }
+}
+
+TEST(DirectLight, WithMultipleScatteringIsReciprocal)
+{
+  const std::array<glm::vec3, 2> directions = {glm::normalize(glm::vec3(0.3F, 0.1F, 1.0F)),
+                                               glm::normalize(glm::vec3(-0.2F, 1.0F, 0.3F))};
+  for (const float metallic : {0.0F, 1.0F}) {
+    for (const float roughness : {0.2F, 1.0F}) {
+      std::array<glm::vec3, 2> brdfs;
+      for (std::size_t i = 0; i < 2; i++) {
+        scene::Scene scene = plane_of({1.0F, 0.7F, 0.2F}, metallic, roughness);
+        add_lamp(scene, lamp_at(LampKind::Sun, {0, 0, 0}, -directions[i]));
+        const auto camera = test::camera_at(5.0F * directions[1 - i], {0, 0, 0}, narrow);
+        const auto picture = direct_light(Tracer(scene), camera, {1, 1}, {.sample_count = 1, .has_multiscatter = true});
+        brdfs[i] = glm::vec3(picture.pixels.front()) / directions[i].z;
+      }
+      // The tolerance covers the float rounding of camera matrices.
+      expect_color(brdfs[0], glm::dvec3(brdfs[1]), 1e-4);
+    }
+  }
+}
+
 TEST(DirectLight, AWorldsBrightTexelIsASun)
 {
   // One texel at azimuth 0 and an elevation of 45°, of solid angle 2.45e-3 sr, blended to those beside it.

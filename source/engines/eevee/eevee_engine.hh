@@ -74,6 +74,11 @@ struct Settings {
   int sample_end = 0;
   /** Selects the random sequence of sample positions and lamp points. */
   std::uint32_t seed = 0;
+  /**
+   * Microfacets reflect light more than once, so that a rough surface loses none: a white one in a white world is
+   * white. Otherwise they reflect it once, as glTF's model has it. \see eevee_multiscatter_shared.h
+   */
+  bool has_multiscatter = false;
   /** Measure the time of each step on the device. */
   bool is_timed = false;
   /** Multiply the picture by a colour for each cascade of the first sun that has a shadow. */
@@ -177,6 +182,11 @@ class Engine final : public draw::Engine {
   void sync_materials(StorageList &stl) const;
   void make_blocks(draw::Viewport &viewport);
   void record_passes(draw::Viewport &viewport);
+  /** Features of programs that settings ask for. */
+  [[nodiscard]] Feature asked_features() const
+  {
+    return settings_.has_multiscatter ? Feature::Multiscatter : Feature::None;
+  }
   void record_object(draw::Viewport &viewport, draw::ObjectIndex object);
   /** Append the calls of an object that is blended: its backs, if they are drawn, and its fronts. */
   void record_blended(Data &data, draw::ObjectIndex object, const gpu::Shader &shader,

@@ -101,6 +101,7 @@ struct PassesKey {
   gpu::ResourceId light_block = 0;
   gpu::ResourceId light_shape_block = 0;
   gpu::ResourceId ltc_table = 0;
+  gpu::ResourceId multiscatter_table = 0;
   gpu::ResourceId world_block = 0;
   gpu::ResourceId world_levels = 0;
   gpu::ResourceId world_picture = 0;
@@ -174,7 +175,10 @@ struct SharedData {
   gpu::Buffer light_shape_block;
   /** Empty unless the scene has specular materials, and lamps with Feature::LampShape or a world. */
   gpu::Texture ltc_table;
-  gpu::Sampler ltc_sampler;
+  /** Empty without Feature::Multiscatter. */
+  gpu::Texture multiscatter_table;
+  /** Of both tables. */
+  gpu::Sampler table_sampler;
   /** Empty without a world. */
   WorldResources world;
   bool is_light_block_written = false;

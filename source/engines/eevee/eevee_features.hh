@@ -44,6 +44,8 @@ enum class Feature : std::uint32_t {
   Layers = 1U << 15,
   /** Per material: its class is render_scene::MaterialClass::Transmissive. */
   Transmission = 1U << 16,
+  /** Settings::has_multiscatter is set, and at least one material has specular reflection. */
+  Multiscatter = 1U << 17,
 };
 
 constexpr Feature operator|(Feature a, Feature b)
@@ -62,10 +64,14 @@ constexpr bool has(Feature mask, Feature bit)
 /** At least one lamp has a shadow. */
 inline constexpr Feature any_shadow = Feature::ShadowCube | Feature::ShadowMap | Feature::ShadowEsm;
 
+constexpr Feature without(Feature features, Feature removed)
+{
+  return Feature(std::uint32_t(features) & ~std::uint32_t(removed));
+}
 /** \a features without those of shadows. */
 constexpr Feature without_shadows(Feature features)
 {
-  return Feature(std::uint32_t(features) & ~std::uint32_t(any_shadow | Feature::ShadowPcf | Feature::ShadowEvsm));
+  return without(features, any_shadow | Feature::ShadowPcf | Feature::ShadowEvsm);
 }
 
 /** The kernel of percentage-closer filtering. */

@@ -9,7 +9,7 @@ namespace gnomon::eevee {
 
 namespace {
 
-constexpr std::array<FeatureDefine, 17> feature_table = {
+constexpr std::array<FeatureDefine, 18> feature_table = {
     {{Feature::Light, "USE_LIGHT", "something shines"},
      {Feature::Punctual, "USE_PUNCTUAL", "a point, spot or area lamp shines"},
      {Feature::Specular, "USE_SPECULAR", "a material reflects specularly"},
@@ -27,12 +27,14 @@ constexpr std::array<FeatureDefine, 17> feature_table = {
      {Feature::World, "USE_WORLD", "a world shines"},
      {Feature::OpacityThreshold, "USE_OPACITY_THRESHOLD", "a blended material casts shadows"},
      {Feature::Layers, "USE_LAYERS", "a material has a clear coat, sheen or anisotropy, or transmits light"},
-     {Feature::Transmission, "USE_TRANSMISSION", "a material transmits light"}}};
+     {Feature::Transmission, "USE_TRANSMISSION", "a material transmits light"},
+     {Feature::Multiscatter, "USE_MULTISCATTER",
+      "microfacets reflect light more than once, and a material reflects specularly"}}};
 
 /** Features that only affect lighting. Variants without Feature::Light have none of them. */
 constexpr Feature light_features = Feature::Light | Feature::Punctual | Feature::Specular | Feature::ShadowCube |
                                    Feature::ShadowMap | Feature::ShadowPcf | Feature::ShadowEsm | Feature::ShadowEvsm |
-                                   Feature::LampShape | Feature::World;
+                                   Feature::LampShape | Feature::World | Feature::Multiscatter;
 /** Features that the visibility of a lamp depends on. */
 constexpr Feature shadow_features = Feature::Light | Feature::Punctual | Feature::ShadowCube | Feature::ShadowMap |
                                     Feature::ShadowPcf | Feature::ShadowEsm | Feature::ShadowEvsm;
@@ -113,16 +115,24 @@ bool is_possible(Feature features, const ShaderDeclaration &declaration)
   if (has(features, Feature::Layers) && (!has(features, Feature::FullMaterial) || !has(features, Feature::Specular))) {
     return false;
   }
-  // Transmission is one class of materials with layers. Where maps or cubes are read, it implies their filter, which
-  // reduces the number of variants. \see with_variant
-  if (has(features, Feature::Transmission) &&
-      (!has(features, Feature::Layers) ||
-       has(features, Feature::ShadowCube | Feature::ShadowMap) != has(features, Feature::ShadowPcf))) {
+  // Transmission is one class of materials with layers.
+  if (has(features, Feature::Transmission) && !has(features, Feature::Layers)) {
     return false;
   }
-  // With a world or with layers, Punctual implies LampShape and ShadowEsm implies ShadowEvsm, and vice versa. Most
-  // scenes need these features together, and the rule reduces the number of variants. \see with_variant
-  if (has(features, Feature::World | Feature::Layers) &&
+  // Microfacets that reflect light once or several times are those of specular reflection.
+  if (has(features, Feature::Multiscatter) && !has(features, Feature::Specular)) {
+    return false;
+  }
+  // With transmission or multiple scattering, maps and cubes imply their filter, which reduces the number of variants.
+  // \see with_variant
+  if (has(features, Feature::Transmission | Feature::Multiscatter) &&
+      has(features, Feature::ShadowCube | Feature::ShadowMap) != has(features, Feature::ShadowPcf)) {
+    return false;
+  }
+  // With a world, with layers or with multiple scattering, Punctual implies LampShape and ShadowEsm implies ShadowEvsm,
+  // and vice versa. Most scenes need these features together, and the rule reduces the number of variants.
+  // \see with_variant
+  if (has(features, Feature::World | Feature::Layers | Feature::Multiscatter) &&
       (has(features, Feature::Punctual) != has(features, Feature::LampShape) ||
        has(features, Feature::ShadowEsm) != has(features, Feature::ShadowEvsm))) {
     return false;
@@ -151,11 +161,15 @@ Feature with_variant(Feature features)
   if (has(features, Feature::Transmission)) {
     // Also without lamps, the way of the light behind depends on normals and on the reflectance.
     features = features | Feature::Light | Feature::Specular;
-    if (has(features, Feature::ShadowCube | Feature::ShadowMap)) {
-      features = features | Feature::ShadowPcf;
-    }
   }
-  if (!has(features, Feature::World | Feature::Layers)) {
+  if (!has(features, Feature::Specular)) {
+    features = without(features, Feature::Multiscatter);
+  }
+  if (has(features, Feature::Transmission | Feature::Multiscatter) &&
+      has(features, Feature::ShadowCube | Feature::ShadowMap)) {
+    features = features | Feature::ShadowPcf;
+  }
+  if (!has(features, Feature::World | Feature::Layers | Feature::Multiscatter)) {
     return features;
   }
   if (has(features, Feature::Punctual | Feature::LampShape)) {

@@ -68,7 +68,7 @@ struct FeatureDefine {
 
 /**
  * The features of a frame, extended to a mask for which programs have a variant. \a features: those of its lamps, its
- * world and its materials.
+ * world and its materials. Feature::Multiscatter is removed if nothing reflects specularly.
  */
 [[nodiscard]] Feature with_variant(Feature features);
 

@@ -6,6 +6,8 @@
 #include "draw_view_shared.h"
 #include "eevee_ltc_table.hh"
 #include "eevee_material_variants.hh"
+#include "eevee_multiscatter_shared.h"
+#include "eevee_multiscatter_table.hh"
 #include "eevee_shape_shared.h"
 
 #include <algorithm>
@@ -42,7 +44,10 @@ void bind_lit(draw::ShadingGroup &group, Data &data)
     group.bind_texture("world_levels", world.levels, world.sampler);
   }
   if (data.shared->ltc_table) {
-    group.bind_texture("ltc_table", data.shared->ltc_table, data.shared->ltc_sampler);
+    group.bind_texture("ltc_table", data.shared->ltc_table, data.shared->table_sampler);
+  }
+  if (data.shared->multiscatter_table) {
+    group.bind_texture("multiscatter_table", data.shared->multiscatter_table, data.shared->table_sampler);
   }
   if (data.txl.behind) {
     group.bind_texture("behind", data.txl.behind, data.txl.behind_sampler);
@@ -117,6 +122,31 @@ void Engine::sync_materials(StorageList &stl) const
   stl.materials_features_revision = materials;
 }
 
+/** Create the tables of the specular lobe. \a features: of the frame. \a read: what programs read. */
+static void make_tables(SharedData &shared, gpu::Device &device, Feature features, Feature read)
+{
+  const auto update = [&](gpu::Texture &table, const char *name, bool is_needed, glm::ivec2 size,
+                          std::span<const float> (*texels)()) {
+    if (!is_needed) {
+      table = {};
+    }
+    else if (!table) {
+      table = create_target(device, name, gpu::Format::RGBA32F, size);
+      device.upload(table, 0, std::as_bytes(texels()));
+    }
+  };
+  // With multiple scattering, the world's light reads its table of albedos.
+  const bool has_multiscatter = has(read, Feature::Multiscatter);
+  const Feature of_ltc = has_multiscatter ? Feature::LampShape : Feature::LampShape | Feature::World;
+  const bool has_ltc = has(read, Feature::Layers) || (has(features, of_ltc) && has(features, Feature::Specular));
+  update(shared.ltc_table, "ltc_table", has_ltc, {2 * LTC_TABLE_SIZE, LTC_TABLE_SIZE}, ltc_table);
+  update(shared.multiscatter_table, "multiscatter_table", has_multiscatter, glm::ivec2(MULTISCATTER_TABLE_SIZE),
+         multiscatter_table);
+  if ((has_ltc || has_multiscatter) && !shared.table_sampler) {
+    shared.table_sampler = device.create_sampler({.name = "table_sampler", .filter = gpu::Filter::Linear});
+  }
+}
+
 void Engine::make_blocks(draw::Viewport &viewport)
 {
   Data &data = viewport.engine_data<Data>(*this);
@@ -138,16 +168,18 @@ void Engine::make_blocks(draw::Viewport &viewport)
   }
   update_world_picture(shared.world, device, scene_, settings_);
   if (has(stl.features, Feature::Light)) {
-    stl.features =
-        with_variant(shared.lamps.features | shared.shadows.features() | (stl.material_features & Feature::Specular));
+    stl.features = with_variant(shared.lamps.features | shared.shadows.features() |
+                                (stl.material_features & Feature::Specular) | asked_features());
   }
   // What the programs of some materials read, beyond those of the frame. It is the same for all viewports, as they
   // share the blocks.
-  const Feature read = with_variant(stl.features | (stl.material_features & (Feature::Layers | Feature::Transmission)));
+  const Feature read = with_variant(stl.features | (stl.material_features & (Feature::Layers | Feature::Transmission)) |
+                                    asked_features());
   if (!has(read, Feature::Light)) {
     shared.light_block = {};
     shared.light_shape_block = {};
     shared.ltc_table = {};
+    shared.multiscatter_table = {};
     shared.world.block = {};
     shared.world.levels = {};
     return;
@@ -165,17 +197,7 @@ void Engine::make_blocks(draw::Viewport &viewport)
     shared.is_light_block_written = false;
   }
   update_world(shared.world, device, scene_, stl.features, settings_);
-  const bool has_ltc = has(read, Feature::Layers) ||
-                       (has(stl.features, Feature::LampShape | Feature::World) && has(stl.features, Feature::Specular));
-  if (!has_ltc) {
-    shared.ltc_table = {};
-  }
-  else if (!shared.ltc_table) {
-    shared.ltc_table = device.create_texture(
-        {.name = "ltc_table", .format = gpu::Format::RGBA32F, .width = 2 * LTC_TABLE_SIZE, .height = LTC_TABLE_SIZE});
-    shared.ltc_sampler = device.create_sampler({.name = "ltc_sampler", .filter = gpu::Filter::Linear});
-    device.upload(shared.ltc_table, 0, std::as_bytes(ltc_table()));
-  }
+  make_tables(shared, device, stl.features, read);
   if (!std::exchange(shared.is_light_block_written, true)) {
     device.update(shared.light_block, shared.lamps.light_block);
     if (shared.light_shape_block) {
@@ -268,6 +290,7 @@ void Engine::record(draw::Viewport &viewport)
       .light_block = shared.light_block.id(),
       .light_shape_block = shared.light_shape_block.id(),
       .ltc_table = shared.ltc_table.id(),
+      .multiscatter_table = shared.multiscatter_table.id(),
       .world_block = shared.world.block.id(),
       .world_levels = shared.world.levels.id(),
       .world_picture = shared.world.picture.id(),
@@ -350,7 +373,7 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
   const gpu::Shader *lit_shader =
       is_transmissive && !data.txl.behind
           ? nullptr
-          : &shaders_.get(device, ShaderId::Lit, with_variant(lighting | feature_of(surface)));
+          : &shaders_.get(device, ShaderId::Lit, with_variant(lighting | feature_of(surface) | asked_features()));
   if (render_scene::is_blended(scene, mesh)) {
     if (lit_shader) {
       record_blended(data, index, *lit_shader, surface_textures, batch);

@@ -62,6 +62,8 @@ FrameNode target_nodes(const ReportSource &source)
   add(source.data.shared->ltc_table, "ltc_table", "specular light of lamps with an extent and of the world; sheen",
       source.has(Feature::LampShape | Feature::World) ? why_no_feature(source, Feature::Specular)
                                                       : why_no_feature(source, Feature::LampShape));
+  add(source.data.shared->multiscatter_table, "multiscatter_table",
+      "albedos, for light that microfacets reflect more than once", why_no_feature(source, Feature::Multiscatter));
   add(source.data.shared->world.levels, "world_levels", "specular reflection of the world",
       source.has(Feature::World) ? why_no_feature(source, Feature::Specular) : why_no_feature(source, Feature::World));
   add(shadows.cubes(), "shadow_cubes", fmt::format("{} point lamps or wide spots", shadows.cube_count()),

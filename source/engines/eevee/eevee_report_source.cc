@@ -88,6 +88,8 @@ std::string why_no_feature(const ReportSource &source, Feature feature)
       return source.data.is_recorded ? "no material that is drawn has a texture" : nothing_seen;
     case Feature::LampShape: return "no lamp has an extent, and no spot's cone is an ellipse";
     case Feature::World: return "the scene has no world";
+    case Feature::Multiscatter:
+      return source.settings.has_multiscatter ? why_no_feature(source, Feature::Specular) : "not asked for";
     case Feature::OpacityThreshold:
       return why_no_shadow(source, "no material that is blended or transmits light casts a shadow");
     case Feature::FullMaterial: return source.data.is_recorded ? no_full_material : nothing_seen;

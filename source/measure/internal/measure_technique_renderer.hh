@@ -10,9 +10,9 @@ namespace gnomon::measure {
 /** Renders pictures with one technique, and draws all shadows again for each picture. */
 class TechniqueRenderer {
  public:
-  /** All references must outlive the renderer. */
+  /** All references must outlive the renderer. \a has_multiscatter: see eevee::Settings. */
   TechniqueRenderer(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera,
-                    const Technique &technique, glm::ivec2 size_px);
+                    const Technique &technique, glm::ivec2 size_px, bool has_multiscatter);
 
   /**
    * Creates all resources of a picture and draws one. Call it first. \a has_probe: whether lamp_errors will be called.

@@ -188,6 +188,7 @@ class Report:
 class Renderer:
     sample_count: int
     seed: int
+    has_multiscatter: bool
     background: Background
     shadow_kind: ShadowKind
     cube_size_px: int
@@ -216,6 +217,7 @@ class ImageError:
     def non_finite_count(self) -> int: ...
 
 def trace(
-    scene: Scene, size: tuple[int, int], camera: Node | None = None, sample_count: int = 64
+    scene: Scene, size: tuple[int, int], camera: Node | None = None, sample_count: int = 64,
+    has_multiscatter: bool = False
 ) -> tuple[NDArray[np.float32], float]: ...
 def image_error(picture: NDArray[np.float32], reference: NDArray[np.float32]) -> ImageError: ...

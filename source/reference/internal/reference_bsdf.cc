@@ -7,7 +7,7 @@
 
 // This header defines `float` as double, so it must come last.
 #define SHARED_DOUBLE
-#include "eevee_bsdf_shared.h"
+#include "eevee_multiscatter_shared.h"
 
 namespace gnomon::reference {
 
@@ -35,9 +35,17 @@ glm::dvec3 reflected(const Bsdf &bsdf, const glm::dvec3 &normal, const glm::dvec
   const double cos_v = std::clamp(glm::dot(normal, view), 0.0, 1.0);
   const double cos_h = std::clamp(glm::dot(normal, half_vector), 0.0, 1.0);
   const glm::dvec3 fresnel = shared_double::fresnel_schlick(bsdf.f0, bsdf.f90, glm::dot(view, half_vector));
-  const double kept = 1.0 - std::max({fresnel.r, fresnel.g, fresnel.b});
   const double lobe = shared_double::ggx_lobe(cos_l, cos_v, cos_h, bsdf.alpha);
   const double seen = bsdf.smooth_normal ? shared_double::bump_visibility(*bsdf.smooth_normal, normal, to_light) : 1.0;
+  if (bsdf.multiscatter) {
+    const shared_double::LobeAlbedo light =
+        shared_double::lobe_albedo(bsdf.multiscatter->at(bsdf.alpha, cos_l), bsdf.alpha, cos_l);
+    const shared_double::Multiscatter multiscatter = shared_double::make_multiscatter(
+        bsdf.multiscatter->at(bsdf.alpha, cos_v), bsdf.alpha, cos_v, bsdf.f0, bsdf.f90);
+    const glm::dvec3 smooth = shared_double::smooth_brdf(multiscatter, light, bsdf.diffuse * seen, bsdf.f0, bsdf.f90);
+    return (smooth + fresnel * lobe) * cos_l;
+  }
+  const double kept = 1.0 - std::max({fresnel.r, fresnel.g, fresnel.b});
   return (bsdf.diffuse * (seen * kept / std::numbers::pi) + fresnel * lobe) * cos_l;
 }
 

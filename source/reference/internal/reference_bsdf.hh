@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "reference_multiscatter.hh"
 #include "reference_tracer.hh"
 
 #include <optional>
@@ -16,6 +17,8 @@ struct Bsdf {
   /** Reflectance at normal incidence (f0) and at grazing incidence (f90). */
   glm::dvec3 f0{0.0};
   double f90 = 0.0;
+  /** Albedos, if microfacets reflect light more than once; otherwise nullptr. */
+  const MultiscatterTable *multiscatter = nullptr;
   /** If there is a normal texture: the normal without it, on the visible side. */
   std::optional<glm::dvec3> smooth_normal{};
 };

@@ -130,6 +130,26 @@ TEST_F(LeftOut, TheFullSceneHasAll)
   EXPECT_EQ(full.resources, resources);
 }
 
+TEST_F(LeftOut, MultipleScatteringIsMadeIfItIsAskedForAndSomethingReflects)
+{
+  for (measure::LeftOutCase of : measure::left_out_cases()) {
+    if (of.name != "full" && of.name != "no specular") {
+      continue;
+    }
+    of.settings.has_multiscatter = true;
+    const Taken more = taken_by(of);
+    const bool is_full = of.name == "full";
+    // Its programs have all shapes of lamps.
+    EXPECT_EQ(missing(more.resources, taken.at(of.name).resources),
+              is_full ? Names({"texture 'multiscatter_table'", "texture 'ltc_table'", "sampler 'table_sampler'",
+                               "buffer 'light_shape_block'"})
+                      : Names());
+    EXPECT_EQ(missing(more.features, taken.at(of.name).features),
+              is_full ? Names({"USE_MULTISCATTER", "USE_LAMP_SHAPE"}) : Names());
+    EXPECT_EQ(missing(taken.at(of.name).resources, more.resources), Names());
+  }
+}
+
 TEST_F(LeftOut, NoLamp)
 {
   // The mask also applies without light; then no pass reads the opaque texture.

@@ -88,6 +88,37 @@ TEST(ShaderVariants, AreAllDifferentPrograms)
   }
 }
 
+TEST(ShaderVariants, EveryFrameHasADeclaredProgramForEachMaterial)
+{
+  const ShaderDeclaration &lit = shader_declarations()[std::size_t(ShaderId::Lit)];
+  std::set<Feature> declared;
+  for (const Feature features : shader_variants(lit)) {
+    declared.insert(features);
+  }
+  constexpr Feature of_frame = Feature::Punctual | Feature::Specular | Feature::ShadowCube | Feature::ShadowMap |
+                               Feature::ShadowPcf | Feature::ShadowEsm | Feature::ShadowEvsm | Feature::LampShape |
+                               Feature::World | Feature::Multiscatter;
+  for (std::uint32_t mask = std::uint32_t(of_frame); mask != 0; mask = (mask - 1) & std::uint32_t(of_frame)) {
+    const Feature frame = Feature(mask) | Feature::Light;
+    if ((!has(frame, Feature::Punctual) && has(frame, Feature::ShadowCube | Feature::ShadowEsm)) ||
+        (!has(frame, Feature::ShadowCube | Feature::ShadowMap) && has(frame, Feature::ShadowPcf)) ||
+        (!has(frame, Feature::ShadowEsm) && has(frame, Feature::ShadowEvsm))) {
+      // No lamps give these.
+      continue;
+    }
+    constexpr Feature layered = Feature::FullMaterial | Feature::Layers;
+    for (const Feature material :
+         {Feature::None, Feature::BaseColorTexture, Feature::FullMaterial, layered, layered | Feature::Transmission}) {
+      // Layers reflect.
+      const Feature reflects = has(material, Feature::Layers) ? Feature::Specular : Feature::None;
+      const Feature variant = with_variant(frame | material | reflects);
+      EXPECT_TRUE(declared.contains(variant)) << mask << ' ' << std::uint32_t(material);
+      const bool is_asked = has(frame, Feature::Multiscatter) && has(frame | reflects, Feature::Specular);
+      EXPECT_EQ(has(variant, Feature::Multiscatter), is_asked) << mask << ' ' << std::uint32_t(material);
+    }
+  }
+}
+
 // hazards.md: a float array in a std140 block took 16 bytes an element in GLSL and 4 in C.
 TEST(SharedBlocks, AreLaidOutAlikeInCppAndGlsl)
 {

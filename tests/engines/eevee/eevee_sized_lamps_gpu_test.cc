@@ -187,12 +187,13 @@ TEST_F(LampLightTest, SpecularOfOneFrameIsTheMeasuredApproximation)
       lamp.intensity = float(is_ellipse ? 0.5 * pi : 2.0);
       test::add_lamp(scene, lamp, world_from_lamp);
       test::Renderer renderer(*device, scene, {5, 5}, {.shadow = {.kind = scene::ShadowKind::None}});
-      const double expected = measure::whole_specular(
-          {.outline = is_ellipse ? measure::LampOutline::Ellipse : measure::LampOutline::Rectangle,
-           .center = center,
-           .axis_x = 0.5 * glm::dvec3(world_from_lamp[0]),
-           .axis_y = 0.25 * glm::dvec3(world_from_lamp[1])},
-          {.alpha = alpha, .view = view});
+      const double expected = measure::whole_specular({.outline = is_ellipse ? measure::LampOutline::Ellipse
+                                                                             : measure::LampOutline::Rectangle,
+                                                       .center = center,
+                                                       .axis_x = 0.5 * glm::dvec3(world_from_lamp[0]),
+                                                       .axis_y = 0.25 * glm::dvec3(world_from_lamp[1])},
+                                                      {.alpha = alpha, .view = view})
+                                  .light;
       EXPECT_GT(expected, 0.01);
       EXPECT_NEAR(double(renderer.picture(camera).middle().r) / expected, 1.0, 1e-3) << roughness;
     }
