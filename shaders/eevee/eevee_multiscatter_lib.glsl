@@ -21,11 +21,15 @@ Multiscatter multiscatter_of(MaterialData material, Surface surface)
                            material.specular_f90);
 }
 
+/** For the direction of a light. A material that is lit by a sun of the world may have a wider lobe than the surface. */
+LobeAlbedo albedo_towards(Surface surface, float cos_l)
+{
+  return lobe_albedo(multiscatter_texel(surface.multiscatter.alpha, cos_l), surface.multiscatter.alpha, cos_l);
+}
+
 /** BRDF of diffuse reflection and of multiple scattering, 1/sr. \a cos_l: of the incident light, above 0. */
 vec3 smooth_brdf(MaterialData material, Surface surface, float cos_l)
 {
-  // A material that is lit by a sun of the world may have a wider lobe than the surface.
-  float alpha = surface.multiscatter.alpha;
-  LobeAlbedo light = lobe_albedo(multiscatter_texel(alpha, cos_l), alpha, cos_l);
-  return smooth_brdf(surface.multiscatter, light, material.diffuse, material.specular_f0, material.specular_f90);
+  return smooth_brdf(surface.multiscatter, albedo_towards(surface, cos_l), material.diffuse, material.specular_f0,
+                     material.specular_f90);
 }

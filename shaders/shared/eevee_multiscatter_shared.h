@@ -89,8 +89,9 @@ SHARED_FUNCTION float unreflected(LobeAlbedo albedo, vec3 f0, float f90, vec3 co
 struct Multiscatter {
   /** GGX alpha of the surface. */
   float alpha;
-  /** For the direction of the viewer. */
+  /** For the direction of the viewer, and its mean over all directions. */
   LobeAlbedo view;
+  LobeAlbedo mean;
   /** \see multiscatter_color */
   vec3 color;
   /** BRDF of the lobe of multiple scattering, 1/sr, divided by LobeAlbedo::missing of the light. */
@@ -102,15 +103,28 @@ struct Multiscatter {
 /** \a texel: of a table of albedos, for \a alpha and \a cos_v. */
 SHARED_FUNCTION Multiscatter make_multiscatter(vec4 texel, float alpha, float cos_v, vec3 f0, float f90)
 {
-  LobeAlbedo mean = mean_albedo(texel, alpha);
   Multiscatter result;
   result.alpha = alpha;
   result.view = lobe_albedo(texel, alpha, cos_v);
-  result.color = multiscatter_color(f0, f90, mean.missing);
-  result.lobe = result.color * (INV_PI * result.view.missing / mean.missing);
+  result.mean = mean_albedo(texel, alpha);
+  result.color = multiscatter_color(f0, f90, result.mean.missing);
+  result.lobe = result.color * (INV_PI * result.view.missing / result.mean.missing);
   // Fresnel terms of 1 leave nothing, and the quotient is 0 / 0.
-  result.diffuse = unreflected(result.view, f0, f90, result.color) / max(unreflected(mean, f0, f90, result.color), 1e-6f);
+  float mean_left = max(unreflected(result.mean, f0, f90, result.color), 1e-6f);
+  result.diffuse = unreflected(result.view, f0, f90, result.color) / mean_left;
   return result;
+}
+
+/**
+ * Mean albedo over a lamp. \a center: for the mean direction of its light. \a form_factor: of the lamp, in [0, 1]; at 1 the lamp fills
+ * the sky, and the result is the mean over all directions.
+ */
+SHARED_FUNCTION LobeAlbedo albedo_over_lamp(LobeAlbedo center, LobeAlbedo mean, float form_factor)
+{
+  LobeAlbedo albedo;
+  albedo.missing = center.missing + (mean.missing - center.missing) * form_factor;
+  albedo.schlick = center.schlick + (mean.schlick - center.schlick) * form_factor;
+  return albedo;
 }
 
 /** BRDF of diffuse reflection and of multiple scattering, 1/sr. \a light: albedo for the direction of the light. */

@@ -51,16 +51,6 @@ SHARED_FUNCTION float disk_cosine(float sine_sq, float cosine)
   return clamp(INV_PI * sum, 0.0f, 1.0f);
 }
 
-/**
- * Mean cosine of the light of a round lamp, weighted by the irradiance: exact where the surface faces the lamp, and while the lamp
- * is small. \a cosine: disk_cosine. \a sine_sq: as there.
- */
-SHARED_FUNCTION float mean_cosine(float cosine, float sine_sq)
-{
-  float rim = sqrt(max(1.0f - sine_sq, 0.0f));
-  return cosine * (2.0f / 3.0f) * (1.0f + rim + rim * rim) / (1.0f + rim);
-}
-
 /** Contribution of one edge to the flux from a polygon (Lambert 1760). Vectors of any length. */
 SHARED_FUNCTION vec3 edge_flux(vec3 a, vec3 b)
 {

@@ -68,7 +68,7 @@ struct Furnace {
       const double cos_l = t * t * t;
       const double weight = 2.0 * cos_l * 3.0 * t * t / count;
       if (is_multi) {
-        sum += weight * pi * smooth_brdf(cos_l);
+        sum += weight * pi * smooth_brdf(albedo_at(alpha, cos_l));
         continue;
       }
       const double sin_l = std::sqrt((1.0 - cos_l) * (1.0 + cos_l));
@@ -89,12 +89,12 @@ struct Furnace {
     const LampShape sun{
         .outline = LampOutline::Round, .center = {0, 0, 1}, .axis_x = {extent, 0, 0}, .axis_y = {0, extent, 0}};
     const double form_factor = whole_diffuse(sun);
-    const double cosine = shared_double::mean_cosine(1.0, form_factor);
+    const LobeAlbedo light = shared_double::albedo_over_lamp(albedo_at(alpha, 1.0), multiscatter.mean, form_factor);
     const WholeSpecular specular = whole_specular(sun, {alpha, view});
     const double across = glm::dot(view, glm::normalize(specular.to_light + view));
     const double albedo = shared_double::single_albedo(multiscatter.view, f0, 1.0).x;
     return glm::mix(fresnel(across) * specular.light, albedo * specular.covered, specular.covered) +
-           pi * form_factor * smooth_brdf(cosine);
+           pi * form_factor * smooth_brdf(light);
   }
 
  private:
@@ -102,9 +102,9 @@ struct Furnace {
   {
     return shared_double::fresnel_schlick(f0, 1.0, across).x;
   }
-  [[nodiscard]] double smooth_brdf(double cos_l) const
+  [[nodiscard]] double smooth_brdf(const LobeAlbedo &light) const
   {
-    return shared_double::smooth_brdf(multiscatter, albedo_at(alpha, cos_l), diffuse, f0, 1.0).x;
+    return shared_double::smooth_brdf(multiscatter, light, diffuse, f0, 1.0).x;
   }
 };
 

@@ -89,32 +89,30 @@ struct Random {
 TEST(MultiscatterTable, HasTheAlbedosOfTheLobe)
 {
   constexpr int count = 400;
-  for (const double roughness : {0.15, 0.27, 0.5, 0.83, 1.0}) {
-    const double alpha = roughness * roughness;
-    for (const double cosine : {0.07, 0.3, 0.6, 1.0}) {
-      // By normals with GGX's distribution times their cosine. The table integrates over visible normals.
-      const dvec3 view(std::sqrt((1.0 - cosine) * (1.0 + cosine)), 0.0, cosine);
+  for (const double roughness : {0.2, 0.27, 0.5, 0.83, 1.0}) {
+    const auto alpha = float(roughness * roughness);
+    for (const double cosine : {0.07, 0.3, 0.6, 0.9}) {
+      // Over directions of the light, most of which are near the mirrored view. The table integrates over normals.
+      const vec3 view(float(std::sqrt((1.0 - cosine) * (1.0 + cosine))), 0.0F, float(cosine));
       double whole = 0.0;
       double schlick = 0.0;
       for (int i = 0; i < count; i++) {
-        const double share = (i + 0.5) / count;
-        const double cos_h = 1.0 / std::sqrt(1.0 + alpha * alpha * share / (1.0 - share));
+        const double cos_l = (i + 0.5) / count;
+        const double sin_l = std::sqrt((1.0 - cos_l) * (1.0 + cos_l));
         for (int j = 0; j < count; j++) {
-          const double angle = pi * (j + 0.5) / count;
-          const double sin_h = std::sqrt(1.0 - cos_h * cos_h);
-          const double across = sin_h * std::cos(angle) * view.x + cos_h * cosine;
-          const double cos_l = 2.0 * across * cos_h - cosine;
-          if (across > 0.0 && cos_l > 0.0) {
-            const double masking = double(shared::ggx_masking_over_2cos(float(cosine), float(alpha)) *
-                                          shared::ggx_masking_over_2cos(float(cos_l), float(alpha)));
-            const double weight = masking * cos_l * 4.0 * across / cos_h / (double(count) * count);
-            whole += weight;
-            schlick += weight * std::pow(1.0 - across, 5.0);
-          }
+          const double share = (j + 0.5) / count;
+          const double angle = pi * (1.0 - share * share);
+          const vec3 light(dvec3(sin_l * std::cos(angle), sin_l * std::sin(angle), cos_l));
+          const vec3 half_vector = glm::normalize(light + view);
+          const double solid_angle = 4.0 * pi * share / (double(count) * count);
+          const double lobe =
+              double(shared::ggx_lobe(light.z, view.z, std::min(half_vector.z, 1.0F), alpha)) * cos_l * solid_angle;
+          whole += lobe;
+          schlick += lobe * std::pow(1.0 - double(glm::dot(view, half_vector)), 5.0);
         }
       }
-      const LobeAlbedo albedo = albedo_of(float(alpha), float(cosine));
-      // Measured: 6e-4 and 5e-4, by the interpolation between texels.
+      const LobeAlbedo albedo = albedo_of(alpha, view.z);
+      // Measured: 6.2e-4, by the interpolation between texels.
       EXPECT_NEAR(1.0 - double(albedo.missing), whole, 1e-3) << roughness << ' ' << cosine;
       EXPECT_NEAR((1.0 - double(albedo.missing)) * double(albedo.schlick), schlick, 1e-3) << roughness << ' ' << cosine;
     }
@@ -172,16 +170,6 @@ TEST(MultiscatterColor, OfAWhiteMetalIsOneAndFallsWithEachReflection)
   EXPECT_FLOAT_EQ(shared::multiscatter_color(vec3(0.0F), 0.0F, 0.6F).x, 0.0F);
 }
 
-TEST(MeanCosine, IsThatOfADiskThatFacesTheSurface)
-{
-  for (const double sine : {0.01, 0.5, 0.9, 1.0}) {
-    const double rim = std::sqrt(1.0 - sine * sine);
-    // ∫ cos² sin over ∫ cos sin.
-    const double truth = (1.0 - rim * rim * rim) / 3.0 / (0.5 * sine * sine);
-    EXPECT_NEAR(double(shared::mean_cosine(1.0F, float(sine * sine))), truth, sine < 0.1 ? 2e-3 : 1e-6) << sine;
-  }
-}
-
 /** Numbers of results that are negative or not finite, for random lamps, views and materials. */
 std::size_t bad_light(int count)
 {
@@ -209,12 +197,14 @@ std::size_t bad_light(int count)
         measure::whole_specular(lamp, {double(material.alpha), {sine, 0.0, double(view.z)}});
     check(form_factor);
     check(specular.light);
-    const float cosine = shared::mean_cosine(random.uniform(0.0F, 1.0F), float(std::min(form_factor, 1.0)));
+    check(specular.covered);
     const Multiscatter multiscatter =
         shared::make_multiscatter(measure::multiscatter_texel(double(material.alpha), double(view.z)), material.alpha,
                                   view.z, material.specular_f0, material.specular_f90);
-    const vec3 smooth = shared::smooth_brdf(multiscatter, albedo_of(material.alpha, cosine), material.diffuse,
-                                            material.specular_f0, material.specular_f90);
+    const LobeAlbedo light = shared::albedo_over_lamp(albedo_of(material.alpha, random.uniform(0.0F, 1.0F)),
+                                                      multiscatter.mean, float(form_factor));
+    const vec3 smooth =
+        shared::smooth_brdf(multiscatter, light, material.diffuse, material.specular_f0, material.specular_f90);
     const vec3 whole = brdf(material, random.above(), view);
     for (int channel = 0; channel < 3; channel++) {
       check(double(smooth[channel]));
@@ -226,7 +216,7 @@ std::size_t bad_light(int count)
 
 TEST(WholeLight, IsFiniteForRandomLampsViewsAndMaterials)
 {
-  EXPECT_EQ(bad_light(50'000), 0U);
+  EXPECT_EQ(bad_light(20'000), 0U);
 }
 
 TEST(SlowWholeLight, IsFiniteForTenMillionRandomLampsViewsAndMaterials)
