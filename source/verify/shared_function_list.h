@@ -6,6 +6,7 @@
 #include "eevee_depth_shared.h"
 #include "eevee_esm_shared.h"
 #include "eevee_light_shared.h"
+#include "eevee_multiscatter_shared.h"
 #include "eevee_octahedral_shared.h"
 #include "eevee_shadow_shared.h"
 #include "draw_view_transform_shared.h"
@@ -28,6 +29,10 @@ inline constexpr gnomon::verify::CompiledFunction<float> compiled_functions[] = 
   FUNCTION(ggx_masking_over_2cos, vec4(ggx_masking_over_2cos(a.x, a.y), 0, 0, 0))
   FUNCTION(ggx_lobe, vec4(ggx_lobe(a.x, a.y, a.z, a.w), 0, 0, 0))
   FUNCTION(fresnel_schlick, vec4(fresnel_schlick(vec3(a), a.w, b.x), 0))
+  FUNCTION(multiscatter_place, vec4(multiscatter_place(a.x, a.y), 0, 0))
+  FUNCTION(missing_scale, vec4(missing_scale(a.x, a.y), 0, 0, 0))
+  FUNCTION(lobe_albedo, vec4(lobe_albedo(a, b.x, b.y).missing, lobe_albedo(a, b.x, b.y).schlick, 0, 0))
+  FUNCTION(multiscatter_color, vec4(multiscatter_color(vec3(a), a.w, b.x), 0))
 
   FUNCTION(depth_of_distance, vec4(depth_of_distance(a.x, a.y, a.z, int(a.w)), 0, 0, 0))
   FUNCTION(distance_of_depth, vec4(distance_of_depth(a.x, a.y, a.z, int(a.w)), 0, 0, 0))

@@ -25,6 +25,12 @@ std::vector<float> cosines(float low)
 
 constexpr std::array<float, 7> alphas = {1e-3F, 2e-3F, 0.01F, 0.0625F, 0.3F, 0.7225F, 1.0F};
 
+/** 1 - 1 / √(1 + alpha² / cos²), without cancellation. */
+double missing_scale(double alpha, double cosine)
+{
+  return cosine > 0.0 ? -std::expm1(-0.5 * std::log1p(alpha * alpha / (cosine * cosine))) : 1.0;
+}
+
 /**
  * Solid angle of two triangles that share a diagonal (van Oosterom and Strackee 1983, eq. 8), in long double because of
  * its cancellation.
@@ -201,6 +207,63 @@ void add_light_sweeps(std::vector<Sweep> &sweeps)
        },
        [](const Exact &in) { return dvec4(dvec3(in.a) + in.a.w, 0); }, 1e-6, 3, 4});
 
+  {
+    std::vector<In> arguments;
+    for (const float c : cosines(0.0F)) {
+      for (const float alpha : alphas) {
+        arguments.push_back({.a = {alpha, c, 0, 0}});
+      }
+    }
+    const auto scale = [](const Exact &in) { return one(missing_scale(in.a.x, in.a.y)); };
+    sweeps.push_back({"missing_scale", arguments, scale, scale, 1e-6, 6, 12});
+    // The first coordinate is a difference of roots. The constants are rounded to float in double, too.
+    sweeps.push_back(
+        {"multiscatter_place", arguments,
+         [](const Exact &in) {
+           const double least = std::sqrt(double(1e-3F));
+           const double twice = 2.0 * in.a.x;
+           return dvec4((std::sqrt(in.a.x) - least) / (1.0 - least),
+                        0.625 * (1.0 + twice) / (1.0 + twice / std::max(in.a.y, 1e-300)) + 0.375 * in.a.y, 0, 0);
+         },
+         [](const Exact &in) {
+           return dvec4(std::sqrt(in.a.x) + std::sqrt(double(1e-3F)), 1e-30 + in.a.y + in.a.y / in.a.x, 0, 0);
+         },
+         1e-6, 4, 8});
+  }
+  sweeps.push_back({"lobe_albedo",
+                    many(20000,
+                         [](Random &random) {
+                           return In{.a = {random.uniform(0.06, 2.4), random.uniform(0.0, 0.5), 0, 0},
+                                     .b = {random.one_of(alphas), random.uniform(0.0, 1.0), 0, 0}};
+                         }),
+                    [](const Exact &in) {
+                      const double root = std::clamp(1.0 - (in.b.y + in.a.y), 0.0, 1.0);
+                      return dvec4(std::min(in.a.x * missing_scale(in.b.x, in.b.y), 1.0), std::pow(root, 5.0), 0, 0);
+                    },
+                    // The fifth power of a difference that may be near 0.
+                    [](const Exact &in) { return dvec4(in.a.x * missing_scale(in.b.x, in.b.y), 1, 0, 0); }, 1e-6, 8,
+                    16});
+  sweeps.push_back({"multiscatter_color",
+                    many(20000,
+                         [](Random &random) {
+                           const glm::vec3 f0(random.uniform(0, 1), random.log_uniform(1e-6, 1),
+                                              random.one_of(std::array{0.0F, 1.0F}));
+                           return In{glm::vec4(f0, random.one_of(std::array{0.0F, 0.5F, 1.0F})),
+                                     glm::vec4(random.log_uniform(1e-6, 0.7))};
+                         }),
+                    [](const Exact &in) {
+                      // The series of reflections.
+                      const dvec3 fresnel = (20.0 * dvec3(in.a) + in.a.w) / 21.0;
+                      dvec3 light = fresnel * fresnel * (1.0 - in.b.x);
+                      dvec3 sum(0.0);
+                      for (int i = 0; i < 150; i++) {
+                        sum += light;
+                        light *= fresnel * in.b.x;
+                      }
+                      return dvec4(sum, 0);
+                    },
+                    // The difference of f90 and f0 may cancel with f0.
+                    [](const Exact &in) { return dvec4(dvec3(in.a) + in.a.w, 0); }, 0.5, 8, 12});
   {
     std::vector<In> widths;
     std::vector<In> masks;

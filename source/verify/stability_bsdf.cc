@@ -55,6 +55,11 @@ void add_bsdf_cases(std::vector<StabilityCase> &cases)
                  "cosine of view and light", log_steps(1e-6, 1.0, 121), [=](double cosine) {
                    return Arguments<float>{.a = {float(cosine), float(cosine), 1.0F, alpha}};
                  }}));
+    cases.push_back(
+        case_of({bsdf_group, "light that meets a second microfacet, " + of, "missing_scale",
+                 "scale of the light that the lobe misses", "cosine", log_steps(1e-6, 1.0, 121), [=](double cosine) {
+                   return Arguments<float>{.a = {alpha, float(cosine), 0.0F, 0.0F}};
+                 }}));
   }
   for (const bool is_textbook : {true, false}) {
     cases.push_back(
@@ -106,6 +111,14 @@ void add_bsdf_cases(std::vector<StabilityCase> &cases)
                              "cosine", even_steps(-0.001, 1.001, 101), [=](double cosine) {
                                return Arguments<float>{.a = {f0, f0, f0, 1.0F}, .b = {float(cosine), 0.0F, 0.0F, 0.0F}};
                              }}));
+  }
+  for (const float f0 : {0.0F, 0.04F, 1.0F}) {
+    cases.push_back(case_of(
+        {group, fmt::format("colour of multiple scattering for a Fresnel of {:g}", f0), "multiscatter_color",
+         "part of the light that leaves after several reflections", "mean light that meets a second microfacet",
+         log_steps(1e-7, 0.7, 101), [=](double missing) {
+           return Arguments<float>{.a = {f0, f0, f0, f0 > 0.0F ? 1.0F : 0.0F}, .b = {float(missing), 0.0F, 0.0F, 0.0F}};
+         }}));
   }
   cases.push_back({.group = bsdf_group,
                    .name = "materials of every roughness",
