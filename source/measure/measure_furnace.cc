@@ -25,7 +25,7 @@ namespace {
 using shared_double::LobeAlbedo;
 using shared_double::Multiscatter;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr std::array<double, 9> roughnesses = {0.03, 0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0};
 /** Cosines of the view to the normal. */
 constexpr std::array<double, 7> views = {1.0, 0.9, 0.7, 0.5, 0.3, 0.15, 0.05};

@@ -114,7 +114,7 @@ void add_bsdf_cases(std::vector<StabilityCase> &cases)
   }
   for (const float f0 : {0.0F, 0.04F, 1.0F}) {
     cases.push_back(case_of(
-        {group, fmt::format("colour of multiple scattering for a Fresnel of {:g}", f0), "multiscatter_color",
+        {bsdf_group, fmt::format("colour of multiple scattering for a Fresnel of {:g}", f0), "multiscatter_color",
          "part of the light that leaves after several reflections", "mean light that meets a second microfacet",
          log_steps(1e-7, 0.7, 101), [=](double missing) {
            return Arguments<float>{.a = {f0, f0, f0, f0 > 0.0F ? 1.0F : 0.0F}, .b = {float(missing), 0.0F, 0.0F, 0.0F}};

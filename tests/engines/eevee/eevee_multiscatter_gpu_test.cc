@@ -13,7 +13,7 @@
 namespace gnomon::eevee {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /** A square in the plane z = 0, and a material that multiple scattering changes. */
 class MultiscatterGpuTest : public test::GpuDeviceTest {

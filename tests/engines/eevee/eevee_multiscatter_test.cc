@@ -26,7 +26,7 @@ using shared::Multiscatter;
 using shared::vec3;
 using shared::vec4;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /** As the engine's programs have it. */
 LobeAlbedo albedo_of(float alpha, float cosine)
