@@ -49,7 +49,8 @@ void write_exr_file(const fs::path &path, Imf::Header header, const Imf::FrameBu
   for (const auto &[name, value] : metadata) {
     header.insert(name, Imf::StringAttribute(value));
   }
-  // A quarter less time than with level 4, the default, for a file that is 1 % larger. A second thread gains nothing here.
+  // A quarter less time than with level 4, the default, for a file that is 1 % larger. A second thread gains nothing
+  // here.
   header.zipCompressionLevel() = 2;
   const Imath::Box2i &window = header.dataWindow();
   write_atomically(path, [&](const fs::path &beside) {

@@ -26,8 +26,8 @@ static ReadModulePicture *load_reader()
   void *module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   void *function = module ? dlsym(module, read_module_picture_name) : nullptr;
   if (!function) {
-    throw std::runtime_error(
-        fmt::format("is none of EXR, PNG, JPEG and WebP, and the module for other formats cannot be loaded: {}", dlerror()));
+    throw std::runtime_error(fmt::format(
+        "is none of EXR, PNG, JPEG and WebP, and the module for other formats cannot be loaded: {}", dlerror()));
   }
   return reinterpret_cast<ReadModulePicture *>(function);
 }

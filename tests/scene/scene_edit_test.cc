@@ -479,14 +479,13 @@ TEST(SceneRevision, EachEditChangesItsAspectAlone)
   layered.coat = 1.0F;
   layered.sheen_color = glm::vec3(1.0F);
   layered.anisotropy = 1.0F;
-  expect_aspects<Material>(layered,
-                           {{Material::Aspect::Surface, [](Material &material) { material.coat = 0.5F; }},
-                            {Material::Aspect::Surface, [](Material &material) { material.coat_roughness = 0.5F; }},
-                            {Material::Aspect::Surface, [](Material &material) { material.sheen_color.r = 0.5F; }},
-                            {Material::Aspect::Surface, [](Material &material) { material.sheen_roughness = 0.5F; }},
-                            {Material::Aspect::Surface, [](Material &material) { material.anisotropy = 0.5F; }},
-                            {Material::Aspect::Surface,
-                             [](Material &material) { material.anisotropy_rotation = 0.5F; }}});
+  expect_aspects<Material>(
+      layered, {{Material::Aspect::Surface, [](Material &material) { material.coat = 0.5F; }},
+                {Material::Aspect::Surface, [](Material &material) { material.coat_roughness = 0.5F; }},
+                {Material::Aspect::Surface, [](Material &material) { material.sheen_color.r = 0.5F; }},
+                {Material::Aspect::Surface, [](Material &material) { material.sheen_roughness = 0.5F; }},
+                {Material::Aspect::Surface, [](Material &material) { material.anisotropy = 0.5F; }},
+                {Material::Aspect::Surface, [](Material &material) { material.anisotropy_rotation = 0.5F; }}});
   expect_aspects<Material>(
       {}, {{Material::Aspect::Surface, [](Material &material) { material.thickness = 0.5F; }},
            {Material::Aspect::Surface, [](Material &material) { material.ior = 1.25F; }},
