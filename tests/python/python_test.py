@@ -206,6 +206,13 @@ class Pictures(unittest.TestCase):
             renderer.background = (0.5, 0.25, 1)
             subprocess.run(command + ["--background", "0.5,0.25,1"], check=True, capture_output=True)
             self.assertTrue((renderer.render()[:, :, :3] == read_exr(path)).all())
+            renderer.background = None
+            renderer.has_multiscatter = True
+            subprocess.run(command + ["--specular", "multi"], check=True, capture_output=True)
+            multi = renderer.render()
+            self.assertTrue((multi == read_exr(path)).all())
+            self.assertTrue((multi != expected).any())
+            renderer.has_multiscatter = False
         renderer.seed = 8
         renderer.background = None
         self.assertTrue((renderer.render() != expected).any())
