@@ -27,7 +27,7 @@ struct LobeAlbedo {
 SHARED_FUNCTION vec2 multiscatter_place(float alpha, float cosine)
 {
   float least = sqrt(ALPHA_MIN);
-  float grazing = cosine * (1.0f + 2.0f * alpha) / (cosine + 2.0f * alpha);
+  float grazing = cosine * (1.0f + 2.0f * alpha) / max(cosine + 2.0f * alpha, 1e-9f);
   return vec2((sqrt(alpha) - least) / (1.0f - least), 0.625f * grazing + 0.375f * cosine);
 }
 
@@ -75,7 +75,7 @@ SHARED_FUNCTION vec3 multiscatter_color(vec3 f0, float f90, float mean_missing)
 {
   // The mean of Schlick's fifth power over all directions, weighted by their cosines, is 1 / 21.
   vec3 fresnel = f0 + (vec3(f90) - f0) * vec3(1.0f / 21.0f);
-  return fresnel * fresnel * (1.0f - mean_missing) / (vec3(1.0f) - fresnel * mean_missing);
+  return fresnel * fresnel * (1.0f - mean_missing) / max(vec3(1.0f) - fresnel * mean_missing, vec3(1e-9f));
 }
 
 /** Part of the light that both lobes leave, in the channel that they reflect most. \a color: multiscatter_color. */
