@@ -28,7 +28,7 @@ SHARED_FUNCTION vec2 multiscatter_place(float alpha, float cosine)
 {
   float least = sqrt(ALPHA_MIN);
   float grazing = cosine * (1.0f + 2.0f * alpha) / max(cosine + 2.0f * alpha, 1e-9f);
-  return vec2((sqrt(alpha) - least) / (1.0f - least), 0.625f * grazing + 0.375f * cosine);
+  return vec2((sqrt(alpha) - least) / max(1.0f - least, 1e-9f), 0.625f * grazing + 0.375f * cosine);
 }
 
 /** 1 - cos / √(a² + cos²), as a product that does not cancel. LobeAlbedo::missing is 0.06 to 2.4 times this. */
