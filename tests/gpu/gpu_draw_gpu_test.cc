@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace gnomon::gpu {
@@ -486,14 +487,22 @@ TEST_F(DrawGpu, TimerGivesFiniteSecondsThatGrowWithTheWork)
     device->time_end(timer);
     return device->elapsed_seconds(timer);
   };
+  // Other processes only add time, so that the least of several times is compared.
+  const auto least_seconds = [&](int count) {
+    double least = std::numeric_limits<double>::infinity();
+    for (int round = 0; round < 5; round++) {
+      const std::optional<double> time = seconds(count);
+      EXPECT_TRUE(time && std::isfinite(*time));
+      least = std::min(least, time.value_or(least));
+    }
+    return least;
+  };
   static_cast<void>(seconds(1));
-  const std::optional<double> nothing = seconds(0);
-  const std::optional<double> much = seconds(20);
-  ASSERT_TRUE(nothing && much);
-  EXPECT_TRUE(std::isfinite(*nothing) && std::isfinite(*much));
-  EXPECT_GE(*nothing, 0);
-  EXPECT_GT(*much, *nothing);
-  EXPECT_LT(*much, 60);
+  const double nothing = least_seconds(0);
+  const double much = least_seconds(20);
+  EXPECT_GE(nothing, 0);
+  EXPECT_GT(much, nothing);
+  EXPECT_LT(much, 60);
 }
 
 }  // namespace
