@@ -10,10 +10,12 @@
 #  include "eevee/eevee_ltc_lib.glsl"
 #endif
 
+#ifndef USE_LIGHT_CLUSTERS
 layout(std140, binding = LIGHT_SHAPE_BLOCK_SLOT) uniform light_shape_block
 {
   LightShapeBlock light_shapes;
 };
+#endif
 
 /** Orthonormal axes at the shaded point: z is the normal, and the view direction is in the plane of x and z. */
 struct ShadingFrame {

@@ -28,10 +28,40 @@
 #  include "eevee/eevee_esm_lib.glsl"
 #endif
 
+#ifdef USE_LIGHT_CLUSTERS
+#  include "eevee/eevee_light_cluster_lib.glsl"
+#else
 layout(std140, binding = LIGHT_BLOCK_SLOT) uniform light_block
 {
   LightBlock light_data;
 };
+#endif
+
+LightData light_at(int index)
+{
+#ifdef USE_LIGHT_CLUSTERS
+  vec4 a = light_texel(index, 0);
+  vec4 b = light_texel(index, 1);
+  vec4 c = light_texel(index, 2);
+  vec4 d = light_texel(index, 3);
+  return LightData(a.xyz, int(a.w), b.xyz, b.w, c.xyz, c.w, d.x, d.y, int(d.z), int(d.w));
+#else
+  return light_data.lights[index];
+#endif
+}
+
+#ifdef USE_LAMP_SHAPE
+LightShape shape_at(int index)
+{
+#ifdef USE_LIGHT_CLUSTERS
+  vec4 a = light_texel(index, 4);
+  vec4 b = light_texel(index, 5);
+  return LightShape(a.xyz, a.w, b.xyz, b.w);
+#else
+  return light_shapes.shapes[index];
+#endif
+}
+#endif
 
 // Which lights a loop visits. Callers pass a constant, so that the compiler removes the lookups of shadows that these lights cannot
 // have. llvmpipe evaluates all code that is left, whatever its conditions.
@@ -141,9 +171,8 @@ struct CenterLight {
   float irradiance;
 };
 
-CenterLight center_light(int index, const int lights, Surface surface)
+CenterLight center_light(LightData light, int index, const int lights, Surface surface)
 {
-  LightData light = light_data.lights[index];
   CenterLight center = CenterLight(-light.forward_ws, 1.0, 1.0);
 #ifdef USE_PUNCTUAL
 #ifdef USE_WORLD
@@ -159,7 +188,7 @@ CenterLight center_light(int index, const int lights, Surface surface)
     center.irradiance = distance_falloff(center.distance_sq, light.radius_sq, light.range_inv_sq);
     if (light.kind == LIGHT_SPOT) {
 #ifdef USE_LAMP_SHAPE
-      LightShape shape = light_shapes.shapes[index];
+      LightShape shape = shape_at(index);
       float drop = elliptic_drop(-center.to_light, light.forward_ws, shape.axis_x_ws, shape.axis_y_ws);
 #else
       float drop = one_minus_cos(-center.to_light, light.forward_ws);
@@ -177,7 +206,7 @@ CenterLight center_light(int index, const int lights, Surface surface)
 /** Radiance towards the viewer from the light \a index, shaded as a point at its centre, W/(sr m²). */
 vec3 point_radiance(int index, const int lights, MaterialData material, Surface surface)
 {
-  LightData light = light_data.lights[index];
+  LightData light = light_at(index);
   if (lights != LIGHTS_WITH_CUBES && light.kind == LIGHT_HEMI) {
     float irradiance = material.occlusion * hemi_irradiance(-dot(surface.normal_ws, light.forward_ws));
 #ifdef USE_LAYERS
@@ -185,7 +214,7 @@ vec3 point_radiance(int index, const int lights, MaterialData material, Surface 
 #endif
     return material.diffuse * light.color * (INV_PI * irradiance);
   }
-  CenterLight center = center_light(index, lights, surface);
+  CenterLight center = center_light(light, index, lights, surface);
   float cos_l = dot(surface.normal_ws, center.to_light);
 #ifdef USE_LAYERS
   MaterialData coat = layers.coat_material;
@@ -239,7 +268,20 @@ vec3 point_radiance(int index, const int lights, MaterialData material, Surface 
 #  include "eevee/eevee_shape_light_lib.glsl"
 #endif
 
-/** Radiance towards the viewer from the lights \a first to \a end - 1, W/(sr m²). \a lights: which these are, LIGHTS_…. */
+/** Index of the light number \a i of those that a loop visits. */
+int light_index(int i, const int lights)
+{
+#ifdef USE_LIGHT_CLUSTERS
+  return reaching_light(i, lights == LIGHTS_WITH_CUBES || (lights == LIGHTS_ALL && i < reaching.cube_count));
+#else
+  return i;
+#endif
+}
+
+/**
+ * Radiance towards the viewer from the lights \a first to \a end - 1, W/(sr m²): of all lights, or of those that can reach the
+ * shaded point. \a lights: which these are, LIGHTS_….
+ */
 vec3 lights_radiance(int first, int end, const int lights, MaterialData material, Surface surface)
 {
   vec3 sum = vec3(0.0);
@@ -247,14 +289,15 @@ vec3 lights_radiance(int first, int end, const int lights, MaterialData material
   if (i < end) {
     // The test is at the end: for a test at the start, llvmpipe evaluates the body once more and discards the result.
     do {
+      int index = light_index(i, lights);
 #ifdef USE_LAMP_SHAPE
-      if (light_shapes.shapes[i].extent > 0.0) {
-        sum += shape_radiance(i, lights, material, surface);
+      if (shape_at(index).extent > 0.0) {
+        sum += shape_radiance(index, lights, material, surface);
       }
       else
 #endif
       {
-        sum += point_radiance(i, lights, material, surface);
+        sum += point_radiance(index, lights, material, surface);
       }
     } while (++i < end);
   }
@@ -280,9 +323,15 @@ vec3 direct_light(MaterialData material, Surface surface)
 #else
   vec3 sum = vec3(0.0);
 #endif
+#ifdef USE_LIGHT_CLUSTERS
+  find_lights(surface.position_ws);
+  int count = reaching.count;
+  int cube_count = reaching.cube_count;
+#else
   int count = min(light_data.light_count, LIGHT_MAX);
-#if defined(USE_SHADOW_CUBE) && defined(USE_SHADOW_MAP)
   int cube_count = min(light_data.cube_light_count, count);
+#endif
+#if defined(USE_SHADOW_CUBE) && defined(USE_SHADOW_MAP)
   sum += lights_radiance(0, cube_count, LIGHTS_WITH_CUBES, material, surface);
   return sum + lights_radiance(cube_count, count, LIGHTS_WITH_MAPS, material, surface);
 #else

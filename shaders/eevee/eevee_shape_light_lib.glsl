@@ -131,9 +131,9 @@ vec3 anisotropic_specular_of(ShapeLight light, MaterialData material, Surface su
 /** Radiance towards the viewer from the light \a index, shaded as a whole, W/(sr m²). */
 vec3 shape_radiance(int index, const int lights, MaterialData material, Surface surface)
 {
-  LightData light = light_data.lights[index];
-  LightShape shape = light_shapes.shapes[index];
-  CenterLight center = center_light(index, lights, surface);
+  LightData light = light_at(index);
+  LightShape shape = shape_at(index);
+  CenterLight center = center_light(light, index, lights, surface);
   if (center.irradiance <= 0.0 || center.distance_sq <= 0.0) {
     return vec3(0.0);
   }

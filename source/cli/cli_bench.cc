@@ -178,6 +178,65 @@ void bench_left_out(const BenchOptions &options)
                             {"rows", json}});
 }
 
+void bench_lamps(const BenchOptions &options)
+{
+  const std::unique_ptr<gpu::Device> device =
+      options.backend == "gl" ? gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()})
+                              : gpu::create_null_device();
+  const std::vector<measure::LampsCost> costs = measure::measure_lamps(*device, options.rounds);
+  fmt::print(
+      "Point lamps with a range of {} m and hard shadows in a square hall, 320x180, one sample: warm frames in which\n"
+      "pixels visit the lamps that can reach them, by lists, and in which they visit all lamps; milliseconds, median\n"
+      "[quartiles] of {} interleaved rounds. *: as the engine draws it; /8: its ratio to 8 lamps in the same kind of "
+      "hall.\n"
+      "growing: the density of the lamps is that of 128 in 90 m. {}\n\n",
+      measure::bench_lamp_range_m, options.rounds, device->description());
+  fmt::print("{:<8} {:>6} {:>7} {:>8}  {:<30}  {:<30} {:>10} {:>6}\n", "hall", "lamps", "edge, m", "MiB", "lists",
+             "all lamps", "lists/all", "* /8");
+  nlohmann::json json = nlohmann::json::array();
+  std::vector<double> counts;
+  std::vector<double> medians;
+  for (const measure::LampsCost &row : costs) {
+    const auto base = std::ranges::find_if(
+        costs, [&](const measure::LampsCost &other) { return other.hall == row.hall && other.lamp_count == 8; });
+    const measure::Spread lists = measure::spread_of(row.seconds_of_lists);
+    const double ratio = measure::median_ratio(row.seconds(), base->seconds());
+    nlohmann::json &out = json.emplace_back(nlohmann::json{{"hall", row.hall},
+                                                           {"lamps", row.lamp_count},
+                                                           {"edge_m", row.edge_m},
+                                                           {"memory_bytes", row.memory_bytes},
+                                                           {"non_finite", row.non_finite_count},
+                                                           {"has_lists", row.has_lists},
+                                                           {"seconds_of_lists", to_json(lists)},
+                                                           {"ratio_to_8", ratio}});
+    std::string all_text;
+    std::string gain_text;
+    if (!row.seconds_of_all.empty()) {
+      const measure::Spread all = measure::spread_of(row.seconds_of_all);
+      const double gain = measure::median_ratio(row.seconds_of_lists, row.seconds_of_all);
+      all_text = to_text(all, 1e-3) + (row.has_lists ? "" : " *");
+      gain_text = fmt::format("{:.2f}", gain);
+      out["seconds_of_all"] = to_json(all);
+      out["lists_to_all"] = gain;
+    }
+    fmt::print("{:<8} {:>6} {:>7.1f} {:>8.1f}  {:<30}  {:<30} {:>10} {:>6.2f}{}\n", row.hall, row.lamp_count,
+               row.edge_m, double(row.memory_bytes) / 0x1p20, to_text(lists, 1e-3) + (row.has_lists ? " *" : ""),
+               all_text, gain_text, ratio, row.non_finite_count > 0 ? "  not finite" : "");
+    if (row.hall == "growing" && row.lamp_count <= 1024) {
+      counts.push_back(row.lamp_count);
+      medians.push_back(measure::spread_of(row.seconds()).median);
+    }
+  }
+  const double exponent = measure::growth_exponent(counts, medians);
+  fmt::print("\nGrowth of a warm frame (*) from 1 to 1024 lamps in the growing hall: exponent {:.2f}\n", exponent);
+  write_json(options.json, {{"program", "gnomon " GNOMON_VERSION},
+                            {"bench", "lamps"},
+                            {"rounds", options.rounds},
+                            {"device", device->description()},
+                            {"growth_exponent", exponent},
+                            {"rows", json}});
+}
+
 void bench_edits(const BenchOptions &options)
 {
   const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
@@ -346,6 +405,11 @@ void add_bench(CLI::App &app, Status &status)
       ->capture_default_str()
       ->check(CLI::IsMember({"gl", "null"}));
   left_out->callback([o] { bench_left_out(*o); });
+  CLI::App *lamps = command->add_subcommand("lamps", "What few and many lamps cost in a frame");
+  lamps->add_option("--backend", o->backend, "gl, or null: without a driver")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"gl", "null"}));
+  lamps->callback([o] { bench_lamps(*o); });
   CLI::App *start = command->add_subcommand("start", "What starting the program costs, up to a first picture");
   start->add_option("scene", o->scene, "glTF 2.0 file (default: a scene made in place)");
   start->add_option("--backend", o->backend, "gl, or null: without a driver and a picture")
@@ -353,7 +417,7 @@ void add_bench(CLI::App &app, Status &status)
       ->check(CLI::IsMember({"gl", "null"}));
   add_world_options(*start, o->world);
   start->callback([o] { bench_start(*o); });
-  for (CLI::App *bench : {shadows, draws, left_out, start}) {
+  for (CLI::App *bench : {shadows, draws, left_out, lamps, start}) {
     bench->add_option("--rounds", o->rounds, "Measured rounds, after one that warms up")
         ->capture_default_str()
         ->check(CLI::Range(1, 100000));

@@ -144,10 +144,10 @@ std::string RenderOptions::settings_text() const
       "--shadow {} --shadow-size {} --pcf {} --esm {} --cascades {} --cascade-lambda {} --cascade-range {} --cube-pass "
       "{} "
       "--casters {} --shadow-memory {} --specular {} --world '{}' --world-strength {} --world-rotation {} --background "
-      "'{}' --animation '{}' --fps {}",
+      "'{}' --animation '{}' --fps {} --light-threshold {}",
       shadow, shadow_size, pcf, esm, cascades, cascade_lambda, cascade_range, cube_pass, casters, shadow_memory,
       specular, world.world, world.strength, world.rotation_degrees, background, frames.animation,
-      frames.frames_per_second);
+      frames.frames_per_second, light_threshold);
 }
 
 bool RenderOptions::is_png() const
@@ -204,6 +204,7 @@ eevee::Settings RenderOptions::engine_settings() const
   }
   settings.seed = seed;
   settings.has_multiscatter = specular == "multi";
+  settings.light_threshold = light_threshold;
   settings.has_cascade_tint = debug_view.kind == DebugView::Kind::Cascades;
   settings.is_timed = !json.empty() || is_explained;
   return settings;
@@ -309,6 +310,11 @@ void add_render_options(CLI::App &command, RenderOptions &options)
       ->capture_default_str()
       ->check(CLI::Range(1, 1 << 20));
   add_specular_option(command, options.specular);
+  command
+      .add_option("--light-threshold", options.light_threshold,
+                  "Irradiance, W/m2, that may be left out of the light of each point, spot and area lamp")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0F, 1e30F));
   command.add_option("--debug", options.debug,
                      "shadow:LAMP[:LAYER]: distances in the layers of a shadow (a cube face, a cascade, octahedral, "
                      "all) instead of the picture; cascades: the picture, tinted by the cascade that a pixel reads");

@@ -42,6 +42,7 @@ struct RenderOptions {
   std::string cube_pass = "best";
   std::string casters = "all";
   int shadow_memory = 1024;
+  float light_threshold = 0.0F;
   std::string debug;
   DebugView debug_view;
   std::string aov;

@@ -84,10 +84,14 @@ Texture Device::create_texture(const TextureDesc &desc)
       throw Error("texture '{}': {} is {}, but this device supports 1 to {}", desc.name, what, value, max);
     }
   };
-  in_range("width", desc.width, limits_.texture_size_max);
-  in_range("height", desc.height, limits_.texture_size_max);
+  const bool is_buffer = desc.kind == TextureKind::Buffer;
+  in_range("width", desc.width, is_buffer ? limits_.buffer_texels_max : limits_.texture_size_max);
+  in_range("height", desc.height, is_buffer ? 1 : limits_.texture_size_max);
   in_range("layer count", desc.layers, desc.kind == TextureKind::Array ? limits_.array_layers_max : 1);
-  in_range("mip level count", desc.mip_levels, int(std::bit_width(unsigned(std::max(desc.width, desc.height)))));
+  in_range("mip level count", desc.mip_levels,
+           is_buffer ? 1 : int(std::bit_width(unsigned(std::max(desc.width, desc.height)))));
+  GNOMON_ASSERT(!is_buffer || (!is_depth(desc.format) && desc.format != Format::SRGB8A8),
+                "texture '{}' of texels in a buffer has the format {}", desc.name, to_string(desc.format));
   const std::string detail =
       fmt::format("{}x{}{} {}", desc.width, desc.height, desc.layers > 1 ? fmt::format("x{}", desc.layers) : "",
                   to_string(desc.format));
@@ -136,6 +140,8 @@ Framebuffer Device::create_framebuffer(const FramebufferDesc &desc)
   for (const Attachment &attachment : attachments) {
     GNOMON_ASSERT(attachment.texture && *attachment.texture, "framebuffer '{}'", desc.name);
     const TextureDesc &texture = attachment.texture->desc();
+    GNOMON_ASSERT(texture.kind != TextureKind::Buffer, "framebuffer '{}': texture '{}' is a buffer", desc.name,
+                  texture.name);
     const bool is_depth_attachment = &attachment == &attachments.back() && desc.depth.texture;
     if (is_depth(texture.format) != is_depth_attachment) {
       throw Error("framebuffer '{}': texture '{}' of format {} cannot be its {} attachment", desc.name, texture.name,
@@ -316,23 +322,25 @@ static std::size_t layer_size_bytes(const TextureDesc &desc)
 void Device::upload(const Texture &texture, int layer, std::span<const std::byte> texels)
 {
   const TextureDesc &desc = texture.desc();
-  GNOMON_ASSERT(texture && layer >= 0 && layer < desc.layers && texels.size() == layer_size_bytes(desc),
-                "texture '{}': {} bytes to layer {}", desc.name, texels.size(), layer);
+  const bool has_size = desc.kind == TextureKind::Buffer ? texels.size() <= layer_size_bytes(desc)
+                                                         : texels.size() == layer_size_bytes(desc);
+  GNOMON_ASSERT(texture && layer >= 0 && layer < desc.layers && has_size, "texture '{}': {} bytes to layer {}",
+                desc.name, texels.size(), layer);
   perform({Operation::UploadTexture{texture.id(), layer, kept(texels)}});
   count_upload(ResourceKind::Texture, texture.id(), texels.size());
 }
 
 void Device::generate_mipmaps(const Texture &texture)
 {
-  GNOMON_ASSERT(texture && !is_depth(texture.desc().format), "texture '{}' of format {}", texture.desc().name,
-                to_string(texture.desc().format));
+  GNOMON_ASSERT(texture && !is_depth(texture.desc().format) && texture.desc().kind != TextureKind::Buffer,
+                "texture '{}' of format {}", texture.desc().name, to_string(texture.desc().format));
   perform({Operation::GenerateMipmaps{texture.id()}});
 }
 
 void Device::copy_layers(const Texture &source, const Texture &target)
 {
   GNOMON_ASSERT(source && target && source.id() != target.id() && source.desc().format == target.desc().format &&
-                    source.desc().kind == target.desc().kind,
+                    source.desc().kind == target.desc().kind && source.desc().kind != TextureKind::Buffer,
                 "copy of texture '{}' to '{}'", source.desc().name, target.desc().name);
   const TextureDesc &from = source.desc();
   const TextureDesc &to = target.desc();

@@ -82,7 +82,10 @@ class Device {
   {
     update(buffer, 0, std::as_bytes(std::span(&value, 1)));
   }
-  /** Write level 0 of one layer. \a texels: rows from the bottom, tightly packed. */
+  /**
+   * Write level 0 of one layer. \a texels: rows from the bottom, tightly packed. TextureKind::Buffer: the first texels;
+   * the rest keep their content.
+   */
   void upload(const Texture &texture, int layer, std::span<const std::byte> texels);
   /**
    * Compute the mip levels above 0 from level 0. A texel is the mean of the texels of the next finer level that it

@@ -16,6 +16,8 @@ namespace gnomon::gpu {
 struct Limits {
   int texture_size_max = 16384;
   int array_layers_max = 2048;
+  /** Texels of a texture of TextureKind::Buffer. */
+  int buffer_texels_max = 65536;
   std::size_t uniform_block_bytes_max = 65536;
   std::size_t storage_block_bytes_max = std::size_t(1) << 27U;
   int color_attachment_max = 8;

@@ -31,17 +31,21 @@ enum class Format : std::uint8_t {
 [[nodiscard]] int texel_size_bytes(Format format);
 [[nodiscard]] std::string_view to_string(Format format);
 
-enum class TextureKind : std::uint8_t { Flat, Array };
+/**
+ * Buffer: a row of texels in a buffer, which shaders read through a `samplerBuffer` by texelFetch. It has no mip
+ * levels, cannot be attached to a framebuffer, and is not affected by samplers.
+ */
+enum class TextureKind : std::uint8_t { Flat, Array, Buffer };
 
 struct TextureDesc {
   /** Shown in messages and debuggers. */
   std::string name;
   TextureKind kind = TextureKind::Flat;
   Format format = Format::RGBA8;
-  /** Texels of level 0, at least 1. */
+  /** Texels of level 0, at least 1. Buffer: the height is 1. */
   int width = 1;
   int height = 1;
-  /** Array: number of layers. Flat: 1. */
+  /** Array: number of layers. Flat, Buffer: 1. */
   int layers = 1;
   /** Number of mip levels, level 0 included; at least 1. */
   int mip_levels = 1;

@@ -76,6 +76,40 @@ struct DrawSeconds {
  */
 [[nodiscard]] DrawSeconds measure_draws(gpu::Device &device, int draw_count, int rounds);
 
+/** Range of the lamps of measure_lamps(), metres. */
+inline constexpr double bench_lamp_range_m = 12.0;
+
+/** The cost of a frame of a hall with lamps. */
+struct LampsCost {
+  /** "90 m"; "growing": the area of the hall is proportional to the number of lamps, and is that of 90 m at 128. */
+  std::string hall;
+  int lamp_count = 0;
+  /** Edge of the square hall, metres. */
+  double edge_m = 0.0;
+  /** Device memory of the hall's resources, bytes. */
+  std::size_t memory_bytes = 0;
+  /** Components of the picture that are not finite. */
+  std::size_t non_finite_count = 0;
+  /** One time for each round: a frame that finds all resources up to date. Pixels visit the lamps in lists. */
+  std::vector<double> seconds_of_lists{};
+  /** The same if each pixel visits all lamps. Empty where light_block does not hold them. */
+  std::vector<double> seconds_of_all{};
+  /** Whether the engine makes lists for this number of lamps. */
+  bool has_lists = false;
+
+  /** The times of a frame as the engine draws it. */
+  [[nodiscard]] const std::vector<double> &seconds() const
+  {
+    return has_lists ? seconds_of_lists : seconds_of_all;
+  }
+};
+
+/** Measures halls with few and many point lamps, in turn in each round, at 320x180 with one sample. */
+[[nodiscard]] std::vector<LampsCost> measure_lamps(gpu::Device &device, int rounds);
+
+/** The slope of the line through the logarithms, by least squares. \pre positive values, at least two counts differ */
+[[nodiscard]] double growth_exponent(std::span<const double> counts, std::span<const double> seconds);
+
 /** The cost of drawing one of left_out_cases(). */
 struct LeftOutCost {
   std::string name;

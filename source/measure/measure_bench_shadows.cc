@@ -48,7 +48,7 @@ class LampBench {
     }
     const std::span<const scene::PlacedLamp> placed(&lamp_, 1);
     eevee::Lamps lamps = eevee::make_lamps(placed);
-    scene_shadows_.sync(device_.limits(), eevee::shadow_lamps(placed, lamps), {}, lamps.light_block, settings_);
+    scene_shadows_.sync(device_.limits(), eevee::shadow_lamps(placed, lamps), {}, lamps.lights, settings_);
     scene_shadows_.allocate(device_, shaders_);
     shadows_.allocate(device_);
     for (const eevee::Caster &caster : casters_) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Lamps: cones, fall-off, near planes, and the capacity of light_block.
+// Lamps: cones, fall-off, near planes, and the largest number of lights.
 #include "internal/stability_cases.hh"
 
 #include "eevee_lamps.hh"
+#include "eevee_light_cluster_shared.h"
 #include "eevee_shadow_shared.h"
 #include "shadows/shadow_casters.hh"
 #include "shadows/shadow_cube.hh"
@@ -169,12 +170,13 @@ void add_falloff_cases(std::vector<StabilityCase> &cases)
 
 void add_count_cases(std::vector<StabilityCase> &cases)
 {
-  const std::vector<double> counts = {0, 1, 2, LIGHT_MAX - 1, LIGHT_MAX, LIGHT_MAX + 1, LIGHT_MAX + 2, 4 * LIGHT_MAX};
+  const std::vector<double> counts = {
+      0, 1, 2, LIGHT_MAX - 1, LIGHT_MAX, LIGHT_MAX + 1, 4 * LIGHT_MAX, LIGHT_COUNT_MAX, LIGHT_COUNT_MAX + 2};
   for (const scene::LampKind kind : {scene::LampKind::Point, scene::LampKind::Sun, scene::LampKind::Spot}) {
     const char *name = kind == scene::LampKind::Point ? "points" : kind == scene::LampKind::Sun ? "suns" : "spots";
     cases.push_back({.group = lamps_group,
                      .name = fmt::format("0, 1, max and max+1 {}", name),
-                     .quantity = "entries of light_block that differ from the lamp of their index, and lamps above the "
+                     .quantity = "lights that differ from the lamp of their index, and lamps above the "
                                  "limit that are not named",
                      .parameter = "lamps",
                      .reference = "closed form",
@@ -188,10 +190,10 @@ void add_count_cases(std::vector<StabilityCase> &cases)
                          placed[i].intensity = float(i + 1);
                        }
                        const eevee::Lamps lamps = eevee::make_lamps(placed);
-                       const int drawn = std::min(int(count), LIGHT_MAX);
-                       double wrong = std::abs(lamps.light_block.light_count - drawn);
+                       const int drawn = std::min(int(count), LIGHT_COUNT_MAX);
+                       double wrong = std::abs(lamps.light_count() - drawn);
                        for (int i = 0; i < drawn; i++) {
-                         wrong += violated(lamps.light_block.lights[i].color.r == float(i + 1));
+                         wrong += violated(lamps.lights[std::size_t(i)].color.r == float(i + 1));
                        }
                        for (int i = drawn; i < int(count); i++) {
                          wrong += violated(!lamps.limits.empty() &&

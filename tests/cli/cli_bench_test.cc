@@ -70,6 +70,23 @@ TEST_F(BenchTest, LeftOutComparesTenScenesWithTheFullOne)
   }
 }
 
+TEST_F(BenchTest, LampsMeasuresFewAndMany)
+{
+  const Finished finished = run("bench lamps --backend null --rounds 1 --json bench.json");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const json bench = json::parse(read("bench.json"));
+  EXPECT_TRUE(bench["growth_exponent"].is_number());
+  std::map<std::string, std::vector<int>> lamps;
+  for (const json &row : bench["rows"]) {
+    lamps[row["hall"]].push_back(row["lamps"]);
+    EXPECT_GT(row["seconds_of_lists"]["median"], 0.0) << row;
+    EXPECT_EQ(row.contains("seconds_of_all"), row["lamps"] <= 255) << row;
+    EXPECT_LT(row["memory_bytes"], 64 << 20) << row;
+  }
+  EXPECT_EQ(lamps, (std::map<std::string, std::vector<int>>{{"90 m", {8, 32, 128}},
+                                                            {"growing", {1, 8, 32, 128, 1024, 10000}}}));
+}
+
 TEST_F(BenchTest, LightComparesApproximationsWithIntegrals)
 {
   const Finished finished = run("bench light --points 1 --json bench.json");

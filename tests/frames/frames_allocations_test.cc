@@ -137,5 +137,25 @@ TEST_F(FrameAllocations, AMovingCameraAllocatesNothing)
   EXPECT_GT(faces_drawn, 0U) << "cascades follow the camera";
 }
 
+/** Pixels visit the lamps in lists that follow the view. */
+TEST_F(FrameAllocations, AMovingCameraBelowManyLampsAllocatesNothing)
+{
+  for (int i = 0; i < 40; i++) {
+    const glm::vec3 place(8.0F * float(i % 8) - 28.0F, 8.0F * float(i / 8) - 16.0F, 3.0F);
+    const auto lamp = measure::add_lamp(frames.scene, scene::LampKind::Point, place, {0, 0, -1}, 10.0F);
+    frames.scene.edit(lamp, [](scene::Lamp &value) {
+      value.range = 6.0F;
+      value.shadow.kind = scene::ShadowKind::None;
+    });
+  }
+  for (const int sample_count : {1, 4}) {
+    const Allocations counts =
+        of_third_round({.shadow = {.cube_size_px = 32, .map_size_px = 64}, .sample_count = sample_count},
+                       [&](int frame) { return FramesScene::camera(frame - frame % sample_count, frame_count); });
+    EXPECT_EQ(counts.prepare, 0U) << sample_count;
+    EXPECT_EQ(counts.submit, 0U) << sample_count;
+  }
+}
+
 }  // namespace
 }  // namespace gnomon::eevee

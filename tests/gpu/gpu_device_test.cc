@@ -12,6 +12,7 @@ using test::expect_contains;
 constexpr Limits SMALL = {
     .texture_size_max = 64,
     .array_layers_max = 13,
+    .buffer_texels_max = 99,
     .uniform_block_bytes_max = 256,
     .storage_block_bytes_max = 1024,
     .color_attachment_max = 2,
@@ -51,6 +52,10 @@ TEST(Device, RefusesTexturesPastItsLimitsByName)
   expect_texture_refused({.name = "flat", .layers = 2}, {"texture 'flat'", "layer count is 2", "1 to 1"});
   expect_texture_refused({.name = "deep", .kind = TextureKind::Array, .layers = 14},
                          {"texture 'deep'", "layer count is 14", "1 to 13"});
+  expect_texture_refused({.name = "long", .kind = TextureKind::Buffer, .width = 100},
+                         {"texture 'long'", "width is 100", "1 to 99"});
+  expect_texture_refused({.name = "rows", .kind = TextureKind::Buffer, .height = 2},
+                         {"texture 'rows'", "height is 2", "1 to 1"});
   expect_texture_refused({.name = "mips", .width = 16, .height = 4, .mip_levels = 6},
                          {"texture 'mips'", "mip level count is 6", "1 to 5"});
 }
@@ -60,7 +65,8 @@ TEST(Device, TakesTexturesAtItsLimits)
   const auto device = create_null_device(SMALL);
   const Texture flat = device->create_texture({.name = "flat", .width = 64, .height = 64, .mip_levels = 7});
   const Texture array = device->create_texture({.name = "array", .kind = TextureKind::Array, .layers = 13});
-  EXPECT_EQ(device->counters().textures_made, 2U);
+  const Texture buffer = device->create_texture({.name = "buffer", .kind = TextureKind::Buffer, .width = 99});
+  EXPECT_EQ(device->counters().textures_made, 3U);
 }
 
 TEST(Device, RefusesAnisotropyPastItsLimitsByName)

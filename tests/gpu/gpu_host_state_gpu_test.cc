@@ -33,6 +33,7 @@ struct HostedScene {
     device.upload(source, 0, std::as_bytes(std::span(ones)));
     device.generate_mipmaps(source);
     device.upload(layers, 1, std::as_bytes(std::span(two)));
+    device.upload(texels, 0, std::as_bytes(std::span(two)));
     device.update(block, glm::vec4(10));
     device.update(store, glm::vec4(100));
   }
@@ -52,7 +53,9 @@ struct HostedScene {
     commands.bind_storage(0, {store.id()});
     commands.bind_texture(16, source.id(), sampler.id());
     commands.bind_texture(17, layers.id(), sampler.id());
+    commands.bind_texture(18, texels.id(), sampler.id());
     commands.bind_texture(24, 0, 0);
+    commands.bind_texture(25, 0, 0);
     test::push_constants(commands, shader, glm::vec4(10000));
     test::append_draw(commands, full);
     commands.set_state(State::WriteColor | State::BlendAdd);
@@ -65,7 +68,7 @@ struct HostedScene {
   /** Fails if the picture differs from the expected one. */
   void expect_picture()
   {
-    EXPECT_EQ(gpu::read_as<glm::vec4>(device, picture), std::vector<glm::vec4>(16, glm::vec4(11113.0F)));
+    EXPECT_EQ(gpu::read_as<glm::vec4>(device, picture), std::vector<glm::vec4>(16, glm::vec4(11115.0F)));
     EXPECT_EQ(gpu::read_as<glm::vec4>(device, second), std::vector<glm::vec4>(16, glm::vec4(5)));
   }
 
@@ -77,6 +80,7 @@ struct HostedScene {
       device.create_texture({.name = "s", .format = Format::R32F, .width = 4, .height = 4, .mip_levels = 3});
   Texture layers =
       device.create_texture({.name = "l", .kind = TextureKind::Array, .format = Format::R32F, .layers = 2});
+  Texture texels = device.create_texture({.name = "t", .kind = TextureKind::Buffer, .format = Format::R32F});
   Sampler sampler = device.create_sampler({.name = "nearest"});
   Buffer block = device.create_buffer({.name = "block", .size_bytes = 16});
   Buffer later = device.create_buffer({.name = "later", .size_bytes = 16});
@@ -102,14 +106,16 @@ layout(std140, binding = 0) readonly buffer b_block
 };
 layout(binding = 16) uniform sampler2D source;
 layout(binding = 17) uniform sampler2DArray layers;
+layout(binding = 18) uniform samplerBuffer texels;
 layout(binding = 24) uniform sampler2D not_bound;
+layout(binding = 25) uniform samplerBuffer texels_not_bound;
 layout(location = 0) out vec4 result;
 layout(location = 1) out vec4 other;
 void main()
 {
   // Samplers without a texture read 0, not the host's texture.
   result = color + a + b + c + texture(source, vec2(0.5)).r + texture(layers, vec3(0.5, 0.5, 1)).r +
-           vec4(texture(not_bound, vec2(0.5)).rgb, 0);
+           texelFetch(texels, 0).r + vec4(texture(not_bound, vec2(0.5)).rgb, 0) + texelFetch(texels_not_bound, 0);
   other = vec4(5);
 })");
 };

@@ -57,13 +57,16 @@ TEST_F(TextureGpu, UploadComesBackAsItWas)
   std::mt19937 random(5);
   for (const Format format : {Format::RGBA8, Format::SRGB8A8, Format::RGBA16F, Format::RGBA32F, Format::R16F,
                               Format::R32F, Format::Depth32F}) {
-    for (const TextureKind kind : {TextureKind::Flat, TextureKind::Array}) {
+    for (const TextureKind kind : {TextureKind::Flat, TextureKind::Array, TextureKind::Buffer}) {
+      if (kind == TextureKind::Buffer && (is_depth(format) || format == Format::SRGB8A8)) {
+        continue;
+      }
       SCOPED_TRACE(fmt::format("{} kind {}", to_string(format), int(kind)));
       const Texture texture = device->create_texture({.name = "round trip",
                                                       .kind = kind,
                                                       .format = format,
                                                       .width = 7,
-                                                      .height = 5,
+                                                      .height = kind == TextureKind::Buffer ? 1 : 5,
                                                       .layers = kind == TextureKind::Array ? 3 : 1});
       std::vector<std::vector<std::byte>> layers;
       for (int layer = 0; layer < texture.desc().layers; layer++) {
@@ -97,6 +100,53 @@ TEST_F(TextureGpu, UploadComesBackAsItWas)
       }
     }
   }
+}
+
+TEST_F(TextureGpu, TexelsOfABufferAreReadByIndexAndWrittenFromTheFirst)
+{
+  const Texture texture = device->create_texture(
+      {.name = "texels", .kind = TextureKind::Buffer, .format = Format::RGBA32F, .width = 70000});
+  std::vector<glm::vec4> texels(70000);
+  for (std::size_t i = 0; i < texels.size(); i++) {
+    texels[i] = glm::vec4(float(i), 1.0F / float(i + 1), -float(i), 1e-30F);
+  }
+  upload(texture, 0, texels);
+  const Sampler nearest = device->create_sampler({.name = "nearest"});
+  const std::vector<glm::vec4> places = {{0, 0, 0, 0}, {1, 0, 0, 0}, {65536, 0, 0, 0}, {69999, 0, 0, 0}};
+  const auto values = [&] {
+    return evaluated("samplerBuffer", "texelFetch(picture, int(v.x))", places, texture, nearest);
+  };
+  EXPECT_EQ(values(), (std::vector<glm::vec4>{texels[0], texels[1], texels[65536], texels[69999]}));
+  upload<glm::vec4>(texture, 0, {glm::vec4(7)});
+  EXPECT_EQ(values(), (std::vector<glm::vec4>{glm::vec4(7), texels[1], texels[65536], texels[69999]}));
+}
+
+// hazards.md: llvmpipe changes what earlier draws read if it does not know that a buffer is read.
+TEST_F(TextureGpu, DrawsReadTheTexelsOfABufferAsOfTheirSubmission)
+{
+  const Texture texture =
+      device->create_texture({.name = "texels", .kind = TextureKind::Buffer, .format = Format::R32F, .width = 4});
+  const Sampler nearest = device->create_sampler({.name = "nearest"});
+  const Texture result =
+      device->create_texture({.name = "result", .format = Format::R32F, .width = 256, .height = 256});
+  const Framebuffer framebuffer = device->create_framebuffer({"result", {{&result}}, {}});
+  const Shader shader = make_shader(*device, "sum", test::CLIP_SPACE_VERT,
+                                    "layout(binding = 16) uniform samplerBuffer picture;\n"
+                                    "layout(location = 0) out float result;\n"
+                                    "void main()\n{\n  result = texelFetch(picture, int(gl_FragCoord.x) & 3).r;\n}\n");
+  const Batch full = test::full_triangle(*device, 0.5F);
+  for (int i = 1; i <= 16; i++) {
+    upload<float>(texture, 0, std::vector<float>(4, float(i)));
+    CommandList list;
+    list.begin_pass("sum", framebuffer, {.color_load = i == 1 ? LoadAction::Clear : LoadAction::Load});
+    list.set_shader(shader.id());
+    list.set_state(State::WriteColor | State::BlendAdd);
+    list.bind_texture(16, texture.id(), nearest.id());
+    append_draw(list, full);
+    list.end_pass();
+    device->submit(list);
+  }
+  EXPECT_EQ(gpu::read_as<float>(*device, result), std::vector<float>(256 * 256, 136.0F));
 }
 
 TEST_F(TextureGpu, RowsStandFromTheBottom)

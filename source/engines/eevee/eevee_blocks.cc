@@ -4,6 +4,7 @@
 #include "draw_object_shared.h"
 #include "draw_view_shared.h"
 #include "eevee_esm_shared.h"
+#include "eevee_light_cluster_shared.h"
 #include "eevee_light_shared.h"
 #include "eevee_material_shared.h"
 #include "eevee_shadow_shared.h"
@@ -98,6 +99,22 @@ constexpr auto light_shape_fields = std::to_array<Field>({
     {"light_shapes.shapes[0]._pad0", offsetof(LightShape, _pad0)},
 });
 
+constexpr auto light_cluster_fields = std::to_array<Field>({
+    {"clusters.grid_from_world", offsetof(LightClusterBlock, grid_from_world)},
+    {"clusters.slice_scale", offsetof(LightClusterBlock, slice_scale)},
+    {"clusters.slice_bias", offsetof(LightClusterBlock, slice_bias)},
+    {"clusters.is_perspective", offsetof(LightClusterBlock, is_perspective)},
+    {"clusters.column_count", offsetof(LightClusterBlock, column_count)},
+    {"clusters.row_count", offsetof(LightClusterBlock, row_count)},
+    {"clusters.slice_count", offsetof(LightClusterBlock, slice_count)},
+    {"clusters.cube_light_count", offsetof(LightClusterBlock, cube_light_count)},
+    {"clusters.cube_everywhere_count", offsetof(LightClusterBlock, cube_everywhere_count)},
+    {"clusters.other_everywhere_count", offsetof(LightClusterBlock, other_everywhere_count)},
+    {"clusters._pad0", offsetof(LightClusterBlock, _pad0)},
+    {"clusters._pad1", offsetof(LightClusterBlock, _pad1)},
+    {"clusters._pad2", offsetof(LightClusterBlock, _pad2)},
+});
+
 constexpr auto world_fields = std::to_array<Field>({
     {"world.harmonics", offsetof(WorldBlock, harmonics)},
     {"world.is_sampled", offsetof(WorldBlock, is_sampled)},
@@ -142,7 +159,7 @@ constexpr auto esm_fields = std::to_array<Field>({
     {"esm.lamps[0]._pad0", offsetof(EsmData, _pad0)},
 });
 
-constexpr std::array<gpu::BlockLayout, 11> layouts = {{
+constexpr std::array<gpu::BlockLayout, 12> layouts = {{
     {"view_block", sizeof(ViewData), view_fields},
     {"object_block", sizeof(ObjectData), object_fields},
     {"material_block", sizeof(MaterialData), material_fields},
@@ -150,6 +167,7 @@ constexpr std::array<gpu::BlockLayout, 11> layouts = {{
     {"layer_block", sizeof(LayerData), layer_fields},
     {"light_block", sizeof(LightBlock), light_fields},
     {"light_shape_block", sizeof(LightShapeBlock), light_shape_fields},
+    {"light_cluster_block", sizeof(LightClusterBlock), light_cluster_fields},
     {"world_block", sizeof(WorldBlock), world_fields},
     {"shadow_block", sizeof(ShadowBlock), shadow_fields},
     {"shadow_render_block", sizeof(ShadowRenderBlock), shadow_render_fields},

@@ -18,11 +18,11 @@ namespace gnomon::eevee {
 
 namespace {
 
-/** Index in light_block of the first sun with shadow maps. */
+/** Index in Lamps::lights of the first sun with shadow maps. */
 std::optional<int> first_sun_with_maps(const Lamps &lamps)
 {
-  for (int i = 0; i < lamps.light_block.light_count; i++) {
-    const shared::LightData &light = lamps.light_block.lights[i];
+  for (int i = 0; i < lamps.light_count(); i++) {
+    const shared::LightData &light = lamps.lights[std::size_t(i)];
     if (light.kind == LIGHT_SUN && light.shadow_kind == SHADOW_MAP) {
       return i;
     }
@@ -37,6 +37,9 @@ static void check(const Settings &settings)
 {
   if (settings.sample_count < 0) {
     throw gpu::Error("eevee: sample_count {} is negative", settings.sample_count);
+  }
+  if (!(settings.light_threshold >= 0.0F) || std::isinf(settings.light_threshold)) {
+    throw gpu::Error("eevee: light_threshold {} is not a finite number of at least 0", settings.light_threshold);
   }
   const bool is_whole = settings.sample_first == 0 && settings.sample_end == 0;
   if (!is_whole && (settings.sample_first < 0 || settings.drawn_sample_count() < 1 ||
@@ -97,7 +100,19 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
   if (world) {
     std::ranges::copy(world_lamps(*world, shading), std::back_inserter(shared.placed));
   }
-  shared.lamps = make_lamps(shared.placed, shading);
+  for (scene::PlacedLamp &lamp : shared.placed) {
+    lower_range(lamp, settings_.light_threshold);
+  }
+  const int device_most = device_limits.buffer_texels_max / LIGHT_TEXELS;
+  Lamps lamps = make_lamps(shared.placed, shading, std::size_t(std::clamp(device_most, LIGHT_MAX, LIGHT_COUNT_MAX)));
+  const bool has_reaches = lamps.reaches == shared.lamps.reaches &&
+                           lamps.cube_light_count == shared.lamps.cube_light_count &&
+                           lamps.cube_everywhere_count == shared.lamps.cube_everywhere_count;
+  shared.reaches_revision += has_reaches ? 0 : 1;
+  shared.lamps = std::move(lamps);
+  if (shared.lamps.local_count() >= settings_.clustered_lamps_min || shared.lamps.light_count() > LIGHT_MAX) {
+    shared.lamps.features = shared.lamps.features | Feature::LightClusters;
+  }
   if (world) {
     mark_world(shared.lamps, scene_.lamps().size() + world->suns.size());
   }
@@ -105,7 +120,7 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
   // These surfaces receive shadows, and the depths that are read back do not have them.
   shadow.cascades.is_fitted_to_depth &= !has_surfaces_without_depth(scene_.scene());
   shared.shadows.sync(device_limits, shadow_lamps(shared.placed, shared.lamps, shading), scene_.bounds(),
-                      shared.lamps.light_block, shadow);
+                      shared.lamps.lights, shadow);
   const scene::Bounds &bounds_ws = scene_.bounds();
   shared.lamp_points =
       shading == LampShading::Point
@@ -113,14 +128,14 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
                        settings_.planned_sample_count())
           : LampPoints();
   shared.is_light_left_out.clear();
-  for (int i = 0; i < shared.lamps.light_block.light_count; i++) {
+  for (int i = 0; i < shared.lamps.light_count(); i++) {
     const std::size_t lamp = shared.lamps.lamp_index[std::size_t(i)];
     const bool is_lamp = lamp < scene_.lamps().size();
     const bool is_kept = settings_.light.has(is_lamp ? LightPart::Kind::Lamp : LightPart::Kind::World) &&
                          (settings_.light.kind != LightPart::Kind::Lamp || settings_.light.lamp == lamp);
     shared.is_light_left_out.push_back(!is_kept);
     if (!is_kept) {
-      leave_out(shared.lamps.light_block.lights[i]);
+      leave_out(shared.lamps.lights[std::size_t(i)]);
     }
   }
   shared.tinted_light = settings_.has_cascade_tint ? first_sun_with_maps(shared.lamps) : std::nullopt;

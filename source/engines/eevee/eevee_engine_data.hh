@@ -6,6 +6,7 @@
 #include "eevee_frame.hh"
 #include "eevee_lamp_points.hh"
 #include "eevee_lamps.hh"
+#include "eevee_lights.hh"
 #include "eevee_world.hh"
 #include "shadows/shadows.hh"
 
@@ -100,6 +101,8 @@ struct PassesKey {
   gpu::ResourceId shadow_block = 0;
   gpu::ResourceId light_block = 0;
   gpu::ResourceId light_shape_block = 0;
+  gpu::ResourceId light_texture = 0;
+  gpu::ResourceId light_cluster_block = 0;
   gpu::ResourceId ltc_table = 0;
   gpu::ResourceId multiscatter_table = 0;
   gpu::ResourceId world_block = 0;
@@ -169,10 +172,21 @@ struct SharedData {
   std::optional<ShadowsKey> synced;
   /** Increased by each sync of the lamps. */
   std::uint64_t revision = 0;
+  /** Increased when the reach of a light, or the order of the lights, changes. */
+  std::uint64_t reaches_revision = 0;
   /** Index in light_block of the sun of Settings::has_cascade_tint. Empty without this setting or such a sun. */
   std::optional<int> tinted_light;
+  /**
+   * The lights. With Feature::LightClusters, they are in `light_texture`; then this block exists for Inspection::probe
+   * and the tint of cascades, and has only the lights of these: probed_entry and tinted_entry.
+   */
   gpu::Buffer light_block;
   gpu::Buffer light_shape_block;
+  /** Empty without Feature::LightClusters. */
+  gpu::Texture light_texture;
+  gpu::Sampler light_sampler;
+  /** Content of `light_texture`: LIGHT_TEXELS for each light. */
+  std::vector<glm::vec4> light_texels;
   /** Empty unless the scene has specular materials, and lamps with Feature::LampShape or a world. */
   gpu::Texture ltc_table;
   /** Empty without Feature::Multiscatter. */
@@ -181,6 +195,7 @@ struct SharedData {
   gpu::Sampler table_sampler;
   /** Empty without a world. */
   WorldResources world;
+  /** The lights on the device are those of the last sync. */
   bool is_light_block_written = false;
   /** Draws the casters; all lamps share it. */
   draw::Pass shadow_pass;
@@ -247,6 +262,8 @@ struct StorageList {
   std::span<const LampPoint> lamp_points;
   /** Temporary memory of write_lamp_points. */
   std::vector<shared::LightData> sampled_lights;
+  /** Empty without Feature::LightClusters. */
+  ViewClusters clusters;
   gpu::Buffer view_block;
   gpu::BufferRange material_block;
   gpu::BufferRange full_material_block;
@@ -278,7 +295,7 @@ struct StorageList {
   /** The class with the most inputs, and the features, that the materials of the drawable objects need. */
   render_scene::MaterialClass widest_class = render_scene::MaterialClass::Plain;
   Feature material_features = Feature::None;
-  /** Index in light_block of the light that is being probed. */
+  /** Entry of light_block of the light that is being probed. */
   int probed_light = 0;
   /** Filter weights of the current sample. The film pass reads them by reference. */
   glm::vec4 film_columns{0.0F};

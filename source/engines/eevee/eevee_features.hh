@@ -46,6 +46,8 @@ enum class Feature : std::uint32_t {
   Transmission = 1U << 16,
   /** Settings::has_multiscatter is set, and at least one material has specular reflection. */
   Multiscatter = 1U << 17,
+  /** Pixels visit only the lights that can reach their froxel. The lights are in `light_texture`. */
+  LightClusters = 1U << 18,
 };
 
 constexpr Feature operator|(Feature a, Feature b)

@@ -15,6 +15,7 @@ void Engine::take_losses(draw::Viewport &viewport)
   if (data.loss_count != loss_count) {
     data.is_recorded = false;
     data.stl.recorded.reset();
+    data.stl.clusters.made.reset();
     data.loss_count = loss_count;
   }
   SharedData &shared = *data.shared;

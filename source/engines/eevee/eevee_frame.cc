@@ -54,6 +54,14 @@ Need need_lamp_points(const FrameState &state)
                             : Need{false, nothing_seen};
 }
 
+Need need_light_clusters(const FrameState &state)
+{
+  if (!has(state.data.stl.features, Feature::LightClusters)) {
+    return {false, "few lamps have a range"};
+  }
+  return state.data.is_seen ? Need{true, "pixels visit the lamps that can reach them"} : Need{false, nothing_seen};
+}
+
 Need need_shadows(const FrameState &state)
 {
   if (!has(state.data.stl.features, any_shadow)) {
@@ -151,7 +159,12 @@ void record_lamp_points(const FrameStep & /*step*/, FrameSample &sample, gpu::Co
 {
   sample.data.stl.lamp_points =
       sample.data.shared->lamp_points.sample(std::uint32_t(sample.data.sample_index), sample.settings.seed);
-  write_lamp_points(sample.data, list);
+  write_lamp_points(sample.data, sample.viewport.device(), list);
+}
+
+void record_light_clusters(const FrameStep & /*step*/, FrameSample &sample, gpu::CommandList &list)
+{
+  update_light_clusters(sample.data, sample.viewport, sample.view, list);
 }
 
 void record_shadows(const FrameStep & /*step*/, FrameSample &sample, gpu::CommandList &list)
@@ -294,9 +307,10 @@ constexpr std::span target_only = std::span(pictures).subspan(4, 1);
 constexpr std::span behind_only = std::span(pictures).subspan(5, 1);
 constexpr std::span depth_and_radiance = std::span(pictures).first(2);
 
-constexpr std::array<std::string_view, 1> light_block_only = {"light_block"};
+constexpr std::array<std::string_view, 2> lights = {"light_block", "light_texture"};
+constexpr std::array<std::string_view, 2> cluster_resources = {"light_cluster_block", "light_lists"};
 
-constexpr std::array<FrameStep, 12> steps = {{
+constexpr std::array<FrameStep, 13> steps = {{
     // The depth pre-pass comes before the shadows because cascades may be fitted to its depths.
     {"depth_prepass",
      FrameStep::When::EachSample,
@@ -307,7 +321,14 @@ constexpr std::array<FrameStep, 12> steps = {{
      record_depth,
      read_depths,
      true},
-    {"lamp_points", FrameStep::When::EachSample, need_lamp_points, {}, light_block_only, {}, record_lamp_points},
+    {"lamp_points", FrameStep::When::EachSample, need_lamp_points, {}, lights, {}, record_lamp_points},
+    {"light_clusters",
+     FrameStep::When::EachSample,
+     need_light_clusters,
+     {},
+     cluster_resources,
+     {},
+     record_light_clusters},
     {"shadows",
      FrameStep::When::EachSample,
      need_shadows,

@@ -117,9 +117,6 @@ void record_pass(const FrameStep &step, FrameSample &sample, gpu::CommandList &l
 
 inline constexpr const char *nothing_seen = "nothing is seen";
 
-/** Append a write of the `light_block` entries of StorageList::lamp_points to \a list. */
-void write_lamp_points(Data &data, gpu::CommandList &list);
-
 /** The reason why no lamp has a shadow: \a no_such_lamp if shadows are enabled and at least one lamp gives light. */
 [[nodiscard]] std::string_view why_no_shadow(const FrameState &state, std::string_view no_such_lamp);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Functions that several steps of a frame and Inspection share: the view of a sample, the points of its lamps, reasons.
+// Functions that several steps of a frame and Inspection share: the view of a sample, reasons.
 #include "eevee_camera.hh"
 #include "eevee_engine_data.hh"
 #include "eevee_film.hh"
@@ -8,7 +8,6 @@
 #include <glm/matrix.hpp>
 
 #include <cmath>
-#include <cstddef>
 
 namespace gnomon::eevee {
 
@@ -45,30 +44,6 @@ shared::ViewData view_data(const draw::View &view, const Settings &settings, int
   const int sample_count = settings.sample_count == 0 ? sample_index + 1 : settings.sample_count;
   data.texture_lod_bias = -0.5F * std::log2(float(sample_count));
   return data;
-}
-
-void write_lamp_points(Data &data, gpu::CommandList &list)
-{
-  const std::span<const LampPoint> points = data.stl.lamp_points;
-  if (points.empty()) {
-    return;
-  }
-  // The points are in the order of the lights. One write of the whole range costs less than one write for each point.
-  const int first = points.front().light;
-  const int end = points.back().light + 1;
-  const shared::LightData *lights = data.shared->lamps.light_block.lights;
-  std::vector<shared::LightData> &sampled = data.stl.sampled_lights;
-  sampled.assign(lights + first, lights + end);
-  for (const LampPoint &point : points) {
-    shared::LightData &light = sampled[std::size_t(point.light - first)];
-    light = light_at(lights[point.light], point);
-    if (data.shared->is_light_left_out[std::size_t(point.light)]) {
-      leave_out(light);
-    }
-  }
-  list.update(data.shared->light_block,
-              offsetof(shared::LightBlock, lights) + std::size_t(first) * sizeof(shared::LightData),
-              std::as_bytes(std::span(sampled)));
 }
 
 }  // namespace gnomon::eevee

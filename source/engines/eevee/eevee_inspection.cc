@@ -17,7 +17,7 @@ Data &Inspection::engine_data() const
   return viewport_.engine_data<Data>(engine_);
 }
 
-/** Index in light_block. Empty where the lamp gives no light, or the viewport was never synced. */
+/** Index in Lamps::lights. Empty where the lamp gives no light, or the viewport was never synced. */
 static std::optional<std::size_t> light_of(const Data &data, std::size_t lamp)
 {
   if (!data.shared) {
@@ -75,7 +75,7 @@ std::optional<Probe> Inspection::probe(const draw::View &picture_view, std::size
   gpu::Device &device = viewport_.device();
   const draw::View view = viewport_.drawn_view(picture_view);
   const draw::View sample_view = inspected_view(data, view, viewport_, engine_.settings_, sample);
-  stl.probed_light = int(*light);
+  stl.probed_light = light_entry(data, int(*light), probed_entry);
   engine_.update_view(data, sample_view);
   gpu::CommandList list;
   SharedData &shared = *data.shared;
@@ -86,7 +86,8 @@ std::optional<Probe> Inspection::probe(const draw::View &picture_view, std::size
   }
   stl.lamp_points =
       sample ? shared.lamp_points.sample(std::uint32_t(*sample), engine_.settings_.seed) : shared.lamp_points.centers();
-  write_lamp_points(data, list);
+  write_lamp_points(data, device, list);
+  write_light_entry(data, int(*light), probed_entry, list);
   const PictureDepths depths = sample ? data.depth_feedback.picture(viewport_.drawn_size_px()) : PictureDepths();
   stl.shadows->update(device, view, pixel_size(view, viewport_), shared.shadow_pass, list, stl.lamp_points, depths);
   record_at_depths(data, sample_view, "probe", data.psl->probe_pass, data.fbl.probe_fb, list);
@@ -119,7 +120,7 @@ double Inspection::shadow_texel_size(std::size_t lamp, const glm::dvec3 &positio
 {
   const Data &data = engine_data();
   const std::optional<std::size_t> light = light_of(data, lamp);
-  return light ? data.stl.shadows->texel_size(data.shared->lamps.light_block.lights[*light], position_ws) : 0.0;
+  return light ? data.stl.shadows->texel_size(data.shared->lamps.lights[*light], position_ws) : 0.0;
 }
 
 const Shadows &Inspection::shadows() const
@@ -160,7 +161,7 @@ std::string Inspection::serialize_passes() const
 static std::optional<ShadowLayers> layers_of(const Data &data, std::size_t lamp)
 {
   const std::optional<std::size_t> light = light_of(data, lamp);
-  return light ? data.stl.shadows->layers(data.shared->lamps.light_block.lights[*light]) : std::nullopt;
+  return light ? data.stl.shadows->layers(data.shared->lamps.lights[*light]) : std::nullopt;
 }
 
 std::vector<std::string> Inspection::shadow_layers(std::size_t lamp) const

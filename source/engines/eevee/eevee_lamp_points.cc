@@ -115,13 +115,13 @@ LampPoints::LampPoints(std::span<const scene::PlacedLamp> placed, const Lamps &l
     : world_(std::move(world)), sample_count_(sample_count), toward_ws_(toward_ws)
 {
   const std::size_t world_first = placed.size() - (world_ ? world_lamps(*world_, LampShading::Point).size() : 0);
-  for (int i = 0; i < lamps.light_block.light_count; i++) {
+  for (int i = 0; i < lamps.light_count(); i++) {
     const std::size_t index = lamps.lamp_index[std::size_t(i)];
     const scene::PlacedLamp &lamp = placed[index];
     if (!has_extent(lamp)) {
       continue;
     }
-    const shared::LightData &light = lamps.light_block.lights[i];
+    const shared::LightData &light = lamps.lights[std::size_t(i)];
     Sized &sized = sized_.emplace_back(Sized{i, std::uint32_t(index), lamp, light.color, light.radius_sq});
     if (index >= world_first) {
       const std::size_t part = index - world_first;

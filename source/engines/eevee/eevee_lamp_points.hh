@@ -15,7 +15,7 @@ namespace gnomon::eevee {
 
 /** A point of a lamp with an extent. In one sample of a picture, the point replaces the lamp. */
 struct LampPoint {
-  /** Index in light_block. */
+  /** Index in Lamps::lights. */
   int light = 0;
   /** Matrix of the lamp, moved to the point. For a sun, rotated to a direction within its cone. */
   glm::mat4 world_from_lamp{1.0F};

@@ -4,11 +4,12 @@
 #include "shadows/shadow_cube.hh"
 #include "shadows/shadow_plan.hh"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 namespace gnomon::eevee {
@@ -108,7 +109,48 @@ static Feature features_of(const scene::PlacedLamp &lamp, const shared::LightSha
          (has_shape ? Feature::LampShape : Feature::None);
 }
 
-Lamps make_lamps(std::span<const scene::PlacedLamp> placed, LampShading shading)
+void lower_range(scene::PlacedLamp &lamp, float threshold)
+{
+  const bool is_area = lamp.kind == scene::LampKind::Area;
+  if (threshold <= 0.0F || (lamp.kind != scene::LampKind::Point && lamp.kind != scene::LampKind::Spot && !is_area)) {
+    return;
+  }
+  const glm::vec3 color = light_data(lamp).color;
+  const double intensity = std::max({color.r, color.g, color.b, 0.0F});
+  // At a distance d from the centre, all points of an area lamp are at least d - its half diagonal away.
+  const double extent = is_area ? glm::length(scene::area_half_size(lamp)) : 0.0;
+  const auto range = float(std::max(extent + std::sqrt(intensity / double(threshold)), 1e-30));
+  lamp.range = lamp.range > 0.0F ? std::min(lamp.range, range) : range;
+}
+
+LightReach light_reach(const scene::PlacedLamp &lamp, LampShading shading)
+{
+  const bool has_distance =
+      lamp.kind == scene::LampKind::Point || lamp.kind == scene::LampKind::Spot || lamp.kind == scene::LampKind::Area;
+  LightReach reach;
+  reach.center_ws = glm::vec3(lamp.world_from_lamp[3]);
+  if (!has_distance || lamp.range <= 0.0F) {
+    return reach;
+  }
+  double radius = lamp.range;
+  if (lamp.kind == scene::LampKind::Spot) {
+    // The smallest sphere around a part of a ball that a cone with the half angle cuts out.
+    const double angle = widest_half_angle(lamp);
+    const double forward =
+        angle <= 0.25 * std::numbers::pi ? 0.5 * radius / std::cos(angle) : radius * std::max(std::cos(angle), 0.0);
+    radius = angle <= 0.25 * std::numbers::pi ? forward
+             : angle < 0.5 * std::numbers::pi ? radius * std::sin(angle)
+                                              : radius;
+    reach.center_ws -= glm::vec3(forward * glm::dvec3(lamp.world_from_lamp[2]));
+  }
+  if (shading == LampShading::Point) {
+    radius += lamp.kind == scene::LampKind::Area ? glm::length(scene::area_half_size(lamp)) : double(lamp.radius);
+  }
+  reach.radius = float(radius);
+  return reach;
+}
+
+Lamps make_lamps(std::span<const scene::PlacedLamp> placed, LampShading shading, std::size_t light_count_max)
 {
   Lamps lamps;
   std::vector<std::string> dropped;
@@ -122,25 +164,34 @@ Lamps make_lamps(std::span<const scene::PlacedLamp> placed, LampShading shading)
           "lamp '{}': the scale of its node leaves it no area that can be drawn; it gives no light", lamp.name));
       continue;
     }
-    if (lamps.lamp_index.size() == LIGHT_MAX) {
+    if (lamps.lamp_index.size() == light_count_max) {
       dropped.push_back(lamp.name);
       continue;
     }
     lamps.lamp_index.push_back(i);
   }
-  const auto is_cube = [&](std::uint32_t lamp) { return has_cube(placed[lamp].kind, widest_half_angle(placed[lamp])); };
-  std::ranges::sort(lamps.lamp_index, {}, [&](std::uint32_t lamp) { return std::pair(!is_cube(lamp), lamp); });
-  lamps.light_block.cube_light_count = int(std::ranges::count_if(lamps.lamp_index, is_cube));
+  std::vector<LightReach> reaches(placed.size());
+  /** By index of the lamp: its group, and in it whether it does not reach everywhere. */
+  std::vector<int> order(placed.size());
   for (const std::uint32_t index : lamps.lamp_index) {
     const scene::PlacedLamp &lamp = placed[index];
-    const int light = lamps.light_block.light_count++;
-    lamps.light_block.lights[light] = light_data(lamp);
-    lamps.shape_block.shapes[light] = light_shape(lamp, shading);
-    lamps.features = lamps.features | features_of(lamp, lamps.shape_block.shapes[light]);
+    reaches[index] = light_reach(lamp, shading);
+    order[index] = (has_cube(lamp.kind, widest_half_angle(lamp)) ? 0 : 2) + (reaches[index].is_everywhere() ? 0 : 1);
+  }
+  std::ranges::sort(lamps.lamp_index, {}, [&](std::uint32_t lamp) { return std::pair(order[lamp], lamp); });
+  for (const std::uint32_t index : lamps.lamp_index) {
+    const scene::PlacedLamp &lamp = placed[index];
+    lamps.lights.push_back(light_data(lamp));
+    lamps.shapes.push_back(light_shape(lamp, shading));
+    lamps.reaches.push_back(reaches[index]);
+    lamps.features = lamps.features | features_of(lamp, lamps.shapes.back());
+    lamps.cube_light_count += order[index] < 2 ? 1 : 0;
+    lamps.cube_everywhere_count += order[index] == 0 ? 1 : 0;
+    lamps.other_everywhere_count += order[index] == 2 ? 1 : 0;
   }
   if (!dropped.empty()) {
-    lamps.limits.push_back(fmt::format("{} of {} lamps give no light, as light_block holds {}: '{}'", dropped.size(),
-                                       dropped.size() + LIGHT_MAX, LIGHT_MAX, fmt::join(dropped, "', '")));
+    lamps.limits.push_back(fmt::format("{} of {} lamps give no light, as at most {} do: '{}'", dropped.size(),
+                                       dropped.size() + light_count_max, light_count_max, fmt::join(dropped, "', '")));
   }
   return lamps;
 }

@@ -3,9 +3,12 @@
 
 #include "eevee_features.hh"
 
+#include "eevee_light_cluster_shared.h"
 #include "eevee_light_shared.h"
 #include "scene.hh"
 
+#include <cmath>
+#include <limits>
 #include <span>
 
 namespace gnomon::eevee {
@@ -18,33 +21,78 @@ enum class LampShading {
   Point,
 };
 
-/** The entry of a lamp in `light_block`, without its shadow. SceneShadows::sync writes the members of the shadow. */
+/** The lamp in the layout of the shaders, without its shadow. SceneShadows::sync writes the members of the shadow. */
 [[nodiscard]] shared::LightData light_data(const scene::PlacedLamp &lamp);
-/** The entry of a lamp in `light_shape_block`. */
+/** The extent and axes of a lamp in the layout of the shaders. */
 [[nodiscard]] shared::LightShape light_shape(const scene::PlacedLamp &lamp, LampShading shading);
 
 /** Let \a light give no light. Its shadow and its points stay as they are. */
 void leave_out(shared::LightData &light);
 
+/** A sphere that contains all points which a light can reach. World space, metres. */
+struct LightReach {
+  glm::vec3 center_ws{0.0F};
+  /** Infinite: the light reaches everywhere. */
+  float radius = std::numeric_limits<float>::infinity();
+
+  [[nodiscard]] bool is_everywhere() const
+  {
+    return std::isinf(radius);
+  }
+  bool operator==(const LightReach &) const = default;
+};
+
+/**
+ * Lower the range of \a lamp to the distance beyond which its irradiance is at most \a threshold, W/m², if that is
+ * above 0. As the window of the range is a factor of 1 - (distance / range)⁴, the irradiance at no point is lowered by
+ * more than that. Does nothing for suns and hemis.
+ */
+void lower_range(scene::PlacedLamp &lamp, float threshold);
+
+/**
+ * The reach of a lamp: its range, and within that the cone of a spot. Suns, hemis and lamps without a range reach
+ * everywhere. LampShading::Point: from all points of the lamp.
+ */
+[[nodiscard]] LightReach light_reach(const scene::PlacedLamp &lamp, LampShading shading);
+
 /** The data of all lamps that give light, in the layout of the shaders. */
 struct Lamps {
-  shared::LightBlock light_block{};
-  /** Read by the shaders only with Feature::LampShape. */
-  shared::LightShapeBlock shape_block{};
-  /** For each light of the block, the index of its lamp in the argument of make_lamps. */
+  /** First those whose shadows may be cubes, then the others; in both groups, first those that reach everywhere. */
+  std::vector<shared::LightData> lights;
+  /** One for each light. Read by the shaders only with Feature::LampShape. */
+  std::vector<shared::LightShape> shapes;
+  /** One for each light. */
+  std::vector<LightReach> reaches;
+  /** \see shared::LightClusterBlock for the members with the same names. */
+  int cube_light_count = 0;
+  int cube_everywhere_count = 0;
+  int other_everywhere_count = 0;
+  /** For each light, the index of its lamp in the argument of make_lamps. */
   std::vector<std::uint32_t> lamp_index;
   /** Features that the lamps need, without those of shadows. */
   Feature features = Feature::None;
   /** One message for each lamp that cannot be drawn. */
   std::vector<std::string> warnings;
-  /** A message with the names of the lamps that exceed LIGHT_MAX. */
+  /** A message with the names of the lamps that exceed the limit. */
   std::vector<std::string> limits;
+
+  [[nodiscard]] int light_count() const
+  {
+    return int(lights.size());
+  }
+  /** Number of lights that do not reach everywhere. */
+  [[nodiscard]] int local_count() const
+  {
+    return light_count() - cube_everywhere_count - other_everywhere_count;
+  }
 };
 
 /**
- * The data of \a lamps. Lamps with has_cube are first; both groups keep the order of \a lamps. Lamps that give no light
- * (black, intensity 0, no area) get no entry.
+ * The data of \a lamps. Lamps with has_cube are first. In both groups, those that reach everywhere are first; otherwise
+ * they keep the order of \a lamps. Lamps that give no light (black, intensity 0, no area) get no entry, and those after
+ * \a light_count_max lights neither.
  */
-[[nodiscard]] Lamps make_lamps(std::span<const scene::PlacedLamp> lamps, LampShading shading = LampShading::Whole);
+[[nodiscard]] Lamps make_lamps(std::span<const scene::PlacedLamp> lamps, LampShading shading = LampShading::Whole,
+                               std::size_t light_count_max = LIGHT_COUNT_MAX);
 
 }  // namespace gnomon::eevee

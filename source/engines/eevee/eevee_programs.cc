@@ -9,7 +9,7 @@ namespace gnomon::eevee {
 
 namespace {
 
-constexpr std::array<FeatureDefine, 18> feature_table = {
+constexpr std::array<FeatureDefine, 19> feature_table = {
     {{Feature::Light, "USE_LIGHT", "something shines"},
      {Feature::Punctual, "USE_PUNCTUAL", "a point, spot or area lamp shines"},
      {Feature::Specular, "USE_SPECULAR", "a material reflects specularly"},
@@ -29,12 +29,14 @@ constexpr std::array<FeatureDefine, 18> feature_table = {
      {Feature::Layers, "USE_LAYERS", "a material has a clear coat, sheen or anisotropy, or transmits light"},
      {Feature::Transmission, "USE_TRANSMISSION", "a material transmits light"},
      {Feature::Multiscatter, "USE_MULTISCATTER",
-      "microfacets reflect light more than once, and a material reflects specularly"}}};
+      "microfacets reflect light more than once, and a material reflects specularly"},
+     {Feature::LightClusters, "USE_LIGHT_CLUSTERS",
+      "many lamps have a range, or there are more than light_block holds"}}};
 
 /** Features that only affect lighting. Variants without Feature::Light have none of them. */
 constexpr Feature light_features = Feature::Light | Feature::Punctual | Feature::Specular | Feature::ShadowCube |
                                    Feature::ShadowMap | Feature::ShadowPcf | Feature::ShadowEsm | Feature::ShadowEvsm |
-                                   Feature::LampShape | Feature::World | Feature::Multiscatter;
+                                   Feature::LampShape | Feature::World | Feature::Multiscatter | Feature::LightClusters;
 /** Features that the visibility of a lamp depends on. */
 constexpr Feature shadow_features = Feature::Light | Feature::Punctual | Feature::ShadowCube | Feature::ShadowMap |
                                     Feature::ShadowPcf | Feature::ShadowEsm | Feature::ShadowEvsm;
@@ -119,6 +121,14 @@ bool is_possible(Feature features, const ShaderDeclaration &declaration)
   if (has(features, Feature::Transmission) && !has(features, Feature::Layers)) {
     return false;
   }
+  // Most scenes with many lamps have point lamps or spots, and reflect. \see with_variant
+  if (has(features, Feature::LightClusters) &&
+      (!has(features, Feature::Punctual) || !has(features, Feature::Specular) ||
+       has(features, Feature::ShadowEsm) != has(features, Feature::ShadowEvsm) ||
+       (has(features, Feature::ShadowEsm) &&
+        has(features, Feature::ShadowCube | Feature::ShadowMap) != has(features, Feature::ShadowPcf)))) {
+    return false;
+  }
   // Microfacets that reflect light once or several times are those of specular reflection.
   if (has(features, Feature::Multiscatter) && !has(features, Feature::Specular)) {
     return false;
@@ -158,6 +168,13 @@ std::span<const ShaderDeclaration> shader_declarations()
 
 Feature with_variant(Feature features)
 {
+  if (has(features, Feature::LightClusters)) {
+    features = features | Feature::Punctual | Feature::Specular;
+    if (has(features, Feature::ShadowEsm)) {
+      const bool has_depths = has(features, Feature::ShadowCube | Feature::ShadowMap);
+      features = features | Feature::ShadowEvsm | (has_depths ? Feature::ShadowPcf : Feature::None);
+    }
+  }
   if (has(features, Feature::Transmission)) {
     // Also without lamps, the way of the light behind depends on normals and on the reflectance.
     features = features | Feature::Light | Feature::Specular;

@@ -32,10 +32,7 @@ void bind_lit(draw::ShadingGroup &group, Data &data)
   group.bind_storage_ref("material_block", &stl.material_block);
   group.bind_storage_ref("full_material_block", &stl.full_material_block);
   group.bind_storage_ref("layer_block", &stl.layer_block);
-  group.bind_uniform("light_block", data.shared->light_block);
-  if (data.shared->light_shape_block) {
-    group.bind_uniform("light_shape_block", data.shared->light_shape_block);
-  }
+  bind_lights(group, data);
   const WorldResources &world = data.shared->world;
   if (world.block) {
     group.bind_uniform("world_block", world.block);
@@ -175,35 +172,16 @@ void Engine::make_blocks(draw::Viewport &viewport)
   // share the blocks.
   const Feature read = with_variant(stl.features | (stl.material_features & (Feature::Layers | Feature::Transmission)) |
                                     asked_features());
+  make_lights(data, device, settings_, read);
   if (!has(read, Feature::Light)) {
-    shared.light_block = {};
-    shared.light_shape_block = {};
     shared.ltc_table = {};
     shared.multiscatter_table = {};
     shared.world.block = {};
     shared.world.levels = {};
     return;
   }
-  if (!shared.light_block) {
-    shared.light_block = device.create_buffer({"light_block", gpu::BufferKind::Uniform, sizeof(shared::LightBlock)});
-    shared.is_light_block_written = false;
-  }
-  if (!has(read, Feature::LampShape)) {
-    shared.light_shape_block = {};
-  }
-  else if (!shared.light_shape_block) {
-    shared.light_shape_block =
-        device.create_buffer({"light_shape_block", gpu::BufferKind::Uniform, sizeof(shared::LightShapeBlock)});
-    shared.is_light_block_written = false;
-  }
   update_world(shared.world, device, scene_, stl.features, settings_);
   make_tables(shared, device, stl.features, read);
-  if (!std::exchange(shared.is_light_block_written, true)) {
-    device.update(shared.light_block, shared.lamps.light_block);
-    if (shared.light_shape_block) {
-      device.update(shared.light_shape_block, shared.lamps.shape_block);
-    }
-  }
 }
 
 void Engine::record_background(draw::Viewport &viewport)
@@ -289,6 +267,8 @@ void Engine::record(draw::Viewport &viewport)
       .shadow_block = stl.shadows->block().id(),
       .light_block = shared.light_block.id(),
       .light_shape_block = shared.light_shape_block.id(),
+      .light_texture = shared.light_texture.id(),
+      .light_cluster_block = stl.clusters.block.id(),
       .ltc_table = shared.ltc_table.id(),
       .multiscatter_table = shared.multiscatter_table.id(),
       .world_block = shared.world.block.id(),
@@ -399,7 +379,7 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
     call(data.psl->tint_pass, shaders_.get(device, ShaderId::DebugCascades, stl.features), side, MaterialClass::Plain,
          {}, [&data](draw::ShadingGroup &group) {
            bind_lit(group, data);
-           group.constant("tinted_light", *data.shared->tinted_light);
+           group.constant("tinted_light", light_entry(data, *data.shared->tinted_light, tinted_entry));
          });
   }
   if (settings_.has_surfaces) {

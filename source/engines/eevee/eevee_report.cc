@@ -267,10 +267,10 @@ Report Inspection::report() const
   }
   report.shadow_counters = stl.shadows->counters();
   report.pass_recordings = stl.pass_recordings;
-  for (int i = 0; i < lamps.light_block.light_count; i++) {
+  for (int i = 0; i < lamps.light_count(); i++) {
     const scene::PlacedLamp &lamp = shared.placed[lamps.lamp_index[std::size_t(i)]];
     const bool is_asked_for = shadow_kind(lamp, settings.shadow) != scene::ShadowKind::None;
-    report.lost_shadow_count += is_asked_for && lamps.light_block.lights[i].shadow_kind == SHADOW_NONE ? 1 : 0;
+    report.lost_shadow_count += is_asked_for && lamps.lights[std::size_t(i)].shadow_kind == SHADOW_NONE ? 1 : 0;
   }
 
   const ReportSource source{scene, shaders, settings, data, viewport_};
@@ -285,8 +285,12 @@ Report Inspection::report() const
   const bool is_recorded = data.is_recorded;
   const std::string no_shadow = settings.shadow.kind == scene::ShadowKind::None ? "shadows are off" : "no such lamp";
   const auto why_not = [&](std::string reason) { return is_recorded ? std::move(reason) : nothing_seen; };
-  part("light_block", bool(shared.light_block), fmt::format("{} lights", lamps.light_block.light_count),
-       has(f, Feature::Light) ? nothing_seen : "no lamp gives light");
+  part("light_block", bool(shared.light_block), fmt::format("{} lights", lamps.light_count()),
+       !has(f, Feature::Light)          ? "no lamp gives light"
+       : has(f, Feature::LightClusters) ? "the lights are in light_texture"
+                                        : nothing_seen);
+  part("light_texture", bool(shared.light_texture), fmt::format("{} lights", lamps.light_count()),
+       has(f, Feature::LightClusters) ? nothing_seen : "few lamps have a range");
   part("shadow_cubes", bool(shadows.cubes()), fmt::format("{} point lamps or wide spots", shadows.cube_count()),
        has(f, Feature::ShadowCube) ? nothing_seen : no_shadow);
   part("shadow_maps", bool(shadows.maps()), fmt::format("{} suns or spots", shadows.map_count()),

@@ -59,6 +59,13 @@ FrameNode target_nodes(const ReportSource &source)
            : !source.data.is_recorded ? nothing_seen
                                       : "no caster can shadow a visible surface";
   };
+  add(source.data.shared->light_texture, "light_texture",
+      fmt::format("{} lights", source.data.shared->lamps.light_count()),
+      why_no_feature(source, Feature::LightClusters));
+  const LightClusters &lists = source.data.stl.clusters.lists;
+  add(source.data.stl.clusters.texture, "light_lists",
+      fmt::format("{} entries for {} parts of the view", lists.entry_count(), lists.froxel_count()),
+      why_no_feature(source, Feature::LightClusters));
   add(source.data.shared->ltc_table, "ltc_table", "specular light of lamps with an extent and of the world; sheen",
       source.has(Feature::LampShape | Feature::World) ? why_no_feature(source, Feature::Specular)
                                                       : why_no_feature(source, Feature::LampShape));
@@ -104,10 +111,13 @@ FrameNode block_nodes(const ReportSource &source)
       source.data.is_recorded ? no_full_material : nothing_seen);
   add(source.render_scene.materials().layer_buffer(), "layer_block",
       fmt::format("{} materials", source.scene().materials().size()), why_no_feature(source, Feature::Layers));
-  add(source.data.shared->light_block, "light_block",
-      fmt::format("{} lights", source.data.shared->lamps.light_block.light_count), "no lamp gives light");
+  add(source.data.shared->light_block, "light_block", fmt::format("{} lights", source.data.shared->lamps.light_count()),
+      source.has(Feature::LightClusters) ? "the lights are in light_texture" : "no lamp gives light");
   add(source.data.shared->light_shape_block, "light_shape_block", "extents and axes of lamps",
-      why_no_feature(source, Feature::LampShape));
+      source.has(Feature::LightClusters) ? "the lights are in light_texture"
+                                         : why_no_feature(source, Feature::LampShape));
+  add(stl.clusters.block, "light_cluster_block", "the grid of light_lists",
+      why_no_feature(source, Feature::LightClusters));
   add(source.data.shared->world.block, "world_block", "light from all around", why_no_feature(source, Feature::World));
   add(stl.shadows->block(), "shadow_block", "shadows of depths",
       source.has(any_shadow) ? "all shadows are exponential" : no_shadow);

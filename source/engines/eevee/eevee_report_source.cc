@@ -77,6 +77,7 @@ std::string why_no_feature(const ReportSource &source, Feature feature)
                                               : "no lamp gives light";
   }
   switch (feature) {
+    case Feature::LightClusters: return "few lamps have a range";
     case Feature::Punctual: return "no point, spot or area lamp gives light";
     case Feature::Specular: return source.data.is_recorded ? "every material is Lambertian" : nothing_seen;
     case Feature::ShadowCube: return why_no_shadow(source, "no point lamp or wide spot casts a shadow of depths");

@@ -36,9 +36,9 @@ std::vector<scene::PlacedLamp> world_lamps(const render_scene::WorldLight &world
 void mark_world(Lamps &lamps, std::size_t first)
 {
   lamps.features = lamps.features | Feature::Light | Feature::World;
-  for (int i = 0; i < lamps.light_block.light_count; i++) {
+  for (int i = 0; i < lamps.light_count(); i++) {
     if (lamps.lamp_index[std::size_t(i)] >= first) {
-      lamps.light_block.lights[i].kind = LIGHT_WORLD;
+      lamps.lights[std::size_t(i)].kind = LIGHT_WORLD;
     }
   }
 }

@@ -23,6 +23,7 @@ Limits query_limits()
   Limits limits;
   limits.texture_size_max = get(GL_MAX_TEXTURE_SIZE);
   limits.array_layers_max = get(GL_MAX_ARRAY_TEXTURE_LAYERS);
+  limits.buffer_texels_max = get(GL_MAX_TEXTURE_BUFFER_SIZE);
   limits.uniform_block_bytes_max = std::size_t(get(GL_MAX_UNIFORM_BLOCK_SIZE));
   limits.storage_block_bytes_max = std::size_t(get(GL_MAX_SHADER_STORAGE_BLOCK_SIZE));
   limits.color_attachment_max = std::min(get(GL_MAX_COLOR_ATTACHMENTS), get(GL_MAX_DRAW_BUFFERS));

@@ -72,6 +72,8 @@ class GlDevice final : public Device {
   struct GlTexture {
     GLuint name = 0;
     TextureDesc desc;
+    /** Holds the texels of TextureKind::Buffer; otherwise 0. */
+    GLuint buffer = 0;
   };
   struct GlFramebuffer {
     GLuint name = 0;
@@ -88,7 +90,7 @@ class GlDevice final : public Device {
   /** A sampler that a program declares. */
   struct DeclaredSampler {
     GLuint unit = 0;
-    /** Texture target: GL_TEXTURE_2D or GL_TEXTURE_2D_ARRAY. */
+    /** Texture target: GL_TEXTURE_2D, GL_TEXTURE_2D_ARRAY or GL_TEXTURE_BUFFER. */
     GLenum target = GL_NONE;
     bool is_comparison = false;
   };
@@ -193,7 +195,7 @@ class GlDevice final : public Device {
   IdTable<std::array<GLuint, 2>> timers_{ResourceKind::TimerQuery};
 
   /** Indexed by target (2D, 2D array) and by whether the sampler compares depths. */
-  std::array<std::array<Dummy, 2>, 2> dummies_{};
+  std::array<std::array<Dummy, 2>, 3> dummies_{};
 
   GLuint vertex_array_ = 0;
   GLuint empty_vertex_array_ = 0;

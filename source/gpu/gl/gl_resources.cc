@@ -12,7 +12,26 @@ namespace {
 
 GLenum gl_target(TextureKind kind)
 {
-  return kind == TextureKind::Array ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
+  switch (kind) {
+    case TextureKind::Flat: return GL_TEXTURE_2D;
+    case TextureKind::Array: return GL_TEXTURE_2D_ARRAY;
+    case TextureKind::Buffer: return GL_TEXTURE_BUFFER;
+  }
+  return GL_TEXTURE_2D;
+}
+
+/**
+ * A buffer of \a size_bytes. It is bound instead of using glNamedBufferData: llvmpipe delays updates until earlier
+ * draws have finished only if it knows the buffer's target.
+ */
+GLuint create_buffer_of(GLenum target, std::size_t size_bytes)
+{
+  GLuint buffer = 0;
+  glCreateBuffers(1, &buffer);
+  const SavedBufferBinding saved(target);
+  glBindBuffer(target, buffer);
+  glBufferData(target, GLsizeiptr(size_bytes), nullptr, GL_DYNAMIC_DRAW);
+  return buffer;
 }
 
 GLint gl_wrap(Wrap wrap)
@@ -58,17 +77,26 @@ void GlDevice::texture_create(ResourceId id, const TextureDesc &desc)
   const trace::Span span("create texture", desc.name);
   const Entry entry(*this);
   GLuint texture = 0;
+  GLuint buffer = 0;
   glCreateTextures(gl_target(desc.kind), 1, &texture);
   const GLenum internal = gl_format(desc.format).internal;
-  if (desc.kind == TextureKind::Flat) {
-    glTextureStorage2D(texture, desc.mip_levels, internal, desc.width, desc.height);
-  }
-  else {
-    glTextureStorage3D(texture, desc.mip_levels, internal, desc.width, desc.height, desc.layers);
+  switch (desc.kind) {
+    case TextureKind::Flat: glTextureStorage2D(texture, desc.mip_levels, internal, desc.width, desc.height); break;
+    case TextureKind::Array:
+      glTextureStorage3D(texture, desc.mip_levels, internal, desc.width, desc.height, desc.layers);
+      break;
+    case TextureKind::Buffer:
+      buffer = create_buffer_of(GL_TEXTURE_BUFFER, desc.size_bytes());
+      glTextureBuffer(texture, internal, buffer);
+      label(GL_BUFFER, buffer, desc.name);
+      break;
   }
   label(GL_TEXTURE, texture, desc.name);
-  check_or(fmt::format("texture '{}'", desc.name), [&] { glDeleteTextures(1, &texture); });
-  textures_.insert(id, {texture, desc});
+  check_or(fmt::format("texture '{}'", desc.name), [&] {
+    glDeleteTextures(1, &texture);
+    glDeleteBuffers(1, &buffer);
+  });
+  textures_.insert(id, {texture, desc, buffer});
 }
 
 void GlDevice::sampler_create(ResourceId id, const SamplerDesc &desc)
@@ -94,7 +122,7 @@ void GlDevice::sampler_create(ResourceId id, const SamplerDesc &desc)
 
 void GlDevice::attach(GLuint framebuffer, GLenum point, const AttachmentLayout &attachment, std::vector<GLuint> &views)
 {
-  const auto &[texture, desc] = textures_.at(attachment.texture);
+  const auto &[texture, desc, buffer] = textures_.at(attachment.texture);
   if (attachment.layer_count > 1) {
     GLuint &view = views.emplace_back();
     glGenTextures(1, &view);
@@ -140,16 +168,8 @@ void GlDevice::buffer_create(ResourceId id, const BufferDesc &desc)
 {
   const trace::Span span("create buffer", desc.name);
   const Entry entry(*this);
-  GLuint buffer = 0;
-  glCreateBuffers(1, &buffer);
-  // Bind the buffer instead of using glNamedBufferData: llvmpipe delays updates until earlier draws have finished only
-  // if it knows the buffer's target.
-  const GLenum target = desc.kind == BufferKind::Uniform ? GL_UNIFORM_BUFFER : GL_SHADER_STORAGE_BUFFER;
-  {
-    const SavedBufferBinding saved(target);
-    glBindBuffer(target, buffer);
-    glBufferData(target, GLsizeiptr(desc.size_bytes), nullptr, GL_DYNAMIC_DRAW);
-  }
+  const GLuint buffer = create_buffer_of(
+      desc.kind == BufferKind::Uniform ? GL_UNIFORM_BUFFER : GL_SHADER_STORAGE_BUFFER, desc.size_bytes);
   label(GL_BUFFER, buffer, desc.name);
   check_or(fmt::format("buffer '{}'", desc.name), [&] { glDeleteBuffers(1, &buffer); });
   buffers_.insert(id, {buffer, desc.size_bytes});
@@ -232,6 +252,7 @@ void GlDevice::resource_destroy(ResourceKind kind, ResourceId id)
   switch (kind) {
     case ResourceKind::Texture:
       glDeleteTextures(1, &textures_.at(id).name);
+      glDeleteBuffers(1, &textures_.at(id).buffer);
       textures_.erase(id);
       break;
     case ResourceKind::Sampler:
@@ -271,13 +292,16 @@ void GlDevice::texture_upload(ResourceId id, int layer, std::span<const std::byt
 {
   const Entry entry(*this);
   const SavedPixelStore pixel_store(PixelTransfer::Unpack);
-  const auto &[name, desc] = textures_.at(id);
+  const auto &[name, desc, buffer] = textures_.at(id);
   const GlFormat format = gl_format(desc.format);
-  if (desc.kind == TextureKind::Flat) {
-    glTextureSubImage2D(name, 0, 0, 0, desc.width, desc.height, format.format, format.type, texels.data());
-  }
-  else {
-    glTextureSubImage3D(name, 0, 0, 0, layer, desc.width, desc.height, 1, format.format, format.type, texels.data());
+  switch (desc.kind) {
+    case TextureKind::Flat:
+      glTextureSubImage2D(name, 0, 0, 0, desc.width, desc.height, format.format, format.type, texels.data());
+      break;
+    case TextureKind::Array:
+      glTextureSubImage3D(name, 0, 0, 0, layer, desc.width, desc.height, 1, format.format, format.type, texels.data());
+      break;
+    case TextureKind::Buffer: glNamedBufferSubData(buffer, 0, GLsizeiptr(texels.size()), texels.data()); break;
   }
   check(fmt::format("texture '{}'", desc.name));
 }
@@ -285,7 +309,7 @@ void GlDevice::texture_upload(ResourceId id, int layer, std::span<const std::byt
 void GlDevice::mipmaps_generate(ResourceId id)
 {
   const Entry entry(*this);
-  const auto &[name, desc] = textures_.at(id);
+  const auto &[name, desc, buffer] = textures_.at(id);
   const std::string what = fmt::format("texture '{}'", desc.name);
   check_host_state(what);
   glGenerateTextureMipmap(name);
@@ -306,7 +330,12 @@ void GlDevice::texture_read(ResourceId id, int layer, std::span<std::byte> texel
 {
   const Entry entry(*this);
   const SavedPixelStore pixel_store(PixelTransfer::Pack);
-  const auto &[name, desc] = textures_.at(id);
+  const auto &[name, desc, buffer] = textures_.at(id);
+  if (desc.kind == TextureKind::Buffer) {
+    glGetNamedBufferSubData(buffer, 0, GLsizeiptr(texels.size()), texels.data());
+    check(fmt::format("texture '{}'", desc.name));
+    return;
+  }
   const GlFormat format = gl_format(desc.format);
   // Read bands of rows, because OpenGL counts the bytes of a read with 32 bits.
   constexpr std::size_t band_bytes_max = std::size_t(1) << 30U;

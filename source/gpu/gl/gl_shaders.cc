@@ -159,10 +159,11 @@ std::vector<GlDevice::DeclaredSampler> GlDevice::declared_samplers(GLuint progra
     GLint unit = 0;
     glGetUniformiv(program, location, &unit);
     const bool is_flat = type == GL_SAMPLER_2D || type == GL_SAMPLER_2D_SHADOW;
-    GNOMON_ASSERT(is_flat || type == GL_SAMPLER_2D_ARRAY || type == GL_SAMPLER_2D_ARRAY_SHADOW,
-                  "sampler '{}': its kind has no texture to stand in for it", name);
-    samplers.push_back({GLuint(unit), GLenum(is_flat ? GL_TEXTURE_2D : GL_TEXTURE_2D_ARRAY),
-                        type == GL_SAMPLER_2D_SHADOW || type == GL_SAMPLER_2D_ARRAY_SHADOW});
+    GNOMON_ASSERT(
+        is_flat || type == GL_SAMPLER_2D_ARRAY || type == GL_SAMPLER_2D_ARRAY_SHADOW || type == GL_SAMPLER_BUFFER,
+        "sampler '{}': its kind has no texture to stand in for it", name);
+    const GLenum target = is_flat ? GL_TEXTURE_2D : type == GL_SAMPLER_BUFFER ? GL_TEXTURE_BUFFER : GL_TEXTURE_2D_ARRAY;
+    samplers.push_back({GLuint(unit), target, type == GL_SAMPLER_2D_SHADOW || type == GL_SAMPLER_2D_ARRAY_SHADOW});
   }
   return samplers;
 }
@@ -170,23 +171,35 @@ std::vector<GlDevice::DeclaredSampler> GlDevice::declared_samplers(GLuint progra
 const GlDevice::Dummy &GlDevice::dummy(const DeclaredSampler &sampler)
 {
   const bool is_array = sampler.target == GL_TEXTURE_2D_ARRAY;
-  Dummy &one = dummies_[is_array][sampler.is_comparison];
+  const bool is_buffer = sampler.target == GL_TEXTURE_BUFFER;
+  Dummy &one = dummies_[is_buffer ? 2 : is_array ? 1 : 0][sampler.is_comparison];
   if (one.texture != 0) {
     return one;
   }
   const GLenum format = sampler.is_comparison ? GL_DEPTH_COMPONENT32F : GL_RGBA8;
   glCreateTextures(sampler.target, 1, &one.texture);
-  if (is_array) {
-    glTextureStorage3D(one.texture, 1, format, 1, 1, 1);
+  if (is_buffer) {
+    constexpr std::uint32_t black = 0;
+    GLuint buffer = 0;
+    glCreateBuffers(1, &buffer);
+    glNamedBufferStorage(buffer, sizeof(black), &black, 0);
+    glTextureBuffer(one.texture, format, buffer);
+    // The texture keeps the buffer.
+    glDeleteBuffers(1, &buffer);
   }
   else {
-    glTextureStorage2D(one.texture, 1, format, 1, 1);
-  }
-  if (sampler.is_comparison) {
-    glClearTexImage(one.texture, 0, GL_DEPTH_COMPONENT, GL_FLOAT, nullptr);
-  }
-  else {
-    glClearTexImage(one.texture, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    if (is_array) {
+      glTextureStorage3D(one.texture, 1, format, 1, 1, 1);
+    }
+    else {
+      glTextureStorage2D(one.texture, 1, format, 1, 1);
+    }
+    if (sampler.is_comparison) {
+      glClearTexImage(one.texture, 0, GL_DEPTH_COMPONENT, GL_FLOAT, nullptr);
+    }
+    else {
+      glClearTexImage(one.texture, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    }
   }
   label(GL_TEXTURE, one.texture, "unbound");
   glCreateSamplers(1, &one.sampler);

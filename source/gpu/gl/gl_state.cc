@@ -66,6 +66,7 @@ GLenum binding_of(GLenum buffer_target)
     case GL_QUERY_BUFFER: return GL_QUERY_BUFFER_BINDING;
     case GL_UNIFORM_BUFFER: return GL_UNIFORM_BUFFER_BINDING;
     case GL_SHADER_STORAGE_BUFFER: return GL_SHADER_STORAGE_BUFFER_BINDING;
+    case GL_TEXTURE_BUFFER: return GL_TEXTURE_BUFFER_BINDING;
     default: return GL_NONE;
   }
 }
@@ -224,8 +225,8 @@ SavedDrawState::SavedDrawState(const UsedSlots &slots)
                slots.storage_slots);
   for (const GLuint unit : slots.texture_units) {
     glActiveTexture(GL_TEXTURE0 + unit);
-    texture_units_.push_back(
-        {unit, integer(GL_TEXTURE_BINDING_2D), integer(GL_TEXTURE_BINDING_2D_ARRAY), integer(GL_SAMPLER_BINDING)});
+    texture_units_.push_back({unit, integer(GL_TEXTURE_BINDING_2D), integer(GL_TEXTURE_BINDING_2D_ARRAY),
+                              integer(GL_TEXTURE_BINDING_BUFFER), integer(GL_SAMPLER_BINDING)});
   }
   for (GLuint i = 0; i < slots.color_count; i++) {
     ColorBuffer &saved = color_buffers_.emplace_back();
@@ -246,6 +247,7 @@ SavedDrawState::~SavedDrawState()
     glActiveTexture(GL_TEXTURE0 + saved.unit);
     glBindTexture(GL_TEXTURE_2D, GLuint(saved.texture_2d));
     glBindTexture(GL_TEXTURE_2D_ARRAY, GLuint(saved.texture_2d_array));
+    glBindTexture(GL_TEXTURE_BUFFER, GLuint(saved.texture_buffer));
     glBindSampler(saved.unit, GLuint(saved.sampler));
   }
   glActiveTexture(GLenum(active_texture_));

@@ -76,7 +76,7 @@ void set_draw_defaults();
  * destruction. A submission changes no other state. The saved state is:
  * - program, vertex array and draw framebuffer;
  * - bindings of the indirect, uniform and storage buffers, and the indexed bindings of the used slots;
- * - textures (2D, 2D array) and samplers of the used units, and the active texture unit;
+ * - textures (2D, 2D array, buffer) and samplers of the used units, and the active texture unit;
  * - viewport, scissor box and depth range of viewport 0, and the scissor tests of all viewports;
  * - clip control, polygon mode and provoking vertex;
  * - the capabilities listed in gl_state.cc;
@@ -102,6 +102,7 @@ class SavedDrawState {
     GLuint unit;
     GLint texture_2d;
     GLint texture_2d_array;
+    GLint texture_buffer;
     GLint sampler;
   };
   struct ColorBuffer {

@@ -60,7 +60,7 @@ double mean_over(const scene::PlacedLamp &lamp, int count, Value &&value)
   LampPoints points(placed, lamps, glm::vec3(0.0F));
   double sum = 0.0;
   for (int i = 0; i < count; i++) {
-    sum += value(light_at(lamps.light_block.lights[0], points.sample(std::uint32_t(i), 3)[0]));
+    sum += value(light_at(lamps.lights[0], points.sample(std::uint32_t(i), 3)[0]));
   }
   return sum / count;
 }

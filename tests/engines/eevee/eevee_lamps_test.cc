@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_lamps.hh"
 
+#include "eevee_light_cluster_shared.h"
 #include "shadows/shadow_plan.hh"
 
 #include <gtest/gtest.h>
@@ -63,11 +64,11 @@ TEST(Lamps, AreaLampsAreScaledByTheirNode)
   placed[0].scale = {2.0, 0.5, 7.0};
   const Lamps lamps = make_lamps(placed);
   EXPECT_EQ(lamps.features, Feature::Light | Feature::Punctual | Feature::LampShape);
-  EXPECT_EQ(lamps.light_block.lights[0].kind, LIGHT_ELLIPSE);
+  EXPECT_EQ(lamps.lights[0].kind, LIGHT_ELLIPSE);
   // Blender's power P: radiance P / (4 A), which is P / 4 straight ahead.
-  EXPECT_EQ(lamps.light_block.lights[0].color, glm::vec3(2, 1, 0.5F));
-  EXPECT_EQ(lamps.shape_block.shapes[0].axis_x_ws, glm::vec3(3, 0, 0));
-  EXPECT_EQ(lamps.shape_block.shapes[0].axis_y_ws, glm::vec3(0, 0.5F, 0));
+  EXPECT_EQ(lamps.lights[0].color, glm::vec3(2, 1, 0.5F));
+  EXPECT_EQ(lamps.shapes[0].axis_x_ws, glm::vec3(3, 0, 0));
+  EXPECT_EQ(lamps.shapes[0].axis_y_ws, glm::vec3(0, 0.5F, 0));
 }
 
 TEST(Lamps, AreaLampsWithoutAreaAreNamedAndLeftOut)
@@ -76,7 +77,7 @@ TEST(Lamps, AreaLampsWithoutAreaAreNamedAndLeftOut)
   placed = {unit_lamp(scene::LampKind::Area), unit_lamp(scene::LampKind::Sun)};
   placed[0].scale.y = 0.0;
   const Lamps lamps = make_lamps(placed);
-  EXPECT_EQ(lamps.light_block.light_count, 1);
+  EXPECT_EQ(lamps.light_count(), 1);
   EXPECT_EQ(lamps.lamp_index, std::vector<std::uint32_t>{1});
   ASSERT_EQ(lamps.warnings.size(), 1U);
   EXPECT_NE(lamps.warnings[0].find("'lamp': the scale of its node leaves it no area"), std::string::npos);
@@ -91,9 +92,9 @@ TEST(Lamps, ScaleMakesASpotsConeElliptical)
   placed[0].scale = {2.0, 0.5, 1.0};
   const Lamps lamps = make_lamps(placed);
   EXPECT_EQ(lamps.features, Feature::Light | Feature::Punctual | Feature::LampShape);
-  const shared::LightShape &shape = lamps.shape_block.shapes[0];
+  const shared::LightShape &shape = lamps.shapes[0];
   // At the rim along each axis, the tangent is that of the round cone times the scale.
-  const shared::LightData &light = lamps.light_block.lights[0];
+  const shared::LightData &light = lamps.lights[0];
   const float tangent = std::tan(placed[0].spot_outer_angle);
   for (const glm::vec3 &rim : {glm::vec3(2.0F * tangent, 0, -1), glm::vec3(0, 0.5F * tangent, -1)}) {
     EXPECT_NEAR(shared::elliptic_drop(glm::normalize(rim), light.forward_ws, shape.axis_x_ws, shape.axis_y_ws),
@@ -111,13 +112,13 @@ TEST(Lamps, LampsShadedAsPointsHaveNoExtent)
   placed[0].radius = 0.5F;
   placed[1].angle = 0.2F;
   const Lamps whole = make_lamps(placed, LampShading::Whole);
-  EXPECT_FLOAT_EQ(whole.shape_block.shapes[0].extent, 0.5F);
+  EXPECT_FLOAT_EQ(whole.shapes[0].extent, 0.5F);
   // The area is before the sun, as its shadow is a cube.
-  EXPECT_GT(whole.shape_block.shapes[1].extent, 0.0F);
-  EXPECT_FLOAT_EQ(whole.shape_block.shapes[2].extent, std::tan(0.1F));
+  EXPECT_GT(whole.shapes[1].extent, 0.0F);
+  EXPECT_FLOAT_EQ(whole.shapes[2].extent, std::tan(0.1F));
   const Lamps point = make_lamps(placed, LampShading::Point);
   for (int i = 0; i < 3; i++) {
-    EXPECT_EQ(point.shape_block.shapes[i].extent, 0.0F);
+    EXPECT_EQ(point.shapes[std::size_t(i)].extent, 0.0F);
   }
 }
 
@@ -128,9 +129,9 @@ TEST(Lamps, SizedLampsAreDrawnWithoutAWarning)
   placed[0].radius = 0.5F;
   placed[1].angle = 0.1F;
   const Lamps lamps = make_lamps(placed);
-  EXPECT_EQ(lamps.light_block.light_count, 2);
+  EXPECT_EQ(lamps.light_count(), 2);
   EXPECT_TRUE(lamps.warnings.empty());
-  EXPECT_FLOAT_EQ(lamps.light_block.lights[0].radius_sq, 0.25F);
+  EXPECT_FLOAT_EQ(lamps.lights[0].radius_sq, 0.25F);
 }
 
 TEST(Lamps, BlackLampsHaveNoEntry)
@@ -140,7 +141,7 @@ TEST(Lamps, BlackLampsHaveNoEntry)
   placed[0].intensity = 0.0F;
   placed[1].color = glm::vec3(0.0F);
   const Lamps lamps = make_lamps(placed);
-  EXPECT_EQ(lamps.light_block.light_count, 0);
+  EXPECT_EQ(lamps.light_count(), 0);
   EXPECT_EQ(lamps.features, Feature::None);
 }
 
@@ -158,20 +159,19 @@ TEST(Lamps, FeaturesAreThoseOfTheKinds)
 // hazards.md: the lamp above the maximum was written out of range, or dropped silently.
 TEST(Lamps, LampAboveTheLimitIsNamedAndTheOthersAreUnchanged)
 {
-  std::vector<scene::PlacedLamp> placed;
-  for (int i = 0; i <= LIGHT_MAX; i++) {
-    placed.push_back(unit_lamp(scene::LampKind::Point));
-    placed.back().name = "lamp" + std::to_string(i);
-    placed.back().intensity = float(i + 1);
+  std::vector<scene::PlacedLamp> placed(LIGHT_COUNT_MAX + 1, unit_lamp(scene::LampKind::Point));
+  for (std::size_t i = 0; i < placed.size(); i++) {
+    placed[i].name = "lamp" + std::to_string(i);
+    placed[i].intensity = float(i + 1);
   }
   const Lamps lamps = make_lamps(placed);
-  EXPECT_EQ(lamps.light_block.light_count, LIGHT_MAX);
-  for (int i = 0; i < LIGHT_MAX; i++) {
-    EXPECT_EQ(lamps.light_block.lights[i].color.r, float(i + 1));
+  ASSERT_EQ(lamps.light_count(), LIGHT_COUNT_MAX);
+  for (std::size_t i = 0; i < LIGHT_COUNT_MAX; i++) {
+    ASSERT_EQ(lamps.lights[i].color.r, float(i + 1));
   }
   ASSERT_EQ(lamps.limits.size(), 1U);
-  EXPECT_NE(lamps.limits[0].find("'lamp255'"), std::string::npos) << lamps.limits[0];
-  EXPECT_EQ(lamps.limits[0].find("'lamp254'"), std::string::npos);
+  EXPECT_NE(lamps.limits[0].find("'lamp65536'"), std::string::npos) << lamps.limits[0];
+  EXPECT_EQ(lamps.limits[0].find("'lamp65535'"), std::string::npos);
 
   placed.pop_back();
   EXPECT_TRUE(make_lamps(placed).limits.empty());
@@ -191,16 +191,16 @@ TEST(Lamps, LampsWithCubesAreBeforeTheOthers)
   placed[6].spot_outer_angle = 1.3F;
   const Lamps lamps = make_lamps(placed);
   EXPECT_EQ(lamps.lamp_index, (std::vector<std::uint32_t>{1, 3, 6, 0, 2, 4}));
-  EXPECT_EQ(lamps.light_block.cube_light_count, 3);
-  ASSERT_EQ(lamps.light_block.light_count, 6);
-  EXPECT_EQ(lamps.light_block.lights[0].kind, LIGHT_POINT);
-  EXPECT_EQ(lamps.light_block.lights[1].kind, LIGHT_RECTANGLE);
-  EXPECT_EQ(lamps.light_block.lights[2].kind, LIGHT_SPOT);
-  EXPECT_EQ(lamps.light_block.lights[3].kind, LIGHT_SUN);
-  EXPECT_EQ(lamps.light_block.lights[4].kind, LIGHT_HEMI);
-  EXPECT_EQ(lamps.light_block.lights[5].kind, LIGHT_SPOT);
-  EXPECT_EQ(lamps.shape_block.shapes[0].extent, 1.5F);
-  EXPECT_EQ(lamps.shape_block.shapes[5].extent, 4.5F);
+  EXPECT_EQ(lamps.cube_light_count, 3);
+  ASSERT_EQ(lamps.light_count(), 6);
+  EXPECT_EQ(lamps.lights[0].kind, LIGHT_POINT);
+  EXPECT_EQ(lamps.lights[1].kind, LIGHT_RECTANGLE);
+  EXPECT_EQ(lamps.lights[2].kind, LIGHT_SPOT);
+  EXPECT_EQ(lamps.lights[3].kind, LIGHT_SUN);
+  EXPECT_EQ(lamps.lights[4].kind, LIGHT_HEMI);
+  EXPECT_EQ(lamps.lights[5].kind, LIGHT_SPOT);
+  EXPECT_EQ(lamps.shapes[0].extent, 1.5F);
+  EXPECT_EQ(lamps.shapes[5].extent, 4.5F);
 
   // plan_shadows gives memory to the first lamps of the scene, whatever their kind.
   const std::vector<ShadowLamp> shadows = shadow_lamps(placed, lamps);
@@ -215,11 +215,58 @@ TEST(Lamps, SpotThatItsScaleMakesWideHasACube)
   std::vector<scene::PlacedLamp> placed;
   placed = {unit_lamp(scene::LampKind::Sun), unit_lamp(scene::LampKind::Spot)};
   placed[1].spot_outer_angle = 0.9F;
-  EXPECT_EQ(make_lamps(placed).light_block.cube_light_count, 0);
+  EXPECT_EQ(make_lamps(placed).cube_light_count, 0);
   placed[1].scale = {3.0, 1.0, 1.0};
   const Lamps lamps = make_lamps(placed);
-  EXPECT_EQ(lamps.light_block.cube_light_count, 1);
-  EXPECT_EQ(lamps.light_block.lights[0].kind, LIGHT_SPOT);
+  EXPECT_EQ(lamps.cube_light_count, 1);
+  EXPECT_EQ(lamps.lights[0].kind, LIGHT_SPOT);
+}
+
+// The error is that of the window; beyond the range it is the whole irradiance.
+TEST(Lamps, LoweredRangesTakeAtMostTheThreshold)
+{
+  constexpr float threshold = 0.01F;
+  for (const scene::LampKind kind : {scene::LampKind::Point, scene::LampKind::Spot, scene::LampKind::Area}) {
+    for (const float range : {0.0F, 3.0F, 1e4F}) {
+      scene::PlacedLamp lamp = unit_lamp(kind);
+      lamp.intensity = 20.0F;
+      lamp.color = {0.5F, 1.0F, 0.2F};
+      lamp.range = range;
+      lamp.radius = 0.3F;
+      const shared::LightData all = light_data(lamp);
+      lower_range(lamp, threshold);
+      const shared::LightData less = light_data(lamp);
+      EXPECT_TRUE(lamp.range > 0.0F && (range == 0.0F || lamp.range <= range));
+      for (float distance = 0.1F; distance < 200.0F; distance *= 1.01F) {
+        const float whole = shared::distance_falloff(distance * distance, all.radius_sq, all.range_inv_sq);
+        const float part = shared::distance_falloff(distance * distance, less.radius_sq, less.range_inv_sq);
+        EXPECT_LE(all.color.g * (whole - part), 1.0001F * threshold) << distance;
+        EXPECT_GE(whole, part) << distance;
+      }
+    }
+  }
+  scene::PlacedLamp lamp = unit_lamp(scene::LampKind::Point);
+  lower_range(lamp, 0.0F);
+  EXPECT_EQ(lamp.range, 0.0F);
+  lamp = unit_lamp(scene::LampKind::Sun);
+  lower_range(lamp, threshold);
+  EXPECT_EQ(lamp.range, 0.0F);
+}
+
+TEST(Lamps, LampsThatReachEverywhereAreBeforeTheOthersOfTheirGroup)
+{
+  using enum scene::LampKind;
+  std::vector<scene::PlacedLamp> placed = {unit_lamp(Point), unit_lamp(Sun),  unit_lamp(Point), unit_lamp(Spot),
+                                           unit_lamp(Spot),  unit_lamp(Area), unit_lamp(Point)};
+  for (const std::size_t i : {0, 3, 6}) {
+    placed[i].range = 5.0F;
+  }
+  const Lamps lamps = make_lamps(placed);
+  EXPECT_EQ(lamps.lamp_index, (std::vector<std::uint32_t>{2, 5, 0, 6, 1, 4, 3}));
+  EXPECT_EQ(lamps.cube_light_count, 4);
+  EXPECT_EQ(lamps.cube_everywhere_count, 2);
+  EXPECT_EQ(lamps.other_everywhere_count, 2);
+  EXPECT_EQ(lamps.local_count(), 3);
 }
 
 }  // namespace

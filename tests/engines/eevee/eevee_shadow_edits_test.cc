@@ -72,8 +72,8 @@ TEST_F(ShadowEditsTest, ALampThatComesOrGoesDrawsNoOtherAgain)
   drawn_layers();
   const auto places = [&] {
     std::map<std::uint64_t, int> first_layers;
-    for (int i = 0; i < lamps.light_block.light_count; i++) {
-      const shared::LightData &light = lamps.light_block.lights[i];
+    for (int i = 0; i < lamps.light_count(); i++) {
+      const shared::LightData &light = lamps.lights[std::size_t(i)];
       first_layers[placed[lamps.lamp_index[std::size_t(i)]].node.key()] = shadows.layers(light)->first_layer;
     }
     return first_layers;
@@ -122,7 +122,7 @@ TEST_F(ShadowEditsTest, AnotherNumberOfCascadesDrawsNoSpotAgain)
     shadows.update(*device, view, distance > 100.0F ? 1.0F : 1e-3F, pass, list);
     device->submit(list);
     shadows.submitted();
-    counts.push_back(shadows.layers(lamps.light_block.lights[0])->count);
+    counts.push_back(shadows.layers(lamps.lights[0])->count);
     const bool is_first = counts.size() == 1;
     EXPECT_EQ(list.serialize(*device).find("shadow of spot") != std::string::npos, is_first)
         << "view " << counts.size();

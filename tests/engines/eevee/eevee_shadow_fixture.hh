@@ -58,7 +58,7 @@ class ShadowsTest : public testing::Test {
   void sync(const ShadowSettings &asked = {})
   {
     const std::vector<ShadowLamp> identified = identified_lamps();
-    scene_shadows.sync(device->limits(), identified, bounds_ws(), lamps.light_block, asked);
+    scene_shadows.sync(device->limits(), identified, bounds_ws(), lamps.lights, asked);
     scene_shadows.allocate(*device, shaders);
     shadows.allocate(*device);
     pass.clear();

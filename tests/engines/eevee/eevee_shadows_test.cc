@@ -102,9 +102,9 @@ TEST_F(ShadowsTest, PointsAndWideSpotsHaveCubesSunsAndSpotsMaps)
   EXPECT_EQ(scene_shadows.map_count(), 2U);
   EXPECT_EQ(scene_shadows.cubes().desc().layers, 12);
   EXPECT_EQ(scene_shadows.maps().desc().layers, 2);
-  EXPECT_EQ(lamps.light_block.lights[1].shadow_kind, SHADOW_CUBE);
-  EXPECT_EQ(lamps.light_block.lights[1].shadow_index, 1);
-  EXPECT_EQ(lamps.light_block.lights[4].shadow_kind, SHADOW_NONE);
+  EXPECT_EQ(lamps.lights[1].shadow_kind, SHADOW_CUBE);
+  EXPECT_EQ(lamps.lights[1].shadow_index, 1);
+  EXPECT_EQ(lamps.lights[4].shadow_kind, SHADOW_NONE);
 }
 
 // hazards.md: the second lamp's layers overlapped the first's.
@@ -280,9 +280,9 @@ TEST_F(ShadowsTest, LampsWithoutLayersAreNamed)
   EXPECT_NE(scene_shadows.limits()[1].find("2 lamps lost their shadow"), std::string::npos)
       << scene_shadows.limits()[1];
   EXPECT_NE(scene_shadows.limits()[1].find("'point4', 'point3'"), std::string::npos) << scene_shadows.limits()[1];
-  EXPECT_EQ(lamps.light_block.lights[3].shadow_kind, SHADOW_NONE);
-  EXPECT_EQ(lamps.light_block.lights[3].shadow_index, -1);
-  EXPECT_EQ(lamps.light_block.lights[2].shadow_kind, SHADOW_CUBE) << "the first are unchanged";
+  EXPECT_EQ(lamps.lights[3].shadow_kind, SHADOW_NONE);
+  EXPECT_EQ(lamps.lights[3].shadow_index, -1);
+  EXPECT_EQ(lamps.lights[2].shadow_kind, SHADOW_CUBE) << "the first are unchanged";
 }
 
 TEST_F(ShadowsTest, AreLimitedByTheDevicesLayers)
@@ -292,7 +292,8 @@ TEST_F(ShadowsTest, AreLimitedByTheDevicesLayers)
     add_lamp(scene::LampKind::Point, "point" + std::to_string(i));
   }
   SceneShadows few;
-  few.sync(small->limits(), identified_lamps(), bounds_ws(), lamps.light_block, {.cube_size_px = 16});
+  const std::vector<ShadowLamp> identified = identified_lamps();
+  few.sync(small->limits(), identified, bounds_ws(), lamps.lights, {.cube_size_px = 16});
   EXPECT_EQ(few.cube_count(), 2U);
   EXPECT_NE(few.limits().at(0).find("'point2'"), std::string::npos);
 }
@@ -312,7 +313,8 @@ TEST_F(ShadowsTest, WithoutVertexLayersTheGeometryShaderChooses)
   const std::unique_ptr<gpu::Device> old = gpu::create_null_device({.has_vertex_layer = false});
   SceneShadows plain;
   const auto sync_plain = [&](const ShadowSettings &asked) {
-    plain.sync(old->limits(), identified_lamps(), bounds_ws(), lamps.light_block, asked);
+    const std::vector<ShadowLamp> identified = identified_lamps();
+    plain.sync(old->limits(), identified, bounds_ws(), lamps.lights, asked);
   };
   EXPECT_THROW(sync_plain({.layer_pass = LayerPass::Layered}), gpu::Error);
   sync_plain({});

@@ -85,7 +85,8 @@ void SceneShadows::for_each_slot(Action &&action)
 }
 
 void SceneShadows::sync(const gpu::Limits &device_limits, std::span<const ShadowLamp> lamps,
-                        const scene::Bounds &bounds_ws, shared::LightBlock &light_block, const ShadowSettings &settings)
+                        const scene::Bounds &bounds_ws, std::span<shared::LightData> lights,
+                        const ShadowSettings &settings)
 {
   check(settings);
   const LayerPass layer_pass = best_layer_pass(settings.layer_pass, device_limits);
@@ -131,7 +132,7 @@ void SceneShadows::sync(const gpu::Limits &device_limits, std::span<const Shadow
   for_each_slot([&](const ShadowSlot &slot) { owners.push_back({slot.lamp.key, slot.viewport}); });
   map_runs_.keep_only(owners);
   for (const ShadowPlace &place : plan_.places) {
-    shared::LightData &light = light_block.lights[lamps[place.lamp].light];
+    shared::LightData &light = lights[std::size_t(lamps[place.lamp].light)];
     light.shadow_kind = place.technique->light_shadow_kind();
     light.shadow_index = place.entry;
   }

@@ -31,14 +31,14 @@ class SceneShadows {
   SceneShadows &operator=(const SceneShadows &) = delete;
 
   /**
-   * Plan the shadows of \a lamps, and write shadow_kind and shadow_index of their entries in \a light_block. Creates no
-   * resources on the device. \a bounds_ws: bounds of the scene.
+   * Plan the shadows of \a lamps, and write shadow_kind and shadow_index of their entries in \a lights. Creates no
+   * resources on the device. \a bounds_ws: bounds of the scene. \a lights: Lamps::lights.
    *
    * \throws gpu::Error if a setting is out of range. It names the setting, and the lamp if the setting is that of a
    * lamp. Nothing has changed then.
    */
   void sync(const gpu::Limits &device_limits, std::span<const ShadowLamp> lamps, const scene::Bounds &bounds_ws,
-            shared::LightBlock &light_block, const ShadowSettings &settings);
+            std::span<shared::LightData> lights, const ShadowSettings &settings);
   /** Create the resources of the plan and free those that are no longer needed. \a shaders: for the filter passes. */
   void allocate(gpu::Device &device, ShaderCache &shaders);
   void add_caster(const Caster &caster)

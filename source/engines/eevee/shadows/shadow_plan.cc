@@ -37,9 +37,9 @@ float widest_half_angle(const scene::PlacedLamp &lamp)
 std::vector<ShadowLamp> shadow_lamps(std::span<const scene::PlacedLamp> placed, const Lamps &lamps, LampShading shading)
 {
   std::vector<ShadowLamp> result;
-  for (int i = 0; i < lamps.light_block.light_count; i++) {
+  for (int i = 0; i < lamps.light_count(); i++) {
     const scene::PlacedLamp &lamp = placed[lamps.lamp_index[std::size_t(i)]];
-    const shared::LightShape &shape = lamps.shape_block.shapes[i];
+    const shared::LightShape &shape = lamps.shapes[std::size_t(i)];
     const bool is_area = lamp.kind == scene::LampKind::Area;
     const float longest = std::max(glm::length(shape.axis_x_ws), glm::length(shape.axis_y_ws));
     const bool is_sampled = shading == LampShading::Point && has_extent(lamp);
@@ -56,7 +56,7 @@ std::vector<ShadowLamp> shadow_lamps(std::span<const scene::PlacedLamp> placed, 
                       .is_sampled = is_sampled,
                       .is_smooth = is_sampled && lamp.kind == scene::LampKind::Sun && lamp.angle > smooth_angle});
   }
-  // light_block has another order.
+  // Lamps::lights has another order.
   std::ranges::sort(result, {}, [&](const ShadowLamp &lamp) { return lamps.lamp_index[std::size_t(lamp.light)]; });
   return result;
 }

@@ -22,7 +22,7 @@ class ShadowTechnique;
 struct ShadowLamp {
   /** Identity of the lamp instance: unique, and the same in each sync while the lamp exists. */
   std::uint64_t key = 0;
-  /** Index in light_block. */
+  /** Index in Lamps::lights. */
   int light = 0;
   /** For messages. */
   std::string name{};

@@ -15,7 +15,7 @@ namespace gnomon::eevee {
 
 /** The state of the layers of a light, for reports. */
 struct ShadowState {
-  /** Index in light_block. */
+  /** Index in Lamps::lights. */
   int light = 0;
   /** Name of the array of the layers: "shadow_cubes", "shadow_maps" or "shadow_distance_cube". */
   std::string_view array;
