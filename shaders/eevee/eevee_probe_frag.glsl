@@ -6,7 +6,7 @@
 
 PUSH_CONSTANT_LAYOUT uniform push_constant_block
 {
-  /** Index in light_block. */
+  /** Entry of light_block. */
   int probed_light;
 };
 

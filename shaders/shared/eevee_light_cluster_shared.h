@@ -51,7 +51,9 @@ SHARED_FUNCTION int light_froxel(LightClusterBlock grid, vec3 position_ws)
   int column = int(clamp(p.x / w, 0.0f, float(grid.column_count - 1)));
   int row = int(clamp(p.y / w, 0.0f, float(grid.row_count - 1)));
   int slice = int(clamp(grid.slice_scale * f + grid.slice_bias, 0.0f, float(grid.slice_count - 1)));
-  return (slice * grid.row_count + row) * grid.column_count + column;
+  int froxel = (slice * grid.row_count + row) * grid.column_count + column;
+  // Of NaN, clamp and the conversion to an integer are undefined.
+  return clamp(froxel, 0, grid.slice_count * grid.row_count * grid.column_count - 1);
 }
 
 SHARED_END

@@ -22,7 +22,7 @@ SHARED_BEGIN
 #define SHADOW_MAP 2
 #define SHADOW_ESM 3
 
-/** A lamp: an entry of `light_block`. */
+/** A lamp: an entry of `light_block`, or four texels of `light_texture`. */
 struct LightData {
   /** Position, world space, metres. Unused by sun and hemi. */
   vec3 position_ws;

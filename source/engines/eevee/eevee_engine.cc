@@ -41,6 +41,9 @@ static void check(const Settings &settings)
   if (!(settings.light_threshold >= 0.0F) || std::isinf(settings.light_threshold)) {
     throw gpu::Error("eevee: light_threshold {} is not a finite number of at least 0", settings.light_threshold);
   }
+  if (settings.clustered_lamps_min < 1) {
+    throw gpu::Error("eevee: clustered_lamps_min {} is not at least 1", settings.clustered_lamps_min);
+  }
   const bool is_whole = settings.sample_first == 0 && settings.sample_end == 0;
   if (!is_whole && (settings.sample_first < 0 || settings.drawn_sample_count() < 1 ||
                     settings.sample_first + settings.drawn_sample_count() > settings.sample_count)) {
@@ -92,7 +95,7 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
   }
   shared.synced.reset();
   shared.has_casters = false;
-  shared.is_light_block_written = false;
+  shared.are_lights_written = false;
   shared.revision++;
   const LampShading shading = settings_.planned_sample_count() > 1 ? LampShading::Point : LampShading::Whole;
   const std::shared_ptr<const render_scene::WorldLight> &world = scene_.world();
@@ -122,6 +125,7 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
   shared.shadows.sync(device_limits, shadow_lamps(shared.placed, shared.lamps, shading), scene_.bounds(),
                       shared.lamps.lights, shadow);
   const scene::Bounds &bounds_ws = scene_.bounds();
+  shared.bounds_ws = bounds_ws;
   shared.lamp_points =
       shading == LampShading::Point
           ? LampPoints(shared.placed, shared.lamps, bounds_ws.is_empty() ? glm::vec3(0.0F) : bounds_ws.center(), world,

@@ -82,14 +82,15 @@ struct Settings {
   /** Measure the time of each step on the device. */
   bool is_timed = false;
   /**
-   * Irradiance, W/m², below which a lamp may be left out: the range of points, spots and areas is lowered to the
-   * distance beyond which they give less. The irradiance of each lamp is too small by at most this. 0: no light is left
-   * out.
+   * Irradiance, W/m², below which a lamp may be left out: the range of points and spots is lowered to the distance
+   * beyond which they give less. The irradiance of each lamp is too small by at most this. There is no bound for the
+   * highlights of smooth surfaces. 0: no light is left out.
    */
   float light_threshold = 0.0F;
   /**
    * The number of lamps with a range from which on pixels visit only the lamps that can reach them, by lists for the
-   * parts of the view. With more than LIGHT_MAX lamps it is always so. The picture does not depend on it.
+   * parts of the view. With more than LIGHT_MAX lamps it is always so. The picture does not depend on it, up to
+   * rounding. At least 1.
    */
   int clustered_lamps_min = 8;
   /** Multiply the picture by a colour for each cascade of the first sun that has a shadow. */

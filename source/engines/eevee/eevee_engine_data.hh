@@ -162,7 +162,7 @@ struct SharedData {
   /** The lamps of the scene, followed by the lamps of world_lamps. */
   std::vector<scene::PlacedLamp> placed;
   Lamps lamps;
-  /** By index in light_block: whether the light is not in Settings::light. */
+  /** By index in Lamps::lights: whether the light is not in Settings::light. */
   std::vector<bool> is_light_left_out;
   /** Empty unless Settings::light has no emission. */
   std::optional<render_scene::MaterialTable> materials_without_emission;
@@ -172,9 +172,11 @@ struct SharedData {
   std::optional<ShadowsKey> synced;
   /** Increased by each sync of the lamps. */
   std::uint64_t revision = 0;
+  /** Of the scene, at the last sync of the lamps. */
+  scene::Bounds bounds_ws;
   /** Increased when the reach of a light, or the order of the lights, changes. */
   std::uint64_t reaches_revision = 0;
-  /** Index in light_block of the sun of Settings::has_cascade_tint. Empty without this setting or such a sun. */
+  /** Index in Lamps::lights of the sun of Settings::has_cascade_tint. Empty without this setting or such a sun. */
   std::optional<int> tinted_light;
   /**
    * The lights. With Feature::LightClusters, they are in `light_texture`; then this block exists for Inspection::probe
@@ -196,7 +198,7 @@ struct SharedData {
   /** Empty without a world. */
   WorldResources world;
   /** The lights on the device are those of the last sync. */
-  bool is_light_block_written = false;
+  bool are_lights_written = false;
   /** Draws the casters; all lamps share it. */
   draw::Pass shadow_pass;
   gpu::BufferRange object_block;

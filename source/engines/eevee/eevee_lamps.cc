@@ -109,17 +109,22 @@ static Feature features_of(const scene::PlacedLamp &lamp, const shared::LightSha
          (has_shape ? Feature::LampShape : Feature::None);
 }
 
+std::string listed(std::span<const std::string> names)
+{
+  constexpr std::size_t named_max = 10;
+  const std::size_t named = std::min(names.size(), named_max);
+  const std::string more = named < names.size() ? fmt::format(" and {} more", names.size() - named) : "";
+  return fmt::format("'{}'{}", fmt::join(names.first(named), "', '"), more);
+}
+
 void lower_range(scene::PlacedLamp &lamp, float threshold)
 {
-  const bool is_area = lamp.kind == scene::LampKind::Area;
-  if (threshold <= 0.0F || (lamp.kind != scene::LampKind::Point && lamp.kind != scene::LampKind::Spot && !is_area)) {
+  if (threshold <= 0.0F || (lamp.kind != scene::LampKind::Point && lamp.kind != scene::LampKind::Spot)) {
     return;
   }
   const glm::vec3 color = light_data(lamp).color;
   const double intensity = std::max({color.r, color.g, color.b, 0.0F});
-  // At a distance d from the centre, all points of an area lamp are at least d - its half diagonal away.
-  const double extent = is_area ? glm::length(scene::area_half_size(lamp)) : 0.0;
-  const auto range = float(std::max(extent + std::sqrt(intensity / double(threshold)), 1e-30));
+  const auto range = float(std::max(std::sqrt(intensity / double(threshold)), 1e-30));
   lamp.range = lamp.range > 0.0F ? std::min(lamp.range, range) : range;
 }
 
@@ -190,8 +195,8 @@ Lamps make_lamps(std::span<const scene::PlacedLamp> placed, LampShading shading,
     lamps.other_everywhere_count += order[index] == 2 ? 1 : 0;
   }
   if (!dropped.empty()) {
-    lamps.limits.push_back(fmt::format("{} of {} lamps give no light, as at most {} do: '{}'", dropped.size(),
-                                       dropped.size() + light_count_max, light_count_max, fmt::join(dropped, "', '")));
+    lamps.limits.push_back(fmt::format("{} of {} lamps give no light, as at most {} do: {}", dropped.size(),
+                                       dropped.size() + light_count_max, light_count_max, listed(dropped)));
   }
   return lamps;
 }

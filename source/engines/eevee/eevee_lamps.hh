@@ -10,6 +10,8 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace gnomon::eevee {
 
@@ -20,6 +22,9 @@ enum class LampShading {
   /** Shading of one point of the lamp, at the position in LightData. The mean over many points gives the whole lamp. */
   Point,
 };
+
+/** For messages: the first ten of \a names in quotes, and the number of the others. */
+[[nodiscard]] std::string listed(std::span<const std::string> names);
 
 /** The lamp in the layout of the shaders, without its shadow. SceneShadows::sync writes the members of the shadow. */
 [[nodiscard]] shared::LightData light_data(const scene::PlacedLamp &lamp);
@@ -45,7 +50,8 @@ struct LightReach {
 /**
  * Lower the range of \a lamp to the distance beyond which its irradiance is at most \a threshold, W/m², if that is
  * above 0. As the window of the range is a factor of 1 - (distance / range)⁴, the irradiance at no point is lowered by
- * more than that. Does nothing for suns and hemis.
+ * more than that. Only for points and spots: in one frame, the light of an area lamp has no window, and would end at an
+ * edge.
  */
 void lower_range(scene::PlacedLamp &lamp, float threshold);
 
@@ -73,7 +79,7 @@ struct Lamps {
   Feature features = Feature::None;
   /** One message for each lamp that cannot be drawn. */
   std::vector<std::string> warnings;
-  /** A message with the names of the lamps that exceed the limit. */
+  /** A message that names the lamps that exceed the limit. */
   std::vector<std::string> limits;
 
   [[nodiscard]] int light_count() const

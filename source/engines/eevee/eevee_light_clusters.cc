@@ -94,8 +94,29 @@ void LightClusters::find_locals(const Lamps &lamps, const draw::View &view)
   }
 }
 
-/** Divide the depths of the lights' reaches into slices. The first and the last one have no end there. */
-void LightClusters::set_slices()
+/** Depths between the near and the far plane of \a view at which there may be surfaces. \a bounds_ws: of these. */
+LightClusters::Slab LightClusters::visible_depths(const draw::View &view, const scene::Bounds &bounds_ws)
+{
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const glm::dmat4 view_from_clip = glm::inverse(glm::dmat4(view.clip_from_view()));
+  const auto depth_of_plane = [&](double clip_z) {
+    const glm::dvec4 point = view_from_clip * glm::dvec4(0.0, 0.0, clip_z, 1.0);
+    return -point.z / point.w;
+  };
+  Slab visible{-infinity, infinity};
+  if (!bounds_ws.is_empty()) {
+    const scene::Bounds bounds_vs = scene::transformed(bounds_ws, view.view_from_world());
+    visible = {-bounds_vs.max.z, -bounds_vs.min.z};
+  }
+  // fmax and fmin skip a NaN. An infinite far plane has a depth of infinity, or of NaN.
+  return {std::fmax(visible.near, float(depth_of_plane(1.0))), std::fmin(visible.far, float(depth_of_plane(0.0)))};
+}
+
+/**
+ * Divide the depths of the lights' reaches that are \a visible into slices. The first and the last one have no end
+ * there.
+ */
+void LightClusters::set_slices(const Slab &visible)
 {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   float near = infinity;
@@ -104,13 +125,16 @@ void LightClusters::set_slices()
     near = std::min(near, -local.sphere.center.z - local.sphere.radius);
     far = std::max(far, -local.sphere.center.z + local.sphere.radius);
   }
+  near = std::max(near, visible.near);
+  far = std::min(far, visible.far);
   const bool is_perspective = block_.is_perspective != 0;
   if (is_perspective) {
     near = std::max(near, first_depth_min * far);
   }
   const double first = is_perspective ? std::log(double(near)) : double(near);
   const double step = ((is_perspective ? std::log(double(far)) : double(far)) - first) / block_.slice_count;
-  const bool is_one = !std::isfinite(first) || step <= 1e-6 * std::max(std::abs(first), 1.0);
+  // The step is NaN if all reaches end behind the eye.
+  const bool is_one = !std::isfinite(first) || !(step > 1e-6 * std::max(std::abs(first), 1.0));
   block_.slice_count = is_one ? 1 : block_.slice_count;
   block_.slice_scale = is_one ? 0.0F : float(1.0 / step);
   block_.slice_bias = is_one ? 0.0F : float(-first / step);
@@ -225,8 +249,10 @@ void LightClusters::write_values()
   }
 }
 
-void LightClusters::build(const Lamps &lamps, const draw::View &view, glm::ivec2 size_px, std::size_t device_values_max)
+void LightClusters::build(const Lamps &lamps, const draw::View &view, glm::ivec2 size_px,
+                          const scene::Bounds &bounds_ws, std::size_t device_values_max)
 {
+  const Slab visible = visible_depths(view, bounds_ws);
   block_ = {};
   block_.is_perspective = view.is_perspective() ? 1 : 0;
   block_.cube_light_count = lamps.cube_light_count;
@@ -245,7 +271,7 @@ void LightClusters::build(const Lamps &lamps, const draw::View &view, glm::ivec2
       block_.column_count = block_.row_count = block_.slice_count = 1;
       set_grid(view, size_px);
     }
-    set_slices();
+    set_slices(visible);
     if (find_runs(most)) {
       break;
     }

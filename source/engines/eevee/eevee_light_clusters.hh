@@ -26,11 +26,11 @@ class LightClusters {
 
   /**
    * Make the lists of \a lamps for \a view. \a size_px: size of its picture. Views that are offset by up to a pixel
-   * have the same lists. \a device_values_max: most values that the device takes, at least 3 more than there are
-   * lights. The grid is coarsened until its lists fit into both limits. The memory is reused, so that a build like the
-   * last one allocates nothing.
+   * have the same lists. \a bounds_ws: of the surfaces. Lists are shortest within it, and complete everywhere. \a
+   * device_values_max: most values that the device takes, at least 3 more than there are lights. The grid is coarsened
+   * until its lists fit into both limits. The memory is reused, so that a build like the last one allocates nothing.
    */
-  void build(const Lamps &lamps, const draw::View &view, glm::ivec2 size_px,
+  void build(const Lamps &lamps, const draw::View &view, glm::ivec2 size_px, const scene::Bounds &bounds_ws,
              std::size_t device_values_max = std::numeric_limits<std::size_t>::max());
 
   [[nodiscard]] const shared::LightClusterBlock &block() const
@@ -75,7 +75,7 @@ class LightClusters {
     Sphere sphere;
     std::uint32_t light = 0;
   };
-  /** Depths of a slice, with a margin for rounding, metres. */
+  /** Depths, metres. */
   struct Slab {
     float near = 0.0F;
     float far = 0.0F;
@@ -87,9 +87,10 @@ class LightClusters {
     std::uint32_t light = 0;
   };
 
+  [[nodiscard]] static Slab visible_depths(const draw::View &view, const scene::Bounds &bounds_ws);
   void set_grid(const draw::View &view, glm::ivec2 size_px);
   void find_locals(const Lamps &lamps, const draw::View &view);
-  void set_slices();
+  void set_slices(const Slab &visible);
   /** \return false if there are more than \a most values */
   [[nodiscard]] bool find_runs(std::size_t most);
   /** Adds the runs of a light in a slice. \a part: contains the part of its reach that is in the slice. */
@@ -101,6 +102,7 @@ class LightClusters {
   /** The planes between the columns and between the rows, and those at both edges of the grid. */
   std::vector<Plane> columns_;
   std::vector<Plane> rows_;
+  /** With a margin for rounding. */
   std::vector<Slab> slices_;
   /** Bound of the displacement by rounding in light_froxel: this fraction of the coordinates' magnitude, plus metres.
    */

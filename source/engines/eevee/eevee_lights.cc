@@ -99,7 +99,7 @@ void make_lights(Data &data, gpu::Device &device, const Settings &settings, Feat
     }
     else if (!buffer) {
       buffer = device.create_buffer({name, gpu::BufferKind::Uniform, size_bytes});
-      shared.is_light_block_written = false;
+      shared.are_lights_written = false;
     }
   };
   keep(shared.light_block, has_block, "light_block", sizeof(shared::LightBlock));
@@ -115,7 +115,7 @@ void make_lights(Data &data, gpu::Device &device, const Settings &settings, Feat
         device.create_buffer({"light_cluster_block", gpu::BufferKind::Uniform, sizeof(shared::LightClusterBlock)});
     data.stl.clusters.made.reset();
   }
-  const bool is_written = shared.is_light_block_written && (!is_clustered || shared.light_texture);
+  const bool is_written = shared.are_lights_written && (!is_clustered || shared.light_texture);
   if (!has(read, Feature::Light) || is_written) {
     return;
   }
@@ -125,7 +125,7 @@ void make_lights(Data &data, gpu::Device &device, const Settings &settings, Feat
   else {
     write_light_block(shared, device);
   }
-  shared.is_light_block_written = true;
+  shared.are_lights_written = true;
 }
 
 void bind_lights(draw::ShadingGroup &group, const Data &data)
@@ -174,7 +174,9 @@ void write_lamp_points(Data &data, gpu::Device &device, gpu::CommandList &list)
       const auto light = std::size_t(point.light);
       set_texels(light_texels_of(shared, light), sampled(shared, point), shared.lamps.shapes[light]);
     }
-    device.upload(shared.light_texture, 0, std::as_bytes(std::span(shared.light_texels)));
+    // The points are in the order of the lights.
+    const std::size_t end = LIGHT_TEXELS * (std::size_t(points.back().light) + 1);
+    device.upload(shared.light_texture, 0, std::as_bytes(std::span(shared.light_texels).first(end)));
     if (shared.tinted_light) {
       write_light_entry(data, *shared.tinted_light, tinted_entry, list);
     }
@@ -198,11 +200,14 @@ void update_light_clusters(Data &data, draw::Viewport &viewport, const draw::Vie
   const SharedData &shared = *data.shared;
   const ViewClusters::Key key{view, viewport.drawn_size_px(), shared.reaches_revision};
   if (clusters.made == key && clusters.texture) {
+    // Another viewport may have made the sampler anew.
+    clusters.binding = {clusters.texture.id(), shared.light_sampler.id()};
     return;
   }
   clusters.made.reset();
   gpu::Device &device = viewport.device();
-  clusters.lists.build(shared.lamps, view, viewport.drawn_size_px(), std::size_t(device.limits().buffer_texels_max));
+  clusters.lists.build(shared.lamps, view, viewport.drawn_size_px(), shared.bounds_ws,
+                       std::size_t(device.limits().buffer_texels_max));
   list.update(clusters.block, 0, std::as_bytes(std::span(&clusters.lists.block(), 1)));
   const std::span<const float> values = clusters.lists.values();
   if (!clusters.texture || int(values.size()) > clusters.texture.desc().width) {

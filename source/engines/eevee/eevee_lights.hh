@@ -31,7 +31,7 @@ struct ViewClusters {
     bool operator==(const Key &) const = default;
   };
   LightClusters lists;
-  /** What the lists on the device were made from. Empty if they are undefined. */
+  /** The inputs that the lists on the device were made from. Empty if they are undefined. */
   std::optional<Key> made;
   gpu::Buffer block;
   gpu::Texture texture;

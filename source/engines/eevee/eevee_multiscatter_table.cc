@@ -5,7 +5,7 @@
 namespace gnomon::eevee {
 
 // clang-format off
-static constexpr float table[] = {
+static constexpr float multiscatter_values[] = {
 6.386696e-02F,5.900834e-03F,7.332661e+00F,4.760818e-02F,
 6.387782e-02F,1.788669e-02F,6.031652e+00F,4.750566e-02F,
 6.392425e-02F,3.335841e-02F,5.242004e+00F,4.718117e-02F,
@@ -1035,7 +1035,7 @@ static constexpr float table[] = {
 
 std::span<const float> multiscatter_table()
 {
-  return table;
+  return multiscatter_values;
 }
 
 }  // namespace gnomon::eevee

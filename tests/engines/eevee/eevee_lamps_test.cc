@@ -226,7 +226,7 @@ TEST(Lamps, SpotThatItsScaleMakesWideHasACube)
 TEST(Lamps, LoweredRangesTakeAtMostTheThreshold)
 {
   constexpr float threshold = 0.01F;
-  for (const scene::LampKind kind : {scene::LampKind::Point, scene::LampKind::Spot, scene::LampKind::Area}) {
+  for (const scene::LampKind kind : {scene::LampKind::Point, scene::LampKind::Spot}) {
     for (const float range : {0.0F, 3.0F, 1e4F}) {
       scene::PlacedLamp lamp = unit_lamp(kind);
       lamp.intensity = 20.0F;
@@ -248,9 +248,36 @@ TEST(Lamps, LoweredRangesTakeAtMostTheThreshold)
   scene::PlacedLamp lamp = unit_lamp(scene::LampKind::Point);
   lower_range(lamp, 0.0F);
   EXPECT_EQ(lamp.range, 0.0F);
-  lamp = unit_lamp(scene::LampKind::Sun);
-  lower_range(lamp, threshold);
-  EXPECT_EQ(lamp.range, 0.0F);
+  // The light of an area lamp as a whole has no window, and would end at an edge.
+  for (const scene::LampKind kind : {scene::LampKind::Sun, scene::LampKind::Hemi, scene::LampKind::Area}) {
+    lamp = unit_lamp(kind);
+    lower_range(lamp, threshold);
+    EXPECT_EQ(lamp.range, 0.0F);
+  }
+}
+
+// The float nearest to π/2 is above π/2, where the tangent is negative.
+TEST(Lamps, AStretchedSpotOfAHalfSpaceReachesItsRange)
+{
+  for (const float angle : {1.5F, std::numbers::pi_v<float> / 2.0F}) {
+    for (const double scale : {0.5, 1.0, 2.0, 3.0}) {
+      scene::PlacedLamp lamp = unit_lamp(scene::LampKind::Spot);
+      lamp.spot_outer_angle = angle;
+      lamp.range = 4.0F;
+      lamp.scale = {scale, scale, 1.0};
+      EXPECT_NEAR(widest_half_angle(lamp), std::atan2(scale * std::sin(angle), std::cos(angle)), 1e-6F);
+      EXPECT_TRUE(has_cube(lamp.kind, widest_half_angle(lamp)));
+      EXPECT_NEAR(light_reach(lamp, LampShading::Whole).radius, 4.0F, 0.05F) << angle << " " << scale;
+    }
+  }
+}
+
+TEST(Lamps, MessagesNameTenLamps)
+{
+  const std::vector<std::string> names = {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l"};
+  EXPECT_EQ(listed(std::span(names).first(2)), "'a', 'b'");
+  EXPECT_EQ(listed(std::span(names).first(10)), "'a', 'b', 'c', 'd', 'e', 'f', 'g', 'h', 'i', 'j'");
+  EXPECT_EQ(listed(names), "'a', 'b', 'c', 'd', 'e', 'f', 'g', 'h', 'i', 'j' and 2 more");
 }
 
 TEST(Lamps, LampsThatReachEverywhereAreBeforeTheOthersOfTheirGroup)

@@ -35,11 +35,14 @@ scene::Scene hall(int lamp_count, bool has_sizes)
   std::mt19937 random(7);
   const auto in = [&](float low, float high) { return std::uniform_real_distribution<float>(low, high)(random); };
   for (int i = 0; i < lamp_count; i++) {
+    using enum scene::LampKind;
     const bool is_sun = i % 16 == 15;
-    const auto kind = is_sun ? scene::LampKind::Sun : i % 3 == 1 ? scene::LampKind::Spot : scene::LampKind::Point;
+    const auto kind = is_sun ? Sun : i % 16 == 14 ? Hemi : i % 16 == 13 ? Area : i % 3 == 1 ? Spot : Point;
+    const bool is_dim = kind == Sun || kind == Hemi;
     const auto lamp = test::add_lamp(scene, kind, {in(-20, 20), in(-20, 20), in(1, 5)},
-                                     {in(-0.5F, 0.5F), in(-0.5F, 0.5F), -1}, is_sun ? 0.05F : 20.0F);
+                                     {in(-0.5F, 0.5F), in(-0.5F, 0.5F), -1}, is_dim ? 0.05F : 20.0F);
     scene.edit(lamp, [&](scene::Lamp &value) {
+      // Suns and hemis keep a range too. It means nothing.
       value.range = i % 10 == 9 ? 0.0F : in(2, 12);
       value.spot_outer_angle = in(0.2F, 1.4F);
       value.spot_blend = 0.3F;

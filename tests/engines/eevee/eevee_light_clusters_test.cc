@@ -152,7 +152,7 @@ TEST(LightClusters, ListEachLampThatReachesAPointOfTheView)
     for (int i = 0; i < 3; i++) {
       const glm::vec3 eye = center + random.in_box(0.7F * extent);
       for (const NamedView &named : views_at(eye, random.direction(), extent)) {
-        clusters.build(lamps, named.view, view_size_px);
+        clusters.build(lamps, named.view, view_size_px, scene::Bounds());
         for (int j = 0; j < 300; j++) {
           const glm::vec3 point = random_point(random, named, view_size_px);
           expect_complete(lamps, clusters, point, named.name);
@@ -185,7 +185,7 @@ TEST(LightClusters, ListLampsFromAllOfTheirPoints)
   const Lamps lamps = make_lamps(placed, LampShading::Point);
   LightClusters clusters;
   for (const NamedView &named : views_at({0, 0, 8}, {0, 0, -1}, 10.0F)) {
-    clusters.build(lamps, named.view, view_size_px);
+    clusters.build(lamps, named.view, view_size_px, scene::Bounds());
     for (int j = 0; j < 300; j++) {
       Lamps moved = lamps;
       for (std::size_t i = 0; i < moved.lights.size(); i++) {
@@ -211,7 +211,7 @@ TEST(LightClusters, ListLampsAtTheEdgesOfTheView)
     placed[0].world_from_lamp[3] = glm::dvec4(edge + 0.09F * outward, 1.0);
     const Lamps lamps = make_lamps(placed);
     LightClusters clusters;
-    clusters.build(lamps, view, view_size_px);
+    clusters.build(lamps, view, view_size_px, scene::Bounds());
     expect_complete(lamps, clusters, edge + 0.09F * outward, "edge");
   }
 }
@@ -235,7 +235,7 @@ TEST(LightClusters, ListLampsFarFromTheOrigin)
   }
   const Lamps lamps = make_lamps(placed);
   LightClusters clusters;
-  clusters.build(lamps, view, view_size_px);
+  clusters.build(lamps, view, view_size_px, scene::Bounds());
   for (const shared::LightData &light : lamps.lights) {
     expect_complete(lamps, clusters, light.position_ws, "far");
   }
@@ -253,7 +253,7 @@ TEST(LightClusters, ListsAscendAndCountTheLightsWithCubes)
     const Lamps lamps = make_lamps(placed);
     ASSERT_EQ(lamps.cube_everywhere_count > 0, has_everywhere);
     ASSERT_EQ(lamps.other_everywhere_count > 0, has_everywhere);
-    clusters.build(lamps, views_at({0, 0, 8}, {0, 0, -1}, 10.0F)[0].view, {160, 100});
+    clusters.build(lamps, views_at({0, 0, 8}, {0, 0, -1}, 10.0F)[0].view, {160, 100}, scene::Bounds());
     const std::span<const float> values = clusters.values();
     EXPECT_EQ(values[0], float(2 * clusters.froxel_count() + 1));
     EXPECT_EQ(std::size_t(values[2 * clusters.froxel_count()]), values.size());
@@ -301,7 +301,7 @@ TEST(LightClusters, ListsOfAGrowingHallStayShort)
     const glm::vec3 eye(0.5F * edge, 2.0F, 0.0F);
     const draw::View view(glm::lookAt(eye, eye + glm::vec3(0, -0.05F, -1), {0, 1, 0}),
                           draw::perspective(0.7F, 0.4F, 0.1F, std::numeric_limits<float>::infinity()));
-    clusters.build(lamps, view, view_size_px);
+    clusters.build(lamps, view, view_size_px, scene::Bounds());
     // Points of the ground.
     const glm::dmat4 world_from_clip = glm::inverse(glm::dmat4(view.clip_from_world()));
     double listed = 0.0;
@@ -330,6 +330,41 @@ TEST(LightClusters, ListsOfAGrowingHallStayShort)
   }
 }
 
+// A lamp that reaches far beyond the scene does not widen the slices of the others.
+TEST(LightClusters, SlicesDivideTheVisibleDepths)
+{
+  constexpr glm::ivec2 view_size_px(320, 180);
+  constexpr float edge = 20.0F;
+  RandomValues random(8);
+  std::vector<scene::PlacedLamp> placed(200);
+  for (scene::PlacedLamp &lamp : placed) {
+    lamp.kind = scene::LampKind::Point;
+    lamp.range = 1.0F;
+    lamp.world_from_lamp[3] = glm::dvec4(random.in_box(0.5F * edge), 1.0);
+  }
+  scene::PlacedLamp far = placed[0];
+  far.range = 1e4F;
+  const auto mean_length = [&](const scene::Bounds &bounds_ws, float view_far) {
+    const draw::View view(glm::lookAt(glm::vec3(0, 0, 0.6F * edge), glm::vec3(0), glm::vec3(0, 1, 0)),
+                          draw::perspective(0.7F, 0.4F, 0.1F, view_far));
+    LightClusters clusters;
+    clusters.build(make_lamps(placed), view, view_size_px, bounds_ws);
+    RandomValues points(9);
+    std::size_t sum = 0;
+    for (int i = 0; i < 1000; i++) {
+      sum += list_at(clusters, points.in_box(0.5F * edge)).size();
+    }
+    return double(sum) / 1000.0;
+  };
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const scene::Bounds hall{glm::vec3(-0.5F * edge), glm::vec3(0.5F * edge)};
+  const double few = mean_length(hall, infinity);
+  placed.push_back(far);
+  EXPECT_LT(mean_length(hall, infinity), 1.2 * few + 1.0) << "bounds";
+  EXPECT_LT(mean_length({}, 1.1F * edge), 1.2 * few + 1.0) << "far plane";
+  EXPECT_GT(mean_length({}, infinity), 2.0 * few + 1.0) << "the case is not one in which the bounds matter";
+}
+
 TEST(LightClusters, CoarseGridsBoundTheMemory)
 {
   RandomValues random(5);
@@ -340,14 +375,14 @@ TEST(LightClusters, CoarseGridsBoundTheMemory)
   const Lamps lamps = make_lamps(placed);
   LightClusters clusters;
   const NamedView named = views_at({0, 0, 8}, {0, 0, -1}, 100.0F)[1];
-  clusters.build(lamps, named.view, {320, 180});
+  clusters.build(lamps, named.view, {320, 180}, scene::Bounds());
   EXPECT_LE(clusters.values().size(), LightClusters::values_max);
   EXPECT_GE(clusters.entry_count(), placed.size());
   for (int i = 0; i < 3; i++) {
     expect_complete(lamps, clusters, random_point(random, named, {320, 180}), named.name);
   }
   // A device with small texture buffers.
-  clusters.build(lamps, named.view, {320, 180}, 10003);
+  clusters.build(lamps, named.view, {320, 180}, scene::Bounds(), 10003);
   EXPECT_EQ(clusters.values().size(), 10003U);
   expect_complete(lamps, clusters, random_point(random, named, {320, 180}), named.name);
 }
@@ -357,7 +392,7 @@ TEST(LightClusters, HaveOneFroxelIfNoLampIsInTheView)
   std::vector<scene::PlacedLamp> placed = hall_lamps(4);
   LightClusters clusters;
   for (const NamedView &named : views_at({0, 1000, 0}, {0, 1, 0}, 1.0F)) {
-    clusters.build(make_lamps(placed), named.view, {320, 180});
+    clusters.build(make_lamps(placed), named.view, {320, 180}, scene::Bounds());
     EXPECT_EQ(clusters.froxel_count(), 1U) << named.name;
     EXPECT_TRUE(list_at(clusters, {0, 1001, 0}).empty()) << named.name;
   }

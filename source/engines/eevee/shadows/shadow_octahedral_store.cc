@@ -120,8 +120,8 @@ OctahedralStore::Plan OctahedralStore::plan(const gpu::Limits &device_limits, st
   place();
   plan.runs = std::move(runs);
   if (!lost.empty()) {
-    plan.limits.push_back(fmt::format("{} lamps lost their shadow, as {} octahedral layers are the most: '{}'",
-                                      lost.size(), most, fmt::join(lost, "', '")));
+    plan.limits.push_back(fmt::format("{} lamps lost their shadow, as {} octahedral layers are the most: {}",
+                                      lost.size(), most, listed(lost)));
   }
   return plan;
 }

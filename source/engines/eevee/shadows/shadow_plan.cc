@@ -31,7 +31,9 @@ float widest_half_angle(const scene::PlacedLamp &lamp)
 {
   const glm::dvec2 scale = lamp.kind == scene::LampKind::Spot ? scene::spot_scale(lamp) : glm::dvec2(1.0);
   const double widest = std::max(scale.x, scale.y);
-  return widest == 1.0 ? lamp.spot_outer_angle : float(std::atan(widest * std::tan(double(lamp.spot_outer_angle))));
+  const double angle = lamp.spot_outer_angle;
+  // atan2, because the tangent of the float nearest to π/2, which is more than π/2, is negative.
+  return widest == 1.0 ? lamp.spot_outer_angle : float(std::atan2(widest * std::sin(angle), std::cos(angle)));
 }
 
 std::vector<ShadowLamp> shadow_lamps(std::span<const scene::PlacedLamp> placed, const Lamps &lamps, LampShading shading)
@@ -196,8 +198,8 @@ void fit_memory(ShadowPlan &plan, const Conditions &conditions)
     place.given = scaled(place.given, scale);
   }
   if (!lost.empty()) {
-    plan.limits.push_back(fmt::format("{} lamps lost their shadow, as {:.1f} MiB hold no more of {} texels: '{}'",
-                                      lost.size(), double(most) / 0x1p20, size_px_min, fmt::join(lost, "', '")));
+    plan.limits.push_back(fmt::format("{} lamps lost their shadow, as {:.1f} MiB hold no more of {} texels: {}",
+                                      lost.size(), double(most) / 0x1p20, size_px_min, listed(lost)));
   }
 }
 
@@ -291,12 +293,12 @@ ShadowPlan plan_shadows(std::span<const ShadowLamp> lamps, const ShadowSettings 
   }
   if (!lost.empty()) {
     plan.limits.push_back(
-        fmt::format("{} lamps lost their shadow, as {} cubes, {} maps and {} exponential maps are the most: '{}'",
-                    lost.size(), entries_max[0], entries_max[1], entries_max[2], fmt::join(lost, "', '")));
+        fmt::format("{} lamps lost their shadow, as {} cubes, {} maps and {} exponential maps are the most: {}",
+                    lost.size(), entries_max[0], entries_max[1], entries_max[2], listed(lost)));
   }
   if (!too_large.empty()) {
-    plan.limits.push_back(fmt::format("the shadow size of {} lamps is {} texels, as this device takes no more: '{}'",
-                                      too_large.size(), device_limits.texture_size_max, fmt::join(too_large, "', '")));
+    plan.limits.push_back(fmt::format("the shadow size of {} lamps is {} texels, as this device takes no more: {}",
+                                      too_large.size(), device_limits.texture_size_max, listed(too_large)));
   }
   fit_memory(plan, conditions);
   place_layers(plan, conditions);
