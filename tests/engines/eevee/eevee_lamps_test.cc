@@ -2,11 +2,15 @@
 #include "eevee_lamps.hh"
 
 #include "eevee_light_cluster_shared.h"
+#include "shadows/shadow_cube.hh"
 #include "shadows/shadow_plan.hh"
 
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
+
+#include <cmath>
+#include <numbers>
 
 namespace gnomon::eevee {
 namespace {

@@ -25,9 +25,8 @@ int main(int argument_count, char **arguments)
     std::fprintf(file, "%.6eF,%.6eF,%.6eF,%.6eF,\n", texel.x, texel.y, texel.z, texel.w);
   }
   std::fputs(
-      "};\n// clang-format on\n\nstd::span<const float> multiscatter_table()\n{\n  return multiscatter_values;\n}\n\n} "
-      " // "
-      "namespace gnomon::eevee\n",
+      "};\n// clang-format on\n\nstd::span<const float> multiscatter_table()\n{\n  return multiscatter_values;\n}\n\n",
       file);
+  std::fputs("}  // namespace gnomon::eevee\n", file);
   return std::fclose(file) == 0 ? 0 : 1;
 }
