@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli.hh"
 
-#include "cli_output.hh"
-#include "cli_world.hh"
+#include "cli_bench.hh"
 
 #include "measure_bench.hh"
 #include "measure_edits.hh"
@@ -13,45 +12,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <fstream>
 #include <memory>
 
 namespace gnomon::cli {
 
 namespace {
-
-struct BenchOptions {
-  std::string scene;
-  std::string backend = "gl";
-  int rounds = 21;
-  int points = 256;
-  std::string json;
-  WorldOptions world;
-};
-
-nlohmann::json to_json(const measure::Spread &spread)
-{
-  return {{"median", spread.median}, {"low", spread.low}, {"high", spread.high}};
-}
-
-std::string to_text(const measure::Spread &spread, double unit)
-{
-  return fmt::format("{:9.2f} [{:.2f}, {:.2f}]", spread.median / unit, spread.low / unit, spread.high / unit);
-}
-
-void write_json(const std::string &path, const nlohmann::json &json)
-{
-  if (path.empty()) {
-    return;
-  }
-  write_atomically(path, [&](const std::filesystem::path &beside) {
-    std::ofstream file(beside);
-    file << json.dump(2) << "\n";
-    if (!file.flush()) {
-      throw std::runtime_error(fmt::format("{}: cannot be written", path));
-    }
-  });
-}
 
 /** Prints one measurement, with ratios to the first two variants. */
 nlohmann::json print_lamps(const std::vector<measure::LayerPassCost> &rows, int caster_count, const char *what,
@@ -290,7 +255,7 @@ void bench_start(const BenchOptions &options)
                             {"rows", json}});
 }
 
-nlohmann::json to_json(const measure::LightErrors &errors)
+nlohmann::json errors_json(const measure::LightErrors &errors)
 {
   return {{"median", errors.median}, {"p95", errors.p95}, {"largest", errors.largest}, {"bad", errors.bad_count}};
 }
@@ -372,9 +337,9 @@ Status bench_light(const BenchOptions &options)
                     {"value", row.value},
                     {"cases", row.case_count},
                     {"integral_error", row.integral_error},
-                    {"whole", to_json(row.whole)},
-                    {"multi", to_json(row.multi)},
-                    {"point", to_json(row.point)}});
+                    {"whole", errors_json(row.whole)},
+                    {"multi", errors_json(row.multi)},
+                    {"point", errors_json(row.point)}});
   }
   const nlohmann::json furnace = print_furnace();
   write_json(options.json, {{"program", "gnomon " GNOMON_VERSION},
@@ -410,6 +375,14 @@ void add_bench(CLI::App &app, Status &status)
       ->capture_default_str()
       ->check(CLI::IsMember({"gl", "null"}));
   lamps->callback([o] { bench_lamps(*o); });
+  CLI::App *growth =
+      command->add_subcommand("growth", "How times grow with objects, casters, imported nodes, pixels and samples");
+  growth->add_option("--backend", o->backend, "gl, or null: without pixels and samples")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"gl", "null"}));
+  growth->add_option("--count-max", o->count_max, "Most objects, casters, nodes, pixels and samples")
+      ->check(CLI::Range(1000, 1 << 30));
+  growth->callback([o] { bench_growth(*o); });
   CLI::App *start = command->add_subcommand("start", "What starting the program costs, up to a first picture");
   start->add_option("scene", o->scene, "glTF 2.0 file (default: a scene made in place)");
   start->add_option("--backend", o->backend, "gl, or null: without a driver and a picture")
@@ -417,7 +390,7 @@ void add_bench(CLI::App &app, Status &status)
       ->check(CLI::IsMember({"gl", "null"}));
   add_world_options(*start, o->world);
   start->callback([o] { bench_start(*o); });
-  for (CLI::App *bench : {shadows, draws, left_out, lamps, start}) {
+  for (CLI::App *bench : {shadows, draws, left_out, lamps, growth, start}) {
     bench->add_option("--rounds", o->rounds, "Measured rounds, after one that warms up")
         ->capture_default_str()
         ->check(CLI::Range(1, 100000));

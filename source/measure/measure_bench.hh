@@ -110,6 +110,38 @@ struct LampsCost {
 /** The slope of the line through the logarithms, by least squares. \pre positive values, at least two counts differ */
 [[nodiscard]] double growth_exponent(std::span<const double> counts, std::span<const double> seconds);
 
+/** Times that grow with a count: fixed + factor * count^exponent. */
+struct Growth {
+  /** Seconds, at least 0. */
+  double fixed = 0.0;
+  double exponent = 0.0;
+};
+
+/**
+ * The growth with the least sum of squared relative errors, with an exponent from 0 to 3. \pre positive values, at
+ * least three different counts
+ */
+[[nodiscard]] Growth growth_of(std::span<const double> counts, std::span<const double> seconds);
+
+/** The times of one kind of work for growing counts. */
+struct GrowthCost {
+  /** The work, for example "first picture, objects". */
+  std::string work;
+  std::vector<double> counts;
+  /** For each count, one time for each round, seconds. */
+  std::vector<std::vector<double>> seconds{};
+
+  [[nodiscard]] std::vector<double> medians() const;
+};
+
+/**
+ * Measures objects, casters and imported nodes on the null backend, and pixels and samples on \a device, unless it is
+ * nullptr. Each round measures each count of a kind of work in turn. A first round is not measured. Counts
+ * above \a count_max are left out. Writes glTF files to a temporary folder. \throws std::runtime_error if that is
+ * impossible
+ */
+[[nodiscard]] std::vector<GrowthCost> measure_growth(gpu::Device *device, int rounds, double count_max);
+
 /** The cost of drawing one of left_out_cases(). */
 struct LeftOutCost {
   std::string name;

@@ -3,6 +3,7 @@
 
 #include "gltf_export.hh"
 #include "internal/measure_bench_meshes.hh"
+#include "internal/measure_temporary_folder.hh"
 #include "measure_left_out.hh"
 
 #include <fmt/format.h>
@@ -22,27 +23,6 @@ namespace gnomon::measure {
 namespace fs = std::filesystem;
 
 namespace {
-
-class TemporaryFolder {
- public:
-  TemporaryFolder()
-  {
-    std::string pattern = (fs::temp_directory_path() / "gnomon.XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) {
-      throw std::runtime_error(fmt::format("{}: {}", pattern, std::strerror(errno)));
-    }
-    path = pattern;
-  }
-  ~TemporaryFolder()
-  {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder &) = delete;
-  TemporaryFolder &operator=(const TemporaryFolder &) = delete;
-
-  fs::path path;
-};
 
 using Words = std::vector<std::string>;
 

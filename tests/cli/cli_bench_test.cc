@@ -54,6 +54,21 @@ TEST_F(BenchTest, DrawsWritesItsFigures)
   }
 }
 
+TEST_F(BenchTest, GrowthFitsTheTimesOfEachKindOfWork)
+{
+  const Finished finished = run("bench growth --backend null --rounds 1 --count-max 1000 --json bench.json");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const json bench = json::parse(read("bench.json"));
+  ASSERT_EQ(bench["work"].size(), 4U);
+  for (const json &work : bench["work"]) {
+    EXPECT_EQ(work["rows"].size(), 3U) << work;
+    EXPECT_TRUE(work["exponent"].is_number()) << work;
+    for (const json &row : work["rows"]) {
+      EXPECT_GT(row["seconds"]["median"], 0.0) << row;
+    }
+  }
+}
+
 TEST_F(BenchTest, LeftOutComparesTenScenesWithTheFullOne)
 {
   const Finished finished = run("bench left-out --backend null --rounds 1 --json bench.json");

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "cli_world.hh"
+
+#include "measure_bench.hh"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+
+/** Parts of `gnomon bench` that several of its files use. */
+namespace gnomon::cli {
+
+struct BenchOptions {
+  std::string scene;
+  std::string backend = "gl";
+  int rounds = 21;
+  int points = 256;
+  int count_max = 1 << 30;
+  std::string json;
+  WorldOptions world;
+};
+
+[[nodiscard]] nlohmann::json to_json(const measure::Spread &spread);
+/** Median and quartiles, in units of \a unit seconds. */
+[[nodiscard]] std::string to_text(const measure::Spread &spread, double unit);
+/** Writes \a json to the file \a path, unless it is empty. \throws std::runtime_error that names the file */
+void write_json(const std::string &path, const nlohmann::json &json);
+
+void bench_growth(const BenchOptions &options);
+
+}  // namespace gnomon::cli

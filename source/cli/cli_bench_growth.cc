@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "cli_bench.hh"
+
+#include "cli_output.hh"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+#include <memory>
+
+namespace gnomon::cli {
+
+nlohmann::json to_json(const measure::Spread &spread)
+{
+  return {{"median", spread.median}, {"low", spread.low}, {"high", spread.high}};
+}
+
+std::string to_text(const measure::Spread &spread, double unit)
+{
+  return fmt::format("{:9.2f} [{:.2f}, {:.2f}]", spread.median / unit, spread.low / unit, spread.high / unit);
+}
+
+void write_json(const std::string &path, const nlohmann::json &json)
+{
+  if (path.empty()) {
+    return;
+  }
+  write_atomically(path, [&](const std::filesystem::path &beside) {
+    std::ofstream file(beside);
+    file << json.dump(2) << "\n";
+    if (!file.flush()) {
+      throw std::runtime_error(fmt::format("{}: cannot be written", path));
+    }
+  });
+}
+
+void bench_growth(const BenchOptions &options)
+{
+  const std::unique_ptr<gpu::Device> device =
+      options.backend == "gl" ? gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()})
+                              : nullptr;
+  fmt::print(
+      "Times of growing counts: milliseconds, median [quartiles] of {} rounds. Objects and casters: CPU time without "
+      "a\n"
+      "driver. n: the median without the fixed time, divided by the count. The exponent and the fixed time are those "
+      "of\n"
+      "the best fit of fixed + factor * count^exponent. {}\n",
+      options.rounds, device ? device->description() : "");
+  nlohmann::json json = nlohmann::json::array();
+  for (const measure::GrowthCost &cost : measure::measure_growth(device.get(), options.rounds, options.count_max)) {
+    const std::vector<double> medians = cost.medians();
+    const measure::Growth growth = measure::growth_of(cost.counts, medians);
+    fmt::print("\n{}: exponent {:.2f} beyond {:.3f} ms\n{:>9}  {:<30} {:>9}\n", cost.work, growth.exponent,
+               1e3 * growth.fixed, "count", "ms", "ns / n");
+    nlohmann::json rows = nlohmann::json::array();
+    for (std::size_t i = 0; i < cost.counts.size(); i++) {
+      const measure::Spread spread = measure::spread_of(cost.seconds[i]);
+      fmt::print("{:>9.0f}  {:<30} {:>9.1f}\n", cost.counts[i], to_text(spread, 1e-3),
+                 1e9 * (medians[i] - growth.fixed) / cost.counts[i]);
+      rows.push_back({{"count", cost.counts[i]}, {"seconds", to_json(spread)}});
+    }
+    json.push_back(
+        {{"work", cost.work}, {"exponent", growth.exponent}, {"fixed_seconds", growth.fixed}, {"rows", rows}});
+  }
+  write_json(options.json, {{"program", "gnomon " GNOMON_VERSION},
+                            {"bench", "growth"},
+                            {"rounds", options.rounds},
+                            {"device", device ? device->description() : ""},
+                            {"work", json}});
+}
+
+}  // namespace gnomon::cli
