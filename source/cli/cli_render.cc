@@ -225,7 +225,8 @@ Input create_device_and_import(const RenderOptions &options, RenderResult &resul
 {
   std::future<scene::Scene> imported = std::async(std::launch::async, [&] {
     const Clock::time_point start = Clock::now();
-    scene::Scene scene = import_scene(options.scene, options.variant);
+    scene::Scene scene = import_scene(
+        options.scene, {.variant = options.variant, .texture_size_max = options.texture_size_max, .read_picture = {}});
     result.import_seconds = seconds_since(start);
     return scene;
   });

@@ -228,6 +228,10 @@ void add_render_options(CLI::App &command, RenderOptions &options)
   command.add_option("--size", options.size, "WIDTHxHEIGHT, pixels")->capture_default_str();
   command.add_option("--camera", options.camera, "Name of the camera (default: the first)");
   command.add_option("--variant", options.variant, "Name of the variant of materials (KHR_materials_variants)");
+  command
+      .add_option("--texture-size-max", options.texture_size_max,
+                  "Most texels along an edge of a texture; larger ones are reduced (default: no limit)")
+      ->check(CLI::Range(1, 1 << 20));
   CLI::Option *samples = command.add_option("--samples", options.samples, "Samples per pixel")
                              ->capture_default_str()
                              ->check(CLI::Range(1, 65536));

@@ -23,6 +23,8 @@ struct RenderOptions {
   std::string camera;
   /** Variant of the materials; empty: none. */
   std::string variant;
+  /** 0: no limit. */
+  std::uint32_t texture_size_max = 0;
   int samples = 16;
   /** Seconds for each picture; infinity without --time-limit, otherwise `samples` may be 0: no limit. */
   double seconds_max = std::numeric_limits<double>::infinity();

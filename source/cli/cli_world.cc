@@ -78,10 +78,12 @@ scene::WorldPicture read_world_picture(const std::filesystem::path &path)
   return picture;
 }
 
-scene::Scene import_scene(const std::string &path, const std::string &variant)
+scene::Scene import_scene(const std::string &path, const gltf::ImportOptions &options)
 {
   try {
-    return gltf::import_gltf(path, {.variant = variant, .read_picture = read_world_picture});
+    gltf::ImportOptions all = options;
+    all.read_picture = read_world_picture;
+    return gltf::import_gltf(path, all);
   }
   catch (const gltf::UnknownVariant &unknown) {
     throw UsageError(unknown.what());

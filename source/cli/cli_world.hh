@@ -2,6 +2,7 @@
 #pragma once
 
 #include "eevee_engine.hh"
+#include "gltf_import.hh"
 
 #include <CLI/App.hpp>
 
@@ -31,10 +32,10 @@ void add_world_options(CLI::App &command, WorldOptions &options);
 void add_background_option(CLI::App &command, std::string &background);
 
 /**
- * Imports a scene, with the picture of its own world. \a variant: of the materials; empty: none
+ * Imports a scene, with the picture of its own world: ImportOptions::read_picture is replaced.
  * \throws gltf::ImportError, and UsageError if there is no such variant
  */
-[[nodiscard]] scene::Scene import_scene(const std::string &path, const std::string &variant = {});
+[[nodiscard]] scene::Scene import_scene(const std::string &path, const gltf::ImportOptions &options = {});
 
 /** An equirectangular picture. \throws std::runtime_error naming \a path, as read_picture */
 [[nodiscard]] scene::WorldPicture read_world_picture(const std::filesystem::path &path);

@@ -114,8 +114,8 @@ bool is_usable(const Bounds &bounds)
 
 class Importer {
  public:
-  Importer(const File &file, const ReadPicture &read_picture, Warnings warnings)
-      : file_(file), read_picture_(read_picture), warnings_(std::move(warnings)), meshes_(file, warnings_, scene_)
+  Importer(const File &file, const ImportOptions &options, Warnings warnings)
+      : file_(file), options_(options), warnings_(std::move(warnings)), meshes_(file, warnings_, scene_)
   {
   }
 
@@ -128,9 +128,9 @@ class Importer {
     import_skins(file_, things_.nodes, warnings_, scene_);
     import_animations(file_, things_, warnings_, scene_);
     scene::deform_meshes(scene_);
-    meshes_.finish();
+    meshes_.finish(options_.texture_size_max);
     check_anything_kept();
-    import_world(file_, visible_nodes(), read_picture_, warnings_, scene_);
+    import_world(file_, visible_nodes(), options_.read_picture, warnings_, scene_);
     add_defaults();
     scene_.warnings = warnings_.messages();
     return std::move(scene_);
@@ -138,7 +138,7 @@ class Importer {
 
  private:
   const File &file_;
-  const ReadPicture &read_picture_;
+  const ImportOptions &options_;
   Warnings warnings_;
   Scene scene_;
   MeshImporter meshes_;
@@ -445,7 +445,7 @@ Scene import_gltf(const std::filesystem::path &path, const ImportOptions &option
     }
     Warnings warnings;
     decompress(file, warnings);
-    Scene scene = Importer(file, options.read_picture, std::move(warnings)).import();
+    Scene scene = Importer(file, options, std::move(warnings)).import();
     scene.path = path.string();
     return scene;
   }

@@ -3,6 +3,7 @@
 
 #include "scene.hh"
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <stdexcept>
@@ -29,6 +30,8 @@ using ReadPicture = std::function<scene::WorldPicture(const std::filesystem::pat
 struct ImportOptions {
   /** Name of the variant whose materials are imported (KHR_materials_variants); empty: the materials of no variant. */
   std::string variant{};
+  /** Most texels along an edge of an image of a material; larger ones are reduced (scene::reduced). 0: no limit. */
+  std::uint32_t texture_size_max = 0;
   /** For worlds whose picture is a file. Without it, they are left out, with a warning. */
   ReadPicture read_picture{};
 };

@@ -118,6 +118,21 @@ TEST(GltfImage, GlossinessIsConvertedToRoughness)
   }
 }
 
+TEST(GltfImage, LargerOnesThanTheLimitAreReduced)
+{
+  const auto scene_with = [](std::uint32_t size_max) {
+    return import_text(textured_triangle().gltf(), "scene.gltf", {.texture_size_max = size_max});
+  };
+  EXPECT_EQ((*scene_with(2).images().begin()).value.texels, four_texels);
+  const Scene scene = scene_with(1);
+  const Image &image = (*scene.images().begin()).value;
+  EXPECT_EQ(image.width, 1U);
+  EXPECT_EQ(image.height, 1U);
+  // The red of base colours is encoded: the mean of the light of 255, 0, 20 and 90 is 143.6. Alpha is the mean of values.
+  EXPECT_EQ(image.texels[0], 144);
+  EXPECT_EQ(image.texels[3], 112);
+}
+
 TEST(GltfImage, MayBeInABufferView)
 {
   GltfBuilder builder = textured_triangle(json::object());

@@ -294,9 +294,9 @@ Handle<Material> MaterialImporter::handle_of(int gltf_material)
   return place->second;
 }
 
-void MaterialImporter::finish()
+void MaterialImporter::finish(std::uint32_t texture_size_max)
 {
-  const std::map<Handle<scene::Image>, Fault> damaged = textures_.decode();
+  const std::map<Handle<scene::Image>, Fault> damaged = textures_.decode(texture_size_max);
   if (damaged.empty()) {
     return;
   }

@@ -36,8 +36,10 @@ class MaterialImporter {
     return handle_of_;
   }
 
-  /** Decodes the images. Call it once, at the end. Damaged images are replaced by stand-ins. */
-  void finish();
+  /**
+   * Decodes the images. Call it once, at the end. Damaged images are replaced by stand-ins.
+   * \a texture_size_max: \see ImportOptions */
+  void finish(std::uint32_t texture_size_max);
 
  private:
   const File &file_;

@@ -37,10 +37,10 @@ class MeshImporter {
     return materials_.handles();
   }
 
-  /** Decodes the images of materials. Call it once, at the end. */
-  void finish()
+  /** Decodes the images of materials. Call it once, at the end. \a texture_size_max: \see ImportOptions */
+  void finish(std::uint32_t texture_size_max)
   {
-    materials_.finish();
+    materials_.finish(texture_size_max);
   }
 
   /** Number of primitives that were read, drawable or not. */

@@ -2,10 +2,12 @@
 #include "internal/gltf_texture.hh"
 
 #include "internal/gltf_sampler.hh"
+#include "scene_image.hh"
 #include "scene_parallel.hh"
 #include "trace.hh"
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -190,13 +192,31 @@ Handle<Image> TextureImporter::import_image(int gltf_image)
   return handle;
 }
 
-std::map<Handle<Image>, Fault> TextureImporter::decode()
+/** The images that materials of \a scene use for colours. */
+static std::set<Handle<Image>> color_images(const Scene &scene)
 {
+  std::set<Handle<Image>> images;
+  for (const auto &[handle, material] : scene.materials()) {
+    for (const scene::TextureInput &input : scene::texture_inputs) {
+      const Texture *texture = scene.textures().find((material.*input.slot).texture);
+      if (texture != nullptr && input.is_color) {
+        images.insert(texture->image);
+      }
+    }
+  }
+  return images;
+}
+
+std::map<Handle<Image>, Fault> TextureImporter::decode(std::uint32_t size_max)
+{
+  const std::set<Handle<Image>> colors = color_images(scene_);
   std::vector<std::variant<Image, Fault>> results(pending_.size());
   scene::parallel_for(pending_.size(), 0, [&](std::size_t i) {
     const trace::Span span("decode image", scene_.images()[pending_[i].handle].name);
     try {
-      results[i] = pending_[i].decoder.read();
+      Image image = pending_[i].decoder.read();
+      const bool is_color = colors.contains(pending_[i].handle);
+      results[i] = size_max > 0 ? reduced(std::move(image), size_max, is_color) : std::move(image);
     }
     catch (const Fault &fault) {
       results[i] = fault;

@@ -39,8 +39,11 @@ class TextureImporter {
    */
   [[nodiscard]] scene::Handle<scene::Texture> roughness_of(int gltf_texture, double glossiness);
 
-  /** Decodes all images, on all processors. \return the damaged images, with the reason. */
-  [[nodiscard]] std::map<scene::Handle<scene::Image>, Fault> decode();
+  /**
+   * Decodes all images, on all processors. \a size_max: \see ImportOptions::texture_size_max
+   * \return the damaged images, with the reason.
+   */
+  [[nodiscard]] std::map<scene::Handle<scene::Image>, Fault> decode(std::uint32_t size_max);
 
  private:
   struct Pending {
