@@ -27,7 +27,13 @@ TEST_F(RadiancePictureTest, AreReadAsAnotherLibraryReadsThem)
       rgb[i] = is_even ? 0.5F : std::ldexp(float(random() % 256), int(random() % 200) - 100);
     }
     test::write_values(folder / "a.hdr", OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::FLOAT), rgb);
-    EXPECT_EQ(values_in(cli::read_picture(folder / "a.hdr")), values_in<float>(folder / "a.hdr")) << width;
+    const std::vector<float> ours = values_in(cli::read_picture(folder / "a.hdr"));
+    const std::vector<float> others = values_in<float>(folder / "a.hdr");
+    ASSERT_EQ(ours.size(), others.size());
+    for (std::size_t i = 0; i < ours.size(); i++) {
+      // The other library rounds the scales of large exponents, so that the last bit differs.
+      ASSERT_FLOAT_EQ(ours[i], others[i]) << width << ' ' << i;
+    }
   }
   // The same pixels as runs and one by one, from the top. 2^-8 m 2^(e - 128) is the value of m with the exponent e.
   const std::string header = "#?RGBE\nEXPOSURE=2\r\n\n-Y 1 +X 8\n";
