@@ -366,8 +366,9 @@ WorldLight world_light(const scene::World &world)
   std::ranges::sort(patches, std::ranges::greater(), &Patch::light);
   for (Patch &patch : patches) {
     const double share = patch.light / (4.0 * pi * mean);
-    // A sun must give at least 0.5 % of the light and be at most 40° wide (0.38 sr).
-    if (share < 0.005 || patch.solid_angle() > 0.38 || int(light.suns.size()) == WorldLight::sun_max) {
+    // A sun must give at least 5 % of the light and be at most 40° wide (0.38 sr). Each sun is as much work as others,
+    // and the rest lights as well what gives less.
+    if (share < 0.05 || patch.solid_angle() > 0.38 || int(light.suns.size()) == WorldLight::sun_max) {
       continue;
     }
     for (const std::size_t texel : patch.texels) {

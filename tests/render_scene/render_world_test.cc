@@ -39,6 +39,21 @@ glm::vec3 irradiance(const WorldLight &light, const glm::vec3 &normal)
   return shared::world_irradiance(block, normal);
 }
 
+/** Mean over \a count² even places of irradiance times \a value of the direction. */
+template <typename F>
+glm::dvec3 sum_over(const WorldDistribution &directions, F &&value)
+{
+  constexpr int count = 200;
+  glm::dvec3 sum(0.0);
+  for (int y = 0; y < count; y++) {
+    for (int x = 0; x < count; x++) {
+      const WorldDirection direction = directions.at({(x + 0.5) / count, (y + 0.5) / count});
+      sum += direction.irradiance * value(direction.to_world);
+    }
+  }
+  return sum / double(count * count);
+}
+
 TEST(WorldLight, OfOneRadianceIsThatRadianceEverywhere)
 {
   const WorldLight light = world_light({.color = {1.0F, 0.5F, 0.25F}, .strength = 2.0F});
@@ -74,6 +89,23 @@ TEST(WorldLight, AFewBrightTexelsAreASunThere)
   EXPECT_NEAR(sun.color.x, 100.0 * pi * sine * sine, 0.05 * 100.0 * pi * sine * sine);
   // The rest is the dim sky.
   EXPECT_NEAR(irradiance(light, {0, 1, 0}).x, 0.1F, 0.005F);
+}
+
+TEST(WorldLight, WhatGivesLessThanATwentiethOfTheLightIsNoSun)
+{
+  // A disk of 0.1 rad covers 1/400 of the sphere.
+  const double share_of_sphere = 0.5 * (1.0 - std::cos(0.1));
+  for (const double share : {0.03, 0.08}) {
+    const double radiance = share / ((1.0 - share) * share_of_sphere);
+    const WorldLight light = world_light(
+        world_of([&](const glm::dvec3 &v) { return glm::vec3(v.x > std::cos(0.1) ? float(radiance) : 1.0F); }));
+    EXPECT_EQ(light.suns.size(), share > 0.05 ? 1U : 0U);
+    // All of the light is in one of the parts.
+    double flux =
+        light.suns.empty() ? 0.0 : sum_over(light.suns[0].directions, [](const glm::dvec3 &) { return 1.0; }).x;
+    flux += sum_over(light.rest_directions, [](const glm::dvec3 &) { return 1.0; }).x;
+    EXPECT_NEAR(flux, 4.0 * pi / (1.0 - share), 0.02 * flux);
+  }
 }
 
 TEST(WorldLight, RotationTurnsPlusXToMinusZ)
@@ -126,21 +158,6 @@ TEST(WorldLight, BlackGivesNothing)
   const WorldLight light = world_light({.color = glm::vec3(0.0F)});
   EXPECT_TRUE(light.is_black());
   EXPECT_EQ(irradiance(light, {0, 1, 0}), glm::vec3(0.0F));
-}
-
-/** Mean over \a count² even places of irradiance times \a value of the direction. */
-template <typename F>
-glm::dvec3 sum_over(const WorldDistribution &directions, F &&value)
-{
-  constexpr int count = 200;
-  glm::dvec3 sum(0.0);
-  for (int y = 0; y < count; y++) {
-    for (int x = 0; x < count; x++) {
-      const WorldDirection direction = directions.at({(x + 0.5) / count, (y + 0.5) / count});
-      sum += direction.irradiance * value(direction.to_world);
-    }
-  }
-  return sum / double(count * count);
 }
 
 TEST(WorldDistribution, IntegratesItsTexels)
