@@ -8,6 +8,7 @@
 
 #include "image_decoder.hh"
 #include "image_png.hh"
+#include "image_radiance.hh"
 
 #include <fmt/format.h>
 #include <glm/vec3.hpp>
@@ -85,6 +86,23 @@ static Picture read_coded_picture(const Bytes &file)
   return picture;
 }
 
+static Picture read_radiance_picture(const Bytes &file)
+{
+  image::RadianceDecoder decoder(file);
+  check_edges(decoder.width(), decoder.height());
+  Picture picture{glm::ivec2(decoder.width(), decoder.height()), {}};
+  const auto width = std::size_t(picture.size_px.x);
+  picture.pixels.reserve(width * std::size_t(picture.size_px.y));
+  const std::vector<float> values = decoder.read_rgb();
+  for (auto y = std::size_t(picture.size_px.y); y-- > 0;) {
+    for (std::size_t x = 0; x < width; x++) {
+      const float *value = &values[3 * (y * width + x)];
+      picture.pixels.emplace_back(value[0], value[1], value[2], 1.0F);
+    }
+  }
+  return picture;
+}
+
 static Picture read_any_picture(const fs::path &path)
 {
   if (std::optional<Picture> picture = read_exr_picture(path)) {
@@ -95,6 +113,9 @@ static Picture read_any_picture(const fs::path &path)
   Bytes file(std::size_t(std::max(size, std::streamoff(0))));
   if (!stream.seekg(0).read(reinterpret_cast<char *>(file.data()), size)) {
     throw std::runtime_error(fmt::format("cannot be read: {}", std::strerror(errno)));
+  }
+  if (image::is_radiance(file)) {
+    return read_radiance_picture(file);
   }
   if (image::format_of(file) == image::Format::None) {
     return read_by_module(path);

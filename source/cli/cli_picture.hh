@@ -52,8 +52,8 @@ struct Picture {
 };
 
 /**
- * Reads R, G and B. The format is that of the first bytes: EXR, PNG, JPEG or WebP, or another one that OpenImageIO
- * reads, such as Radiance HDR. Integer values are decoded by the sRGB curve. Those of a PNG with alpha are then
+ * Reads R, G and B. The format is that of the first bytes: EXR, PNG, JPEG, WebP or Radiance HDR, or another one that
+ * OpenImageIO reads. Integer values are decoded by the sRGB curve. Those of a PNG with alpha are then
  * multiplied by it, so that transparent pixels are black. \throws std::runtime_error naming \a path if it cannot be
  * read, is cut off, or lacks R, G or B.
  */

@@ -20,6 +20,19 @@ double luminance(const glm::dvec3 &color)
   return glm::dot(color, glm::dvec3(0.2126, 0.7152, 0.0722));
 }
 
+/** Column of the picture of \a world for \a u, in pixels from the centre of the first one. */
+double column_at(const scene::World &world, double u)
+{
+  const double turned = u + double(world.rotation) / (2.0 * pi);
+  return (turned - std::floor(turned)) * world.picture->width - 0.5;
+}
+
+/** Row of \a picture for \a v, in pixels from the centre of the first one. */
+double row_at(const scene::WorldPicture &picture, double v)
+{
+  return (1.0 - v) * picture.height - 0.5;
+}
+
 /** Bilinearly interpolated radiance of \a world. \a u: from the left. \a v: from the bottom. */
 glm::dvec3 radiance_at(const scene::World &world, double u, double v)
 {
@@ -28,9 +41,8 @@ glm::dvec3 radiance_at(const scene::World &world, double u, double v)
     return factor;
   }
   const scene::WorldPicture &picture = *world.picture;
-  const double turned = u + double(world.rotation) / (2.0 * pi);
-  const double x = (turned - std::floor(turned)) * picture.width - 0.5;
-  const double y = (1.0 - v) * picture.height - 0.5;
+  const double x = column_at(world, u);
+  const double y = row_at(picture, v);
   const int column = int(std::floor(x));
   const int row = int(std::floor(y));
   const double s = x - column;
@@ -54,6 +66,71 @@ glm::dvec3 mean_radiance(const scene::World &world, int x, int y, glm::ivec2 siz
     }
   }
   return sum / double(fine * fine);
+}
+
+/** A pixel along one axis of a picture, and its weight in a mean. */
+struct Tap {
+  int pixel = 0;
+  double weight = 0.0;
+};
+
+/**
+ * The pixels whose weighted sum is the mean over the texel \a texel of \a texel_count along an axis: linear
+ * interpolation at \a fine places. \a position: the position of a place in [0, 1], in pixels from the centre of the
+ * first one. \a wrapped: the pixel for a number outside of the picture.
+ */
+template <typename Position, typename Wrapped>
+std::vector<Tap> taps_of(int texel, int texel_count, int fine, Position &&position, Wrapped &&wrapped)
+{
+  std::vector<Tap> taps;
+  const auto add = [&](int pixel, double weight) {
+    const auto found = std::ranges::find(taps, wrapped(pixel), &Tap::pixel);
+    (found == taps.end() ? taps.emplace_back(Tap{wrapped(pixel)}) : *found).weight += weight / fine;
+  };
+  for (int a = 0; a < fine; a++) {
+    const double at = position((texel + (a + 0.5) / fine) / texel_count);
+    const int pixel = int(std::floor(at));
+    add(pixel, 1.0 - (at - pixel));
+    add(pixel + 1, at - pixel);
+  }
+  return taps;
+}
+
+/** The means of mean_radiance() over all texels of a grid of \a size, which it finds in much less time. */
+std::vector<glm::vec3> mean_radiances(const scene::World &world, glm::ivec2 size, int fine)
+{
+  const glm::dvec3 factor = double(world.strength) * glm::dvec3(world.color);
+  if (!world.picture) {
+    return std::vector<glm::vec3>(std::size_t(size.x * size.y), glm::vec3(factor));
+  }
+  const scene::WorldPicture &picture = *world.picture;
+  std::vector<std::vector<Tap>> columns;
+  for (int x = 0; x < size.x; x++) {
+    columns.push_back(taps_of(
+        x, size.x, fine, [&](double u) { return column_at(world, u); },
+        [&](int pixel) { return (pixel + picture.width) % picture.width; }));
+  }
+  std::vector<glm::vec3> means;
+  means.reserve(std::size_t(size.x * size.y));
+  std::vector<glm::dvec3> row(std::size_t(picture.width));
+  for (int y = 0; y < size.y; y++) {
+    std::ranges::fill(row, glm::dvec3(0.0));
+    for (const Tap &tap : taps_of(
+             y, size.y, fine, [&](double v) { return row_at(picture, v); },
+             [&](int pixel) { return std::clamp(pixel, 0, picture.height - 1); })) {
+      for (int x = 0; x < picture.width; x++) {
+        row[std::size_t(x)] += tap.weight * glm::dvec3(picture.at(x, tap.pixel));
+      }
+    }
+    for (const std::vector<Tap> &taps : columns) {
+      glm::dvec3 sum(0.0);
+      for (const Tap &tap : taps) {
+        sum += tap.weight * row[std::size_t(tap.pixel)];
+      }
+      means.emplace_back(factor * sum);
+    }
+  }
+  return means;
 }
 
 /** Number of texels of the picture along one edge of a texel of WorldLight::size. */
@@ -189,98 +266,6 @@ std::array<glm::vec3, 9> harmonics_of(const std::vector<glm::vec3> &radiance)
   return result;
 }
 
-/** A region of the sphere, for prefiltering. */
-struct Cell {
-  glm::vec3 direction{0.0F};
-  glm::vec3 flux{0.0F};
-  float solid_angle = 0.0F;
-};
-
-/** Divides \a picture into cells of \a step by \a step texels. */
-std::vector<Cell> cells_of(std::span<const glm::vec3> picture, int step)
-{
-  std::vector<Cell> cells;
-  for (int y = 0; y < WorldLight::size.y; y += step) {
-    for (int x = 0; x < WorldLight::size.x; x += step) {
-      Cell &cell = cells.emplace_back();
-      for (int b = y; b < y + step; b++) {
-        const auto area = float(texel_solid_angle(b, WorldLight::size.x, WorldLight::size.y));
-        for (int a = x; a < x + step; a++) {
-          cell.flux += area * picture[std::size_t(b) * std::size_t(WorldLight::size.x) + std::size_t(a)];
-          cell.solid_angle += area;
-        }
-      }
-      cell.direction =
-          glm::vec3(direction_of((x + 0.5 * step) / WorldLight::size.x, (y + 0.5 * step) / WorldLight::size.y));
-    }
-  }
-  return cells;
-}
-
-/** Filters \a cells, a grid of \a size, with the GGX lobe of \a alpha around the direction of each cell. */
-std::vector<glm::vec3> lobes(const std::vector<Cell> &cells, glm::ivec2 size, float alpha)
-{
-  const float a2 = alpha * alpha;
-  // Cut the lobe where it has fallen to 1/200 of its peak, that is, where sin² of the half vector's angle is about
-  // 13 a².
-  const float cosine_least = 1.0F - std::min(2.0F * 13.0F * a2, 1.0F);
-  const double reach = std::acos(double(cosine_least));
-  const int rows = int(std::ceil(reach / pi * size.y));
-  std::vector<glm::vec3> result(cells.size());
-  for (int y = 0; y < size.y; y++) {
-    const double latitude = std::abs((y + 0.5) / size.y - 0.5) * pi;
-    // The largest difference in longitude between the centre of a spherical cap and a point of the cap.
-    const double turn = latitude + reach < 0.5 * pi ? std::asin(std::sin(reach) / std::cos(latitude)) : pi;
-    const int columns = std::min(int(std::ceil(turn / (2.0 * pi) * size.x)), size.x / 2);
-    for (int x = 0; x < size.x; x++) {
-      const glm::vec3 normal = cells[std::size_t(y * size.x + x)].direction;
-      glm::vec3 sum(0.0F);
-      float weight_sum = 0.0F;
-      for (int b = std::max(y - rows, 0); b <= std::min(y + rows, size.y - 1); b++) {
-        for (int a = x - columns; a < x - columns + std::min(2 * columns + 1, size.x); a++) {
-          const Cell &cell = cells[std::size_t(b * size.x + (a + size.x) % size.x)];
-          const float cosine = cell.direction.x * normal.x + cell.direction.y * normal.y + cell.direction.z * normal.z;
-          if (cosine > cosine_least) {
-            // For a view along the normal, cos² of the half vector's angle is (1 + cosine) / 2.
-            const float h_sq = 0.5F + 0.5F * cosine;
-            const float t = (1.0F - h_sq) + a2 * h_sq;
-            const float weight = cosine / (t * t);
-            sum += weight * cell.flux;
-            weight_sum += weight * cell.solid_angle;
-          }
-        }
-      }
-      result[std::size_t(y * size.x + x)] = weight_sum > 0.0F ? sum / weight_sum : glm::vec3(0.0F);
-    }
-  }
-  return result;
-}
-
-/** Enlarges \a coarse by the factor \a step to WorldLight::size, with bilinear interpolation. */
-std::vector<glm::vec3> enlarged(const std::vector<glm::vec3> &coarse, int step)
-{
-  const glm::ivec2 size = WorldLight::size / step;
-  std::vector<glm::vec3> result;
-  result.reserve(std::size_t(WorldLight::size.x * WorldLight::size.y));
-  for (int y = 0; y < WorldLight::size.y; y++) {
-    const float v = (float(y) + 0.5F) / float(step) - 0.5F;
-    const int low = std::clamp(int(std::floor(v)), 0, size.y - 2);
-    const float t = std::clamp(v - float(low), 0.0F, 1.0F);
-    for (int x = 0; x < WorldLight::size.x; x++) {
-      const float u = (float(x) + 0.5F) / float(step) - 0.5F;
-      const int left = int(std::floor(u));
-      const float s = u - float(left);
-      const auto row = [&](int r) {
-        const std::size_t first = std::size_t(r * size.x);
-        return (1.0F - s) * coarse[first + std::size_t((left + size.x) % size.x)] +
-               s * coarse[first + std::size_t((left + 1) % size.x)];
-      };
-      result.push_back((1.0F - t) * row(low) + t * row(low + 1));
-    }
-  }
-  return result;
-}
-
 }  // namespace
 
 glm::dvec3 direction_of(double u, double v)
@@ -363,14 +348,11 @@ WorldLight world_light(const scene::World &world)
 {
   WorldLight light;
   const glm::ivec2 size = WorldLight::size;
-  const int fine = 2 * texels_across(world);
+  light.rest = mean_radiances(world, size, 2 * texels_across(world));
   double mean = 0.0;
-  for (int y = 0; y < size.y; y++) {
-    for (int x = 0; x < size.x; x++) {
-      const glm::dvec3 radiance = mean_radiance(world, x, y, size, fine);
-      mean += texel_solid_angle(y, size.x, size.y) * luminance(radiance) / (4.0 * pi);
-      light.rest.emplace_back(radiance);
-    }
+  for (std::size_t i = 0; i < light.rest.size(); i++) {
+    const double solid_angle = texel_solid_angle(int(i / std::size_t(size.x)), size.x, size.y);
+    mean += solid_angle * luminance(light.rest[i]) / (4.0 * pi);
   }
   // Regions that are much brighter than the mean cast visible shadows.
   constexpr double bright = 4.0;
@@ -384,8 +366,9 @@ WorldLight world_light(const scene::World &world)
   std::ranges::sort(patches, std::ranges::greater(), &Patch::light);
   for (Patch &patch : patches) {
     const double share = patch.light / (4.0 * pi * mean);
-    // A sun must give at least 0.5 % of the light and be at most 40° wide (0.38 sr).
-    if (share < 0.005 || patch.solid_angle() > 0.38 || int(light.suns.size()) == WorldLight::sun_max) {
+    // A sun must give at least 5 % of the light and be at most 40° wide (0.38 sr). Each sun is as much work as others,
+    // and the rest lights as well what gives less.
+    if (share < 0.05 || patch.solid_angle() > 0.38 || int(light.suns.size()) == WorldLight::sun_max) {
       continue;
     }
     for (const std::size_t texel : patch.texels) {
@@ -400,18 +383,6 @@ WorldLight world_light(const scene::World &world)
   }
   light.rest_directions = WorldDistribution(size, std::move(texels), 0.25);
   return light;
-}
-
-std::vector<std::vector<glm::vec3>> prefiltered(std::span<const glm::vec3> picture, int level_count)
-{
-  std::vector<std::vector<glm::vec3>> levels = {{picture.begin(), picture.end()}};
-  for (int level = 1; level < level_count; level++) {
-    const float roughness = float(level) / float(level_count - 1);
-    // Choose cells that are several times smaller than the lobe.
-    const int step = roughness < 0.2F ? 1 : roughness < 0.4F ? 2 : roughness < 0.6F ? 4 : 8;
-    levels.push_back(enlarged(lobes(cells_of(picture, step), WorldLight::size / step, roughness * roughness), step));
-  }
-  return levels;
 }
 
 }  // namespace gnomon::render_scene

@@ -5,6 +5,7 @@
 #include "cli_output.hh"
 #include "cli_picture.hh"
 #include "cli_process.hh"
+#include "cli_values.hh"
 
 #include "eevee_frame_text.hh"
 
@@ -26,6 +27,8 @@ namespace {
 
 using test::example;
 using test::Finished;
+using test::values_in;
+using test::write_values;
 
 class CliTest : public test::ProgramTest {};
 
@@ -459,43 +462,6 @@ TEST_F(CliTest, LayersOfAnExrAreNamedByLayerAndChannel)
 
 // ---- Pictures: OpenImageIO is another reader and writer of the same formats ----
 
-/** Red, green and blue of a file, rows from the top. */
-template <typename Value>
-std::vector<Value> values_in(const std::filesystem::path &path)
-{
-  const auto input = OIIO::ImageInput::open(path.string());
-  if (!input) {
-    ADD_FAILURE() << OIIO::geterror();
-    return {};
-  }
-  std::vector<Value> values(std::size_t(input->spec().width) * std::size_t(input->spec().height) * 3);
-  EXPECT_TRUE(input->read_image(0, 0, 0, 3, OIIO::BaseTypeFromC<Value>::value, values.data())) << input->geterror();
-  return values;
-}
-
-template <typename Value>
-void write_values(const std::filesystem::path &path, const OIIO::ImageSpec &spec, const std::vector<Value> &values)
-{
-  const auto output = OIIO::ImageOutput::create(path.string());
-  ASSERT_TRUE(output && output->open(path.string(), spec) &&
-              output->write_image(OIIO::BaseTypeFromC<Value>::value, values.data()) && output->close())
-      << path;
-}
-
-/** The same, of a picture with rows from the bottom. */
-std::vector<float> values_in(const cli::Picture &picture)
-{
-  std::vector<float> values;
-  for (int y = picture.size_px.y; y-- > 0;) {
-    for (int x = 0; x < picture.size_px.x; x++) {
-      const glm::vec4 &pixel = picture.pixels[std::size_t(y * picture.size_px.x + x)];
-      EXPECT_EQ(pixel.a, 1.0F);
-      values.insert(values.end(), {pixel.r, pixel.g, pixel.b});
-    }
-  }
-  return values;
-}
-
 TEST_F(CliTest, ExrKeepsTheBitsOfEveryFloat)
 {
   constexpr glm::ivec2 size_px(37, 41);
@@ -544,11 +510,11 @@ TEST_F(CliTest, PicturesOfOtherProgramsAreReadAsAnotherLibraryReadsThem)
   EXPECT_EQ(values_in(cli::read_picture(folder / "tiles.exr")), values_in<float>(folder / "tiles.exr"));
 
   std::vector<float> rgb(std::size_t(3) * width * height);
-  std::ranges::generate(rgb, [&] { return std::ldexp(float(random() % 256), int(random() % 40) - 20); });
-  write_values(folder / "a.hdr", OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::FLOAT), rgb);
+  std::ranges::generate(rgb, [&] { return float(random() % 4096) / 1024.0F; });
+  write_values(folder / "a.tif", OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::FLOAT), rgb);
   write_values(folder / "same.exr", OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::FLOAT),
-               values_in<float>(folder / "a.hdr"));
-  EXPECT_EQ(run("compare a.hdr same.exr --max-rmse 1e-30").status, 0) << "by the module";
+               values_in<float>(folder / "a.tif"));
+  EXPECT_EQ(run("compare a.tif same.exr --max-rmse 1e-30").status, 0) << "by the module";
 
   const auto linear = [](float coded) {
     return coded <= 0.04045F ? coded / 12.92F : std::pow((coded + 0.055F) / 1.055F, 2.4F);
@@ -619,7 +585,8 @@ TEST_F(CliTest, DamagedPicturesAreNamedOrRead)
   cli::write_exr(folder / "a.exr", size_px, rgba, {});
   cli::write_png(folder / "a.png", size_px, std::vector<std::uint8_t>(rgba.begin(), rgba.end()), {});
   write_values(folder / "a.jpg", OIIO::ImageSpec(31, 17, 3, OIIO::TypeDesc::UINT8), rgba);
-  for (const std::string name : {"a.exr", "a.png", "a.jpg"}) {
+  write_values(folder / "a.hdr", OIIO::ImageSpec(31, 17, 3, OIIO::TypeDesc::FLOAT), rgba);
+  for (const std::string name : {"a.exr", "a.png", "a.jpg", "a.hdr"}) {
     const std::string whole = read(name);
     for (std::size_t size = 0; size + 16 < whole.size(); size += 1 + whole.size() / 50) {
       write(name, whole.substr(0, size));
@@ -644,9 +611,9 @@ TEST_F(CliTest, DamagedPicturesAreNamedOrRead)
       }
     }
   }
-  write_values(folder / "a.hdr", OIIO::ImageSpec(31, 17, 3, OIIO::TypeDesc::FLOAT), rgba);
-  write("cut.hdr", read("a.hdr").substr(0, 200));
-  for (const std::string name : {"cut.hdr", "text.exr"}) {
+  write_values(folder / "a.tif", OIIO::ImageSpec(31, 17, 3, OIIO::TypeDesc::FLOAT), rgba);
+  write("cut.tif", read("a.tif").substr(0, 20));
+  for (const std::string name : {"cut.tif", "text.exr"}) {
     write("text.exr", "not a picture");
     const auto result = run("compare " + name + " " + name);
     EXPECT_EQ(result.status, 1);
@@ -662,10 +629,10 @@ TEST_F(CliTest, AMissingModuleIsNamed)
   std::filesystem::create_directories(alone.parent_path());
   std::filesystem::remove(alone);
   std::filesystem::create_hard_link(GNOMON_PROGRAM, alone);
-  write_values(folder / "a.hdr", OIIO::ImageSpec(2, 2, 3, OIIO::TypeDesc::FLOAT), std::vector<float>(12, 1.0F));
-  const Finished result = run("compare a.hdr a.hdr", alone);
+  write_values(folder / "a.tif", OIIO::ImageSpec(2, 2, 3, OIIO::TypeDesc::FLOAT), std::vector<float>(12, 1.0F));
+  const Finished result = run("compare a.tif a.tif", alone);
   EXPECT_EQ(result.status, 1);
-  EXPECT_TRUE(result.err.starts_with("gnomon: a.hdr: ")) << result.err;
+  EXPECT_TRUE(result.err.starts_with("gnomon: a.tif: ")) << result.err;
   EXPECT_NE(result.err.find("libgnomon_oiio.so"), std::string::npos) << result.err;
   EXPECT_EQ(run("--version", alone).status, 0);
 }

@@ -143,7 +143,7 @@ LampPoint LampPoints::world_point(const Sized &sized, std::uint32_t index, std::
                   .world_from_lamp = turned(sized.lamp.world_from_lamp, -direction.to_world),
                   .color = glm::vec3(direction.irradiance / count)};
   // A lobe with the roughness alpha has a solid angle of about 4 π alpha².
-  const double alpha_sq = world_lobe_directions * sized.world->solid_angle() / (4.0 * pi * sample_count_);
+  const double alpha_sq = world_sun_lobe_directions * sized.world->solid_angle() / (4.0 * pi * sample_count_);
   point.radius_sq = float(sized.direction_count > 1 ? direction.solid_angle / count : alpha_sq);
   return point;
 }
