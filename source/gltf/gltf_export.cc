@@ -4,6 +4,7 @@
 #include "image_base64.hh"
 #include "internal/gltf_camera.hh"
 #include "internal/gltf_report.hh"
+#include "internal/gltf_write_animation.hh"
 #include "internal/gltf_write_buffer.hh"
 #include "internal/gltf_write_json.hh"
 #include "internal/gltf_write_lamp.hh"
@@ -37,7 +38,7 @@ class SceneWriter {
  public:
   /** \a folder: that of the file */
   SceneWriter(const Scene &scene, std::filesystem::path folder)
-      : scene_(scene), folder_(std::move(folder)), meshes_(scene, buffer_)
+      : scene_(scene), folder_(std::move(folder)), meshes_(scene, buffer_), moved_(moved_nodes(scene))
   {
   }
 
@@ -50,8 +51,15 @@ class SceneWriter {
     for (const Handle<Node> handle : order_) {
       nodes.add(node_json(handle));
       if (!scene_.parent(handle)) {
-        roots.add(std::to_string(index_of_.at(handle)));
+        roots.add(std::to_string(indices_.nodes.at(handle)));
       }
+    }
+    const JsonText skins = skins_json(scene_, indices_, nodes, buffer_);
+    indices_.materials = meshes_.material_indices();
+    bool has_pointers = false;
+    const JsonText animations = animations_json(scene_, indices_, buffer_, has_pointers);
+    if (has_pointers) {
+      meshes_.extensions.insert("KHR_animation_pointer");
     }
     JsonText document;
     document.add("asset", R"({"generator":"Gnomon","version":"2.0"})");
@@ -66,6 +74,8 @@ class SceneWriter {
     add("nodes", nodes);
     add("cameras", cameras_);
     add("meshes", meshes_.meshes);
+    add("skins", skins);
+    add("animations", animations);
     add("materials", meshes_.materials);
     add("textures", meshes_.textures);
     add("samplers", meshes_.samplers);
@@ -87,11 +97,10 @@ class SceneWriter {
   MeshWriter meshes_;
   JsonText cameras_;
   JsonText lights_;
-  std::map<Handle<Camera>, int> camera_of_;
-  std::map<Handle<Lamp>, int> light_of_;
+  WrittenIndices indices_;
+  std::map<Handle<Node>, const scene::AnimatedNode *> moved_;
   /** Parents before their children. */
   std::vector<Handle<Node>> order_;
-  std::map<Handle<Node>, int> index_of_;
 
   /** Whether the importer added the node to a file without a camera or a lamp. */
   [[nodiscard]] bool is_made_up(Handle<Node> handle, const Node &node) const
@@ -114,7 +123,7 @@ class SceneWriter {
       // No recursion: the node tree may be deeper than the stack.
       Handle<Node> at = root;
       while (at) {
-        index_of_.emplace(at, static_cast<int>(order_.size()));
+        indices_.nodes.emplace(at, static_cast<int>(order_.size()));
         order_.push_back(at);
         Handle<Node> next = scene_.first_child(at);
         while (!next && at != root) {
@@ -151,12 +160,15 @@ class SceneWriter {
     }
     JsonText children;
     for (Handle<Node> child = scene_.first_child(handle); child; child = scene_.next_sibling(child)) {
-      children.add(std::to_string(index_of_.at(child)));
+      children.add(std::to_string(indices_.nodes.at(child)));
     }
     if (!children.empty()) {
       json.add("children", children.array());
     }
-    if (node.parent_from_node != glm::dmat4(1.0)) {
+    if (const auto moved = moved_.find(handle); moved != moved_.end()) {
+      add_transform(node.parent_from_node, *moved->second, what, json);
+    }
+    else if (node.parent_from_node != glm::dmat4(1.0)) {
       JsonText matrix;
       for (int i = 0; i < 16; i++) {
         matrix.add(json_number(node.parent_from_node[i / 4][i % 4], what));
@@ -165,6 +177,7 @@ class SceneWriter {
     }
     if (const int mesh = meshes_.index_of(node.meshes); mesh >= 0) {
       json.add("mesh", std::to_string(mesh));
+      add_deformation(node, what, json);
     }
     add_flags(node, extras);
     add_camera(node, json, extras);
@@ -173,6 +186,24 @@ class SceneWriter {
       json.add("extras", extras.object());
     }
     return json.object();
+  }
+
+  void add_deformation(const Node &node, const std::string &what, JsonText &json) const
+  {
+    const scene::DeformedMesh *const deformed = meshes_.deformed_of(node.meshes);
+    if (deformed == nullptr) {
+      return;
+    }
+    if (deformed->skin >= 0) {
+      json.add("skin", std::to_string(deformed->skin));
+    }
+    JsonText weights;
+    for (const double weight : deformed->weights) {
+      weights.add(json_number(weight, what));
+    }
+    if (!weights.empty()) {
+      json.add("weights", weights.array());
+    }
   }
 
   static void add_flags(const Node &node, JsonText &extras)
@@ -193,7 +224,7 @@ class SceneWriter {
     if (camera == nullptr) {
       return;
     }
-    const auto [place, is_new] = camera_of_.try_emplace(node.camera, 0);
+    const auto [place, is_new] = indices_.cameras.try_emplace(node.camera, 0);
     if (is_new) {
       place->second = cameras_.add(camera_json(*camera));
     }
@@ -210,7 +241,7 @@ class SceneWriter {
       return;
     }
     if (lamp->kind != scene::LampKind::Area) {
-      const auto [place, is_new] = light_of_.try_emplace(node.lamp, 0);
+      const auto [place, is_new] = indices_.lights.try_emplace(node.lamp, 0);
       if (is_new) {
         place->second = lights_.add(light_json(*lamp));
       }

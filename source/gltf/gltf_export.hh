@@ -17,12 +17,14 @@ struct ExportError : std::runtime_error {
  * Writes a scene as one glTF 2.0 file with all buffers and images embedded: JSON if \a path ends in ".gltf", binary if
  * it ends in ".glb". The same scene gives the same bytes.
  *
- * import_gltf reads the same scene: node tree, matrices, meshes, materials, textures, images, lamps, cameras, flags and
- * the world. Properties that glTF lacks are written as extras (`gnomon_*`, see `doc/conventions.md`). The picture of a
- * world that was read from a file stays there, and the written file refers to it (ImportOptions::read_picture).
+ * import_gltf reads the same scene: node tree, matrices, meshes, materials, textures, images, lamps, cameras, flags,
+ * the world, skins, morph targets and animations. The pose is the current one. Properties that glTF lacks are written
+ * as extras (`gnomon_*`, see `doc/conventions.md`). The picture of a world that was read from a file stays there, and
+ * the written file refers to it (ImportOptions::read_picture).
  *
  * Not written: things that no node uses, meshes without triangles, references to removed things, and the camera and
- * lamp that the importer added to a file without one. A lamp or camera of several nodes is read as one for each node.
+ * lamp that the importer added to a file without one; animations of properties of area lamps; shear of nodes that an
+ * animation moves. A lamp or camera of several nodes is read as one for each node.
  *
  * An existing file is replaced only after the new one is complete.
  *

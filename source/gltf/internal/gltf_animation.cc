@@ -3,6 +3,7 @@
 
 #include "internal/gltf_accessor.hh"
 #include "internal/gltf_node.hh"
+#include "internal/gltf_pointer.hh"
 #include "internal/gltf_units.hh"
 
 #include <glm/geometric.hpp>
@@ -33,30 +34,6 @@ namespace {
  */
 constexpr std::size_t value_count_max = std::size_t(1) << 26U;
 
-/** A supported pointer "/COLLECTION/INDEX/PATH" of KHR_animation_pointer, without the index. */
-struct Pointer {
-  std::string_view collection;
-  std::string_view path;
-  AnimatedProperty property;
-};
-
-constexpr std::array<Pointer, 14> pointers = {{
-    {"materials", "pbrMetallicRoughness/baseColorFactor", AnimatedProperty::BaseColor},
-    {"materials", "pbrMetallicRoughness/metallicFactor", AnimatedProperty::Metallic},
-    {"materials", "pbrMetallicRoughness/roughnessFactor", AnimatedProperty::Roughness},
-    {"materials", "emissiveFactor", AnimatedProperty::Emissive},
-    {"materials", "extensions/KHR_materials_emissive_strength/emissiveStrength", AnimatedProperty::Emissive},
-    {"materials", "alphaCutoff", AnimatedProperty::AlphaCutoff},
-    {"materials", "normalTexture/scale", AnimatedProperty::NormalScale},
-    {"materials", "occlusionTexture/strength", AnimatedProperty::OcclusionStrength},
-    {"cameras", "perspective/yfov", AnimatedProperty::VerticalAngle},
-    {"cameras", "orthographic/xmag", AnimatedProperty::HalfWidth},
-    {"cameras", "orthographic/ymag", AnimatedProperty::HalfHeight},
-    {"lights", "color", AnimatedProperty::LampColor},
-    {"lights", "intensity", AnimatedProperty::LampIntensity},
-    {"lights", "range", AnimatedProperty::LampRange},
-}};
-
 /** The parts of a pointer: "/materials/3/alphaCutoff" has the parts "materials", 3 and "alphaCutoff". */
 struct PointerParts {
   std::string_view collection;
@@ -66,9 +43,8 @@ struct PointerParts {
 
 std::optional<PointerParts> parts_of(std::string_view pointer)
 {
-  constexpr std::string_view lights = "/extensions/KHR_lights_punctual";
-  if (pointer.starts_with(lights)) {
-    pointer.remove_prefix(lights.size());
+  if (pointer.starts_with(light_pointer_prefix)) {
+    pointer.remove_prefix(light_pointer_prefix.size());
   }
   if (!pointer.starts_with('/')) {
     return std::nullopt;

@@ -7,6 +7,7 @@
 #include "internal/gltf_units.hh"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -66,7 +67,8 @@ IorAndColor without_ior(const Material &material)
   return {material.ior, ratio == 0.0F ? glm::vec3(1.0F) : material.specular_color / ratio};
 }
 
-/** A power of two, by which emission above 1 is divided without rounding; 1 for other emission. */
+}  // namespace
+
 float emissive_strength(const glm::vec3 &emissive)
 {
   const float largest = std::max({emissive.x, emissive.y, emissive.z});
@@ -78,7 +80,22 @@ float emissive_strength(const glm::vec3 &emissive)
   return std::ldexp(1.0F, mantissa == 0.5F ? exponent - 1 : exponent);
 }
 
-}  // namespace
+MeshWriter::MeshWriter(const scene::Scene &scene, WrittenBuffer &buffer) : scene_(scene), buffer_(buffer)
+{
+  for (const scene::DeformedMesh &deformed : scene.deformed_meshes) {
+    deformed_of_.emplace(deformed.mesh, &deformed);
+  }
+}
+
+const scene::DeformedMesh *MeshWriter::deformed_of(const std::vector<Handle<Mesh>> &node_meshes) const
+{
+  for (const Handle<Mesh> mesh : node_meshes) {
+    if (const auto found = deformed_of_.find(mesh); found != deformed_of_.end()) {
+      return found->second;
+    }
+  }
+  return nullptr;
+}
 
 int MeshWriter::index_of(const std::vector<Handle<Mesh>> &node_meshes)
 {
@@ -123,14 +140,17 @@ const JsonText &MeshWriter::primitive(Handle<Mesh> handle)
   }
   const Mesh &mesh = scene_.meshes()[handle];
   const std::string what = what_of("mesh", mesh.name);
-  const std::string bounds =
-      ",\"min\":" + json_numbers(mesh.bounds.min, what) + ",\"max\":" + json_numbers(mesh.bounds.max, what);
+  const auto found = deformed_of_.find(handle);
+  const scene::DeformedMesh *const deformed = found == deformed_of_.end() ? nullptr : found->second;
   JsonText attributes;
   const auto add = [&](std::string_view key, const auto &values, std::string_view type, const std::string &more) {
     attributes.add(key, std::to_string(buffer_.add_accessor(values, Model::Float, type, more)));
   };
-  add("POSITION", mesh.positions, "VEC3", bounds);
-  add("NORMAL", mesh.normals, "VEC3", "");
+  add_positions("POSITION", deformed ? deformed->positions : mesh.positions, what, attributes);
+  // The importer makes flat normals.
+  if (!deformed || !deformed->has_flat_normals) {
+    add("NORMAL", deformed ? deformed->normals : mesh.normals, "VEC3", "");
+  }
   if (!mesh.uvs.empty()) {
     add("TEXCOORD_0", mesh.uvs, "VEC2", "");
   }
@@ -138,10 +158,13 @@ const JsonText &MeshWriter::primitive(Handle<Mesh> handle)
     add("TEXCOORD_1", mesh.second_uvs, "VEC2", "");
   }
   if (!mesh.tangents.empty()) {
-    add("TANGENT", mesh.tangents, "VEC4", "");
+    add("TANGENT", deformed ? deformed->tangents : mesh.tangents, "VEC4", "");
   }
   if (!mesh.colors.empty()) {
     add("COLOR_0", mesh.colors, "VEC4", "");
+  }
+  if (deformed) {
+    add_deformation(*deformed, what, attributes, place->second);
   }
   place->second.add("attributes", attributes.object());
   place->second.add("indices", std::to_string(buffer_.add_accessor(mesh.indices, Model::UnsignedInt, "SCALAR")));
@@ -149,6 +172,54 @@ const JsonText &MeshWriter::primitive(Handle<Mesh> handle)
     place->second.add("material", std::to_string(material(mesh.material)));
   }
   return place->second;
+}
+
+void MeshWriter::add_deformation(const scene::DeformedMesh &deformed, const std::string &what, JsonText &attributes,
+                                 JsonText &primitive)
+{
+  if (deformed.skin >= 0) {
+    for (std::size_t set = 0; set < deformed.joint_sets; set++) {
+      std::vector<std::array<std::uint16_t, 4>> joints;
+      std::vector<glm::vec4> weights;
+      for (std::size_t i = set; i < deformed.joint_weights.size(); i += deformed.joint_sets) {
+        joints.push_back(deformed.joint_weights[i].joints);
+        weights.push_back(deformed.joint_weights[i].weights);
+      }
+      const std::string number = std::to_string(set);
+      attributes.add("JOINTS_" + number, std::to_string(buffer_.add_accessor(joints, Model::UnsignedShort, "VEC4")));
+      attributes.add("WEIGHTS_" + number, std::to_string(buffer_.add_accessor(weights, Model::Float, "VEC4")));
+    }
+  }
+  JsonText targets;
+  for (const scene::MorphTarget &target : deformed.targets) {
+    JsonText json;
+    // A target has at least one attribute. Without differences, they are 0.
+    add_positions("POSITION",
+                  target.positions.empty() ? std::vector<glm::vec3>(deformed.positions.size()) : target.positions, what,
+                  json);
+    if (!target.normals.empty() && !deformed.has_flat_normals) {
+      json.add("NORMAL", std::to_string(buffer_.add_accessor(target.normals, Model::Float, "VEC3")));
+    }
+    if (!target.tangents.empty()) {
+      json.add("TANGENT", std::to_string(buffer_.add_accessor(target.tangents, Model::Float, "VEC3")));
+    }
+    targets.add(json.object());
+  }
+  if (!targets.empty()) {
+    primitive.add("targets", targets.array());
+  }
+}
+
+void MeshWriter::add_positions(std::string_view key, const std::vector<glm::vec3> &positions, const std::string &what,
+                               JsonText &attributes)
+{
+  scene::Bounds bounds;
+  for (const glm::vec3 &position : positions) {
+    bounds.extend(position);
+  }
+  const std::string limits =
+      ",\"min\":" + json_numbers(bounds.min, what) + ",\"max\":" + json_numbers(bounds.max, what);
+  attributes.add(key, std::to_string(buffer_.add_accessor(positions, Model::Float, "VEC3", limits)));
 }
 
 int MeshWriter::material(Handle<Material> handle)

@@ -13,16 +13,28 @@
 /** Internal to source/gltf. */
 namespace gnomon::gltf {
 
+/** A power of two, by which emission above 1 is divided without rounding; 1 for other emission. */
+[[nodiscard]] float emissive_strength(const glm::vec3 &emissive);
+
 /**
  * Collects meshes and the materials, textures and images that they use, each at its first use. All members throw Fault.
  */
 class MeshWriter {
  public:
   /** All references must outlive the writer. */
-  MeshWriter(const scene::Scene &scene, WrittenBuffer &buffer) : scene_(scene), buffer_(buffer) {}
+  MeshWriter(const scene::Scene &scene, WrittenBuffer &buffer);
 
   /** Index of the glTF mesh whose primitives are \a meshes; -1 if none of them has triangles. */
   [[nodiscard]] int index_of(const std::vector<scene::Handle<scene::Mesh>> &meshes);
+
+  /** The rest shape of the first of \a node_meshes that is deformed; nullptr if none is. */
+  [[nodiscard]] const scene::DeformedMesh *deformed_of(
+      const std::vector<scene::Handle<scene::Mesh>> &node_meshes) const;
+  /** Indices of the materials that were added. */
+  [[nodiscard]] const std::map<scene::Handle<scene::Material>, int> &material_indices() const
+  {
+    return material_of_;
+  }
 
   JsonText meshes;
   JsonText materials;
@@ -35,6 +47,7 @@ class MeshWriter {
  private:
   const scene::Scene &scene_;
   WrittenBuffer &buffer_;
+  std::map<scene::Handle<scene::Mesh>, const scene::DeformedMesh *> deformed_of_;
   std::map<std::vector<scene::Handle<scene::Mesh>>, int> mesh_of_;
   /** Members of a primitive, without its name. */
   std::map<scene::Handle<scene::Mesh>, JsonText> primitive_of_;
@@ -44,6 +57,11 @@ class MeshWriter {
   std::map<std::string, int> sampler_of_;
 
   const JsonText &primitive(scene::Handle<scene::Mesh> handle);
+  void add_positions(std::string_view key, const std::vector<glm::vec3> &positions, const std::string &what,
+                     JsonText &attributes);
+  /** Adds joints, weights and morph targets. */
+  void add_deformation(const scene::DeformedMesh &deformed, const std::string &what, JsonText &attributes,
+                       JsonText &primitive);
   int material(scene::Handle<scene::Material> handle);
   /** Adds the slot if it has a texture. \a factor: further JSON members of the slot. */
   void add_slot(JsonText &json, std::string_view key, const scene::TextureSlot &slot, const std::string &what,
