@@ -128,10 +128,11 @@ TEST_F(GltfExportAnimation, MorphTargetsReadBackWithTheirWeights)
   const int up = builder.positions({0, 0, 1, 0, 0, 1, 0, 0, 1});
   const int right = builder.positions({2, 0, 0, 2, 0, 0, 2, 0, 0});
   const int turned = builder.positions({1, 0, -1, 0, 1, -1, 0, 0, 0});
-  primitive["targets"] = {{{"POSITION", up}, {"NORMAL", turned}}, {{"POSITION", right}}};
-  builder.document["meshes"][0]["weights"] = {0.5, 0.0};
-  builder.node({{"name", "other"}, {"mesh", 0}, {"weights", {0.0, 1.0}}});
-  add_channel(builder, {{"node", 0}, {"path", "weights"}}, {0, 1}, {0.5F, 0, 1, 1}, "SCALAR");
+  primitive["targets"] = {{{"POSITION", up}, {"NORMAL", turned}}, {{"POSITION", right}}, {{"POSITION", turned}}};
+  builder.document["meshes"][0]["weights"] = {0.5, 0.0, 0.25};
+  builder.node({{"name", "other"}, {"mesh", 0}, {"weights", {0.0, 1.0, 0.0}}});
+  // As many as the numbers of a vector.
+  add_channel(builder, {{"node", 0}, {"path", "weights"}}, {0, 1}, {0.5F, 0, 1, 1, 0.5F, -1}, "SCALAR");
   Scene scene = import(builder);
   scene::pose(scene, scene.animations[0], 0.3);
   Scene copy = read_back(scene);
