@@ -247,6 +247,30 @@ TEST(SunSlices, TurnWithTheSurfaces)
   EXPECT_NEAR(std::min(size.x, size.y), 2.0, 1e-6);
 }
 
+TEST(SunSlices, AreInsideOfTheMapBehindThemAndFiner)
+{
+  const std::vector<VisibleCluster> clusters = SeenGroundPicture(ground_views[0]).clusters();
+  for (const double half : {3.0, 20.0, 200.0}) {
+    for (const double texel : {0.001, 0.02, 10.0}) {
+      SliceConditions around = slice_conditions();
+      around.whole_min = glm::dvec2(-half);
+      around.whole_max = glm::dvec2(half);
+      around.whole_texel = glm::dvec2(texel);
+      for (const SunSlices &choice : sun_slices(clusters, around, 3)) {
+        EXPECT_TRUE(texel > 0.001 || choice.slices.empty()) << "nothing is finer";
+        for (const SunSlice &slice : choice.slices) {
+          const glm::dvec2 size = slice.max - slice.min;
+          EXPECT_LT(std::max(size.x, size.y) / around.slice_px, texel);
+          // The largest coordinate of the corners of the map behind, in the axes of the slice.
+          const double reach = half * (std::abs(std::cos(slice.turn)) + std::abs(std::sin(slice.turn))) + 1e-9;
+          EXPECT_TRUE(glm::all(glm::greaterThanEqual(slice.min, glm::dvec2(-reach))));
+          EXPECT_TRUE(glm::all(glm::lessThanEqual(slice.max, glm::dvec2(reach))));
+        }
+      }
+    }
+  }
+}
+
 TEST(SunSlices, IgnoreSurfacesThatNothingCanDarken)
 {
   const std::vector<VisibleCluster> clusters = SeenGroundPicture(ground_views[0]).clusters();
@@ -300,18 +324,19 @@ struct SunScene {
   glm::mat4 sun{1.0F};
 };
 
-/** The finest of \a fits in which a filter kernel of 3 texels around \a p is inside of the map; nullptr if there is
- * none. */
+/** Whether a filter kernel of 3 texels around \a p is inside of the map of \a fit. */
+bool is_in_map(const SunFit &fit, const glm::dvec3 &p)
+{
+  const double inner = 1.0 - 2.0 * 3.0 / fit.size_px;
+  const glm::dvec4 clip = glm::dmat4(fit.view.clip_from_world()) * glm::dvec4(p, 1.0);
+  return std::max(std::abs(clip.x), std::abs(clip.y)) <= inner && clip.z >= 0.0 && clip.z <= 1.0;
+}
+
+/** The finest of \a fits with \a p and its filter inside; nullptr if there is none. */
 const SunFit *map_of(const std::vector<SunFit> &fits, const glm::dvec3 &p)
 {
-  const double inner = 1.0 - 2.0 * 3.0 / SunScene::size_px;
-  for (const SunFit &fit : fits) {
-    const glm::dvec4 clip = glm::dmat4(fit.view.clip_from_world()) * glm::dvec4(p, 1.0);
-    if (std::max(std::abs(clip.x), std::abs(clip.y)) <= inner && clip.z >= 0.0 && clip.z <= 1.0) {
-      return &fit;
-    }
-  }
-  return nullptr;
+  const auto found = std::ranges::find_if(fits, [&](const SunFit &fit) { return is_in_map(fit, p); });
+  return found == fits.end() ? nullptr : &*found;
 }
 
 TEST(FittedCascades, HaveEveryVisibleReceiverInsideWithItsFilter)
@@ -335,6 +360,26 @@ TEST(FittedCascades, HaveEveryVisibleReceiverInsideWithItsFilter)
       }
     }
   }
+}
+
+TEST(FittedCascades, ShowTheirNeededBoxWithTheFilterAroundIt)
+{
+  const SunScene scene;
+  const SeenGroundPicture picture(ground_views[0]);
+  const std::vector<SunFit> fits = scene.fits(picture, true, cascade_count_max, 0.01F);
+  ASSERT_EQ(fits.size(), std::size_t(cascade_count_max));
+  int turned_count = 0;
+  for (const SunFit &fit : fits) {
+    turned_count += fit.turn != 0.0;
+    const glm::dmat3 world_from_fit = glm::transpose(turned(glm::transpose(glm::dmat3(scene.sun)), fit.turn));
+    for (int i = 0; i < 8; i++) {
+      const glm::dvec3 corner((i & 1) != 0 ? fit.needed_max.x : fit.needed_min.x,
+                              (i & 2) != 0 ? fit.needed_max.y : fit.needed_min.y,
+                              (i & 4) != 0 ? fit.needed_max.z : fit.needed_min.z);
+      EXPECT_TRUE(is_in_map(fit, world_from_fit * corner)) << fit.turn;
+    }
+  }
+  EXPECT_GT(turned_count, 0);
 }
 
 /** Mean of q², see SunSlices::error, recomputed from the maps that pixels look up. \a pixel: edge at 1 m, metres. */

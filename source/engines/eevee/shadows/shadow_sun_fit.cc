@@ -240,11 +240,12 @@ SlicePlan plan_slices(const std::vector<SunSlices> &choices, int size_px, int si
   const auto sufficient = std::ranges::find_if(
       choices, [](const SunSlices &slices) { return slices.error <= texel_in_pixels_max * texel_in_pixels_max; });
   const SunSlices &chosen = settings.count > 0 || sufficient == choices.end() ? choices.back() : *sufficient;
-  if (!settings.can_resize) {
+  // Without an error, nothing in shadow is seen yet. Other samples may see it.
+  if (!settings.can_resize || chosen.error == 0.0) {
     return {&chosen, size_px};
   }
   // Below 1, the error is proportional to the area of a texel.
-  const double factor = texel_in_pixels / std::sqrt(std::max(chosen.error, 1e-12));
+  const double factor = texel_in_pixels / std::sqrt(chosen.error);
   const double size = size_px / std::pow(resize_step, std::floor(std::log(factor) / std::log(resize_step)));
   return {&chosen, int(std::clamp(std::ceil(size), std::min(128.0, double(size_px)),
                                   double(&chosen == &choices.back() ? size_max_px : size_px)))};
@@ -272,9 +273,7 @@ void fit_to_clusters(const LampBox &needed, const glm::dmat3 &lamp_from_world, c
     const LampBox box{{slice.min, needed.min.z}, {slice.max, needed.max.z}};
     SunFit fit = fit_to(box, turned(lamp_from_world, slice.turn), plan.size_px, false);
     fit.turn = slice.turn;
-    if (fit.texel() < last.texel()) {
-      fits.push_back(std::move(fit));
-    }
+    fits.push_back(std::move(fit));
   }
   std::ranges::sort(fits, {}, [&](const SunFit &fit) { return fit.texel(); });
   fits.push_back(last);

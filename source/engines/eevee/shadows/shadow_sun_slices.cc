@@ -86,6 +86,22 @@ VisibleRanges visible_ranges(std::span<const VisibleCluster> clusters, const Sli
   return ranges;
 }
 
+/** Around the map behind all slices, for each turn. */
+std::array<SliceRectangle, turn_count> whole_rectangles(const SliceConditions &conditions)
+{
+  std::array<SliceRectangle, turn_count> rectangles;
+  for (std::size_t i = 0; i < turn_count; i++) {
+    const glm::dmat3 turn = turned(glm::dmat3(1.0), slice_turn(i));
+    for (const double x : {conditions.whole_min.x, conditions.whole_max.x}) {
+      for (const double y : {conditions.whole_min.y, conditions.whole_max.y}) {
+        const glm::dvec2 corner(turn * glm::dvec3(x, y, 0.0));
+        rectangles[i].extend({corner, corner});
+      }
+    }
+  }
+  return rectangles;
+}
+
 /** Error of the pixels of a range if texels have the edges \a texel. \see SunSlices::error */
 double range_error(const SurfaceRange &range, const glm::dvec2 &texel)
 {
@@ -121,23 +137,30 @@ std::vector<SunSlices> sun_slices(std::span<const VisibleCluster> clusters, cons
   }
   /** The best slice of the ranges first to end - 1, at [first][end]. */
   struct SliceRun {
-    double error = unbounded;
-    SunSlice slice;
+    double error = 0.0;
+    /** Empty: its limits are reversed. */
+    SunSlice slice{.min = glm::dvec2(unbounded), .max = glm::dvec2(-unbounded)};
   };
   std::vector<std::array<SliceRun, range_count + 1>> runs(range_count);
+  const std::array<SliceRectangle, turn_count> whole = whole_rectangles(conditions);
   for (std::size_t first = 0; first < range_count; first++) {
     std::array<SliceRectangle, turn_count> rectangles;
     for (std::size_t end = first + 1; end <= range_count; end++) {
       SliceRun &run = runs[first][end];
+      // Without a finer slice, the map behind all slices serves the ranges.
+      run.error = errors_behind[first] - errors_behind[end];
       for (std::size_t i = 0; i < turn_count; i++) {
         rectangles[i].extend(ranges[end - 1].rectangles[i]);
-        const glm::dvec2 texel = glm::max(rectangles[i].max - rectangles[i].min, glm::dvec2(0.0)) / conditions.slice_px;
+        const glm::dvec2 min = glm::max(rectangles[i].min, whole[i].min);
+        const glm::dvec2 max = glm::min(rectangles[i].max, whole[i].max);
+        const glm::dvec2 texel = glm::max(max - min, glm::dvec2(0.0)) / conditions.slice_px;
         double error = 0.0;
         for (std::size_t range = first; range < end; range++) {
           error += range_error(ranges[range], texel);
         }
-        if (error < run.error) {
-          run = {error, {slice_turn(i), rectangles[i].min, rectangles[i].max}};
+        const bool is_finer = std::max(texel.x, texel.y) < std::max(conditions.whole_texel.x, conditions.whole_texel.y);
+        if (is_finer && error < run.error) {
+          run = {error, {slice_turn(i), min, max}};
         }
       }
     }
@@ -170,7 +193,7 @@ std::vector<SunSlices> sun_slices(std::span<const VisibleCluster> clusters, cons
     for (std::size_t i = count; i > 0; i--) {
       const std::size_t first = choices[i][end].first;
       const SunSlice &slice = runs[first][end].slice;
-      if (slice.min.x <= slice.max.x) {
+      if (glm::all(glm::lessThanEqual(slice.min, slice.max))) {
         slices.slices.insert(slices.slices.begin(), slice);
       }
       end = first;

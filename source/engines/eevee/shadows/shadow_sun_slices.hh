@@ -52,7 +52,8 @@ struct SliceConditions {
 
 /**
  * The slices with the least error: element i of the result has at most i slices. Surfaces in no slice look up the map
- * behind all slices. \a count_max: maximum number of slices; the result has count_max + 1 elements.
+ * behind all slices. Slices are inside of that map, and their texels are smaller. \a count_max: maximum number of
+ * slices; the result has count_max + 1 elements.
  *
  * Dynamic programming over the ranges of the distance: each slice has a run of ranges.
  */

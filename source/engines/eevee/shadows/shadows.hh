@@ -132,6 +132,7 @@ class Shadows {
   struct Seen {
     glm::mat4 clip_from_world{1.0F};
     float pixel_size = 0.0F;
+    bool has_depths = false;
 
     bool operator==(const Seen &) const = default;
   };
