@@ -250,25 +250,41 @@ TEST(SunSlices, TurnWithTheSurfaces)
 TEST(SunSlices, AreInsideOfTheMapBehindThemAndFiner)
 {
   const std::vector<VisibleCluster> clusters = SeenGroundPicture(ground_views[0]).clusters();
-  for (const double half : {3.0, 20.0, 200.0}) {
-    for (const double texel : {0.001, 0.02, 10.0}) {
-      SliceConditions around = slice_conditions();
-      around.whole_min = glm::dvec2(-half);
-      around.whole_max = glm::dvec2(half);
-      around.whole_texel = glm::dvec2(texel);
-      for (const SunSlices &choice : sun_slices(clusters, around, 3)) {
-        EXPECT_TRUE(texel > 0.001 || choice.slices.empty()) << "nothing is finer";
-        for (const SunSlice &slice : choice.slices) {
-          const glm::dvec2 size = slice.max - slice.min;
-          EXPECT_LT(std::max(size.x, size.y) / around.slice_px, texel);
-          // The largest coordinate of the corners of the map behind, in the axes of the slice.
-          const double reach = half * (std::abs(std::cos(slice.turn)) + std::abs(std::sin(slice.turn))) + 1e-9;
-          EXPECT_TRUE(glm::all(glm::greaterThanEqual(slice.min, glm::dvec2(-reach))));
-          EXPECT_TRUE(glm::all(glm::lessThanEqual(slice.max, glm::dvec2(reach))));
+  int slice_count = 0;
+  for (const glm::dvec2 &center : {glm::dvec2(0.0), {-6.0, 3.0}, {6.0, 3.0}, {4.0, -5.0}}) {
+    for (const double half : {3.0, 20.0, 200.0}) {
+      for (const double texel : {0.001, 0.004, 0.008, 0.012, 0.02, 0.03, 0.05, 0.1, 0.3, 10.0}) {
+        SliceConditions around = slice_conditions();
+        around.whole_min = center - half;
+        around.whole_max = center + half;
+        around.whole_texel = glm::dvec2(texel);
+        for (const SunSlices &choice : sun_slices(clusters, around, 3)) {
+          if (center == glm::dvec2(0.0)) {
+            EXPECT_TRUE(texel > 0.001 || choice.slices.empty()) << "nothing is finer";
+          }
+          for (const SunSlice &slice : choice.slices) {
+            slice_count++;
+            const glm::dvec2 size = slice.max - slice.min;
+            EXPECT_LT(std::max(size.x, size.y) / around.slice_px, texel);
+            // The corners of the map behind, in the axes of the slice.
+            glm::dvec2 low(1e30);
+            glm::dvec2 high(-1e30);
+            for (const double x : {-half, half}) {
+              for (const double y : {-half, half}) {
+                const glm::dvec2 corner(turned(glm::dmat3(1.0), slice.turn) *
+                                        glm::dvec3(center + glm::dvec2(x, y), 0.0));
+                low = glm::min(low, corner);
+                high = glm::max(high, corner);
+              }
+            }
+            EXPECT_TRUE(glm::all(glm::greaterThanEqual(slice.min, low - 1e-9)));
+            EXPECT_TRUE(glm::all(glm::lessThanEqual(slice.max, high + 1e-9)));
+          }
         }
       }
     }
   }
+  EXPECT_GT(slice_count, 20);
 }
 
 TEST(SunSlices, IgnoreSurfacesThatNothingCanDarken)
