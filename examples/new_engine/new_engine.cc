@@ -109,8 +109,10 @@ class FacingEngine final : public draw::Engine {
       list.end_pass();
     }
     if (const draw::Target &target = viewport.target()) {
-      data.target_pass.set(data.copy, target, {.radiance = data.radiance, .radiance_origin_px = viewport.guard_px()},
-                           data.target_shader, data.nearest);
+      data.target_pass.set(
+          data.copy, target,
+          {.radiance = data.radiance, .radiance_origin_px = viewport.guard_px(), .size_px = viewport.size_px()},
+          data.target_shader, data.nearest);
       draw::begin_pass(list, "target", target, viewport.size_px(), viewport.region(),
                        {.color_load = gpu::LoadAction::Load});
       data.copy.record(view, list);

@@ -19,6 +19,9 @@ PUSH_CONSTANT_LAYOUT uniform push_constant_block
   ivec2 radiance_origin_px;
   /** The same of the depth. */
   ivec2 depth_origin_px;
+  ivec2 picture_size_px;
+  /** If it differs from the picture's, the picture is interpolated. */
+  ivec2 target_size_px;
   /** VIEW_TRANSFORM_… */
   int view_transform;
   /** ENCODING_… */
@@ -40,10 +43,34 @@ PUSH_CONSTANT_LAYOUT uniform push_constant_block
 
 layout(location = 0) out vec4 display;
 
+vec4 radiance_at(ivec2 pixel)
+{
+  return texelFetch(radiance_texture, radiance_origin_px + clamp(pixel, ivec2(0), picture_size_px - 1), 0);
+}
+
+/** \a place: in pixels of the picture, 0.5 being the middle of the first. */
+vec4 interpolated_radiance(vec2 place)
+{
+  vec2 low = floor(place - 0.5);
+  vec2 share = place - 0.5 - low;
+  ivec2 pixel = ivec2(low);
+  return mix(mix(radiance_at(pixel), radiance_at(pixel + ivec2(1, 0)), share.x),
+             mix(radiance_at(pixel + ivec2(0, 1)), radiance_at(pixel + ivec2(1, 1)), share.x), share.y);
+}
+
 void main()
 {
   ivec2 pixel = ivec2(gl_FragCoord.xy) - origin_px;
-  vec4 radiance = texelFetch(radiance_texture, radiance_origin_px + pixel, 0) * sample_scale;
+  vec4 radiance;
+  if (picture_size_px == target_size_px) {
+    radiance = texelFetch(radiance_texture, radiance_origin_px + pixel, 0);
+  }
+  else {
+    vec2 place = (vec2(pixel) + 0.5) * vec2(picture_size_px) / vec2(target_size_px);
+    radiance = interpolated_radiance(place);
+    pixel = min(ivec2(place), picture_size_px - 1);
+  }
+  radiance *= sample_scale;
   float alpha = clamp(radiance.a, 0.0, 1.0);
   if (is_straight != 0 && alpha > 0.0) {
     radiance.rgb /= alpha;

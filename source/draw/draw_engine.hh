@@ -54,8 +54,10 @@ class Engine {
   /** Finish the sync, after all objects are known. Calls Viewport::restart if the picture changes. */
   virtual void cache_finish(Viewport &viewport) = 0;
   /**
-   * Draw sample number Viewport::samples_drawn (the first is 0), unless all samples of the picture are drawn. Then
-   * write the mean of the samples to Viewport::target, if there is a target. \a view: of the picture and its guard band
+   * Draw sample number Viewport::samples_drawn (the first is 0), or the part Viewport::part of it, unless all samples
+   * of the picture are drawn or Viewport::is_writing. Then write the mean of the whole samples to Viewport::target, if
+   * there is a target and a sample. \a view: of the picture and its guard band. An engine whose pictures take little
+   * time may draw the whole sample in each part.
    */
   virtual void draw_scene(Viewport &viewport, const View &view) = 0;
   /**

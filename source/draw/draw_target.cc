@@ -23,6 +23,11 @@ double depth_slope(const HostDepth &host)
 
 }  // namespace
 
+glm::ivec2 size_in(const Target &target, glm::ivec2 size_px)
+{
+  return target.size_px == glm::ivec2(0) ? size_px : target.size_px;
+}
+
 void check(const Target &target, glm::ivec2 size_px)
 {
   if (!target) {
@@ -33,9 +38,10 @@ void check(const Target &target, glm::ivec2 size_px)
   }
   const glm::ivec2 first = target.origin_px;
   const glm::ivec2 room = size_of(target) - first;
-  if (first.x < 0 || first.y < 0 || size_px.x > room.x || size_px.y > room.y) {
-    throw gpu::Error("target: a picture of {}x{} px at {},{} does not fit into its {}x{} px", size_px.x, size_px.y,
-                     first.x, first.y, size_of(target).x, size_of(target).y);
+  const glm::ivec2 size = size_in(target, size_px);
+  if (first.x < 0 || first.y < 0 || size.x < 1 || size.y < 1 || size.x > room.x || size.y > room.y) {
+    throw gpu::Error("target: a picture of {}x{} px at {},{} does not fit into its {}x{} px", size.x, size.y, first.x,
+                     first.y, size_of(target).x, size_of(target).y);
   }
   // Within this limit, 2^exposure is finite and not denormal.
   constexpr float exposure_max = 120.0F;
@@ -57,8 +63,10 @@ void check(const Target &target, glm::ivec2 size_px)
 void begin_pass(gpu::CommandList &list, std::string_view name, const Target &target, glm::ivec2 size_px,
                 const gpu::Rectangle &region, gpu::PassActions actions)
 {
-  actions.viewport = {target.origin_px, size_px};
-  actions.scissor = {target.origin_px + region.origin_px, region.size_px};
+  const glm::ivec2 size = size_in(target, size_px);
+  actions.viewport = {target.origin_px, size};
+  actions.scissor = size == size_px ? gpu::Rectangle{target.origin_px + region.origin_px, region.size_px}
+                                    : gpu::Rectangle{target.origin_px, size};
   actions.is_srgb_encoded = target.encoding == Encoding::SrgbFormat && target.view_transform != ViewTransform::Raw;
   if (const auto *const *own = std::get_if<const gpu::Framebuffer *>(&target.framebuffer)) {
     list.begin_pass(name, **own, actions);

@@ -74,6 +74,12 @@ struct Target {
   std::variant<std::monostate, const gpu::Framebuffer *, gpu::HostFramebuffer> framebuffer{};
   /** Lower left corner of the picture in the framebuffer. Pixels outside of the picture do not change. */
   glm::ivec2 origin_px{0};
+  /**
+   * Size of the picture in the framebuffer, pixels; 0: that of the viewport. In another size, colour and alpha are
+   * interpolated between the four nearest pixels. Depth is not: a pixel has that of the picture's pixel which contains
+   * its centre, because a mean of two surfaces' depths is that of neither.
+   */
+  glm::ivec2 size_px{0};
   Encoding encoding = Encoding::Display;
   ViewTransform view_transform = ViewTransform::Standard;
   /** Stops, in [-120, 120]. Radiance is multiplied by 2^exposure before the view transform. */
@@ -88,10 +94,13 @@ struct Target {
   }
 };
 
+/** Size in \a target of a picture of \a size_px. \see Target::size_px */
+[[nodiscard]] glm::ivec2 size_in(const Target &target, glm::ivec2 size_px);
+
 /** \throws gpu::Error if a picture of \a size_px cannot be written to \a target */
 void check(const Target &target, glm::ivec2 size_px);
 
-/** Begin a pass that writes only the \a region of a picture of \a size_px to \a target. */
+/** Begin a pass that writes only the \a region of a picture of \a size_px to \a target. A scaled picture is whole. */
 void begin_pass(gpu::CommandList &list, std::string_view name, const Target &target, glm::ivec2 size_px,
                 const gpu::Rectangle &region, gpu::PassActions actions);
 

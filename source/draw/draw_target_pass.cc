@@ -14,6 +14,8 @@ void TargetPass::set(Pass &pass, const Target &target, const Picture &picture, c
   constants_.origin_px = target.origin_px;
   constants_.radiance_origin_px = picture.radiance_origin_px;
   constants_.depth_origin_px = picture.depth_origin_px;
+  constants_.picture_size_px = picture.size_px;
+  constants_.target_size_px = size_in(target, picture.size_px);
   constants_.view_transform = int(target.view_transform);
   constants_.encoding = int(target.encoding);
   constants_.exposure_scale = target.encoding == Encoding::SceneLinear ? 1.0F : std::exp2(target.exposure);
@@ -46,6 +48,8 @@ void TargetPass::set(Pass &pass, const Target &target, const Picture &picture, c
     }
     group.constant_ref("origin_px", &constants_.origin_px);
     group.constant_ref("radiance_origin_px", &constants_.radiance_origin_px);
+    group.constant_ref("picture_size_px", &constants_.picture_size_px);
+    group.constant_ref("target_size_px", &constants_.target_size_px);
     group.constant_ref("view_transform", &constants_.view_transform);
     group.constant_ref("encoding", &constants_.encoding);
     group.constant_ref("exposure_scale", &constants_.exposure_scale);

@@ -23,6 +23,8 @@ class TargetPass {
     const gpu::Texture &radiance;
     /** Pixel of `radiance` that is the lower left pixel of the picture. */
     glm::ivec2 radiance_origin_px{0};
+    /** Size of the picture. */
+    glm::ivec2 size_px{1};
     float scale = 1.0F;
     /** Reversed depth; 0 in pixels without a surface. Needed only if Target::depth is set. */
     const gpu::Texture *depth = nullptr;
@@ -54,6 +56,8 @@ class TargetPass {
     glm::ivec2 origin_px{0};
     glm::ivec2 radiance_origin_px{0};
     glm::ivec2 depth_origin_px{0};
+    glm::ivec2 picture_size_px{1};
+    glm::ivec2 target_size_px{1};
     int view_transform = 0;
     int encoding = 0;
     float exposure_scale = 1.0F;

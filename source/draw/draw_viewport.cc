@@ -124,8 +124,9 @@ void Viewport::draw(std::span<Engine *const> engines, const View &view, const Ta
     throw gpu::Error("the view's matrix, or its inverse, is not finite");
   }
   check(target, size_px_);
+  check_region(target);
   target_ = target;
-  if (view != view_ || !std::ranges::equal(engines, drawn_by_, {}, &Engine::id)) {
+  if (!is_of(engines, view)) {
     view_ = view;
     drawn_by_.clear();
     std::ranges::transform(engines, std::back_inserter(drawn_by_), &Engine::id);
@@ -146,17 +147,95 @@ void Viewport::draw(std::span<Engine *const> engines, const View &view, const Ta
   }
 }
 
+void Viewport::check_region(const Target &target) const
+{
+  if (!region_.is_whole() && target && size_in(target, size_px_) != size_px_) {
+    throw gpu::Error("target: a region of a picture cannot be scaled");
+  }
+}
+
+void Viewport::write(std::span<Engine *const> engines, const Target &target)
+{
+  check(target, size_px_);
+  check_region(target);
+  target_ = target;
+  is_writing_ = true;
+  try {
+    const View drawn = drawn_view(view_);
+    const auto draw_all = [&] {
+      for (Engine *engine : engines) {
+        engine->draw_scene(*this, drawn);
+      }
+    };
+    if (device_.is_recording()) {
+      draw_all();
+    }
+    else {
+      device_.run(packet_, draw_all);
+    }
+  }
+  catch (...) {
+    is_writing_ = false;
+    restart();
+    throw;
+  }
+  is_writing_ = false;
+}
+
+bool Viewport::is_of(std::span<Engine *const> engines, const View &view) const
+{
+  return view == view_ && std::ranges::equal(engines, drawn_by_, {}, &Engine::id);
+}
+
+int Viewport::row_count() const
+{
+  return region_.is_whole() ? drawn_size_px().y : drawn_region().size_px.y;
+}
+
+void Viewport::begin_part(std::size_t engine_count)
+{
+  const int left = rows_left();
+  const int count = engine_count == 1 ? std::min(rows_max_, left) : left;
+  part_ = {.is_first = !next_row_, .is_last = count == left, .row = next_row_.value_or(0), .row_count = count};
+}
+
+void Viewport::extend_part()
+{
+  part_.row_count = row_count() - part_.row;
+  part_.is_last = true;
+}
+
+void Viewport::end_part()
+{
+  if (!part_.is_last) {
+    next_row_ = part_.row + part_.row_count;
+    return;
+  }
+  next_row_.reset();
+  samples_drawn_ = std::min(samples_drawn_, std::numeric_limits<int>::max() - 1) + 1;
+}
+
+gpu::Rectangle Viewport::part_region() const
+{
+  if (part_.row_count == row_count()) {
+    return drawn_region();
+  }
+  const gpu::Rectangle all = region_.is_whole() ? gpu::Rectangle{{0, 0}, drawn_size_px()} : drawn_region();
+  return {all.origin_px + glm::ivec2(0, part_.row), {all.size_px.x, part_.row_count}};
+}
+
 void Viewport::draw_sample(std::span<Engine *const> engines, bool is_until_final)
 {
   draws_until_final_ = is_until_final;
   if (std::exchange(loss_count_, device_.loss_count()) != device_.loss_count()) {
     restart();
   }
+  begin_part(engines.size());
   const View drawn = drawn_view(view_);
   for (Engine *engine : engines) {
     engine->draw_scene(*this, drawn);
   }
-  samples_drawn_ = std::min(samples_drawn_, std::numeric_limits<int>::max() - 1) + 1;
+  end_part();
 }
 
 void Viewport::draw_until_final(std::span<Engine *const> engines)

@@ -8,6 +8,7 @@
 
 #include "gpu_device.hh"
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -19,6 +20,17 @@ struct EngineViewportData {
   virtual ~EngineViewportData() = default;
   /** Destroy everything that depends on the size of the picture. The next sync creates it again. */
   virtual void resized() = 0;
+};
+
+/** The part of a sample that one call of Engine::draw_scene draws. \see Viewport::set_rows_max */
+struct SamplePart {
+  /** The first part of the sample draws what the others need: depth and shadows. */
+  bool is_first = true;
+  /** With its rows, the sample is whole. */
+  bool is_last = true;
+  /** Rows of pixels to be lit, counted from the first row of Viewport::drawn_region. There may be none. */
+  int row = 0;
+  int row_count = 0;
 };
 
 /**
@@ -55,6 +67,47 @@ class Viewport {
    */
   void draw(std::span<Engine *const> engines, const View &view, const Target &target = {});
   /**
+   * Write the mean of the samples so far to \a target. Draws no sample. \a engines: of the last draw.
+   * \pre samples_drawn() is not 0
+   * \throws gpu::Error as draw()
+   */
+  void write(std::span<Engine *const> engines, const Target &target);
+  /**
+   * Draw samples in parts: each draw lights at most this number of rows of pixels, of drawn_size_px(). The first draw
+   * of a sample draws its depth and shadows, too; with 0 rows, only these. A picture that is drawn in parts is bit for
+   * bit that of whole samples. No limit at first. It does not apply to draws with several engines. \pre \a rows is at
+   * least 0
+   */
+  void set_rows_max(int rows)
+  {
+    rows_max_ = rows;
+  }
+  static constexpr int no_rows_max = std::numeric_limits<int>::max();
+  /** During draw_scene: the part of the sample to be drawn. */
+  [[nodiscard]] const SamplePart &part() const
+  {
+    return part_;
+  }
+  /** During draw_scene, before something is lit: light all rows that are left, because pixels depend on each other. */
+  void extend_part();
+  /** The pixels of part(), as drawn_region(). Undefined if it has no rows. */
+  [[nodiscard]] gpu::Rectangle part_region() const;
+  /** Rows of the next sample that are not lit yet. */
+  [[nodiscard]] int rows_left() const
+  {
+    return row_count() - next_row_.value_or(0);
+  }
+  /** Whether the first part of the next sample is drawn. */
+  [[nodiscard]] bool has_begun_sample() const
+  {
+    return next_row_.has_value();
+  }
+  /** During draw_scene: whether write() calls it, to which no sample is added. */
+  [[nodiscard]] bool is_writing() const
+  {
+    return is_writing_;
+  }
+  /**
    * Pass the feedback of a submitted packet to the \a engines that drew in it. Hosts that record packets call this
    * after the submission and before the packet is recorded again. Without a recording, draw() calls it.
    * \return true if the picture of that packet is final; false if the next draw starts the picture again
@@ -64,8 +117,17 @@ class Viewport {
   void restart()
   {
     samples_drawn_ = 0;
+    next_row_.reset();
+    restart_count_++;
   }
-  /** Number of draws since the picture was started. */
+  /** Whether the samples are of \a view, by \a engines. */
+  [[nodiscard]] bool is_of(std::span<Engine *const> engines, const View &view) const;
+  /** Increased whenever the picture is started again. */
+  [[nodiscard]] std::uint64_t restart_count() const
+  {
+    return restart_count_;
+  }
+  /** Number of whole samples drawn since the picture was started. */
   [[nodiscard]] int samples_drawn() const
   {
     return samples_drawn_;
@@ -159,9 +221,15 @@ class Viewport {
   void resize(glm::ivec2 size_px);
 
  private:
+  /** \throws gpu::Error if \a target cannot take a region */
+  void check_region(const Target &target) const;
   /** \a is_until_final: \see draws_until_final */
   void draw_sample(std::span<Engine *const> engines, bool is_until_final);
   void draw_until_final(std::span<Engine *const> engines);
+  void begin_part(std::size_t engine_count);
+  void end_part();
+  /** Rows of drawn_region(). */
+  [[nodiscard]] int row_count() const;
 
   gpu::Device &device_;
   glm::ivec2 size_px_;
@@ -174,6 +242,12 @@ class Viewport {
   std::vector<std::uint64_t> drawn_by_;
   Target target_;
   int samples_drawn_ = 0;
+  std::uint64_t restart_count_ = 0;
+  int rows_max_ = no_rows_max;
+  SamplePart part_;
+  /** The first row of the next part of a sample that has begun. */
+  std::optional<int> next_row_;
+  bool is_writing_ = false;
   /** gpu::Device::loss_count when the last sample was drawn. */
   std::uint64_t loss_count_ = 0;
   /** Used by draw() without a recording. */

@@ -37,7 +37,8 @@ void App::try_draw(Viewport &viewport)
   try {
     // The menus, the tree and the viewports before this one may have edited the scene in this frame.
     document_->render_scene().update();
-    is_complete_ &= viewport.draw(*document_);
+    const double budget_seconds = 1e-3 * double(document_->settings().budget_ms) / double(viewports_.size());
+    is_complete_ &= viewport.draw(*document_, budget_seconds);
   }
   catch (const gpu::DeviceLost &) {
     throw;
@@ -73,7 +74,16 @@ void App::show_viewport_header(Viewport &viewport)
   }
   ImGui::SameLine();
   const int samples = viewport.engine == "eevee" ? document_->settings().eevee.sample_count : 1;
-  ImGui::TextDisabled("%d/%d", std::min(viewport.samples_drawn(), samples), samples);
+  const eevee::BudgetReport *report = viewport.budget_report();
+  if (report && report->kind == eevee::BudgetReport::Kind::Preview) {
+    ImGui::TextDisabled("%dx%d", report->drawn_size_px.x, report->drawn_size_px.y);
+  }
+  else {
+    ImGui::TextDisabled("%d/%d", std::min(viewport.samples_drawn(), samples), samples);
+  }
+  if (report && ImGui::IsItemHovered()) {
+    ImGui::SetTooltip("%s", report->text().c_str());
+  }
 }
 
 void App::show_viewport(std::size_t index, glm::vec2 size)

@@ -7,6 +7,9 @@
 #include "gpu_read.hh"
 #include "render_camera.hh"
 
+#include <algorithm>
+#include <utility>
+
 namespace gnomon::view {
 
 namespace {
@@ -18,6 +21,8 @@ constexpr glm::vec4 backdrop(0.22F, 0.22F, 0.23F, 1.0F);
 
 void Viewport::close()
 {
+  budgeted_.reset();
+  has_budget_ = false;
   viewport_.reset();
   overlay_.reset();
   synced_ = {};
@@ -49,7 +54,24 @@ Viewport::OverlayKey Viewport::overlay_key(Document &document) const
   return key;
 }
 
-bool Viewport::draw(Document &document)
+void Viewport::draw_picture(Document &document, draw::Engine &engine, double budget_seconds, const draw::Target &target)
+{
+  auto *eevee = dynamic_cast<eevee::Engine *>(&engine);
+  has_budget_ = eevee && budget_seconds > 0.0;
+  if (!has_budget_) {
+    draw::Engine *one = &engine;
+    viewport_->draw(std::span(&one, 1), drawn_view_, target);
+    return;
+  }
+  if (!budgeted_) {
+    budgeted_.emplace(document.render_scene(), *eevee, *viewport_);
+  }
+  budgeted_->begin(
+      std::clamp(budget_seconds, eevee::BudgetController::budget_min, eevee::BudgetController::budget_max));
+  budgeted_->draw(drawn_view_, target);
+}
+
+bool Viewport::draw(Document &document, double budget_seconds)
 {
   render_scene::RenderScene &render_scene = document.render_scene();
   const Key key{document.scene().revision(), document.settings_revision(), engine, size_px_, render_scene.origin_ws()};
@@ -87,15 +109,19 @@ bool Viewport::draw(Document &document)
   target.view_transform = document.settings().view_transform;
   target.exposure = document.settings().exposure;
   const auto now = std::chrono::steady_clock::now();
-  viewport_->draw(std::span(&one, 1), view, target);
-  started_ = viewport_->samples_drawn() <= 1 ? now : started_;
+  draw_picture(document, *one, budget_seconds, target);
+  if (std::exchange(picture_, viewport_->restart_count()) != viewport_->restart_count()) {
+    started_ = now;
+  }
   draw_overlays(document, target);
   auto *eevee = dynamic_cast<eevee::Engine *>(one);
   if (eevee) {
     limit_time(document, *eevee);
   }
   has_failed_ = false;
-  is_complete_ = !eevee || eevee->is_complete(*viewport_);
+  // While a preview is shown, the viewport may still have the picture of another view.
+  const bool is_preview = has_budget_ && budgeted_->report().kind == eevee::BudgetReport::Kind::Preview;
+  is_complete_ = !eevee || (!is_preview && eevee->is_complete(*viewport_));
   return is_complete_;
 }
 

@@ -7,6 +7,7 @@
 #include "view_gizmo.hh"
 
 #include "draw_viewport.hh"
+#include "eevee_budgeted_picture.hh"
 
 #include <chrono>
 #include <memory>
@@ -25,8 +26,11 @@ class Viewport {
   /** Look through the scene's first camera. */
   void look_at(const Document &document);
 
-  /** Draw the next sample, if the picture needs more. \return whether it is complete \throws gpu::Error */
-  bool draw(Document &document);
+  /**
+   * Draw the next sample, if the picture needs more. \a budget_seconds: \see eevee::BudgetedPicture; 0: no budget
+   * \return whether it is complete \throws gpu::Error
+   */
+  bool draw(Document &document, double budget_seconds);
   /**
    * Show the picture as an item of the current window that fills \a size, and let the pointer act on it.
    * \return whether the pointer is over it
@@ -64,6 +68,11 @@ class Viewport {
   {
     return viewport_ ? viewport_->samples_drawn() : 0;
   }
+  /** What the last draw with a budget drew; nullptr: the last draw had none. */
+  [[nodiscard]] const eevee::BudgetReport *budget_report() const
+  {
+    return has_budget_ ? &budgeted_->report() : nullptr;
+  }
   /** nullptr: nothing was drawn yet. */
   [[nodiscard]] draw::Viewport *viewport()
   {
@@ -100,6 +109,8 @@ class Viewport {
     bool operator==(const OverlayKey &) const = default;
   };
   [[nodiscard]] OverlayKey overlay_key(Document &document) const;
+  /** Draw with \a engine, within the budget if there is one and it can. */
+  void draw_picture(Document &document, draw::Engine &engine, double budget_seconds, const draw::Target &target);
   /** End a picture whose time is over. */
   void limit_time(const Document &document, eevee::Engine &eevee);
   void draw_overlays(Document &document, const draw::Target &target);
@@ -116,6 +127,9 @@ class Viewport {
   gpu::Device &device_;
   Canvas canvas_;
   std::unique_ptr<draw::Viewport> viewport_;
+  /** Of viewport_. Created by the first draw with a budget. */
+  std::optional<eevee::BudgetedPicture> budgeted_;
+  bool has_budget_ = false;
   /** Of the document's scene; of this viewport alone, as it keeps what its view shows. */
   std::optional<overlay::Overlay> overlay_;
   glm::ivec2 size_px_{320, 240};
@@ -123,7 +137,8 @@ class Viewport {
   draw::View drawn_view_;
   /** Of drawn_view_. */
   PictureMap map_;
-  /** Of samples_drawn() above 0: when the first was begun. */
+  /** draw::Viewport::restart_count of the picture, and when it was begun. */
+  std::uint64_t picture_ = 0;
   std::chrono::steady_clock::time_point started_;
   OverlayKey overlaid_;
   bool is_complete_ = false;

@@ -322,6 +322,110 @@ TEST(Viewport, PastTheLimitIsAnErrorThatMakesNothing)
   EXPECT_TRUE(device->live_resources().empty());
 }
 
+TEST_F(ViewportTest, PartsCoverEachRowOfASampleOnce)
+{
+  /** Notes the parts that it draws. */
+  class PartEngine final : public Engine {
+   public:
+    std::string_view name() const override
+    {
+      return "parts";
+    }
+    void init(Viewport & /*viewport*/) override {}
+    void cache_init(Viewport & /*viewport*/) override {}
+    void cache_populate(Viewport & /*viewport*/, const ObjectBuffer & /*objects*/, ObjectIndex /*object*/) override {}
+    void cache_finish(Viewport & /*viewport*/) override {}
+    void draw_scene(Viewport &viewport, const View & /*view*/) override
+    {
+      if (viewport.is_writing()) {
+        writes++;
+        return;
+      }
+      if (extends_at == int(parts.size())) {
+        viewport.extend_part();
+      }
+      parts.push_back(viewport.part());
+      regions.push_back(viewport.part_region());
+    }
+    int extends_at = -1;
+    int writes = 0;
+    std::vector<SamplePart> parts;
+    std::vector<gpu::Rectangle> regions;
+  };
+  PartEngine engine;
+  const std::vector<Engine *> engines = {&engine};
+  const View view(glm::mat4(1), perspective(1, 1, 0.1F, 10));
+  Viewport viewport(*device, {8, 11});
+  // 13 rows with the guard band.
+  const auto draw = [&](int rows) {
+    viewport.set_rows_max(rows);
+    viewport.draw(engines, view);
+  };
+  draw(0);
+  EXPECT_TRUE(engine.parts.back().is_first && !engine.parts.back().is_last && engine.parts.back().row_count == 0);
+  EXPECT_TRUE(viewport.has_begun_sample());
+  for (const int rows : {5, 3, 9}) {
+    EXPECT_EQ(viewport.samples_drawn(), 0);
+    draw(rows);
+    EXPECT_FALSE(engine.parts.back().is_first);
+  }
+  EXPECT_EQ(viewport.samples_drawn(), 1);
+  EXPECT_TRUE(engine.parts.back().is_last);
+  EXPECT_EQ(engine.regions[1], (gpu::Rectangle{{0, 0}, {10, 5}}));
+  EXPECT_EQ(engine.regions[2], (gpu::Rectangle{{0, 5}, {10, 3}}));
+  EXPECT_EQ(engine.regions[3], (gpu::Rectangle{{0, 8}, {10, 5}}));
+  viewport.write(engines, {});
+  EXPECT_EQ(engine.writes, 1);
+  EXPECT_EQ(viewport.samples_drawn(), 1);
+
+  // An engine whose pixels depend on each other draws all that are left.
+  draw(4);
+  engine.extends_at = int(engine.parts.size());
+  draw(1);
+  EXPECT_EQ(engine.regions.back(), (gpu::Rectangle{{0, 4}, {10, 9}}));
+  EXPECT_EQ(viewport.samples_drawn(), 2);
+  // A restart forgets the part of a sample.
+  draw(4);
+  const std::uint64_t restarts = viewport.restart_count();
+  viewport.restart();
+  EXPECT_EQ(viewport.restart_count(), restarts + 1);
+  draw(4);
+  EXPECT_TRUE(engine.parts.back().is_first);
+  EXPECT_EQ(engine.parts.back().row, 0);
+  // Parts are those of the region.
+  viewport.set_region({{2, 3}, {4, 6}});
+  draw(5);
+  EXPECT_EQ(engine.regions.back(), (gpu::Rectangle{{2, 3}, {6, 5}}));
+  draw(5);
+  EXPECT_EQ(engine.regions.back(), (gpu::Rectangle{{2, 8}, {6, 3}}));
+  EXPECT_EQ(viewport.samples_drawn(), 1);
+  // With several engines, each draw is a whole sample.
+  const std::vector<Engine *> both = {&engine, &a};
+  viewport.draw(both, view);
+  EXPECT_EQ(viewport.samples_drawn(), 1);
+  EXPECT_TRUE(engine.parts.back().is_first && engine.parts.back().is_last);
+}
+
+TEST_F(ViewportTest, ARegionOfAPictureCannotBeScaled)
+{
+  const TargetTexture target(*device, "target", gpu::Format::RGBA8, {20, 20});
+  Viewport viewport(*device, {8, 4});
+  const std::vector<Engine *> engines = {&a};
+  const View view(glm::mat4(1), perspective(1, 1, 0.1F, 10));
+  Target scaled = target.target();
+  scaled.size_px = {16, 8};
+  viewport.draw(engines, view, scaled);
+  EXPECT_EQ(viewport.target().size_px, glm::ivec2(16, 8));
+  viewport.set_region({{0, 0}, {4, 4}});
+  expect_contains(error_of([&] { viewport.draw(engines, view, scaled); }), "a region of a picture cannot be scaled");
+  scaled.size_px = {8, 4};
+  viewport.draw(engines, view, scaled);
+  for (const glm::ivec2 wrong : {glm::ivec2(21, 8), glm::ivec2(-1, 4), glm::ivec2(0, 4)}) {
+    scaled.size_px = wrong;
+    expect_contains(error_of([&] { viewport.draw(engines, view, scaled); }), "does not fit");
+  }
+}
+
 TEST(EngineRegistry, MakesEnginesByName)
 {
   Log log;

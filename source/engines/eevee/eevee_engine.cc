@@ -220,16 +220,18 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
   make_film(viewport);
   data.target = viewport.target();
   data.sample_index = settings_.sample_first + viewport.samples_drawn();
-  if (viewport.samples_drawn() == 0) {
+  if (!viewport.is_writing() && viewport.samples_drawn() == 0 && viewport.part().is_first) {
     data.stl.shadows->begin_picture();
     data.stl.film_share = 0.0;
     std::ranges::for_each(data.frame, &StepRecord::reset);
     data.is_seen = data.has_picture_depth = data.is_finished = false;
+    data.film_sample_count = 0;
   }
-  if (!has_all_samples(data, viewport.samples_drawn()) && !draw_sample(viewport, view)) {
+  const bool has_all = viewport.is_writing() || has_all_samples(data, viewport.samples_drawn());
+  if (!has_all && !draw_sample(viewport, view)) {
     return;
   }
-  if (data.target) {
+  if (data.target && data.film_sample_count > 0) {
     draw_target(viewport, view);
   }
 }
@@ -250,6 +252,10 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
     data.is_transmission_seen = std::ranges::any_of(data.stl.transmissive, [&](const TransmissiveObject &transmissive) {
       return sample_view.touches(scene_.objects().volume(transmissive.object));
     });
+    if (data.is_transmission_seen) {
+      // It shows pixels of other rows.
+      viewport.extend_part();
+    }
     record(viewport);
     sample.is_for_feedback = viewport.draws_until_final() && awaits_depths(data, view);
     if (sample.is_for_feedback) {
@@ -266,8 +272,11 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
   if (sample.is_for_feedback) {
     return false;
   }
-  data.stl.film_share +=
-      film_share(data.sample_index, settings_.sample_count, settings_.seed, data.stl.film_weight_sum);
+  if (viewport.part().is_last) {
+    data.stl.film_share +=
+        film_share(data.sample_index, settings_.sample_count, settings_.seed, data.stl.film_weight_sum);
+    data.film_sample_count = viewport.samples_drawn() + 1;
+  }
   return true;
 }
 

@@ -120,9 +120,9 @@ struct StorageList;
  * which an object or a background is visible. A view without both costs one clear. eevee_frame.cc lists the steps of a
  * frame.
  *
- * Each call of draw_scene (through draw::Viewport::draw) with the same view draws one sample, until the picture has
- * `sample_count` samples or finish ends it. The engine offsets the samples within the pixels. Each call writes the mean
- * of the samples so far to the viewport's target, if it has one.
+ * Each call of draw_scene (through draw::Viewport::draw) with the same view draws one sample, or a part of it, until
+ * the picture has `sample_count` samples or finish ends it. The engine offsets the samples within the pixels. Each call
+ * writes the mean of the samples so far to the viewport's target, if it has one.
  */
 class Engine final : public draw::Engine {
  public:
@@ -137,6 +137,16 @@ class Engine final : public draw::Engine {
   {
     settings_ = settings;
     settings_revision_++;
+  }
+
+  [[nodiscard]] const Settings &settings() const
+  {
+    return settings_;
+  }
+  /** Increased by set_settings. */
+  [[nodiscard]] std::uint64_t settings_revision() const
+  {
+    return settings_revision_;
   }
 
   [[nodiscard]] std::string_view name() const override

@@ -379,6 +379,8 @@ struct Data final : draw::EngineViewportData {
   /** The target of the current draw, or of the last draw. */
   draw::Target target;
   int sample_index = 0;
+  /** Whole samples in TextureList::film. */
+  int film_sample_count = 0;
   /** gpu::Device::loss_count up to which lost submissions of this viewport were handled. */
   std::uint64_t loss_count = 0;
   ShadowPicture shadow_picture;

@@ -39,7 +39,7 @@ void record_pass(const FrameStep &step, FrameSample &sample, gpu::CommandList &l
 /** What steps before the transmission of light draw: all of the picture, where that reads other pixels. */
 static gpu::Rectangle read_region(const FrameSample &sample)
 {
-  return sample.data.is_transmission_seen ? gpu::Rectangle() : sample.viewport.drawn_region();
+  return sample.data.is_transmission_seen ? gpu::Rectangle() : sample.viewport.part_region();
 }
 
 namespace {
@@ -140,7 +140,10 @@ void record_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &
   Data &data = sample.data;
   const bool is_awaited = awaits_depths(data, sample.view);
   // Cascades are fitted to the depths of the whole picture.
-  record_pass(step, sample, list, data.fbl.depth_fb, {.scissor = is_awaited ? gpu::Rectangle() : read_region(sample)});
+  // All rows, of which this part may light only some.
+  const bool is_whole = is_awaited || data.is_transmission_seen;
+  record_pass(step, sample, list, data.fbl.depth_fb,
+              {.scissor = is_whole ? gpu::Rectangle() : sample.viewport.drawn_region()});
   if (is_awaited) {
     DepthFeedback &depths = data.depth_feedback;
     const std::uint64_t tag = ++depths.requested_tag;
@@ -171,7 +174,9 @@ void record_shadows(const FrameStep & /*step*/, FrameSample &sample, gpu::Comman
 {
   StorageList &stl = sample.data.stl;
   SharedData &shared = *sample.data.shared;
-  if (sample.settings.planned_sample_count() > 1) {
+  // Between two parts, another viewport may have drawn another sample.
+  const bool is_other = sample.viewport.part().is_first || shared.sample_index != sample.data.sample_index;
+  if (sample.settings.planned_sample_count() > 1 && is_other) {
     stl.shadows->invalidate_blended();
   }
   shared.sample_index = sample.data.sample_index;
@@ -192,7 +197,7 @@ void record_blend(const FrameStep &step, FrameSample &sample, gpu::CommandList &
   record_pass(step, sample, list, sample.data.fbl.main_fb,
               {.color_load = gpu::LoadAction::Load,
                .depth_load = gpu::LoadAction::Load,
-               .scissor = sample.viewport.drawn_region()});
+               .scissor = sample.viewport.part_region()});
 }
 
 void record_background(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
@@ -314,6 +319,7 @@ constexpr std::array<FrameStep, 13> steps = {{
     // The depth pre-pass comes before the shadows because cascades may be fitted to its depths.
     {"depth_prepass",
      FrameStep::When::EachSample,
+     FrameStep::Part::First,
      need_depth,
      {},
      depth_only,
@@ -321,9 +327,17 @@ constexpr std::array<FrameStep, 13> steps = {{
      record_depth,
      read_depths,
      true},
-    {"lamp_points", FrameStep::When::EachSample, need_lamp_points, {}, lights, {}, record_lamp_points},
+    {"lamp_points",
+     FrameStep::When::EachSample,
+     FrameStep::Part::Each,
+     need_lamp_points,
+     {},
+     lights,
+     {},
+     record_lamp_points},
     {"light_clusters",
      FrameStep::When::EachSample,
+     FrameStep::Part::Each,
      need_light_clusters,
      {},
      cluster_resources,
@@ -331,38 +345,45 @@ constexpr std::array<FrameStep, 13> steps = {{
      record_light_clusters},
     {"shadows",
      FrameStep::When::EachSample,
+     FrameStep::Part::Each,
      need_shadows,
      depth_only,
      shadow_targets,
      {},
      record_shadows,
      [](FrameSample &sample) { sample.data.stl.shadows->submitted(); }},
-    {"lit", FrameStep::When::EachSample, need_lit, shadow_targets, radiance_only, lit_passes, record_lit},
-    {"background", FrameStep::When::EachSample, need_background, depth_only, radiance_only, background_passes,
-     record_background},
-    {"blend_behind", FrameStep::When::EachSample, need_blend_behind, shadow_targets, radiance_only, blend_behind_passes,
-     record_blend_behind},
+    {"lit", FrameStep::When::EachSample, FrameStep::Part::Rows, need_lit, shadow_targets, radiance_only, lit_passes,
+     record_lit},
+    {"background", FrameStep::When::EachSample, FrameStep::Part::Rows, need_background, depth_only, radiance_only,
+     background_passes, record_background},
+    {"blend_behind", FrameStep::When::EachSample, FrameStep::Part::Rows, need_blend_behind, shadow_targets,
+     radiance_only, blend_behind_passes, record_blend_behind},
     {.name = "behind",
      .when = FrameStep::When::EachSample,
+     .part = FrameStep::Part::Rows,
      .need = need_behind,
      .reads = radiance_only,
      .writes = behind_only,
      .passes = {},
      .record = [](const FrameStep &, FrameSample &, gpu::CommandList &) {},
      .work = copy_behind},
-    {"transmission", FrameStep::When::EachSample, need_transmission, behind_only, depth_and_radiance,
-     transmission_passes, record_transmission},
-    {"blend", FrameStep::When::EachSample, need_blend, shadow_targets, radiance_only, blend_passes, record_blend},
-    {"film", FrameStep::When::EachSample, need_film, radiance_only, film_only, film_passes, record_film},
+    {"transmission", FrameStep::When::EachSample, FrameStep::Part::Rows, need_transmission, behind_only,
+     depth_and_radiance, transmission_passes, record_transmission},
+    {"blend", FrameStep::When::EachSample, FrameStep::Part::Rows, need_blend, shadow_targets, radiance_only,
+     blend_passes, record_blend},
+    {"film", FrameStep::When::EachSample, FrameStep::Part::Last, need_film, radiance_only, film_only, film_passes,
+     record_film},
     {"picture_depth",
      FrameStep::When::EachTarget,
+     FrameStep::Part::Each,
      need_picture_depth,
      {},
      picture_depth_only,
      picture_depth_passes,
      record_picture_depth,
      [](FrameSample &sample) { sample.data.has_picture_depth = true; }},
-    {"tonemap", FrameStep::When::EachTarget, need_tonemap, picture_only, target_only, tonemap_passes, record_tonemap},
+    {"tonemap", FrameStep::When::EachTarget, FrameStep::Part::Each, need_tonemap, picture_only, target_only,
+     tonemap_passes, record_tonemap},
 }};
 
 /** Measures the device time of the submissions of \a work with the timer query of the step \a name. */
@@ -411,7 +432,8 @@ void draw_steps(FrameSample &sample, FrameStep::When when)
     const FrameStep &step = steps[i];
     StepRecord &record = data.frame[i];
     record.passes.resize(step.passes.size());
-    if (step.when != when || (sample.is_for_feedback && !step.is_read_back)) {
+    if (step.when != when || !is_in_part(step.part, sample.viewport.part()) ||
+        (sample.is_for_feedback && !step.is_read_back)) {
       continue;
     }
     Need need = step.need(state);

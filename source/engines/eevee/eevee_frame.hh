@@ -56,6 +56,11 @@ struct FrameStep {
   std::string_view name;
   /** EachSample: drawn with each sample of the picture. EachTarget: drawn with each draw that has a target. */
   enum class When { EachSample, EachTarget } when;
+  /**
+   * Of a sample that is drawn in parts. First: with its first part. Rows: with each part, the rows of which it draws,
+   * if any. Each: with each part, because another viewport may have drawn between two parts. Last: after all rows.
+   */
+  enum class Part { First, Rows, Each, Last } part;
   /** Decides whether the step is drawn. Called before each sample or target. */
   Need (*need)(const FrameState &);
   /** Names of the resources that the step reads and writes, as in reports. */
@@ -76,11 +81,14 @@ struct FrameStep {
 /** All steps, in the order in which they are drawn. */
 [[nodiscard]] std::span<const FrameStep> frame_steps();
 
+/** Whether \a part of a sample draws a step with \a step. */
+[[nodiscard]] bool is_in_part(FrameStep::Part step, const draw::SamplePart &part);
+
 /** Record of a step over the samples of the current picture. */
 struct StepRecord {
   Need need;
   struct PassRecord {
-    /** Number of samples in which the pass drew at least one call. */
+    /** Number of samples, or parts of samples, in which the pass drew at least one call. */
     std::uint64_t runs = 0;
     draw::RecordCounts counts;
   };

@@ -11,6 +11,17 @@
 
 namespace gnomon::eevee {
 
+bool is_in_part(FrameStep::Part step, const draw::SamplePart &part)
+{
+  switch (step) {
+    case FrameStep::Part::First: return part.is_first;
+    case FrameStep::Part::Rows: return part.row_count > 0;
+    case FrameStep::Part::Last: return part.is_last;
+    case FrameStep::Part::Each: break;
+  }
+  return true;
+}
+
 std::string_view why_no_shadow(const FrameState &state, std::string_view no_such_lamp)
 {
   if (state.settings.shadow.kind == scene::ShadowKind::None) {

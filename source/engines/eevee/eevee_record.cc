@@ -233,7 +233,8 @@ void Engine::record_tonemap(draw::Viewport &viewport, const draw::View &view)
   const Feature features = target.depth ? Feature::TargetDepth : Feature::None;
   stl.target_pass.set(data.psl->tonemap, target,
                       {.radiance = txl.film,
-                       .scale = sample_scale(data, viewport.samples_drawn() + 1),
+                       .size_px = viewport.size_px(),
+                       .scale = sample_scale(data, data.film_sample_count),
                        .depth = &depth_texture,
                        .depth_origin_px = viewport.guard_px(),
                        .clip_from_view = view.clip_from_view(),

@@ -39,7 +39,7 @@ bool SceneRenderer::prepare(gpu::Packet &packet, const scene::PlacedCamera &came
   return draw_sample(camera, target);
 }
 
-bool SceneRenderer::draw_sample(const scene::PlacedCamera &camera, const draw::Target &target)
+void SceneRenderer::follow(const scene::PlacedCamera &camera)
 {
   const glm::dvec3 origin_ws =
       render_scene::origin_near(glm::dvec3(camera.world_from_camera[3]), render_scene_.origin_ws());
@@ -47,9 +47,27 @@ bool SceneRenderer::draw_sample(const scene::PlacedCamera &camera, const draw::T
     render_scene_.set_origin(origin_ws);
     sync();
   }
+}
+
+bool SceneRenderer::draw_sample(const scene::PlacedCamera &camera, const draw::Target &target)
+{
+  follow(camera);
   const std::array<draw::Engine *, 1> engines = {&engine_};
   viewport_.draw(engines, view_of(camera), target);
   return engine_.is_complete(viewport_);
+}
+
+bool SceneRenderer::draw_within(double budget_seconds, const scene::PlacedCamera &camera, const draw::Target &target)
+{
+  if (!budgeted_) {
+    budgeted_.emplace(render_scene_, engine_, viewport_);
+  }
+  budgeted_->begin(budget_seconds);
+  if (!is_synced_ || !render_scene_.is_up_to_date()) {
+    sync();
+  }
+  follow(camera);
+  return budgeted_->draw(view_of(camera), target);
 }
 
 int SceneRenderer::draw(const scene::PlacedCamera &camera, const DrawLimits &limits, const draw::Target &target)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "eevee_budgeted_picture.hh"
 #include "eevee_inspection.hh"
 
 #include <functional>
@@ -69,6 +70,19 @@ class SceneRenderer {
    */
   bool draw_sample(const scene::PlacedCamera &camera, const draw::Target &target = {});
   /**
+   * As draw_sample, within a time: the first call after an edit or a change of the camera draws a whole picture, in a
+   * lower resolution and with smaller shadows if the time asks for it; later calls draw parts of samples, or several
+   * samples. The complete picture is bit for bit that of draw_sample. Syncs if necessary, and waits for the device. Use
+   * it on the device's thread, without a recording. \a budget_seconds: \see BudgetedPicture::draw \return whether the
+   * picture is complete
+   */
+  bool draw_within(double budget_seconds, const scene::PlacedCamera &camera, const draw::Target &target = {});
+  /** What the last draw_within drew. \pre draw_within was called */
+  [[nodiscard]] const BudgetReport &budget_report() const
+  {
+    return budgeted_->report();
+  }
+  /**
    * Draw a picture anew, until it is complete or \a limits end it, and write the mean of its samples to \a target.
    * \return the number of samples
    * \throws gpu::Error as draw_sample, and if neither the settings nor \a limits limit the number of samples
@@ -76,7 +90,7 @@ class SceneRenderer {
   int draw(const scene::PlacedCamera &camera, const DrawLimits &limits = {}, const draw::Target &target = {});
   /**
    * The mean of the samples drawn so far: scene-linear RGBA, rows from the bottom. Waits for the device. Pixels outside
-   * of draw::Viewport::region are undefined.
+   * of draw::Viewport::region are undefined. \pre a sample is drawn, which a preview of draw_within is not
    */
   [[nodiscard]] std::vector<glm::vec4> read_picture();
 
@@ -104,12 +118,17 @@ class SceneRenderer {
   }
 
  private:
+  /** Move the origin of the render scene near to \a camera, if it is far away. */
+  void follow(const scene::PlacedCamera &camera);
+
   render_scene::RenderScene render_scene_;
   Engine engine_;
   draw::Viewport viewport_;
   Settings settings_;
   /** The last sync succeeded, and settings and size have not changed since. */
   bool is_synced_ = false;
+  /** Created by the first draw_within. */
+  std::optional<BudgetedPicture> budgeted_;
 };
 
 }  // namespace gnomon::eevee

@@ -82,7 +82,7 @@ void record_transmission(const FrameStep &step, FrameSample &sample, gpu::Comman
   record_pass(step, sample, list, sample.data.fbl.main_fb,
               {.color_load = gpu::LoadAction::Load,
                .depth_load = gpu::LoadAction::Load,
-               .scissor = sample.viewport.drawn_region()});
+               .scissor = sample.viewport.part_region()});
 }
 
 }  // namespace gnomon::eevee

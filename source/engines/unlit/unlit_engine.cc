@@ -226,6 +226,7 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
   data.target_pass.set(data.target, target,
                        {.radiance = data.radiance,
                         .radiance_origin_px = viewport.guard_px(),
+                        .size_px = viewport.size_px(),
                         .depth = &viewport.depth_texture(),
                         .depth_origin_px = viewport.guard_px(),
                         .clip_from_view = view.clip_from_view()},

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <glm/vec2.hpp>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+namespace gnomon::eevee {
+
+/** The largest of the last four costs, so that a plan follows a rise at once and a fall after four calls. */
+class RecentCost {
+ public:
+  /** \a seconds: NaN and less than 0 are 0; at most 1000. */
+  void add(double seconds);
+  /** Empty before the first add. */
+  [[nodiscard]] std::optional<double> value() const;
+
+ private:
+  std::array<double, 4> costs_{};
+  int count_ = 0;
+};
+
+/**
+ * Decides what a draw call may draw within a time budget, from the times that the last calls took. It uses no clock and
+ * no device. All times are in seconds.
+ *
+ * The first call after an edit draws either a whole sample of the picture, or a preview: one sample in a lower
+ * resolution, with smaller shadows. The expected time of a preview is its set-up, plus the time of a pixel times its
+ * pixels, plus the time of writing it to the target. Rules, with B = the budget:
+ * - more than 0.95 B is expected: the largest size of which at most 0.8 B is expected, or the smallest there is;
+ * - at most 0.7 B is expected of the next larger size: that size;
+ * - the set-up takes more than 0.5 B, or the smallest size does not fit: shadows of half the edge. Of twice the edge,
+ * if the preview has all pixels and four times the set-up leaves it within 0.7 B, and the set-up within 0.4 B;
+ * - at most 0.7 B is expected of a whole sample: a whole sample, until more than 0.95 B is expected. If its time is not
+ *   known, it is expected to be that of a preview with all pixels, with a set-up that grows as the shadows' texels.
+ * Where the time of a preview is a constant plus a share for each pixel and each texel of its shadows, a change in one
+ * direction is never followed by one in the other: the next larger size takes at most what is expected of it, and
+ * shadows of twice the edge take at most four times as long.
+ *
+ * Later calls draw the picture in parts: the set-up of a sample, then as many rows as fit into 0.9 B.
+ */
+class BudgetController {
+ public:
+  static constexpr double budget_min = 1e-4;
+  static constexpr double budget_max = 10.0;
+  /** Each level has half of the pixels of the one before. Level 0: all. */
+  static constexpr int level_max = 8;
+  static constexpr int shadow_divisor_max = 8;
+
+  struct FirstPlan {
+    /** Draw a whole sample of the picture; otherwise a preview. */
+    bool is_whole = false;
+    int level = 0;
+    /** The edges of shadows are divided by it: 1, 2, 4 or 8. */
+    int shadow_divisor = 1;
+
+    bool operator==(const FirstPlan &) const = default;
+  };
+
+  /** Plan the first call after an edit. \a pixel_count: of the picture. A budget out of the range is moved into it. */
+  FirstPlan plan_first(double budget, std::int64_t pixel_count);
+  /** Time that is expected of a whole sample after an edit, with its writing. Empty: not known. */
+  [[nodiscard]] std::optional<double> whole_seconds(std::int64_t pixel_count) const;
+  /** Whether the set-up of a sample is expected to fit into the rest of a call. */
+  [[nodiscard]] bool fits_setup(double budget, double spent, bool is_first) const;
+  /**
+   * Rows that are expected to fit into the rest of a call: up to \a row_count, of \a row_px pixels each. At least one
+   * sixteenth of them if \a must_advance, so that a sample always ends. An eighth as long as no time is known.
+   */
+  [[nodiscard]] int plan_rows(double budget, double spent, int row_px, int row_count, bool must_advance) const;
+
+  /** Times of a preview as it was last planned. The first one after a change is not counted: it creates its textures.
+   */
+  void add_preview(double setup, double rows, std::int64_t pixel_count);
+  /** \a is_first: of the first sample after an edit. */
+  void add_setup(double setup, bool is_first);
+  void add_rows(double seconds, std::int64_t pixel_count);
+  void add_write(double seconds);
+
+  /** Size of a preview in \a level of a picture of \a size_px: at least 1x1. */
+  [[nodiscard]] static glm::ivec2 size_at(int level, glm::ivec2 size_px);
+
+ private:
+  [[nodiscard]] double expected(int level, double setup, double pixel, std::int64_t pixel_count) const;
+  void plan_preview(double budget, std::int64_t pixel_count);
+
+  /** A quarter of the edges: the first previews, whose cost is not known. */
+  int level_ = 4;
+  int shadow_divisor_ = 2;
+  bool is_whole_ = false;
+  /** The next times of a preview are those of its creation. */
+  bool is_new_ = true;
+  RecentCost preview_setup_;
+  RecentCost preview_pixel_;
+  RecentCost first_setup_;
+  RecentCost later_setup_;
+  RecentCost pixel_;
+  RecentCost write_;
+};
+
+}  // namespace gnomon::eevee
