@@ -7,3 +7,9 @@ layout(std140, binding = VIEW_BLOCK_SLOT) uniform view_block
 {
   ViewData view;
 };
+
+/** From a point of world space towards the viewer, of any length. */
+vec3 to_viewer(vec3 position_ws)
+{
+  return view.is_perspective != 0 ? view.position_ws - position_ws : view.back_ws;
+}

@@ -11,8 +11,9 @@ invariant gl_Position;
 
 void main()
 {
-  gl_Position = view.clip_from_world * vertex_position_ws();
+  vec4 position_ws = vertex_position_ws();
+  gl_Position = view.clip_from_world * position_ws;
 #ifdef USE_ALPHA_MASK
-  write_material_varyings();
+  write_alpha_varyings(position_ws.xyz);
 #endif
 }

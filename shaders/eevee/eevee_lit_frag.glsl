@@ -14,6 +14,9 @@
 #  include "eevee/eevee_light_lib.glsl"
 #  include "eevee/eevee_surface_frag_lib.glsl"
 #endif
+#ifdef USE_SURFACE_FUNCTION
+#  include "eevee/eevee_surface_function_lib.glsl"
+#endif
 #ifdef USE_LAYERS
 #  include "eevee/eevee_layers_lib.glsl"
 #endif
@@ -25,7 +28,13 @@ layout(location = 0) out vec4 radiance;
 
 void main()
 {
-#ifdef USE_FULL_MATERIAL
+#if defined(USE_SURFACE_FUNCTION)
+  Surface surface = normal_mapped(make_surface());
+  StandardSurface edited =
+      edited_surface(surface.position_ws, surface.smooth_normal_ws, surface.normal_ws, surface.view_ws);
+  surface.normal_ws = edited.normal_ws;
+  MaterialData material = edited_material(edited);
+#elif defined(USE_FULL_MATERIAL)
   MaterialData material = full_material();
 #else
   MaterialData material = materials[surface_material];
@@ -36,9 +45,11 @@ void main()
   vec3 sum = material.emissive;
   float alpha = 1.0;
 #ifdef USE_LIGHT
+#  ifndef USE_SURFACE_FUNCTION
   Surface surface = make_surface();
-#  ifdef USE_FULL_MATERIAL
+#    ifdef USE_FULL_MATERIAL
   surface = normal_mapped(surface);
+#    endif
 #  endif
 #  ifdef USE_SPECULAR
   material.alpha = sampled_alpha(material.alpha, surface);
@@ -63,10 +74,15 @@ void main()
   sum += direct_light(material, surface);
 #endif
   radiance = vec4(sum, alpha);
-#ifdef USE_FULL_MATERIAL
+#if defined(USE_SURFACE_FUNCTION)
+  radiance *= has_input(INPUT_BLENDED) ? edited.alpha : 1.0;
+  if (edited.alpha < materials[surface_material].mask_cutoff) {
+    discard;
+  }
+#elif defined(USE_FULL_MATERIAL)
   radiance *= surface_opacity();
 #endif
-#if defined(USE_FULL_MATERIAL) || defined(USE_BASE_COLOR_TEXTURE)
+#if (defined(USE_FULL_MATERIAL) && !defined(USE_SURFACE_FUNCTION)) || defined(USE_BASE_COLOR_TEXTURE)
   // Another surface may have the same depth, so the depth test alone does not reject a masked fragment.
   if (is_cut_out(materials[surface_material].mask_cutoff)) {
     discard;

@@ -12,6 +12,9 @@ layout(location = 2) flat out uint surface_material;
 #ifdef USE_LIGHT
 #  include "eevee/eevee_surface_vert_lib.glsl"
 #endif
+#ifdef USE_SURFACE_FUNCTION
+#  include "eevee/eevee_surface_function_vert_lib.glsl"
+#endif
 #ifdef WRITES_OBJECT
 layout(location = 9) flat out uint surface_object;
 #endif
@@ -32,6 +35,9 @@ void main()
 #endif
 #ifdef USE_LIGHT
   write_surface_varyings(position_ws.xyz);
+#endif
+#ifdef USE_SURFACE_FUNCTION
+  write_function_varyings();
 #endif
 #ifdef WRITES_OBJECT
   surface_object = draw_instance.x;

@@ -25,9 +25,10 @@ float caster_opacity()
   return 1.0 - (1.0 - full.opacity) * luminance(full.base_color * surface_color.rgb * texel.rgb);
 }
 
-bool is_let_through()
+/** \a opacity: part of the light that does not pass. */
+bool is_let_through(float opacity)
 {
   uint occluder = 2u * surface_object + (gl_FrontFacing ? 1u : 0u);
-  return caster_opacity() <= opacity_threshold(uint(gl_FragCoord.x), uint(gl_FragCoord.y), occluder, uint(sample_index),
-                                                uint(sample_seed));
+  return opacity <= opacity_threshold(uint(gl_FragCoord.x), uint(gl_FragCoord.y), occluder, uint(sample_index),
+                                      uint(sample_seed));
 }

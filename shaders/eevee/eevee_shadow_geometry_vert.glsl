@@ -4,7 +4,7 @@
 // selects it.
 #include "eevee/eevee_shadow_render_lib.glsl"
 
-layout(location = 0) flat out int caster_layer;
+layout(location = 9) flat out int caster_layer;
 
 void main()
 {

@@ -13,8 +13,9 @@ layout(std140, binding = SHADOW_RENDER_BLOCK_SLOT) uniform shadow_render_block
 
 void place_caster()
 {
-  gl_Position = shadow_render.clip_from_world[draw_instance.y] * vertex_position_ws();
+  vec4 position_ws = vertex_position_ws();
+  gl_Position = shadow_render.clip_from_world[draw_instance.y] * position_ws;
 #ifdef USE_ALPHA_MASK
-  write_material_varyings();
+  write_alpha_varyings(position_ws.xyz);
 #endif
 }

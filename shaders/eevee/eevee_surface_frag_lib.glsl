@@ -9,13 +9,6 @@
 layout(location = 0) in vec3 surface_position_ws;
 layout(location = 1) in vec3 surface_normal_ws;
 
-/** Unit vector in the direction of \a v; \a fallback for the zero vector. */
-vec3 normalized(vec3 v, vec3 fallback)
-{
-  float length_sq = dot(v, v);
-  return length_sq > 0.0 ? v * inversesqrt(length_sq) : fallback;
-}
-
 #ifdef USE_SPECULAR
 /** Alpha for the mean of the lobes under a sample's share of a pixel. */
 float sampled_alpha(float alpha, Surface surface)
@@ -34,8 +27,7 @@ Surface make_surface()
 {
   Surface surface;
   surface.position_ws = surface_position_ws;
-  vec3 view_ws = view.is_perspective != 0 ? view.position_ws - surface_position_ws : view.back_ws;
-  surface.view_ws = normalized(view_ws, view.back_ws);
+  surface.view_ws = normalized(to_viewer(surface_position_ws), view.back_ws);
   vec3 edges_normal = cross(dFdx(surface_position_ws), dFdy(surface_position_ws));
   vec3 seen = normalized(edges_normal, surface.view_ws);
   surface.geometric_normal_ws = dot(seen, surface.view_ws) < 0.0 ? -seen : seen;

@@ -22,6 +22,13 @@ struct Surface {
 #endif
 };
 
+/** Unit vector in the direction of \a v; \a fallback for the zero vector. */
+vec3 normalized(vec3 v, vec3 fallback)
+{
+  float length_sq = dot(v, v);
+  return length_sq > 0.0 ? v * inversesqrt(length_sq) : fallback;
+}
+
 /** A unit vector perpendicular to the unit vector \a n. */
 vec3 any_across(vec3 n)
 {

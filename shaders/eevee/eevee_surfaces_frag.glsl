@@ -9,6 +9,9 @@
 #  include "eevee/eevee_base_color_lib.glsl"
 #endif
 #include "eevee/eevee_surface_frag_lib.glsl"
+#ifdef USE_SURFACE_FUNCTION
+#  include "eevee/eevee_surface_function_lib.glsl"
+#endif
 
 layout(location = 9) flat in uint surface_object;
 
@@ -21,7 +24,13 @@ layout(location = 2) out vec4 albedo_roughness;
 void main()
 {
   Surface surface = make_surface();
-#ifdef USE_FULL_MATERIAL
+#if defined(USE_SURFACE_FUNCTION)
+  surface = normal_mapped(surface);
+  StandardSurface edited =
+      edited_surface(surface.position_ws, surface.smooth_normal_ws, surface.normal_ws, surface.view_ws);
+  surface.normal_ws = edited.normal_ws;
+  MaterialData material = edited_material(edited);
+#elif defined(USE_FULL_MATERIAL)
   MaterialData material = full_material();
   surface = normal_mapped(surface);
 #else
@@ -35,7 +44,11 @@ void main()
   position_depth = vec4(surface.position_ws, dot(view.back_ws, view.position_ws - surface.position_ws));
   normal_object = vec4(surface.normal_ws, float(surface_object));
   albedo_roughness = vec4(albedo, sqrt(material.alpha));
-#if defined(USE_FULL_MATERIAL) || defined(USE_BASE_COLOR_TEXTURE)
+#if defined(USE_SURFACE_FUNCTION)
+  if (edited.alpha < materials[surface_material].mask_cutoff) {
+    discard;
+  }
+#elif defined(USE_FULL_MATERIAL) || defined(USE_BASE_COLOR_TEXTURE)
   if (is_cut_out(materials[surface_material].mask_cutoff)) {
     discard;
   }

@@ -23,7 +23,10 @@ struct MaterialData {
   float specular_f90;
   /** Radiance, W/(sr m²). */
   vec3 emissive;
-  /** The surface is cut out where the alpha of its texture and its vertex colours is below this. 0: nowhere. */
+  /**
+   * The surface is cut out where the alpha of its texture and its vertex colours is below this. 0: nowhere. With a surface function, where
+   * the alpha of the function is below.
+   */
   float mask_cutoff;
   /** Part of specular_f0 due to the base colour of a metal. */
   vec3 metal_f0;
@@ -51,6 +54,8 @@ SHARED_ASSERT_SIZE(MaterialData, 64)
 #define INPUT_UNLIT 65536u
 /** The surface is blended over what is behind it. */
 #define INPUT_BLENDED 131072u
+/** The material has an alpha mask and a surface function, which reads the alpha of the mask. */
+#define INPUT_MASKED 262144u
 /** Textures of FullMaterialData, and after them those of LayerData: first of coats, sheen and anisotropy, then of transmission. */
 #define FULL_TEXTURE_COUNT 7
 #define LAYER_TEXTURE_COUNT 5
@@ -68,7 +73,10 @@ struct FullMaterialData {
   float occlusion_strength;
   /** INPUT_ bits. */
   uint inputs;
-  /** Factor of a blended surface's opacity. Of another one, for shadows: 1 - the part of white light that a white surface transmits. */
+  /**
+   * Factor of alpha of a blended surface, and of one with INPUT_MASKED. Of another one, for shadows: 1 - the part of white light that a
+   * white surface transmits.
+   */
   float opacity;
   /** Two rows for each texture. It is looked up at xyz · (u, v, 1); w of the first row: 0 for the first set of uvs, 1 for the second. */
   vec4 uv_rows[2 * FULL_TEXTURE_COUNT];

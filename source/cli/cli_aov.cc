@@ -156,7 +156,7 @@ std::vector<std::string> Aov::warnings(const scene::Scene &scene) const
   });
   const bool has_blended = std::ranges::any_of(scene.objects(), [&](const scene::Object &object) {
     const scene::Mesh &mesh = scene.meshes()[object.mesh];
-    return render_scene::is_blended(scene, mesh) && render_scene::is_drawable(scene.material_of(mesh));
+    return render_scene::is_blended(scene, mesh) && render_scene::is_drawable(scene, scene.material_of(mesh));
   });
   std::vector<std::string> warnings;
   if (!layers.empty() && has_blended) {

@@ -120,6 +120,11 @@ void add(Hasher &hash, const scene::Scene &scene, const scene::Material &materia
   hash.add(material.ior);
   hash.add(material.attenuation_distance);
   hash.add(material.attenuation_color);
+  const scene::SurfaceFunction *function = scene.surface_functions().find(material.surface_function);
+  hash.add(function != nullptr);
+  if (function) {
+    hash.add(function->text);
+  }
   for (const scene::TextureInput &input : scene::texture_inputs) {
     add(hash, scene, material.*input.slot);
   }

@@ -59,6 +59,12 @@ std::optional<gpu::ShaderStage> stage_of(const fs::path &path)
   return ending == nullptr ? std::nullopt : std::optional(ending->stage);
 }
 
+bool is_surface_function(const fs::path &path)
+{
+  const std::string text = path.string();
+  return text.ends_with(".surface.glsl") || text.ends_with("_surface.glsl");
+}
+
 std::string stem_of(const fs::path &path)
 {
   const std::string text = path.string();

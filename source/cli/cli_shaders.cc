@@ -28,6 +28,17 @@ void print_list()
     fmt::print("{}: where {}\n", define.define, define.purpose);
   }
   fmt::print("{} programs, {} variants\n", program_count(variants), variants.size());
+  std::size_t count = 0;
+  std::string programs;
+  for (const eevee::ShaderDeclaration &declaration : eevee::shader_declarations()) {
+    const std::size_t of_program = eevee::surface_function_variants(declaration).size();
+    count += of_program;
+    if (of_program > 0) {
+      programs += fmt::format("{}{} ({})", programs.empty() ? "" : ", ", declaration.name, of_program);
+    }
+  }
+  fmt::print("each surface function: at most {} of these variants once more, as its materials need them: {}\n", count,
+             programs);
 }
 
 }  // namespace

@@ -4,7 +4,9 @@
 #include "cli_shader_programs.hh"
 #include "cli_shader_report.hh"
 
+#include "eevee_programs.hh"
 #include "scene_parallel.hh"
+#include "scene_types.hh"
 
 #include <unistd.h>
 #include <algorithm>
@@ -111,8 +113,8 @@ gpu::ShaderStage required_stage(const std::string &file, const std::string &stag
       stage_of(stage_name.empty() ? fs::path(file) : fs::path("." + stage_name));
   if (!stage) {
     throw UsageError(
-        fmt::format("{}: its name ends in none of .vert, _vert.glsl, .geom, _geom.glsl, .frag, _frag.glsl; "
-                    "--stage vert|geom|frag sets the stage",
+        fmt::format("{}: its name ends in none of .vert, _vert.glsl, .geom, _geom.glsl, .frag, _frag.glsl, "
+                    ".surface.glsl, _surface.glsl; --stage vert|geom|frag|surface sets the stage",
                     file));
   }
   return *stage;
@@ -139,13 +141,67 @@ std::string define_of(const std::string &argument)
   return name + " " + (equals == std::string::npos ? "1" : argument.substr(equals + 1));
 }
 
+/**
+ * A surface function in the programs that draw with it: of each, the variant with the fewest features and the one with
+ * the most.
+ */
+ShaderReport check_surface_function(const std::string &file, const CheckArguments &arguments)
+{
+  shader_check::FolderFiles own{fs::path()};
+  const std::optional<std::string_view> text = own.text(file);
+  const auto failed = [&](int line, std::string reason) {
+    ShaderReport report;
+    report.messages.push_back({shader_check::Severity::Error, file, line, std::move(reason), "include", file, "",
+                               shader_check::CheckTarget::OpenGl});
+    report.targets = targets_of(arguments.target);
+    return report;
+  };
+  if (!text) {
+    return failed(1, "there is no such file");
+  }
+  if (text->size() > scene::SurfaceFunction::text_bytes_max) {
+    return failed(1, fmt::format("it has more than {} bytes", scene::SurfaceFunction::text_bytes_max));
+  }
+  if (const auto fault = eevee::surface_function_fault(*text)) {
+    return failed(fault->line, fault->reason);
+  }
+  std::vector<gpu::ShaderDesc> descs;
+  for (const eevee::ShaderDeclaration &declaration : eevee::shader_declarations()) {
+    const std::vector<eevee::Feature> variants = eevee::surface_function_variants(declaration);
+    for (std::size_t i = 0; i < variants.size(); i += std::max<std::size_t>(variants.size() - 1, 1)) {
+      descs.push_back(with_surface_function(shader_desc(declaration, variants[i]), declaration));
+    }
+  }
+  const EngineFiles engine("");
+  shader_check::CheckOptions options;
+  options.blocks = engine_blocks();
+  options.is_block_size_strict = true;
+  ShaderReport report = check_all(
+      descs, [&](std::string_view path) { return path == eevee::surface_function_file ? text : engine.files()(path); },
+      options, targets_of(arguments.target));
+  for (shader_check::CheckMessage &message : report.messages) {
+    message.file = message.file == eevee::surface_function_file ? file : engine.shown(message.file);
+  }
+  return report;
+}
+
 /** Files whose names differ only in the stage belong to one program. */
 ShaderReport check_files(const CheckArguments &arguments)
 {
+  ShaderReport functions;
+  std::size_t function_count = 0;
   std::vector<gpu::ShaderDesc> descs;
   std::vector<std::string> defines;
   std::ranges::transform(arguments.defines, std::back_inserter(defines), define_of);
   for (const std::string &file : arguments.files) {
+    if (arguments.stage == "surface" || (arguments.stage.empty() && is_surface_function(file))) {
+      const ShaderReport report = check_surface_function(file, arguments);
+      std::ranges::copy(report.messages, std::back_inserter(functions.messages));
+      functions.variant_count += report.variant_count;
+      functions.seconds += report.seconds;
+      function_count++;
+      continue;
+    }
     const gpu::ShaderStage stage = required_stage(file, arguments.stage);
     const std::string name = stem_of(file);
     auto desc = std::ranges::find_if(
@@ -160,7 +216,10 @@ ShaderReport check_files(const CheckArguments &arguments)
   shader_check::CheckOptions options;
   options.include_path = include_path({arguments.include_folders.begin(), arguments.include_folders.end()});
   ShaderReport report = check_all(descs, files.files(), options, targets_of(arguments.target));
-  report.program_count = descs.size();
+  report.program_count = descs.size() + function_count;
+  std::ranges::copy(functions.messages, std::back_inserter(report.messages));
+  report.variant_count += functions.variant_count;
+  report.seconds += functions.seconds;
   return report;
 }
 
@@ -191,7 +250,7 @@ void add_shaders_check(CLI::App &shaders, Status &status)
       ->allow_extra_args(false);
   command->add_option("-D", a->defines, "NAME or NAME=VALUE, defined in every stage")->allow_extra_args(false);
   command->add_option("--stage", a->stage, "Stage of FILES (default: from their names)")
-      ->check(CLI::IsMember({"vert", "geom", "frag"}));
+      ->check(CLI::IsMember({"vert", "geom", "frag", "surface"}));
   command->add_option("--target", a->target, "opengl, vulkan, all")
       ->capture_default_str()
       ->check(CLI::IsMember({"opengl", "vulkan", "all"}));

@@ -38,7 +38,7 @@ class SceneWriter {
  public:
   /** \a folder: that of the file */
   SceneWriter(const Scene &scene, std::filesystem::path folder)
-      : scene_(scene), folder_(std::move(folder)), meshes_(scene, buffer_), moved_(moved_nodes(scene))
+      : scene_(scene), folder_(std::move(folder)), meshes_(scene, buffer_, folder_), moved_(moved_nodes(scene))
   {
   }
 

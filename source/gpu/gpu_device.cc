@@ -280,9 +280,11 @@ static void check_storage_blocks(std::string_view name, const ShaderInterface &i
   }
 }
 
-Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files, const ShaderReflection &reflection)
+Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files, const ShaderReflection &reflection,
+                             const ShaderFiles &stand_in)
 {
   std::vector<ShaderSource> stages = preprocess(desc, files);
+  std::vector<ShaderSource> stand_in_stages = stand_in ? preprocess(desc, stand_in) : std::vector<ShaderSource>();
   ShaderInterface interface = reflection(desc.name, stages);
   check_storage_blocks(desc.name, interface, limits_);
   const std::string detail = fmt::format("{}", fmt::join(desc.defines, " "));
@@ -293,7 +295,7 @@ Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files, c
         samplers.push_back(binding.name);
       }
     }
-    return Operation::CreateShader{id, desc, std::move(stages), std::move(samplers)};
+    return Operation::CreateShader{id, desc, std::move(stages), std::move(samplers), std::move(stand_in_stages)};
   });
   return {std::move(resource), desc.name, std::move(interface)};
 }

@@ -69,10 +69,14 @@ class Device {
   [[nodiscard]] Batch create_batch(const BatchDesc &desc);
   /**
    * Preprocess the files of \a desc, get the interface from \a reflection, and compile.
+   *
+   * \a stand_in: if it is not empty and the driver rejects a shader that was recorded, the same files are compiled with
+   * the texts of \a stand_in, and Feedback::failed_shaders has the message. Both must have the same interface.
+   *
    * \throws Error whose message names file and line
    */
   [[nodiscard]] Shader create_shader(const ShaderDesc &desc, const ShaderFiles &files,
-                                     const ShaderReflection &reflection);
+                                     const ShaderReflection &reflection, const ShaderFiles &stand_in = {});
   [[nodiscard]] TimerQuery create_timer_query(std::string name);
 
   /** Write \a bytes to \a buffer. Lists submitted later read the new content; lists submitted before do not. */
@@ -297,7 +301,8 @@ class Device {
 
   /** \a packet: the packet that contains \a operation; nullptr if it was not recorded. */
   void execute(const Operation &operation, Packet *packet);
-  void execute(const Operation::CreateShader &create);
+  void execute(const Operation::CreateShader &create, Packet *packet);
+  void make_shader(const Operation::CreateShader &create);
   void execute_list(const CommandList &list);
   void execute_recorded(Packet &packet);
   /** Executes a list that is not part of a packet. */

@@ -85,7 +85,7 @@ void Device::execute(const Operation &operation, Packet *packet)
             batch_create(call.desc, call.range, call.vertex_capacity, call.index_capacity);
             counters_.upload_bytes += size_bytes(call.desc);
           },
-          [&](const Operation::CreateShader &call) { execute(call); },
+          [&](const Operation::CreateShader &call) { execute(call, packet); },
           [&](const Operation::CreateTimerQuery &call) { timer_query_create(call.id, call.name); },
           [&](const Operation::Destroy &call) { destroy(call.resource.kind, call.resource.id); },
           [&](const Operation::UpdateBuffer &call) {
@@ -112,7 +112,21 @@ void Device::execute(const Operation &operation, Packet *packet)
   }
 }
 
-void Device::execute(const Operation::CreateShader &create)
+void Device::execute(const Operation::CreateShader &create, Packet *packet)
+{
+  try {
+    make_shader(create);
+  }
+  catch (const Error &error) {
+    if (!packet || create.stand_in.empty()) {
+      throw;
+    }
+    packet->feedback_.failed_shaders.push_back({create.id, error.what()});
+    make_shader({create.id, create.desc, create.stand_in, create.samplers, {}});
+  }
+}
+
+void Device::make_shader(const Operation::CreateShader &create)
 {
   const std::string key = ShaderDiskCache::key_of(create.stages, description());
   CachedShader shader = shader_cache_.load(key).value_or(CachedShader());

@@ -16,7 +16,10 @@
 
 namespace gnomon::gpu {
 
-/** Results of a submitted packet: read texels and measured times, each in the order of recording. */
+/**
+ * Results of a submitted packet: read texels, measured times and shaders that did not compile, each in the order of
+ * recording.
+ */
 struct Feedback {
   struct Texels {
     ResourceId texture = 0;
@@ -29,14 +32,22 @@ struct Feedback {
     ResourceId query = 0;
     double seconds = 0.0;
   };
+  /** A shader for which its stand-in was compiled. \see Device::create_shader */
+  struct FailedShader {
+    ResourceId shader = 0;
+    /** Message of the compiler, which names files and lines. */
+    std::string reason;
+  };
   std::vector<Texels> texels;
   /** Empty if the device has no timer. */
   std::vector<Time> times;
+  std::vector<FailedShader> failed_shaders;
 
   void clear()
   {
     texels.clear();
     times.clear();
+    failed_shaders.clear();
   }
 };
 
@@ -111,6 +122,8 @@ struct Operation {
     std::vector<ShaderSource> stages;
     /** Names of the samplers that the shader declares. */
     std::vector<std::string> samplers;
+    /** Compiled if `stages` do not compile; empty: that is an error. */
+    std::vector<ShaderSource> stand_in;
   };
   struct CreateTimerQuery {
     ResourceId id;

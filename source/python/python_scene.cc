@@ -17,6 +17,7 @@ using scene::Lamp;
 using scene::Material;
 using scene::Mesh;
 using scene::Node;
+using scene::SurfaceFunction;
 using std::numbers::pi;
 
 const Fields<Lamp> lamp_fields = {
@@ -43,6 +44,14 @@ const Fields<Lamp> lamp_fields = {
     plain_field<Lamp>(
         "shadow_size_px", [](auto &lamp) -> auto & { return lamp.shadow.size; },
         "Texels along an edge of the depth map or of a cube's face, 1 to 16384. None: that of the renderer."),
+};
+
+const Fields<SurfaceFunction> surface_function_fields = {
+    plain_field<SurfaceFunction>("name", &SurfaceFunction::name, "For messages."),
+    plain_field<SurfaceFunction>("text", &SurfaceFunction::text,
+                                 "GLSL, at most 64 KiB, that defines surface(). doc/surfaces.md describes it."),
+    plain_field<SurfaceFunction>("path", &SurfaceFunction::path,
+                                 "The file of the text, for messages and saved scenes; empty: none."),
 };
 
 const Fields<Material> material_fields = {
@@ -84,6 +93,8 @@ const Fields<Material> material_fields = {
                            "Emitted radiance, W/(sr m²), red, green and blue, at least 0."),
     plain_field<Material>("is_unlit", &Material::is_unlit, "The radiance is the base colour."),
     plain_field<Material>("is_double_sided", &Material::is_double_sided, "False: back faces are not drawn."),
+    thing_field<Material, SurfaceFunction>("surface_function", &Material::surface_function,
+                                           "A SurfaceFunction that edits the surface at each point, or None."),
 };
 
 /** Far beyond any use, and within what a projection in single precision can hold. */
@@ -344,6 +355,8 @@ void define_scene(py::module_ &module)
       "Nodes, meshes, materials, lamps and cameras. World space is right-handed, in metres.\n\n"
       "Things are handles: their properties read and edit the scene, and raise StaleHandle once the thing is removed.");
   define_thing(module, "Lamp", "A lamp. It shines along the -Z axis of the nodes that have it.", lamp_fields);
+  define_thing(module, "SurfaceFunction", "A function in GLSL that edits the surface of the materials that name it.",
+               surface_function_fields);
   define_thing(module, "Material", "A metallic-roughness surface of glTF 2.0.", material_fields);
   define_thing(module, "Camera", "A camera. It looks along the -Z axis of the nodes that have it, +Y up.",
                camera_fields);
@@ -368,11 +381,13 @@ void define_scene(py::module_ &module)
   type.def(py::init<>(), "A scene without content.");
   define_pool<Node>(type, "nodes");
   define_pool<Mesh>(type, "meshes");
+  define_pool<SurfaceFunction>(type, "surface_functions");
   define_pool<Material>(type, "materials");
   define_pool<Lamp>(type, "lamps");
   define_pool<Camera>(type, "cameras");
   define_add(type, "add_lamp", lamp_fields,
              "Add a lamp with these properties. It gives light at the nodes that have it.");
+  define_add(type, "add_surface_function", surface_function_fields, "Add a surface function with these properties.");
   define_add(type, "add_material", material_fields, "Add a material with these properties.");
   define_add(type, "add_camera", camera_fields,
              "Add a camera with these properties. It is used at the nodes that have it.");

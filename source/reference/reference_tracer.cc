@@ -130,10 +130,12 @@ std::vector<std::string> untraced_layers(const scene::Scene &scene)
       continue;
     }
     std::vector<std::string_view> layers;
-    for (const auto &[has_layer, name] : {std::pair(material->has_coat(), "coat"),
-                                          {material->has_sheen(), "sheen"},
-                                          {material->has_anisotropy(), "anisotropy"},
-                                          {material->has_transmission(), "transmission"}}) {
+    for (const auto &[has_layer, name] :
+         {std::pair(material->has_coat(), "coat"),
+          {material->has_sheen(), "sheen"},
+          {material->has_anisotropy(), "anisotropy"},
+          {material->has_transmission(), "transmission"},
+          {scene.surface_functions().is_live(material->surface_function), "surface function"}}) {
       if (has_layer) {
         layers.emplace_back(name);
       }

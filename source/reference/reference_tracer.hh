@@ -134,7 +134,10 @@ class Tracer {
   std::unique_ptr<Tree> tree_;
 };
 
-/** One line for each material of a visible mesh that has layers or transmits light, which the tracer leaves out. */
+/**
+ * One line for each material of a visible mesh that has layers, transmits light or has a surface function, which the
+ * tracer leaves out.
+ */
 [[nodiscard]] std::vector<std::string> untraced_layers(const scene::Scene &scene);
 
 /** Largest error of a position, metres, that was computed in double from positions of similar magnitude. */

@@ -25,6 +25,16 @@ bool is_drawable(const scene::Material &material)
   }
 }
 
+bool is_drawable(const scene::Scene &scene, const scene::Material &material)
+{
+  return has_surface_function(scene, material) || is_drawable(material);
+}
+
+bool has_surface_function(const scene::Scene &scene, const scene::Material &material)
+{
+  return scene.surface_functions().is_live(material.surface_function);
+}
+
 bool is_blended(const scene::Scene &scene, const scene::Mesh &mesh)
 {
   const scene::Material &material = scene.material_of(mesh);
@@ -32,7 +42,7 @@ bool is_blended(const scene::Scene &scene, const scene::Mesh &mesh)
     return false;
   }
   const scene::Handle<scene::Texture> texture = material.base_color_texture.texture;
-  return material.alpha < 1.0F || !mesh.colors.empty() ||
+  return material.alpha < 1.0F || !mesh.colors.empty() || has_surface_function(scene, material) ||
          (is_drawable(scene, texture) && !scene.images()[scene.textures()[texture].image].is_opaque);
 }
 
@@ -90,7 +100,7 @@ MaterialClass material_class(const scene::Scene &scene, const scene::Mesh &mesh)
     }
     return input.slot != &scene::Material::normal_texture || !mesh.tangents.empty();
   });
-  if (is_full || !mesh.colors.empty() || is_blended(scene, mesh)) {
+  if (is_full || !mesh.colors.empty() || is_blended(scene, mesh) || has_surface_function(scene, material)) {
     return MaterialClass::Full;
   }
   return is_drawable(scene, mesh, base_color) ? MaterialClass::BaseColor : MaterialClass::Plain;
@@ -99,8 +109,11 @@ MaterialClass material_class(const scene::Scene &scene, const scene::Mesh &mesh)
 bool is_masked(const scene::Scene &scene, const scene::Mesh &mesh)
 {
   const scene::Material &material = scene.material_of(mesh);
-  return material.alpha_mode == scene::AlphaMode::Mask && material.alpha_cutoff > 0.0F && is_drawable(material) &&
-         (is_drawable(scene, mesh, material.base_color_texture) || !mesh.colors.empty());
+  if (material.alpha_mode != scene::AlphaMode::Mask || !(material.alpha_cutoff > 0.0F)) {
+    return false;
+  }
+  return has_surface_function(scene, material) ||
+         (is_drawable(material) && (is_drawable(scene, mesh, material.base_color_texture) || !mesh.colors.empty()));
 }
 
 shared::MaterialData material_data(const scene::Material &material)
@@ -149,6 +162,10 @@ shared::FullMaterialData full_material_data(const scene::Scene &scene, const sce
   }
   else {
     data.opacity = 1.0F - (material.has_transmission() ? transmitted_part(material) : 0.0F);
+  }
+  if (material.alpha_mode == scene::AlphaMode::Mask && has_surface_function(scene, material)) {
+    data.inputs |= INPUT_MASKED;
+    data.opacity = material.alpha;
   }
   for (std::size_t i = 0; i < scene::texture_inputs.size(); i++) {
     const scene::TextureSlot &slot = material.*scene::texture_inputs[i].slot;
@@ -207,9 +224,10 @@ static scene::Material without_emission(scene::Material material)
 void MaterialTable::update(const scene::Scene &scene)
 {
   const scene::Pool<scene::Material> &materials = scene.materials();
-  // Textures and images count too, because removing one changes which textures can be drawn.
+  // Textures, images and functions count too, because removing one changes which can be drawn.
   const scene::Revision latest =
-      std::max({materials.latest(), scene.textures().latest(), scene.images().latest(scene::Image::Aspect::Content)});
+      std::max({materials.latest(), scene.textures().latest(), scene.images().latest(scene::Image::Aspect::Content),
+                scene.surface_functions().latest()});
   if (!entries_.empty() && latest == seen_) {
     return;
   }
@@ -221,6 +239,10 @@ void MaterialTable::update(const scene::Scene &scene)
         emission_ == Emission::LeftOut ? std::optional(without_emission(material)) : std::nullopt;
     const scene::Material &shown = dark ? *dark : material;
     entries[handle.index + 1] = material_data(shown);
+    if (shown.alpha_mode == scene::AlphaMode::Mask && has_surface_function(scene, shown)) {
+      // The function's alpha contains the factor.
+      entries[handle.index + 1].mask_cutoff = shown.alpha_cutoff;
+    }
     full_entries[handle.index + 1] = full_material_data(scene, shown);
     layer_entries[handle.index + 1] = layer_data(shown);
   }

@@ -13,10 +13,15 @@ namespace gnomon::render_scene {
  * a blended material is 0; textures and vertex colours cannot increase alpha.
  */
 [[nodiscard]] bool is_drawable(const scene::Material &material);
+/** The same; true if the material has a surface function, which may change alpha. */
+[[nodiscard]] bool is_drawable(const scene::Scene &scene, const scene::Material &material);
+
+/** Whether the material has a surface function, which is still in the scene. */
+[[nodiscard]] bool has_surface_function(const scene::Scene &scene, const scene::Material &material);
 
 /**
  * Whether the mesh is blended over what is behind it. false: another alpha mode, or all of it is opaque by its factor
- * and its texture.
+ * and its texture, and it has no surface function.
  */
 [[nodiscard]] bool is_blended(const scene::Scene &scene, const scene::Mesh &mesh);
 
@@ -35,7 +40,7 @@ enum class MaterialClass : std::uint8_t {
   Plain,
   /** Also a base colour texture, with the first set of uvs and without a uv transform. */
   BaseColor,
-  /** The textures of FullMaterialData, both sets of uvs, uv transforms, vertex colours and blending. */
+  /** The textures of FullMaterialData, both sets of uvs, uv transforms, vertex colours, blending, surface functions. */
   Full,
   /** Also a coat, sheen or anisotropy, with their textures. */
   Layered,
@@ -49,7 +54,8 @@ enum class MaterialClass : std::uint8_t {
 /** The class of a mesh with its material. Ignores textures that cannot be drawn. */
 [[nodiscard]] MaterialClass material_class(const scene::Scene &scene, const scene::Mesh &mesh);
 
-/** Whether a texture or vertex colours may mask parts of the surface, so that depth passes must read alpha. */
+/** Whether a texture, vertex colours or a surface function may mask parts of the surface, so that depth passes must
+ * read alpha. */
 [[nodiscard]] bool is_masked(const scene::Scene &scene, const scene::Mesh &mesh);
 
 /** The material without its textures. Emission is 0 if the material has an emissive texture. */
@@ -69,7 +75,7 @@ class MaterialTable {
   /** Index of a material's entry. Stale handles get the default material, whose index is 0. */
   [[nodiscard]] static std::uint32_t place_of(const scene::Scene &scene, scene::Handle<scene::Material> material);
 
-  /** Recompute the entries if materials, textures or images have changed. */
+  /** Recompute the entries if materials, textures, images or surface functions have changed. */
   void update(const scene::Scene &scene);
   /**
    * Write the changed entries to the device. \a widest: the class with the most inputs that shaders read.
@@ -119,7 +125,7 @@ class MaterialTable {
   Block entries_block_;
   Block full_block_;
   Block layer_block_;
-  /** Latest revision of the materials, textures and images at the last update(). */
+  /** Latest revision of the materials, textures, images and surface functions at the last update(). */
   scene::Revision seen_ = 0;
 };
 

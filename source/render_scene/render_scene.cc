@@ -58,7 +58,8 @@ void RenderScene::update_objects()
   const scene::Pool<scene::Node> &nodes = scene_.nodes();
   const scene::Revision meshes = std::max(scene_.meshes().latest(scene::Mesh::Aspect::Shape),
                                           scene_.meshes().latest(scene::Mesh::Aspect::Material));
-  const scene::Revision materials = scene_.materials().latest(scene::Material::Aspect::Coverage);
+  const scene::Revision materials =
+      std::max(scene_.materials().latest(scene::Material::Aspect::Coverage), scene_.surface_functions().latest());
   const scene::Revision latest = std::max({nodes.latest(Transform), nodes.latest(Content), nodes.latest(Visibility),
                                            nodes.latest(Shadow), meshes, materials});
   if (latest <= seen_ && !is_origin_changed_) {
@@ -93,7 +94,7 @@ void RenderScene::update_node(scene::Handle<scene::Node> handle, const scene::No
   if (!node.meshes.empty() && scene_.is_visible(handle)) {
     for (const scene::Handle<scene::Mesh> mesh : node.meshes) {
       const scene::Mesh *value = scene_.meshes().find(mesh);
-      if (value && is_drawable(scene_.material_of(*value))) {
+      if (value && is_drawable(scene_, scene_.material_of(*value))) {
         shown.push_back(mesh);
       }
     }
@@ -167,7 +168,8 @@ void RenderScene::update_revisions()
   const scene::Revision passes = std::max(
       {scene_.meshes().latest(scene::Mesh::Aspect::Shape), scene_.meshes().latest(scene::Mesh::Aspect::Material),
        materials.latest(Material::Coverage), materials.latest(Material::Textures), scene_.textures().latest(),
-       scene_.images().latest(scene::Image::Aspect::Content)});
+       scene_.images().latest(scene::Image::Aspect::Content),
+       scene_.surface_functions().latest(scene::SurfaceFunction::Aspect::Text)});
   passes_revision_ += passes > seen_ ? 1 : 0;
   materials_revision_ += materials.latest(Material::Surface) > seen_ ? 1 : 0;
 }

@@ -100,7 +100,7 @@ class RenderScene {
   }
   /**
    * Increases when update() finds a change after which passes must be built again: the shape or material of a mesh, the
-   * coverage or textures of a material, an image, or the settings of a texture. For objects, see
+   * coverage or textures of a material, an image, a surface function, or the settings of a texture. For objects, see
    * draw::ObjectBuffer::revision.
    */
   [[nodiscard]] std::uint64_t passes_revision() const

@@ -131,6 +131,7 @@ std::vector<std::string> Scene::stale_references() const
     for (const TextureInput &input : texture_inputs) {
       check("material", material.name, textures_, (material.*input.slot).texture);
     }
+    check("material", material.name, surface_functions_, material.surface_function);
   }
   for (const auto &[handle, texture] : textures_) {
     check("texture", std::to_string(handle.index), images_, texture.image);

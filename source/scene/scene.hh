@@ -65,7 +65,8 @@ struct PlacedCamera : Camera {
 [[nodiscard]] glm::dvec3 scale_of(const glm::dmat4 &world);
 
 /**
- * An editable scene: nodes, meshes, images, textures, materials, lamps and cameras, each identified by a Handle.
+ * An editable scene: nodes, meshes, images, textures, surface functions, materials, lamps and cameras, each identified
+ * by a Handle.
  *
  * World space is right-handed, in metres. The file or the host chooses which axis points up. Matrices are named
  * target_from_source.
@@ -107,6 +108,10 @@ class Scene {
   [[nodiscard]] const Pool<Texture> &textures() const
   {
     return textures_;
+  }
+  [[nodiscard]] const Pool<SurfaceFunction> &surface_functions() const
+  {
+    return surface_functions_;
   }
   [[nodiscard]] const Pool<Material> &materials() const
   {
@@ -168,6 +173,7 @@ class Scene {
   Handle<Mesh> add(Mesh mesh);
   Handle<Image> add(Image image);
   Handle<Texture> add(const Texture &texture);
+  Handle<SurfaceFunction> add(SurfaceFunction function);
   Handle<Material> add(Material material);
   Handle<Lamp> add(Lamp lamp);
   Handle<Camera> add(Camera camera);
@@ -178,6 +184,7 @@ class Scene {
   void replace(Handle<Mesh> handle, Mesh mesh);
   void replace(Handle<Image> handle, Image image);
   void replace(Handle<Texture> handle, const Texture &texture);
+  void replace(Handle<SurfaceFunction> handle, SurfaceFunction function);
   void replace(Handle<Material> handle, Material material);
   void replace(Handle<Lamp> handle, Lamp lamp);
   void replace(Handle<Camera> handle, Camera camera);
@@ -249,6 +256,9 @@ class Scene {
     else if constexpr (std::same_as<T, Texture>) {
       return textures_;
     }
+    else if constexpr (std::same_as<T, SurfaceFunction>) {
+      return surface_functions_;
+    }
     else if constexpr (std::same_as<T, Material>) {
       return materials_;
     }
@@ -285,6 +295,7 @@ class Scene {
   Pool<Mesh> meshes_;
   Pool<Image> images_;
   Pool<Texture> textures_;
+  Pool<SurfaceFunction> surface_functions_;
   Pool<Material> materials_;
   Pool<Lamp> lamps_;
   Pool<Camera> cameras_;

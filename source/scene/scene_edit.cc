@@ -56,6 +56,12 @@ Changes changes(const Texture &a, const Texture &b)
   return bit_if(a.image != b.image, Texture::Aspect::Image) | bit_if(!same_sampler, Texture::Aspect::Sampler);
 }
 
+Changes changes(const SurfaceFunction &a, const SurfaceFunction &b)
+{
+  using enum SurfaceFunction::Aspect;
+  return bit_if(a.name != b.name, Name) | bit_if(a.text != b.text || a.path != b.path, Text);
+}
+
 bool same_slot(const TextureSlot &a, const TextureSlot &b)
 {
   return a.texture == b.texture && a.uv_set == b.uv_set && same_bytes(a.offset, b.offset) &&
@@ -81,14 +87,20 @@ Changes changes(const Material &a, const Material &b)
   const bool same_shadow =
       (!a.has_transmission() && !b.has_transmission()) ||
       (same_volume && same_bytes(a.base_color, b.base_color) && same_bytes(a.metallic, b.metallic));
+  // A surface function may compute alpha from all factors.
+  const bool same_function =
+      a.surface_function == b.surface_function &&
+      (!a.surface_function || a.alpha_mode == AlphaMode::Opaque || (same_surface && same_volume));
   const bool same_coverage = same_bytes(a.alpha, b.alpha) && a.alpha_mode == b.alpha_mode && same_shadow &&
-                             same_bytes(a.alpha_cutoff, b.alpha_cutoff) && a.is_double_sided == b.is_double_sided;
-  // An unlit material, and one without layers, reads fewer textures.
-  const bool same_textures =
-      a.is_unlit == b.is_unlit && a.has_coat() == b.has_coat() && a.has_sheen() == b.has_sheen() &&
-      a.has_anisotropy() == b.has_anisotropy() && a.has_transmission() == b.has_transmission() &&
-      std::ranges::all_of(texture_inputs,
-                          [&](const TextureInput &input) { return same_slot(a.*input.slot, b.*input.slot); });
+                             same_bytes(a.alpha_cutoff, b.alpha_cutoff) && a.is_double_sided == b.is_double_sided &&
+                             same_function;
+  // An unlit material, and one without layers, reads fewer textures; one with a surface function reads more.
+  const bool same_textures = a.surface_function == b.surface_function && a.is_unlit == b.is_unlit &&
+                             a.has_coat() == b.has_coat() && a.has_sheen() == b.has_sheen() &&
+                             a.has_anisotropy() == b.has_anisotropy() && a.has_transmission() == b.has_transmission() &&
+                             std::ranges::all_of(texture_inputs, [&](const TextureInput &input) {
+                               return same_slot(a.*input.slot, b.*input.slot);
+                             });
   return bit_if(a.name != b.name, Name) | bit_if(!same_surface || !same_volume, Surface) |
          bit_if(!same_coverage, Coverage) | bit_if(!same_textures, Textures);
 }
@@ -166,6 +178,17 @@ void check(const Image &image)
   const std::uint64_t bytes = std::uint64_t(4) * image.width * image.height;
   if (bytes == 0 || bytes != image.texels.size()) {
     refuse("image", image.name, "{} bytes for {}x{} texels of 4 bytes", image.texels.size(), image.width, image.height);
+  }
+}
+
+void check(const SurfaceFunction &function)
+{
+  if (function.text.size() > SurfaceFunction::text_bytes_max) {
+    refuse("surface function", function.name, "{} bytes of text are more than {}", function.text.size(),
+           SurfaceFunction::text_bytes_max);
+  }
+  if (function.text.find('\0') != std::string::npos) {
+    refuse("surface function", function.name, "its text contains a NUL");
   }
 }
 
@@ -258,6 +281,12 @@ Handle<Texture> Scene::add(const Texture &texture)
   return textures_.add(texture, ++revision_);
 }
 
+Handle<SurfaceFunction> Scene::add(SurfaceFunction function)
+{
+  check(function);
+  return surface_functions_.add(std::move(function), ++revision_);
+}
+
 Handle<Material> Scene::add(Material material)
 {
   return materials_.add(std::move(material), ++revision_);
@@ -301,6 +330,11 @@ void Scene::replace(Handle<Image> handle, Image image)
 void Scene::replace(Handle<Texture> handle, const Texture &texture)
 {
   replace_value(handle, texture);
+}
+
+void Scene::replace(Handle<SurfaceFunction> handle, SurfaceFunction function)
+{
+  replace_value(handle, std::move(function));
 }
 
 void Scene::replace(Handle<Material> handle, Material material)

@@ -115,6 +115,23 @@ struct TextureSlot {
 enum class AlphaMode { Opaque, Mask, Blend };
 
 /**
+ * A function in GLSL that edits the surface of the materials that name it, at each point that is drawn. doc/surfaces.md
+ * describes what it reads and writes.
+ */
+struct SurfaceFunction {
+  static constexpr std::string_view kind_name = "surface function";
+  enum class Aspect { Name, Text, Count };
+  /** Largest size of `text`. */
+  static constexpr std::size_t text_bytes_max = 65536;
+
+  std::string name{};
+  /** GLSL 4.5 that defines `void surface(SurfaceInputs inputs, inout StandardSurface result)`. */
+  std::string text{};
+  /** The file that the text was read from, for messages and files; empty: none. */
+  std::string path{};
+};
+
+/**
  * Metallic-roughness surface of glTF 2.0 with KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_sheen,
  * KHR_materials_anisotropy, KHR_materials_transmission, KHR_materials_volume and KHR_materials_unlit. Factors without
  * another range are in [0, 1]. A mesh without the uvs of a slot is drawn without its texture.
@@ -123,9 +140,10 @@ struct Material {
   static constexpr std::string_view kind_name = "material";
   /**
    * Surface: factors of the shading. Coverage: properties that decide which parts of a surface, and of its shadow,
-   * exist: alpha mode, alpha, cutoff, sides, and where light is transmitted, the factors that it is multiplied by.
-   * Textures: textures, their transforms, and is_unlit, has_coat, has_sheen, has_anisotropy and has_transmission, on
-   * which the textures that are read depend.
+   * exist: alpha mode, alpha, cutoff, sides, surface function, and where light is transmitted, the factors that it is
+   * multiplied by; all factors, if a surface function may compute alpha from them. Textures: textures, their
+   * transforms, and is_unlit, has_coat, has_sheen, has_anisotropy, has_transmission and surface_function, on which the
+   * textures that are read depend.
    */
   enum class Aspect { Name, Surface, Coverage, Textures, Count };
 
@@ -207,6 +225,8 @@ struct Material {
   float alpha_cutoff = 0.5F;
   /** false: back faces are not drawn and cast no light. */
   bool is_double_sided = false;
+  /** Edits the surface; an invalid handle stands for none. */
+  Handle<SurfaceFunction> surface_function{};
 
   [[nodiscard]] bool has_coat() const
   {

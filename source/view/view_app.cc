@@ -224,12 +224,16 @@ void App::draw_frame(bool may_wait)
 {
   const bool waits = may_wait && is_complete_ && frames_to_draw_ == 0;
   constexpr double shader_seconds = 0.5;
-  window_.begin_frame(waits, shader_watch_ ? shader_seconds : 0.0);
+  const bool has_functions = document_ && !document_->scene().surface_functions().empty();
+  window_.begin_frame(waits, shader_watch_ || has_functions ? shader_seconds : 0.0);
   frames_to_draw_ = waits ? settling_frames : std::max(0, frames_to_draw_ - 1);
   take_events();
   is_complete_ = true;
   update_shaders();
   if (document_) {
+    for (std::string &text : document_->reload_surface_functions()) {
+      message(std::move(text), false);
+    }
     render_scene::RenderScene &render_scene = document_->render_scene();
     const glm::dvec3 eye(active().navigation.camera(0.0).world_from_camera[3]);
     render_scene.set_origin(render_scene::origin_near(eye, render_scene.origin_ws()));

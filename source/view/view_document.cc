@@ -6,7 +6,30 @@
 #include "shader_check_reflection.hh"
 #include "unlit_engine.hh"
 
+#include <fmt/format.h>
+
+#include <fstream>
+#include <stdexcept>
+#include <system_error>
+
 namespace gnomon::view {
+
+/** The text of a surface function's file. More than it may have is not read. \throws std::runtime_error */
+static std::string text_of(const std::string &path)
+{
+  // Opening a pipe might never end.
+  if (!std::filesystem::is_regular_file(path)) {
+    throw std::runtime_error(fmt::format("{}: is not a file", path));
+  }
+  std::ifstream stream(path, std::ios::binary);
+  std::string text(scene::SurfaceFunction::text_bytes_max + 1, '\0');
+  stream.read(text.data(), std::streamsize(text.size()));
+  if (stream.bad()) {
+    throw std::runtime_error(fmt::format("{}: cannot be read", path));
+  }
+  text.resize(std::size_t(stream.gcount()));
+  return text;
+}
 
 Document::Document(gpu::Device &device, scene::Scene scene, const Settings &settings)
     : scene_(std::move(scene)), render_scene_(device, scene_), settings_(settings), saved_revision_(scene_.revision())
@@ -59,6 +82,40 @@ std::vector<std::string> Document::reload_shaders(draw::Viewport &viewport, gpu:
   // Viewports are synced again.
   settings_revision_++;
   return eevee.reload_shaders(viewport, std::move(files), shader_check::reflect);
+}
+
+std::vector<std::string> Document::reload_surface_functions()
+{
+  namespace fs = std::filesystem;
+  std::vector<std::string> messages;
+  for (const auto &[handle, function] : scene_.surface_functions()) {
+    std::error_code error;
+    const fs::file_time_type time =
+        function.path.empty() ? fs::file_time_type() : fs::last_write_time(function.path, error);
+    // A file that an editor is replacing is read once it is there again.
+    if (function.path.empty() || error) {
+      continue;
+    }
+    const auto [seen, is_new] = function_times_.try_emplace(handle, time);
+    if (is_new || seen->second == time) {
+      continue;
+    }
+    seen->second = time;
+    const bool was_saved = is_saved();
+    scene::SurfaceFunction changed = function;
+    try {
+      changed.text = text_of(function.path);
+      scene_.replace(handle, std::move(changed));
+      messages.push_back(fmt::format("The surface function {} is loaded", function.path));
+    }
+    catch (const std::exception &failure) {
+      messages.push_back(failure.what());
+    }
+    if (was_saved) {
+      saved_revision_ = scene_.revision();
+    }
+  }
+  return messages;
 }
 
 void Document::set_settings(const Settings &settings)

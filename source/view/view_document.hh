@@ -11,6 +11,7 @@
 #include "gltf_import.hh"
 #include "render_scene.hh"
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -102,6 +103,12 @@ class Document {
     return has_own_shaders_;
   }
 
+  /**
+   * Read the surface functions again whose files have changed since the last call, or since they were first seen. That
+   * is no edit for undo. \return a message for each
+   */
+  std::vector<std::string> reload_surface_functions();
+
   [[nodiscard]] const Settings &settings() const
   {
     return settings_;
@@ -132,6 +139,8 @@ class Document {
   Settings settings_;
   std::uint64_t settings_revision_ = 0;
   bool has_own_shaders_ = false;
+  /** Of the last write of the file of each surface function. */
+  std::map<scene::Handle<scene::SurfaceFunction>, std::filesystem::file_time_type> function_times_;
   scene::Revision saved_revision_ = 0;
 };
 

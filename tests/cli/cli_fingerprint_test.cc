@@ -19,7 +19,11 @@ scene::Scene small_scene()
   scene::Scene scene;
   const auto material = measure::add_material(scene, glm::vec3(0.5F));
   const auto texture = measure::add_texture(scene, 1, {1, 2, 3, 4});
-  scene.edit(material, [&](scene::Material &edited) { edited.base_color_texture = texture; });
+  const auto function = scene.add(scene::SurfaceFunction{.text = "a"});
+  scene.edit(material, [&](scene::Material &edited) {
+    edited.base_color_texture = texture;
+    edited.surface_function = function;
+  });
   measure::add_object(scene, measure::add_square_mesh(scene, material), glm::dmat4(1.0));
   measure::add_lamp(scene, scene::LampKind::Point, {0, 0, 2}, {0, 0, -1}, 1.0F);
   measure::add_camera(scene, measure::camera_at({0, 0, 4}, {0, 0, 0}));
@@ -43,6 +47,8 @@ TEST(SceneFingerprint, IsThatOfTheContent)
   expect_other(scene.textures().first(),
                [](scene::Texture &texture) { texture.wrap_v = scene::TextureWrap::ClampToEdge; });
   expect_other(scene.materials().first(), [](scene::Material &material) { material.roughness = 0.5F; });
+  expect_other(scene.materials().first(), [](scene::Material &material) { material.surface_function = {}; });
+  expect_other(scene.surface_functions().first(), [](scene::SurfaceFunction &function) { function.text = "b"; });
   expect_other(scene.meshes().first(), [](scene::Mesh &mesh) { mesh.positions[0].x = 0.5F; });
   expect_other(scene.nodes().first(), [](scene::Node &node) { node.parent_from_node[3].x = 1e-9; });
   expect_other(scene.nodes().first(), [](scene::Node &node) { node.is_visible = false; });

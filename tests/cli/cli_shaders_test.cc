@@ -358,6 +358,26 @@ TEST_F(ShadersTest, UnknownStageOfAFileIsWrongUsage)
   EXPECT_EQ(run("shaders check user/plain.glsl --stage frag").status, 0);
 }
 
+TEST_F(ShadersTest, ASurfaceFunctionIsCheckedInTheProgramsThatDrawWithIt)
+{
+  const std::string head = "void surface(SurfaceInputs inputs, inout StandardSurface result)\n{\n";
+  write_file("user/good.surface.glsl",
+             head + "  result.base_color = texture(specular_texture, inputs.uv).rgb * inputs.position_ws;\n}\n");
+  const Finished good = run("shaders check user/good.surface.glsl");
+  EXPECT_EQ(good.status, 0) << good.out;
+  EXPECT_NE(good.out.find(": 0 errors, 0 warnings"), std::string::npos) << good.out;
+  write_file("user/bad_surface.glsl", head + "  result.base_colour = vec3(1.0);\n}\n");
+  const Finished bad = run("shaders check user/good.surface.glsl user/bad_surface.glsl --target opengl");
+  EXPECT_EQ(bad.status, 1);
+  EXPECT_EQ(bad.out.find("user/bad_surface.glsl:3: error: 'base_colour'"), 0U) << bad.out;
+  write_file("user/plain.glsl", "#include \"other.glsl\"\n" + head + "}\n");
+  const Finished including = run("shaders check user/plain.glsl --stage surface");
+  EXPECT_EQ(including.status, 1);
+  EXPECT_EQ(including.out.find("user/plain.glsl:1: error: a surface function has no #include [include]"), 0U)
+      << including.out;
+  EXPECT_EQ(run("shaders check user/none.surface.glsl").status, 1);
+}
+
 TEST_F(ShadersTest, WarningsDoNotFail)
 {
   write_file("a.frag", VERSION +

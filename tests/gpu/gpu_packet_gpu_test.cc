@@ -9,6 +9,56 @@ namespace {
 
 using PacketGpu = test::GpuDeviceTest;
 
+/** The interface of a shader without bindings. The driver, and not glslang, then finds what is wrong with its text. */
+ShaderInterface empty_interface(std::string_view /*name*/, const std::vector<ShaderSource> & /*stages*/)
+{
+  return {};
+}
+
+TEST_F(PacketGpu, AShaderThatTheDriverRejectsIsDrawnWithItsStandIn)
+{
+  const auto with = [](const std::string &value) {
+    return test::ShaderTexts{
+        {{"vert", test::VERSION + "#include \"shared/slots_shared.h\"\n" + test::CLIP_SPACE_VERT},
+         {"frag", test::VERSION + "layout(location = 0) out vec4 out_color;\nvoid main()\n{\n  out_color = " + value +
+                      ";\n}\n"}}};
+  };
+  const test::ShaderTexts broken = with("missing");
+  const test::ShaderTexts stand_in = with("vec4(1, 2, 3, 4)");
+  const ShaderDesc desc{"made", "vert", "", "frag", {}};
+  const Texture target = device->create_texture({.name = "target", .format = Format::RGBA32F, .width = 2, .height = 2});
+  const Framebuffer framebuffer = device->create_framebuffer({.name = "fb", .colors = {{&target}}, .depth = {}});
+  const Batch batch = test::full_triangle(*device, 0.5F);
+  Packet packet;
+  Shader shader;
+  {
+    const Recording recording(*device, packet);
+    shader = device->create_shader(desc, broken.files(), empty_interface, stand_in.files());
+    CommandList list;
+    list.begin_pass("pass", framebuffer, {});
+    list.set_shader(shader.id());
+    list.set_state(State::WriteColor);
+    test::append_draw(list, batch);
+    list.end_pass();
+    device->submit(list);
+  }
+  device->submit(packet);
+  EXPECT_EQ(read_as<glm::vec4>(*device, target), std::vector<glm::vec4>(4, glm::vec4(1, 2, 3, 4)));
+  ASSERT_EQ(packet.feedback().failed_shaders.size(), 1U);
+  EXPECT_EQ(packet.feedback().failed_shaders[0].shader, shader.id());
+  test::expect_contains(packet.feedback().failed_shaders[0].reason, "frag:5");
+  // Without a recording there is no feedback, and without a stand-in nothing can be drawn.
+  test::expect_contains(
+      test::error_of([&] { shader = device->create_shader(desc, broken.files(), empty_interface, stand_in.files()); }),
+      "frag:5");
+  {
+    const Recording recording(*device, packet);
+    shader = device->create_shader(desc, broken.files(), empty_interface);
+  }
+  test::expect_contains(test::error_of([&] { device->submit(packet); }), "frag:5");
+  EXPECT_TRUE(packet.feedback().failed_shaders.empty());
+}
+
 /** A frame drawn with data that is gone, and resources that are destroyed, when the packet is submitted. */
 TEST_F(PacketGpu, APacketDrawsAsTheCallsThatItRecorded)
 {

@@ -176,6 +176,21 @@ class Pictures(unittest.TestCase):
         renderer.has_multiscatter = True
         self.assertTrue((renderer.render()[:, :, :3] > 1.05 * single).all())
 
+    def test_a_surface_function_is_drawn_and_edited(self):
+        scene = square_scene()
+        function = scene.add_surface_function(
+            name="red", text="void surface(SurfaceInputs inputs, inout StandardSurface result) { result.base_color = vec3(0.5, 0, 0); }")
+        scene.materials[0].surface_function = function
+        self.assertEqual(scene.materials[0].surface_function, scene.surface_functions[0])
+        renderer = gnomon.Renderer(self.device, scene, (32, 18), **SMALL)
+        numpy.testing.assert_allclose(renderer.render()[9, 16, :3], (0.5, 0, 0), atol=1e-5)
+        function.text = "broken"
+        numpy.testing.assert_allclose(renderer.render()[9, 16, :3], (2, 0, 2), atol=1e-5)
+        self.assertIn("material 'grey'", renderer.report().warnings[0])
+        scene.remove(function)
+        self.assertIsNone(scene.materials[0].surface_function)
+        numpy.testing.assert_allclose(renderer.render()[9, 16, :3], (0.5, 0.25, 0.125), atol=1e-5)
+
     def test_light_that_passes_is_not_scattered(self):
         scene = square_scene()
         scene.materials[0].transmission = 0.75

@@ -109,6 +109,28 @@ INSTANTIATE_TEST_SUITE_P(Places, TracerPlaceTest,
                          testing::Values(TracerPlace{0.0, 1.0}, TracerPlace{0.0, 1e-4}, TracerPlace{0.0, 1e5},
                                          TracerPlace{1048576.0, 1.0}, TracerPlace{1048576.0, 1e-2}));
 
+TEST(Tracer, SurfaceFunctionsThatItDoesNotRunAreNamed)
+{
+  scene::Scene scene;
+  const auto function = scene.add(scene::SurfaceFunction{.name = "f"});
+  const auto add = [&](const char *name, scene::Handle<scene::SurfaceFunction> named) {
+    const auto material = scene.add(scene::Material{.name = name, .surface_function = named});
+    scene::Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.normals.assign(3, {0, 0, 1});
+    mesh.indices = {0, 1, 2};
+    mesh.material = material;
+    scene.add(scene::Node{.meshes = {scene.add(mesh)}});
+  };
+  add("plain", {});
+  add("edited", function);
+  EXPECT_EQ(untraced_layers(scene),
+            (std::vector<std::string>{"material 'edited': the reference does not trace its surface function; the errors "
+                                      "include this difference"}));
+  scene.remove(function);
+  EXPECT_TRUE(untraced_layers(scene).empty());
+}
+
 TEST(Tracer, RaysDoNotSlipBetweenTrianglesThatShareAnEdge)
 {
   // A sphere of triangles around the origin, with corners that are not exact in float.

@@ -491,6 +491,22 @@ TEST(SceneRevision, EachEditChangesItsAspectAlone)
            {Material::Aspect::Surface, [](Material &material) { material.ior = 1.25F; }},
            {Material::Aspect::Surface, [](Material &material) { material.attenuation_color.g = 0.5F; }},
            {Material::Aspect::Surface, [](Material &material) { material.attenuation_distance = 0.5F; }}});
+  // A surface function may compute alpha from all factors, so that they change what is cut out.
+  const auto edits_of = [](AlphaMode mode) {
+    Scene scene;
+    const auto function = scene.add(SurfaceFunction{.name = "f"});
+    const auto material = scene.add(Material{.alpha_mode = mode, .surface_function = function});
+    const Revision before = scene.materials().latest(Material::Aspect::Coverage);
+    scene.edit(material, [](Material &value) { value.roughness = 0.5F; });
+    return scene.materials().latest(Material::Aspect::Coverage) > before;
+  };
+  EXPECT_FALSE(edits_of(AlphaMode::Opaque));
+  EXPECT_TRUE(edits_of(AlphaMode::Mask) && edits_of(AlphaMode::Blend));
+  using FunctionAspect = SurfaceFunction::Aspect;
+  expect_aspects<SurfaceFunction>(
+      {}, {{FunctionAspect::Name, [](SurfaceFunction &function) { function.name = "renamed"; }},
+           {FunctionAspect::Text, [](SurfaceFunction &function) { function.text = "void"; }},
+           {FunctionAspect::Text, [](SurfaceFunction &function) { function.path = "a.glsl"; }}});
   expect_aspects<Texture>({}, {{Texture::Aspect::Image,
                                 [](Texture &texture) {
                                   texture.image = {7, 1};
@@ -658,6 +674,10 @@ TEST(SceneEdit, InvalidValuesAreRefused)
                                   {"bytes for", [](Image &image) {
                                      image = {"texel", 1U << 30U, 1U << 30U, {}};
                                    }}});
+  expect_refused<SurfaceFunction>(
+      {.name = "f"},
+      {{"surface function 'f': 65537 bytes", [](SurfaceFunction &function) { function.text.assign(65537, ' '); }},
+       {"NUL", [](SurfaceFunction &function) { function.text.assign(1, '\0'); }}});
   expect_refused<Node>(named("n"), {{"not finite", [](Node &node) { node.parent_from_node[1][1] = nan; }},
                                     {"not finite", [](Node &node) { node.parent_from_node[3][0] = infinity; }},
                                     {"not affine", [](Node &node) { node.parent_from_node[0][3] = 0.5; }},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "view_additions.hh"
+#include "view_document.hh"
 #include "view_fly.hh"
 #include "view_gizmo.hh"
 #include "view_history.hh"
@@ -528,6 +529,42 @@ TEST(ViewShaderWatchTest, EachWriteAdditionAndRemovalOfAFileIsSeenOnceAndFilesAr
   EXPECT_FALSE(watch.has_changed());
   EXPECT_FALSE(watch.files()("b.glsl"));
   fs::remove_all(folder);
+}
+
+TEST(ViewDocumentTest, ASurfaceFunctionIsReadAgainWhenItsFileIsWrittenWhichIsNoEdit)
+{
+  namespace fs = std::filesystem;
+  const fs::path file = fs::path(testing::TempDir()) / "view_surface.glsl";
+  const auto write = [&](const std::string &text, int second) {
+    std::ofstream(file) << text;
+    fs::last_write_time(file, fs::file_time_type(std::chrono::seconds(second)));
+  };
+  write("first", 1);
+  scene::Scene scene;
+  const auto function = scene.add(scene::SurfaceFunction{.name = "a", .text = "first", .path = file.string()});
+  // One without a file is never read.
+  const auto other = scene.add(scene::SurfaceFunction{.name = "b", .text = "other"});
+  const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  Document document(*device, std::move(scene), default_settings());
+  EXPECT_TRUE(document.reload_surface_functions().empty());
+  write("second", 2);
+  EXPECT_EQ(document.reload_surface_functions().size(), 1U);
+  EXPECT_EQ(document.scene().surface_functions()[function].text, "second");
+  EXPECT_TRUE(document.is_saved());
+  EXPECT_EQ(document.history().undo_count(), 0U);
+  EXPECT_TRUE(document.reload_surface_functions().empty());
+  // An editor may replace a file by another one.
+  fs::remove(file);
+  EXPECT_TRUE(document.reload_surface_functions().empty());
+  EXPECT_EQ(document.scene().surface_functions()[function].text, "second");
+  write(std::string(scene::SurfaceFunction::text_bytes_max + 1, 'a'), 3);
+  EXPECT_NE(document.reload_surface_functions().at(0).find("65537 bytes"), std::string::npos);
+  EXPECT_EQ(document.scene().surface_functions()[function].text, "second");
+  write("third", 4);
+  EXPECT_EQ(document.reload_surface_functions().size(), 1U);
+  EXPECT_EQ(document.scene().surface_functions()[function].text, "third");
+  EXPECT_EQ(document.scene().surface_functions()[other].text, "other");
+  fs::remove(file);
 }
 
 TEST(ViewKeysTest, KeysAreNamedAsMenusShowThem)

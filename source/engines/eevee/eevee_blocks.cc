@@ -8,6 +8,7 @@
 #include "eevee_light_shared.h"
 #include "eevee_material_shared.h"
 #include "eevee_shadow_shared.h"
+#include "eevee_surface_function_shared.h"
 #include "eevee_world_shared.h"
 
 #include <array>
@@ -159,7 +160,12 @@ constexpr auto esm_fields = std::to_array<Field>({
     {"esm.lamps[0]._pad0", offsetof(EsmData, _pad0)},
 });
 
-constexpr std::array<gpu::BlockLayout, 12> layouts = {{
+constexpr auto surface_function_fields = std::to_array<Field>({
+    {"surface_function.origin_ws", offsetof(SurfaceFunctionData, origin_ws)},
+    {"surface_function.emission", offsetof(SurfaceFunctionData, emission)},
+});
+
+constexpr std::array<gpu::BlockLayout, 13> layouts = {{
     {"view_block", sizeof(ViewData), view_fields},
     {"object_block", sizeof(ObjectData), object_fields},
     {"material_block", sizeof(MaterialData), material_fields},
@@ -172,6 +178,7 @@ constexpr std::array<gpu::BlockLayout, 12> layouts = {{
     {"shadow_block", sizeof(ShadowBlock), shadow_fields},
     {"shadow_render_block", sizeof(ShadowRenderBlock), shadow_render_fields},
     {"esm_block", sizeof(EsmBlock), esm_fields},
+    {"surface_function_block", sizeof(SurfaceFunctionData), surface_function_fields},
 }};
 
 }  // namespace

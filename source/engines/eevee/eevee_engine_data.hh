@@ -109,6 +109,7 @@ struct PassesKey {
   gpu::ResourceId world_levels = 0;
   gpu::ResourceId world_picture = 0;
   gpu::ResourceId behind = 0;
+  gpu::ResourceId surface_function_block = 0;
   /** Scene::world_revision if there is a background, otherwise 0. */
   std::uint64_t world = 0;
   Feature features = Feature::None;
@@ -199,6 +200,8 @@ struct SharedData {
   WorldResources world;
   /** The lights on the device are those of the last sync. */
   bool are_lights_written = false;
+  /** Empty unless a material has a surface function. */
+  gpu::Buffer surface_function_block;
   /** Draws the casters; all lamps share it. */
   draw::Pass shadow_pass;
   gpu::BufferRange object_block;
@@ -297,6 +300,8 @@ struct StorageList {
   /** The class with the most inputs, and the features, that the materials of the drawable objects need. */
   render_scene::MaterialClass widest_class = render_scene::MaterialClass::Plain;
   Feature material_features = Feature::None;
+  /** The material of at least one drawable object has a surface function. */
+  bool has_surface_functions = false;
   /** Entry of light_block of the light that is being probed. */
   int probed_light = 0;
   /** Filter weights of the current sample. The film pass reads them by reference. */

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_programs.hh"
 
+#include "gpu_shader_text.hh"
+
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 namespace gnomon::eevee {
@@ -45,7 +48,7 @@ constexpr Feature shadow_features = Feature::Light | Feature::Punctual | Feature
 constexpr Feature alpha_features = Feature::AlphaMask | Feature::FullMaterial;
 constexpr Feature caster_features = alpha_features | Feature::OpacityThreshold;
 
-constexpr std::array<ShaderDeclaration, 20> declarations = {{
+constexpr std::array<ShaderDeclaration, 21> declarations = {{
     {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl", alpha_features,
      Feature::None, "depth of what is seen, so that each pixel is lit once"},
     {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
@@ -94,6 +97,8 @@ constexpr std::array<ShaderDeclaration, 20> declarations = {{
     {ShaderId::Surfaces, "eevee_surfaces", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_surfaces_frag.glsl",
      Feature::Light | Feature::BaseColorTexture | Feature::FullMaterial, Feature::Light,
      "position, normal, object, albedo and roughness of surfaces, for compositing", "WRITES_OBJECT"},
+    {ShaderId::DepthFunction, "eevee_depth_function", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
+     alpha_features, alpha_features, "depth of what a surface function cuts out", "USE_SURFACE_FUNCTION"},
 }};
 
 /** Whether a scene can need \a features, and no smaller mask gives the same program. */
@@ -212,6 +217,55 @@ std::vector<Feature> shader_variants(const ShaderDeclaration &declaration)
     mask = (mask - all) & all;
   } while (mask != 0);
   return variants;
+}
+
+/** Features of all programs of \a id with a surface function; nothing: it has none. */
+static std::optional<Feature> function_features(ShaderId id)
+{
+  switch (id) {
+    case ShaderId::Lit: return Feature::Light | Feature::Specular | Feature::FullMaterial;
+    case ShaderId::Surfaces: return Feature::Light | Feature::FullMaterial;
+    case ShaderId::Shadow:
+    case ShaderId::ShadowLayered:
+    case ShaderId::ShadowGeometry:
+    case ShaderId::DepthFunction: return alpha_features;
+    default: return std::nullopt;
+  }
+}
+
+std::vector<Feature> surface_function_variants(const ShaderDeclaration &declaration)
+{
+  const std::optional<Feature> required = function_features(declaration.id);
+  std::vector<Feature> variants = required ? shader_variants(declaration) : std::vector<Feature>();
+  std::erase_if(variants, [&](Feature features) { return (features & *required) != *required; });
+  return variants;
+}
+
+gpu::ShaderDesc with_surface_function(gpu::ShaderDesc desc, const ShaderDeclaration &declaration)
+{
+  if (declaration.id != ShaderId::DepthFunction) {
+    desc.defines.emplace_back("USE_SURFACE_FUNCTION");
+  }
+  if (declaration.id == ShaderId::Shadow || declaration.id == ShaderId::ShadowLayered ||
+      declaration.id == ShaderId::ShadowGeometry) {
+    desc.defines.emplace_back("WITHOUT_VIEW");
+  }
+  return desc;
+}
+
+std::optional<SurfaceFunctionFault> surface_function_fault(std::string_view text)
+{
+  int number = 1;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view directive = gpu::directive_of(text.substr(0, end));
+    if (directive == "include" || directive == "version" || directive == "extension" || directive == "line") {
+      return SurfaceFunctionFault{number, fmt::format("a surface function has no #{}", directive)};
+    }
+    text.remove_prefix(std::min(end + 1, text.size()));
+    number++;
+  }
+  return std::nullopt;
 }
 
 gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature features, const PcfKernel &pcf)

@@ -32,6 +32,7 @@ enum class ShaderId {
   DebugShadow,
   DebugCascades,
   Surfaces,
+  DepthFunction,
 };
 
 /** Declaration of a shader program. The engine, the build, the shader checks and the tests read it. */
@@ -74,6 +75,24 @@ struct FeatureDefine {
 
 /** The feature masks of \a declaration that a scene can need, without impossible masks and without duplicates. */
 [[nodiscard]] std::vector<Feature> shader_variants(const ShaderDeclaration &declaration);
+
+/**
+ * The feature masks of \a declaration with which a program may contain a surface function; empty: it never does. All
+ * are shader_variants(). Each function makes those programs again that materials with it are drawn with.
+ */
+[[nodiscard]] std::vector<Feature> surface_function_variants(const ShaderDeclaration &declaration);
+/** Where programs include the text of the surface function. */
+inline constexpr std::string_view surface_function_file = "user/surface.glsl";
+/** \a desc of a variant of \a declaration, with the surface function in it. */
+[[nodiscard]] gpu::ShaderDesc with_surface_function(gpu::ShaderDesc desc, const ShaderDeclaration &declaration);
+/** A line of a surface function that no program may contain. */
+struct SurfaceFunctionFault {
+  /** From 1. */
+  int line;
+  std::string reason;
+};
+/** The first directive in \a text that a surface function may not have: it is part of a file with a version. */
+[[nodiscard]] std::optional<SurfaceFunctionFault> surface_function_fault(std::string_view text);
 
 /** The description of one variant for gpu::Device::create_shader. \a pcf is used only with Feature::ShadowPcf. */
 [[nodiscard]] gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature features,

@@ -9,6 +9,7 @@
 #include "eevee_multiscatter_shared.h"
 #include "eevee_multiscatter_table.hh"
 #include "eevee_shape_shared.h"
+#include "eevee_surface_functions.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -45,6 +46,9 @@ void bind_lit(draw::ShadingGroup &group, Data &data)
   }
   if (data.shared->multiscatter_table) {
     group.bind_texture("multiscatter_table", data.shared->multiscatter_table, data.shared->table_sampler);
+  }
+  if (data.shared->surface_function_block) {
+    group.bind_uniform("surface_function_block", data.shared->surface_function_block);
   }
   if (data.txl.behind) {
     group.bind_texture("behind", data.txl.behind, data.txl.behind_sampler);
@@ -103,11 +107,15 @@ void Engine::sync_materials(StorageList &stl) const
   stl.widest_class = MaterialClass::Plain;
   stl.transmissive.clear();
   stl.is_transmission_rough = false;
+  stl.has_surface_functions = false;
   for (const draw::ObjectIndex object : stl.objects) {
     const scene::Mesh &mesh = scene_.scene().meshes()[scene_.object(object).mesh];
     const std::uint32_t place = render_scene::MaterialTable::place_of(scene_.scene(), mesh.material);
     const MaterialClass material_class = render_scene::material_class(scene_.scene(), mesh);
-    const bool is_specular = scene_.materials()[place].specular_f90 > 0.0F || material_class >= MaterialClass::Layered;
+    const bool has_function = render_scene::has_surface_function(scene_.scene(), scene_.scene().material_of(mesh));
+    stl.has_surface_functions |= has_function;
+    const bool is_specular =
+        scene_.materials()[place].specular_f90 > 0.0F || material_class >= MaterialClass::Layered || has_function;
     stl.material_features =
         stl.material_features | (is_specular ? Feature::Specular : Feature::None) | feature_of(material_class);
     stl.widest_class = std::max(stl.widest_class, material_class);
@@ -163,6 +171,9 @@ void Engine::make_blocks(draw::Viewport &viewport)
     dark.update(scene_.scene());
     dark.upload(device, stl.widest_class);
   }
+  update_surface_functions(
+      shared.surface_function_block, device, stl.has_surface_functions,
+      {glm::vec3(scene_.origin_ws()), settings_.light.has(LightPart::Kind::Emission) ? 1.0F : 0.0F});
   update_world_picture(shared.world, device, scene_, settings_);
   if (has(stl.features, Feature::Light)) {
     stl.features = with_variant(shared.lamps.features | shared.shadows.features() |
@@ -170,8 +181,9 @@ void Engine::make_blocks(draw::Viewport &viewport)
   }
   // What the programs of some materials read, beyond those of the frame. It is the same for all viewports, as they
   // share the blocks.
-  const Feature read = with_variant(stl.features | (stl.material_features & (Feature::Layers | Feature::Transmission)) |
-                                    asked_features());
+  const Feature read =
+      with_variant(stl.features | (stl.material_features & (Feature::Layers | Feature::Transmission)) |
+                   (stl.has_surface_functions ? lit_function_features : Feature::None) | asked_features());
   make_lights(data, device, settings_, read);
   if (!has(read, Feature::Light)) {
     shared.ltc_table = {};
@@ -276,6 +288,7 @@ void Engine::record(draw::Viewport &viewport)
       .world_levels = shared.world.levels.id(),
       .world_picture = shared.world.picture.id(),
       .behind = data.txl.behind.id(),
+      .surface_function_block = shared.surface_function_block.id(),
       .world = has_background(settings_, scene_) ? scene_.scene().world_revision() : 0,
       .features = stl.features,
       .tinted_light = shared.tinted_light,
@@ -297,6 +310,7 @@ void Engine::record_passes(draw::Viewport &viewport)
   Data &data = viewport.engine_data<Data>(*this);
   StorageList &stl = data.stl;
   data.psl = std::make_unique<PassList>(scene_.objects());
+  free_surface_functions(shaders_, scene_.scene());
   stl.pass_recordings++;
   stl.target_pass.reset();
   stl.groups.clear();
@@ -343,18 +357,24 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
     }
     group->call(batch, index);
   };
+  const FunctionText function = function_of(scene, material);
+  const FunctionText alpha_function = cut_out == MaterialClass::Plain ? FunctionText() : function;
   const TextureSet alpha_textures =
-      cut_out == MaterialClass::Plain ? TextureSet() : textures_of(scene, mesh, MaterialClass::BaseColor);
+      cut_out == MaterialClass::Plain
+          ? TextureSet()
+          : textures_of(scene, mesh, alpha_function.key != 0 ? MaterialClass::Full : MaterialClass::BaseColor);
   const TextureSet surface_textures = textures_of(scene, mesh, surface);
   const auto bind_surface = [&data](draw::ShadingGroup &group) { bind_lit(group, data); };
   // An object that receives no shadows is drawn with a program without shadow lookups.
-  const Feature lighting = object.receives_shadow ? stl.features : without_shadows(stl.features);
+  const Feature lighting = (object.receives_shadow ? stl.features : without_shadows(stl.features)) |
+                           (function.key != 0 ? lit_function_features : Feature::None);
   // Without the picture behind it, nothing that transmits light is in the view.
   const bool is_transmissive = surface == MaterialClass::Transmissive;
   const gpu::Shader *lit_shader =
       is_transmissive && !data.txl.behind
           ? nullptr
-          : &shaders_.get(device, ShaderId::Lit, with_variant(lighting | feature_of(surface) | asked_features()));
+          : &shaders_.get(device, ShaderId::Lit, with_variant(lighting | feature_of(surface) | asked_features()),
+                          function);
   if (render_scene::is_blended(scene, mesh)) {
     if (lit_shader) {
       record_blended(data, index, *lit_shader, surface_textures, batch);
@@ -364,7 +384,9 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
   // The depth test of the lit pass is "equal": a back face at the depth of a front face of another triangle must be
   // culled.
   const State side = material.is_double_sided ? State::None : State::CullBack;
-  const gpu::Shader &depth_shader = shaders_.get(device, ShaderId::Depth, mask_features(cut_out));
+  const gpu::Shader &depth_shader =
+      shaders_.get(device, alpha_function.key != 0 ? ShaderId::DepthFunction : ShaderId::Depth, mask_features(cut_out),
+                   alpha_function);
   if (is_transmissive) {
     call(data.psl->transmission_depth_pass, depth_shader, side, cut_out, alpha_textures, bind_surface);
   }
@@ -385,8 +407,9 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
   }
   if (settings_.has_surfaces) {
     // The program reads normals also where nothing gives light.
-    call(data.psl->surfaces_pass, shaders_.get(device, ShaderId::Surfaces, Feature::Light | feature_of(surface)), side,
-         surface, surface_textures, bind_surface);
+    call(data.psl->surfaces_pass,
+         shaders_.get(device, ShaderId::Surfaces, Feature::Light | feature_of(surface), function), side, surface,
+         surface_textures, bind_surface);
   }
   if (settings_.has_probe && has(stl.features, Feature::Light)) {
     call(data.psl->probe_pass, shaders_.get(device, ShaderId::Probe, lighting), side, MaterialClass::Plain, {},

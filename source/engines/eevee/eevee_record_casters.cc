@@ -3,6 +3,7 @@
 #include "eevee_engine.hh"
 #include "eevee_engine_data.hh"
 #include "eevee_material_variants.hh"
+#include "eevee_surface_functions.hh"
 
 #include <algorithm>
 
@@ -33,9 +34,10 @@ State culled_state(CasterFaces faces)
 }
 
 /** Hash of all values that the shadow of a caster depends on. */
-std::uint64_t caster_fingerprint(const scene::Scene &scene, const render_scene::RenderObject &object,
-                                 const glm::mat4 &world_from_object)
+std::uint64_t caster_fingerprint(const render_scene::RenderScene &render_scene,
+                                 const render_scene::RenderObject &object, const glm::mat4 &world_from_object)
 {
+  const scene::Scene &scene = render_scene.scene();
   const scene::Mesh &mesh = scene.meshes()[object.mesh];
   const scene::Material &material = scene.material_of(mesh);
   struct {
@@ -55,6 +57,10 @@ std::uint64_t caster_fingerprint(const scene::Scene &scene, const render_scene::
     float alpha;
     float alpha_cutoff;
     glm::vec4 transmitted;
+    /** The surface function, the revision of all that it may read, and the origin of its positions. */
+    std::uint64_t function;
+    scene::Revision function_inputs;
+    glm::dvec3 origin_ws;
   } key{};
   key.world_from_object = world_from_object;
   key.mesh = object.mesh.key();
@@ -77,6 +83,11 @@ std::uint64_t caster_fingerprint(const scene::Scene &scene, const render_scene::
     key.alpha_cutoff = material.alpha_cutoff;
     if (material.has_transmission()) {
       key.transmitted = {material.base_color, render_scene::transmitted_part(material)};
+    }
+    key.function = alpha_function_of(scene, material).key;
+    if (key.function != 0) {
+      key.function_inputs = std::max({scene.materials().latest(), scene.textures().latest(), scene.images().latest()});
+      key.origin_ws = render_scene.origin_ws();
     }
   }
   return fingerprint_of(std::as_bytes(std::span(&key, 1)));
@@ -123,14 +134,17 @@ void Engine::record_caster(SharedData &shared, draw::ObjectIndex index)
   const State winding = shared.is_mirrored[index] ? State::FrontClockwise : State::None;
   draw::InstanceCall *&instances = shared.caster_calls[{object.mesh, winding}];
   if (!instances) {
+    const FunctionText function = cut_out == MaterialClass::Plain ? FunctionText() : alpha_function_of(scene, material);
     const gpu::Shader &shader =
         shaders_.get(scene_.device(), shadow_shader(shared.shadows.layer_pass()),
-                     mask_features(cut_out) | (is_open ? Feature::OpacityThreshold : Feature::None));
+                     mask_features(cut_out) | (is_open ? Feature::OpacityThreshold : Feature::None), function);
     const State faces = material.is_double_sided ? State::None : culled_state(settings_.shadow.caster_faces);
     // Without culling the winding has no effect.
     const State state = faces == State::None ? State::None : faces | winding;
     const TextureSet textures =
-        cut_out == MaterialClass::Plain ? TextureSet() : textures_of(scene, mesh, MaterialClass::BaseColor);
+        cut_out == MaterialClass::Plain
+            ? TextureSet()
+            : textures_of(scene, mesh, function.key != 0 ? MaterialClass::Full : MaterialClass::BaseColor);
     draw::ShadingGroup *&group = shared.groups[{&shared.shadow_pass, shader.id(), state, textures}];
     if (!group) {
       group = &shared.shadow_pass.group(shader);
@@ -139,6 +153,9 @@ void Engine::record_caster(SharedData &shared, draw::ObjectIndex index)
       group->bind_storage_ref("material_block", &shared.material_block);
       group->bind_storage_ref("full_material_block", &shared.full_material_block);
       group->bind_uniform_ref("shadow_render_block", shared.shadows.render_block());
+      if (function.key != 0) {
+        group->bind_uniform("surface_function_block", shared.surface_function_block);
+      }
       group->constant_ref("sample_index", &shared.sample_index);
       group->constant_ref("sample_seed", &shared.sample_seed);
       render_scene::bind_textures(*group, scene_, cut_out, textures);
@@ -157,7 +174,7 @@ void Engine::add_casters(Data &data)
       const render_scene::RenderObject &object = scene_.object(index);
       const glm::mat4 &world_from_object = scene_.objects().world_from_object(index);
       shared.shadows.add_caster(
-          {object.bounds, index, instances, caster_fingerprint(scene_.scene(), object, world_from_object),
+          {object.bounds, index, instances, caster_fingerprint(scene_, object, world_from_object),
            &scene_.scene().meshes()[object.mesh], &world_from_object,
            render_scene::lets_light_through(scene_.scene(), scene_.scene().meshes()[object.mesh])});
     }

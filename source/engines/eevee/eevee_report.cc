@@ -2,6 +2,7 @@
 // The report of a frame: the parts that were made or left out. It reads the same state as the drawing code.
 #include "eevee_material_variants.hh"
 #include "eevee_report_source.hh"
+#include "eevee_surface_functions.hh"
 
 #include "eevee_inspection.hh"
 
@@ -237,6 +238,9 @@ Report Inspection::report() const
   if (settings.shadow.cascades.is_fitted_to_depth && has_surfaces_without_depth(scene.scene())) {
     report.warnings.emplace_back(
         "cascades are not fitted to depths: blended and transmissive materials receive shadows, and are drawn later");
+  }
+  for (std::string &line : surface_function_warnings(scene.scene(), shaders)) {
+    report.warnings.push_back(std::move(line));
   }
   for (std::string &line : scene.scene().stale_references()) {
     report.warnings.push_back(std::move(line));

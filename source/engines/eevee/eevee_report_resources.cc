@@ -111,6 +111,8 @@ FrameNode block_nodes(const ReportSource &source)
       source.data.is_recorded ? no_full_material : nothing_seen);
   add(source.render_scene.materials().layer_buffer(), "layer_block",
       fmt::format("{} materials", source.scene().materials().size()), why_no_feature(source, Feature::Layers));
+  add(source.data.shared->surface_function_block, "surface_function_block", "surface functions of materials",
+      source.data.is_recorded ? no_surface_function : nothing_seen);
   add(source.data.shared->light_block, "light_block", fmt::format("{} lights", source.data.shared->lamps.light_count()),
       source.has(Feature::LightClusters) ? "the lights are in light_texture" : "no lamp gives light");
   add(source.data.shared->light_shape_block, "light_shape_block", "extents and axes of lamps",
@@ -139,11 +141,11 @@ FrameNode mesh_nodes(const ReportSource &source)
   for (const auto &[handle, mesh] : scene.meshes()) {
     const gpu::Batch *made = source.render_scene.meshes().find(handle);
     const gpu::Batch &batch = made ? *made : none;
-    FrameNode &node = meshes.emplace_back(
-        resource_node(source, batch, mesh.name, fmt::format("{} triangles", mesh.indices.size() / 3),
-                      !used.contains(handle)                                ? "no object has it"
-                      : !render_scene::is_drawable(scene.material_of(mesh)) ? "its material is cut out everywhere"
-                                                                            : nothing_seen));
+    FrameNode &node = meshes.emplace_back(resource_node(
+        source, batch, mesh.name, fmt::format("{} triangles", mesh.indices.size() / 3),
+        !used.contains(handle)                                       ? "no object has it"
+        : !render_scene::is_drawable(scene, scene.material_of(mesh)) ? "its material is cut out everywhere"
+                                                                     : nothing_seen));
     if (batch) {
       node.upload_bytes = source.device().live(batch).upload_bytes;
     }

@@ -136,6 +136,7 @@ std::string why_no_program(const ReportSource &source, ShaderId id)
     case ShaderId::EvsmDisk4:
     case ShaderId::EvsmDisk32:
     case ShaderId::EvsmSeparable: return source.has(Feature::ShadowEvsm) ? other_kernel : no_evsm;
+    case ShaderId::DepthFunction: return "no surface function can cut a material out";
     default: return nothing_seen;
   }
 }

@@ -17,6 +17,8 @@ namespace gnomon::eevee {
 inline constexpr const char *no_target = "no target was given";
 inline constexpr const char *no_full_material = "no material that is drawn needs more than a base colour texture";
 
+inline constexpr const char *no_surface_function = "no material that is drawn has a surface function";
+
 /** The state from which reports are made. */
 struct ReportSource {
   render_scene::RenderScene &render_scene;

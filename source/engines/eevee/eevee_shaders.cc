@@ -2,7 +2,11 @@
 #include "eevee_shaders.hh"
 
 #include "eevee_interfaces.hh"
+#include "gpu_shader_text.hh"
 #include "shader_files.hh"
+
+#include <algorithm>
+#include <sstream>
 
 namespace gnomon::eevee {
 
@@ -12,12 +16,60 @@ namespace {
 constexpr Feature unlit_features = Feature::BaseColorTexture | Feature::AlphaMask | Feature::FullMaterial |
                                    Feature::TargetDepth | Feature::OpacityThreshold;
 
-/** A reflection function that returns the interface of a variant from the table that the build generated. */
-gpu::ShaderReflection generated_reflection(ShaderId id, Feature features)
+/** Adds what the code around a surface function reads, which is the same in all programs. */
+void add_function_bindings(gpu::ShaderInterface &interface)
 {
-  return [id, features](std::string_view, const std::vector<gpu::ShaderSource> &) {
-    return interface_tables()[std::size_t(id)].interface_of(std::uint32_t(features));
+  using Binding = gpu::ShaderInterface::Binding;
+  const auto features = std::uint32_t(Feature::AlphaMask | Feature::FullMaterial);
+  const gpu::ShaderInterface function = interface_tables()[std::size_t(ShaderId::DepthFunction)].interface_of(features);
+  for (const Binding &binding : function.bindings) {
+    const bool is_added = binding.kind == gpu::BindingKind::Texture || binding.name == "surface_function_block";
+    if (is_added && !interface.find(binding.kind, binding.name)) {
+      interface.bindings.push_back(binding);
+    }
+  }
+  std::ranges::sort(interface.bindings, {},
+                    [](const Binding &binding) { return std::pair(binding.kind, binding.slot); });
+}
+
+/** A reflection function that returns the interface of a variant from the table that the build generated. */
+gpu::ShaderReflection generated_reflection(ShaderId id, Feature features, bool has_function)
+{
+  return [=](std::string_view, const std::vector<gpu::ShaderSource> &) {
+    gpu::ShaderInterface interface = interface_tables()[std::size_t(id)].interface_of(std::uint32_t(features));
+    if (has_function) {
+      add_function_bindings(interface);
+    }
+    return interface;
   };
+}
+
+/** Added to the lines of functions, by which they are found in messages: Mesa names the wrong file in most of its own.
+ */
+constexpr int function_line_offset = 1000000;
+
+std::string numbered(std::string_view text)
+{
+  return fmt::format("#line {}\n{}", function_line_offset + 1, text);
+}
+
+/** The first line of a compiler's \a message about a numbered() text, or else its first error. */
+std::string failure_of(std::string_view message, const std::string &file)
+{
+  std::istringstream lines{std::string(message)};
+  std::string first_error;
+  for (std::string line; std::getline(lines, line);) {
+    for (std::size_t at = line.find_first_of(":("); at != std::string::npos; at = line.find_first_of(":(", at + 1)) {
+      gpu::TextScanner scanner(std::string_view(line).substr(at + 1));
+      const int number = scanner.take_number().value_or(0);
+      if (number > function_line_offset) {
+        return fmt::format("{}:{}{}", file, number - function_line_offset, scanner.rest());
+      }
+    }
+    const bool is_error = line.find("error") != std::string::npos || line.find("ERROR") != std::string::npos;
+    first_error = first_error.empty() && is_error ? line : first_error;
+  }
+  return fmt::format("{}: {}", file, first_error.empty() ? message : first_error);
 }
 
 }  // namespace
@@ -27,37 +79,99 @@ ShaderCache::ShaderCache() : files_(shaders::file) {}
 void ShaderCache::set_pcf(const PcfKernel &pcf)
 {
   if (pcf_ != pcf) {
-    std::erase_if(shaders_, [](const auto &entry) { return has(entry.first.second, Feature::ShadowPcf); });
+    std::erase_if(shaders_, [](const auto &entry) { return has(std::get<Feature>(entry.first), Feature::ShadowPcf); });
     pcf_ = pcf;
   }
 }
 
-const gpu::Shader &ShaderCache::get(gpu::Device &device, ShaderId id, Feature features)
+const gpu::Shader &ShaderCache::get(gpu::Device &device, ShaderId id, Feature features, const FunctionText &function)
 {
   const ShaderDeclaration &declaration = shader_declarations()[std::size_t(id)];
   const Feature reachable = has(features, Feature::Light) ? features : features & unlit_features;
-  const Key key(id, reachable & declaration.features);
+  const Key key(id, reachable & declaration.features, function.key);
   const auto found = shaders_.find(key);
   // The program is empty if the packet that contained its creation was lost.
   if (found != shaders_.end() && found->second) {
     return found->second;
   }
+  if (function.key != 0) {
+    functions_.try_emplace(function.key, Function{std::string(function.text), std::string(function.file), {}});
+  }
   return shaders_[key] = make(device, key);
 }
 
-gpu::Shader ShaderCache::make(gpu::Device &device, const Key &key) const
+gpu::Shader ShaderCache::make(gpu::Device &device, const Key &key)
 {
-  const auto &[id, features] = key;
-  return device.create_shader(shader_desc(shader_declarations()[std::size_t(id)], features, pcf_), files_,
-                              reflection_ ? reflection_ : generated_reflection(id, features));
+  const auto &[id, features, function] = key;
+  const ShaderDeclaration &declaration = shader_declarations()[std::size_t(id)];
+  const gpu::ShaderDesc desc = shader_desc(declaration, features, pcf_);
+  const gpu::ShaderReflection reflection =
+      reflection_ ? reflection_ : generated_reflection(id, features, function != 0);
+  if (function == 0) {
+    return device.create_shader(desc, files_, reflection);
+  }
+  return make_with(functions_.at(function), device, with_surface_function(desc, declaration), reflection);
+}
+
+gpu::Shader ShaderCache::make_with(Function &function, gpu::Device &device, const gpu::ShaderDesc &desc,
+                                   const gpu::ShaderReflection &reflection) const
+{
+  const auto files_with = [this](std::optional<std::string_view> text) {
+    return [this, text](std::string_view path) { return path == surface_function_file ? text : files_(path); };
+  };
+  const gpu::ShaderFiles stand_in = files_with(files_("eevee/eevee_surface_stand_in.glsl"));
+  if (const auto fault = surface_function_fault(function.text)) {
+    function.failure = fmt::format("{}:{}: {}", function.file, fault->line, fault->reason);
+  }
+  if (function.text.empty()) {
+    function.failure = fmt::format("{}: it has no text", function.file);
+  }
+  if (function.failure.empty()) {
+    try {
+      const std::string text = numbered(function.text);
+      return device.create_shader(desc, files_with(text), reflection, stand_in);
+    }
+    catch (const gpu::Error &error) {
+      function.failure = failure_of(error.what(), function.file);
+    }
+  }
+  return device.create_shader(desc, stand_in, reflection);
+}
+
+void ShaderCache::keep_functions(const std::set<std::uint64_t> &keys)
+{
+  std::erase_if(functions_, [&](const auto &entry) { return !keys.contains(entry.first); });
+  std::erase_if(shaders_, [&](const auto &entry) {
+    const auto &[id, features, function] = entry.first;
+    return function != 0 && !keys.contains(function);
+  });
+}
+
+void ShaderCache::take_failures(const gpu::Feedback &feedback)
+{
+  for (const gpu::Feedback::FailedShader &failed : feedback.failed_shaders) {
+    for (const auto &[key, shader] : shaders_) {
+      const auto function = functions_.find(std::get<2>(key));
+      if (shader.id() == failed.shader && function != functions_.end()) {
+        function->second.failure = failure_of(failed.reason, function->second.file);
+      }
+    }
+  }
+}
+
+std::string ShaderCache::failure(std::uint64_t function_key) const
+{
+  const auto function = functions_.find(function_key);
+  return function == functions_.end() ? std::string() : function->second.failure;
 }
 
 std::vector<Feature> ShaderCache::made(ShaderId id) const
 {
   std::vector<Feature> variants;
   for (const auto &[key, shader] : shaders_) {
-    if (key.first == id) {
-      variants.push_back(key.second);
+    const auto &[made_id, features, function] = key;
+    if (made_id == id && (variants.empty() || variants.back() != features)) {
+      variants.push_back(features);
     }
   }
   return variants;
@@ -73,6 +187,9 @@ std::vector<std::string> ShaderCache::reload(gpu::Device &device, gpu::ShaderFil
   }
   files_ = std::move(files);
   reflection_ = std::move(reflection);
+  for (auto &[key, function] : functions_) {
+    function.failure.clear();
+  }
   std::vector<std::string> failures;
   for (auto &[key, shader] : shaders_) {
     try {

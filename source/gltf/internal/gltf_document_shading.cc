@@ -204,8 +204,14 @@ void read_material(const Place &place, const JsonValue &value, Model::Material &
                into_slot("normalTexture", material.normal_texture, "scale", &material.normal_scale),
                into_slot("occlusionTexture", material.occlusion_texture, "strength", &material.occlusion_strength),
                into_slot("emissiveTexture", material.emissive_texture),
-               Member{"extensions", [&](const Place &at, const JsonValue &extensions) {
+               Member{"extensions",
+                      [&](const Place &at, const JsonValue &extensions) {
                         read_material_extensions(at, extensions, material, specular_glossiness);
+                      }},
+               Member{"extras", [&](const Place &at, const JsonValue &extras) {
+                        if (extras.is_object()) {
+                          read_members(at, extras, into("gnomon_surface", material.surface_uri));
+                        }
                       }});
   if (specular_glossiness) {
     convert(*specular_glossiness, material);

@@ -26,11 +26,8 @@ using ByteSpan = std::span<const unsigned char>;
 static_assert(std::endian::native == std::endian::little,
               "glTF's numbers are little-endian and are copied as they are");
 
-/** Largest size of a .glb, which is also the limit for other files. */
-constexpr std::uintmax_t file_size_max = std::uintmax_t(4) << 30U;
-
 /** \a what: the name of the file in messages. Refuses devices and pipes, because reading one might never end. */
-std::uintmax_t size_of_file(const std::filesystem::path &path, const std::string &what)
+std::uintmax_t size_of_file(const std::filesystem::path &path, const std::string &what, std::uintmax_t size_max)
 {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
@@ -42,16 +39,19 @@ std::uintmax_t size_of_file(const std::filesystem::path &path, const std::string
     throw Fault(what, "is not a file");
   }
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error || size > file_size_max) {
-    throw Fault(what, error ? error.message() : "is larger than 4 GiB");
+  if (error) {
+    throw Fault(what, error.message());
+  }
+  if (size > size_max) {
+    throw Fault(what, "is larger than " + (size_max == file_size_max ? "4 GiB" : std::to_string(size_max) + " bytes"));
   }
   return size;
 }
 
 /** \throws Fault, as size_of_file */
-Bytes read_bytes(const std::filesystem::path &path, const std::string &what)
+Bytes read_bytes(const std::filesystem::path &path, const std::string &what, std::uintmax_t size_max = file_size_max)
 {
-  const std::uintmax_t size = size_of_file(path, what);
+  const std::uintmax_t size = size_of_file(path, what, size_max);
   Bytes bytes;
   bytes.reserve(size + document_padding());
   bytes.resize(size);
@@ -147,11 +147,6 @@ std::string percent_decoded(std::string_view uri)
     i += code < 0 ? 0 : 2;
   }
   return result;
-}
-
-bool is_data_uri(const std::string &uri)
-{
-  return uri.rfind("data:", 0) == 0;
 }
 
 /** Empty if the text is not base64. Padding at the end is optional; white space is not allowed. */
@@ -279,6 +274,11 @@ class BufferLoader {
 
 }  // namespace
 
+bool is_data_uri(const std::string &uri)
+{
+  return uri.rfind("data:", 0) == 0;
+}
+
 File load_file(const std::filesystem::path &path)
 {
   const trace::Span span("read and parse");
@@ -304,18 +304,18 @@ std::filesystem::path path_of_uri(const std::filesystem::path &folder, const std
     throw Fault(what, "is a data URI, and must be the name of a file");
   }
   FileBeside file = file_beside(folder, what, uri);
-  static_cast<void>(size_of_file(file.path, file.what));
+  static_cast<void>(size_of_file(file.path, file.what, file_size_max));
   return std::move(file.path);
 }
 
 std::vector<unsigned char> bytes_of_uri(const std::filesystem::path &folder, const std::string &what,
-                                        const std::string &uri)
+                                        const std::string &uri, std::uintmax_t size_max)
 {
   if (is_data_uri(uri)) {
     return bytes_of_data_uri(what, uri);
   }
   const FileBeside file = file_beside(folder, what, uri);
-  return read_bytes(file.path, file.what);
+  return read_bytes(file.path, file.what, size_max);
 }
 
 }  // namespace gnomon::gltf

@@ -5,6 +5,7 @@
 #include "internal/gltf_report.hh"
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <list>
 #include <span>
@@ -45,13 +46,19 @@ const auto &element(const Elements &elements, int index, const std::string &what
 [[nodiscard]] std::filesystem::path path_of_uri(const std::filesystem::path &folder, const std::string &what,
                                                 const std::string &uri);
 
+/** Largest size of a .glb, which is also the limit for other files. */
+inline constexpr std::uintmax_t file_size_max = std::uintmax_t(4) << 30U;
+
+/** Whether a URI contains its data instead of the name of a file. */
+[[nodiscard]] bool is_data_uri(const std::string &uri);
+
 /**
- * The bytes of a URI: a decoded data URI, or a file relative to \a folder.
+ * The bytes of a URI: a decoded data URI, or a file relative to \a folder with at most \a size_max bytes.
  *
  * \throws Fault that names \a what.
  */
 [[nodiscard]] std::vector<unsigned char> bytes_of_uri(const std::filesystem::path &folder, const std::string &what,
-                                                      const std::string &uri);
+                                                      const std::string &uri, std::uintmax_t size_max = file_size_max);
 
 /** \throws Fault; std::bad_alloc */
 [[nodiscard]] File load_file(const std::filesystem::path &path);

@@ -212,6 +212,10 @@ class MaterialReader {
         sets.insert(slot.set);
       }
     }
+    // A surface function may read both sets.
+    for (int set = 0; !source_.surface_uri.empty() && set < 2 && sets.size() < uv_sets_max; set++) {
+      sets.insert(set);
+    }
     uv_sets_.assign(sets.begin(), sets.end());
     if (uv_sets_.size() > uv_sets_max) {
       uv_sets_.resize(uv_sets_max);
@@ -285,11 +289,37 @@ Handle<Material> MaterialImporter::handle_of(int gltf_material)
   else if (is_new) {
     const Model::Material &source = file_.model.materials[gltf_material];
     MaterialReader reader(source, static_cast<std::size_t>(gltf_material), textures_, stand_ins_, warnings_);
-    place->second = scene_.add(reader.read());
+    Material material = reader.read();
+    if (!source.surface_uri.empty()) {
+      material.surface_function =
+          surface_function(source.surface_uri, label("material", source.name, static_cast<std::size_t>(gltf_material)));
+    }
+    place->second = scene_.add(std::move(material));
     if (source.glossiness) {
       factor_roughness_.emplace(place->second, float(1.0 - std::clamp(*source.glossiness, 0.0, 1.0)));
     }
     uv_sets_.emplace(place->second, reader.uv_sets());
+  }
+  return place->second;
+}
+
+Handle<scene::SurfaceFunction> MaterialImporter::surface_function(const std::string &uri, const std::string &what)
+{
+  const auto [place, is_new] = surface_functions_.try_emplace(uri);
+  if (!is_new) {
+    return place->second;
+  }
+  scene::SurfaceFunction function{.name = is_data_uri(uri) ? "surface of " + what : uri};
+  try {
+    const std::vector<unsigned char> bytes =
+        bytes_of_uri(file_.folder, "surface function", uri, scene::SurfaceFunction::text_bytes_max);
+    function.text.assign(bytes.begin(), bytes.end());
+    function.path = is_data_uri(uri) ? std::string() : path_of_uri(file_.folder, "surface function", uri).string();
+    place->second = scene_.add(std::move(function));
+  }
+  catch (const std::exception &error) {
+    warnings_.add(what, printable(error.what()) + "; magenta is drawn instead");
+    place->second = scene_.add(scene::SurfaceFunction{.name = "surface of " + what});
   }
   return place->second;
 }

@@ -42,6 +42,9 @@ class MaterialImporter {
   void finish(std::uint32_t texture_size_max);
 
  private:
+  /** The surface function at a URI. Without a text, so that its stand-in is drawn, if it cannot be read. */
+  scene::Handle<scene::SurfaceFunction> surface_function(const std::string &uri, const std::string &what);
+
   const File &file_;
   Warnings &warnings_;
   scene::Scene &scene_;
@@ -49,6 +52,8 @@ class MaterialImporter {
   StandIns stand_ins_;
   std::map<scene::Handle<scene::Material>, std::vector<int>> uv_sets_;
   std::map<int, scene::Handle<scene::Material>> handle_of_;
+  /** By URI. */
+  std::map<std::string, scene::Handle<scene::SurfaceFunction>> surface_functions_;
   /** Roughness without the texture, of materials whose roughness texture contains the factor. */
   std::map<scene::Handle<scene::Material>, float> factor_roughness_;
 };

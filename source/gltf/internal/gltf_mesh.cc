@@ -131,8 +131,15 @@ Handle<Mesh> MeshImporter::read_primitive(int gltf_mesh, std::size_t primitive_i
       mesh.colors = reader.read_colors();
       mesh.material = materials_.handle_of(primitive.material);
       const std::vector<int> &uv_sets = materials_.uv_sets(mesh.material);
-      mesh.uvs = uv_sets.empty() ? std::vector<glm::vec2>() : reader.read_uvs(uv_sets[0]);
-      mesh.second_uvs = uv_sets.size() < 2 ? std::vector<glm::vec2>() : reader.read_uvs(uv_sets[1]);
+      // A surface function reads the sets that there are.
+      const bool has_function = bool(scene_.materials()[mesh.material].surface_function);
+      const auto read_uvs = [&](std::size_t i) {
+        const bool is_read = i < uv_sets.size() &&
+                             (!has_function || primitive.attributes.contains("TEXCOORD_" + std::to_string(uv_sets[i])));
+        return is_read ? reader.read_uvs(uv_sets[i]) : std::vector<glm::vec2>();
+      };
+      mesh.uvs = read_uvs(0);
+      mesh.second_uvs = read_uvs(1);
       if (const scene::TextureSlot *slot = tangent_slot(scene_.materials()[mesh.material])) {
         mesh.tangents = reader.read_tangents();
         has_uvs_for_tangents =

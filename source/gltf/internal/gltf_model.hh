@@ -154,6 +154,8 @@ struct Model {
   };
   struct Material {
     std::string name;
+    /** The extra gnomon_surface: a URI of a surface function; empty if absent. */
+    std::string surface_uri;
     std::array<double, 4> base_color{1.0, 1.0, 1.0, 1.0};
     TextureSlot base_color_texture;
     TextureSlot metallic_roughness_texture;

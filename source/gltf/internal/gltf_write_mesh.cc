@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "internal/gltf_write_mesh.hh"
 
+#include "image_base64.hh"
 #include "internal/gltf_model.hh"
 #include "internal/gltf_report.hh"
 #include "internal/gltf_sampler.hh"
 #include "internal/gltf_units.hh"
+#include "internal/gltf_write_uri.hh"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 
 namespace gnomon::gltf {
 
@@ -80,7 +83,8 @@ float emissive_strength(const glm::vec3 &emissive)
   return std::ldexp(1.0F, mantissa == 0.5F ? exponent - 1 : exponent);
 }
 
-MeshWriter::MeshWriter(const scene::Scene &scene, WrittenBuffer &buffer) : scene_(scene), buffer_(buffer)
+MeshWriter::MeshWriter(const scene::Scene &scene, WrittenBuffer &buffer, std::filesystem::path folder)
+    : scene_(scene), buffer_(buffer), folder_(std::move(folder))
 {
   for (const scene::DeformedMesh &deformed : scene.deformed_meshes) {
     deformed_of_.emplace(deformed.mesh, &deformed);
@@ -316,7 +320,17 @@ int MeshWriter::material(Handle<Material> handle)
   if (!used.empty()) {
     json.add("extensions", used.object());
   }
+  if (const scene::SurfaceFunction *function = scene_.surface_functions().find(material.surface_function)) {
+    json.add("extras", "{\"gnomon_surface\":\"" + surface_uri(*function) + "\"}");
+  }
   return material_of_.emplace(handle, materials.add(json.object())).first->second;
+}
+
+std::string MeshWriter::surface_uri(const scene::SurfaceFunction &function) const
+{
+  const std::string uri = uri_of_file(function.path, folder_);
+  const std::span text(reinterpret_cast<const unsigned char *>(function.text.data()), function.text.size());
+  return uri.empty() ? "data:text/plain;base64," + image::base64(text) : uri;
 }
 
 void MeshWriter::add_slot(JsonText &json, std::string_view key, const scene::TextureSlot &slot, const std::string &what,

@@ -5,9 +5,11 @@
 #include "internal/gltf_write_json.hh"
 #include "scene.hh"
 
+#include <filesystem>
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 /** Internal to source/gltf. */
@@ -21,8 +23,8 @@ namespace gnomon::gltf {
  */
 class MeshWriter {
  public:
-  /** All references must outlive the writer. */
-  MeshWriter(const scene::Scene &scene, WrittenBuffer &buffer);
+  /** All references must outlive the writer. \a folder: of the written file. */
+  MeshWriter(const scene::Scene &scene, WrittenBuffer &buffer, std::filesystem::path folder);
 
   /** Index of the glTF mesh whose primitives are \a meshes; -1 if none of them has triangles. */
   [[nodiscard]] int index_of(const std::vector<scene::Handle<scene::Mesh>> &meshes);
@@ -47,6 +49,7 @@ class MeshWriter {
  private:
   const scene::Scene &scene_;
   WrittenBuffer &buffer_;
+  std::filesystem::path folder_;
   std::map<scene::Handle<scene::Mesh>, const scene::DeformedMesh *> deformed_of_;
   std::map<std::vector<scene::Handle<scene::Mesh>>, int> mesh_of_;
   /** Members of a primitive, without its name. */
@@ -66,6 +69,8 @@ class MeshWriter {
   /** Adds the slot if it has a texture. \a factor: further JSON members of the slot. */
   void add_slot(JsonText &json, std::string_view key, const scene::TextureSlot &slot, const std::string &what,
                 const std::string &factor = "");
+  /** A URI of the function's file, relative to the folder; of its text, if there is no such file. */
+  [[nodiscard]] std::string surface_uri(const scene::SurfaceFunction &function) const;
   int texture(scene::Handle<scene::Texture> handle);
   int image(scene::Handle<scene::Image> handle);
   int sampler(const scene::Texture &texture);
