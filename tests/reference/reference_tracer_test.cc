@@ -124,9 +124,10 @@ TEST(Tracer, SurfaceFunctionsThatItDoesNotRunAreNamed)
   };
   add("plain", {});
   add("edited", function);
-  EXPECT_EQ(untraced_layers(scene),
-            (std::vector<std::string>{"material 'edited': the reference does not trace its surface function; the errors "
-                                      "include this difference"}));
+  EXPECT_EQ(
+      untraced_layers(scene),
+      (std::vector<std::string>{"material 'edited': the reference does not trace its surface function; the errors "
+                                "include this difference"}));
   scene.remove(function);
   EXPECT_TRUE(untraced_layers(scene).empty());
 }
