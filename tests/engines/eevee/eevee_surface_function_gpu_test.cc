@@ -313,6 +313,73 @@ TEST_F(SurfaceFunctionGpuTest, LayersForCompositingShowTheFunctionsSurface)
   test::expect_near(glm::vec3(surfaces->normal_object[middle]), {0.6F, 0, 0.8F}, 1e-6F);
 }
 
+/** In all kinds of programs that have a function. */
+TEST_F(SurfaceFunctionGpuTest, OneThatChangesNothingGivesThePictureWithoutIt)
+{
+  const auto material = add_material(function(""), {0.75F, 0.5F, 0.25F});
+  const scene::Handle<scene::SurfaceFunction> unchanged = scene.materials()[material].surface_function;
+  const auto base_color =
+      test::add_texture(scene, 2, {255, 99, 0, 255, 9, 99, 255, 99, 40, 255, 0, 130, 7, 7, 70, 255});
+  const auto data = test::add_texture(scene, 1, {0, 128, 190, 200});
+  const auto square = test::add_square_mesh(scene, material);
+  scene.edit(square, [](scene::Mesh &mesh) {
+    mesh.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+    mesh.tangents.assign(4, {1, 0, 0, 1});
+    mesh.colors = {{1, 1, 1, 1}, {0.5F, 1, 1, 1}, {1, 0.5F, 1, 0.5F}, {1, 1, 0.5F, 1}};
+  });
+  test::add_object(scene, square, glm::translate(glm::dmat4(1), glm::dvec3(0, 0, 1)));
+  const auto ground = test::add_square_mesh(scene, test::add_material(scene, glm::vec3(0.5F)));
+  test::add_object(scene, ground, glm::scale(glm::dmat4(1), glm::dvec3(4)));
+  test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 5}, {0.3F, 0.1F, -1}, 2.0F);
+  scene.edit(material, [&](scene::Material &value) {
+    value.specular_color = glm::vec3(1.0F);
+    value.roughness = 0.4F;
+    value.base_color_texture = base_color;
+    value.metallic_roughness_texture = value.normal_texture = value.specular_texture = data;
+    value.occlusion_texture = value.emissive_texture = data;
+    value.emissive = glm::vec3(0.1F);
+  });
+  const auto expect_same = [&](const char *what, const Settings &settings = {}) {
+    scene.edit(material, [&](scene::Material &value) { value.surface_function = unchanged; });
+    const Picture with = render(settings);
+    EXPECT_TRUE(warnings.empty()) << what << ": " << warnings.front();
+    scene.edit(material, [&](scene::Material &value) { value.surface_function = {}; });
+    EXPECT_LE(difference_of(with, render(settings)), 1e-5) << what;
+  };
+  const auto expect_same_after = [&](const char *what, const auto &change, const Settings &settings = {}) {
+    scene.edit(material, change);
+    expect_same(what, settings);
+  };
+  expect_same("textures");
+  expect_same("multiple scattering", {.has_multiscatter = true});
+  using scene::AlphaMode;
+  expect_same_after("mask", [](scene::Material &value) {
+    value.alpha_mode = AlphaMode::Mask;
+    value.alpha = 0.9F;
+  });
+  expect_same_after("blend", [](scene::Material &value) { value.alpha_mode = AlphaMode::Blend; });
+  scene.set_world(scene::World{.color = {0.25F, 0.5F, 0.75F}});
+  expect_same_after("coat and world", [](scene::Material &value) {
+    value.alpha_mode = AlphaMode::Opaque;
+    value.coat = 0.5F;
+    value.anisotropy = 0.5F;
+  });
+  expect_same_after("transmission", [](scene::Material &value) { value.transmission = 0.5F; });
+  expect_same_after("unlit", [](scene::Material &value) { value.is_unlit = true; });
+  scene.edit(material, [](scene::Material &value) {
+    value.is_unlit = false;
+    value.coat = value.anisotropy = value.transmission = 0.0F;
+  });
+  for (int i = 0; i < 12; i++) {
+    const auto lamp = test::add_lamp(scene, scene::LampKind::Point, {0.25F * float(i) - 1.5F, 0, 3}, {0, 0, -1}, 0.1F);
+    scene.edit(lamp, [](scene::Lamp &value) {
+      value.range = 2.5F;
+      value.shadow.kind = scene::ShadowKind::None;
+    });
+  }
+  expect_same("many lamps");
+}
+
 TEST_F(SurfaceFunctionGpuTest, EditsOfItAndOfItsFactorsMoveTheShadow)
 {
   const auto plate = add_material(function("  result.alpha = inputs.position_os.y > 0.0 ? 1.0 : 0.0;"));
