@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace gnomon::eevee {
@@ -75,6 +76,12 @@ TEST(BudgetControllerTest, TheCostIsTheLargestOfTheLastFour)
     added.push_back(double((7 * i) % 11));
     recent.add(added.back());
     EXPECT_EQ(*recent.value(), *std::max_element(added.end() - std::min(i + 1, 4), added.end())) << i;
+  }
+  for (const auto &[added_seconds, expected] :
+       {std::pair(nan, 0.0), {-infinite, 0.0}, {-1.0, 0.0}, {infinite, 1000.0}}) {
+    RecentCost stiff;
+    stiff.add(added_seconds);
+    EXPECT_EQ(stiff.value(), expected) << added_seconds;
   }
 }
 
