@@ -127,13 +127,18 @@ float specular_lobe(float alpha, float alpha_min, Surface surface, vec3 to_light
 }
 #endif
 
-/** BRDF towards the viewer, 1/sr, times the cosine of the incident light. \see specular_lobe */
-vec3 reflected(MaterialData material, float alpha_min, Surface surface, vec3 to_light, float cos_l, const bool is_base)
+/**
+ * BRDF towards the viewer, 1/sr, times the cosine of the incident light. \see specular_lobe. \a specular_part: factor of the specular
+ * lobe.
+ */
+vec3 reflected(MaterialData material, float alpha_min, float specular_part, Surface surface, vec3 to_light, float cos_l,
+               const bool is_base)
 {
 #ifdef USE_SPECULAR
   vec3 half_vector = direction_or_zero(to_light + surface.view_ws);
   vec3 fresnel = fresnel_schlick(material.specular_f0, material.specular_f90, dot(surface.view_ws, half_vector));
-  vec3 specular = fresnel * specular_lobe(material.alpha, alpha_min, surface, to_light, cos_l, half_vector, is_base);
+  float lobe = specular_lobe(material.alpha, alpha_min, surface, to_light, cos_l, half_vector, is_base);
+  vec3 specular = fresnel * (lobe * specular_part);
 #  ifdef USE_MULTISCATTER
   return (smooth_brdf(material, surface, cos_l) + specular) * cos_l;
 #  else
@@ -144,6 +149,10 @@ vec3 reflected(MaterialData material, float alpha_min, Surface surface, vec3 to_
   return material.diffuse * (INV_PI * cos_l);
 #endif
 }
+
+#if defined(USE_WORLD) && defined(USE_SPECULAR)
+#  include "eevee/eevee_world_sun_lib.glsl"
+#endif
 
 #ifndef USE_MULTISCATTER
 /** Diffuse radiance for an irradiance of 1 from \a to_light, reduced by the fraction that is reflected specularly. */
@@ -240,6 +249,7 @@ vec3 point_radiance(int index, const int lights, MaterialData material, Surface 
     return vec3(0.0);
   }
   float alpha_min = 0.0;
+  float points_share = 0.0;
 #if defined(USE_WORLD) && defined(USE_SPECULAR)
   if (lights != LIGHTS_WITH_CUBES && light.kind == LIGHT_WORLD) {
     vec3 half_vector = direction_or_zero(center.to_light + surface.view_ws);
@@ -255,13 +265,24 @@ vec3 point_radiance(int index, const int lights, MaterialData material, Surface 
   if (light.kind == LIGHT_SUN) {
     alpha_min = sqrt(light.radius_sq);
   }
+  points_share = sun_points_share(light, index, material.alpha);
+  vec3 highlight = sun_highlight(light, index, material, surface, points_share, true);
 #endif
-  vec3 brdf_cos = reflected(material, alpha_min, surface, center.to_light, cos_l, true);
+  vec3 brdf_cos = reflected(material, alpha_min, 1.0 - points_share, surface, center.to_light, cos_l, true);
 #ifdef USE_LAYERS
+  float coat_share = 0.0;
+#  if defined(USE_WORLD) && defined(USE_SPECULAR)
+  coat_share = sun_points_share(light, index, coat.alpha);
+  highlight = layered(highlight, vec3(0.0), sun_highlight(light, index, coat, layers.coat_surface, coat_share, false));
+#  endif
   brdf_cos = layered(brdf_cos, cos_l * sheen_brdf(surface, center.to_light, cos_l),
-                     reflected(coat, alpha_min, layers.coat_surface, center.to_light, cos_coat, false));
+                     reflected(coat, alpha_min, 1.0 - coat_share, layers.coat_surface, center.to_light, cos_coat, false));
 #endif
-  return light.color * (center.irradiance * visibility) * brdf_cos;
+  vec3 radiance = light.color * (center.irradiance * visibility) * brdf_cos;
+#if defined(USE_WORLD) && defined(USE_SPECULAR)
+  radiance += visibility * highlight;
+#endif
+  return radiance;
 }
 
 #ifdef USE_LAMP_SHAPE

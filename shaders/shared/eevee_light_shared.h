@@ -35,7 +35,7 @@ struct LightData {
   vec3 color;
   /**
    * Point, spot: square of the radius, m². 0: a point. Sun: minimum alpha² of the specular lobe for its highlight (used
-   * with a world). World: solid angle that the direction represents, sr.
+   * with a world; 0: none). World: solid angle that the direction represents, sr.
    */
   float radius_sq;
   /** Unit vector along the axis of the lamp, in the direction of emission. */

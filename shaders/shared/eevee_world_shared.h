@@ -9,6 +9,26 @@ SHARED_BEGIN
 /** Layers of `world_levels`: the world, prefiltered for a roughness of layer / (count - 1). */
 #define WORLD_LEVEL_COUNT 8
 
+/** Maximum number of suns of a world. */
+#define WORLD_SUN_MAX 8
+/** Number of points of each sun in each sample of a picture with several samples. */
+#define WORLD_SUN_POINTS 16
+/** The highlight of a sun is drawn by the directions that have a shadow if the lobe contains this number of them over all samples. */
+#define WORLD_SUN_LOBE_DIRECTIONS 24.0f
+/** Number of points over all samples in the narrowest lobe that they draw. Narrower lobes are widened to it. */
+#define WORLD_SUN_LOBE_POINTS 4.0f
+
+/** A direction within a sun of the world. */
+struct WorldSunPoint {
+  /** Unit vector, world space. */
+  vec3 to_world;
+  float _pad0;
+  /** Irradiance of a surface perpendicular to it, W/m². The sum over the points of a sun is an estimate of the sun's. */
+  vec3 irradiance;
+  float _pad1;
+};
+SHARED_ASSERT_SIZE(WorldSunPoint, 32)
+
 /** Content of `world_block`: the world without its suns, which are lights of `light_block`. */
 struct WorldBlock {
   /** rgb: coefficients of irradiance / π as a polynomial of the normal. \see world_irradiance */
@@ -17,10 +37,14 @@ struct WorldBlock {
   int is_sampled;
   /** Minimum alpha of a lobe that contains enough sampled directions. Narrower lobes read `world_levels`. */
   float alpha_sampled;
-  int _pad0;
-  int _pad1;
+  /** Index of the first sun of the world in `light_block`. Its suns follow each other. */
+  int first_sun;
+  /** Number of suns that have `sun_points`. */
+  int sun_count;
+  /** WORLD_SUN_POINTS for each sun. They draw highlights that are too narrow for the one direction of a sun in a sample. */
+  WorldSunPoint sun_points[WORLD_SUN_MAX * WORLD_SUN_POINTS];
 };
-SHARED_ASSERT_SIZE(WorldBlock, 160)
+SHARED_ASSERT_SIZE(WorldBlock, 160 + WORLD_SUN_MAX * WORLD_SUN_POINTS * 32)
 
 /** Irradiance / π on a surface with the unit normal \a n (Ramamoorthi and Hanrahan 2001). At least 0. */
 SHARED_FUNCTION vec3 world_irradiance(WorldBlock world, vec3 n)

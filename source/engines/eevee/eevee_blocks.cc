@@ -116,12 +116,17 @@ constexpr auto light_cluster_fields = std::to_array<Field>({
     {"clusters._pad2", offsetof(LightClusterBlock, _pad2)},
 });
 
+constexpr std::size_t sun_points_offset = offsetof(WorldBlock, sun_points);
 constexpr auto world_fields = std::to_array<Field>({
     {"world.harmonics", offsetof(WorldBlock, harmonics)},
     {"world.is_sampled", offsetof(WorldBlock, is_sampled)},
     {"world.alpha_sampled", offsetof(WorldBlock, alpha_sampled)},
-    {"world._pad0", offsetof(WorldBlock, _pad0)},
-    {"world._pad1", offsetof(WorldBlock, _pad1)},
+    {"world.first_sun", offsetof(WorldBlock, first_sun)},
+    {"world.sun_count", offsetof(WorldBlock, sun_count)},
+    {"world.sun_points[0].to_world", sun_points_offset + offsetof(WorldSunPoint, to_world)},
+    {"world.sun_points[0]._pad0", sun_points_offset + offsetof(WorldSunPoint, _pad0)},
+    {"world.sun_points[0].irradiance", sun_points_offset + offsetof(WorldSunPoint, irradiance)},
+    {"world.sun_points[0]._pad1", sun_points_offset + offsetof(WorldSunPoint, _pad1)},
 });
 
 constexpr std::size_t maps_offset = offsetof(ShadowBlock, maps);

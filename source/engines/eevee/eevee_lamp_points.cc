@@ -143,17 +143,37 @@ LampPoint LampPoints::world_point(const Sized &sized, std::uint32_t index, std::
                   .world_from_lamp = turned(sized.lamp.world_from_lamp, -direction.to_world),
                   .color = glm::vec3(direction.irradiance / count)};
   // A lobe with the roughness alpha has a solid angle of about 4 π alpha².
-  const double alpha_sq = world_sun_lobe_directions * sized.world->solid_angle() / (4.0 * pi * sample_count_);
+  const double alpha_sq = WORLD_SUN_LOBE_DIRECTIONS * sized.world->solid_angle() / (4.0 * pi * sample_count_);
   point.radius_sq = float(sized.direction_count > 1 ? direction.solid_angle / count : alpha_sq);
   return point;
+}
+
+void LampPoints::add_sun_points(const Sized &sized, std::uint32_t index, std::uint32_t seed)
+{
+  if (sun_points_.empty()) {
+    first_sun_ = sized.light;
+  }
+  // The complement is a stream of no lamp.
+  const std::uint32_t stream = shared::mixed_bits(seed) + ~sized.stream;
+  for (std::uint32_t i = 0; i < WORLD_SUN_POINTS; i++) {
+    const render_scene::WorldDirection direction =
+        sized.world->at(glm::dvec2(sobol_point(index * WORLD_SUN_POINTS + i, stream)));
+    shared::WorldSunPoint &point = sun_points_.emplace_back();
+    point.to_world = glm::vec3(direction.to_world);
+    point.irradiance = glm::vec3(direction.irradiance / double(WORLD_SUN_POINTS));
+  }
 }
 
 std::span<const LampPoint> LampPoints::sample(std::uint32_t index, std::uint32_t seed)
 {
   points_.clear();
+  sun_points_.clear();
   for (const Sized &sized : sized_) {
     if (sized.world) {
       points_.push_back(world_point(sized, index, seed));
+      if (sized.world != &world_->rest_directions) {
+        add_sun_points(sized, index, seed);
+      }
       continue;
     }
     const glm::vec3 place = sobol_point(index, shared::mixed_bits(seed) + sized.stream);
@@ -171,6 +191,7 @@ std::span<const LampPoint> LampPoints::sample(std::uint32_t index, std::uint32_t
 std::span<const LampPoint> LampPoints::centers()
 {
   points_.clear();
+  sun_points_.clear();
   for (const Sized &sized : sized_) {
     points_.push_back({sized.light, glm::mat4(sized.lamp.world_from_lamp), 0.0F, sized.color, sized.radius_sq});
   }

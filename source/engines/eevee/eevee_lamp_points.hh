@@ -2,6 +2,7 @@
 #pragma once
 
 #include "eevee_lamps.hh"
+#include "eevee_world_shared.h"
 
 #include "render_world.hh"
 
@@ -67,6 +68,19 @@ class LampPoints {
   }
   /** The points of the \a index-th sample, in the order of the lights. Deterministic. Valid until the next call. */
   [[nodiscard]] std::span<const LampPoint> sample(std::uint32_t index, std::uint32_t seed);
+  /**
+   * WORLD_SUN_POINTS points of each sun of the world, for the sample of the last call of sample(). They differ from the
+   * one point that has a shadow. Empty after a call of centers().
+   */
+  [[nodiscard]] std::span<const shared::WorldSunPoint> sun_points() const
+  {
+    return sun_points_;
+  }
+  /** Index in Lamps::lights of the first sun of the world, which the others follow. \pre sun_points is not empty */
+  [[nodiscard]] int first_sun() const
+  {
+    return first_sun_;
+  }
   /** The centres of the lamps, in the order of the lights. Valid until the next call. */
   [[nodiscard]] std::span<const LampPoint> centers();
 
@@ -85,11 +99,14 @@ class LampPoints {
     std::uint32_t direction = 0;
     std::uint32_t direction_count = 1;
   };
+  void add_sun_points(const Sized &sized, std::uint32_t index, std::uint32_t seed);
   [[nodiscard]] LampPoint world_point(const Sized &sized, std::uint32_t index, std::uint32_t seed) const;
 
   std::shared_ptr<const render_scene::WorldLight> world_;
   std::vector<Sized> sized_;
   std::vector<LampPoint> points_;
+  std::vector<shared::WorldSunPoint> sun_points_;
+  int first_sun_ = 0;
   int sample_count_ = 1;
   glm::vec3 toward_ws_{0.0F};
 };

@@ -162,6 +162,26 @@ void write_light_entry(const Data &data, int light, int entry, gpu::CommandList 
               std::as_bytes(std::span(&value, 1)));
 }
 
+/** Write the members of `world_block` that change with each sample. */
+static void write_sun_points(const SharedData &shared, gpu::CommandList &list)
+{
+  struct {
+    int first_sun = 0;
+    int sun_count = 0;
+    std::array<shared::WorldSunPoint, std::size_t(WORLD_SUN_MAX) * WORLD_SUN_POINTS> points{};
+  } values;
+  static_assert(sizeof(values) == sizeof(shared::WorldBlock) - offsetof(shared::WorldBlock, first_sun));
+  const std::span<const shared::WorldSunPoint> points = shared.lamp_points.sun_points();
+  if (!shared.world.block || points.empty()) {
+    return;
+  }
+  values.first_sun = shared.lamp_points.first_sun();
+  const bool is_left_out = shared.is_light_left_out[std::size_t(values.first_sun)];
+  values.sun_count = is_left_out ? 0 : int(points.size()) / WORLD_SUN_POINTS;
+  std::ranges::copy(points, values.points.begin());
+  list.update(shared.world.block, offsetof(shared::WorldBlock, first_sun), std::as_bytes(std::span(&values, 1)));
+}
+
 void write_lamp_points(Data &data, gpu::Device &device, gpu::CommandList &list)
 {
   const std::span<const LampPoint> points = data.stl.lamp_points;
@@ -169,6 +189,7 @@ void write_lamp_points(Data &data, gpu::Device &device, gpu::CommandList &list)
     return;
   }
   SharedData &shared = *data.shared;
+  write_sun_points(shared, list);
   if (has(data.stl.features, Feature::LightClusters)) {
     for (const LampPoint &point : points) {
       const auto light = std::size_t(point.light);

@@ -11,6 +11,8 @@
 
 namespace gnomon::eevee {
 
+static_assert(WORLD_SUN_MAX == render_scene::WorldLight::sun_max);
+
 std::vector<scene::PlacedLamp> world_lamps(const render_scene::WorldLight &world, LampShading shading)
 {
   std::vector<scene::PlacedLamp> lamps;

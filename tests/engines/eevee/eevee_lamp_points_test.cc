@@ -5,13 +5,17 @@
 #include "eevee_closed_forms.hh"
 #include "eevee_sobol.hh"
 #include "eevee_test_scene.hh"
+#include "eevee_world.hh"
 
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <set>
 
@@ -169,6 +173,52 @@ TEST(LampPoints, TurnASunsAxesAndKeepThemOrthonormal)
     EXPECT_GT(glm::determinant(axes), 0.0F);
     EXPECT_GE(axes[2].z, -1e-6F) << "within the half space";
   }
+}
+
+TEST(LampPoints, PointsOfTheWorldsSunsHaveTheirLightAndAreWithinThem)
+{
+  // Two suns of different radiances, and a dim rest.
+  const std::array<glm::dvec3, 2> to_suns = {glm::normalize(glm::dvec3(1, 1, 0)), glm::normalize(glm::dvec3(-1, 2, 1))};
+  constexpr double half_angle = 0.12;
+  scene::WorldPicture picture{256, 128, {}};
+  for (int y = 0; y < picture.height; y++) {
+    for (int x = 0; x < picture.width; x++) {
+      const glm::dvec3 v = render_scene::direction_of((x + 0.5) / picture.width, 1.0 - (y + 0.5) / picture.height);
+      picture.texels.emplace_back(glm::dot(v, to_suns[0]) > std::cos(half_angle)   ? 60.0F
+                                  : glm::dot(v, to_suns[1]) > std::cos(half_angle) ? 30.0F
+                                                                                   : 0.01F);
+    }
+  }
+  const auto world = std::make_shared<const render_scene::WorldLight>(
+      render_scene::world_light({.picture = std::make_shared<const scene::WorldPicture>(std::move(picture))}));
+  ASSERT_EQ(world->suns.size(), 2U);
+  std::vector<scene::PlacedLamp> placed = {lamp_of(scene::LampKind::Spot)};
+  std::ranges::copy(world_lamps(*world, LampShading::Point), std::back_inserter(placed));
+  constexpr std::uint32_t sample_count = 16;
+  LampPoints points(placed, make_lamps(placed, LampShading::Point), glm::vec3(0.0F), world, sample_count);
+  std::array<double, 2> light{};
+  std::set<float> places;
+  for (std::uint32_t i = 0; i < sample_count; i++) {
+    static_cast<void>(points.sample(i, 3));
+    const std::span<const shared::WorldSunPoint> sun_points = points.sun_points();
+    ASSERT_EQ(sun_points.size(), 2U * WORLD_SUN_POINTS);
+    EXPECT_EQ(points.first_sun(), 1);
+    for (std::size_t k = 0; k < sun_points.size(); k++) {
+      const std::size_t sun = k / WORLD_SUN_POINTS;
+      light[sun] += double(sun_points[k].irradiance.g) / sample_count;
+      places.insert(sun_points[k].to_world.y);
+      EXPECT_NEAR(glm::length(sun_points[k].to_world), 1.0F, 1e-6F);
+      // A texel of the rim may be half of the sun's, and two are 0.05 rad.
+      EXPECT_GT(glm::dot(glm::dvec3(sun_points[k].to_world), to_suns[sun]), std::cos(half_angle + 0.05));
+    }
+  }
+  EXPECT_EQ(places.size(), 2U * WORLD_SUN_POINTS * sample_count) << "no point is drawn twice";
+  const double sine = std::sin(half_angle / 2.0);
+  // The texels of the rim change the area of the disks by a few percent.
+  EXPECT_NEAR(light[0], 60.0 * 4.0 * pi * sine * sine, 0.05 * light[0]);
+  EXPECT_NEAR(light[1], 30.0 * 4.0 * pi * sine * sine, 0.05 * light[1]);
+  static_cast<void>(points.centers());
+  EXPECT_TRUE(points.sun_points().empty());
 }
 
 /** A box and a floor under a sized and a hard lamp. */

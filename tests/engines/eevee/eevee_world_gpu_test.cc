@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -148,6 +149,47 @@ TEST_F(WorldGpuTest, OcclusionConvergesToTheReference)
   const glm::vec3 expected = reference_middle();
   EXPECT_LT(expected.b, 0.55F);
   expect_relative(middle(64), expected, 0.04F);
+}
+
+/** A mirrored sun that is wider than the lobe of the metal is a disk of about the sun's radiance, or is hidden. */
+TEST_F(WorldGpuTest, ASunInASmoothMetalIsThatOfTheReference)
+{
+  scene.edit(material, [&](scene::Material &value) {
+    value.base_color = glm::vec3(1.0F);
+    value.metallic = 1.0F;
+    value.roughness = 0.15F;
+  });
+  const glm::dvec3 to_sun = glm::normalize(glm::dvec3(-1, 0, 1));
+  const double half_angle = 0.15;
+  scene::WorldPicture picture{256, 128, {}};
+  for (int y = 0; y < picture.height; y++) {
+    for (int x = 0; x < picture.width; x++) {
+      const glm::dvec3 v = render_scene::direction_of((x + 0.5) / picture.width, 1.0 - (y + 0.5) / picture.height);
+      picture.texels.emplace_back(glm::dot(v, to_sun) > std::cos(half_angle) ? 50.0F : 0.01F);
+    }
+  }
+  scene.set_world(scene::World{.picture = std::make_shared<const scene::WorldPicture>(std::move(picture))});
+  float brightest = 0.0F;
+  // The middle of the sun, a place between it and the rim, and one beside the sun. Widened lobes blur all of them.
+  for (const double turn : {0.0, 0.5 * half_angle, half_angle + 0.05}) {
+    const double angle = 0.25 * std::numbers::pi + turn;
+    camera = test::camera_at(glm::dvec3(0.1, 0.1, 0) + 16.0 * glm::dvec3(std::sin(angle), 0.0, std::cos(angle)),
+                             {0.1, 0.1, 0}, 0.001F);
+    const glm::vec3 expected = reference_middle(1 << 14);
+    brightest = std::max(brightest, expected.g);
+    for (const int sample_count : {4, 16}) {
+      // The widened lobe of 4 samples takes 0.13 of the brightest between the middle and the rim, that of 16 less than
+      // 0.04.
+      const float tolerance = sample_count == 4 ? 0.15F : 0.04F;
+      EXPECT_NEAR(middle(sample_count).g, expected.g, tolerance * brightest) << turn << ' ' << sample_count;
+    }
+  }
+  // Above the reflected ray, wide enough for all of the sun.
+  camera = test::camera_at(glm::dvec3(0.1, 0.1, 0) + 16.0 * glm::dvec3(std::sqrt(0.5), 0.0, std::sqrt(0.5)),
+                           {0.1, 0.1, 0}, 0.001F);
+  test::add_object(scene, test::add_square_mesh(scene, material),
+                   glm::translate(glm::dmat4(1.0), glm::dvec3(-2.9, 0.1, 3)));
+  EXPECT_LT(middle(4).g, 0.05F);
 }
 
 TEST_F(WorldGpuTest, BlackIsNoWorldAndCompilesNothingOfIt)
