@@ -128,7 +128,8 @@ TEST(GltfImage, LargerOnesThanTheLimitAreReduced)
   const Image &image = (*scene.images().begin()).value;
   EXPECT_EQ(image.width, 1U);
   EXPECT_EQ(image.height, 1U);
-  // The red of base colours is encoded: the mean of the light of 255, 0, 20 and 90 is 143.6. Alpha is the mean of values.
+  // The red of base colours is encoded: the mean of the light of 255, 0, 20 and 90 is 143.6. Alpha is the mean of
+  // values.
   EXPECT_EQ(image.texels[0], 144);
   EXPECT_EQ(image.texels[3], 112);
 }
