@@ -300,7 +300,7 @@ TEST_F(ShadersTest, ReflectPrintsBlocksTexturesAndStageVariables)
   EXPECT_EQ(find("outputs", "radiance"), nlohmann::json({{"name", "radiance"}, {"type", "vec4"}, {"location", 0}}));
 
   const Finished text = run("shaders reflect eevee_tonemap");
-  EXPECT_NE(text.out.find("push constants, slot 8, 80 bytes"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("push constants, slot 8, 96 bytes"), std::string::npos) << text.out;
   EXPECT_EQ(run("shaders reflect eevee_lit --variant USE_SHADOW_CUBE").status, 1) << "no such variant";
   EXPECT_EQ(run("shaders reflect eevee_paint").status, 1);
 }
