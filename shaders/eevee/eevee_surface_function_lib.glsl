@@ -17,7 +17,7 @@ layout(location = 0) in vec3 surface_position_ws;
 layout(location = 1) in vec3 surface_normal_ws;
 #endif
 
-/** What a surface function reads beside the textures of the material. */
+/** Inputs of a surface function beside the textures of the material. */
 struct SurfaceInputs {
   /** World space of the scene, metres. */
   vec3 position_ws;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Highlights of the suns of the world in a picture with several samples. Included by eevee_light_lib.glsl, after what both read.
+// Highlights of the suns of the world in a picture with several samples. Included by eevee_light_lib.glsl, after the functions that both
+// call.
 //
 // A highlight that is narrower than the sun needs more directions than the one that has a shadow. The others, WorldBlock::sun_points,
 // are shaded without a shadow, and the sum is multiplied by the visibility of the one.

@@ -23,7 +23,7 @@ class RecentCost {
 };
 
 /**
- * Decides what a draw call may draw within a time budget, from the times that the last calls took. It uses no clock and
+ * Plans a draw call within a time budget, from the times that the last calls took. It uses no clock and
  * no device. All times are in seconds.
  *
  * The first call after an edit draws either a whole sample of the picture, or a preview: one sample in a lower

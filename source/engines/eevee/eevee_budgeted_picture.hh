@@ -10,7 +10,7 @@
 
 namespace gnomon::eevee {
 
-/** What a call within a time budget has drawn, and the reason. */
+/** Result of a call within a time budget: the picture that is shown, and the reason. */
 struct BudgetReport {
   enum class Kind {
     /** A sample in another size or with other shadows than the picture's. */
