@@ -316,7 +316,7 @@ void add_render_options(CLI::App &command, RenderOptions &options)
   add_specular_option(command, options.specular);
   command
       .add_option("--light-threshold", options.light_threshold,
-                  "Irradiance, W/m2, that may be left out of the light of each point, spot and area lamp")
+                  "Irradiance, W/m2, that may be left out of the light of each point and spot lamp")
       ->capture_default_str()
       ->check(CLI::Range(0.0F, 1e30F));
   command.add_option("--debug", options.debug,
