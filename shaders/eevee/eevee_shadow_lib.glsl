@@ -102,6 +102,12 @@ float least_depth(ShadowPlace place, vec3 offset, int filter_kind)
 }
 
 #ifdef USE_SHADOW_CUBE
+/** The part of a face that its layer holds: lower left and upper right corner, fractions of the face. */
+vec4 face_crop(ShadowCubeData cube, int face)
+{
+  return unpackUnorm4x8(face < 4 ? cube.crops[face] : cube.last_crops[face - 4]);
+}
+
 /** \a offset: \see ShadowPlace. */
 ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, vec3 to_light, vec3 offset)
 {
@@ -115,7 +121,7 @@ ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, ve
   }
   float magnitude = largest(surface.position_ws) + largest(light.position_ws);
   float rounding = DEPTH_ROUNDING / cube.near * w * w;
-  float normal_offset = cube.bias * shadow_normal_offset(cube.texel_size * w, kernel_reach(cube.filter_kind), rounding, magnitude);
+  float normal_offset = cube.bias * shadow_normal_offset(cube.longest_texel * w, kernel_reach(cube.filter_kind), rounding, magnitude);
   // Do not offset past the lamp. From behind, the plane would be reversed.
   normal_offset = min(normal_offset, 0.5 * abs(dot(surface.geometric_normal_ws, from_light)));
   from_light = offset_position(surface, to_light, normal_offset) - light.position_ws;
@@ -124,14 +130,21 @@ ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, ve
   if ((cube.face_mask >> face & 1) == 0 || p.z <= 0.0) {
     return place;
   }
+  float size = float(cube.size_px);
+  vec4 crop = face_crop(cube, face);
+  vec2 extent = crop.zw - crop.xy;
+  vec2 uv = (p.xy / p.z * (0.5 * cube_uv_scale(size)) + 0.5 - crop.xy) / extent;
+  // No surface of the picture is there.
+  if (any(greaterThan(abs(uv - 0.5), vec2(0.5)))) {
+    return place;
+  }
   // A plane n · p = c has 1 / z = (n.x · x/z + n.y · y/z + n.z) / c.
   vec3 n = cube_face_project(face, surface.geometric_normal_ws);
   float per_metre = slope_quotient(cube.near, dot(surface.geometric_normal_ws, from_light));
-  float size = float(cube.size_px);
   place.receiver_depth = cube.near / p.z;
-  place.plane.texel = (p.xy / p.z * (0.5 * cube_uv_scale(size)) + 0.5) * size - 0.5;
+  place.plane.texel = uv * size - 0.5;
   place.plane.depth = place.receiver_depth + dot(surface.geometric_normal_ws, offset) * per_metre / p.z;
-  place.plane.slope = n.xy * (per_metre * cube.texel_size);
+  place.plane.slope = n.xy * (per_metre * cube.texel_size) * extent;
   place.plane.least_depth = least_depth(place, offset, cube.filter_kind);
   place.layer = cube.layer + face;
   place.is_covered = true;

@@ -70,6 +70,9 @@ static void take_over(ShadowSlot &slot, std::vector<ShadowSlot> &before)
   slot.center_near = old.center_near;
   slot.size_px = old.size_px;
   slot.views = std::move(old.views);
+  slot.crops = std::move(old.crops);
+  slot.crops_revision = old.crops_revision;
+  slot.looked_up = old.looked_up;
   slot.fits = std::move(old.fits);
   slot.drawn = old.drawn;
   slot.up_to_date = old.up_to_date;

@@ -136,6 +136,8 @@ class SceneShadows {
   std::vector<ShadowSlot> slots_;
   std::vector<Shadows *> viewports_;
   std::uint64_t viewports_revision_ = 0;
+  /** \see VisibleRange::revision */
+  std::uint64_t last_visible_revision_ = 0;
   /** LayerOwner::viewport of the viewport that was added last. */
   std::uint64_t last_viewport_ = 0;
   ShadowCasters casters_;

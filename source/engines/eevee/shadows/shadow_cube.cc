@@ -4,6 +4,7 @@
 #include "shadow_spot.hh"
 
 #include <glm/geometric.hpp>
+#include <glm/packing.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -90,10 +91,16 @@ class CubeTechnique final : public ShadowTechnique {
     return key;
   }
 
-  void set_lamp_views(ShadowSlot &slot) const override
+  std::vector<draw::View> whole_views(const ShadowSlot &slot) const override
   {
-    const auto views = shadow_cube_views(slot.lamp.position_ws(), slot.near, slot.place.given.size_px);
-    slot.views.assign(views.begin(), views.end());
+    const auto views = shadow_cube_views(slot.lamp.position_ws(), slot.near, slot.size_px);
+    return {views.begin(), views.end()};
+  }
+
+  double inner_share(const ShadowSlot &slot) const override
+  {
+    // Lookups for the penumbra of a whole lamp reach beyond the receivers.
+    return slot.lamp.extent > 0.0F && !slot.lamp.is_sampled ? 0.0 : double(shared::cube_uv_scale(float(slot.size_px)));
   }
 
   /** Conservative: the faces that have, for each of their four side planes, a visible corner on the inner side. */
@@ -127,11 +134,19 @@ class CubeTechnique final : public ShadowTechnique {
 
   void write_block(const ShadowSlot &slot, shared::ShadowBlock &block) const override
   {
-    const int size_px = slot.place.given.size_px;
+    const int size_px = slot.size_px;
     shared::ShadowCubeData &data = block.cubes[slot.place.entry];
     data.near = slot.near;
     data.far = slot.lamp.shadow.clip_end.value_or(shadow_far_none);
     data.texel_size = 2.0F / (float(size_px) * shared::cube_uv_scale(float(size_px)));
+    float longest = 0.0F;
+    for (int face = 0; face < 6; face++) {
+      const MapCrop &crop = slot.crops[std::size_t(face)];
+      (face < 4 ? data.crops[face] : data.last_crops[face - 4]) = glm::packUnorm4x8(glm::vec4(crop) / 255.0F);
+      const bool is_used = (slot.looked_up >> face & 1U) != 0;
+      longest = is_used ? std::max({longest, extent_of(crop).x, extent_of(crop).y}) : longest;
+    }
+    data.longest_texel = longest * data.texel_size;
     data.bias = slot.lamp.shadow.bias.value_or(1.0F);
     data.layer = slot.place.first_layer;
     data.face_mask = int(slot.drawn | slot.recorded_drawn);
@@ -148,8 +163,11 @@ class CubeTechnique final : public ShadowTechnique {
   double texel_size(const ShadowSlot &slot, const ShadowInspection &inspection,
                     const glm::dvec3 &position_ws) const override
   {
-    const glm::dvec3 size = glm::abs(position_ws - glm::dvec3(slot.lamp.position_ws()));
-    return double(inspection.block.cubes[slot.place.entry].texel_size) * std::max({size.x, size.y, size.z});
+    const glm::dvec3 from_lamp = position_ws - glm::dvec3(slot.lamp.position_ws());
+    const glm::dvec3 size = glm::abs(from_lamp);
+    const glm::vec2 extent = extent_of(slot.crops[std::size_t(shared::cube_face(glm::vec3(from_lamp)))]);
+    return double(inspection.block.cubes[slot.place.entry].texel_size * std::max(extent.x, extent.y)) *
+           std::max({size.x, size.y, size.z});
   }
 
   ShadowLayers layers(const ShadowSlot &slot, const ShadowInspection &inspection) const override

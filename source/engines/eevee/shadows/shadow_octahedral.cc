@@ -70,9 +70,9 @@ class OctahedralTechnique final : public ShadowTechnique {
     return shadow_cube_technique().texel_key(lamp);
   }
 
-  void set_lamp_views(ShadowSlot &slot) const override
+  std::vector<draw::View> whole_views(const ShadowSlot &slot) const override
   {
-    shadow_cube_technique().set_lamp_views(slot);
+    return shadow_cube_technique().whole_views(slot);
   }
 
   LayerMask changed_layers(LayerMask touched) const override

@@ -14,10 +14,15 @@ namespace gnomon::eevee {
 
 const glm::mat4 texcomat({0.5F, 0, 0, 0}, {0, 0.5F, 0, 0}, {0, 0, 1, 0}, {0.5F, 0.5F, 0, 1});
 
+/** Fraction of a spot's map that is border. */
+static float border_share(int size_px)
+{
+  return std::min(2.0F * float(CUBE_BORDER_TEXELS) / float(size_px), 0.5F);
+}
+
 draw::View shadow_spot_view(const glm::mat4 &world_from_lamp, float outer_angle, float near, int size_px)
 {
-  const float border = std::min(2.0F * float(CUBE_BORDER_TEXELS) / float(size_px), 0.5F);
-  const float half_size = std::max(std::tan(outer_angle) / (1.0F - border), 1e-4F);
+  const float half_size = std::max(std::tan(outer_angle) / (1.0F - border_share(size_px)), 1e-4F);
   const glm::mat4 lamp_from_world(glm::inverse(glm::dmat4(world_from_lamp)));
   return {lamp_from_world, draw::perspective(half_size, half_size, near, std::numeric_limits<float>::infinity())};
 }
@@ -93,10 +98,14 @@ class SpotTechnique final : public ShadowTechnique {
     return {lamp.world_from_lamp, lamp.spot_outer_angle, lamp.shadow_range(), lamp.shadow.clip_start};
   }
 
-  void set_lamp_views(ShadowSlot &slot) const override
+  std::vector<draw::View> whole_views(const ShadowSlot &slot) const override
   {
-    slot.views.assign(1, shadow_spot_view(slot.lamp.world_from_lamp, slot.lamp.spot_outer_angle, slot.near,
-                                          slot.place.given.size_px));
+    return {shadow_spot_view(slot.lamp.world_from_lamp, slot.lamp.spot_outer_angle, slot.near, slot.size_px)};
+  }
+
+  double inner_share(const ShadowSlot &slot) const override
+  {
+    return slot.lamp.extent > 0.0F && !slot.lamp.is_sampled ? 0.0 : 1.0 - border_share(slot.size_px);
   }
 
   /** Conservative: the map is needed unless all visible corners are outside of one of its four side planes. */

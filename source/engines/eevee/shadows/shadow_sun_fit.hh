@@ -2,13 +2,14 @@
 #pragma once
 
 #include "shadow_casters.hh"
-#include "shadow_visible_clusters.hh"
+#include "shadow_crop.hh"
 
 #include "draw_view.hh"
 #include "scene.hh"
 
 #include <glm/common.hpp>
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -82,8 +83,12 @@ struct VisibleRange {
   /** Range of distances along the view direction, metres. Above 0 in perspective. */
   double near = 0.0;
   double far = 0.0;
-  /** The surfaces that the picture shows, if cascades are fitted to them. */
+  /** The surfaces that the picture shows, if shadows are fitted to them. */
   std::vector<VisibleCluster> clusters{};
+  /** Boxes around `clusters`, if these are of the current view. */
+  std::vector<VisibleBox> boxes{};
+  /** Another number for each change of `boxes`, over all viewports. Above 0. */
+  std::uint64_t revision = 0;
 };
 
 /** The visible range with \a corners, seen by \a view. */

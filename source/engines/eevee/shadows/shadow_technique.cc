@@ -36,7 +36,7 @@ LayerMask touched_layers(const ShadowSlot &slot, const scene::Bounds &bounds_ws,
   if (!std::isinf(range) && distance_to(bounds_ws, position_ws) > range) {
     return 0;
   }
-  if (slot.views.size() == 6) {
+  if (slot.views.size() == 6 && std::ranges::all_of(slot.crops, [](const MapCrop &crop) { return crop == whole_map; })) {
     const float half_size = 1.0F / shared::cube_uv_scale(float(slot.place.given.size_px));
     return cube_face_mask({bounds_ws.min - position_ws, bounds_ws.max - position_ws}, half_size);
   }
@@ -75,7 +75,40 @@ void update_for_casters(ShadowSlot &slot, ShadowCasters &casters)
   slot.invalidate(slot.place.technique->changed_layers(touched));
   if (slot.lamp.kind != scene::LampKind::Sun && update_near(slot, casters)) {
     slot.place.technique->set_lamp_views(slot);
-    slot.invalidate(~0U);
+  }
+}
+
+void ShadowTechnique::set_lamp_views(ShadowSlot &slot) const
+{
+  slot.views = whole_views(slot);
+  slot.crops.assign(slot.views.size(), whole_map);
+  slot.crops_revision = 0;
+  slot.looked_up = ~0U;
+  slot.invalidate(~0U);
+}
+
+void crop_views(ShadowSlot &slot, const VisibleRange &visible)
+{
+  const ShadowTechnique &technique = *slot.place.technique;
+  const double inner = technique.inner_share(slot);
+  if (slot.crops_revision == visible.revision || inner == 0.0) {
+    return;
+  }
+  slot.crops_revision = visible.revision;
+  slot.looked_up = visible.boxes.empty() ? ~0U : 0U;
+  std::vector<draw::View> whole = technique.whole_views(slot);
+  for (std::size_t i = 0; i < whole.size(); i++) {
+    const std::optional<MapCrop> needed =
+        visible.boxes.empty() ? whole_map : map_crop(whole[i], inner, slot.size_px, visible.boxes);
+    if (!needed) {
+      continue;
+    }
+    slot.looked_up |= 1U << i;
+    if (*needed != slot.crops[i]) {
+      slot.crops[i] = *needed;
+      slot.views[i] = cropped_view(whole[i], *needed);
+      slot.invalidate(1U << i);
+    }
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "shadow_casters.hh"
+#include "shadow_crop.hh"
 #include "shadow_layer_array.hh"
 #include "shadow_plan.hh"
 #include "shadow_sun_fit.hh"
@@ -84,6 +85,12 @@ struct ShadowSlot {
   float center_near = 0.0F;
   /** The view of each layer. */
   std::vector<draw::View> views{};
+  /** Cubes and spots: the part of its map that each view shows. Empty for other techniques. */
+  std::vector<MapCrop> crops{};
+  /** VisibleRange::revision for which `crops` were computed; 0 after a change of the whole maps. */
+  std::uint64_t crops_revision = 0;
+  /** Layers that the surfaces for which `crops` were computed look up. */
+  LayerMask looked_up = ~0U;
   /** Suns: the fit of each view. Empty if no caster can shadow a visible surface. */
   std::vector<SunFit> fits{};
   /** Temporary memory for the next fit. */
@@ -173,8 +180,21 @@ class ShadowTechnique {
   {
     return false;
   }
-  /** For techniques without follows_view: set the views of \a slot from its lamp and its `near`. */
-  virtual void set_lamp_views(ShadowSlot & /*slot*/) const {}
+  /**
+   * For techniques without follows_view: set the views of \a slot from its lamp and its `near`. \post all layers are out
+   * of date
+   */
+  void set_lamp_views(ShadowSlot &slot) const;
+  /** The whole maps of \a slot. Nothing for techniques with follows_view. */
+  [[nodiscard]] virtual std::vector<draw::View> whole_views(const ShadowSlot & /*slot*/) const
+  {
+    return {};
+  }
+  /** Fraction of the width of a whole map that lookups reach; 0 if the views are always whole. \see map_crop */
+  [[nodiscard]] virtual double inner_share(const ShadowSlot & /*slot*/) const
+  {
+    return 0.0;
+  }
   /** For techniques with follows_view: fit the views of \a slot to \a view; invalidate layers whose view changes. */
   virtual void fit_views(ShadowSlot & /*slot*/, const ShadowView & /*view*/, const ShadowCasters & /*casters*/,
                          const ShadowSettings & /*settings*/) const
@@ -220,6 +240,12 @@ inline constexpr float shadow_far_none = std::numeric_limits<float>::max();
 /** The layers of \a slot that a caster touches. \a volume: the bounding sphere of \a bounds_ws. */
 [[nodiscard]] LayerMask touched_layers(const ShadowSlot &slot, const scene::Bounds &bounds_ws,
                                        const draw::CullingVolume &volume);
+
+/**
+ * Restrict the views of \a slot to the lookups of the surfaces in the picture, and invalidate the layers whose view
+ * changes. Whole views without VisibleRange::boxes.
+ */
+void crop_views(ShadowSlot &slot, const VisibleRange &visible);
 
 /** Invalidate the layers of \a slot that changed casters touch, and update the near plane. */
 void update_for_casters(ShadowSlot &slot, ShadowCasters &casters);

@@ -69,15 +69,25 @@ void Shadows::fit(gpu::Device &device, const draw::View &view, float pixel_size,
   // A visible surface is inside of these bounds, whether it casts a shadow or not.
   scene::Bounds surfaces_ws = scene_.bounds_ws_;
   surfaces_ws.extend(scene_.casters_.bounds_ws());
-  std::vector<VisibleCluster> clusters = std::move(visible_.clusters);
+  VisibleRange before = std::move(visible_);
   visible_ = visible_range(view, visible_corners(reads_depths() ? widened(view, pixel_size) : view, surfaces_ws,
-                                                 std::move(visible_.corners)));
+                                                 std::move(before.corners)));
+  visible_.clusters = std::move(before.clusters);
+  visible_.boxes = std::move(before.boxes);
+  visible_.revision = before.revision;
   // The points of a sun change with each sample, and the depths do not.
   if (!has_clusters_ || depths.depths.empty() || !reads_depths()) {
-    clusters = visible_clusters(reads_depths() ? depths : PictureDepths(), std::move(clusters));
+    visible_.clusters = visible_clusters(reads_depths() ? depths : PictureDepths(), std::move(visible_.clusters));
     has_clusters_ = !depths.depths.empty();
+    visible_.boxes.clear();
+    visible_.revision = ++scene_.last_visible_revision_;
   }
-  visible_.clusters = std::move(clusters);
+  // Depths of an earlier view do not show all surfaces of this view.
+  const bool has_boxes = !visible_.clusters.empty() && depths.view == view;
+  if (has_boxes == visible_.boxes.empty()) {
+    visible_.boxes = has_boxes ? visible_boxes(visible_.clusters) : std::vector<VisibleBox>();
+    visible_.revision = ++scene_.last_visible_revision_;
+  }
   for (ShadowSlot &slot : slots_) {
     slot.place.technique->fit_views(slot, {view, visible_, pixel_size}, scene_.casters_, scene_.settings_);
   }
@@ -113,8 +123,8 @@ void Shadows::place_lamps(std::span<const LampPoint> points)
     }
     else {
       seen_.reset();
+      slot.invalidate(~0U);
     }
-    slot.invalidate(~0U);
   });
 }
 
@@ -139,6 +149,7 @@ void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_si
   for_each_slot([](ShadowSlot &slot) { slot.recorded_drawn = slot.recorded_up_to_date = 0; });
   place_lamps(points);
   fit(device, view, pixel_size, depths);
+  std::ranges::for_each(scene_.slots_, [&](ShadowSlot &slot) { crop_views(slot, visible_); });
   // Lamps are recorded array by array. The lamps of the distance cube use the same layers one after the other.
   for (std::size_t id = 0; id < shadow_array_count; id++) {
     for_each_slot([&](ShadowSlot &slot) {
@@ -146,7 +157,7 @@ void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_si
         return;
       }
       const ShadowTechnique &technique = *slot.place.technique;
-      const LayerMask missing = technique.layers_needed(slot, visible_) & slot.all_layers() & ~slot.up_to_date;
+      const LayerMask missing = technique.layers_needed(slot, visible_) & slot.looked_up & slot.all_layers() & ~slot.up_to_date;
       if (missing != 0) {
         technique.record(
             slot, missing,
@@ -173,7 +184,10 @@ void Shadows::invalidate_blended()
 bool Shadows::reads_depths() const
 {
   return scene_.settings_.cascades.is_fitted_to_depth &&
-         std::ranges::any_of(slots_, [](const ShadowSlot &slot) { return !slot.lamp.is_sampled; });
+         (std::ranges::any_of(slots_, [](const ShadowSlot &slot) { return !slot.lamp.is_sampled; }) ||
+          std::ranges::any_of(scene_.slots_, [](const ShadowSlot &slot) {
+            return slot.place.technique->inner_share(slot) > 0.0;
+          }));
 }
 
 void Shadows::submitted()

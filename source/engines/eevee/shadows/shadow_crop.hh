@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "shadow_visible_clusters.hh"
+
+#include "draw_view.hh"
+
+#include <glm/gtc/type_precision.hpp>
+#include <glm/vec3.hpp>
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace gnomon::eevee {
+
+/** A box that contains surfaces of the picture. World space, metres. */
+struct VisibleBox {
+  glm::dvec3 center_ws{0.0};
+  glm::dvec3 half_ws{0.0};
+};
+
+/**
+ * A box for each cluster. It is wider than the cluster by half of the cluster's size on each side, so that it contains
+ * most surfaces that another sample sees between the pixels of the cluster.
+ */
+[[nodiscard]] std::vector<VisibleBox> visible_boxes(std::span<const VisibleCluster> clusters);
+
+/**
+ * The part of a perspective map that its layer holds: left, bottom, right and top edge in steps of 1 / 255 of the map's
+ * width and height.
+ */
+using MapCrop = glm::u8vec4;
+inline constexpr MapCrop whole_map(0, 0, 255, 255);
+
+/**
+ * The smallest part of the map of \a view that contains the lookups of all \a boxes and a border for the filter kernel.
+ *
+ * \a view: of the whole map, perspective and symmetric. \a inner: fraction of the map's width from the centre to the
+ * outermost lookups; the rest is the map's own border. \a size_px: edge of the layer, texels.
+ * \return nothing if no box is looked up
+ */
+[[nodiscard]] std::optional<MapCrop> map_crop(const draw::View &view, double inner, int size_px,
+                                              std::span<const VisibleBox> boxes);
+
+/** \a view restricted to \a crop. */
+[[nodiscard]] draw::View cropped_view(const draw::View &view, const MapCrop &crop);
+
+/** Width and height of \a crop, fractions of the map's. */
+[[nodiscard]] inline glm::vec2 extent_of(const MapCrop &crop)
+{
+  return {float(crop.z - crop.x) / 255.0F, float(crop.w - crop.y) / 255.0F};
+}
+
+}  // namespace gnomon::eevee
