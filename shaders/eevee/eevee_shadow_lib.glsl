@@ -102,10 +102,10 @@ float least_depth(ShadowPlace place, vec3 offset, int filter_kind)
 }
 
 #ifdef USE_SHADOW_CUBE
-/** The part of a face that its layer holds: lower left and upper right corner, fractions of the face. */
-vec4 face_crop(ShadowCubeData cube, int face)
+/** SHADOW_FILTER_… */
+int filter_of(ShadowCubeData cube)
 {
-  return unpackUnorm4x8(face < 4 ? cube.crops[face] : cube.last_crops[face - 4]);
+  return cube.faces_and_filter >> SHADOW_CUBE_FACE_BITS;
 }
 
 /** \a offset: \see ShadowPlace. */
@@ -121,19 +121,20 @@ ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, ve
   }
   float magnitude = largest(surface.position_ws) + largest(light.position_ws);
   float rounding = DEPTH_ROUNDING / cube.near * w * w;
-  float normal_offset = cube.bias * shadow_normal_offset(cube.longest_texel * w, kernel_reach(cube.filter_kind), rounding, magnitude);
+  float normal_offset = cube.bias * shadow_normal_offset(cube.texel_size * w, kernel_reach(filter_of(cube)), rounding, magnitude);
   // Do not offset past the lamp. From behind, the plane would be reversed.
   normal_offset = min(normal_offset, 0.5 * abs(dot(surface.geometric_normal_ws, from_light)));
   from_light = offset_position(surface, to_light, normal_offset) - light.position_ws;
   int face = cube_face(from_light + offset);
   vec3 p = cube_face_project(face, from_light + offset);
-  if ((cube.face_mask >> face & 1) == 0 || p.z <= 0.0) {
+  if ((cube.faces_and_filter >> face & 1) == 0 || p.z <= 0.0) {
     return place;
   }
   float size = float(cube.size_px);
-  vec4 crop = face_crop(cube, face);
-  vec2 extent = crop.zw - crop.xy;
-  vec2 uv = (p.xy / p.z * (0.5 * cube_uv_scale(size)) + 0.5 - crop.xy) / extent;
+  vec4 crop = unpackUnorm4x8(cube.crop);
+  float uv_scale = 0.5 * cube_uv_scale(size);
+  vec2 layers_per_face = 1.0 / (crop.zw - crop.xy);
+  vec2 uv = (p.xy / p.z * uv_scale + 0.5 - crop.xy) * layers_per_face;
   // No surface of the picture is there.
   if (any(greaterThan(abs(uv - 0.5), vec2(0.5)))) {
     return place;
@@ -144,8 +145,8 @@ ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, ve
   place.receiver_depth = cube.near / p.z;
   place.plane.texel = uv * size - 0.5;
   place.plane.depth = place.receiver_depth + dot(surface.geometric_normal_ws, offset) * per_metre / p.z;
-  place.plane.slope = n.xy * (per_metre * cube.texel_size) * extent;
-  place.plane.least_depth = least_depth(place, offset, cube.filter_kind);
+  place.plane.slope = n.xy * (per_metre / (uv_scale * size)) / layers_per_face;
+  place.plane.least_depth = least_depth(place, offset, filter_of(cube));
   place.layer = cube.layer + face;
   place.is_covered = true;
   return place;
@@ -155,7 +156,7 @@ float shadow_cube_visibility(int index, Surface surface, LightData light, vec3 t
 {
   ShadowCubeData cube = shadow.cubes[index];
   ShadowPlace place = cube_place(cube, surface, light, to_light, offset);
-  return place.is_covered ? filtered_visibility(shadow_cubes, place.layer, cube.size_px, cube.filter_kind, place.plane)
+  return place.is_covered ? filtered_visibility(shadow_cubes, place.layer, cube.size_px, filter_of(cube), place.plane)
                           : 1.0;
 }
 

@@ -19,25 +19,22 @@ struct ShadowCubeData {
   float near;
   /** Receivers beyond this distance along the face's axis are lit, metres. */
   float far;
-  /** Edge of a texel of a whole face at a distance of 1 m along the face's axis, metres. */
+  /** Longer edge of a texel at a distance of 1 m along the face's axis, metres. */
   float texel_size;
-  /** The longest edge of a texel of any face, as `texel_size`. */
-  float longest_texel;
-  /** The part of each face that its layer holds: the words are those of faces 0 to 3, then 4 and 5. \see face_crop */
-  uvec4 crops;
-  uvec2 last_crops;
   /** Factor of the derived normal offset. 0: no offset. */
   float bias;
   /** The first of six. */
   int layer;
-  /** Bit i: face i was drawn. The other faces contain no caster. */
-  int face_mask;
-  /** SHADOW_FILTER_… */
-  int filter_kind;
+  /** Bit i: face i was drawn. The other faces contain no caster. The bits from 6 on are SHADOW_FILTER_… */
+  int faces_and_filter;
+  /** The part of each face that its layer holds: left, bottom, right and top edge, as unpackUnorm4x8 gives them. */
+  uint crop;
   int size_px;
-  int padding;
 };
-SHARED_ASSERT_SIZE(ShadowCubeData, 64)
+SHARED_ASSERT_SIZE(ShadowCubeData, 32)
+
+/** \see ShadowCubeData::faces_and_filter */
+#define SHADOW_CUBE_FACE_BITS 6
 
 /** One map of a spot or a sun, in a layer of `shadow_maps`. The map's axis is LightData::forward_ws of the lamp. */
 struct ShadowMapData {
@@ -60,7 +57,8 @@ struct ShadowMapData {
 };
 SHARED_ASSERT_SIZE(ShadowMapData, 96)
 
-#define SHADOW_CUBE_MAX 128
+/** At most one for each light. */
+#define SHADOW_CUBE_MAX 255
 /** The number of maps that fit into the block beside the cubes. */
 #define SHADOW_MAP_MAX 85
 
@@ -68,7 +66,7 @@ struct ShadowBlock {
   ShadowCubeData cubes[SHADOW_CUBE_MAX];
   ShadowMapData maps[SHADOW_MAP_MAX];
 };
-SHARED_ASSERT_SIZE(ShadowBlock, SHADOW_CUBE_MAX * 64 + SHADOW_MAP_MAX * 96)
+SHARED_ASSERT_SIZE(ShadowBlock, SHADOW_CUBE_MAX * 32 + SHADOW_MAP_MAX * 96)
 SHARED_ASSERT(UNIFORM_BLOCK_BYTES_MAX - sizeof(ShadowBlock) < sizeof(ShadowMapData))
 
 /** Content of `shadow_render_block`: the matrices that the casters of one lamp are drawn with. */

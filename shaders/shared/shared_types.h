@@ -33,8 +33,6 @@
 namespace SHARED_NAMESPACE {
 using uint = std::uint32_t;
 using ivec2 = glm::ivec2;
-using uvec2 = glm::uvec2;
-using uvec4 = glm::uvec4;
 using vec2 = glm::vec<2, float>;
 using vec3 = glm::vec<3, float>;
 using vec4 = glm::vec<4, float>;

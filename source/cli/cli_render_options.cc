@@ -295,8 +295,8 @@ void add_render_options(CLI::App &command, RenderOptions &options)
       ->check(CLI::Range(0.0, 1.0));
   command
       .add_option("--cascade-range", options.cascade_range,
-                  "What the cascades cover: view, the scene within the camera's frustum; depth, the visible surfaces; "
-                  "auto, depth with at least 16 samples")
+                  "What shadow maps cover: view, the scene within the camera's frustum (cascades) or around the lamp; "
+                  "depth, the visible surfaces; auto, depth with at least 16 samples")
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "view", "depth"}));
   command

@@ -62,7 +62,7 @@ TEST_F(ShadowEditsTest, DimmingRenamingAndFilteringDrawNothing)
   EXPECT_EQ(drawn_layers(), 0U);
   lamp_at(0).shadow.kind = scene::ShadowKind::Pcf;
   EXPECT_EQ(drawn_layers(), 0U) << "the filter is the lookup's";
-  EXPECT_EQ(shadows.block_data().cubes[0].filter_kind, SHADOW_FILTER_PCF);
+  EXPECT_EQ(shadows.block_data().cubes[0].faces_and_filter >> SHADOW_CUBE_FACE_BITS, SHADOW_FILTER_PCF);
   EXPECT_EQ(shadows.block_data().cubes[0].bias, 2.0F);
 }
 
@@ -139,7 +139,7 @@ TEST_F(ShadowEditsTest, AMovedObjectDrawsTheLayersThatItTouches)
   EXPECT_EQ(drawn_layers(), 1U) << "the face at +X";
   casters[2] = box_at({0, -6, 0}, 1.0F);
   EXPECT_EQ(drawn_layers(), 1U) << "the face at -Y";
-  EXPECT_EQ(shadows.block_data().cubes[0].face_mask, 1 << 0 | 1 << 3 | 1 << 4 | 1 << 5) << "and none at +Y";
+  EXPECT_EQ(shadows.block_data().cubes[0].faces_and_filter, 1 << 0 | 1 << 3 | 1 << 4 | 1 << 5) << "and none at +Y";
 }
 
 TEST_F(ShadowEditsTest, AFarObjectDrawsNoExponentialShadowThatDoesNotReachIt)
@@ -230,10 +230,10 @@ TEST_F(ShadowEditsTest, AFaceThatWasNotSubmittedIsNotLookedUp)
   view = draw::View(glm::mat4(1.0F), draw::perspective(0.1F, 0.1F, 0.5F, 100.0F));
   gpu::CommandList lost;
   shadows.update(*device, view, 0.001F, pass, lost);
-  ASSERT_EQ(shadows.block_data().cubes[0].face_mask, 1 << 5);
+  ASSERT_EQ(shadows.block_data().cubes[0].faces_and_filter, 1 << 5);
   view = draw::View(glm::rotate(glm::mat4(1.0F), 3.14159265F, {0, 1, 0}), view.clip_from_view());
   update();
-  EXPECT_EQ(shadows.block_data().cubes[0].face_mask, 1 << 4);
+  EXPECT_EQ(shadows.block_data().cubes[0].faces_and_filter, 1 << 4);
 }
 
 TEST_F(ShadowEditsTest, TheTrianglesAroundLampsAreVisitedOnce)

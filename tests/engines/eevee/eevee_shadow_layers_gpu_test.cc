@@ -71,7 +71,7 @@ std::vector<std::vector<float>> drawn_layers(gpu::Device &device, const Shadows 
   for (std::size_t cube = 0; cube < shadows.scene().cube_count(); cube++) {
     const shared::ShadowCubeData &data = shadows.block_data().cubes[cube];
     for (int face = 0; face < 6; face++) {
-      if ((data.face_mask >> face & 1) != 0) {
+      if ((data.faces_and_filter >> face & 1) != 0) {
         layers.push_back(gpu::read_as<float>(device, shadows.scene().cubes(), data.layer + face));
       }
     }

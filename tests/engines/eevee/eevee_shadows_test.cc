@@ -153,7 +153,7 @@ TEST_F(ShadowsTest, FacesWithoutACasterAreSkipped)
   EXPECT_EQ(shadows.counters().faces_drawn, 1U);
   EXPECT_EQ(shadows.counters().faces_skipped, 5U);
   EXPECT_EQ(shadows.counters().caster_draws, 1U);
-  EXPECT_EQ(shadows.block_data().cubes[0].face_mask, 1 << 5);
+  EXPECT_EQ(shadows.block_data().cubes[0].faces_and_filter, 1 << 5);
 }
 
 TEST_F(ShadowsTest, FacesThatNothingVisibleLooksUpAreSkippedUntilItDoes)
@@ -164,12 +164,12 @@ TEST_F(ShadowsTest, FacesThatNothingVisibleLooksUpAreSkippedUntilItDoes)
   // A narrow view from inside along -Z shows nothing behind or beside it.
   view = draw::View(glm::mat4(1.0F), draw::perspective(0.1F, 0.1F, 0.5F, 100.0F));
   update();
-  EXPECT_EQ(shadows.block_data().cubes[0].face_mask, 1 << 5);
+  EXPECT_EQ(shadows.block_data().cubes[0].faces_and_filter, 1 << 5);
   const std::uint64_t before = shadows.counters().faces_drawn;
   view = draw::View(glm::rotate(glm::mat4(1.0F), 3.14159265F, {0, 1, 0}), view.clip_from_view());
   update();
   EXPECT_EQ(shadows.counters().faces_drawn, before + 1) << "the face that came into view, and no other again";
-  EXPECT_EQ(shadows.block_data().cubes[0].face_mask, 1 << 5 | 1 << 4);
+  EXPECT_EQ(shadows.block_data().cubes[0].faces_and_filter, 1 << 5 | 1 << 4);
 }
 
 TEST_F(ShadowsTest, FacesThatOnlyPenumbrasLookUpAreDrawn)
@@ -183,7 +183,7 @@ TEST_F(ShadowsTest, FacesThatOnlyPenumbrasLookUpAreDrawn)
     add_lamp(scene::LampKind::Point, "point").radius = radius;
     sync();
     update();
-    EXPECT_EQ((shadows.block_data().cubes[0].face_mask & 1 << 3) != 0, radius == 0.5F) << radius;
+    EXPECT_EQ((shadows.block_data().cubes[0].faces_and_filter & 1 << 3) != 0, radius == 0.5F) << radius;
   }
 }
 
@@ -202,13 +202,13 @@ TEST_F(ShadowsTest, AMovedCasterUpdatesTheLampsInWhoseRangeItWasOrIs)
   EXPECT_EQ(updated(), 1U) << "it stays with its lamp";
   casters[1] = box_at({40, 0, 4}, 1.0F);
   EXPECT_EQ(updated(), 1U) << "it goes to another lamp: that one is drawn; the one it left has no caster any more";
-  EXPECT_EQ(shadows.block_data().cubes[1].face_mask, 0) << "and no shadow";
+  EXPECT_EQ(shadows.block_data().cubes[1].faces_and_filter, 0) << "and no shadow";
   casters.push_back(box_at({60, 3, 0}, 0.5F));
   EXPECT_EQ(updated(), 1U) << "one more";
   casters.pop_back();
-  EXPECT_NE(shadows.block_data().cubes[3].face_mask & 1 << 2, 0);
+  EXPECT_NE(shadows.block_data().cubes[3].faces_and_filter & 1 << 2, 0);
   EXPECT_EQ(updated(), 0U) << "one less: the face that it leaves is empty, and the others stay";
-  EXPECT_EQ(shadows.block_data().cubes[3].face_mask, 1 << 5);
+  EXPECT_EQ(shadows.block_data().cubes[3].faces_and_filter, 1 << 5);
   casters.push_back(box_at({200, 0, 0}, 1.0F));
   EXPECT_EQ(updated(), 0U) << "out of everyone's range";
 }

@@ -85,8 +85,8 @@ TEST_F(ViewportsTest, ShadowsThatFollowNoViewAreDrawnAndKeptOnce)
   EXPECT_EQ(shared_bytes(), with_one);
   EXPECT_EQ(layers_drawn(second), 0U);
   EXPECT_EQ(layers_drawn(first), drawn);
-  EXPECT_EQ(Inspection(*engine, first).shadows().block_data().cubes[0].face_mask,
-            Inspection(*engine, second).shadows().block_data().cubes[0].face_mask);
+  EXPECT_EQ(Inspection(*engine, first).shadows().block_data().cubes[0].faces_and_filter,
+            Inspection(*engine, second).shadows().block_data().cubes[0].faces_and_filter);
 }
 
 TEST_F(ViewportsTest, AnEditIsDrawnByTheFirstViewportThatNeedsIt)

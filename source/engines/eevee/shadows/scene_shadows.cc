@@ -70,8 +70,8 @@ static void take_over(ShadowSlot &slot, std::vector<ShadowSlot> &before)
   slot.center_near = old.center_near;
   slot.size_px = old.size_px;
   slot.views = std::move(old.views);
-  slot.crops = std::move(old.crops);
-  slot.crops_revision = old.crops_revision;
+  slot.crop = old.crop;
+  slot.crop_revision = old.crop_revision;
   slot.looked_up = old.looked_up;
   slot.fits = std::move(old.fits);
   slot.drawn = old.drawn;

@@ -8,15 +8,21 @@
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace gnomon::eevee {
 
 std::vector<VisibleBox> visible_boxes(std::span<const VisibleCluster> clusters)
 {
-  std::vector<VisibleBox> boxes;
-  boxes.reserve(clusters.size());
+  struct Group {
+    glm::dvec3 min{std::numeric_limits<double>::infinity()};
+    glm::dvec3 max{-std::numeric_limits<double>::infinity()};
+    glm::dvec3 margin{0.0};
+  };
+  std::map<std::array<int, 3>, Group> groups;
   for (const VisibleCluster &cluster : clusters) {
     glm::dvec3 min = cluster.corners_ws[0];
     glm::dvec3 max = min;
@@ -24,7 +30,15 @@ std::vector<VisibleBox> visible_boxes(std::span<const VisibleCluster> clusters)
       min = glm::min(min, corner);
       max = glm::max(max, corner);
     }
-    boxes.push_back({0.5 * (min + max), 0.75 * (max - min)});
+    Group &group = groups[{cluster.square.x / 4, cluster.square.y / 4, cluster.range}];
+    group.min = glm::min(group.min, min);
+    group.max = glm::max(group.max, max);
+    group.margin = glm::max(group.margin, 0.25 * (max - min));
+  }
+  std::vector<VisibleBox> boxes;
+  boxes.reserve(groups.size());
+  for (const auto &[key, group] : groups) {
+    boxes.push_back({0.5 * (group.min + group.max), 0.5 * (group.max - group.min) + group.margin});
   }
   return boxes;
 }
@@ -53,16 +67,20 @@ struct Range {
   }
 };
 
-/** Extends a range of lookups by the filter's border, and rounds it outwards to steps of 1 / 255. */
-glm::ivec2 with_border(const Range &ndc, int size_px)
+/** The steps of 1 / 255 of the map that contain a range of lookups, -1 to 1, and the filter's border. */
+glm::ivec2 steps_with_border(const Range &ndc, int size_px)
 {
-  // The border is in texels of the cropped map. Half a texel more contains rounding.
-  const double border = std::min((CUBE_BORDER_TEXELS + 0.5) / size_px, 0.25);
-  const double wider = (ndc.max - ndc.min) * border / (1.0 - 2.0 * border);
-  const double low = (ndc.min - wider + 1.0) * 127.5;
-  const double high = (ndc.max + wider + 1.0) * 127.5;
-  const int first = std::clamp(int(std::floor(low)), 0, 254);
-  return {first, std::clamp(int(std::ceil(high)), first + 1, 255)};
+  const double low = (ndc.min + 1.0) * 127.5;
+  const double high = (ndc.max + 1.0) * 127.5;
+  glm::ivec2 steps(std::clamp(int(std::floor(low)), 0, 254), std::clamp(int(std::ceil(high)), 1, 255));
+  // The border is in texels of the cropped map. A tenth of a texel more contains rounding.
+  const double border = std::min((CUBE_BORDER_TEXELS + 0.1) / size_px, 0.25);
+  const auto border_steps = [&] { return border * (steps.y - steps.x); };
+  while ((steps.x > 0 && low - steps.x < border_steps()) || (steps.y < 255 && steps.y - high < border_steps())) {
+    steps.x -= steps.x > 0 && low - steps.x < border_steps() ? 1 : 0;
+    steps.y += steps.y < 255 && steps.y - high < border_steps() ? 1 : 0;
+  }
+  return steps;
 }
 
 }  // namespace
@@ -81,9 +99,13 @@ std::optional<MapCrop> map_crop(const draw::View &view, double inner, int size_p
     const glm::dvec3 half = sizes * box.half_ws;
     const Range x{center.x - half.x, center.x + half.x};
     const Range y{center.y - half.y, center.y + half.y};
-    // The view is along -Z. A lookup at x and y is at least this far from the lamp's plane.
+    // The view is along -Z.
+    if (center.z >= half.z) {
+      continue;
+    }
+    // A lookup at x and y is at least this far from the lamp's plane.
     const Range z{std::max({-center.z - half.z, x.least() / slope_max.x, y.least() / slope_max.y}), -center.z + half.z};
-    if (!(z.max > 0.0 && z.min <= z.max)) {
+    if (z.min > z.max) {
       continue;
     }
     const bool surrounds_lamp = z.min <= 1e-6 * z.max;
@@ -93,16 +115,22 @@ std::optional<MapCrop> map_crop(const draw::View &view, double inner, int size_p
     up.extend(surrounds_lamp ? whole_y : y.over(z));
   }
   const auto lookups = [&](const Range &slopes, int axis) {
-    return Range{std::max(slopes.min * ndc_from_slope[axis], -inner), std::min(slopes.max * ndc_from_slope[axis], inner)};
+    return Range{std::max(slopes.min * ndc_from_slope[axis], -inner),
+                 std::min(slopes.max * ndc_from_slope[axis], inner)};
   };
   const Range u = lookups(across, 0);
   const Range v = lookups(up, 1);
   if (!(u.min <= u.max && v.min <= v.max)) {
     return std::nullopt;
   }
-  const glm::ivec2 columns = with_border(u, size_px);
-  const glm::ivec2 rows = with_border(v, size_px);
+  const glm::ivec2 columns = steps_with_border(u, size_px);
+  const glm::ivec2 rows = steps_with_border(v, size_px);
   return MapCrop(columns.x, rows.x, columns.y, rows.y);
+}
+
+MapCrop united(const MapCrop &a, const MapCrop &b)
+{
+  return {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.z, b.z), std::max(a.w, b.w)};
 }
 
 draw::View cropped_view(const draw::View &view, const MapCrop &crop)

@@ -21,8 +21,9 @@ struct VisibleBox {
 };
 
 /**
- * A box for each cluster. It is wider than the cluster by half of the cluster's size on each side, so that it contains
- * most surfaces that another sample sees between the pixels of the cluster.
+ * Boxes around the clusters. Clusters of 4 x 4 neighbouring squares that are in the same range of the distance share a
+ * box. It is wider than its clusters by a quarter of the largest cluster on each side, so that it contains most
+ * surfaces that another sample sees between the pixels.
  */
 [[nodiscard]] std::vector<VisibleBox> visible_boxes(std::span<const VisibleCluster> clusters);
 
@@ -45,6 +46,9 @@ inline constexpr MapCrop whole_map(0, 0, 255, 255);
 
 /** \a view restricted to \a crop. */
 [[nodiscard]] draw::View cropped_view(const draw::View &view, const MapCrop &crop);
+
+/** The smallest part that contains both. */
+[[nodiscard]] MapCrop united(const MapCrop &a, const MapCrop &b);
 
 /** Width and height of \a crop, fractions of the map's. */
 [[nodiscard]] inline glm::vec2 extent_of(const MapCrop &crop)

@@ -138,36 +138,27 @@ class CubeTechnique final : public ShadowTechnique {
     shared::ShadowCubeData &data = block.cubes[slot.place.entry];
     data.near = slot.near;
     data.far = slot.lamp.shadow.clip_end.value_or(shadow_far_none);
-    data.texel_size = 2.0F / (float(size_px) * shared::cube_uv_scale(float(size_px)));
-    float longest = 0.0F;
-    for (int face = 0; face < 6; face++) {
-      const MapCrop &crop = slot.crops[std::size_t(face)];
-      (face < 4 ? data.crops[face] : data.last_crops[face - 4]) = glm::packUnorm4x8(glm::vec4(crop) / 255.0F);
-      const bool is_used = (slot.looked_up >> face & 1U) != 0;
-      longest = is_used ? std::max({longest, extent_of(crop).x, extent_of(crop).y}) : longest;
-    }
-    data.longest_texel = longest * data.texel_size;
+    const glm::vec2 extent = extent_of(slot.crop);
+    data.texel_size = 2.0F * std::max(extent.x, extent.y) / (float(size_px) * shared::cube_uv_scale(float(size_px)));
     data.bias = slot.lamp.shadow.bias.value_or(1.0F);
     data.layer = slot.place.first_layer;
-    data.face_mask = int(slot.drawn | slot.recorded_drawn);
-    data.filter_kind = slot.place.kind == scene::ShadowKind::Pcf ? SHADOW_FILTER_PCF : SHADOW_FILTER_HARD;
+    const int filter = slot.place.kind == scene::ShadowKind::Pcf ? SHADOW_FILTER_PCF : SHADOW_FILTER_HARD;
+    data.faces_and_filter = int(slot.drawn | slot.recorded_drawn) | filter << SHADOW_CUBE_FACE_BITS;
+    data.crop = glm::packUnorm4x8(glm::vec4(slot.crop) / 255.0F);
     data.size_px = size_px;
   }
 
   void record(ShadowSlot &slot, LayerMask missing, const ShadowRecording &recording) const override
   {
-    // Faces without a caster are not cleared, because lookups skip them. \see ShadowCubeData::face_mask
+    // Faces without a caster are not cleared, because lookups skip them. \see ShadowCubeData::faces_and_filter
     record_depths(slot, missing, false, recording);
   }
 
   double texel_size(const ShadowSlot &slot, const ShadowInspection &inspection,
                     const glm::dvec3 &position_ws) const override
   {
-    const glm::dvec3 from_lamp = position_ws - glm::dvec3(slot.lamp.position_ws());
-    const glm::dvec3 size = glm::abs(from_lamp);
-    const glm::vec2 extent = extent_of(slot.crops[std::size_t(shared::cube_face(glm::vec3(from_lamp)))]);
-    return double(inspection.block.cubes[slot.place.entry].texel_size * std::max(extent.x, extent.y)) *
-           std::max({size.x, size.y, size.z});
+    const glm::dvec3 size = glm::abs(position_ws - glm::dvec3(slot.lamp.position_ws()));
+    return double(inspection.block.cubes[slot.place.entry].texel_size) * std::max({size.x, size.y, size.z});
   }
 
   ShadowLayers layers(const ShadowSlot &slot, const ShadowInspection &inspection) const override

@@ -29,7 +29,8 @@ struct CascadeSettings {
   float lambda = 0.8F;
   /**
    * Fit all cascades but the last to the surfaces in the picture instead of slices of the view: the splits, positions,
-   * directions and extents with the least error, \see sun_slices. `lambda` has no effect then. The depths of the
+   * directions and extents with the least error, \see sun_slices. `lambda` has no effect then. Crop the cube faces and
+   * maps of other lamps to the surfaces in the picture, \see map_crop. The depths of the
    * picture are read back after the depth pre-pass whenever the view changes. draw::Viewport::draw waits for them.
    * Recorded packets use the depths of an earlier packet, so that cascades follow the camera some frames later.
    * For pictures of one camera: the edges of the shadows move when the camera moves.

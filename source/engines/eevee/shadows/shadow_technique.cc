@@ -36,7 +36,7 @@ LayerMask touched_layers(const ShadowSlot &slot, const scene::Bounds &bounds_ws,
   if (!std::isinf(range) && distance_to(bounds_ws, position_ws) > range) {
     return 0;
   }
-  if (slot.views.size() == 6 && std::ranges::all_of(slot.crops, [](const MapCrop &crop) { return crop == whole_map; })) {
+  if (slot.views.size() == 6 && slot.crop == whole_map) {
     const float half_size = 1.0F / shared::cube_uv_scale(float(slot.place.given.size_px));
     return cube_face_mask({bounds_ws.min - position_ws, bounds_ws.max - position_ws}, half_size);
   }
@@ -81,8 +81,8 @@ void update_for_casters(ShadowSlot &slot, ShadowCasters &casters)
 void ShadowTechnique::set_lamp_views(ShadowSlot &slot) const
 {
   slot.views = whole_views(slot);
-  slot.crops.assign(slot.views.size(), whole_map);
-  slot.crops_revision = 0;
+  slot.crop = whole_map;
+  slot.crop_revision = 0;
   slot.looked_up = ~0U;
   slot.invalidate(~0U);
 }
@@ -91,24 +91,23 @@ void crop_views(ShadowSlot &slot, const VisibleRange &visible)
 {
   const ShadowTechnique &technique = *slot.place.technique;
   const double inner = technique.inner_share(slot);
-  if (slot.crops_revision == visible.revision || inner == 0.0) {
+  if (slot.crop_revision == visible.revision || inner == 0.0) {
     return;
   }
-  slot.crops_revision = visible.revision;
+  slot.crop_revision = visible.revision;
   slot.looked_up = visible.boxes.empty() ? ~0U : 0U;
-  std::vector<draw::View> whole = technique.whole_views(slot);
-  for (std::size_t i = 0; i < whole.size(); i++) {
-    const std::optional<MapCrop> needed =
-        visible.boxes.empty() ? whole_map : map_crop(whole[i], inner, slot.size_px, visible.boxes);
-    if (!needed) {
-      continue;
+  std::vector<draw::View> views = technique.whole_views(slot);
+  std::optional<MapCrop> needed;
+  for (std::size_t i = 0; i < views.size() && !visible.boxes.empty(); i++) {
+    if (const std::optional<MapCrop> crop = map_crop(views[i], inner, slot.size_px, visible.boxes)) {
+      slot.looked_up |= 1U << i;
+      needed = needed ? united(*needed, *crop) : *crop;
     }
-    slot.looked_up |= 1U << i;
-    if (*needed != slot.crops[i]) {
-      slot.crops[i] = *needed;
-      slot.views[i] = cropped_view(whole[i], *needed);
-      slot.invalidate(1U << i);
-    }
+  }
+  if (const MapCrop crop = needed.value_or(whole_map); crop != slot.crop) {
+    slot.crop = crop;
+    std::ranges::transform(views, slot.views.begin(), [&](const draw::View &view) { return cropped_view(view, crop); });
+    slot.invalidate(~0U);
   }
 }
 

@@ -85,11 +85,11 @@ struct ShadowSlot {
   float center_near = 0.0F;
   /** The view of each layer. */
   std::vector<draw::View> views{};
-  /** Cubes and spots: the part of its map that each view shows. Empty for other techniques. */
-  std::vector<MapCrop> crops{};
-  /** VisibleRange::revision for which `crops` were computed; 0 after a change of the whole maps. */
-  std::uint64_t crops_revision = 0;
-  /** Layers that the surfaces for which `crops` were computed look up. */
+  /** Cubes and spots: the part of its map that each view shows, the same for all faces. */
+  MapCrop crop = whole_map;
+  /** VisibleRange::revision for which `crop` was computed; 0 after a change of the whole maps. */
+  std::uint64_t crop_revision = 0;
+  /** Layers that the surfaces for which `crop` was computed look up. */
   LayerMask looked_up = ~0U;
   /** Suns: the fit of each view. Empty if no caster can shadow a visible surface. */
   std::vector<SunFit> fits{};
@@ -181,8 +181,8 @@ class ShadowTechnique {
     return false;
   }
   /**
-   * For techniques without follows_view: set the views of \a slot from its lamp and its `near`. \post all layers are out
-   * of date
+   * For techniques without follows_view: set the views of \a slot from its lamp and its `near`. \post all layers are
+   * out of date
    */
   void set_lamp_views(ShadowSlot &slot) const;
   /** The whole maps of \a slot. Nothing for techniques with follows_view. */
@@ -242,8 +242,8 @@ inline constexpr float shadow_far_none = std::numeric_limits<float>::max();
                                        const draw::CullingVolume &volume);
 
 /**
- * Restrict the views of \a slot to the lookups of the surfaces in the picture, and invalidate the layers whose view
- * changes. Whole views without VisibleRange::boxes.
+ * Restrict the views of \a slot to the lookups of the surfaces in the picture, and invalidate the layers if the views
+ * change. Whole views without VisibleRange::boxes.
  */
 void crop_views(ShadowSlot &slot, const VisibleRange &visible);
 

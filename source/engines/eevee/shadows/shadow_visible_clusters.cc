@@ -109,6 +109,7 @@ std::vector<VisibleCluster> visible_clusters(const PictureDepths &picture, std::
         const double margin = 0.01 * std::max(std::abs(near), std::abs(far));
         VisibleCluster &cluster = clusters.emplace_back();
         cluster.range = range;
+        cluster.square = first / square_px;
         cluster.distance = 0.5 * (near + far);
         cluster.pixel_count = part.pixel_count;
         for (std::size_t i = 0; i < 8; i++) {

@@ -33,6 +33,8 @@ struct VisibleCluster {
    * surfaces: evenly in their logarithm for perspective views, evenly for orthographic views.
    */
   int range = 0;
+  /** Column and row of the square of pixels, from the lower left. */
+  glm::ivec2 square{0};
   /** Mean distance along the view direction, metres. */
   double distance = 0.0;
   /** Number of pixels that show the surfaces. */

@@ -70,8 +70,8 @@ void Shadows::fit(gpu::Device &device, const draw::View &view, float pixel_size,
   scene::Bounds surfaces_ws = scene_.bounds_ws_;
   surfaces_ws.extend(scene_.casters_.bounds_ws());
   VisibleRange before = std::move(visible_);
-  visible_ = visible_range(view, visible_corners(reads_depths() ? widened(view, pixel_size) : view, surfaces_ws,
-                                                 std::move(before.corners)));
+  visible_ = visible_range(
+      view, visible_corners(reads_depths() ? widened(view, pixel_size) : view, surfaces_ws, std::move(before.corners)));
   visible_.clusters = std::move(before.clusters);
   visible_.boxes = std::move(before.boxes);
   visible_.revision = before.revision;
@@ -157,7 +157,8 @@ void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_si
         return;
       }
       const ShadowTechnique &technique = *slot.place.technique;
-      const LayerMask missing = technique.layers_needed(slot, visible_) & slot.looked_up & slot.all_layers() & ~slot.up_to_date;
+      const LayerMask missing =
+          technique.layers_needed(slot, visible_) & slot.looked_up & slot.all_layers() & ~slot.up_to_date;
       if (missing != 0) {
         technique.record(
             slot, missing,
@@ -185,9 +186,8 @@ bool Shadows::reads_depths() const
 {
   return scene_.settings_.cascades.is_fitted_to_depth &&
          (std::ranges::any_of(slots_, [](const ShadowSlot &slot) { return !slot.lamp.is_sampled; }) ||
-          std::ranges::any_of(scene_.slots_, [](const ShadowSlot &slot) {
-            return slot.place.technique->inner_share(slot) > 0.0;
-          }));
+          std::ranges::any_of(scene_.slots_,
+                              [](const ShadowSlot &slot) { return slot.place.technique->inner_share(slot) > 0.0; }));
 }
 
 void Shadows::submitted()
