@@ -278,8 +278,7 @@ void add_render_options(CLI::App &command, RenderOptions &options)
   command
       .add_option("--shadow-size", options.shadow_size,
                   "Width of cube faces, maps and octahedral layers, pixels (default: 1024, 2048, 512; maps of 1024 "
-                  "with one sample; twice that with at least "
-                  "16 samples)")
+                  "with one sample; twice that with at least 16 samples)")
       ->check(CLI::Range(1, 16384));
   command
       .add_option("--pcf", options.pcf, "Filter kernel of --shadow pcf: 1, 3x3, 5x5, or disk:N for N lookups on a disk")

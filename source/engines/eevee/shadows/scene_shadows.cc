@@ -70,6 +70,7 @@ static void take_over(ShadowSlot &slot, std::vector<ShadowSlot> &before)
   slot.center_near = old.center_near;
   slot.size_px = old.size_px;
   slot.views = std::move(old.views);
+  slot.whole_views = std::move(old.whole_views);
   slot.crop = old.crop;
   slot.crop_revision = old.crop_revision;
   slot.looked_up = old.looked_up;

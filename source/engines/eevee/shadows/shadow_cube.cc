@@ -91,10 +91,10 @@ class CubeTechnique final : public ShadowTechnique {
     return key;
   }
 
-  std::vector<draw::View> whole_views(const ShadowSlot &slot) const override
+  void set_whole_views(ShadowSlot &slot) const override
   {
     const auto views = shadow_cube_views(slot.lamp.position_ws(), slot.near, slot.size_px);
-    return {views.begin(), views.end()};
+    slot.whole_views.assign(views.begin(), views.end());
   }
 
   double inner_share(const ShadowSlot &slot) const override

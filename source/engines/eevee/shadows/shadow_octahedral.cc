@@ -70,9 +70,9 @@ class OctahedralTechnique final : public ShadowTechnique {
     return shadow_cube_technique().texel_key(lamp);
   }
 
-  std::vector<draw::View> whole_views(const ShadowSlot &slot) const override
+  void set_whole_views(ShadowSlot &slot) const override
   {
-    return shadow_cube_technique().whole_views(slot);
+    shadow_cube_technique().set_whole_views(slot);
   }
 
   LayerMask changed_layers(LayerMask touched) const override

@@ -98,9 +98,10 @@ class SpotTechnique final : public ShadowTechnique {
     return {lamp.world_from_lamp, lamp.spot_outer_angle, lamp.shadow_range(), lamp.shadow.clip_start};
   }
 
-  std::vector<draw::View> whole_views(const ShadowSlot &slot) const override
+  void set_whole_views(ShadowSlot &slot) const override
   {
-    return {shadow_spot_view(slot.lamp.world_from_lamp, slot.lamp.spot_outer_angle, slot.near, slot.size_px)};
+    slot.whole_views.assign(
+        1, shadow_spot_view(slot.lamp.world_from_lamp, slot.lamp.spot_outer_angle, slot.near, slot.size_px));
   }
 
   double inner_share(const ShadowSlot &slot) const override

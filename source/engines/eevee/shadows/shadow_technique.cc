@@ -80,7 +80,8 @@ void update_for_casters(ShadowSlot &slot, ShadowCasters &casters)
 
 void ShadowTechnique::set_lamp_views(ShadowSlot &slot) const
 {
-  slot.views = whole_views(slot);
+  set_whole_views(slot);
+  slot.views = slot.whole_views;
   slot.crop = whole_map;
   slot.crop_revision = 0;
   slot.looked_up = ~0U;
@@ -89,24 +90,23 @@ void ShadowTechnique::set_lamp_views(ShadowSlot &slot) const
 
 void crop_views(ShadowSlot &slot, const VisibleRange &visible)
 {
-  const ShadowTechnique &technique = *slot.place.technique;
-  const double inner = technique.inner_share(slot);
+  const double inner = slot.place.technique->inner_share(slot);
   if (slot.crop_revision == visible.revision || inner == 0.0) {
     return;
   }
   slot.crop_revision = visible.revision;
   slot.looked_up = visible.boxes.empty() ? ~0U : 0U;
-  std::vector<draw::View> views = technique.whole_views(slot);
+  const std::vector<draw::View> &whole = slot.whole_views;
   std::optional<MapCrop> needed;
-  for (std::size_t i = 0; i < views.size() && !visible.boxes.empty(); i++) {
-    if (const std::optional<MapCrop> crop = map_crop(views[i], inner, slot.size_px, visible.boxes)) {
+  for (std::size_t i = 0; i < whole.size() && !visible.boxes.empty(); i++) {
+    if (const std::optional<MapCrop> crop = map_crop(whole[i], inner, slot.size_px, visible.boxes)) {
       slot.looked_up |= 1U << i;
       needed = needed ? united(*needed, *crop) : *crop;
     }
   }
   if (const MapCrop crop = needed.value_or(whole_map); crop != slot.crop) {
     slot.crop = crop;
-    std::ranges::transform(views, slot.views.begin(), [&](const draw::View &view) { return cropped_view(view, crop); });
+    std::ranges::transform(whole, slot.views.begin(), [&](const draw::View &view) { return cropped_view(view, crop); });
     slot.invalidate(~0U);
   }
 }

@@ -85,6 +85,8 @@ struct ShadowSlot {
   float center_near = 0.0F;
   /** The view of each layer. */
   std::vector<draw::View> views{};
+  /** Cubes and spots: the view of each layer if it held its whole map. */
+  std::vector<draw::View> whole_views{};
   /** Cubes and spots: the part of its map that each view shows, the same for all faces. */
   MapCrop crop = whole_map;
   /** VisibleRange::revision for which `crop` was computed; 0 after a change of the whole maps. */
@@ -185,11 +187,8 @@ class ShadowTechnique {
    * out of date
    */
   void set_lamp_views(ShadowSlot &slot) const;
-  /** The whole maps of \a slot. Nothing for techniques with follows_view. */
-  [[nodiscard]] virtual std::vector<draw::View> whole_views(const ShadowSlot & /*slot*/) const
-  {
-    return {};
-  }
+  /** For techniques without follows_view: set ShadowSlot::whole_views from its lamp and its `near`. */
+  virtual void set_whole_views(ShadowSlot & /*slot*/) const {}
   /** Fraction of the width of a whole map that lookups reach; 0 if the views are always whole. \see map_crop */
   [[nodiscard]] virtual double inner_share(const ShadowSlot & /*slot*/) const
   {
