@@ -125,6 +125,8 @@ class App {
   bool show_tab(const std::string &name);
 
   void message(std::string text, bool is_error);
+  /** A message about what could not be done. After gpu::DeviceLost, the context is made anew before the next frame. */
+  void report(const std::exception &error);
   [[nodiscard]] const std::vector<Message> &messages() const
   {
     return messages_;
@@ -142,7 +144,12 @@ class App {
     std::string path;
     std::function<void(const std::string &)> answer;
   };
+  void make_device();
+  /** Replace the lost context, the device on it and all that is on the device. */
+  void make_context_anew();
   void take_events();
+  /** What is done before each frame, outside of the user interface. */
+  void update_document();
   void step_fly();
   void update_shaders();
   void ask(std::string title, std::string path, std::function<void(const std::string &)> answer);
@@ -175,6 +182,8 @@ class App {
   bool is_complete_ = true;
   /** The user interface takes some frames to settle after an event. */
   int frames_to_draw_ = 3;
+  /** A call has thrown gpu::DeviceLost. */
+  bool is_device_lost_ = false;
   bool is_quit_ = false;
   bool is_staying_ = false;
   std::vector<Message> messages_;
