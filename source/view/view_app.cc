@@ -72,28 +72,54 @@ void App::report(const std::exception &error)
 
 bool App::open(const std::filesystem::path &path)
 {
+  begin_open(path);
+  return finish_open();
+}
+
+void App::begin_open(const std::filesystem::path &path)
+{
+  opening_ = std::make_unique<gltf::BackgroundImport>(path, gltf::ImportOptions{.read_picture = read_picture_});
+}
+
+void App::cancel_open()
+{
+  if (opening_) {
+    opening_->cancel();
+  }
+}
+
+bool App::finish_open()
+{
+  const std::unique_ptr<gltf::BackgroundImport> opened = std::move(opening_);
   try {
-    scene::Scene scene = Document::read(path, read_picture_);
-    const Settings settings = document_ ? document_->settings() : default_settings();
-    end_fly(true);
-    for (const std::unique_ptr<Viewport> &viewport : viewports_) {
-      viewport->close();
-    }
-    document_.reset();
-    document_ = std::make_unique<Document>(*device_, std::move(scene), settings);
-    for (std::size_t i = 0; i < viewports_.size(); i++) {
-      viewports_[i]->look_at(*document_);
-    }
-    const std::size_t count = document_->scene().warnings.size();
-    message(count == 0 ? fmt::format("{} is open", path.string())
-                       : fmt::format("{} is open, with {} warnings", path.string(), count),
-            false);
+    show_document(Document::completed(opened->take()));
     return true;
+  }
+  catch (const gltf::ImportCancelled &cancelled) {
+    message(cancelled.what(), false);
   }
   catch (const std::exception &error) {
     report(error);
-    return false;
   }
+  return false;
+}
+
+void App::show_document(scene::Scene scene)
+{
+  const Settings settings = document_ ? document_->settings() : default_settings();
+  end_fly(true);
+  for (const std::unique_ptr<Viewport> &viewport : viewports_) {
+    viewport->close();
+  }
+  document_.reset();
+  document_ = std::make_unique<Document>(*device_, std::move(scene), settings);
+  for (const std::unique_ptr<Viewport> &viewport : viewports_) {
+    viewport->look_at(*document_);
+  }
+  const std::string &path = document_->scene().path;
+  const std::size_t count = document_->scene().warnings.size();
+  message(count == 0 ? fmt::format("{} is open", path) : fmt::format("{} is open, with {} warnings", path, count),
+          false);
 }
 
 bool App::save(const std::filesystem::path &path)
@@ -220,7 +246,7 @@ std::string App::default_path(const char *suffix) const
 
 void App::ask_open()
 {
-  ask("Open", default_path(".glb"), [this](const std::string &path) { open(path); });
+  ask("Open", default_path(".glb"), [this](const std::string &path) { begin_open(path); });
 }
 
 void App::ask_save()
@@ -241,7 +267,7 @@ void App::take_events()
     }
   }
   for (const std::filesystem::path &path : window_.take_dropped()) {
-    open(path);
+    begin_open(path);
   }
   for (const std::string &text : window_.take_driver_messages()) {
     driver_error_count_++;
@@ -272,11 +298,15 @@ void App::update_document()
 void App::draw_frame(bool may_wait)
 {
   const bool waits = may_wait && is_complete_ && frames_to_draw_ == 0;
+  constexpr double progress_seconds = 0.05;
   constexpr double shader_seconds = 0.5;
   const bool has_functions = document_ && !document_->scene().surface_functions().empty();
-  window_.begin_frame(waits, shader_watch_ || has_functions ? shader_seconds : 0.0);
+  window_.begin_frame(waits, is_opening() ? progress_seconds : shader_watch_ || has_functions ? shader_seconds : 0.0);
   frames_to_draw_ = waits ? settling_frames : std::max(0, frames_to_draw_ - 1);
   take_events();
+  if (opening_ && opening_->is_done()) {
+    finish_open();
+  }
   is_complete_ = true;
   try {
     update_document();

@@ -8,6 +8,8 @@
 #include "view_viewport.hh"
 #include "view_window.hh"
 
+#include "gltf_background_import.hh"
+
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,15 +38,23 @@ class App {
   {
     return is_quit_ || window_.is_closed();
   }
-  /** Whether all viewports have all their samples. */
+  /** Whether all viewports have all their samples, and nothing is being opened. */
   [[nodiscard]] bool is_complete() const
   {
-    return is_complete_;
+    return is_complete_ && !is_opening();
   }
 
   /** Open a file. A file that cannot be read is an error message, and what was open stays. \return whether it is open
    */
   bool open(const std::filesystem::path &path);
+  /** The same in the background, while the window shows how far it is. An earlier one that is not done is cancelled. */
+  void begin_open(const std::filesystem::path &path);
+  [[nodiscard]] bool is_opening() const
+  {
+    return opening_ != nullptr;
+  }
+  /** What is opened in the background is not to be opened. */
+  void cancel_open();
   /** \return whether it was written; otherwise there is an error message */
   bool save(const std::filesystem::path &path);
   /** The active viewport's picture: EXR is scene-linear, PNG the window's pixels of it. \throws std::runtime_error */
@@ -144,6 +154,9 @@ class App {
     std::string path;
     std::function<void(const std::string &)> answer;
   };
+  /** Wait for what is opened in the background, and show it. \return whether it is open */
+  bool finish_open();
+  void show_document(scene::Scene scene);
   void make_device();
   /** Replace the lost context, the device on it and all that is on the device. */
   void make_context_anew();
@@ -176,6 +189,8 @@ class App {
   Window window_;
   std::unique_ptr<gpu::Device> device_;
   std::unique_ptr<Document> document_;
+  /** nullptr: nothing is being opened. */
+  std::unique_ptr<gltf::BackgroundImport> opening_;
   /** After the document, which they show. */
   std::vector<std::unique_ptr<Viewport>> viewports_;
   std::size_t active_ = 0;

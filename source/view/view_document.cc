@@ -55,9 +55,8 @@ void Document::use_device(gpu::Device &device)
   engine_names_ = registry_.names();
 }
 
-scene::Scene Document::read(const std::filesystem::path &path, const gltf::ReadPicture &read_picture)
+scene::Scene Document::completed(scene::Scene scene)
 {
-  scene::Scene scene = gltf::import_gltf(path, {.read_picture = read_picture});
   if (scene.is_lamp_default && !scene.world()) {
     scene.set_world(scene::studio_world(scene.placed_cameras().front().world_from_camera));
     scene.remove(scene.placed_lamps().front().node);

@@ -8,7 +8,6 @@
 
 #include "draw_engine.hh"
 #include "eevee_inspection.hh"
-#include "gltf_import.hh"
 #include "render_scene.hh"
 
 #include <filesystem>
@@ -32,8 +31,8 @@ class Document {
   /** Show the scene on another device. \pre leave_device */
   void use_device(gpu::Device &device);
 
-  /** A scene from a file; one that has neither lamps nor a world is lit by a studio. \throws gltf::ImportError */
-  [[nodiscard]] static scene::Scene read(const std::filesystem::path &path, const gltf::ReadPicture &read_picture);
+  /** A scene that was imported; one that has neither lamps nor a world is lit by a studio. */
+  [[nodiscard]] static scene::Scene completed(scene::Scene scene);
   /** \throws gltf::ExportError */
   void save(const std::filesystem::path &path);
 

@@ -194,6 +194,16 @@ bool App::show_tab(const std::string &name)
 
 void App::show_status()
 {
+  if (opening_) {
+    ImGui::ProgressBar(opening_->progress(), {200.0F, ImGui::GetTextLineHeight()});
+    ImGui::SameLine();
+    if (ImGui::SmallButton("Cancel")) {
+      opening_->cancel();
+    }
+    ImGui::SameLine();
+    ImGui::Text("Opening %s", opening_->path().c_str());
+    return;
+  }
   if (messages_.empty()) {
     ImGui::TextDisabled("Middle button: turn.  Shift: move.  Wheel: zoom.  Left: select.");
     return;
