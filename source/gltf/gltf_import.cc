@@ -10,6 +10,7 @@
 #include "internal/gltf_lamp.hh"
 #include "internal/gltf_mesh.hh"
 #include "internal/gltf_node.hh"
+#include "internal/gltf_progress.hh"
 #include "internal/gltf_report.hh"
 #include "internal/gltf_units.hh"
 #include "internal/gltf_world.hh"
@@ -112,10 +113,23 @@ bool is_usable(const Bounds &bounds)
   return reach.x <= coordinate_max && reach.y <= coordinate_max && reach.z <= coordinate_max;
 }
 
+std::size_t primitive_count(const Model &model)
+{
+  std::size_t count = 0;
+  for (const Model::Mesh &mesh : model.meshes) {
+    count += mesh.primitives.size();
+  }
+  return count;
+}
+
 class Importer {
  public:
-  Importer(const File &file, const ImportOptions &options, Warnings warnings)
-      : file_(file), options_(options), warnings_(std::move(warnings)), meshes_(file, warnings_, scene_)
+  Importer(const File &file, const ImportOptions &options, Progress &progress, Warnings warnings)
+      : file_(file),
+        options_(options),
+        progress_(progress),
+        warnings_(std::move(warnings)),
+        meshes_(file, progress, warnings_, scene_)
   {
   }
 
@@ -123,13 +137,16 @@ class Importer {
   {
     warn_about_file();
     const std::vector<int> roots = scene_roots();
+    progress_.begin_phase(file_.model.nodes.size() + primitive_count(file_.model), 0.7F);
     visit_nodes(roots);
     things_.materials = meshes_.materials();
     import_skins(file_, things_.nodes, warnings_, scene_);
     import_animations(file_, things_, warnings_, scene_);
     scene::deform_meshes(scene_);
+    progress_.begin_phase(meshes_.image_count(), 0.95F);
     meshes_.finish(options_.texture_size_max);
     check_anything_kept();
+    progress_.begin_phase(1, 1.0F);
     import_world(file_, visible_nodes(), options_.read_picture, warnings_, scene_);
     add_defaults();
     scene_.warnings = warnings_.messages();
@@ -139,6 +156,7 @@ class Importer {
  private:
   const File &file_;
   const ImportOptions &options_;
+  Progress &progress_;
   Warnings warnings_;
   Scene scene_;
   MeshImporter meshes_;
@@ -241,6 +259,7 @@ class Importer {
     while (!stack.empty()) {
       const Visit visit = stack.back();
       stack.pop_back();
+      progress_.step();
       const Model::Node &node = file_.model.nodes[visit.node];
       const glm::dmat4 parent_from_node = matrix_of(
           node, [&] { return node_label(visit.node); }, warnings_);
@@ -439,14 +458,18 @@ Scene import_gltf(const std::filesystem::path &path, const ImportOptions &option
   };
   const trace::Span span("import", path.filename().string());
   try {
+    Progress progress(options.progress);
+    progress.begin_phase(1, 0.2F);
     File file = load_file(path);
     if (!options.variant.empty()) {
       select_variant(file.model, options.variant);
     }
     Warnings warnings;
-    decompress(file, warnings);
-    Scene scene = Importer(file, options, std::move(warnings)).import();
+    progress.begin_phase(file.model.buffer_views.size() + primitive_count(file.model), 0.4F);
+    decompress(file, progress, warnings);
+    Scene scene = Importer(file, options, progress, std::move(warnings)).import();
     scene.path = path.string();
+    progress.finish();
     return scene;
   }
   catch (const Fault &fault) {
@@ -454,6 +477,9 @@ Scene import_gltf(const std::filesystem::path &path, const ImportOptions &option
   }
   catch (const UnknownVariant &unknown) {
     throw UnknownVariant(path.string() + ": " + unknown.what());
+  }
+  catch (const Cancelled &) {
+    throw ImportCancelled(path.string() + ": the import was cancelled");
   }
   catch (const std::bad_alloc &) {
     throw failed("there is not enough memory for it");

@@ -21,6 +21,17 @@ struct UnknownVariant : ImportError {
   using ImportError::ImportError;
 };
 
+/** Thrown if ImportOptions::progress has ended an import. The message names the file. */
+struct ImportCancelled : ImportError {
+  using ImportError::ImportError;
+};
+
+/**
+ * Takes the part of an import that is done, in [0, 1], which never decreases; the last call has 1. Returns false to end
+ * the import.
+ */
+using ReportProgress = std::function<bool(float part)>;
+
 /**
  * Reads the equirectangular picture of a world from a file, which is regular and at most 4 GiB large. Throws an
  * exception whose message names the reason.
@@ -34,6 +45,11 @@ struct ImportOptions {
   std::uint32_t texture_size_max = 0;
   /** For worlds whose picture is a file. Without it, they are left out, with a warning. */
   ReadPicture read_picture{};
+  /**
+   * Called on the thread of import_gltf, at most some hundred times: after the file is read, and between meshes, nodes
+   * and images, each of which is read without a call. May be empty.
+   */
+  ReportProgress progress{};
 };
 
 /**
@@ -44,7 +60,7 @@ struct ImportOptions {
  * Scene::warnings. A camera is added if the file has none, and a lamp if it has neither a lamp nor a world.
  *
  * \throws ImportError if the file is missing, unreadable or malformed, or if nothing in it can be drawn.
- * \throws UnknownVariant
+ * \throws UnknownVariant, ImportCancelled
  */
 [[nodiscard]] scene::Scene import_gltf(const std::filesystem::path &path, const ImportOptions &options = {});
 

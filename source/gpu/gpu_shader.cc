@@ -136,11 +136,9 @@ class Preprocessor {
     if (known == source_.files.end()) {
       source_.files.push_back(path);
     }
-    std::istringstream stream{std::string(*text)};
-    std::vector<std::string> lines;
-    for (std::string line; std::getline(stream, line);) {
-      lines.push_back(line.ends_with('\r') ? line.substr(0, line.size() - 1) : line);
-    }
+    // A copy, because files_ may be asked for other files while the lines are read.
+    const std::string copy(*text);
+    const std::vector<std::string_view> lines = lines_of(copy);
     const std::size_t outer_branches = branches_.size();
     const std::size_t guard = include_guard(lines);
     if (!includer.empty()) {
@@ -159,7 +157,20 @@ class Preprocessor {
     branches_.resize(outer_branches);
   }
 
-  void append_line(const std::string &line, const std::string &path, int number, std::size_t file)
+  /** The lines of \a text without their ends. */
+  static std::vector<std::string_view> lines_of(std::string_view text)
+  {
+    std::vector<std::string_view> lines;
+    while (!text.empty()) {
+      const std::size_t end = std::min(text.find('\n'), text.size());
+      const std::string_view line = text.substr(0, end);
+      lines.push_back(line.ends_with('\r') ? line.substr(0, end - 1) : line);
+      text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return lines;
+  }
+
+  void append_line(std::string_view line, const std::string &path, int number, std::size_t file)
   {
     const std::string_view name = directive_of(line);
     const std::string_view named = name == "include" ? included_name(line) : std::string_view();
@@ -169,14 +180,14 @@ class Preprocessor {
     }
     else if (name == "version") {
       has_version_ = true;
-      source_.text += line + "\n";
+      (source_.text += line) += '\n';
       for (const std::string &define : desc_.defines) {
         source_.text += "#define " + define + "\n";
       }
       append_position(number + 1, file);
     }
     else {
-      source_.text += (name == "pragma" && argument_of(line) == "once" ? "" : line) + "\n";
+      (source_.text += name == "pragma" && argument_of(line) == "once" ? std::string_view() : line) += '\n';
     }
   }
 
@@ -249,7 +260,7 @@ class Preprocessor {
   }
 
   /** Index of the line `#ifndef X` of an include guard, which `#define X` follows; lines.size() if there is none. */
-  static std::size_t include_guard(const std::vector<std::string> &lines)
+  static std::size_t include_guard(const std::vector<std::string_view> &lines)
   {
     const auto next = [&](std::size_t i) {
       while (i < lines.size() && directive_of(lines[i]).empty()) {
@@ -270,9 +281,12 @@ class Preprocessor {
    * Update the stack of open branches. \return true if \a line ends a branch that contains an include: if the compiler
    * skips that branch, it also skips the `#line` directives in it, so the position must be set again
    */
-  bool follow_branch(const std::string &line, bool is_include_guard)
+  bool follow_branch(std::string_view line, bool is_include_guard)
   {
     const std::string_view name = directive_of(line);
+    if (name.empty()) {
+      return false;
+    }
     if (name == "if" || name == "ifdef" || name == "ifndef") {
       branches_.push_back({++branch_count_, is_include_guard});
     }

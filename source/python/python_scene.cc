@@ -287,11 +287,34 @@ void set_world(const ScenePtr &scene, const glm::vec3 &color, float strength, fl
   scene->edited().set_world(std::move(world));
 }
 
-ScenePtr load(const std::filesystem::path &path, const std::string &variant)
+/** \a progress: called with the part that is done; what it raises, and signals, end the import. */
+ScenePtr load(const std::filesystem::path &path, const std::string &variant, const py::object &progress)
 {
   const auto scene = std::make_shared<SharedScene>();
-  const py::gil_scoped_release unlocked;
-  scene->scene = gltf::import_gltf(path, {.variant = variant});
+  // The importer would take it for an error of the file.
+  std::exception_ptr raised;
+  const auto report = [&](float part) {
+    const py::gil_scoped_acquire locked;
+    try {
+      if (PyErr_CheckSignals() != 0) {
+        throw py::error_already_set();
+      }
+      if (!progress.is_none()) {
+        progress(part);
+      }
+    }
+    catch (...) {
+      raised = std::current_exception();
+    }
+    return !raised;
+  };
+  try {
+    const py::gil_scoped_release unlocked;
+    scene->scene = gltf::import_gltf(path, {.variant = variant, .progress = report});
+  }
+  catch (const gltf::ImportCancelled &) {
+    std::rethrow_exception(raised);
+  }
   return scene;
 }
 
@@ -414,8 +437,10 @@ void define_scene(py::module_ &module)
         return bounds.is_empty() ? std::nullopt : std::optional(std::pair(bounds.min, bounds.max));
       },
       "Lowest and highest corner of the box around all visible meshes, m. None if there are none.");
-  module.def("load", &load, py::arg("path"), py::arg("variant") = "",
-             "Read a glTF 2.0 file. `variant`: name of a variant of its materials. Raises FileError.");
+  module.def(
+      "load", &load, py::arg("path"), py::arg("variant") = "", py::arg("progress") = py::none(),
+      "Read a glTF 2.0 file. `variant`: name of a variant of its materials. `progress`: called on this thread with "
+      "the part that is done, 0 to 1; what it raises ends the import. Raises FileError.");
 }
 
 }  // namespace gnomon::python

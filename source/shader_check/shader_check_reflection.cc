@@ -37,7 +37,10 @@ std::vector<gpu::ShaderInterface::Member> members_of(const glslang::TObjectRefle
       members.push_back({member.name.substr(has_prefix ? prefix.size() : 0), std::uint32_t(member.offset), 0});
     }
   }
-  std::ranges::stable_sort(members, {}, &gpu::ShaderInterface::Member::offset_bytes);
+  // glslang reports most blocks in this order.
+  if (!std::ranges::is_sorted(members, {}, &gpu::ShaderInterface::Member::offset_bytes)) {
+    std::ranges::stable_sort(members, {}, &gpu::ShaderInterface::Member::offset_bytes);
+  }
   for (std::size_t i = 0; i < members.size(); i++) {
     const std::uint32_t end = i + 1 == members.size() ? std::uint32_t(block.size) : members[i + 1].offset_bytes;
     members[i].size_bytes = end - members[i].offset_bytes;

@@ -19,12 +19,15 @@ void run(const Options &options)
   }
   App app(options);
   if (!options.scene.empty()) {
-    app.open(options.scene);
+    app.begin_open(options.scene);
   }
   bool is_screenshot_asked = false;
   bool is_laid_out = false;
+  bool has_begun_script = false;
   while (!app.is_closed()) {
-    if (script) {
+    // The first command may need the scene.
+    if (script && (has_begun_script || !app.is_opening())) {
+      has_begun_script = true;
       script->step(app);
     }
     const bool is_scripted = script && !script->is_done();

@@ -21,9 +21,8 @@ constexpr Side sides[] = {Side::Front, Side::Right, Side::Top, Side::Front};
 App::App(const Options &options)
     : writers_(options.writers), read_picture_(options.read_picture), window_(options.size_px, !options.script.empty())
 {
-  device_ = gpu::create_gl_device({.context = gpu::ContextKind::Host,
-                                   .sink = [this](std::string_view text) { message(std::string(text), false); }});
-  viewports_.push_back(std::make_unique<Viewport>(*device_));
+  make_device();
+  viewports_.push_back(std::make_unique<Viewport>());
   if (!options.shaders.empty()) {
     use_shaders(options.shaders);
   }
@@ -31,36 +30,96 @@ App::App(const Options &options)
 
 App::~App() = default;
 
+void App::make_device()
+{
+  device_ = gpu::create_gl_device({.context = gpu::ContextKind::Host,
+                                   .sink = [this](std::string_view text) { message(std::string(text), false); }});
+}
+
+void App::make_context_anew()
+{
+  end_fly(true);
+  end_transform(true);
+  for (const std::unique_ptr<Viewport> &viewport : viewports_) {
+    viewport->close();
+  }
+  shadow_panel_.close();
+  if (document_) {
+    document_->leave_device();
+  }
+  device_.reset();
+  window_.make_context_anew();
+  make_device();
+  if (document_) {
+    document_->use_device(*device_);
+  }
+  is_device_lost_ = false;
+  is_complete_ = false;
+  message("The OpenGL context was lost, and was made anew", true);
+}
+
 void App::message(std::string text, bool is_error)
 {
   messages_.push_back({std::move(text), is_error});
   frames_to_draw_ = settling_frames;
 }
 
+void App::report(const std::exception &error)
+{
+  is_device_lost_ |= dynamic_cast<const gpu::DeviceLost *>(&error) != nullptr;
+  message(error.what(), true);
+}
+
 bool App::open(const std::filesystem::path &path)
 {
+  begin_open(path);
+  return finish_open();
+}
+
+void App::begin_open(const std::filesystem::path &path)
+{
+  opening_ = std::make_unique<gltf::BackgroundImport>(path, gltf::ImportOptions{.read_picture = read_picture_});
+}
+
+void App::cancel_open()
+{
+  if (opening_) {
+    opening_->cancel();
+  }
+}
+
+bool App::finish_open()
+{
+  const std::unique_ptr<gltf::BackgroundImport> opened = std::move(opening_);
   try {
-    scene::Scene scene = Document::read(path, read_picture_);
-    const Settings settings = document_ ? document_->settings() : default_settings();
-    end_fly(true);
-    for (const std::unique_ptr<Viewport> &viewport : viewports_) {
-      viewport->close();
-    }
-    document_.reset();
-    document_ = std::make_unique<Document>(*device_, std::move(scene), settings);
-    for (std::size_t i = 0; i < viewports_.size(); i++) {
-      viewports_[i]->look_at(*document_);
-    }
-    const std::size_t count = document_->scene().warnings.size();
-    message(count == 0 ? fmt::format("{} is open", path.string())
-                       : fmt::format("{} is open, with {} warnings", path.string(), count),
-            false);
+    show_document(Document::completed(opened->take()));
     return true;
   }
-  catch (const std::exception &error) {
-    message(error.what(), true);
-    return false;
+  catch (const gltf::ImportCancelled &cancelled) {
+    message(cancelled.what(), false);
   }
+  catch (const std::exception &error) {
+    report(error);
+  }
+  return false;
+}
+
+void App::show_document(scene::Scene scene)
+{
+  const Settings settings = document_ ? document_->settings() : default_settings();
+  end_fly(true);
+  for (const std::unique_ptr<Viewport> &viewport : viewports_) {
+    viewport->close();
+  }
+  document_.reset();
+  document_ = std::make_unique<Document>(*device_, std::move(scene), settings);
+  for (const std::unique_ptr<Viewport> &viewport : viewports_) {
+    viewport->look_at(*document_);
+  }
+  const std::string &path = document_->scene().path;
+  const std::size_t count = document_->scene().warnings.size();
+  message(count == 0 ? fmt::format("{} is open", path) : fmt::format("{} is open, with {} warnings", path, count),
+          false);
 }
 
 bool App::save(const std::filesystem::path &path)
@@ -74,7 +133,7 @@ bool App::save(const std::filesystem::path &path)
     return true;
   }
   catch (const std::exception &error) {
-    message(error.what(), true);
+    report(error);
     return false;
   }
 }
@@ -161,7 +220,7 @@ void App::set_viewport_count(int count)
     viewports_.pop_back();
   }
   while (viewports_.size() < std::size_t(count)) {
-    auto viewport = std::make_unique<Viewport>(*device_);
+    auto viewport = std::make_unique<Viewport>();
     viewport->navigation = viewports_.front()->navigation;
     if (document_) {
       viewport->navigation.look_from(sides[viewports_.size() % std::size(sides)]);
@@ -187,7 +246,7 @@ std::string App::default_path(const char *suffix) const
 
 void App::ask_open()
 {
-  ask("Open", default_path(".glb"), [this](const std::string &path) { open(path); });
+  ask("Open", default_path(".glb"), [this](const std::string &path) { begin_open(path); });
 }
 
 void App::ask_save()
@@ -208,7 +267,7 @@ void App::take_events()
     }
   }
   for (const std::filesystem::path &path : window_.take_dropped()) {
-    open(path);
+    begin_open(path);
   }
   for (const std::string &text : window_.take_driver_messages()) {
     driver_error_count_++;
@@ -220,28 +279,47 @@ void App::take_events()
   }
 }
 
+void App::update_document()
+{
+  update_shaders();
+  if (!document_) {
+    return;
+  }
+  for (std::string &text : document_->reload_surface_functions()) {
+    message(std::move(text), false);
+  }
+  render_scene::RenderScene &render_scene = document_->render_scene();
+  const glm::dvec3 eye(active().navigation.camera(0.0).world_from_camera[3]);
+  render_scene.set_origin(render_scene::origin_near(eye, render_scene.origin_ws()));
+  render_scene.update();
+  window_.set_title(fmt::format("{}{} - gnomon", document_->scene().path, document_->is_saved() ? "" : "*"));
+}
+
 void App::draw_frame(bool may_wait)
 {
   const bool waits = may_wait && is_complete_ && frames_to_draw_ == 0;
+  constexpr double progress_seconds = 0.05;
   constexpr double shader_seconds = 0.5;
   const bool has_functions = document_ && !document_->scene().surface_functions().empty();
-  window_.begin_frame(waits, shader_watch_ || has_functions ? shader_seconds : 0.0);
+  window_.begin_frame(waits, is_opening() ? progress_seconds : shader_watch_ || has_functions ? shader_seconds : 0.0);
   frames_to_draw_ = waits ? settling_frames : std::max(0, frames_to_draw_ - 1);
   take_events();
+  if (opening_ && opening_->is_done()) {
+    finish_open();
+  }
   is_complete_ = true;
-  update_shaders();
-  if (document_) {
-    for (std::string &text : document_->reload_surface_functions()) {
-      message(std::move(text), false);
-    }
-    render_scene::RenderScene &render_scene = document_->render_scene();
-    const glm::dvec3 eye(active().navigation.camera(0.0).world_from_camera[3]);
-    render_scene.set_origin(render_scene::origin_near(eye, render_scene.origin_ws()));
-    render_scene.update();
-    window_.set_title(fmt::format("{}{} - gnomon", document_->scene().path, document_->is_saved() ? "" : "*"));
+  try {
+    update_document();
+  }
+  catch (const gpu::DeviceLost &error) {
+    report(error);
   }
   show_window();
   window_.end_frame();
+  if (is_device_lost_ || window_.is_context_lost()) {
+    make_context_anew();
+    return;
+  }
   if (!screenshot_.empty()) {
     const std::filesystem::path path = std::exchange(screenshot_, {});
     writers_.png(path, window_.size_px(), window_.read_pixels());

@@ -8,6 +8,8 @@
 #include "view_viewport.hh"
 #include "view_window.hh"
 
+#include "gltf_background_import.hh"
+
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,15 +38,23 @@ class App {
   {
     return is_quit_ || window_.is_closed();
   }
-  /** Whether all viewports have all their samples. */
+  /** Whether all viewports have all their samples, and nothing is being opened. */
   [[nodiscard]] bool is_complete() const
   {
-    return is_complete_;
+    return is_complete_ && !is_opening();
   }
 
   /** Open a file. A file that cannot be read is an error message, and what was open stays. \return whether it is open
    */
   bool open(const std::filesystem::path &path);
+  /** The same in the background, while the window shows how far it is. An earlier one that is not done is cancelled. */
+  void begin_open(const std::filesystem::path &path);
+  [[nodiscard]] bool is_opening() const
+  {
+    return opening_ != nullptr;
+  }
+  /** What is opened in the background is not to be opened. */
+  void cancel_open();
   /** \return whether it was written; otherwise there is an error message */
   bool save(const std::filesystem::path &path);
   /** The active viewport's picture: EXR is scene-linear, PNG the window's pixels of it. \throws std::runtime_error */
@@ -125,6 +135,8 @@ class App {
   bool show_tab(const std::string &name);
 
   void message(std::string text, bool is_error);
+  /** A message about what could not be done. After gpu::DeviceLost, the context is made anew before the next frame. */
+  void report(const std::exception &error);
   [[nodiscard]] const std::vector<Message> &messages() const
   {
     return messages_;
@@ -142,7 +154,15 @@ class App {
     std::string path;
     std::function<void(const std::string &)> answer;
   };
+  /** Wait for what is opened in the background, and show it. \return whether it is open */
+  bool finish_open();
+  void show_document(scene::Scene scene);
+  void make_device();
+  /** Replace the lost context, the device on it and all that is on the device. */
+  void make_context_anew();
   void take_events();
+  /** What is done before each frame, outside of the user interface. */
+  void update_document();
   void step_fly();
   void update_shaders();
   void ask(std::string title, std::string path, std::function<void(const std::string &)> answer);
@@ -169,12 +189,16 @@ class App {
   Window window_;
   std::unique_ptr<gpu::Device> device_;
   std::unique_ptr<Document> document_;
+  /** nullptr: nothing is being opened. */
+  std::unique_ptr<gltf::BackgroundImport> opening_;
   /** After the document, which they show. */
   std::vector<std::unique_ptr<Viewport>> viewports_;
   std::size_t active_ = 0;
   bool is_complete_ = true;
   /** The user interface takes some frames to settle after an event. */
   int frames_to_draw_ = 3;
+  /** A call has thrown gpu::DeviceLost. */
+  bool is_device_lost_ = false;
   bool is_quit_ = false;
   bool is_staying_ = false;
   std::vector<Message> messages_;

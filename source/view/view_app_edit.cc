@@ -37,7 +37,7 @@ void App::begin_transform(TransformKind kind)
     active().begin_transform(*document_, kind);
   }
   catch (const std::exception &error) {
-    message(error.what(), true);
+    report(error);
   }
 }
 
@@ -50,7 +50,7 @@ void App::change_transform(const std::function<bool(TransformOperation &operatio
     }
   }
   catch (const std::exception &error) {
-    message(error.what(), true);
+    report(error);
   }
 }
 

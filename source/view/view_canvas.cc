@@ -8,8 +8,16 @@ namespace gnomon::view {
 
 Canvas::~Canvas()
 {
+  free();
+}
+
+void Canvas::free()
+{
   glDeleteFramebuffers(1, &framebuffer_);
   glDeleteTextures(1, &texture_);
+  framebuffer_ = 0;
+  texture_ = 0;
+  size_px_ = glm::ivec2(0);
 }
 
 void Canvas::resize(glm::ivec2 size_px)

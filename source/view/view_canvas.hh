@@ -20,6 +20,8 @@ class Canvas {
   Canvas &operator=(const Canvas &) = delete;
   ~Canvas();
 
+  /** Delete the texture; the size is 0 then. */
+  void free();
   /** The content is lost where the size changes. \pre size_px is at least 1x1 */
   void resize(glm::ivec2 size_px);
   void clear(const glm::vec4 &color);

@@ -86,7 +86,15 @@ void open(App &app, Words words)
 
 void drop(App &app, Words words)
 {
-  app.open(words[0]);
+  app.begin_open(words[0]);
+}
+
+void cancel_open(App &app, Words /*words*/)
+{
+  if (!app.is_opening()) {
+    throw std::runtime_error("nothing is being opened");
+  }
+  app.cancel_open();
 }
 
 void save(App &app, Words words)
@@ -310,6 +318,11 @@ void use_shaders(App &app, Words words)
   app.use_shaders(words[0]);
 }
 
+void lose_context(App & /*app*/, Words /*words*/)
+{
+  Window::inject_context_loss();
+}
+
 void add(App &app, Words words)
 {
   document(app);
@@ -374,6 +387,7 @@ constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
 constexpr std::array commands = std::to_array<Command>({
     {"open", "FILE", 1, 1, Need::Frame, open},
     {"drop", "FILE", 1, 1, Need::Frame, drop},
+    {"cancel", "", 0, 0, Need::Nothing, cancel_open},
     {"save", "FILE", 1, 1, Need::Frame, save},
     {"size", "WIDTH HEIGHT", 2, 2, Need::Frame, resize},
     {"viewports", "1|2|4", 1, 1, Need::Frame, set_viewports},
@@ -403,6 +417,7 @@ constexpr std::array commands = std::to_array<Command>({
     {"remove", "", 0, 0, Need::Nothing, remove},
     {"duplicate", "", 0, 0, Need::Nothing, duplicate},
     {"shaders", "FOLDER", 1, 1, Need::Nothing, use_shaders},
+    {"lose_context", "", 0, 0, Need::Frame, lose_context},
     {"tab", "NAME", 1, 1, Need::Frame, show_tab},
     {"message", "TEXT", 1, 1, Need::Nothing, expect_message},
     {"wait", "", 0, 0, Need::Pictures, wait},

@@ -32,16 +32,31 @@ static std::string text_of(const std::string &path)
 }
 
 Document::Document(gpu::Device &device, scene::Scene scene, const Settings &settings)
-    : scene_(std::move(scene)), render_scene_(device, scene_), settings_(settings), saved_revision_(scene_.revision())
+    : scene_(std::move(scene)), settings_(settings), saved_revision_(scene_.revision())
 {
-  registry_.add(eevee::engine_type(render_scene_, settings_.eevee));
-  registry_.add(unlit::engine_type(render_scene_));
+  use_device(device);
+}
+
+void Document::leave_device()
+{
+  engines_.clear();
+  registry_ = {};
+  render_scene_.reset();
+  has_own_shaders_ = false;
+  // Whoever shows something from the device reads it again.
+  settings_revision_++;
+}
+
+void Document::use_device(gpu::Device &device)
+{
+  render_scene_.emplace(device, scene_);
+  registry_.add(eevee::engine_type(*render_scene_, settings_.eevee));
+  registry_.add(unlit::engine_type(*render_scene_));
   engine_names_ = registry_.names();
 }
 
-scene::Scene Document::read(const std::filesystem::path &path, const gltf::ReadPicture &read_picture)
+scene::Scene Document::completed(scene::Scene scene)
 {
-  scene::Scene scene = gltf::import_gltf(path, {.read_picture = read_picture});
   if (scene.is_lamp_default && !scene.world()) {
     scene.set_world(scene::studio_world(scene.placed_cameras().front().world_from_camera));
     scene.remove(scene.placed_lamps().front().node);

@@ -8,7 +8,6 @@
 
 #include "draw_engine.hh"
 #include "eevee_inspection.hh"
-#include "gltf_import.hh"
 #include "render_scene.hh"
 
 #include <filesystem>
@@ -22,11 +21,18 @@ namespace gnomon::view {
 /** An open scene on a device, with the engines that show it, its undo history and what is selected. */
 class Document {
  public:
-  /** \a device must outlive the document, and the document the viewports that show it. */
+  /**
+   * \a device must outlive the document, unless it leaves the device. The document must outlive the viewports that show
+   * it.
+   */
   Document(gpu::Device &device, scene::Scene scene, const Settings &settings);
+  /** Forget all that is on the device, before the device is destroyed. Scene, history and settings stay. */
+  void leave_device();
+  /** Show the scene on another device. \pre leave_device */
+  void use_device(gpu::Device &device);
 
-  /** A scene from a file; one that has neither lamps nor a world is lit by a studio. \throws gltf::ImportError */
-  [[nodiscard]] static scene::Scene read(const std::filesystem::path &path, const gltf::ReadPicture &read_picture);
+  /** A scene that was imported; one that has neither lamps nor a world is lit by a studio. */
+  [[nodiscard]] static scene::Scene completed(scene::Scene scene);
   /** \throws gltf::ExportError */
   void save(const std::filesystem::path &path);
 
@@ -81,7 +87,7 @@ class Document {
 
   [[nodiscard]] render_scene::RenderScene &render_scene()
   {
-    return render_scene_;
+    return *render_scene_;
   }
   [[nodiscard]] const std::vector<std::string> &engine_names() const
   {
@@ -97,7 +103,7 @@ class Document {
    * any does. \return a message for each program that does not compile and stays as it was
    */
   std::vector<std::string> reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files);
-  /** Whether reload_shaders was called. */
+  /** Whether reload_shaders was called on this device. */
   [[nodiscard]] bool has_own_shaders() const
   {
     return has_own_shaders_;
@@ -131,7 +137,8 @@ class Document {
  private:
   scene::Scene scene_;
   History history_;
-  render_scene::RenderScene render_scene_;
+  /** Nothing: the document has left its device. */
+  std::optional<render_scene::RenderScene> render_scene_;
   draw::EngineRegistry registry_;
   std::vector<std::string> engine_names_;
   std::map<std::string, std::unique_ptr<draw::Engine>> engines_;

@@ -40,11 +40,8 @@ void App::try_draw(Viewport &viewport)
     const double budget_seconds = 1e-3 * double(document_->settings().budget_ms) / double(viewports_.size());
     is_complete_ &= viewport.draw(*document_, budget_seconds);
   }
-  catch (const gpu::DeviceLost &) {
-    throw;
-  }
   catch (const gpu::Error &error) {
-    message(error.what(), true);
+    report(error);
   }
 }
 
@@ -106,7 +103,7 @@ void App::show_viewport(std::size_t index, glm::vec2 size)
   catch (const std::exception &error) {
     // What the pointer asked for is not possible.
     document_->end_transform(false);
-    message(error.what(), true);
+    report(error);
   }
   ImGui::EndChild();
   ImGui::PopID();
@@ -177,7 +174,7 @@ void App::show_tabs()
       }
     }
     catch (const gpu::Error &error) {
-      message(error.what(), true);
+      report(error);
     }
     ImGui::EndTabItem();
   }
@@ -197,6 +194,16 @@ bool App::show_tab(const std::string &name)
 
 void App::show_status()
 {
+  if (opening_) {
+    ImGui::ProgressBar(opening_->progress(), {200.0F, ImGui::GetTextLineHeight()});
+    ImGui::SameLine();
+    if (ImGui::SmallButton("Cancel")) {
+      opening_->cancel();
+    }
+    ImGui::SameLine();
+    ImGui::Text("Opening %s", opening_->path().c_str());
+    return;
+  }
   if (messages_.empty()) {
     ImGui::TextDisabled("Middle button: turn.  Shift: move.  Wheel: zoom.  Left: select.");
     return;

@@ -131,7 +131,7 @@ void App::show_menu()
           save_picture(path);
         }
         catch (const std::exception &error) {
-          message(error.what(), true);
+          report(error);
         }
       });
     }

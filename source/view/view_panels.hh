@@ -58,6 +58,8 @@ class ShadowPanel {
  public:
   /** \a device: of the document. \throws gpu::Error */
   void show(Document &document, Viewport &viewport, gpu::Device &device);
+  /** Forget the picture, before its OpenGL context is destroyed. */
+  void close();
 
  private:
   /** \pre the lamp has layers */

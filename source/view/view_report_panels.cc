@@ -141,6 +141,12 @@ void ShadowPanel::show(Document &document, Viewport &viewport, gpu::Device &devi
   ImGui::TextDisabled("Near is dark, far is bright; %.0fx%.0f px", double(size_px.x), double(size_px.y));
 }
 
+void ShadowPanel::close()
+{
+  canvas_.free();
+  shown_ = {};
+}
+
 void ShadowPanel::read(eevee::Engine &engine, Viewport &viewport, std::size_t lamp, gpu::Device &device)
 {
   const gpu::Texture &picture =

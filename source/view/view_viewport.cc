@@ -25,6 +25,7 @@ void Viewport::close()
   has_budget_ = false;
   viewport_.reset();
   overlay_.reset();
+  canvas_.free();
   synced_ = {};
   is_complete_ = false;
   is_transforming_ = false;
@@ -94,7 +95,7 @@ bool Viewport::draw(Document &document, double budget_seconds)
   canvas_.resize(size_px_);
   canvas_.clear(backdrop);
   if (!viewport_) {
-    viewport_ = std::make_unique<draw::Viewport>(device_, size_px_);
+    viewport_ = std::make_unique<draw::Viewport>(render_scene.device(), size_px_);
     overlay_.emplace(render_scene);
   }
   if (viewport_->size_px() != size_px_) {
@@ -151,12 +152,13 @@ void Viewport::draw_overlays(Document &document, const draw::Target &target)
 
 std::vector<float> Viewport::radiance(Document &document)
 {
-  const draw::TargetTexture picture(device_, "saved_picture", gpu::Format::RGBA32F, size_px_);
+  gpu::Device &device = document.render_scene().device();
+  const draw::TargetTexture picture(device, "saved_picture", gpu::Format::RGBA32F, size_px_);
   draw::Target target = picture.target();
   target.encoding = draw::Encoding::SceneLinear;
   draw::Engine *one = &document.engine(engine);
   viewport_->draw(std::span(&one, 1), drawn_view_, target);
-  return gpu::read_as<float>(device_, picture.texture());
+  return gpu::read_as<float>(device, picture.texture());
 }
 
 }  // namespace gnomon::view

@@ -19,9 +19,7 @@ namespace gnomon::view {
 /** A picture of the document's scene in the window: its camera, its engine, and what the pointer does in it. */
 class Viewport {
  public:
-  explicit Viewport(gpu::Device &device) : device_(device) {}
-
-  /** Forget the picture, before the document that it shows is destroyed. */
+  /** Forget the picture, before the document that it shows is destroyed or leaves its device. */
   void close();
   /** Look through the scene's first camera. */
   void look_at(const Document &document);
@@ -124,7 +122,6 @@ class Viewport {
   /** Where a point is in the picture, as pick counts; nothing: not in it. */
   [[nodiscard]] std::optional<glm::vec2> place_of(const glm::dvec3 &position_ws) const;
 
-  gpu::Device &device_;
   Canvas canvas_;
   std::unique_ptr<draw::Viewport> viewport_;
   /** Of viewport_. Created by the first draw with a budget. */

@@ -20,6 +20,9 @@ namespace {
 /** Debian's fonts-dejavu-core. Without it, the user interface has its own bitmap font. */
 constexpr const char *font_path = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 
+/** The driver's function while a loss is injected; nullptr: none is. */
+PFNGLGETGRAPHICSRESETSTATUSPROC reset_status_of_driver = nullptr;
+
 std::string glfw_reason()
 {
   const char *reason = nullptr;
@@ -67,25 +70,55 @@ void set_style(float scale)
 
 }  // namespace
 
-Window::Window(glm::ivec2 size_px, bool is_debug)
+Window::Window(glm::ivec2 size_px, bool is_debug) : is_debug_(is_debug)
 {
   if (!glfwInit()) {
     throw std::runtime_error(fmt::format("view: no window: {}", glfw_reason()));
   }
+  try {
+    open(size_px);
+  }
+  catch (...) {
+    glfwTerminate();
+    throw;
+  }
+  ImGui::CreateContext();
+  ImGuiIO &io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  float scale = 1.0F;
+  glfwGetWindowContentScale(window_, &scale, nullptr);
+  if (std::filesystem::exists(font_path)) {
+    io.Fonts->AddFontFromFileTTF(font_path, 14.0F * scale);
+  }
+  set_style(scale);
+  connect();
+}
+
+Window::~Window()
+{
+  if (window_) {
+    disconnect();
+  }
+  ImGui::DestroyContext();
+  glfwTerminate();
+}
+
+void Window::open(glm::ivec2 size_px)
+{
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-  glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, is_debug ? GLFW_TRUE : GLFW_FALSE);
+  glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, is_debug_ ? GLFW_TRUE : GLFW_FALSE);
+  // Required for glGetGraphicsResetStatus to report a reset of the GPU.
+  glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
   window_ = glfwCreateWindow(size_px.x, size_px.y, "gnomon", nullptr, nullptr);
   if (!window_) {
-    const std::string reason = glfw_reason();
-    glfwTerminate();
-    throw std::runtime_error(fmt::format("view: no window with an OpenGL 4.5 core context: {}", reason));
+    throw std::runtime_error(fmt::format("view: no window with an OpenGL 4.5 core context: {}", glfw_reason()));
   }
   glfwMakeContextCurrent(window_);
   // A script need not wait for a screen.
-  glfwSwapInterval(is_debug ? 0 : 1);
-  if (is_debug) {
+  glfwSwapInterval(is_debug_ ? 0 : 1);
+  if (is_debug_) {
     glEnable(GL_DEBUG_OUTPUT);
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
     glDebugMessageCallback(take_debug_message, &driver_messages_);
@@ -100,25 +133,48 @@ Window::Window(glm::ivec2 size_px, bool is_debug)
   glfwSetDropCallback(window_, [](GLFWwindow *window, int count, const char **paths) {
     window_of(window).dropped_.insert(window_of(window).dropped_.end(), paths, paths + count);
   });
-  ImGui::CreateContext();
-  ImGuiIO &io = ImGui::GetIO();
-  io.IniFilename = nullptr;
-  float scale = 1.0F;
-  glfwGetWindowContentScale(window_, &scale, nullptr);
-  if (std::filesystem::exists(font_path)) {
-    io.Fonts->AddFontFromFileTTF(font_path, 14.0F * scale);
-  }
-  set_style(scale);
+}
+
+void Window::connect()
+{
   ImGui_ImplGlfw_InitForOpenGL(window_, true);
   ImGui_ImplOpenGL3_Init();
 }
 
-Window::~Window()
+void Window::disconnect()
 {
   ImGui_ImplOpenGL3_Shutdown();
   ImGui_ImplGlfw_Shutdown();
-  ImGui::DestroyContext();
-  glfwTerminate();
+}
+
+bool Window::is_context_lost() const
+{
+  return glGetGraphicsResetStatus() != GL_NO_ERROR;
+}
+
+void Window::make_context_anew()
+{
+  if (reset_status_of_driver) {
+    epoxy_glGetGraphicsResetStatus = std::exchange(reset_status_of_driver, nullptr);
+  }
+  glm::ivec2 place_px(0);
+  glm::ivec2 size_px(0);
+  glfwGetWindowPos(window_, &place_px.x, &place_px.y);
+  glfwGetWindowSize(window_, &size_px.x, &size_px.y);
+  disconnect();
+  glfwDestroyWindow(std::exchange(window_, nullptr));
+  title_.clear();
+  open(size_px);
+  glfwSetWindowPos(window_, place_px.x, place_px.y);
+  connect();
+}
+
+void Window::inject_context_loss()
+{
+  if (!reset_status_of_driver) {
+    reset_status_of_driver = epoxy_glGetGraphicsResetStatus;
+    epoxy_glGetGraphicsResetStatus = +[]() -> GLenum { return GL_GUILTY_CONTEXT_RESET; };
+  }
 }
 
 void Window::begin_frame(bool waits, double seconds_max)

@@ -44,6 +44,16 @@ class Window {
   /** The back buffer: rows from the bottom, four bytes each. */
   [[nodiscard]] std::vector<std::uint8_t> read_pixels() const;
 
+  /** Whether the driver has lost the context. Nothing that is drawn is shown then. */
+  [[nodiscard]] bool is_context_lost() const;
+  /**
+   * Replace window and context; place, size and the state of the user interface stay. Objects of the old context are
+   * gone. \pre no frame of the user interface has begun \throws std::runtime_error as the constructor
+   */
+  void make_context_anew();
+  /** For scripts: until make_context_anew, the driver seems to report a reset of the GPU. */
+  static void inject_context_loss();
+
   [[nodiscard]] bool is_closed() const;
   [[nodiscard]] glm::ivec2 size_px() const;
   void resize(glm::ivec2 size_px);
@@ -62,6 +72,14 @@ class Window {
   [[nodiscard]] std::vector<std::string> take_driver_messages();
 
  private:
+  /** The window with its context. \throws std::runtime_error */
+  void open(glm::ivec2 size_px);
+  /** Of the user interface to the window. */
+  void connect();
+  void disconnect();
+
+  bool is_debug_;
+  /** nullptr: there is none, as it could not be made anew. */
   GLFWwindow *window_ = nullptr;
   std::string title_;
   std::vector<KeyPress> keys_;

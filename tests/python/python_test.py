@@ -147,6 +147,17 @@ class Scenes(unittest.TestCase):
             scene.save(saved)
             loaded = gnomon.load(saved)
             self.assertEqual([node.name for node in loaded.nodes], ["square", "sun", "eye"])
+            parts = []
+            gnomon.load(saved, progress=parts.append)
+            self.assertEqual((parts[0], parts[-1]), (0.0, 1.0))
+            self.assertEqual(parts, sorted(parts))
+
+            def stop(part):
+                if part > 0.3:
+                    raise KeyboardInterrupt(str(part))
+
+            with self.assertRaises(KeyboardInterrupt):
+                gnomon.load(saved, progress=stop)
             self.assertEqual(loaded.materials[0].base_color, (0.5, 0.25, 0.125))
             with self.assertRaisesRegex(gnomon.FileError, "nowhere"):
                 scene.save(os.path.join(folder, "nowhere", "saved.glb"))

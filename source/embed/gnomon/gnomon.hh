@@ -2,6 +2,7 @@
 #pragma once
 
 #include "eevee_scene_renderer.hh"
+#include "gltf_background_import.hh"
 #include "gltf_import.hh"
 #include "gpu_device.hh"
 #include "overlay.hh"

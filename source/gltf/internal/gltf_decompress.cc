@@ -77,9 +77,10 @@ std::vector<unsigned char> decoded(const File &file, const Model::Meshopt &mesho
 
 }  // namespace
 
-void decompress(File &file, Warnings &warnings)
+void decompress(File &file, Progress &progress, Warnings &warnings)
 {
   for (std::size_t i = 0; i < file.model.buffer_views.size(); i++) {
+    progress.step();
     Model::BufferView &view = file.model.buffer_views[i];
     if (!view.meshopt) {
       continue;
@@ -96,7 +97,7 @@ void decompress(File &file, Warnings &warnings)
       warnings.add_counted("bufferView " + std::to_string(i), 1, fault.what());
     }
   }
-  decompress_draco(file, warnings);
+  decompress_draco(file, progress, warnings);
 }
 
 }  // namespace gnomon::gltf

@@ -140,13 +140,14 @@ Plain plain_of(File &file, const Model::Primitive &primitive)
 
 }  // namespace
 
-void decompress_draco(File &file, Warnings &warnings)
+void decompress_draco(File &file, Progress &progress, Warnings &warnings)
 {
   // Primitives that share compressed data remain one mesh of the scene.
   std::map<std::tuple<int, Attributes, Attributes>, Plain> done;
   for (std::size_t i = 0; i < file.model.meshes.size(); i++) {
     Model::Mesh &mesh = file.model.meshes[i];
     for (Model::Primitive &primitive : mesh.primitives) {
+      progress.step();
       if (!primitive.draco) {
         continue;
       }

@@ -324,9 +324,9 @@ Handle<scene::SurfaceFunction> MaterialImporter::surface_function(const std::str
   return place->second;
 }
 
-void MaterialImporter::finish(std::uint32_t texture_size_max)
+void MaterialImporter::finish(std::uint32_t texture_size_max, Progress &progress)
 {
-  const std::map<Handle<scene::Image>, Fault> damaged = textures_.decode(texture_size_max);
+  const std::map<Handle<scene::Image>, Fault> damaged = textures_.decode(texture_size_max, progress);
   if (damaged.empty()) {
     return;
   }

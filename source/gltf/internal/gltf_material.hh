@@ -2,6 +2,7 @@
 #pragma once
 
 #include "internal/gltf_file.hh"
+#include "internal/gltf_progress.hh"
 #include "internal/gltf_report.hh"
 #include "internal/gltf_slots.hh"
 #include "internal/gltf_texture.hh"
@@ -39,7 +40,12 @@ class MaterialImporter {
   /**
    * Decodes the images. Call it once, at the end. Damaged images are replaced by stand-ins.
    * \a texture_size_max: \see ImportOptions */
-  void finish(std::uint32_t texture_size_max);
+  void finish(std::uint32_t texture_size_max, Progress &progress);
+  /** Images that finish() decodes. */
+  [[nodiscard]] std::size_t image_count() const
+  {
+    return textures_.image_count();
+  }
 
  private:
   /** The surface function at a URI. Without a text, so that its stand-in is drawn, if it cannot be read. */

@@ -46,8 +46,8 @@ const scene::TextureSlot *tangent_slot(const scene::Material &material)
 
 }  // namespace
 
-MeshImporter::MeshImporter(const File &file, Warnings &warnings, Scene &scene)
-    : file_(file), warnings_(warnings), scene_(scene), materials_(file, warnings, scene)
+MeshImporter::MeshImporter(const File &file, Progress &progress, Warnings &warnings, Scene &scene)
+    : file_(file), progress_(progress), warnings_(warnings), scene_(scene), materials_(file, warnings, scene)
 {
 }
 
@@ -119,6 +119,7 @@ Handle<Mesh> MeshImporter::read_primitive(int gltf_mesh, std::size_t primitive_i
   const Model::Mesh &source = file_.model.meshes[gltf_mesh];
   const Model::Primitive &primitive = source.primitives[primitive_index];
   const std::string what = label("mesh", source.name, static_cast<std::size_t>(gltf_mesh));
+  progress_.step();
   Mesh mesh;
   std::optional<scene::DeformedMesh> deformed;
   /** The uvs are not those of a texture. */

@@ -3,6 +3,7 @@
 
 #include "internal/gltf_file.hh"
 #include "internal/gltf_material.hh"
+#include "internal/gltf_progress.hh"
 #include "internal/gltf_report.hh"
 #include "scene.hh"
 
@@ -20,7 +21,7 @@ namespace gnomon::gltf {
 class MeshImporter {
  public:
   /** All references must outlive the importer. */
-  MeshImporter(const File &file, Warnings &warnings, scene::Scene &scene);
+  MeshImporter(const File &file, Progress &progress, Warnings &warnings, scene::Scene &scene);
 
   /** The scene's meshes for the primitives of a mesh of the file, without those that cannot be drawn. */
   [[nodiscard]] const std::vector<scene::Handle<scene::Mesh>> &meshes_of(int gltf_mesh);
@@ -40,7 +41,12 @@ class MeshImporter {
   /** Decodes the images of materials. Call it once, at the end. \a texture_size_max: \see ImportOptions */
   void finish(std::uint32_t texture_size_max)
   {
-    materials_.finish(texture_size_max);
+    materials_.finish(texture_size_max, progress_);
+  }
+  /** Images that finish() decodes. */
+  [[nodiscard]] std::size_t image_count() const
+  {
+    return materials_.image_count();
   }
 
   /** Number of primitives that were read, drawable or not. */
@@ -51,6 +57,7 @@ class MeshImporter {
 
  private:
   const File &file_;
+  Progress &progress_;
   Warnings &warnings_;
   scene::Scene &scene_;
   MaterialImporter materials_;

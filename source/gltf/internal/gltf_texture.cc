@@ -7,8 +7,10 @@
 #include "trace.hh"
 
 #include <algorithm>
+#include <atomic>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace gnomon::gltf {
@@ -207,11 +209,17 @@ static std::set<Handle<Image>> color_images(const Scene &scene)
   return images;
 }
 
-std::map<Handle<Image>, Fault> TextureImporter::decode(std::uint32_t size_max)
+std::map<Handle<Image>, Fault> TextureImporter::decode(std::uint32_t size_max, Progress &progress)
 {
   const std::set<Handle<Image>> colors = color_images(scene_);
   std::vector<std::variant<Image, Fault>> results(pending_.size());
+  const std::thread::id importing_thread = std::this_thread::get_id();
+  std::atomic<std::size_t> done = 0;
   scene::parallel_for(pending_.size(), 0, [&](std::size_t i) {
+    const std::size_t done_now = done++;
+    if (std::this_thread::get_id() == importing_thread) {
+      progress.set_done(done_now);
+    }
     const trace::Span span("decode image", scene_.images()[pending_[i].handle].name);
     try {
       Image image = pending_[i].decoder.read();

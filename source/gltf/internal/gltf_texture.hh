@@ -3,6 +3,7 @@
 
 #include "internal/gltf_file.hh"
 #include "internal/gltf_image.hh"
+#include "internal/gltf_progress.hh"
 #include "internal/gltf_report.hh"
 #include "scene.hh"
 
@@ -43,7 +44,12 @@ class TextureImporter {
    * Decodes all images, on all processors. \a size_max: \see ImportOptions::texture_size_max
    * \return the damaged images, with the reason.
    */
-  [[nodiscard]] std::map<scene::Handle<scene::Image>, Fault> decode(std::uint32_t size_max);
+  [[nodiscard]] std::map<scene::Handle<scene::Image>, Fault> decode(std::uint32_t size_max, Progress &progress);
+  /** Images that decode() decodes. */
+  [[nodiscard]] std::size_t image_count() const
+  {
+    return pending_.size();
+  }
 
  private:
   struct Pending {

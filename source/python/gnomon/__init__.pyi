@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Types of the module. help(gnomon.Lamp) and the like have units and ranges. Properties are also arguments of edit() and add_...().
 from os import PathLike
-from typing import Any, Literal, Sequence
+from typing import Any, Callable, Literal, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -211,7 +211,9 @@ class Renderer:
     def render(self, camera: Node | None = None, seconds_max: float = ...) -> NDArray[np.float32]: ...
     def report(self) -> Report: ...
 
-def load(path: str | PathLike[str], variant: str = "") -> Scene: ...
+def load(
+    path: str | PathLike[str], variant: str = "", progress: Callable[[float], object] | None = None
+) -> Scene: ...
 
 # Where Gnomon is built with its reference.
 class ImageError:

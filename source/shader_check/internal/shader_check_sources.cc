@@ -29,6 +29,10 @@ namespace {
  */
 std::string without_comments(std::string_view line, bool &is_in_comment)
 {
+  // Most lines have no comment.
+  if (!is_in_comment && line.find('/') == std::string_view::npos) {
+    return std::string(line);
+  }
   std::string code;
   for (std::size_t i = 0; i < line.size(); i++) {
     const std::string_view two = line.substr(i, 2);

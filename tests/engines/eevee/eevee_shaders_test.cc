@@ -10,12 +10,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <ranges>
 #include <set>
+#include <vector>
 
 namespace gnomon::eevee {
 namespace {
 
-/** The interface from the generated table. InterfaceTables tests that it equals a fresh reflection. */
+/** The interface from the generated table. InterfaceTablesSlice tests that it equals a fresh reflection. */
 gpu::ShaderInterface interface_of(const ShaderDeclaration &declaration, Feature features)
 {
   return interface_tables()[std::size_t(declaration.id)].interface_of(std::uint32_t(features));
@@ -35,25 +38,6 @@ TEST(InterfaceTables, StandInTheOrderOfTheIds)
   for (std::size_t i = 0; i < shader_declarations().size(); i++) {
     EXPECT_EQ(interface_tables()[i].name, shader_declarations()[i].name);
     EXPECT_EQ(interface_tables()[i].variants.size(), shader_variants(shader_declarations()[i]).size());
-  }
-}
-
-// The build tool reflects other kernels than these.
-TEST(InterfaceTables, EqualAFreshReflectionOfEachVariantWithAnyKernel)
-{
-  for (const ShaderDeclaration &declaration : shader_declarations()) {
-    for (const Feature features : shader_variants(declaration)) {
-      const gpu::ShaderInterface generated = interface_of(declaration, features);
-      std::vector<PcfKernel> kernels = {{.width = 1}};
-      if (has(features, Feature::ShadowPcf)) {
-        kernels.push_back({.width = 0, .taps = 1});
-      }
-      for (const PcfKernel &kernel : kernels) {
-        const gpu::ShaderDesc desc = shader_desc(declaration, features, kernel);
-        EXPECT_EQ(generated, shader_check::reflect(desc.name, gpu::preprocess(desc, shaders::file)))
-            << declaration.name << " " << std::uint32_t(features) << ", kernel " << kernel.width;
-      }
-    }
   }
 }
 
@@ -119,12 +103,21 @@ TEST(ShaderVariants, EveryFrameHasADeclaredProgramForEachMaterial)
   }
 }
 
-// hazards.md: a float array in a std140 block took 16 bytes an element in GLSL and 4 in C.
+// hazards.md: a float array in a std140 block took 16 bytes an element in GLSL and 4 in C. The build refuses variants
+// of a program that disagree about the layout of a block, so that one variant is compiled for each block.
 TEST(SharedBlocks, AreLaidOutAlikeInCppAndGlsl)
 {
-  std::set<std::string> compared;
+  const auto is_block = [](const auto &binding) { return binding.kind != gpu::BindingKind::Texture; };
+  std::set<std::string> compared_anywhere;
   for (const ShaderDeclaration &declaration : shader_declarations()) {
-    for (const Feature features : shader_variants(declaration)) {
+    std::set<std::string> compared;
+    // Variants with many features come last, and read the most blocks.
+    for (const Feature features : shader_variants(declaration) | std::views::reverse) {
+      const std::vector<gpu::ShaderInterface::Binding> bindings = interface_of(declaration, features).bindings;
+      if (std::ranges::all_of(
+              bindings, [&](const auto &binding) { return !is_block(binding) || compared.contains(binding.name); })) {
+        continue;
+      }
       const gpu::ShaderDesc desc = shader_desc(declaration, features);
       for (const auto &comparison : shader_check::compare_blocks(desc, shaders::file, block_layouts())) {
         compared.insert(comparison.block);
@@ -134,12 +127,13 @@ TEST(SharedBlocks, AreLaidOutAlikeInCppAndGlsl)
           EXPECT_EQ(field.cpp_offset_bytes, field.glsl_offset_bytes) << comparison.block << ", " << field.name;
         }
       }
-      for (const auto &binding : interface_of(declaration, features).bindings) {
-        EXPECT_EQ(compared.contains(binding.name), binding.kind != gpu::BindingKind::Texture) << binding.name;
+      for (const auto &binding : bindings) {
+        EXPECT_TRUE(!is_block(binding) || compared.contains(binding.name)) << binding.name;
       }
     }
+    compared_anywhere.insert(compared.begin(), compared.end());
   }
-  EXPECT_EQ(compared.size(), block_layouts().size()) << "a block that no shader reads";
+  EXPECT_EQ(compared_anywhere.size(), block_layouts().size()) << "a block that no shader reads";
 }
 
 TEST(SharedBlocks, FitTheSmallestPromisedUniformBlock)
