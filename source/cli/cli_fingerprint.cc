@@ -188,6 +188,7 @@ std::string scene_fingerprint(const scene::Scene &scene)
     hash.add(mesh.tangents);
     hash.add(mesh.colors);
     hash.add(mesh.indices);
+    hash.add(mesh.topology);
     add(hash, scene, scene.material_of(mesh));
   }
   for (const scene::Object &object : scene.objects()) {

@@ -161,7 +161,8 @@ shared::FullMaterialData full_material_data(const scene::Scene &scene, const sce
     data.opacity = material.alpha;
   }
   else {
-    data.opacity = 1.0F - (material.has_transmission() ? transmitted_part(material) : 0.0F);
+    const bool is_open = material.has_transmission() && material.alpha_mode == scene::AlphaMode::Opaque;
+    data.opacity = 1.0F - (is_open ? transmitted_part(material) : 0.0F);
   }
   if (material.alpha_mode == scene::AlphaMode::Mask && has_surface_function(scene, material)) {
     data.inputs |= INPUT_MASKED;

@@ -38,7 +38,7 @@ Changes changes(const Mesh &a, const Mesh &b)
   const bool same_shape = same_elements(a.positions, b.positions) && same_elements(a.normals, b.normals) &&
                           same_elements(a.uvs, b.uvs) && same_elements(a.second_uvs, b.second_uvs) &&
                           same_elements(a.tangents, b.tangents) && same_elements(a.colors, b.colors) &&
-                          same_elements(a.indices, b.indices);
+                          same_elements(a.indices, b.indices) && a.topology == b.topology;
   return bit_if(a.name != b.name, Name) | bit_if(!same_shape, Shape) | bit_if(a.material != b.material, Material);
 }
 
@@ -158,8 +158,9 @@ void check(const Mesh &mesh)
   check_count("second uvs", mesh.second_uvs.size());
   check_count("tangents", mesh.tangents.size());
   check_count("colours", mesh.colors.size());
-  if (mesh.indices.size() % 3 != 0) {
-    refuse("mesh", mesh.name, "{} indices are not three for each triangle", mesh.indices.size());
+  if (mesh.indices.size() % index_count_of(mesh.topology) != 0) {
+    refuse("mesh", mesh.name, "{} indices are not {}", mesh.indices.size(),
+           mesh.topology == Topology::Triangles ? "three for each triangle" : "two for each line");
   }
   const auto beyond = std::ranges::find_if(mesh.indices, [&](std::uint32_t index) { return index >= count; });
   if (beyond != mesh.indices.end()) {

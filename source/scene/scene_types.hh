@@ -273,7 +273,19 @@ inline constexpr std::array<TextureInput, 14> texture_inputs = {{
     {&Material::thickness_texture, "thickness_texture", false},
 }};
 
-/** Indexed triangles of one material (a glTF primitive). Object space, metres. */
+/**
+ * What the indices of a mesh connect. Points and lines are a pixel wide in every picture, cast no shadow and are not
+ * seen by the reference; a material's sides have no effect on them.
+ */
+enum class Topology { Triangles, Lines, Points };
+
+/** Number of indices of a triangle, a line or a point. */
+[[nodiscard]] constexpr std::size_t index_count_of(Topology topology)
+{
+  return topology == Topology::Triangles ? 3 : topology == Topology::Lines ? 2 : 1;
+}
+
+/** Indexed triangles, lines or points of one material (a glTF primitive). Object space, metres. */
 struct Mesh {
   static constexpr std::string_view kind_name = "mesh";
   enum class Aspect { Name, Shape, Material, Count };
@@ -296,8 +308,9 @@ struct Mesh {
   std::vector<glm::vec4> tangents{};
   /** Multiplied with the material's base colour and alpha: linear, in [0, 1], one for each position. Empty: white. */
   std::vector<glm::vec4> colors{};
-  /** Three for each triangle, each below positions.size(). */
+  /** Three for each triangle, two for each line, one for each point, each below positions.size(). */
   std::vector<std::uint32_t> indices{};
+  Topology topology = Topology::Triangles;
   /** An invalid or stale handle stands for the default material. */
   Handle<Material> material{};
   /** The box around all positions. Scene::add and Scene::replace compute it. */

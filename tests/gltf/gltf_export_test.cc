@@ -120,9 +120,9 @@ class Description {
     const std::string material =
         number(materials_, mesh.material,
                [this](const scene::Material &value, const std::string &name) { add_material(value, name); });
-    line("mesh {} '{}' material {} {} {} {} {} {} {} {}", number_of, mesh.name, material, values(mesh.positions),
-         values(mesh.normals), values(mesh.uvs), values(mesh.second_uvs), values(mesh.tangents), values(mesh.colors),
-         values(mesh.indices));
+    line("mesh {} '{}' {} material {} {} {} {} {} {} {} {}", number_of, mesh.name, int(mesh.topology), material,
+         values(mesh.positions), values(mesh.normals), values(mesh.uvs), values(mesh.second_uvs), values(mesh.tangents),
+         values(mesh.colors), values(mesh.indices));
   }
 
   void add_material(const scene::Material &m, const std::string &number_of)

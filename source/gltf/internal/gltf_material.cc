@@ -303,6 +303,37 @@ Handle<Material> MaterialImporter::handle_of(int gltf_material)
   return place->second;
 }
 
+Handle<Material> MaterialImporter::handle_for_lines(int gltf_material, bool has_normals, bool has_tangents)
+{
+  const Handle<Material> of_triangles = handle_of(gltf_material);
+  Material material = scene_.materials()[of_triangles];
+  const bool has_frame = has_tangents || !(material.normal_texture || material.anisotropy > 0.0F);
+  if (material.is_unlit || (has_normals && has_frame)) {
+    return of_triangles;
+  }
+  const auto [place, is_new] = handle_for_lines_.try_emplace({gltf_material, has_normals, has_tangents});
+  if (!is_new) {
+    return place->second;
+  }
+  if (!has_normals) {
+    const glm::vec3 sum = material.base_color + material.emissive;
+    const bool has_sum = !material.base_color_texture && !material.emissive_texture && sum == glm::min(sum, 1.0F);
+    if (!has_sum && material.emissive != glm::vec3(0.0F)) {
+      warnings_.add("material '" + printable(material.name) + '\'', "its points and lines without normals do not emit");
+    }
+    material.base_color = has_sum ? sum : material.base_color;
+    material.is_unlit = true;
+  }
+  material.normal_texture = {};
+  material.anisotropy = 0.0F;
+  place->second = scene_.add(std::move(material));
+  uv_sets_.emplace(place->second, uv_sets_.at(of_triangles));
+  if (const auto found = factor_roughness_.find(of_triangles); found != factor_roughness_.end()) {
+    factor_roughness_.emplace(place->second, found->second);
+  }
+  return place->second;
+}
+
 Handle<scene::SurfaceFunction> MaterialImporter::surface_function(const std::string &uri, const std::string &what)
 {
   const auto [place, is_new] = surface_functions_.try_emplace(uri);

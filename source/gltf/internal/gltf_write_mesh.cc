@@ -171,6 +171,9 @@ const JsonText &MeshWriter::primitive(Handle<Mesh> handle)
     add_deformation(*deformed, what, attributes, place->second);
   }
   place->second.add("attributes", attributes.object());
+  if (mesh.topology != scene::Topology::Triangles) {
+    place->second.add("mode", std::to_string(mesh.topology == scene::Topology::Lines ? Model::Lines : Model::Points));
+  }
   place->second.add("indices", std::to_string(buffer_.add_accessor(mesh.indices, Model::UnsignedInt, "SCALAR")));
   if (scene_.materials().is_live(mesh.material)) {
     place->second.add("material", std::to_string(material(mesh.material)));

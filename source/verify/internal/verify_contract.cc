@@ -65,7 +65,8 @@ void check_mesh(const scene::Scene &scene, const scene::Mesh &mesh, Checker &che
 {
   checker.check(!mesh.material || scene.materials().is_live(mesh.material), "of a material that is there");
   checker.check(mesh.normals.size() == mesh.positions.size(), "with a normal a position");
-  checker.check(!mesh.indices.empty() && mesh.indices.size() % 3 == 0, "of whole triangles");
+  checker.check(!mesh.indices.empty() && mesh.indices.size() % index_count_of(mesh.topology) == 0,
+                "of whole triangles, lines or points");
   checker.check(std::ranges::all_of(mesh.indices, [&](std::uint32_t i) { return i < mesh.positions.size(); }),
                 "with indices in range");
   checker.check(!mesh.bounds.is_empty(), "with bounds");
