@@ -111,6 +111,7 @@ void add(Hasher &hash, const scene::Scene &scene, const scene::Material &materia
   hash.add(material.is_unlit);
   hash.add(material.coat);
   hash.add(material.coat_roughness);
+  hash.add(material.coat_normal_scale);
   hash.add(material.sheen_color);
   hash.add(material.sheen_roughness);
   hash.add(material.anisotropy);

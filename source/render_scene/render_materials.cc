@@ -187,6 +187,7 @@ shared::LayerData layer_data(const scene::Material &material)
   data.sheen_roughness = material.sheen_roughness;
   data.anisotropy = {std::cos(material.anisotropy_rotation), std::sin(material.anisotropy_rotation),
                      std::clamp(std::max(0.0F, material.anisotropy), 0.0F, 1.0F)};
+  data.coat_normal_scale = material.coat_normal_scale;
   data.transmission = std::clamp(std::max(0.0F, material.transmission), 0.0F, 1.0F);
   data.thickness = thickness(material);
   data.ior = std::clamp(std::max(1.0F, material.ior), 1.0F, 1e9F);

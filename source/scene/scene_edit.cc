@@ -76,9 +76,9 @@ Changes changes(const Material &a, const Material &b)
       same_bytes(a.roughness, b.roughness) && same_bytes(a.specular, b.specular) &&
       same_bytes(a.specular_color, b.specular_color) && same_bytes(a.emissive, b.emissive) &&
       same_bytes(a.normal_scale, b.normal_scale) && same_bytes(a.coat, b.coat) &&
-      same_bytes(a.coat_roughness, b.coat_roughness) && same_bytes(a.sheen_color, b.sheen_color) &&
-      same_bytes(a.sheen_roughness, b.sheen_roughness) && same_bytes(a.anisotropy, b.anisotropy) &&
-      same_bytes(a.anisotropy_rotation, b.anisotropy_rotation) &&
+      same_bytes(a.coat_roughness, b.coat_roughness) && same_bytes(a.coat_normal_scale, b.coat_normal_scale) &&
+      same_bytes(a.sheen_color, b.sheen_color) && same_bytes(a.sheen_roughness, b.sheen_roughness) &&
+      same_bytes(a.anisotropy, b.anisotropy) && same_bytes(a.anisotropy_rotation, b.anisotropy_rotation) &&
       same_bytes(a.occlusion_strength, b.occlusion_strength) && same_bytes(a.ior, b.ior);
   const bool same_volume = same_bytes(a.transmission, b.transmission) && same_bytes(a.thickness, b.thickness) &&
                            same_bytes(a.attenuation_distance, b.attenuation_distance) &&

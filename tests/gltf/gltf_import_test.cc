@@ -723,13 +723,16 @@ TEST(GltfMaterial, TexturesOfAbsentLayersAreNotRead)
                               {"KHR_materials_sheen", {{"sheenColorTexture", slot}}}}}});
   };
   const auto [bare, bare_scene] = import_coat(0);
+  EXPECT_FALSE(bare.coat_normal_texture);
   EXPECT_FALSE(bare.has_coat() || bare.coat_texture || bare.coat_roughness_texture || bare.sheen_color_texture);
   EXPECT_EQ(bare_scene.images().size(), 0U);
   EXPECT_NO_WARNING(bare_scene, "material 'paint'");
   const auto [coated, coated_scene] = import_coat(1);
   EXPECT_TRUE(coated.coat_texture && coated.coat_roughness_texture && !coated.sheen_color_texture);
   EXPECT_WARNING(coated_scene, "material 'paint': its clearcoatTexture is drawn as the factor alone: ");
-  EXPECT_WARNING(coated_scene, "material 'paint': its clearcoatNormalTexture is not drawn");
+  EXPECT_TRUE(coated.coat_normal_texture);
+  EXPECT_WARNING(coated_scene,
+                 "material 'paint': its clearcoatNormalTexture is drawn as a coat as smooth as the mesh: ");
 }
 
 TEST(GltfMaterial, ForeignModelsAreNamed)

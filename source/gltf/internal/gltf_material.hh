@@ -26,7 +26,7 @@ class MaterialImporter {
 
   /**
    * The same for points and lines, drawn as glTF asks: without normals they are unlit, as the sum of base colour and
-   * emission; without tangents they have neither a normal texture nor anisotropy.
+   * emission; without tangents they have neither normal textures nor anisotropy.
    */
   [[nodiscard]] scene::Handle<scene::Material> handle_for_lines(int gltf_material, bool has_normals, bool has_tangents);
 

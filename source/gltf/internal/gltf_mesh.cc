@@ -39,9 +39,10 @@ std::string primitive_name(const Model::Mesh &mesh, int mesh_index, std::size_t 
 /** The slot whose uvs the tangents follow, which may have no texture; nullptr if the material needs no tangents. */
 const scene::TextureSlot *tangent_slot(const scene::Material &material)
 {
-  return material.normal_texture     ? &material.normal_texture
-         : material.has_anisotropy() ? &material.anisotropy_texture
-                                     : nullptr;
+  return material.normal_texture        ? &material.normal_texture
+         : material.has_anisotropy()    ? &material.anisotropy_texture
+         : material.coat_normal_texture ? &material.coat_normal_texture
+                                        : nullptr;
 }
 
 }  // namespace

@@ -267,6 +267,8 @@ int MeshWriter::material(Handle<Material> handle)
     coat.add("clearcoatRoughnessFactor", json_number(material.coat_roughness, what));
     add_slot(coat, "clearcoatTexture", material.coat_texture, what);
     add_slot(coat, "clearcoatRoughnessTexture", material.coat_roughness_texture, what);
+    add_slot(coat, "clearcoatNormalTexture", material.coat_normal_texture, what,
+             ",\"scale\":" + json_number(material.coat_normal_scale, what));
     add_extension("KHR_materials_clearcoat", coat.object());
   }
   if (material.sheen_color != glm::vec3(0.0F)) {

@@ -85,8 +85,9 @@ void check_mesh(const scene::Scene &scene, const scene::Mesh &mesh, Checker &che
                                       [](const glm::vec2 &uv) { return std::isfinite(uv.x) && std::isfinite(uv.y); }),
                   "with finite texture coordinates");
   }
-  checker.check(!mesh.tangents.empty() || !material.normal_texture, "with tangents for its normal texture");
-  checker.check(mesh.tangents.empty() || material.normal_texture || material.has_anisotropy(),
+  checker.check(!mesh.tangents.empty() || !(material.normal_texture || material.coat_normal_texture),
+                "with tangents for its normal textures");
+  checker.check(mesh.tangents.empty() || material.has_frame(),
                 "with tangents only where its material has a normal texture or anisotropy");
   checker.check(std::ranges::all_of(mesh.tangents,
                                     [](const glm::vec4 &t) {
