@@ -16,7 +16,7 @@ layout(location = 8) out vec4 surface_specular_uvs;
 layout(location = 9) out vec4 surface_coat_uvs;
 layout(location = 10) out vec4 surface_sheen_uvs;
 layout(location = 16) out vec4 surface_anisotropy_coat_normal_uvs;
-layout(location = 17) flat out float surface_coat_normal_scale;
+layout(location = 19) flat out float surface_coat_normal_scale;
 #  ifdef USE_TRANSMISSION
 layout(location = 11) out vec4 surface_transmission_uvs;
 /** Of directions. */
