@@ -127,8 +127,10 @@ async function sheet(models, name) {
   await page.close();
 }
 
+const scenes = fs.readdirSync(path.join(folder, 'scenes')).sort().map((name) => ({name: path.parse(name).name, file: path.join(folder, 'scenes', name)}));
 await sheet(await debianModels(), 'debian');
 await sheet(await npmModels(), 'npm');
+await sheet(scenes, 'tests');
 await browser.close();
 server.close();
 process.exitCode = failures > 0 ? 1 : 0;
