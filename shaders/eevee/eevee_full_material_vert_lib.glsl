@@ -15,7 +15,8 @@ layout(location = 8) out vec4 surface_specular_uvs;
 
 layout(location = 9) out vec4 surface_coat_uvs;
 layout(location = 10) out vec4 surface_sheen_uvs;
-layout(location = 16) out vec2 surface_anisotropy_uv;
+layout(location = 16) out vec4 surface_anisotropy_coat_normal_uvs;
+layout(location = 19) flat out float surface_coat_normal_scale;
 #  ifdef USE_TRANSMISSION
 layout(location = 11) out vec4 surface_transmission_uvs;
 /** Of directions. */
@@ -40,9 +41,11 @@ void write_full_varyings()
 #ifdef USE_LAYERS
   surface_coat_uvs = vec4(layer_uv(material, 0), layer_uv(material, 1));
   surface_sheen_uvs = vec4(layer_uv(material, 2), layer_uv(material, 3));
-  surface_anisotropy_uv = layer_uv(material, 4);
+  surface_anisotropy_coat_normal_uvs = vec4(layer_uv(material, 4), layer_uv(material, 5));
+  bool has_coat_normal = (full_materials[material].inputs & INPUT_COAT_NORMAL) != 0u;
+  surface_coat_normal_scale = has_coat_normal ? layer_materials[material].coat_normal_scale : 0.0;
 #  ifdef USE_TRANSMISSION
-  surface_transmission_uvs = vec4(layer_uv(material, 5), layer_uv(material, 6));
+  surface_transmission_uvs = vec4(layer_uv(material, 6), layer_uv(material, 7));
   surface_object_from_world = inverse(mat3(objects[draw_instance.x].world_from_object));
   bool has_roughness_texture = (full_materials[material].inputs & INPUT_METALLIC_ROUGHNESS) != 0u;
   surface_lens = vec3(full_materials[material].roughness, has_roughness_texture ? 1.0 : 0.0, layer_materials[material].ior);
@@ -57,6 +60,9 @@ void write_full_varyings()
   // A negative factor turns both axes of the texture around.
   tangent_ws *= length_sq > 0.0 ? inversesqrt(length_sq) : 0.0;
   surface_tangent_ws.xyz = scale < 0.0 ? -tangent_ws : tangent_ws;
+#  ifdef USE_LAYERS
+  surface_coat_normal_scale = scale < 0.0 ? -surface_coat_normal_scale : surface_coat_normal_scale;
+#  endif
   // A mirrored object reverses cross(normal, tangent).
   surface_tangent_ws.w = (determinant(world_from_object) < 0.0 ? -tangent.w : tangent.w) * (1.0 + abs(scale));
 #endif

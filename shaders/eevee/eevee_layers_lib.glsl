@@ -9,13 +9,16 @@
 
 layout(location = 9) in vec4 surface_coat_uvs;
 layout(location = 10) in vec4 surface_sheen_uvs;
-layout(location = 16) in vec2 surface_anisotropy_uv;
+layout(location = 16) in vec4 surface_anisotropy_coat_normal_uvs;
+/** Factor of the coat's normal texture, which is 0 without one; from the vertex shader, as that of surface_tangent_ws. */
+layout(location = 19) flat in float surface_coat_normal_scale;
 
 layout(binding = COAT_SLOT) uniform sampler2D coat_texture;
 layout(binding = COAT_ROUGHNESS_SLOT) uniform sampler2D coat_roughness_texture;
 layout(binding = SHEEN_COLOR_SLOT) uniform sampler2D sheen_color_texture;
 layout(binding = SHEEN_ROUGHNESS_SLOT) uniform sampler2D sheen_roughness_texture;
 layout(binding = ANISOTROPY_SLOT) uniform sampler2D anisotropy_texture;
+layout(binding = COAT_NORMAL_SLOT) uniform sampler2D coat_normal_texture;
 
 /** The lobe of the base, whose alpha without anisotropy is \a alpha. */
 BaseLobe make_base_lobe(float alpha, Surface surface)
@@ -23,7 +26,7 @@ BaseLobe make_base_lobe(float alpha, Surface surface)
   vec3 anisotropy = layer_materials[surface_material].anisotropy;
   vec2 direction = anisotropy.xy;
   if (has_input(INPUT_ANISOTROPY)) {
-    vec3 texel = texture(anisotropy_texture, surface_anisotropy_uv, view.texture_lod_bias).xyz;
+    vec3 texel = texture(anisotropy_texture, surface_anisotropy_coat_normal_uvs.xy, view.texture_lod_bias).xyz;
     vec2 turned = texel.xy * 2.0 - 1.0;
     direction = vec2(direction.x * turned.x - direction.y * turned.y, direction.y * turned.x + direction.x * turned.y);
     anisotropy.z *= texel.z;
@@ -62,6 +65,10 @@ Layers make_layers(float alpha, Surface surface)
   result.coat_material = coat_material(coat_roughness);
   result.coat_surface = surface;
   result.coat_surface.normal_ws = surface.smooth_normal_ws;
+  if (surface_coat_normal_scale != 0.0) {
+    vec3 texel = texture(coat_normal_texture, surface_anisotropy_coat_normal_uvs.zw, view.texture_lod_bias).xyz;
+    result.coat_surface.normal_ws = mapped_normal(texel, surface_coat_normal_scale, surface.smooth_normal_ws);
+  }
   result.coat_material.alpha = sampled_alpha(result.coat_material.alpha, result.coat_surface);
 #ifdef USE_MULTISCATTER
   result.coat_surface.multiscatter = multiscatter_of(result.coat_material, result.coat_surface);
@@ -70,7 +77,7 @@ Layers make_layers(float alpha, Surface surface)
   if (has_input(INPUT_COAT)) {
     coat *= texture(coat_texture, surface_coat_uvs.xy, view.texture_lod_bias).r;
   }
-  result.coat_share = coat_reflectance(coat, max(dot(surface.smooth_normal_ws, surface.view_ws), 0.0));
+  result.coat_share = coat_reflectance(coat, max(dot(result.coat_surface.normal_ws, surface.view_ws), 0.0));
   vec3 sheen_color = data.sheen_color;
   if (has_input(INPUT_SHEEN_COLOR)) {
     sheen_color *= texture(sheen_color_texture, surface_sheen_uvs.xy, view.texture_lod_bias).rgb;

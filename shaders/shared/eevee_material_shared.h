@@ -48,8 +48,9 @@ SHARED_ASSERT_SIZE(MaterialData, 64)
 #define INPUT_SHEEN_COLOR 512u
 #define INPUT_SHEEN_ROUGHNESS 1024u
 #define INPUT_ANISOTROPY 2048u
-#define INPUT_TRANSMISSION 4096u
-#define INPUT_THICKNESS 8192u
+#define INPUT_COAT_NORMAL 4096u
+#define INPUT_TRANSMISSION 8192u
+#define INPUT_THICKNESS 16384u
 /** Unlit material: its radiance is the base colour. */
 #define INPUT_UNLIT 65536u
 /** The surface is blended over what is behind it. */
@@ -58,7 +59,7 @@ SHARED_ASSERT_SIZE(MaterialData, 64)
 #define INPUT_MASKED 262144u
 /** Textures of FullMaterialData, and after them those of LayerData: first of coats, sheen and anisotropy, then of transmission. */
 #define FULL_TEXTURE_COUNT 7
-#define LAYER_TEXTURE_COUNT 5
+#define LAYER_TEXTURE_COUNT 6
 #define TRANSMISSION_TEXTURE_COUNT 2
 
 /** An entry of `full_material_block`: factors of the textures and of vertex colours. */
@@ -102,7 +103,7 @@ struct LayerData {
   float ior;
   /** xy: cosine and sine of the angle from the tangent to the rougher direction. z: strength, in [0, 1]. */
   vec3 anisotropy;
-  float _pad0;
+  float coat_normal_scale;
   /** As FullMaterialData::uv_rows. */
   vec4 uv_rows[2 * (LAYER_TEXTURE_COUNT + TRANSMISSION_TEXTURE_COUNT)];
 };

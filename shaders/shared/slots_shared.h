@@ -60,6 +60,7 @@
 #define TRANSMISSION_SLOT 43
 #define THICKNESS_SLOT 47
 #define ANISOTROPY_SLOT 49
+#define COAT_NORMAL_SLOT 53
 
 /** Layout of the block of small values of a group: push constants if the API has them, else a uniform block. */
 #ifdef VULKAN

@@ -43,6 +43,15 @@ float shadow()
 }
 #endif
 
+#ifdef USE_FULL_MATERIAL
+/** Part of what is behind that the surface covers. */
+float opacity()
+{
+  bool passes_light = !has_input(INPUT_BLENDED | INPUT_MASKED | INPUT_TRANSMISSION);
+  return passes_light ? full_materials[surface_material].opacity : surface_opacity();
+}
+#endif
+
 layout(location = 0) out vec4 radiance;
 
 void main()
@@ -61,6 +70,9 @@ void main()
   color *= 1.0 - shadow();
 #endif
   radiance = vec4(color, 1.0);
+#ifdef USE_FULL_MATERIAL
+  radiance *= opacity();
+#endif
 #if defined(USE_FULL_MATERIAL) || defined(USE_BASE_COLOR_TEXTURE)
   if (is_cut_out(materials[surface_material].mask_cutoff)) {
     discard;

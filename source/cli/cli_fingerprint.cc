@@ -111,6 +111,7 @@ void add(Hasher &hash, const scene::Scene &scene, const scene::Material &materia
   hash.add(material.is_unlit);
   hash.add(material.coat);
   hash.add(material.coat_roughness);
+  hash.add(material.coat_normal_scale);
   hash.add(material.sheen_color);
   hash.add(material.sheen_roughness);
   hash.add(material.anisotropy);
@@ -188,6 +189,7 @@ std::string scene_fingerprint(const scene::Scene &scene)
     hash.add(mesh.tangents);
     hash.add(mesh.colors);
     hash.add(mesh.indices);
+    hash.add(mesh.topology);
     add(hash, scene, scene.material_of(mesh));
   }
   for (const scene::Object &object : scene.objects()) {

@@ -24,13 +24,16 @@ static const char *to_string(scene::LampKind kind)
 static void print_info(const scene::Scene &scene, bool is_world_default)
 {
   const std::vector<scene::Object> objects = scene.objects();
-  std::size_t triangles = 0;
+  std::array<std::size_t, 3> counts{};
   for (const scene::Object &object : objects) {
-    triangles += scene.meshes()[object.mesh].indices.size() / 3;
+    const scene::Mesh &mesh = scene.meshes()[object.mesh];
+    counts[std::size_t(mesh.topology)] += mesh.indices.size() / index_count_of(mesh.topology);
   }
+  const auto [triangles, lines, points] = counts;
   fmt::print("{}\n", scene.path);
-  fmt::print("  {} objects of {} meshes, {} triangles as placed, {} materials\n", objects.size(), scene.meshes().size(),
-             triangles, scene.materials().size());
+  fmt::print("  {} objects of {} meshes, {} triangles{}{} as placed, {} materials\n", objects.size(),
+             scene.meshes().size(), triangles, lines > 0 ? fmt::format(", {} lines", lines) : "",
+             points > 0 ? fmt::format(", {} points", points) : "", scene.materials().size());
   const scene::Bounds bounds = scene.bounds();
   if (!bounds.is_empty()) {
     fmt::print("  bounds ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g}) m\n", bounds.min.x, bounds.min.y, bounds.min.z,

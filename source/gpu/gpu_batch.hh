@@ -33,15 +33,16 @@ inline constexpr std::size_t vertex_stream_count = 6;
 [[nodiscard]] const std::array<VertexFormat, vertex_stream_count> &vertex_formats();
 
 /**
- * Triangles with vertex attributes. Shaders read the attributes at the locations of `shaders/shared/slots_shared.h`.
- * All batches of a device share one set of buffers, so that one command can draw many batches.
+ * Triangles, lines or points with vertex attributes; the State of the draw decides which. Shaders read the attributes
+ * at the locations of `shaders/shared/slots_shared.h`. All batches of a device share one set of buffers, so that one
+ * command can draw many batches.
  */
 struct BatchDesc {
   std::string name;
   std::span<const glm::vec3> positions;
   /** One for each position, or empty. If empty, shaders read zeros. */
   std::span<const glm::vec3> normals;
-  /** Three for each triangle, each less than positions.size(). */
+  /** Three for each triangle, two for each line, one for each point, each less than positions.size(). */
   std::span<const std::uint32_t> indices;
   /**
    * First set of texture coordinates. This and the following streams have one value for each position, or are empty. If
@@ -69,7 +70,7 @@ struct BatchRange {
   std::uint32_t vertex_count = 0;
 };
 
-/** Owns triangles on the device. */
+/** Owns vertices and indices on the device. */
 class Batch : public Resource {
  public:
   Batch() = default;

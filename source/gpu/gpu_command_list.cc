@@ -127,6 +127,8 @@ static std::string to_string(std::string_view what, const Rectangle &rectangle)
 std::string CommandList::serialize(const Device &device) const
 {
   const auto name = [&](ResourceKind kind, ResourceId id) { return device.name_of(kind, id); };
+  constexpr std::array<std::string_view, 3> primitive_names = {"points", "lines", "triangles"};
+  State state = State::None;
   std::string text;
   for (const Command &command : commands_) {
     switch (command.kind) {
@@ -142,7 +144,10 @@ std::string CommandList::serialize(const Device &device) const
       }
       case CommandKind::EndPass: text += "end\n"; break;
       case CommandKind::SetShader: text += fmt::format("  shader {}\n", name(ResourceKind::Shader, command.id)); break;
-      case CommandKind::SetState: text += fmt::format("  state {}\n", gpu::to_string(State(command.first))); break;
+      case CommandKind::SetState:
+        state = State(command.first);
+        text += fmt::format("  state {}\n", gpu::to_string(state));
+        break;
       case CommandKind::BindUniform:
       case CommandKind::BindStorage:
         text += fmt::format("  {} {} -> {}", command.kind == CommandKind::BindUniform ? "uniform" : "storage",
@@ -159,8 +164,8 @@ std::string CommandList::serialize(const Device &device) const
       case CommandKind::Draw:
         for (std::uint32_t i = command.first; i < command.first + command.count; i++) {
           const DrawIndirect &d = draws[i];
-          text += fmt::format("  draw {} triangles x{}, instances from {}\n", d.index_count / 3, d.instance_count,
-                              d.first_instance);
+          text += fmt::format("  draw {} {} x{}, instances from {}\n", d.index_count / primitive_size(state),
+                              primitive_names[primitive_size(state) - 1], d.instance_count, d.first_instance);
         }
         break;
       case CommandKind::DrawProcedural:

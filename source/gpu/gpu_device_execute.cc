@@ -182,6 +182,7 @@ void Device::destroy(ResourceKind kind, ResourceId id)
 
 void Device::count(const CommandList &list)
 {
+  State state = State::None;
   for (const Command &command : list.commands()) {
     switch (command.kind) {
       case CommandKind::BeginPass:
@@ -189,12 +190,14 @@ void Device::count(const CommandList &list)
         count_pass(list.name_of(list.passes()[command.first]));
         break;
       case CommandKind::SetShader: counters_.shader_binds++; break;
+      case CommandKind::SetState: state = State(command.first); break;
       case CommandKind::Draw:
         for (std::uint32_t i = command.first; i < command.first + command.count; i++) {
           const DrawIndirect &draw = list.draws[i];
           counters_.draws++;
           counters_.instances += draw.instance_count;
-          counters_.triangles += std::uint64_t(draw.index_count / 3) * draw.instance_count;
+          counters_.triangles +=
+              primitive_size(state) == 3 ? std::uint64_t(draw.index_count / 3) * draw.instance_count : 0;
         }
         break;
       case CommandKind::DrawProcedural:

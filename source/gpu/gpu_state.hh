@@ -29,6 +29,10 @@ enum class State : std::uint32_t {
   BlendOver = 1U << 10,
   /** Depth test: passes if the depth is less than or equal to the stored depth. For depth buffers of the host. */
   DepthLessEqual = 1U << 11,
+  /** Two indices make a line of one pixel's width, or one index a point of one pixel. Neither: three make a triangle.
+   */
+  DrawLines = 1U << 12,
+  DrawPoints = 1U << 13,
 };
 
 constexpr State operator|(State a, State b)
@@ -42,6 +46,12 @@ constexpr State without(State mask, State bits)
 constexpr bool has(State mask, State bit)
 {
   return (std::uint32_t(mask) & std::uint32_t(bit)) != 0;
+}
+
+/** Number of indices or vertices of what is drawn. */
+constexpr std::uint32_t primitive_size(State mask)
+{
+  return has(mask, State::DrawPoints) ? 1 : has(mask, State::DrawLines) ? 2 : 3;
 }
 
 /** Returns the names of the bits, such as "write_depth depth_nearer_equal", or "none" for an empty mask. */

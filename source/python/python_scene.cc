@@ -72,6 +72,8 @@ const Fields<Material> material_fields = {
                            "Tint of dielectric reflection, at least 0."),
     number_field<Material>("coat", &Material::coat, 0, 1, "Part of the surface under a clear coat, 0 to 1."),
     number_field<Material>("coat_roughness", &Material::coat_roughness, 0, 1, "Perceptual, 0 to 1."),
+    number_field<Material>("coat_normal_scale", &Material::coat_normal_scale, -float_max, float_max,
+                           "Factor of the coat's normal texture."),
     number_field<Material>("sheen_color", &Material::sheen_color, 0, 1, "Reflectance of fibres, 0 to 1."),
     number_field<Material>("sheen_roughness", &Material::sheen_roughness, 0, 1, "Perceptual, 0 to 1."),
     number_field<Material>("anisotropy", &Material::anisotropy, 0, 1,

@@ -161,7 +161,8 @@ shared::FullMaterialData full_material_data(const scene::Scene &scene, const sce
     data.opacity = material.alpha;
   }
   else {
-    data.opacity = 1.0F - (material.has_transmission() ? transmitted_part(material) : 0.0F);
+    const bool is_open = material.has_transmission() && material.alpha_mode == scene::AlphaMode::Opaque;
+    data.opacity = 1.0F - (is_open ? transmitted_part(material) : 0.0F);
   }
   if (material.alpha_mode == scene::AlphaMode::Mask && has_surface_function(scene, material)) {
     data.inputs |= INPUT_MASKED;
@@ -186,6 +187,7 @@ shared::LayerData layer_data(const scene::Material &material)
   data.sheen_roughness = material.sheen_roughness;
   data.anisotropy = {std::cos(material.anisotropy_rotation), std::sin(material.anisotropy_rotation),
                      std::clamp(std::max(0.0F, material.anisotropy), 0.0F, 1.0F)};
+  data.coat_normal_scale = material.coat_normal_scale;
   data.transmission = std::clamp(std::max(0.0F, material.transmission), 0.0F, 1.0F);
   data.thickness = thickness(material);
   data.ior = std::clamp(std::max(1.0F, material.ior), 1.0F, 1e9F);

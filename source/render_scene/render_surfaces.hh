@@ -22,6 +22,14 @@ using TextureSet = std::array<scene::Handle<scene::Texture>, scene::texture_inpu
 /** The class for depth passes: material_class(), at most Full, if the surface is masked; otherwise Plain. */
 [[nodiscard]] MaterialClass mask_class(const scene::Scene &scene, const scene::Mesh &mesh);
 
+/** The bits of the state that draws a mesh of this topology. */
+[[nodiscard]] constexpr gpu::State topology_state(scene::Topology topology)
+{
+  return topology == scene::Topology::Lines    ? gpu::State::DrawLines
+         : topology == scene::Topology::Points ? gpu::State::DrawPoints
+                                               : gpu::State::None;
+}
+
 /** Bind the textures of \a set that shaders of \a material_class read. Missing textures are white. */
 void bind_textures(draw::ShadingGroup &group, RenderScene &scene, MaterialClass material_class, const TextureSet &set);
 

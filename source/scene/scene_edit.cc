@@ -38,7 +38,7 @@ Changes changes(const Mesh &a, const Mesh &b)
   const bool same_shape = same_elements(a.positions, b.positions) && same_elements(a.normals, b.normals) &&
                           same_elements(a.uvs, b.uvs) && same_elements(a.second_uvs, b.second_uvs) &&
                           same_elements(a.tangents, b.tangents) && same_elements(a.colors, b.colors) &&
-                          same_elements(a.indices, b.indices);
+                          same_elements(a.indices, b.indices) && a.topology == b.topology;
   return bit_if(a.name != b.name, Name) | bit_if(!same_shape, Shape) | bit_if(a.material != b.material, Material);
 }
 
@@ -76,9 +76,9 @@ Changes changes(const Material &a, const Material &b)
       same_bytes(a.roughness, b.roughness) && same_bytes(a.specular, b.specular) &&
       same_bytes(a.specular_color, b.specular_color) && same_bytes(a.emissive, b.emissive) &&
       same_bytes(a.normal_scale, b.normal_scale) && same_bytes(a.coat, b.coat) &&
-      same_bytes(a.coat_roughness, b.coat_roughness) && same_bytes(a.sheen_color, b.sheen_color) &&
-      same_bytes(a.sheen_roughness, b.sheen_roughness) && same_bytes(a.anisotropy, b.anisotropy) &&
-      same_bytes(a.anisotropy_rotation, b.anisotropy_rotation) &&
+      same_bytes(a.coat_roughness, b.coat_roughness) && same_bytes(a.coat_normal_scale, b.coat_normal_scale) &&
+      same_bytes(a.sheen_color, b.sheen_color) && same_bytes(a.sheen_roughness, b.sheen_roughness) &&
+      same_bytes(a.anisotropy, b.anisotropy) && same_bytes(a.anisotropy_rotation, b.anisotropy_rotation) &&
       same_bytes(a.occlusion_strength, b.occlusion_strength) && same_bytes(a.ior, b.ior);
   const bool same_volume = same_bytes(a.transmission, b.transmission) && same_bytes(a.thickness, b.thickness) &&
                            same_bytes(a.attenuation_distance, b.attenuation_distance) &&
@@ -158,8 +158,9 @@ void check(const Mesh &mesh)
   check_count("second uvs", mesh.second_uvs.size());
   check_count("tangents", mesh.tangents.size());
   check_count("colours", mesh.colors.size());
-  if (mesh.indices.size() % 3 != 0) {
-    refuse("mesh", mesh.name, "{} indices are not three for each triangle", mesh.indices.size());
+  if (mesh.indices.size() % index_count_of(mesh.topology) != 0) {
+    refuse("mesh", mesh.name, "{} indices are not {}", mesh.indices.size(),
+           mesh.topology == Topology::Triangles ? "three for each triangle" : "two for each line");
   }
   const auto beyond = std::ranges::find_if(mesh.indices, [&](std::uint32_t index) { return index >= count; });
   if (beyond != mesh.indices.end()) {

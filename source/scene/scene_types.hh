@@ -175,12 +175,16 @@ struct Material {
   TextureSlot specular_color_texture{};
   /** Part of the surface under a clear coat of index 1.5. 0: no coat. */
   float coat = 0.0F;
-  /** Perceptual. The coat is smooth where the base has a normal texture. */
+  /** Perceptual. */
   float coat_roughness = 0.0F;
   /** Red is multiplied with coat. */
   TextureSlot coat_texture{};
   /** Green is multiplied with coat_roughness. */
   TextureSlot coat_roughness_texture{};
+  /** As normal_texture, of the coat; without it the coat is as smooth as the mesh, whatever normal_texture is. */
+  TextureSlot coat_normal_texture{};
+  /** Any finite value. */
+  float coat_normal_scale = 1.0F;
   /** Reflectance of fibres on the base, under the coat. Black: no sheen. */
   glm::vec3 sheen_color{0.0F};
   /** Perceptual. */
@@ -240,6 +244,11 @@ struct Material {
   {
     return anisotropy > 0.0F && !is_unlit;
   }
+  /** Whether the material needs Mesh::tangents. */
+  [[nodiscard]] bool has_frame() const
+  {
+    return normal_texture || coat_normal_texture || has_anisotropy();
+  }
   [[nodiscard]] bool has_transmission() const
   {
     return transmission > 0.0F && !is_unlit;
@@ -256,7 +265,7 @@ struct TextureInput {
 };
 
 /** All texture slots. */
-inline constexpr std::array<TextureInput, 14> texture_inputs = {{
+inline constexpr std::array<TextureInput, 15> texture_inputs = {{
     {&Material::base_color_texture, "base_color_texture", true},
     {&Material::metallic_roughness_texture, "metallic_roughness_texture", false},
     {&Material::normal_texture, "normal_texture", false},
@@ -269,11 +278,24 @@ inline constexpr std::array<TextureInput, 14> texture_inputs = {{
     {&Material::sheen_color_texture, "sheen_color_texture", true},
     {&Material::sheen_roughness_texture, "sheen_roughness_texture", false},
     {&Material::anisotropy_texture, "anisotropy_texture", false},
+    {&Material::coat_normal_texture, "coat_normal_texture", false},
     {&Material::transmission_texture, "transmission_texture", false},
     {&Material::thickness_texture, "thickness_texture", false},
 }};
 
-/** Indexed triangles of one material (a glTF primitive). Object space, metres. */
+/**
+ * What the indices of a mesh connect. Points and lines are a pixel wide in every picture, cast no shadow and are not
+ * seen by the reference; a material's sides have no effect on them.
+ */
+enum class Topology { Triangles, Lines, Points };
+
+/** Number of indices of a triangle, a line or a point. */
+[[nodiscard]] constexpr std::size_t index_count_of(Topology topology)
+{
+  return topology == Topology::Triangles ? 3 : topology == Topology::Lines ? 2 : 1;
+}
+
+/** Indexed triangles, lines or points of one material (a glTF primitive). Object space, metres. */
 struct Mesh {
   static constexpr std::string_view kind_name = "mesh";
   enum class Aspect { Name, Shape, Material, Count };
@@ -291,13 +313,14 @@ struct Mesh {
   std::vector<glm::vec2> second_uvs{};
   /**
    * Unit vectors along u of the normal texture, one for each position. w is 1 or -1: w · cross(normal, tangent) points
-   * up in the image, against v. Empty if the material has neither a normal texture nor anisotropy. \see make_tangents
+   * up in the image, against v. Empty if the material has neither normal textures nor anisotropy. \see make_tangents
    */
   std::vector<glm::vec4> tangents{};
   /** Multiplied with the material's base colour and alpha: linear, in [0, 1], one for each position. Empty: white. */
   std::vector<glm::vec4> colors{};
-  /** Three for each triangle, each below positions.size(). */
+  /** Three for each triangle, two for each line, one for each point, each below positions.size(). */
   std::vector<std::uint32_t> indices{};
+  Topology topology = Topology::Triangles;
   /** An invalid or stale handle stands for the default material. */
   Handle<Material> material{};
   /** The box around all positions. Scene::add and Scene::replace compute it. */

@@ -120,9 +120,9 @@ class Description {
     const std::string material =
         number(materials_, mesh.material,
                [this](const scene::Material &value, const std::string &name) { add_material(value, name); });
-    line("mesh {} '{}' material {} {} {} {} {} {} {} {}", number_of, mesh.name, material, values(mesh.positions),
-         values(mesh.normals), values(mesh.uvs), values(mesh.second_uvs), values(mesh.tangents), values(mesh.colors),
-         values(mesh.indices));
+    line("mesh {} '{}' {} material {} {} {} {} {} {} {} {}", number_of, mesh.name, int(mesh.topology), material,
+         values(mesh.positions), values(mesh.normals), values(mesh.uvs), values(mesh.second_uvs), values(mesh.tangents),
+         values(mesh.colors), values(mesh.indices));
   }
 
   void add_material(const scene::Material &m, const std::string &number_of)
@@ -135,12 +135,12 @@ class Description {
     }
     line(
         "material {} '{}'{} {:a} textures{} {:a} {:a} {:a}{}{} {} {:a} {} {:a} {:a} {} {:a} {:a}{} {:a} {:a} {:a} {:a} "
-        "{:a}{} {:a} {:a}",
+        "{:a}{} {:a} {:a} {:a}",
         number_of, m.name, numbers(m.base_color, 3), m.alpha, textures, m.metallic, m.roughness, m.specular,
         numbers(m.specular_color, 3), numbers(m.emissive, 3), int(m.alpha_mode), m.alpha_cutoff, m.is_double_sided,
         m.normal_scale, m.occlusion_strength, m.is_unlit, m.coat, m.coat_roughness, numbers(m.sheen_color, 3),
         m.sheen_roughness, m.transmission, m.thickness, m.ior, m.attenuation_distance, numbers(m.attenuation_color, 3),
-        m.anisotropy, m.anisotropy_rotation);
+        m.anisotropy, m.anisotropy_rotation, m.coat_normal_scale);
   }
 
   std::string texture_number(const scene::TextureSlot &slot)
@@ -313,6 +313,7 @@ Handle<scene::Material> add_material(Scene &scene, Values &value)
   material.is_unlit = true;
   material.coat = value(0, 1);
   material.coat_roughness = value(0, 1);
+  material.coat_normal_scale = value(-1, 2);
   material.sheen_color = value.color();
   material.sheen_roughness = value(0, 1);
   material.anisotropy = value(0.1F, 1);

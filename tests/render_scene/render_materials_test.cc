@@ -265,7 +265,7 @@ TEST(LayerData, HasTheVolume)
   EXPECT_EQ(data.transmission, 0.5F);
   EXPECT_EQ(data.thickness, 2.0F);
   EXPECT_EQ(data.ior, 1.25F);
-  EXPECT_EQ(data.uv_rows[12].z, 3.0F);
+  EXPECT_EQ(data.uv_rows[14].z, 3.0F);
   const glm::vec3 left = shared::beer_lambert(data.absorption, 2.0F);
   EXPECT_EQ(left.x, 1.0F);
   EXPECT_FLOAT_EQ(left.y, 0.5F);

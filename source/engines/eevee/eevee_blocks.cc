@@ -71,7 +71,7 @@ constexpr auto layer_fields = std::to_array<Field>({
     {"layer_materials[0].absorption", offsetof(LayerData, absorption)},
     {"layer_materials[0].ior", offsetof(LayerData, ior)},
     {"layer_materials[0].anisotropy", offsetof(LayerData, anisotropy)},
-    {"layer_materials[0]._pad0", offsetof(LayerData, _pad0)},
+    {"layer_materials[0].coat_normal_scale", offsetof(LayerData, coat_normal_scale)},
     {"layer_materials[0].uv_rows", offsetof(LayerData, uv_rows)},
 });
 

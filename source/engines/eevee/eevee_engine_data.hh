@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "eevee_blend_order.hh"
 #include "eevee_debug.hh"
 #include "eevee_frame.hh"
 #include "eevee_lamp_points.hh"

@@ -344,14 +344,15 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
   const gpu::Batch &batch = scene_.batch(object.mesh, streams_of(surface));
   stl.is_mirrored[index] = draw::is_mirrored(scene_.objects().world_from_object(index));
   const State winding = stl.is_mirrored[index] ? State::FrontClockwise : State::None;
+  const State fixed = winding | render_scene::topology_state(mesh.topology);
 
   /** Appends a call to a group of \a pass. \a bind binds the resources of a new group. */
   const auto call = [&](draw::Pass &pass, const gpu::Shader &shader, State state, MaterialClass read,
                         const TextureSet &textures, const auto &bind) {
-    draw::ShadingGroup *&group = stl.groups[{&pass, shader.id(), state | winding, textures}];
+    draw::ShadingGroup *&group = stl.groups[{&pass, shader.id(), state | fixed, textures}];
     if (!group) {
       group = &pass.group(shader);
-      group->state_enable(state | winding);
+      group->state_enable(state | fixed);
       bind(*group);
       render_scene::bind_textures(*group, scene_, read, textures);
     }

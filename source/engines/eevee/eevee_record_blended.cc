@@ -4,6 +4,8 @@
 #include "eevee_engine_data.hh"
 #include "eevee_frame.hh"
 
+#include "render_blend_order.hh"
+
 #include <algorithm>
 #include <utility>
 
@@ -20,15 +22,15 @@ void Engine::record_blended(Data &data, draw::ObjectIndex object, const gpu::Sha
   BlendedObject &blended = stl.blended.emplace_back(BlendedObject{object, stl.blended_group_count, 0, is_transmissive});
   const auto add_side = [&](State culled) {
     draw::ShadingGroup &group = data.psl->blend_pass.group(shader);
-    group.state_enable(culled | winding);
+    group.state_enable(culled | winding | render_scene::topology_state(mesh.topology));
     bind_lit(group, data);
     render_scene::bind_textures(group, scene_, render_scene::material_class(scene_.scene(), mesh), textures);
     group.call(batch, object);
     blended.group_count++;
     stl.blended_group_count++;
   };
-  // The backs of a convex object are behind its fronts.
-  if (scene_.scene().material_of(mesh).is_double_sided) {
+  // The backs of a convex object are behind its fronts. Points and lines have no sides.
+  if (scene_.scene().material_of(mesh).is_double_sided && mesh.topology == scene::Topology::Triangles) {
     add_side(State::CullFront);
   }
   add_side(State::CullBack);
@@ -76,7 +78,7 @@ void Engine::order_blended(Data &data, const draw::View &view)
     }
   };
   bool is_behind = data.is_transmission_seen;
-  for (const std::uint32_t place : back_to_front(boxes, key.eye_ws)) {
+  for (const std::uint32_t place : render_scene::back_to_front(boxes, key.eye_ws)) {
     if (place >= key.visible.size()) {
       is_behind = false;
       continue;

@@ -115,7 +115,8 @@ void Engine::record_casters(Data &data)
   shared.caster_of.assign(scene_.objects().index_end(), nullptr);
   shared.is_mirrored.assign(scene_.objects().index_end(), false);
   for (const draw::ObjectIndex object : data.stl.objects) {
-    if (key.has_shadows && scene_.object(object).casts_shadow) {
+    const scene::Topology topology = scene_.scene().meshes()[scene_.object(object).mesh].topology;
+    if (key.has_shadows && scene_.object(object).casts_shadow && topology == scene::Topology::Triangles) {
       record_caster(shared, object);
     }
   }

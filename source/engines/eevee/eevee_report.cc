@@ -264,10 +264,10 @@ Report Inspection::report() const
   }
   report.limits = lamps.limits;
   report.limits.insert(report.limits.end(), shadows.limits().begin(), shadows.limits().end());
-  if (stl.blend_ordered && stl.blend_ordered->visible.size() > blend_order_exact_max) {
+  if (stl.blend_ordered && stl.blend_ordered->visible.size() > render_scene::blend_order_exact_max) {
     report.limits.push_back(
         fmt::format("{} blended objects are in the view: more than {} are ordered by distance alone",
-                    stl.blend_ordered->visible.size(), blend_order_exact_max));
+                    stl.blend_ordered->visible.size(), render_scene::blend_order_exact_max));
   }
   report.shadow_counters = stl.shadows->counters();
   report.pass_recordings = stl.pass_recordings;

@@ -129,6 +129,12 @@ FrameNode block_nodes(const ReportSource &source)
   return folder("blocks", "what programs read", nothing_seen, std::move(blocks));
 }
 
+std::string element_count(const scene::Mesh &mesh)
+{
+  constexpr std::array<const char *, 3> names = {"triangles", "lines", "points"};
+  return fmt::format("{} {}", mesh.indices.size() / index_count_of(mesh.topology), names[std::size_t(mesh.topology)]);
+}
+
 FrameNode mesh_nodes(const ReportSource &source)
 {
   const scene::Scene &scene = source.scene();
@@ -141,17 +147,17 @@ FrameNode mesh_nodes(const ReportSource &source)
   for (const auto &[handle, mesh] : scene.meshes()) {
     const gpu::Batch *made = source.render_scene.meshes().find(handle);
     const gpu::Batch &batch = made ? *made : none;
-    FrameNode &node = meshes.emplace_back(resource_node(
-        source, batch, mesh.name, fmt::format("{} triangles", mesh.indices.size() / 3),
-        !used.contains(handle)                                       ? "no object has it"
-        : !render_scene::is_drawable(scene, scene.material_of(mesh)) ? "its material is cut out everywhere"
-                                                                     : nothing_seen));
+    FrameNode &node = meshes.emplace_back(resource_node(source, batch, mesh.name, element_count(mesh),
+                                                        !used.contains(handle) ? "no object has it"
+                                                        : !render_scene::is_drawable(scene, scene.material_of(mesh))
+                                                            ? "its material is cut out everywhere"
+                                                            : nothing_seen));
     if (batch) {
       node.upload_bytes = source.device().live(batch).upload_bytes;
     }
   }
-  return folder("meshes", "objects' triangles", scene.meshes().empty() ? "there is none" : nothing_seen,
-                std::move(meshes));
+  return folder("meshes", "objects' triangles, lines and points",
+                scene.meshes().empty() ? "there is none" : nothing_seen, std::move(meshes));
 }
 
 FrameNode texture_nodes(const ReportSource &source)

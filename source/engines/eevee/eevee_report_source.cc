@@ -51,7 +51,8 @@ std::string why_no_texture(const scene::Mesh &mesh, const scene::TextureInput &i
   if (slot && mesh.uv_set(slot.uv_set).empty()) {
     return fmt::format("it has no {}uvs", slot.uv_set == 0 ? "" : "second ");
   }
-  const bool needs_tangents = input.slot == &scene::Material::normal_texture;
+  const bool needs_tangents =
+      input.slot == &scene::Material::normal_texture || input.slot == &scene::Material::coat_normal_texture;
   return slot && needs_tangents && mesh.tangents.empty() ? "it has no tangents" : "";
 }
 

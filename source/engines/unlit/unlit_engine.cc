@@ -2,91 +2,24 @@
 #include "unlit_engine.hh"
 
 #include "unlit_depth_camera.hh"
+#include "unlit_engine_data.hh"
 #include "unlit_interfaces.hh"
 
-#include "draw_target_pass.hh"
 #include "draw_view_shared.h"
 #include "gpu_framebuffer_stack.hh"
 #include "render_camera.hh"
-#include "render_surfaces.hh"
 #include "shader_files.hh"
 
 #include <algorithm>
-#include <tuple>
+#include <map>
+#include <span>
 
 namespace gnomon::unlit {
-
-namespace {
 
 using gpu::State;
 using render_scene::MaterialClass;
 
-Feature feature_of(MaterialClass material_class)
-{
-  switch (material_class) {
-    case MaterialClass::BaseColor: return Feature::BaseColorTexture;
-    case MaterialClass::Full: return Feature::FullMaterial;
-    default: return Feature::None;
-  }
-}
-
-Feature mask_features(MaterialClass mask_class)
-{
-  return mask_class == MaterialClass::Plain ? Feature::None
-                                            : Feature::AlphaMask | (feature_of(mask_class) & Feature::FullMaterial);
-}
-
-/** Blocks of the render scene. Passes read them by reference. */
-struct SceneBlocks {
-  gpu::BufferRange objects;
-  gpu::BufferRange materials;
-  gpu::BufferRange full_materials;
-
-  void update(const render_scene::RenderScene &scene, const draw::ObjectBuffer &object_buffer)
-  {
-    objects = {object_buffer.buffer().id()};
-    materials = {scene.materials().buffer().id()};
-    full_materials = {scene.materials().full_buffer().id()};
-  }
-  void bind(draw::ShadingGroup &group) const
-  {
-    group.bind_storage_ref("object_block", &objects);
-    group.bind_storage_ref("material_block", &materials);
-    group.bind_storage_ref("full_material_block", &full_materials);
-  }
-};
-
-/** Revisions of everything that recorded passes depend on. */
-struct PassesKey {
-  std::uint64_t structure = 0;
-  std::uint64_t passes = 0;
-  std::uint64_t settings = 0;
-  std::uint64_t losses = 0;
-  gpu::ResourceId depth_texture = 0;
-
-  bool operator==(const PassesKey &) const = default;
-};
-
-/** Revisions of everything that a picture depends on, except its view and size. */
-struct PictureKey {
-  std::uint64_t objects = 0;
-  std::uint64_t lamps = 0;
-  std::uint64_t passes = 0;
-  std::uint64_t materials = 0;
-  std::uint64_t settings = 0;
-
-  bool operator==(const PictureKey &) const = default;
-};
-
-/** Revisions of everything that the depth camera's picture depends on, except its size. */
-struct DepthKey {
-  std::uint64_t objects = 0;
-  std::uint64_t passes = 0;
-  std::uint64_t losses = 0;
-  draw::View view;
-
-  bool operator==(const DepthKey &) const = default;
-};
+namespace {
 
 gpu::Buffer create_view_block(gpu::Device &device, const char *name)
 {
@@ -102,50 +35,6 @@ void update_view_block(gpu::Device &device, const gpu::Buffer &block, const draw
 }
 
 }  // namespace
-
-/** The engine's data in a viewport. */
-struct Data final : draw::EngineViewportData {
-  void resized() override
-  {
-    framebuffer = {};
-    radiance = {};
-  }
-
-  std::vector<draw::ObjectIndex> objects;
-  /** True between cache_init and cache_finish. */
-  bool is_collecting = false;
-  /** By object index: whether the passes were recorded with a mirrored matrix. */
-  std::vector<bool> is_mirrored;
-  bool is_winding_changed = false;
-  /** The class of materials with the most inputs. */
-  MaterialClass widest = MaterialClass::Plain;
-  bool is_seen = false;
-  gpu::Texture radiance;
-  gpu::Framebuffer framebuffer;
-  gpu::Buffer view_block;
-  gpu::Sampler nearest;
-  SceneBlocks blocks;
-  std::optional<draw::Pass> surfaces;
-  draw::Pass target{"target", gpu::State::WriteColor};
-  draw::TargetPass target_pass;
-  PassesKey recorded;
-  std::optional<PictureKey> synced_picture;
-};
-
-struct Engine::DepthCamera {
-  draw::View view;
-  glm::mat4 clip_from_world{1.0F};
-  /** \see unlit_depth_camera_lib.glsl */
-  glm::vec2 tolerance{0.0F};
-  gpu::Texture texture;
-  gpu::Framebuffer framebuffer;
-  gpu::Buffer view_block;
-  SceneBlocks blocks;
-  std::optional<draw::Pass> casters;
-  PassesKey recorded;
-  /** Key of the picture in the texture; empty if the texture has no content. */
-  std::optional<DepthKey> drawn;
-};
 
 static PictureKey picture_key(render_scene::RenderScene &scene, std::uint64_t settings)
 {
@@ -229,7 +118,8 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
                         .size_px = viewport.size_px(),
                         .depth = &viewport.depth_texture(),
                         .depth_origin_px = viewport.guard_px(),
-                        .clip_from_view = view.clip_from_view()},
+                        .clip_from_view = view.clip_from_view(),
+                        .has_blended = !data.blended.empty()},
                        shader(viewport.device(), ShaderId::Target, features), data.nearest);
   // A picture without visible objects is transparent black. Every view transform keeps black, so that a clear suffices.
   const gpu::LoadAction load = data.is_seen ? gpu::LoadAction::Load : gpu::LoadAction::Clear;
@@ -284,6 +174,8 @@ void Engine::draw_sample(draw::Viewport &viewport, Data &data, const draw::View 
   }
   if (data.is_seen) {
     data.surfaces->record(view, list);
+    order_blended(data, view);
+    data.blended_surfaces->record(view, list);
   }
   stack.pop();
   device.submit(list);
@@ -345,10 +237,11 @@ void Engine::update_depth_camera(gpu::Device &device, std::span<const draw::Obje
   std::map<std::pair<MaterialClass, render_scene::TextureSet>, draw::ShadingGroup *> groups;
   for (const draw::ObjectIndex index : objects) {
     const render_scene::RenderObject &object = scene_.object(index);
-    if (!object.casts_shadow) {
+    const scene::Mesh &mesh = scene_.scene().meshes()[object.mesh];
+    if (!object.casts_shadow || mesh.topology != scene::Topology::Triangles ||
+        render_scene::lets_light_through(scene_.scene(), mesh)) {
       continue;
     }
-    const scene::Mesh &mesh = scene_.scene().meshes()[object.mesh];
     const MaterialClass cut_out = render_scene::mask_class(scene_.scene(), mesh);
     const render_scene::TextureSet textures = render_scene::textures_of(
         scene_.scene(), mesh, cut_out == MaterialClass::Plain ? cut_out : MaterialClass::BaseColor);
@@ -362,55 +255,6 @@ void Engine::update_depth_camera(gpu::Device &device, std::span<const draw::Obje
     group->call(scene_.batch(object.mesh, render_scene::streams_of(cut_out)), index);
   }
   camera.recorded = key;
-}
-
-void Engine::record(Data &data, gpu::Device &device)
-{
-  const scene::Scene &scene = scene_.scene();
-  const PassesKey key{.structure = scene_.objects().structure_revision(),
-                      .passes = scene_.passes_revision(),
-                      .settings = settings_revision_,
-                      .losses = device.loss_count(),
-                      .depth_texture = depth_camera_ ? depth_camera_->texture.id() : 0};
-  if (data.recorded != key || std::exchange(data.is_winding_changed, false)) {
-    data.recorded = {};
-    data.widest = MaterialClass::Plain;
-    data.surfaces.emplace("unlit", State::WriteColor | State::WriteDepth | State::DepthNearerEqual, &scene_.objects());
-    data.is_mirrored.assign(scene_.objects().index_end(), false);
-    std::map<std::tuple<Feature, State, render_scene::TextureSet>, draw::ShadingGroup *> groups;
-    for (const draw::ObjectIndex index : data.objects) {
-      const render_scene::RenderObject &object = scene_.object(index);
-      const scene::Mesh &mesh = scene.meshes()[object.mesh];
-      const MaterialClass surface = std::min(render_scene::material_class(scene, mesh), MaterialClass::Full);
-      data.widest = std::max(data.widest, surface);
-      data.is_mirrored[index] = draw::is_mirrored(scene_.objects().world_from_object(index));
-      const bool is_receiver = depth_camera_ && object.receives_shadow;
-      const Feature features = feature_of(surface) | (is_receiver ? Feature::DepthCamera : Feature::None);
-      const State state = (scene.material_of(mesh).is_double_sided ? State::None : State::CullBack) |
-                          (data.is_mirrored[index] ? State::FrontClockwise : State::None);
-      const render_scene::TextureSet textures = render_scene::textures_of(scene, mesh, surface);
-      draw::ShadingGroup *&group = groups[{features, state, textures}];
-      if (!group) {
-        group = &data.surfaces->group(shader(device, ShaderId::Surface, features));
-        group->state_enable(state);
-        group->bind_uniform("view_block", data.view_block);
-        data.blocks.bind(*group);
-        render_scene::bind_textures(*group, scene_, surface, textures);
-        if (is_receiver) {
-          group->bind_texture("depth_texture", depth_camera_->texture, data.nearest);
-          group->constant_ref("clip_from_world", &depth_camera_->clip_from_world);
-          group->constant_ref("depth_tolerance", &depth_camera_->tolerance);
-        }
-      }
-      group->call(scene_.batch(object.mesh, render_scene::streams_of(surface)), index);
-    }
-    data.recorded = key;
-  }
-  scene_.upload(data.widest);
-  data.blocks.update(scene_, scene_.objects());
-  if (depth_camera_) {
-    depth_camera_->blocks.update(scene_, scene_.objects());
-  }
 }
 
 const gpu::Texture &Engine::radiance(draw::Viewport &viewport) const

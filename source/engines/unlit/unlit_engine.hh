@@ -29,7 +29,9 @@ struct Settings {
 struct Data;
 
 /**
- * Draws surfaces without lighting: base colour, its texture, vertex colours and emission. A depth camera renders the
+ * Draws surfaces without lighting: base colour, its texture, vertex colours and emission. Blended surfaces are blended
+ * from back to front, and those that transmit light as if the part that they do not transmit covered what is behind;
+ * neither casts a shadow. A transmission texture is not read: its material is drawn opaque. A depth camera renders the
  * scene into a texture, which all viewports share and which is rendered again when the objects or the camera change.
  * Surfaces that receive shadows and are occluded from the depth camera are black. A picture has one sample for each
  * pixel. The engine is a fast preview for editors, and an example of a second engine.
@@ -72,6 +74,9 @@ class Engine final : public draw::Engine {
   const gpu::Shader &shader(gpu::Device &device, ShaderId id, Feature features);
   void update_depth_camera(gpu::Device &device, std::span<const draw::ObjectIndex> objects);
   void record(Data &data, gpu::Device &device);
+  void record_surfaces(Data &data, gpu::Device &device);
+  /** Orders the pass of blended surfaces for \a view, from back to front. */
+  void order_blended(Data &data, const draw::View &view) const;
   void draw_sample(draw::Viewport &viewport, Data &data, const draw::View &view);
 
   render_scene::RenderScene &scene_;

@@ -47,13 +47,11 @@ void read_specular(const Place &place, const JsonValue &value, Model::Material &
 
 void read_coat(const Place &place, const JsonValue &value, Model::Material &material)
 {
-  Model::TextureSlot normal_texture;
   read_members(place, value, into("clearcoatFactor", material.coat),
                into("clearcoatRoughnessFactor", material.coat_roughness),
                into_slot("clearcoatTexture", material.coat_texture),
                into_slot("clearcoatRoughnessTexture", material.coat_roughness_texture),
-               into_slot("clearcoatNormalTexture", normal_texture));
-  material.has_coat_normal_texture = normal_texture.index >= 0;
+               into_slot("clearcoatNormalTexture", material.coat_normal_texture, "scale", &material.coat_normal_scale));
 }
 
 void read_sheen(const Place &place, const JsonValue &value, Model::Material &material)

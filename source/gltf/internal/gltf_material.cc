@@ -125,9 +125,7 @@ class MaterialReader {
     result_.sheen_roughness = clamped("sheenRoughnessFactor", source_.sheen_roughness, 1.0);
     result_.anisotropy = clamped("anisotropyStrength", source_.anisotropy, 1.0);
     result_.anisotropy_rotation = limited("anisotropyRotation", source_.anisotropy_rotation);
-    if (source_.has_coat_normal_texture && result_.coat > 0.0F) {
-      warnings_.add(what_, "its clearcoatNormalTexture is not drawn: the coat is as smooth as the mesh");
-    }
+    result_.coat_normal_scale = limited("clearcoatNormalTexture.scale", source_.coat_normal_scale);
   }
 
   void read_transmission()
@@ -152,7 +150,7 @@ class MaterialReader {
   [[nodiscard]] bool is_read(const SlotName &name) const
   {
     const auto is_one_of = [&](auto... slots) { return ((name.target == slots) || ...); };
-    if (is_one_of(&Material::coat_texture, &Material::coat_roughness_texture)) {
+    if (is_one_of(&Material::coat_texture, &Material::coat_roughness_texture, &Material::coat_normal_texture)) {
       return result_.coat > 0.0F;
     }
     if (is_one_of(&Material::sheen_color_texture, &Material::sheen_roughness_texture)) {
@@ -299,6 +297,37 @@ Handle<Material> MaterialImporter::handle_of(int gltf_material)
       factor_roughness_.emplace(place->second, float(1.0 - std::clamp(*source.glossiness, 0.0, 1.0)));
     }
     uv_sets_.emplace(place->second, reader.uv_sets());
+  }
+  return place->second;
+}
+
+Handle<Material> MaterialImporter::handle_for_lines(int gltf_material, bool has_normals, bool has_tangents)
+{
+  const Handle<Material> of_triangles = handle_of(gltf_material);
+  Material material = scene_.materials()[of_triangles];
+  const bool has_frame = has_tangents || !material.has_frame();
+  if (material.is_unlit || (has_normals && has_frame)) {
+    return of_triangles;
+  }
+  const auto [place, is_new] = handle_for_lines_.try_emplace({gltf_material, has_normals, has_tangents});
+  if (!is_new) {
+    return place->second;
+  }
+  if (!has_normals) {
+    const glm::vec3 sum = material.base_color + material.emissive;
+    const bool has_sum = !material.base_color_texture && !material.emissive_texture && sum == glm::min(sum, 1.0F);
+    if (!has_sum && material.emissive != glm::vec3(0.0F)) {
+      warnings_.add("material '" + printable(material.name) + '\'', "its points and lines without normals do not emit");
+    }
+    material.base_color = has_sum ? sum : material.base_color;
+    material.is_unlit = true;
+  }
+  material.normal_texture = material.coat_normal_texture = {};
+  material.anisotropy = 0.0F;
+  place->second = scene_.add(std::move(material));
+  uv_sets_.emplace(place->second, uv_sets_.at(of_triangles));
+  if (const auto found = factor_roughness_.find(of_triangles); found != factor_roughness_.end()) {
+    factor_roughness_.emplace(place->second, found->second);
   }
   return place->second;
 }

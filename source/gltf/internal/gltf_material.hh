@@ -9,6 +9,7 @@
 #include "scene.hh"
 
 #include <map>
+#include <tuple>
 #include <vector>
 
 /** Internal to source/gltf. */
@@ -22,6 +23,12 @@ class MaterialImporter {
 
   /** The scene's material for a material of the file; -1 is glTF's default material. */
   [[nodiscard]] scene::Handle<scene::Material> handle_of(int gltf_material);
+
+  /**
+   * The same for points and lines, drawn as glTF asks: without normals they are unlit, as the sum of base colour and
+   * emission; without tangents they have neither normal textures nor anisotropy.
+   */
+  [[nodiscard]] scene::Handle<scene::Material> handle_for_lines(int gltf_material, bool has_normals, bool has_tangents);
 
   /**
    * The numbers n of the attributes TEXCOORD_n of a material, at most two. TextureSlot::uv_set is an index into them.
@@ -58,6 +65,8 @@ class MaterialImporter {
   StandIns stand_ins_;
   std::map<scene::Handle<scene::Material>, std::vector<int>> uv_sets_;
   std::map<int, scene::Handle<scene::Material>> handle_of_;
+  /** By material of the file, and whether there are normals and tangents. */
+  std::map<std::tuple<int, bool, bool>, scene::Handle<scene::Material>> handle_for_lines_;
   /** By URI. */
   std::map<std::string, scene::Handle<scene::SurfaceFunction>> surface_functions_;
   /** Roughness without the texture, of materials whose roughness texture contains the factor. */

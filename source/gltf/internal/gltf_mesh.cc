@@ -39,9 +39,10 @@ std::string primitive_name(const Model::Mesh &mesh, int mesh_index, std::size_t 
 /** The slot whose uvs the tangents follow, which may have no texture; nullptr if the material needs no tangents. */
 const scene::TextureSlot *tangent_slot(const scene::Material &material)
 {
-  return material.normal_texture     ? &material.normal_texture
-         : material.has_anisotropy() ? &material.anisotropy_texture
-                                     : nullptr;
+  return material.normal_texture        ? &material.normal_texture
+         : material.has_anisotropy()    ? &material.anisotropy_texture
+         : material.coat_normal_texture ? &material.coat_normal_texture
+                                        : nullptr;
 }
 
 }  // namespace
@@ -76,13 +77,8 @@ void MeshImporter::import_primitive(int gltf_mesh, std::size_t primitive_index, 
 {
   const Model::Mesh &source = file_.model.meshes[gltf_mesh];
   const Model::Primitive &primitive = source.primitives[primitive_index];
-  const std::string what = label("mesh", source.name, static_cast<std::size_t>(gltf_mesh));
   const std::string name = primitive_name(source, gltf_mesh, primitive_index);
   primitive_count_++;
-  if (!is_drawn(primitive.mode)) {
-    warnings_.add_counted(what, 1, mode_reason(primitive.mode));
-    return;
-  }
   const auto [place, is_new] = mesh_of_.try_emplace(
       {name, primitive.attributes, primitive.indices, primitive.material, primitive.mode}, Handle<Mesh>());
   if (!is_new) {
@@ -103,11 +99,7 @@ std::vector<Handle<Mesh>> MeshImporter::deformed_meshes_of(int gltf_mesh, int sk
   const Model::Mesh &source = file_.model.meshes[gltf_mesh];
   for (std::size_t i = 0; i < source.primitives.size(); i++) {
     primitive_count_++;
-    if (!is_drawn(source.primitives[i].mode)) {
-      warnings_.add_counted(label("mesh", source.name, static_cast<std::size_t>(gltf_mesh)), 1,
-                            mode_reason(source.primitives[i].mode));
-    }
-    else if (const Handle<Mesh> mesh = read_primitive(gltf_mesh, i, skin)) {
+    if (const Handle<Mesh> mesh = read_primitive(gltf_mesh, i, skin)) {
       meshes.push_back(mesh);
     }
   }
@@ -130,7 +122,13 @@ Handle<Mesh> MeshImporter::read_primitive(int gltf_mesh, std::size_t primitive_i
     mesh = reader.read();
     if (!mesh.indices.empty()) {
       mesh.colors = reader.read_colors();
-      mesh.material = materials_.handle_of(primitive.material);
+      const bool is_surface = mesh.topology == scene::Topology::Triangles;
+      if (!is_surface) {
+        mesh.tangents = reader.read_tangents();
+      }
+      mesh.material =
+          is_surface ? materials_.handle_of(primitive.material)
+                     : materials_.handle_for_lines(primitive.material, reader.has_normals(), !mesh.tangents.empty());
       const std::vector<int> &uv_sets = materials_.uv_sets(mesh.material);
       // A surface function reads the sets that there are.
       const bool has_function = bool(scene_.materials()[mesh.material].surface_function);
@@ -142,7 +140,7 @@ Handle<Mesh> MeshImporter::read_primitive(int gltf_mesh, std::size_t primitive_i
       mesh.uvs = read_uvs(0);
       mesh.second_uvs = read_uvs(1);
       if (const scene::TextureSlot *slot = tangent_slot(scene_.materials()[mesh.material])) {
-        mesh.tangents = reader.read_tangents();
+        mesh.tangents = is_surface ? reader.read_tangents() : std::move(mesh.tangents);
         has_uvs_for_tangents =
             mesh.tangents.empty() && mesh.uv_set(slot->uv_set).empty() && primitive.attributes.contains("TEXCOORD_0");
         if (has_uvs_for_tangents) {
@@ -153,7 +151,7 @@ Handle<Mesh> MeshImporter::read_primitive(int gltf_mesh, std::size_t primitive_i
         make_missing_tangents(mesh, has_uvs_for_tangents, what);
         spend(reader.file_vertices().size() * deformed_width(primitive, *deforming_skin >= 0));
         deformed = read_deformed(file_, primitive, *deforming_skin, mesh, reader.file_vertices(), what, warnings_);
-        deformed->has_flat_normals = !reader.has_normals();
+        deformed->has_flat_normals = is_surface && !reader.has_normals();
       }
     }
   }
@@ -172,7 +170,9 @@ Handle<Mesh> MeshImporter::read_primitive(int gltf_mesh, std::size_t primitive_i
     scene_.deformed_meshes.push_back(std::move(*deformed));
     return scene_.deformed_meshes.back().mesh;
   }
-  flatten_facets(mesh);
+  if (mesh.topology == scene::Topology::Triangles) {
+    flatten_facets(mesh);
+  }
   make_missing_tangents(mesh, has_uvs_for_tangents, what);
   return scene_.add(std::move(mesh));
 }

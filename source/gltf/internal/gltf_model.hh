@@ -168,6 +168,8 @@ struct Model {
     TextureSlot specular_color_texture;
     TextureSlot coat_texture;
     TextureSlot coat_roughness_texture;
+    TextureSlot coat_normal_texture;
+    double coat_normal_scale = 1.0;
     TextureSlot sheen_color_texture;
     TextureSlot sheen_roughness_texture;
     TextureSlot anisotropy_texture;
@@ -184,7 +186,6 @@ struct Model {
     std::optional<double> glossiness;
     double coat = 0.0;
     double coat_roughness = 0.0;
-    bool has_coat_normal_texture = false;
     std::array<double, 3> sheen_color{0.0, 0.0, 0.0};
     double sheen_roughness = 0.0;
     double anisotropy = 0.0;

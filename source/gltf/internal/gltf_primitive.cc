@@ -10,11 +10,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 
 namespace gnomon::gltf {
 
 using scene::Mesh;
+using scene::Topology;
 
 namespace {
 
@@ -76,6 +79,11 @@ PrimitiveReader::PrimitiveReader(const File &file, const Model::Primitive &primi
       warnings_(warnings),
       positions_(file, position_accessor(), vec3_type)
 {
+  const std::optional<Topology> topology = topology_of(primitive.mode);
+  if (!topology) {
+    throw Fault("mode", std::to_string(primitive.mode) + " is unknown");
+  }
+  topology_ = *topology;
   if (positions_.is_all_zero()) {
     throw Fault("POSITION", primitive_.compression.empty() ? "holds no data"
                                                            : "is compressed by " + printable(primitive_.compression));
@@ -99,21 +107,27 @@ std::uint64_t PrimitiveReader::element_count() const
 
 Mesh PrimitiveReader::read()
 {
-  std::vector<Triangle> triangles = kept_triangles();
   Mesh mesh;
-  if (normals_) {
-    share_vertices(triangles, mesh);
-  }
-  else {
-    unshare_vertices(triangles, mesh);
+  mesh.topology = topology_;
+  const std::uint32_t count = corner_count();
+  switch (topology_) {
+    case Topology::Triangles: add_elements(triangles_of(primitive_.mode, count, losses_), mesh); break;
+    case Topology::Lines: add_elements(lines_of(primitive_.mode, count, losses_), mesh); break;
+    case Topology::Points: {
+      std::vector<Point> points(count);
+      for (std::uint32_t i = 0; i < count; i++) {
+        points[i] = {i};
+      }
+      add_elements(std::move(points), mesh);
+    }
   }
   for (const glm::vec3 &position : mesh.positions) {
     mesh.bounds.extend(position);
   }
-  if (triangles.empty() && losses_ == Losses{}) {
-    throw Fault("POSITION", "makes no triangle");
+  if (mesh.indices.empty() && losses_ == Losses{}) {
+    throw Fault("POSITION", topology_ == Topology::Triangles ? "makes no triangle" : "makes no line or point");
   }
-  losses_.report(warnings_, what_);
+  losses_.report(warnings_, what_, topology_);
   return mesh;
 }
 
@@ -136,7 +150,7 @@ std::vector<glm::vec2> PrimitiveReader::read_uvs(int set)
       losses.bad_uvs += is_uv(uv) ? 0 : 1;
       uvs[i] = is_uv(uv) ? uv : glm::vec2(0.0F);
     }
-    losses.report(warnings_, what_);
+    losses.report(warnings_, what_, topology_);
   }
   catch (const Fault &fault) {
     warnings_.add(what_, std::string("its texture is drawn as the colour of one corner: ") + fault.what());
@@ -195,7 +209,7 @@ std::vector<glm::vec4> PrimitiveReader::read_colors()
       colors.push_back(limited_color(color));
       losses.bad_colors += colors.back() == color ? 0 : 1;
     }
-    losses.report(warnings_, what_);
+    losses.report(warnings_, what_, topology_);
   }
   catch (const Fault &fault) {
     warnings_.add(what_, std::string("its vertex colours are left out: ") + fault.what());
@@ -230,57 +244,84 @@ void PrimitiveReader::open_normals(const File &file)
   }
 }
 
-std::vector<Triangle> PrimitiveReader::kept_triangles()
+std::uint32_t PrimitiveReader::corner_count() const
 {
-  const std::uint32_t count = vertex_count(indices_ ? indices_->count() : positions_.count());
-  std::vector<Triangle> triangles = triangles_of(primitive_.mode, count, losses_);
-  const auto is_lost = [this](Triangle &triangle) {
+  return vertex_count(indices_ ? indices_->count() : positions_.count());
+}
+
+template <typename Element>
+void PrimitiveReader::add_elements(std::vector<Element> elements, Mesh &mesh)
+{
+  keep_drawable(elements);
+  if constexpr (std::is_same_v<Element, Triangle>) {
+    if (!normals_) {
+      unshare_vertices(elements, mesh);
+      return;
+    }
+  }
+  share_vertices(elements, mesh);
+  replace_zero_normals(mesh);
+}
+
+template <typename Element>
+void PrimitiveReader::keep_drawable(std::vector<Element> &elements)
+{
+  const auto is_lost = [this](Element &element) {
     if (indices_) {
-      std::transform(triangle.begin(), triangle.end(), triangle.begin(),
+      std::transform(element.begin(), element.end(), element.begin(),
                      [this](std::uint32_t place) { return indices_->integer(place); });
     }
-    return is_left_out(triangle);
+    return is_left_out(element);
   };
   // The order matters, and is_lost modifies its argument, so std::remove_if cannot be used.
   std::size_t kept = 0;
-  for (Triangle &triangle : triangles) {
-    if (!is_lost(triangle)) {
-      triangles[kept++] = triangle;
+  for (Element &element : elements) {
+    if (!is_lost(element)) {
+      elements[kept++] = element;
     }
   }
-  triangles.resize(kept);
-  return triangles;
+  elements.resize(kept);
 }
 
-bool PrimitiveReader::is_left_out(const Triangle &triangle)
+template <typename Element>
+bool PrimitiveReader::is_left_out(const Element &element)
 {
-  if (std::any_of(triangle.begin(), triangle.end(), [this](std::uint32_t v) { return v >= positions_.count(); })) {
+  if (std::any_of(element.begin(), element.end(), [this](std::uint32_t v) { return v >= positions_.count(); })) {
     losses_.out_of_range++;
     return true;
   }
-  const auto [a, b, c] = triangle;
-  if (primitive_.mode != Model::Triangles && (a == b || b == c || c == a)) {
-    // Degenerate triangles join strips. They are not counted as lost.
-    return true;
+  if constexpr (std::is_same_v<Element, Triangle>) {
+    const auto [a, b, c] = element;
+    if (primitive_.mode != Model::Triangles && (a == b || b == c || c == a)) {
+      // Degenerate triangles join strips. They are not counted as lost.
+      return true;
+    }
   }
-  const std::array corners{positions_.vec3(a), positions_.vec3(b), positions_.vec3(c)};
+  std::array<glm::vec3, std::tuple_size_v<Element>> corners;
+  std::transform(element.begin(), element.end(), corners.begin(),
+                 [this](std::uint32_t vertex) { return positions_.vec3(vertex); });
   if (!std::all_of(corners.begin(), corners.end(), is_position)) {
     losses_.non_finite++;
     return true;
   }
-  if (area_vector(corners[0], corners[1], corners[2]) == glm::dvec3(0.0)) {
-    losses_.flat++;
-    return true;
+  bool is_flat = false;
+  if constexpr (std::is_same_v<Element, Triangle>) {
+    is_flat = area_vector(corners[0], corners[1], corners[2]) == glm::dvec3(0.0);
   }
-  return false;
+  else if constexpr (std::is_same_v<Element, Line>) {
+    is_flat = corners[0] == corners[1];
+  }
+  losses_.flat += is_flat ? 1 : 0;
+  return is_flat;
 }
 
-void PrimitiveReader::share_vertices(const std::vector<Triangle> &triangles, Mesh &mesh)
+template <typename Element>
+void PrimitiveReader::share_vertices(const std::vector<Element> &elements, Mesh &mesh)
 {
   constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> new_index(positions_.count(), unused);
-  for (const Triangle &triangle : triangles) {
-    for (const std::uint32_t vertex : triangle) {
+  for (const Element &element : elements) {
+    for (const std::uint32_t vertex : element) {
       new_index[vertex] = 0;
     }
   }
@@ -289,16 +330,15 @@ void PrimitiveReader::share_vertices(const std::vector<Triangle> &triangles, Mes
       new_index[vertex] = static_cast<std::uint32_t>(mesh.positions.size());
       file_vertices_.push_back(static_cast<std::uint32_t>(vertex));
       mesh.positions.push_back(positions_.vec3(vertex));
-      mesh.normals.push_back(unit_or_zero(normals_->vec3(vertex)));
+      mesh.normals.push_back(normals_ ? unit_or_zero(normals_->vec3(vertex)) : glm::vec3(0.0F, 0.0F, 1.0F));
     }
   }
-  mesh.indices.reserve(3 * triangles.size());
-  for (const Triangle &triangle : triangles) {
-    for (const std::uint32_t vertex : triangle) {
+  mesh.indices.reserve(std::tuple_size_v<Element> * elements.size());
+  for (const Element &element : elements) {
+    for (const std::uint32_t vertex : element) {
       mesh.indices.push_back(new_index[vertex]);
     }
   }
-  replace_zero_normals(mesh);
 }
 
 void PrimitiveReader::unshare_vertices(const std::vector<Triangle> &triangles, Mesh &mesh)
@@ -335,11 +375,15 @@ void PrimitiveReader::replace_zero_normals(Mesh &mesh)
 {
   for (std::size_t i = 0; i < mesh.indices.size(); i++) {
     glm::vec3 &normal = mesh.normals[mesh.indices[i]];
-    if (normal == glm::vec3(0.0F)) {
+    if (normal != glm::vec3(0.0F)) {
+      continue;
+    }
+    normal = glm::vec3(0.0F, 0.0F, 1.0F);
+    if (topology_ == Topology::Triangles) {
       const std::uint32_t *corners = mesh.indices.data() + i / 3 * 3;
       normal = unit(area_vector(mesh.positions[corners[0]], mesh.positions[corners[1]], mesh.positions[corners[2]]));
-      losses_.bad_normals++;
     }
+    losses_.bad_normals++;
   }
 }
 

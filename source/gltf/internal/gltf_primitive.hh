@@ -24,7 +24,10 @@ class PrimitiveReader {
 
   [[nodiscard]] std::uint64_t element_count() const;
 
-  /** Reads positions, normals, indices and bounds. The mesh is empty if no triangle can be kept. */
+  /**
+   * Reads positions, normals, indices, topology and bounds. The mesh is empty if no triangle, line or point can be
+   * kept. Points and lines without normals get +Z: their material must be unlit.
+   */
   scene::Mesh read();
 
   /** Texture coordinates for the mesh of read(). All 0 if the primitive has none that can be read. */
@@ -56,6 +59,7 @@ class PrimitiveReader {
   std::optional<AccessorReader> normals_;
   /** Empty for a primitive without indices. */
   std::optional<AccessorReader> indices_;
+  scene::Topology topology_ = scene::Topology::Triangles;
   Losses losses_;
   std::vector<std::uint32_t> file_vertices_;
 
@@ -64,13 +68,23 @@ class PrimitiveReader {
   /** Normals that cannot be read are replaced, and the surface is kept. */
   void open_normals(const File &file);
 
-  /** The triangles that can be drawn, as vertex indices. */
-  std::vector<Triangle> kept_triangles();
+  /** Number of vertices of the primitive, with repetitions. */
+  [[nodiscard]] std::uint32_t corner_count() const;
 
-  bool is_left_out(const Triangle &triangle);
+  /** Replaces places in the sequence of vertices by vertex indices, and removes what cannot be drawn. */
+  template <typename Element>
+  void keep_drawable(std::vector<Element> &elements);
+
+  template <typename Element>
+  bool is_left_out(const Element &element);
 
   /** Keeps the file's vertices in their order, except for unused ones. */
-  void share_vertices(const std::vector<Triangle> &triangles, scene::Mesh &mesh);
+  template <typename Element>
+  void share_vertices(const std::vector<Element> &elements, scene::Mesh &mesh);
+
+  /** Adds those triangles, lines or points to \a mesh that can be drawn. */
+  template <typename Element>
+  void add_elements(std::vector<Element> elements, scene::Mesh &mesh);
 
   /** glTF requires flat normals if a file has none, so triangles cannot share vertices. */
   void unshare_vertices(const std::vector<Triangle> &triangles, scene::Mesh &mesh);

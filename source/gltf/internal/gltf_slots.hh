@@ -23,7 +23,7 @@ struct SlotName {
 };
 
 /** In the order of scene::texture_inputs. */
-inline constexpr std::array<SlotName, 14> slot_names = {{
+inline constexpr std::array<SlotName, 15> slot_names = {{
     {"baseColorTexture",
      &Model::Material::base_color_texture,
      &scene::Material::base_color_texture,
@@ -84,6 +84,11 @@ inline constexpr std::array<SlotName, 14> slot_names = {{
      &scene::Material::anisotropy_texture,
      {255, 128, 255, 255},
      "the factor alone"},
+    {"clearcoatNormalTexture",
+     &Model::Material::coat_normal_texture,
+     &scene::Material::coat_normal_texture,
+     {128, 128, 255, 255},
+     "a coat as smooth as the mesh"},
     {"transmissionTexture",
      &Model::Material::transmission_texture,
      &scene::Material::transmission_texture,

@@ -2,21 +2,26 @@
 #pragma once
 
 #include "internal/gltf_report.hh"
+#include "scene_types.hh"
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
-/** Triangles of a primitive, and counts of its faults. Internal to source/gltf. */
+/** Triangles, lines and points of a primitive, and counts of its faults. Internal to source/gltf. */
 namespace gnomon::gltf {
 
 using Triangle = std::array<std::uint32_t, 3>;
+using Line = std::array<std::uint32_t, 2>;
+using Point = std::array<std::uint32_t, 1>;
 
-/** Counts of faulty triangles, vertices and attributes of a primitive. */
+/** Counts of faulty triangles, lines, points, vertices and attributes of a primitive. */
 struct Losses {
   std::uint64_t out_of_range = 0;
   std::uint64_t non_finite = 0;
+  /** Triangles without area, and lines without length. */
   std::uint64_t flat = 0;
   std::uint64_t incomplete = 0;
   std::uint64_t bad_normals = 0;
@@ -25,16 +30,16 @@ struct Losses {
 
   bool operator==(const Losses &) const = default;
 
-  void report(Warnings &warnings, const std::string &what) const;
+  void report(Warnings &warnings, const std::string &what, scene::Topology topology) const;
 };
 
-/** Whether primitives of this glTF mode consist of triangles. */
-[[nodiscard]] bool is_drawn(int mode);
-
-/** The reason for which a primitive of another mode is left out. */
-[[nodiscard]] std::string mode_reason(int mode);
+/** What primitives of this glTF mode consist of; empty: the mode is unknown. */
+[[nodiscard]] std::optional<scene::Topology> topology_of(int mode);
 
 /** The triangles of a list, strip or fan of \a count vertices, as positions in that sequence, with glTF's winding. */
 [[nodiscard]] std::vector<Triangle> triangles_of(int mode, std::uint32_t count, Losses &losses);
+
+/** The same for a list, strip or loop of lines. */
+[[nodiscard]] std::vector<Line> lines_of(int mode, std::uint32_t count, Losses &losses);
 
 }  // namespace gnomon::gltf

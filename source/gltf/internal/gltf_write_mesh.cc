@@ -171,6 +171,9 @@ const JsonText &MeshWriter::primitive(Handle<Mesh> handle)
     add_deformation(*deformed, what, attributes, place->second);
   }
   place->second.add("attributes", attributes.object());
+  if (mesh.topology != scene::Topology::Triangles) {
+    place->second.add("mode", std::to_string(mesh.topology == scene::Topology::Lines ? Model::Lines : Model::Points));
+  }
   place->second.add("indices", std::to_string(buffer_.add_accessor(mesh.indices, Model::UnsignedInt, "SCALAR")));
   if (scene_.materials().is_live(mesh.material)) {
     place->second.add("material", std::to_string(material(mesh.material)));
@@ -264,6 +267,8 @@ int MeshWriter::material(Handle<Material> handle)
     coat.add("clearcoatRoughnessFactor", json_number(material.coat_roughness, what));
     add_slot(coat, "clearcoatTexture", material.coat_texture, what);
     add_slot(coat, "clearcoatRoughnessTexture", material.coat_roughness_texture, what);
+    add_slot(coat, "clearcoatNormalTexture", material.coat_normal_texture, what,
+             ",\"scale\":" + json_number(material.coat_normal_scale, what));
     add_extension("KHR_materials_clearcoat", coat.object());
   }
   if (material.sheen_color != glm::vec3(0.0F)) {

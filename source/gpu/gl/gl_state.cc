@@ -10,13 +10,14 @@ namespace gnomon::gpu {
 namespace {
 
 /** Capabilities that set_draw_defaults() disables. Command lists enable some of them. */
-constexpr std::array<GLenum, 26> used_capabilities = {
+constexpr std::array<GLenum, 27> used_capabilities = {
     GL_COLOR_LOGIC_OP,
     GL_CULL_FACE,
     GL_DEPTH_CLAMP,
     GL_DEPTH_TEST,
     GL_DITHER,
     GL_FRAMEBUFFER_SRGB,
+    GL_LINE_SMOOTH,
     GL_POLYGON_OFFSET_FILL,
     GL_POLYGON_SMOOTH,
     GL_PRIMITIVE_RESTART,
@@ -180,6 +181,8 @@ void set_draw_defaults()
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   glDepthRangeIndexed(0, 0.0, 1.0);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+  glLineWidth(1.0F);
+  glPointSize(1.0F);
   glProvokingVertex(GL_LAST_VERTEX_CONVENTION);
 }
 
@@ -210,6 +213,8 @@ SavedDrawState::SavedDrawState(const UsedSlots &slots)
       provoking_vertex_(integer(GL_PROVOKING_VERTEX))
 {
   glGetBooleanv(GL_DEPTH_WRITEMASK, &depth_mask_);
+  glGetFloatv(GL_LINE_WIDTH, &line_width_);
+  glGetFloatv(GL_POINT_SIZE, &point_size_);
   glGetFloati_v(GL_VIEWPORT, 0, viewport_.data());
   glGetIntegeri_v(GL_SCISSOR_BOX, 0, scissor_box_.data());
   glGetDoublei_v(GL_DEPTH_RANGE, 0, depth_range_.data());
@@ -295,6 +300,8 @@ SavedDrawState::~SavedDrawState()
   glCullFace(GLenum(cull_face_));
   glFrontFace(GLenum(front_face_));
   glPolygonMode(GL_FRONT_AND_BACK, GLenum(polygon_mode_));
+  glLineWidth(line_width_);
+  glPointSize(point_size_);
   glProvokingVertex(GLenum(provoking_vertex_));
   glUseProgram(GLuint(program_));
   glBindVertexArray(GLuint(vertex_array_));

@@ -136,6 +136,8 @@ class SavedDrawState {
   GLint cull_face_ = 0;
   GLint front_face_ = 0;
   GLint polygon_mode_ = 0;
+  GLfloat line_width_ = 1.0F;
+  GLfloat point_size_ = 1.0F;
   GLint provoking_vertex_ = 0;
 };
 

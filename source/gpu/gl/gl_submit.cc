@@ -108,7 +108,7 @@ void GlDevice::execute(const CommandList &list)
         complete_textures();
         glBindVertexArray(vertex_array_);
         glMultiDrawElementsIndirect(
-            GL_TRIANGLES, GL_UNSIGNED_INT,
+            primitive_, GL_UNSIGNED_INT,
             reinterpret_cast<const void *>(draws_offset_ + command.first * sizeof(DrawIndirect)),
             GLsizei(command.count), sizeof(DrawIndirect));
         break;
@@ -259,6 +259,7 @@ void GlDevice::end_pass()
 
 void GlDevice::set_state(State state)
 {
+  primitive_ = has(state, State::DrawPoints) ? GL_POINTS : has(state, State::DrawLines) ? GL_LINES : GL_TRIANGLES;
   glDepthMask(GLboolean(has(state, State::WriteDepth)));
   // OpenGL writes depth only if the depth test is enabled, so GL_ALWAYS is used to write without a test.
   const GLenum function = has(state, State::DepthEqual)         ? GL_EQUAL

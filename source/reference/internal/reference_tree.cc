@@ -63,6 +63,9 @@ double Tracer::Tree::opacity_at(const Triangle &triangle, const glm::dvec3 &weig
 void Tracer::Tree::add_object(std::uint32_t index)
 {
   const scene::Mesh &mesh = scene.meshes()[objects[index].mesh];
+  if (mesh.topology != scene::Topology::Triangles) {
+    return;
+  }
   const glm::dmat4 &world_from_object = objects[index].world_from_object;
   const bool is_mirrored = glm::determinant(glm::dmat3(world_from_object)) < 0.0;
   std::vector<glm::dvec3> positions;

@@ -65,7 +65,8 @@ void check_mesh(const scene::Scene &scene, const scene::Mesh &mesh, Checker &che
 {
   checker.check(!mesh.material || scene.materials().is_live(mesh.material), "of a material that is there");
   checker.check(mesh.normals.size() == mesh.positions.size(), "with a normal a position");
-  checker.check(!mesh.indices.empty() && mesh.indices.size() % 3 == 0, "of whole triangles");
+  checker.check(!mesh.indices.empty() && mesh.indices.size() % index_count_of(mesh.topology) == 0,
+                "of whole triangles, lines or points");
   checker.check(std::ranges::all_of(mesh.indices, [&](std::uint32_t i) { return i < mesh.positions.size(); }),
                 "with indices in range");
   checker.check(!mesh.bounds.is_empty(), "with bounds");
@@ -84,8 +85,9 @@ void check_mesh(const scene::Scene &scene, const scene::Mesh &mesh, Checker &che
                                       [](const glm::vec2 &uv) { return std::isfinite(uv.x) && std::isfinite(uv.y); }),
                   "with finite texture coordinates");
   }
-  checker.check(!mesh.tangents.empty() || !material.normal_texture, "with tangents for its normal texture");
-  checker.check(mesh.tangents.empty() || material.normal_texture || material.has_anisotropy(),
+  checker.check(!mesh.tangents.empty() || !(material.normal_texture || material.coat_normal_texture),
+                "with tangents for its normal textures");
+  checker.check(mesh.tangents.empty() || material.has_frame(),
                 "with tangents only where its material has a normal texture or anisotropy");
   checker.check(std::ranges::all_of(mesh.tangents,
                                     [](const glm::vec4 &t) {

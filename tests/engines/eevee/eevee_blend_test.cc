@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Order of blended objects, and that scenes without them, and without what transmits light, take nothing for them.
-#include "eevee_blend_order.hh"
 #include "eevee_test_scene.hh"
 
 #include "eevee_sequence_shared.h"
+#include "render_blend_order.hh"
 
 #include <gtest/gtest.h>
 
@@ -15,6 +15,9 @@
 
 namespace gnomon::eevee {
 namespace {
+
+using render_scene::back_to_front;
+using render_scene::blend_order_exact_max;
 
 std::mt19937 random_bits(7);
 

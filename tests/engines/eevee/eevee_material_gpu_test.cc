@@ -433,6 +433,40 @@ TEST_F(LayersGpuTest, ACoatIsAsSmoothAsTheMesh)
   test::expect_near(middle(), smooth, 1e-5F);
 }
 
+/** Whatever the base's normal texture, and its factor, are. */
+TEST_F(LayersGpuTest, ACoatsNormalTextureTurnsItAsNormalsOfTheMeshWould)
+{
+  add_mirrored_sun();
+  edit([&](scene::Material &value) {
+    value.base_color = glm::vec3(0.0F);
+    value.coat = 1.0F;
+    value.coat_roughness = 0.3F;
+  });
+  const glm::vec3 smooth = middle();
+  const std::vector<glm::vec3> straight = scene.meshes()[mesh].normals;
+  for (const float scale : {1.0F, -1.0F}) {
+    const glm::vec3 texel = glm::vec3(153, 102, 230) / 255.0F * 2.0F - 1.0F;
+    const glm::vec3 tilted = glm::normalize(glm::vec3(scale * texel.x, scale * texel.y, texel.z));
+    edit([](scene::Material &value) { value.coat_normal_texture = value.normal_texture = {}; });
+    scene.edit(mesh, [&](scene::Mesh &value) { value.normals.assign(straight.size(), tilted); });
+    const glm::vec3 expected = middle();
+    EXPECT_GT(glm::length(expected - smooth), 0.1F * smooth.r);
+    scene.edit(mesh, [&](scene::Mesh &value) { value.normals = straight; });
+    for (const float base_scale : {0.0F, 1.0F, -1.0F}) {
+      edit([&](scene::Material &value) {
+        value.coat_normal_texture = texture({153, 102, 230, 255});
+        value.coat_normal_scale = scale;
+        value.normal_texture = base_scale == 0.0F ? scene::TextureSlot() : texture({200, 128, 140, 255});
+        value.normal_scale = base_scale;
+      });
+      scene.edit(mesh, [&](scene::Mesh &value) {
+        scene::make_tangents(value, scene.materials()[material].coat_normal_texture);
+      });
+      test::expect_near(middle(), expected, 1e-4F * smooth.r);
+    }
+  }
+}
+
 /** Each lobe alone, from one frame and from samples of the lamp. */
 TEST_F(LayersGpuTest, OneFrameOfAnAreaLampIsNearTheMeanOfItsSamples)
 {

@@ -145,6 +145,86 @@ TEST_F(UnlitGpuTest, TexturesTintTheBaseColorAndUnlitMaterialsAreShownToo)
   EXPECT_EQ(picture(engine).at(size_px.x / 4, size_px.y / 2), glm::vec4(0.5F, 0, 0, 1));
 }
 
+/** In whatever order they were added, and without a shadow. */
+TEST_F(UnlitGpuTest, BlendedAndTransmissiveSurfacesCoverTheirPartOfWhatIsBehind)
+{
+  struct Pane {
+    glm::vec3 color;
+    float opacity;
+    double z;
+  };
+  const std::array<Pane, 2> panes = {{{{1, 0, 0.5F}, 0.25F, 0.5}, {{0, 1, 0.5F}, 0.5F, 1.0}}};
+  const auto add_pane = [&](const Pane &pane, bool is_transmissive) {
+    const auto material = test::add_material(scene, pane.color);
+    scene.edit(material, [&](scene::Material &one) {
+      one.alpha_mode = is_transmissive ? scene::AlphaMode::Opaque : scene::AlphaMode::Blend;
+      one.alpha = is_transmissive ? 1.0F : pane.opacity;
+      one.transmission = is_transmissive ? 1.0F - pane.opacity : 0.0F;
+      one.is_unlit = !is_transmissive;
+    });
+    test::add_object(scene, test::add_square_mesh(scene, material),
+                     glm::scale(glm::translate(glm::dmat4(1), {0, 0, pane.z}), glm::dvec3(1.5)));
+  };
+  for (const bool is_transmissive : {false, true}) {
+    for (const bool is_far_first : {false, true}) {
+      scene = {};
+      add_ground();
+      test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 2}, {0, 0, -1}, 1.0F);
+      add_pane(panes[is_far_first ? 0 : 1], is_transmissive);
+      add_pane(panes[is_far_first ? 1 : 0], is_transmissive);
+      Engine engine(*render_scene);
+      const test::Picture unlit = picture(engine);
+      glm::vec3 expected = ground_color;
+      for (const Pane &pane : panes) {
+        expected = glm::mix(expected, pane.color, pane.opacity);
+      }
+      for (int c = 0; c < 3; c++) {
+        // Of half floats, after each of two blends.
+        EXPECT_NEAR(unlit.at(size_px.x / 2, size_px.y / 2)[c], expected[c], 2e-3) << is_transmissive << is_far_first;
+      }
+      EXPECT_EQ(unlit.at(size_px.x / 2, size_px.y / 2).a, 1.0F);
+      viewport->remove_engine(engine);
+    }
+  }
+}
+
+TEST_F(UnlitGpuTest, ABlendedSurfaceAloneHasItsAlpha)
+{
+  const auto material = test::add_material(scene, {1, 0.5F, 0});
+  scene.edit(material, [](scene::Material &one) {
+    one.alpha_mode = scene::AlphaMode::Blend;
+    one.alpha = 0.25F;
+  });
+  test::add_object(scene, test::add_square_mesh(scene, material), glm::scale(glm::dmat4(1), glm::dvec3(3)));
+  Engine engine(*render_scene);
+  EXPECT_EQ(picture(engine).at(size_px.x / 2, size_px.y / 2), glm::vec4(0.25F, 0.125F, 0, 0.25F));
+}
+
+/** Seen in parallel along -Z, a line through the middles of pixels is one row of them. */
+TEST_F(UnlitGpuTest, ALineIsOneRowOfPixels)
+{
+  const auto material = test::add_material(scene, {0.25F, 0.5F, 1});
+  scene::Mesh mesh;
+  const float y = 1.0F / float(size_px.y);
+  mesh.positions = {{-2, y, 0}, {2, y, 0}};
+  mesh.normals.assign(2, {0, 0, 1});
+  mesh.indices = {0, 1};
+  mesh.topology = scene::Topology::Lines;
+  mesh.material = material;
+  test::add_object(scene, scene.add(std::move(mesh)), glm::dmat4(1));
+  camera = test::camera_at({0, 0, 5}, {0, 0, 0});
+  camera.kind = scene::CameraKind::Orthographic;
+  camera.half_width = camera.half_height = 1.0F;
+  Engine engine(*render_scene);
+  const test::Picture line = picture(engine);
+  for (int row = 0; row < size_px.y; row++) {
+    for (int column = 0; column < size_px.x; column++) {
+      EXPECT_EQ(line.at(column, row), row == size_px.y / 2 ? glm::vec4(0.25F, 0.5F, 1, 1) : glm::vec4(0))
+          << column << ", " << row;
+    }
+  }
+}
+
 TEST_F(UnlitGpuTest, AViewportThatWasUnlitIsLitAsBefore)
 {
   add_ground();

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "eevee_blend_order.hh"
+#include "render_blend_order.hh"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <numeric>
 
-namespace gnomon::eevee {
+namespace gnomon::render_scene {
 
 namespace {
 
@@ -69,4 +69,4 @@ std::vector<std::uint32_t> back_to_front(std::span<const scene::Bounds> boxes, c
   return sorted;
 }
 
-}  // namespace gnomon::eevee
+}  // namespace gnomon::render_scene

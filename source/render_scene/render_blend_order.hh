@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace gnomon::eevee {
+namespace gnomon::render_scene {
 
 /** More boxes than this are ordered by distance alone, because the exact order takes time by the square of their
  * number. */
@@ -26,4 +26,4 @@ inline constexpr std::size_t blend_order_exact_max = 1024;
  */
 [[nodiscard]] std::vector<std::uint32_t> back_to_front(std::span<const scene::Bounds> boxes, const glm::vec4 &eye_ws);
 
-}  // namespace gnomon::eevee
+}  // namespace gnomon::render_scene

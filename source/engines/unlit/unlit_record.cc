@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// Records the passes of a viewport's surfaces, and orders those that are blended.
+#include "unlit_engine_data.hh"
+
+#include "render_blend_order.hh"
+
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+#include <utility>
+
+namespace gnomon::unlit {
+
+using gpu::State;
+using render_scene::MaterialClass;
+
+void Engine::record(Data &data, gpu::Device &device)
+{
+  const PassesKey key{.structure = scene_.objects().structure_revision(),
+                      .passes = scene_.passes_revision(),
+                      .settings = settings_revision_,
+                      .losses = device.loss_count(),
+                      .depth_texture = depth_camera_ ? depth_camera_->texture.id() : 0};
+  if (data.recorded != key || std::exchange(data.is_winding_changed, false)) {
+    data.recorded = {};
+    record_surfaces(data, device);
+    data.recorded = key;
+  }
+  scene_.upload(data.widest);
+  data.blocks.update(scene_, scene_.objects());
+  if (depth_camera_) {
+    depth_camera_->blocks.update(scene_, scene_.objects());
+  }
+}
+
+void Engine::record_surfaces(Data &data, gpu::Device &device)
+{
+  const scene::Scene &scene = scene_.scene();
+  data.widest = MaterialClass::Plain;
+  data.surfaces.emplace("unlit", State::WriteColor | State::WriteDepth | State::DepthNearerEqual, &scene_.objects());
+  data.blended_surfaces.emplace("unlit blended", State::WriteColor | State::DepthNearerEqual | State::BlendOver,
+                                &scene_.objects());
+  data.blended.clear();
+  data.is_mirrored.assign(scene_.objects().index_end(), false);
+  std::uint32_t blended_group_count = 0;
+  std::map<std::tuple<Feature, State, render_scene::TextureSet>, draw::ShadingGroup *> groups;
+  for (const draw::ObjectIndex index : data.objects) {
+    const render_scene::RenderObject &object = scene_.object(index);
+    const scene::Mesh &mesh = scene.meshes()[object.mesh];
+    const MaterialClass surface = std::min(render_scene::material_class(scene, mesh), MaterialClass::Full);
+    data.widest = std::max(data.widest, surface);
+    data.is_mirrored[index] = draw::is_mirrored(scene_.objects().world_from_object(index));
+    const bool is_receiver = depth_camera_ && object.receives_shadow;
+    const Feature features = feature_of(surface) | (is_receiver ? Feature::DepthCamera : Feature::None);
+    const State fixed =
+        (data.is_mirrored[index] ? State::FrontClockwise : State::None) | render_scene::topology_state(mesh.topology);
+    const bool is_double_sided = scene.material_of(mesh).is_double_sided;
+    const render_scene::TextureSet textures = render_scene::textures_of(scene, mesh, surface);
+    const gpu::Batch &batch = scene_.batch(object.mesh, render_scene::streams_of(surface));
+    const auto make_group = [&](draw::Pass &pass, State state) -> draw::ShadingGroup & {
+      draw::ShadingGroup &group = pass.group(shader(device, ShaderId::Surface, features));
+      group.state_enable(state);
+      group.bind_uniform("view_block", data.view_block);
+      data.blocks.bind(group);
+      render_scene::bind_textures(group, scene_, surface, textures);
+      if (is_receiver) {
+        group.bind_texture("depth_texture", depth_camera_->texture, data.nearest);
+        group.constant_ref("clip_from_world", &depth_camera_->clip_from_world);
+        group.constant_ref("depth_tolerance", &depth_camera_->tolerance);
+      }
+      return group;
+    };
+    if (render_scene::lets_light_through(scene, mesh)) {
+      BlendedObject &blended = data.blended.emplace_back(BlendedObject{index, blended_group_count, 1});
+      // The backs of a convex object are behind its fronts. Points and lines have no sides.
+      if (is_double_sided && mesh.topology == scene::Topology::Triangles) {
+        make_group(*data.blended_surfaces, fixed | State::CullFront).call(batch, index);
+        blended.group_count++;
+      }
+      make_group(*data.blended_surfaces, fixed | State::CullBack).call(batch, index);
+      blended_group_count += blended.group_count;
+      continue;
+    }
+    const State state = fixed | (is_double_sided ? State::None : State::CullBack);
+    draw::ShadingGroup *&group = groups[{features, state, textures}];
+    if (!group) {
+      group = &make_group(*data.surfaces, state);
+    }
+    group->call(batch, index);
+  }
+}
+
+void Engine::order_blended(Data &data, const draw::View &view) const
+{
+  const glm::mat4 world_from_view = glm::inverse(view.view_from_world());
+  // \see back_to_front: the position of the eye, or the direction towards it.
+  const glm::vec4 eye_ws = world_from_view[view.is_perspective() ? 3 : 2];
+  std::vector<scene::Bounds> boxes;
+  for (const BlendedObject &blended : data.blended) {
+    boxes.push_back(scene_.object(blended.object).bounds);
+  }
+  std::vector<std::uint32_t> order;
+  for (const std::uint32_t place : render_scene::back_to_front(boxes, eye_ws)) {
+    const BlendedObject &blended = data.blended[place];
+    for (std::uint32_t i = 0; i < blended.group_count; i++) {
+      order.push_back(blended.first_group + i);
+    }
+  }
+  data.blended_surfaces->set_order(std::move(order));
+}
+
+}  // namespace gnomon::unlit
