@@ -174,7 +174,7 @@ void BudgetedPicture::draw_preview(const draw::View &view, const BudgetControlle
                            }
                            else {
                              preview_ = std::make_unique<draw::Viewport>(viewport_.device(), size_px);
-                             preview_engine_ = std::make_unique<Engine>(scene_, settings);
+                             preview_engine_ = std::make_unique<Engine>(engine_, settings);
                            }
                            preview_settings_ = from;
                          }

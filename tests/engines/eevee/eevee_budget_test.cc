@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 namespace gnomon::eevee {
@@ -155,6 +156,24 @@ TEST_F(BudgetTest, TheSetUpOfASampleIsDividedIntoLayersOfShadowsThatFit)
   }
   EXPECT_EQ(kind(), BudgetReport::Kind::Complete);
   EXPECT_EQ(faces_drawn(engine, viewport), all_faces);
+}
+
+TEST_F(BudgetTest, ThePreviewSharesThePrograms)
+{
+  EXPECT_FALSE(draw(0.01));
+  EXPECT_EQ(kind(), BudgetReport::Kind::Preview);
+  while (!draw(0.01)) {
+  }
+  std::multiset<std::pair<std::string, std::string>> programs;
+  for (const gpu::LiveResource &resource : device->live()) {
+    if (resource.kind == gpu::ResourceKind::Shader) {
+      programs.emplace(resource.name, resource.detail);
+    }
+  }
+  EXPECT_GE(programs.size(), 4U);
+  for (const auto &program : programs) {
+    EXPECT_EQ(programs.count(program), 1U) << program.first << ' ' << program.second << " was compiled twice";
+  }
 }
 
 TEST_F(BudgetTest, ABudgetOutOfTheRangeIsAnError)
