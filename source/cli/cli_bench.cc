@@ -396,6 +396,20 @@ void add_bench(CLI::App &app, Status &status)
         ->check(CLI::Range(1, 100000));
     bench->add_option("--json", o->json, "Write the figures, in seconds");
   }
+  CLI::App *frames = command->add_subcommand("frames", "Times of a host's frames, one by one, and within a budget");
+  frames->add_option("scenes", o->scenes, "glTF 2.0 files")->required();
+  frames->add_option("--frames", o->frames, "Measured frames of each kind, after some that warm up")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000));
+  frames->add_option("--budget", o->budget_ms, "Time of a draw within a budget, milliseconds")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 10000.0));
+  frames->add_option("--backend", o->backend, "gl, or null: without a driver")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"gl", "null"}));
+  frames->add_option("--json", o->json, "Write the figures, in seconds");
+  add_world_options(*frames, o->world);
+  frames->callback([o] { bench_frames(*o); });
   CLI::App *light = command->add_subcommand(
       "light", "Errors of the light of lamps with a size in one frame, against numerical integration");
   light->add_option("--points", o->points, "Points in each of the sets of an integral")

@@ -8,16 +8,20 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <string>
+#include <vector>
 
 /** Parts of `gnomon bench` that several of its files use. */
 namespace gnomon::cli {
 
 struct BenchOptions {
   std::string scene;
+  std::vector<std::string> scenes;
   std::string backend = "gl";
   int rounds = 21;
   int points = 256;
   int count_max = 1 << 30;
+  int frames = 300;
+  double budget_ms = 33.0;
   std::string json;
   WorldOptions world;
 };
@@ -29,5 +33,6 @@ struct BenchOptions {
 void write_json(const std::string &path, const nlohmann::json &json);
 
 void bench_growth(const BenchOptions &options);
+void bench_frames(const BenchOptions &options);
 
 }  // namespace gnomon::cli

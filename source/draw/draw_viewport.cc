@@ -196,7 +196,23 @@ void Viewport::begin_part(std::size_t engine_count)
 {
   const int left = rows_left();
   const int count = engine_count == 1 ? std::min(rows_max_, left) : left;
-  part_ = {.is_first = !next_row_, .is_last = count == left, .row = next_row_.value_or(0), .row_count = count};
+  part_ = {.is_first = !next_row_,
+           .is_last = count == left,
+           .row = next_row_.value_or(0),
+           .row_count = count,
+           .setup_max = engine_count == 1 && count == 0 ? setup_max_ : no_setup_max};
+  setup_count_ = 0;
+  is_setup_open_ = false;
+}
+
+void Viewport::set_setup(int unit_count, bool is_whole)
+{
+  setup_count_ = unit_count;
+  is_setup_open_ = !is_whole;
+  if (!is_whole) {
+    part_.row_count = 0;
+    part_.is_last = false;
+  }
 }
 
 void Viewport::extend_part()

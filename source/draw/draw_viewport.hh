@@ -31,6 +31,8 @@ struct SamplePart {
   /** Rows of pixels to be lit, counted from the first row of Viewport::drawn_region. There may be none. */
   int row = 0;
   int row_count = 0;
+  /** \see Viewport::set_setup_max */
+  int setup_max = 0;
 };
 
 /**
@@ -83,6 +85,28 @@ class Viewport {
     rows_max_ = rows;
   }
   static constexpr int no_rows_max = std::numeric_limits<int>::max();
+  /**
+   * Draw what a sample needs before its rows in parts, too: a draw with 0 rows draws at most this number of units of
+   * it, which the engine chooses. Eevee's are layers of shadows; depth is drawn with the first part. No limit at first.
+   * \pre \a units is at least 0
+   */
+  void set_setup_max(int units)
+  {
+    setup_max_ = units;
+  }
+  static constexpr int no_setup_max = std::numeric_limits<int>::max();
+  /** During draw_scene: the part has drawn \a unit_count units. Unless that is all, it lights no rows. */
+  void set_setup(int unit_count, bool is_whole);
+  /** Units that the last part has drawn. */
+  [[nodiscard]] int setup_count() const
+  {
+    return setup_count_;
+  }
+  /** Whether a sample has begun that needs more units before its rows. */
+  [[nodiscard]] bool has_open_setup() const
+  {
+    return next_row_.has_value() && is_setup_open_;
+  }
   /** During draw_scene: the part of the sample to be drawn. */
   [[nodiscard]] const SamplePart &part() const
   {
@@ -244,6 +268,9 @@ class Viewport {
   int samples_drawn_ = 0;
   std::uint64_t restart_count_ = 0;
   int rows_max_ = no_rows_max;
+  int setup_max_ = no_setup_max;
+  int setup_count_ = 0;
+  bool is_setup_open_ = false;
   SamplePart part_;
   /** The first row of the next part of a sample that has begun. */
   std::optional<int> next_row_;

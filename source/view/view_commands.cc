@@ -421,6 +421,7 @@ constexpr std::array commands = std::to_array<Command>({
     {"tab", "NAME", 1, 1, Need::Frame, show_tab},
     {"message", "TEXT", 1, 1, Need::Nothing, expect_message},
     {"wait", "", 0, 0, Need::Pictures, wait},
+    {"until", "TEXT", 1, 1, Need::Message, wait},
     {"screenshot", "FILE", 1, 1, Need::Frame, save_screenshot},
     {"picture", "FILE", 1, 1, Need::Nothing, save_picture},
     {"stay", "", 0, 0, Need::Nothing, stay},

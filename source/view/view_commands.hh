@@ -11,7 +11,7 @@
 namespace gnomon::view {
 
 /** What a command needs before the next one. */
-enum class Need { Nothing, Frame, Pictures };
+enum class Need { Nothing, Frame, Pictures, Message };
 
 /** The arguments of a command. */
 using Words = std::span<const std::string>;

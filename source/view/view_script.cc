@@ -82,7 +82,13 @@ void Script::step(App &app)
   else if (waits_) {
     waits_ = !app.is_complete();
   }
-  while (frames_ == 0 && !waits_ && next_ < lines_.size()) {
+  const std::vector<Message> &messages = app.messages();
+  while (!awaited_.empty() && seen_ < messages.size()) {
+    if (messages[seen_++].text.find(awaited_) != std::string::npos) {
+      awaited_.clear();
+    }
+  }
+  while (frames_ == 0 && !waits_ && awaited_.empty() && next_ < lines_.size()) {
     const ScriptLine &line = lines_[next_++];
     try {
       const Command &command = *find_command(line.words[0]);
@@ -94,6 +100,7 @@ void Script::step(App &app)
           frames_ = 2;
           waits_ = true;
           break;
+        case Need::Message: awaited_ = line.words[1]; break;
       }
     }
     catch (const std::exception &error) {

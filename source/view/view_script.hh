@@ -36,7 +36,7 @@ class Script {
   /** All commands were run, and the pictures that they wait for are complete. */
   [[nodiscard]] bool is_done() const
   {
-    return next_ == lines_.size() && frames_ == 0 && !waits_;
+    return next_ == lines_.size() && frames_ == 0 && !waits_ && awaited_.empty();
   }
 
  private:
@@ -47,6 +47,10 @@ class Script {
   int frames_ = 0;
   /** For all pictures to be complete. */
   bool waits_ = false;
+  /** For a message with this text; empty: for none. */
+  std::string awaited_;
+  /** Messages that were awaited, and those before them. */
+  std::size_t seen_ = 0;
 };
 
 }  // namespace gnomon::view

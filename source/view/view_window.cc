@@ -35,9 +35,13 @@ Window &window_of(GLFWwindow *window)
   return *static_cast<Window *>(glfwGetWindowUserPointer(window));
 }
 
-void GLAPIENTRY take_debug_message(GLenum /*source*/, GLenum type, GLuint /*id*/, GLenum severity, GLsizei length,
+void GLAPIENTRY take_debug_message(GLenum source, GLenum type, GLuint /*id*/, GLenum severity, GLsizei length,
                                    const GLchar *text, const void *messages)
 {
+  // What a shader's author has written is no error of the program; the device names its file and line.
+  if (source == GL_DEBUG_SOURCE_SHADER_COMPILER) {
+    return;
+  }
   if (type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH) {
     static_cast<std::vector<std::string> *>(const_cast<void *>(messages))->emplace_back(text, std::size_t(length));
   }

@@ -102,6 +102,22 @@ TEST_F(BenchTest, LampsMeasuresFewAndMany)
                                                             {"growing", {1, 8, 32, 128, 1024, 10000}}}));
 }
 
+TEST_F(BenchTest, FramesOfAStillPictureDrawAndUploadNothing)
+{
+  const Finished finished =
+      run("bench frames '" GNOMON_SOURCE "/examples/scenes/spots.glb' --backend null --frames 12 --json bench.json");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const json bench = json::parse(read("bench.json"));
+  ASSERT_EQ(bench["rows"].size(), 1U);
+  const json &row = bench["rows"][0];
+  for (const char *what : {"control", "moved_lamp", "moved_camera", "refined"}) {
+    EXPECT_LE(row[what]["p50"], row[what]["p95"]) << what;
+    EXPECT_LE(row[what]["p95"], row[what]["longest"]) << what;
+  }
+  EXPECT_GT(row["moved_lamp"]["p50"], row["control"]["p50"]);
+  EXPECT_EQ(row["still"], json({{"draws", 0}, {"upload_bytes", 0}}));
+}
+
 TEST_F(BenchTest, LightComparesApproximationsWithIntegrals)
 {
   const Finished finished = run("bench light --points 1 --json bench.json");

@@ -118,6 +118,24 @@ bool BudgetController::fits_setup(double budget, double spent, bool is_first) co
   return setup && spent + *setup + write_.value().value_or(0.0) <= later_share * within_limits(budget);
 }
 
+bool BudgetController::fits_beginning(double budget, double spent) const
+{
+  const std::optional<double> beginning = beginning_.value();
+  return beginning && spent + *beginning + write_.value().value_or(0.0) <= later_share * within_limits(budget);
+}
+
+int BudgetController::plan_layers(double budget, double spent, bool must_advance) const
+{
+  const int least = must_advance ? 1 : 0;
+  const double left = later_share * within_limits(budget) - spent - write_.value().value_or(0.0);
+  const std::optional<double> layer = layer_.value();
+  if (!layer || !(left > 0.0)) {
+    return layer ? least : 1;
+  }
+  constexpr double most = 1e6;
+  return std::max(least, int(std::min(left / std::max(*layer, 1e-9), most)));
+}
+
 int BudgetController::plan_rows(double budget, double spent, int row_px, int row_count, bool must_advance) const
 {
   const int least = must_advance ? (row_count + 15) / 16 : 0;
@@ -145,6 +163,16 @@ void BudgetController::add_preview(double setup, double rows, std::int64_t pixel
 void BudgetController::add_setup(double setup, bool is_first)
 {
   (is_first ? first_setup_ : later_setup_).add(setup);
+}
+
+void BudgetController::add_beginning(double seconds)
+{
+  beginning_.add(seconds);
+}
+
+void BudgetController::add_layers(double seconds, int layer_count)
+{
+  layer_.add(seconds / double(std::max(layer_count, 1)));
 }
 
 void BudgetController::add_rows(double seconds, std::int64_t pixel_count)

@@ -39,7 +39,8 @@ class RecentCost {
  * direction is never followed by one in the other: the next larger size takes at most what is expected of it, and
  * shadows of twice the edge take at most four times as long.
  *
- * Later calls draw the picture in parts: the set-up of a sample, then as many rows as fit into 0.9 B.
+ * Later calls draw the picture in parts that fit into 0.9 B: the set-up of a sample, or its depth and then as many
+ * layers of its shadows as fit; then as many rows as fit.
  */
 class BudgetController {
  public:
@@ -65,6 +66,13 @@ class BudgetController {
   [[nodiscard]] std::optional<double> whole_seconds(std::int64_t pixel_count) const;
   /** Whether the set-up of a sample is expected to fit into the rest of a call. */
   [[nodiscard]] bool fits_setup(double budget, double spent, bool is_first) const;
+  /** Whether the part of the set-up before its layers is expected to fit into the rest of a call. */
+  [[nodiscard]] bool fits_beginning(double budget, double spent) const;
+  /**
+   * Layers of shadows that are expected to fit into the rest of a call: at least one if \a must_advance. One as long as
+   * no time is known.
+   */
+  [[nodiscard]] int plan_layers(double budget, double spent, bool must_advance) const;
   /**
    * Rows that are expected to fit into the rest of a call: up to \a row_count, of \a row_px pixels each. At least one
    * sixteenth of them if \a must_advance, so that a sample always ends. An eighth as long as no time is known.
@@ -76,6 +84,8 @@ class BudgetController {
   void add_preview(double setup, double rows, std::int64_t pixel_count);
   /** \a is_first: of the first sample after an edit. */
   void add_setup(double setup, bool is_first);
+  void add_beginning(double seconds);
+  void add_layers(double seconds, int layer_count);
   void add_rows(double seconds, std::int64_t pixel_count);
   void add_write(double seconds);
 
@@ -96,6 +106,8 @@ class BudgetController {
   RecentCost preview_pixel_;
   RecentCost first_setup_;
   RecentCost later_setup_;
+  RecentCost beginning_;
+  RecentCost layer_;
   RecentCost pixel_;
   RecentCost write_;
 };

@@ -115,6 +115,7 @@ bool BudgetedPicture::draw(const draw::View &view, const draw::Target &target)
   }
   catch (...) {
     viewport_.set_rows_max(draw::Viewport::no_rows_max);
+    viewport_.set_setup_max(draw::Viewport::no_setup_max);
     throw;
   }
   viewport_.set_rows_max(draw::Viewport::no_rows_max);
@@ -173,7 +174,7 @@ void BudgetedPicture::draw_preview(const draw::View &view, const BudgetControlle
                            }
                            else {
                              preview_ = std::make_unique<draw::Viewport>(viewport_.device(), size_px);
-                             preview_engine_ = std::make_unique<Engine>(scene_, settings);
+                             preview_engine_ = std::make_unique<Engine>(engine_, settings);
                            }
                            preview_settings_ = from;
                          }
@@ -195,6 +196,7 @@ void BudgetedPicture::draw_part(const draw::View &view, int rows, double spent_b
 {
   const bool is_setup = rows == 0;
   const bool is_first = !has_samples(view);
+  const bool has_begun = viewport_.has_open_setup() && is_of(view);
   const int rows_before = viewport_.rows_left();
   const int samples_before = is_first ? 0 : viewport_.samples_drawn();
   const std::array<draw::Engine *, 1> engines = {&engine_};
@@ -202,13 +204,44 @@ void BudgetedPicture::draw_part(const draw::View &view, int rows, double spent_b
     viewport_.set_rows_max(rows);
     viewport_.draw(engines, view);
   });
+  const bool is_whole = viewport_.samples_drawn() > samples_before;
   if (is_setup) {
-    controller_.add_setup(spent_before + seconds, is_first);
+    setup_seconds_ = seconds + (has_begun ? setup_seconds_ : spent_before);
+    // Where something transmits light, all rows were lit, too.
+    if (has_begun && !is_whole) {
+      controller_.add_layers(seconds, viewport_.setup_count());
+    }
+    else if (viewport_.has_open_setup()) {
+      controller_.add_beginning(seconds);
+    }
+    if (!viewport_.has_open_setup()) {
+      controller_.add_setup(setup_seconds_, is_first);
+    }
     return;
   }
-  const bool is_whole = viewport_.samples_drawn() > samples_before;
   const int drawn = rows_before - (is_whole ? 0 : viewport_.rows_left());
   controller_.add_rows(seconds, pixel_count({viewport_.drawn_size_px().x, drawn}));
+}
+
+bool BudgetedPicture::draw_setup(const draw::View &view, bool has_drawn)
+{
+  int layers = draw::Viewport::no_setup_max;
+  if (viewport_.has_open_setup() && is_of(view)) {
+    layers = controller_.plan_layers(budget_, spent(), !has_drawn);
+    if (layers == 0) {
+      return false;
+    }
+  }
+  else if (!controller_.fits_setup(budget_, spent(), !has_samples(view))) {
+    if (has_drawn && !controller_.fits_beginning(budget_, spent())) {
+      return false;
+    }
+    layers = 0;
+  }
+  viewport_.set_setup_max(layers);
+  draw_part(view, 0);
+  viewport_.set_setup_max(draw::Viewport::no_setup_max);
+  return true;
 }
 
 void BudgetedPicture::refine(const draw::View &view)
@@ -217,11 +250,10 @@ void BudgetedPicture::refine(const draw::View &view)
   const int samples_before = has_samples(view) ? viewport_.samples_drawn() : 0;
   while (!has_samples(view) ||
          (!engine_.is_complete(viewport_) && viewport_.samples_drawn() < samples_before + samples_per_call_max)) {
-    if (!viewport_.has_begun_sample() || !is_of(view)) {
-      if (has_drawn && !controller_.fits_setup(budget_, spent(), !has_samples(view))) {
+    if (!viewport_.has_begun_sample() || viewport_.has_open_setup() || !is_of(view)) {
+      if (!draw_setup(view, has_drawn)) {
         return;
       }
-      draw_part(view, 0);
       has_drawn = true;
       continue;
     }

@@ -48,7 +48,7 @@ struct BudgetReport {
  *
  * Later calls draw the samples of the picture, in parts. Until the first is whole, they show the preview again. The
  * complete picture is bit for bit that of draw::Viewport::draw. A sample in which something transmits light is lit in
- * one call, whatever its time. The set-up of a sample, its depth and shadows, is not divided either.
+ * one call, whatever its time. The set-up of a sample is divided into its depth and layers of shadows.
  *
  * Each call waits for the device, whose time it measures. One viewport, one object, the device's thread, no recording.
  */
@@ -96,6 +96,8 @@ class BudgetedPicture {
   void draw_preview(const draw::View &view, const BudgetController::FirstPlan &plan);
   /** Draw the next part of a sample: its set-up, or \a rows. \a spent_before: counted as a part of the set-up. */
   void draw_part(const draw::View &view, int rows, double spent_before = 0.0);
+  /** Draw the set-up of a sample, or what fits of it. \return false: nothing fits beside what the call has drawn */
+  bool draw_setup(const draw::View &view, bool has_drawn);
   void refine(const draw::View &view);
 
   render_scene::RenderScene &scene_;
@@ -105,6 +107,8 @@ class BudgetedPicture {
   BudgetController controller_;
   double begun_ = 0.0;
   double budget_ = 0.0;
+  /** Of the set-up that has begun. */
+  double setup_seconds_ = 0.0;
   /** Created by the first preview; the viewport is destroyed first. */
   std::unique_ptr<Engine> preview_engine_;
   std::unique_ptr<draw::Viewport> preview_;

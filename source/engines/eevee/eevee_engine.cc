@@ -69,7 +69,7 @@ void Engine::init(draw::Viewport &viewport)
     data.stl.shadows.emplace(data.shared->shadows);
   }
   data.stl.film_weight_sum = film_weight_sum(settings_.sample_count, settings_.seed);
-  shaders_.set_pcf(settings_.shadow.pcf);
+  shaders_->set_pcf(settings_.shadow.pcf);
   take_losses(viewport);
   make_film(viewport);
 }
@@ -89,9 +89,13 @@ void Engine::make_film(draw::Viewport &viewport)
 void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
 {
   const ShadowsKey key{scene_.lamps_revision(), scene_.objects().revision(), scene_.passes_revision(),
-                       settings_revision_,      shaders_revision_,           shared.shadows.viewports_revision()};
+                       settings_revision_,      shaders_->revision(),        shared.shadows.viewports_revision()};
   if (shared.synced == key) {
     return;
+  }
+  if (shared.synced && shared.synced->shaders != key.shaders) {
+    // Other programs draw other shadows.
+    shared.shadows.invalidate();
   }
   shared.synced.reset();
   shared.has_casters = false;
@@ -181,7 +185,7 @@ void Engine::cache_finish(draw::Viewport &viewport)
   sync_lamps(*data.shared, viewport.device().limits());
   follow_lamps(data);
   const PictureKey picture{scene_.objects().revision(), scene_.lamps_revision(), scene_.passes_revision(),
-                           scene_.materials_revision(), settings_revision_,      shaders_revision_};
+                           scene_.materials_revision(), settings_revision_,      shaders_->revision()};
   if (data.stl.synced_picture != picture) {
     viewport.restart();
     data.depth_feedback.forget();
@@ -334,11 +338,7 @@ void Engine::finish(draw::Viewport &viewport) const
 std::vector<std::string> Engine::reload_shaders(draw::Viewport &viewport, gpu::ShaderFiles files,
                                                 gpu::ShaderReflection reflection)
 {
-  if (const Data &data = viewport.engine_data<Data>(*this); data.shared) {
-    data.shared->shadows.invalidate();
-  }
-  shaders_revision_++;
-  return shaders_.reload(viewport.device(), std::move(files), std::move(reflection));
+  return shaders_->reload(viewport.device(), std::move(files), std::move(reflection));
 }
 
 draw::EngineType engine_type(render_scene::RenderScene &scene, const Settings &settings)

@@ -130,7 +130,19 @@ class Engine final : public draw::Engine {
    * \a scene must outlive the engine, and the viewports that it draws in. After an edit of the scene call
    * render_scene::RenderScene::update, then draw::Viewport::sync with the objects of \a scene.
    */
-  Engine(render_scene::RenderScene &scene, const Settings &settings) : scene_(scene), settings_(settings) {}
+  Engine(render_scene::RenderScene &scene, const Settings &settings)
+      : scene_(scene), settings_(settings), shaders_(std::make_shared<ShaderCache>())
+  {
+  }
+  /**
+   * An engine for the scene of \a other that shares its programs, so that what one has compiled the other need not.
+   * Both have the same kernel of percentage-closer filtering (ShadowSettings::pcf), and reload_shaders of one is
+   * followed by a sync of the viewports of both. Either may be destroyed first.
+   */
+  Engine(const Engine &other, const Settings &settings)
+      : scene_(other.scene_), settings_(settings), shaders_(other.shaders_)
+  {
+  }
 
   /** Set other settings. They take effect with the next draw::Viewport::sync, which must precede the next draw. */
   void set_settings(const Settings &settings)
@@ -232,9 +244,8 @@ class Engine final : public draw::Engine {
   render_scene::RenderScene &scene_;
   Settings settings_;
   std::uint64_t settings_revision_ = 0;
-  /** Shared by all viewports. */
-  ShaderCache shaders_;
-  std::uint64_t shaders_revision_ = 0;
+  /** Shared by all viewports, and with engines that were made from this one. */
+  std::shared_ptr<ShaderCache> shaders_;
   /** Owned by the viewports that draw with this engine. */
   std::weak_ptr<SharedData> shared_;
 };

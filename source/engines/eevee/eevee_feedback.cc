@@ -43,7 +43,7 @@ bool Engine::take_feedback(draw::Viewport &viewport, const gpu::Feedback &feedba
       step->seconds = step->seconds.value_or(0.0) + time.seconds;
     }
   }
-  shaders_.take_failures(feedback);
+  shaders_->take_failures(feedback);
   DepthFeedback &depths = data.depth_feedback;
   bool is_final = true;
   for (const gpu::Feedback::Texels &texels : feedback.texels) {

@@ -174,16 +174,20 @@ void record_shadows(const FrameStep & /*step*/, FrameSample &sample, gpu::Comman
 {
   StorageList &stl = sample.data.stl;
   SharedData &shared = *sample.data.shared;
+  const draw::SamplePart part = sample.viewport.part();
   // Between two parts, another viewport may have drawn another sample.
-  const bool is_other = sample.viewport.part().is_first || shared.sample_index != sample.data.sample_index;
-  if (sample.settings.planned_sample_count() > 1 && is_other) {
+  const bool is_disturbed = shared.sample_index != sample.data.sample_index;
+  if (sample.settings.planned_sample_count() > 1 && (part.is_first || is_disturbed)) {
     stl.shadows->invalidate_blended();
   }
   shared.sample_index = sample.data.sample_index;
   shared.sample_seed = int(sample.settings.seed);
-  stl.shadows->update(sample.viewport.device(), sample.view, pixel_size(sample.view, sample.viewport),
-                      shared.shadow_pass, list, stl.lamp_points,
-                      sample.data.depth_feedback.picture(sample.viewport.drawn_size_px()));
+  // Two viewports that draw parts in turn would never have all layers, which are one sample's, so that one draws all.
+  const int layers_max = part.is_first || !is_disturbed ? part.setup_max : draw::Viewport::no_setup_max;
+  const UpdatedLayers updated = stl.shadows->update(
+      sample.viewport.device(), sample.view, pixel_size(sample.view, sample.viewport), shared.shadow_pass, list,
+      stl.lamp_points, sample.data.depth_feedback.picture(sample.viewport.drawn_size_px()), layers_max);
+  sample.viewport.set_setup(updated.count, updated.is_all);
 }
 
 void record_lit(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)

@@ -179,7 +179,7 @@ const gpu::Texture &Inspection::shadow_picture(std::size_t lamp, std::optional<s
   Data &data = engine_data();
   const std::optional<ShadowLayers> layers = layers_of(data, lamp);
   GNOMON_ASSERT(layers, "lamp {} has no shadow", lamp);
-  return data.shadow_picture.draw(viewport_.device(), engine_.shaders_, *layers,
+  return data.shadow_picture.draw(viewport_.device(), *engine_.shaders_, *layers,
                                   layer ? std::optional(int(*layer)) : std::nullopt);
 }
 

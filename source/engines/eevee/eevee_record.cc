@@ -203,7 +203,7 @@ void Engine::record_background(draw::Viewport &viewport)
   const WorldResources &world = data.shared->world;
   const bool is_picture = bool(world.picture);
   draw::ShadingGroup &group = data.psl->background_pass.group(
-      shaders_.get(viewport.device(), is_picture ? ShaderId::BackgroundWorld : ShaderId::BackgroundColor));
+      shaders_->get(viewport.device(), is_picture ? ShaderId::BackgroundWorld : ShaderId::BackgroundColor));
   group.constant("color", glm::vec4(background_color(settings_, scene_), 0.0F));
   if (is_picture) {
     group.bind_texture("world_picture", world.picture, world.picture_sampler);
@@ -219,7 +219,7 @@ void Engine::record_film(draw::Viewport &viewport)
 {
   Data &data = viewport.engine_data<Data>(*this);
   StorageList &stl = data.stl;
-  draw::ShadingGroup &film = data.psl->film_pass.group(shaders_.get(viewport.device(), ShaderId::Film));
+  draw::ShadingGroup &film = data.psl->film_pass.group(shaders_->get(viewport.device(), ShaderId::Film));
   film.bind_texture("radiance_texture", data.txl.radiance, data.txl.nearest);
   film.constant("radiance_origin_px", viewport.guard_px());
   film.constant_ref("column_weights", &stl.film_columns);
@@ -251,7 +251,7 @@ void Engine::record_tonemap(draw::Viewport &viewport, const draw::View &view)
                        .depth_origin_px = viewport.guard_px(),
                        .clip_from_view = view.clip_from_view(),
                        .has_blended = !stl.blended.empty()},
-                      shaders_.get(device, ShaderId::Tonemap, features), txl.nearest);
+                      shaders_->get(device, ShaderId::Tonemap, features), txl.nearest);
 }
 
 void Engine::record(draw::Viewport &viewport)
@@ -267,14 +267,14 @@ void Engine::record(draw::Viewport &viewport)
   make_targets(viewport);
   make_blocks(viewport);
   if (!shared.has_casters) {
-    shared.shadows.allocate(viewport.device(), shaders_);
+    shared.shadows.allocate(viewport.device(), *shaders_);
   }
   stl.shadows->allocate(viewport.device());
   const PassesKey key{
       .structure = scene_.objects().structure_revision(),
       .passes = scene_.passes_revision(),
       .settings = settings_revision_,
-      .shaders = shaders_revision_,
+      .shaders = shaders_->revision(),
       .exponential_lamps =
           has(stl.features, Feature::ShadowEsm) ? scene_.lamps_revision() + shared.shadows.viewports_revision() : 0,
       .shadow_block = stl.shadows->block().id(),
@@ -310,7 +310,7 @@ void Engine::record_passes(draw::Viewport &viewport)
   Data &data = viewport.engine_data<Data>(*this);
   StorageList &stl = data.stl;
   data.psl = std::make_unique<PassList>(scene_.objects());
-  free_surface_functions(shaders_, scene_.scene());
+  free_surface_functions(*shaders_, scene_.scene());
   stl.pass_recordings++;
   stl.target_pass.reset();
   stl.groups.clear();
@@ -374,8 +374,8 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
   const gpu::Shader *lit_shader =
       is_transmissive && !data.txl.behind
           ? nullptr
-          : &shaders_.get(device, ShaderId::Lit, with_variant(lighting | feature_of(surface) | asked_features()),
-                          function);
+          : &shaders_->get(device, ShaderId::Lit, with_variant(lighting | feature_of(surface) | asked_features()),
+                           function);
   if (render_scene::is_blended(scene, mesh)) {
     if (lit_shader) {
       record_blended(data, index, *lit_shader, surface_textures, batch);
@@ -386,8 +386,8 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
   // culled.
   const State side = material.is_double_sided ? State::None : State::CullBack;
   const gpu::Shader &depth_shader =
-      shaders_.get(device, alpha_function.key != 0 ? ShaderId::DepthFunction : ShaderId::Depth, mask_features(cut_out),
-                   alpha_function);
+      shaders_->get(device, alpha_function.key != 0 ? ShaderId::DepthFunction : ShaderId::Depth, mask_features(cut_out),
+                    alpha_function);
   if (is_transmissive) {
     call(data.psl->transmission_depth_pass, depth_shader, side, cut_out, alpha_textures, bind_surface);
   }
@@ -400,7 +400,7 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
          surface_textures, bind_surface);
   }
   if (data.shared->tinted_light && !is_transmissive) {
-    call(data.psl->tint_pass, shaders_.get(device, ShaderId::DebugCascades, stl.features), side, MaterialClass::Plain,
+    call(data.psl->tint_pass, shaders_->get(device, ShaderId::DebugCascades, stl.features), side, MaterialClass::Plain,
          {}, [&data](draw::ShadingGroup &group) {
            bind_lit(group, data);
            group.constant("tinted_light", light_entry(data, *data.shared->tinted_light, tinted_entry));
@@ -409,11 +409,11 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
   if (settings_.has_surfaces) {
     // The program reads normals also where nothing gives light.
     call(data.psl->surfaces_pass,
-         shaders_.get(device, ShaderId::Surfaces, Feature::Light | feature_of(surface), function), side, surface,
+         shaders_->get(device, ShaderId::Surfaces, Feature::Light | feature_of(surface), function), side, surface,
          surface_textures, bind_surface);
   }
   if (settings_.has_probe && has(stl.features, Feature::Light)) {
-    call(data.psl->probe_pass, shaders_.get(device, ShaderId::Probe, lighting), side, MaterialClass::Plain, {},
+    call(data.psl->probe_pass, shaders_->get(device, ShaderId::Probe, lighting), side, MaterialClass::Plain, {},
          [&data](draw::ShadingGroup &group) {
            bind_lit(group, data);
            group.constant_ref("probed_light", &data.stl.probed_light);

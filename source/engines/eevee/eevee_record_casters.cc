@@ -100,7 +100,7 @@ void Engine::record_casters(Data &data)
 {
   SharedData &shared = *data.shared;
   const CastersKey key{scene_.objects().structure_revision(), scene_.passes_revision(), settings_revision_,
-                       shaders_revision_, has(data.stl.features, any_shadow)};
+                       shaders_->revision(), has(data.stl.features, any_shadow)};
   const bool is_winding_kept = std::ranges::none_of(data.stl.objects, [&](draw::ObjectIndex index) {
     return index < shared.is_mirrored.size() &&
            shared.is_mirrored[index] != draw::is_mirrored(scene_.objects().world_from_object(index));
@@ -137,8 +137,8 @@ void Engine::record_caster(SharedData &shared, draw::ObjectIndex index)
   if (!instances) {
     const FunctionText function = cut_out == MaterialClass::Plain ? FunctionText() : alpha_function_of(scene, material);
     const gpu::Shader &shader =
-        shaders_.get(scene_.device(), shadow_shader(shared.shadows.layer_pass()),
-                     mask_features(cut_out) | (is_open ? Feature::OpacityThreshold : Feature::None), function);
+        shaders_->get(scene_.device(), shadow_shader(shared.shadows.layer_pass()),
+                      mask_features(cut_out) | (is_open ? Feature::OpacityThreshold : Feature::None), function);
     const State faces = material.is_double_sided ? State::None : culled_state(settings_.shadow.caster_faces);
     // Without culling the winding has no effect.
     const State state = faces == State::None ? State::None : faces | winding;

@@ -222,7 +222,7 @@ Report Inspection::report() const
 {
   const Data &data = engine_data();
   render_scene::RenderScene &scene = engine_.scene_;
-  const ShaderCache &shaders = engine_.shaders_;
+  const ShaderCache &shaders = *engine_.shaders_;
   const Settings &settings = engine_.settings_;
   const StorageList &stl = data.stl;
   Report report;

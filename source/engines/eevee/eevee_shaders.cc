@@ -180,6 +180,7 @@ std::vector<Feature> ShaderCache::made(ShaderId id) const
 std::vector<std::string> ShaderCache::reload(gpu::Device &device, gpu::ShaderFiles files,
                                              gpu::ShaderReflection reflection)
 {
+  revision_++;
   if (!reflection) {
     return {
         "shaders are not reloaded: the host gives no reflection function; shader_check::reflect of the library "

@@ -52,6 +52,11 @@ class ShaderCache {
    * \return one message with file, line and reason for each program that does not compile.
    */
   std::vector<std::string> reload(gpu::Device &device, gpu::ShaderFiles files, gpu::ShaderReflection reflection);
+  /** Increased by reload(). */
+  [[nodiscard]] std::uint64_t revision() const
+  {
+    return revision_;
+  }
   [[nodiscard]] std::size_t size() const
   {
     return shaders_.size();
@@ -76,6 +81,7 @@ class ShaderCache {
   /** Empty before reload(); until then the interfaces come from the generated tables. */
   gpu::ShaderReflection reflection_;
   PcfKernel pcf_;
+  std::uint64_t revision_ = 0;
   std::map<Key, gpu::Shader> shaders_;
   std::map<std::uint64_t, Function> functions_;
 };

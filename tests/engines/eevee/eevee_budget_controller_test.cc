@@ -223,6 +223,25 @@ TEST(BudgetControllerTest, TheRowsOfACallFitIntoItsRest)
   EXPECT_EQ(controller.plan_rows(10.0, 0.0, 640, 360, false), 360);
 }
 
+TEST(BudgetControllerTest, TheLayersOfACallFitIntoItsRest)
+{
+  BudgetController controller;
+  EXPECT_FALSE(controller.fits_beginning(0.01, 0.0)) << "its time is not known";
+  EXPECT_EQ(controller.plan_layers(0.01, 0.0, false), 1) << "the time of a layer is not known";
+  controller.add_beginning(0.004);
+  controller.add_layers(0.006, 3);
+  controller.add_write(0.001);
+  // 0.9 of the budget, without the writing: 8 ms.
+  EXPECT_TRUE(controller.fits_beginning(0.01, 0.0039));
+  EXPECT_FALSE(controller.fits_beginning(0.01, 0.0041));
+  EXPECT_EQ(controller.plan_layers(0.01, 0.0001, false), 3);
+  EXPECT_EQ(controller.plan_layers(0.01, 0.0039, false), 2);
+  EXPECT_EQ(controller.plan_layers(0.01, 0.0079, false), 0);
+  EXPECT_EQ(controller.plan_layers(0.01, 0.0079, true), 1);
+  EXPECT_EQ(controller.plan_layers(0.01, 1.0, true), 1);
+  EXPECT_EQ(controller.plan_layers(0.01, 1.0, false), 0);
+}
+
 TEST(BudgetControllerTest, SizesAreThoseOfTheLevelsAndNeverEmpty)
 {
   EXPECT_EQ(BudgetController::size_at(0, {641, 359}), glm::ivec2(641, 359));

@@ -151,6 +151,32 @@ TEST_F(BudgetGpuTest, PartsOfSeveralViewportsDoNotDisturbEachOther)
   EXPECT_EQ(other.pixels(), truth);
 }
 
+TEST_F(BudgetGpuTest, ViewportsThatDrawOneLayerACallDoNotReplaceEachOthersLayersForever)
+{
+  for (const float x : {-2.0F, 2.0F}) {
+    const auto lamp = test::add_lamp(scene, scene::LampKind::Point, {x, 0.5F, 1.0F}, {0, 0, -1}, 10.0F);
+    scene.edit(lamp, [](scene::Lamp &one) { one.radius = 0.2F; });
+  }
+  settings.sample_count = 2;
+  const std::vector<glm::vec4> truth = without_budget(settings);
+  render_scene::RenderScene render_scene(*device, scene);
+  Engine engine(render_scene, settings);
+  Budgeted first(render_scene, engine, 2.0 * budget);
+  Budgeted second(render_scene, engine, 2.0 * budget);
+  // They draw different samples, whose shadows differ.
+  while (first.viewport.samples_drawn() < 1) {
+    first.draw(camera);
+  }
+  bool is_complete = false;
+  for (int i = 0; i < 300 && !is_complete; i++) {
+    is_complete = first.draw(camera);
+    is_complete &= second.draw(camera);
+  }
+  EXPECT_TRUE(is_complete);
+  EXPECT_EQ(first.pixels(), truth);
+  EXPECT_EQ(second.pixels(), truth);
+}
+
 TEST_F(BudgetGpuTest, TheFirstPictureAfterAnEditIsWholeAndShowsTheEdit)
 {
   const draw::TargetTexture texture(*device, "target", gpu::Format::RGBA32F, size_px);

@@ -4,6 +4,7 @@
 #include "shadow_view_volume.hh"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <utility>
 
@@ -141,9 +142,22 @@ void Shadows::write_block(gpu::Device &device)
   }
 }
 
-void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
-                     gpu::CommandList &list, std::span<const LampPoint> points, const PictureDepths &depths)
+/** The first \a count layers of \a missing, and those that change with them. */
+static LayerMask first_layers(const ShadowTechnique &technique, LayerMask missing, int count)
 {
+  LayerMask rest = missing;
+  for (int i = 0; i < count && rest != 0; i++) {
+    rest &= rest - 1;
+  }
+  const LayerMask first = missing & ~rest;
+  return first == 0 ? 0 : technique.changed_layers(first) & missing;
+}
+
+UpdatedLayers Shadows::update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
+                              gpu::CommandList &list, std::span<const LampPoint> points, const PictureDepths &depths,
+                              int layers_max)
+{
+  UpdatedLayers updated;
   // Discard the records of lists that were not submitted.
   recorded_counters_ = {};
   for_each_slot([](ShadowSlot &slot) { slot.recorded_drawn = slot.recorded_up_to_date = 0; });
@@ -159,15 +173,19 @@ void Shadows::update(gpu::Device &device, const draw::View &view, float pixel_si
       const ShadowTechnique &technique = *slot.place.technique;
       const LayerMask missing =
           technique.layers_needed(slot, visible_) & slot.looked_up & slot.all_layers() & ~slot.up_to_date;
-      if (missing != 0) {
+      const LayerMask now = first_layers(technique, missing, layers_max - updated.count);
+      updated.count += std::popcount(now);
+      updated.is_all &= now == missing;
+      if (now != 0) {
         technique.record(
-            slot, missing,
+            slot, now,
             {device, pass, list, scene_.casters_, scene_.arrays_[id], scene_.octahedral_, scene_.render_buffer_,
              scene_.render_block_, scene_.layer_pass_, recorded_counters_, caster_layers_});
       }
     });
   }
   write_block(device);
+  return updated;
 }
 
 void Shadows::invalidate_blended()

@@ -5,6 +5,7 @@
 
 #include "eevee_lamp_points.hh"
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -29,6 +30,14 @@ struct ShadowState {
   LayerMask up_to_date = 0;
   /** Layers that were drawn for this viewport since begin_picture. */
   LayerMask drawn_now = 0;
+};
+
+/** Result of Shadows::update. */
+struct UpdatedLayers {
+  /** Layers that were recorded, or have no caster. */
+  int count = 0;
+  /** No layer that is needed is out of date after the submission. */
+  bool is_all = true;
 };
 
 /**
@@ -59,10 +68,12 @@ class Shadows {
    * \a pixel_size: see fit_sun. \a pass: draws the instances of the casters. \a points: points of lamps with an extent;
    * the shadow of these lamps is cast from the point. After a sync, all updates must have points of the same lamps.
    * \a depths: of \a view or of a recent view; may be empty. They are used if reads_depths(). The caller must call
-   * fit_again when they change.
+   * fit_again when they change. \a layers_max: most layers to record, or those of one exponential shadow, which change
+   * together.
    */
-  void update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
-              gpu::CommandList &list, std::span<const LampPoint> points = {}, const PictureDepths &depths = {});
+  UpdatedLayers update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
+                       gpu::CommandList &list, std::span<const LampPoint> points = {}, const PictureDepths &depths = {},
+                       int layers_max = std::numeric_limits<int>::max());
   /** Draw the layers that blended casters touch again: they hold one sample of them. */
   void invalidate_blended();
   /** Whether suns are fitted to depths. */

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "measure_frames.hh"
+
+#include "draw_target.hh"
+#include "eevee_scene_renderer.hh"
+#include "internal/measure_bench_meshes.hh"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace gnomon::measure {
+
+namespace {
+
+/** Programs are compiled and textures made in these. A budget needs more of them, until it has found its plan. */
+constexpr int warm_up_count = 30;
+/** Frames in which the camera stands still before it is moved again, so that pictures begin to refine. */
+constexpr int refining_count = 10;
+
+/** Until the device is done. */
+template <typename Work>
+double seconds_of(gpu::Device &device, Work &&work)
+{
+  const double start = now(Clock::Wall);
+  work();
+  device.finish();
+  return now(Clock::Wall) - start;
+}
+
+gpu::Counters between(const gpu::Counters &before, const gpu::Counters &after)
+{
+  gpu::Counters counters;
+  counters.passes = after.passes - before.passes;
+  counters.draws = after.draws - before.draws;
+  counters.upload_bytes = after.upload_bytes - before.upload_bytes;
+  return counters;
+}
+
+class Frames {
+ public:
+  Frames(gpu::Device &device, scene::Scene scene, const FrameTimesSettings &settings)
+      : device_(device),
+        settings_(settings),
+        scene_(std::move(scene)),
+        start_(scene_.placed_cameras().front()),
+        picture_(device, "picture", gpu::Format::RGBA8, settings.size_px)
+  {
+  }
+
+  FrameTimes measure()
+  {
+    FrameTimes times;
+    measure_lamp(times);
+    measure_budget(times);
+    return times;
+  }
+
+ private:
+  void clear()
+  {
+    gpu::CommandList list;
+    draw::begin_pass(list, "control", picture_.target(), settings_.size_px, {}, {});
+    list.end_pass();
+    device_.submit(list);
+  }
+
+  void measure_lamp(FrameTimes &times)
+  {
+    const std::vector<scene::PlacedLamp> lamps = scene_.placed_lamps();
+    if (lamps.empty()) {
+      return;
+    }
+    const auto point = std::ranges::find(lamps, scene::LampKind::Point, &scene::PlacedLamp::kind);
+    const scene::Handle<scene::Node> node = (point == lamps.end() ? lamps.begin() : point)->node;
+    const glm::dmat4 start = scene_.nodes()[node].parent_from_node;
+    eevee::SceneRenderer renderer(device_, scene_, settings_.size_px, {.sample_count = 1});
+    for (int i = -warm_up_count; i < settings_.frame_count; i++) {
+      const double control = seconds_of(device_, [&] { clear(); });
+      const double frame = seconds_of(device_, [&] {
+        // A circle of 0.2 m around the lamp's own -Z axis, and a turn around its X axis, which moves suns.
+        const double angle = 0.1 * i;
+        const glm::dmat4 moved = glm::translate(start, {0.2 * std::cos(angle), 0.2 * std::sin(angle), 0.0});
+        scene_.set_transform(node, glm::rotate(moved, 0.02 * std::sin(angle), {1, 0, 0}));
+        renderer.sync();
+        renderer.draw_sample(start_, picture_.target());
+      });
+      if (i >= 0) {
+        times.control.push_back(control);
+        times.moved_lamp.push_back(frame);
+      }
+    }
+    scene_.set_transform(node, start);
+  }
+
+  /** The camera after \a step steps of half a degree around the vertical axis through the middle of the scene. */
+  [[nodiscard]] scene::PlacedCamera camera_at(int step) const
+  {
+    const glm::dvec3 middle(scene_.bounds().is_empty() ? glm::vec3(0.0F) : scene_.bounds().center());
+    const glm::dmat4 turned = glm::rotate(glm::translate(glm::dmat4(1.0), middle),
+                                          double(step) * std::numbers::pi / 360.0, glm::dvec3(0, 1, 0));
+    scene::PlacedCamera camera = start_;
+    camera.world_from_camera = glm::translate(turned, -middle) * start_.world_from_camera;
+    return camera;
+  }
+
+  void measure_budget(FrameTimes &times)
+  {
+    eevee::SceneRenderer renderer(device_, scene_, settings_.size_px, {.sample_count = 16});
+    const auto draw = [&](const scene::PlacedCamera &camera, const draw::Target &target) {
+      return seconds_of(device_, [&] { renderer.draw_within(settings_.budget_seconds, camera, target); });
+    };
+    // The first use of programs is not measured.
+    renderer.sync();
+    renderer.draw_sample(start_, picture_.target());
+    int step = 0;
+    for (int i = -warm_up_count; i < settings_.frame_count; i++) {
+      const double seconds = draw(camera_at(step++), picture_.target());
+      if (i >= 0) {
+        times.moved_camera.push_back(seconds);
+      }
+    }
+    for (int i = -warm_up_count; i < settings_.frame_count; i++) {
+      const bool is_moved = (i + warm_up_count) % (refining_count + 1) == 0;
+      step += is_moved ? 1 : 0;
+      const double seconds = draw(camera_at(step), picture_.target());
+      if (i >= 0 && !is_moved) {
+        times.refined.push_back(seconds);
+      }
+    }
+    const scene::PlacedCamera camera = camera_at(step);
+    while (!renderer.draw_within(settings_.budget_seconds, camera)) {
+    }
+    const gpu::Counters before = device_.counters();
+    for (int i = 0; i < settings_.frame_count; i++) {
+      renderer.draw_within(settings_.budget_seconds, camera);
+    }
+    times.still = between(before, device_.counters());
+  }
+
+  gpu::Device &device_;
+  FrameTimesSettings settings_;
+  scene::Scene scene_;
+  scene::PlacedCamera start_;
+  draw::TargetTexture picture_;
+};
+
+}  // namespace
+
+double percentile(std::vector<double> seconds, double share)
+{
+  std::ranges::sort(seconds);
+  const auto rank = std::size_t(std::ceil(share * double(seconds.size())));
+  return seconds[std::clamp<std::size_t>(rank, 1, seconds.size()) - 1];
+}
+
+FrameTimes measure_frame_times(gpu::Device &device, scene::Scene scene, const FrameTimesSettings &settings)
+{
+  return Frames(device, std::move(scene), settings).measure();
+}
+
+}  // namespace gnomon::measure

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gpu_device_info.hh"
+#include "scene.hh"
+
+#include <glm/vec2.hpp>
+
+#include <string>
+#include <vector>
+
+namespace gnomon::gpu {
+class Device;
+}
+
+/** The benchmark `gnomon bench frames`: times of the frames of a host, one by one. */
+namespace gnomon::measure {
+
+struct FrameTimesSettings {
+  glm::ivec2 size_px{640, 360};
+  /** Measured frames of each kind, after some that warm up. At least 1. */
+  int frame_count = 300;
+  /** Time that draws with a budget may take, seconds. \see eevee::SceneRenderer::draw_within */
+  double budget_seconds = 0.033;
+};
+
+/** Wall times of whole frames, until the device is done, seconds. */
+struct FrameTimes {
+  /** A clear and a wait, before each frame of moved_lamp: the jitter of the machine. */
+  std::vector<double> control;
+  /** One lamp is moved, and a whole sample is drawn. Empty: the scene has no lamp. */
+  std::vector<double> moved_lamp;
+  /** The camera is moved, and a picture is drawn within the budget. */
+  std::vector<double> moved_camera;
+  /** A still picture is refined within the budget: without the first frame after the camera has moved. */
+  std::vector<double> refined;
+  /** What frame_count calls have done after the picture was complete, without a target. */
+  gpu::Counters still;
+};
+
+/** The value that \a share of the times do not exceed. \a share in [0, 1] \pre \a seconds is not empty */
+[[nodiscard]] double percentile(std::vector<double> seconds, double share);
+
+/** Measures frames of a copy of \a scene, seen by its first camera. \pre the scene has a camera */
+[[nodiscard]] FrameTimes measure_frame_times(gpu::Device &device, scene::Scene scene,
+                                             const FrameTimesSettings &settings);
+
+}  // namespace gnomon::measure
