@@ -190,9 +190,8 @@ void Device::count(const CommandList &list)
         break;
       case CommandKind::SetShader: counters_.shader_binds++; break;
       case CommandKind::Draw:
-        for (std::uint32_t i = command.first; i < command.first + command.count; i++) {
-          const DrawIndirect &draw = list.draws[i];
-          counters_.draws++;
+        counters_.draws += command.count;
+        for (const DrawIndirect &draw : std::span(list.draws).subspan(command.first, command.count)) {
           counters_.instances += draw.instance_count;
           counters_.triangles += std::uint64_t(draw.index_count / 3) * draw.instance_count;
         }
