@@ -143,15 +143,12 @@ void ShadingGroup::record_bindings(gpu::CommandList &list) const
 
 RecordCounts ShadingGroup::collect_draws(const View &view, const VisibleObjects &visible, gpu::CommandList &list) const
 {
-  // The arrays get room for all calls first, so that the loop writes without checks of their capacity.
   const std::size_t first_instance_of_all = list.instances.size();
-  const std::size_t first_draw = list.draws.size();
   list.instances.resize(first_instance_of_all + calls_.size());
-  list.draws.resize(first_draw + calls_.size());
   gpu::DrawInstance *const instances = list.instances.data();
-  gpu::DrawIndirect *const draws = list.draws.data() + first_draw;
   auto instance_end = std::uint32_t(first_instance_of_all);
-  std::size_t draw_count = 0;
+  // The draw that the next call may add an instance to. It has no instance before the first visible call.
+  gpu::DrawIndirect draw;
   for (const Call &call : calls_) {
     const bool is_visible =
         call.volume == object_volume ? !objects_ || visible.contains(call.object) : view.touches(volumes_[call.volume]);
@@ -160,18 +157,21 @@ RecordCounts ShadingGroup::collect_draws(const View &view, const VisibleObjects 
     }
     const std::uint32_t first_instance = instance_end++;
     instances[first_instance] = {call.object, 0};
-    // A call of the batch of the call before it adds an instance. Compare the counts too, because an empty batch has
-    // the same first index as the batch after it.
-    if (draw_count > 0 && draws[draw_count - 1].first_index == call.batch.first_index &&
-        draws[draw_count - 1].index_count == call.batch.index_count) {
-      draws[draw_count - 1].instance_count++;
+    // Compare the counts too, because an empty batch has the same first index as the batch after it.
+    if (draw.instance_count > 0 && draw.first_index == call.batch.first_index &&
+        draw.index_count == call.batch.index_count) {
+      draw.instance_count++;
+      continue;
     }
-    else {
-      draws[draw_count++] = {call.batch.index_count, 1, call.batch.first_index, call.batch.base_vertex, first_instance};
+    if (draw.instance_count > 0) {
+      list.draws.push_back(draw);
     }
+    draw = {call.batch.index_count, 1, call.batch.first_index, call.batch.base_vertex, first_instance};
+  }
+  if (draw.instance_count > 0) {
+    list.draws.push_back(draw);
   }
   list.instances.resize(instance_end);
-  list.draws.resize(first_draw + draw_count);
   RecordCounts counts;
   counts.culled = calls_.size() - (instance_end - first_instance_of_all);
   for (const InstanceCall &call : instance_calls_) {
