@@ -147,8 +147,8 @@ RecordCounts ShadingGroup::collect_draws(const View &view, const VisibleObjects 
   list.instances.resize(first_instance_of_all + calls_.size());
   gpu::DrawInstance *const instances = list.instances.data();
   auto instance_end = std::uint32_t(first_instance_of_all);
-  // The draw that the next call may add an instance to. It has no instance before the first visible call.
-  gpu::DrawIndirect draw;
+  // Whether the last entry of list.draws belongs to this group. A call of the same batch then adds an instance to it.
+  bool has_draw = false;
   for (const Call &call : calls_) {
     const bool is_visible =
         call.volume == object_volume ? !objects_ || visible.contains(call.object) : view.touches(volumes_[call.volume]);
@@ -158,18 +158,14 @@ RecordCounts ShadingGroup::collect_draws(const View &view, const VisibleObjects 
     const std::uint32_t first_instance = instance_end++;
     instances[first_instance] = {call.object, 0};
     // Compare the counts too, because an empty batch has the same first index as the batch after it.
-    if (draw.instance_count > 0 && draw.first_index == call.batch.first_index &&
-        draw.index_count == call.batch.index_count) {
-      draw.instance_count++;
-      continue;
+    if (has_draw && list.draws.back().first_index == call.batch.first_index &&
+        list.draws.back().index_count == call.batch.index_count) {
+      list.draws.back().instance_count++;
     }
-    if (draw.instance_count > 0) {
-      list.draws.push_back(draw);
+    else {
+      list.draws.push_back({call.batch.index_count, 1, call.batch.first_index, call.batch.base_vertex, first_instance});
+      has_draw = true;
     }
-    draw = {call.batch.index_count, 1, call.batch.first_index, call.batch.base_vertex, first_instance};
-  }
-  if (draw.instance_count > 0) {
-    list.draws.push_back(draw);
   }
   list.instances.resize(instance_end);
   RecordCounts counts;

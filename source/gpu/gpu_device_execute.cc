@@ -189,13 +189,16 @@ void Device::count(const CommandList &list)
         count_pass(list.name_of(list.passes()[command.first]));
         break;
       case CommandKind::SetShader: counters_.shader_binds++; break;
-      case CommandKind::Draw:
-        counters_.draws += command.count;
+      case CommandKind::Draw: {
+        std::uint64_t index_count = 0;
         for (const DrawIndirect &draw : std::span(list.draws).subspan(command.first, command.count)) {
           counters_.instances += draw.instance_count;
-          counters_.triangles += std::uint64_t(draw.index_count / 3) * draw.instance_count;
+          index_count += std::uint64_t(draw.index_count) * draw.instance_count;
         }
+        counters_.draws += command.count;
+        counters_.triangles += index_count / 3;
         break;
+      }
       case CommandKind::DrawProcedural:
         counters_.draws++;
         counters_.instances += command.count;
