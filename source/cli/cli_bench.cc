@@ -79,28 +79,6 @@ void bench_shadows(const BenchOptions &options)
                             {"rows", rows}});
 }
 
-void bench_draws(const BenchOptions &options)
-{
-  constexpr int draw_count = 10000;
-  const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
-  const measure::DrawSeconds seconds = measure::measure_draws(*device, draw_count, options.rounds);
-  fmt::print("{} draws, each with a matrix of its own; CPU nanoseconds a draw, median [quartiles] of {} rounds; {}\n",
-             draw_count, options.rounds, device->description());
-  nlohmann::json rows = nlohmann::json::array();
-  for (const auto &[name, values] : {std::pair("recorded in a pass", seconds.recorded),
-                                     {"pass drawn for a view", seconds.submitted},
-                                     {"both", seconds.sum}}) {
-    const measure::Spread spread = measure::spread_of(values);
-    fmt::print("  {:<22} {}\n", name, to_text(spread, 1e-9));
-    rows.push_back({{"what", name}, {"seconds_a_draw", to_json(spread)}});
-  }
-  write_json(options.json, {{"program", "gnomon " GNOMON_VERSION},
-                            {"bench", "draws"},
-                            {"rounds", options.rounds},
-                            {"draws", draw_count},
-                            {"rows", rows}});
-}
-
 void bench_left_out(const BenchOptions &options)
 {
   const std::unique_ptr<gpu::Device> device =
@@ -362,8 +340,12 @@ void add_bench(CLI::App &app, Status &status)
       ->capture_default_str()
       ->check(CLI::IsMember({"gl", "null"}));
   shadows->callback([o] { bench_shadows(*o); });
-  CLI::App *draws = command->add_subcommand("draws", "What a draw with its own matrix costs, without a driver");
-  draws->callback([o] { bench_draws(*o); });
+  CLI::App *record = command->add_subcommand("record", "What a draw with its own matrix costs, without a driver");
+  record->callback([o] { bench_record(*o); });
+  CLI::App *cull = command->add_subcommand("cull", "What the test of boxes against a frustum costs");
+  cull->callback([o] { bench_cull(*o); });
+  CLI::App *imports = command->add_subcommand("import", "What the import of many nodes costs");
+  imports->callback([o] { bench_import(*o); });
   CLI::App *left_out =
       command->add_subcommand("left-out", "What scenes that lack one thing each cost, beside a full one");
   left_out->add_option("--backend", o->backend, "gl, or null: without a driver")
@@ -380,8 +362,9 @@ void add_bench(CLI::App &app, Status &status)
   growth->add_option("--backend", o->backend, "gl, or null: without pixels and samples")
       ->capture_default_str()
       ->check(CLI::IsMember({"gl", "null"}));
-  growth->add_option("--count-max", o->count_max, "Most objects, casters, nodes, pixels and samples")
-      ->check(CLI::Range(1000, 1 << 30));
+  for (CLI::App *bench : {cull, imports, growth}) {
+    bench->add_option("--count-max", o->count_max, "Leave out larger counts")->check(CLI::Range(1000, 1 << 30));
+  }
   growth->callback([o] { bench_growth(*o); });
   CLI::App *start = command->add_subcommand("start", "What starting the program costs, up to a first picture");
   start->add_option("scene", o->scene, "glTF 2.0 file (default: a scene made in place)");
@@ -390,7 +373,7 @@ void add_bench(CLI::App &app, Status &status)
       ->check(CLI::IsMember({"gl", "null"}));
   add_world_options(*start, o->world);
   start->callback([o] { bench_start(*o); });
-  for (CLI::App *bench : {shadows, draws, left_out, lamps, growth, start}) {
+  for (CLI::App *bench : {shadows, record, cull, imports, left_out, lamps, growth, start}) {
     bench->add_option("--rounds", o->rounds, "Measured rounds, after one that warms up")
         ->capture_default_str()
         ->check(CLI::Range(1, 100000));
@@ -420,6 +403,6 @@ void add_bench(CLI::App &app, Status &status)
   CLI::App *edits = command->add_subcommand("edits", "The work that each kind of edit of a large scene causes");
   edits->add_option("--json", o->json, "Write the figures");
   edits->callback([o] { bench_edits(*o); });
-}
+}  // namespace gnomon::cli
 
 }  // namespace gnomon::cli

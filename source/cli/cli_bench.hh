@@ -32,6 +32,9 @@ struct BenchOptions {
 /** Writes \a json to the file \a path, unless it is empty. \throws std::runtime_error that names the file */
 void write_json(const std::string &path, const nlohmann::json &json);
 
+void bench_cull(const BenchOptions &options);
+void bench_import(const BenchOptions &options);
+void bench_record(const BenchOptions &options);
 void bench_growth(const BenchOptions &options);
 void bench_frames(const BenchOptions &options);
 

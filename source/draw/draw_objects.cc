@@ -5,8 +5,9 @@
 #include <glm/mat3x3.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <functional>
+#include <limits>
 #include <utility>
 
 namespace gnomon::draw {
@@ -22,7 +23,8 @@ glm::mat3 normal_matrix(const glm::mat4 &world_from_object)
     }
   }
   if (largest > 0.0) {
-    cofactors *= (is_mirrored(world_from_object) ? -1.0 : 1.0) / largest;
+    // The sign of the determinant, as in is_mirrored().
+    cofactors *= (glm::dot(cofactors[2], m[2]) < 0.0 ? -1.0 : 1.0) / largest;
   }
   return glm::mat3(cofactors);
 }
@@ -35,14 +37,14 @@ bool is_mirrored(const glm::mat4 &world_from_object)
 
 bool is_finite(const glm::mat4 &matrix)
 {
+  // Without branches, because nearly all matrices are finite.
+  int finite_count = 0;
   for (int column = 0; column < 4; column++) {
     for (int row = 0; row < 4; row++) {
-      if (!std::isfinite(matrix[column][row])) {
-        return false;
-      }
+      finite_count += int(std::abs(matrix[column][row]) <= std::numeric_limits<float>::max());
     }
   }
-  return true;
+  return finite_count == 16;
 }
 
 static void check(ObjectIndex index, const glm::mat4 &world_from_object, const CullingVolume &volume)
@@ -60,22 +62,49 @@ ObjectBuffer::ObjectBuffer()
   add(glm::mat4(1.0F));
 }
 
+ObjectIndex ObjectBuffer::next_index()
+{
+  if (free_count_ == 0) {
+    return index_end();
+  }
+  while (free_bits_[first_free_word_] == 0) {
+    first_free_word_++;
+  }
+  return ObjectIndex(64 * first_free_word_ + std::size_t(std::countr_zero(free_bits_[first_free_word_])));
+}
+
 ObjectIndex ObjectBuffer::add(const glm::mat4 &world_from_object, std::uint32_t value, const CullingVolume &volume)
 {
-  const ObjectIndex index = free_.empty() ? index_end() : free_.front();
+  const ObjectIndex index = next_index();
   check(index, world_from_object, volume);
-  if (free_.empty()) {
+  if (index == index_end()) {
     objects_.emplace_back();
     volumes_.emplace_back();
+    culling_arrays_.x.emplace_back();
+    culling_arrays_.y.emplace_back();
+    culling_arrays_.z.emplace_back();
+    culling_arrays_.reach.emplace_back();
     revisions_.emplace_back();
+    free_bits_.resize((objects_.size() + 63) / 64);
   }
   else {
-    std::ranges::pop_heap(free_, std::greater());
-    free_.pop_back();
+    free_bits_[index / 64] &= ~(std::uint64_t(1) << index % 64);
+    free_count_--;
   }
   write(index, world_from_object, value, volume);
   structure_revision_ = revision_;
   return index;
+}
+
+void ObjectBuffer::reserve(std::size_t count)
+{
+  objects_.reserve(count);
+  volumes_.reserve(count);
+  culling_arrays_.x.reserve(count);
+  culling_arrays_.y.reserve(count);
+  culling_arrays_.z.reserve(count);
+  culling_arrays_.reach.reserve(count);
+  revisions_.reserve(count);
 }
 
 void ObjectBuffer::set(ObjectIndex index, const glm::mat4 &world_from_object, std::uint32_t value,
@@ -93,8 +122,9 @@ void ObjectBuffer::set(ObjectIndex index, const glm::mat4 &world_from_object, st
 void ObjectBuffer::remove(ObjectIndex index)
 {
   GNOMON_ASSERT(is_live(index) && index != object_identity, "object {} cannot be removed", index);
-  free_.push_back(index);
-  std::ranges::push_heap(free_, std::greater());
+  free_bits_[index / 64] |= std::uint64_t(1) << index % 64;
+  free_count_++;
+  first_free_word_ = std::min(first_free_word_, std::size_t(index / 64));
   revisions_[index] = 0;
   structure_revision_ = ++revision_;
 }
@@ -110,6 +140,10 @@ void ObjectBuffer::write(ObjectIndex index, const glm::mat4 &world_from_object, 
   object.normal_z = normal[2];
   object.value = value;
   volumes_[index] = volume;
+  culling_arrays_.x[index] = volume.center_ws.x;
+  culling_arrays_.y[index] = volume.center_ws.y;
+  culling_arrays_.z[index] = volume.center_ws.z;
+  culling_arrays_.reach[index] = culling_reach(volume);
   revisions_[index] = ++revision_;
 }
 

@@ -19,6 +19,16 @@ using ObjectIndex = std::uint32_t;
 /** Index of an object with the identity matrix, which always exists. */
 inline constexpr ObjectIndex object_identity = 0;
 
+/** Culling volumes as a structure of arrays, for tests of several at once. Indexed by object. \see View::culling_planes
+ */
+struct CullingArrays {
+  std::vector<float> x;
+  std::vector<float> y;
+  std::vector<float> z;
+  /** \see culling_reach */
+  std::vector<float> reach;
+};
+
 /**
  * The objects of one scene on one device. Each object has a matrix, a culling volume and a value. `object_block` in
  * GLSL.
@@ -35,6 +45,8 @@ class ObjectBuffer {
    * \throws gpu::Error if the matrix is not finite or the volume contains NaN; nothing changes then
    */
   ObjectIndex add(const glm::mat4 &world_from_object, std::uint32_t value = 0, const CullingVolume &volume = {});
+  /** Make room for \a count objects. */
+  void reserve(std::size_t count);
   /**
    * Change an object. The revision increases only if a value differs. \pre is_live(index)
    * \throws gpu::Error under the same conditions as add
@@ -50,6 +62,11 @@ class ObjectBuffer {
   [[nodiscard]] const CullingVolume &volume(ObjectIndex index) const
   {
     return volumes_[index];
+  }
+  /** The volumes of all objects, and of the last ones that used a free index. */
+  [[nodiscard]] const CullingArrays &culling_arrays() const
+  {
+    return culling_arrays_;
   }
   [[nodiscard]] bool is_live(ObjectIndex index) const
   {
@@ -78,7 +95,7 @@ class ObjectBuffer {
   /** Number of live objects, including object_identity. */
   [[nodiscard]] std::size_t size() const
   {
-    return objects_.size() - free_.size();
+    return objects_.size() - free_count_;
   }
 
   /** Write the objects that have changed since the last upload. \throws gpu::Error if they exceed a storage block */
@@ -90,13 +107,20 @@ class ObjectBuffer {
   }
 
  private:
+  /** The lowest free index, or index_end(). */
+  [[nodiscard]] ObjectIndex next_index();
   void write(ObjectIndex index, const glm::mat4 &world_from_object, std::uint32_t value, const CullingVolume &volume);
 
   std::vector<shared::ObjectData> objects_;
   std::vector<CullingVolume> volumes_;
+  CullingArrays culling_arrays_;
   std::vector<std::uint64_t> revisions_;
-  /** Unused indices as a heap with the lowest first, so that indices and drawing order depend on few edits. */
-  std::vector<ObjectIndex> free_;
+  /** One bit an index: 1 if it is free. The lowest is used first, so that indices and drawing order depend on few
+   * edits. */
+  std::vector<std::uint64_t> free_bits_;
+  std::size_t free_count_ = 0;
+  /** All elements of free_bits_ before this one are 0. */
+  std::size_t first_free_word_ = 0;
   std::uint64_t revision_ = 0;
   std::uint64_t structure_revision_ = 0;
   /** revision() at the last upload. */

@@ -89,12 +89,17 @@ void ShadingGroup::call(const gpu::Batch &batch, const glm::mat4 &world_from_obj
 
 void ShadingGroup::call(const gpu::Batch &batch, ObjectIndex object)
 {
-  calls_.push_back({batch.range(), object, {}});
+  calls_.push_back({batch.range(), object});
 }
 
 void ShadingGroup::call(const gpu::Batch &batch, ObjectIndex object, const CullingVolume &volume)
 {
-  calls_.push_back({batch.range(), object, volume});
+  if (volume.radius < 0.0F) {
+    call(batch, object);
+    return;
+  }
+  calls_.push_back({batch.range(), object, std::uint32_t(volumes_.size())});
+  volumes_.push_back(volume);
 }
 
 InstanceCall &ShadingGroup::instances(const gpu::Batch &batch)
@@ -136,22 +141,22 @@ void ShadingGroup::record_bindings(gpu::CommandList &list) const
   }
 }
 
-RecordCounts ShadingGroup::collect_draws(const View &view, gpu::CommandList &list) const
+RecordCounts ShadingGroup::collect_draws(const View &view, const VisibleObjects &visible, gpu::CommandList &list) const
 {
   const std::size_t first_instance_of_all = list.instances.size();
-  RecordCounts counts;
-  list.instances.reserve(list.instances.size() + calls_.size());
+  list.instances.resize(first_instance_of_all + calls_.size());
+  gpu::DrawInstance *const instances = list.instances.data();
+  auto instance_end = std::uint32_t(first_instance_of_all);
   // Whether the last entry of list.draws belongs to this group. A call of the same batch then adds an instance to it.
   bool has_draw = false;
   for (const Call &call : calls_) {
-    // A volume given with the call takes precedence over the object's volume.
-    const bool is_object_volume = call.volume.radius < 0.0F && objects_ && call.object < objects_->index_end();
-    if (!view.touches(is_object_volume ? objects_->volume(call.object) : call.volume)) {
-      counts.culled++;
+    const bool is_visible =
+        call.volume == object_volume ? !objects_ || visible.contains(call.object) : view.touches(volumes_[call.volume]);
+    if (!is_visible) {
       continue;
     }
-    const auto first_instance = std::uint32_t(list.instances.size());
-    list.instances.push_back({call.object, 0});
+    const std::uint32_t first_instance = instance_end++;
+    instances[first_instance] = {call.object, 0};
     // Compare the counts too, because an empty batch has the same first index as the batch after it.
     if (has_draw && list.draws.back().first_index == call.batch.first_index &&
         list.draws.back().index_count == call.batch.index_count) {
@@ -162,6 +167,9 @@ RecordCounts ShadingGroup::collect_draws(const View &view, gpu::CommandList &lis
       has_draw = true;
     }
   }
+  list.instances.resize(instance_end);
+  RecordCounts counts;
+  counts.culled = calls_.size() - (instance_end - first_instance_of_all);
   for (const InstanceCall &call : instance_calls_) {
     if (!call.instances_.empty()) {
       list.draws.push_back({call.batch_.index_count, std::uint32_t(call.instances_.size()), call.batch_.first_index,
@@ -190,11 +198,11 @@ void Pass::clear()
   order_.reset();
 }
 
-RecordCounts Pass::record_group(const ShadingGroup &group, const View &view, gpu::CommandList &list,
-                                gpu::State without) const
+RecordCounts Pass::record_group(const ShadingGroup &group, const View &view, const VisibleObjects &visible,
+                                gpu::CommandList &list, gpu::State without) const
 {
   const std::size_t first_draw = list.draws.size();
-  const RecordCounts counts = group.collect_draws(view, list);
+  const RecordCounts counts = group.collect_draws(view, visible, list);
   const bool has_calls = !group.calls_.empty() || !group.instance_calls_.empty();
   if (has_calls && counts.drawn == 0) {
     return counts;
@@ -213,10 +221,19 @@ RecordCounts Pass::record_group(const ShadingGroup &group, const View &view, gpu
 
 RecordCounts Pass::record(const View &view, gpu::CommandList &list, gpu::State without) const
 {
+  return record(view, visible_, list, without);
+}
+
+RecordCounts Pass::record(const View &view, VisibleObjects &visible, gpu::CommandList &list, gpu::State without) const
+{
+  const auto has_calls = [](const ShadingGroup &group) { return !group.calls_.empty(); };
+  if (objects_ && std::ranges::any_of(groups_, has_calls)) {
+    visible.update(view, *objects_);
+  }
   RecordCounts counts;
   const std::size_t count = order_ ? order_->size() : groups_.size();
   for (std::size_t i = 0; i < count; i++) {
-    const RecordCounts of_group = record_group(groups_[order_ ? (*order_)[i] : i], view, list, without);
+    const RecordCounts of_group = record_group(groups_[order_ ? (*order_)[i] : i], view, visible, list, without);
     counts.drawn += of_group.drawn;
     counts.culled += of_group.culled;
   }
@@ -250,7 +267,7 @@ std::string Pass::serialize(const gpu::Device &device) const
     }
     for (const ShadingGroup::Call &call : group.calls_) {
       text += fmt::format("    call {}, object {}", batch_text(call.batch), call.object);
-      text += call.volume.radius < 0.0F ? "\n" : ", culled\n";
+      text += call.volume == ShadingGroup::object_volume ? "\n" : ", culled\n";
     }
     for (const InstanceCall &call : group.instance_calls_) {
       text += fmt::format("    instances {} x{}\n", batch_text(call.batch_), call.instances_.size());

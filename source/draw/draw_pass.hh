@@ -3,6 +3,7 @@
 
 #include "draw_objects.hh"
 #include "draw_view.hh"
+#include "draw_visible.hh"
 
 #include "gpu_device.hh"
 
@@ -139,8 +140,11 @@ class ShadingGroup {
   struct Call {
     gpu::BatchRange batch;
     ObjectIndex object = object_identity;
-    CullingVolume volume;
+    /** Index in volumes_. */
+    std::uint32_t volume = object_volume;
   };
+  /** Call::volume of a call that is culled with the volume of its object. */
+  static constexpr std::uint32_t object_volume = ~std::uint32_t(0);
   struct ProceduralCall {
     std::uint32_t triangle_count;
     std::uint32_t instance_count;
@@ -154,7 +158,7 @@ class ShadingGroup {
   [[nodiscard]] Constant *constant_entry(std::string_view name, std::size_t size_bytes);
   void record_bindings(gpu::CommandList &list) const;
   /** Appends to the list's draws and instances, but not to its commands. */
-  RecordCounts collect_draws(const View &view, gpu::CommandList &list) const;
+  RecordCounts collect_draws(const View &view, const VisibleObjects &visible, gpu::CommandList &list) const;
 
   const gpu::Shader &shader_;
   ObjectBuffer *objects_;
@@ -164,6 +168,8 @@ class ShadingGroup {
   /** Content of the push-constant block. */
   std::vector<std::byte> constant_bytes_;
   std::vector<Call> calls_;
+  /** Volumes that were given with calls. */
+  std::vector<CullingVolume> volumes_;
   /** A deque, because callers hold references to its elements. */
   std::deque<InstanceCall> instance_calls_;
   std::vector<ProceduralCall> procedural_calls_;
@@ -182,10 +188,14 @@ class Pass {
 
   /**
    * Append the commands that draw the pass for \a view to \a list. Omits calls that are culled, and groups whose calls
-   * are all culled. \a without: bits to remove from the state, for this record only
+   * are all culled. \a without: bits to remove from the state, for this record only. One thread at a time may record
+   * a pass.
    * \pre called between begin_pass and end_pass of \a list
    */
   RecordCounts record(const View &view, gpu::CommandList &list, gpu::State without = gpu::State::None) const;
+  /** The same. Updates \a visible, which several passes of the same objects may share, if the pass has calls. */
+  RecordCounts record(const View &view, VisibleObjects &visible, gpu::CommandList &list,
+                      gpu::State without = gpu::State::None) const;
 
   [[nodiscard]] const std::string &name() const
   {
@@ -210,13 +220,15 @@ class Pass {
   [[nodiscard]] std::string serialize(const gpu::Device &device) const;
 
  private:
-  RecordCounts record_group(const ShadingGroup &group, const View &view, gpu::CommandList &list,
-                            gpu::State without) const;
+  RecordCounts record_group(const ShadingGroup &group, const View &view, const VisibleObjects &visible,
+                            gpu::CommandList &list, gpu::State without) const;
 
   std::string name_;
   gpu::State state_;
   ObjectBuffer *objects_;
   std::deque<ShadingGroup> groups_;
+  /** Of the last record for a view. Kept so that no record allocates memory, and that the same view is tested once. */
+  mutable VisibleObjects visible_;
   /** Nothing: in the order in which they were made. */
   std::optional<std::vector<std::uint32_t>> order_;
 };

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace gnomon::draw {
 
@@ -27,15 +28,31 @@ View::View(const glm::mat4 &view_from_world, const glm::mat4 &clip_from_view)
   }
 }
 
+float culling_reach(const CullingVolume &volume)
+{
+  if (volume.radius < 0.0F) {
+    return std::numeric_limits<float>::infinity();
+  }
+  // Far from the origin, rounding errors of the products exceed the radius of small spheres.
+  const glm::vec3 &center = volume.center_ws;
+  return volume.radius + 1e-6F * (std::abs(center.x) + std::abs(center.y) + std::abs(center.z));
+}
+
+CullingPlanes View::culling_planes() const
+{
+  CullingPlanes planes = frustum_planes_ws_;
+  for (glm::vec4 &plane : planes) {
+    plane.w += 1e-6F * std::abs(plane.w);
+  }
+  return planes;
+}
+
 bool View::touches(const CullingVolume &volume) const
 {
-  // Far from the origin, rounding errors of the products exceed the radius of small spheres.
-  const float slack =
-      1e-6F * (std::abs(volume.center_ws.x) + std::abs(volume.center_ws.y) + std::abs(volume.center_ws.z));
-  return volume.radius < 0.0F || std::ranges::all_of(frustum_planes_ws_, [&](const glm::vec4 &plane) {
-           const float height = glm::dot(glm::vec3(plane), volume.center_ws) + plane.w;
-           return height >= -volume.radius - slack - 1e-6F * std::abs(plane.w);
-         });
+  const float lowest = -culling_reach(volume);
+  return std::ranges::none_of(culling_planes(), [&](const glm::vec4 &plane) {
+    return glm::dot(glm::vec3(plane), volume.center_ws) + plane.w < lowest;
+  });
 }
 
 glm::mat4 perspective(float half_width, float half_height, float near, float far)

@@ -16,6 +16,15 @@ struct CullingVolume {
   float radius = -1.0F;
 };
 
+/**
+ * The planes of a frustum, moved outwards by what rounding errors may add to the height of a point far from the origin.
+ * A volume is outside if its centre is lower than -culling_reach() above one of them.
+ */
+using CullingPlanes = std::array<glm::vec4, 6>;
+
+/** The radius and the rounding error of the height of the centre; infinite: the volume is never culled. Metres. */
+[[nodiscard]] float culling_reach(const CullingVolume &volume);
+
 /** Position, direction and projection from which a pass is drawn. */
 class View {
  public:
@@ -50,6 +59,7 @@ class View {
   {
     return frustum_planes_ws_;
   }
+  [[nodiscard]] CullingPlanes culling_planes() const;
   /** Whether the sphere may intersect the frustum. Spheres outside near an edge may return true. */
   [[nodiscard]] bool touches(const CullingVolume &volume) const;
   bool operator==(const View &) const = default;

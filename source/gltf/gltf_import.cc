@@ -23,6 +23,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -138,6 +139,8 @@ class Importer {
     warn_about_file();
     const std::vector<int> roots = scene_roots();
     progress_.begin_phase(file_.model.nodes.size() + primitive_count(file_.model), 0.7F);
+    things_.nodes.resize(file_.model.nodes.size());
+    scene_.reserve_nodes(file_.model.nodes.size());
     visit_nodes(roots);
     things_.materials = meshes_.materials();
     import_skins(file_, things_.nodes, warnings_, scene_);
@@ -245,26 +248,32 @@ class Importer {
    */
   void visit_nodes(const std::vector<int> &roots)
   {
-    struct Visit {
-      int node;
-      /** Invalid for a root, and below a node that was left out. */
+    struct Siblings {
+      /** Those that are not visited yet. */
+      std::span<const int> nodes;
+      /** Invalid for roots, and below a node that was left out. */
       Handle<Node> parent;
       glm::dmat4 world_from_parent;
     };
-    std::vector<Visit> stack;
-    const auto push = [&stack](const std::vector<int> &nodes, Handle<Node> parent, const glm::dmat4 &world) {
-      std::for_each(nodes.rbegin(), nodes.rend(), [&](int node) { stack.push_back({node, parent, world}); });
-    };
-    push(roots, {}, glm::dmat4(1.0));
+    std::vector<Siblings> stack = {{roots, {}, glm::dmat4(1.0)}};
     while (!stack.empty()) {
-      const Visit visit = stack.back();
-      stack.pop_back();
+      Siblings &siblings = stack.back();
+      if (siblings.nodes.empty()) {
+        stack.pop_back();
+        continue;
+      }
       progress_.step();
-      const Model::Node &node = file_.model.nodes[visit.node];
+      const int index = siblings.nodes.front();
+      siblings.nodes = siblings.nodes.subspan(1);
+      const Model::Node &node = file_.model.nodes[index];
       const glm::dmat4 parent_from_node = matrix_of(
-          node, [&] { return node_label(visit.node); }, warnings_);
-      const glm::dmat4 world = visit.world_from_parent * parent_from_node;
-      push(node.children, import_node(visit.node, visit.parent, visit.parent ? parent_from_node : world, world), world);
+          node, [&] { return node_label(index); }, warnings_);
+      const glm::dmat4 world = siblings.world_from_parent * parent_from_node;
+      const Handle<Node> handle =
+          import_node(index, siblings.parent, siblings.parent ? parent_from_node : world, world);
+      if (!node.children.empty()) {
+        stack.push_back({node.children, handle, world});
+      }
     }
   }
 
@@ -295,7 +304,7 @@ class Importer {
       things_.cameras[file_.model.nodes[index].camera].push_back(node.camera);
     }
     const Handle<Node> handle = scene_.add(std::move(node), parent);
-    things_.nodes.emplace(index, handle);
+    things_.nodes[index] = handle;
     set_deformed_node(index, handle, first_deformed);
     for (std::size_t i = 0; i < instances.size(); i++) {
       import_instance(index, i, handle, instances[i], world * instances[i]);
@@ -358,8 +367,9 @@ class Importer {
     if (node.instances && is_deformed(file_.model, node)) {
       warnings_.add(node_label(index), "its instances are drawn without skin and morph targets");
     }
-    for (const Handle<Mesh> mesh :
-         is_own ? meshes_.deformed_meshes_of(node.mesh, node.skin) : meshes_.meshes_of(node.mesh)) {
+    const std::vector<Handle<Mesh>> own =
+        is_own ? meshes_.deformed_meshes_of(node.mesh, node.skin) : std::vector<Handle<Mesh>>();
+    for (const Handle<Mesh> mesh : is_own ? own : meshes_.meshes_of(node.mesh)) {
       if (!is_usable(transformed(scene_.meshes()[mesh].bounds, world))) {
         warnings_.add_counted(node_label(index), 1, "object left out: it reaches beyond 1e12 m");
         continue;
@@ -375,9 +385,9 @@ class Importer {
   [[nodiscard]] std::vector<int> visible_nodes() const
   {
     std::vector<int> indices;
-    for (const auto &[index, handle] : things_.nodes) {
-      if (scene_.is_visible(handle)) {
-        indices.push_back(index);
+    for (std::size_t i = 0; i < things_.nodes.size(); i++) {
+      if (things_.nodes[i] && scene_.is_visible(things_.nodes[i])) {
+        indices.push_back(static_cast<int>(i));
       }
     }
     return indices;

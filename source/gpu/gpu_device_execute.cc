@@ -191,15 +191,16 @@ void Device::count(const CommandList &list)
         break;
       case CommandKind::SetShader: counters_.shader_binds++; break;
       case CommandKind::SetState: state = State(command.first); break;
-      case CommandKind::Draw:
-        for (std::uint32_t i = command.first; i < command.first + command.count; i++) {
-          const DrawIndirect &draw = list.draws[i];
-          counters_.draws++;
+      case CommandKind::Draw: {
+        std::uint64_t index_count = 0;
+        for (const DrawIndirect &draw : std::span(list.draws).subspan(command.first, command.count)) {
           counters_.instances += draw.instance_count;
-          counters_.triangles +=
-              primitive_size(state) == 3 ? std::uint64_t(draw.index_count / 3) * draw.instance_count : 0;
+          index_count += std::uint64_t(draw.index_count) * draw.instance_count;
         }
+        counters_.draws += command.count;
+        counters_.triangles += primitive_size(state) == 3 ? index_count / 3 : 0;
         break;
+      }
       case CommandKind::DrawProcedural:
         counters_.draws++;
         counters_.instances += command.count;

@@ -31,7 +31,7 @@ enum class Clock {
   Wall,
 };
 
-/** Number of different meshes in measure_layer_passes() and measure_draws(). */
+/** Number of different meshes in measure_layer_passes() and measure_record(). */
 inline constexpr int bench_mesh_count = 8;
 
 /** A method of drawing the six layers of a point lamp's shadow. */
@@ -61,20 +61,31 @@ struct LayerPassCost {
 [[nodiscard]] std::vector<LayerPassCost> measure_layer_passes(gpu::Device &device, int caster_count, int rounds,
                                                               Clock clock);
 
-/** CPU seconds for each draw, one entry for each round. */
-struct DrawSeconds {
-  /** Adding the draw to a pass. */
-  std::vector<double> recorded;
-  /** Recording the pass for a view and submitting it. */
-  std::vector<double> submitted;
-  std::vector<double> sum;
+/** The cost of one part of the engine, or of a baseline. */
+struct PartCost {
+  std::string what;
+  /** One time for each round. */
+  std::vector<double> seconds{};
 };
 
 /**
- * Measures draws that each have their own matrix and another mesh than the previous draw. A first round is not
- * measured.
+ * CPU seconds for each of \a draw_count draws that each have their own matrix and another mesh than the previous draw:
+ * written to plain arrays, which is the baseline; added to a pass; and the pass recorded for a view and submitted. A
+ * first round is not measured.
  */
-[[nodiscard]] DrawSeconds measure_draws(gpu::Device &device, int draw_count, int rounds);
+[[nodiscard]] std::vector<PartCost> measure_record(gpu::Device &device, int draw_count, int rounds);
+
+/**
+ * CPU seconds to test \a box_count boxes against a frustum: one by one, which is the baseline, and together. Each round
+ * has another view. A first round is not measured.
+ */
+[[nodiscard]] std::vector<PartCost> measure_cull(int box_count, int rounds);
+
+/**
+ * Seconds to import a file of \a node_count nodes of one mesh, and to parse its JSON alone, which is the baseline. A
+ * first round is not measured. \throws std::runtime_error if no temporary file can be written
+ */
+[[nodiscard]] std::vector<PartCost> measure_import(int node_count, int rounds);
 
 /** Range of the lamps of measure_lamps(), metres. */
 inline constexpr double bench_lamp_range_m = 12.0;

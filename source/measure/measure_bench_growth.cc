@@ -14,6 +14,10 @@
 #include <limits>
 #include <memory>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace gnomon::measure {
 
 namespace {
@@ -50,6 +54,17 @@ double timed(Clock clock, const std::function<void()> &work)
   const double start = now(clock);
   work();
   return now(clock) - start;
+}
+
+/**
+ * Returns free memory to the system, so that work of each size pays for the memory that it touches, as the first work
+ * of a process. Otherwise, the C library would keep what small counts need, and not what large ones do.
+ */
+void forget_memory()
+{
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 /** Measures each count of \a counts in turn in each round. \a measure: seconds for the count of this index. */
@@ -92,6 +107,7 @@ GrowthCost first_pictures(gpu::Device &device, int rounds, double most)
     lattices.push_back(lattice(int(count)));
   }
   return rounds_of("first picture, objects", counts, rounds, [&](std::size_t i) {
+    forget_memory();
     return timed(Clock::ThreadCpu, [&] {
       eevee::SceneRenderer renderer(device, lattices[i].scene, view_size_px);
       renderer.sync();
@@ -158,6 +174,7 @@ GrowthCost imports(int rounds, double most)
     gltf::export_gltf(lattice(int(counts[i])).scene, path_of(i));
   }
   return rounds_of("import, nodes of one mesh", counts, rounds, [&](std::size_t i) {
+    forget_memory();
     return timed(Clock::Wall, [&] { static_cast<void>(gltf::import_gltf(path_of(i))); });
   });
 }

@@ -70,6 +70,11 @@ void RenderScene::update_objects()
       remove_objects(entry);
     }
   }
+  if (node_objects_.empty()) {
+    // Only at first: later, memory must grow by a factor and not with each edit.
+    objects_.reserve(nodes.size() + 1);
+    render_objects_.reserve(nodes.size() + 1);
+  }
   node_objects_.resize(nodes.index_end());
   // Update every node if a mesh or material was edited, because any node may use it. Such edits are rare.
   const bool is_anew = is_origin_changed_ || std::max(meshes, materials) > seen_;
@@ -90,7 +95,8 @@ void RenderScene::update_objects()
 void RenderScene::update_node(scene::Handle<scene::Node> handle, const scene::Node &node, bool is_anew)
 {
   NodeObjects &entry = node_objects_[handle.index];
-  std::vector<scene::Handle<scene::Mesh>> shown;
+  std::vector<scene::Handle<scene::Mesh>> &shown = shown_;
+  shown.clear();
   if (!node.meshes.empty() && scene_.is_visible(handle)) {
     for (const scene::Handle<scene::Mesh> mesh : node.meshes) {
       const scene::Mesh *value = scene_.meshes().find(mesh);

@@ -177,6 +177,8 @@ class RenderScene {
   std::vector<RenderObject> render_objects_{1};
   /** Indexed by Handle::index of the node. */
   std::vector<NodeObjects> node_objects_;
+  /** Temporary memory of update_node. */
+  std::vector<scene::Handle<scene::Mesh>> shown_;
   scene::Bounds bounds_;
   std::vector<scene::PlacedLamp> lamps_;
   std::shared_ptr<const WorldLight> world_;

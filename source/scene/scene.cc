@@ -51,19 +51,27 @@ Bounds transformed(const Bounds &bounds, const glm::mat4 &target_from_source)
   return result;
 }
 
-std::vector<Object> Scene::objects() const
+template <typename Visit>
+void Scene::for_each_object(const Visit &visit) const
 {
-  std::vector<Object> objects;
   for (const auto &[handle, node] : nodes_) {
     if (node.meshes.empty() || !links(handle).is_visible) {
       continue;
     }
     for (const Handle<Mesh> mesh : node.meshes) {
       if (meshes_.is_live(mesh)) {
-        objects.push_back({handle, mesh, links(handle).world_from_node});
+        visit(handle, mesh, links(handle).world_from_node);
       }
     }
   }
+}
+
+std::vector<Object> Scene::objects() const
+{
+  std::vector<Object> objects;
+  for_each_object([&](Handle<Node> node, Handle<Mesh> mesh, const glm::dmat4 &world_from_object) {
+    objects.push_back({node, mesh, world_from_object});
+  });
   return objects;
 }
 
@@ -102,9 +110,9 @@ const Material &Scene::material_of(const Mesh &mesh) const
 Bounds Scene::bounds() const
 {
   Bounds result;
-  for (const Object &object : objects()) {
-    result.extend(transformed(meshes_[object.mesh].bounds, glm::mat4(object.world_from_object)));
-  }
+  for_each_object([&](Handle<Node> /*node*/, Handle<Mesh> mesh, const glm::dmat4 &world_from_object) {
+    result.extend(transformed(meshes_[mesh].bounds, glm::mat4(world_from_object)));
+  });
   return result;
 }
 

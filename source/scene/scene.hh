@@ -179,6 +179,8 @@ class Scene {
   Handle<Camera> add(Camera camera);
   /** Adds the node as the last child of \a parent, or as a root if \a parent is an invalid handle. */
   Handle<Node> add(Node node, Handle<Node> parent = {});
+  /** Avoids copies while \a count nodes are added. */
+  void reserve_nodes(std::size_t count);
 
   /** Sets a thing's value. \throws StaleHandle or InvalidEdit; the scene is then unchanged. */
   void replace(Handle<Mesh> handle, Mesh mesh);
@@ -270,6 +272,9 @@ class Scene {
       return cameras_;
     }
   }
+  /** Calls \a visit with the node, the mesh and the world matrix of each of objects(). */
+  template <typename Visit>
+  void for_each_object(const Visit &visit) const;
   template <typename T>
   void replace_value(Handle<T> handle, T value);
   void remove_subtree(Handle<Node> node);

@@ -303,6 +303,11 @@ Handle<Camera> Scene::add(Camera camera)
   return cameras_.add(std::move(camera), ++revision_);
 }
 
+void Scene::reserve_nodes(std::size_t count)
+{
+  links_.reserve(links_.size() + count);
+}
+
 Handle<Node> Scene::add(Node node, Handle<Node> parent)
 {
   check(node);

@@ -43,14 +43,23 @@ TEST_F(BenchTest, ShadowsMeasuresAllCubePasses)
   }
 }
 
-TEST_F(BenchTest, DrawsWritesItsFigures)
+TEST_F(BenchTest, RecordCullAndImportCompareWithABaseline)
 {
-  const Finished finished = run("bench draws --rounds 2 --json bench.json");
-  ASSERT_EQ(finished.status, 0) << finished.err;
-  const json bench = json::parse(read("bench.json"));
-  ASSERT_EQ(bench["rows"].size(), 3U);
-  for (const json &row : bench["rows"]) {
-    EXPECT_GT(row["seconds_a_draw"]["median"], 0.0) << row;
+  const auto check = [](const json &rows, std::size_t count) {
+    ASSERT_EQ(rows.size(), count);
+    EXPECT_EQ(rows[0]["ratio_to_first"], 1.0);
+    for (const json &row : rows) {
+      EXPECT_GT(row["seconds"]["median"], 0.0) << row;
+      EXPECT_GT(row["ratio_to_first"], 0.0) << row;
+    }
+  };
+  ASSERT_EQ(run("bench record --rounds 2 --json record.json").status, 0);
+  check(json::parse(read("record.json"))["rows"], 4);
+  for (const std::string group : {"cull", "import"}) {
+    ASSERT_EQ(run("bench " + group + " --rounds 1 --count-max 1000 --json counts.json").status, 0);
+    const json counts = json::parse(read("counts.json"))["counts"];
+    ASSERT_EQ(counts.size(), 1U);
+    check(counts[0]["rows"], 2);
   }
 }
 

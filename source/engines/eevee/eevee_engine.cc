@@ -244,18 +244,15 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
 {
   Data &data = viewport.engine_data<Data>(*this);
   draw::View sample_view = view_of_sample(view, viewport, settings_, data.sample_index);
-  const bool is_sample_seen =
-      has_background(settings_, scene_) || std::ranges::any_of(data.stl.objects, [&](draw::ObjectIndex object) {
-        return sample_view.touches(scene_.objects().volume(object));
-      });
+  data.visible.update(sample_view, scene_.objects());
+  const auto is_visible = [&](draw::ObjectIndex object) { return data.visible.contains(object); };
+  const bool is_sample_seen = has_background(settings_, scene_) || std::ranges::any_of(data.stl.objects, is_visible);
   FrameSample sample{data, settings_, viewport, view, sample_view};
   data.is_transmission_seen = false;
   if (is_sample_seen) {
     data.is_seen = true;
     sync_materials(data.stl);
-    data.is_transmission_seen = std::ranges::any_of(data.stl.transmissive, [&](const TransmissiveObject &transmissive) {
-      return sample_view.touches(scene_.objects().volume(transmissive.object));
-    });
+    data.is_transmission_seen = std::ranges::any_of(data.stl.transmissive, is_visible, &TransmissiveObject::object);
     if (data.is_transmission_seen) {
       // It shows pixels of other rows.
       viewport.extend_part();

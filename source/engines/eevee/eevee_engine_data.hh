@@ -378,6 +378,8 @@ struct Data final : draw::EngineViewportData {
   TextureList txl;
   std::unique_ptr<PassList> psl;
   StorageList stl;
+  /** Of the view that was recorded last. */
+  draw::VisibleObjects visible;
   Timing timing;
   DepthFeedback depth_feedback;
   /** The target of the current draw, or of the last draw. */

@@ -21,7 +21,7 @@ static void record_passes(const FrameStep &step, FrameSample &sample, const draw
   StepRecord &record = data.frame[std::size_t(&step - frame_steps().data())];
   // A picture without visible objects and without a background is only cleared.
   for (std::size_t i = 0; data.is_seen && i < step.passes.size(); i++) {
-    const draw::RecordCounts counts = ((*data.psl).*step.passes[i].pass).record(view, list);
+    const draw::RecordCounts counts = ((*data.psl).*step.passes[i].pass).record(view, data.visible, list);
     record.passes[i].runs += counts.drawn > 0 ? 1 : 0;
     record.passes[i].counts.drawn += counts.drawn;
     record.passes[i].counts.culled += counts.culled;

@@ -42,6 +42,7 @@ void Engine::order_blended(Data &data, const draw::View &view)
   if (stl.blended.empty()) {
     return;
   }
+  data.visible.update(view, scene_.objects());
   const shared::ViewData seen_from = view_data(view, settings_, 0);
   BlendOrderKey key{.eye_ws = seen_from.is_perspective != 0 ? glm::vec4(seen_from.position_ws, 1.0F)
                                                             : glm::vec4(seen_from.back_ws, 0.0F),
@@ -51,11 +52,11 @@ void Engine::order_blended(Data &data, const draw::View &view)
                     .transmissive = {}};
   std::vector<std::uint32_t> hidden;
   for (std::uint32_t i = 0; i < stl.blended.size(); i++) {
-    const bool is_visible = view.touches(scene_.objects().volume(stl.blended[i].object));
+    const bool is_visible = data.visible.contains(stl.blended[i].object);
     (is_visible ? key.visible : hidden).push_back(i);
   }
   for (const TransmissiveObject &transmissive : stl.transmissive) {
-    if (!transmissive.is_blended && view.touches(scene_.objects().volume(transmissive.object))) {
+    if (!transmissive.is_blended && data.visible.contains(transmissive.object)) {
       key.transmissive.push_back(transmissive.object);
     }
   }

@@ -133,8 +133,8 @@ class AnimationImporter {
   void import_node_channel(const Model::AnimationSampler &sampler, int node, const std::string &path,
                            std::map<int, std::size_t> &node_places, scene::Animation &animation)
   {
-    const auto handle = things_.nodes.find(node);
-    if (handle == things_.nodes.end()) {
+    // The index of a pointer may be any number. A negative one becomes larger than all sizes.
+    if (std::size_t(node) >= things_.nodes.size() || !things_.nodes[std::size_t(node)]) {
       throw Fault("target", "its node is not in the scene");
     }
     const Model::Node &source = file_.model.nodes[std::size_t(node)];
@@ -166,7 +166,7 @@ class AnimationImporter {
     const auto [place, is_new] = node_places.try_emplace(node, animation.nodes.size());
     if (is_new) {
       AnimatedNode &rest = animation.nodes.emplace_back();
-      rest.node = handle->second;
+      rest.node = things_.nodes[std::size_t(node)];
       rest.translation = {source.translation[0], source.translation[1], source.translation[2]};
       rest.scale = {source.scale[0], source.scale[1], source.scale[2]};
       const glm::dvec4 r(source.rotation[0], source.rotation[1], source.rotation[2], source.rotation[3]);

@@ -19,7 +19,8 @@ namespace gnomon::gltf {
  * scene for each node that uses it.
  */
 struct ImportedThings {
-  std::map<int, scene::Handle<scene::Node>> nodes;
+  /** Invalid for nodes that are not in the scene. */
+  std::vector<scene::Handle<scene::Node>> nodes;
   std::map<int, std::vector<scene::Handle<scene::Lamp>>> lamps;
   std::map<int, std::vector<scene::Handle<scene::Camera>>> cameras;
   std::map<int, scene::Handle<scene::Material>> materials;

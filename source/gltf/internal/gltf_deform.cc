@@ -180,7 +180,7 @@ DeformedMesh read_deformed(const File &file, const Model::Primitive &primitive, 
   return deformed;
 }
 
-void import_skins(const File &file, const std::map<int, scene::Handle<scene::Node>> &nodes, Warnings &warnings,
+void import_skins(const File &file, const std::vector<scene::Handle<scene::Node>> &nodes, Warnings &warnings,
                   scene::Scene &scene)
 {
   for (std::size_t i = 0; i < file.model.skins.size(); i++) {
@@ -191,9 +191,8 @@ void import_skins(const File &file, const std::map<int, scene::Handle<scene::Nod
       throw Fault(what, "has more than " + std::to_string(joint_count_max) + " joints");
     }
     for (const int joint : source.joints) {
-      const auto found = nodes.find(joint);
-      skin.joints.push_back(found == nodes.end() ? scene::Handle<scene::Node>() : found->second);
-      if (found == nodes.end()) {
+      skin.joints.push_back(nodes[joint]);
+      if (!nodes[joint]) {
         warnings.add_counted(what, 1, "joint does not move: its node is not in the scene");
       }
     }

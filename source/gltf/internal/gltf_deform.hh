@@ -6,7 +6,6 @@
 #include "scene.hh"
 
 #include <cstdint>
-#include <map>
 #include <span>
 #include <string>
 
@@ -35,8 +34,8 @@ inline constexpr std::size_t joint_count_max = 65536;
 /** Upper bound of the number of vectors that read_deformed reads for each vertex. */
 [[nodiscard]] std::uint64_t deformed_width(const Model::Primitive &primitive, bool has_skin);
 
-/** Append the file's skins to \a scene. \a nodes: maps indices in the file to the handles of the imported nodes. */
-void import_skins(const File &file, const std::map<int, scene::Handle<scene::Node>> &nodes, Warnings &warnings,
+/** Append the file's skins to \a scene. \a nodes: the imported nodes by their indices in the file, or invalid. */
+void import_skins(const File &file, const std::vector<scene::Handle<scene::Node>> &nodes, Warnings &warnings,
                   scene::Scene &scene);
 
 }  // namespace gnomon::gltf

@@ -7,6 +7,8 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -110,6 +112,36 @@ TEST(ChangedBounds, CoverAddedAndRemovedCasters)
   ASSERT_EQ(changed.size(), 2U);
   EXPECT_EQ(changed[0].center().x + changed[1].center().x, 12.0F);
   EXPECT_EQ(changed_bounds({}, after).size(), 3U);
+}
+
+TEST(ChangedBounds, AreThoseOfTheFingerprintsThatOneListHasMoreOftenThanTheOther)
+{
+  std::mt19937 random(5);
+  const auto random_list = [&] {
+    std::vector<Caster> casters;
+    for (std::uint64_t count = random() % 9; count > 0; count--) {
+      const std::uint64_t fingerprint = random() % 5;
+      casters.push_back(caster_at({float(fingerprint), 0, 0}, 1, fingerprint));
+    }
+    return casters;
+  };
+  for (int i = 0; i < 500; i++) {
+    const std::vector<Caster> before = random_list();
+    const std::vector<Caster> after = random_list();
+    std::array<int, 5> counts{};
+    for (const Caster &caster : before) {
+      counts[caster.fingerprint]++;
+    }
+    for (const Caster &caster : after) {
+      counts[caster.fingerprint]--;
+    }
+    std::array<int, 5> changed{};
+    for (const scene::Bounds &bounds : changed_bounds(before, after)) {
+      changed[std::size_t(bounds.center().x)]++;
+    }
+    std::ranges::transform(counts, counts.begin(), [](int count) { return std::abs(count); });
+    EXPECT_EQ(changed, counts) << i;
+  }
 }
 
 }  // namespace

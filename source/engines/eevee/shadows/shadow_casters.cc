@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -19,21 +20,37 @@ std::uint64_t fingerprint_of(std::span<const std::byte> bytes)
 
 std::vector<scene::Bounds> changed_bounds(const std::vector<Caster> &before, const std::vector<Caster> &after)
 {
-  const auto sorted = [](const std::vector<Caster> &casters) {
-    std::vector<const Caster *> pointers;
-    pointers.reserve(casters.size());
+  // Only what is between equal beginnings and equal ends is sorted: after most edits, little or nothing.
+  std::span<const Caster> old_casters(before);
+  std::span<const Caster> new_casters(after);
+  const auto first = std::ranges::mismatch(old_casters, new_casters, {}, &Caster::fingerprint, &Caster::fingerprint);
+  old_casters = {first.in1, old_casters.end()};
+  new_casters = {first.in2, new_casters.end()};
+  while (!old_casters.empty() && !new_casters.empty() &&
+         old_casters.back().fingerprint == new_casters.back().fingerprint) {
+    old_casters = old_casters.first(old_casters.size() - 1);
+    new_casters = new_casters.first(new_casters.size() - 1);
+  }
+  using Entry = std::pair<std::uint64_t, const Caster *>;
+  const auto entries_of = [](std::span<const Caster> casters, bool is_sorted) {
+    std::vector<Entry> entries;
+    entries.reserve(casters.size());
     for (const Caster &caster : casters) {
-      pointers.push_back(&caster);
+      entries.emplace_back(caster.fingerprint, &caster);
     }
-    std::ranges::sort(pointers, {}, &Caster::fingerprint);
-    return pointers;
+    if (is_sorted) {
+      std::ranges::sort(entries, {}, &Entry::first);
+    }
+    return entries;
   };
-  std::vector<const Caster *> changed;
-  std::ranges::set_symmetric_difference(sorted(before), sorted(after), std::back_inserter(changed), {},
-                                        &Caster::fingerprint, &Caster::fingerprint);
+  // All of the only list have changed.
+  const bool is_sorted = !old_casters.empty() && !new_casters.empty();
+  std::vector<Entry> changed;
+  std::ranges::set_symmetric_difference(entries_of(old_casters, is_sorted), entries_of(new_casters, is_sorted),
+                                        std::back_inserter(changed), {}, &Entry::first, &Entry::first);
   std::vector<scene::Bounds> bounds;
   bounds.reserve(changed.size());
-  for (const Caster *caster : changed) {
+  for (const auto &[fingerprint, caster] : changed) {
     bounds.push_back(caster->bounds_ws);
   }
   return bounds;
@@ -133,7 +150,8 @@ float lamp_near(const glm::vec3 &position_ws, float range, const std::vector<Cas
 void ShadowCasters::begin()
 {
   if (std::exchange(is_finished_, false)) {
-    before_ = std::exchange(casters_, {});
+    // Both lists keep their memory.
+    std::swap(before_, casters_);
   }
   casters_.clear();
   volumes_.clear();
@@ -155,7 +173,10 @@ void ShadowCasters::finish()
     }
     bounds_ws_.extend(caster.bounds_ws);
     volumes_.push_back({caster.bounds_ws.center(), caster.bounds_ws.radius()});
-    calls_.push_back(caster.instances);
+    // Most casters follow others of their mesh.
+    if (calls_.empty() || calls_.back() != caster.instances) {
+      calls_.push_back(caster.instances);
+    }
   }
   std::ranges::sort(calls_);
   calls_.erase(std::unique(calls_.begin(), calls_.end()), calls_.end());

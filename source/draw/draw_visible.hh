@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "draw_objects.hh"
+#include "draw_view.hh"
+
+#include <cstdint>
+#include <vector>
+
+namespace gnomon::draw {
+
+/**
+ * The objects of an ObjectBuffer whose culling volumes touch the frustum of a view. Several passes that are recorded
+ * for one view share one set, so that each object is tested once.
+ */
+class VisibleObjects {
+ public:
+  /** Test all objects, unless the view and the objects are those of the last update. */
+  void update(const View &view, const ObjectBuffer &objects);
+
+  /** As View::touches with the volume of the object. True for indices that did not exist at the last update. */
+  [[nodiscard]] bool contains(ObjectIndex object) const
+  {
+    return object >= is_visible_.size() || is_visible_[object] != 0;
+  }
+
+ private:
+  View view_;
+  /** The objects of the last update and their revision. nullptr: there was none. */
+  const ObjectBuffer *objects_ = nullptr;
+  std::uint64_t objects_revision_ = 0;
+  /** By object index: 1 or 0. Bytes, because the compiler writes several results at once. */
+  std::vector<std::uint8_t> is_visible_;
+};
+
+}  // namespace gnomon::draw
