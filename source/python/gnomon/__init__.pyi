@@ -86,6 +86,7 @@ class Material:
     specular_color: Vector
     coat: float
     coat_roughness: float
+    coat_normal_scale: float
     sheen_color: Vector
     sheen_roughness: float
     anisotropy: float
