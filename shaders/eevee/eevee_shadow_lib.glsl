@@ -133,8 +133,8 @@ ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, ve
   float size = float(cube.size_px);
   vec4 crop = unpackUnorm4x8(cube.crop);
   float uv_scale = 0.5 * cube_uv_scale(size);
-  vec2 layers_per_face = 1.0 / (crop.zw - crop.xy);
-  vec2 uv = (p.xy / p.z * uv_scale + 0.5 - crop.xy) * layers_per_face;
+  vec2 extent = crop.zw - crop.xy;
+  vec2 uv = (p.xy / p.z * uv_scale + 0.5 - crop.xy) / extent;
   // No surface of the picture is there.
   if (any(greaterThan(abs(uv - 0.5), vec2(0.5)))) {
     return place;
@@ -145,7 +145,7 @@ ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, ve
   place.receiver_depth = cube.near / p.z;
   place.plane.texel = uv * size - 0.5;
   place.plane.depth = place.receiver_depth + dot(surface.geometric_normal_ws, offset) * per_metre / p.z;
-  place.plane.slope = n.xy * (per_metre / (uv_scale * size)) / layers_per_face;
+  place.plane.slope = n.xy * (per_metre / (uv_scale * size)) * extent;
   place.plane.least_depth = least_depth(place, offset, filter_of(cube));
   place.layer = cube.layer + face;
   place.is_covered = true;
