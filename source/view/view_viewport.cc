@@ -55,12 +55,12 @@ Viewport::OverlayKey Viewport::overlay_key(Document &document) const
   return key;
 }
 
-void Viewport::draw_picture(Document &document, draw::Engine &engine, double budget_seconds, const draw::Target &target)
+void Viewport::draw_picture(Document &document, draw::Engine &used, double budget_seconds, const draw::Target &target)
 {
-  auto *eevee = dynamic_cast<eevee::Engine *>(&engine);
+  auto *eevee = dynamic_cast<eevee::Engine *>(&used);
   has_budget_ = eevee && budget_seconds > 0.0;
   if (!has_budget_) {
-    draw::Engine *one = &engine;
+    draw::Engine *one = &used;
     viewport_->draw(std::span(&one, 1), drawn_view_, target);
     return;
   }

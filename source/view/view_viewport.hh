@@ -107,8 +107,8 @@ class Viewport {
     bool operator==(const OverlayKey &) const = default;
   };
   [[nodiscard]] OverlayKey overlay_key(Document &document) const;
-  /** Draw with \a engine, within the budget if there is one and it can. */
-  void draw_picture(Document &document, draw::Engine &engine, double budget_seconds, const draw::Target &target);
+  /** Draw with \a used, within the budget if there is one and it can. */
+  void draw_picture(Document &document, draw::Engine &used, double budget_seconds, const draw::Target &target);
   /** End a picture whose time is over. */
   void limit_time(const Document &document, eevee::Engine &eevee);
   void draw_overlays(Document &document, const draw::Target &target);

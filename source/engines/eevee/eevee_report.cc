@@ -5,6 +5,7 @@
 #include "eevee_surface_functions.hh"
 
 #include "eevee_inspection.hh"
+#include "render_blend_order.hh"
 
 #include <fmt/ranges.h>
 
