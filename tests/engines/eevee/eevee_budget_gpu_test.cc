@@ -17,9 +17,9 @@ constexpr double budget = 0.01;
 
 /** A viewport whose parts take \a part_seconds each. */
 struct Budgeted {
-  Budgeted(render_scene::RenderScene &scene, Engine &engine, double part_seconds)
-      : scene(scene),
-        engine(engine),
+  Budgeted(render_scene::RenderScene &drawn_scene, Engine &drawing_engine, double part_seconds)
+      : scene(drawn_scene),
+        engine(drawing_engine),
         viewport(scene.device(), size_px),
         picture(scene, engine, viewport, [this, part_seconds] {
           seconds += 0.5 * part_seconds;
@@ -70,9 +70,9 @@ class BudgetGpuTest : public test::GpuDeviceTest {
     test::add_lamp(scene, scene::LampKind::Point, {1, -2, 6}, {0, 0, -1}, 60.0F);
     test::add_lamp(scene, scene::LampKind::Sun, {4, 3, 8}, {-0.4, -0.3, -0.8}, 2.0F);
   }
-  std::vector<glm::vec4> without_budget(const Settings &settings)
+  std::vector<glm::vec4> without_budget(const Settings &with)
   {
-    SceneRenderer renderer(*device, scene, size_px, settings);
+    SceneRenderer renderer(*device, scene, size_px, with);
     renderer.sync();
     renderer.draw(camera);
     return renderer.read_picture();

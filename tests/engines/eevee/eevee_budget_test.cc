@@ -138,8 +138,8 @@ TEST_F(BudgetTest, TheSetUpOfASampleIsDividedIntoLayersOfShadowsThatFit)
   for (int i = 0; i < 4; i++) {
     test::add_lamp(scene, scene::LampKind::Spot, {float(i) - 1.5F, 0, 3}, {0, 0, -1}, 10.0F);
   }
-  const auto faces_drawn = [](Engine &engine, draw::Viewport &viewport) {
-    return int(Inspection(engine, viewport).report().shadow_counters.faces_drawn);
+  const auto faces_drawn = [](Engine &used_engine, draw::Viewport &used_viewport) {
+    return int(Inspection(used_engine, used_viewport).report().shadow_counters.faces_drawn);
   };
   SceneRenderer whole(*device, scene, {64, 48}, settings);
   whole.sync();
