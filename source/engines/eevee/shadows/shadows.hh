@@ -76,7 +76,7 @@ class Shadows {
                        int layers_max = std::numeric_limits<int>::max());
   /** Draw the layers that blended casters touch again: they hold one sample of them. */
   void invalidate_blended();
-  /** Whether suns are fitted to depths. */
+  /** Whether maps of suns are fitted to depths, or maps of other lamps are cropped to them. */
   [[nodiscard]] bool reads_depths() const;
   /** Make the next update fit the suns again even if the view does not change, because new depths are available. */
   void fit_again()
