@@ -63,7 +63,7 @@ eevee::ShadowSettings shadow_settings(const RenderOptions &options)
   // draw finer maps is spread over the samples.
   constexpr int fine_shadow_samples = 16;
   const bool is_fine = options.samples == 0 || options.samples >= fine_shadow_samples;
-  settings.cascades.is_fitted_to_depth = options.cascade_range == "auto" ? is_fine : options.cascade_range == "depth";
+  settings.is_fitted_to_depth = options.cascade_range == "auto" ? is_fine : options.cascade_range == "depth";
   settings.layer_pass = passes.at(options.cube_pass);
   settings.caster_faces = faces.at(options.casters);
   settings.memory_bytes_max = std::size_t(options.shadow_memory) << 20U;

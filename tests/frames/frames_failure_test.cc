@@ -117,7 +117,7 @@ class FrameSamples : public FrameFailure {
     Settings settings = test::frames_settings();
     settings.sample_count = 3;
     // A wait for depths would start a picture again, too.
-    settings.shadow.cascades.is_fitted_to_depth = false;
+    settings.shadow.is_fitted_to_depth = false;
     return settings;
   }
 
@@ -188,7 +188,7 @@ TEST_F(FrameSamples, StartAgainWithTheDepthsOfTheView)
     frames.scene.edit(measure::handle_at(frames.scene.lamps(), i), [](scene::Lamp &lamp) { lamp.angle = 0.0F; });
   }
   Settings with_depths = settings();
-  with_depths.shadow.cascades.is_fitted_to_depth = true;
+  with_depths.shadow.is_fitted_to_depth = true;
   renderer.set_settings(with_depths);
   std::array<gpu::Packet, 2> packets;
   std::vector<int> samples;

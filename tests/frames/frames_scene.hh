@@ -134,10 +134,7 @@ class FramesScene {
 /** Small maps of all kinds. */
 [[nodiscard]] inline eevee::Settings frames_settings()
 {
-  return {.shadow = {.cube_size_px = 32,
-                     .map_size_px = 64,
-                     .esm = {.size_px = 16},
-                     .cascades = {.is_fitted_to_depth = true}},
+  return {.shadow = {.cube_size_px = 32, .map_size_px = 64, .esm = {.size_px = 16}, .is_fitted_to_depth = true},
           .sample_count = 1};
 }
 

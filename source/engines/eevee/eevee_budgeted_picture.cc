@@ -35,7 +35,7 @@ Settings preview_settings(Settings settings, int shadow_divisor)
   shadow.map_size_px = divided(shadow.map_size_px);
   shadow.esm.size_px = divided(shadow.esm.size_px);
   // Its depths would be read back, and the picture drawn twice.
-  shadow.cascades.is_fitted_to_depth = false;
+  shadow.is_fitted_to_depth = false;
   return settings;
 }
 

@@ -125,7 +125,7 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
   }
   ShadowSettings shadow = settings_.shadow;
   // These surfaces receive shadows, and the depths that are read back do not have them.
-  shadow.cascades.is_fitted_to_depth &= !has_surfaces_without_depth(scene_.scene());
+  shadow.is_fitted_to_depth &= !has_surfaces_without_depth(scene_.scene());
   shared.shadows.sync(device_limits, shadow_lamps(shared.placed, shared.lamps, shading), scene_.bounds(),
                       shared.lamps.lights, shadow);
   const scene::Bounds &bounds_ws = scene_.bounds();

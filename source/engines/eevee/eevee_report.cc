@@ -236,7 +236,7 @@ Report Inspection::report() const
   const SceneShadows &shadows = shared.shadows;
   report.warnings = lamps.warnings;
   report.warnings.insert(report.warnings.end(), shadows.warnings().begin(), shadows.warnings().end());
-  if (settings.shadow.cascades.is_fitted_to_depth && has_surfaces_without_depth(scene.scene())) {
+  if (settings.shadow.is_fitted_to_depth && has_surfaces_without_depth(scene.scene())) {
     report.warnings.emplace_back(
         "cascades are not fitted to depths: blended and transmissive materials receive shadows, and are drawn later");
   }

@@ -340,7 +340,7 @@ TEST_F(BlendScene, CascadesAreNotFittedToDepthsThatLackBlendedSurfaces)
 {
   const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
   Settings settings;
-  settings.shadow.cascades.is_fitted_to_depth = true;
+  settings.shadow.is_fitted_to_depth = true;
   test::Renderer renderer(*device, scene, {32, 32}, settings);
   renderer.draw(test::camera_at({0, 0, 9}, {0, 0, 0}));
   EXPECT_TRUE(renderer.inspect().shadows().reads_depths());

@@ -111,9 +111,9 @@ TEST_F(BudgetGpuTest, TheRefinedPictureIsBitForBitThatWithoutABudget)
     EXPECT_EQ(fast.pixels(), truth);
   };
   compare("lamps without a size", true);
-  settings.shadow.cascades.is_fitted_to_depth = true;
+  settings.shadow.is_fitted_to_depth = true;
   compare("cascades that are fitted to depths", true);
-  settings.shadow.cascades.is_fitted_to_depth = false;
+  settings.shadow.is_fitted_to_depth = false;
   scene.edit(test::handle_at(scene.lamps(), 0), [](scene::Lamp &lamp) { lamp.radius = 0.4F; });
   add_front([](scene::Material &material) {
     material.alpha_mode = scene::AlphaMode::Blend;

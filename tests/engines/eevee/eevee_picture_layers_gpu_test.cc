@@ -208,7 +208,7 @@ TEST_F(PictureLayersGpuTest, VisibilityIsTheShareOfTheLightThatArrives)
   // A sun that covers a disk, so that each sample sees another point of it.
   scene.edit(test::handle_at(scene.lamps(), 0), [](scene::Lamp &lamp) { lamp.angle = 0.1F; });
   for (const bool is_fitted : {false, true}) {
-    Settings settings{.shadow = {.map_size_px = 128, .cascades = {.is_fitted_to_depth = is_fitted}}, .sample_count = 4};
+    Settings settings{.shadow = {.map_size_px = 128, .is_fitted_to_depth = is_fitted}, .sample_count = 4};
     SceneRenderer renderer(*device, scene, layers_size_px, settings);
     renderer.sync();
     renderer.draw(camera);

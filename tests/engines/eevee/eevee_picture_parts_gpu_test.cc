@@ -98,9 +98,8 @@ TEST_F(PicturePartsTest, RegionsAreBitForBitThoseOfTheWholePicture)
       test::add_object(scene, test::add_box_mesh(scene, glass),
                        glm::scale(glm::translate(glm::dmat4(1), {0, -1, 1.5}), glm::dvec3(1.2)));
     }
-    const Settings settings{
-        .shadow = {.cube_size_px = 128, .map_size_px = 128, .cascades = {.is_fitted_to_depth = is_fitted}},
-        .sample_count = 3};
+    const Settings settings{.shadow = {.cube_size_px = 128, .map_size_px = 128, .is_fitted_to_depth = is_fitted},
+                            .sample_count = 3};
     SceneRenderer renderer(*device, scene, whole_size_px, settings);
     renderer.sync();
     renderer.draw(camera);
@@ -130,9 +129,8 @@ TEST_F(PicturePartsTest, RangesOfSamplesAddUpToTheWholePicture)
   scene.edit(test::handle_at(scene.lamps(), 0), [](scene::Lamp &lamp) { lamp.radius = 0.4F; });
   // A sun whose cascades are fitted to the depths that the first sample sees.
   test::add_lamp(scene, scene::LampKind::Sun, {4, 3, 8}, {-0.4, -0.3, -0.8}, 2.0F);
-  Settings settings{.shadow = {.cube_size_px = 128, .map_size_px = 128, .cascades = {.is_fitted_to_depth = true}},
-                    .sample_count = 16,
-                    .seed = 3};
+  Settings settings{
+      .shadow = {.cube_size_px = 128, .map_size_px = 128, .is_fitted_to_depth = true}, .sample_count = 16, .seed = 3};
   SceneRenderer renderer(*device, scene, whole_size_px, settings);
   renderer.sync();
   renderer.draw(camera);

@@ -49,7 +49,7 @@ class ShadowCropGpuTest : public test::GpuDeviceTest, public testing::WithParamI
   }
   static Settings settings(int edge_px, bool is_fitted)
   {
-    return {.shadow = {.cube_size_px = edge_px, .map_size_px = edge_px, .cascades = {.is_fitted_to_depth = is_fitted}},
+    return {.shadow = {.cube_size_px = edge_px, .map_size_px = edge_px, .is_fitted_to_depth = is_fitted},
             .sample_count = 16};
   }
   Picture picture(const Settings &with)

@@ -302,7 +302,7 @@ class PenumbraTest : public test::GpuDeviceTest, public testing::WithParamInterf
   {
     place(ratio);
     SceneRenderer renderer(*device, scene, size_px,
-                           {.shadow = {.cascades = {.is_fitted_to_depth = true}}, .sample_count = sample_count});
+                           {.shadow = {.is_fitted_to_depth = true}, .sample_count = sample_count});
     renderer.sync();
     return width_ratio(render_surface_layers(renderer, camera, sample_count, {.visible_lamps = {0}}).visibilities[0]);
   }

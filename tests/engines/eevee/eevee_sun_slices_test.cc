@@ -325,13 +325,11 @@ struct SunScene {
   [[nodiscard]] std::vector<SunFit> fits(const SeenGroundPicture &picture, bool is_fitted, int count, float pixel_size,
                                          bool can_resize = false) const
   {
-    VisibleRange visible = visible_range(picture.view, visible_corners(picture.view, all));
-    if (is_fitted) {
-      visible.clusters = picture.clusters();
-    }
+    const VisibleRange visible = visible_range(picture.view, visible_corners(picture.view, all));
+    const std::vector<VisibleCluster> clusters = is_fitted ? picture.clusters() : std::vector<VisibleCluster>();
     const int asked_px = can_resize ? int(std::lround(size_px * resize_step)) : size_px;
-    return fit_sun(sun, picture.view, visible, casters, asked_px,
-                   {.count = count, .is_fitted_to_depth = is_fitted, .can_resize = can_resize}, pixel_size);
+    return fit_sun(sun, picture.view, visible, casters, asked_px, {.count = count, .can_resize = can_resize},
+                   pixel_size, {}, 0.0, clusters);
   }
 
   static constexpr int size_px = 512;

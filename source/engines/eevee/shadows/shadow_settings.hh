@@ -35,6 +35,15 @@ struct ShadowSettings {
   /** Settings of Esm and Evsm for all lamps except suns. EsmSettings::method is not used: `kind` selects the method. */
   EsmSettings esm{};
   CascadeSettings cascades{};
+  /**
+   * Fit the maps of suns to the surfaces in the picture instead of slices of the view: the splits, positions,
+   * directions and extents with the least error, \see sun_slices. Crop the cube faces and maps of other lamps to these
+   * surfaces, \see map_crop. The depths of the picture are read back after the depth pre-pass whenever the view
+   * changes. draw::Viewport::draw waits for them. Recorded packets use the depths of an earlier packet, so that shadows
+   * follow the camera some frames later. For pictures of one camera: the edges of the shadows move when the camera
+   * moves.
+   */
+  bool is_fitted_to_depth = false;
   LayerPass layer_pass = LayerPass::Best;
   CasterFaces caster_faces = CasterFaces::All;
   /** Maximum device memory of all shadow layers, bytes. \see plan_shadows */

@@ -19,7 +19,7 @@ int cascade_count(const ShadowLamp &lamp, const ShadowSettings &settings)
 /** Whether the maps of \a lamp are fitted to depths. The maps of a sampled lamp serve one sample only. */
 bool is_fitted(const ShadowLamp &lamp, const ShadowSettings &settings)
 {
-  return settings.cascades.is_fitted_to_depth && !lamp.is_sampled;
+  return settings.is_fitted_to_depth && !lamp.is_sampled;
 }
 
 /** \see CascadeSettings::can_resize */
@@ -75,11 +75,11 @@ class SunTechnique final : public ShadowTechnique {
   {
     CascadeSettings cascades = settings.cascades;
     cascades.count = cascade_count(slot.lamp, settings);
-    cascades.is_fitted_to_depth = is_fitted(slot.lamp, settings);
     cascades.can_resize = is_resized(slot.lamp, settings);
     slot.new_fits =
         fit_sun(slot.lamp.world_from_lamp, view.view, view.visible, casters.list(), slot.place.given.size_px, cascades,
-                view.pixel_size, std::move(slot.new_fits), slot.lamp.extent);
+                view.pixel_size, std::move(slot.new_fits), slot.lamp.extent,
+                is_fitted(slot.lamp, settings) ? std::span(view.visible.clusters) : std::span<const VisibleCluster>());
     const std::vector<SunFit> &fits = slot.new_fits;
     if (fits.size() != slot.fits.size()) {
       slot.invalidate(~0U);

@@ -251,14 +251,14 @@ SlicePlan plan_slices(const std::vector<SunSlices> &choices, int size_px, int si
                                   double(&chosen == &choices.back() ? size_max_px : size_px)))};
 }
 
-/** Fill \a fits with cascades around the clusters of \a visible, and one around \a needed behind them. */
+/** Fill \a fits with cascades around \a clusters, and one around \a needed behind them. */
 void fit_to_clusters(const LampBox &needed, const glm::dmat3 &lamp_from_world, const draw::View &view,
-                     const VisibleRange &visible, int size_max_px, const CascadeSettings &settings, float pixel_size,
-                     std::vector<SunFit> &fits)
+                     std::span<const VisibleCluster> clusters, int size_max_px, const CascadeSettings &settings,
+                     float pixel_size, std::vector<SunFit> &fits)
 {
   const int size_px = settings.can_resize ? std::max(int(std::lround(size_max_px / resize_step)), 1) : size_max_px;
   const SunFit whole = fit_to(needed, lamp_from_world, size_px, false);
-  const std::vector<SunSlices> choices = sun_slices(visible.clusters,
+  const std::vector<SunSlices> choices = sun_slices(clusters,
                                                     {.lamp_from_world = lamp_from_world,
                                                      .whole_min = glm::dvec2(needed.min),
                                                      .whole_max = glm::dvec2(needed.max),
@@ -283,7 +283,8 @@ void fit_to_clusters(const LampBox &needed, const glm::dmat3 &lamp_from_world, c
 
 std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &view, const VisibleRange &visible,
                             const std::vector<Caster> &casters, int size_px, const CascadeSettings &settings,
-                            float pixel_size, std::vector<SunFit> memory, double tangent)
+                            float pixel_size, std::vector<SunFit> memory, double tangent,
+                            std::span<const VisibleCluster> clusters)
 {
   std::vector<SunFit> fits = std::move(memory);
   fits.clear();
@@ -293,8 +294,8 @@ std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &
   }
   const glm::dmat3 lamp_from_world = glm::transpose(glm::dmat3(world_from_lamp));
   // One map must cover all receivers.
-  if (settings.is_fitted_to_depth && settings.count != 1 && !visible.clusters.empty()) {
-    fit_to_clusters(*needed, lamp_from_world, view, visible, size_px, settings, pixel_size, fits);
+  if (settings.count != 1 && !clusters.empty()) {
+    fit_to_clusters(*needed, lamp_from_world, view, clusters, size_px, settings, pixel_size, fits);
     return fits;
   }
   const SunFit whole = fit_to(*needed, lamp_from_world, size_px, true);

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace gnomon::eevee {
@@ -28,18 +29,9 @@ struct CascadeSettings {
   /** Blend of uniform splits (0) and logarithmic splits (1) of the distance. \see cascade_splits */
   float lambda = 0.8F;
   /**
-   * Fit all cascades but the last to the surfaces in the picture instead of slices of the view: the splits, positions,
-   * directions and extents with the least error, \see sun_slices. `lambda` has no effect then. Crop the cube faces and
-   * maps of other lamps to the surfaces in the picture, \see map_crop. The depths of the
-   * picture are read back after the depth pre-pass whenever the view changes. draw::Viewport::draw waits for them.
-   * Recorded packets use the depths of an earlier packet, so that cascades follow the camera some frames later.
-   * For pictures of one camera: the edges of the shadows move when the camera moves.
-   */
-  bool is_fitted_to_depth = false;
-  /**
-   * Whether cascades that are fitted to depths have maps of other sizes than asked for: smaller where texels would be
-   * smaller than texel_in_pixels, and larger by resize_step where the largest number of cascades has larger texels.
-   * Not for lamps with a size of their own.
+   * Whether cascades that are fitted to depths (ShadowSettings::is_fitted_to_depth) have maps of other sizes than asked
+   * for: smaller where texels would be smaller than texel_in_pixels, and larger by resize_step where the largest number
+   * of cascades has larger texels. Not for lamps with a size of their own.
    */
   bool can_resize = false;
 };
@@ -84,7 +76,7 @@ struct VisibleRange {
   /** Range of distances along the view direction, metres. Above 0 in perspective. */
   double near = 0.0;
   double far = 0.0;
-  /** The surfaces that the picture shows, if shadows are fitted to them. */
+  /** The surfaces that the picture shows, if shadows are fitted to depths. */
   std::vector<VisibleCluster> clusters{};
   /** Boxes around `clusters`, if these are of the current view. */
   std::vector<VisibleBox> boxes{};
@@ -115,8 +107,9 @@ struct Sphere {
  * extends from the first caster to the last receiver. The result is empty if no caster can shadow a visible receiver.
  * It has fewer cascades than requested if the cascade of a slice would be no finer than the last cascade.
  *
- * With VisibleRange::clusters, each other cascade is a rectangle around the clusters of some distances, as small as
- * possible, \see sun_slices. It fits one picture: it has no slack, and its texels are on no grid.
+ * With \a clusters, those of \a visible, each other cascade is a rectangle around the clusters of some distances, as
+ * small as possible, \see sun_slices; CascadeSettings::lambda has no effect. It fits one picture: it has no slack, and
+ * its texels are on no grid.
  *
  * Otherwise the extent of a cascade changes in steps, its texels are aligned to a grid that is fixed in the world, and
  * it is a little larger than necessary. A cascade therefore need not be drawn again after small movements of the
@@ -131,7 +124,8 @@ struct Sphere {
 [[nodiscard]] std::vector<SunFit> fit_sun(const glm::mat4 &world_from_lamp, const draw::View &view,
                                           const VisibleRange &visible, const std::vector<Caster> &casters, int size_px,
                                           const CascadeSettings &settings, float pixel_size,
-                                          std::vector<SunFit> memory = {}, double tangent = 0.0);
+                                          std::vector<SunFit> memory = {}, double tangent = 0.0,
+                                          std::span<const VisibleCluster> clusters = {});
 
 /** Whether \a old can replace \a needed: it has the same axes and covers the needed box, and its texels are not much
  * larger. */

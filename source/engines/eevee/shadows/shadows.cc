@@ -202,7 +202,7 @@ void Shadows::invalidate_blended()
 
 bool Shadows::reads_depths() const
 {
-  return scene_.settings_.cascades.is_fitted_to_depth &&
+  return scene_.settings_.is_fitted_to_depth &&
          (std::ranges::any_of(slots_, [](const ShadowSlot &slot) { return !slot.lamp.is_sampled; }) ||
           std::ranges::any_of(scene_.slots_,
                               [](const ShadowSlot &slot) { return slot.place.technique->inner_share(slot) > 0.0; }));
