@@ -31,7 +31,7 @@ Chooser::Chooser(const ChoiceOptions &options, gpu::Device &device, const scene:
   else {
     requirement_.seconds_max = 1e-3 * options.milliseconds_max;
   }
-  for (const std::string &line : reference::untraced_layers(scene)) {
+  for (const std::string &line : reference::untraced_parts(scene)) {
     fmt::print(stderr, "gnomon: warning: {}\n", line);
   }
   std::vector<measure::Model> models;

@@ -317,7 +317,7 @@ void Run::measure(measure::SceneReport &report)
     for (const std::string &warning : scene.warnings) {
       warn(report, warning);
     }
-    for (const std::string &line : reference::untraced_layers(scene)) {
+    for (const std::string &line : reference::untraced_parts(scene)) {
       warn(report, line);
     }
     measure::remove_shadow_settings(scene);

@@ -117,11 +117,18 @@ const scene::Scene &Tracer::scene() const
   return tree_->scene;
 }
 
-std::vector<std::string> untraced_layers(const scene::Scene &scene)
+std::vector<std::string> untraced_parts(const scene::Scene &scene)
 {
   std::set<scene::Handle<scene::Material>> materials;
+  std::set<scene::Handle<scene::Mesh>> thin_meshes;
   for (const scene::Object &object : scene.objects()) {
-    materials.insert(scene.meshes()[object.mesh].material);
+    const scene::Mesh &mesh = scene.meshes()[object.mesh];
+    if (mesh.topology == scene::Topology::Triangles) {
+      materials.insert(mesh.material);
+    }
+    else {
+      thin_meshes.insert(object.mesh);
+    }
   }
   std::vector<std::string> lines;
   for (const scene::Handle<scene::Material> handle : materials) {
@@ -145,6 +152,11 @@ std::vector<std::string> untraced_layers(const scene::Scene &scene)
           fmt::format("material '{}': the reference does not trace its {}; the errors include this difference",
                       material->name, fmt::join(layers, " and ")));
     }
+  }
+  for (const scene::Handle<scene::Mesh> handle : thin_meshes) {
+    const scene::Mesh &mesh = scene.meshes()[handle];
+    lines.push_back(fmt::format("mesh '{}': the reference does not trace {}; the errors include this difference",
+                                mesh.name, mesh.topology == scene::Topology::Lines ? "lines" : "points"));
   }
   return lines;
 }

@@ -135,10 +135,10 @@ class Tracer {
 };
 
 /**
- * One line for each material of a visible mesh that has layers, transmits light or has a surface function, which the
- * tracer leaves out.
+ * What the tracer leaves out of visible meshes: one line for each material of triangles that has layers, transmits
+ * light or has a surface function, and one for each mesh of lines or points.
  */
-[[nodiscard]] std::vector<std::string> untraced_layers(const scene::Scene &scene);
+[[nodiscard]] std::vector<std::string> untraced_parts(const scene::Scene &scene);
 
 /** Largest error of a position, metres, that was computed in double from positions of similar magnitude. */
 [[nodiscard]] double position_error(const glm::dvec3 &position_ws);

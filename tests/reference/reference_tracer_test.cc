@@ -109,27 +109,39 @@ INSTANTIATE_TEST_SUITE_P(Places, TracerPlaceTest,
                          testing::Values(TracerPlace{0.0, 1.0}, TracerPlace{0.0, 1e-4}, TracerPlace{0.0, 1e5},
                                          TracerPlace{1048576.0, 1.0}, TracerPlace{1048576.0, 1e-2}));
 
-TEST(Tracer, SurfaceFunctionsThatItDoesNotRunAreNamed)
+TEST(Tracer, SurfaceFunctionsLinesAndPointsThatItDoesNotTraceAreNamed)
 {
   scene::Scene scene;
   const auto function = scene.add(scene::SurfaceFunction{.name = "f"});
-  const auto add = [&](const char *name, scene::Handle<scene::SurfaceFunction> named) {
+  const auto add = [&](const char *name, scene::Handle<scene::SurfaceFunction> named,
+                       scene::Topology topology = scene::Topology::Triangles) {
     const auto material = scene.add(scene::Material{.name = name, .surface_function = named});
     scene::Mesh mesh;
+    mesh.name = std::string("mesh of ") + name;
+    mesh.topology = topology;
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     mesh.normals.assign(3, {0, 0, 1});
-    mesh.indices = {0, 1, 2};
+    mesh.indices.assign({0, 1, 2});
+    mesh.indices.resize(topology == scene::Topology::Lines ? 2 : 3);
     mesh.material = material;
-    scene.add(scene::Node{.meshes = {scene.add(mesh)}});
+    return scene.add(scene::Node{.meshes = {scene.add(mesh)}});
   };
   add("plain", {});
   add("edited", function);
   EXPECT_EQ(
-      untraced_layers(scene),
+      untraced_parts(scene),
       (std::vector<std::string>{"material 'edited': the reference does not trace its surface function; the errors "
                                 "include this difference"}));
   scene.remove(function);
-  EXPECT_TRUE(untraced_layers(scene).empty());
+  EXPECT_TRUE(untraced_parts(scene).empty());
+  add("points", {}, scene::Topology::Points);
+  const auto hidden = add("lines", {}, scene::Topology::Lines);
+  EXPECT_EQ(untraced_parts(scene),
+            (std::vector<std::string>{
+                "mesh 'mesh of points': the reference does not trace points; the errors include this difference",
+                "mesh 'mesh of lines': the reference does not trace lines; the errors include this difference"}));
+  scene.edit(hidden, [](scene::Node &node) { node.is_visible = false; });
+  EXPECT_EQ(untraced_parts(scene).size(), 1U);
 }
 
 TEST(Tracer, RaysDoNotSlipBetweenTrianglesThatShareAnEdge)
