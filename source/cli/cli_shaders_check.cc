@@ -83,6 +83,22 @@ ShaderReport check_all(const std::vector<gpu::ShaderDesc> &descs, const gpu::Sha
   return report;
 }
 
+/**
+ * The programs that draw with a surface function: of each, the variant with the fewest features and the one with the
+ * most. Together they have all inputs and outputs that stages share.
+ */
+std::vector<gpu::ShaderDesc> descs_with_surface_function()
+{
+  std::vector<gpu::ShaderDesc> descs;
+  for (const eevee::ShaderDeclaration &declaration : eevee::shader_declarations()) {
+    const std::vector<eevee::Feature> variants = eevee::surface_function_variants(declaration);
+    for (std::size_t i = 0; i < variants.size(); i += std::max<std::size_t>(variants.size() - 1, 1)) {
+      descs.push_back(with_surface_function(shader_desc(declaration, variants[i]), declaration));
+    }
+  }
+  return descs;
+}
+
 ShaderReport check_engine(const CheckArguments &arguments)
 {
   const EngineFiles files(arguments.shaders);
@@ -95,6 +111,14 @@ ShaderReport check_engine(const CheckArguments &arguments)
   }
   if (descs.empty()) {
     throw_no_program(arguments.program);
+  }
+  for (const gpu::ShaderDesc &desc : descs_with_surface_function()) {
+    // eevee_depth_function has one in all its variants, which are above.
+    const bool is_known = std::ranges::any_of(
+        descs, [&](const gpu::ShaderDesc &known) { return known.name == desc.name && known.defines == desc.defines; });
+    if (!is_known && (arguments.program.empty() || desc.name == arguments.program)) {
+      descs.push_back(desc);
+    }
   }
   shader_check::CheckOptions options;
   options.blocks = engine_blocks();
@@ -141,10 +165,7 @@ std::string define_of(const std::string &argument)
   return name + " " + (equals == std::string::npos ? "1" : argument.substr(equals + 1));
 }
 
-/**
- * A surface function in the programs that draw with it: of each, the variant with the fewest features and the one with
- * the most.
- */
+/** A surface function in the programs that draw with it. */
 ShaderReport check_surface_function(const std::string &file, const CheckArguments &arguments)
 {
   shader_check::FolderFiles own{fs::path()};
@@ -165,19 +186,13 @@ ShaderReport check_surface_function(const std::string &file, const CheckArgument
   if (const auto fault = eevee::surface_function_fault(*text)) {
     return failed(fault->line, fault->reason);
   }
-  std::vector<gpu::ShaderDesc> descs;
-  for (const eevee::ShaderDeclaration &declaration : eevee::shader_declarations()) {
-    const std::vector<eevee::Feature> variants = eevee::surface_function_variants(declaration);
-    for (std::size_t i = 0; i < variants.size(); i += std::max<std::size_t>(variants.size() - 1, 1)) {
-      descs.push_back(with_surface_function(shader_desc(declaration, variants[i]), declaration));
-    }
-  }
   const EngineFiles engine("");
   shader_check::CheckOptions options;
   options.blocks = engine_blocks();
   options.is_block_size_strict = true;
   ShaderReport report = check_all(
-      descs, [&](std::string_view path) { return path == eevee::surface_function_file ? text : engine.files()(path); },
+      descs_with_surface_function(),
+      [&](std::string_view path) { return path == eevee::surface_function_file ? text : engine.files()(path); },
       options, targets_of(arguments.target));
   for (shader_check::CheckMessage &message : report.messages) {
     message.file = message.file == eevee::surface_function_file ? file : engine.shown(message.file);

@@ -142,7 +142,7 @@ TEST_P(PlantedMistake, IsReportedWithFileAndLine)
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Twelve, PlantedMistake,
+    All, PlantedMistake,
     testing::Values(
         Planted{"SyntaxInIncludeOfInclude",
                 "eevee_depth",
@@ -225,6 +225,13 @@ INSTANTIATE_TEST_SUITE_P(
                 "block 'light_block' takes 16400 bytes; all devices support 16384",
                 // C++ also has fewer lights.
                 2},
+        Planted{"OnlyWithASurfaceFunction",
+                "eevee_surfaces",
+                {{"eevee/eevee_lit_vert.glsl", "layout(location = 9) flat out", "layout(location = 17) flat out"},
+                 {"eevee/eevee_surfaces_frag.glsl", "layout(location = 9) flat in", "layout(location = 17) flat in"}},
+                "eevee/eevee_lit_vert.glsl",
+                "layout(location = 17) flat out",
+                "overlapping use of location 17"},
         Planted{
             "Recursion",
             "eevee_tonemap",
