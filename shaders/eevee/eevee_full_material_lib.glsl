@@ -9,6 +9,14 @@
 layout(location = 6) in vec4 surface_roughness_normal_uvs;
 layout(location = 7) in vec4 surface_occlusion_emissive_uvs;
 layout(location = 8) in vec4 surface_specular_uvs;
+#ifdef USE_TRANSMISSION
+/**
+ * Factor of the roughness, whether its texture is used, and the index of refraction. Mip levels of what is behind are computed from them
+ * and not from storage blocks: llvmpipe takes the level of several invocations from one of them, which may be outside of the triangle
+ * and reads zeros there.
+ */
+layout(location = 15) flat in vec3 surface_lens;
+#endif
 
 layout(binding = METALLIC_ROUGHNESS_SLOT) uniform sampler2D metallic_roughness_texture;
 layout(binding = OCCLUSION_SLOT) uniform sampler2D occlusion_texture;
@@ -72,8 +80,14 @@ StandardSurface textured_surface()
   FullMaterialData full = full_materials[surface_material];
   StandardSurface result;
   result.base_color = textured_base_color();
+#ifdef USE_TRANSMISSION
+  vec2 roughness_metallic = vec2(surface_lens.x, full.metallic);
+  bool has_texture = surface_lens.y != 0.0;
+#else
   vec2 roughness_metallic = vec2(full.roughness, full.metallic);
-  if (has_input(INPUT_METALLIC_ROUGHNESS)) {
+  bool has_texture = has_input(INPUT_METALLIC_ROUGHNESS);
+#endif
+  if (has_texture) {
     roughness_metallic *= texture(metallic_roughness_texture, surface_roughness_normal_uvs.xy, texture_bias()).gb;
   }
   result.roughness = roughness_metallic.x;

@@ -64,7 +64,12 @@ void main()
   surface.multiscatter = multiscatter_of(material, surface);
 #  endif
 #  ifdef USE_TRANSMISSION
-  Transmission transmission = make_transmission(material, surface);
+#    ifdef USE_SURFACE_FUNCTION
+  float roughness_behind = edited.roughness;
+#    else
+  float roughness_behind = textured_surface().roughness;
+#    endif
+  Transmission transmission = make_transmission(material, surface, roughness_behind);
   material.diffuse *= 1.0 - transmission.part;
   vec3 passed = layered(transmission.passed, vec3(0.0), vec3(0.0));
   sum += passed * transmission.behind.rgb;

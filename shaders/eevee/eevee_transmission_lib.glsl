@@ -9,11 +9,6 @@
 
 layout(location = 11) in vec4 surface_transmission_uvs;
 layout(location = 12) flat in mat3 surface_object_from_world;
-/**
- * Mip levels are computed from it alone: llvmpipe takes the level of several invocations from one of them, which may be outside of the
- * triangle and reads zeros from storage blocks.
- */
-layout(location = 15) flat in vec3 surface_lens;
 
 layout(binding = TRANSMISSION_SLOT) uniform sampler2D transmission_texture;
 layout(binding = THICKNESS_SLOT) uniform sampler2D thickness_texture;
@@ -57,8 +52,10 @@ struct Transmission {
   vec4 behind;
 };
 
-/** \a material: with the diffuse albedo of a surface without transmission. */
-Transmission make_transmission(MaterialData material, Surface surface)
+/**
+ * \a material: with the diffuse albedo of a surface without transmission. \a roughness: perceptual, of the blur of what is behind.
+ */
+Transmission make_transmission(MaterialData material, Surface surface, float roughness)
 {
   LayerData data = layer_materials[surface_material];
   Transmission result;
@@ -91,10 +88,6 @@ Transmission make_transmission(MaterialData material, Surface surface)
   float entering = clamp(1.0 - max(max(albedo.r, albedo.g), albedo.b), 0.0, 1.0);
 #endif
   result.passed = result.part * entering * material.diffuse * beer_lambert(data.absorption, way_m);
-  float roughness = surface_lens.x;
-  if (surface_lens.y != 0.0) {
-    roughness *= texture(metallic_roughness_texture, surface_roughness_normal_uvs.xy, view.texture_lod_bias).g;
-  }
   result.behind = behind_at(texco, transmission_level(roughness, surface_lens.z, size.y));
   return result;
 }

@@ -121,7 +121,7 @@ void Engine::sync_materials(StorageList &stl) const
     stl.widest_class = std::max(stl.widest_class, material_class);
     if (material_class == MaterialClass::Transmissive) {
       stl.transmissive.push_back({object, render_scene::is_blended(scene_.scene(), mesh)});
-      stl.is_transmission_rough |= scene_.scene().material_of(mesh).roughness > 0.0F;
+      stl.is_transmission_rough |= has_function || scene_.scene().material_of(mesh).roughness > 0.0F;
     }
   }
   stl.materials_features_revision = materials;

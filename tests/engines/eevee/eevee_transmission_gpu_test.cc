@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 
 namespace gnomon::eevee {
 namespace {
@@ -183,6 +184,37 @@ TEST_F(TransmissionGpuTest, ARoughWallShowsTheMeanOfWhatIsBehind)
   test::expect_near(pixel_with(1.0F), glm::vec3(0.5F), 1e-4F);
   EXPECT_GT(half.x, smooth.x + 0.01F);
   EXPECT_LT(half.x, 0.5F);
+}
+
+TEST_F(TransmissionGpuTest, ASurfaceFunctionsRoughnessBlursAsTheMaterialsDoes)
+{
+  const auto checks = test::add_texture(scene, 2, {255, 255, 255, 255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255, 255});
+  scene.edit(scene.meshes()[ground].material,
+             [&](scene::Material &value) { value.base_color_texture.texture = checks; });
+  scene.edit(ground, [](scene::Mesh &mesh) { mesh.uvs = {{0, 4}, {4, 4}, {4, 0}, {0, 0}}; });
+  camera.kind = scene::CameraKind::Orthographic;
+  camera.half_width = camera.half_height = 1.0F;
+  camera.far = 20.0F;
+  // Edges of the plate cross quads of pixels, so that some invocations are outside of its triangles.
+  add_plate(glm::rotate(at_height(1.0, glm::dvec3(0.83)), 0.3, glm::dvec3(0, 0, 1)));
+  const auto picture_with = [&](float roughness, const std::string &body) {
+    const auto function = scene.add(scene::SurfaceFunction{
+        .name = "test",
+        .text = "void surface(SurfaceInputs inputs, inout StandardSurface result)\n{\n" + body + "\n}\n",
+        .path = "test.glsl"});
+    edit([&](scene::Material &value) {
+      value.roughness = roughness;
+      value.ior = 1.5F;
+      value.surface_function = body.empty() ? scene::Handle<scene::SurfaceFunction>() : function;
+    });
+    return render();
+  };
+  const Picture rough = picture_with(0.7F, "");
+  EXPECT_GT(largest_difference(rough, picture_with(0.0F, "")), 0.05);
+  // Rounding of the function's programs, which are compiled apart.
+  EXPECT_LE(largest_difference(rough, picture_with(0.0F, "result.roughness = 0.7;")), 1e-5);
+  // Read from the material's storage block, which has zeros in invocations outside of triangles.
+  EXPECT_LE(largest_difference(rough, picture_with(0.7F, "result.base_color *= 1.0;")), 1e-5);
 }
 
 TEST_F(TransmissionGpuTest, TransmissionTakesLightFromTheDiffusePartAndReflectionFromBoth)
