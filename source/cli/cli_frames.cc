@@ -2,6 +2,7 @@
 #include "cli_frames.hh"
 
 #include "cli.hh"
+#include "cli_output.hh"
 
 #include <fmt/format.h>
 
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 #include <vector>
 
@@ -70,6 +72,18 @@ bool FrameSequence::is_done(int index, glm::ivec2 size_px) const
     // The file is incomplete, for example because the program was interrupted. Render it again.
     return false;
   }
+}
+
+void FrameSequence::remove_unfinished_files() const
+{
+  if (!options_.is_resumed || !is_animated()) {
+    return;
+  }
+  std::set<std::string> names;
+  for (int i = 0; i < count(); i++) {
+    names.insert(path(i).filename().string());
+  }
+  remove_unfinished(output_.parent_path(), names);
 }
 
 void FrameSequence::pose(scene::Scene &scene, int index) const

@@ -54,6 +54,9 @@ class FrameSequence {
   /** Whether the frame can be skipped: --resume was given, and its file is readable and has the size \a size_px. */
   [[nodiscard]] bool is_done(int index, glm::ivec2 size_px) const;
 
+  /** If --resume was given, removes temporary files of frames that a killed process left. */
+  void remove_unfinished_files() const;
+
   /** Poses \a scene at the frame's time. \throws std::runtime_error if the scene does not have the animation */
   void pose(scene::Scene &scene, int index) const;
 

@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <signal.h>
 #include <unistd.h>
+#include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <stdexcept>
@@ -30,6 +33,29 @@ void write_atomically(const fs::path &path, const std::function<void(const fs::p
     std::error_code ignored;
     fs::remove(beside, ignored);
     throw;
+  }
+}
+
+void remove_unfinished(const fs::path &folder, const std::set<std::string> &names)
+{
+  std::error_code ignored;
+  for (const fs::directory_entry &entry : fs::directory_iterator(folder.empty() ? "." : folder, ignored)) {
+    // ".STEM.PROCESS.EXTENSION"; see write_atomically.
+    const fs::path name = entry.path().filename();
+    const fs::path stem = name.stem();
+    const std::string process = stem.extension().string();
+    pid_t id = 0;
+    if (process.empty() ||
+        std::from_chars(process.data() + 1, process.data() + process.size(), id).ptr !=
+            process.data() + process.size() ||
+        id <= 0 || stem.stem().string().front() != '.' ||
+        !names.contains(stem.stem().string().substr(1) + name.extension().string())) {
+      continue;
+    }
+    // Signal 0 only asks whether the process exists.
+    if (kill(id, 0) != 0 && errno == ESRCH) {
+      fs::remove(entry.path(), ignored);
+    }
   }
 }
 

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <span>
 #include <string>
 
@@ -20,6 +21,12 @@ namespace gnomon::cli {
  */
 void write_atomically(const std::filesystem::path &path,
                       const std::function<void(const std::filesystem::path &beside)> &write);
+
+/**
+ * Removes the temporary files that write_atomically left in \a folder because its process was killed. Only those of
+ * files in \a names, and none of a process that runs on this machine.
+ */
+void remove_unfinished(const std::filesystem::path &folder, const std::set<std::string> &names);
 
 /** Non-finite values of a picture. */
 struct NonFinite {

@@ -255,6 +255,7 @@ Status render_sequence(RenderOptions options, const FrameSequence &frames, const
   Status status = Status::Done;
   const Clock::time_point start = Clock::now();
   int rendered_count = 0;
+  frames.remove_unfinished_files();
   for (int i = 0; i < frames.count() && status == Status::Done; i++) {
     options.output = frames.path(i).string();
     if (frames.is_done(i, size_px)) {

@@ -86,6 +86,25 @@ TEST_F(FramesTest, ResumeRendersWhatIsMissingOrCutShort)
   EXPECT_EQ(nlohmann::json::parse(read("run.json"))["skipped_frames"], 3);
 }
 
+TEST_F(FramesTest, ResumeRemovesTheFilesOfKilledProcesses)
+{
+  // No process has this number: Linux has at most 4194304.
+  const std::string killed = ".4194999.exr";
+  const std::string running = "." + std::to_string(getpid()) + ".exr";
+  for (const std::string &name : {".f1" + killed, ".f2" + killed, ".f2" + running, ".g2" + killed, ".f4" + killed}) {
+    write(name, "part");
+  }
+  const std::string frames = "-o f#.exr --frames 1-2";
+  ASSERT_EQ(render(frames).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / (".f1" + killed))) << "without --resume, nothing is removed";
+  ASSERT_EQ(render(frames + " --resume").status, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder / (".f1" + killed)));
+  EXPECT_FALSE(std::filesystem::exists(folder / (".f2" + killed)));
+  EXPECT_TRUE(std::filesystem::exists(folder / (".f2" + running))) << "another process writes it";
+  EXPECT_TRUE(std::filesystem::exists(folder / (".g2" + killed))) << "of another sequence";
+  EXPECT_TRUE(std::filesystem::exists(folder / (".f4" + killed))) << "of another range";
+}
+
 /** As the power or a scheduler ends a process: nothing of it runs any more. */
 class SlowFramesTest : public FramesTest {};
 
