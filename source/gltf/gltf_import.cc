@@ -10,6 +10,7 @@
 #include "internal/gltf_lamp.hh"
 #include "internal/gltf_mesh.hh"
 #include "internal/gltf_node.hh"
+#include "internal/gltf_node_tree.hh"
 #include "internal/gltf_progress.hh"
 #include "internal/gltf_report.hh"
 #include "internal/gltf_units.hh"
@@ -22,7 +23,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -71,30 +71,6 @@ std::string unknown_required_extensions(const File &file)
   return printable(names);
 }
 
-/** \a what: called for the name of the node if there is a warning. */
-glm::dmat4 matrix_of(const Model::Node &node, const std::function<std::string()> &what, Warnings &warnings)
-{
-  glm::dmat4 matrix(1.0);
-  if (node.matrix) {
-    for (std::size_t i = 0; i < 16; i++) {
-      matrix[int(i / 4)][int(i % 4)] = (*node.matrix)[i];
-    }
-    if (matrix[0][3] != 0.0 || matrix[1][3] != 0.0 || matrix[2][3] != 0.0 || matrix[3][3] != 1.0) {
-      warnings.add(what(), "the last row of its matrix is not 0 0 0 1 and is not used");
-      matrix[0][3] = matrix[1][3] = matrix[2][3] = 0.0;
-      matrix[3][3] = 1.0;
-    }
-    return matrix;
-  }
-  const auto &[x, y, z, w] = node.rotation;
-  const glm::dvec4 rotation(x, y, z, w);
-  if (!is_rotation(rotation)) {
-    warnings.add(what(), "its rotation has no length and is not used");
-  }
-  return matrix_from({node.translation[0], node.translation[1], node.translation[2]}, rotation,
-                     {node.scale[0], node.scale[1], node.scale[2]});
-}
-
 /** Whether the matrix is finite in float and its coordinates are in range. False for NaN. */
 bool is_usable(const glm::dmat4 &world)
 {
@@ -137,7 +113,7 @@ class Importer {
   Scene import()
   {
     warn_about_file();
-    const std::vector<int> roots = scene_roots();
+    const std::vector<int> roots = scene_roots(file_.model);
     progress_.begin_phase(file_.model.nodes.size() + primitive_count(file_.model), 0.7F);
     things_.nodes.resize(file_.model.nodes.size());
     scene_.reserve_nodes(file_.model.nodes.size());
@@ -177,69 +153,6 @@ class Importer {
     if (const std::string names = unknown_required_extensions(file_); !names.empty()) {
       warnings_.add("extensionsRequired", names + " is not supported: elements that need it are left out");
     }
-  }
-
-  /** The parent of each node, -1 for a root. \throws Fault if the nodes are not trees. */
-  [[nodiscard]] std::vector<int> parents() const
-  {
-    const std::vector<Model::Node> &nodes = file_.model.nodes;
-    std::vector<int> parent(nodes.size(), -1);
-    for (std::size_t i = 0; i < nodes.size(); i++) {
-      for (const int child : nodes[i].children) {
-        if (parent[child] >= 0) {
-          throw Fault(node_label(child),
-                      "has two parents, " + node_label(parent[child]) + " and " + node_label(static_cast<int>(i)));
-        }
-        parent[child] = static_cast<int>(i);
-      }
-    }
-    // Every node has at most one parent, so nodes that no root reaches are on a cycle or below one.
-    std::vector<int> reached;
-    for (std::size_t i = 0; i < nodes.size(); i++) {
-      if (parent[i] < 0) {
-        reached.push_back(static_cast<int>(i));
-      }
-    }
-    std::vector<bool> is_reached(nodes.size(), false);
-    for (std::size_t i = 0; i < reached.size(); i++) {
-      is_reached[reached[i]] = true;
-      const std::vector<int> &children = nodes[reached[i]].children;
-      reached.insert(reached.end(), children.begin(), children.end());
-    }
-    const auto lost = std::find(is_reached.begin(), is_reached.end(), false);
-    if (lost != is_reached.end()) {
-      throw Fault(node_label(static_cast<int>(lost - is_reached.begin())),
-                  "is its own ancestor, or a descendant of such a node");
-    }
-    return parent;
-  }
-
-  /** The roots of the default scene; if there is none, of the first scene; if there is none, of the file. */
-  [[nodiscard]] std::vector<int> scene_roots() const
-  {
-    const std::vector<int> parent = parents();
-    std::vector<int> roots;
-    const Model::Scene *source = file_.model.default_scene();
-    if (source == nullptr) {
-      for (std::size_t i = 0; i < parent.size(); i++) {
-        if (parent[i] < 0) {
-          roots.push_back(static_cast<int>(i));
-        }
-      }
-      return roots;
-    }
-    roots = source->roots;
-    std::vector<bool> is_listed(parent.size(), false);
-    for (const int root : roots) {
-      if (parent[root] >= 0) {
-        throw Fault(node_label(root), "is a root of the scene, but also a child of " + node_label(parent[root]));
-      }
-      if (is_listed[root]) {
-        throw Fault(node_label(root), "is twice a root of the scene");
-      }
-      is_listed[root] = true;
-    }
-    return roots;
   }
 
   /**

@@ -2,6 +2,7 @@
 #include "internal/gltf_document.hh"
 
 #include "internal/gltf_document_buffers.hh"
+#include "internal/gltf_document_extras.hh"
 #include "internal/gltf_document_shading.hh"
 #include "internal/gltf_json.hh"
 
@@ -190,52 +191,6 @@ class DocumentReader {
                                            indices_.into_index("SCALE", instances.scale, "accessors"));
                                      }});
                         }});
-  }
-
-  /** Extras that are not an object belong to another program and are ignored. */
-  static void read_extras(const Place &place, const std::string &name, const JsonValue &value, Model::Extras &extras)
-  {
-    JsonObject object;
-    if (value.get(object) != simdjson::SUCCESS) {
-      return;
-    }
-    for (const auto [key, extra] : object) {
-      if (!key.starts_with("gnomon_")) {
-        continue;
-      }
-      std::optional<Model::Extra> read = extra_of(extra);
-      if (!read) {
-        const std::string what = name.empty() ? "" : " '" + printable(name) + "'";
-        throw Fault(place.text() + what, "extra " + printable(key) + " is " + quoted(extra) +
-                                             ", and must be a number, a string or a few numbers");
-      }
-      extras.insert_or_assign(std::string(key), std::move(*read));
-    }
-  }
-
-  static std::optional<Model::Extra> extra_of(const JsonValue &value)
-  {
-    constexpr std::size_t array_size_max = 4;
-    if (bool boolean = false; value.get(boolean) == simdjson::SUCCESS) {
-      return boolean;
-    }
-    if (double number = 0.0; value.get(number) == simdjson::SUCCESS) {
-      return number;
-    }
-    if (std::string_view text; value.get(text) == simdjson::SUCCESS) {
-      return std::string(text);
-    }
-    JsonArray array;
-    if (value.get(array) != simdjson::SUCCESS || array.size() == 0 || array.size() > array_size_max) {
-      return std::nullopt;
-    }
-    std::vector<double> numbers;
-    for (const JsonValue element : array) {
-      if (element.get(numbers.emplace_back()) != simdjson::SUCCESS) {
-        return std::nullopt;
-      }
-    }
-    return numbers;
   }
 
   // ---- Meshes ----

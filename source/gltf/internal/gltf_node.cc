@@ -2,7 +2,6 @@
 #include "internal/gltf_node.hh"
 
 #include "internal/gltf_extra.hh"
-#include "internal/gltf_report.hh"
 #include "internal/gltf_world.hh"
 
 #include <glm/geometric.hpp>
@@ -66,6 +65,29 @@ glm::dmat4 matrix_from(const glm::dvec3 &translation, const glm::dvec4 &rotation
     matrix[3][axis] = translation[axis];
   }
   return matrix;
+}
+
+glm::dmat4 matrix_of(const Model::Node &node, const std::function<std::string()> &what, Warnings &warnings)
+{
+  glm::dmat4 matrix(1.0);
+  if (node.matrix) {
+    for (std::size_t i = 0; i < 16; i++) {
+      matrix[int(i / 4)][int(i % 4)] = (*node.matrix)[i];
+    }
+    if (matrix[0][3] != 0.0 || matrix[1][3] != 0.0 || matrix[2][3] != 0.0 || matrix[3][3] != 1.0) {
+      warnings.add(what(), "the last row of its matrix is not 0 0 0 1 and is not used");
+      matrix[0][3] = matrix[1][3] = matrix[2][3] = 0.0;
+      matrix[3][3] = 1.0;
+    }
+    return matrix;
+  }
+  const auto &[x, y, z, w] = node.rotation;
+  const glm::dvec4 rotation(x, y, z, w);
+  if (!is_rotation(rotation)) {
+    warnings.add(what(), "its rotation has no length and is not used");
+  }
+  return matrix_from({node.translation[0], node.translation[1], node.translation[2]}, rotation,
+                     {node.scale[0], node.scale[1], node.scale[2]});
 }
 
 std::string thing_name(const Model::Node &node, const char *key, const std::string &fallback, const char *kind,

@@ -2,10 +2,12 @@
 #pragma once
 
 #include "internal/gltf_model.hh"
+#include "internal/gltf_report.hh"
 #include "scene.hh"
 
 #include <glm/mat4x4.hpp>
 
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -23,6 +25,13 @@ void read_flags(const Model::Node &source, int index, scene::Node &node);
 /** Translation · rotation · scale; without the rotation where is_rotation is false. */
 [[nodiscard]] glm::dmat4 matrix_from(const glm::dvec3 &translation, const glm::dvec4 &rotation_xyzw,
                                      const glm::dvec3 &scale);
+
+/**
+ * The matrix of a node, or of its translation, rotation and scale, with a warning about what is not used of them. \a
+ * what: called for the name of the node if there is a warning.
+ */
+[[nodiscard]] glm::dmat4 matrix_of(const Model::Node &node, const std::function<std::string()> &what,
+                                   Warnings &warnings);
 
 /**
  * The name of a lamp or camera on a node: the first of the extra \a key, the node's name, \a fallback, and a text made
