@@ -231,7 +231,9 @@ INSTANTIATE_TEST_SUITE_P(
                  {"eevee/eevee_surfaces_frag.glsl", "layout(location = 9) flat in", "layout(location = 17) flat in"}},
                 "eevee/eevee_lit_vert.glsl",
                 "layout(location = 17) flat out",
-                "overlapping use of location 17"},
+                "overlapping use of location 17",
+                // In both stages.
+                2},
         Planted{
             "Recursion",
             "eevee_tonemap",
