@@ -41,6 +41,10 @@ nlohmann::json print_scene(gpu::Device &device, const BenchOptions &options, con
   json["moved_camera"] = print_times("the camera is moved, budget", times.moved_camera);
   json["refined"] = print_times("refining, budget", times.refined);
   fmt::print("  complete and still: {} draws, {} bytes uploaded\n", times.still.draws, times.still.upload_bytes);
+  fmt::print("  the refined picture: RMS {:.6f}; of its difference to one without a budget {:.3g}\n", times.picture_rms,
+             times.difference_rms);
+  json["picture_rms"] = times.picture_rms;
+  json["difference_rms"] = times.difference_rms;
   json["still"] = {{"draws", times.still.draws}, {"upload_bytes", times.still.upload_bytes}};
   return json;
 }

@@ -169,6 +169,23 @@ class Frames {
       renderer.draw_within(settings_.budget_seconds, camera);
     }
     times.still = between(before, device_.counters());
+    eevee::SceneRenderer whole(device_, scene_, settings_.size_px, renderer.settings());
+    whole.sync();
+    whole.draw(camera);
+    compare(renderer.read_picture(), whole.read_picture(), times);
+  }
+
+  static void compare(const std::vector<glm::vec4> &refined, const std::vector<glm::vec4> &whole, FrameTimes &times)
+  {
+    double square = 0.0;
+    double difference_square = 0.0;
+    for (std::size_t i = 0; i < refined.size(); i++) {
+      const glm::dvec3 difference(glm::dvec4(refined[i]) - glm::dvec4(whole[i]));
+      square += glm::dot(glm::dvec3(refined[i]), glm::dvec3(refined[i]));
+      difference_square += glm::dot(difference, difference);
+    }
+    times.picture_rms = std::sqrt(square / (3.0 * double(refined.size())));
+    times.difference_rms = std::sqrt(difference_square / (3.0 * double(refined.size())));
   }
 
   gpu::Device &device_;

@@ -38,6 +38,9 @@ struct FrameTimes {
   std::vector<double> refined;
   /** What frame_count calls have done after the picture was complete, without a target. */
   gpu::Counters still;
+  /** RMS of red, green and blue of that picture, and of their differences to a picture drawn without a budget. */
+  double picture_rms = 0.0;
+  double difference_rms = 0.0;
 };
 
 /** The value that \a share of the times do not exceed. \a share in [0, 1] \pre \a seconds is not empty */
