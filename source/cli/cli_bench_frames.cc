@@ -30,16 +30,21 @@ nlohmann::json print_scene(gpu::Device &device, const BenchOptions &options, con
   nlohmann::json json = {{"scene", path}};
   if (!times.moved_lamp.empty()) {
     json["control"] = print_times("control: clear", times.control);
+    json["equal_control"] = print_times("control: clears for as long", times.equal_control);
     json["moved_lamp"] = print_times("one lamp is moved", times.moved_lamp);
     const auto spread = [](const std::vector<double> &seconds) {
       return measure::percentile(seconds, 0.99) - measure::percentile(seconds, 0.5);
     };
-    fmt::print("    p99 - p50: {:.2f} ms, the control's {:.2f} ms\n", 1e3 * spread(times.moved_lamp),
-               1e3 * spread(times.control));
+    fmt::print("    p99 - p50: {:.2f} ms, the controls' {:.2f} and {:.2f} ms\n", 1e3 * spread(times.moved_lamp),
+               1e3 * spread(times.control), 1e3 * spread(times.equal_control));
   }
   json["moved_camera"] = print_times("the camera is moved, budget", times.moved_camera);
   json["refined"] = print_times("refining, budget", times.refined);
   fmt::print("  complete and still: {} draws, {} bytes uploaded\n", times.still.draws, times.still.upload_bytes);
+  fmt::print("  the refined picture: RMS {:.6f}; of its difference to one without a budget {:.3g}\n", times.picture_rms,
+             times.difference_rms);
+  json["picture_rms"] = times.picture_rms;
+  json["difference_rms"] = times.difference_rms;
   json["still"] = {{"draws", times.still.draws}, {"upload_bytes", times.still.upload_bytes}};
   return json;
 }

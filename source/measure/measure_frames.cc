@@ -8,9 +8,10 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numbers>
-#include <optional>
+#include <thread>
 
 namespace gnomon::measure {
 
@@ -18,6 +19,11 @@ namespace {
 
 /** Programs are compiled and textures made in these. A budget needs more of them, until it has found its plan. */
 constexpr int warm_up_count = 30;
+/**
+ * Sleep before each frame, as a host that waits for the display. A process that never sleeps is interrupted by the
+ * scheduler within its frames, whatever it draws.
+ */
+constexpr std::chrono::milliseconds idle_time{2};
 /** Frames in which the camera stands still before it is moved again, so that pictures begin to refine. */
 constexpr int refining_count = 10;
 
@@ -25,6 +31,7 @@ constexpr int refining_count = 10;
 template <typename Work>
 double seconds_of(gpu::Device &device, Work &&work)
 {
+  std::this_thread::sleep_for(idle_time);
   const double start = now(Clock::Wall);
   work();
   device.finish();
@@ -60,12 +67,25 @@ class Frames {
   }
 
  private:
-  void clear()
+  /** Each until the device is done, as the driver may leave out a clear that follows another. */
+  void clear(int count)
   {
-    gpu::CommandList list;
-    draw::begin_pass(list, "control", picture_.target(), settings_.size_px, {}, {});
-    list.end_pass();
-    device_.submit(list);
+    for (int i = 0; i < count; i++) {
+      gpu::CommandList list;
+      draw::begin_pass(list, "control", picture_.target(), settings_.size_px, {}, {});
+      list.end_pass();
+      device_.submit(list);
+      device_.finish();
+    }
+  }
+
+  /** Number of clears that take as long as a frame of \a seconds. */
+  int equal_clears(double seconds)
+  {
+    constexpr int count = 100;
+    std::vector<double> times(9);
+    std::ranges::generate(times, [&] { return seconds_of(device_, [&] { clear(count); }); });
+    return std::max(1, int(std::lround(seconds * double(count) / percentile(times, 0.5))));
   }
 
   void measure_lamp(FrameTimes &times)
@@ -78,8 +98,14 @@ class Frames {
     const scene::Handle<scene::Node> node = (point == lamps.end() ? lamps.begin() : point)->node;
     const glm::dmat4 start = scene_.nodes()[node].parent_from_node;
     eevee::SceneRenderer renderer(device_, scene_, settings_.size_px, {.sample_count = 1});
+    std::vector<double> warm_up;
+    int clear_count = 1;
     for (int i = -warm_up_count; i < settings_.frame_count; i++) {
-      const double control = seconds_of(device_, [&] { clear(); });
+      if (i == 0) {
+        clear_count = equal_clears(percentile(warm_up, 0.5));
+      }
+      const double control = seconds_of(device_, [&] { clear(1); });
+      const double equal_control = seconds_of(device_, [&] { clear(clear_count); });
       const double frame = seconds_of(device_, [&] {
         // A circle of 0.2 m around the lamp's own -Z axis, and a turn around its X axis, which moves suns.
         const double angle = 0.1 * i;
@@ -88,8 +114,12 @@ class Frames {
         renderer.sync();
         renderer.draw_sample(start_, picture_.target());
       });
-      if (i >= 0) {
+      if (i < 0) {
+        warm_up.push_back(frame);
+      }
+      else {
         times.control.push_back(control);
+        times.equal_control.push_back(equal_control);
         times.moved_lamp.push_back(frame);
       }
     }
@@ -139,6 +169,23 @@ class Frames {
       renderer.draw_within(settings_.budget_seconds, camera);
     }
     times.still = between(before, device_.counters());
+    eevee::SceneRenderer whole(device_, scene_, settings_.size_px, renderer.settings());
+    whole.sync();
+    whole.draw(camera);
+    compare(renderer.read_picture(), whole.read_picture(), times);
+  }
+
+  static void compare(const std::vector<glm::vec4> &refined, const std::vector<glm::vec4> &whole, FrameTimes &times)
+  {
+    double square = 0.0;
+    double difference_square = 0.0;
+    for (std::size_t i = 0; i < refined.size(); i++) {
+      const glm::dvec3 difference(glm::dvec4(refined[i]) - glm::dvec4(whole[i]));
+      square += glm::dot(glm::dvec3(refined[i]), glm::dvec3(refined[i]));
+      difference_square += glm::dot(difference, difference);
+    }
+    times.picture_rms = std::sqrt(square / (3.0 * double(refined.size())));
+    times.difference_rms = std::sqrt(difference_square / (3.0 * double(refined.size())));
   }
 
   gpu::Device &device_;

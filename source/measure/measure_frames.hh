@@ -26,8 +26,10 @@ struct FrameTimesSettings {
 
 /** Wall times of whole frames, until the device is done, seconds. */
 struct FrameTimes {
-  /** A clear and a wait, before each frame of moved_lamp: the jitter of the machine. */
+  /** A clear and a wait, before each frame of moved_lamp: the least that the machine adds to a frame. */
   std::vector<double> control;
+  /** As many of them as take as long as a frame of moved_lamp, before each: what the machine adds to such a frame. */
+  std::vector<double> equal_control;
   /** One lamp is moved, and a whole sample is drawn. Empty: the scene has no lamp. */
   std::vector<double> moved_lamp;
   /** The camera is moved, and a picture is drawn within the budget. */
@@ -36,6 +38,9 @@ struct FrameTimes {
   std::vector<double> refined;
   /** What frame_count calls have done after the picture was complete, without a target. */
   gpu::Counters still;
+  /** RMS of red, green and blue of that picture, and of their differences to a picture drawn without a budget. */
+  double picture_rms = 0.0;
+  double difference_rms = 0.0;
 };
 
 /** The value that \a share of the times do not exceed. \a share in [0, 1] \pre \a seconds is not empty */

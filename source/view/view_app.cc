@@ -5,6 +5,8 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 #include <utility>
 
 namespace gnomon::view {
@@ -13,6 +15,9 @@ namespace {
 
 /** After an event, until the user interface has its final layout. */
 constexpr int settling_frames = 3;
+/** To make a new context after one was lost. */
+constexpr int context_attempts = 5;
+constexpr std::chrono::milliseconds context_pause{500};
 
 constexpr Side sides[] = {Side::Front, Side::Right, Side::Top, Side::Front};
 
@@ -47,15 +52,43 @@ void App::make_context_anew()
   if (document_) {
     document_->leave_device();
   }
-  device_.reset();
-  window_.make_context_anew();
-  make_device();
+  for (int attempt = 1;; attempt++) {
+    device_.reset();
+    try {
+      window_.make_context_anew();
+      make_device();
+      break;
+    }
+    catch (const std::exception &error) {
+      if (attempt == context_attempts) {
+        throw std::runtime_error(
+            fmt::format("The OpenGL context was lost, and none could be made. {}{}", rescue(), error.what()));
+      }
+    }
+    // A driver may need some time after a reset.
+    std::this_thread::sleep_for(context_pause);
+  }
   if (document_) {
     document_->use_device(*device_);
   }
   is_device_lost_ = false;
   is_complete_ = false;
   message("The OpenGL context was lost, and was made anew", true);
+}
+
+std::string App::rescue()
+{
+  if (!document_ || document_->is_saved()) {
+    return {};
+  }
+  const std::string path = default_path(".rescued.glb");
+  try {
+    document_->save(path);
+    return fmt::format("The scene is saved as {}. ", path);
+  }
+  catch (const std::exception &error) {
+    return fmt::format("The scene is not saved: {}. ", error.what());
+  }
 }
 
 void App::message(std::string text, bool is_error)

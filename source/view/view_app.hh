@@ -158,8 +158,13 @@ class App {
   bool finish_open();
   void show_document(scene::Scene scene);
   void make_device();
-  /** Replace the lost context, the device on it and all that is on the device. */
+  /**
+   * Replace the lost context, the device on it and all that is on the device. \throws std::runtime_error if that fails
+   * several times: what was not saved is then written beside the scene's file, which the message names
+   */
   void make_context_anew();
+  /** Write the scene if it is not saved. \return a sentence about it; may be empty */
+  [[nodiscard]] std::string rescue();
   void take_events();
   /** What is done before each frame, outside of the user interface. */
   void update_document();

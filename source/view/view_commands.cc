@@ -318,9 +318,9 @@ void use_shaders(App &app, Words words)
   app.use_shaders(words[0]);
 }
 
-void lose_context(App & /*app*/, Words /*words*/)
+void lose_context(App & /*app*/, Words words)
 {
-  Window::inject_context_loss();
+  Window::inject_context_loss(words.empty() ? 0 : int(number(words[0])));
 }
 
 void add(App &app, Words words)
@@ -417,7 +417,7 @@ constexpr std::array commands = std::to_array<Command>({
     {"remove", "", 0, 0, Need::Nothing, remove},
     {"duplicate", "", 0, 0, Need::Nothing, duplicate},
     {"shaders", "FOLDER", 1, 1, Need::Nothing, use_shaders},
-    {"lose_context", "", 0, 0, Need::Frame, lose_context},
+    {"lose_context", "[FAILURES]", 0, 1, Need::Frame, lose_context},
     {"tab", "NAME", 1, 1, Need::Frame, show_tab},
     {"message", "TEXT", 1, 1, Need::Nothing, expect_message},
     {"wait", "", 0, 0, Need::Pictures, wait},

@@ -78,7 +78,7 @@ draw::Engine &Document::engine(const std::string &name)
   if (!engine) {
     engine = registry_.create(name);
     if (auto *eevee = dynamic_cast<eevee::Engine *>(engine.get())) {
-      eevee->set_settings(settings_.eevee);
+      eevee->set_settings(engine_settings(settings_));
     }
   }
   return *engine;
@@ -138,7 +138,7 @@ void Document::set_settings(const Settings &settings)
   settings_ = settings;
   settings_revision_++;
   if (eevee::Engine *engine = eevee()) {
-    engine->set_settings(settings_.eevee);
+    engine->set_settings(engine_settings(settings_));
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "view_app.hh"
 
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <utility>
@@ -76,7 +77,9 @@ void App::show_viewport_header(Viewport &viewport)
     ImGui::TextDisabled("%dx%d", report->drawn_size_px.x, report->drawn_size_px.y);
   }
   else {
-    ImGui::TextDisabled("%d/%d", std::min(viewport.samples_drawn(), samples), samples);
+    const std::optional<double> error = viewport.error();
+    ImGui::TextDisabled("%d/%d%s", std::min(viewport.samples_drawn(), samples), samples,
+                        error ? fmt::format(", error {:.2g}", *error).c_str() : "");
   }
   if (report && ImGui::IsItemHovered()) {
     ImGui::SetTooltip("%s", report->text().c_str());

@@ -27,6 +27,7 @@ void Viewport::close()
   overlay_.reset();
   canvas_.free();
   synced_ = {};
+  error_.restart();
   is_complete_ = false;
   is_transforming_ = false;
   fly.reset();
@@ -113,15 +114,19 @@ bool Viewport::draw(Document &document, double budget_seconds)
   draw_picture(document, *one, budget_seconds, target);
   if (std::exchange(picture_, viewport_->restart_count()) != viewport_->restart_count()) {
     started_ = now;
+    error_.restart();
   }
   draw_overlays(document, target);
   auto *eevee = dynamic_cast<eevee::Engine *>(one);
-  if (eevee) {
-    limit_time(document, *eevee);
-  }
-  has_failed_ = false;
   // While a preview is shown, the viewport may still have the picture of another view.
   const bool is_preview = has_budget_ && budgeted_->report().kind == eevee::BudgetReport::Kind::Preview;
+  if (eevee) {
+    limit_time(document, *eevee);
+    if (!is_preview) {
+      limit_error(document, *eevee);
+    }
+  }
+  has_failed_ = false;
   is_complete_ = !eevee || (!is_preview && eevee->is_complete(*viewport_));
   return is_complete_;
 }
@@ -131,6 +136,27 @@ void Viewport::limit_time(const Document &document, eevee::Engine &eevee)
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - started_;
   const float seconds_max = document.settings().seconds_max;
   if (seconds_max > 0.0F && passed.count() > double(seconds_max)) {
+    eevee.finish(*viewport_);
+  }
+}
+
+void Viewport::limit_error(const Document &document, eevee::Engine &eevee)
+{
+  const float error_max = document.settings().error_max;
+  const int samples = viewport_->samples_drawn();
+  if (!(error_max > 0.0F)) {
+    return;
+  }
+  if (samples >= document.settings().eevee.sample_count) {
+    eevee.finish(*viewport_);
+  }
+  if (!error_.is_due(samples)) {
+    return;
+  }
+  draw::Engine *one = &eevee;
+  error_.add(samples, read_written(viewport_->device(),
+                                   [&](const draw::Target &target) { viewport_->write(std::span(&one, 1), target); }));
+  if (error_.value() && *error_.value() <= double(error_max)) {
     eevee.finish(*viewport_);
   }
 }
@@ -150,15 +176,21 @@ void Viewport::draw_overlays(Document &document, const draw::Target &target)
   overlay_->draw_lines(drawn_view_, size_px_, lines, target);
 }
 
-std::vector<float> Viewport::radiance(Document &document)
+std::vector<float> Viewport::read_written(gpu::Device &device,
+                                          const std::function<void(const draw::Target &)> &write) const
 {
-  gpu::Device &device = document.render_scene().device();
-  const draw::TargetTexture picture(device, "saved_picture", gpu::Format::RGBA32F, size_px_);
+  const draw::TargetTexture picture(device, "read_picture", gpu::Format::RGBA32F, size_px_);
   draw::Target target = picture.target();
   target.encoding = draw::Encoding::SceneLinear;
-  draw::Engine *one = &document.engine(engine);
-  viewport_->draw(std::span(&one, 1), drawn_view_, target);
+  write(target);
   return gpu::read_as<float>(device, picture.texture());
+}
+
+std::vector<float> Viewport::radiance(Document &document)
+{
+  draw::Engine *one = &document.engine(engine);
+  return read_written(document.render_scene().device(),
+                      [&](const draw::Target &target) { viewport_->draw(std::span(&one, 1), drawn_view_, target); });
 }
 
 }  // namespace gnomon::view

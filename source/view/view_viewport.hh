@@ -3,6 +3,7 @@
 
 #include "view_canvas.hh"
 #include "view_document.hh"
+#include "view_error_estimate.hh"
 #include "view_fly.hh"
 #include "view_gizmo.hh"
 
@@ -10,6 +11,7 @@
 #include "eevee_budgeted_picture.hh"
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -66,6 +68,11 @@ class Viewport {
   {
     return viewport_ ? viewport_->samples_drawn() : 0;
   }
+  /** RMSE of the picture so far. Empty: not known, or there is no maximum. \see Settings::error_max */
+  [[nodiscard]] std::optional<double> error() const
+  {
+    return error_.value();
+  }
   /** What the last draw with a budget drew; nullptr: the last draw had none. */
   [[nodiscard]] const eevee::BudgetReport *budget_report() const
   {
@@ -111,6 +118,11 @@ class Viewport {
   void draw_picture(Document &document, draw::Engine &used, double budget_seconds, const draw::Target &target);
   /** End a picture whose time is over. */
   void limit_time(const Document &document, eevee::Engine &eevee);
+  /** With a maximum error: end a picture whose error is small enough, or that has its samples. */
+  void limit_error(const Document &document, eevee::Engine &eevee);
+  /** \a write: writes a picture to a target */
+  [[nodiscard]] std::vector<float> read_written(gpu::Device &device,
+                                                const std::function<void(const draw::Target &)> &write) const;
   void draw_overlays(Document &document, const draw::Target &target);
   void show_lamps(Document &document, glm::vec2 corner, glm::vec2 size);
   void take_pointer(Document &document, glm::vec2 corner);
@@ -137,6 +149,8 @@ class Viewport {
   /** draw::Viewport::restart_count of the picture, and when it was begun. */
   std::uint64_t picture_ = 0;
   std::chrono::steady_clock::time_point started_;
+  /** Of the same picture. */
+  ErrorEstimate error_;
   OverlayKey overlaid_;
   bool is_complete_ = false;
   /** The last draw threw. */

@@ -22,6 +22,8 @@ constexpr const char *font_path = "/usr/share/fonts/truetype/dejavu/DejaVuSans.t
 
 /** The driver's function while a loss is injected; nullptr: none is. */
 PFNGLGETGRAPHICSRESETSTATUSPROC reset_status_of_driver = nullptr;
+/** Further calls of make_context_anew that fail. */
+int injected_failures = 0;
 
 std::string glfw_reason()
 {
@@ -161,20 +163,25 @@ void Window::make_context_anew()
   if (reset_status_of_driver) {
     epoxy_glGetGraphicsResetStatus = std::exchange(reset_status_of_driver, nullptr);
   }
-  glm::ivec2 place_px(0);
-  glm::ivec2 size_px(0);
-  glfwGetWindowPos(window_, &place_px.x, &place_px.y);
-  glfwGetWindowSize(window_, &size_px.x, &size_px.y);
-  disconnect();
-  glfwDestroyWindow(std::exchange(window_, nullptr));
-  title_.clear();
-  open(size_px);
-  glfwSetWindowPos(window_, place_px.x, place_px.y);
+  if (window_) {
+    glfwGetWindowPos(window_, &lost_place_px_.x, &lost_place_px_.y);
+    glfwGetWindowSize(window_, &lost_size_px_.x, &lost_size_px_.y);
+    disconnect();
+    glfwDestroyWindow(std::exchange(window_, nullptr));
+    title_.clear();
+  }
+  if (injected_failures > 0) {
+    injected_failures--;
+    throw std::runtime_error("view: no window with an OpenGL 4.5 core context: injected by a script");
+  }
+  open(lost_size_px_);
+  glfwSetWindowPos(window_, lost_place_px_.x, lost_place_px_.y);
   connect();
 }
 
-void Window::inject_context_loss()
+void Window::inject_context_loss(int failures)
 {
+  injected_failures = failures;
   if (!reset_status_of_driver) {
     reset_status_of_driver = epoxy_glGetGraphicsResetStatus;
     epoxy_glGetGraphicsResetStatus = +[]() -> GLenum { return GL_GUILTY_CONTEXT_RESET; };

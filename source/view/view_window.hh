@@ -48,11 +48,15 @@ class Window {
   [[nodiscard]] bool is_context_lost() const;
   /**
    * Replace window and context; place, size and the state of the user interface stay. Objects of the old context are
-   * gone. \pre no frame of the user interface has begun \throws std::runtime_error as the constructor
+   * gone. \pre no frame of the user interface has begun \throws std::runtime_error as the constructor: there is no
+   * window then, and all that may follow is another call or the destructor
    */
   void make_context_anew();
-  /** For scripts: until make_context_anew, the driver seems to report a reset of the GPU. */
-  static void inject_context_loss();
+  /**
+   * For scripts: until make_context_anew, the driver seems to report a reset of the GPU, and the first \a failures
+   * calls of make_context_anew fail.
+   */
+  static void inject_context_loss(int failures);
 
   [[nodiscard]] bool is_closed() const;
   [[nodiscard]] glm::ivec2 size_px() const;
@@ -82,6 +86,9 @@ class Window {
   /** nullptr: there is none, as it could not be made anew. */
   GLFWwindow *window_ = nullptr;
   std::string title_;
+  /** Of the window that was lost last. */
+  glm::ivec2 lost_place_px_{0};
+  glm::ivec2 lost_size_px_{0};
   std::vector<KeyPress> keys_;
   std::vector<std::filesystem::path> dropped_;
   std::vector<std::string> driver_messages_;

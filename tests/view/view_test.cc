@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "view_error_estimate.hh"
 #include "view_history.hh"
 #include "view_navigation.hh"
 #include "view_properties.hh"
@@ -6,6 +7,8 @@
 
 #include <gtest/gtest.h>
 #include <glm/gtc/matrix_transform.hpp>
+
+#include <random>
 
 namespace gnomon::view {
 namespace {
@@ -53,6 +56,54 @@ TEST(ViewHistoryTest, AnInvalidEditChangesNothingAndIsNotRemembered)
   EXPECT_THROW(history.edit(scene, node, [](scene::Node &edited) { edited.parent_from_node[3][0] = NAN; }),
                scene::InvalidEdit);
   EXPECT_EQ(history.undo_count(), 0U);
+}
+
+TEST(ViewErrorEstimateTest, OfIndependentSamplesItIsTheirRmseOrMore)
+{
+  constexpr std::size_t pixels = 20000;
+  std::mt19937 random(1);
+  std::normal_distribution<float> sample(0.5F, 0.2F);
+  std::vector<float> sum(4 * pixels);
+  ErrorEstimate estimate;
+  int last = 0;
+  for (int count = 1; count <= 40; count++) {
+    for (std::size_t i = 0; i < sum.size(); i++) {
+      // Alpha is not counted.
+      sum[i] += i % 4 == 3 ? float(count) : sample(random);
+    }
+    EXPECT_EQ(estimate.is_due(count), count >= 2 * std::max(last, 1)) << count;
+    // Pictures may come late.
+    if (count != 2 && count != 4 && count != 13 && count != 40) {
+      continue;
+    }
+    std::vector<float> mean = sum;
+    for (float &value : mean) {
+      value /= float(count);
+    }
+    estimate.add(count, std::move(mean));
+    EXPECT_EQ(estimate.value().has_value(), last > 0);
+    if (last > 0) {
+      // The RMS of 60000 normal values has a standard deviation of 0.3 %.
+      const double expected = 0.2 * std::sqrt(1.0 / double(last) - 1.0 / double(count));
+      EXPECT_NEAR(*estimate.value(), expected, 0.015 * expected) << count;
+      EXPECT_GT(*estimate.value(), 0.985 * 0.2 / std::sqrt(double(count))) << count;
+    }
+    last = count;
+  }
+  estimate.restart();
+  EXPECT_FALSE(estimate.value());
+  EXPECT_FALSE(estimate.is_due(1));
+  EXPECT_TRUE(estimate.is_due(2));
+}
+
+TEST(ViewErrorEstimateTest, APictureOfAnotherSizeBeginsAnew)
+{
+  ErrorEstimate estimate;
+  estimate.add(2, std::vector<float>(4, 1.0F));
+  estimate.add(4, std::vector<float>(8, 1.0F));
+  EXPECT_FALSE(estimate.value());
+  estimate.add(8, std::vector<float>(8, 1.0F));
+  EXPECT_EQ(estimate.value(), 0.0);
 }
 
 /** Where a camera sees a point: x and y in [-1, 1] within the picture of a square. */

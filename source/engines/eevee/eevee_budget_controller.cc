@@ -17,7 +17,7 @@ constexpr double choose_share = 0.8;
 constexpr double enter_share = 0.7;
 constexpr double setup_share_max = 0.5;
 constexpr double larger_setup_share = 0.4;
-constexpr double later_share = 0.9;
+constexpr double later_share = 0.85;
 
 double within_limits(double budget)
 {

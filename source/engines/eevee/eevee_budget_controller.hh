@@ -39,7 +39,7 @@ class RecentCost {
  * direction is never followed by one in the other: the next larger size takes at most what is expected of it, and
  * shadows of twice the edge take at most four times as long.
  *
- * Later calls draw the picture in parts that fit into 0.9 B: the set-up of a sample, or its depth and then as many
+ * Later calls draw the picture in parts that fit into 0.85 B: the set-up of a sample, or its depth and then as many
  * layers of its shadows as fit; then as many rows as fit.
  */
 class BudgetController {
