@@ -393,6 +393,15 @@ void add_bench(CLI::App &app, Status &status)
   frames->add_option("--json", o->json, "Write the figures, in seconds");
   add_world_options(*frames, o->world);
   frames->callback([o] { bench_frames(*o); });
+  CLI::App *memory = command->add_subcommand("memory", "Device memory of a picture, beside that without shadows");
+  memory->add_option("scenes", o->scenes, "glTF 2.0 files")->required();
+  memory->add_option("--size", o->size, "WIDTHxHEIGHT, pixels")->capture_default_str();
+  memory->add_option("--backend", o->backend, "gl, or null: without a driver, and without fits to the picture's depths")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"gl", "null"}));
+  memory->add_option("--json", o->json, "Write the figures, in bytes");
+  add_world_options(*memory, o->world);
+  memory->callback([o] { bench_memory(*o); });
   CLI::App *light = command->add_subcommand(
       "light", "Errors of the light of lamps with a size in one frame, against numerical integration");
   light->add_option("--points", o->points, "Points in each of the sets of an integral")

@@ -22,6 +22,8 @@ struct BenchOptions {
   int count_max = 1 << 30;
   int frames = 300;
   double budget_ms = 33.0;
+  /** WIDTHxHEIGHT, pixels. */
+  std::string size = "960x540";
   std::string json;
   WorldOptions world;
 };
@@ -37,5 +39,6 @@ void bench_import(const BenchOptions &options);
 void bench_record(const BenchOptions &options);
 void bench_growth(const BenchOptions &options);
 void bench_frames(const BenchOptions &options);
+void bench_memory(const BenchOptions &options);
 
 }  // namespace gnomon::cli

@@ -74,6 +74,7 @@ eevee::ShadowSettings shadow_settings(const RenderOptions &options)
   }
   else if (options.samples == 1) {
     // Texels of about a pixel smooth the edges of shadows, which one sample leaves jagged: less error with less memory.
+    settings.cube_size_px = settings.cube_size_px * 3 / 4;
     settings.map_size_px /= 2;
   }
   else if (is_fine) {
@@ -82,6 +83,8 @@ eevee::ShadowSettings shadow_settings(const RenderOptions &options)
     settings.esm.size_px *= 2;
   }
   settings.cascades.can_resize = options.shadow_size == 0;
+  // The error of these depths is far below that of one sample.
+  settings.can_have_short_maps = options.samples == 1;
   return settings;
 }
 
@@ -277,8 +280,8 @@ void add_render_options(CLI::App &command, RenderOptions &options)
       ->check(CLI::IsMember({"none", "hard", "pcf", "esm", "evsm"}));
   command
       .add_option("--shadow-size", options.shadow_size,
-                  "Width of cube faces, maps and octahedral layers, pixels (default: 1024, 2048, 512; maps of 1024 "
-                  "with one sample; twice that with at least 16 samples)")
+                  "Width of cube faces, maps and octahedral layers, pixels (default: 1024, 2048, 512; 768, 1024, "
+                  "512 with one sample; twice that with at least 16 samples)")
       ->check(CLI::Range(1, 16384));
   command
       .add_option("--pcf", options.pcf, "Filter kernel of --shadow pcf: 1, 3x3, 5x5, or disk:N for N lookups on a disk")

@@ -7,13 +7,14 @@ namespace gnomon::gpu {
 
 bool is_depth(Format format)
 {
-  return format == Format::Depth32F;
+  return format == Format::Depth32F || format == Format::Depth16;
 }
 
 int texel_size_bytes(Format format)
 {
   switch (format) {
-    case Format::R16F: return 2;
+    case Format::R16F:
+    case Format::Depth16: return 2;
     case Format::RGBA8:
     case Format::SRGB8A8:
     case Format::R32F:
@@ -36,6 +37,7 @@ std::string_view to_string(Format format)
     case Format::R32F: return "R32F";
     case Format::RG32F: return "RG32F";
     case Format::Depth32F: return "Depth32F";
+    case Format::Depth16: return "Depth16";
   }
   return "?";
 }

@@ -9,7 +9,8 @@
 
 namespace gnomon::gpu {
 
-/** Texel formats. Depth32F is used for all depth, RGBA32F for scene-linear radiance. */
+/** Texel formats. Depth32F is used for depth, or Depth16 where its error is known; RGBA32F for scene-linear radiance.
+ */
 enum class Format : std::uint8_t {
   /** Display-referred colour, [0, 1]. */
   RGBA8,
@@ -25,6 +26,8 @@ enum class Format : std::uint8_t {
   RG32F,
   /** Reversed clip-space depth: 1 at the near plane, 0 at the far one. */
   Depth32F,
+  /** The same in [0, 1] with steps of 1 / 65535. */
+  Depth16,
 };
 
 [[nodiscard]] bool is_depth(Format format);

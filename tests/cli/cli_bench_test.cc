@@ -128,6 +128,23 @@ TEST_F(BenchTest, FramesOfAStillPictureDrawAndUploadNothing)
   EXPECT_EQ(row["difference_rms"], 0.0);
 }
 
+TEST_F(BenchTest, MemoryOfAPictureWithTwoLampsHasALimit)
+{
+  const Finished finished = run("bench memory '" GNOMON_SOURCE "/examples/scenes/plaza.glb' '" GNOMON_SOURCE
+                                "/examples/scenes/spots.glb' --backend null --json bench.json");
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const json bench = json::parse(read("bench.json"));
+  ASSERT_EQ(bench["rows"].size(), 4U);
+  for (const json &row : bench["rows"]) {
+    EXPECT_GT(row["shadow_bytes"], 0) << row;
+    EXPECT_LT(row["bytes_without_shadows"], row["bytes"]) << row;
+  }
+  // plaza, one sample, a point lamp and a sun.
+  EXPECT_LE(bench["rows"][0]["bytes"], 40 << 20);
+  EXPECT_EQ(run("bench memory absent.glb --backend null").status, 1);
+  EXPECT_EQ(run("bench memory '" GNOMON_SOURCE "/examples/scenes/plaza.glb' --size 0x1 --backend null").status, 2);
+}
+
 TEST_F(BenchTest, LightComparesApproximationsWithIntegrals)
 {
   const Finished finished = run("bench light --points 1 --json bench.json");

@@ -346,7 +346,9 @@ TEST(Format, TexelsAreAsLargeAsTheirChannels)
   EXPECT_EQ(texel_size_bytes(Format::R32F), 4);
   EXPECT_EQ(texel_size_bytes(Format::RG32F), 8);
   EXPECT_EQ(texel_size_bytes(Format::Depth32F), 4);
+  EXPECT_EQ(texel_size_bytes(Format::Depth16), 2);
   EXPECT_TRUE(is_depth(Format::Depth32F));
+  EXPECT_TRUE(is_depth(Format::Depth16));
   EXPECT_FALSE(is_depth(Format::R32F));
 }
 

@@ -49,7 +49,8 @@ TEST_F(RenderPassGpu, ClearsEveryFormatToItsValue)
        {Case{Format::RGBA8, {0.25F, 0.5F, 0.75F, 1}, 0.501F / 255},
         Case{Format::RGBA16F, {1.5F, -2.25F, 65504, 0.125F}, 0}, Case{Format::RGBA32F, {1e30F, -3.7F, 1e-30F, 0.1F}, 0},
         Case{Format::R16F, {12.5F, 0, 0, 0}, 0}, Case{Format::R32F, {1e-20F, 0, 0, 0}, 0},
-        Case{Format::RG32F, {1e-20F, -3.7F, 0, 0}, 0}, Case{Format::Depth32F, {0.123456F, 0, 0, 0}, 0}}) {
+        Case{Format::RG32F, {1e-20F, -3.7F, 0, 0}, 0}, Case{Format::Depth32F, {0.123456F, 0, 0, 0}, 0},
+        Case{Format::Depth16, {0.123456F, 0, 0, 0}, 0.501F / 65535}}) {
     const std::string name(to_string(one.format));
     SCOPED_TRACE(name);
     const Texture texture = device->create_texture({.name = name, .format = one.format, .width = 7, .height = 5});

@@ -136,6 +136,7 @@ inline std::vector<glm::vec4> decoded_texels(gpu::Device &device, const gpu::Tex
       case gpu::Format::RGBA32F: values.push_back(as(glm::vec4())); break;
       case gpu::Format::R16F: values.emplace_back(glm::unpackHalf1x16(as(std::uint16_t())), 0, 0, 0); break;
       case gpu::Format::RG32F: values.emplace_back(as(glm::vec2()), 0, 0); break;
+      case gpu::Format::Depth16: values.emplace_back(float(as(std::uint16_t())) / 65535.0F, 0, 0, 0); break;
       case gpu::Format::R32F:
       case gpu::Format::Depth32F: values.emplace_back(as(float()), 0, 0, 0); break;
     }

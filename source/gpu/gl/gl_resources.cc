@@ -68,6 +68,7 @@ GlFormat gl_format(Format format)
     case Format::R32F: return {GL_R32F, GL_RED, GL_FLOAT};
     case Format::RG32F: return {GL_RG32F, GL_RG, GL_FLOAT};
     case Format::Depth32F: return {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT};
+    case Format::Depth16: return {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT};
   }
   return {};
 }

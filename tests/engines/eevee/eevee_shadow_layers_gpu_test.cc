@@ -3,6 +3,7 @@
 #include "eevee_test_scene.hh"
 #include "gpu/gpu_testing.hh"
 #include "gpu_device_fixture.hh"
+#include "shadows/shadow_spot.hh"
 
 #include <gtest/gtest.h>
 
@@ -121,6 +122,39 @@ TEST_F(ShadowLayersGpuTest, ThreeCubePassesGiveTheSameTexels)
     EXPECT_EQ(counters[way].caster_draws, counters[0].caster_draws);
     EXPECT_EQ(counters[way].faces_drawn, counters[0].faces_drawn);
   }
+}
+
+/** Rounded by the driver. \see short_depth_rounding */
+TEST_F(ShadowLayersGpuTest, ShortMapsHoldTheSameDepthsInHalfOfTheMemory)
+{
+  make_garden();
+  std::vector<std::vector<glm::vec4>> texels;
+  std::vector<std::size_t> bytes;
+  std::vector<float> rounding;
+  for (const bool can_have_short_maps : {false, true}) {
+    Renderer renderer(*device, scene, {48, 32},
+                      {.shadow = {.map_size_px = 128, .can_have_short_maps = can_have_short_maps}});
+    renderer.picture(camera);
+    const Shadows &shadows = renderer.inspect().shadows();
+    const gpu::Texture &maps = shadows.scene().maps();
+    bytes.push_back(maps.desc().size_bytes());
+    rounding.push_back(shadows.block_data().maps[0].rounding);
+    for (int layer = 0; layer < maps.desc().layers; layer++) {
+      texels.push_back(test::decoded_texels(*device, maps, layer));
+    }
+  }
+  EXPECT_EQ(2 * bytes[1], bytes[0]);
+  EXPECT_NEAR(rounding[1] / rounding[0], short_depth_rounding / shared::DEPTH_ROUNDING, 1e-3);
+  const std::size_t layer_count = texels.size() / 2;
+  ASSERT_GE(layer_count, 2U) << "a spot and a sun";
+  float largest = 0.0F;
+  for (std::size_t layer = 0; layer < layer_count; layer++) {
+    for (std::size_t i = 0; i < texels[layer].size(); i++) {
+      largest = std::max(largest, std::abs(texels[layer_count + layer].at(i).x - texels[layer][i].x));
+    }
+  }
+  EXPECT_LE(largest, short_depth_rounding);
+  EXPECT_GT(largest, 0.0F) << "the depths are not floats";
 }
 
 // hazards.md: every caster drawn six times into every updated lamp, no cull.

@@ -107,6 +107,42 @@ TEST_F(ShadowsTest, PointsAndWideSpotsHaveCubesSunsAndSpotsMaps)
   EXPECT_EQ(lamps.lights[4].shadow_kind, SHADOW_NONE);
 }
 
+/** Change of the depth for each metre along the axes of the world. */
+glm::vec3 row_z(const shared::ShadowMapData &map)
+{
+  return {map.texco_from_world[0].z, map.texco_from_world[1].z, map.texco_from_world[2].z};
+}
+
+TEST_F(ShadowsTest, MapsHaveShortDepthsWhileTheirErrorIsATenthOfATexel)
+{
+  add_lamp(scene::LampKind::Spot, "spot");
+  add_lamp(scene::LampKind::Sun, "sun");
+  settings.can_have_short_maps = true;
+  sync(settings);
+  update();
+  EXPECT_EQ(scene_shadows.maps().desc().format, gpu::Format::Depth16);
+  // A sun's depth is 1 over the length of the map, so that this is the length times the error.
+  EXPECT_NEAR(shadows.block_data().maps[1].rounding * glm::length(row_z(shadows.block_data().maps[1])),
+              short_depth_rounding, 1e-3F * short_depth_rounding);
+  // A caster just before the spot moves the near plane to it. The error at the box grows with the square of the
+  // distance.
+  casters.push_back(box_at({0, 0, -0.02F}, 0.01F));
+  EXPECT_EQ(updated(), 2U) << "another format, so that all layers are drawn again";
+  EXPECT_EQ(scene_shadows.maps().desc().format, gpu::Format::Depth32F);
+  EXPECT_NEAR(shadows.block_data().maps[1].rounding * glm::length(row_z(shadows.block_data().maps[1])),
+              shared::DEPTH_ROUNDING, 1e-3F * shared::DEPTH_ROUNDING);
+  // The format does not change back and forth.
+  casters.pop_back();
+  updated();
+  EXPECT_EQ(scene_shadows.maps().desc().format, gpu::Format::Depth32F);
+  // New maps are short again.
+  placed.clear();
+  updated();
+  add_lamp(scene::LampKind::Sun, "sun");
+  updated();
+  EXPECT_EQ(scene_shadows.maps().desc().format, gpu::Format::Depth16);
+}
+
 // hazards.md: the second lamp's layers overlapped the first's.
 TEST_F(ShadowsTest, TheSecondCubeBeginsAtLayerSix)
 {

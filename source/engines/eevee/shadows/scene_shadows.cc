@@ -2,6 +2,7 @@
 #include "scene_shadows.hh"
 
 #include "shadow_octahedral.hh"
+#include "shadow_spot.hh"
 #include "shadows.hh"
 
 #include <algorithm>
@@ -212,12 +213,39 @@ void SceneShadows::finish()
   casters_.distances().keep_only(positions_ws, casters_.list());
 }
 
+/**
+ * Give the maps 16-bit depths if they may have them and all have a small error. Maps with 32 bits keep them, so that
+ * no movement of the camera changes the format again and again.
+ */
+void SceneShadows::choose_map_format()
+{
+  LayerArray &maps = arrays_[std::size_t(ShadowArrayId::Maps)];
+  const bool has_long_maps = maps.texture() && maps.format() == gpu::Format::Depth32F;
+  scene::Bounds surfaces_ws = bounds_ws_;
+  surfaces_ws.extend(casters_.bounds_ws());
+  bool is_short = settings_.can_have_short_maps && !has_long_maps;
+  for_each_slot([&](const ShadowSlot &slot) {
+    is_short = is_short && (slot.place.given.array != ShadowArrayId::Maps ||
+                            short_depth_error(slot, surfaces_ws) <= short_depth_error_max);
+  });
+  const gpu::Format format = is_short ? gpu::Format::Depth16 : gpu::Format::Depth32F;
+  const bool is_changed = format != maps.format();
+  maps.set_format(format);
+  for_each_slot([&](ShadowSlot &slot) {
+    if (slot.place.given.array == ShadowArrayId::Maps) {
+      slot.depth_rounding = is_short ? short_depth_rounding : shared::DEPTH_ROUNDING;
+      slot.invalidate(is_changed ? ~0U : 0U);
+    }
+  });
+}
+
 /** Assign layers to each map. A run keeps its layers unless it has to grow and the next layers are in use. */
 void SceneShadows::place_maps(gpu::Device &device)
 {
   if (map_count() == 0) {
     return;
   }
+  choose_map_format();
   int layers_max = 0;
   const auto place_all = [&](auto &&is_placed) {
     for_each_slot([&](ShadowSlot &slot) {

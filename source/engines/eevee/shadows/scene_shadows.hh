@@ -128,6 +128,7 @@ class SceneShadows {
   void resize(gpu::Device &device, ShadowArrayId id, int layers);
   void place_render_blocks(gpu::Device &device);
   void place_maps(gpu::Device &device);
+  void choose_map_format();
 
   ShadowSettings settings_;
   LayerPass layer_pass_ = LayerPass::Single;

@@ -33,12 +33,21 @@ bool LayerArray::resize(gpu::Device &device, int size_px, int layers, bool has_c
   return true;
 }
 
+void LayerArray::set_format(gpu::Format format)
+{
+  if (format != format_) {
+    framebuffers_.clear();
+    texture_ = {};
+    format_ = format;
+  }
+}
+
 const gpu::Framebuffer &LayerArray::framebuffer(gpu::Device &device, int first, int count)
 {
   gpu::Framebuffer &framebuffer = framebuffers_[{first, count}];
   if (!framebuffer) {
     const gpu::Attachment layers{.texture = &texture_, .layer = first, .layer_count = count};
-    const bool is_depth = format_ == gpu::Format::Depth32F;
+    const bool is_depth = gpu::is_depth(format_);
     framebuffer = device.create_framebuffer(
         {.name =
              count == 1 ? fmt::format("{} {}", name_, first) : fmt::format("{} {}-{}", name_, first, first + count - 1),

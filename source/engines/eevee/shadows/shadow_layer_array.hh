@@ -29,6 +29,8 @@ class LayerArray {
    * created. The array is then unchanged, or empty without \a has_content.
    */
   bool resize(gpu::Device &device, int size_px, int layers, bool has_content);
+  /** The format of the texture that the next resize creates. Another format frees the texture and its texels. */
+  void set_format(gpu::Format format);
 
   /** A framebuffer of \a count layers from \a first on, created on first use. It is not layered if \a count is 1. */
   [[nodiscard]] const gpu::Framebuffer &framebuffer(gpu::Device &device, int first, int count = 1);
@@ -36,6 +38,10 @@ class LayerArray {
   [[nodiscard]] const std::string &name() const
   {
     return name_;
+  }
+  [[nodiscard]] gpu::Format format() const
+  {
+    return format_;
   }
   /** Empty while there are no layers. */
   [[nodiscard]] const gpu::Texture &texture() const

@@ -44,6 +44,12 @@ struct ShadowSettings {
    * moves.
    */
   bool is_fitted_to_depth = false;
+  /**
+   * Whether maps of suns and spots may have 16-bit depths, which take half of the memory. They have them while the
+   * error of these depths is at most a tenth of a texel for all maps, \see short_depth_error_max. Receivers are offset
+   * by it.
+   */
+  bool can_have_short_maps = false;
   LayerPass layer_pass = LayerPass::Best;
   CasterFaces caster_faces = CasterFaces::All;
   /** Maximum device memory of all shadow layers, bytes. \see plan_shadows */

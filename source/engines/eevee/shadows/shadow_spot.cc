@@ -27,6 +27,33 @@ draw::View shadow_spot_view(const glm::mat4 &world_from_lamp, float outer_angle,
   return {lamp_from_world, draw::perspective(half_size, half_size, near, std::numeric_limits<float>::infinity())};
 }
 
+/** Error at w = 1, metres, of a depth with the error \a rounding. It grows with w². */
+static float metres_of(float rounding, const draw::View &view)
+{
+  const glm::mat4 &projection = view.clip_from_view();
+  // Reversed depth: near / w for a spot, where w is a distance, and (far - z) / (far - near) for a sun.
+  return rounding / (view.is_perspective() ? projection[3][2] : projection[2][2]);
+}
+
+/** Longer edge of a texel at w = 1, metres. It grows with w. */
+static float texel_of(const ShadowSlot &slot, const draw::View &view)
+{
+  const glm::mat4 &projection = view.clip_from_view();
+  return 2.0F / (float(slot.size_px) * std::min(projection[0][0], projection[1][1]));
+}
+
+double short_depth_error(const ShadowSlot &slot, const scene::Bounds &bounds_ws)
+{
+  // A sun's w is 1 everywhere.
+  const float reach = glm::length(reach_from(slot.lamp.position_ws(), bounds_ws));
+  const float w = slot.lamp.kind == scene::LampKind::Sun ? 1.0F : std::min(reach, slot.lamp.shadow_range());
+  double largest = 0.0;
+  for (const draw::View &view : slot.views) {
+    largest = std::max(largest, double(metres_of(short_depth_rounding, view)) * w / texel_of(slot, view));
+  }
+  return largest;
+}
+
 void write_map_data(const ShadowSlot &slot, shared::ShadowBlock &block)
 {
   const int size_px = slot.size_px;
@@ -34,11 +61,9 @@ void write_map_data(const ShadowSlot &slot, shared::ShadowBlock &block)
   for (std::size_t i = 0; i < slot.views.size(); i++) {
     shared::ShadowMapData &data = block.maps[std::size_t(slot.place.entry) + i];
     const draw::View &view = slot.views[i];
-    const glm::mat4 &projection = view.clip_from_view();
     data.texco_from_world = texcomat * view.clip_from_world();
-    data.texel_size = 2.0F / (float(size_px) * std::min(projection[0][0], projection[1][1]));
-    // Reversed depth: near / w for a spot, where w is a distance, and (far - z) / (far - near) for a sun.
-    data.rounding = shared::DEPTH_ROUNDING / (view.is_perspective() ? projection[3][2] : projection[2][2]);
+    data.texel_size = texel_of(slot, view);
+    data.rounding = metres_of(slot.depth_rounding, view);
     data.far = view.is_perspective() ? slot.lamp.shadow.clip_end.value_or(shadow_far_none) : shadow_far_none;
     data.bias = slot.lamp.shadow.bias.value_or(1.0F);
     data.layer = slot.place.first_layer + int(i);

@@ -25,6 +25,16 @@ inline constexpr float spot_map_angle_max = 1.04F;
 /** Planar shadow maps of spots up to spot_map_angle_max. */
 [[nodiscard]] const ShadowTechnique &shadow_spot_technique();
 
+/** Bound of the error of 16-bit depths: half a step, and the error of the depth before it is rounded. */
+inline constexpr float short_depth_rounding = 0.5F / 65535.0F + shared::DEPTH_ROUNDING;
+/** Maps whose 16-bit depths would have a larger error have 32-bit depths, texels. \see shared::NORMAL_OFFSET_TEXELS */
+inline constexpr double short_depth_error_max = 0.1;
+/**
+ * The largest error of 16-bit depths in the maps of a spot or a sun, in texels at the surface. \a bounds_ws: of all
+ * surfaces.
+ */
+[[nodiscard]] double short_depth_error(const ShadowSlot &slot, const scene::Bounds &bounds_ws);
+
 /** Write the entries of \a slot's maps, for a spot or a sun. */
 void write_map_data(const ShadowSlot &slot, shared::ShadowBlock &block);
 /** ShadowTechnique::texel_size of the finest map that contains the position; 0 if there is none. */
