@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Used by scripts/animation and scripts/test_scenes: writes glTF files."""
+"""Used by scripts/animation, scripts/test_scenes and scripts/textured_scene: writes glTF files."""
 import base64
 import json
 import struct
@@ -11,6 +11,18 @@ def is_seen(corners, normal):
     a, b, c = corners
     one, two = [q - p for p, q in zip(a, b)], [q - p for p, q in zip(a, c)]
     return sum(normal[i] * (one[(i + 1) % 3] * two[(i + 2) % 3] - one[(i + 2) % 3] * two[(i + 1) % 3]) for i in range(3)) > 0
+
+
+def png(size, color):
+    """A PNG of 8 bits: color(u, v) gives four values from 0 to 1 for the middle of a texel; v is down."""
+    rows = b"".join(b"\0" + bytes(round(255 * value) for x in range(size) for value in color((x + 0.5) / size, (y + 0.5) / size))
+                    for y in range(size))
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", size, size, 8, 6, 0, 0, 0)) +
+            chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
 class Gltf:
@@ -44,16 +56,8 @@ class Gltf:
         return len(self.json["materials"]) - 1
 
     def texture(self, size, color):
-        """A PNG of 8 bits: color(u, v) gives four values from 0 to 1 for the middle of a texel."""
-        rows = b"".join(b"\0" + bytes(round(255 * value) for x in range(size) for value in color((x + 0.5) / size, (y + 0.5) / size))
-                        for y in range(size))
-
-        def chunk(kind, data):
-            return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-        png = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", size, size, 8, 6, 0, 0, 0))
-        png += chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
-        self.json.setdefault("images", []).append({"bufferView": self.add_bytes(png), "mimeType": "image/png"})
+        """A texture of png(size, color)."""
+        self.json.setdefault("images", []).append({"bufferView": self.add_bytes(png(size, color)), "mimeType": "image/png"})
         self.json.setdefault("textures", []).append({"source": len(self.json["images"]) - 1})
         return {"index": len(self.json["textures"]) - 1}
 

@@ -11,9 +11,9 @@ layout(location = 7) in vec4 surface_occlusion_emissive_uvs;
 layout(location = 8) in vec4 surface_specular_uvs;
 #ifdef USE_TRANSMISSION
 /**
- * Factor of the roughness, whether its texture is used, and the index of refraction. Mip levels of what is behind are computed from them
- * and not from storage blocks: llvmpipe takes the level of several invocations from one of them, which may be outside of the triangle
- * and reads zeros there.
+ * Factor of the roughness, whether its texture is used, and the index of refraction. Mip levels of what is behind are computed
+ * from them and not from storage blocks: llvmpipe takes the level of several invocations from one of them, which may be outside
+ * of the triangle and reads zeros there.
  */
 layout(location = 15) flat in vec3 surface_lens;
 #endif
