@@ -138,6 +138,17 @@ TEST_F(LinesGpuTest, WithNormalsAreLitAndWithoutShadowsOfTheirOwn)
   int changed = 0;
   for (int y = 0; y < size_px.y; y++) {
     changed += with_lines.at(16, y) != plain.at(16, y) ? 1 : 0;
+    for (int x = 0; x < size_px.x; x++) {
+      const glm::vec2 middle = (2.0F * glm::vec2(x, y) + 1.0F) / glm::vec2(size_px) - 1.0F;
+      const auto distance = [&middle](const glm::vec2 &from, const glm::vec2 &to) {
+        const float part = glm::dot(middle - from, to - from) / glm::dot(to - from, to - from);
+        return glm::distance(middle, glm::mix(from, to, glm::clamp(part, 0.0F, 1.0F)));
+      };
+      // Three pixels away, where a shadow would fall.
+      if (std::min({distance(a, b), distance(b, c), distance(c, a)}) > 3.0F * 2.0F / float(size_px.x)) {
+        EXPECT_EQ(with_lines.at(x, y), plain.at(x, y)) << x << ' ' << y;
+      }
+    }
   }
   // Two lines, and at most the rows beside them that the filter reaches.
   EXPECT_GE(changed, 2);
@@ -150,6 +161,7 @@ TEST_F(LinesGpuTest, BlendOnceOverWhatIsBehind)
   scene.edit(material, [](scene::Material &value) {
     value.alpha_mode = scene::AlphaMode::Blend;
     value.alpha = 0.25F;
+    value.is_double_sided = true;
   });
   add_mesh(Topology::Points, {{0, 0, 0}}, material);
   const glm::dvec4 sum = sum_of(render());
