@@ -41,3 +41,19 @@ if(GNOMON_PROGRAM)
   install(TARGETS gnomon)
   install(TARGETS gnomon_oiio DESTINATION ${CMAKE_INSTALL_LIBDIR}/gnomon)
 endif()
+
+# cpack: a Debian package of all that is installed. Debian's tools find what it needs at run time. Programs that are linked with it need
+# what GnomonLibraryDependencies.cmake finds.
+if(PROJECT_IS_TOP_LEVEL)
+  set(CPACK_GENERATOR DEB)
+  set(CPACK_PACKAGE_NAME gnomon)
+  set(CPACK_PACKAGE_CONTACT "The authors of Gnomon")
+  set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+  set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+  set(CPACK_DEBIAN_PACKAGE_SECTION libdevel)
+  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR})
+  set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "cmake, glslang-dev, glslang-tools, libdraco-dev, libegl-dev, libembree-dev, libepoxy-dev, libfmt-dev, \
+libglfw3-dev, libglm-dev, libmeshoptimizer-dev, libsimdjson-dev, libspng-dev, libturbojpeg0-dev, libwebp-dev, libxxhash-dev, spirv-tools")
+  include(CPack)
+endif()
