@@ -16,6 +16,12 @@
 
 namespace gnomon::cli {
 
+std::unique_ptr<gpu::Device> bench_device(const BenchOptions &options)
+{
+  return options.backend == "gl" ? gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()})
+                                 : gpu::create_null_device();
+}
+
 namespace {
 
 /** Prints one measurement, with ratios to the first two variants. */
@@ -81,9 +87,7 @@ void bench_shadows(const BenchOptions &options)
 
 void bench_left_out(const BenchOptions &options)
 {
-  const std::unique_ptr<gpu::Device> device =
-      options.backend == "gl" ? gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()})
-                              : gpu::create_null_device();
+  const std::unique_ptr<gpu::Device> device = bench_device(options);
   const std::vector<measure::LeftOutCost> costs = measure::measure_left_out(*device, options.rounds);
   fmt::print(
       "A full scene and ten that lack one thing each, 640x360, one sample: a first frame with all that it makes,\n"
@@ -123,9 +127,7 @@ void bench_left_out(const BenchOptions &options)
 
 void bench_lamps(const BenchOptions &options)
 {
-  const std::unique_ptr<gpu::Device> device =
-      options.backend == "gl" ? gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()})
-                              : gpu::create_null_device();
+  const std::unique_ptr<gpu::Device> device = bench_device(options);
   const std::vector<measure::LampsCost> costs = measure::measure_lamps(*device, options.rounds);
   fmt::print(
       "Point lamps with a range of {} m and hard shadows in a square hall, 320x180, one sample: warm frames in which\n"
@@ -412,6 +414,6 @@ void add_bench(CLI::App &app, Status &status)
   CLI::App *edits = command->add_subcommand("edits", "The work that each kind of edit of a large scene causes");
   edits->add_option("--json", o->json, "Write the figures");
   edits->callback([o] { bench_edits(*o); });
-}  // namespace gnomon::cli
+}
 
 }  // namespace gnomon::cli

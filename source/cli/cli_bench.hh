@@ -7,8 +7,13 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <memory>
 #include <string>
 #include <vector>
+
+namespace gnomon::gpu {
+class Device;
+}
 
 /** Parts of `gnomon bench` that several of its files use. */
 namespace gnomon::cli {
@@ -27,6 +32,9 @@ struct BenchOptions {
   std::string json;
   WorldOptions world;
 };
+
+/** A device of the kind that BenchOptions::backend names. \throws std::runtime_error if there is none */
+[[nodiscard]] std::unique_ptr<gpu::Device> bench_device(const BenchOptions &options);
 
 [[nodiscard]] nlohmann::json to_json(const measure::Spread &spread);
 /** Median and quartiles, in units of \a unit seconds. */

@@ -53,9 +53,7 @@ nlohmann::json print_scene(gpu::Device &device, const BenchOptions &options, con
 
 void bench_frames(const BenchOptions &options)
 {
-  const std::unique_ptr<gpu::Device> device =
-      options.backend == "gl" ? gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()})
-                              : gpu::create_null_device();
+  const std::unique_ptr<gpu::Device> device = bench_device(options);
   fmt::print(
       "Frames of a host at 640x360, milliseconds, of {} frames each, until the device is done. One lamp is moved: a\n"
       "whole sample. Budget: {} ms. Complete and still: {} further calls without a target. {}\n",

@@ -63,9 +63,7 @@ nlohmann::json print_memory(gpu::Device &device, const BenchOptions &options, co
 
 void bench_memory(const BenchOptions &options)
 {
-  const std::unique_ptr<gpu::Device> device =
-      options.backend == "gl" ? gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()})
-                              : gpu::create_null_device();
+  const std::unique_ptr<gpu::Device> device = bench_device(options);
   fmt::print(
       "Content on the device after the first sample of a picture of {} pixels, with the settings of `gnomon render`,\n"
       "and its ratio to the same picture without shadows. {}\n",
