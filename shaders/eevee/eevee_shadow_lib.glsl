@@ -111,14 +111,10 @@ int filter_of(ShadowCubeData cube)
 /** \a offset: \see ShadowPlace. */
 ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, vec3 to_light, vec3 offset)
 {
-  ShadowPlace place;
-  place.is_covered = false;
+  // No early returns: llvmpipe evaluates what follows them all the same, and then selects each member.
   // Distance along the axis of the face that contains the receiver.
   vec3 from_light = surface.position_ws - light.position_ws;
   float w = largest(from_light);
-  if (w > cube.far) {
-    return place;
-  }
   float magnitude = largest(surface.position_ws) + largest(light.position_ws);
   float rounding = DEPTH_ROUNDING / cube.near * w * w;
   float normal_offset = cube.bias * shadow_normal_offset(cube.texel_size * w, kernel_reach(filter_of(cube)), rounding, magnitude);
@@ -127,28 +123,25 @@ ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, ve
   from_light = offset_position(surface, to_light, normal_offset) - light.position_ws;
   int face = cube_face(from_light + offset);
   vec3 p = cube_face_project(face, from_light + offset);
-  if ((cube.faces_and_filter >> face & 1) == 0 || p.z <= 0.0) {
-    return place;
-  }
   float size = float(cube.size_px);
   vec4 crop = unpackUnorm4x8(cube.crop);
   float uv_scale = 0.5 * cube_uv_scale(size);
   vec2 extent = crop.zw - crop.xy;
-  vec2 uv = (p.xy / p.z * uv_scale + 0.5 - crop.xy) / extent;
-  // No surface of the picture is there.
-  if (any(greaterThan(abs(uv - 0.5), vec2(0.5)))) {
-    return place;
-  }
+  float per_z = 1.0 / p.z;
+  vec2 uv = (p.xy * (per_z * uv_scale) + 0.5 - crop.xy) / extent;
   // A plane n · p = c has 1 / z = (n.x · x/z + n.y · y/z + n.z) / c.
   vec3 n = cube_face_project(face, surface.geometric_normal_ws);
   float per_metre = slope_quotient(cube.near, dot(surface.geometric_normal_ws, from_light));
-  place.receiver_depth = cube.near / p.z;
+  ShadowPlace place;
+  place.receiver_depth = cube.near * per_z;
   place.plane.texel = uv * size - 0.5;
-  place.plane.depth = place.receiver_depth + dot(surface.geometric_normal_ws, offset) * per_metre / p.z;
+  place.plane.depth = place.receiver_depth + dot(surface.geometric_normal_ws, offset) * per_metre * per_z;
   place.plane.slope = n.xy * (per_metre / (uv_scale * size)) * extent;
   place.plane.least_depth = least_depth(place, offset, filter_of(cube));
   place.layer = cube.layer + face;
-  place.is_covered = true;
+  // Beyond the part of the face that its layer holds, there is no surface of the picture.
+  bool is_in_crop = all(lessThanEqual(abs(uv - 0.5), vec2(0.5)));
+  place.is_covered = w <= cube.far && (cube.faces_and_filter >> face & 1) != 0 && p.z > 0.0 && is_in_crop;
   return place;
 }
 

@@ -101,14 +101,12 @@ SHARED_FUNCTION int cube_face(vec3 v)
  */
 SHARED_FUNCTION vec3 cube_face_project(int face, vec3 v)
 {
-  switch (face) {
-    case 0: return vec3(-v.z, -v.y, v.x);
-    case 1: return vec3(v.z, -v.y, -v.x);
-    case 2: return vec3(v.x, v.z, v.y);
-    case 3: return vec3(v.x, -v.z, -v.y);
-    case 4: return vec3(v.x, -v.y, v.z);
-    default: return vec3(-v.x, -v.y, -v.z);
-  }
+  // Products with +-1 instead of a case for each face: compilers for CPUs evaluate all cases.
+  int axis = face >> 1;
+  float side = 1.0f - 2.0f * float(face & 1);
+  return axis == 0 ? vec3(-side * v.z, -v.y, side * v.x) :
+         axis == 1 ? vec3(v.x, side * v.z, side * v.y) :
+                     vec3(side * v.x, -v.y, side * v.z);
 }
 
 /**
