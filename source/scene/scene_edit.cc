@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "scene.hh"
 
+#include "scene_memory.hh"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -306,6 +308,7 @@ Handle<Camera> Scene::add(Camera camera)
 void Scene::reserve_nodes(std::size_t count)
 {
   links_.reserve(links_.size() + count);
+  prefer_large_pages(links_.data(), links_.capacity() * sizeof(NodeLinks));
 }
 
 Handle<Node> Scene::add(Node node, Handle<Node> parent)

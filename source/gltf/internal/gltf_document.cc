@@ -5,6 +5,7 @@
 #include "internal/gltf_document_extras.hh"
 #include "internal/gltf_document_shading.hh"
 #include "internal/gltf_json.hh"
+#include "scene_memory.hh"
 
 #include <algorithm>
 #include <new>
@@ -94,6 +95,7 @@ class DocumentReader {
   {
     elements.clear();
     elements.reserve(size_of(array));
+    scene::prefer_large_pages(elements.data(), elements.capacity() * sizeof(Element));
     for (const JsonValue value : array) {
       const Place at{place.outer, place.key, elements.size()};
       read_one(at, value, elements.emplace_back());
@@ -377,6 +379,20 @@ std::string reason_of(simdjson::error_code error)
   return "parse error: " + printable(prefix_end == message.npos ? message : message.substr(prefix_end + 2));
 }
 
+/** Allocates what the parser writes for a text of this size, which is several times as much as the text. */
+simdjson::error_code allocate(simdjson::dom::parser &parser, std::size_t size)
+{
+  if (const simdjson::error_code error = parser.allocate(size); error != simdjson::SUCCESS) {
+    return error;
+  }
+  if (const simdjson::error_code error = parser.doc.allocate(size); error != simdjson::SUCCESS) {
+    return error;
+  }
+  scene::prefer_large_pages(parser.implementation->structural_indexes.get(), size * sizeof(std::uint32_t));
+  scene::prefer_large_pages(parser.doc.tape.get(), size * sizeof(std::uint64_t));
+  return simdjson::SUCCESS;
+}
+
 }  // namespace
 
 std::size_t document_padding()
@@ -395,7 +411,8 @@ Model parse_document(std::span<const unsigned char> json)
   JsonValue document;
   std::string_view text(reinterpret_cast<const char *>(json.data()), json.size());
   const auto parse = [&] { return parser.parse(text.data(), text.size(), false).get(document); };
-  simdjson::error_code error = parse();
+  simdjson::error_code error = allocate(parser, text.size());
+  error = error == simdjson::SUCCESS ? parse() : error;
   std::string changed;
   if (error == simdjson::NUMBER_ERROR) {
     changed = with_long_numbers_as_floats(text, document_padding());
