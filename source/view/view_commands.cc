@@ -351,6 +351,18 @@ void show_tab(App &app, Words words)
   }
 }
 
+void measure_error(App &app, Words words)
+{
+  constexpr std::array actions = {"cancel"};
+  if (words.empty()) {
+    document(app);
+    app.begin_measurement();
+  }
+  else if (choice(actions, words[0], "thing to do with a measurement") == 0 && !app.cancel_measurement()) {
+    throw std::runtime_error("nothing is being measured");
+  }
+}
+
 void expect_message(App &app, Words words)
 {
   const std::vector<Message> &messages = app.messages();
@@ -419,6 +431,7 @@ constexpr std::array commands = std::to_array<Command>({
     {"shaders", "FOLDER", 1, 1, Need::Nothing, use_shaders},
     {"lose_context", "[FAILURES]", 0, 1, Need::Frame, lose_context},
     {"tab", "NAME", 1, 1, Need::Frame, show_tab},
+    {"measure", "[cancel]", 0, 1, Need::Nothing, measure_error},
     {"message", "TEXT", 1, 1, Need::Nothing, expect_message},
     {"wait", "", 0, 0, Need::Pictures, wait},
     {"until", "TEXT", 1, 1, Need::Message, wait},
