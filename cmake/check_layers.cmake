@@ -29,10 +29,10 @@ set(source/verify source/measure source/engines/eevee source/render_scene source
   source/image source/scene shaders)
 set(source/cli source/view source/verify source/measure source/engines/eevee source/engines/unlit source/engines/overlay source/render_scene source/reference source/draw source/shader_check source/gpu
   source/gltf source/image source/scene source/trace shaders)
-set(source/view source/engines/eevee source/engines/unlit source/engines/overlay source/render_scene source/draw source/shader_check source/gpu source/gltf
-  source/scene shaders)
+set(source/view source/measure source/reference source/engines/eevee source/engines/unlit source/engines/overlay source/render_scene source/draw source/shader_check source/gpu
+  source/gltf source/scene shaders)
 set(source/python source/measure source/reference source/embed source/engines/eevee source/engines/unlit source/engines/overlay source/render_scene source/draw
-  source/gpu source/gltf source/scene shaders)
+  source/gpu source/gltf source/image source/scene shaders)
 set(shaders "")
 # A folder within another layer's folder comes after it.
 set(LAYERS source/trace source/gpu source/shader_check source/draw source/scene source/image source/gltf source/render_scene source/engines/eevee source/engines/eevee/multiscatter_tool

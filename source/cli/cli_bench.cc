@@ -2,6 +2,7 @@
 #include "cli.hh"
 
 #include "cli_bench.hh"
+#include "cli_output.hh"
 
 #include "measure_bench.hh"
 #include "measure_edits.hh"
@@ -12,6 +13,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <fstream>
 #include <memory>
 
 namespace gnomon::cli {
@@ -20,6 +22,30 @@ std::unique_ptr<gpu::Device> bench_device(const BenchOptions &options)
 {
   return options.backend == "gl" ? gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()})
                                  : gpu::create_null_device();
+}
+
+nlohmann::json to_json(const measure::Spread &spread)
+{
+  return {{"median", spread.median}, {"low", spread.low}, {"high", spread.high}};
+}
+
+std::string to_text(const measure::Spread &spread, double unit)
+{
+  return fmt::format("{:9.2f} [{:.2f}, {:.2f}]", spread.median / unit, spread.low / unit, spread.high / unit);
+}
+
+void write_json(const std::string &path, const nlohmann::json &json)
+{
+  if (path.empty()) {
+    return;
+  }
+  write_atomically(path, [&](const std::filesystem::path &beside) {
+    std::ofstream file(beside);
+    file << json.dump(2) << "\n";
+    if (!file.flush()) {
+      throw std::runtime_error(fmt::format("{}: cannot be written", path));
+    }
+  });
 }
 
 namespace {

@@ -1,39 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "cli_bench.hh"
 
-#include "cli_output.hh"
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <fstream>
 #include <memory>
 
 namespace gnomon::cli {
-
-nlohmann::json to_json(const measure::Spread &spread)
-{
-  return {{"median", spread.median}, {"low", spread.low}, {"high", spread.high}};
-}
-
-std::string to_text(const measure::Spread &spread, double unit)
-{
-  return fmt::format("{:9.2f} [{:.2f}, {:.2f}]", spread.median / unit, spread.low / unit, spread.high / unit);
-}
-
-void write_json(const std::string &path, const nlohmann::json &json)
-{
-  if (path.empty()) {
-    return;
-  }
-  write_atomically(path, [&](const std::filesystem::path &beside) {
-    std::ofstream file(beside);
-    file << json.dump(2) << "\n";
-    if (!file.flush()) {
-      throw std::runtime_error(fmt::format("{}: cannot be written", path));
-    }
-  });
-}
 
 void bench_growth(const BenchOptions &options)
 {

@@ -46,7 +46,7 @@ std::vector<double> contrast(std::span<const glm::vec4> picture, glm::ivec2 size
 
 PixelSample::PixelSample(const reference::Tracer &tracer, const scene::PlacedCamera &camera, glm::ivec2 size_px,
                          std::span<const glm::vec4> guide, int pixel_count, int sample_count, std::uint64_t seed,
-                         bool has_multiscatter)
+                         bool has_multiscatter, const std::function<void(double share_done)> &progress)
 {
   const std::vector<double> contrasts = contrast(guide, size_px);
   double sum = 0.0;
@@ -73,9 +73,12 @@ PixelSample::PixelSample(const reference::Tracer &tracer, const scene::PlacedCam
     }
   }
   for (std::size_t half = 0; half < 2; half++) {
-    light_[half] = reference::direct_light(
-        tracer, camera, size_px, places,
-        {.sample_count = sample_count, .seed = 2 * seed + half + 1, .has_multiscatter = has_multiscatter});
+    reference::DirectLightSettings settings{
+        .sample_count = sample_count, .seed = 2 * seed + half + 1, .has_multiscatter = has_multiscatter};
+    if (progress) {
+      settings.progress = [&](double share_done) { progress(0.5 * (double(half) + share_done)); };
+    }
+    light_[half] = reference::direct_light(tracer, camera, size_px, places, settings);
   }
 }
 
@@ -163,7 +166,8 @@ Pilot run_pilot(gpu::Device &device, const scene::Scene &scene, const scene::Pla
   std::unique_ptr<PixelSample> sample;
   double best_seconds = std::numeric_limits<double>::infinity();
   for (const Technique &technique : pilot_techniques()) {
-    TechniqueRenderer renderer(device, scene, camera, technique, size_px, has_multiscatter);
+    TechniqueRenderer renderer(device, scene, camera,
+                               {.shadow = technique.settings, .has_multiscatter = has_multiscatter}, size_px);
     renderer.warm_up(false);
     if (!sample) {
       sample = std::make_unique<PixelSample>(tracer, camera, size_px, renderer.picture(), pixel_count,

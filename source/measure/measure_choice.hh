@@ -8,6 +8,7 @@
 #include "reference_light.hh"
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -33,13 +34,13 @@ struct SampledError {
 class PixelSample {
  public:
   /**
-   * \a guide: a picture of the scene; it may be noisy. \a seed: selects the pixels and the rays. \a has_multiscatter:
-   * see reference::DirectLightSettings.
+   * \a guide: a picture of the scene; it may be noisy. \a seed: selects the pixels and the rays. \a has_multiscatter
+   * and \a progress: see reference::DirectLightSettings.
    * \pre sample_count >= 1, pixel_count >= 2
    */
   PixelSample(const reference::Tracer &tracer, const scene::PlacedCamera &camera, glm::ivec2 size_px,
               std::span<const glm::vec4> guide, int pixel_count, int sample_count, std::uint64_t seed,
-              bool has_multiscatter = false);
+              bool has_multiscatter = false, const std::function<void(double share_done)> &progress = {});
 
   /** Error of \a picture, which has the size given to the constructor. NaN if a sampled pixel is NaN. */
   [[nodiscard]] SampledError error(std::span<const glm::vec4> picture) const;

@@ -33,10 +33,8 @@ bool is_lit_at(const scene::PlacedLamp &lamp, const glm::dvec3 &position_ws, con
 }  // namespace
 
 TechniqueRenderer::TechniqueRenderer(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera,
-                                     const Technique &technique, glm::ivec2 size_px, bool has_multiscatter)
-    : camera_(camera),
-      settings_{.shadow = technique.settings, .has_multiscatter = has_multiscatter},
-      renderer_(device, scene, size_px, settings_)
+                                     const eevee::Settings &settings, glm::ivec2 size_px)
+    : camera_(camera), settings_(settings), renderer_(device, scene, size_px, settings_)
 {
 }
 
@@ -58,11 +56,11 @@ std::map<std::string, double> TechniqueRenderer::step_seconds()
   return seconds;
 }
 
-double TechniqueRenderer::picture_seconds(int sample_count)
+double TechniqueRenderer::picture_seconds(int sample_count, const std::function<bool(int samples_drawn)> &progress)
 {
   set(sample_count, false);
   const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
-  draw();
+  draw({.progress = progress});
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -81,9 +79,9 @@ void TechniqueRenderer::set(int sample_count, bool is_timed)
   renderer_.viewport().device().finish();
 }
 
-void TechniqueRenderer::draw()
+void TechniqueRenderer::draw(const eevee::DrawLimits &limits)
 {
-  renderer_.draw(camera_);
+  renderer_.draw(camera_, limits);
   renderer_.viewport().device().finish();
 }
 
@@ -138,9 +136,10 @@ TechniqueTimes measure_technique(gpu::Device &device, const scene::Scene &scene,
                                  bool has_multiscatter)
 {
   const scene::PlacedCamera camera = scene.placed_cameras().front();
+  const eevee::Settings settings{.shadow = technique.settings, .has_multiscatter = has_multiscatter};
   if (tracer) {
     // In a renderer of its own, so that the probe's memory is not counted.
-    TechniqueRenderer probed(device, scene, camera, technique, size_px, has_multiscatter);
+    TechniqueRenderer probed(device, scene, camera, settings, size_px);
     probed.warm_up(true);
     result = {};
     result.lamps = probed.lamp_errors(*tracer);
@@ -149,7 +148,7 @@ TechniqueTimes measure_technique(gpu::Device &device, const scene::Scene &scene,
     result.limits = report.limits;
     result.lost_shadow_count = report.lost_shadow_count;
   }
-  TechniqueRenderer renderer(device, scene, camera, technique, size_px, has_multiscatter);
+  TechniqueRenderer renderer(device, scene, camera, settings, size_px);
   renderer.warm_up(false);
   TechniqueTimes times;
   times.step_seconds = renderer.step_seconds();

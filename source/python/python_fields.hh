@@ -76,6 +76,12 @@ template <typename T>
   return fmt::format("{} '{}'", T::kind_name, value.name);
 }
 
+/** Its image has the name. */
+[[nodiscard]] inline std::string label_of(const scene::Texture & /*value*/)
+{
+  return "texture";
+}
+
 /** The handle of \a thing. \throws scene::StaleHandle; scene::InvalidEdit if it is not one of \a scene */
 template <typename U>
 [[nodiscard]] scene::Handle<U> handle_of(const ScenePtr &scene, const Thing<U> &thing)
@@ -129,6 +135,28 @@ void set_fields(const Fields<T> &fields, const std::string &label, const ScenePt
       throw scene::InvalidEdit(fmt::format("{}: {} {}", label, name, error.what()));
     }
   }
+}
+
+template <typename T>
+std::vector<Thing<T>> things_of(const ScenePtr &scene)
+{
+  std::vector<Thing<T>> things;
+  for (const auto &item : scene->scene.pool<T>()) {
+    things.push_back({scene, item.handle});
+  }
+  return things;
+}
+
+/** Adds a property that lists the things of a type, and functions that add one and remove one. */
+template <typename T>
+void define_pool(SceneClass &type, const char *list_name)
+{
+  type.def_property_readonly(list_name, &things_of<T>,
+                             "All of the scene. A new one may take the place of one that was removed.");
+  type.def(
+      "remove", [](const ScenePtr &scene, const Thing<T> &thing) { scene->edited().remove(handle_of(scene, thing)); },
+      py::arg("thing"),
+      "Remove a thing; a node with its descendants. Its handles become stale, and what refers to it goes without.");
 }
 
 }  // namespace gnomon::python

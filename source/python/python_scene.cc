@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "python_fields.hh"
+#include "python_pictures.hh"
 
 #include "gltf_export.hh"
 #include "gltf_import.hh"
@@ -54,7 +54,7 @@ const Fields<SurfaceFunction> surface_function_fields = {
                                  "The file of the text, for messages and saved scenes; empty: none."),
 };
 
-const Fields<Material> material_fields = {
+const Fields<Material> material_fields = with_textures({
     plain_field<Material>("name", &Material::name, "For messages and files."),
     number_field<Material>("base_color", &Material::base_color, 0, 1, "Linear red, green and blue, 0 to 1."),
     number_field<Material>("alpha", &Material::alpha, 0, 1, "0 to 1; has an effect by alpha_mode."),
@@ -97,7 +97,7 @@ const Fields<Material> material_fields = {
     plain_field<Material>("is_double_sided", &Material::is_double_sided, "False: back faces are not drawn."),
     thing_field<Material, SurfaceFunction>("surface_function", &Material::surface_function,
                                            "A SurfaceFunction that edits the surface at each point, or None."),
-};
+});
 
 /** Far beyond any use, and within what a projection in single precision can hold. */
 constexpr double camera_length_max = 1e9;
@@ -220,29 +220,7 @@ void define_thing(py::module_ &module, const char *name, const char *doc, const 
 }
 
 template <typename T>
-std::vector<Thing<T>> things_of(const ScenePtr &scene)
-{
-  std::vector<Thing<T>> things;
-  for (const auto &item : scene->scene.pool<T>()) {
-    things.push_back({scene, item.handle});
-  }
-  return things;
-}
-
-/** Adds a property that lists the things of a type, and functions that add one and remove one. */
-template <typename T>
-void define_pool(py::class_<SharedScene, ScenePtr> &type, const char *list_name)
-{
-  type.def_property_readonly(list_name, &things_of<T>,
-                             "All of the scene. A new one may take the place of one that was removed.");
-  type.def(
-      "remove", [](const ScenePtr &scene, const Thing<T> &thing) { scene->edited().remove(handle_of(scene, thing)); },
-      py::arg("thing"),
-      "Remove a thing; a node with its descendants. Its handles become stale, and what refers to it goes without.");
-}
-
-template <typename T>
-void define_add(py::class_<SharedScene, ScenePtr> &type, const char *name, const Fields<T> &fields, const char *doc)
+void define_add(SceneClass &type, const char *name, const Fields<T> &fields, const char *doc)
 {
   type.def(
       name,
@@ -262,7 +240,7 @@ Thing<Node> add_node(const ScenePtr &scene, const std::optional<Thing<Node>> &pa
 }
 
 Thing<Mesh> add_mesh(const ScenePtr &scene, const py::array &positions, const py::array &normals,
-                     const py::array &triangles, const py::kwargs &values)
+                     const py::array &triangles, const std::optional<py::array> &uvs, const py::kwargs &values)
 {
   Mesh mesh;
   mesh.positions = rows_of<glm::vec3>(positions, "positions");
@@ -270,23 +248,13 @@ Thing<Mesh> add_mesh(const ScenePtr &scene, const py::array &positions, const py
   for (const glm::uvec3 &triangle : rows_of<glm::uvec3>(triangles, "triangles")) {
     mesh.indices.insert(mesh.indices.end(), {triangle.x, triangle.y, triangle.z});
   }
+  if (uvs) {
+    mesh.uvs = rows_of<glm::vec2>(*uvs, "uvs");
+    // A material that needs them may come later.
+    add_tangents(mesh);
+  }
   mesh = made(mesh_fields, scene, values, std::move(mesh));
   return {scene, scene->edited().add(std::move(mesh))};
-}
-
-void set_world(const ScenePtr &scene, const glm::vec3 &color, float strength, float rotation, const py::object &picture)
-{
-  scene::World world{color, strength, rotation, nullptr};
-  if (!picture.is_none()) {
-    const auto texels = picture.cast<py::array>();
-    if (texels.ndim() != 3) {
-      throw py::value_error("picture: is not an array of height, width and three channels");
-    }
-    const auto rows = py::array(texels.attr("reshape")(-1, texels.shape(2)));
-    world.picture = std::make_shared<const scene::WorldPicture>(
-        scene::WorldPicture{int(texels.shape(1)), int(texels.shape(0)), rows_of<glm::vec3>(rows, "picture")});
-  }
-  scene->edited().set_world(std::move(world));
 }
 
 /** \a progress: called with the part that is done; what it raises, and signals, end the import. */
@@ -375,9 +343,9 @@ scene::PlacedCamera camera_at(const ScenePtr &scene, const std::optional<Thing<N
 void define_scene(py::module_ &module)
 {
   define_enums(module);
-  py::class_<SharedScene, ScenePtr> type(
+  SceneClass type(
       module, "Scene",
-      "Nodes, meshes, materials, lamps and cameras. World space is right-handed, in metres.\n\n"
+      "Nodes, meshes, materials, textures, lamps and cameras. World space is right-handed, in metres.\n\n"
       "Things are handles: their properties read and edit the scene, and raise StaleHandle once the thing is removed.");
   define_thing(module, "Lamp", "A lamp. It shines along the -Z axis of the nodes that have it.", lamp_fields);
   define_thing(module, "SurfaceFunction", "A function in GLSL that edits the surface of the materials that name it.",
@@ -418,16 +386,13 @@ void define_scene(py::module_ &module)
              "Add a camera with these properties. It is used at the nodes that have it.");
   type.def("add_node", &add_node, py::arg("parent") = py::none(),
            "Add a node with these properties, as the last child of `parent` or as a root.");
-  type.def("add_mesh", &add_mesh, py::arg("positions"), py::arg("normals"), py::arg("triangles"),
-           "Add a mesh: `positions` (m) and `normals` (unit vectors) are arrays of N x 3 float32, `triangles` of M x 3 "
-           "uint32 indices, counter-clockwise as seen from the front. It is drawn at the nodes that have it.");
-  type.def("set_world", &set_world, py::arg("color") = glm::vec3(1.0F), py::arg("strength") = 1.0F,
-           py::arg("rotation") = 0.0F, py::arg("picture") = py::none(),
-           "Light from all around: color · strength · picture, W/(sr m²). `rotation`: around +Y, rad. `picture`: "
-           "equirectangular, height x width x 3 float32, with the top row first; None: uniform.");
   type.def(
-      "remove_world", [](const ScenePtr &scene) { scene->edited().set_world(std::nullopt); },
-      "Remove the light from all around.");
+      "add_mesh", &add_mesh, py::arg("positions"), py::arg("normals"), py::arg("triangles"),
+      py::arg("uvs") = py::none(),
+      "Add a mesh: `positions` (m) and `normals` (unit vectors) are arrays of N x 3 float32, `triangles` of M x 3 "
+      "uint32 indices, counter-clockwise as seen from the front. It is drawn at the nodes that have it. `uvs`: "
+      "where the positions are in textures, N x 2 float32; (0, 0) is the upper left corner, (1, 1) the lower right.");
+  define_pictures(module, type);
   type.def("save", &save, py::arg("path"), "Write the scene as glTF 2.0: .gltf or .glb. Raises FileError.");
   type.def_property_readonly(
       "warnings", [](const ScenePtr &scene) { return scene->scene.warnings; },

@@ -30,6 +30,7 @@ struct SharedScene {
 };
 
 using ScenePtr = std::shared_ptr<SharedScene>;
+using SceneClass = py::class_<SharedScene, ScenePtr>;
 
 /**
  * While it exists, edits of a scene throw. Construct it with the interpreter's lock, which edits need, too; afterwards

@@ -306,6 +306,8 @@ std::vector<glm::vec4> direct_light(const Tracer &tracer, const scene::PlacedCam
   check(size_px, settings);
   const Renderer renderer(tracer, CameraRays(camera, size_px), settings);
   std::vector<glm::vec4> light(pixels.size());
+  std::mutex mutex;
+  std::size_t pixels_done = 0;
   scene::parallel_for(pixels.size(), settings.thread_count, [&](std::size_t i) {
     const std::uint64_t key = pixel_key(settings.seed, pixels[i]);
     glm::dvec3 sum(0.0);
@@ -315,6 +317,11 @@ std::vector<glm::vec4> direct_light(const Tracer &tracer, const scene::PlacedCam
       sum += renderer.radiance(renderer.rays.at(glm::dvec2(pixels[i]) + 0.5 + from_center_px), sample, key);
     }
     light[i] = glm::vec4(sum / double(settings.sample_count), 1.0F);
+    if (settings.progress) {
+      const std::scoped_lock lock(mutex);
+      pixels_done++;
+      settings.progress(double(pixels_done) / double(pixels.size()));
+    }
   });
   return light;
 }

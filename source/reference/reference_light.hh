@@ -21,7 +21,10 @@ struct DirectLightSettings {
   unsigned thread_count = 0;
   /** \see eevee::Settings::has_multiscatter */
   bool has_multiscatter = false;
-  /** Called repeatedly, by one thread at a time, with the completed fraction in (0, 1]. May be empty. */
+  /**
+   * Called repeatedly, by one thread at a time, with the completed fraction in (0, 1]. May be empty. An exception from
+   * it ends the work and is thrown to the caller.
+   */
   std::function<void(double share_done)> progress{};
 };
 

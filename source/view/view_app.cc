@@ -137,10 +137,45 @@ bool App::finish_open()
   return false;
 }
 
+void App::begin_measurement()
+{
+  if (!document_) {
+    message("No scene is open", false);
+    return;
+  }
+  try {
+    error_panel_.begin(*document_, active());
+  }
+  catch (const std::exception &error) {
+    report(error);
+  }
+}
+
+bool App::cancel_measurement()
+{
+  error_panel_.cancel();
+  return error_panel_.is_measuring();
+}
+
+void App::finish_measurement()
+{
+  try {
+    message(error_panel_.take(), false);
+  }
+  catch (const measure::Cancelled &cancelled) {
+    message(cancelled.what(), false);
+  }
+  catch (const std::exception &error) {
+    // Not App::report: a context that was lost was not the window's.
+    message(error.what(), true);
+  }
+}
+
 void App::show_document(scene::Scene scene)
 {
   const Settings settings = document_ ? document_->settings() : default_settings();
   end_fly(true);
+  error_panel_.clear();
   for (const std::unique_ptr<Viewport> &viewport : viewports_) {
     viewport->close();
   }
@@ -330,15 +365,23 @@ void App::update_document()
 
 void App::draw_frame(bool may_wait)
 {
-  const bool waits = may_wait && is_complete_ && frames_to_draw_ == 0;
+  // Frames take time from a measurement. A script that awaits one therefore waits, too.
+  const bool waits = (may_wait || error_panel_.is_measuring()) && is_complete_ && frames_to_draw_ == 0;
   constexpr double progress_seconds = 0.05;
+  constexpr double measurement_seconds = 0.5;
   constexpr double shader_seconds = 0.5;
   const bool has_functions = document_ && !document_->scene().surface_functions().empty();
-  window_.begin_frame(waits, is_opening() ? progress_seconds : shader_watch_ || has_functions ? shader_seconds : 0.0);
+  window_.begin_frame(waits, is_opening()                     ? progress_seconds
+                             : error_panel_.is_measuring()    ? measurement_seconds
+                             : shader_watch_ || has_functions ? shader_seconds
+                                                              : 0.0);
   frames_to_draw_ = waits ? settling_frames : std::max(0, frames_to_draw_ - 1);
   take_events();
   if (opening_ && opening_->is_done()) {
     finish_open();
+  }
+  if (error_panel_.has_ended()) {
+    finish_measurement();
   }
   is_complete_ = true;
   try {

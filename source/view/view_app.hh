@@ -55,6 +55,13 @@ class App {
   }
   /** What is opened in the background is not to be opened. */
   void cancel_open();
+  /**
+   * Measure error against time of the active viewport's picture in the background. The tab Error shows it. A message
+   * where that is not possible, and when it has ended.
+   */
+  void begin_measurement();
+  /** \return false: nothing is being measured */
+  bool cancel_measurement();
   /** \return whether it was written; otherwise there is an error message */
   bool save(const std::filesystem::path &path);
   /** The active viewport's picture: EXR is scene-linear, PNG the window's pixels of it. \throws std::runtime_error */
@@ -156,6 +163,7 @@ class App {
   };
   /** Wait for what is opened in the background, and show it. \return whether it is open */
   bool finish_open();
+  void finish_measurement();
   void show_document(scene::Scene scene);
   void make_device();
   /**
@@ -218,6 +226,7 @@ class App {
   SceneTree scene_tree_;
   FramePanel frame_panel_;
   ShadowPanel shadow_panel_;
+  ErrorPanel error_panel_;
   /** To be brought to the front. */
   std::string shown_tab_;
   float left_width_ = 230.0F;

@@ -2,13 +2,13 @@
 #include "view_commands.hh"
 
 #include "view_keys.hh"
+#include "view_words.hh"
 
 #include <fmt/format.h>
 #include <glm/trigonometric.hpp>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -16,42 +16,6 @@
 namespace gnomon::view {
 
 namespace {
-
-double number(const std::string &word)
-{
-  double value = 0.0;
-  const char *end = word.data() + word.size();
-  const auto [after, error] = std::from_chars(word.data(), end, value);
-  if (error != std::errc() || after != end || !(std::abs(value) < 1e12)) {
-    throw std::runtime_error(fmt::format("'{}' is not a number", word));
-  }
-  return value;
-}
-
-int integer(const std::string &word, int min, int max)
-{
-  const double value = number(word);
-  if (value != double(int(value)) || value < min || value > max) {
-    throw std::runtime_error(fmt::format("'{}' is not an integer from {} to {}", word, min, max));
-  }
-  return int(value);
-}
-
-glm::ivec2 pixel(const std::string &x, const std::string &y)
-{
-  return {integer(x, 0, 16384), integer(y, 0, 16384)};
-}
-
-/** The index of \a word among \a names. */
-template <std::size_t count>
-int choice(const std::array<const char *, count> &names, const std::string &word, const char *what)
-{
-  const auto found = std::ranges::find(names, word, [](const char *name) { return std::string_view(name); });
-  if (found == names.end()) {
-    throw std::runtime_error(fmt::format("'{}' is no {}", word, what));
-  }
-  return int(found - names.begin());
-}
 
 Document &document(App &app)
 {
@@ -294,6 +258,16 @@ void drag_handle(App &app, Words words)
   }
 }
 
+/** A click, or a drag, of anything in the window. */
+void use_pointer(App &app, Words words)
+{
+  if (words.size() == 3) {
+    throw std::runtime_error("usage: pointer X Y [TO_X TO_Y]");
+  }
+  const glm::ivec2 from = pixel(words[0], words[1]);
+  app.window().drag_pointer(from, words.size() == 4 ? pixel(words[2], words[3]) : from);
+}
+
 void set_gizmo(App &app, Words words)
 {
   constexpr std::array kinds = {"none", "move", "rotate", "scale"};
@@ -348,6 +322,18 @@ void show_tab(App &app, Words words)
 {
   if (!app.show_tab(words[0])) {
     throw std::runtime_error(fmt::format("there is no tab '{}'", words[0]));
+  }
+}
+
+void measure_error(App &app, Words words)
+{
+  constexpr std::array actions = {"cancel"};
+  if (words.empty()) {
+    document(app);
+    app.begin_measurement();
+  }
+  else if (choice(actions, words[0], "thing to do with a measurement") == 0 && !app.cancel_measurement()) {
+    throw std::runtime_error("nothing is being measured");
   }
 }
 
@@ -410,6 +396,7 @@ constexpr std::array commands = std::to_array<Command>({
     {"undo", "", 0, 0, Need::Nothing, undo},
     {"redo", "", 0, 0, Need::Nothing, redo},
     {"key", "KEY...", 1, any, Need::Nothing, press_keys},
+    {"pointer", "X Y [TO_X TO_Y]", 2, 4, Need::Pointer, use_pointer},
     {"gizmo", "none|move|rotate|scale", 1, 1, Need::Nothing, set_gizmo},
     {"orientation", "world|local", 1, 1, Need::Nothing, set_orientation},
     {"drag", "X Y TO_X TO_Y", 4, 4, Need::Nothing, drag_handle},
@@ -419,6 +406,7 @@ constexpr std::array commands = std::to_array<Command>({
     {"shaders", "FOLDER", 1, 1, Need::Nothing, use_shaders},
     {"lose_context", "[FAILURES]", 0, 1, Need::Frame, lose_context},
     {"tab", "NAME", 1, 1, Need::Frame, show_tab},
+    {"measure", "[cancel]", 0, 1, Need::Nothing, measure_error},
     {"message", "TEXT", 1, 1, Need::Nothing, expect_message},
     {"wait", "", 0, 0, Need::Pictures, wait},
     {"until", "TEXT", 1, 1, Need::Message, wait},

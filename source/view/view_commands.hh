@@ -11,7 +11,7 @@
 namespace gnomon::view {
 
 /** What a command needs before the next one. */
-enum class Need { Nothing, Frame, Pictures, Message };
+enum class Need { Nothing, Frame, Pointer, Pictures, Message };
 
 /** The arguments of a command. */
 using Words = std::span<const std::string>;

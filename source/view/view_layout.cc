@@ -15,7 +15,7 @@ namespace gnomon::view {
 namespace {
 
 constexpr float splitter_width = 5.0F;
-constexpr std::array<const char *, 5> tab_names = {"Object", "World", "Render", "Frame", "Shadow"};
+constexpr std::array<const char *, 6> tab_names = {"Object", "World", "Render", "Frame", "Shadow", "Error"};
 
 /** A bar that is dragged to change \a width; \a sign: -1 where the sized part is to the right of it. */
 void show_splitter(const char *name, float height, float sign, float &width)
@@ -172,8 +172,11 @@ void App::show_tabs()
       else if (tab == "Frame") {
         frame_panel_.show(*document_, active());
       }
-      else {
+      else if (tab == "Shadow") {
         shadow_panel_.show(*document_, active(), *device_);
+      }
+      else if (error_panel_.show(*document_)) {
+        begin_measurement();
       }
     }
     catch (const gpu::Error &error) {

@@ -3,10 +3,13 @@
 
 #include "view_canvas.hh"
 #include "view_document.hh"
+#include "view_error_measurement.hh"
 #include "view_properties.hh"
 #include "view_viewport.hh"
 
+#include <memory>
 #include <string>
+#include <vector>
 
 /** What the window shows beside the viewports. Each function draws items of the current window. */
 namespace gnomon::view {
@@ -51,6 +54,54 @@ class FramePanel {
  private:
   eevee::Report report_;
   PanelKey shown_;
+};
+
+/** Error against time of the current settings, which is measured in the background. */
+class ErrorPanel {
+ public:
+  /**
+   * Begin to measure the picture of \a viewport as eevee draws it, of the scene and the settings as they are now.
+   * \throws std::runtime_error if a measurement is under way
+   */
+  void begin(const Document &document, const Viewport &viewport);
+  /** Let the measurement end, if there is one. take throws measure::Cancelled then. */
+  void cancel()
+  {
+    if (measurement_) {
+      measurement_->cancel();
+    }
+  }
+  /** Forget what was measured, of a document that is closed. Cancels. */
+  void clear();
+  [[nodiscard]] bool is_measuring() const
+  {
+    return measurement_ != nullptr;
+  }
+  [[nodiscard]] bool has_ended() const
+  {
+    return measurement_ && measurement_->is_done();
+  }
+  /** Show what the measurement gave. \return a sentence about it \pre has_ended \throws what has ended it before */
+  std::string take();
+  /** \return whether the user has asked for a measurement */
+  [[nodiscard]] bool show(const Document &document);
+
+ private:
+  /** Of what was measured. */
+  struct Key {
+    scene::Revision scene = 0;
+    std::uint64_t settings = 0;
+
+    bool operator==(const Key &) const = default;
+  };
+  [[nodiscard]] static Key key_of(const Document &document);
+
+  /** nullptr: nothing is being measured. */
+  std::unique_ptr<ErrorMeasurement> measurement_;
+  std::vector<measure::TimedError> points_;
+  std::vector<std::string> untraced_;
+  Key key_;
+  glm::ivec2 size_px_{0};
 };
 
 /** The layers of the selected lamp's shadow. */

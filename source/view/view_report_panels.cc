@@ -25,10 +25,13 @@ PanelKey key_of(Document &document, const Viewport &viewport, int layer = 0)
           layer};
 }
 
-/** The first sample of a picture and the last, so that the panel takes little of the others' time. */
-bool is_worth_showing(const Document &document, const Viewport &viewport)
+/**
+ * The first sample of a picture and the last, also where a limit of error or time ends it, so that the panel takes
+ * little of the others' time.
+ */
+bool is_worth_showing(const Viewport &viewport)
 {
-  return viewport.samples_drawn() <= 1 || viewport.samples_drawn() >= document.settings().eevee.sample_count;
+  return viewport.samples_drawn() <= 1 || viewport.is_complete();
 }
 
 void show_part(const eevee::FrameNode &node)
@@ -81,7 +84,8 @@ void FramePanel::show(Document &document, Viewport &viewport)
     ImGui::TextDisabled("The list is of viewports that eevee draws.");
     return;
   }
-  if (const PanelKey key = key_of(document, viewport); key != shown_ && is_worth_showing(document, viewport)) {
+  if (const PanelKey key = key_of(document, viewport);
+      key != shown_ && (is_worth_showing(viewport) || shown_ == PanelKey{})) {
     report_ = eevee::Inspection(*engine, *viewport.viewport()).report();
     shown_ = key;
   }
@@ -129,8 +133,7 @@ void ShadowPanel::show(Document &document, Viewport &viewport, gpu::Device &devi
     ImGui::EndCombo();
   }
   const PanelKey key = key_of(document, viewport, layer_);
-  if (key != shown_ &&
-      (is_worth_showing(document, viewport) || key.selected != shown_.selected || layer_ != shown_.layer)) {
+  if (key != shown_ && (is_worth_showing(viewport) || key.selected != shown_.selected || layer_ != shown_.layer)) {
     read(*engine, viewport, index, device);
     shown_ = key;
   }

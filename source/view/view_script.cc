@@ -96,6 +96,7 @@ void Script::step(App &app)
       switch (command.need) {
         case Need::Nothing: break;
         case Need::Frame: frames_ = 1; break;
+        case Need::Pointer: frames_ = Window::drag_frames; break;
         case Need::Pictures:
           frames_ = 2;
           waits_ = true;

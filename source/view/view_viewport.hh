@@ -68,6 +68,11 @@ class Viewport {
   {
     return viewport_ ? viewport_->samples_drawn() : 0;
   }
+  /** Whether the picture of the last draw needs no more samples. */
+  [[nodiscard]] bool is_complete() const
+  {
+    return is_complete_ && !has_failed_;
+  }
   /** RMSE of the picture so far. Empty: not known, or there is no maximum. \see Settings::error_max */
   [[nodiscard]] std::optional<double> error() const
   {

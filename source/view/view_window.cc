@@ -201,6 +201,12 @@ void Window::begin_frame(bool waits, double seconds_max)
   }
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
+  if (!pointers_.empty()) {
+    const Pointer pointer = pointers_.back();
+    pointers_.pop_back();
+    ImGui::GetIO().MousePos = {float(pointer.at_px.x), float(pointer.at_px.y)};
+    ImGui::GetIO().MouseDown[ImGuiMouseButton_Left] = pointer.is_down;
+  }
   ImGui::NewFrame();
 }
 
@@ -262,6 +268,13 @@ void Window::capture_pointer(bool is_captured)
   // A pointer that is not seen points at nothing.
   int &flags = ImGui::GetIO().ConfigFlags;
   flags = is_captured ? flags | ImGuiConfigFlags_NoMouse : flags & ~ImGuiConfigFlags_NoMouse;
+}
+
+void Window::drag_pointer(glm::ivec2 from_px, glm::ivec2 to_px)
+{
+  // An item is pressed only if the pointer was over it in the frame before.
+  pointers_ = {{to_px, false}, {to_px, true}, {from_px, true}, {from_px, false}};
+  static_assert(drag_frames > 4);
 }
 
 std::vector<KeyPress> Window::take_keys()

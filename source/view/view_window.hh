@@ -70,12 +70,24 @@ class Window {
 
   /** Keys that were pressed since the last call, other than while a field of the user interface had them. */
   [[nodiscard]] std::vector<KeyPress> take_keys();
+  /**
+   * For scripts: in the next frames the pointer goes to \a from_px, its left button goes down, it goes to \a to_px, and
+   * the button is released. Pixels from the upper left corner.
+   */
+  void drag_pointer(glm::ivec2 from_px, glm::ivec2 to_px);
+  /** That this takes. */
+  static constexpr int drag_frames = 5;
+
   /** Files that were dropped on the window. */
   [[nodiscard]] std::vector<std::filesystem::path> take_dropped();
   /** Errors that the driver reported. */
   [[nodiscard]] std::vector<std::string> take_driver_messages();
 
  private:
+  struct Pointer {
+    glm::ivec2 at_px{0};
+    bool is_down = false;
+  };
   /** The window with its context. \throws std::runtime_error */
   void open(glm::ivec2 size_px);
   /** Of the user interface to the window. */
@@ -91,6 +103,8 @@ class Window {
   glm::ivec2 lost_size_px_{0};
   std::vector<KeyPress> keys_;
   std::vector<std::filesystem::path> dropped_;
+  /** Of drag_pointer, the last first. */
+  std::vector<Pointer> pointers_;
   std::vector<std::string> driver_messages_;
 };
 

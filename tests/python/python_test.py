@@ -202,6 +202,66 @@ class Pictures(unittest.TestCase):
         self.assertIsNone(scene.materials[0].surface_function)
         numpy.testing.assert_allclose(renderer.render()[9, 16, :3], (0.5, 0.25, 0.125), atol=1e-5)
 
+    def test_textures_are_drawn_edited_and_saved(self):
+        scene = square_scene()
+        corners = numpy.array([(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)], numpy.float32)
+        # The picture shows less than one repetition.
+        uvs = numpy.float32((0.5, 0.5)) + corners[:, :2] * numpy.float32((1 / 3.2, -1 / 3.2))
+        material = scene.add_material(metallic=0.0, specular=0.0)
+        square = scene.add_mesh(corners, numpy.array([(0, 0, 1)] * 4, numpy.float32),
+                                numpy.array([(0, 1, 2), (0, 2, 3)], numpy.uint32), uvs, material=material)
+        scene.nodes[0].meshes = [square]
+        colors = numpy.array([[(255, 0, 0), (0, 255, 0)], [(0, 0, 255), (128, 128, 128)]], numpy.uint8)
+        texture = scene.add_texture(colors.repeat(2, 0).repeat(2, 1), name="quarters")
+        self.assertEqual((texture.name, repr(texture)), ("quarters", "<gnomon.Texture 'quarters'>"))
+        self.assertEqual((texture.texels.shape, texture.texels[3, 3].tolist()), ((4, 4, 4), [128, 128, 128, 255]))
+        with self.assertRaises(ValueError):
+            texture.texels[0, 0, 0] = 1
+        material.base_color_texture = texture
+        self.assertEqual((material.base_color_texture, scene.textures), (texture, [texture]))
+        renderer = gnomon.Renderer(self.device, scene, (32, 18), **SMALL)
+
+        def quarters():
+            return renderer.render()[[[3], [14]], [[4, 27]], :3]
+
+        # sRGB's 128 is 0.21586.
+        numpy.testing.assert_allclose(quarters(), [[(1, 0, 0), (0, 1, 0)], [(0, 0, 1), (0.21586,) * 3]], atol=2e-3)
+        texture.texels = texture.texels[:, ::-1]
+        numpy.testing.assert_allclose(quarters()[0], [(0, 1, 0), (1, 0, 0)], atol=2e-3)
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "grey.png")
+            output = OpenImageIO.ImageOutput.create(path)
+            output.open(path, OpenImageIO.ImageSpec(5, 3, 3, "uint8"))
+            output.write_image(numpy.full((3, 5, 3), 128, numpy.uint8))
+            output.close()
+            grey = scene.add_texture(path)
+            self.assertEqual((grey.name, grey.texels.shape, grey.texels[1, 1, 3]), ("grey.png", (3, 5, 4), 255))
+            material.base_color_texture = grey
+            numpy.testing.assert_allclose(quarters(), numpy.full((2, 2, 3), 0.21586), atol=2e-3)
+            saved = os.path.join(folder, "saved.glb")
+            scene.save(saved)
+            kept = [one.base_color_texture for one in gnomon.load(saved).materials if one.base_color_texture]
+            self.assertEqual([one.texels[0, 0].tolist() for one in kept], [[128, 128, 128, 255]])
+            for wrong in (saved, os.path.join(folder, "none.png")):
+                with self.assertRaisesRegex(gnomon.FileError, re.escape(wrong)):
+                    scene.add_texture(wrong)
+        # A normal that leans towards the right, on a square that has tangents.
+        material.normal_texture = scene.add_texture(numpy.full((1, 1, 3), (218, 128, 218), numpy.uint8))
+        numpy.testing.assert_allclose(quarters(), numpy.full((2, 2, 3), 0.21586 * 0.5**0.5), atol=3e-3)
+        scene.remove(grey)
+        self.assertIsNone(material.base_color_texture)
+        with self.assertRaisesRegex(gnomon.StaleHandle, "texture"):
+            grey.texels
+        with self.assertRaisesRegex(gnomon.InvalidEdit, "texture is of another scene"):
+            square_scene().materials[0].normal_texture = texture
+        before = texture.texels
+        for error, texels in ((TypeError, before / 2), (ValueError, before[0]), (ValueError, before[:0]), (ValueError, before[:, :, :2])):
+            with self.assertRaises(error):
+                texture.texels = texels
+            with self.assertRaises(error):
+                scene.add_texture(texels)
+        self.assertTrue((texture.texels == before).all())
+
     def test_light_that_passes_is_not_scattered(self):
         scene = square_scene()
         scene.materials[0].transmission = 0.75

@@ -402,6 +402,28 @@ scene::Scene cluttered_scene()
   return scene;
 }
 
+TEST(DirectLight, ProgressRisesToOneAndAnExceptionFromItEndsTheWork)
+{
+  scene::Scene scene;
+  const Tracer tracer(scene);
+  const scene::PlacedCamera camera;
+  const glm::ivec2 size_px(200, 10);
+  const std::vector<glm::ivec2> pixels(7, glm::ivec2(1));
+  for (const bool is_whole : {true, false}) {
+    const auto render = [&](const DirectLightSettings &settings) {
+      is_whole ? void(direct_light(tracer, camera, size_px, settings))
+               : void(direct_light(tracer, camera, size_px, pixels, settings));
+    };
+    std::vector<double> shares;
+    render({.sample_count = 1, .progress = [&](double share_done) { shares.push_back(share_done); }});
+    ASSERT_EQ(shares.size(), is_whole ? 4U : 7U);
+    EXPECT_TRUE(std::ranges::is_sorted(shares));
+    EXPECT_EQ(shares.back(), 1.0);
+    EXPECT_THROW(render({.sample_count = 1, .progress = [](double) { throw std::domain_error("enough"); }}),
+                 std::domain_error);
+  }
+}
+
 TEST(DirectLight, PictureDependsOnTheSeedAndNotOnThreads)
 {
   const scene::Scene scene = cluttered_scene();

@@ -7,12 +7,12 @@
 
 namespace gnomon::measure {
 
-/** Renders pictures with one technique, and draws all shadows again for each picture. */
+/** Renders pictures with the same settings, and draws all shadows again for each picture. */
 class TechniqueRenderer {
  public:
-  /** All references must outlive the renderer. \a has_multiscatter: see eevee::Settings. */
+  /** \a device and \a scene must outlive the renderer. */
   TechniqueRenderer(gpu::Device &device, const scene::Scene &scene, const scene::PlacedCamera &camera,
-                    const Technique &technique, glm::ivec2 size_px, bool has_multiscatter);
+                    const eevee::Settings &settings, glm::ivec2 size_px);
 
   /**
    * Creates all resources of a picture and draws one. Call it first. \a has_probe: whether lamp_errors will be called.
@@ -20,7 +20,8 @@ class TechniqueRenderer {
   void warm_up(bool has_probe);
   /** \see TechniqueTimes */
   [[nodiscard]] std::map<std::string, double> step_seconds();
-  [[nodiscard]] double picture_seconds(int sample_count);
+  /** \a progress: called after each sample, and may throw to end the picture. \see eevee::DrawLimits */
+  [[nodiscard]] double picture_seconds(int sample_count, const std::function<bool(int samples_drawn)> &progress = {});
   /** The last picture. */
   [[nodiscard]] std::vector<glm::vec4> picture();
   [[nodiscard]] std::vector<LampError> lamp_errors(const reference::Tracer &tracer);
@@ -31,7 +32,7 @@ class TechniqueRenderer {
 
  private:
   void set(int sample_count, bool is_timed);
-  void draw();
+  void draw(const eevee::DrawLimits &limits = {});
 
   scene::PlacedCamera camera_;
   eevee::Settings settings_;

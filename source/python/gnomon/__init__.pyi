@@ -100,7 +100,30 @@ class Material:
     is_unlit: bool
     is_double_sided: bool
     surface_function: SurfaceFunction | None
+    base_color_texture: Texture | None
+    metallic_roughness_texture: Texture | None
+    normal_texture: Texture | None
+    occlusion_texture: Texture | None
+    emissive_texture: Texture | None
+    specular_texture: Texture | None
+    specular_color_texture: Texture | None
+    coat_texture: Texture | None
+    coat_roughness_texture: Texture | None
+    sheen_color_texture: Texture | None
+    sheen_roughness_texture: Texture | None
+    anisotropy_texture: Texture | None
+    coat_normal_texture: Texture | None
+    transmission_texture: Texture | None
+    thickness_texture: Texture | None
     def edit(self, **properties: Any) -> None: ...
+
+class Texture:
+    @property
+    def name(self) -> str: ...
+    @property
+    def texels(self) -> NDArray[np.uint8]: ...
+    @texels.setter
+    def texels(self, value: NDArray[np.uint8]) -> None: ...
 
 class Camera:
     name: str
@@ -147,6 +170,8 @@ class Scene:
     @property
     def materials(self) -> list[Material]: ...
     @property
+    def textures(self) -> list[Texture]: ...
+    @property
     def lamps(self) -> list[Lamp]: ...
     @property
     def cameras(self) -> list[Camera]: ...
@@ -160,13 +185,15 @@ class Scene:
         positions: NDArray[np.float32],
         normals: NDArray[np.float32],
         triangles: NDArray[np.uint32],
+        uvs: NDArray[np.float32] | None = None,
         **properties: Any,
     ) -> Mesh: ...
     def add_material(self, **properties: Any) -> Material: ...
+    def add_texture(self, source: NDArray[np.uint8] | str | PathLike[str], name: str = "") -> Texture: ...
     def add_surface_function(self, **properties: Any) -> SurfaceFunction: ...
     def add_lamp(self, **properties: Any) -> Lamp: ...
     def add_camera(self, **properties: Any) -> Camera: ...
-    def remove(self, thing: Node | Mesh | Material | SurfaceFunction | Lamp | Camera) -> None: ...
+    def remove(self, thing: Node | Mesh | Material | Texture | SurfaceFunction | Lamp | Camera) -> None: ...
     def set_world(
         self,
         color: Sequence[float] = (1.0, 1.0, 1.0),

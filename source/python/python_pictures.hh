@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "python_fields.hh"
+
+/** Textures, and the picture of a scene's world. */
+namespace gnomon::python {
+
+/** \a fields, and one for each of a material's textures. */
+[[nodiscard]] Fields<scene::Material> with_textures(Fields<scene::Material> fields);
+
+/** Mesh::tangents for its uvs, unless its arrays do not fit to each other. */
+void add_tangents(scene::Mesh &mesh);
+
+/** Adds Texture, and what a Scene has of textures and its world. */
+void define_pictures(py::module_ &module, SceneClass &type);
+
+}  // namespace gnomon::python

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <fmt/format.h>
+#include <glm/vec2.hpp>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+/** Arguments of the commands of scripts. All throw std::runtime_error that names a word that is not what is wanted. */
+namespace gnomon::view {
+
+/** Finite, at most 1e12. */
+[[nodiscard]] double number(const std::string &word);
+[[nodiscard]] int integer(const std::string &word, int min, int max);
+/** Counted from 0. */
+[[nodiscard]] glm::ivec2 pixel(const std::string &x, const std::string &y);
+
+/** The index of \a word among \a names. */
+template <std::size_t count>
+int choice(const std::array<const char *, count> &names, const std::string &word, const char *what)
+{
+  const auto found = std::ranges::find(names, word, [](const char *name) { return std::string_view(name); });
+  if (found == names.end()) {
+    throw std::runtime_error(fmt::format("'{}' is no {}", word, what));
+  }
+  return int(found - names.begin());
+}
+
+}  // namespace gnomon::view
