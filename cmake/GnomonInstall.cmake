@@ -54,6 +54,6 @@ if(PROJECT_IS_TOP_LEVEL)
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR})
   set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "cmake, glslang-dev, glslang-tools, libdraco-dev, libegl-dev, libembree-dev, libepoxy-dev, libfmt-dev, \
-libglfw3-dev, libglm-dev, libmeshoptimizer-dev, libsimdjson-dev, libspng-dev, libturbojpeg0-dev, libwebp-dev, libxxhash-dev, spirv-tools")
+libglfw3-dev, libglm-dev, libmeshoptimizer-dev, libsimdjson-dev, libspng-dev, libturbojpeg0-dev, libwebp-dev, libxxhash-dev, pkg-config, python3-numpy, spirv-tools")
   include(CPack)
 endif()
