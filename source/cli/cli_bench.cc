@@ -160,10 +160,11 @@ void bench_lamps(const BenchOptions &options)
       "pixels visit the lamps that can reach them, by lists, and in which they visit all lamps; milliseconds, median\n"
       "[quartiles] of {} interleaved rounds. *: as the engine draws it; /8: its ratio to 8 lamps in the same kind of "
       "hall.\n"
-      "growing: the density of the lamps is that of 128 in 90 m. {}\n\n",
+      "growing: the density of the lamps is that of 128 in 90 m. first: a first frame that "
+      "makes\nall resources (*) but programs, which the process has loaded before. {}\n\n",
       measure::bench_lamp_range_m, options.rounds, device->description());
-  fmt::print("{:<8} {:>6} {:>7} {:>8}  {:<30}  {:<30} {:>10} {:>6}\n", "hall", "lamps", "edge, m", "MiB", "lists",
-             "all lamps", "lists/all", "* /8");
+  fmt::print("{:<8} {:>6} {:>7} {:>8}  {:<30}  {:<30} {:>10} {:>6}  {}\n", "hall", "lamps", "edge, m", "MiB", "lists",
+             "all lamps", "lists/all", "* /8", "first");
   nlohmann::json json = nlohmann::json::array();
   std::vector<double> counts;
   std::vector<double> medians;
@@ -190,9 +191,15 @@ void bench_lamps(const BenchOptions &options)
       out["seconds_of_all"] = to_json(all);
       out["lists_to_all"] = gain;
     }
-    fmt::print("{:<8} {:>6} {:>7.1f} {:>8.1f}  {:<30}  {:<30} {:>10} {:>6.2f}{}\n", row.hall, row.lamp_count,
+    std::string first_text;
+    if (!row.seconds_of_first.empty()) {
+      const measure::Spread first = measure::spread_of(row.seconds_of_first);
+      first_text = to_text(first, 1e-3);
+      out["seconds_of_first"] = to_json(first);
+    }
+    fmt::print("{:<8} {:>6} {:>7.1f} {:>8.1f}  {:<30}  {:<30} {:>10} {:>6.2f}  {}{}\n", row.hall, row.lamp_count,
                row.edge_m, double(row.memory_bytes) / 0x1p20, to_text(lists, 1e-3) + (row.has_lists ? " *" : ""),
-               all_text, gain_text, ratio, row.non_finite_count > 0 ? "  not finite" : "");
+               all_text, gain_text, ratio, first_text, row.non_finite_count > 0 ? "  not finite" : "");
     if (row.hall == "growing" && row.lamp_count <= 1024) {
       counts.push_back(row.lamp_count);
       medians.push_back(measure::spread_of(row.seconds()).median);
@@ -374,6 +381,8 @@ void add_bench(CLI::App &app, Status &status)
   cull->callback([o] { bench_cull(*o); });
   CLI::App *imports = command->add_subcommand("import", "What the import of many nodes costs");
   imports->callback([o] { bench_import(*o); });
+  CLI::App *sync = command->add_subcommand("sync", "What edits of lamps among many triangles cost, without a driver");
+  sync->callback([o] { bench_sync(*o); });
   CLI::App *left_out =
       command->add_subcommand("left-out", "What scenes that lack one thing each cost, beside a full one");
   left_out->add_option("--backend", o->backend, "gl, or null: without a driver")
@@ -401,7 +410,7 @@ void add_bench(CLI::App &app, Status &status)
       ->check(CLI::IsMember({"gl", "null"}));
   add_world_options(*start, o->world);
   start->callback([o] { bench_start(*o); });
-  for (CLI::App *bench : {shadows, record, cull, imports, left_out, lamps, growth, start}) {
+  for (CLI::App *bench : {shadows, record, cull, imports, sync, left_out, lamps, growth, start}) {
     bench->add_option("--rounds", o->rounds, "Measured rounds, after one that warms up")
         ->capture_default_str()
         ->check(CLI::Range(1, 100000));

@@ -45,6 +45,7 @@ void write_json(const std::string &path, const nlohmann::json &json);
 void bench_cull(const BenchOptions &options);
 void bench_import(const BenchOptions &options);
 void bench_record(const BenchOptions &options);
+void bench_sync(const BenchOptions &options);
 void bench_growth(const BenchOptions &options);
 void bench_frames(const BenchOptions &options);
 void bench_memory(const BenchOptions &options);

@@ -69,6 +69,23 @@ void bench_cull(const BenchOptions &options)
   bench_counts(options, "cull", "boxes", {1000, 10000, 100000}, 1e-6, measure::measure_cull);
 }
 
+void bench_sync(const BenchOptions &options)
+{
+  const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  fmt::print(
+      "Syncs and pictures of {} point lamps among {} triangles: milliseconds, median [quartiles] of {} rounds, and the "
+      "ratio to the "
+      "first line.\n{}\n",
+      measure::sync_lamp_count, measure::sync_triangle_count, options.rounds, device->description());
+  const nlohmann::json rows = print_parts(measure::measure_sync(*device, options.rounds), 1e-3);
+  write_json(options.json, {{"program", "gnomon " GNOMON_VERSION},
+                            {"bench", "sync"},
+                            {"rounds", options.rounds},
+                            {"triangles", measure::sync_triangle_count},
+                            {"lamps", measure::sync_lamp_count},
+                            {"rows", rows}});
+}
+
 void bench_import(const BenchOptions &options)
 {
   fmt::print(

@@ -87,6 +87,17 @@ struct PartCost {
  */
 [[nodiscard]] std::vector<PartCost> measure_import(int node_count, int rounds);
 
+/** Size of the scene of measure_sync(). */
+inline constexpr int sync_triangle_count = 80000;
+inline constexpr int sync_lamp_count = 50;
+
+/**
+ * Seconds of syncs and pictures of a scene with sync_lamp_count point lamps among the sync_triangle_count triangles of
+ * one mesh, each of which every lamp reaches: first, and after edits. The baseline reads the triangles once for one
+ * lamp. A first round is not measured.
+ */
+[[nodiscard]] std::vector<PartCost> measure_sync(gpu::Device &device, int rounds);
+
 /** Range of the lamps of measure_lamps(), metres. */
 inline constexpr double bench_lamp_range_m = 12.0;
 
@@ -105,6 +116,8 @@ struct LampsCost {
   std::vector<double> seconds_of_lists{};
   /** The same if each pixel visits all lamps. Empty where light_block does not hold them. */
   std::vector<double> seconds_of_all{};
+  /** The same for a first frame, in which all resources but programs are created. Empty for growing halls. */
+  std::vector<double> seconds_of_first{};
   /** Whether the engine makes lists for this number of lamps. */
   bool has_lists = false;
 

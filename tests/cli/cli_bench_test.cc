@@ -55,6 +55,8 @@ TEST_F(BenchTest, RecordCullAndImportCompareWithABaseline)
   };
   ASSERT_EQ(run("bench record --rounds 2 --json record.json").status, 0);
   check(json::parse(read("record.json"))["rows"], 4);
+  ASSERT_EQ(run("bench sync --rounds 2 --json sync.json").status, 0);
+  check(json::parse(read("sync.json"))["rows"], 5);
   for (const std::string group : {"cull", "import"}) {
     ASSERT_EQ(run("bench " + group + " --rounds 1 --count-max 1000 --json counts.json").status, 0);
     const json counts = json::parse(read("counts.json"))["counts"];
@@ -106,6 +108,7 @@ TEST_F(BenchTest, LampsMeasuresFewAndMany)
     EXPECT_GT(row["seconds_of_lists"]["median"], 0.0) << row;
     EXPECT_EQ(row.contains("seconds_of_all"), row["lamps"] <= 255) << row;
     EXPECT_LT(row["memory_bytes"], 64 << 20) << row;
+    EXPECT_EQ(row.contains("seconds_of_first"), row["hall"] == "90 m") << row;
   }
   EXPECT_EQ(lamps, (std::map<std::string, std::vector<int>>{{"90 m", {8, 32, 128}},
                                                             {"growing", {1, 8, 32, 128, 1024, 10000}}}));
