@@ -86,7 +86,7 @@ struct Settings {
    * with their shadows, up to `emissive_point_max`. 0, and pictures of one sample: emissive surfaces give no light to
    * others.
    */
-  int emissive_point_count = 2;
+  int emissive_point_count = 4;
   /** Measure the time of each step on the device. */
   bool is_timed = false;
   /**
