@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-/** Light of emissive surfaces on other surfaces, in pictures of several samples. \see doc/decisions/0029-light-of-emissive-surfaces.md */
+/** Light that emissive surfaces give to others in pictures of several samples: decision 0029. */
 namespace gnomon::eevee {
 
 /** The emissive surfaces of a scene, relative to RenderScene::origin_ws. */
