@@ -205,7 +205,8 @@ CenterLight center_light(LightData light, int index, const int lights, Surface s
       center.irradiance *= spot_mask(drop, light.spot_drop_outer, light.spot_inv_width);
     }
     if (lights != LIGHTS_WITH_MAPS && light.kind >= LIGHT_RECTANGLE) {
-      center.irradiance *= max(-dot(center.to_light, light.forward_ws), 0.0);
+      float cosine = -dot(center.to_light, light.forward_ws);
+      center.irradiance *= max(cosine, light.kind == LIGHT_SURFACE ? -cosine : 0.0);
     }
   }
 #endif
@@ -249,6 +250,12 @@ vec3 point_radiance(int index, const int lights, MaterialData material, Surface 
     return vec3(0.0);
   }
   float alpha_min = 0.0;
+#if defined(USE_SPECULAR) && defined(USE_PUNCTUAL)
+  if (lights != LIGHTS_WITH_MAPS && light.kind == LIGHT_SURFACE) {
+    // A lobe of the roughness alpha has a solid angle of about 4 π alpha².
+    alpha_min = min(sqrt(0.25 * SURFACE_LOBE_POINTS * light.radius_sq / center.distance_sq), 1.0);
+  }
+#endif
   float points_share = 0.0;
 #if defined(USE_WORLD) && defined(USE_SPECULAR)
   if (lights != LIGHTS_WITH_CUBES && light.kind == LIGHT_WORLD) {

@@ -15,6 +15,13 @@ SHARED_BEGIN
 #define LIGHT_WORLD 4
 #define LIGHT_RECTANGLE 5
 #define LIGHT_ELLIPSE 6
+/** A sampled point of an emissive surface, which emits to both sides. */
+#define LIGHT_SURFACE 7
+/**
+ * A specular lobe is lit by such points if it contains at least this number of them over all samples, if they surround the surface
+ * as densely as around the point.
+ */
+#define SURFACE_LOBE_POINTS 12.0f
 
 /** LightData::shadow_kind. */
 #define SHADOW_NONE 0
@@ -29,13 +36,14 @@ struct LightData {
   /** LIGHT_… */
   int kind;
   /**
-   * Linear RGB. Sun, hemi, world: irradiance, W/m². Point, spot: radiant intensity, W/sr. Rectangle, ellipse: radiant
-   * intensity along forward_ws, W/sr; other directions follow the cosine law.
+   * Linear RGB. Sun, hemi, world: irradiance, W/m². Point, spot: radiant intensity, W/sr. Rectangle, ellipse, surface:
+   * radiant intensity along forward_ws, W/sr; other directions follow the cosine law.
    */
   vec3 color;
   /**
    * Point, spot: square of the radius, m². 0: a point. Sun: minimum alpha² of the specular lobe for its highlight (used
-   * with a world; 0: none). World: solid angle that the direction represents, sr.
+   * with a world; 0: none). World: solid angle that the direction represents, sr. Surface: of the disk that the point
+   * stands for, m².
    */
   float radius_sq;
   /** Unit vector along the axis of the lamp, in the direction of emission. */

@@ -151,10 +151,11 @@ std::string RenderOptions::settings_text() const
       "--shadow {} --shadow-size {} --pcf {} --esm {} --cascades {} --cascade-lambda {} --cascade-range {} --cube-pass "
       "{} "
       "--casters {} --shadow-memory {} --specular {} --world '{}' --world-strength {} --world-rotation {} --background "
-      "'{}' --animation '{}' --fps {} --light-threshold {}",
+      "'{}' --animation '{}' --fps {} --light-threshold {} "
+      "--emissive-points {}",
       shadow, shadow_size, pcf, esm, cascades, cascade_lambda, cascade_range, cube_pass, casters, shadow_memory,
       specular, world.world, world.strength, world.rotation_degrees, background, frames.animation,
-      frames.frames_per_second, light_threshold);
+      frames.frames_per_second, light_threshold, emissive_points);
 }
 
 bool RenderOptions::is_png() const
@@ -212,6 +213,7 @@ eevee::Settings RenderOptions::engine_settings() const
   settings.seed = seed;
   settings.has_multiscatter = specular == "multi";
   settings.light_threshold = light_threshold;
+  settings.emissive_point_count = emissive_points;
   settings.has_cascade_tint = debug_view.kind == DebugView::Kind::Cascades;
   settings.is_timed = !json.empty() || is_explained;
   return settings;
@@ -325,6 +327,11 @@ void add_render_options(CLI::App &command, RenderOptions &options)
                   "Irradiance, W/m2, that may be left out of the light of each point and spot lamp")
       ->capture_default_str()
       ->check(CLI::Range(0.0F, 1e30F));
+  command
+      .add_option("--emissive-points", options.emissive_points,
+                  "Points of emissive surfaces that light other surfaces in each of several samples; 0: none do")
+      ->capture_default_str()
+      ->check(CLI::Range(0, eevee::emissive_point_max));
   command.add_option("--debug", options.debug,
                      "shadow:LAMP[:LAYER]: distances in the layers of a shadow (a cube face, a cascade, octahedral, "
                      "all) instead of the picture; cascades: the picture, tinted by the cascade that a pixel reads");

@@ -45,6 +45,7 @@ struct RenderOptions {
   std::string casters = "all";
   int shadow_memory = 1024;
   float light_threshold = 0.0F;
+  int emissive_points = eevee::Settings().emissive_point_count;
   std::string debug;
   DebugView debug_view;
   std::string aov;

@@ -6,6 +6,7 @@
 #include "internal/reference_bsdf.hh"
 #include "internal/reference_random.hh"
 #include "internal/reference_world.hh"
+#include "scene_emission.hh"
 #include "scene_parallel.hh"
 
 #include <fmt/format.h>
@@ -130,10 +131,13 @@ struct Renderer {
   const DirectLightSettings &settings;
   /** Nothing: the scene has no world, or it is black. */
   std::optional<WorldSampler> world;
+  scene::EmissiveSurfaces emission;
 
   Renderer(const Tracer &tracer_, const CameraRays &rays_, const DirectLightSettings &settings_);
   [[nodiscard]] glm::dvec3 lit_by_world(const Receiver &receiver, const glm::dvec3 &normal, const glm::dvec3 &view,
                                         const Bsdf &bsdf, int sample, std::uint64_t key) const;
+  [[nodiscard]] glm::dvec3 lit_by_surfaces(const Receiver &receiver, const glm::dvec3 &normal, const glm::dvec3 &view,
+                                           const Bsdf &bsdf, int sample, std::uint64_t key) const;
   [[nodiscard]] glm::dvec3 radiance(Ray ray, int sample, std::uint64_t key) const;
   /** From the surface alone, as if it were opaque. \a view: towards the viewer, unit vector. */
   [[nodiscard]] glm::dvec3 radiance_of(const Surface &surface, const glm::dvec3 &view, int sample,
@@ -173,6 +177,9 @@ Renderer::Renderer(const Tracer &tracer_, const CameraRays &rays_, const DirectL
       world.reset();
     }
   }
+  if (scene::has_emission(tracer.scene())) {
+    emission = scene::EmissiveSurfaces(tracer.scene(), tracer.scene().objects());
+  }
 }
 
 /**
@@ -196,6 +203,28 @@ glm::dvec3 Renderer::lit_by_world(const Receiver &receiver, const glm::dvec3 &no
     sum += light_from(lobe_direction(bsdf, normal, view, even_point(sample, mixed(key + 1))));
   }
   return sum;
+}
+
+/** One point of the surfaces that emit light. */
+glm::dvec3 Renderer::lit_by_surfaces(const Receiver &receiver, const glm::dvec3 &normal, const glm::dvec3 &view,
+                                     const Bsdf &bsdf, int sample, std::uint64_t key) const
+{
+  const scene::EmissivePoint point = emission.at(even_point_in_cube(sample, key));
+  const glm::dvec3 to_point = point.position - receiver.position_ws;
+  const double distance_sq = glm::dot(to_point, to_point);
+  if (!(distance_sq > 0.0)) {
+    return glm::dvec3(0.0);
+  }
+  const glm::dvec3 to_light = to_point / std::sqrt(distance_sq);
+  const glm::dvec3 scattered = reflected(bsdf, normal, view, to_light);
+  if (scattered == glm::dvec3(0.0)) {
+    return glm::dvec3(0.0);
+  }
+  // A disk of this area in the place of the point bounds the light near it, and so the noise.
+  constexpr double disk_share = 1.0 / 1024.0;
+  const double form = point.area * std::abs(glm::dot(to_light, point.normal)) /
+                      (distance_sq + disk_share * point.area / std::numbers::pi);
+  return visible_part(tracer, receiver, LightPoint{point.position, false}) * form * scattered * point.radiance;
 }
 
 glm::dvec3 Renderer::radiance(Ray ray, int sample, std::uint64_t key) const
@@ -239,6 +268,9 @@ glm::dvec3 Renderer::radiance_of(const Surface &surface, const glm::dvec3 &view,
   }
   if (world) {
     sum += lit_by_world(receiver, side * surface.shading_normal_ws, view, bsdf, sample, mixed(key + lamps.size()));
+  }
+  if (!emission.empty()) {
+    sum += lit_by_surfaces(receiver, side * surface.shading_normal_ws, view, bsdf, sample, mixed(~key));
   }
   return sum;
 }

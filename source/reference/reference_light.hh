@@ -36,14 +36,15 @@ struct Picture {
 };
 
 /**
- * Renders the view of \a camera with direct light from the lamps and emission of surfaces, as an image of \a size_px.
- * Pixels without a surface are black.
+ * Renders the view of \a camera with direct light from the lamps, the world and surfaces that emit light, as an image
+ * of \a size_px. Pixels without a surface are black.
  *
  * `doc/conventions.md` defines frame, clip distances, pixel filter, units and materials. Each pixel is the weighted
  * mean of all samples within 1.5 pixels of its centre. Normals are interpolated. A lamp behind the plane of the
  * triangle gives no light, even if the interpolated normal faces it. The backs of one-sided materials are invisible
  * to the camera but cast shadows. A blended surface covers what is behind it, and shades light, by its alpha. Hemi
- * lamps, and lamps whose shadow setting is None, cast no shadow.
+ * lamps, and lamps whose shadow setting is None, cast no shadow. Each camera ray takes one point of the surfaces that
+ * emit light; nearer to it than about a hundredth of their size, their light on others is too small.
  *
  * \throws std::invalid_argument for a size or a number of samples below 1.
  */

@@ -7,14 +7,14 @@
 
 namespace gnomon::scene {
 
-namespace {
-
-/** IEC 61966-2-1. */
 float decoded_srgb(float value)
 {
   return value <= 0.04045F ? value / 12.92F : std::pow((value + 0.055F) / 1.055F, 2.4F);
 }
 
+namespace {
+
+/** IEC 61966-2-1. */
 float encoded_srgb(float value)
 {
   return value <= 0.0031308F ? 12.92F * value : 1.055F * std::pow(value, 1.0F / 2.4F) - 0.055F;

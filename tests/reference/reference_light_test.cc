@@ -57,6 +57,31 @@ TEST(DirectLight, LambertianPlaneIsAlbedoOverPiTimesIrradiance)
                albedo * irradiance / std::numbers::pi + glm::dvec3(0, 0, 2), 2e-5);
 }
 
+TEST(DirectLight, EmissiveSurfacesLightOthersOnBothSides)
+{
+  // A square of 1 m², one metre above the ground and one below a ceiling.
+  scene::Scene scene;
+  test::add_material(scene, glm::vec3(0.5F));
+  add_rectangle(scene, {-10, -10}, {10, 10});
+  add_rectangle(scene, {-10, -10}, {10, 10}, glm::translate(glm::mat4(1.0F), {0, 0, 2}));
+  add_rectangle(scene, {-0.5, -0.5}, {0.5, 0.5}, glm::translate(glm::mat4(1.0F), {0, 0, 1}));
+  const auto emitter = test::add_material(scene, glm::vec3(0.0F));
+  scene.edit(emitter, [](scene::Material &material) { material.emissive = {4.0F, 2.0F, 1.0F}; });
+  const std::vector<scene::Object> objects = scene.objects();
+  scene.edit(objects.back().mesh, [&](scene::Mesh &mesh) { mesh.material = emitter; });
+  // The form factor of four rectangles that have a corner above the point: A = B = 1/2 in
+  // (A / √(1 + A²) atan(B / √(1 + A²)) + B / √(1 + B²) atan(A / √(1 + B²))) / 2π.
+  const double a = 0.5 / std::sqrt(1.25);
+  const double form_factor = 4.0 / std::numbers::pi * a * std::atan(a);
+  const glm::dvec3 expected = 0.5 * form_factor * glm::dvec3(4, 2, 1);
+  for (const bool is_ceiling : {false, true}) {
+    const glm::vec3 eye(3.0F, 0.0F, is_ceiling ? 0.5F : 1.5F);
+    const glm::vec3 target(0.0F, 0.0F, is_ceiling ? 2.0F : 0.0F);
+    // 4096 points; the disk that bounds the light near a point takes 3e-4 here.
+    expect_color(seen(scene, test::camera_at(eye, target, narrow), 4096), expected, 1e-3);
+  }
+}
+
 TEST(DirectLight, BlendedSurfacesCoverByTheirAlphaAndShadeByIt)
 {
   // Three panes over a plane, none of them first in the scene by distance, and one between the plane and the lamp
@@ -64,10 +89,11 @@ TEST(DirectLight, BlendedSurfacesCoverByTheirAlphaAndShadeByIt)
   scene::Scene scene;
   const auto floor = test::add_material(scene, glm::vec3(0.5F));
   add_rectangle(scene, {-10, -10}, {10, 10});
-  const auto add_pane = [&](const glm::vec3 &center, const glm::vec3 &emissive, float alpha) {
-    const auto material = test::add_material(scene, glm::vec3(0.0F));
+  const auto add_pane = [&](const glm::vec3 &center, const glm::vec3 &radiance, float alpha) {
+    // Unlit, so that it gives the plane no light.
+    const auto material = test::add_material(scene, radiance);
     scene.edit(material, [&](scene::Material &value) {
-      value.emissive = emissive;
+      value.is_unlit = true;
       value.alpha_mode = scene::AlphaMode::Blend;
       value.alpha = alpha;
     });
@@ -77,9 +103,9 @@ TEST(DirectLight, BlendedSurfacesCoverByTheirAlphaAndShadeByIt)
   add_pane({0, 0, 2}, {1, 0, 0}, 0.25F);
   add_pane({0, 0, 3}, {0, 1, 0}, 0.5F);
   add_pane({0, 0, 1}, {0, 0, 1}, 0.75F);
-  add_pane({0, 0, 2.5F}, {9, 9, 9}, 0.0F);
+  add_pane({0, 0, 2.5F}, {1, 1, 1}, 0.0F);
   // The ray to the lamp does not meet the edge between its triangles.
-  add_pane({0.05F, 1, 1}, {9, 9, 9}, 0.6F);
+  add_pane({0.05F, 1, 1}, {1, 1, 1}, 0.6F);
   ASSERT_TRUE(scene.materials().is_live(floor));
   // The ray to the lamp meets the last pane alone.
   scene::PlacedLamp lamp = lamp_at(LampKind::Point, {0, 4, 4});
@@ -239,7 +265,7 @@ TEST(DirectLight, NormalsAreInterpolatedAndTurnedToTheViewer)
 TEST(DirectLight, BacksOfOneSidedMaterialsAreInvisible)
 {
   scene::Scene scene;
-  test::add_material(scene, glm::vec3(1.0F));
+  test::add_material(scene, glm::vec3(0.0F));
   test::edit_material(scene, [&](scene::Material &material) {
     material.is_double_sided = false;
     material.emissive = glm::vec3(1.0F);

@@ -41,6 +41,10 @@ static void check(const Settings &settings)
   if (!(settings.light_threshold >= 0.0F) || std::isinf(settings.light_threshold)) {
     throw gpu::Error("eevee: light_threshold {} is not a finite number of at least 0", settings.light_threshold);
   }
+  if (settings.emissive_point_count < 0 || settings.emissive_point_count > emissive_point_max) {
+    throw gpu::Error("eevee: emissive_point_count {} is not in [0, {}]", settings.emissive_point_count,
+                     emissive_point_max);
+  }
   if (settings.clustered_lamps_min < 1) {
     throw gpu::Error("eevee: clustered_lamps_min {} is not at least 1", settings.clustered_lamps_min);
   }
@@ -88,8 +92,11 @@ void Engine::make_film(draw::Viewport &viewport)
 /** Update the lights and plan their shadows if their inputs changed. Creates no resources on the device. */
 void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
 {
-  const ShadowsKey key{scene_.lamps_revision(), scene_.objects().revision(), scene_.passes_revision(),
-                       settings_revision_,      shaders_->revision(),        shared.shadows.viewports_revision()};
+  const int emissive_count = settings_.planned_sample_count() > 1 ? settings_.emissive_point_count : 0;
+  shared.emission.update(scene_, emissive_count > 0);
+  const ShadowsKey key{scene_.lamps_revision(),   scene_.objects().revision(), scene_.passes_revision(),
+                       settings_revision_,        shaders_->revision(),        shared.shadows.viewports_revision(),
+                       shared.emission.revision()};
   if (shared.synced == key) {
     return;
   }
@@ -104,11 +111,16 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
   const LampShading shading = settings_.planned_sample_count() > 1 ? LampShading::Point : LampShading::Whole;
   const std::shared_ptr<const render_scene::WorldLight> &world = scene_.world();
   shared.placed.assign(scene_.lamps().begin(), scene_.lamps().end());
-  if (world) {
-    std::ranges::copy(world_lamps(*world, shading), std::back_inserter(shared.placed));
-  }
   for (scene::PlacedLamp &lamp : shared.placed) {
     lower_range(lamp, settings_.light_threshold);
+  }
+  const std::size_t emission_first = shared.placed.size();
+  if (shared.emission.surfaces()) {
+    std::ranges::copy(emission_lamps(emissive_count, scene_.bounds()), std::back_inserter(shared.placed));
+  }
+  const std::size_t world_first = shared.placed.size();
+  if (world) {
+    std::ranges::copy(world_lamps(*world, shading), std::back_inserter(shared.placed));
   }
   const int device_most = device_limits.buffer_texels_max / LIGHT_TEXELS;
   Lamps lamps = make_lamps(shared.placed, shading, std::size_t(std::clamp(device_most, LIGHT_MAX, LIGHT_COUNT_MAX)));
@@ -121,8 +133,9 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
     shared.lamps.features = shared.lamps.features | Feature::LightClusters;
   }
   if (world) {
-    mark_world(shared.lamps, scene_.lamps().size() + world->suns.size());
+    mark_world(shared.lamps, world_first + world->suns.size());
   }
+  mark_emission(shared.lamps, emission_first, world_first);
   ShadowSettings shadow = settings_.shadow;
   // These surfaces receive shadows, and the depths that are read back do not have them.
   shadow.is_fitted_to_depth &= !has_surfaces_without_depth(scene_.scene());
@@ -133,14 +146,16 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
   shared.lamp_points =
       shading == LampShading::Point
           ? LampPoints(shared.placed, shared.lamps, bounds_ws.is_empty() ? glm::vec3(0.0F) : bounds_ws.center(), world,
-                       settings_.planned_sample_count())
+                       settings_.planned_sample_count(), shared.emission.surfaces(), emissive_count)
           : LampPoints();
   shared.is_light_left_out.clear();
   for (int i = 0; i < shared.lamps.light_count(); i++) {
     const std::size_t lamp = shared.lamps.lamp_index[std::size_t(i)];
-    const bool is_lamp = lamp < scene_.lamps().size();
-    const bool is_kept = settings_.light.has(is_lamp ? LightPart::Kind::Lamp : LightPart::Kind::World) &&
-                         (settings_.light.kind != LightPart::Kind::Lamp || settings_.light.lamp == lamp);
+    const LightPart::Kind part = lamp < emission_first ? LightPart::Kind::Lamp
+                                 : lamp < world_first  ? LightPart::Kind::Emission
+                                                       : LightPart::Kind::World;
+    const bool is_kept =
+        settings_.light.has(part) && (settings_.light.kind != LightPart::Kind::Lamp || settings_.light.lamp == lamp);
     shared.is_light_left_out.push_back(!is_kept);
     if (!is_kept) {
       leave_out(shared.lamps.lights[std::size_t(i)]);

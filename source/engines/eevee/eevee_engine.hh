@@ -37,7 +37,7 @@ struct LightPart {
     Lamp,
     /** The world and the background. */
     World,
-    /** Light that surfaces emit, as far as the camera sees it directly. */
+    /** Light that surfaces emit: what the camera sees of it, and what it gives to other surfaces. */
     Emission,
   };
   Kind kind = Kind::All;
@@ -52,6 +52,8 @@ struct LightPart {
 
 /** Number of samples for which pictures without a sample count are approximated. \see Settings::sample_count */
 inline constexpr int open_ended_sample_count = 256;
+/** Most points of emissive surfaces in a sample. \see Settings::emissive_point_count */
+inline constexpr int emissive_point_max = 16;
 
 struct Settings {
   ShadowSettings shadow{};
@@ -79,6 +81,12 @@ struct Settings {
    * white. Otherwise they reflect it once, as glTF's model has it. \see eevee_multiscatter_shared.h
    */
   bool has_multiscatter = false;
+  /**
+   * With several samples, each draws the light that this number of points of emissive surfaces give to other surfaces,
+   * with their shadows, up to `emissive_point_max`. 0, and pictures of one sample: emissive surfaces give no light to
+   * others.
+   */
+  int emissive_point_count = 4;
   /** Measure the time of each step on the device. */
   bool is_timed = false;
   /**

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "eevee_debug.hh"
+#include "eevee_emission.hh"
 #include "eevee_frame.hh"
 #include "eevee_lamp_points.hh"
 #include "eevee_lamps.hh"
@@ -125,6 +126,7 @@ struct ShadowsKey {
   std::uint64_t settings = 0;
   std::uint64_t shaders = 0;
   std::uint64_t viewports = 0;
+  std::uint64_t emission = 0;
 
   bool operator==(const ShadowsKey &) const = default;
 };
@@ -159,7 +161,8 @@ struct SharedData {
                     &objects)
   {
   }
-  /** The lamps of the scene, followed by the lamps of world_lamps. */
+  SceneEmission emission;
+  /** The lamps of the scene, followed by the lamps of emission_lamps and of world_lamps. */
   std::vector<scene::PlacedLamp> placed;
   Lamps lamps;
   /** By index in Lamps::lights: whether the light is not in Settings::light. */

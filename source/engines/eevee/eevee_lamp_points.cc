@@ -17,6 +17,9 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
+/** Most radiant intensity of a point of an emissive surface, W/sr, so that products with it stay finite. */
+constexpr double light_color_max = 1e30;
+
 /** Half the angular diameter of a sun, radians, at most π/2. */
 double half_angle(const scene::Lamp &lamp)
 {
@@ -111,10 +114,12 @@ glm::mat4 point_of(const scene::PlacedLamp &lamp, const glm::vec3 &place, const 
 }
 
 LampPoints::LampPoints(std::span<const scene::PlacedLamp> placed, const Lamps &lamps, const glm::vec3 &toward_ws,
-                       std::shared_ptr<const render_scene::WorldLight> world, int sample_count)
-    : world_(std::move(world)), sample_count_(sample_count), toward_ws_(toward_ws)
+                       std::shared_ptr<const render_scene::WorldLight> world, int sample_count,
+                       std::shared_ptr<const scene::EmissiveSurfaces> emission, int emission_count)
+    : world_(std::move(world)), emission_(std::move(emission)), sample_count_(sample_count), toward_ws_(toward_ws)
 {
   const std::size_t world_first = placed.size() - (world_ ? world_lamps(*world_, LampShading::Point).size() : 0);
+  const std::size_t emission_first = world_first - (emission_ ? std::size_t(emission_count) : 0);
   for (int i = 0; i < lamps.light_count(); i++) {
     const std::size_t index = lamps.lamp_index[std::size_t(i)];
     const scene::PlacedLamp &lamp = placed[index];
@@ -129,6 +134,11 @@ LampPoints::LampPoints(std::span<const scene::PlacedLamp> placed, const Lamps &l
       sized.world = part < sun_count ? &world_->suns[part].directions : &world_->rest_directions;
       sized.direction = part < sun_count ? 0 : std::uint32_t(part - sun_count);
       sized.direction_count = part < sun_count ? 1 : world_direction_count;
+    }
+    else if (index >= emission_first) {
+      sized.is_emission = true;
+      sized.direction = std::uint32_t(index - emission_first);
+      sized.direction_count = std::uint32_t(emission_count);
     }
   }
 }
@@ -145,6 +155,23 @@ LampPoint LampPoints::world_point(const Sized &sized, std::uint32_t index, std::
   // A lobe with the roughness alpha has a solid angle of about 4 π alpha².
   const double alpha_sq = WORLD_SUN_LOBE_DIRECTIONS * sized.world->solid_angle() / (4.0 * pi * sample_count_);
   point.radius_sq = float(sized.direction_count > 1 ? direction.solid_angle / count : alpha_sq);
+  return point;
+}
+
+LampPoint LampPoints::emission_point(const Sized &sized, std::uint32_t index, std::uint32_t seed) const
+{
+  const std::uint32_t stream = shared::mixed_bits(seed) + sized.stream - sized.direction;
+  const scene::EmissivePoint chosen =
+      emission_->at(glm::dvec3(sobol_point(index * sized.direction_count + sized.direction, stream)));
+  const double area = chosen.area / double(sized.direction_count);
+  const glm::dmat3 axes = axes_around(-chosen.normal);
+  const glm::dmat4 world_from_lamp(glm::dvec4(axes[0], 0.0), glm::dvec4(axes[1], 0.0), glm::dvec4(axes[2], 0.0),
+                                   glm::dvec4(chosen.position, 1.0));
+  LampPoint point{.light = sized.light,
+                  .world_from_lamp = glm::mat4(world_from_lamp),
+                  .color = glm::vec3(glm::min(chosen.radiance * area, glm::dvec3(light_color_max)))};
+  // All points of the picture together cover the surfaces by disks.
+  point.radius_sq = float(area / (pi * sample_count_));
   return point;
 }
 
@@ -169,6 +196,10 @@ std::span<const LampPoint> LampPoints::sample(std::uint32_t index, std::uint32_t
   points_.clear();
   sun_points_.clear();
   for (const Sized &sized : sized_) {
+    if (sized.is_emission) {
+      points_.push_back(emission_point(sized, index, seed));
+      continue;
+    }
     if (sized.world) {
       points_.push_back(world_point(sized, index, seed));
       if (sized.world != &world_->rest_directions) {

@@ -5,6 +5,7 @@
 #include "eevee_world_shared.h"
 
 #include "render_world.hh"
+#include "scene_emission.hh"
 
 #include <glm/mat4x4.hpp>
 
@@ -54,9 +55,12 @@ class LampPoints {
    * \a placed: the list from which \a lamps was made. \a toward_ws: centre of the receivers, \see point_of.
    * \a world: the world whose world_lamps are the last entries of \a placed; nullptr if there is none.
    * \a sample_count: samples for each pixel of the picture.
+   * \a emission: the surfaces of which the emission_lamps before these are points; nullptr if there are none.
+   * \a emission_count: number of these lamps.
    */
   LampPoints(std::span<const scene::PlacedLamp> placed, const Lamps &lamps, const glm::vec3 &toward_ws,
-             std::shared_ptr<const render_scene::WorldLight> world = {}, int sample_count = 1);
+             std::shared_ptr<const render_scene::WorldLight> world = {}, int sample_count = 1,
+             std::shared_ptr<const scene::EmissiveSurfaces> emission = {}, int emission_count = 0);
 
   [[nodiscard]] bool empty() const
   {
@@ -95,14 +99,18 @@ class LampPoints {
     float radius_sq = 0.0F;
     /** Distribution of directions, for a lamp of world_lamps; otherwise nullptr. */
     const render_scene::WorldDistribution *world = nullptr;
-    /** Index and number of the lamps that share the distribution. */
+    /** A point of emissive surfaces. */
+    bool is_emission = false;
+    /** Index and number of the lamps that share the distribution of directions or points. */
     std::uint32_t direction = 0;
     std::uint32_t direction_count = 1;
   };
   void add_sun_points(const Sized &sized, std::uint32_t index, std::uint32_t seed);
   [[nodiscard]] LampPoint world_point(const Sized &sized, std::uint32_t index, std::uint32_t seed) const;
+  [[nodiscard]] LampPoint emission_point(const Sized &sized, std::uint32_t index, std::uint32_t seed) const;
 
   std::shared_ptr<const render_scene::WorldLight> world_;
+  std::shared_ptr<const scene::EmissiveSurfaces> emission_;
   std::vector<Sized> sized_;
   std::vector<LampPoint> points_;
   std::vector<shared::WorldSunPoint> sun_points_;

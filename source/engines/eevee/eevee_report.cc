@@ -296,6 +296,14 @@ Report Inspection::report() const
                                         : nothing_seen);
   part("light_texture", bool(shared.light_texture), fmt::format("{} lights", lamps.light_count()),
        has(f, Feature::LightClusters) ? nothing_seen : "few lamps have a range");
+  const bool has_emission = shared.emission.surfaces() != nullptr;
+  part("light of emissive surfaces", has_emission,
+       has_emission ? fmt::format("{} points in each sample, chosen from {} patches", settings.emissive_point_count,
+                                  shared.emission.surfaces()->patch_count())
+                    : "",
+       settings.emissive_point_count == 0     ? "not asked for"
+       : settings.planned_sample_count() == 1 ? "a picture of one sample has none"
+                                              : "no material emits light");
   part("shadow_cubes", bool(shadows.cubes()), fmt::format("{} point lamps or wide spots", shadows.cube_count()),
        has(f, Feature::ShadowCube) ? nothing_seen : no_shadow);
   part("shadow_maps", bool(shadows.maps()), fmt::format("{} suns or spots", shadows.map_count()),

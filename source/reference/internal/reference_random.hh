@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include <cmath>
 #include <cstdint>
@@ -39,6 +40,14 @@ namespace gnomon::reference {
 {
   return {fraction(double(index) * 0.7548776662466927 + fraction(mixed(key))),
           fraction(double(index) * 0.5698402909980532 + fraction(mixed(key + 1)))};
+}
+
+/** The same in the unit cube. */
+[[nodiscard]] inline glm::dvec3 even_point_in_cube(int index, std::uint64_t key)
+{
+  return {fraction(double(index) * 0.8191725133961645 + fraction(mixed(key))),
+          fraction(double(index) * 0.6710436067037893 + fraction(mixed(key + 1))),
+          fraction(double(index) * 0.5497004779019703 + fraction(mixed(key + 2)))};
 }
 
 }  // namespace gnomon::reference

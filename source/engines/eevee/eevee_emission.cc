@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_emission.hh"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace gnomon::eevee {
+
+namespace {
+
+/** Edge of a face of the shadow of a point, texels. Errors of texels average out over the points. */
+constexpr int shadow_size_px = 256;
+/**
+ * Distance from a point up to which nothing blocks its light, fraction of the radius of the scene. The surface around
+ * the point is nearer: by rounding it may seem to be on either side, and would block all light there.
+ */
+constexpr float clear_share = 1e-4F;
+
+}  // namespace
+
+void SceneEmission::update(render_scene::RenderScene &scene, bool is_used)
+{
+  const Key key{scene.objects().revision(), scene.passes_revision(), scene.materials_revision()};
+  if (is_used ? seen_ == key : !seen_) {
+    return;
+  }
+  seen_ = is_used ? std::optional(key) : std::nullopt;
+  const bool had_surfaces = surfaces_ != nullptr;
+  surfaces_.reset();
+  if (is_used && scene::has_emission(scene.scene())) {
+    std::vector<scene::Object> objects = scene.scene().objects();
+    for (scene::Object &object : objects) {
+      object.world_from_object[3] -= glm::dvec4(scene.origin_ws(), 0.0);
+    }
+    auto surfaces = std::make_shared<const scene::EmissiveSurfaces>(scene.scene(), objects);
+    if (!surfaces->empty()) {
+      surfaces_ = std::move(surfaces);
+    }
+  }
+  revision_ += had_surfaces || surfaces_ ? 1 : 0;
+}
+
+std::vector<scene::PlacedLamp> emission_lamps(int count, const scene::Bounds &bounds_ws)
+{
+  std::vector<scene::PlacedLamp> lamps;
+  for (int i = 0; i < count; i++) {
+    scene::PlacedLamp &lamp = lamps.emplace_back();
+    lamp.name = fmt::format("emissive surfaces {}", i + 1);
+    lamp.kind = scene::LampKind::Point;
+    // Any radius, so that has_extent is true and LampPoints samples the lamp.
+    lamp.radius = 1.0F;
+    lamp.shadow.kind = scene::ShadowKind::Hard;
+    lamp.shadow.size = shadow_size_px;
+    lamp.shadow.clip_start = std::max(clear_share * bounds_ws.radius(), 1e-6F);
+    // These lamps have no node. Indices in this range are never used by a pool.
+    lamp.node.index = 0xfffffe00U + std::uint32_t(i);
+  }
+  return lamps;
+}
+
+void mark_emission(Lamps &lamps, std::size_t first, std::size_t end)
+{
+  for (int i = 0; i < lamps.light_count(); i++) {
+    if (lamps.lamp_index[std::size_t(i)] >= first && lamps.lamp_index[std::size_t(i)] < end) {
+      lamps.lights[std::size_t(i)].kind = LIGHT_SURFACE;
+    }
+  }
+}
+
+}  // namespace gnomon::eevee
