@@ -99,6 +99,9 @@ void History::add(Change change)
 {
   changes_.erase(changes_.begin() + std::ptrdiff_t(done_count_), changes_.end());
   changes_.push_back(std::move(change));
+  if (changes_.size() > change_max) {
+    changes_.pop_front();
+  }
   done_count_ = changes_.size();
   is_in_gesture_ = true;
 }

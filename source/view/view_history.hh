@@ -4,6 +4,7 @@
 #include "scene.hh"
 
 #include <concepts>
+#include <deque>
 #include <variant>
 #include <vector>
 
@@ -16,6 +17,9 @@ namespace gnomon::view {
  */
 class History {
  public:
+  /** More are forgotten, the oldest first, so that a long session does not take ever more memory. */
+  static constexpr std::size_t change_max = 1000;
+
   /** Changes a thing by \a change, as scene::Scene::edit, and takes note of it. \throws as that; nothing changes. */
   template <typename T, std::invocable<T &> Change>
   void edit(scene::Scene &scene, scene::Handle<T> thing, Change &&change)
@@ -106,7 +110,7 @@ class History {
   /** A node that was removed has another handle once it is brought back. */
   void rename(scene::Handle<scene::Node> old_node, scene::Handle<scene::Node> node);
 
-  std::vector<Change> changes_;
+  std::deque<Change> changes_;
   /** The others were undone. */
   std::size_t done_count_ = 0;
   bool is_in_gesture_ = false;
