@@ -102,6 +102,15 @@ std::string world_text(const scene::World &world)
                      world.color.r, world.color.g, world.color.b, world.strength, glm::degrees(world.rotation));
 }
 
+/** The world that \a option names: a radiance or the path of a picture. */
+static scene::World world_of(const std::string &option)
+{
+  if (const std::optional<glm::vec3> color = parse_color(option)) {
+    return {.color = *color};
+  }
+  return {.picture = std::make_shared<const scene::WorldPicture>(read_world_picture(option))};
+}
+
 bool light_by_world(scene::Scene &scene, const scene::PlacedCamera &camera, const WorldOptions &options)
 {
   const bool is_default = options.world.empty();
@@ -109,17 +118,11 @@ bool light_by_world(scene::Scene &scene, const scene::PlacedCamera &camera, cons
     scene.set_world(std::nullopt);
     return false;
   }
-  std::optional<scene::World> world = scene.world();
-  const bool is_default_studio = is_default && !world && scene.is_lamp_default;
-  if (options.world == "studio" || is_default_studio) {
-    world = scene::studio_world(camera.world_from_camera);
-  }
-  else if (const std::optional<glm::vec3> color = parse_color(options.world)) {
-    world = scene::World{.color = *color};
-  }
-  else if (!is_default) {
-    world = scene::World{.picture = std::make_shared<const scene::WorldPicture>(read_world_picture(options.world))};
-  }
+  const bool is_default_studio = is_default && !scene.world() && scene.is_lamp_default;
+  std::optional<scene::World> world = options.world == "studio" || is_default_studio
+                                          ? scene::studio_world(camera.world_from_camera)
+                                      : is_default ? scene.world()
+                                                   : world_of(options.world);
   if (!world) {
     return false;
   }
