@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "shadow_octahedral_store.hh"
 
+#include "eevee_lamps.hh"
+
 #include <fmt/ranges.h>
 
 #include <algorithm>
