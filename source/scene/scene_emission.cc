@@ -232,6 +232,37 @@ bool has_emission(const Scene &scene)
   return false;
 }
 
+EmissionState emission_state(const Scene &scene)
+{
+  EmissionState state;
+  if (!has_emission(scene)) {
+    return state;
+  }
+  const Pool<Node> &nodes = scene.nodes();
+  for (const auto &[handle, node] : nodes) {
+    if (node.meshes.empty() || !scene.is_visible(handle)) {
+      continue;
+    }
+    for (const Handle<Mesh> used : node.meshes) {
+      const Mesh *mesh = scene.meshes().find(used);
+      if (!mesh || !may_emit(scene.material_of(*mesh))) {
+        continue;
+      }
+      // What joins these objects has a new revision, and what leaves them changes their number.
+      state.object_count++;
+      state.latest = std::max(
+          {state.latest, nodes.revision(handle, Node::Aspect::Transform), nodes.revision(handle, Node::Aspect::Content),
+           nodes.revision(handle, Node::Aspect::Visibility), scene.meshes().revision(used, Mesh::Aspect::Shape),
+           scene.meshes().revision(used, Mesh::Aspect::Material),
+           scene.materials().revision(mesh->material, Material::Aspect::Surface),
+           scene.materials().revision(mesh->material, Material::Aspect::Coverage),
+           scene.materials().revision(mesh->material, Material::Aspect::Textures)});
+    }
+  }
+  state.latest = std::max({state.latest, scene.textures().latest(), scene.images().latest(Image::Aspect::Content)});
+  return state;
+}
+
 EmissiveSurfaces::EmissiveSurfaces(const Scene &scene, std::span<const Object> objects)
 {
   ImageCache images(scene);

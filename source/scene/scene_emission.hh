@@ -74,4 +74,17 @@ class EmissiveSurfaces {
 /** Whether a material of \a scene emits light that EmissiveSurfaces may hold. */
 [[nodiscard]] bool has_emission(const Scene &scene);
 
+/** Input of EmissiveSurfaces. If it is equal before and after edits of a scene, so are the surfaces of its objects. */
+struct EmissionState {
+  /** Visible objects with an emissive material. */
+  std::size_t object_count = 0;
+  /** Last edit of their nodes, meshes and materials, or of any texture or image. */
+  Revision latest = 0;
+
+  bool operator==(const EmissionState &) const = default;
+};
+
+/** Linear in the number of nodes if has_emission, but far cheaper than EmissiveSurfaces. */
+[[nodiscard]] EmissionState emission_state(const Scene &scene);
+
 }  // namespace gnomon::scene

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "scene_emission.hh"
+#include "scene_animation.hh"
 
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 namespace gnomon::scene {
 namespace {
@@ -142,6 +144,86 @@ TEST_F(EmissiveSurfacesTest, PatchesAreBoundedAndFinite)
     EXPECT_TRUE(std::isfinite(point.area) && point.area > 0.0);
     EXPECT_TRUE(std::isfinite(float(point.radiance.r)));
   });
+}
+
+TEST_F(EmissiveSurfacesTest, TheStateChangesWithWhatEmits)
+{
+  EXPECT_EQ(emission_state(scene), EmissionState());
+  material.emissive_texture = image(1, {255, 255, 255, 255});
+  surfaces();
+  const auto emitter = scene.nodes().first();
+  const auto emissive = scene.materials().first();
+  const auto emissive_mesh = scene.meshes().first();
+  const auto black = scene.add(Material());
+  mesh.material = black;
+  const auto other_mesh = scene.add(mesh);
+  Node node;
+  node.meshes = {other_mesh};
+  const auto other = scene.add(node);
+  const auto parent = scene.add(Node());
+
+  EmissionState state = emission_state(scene);
+  EXPECT_EQ(state.object_count, 1U);
+  const auto is_changed = [&] {
+    const EmissionState before = std::exchange(state, emission_state(scene));
+    return before != state;
+  };
+  scene.set_transform(other, glm::translate(glm::dmat4(1.0), {1, 2, 3}));
+  scene.edit(other_mesh, [](Mesh &value) { value.positions[0].x -= 1.0F; });
+  scene.edit(black, [](Material &value) { value.base_color = glm::vec3(0.5F); });
+  scene.edit(other, [](Node &value) { value.is_visible = false; });
+  scene.edit(other, [](Node &value) { value.is_visible = true; });
+  EXPECT_FALSE(is_changed());
+
+  scene.set_transform(emitter, glm::translate(glm::dmat4(1.0), {1, 2, 3}));
+  EXPECT_TRUE(is_changed());
+  scene.set_parent(emitter, parent);
+  is_changed();
+  scene.set_transform(parent, glm::translate(glm::dmat4(1.0), {1, 2, 3}));
+  EXPECT_TRUE(is_changed());
+  scene.edit(emissive_mesh, [](Mesh &value) { value.positions[0].x -= 1.0F; });
+  EXPECT_TRUE(is_changed());
+  scene.edit(emissive, [](Material &value) { value.emissive *= 2.0F; });
+  EXPECT_TRUE(is_changed());
+  scene.edit(emissive, [](Material &value) { value.alpha_mode = AlphaMode::Mask; });
+  EXPECT_TRUE(is_changed());
+  scene.edit(emissive, [](Material &value) { value.emissive_texture.offset.x = 0.5F; });
+  EXPECT_TRUE(is_changed());
+  scene.edit(scene.textures().first(), [](Texture &value) { value.wrap_u = TextureWrap::ClampToEdge; });
+  EXPECT_TRUE(is_changed());
+  scene.edit(scene.images().first(), [](Image &value) { value.texels[0] = 0; });
+  EXPECT_TRUE(is_changed());
+  // One object leaves and another joins.
+  scene.edit(emissive_mesh, [&](Mesh &value) { value.material = black; });
+  scene.edit(other_mesh, [&](Mesh &value) { value.material = emissive; });
+  EXPECT_TRUE(is_changed());
+  EXPECT_EQ(state.object_count, 1U);
+  scene.edit(other, [](Node &value) { value.is_visible = false; });
+  EXPECT_TRUE(is_changed());
+  scene.edit(other, [](Node &value) { value.is_visible = true; });
+  EXPECT_TRUE(is_changed());
+  scene.remove(emissive);
+  EXPECT_TRUE(is_changed());
+  EXPECT_EQ(state, EmissionState());
+}
+
+TEST_F(EmissiveSurfacesTest, DeformedMeshesEmitFromTheirPose)
+{
+  surfaces();
+  const auto node = scene.nodes().first();
+  const auto deformed = scene.meshes().first();
+  const EmissionState rest = emission_state(scene);
+  DeformedMesh shape;
+  shape.mesh = deformed;
+  shape.node = node;
+  shape.positions = mesh.positions;
+  shape.normals = mesh.normals;
+  shape.targets = {{std::vector<glm::vec3>(4, {0, 0, 5}), {}, {}}};
+  shape.weights = {1.0};
+  scene.deformed_meshes.push_back(shape);
+  deform_meshes(scene);
+  EXPECT_NE(emission_state(scene), rest);
+  EXPECT_NEAR(EmissiveSurfaces(scene, scene.objects()).at({0.5, 0.5, 0.5}).position.z, 5.0, 1e-6);
 }
 
 }  // namespace

@@ -19,16 +19,22 @@ constexpr float clear_share = 1e-4F;
 
 }  // namespace
 
-void SceneEmission::update(render_scene::RenderScene &scene, bool is_used)
+void SceneEmission::update(const render_scene::RenderScene &scene, bool is_used)
 {
-  const Key key{scene.objects().revision(), scene.passes_revision(), scene.materials_revision()};
-  if (is_used ? seen_ == key : !seen_) {
+  const scene::Revision edit = scene.scene().revision();
+  if (is_used ? seen_ && seen_edit_ == edit && seen_->origin_ws == scene.origin_ws() : !seen_) {
     return;
   }
-  seen_ = is_used ? std::optional(key) : std::nullopt;
+  seen_edit_ = edit;
+  const std::optional<Key> key =
+      is_used ? std::optional(Key{scene::emission_state(scene.scene()), scene.origin_ws()}) : std::nullopt;
+  if (seen_ == key) {
+    return;
+  }
+  seen_ = key;
   const bool had_surfaces = surfaces_ != nullptr;
   surfaces_.reset();
-  if (is_used && scene::has_emission(scene.scene())) {
+  if (key && key->state.object_count > 0) {
     std::vector<scene::Object> objects = scene.scene().objects();
     for (scene::Object &object : objects) {
       object.world_from_object[3] -= glm::dvec4(scene.origin_ws(), 0.0);

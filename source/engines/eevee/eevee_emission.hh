@@ -16,8 +16,8 @@ namespace gnomon::eevee {
 /** The emissive surfaces of a scene, relative to RenderScene::origin_ws. */
 class SceneEmission {
  public:
-  /** Follow \a scene. \a is_used: false frees the surfaces. Does nothing if no input has changed. */
-  void update(render_scene::RenderScene &scene, bool is_used);
+  /** Follow \a scene. \a is_used: false frees the surfaces. Keeps them while nothing that emits light has changed. */
+  void update(const render_scene::RenderScene &scene, bool is_used);
   /** nullptr if they are not used, or there are none. */
   [[nodiscard]] const std::shared_ptr<const scene::EmissiveSurfaces> &surfaces() const
   {
@@ -31,13 +31,15 @@ class SceneEmission {
 
  private:
   struct Key {
-    std::uint64_t objects = 0;
-    std::uint64_t passes = 0;
-    std::uint64_t materials = 0;
+    scene::EmissionState state;
+    glm::dvec3 origin_ws{0.0};
 
     bool operator==(const Key &) const = default;
   };
+  /** Nothing: not used. */
   std::optional<Key> seen_;
+  /** Scene::revision of the last update. */
+  scene::Revision seen_edit_ = 0;
   std::shared_ptr<const scene::EmissiveSurfaces> surfaces_;
   std::uint64_t revision_ = 0;
 };

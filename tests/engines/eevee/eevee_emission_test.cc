@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What the light of emissive surfaces creates and runs, by the backend's names.
+#include "eevee_emission.hh"
 #include "eevee_test_scene.hh"
+
+#include <glm/gtc/matrix_transform.hpp>
 
 #include <gtest/gtest.h>
 
@@ -8,6 +11,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 
 namespace gnomon::eevee {
 namespace {
@@ -42,6 +46,44 @@ TEST(Emission, WithoutPointsIsThatOfASceneWithoutEmission)
   const std::set<std::string> all = names_of(bright, {.sample_count = 4});
   EXPECT_NE(all, names_of(black, {.sample_count = 4}));
   EXPECT_TRUE(std::ranges::any_of(all, [](const std::string &name) { return name.starts_with("shadow_cubes"); }));
+}
+
+TEST(Emission, TheTableIsMadeAgainOnlyForWhatEmits)
+{
+  scene::Scene scene;
+  const auto dark = test::add_material(scene, glm::vec3(1.0F));
+  const auto bright = test::add_material(scene, glm::vec3(1.0F));
+  scene.edit(bright, [&](scene::Material &value) { value.emissive = glm::vec3(2.0F); });
+  const auto floor = test::add_object(scene, test::add_square_mesh(scene, dark), glm::dmat4(1.0));
+  const auto emitter = test::add_object(scene, test::add_square_mesh(scene, bright), glm::dmat4(1.0));
+  const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  render_scene::RenderScene rendered(*device, scene);
+  SceneEmission emission;
+  std::uint64_t revision = 0;
+  const auto is_made_again = [&] {
+    rendered.update();
+    emission.update(rendered, true);
+    const std::uint64_t before = std::exchange(revision, emission.revision());
+    return before != revision;
+  };
+  const auto place = [](double x) { return glm::translate(glm::dmat4(1.0), {x, 0, 0}); };
+  EXPECT_TRUE(is_made_again());
+  EXPECT_FALSE(is_made_again());
+  const auto surfaces = emission.surfaces();
+  scene.set_transform(floor, place(1.0));
+  EXPECT_FALSE(is_made_again());
+  EXPECT_EQ(emission.surfaces(), surfaces);
+  scene.set_transform(emitter, place(1.0));
+  EXPECT_TRUE(is_made_again());
+  const glm::dvec3 before = emission.surfaces()->at(glm::dvec3(0.5)).position;
+  rendered.set_origin({1024.0, 0.0, 0.0});
+  EXPECT_TRUE(is_made_again());
+  EXPECT_NEAR(emission.surfaces()->at(glm::dvec3(0.5)).position.x, before.x - 1024.0, 1e-9);
+  scene.remove(emitter);
+  EXPECT_TRUE(is_made_again());
+  EXPECT_EQ(emission.surfaces(), nullptr);
+  scene.set_transform(floor, place(2.0));
+  EXPECT_FALSE(is_made_again());
 }
 
 TEST(Emission, ChecksTheNumberOfPoints)
