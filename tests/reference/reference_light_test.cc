@@ -3,6 +3,8 @@
 #include "reference_test_scene.hh"
 #include "reference_visibility.hh"
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -80,6 +82,28 @@ TEST(DirectLight, EmissiveSurfacesLightOthersOnBothSides)
     // 4096 points; the disk that bounds the light near a point takes 3e-4 here.
     expect_color(seen(scene, test::camera_at(eye, target, narrow), 4096), expected, 1e-3);
   }
+}
+
+TEST(DirectLight, EmissiveSurfacesNearTheReceiverAreBoundedByDisks)
+{
+  // Disks of 1/1024 of 1 m², of the radius r. At the height h = r above an endless surface, the irradiance of disks
+  // that are turned to the receiver is π radiance (h / r)² log(1 + (r / h)²); 1 - log 2 of the light is left out.
+  const double height = std::sqrt(1.0 / (1024.0 * std::numbers::pi));
+  scene::Scene scene;
+  test::add_material(scene, glm::vec3(0.5F));
+  add_rectangle(scene, {-10, -10}, {10, 10});
+  // One-sided, it is not seen from above.
+  const glm::mat4 turned = glm::rotate(glm::mat4(1.0F), float(std::numbers::pi), {1, 0, 0});
+  add_rectangle(scene, {-0.5, -0.5}, {0.5, 0.5}, glm::translate(glm::mat4(1.0F), {0, 0, float(height)}) * turned);
+  const auto emitter = test::add_material(scene, glm::vec3(0.0F));
+  scene.edit(emitter, [](scene::Material &material) {
+    material.emissive = {4.0F, 2.0F, 1.0F};
+    material.is_double_sided = false;
+  });
+  scene.edit(scene.objects().back().mesh, [&](scene::Mesh &mesh) { mesh.material = emitter; });
+  // 16384 points, of which about 50 are within 2 r of the pixel.
+  expect_color(seen(scene, test::camera_at({0.1F, 0.05F, 3}, {0.1F, 0.05F, 0}, narrow), 16384),
+               0.5 * std::numbers::ln2 * glm::dvec3(4, 2, 1), 0.05);
 }
 
 TEST(DirectLight, BlendedSurfacesCoverByTheirAlphaAndShadeByIt)

@@ -161,6 +161,8 @@ TEST_F(EmissiveSurfacesTest, TheStateChangesWithWhatEmits)
   node.meshes = {other_mesh};
   const auto other = scene.add(node);
   const auto parent = scene.add(Node());
+  node.is_visible = false;
+  const auto twin = scene.add(node);
 
   EmissionState state = emission_state(scene);
   EXPECT_EQ(state.object_count, 1U);
@@ -202,6 +204,11 @@ TEST_F(EmissiveSurfacesTest, TheStateChangesWithWhatEmits)
   EXPECT_TRUE(is_changed());
   scene.edit(other, [](Node &value) { value.is_visible = true; });
   EXPECT_TRUE(is_changed());
+  // One is hidden and an older one is shown.
+  scene.edit(other, [](Node &value) { value.is_visible = false; });
+  scene.edit(twin, [](Node &value) { value.is_visible = true; });
+  EXPECT_TRUE(is_changed());
+  EXPECT_EQ(state.object_count, 1U);
   scene.remove(emissive);
   EXPECT_TRUE(is_changed());
   EXPECT_EQ(state, EmissionState());

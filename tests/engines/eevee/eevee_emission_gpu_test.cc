@@ -96,6 +96,53 @@ TEST_F(EmissionTest, OccludersGiveShadow)
   EXPECT_NEAR(double(renderer.picture(camera).middle().r) / (radiance.r * half / pi), 1.0, 0.01);
 }
 
+TEST_F(EmissionTest, CastersCloseToTheSurfaceBlockItsLight)
+{
+  // 20 mm from the square, 0.7 thousandths of the scene's radius; from the middle of the floor it hides the square.
+  const auto black = test::add_material(scene, glm::vec3(0.0F));
+  test::add_object(scene, test::add_square_mesh(scene, black),
+                   glm::scale(glm::translate(glm::dmat4(1.0), {0, 0, 0.98}), glm::dvec3(0.6)));
+  EXPECT_EQ(seen(0.0, false, {.sample_count = 16}), glm::vec3(0.0F));
+  EXPECT_GT(seen(0.0, true, {.sample_count = 16}).r, 0.1F);
+}
+
+TEST_F(EmissionTest, LightNearTheSurfaceIsThatOfDisks)
+{
+  // 128 disks of a radius r in all. At the height h = r above an endless surface, the irradiance of disks that are
+  // turned to the receiver is π radiance (h / r)² log(1 + (r / h)²). One-sided, the square is not drawn from above.
+  const double height = std::sqrt(1.0 / (128.0 * pi));
+  scene.edit(emitter, [](scene::Material &material) { material.is_double_sided = false; });
+  scene.set_transform(square, glm::scale(glm::rotate(glm::translate(glm::dmat4(1.0), {0, 0, height}), pi, {1, 0, 0}),
+                                         glm::dvec3(half_edge)));
+  test::Renderer renderer(*device, scene, {64, 64}, {.sample_count = 32});
+  // About half a metre of the floor, over which the pattern of the points averages out.
+  const test::Picture picture = renderer.picture(test::camera_at({0.01F, 0, 1.5F}, {0, 0, 0}, 0.35F));
+  double mean = 0.0;
+  for (const glm::vec4 &pixel : picture.pixels) {
+    mean += double(pixel.r) / double(picture.pixels.size());
+    // The most that all disks together can give.
+    EXPECT_LE(pixel.r, 128.0F * radiance.r);
+  }
+  EXPECT_NEAR(mean, radiance.r * std::numbers::ln2, 0.03);
+}
+
+TEST_F(EmissionTest, MirrorsReflectTheSurfaceAndNotThePoints)
+{
+  const auto metal = test::add_material(scene, glm::vec3(1.0F));
+  scene.edit(metal, [](scene::Material &material) {
+    material.metallic = 1.0F;
+    material.roughness = 0.0F;
+  });
+  test::add_object(scene, test::add_square_mesh(scene, metal), glm::translate(glm::dmat4(1.0), {0, 0, 0.1}));
+  test::Renderer renderer(*device, scene, {8, 8}, {.sample_count = 64});
+  // Around the middle of the square's reflection.
+  const test::Picture picture = renderer.picture(test::camera_at({1.0F, 0.0F, 1.1F}, {0.5F, 0.0F, 0.1F}, 0.1F));
+  for (const glm::vec4 &pixel : picture.pixels) {
+    // Lobes of 12 of the 256 points. Without the widening, most pixels are nearly black and some above 10.
+    EXPECT_NEAR(pixel.r, radiance.r, 0.2);
+  }
+}
+
 TEST_F(EmissionTest, FollowsTheMaterialAndTheObject)
 {
   test::Renderer renderer(*device, scene, {3, 3}, {.sample_count = 64});
