@@ -63,7 +63,8 @@ class Gltf:
 
     def grid(self, across, along, place, material=0):
         """
-        Adds a mesh: place(u, v) gives position and normal for u and v from 0 to 1, which are its texture coordinates. Fronts are on the side of the normals.
+        Adds a mesh: place(u, v) gives position and normal for u and v from 0 to 1, which are its texture coordinates. Fronts are
+        on the side of the normals.
         Returns its primitive and its rows.
         """
         rows = [place(i / across, j / along) for j in range(along + 1) for i in range(across + 1)]
@@ -76,7 +77,8 @@ class Gltf:
         self.json["meshes"].append({"primitives": [{
             "attributes": {"POSITION": self.accessor([row[0] for row in rows], "VEC3"),
                            "NORMAL": self.accessor([row[1] for row in rows], "VEC3"),
-                           "TEXCOORD_0": self.accessor([[i / across, j / along] for j in range(along + 1) for i in range(across + 1)],
+                           "TEXCOORD_0": self.accessor([[i / across, j / along] for j in range(along + 1)
+                                                        for i in range(across + 1)],
                                                        "VEC2")},
             "indices": self.accessor([[index] for index in indices], "SCALAR", "I", 5125), "material": material}]})
         return self.json["meshes"][-1]["primitives"][0], rows
