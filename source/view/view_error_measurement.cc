@@ -17,7 +17,7 @@ namespace {
 void lower_priority()
 {
 #ifdef __linux__
-  // POSIX has one value for a process, Linux one for each thread. It is as good without, so that no failure matters.
+  // POSIX has one value for a process, Linux one for each thread. A failure only leaves the priority as it is.
   constexpr int lowest = 19;
   setpriority(PRIO_PROCESS, 0, lowest);
 #endif
