@@ -127,8 +127,8 @@ ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, ve
   vec4 crop = unpackUnorm4x8(cube.crop);
   float uv_scale = 0.5 * cube_uv_scale(size);
   vec2 extent = crop.zw - crop.xy;
-  float per_z = 1.0 / p.z;
-  vec2 uv = (p.xy * (per_z * uv_scale) + 0.5 - crop.xy) / extent;
+  float per_z = 1.0 / max(p.z, 1e-30);
+  vec2 uv = (p.xy * (per_z * uv_scale) + 0.5 - crop.xy) / max(extent, vec2(1.0 / 255.0));
   // A plane n · p = c has 1 / z = (n.x · x/z + n.y · y/z + n.z) / c.
   vec3 n = cube_face_project(face, surface.geometric_normal_ws);
   float per_metre = slope_quotient(cube.near, dot(surface.geometric_normal_ws, from_light));
