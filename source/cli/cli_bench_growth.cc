@@ -10,9 +10,7 @@ namespace gnomon::cli {
 
 void bench_growth(const BenchOptions &options)
 {
-  const std::unique_ptr<gpu::Device> device =
-      options.backend == "gl" ? gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()})
-                              : nullptr;
+  const std::unique_ptr<gpu::Device> device = options.backend == "gl" ? bench_device(options) : nullptr;
   fmt::print(
       "Times of growing counts: milliseconds, median [quartiles] of {} rounds. Objects and casters: CPU time without "
       "a\n"

@@ -76,7 +76,7 @@ template <typename T>
   return fmt::format("{} '{}'", T::kind_name, value.name);
 }
 
-/** Its image has the name. */
+/** A texture has no name of its own. */
 [[nodiscard]] inline std::string label_of(const scene::Texture & /*value*/)
 {
   return "texture";

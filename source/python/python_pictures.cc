@@ -20,7 +20,7 @@ using scene::Image;
 using scene::Material;
 using scene::Texture;
 
-/** What an edit may hold. A file's header can state any size. */
+/** Largest width and height of an image, texels. The header of a damaged file may state any size. */
 constexpr std::uint32_t length_max = 32768;
 
 /** The first row is the top of the image. \throws py::type_error; py::value_error */
@@ -129,7 +129,7 @@ void add_tangents(scene::Mesh &mesh)
 {
   const bool is_whole = mesh.uvs.size() == mesh.positions.size() && mesh.normals.size() == mesh.positions.size() &&
                         std::ranges::all_of(mesh.indices, [&](auto index) { return index < mesh.positions.size(); });
-  // What is not is refused when it is added.
+  // Scene::add refuses a mesh whose arrays have different lengths.
   if (is_whole) {
     scene::make_tangents(mesh, {});
   }

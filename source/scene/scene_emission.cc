@@ -44,7 +44,7 @@ std::uint32_t wrapped(double place, std::uint32_t size, TextureWrap wrap)
   return std::uint32_t(std::clamp(texel, 0.0, count - 1.0));
 }
 
-/** Images in a bounded size, by image and encoding. */
+/** Images of colours, in a bounded size. */
 class ImageCache {
  public:
   explicit ImageCache(const Scene &scene) : scene_(scene)
@@ -53,15 +53,15 @@ class ImageCache {
       decoded_[i] = decoded_srgb(float(i) / 255.0F);
     }
   }
-  const Image &get(Handle<Image> handle, bool is_color)
+  const Image &get(Handle<Image> handle)
   {
     const Image &image = scene_.images()[handle];
     if (std::max(image.width, image.height) <= image_size_max) {
       return image;
     }
-    const auto [found, is_new] = reduced_.try_emplace({handle, is_color});
+    const auto [found, is_new] = reduced_.try_emplace(handle);
     if (is_new) {
-      found->second = reduced(image, image_size_max, is_color);
+      found->second = reduced(image, image_size_max, true);
     }
     return found->second;
   }
@@ -73,18 +73,18 @@ class ImageCache {
  private:
   const Scene &scene_;
   std::array<float, 256> decoded_{};
-  std::map<std::pair<Handle<Image>, bool>, Image> reduced_;
+  std::map<Handle<Image>, Image> reduced_;
 };
 
 /** A texture of a material on a mesh, by barycentric coordinates of a triangle. */
 class SlotLookup {
  public:
-  SlotLookup(const Scene &scene, const Mesh &mesh, const TextureSlot &slot, bool is_color, ImageCache &images)
+  SlotLookup(const Scene &scene, const Mesh &mesh, const TextureSlot &slot, ImageCache &images)
       : uvs_(mesh.uv_set(slot.uv_set)), uv_from_mesh_(slot.uv_from_mesh()), images_(images)
   {
     texture_ = scene.textures().find(slot.texture);
     if (texture_ && scene.images().find(texture_->image) && !uvs_.empty()) {
-      image_ = &images.get(texture_->image, is_color);
+      image_ = &images.get(texture_->image);
     }
   }
   [[nodiscard]] bool has_image() const
@@ -277,8 +277,8 @@ EmissiveSurfaces::EmissiveSurfaces(const Scene &scene, std::span<const Object> o
     if (mesh.topology != Topology::Triangles || !may_emit(material)) {
       continue;
     }
-    Emitter emitter{object, mesh, material, SlotLookup(scene, mesh, material.emissive_texture, true, images),
-                    SlotLookup(scene, mesh, material.base_color_texture, true, images)};
+    Emitter emitter{object, mesh, material, SlotLookup(scene, mesh, material.emissive_texture, images),
+                    SlotLookup(scene, mesh, material.base_color_texture, images)};
     // As in pictures, a surface whose emission texture is missing does not emit.
     if (material.emissive_texture && !emitter.emission.has_image()) {
       continue;

@@ -146,7 +146,7 @@ void ErrorPanel::clear()
 std::string ErrorPanel::take()
 {
   const std::unique_ptr<ErrorMeasurement> ended = std::move(measurement_);
-  // What has ended nonetheless may be of a document that is closed.
+  // A cancelled measurement may belong to a document that is closed. Its result is not shown, even if it is complete.
   if (ended->is_cancelled()) {
     throw measure::Cancelled();
   }

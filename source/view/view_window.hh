@@ -75,7 +75,7 @@ class Window {
    * the button is released. Pixels from the upper left corner.
    */
   void drag_pointer(glm::ivec2 from_px, glm::ivec2 to_px);
-  /** That this takes. */
+  /** Number of frames that drag_pointer takes. */
   static constexpr int drag_frames = 5;
 
   /** Files that were dropped on the window. */
@@ -103,7 +103,7 @@ class Window {
   glm::ivec2 lost_size_px_{0};
   std::vector<KeyPress> keys_;
   std::vector<std::filesystem::path> dropped_;
-  /** Of drag_pointer, the last first. */
+  /** States of the pointer that drag_pointer still has to show; the last element is the next. */
   std::vector<Pointer> pointers_;
   std::vector<std::string> driver_messages_;
 };

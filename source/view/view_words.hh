@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-/** Arguments of the commands of scripts. All throw std::runtime_error that names a word that is not what is wanted. */
+/** Arguments of the commands of scripts. All throw std::runtime_error, which names the invalid word. */
 namespace gnomon::view {
 
 /** Finite, at most 1e12. */
