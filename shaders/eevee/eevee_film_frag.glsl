@@ -17,16 +17,33 @@ PUSH_CONSTANT_LAYOUT uniform push_constant_block
 
 layout(location = 0) out vec4 sum;
 
+vec4 radiance_at(ivec2 pixel)
+{
+  // Pixels at the edge are repeated where the device has no room for a guard band.
+  return texelFetch(radiance_texture, clamp(pixel, ivec2(0), textureSize(radiance_texture, 0) - 1), 0);
+}
+
 void main()
 {
+  // The four pixels of a quad need 16 texels together. Each pixel fetches its own texel and the three on the outer side
+  // of the quad, instead of nine. The differences within the quad give the other five.
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  ivec2 last = textureSize(radiance_texture, 0) - 1;
-  sum = vec4(0.0);
-  for (int y = 0; y < 3; y++) {
-    for (int x = 0; x < 3; x++) {
-      // Pixels at the edge are repeated where the device has no room for a guard band.
-      ivec2 neighbour = clamp(radiance_origin_px + pixel + ivec2(x, y) - 1, ivec2(0), last);
-      sum += texelFetch(radiance_texture, neighbour, 0) * (column_weights[x] * row_weights[y]);
-    }
-  }
+  bvec2 is_odd = bvec2(pixel & 1);
+  ivec2 outward = 2 * (pixel & 1) - 1;
+  vec2 first_weights = vec2(column_weights.x, row_weights.x);
+  vec2 last_weights = vec2(column_weights.z, row_weights.z);
+  vec2 outer_weights = mix(first_weights, last_weights, is_odd);
+  vec2 inner_weights = mix(last_weights, first_weights, is_odd);
+  pixel += radiance_origin_px;
+  vec4 own = radiance_at(pixel);
+  vec4 outer = radiance_at(pixel + ivec2(outward.x, 0));
+  vec4 inner = own - outward.x * dFdxFine(own);
+  // Columns, of this row and the outer one.
+  vec4 own_column = own * row_weights.y + radiance_at(pixel + ivec2(0, outward.y)) * outer_weights.y;
+  vec4 outer_column = outer * row_weights.y + radiance_at(pixel + outward) * outer_weights.y;
+  vec4 inner_column = own_column - outward.x * dFdxFine(own_column);
+  sum = outer_column * outer_weights.x + own_column * column_weights.y + inner_column * inner_weights.x;
+  vec4 own_row = outer * outer_weights.x + own * column_weights.y + inner * inner_weights.x;
+  vec4 inner_row = own_row - outward.y * dFdyFine(own_row);
+  sum += inner_row * inner_weights.y;
 }
