@@ -59,19 +59,9 @@ std::vector<scene::PlacedLamp> emission_lamps(int count, const scene::Bounds &bo
     lamp.shadow.kind = scene::ShadowKind::Hard;
     lamp.shadow.size = shadow_size_px;
     lamp.shadow.clip_start = std::max(clear_share * bounds_ws.radius(), 1e-6F);
-    // These lamps have no node. Indices in this range are never used by a pool.
-    lamp.node.index = 0xfffffe00U + std::uint32_t(i);
+    lamp.node.index = emission_node_first + std::uint32_t(i);
   }
   return lamps;
-}
-
-void mark_emission(Lamps &lamps, std::size_t first, std::size_t end)
-{
-  for (int i = 0; i < lamps.light_count(); i++) {
-    if (lamps.lamp_index[std::size_t(i)] >= first && lamps.lamp_index[std::size_t(i)] < end) {
-      lamps.lights[std::size_t(i)].kind = LIGHT_SURFACE;
-    }
-  }
 }
 
 }  // namespace gnomon::eevee

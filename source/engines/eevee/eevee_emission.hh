@@ -50,7 +50,4 @@ class SceneEmission {
  */
 [[nodiscard]] std::vector<scene::PlacedLamp> emission_lamps(int count, const scene::Bounds &bounds_ws);
 
-/** Set LIGHT_SURFACE for lamps whose index is at least \a first and below \a end. */
-void mark_emission(Lamps &lamps, std::size_t first, std::size_t end);
-
 }  // namespace gnomon::eevee

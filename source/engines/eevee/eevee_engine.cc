@@ -133,9 +133,10 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
     shared.lamps.features = shared.lamps.features | Feature::LightClusters;
   }
   if (world) {
-    mark_world(shared.lamps, world_first + world->suns.size());
+    shared.lamps.features = shared.lamps.features | Feature::Light | Feature::World;
+    set_kind(shared.lamps, world_first + world->suns.size(), shared.placed.size(), LIGHT_WORLD);
   }
-  mark_emission(shared.lamps, emission_first, world_first);
+  set_kind(shared.lamps, emission_first, world_first, LIGHT_SURFACE);
   ShadowSettings shadow = settings_.shadow;
   // These surfaces receive shadows, and the depths that are read back do not have them.
   shadow.is_fitted_to_depth &= !has_surfaces_without_depth(scene_.scene());

@@ -201,4 +201,13 @@ Lamps make_lamps(std::span<const scene::PlacedLamp> placed, LampShading shading,
   return lamps;
 }
 
+void set_kind(Lamps &lamps, std::size_t first, std::size_t end, std::int32_t kind)
+{
+  for (std::size_t i = 0; i < lamps.lights.size(); i++) {
+    if (lamps.lamp_index[i] >= first && lamps.lamp_index[i] < end) {
+      lamps.lights[i].kind = kind;
+    }
+  }
+}
+
 }  // namespace gnomon::eevee

@@ -101,4 +101,14 @@ struct Lamps {
 [[nodiscard]] Lamps make_lamps(std::span<const scene::PlacedLamp> lamps, LampShading shading = LampShading::Whole,
                                std::size_t light_count_max = LIGHT_COUNT_MAX);
 
+/** Set LightData::kind of the lights of lamps whose index is at least \a first and below \a end. */
+void set_kind(Lamps &lamps, std::size_t first, std::size_t end, std::int32_t kind);
+
+/**
+ * First indices of the handles of lamps without a node, by which their shadows are kept: those of the world and those
+ * of emissive surfaces. Each range has 256 indices. No pool uses them.
+ */
+inline constexpr std::uint32_t world_node_first = 0xffffff00U;
+inline constexpr std::uint32_t emission_node_first = 0xfffffe00U;
+
 }  // namespace gnomon::eevee

@@ -29,20 +29,9 @@ std::vector<scene::PlacedLamp> world_lamps(const render_scene::WorldLight &world
     lamp.angle = float(2.0 * std::numbers::pi);
   }
   for (std::size_t i = 0; i < lamps.size(); i++) {
-    // These lamps have no node. Indices in this range are never used by a pool.
-    lamps[i].node.index = 0xffffff00U + std::uint32_t(i);
+    lamps[i].node.index = world_node_first + std::uint32_t(i);
   }
   return lamps;
-}
-
-void mark_world(Lamps &lamps, std::size_t first)
-{
-  lamps.features = lamps.features | Feature::Light | Feature::World;
-  for (int i = 0; i < lamps.light_count(); i++) {
-    if (lamps.lamp_index[std::size_t(i)] >= first) {
-      lamps.lights[std::size_t(i)].kind = LIGHT_WORLD;
-    }
-  }
 }
 
 void update_world(WorldResources &resources, gpu::Device &device, const render_scene::RenderScene &scene,

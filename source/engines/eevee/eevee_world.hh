@@ -22,9 +22,6 @@ inline constexpr double world_lobe_directions = 12.0;
  */
 [[nodiscard]] std::vector<scene::PlacedLamp> world_lamps(const render_scene::WorldLight &world, LampShading shading);
 
-/** Add the features of a world to \a lamps, and set LIGHT_WORLD for lamps whose index is at least \a first. */
-void mark_world(Lamps &lamps, std::size_t first);
-
 /** Resources of a world that shaders read. */
 struct WorldResources {
   gpu::Buffer block;
