@@ -3,7 +3,27 @@
 
 #include <fmt/format.h>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace gnomon::cli {
+
+/**
+ * Keep freed memory for the next frame. Mesa's software rasteriser allocates the triangles of each pass and frees them
+ * after it. By default, the C library returns such memory to the system, which then clears it for each pass anew.
+ */
+static void keep_freed_memory()
+{
+#ifdef __GLIBC__
+  // The largest values that the C library chooses by itself, after a program has freed large blocks. To set one of them
+  // ends that choice, so both are set.
+  constexpr int block_bytes_max = 32 << 20;
+  constexpr int kept_bytes_max = 64 << 20;
+  mallopt(M_MMAP_THRESHOLD, block_bytes_max);
+  mallopt(M_TRIM_THRESHOLD, kept_bytes_max);
+#endif
+}
 
 static Status run(int argc, char **argv)
 {
@@ -43,5 +63,6 @@ static Status run(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
+  gnomon::cli::keep_freed_memory();
   return int(gnomon::cli::run(argc, argv));
 }
