@@ -69,7 +69,7 @@ Layers make_layers(float alpha, Surface surface)
     vec3 texel = texture(coat_normal_texture, surface_anisotropy_coat_normal_uvs.zw, view.texture_lod_bias).xyz;
     result.coat_surface.normal_ws = mapped_normal(texel, surface_coat_normal_scale, surface.smooth_normal_ws);
   }
-  result.coat_material.alpha = sampled_alpha(result.coat_material.alpha, result.coat_surface);
+  result.coat_material.alpha = sampled_alpha(result.coat_material.alpha, result.coat_surface, normal_change_sq(result.coat_surface));
 #ifdef USE_MULTISCATTER
   result.coat_surface.multiscatter = multiscatter_of(result.coat_material, result.coat_surface);
 #endif

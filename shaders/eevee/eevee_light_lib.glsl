@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Direct lighting of a surface.
+#include "draw/draw_view_lib.glsl"
 #include "eevee/eevee_surface_lib.glsl"
 #ifdef USE_SPECULAR
 #  include "shared/eevee_area_shared.h"
@@ -113,6 +114,15 @@ float base_specular_lobe(vec2 alphas, Surface surface, vec3 to_light, float cos_
 #endif
 
 #ifdef USE_SPECULAR
+/** Alpha for the mean of the lobes under a sample's share of a pixel. \a change_sq: \see filtered_alpha */
+float sampled_alpha(float alpha, Surface surface, float change_sq)
+{
+  // n^-2 for n samples, as the bias of textures is -0.5 log2(n). A sample has 1/n of the area of a pixel, and so of the variance.
+  // Of that, the samples beside it see a part: with 1/n alone, the error of four and more is larger than without a filter.
+  float share = exp2(4.0 * view.texture_lod_bias);
+  return filtered_alpha(alpha, change_sq, dot(surface.normal_ws, surface.view_ws), share);
+}
+
 /** GGX lobe without Fresnel, 1/sr. \a is_base: that of the base of the material. \a alpha_min: least alpha for this light. */
 float specular_lobe(float alpha, float alpha_min, Surface surface, vec3 to_light, float cos_l, vec3 half_vector, const bool is_base)
 {

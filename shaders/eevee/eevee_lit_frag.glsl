@@ -52,7 +52,7 @@ void main()
 #    endif
 #  endif
 #  ifdef USE_SPECULAR
-  material.alpha = sampled_alpha(material.alpha, surface);
+  material.alpha = sampled_alpha(material.alpha, surface, normal_change_sq(surface));
 #  endif
 #  ifdef USE_LAYERS
   set_layers(make_layers(material.alpha, surface));

@@ -44,6 +44,7 @@ using glm::cos;
 using glm::cross;
 using glm::dot;
 using glm::exp;
+using glm::floatBitsToUint;
 using glm::floor;
 using glm::log;
 using glm::max;
@@ -54,6 +55,7 @@ using glm::pow;
 using glm::sin;
 using glm::sqrt;
 using glm::step;
+using glm::uintBitsToFloat;
 #  ifdef SHARED_DOUBLE
 // GLM's functions are templates, which do not match a double and a float literal.
 inline double clamp(double x, double low, double high)

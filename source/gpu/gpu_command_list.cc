@@ -135,11 +135,12 @@ std::string CommandList::serialize(const Device &device) const
       case CommandKind::BeginPass: {
         const PassInfo &pass = passes_[command.first];
         const PassActions &a = pass.actions;
-        text += fmt::format("begin {} -> {} color {}/{} depth {}/{}{}{}{}\n", name_of(pass),
-                            pass.host_framebuffer ? "host framebuffer" : name(ResourceKind::Framebuffer, command.id),
-                            to_string(a.color_load), to_string(a.color_store), to_string(a.depth_load),
-                            to_string(a.depth_store), to_string(" viewport", a.viewport),
-                            to_string(" scissor", a.scissor), a.is_srgb_encoded ? " srgb" : "");
+        text +=
+            fmt::format("begin {} -> {} color {}/{} depth {}/{}{}{}{}{}\n", name_of(pass),
+                        pass.host_framebuffer ? "host framebuffer" : name(ResourceKind::Framebuffer, command.id),
+                        to_string(a.color_load), to_string(a.color_store), to_string(a.depth_load),
+                        to_string(a.depth_store), to_string(" viewport", a.viewport), to_string(" scissor", a.scissor),
+                        a.is_srgb_encoded ? " srgb" : "", a.reads_attachments ? " reads attachments" : "");
         break;
       }
       case CommandKind::EndPass: text += "end\n"; break;

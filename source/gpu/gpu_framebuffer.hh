@@ -116,6 +116,11 @@ struct PassActions {
    * are stored unchanged.
    */
   bool is_srgb_encoded = false;
+  /**
+   * true: draws may look up the attachments. A fragment may read its own texel of a colour attachment, once, before it
+   * writes it, and any texel of a depth attachment that the pass does not write.
+   */
+  bool reads_attachments = false;
 };
 
 }  // namespace gnomon::gpu

@@ -33,6 +33,8 @@ enum class State : std::uint32_t {
    */
   DrawLines = 1U << 12,
   DrawPoints = 1U << 13,
+  /** Depth test: passes if the depth is further than the stored depth (reversed depth: <). */
+  DepthFurther = 1U << 14,
 };
 
 constexpr State operator|(State a, State b)

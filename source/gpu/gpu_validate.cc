@@ -251,7 +251,7 @@ class Validator {
 
   void check_sampled(const ShaderInterface::Binding &binding, const Bound &bound) const
   {
-    if (bound.id == 0) {
+    if (bound.id == 0 || pass_->actions.reads_attachments) {
       return;
     }
     for (const AttachedTexture &attached : attachments_) {

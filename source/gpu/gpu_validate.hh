@@ -16,7 +16,7 @@ namespace gnomon::gpu {
  * - bound buffers whose kind, size, alignment or range is wrong;
  * - viewports and scissors outside of the framebuffer;
  * - bindings and push constants that the current shader declares but the list does not set;
- * - textures that are sampled while they are attached to the framebuffer;
+ * - textures that are sampled while they are attached to the framebuffer, without PassActions::reads_attachments;
  * - draws that read beyond the arrays of the list or outside of the vertex and index data of live batches.
  *
  * \throws Error for the first violation, naming the pass, the command, the resource and the reason

@@ -122,6 +122,12 @@ TEST_P(HostFramebufferTest, DepthIsTestedByTheHostsConvention)
   draw(host, glm::vec4(1), keep, State::WriteColor | State::WriteDepth | State::DepthLessEqual);
   EXPECT_EQ(host.pixels().at(0, 0), (std::array<int, 4>{255, 255, 255, 255}));
   EXPECT_NEAR(host.depths()[0], 0.25F, 1e-7F);
+  // Now equal, and then nearer.
+  draw(host, glm::vec4(0), keep, State::WriteColor | State::DepthFurther);
+  EXPECT_EQ(host.pixels().at(0, 0), (std::array<int, 4>{255, 255, 255, 255}));
+  host.clear_depth(0.3F);
+  draw(host, glm::vec4(0), keep, State::WriteColor | State::DepthFurther);
+  EXPECT_EQ(host.pixels().at(0, 0), (std::array<int, 4>{0, 0, 0, 0}));
 }
 
 TEST_P(HostFramebufferTest, OtherDrawBuffersKeepTheirContent)

@@ -38,6 +38,7 @@ class Validation : public testing::Test {
 
   /** Replaces the commands at the position of its name; empty: those of a valid list. */
   struct Changes {
+    PassActions actions{};
     std::function<void()> before_pass{};
     std::function<void()> at_shader{};
     std::function<void()> at_state{};
@@ -61,7 +62,7 @@ class Validation : public testing::Test {
     };
     list.clear();
     either(changes.before_pass, [] {});
-    list.begin_pass("lit", framebuffer, {});
+    list.begin_pass("lit", framebuffer, changes.actions);
     either(changes.at_shader, [&] { list.set_shader(shader.id()); });
     either(changes.at_state, [&] { list.set_state(State::WriteColor); });
     either(changes.at_uniform, [&] { list.bind_uniform(9, {block.id()}); });
@@ -279,6 +280,9 @@ TEST_F(Validation, FeedbackLoopsAreFound)
 {
   expect_refused({.at_texture = [&] { list.bind_texture(16, color.id(), sampler.id()); }},
                  {"pass 'lit'", "(draw)", "shader 'reading'", "feedback loop: texture 'hdr' at slot 16 ('radiance')"});
+  record(
+      {.actions = {.reads_attachments = true}, .at_texture = [&] { list.bind_texture(16, color.id(), sampler.id()); }});
+  EXPECT_EQ(error_of([&] { validate(list, *device); }), "") << "the pass says that it reads its attachments";
   // Bound to a slot that the shader does not read.
   record({.at_draw = [&] {
     list.bind_texture(17, color.id(), sampler.id());

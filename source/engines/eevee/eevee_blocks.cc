@@ -22,6 +22,7 @@ using Field = gpu::BlockLayout::Field;
 
 constexpr auto view_fields = std::to_array<Field>({
     {"view.clip_from_world", offsetof(ViewData, clip_from_world)},
+    {"view.world_from_clip", offsetof(ViewData, world_from_clip)},
     {"view.position_ws", offsetof(ViewData, position_ws)},
     {"view.is_perspective", offsetof(ViewData, is_perspective)},
     {"view.back_ws", offsetof(ViewData, back_ws)},

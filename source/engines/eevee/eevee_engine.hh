@@ -230,6 +230,12 @@ class Engine final : public draw::Engine {
     return settings_.has_multiscatter ? Feature::Multiscatter : Feature::None;
   }
   void record_object(draw::Viewport &viewport, draw::ObjectIndex object);
+  /**
+   * Whether the G-buffer can hold what the light of the object depends on: it is opaque, its material has no textures,
+   * vertex colours, layers or surface function, and it receives shadows as all others do.
+   */
+  [[nodiscard]] bool allows_deferred(draw::ObjectIndex object) const;
+  void record_deferred_lit(draw::Viewport &viewport);
   /** Append the calls of an object that is blended: its backs, if they are drawn, and its fronts. */
   void record_blended(Data &data, draw::ObjectIndex object, const gpu::Shader &shader,
                       const render_scene::TextureSet &textures, const gpu::Batch &batch);

@@ -37,6 +37,7 @@ struct FramebufferList {
 };
 
 struct TextureList {
+  /** With deferred lighting, it holds the G-buffer before. */
   gpu::Texture radiance;
   /** Copy of `radiance` before what transmits light is drawn. Created when that is first seen; \see make_behind. */
   gpu::Texture behind;
@@ -58,6 +59,9 @@ struct PassList {
       : depth_pass("depth_pass", gpu::State::WriteDepth | gpu::State::DepthNearerEqual, &objects),
         depth_pass_cull("depth_pass_cull", gpu::State::WriteDepth | gpu::State::DepthNearerEqual | gpu::State::CullBack,
                         &objects),
+        gbuffer_pass("gbuffer_pass", gpu::State::WriteColor | gpu::State::WriteDepth | gpu::State::DepthNearerEqual,
+                     &objects),
+        deferred_lit_pass("deferred_lit_pass", gpu::State::WriteColor | gpu::State::DepthFurther),
         background_pass("background_pass", gpu::State::WriteColor | gpu::State::DepthEqual),
         lit_pass("lit_pass", gpu::State::WriteColor | gpu::State::DepthEqual, &objects),
         blend_pass("blend_pass", gpu::State::WriteColor | gpu::State::DepthNearerEqual | gpu::State::BlendOver,
@@ -74,6 +78,10 @@ struct PassList {
   }
   draw::Pass depth_pass;
   draw::Pass depth_pass_cull;
+  /** The objects of deferred lighting, in one pass with their depths. */
+  draw::Pass gbuffer_pass;
+  /** Empty if gbuffer_pass is. */
+  draw::Pass deferred_lit_pass;
   draw::Pass background_pass;
   draw::Pass lit_pass;
   /** A group or two for each blended object. */
@@ -304,6 +312,8 @@ struct StorageList {
   Feature material_features = Feature::None;
   /** The material of at least one drawable object has a surface function. */
   bool has_surface_functions = false;
+  /** The recorded passes light those objects deferred that allow it. \see Engine::allows_deferred */
+  bool is_deferred = false;
   /** Entry of light_block of the light that is being probed. */
   int probed_light = 0;
   /** Filter weights of the current sample. The film pass reads them by reference. */

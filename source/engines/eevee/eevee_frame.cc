@@ -3,6 +3,7 @@
 
 #include "eevee_engine_data.hh"
 #include "eevee_film.hh"
+#include "eevee_frame_needs.hh"
 #include "eevee_transmission.hh"
 
 #include "trace.hh"
@@ -44,107 +45,25 @@ static gpu::Rectangle read_region(const FrameSample &sample)
 
 namespace {
 
-Need need_lamp_points(const FrameState &state)
+/** All rows, of which this part may light only some. Cascades are fitted to the depths of the whole picture. */
+gpu::Rectangle depth_region(const FrameSample &sample)
 {
-  if (state.data.shared->lamp_points.empty()) {
-    return {false, state.settings.sample_count != 1 ? "no lamp that gives light has a size"
-                                                    : "one sample: each lamp is shaded as a whole"};
-  }
-  return state.data.is_seen ? Need{true, "each sample sees one point of each lamp with a size"}
-                            : Need{false, nothing_seen};
+  const bool is_whole = awaits_depths(sample.data, sample.view) || sample.data.is_transmission_seen;
+  return is_whole ? gpu::Rectangle() : sample.viewport.drawn_region();
 }
 
-Need need_light_clusters(const FrameState &state)
+void record_gbuffer(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
-  if (!has(state.data.stl.features, Feature::LightClusters)) {
-    return {false, "few lamps have a range"};
-  }
-  return state.data.is_seen ? Need{true, "pixels visit the lamps that can reach them"} : Need{false, nothing_seen};
-}
-
-Need need_shadows(const FrameState &state)
-{
-  if (!has(state.data.stl.features, any_shadow)) {
-    return {false, why_no_shadow(state, "no lamp casts a shadow")};
-  }
-  return state.data.is_seen ? Need{true, "some layers were out of date"} : Need{false, nothing_seen};
-}
-
-Need need_depth(const FrameState &state)
-{
-  return state.data.is_seen ? Need{true, "each pixel is lit once"} : Need{false, nothing_seen};
-}
-
-Need need_lit(const FrameState &state)
-{
-  return state.data.is_seen ? Need{true, "objects in the view"} : Need{false, nothing_seen};
-}
-
-Need need_background(const FrameState &state)
-{
-  using enum Background::Kind;
-  if (state.settings.background.kind == None) {
-    return {false, "the settings have no background"};
-  }
-  return (*state.data.psl).background_pass.is_empty() ? Need{false, "the scene has no world"}
-                                                      : Need{true, "pixels without a surface"};
-}
-
-Need need_blend(const FrameState &state)
-{
-  if (!state.data.is_seen) {
-    return {false, nothing_seen};
-  }
-  return (*state.data.psl).blend_pass.is_empty() ? Need{false, "no material that is drawn is blended"}
-                                                 : Need{true, "blended objects, from back to front"};
-}
-
-/** A picture without visible objects and without a background is cleared once, with the first sample. */
-Need need_film(const FrameState &state)
-{
-  if (state.data.is_seen) {
-    return {true, "samples of each pixel are added up"};
-  }
-  return {state.data.sample_index == state.settings.sample_first, "nothing is seen: the picture is cleared"};
-}
-
-Need need_picture_depth(const FrameState &state)
-{
-  if (!state.data.target.depth) {
-    return {false, "no target takes depth"};
-  }
-  if (state.settings.sample_count == 1) {
-    return {false, "the depth of the only sample is that of the picture"};
-  }
-  return !state.data.is_seen            ? Need{false, nothing_seen}
-         : state.data.has_picture_depth ? Need{false, "it is up to date"}
-                                        : Need{true, "the target takes depth, without the samples' offsets"};
-}
-
-Need need_tonemap(const FrameState &state)
-{
-  const draw::Target &target = state.data.target;
-  if (!target) {
-    return {false, "no target was given"};
-  }
-  if (state.data.is_seen) {
-    return {true, "a target was given"};
-  }
-  return target.composition == draw::Composition::Over
-             ? Need{false, nothing_seen}
-             : Need{true, "nothing is seen: the target's rectangle is cleared"};
+  record_pass(step, sample, list, sample.data.fbl.main_fb, {.scissor = depth_region(sample)});
 }
 
 void record_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
   Data &data = sample.data;
-  const bool is_awaited = awaits_depths(data, sample.view);
-  // Cascades are fitted to the depths of the whole picture.
-  // All rows, of which this part may light only some.
-  const bool is_whole = is_awaited || data.is_transmission_seen;
   record_pass(step, sample, list, data.fbl.depth_fb,
-              {.scissor = is_whole ? gpu::Rectangle() : sample.viewport.drawn_region()});
-  if (is_awaited) {
+              {.depth_load = has_gbuffer(data) ? gpu::LoadAction::Load : gpu::LoadAction::Clear,
+               .scissor = depth_region(sample)});
+  if (awaits_depths(data, sample.view)) {
     DepthFeedback &depths = data.depth_feedback;
     const std::uint64_t tag = ++depths.requested_tag;
     depths.requested_views[tag % depths.requested_views.size()] = sample.view;
@@ -190,10 +109,27 @@ void record_shadows(const FrameStep & /*step*/, FrameSample &sample, gpu::Comman
   sample.viewport.set_setup(updated.count, updated.is_all);
 }
 
+void record_deferred_lit(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
+{
+  record_pass(step, sample, list, sample.data.fbl.main_fb,
+              {.color_load = gpu::LoadAction::Load,
+               .depth_load = gpu::LoadAction::Load,
+               .scissor = read_region(sample),
+               .reads_attachments = true});
+}
+
+void record_forward_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
+{
+  record_pass(step, sample, list, sample.data.fbl.depth_fb,
+              {.depth_load = gpu::LoadAction::Load, .scissor = read_region(sample)});
+}
+
 void record_lit(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
   record_pass(step, sample, list, sample.data.fbl.main_fb,
-              {.depth_load = gpu::LoadAction::Load, .scissor = read_region(sample)});
+              {.color_load = has_gbuffer(sample.data) ? gpu::LoadAction::Load : gpu::LoadAction::Clear,
+               .depth_load = gpu::LoadAction::Load,
+               .scissor = read_region(sample)});
 }
 
 void record_blend(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
@@ -261,10 +197,18 @@ void record_tonemap(const FrameStep &step, FrameSample &sample, gpu::CommandList
 
 constexpr std::array<FramePass, 2> depth_passes = {{
     {&PassList::depth_pass, "two-sided materials",
-     [](const FrameState &) -> std::string { return "no object with a two-sided material"; }},
+     [](const FrameState &) -> std::string { return "no object with a two-sided material outside of the G-buffer"; }},
     {&PassList::depth_pass_cull, "one-sided materials",
-     [](const FrameState &) -> std::string { return "no object with a one-sided material"; }},
+     [](const FrameState &) -> std::string { return "no object with a one-sided material outside of the G-buffer"; }},
 }};
+
+constexpr std::array<FramePass, 1> gbuffer_passes = {
+    {{&PassList::gbuffer_pass, "opaque objects without textures",
+      [](const FrameState &) -> std::string { return std::string(why_forward); }}}};
+
+constexpr std::array<FramePass, 1> deferred_lit_passes = {
+    {{&PassList::deferred_lit_pass, "pixels of the G-buffer",
+      [](const FrameState &) -> std::string { return std::string(why_forward); }}}};
 
 constexpr std::string (*no_transmission)(const FrameState &) = [](const FrameState &) -> std::string {
   return "no object that is not blended transmits light";
@@ -275,7 +219,8 @@ constexpr std::array<FramePass, 2> transmission_passes = {{
     {&PassList::transmission_pass, "objects in the view", no_transmission},
 }};
 
-constexpr std::array<FramePass, 3> picture_depth_passes = {{depth_passes[0], depth_passes[1], transmission_passes[0]}};
+constexpr std::array<FramePass, 4> picture_depth_passes = {
+    {depth_passes[0], depth_passes[1], gbuffer_passes[0], transmission_passes[0]}};
 
 constexpr std::array<FramePass, 2> lit_passes = {{
     {&PassList::lit_pass, "objects in the view", [](const FrameState &) -> std::string { return nothing_seen; }},
@@ -319,8 +264,17 @@ constexpr std::span depth_and_radiance = std::span(pictures).first(2);
 constexpr std::array<std::string_view, 2> lights = {"light_block", "light_texture"};
 constexpr std::array<std::string_view, 2> cluster_resources = {"light_cluster_block", "light_lists"};
 
-constexpr std::array<FrameStep, 13> steps = {{
-    // The depth pre-pass comes before the shadows because cascades may be fitted to its depths.
+constexpr std::array<FrameStep, 16> steps = {{
+    // The depths come before the shadows because cascades may be fitted to them.
+    {.name = "gbuffer",
+     .when = FrameStep::When::EachSample,
+     .part = FrameStep::Part::First,
+     .need = need_gbuffer,
+     .reads = {},
+     .writes = depth_and_radiance,
+     .passes = gbuffer_passes,
+     .record = record_gbuffer,
+     .is_read_back = true},
     {"depth_prepass",
      FrameStep::When::EachSample,
      FrameStep::Part::First,
@@ -356,6 +310,16 @@ constexpr std::array<FrameStep, 13> steps = {{
      {},
      record_shadows,
      [](FrameSample &sample) { sample.data.stl.shadows->submitted(); }},
+    {"deferred_lit", FrameStep::When::EachSample, FrameStep::Part::Rows, need_deferred_lit, shadow_targets,
+     radiance_only, deferred_lit_passes, record_deferred_lit},
+    {"forward_depth",
+     FrameStep::When::EachSample,
+     FrameStep::Part::Rows,
+     need_forward_depth,
+     {},
+     depth_only,
+     depth_passes,
+     record_forward_depth},
     {"lit", FrameStep::When::EachSample, FrameStep::Part::Rows, need_lit, shadow_targets, radiance_only, lit_passes,
      record_lit},
     {"background", FrameStep::When::EachSample, FrameStep::Part::Rows, need_background, depth_only, radiance_only,

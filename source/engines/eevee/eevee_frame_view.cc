@@ -47,6 +47,7 @@ shared::ViewData view_data(const draw::View &view, const Settings &settings, int
   const glm::mat4 world_from_view(glm::inverse(glm::dmat4(view.view_from_world())));
   shared::ViewData data{};
   data.clip_from_world = view.clip_from_world();
+  data.world_from_clip = glm::mat4(glm::inverse(glm::dmat4(view.clip_from_world())));
   data.position_ws = glm::vec3(world_from_view[3]);
   data.is_perspective = view.is_perspective() ? 1 : 0;
   data.back_ws = glm::normalize(glm::vec3(world_from_view[2]));

@@ -35,6 +35,7 @@ static void record_at_depths(Data &data, const draw::View &view, std::string_vie
   list.begin_pass("depth_prepass", data.fbl.depth_fb, {});
   data.psl->depth_pass.record(view, list);
   data.psl->depth_pass_cull.record(view, list);
+  data.psl->gbuffer_pass.record(view, list);
   data.psl->transmission_depth_pass.record(view, list);
   list.end_pass();
   list.begin_pass(name, framebuffer, {.depth_load = gpu::LoadAction::Load});

@@ -48,7 +48,7 @@ constexpr Feature shadow_features = Feature::Light | Feature::Punctual | Feature
 constexpr Feature alpha_features = Feature::AlphaMask | Feature::FullMaterial;
 constexpr Feature caster_features = alpha_features | Feature::OpacityThreshold;
 
-constexpr std::array<ShaderDeclaration, 21> declarations = {{
+constexpr std::array<ShaderDeclaration, 23> declarations = {{
     {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl", alpha_features,
      Feature::None, "depth of what is seen, so that each pixel is lit once"},
     {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
@@ -99,6 +99,12 @@ constexpr std::array<ShaderDeclaration, 21> declarations = {{
      "position, normal, object, albedo and roughness of surfaces, for compositing", "WRITES_OBJECT"},
     {ShaderId::DepthFunction, "eevee_depth_function", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
      alpha_features, alpha_features, "depth of what a surface function cuts out", "USE_SURFACE_FUNCTION"},
+    {ShaderId::GBuffer, "eevee_gbuffer", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_gbuffer_frag.glsl",
+     Feature::Light | Feature::Specular, Feature::Light,
+     "normals and materials of what is seen, for deferred lighting"},
+    {ShaderId::DeferredLit, "eevee_deferred_lit", "draw/draw_fullscreen_vert.glsl", "",
+     "eevee/eevee_deferred_lit_frag.glsl", without(light_features, Feature::ShadowEsm | Feature::ShadowEvsm),
+     Feature::Light, "light that the surfaces in the G-buffer send to the viewer"},
 }};
 
 /** Whether a scene can need \a features, and no smaller mask gives the same program. */

@@ -33,6 +33,8 @@ enum class ShaderId {
   DebugCascades,
   Surfaces,
   DepthFunction,
+  GBuffer,
+  DeferredLit,
 };
 
 /** Declaration of a shader program. The engine, the build, the shader checks and the tests read it. */

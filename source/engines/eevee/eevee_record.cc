@@ -317,8 +317,15 @@ void Engine::record_passes(draw::Viewport &viewport)
   stl.blended.clear();
   stl.blended_group_count = 0;
   stl.is_mirrored.assign(scene_.objects().index_end(), false);
+  // Where forward objects hide deferred ones, pixels are lit twice: with few deferred objects, that takes longer.
+  const auto allowed = [this](draw::ObjectIndex object) { return allows_deferred(object); };
+  stl.is_deferred = has(stl.features, Feature::Light) && !has(stl.features, Feature::ShadowEsm) &&
+                    2 * std::ranges::count_if(stl.objects, allowed) >= std::ssize(stl.objects);
   for (const draw::ObjectIndex object : stl.objects) {
     record_object(viewport, object);
+  }
+  if (!data.psl->gbuffer_pass.is_empty()) {
+    record_deferred_lit(viewport);
   }
   if (has_background(settings_, scene_)) {
     record_background(viewport);
@@ -371,8 +378,9 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
                            (function.key != 0 ? lit_function_features : Feature::None);
   // Without the picture behind it, nothing that transmits light is in the view.
   const bool is_transmissive = surface == MaterialClass::Transmissive;
+  const bool is_deferred = stl.is_deferred && allows_deferred(index);
   const gpu::Shader *lit_shader =
-      is_transmissive && !data.txl.behind
+      is_deferred || (is_transmissive && !data.txl.behind)
           ? nullptr
           : &shaders_->get(device, ShaderId::Lit, with_variant(lighting | feature_of(surface) | asked_features()),
                            function);
@@ -385,15 +393,18 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
   // The depth test of the lit pass is "equal": a back face at the depth of a front face of another triangle must be
   // culled.
   const State side = material.is_double_sided ? State::None : State::CullBack;
-  const gpu::Shader &depth_shader =
-      shaders_->get(device, alpha_function.key != 0 ? ShaderId::DepthFunction : ShaderId::Depth, mask_features(cut_out),
-                    alpha_function);
-  if (is_transmissive) {
-    call(data.psl->transmission_depth_pass, depth_shader, side, cut_out, alpha_textures, bind_surface);
+  if (is_deferred) {
+    call(data.psl->gbuffer_pass, shaders_->get(device, ShaderId::GBuffer, stl.features), side, surface, {},
+         bind_surface);
   }
   else {
-    call(material.is_double_sided ? data.psl->depth_pass : data.psl->depth_pass_cull, depth_shader, State::None,
-         cut_out, alpha_textures, bind_surface);
+    draw::Pass &depth_pass = is_transmissive            ? data.psl->transmission_depth_pass
+                             : material.is_double_sided ? data.psl->depth_pass
+                                                        : data.psl->depth_pass_cull;
+    const gpu::Shader &depth_shader =
+        shaders_->get(device, alpha_function.key != 0 ? ShaderId::DepthFunction : ShaderId::Depth,
+                      mask_features(cut_out), alpha_function);
+    call(depth_pass, depth_shader, is_transmissive ? side : State::None, cut_out, alpha_textures, bind_surface);
   }
   if (lit_shader) {
     call(is_transmissive ? data.psl->transmission_pass : data.psl->lit_pass, *lit_shader, side, surface,

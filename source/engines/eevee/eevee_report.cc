@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The report of a frame: the parts that were made or left out. It reads the same state as the drawing code.
+#include "eevee_frame_needs.hh"
 #include "eevee_material_variants.hh"
 #include "eevee_report_source.hh"
 #include "eevee_surface_functions.hh"
@@ -313,10 +314,12 @@ Report Inspection::report() const
        has(f, Feature::ShadowEsm) ? nothing_seen : no_shadow);
   part("shadow_pass", !shared.shadow_pass.is_empty(), "casters for the lamps' shadows",
        has(f, any_shadow) ? nothing_seen : "no shadow");
+  part("gbuffer_pass", !data.psl->gbuffer_pass.is_empty(), "opaque objects without textures",
+       why_not(std::string(why_forward)));
   part("depth_pass", !data.psl->depth_pass.is_empty(), "two-sided materials",
-       why_not("no object with a two-sided material"));
+       why_not("no object with a two-sided material outside of the G-buffer"));
   part("depth_pass_cull", !data.psl->depth_pass_cull.is_empty(), "one-sided materials",
-       why_not("no object with a one-sided material"));
+       why_not("no object with a one-sided material outside of the G-buffer"));
   part("base colour textures", scene.images().count() > 0,
        fmt::format("{} images that materials look up", scene.images().count()),
        why_not("no lit or cut out material has one"));

@@ -209,6 +209,9 @@ void GlDevice::begin_pass(std::string_view name, const CommandList::PassInfo &pa
     glEnablei(GL_SCISSOR_TEST, 0);
   }
   set_capability(GL_FRAMEBUFFER_SRGB, actions.is_srgb_encoded);
+  if (actions.reads_attachments) {
+    glTextureBarrier();
+  }
   for (GLuint i = 1; pass.host_framebuffer && i < GLuint(limits().color_attachment_max); i++) {
     glColorMaski(i, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   }
@@ -265,6 +268,7 @@ void GlDevice::set_state(State state)
   const GLenum function = has(state, State::DepthEqual)         ? GL_EQUAL
                           : has(state, State::DepthNearerEqual) ? GL_GEQUAL
                           : has(state, State::DepthLessEqual)   ? GL_LEQUAL
+                          : has(state, State::DepthFurther)     ? GL_LESS
                                                                 : GL_ALWAYS;
   set_capability(GL_DEPTH_TEST, function != GL_ALWAYS || has(state, State::WriteDepth));
   glDepthFunc(function);

@@ -300,8 +300,10 @@ TEST_F(BlendScene, AnObjectWithLayersLeavesThePlainProgramsAsTheyAre)
     renderer.draw(test::camera_at({0, 0, 9}, {0, 0, 0}));
     const FrameNode tree = renderer.inspect().report().tree;
     std::set<std::string> names;
-    for (const FrameNode &variant : find(*find(tree, "programs"), "eevee_lit")->children) {
-      names.insert(variant.what);
+    for (const char *program : {"eevee_deferred_lit", "eevee_lit"}) {
+      for (const FrameNode &variant : find(*find(tree, "programs"), program)->children) {
+        names.insert(std::string(program) + variant.what);
+      }
     }
     return names;
   };

@@ -409,7 +409,7 @@ TEST_F(EngineGpuTest, RecordsTheSamePassesAsTheNullBackend)
   gl.draw(above, gl_target.target());
   null.draw(above, null_target.target());
   const std::string passes = gl.inspect().serialize_passes();
-  EXPECT_NE(passes.find("group eevee_lit"), std::string::npos) << passes;
+  EXPECT_NE(passes.find("group eevee_deferred_lit"), std::string::npos) << passes;
   EXPECT_EQ(passes, null.inspect().serialize_passes());
 }
 
@@ -493,7 +493,7 @@ TEST_F(EngineGpuTest, StepTimesAreMeasured)
     EXPECT_GE(step.seconds, 0.0);
     EXPECT_LT(step.seconds, 60.0);
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"depth_prepass", "shadows", "lit", "film"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"gbuffer", "shadows", "deferred_lit", "film"}));
 }
 
 }  // namespace

@@ -65,13 +65,13 @@ TEST_F(EngineTest, CreatesTheResourcesThatTheSceneNeeds)
   Renderer renderer(*device, scene, {16, 16}, settings);
   renderer.draw(camera, display.target());
   const Report report = renderer.inspect().report();
-  for (const char *what : {"light_block", "shadow_cubes", "shadow_pass", "depth_pass", "depth_pass_cull",
-                           "specular in eevee_lit", "film", "tonemap"}) {
+  for (const char *what :
+       {"light_block", "shadow_cubes", "shadow_pass", "gbuffer_pass", "specular in eevee_lit", "film", "tonemap"}) {
     EXPECT_TRUE(is_made(report, what)) << what;
   }
   EXPECT_FALSE(is_made(report, "shadow_maps")) << "flat to the sun, the square darkens nothing";
-  // The square is in one face of the point lamp, and flat to the sun: a face cleared and drawn; prepass, lit, film,
-  // tonemap.
+  // The square is in one face of the point lamp, and flat to the sun: a face cleared and drawn; G-buffer, deferred lit,
+  // film, tonemap.
   EXPECT_EQ(device->counters().passes, 6U);
 }
 

@@ -86,8 +86,9 @@ class LeftOut : public testing::Test {
   {
     taken.clear();
   }
-  /** Expects that \a name lacks exactly these parts of the full scene, and has no others. */
-  static void expect_lacks(const std::string &name, const Names &resources, const Names &features, const Names &passes)
+  /** Expects that \a name lacks exactly these parts of the full scene, and has \a passes_instead, but no others. */
+  static void expect_lacks(const std::string &name, const Names &resources, const Names &features, const Names &passes,
+                           const Names &passes_instead = {})
   {
     const Taken &full = taken.at("full");
     const Taken &less = taken.at(name);
@@ -96,7 +97,7 @@ class LeftOut : public testing::Test {
     EXPECT_EQ(missing(full.passes, less.passes), passes) << name;
     EXPECT_EQ(missing(less.resources, full.resources), Names()) << name;
     EXPECT_EQ(missing(less.features, full.features), Names()) << name;
-    EXPECT_EQ(missing(less.passes, full.passes), Names()) << name;
+    EXPECT_EQ(missing(less.passes, full.passes), passes_instead) << name;
   }
 
   static inline std::map<std::string, Taken> taken;
@@ -117,16 +118,31 @@ Names both(Names a, const Names &b)
 TEST_F(LeftOut, TheFullSceneHasAll)
 {
   const Taken &full = taken.at("full");
-  EXPECT_EQ(full.passes, both(shadow_passes, {"depth_prepass", "lit", "film", "tonemap"}));
+  EXPECT_EQ(full.passes, both(shadow_passes, {"gbuffer", "deferred_lit", "forward_depth", "lit", "film", "tonemap"}));
   EXPECT_EQ(full.features, both(shadow_features, {"USE_LIGHT", "USE_PUNCTUAL", "USE_SPECULAR", "USE_BASE_COLOR_TEXTURE",
                                                   "USE_ALPHA_MASK"}));
-  const Names resources = both(
-      shadow_resources,
-      {"texture 'film'",          "texture 'depth'",         "texture 'radiance'",        "texture 'checks'",
-       "texture 'holes'",         "sampler 'nearest'",       "sampler 'texture_sampler'", "buffer 'view_block'",
-       "buffer 'object_block'",   "buffer 'material_block'", "buffer 'light_block'",      "batch 'box of plain'",
-       "batch 'box of specular'", "batch 'box of textured'", "batch 'box of masked'",     "batch 'box of one-sided'",
-       "shader 'eevee_depth'",    "shader 'eevee_lit'",      "shader 'eevee_film'",       "shader 'eevee_tonemap'"});
+  const Names resources = both(shadow_resources, {"texture 'film'",
+                                                  "texture 'depth'",
+                                                  "texture 'radiance'",
+                                                  "texture 'checks'",
+                                                  "texture 'holes'",
+                                                  "sampler 'nearest'",
+                                                  "sampler 'texture_sampler'",
+                                                  "buffer 'view_block'",
+                                                  "buffer 'object_block'",
+                                                  "buffer 'material_block'",
+                                                  "buffer 'light_block'",
+                                                  "batch 'box of plain'",
+                                                  "batch 'box of specular'",
+                                                  "batch 'box of textured'",
+                                                  "batch 'box of masked'",
+                                                  "batch 'box of one-sided'",
+                                                  "shader 'eevee_gbuffer'",
+                                                  "shader 'eevee_deferred_lit'",
+                                                  "shader 'eevee_depth'",
+                                                  "shader 'eevee_lit'",
+                                                  "shader 'eevee_film'",
+                                                  "shader 'eevee_tonemap'"});
   EXPECT_EQ(full.resources, resources);
 }
 
@@ -153,8 +169,11 @@ TEST_F(LeftOut, MultipleScatteringIsMadeIfItIsAskedForAndSomethingReflects)
 TEST_F(LeftOut, NoLamp)
 {
   // The mask also applies without light; then no pass reads the opaque texture.
-  expect_lacks("no lamp", both(shadow_resources, {"buffer 'light_block'", "texture 'checks'"}),
-               both(shadow_features, {"USE_LIGHT", "USE_PUNCTUAL", "USE_SPECULAR"}), shadow_passes);
+  expect_lacks("no lamp",
+               both(shadow_resources, {"buffer 'light_block'", "texture 'checks'", "shader 'eevee_gbuffer'",
+                                       "shader 'eevee_deferred_lit'"}),
+               both(shadow_features, {"USE_LIGHT", "USE_PUNCTUAL", "USE_SPECULAR"}),
+               both(shadow_passes, {"gbuffer", "deferred_lit", "forward_depth"}), {"depth_prepass"});
 }
 
 TEST_F(LeftOut, NoSun)
@@ -181,8 +200,11 @@ TEST_F(LeftOut, NoShadow)
 
 TEST_F(LeftOut, NoTexture)
 {
-  expect_lacks("no texture", {"texture 'checks'", "texture 'holes'", "sampler 'texture_sampler'"},
-               {"USE_BASE_COLOR_TEXTURE", "USE_ALPHA_MASK"}, {});
+  // All is in the G-buffer.
+  expect_lacks("no texture",
+               {"texture 'checks'", "texture 'holes'", "sampler 'texture_sampler'", "shader 'eevee_depth'",
+                "shader 'eevee_lit'"},
+               {"USE_BASE_COLOR_TEXTURE", "USE_ALPHA_MASK"}, {"forward_depth", "lit"});
 }
 
 TEST_F(LeftOut, NoAlpha)

@@ -37,7 +37,7 @@ class TargetTest : public testing::Test {
   }
 
   using Passes = gpu::PassCounts;
-  const Passes sample = {{"depth_prepass", 1}, {"lit", 1}, {"film", 1}, {"tonemap", 1}};
+  const Passes sample = {{"gbuffer", 1}, {"deferred_lit", 1}, {"film", 1}, {"tonemap", 1}};
   const Passes no_sample = {{"tonemap", 1}};
 
   std::unique_ptr<gpu::Device> device = gpu::create_null_device();
@@ -60,7 +60,7 @@ TEST_F(TargetTest, ASampleIsDrawnForEachDrawUntilThePictureIsComplete)
     EXPECT_EQ(passes_of([&] { EXPECT_TRUE(renderer.draw_sample(camera, target)); }), no_sample);
   }
   EXPECT_EQ(passes_of([&] { renderer.draw_sample(camera); }), Passes());
-  EXPECT_EQ(passes_of([&] { renderer.draw(camera); }), (Passes{{"depth_prepass", 3}, {"lit", 3}, {"film", 3}}))
+  EXPECT_EQ(passes_of([&] { renderer.draw(camera); }), (Passes{{"gbuffer", 3}, {"deferred_lit", 3}, {"film", 3}}))
       << "a whole picture, which is drawn anew";
 }
 
@@ -82,7 +82,7 @@ TEST_F(TargetTest, APictureWithoutALimitEndsWhenTheHostEndsIt)
   // The callback ends it, and the picture is written without another sample.
   const auto stop_at_5 = [](int samples_drawn) { return samples_drawn < 5; };
   EXPECT_EQ(passes_of([&] { EXPECT_EQ(renderer.draw(camera, {.progress = stop_at_5}, target), 5); }),
-            (Passes{{"depth_prepass", 5}, {"lit", 5}, {"film", 5}, {"tonemap", 1}}));
+            (Passes{{"gbuffer", 5}, {"deferred_lit", 5}, {"film", 5}, {"tonemap", 1}}));
   EXPECT_EQ(renderer.draw(camera, {.seconds_max = 0.0}), 1) << "no time at all: one sample";
   EXPECT_THROW(renderer.draw(camera), gpu::Error) << "it would never end";
 }
@@ -93,7 +93,7 @@ TEST_F(TargetTest, ThePictureOfAKnownCountCanBeEndedEarly)
   renderer.sync();
   const auto stop_at_3 = [](int samples_drawn) { return samples_drawn < 3; };
   EXPECT_EQ(passes_of([&] { EXPECT_EQ(renderer.draw(camera, {.progress = stop_at_3}, target), 3); }),
-            (Passes{{"depth_prepass", 3}, {"lit", 3}, {"film", 3}, {"tonemap", 1}}));
+            (Passes{{"gbuffer", 3}, {"deferred_lit", 3}, {"film", 3}, {"tonemap", 1}}));
   EXPECT_GT(renderer.engine().radiance_scale(renderer.viewport()), 1.5F);
   EXPECT_EQ(renderer.draw(camera), 8);
   EXPECT_EQ(renderer.engine().radiance_scale(renderer.viewport()), 1.0F);

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// Deferred lighting: which objects it lights, and the pass that lights their pixels.
+#include "eevee_engine.hh"
+#include "eevee_engine_data.hh"
+#include "eevee_material_variants.hh"
+
+namespace gnomon::eevee {
+
+bool Engine::allows_deferred(draw::ObjectIndex index) const
+{
+  const scene::Scene &scene = scene_.scene();
+  const render_scene::RenderObject &object = scene_.object(index);
+  const scene::Mesh &mesh = scene.meshes()[object.mesh];
+  return object.receives_shadow && render_scene::material_class(scene, mesh) == render_scene::MaterialClass::Plain &&
+         !render_scene::has_surface_function(scene, scene.material_of(mesh)) && !render_scene::is_blended(scene, mesh);
+}
+
+void Engine::record_deferred_lit(draw::Viewport &viewport)
+{
+  Data &data = viewport.engine_data<Data>(*this);
+  draw::ShadingGroup &group = data.psl->deferred_lit_pass.group(
+      shaders_->get(viewport.device(), ShaderId::DeferredLit, with_variant(data.stl.features | asked_features())));
+  bind_lit(group, data);
+  group.bind_texture("gbuffer", data.txl.radiance, data.txl.nearest);
+  group.bind_texture("depth_texture", viewport.depth_texture(), data.txl.nearest);
+  group.call_procedural();
+}
+
+}  // namespace gnomon::eevee

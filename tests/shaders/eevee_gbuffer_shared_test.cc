@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "eevee_gbuffer_shared.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <random>
+
+namespace gnomon::shared {
+namespace {
+
+TEST(GBuffer, AllBitsSurviveAsNormalFloats)
+{
+  std::mt19937 random(3);
+  for (int i = 0; i < 100000; i++) {
+    // The ends of the range first.
+    const std::uint32_t bits = (i < 30   ? 1U << i
+                                : i < 60 ? 0x3fffffffU >> (i - 30)
+                                         : std::uint32_t(random())) &
+                               0x3fffffffU;
+    const float stored = gbuffer_float(bits);
+    ASSERT_TRUE(std::isnormal(stored)) << bits;
+    ASSERT_EQ(gbuffer_bits(stored), bits);
+  }
+}
+
+TEST(GBuffer, DirectionsAreExactOnAxesAndCloseElsewhere)
+{
+  for (int axis = 0; axis < 3; axis++) {
+    for (const float sign : {-1.0F, 1.0F}) {
+      vec3 v(0.0F);
+      v[axis] = sign;
+      EXPECT_EQ(gbuffer_to_direction(gbuffer_from_direction(v)), v);
+    }
+  }
+  std::mt19937 random(5);
+  std::normal_distribution<float> normal;
+  float largest = 0.0F;
+  for (int i = 0; i < 100000; i++) {
+    const vec3 v = glm::normalize(vec3(normal(random), normal(random), normal(random)));
+    largest = std::max(largest, glm::distance(gbuffer_to_direction(gbuffer_from_direction(v)), v));
+  }
+  // Half a step of 2 / 32766 in each coordinate, √2 on the diagonal, and up to 1.5 as long on the sphere as on the
+  // octahedron.
+  EXPECT_LT(largest, 1.5F * 1.4143F / 32766.0F);
+  EXPECT_GT(largest, 0.5F / 32766.0F);
+}
+
+TEST(GBuffer, DirectionsWithoutALengthAreUnitVectors)
+{
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const vec3 &v : {vec3(0.0F), vec3(1e-38F), vec3(1e30F, 0, 0)}) {
+    EXPECT_NEAR(glm::length(gbuffer_to_direction(gbuffer_from_direction(v))), 1.0F, 1e-6F);
+  }
+  EXPECT_TRUE(std::isnormal(gbuffer_float(std::bit_cast<std::uint32_t>(infinity))));
+}
+
+}  // namespace
+}  // namespace gnomon::shared
