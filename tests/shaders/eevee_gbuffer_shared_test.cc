@@ -44,9 +44,9 @@ TEST(GBuffer, DirectionsAreExactOnAxesAndCloseElsewhere)
     const vec3 v = glm::normalize(vec3(normal(random), normal(random), normal(random)));
     largest = std::max(largest, glm::distance(gbuffer_to_direction(gbuffer_from_direction(v)), v));
   }
-  // Half a step of 2 / 32766 in each coordinate, √2 on the diagonal, and up to 1.5 as long on the sphere as on the
-  // octahedron.
-  EXPECT_LT(largest, 1.5F * 1.4143F / 32766.0F);
+  // Half a step h of x and of y changes z by 2 h: the point on the octahedron moves by √6 h, and the direction by up to
+  // √3 of that, as the octahedron is at least 1 / √3 from the centre.
+  EXPECT_LT(largest, std::sqrt(18.0F) / 32766.0F);
   EXPECT_GT(largest, 0.5F / 32766.0F);
 }
 
