@@ -328,7 +328,7 @@ TEST_F(CliTest, TraceHasTheTimesOfTheParts)
     by_name[event["name"]] = event;
   }
   for (const char *name :
-       {"process start and options", "import", "read and parse", "device", "sync", "picture", "lit"}) {
+       {"process start and options", "import", "read and parse", "device", "sync", "picture", "deferred_lit"}) {
     EXPECT_TRUE(by_name.contains(name)) << name;
   }
   EXPECT_EQ(by_name["import"]["args"]["of"], "plaza.glb");
@@ -336,7 +336,7 @@ TEST_F(CliTest, TraceHasTheTimesOfTheParts)
   const auto end = [](const nlohmann::json &event) { return event["ts"].get<double>() + event["dur"].get<double>(); };
   EXPECT_GE(by_name["device"]["ts"], end(by_name["process start and options"]));
   EXPECT_GE(by_name["picture"]["ts"], end(by_name["import"]));
-  EXPECT_GE(end(by_name["picture"]), end(by_name["lit"]));
+  EXPECT_GE(end(by_name["picture"]), end(by_name["deferred_lit"]));
 }
 
 TEST_F(CliTest, ALimitIsNamedAndFailsOnlyWhenStrict)

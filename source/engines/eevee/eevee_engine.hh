@@ -231,10 +231,12 @@ class Engine final : public draw::Engine {
   }
   void record_object(draw::Viewport &viewport, draw::ObjectIndex object);
   /**
-   * Whether the G-buffer can hold what the light of the object depends on: it is opaque, its material has no textures,
-   * vertex colours, layers or surface function, and it receives shadows as all others do.
+   * Whether the scene has deferred lighting: at least half of its meshes allow it. Where forward objects hide deferred
+   * ones, pixels are lit twice. Objects are not counted, so that edits of them do not change the programs.
    */
-  [[nodiscard]] bool allows_deferred(draw::ObjectIndex object) const;
+  [[nodiscard]] bool is_scene_deferred(Feature features) const;
+  /** Whether the object is drawn into the G-buffer. It must also receive shadows, as all others there do. */
+  [[nodiscard]] bool is_lit_deferred(const StorageList &stl, draw::ObjectIndex object) const;
   void record_deferred_lit(draw::Viewport &viewport);
   /** Append the calls of an object that is blended: its backs, if they are drawn, and its fronts. */
   void record_blended(Data &data, draw::ObjectIndex object, const gpu::Shader &shader,

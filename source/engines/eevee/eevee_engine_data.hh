@@ -312,7 +312,7 @@ struct StorageList {
   Feature material_features = Feature::None;
   /** The material of at least one drawable object has a surface function. */
   bool has_surface_functions = false;
-  /** The recorded passes light those objects deferred that allow it. \see Engine::allows_deferred */
+  /** Of the recorded passes. \see Engine::is_scene_deferred */
   bool is_deferred = false;
   /** Entry of light_block of the light that is being probed. */
   int probed_light = 0;

@@ -7,7 +7,7 @@
 namespace gnomon::eevee {
 
 inline constexpr std::string_view why_forward =
-    "most objects have textures or other inputs, shadows are exponential, or nothing gives light";
+    "most meshes have textures or other inputs, shadows are exponential, or nothing gives light";
 
 /** Whether some objects are lit deferred. */
 [[nodiscard]] bool has_gbuffer(const Data &data);

@@ -317,10 +317,7 @@ void Engine::record_passes(draw::Viewport &viewport)
   stl.blended.clear();
   stl.blended_group_count = 0;
   stl.is_mirrored.assign(scene_.objects().index_end(), false);
-  // Where forward objects hide deferred ones, pixels are lit twice: with few deferred objects, that takes longer.
-  const auto allowed = [this](draw::ObjectIndex object) { return allows_deferred(object); };
-  stl.is_deferred = has(stl.features, Feature::Light) && !has(stl.features, Feature::ShadowEsm) &&
-                    2 * std::ranges::count_if(stl.objects, allowed) >= std::ssize(stl.objects);
+  stl.is_deferred = is_scene_deferred(stl.features);
   for (const draw::ObjectIndex object : stl.objects) {
     record_object(viewport, object);
   }
@@ -378,7 +375,7 @@ void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
                            (function.key != 0 ? lit_function_features : Feature::None);
   // Without the picture behind it, nothing that transmits light is in the view.
   const bool is_transmissive = surface == MaterialClass::Transmissive;
-  const bool is_deferred = stl.is_deferred && allows_deferred(index);
+  const bool is_deferred = is_lit_deferred(stl, index);
   const gpu::Shader *lit_shader =
       is_deferred || (is_transmissive && !data.txl.behind)
           ? nullptr

@@ -6,13 +6,32 @@
 
 namespace gnomon::eevee {
 
-bool Engine::allows_deferred(draw::ObjectIndex index) const
+/** Whether the G-buffer can hold what the light of a surface depends on: opaque, and without textures or other inputs.
+ */
+static bool allows_deferred(const scene::Scene &scene, const scene::Mesh &mesh)
+{
+  return render_scene::material_class(scene, mesh) == render_scene::MaterialClass::Plain &&
+         !render_scene::has_surface_function(scene, scene.material_of(mesh)) && !render_scene::is_blended(scene, mesh);
+}
+
+bool Engine::is_scene_deferred(Feature features) const
+{
+  if (!has(features, Feature::Light) || has(features, Feature::ShadowEsm)) {
+    return false;
+  }
+  const scene::Scene &scene = scene_.scene();
+  std::size_t allowed = 0;
+  for (const auto &[handle, mesh] : scene.meshes()) {
+    allowed += allows_deferred(scene, mesh) ? 1 : 0;
+  }
+  return 2 * allowed >= scene.meshes().size();
+}
+
+bool Engine::is_lit_deferred(const StorageList &stl, draw::ObjectIndex index) const
 {
   const scene::Scene &scene = scene_.scene();
   const render_scene::RenderObject &object = scene_.object(index);
-  const scene::Mesh &mesh = scene.meshes()[object.mesh];
-  return object.receives_shadow && render_scene::material_class(scene, mesh) == render_scene::MaterialClass::Plain &&
-         !render_scene::has_surface_function(scene, scene.material_of(mesh)) && !render_scene::is_blended(scene, mesh);
+  return stl.is_deferred && object.receives_shadow && allows_deferred(scene, scene.meshes()[object.mesh]);
 }
 
 void Engine::record_deferred_lit(draw::Viewport &viewport)
