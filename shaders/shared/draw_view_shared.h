@@ -9,7 +9,6 @@ SHARED_BEGIN
 /** Content of `view_block`. */
 struct ViewData {
   mat4 clip_from_world;
-  mat4 world_from_clip;
   /** Position of the eye, world space, metres. Unused by an orthographic projection. */
   vec3 position_ws;
   /** 1 for a perspective projection, 0 for an orthographic one. */
@@ -18,6 +17,20 @@ struct ViewData {
   vec3 back_ws;
   /** Added to the mip level of material textures, because several samples per pixel resolve smaller texels. */
   float texture_lod_bias;
+  /**
+   * The point of the view axis, world space, from which depths in the G-buffer are measured: near the scene, so that they and positions
+   * are as precise as those of the scene, however far the eye is.
+   */
+  vec3 depth_origin_ws;
+  /** Distance of depth_origin_ws from the eye along the view axis. 0 in an orthographic view. */
+  float depth_origin;
+  /**
+   * In its xyz, vectors of world space across the view axis, at a distance of 1 from the eye (orthographic: at any). A pixel with the
+   * normalized device coordinates (x, y) is at place_middle + x * place_right + y * place_up.
+   */
+  vec4 place_middle;
+  vec4 place_right;
+  vec4 place_up;
 };
 SHARED_ASSERT_SIZE(ViewData, 160)
 

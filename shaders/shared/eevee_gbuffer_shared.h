@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The G-buffer: what deferred lighting reads of a surface, in one texel of four floats. They are, in this order: the shading normal and the
-// normal of the triangle, both on the visible side; the entry of material_block; and the square of the change of the shading normal from
-// pixel to pixel, the sum of that to the right and that up, or 0 if nothing reflects specularly. \see filtered_alpha
+// normal of the triangle, both on the visible side; the entry of material_block, and above it, as a half float, the change of the shading
+// normal from pixel to pixel: the root of the sum of the squares of that to the right and that up, or 0 if nothing reflects specularly;
+// and the depth of gbuffer_depth(). \see filtered_alpha
 #ifndef EEVEE_GBUFFER_SHARED_H
 #define EEVEE_GBUFFER_SHARED_H
 
@@ -9,6 +10,10 @@
 #include "shared/shared_types.h"
 
 SHARED_BEGIN
+
+/** Bits and largest entry of material_block in the G-buffer. Materials beyond it are lit forward. */
+SHARED_CONSTANT uint GBUFFER_MATERIAL_BITS = 15u;
+SHARED_CONSTANT uint GBUFFER_MATERIAL_MAX = 0x7fffu;
 
 /** Steps of each coordinate of a stored direction on the octahedral map. They are even in number, so that axes are exact. */
 SHARED_CONSTANT float GBUFFER_STEPS = 32766.0f;

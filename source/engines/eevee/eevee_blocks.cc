@@ -22,11 +22,15 @@ using Field = gpu::BlockLayout::Field;
 
 constexpr auto view_fields = std::to_array<Field>({
     {"view.clip_from_world", offsetof(ViewData, clip_from_world)},
-    {"view.world_from_clip", offsetof(ViewData, world_from_clip)},
     {"view.position_ws", offsetof(ViewData, position_ws)},
     {"view.is_perspective", offsetof(ViewData, is_perspective)},
     {"view.back_ws", offsetof(ViewData, back_ws)},
     {"view.texture_lod_bias", offsetof(ViewData, texture_lod_bias)},
+    {"view.depth_origin_ws", offsetof(ViewData, depth_origin_ws)},
+    {"view.depth_origin", offsetof(ViewData, depth_origin)},
+    {"view.place_middle", offsetof(ViewData, place_middle)},
+    {"view.place_right", offsetof(ViewData, place_right)},
+    {"view.place_up", offsetof(ViewData, place_up)},
 });
 
 constexpr auto object_fields = std::to_array<Field>({

@@ -230,7 +230,7 @@ void Engine::update_view(Data &data, const draw::View &view)
   data.stl.material_block = data.shared->material_block = {materials.buffer().id()};
   data.stl.full_material_block = data.shared->full_material_block = {materials.full_buffer().id()};
   data.stl.layer_block = {materials.layer_buffer().id()};
-  scene_.device().update(data.stl.view_block, view_data(view, settings_, data.sample_index));
+  scene_.device().update(data.stl.view_block, view_data(view, settings_, data.sample_index, scene_.bounds()));
 }
 
 void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)

@@ -174,7 +174,8 @@ void record_film(const FrameStep &step, FrameSample &sample, gpu::CommandList &l
 
 void record_picture_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
-  const shared::ViewData block = view_data(sample.view, sample.settings, sample.data.sample_index);
+  const shared::ViewData block =
+      view_data(sample.view, sample.settings, sample.data.sample_index, sample.data.shared->bounds_ws);
   list.update(sample.data.stl.view_block, 0, std::as_bytes(std::span(&block, 1)));
   list.begin_pass(step.name, sample.data.fbl.picture_depth_fb, {.scissor = sample.viewport.drawn_region()});
   record_passes(step, sample, sample.view, list);

@@ -120,8 +120,9 @@ void record_pass(const FrameStep &step, FrameSample &sample, gpu::CommandList &l
 [[nodiscard]] draw::View view_of_sample(const draw::View &drawn_view, const draw::Viewport &viewport,
                                         const Settings &settings, int index);
 
-/** The content of `view_block`. \a sample_count: samples for each pixel. */
-[[nodiscard]] shared::ViewData view_data(const draw::View &view, const Settings &settings, int sample_index);
+/** The content of `view_block`. \a bounds_ws: of the scene. */
+[[nodiscard]] shared::ViewData view_data(const draw::View &view, const Settings &settings, int sample_index,
+                                         const scene::Bounds &bounds_ws);
 
 inline constexpr const char *nothing_seen = "nothing is seen";
 

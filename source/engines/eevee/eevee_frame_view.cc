@@ -7,6 +7,7 @@
 
 #include <glm/matrix.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace gnomon::eevee {
@@ -42,15 +43,41 @@ draw::View view_of_sample(const draw::View &drawn_view, const draw::Viewport &vi
                             viewport.drawn_size_px());
 }
 
-shared::ViewData view_data(const draw::View &view, const Settings &settings, int sample_index)
+/** Where the G-buffer measures depths from, and where its pixels are. \a bounds_ws: of the scene. */
+static void set_places(shared::ViewData &data, const draw::View &view, const scene::Bounds &bounds_ws)
+{
+  const glm::dmat4 world_from_view = glm::inverse(glm::dmat4(view.view_from_world()));
+  const glm::dmat4 projection(view.clip_from_view());
+  const glm::dvec3 eye(world_from_view[3]);
+  const glm::dvec3 back = glm::normalize(glm::dvec3(world_from_view[2]));
+  double origin = 0.0;
+  if (!bounds_ws.is_empty()) {
+    // The near side of the scene, or the eye if that is nearer.
+    origin = glm::dot(eye - glm::dvec3(bounds_ws.center()), back) - double(bounds_ws.radius());
+    origin = view.is_perspective() ? std::max(origin, 0.0) : origin;
+  }
+  data.depth_origin_ws = glm::vec3(eye - back * origin);
+  data.depth_origin = view.is_perspective() ? float(origin) : 0.0F;
+  // View space: a perspective projection divides by the distance from the eye, an orthographic one adds its offset.
+  const glm::dvec2 scale = 1.0 / glm::dvec2(projection[0][0], projection[1][1]);
+  const glm::dvec2 offset = view.is_perspective() ? glm::dvec2(projection[2]) : -glm::dvec2(projection[3]);
+  const glm::dvec3 right = glm::dvec3(world_from_view[0]) * scale.x;
+  const glm::dvec3 up = glm::dvec3(world_from_view[1]) * scale.y;
+  data.place_middle = glm::vec4(glm::vec3(right * offset.x + up * offset.y), 0.0F);
+  data.place_right = glm::vec4(glm::vec3(right), 0.0F);
+  data.place_up = glm::vec4(glm::vec3(up), 0.0F);
+}
+
+shared::ViewData view_data(const draw::View &view, const Settings &settings, int sample_index,
+                           const scene::Bounds &bounds_ws)
 {
   const glm::mat4 world_from_view(glm::inverse(glm::dmat4(view.view_from_world())));
   shared::ViewData data{};
   data.clip_from_world = view.clip_from_world();
-  data.world_from_clip = glm::mat4(glm::inverse(glm::dmat4(view.clip_from_world())));
   data.position_ws = glm::vec3(world_from_view[3]);
   data.is_perspective = view.is_perspective() ? 1 : 0;
   data.back_ws = glm::normalize(glm::vec3(world_from_view[2]));
+  set_places(data, view, bounds_ws);
   // With n samples for each pixel, a sample covers 1/n of the pixel's area, so that the samples are n^-1/2 pixels
   // apart.
   const int sample_count = settings.sample_count == 0 ? sample_index + 1 : settings.sample_count;

@@ -43,7 +43,7 @@ void Engine::order_blended(Data &data, const draw::View &view)
     return;
   }
   data.visible.update(view, scene_.objects());
-  const shared::ViewData seen_from = view_data(view, settings_, 0);
+  const shared::ViewData seen_from = view_data(view, settings_, 0, scene_.bounds());
   BlendOrderKey key{.eye_ws = seen_from.is_perspective != 0 ? glm::vec4(seen_from.position_ws, 1.0F)
                                                             : glm::vec4(seen_from.back_ws, 0.0F),
                     .objects = scene_.objects().revision(),

@@ -2,15 +2,19 @@
 // Deferred lighting: which objects it lights, and the pass that lights their pixels.
 #include "eevee_engine.hh"
 #include "eevee_engine_data.hh"
+#include "eevee_gbuffer_shared.h"
 #include "eevee_material_variants.hh"
 
 namespace gnomon::eevee {
 
-/** Whether the G-buffer can hold what the light of a surface depends on: opaque, and without textures or other inputs.
+/**
+ * Whether the G-buffer can hold what the light of a surface depends on: it is opaque and without textures or other
+ * inputs.
  */
 static bool allows_deferred(const scene::Scene &scene, const scene::Mesh &mesh)
 {
-  return render_scene::material_class(scene, mesh) == render_scene::MaterialClass::Plain &&
+  return render_scene::MaterialTable::place_of(scene, mesh.material) <= shared::GBUFFER_MATERIAL_MAX &&
+         render_scene::material_class(scene, mesh) == render_scene::MaterialClass::Plain &&
          !render_scene::has_surface_function(scene, scene.material_of(mesh)) && !render_scene::is_blended(scene, mesh);
 }
 
@@ -41,7 +45,6 @@ void Engine::record_deferred_lit(draw::Viewport &viewport)
       shaders_->get(viewport.device(), ShaderId::DeferredLit, with_variant(data.stl.features | asked_features())));
   bind_lit(group, data);
   group.bind_texture("gbuffer", data.txl.radiance, data.txl.nearest);
-  group.bind_texture("depth_texture", viewport.depth_texture(), data.txl.nearest);
   group.call_procedural();
 }
 
