@@ -32,5 +32,6 @@ void main()
 #ifdef USE_MULTISCATTER
   surface.multiscatter = multiscatter_of(material, surface);
 #endif
-  radiance = vec4(sum + direct_light(material, surface), 1.0);
+  sum += direct_light(material, surface);
+  radiance = vec4(sum, 1.0);
 }
