@@ -224,7 +224,10 @@ constexpr std::array<FramePass, 4> picture_depth_passes = {
     {depth_passes[0], depth_passes[1], gbuffer_passes[0], transmission_passes[0]}};
 
 constexpr std::array<FramePass, 2> lit_passes = {{
-    {&PassList::lit_pass, "objects in the view", [](const FrameState &) -> std::string { return nothing_seen; }},
+    {&PassList::lit_pass, "objects in the view",
+     [](const FrameState &state) -> std::string {
+       return has_gbuffer(state.data) ? std::string(all_in_gbuffer) : nothing_seen;
+     }},
     {&PassList::tint_pass, "asked for",
      [](const FrameState &state) -> std::string {
        return !state.settings.has_cascade_tint  ? "not asked for"

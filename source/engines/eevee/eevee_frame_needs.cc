@@ -69,7 +69,7 @@ Need need_forward_depth(const FrameState &state)
   }
   const PassList &psl = *state.data.psl;
   return psl.depth_pass.is_empty() && psl.depth_pass_cull.is_empty()
-             ? Need{false, "all objects are in the G-buffer"}
+             ? Need{false, all_in_gbuffer}
              : Need{true, "objects that are not in the G-buffer"};
 }
 
@@ -80,7 +80,7 @@ Need need_lit(const FrameState &state)
   }
   const PassList &psl = *state.data.psl;
   return has_gbuffer(state.data) && psl.lit_pass.is_empty() && psl.tint_pass.is_empty()
-             ? Need{false, "all objects are in the G-buffer"}
+             ? Need{false, all_in_gbuffer}
              : Need{true, "objects in the view"};
 }
 

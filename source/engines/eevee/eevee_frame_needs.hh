@@ -8,6 +8,7 @@ namespace gnomon::eevee {
 
 inline constexpr std::string_view why_forward =
     "most meshes have textures or other inputs, shadows are exponential, or nothing gives light";
+inline constexpr std::string_view all_in_gbuffer = "all objects are in the G-buffer";
 
 /** Whether some objects are lit deferred. */
 [[nodiscard]] bool has_gbuffer(const Data &data);

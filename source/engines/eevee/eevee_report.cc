@@ -126,7 +126,8 @@ FrameNode pass_nodes(const ReportSource &source)
       for (const FramePass &pass : step.passes) {
         passes.push_back(pass_node(step, record, pass, state));
       }
-      node = folder(std::string(step.name), std::string(record.need.reason), nothing_seen, std::move(passes));
+      const std::string reason(record.need.reason);
+      node = folder(std::string(step.name), reason, record.need.is_needed ? nothing_seen : reason, std::move(passes));
     }
     const auto time = std::ranges::find(data.timing.steps, step.name, &Timing::Step::name);
     if (time != data.timing.steps.end()) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Reasons why parts of a frame were left out.
 #include "eevee_report_source.hh"
+#include "eevee_frame_needs.hh"
 
 #include <fmt/format.h>
 
@@ -138,6 +139,10 @@ std::string why_no_program(const ReportSource &source, ShaderId id)
     case ShaderId::EvsmDisk32:
     case ShaderId::EvsmSeparable: return source.has(Feature::ShadowEvsm) ? other_kernel : no_evsm;
     case ShaderId::DepthFunction: return "no surface function can cut a material out";
+    case ShaderId::Depth:
+    case ShaderId::Lit: return has_gbuffer(source.data) ? std::string(all_in_gbuffer) : nothing_seen;
+    case ShaderId::GBuffer:
+    case ShaderId::DeferredLit: return std::string(why_forward);
     default: return nothing_seen;
   }
 }

@@ -312,6 +312,11 @@ TEST_F(LeftOut, TheTreeGivesTheReason)
   expect_reason("no shadow", {"passes", "shadows"}, "shadows are off");
   expect_reason("no shadow", {"shadows", "SUN"}, "shadows are off");
   expect_reason("no texture", {"textures", "holes"}, "no object has a material that looks it up");
+  const std::string in_gbuffer = "all objects are in the G-buffer";
+  expect_reason("no texture", {"passes", "forward_depth"}, in_gbuffer);
+  expect_reason("no texture", {"passes", "lit"}, in_gbuffer);
+  expect_reason("no texture", {"passes", "lit", "lit_pass"}, in_gbuffer);
+  expect_reason("no texture", {"programs", "eevee_lit"}, in_gbuffer);
   expect_reason("no alpha", {"programs", "features", "USE_ALPHA_MASK"}, "no texture's alpha cuts a material out");
   expect_reason("no specular", {"programs", "features", "USE_SPECULAR"}, "every material is Lambertian");
   for (const char *name : {"no visible receiver", "nothing at all"}) {
