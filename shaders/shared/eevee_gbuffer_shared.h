@@ -13,7 +13,7 @@ SHARED_BEGIN
 
 /** Bits and largest entry of material_block in the G-buffer. Materials beyond it are lit forward. */
 SHARED_CONSTANT uint GBUFFER_MATERIAL_BITS = 15u;
-SHARED_CONSTANT uint GBUFFER_MATERIAL_MAX = 0x7fffu;
+SHARED_CONSTANT uint GBUFFER_MATERIAL_MAX = (1u << GBUFFER_MATERIAL_BITS) - 1u;
 
 /** Steps of each coordinate of a stored direction on the octahedral map. They are even in number, so that axes are exact. */
 SHARED_CONSTANT float GBUFFER_STEPS = 32766.0f;

@@ -117,8 +117,8 @@ struct PassActions {
    */
   bool is_srgb_encoded = false;
   /**
-   * true: draws may look up the attachments. A fragment may read its own texel of a colour attachment, once, before it
-   * writes it, and any texel of a depth attachment that the pass does not write.
+   * true: draws may look up the colour attachments. A fragment may read its own texel once, before it writes it
+   * (OpenGL 4.5, 9.3.1; a texture barrier precedes the pass).
    */
   bool reads_attachments = false;
 };

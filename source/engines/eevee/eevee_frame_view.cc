@@ -43,17 +43,19 @@ draw::View view_of_sample(const draw::View &drawn_view, const draw::Viewport &vi
                             viewport.drawn_size_px());
 }
 
-/** Where the G-buffer measures depths from, and where its pixels are. \a bounds_ws: of the scene. */
-static void set_places(shared::ViewData &data, const draw::View &view, const scene::Bounds &bounds_ws)
+/** Set the members of \a data from which positions in the G-buffer follow. \a bounds_ws: of the scene. */
+static void set_places(shared::ViewData &data, const draw::View &view, const glm::dmat4 &world_from_view,
+                       const scene::Bounds &bounds_ws)
 {
-  const glm::dmat4 world_from_view = glm::inverse(glm::dmat4(view.view_from_world()));
   const glm::dmat4 projection(view.clip_from_view());
   const glm::dvec3 eye(world_from_view[3]);
   const glm::dvec3 back = glm::normalize(glm::dvec3(world_from_view[2]));
   double origin = 0.0;
   if (!bounds_ws.is_empty()) {
-    // The near side of the scene, or the eye if that is nearer.
-    origin = glm::dot(eye - glm::dvec3(bounds_ws.center()), back) - double(bounds_ws.radius());
+    // The near side of the scene, or the eye if the scene begins behind it. In double precision, as Bounds::radius
+    // overflows for bounds above 1e19 m.
+    const glm::dvec3 half_size = 0.5 * (glm::dvec3(bounds_ws.max) - glm::dvec3(bounds_ws.min));
+    origin = glm::dot(eye - glm::dvec3(bounds_ws.center()), back) - glm::length(half_size);
     origin = view.is_perspective() ? std::max(origin, 0.0) : origin;
   }
   data.depth_origin_ws = glm::vec3(eye - back * origin);
@@ -71,13 +73,13 @@ static void set_places(shared::ViewData &data, const draw::View &view, const sce
 shared::ViewData view_data(const draw::View &view, const Settings &settings, int sample_index,
                            const scene::Bounds &bounds_ws)
 {
-  const glm::mat4 world_from_view(glm::inverse(glm::dmat4(view.view_from_world())));
+  const glm::dmat4 world_from_view = glm::inverse(glm::dmat4(view.view_from_world()));
   shared::ViewData data{};
   data.clip_from_world = view.clip_from_world();
   data.position_ws = glm::vec3(world_from_view[3]);
   data.is_perspective = view.is_perspective() ? 1 : 0;
   data.back_ws = glm::normalize(glm::vec3(world_from_view[2]));
-  set_places(data, view, bounds_ws);
+  set_places(data, view, world_from_view, bounds_ws);
   // With n samples for each pixel, a sample covers 1/n of the pixel's area, so that the samples are n^-1/2 pixels
   // apart.
   const int sample_count = settings.sample_count == 0 ? sample_index + 1 : settings.sample_count;

@@ -105,8 +105,13 @@ class DeferredGpuTest : public test::GpuDeviceTest {
 
 const Settings with_small_shadows = {.shadow = {.cube_size_px = 256, .map_size_px = 256}};
 
-/** Expects equal pictures but for \a rare pixels, where a shadow's edge passes between two values of a position. */
-void expect_equal(const Picture &deferred, const Picture &forward, float tolerance, int rare)
+/**
+ * Directions of the G-buffer have 15 bits a coordinate, an error of up to 1.3e-4. Measured: at most 13 pixels differ by
+ * more than 1e-4, and none by more than 3e-4.
+ */
+constexpr float tolerance = 3e-4F;
+
+void expect_equal(const Picture &deferred, const Picture &forward)
 {
   ASSERT_EQ(deferred.pixels.size(), forward.pixels.size());
   int different = 0;
@@ -116,7 +121,7 @@ void expect_equal(const Picture &deferred, const Picture &forward, float toleran
     different += std::max({delta.r, delta.g, delta.b, delta.a}) > tolerance ? 1 : 0;
     brightest = std::max(brightest, forward.pixels[i].r);
   }
-  EXPECT_LE(different, rare);
+  EXPECT_EQ(different, 0);
   EXPECT_GT(brightest, 0.1F) << "a picture without light would test nothing";
 }
 
@@ -141,7 +146,7 @@ TEST_F(DeferredGpuTest, ThePictureIsThatOfForwardLighting)
           pictures.push_back(render(settings, path == Path::Deferred));
         }
         SCOPED_TRACE(testing::Message() << specular << is_perspective << sample_count);
-        expect_equal(pictures[0], pictures[1], 2e-3F, 12);
+        expect_equal(pictures[0], pictures[1]);
       }
     }
     camera = test::camera_at({0.4F, -5, 3.5F}, {0, 0, 0.2F}, 0.7F);
@@ -163,7 +168,7 @@ TEST_F(DeferredGpuTest, ObjectsOfOtherKindsLieInFrontAndBehind)
       settings.background = {.kind = Background::Kind::Color, .color = {0.2F, 0.4F, 0.9F}};
       pictures.push_back(render(settings, path == Path::Deferred));
     }
-    expect_equal(pictures[0], pictures[1], 2e-3F, 12);
+    expect_equal(pictures[0], pictures[1]);
   }
 }
 

@@ -417,7 +417,7 @@ TEST_F(EngineGpuTest, EveryVariantIsAcceptedByTheDriver)
 {
   for (const ShaderDeclaration &declaration : shader_declarations()) {
     for (const Feature features : shader_variants(declaration)) {
-      // Programs are freed one by one: together, they take 15 GB of Mesa.
+      // Each program is freed before the next: all of them together take 15 GB in Mesa.
       ShaderCache cache;
       EXPECT_NO_THROW(cache.get(*device, declaration.id, features)) << declaration.name << std::uint32_t(features);
     }
