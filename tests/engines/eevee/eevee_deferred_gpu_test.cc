@@ -3,6 +3,7 @@
 // forward.
 #include "eevee_test_scene.hh"
 #include "gpu_device_fixture.hh"
+#include "scene_studio.hh"
 
 #include <gtest/gtest.h>
 #include <glm/gtc/matrix_transform.hpp>
@@ -170,6 +171,30 @@ TEST_F(DeferredGpuTest, ObjectsOfOtherKindsLieInFrontAndBehind)
     }
     expect_equal(pictures[0], pictures[1]);
   }
+}
+
+TEST_F(DeferredGpuTest, GlassShowsThemAndTheWorldBehindThem)
+{
+  std::vector<Picture> pictures;
+  for (const Path path : {Path::Deferred, Path::Forward}) {
+    scene = {};
+    add_plain_objects(path, 1.0F);
+    add_lamps();
+    scene::Material glass;
+    glass.metallic = 0.0F;
+    glass.roughness = 0.0F;
+    glass.transmission = 1.0F;
+    glass.is_double_sided = true;
+    const glm::dmat4 upright =
+        glm::rotate(glm::translate(glm::dmat4(1.0), glm::dvec3(0.2, -1.8, 0.8)), 1.5, glm::dvec3(1, 0, 0));
+    test::add_object(scene, test::add_square_mesh(scene, scene.add(std::move(glass))), upright);
+    scene.set_world(scene::studio_world(camera.world_from_camera));
+    Settings settings = with_small_shadows;
+    settings.background.kind = Background::Kind::World;
+    pictures.push_back(render(settings, path == Path::Deferred));
+  }
+  expect_equal(pictures[0], pictures[1]);
+  EXPECT_GT(device->pass_counts().at("transmission"), 1U) << "once for each picture";
 }
 
 TEST_F(DeferredGpuTest, PartsOfASampleAreThoseOfTheWholePicture)
