@@ -33,8 +33,7 @@ layout(location = ATTRIBUTE_NORMAL) in vec3 normal;
 layout(location = 0) out vec3 normal_ws;
 void main()
 {
-  ObjectData object = objects[draw_instance.x];
-  normal_ws = mat3(object.normal_x.xyz, object.normal_y.xyz, object.normal_z) * normal;
+  normal_ws = to_normal_ws(normal);
   gl_Position = view.clip_from_world * vertex_position_ws();
 })";
   }
@@ -148,7 +147,6 @@ class FacingEngine final : public draw::Engine {
                           &scene_.objects());
     draw::ShadingGroup &group = data.surfaces->group(data.surface_shader);
     group.bind_uniform("view_block", data.view_block);
-    group.bind_storage("object_block", scene_.objects().buffer());
     for (const draw::ObjectIndex object : data.objects) {
       group.call(scene_.batch(scene_.object(object).mesh, render_scene::MeshStreams::Shape), object);
     }

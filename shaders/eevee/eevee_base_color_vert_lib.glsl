@@ -9,6 +9,6 @@ layout(location = 3) out vec2 surface_uv;
 
 void write_material_varyings()
 {
-  surface_material = objects[draw_instance.x].value;
+  surface_material = object_value();
   surface_uv = uv;
 }

@@ -33,7 +33,7 @@ vec2 input_uv(uint material, int index)
 
 void write_material_varyings()
 {
-  surface_material = objects[draw_instance.x].value;
+  surface_material = object_value();
   surface_uv = input_uv(surface_material, 0);
   surface_color = color;
 #ifdef USE_OPACITY_THRESHOLD

@@ -34,7 +34,7 @@ vec2 layer_uv(uint material, int index)
 
 void write_full_varyings()
 {
-  uint material = objects[draw_instance.x].value;
+  uint material = object_value();
   surface_roughness_normal_uvs = vec4(input_uv(material, 1), input_uv(material, 2));
   surface_occlusion_emissive_uvs = vec4(input_uv(material, 3), input_uv(material, 4));
   surface_specular_uvs = vec4(input_uv(material, 5), input_uv(material, 6));
@@ -46,14 +46,14 @@ void write_full_varyings()
   surface_coat_normal_scale = has_coat_normal ? layer_materials[material].coat_normal_scale : 0.0;
 #  ifdef USE_TRANSMISSION
   surface_transmission_uvs = vec4(layer_uv(material, 6), layer_uv(material, 7));
-  surface_object_from_world = inverse(mat3(objects[draw_instance.x].world_from_object));
+  surface_object_from_world = inverse(mat3(world_from_object()));
   bool has_roughness_texture = (full_materials[material].inputs & INPUT_METALLIC_ROUGHNESS) != 0u;
   surface_lens = vec3(full_materials[material].roughness, has_roughness_texture ? 1.0 : 0.0, layer_materials[material].ior);
 #  endif
 #endif
 #ifdef USE_LIGHT
-  mat3 world_from_object = mat3(objects[draw_instance.x].world_from_object);
-  vec3 tangent_ws = world_from_object * tangent.xyz;
+  mat3 directions_ws = mat3(world_from_object());
+  vec3 tangent_ws = directions_ws * tangent.xyz;
   float length_sq = dot(tangent_ws, tangent_ws);
   bool has_normal_texture = (full_materials[material].inputs & INPUT_NORMAL) != 0u;
   float scale = has_normal_texture ? full_materials[material].normal_scale : 0.0;
@@ -64,6 +64,6 @@ void write_full_varyings()
   surface_coat_normal_scale = scale < 0.0 ? -surface_coat_normal_scale : surface_coat_normal_scale;
 #  endif
   // A mirrored object reverses cross(normal, tangent).
-  surface_tangent_ws.w = (determinant(world_from_object) < 0.0 ? -tangent.w : tangent.w) * (1.0 + abs(scale));
+  surface_tangent_ws.w = (determinant(directions_ws) < 0.0 ? -tangent.w : tangent.w) * (1.0 + abs(scale));
 #endif
 }

@@ -31,7 +31,7 @@ void main()
   write_full_varyings();
 #  endif
 #else
-  surface_material = objects[draw_instance.x].value;
+  surface_material = object_value();
 #endif
 #ifdef USE_LIGHT
   write_surface_varyings(position_ws.xyz);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // For vertex shaders: the position of a caster in a shadow layer (face or cascade). The value of the instance is the layer.
+#define DRAW_INSTANCES
 #include "draw/draw_object_lib.glsl"
 #include "shared/eevee_shadow_shared.h"
 #ifdef USE_ALPHA_MASK

@@ -9,9 +9,8 @@ layout(location = 1) out vec3 surface_normal_ws;
 
 void write_surface_varyings(vec3 position_ws)
 {
-  ObjectData object = objects[draw_instance.x];
   surface_position_ws = position_ws;
-  vec3 normal_ws = object.normal_x.xyz * normal.x + object.normal_y.xyz * normal.y + object.normal_z * normal.z;
+  vec3 normal_ws = to_normal_ws(normal);
   float length_sq = dot(normal_ws, normal_ws);
   surface_normal_ws = length_sq > 0.0 ? normal_ws * inversesqrt(length_sq) : vec3(0.0);
 }

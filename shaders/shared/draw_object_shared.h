@@ -9,8 +9,11 @@ SHARED_BEGIN
 /** One object: an entry of `object_block`. */
 struct ObjectData {
   mat4 world_from_object;
-  /** Columns of the normal matrix, up to scale. w is unused. \see draw::normal_matrix */
-  vec4 normal_x;
+  /** Columns of the normal matrix, up to scale. \see draw::normal_matrix */
+  vec3 normal_x;
+  /** Of the object in `object_block`. */
+  uint index;
+  /** w is unused. */
   vec4 normal_y;
   vec3 normal_z;
   /** Defined by the engine. Eevee stores the index in `material_block`. */

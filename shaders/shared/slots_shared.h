@@ -6,11 +6,18 @@
 
 #define ATTRIBUTE_POSITION 0
 #define ATTRIBUTE_NORMAL 1
+/** The object's index, and in instance calls the value of the instance. */
 #define ATTRIBUTE_DRAW_INSTANCE 2
 #define ATTRIBUTE_UV 3
 #define ATTRIBUTE_SECOND_UV 4
 #define ATTRIBUTE_TANGENT 5
 #define ATTRIBUTE_COLOR 6
+/** Of the object of a call. A mat4 takes four locations. */
+#define ATTRIBUTE_WORLD_FROM_OBJECT 7
+#define ATTRIBUTE_OBJECT_NORMAL_X 11
+#define ATTRIBUTE_OBJECT_NORMAL_Y 12
+#define ATTRIBUTE_OBJECT_NORMAL_Z 13
+#define ATTRIBUTE_OBJECT_VALUE 14
 
 #define OBJECT_BLOCK_SLOT 0
 #define MATERIAL_BLOCK_SLOT 1

@@ -25,7 +25,7 @@ void main()
   write_full_varyings();
 #  endif
 #else
-  surface_material = objects[draw_instance.x].value;
+  surface_material = object_value();
 #endif
 #ifdef USE_DEPTH_CAMERA
   depth_camera_position = clip_from_world * position_ws;

@@ -135,7 +135,8 @@ void ObjectBuffer::write(ObjectIndex index, const glm::mat4 &world_from_object, 
   const glm::mat3 normal = normal_matrix(world_from_object);
   shared::ObjectData &object = objects_[index];
   object.world_from_object = world_from_object;
-  object.normal_x = glm::vec4(normal[0], 0.0F);
+  object.normal_x = normal[0];
+  object.index = index;
   object.normal_y = glm::vec4(normal[1], 0.0F);
   object.normal_z = normal[2];
   object.value = value;

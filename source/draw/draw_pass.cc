@@ -141,44 +141,47 @@ void ShadingGroup::record_bindings(gpu::CommandList &list) const
   }
 }
 
-RecordCounts ShadingGroup::collect_draws(const View &view, const VisibleObjects &visible, gpu::CommandList &list) const
+std::uint64_t ShadingGroup::collect_calls(const View &view, const VisibleObjects &visible, gpu::CommandList &list) const
 {
-  const std::size_t first_instance_of_all = list.instances.size();
-  list.instances.resize(first_instance_of_all + calls_.size());
-  gpu::DrawInstance *const instances = list.instances.data();
-  auto instance_end = std::uint32_t(first_instance_of_all);
-  // Whether the last entry of list.draws belongs to this group. A call of the same batch then adds an instance to it.
-  bool has_draw = false;
+  std::uint64_t drawn = 0;
   for (const Call &call : calls_) {
     const bool is_visible =
         call.volume == object_volume ? !objects_ || visible.contains(call.object) : view.touches(volumes_[call.volume]);
     if (!is_visible) {
       continue;
     }
-    const std::uint32_t first_instance = instance_end++;
-    instances[first_instance] = {call.object, 0};
-    // Compare the counts too, because an empty batch has the same first index as the batch after it.
-    if (has_draw && list.draws.back().first_index == call.batch.first_index &&
-        list.draws.back().index_count == call.batch.index_count) {
-      list.draws.back().instance_count++;
+    std::uint32_t instance = call.object;
+    if (!objects_) {
+      instance = std::uint32_t(list.instances.size());
+      list.instances.push_back({call.object, 0});
+    }
+    // The next instance of the same batch is added to the last draw. Compare the counts too, because an empty batch has
+    // the same first index as the batch after it.
+    gpu::DrawIndirect *const last = drawn > 0 ? &list.draws.back() : nullptr;
+    if (last && last->first_index == call.batch.first_index && last->index_count == call.batch.index_count &&
+        last->first_instance + last->instance_count == instance) {
+      last->instance_count++;
     }
     else {
-      list.draws.push_back({call.batch.index_count, 1, call.batch.first_index, call.batch.base_vertex, first_instance});
-      has_draw = true;
+      list.draws.push_back({call.batch.index_count, 1, call.batch.first_index, call.batch.base_vertex, instance});
     }
+    drawn++;
   }
-  list.instances.resize(instance_end);
-  RecordCounts counts;
-  counts.culled = calls_.size() - (instance_end - first_instance_of_all);
+  return drawn;
+}
+
+std::uint64_t ShadingGroup::collect_instances(gpu::CommandList &list) const
+{
+  std::uint64_t drawn = 0;
   for (const InstanceCall &call : instance_calls_) {
     if (!call.instances_.empty()) {
       list.draws.push_back({call.batch_.index_count, std::uint32_t(call.instances_.size()), call.batch_.first_index,
                             call.batch_.base_vertex, std::uint32_t(list.instances.size())});
       list.instances.insert(list.instances.end(), call.instances_.begin(), call.instances_.end());
+      drawn += call.instances_.size();
     }
   }
-  counts.drawn = list.instances.size() - first_instance_of_all + procedural_calls_.size();
-  return counts;
+  return drawn;
 }
 
 Pass::Pass(std::string name, gpu::State state, ObjectBuffer *objects)
@@ -201,8 +204,12 @@ void Pass::clear()
 RecordCounts Pass::record_group(const ShadingGroup &group, const View &view, const VisibleObjects &visible,
                                 gpu::CommandList &list, gpu::State without) const
 {
-  const std::size_t first_draw = list.draws.size();
-  const RecordCounts counts = group.collect_draws(view, visible, list);
+  const std::size_t first_call = list.draws.size();
+  const std::uint64_t drawn_calls = group.collect_calls(view, visible, list);
+  const std::size_t first_instanced = list.draws.size();
+  const std::uint64_t drawn_instances = group.collect_instances(list);
+  const RecordCounts counts{.drawn = drawn_calls + drawn_instances + group.procedural_calls_.size(),
+                            .culled = group.calls_.size() - drawn_calls};
   const bool has_calls = !group.calls_.empty() || !group.instance_calls_.empty();
   if (has_calls && counts.drawn == 0) {
     return counts;
@@ -210,9 +217,15 @@ RecordCounts Pass::record_group(const ShadingGroup &group, const View &view, con
   list.set_shader(group.shader_.id());
   list.set_state(gpu::without(state_ | group.state_, without));
   group.record_bindings(list);
-  if (list.draws.size() > first_draw) {
-    list.draw(std::uint32_t(first_draw), std::uint32_t(list.draws.size() - first_draw));
-  }
+  const auto draw = [&](std::size_t first, std::size_t end, gpu::ResourceId objects) {
+    if (end > first) {
+      list.bind_instances(objects);
+      list.draw(std::uint32_t(first), std::uint32_t(end - first));
+    }
+  };
+  GNOMON_ASSERT(drawn_calls == 0 || !objects_ || objects_->buffer(), "pass '{}': its objects are not uploaded", name_);
+  draw(first_call, first_instanced, objects_ ? objects_->buffer().id() : 0);
+  draw(first_instanced, list.draws.size(), 0);
   for (const ShadingGroup::ProceduralCall &call : group.procedural_calls_) {
     list.draw_procedural(call.triangle_count * 3, call.instance_count);
   }

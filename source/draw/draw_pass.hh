@@ -38,7 +38,10 @@ struct RecordCounts {
   std::uint64_t culled = 0;
 };
 
-/** Draws a batch once for each added instance. Instances may change between records. Lives as long as its group. */
+/**
+ * Draws a batch once for each added instance. Instances may change between records. Lives as long as its group. A
+ * shader that includes draw_object_lib.glsl defines DRAW_INSTANCES.
+ */
 class InstanceCall {
  public:
   /** Add an instance. \a value: gpu::DrawInstance::value; the shader defines its meaning */
@@ -157,8 +160,10 @@ class ShadingGroup {
   /** The entry of the constant \a name, created by the first call; nullptr if the shader has no such constant. */
   [[nodiscard]] Constant *constant_entry(std::string_view name, std::size_t size_bytes);
   void record_bindings(gpu::CommandList &list) const;
-  /** Appends to the list's draws and instances, but not to its commands. */
-  RecordCounts collect_draws(const View &view, const VisibleObjects &visible, gpu::CommandList &list) const;
+  /** Appends the draws of the visible calls to the list, but no commands. \return the number of instances */
+  std::uint64_t collect_calls(const View &view, const VisibleObjects &visible, gpu::CommandList &list) const;
+  /** The same for instance calls. */
+  std::uint64_t collect_instances(gpu::CommandList &list) const;
 
   const gpu::Shader &shader_;
   ObjectBuffer *objects_;
@@ -190,7 +195,7 @@ class Pass {
    * Append the commands that draw the pass for \a view to \a list. Omits calls that are culled, and groups whose calls
    * are all culled. \a without: bits to remove from the state, for this record only. One thread at a time may record
    * a pass.
-   * \pre called between begin_pass and end_pass of \a list
+   * \pre called between begin_pass and end_pass of \a list, and after ObjectBuffer::upload of the pass's objects
    */
   RecordCounts record(const View &view, gpu::CommandList &list, gpu::State without = gpu::State::None) const;
   /** The same. Updates \a visible, which several passes of the same objects may share, if the pass has calls. */

@@ -56,6 +56,11 @@ void CommandList::bind_texture(int slot, ResourceId texture, ResourceId sampler)
   commands_.push_back({.kind = CommandKind::BindTexture, .slot = std::uint32_t(slot), .id = texture, .first = sampler});
 }
 
+void CommandList::bind_instances(ResourceId objects)
+{
+  commands_.push_back({.kind = CommandKind::BindInstances, .id = objects});
+}
+
 std::span<std::byte> CommandList::push_constants(int slot, std::span<const std::byte> bytes)
 {
   commands_.push_back(
@@ -160,6 +165,10 @@ std::string CommandList::serialize(const Device &device) const
       case CommandKind::BindTexture:
         text += fmt::format("  texture {} {} -> {}\n", name(ResourceKind::Texture, command.id),
                             name(ResourceKind::Sampler, command.first), command.slot);
+        break;
+      case CommandKind::BindInstances:
+        text +=
+            fmt::format("  instances of {}\n", command.id == 0 ? "the list" : name(ResourceKind::Buffer, command.id));
         break;
       case CommandKind::PushConstants: text += fmt::format("  push_constants {} bytes\n", command.count); break;
       case CommandKind::Draw:

@@ -20,13 +20,14 @@ enum class CommandKind : std::uint32_t {
   BindUniform,
   BindStorage,
   BindTexture,
+  BindInstances,
   PushConstants,
   Draw,
   DrawProcedural,
   Update,
 };
 
-/** Per-instance vertex input `draw_instance`. */
+/** An instance of the list: the vertex input `draw_instance`. \see CommandList::bind_instances */
 struct DrawInstance {
   /** Index of an object in `object_block`. */
   std::uint32_t object = 0;
@@ -40,7 +41,7 @@ struct DrawIndirect {
   std::uint32_t instance_count = 0;
   std::uint32_t first_index = 0;
   std::int32_t base_vertex = 0;
-  /** Index in CommandList::instances. */
+  /** Index in CommandList::instances, or of an object. \see CommandList::bind_instances */
   std::uint32_t first_instance = 0;
 };
 
@@ -78,6 +79,11 @@ class CommandList {
    * least 0 returns 1.
    */
   void bind_texture(int slot, ResourceId texture, ResourceId sampler);
+  /**
+   * Take the instances of the following draws from \a objects, an array of shared::ObjectData: the fields of an object
+   * are vertex inputs of its instance. 0: take them from `instances`, as draws do before the first call.
+   */
+  void bind_instances(ResourceId objects);
   /**
    * Set the content of the push-constant block for the following draws. \a slot: ShaderInterface::push_constant_slot.
    * \return the copy of \a bytes in this list, which the caller may change until the next call

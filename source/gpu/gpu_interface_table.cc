@@ -25,6 +25,7 @@ ShaderInterface InterfaceTable::interface_of(std::uint32_t key) const
     throw Error("shader '{}': the generated table holds no interface for the variant with features {:#x}", name, key);
   }
   ShaderInterface interface;
+  interface.reads_object = variant->reads_object;
   for (std::size_t i = 0; i < bindings.size(); i++) {
     if ((variant->bindings >> i & 1U) != 0) {
       const Binding &binding = bindings[i];

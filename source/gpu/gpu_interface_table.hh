@@ -35,6 +35,10 @@ struct InterfaceTable {
     /** Mask: bit i is set if the variant reads bindings[i]. */
     std::uint64_t bindings;
     bool has_push_constants;
+    /** As ShaderInterface::reads_object. */
+    bool reads_object;
+
+    bool operator==(const Variant &) const = default;
   };
 
   /** ShaderDesc::name of all variants. */

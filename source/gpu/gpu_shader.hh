@@ -79,6 +79,8 @@ struct ShaderInterface {
   std::uint32_t push_constant_size_bytes = 0;
   /** Uniform slot of the block in an API without push constants. */
   int push_constant_slot = 0;
+  /** Whether the vertex shader reads fields of the object of a call. \see CommandList::bind_instances */
+  bool reads_object = false;
 
   bool operator==(const ShaderInterface &) const = default;
 

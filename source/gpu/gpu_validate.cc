@@ -3,6 +3,8 @@
 
 #include "gpu_device.hh"
 
+#include "draw_object_shared.h"
+
 #include <algorithm>
 #include <array>
 #include <memory_resource>
@@ -24,6 +26,7 @@ std::string_view name_of(CommandKind kind)
     case CommandKind::BindUniform: return "bind_uniform";
     case CommandKind::BindStorage: return "bind_storage";
     case CommandKind::BindTexture: return "bind_texture";
+    case CommandKind::BindInstances: return "bind_instances";
     case CommandKind::PushConstants: return "push_constants";
     case CommandKind::Draw: return "draw";
     case CommandKind::DrawProcedural: return "draw_procedural";
@@ -91,6 +94,7 @@ class Validator {
       case CommandKind::BindUniform: bind_buffer(command, BufferKind::Uniform, uniforms_); break;
       case CommandKind::BindStorage: bind_buffer(command, BufferKind::Storage, storages_); break;
       case CommandKind::BindTexture: bind_texture(command); break;
+      case CommandKind::BindInstances: bind_instances(command); break;
       case CommandKind::PushConstants: push_constants_ = {int(command.slot), 0, command.count}; break;
       case CommandKind::Draw:
         check_draw_state();
@@ -205,6 +209,14 @@ class Validator {
     set_bound(textures_, {int(command.slot), command.id, 0});
   }
 
+  void bind_instances(const Command &command)
+  {
+    objects_ = command.id == 0 ? nullptr : &live(ResourceKind::Buffer, command.id);
+    if (objects_ && std::get<BufferDesc>(objects_->desc).kind != BufferKind::Storage) {
+      fail("buffer '{}' is no storage buffer", objects_->name);
+    }
+  }
+
   void check_draw_state() const
   {
     if (!pass_) {
@@ -277,16 +289,23 @@ class Validator {
 
   void draw(const Command &command) const
   {
+    if (!objects_ && std::get<ShaderInterface>(shader_->desc).reads_object) {
+      fail("shader '{}' reads the object of a call, and the instances are those of the list", shader_->name);
+    }
     const std::size_t end = std::size_t(command.first) + command.count;
     if (end > list_.draws.size()) {
       fail("draws [{}, {}) exceed the list's {} draws", command.first, end, list_.draws.size());
     }
+    const std::size_t instance_count =
+        objects_ ? std::get<BufferDesc>(objects_->desc).size_bytes / sizeof(shared::ObjectData)
+                 : list_.instances.size();
     for (std::size_t i = command.first; i < end; i++) {
       const DrawIndirect &draw = list_.draws[i];
       const std::size_t instance_end = std::size_t(draw.first_instance) + draw.instance_count;
-      if (instance_end > list_.instances.size()) {
-        fail("draw {}: instances [{}, {}) exceed the list's {} instances", i, draw.first_instance, instance_end,
-             list_.instances.size());
+      if (instance_end > instance_count) {
+        fail("draw {}: instances [{}, {}) exceed the {}", i, draw.first_instance, instance_end,
+             objects_ ? fmt::format("{} objects of buffer '{}'", instance_count, objects_->name)
+                      : fmt::format("list's {} instances", instance_count));
       }
       if (draw.index_count > 0 && draw.instance_count > 0 &&
           !device_.has_batch_data(draw.first_index, draw.index_count, draw.base_vertex)) {
@@ -317,6 +336,8 @@ class Validator {
   /** Attachments of the current pass's framebuffer. */
   std::span<const AttachedTexture> attachments_;
   const ResourceInfo *shader_ = nullptr;
+  /** nullptr: instances are those of the list. */
+  const ResourceInfo *objects_ = nullptr;
   /** Whether the current pass has set a state. */
   bool has_state_ = false;
   // Memory of the vectors below. It usually suffices, so that validation allocates no heap memory.

@@ -26,7 +26,6 @@ std::vector<PartCost> measure_record(gpu::Device &device, int draw_count, int ro
   const gpu::Buffer view_block =
       device.create_buffer({"view_block", gpu::BufferKind::Uniform, sizeof(shared::ViewData)});
   draw::ObjectBuffer objects;
-  gpu::BufferRange object_block;
   draw::Pass pass("depth_pass", gpu::State::WriteDepth, &objects);
   gpu::CommandList list;
   std::vector<glm::mat4> plain_matrices;
@@ -59,12 +58,10 @@ std::vector<PartCost> measure_record(gpu::Device &device, int draw_count, int ro
     pass.clear();
     draw::ShadingGroup &group = pass.group(shader);
     group.bind_uniform("view_block", view_block);
-    group.bind_storage_ref("object_block", &object_block);
     for (std::size_t i = 0; i < std::size_t(draw_count); i++) {
       group.call(batches[i % bench_mesh_count], matrices[i]);
     }
     objects.upload(device);
-    object_block = {objects.buffer().id()};
     times.push_back(now(Clock::ThreadCpu));
     const draw::View view;
     draw(view);

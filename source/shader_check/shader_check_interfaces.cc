@@ -62,7 +62,7 @@ class Merger {
         continue;
       }
       const auto &same = *std::ranges::find(result.variants, entry->key, &gpu::InterfaceTable::Variant::key);
-      if (same.bindings != variant.bindings || same.has_push_constants != variant.has_push_constants) {
+      if (same != variant) {
         throw gpu::Error("shader '{}': variants {} and {} share key {:#x} and read different names", name_,
                          variant_name(first->second->desc), variant_name(entry->desc), entry->key);
       }
@@ -127,7 +127,7 @@ class Merger {
       const bool is_read = interface.find(all.bindings[i].kind, all.bindings[i].name) != nullptr;
       bindings |= std::uint64_t(is_read) << i;
     }
-    return {key, bindings, interface.push_constant_size_bytes > 0};
+    return {key, bindings, interface.push_constant_size_bytes > 0, interface.reads_object};
   }
 
   std::string name_;
@@ -215,7 +215,8 @@ std::string table_source(std::span<const VariantInterfaces> programs, std::strin
     }
     arrays += fmt::format("constexpr InterfaceTable::Variant variants_{}[] = {{\n", i);
     for (const gpu::InterfaceTable::Variant &variant : program.variants) {
-      arrays += fmt::format("    {{{:#x}, {:#x}, {}}},\n", variant.key, variant.bindings, variant.has_push_constants);
+      arrays += fmt::format("    {{{:#x}, {:#x}, {}, {}}},\n", variant.key, variant.bindings,
+                            variant.has_push_constants, variant.reads_object);
     }
     arrays += "};\n";
     tables += fmt::format("    {{\"{}\", {}, {}, {}, {}, variants_{}}},\n", program.name,

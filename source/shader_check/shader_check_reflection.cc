@@ -4,6 +4,7 @@
 #include "internal/shader_check_compilation.hh"
 #include "internal/shader_check_log.hh"
 #include "internal/shader_check_tree.hh"
+#include "slots_shared.h"
 
 #include <algorithm>
 #include <tuple>
@@ -64,6 +65,19 @@ std::uint32_t stages_of(const glslang::TObjectReflection &object)
          ((object.stages & EShLangFragmentMask) != 0 ? 1U << unsigned(ShaderStage::Fragment) : 0U);
 }
 
+/** ShaderInterface::reads_object of a program whose first stage is the vertex stage. */
+bool reads_object(const glslang::TProgram &program)
+{
+  for (int i = 0; i < program.getNumPipeInputs(); i++) {
+    const glslang::TQualifier &input = program.getPipeInput(i).getType()->getQualifier();
+    if (input.hasLocation() && input.layoutLocation >= ATTRIBUTE_WORLD_FROM_OBJECT &&
+        input.layoutLocation <= ATTRIBUTE_OBJECT_VALUE) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 gpu::ShaderInterface interface_of(glslang::TProgram &program)
@@ -71,6 +85,7 @@ gpu::ShaderInterface interface_of(glslang::TProgram &program)
   program.buildReflection(EShReflectionSeparateBuffers | EShReflectionAllBlockVariables |
                           EShReflectionStrictArraySuffix);
   gpu::ShaderInterface interface;
+  interface.reads_object = reads_object(program);
   const int variable_count = program.getNumUniformVariables();
   const auto variable = [&](int i) -> const glslang::TObjectReflection & { return program.getUniform(i); };
   for (int i = 0; i < program.getNumUniformBlocks(); i++) {

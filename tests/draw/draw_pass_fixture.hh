@@ -11,6 +11,7 @@ namespace gnomon::test {
 
 /** A shader that reads one binding of each kind. */
 inline constexpr const char *EVERYTHING_VERT = R"(
+#define DRAW_INSTANCES
 #include "draw/draw_object_lib.glsl"
 layout(location = 0) flat out uvec2 instance;
 void main()

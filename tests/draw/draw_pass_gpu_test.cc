@@ -151,59 +151,140 @@ void main()
 
 TEST_F(PassGpu, ObjectsReachTheShaderFieldByField)
 {
-  // One call for each object; one pixel for each field, with the value that C++ wrote.
-  const gpu::Shader shader = make_shader(*device, "object", R"(
+  // One draw for each object; one pixel for each field, with the value that C++ wrote.
+  const std::string vertex = R"(
 #include "draw/draw_object_lib.glsl"
-layout(location = 0) flat out uint object_index;
+layout(location = 0) flat out mat4 matrix;
+layout(location = 4) flat out vec3 normal_x;
+layout(location = 5) flat out vec3 normal_y;
+layout(location = 6) flat out vec3 normal_z;
+layout(location = 7) flat out vec4 values;
 void main()
 {
   // A row of pixels for each object.
   gl_Position = vec4(position.x, (position.y + 1.0) / 8.0 - 1.0 + 0.25 * draw_instance.x, 0.5, 1.0);
-  object_index = draw_instance.x;
-})",
-                                         R"(
-#include "shared/draw_object_shared.h"
-layout(std140, binding = OBJECT_BLOCK_SLOT) readonly buffer object_block
-{
-  ObjectData objects[];
-};
-layout(location = 0) flat in uint object_index;
+  matrix = world_from_object();
+  normal_x = to_normal_ws(vec3(1, 0, 0));
+  normal_y = to_normal_ws(vec3(0, 1, 0));
+  normal_z = to_normal_ws(vec3(0, 0, 1));
+  values = vec4(object_value(), draw_instance, 0);
+})";
+  const std::string fragment = R"(
+layout(location = 0) flat in mat4 matrix;
+layout(location = 4) flat in vec3 normal_x;
+layout(location = 5) flat in vec3 normal_y;
+layout(location = 6) flat in vec3 normal_z;
+layout(location = 7) flat in vec4 values;
 layout(location = 0) out vec4 result;
 void main()
 {
-  ObjectData object = objects[object_index];
   int x = int(gl_FragCoord.x);
-  result = x < 4    ? object.world_from_object[x] :
-           x == 4 ? object.normal_x :
-           x == 5 ? object.normal_y :
-           x == 6 ? vec4(object.normal_z, 0) :
-                      vec4(object.value);
-})");
+  result = x < 4  ? matrix[x] :
+           x == 4 ? vec4(normal_x, 0) :
+           x == 5 ? vec4(normal_y, 0) :
+           x == 6 ? vec4(normal_z, 0) :
+                    values;
+})";
   ObjectBuffer objects;
   std::vector<glm::mat4> matrices = {glm::mat4(1)};
-  Pass pass("objects", gpu::State::WriteColor, &objects);
-  ShadingGroup &group = pass.group(shader);
+  for (int i = 1; i < SIZE; i++) {
+    matrices.push_back(glm::scale(
+        glm::rotate(glm::translate(glm::mat4(1), {i, 2, 3}), 0.3F * float(i), {1, 2, float(i)}), {1, 2, -0.5F}));
+    objects.add(matrices.back(), std::uint32_t(i * 11));
+  }
+  objects.upload(*device);
   const std::array<glm::vec3, 4> positions = {glm::vec3(-1, -1, 0), glm::vec3(1, -1, 0), glm::vec3(1, 1, 0),
                                               glm::vec3(-1, 1, 0)};
   const std::array<std::uint32_t, 6> indices = {0, 1, 2, 0, 2, 3};
   const gpu::Batch quad = device->create_batch({"quad", positions, {}, indices});
-  group.call(quad);
-  for (int i = 1; i < SIZE; i++) {
-    matrices.push_back(glm::scale(
-        glm::rotate(glm::translate(glm::mat4(1), {i, 2, 3}), 0.3F * float(i), {1, 2, float(i)}), {1, 2, -0.5F}));
-    group.call(quad, objects.add(matrices.back(), std::uint32_t(i * 11)));
-  }
-  objects.upload(*device);
-  group.bind_storage("object_block", objects.buffer());
-  const std::vector<glm::vec4> pixels = drawn(pass);
-  for (std::size_t i = 0; i < matrices.size(); i++) {
-    const glm::mat3 normals = normal_matrix(matrices[i]);
-    for (int x = 0; x < SIZE; x++) {
-      const glm::vec4 expected = x < 4   ? matrices[i][x]
-                                 : x < 7 ? glm::vec4(normals[x - 4], 0)
-                                         : glm::vec4(float(i) * 11);
-      EXPECT_EQ(pixels[i * SIZE + std::size_t(x)], expected) << "object " << i << ", field " << x;
+  const gpu::Batch other = device->create_batch({"other", positions, {}, indices});
+  for (const bool are_instances : {false, true}) {
+    SCOPED_TRACE(are_instances ? "instance calls" : "calls");
+    const gpu::Shader shader =
+        make_shader(*device, "object", (are_instances ? "#define DRAW_INSTANCES" : "") + vertex, fragment);
+    Pass pass("objects", gpu::State::WriteColor, &objects);
+    ShadingGroup &group = pass.group(shader);
+    group.bind_storage("object_block", objects.buffer());
+    InstanceCall &instances = group.instances(quad);
+    // Not in the order of the objects, so that some calls are joined and others are not.
+    for (const ObjectIndex i : {6U, 7U, 0U, 3U, 2U, 1U, 4U, 5U}) {
+      if (are_instances) {
+        instances.add(i, 9);
+      }
+      else {
+        group.call(i == 4 ? other : quad, i);
+      }
     }
+    const std::vector<glm::vec4> pixels = drawn(pass);
+    for (std::size_t i = 0; i < matrices.size(); i++) {
+      const glm::mat3 normals = normal_matrix(matrices[i]);
+      for (int x = 0; x < SIZE; x++) {
+        const glm::vec4 expected = x < 4   ? matrices[i][x]
+                                   : x < 7 ? glm::vec4(normals[x - 4], 0)
+                                           : glm::vec4(float(i) * 11, float(i), are_instances ? 9 : 0, 0);
+        EXPECT_EQ(pixels[i * SIZE + std::size_t(x)], expected) << "object " << i << ", field " << x;
+      }
+    }
+  }
+}
+
+TEST_F(PassGpu, CallsFollowInstanceCallsAndOtherObjects)
+{
+  // The instances of each draw are those that were bound last, over groups and passes.
+  const std::string value_of = R"(
+layout(location = 0) flat in uint value;
+layout(location = 0) out vec4 result;
+void main()
+{
+  result = vec4(value);
+})";
+  const gpu::Shader of_calls = make_shader(*device, "calls", R"(
+#include "draw/draw_object_lib.glsl"
+layout(location = 0) flat out uint value;
+void main()
+{
+  gl_Position = vec4(position, 1);
+  value = object_value();
+})",
+                                           value_of);
+  const gpu::Shader of_instances = make_shader(*device, "instances", R"(
+layout(location = ATTRIBUTE_POSITION) in vec3 position;
+layout(location = ATTRIBUTE_DRAW_INSTANCE) in uvec2 draw_instance;
+layout(location = 0) flat out uint value;
+void main()
+{
+  gl_Position = vec4(position, 1);
+  value = draw_instance.y;
+})",
+                                               value_of);
+  std::array<ObjectBuffer, 2> objects;
+  for (std::uint32_t i = 0; i < 2; i++) {
+    objects[i].add(glm::mat4(1), 11 + i);
+    objects[i].upload(*device);
+  }
+  Pass first("first", gpu::State::WriteColor | gpu::State::BlendAdd, &objects[0]);
+  first.group(of_calls).call(full, 1);
+  first.group(of_instances).instances(full).add(1, 100);
+  first.group(of_calls).call(full, 1);
+  Pass second("second", gpu::State::WriteColor | gpu::State::BlendAdd, &objects[1]);
+  second.group(of_calls).call(full, 1);
+  Pass plain("plain", gpu::State::WriteColor | gpu::State::BlendAdd);
+  plain.group(of_instances).instances(full).add(0, 1000);
+  gpu::CommandList list;
+  for (const int round : {0, 1}) {
+    // In the second round, the list of the first has ended, and one of the buffers is a new one.
+    list.clear();
+    list.begin_pass("sum", framebuffer, {});
+    for (const Pass *pass : {&first, &second, &plain, &first}) {
+      pass->record(View(), list);
+    }
+    list.end_pass();
+    device->submit(list);
+    EXPECT_EQ(gpu::read_as<glm::vec4>(*device, picture)[0].x, float(11 + 100 + 11 + 12 + 1000 + 11 + 100 + 11))
+        << round;
+    objects[1] = ObjectBuffer();
+    objects[1].add(glm::mat4(1), 12);
+    objects[1].upload(*device);
   }
 }
 

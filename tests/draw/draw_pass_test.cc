@@ -65,10 +65,12 @@ TEST(Pass, RecordsWhatItHoldsInOrder)
             "  texture hdr linear -> 16\n"
             "  texture hdr linear -> 17\n"
             "  push_constants 32 bytes\n"
+            "  instances of object_block\n"
             "  draw 2 triangles x2, instances from 0\n"
-            "  draw 1 triangles x1, instances from 2\n"
-            "  draw 1 triangles x4, instances from 3\n"
-            "  draw 2 triangles x6, instances from 7\n"
+            "  draw 1 triangles x1, instances from 5\n"
+            "  instances of the list\n"
+            "  draw 1 triangles x4, instances from 0\n"
+            "  draw 2 triangles x6, instances from 4\n"
             "  draw_procedural 6 vertices x3\n"
             "  shader everything\n"
             "  state write_color depth_nearer_equal\n"
@@ -118,6 +120,10 @@ TEST(Pass, ClearForgetsGroupsAndKeepsTheRest)
 /** A group over the shader that reads one of each kind. */
 class ShadingGroupTest : public testing::Test {
  protected:
+  void SetUp() override
+  {
+    objects.upload(*device);
+  }
   /** Records \a pass before and after \a change. \return whether the lists differ. */
   template <typename Change>
   bool is_changed_by(Change &&change)
@@ -278,24 +284,32 @@ TEST_F(ShadingGroupDeathTest, MatrixWithoutAnObjectBufferIsAnAssertion)
   EXPECT_DEATH(plain.group(shader).call(a, glm::mat4(1)), "'everything'");
 }
 
-/** Each draw with its batch's first index and its instances. */
+/** Each draw with its batch's first index and its instances: object/value. */
 std::string drawn(const Pass &pass, const View &view)
 {
   gpu::CommandList list;
   pass.record(view, list);
   std::string text;
-  for (const gpu::DrawIndirect &draw : list.draws) {
-    text += fmt::format("{}:", draw.first_index / 3 == 0 ? "a" : "b");
-    for (std::uint32_t i = 0; i < draw.instance_count; i++) {
-      const gpu::DrawInstance &instance = list.instances[draw.first_instance + i];
-      text += fmt::format(" {}/{}", instance.object, instance.value);
+  bool are_objects = false;
+  for (const gpu::Command &command : list.commands()) {
+    are_objects = command.kind == gpu::CommandKind::BindInstances ? command.id != 0 : are_objects;
+    if (command.kind != gpu::CommandKind::Draw) {
+      continue;
     }
-    text += "\n";
+    for (const gpu::DrawIndirect &draw : std::span(list.draws).subspan(command.first, command.count)) {
+      text += draw.first_index / 3 == 0 ? "a:" : "b:";
+      for (std::uint32_t i = 0; i < draw.instance_count; i++) {
+        const std::uint32_t place = draw.first_instance + i;
+        const gpu::DrawInstance instance = are_objects ? gpu::DrawInstance{place, 0} : list.instances[place];
+        text += fmt::format(" {}/{}", instance.object, instance.value);
+      }
+      text += "\n";
+    }
   }
   return text;
 }
 
-TEST_F(ShadingGroupTest, ConsecutiveCallsOfABatchAreOneDrawAndTheOrderHolds)
+TEST_F(ShadingGroupTest, ConsecutiveObjectsOfABatchAreOneDrawAndTheOrderHolds)
 {
   group.call(a, 10);
   group.call(a, 11);
@@ -303,29 +317,55 @@ TEST_F(ShadingGroupTest, ConsecutiveCallsOfABatchAreOneDrawAndTheOrderHolds)
   group.call(a, 13);
   group.call(a, 14);
   group.call(a, 15);
+  group.call(a, 17);
+  group.call(a, 16);
   EXPECT_EQ(drawn(pass, view),
             "a: 10/0 11/0\n"
             "b: 12/0\n"
-            "a: 13/0 14/0 15/0\n");
+            "a: 13/0 14/0 15/0\n"
+            "a: 17/0\n"
+            "a: 16/0\n");
 }
 
-TEST_F(ShadingGroupTest, DrawsOfAGroupAreOneCommand)
+TEST_F(ShadingGroupTest, CallsWithoutObjectsAreInstancesOfTheList)
+{
+  Pass plain("plain", gpu::State::None);
+  ShadingGroup &calls = plain.group(shader);
+  calls.call(a);
+  calls.call(a);
+  calls.instances(a).add(0, 3);
+  calls.call(b);
+  EXPECT_EQ(drawn(plain, view), "a: 0/0 0/0\nb: 0/0\na: 0/3\n");
+}
+
+TEST_F(ShadingGroupTest, CallsOfAGroupAreOneCommandAndInstanceCallsAnother)
 {
   for (ObjectIndex i = 0; i < 10; i++) {
     group.call(i % 2 == 0 ? a : b, i);
   }
   group.instances(a).add(1);
+  group.instances(b).add(2);
   gpu::CommandList list;
   // After the commands of another pass.
   list.draws.resize(3);
   list.instances.resize(5);
   pass.record(view, list);
-  const gpu::Command &draw = list.commands().back();
-  EXPECT_EQ(draw.kind, gpu::CommandKind::Draw);
-  EXPECT_EQ(draw.first, 3U);
-  EXPECT_EQ(draw.count, 11U);
-  EXPECT_EQ(list.draws[3].first_instance, 5U);
-  EXPECT_EQ(list.draws[13].first_instance, 15U);
+  const std::vector<gpu::Command> &commands = list.commands();
+  ASSERT_GE(commands.size(), 4U);
+  const std::span<const gpu::Command> last = std::span(commands).last(4);
+  EXPECT_EQ(last[0].kind, gpu::CommandKind::BindInstances);
+  EXPECT_EQ(last[0].id, objects.buffer().id());
+  EXPECT_EQ(last[1].kind, gpu::CommandKind::Draw);
+  EXPECT_EQ(last[1].first, 3U);
+  EXPECT_EQ(last[1].count, 10U);
+  EXPECT_EQ(last[2].kind, gpu::CommandKind::BindInstances);
+  EXPECT_EQ(last[2].id, 0U);
+  EXPECT_EQ(last[3].kind, gpu::CommandKind::Draw);
+  EXPECT_EQ(last[3].first, 13U);
+  EXPECT_EQ(last[3].count, 2U);
+  EXPECT_EQ(list.draws[4].first_instance, 1U) << "the object";
+  EXPECT_EQ(list.draws[13].first_instance, 5U) << "in the list";
+  EXPECT_EQ(list.draws[14].first_instance, 6U);
 }
 
 TEST_F(ShadingGroupTest, CallsOfDifferentGroupsAreNotJoined)
@@ -403,11 +443,10 @@ TEST_F(ShadingGroupTest, CallOutsideTheViewIsLeftOut)
   group.call(a, 3, {{0, 0, -10}, 1});
   group.call(b, 4, {{500, 0, -10}, 1});
   group.call(a, 5, {{500, 0, -10}, -1});
-  // Calls of the same batch become one draw, even if a culled call is between them.
-  EXPECT_EQ(drawn(pass, view), "a: 1/0 3/0 5/0\n");
+  EXPECT_EQ(drawn(pass, view), "a: 1/0\na: 3/0\na: 5/0\n");
   EXPECT_EQ(
       drawn(pass, View(glm::lookAt(glm::vec3(0), glm::vec3(0, 0, 1), glm::vec3(0, 1, 0)), perspective(1, 1, 1, 100))),
-      "a: 2/0 5/0\n");
+      "a: 2/0\na: 5/0\n");
 }
 
 TEST_F(ShadingGroupTest, VolumeOfAMovedObjectIsReadAtEachRecord)
@@ -420,14 +459,14 @@ TEST_F(ShadingGroupTest, VolumeOfAMovedObjectIsReadAtEachRecord)
   group.call(a, object, seen);
   EXPECT_EQ(drawn(pass, view), "a: 1/0\n") << "the call with a volume of its own alone";
   objects.set(object, glm::mat4(1), 0, seen);
-  EXPECT_EQ(drawn(pass, view), "a: 1/0 1/0\n");
+  EXPECT_EQ(drawn(pass, view), "a: 1/0\na: 1/0\n");
   objects.set(object, glm::mat4(1), 0, hidden);
   gpu::CommandList list;
   const RecordCounts counts = pass.record(view, list);
   EXPECT_EQ(counts.drawn, 1U);
   EXPECT_EQ(counts.culled, 1U);
   objects.set(object, glm::mat4(1), 0, {});
-  EXPECT_EQ(drawn(pass, view), "a: 1/0 1/0\n") << "an object without a volume is always drawn";
+  EXPECT_EQ(drawn(pass, view), "a: 1/0\na: 1/0\n") << "an object without a volume is always drawn";
 }
 
 TEST_F(ShadingGroupTest, ProceduralNeedsNoBatch)

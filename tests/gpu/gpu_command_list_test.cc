@@ -62,6 +62,9 @@ TEST_F(CommandListTest, SerializesEachCommandAsALine)
   list.draws.push_back({6, 1, 3, 3, 2});
   list.instances.resize(3);
   list.draw(0, 2);
+  list.bind_instances(store.id());
+  list.draw(1, 1);
+  list.bind_instances(0);
   list.draw_procedural(3, 6);
   list.end_pass();
   EXPECT_EQ(list.serialize(*device),
@@ -76,6 +79,9 @@ TEST_F(CommandListTest, SerializesEachCommandAsALine)
             "  push_constants 16 bytes\n"
             "  draw 1 triangles x2, instances from 0\n"
             "  draw 2 triangles x1, instances from 2\n"
+            "  instances of object_block\n"
+            "  draw 2 triangles x1, instances from 2\n"
+            "  instances of the list\n"
             "  draw_procedural 3 vertices x6\n"
             "end\n");
 }

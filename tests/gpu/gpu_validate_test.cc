@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gpu/gpu_testing.hh"
 
+#include "draw_object_shared.h"
 #include "gpu_validate.hh"
 
 namespace gnomon::gpu {
@@ -324,6 +325,50 @@ TEST_F(Validation, RectanglesFitTheHostsFramebuffer)
     expect_contains(message_of(bad, {}), "framebuffer of the host: a viewport of");
     expect_contains(message_of({}, bad), "framebuffer of the host: a scissor of");
   }
+}
+
+TEST_F(Validation, InstancesAreThoseOfTheListOrOfABufferOfObjects)
+{
+  const Buffer objects = device->create_buffer({"objects", BufferKind::Storage, 3 * sizeof(shared::ObjectData)});
+  const auto draw = [&](ResourceId bound, std::uint32_t first_instance) {
+    return [&, bound, first_instance] {
+      list.bind_instances(bound);
+      list.draws.push_back({3, 2, 0, 0, first_instance});
+      list.draw(0, 1);
+    };
+  };
+  record({.at_draw = draw(objects.id(), 1)});
+  EXPECT_EQ(error_of([&] { validate(list, *device); }), "") << "the list itself has no instances";
+  expect_refused({.at_draw = draw(objects.id(), 2)},
+                 {"draw 0: instances [2, 4) exceed the 3 objects of buffer 'objects'"});
+  expect_refused({.at_draw = draw(block.id(), 0)}, {"(bind_instances)", "buffer 'light_block' is no storage buffer"});
+  const ResourceId gone = device->create_buffer({"gone", BufferKind::Storage, 512}).id();
+  expect_refused({.at_draw = draw(gone, 0)}, {"(bind_instances)", "stale"});
+  const Shader of_objects = test::make_shader(
+      *device, "of_objects",
+      "layout(location = ATTRIBUTE_WORLD_FROM_OBJECT) in mat4 matrix;\nvoid main() { gl_Position = matrix[0]; }\n",
+      test::COLOR_FRAG);
+  const auto draw_objects = [&](ResourceId bound) {
+    return [&, bound] {
+      list.set_shader(of_objects.id());
+      draw(bound, 0)();
+    };
+  };
+  record({.at_draw = draw_objects(objects.id())});
+  EXPECT_EQ(error_of([&] { validate(list, *device); }), "");
+  expect_refused({.at_draw =
+                      [&] {
+                        list.instances.resize(2);
+                        draw_objects(0)();
+                      }},
+                 {"(draw)", "shader 'of_objects' reads the object of a call, and the instances are those of the list"});
+  // 0 ends the binding.
+  expect_refused({.at_draw =
+                      [&] {
+                        list.bind_instances(objects.id());
+                        draw(0, 0)();
+                      }},
+                 {"draw 0: instances [0, 2) exceed the list's 0 instances"});
 }
 
 TEST_F(Validation, DrawsAreInsideTheListAndTheBatches)

@@ -71,7 +71,7 @@ TEST(VariantInterfaces, TheTableHoldsAllOfThem)
   expect_contains(text, R"({"a", 0, 16},)");
   expect_contains(text, R"({"more_a", 16, 16},)");
   expect_contains(text, R"({"b_block", BindingKind::StorageBlock, 2, 16, )");
-  expect_contains(text, "{0x2, 0x7, true},");
+  expect_contains(text, "{0x2, 0x7, true, false},");
 }
 
 TEST(VariantInterfaces, OneNameHasOneSlot)
@@ -127,7 +127,7 @@ TEST(VariantInterfaces, AVariantThatDoesNotCompileIsAnErrorThatNamesTheLine)
 constexpr gpu::InterfaceTable::Member members[] = {{"a", 0, 16}, {"b", 16, 4}};
 constexpr gpu::InterfaceTable::Binding bindings[] = {{"a_block", gpu::BindingKind::UniformBlock, 3, 32, members},
                                                      {"picture", gpu::BindingKind::Texture, 17, 0, {}}};
-constexpr gpu::InterfaceTable::Variant variants[] = {{4, 0b11, true}, {6, 0b10, false}};
+constexpr gpu::InterfaceTable::Variant variants[] = {{4, 0b11, true, true}, {6, 0b10, false, false}};
 constexpr gpu::InterfaceTable table = {"test", bindings, members, 32, 8, variants};
 
 TEST(InterfaceTable, GivesTheInterfaceOfAVariant)

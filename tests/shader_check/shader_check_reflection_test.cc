@@ -47,6 +47,23 @@ TEST(Reflect, AnIncludeInABranchThatIsNotTakenDoesNotTakeTheFileFromOthers)
   }
 }
 
+TEST(Reflect, AnObjectIsReadWhereAnyOfItsFieldsIs)
+{
+  const auto reads_object = [](const std::string &value) {
+    return reflected(VERSION +
+                     "layout(location = 0) in vec3 position;\nlayout(location = 2) in uvec2 draw_instance;\n"
+                     "layout(location = 6) in vec4 color;\nlayout(location = 7) in mat4 matrix;\n"
+                     "layout(location = 14) in uint value;\nlayout(location = 15) in uint other;\n"
+                     "void main() { gl_Position = vec4(" +
+                     value + "); }\n")
+        .reads_object;
+  };
+  EXPECT_FALSE(reads_object("position, draw_instance.x")) << "those that are declared and not read are left out";
+  EXPECT_FALSE(reads_object("color.xyz, other"));
+  EXPECT_TRUE(reads_object("matrix[3]"));
+  EXPECT_TRUE(reads_object("position, value"));
+}
+
 /** Expects that the compile error of \a vertex names line \a line of \a path. */
 void expect_error_at(const std::string &vertex, const ShaderTexts &texts, const std::string &path_and_line)
 {

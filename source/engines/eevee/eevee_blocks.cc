@@ -36,6 +36,7 @@ constexpr auto view_fields = std::to_array<Field>({
 constexpr auto object_fields = std::to_array<Field>({
     {"objects[0].world_from_object", offsetof(ObjectData, world_from_object)},
     {"objects[0].normal_x", offsetof(ObjectData, normal_x)},
+    {"objects[0].index", offsetof(ObjectData, index)},
     {"objects[0].normal_y", offsetof(ObjectData, normal_y)},
     {"objects[0].normal_z", offsetof(ObjectData, normal_z)},
     {"objects[0].value", offsetof(ObjectData, value)},

@@ -224,7 +224,7 @@ void Engine::begin_draw(draw::Viewport &viewport)
 /** Update the blocks that all passes of a sample read. */
 void Engine::update_view(Data &data, const draw::View &view)
 {
-  data.stl.object_block = data.shared->object_block = {scene_.objects().buffer().id()};
+  data.shared->object_block = {scene_.objects().buffer().id()};
   const std::optional<render_scene::MaterialTable> &dark = data.shared->materials_without_emission;
   const render_scene::MaterialTable &materials = dark ? *dark : scene_.materials();
   data.stl.material_block = data.shared->material_block = {materials.buffer().id()};

@@ -283,7 +283,6 @@ struct StorageList {
   gpu::BufferRange material_block;
   gpu::BufferRange full_material_block;
   gpu::BufferRange layer_block;
-  gpu::BufferRange object_block;
   /** The groups of the passes that draw objects. */
   std::map<GroupKey, draw::ShadingGroup *> groups;
   /** The objects of PassList::blend_pass. */

@@ -29,7 +29,6 @@ void bind_lit(draw::ShadingGroup &group, Data &data)
 {
   StorageList &stl = data.stl;
   group.bind_uniform("view_block", stl.view_block);
-  group.bind_storage_ref("object_block", &stl.object_block);
   group.bind_storage_ref("material_block", &stl.material_block);
   group.bind_storage_ref("full_material_block", &stl.full_material_block);
   group.bind_storage_ref("layer_block", &stl.layer_block);

@@ -106,7 +106,6 @@ bool Overlay::record_objects(const draw::View &view, glm::ivec2 size_px, const I
   gpu::Device &device = scene_.device();
   const scene::Scene &scene = scene_.scene();
   draw::Pass pass("overlay objects", State::WriteColor | State::WriteDepth | State::DepthNearerEqual, &objects);
-  gpu::BufferRange object_block;
   gpu::BufferRange material_block;
   gpu::BufferRange full_material_block;
   std::map<std::tuple<MaterialClass, State, render_scene::TextureSet>, draw::ShadingGroup *> groups;
@@ -132,7 +131,6 @@ bool Overlay::record_objects(const draw::View &view, glm::ivec2 size_px, const I
       group = &pass.group(shader(ShaderId::Objects, mask_features(cut_out)));
       group->state_enable(state);
       group->bind_uniform("view_block", view_block_);
-      group->bind_storage_ref("object_block", &object_block);
       group->bind_storage_ref("material_block", &material_block);
       group->bind_storage_ref("full_material_block", &full_material_block);
       render_scene::bind_textures(*group, scene_, cut_out == MaterialClass::Plain ? cut_out : MaterialClass::BaseColor,
@@ -144,7 +142,6 @@ bool Overlay::record_objects(const draw::View &view, glm::ivec2 size_px, const I
     return false;
   }
   scene_.upload(widest);
-  object_block = {objects.buffer().id()};
   material_block = {scene_.materials().buffer().id()};
   full_material_block = {scene_.materials().full_buffer().id()};
   shared::ViewData view_data{};

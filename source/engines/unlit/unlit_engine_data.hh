@@ -31,19 +31,16 @@ namespace gnomon::unlit {
 
 /** Blocks of the render scene. Passes read them by reference. */
 struct SceneBlocks {
-  gpu::BufferRange objects;
   gpu::BufferRange materials;
   gpu::BufferRange full_materials;
 
-  void update(const render_scene::RenderScene &scene, const draw::ObjectBuffer &object_buffer)
+  void update(const render_scene::RenderScene &scene)
   {
-    objects = {object_buffer.buffer().id()};
     materials = {scene.materials().buffer().id()};
     full_materials = {scene.materials().full_buffer().id()};
   }
   void bind(draw::ShadingGroup &group) const
   {
-    group.bind_storage_ref("object_block", &objects);
     group.bind_storage_ref("material_block", &materials);
     group.bind_storage_ref("full_material_block", &full_materials);
   }

@@ -29,9 +29,9 @@ void Engine::record(Data &data, gpu::Device &device)
     data.recorded = key;
   }
   scene_.upload(data.widest);
-  data.blocks.update(scene_, scene_.objects());
+  data.blocks.update(scene_);
   if (depth_camera_) {
-    depth_camera_->blocks.update(scene_, scene_.objects());
+    depth_camera_->blocks.update(scene_);
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gl_device.hh"
 
+#include "draw_object_shared.h"
 #include "slots_shared.h"
 #include "trace.hh"
 
@@ -136,6 +137,22 @@ void GlDevice::create_vertex_arrays()
   glVertexArrayAttribIFormat(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, 2, GL_UNSIGNED_INT, 0);
   glVertexArrayAttribBinding(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, ATTRIBUTE_DRAW_INSTANCE);
   glVertexArrayBindingDivisor(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, 1);
+  // bind_instances() enables the attributes of an object.
+  const auto of_object = [&](GLuint attribute, GLint component_count, std::size_t offset_bytes) {
+    glVertexArrayAttribFormat(vertex_array_, attribute, component_count, GL_FLOAT, GL_FALSE, GLuint(offset_bytes));
+    glVertexArrayAttribBinding(vertex_array_, attribute, ATTRIBUTE_WORLD_FROM_OBJECT);
+  };
+  for (GLuint column = 0; column < 4; column++) {
+    of_object(ATTRIBUTE_WORLD_FROM_OBJECT + column, 4,
+              offsetof(shared::ObjectData, world_from_object) + column * sizeof(glm::vec4));
+  }
+  of_object(ATTRIBUTE_OBJECT_NORMAL_X, 3, offsetof(shared::ObjectData, normal_x));
+  of_object(ATTRIBUTE_OBJECT_NORMAL_Y, 3, offsetof(shared::ObjectData, normal_y));
+  of_object(ATTRIBUTE_OBJECT_NORMAL_Z, 3, offsetof(shared::ObjectData, normal_z));
+  glVertexArrayAttribIFormat(vertex_array_, ATTRIBUTE_OBJECT_VALUE, 1, GL_UNSIGNED_INT,
+                             offsetof(shared::ObjectData, value));
+  glVertexArrayAttribBinding(vertex_array_, ATTRIBUTE_OBJECT_VALUE, ATTRIBUTE_WORLD_FROM_OBJECT);
+  glVertexArrayBindingDivisor(vertex_array_, ATTRIBUTE_WORLD_FROM_OBJECT, 1);
   // Procedural draws need a vertex array, too, but one that does not read the attributes of batches.
   glCreateVertexArrays(1, &empty_vertex_array_);
 }

@@ -171,6 +171,8 @@ class GlDevice final : public Device {
   void set_state(State state);
   void bind_range(const Command &command);
   void bind_texture(const Command &command);
+  /** \a objects: 0: the instances of the list. */
+  void bind_instances(ResourceId objects);
   /** Binds dummies to the samplers of the current program that the list has not bound. */
   void complete_textures();
 
@@ -203,8 +205,11 @@ class GlDevice final : public Device {
   /** Sizes of the pools in bytes. */
   PoolSizes pool_size_{};
   StreamRing stream_;
-  /** Byte offset of the list's draws in the stream's buffer. */
+  /** Byte offsets of the list's instances and draws in the stream's buffer. */
+  std::size_t instances_offset_ = 0;
   std::size_t draws_offset_ = 0;
+  /** \see CommandList::bind_instances */
+  ResourceId bound_objects_ = 0;
 
   UsedSlots used_slots_;
   /** The open pass; nullptr outside of passes. */

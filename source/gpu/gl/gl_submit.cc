@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gl_device.hh"
 
+#include "draw_object_shared.h"
 #include "slots_shared.h"
 #include "trace.hh"
 
@@ -66,9 +67,12 @@ void GlDevice::list_submit(const CommandList &list)
       if (pass_) {
         end_pass();
       }
+      bind_instances(0);
       stream_.end();
       throw;
     }
+    // So that the buffer of the objects can be freed.
+    bind_instances(0);
     stream_.end();
   }
   check("submit");
@@ -100,6 +104,7 @@ void GlDevice::execute(const CommandList &list)
       case CommandKind::BindUniform:
       case CommandKind::BindStorage: bind_range(command); break;
       case CommandKind::BindTexture: bind_texture(command); break;
+      case CommandKind::BindInstances: bind_instances(command.id); break;
       case CommandKind::PushConstants:
         glBindBufferRange(GL_UNIFORM_BUFFER, command.slot, stream_.buffer(), GLintptr(written(command)),
                           GLsizeiptr(command.count));
@@ -137,11 +142,33 @@ void GlDevice::write_stream(const CommandList &list)
     }
   }
   stream_.begin(size + part_count * alignment);
-  const std::size_t instances = stream_.write(std::as_bytes(std::span(list.instances)), alignment);
+  instances_offset_ = stream_.write(std::as_bytes(std::span(list.instances)), alignment);
   draws_offset_ = stream_.write(std::as_bytes(std::span(list.draws)), alignment);
-  glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, stream_.buffer(), GLintptr(instances),
+  glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, stream_.buffer(), GLintptr(instances_offset_),
                             sizeof(DrawInstance));
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, stream_.buffer());
+}
+
+void GlDevice::bind_instances(ResourceId objects)
+{
+  if (objects == bound_objects_) {
+    return;
+  }
+  const bool is_list = objects == 0;
+  const GLuint buffer = is_list ? 0 : buffers_.at(objects).name;
+  glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, is_list ? stream_.buffer() : buffer,
+                            GLintptr(is_list ? instances_offset_ : offsetof(shared::ObjectData, index)),
+                            GLsizei(is_list ? sizeof(DrawInstance) : sizeof(shared::ObjectData)));
+  glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_WORLD_FROM_OBJECT, buffer, 0, sizeof(shared::ObjectData));
+  // The value of an instance is 0 in calls: the default of a component that is not in the buffer.
+  glVertexArrayAttribIFormat(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, is_list ? 2 : 1, GL_UNSIGNED_INT, 0);
+  // An enabled attribute must have a buffer, even if no shader reads it.
+  if (is_list != (bound_objects_ == 0)) {
+    for (GLuint attribute = ATTRIBUTE_WORLD_FROM_OBJECT; attribute <= ATTRIBUTE_OBJECT_VALUE; attribute++) {
+      (is_list ? glDisableVertexArrayAttrib : glEnableVertexArrayAttrib)(vertex_array_, attribute);
+    }
+  }
+  bound_objects_ = objects;
 }
 
 const GlDevice::GlFramebuffer &GlDevice::framebuffer_of(const CommandList::PassInfo &pass)
