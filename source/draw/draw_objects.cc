@@ -47,6 +47,42 @@ bool is_finite(const glm::mat4 &matrix)
   return finite_count == 16;
 }
 
+void CullingArrays::clear()
+{
+  x.clear();
+  y.clear();
+  z.clear();
+  radius.clear();
+  reach.clear();
+}
+
+void CullingArrays::reserve(std::size_t count)
+{
+  x.reserve(count);
+  y.reserve(count);
+  z.reserve(count);
+  radius.reserve(count);
+  reach.reserve(count);
+}
+
+void CullingArrays::add(const CullingVolume &volume)
+{
+  x.push_back(volume.center_ws.x);
+  y.push_back(volume.center_ws.y);
+  z.push_back(volume.center_ws.z);
+  radius.push_back(volume.radius);
+  reach.push_back(culling_reach(volume));
+}
+
+void CullingArrays::set(std::size_t index, const CullingVolume &volume)
+{
+  x[index] = volume.center_ws.x;
+  y[index] = volume.center_ws.y;
+  z[index] = volume.center_ws.z;
+  radius[index] = volume.radius;
+  reach[index] = culling_reach(volume);
+}
+
 static void check(ObjectIndex index, const glm::mat4 &world_from_object, const CullingVolume &volume)
 {
   if (!is_finite(world_from_object)) {
@@ -79,12 +115,9 @@ ObjectIndex ObjectBuffer::add(const glm::mat4 &world_from_object, std::uint32_t 
   check(index, world_from_object, volume);
   if (index == index_end()) {
     objects_.emplace_back();
-    volumes_.emplace_back();
-    culling_arrays_.x.emplace_back();
-    culling_arrays_.y.emplace_back();
-    culling_arrays_.z.emplace_back();
-    culling_arrays_.reach.emplace_back();
+    culling_arrays_.add(volume);
     revisions_.emplace_back();
+    mirrored_.emplace_back();
     free_bits_.resize((objects_.size() + 63) / 64);
   }
   else {
@@ -99,12 +132,9 @@ ObjectIndex ObjectBuffer::add(const glm::mat4 &world_from_object, std::uint32_t 
 void ObjectBuffer::reserve(std::size_t count)
 {
   objects_.reserve(count);
-  volumes_.reserve(count);
-  culling_arrays_.x.reserve(count);
-  culling_arrays_.y.reserve(count);
-  culling_arrays_.z.reserve(count);
-  culling_arrays_.reach.reserve(count);
+  culling_arrays_.reserve(count);
   revisions_.reserve(count);
+  mirrored_.reserve(count);
 }
 
 void ObjectBuffer::set(ObjectIndex index, const glm::mat4 &world_from_object, std::uint32_t value,
@@ -112,7 +142,7 @@ void ObjectBuffer::set(ObjectIndex index, const glm::mat4 &world_from_object, st
 {
   GNOMON_ASSERT(is_live(index), "object {} was removed", index);
   check(index, world_from_object, volume);
-  const CullingVolume &before = volumes_[index];
+  const CullingVolume before = culling_arrays_[index];
   if (objects_[index].world_from_object != world_from_object || objects_[index].value != value ||
       before.center_ws != volume.center_ws || before.radius != volume.radius) {
     write(index, world_from_object, value, volume);
@@ -140,11 +170,8 @@ void ObjectBuffer::write(ObjectIndex index, const glm::mat4 &world_from_object, 
   object.normal_y = glm::vec4(normal[1], 0.0F);
   object.normal_z = normal[2];
   object.value = value;
-  volumes_[index] = volume;
-  culling_arrays_.x[index] = volume.center_ws.x;
-  culling_arrays_.y[index] = volume.center_ws.y;
-  culling_arrays_.z[index] = volume.center_ws.z;
-  culling_arrays_.reach[index] = culling_reach(volume);
+  culling_arrays_.set(index, volume);
+  mirrored_[index] = draw::is_mirrored(world_from_object) ? 1 : 0;
   revisions_[index] = ++revision_;
 }
 

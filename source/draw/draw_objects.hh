@@ -19,14 +19,29 @@ using ObjectIndex = std::uint32_t;
 /** Index of an object with the identity matrix, which always exists. */
 inline constexpr ObjectIndex object_identity = 0;
 
-/** Culling volumes as a structure of arrays, for tests of several at once. Indexed by object. \see View::culling_planes
- */
+/** Culling volumes as a structure of arrays, for tests of several at once. \see View::culling_planes */
 struct CullingArrays {
   std::vector<float> x;
   std::vector<float> y;
   std::vector<float> z;
+  std::vector<float> radius;
   /** \see culling_reach */
   std::vector<float> reach;
+
+  [[nodiscard]] std::size_t size() const
+  {
+    return x.size();
+  }
+  /** \pre index < size() */
+  [[nodiscard]] CullingVolume operator[](std::size_t index) const
+  {
+    return {{x[index], y[index], z[index]}, radius[index]};
+  }
+  void clear();
+  void reserve(std::size_t count);
+  void add(const CullingVolume &volume);
+  /** \pre index < size() */
+  void set(std::size_t index, const CullingVolume &volume);
 };
 
 /**
@@ -59,11 +74,16 @@ class ObjectBuffer {
   {
     return objects_[index].world_from_object;
   }
-  [[nodiscard]] const CullingVolume &volume(ObjectIndex index) const
+  /** \see draw::is_mirrored */
+  [[nodiscard]] bool is_mirrored(ObjectIndex index) const
   {
-    return volumes_[index];
+    return mirrored_[index] != 0;
   }
-  /** The volumes of all objects, and of the last ones that used a free index. */
+  [[nodiscard]] CullingVolume volume(ObjectIndex index) const
+  {
+    return culling_arrays_[index];
+  }
+  /** The volumes of all objects, by index, and of the last ones that used a free index. */
   [[nodiscard]] const CullingArrays &culling_arrays() const
   {
     return culling_arrays_;
@@ -112,9 +132,10 @@ class ObjectBuffer {
   void write(ObjectIndex index, const glm::mat4 &world_from_object, std::uint32_t value, const CullingVolume &volume);
 
   std::vector<shared::ObjectData> objects_;
-  std::vector<CullingVolume> volumes_;
   CullingArrays culling_arrays_;
   std::vector<std::uint64_t> revisions_;
+  /** 1 if the matrix is mirrored, otherwise 0. Passes that are recorded need no more of the matrices. */
+  std::vector<std::uint8_t> mirrored_;
   /** One bit an index: 1 if it is free. The lowest is used first, so that indices and drawing order depend on few
    * edits. */
   std::vector<std::uint64_t> free_bits_;

@@ -3,20 +3,18 @@
 
 namespace gnomon::draw {
 
-namespace {
-
-/**
- * Writes whether each volume touches the frustum. It calculates as View::touches, without branches and with all planes
- * in local variables, so that the compiler tests several volumes at once.
- */
-void test_volumes(const CullingPlanes &planes, const CullingArrays &volumes, std::uint8_t *is_visible)
+// It calculates as View::touches, without branches and with all planes in local variables, so that the compiler tests
+// several volumes at once.
+void test_volumes(const CullingPlanes &planes, const CullingArrays &volumes, std::vector<std::uint8_t> &is_touching)
 {
   const auto [a, b, c, d, e, f] = planes;
   const float *const xs = volumes.x.data();
   const float *const ys = volumes.y.data();
   const float *const zs = volumes.z.data();
   const float *const reaches = volumes.reach.data();
-  const std::size_t count = volumes.x.size();
+  const std::size_t count = volumes.size();
+  is_touching.resize(count);
+  std::uint8_t *const results = is_touching.data();
   for (std::size_t i = 0; i < count; i++) {
     const float x = xs[i];
     const float y = ys[i];
@@ -25,19 +23,16 @@ void test_volumes(const CullingPlanes &planes, const CullingArrays &volumes, std
     const auto below = [&](const glm::vec4 &plane) {
       return int(plane.x * x + plane.y * y + plane.z * z + plane.w < lowest);
     };
-    is_visible[i] = std::uint8_t(1 - (below(a) | below(b) | below(c) | below(d) | below(e) | below(f)));
+    results[i] = std::uint8_t(1 - (below(a) | below(b) | below(c) | below(d) | below(e) | below(f)));
   }
 }
-
-}  // namespace
 
 void VisibleObjects::update(const View &view, const ObjectBuffer &objects)
 {
   if (objects_ == &objects && objects_revision_ == objects.revision() && view_ == view) {
     return;
   }
-  is_visible_.resize(objects.index_end());
-  test_volumes(view.culling_planes(), objects.culling_arrays(), is_visible_.data());
+  test_volumes(view.culling_planes(), objects.culling_arrays(), is_visible_);
   view_ = view;
   objects_ = &objects;
   objects_revision_ = objects.revision();

@@ -9,6 +9,9 @@
 
 namespace gnomon::draw {
 
+/** Write whether each volume touches the frustum of \a planes, as View::touches: 1 or 0. Resizes \a is_touching. */
+void test_volumes(const CullingPlanes &planes, const CullingArrays &volumes, std::vector<std::uint8_t> &is_touching);
+
 /**
  * The objects of an ObjectBuffer whose culling volumes touch the frustum of a view. Several passes that are recorded
  * for one view share one set, so that each object is tested once.

@@ -116,6 +116,29 @@ GrowthCost first_pictures(gpu::Device &device, int rounds, double most)
   });
 }
 
+/** All passes are recorded anew. */
+GrowthCost changed_settings(gpu::Device &device, int rounds, double most)
+{
+  const std::vector<double> counts = object_counts(most);
+  std::vector<Lattice> lattices;
+  for (const double count : counts) {
+    lattices.push_back(lattice(int(count)));
+  }
+  std::vector<std::unique_ptr<eevee::SceneRenderer>> renderers;
+  for (const Lattice &one : lattices) {
+    renderers.push_back(std::make_unique<eevee::SceneRenderer>(device, one.scene, view_size_px));
+  }
+  return rounds_of("picture after a change of settings, objects", counts, rounds, [&](std::size_t i) {
+    eevee::Settings settings = renderers[i]->settings();
+    settings.seed++;
+    return timed(Clock::ThreadCpu, [&] {
+      renderers[i]->set_settings(settings);
+      renderers[i]->sync();
+      renderers[i]->draw(lattices[i].camera(0.0, true));
+    });
+  });
+}
+
 GrowthCost moving_cameras(gpu::Device &device, int rounds, double most)
 {
   const std::vector<double> counts = object_counts(most);
@@ -277,6 +300,7 @@ std::vector<GrowthCost> measure_growth(gpu::Device *device, int rounds, double c
   const std::unique_ptr<gpu::Device> null_device = gpu::create_null_device();
   std::vector<GrowthCost> costs;
   costs.push_back(first_pictures(*null_device, rounds, count_max));
+  costs.push_back(changed_settings(*null_device, rounds, count_max));
   costs.push_back(moving_cameras(*null_device, rounds, count_max));
   costs.push_back(moving_lamps(*null_device, rounds, count_max));
   costs.push_back(imports(rounds, count_max));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "render_scene.hh"
 
+#include "scene_memory.hh"
+
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 
@@ -46,10 +48,10 @@ void RenderScene::update()
 
 void RenderScene::remove_objects(NodeObjects &entry)
 {
-  for (const draw::ObjectIndex index : entry.objects) {
-    objects_.remove(index);
+  while (entry.first != draw::object_identity) {
+    objects_.remove(entry.first);
+    entry.first = next_of_node_[entry.first];
   }
-  entry.objects.clear();
 }
 
 void RenderScene::update_objects()
@@ -66,7 +68,7 @@ void RenderScene::update_objects()
     return;
   }
   for (NodeObjects &entry : node_objects_) {
-    if (!entry.objects.empty() && !nodes.is_live(entry.node)) {
+    if (entry.first != draw::object_identity && !nodes.is_live(entry.node)) {
       remove_objects(entry);
     }
   }
@@ -74,6 +76,8 @@ void RenderScene::update_objects()
     // Only at first: later, memory must grow by a factor and not with each edit.
     objects_.reserve(nodes.size() + 1);
     render_objects_.reserve(nodes.size() + 1);
+    next_of_node_.reserve(nodes.size() + 1);
+    scene::prefer_large_pages(render_objects_.data(), render_objects_.capacity() * sizeof(RenderObject));
   }
   node_objects_.resize(nodes.index_end());
   // Update every node if a mesh or material was edited, because any node may use it. Such edits are rare.
@@ -105,39 +109,55 @@ void RenderScene::update_node(scene::Handle<scene::Node> handle, const scene::No
       }
     }
   }
-  const bool is_same =
-      entry.node == handle && std::ranges::equal(entry.objects, shown, {},
-                                                 [&](draw::ObjectIndex index) { return render_objects_[index].mesh; });
-  if (!is_same) {
+  if (!has_shown(entry, handle)) {
     remove_objects(entry);
-    entry = {handle, std::vector<draw::ObjectIndex>(shown.size(), draw::object_identity)};
+    entry.node = handle;
+    draw::ObjectIndex last = draw::object_identity;
+    for (const scene::Handle<scene::Mesh> mesh : shown) {
+      const draw::ObjectIndex index = write_object(draw::object_identity, handle, node, mesh);
+      (last == draw::object_identity ? entry.first : next_of_node_[last]) = index;
+      last = index;
+    }
   }
-  if (!is_same || is_anew || scene_.nodes().revision(handle, scene::Node::Aspect::Transform) > seen_ ||
-      scene_.nodes().revision(handle, scene::Node::Aspect::Shadow) > seen_) {
-    for (std::size_t i = 0; i < shown.size(); i++) {
-      write_object(entry.objects[i], handle, shown[i]);
+  else if (is_anew || scene_.nodes().revision(handle, scene::Node::Aspect::Transform) > seen_ ||
+           scene_.nodes().revision(handle, scene::Node::Aspect::Shadow) > seen_) {
+    for (draw::ObjectIndex index = entry.first; index != draw::object_identity; index = next_of_node_[index]) {
+      write_object(index, handle, node, render_objects_[index].mesh);
     }
   }
 }
 
-/** \a index: the object to change; object_identity adds an object and sets \a index to its index. */
-void RenderScene::write_object(draw::ObjectIndex &index, scene::Handle<scene::Node> node,
-                               scene::Handle<scene::Mesh> mesh)
+bool RenderScene::has_shown(const NodeObjects &entry, scene::Handle<scene::Node> node) const
+{
+  draw::ObjectIndex index = entry.first;
+  for (const scene::Handle<scene::Mesh> mesh : shown_) {
+    if (index == draw::object_identity || render_objects_[index].mesh != mesh) {
+      return false;
+    }
+    index = next_of_node_[index];
+  }
+  return entry.node == node && index == draw::object_identity;
+}
+
+draw::ObjectIndex RenderScene::write_object(draw::ObjectIndex index, scene::Handle<scene::Node> handle,
+                                            const scene::Node &node, scene::Handle<scene::Mesh> mesh)
 {
   const scene::Mesh &value = scene_.meshes()[mesh];
-  const scene::Node &placed = scene_.nodes()[node];
-  const glm::mat4 world_from_object = relative_to(scene_.world_from_node(node), origin_ws_);
+  const glm::mat4 world_from_object = relative_to(scene_.world_from_node(handle), origin_ws_);
   const scene::Bounds bounds = scene::transformed(value.bounds, world_from_object);
   const draw::CullingVolume volume{bounds.center(), bounds.radius()};
   const std::uint32_t material = MaterialTable::place_of(scene_, value.material);
   if (index == draw::object_identity) {
     index = objects_.add(world_from_object, material, volume);
-    render_objects_.resize(std::max(render_objects_.size(), std::size_t(objects_.index_end())));
+    render_objects_.resize(objects_.index_end());
+    next_of_node_.resize(objects_.index_end());
+    next_of_node_[index] = draw::object_identity;
   }
   else {
     objects_.set(index, world_from_object, material, volume);
   }
-  render_objects_[index] = {node, mesh, bounds, placed.casts_shadow, placed.receives_shadow};
+  render_objects_[index] = {handle, mesh, bounds, node.casts_shadow, node.receives_shadow};
+  return index;
 }
 
 void RenderScene::update_lamps()

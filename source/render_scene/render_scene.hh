@@ -154,15 +154,20 @@ class RenderScene {
   void upload(MaterialClass widest);
 
  private:
-  /** The objects of one node. */
+  /** The objects of one node, as a list. */
   struct NodeObjects {
     scene::Handle<scene::Node> node;
-    std::vector<draw::ObjectIndex> objects;
+    /** object_identity: the node has no objects. */
+    draw::ObjectIndex first = draw::object_identity;
   };
+  /** Whether the node's objects show the meshes `shown_`. */
+  [[nodiscard]] bool has_shown(const NodeObjects &entry, scene::Handle<scene::Node> node) const;
   void remove_objects(NodeObjects &entry);
   void update_objects();
   void update_node(scene::Handle<scene::Node> handle, const scene::Node &node, bool is_anew);
-  void write_object(draw::ObjectIndex &index, scene::Handle<scene::Node> node, scene::Handle<scene::Mesh> mesh);
+  /** \a index: the object to change; object_identity adds an object. \return the index of the object */
+  draw::ObjectIndex write_object(draw::ObjectIndex index, scene::Handle<scene::Node> handle, const scene::Node &node,
+                                 scene::Handle<scene::Mesh> mesh);
   void update_lamps();
   void update_revisions();
 
@@ -175,6 +180,8 @@ class RenderScene {
   draw::ObjectBuffer objects_;
   /** Indexed by draw::ObjectIndex. */
   std::vector<RenderObject> render_objects_{1};
+  /** Indexed by draw::ObjectIndex: the next object of the same node; object_identity: it is the last. */
+  std::vector<draw::ObjectIndex> next_of_node_{draw::object_identity};
   /** Indexed by Handle::index of the node. */
   std::vector<NodeObjects> node_objects_;
   /** Temporary memory of update_node. */

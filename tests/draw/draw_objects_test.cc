@@ -162,6 +162,21 @@ TEST(IsMirrored, IsTheSignOfTheDeterminant)
   EXPECT_FALSE(is_mirrored(glm::mat4(0)));
 }
 
+TEST(IsMirrored, OfAnObjectFollowsItsMatrix)
+{
+  const glm::mat4 plain(1.0F);
+  const glm::mat4 mirrored = glm::scale(plain, glm::vec3(1, -1, 1));
+  ObjectBuffer objects;
+  EXPECT_FALSE(objects.is_mirrored(object_identity));
+  const ObjectIndex object = objects.add(mirrored);
+  EXPECT_TRUE(objects.is_mirrored(object));
+  objects.set(object, plain, 0, {});
+  EXPECT_FALSE(objects.is_mirrored(object));
+  objects.remove(object);
+  ASSERT_EQ(objects.add(mirrored), object);
+  EXPECT_TRUE(objects.is_mirrored(object));
+}
+
 constexpr std::size_t ENTRY_BYTES = sizeof(shared::ObjectData);
 
 /** Bytes that an upload of \a objects writes. */

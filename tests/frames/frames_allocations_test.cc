@@ -157,5 +157,33 @@ TEST_F(FrameAllocations, AMovingCameraBelowManyLampsAllocatesNothing)
   }
 }
 
+/** What is recorded anew grows by a factor at a time, and not with each object. */
+TEST_F(FrameAllocations, APictureAfterAChangeOfSettingsAllocatesNothingForEachObject)
+{
+  std::vector<std::uint64_t> counts;
+  for (const int object_count : {100, 1600}) {
+    FramesScene many;
+    const auto mesh = measure::add_box_mesh(many.scene, measure::add_material(many.scene, glm::vec3(0.5F)));
+    for (int i = 0; i < object_count; i++) {
+      measure::add_object(many.scene, mesh,
+                          glm::translate(glm::dmat4(1.0), glm::dvec3(0.01 * i - 8.0, 0.1 * (i % 7), 0.5)));
+    }
+    Settings settings{.shadow = {.cube_size_px = 32, .map_size_px = 64}};
+    SceneRenderer renderer(*device, many.scene, {32, 24}, settings);
+    std::uint64_t before = 0;
+    for (int picture = 0; picture < 3; picture++) {
+      settings.light_threshold = 1e-6F * float(picture + 1);
+      renderer.set_settings(settings);
+      before = allocation_count;
+      renderer.prepare(packets[0], FramesScene::camera(0));
+      before = allocation_count - before;
+      device->submit(packets[0]);
+    }
+    counts.push_back(before);
+  }
+  // Sixteen times as many objects: an array that is not reserved grows four times more.
+  EXPECT_LT(counts[1], counts[0] + 32U);
+}
+
 }  // namespace
 }  // namespace gnomon::eevee

@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <random>
 
 namespace gnomon::render_scene {
 namespace {
@@ -339,6 +341,54 @@ TEST_F(RenderSceneTest, RemovedNodesTakeTheirObjectsWithThem)
   EXPECT_EQ(object_count(), 3U);
   EXPECT_EQ(place_of(a), glm::vec3(2, 0, 0));
   EXPECT_EQ(place_of(b), glm::vec3(3, 0, 0));
+}
+
+TEST_F(RenderSceneTest, ANodeHasAnObjectForEachOfItsMeshesAfterAnyEdits)
+{
+  std::minstd_rand random(7);
+  const std::array<scene::Handle<scene::Mesh>, 3> meshes = {mesh, add_square_mesh(scene, material),
+                                                            add_square_mesh(scene, material)};
+  const std::array<scene::Handle<scene::Node>, 2> nodes = {add_object(scene, mesh, at({0, 0, 0})),
+                                                           add_object(scene, mesh, at({1, 0, 0}))};
+  for (int i = 0; i < 200; i++) {
+    scene.edit(nodes[random() % 2], [&](scene::Node &node) {
+      node.meshes.clear();
+      for (std::size_t count = random() % 4; count > 0; count--) {
+        node.meshes.push_back(meshes[random() % 3]);
+      }
+      node.parent_from_node[3].y = double(random() % 2);
+    });
+    render_scene.update();
+    std::size_t expected_count = 0;
+    for (const scene::Handle<scene::Node> node : nodes) {
+      std::vector<scene::Handle<scene::Mesh>> expected = scene.nodes()[node].meshes;
+      std::vector<scene::Handle<scene::Mesh>> found;
+      for (draw::ObjectIndex index = 1; index < render_scene.objects().index_end(); index++) {
+        if (render_scene.objects().is_live(index) && render_scene.object(index).node == node) {
+          found.push_back(render_scene.object(index).mesh);
+          EXPECT_EQ(render_scene.objects().world_from_object(index), glm::mat4(scene.world_from_node(node)));
+        }
+      }
+      expected_count += expected.size();
+      std::ranges::sort(expected);
+      std::ranges::sort(found);
+      ASSERT_EQ(found, expected) << "edit " << i;
+    }
+    ASSERT_EQ(object_count(), expected_count) << "edit " << i;
+  }
+}
+
+TEST_F(RenderSceneTest, AnUpdateAfterOneThatFailedIsWhole)
+{
+  const auto node = add_object(scene, mesh, at({0, 0, 0}));
+  scene.edit(node, [&](scene::Node &value) { value.meshes.push_back(mesh); });
+  // Finite in double and not in float.
+  scene.edit(node, [](scene::Node &value) { value.parent_from_node[3].x = 1e39; });
+  EXPECT_THROW(render_scene.update(), gpu::Error);
+  EXPECT_THROW(render_scene.update(), gpu::Error);
+  scene.edit(node, [](scene::Node &value) { value.parent_from_node[3].x = 2.0; });
+  render_scene.update();
+  EXPECT_EQ(object_count(), 2U);
 }
 
 TEST_F(RenderSceneTest, ANodeInThePlaceOfARemovedOneBetweenTwoUpdates)

@@ -180,6 +180,7 @@ void Engine::cache_init(draw::Viewport &viewport)
 {
   StorageList &stl = viewport.engine_data<Data>(*this).stl;
   stl.objects.clear();
+  stl.objects.reserve(scene_.objects().size());
   stl.is_collecting = true;
 }
 
@@ -190,7 +191,7 @@ void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectBuffer &
     stl.objects.push_back(object);
   }
   else if (object < stl.is_mirrored.size()) {
-    stl.is_winding_changed |= stl.is_mirrored[object] != draw::is_mirrored(objects.world_from_object(object));
+    stl.is_winding_changed |= stl.is_mirrored[object] != objects.is_mirrored(object);
   }
 }
 

@@ -119,7 +119,9 @@ struct Settings {
   }
 };
 
+struct CasterKind;
 struct Data;
+struct ObjectKind;
 struct SharedData;
 struct StorageList;
 
@@ -229,24 +231,27 @@ class Engine final : public draw::Engine {
   {
     return settings_.has_multiscatter ? Feature::Multiscatter : Feature::None;
   }
-  void record_object(draw::Viewport &viewport, draw::ObjectIndex object);
+  /** Record the calls of all objects. */
+  void record_objects(draw::Viewport &viewport);
+  /** Make the groups for the objects of the kind of \a first. */
+  ObjectKind record_kind(draw::Viewport &viewport, draw::ObjectIndex first);
   /**
    * Whether the scene has deferred lighting: at least half of its meshes allow it. Where forward objects hide deferred
    * ones, pixels are lit twice. Objects are not counted, so that edits of them do not change the programs.
    */
   [[nodiscard]] bool is_scene_deferred(Feature features) const;
   /** Whether the object is drawn into the G-buffer. It must also receive shadows, as all others there do. */
-  [[nodiscard]] bool is_lit_deferred(const StorageList &stl, draw::ObjectIndex object) const;
+  [[nodiscard]] bool is_lit_deferred(const StorageList &stl, const render_scene::RenderObject &object) const;
   void record_deferred_lit(draw::Viewport &viewport);
   /** Append the calls of an object that is blended: its backs, if they are drawn, and its fronts. */
-  void record_blended(Data &data, draw::ObjectIndex object, const gpu::Shader &shader,
-                      const render_scene::TextureSet &textures, const gpu::Batch &batch);
+  void record_blended(Data &data, draw::ObjectIndex object, const ObjectKind &kind);
   /** Let the blended objects be drawn from back to front, as \a view sees them. */
   void order_blended(Data &data, const draw::View &view);
   void record_film(draw::Viewport &viewport);
   void record_background(draw::Viewport &viewport);
   void record_casters(Data &data);
-  void record_caster(SharedData &shared, draw::ObjectIndex object);
+  /** Make the call for the casters of the kind of \a first. */
+  CasterKind record_caster_kind(SharedData &shared, draw::ObjectIndex first);
   void record_tonemap(draw::Viewport &viewport, const draw::View &view);
   /** \return false if only the steps for the device's feedback were drawn, because the feedback changes the picture. */
   bool draw_sample(draw::Viewport &viewport, const draw::View &view);

@@ -162,6 +162,27 @@ struct CastersKey {
   bool operator==(const CastersKey &) const = default;
 };
 
+/** What the recording of an object depends on, beside its index. All objects of a mesh are of one kind, or of few. */
+struct ObjectKind {
+  const gpu::Batch *batch = nullptr;
+  /** The groups that have calls of the objects: no more than one in each of five passes. */
+  std::array<draw::ShadingGroup *, 5> groups{};
+  std::size_t group_count = 0;
+  /** The program of PassList::blend_pass, where each object has groups of its own; nullptr: they are not in it. */
+  const gpu::Shader *blend_shader = nullptr;
+};
+
+/** What the shadow of a caster depends on, beside its matrix: all casters of a mesh and winding are of one kind. */
+struct CasterKind {
+  scene::Handle<scene::Mesh> handle;
+  /** The call in SharedData::shadow_pass; nullptr: the mesh casts no shadow, because it has no triangles. */
+  draw::InstanceCall *instances = nullptr;
+  /** These change without a new recording. \see Caster */
+  const scene::Mesh *mesh = nullptr;
+  std::uint64_t fingerprint = 0;
+  bool is_blended = false;
+};
+
 /** Data that all viewports of a scene share. It is destroyed with the last viewport. */
 struct SharedData {
   explicit SharedData(draw::ObjectBuffer &objects)
@@ -219,10 +240,9 @@ struct SharedData {
   gpu::BufferRange full_material_block;
   /** The groups of shadow_pass. */
   std::map<GroupKey, draw::ShadingGroup *> groups;
-  /** The call in shadow_pass for each mesh and winding. */
-  std::map<std::pair<scene::Handle<scene::Mesh>, gpu::State>, draw::InstanceCall *> caster_calls;
-  /** By object index: the call of the caster; nullptr for objects that cast no shadow. */
-  std::vector<draw::InstanceCall *> caster_of;
+  std::vector<CasterKind> caster_kinds;
+  /** By object index: the number of its kind in `caster_kinds`, from 1; 0 for objects that cast no shadow. */
+  std::vector<std::uint32_t> caster_kind_of;
   /** Sample for which blended casters are drawn; shadow_pass reads both by reference. */
   int sample_index = 0;
   int sample_seed = 0;

@@ -19,9 +19,7 @@ namespace gnomon::eevee {
 
 namespace {
 
-using gpu::State;
 using render_scene::MaterialClass;
-using render_scene::TextureSet;
 
 }  // namespace
 
@@ -107,20 +105,27 @@ void Engine::sync_materials(StorageList &stl) const
   stl.transmissive.clear();
   stl.is_transmission_rough = false;
   stl.has_surface_functions = false;
+  const scene::Scene &scene = scene_.scene();
+  std::vector<std::optional<MaterialClass>> classes(scene.meshes().index_end());
   for (const draw::ObjectIndex object : stl.objects) {
-    const scene::Mesh &mesh = scene_.scene().meshes()[scene_.object(object).mesh];
-    const std::uint32_t place = render_scene::MaterialTable::place_of(scene_.scene(), mesh.material);
-    const MaterialClass material_class = render_scene::material_class(scene_.scene(), mesh);
-    const bool has_function = render_scene::has_surface_function(scene_.scene(), scene_.scene().material_of(mesh));
+    const scene::Handle<scene::Mesh> handle = scene_.object(object).mesh;
+    std::optional<MaterialClass> &material_class = classes[handle.index];
+    if (material_class && *material_class != MaterialClass::Transmissive) {
+      continue;
+    }
+    const scene::Mesh &mesh = scene.meshes()[handle];
+    material_class = render_scene::material_class(scene, mesh);
+    const std::uint32_t place = render_scene::MaterialTable::place_of(scene, mesh.material);
+    const bool has_function = render_scene::has_surface_function(scene, scene.material_of(mesh));
     stl.has_surface_functions |= has_function;
     const bool is_specular =
-        scene_.materials()[place].specular_f90 > 0.0F || material_class >= MaterialClass::Layered || has_function;
+        scene_.materials()[place].specular_f90 > 0.0F || *material_class >= MaterialClass::Layered || has_function;
     stl.material_features =
-        stl.material_features | (is_specular ? Feature::Specular : Feature::None) | feature_of(material_class);
-    stl.widest_class = std::max(stl.widest_class, material_class);
-    if (material_class == MaterialClass::Transmissive) {
-      stl.transmissive.push_back({object, render_scene::is_blended(scene_.scene(), mesh)});
-      stl.is_transmission_rough |= has_function || scene_.scene().material_of(mesh).roughness > 0.0F;
+        stl.material_features | (is_specular ? Feature::Specular : Feature::None) | feature_of(*material_class);
+    stl.widest_class = std::max(stl.widest_class, *material_class);
+    if (*material_class == MaterialClass::Transmissive) {
+      stl.transmissive.push_back({object, render_scene::is_blended(scene, mesh)});
+      stl.is_transmission_rough |= has_function || scene.material_of(mesh).roughness > 0.0F;
     }
   }
   stl.materials_features_revision = materials;
@@ -315,11 +320,8 @@ void Engine::record_passes(draw::Viewport &viewport)
   stl.groups.clear();
   stl.blended.clear();
   stl.blended_group_count = 0;
-  stl.is_mirrored.assign(scene_.objects().index_end(), false);
   stl.is_deferred = is_scene_deferred(stl.features);
-  for (const draw::ObjectIndex object : stl.objects) {
-    record_object(viewport, object);
-  }
+  record_objects(viewport);
   if (!data.psl->gbuffer_pass.is_empty()) {
     record_deferred_lit(viewport);
   }
@@ -327,105 +329,6 @@ void Engine::record_passes(draw::Viewport &viewport)
     record_background(viewport);
   }
   record_film(viewport);
-}
-
-void Engine::record_object(draw::Viewport &viewport, draw::ObjectIndex index)
-{
-  Data &data = viewport.engine_data<Data>(*this);
-  StorageList &stl = data.stl;
-  gpu::Device &device = viewport.device();
-  const scene::Scene &scene = scene_.scene();
-  const render_scene::RenderObject &object = scene_.object(index);
-  const scene::Mesh &mesh = scene.meshes()[object.mesh];
-  const scene::Material &material = scene.material_of(mesh);
-  const MaterialClass cut_out = render_scene::mask_class(scene, mesh);
-  const MaterialClass material_class = render_scene::material_class(scene, mesh);
-  // Without light, the base colour has no effect on an opaque surface, except in Inspection::surfaces.
-  const bool is_colorless = material_class == MaterialClass::BaseColor && cut_out == MaterialClass::Plain &&
-                            !has(stl.features, Feature::Light) && !settings_.has_surfaces;
-  const MaterialClass surface = is_colorless ? MaterialClass::Plain : material_class;
-  const gpu::Batch &batch = scene_.batch(object.mesh, streams_of(surface));
-  stl.is_mirrored[index] = draw::is_mirrored(scene_.objects().world_from_object(index));
-  const State winding = stl.is_mirrored[index] ? State::FrontClockwise : State::None;
-  const State fixed = winding | render_scene::topology_state(mesh.topology);
-
-  /** Appends a call to a group of \a pass. \a bind binds the resources of a new group. */
-  const auto call = [&](draw::Pass &pass, const gpu::Shader &shader, State state, MaterialClass read,
-                        const TextureSet &textures, const auto &bind) {
-    draw::ShadingGroup *&group = stl.groups[{&pass, shader.id(), state | fixed, textures}];
-    if (!group) {
-      group = &pass.group(shader);
-      group->state_enable(state | fixed);
-      bind(*group);
-      render_scene::bind_textures(*group, scene_, read, textures);
-    }
-    group->call(batch, index);
-  };
-  const FunctionText function = function_of(scene, material);
-  const FunctionText alpha_function = cut_out == MaterialClass::Plain ? FunctionText() : function;
-  const TextureSet alpha_textures =
-      cut_out == MaterialClass::Plain
-          ? TextureSet()
-          : textures_of(scene, mesh, alpha_function.key != 0 ? MaterialClass::Full : MaterialClass::BaseColor);
-  const TextureSet surface_textures = textures_of(scene, mesh, surface);
-  const auto bind_surface = [&data](draw::ShadingGroup &group) { bind_lit(group, data); };
-  // An object that receives no shadows is drawn with a program without shadow lookups.
-  const Feature lighting = (object.receives_shadow ? stl.features : without_shadows(stl.features)) |
-                           (function.key != 0 ? lit_function_features : Feature::None);
-  // Without the picture behind it, nothing that transmits light is in the view.
-  const bool is_transmissive = surface == MaterialClass::Transmissive;
-  const bool is_deferred = is_lit_deferred(stl, index);
-  const gpu::Shader *lit_shader =
-      is_deferred || (is_transmissive && !data.txl.behind)
-          ? nullptr
-          : &shaders_->get(device, ShaderId::Lit, with_variant(lighting | feature_of(surface) | asked_features()),
-                           function);
-  if (render_scene::is_blended(scene, mesh)) {
-    if (lit_shader) {
-      record_blended(data, index, *lit_shader, surface_textures, batch);
-    }
-    return;
-  }
-  // The depth test of the lit pass is "equal": a back face at the depth of a front face of another triangle must be
-  // culled.
-  const State side = material.is_double_sided ? State::None : State::CullBack;
-  if (is_deferred) {
-    call(data.psl->gbuffer_pass, shaders_->get(device, ShaderId::GBuffer, stl.features), side, surface, {},
-         bind_surface);
-  }
-  else {
-    draw::Pass &depth_pass = is_transmissive            ? data.psl->transmission_depth_pass
-                             : material.is_double_sided ? data.psl->depth_pass
-                                                        : data.psl->depth_pass_cull;
-    const gpu::Shader &depth_shader =
-        shaders_->get(device, alpha_function.key != 0 ? ShaderId::DepthFunction : ShaderId::Depth,
-                      mask_features(cut_out), alpha_function);
-    call(depth_pass, depth_shader, is_transmissive ? side : State::None, cut_out, alpha_textures, bind_surface);
-  }
-  if (lit_shader) {
-    call(is_transmissive ? data.psl->transmission_pass : data.psl->lit_pass, *lit_shader, side, surface,
-         surface_textures, bind_surface);
-  }
-  if (data.shared->tinted_light && !is_transmissive) {
-    call(data.psl->tint_pass, shaders_->get(device, ShaderId::DebugCascades, stl.features), side, MaterialClass::Plain,
-         {}, [&data](draw::ShadingGroup &group) {
-           bind_lit(group, data);
-           group.constant("tinted_light", light_entry(data, *data.shared->tinted_light, tinted_entry));
-         });
-  }
-  if (settings_.has_surfaces) {
-    // The program reads normals also where nothing gives light.
-    call(data.psl->surfaces_pass,
-         shaders_->get(device, ShaderId::Surfaces, Feature::Light | feature_of(surface), function), side, surface,
-         surface_textures, bind_surface);
-  }
-  if (settings_.has_probe && has(stl.features, Feature::Light)) {
-    call(data.psl->probe_pass, shaders_->get(device, ShaderId::Probe, lighting), side, MaterialClass::Plain, {},
-         [&data](draw::ShadingGroup &group) {
-           bind_lit(group, data);
-           group.constant_ref("probed_light", &data.stl.probed_light);
-         });
-  }
 }
 
 }  // namespace gnomon::eevee

@@ -11,21 +11,22 @@
 
 namespace gnomon::eevee {
 
-void Engine::record_blended(Data &data, draw::ObjectIndex object, const gpu::Shader &shader,
-                            const render_scene::TextureSet &textures, const gpu::Batch &batch)
+void Engine::record_blended(Data &data, draw::ObjectIndex object, const ObjectKind &kind)
 {
   using gpu::State;
   StorageList &stl = data.stl;
   const scene::Mesh &mesh = scene_.scene().meshes()[scene_.object(object).mesh];
+  const render_scene::MaterialClass material_class = render_scene::material_class(scene_.scene(), mesh);
+  const render_scene::TextureSet textures = render_scene::textures_of(scene_.scene(), mesh, material_class);
   const State winding = stl.is_mirrored[object] ? State::FrontClockwise : State::None;
   const bool is_transmissive = scene_.scene().material_of(mesh).has_transmission();
   BlendedObject &blended = stl.blended.emplace_back(BlendedObject{object, stl.blended_group_count, 0, is_transmissive});
   const auto add_side = [&](State culled) {
-    draw::ShadingGroup &group = data.psl->blend_pass.group(shader);
+    draw::ShadingGroup &group = data.psl->blend_pass.group(*kind.blend_shader);
     group.state_enable(culled | winding | render_scene::topology_state(mesh.topology));
     bind_lit(group, data);
-    render_scene::bind_textures(group, scene_, render_scene::material_class(scene_.scene(), mesh), textures);
-    group.call(batch, object);
+    render_scene::bind_textures(group, scene_, material_class, textures);
+    group.call(*kind.batch, object);
     blended.group_count++;
     stl.blended_group_count++;
   };

@@ -6,6 +6,8 @@
 #include "eevee_surface_functions.hh"
 
 #include <algorithm>
+#include <array>
+#include <vector>
 
 namespace gnomon::eevee {
 
@@ -33,15 +35,13 @@ State culled_state(CasterFaces faces)
   }
 }
 
-/** Hash of all values that the shadow of a caster depends on. */
-std::uint64_t caster_fingerprint(const render_scene::RenderScene &render_scene,
-                                 const render_scene::RenderObject &object, const glm::mat4 &world_from_object)
+/** Hash of all values that the shadow of a caster of \a handle depends on, except its matrix. */
+std::uint64_t mesh_fingerprint(const render_scene::RenderScene &render_scene, scene::Handle<scene::Mesh> handle)
 {
   const scene::Scene &scene = render_scene.scene();
-  const scene::Mesh &mesh = scene.meshes()[object.mesh];
+  const scene::Mesh &mesh = scene.meshes()[handle];
   const scene::Material &material = scene.material_of(mesh);
   struct {
-    glm::mat4 world_from_object;
     std::uint64_t mesh;
     scene::Revision shape;
     std::uint64_t is_double_sided;
@@ -62,9 +62,8 @@ std::uint64_t caster_fingerprint(const render_scene::RenderScene &render_scene,
     scene::Revision function_inputs;
     glm::dvec3 origin_ws;
   } key{};
-  key.world_from_object = world_from_object;
-  key.mesh = object.mesh.key();
-  key.shape = scene.meshes().revision(object.mesh, scene::Mesh::Aspect::Shape);
+  key.mesh = handle.key();
+  key.shape = scene.meshes().revision(handle, scene::Mesh::Aspect::Shape);
   key.is_double_sided = material.is_double_sided ? 1 : 0;
   if (render_scene::is_masked(scene, mesh) || render_scene::lets_light_through(scene, mesh)) {
     key.alpha_mode = std::uint64_t(material.alpha_mode);
@@ -93,6 +92,18 @@ std::uint64_t caster_fingerprint(const render_scene::RenderScene &render_scene,
   return fingerprint_of(std::as_bytes(std::span(&key, 1)));
 }
 
+/** All that the shadow of a caster depends on. */
+struct CasterKey {
+  glm::mat4 world_from_object;
+  /** \see mesh_fingerprint */
+  std::uint64_t mesh;
+};
+
+std::uint64_t caster_fingerprint(const CasterKey &key)
+{
+  return fingerprint_of(std::as_bytes(std::span(&key, 1)));
+}
+
 }  // namespace
 
 /** Record the pass that draws casters if one of its inputs changed. */
@@ -101,9 +112,9 @@ void Engine::record_casters(Data &data)
   SharedData &shared = *data.shared;
   const CastersKey key{scene_.objects().structure_revision(), scene_.passes_revision(), settings_revision_,
                        shaders_->revision(), has(data.stl.features, any_shadow)};
+  const draw::ObjectBuffer &objects = scene_.objects();
   const bool is_winding_kept = std::ranges::none_of(data.stl.objects, [&](draw::ObjectIndex index) {
-    return index < shared.is_mirrored.size() &&
-           shared.is_mirrored[index] != draw::is_mirrored(scene_.objects().world_from_object(index));
+    return index < shared.is_mirrored.size() && shared.is_mirrored[index] != objects.is_mirrored(index);
   });
   if (shared.recorded == key && is_winding_kept) {
     return;
@@ -111,74 +122,89 @@ void Engine::record_casters(Data &data)
   shared.recorded.reset();
   shared.shadow_pass.clear();
   shared.groups.clear();
-  shared.caster_calls.clear();
-  shared.caster_of.assign(scene_.objects().index_end(), nullptr);
-  shared.is_mirrored.assign(scene_.objects().index_end(), false);
-  for (const draw::ObjectIndex object : data.stl.objects) {
-    const scene::Topology topology = scene_.scene().meshes()[scene_.object(object).mesh].topology;
-    if (key.has_shadows && scene_.object(object).casts_shadow && topology == scene::Topology::Triangles) {
-      record_caster(shared, object);
+  shared.caster_kinds.clear();
+  shared.caster_kind_of.assign(objects.index_end(), 0);
+  shared.is_mirrored.assign(objects.index_end(), false);
+  // By mesh and winding: the number of the kind, from 1. 0: there is none yet.
+  std::vector<std::array<std::uint32_t, 2>> numbers(scene_.scene().meshes().index_end());
+  for (const draw::ObjectIndex index : data.stl.objects) {
+    const render_scene::RenderObject &object = scene_.object(index);
+    const bool is_mirrored = objects.is_mirrored(index);
+    shared.is_mirrored[index] = is_mirrored;
+    if (!key.has_shadows || !object.casts_shadow) {
+      continue;
     }
+    std::uint32_t &number = numbers[object.mesh.index][is_mirrored ? 1 : 0];
+    if (number == 0) {
+      shared.caster_kinds.push_back(record_caster_kind(shared, index));
+      number = std::uint32_t(shared.caster_kinds.size());
+    }
+    shared.caster_kind_of[index] = number;
   }
   shared.recorded = key;
 }
 
-void Engine::record_caster(SharedData &shared, draw::ObjectIndex index)
+CasterKind Engine::record_caster_kind(SharedData &shared, draw::ObjectIndex first)
 {
-  const render_scene::RenderObject &object = scene_.object(index);
+  const scene::Handle<scene::Mesh> handle = scene_.object(first).mesh;
   const scene::Scene &scene = scene_.scene();
-  const scene::Mesh &mesh = scene.meshes()[object.mesh];
+  const scene::Mesh &mesh = scene.meshes()[handle];
+  if (mesh.topology != scene::Topology::Triangles) {
+    return {.handle = handle};
+  }
   const scene::Material &material = scene.material_of(mesh);
   const bool is_open = render_scene::lets_light_through(scene, mesh);
   const MaterialClass cut_out = is_open ? MaterialClass::Full : render_scene::mask_class(scene, mesh);
-  shared.is_mirrored[index] = draw::is_mirrored(scene_.objects().world_from_object(index));
-  const State winding = shared.is_mirrored[index] ? State::FrontClockwise : State::None;
-  draw::InstanceCall *&instances = shared.caster_calls[{object.mesh, winding}];
-  if (!instances) {
-    const FunctionText function = cut_out == MaterialClass::Plain ? FunctionText() : alpha_function_of(scene, material);
-    const gpu::Shader &shader =
-        shaders_->get(scene_.device(), shadow_shader(shared.shadows.layer_pass()),
-                      mask_features(cut_out) | (is_open ? Feature::OpacityThreshold : Feature::None), function);
-    const State faces = material.is_double_sided ? State::None : culled_state(settings_.shadow.caster_faces);
-    // Without culling the winding has no effect.
-    const State state = faces == State::None ? State::None : faces | winding;
-    const TextureSet textures =
-        cut_out == MaterialClass::Plain
-            ? TextureSet()
-            : textures_of(scene, mesh, function.key != 0 ? MaterialClass::Full : MaterialClass::BaseColor);
-    draw::ShadingGroup *&group = shared.groups[{&shared.shadow_pass, shader.id(), state, textures}];
-    if (!group) {
-      group = &shared.shadow_pass.group(shader);
-      group->state_enable(state);
-      group->bind_storage_ref("object_block", &shared.object_block);
-      group->bind_storage_ref("material_block", &shared.material_block);
-      group->bind_storage_ref("full_material_block", &shared.full_material_block);
-      group->bind_uniform_ref("shadow_render_block", shared.shadows.render_block());
-      if (function.key != 0) {
-        group->bind_uniform("surface_function_block", shared.surface_function_block);
-      }
-      group->constant_ref("sample_index", &shared.sample_index);
-      group->constant_ref("sample_seed", &shared.sample_seed);
-      render_scene::bind_textures(*group, scene_, cut_out, textures);
+  const State winding = shared.is_mirrored[first] ? State::FrontClockwise : State::None;
+  const FunctionText function = cut_out == MaterialClass::Plain ? FunctionText() : alpha_function_of(scene, material);
+  const gpu::Shader &shader =
+      shaders_->get(scene_.device(), shadow_shader(shared.shadows.layer_pass()),
+                    mask_features(cut_out) | (is_open ? Feature::OpacityThreshold : Feature::None), function);
+  const State faces = material.is_double_sided ? State::None : culled_state(settings_.shadow.caster_faces);
+  // Without culling the winding has no effect.
+  const State state = faces == State::None ? State::None : faces | winding;
+  const TextureSet textures =
+      cut_out == MaterialClass::Plain
+          ? TextureSet()
+          : textures_of(scene, mesh, function.key != 0 ? MaterialClass::Full : MaterialClass::BaseColor);
+  draw::ShadingGroup *&group = shared.groups[{&shared.shadow_pass, shader.id(), state, textures}];
+  if (!group) {
+    group = &shared.shadow_pass.group(shader);
+    group->state_enable(state);
+    group->bind_storage_ref("object_block", &shared.object_block);
+    group->bind_storage_ref("material_block", &shared.material_block);
+    group->bind_storage_ref("full_material_block", &shared.full_material_block);
+    group->bind_uniform_ref("shadow_render_block", shared.shadows.render_block());
+    if (function.key != 0) {
+      group->bind_uniform("surface_function_block", shared.surface_function_block);
     }
-    instances = &group->instances(scene_.batch(object.mesh, streams_of(cut_out)));
+    group->constant_ref("sample_index", &shared.sample_index);
+    group->constant_ref("sample_seed", &shared.sample_seed);
+    render_scene::bind_textures(*group, scene_, cut_out, textures);
   }
-  shared.caster_of[index] = instances;
+  return {.handle = handle, .instances = &group->instances(scene_.batch(handle, streams_of(cut_out)))};
 }
 
 /** Give the current casters to SceneShadows, which compares them with those of the last sync. */
 void Engine::add_casters(Data &data)
 {
   SharedData &shared = *data.shared;
+  const draw::ObjectBuffer &objects = scene_.objects();
+  for (CasterKind &kind : shared.caster_kinds) {
+    kind.mesh = &scene_.scene().meshes()[kind.handle];
+    kind.fingerprint = mesh_fingerprint(scene_, kind.handle);
+    kind.is_blended = render_scene::lets_light_through(scene_.scene(), *kind.mesh);
+  }
   for (const draw::ObjectIndex index : data.stl.objects) {
-    if (draw::InstanceCall *instances = shared.caster_of[index]) {
-      const render_scene::RenderObject &object = scene_.object(index);
-      const glm::mat4 &world_from_object = scene_.objects().world_from_object(index);
-      shared.shadows.add_caster(
-          {object.bounds, index, instances, caster_fingerprint(scene_, object, world_from_object),
-           &scene_.scene().meshes()[object.mesh], &world_from_object,
-           render_scene::lets_light_through(scene_.scene(), scene_.scene().meshes()[object.mesh])});
+    const std::uint32_t number = shared.caster_kind_of[index];
+    if (number == 0 || shared.caster_kinds[number - 1].instances == nullptr) {
+      continue;
     }
+    const CasterKind &kind = shared.caster_kinds[number - 1];
+    const glm::mat4 &world_from_object = objects.world_from_object(index);
+    const std::uint64_t fingerprint = caster_fingerprint({world_from_object, kind.fingerprint});
+    shared.shadows.add_caster({scene_.object(index).bounds, index, kind.instances, fingerprint, kind.mesh,
+                               &world_from_object, kind.is_blended});
   }
   shared.shadows.finish();
   shared.has_casters = true;

@@ -31,10 +31,9 @@ bool Engine::is_scene_deferred(Feature features) const
   return 2 * allowed >= scene.meshes().size();
 }
 
-bool Engine::is_lit_deferred(const StorageList &stl, draw::ObjectIndex index) const
+bool Engine::is_lit_deferred(const StorageList &stl, const render_scene::RenderObject &object) const
 {
   const scene::Scene &scene = scene_.scene();
-  const render_scene::RenderObject &object = scene_.object(index);
   return stl.is_deferred && object.receives_shadow && allows_deferred(scene, scene.meshes()[object.mesh]);
 }
 

@@ -120,7 +120,7 @@ bool Overlay::record_objects(const draw::View &view, glm::ivec2 size_px, const I
     const render_scene::TextureSet textures =
         render_scene::textures_of(scene, mesh, cut_out == MaterialClass::Plain ? cut_out : MaterialClass::BaseColor);
     const State state = (scene.material_of(mesh).is_double_sided ? State::None : State::CullBack) |
-                        (draw::is_mirrored(objects.world_from_object(index)) ? State::FrontClockwise : State::None) |
+                        (objects.is_mirrored(index) ? State::FrontClockwise : State::None) |
                         render_scene::topology_state(mesh.topology);
     widest = std::max(widest, cut_out);
     draw::ShadingGroup *&group = groups[{cut_out, state, textures}];

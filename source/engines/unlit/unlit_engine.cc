@@ -83,7 +83,7 @@ void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectBuffer &
     data.objects.push_back(object);
   }
   else if (object < data.is_mirrored.size()) {
-    data.is_winding_changed |= data.is_mirrored[object] != draw::is_mirrored(objects.world_from_object(object));
+    data.is_winding_changed |= data.is_mirrored[object] != objects.is_mirrored(object);
   }
 }
 

@@ -51,7 +51,7 @@ void Engine::record_surfaces(Data &data, gpu::Device &device)
     const scene::Mesh &mesh = scene.meshes()[object.mesh];
     const MaterialClass surface = std::min(render_scene::material_class(scene, mesh), MaterialClass::Full);
     data.widest = std::max(data.widest, surface);
-    data.is_mirrored[index] = draw::is_mirrored(scene_.objects().world_from_object(index));
+    data.is_mirrored[index] = scene_.objects().is_mirrored(index);
     const bool is_receiver = depth_camera_ && object.receives_shadow;
     const Feature features = feature_of(surface) | (is_receiver ? Feature::DepthCamera : Feature::None);
     const State fixed =

@@ -367,6 +367,38 @@ TEST_F(ShadowGpuTest, ASurfaceThatCastsNoShadowReceivesThoseOfCastersOutsideTheV
   }
 }
 
+/** Objects of one mesh share what is recorded for them, except where their winding or their shadows differ. */
+TEST_F(ShadowGpuTest, ObjectsOfOneMeshAreThoseOfCopiesOfIt)
+{
+  test::edit_material(scene, 0, [](scene::Material &material) { material.is_double_sided = false; });
+  test::add_lamp(scene, scene::LampKind::Sun, {}, {0.5F, 0.3F, -1}, 1.0F);
+  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 4}, {0, 0, -1}, 50.0F);
+  const auto box = test::add_box_mesh(scene, scene.materials().first());
+  std::vector<scene::Handle<scene::Node>> nodes = {add_square({0, 0, -1}, {0, 0, 1}, 20.0F, square)};
+  for (int i = 0; i < 16; i++) {
+    const glm::vec3 place(1.5F * float(i % 4) - 2.0F, 1.5F * float(i / 4) - 2.0F, 0.1F * float(i));
+    const glm::vec3 scale((i & 1) != 0 ? -0.5F : 0.5F, 0.5F, 0.4F);
+    nodes.push_back(test::add_object(
+        scene, box, glm::scale(glm::rotate(glm::translate(glm::mat4(1.0F), place), float(i), {0.6F, 0, 0.8F}), scale)));
+    scene.edit(nodes.back(), [&](scene::Node &node) {
+      node.receives_shadow = (i & 2) == 0;
+      node.casts_shadow = (i & 4) == 0;
+    });
+  }
+  const scene::PlacedCamera camera = test::camera_at({0, -8, 6}, {0, 0, 0}, 0.8F);
+  for (const CasterFaces faces : {CasterFaces::Front, CasterFaces::Back}) {
+    const Settings settings{.shadow = {.caster_faces = faces}};
+    const Picture shared = render(camera, settings);
+    scene::Scene others = scene;
+    for (const scene::Handle<scene::Node> node : nodes) {
+      others.edit(node, [&](scene::Node &value) { value.meshes = {others.add(others.meshes()[value.meshes[0]])}; });
+    }
+    Renderer renderer(*device, others, {64, 64}, settings);
+    EXPECT_EQ(shared.pixels, renderer.picture(camera).pixels) << int(faces);
+    EXPECT_NE(shared.pixels, render(camera, {.shadow = {.kind = scene::ShadowKind::None}}).pixels);
+  }
+}
+
 TEST_F(ShadowGpuTest, SamplesConvergeToASmoothEdge)
 {
   add_square({0, 0, 0}, {0, 0, 1}, 20.0F, square);

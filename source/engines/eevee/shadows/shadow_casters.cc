@@ -165,14 +165,16 @@ void ShadowCasters::finish()
   is_finished_ = true;
   bounds_ws_ = {};
   volumes_.clear();
+  volumes_.reserve(casters_.size());
   calls_.clear();
   blended_.clear();
-  for (const Caster &caster : casters_) {
+  for (std::size_t i = 0; i < casters_.size(); i++) {
+    const Caster &caster = casters_[i];
     if (caster.is_blended) {
-      blended_.push_back(volumes_.size());
+      blended_.push_back(i);
     }
     bounds_ws_.extend(caster.bounds_ws);
-    volumes_.push_back({caster.bounds_ws.center(), caster.bounds_ws.radius()});
+    volumes_.add({caster.bounds_ws.center(), caster.bounds_ws.radius()});
     // Most casters follow others of their mesh.
     if (calls_.empty() || calls_.back() != caster.instances) {
       calls_.push_back(caster.instances);

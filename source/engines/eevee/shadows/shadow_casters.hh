@@ -107,7 +107,7 @@ class ShadowCasters {
     return bounds_ws_;
   }
   /** Bounding spheres, in the order of list(). */
-  [[nodiscard]] const std::vector<draw::CullingVolume> &volumes() const
+  [[nodiscard]] const draw::CullingArrays &volumes() const
   {
     return volumes_;
   }
@@ -141,7 +141,7 @@ class ShadowCasters {
   /** finish was called since begin. */
   bool is_finished_ = false;
   scene::Bounds bounds_ws_;
-  std::vector<draw::CullingVolume> volumes_;
+  draw::CullingArrays volumes_;
   std::vector<draw::InstanceCall *> calls_;
   std::vector<std::size_t> blended_;
   std::vector<scene::Bounds> changed_;

@@ -35,13 +35,25 @@ struct LampBox {
   }
 };
 
+/** The least and the greatest of the products of \a factor with \a a and \a b. */
+std::pair<double, double> product_range(double factor, double a, double b)
+{
+  return std::minmax(factor * a, factor * b);
+}
+
+/**
+ * The box of the eight corners. Each coordinate of a corner is a sum of three products, which is least where each of
+ * them is. Sums are rounded monotonically, so that this is exactly the box of the rounded corners.
+ */
 LampBox box_in(const glm::dmat3 &lamp_from_world, const scene::Bounds &bounds)
 {
   LampBox box;
-  for (int i = 0; i < 8; i++) {
-    box.extend(lamp_from_world * glm::dvec3((i & 1) ? bounds.max.x : bounds.min.x,
-                                            (i & 2) ? bounds.max.y : bounds.min.y,
-                                            (i & 4) ? bounds.max.z : bounds.min.z));
+  for (int axis = 0; axis < 3; axis++) {
+    const auto [x_min, x_max] = product_range(lamp_from_world[0][axis], bounds.min.x, bounds.max.x);
+    const auto [y_min, y_max] = product_range(lamp_from_world[1][axis], bounds.min.y, bounds.max.y);
+    const auto [z_min, z_max] = product_range(lamp_from_world[2][axis], bounds.min.z, bounds.max.z);
+    box.min[axis] = x_min + y_min + z_min;
+    box.max[axis] = x_max + y_max + z_max;
   }
   return box;
 }

@@ -29,6 +29,12 @@ const ShadowTechnique &technique_of(const ShadowLamp &lamp, scene::ShadowKind ki
   return **found;
 }
 
+/** Whether the layers are the faces of a whole cube, which need no frustums. */
+static bool is_whole_cube(const ShadowSlot &slot)
+{
+  return slot.views.size() == 6 && slot.crop == whole_map;
+}
+
 LayerMask touched_layers(const ShadowSlot &slot, const scene::Bounds &bounds_ws, const draw::CullingVolume &volume)
 {
   const glm::vec3 position_ws = slot.lamp.position_ws();
@@ -36,7 +42,7 @@ LayerMask touched_layers(const ShadowSlot &slot, const scene::Bounds &bounds_ws,
   if (!std::isinf(range) && distance_to(bounds_ws, position_ws) > range) {
     return 0;
   }
-  if (slot.views.size() == 6 && slot.crop == whole_map) {
+  if (is_whole_cube(slot)) {
     const float half_size = 1.0F / shared::cube_uv_scale(float(slot.place.given.size_px));
     return cube_face_mask({bounds_ws.min - position_ws, bounds_ws.max - position_ws}, half_size);
   }
@@ -111,18 +117,46 @@ void crop_views(ShadowSlot &slot, const VisibleRange &visible)
   }
 }
 
+/** Write the layers of \a missing that each caster touches to the recording. \return those that one of them touches */
+static LayerMask find_caster_layers(const ShadowSlot &slot, LayerMask missing, const ShadowRecording &recording)
+{
+  const std::vector<Caster> &list = recording.casters.list();
+  std::vector<std::uint8_t> &touched = recording.caster_layers;
+  std::vector<std::uint8_t> &is_touching = recording.is_touching;
+  const glm::vec3 position_ws = slot.lamp.position_ws();
+  const float range = slot.lamp.shadow_range();
+  touched.assign(list.size(), 0);
+  if (is_whole_cube(slot)) {
+    for (std::size_t i = 0; i < list.size(); i++) {
+      touched[i] = std::uint8_t(touched_layers(slot, list[i].bounds_ws, {}) & missing);
+    }
+  }
+  else {
+    for (LayerMask rest = missing; rest != 0; rest &= rest - 1) {
+      const int layer = std::countr_zero(rest);
+      draw::test_volumes(slot.views[std::size_t(layer)].culling_planes(), recording.casters.volumes(), is_touching);
+      for (std::size_t i = 0; i < list.size(); i++) {
+        touched[i] = std::uint8_t(touched[i] | is_touching[i] << layer);
+      }
+    }
+    for (std::size_t i = 0; i < list.size() && !std::isinf(range); i++) {
+      const bool is_in_range = touched[i] != 0 && distance_to(list[i].bounds_ws, position_ws) <= range;
+      touched[i] = is_in_range ? touched[i] : std::uint8_t(0);
+    }
+  }
+  LayerMask all = 0;
+  for (const std::uint8_t layers : touched) {
+    all |= layers;
+  }
+  return all;
+}
+
 LayerMask record_depths(ShadowSlot &slot, LayerMask missing, bool is_empty_drawn, const ShadowRecording &recording)
 {
   gpu::CommandList &list = recording.list;
   const std::vector<Caster> &casters = recording.casters.list();
-  std::vector<std::uint8_t> &caster_layers = recording.caster_layers;
-  caster_layers.assign(casters.size(), 0);
-  LayerMask with_casters = 0;
-  for (std::size_t i = 0; i < casters.size(); i++) {
-    caster_layers[i] =
-        std::uint8_t(touched_layers(slot, casters[i].bounds_ws, recording.casters.volumes()[i]) & missing);
-    with_casters |= caster_layers[i];
-  }
+  const std::vector<std::uint8_t> &caster_layers = recording.caster_layers;
+  const LayerMask with_casters = find_caster_layers(slot, missing, recording);
 
   shared::ShadowRenderBlock block{};
   for (std::size_t i = 0; i < slot.views.size(); i++) {

@@ -136,8 +136,9 @@ struct ShadowRecording {
   LayerPass layer_pass;
   /** Counters of the recorded work. */
   ShadowCounters &counters;
-  /** Temporary memory of record_depths. */
+  /** Temporary memory of record_depths, by caster: the layers that it touches, and whether it touches one layer. */
   std::vector<std::uint8_t> &caster_layers;
+  std::vector<std::uint8_t> &is_touching;
 };
 
 /** The view to which the maps of suns are fitted. */

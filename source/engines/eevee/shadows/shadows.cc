@@ -180,7 +180,7 @@ UpdatedLayers Shadows::update(gpu::Device &device, const draw::View &view, float
         technique.record(
             slot, now,
             {device, pass, list, scene_.casters_, scene_.arrays_[id], scene_.octahedral_, scene_.render_buffer_,
-             scene_.render_block_, scene_.layer_pass_, recorded_counters_, caster_layers_});
+             scene_.render_block_, scene_.layer_pass_, recorded_counters_, caster_layers_, is_touching_});
       }
     });
   }

@@ -162,6 +162,7 @@ class Shadows {
   ShadowCounters recorded_counters_;
   /** \see ShadowRecording::caster_layers */
   std::vector<std::uint8_t> caster_layers_;
+  std::vector<std::uint8_t> is_touching_;
 };
 
 }  // namespace gnomon::eevee
