@@ -12,27 +12,43 @@
 
 namespace gnomon::draw {
 
-glm::mat3 normal_matrix(const glm::mat4 &world_from_object)
+namespace {
+
+/** The cofactors of the upper 3x3 of a matrix. */
+struct Cofactors {
+  glm::dmat3 columns;
+  bool is_mirrored;
+};
+
+Cofactors cofactors_of(const glm::mat4 &matrix)
 {
-  const glm::dmat3 m(world_from_object);
-  glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+  const glm::dmat3 m(matrix);
+  const glm::dmat3 columns(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+  return {columns, glm::dot(columns[2], m[2]) < 0.0};
+}
+
+glm::mat3 normal_matrix(const Cofactors &cofactors)
+{
   double largest = 0.0;
   for (int column = 0; column < 3; column++) {
     for (int row = 0; row < 3; row++) {
-      largest = std::max(largest, std::abs(cofactors[column][row]));
+      largest = std::max(largest, std::abs(cofactors.columns[column][row]));
     }
   }
-  if (largest > 0.0) {
-    // The sign of the determinant, as in is_mirrored().
-    cofactors *= (glm::dot(cofactors[2], m[2]) < 0.0 ? -1.0 : 1.0) / largest;
-  }
-  return glm::mat3(cofactors);
+  return glm::mat3(largest > 0.0 ? cofactors.columns * ((cofactors.is_mirrored ? -1.0 : 1.0) / largest)
+                                 : cofactors.columns);
+}
+
+}  // namespace
+
+glm::mat3 normal_matrix(const glm::mat4 &world_from_object)
+{
+  return normal_matrix(cofactors_of(world_from_object));
 }
 
 bool is_mirrored(const glm::mat4 &world_from_object)
 {
-  const glm::dmat3 m(world_from_object);
-  return glm::dot(glm::cross(m[0], m[1]), m[2]) < 0.0;
+  return cofactors_of(world_from_object).is_mirrored;
 }
 
 bool is_finite(const glm::mat4 &matrix)
@@ -162,7 +178,8 @@ void ObjectBuffer::remove(ObjectIndex index)
 void ObjectBuffer::write(ObjectIndex index, const glm::mat4 &world_from_object, std::uint32_t value,
                          const CullingVolume &volume)
 {
-  const glm::mat3 normal = normal_matrix(world_from_object);
+  const Cofactors cofactors = cofactors_of(world_from_object);
+  const glm::mat3 normal = normal_matrix(cofactors);
   shared::ObjectData &object = objects_[index];
   object.world_from_object = world_from_object;
   object.normal_x = normal[0];
@@ -171,7 +188,7 @@ void ObjectBuffer::write(ObjectIndex index, const glm::mat4 &world_from_object, 
   object.normal_z = normal[2];
   object.value = value;
   culling_arrays_.set(index, volume);
-  mirrored_[index] = draw::is_mirrored(world_from_object) ? 1 : 0;
+  mirrored_[index] = cofactors.is_mirrored ? 1 : 0;
   revisions_[index] = ++revision_;
 }
 
