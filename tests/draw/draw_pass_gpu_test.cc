@@ -244,7 +244,7 @@ layout(location = 0) flat out uint value;
 void main()
 {
   gl_Position = vec4(position, 1);
-  value = object_value();
+  value = object_value() + 10000 * draw_instance.x;
 })",
                                            value_of);
   const gpu::Shader of_instances = make_shader(*device, "instances", R"(
@@ -280,7 +280,8 @@ void main()
     }
     list.end_pass();
     device->submit(list);
-    EXPECT_EQ(gpu::read_as<glm::vec4>(*device, picture)[0].x, float(11 + 100 + 11 + 12 + 1000 + 11 + 100 + 11))
+    EXPECT_EQ(gpu::read_as<glm::vec4>(*device, picture)[0].x,
+              float(5 * 10000 + 11 + 100 + 11 + 12 + 1000 + 11 + 100 + 11))
         << round;
     objects[1] = ObjectBuffer();
     objects[1].add(glm::mat4(1), 12);

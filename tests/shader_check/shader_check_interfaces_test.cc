@@ -139,11 +139,13 @@ TEST(InterfaceTable, GivesTheInterfaceOfAVariant)
   EXPECT_EQ(all.push_constant_size_bytes, 32U);
   EXPECT_EQ(all.push_constant_slot, 8);
   EXPECT_EQ(all.push_constant_members.size(), 2U);
+  EXPECT_TRUE(all.reads_object);
 
   const gpu::ShaderInterface part = table.interface_of(6);
   ASSERT_EQ(part.bindings.size(), 1U);
   EXPECT_EQ(part.bindings[0].name, "picture");
   EXPECT_EQ(part.push_constant_size_bytes, 0U);
+  EXPECT_FALSE(part.reads_object);
 }
 
 TEST(InterfaceTable, AVariantThatItDoesNotHoldIsAnErrorThatNamesIt)
