@@ -145,12 +145,13 @@ ObjectIndex ObjectBuffer::add(const glm::mat4 &world_from_object, std::uint32_t 
   return index;
 }
 
-void ObjectBuffer::reserve(std::size_t count)
+std::span<const std::byte> ObjectBuffer::reserve(std::size_t count)
 {
   objects_.reserve(count);
   culling_arrays_.reserve(count);
   revisions_.reserve(count);
   mirrored_.reserve(count);
+  return {reinterpret_cast<const std::byte *>(objects_.data()), objects_.capacity() * sizeof(shared::ObjectData)};
 }
 
 void ObjectBuffer::set(ObjectIndex index, const glm::mat4 &world_from_object, std::uint32_t value,

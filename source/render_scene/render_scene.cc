@@ -74,7 +74,8 @@ void RenderScene::update_objects()
   }
   if (node_objects_.empty()) {
     // Only at first: later, memory must grow by a factor and not with each edit.
-    objects_.reserve(nodes.size() + 1);
+    const std::span<const std::byte> memory = objects_.reserve(nodes.size() + 1);
+    scene::prefer_large_pages(memory.data(), memory.size());
     render_objects_.reserve(nodes.size() + 1);
     next_of_node_.reserve(nodes.size() + 1);
     scene::prefer_large_pages(render_objects_.data(), render_objects_.capacity() * sizeof(RenderObject));
