@@ -70,7 +70,7 @@ TEST_F(BenchTest, GrowthFitsTheTimesOfEachKindOfWork)
   const Finished finished = run("bench growth --backend null --rounds 1 --count-max 1000 --json bench.json");
   ASSERT_EQ(finished.status, 0) << finished.err;
   const json bench = json::parse(read("bench.json"));
-  ASSERT_EQ(bench["work"].size(), 4U);
+  ASSERT_EQ(bench["work"].size(), 5U);
   for (const json &work : bench["work"]) {
     EXPECT_EQ(work["rows"].size(), 3U) << work;
     EXPECT_TRUE(work["exponent"].is_number()) << work;
