@@ -94,6 +94,9 @@ void render_frames(const RenderOptions &options, const scene::PlacedCamera &came
   const int sample_count = options.sample_range.empty() ? options.samples : renderer.settings().drawn_sample_count();
   eevee::ShadowCounters before = renderer.inspect().shadow_counters();
   for (int frame = 0; frame < options.repeat; frame++) {
+    if (options.redraws_shadows) {
+      renderer.inspect().invalidate_shadows();
+    }
     const Clock::time_point start = Clock::now();
     const auto progress = [&](int samples_drawn) {
       show_progress(samples_drawn, sample_count);

@@ -152,10 +152,10 @@ std::string RenderOptions::settings_text() const
       "{} "
       "--casters {} --shadow-memory {} --specular {} --world '{}' --world-strength {} --world-rotation {} --background "
       "'{}' --animation '{}' --fps {} --light-threshold {} "
-      "--emissive-points {}",
+      "--emissive-points {} --noise-threshold {}",
       shadow, shadow_size, pcf, esm, cascades, cascade_lambda, cascade_range, cube_pass, casters, shadow_memory,
       specular, world.world, world.strength, world.rotation_degrees, background, frames.animation,
-      frames.frames_per_second, light_threshold, emissive_points);
+      frames.frames_per_second, light_threshold, emissive_points, noise_threshold);
 }
 
 bool RenderOptions::is_png() const
@@ -192,6 +192,9 @@ void RenderOptions::check() const
     throw UsageError(
         "--tile and --sample-range write parts of a picture to OUT.exr, without --debug, --aov and --resume");
   }
+  if (noise_threshold > 0.0F && (is_part() || !aov.empty())) {
+    throw UsageError("--noise-threshold compares pixels of a whole picture, without --tile, --sample-range and --aov");
+  }
   static_cast<void>(region());
   static_cast<void>(sample_bounds());
   if (!output.empty() && !is_png() && std::filesystem::path(output).extension() != ".exr") {
@@ -214,6 +217,7 @@ eevee::Settings RenderOptions::engine_settings() const
   settings.has_multiscatter = specular == "multi";
   settings.light_threshold = light_threshold;
   settings.emissive_point_count = emissive_points;
+  settings.noise_threshold = noise_threshold;
   settings.has_cascade_tint = debug_view.kind == DebugView::Kind::Cascades;
   settings.is_timed = !json.empty() || is_explained;
   return settings;
@@ -275,6 +279,8 @@ void add_render_options(CLI::App &command, RenderOptions &options)
       ->excludes(frames)
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));
+  command.add_flag("--redraw-shadows", options.redraws_shadows,
+                   "With --repeat: draw the shadows of each picture anew, as after an edit of the scene");
   command
       .add_option("--shadow", options.shadow,
                   "Shadows of lamps without gnomon_shadow: none, hard, pcf, esm, evsm; none disables all shadows")
@@ -327,6 +333,13 @@ void add_render_options(CLI::App &command, RenderOptions &options)
                   "Irradiance, W/m2, that may be left out of the light of each point and spot lamp")
       ->capture_default_str()
       ->check(CLI::Range(0.0F, 1e30F));
+  command
+      .add_option(
+          "--noise-threshold", options.noise_threshold,
+          "After the first samples, draw further ones only for pixels that differ from a neighbour by more than "
+          "this, relative to the square root of their brightness; 0: all pixels get all samples")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0F, 1e3F));
   command
       .add_option("--emissive-points", options.emissive_points,
                   "Points of emissive surfaces that light other surfaces in each of several samples; 0: none do")

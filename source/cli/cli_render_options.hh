@@ -45,6 +45,8 @@ struct RenderOptions {
   std::string casters = "all";
   int shadow_memory = 1024;
   float light_threshold = 0.0F;
+  float noise_threshold = 0.0F;
+  bool redraws_shadows = false;
   int emissive_points = eevee::Settings().emissive_point_count;
   std::string debug;
   DebugView debug_view;

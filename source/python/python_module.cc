@@ -16,6 +16,10 @@ const Fields<Settings> settings_fields = {
     plain_field<Settings>("sample_count", &Settings::sample_count,
                           "Samples for each pixel. 0: as many as fit into the `seconds_max` of render()."),
     plain_field<Settings>("seed", &Settings::seed, "Selects the random positions of the samples."),
+    plain_field<Settings>(
+        "noise_threshold", &Settings::noise_threshold,
+        "Pixels that differ from their neighbours by at most this after the first samples, relative to "
+        "the square root of their brightness, get no more. 0: all get all."),
     plain_field<Settings>("has_multiscatter", &Settings::has_multiscatter,
                           "Microfacets reflect light more than once, so that rough surfaces lose none. False: once, as "
                           "glTF's model has it."),

@@ -161,6 +161,12 @@ void add_settings_inputs(std::vector<StabilityCase> &cases)
   add("samples", "samples a pixel", "sample_count",
       inputs({0, 1, 2, 64}, Expected::Accepted) + inputs({-1, -100}, rejected),
       [](eevee::Settings &s, double v) { s.sample_count = int(v); });
+  add("noise threshold", "relative difference", "noise_threshold",
+      with_nan(inputs({0, 1e-45, 1, 1e38}, Expected::Accepted) + inputs({-1, -1e-30}, rejected)),
+      [](eevee::Settings &s, double v) {
+        s.sample_count = 8;
+        s.noise_threshold = float(v);
+      });
   cases.push_back(input_case<double>(
       "settings", "exposure", "frame with this target", "stops", "exposure",
       with_nan(inputs({-100, 0, 100}, Expected::Accepted) + inputs({-1e9, 128, 1e38}, rejected)), [](const double &v) {

@@ -176,6 +176,10 @@ Properties<Settings> make_settings_properties()
   made.numbers.push_back({"samples", "Samples", [](const Settings &) { return "per pixel"; }, 1, 1.0, 65536.0,
                           [](const Settings &settings, int) { return double(settings.eevee.sample_count); },
                           [](Settings &settings, int, double value) { settings.eevee.sample_count = int(value); }});
+  made.numbers.push_back(
+      {"noise", "Noise threshold", [](const Settings &) { return ""; }, 1, 0.0, 1.0,
+       [](const Settings &settings, int) { return double(settings.eevee.noise_threshold); },
+       [](Settings &settings, int, double value) { settings.eevee.noise_threshold = float(value); }});
   made.numbers.push_back({"shadow_size", "Shadow size", [](const Settings &) { return "px"; }, 1, 16.0, 8192.0,
                           [=](const Settings &settings, int) { return double(shadow_of(settings).map_size_px); },
                           [=](Settings &settings, int, double value) {

@@ -187,6 +187,19 @@ TEST_F(CliRenderTest, ATimeLimitKeepsTheLimitOfSamples)
   EXPECT_EQ(run(render + " --samples 3 --tile 1/2").status, 2);
 }
 
+TEST_F(CliRenderTest, ANoiseThresholdIsOfWholePictures)
+{
+  const std::string render = "render " + example("plaza") + " --size 16x8 --samples 4 --noise-threshold 0.1 -o out.exr";
+  EXPECT_EQ(run(render + " --json out.json").status, 0);
+  std::ifstream file(folder / "out.json");
+  EXPECT_NE(nlohmann::json::parse(file).at("frame_tree").dump().find("pixels that differ little from others"),
+            std::string::npos);
+  for (const char *part : {" --tile 1/2", " --sample-range 0-1", " --aov depth"}) {
+    EXPECT_EQ(run(render + part).status, 2) << part;
+  }
+  EXPECT_EQ(run("render " + example("plaza") + " --noise-threshold -1 -o out.exr").status, 2);
+}
+
 TEST_F(CliRenderTest, MergedTilesAreTheWholePictureBitForBit)
 {
   const std::string render = "render " + example("plaza") + " --size 64x35 --samples 2 -o ";

@@ -48,11 +48,18 @@ static void check(const Settings &settings)
   if (settings.clustered_lamps_min < 1) {
     throw gpu::Error("eevee: clustered_lamps_min {} is not at least 1", settings.clustered_lamps_min);
   }
+  if (!(settings.noise_threshold >= 0.0F) || std::isinf(settings.noise_threshold)) {
+    throw gpu::Error("eevee: noise_threshold {} is not a finite number of at least 0", settings.noise_threshold);
+  }
   const bool is_whole = settings.sample_first == 0 && settings.sample_end == 0;
   if (!is_whole && (settings.sample_first < 0 || settings.drawn_sample_count() < 1 ||
                     settings.sample_first + settings.drawn_sample_count() > settings.sample_count)) {
     throw gpu::Error("eevee: samples {} to {} are not within the {} samples of the picture", settings.sample_first,
                      settings.sample_end, settings.sample_count);
+  }
+  if (!is_whole && settings.noise_threshold > 0.0F) {
+    throw gpu::Error("eevee: noise_threshold {} needs all samples of the picture, not {} to {}",
+                     settings.noise_threshold, settings.sample_first, settings.sample_end);
   }
 }
 
@@ -72,6 +79,7 @@ void Engine::init(draw::Viewport &viewport)
     }
     data.stl.shadows.emplace(data.shared->shadows);
   }
+  data.stl.sample_step = sample_step(settings_);
   data.stl.film_weight_sum = film_weight_sum(settings_.sample_count, settings_.seed);
   shaders_->set_pcf(settings_.shadow.pcf);
   take_losses(viewport);
@@ -240,13 +248,18 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
   begin_draw(viewport);
   make_film(viewport);
   data.target = viewport.target();
-  data.sample_index = settings_.sample_first + viewport.samples_drawn();
+  const int position = settings_.sample_first + viewport.samples_drawn();
+  data.sample_index = settings_.sample_count == 0
+                          ? position
+                          : int(std::int64_t(position) * data.stl.sample_step % settings_.sample_count);
+  data.adaptive.is_whole_picture = viewport.region().size_px == viewport.size_px();
   if (!viewport.is_writing() && viewport.samples_drawn() == 0 && viewport.part().is_first) {
     data.stl.shadows->begin_picture();
     data.stl.film_share = 0.0;
     std::ranges::for_each(data.frame, &StepRecord::reset);
     data.is_seen = data.has_picture_depth = data.is_finished = false;
     data.film_sample_count = 0;
+    data.adaptive.is_active = false;
   }
   const bool has_all = viewport.is_writing() || has_all_samples(data, viewport.samples_drawn());
   if (!has_all && !draw_sample(viewport, view)) {
@@ -283,8 +296,9 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
     order_blended(data, sample_view);
     update_view(data, sample_view);
   }
-  // The first sample is always drawn, because it clears the picture. Later samples are skipped if nothing is visible.
-  if (is_sample_seen || viewport.samples_drawn() == 0) {
+  // The first sample is always drawn, because it clears the picture. Later samples are skipped if nothing is visible,
+  // unless the means of converged pixels must follow.
+  if (is_sample_seen || viewport.samples_drawn() == 0 || data.adaptive.is_active) {
     draw_steps(sample, FrameStep::When::EachSample);
   }
   if (sample.is_for_feedback) {

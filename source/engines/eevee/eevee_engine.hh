@@ -77,6 +77,15 @@ struct Settings {
   /** Selects the random sequence of sample positions and lamp points. */
   std::uint32_t seed = 0;
   /**
+   * Adaptive sampling: after the first samples (half of them, at most 4), only those pixels get further samples
+   * that differ from one of the eight around them by more than this, relative to the square root of their brightness,
+   * or in alpha. Features that the first samples miss in all of these pixels are not found. 0: all pixels get all
+   * samples. So it is, too, with lamps with an extent, a world, emissive surfaces, surfaces that transmit light,
+   * blended objects that cast shadows, a part of the light, and regions. \pre sample_first and sample_end are 0, unless
+   * this is 0
+   */
+  float noise_threshold = 0.0F;
+  /**
    * Microfacets reflect light more than once, so that a rough surface loses none: a white one in a white world is
    * white. Otherwise they reflect it once, as glTF's model has it. \see eevee_multiscatter_shared.h
    */
@@ -247,7 +256,11 @@ class Engine final : public draw::Engine {
   void record_blended(Data &data, draw::ObjectIndex object, const ObjectKind &kind);
   /** Let the blended objects be drawn from back to front, as \a view sees them. */
   void order_blended(Data &data, const draw::View &view);
-  void record_film(draw::Viewport &viewport);
+  /** Record the film in \a pass: PassList::film_pass or film_sampled_pass. */
+  void record_film(draw::Viewport &viewport, draw::Pass &pass);
+  /** Create what adaptive sampling needs, or destroy it. */
+  void make_adaptive(draw::Viewport &viewport);
+  void record_adaptive(draw::Viewport &viewport);
   void record_background(draw::Viewport &viewport);
   void record_casters(Data &data);
   /** Make the call for the casters of the kind of \a first. */

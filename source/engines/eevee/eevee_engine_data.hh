@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "eevee_adaptive.hh"
 #include "eevee_debug.hh"
 #include "eevee_emission.hh"
 #include "eevee_frame.hh"
@@ -73,6 +74,14 @@ struct PassList {
         surfaces_pass("surfaces_pass", gpu::State::WriteColor | gpu::State::DepthEqual, &objects),
         tint_pass("tint_pass", gpu::State::WriteColor | gpu::State::DepthEqual | gpu::State::BlendMultiply, &objects),
         film_pass("film_pass", gpu::State::WriteColor | gpu::State::BlendAdd),
+        adaptive_test_pass("adaptive_test_pass", gpu::State::WriteDepth),
+        adaptive_spread_pass("adaptive_spread_pass", gpu::State::WriteDepth),
+        adaptive_depth_pass("adaptive_depth_pass", gpu::State::WriteDepth),
+        adaptive_background_pass("adaptive_background_pass", gpu::State::WriteDepth | gpu::State::DepthFurther),
+        film_sampled_pass("film_sampled_pass",
+                          gpu::State::WriteColor | gpu::State::BlendAdd | gpu::State::DepthNearerEqual),
+        film_converged_pass("film_converged_pass",
+                            gpu::State::WriteColor | gpu::State::BlendMultiply | gpu::State::DepthFurther),
         tonemap("tonemap", gpu::State::WriteColor)
   {
   }
@@ -92,6 +101,14 @@ struct PassList {
   draw::Pass surfaces_pass;
   draw::Pass tint_pass;
   draw::Pass film_pass;
+  /** Empty without a threshold, as those after it. \see eevee_adaptive.hh */
+  draw::Pass adaptive_test_pass;
+  draw::Pass adaptive_spread_pass;
+  draw::Pass adaptive_depth_pass;
+  draw::Pass adaptive_background_pass;
+  /** Instead of film_pass. */
+  draw::Pass film_sampled_pass;
+  draw::Pass film_converged_pass;
   draw::Pass tonemap;
 };
 
@@ -342,6 +359,8 @@ struct StorageList {
   glm::vec4 background_corner{0.0F};
   glm::vec4 background_across{0.0F};
   glm::vec4 background_up{0.0F};
+  /** \see sample_step */
+  int sample_step = 1;
   double film_weight_sum = 0.0;
   /** Sum of the filter weights of the samples drawn so far, in units of `film_weight_sum`. */
   double film_share = 0.0;
@@ -400,6 +419,7 @@ struct Data final : draw::EngineViewportData {
     depth_feedback.forget();
     fbl = {};
     txl = {};
+    adaptive = {};
     is_synced = false;
     stl.recorded.reset();
     stl.target_pass.reset();
@@ -410,6 +430,7 @@ struct Data final : draw::EngineViewportData {
   TextureList txl;
   std::unique_ptr<PassList> psl;
   StorageList stl;
+  AdaptiveSampling adaptive;
   /** Of the view that was recorded last. */
   draw::VisibleObjects visible;
   Timing timing;

@@ -37,6 +37,15 @@ void record_pass(const FrameStep &step, FrameSample &sample, gpu::CommandList &l
   list.end_pass();
 }
 
+void update_film_weights(FrameSample &sample)
+{
+  StorageList &stl = sample.data.stl;
+  const FilmWeights weights =
+      film_weights(sample.data.sample_index, sample.settings.sample_count, sample.settings.seed, stl.film_weight_sum);
+  stl.film_columns = glm::vec4(weights.columns, 0.0F);
+  stl.film_rows = glm::vec4(weights.rows, 0.0F);
+}
+
 /** What steps before the transmission of light draw: all of the picture, where that reads other pixels. */
 static gpu::Rectangle read_region(const FrameSample &sample)
 {
@@ -52,17 +61,24 @@ gpu::Rectangle depth_region(const FrameSample &sample)
   return is_whole ? gpu::Rectangle() : sample.viewport.drawn_region();
 }
 
+/** The first pass with the depth texture clears it. */
+gpu::LoadAction depth_load(const FrameSample &sample)
+{
+  return sample.data.adaptive.is_active ? gpu::LoadAction::Load : gpu::LoadAction::Clear;
+}
+
 void record_gbuffer(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
-  record_pass(step, sample, list, sample.data.fbl.main_fb, {.scissor = depth_region(sample)});
+  record_pass(step, sample, list, sample.data.fbl.main_fb,
+              {.depth_load = depth_load(sample), .scissor = depth_region(sample)});
 }
 
 void record_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
   Data &data = sample.data;
-  record_pass(step, sample, list, data.fbl.depth_fb,
-              {.depth_load = has_gbuffer(data) ? gpu::LoadAction::Load : gpu::LoadAction::Clear,
-               .scissor = depth_region(sample)});
+  record_pass(
+      step, sample, list, data.fbl.depth_fb,
+      {.depth_load = has_gbuffer(data) ? gpu::LoadAction::Load : depth_load(sample), .scissor = depth_region(sample)});
   if (awaits_depths(data, sample.view)) {
     DepthFeedback &depths = data.depth_feedback;
     const std::uint64_t tag = ++depths.requested_tag;
@@ -161,12 +177,8 @@ void record_background(const FrameStep &step, FrameSample &sample, gpu::CommandL
 
 void record_film(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
-  StorageList &stl = sample.data.stl;
-  const FilmWeights weights =
-      film_weights(sample.data.sample_index, sample.settings.sample_count, sample.settings.seed, stl.film_weight_sum);
-  stl.film_columns = glm::vec4(weights.columns, 0.0F);
-  stl.film_rows = glm::vec4(weights.rows, 0.0F);
-  const bool is_first = sample.data.sample_index == sample.settings.sample_first;
+  update_film_weights(sample);
+  const bool is_first = sample.data.film_sample_count == 0;
   record_pass(
       step, sample, list, sample.data.fbl.film_fb,
       {.color_load = is_first ? gpu::LoadAction::Clear : gpu::LoadAction::Load, .scissor = sample.viewport.region()});
@@ -250,6 +262,24 @@ constexpr std::array<FramePass, 1> blend_behind_passes = {
 constexpr std::array<FramePass, 1> film_passes = {
     {{&PassList::film_pass, "samples", [](const FrameState &) -> std::string { return nothing_seen; }}}};
 
+constexpr std::string (*no_threshold)(const FrameState &) = [](const FrameState &) -> std::string {
+  return "the settings have no noise threshold";
+};
+
+constexpr std::array<FramePass, 1> adaptive_depth_passes = {
+    {{&PassList::adaptive_depth_pass, "converged pixels", no_threshold}}};
+
+constexpr std::array<FramePass, 1> adaptive_background_passes = {
+    {{&PassList::adaptive_background_pass, "converged pixels", no_threshold}}};
+
+constexpr std::array<FramePass, 2> adaptive_film_passes = {{
+    {&PassList::film_sampled_pass, "pixels that get the sample", no_threshold},
+    {&PassList::film_converged_pass, "pixels that keep their mean", no_threshold},
+}};
+
+constexpr std::array<FramePass, 1> adaptive_test_passes = {
+    {{&PassList::adaptive_test_pass, "pixels of the film", no_threshold}}};
+
 constexpr std::array<FramePass, 1> tonemap_passes = {
     {{&PassList::tonemap, "a target was given", [](const FrameState &) -> std::string { return nothing_seen; }}}};
 
@@ -265,10 +295,17 @@ constexpr std::span target_only = std::span(pictures).subspan(4, 1);
 constexpr std::span behind_only = std::span(pictures).subspan(5, 1);
 constexpr std::span depth_and_radiance = std::span(pictures).first(2);
 
+constexpr std::array<std::string_view, 2> converged_textures = {"film_converged", "drawn_converged"};
+constexpr std::span converged = std::span(converged_textures);
+constexpr std::span film_converged_only = std::span(converged_textures).first(1);
+constexpr std::span converged_only = std::span(converged_textures).subspan(1, 1);
+
 constexpr std::array<std::string_view, 2> lights = {"light_block", "light_texture"};
 constexpr std::array<std::string_view, 2> cluster_resources = {"light_cluster_block", "light_lists"};
 
-constexpr std::array<FrameStep, 16> steps = {{
+constexpr std::array<FrameStep, 20> steps = {{
+    {"adaptive_depth", FrameStep::When::EachSample, FrameStep::Part::First, need_adaptive_depth, converged_only,
+     depth_only, adaptive_depth_passes, record_adaptive_depth},
     // The depths come before the shadows because cascades may be fitted to them.
     {.name = "gbuffer",
      .when = FrameStep::When::EachSample,
@@ -314,6 +351,8 @@ constexpr std::array<FrameStep, 16> steps = {{
      {},
      record_shadows,
      [](FrameSample &sample) { sample.data.stl.shadows->submitted(); }},
+    {"adaptive_background", FrameStep::When::EachSample, FrameStep::Part::First, need_adaptive_background,
+     converged_only, depth_only, adaptive_background_passes, record_adaptive_background},
     {"deferred_lit", FrameStep::When::EachSample, FrameStep::Part::Rows, need_deferred_lit, shadow_targets,
      radiance_only, deferred_lit_passes, record_deferred_lit},
     {"forward_depth",
@@ -345,6 +384,10 @@ constexpr std::array<FrameStep, 16> steps = {{
      blend_passes, record_blend},
     {"film", FrameStep::When::EachSample, FrameStep::Part::Last, need_film, radiance_only, film_only, film_passes,
      record_film},
+    {"adaptive_film", FrameStep::When::EachSample, FrameStep::Part::Last, need_adaptive_film, film_converged_only,
+     film_only, adaptive_film_passes, record_adaptive_film},
+    {"adaptive_test", FrameStep::When::EachSample, FrameStep::Part::Last, need_adaptive_test, film_only, converged,
+     adaptive_test_passes, record_adaptive_test},
     {"picture_depth",
      FrameStep::When::EachTarget,
      FrameStep::Part::Each,

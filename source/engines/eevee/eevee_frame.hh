@@ -109,6 +109,9 @@ void draw_steps(FrameSample &sample, FrameStep::When when);
 void record_pass(const FrameStep &step, FrameSample &sample, gpu::CommandList &list,
                  const gpu::Framebuffer &framebuffer, const gpu::PassActions &actions);
 
+/** Set the filter weights of the sample, which the passes of the film read. */
+void update_film_weights(FrameSample &sample);
+
 /** The reason why \a pass was drawn or not, for reports. */
 [[nodiscard]] std::string reason_of(const FramePass &pass, const StepRecord::PassRecord &record,
                                     const FrameState &state);

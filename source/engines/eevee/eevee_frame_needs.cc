@@ -105,10 +105,13 @@ Need need_blend(const FrameState &state)
 
 Need need_film(const FrameState &state)
 {
+  if (state.data.adaptive.is_active) {
+    return {false, "adaptive_film is drawn"};
+  }
   if (state.data.is_seen) {
     return {true, "samples of each pixel are added up"};
   }
-  return {state.data.sample_index == state.settings.sample_first, "nothing is seen: the picture is cleared"};
+  return {state.data.film_sample_count == 0, "nothing is seen: the picture is cleared"};
 }
 
 Need need_picture_depth(const FrameState &state)

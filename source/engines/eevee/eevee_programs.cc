@@ -48,7 +48,7 @@ constexpr Feature shadow_features = Feature::Light | Feature::Punctual | Feature
 constexpr Feature alpha_features = Feature::AlphaMask | Feature::FullMaterial;
 constexpr Feature caster_features = alpha_features | Feature::OpacityThreshold;
 
-constexpr std::array<ShaderDeclaration, 23> declarations = {{
+constexpr std::array<ShaderDeclaration, 27> declarations = {{
     {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl", alpha_features,
      Feature::None, "depth of what is seen, so that each pixel is lit once"},
     {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
@@ -105,6 +105,14 @@ constexpr std::array<ShaderDeclaration, 23> declarations = {{
     {ShaderId::DeferredLit, "eevee_deferred_lit", "draw/draw_fullscreen_vert.glsl", "",
      "eevee/eevee_deferred_lit_frag.glsl", without(light_features, Feature::ShadowEsm | Feature::ShadowEvsm),
      Feature::Light, "light that the surfaces in the G-buffer send to the viewer"},
+    {ShaderId::AdaptiveTest, "eevee_adaptive_test", "draw/draw_fullscreen_vert.glsl", "",
+     "eevee/eevee_adaptive_test_frag.glsl", Feature::None, Feature::None, "pixels that need no more samples"},
+    {ShaderId::AdaptiveSpread, "eevee_adaptive_spread", "draw/draw_fullscreen_vert.glsl", "",
+     "eevee/eevee_adaptive_spread_frag.glsl", Feature::None, Feature::None, "pixels that the pixel filter skips"},
+    {ShaderId::AdaptiveDepth, "eevee_adaptive_depth", "draw/draw_fullscreen_vert.glsl", "",
+     "eevee/eevee_adaptive_depth_frag.glsl", Feature::None, Feature::None, "depths that let passes skip pixels"},
+    {ShaderId::AdaptiveScale, "eevee_adaptive_scale", "draw/draw_fullscreen_vert.glsl", "",
+     "eevee/eevee_adaptive_scale_frag.glsl", Feature::None, Feature::None, "means of pixels without further samples"},
 }};
 
 /** Whether a scene can need \a features, and no smaller mask gives the same program. */

@@ -35,6 +35,10 @@ enum class ShaderId {
   DepthFunction,
   GBuffer,
   DeferredLit,
+  AdaptiveTest,
+  AdaptiveSpread,
+  AdaptiveDepth,
+  AdaptiveScale,
 };
 
 /** Declaration of a shader program. The engine, the build, the shader checks and the tests read it. */

@@ -219,11 +219,11 @@ void Engine::record_background(draw::Viewport &viewport)
   group.call_procedural();
 }
 
-void Engine::record_film(draw::Viewport &viewport)
+void Engine::record_film(draw::Viewport &viewport, draw::Pass &pass)
 {
   Data &data = viewport.engine_data<Data>(*this);
   StorageList &stl = data.stl;
-  draw::ShadingGroup &film = data.psl->film_pass.group(shaders_->get(viewport.device(), ShaderId::Film));
+  draw::ShadingGroup &film = pass.group(shaders_->get(viewport.device(), ShaderId::Film));
   film.bind_texture("radiance_texture", data.txl.radiance, data.txl.nearest);
   film.constant("radiance_origin_px", viewport.guard_px());
   film.constant_ref("column_weights", &stl.film_columns);
@@ -269,6 +269,7 @@ void Engine::record(draw::Viewport &viewport)
   StorageList &stl = data.stl;
   SharedData &shared = *data.shared;
   make_targets(viewport);
+  make_adaptive(viewport);
   make_blocks(viewport);
   if (!shared.has_casters) {
     shared.shadows.allocate(viewport.device(), *shaders_);
@@ -328,7 +329,11 @@ void Engine::record_passes(draw::Viewport &viewport)
   if (has_background(settings_, scene_)) {
     record_background(viewport);
   }
-  record_film(viewport);
+  record_film(viewport, data.psl->film_pass);
+  if (settings_.noise_threshold > 0.0F) {
+    record_film(viewport, data.psl->film_sampled_pass);
+    record_adaptive(viewport);
+  }
 }
 
 }  // namespace gnomon::eevee

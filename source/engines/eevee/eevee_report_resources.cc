@@ -53,6 +53,11 @@ FrameNode target_nodes(const ReportSource &source)
                                       {&txl.surface_albedo, "surface_albedo"}}) {
     add(*texture, name, "asked for", source.settings.has_surfaces ? nothing_seen : not_asked);
   }
+  for (const auto &[texture, name] : {std::pair(&source.data.adaptive.film_converged, "film_converged"),
+                                      {&source.data.adaptive.drawn_converged, "drawn_converged"}}) {
+    add(*texture, name, "pixels that need no more samples",
+        source.settings.noise_threshold > 0.0F ? nothing_seen : not_asked);
+  }
   add(source.data.shadow_picture.texture(), "shadow_picture", "asked for", not_asked);
   const auto why_no_layers = [&](Feature feature) {
     return !source.has(feature)       ? why_no_feature(source, feature)

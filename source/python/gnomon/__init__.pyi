@@ -226,6 +226,7 @@ class Report:
 class Renderer:
     sample_count: int
     seed: int
+    noise_threshold: float
     has_multiscatter: bool
     background: Background
     shadow_kind: ShadowKind
