@@ -67,25 +67,12 @@ class Frames {
   }
 
  private:
-  /** Each until the device is done, as the driver may leave out a clear that follows another. */
-  void clear(int count)
+  void clear()
   {
-    for (int i = 0; i < count; i++) {
-      gpu::CommandList list;
-      draw::begin_pass(list, "control", picture_.target(), settings_.size_px, {}, {});
-      list.end_pass();
-      device_.submit(list);
-      device_.finish();
-    }
-  }
-
-  /** Number of clears that take as long as a frame of \a seconds. */
-  int equal_clears(double seconds)
-  {
-    constexpr int count = 100;
-    std::vector<double> times(9);
-    std::ranges::generate(times, [&] { return seconds_of(device_, [&] { clear(count); }); });
-    return std::max(1, int(std::lround(seconds * double(count) / percentile(times, 0.5))));
+    gpu::CommandList list;
+    draw::begin_pass(list, "control", picture_.target(), settings_.size_px, {}, {});
+    list.end_pass();
+    device_.submit(list);
   }
 
   void measure_lamp(FrameTimes &times)
@@ -98,14 +85,8 @@ class Frames {
     const scene::Handle<scene::Node> node = (point == lamps.end() ? lamps.begin() : point)->node;
     const glm::dmat4 start = scene_.nodes()[node].parent_from_node;
     eevee::SceneRenderer renderer(device_, scene_, settings_.size_px, {.sample_count = 1});
-    std::vector<double> warm_up;
-    int clear_count = 1;
     for (int i = -warm_up_count; i < settings_.frame_count; i++) {
-      if (i == 0) {
-        clear_count = equal_clears(percentile(warm_up, 0.5));
-      }
-      const double control = seconds_of(device_, [&] { clear(1); });
-      const double equal_control = seconds_of(device_, [&] { clear(clear_count); });
+      const double control = seconds_of(device_, [&] { clear(); });
       const double frame = seconds_of(device_, [&] {
         // A circle of 0.2 m around the lamp's own -Z axis, and a turn around its X axis, which moves suns.
         const double angle = 0.1 * i;
@@ -114,12 +95,8 @@ class Frames {
         renderer.sync();
         renderer.draw_sample(start_, picture_.target());
       });
-      if (i < 0) {
-        warm_up.push_back(frame);
-      }
-      else {
+      if (i >= 0) {
         times.control.push_back(control);
-        times.equal_control.push_back(equal_control);
         times.moved_lamp.push_back(frame);
       }
     }

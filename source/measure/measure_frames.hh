@@ -28,8 +28,6 @@ struct FrameTimesSettings {
 struct FrameTimes {
   /** A clear and a wait, before each frame of moved_lamp: the least that the machine adds to a frame. */
   std::vector<double> control;
-  /** As many of them as take as long as a frame of moved_lamp, before each: what the machine adds to such a frame. */
-  std::vector<double> equal_control;
   /** One lamp is moved, and a whole sample is drawn. Empty: the scene has no lamp. */
   std::vector<double> moved_lamp;
   /** The camera is moved, and a picture is drawn within the budget. */
