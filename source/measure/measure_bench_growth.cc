@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <memory>
 
@@ -99,13 +100,29 @@ std::vector<double> object_counts(double most)
 
 constexpr glm::ivec2 view_size_px(640, 360);
 
+std::vector<Lattice> lattices_of(const std::vector<double> &counts)
+{
+  std::vector<Lattice> lattices;
+  std::ranges::transform(counts, std::back_inserter(lattices), [](double count) { return lattice(int(count)); });
+  return lattices;
+}
+
+/** Synchronised renderers of \a lattices, which must outlive them. */
+std::vector<std::unique_ptr<eevee::SceneRenderer>> renderers_of(gpu::Device &device,
+                                                                const std::vector<Lattice> &lattices)
+{
+  std::vector<std::unique_ptr<eevee::SceneRenderer>> renderers;
+  for (const Lattice &one : lattices) {
+    renderers.push_back(std::make_unique<eevee::SceneRenderer>(device, one.scene, view_size_px));
+    renderers.back()->sync();
+  }
+  return renderers;
+}
+
 GrowthCost first_pictures(gpu::Device &device, int rounds, double most)
 {
   const std::vector<double> counts = object_counts(most);
-  std::vector<Lattice> lattices;
-  for (const double count : counts) {
-    lattices.push_back(lattice(int(count)));
-  }
+  const std::vector<Lattice> lattices = lattices_of(counts);
   return rounds_of("first picture, objects", counts, rounds, [&](std::size_t i) {
     forget_memory();
     return timed(Clock::ThreadCpu, [&] {
@@ -120,14 +137,8 @@ GrowthCost first_pictures(gpu::Device &device, int rounds, double most)
 GrowthCost changed_settings(gpu::Device &device, int rounds, double most)
 {
   const std::vector<double> counts = object_counts(most);
-  std::vector<Lattice> lattices;
-  for (const double count : counts) {
-    lattices.push_back(lattice(int(count)));
-  }
-  std::vector<std::unique_ptr<eevee::SceneRenderer>> renderers;
-  for (const Lattice &one : lattices) {
-    renderers.push_back(std::make_unique<eevee::SceneRenderer>(device, one.scene, view_size_px));
-  }
+  const std::vector<Lattice> lattices = lattices_of(counts);
+  const std::vector<std::unique_ptr<eevee::SceneRenderer>> renderers = renderers_of(device, lattices);
   return rounds_of("picture after a change of settings, objects", counts, rounds, [&](std::size_t i) {
     eevee::Settings settings = renderers[i]->settings();
     settings.seed++;
@@ -142,15 +153,8 @@ GrowthCost changed_settings(gpu::Device &device, int rounds, double most)
 GrowthCost moving_cameras(gpu::Device &device, int rounds, double most)
 {
   const std::vector<double> counts = object_counts(most);
-  std::vector<Lattice> lattices;
-  for (const double count : counts) {
-    lattices.push_back(lattice(int(count)));
-  }
-  std::vector<std::unique_ptr<eevee::SceneRenderer>> renderers;
-  for (const Lattice &one : lattices) {
-    renderers.push_back(std::make_unique<eevee::SceneRenderer>(device, one.scene, view_size_px));
-    renderers.back()->sync();
-  }
+  const std::vector<Lattice> lattices = lattices_of(counts);
+  const std::vector<std::unique_ptr<eevee::SceneRenderer>> renderers = renderers_of(device, lattices);
   double shift_m = 0.0;
   return rounds_of("picture of a moving camera, objects", counts, rounds, [&](std::size_t i) {
     shift_m += 1e-3;
@@ -163,10 +167,9 @@ GrowthCost moving_cameras(gpu::Device &device, int rounds, double most)
 GrowthCost moving_lamps(gpu::Device &device, int rounds, double most)
 {
   const std::vector<double> counts = object_counts(most);
-  std::vector<Lattice> lattices;
+  std::vector<Lattice> lattices = lattices_of(counts);
   std::vector<scene::Handle<scene::Node>> nodes;
-  for (const double count : counts) {
-    Lattice &one = lattices.emplace_back(lattice(int(count)));
+  for (Lattice &one : lattices) {
     const glm::dvec3 middle(0.5 * one.edge_m);
     add_lamp(one.scene, scene::LampKind::Point, glm::vec3(middle), {0, 0, -1}, 100.0F);
     nodes.push_back(one.scene.placed_lamps().front().node);
@@ -174,10 +177,7 @@ GrowthCost moving_lamps(gpu::Device &device, int rounds, double most)
     const glm::dvec3 behind = middle + glm::dvec3(0.0, 0.0, 2.0 * one.edge_m + 6.0);
     add_object(one.scene, square, glm::translate(glm::dmat4(1.0), behind));
   }
-  std::vector<std::unique_ptr<eevee::SceneRenderer>> renderers;
-  for (const Lattice &one : lattices) {
-    renderers.push_back(std::make_unique<eevee::SceneRenderer>(device, one.scene, view_size_px));
-  }
+  const std::vector<std::unique_ptr<eevee::SceneRenderer>> renderers = renderers_of(device, lattices);
   return rounds_of("picture after a move of a lamp, casters", counts, rounds, [&](std::size_t i) {
     lattices[i].scene.edit(nodes[i], [](scene::Node &node) { node.parent_from_node[3].x += 1e-3; });
     const scene::PlacedCamera camera = lattices[i].camera(0.0, false);
