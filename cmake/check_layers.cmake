@@ -7,13 +7,14 @@ cmake_minimum_required(VERSION 3.25)
 
 # The layers that each layer may use. A header belongs to the listed folder that contains it.
 set(source/trace "")
+set(source/memory "")
 set(source/gpu source/trace shaders)
 set(source/shader_check source/gpu shaders)
-set(source/draw source/gpu shaders)
-set(source/scene "")
+set(source/draw source/gpu source/memory shaders)
+set(source/scene source/memory)
 set(source/image "")
-set(source/gltf source/scene source/image source/trace)
-set(source/render_scene source/draw source/gpu source/scene shaders)
+set(source/gltf source/scene source/image source/memory source/trace)
+set(source/render_scene source/draw source/gpu source/memory source/scene shaders)
 set(source/engines/eevee source/render_scene source/draw source/gpu source/scene source/trace shaders)
 # A program that writes a table of the engine. The engine itself must not use the reference.
 set(source/engines/eevee/multiscatter_tool source/reference source/scene shaders)
@@ -35,7 +36,7 @@ set(source/python source/measure source/reference source/embed source/engines/ee
   source/gpu source/gltf source/image source/scene shaders)
 set(shaders "")
 # A folder within another layer's folder comes after it.
-set(LAYERS source/trace source/gpu source/shader_check source/draw source/scene source/image source/gltf source/render_scene source/engines/eevee source/engines/eevee/multiscatter_tool
+set(LAYERS source/trace source/memory source/gpu source/shader_check source/draw source/scene source/image source/gltf source/render_scene source/engines/eevee source/engines/eevee/multiscatter_tool
   source/engines/unlit source/engines/overlay source/engines/interface_tool source/embed source/reference source/measure source/verify source/view source/cli source/python shaders)
 
 set(VIOLATIONS 0)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "draw_objects.hh"
 
+#include "memory_pages.hh"
+
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
@@ -145,13 +147,13 @@ ObjectIndex ObjectBuffer::add(const glm::mat4 &world_from_object, std::uint32_t 
   return index;
 }
 
-std::span<const std::byte> ObjectBuffer::reserve(std::size_t count)
+void ObjectBuffer::reserve(std::size_t count)
 {
   objects_.reserve(count);
   culling_arrays_.reserve(count);
   revisions_.reserve(count);
   mirrored_.reserve(count);
-  return {reinterpret_cast<const std::byte *>(objects_.data()), objects_.capacity() * sizeof(shared::ObjectData)};
+  memory::prefer_large_pages(objects_.data(), objects_.capacity() * sizeof(shared::ObjectData));
 }
 
 void ObjectBuffer::set(ObjectIndex index, const glm::mat4 &world_from_object, std::uint32_t value,

@@ -10,7 +10,6 @@
 #include <glm/mat4x4.hpp>
 
 #include <cstddef>
-#include <span>
 #include <vector>
 
 namespace gnomon::draw {
@@ -62,8 +61,8 @@ class ObjectBuffer {
    * \throws gpu::Error if the matrix is not finite or the volume contains NaN; nothing changes then
    */
   ObjectIndex add(const glm::mat4 &world_from_object, std::uint32_t value = 0, const CullingVolume &volume = {});
-  /** Make room for \a count objects. \return the memory of the largest array, for advice to the system */
-  std::span<const std::byte> reserve(std::size_t count);
+  /** Make room for \a count objects, in large pages if they are many. */
+  void reserve(std::size_t count);
   /**
    * Change an object. The revision increases only if a value differs. \pre is_live(index)
    * \throws gpu::Error under the same conditions as add

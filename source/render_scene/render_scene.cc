@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "render_scene.hh"
 
-#include "scene_memory.hh"
+#include "memory_pages.hh"
 
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
@@ -74,11 +74,10 @@ void RenderScene::update_objects()
   }
   if (node_objects_.empty()) {
     // Only at first: later, memory must grow by a factor and not with each edit.
-    const std::span<const std::byte> memory = objects_.reserve(nodes.size() + 1);
-    scene::prefer_large_pages(memory.data(), memory.size());
+    objects_.reserve(nodes.size() + 1);
     render_objects_.reserve(nodes.size() + 1);
     next_of_node_.reserve(nodes.size() + 1);
-    scene::prefer_large_pages(render_objects_.data(), render_objects_.capacity() * sizeof(RenderObject));
+    memory::prefer_large_pages(render_objects_.data(), render_objects_.capacity() * sizeof(RenderObject));
   }
   node_objects_.resize(nodes.index_end());
   // Update every node if a mesh or material was edited, because any node may use it. Such edits are rare.

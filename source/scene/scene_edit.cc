@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene.hh"
 
-#include "scene_memory.hh"
+#include "memory_pages.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -308,7 +308,7 @@ Handle<Camera> Scene::add(Camera camera)
 void Scene::reserve_nodes(std::size_t count)
 {
   links_.reserve(links_.size() + count);
-  prefer_large_pages(links_.data(), links_.capacity() * sizeof(NodeLinks));
+  memory::prefer_large_pages(links_.data(), links_.capacity() * sizeof(NodeLinks));
 }
 
 Handle<Node> Scene::add(Node node, Handle<Node> parent)

@@ -5,7 +5,7 @@
 #include "internal/gltf_document_extras.hh"
 #include "internal/gltf_document_shading.hh"
 #include "internal/gltf_json.hh"
-#include "scene_memory.hh"
+#include "memory_pages.hh"
 
 #include <algorithm>
 #include <new>
@@ -95,7 +95,7 @@ class DocumentReader {
   {
     elements.clear();
     elements.reserve(size_of(array));
-    scene::prefer_large_pages(elements.data(), elements.capacity() * sizeof(Element));
+    memory::prefer_large_pages(elements.data(), elements.capacity() * sizeof(Element));
     for (const JsonValue value : array) {
       const Place at{place.outer, place.key, elements.size()};
       read_one(at, value, elements.emplace_back());
@@ -388,8 +388,8 @@ simdjson::error_code allocate(simdjson::dom::parser &parser, std::size_t size)
   if (const simdjson::error_code error = parser.doc.allocate(size); error != simdjson::SUCCESS) {
     return error;
   }
-  scene::prefer_large_pages(parser.implementation->structural_indexes.get(), size * sizeof(std::uint32_t));
-  scene::prefer_large_pages(parser.doc.tape.get(), size * sizeof(std::uint64_t));
+  memory::prefer_large_pages(parser.implementation->structural_indexes.get(), size * sizeof(std::uint32_t));
+  memory::prefer_large_pages(parser.doc.tape.get(), size * sizeof(std::uint64_t));
   return simdjson::SUCCESS;
 }
 

@@ -3,7 +3,7 @@
 
 #include "internal/gltf_document.hh"
 #include "internal/gltf_report.hh"
-#include "scene_memory.hh"
+#include "memory_pages.hh"
 #include "trace.hh"
 
 #include <algorithm>
@@ -55,7 +55,7 @@ Bytes read_bytes(const std::filesystem::path &path, const std::string &what, std
   const std::uintmax_t size = size_of_file(path, what, size_max);
   Bytes bytes;
   bytes.reserve(size + document_padding());
-  scene::prefer_large_pages(bytes.data(), bytes.capacity());
+  memory::prefer_large_pages(bytes.data(), bytes.capacity());
   bytes.resize(size);
   std::ifstream stream(path, std::ios::binary);
   if (!stream.read(reinterpret_cast<char *>(bytes.data()), static_cast<std::streamsize>(size))) {

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace gnomon::scene {
+namespace gnomon::memory {
 
 /**
  * Advises the system to back memory that is not written yet with large pages, so that large arrays cause few page
@@ -11,4 +11,4 @@ namespace gnomon::scene {
  */
 void prefer_large_pages(const void *begin, std::size_t byte_count);
 
-}  // namespace gnomon::scene
+}  // namespace gnomon::memory

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scene_memory.hh"
+#include "memory_pages.hh"
 
 #ifdef __linux__
 #include <sys/mman.h>
@@ -8,7 +8,7 @@
 #include <cstdint>
 #endif
 
-namespace gnomon::scene {
+namespace gnomon::memory {
 
 void prefer_large_pages([[maybe_unused]] const void *begin, [[maybe_unused]] std::size_t byte_count)
 {
@@ -27,4 +27,4 @@ void prefer_large_pages([[maybe_unused]] const void *begin, [[maybe_unused]] std
 #endif
 }
 
-}  // namespace gnomon::scene
+}  // namespace gnomon::memory

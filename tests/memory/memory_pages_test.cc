@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "scene_memory.hh"
+#include "memory_pages.hh"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <vector>
 
-namespace gnomon::scene {
+namespace gnomon::memory {
 
 TEST(LargePages, TheAdviceChangesNoContent)
 {
@@ -19,4 +19,4 @@ TEST(LargePages, TheAdviceChangesNoContent)
   EXPECT_EQ(std::ranges::count(bytes, 7), std::ptrdiff_t(bytes.size()));
 }
 
-}  // namespace gnomon::scene
+}  // namespace gnomon::memory
