@@ -17,11 +17,7 @@
 
 namespace gnomon::eevee {
 
-namespace {
-
 using render_scene::MaterialClass;
-
-}  // namespace
 
 void bind_lit(draw::ShadingGroup &group, Data &data)
 {
