@@ -2,6 +2,8 @@
 #include "render_blend_order.hh"
 
 #include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <numeric>
@@ -33,6 +35,13 @@ bool is_behind(const scene::Bounds &a, const scene::Bounds &b, const glm::vec4 &
 }
 
 }  // namespace
+
+glm::vec4 eye_of(const draw::View &view)
+{
+  const glm::mat4 world_from_view(glm::inverse(glm::dmat4(view.view_from_world())));
+  return view.is_perspective() ? glm::vec4(glm::vec3(world_from_view[3]), 1.0F)
+                               : glm::vec4(glm::vec3(world_from_view[2]), 0.0F);
+}
 
 std::vector<std::uint32_t> back_to_front(std::span<const scene::Bounds> boxes, const glm::vec4 &eye_ws)
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "draw_view.hh"
 #include "scene.hh"
 
 #include <glm/vec4.hpp>
@@ -15,6 +16,10 @@ namespace gnomon::render_scene {
  * number. */
 inline constexpr std::size_t blend_order_exact_max = 1024;
 
+/** The position of the eye, with w = 1; of a parallel view the direction towards the viewer, with w = 0. World space.
+ */
+[[nodiscard]] glm::vec4 eye_of(const draw::View &view);
+
 /**
  * Indices of \a boxes in an order in which what they hold can be blended: the farthest first.
  *
@@ -22,7 +27,7 @@ inline constexpr std::size_t blend_order_exact_max = 1024;
  * the eye meets the box beyond the plane first. For the others, and where boxes are behind each other in a circle, the
  * distance of the middle decides.
  *
- * \a eye_ws: w = 1: its position. w = 0: the direction towards the viewer of a parallel view.
+ * \a eye_ws: see eye_of. The length of a direction does not matter.
  */
 [[nodiscard]] std::vector<std::uint32_t> back_to_front(std::span<const scene::Bounds> boxes, const glm::vec4 &eye_ws);
 

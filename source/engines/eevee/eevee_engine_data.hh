@@ -290,7 +290,7 @@ struct TransmissiveObject {
 
 /** What the order of blended objects depends on. */
 struct BlendOrderKey {
-  /** \see back_to_front */
+  /** \see render_scene::eye_of */
   glm::vec4 eye_ws{0.0F};
   std::uint64_t objects = 0;
   std::uint64_t recording = 0;

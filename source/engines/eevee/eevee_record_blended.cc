@@ -2,7 +2,6 @@
 // Records the pass that blends objects over what is behind them, and orders it.
 #include "eevee_engine.hh"
 #include "eevee_engine_data.hh"
-#include "eevee_frame.hh"
 
 #include "render_blend_order.hh"
 
@@ -44,9 +43,7 @@ void Engine::order_blended(Data &data, const draw::View &view)
     return;
   }
   data.visible.update(view, scene_.objects());
-  const shared::ViewData seen_from = view_data(view, settings_, 0, scene_.bounds());
-  BlendOrderKey key{.eye_ws = seen_from.is_perspective != 0 ? glm::vec4(seen_from.position_ws, 1.0F)
-                                                            : glm::vec4(seen_from.back_ws, 0.0F),
+  BlendOrderKey key{.eye_ws = render_scene::eye_of(view),
                     .objects = scene_.objects().revision(),
                     .recording = stl.pass_recordings,
                     .visible = {},

@@ -4,8 +4,6 @@
 
 #include "render_blend_order.hh"
 
-#include <glm/matrix.hpp>
-
 #include <algorithm>
 #include <map>
 #include <tuple>
@@ -94,15 +92,12 @@ void Engine::record_surfaces(Data &data, gpu::Device &device)
 
 void Engine::order_blended(Data &data, const draw::View &view) const
 {
-  const glm::mat4 world_from_view = glm::inverse(view.view_from_world());
-  // \see back_to_front: the position of the eye, or the direction towards it.
-  const glm::vec4 eye_ws = world_from_view[view.is_perspective() ? 3 : 2];
   std::vector<scene::Bounds> boxes;
   for (const BlendedObject &blended : data.blended) {
     boxes.push_back(scene_.object(blended.object).bounds);
   }
   std::vector<std::uint32_t> order;
-  for (const std::uint32_t place : render_scene::back_to_front(boxes, eye_ws)) {
+  for (const std::uint32_t place : render_scene::back_to_front(boxes, render_scene::eye_of(view))) {
     const BlendedObject &blended = data.blended[place];
     for (std::uint32_t i = 0; i < blended.group_count; i++) {
       order.push_back(blended.first_group + i);

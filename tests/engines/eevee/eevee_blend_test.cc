@@ -85,6 +85,17 @@ int wrong_pairs(const std::vector<scene::Bounds> &boxes, const glm::vec4 &eye, i
   return wrong;
 }
 
+TEST(BlendOrder, TheEyeIsAPositionOrADirectionOfAParallelView)
+{
+  // Looks along -X, so that nothing is rounded.
+  const glm::vec3 eye(3, -2, 5);
+  const glm::mat4 view_from_world = glm::lookAt(eye, eye - glm::vec3(4, 0, 0), glm::vec3(0, 0, 1));
+  const draw::View perspective(view_from_world, draw::perspective(1.0F, 1.0F, 0.1F, 10.0F));
+  EXPECT_EQ(render_scene::eye_of(perspective), glm::vec4(eye, 1.0F));
+  const draw::View parallel(view_from_world, draw::orthographic(1.0F, 1.0F, 0.1F, 10.0F));
+  EXPECT_EQ(render_scene::eye_of(parallel), glm::vec4(1, 0, 0, 0));
+}
+
 TEST(BlendOrder, SeparatedBoxesAreInTheirTrueOrderFromEverywhere)
 {
   int pairs = 0;
