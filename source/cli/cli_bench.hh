@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "cli.hh"
 #include "cli_world.hh"
 
 #include "measure_bench.hh"
@@ -49,5 +50,7 @@ void bench_sync(const BenchOptions &options);
 void bench_growth(const BenchOptions &options);
 void bench_frames(const BenchOptions &options);
 void bench_memory(const BenchOptions &options);
+/** \return Status::NonFinite if a result is negative or not finite */
+[[nodiscard]] Status bench_light(const BenchOptions &options);
 
 }  // namespace gnomon::cli
