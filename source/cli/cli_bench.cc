@@ -98,8 +98,7 @@ void bench_shadows(const BenchOptions &options)
   const std::unique_ptr<gpu::Device> null_device = gpu::create_null_device();
   measure(*null_device, "cpu", measure::Clock::ThreadCpu, 1e-6, "Record and submit, CPU time");
   if (options.backend == "gl") {
-    const std::unique_ptr<gpu::Device> gl_device =
-        gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()});
+    const std::unique_ptr<gpu::Device> gl_device = bench_device(options);
     measure(*gl_device, "wall", measure::Clock::Wall, 1e-3, "Until the device is done, wall time");
   }
   write_json(options.json, {{"program", "gnomon " GNOMON_VERSION},
@@ -266,6 +265,12 @@ void bench_start(const BenchOptions &options)
                             {"rows", json}});
 }
 
+/** \a text: what each backend does. */
+void add_backend(CLI::App &bench, BenchOptions &options, const char *text)
+{
+  bench.add_option("--backend", options.backend, text)->capture_default_str()->check(CLI::IsMember({"gl", "null"}));
+}
+
 }  // namespace
 
 void add_bench(CLI::App &app, Status &status)
@@ -274,9 +279,7 @@ void add_bench(CLI::App &app, Status &status)
   command->require_subcommand(1);
   auto o = std::make_shared<BenchOptions>();
   CLI::App *shadows = command->add_subcommand("shadows", "The methods of drawing a lamp's layers, side by side");
-  shadows->add_option("--backend", o->backend, "gl: on the null backend and on the driver; null: without a driver")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"gl", "null"}));
+  add_backend(*shadows, *o, "gl: on the null backend and on the driver; null: without a driver");
   shadows->callback([o] { bench_shadows(*o); });
   CLI::App *record = command->add_subcommand("record", "What a draw with its own matrix costs, without a driver");
   record->callback([o] { bench_record(*o); });
@@ -288,29 +291,21 @@ void add_bench(CLI::App &app, Status &status)
   sync->callback([o] { bench_sync(*o); });
   CLI::App *left_out =
       command->add_subcommand("left-out", "What scenes that lack one thing each cost, beside a full one");
-  left_out->add_option("--backend", o->backend, "gl, or null: without a driver")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"gl", "null"}));
+  add_backend(*left_out, *o, "gl, or null: without a driver");
   left_out->callback([o] { bench_left_out(*o); });
   CLI::App *lamps = command->add_subcommand("lamps", "What few and many lamps cost in a frame");
-  lamps->add_option("--backend", o->backend, "gl, or null: without a driver")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"gl", "null"}));
+  add_backend(*lamps, *o, "gl, or null: without a driver");
   lamps->callback([o] { bench_lamps(*o); });
   CLI::App *growth =
       command->add_subcommand("growth", "How times grow with objects, casters, imported nodes, pixels and samples");
-  growth->add_option("--backend", o->backend, "gl, or null: without pixels and samples")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"gl", "null"}));
+  add_backend(*growth, *o, "gl, or null: without pixels and samples");
   for (CLI::App *bench : {cull, imports, growth}) {
     bench->add_option("--count-max", o->count_max, "Leave out larger counts")->check(CLI::Range(1000, 1 << 30));
   }
   growth->callback([o] { bench_growth(*o); });
   CLI::App *start = command->add_subcommand("start", "What starting the program costs, up to a first picture");
   start->add_option("scene", o->scene, "glTF 2.0 file (default: a scene made in place)");
-  start->add_option("--backend", o->backend, "gl, or null: without a driver and a picture")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"gl", "null"}));
+  add_backend(*start, *o, "gl, or null: without a driver and a picture");
   add_world_options(*start, o->world);
   start->callback([o] { bench_start(*o); });
   for (CLI::App *bench : {shadows, record, cull, imports, sync, left_out, lamps, growth, start}) {
@@ -327,18 +322,14 @@ void add_bench(CLI::App &app, Status &status)
   frames->add_option("--budget", o->budget_ms, "Time of a draw within a budget, milliseconds")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 10000.0));
-  frames->add_option("--backend", o->backend, "gl, or null: without a driver")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"gl", "null"}));
+  add_backend(*frames, *o, "gl, or null: without a driver");
   frames->add_option("--json", o->json, "Write the figures, in seconds");
   add_world_options(*frames, o->world);
   frames->callback([o] { bench_frames(*o); });
   CLI::App *memory = command->add_subcommand("memory", "Device memory of a picture, beside that without shadows");
   memory->add_option("scenes", o->scenes, "glTF 2.0 files")->required();
   memory->add_option("--size", o->size, "WIDTHxHEIGHT, pixels")->capture_default_str();
-  memory->add_option("--backend", o->backend, "gl, or null: without a driver, and without fits to the picture's depths")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"gl", "null"}));
+  add_backend(*memory, *o, "gl, or null: without a driver, and without fits to the picture's depths");
   memory->add_option("--json", o->json, "Write the figures, in bytes");
   add_world_options(*memory, o->world);
   memory->callback([o] { bench_memory(*o); });
