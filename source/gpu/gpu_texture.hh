@@ -9,8 +9,7 @@
 
 namespace gnomon::gpu {
 
-/** Texel formats. Depth32F is used for depth, or Depth16 where its error is known; RGBA32F for scene-linear radiance.
- */
+/** Texel formats. */
 enum class Format : std::uint8_t {
   /** Display-referred colour, [0, 1]. */
   RGBA8,
@@ -18,15 +17,16 @@ enum class Format : std::uint8_t {
   SRGB8A8,
   /** Scene-linear radiance with half precision; the largest value is 65504. */
   RGBA16F,
+  /** Scene-linear radiance with full precision. */
   RGBA32F,
-  /** Distances in metres. */
+  /** Distances in metres, with half and with full precision. */
   R16F,
   R32F,
   /** Mean and spread of exponential variance shadow maps. */
   RG32F,
   /** Reversed clip-space depth: 1 at the near plane, 0 at the far one. */
   Depth32F,
-  /** The same in [0, 1] with steps of 1 / 65535. */
+  /** The same with steps of 1 / 65535. Use it only where the error of half a step is accounted for. */
   Depth16,
 };
 
@@ -57,6 +57,7 @@ struct TextureDesc {
   [[nodiscard]] std::size_t size_bytes() const;
 };
 
+/** Texels on the device. */
 class Texture : public Resource {
  public:
   Texture() = default;
@@ -85,9 +86,10 @@ struct SamplerDesc {
   Wrap wrap_u = Wrap::ClampToEdge;
   Wrap wrap_v = Wrap::ClampToEdge;
   /**
-   * Largest ratio of the length of a pixel's footprint to its width that is filtered without blur across it: 1 (every
-   * footprint counts as a circle) to Limits::anisotropy_max. Above 1, both filters must be linear and mip levels read:
-   * OpenGL does not define the others.
+   * In [1, Limits::anisotropy_max]. A pixel covers a longish area of the texture where a surface is seen at a grazing
+   * angle. Up to this ratio of its length to its width, a lookup filters along the length without blur across it. At 1,
+   * every area is filtered as a circle. Above 1, both filters must be linear and `mip` must not be None, because OpenGL
+   * does not define other combinations.
    */
   int anisotropy = 1;
   /**
@@ -98,6 +100,7 @@ struct SamplerDesc {
   bool is_depth_comparison = false;
 };
 
+/** How a lookup filters a texture. */
 class Sampler : public Resource {
  public:
   Sampler() = default;

@@ -22,34 +22,33 @@ struct Object {
   glm::dmat4 world_from_object{1.0};
 };
 
-/** A lamp at a node. Its fields are the lamp's. */
+/** A lamp at a node. The base class has the values of the lamp. */
 struct PlacedLamp : Lamp {
   Handle<Node> node{};
-  /** Right-handed and orthonormal: the node's position, direction of -Z and, as far as possible, of +Y. */
+  /** frame_of the node's world matrix: right-handed and orthonormal. */
   glm::dmat4 world_from_lamp{1.0};
-  /** Lengths of the node's axes in world space. */
+  /** Spot, area lamp: lengths of the node's axes in world space. Other lamps: 1. */
   glm::dvec3 scale{1.0};
 
   bool operator==(const PlacedLamp &) const = default;
 };
 
 /**
- * Half the extent of an area lamp along the x and y axes of PlacedLamp::world_from_lamp, metres. \pre an area lamp
- * \return 0 in both if the lamp has no area: an axis of its node has no length, or an extent is below 1e-9 m or above
- * 1e9 m.
+ * Half the extent of an area lamp along the x and y axes of PlacedLamp::world_from_lamp, metres. (0, 0) if the lamp has
+ * no area: an axis of its node has no length, or a half extent is below 1e-9 m or above 1e9 m. \pre an area lamp
  */
 [[nodiscard]] glm::dvec2 area_half_size(const PlacedLamp &lamp);
-/** Area of that rectangle or ellipse, m². */
+/** Area of the rectangle or ellipse of an area lamp, m². \see area_half_size */
 [[nodiscard]] double area_of(const PlacedLamp &lamp);
 
 /**
- * Width of a spot's cone along the x and y axes of PlacedLamp::world_from_lamp: the factor of the tangent of
- * Lamp::spot_outer_angle. It is the ratio of the node's scale along that axis to its scale along z, in [0.001, 1000]; 1
- * for both if an axis of the node has no length. \pre a spot
+ * Stretch of a spot's cone along the x and y axes of PlacedLamp::world_from_lamp: the half width of the cone at
+ * distance 1 is this factor times the tangent of Lamp::spot_outer_angle. Each factor is the ratio of the node's scale
+ * along that axis to its scale along z, in [0.001, 1000]. Both are 1 if an axis of the node has no length. \pre a spot
  */
 [[nodiscard]] glm::dvec2 spot_scale(const PlacedLamp &lamp);
 
-/** A camera at a node. Its fields are the camera's. */
+/** A camera at a node. The base class has the values of the camera. */
 struct PlacedCamera : Camera {
   Handle<Node> node{};
   /** Right-handed and orthonormal, as PlacedLamp::world_from_lamp. */
@@ -136,7 +135,7 @@ class Scene {
   [[nodiscard]] std::vector<PlacedCamera> placed_cameras() const;
   /** The material of a mesh; the default material if the mesh's handle is stale or invalid. */
   [[nodiscard]] const Material &material_of(const Mesh &mesh) const;
-  /** The world space box around all objects; empty when there is none. */
+  /** The box around all objects in world space; empty if there are no objects. */
   [[nodiscard]] Bounds bounds() const;
   /** One line for each reference to a thing that was removed: "node 'a': its lamp was removed". */
   [[nodiscard]] std::vector<std::string> stale_references() const;
@@ -145,7 +144,7 @@ class Scene {
   [[nodiscard]] const glm::dmat4 &world_from_node(Handle<Node> node) const;
   /** Node::is_visible of the node and of all its ancestors. */
   [[nodiscard]] bool is_visible(Handle<Node> node) const;
-  /** Invalid handles for a root, a node without children, and the last child. */
+  /** These return an invalid handle for a root, for a node without children, and for the last child. */
   [[nodiscard]] Handle<Node> parent(Handle<Node> node) const;
   [[nodiscard]] Handle<Node> first_child(Handle<Node> node) const;
   [[nodiscard]] Handle<Node> next_sibling(Handle<Node> node) const;
@@ -156,12 +155,12 @@ class Scene {
     return revision_;
   }
 
-  /** Light from everywhere; nothing: there is none. */
+  /** The light of distant surroundings; std::nullopt: there is none. */
   [[nodiscard]] const std::optional<World> &world() const
   {
     return world_;
   }
-  /** Of the last set_world that changed it. */
+  /** Revision of the last set_world that changed the world; 0: there was none. */
   [[nodiscard]] Revision world_revision() const
   {
     return world_revision_;

@@ -14,36 +14,45 @@ namespace gnomon::scene {
 /** A point of a surface that emits light. */
 struct EmissivePoint {
   glm::dvec3 position{0.0};
-  /** Unit vector across the surface. The surface emits to both of its sides. */
+  /** Unit normal of the surface, which emits to both of its sides. */
   glm::dvec3 normal{0.0, 0.0, 1.0};
   /** Linear radiance, W/(sr m²); the same in all directions. Finite. */
   glm::dvec3 radiance{0.0};
   /**
-   * Area that the point represents, m²: the mean of area · radiance · f over the unit cube is the integral of
-   * radiance · f over all surfaces that emit light.
+   * Area that the point represents, m²: the inverse of the probability density with which EmissiveSurfaces::at chooses
+   * the point. The mean of area · radiance · f over the points of all places is therefore the integral of radiance · f
+   * over all surfaces that emit light, for every function f of the position.
    */
   double area = 0.0;
 };
 
 /**
- * The surfaces of a scene that emit light, for the choice of points by importance: a point is chosen with a probability
- * in proportion to the power that its surface emits.
+ * The surfaces of a scene that emit light. Chooses points of them, with a probability in proportion to the power that
+ * the surface emits.
  *
- * The triangles of emissive materials are divided into patches of a constant radiance, which is the mean of the texture
- * over the patch. What is transparent or cut out emits as much less. Left out are unlit materials, surface functions,
- * lines and points, and what emission textures of a mesh without texture coordinates would add.
+ * The triangles of emissive materials are divided into patches. The radiance of a patch is constant: the mean of the
+ * emission texture over the patch, multiplied by the opacity where the material is blended, and 0 where it is cut out.
+ *
+ * These emit nothing here: unlit materials, materials with a surface function, lines, points, and meshes that lack the
+ * image or the texture coordinates of their material's emission texture.
  */
 class EmissiveSurfaces {
  public:
-  /** Most patches, unless there are more triangles. */
+  /** Maximum number of patches. A scene with more triangles than this has one patch for each triangle. */
   static constexpr std::size_t patch_count_max = 32768;
-  /** Largest edge of a patch, fraction of the texture, unless there would be too many patches. */
+  /**
+   * Maximum edge of a patch, as a fraction of the emission texture's edge. Patches are larger where there would be more
+   * than patch_count_max of them, or more than 64² in a triangle.
+   */
   static constexpr double patch_edge_max = 1.0 / 48.0;
-  /** Radiance of brighter surfaces, W/(sr m²) for each channel, counts as this. */
+  /** Maximum of each channel of the radiance, W/(sr m²). Brighter surfaces have this radiance. */
   static constexpr float radiance_max = 1e30F;
 
   EmissiveSurfaces() = default;
-  /** \a objects: Scene::objects() of \a scene, or some of them; their space is that of the points. */
+  /**
+   * \a objects: Scene::objects() of \a scene, or some of them. The points are in the target space of
+   * Object::world_from_object.
+   */
   EmissiveSurfaces(const Scene &scene, std::span<const Object> objects);
 
   /** No surface emits light. */
@@ -56,8 +65,8 @@ class EmissiveSurfaces {
     return patches_.size();
   }
   /**
-   * The point for \a place in [0, 1)³. Neighbouring values of the first component are mostly near to each other in
-   * space, so that even positions are spread evenly over the surfaces. \pre not empty
+   * The point for \a place in [0, 1)³. The first component chooses the patch. Patches for neighbouring values are
+   * mostly neighbours in space, so that evenly spaced values are spread evenly over the surfaces. \pre not empty
    */
   [[nodiscard]] EmissivePoint at(const glm::dvec3 &place) const;
 
@@ -67,24 +76,27 @@ class EmissiveSurfaces {
     glm::vec3 radiance;
   };
   std::vector<Patch> patches_;
-  /** Sum of the weights of the patches up to each. */
+  /** For each patch: the sum of its weight and the weights of the patches before it. */
   std::vector<double> cumulative_;
 };
 
 /** Whether a material of \a scene emits light that EmissiveSurfaces may hold. */
 [[nodiscard]] bool has_emission(const Scene &scene);
 
-/** Input of EmissiveSurfaces. If it is equal before and after edits of a scene, so are the surfaces of its objects. */
+/** Fingerprint of the input of EmissiveSurfaces. While it stays equal, the surfaces of the scene's objects do too. */
 struct EmissionState {
   /** Visible objects with an emissive material. */
   std::size_t object_count = 0;
-  /** Last edit of their nodes, meshes and materials, or of any texture or image. */
+  /** Last edit of the nodes, meshes and materials of these objects, or of any texture or image. */
   Revision latest = 0;
 
   bool operator==(const EmissionState &) const = default;
 };
 
-/** Linear in the number of nodes if has_emission, but far cheaper than EmissiveSurfaces. */
+/**
+ * Takes time in proportion to the number of nodes if has_emission(), otherwise to the number of materials. Making
+ * EmissiveSurfaces takes far longer.
+ */
 [[nodiscard]] EmissionState emission_state(const Scene &scene);
 
 }  // namespace gnomon::scene
