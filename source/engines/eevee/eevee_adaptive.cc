@@ -123,6 +123,17 @@ void record_adaptive_depth(const FrameStep &step, FrameSample &sample, gpu::Comm
   record_pass(step, sample, list, sample.data.fbl.depth_fb, {});
 }
 
+void record_depth_of_converged(FrameSample &sample, gpu::CommandList &list, const gpu::Rectangle &scissor)
+{
+  Data &data = sample.data;
+  if (data.adaptive.is_active) {
+    list.begin_pass("adaptive_forward_depth", data.fbl.depth_fb,
+                    {.depth_load = gpu::LoadAction::Load, .scissor = scissor});
+    data.psl->adaptive_depth_pass.record(sample.sample_view, data.visible, list);
+    list.end_pass();
+  }
+}
+
 void record_adaptive_background(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
   record_pass(step, sample, list, sample.data.fbl.depth_fb, {.depth_load = gpu::LoadAction::Load});

@@ -47,6 +47,9 @@ struct AdaptiveSampling {
 [[nodiscard]] Need need_adaptive_depth(const FrameState &state);
 void record_adaptive_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);
 
+/** The same before forward objects are drawn, after deferred lighting. Nothing without converged pixels. */
+void record_depth_of_converged(FrameSample &sample, gpu::CommandList &list, const gpu::Rectangle &scissor);
+
 /** Depth of converged pixels behind everything, so that deferred lighting skips them too. */
 [[nodiscard]] Need need_adaptive_background(const FrameState &state);
 void record_adaptive_background(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);

@@ -76,7 +76,7 @@ struct PassList {
         film_pass("film_pass", gpu::State::WriteColor | gpu::State::BlendAdd),
         adaptive_test_pass("adaptive_test_pass", gpu::State::WriteDepth),
         adaptive_spread_pass("adaptive_spread_pass", gpu::State::WriteDepth),
-        adaptive_depth_pass("adaptive_depth_pass", gpu::State::WriteDepth),
+        adaptive_depth_pass("adaptive_depth_pass", gpu::State::WriteDepth | gpu::State::DepthNearerEqual),
         adaptive_background_pass("adaptive_background_pass", gpu::State::WriteDepth | gpu::State::DepthFurther),
         film_sampled_pass("film_sampled_pass",
                           gpu::State::WriteColor | gpu::State::BlendAdd | gpu::State::DepthNearerEqual),

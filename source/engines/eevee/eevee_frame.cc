@@ -136,6 +136,7 @@ void record_deferred_lit(const FrameStep &step, FrameSample &sample, gpu::Comman
 
 void record_forward_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
+  record_depth_of_converged(sample, list, read_region(sample));
   record_pass(step, sample, list, sample.data.fbl.depth_fb,
               {.depth_load = gpu::LoadAction::Load, .scissor = read_region(sample)});
 }

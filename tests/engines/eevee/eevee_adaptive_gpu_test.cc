@@ -19,23 +19,23 @@ constexpr int adaptive_samples = 16;
 /** Boxes on a ground that ends within the picture, under a point lamp and a sun. */
 class AdaptiveGpuTest : public test::GpuDeviceTest {
  protected:
-  enum class Path { Deferred, Forward };
+  enum class Path { Deferred, Forward, Both };
 
   void add_objects(Path path)
   {
-    const auto add = [&](const glm::vec3 &albedo) {
+    const auto add = [&](const glm::vec3 &albedo, bool is_forward) {
       const auto material = test::add_material(scene, albedo);
       scene.edit(material, [&](scene::Material &edited) {
         edited.is_double_sided = true;
-        if (path == Path::Forward) {
+        if (is_forward) {
           edited.base_color_texture = test::add_texture(scene, 1, {255, 255, 255, 255});
         }
       });
       return material;
     };
-    test::add_object(scene, test::add_square_mesh(scene, add({0.6F, 0.6F, 0.5F})),
+    test::add_object(scene, test::add_square_mesh(scene, add({0.6F, 0.6F, 0.5F}, path == Path::Forward)),
                      glm::scale(glm::dmat4(1.0), glm::dvec3(1.8)));
-    const auto box = test::add_box_mesh(scene, add({0.7F, 0.3F, 0.2F}));
+    const auto box = test::add_box_mesh(scene, add({0.7F, 0.3F, 0.2F}, path != Path::Deferred));
     for (int i = 0; i < 3; i++) {
       const glm::dmat4 place = glm::translate(glm::dmat4(1.0), glm::dvec3(1.1 * i - 1.0, 0.3 * i - 0.4, 0.4));
       test::add_object(scene, box, glm::scale(glm::rotate(place, 0.5 * i, glm::dvec3(1, 0.3, 0.5)), glm::dvec3(0.3)));
@@ -93,9 +93,10 @@ float relative_difference(const test::Picture &picture, glm::ivec2 pixel)
 
 TEST_F(AdaptiveGpuTest, PixelsThatDifferFromTheirNeighboursAreThoseOfAllSamples)
 {
-  for (const Path path : {Path::Deferred, Path::Forward}) {
+  std::uint64_t forward_depths = 0;
+  for (const Path path : {Path::Deferred, Path::Forward, Path::Both}) {
     for (const bool is_fitted : {false, true}) {
-      SCOPED_TRACE(testing::Message() << (path == Path::Deferred ? "deferred" : "forward") << is_fitted);
+      SCOPED_TRACE(testing::Message() << int(path) << is_fitted);
       scene = {};
       add_objects(path);
       add_lamps();
@@ -107,6 +108,8 @@ TEST_F(AdaptiveGpuTest, PixelsThatDifferFromTheirNeighboursAreThoseOfAllSamples)
       const std::uint64_t tests = runs("adaptive_test");
       const test::Picture adaptive = render(threshold);
       EXPECT_EQ(runs("adaptive_test"), tests + 1);
+      EXPECT_EQ(runs("adaptive_forward_depth") > forward_depths, path == Path::Both);
+      forward_depths = runs("adaptive_forward_depth");
       int equal = 0;
       int other = 0;
       for (int y = 0; y < adaptive_size_px.y; y++) {
