@@ -83,6 +83,11 @@ eevee::ShadowSettings shadow_settings(const RenderOptions &options)
     settings.esm.size_px *= 2;
   }
   settings.cascades.can_resize = options.shadow_size == 0;
+  if (options.samples > 0) {
+    // Texels smaller than about the distance between the samples of a pixel do not reduce the error (decision 0023).
+    settings.cascades.texel_in_pixels_enlarged =
+        std::max(eevee::texel_in_pixels, 0.8 / std::sqrt(double(options.samples)));
+  }
   // The error of these depths is far below that of one sample.
   settings.can_have_short_maps = options.samples == 1;
   return settings;

@@ -323,13 +323,15 @@ struct SunScene {
     casters.push_back(caster);
   }
   [[nodiscard]] std::vector<SunFit> fits(const SeenGroundPicture &picture, bool is_fitted, int count, float pixel_size,
-                                         bool can_resize = false) const
+                                         bool can_resize = false,
+                                         double texel_in_pixels_enlarged = texel_in_pixels) const
   {
     const VisibleRange visible = visible_range(picture.view, visible_corners(picture.view, all));
     const std::vector<VisibleCluster> clusters = is_fitted ? picture.clusters() : std::vector<VisibleCluster>();
     const int asked_px = can_resize ? int(std::lround(size_px * resize_step)) : size_px;
-    return fit_sun(sun, picture.view, visible, casters, asked_px, {.count = count, .can_resize = can_resize},
-                   pixel_size, {}, 0.0, clusters);
+    const CascadeSettings cascades{
+        .count = count, .can_resize = can_resize, .texel_in_pixels_enlarged = texel_in_pixels_enlarged};
+    return fit_sun(sun, picture.view, visible, casters, asked_px, cascades, pixel_size, {}, 0.0, clusters);
   }
 
   static constexpr int size_px = 512;
@@ -449,6 +451,33 @@ TEST(FittedCascades, HaveTheSizeThatThePictureNeeds)
   }
   EXPECT_GE(smaller, 2);
   EXPECT_GE(larger, 1);
+}
+
+TEST(FittedCascades, AreEnlargedOnlyAboveTheLimitForTexels)
+{
+  const SunScene scene;
+  const SeenGroundPicture picture(ground_views[0]);
+  constexpr double limit = 2.0 * texel_in_pixels;
+  int kept = 0;
+  int enlarged = 0;
+  for (float pixel = 0.01F; pixel < 3.0F; pixel *= 1.25F) {
+    const int always_px = scene.fits(picture, true, 0, pixel, true)[0].size_px;
+    const std::vector<SunFit> fits = scene.fits(picture, true, 0, pixel, true, limit);
+    if (always_px > SunScene::size_px && fits[0].size_px == SunScene::size_px) {
+      kept++;
+      // Below twice the square, because texel() is the longer edge of a texel.
+      EXPECT_LT(mean_error(fits, picture, pixel), 2.0 * limit * limit) << pixel;
+      continue;
+    }
+    EXPECT_EQ(fits[0].size_px, always_px) << pixel;
+    if (always_px > SunScene::size_px) {
+      enlarged++;
+      const double growth = double(always_px) / SunScene::size_px;
+      EXPECT_GT(growth * growth * mean_error(fits, picture, pixel), limit * limit) << pixel;
+    }
+  }
+  EXPECT_GE(kept, 1);
+  EXPECT_GE(enlarged, 1);
 }
 
 TEST(FittedCascades, AreAsManyAsThePictureNeeds)

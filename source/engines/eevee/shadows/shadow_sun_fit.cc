@@ -257,10 +257,12 @@ SlicePlan plan_slices(const std::vector<SunSlices> &choices, int size_px, int si
     return {&chosen, size_px};
   }
   // Below 1, the error is proportional to the area of a texel.
-  const double factor = texel_in_pixels / std::sqrt(chosen.error);
+  const double texel = std::sqrt(chosen.error);
+  const double factor = texel_in_pixels / texel;
   const double size = size_px / std::pow(resize_step, std::floor(std::log(factor) / std::log(resize_step)));
+  const bool can_enlarge = &chosen == &choices.back() && texel > settings.texel_in_pixels_enlarged;
   return {&chosen, int(std::clamp(std::ceil(size), std::min(128.0, double(size_px)),
-                                  double(&chosen == &choices.back() ? size_max_px : size_px)))};
+                                  double(can_enlarge ? size_max_px : size_px)))};
 }
 
 /** Fill \a fits with cascades around \a clusters, and one around \a needed behind them. */

@@ -19,6 +19,16 @@ namespace gnomon::eevee {
 /** Maximum number of cascades of a sun. */
 inline constexpr int cascade_count_max = 4;
 
+/**
+ * Edge of the texels, in pixels, for which cascades around visible surfaces suffice. Larger texels need one more
+ * cascade. \see SunSlices::error
+ */
+inline constexpr double texel_in_pixels_max = 0.2;
+/** Maps whose texels would be smaller are made smaller. */
+inline constexpr double texel_in_pixels = 0.125;
+/** Sizes of maps change by powers of this factor. */
+inline constexpr double resize_step = 1.189207115;
+
 /** The distribution of a sun's cascades over the visible range. */
 struct CascadeSettings {
   /**
@@ -31,20 +41,12 @@ struct CascadeSettings {
   /**
    * Whether cascades that are fitted to depths (ShadowSettings::is_fitted_to_depth) have maps of other sizes than asked
    * for: smaller where texels would be smaller than texel_in_pixels, and larger by resize_step where the largest number
-   * of cascades has larger texels. Not for lamps with a size of their own.
+   * of cascades has texels larger than texel_in_pixels_enlarged. Not for lamps with a size of their own.
    */
   bool can_resize = false;
+  /** Edge of the texels, in pixels, above which can_resize makes maps larger. At least texel_in_pixels. */
+  double texel_in_pixels_enlarged = texel_in_pixels;
 };
-
-/**
- * Edge of the texels, in pixels, for which cascades around visible surfaces suffice. Larger texels need one more
- * cascade. \see SunSlices::error
- */
-inline constexpr double texel_in_pixels_max = 0.2;
-/** Maps whose texels would be smaller are made smaller. */
-inline constexpr double texel_in_pixels = 0.125;
-/** Sizes of maps change by powers of this factor. */
-inline constexpr double resize_step = 1.189207115;
 
 /** The view of one cascade, and the box that it covers. */
 struct SunFit {
