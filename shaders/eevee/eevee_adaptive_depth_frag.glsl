@@ -1,13 +1,13 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// Writes the depths with which the depth test skips converged pixels, or, inverted, those that end it.
+// Depths of converged pixels: nearer than all objects, so that the depth test skips them, or inverted: behind all objects.
 #include "shared/slots_shared.h"
 
 layout(binding = DEPTH_SLOT) uniform sampler2D drawn_converged;
 
 PUSH_CONSTANT_LAYOUT uniform push_constant_block
 {
-  /** 1: depth 0 for converged pixels and 1 for the others. 0: the other way round. */
+  /** 0: depth 1 (nearest) for converged pixels, 0 for others. 1: depth 0 for converged pixels, 1 for others. */
   float is_inverted;
 };
 

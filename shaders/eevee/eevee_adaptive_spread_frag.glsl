@@ -1,7 +1,7 @@
 #version 450 core
 // SPDX-License-Identifier: MIT
-// Finds the pixels of the radiance that no film pixel needs: the pixel filter reads 3x3 of them. Writes depth 1 for them, otherwise
-// 0.
+// Finds the pixels of the radiance that only converged pixels of the film read; the pixel filter reads 3x3. Writes depth 1 for
+// them, and 0 for others.
 #include "shared/slots_shared.h"
 
 layout(binding = DEPTH_SLOT) uniform sampler2D film_converged;

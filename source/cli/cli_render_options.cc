@@ -197,8 +197,10 @@ void RenderOptions::check() const
     throw UsageError(
         "--tile and --sample-range write parts of a picture to OUT.exr, without --debug, --aov and --resume");
   }
-  if (noise_threshold > 0.0F && (is_part() || !aov.empty())) {
-    throw UsageError("--noise-threshold compares pixels of a whole picture, without --tile, --sample-range and --aov");
+  if (noise_threshold > 0.0F && (is_part() || !aov.empty() || choice.is_asked())) {
+    throw UsageError(
+        "--noise-threshold compares pixels of a whole picture, without --tile, --sample-range, --aov, --max-error and "
+        "--max-time");
   }
   static_cast<void>(region());
   static_cast<void>(sample_bounds());

@@ -15,15 +15,15 @@ namespace gnomon::eevee {
 
 int adaptive_first_samples(int sample_count)
 {
-  return std::clamp(sample_count / 2, 1, 4);
+  return std::clamp(sample_count / 2, 1, adaptive_first_max);
 }
 
-/** The least distance between the first four of \a count samples that are \a step apart, in a square without edges. */
-static float distance_of_four(int step, int count)
+/** The least distance between the first samples of \a count that are \a step apart, in a square without edges. */
+static float distance_of_first(int step, int count)
 {
   float least = 1.0F;
-  std::array<glm::vec2, 4> offsets{};
-  for (std::size_t i = 0; i < offsets.size(); i++) {
+  std::array<glm::vec2, adaptive_first_max> offsets{};
+  for (std::size_t i = 0; i < std::size_t(std::max(2, adaptive_first_samples(count))); i++) {
     offsets[i] = film_offset_px(int(std::int64_t(i) * step % count), count, 0);
     for (std::size_t other = 0; other < i; other++) {
       const glm::vec2 difference = offsets[i] - offsets[other];
@@ -36,45 +36,60 @@ static float distance_of_four(int step, int count)
 int sample_step(const Settings &settings)
 {
   const int count = settings.sample_count;
+  if (settings.noise_threshold == 0.0F || count < 2) {
+    return 1;
+  }
   int best = 1;
-  for (int step = 2; settings.noise_threshold > 0.0F && step < count; step++) {
-    if (std::gcd(step, count) == 1 && distance_of_four(step, count) > distance_of_four(best, count)) {
+  float best_distance = distance_of_first(1, count);
+  for (int step = 2; step < count; step++) {
+    const float distance = std::gcd(step, count) == 1 ? distance_of_first(step, count) : 0.0F;
+    if (distance > best_distance) {
       best = step;
+      best_distance = distance;
     }
   }
   return best;
 }
 
-/** The reason why all pixels get all samples; empty: some may get fewer. */
-static std::string_view why_all_samples(const FrameState &state)
+/** The reason why the passes of adaptive sampling are not recorded; empty: they are. */
+static std::string_view why_not_recorded(const FrameState &state)
 {
   const Settings &settings = state.settings;
-  const Data &data = state.data;
   if (settings.noise_threshold == 0.0F) {
     return "the settings have no noise threshold";
   }
   if (settings.planned_sample_count() <= adaptive_first_samples(settings.planned_sample_count())) {
     return "there is one sample";
   }
-  if (!data.is_seen) {
-    return nothing_seen;
-  }
-  if (!data.adaptive.is_whole_picture) {
-    return "a region of the picture is drawn";
-  }
   if (settings.light.kind != LightPart::Kind::All) {
     return "a part of the light is drawn";
   }
-  if (!data.shared->lamp_points.empty()) {
+  if (!state.data.shared->lamp_points.empty()) {
     return "each sample sees other points of lamps";
   }
-  if (!data.stl.transmissive.empty()) {
-    return "a material that is drawn transmits light";
+  return state.data.stl.transmissive.empty() ? "" : "a material that is drawn transmits light";
+}
+
+bool has_adaptive_passes(const FrameState &state)
+{
+  return why_not_recorded(state).empty();
+}
+
+/** The reason why all pixels get all samples; empty: some may get fewer. */
+static std::string_view why_all_samples(const FrameState &state)
+{
+  if (const std::string_view why_not = why_not_recorded(state); !why_not.empty()) {
+    return why_not;
   }
-  if (std::ranges::any_of(data.shared->caster_kinds, &CasterKind::is_blended)) {
-    return "blended objects cast other shadows with each sample";
+  if (!state.data.is_seen) {
+    return nothing_seen;
   }
-  return {};
+  if (!state.data.adaptive.is_whole_picture) {
+    return "a region of the picture is drawn";
+  }
+  return std::ranges::any_of(state.data.shared->caster_kinds, &CasterKind::is_blended)
+             ? "blended objects cast other shadows with each sample"
+             : "";
 }
 
 /** Need of a step that skips converged pixels. */
@@ -123,15 +138,16 @@ void record_adaptive_depth(const FrameStep &step, FrameSample &sample, gpu::Comm
   record_pass(step, sample, list, sample.data.fbl.depth_fb, {});
 }
 
-void record_depth_of_converged(FrameSample &sample, gpu::CommandList &list, const gpu::Rectangle &scissor)
+Need need_adaptive_forward_depth(const FrameState &state)
 {
-  Data &data = sample.data;
-  if (data.adaptive.is_active) {
-    list.begin_pass("adaptive_forward_depth", data.fbl.depth_fb,
-                    {.depth_load = gpu::LoadAction::Load, .scissor = scissor});
-    data.psl->adaptive_depth_pass.record(sample.sample_view, data.visible, list);
-    list.end_pass();
-  }
+  const Need need = need_of(state, "the depth test skips converged pixels after deferred lighting");
+  return need.is_needed ? need_forward_depth(state) : need;
+}
+
+void record_adaptive_forward_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
+{
+  record_pass(step, sample, list, sample.data.fbl.depth_fb,
+              {.depth_load = gpu::LoadAction::Load, .scissor = sample.viewport.part_region()});
 }
 
 void record_adaptive_background(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
@@ -168,17 +184,27 @@ void record_adaptive_test(const FrameStep &step, FrameSample &sample, gpu::Comma
   adaptive.converged_share = share_with(sample);
   adaptive.sample_scale = float(1.0 / adaptive.converged_share);
   record_pass(step, sample, list, adaptive.test_fb, {});
-  list.begin_pass("adaptive_spread", adaptive.spread_fb, {});
-  data.psl->adaptive_spread_pass.record(sample.view, data.visible, list);
-  list.end_pass();
-  adaptive.is_active = true;
+  adaptive.is_tested = true;
+}
+
+Need need_adaptive_spread(const FrameState &state)
+{
+  const AdaptiveSampling &adaptive = state.data.adaptive;
+  return adaptive.is_tested && !adaptive.is_active ? Need{true, "the pixel filter reads neighbours"}
+                                                   : Need{false, need_adaptive_test(state).reason};
+}
+
+void record_adaptive_spread(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
+{
+  record_pass(step, sample, list, sample.data.adaptive.spread_fb, {});
+  sample.data.adaptive.is_active = true;
 }
 
 void Engine::make_adaptive(draw::Viewport &viewport)
 {
   Data &data = viewport.engine_data<Data>(*this);
   AdaptiveSampling &adaptive = data.adaptive;
-  if (settings_.noise_threshold == 0.0F) {
+  if (!has_adaptive_passes({settings_, data})) {
     adaptive = {};
     return;
   }

@@ -14,7 +14,7 @@ namespace gnomon::eevee {
 struct AdaptiveSampling {
   /** 1: the pixel of the film is converged; otherwise 0. */
   gpu::Texture film_converged;
-  /** The same for pixels of the radiance: no film pixel needs them. */
+  /** The same for pixels of the radiance: all film pixels that read them are converged. */
   gpu::Texture drawn_converged;
   gpu::Framebuffer test_fb;
   gpu::Framebuffer spread_fb;
@@ -22,7 +22,9 @@ struct AdaptiveSampling {
   gpu::Framebuffer film_fb;
   /** No region of the picture is drawn alone. */
   bool is_whole_picture = false;
-  /** Converged pixels of the current picture are known. */
+  /** The first samples of the current picture were tested. */
+  bool is_tested = false;
+  /** Converged pixels of the current picture are skipped. */
   bool is_active = false;
   /** Sum of the filter weights that the converged pixels of the film have, as StorageList::film_share. */
   double converged_share = 0.0;
@@ -30,6 +32,8 @@ struct AdaptiveSampling {
   float sample_scale = 1.0F;
   glm::vec4 factor{1.0F};
 };
+
+inline constexpr int adaptive_first_max = 4;
 
 /**
  * Samples of a picture that all pixels get: those from which convergence is tested. \a sample_count: samples of the
@@ -43,23 +47,31 @@ struct AdaptiveSampling {
  */
 [[nodiscard]] int sample_step(const Settings &settings);
 
+/** Whether the settings and the scene allow that some pixels get fewer samples, so that the passes are recorded. */
+[[nodiscard]] bool has_adaptive_passes(const FrameState &state);
+
 /** Depth of converged pixels, nearer than everything, before objects are drawn. */
 [[nodiscard]] Need need_adaptive_depth(const FrameState &state);
 void record_adaptive_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);
-
-/** The same before forward objects are drawn, after deferred lighting. Nothing without converged pixels. */
-void record_depth_of_converged(FrameSample &sample, gpu::CommandList &list, const gpu::Rectangle &scissor);
 
 /** Depth of converged pixels behind everything, so that deferred lighting skips them too. */
 [[nodiscard]] Need need_adaptive_background(const FrameState &state);
 void record_adaptive_background(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);
 
+/** Depth of converged pixels again, before forward objects are drawn after deferred lighting. */
+[[nodiscard]] Need need_adaptive_forward_depth(const FrameState &state);
+void record_adaptive_forward_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);
+
 /** Adds the sample to the other pixels of the film, and keeps the mean of the converged ones. */
 [[nodiscard]] Need need_adaptive_film(const FrameState &state);
 void record_adaptive_film(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);
 
-/** Finds the converged pixels after the first samples. */
+/** Finds the converged pixels of the film after the first samples. */
 [[nodiscard]] Need need_adaptive_test(const FrameState &state);
 void record_adaptive_test(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);
+
+/** Finds the converged pixels of the radiance. */
+[[nodiscard]] Need need_adaptive_spread(const FrameState &state);
+void record_adaptive_spread(const FrameStep &step, FrameSample &sample, gpu::CommandList &list);
 
 }  // namespace gnomon::eevee

@@ -27,6 +27,7 @@ double system_seconds()
 Settings preview_settings(Settings settings, int shadow_divisor)
 {
   settings.sample_count = 1;
+  settings.noise_threshold = 0.0F;
   settings.sample_first = settings.sample_end = 0;
   settings.has_probe = settings.has_surfaces = settings.is_timed = false;
   ShadowSettings &shadow = settings.shadow;

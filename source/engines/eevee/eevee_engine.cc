@@ -259,7 +259,7 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
     std::ranges::for_each(data.frame, &StepRecord::reset);
     data.is_seen = data.has_picture_depth = data.is_finished = false;
     data.film_sample_count = 0;
-    data.adaptive.is_active = false;
+    data.adaptive.is_tested = data.adaptive.is_active = false;
   }
   const bool has_all = viewport.is_writing() || has_all_samples(data, viewport.samples_drawn());
   if (!has_all && !draw_sample(viewport, view)) {

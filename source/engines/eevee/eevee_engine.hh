@@ -77,12 +77,12 @@ struct Settings {
   /** Selects the random sequence of sample positions and lamp points. */
   std::uint32_t seed = 0;
   /**
-   * Adaptive sampling: after the first samples (half of them, at most 4), only those pixels get further samples
-   * that differ from one of the eight around them by more than this, relative to the square root of their brightness,
-   * or in alpha. Features that the first samples miss in all of these pixels are not found. 0: all pixels get all
-   * samples. So it is, too, with lamps with an extent, a world, emissive surfaces, surfaces that transmit light,
-   * blended objects that cast shadows, a part of the light, and regions. \pre sample_first and sample_end are 0, unless
-   * this is 0
+   * Adaptive sampling: after the first samples (half of them, at most 4), only those pixels get further samples that
+   * differ from one of the eight around them by more than this, relative to the square root of their brightness, or in
+   * alpha. Thin objects that the first samples miss are lost. 0: all pixels get all samples. All pixels get them, too,
+   * in scenes with lamps with an extent, a world, emissive surfaces, surfaces that transmit light or blended objects
+   * that cast shadows, and where a part of the light or a region is drawn. \pre sample_first and sample_end are 0,
+   * unless this is 0
    */
   float noise_threshold = 0.0F;
   /**

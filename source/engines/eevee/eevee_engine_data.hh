@@ -135,6 +135,7 @@ struct PassesKey {
   gpu::ResourceId world_picture = 0;
   gpu::ResourceId behind = 0;
   gpu::ResourceId surface_function_block = 0;
+  gpu::ResourceId film_converged = 0;
   /** Scene::world_revision if there is a background, otherwise 0. */
   std::uint64_t world = 0;
   Feature features = Feature::None;

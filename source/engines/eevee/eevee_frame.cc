@@ -136,7 +136,6 @@ void record_deferred_lit(const FrameStep &step, FrameSample &sample, gpu::Comman
 
 void record_forward_depth(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)
 {
-  record_depth_of_converged(sample, list, read_region(sample));
   record_pass(step, sample, list, sample.data.fbl.depth_fb,
               {.depth_load = gpu::LoadAction::Load, .scissor = read_region(sample)});
 }
@@ -263,23 +262,26 @@ constexpr std::array<FramePass, 1> blend_behind_passes = {
 constexpr std::array<FramePass, 1> film_passes = {
     {{&PassList::film_pass, "samples", [](const FrameState &) -> std::string { return nothing_seen; }}}};
 
-constexpr std::string (*no_threshold)(const FrameState &) = [](const FrameState &) -> std::string {
-  return "the settings have no noise threshold";
+constexpr std::string (*no_convergence)(const FrameState &) = [](const FrameState &) -> std::string {
+  return "all pixels get all samples";
 };
 
 constexpr std::array<FramePass, 1> adaptive_depth_passes = {
-    {{&PassList::adaptive_depth_pass, "converged pixels", no_threshold}}};
+    {{&PassList::adaptive_depth_pass, "converged pixels", no_convergence}}};
 
 constexpr std::array<FramePass, 1> adaptive_background_passes = {
-    {{&PassList::adaptive_background_pass, "converged pixels", no_threshold}}};
+    {{&PassList::adaptive_background_pass, "converged pixels", no_convergence}}};
 
 constexpr std::array<FramePass, 2> adaptive_film_passes = {{
-    {&PassList::film_sampled_pass, "pixels that get the sample", no_threshold},
-    {&PassList::film_converged_pass, "pixels that keep their mean", no_threshold},
+    {&PassList::film_sampled_pass, "pixels that get the sample", no_convergence},
+    {&PassList::film_converged_pass, "pixels that keep their mean", no_convergence},
 }};
 
 constexpr std::array<FramePass, 1> adaptive_test_passes = {
-    {{&PassList::adaptive_test_pass, "pixels of the film", no_threshold}}};
+    {{&PassList::adaptive_test_pass, "pixels of the film", no_convergence}}};
+
+constexpr std::array<FramePass, 1> adaptive_spread_passes = {
+    {{&PassList::adaptive_spread_pass, "pixels of the radiance", no_convergence}}};
 
 constexpr std::array<FramePass, 1> tonemap_passes = {
     {{&PassList::tonemap, "a target was given", [](const FrameState &) -> std::string { return nothing_seen; }}}};
@@ -296,15 +298,15 @@ constexpr std::span target_only = std::span(pictures).subspan(4, 1);
 constexpr std::span behind_only = std::span(pictures).subspan(5, 1);
 constexpr std::span depth_and_radiance = std::span(pictures).first(2);
 
-constexpr std::array<std::string_view, 2> converged_textures = {"film_converged", "drawn_converged"};
-constexpr std::span converged = std::span(converged_textures);
-constexpr std::span film_converged_only = std::span(converged_textures).first(1);
-constexpr std::span converged_only = std::span(converged_textures).subspan(1, 1);
+constexpr std::array<std::string_view, 3> adaptive_resources = {"drawn_converged", "film_converged", "radiance"};
+constexpr std::span converged_only = std::span(adaptive_resources).first(1);
+constexpr std::span film_converged_only = std::span(adaptive_resources).subspan(1, 1);
+constexpr std::span film_inputs = std::span(adaptive_resources).subspan(1, 2);
 
 constexpr std::array<std::string_view, 2> lights = {"light_block", "light_texture"};
 constexpr std::array<std::string_view, 2> cluster_resources = {"light_cluster_block", "light_lists"};
 
-constexpr std::array<FrameStep, 20> steps = {{
+constexpr std::array<FrameStep, 22> steps = {{
     {"adaptive_depth", FrameStep::When::EachSample, FrameStep::Part::First, need_adaptive_depth, converged_only,
      depth_only, adaptive_depth_passes, record_adaptive_depth},
     // The depths come before the shadows because cascades may be fitted to them.
@@ -356,6 +358,8 @@ constexpr std::array<FrameStep, 20> steps = {{
      converged_only, depth_only, adaptive_background_passes, record_adaptive_background},
     {"deferred_lit", FrameStep::When::EachSample, FrameStep::Part::Rows, need_deferred_lit, shadow_targets,
      radiance_only, deferred_lit_passes, record_deferred_lit},
+    {"adaptive_forward_depth", FrameStep::When::EachSample, FrameStep::Part::Rows, need_adaptive_forward_depth,
+     converged_only, depth_only, adaptive_depth_passes, record_adaptive_forward_depth},
     {"forward_depth",
      FrameStep::When::EachSample,
      FrameStep::Part::Rows,
@@ -385,10 +389,12 @@ constexpr std::array<FrameStep, 20> steps = {{
      blend_passes, record_blend},
     {"film", FrameStep::When::EachSample, FrameStep::Part::Last, need_film, radiance_only, film_only, film_passes,
      record_film},
-    {"adaptive_film", FrameStep::When::EachSample, FrameStep::Part::Last, need_adaptive_film, film_converged_only,
-     film_only, adaptive_film_passes, record_adaptive_film},
-    {"adaptive_test", FrameStep::When::EachSample, FrameStep::Part::Last, need_adaptive_test, film_only, converged,
-     adaptive_test_passes, record_adaptive_test},
+    {"adaptive_film", FrameStep::When::EachSample, FrameStep::Part::Last, need_adaptive_film, film_inputs, film_only,
+     adaptive_film_passes, record_adaptive_film},
+    {"adaptive_test", FrameStep::When::EachSample, FrameStep::Part::Last, need_adaptive_test, film_only,
+     film_converged_only, adaptive_test_passes, record_adaptive_test},
+    {"adaptive_spread", FrameStep::When::EachSample, FrameStep::Part::Last, need_adaptive_spread, film_converged_only,
+     converged_only, adaptive_spread_passes, record_adaptive_spread},
     {"picture_depth",
      FrameStep::When::EachTarget,
      FrameStep::Part::Each,

@@ -68,6 +68,7 @@ std::vector<glm::vec4> render_light_layer(SceneRenderer &renderer, const scene::
                                           const LightPart &light)
 {
   Settings settings = renderer.settings();
+  GNOMON_ASSERT(settings.noise_threshold == 0.0F, "layers have all samples");
   settings.light = light;
   std::vector<glm::vec4> picture;
   {
@@ -118,6 +119,7 @@ SurfaceLayers render_surface_layers(SceneRenderer &renderer, const scene::Placed
                                     const SurfaceRequest &request)
 {
   Settings settings = renderer.settings();
+  GNOMON_ASSERT(settings.noise_threshold == 0.0F, "layers have all samples");
   settings.has_probe = !request.visible_lamps.empty();
   settings.has_surfaces = request.has_centers || request.has_means || request.has_objects;
   SurfaceLayers layers;

@@ -43,6 +43,7 @@ struct SurfaceLayers {
 /**
  * The picture of \a camera with a part of its light. \a sample_count: samples of the picture.
  * Afterwards, the renderer is synced with its settings, and its picture begins anew. So are the next function's.
+ * \pre Settings::noise_threshold is 0, here and in the next function: layers have all samples
  */
 [[nodiscard]] std::vector<glm::vec4> render_light_layer(SceneRenderer &renderer, const scene::PlacedCamera &camera,
                                                         int sample_count, const LightPart &light);

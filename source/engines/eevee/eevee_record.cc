@@ -290,6 +290,7 @@ void Engine::record(draw::Viewport &viewport)
       .world_picture = shared.world.picture.id(),
       .behind = data.txl.behind.id(),
       .surface_function_block = shared.surface_function_block.id(),
+      .film_converged = data.adaptive.film_converged.id(),
       .world = has_background(settings_, scene_) ? scene_.scene().world_revision() : 0,
       .features = stl.features,
       .tinted_light = shared.tinted_light,
@@ -326,7 +327,7 @@ void Engine::record_passes(draw::Viewport &viewport)
     record_background(viewport);
   }
   record_film(viewport, data.psl->film_pass);
-  if (settings_.noise_threshold > 0.0F) {
+  if (data.adaptive.film_converged) {
     record_film(viewport, data.psl->film_sampled_pass);
     record_adaptive(viewport);
   }

@@ -56,7 +56,7 @@ FrameNode target_nodes(const ReportSource &source)
   for (const auto &[texture, name] : {std::pair(&source.data.adaptive.film_converged, "film_converged"),
                                       {&source.data.adaptive.drawn_converged, "drawn_converged"}}) {
     add(*texture, name, "pixels that need no more samples",
-        source.settings.noise_threshold > 0.0F ? nothing_seen : not_asked);
+        source.settings.noise_threshold > 0.0F ? "all pixels get all samples" : not_asked);
   }
   add(source.data.shadow_picture.texture(), "shadow_picture", "asked for", not_asked);
   const auto why_no_layers = [&](Feature feature) {

@@ -181,7 +181,44 @@ TEST_F(AdaptiveGpuTest, AnotherPictureFindsItsOwnPixels)
   renderer.sync();
   renderer.draw(test::camera_at({3, -2, 1.5F}, {0, 0, 0.2F}, 0.7F));
   renderer.draw(camera);
-  EXPECT_TRUE(renderer.read_picture() == render(0.02F).pixels);
+  const test::Picture adaptive = render(0.02F);
+  EXPECT_TRUE(renderer.read_picture() == adaptive.pixels);
+  const auto draw = [&](float threshold) {
+    settings.noise_threshold = threshold;
+    renderer.set_settings(settings);
+    renderer.sync();
+    renderer.draw(camera);
+    return renderer.read_picture();
+  };
+  EXPECT_TRUE(draw(0.0F) == render(0.0F).pixels);
+  EXPECT_TRUE(draw(0.02F) == adaptive.pixels);
+  renderer.resize({33, 20});
+  renderer.sync();
+  renderer.draw(camera);
+  renderer.resize(adaptive_size_px);
+  EXPECT_TRUE(draw(0.02F) == adaptive.pixels);
+}
+
+TEST_F(AdaptiveGpuTest, APictureThatIsEndedEarlyIsTheMeanOfItsSamples)
+{
+  add_objects(Path::Deferred);
+  add_lamps();
+  for (const int count : {0, adaptive_samples}) {
+    Settings settings = with_small_shadows;
+    settings.sample_count = count;
+    std::vector<std::vector<glm::vec4>> pictures;
+    // The least threshold holds pixels that do not differ at all.
+    for (const float threshold : {1e-30F, 0.02F}) {
+      settings.noise_threshold = threshold;
+      SceneRenderer renderer(*device, scene, adaptive_size_px, settings);
+      renderer.sync();
+      renderer.draw(camera, {.progress = [](int samples_drawn) { return samples_drawn < 9; }});
+      pictures.push_back(renderer.read_picture());
+    }
+    for (std::size_t i = 0; i < pictures[0].size(); i++) {
+      ASSERT_LT(largest_difference(pictures[0][i], pictures[1][i]), 0.02F) << count << " samples, pixel " << i;
+    }
+  }
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -91,16 +92,24 @@ TEST_F(AdaptiveTest, NothingIsMadeWithoutAThresholdOrFurtherSamples)
     EXPECT_EQ(runs(settings, "adaptive_test"), 0U);
     EXPECT_EQ(runs(settings, "film"), std::uint64_t(settings.sample_count));
   }
-  SceneRenderer renderer(*device, scene, {16, 12}, {.sample_count = 16});
-  renderer.sync();
-  renderer.draw(camera);
-  for (const gpu::LiveResource &live : device->live()) {
-    EXPECT_EQ(live.name.find("converged"), std::string::npos) << live.name;
-    EXPECT_EQ(live.name.find("adaptive"), std::string::npos) << live.name;
-  }
+  const auto made = [&](const Settings &settings) {
+    SceneRenderer renderer(*device, scene, {16, 12}, settings);
+    renderer.sync();
+    renderer.draw(camera);
+    const auto is_of_it = [](const gpu::LiveResource &live) {
+      return live.name.find("converged") != std::string::npos || live.name.find("adaptive") != std::string::npos;
+    };
+    return std::ranges::count_if(device->live(), is_of_it);
+  };
+  // Two textures, three framebuffers and four programs.
+  EXPECT_EQ(made(adaptive), 9);
+  EXPECT_EQ(made({.sample_count = 16}), 0);
+  EXPECT_EQ(made({.sample_count = 1, .noise_threshold = 0.1F}), 0);
+  scene.edit(lamp, [](scene::Lamp &value) { value.angle = 0.1F; });
+  EXPECT_EQ(made(adaptive), 0) << "a lamp with an extent";
 }
 
-TEST_F(AdaptiveTest, AllPixelsGetAllSamplesWhereTheFirstOnesDoNotSpeakForTheRest)
+TEST_F(AdaptiveTest, SamplesThatSeeOtherLightAreOfAllPixels)
 {
   EXPECT_EQ(runs(adaptive, "adaptive_test"), 1U);
   EXPECT_EQ(runs(adaptive, "adaptive_test", {{0, 0}, {8, 12}}), 0U) << "a region";
