@@ -295,8 +295,8 @@ TEST_F(CliTest, JsonHasTimesCountersAndTheFrameTree)
 
 TEST_F(CliTest, RepeatedPicturesCanDrawTheirShadowsAnew)
 {
-  const Finished finished = run("render " + example("room") +
-                                " --backend null --size 64x32 --repeat 3 --redraw-shadows --json run.json");
+  const Finished finished =
+      run("render " + example("room") + " --backend null --size 64x32 --repeat 3 --redraw-shadows --json run.json");
   ASSERT_EQ(finished.status, 0) << finished.err;
   for (const nlohmann::json &frame : nlohmann::json::parse(read("run.json"))["frames"]) {
     EXPECT_EQ(frame["faces_drawn"], 24);
