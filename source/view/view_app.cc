@@ -231,7 +231,11 @@ void App::use_shaders(const std::filesystem::path &folder)
 
 void App::update_shaders()
 {
-  if (!shader_watch_ || !document_ || (!shader_watch_->has_changed() && document_->has_own_shaders())) {
+  if (!shader_watch_ || !document_) {
+    return;
+  }
+  const bool has_changed = shader_watch_->has_changed();
+  if (!has_changed && document_->has_own_shaders()) {
     return;
   }
   const auto uses_eevee = [](const auto &viewport) { return viewport->viewport() && viewport->engine == "eevee"; };
@@ -247,7 +251,8 @@ void App::update_shaders()
   for (const std::string &failure : failures) {
     message(failure, true);
   }
-  if (failures.empty()) {
+  // A scene that was opened, or a context that was made anew, takes the same shaders again: no news.
+  if (failures.empty() && has_changed) {
     message(fmt::format("The shaders of {} are loaded", shader_watch_->folder().string()), false);
   }
 }

@@ -60,22 +60,41 @@ bool show_color(const NumberProperty<T> &property, T &thing)
   return true;
 }
 
+/** Whether the first \a count values fit into the \a count fields of a row, with their unit. */
+bool fit(const std::array<double, 3> &values, int count, int digits, const char *unit)
+{
+  const ImGuiStyle &style = ImGui::GetStyle();
+  const float row = ImGui::CalcItemWidth() - float(count - 1) * style.ItemInnerSpacing.x;
+  const float field = row / float(count) - 2.0F * style.FramePadding.x;
+  return std::all_of(values.begin(), values.begin() + count, [&](double value) {
+    return ImGui::CalcTextSize(fmt::format("{:.{}g} {}", value, digits, unit).c_str()).x <= field;
+  });
+}
+
 template <typename T>
 bool show_number(const NumberProperty<T> &property, T &thing)
 {
   std::array<double, 3> values{};
   double largest = 0.0;
   for (int i = 0; i < property.width; i++) {
-    values[std::size_t(i)] = property.get(thing, i);
+    // 0 instead of -0.
+    values[std::size_t(i)] = property.get(thing, i) + 0.0;
     largest = std::max(largest, std::abs(values[std::size_t(i)]));
   }
   const std::array<double, 3> before = values;
   // A drag of a hundred pixels changes a number by about half of it.
   const auto speed = float(0.005 * std::max(largest, 0.01 * std::min(property.max, 100.0)));
+  const int digits = largest >= 1e4 ? 5 : 4;
   const char *unit = property.unit(thing);
-  const std::string format = fmt::format("{}{}{}", largest >= 1e4 ? "%.5g" : "%.4g", *unit ? " " : "", unit);
-  if (!ImGui::DragScalarN("", ImGuiDataType_Double, values.data(), property.width, speed, &property.min, &property.max,
-                          format.c_str(), ImGuiSliderFlags_AlwaysClamp)) {
+  const bool has_unit = *unit != 0 && fit(values, property.width, digits, unit);
+  const std::string format = fmt::format("%.{}g{}{}", digits, has_unit ? " " : "", has_unit ? unit : "");
+  const bool is_changed =
+      ImGui::DragScalarN("", ImGuiDataType_Double, values.data(), property.width, speed, &property.min, &property.max,
+                         format.c_str(), ImGuiSliderFlags_AlwaysClamp);
+  if (*unit != 0 && !has_unit && ImGui::IsItemHovered()) {
+    ImGui::SetTooltip("%s", unit);
+  }
+  if (!is_changed) {
     return false;
   }
   // The others keep every digit.
