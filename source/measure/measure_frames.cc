@@ -10,7 +10,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <optional>
 #include <thread>
 
 namespace gnomon::measure {
@@ -26,6 +28,8 @@ constexpr int warm_up_count = 30;
 constexpr std::chrono::milliseconds idle_time{2};
 /** Frames in which the camera stands still before it is moved again, so that pictures begin to refine. */
 constexpr int refining_count = 10;
+/** Frames of a moved lamp for each run of arithmetic. Each takes the time of a frame. */
+constexpr int arithmetic_interval = 5;
 
 /** Until the device is done. */
 template <typename Work>
@@ -37,6 +41,39 @@ double seconds_of(gpu::Device &device, Work &&work)
   device.finish();
   return now(Clock::Wall) - start;
 }
+
+/** Dependent multiplications in registers, the same number on each core at the same time. */
+class Arithmetic {
+ public:
+  /** A run takes about \a seconds. \a seconds must be positive. */
+  explicit Arithmetic(double seconds)
+  {
+    const double start = now(Clock::Wall);
+    run();
+    step_count_ = std::int64_t(double(step_count_) * seconds / (now(Clock::Wall) - start));
+  }
+
+  void run() const
+  {
+    std::vector<std::jthread> threads(std::max(1U, std::thread::hardware_concurrency()));
+    for (std::jthread &thread : threads) {
+      thread = std::jthread([this] { multiply(); });
+    }
+  }
+
+ private:
+  void multiply() const
+  {
+    double value = 1.0;
+    for (std::int64_t i = 0; i < step_count_; i++) {
+      value = value * 1.0000001 + 1e-9;
+    }
+    // Without a use of the result, the compiler may leave the loop out.
+    [[maybe_unused]] const volatile double result = value;
+  }
+
+  std::int64_t step_count_ = 1'000'000;
+};
 
 gpu::Counters between(const gpu::Counters &before, const gpu::Counters &after)
 {
@@ -85,6 +122,8 @@ class Frames {
     const scene::Handle<scene::Node> node = (point == lamps.end() ? lamps.begin() : point)->node;
     const glm::dmat4 start = scene_.nodes()[node].parent_from_node;
     eevee::SceneRenderer renderer(device_, scene_, settings_.size_px, {.sample_count = 1});
+    std::vector<double> warm_up;
+    std::optional<Arithmetic> arithmetic;
     for (int i = -warm_up_count; i < settings_.frame_count; i++) {
       const double control = seconds_of(device_, [&] { clear(); });
       const double frame = seconds_of(device_, [&] {
@@ -95,9 +134,17 @@ class Frames {
         renderer.sync();
         renderer.draw_sample(start_, picture_.target());
       });
-      if (i >= 0) {
-        times.control.push_back(control);
-        times.moved_lamp.push_back(frame);
+      if (i < 0) {
+        warm_up.push_back(frame);
+        continue;
+      }
+      times.control.push_back(control);
+      times.moved_lamp.push_back(frame);
+      if (i == 0) {
+        arithmetic.emplace(percentile(warm_up, 0.5));
+      }
+      if (i % arithmetic_interval == 0) {
+        times.arithmetic.push_back(seconds_of(device_, [&] { arithmetic->run(); }));
       }
     }
     scene_.set_transform(node, start);
