@@ -109,7 +109,7 @@ Need need_adaptive_depth(const FrameState &state)
 
 Need need_adaptive_background(const FrameState &state)
 {
-  const Need need = need_of(state, "deferred lighting skips them");
+  const Need need = need_of(state, "deferred lighting skips converged pixels");
   return need.is_needed && !has_gbuffer(state.data) ? Need{false, why_forward} : need;
 }
 

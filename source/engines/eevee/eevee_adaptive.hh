@@ -33,6 +33,7 @@ struct AdaptiveSampling {
   glm::vec4 factor{1.0F};
 };
 
+/** Largest result of adaptive_first_samples(). */
 inline constexpr int adaptive_first_max = 4;
 
 /**
@@ -43,7 +44,8 @@ inline constexpr int adaptive_first_max = 4;
 
 /**
  * The step between the indices of samples that are drawn one after the other, modulo their number. With a threshold,
- * the first four are spread over the pixel, although indices rise from its left to its right side. Otherwise 1.
+ * the first adaptive_first_samples() are spread over the pixel, although indices rise from its left to its right side.
+ * Otherwise 1.
  */
 [[nodiscard]] int sample_step(const Settings &settings);
 
