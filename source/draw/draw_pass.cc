@@ -87,9 +87,14 @@ void ShadingGroup::call(const gpu::Batch &batch, const glm::mat4 &world_from_obj
   call(batch, objects_->add(world_from_object));
 }
 
+void ShadingGroup::add_call(const Call &call)
+{
+  (call.batch.host_batch == 0 ? calls_ : host_calls_).push_back(call);
+}
+
 void ShadingGroup::call(const gpu::Batch &batch, ObjectIndex object)
 {
-  calls_.push_back({batch.range(), object});
+  add_call({batch.range(), object});
 }
 
 void ShadingGroup::call(const gpu::Batch &batch, ObjectIndex object, const CullingVolume &volume)
@@ -98,14 +103,15 @@ void ShadingGroup::call(const gpu::Batch &batch, ObjectIndex object, const Culli
     call(batch, object);
     return;
   }
-  calls_.push_back({batch.range(), object, std::uint32_t(volumes_.size())});
+  add_call({batch.range(), object, std::uint32_t(volumes_.size())});
   volumes_.push_back(volume);
 }
 
 InstanceCall &ShadingGroup::instances(const gpu::Batch &batch)
 {
-  instance_calls_.push_back(InstanceCall(batch.range()));
-  return instance_calls_.back();
+  std::deque<InstanceCall> &calls = batch.range().host_batch == 0 ? instance_calls_ : host_instance_calls_;
+  calls.push_back(InstanceCall(batch.range()));
+  return calls.back();
 }
 
 void ShadingGroup::call_procedural(std::uint32_t triangle_count, std::uint32_t instance_count)
@@ -141,31 +147,40 @@ void ShadingGroup::record_bindings(gpu::CommandList &list) const
   }
 }
 
+void ShadingGroup::append(const Call &call, bool may_extend, gpu::CommandList &list) const
+{
+  std::uint32_t instance = call.object;
+  if (!objects_) {
+    instance = std::uint32_t(list.instances.size());
+    list.instances.push_back({call.object, 0});
+  }
+  // The next instance of the same batch is added to the last draw. Compare the counts too, because an empty batch has
+  // the same first index as the batch after it.
+  gpu::DrawIndirect *const last = may_extend ? &list.draws.back() : nullptr;
+  if (last && last->first_index == call.batch.first_index && last->index_count == call.batch.index_count &&
+      last->first_instance + last->instance_count == instance) {
+    last->instance_count++;
+  }
+  else {
+    list.draws.push_back({call.batch.index_count, 1, call.batch.first_index, call.batch.base_vertex, instance});
+  }
+}
+
+void ShadingGroup::append(const InstanceCall &call, gpu::CommandList &list)
+{
+  list.draws.push_back({call.batch_.index_count, std::uint32_t(call.instances_.size()), call.batch_.first_index,
+                        call.batch_.base_vertex, std::uint32_t(list.instances.size())});
+  list.instances.insert(list.instances.end(), call.instances_.begin(), call.instances_.end());
+}
+
 std::uint64_t ShadingGroup::collect_calls(const View &view, const VisibleObjects &visible, gpu::CommandList &list) const
 {
   std::uint64_t drawn = 0;
   for (const Call &call : calls_) {
-    const bool is_visible =
-        call.volume == object_volume ? !objects_ || visible.contains(call.object) : view.touches(volumes_[call.volume]);
-    if (!is_visible) {
-      continue;
+    if (is_visible(call, view, visible)) {
+      append(call, drawn > 0, list);
+      drawn++;
     }
-    std::uint32_t instance = call.object;
-    if (!objects_) {
-      instance = std::uint32_t(list.instances.size());
-      list.instances.push_back({call.object, 0});
-    }
-    // The next instance of the same batch is added to the last draw. Compare the counts too, because an empty batch has
-    // the same first index as the batch after it.
-    gpu::DrawIndirect *const last = drawn > 0 ? &list.draws.back() : nullptr;
-    if (last && last->first_index == call.batch.first_index && last->index_count == call.batch.index_count &&
-        last->first_instance + last->instance_count == instance) {
-      last->instance_count++;
-    }
-    else {
-      list.draws.push_back({call.batch.index_count, 1, call.batch.first_index, call.batch.base_vertex, instance});
-    }
-    drawn++;
   }
   return drawn;
 }
@@ -175,13 +190,62 @@ std::uint64_t ShadingGroup::collect_instances(gpu::CommandList &list) const
   std::uint64_t drawn = 0;
   for (const InstanceCall &call : instance_calls_) {
     if (!call.instances_.empty()) {
-      list.draws.push_back({call.batch_.index_count, std::uint32_t(call.instances_.size()), call.batch_.first_index,
-                            call.batch_.base_vertex, std::uint32_t(list.instances.size())});
-      list.instances.insert(list.instances.end(), call.instances_.begin(), call.instances_.end());
+      append(call, list);
       drawn += call.instances_.size();
     }
   }
   return drawn;
+}
+
+void ShadingGroup::record_draws(std::size_t first, std::size_t end, gpu::ResourceId objects, gpu::CommandList &list)
+{
+  if (end > first) {
+    list.bind_instances(objects);
+    list.draw(std::uint32_t(first), std::uint32_t(end - first));
+  }
+}
+
+bool ShadingGroup::has_host_draws(const View &view, const VisibleObjects &visible) const
+{
+  return std::ranges::any_of(host_calls_, [&](const Call &call) { return is_visible(call, view, visible); }) ||
+         std::ranges::any_of(host_instance_calls_, [](const InstanceCall &call) { return !call.instances_.empty(); });
+}
+
+RecordCounts ShadingGroup::record_host_calls(const View &view, const VisibleObjects &visible,
+                                             gpu::CommandList &list) const
+{
+  RecordCounts counts;
+  gpu::ResourceId bound = 0;
+  std::size_t first = list.draws.size();
+  // Draws of one batch after the other share a command.
+  const auto bind = [&](gpu::ResourceId host_batch, gpu::ResourceId objects) {
+    if (host_batch != bound) {
+      record_draws(first, list.draws.size(), objects, list);
+      first = list.draws.size();
+      list.bind_host_batch(host_batch);
+      bound = host_batch;
+    }
+  };
+  for (const Call &call : host_calls_) {
+    if (!is_visible(call, view, visible)) {
+      counts.culled++;
+      continue;
+    }
+    bind(call.batch.host_batch, object_buffer());
+    append(call, list.draws.size() > first, list);
+    counts.drawn++;
+  }
+  record_draws(first, list.draws.size(), object_buffer(), list);
+  first = list.draws.size();
+  for (const InstanceCall &call : host_instance_calls_) {
+    if (!call.instances_.empty()) {
+      bind(call.batch_.host_batch, 0);
+      append(call, list);
+      counts.drawn += call.instances_.size();
+    }
+  }
+  bind(0, 0);
+  return counts;
 }
 
 Pass::Pass(std::string name, gpu::State state, ObjectBuffer *objects)
@@ -208,24 +272,23 @@ RecordCounts Pass::record_group(const ShadingGroup &group, const View &view, con
   const std::uint64_t drawn_calls = group.collect_calls(view, visible, list);
   const std::size_t first_instanced = list.draws.size();
   const std::uint64_t drawn_instances = group.collect_instances(list);
-  const RecordCounts counts{.drawn = drawn_calls + drawn_instances + group.procedural_calls_.size(),
-                            .culled = group.calls_.size() - drawn_calls};
-  const bool has_calls = !group.calls_.empty() || !group.instance_calls_.empty();
-  if (has_calls && counts.drawn == 0) {
+  RecordCounts counts{.drawn = drawn_calls + drawn_instances + group.procedural_calls_.size(),
+                      .culled = group.calls_.size() - drawn_calls};
+  const bool has_calls = !group.calls_.empty() || !group.instance_calls_.empty() || !group.host_calls_.empty() ||
+                         !group.host_instance_calls_.empty();
+  if (has_calls && counts.drawn == 0 && !group.has_host_draws(view, visible)) {
+    counts.culled += group.host_calls_.size();
     return counts;
   }
   list.set_shader(group.shader_.id());
   list.set_state(gpu::without(state_ | group.state_, without));
   group.record_bindings(list);
-  const auto draw = [&](std::size_t first, std::size_t end, gpu::ResourceId objects) {
-    if (end > first) {
-      list.bind_instances(objects);
-      list.draw(std::uint32_t(first), std::uint32_t(end - first));
-    }
-  };
   GNOMON_ASSERT(drawn_calls == 0 || !objects_ || objects_->buffer(), "pass '{}': its objects are not uploaded", name_);
-  draw(first_call, first_instanced, objects_ ? objects_->buffer().id() : 0);
-  draw(first_instanced, list.draws.size(), 0);
+  ShadingGroup::record_draws(first_call, first_instanced, group.object_buffer(), list);
+  ShadingGroup::record_draws(first_instanced, list.draws.size(), 0, list);
+  const RecordCounts of_host = group.record_host_calls(view, visible, list);
+  counts.drawn += of_host.drawn;
+  counts.culled += of_host.culled;
   for (const ShadingGroup::ProceduralCall &call : group.procedural_calls_) {
     list.draw_procedural(call.triangle_count * 3, call.instance_count);
   }
@@ -239,7 +302,7 @@ RecordCounts Pass::record(const View &view, gpu::CommandList &list, gpu::State w
 
 RecordCounts Pass::record(const View &view, VisibleObjects &visible, gpu::CommandList &list, gpu::State without) const
 {
-  const auto has_calls = [](const ShadingGroup &group) { return !group.calls_.empty(); };
+  const auto has_calls = [](const ShadingGroup &group) { return !group.calls_.empty() || !group.host_calls_.empty(); };
   if (objects_ && std::ranges::any_of(groups_, has_calls)) {
     visible.update(view, *objects_);
   }
@@ -257,7 +320,8 @@ std::string Pass::serialize(const gpu::Device &device) const
 {
   std::string text = fmt::format("{} [{}]\n", name_, gpu::to_string(state_));
   const auto batch_text = [](const gpu::BatchRange &batch) {
-    return fmt::format("{} triangles from {}", batch.index_count / 3, batch.first_index);
+    return fmt::format("{} triangles from {}{}", batch.index_count / 3, batch.first_index,
+                       batch.host_batch == 0 ? "" : " of the host's");
   };
   for (const ShadingGroup &group : groups_) {
     text += fmt::format("  group {}", group.shader_.name());
@@ -278,12 +342,16 @@ std::string Pass::serialize(const gpu::Device &device) const
     for (const ShadingGroup::Constant &constant : group.constants_) {
       text += fmt::format("    constant {}{}\n", constant.name, constant.reference ? " by reference" : "");
     }
-    for (const ShadingGroup::Call &call : group.calls_) {
-      text += fmt::format("    call {}, object {}", batch_text(call.batch), call.object);
-      text += call.volume == ShadingGroup::object_volume ? "\n" : ", culled\n";
+    for (const auto *calls : {&group.calls_, &group.host_calls_}) {
+      for (const ShadingGroup::Call &call : *calls) {
+        text += fmt::format("    call {}, object {}", batch_text(call.batch), call.object);
+        text += call.volume == ShadingGroup::object_volume ? "\n" : ", culled\n";
+      }
     }
-    for (const InstanceCall &call : group.instance_calls_) {
-      text += fmt::format("    instances {} x{}\n", batch_text(call.batch_), call.instances_.size());
+    for (const auto *calls : {&group.instance_calls_, &group.host_instance_calls_}) {
+      for (const InstanceCall &call : *calls) {
+        text += fmt::format("    instances {} x{}\n", batch_text(call.batch_), call.instances_.size());
+      }
     }
     for (const ShadingGroup::ProceduralCall &call : group.procedural_calls_) {
       text += fmt::format("    procedural {} triangles x{}\n", call.triangle_count, call.instance_count);

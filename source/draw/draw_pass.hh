@@ -61,7 +61,8 @@ class InstanceCall {
 };
 
 /**
- * Draw calls that share a shader and bindings. They are drawn in this order: calls, instance calls, procedural calls.
+ * Draw calls that share a shader and bindings. They are drawn in this order: calls, instance calls, calls and instance
+ * calls of batches in buffers of the host (gpu::HostBatch), procedural calls.
  * Pass::group creates groups; a group lives until Pass::clear or the end of the pass. The shader and values bound by
  * reference must live until the last record; batches and bound resources until the last submission.
  *
@@ -160,10 +161,29 @@ class ShadingGroup {
   /** The entry of the constant \a name, created by the first call; nullptr if the shader has no such constant. */
   [[nodiscard]] Constant *constant_entry(std::string_view name, std::size_t size_bytes);
   void record_bindings(gpu::CommandList &list) const;
+  void add_call(const Call &call);
+  [[nodiscard]] bool is_visible(const Call &call, const View &view, const VisibleObjects &visible) const
+  {
+    return call.volume == object_volume ? !objects_ || visible.contains(call.object)
+                                        : view.touches(volumes_[call.volume]);
+  }
+  /** Appends a draw to the list, but no command. \a may_extend: the call may be added to the last draw */
+  void append(const Call &call, bool may_extend, gpu::CommandList &list) const;
+  static void append(const InstanceCall &call, gpu::CommandList &list);
   /** Appends the draws of the visible calls to the list, but no commands. \return the number of instances */
   std::uint64_t collect_calls(const View &view, const VisibleObjects &visible, gpu::CommandList &list) const;
   /** The same for instance calls. */
   std::uint64_t collect_instances(gpu::CommandList &list) const;
+  /** Whether record_host_calls would draw. */
+  [[nodiscard]] bool has_host_draws(const View &view, const VisibleObjects &visible) const;
+  /** Appends the draws and commands of visible calls of batches in buffers of the host. */
+  RecordCounts record_host_calls(const View &view, const VisibleObjects &visible, gpu::CommandList &list) const;
+  /** Appends the command for the draws from \a first on, if there are any. \a objects: CommandList::bind_instances */
+  static void record_draws(std::size_t first, std::size_t end, gpu::ResourceId objects, gpu::CommandList &list);
+  [[nodiscard]] gpu::ResourceId object_buffer() const
+  {
+    return objects_ ? objects_->buffer().id() : 0;
+  }
 
   const gpu::Shader &shader_;
   ObjectBuffer *objects_;
@@ -173,10 +193,13 @@ class ShadingGroup {
   /** Content of the push-constant block. */
   std::vector<std::byte> constant_bytes_;
   std::vector<Call> calls_;
+  /** Calls of batches in buffers of the host. */
+  std::vector<Call> host_calls_;
   /** Volumes that were given with calls. */
   std::vector<CullingVolume> volumes_;
   /** A deque, because callers hold references to its elements. */
   std::deque<InstanceCall> instance_calls_;
+  std::deque<InstanceCall> host_instance_calls_;
   std::vector<ProceduralCall> procedural_calls_;
 };
 

@@ -5,9 +5,35 @@
 
 namespace gnomon::gpu {
 
+std::string_view to_string(VertexStream stream)
+{
+  switch (stream) {
+    case VertexStream::Position: return "positions";
+    case VertexStream::Normal: return "normals";
+    case VertexStream::Uv: return "uvs";
+    case VertexStream::SecondUv: return "second uvs";
+    case VertexStream::Tangent: return "tangents";
+    case VertexStream::Color: return "colours";
+  }
+  return "?";
+}
+
+std::uint32_t size_bytes(VertexType type)
+{
+  switch (type) {
+    case VertexType::Float: return 4;
+    case VertexType::Half:
+    case VertexType::Snorm16:
+    case VertexType::Unorm16: return 2;
+    case VertexType::Snorm8:
+    case VertexType::Unorm8: return 1;
+  }
+  return 0;
+}
+
 const std::array<VertexFormat, vertex_stream_count> &vertex_formats()
 {
-  using enum VertexFormat::Type;
+  using enum VertexType;
   static constexpr std::array<VertexFormat, vertex_stream_count> formats = {{
       {ATTRIBUTE_POSITION, 3, Float, 12},
       {ATTRIBUTE_NORMAL, 3, Float, 12},
@@ -39,6 +65,19 @@ std::size_t size_bytes(const BatchDesc &desc)
     size += desc.bytes(VertexStream(i)).size();
   }
   return size;
+}
+
+const HostStream &HostBatch::stream(VertexStream stream) const
+{
+  switch (stream) {
+    case VertexStream::Position: return positions;
+    case VertexStream::Normal: return normals;
+    case VertexStream::Uv: return uvs;
+    case VertexStream::SecondUv: return second_uvs;
+    case VertexStream::Tangent: return tangents;
+    case VertexStream::Color: return colors;
+  }
+  return positions;
 }
 
 }  // namespace gnomon::gpu

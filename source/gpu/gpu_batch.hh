@@ -17,13 +17,19 @@ namespace gnomon::gpu {
 
 /** Vertex attributes. BatchDesc documents their content. */
 enum class VertexStream : std::uint8_t { Position, Normal, Uv, SecondUv, Tangent, Color };
+/** Returns "positions", "normals" and so on. */
+[[nodiscard]] std::string_view to_string(VertexStream stream);
+
+/** Type of one component. Snorm and Unorm: integers that stand for [-1, 1] and [0, 1]. */
+enum class VertexType : std::uint8_t { Float, Half, Snorm8, Unorm8, Snorm16, Unorm16 };
+[[nodiscard]] std::uint32_t size_bytes(VertexType type);
 
 /** Memory layout and shader location of a vertex stream. */
 struct VertexFormat {
   /** Attribute location, from `shaders/shared/slots_shared.h`. */
   std::uint32_t attribute;
   int component_count;
-  enum class Type : std::uint8_t { Float, Snorm16, Unorm16 } type;
+  VertexType type;
   std::uint32_t size_bytes;
 };
 
@@ -62,15 +68,63 @@ struct BatchDesc {
 /** Bytes of all attributes and indices. */
 [[nodiscard]] std::size_t size_bytes(const BatchDesc &desc);
 
-/** Location of a batch in the shared vertex and index buffers, for indexed draws. */
+/** Largest stride of a stream of the host: the least that OpenGL 4.5 promises. */
+inline constexpr std::uint32_t host_stride_bytes_max = 2048;
+
+/** A vertex stream in a buffer of the host: as many components for each vertex as the stream has in a BatchDesc. */
+struct HostStream {
+  /** OpenGL name of the buffer; 0: there is no such stream. */
+  std::uint32_t buffer = 0;
+  /** Of the first vertex, and from one vertex to the next; the stride is not 0. */
+  std::uint32_t offset_bytes = 0;
+  std::uint32_t stride_bytes = 0;
+  VertexType type = VertexType::Float;
+
+  bool operator==(const HostStream &) const = default;
+};
+
+/**
+ * Triangles, lines or points in buffers that the host created. Requires ContextKind::Host. This is plain data, which
+ * gives nothing to Gnomon: the host may write the buffers between calls, and deletes them after the last call that
+ * draws them.
+ */
+struct HostBatch {
+  /** Not absent. Object space, metres. */
+  HostStream positions;
+  /** Streams as in a BatchDesc. If one is absent, shaders read zeros, and white for colours. */
+  HostStream normals{};
+  HostStream uvs{};
+  HostStream second_uvs{};
+  HostStream tangents{};
+  HostStream colors{};
+  std::uint32_t vertex_count = 0;
+  /** OpenGL name of the buffer of indices; not 0. An index that is not below `vertex_count` has an undefined result. */
+  std::uint32_t index_buffer = 0;
+  /** A multiple of the size of an index. */
+  std::uint32_t index_offset_bytes = 0;
+  std::uint32_t index_count = 0;
+  enum class IndexType : std::uint8_t { Uint16, Uint32 } index_type = IndexType::Uint32;
+
+  [[nodiscard]] const HostStream &stream(VertexStream stream) const;
+  /** Of one index. */
+  [[nodiscard]] std::uint32_t index_size_bytes() const
+  {
+    return index_type == IndexType::Uint16 ? 2 : 4;
+  }
+  bool operator==(const HostBatch &) const = default;
+};
+
+/** Location of a batch in the shared vertex and index buffers, or in those of the host, for indexed draws. */
 struct BatchRange {
   std::uint32_t first_index = 0;
   std::uint32_t index_count = 0;
   std::int32_t base_vertex = 0;
   std::uint32_t vertex_count = 0;
+  /** The batch itself, if it is in buffers of the host; 0: it is in the shared buffers. */
+  ResourceId host_batch = 0;
 };
 
-/** Owns vertices and indices on the device. */
+/** Owns vertices and indices on the device, or names those of the host. */
 class Batch : public Resource {
  public:
   Batch() = default;

@@ -61,6 +61,11 @@ void CommandList::bind_instances(ResourceId objects)
   commands_.push_back({.kind = CommandKind::BindInstances, .id = objects});
 }
 
+void CommandList::bind_host_batch(ResourceId host_batch)
+{
+  commands_.push_back({.kind = CommandKind::BindHostBatch, .id = host_batch});
+}
+
 std::span<std::byte> CommandList::push_constants(int slot, std::span<const std::byte> bytes)
 {
   commands_.push_back(
@@ -169,6 +174,10 @@ std::string CommandList::serialize(const Device &device) const
       case CommandKind::BindInstances:
         text +=
             fmt::format("  instances of {}\n", command.id == 0 ? "the list" : name(ResourceKind::Buffer, command.id));
+        break;
+      case CommandKind::BindHostBatch:
+        text += command.id == 0 ? "  shared batches\n"
+                                : fmt::format("  batch {} of the host\n", name(ResourceKind::Batch, command.id));
         break;
       case CommandKind::PushConstants: text += fmt::format("  push_constants {} bytes\n", command.count); break;
       case CommandKind::Draw:

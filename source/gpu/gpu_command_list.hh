@@ -21,6 +21,7 @@ enum class CommandKind : std::uint32_t {
   BindStorage,
   BindTexture,
   BindInstances,
+  BindHostBatch,
   PushConstants,
   Draw,
   DrawProcedural,
@@ -84,6 +85,11 @@ class CommandList {
    * are vertex inputs of its instance. 0: take them from `instances`, as draws do before the first call.
    */
   void bind_instances(ResourceId objects);
+  /**
+   * The following draws draw parts of the batch \a host_batch, which is in buffers of the host. 0: of batches in the
+   * shared buffers, as before the first call.
+   */
+  void bind_host_batch(ResourceId host_batch);
   /**
    * Set the content of the push-constant block for the following draws. \a slot: ShaderInterface::push_constant_slot.
    * \return the copy of \a bytes in this list, which the caller may change until the next call

@@ -67,15 +67,17 @@ void Device::upload(const Texture &texture, int layer, std::span<const std::byte
   const TextureDesc &desc = texture.desc();
   const bool has_size = desc.kind == TextureKind::Buffer ? texels.size() <= layer_size_bytes(desc)
                                                          : texels.size() == layer_size_bytes(desc);
-  GNOMON_ASSERT(texture && layer >= 0 && layer < desc.layers && has_size, "texture '{}': {} bytes to layer {}",
-                desc.name, texels.size(), layer);
+  GNOMON_ASSERT(texture && desc.format != Format::Host && layer >= 0 && layer < desc.layers && has_size,
+                "texture '{}' of format {}: {} bytes to layer {}", desc.name, to_string(desc.format), texels.size(),
+                layer);
   perform({Operation::UploadTexture{texture.id(), layer, kept(texels)}});
   count_upload(ResourceKind::Texture, texture.id(), texels.size());
 }
 
 void Device::generate_mipmaps(const Texture &texture)
 {
-  GNOMON_ASSERT(texture && !is_depth(texture.desc().format) && texture.desc().kind != TextureKind::Buffer,
+  GNOMON_ASSERT(texture && !is_depth(texture.desc().format) && texture.desc().format != Format::Host &&
+                    texture.desc().kind != TextureKind::Buffer,
                 "texture '{}' of format {}", texture.desc().name, to_string(texture.desc().format));
   perform({Operation::GenerateMipmaps{texture.id()}});
 }
@@ -83,7 +85,8 @@ void Device::generate_mipmaps(const Texture &texture)
 void Device::copy_layers(const Texture &source, const Texture &target)
 {
   GNOMON_ASSERT(source && target && source.id() != target.id() && source.desc().format == target.desc().format &&
-                    source.desc().kind == target.desc().kind && source.desc().kind != TextureKind::Buffer,
+                    source.desc().format != Format::Host && source.desc().kind == target.desc().kind &&
+                    source.desc().kind != TextureKind::Buffer,
                 "copy of texture '{}' to '{}'", source.desc().name, target.desc().name);
   const TextureDesc &from = source.desc();
   const TextureDesc &to = target.desc();
@@ -99,7 +102,8 @@ std::vector<std::byte> Device::read(const Texture &texture, int layer)
   GNOMON_ASSERT(std::this_thread::get_id() == thread_, "texture '{}' is read on another thread than the device's",
                 desc.name);
   GNOMON_ASSERT(!recording_, "a read of texture '{}' during a recording", desc.name);
-  GNOMON_ASSERT(texture && layer >= 0 && layer < desc.layers, "texture '{}' has no layer {}", desc.name, layer);
+  GNOMON_ASSERT(texture && desc.format != Format::Host && layer >= 0 && layer < desc.layers,
+                "texture '{}' of format {} has no layer {}", desc.name, to_string(desc.format), layer);
   std::vector<std::byte> texels(layer_size_bytes(desc));
   texture_read(texture.id(), layer, texels);
   return texels;
@@ -109,7 +113,8 @@ void Device::read_back(const Texture &texture, int layer, std::uint64_t tag)
 {
   const TextureDesc &desc = texture.desc();
   GNOMON_ASSERT(recording_, "a recorded read of texture '{}' outside of a recording", desc.name);
-  GNOMON_ASSERT(texture && layer >= 0 && layer < desc.layers, "texture '{}' has no layer {}", desc.name, layer);
+  GNOMON_ASSERT(texture && desc.format != Format::Host && layer >= 0 && layer < desc.layers,
+                "texture '{}' of format {} has no layer {}", desc.name, to_string(desc.format), layer);
   perform({Operation::ReadBack{texture.id(), layer, layer_size_bytes(desc), tag}});
 }
 

@@ -68,6 +68,12 @@ class Device {
   [[nodiscard]] Buffer create_buffer(const BufferDesc &desc);
   [[nodiscard]] Batch create_batch(const BatchDesc &desc);
   /**
+   * A batch that draws from buffers of the host.
+   * \throws Error also if a buffer does not exist in the context or is too small; during a recording, its submission
+   * throws it
+   */
+  [[nodiscard]] Batch create_batch(const std::string &name, const HostBatch &batch);
+  /**
    * Preprocess the files of \a desc, get the interface from \a reflection, and compile.
    *
    * \a stand_in: if it is not empty and the driver rejects a shader that was recorded, the same files are compiled with
@@ -88,7 +94,7 @@ class Device {
   }
   /**
    * Write level 0 of one layer. \a texels: rows from the bottom, tightly packed. TextureKind::Buffer: the first texels;
-   * the rest keep their content.
+   * the rest keep their content. \pre not a texture of the host, here and in the functions below
    */
   void upload(const Texture &texture, int layer, std::span<const std::byte> texels);
   /**
@@ -214,6 +220,7 @@ class Device {
 
   // Functions implemented by a backend. They run on the device's thread and must not read the base class's tables,
   // which the recording thread may be changing.
+  /** For a texture of the host, checks \a desc and creates nothing. */
   virtual void texture_create(ResourceId id, const TextureDesc &desc) = 0;
   virtual void sampler_create(ResourceId id, const SamplerDesc &desc) = 0;
   virtual void framebuffer_create(ResourceId id, const FramebufferLayout &layout) = 0;
@@ -225,13 +232,14 @@ class Device {
    */
   virtual void batch_create(const BatchDesc &desc, const BatchRange &range, std::uint32_t vertex_capacity,
                             std::uint32_t index_capacity) = 0;
+  virtual void host_batch_create(ResourceId id, const std::string &name, const HostBatch &batch) = 0;
   /**
    * \a compiled: the backend's own compiled form from an earlier run, or empty. A backend that cannot use it compiles
    * \a stages and replaces \a compiled by a new form, or by an empty one if the backend has no such form.
    */
   virtual void shader_create(const Operation::CreateShader &create, std::vector<std::byte> &compiled) = 0;
   virtual void timer_query_create(ResourceId id, const std::string &name) = 0;
-  /** Never called for batches, which are ranges of the shared buffers. */
+  /** Never called for batches that are ranges of the shared buffers. */
   virtual void resource_destroy(ResourceKind kind, ResourceId id) = 0;
   virtual void buffer_update(ResourceId id, std::size_t offset_bytes, std::span<const std::byte> bytes) = 0;
   virtual void texture_upload(ResourceId id, int layer, std::span<const std::byte> texels) = 0;

@@ -53,6 +53,9 @@ Texture Device::create_texture(const TextureDesc &desc)
            is_buffer ? 1 : int(std::bit_width(unsigned(std::max(desc.width, desc.height)))));
   GNOMON_ASSERT(!is_buffer || (!is_depth(desc.format) && desc.format != Format::SRGB8A8),
                 "texture '{}' of texels in a buffer has the format {}", desc.name, to_string(desc.format));
+  GNOMON_ASSERT((desc.format == Format::Host) == (desc.host_name != 0), "texture '{}' of format {}: host's name {}",
+                desc.name, to_string(desc.format), desc.host_name);
+  GNOMON_ASSERT(desc.format != Format::Host || desc.kind == TextureKind::Flat, "texture '{}' of the host", desc.name);
   const std::string detail =
       fmt::format("{}x{}{} {}", desc.width, desc.height, desc.layers > 1 ? fmt::format("x{}", desc.layers) : "",
                   to_string(desc.format));
@@ -104,7 +107,7 @@ Framebuffer Device::create_framebuffer(const FramebufferDesc &desc)
     GNOMON_ASSERT(texture.kind != TextureKind::Buffer, "framebuffer '{}': texture '{}' is a buffer", desc.name,
                   texture.name);
     const bool is_depth_attachment = &attachment == &attachments.back() && desc.depth.texture;
-    if (is_depth(texture.format) != is_depth_attachment) {
+    if (is_depth(texture.format) != is_depth_attachment || texture.format == Format::Host) {
       throw Error("framebuffer '{}': texture '{}' of format {} cannot be its {} attachment", desc.name, texture.name,
                   to_string(texture.format), is_depth_attachment ? "depth" : "colour");
     }
@@ -194,6 +197,37 @@ Batch Device::create_batch(const BatchDesc &desc)
     indices_.shrink(index_capacity);
     throw;
   }
+}
+
+Batch Device::create_batch(const std::string &name, const HostBatch &batch)
+{
+  const auto refuse = [&](std::string_view why) { throw Error("batch '{}' of the host: {}", name, why); };
+  if (batch.positions.buffer == 0 || batch.index_buffer == 0) {
+    refuse("it has no buffer of positions or of indices");
+  }
+  if (batch.vertex_count == 0 || batch.index_count == 0) {
+    refuse("it has no vertices or no indices");
+  }
+  for (std::size_t i = 0; i < vertex_stream_count; i++) {
+    const HostStream &stream = batch.stream(VertexStream(i));
+    if (stream.buffer != 0 && (stream.stride_bytes == 0 || stream.stride_bytes > host_stride_bytes_max)) {
+      refuse(fmt::format("the {} have a stride of {} bytes, not of 1 to {}", to_string(VertexStream(i)),
+                         stream.stride_bytes, host_stride_bytes_max));
+    }
+  }
+  if (batch.index_offset_bytes % batch.index_size_bytes() != 0) {
+    refuse(fmt::format("its indices begin at byte {}, which is no multiple of {}", batch.index_offset_bytes,
+                       batch.index_size_bytes()));
+  }
+  BatchRange range{.first_index = batch.index_offset_bytes / batch.index_size_bytes(),
+                   .index_count = batch.index_count,
+                   .vertex_count = batch.vertex_count};
+  Resource resource = make(ResourceKind::Batch, {name, {}}, "of the host", 0, [&](ResourceId id) {
+    range.host_batch = id;
+    return Operation::CreateHostBatch{id, name, batch};
+  });
+  slots_[std::size_t(ResourceKind::Batch)][index_of(range.host_batch)].info.desc = range;
+  return {std::move(resource), range};
 }
 
 BatchRange Device::allocate_range(const BatchDesc &desc)

@@ -76,7 +76,7 @@ void Device::execute(const Operation &operation, Packet *packet)
       Overloaded{
           [&](const Operation::CreateTexture &call) {
             texture_create(call.id, call.desc);
-            counters_.textures_made++;
+            counters_.textures_made += call.desc.format != Format::Host ? 1 : 0;
           },
           [&](const Operation::CreateSampler &call) { sampler_create(call.id, call.desc); },
           [&](const Operation::CreateFramebuffer &call) { framebuffer_create(call.id, call.layout); },
@@ -85,6 +85,7 @@ void Device::execute(const Operation &operation, Packet *packet)
             batch_create(call.desc, call.range, call.vertex_capacity, call.index_capacity);
             counters_.upload_bytes += size_bytes(call.desc);
           },
+          [&](const Operation::CreateHostBatch &call) { host_batch_create(call.id, call.name, call.batch); },
           [&](const Operation::CreateShader &call) { execute(call, packet); },
           [&](const Operation::CreateTimerQuery &call) { timer_query_create(call.id, call.name); },
           [&](const Operation::Destroy &call) { destroy(call.resource.kind, call.resource.id); },

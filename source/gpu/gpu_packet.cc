@@ -24,6 +24,9 @@ Operation::Resource Operation::created() const
                         [](const CreateBuffer &made) {
                           return Resource{ResourceKind::Buffer, made.id};
                         },
+                        [](const CreateHostBatch &made) {
+                          return Resource{ResourceKind::Batch, made.id};
+                        },
                         [](const CreateShader &made) {
                           return Resource{ResourceKind::Shader, made.id};
                         },
@@ -251,15 +254,18 @@ bool Device::free_slot(ResourceKind kind, ResourceId id)
   if (generation_of(id) < generation_max) {
     free_ids_[std::size_t(kind)].push_back(id + (1U << resource_index_bits));
   }
-  if (kind == ResourceKind::Batch) {
-    free_range(std::get<BatchRange>(slot.info.desc));
+  if (const auto *range = std::get_if<BatchRange>(&slot.info.desc); range && range->host_batch == 0) {
+    free_range(*range);
   }
   return true;
 }
 
 void Device::release(ResourceKind kind, ResourceId id)
 {
-  if (!free_slot(kind, id) || kind == ResourceKind::Batch) {
+  if (!free_slot(kind, id)) {
+    return;
+  }
+  if (const auto *range = std::get_if<BatchRange>(&slot_of(kind, id).info.desc); range && range->host_batch == 0) {
     return;
   }
   const bool is_idle = done_serial_ == serial_ && std::this_thread::get_id() == thread_;

@@ -116,6 +116,11 @@ struct Operation {
     std::uint32_t vertex_capacity;
     std::uint32_t index_capacity;
   };
+  struct CreateHostBatch {
+    ResourceId id;
+    std::string name;
+    HostBatch batch;
+  };
   struct CreateShader {
     ResourceId id;
     ShaderDesc desc;
@@ -170,12 +175,12 @@ struct Operation {
   struct SubmitList {
     std::size_t list;
   };
-  std::variant<CreateTexture, CreateSampler, CreateFramebuffer, CreateBuffer, CreateBatch, CreateShader,
-               CreateTimerQuery, Destroy, UpdateBuffer, UploadTexture, GenerateMipmaps, CopyLayers, MarkTime, ReadBack,
-               SubmitList>
+  std::variant<CreateTexture, CreateSampler, CreateFramebuffer, CreateBuffer, CreateBatch, CreateHostBatch,
+               CreateShader, CreateTimerQuery, Destroy, UpdateBuffer, UploadTexture, GenerateMipmaps, CopyLayers,
+               MarkTime, ReadBack, SubmitList>
       call;
 
-  /** The resource that the call creates. Empty for batches, which are ranges of shared buffers. */
+  /** The resource that the call creates. Empty for batches that are ranges of shared buffers. */
   [[nodiscard]] Resource created() const;
 };
 

@@ -2,6 +2,7 @@
 #include "gpu_texture.hh"
 
 #include <algorithm>
+#include <bit>
 
 namespace gnomon::gpu {
 
@@ -22,6 +23,7 @@ int texel_size_bytes(Format format)
     case Format::RGBA16F:
     case Format::RG32F: return 8;
     case Format::RGBA32F: return 16;
+    case Format::Host: return 0;
   }
   return 0;
 }
@@ -38,6 +40,7 @@ std::string_view to_string(Format format)
     case Format::RG32F: return "RG32F";
     case Format::Depth32F: return "Depth32F";
     case Format::Depth16: return "Depth16";
+    case Format::Host: return "of the host";
   }
   return "?";
 }
@@ -49,6 +52,17 @@ std::size_t TextureDesc::size_bytes() const
     texels += std::size_t(std::max(width >> level, 1)) * std::size_t(std::max(height >> level, 1));
   }
   return texels * std::size_t(layers) * std::size_t(texel_size_bytes(format));
+}
+
+TextureDesc texture_desc(std::string name, const HostTexture &texture)
+{
+  const auto longer = unsigned(std::max({texture.size_px.x, texture.size_px.y, 1}));
+  return {.name = std::move(name),
+          .format = Format::Host,
+          .width = texture.size_px.x,
+          .height = texture.size_px.y,
+          .mip_levels = texture.has_mip_levels ? int(std::bit_width(longer)) : 1,
+          .host_name = texture.name};
 }
 
 }  // namespace gnomon::gpu

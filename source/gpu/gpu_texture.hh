@@ -3,6 +3,8 @@
 
 #include "gpu_resource.hh"
 
+#include <glm/vec2.hpp>
+
 #include <array>
 #include <optional>
 #include <string>
@@ -28,6 +30,8 @@ enum class Format : std::uint8_t {
   Depth32F,
   /** The same with steps of 1 / 65535. Use it only where the error of half a step is accounted for. */
   Depth16,
+  /** That of a texture of the host, which can only be looked up. A lookup returns what the format stands for. */
+  Host,
 };
 
 [[nodiscard]] bool is_depth(Format format);
@@ -39,6 +43,21 @@ enum class Format : std::uint8_t {
  * levels, cannot be attached to a framebuffer, and is not affected by samplers.
  */
 enum class TextureKind : std::uint8_t { Flat, Array, Buffer };
+
+/**
+ * A texture that the host created. Requires ContextKind::Host. This is plain data, which gives nothing to Gnomon: the
+ * host may write its texels between calls, and deletes it after the last call that looks it up.
+ */
+struct HostTexture {
+  /** OpenGL name of a texture of the target GL_TEXTURE_2D whose channels are floats or normalised; not 0. */
+  std::uint32_t name = 0;
+  /** Texels of level 0, at least 1x1. */
+  glm::ivec2 size_px{0};
+  /** The levels down to 1x1, or down to GL_TEXTURE_MAX_LEVEL, have texels, too. false: only level 0 is looked up. */
+  bool has_mip_levels = false;
+
+  bool operator==(const HostTexture &) const = default;
+};
 
 struct TextureDesc {
   /** Shown in messages and debuggers. */
@@ -52,10 +71,15 @@ struct TextureDesc {
   int layers = 1;
   /** Number of mip levels, level 0 included; at least 1. */
   int mip_levels = 1;
+  /** Format::Host: OpenGL name of the texture of the host, which is used instead of a new one. Otherwise 0. */
+  std::uint32_t host_name = 0;
 
-  /** Bytes of all levels and layers. */
+  /** Bytes of all levels and layers; 0 for a texture of the host. */
   [[nodiscard]] std::size_t size_bytes() const;
 };
+
+/** Description of a texture of the host. Its mip levels are those that a lookup may read. */
+[[nodiscard]] TextureDesc texture_desc(std::string name, const HostTexture &texture);
 
 /** Texels on the device. */
 class Texture : public Resource {

@@ -27,6 +27,7 @@ std::string_view name_of(CommandKind kind)
     case CommandKind::BindStorage: return "bind_storage";
     case CommandKind::BindTexture: return "bind_texture";
     case CommandKind::BindInstances: return "bind_instances";
+    case CommandKind::BindHostBatch: return "bind_host_batch";
     case CommandKind::PushConstants: return "push_constants";
     case CommandKind::Draw: return "draw";
     case CommandKind::DrawProcedural: return "draw_procedural";
@@ -95,6 +96,7 @@ class Validator {
       case CommandKind::BindStorage: bind_buffer(command, BufferKind::Storage, storages_); break;
       case CommandKind::BindTexture: bind_texture(command); break;
       case CommandKind::BindInstances: bind_instances(command); break;
+      case CommandKind::BindHostBatch: bind_host_batch(command); break;
       case CommandKind::PushConstants: push_constants_ = {int(command.slot), 0, command.count}; break;
       case CommandKind::Draw:
         check_draw_state();
@@ -217,6 +219,25 @@ class Validator {
     }
   }
 
+  void bind_host_batch(const Command &command)
+  {
+    host_batch_ = command.id == 0 ? nullptr : &live(ResourceKind::Batch, command.id);
+    if (host_batch_ && std::get<BatchRange>(host_batch_->desc).host_batch == 0) {
+      fail("batch '{}' is not in buffers of the host", host_batch_->name);
+    }
+  }
+
+  /** Whether the draw stays within the bound batch of the host, or within live batches in the shared buffers. */
+  [[nodiscard]] bool has_batch_data(const DrawIndirect &draw) const
+  {
+    if (!host_batch_) {
+      return device_.has_batch_data(draw.first_index, draw.index_count, draw.base_vertex);
+    }
+    const auto &range = std::get<BatchRange>(host_batch_->desc);
+    return draw.base_vertex == 0 && draw.first_index >= range.first_index &&
+           std::size_t(draw.first_index) + draw.index_count <= std::size_t(range.first_index) + range.index_count;
+  }
+
   void check_draw_state() const
   {
     if (!pass_) {
@@ -307,10 +328,10 @@ class Validator {
              objects_ ? fmt::format("{} objects of buffer '{}'", instance_count, objects_->name)
                       : fmt::format("list's {} instances", instance_count));
       }
-      if (draw.index_count > 0 && draw.instance_count > 0 &&
-          !device_.has_batch_data(draw.first_index, draw.index_count, draw.base_vertex)) {
-        fail("draw {}: indices [{}, {}) from vertex {} on belong to no live batch", i, draw.first_index,
-             std::size_t(draw.first_index) + draw.index_count, draw.base_vertex);
+      if (draw.index_count > 0 && draw.instance_count > 0 && !has_batch_data(draw)) {
+        fail("draw {}: indices [{}, {}) from vertex {} on belong to {}", i, draw.first_index,
+             std::size_t(draw.first_index) + draw.index_count, draw.base_vertex,
+             host_batch_ ? fmt::format("more than batch '{}' of the host", host_batch_->name) : "no live batch");
       }
     }
   }
@@ -338,6 +359,8 @@ class Validator {
   const ResourceInfo *shader_ = nullptr;
   /** nullptr: instances are those of the list. */
   const ResourceInfo *objects_ = nullptr;
+  /** nullptr: batches are those in the shared buffers. */
+  const ResourceInfo *host_batch_ = nullptr;
   /** Whether the current pass has set a state. */
   bool has_state_ = false;
   // Memory of the vectors below. It usually suffices, so that validation allocates no heap memory.

@@ -120,14 +120,14 @@ const scene::Scene &Tracer::scene() const
 std::vector<std::string> untraced_parts(const scene::Scene &scene)
 {
   std::set<scene::Handle<scene::Material>> materials;
-  std::set<scene::Handle<scene::Mesh>> thin_meshes;
+  std::set<scene::Handle<scene::Mesh>> other_meshes;
   for (const scene::Object &object : scene.objects()) {
     const scene::Mesh &mesh = scene.meshes()[object.mesh];
-    if (mesh.topology == scene::Topology::Triangles) {
+    if (mesh.topology == scene::Topology::Triangles && !mesh.host_shape) {
       materials.insert(mesh.material);
     }
     else {
-      thin_meshes.insert(object.mesh);
+      other_meshes.insert(object.mesh);
     }
   }
   std::vector<std::string> lines;
@@ -153,10 +153,13 @@ std::vector<std::string> untraced_parts(const scene::Scene &scene)
                       material->name, fmt::join(layers, " and ")));
     }
   }
-  for (const scene::Handle<scene::Mesh> handle : thin_meshes) {
+  for (const scene::Handle<scene::Mesh> handle : other_meshes) {
     const scene::Mesh &mesh = scene.meshes()[handle];
     lines.push_back(fmt::format("mesh '{}': the reference does not trace {}; the errors include this difference",
-                                mesh.name, mesh.topology == scene::Topology::Lines ? "lines" : "points"));
+                                mesh.name,
+                                mesh.host_shape                           ? "buffers of a host"
+                                : mesh.topology == scene::Topology::Lines ? "lines"
+                                                                          : "points"));
   }
   return lines;
 }

@@ -72,7 +72,7 @@ Images::Lookup Images::get(gpu::Device &device, const scene::Scene &scene, scene
     if (!white_) {
       white_ = make_image(device, {"white", 1, 1, {255, 255, 255, 255}}, false);
     }
-    return {white_, sampler(device, {})};
+    return {white_, sampler(device, {}, false)};
   }
   const scene::Texture &texture = scene.textures()[handle];
   const scene::Revision content = scene.images().revision(texture.image, scene::Image::Aspect::Content);
@@ -81,16 +81,41 @@ Images::Lookup Images::get(gpu::Device &device, const scene::Scene &scene, scene
     entries.resize(scene.images().index_end());
   }
   Entry &entry = entries[texture.image.index];
-  if (!entry.texture || entry.handle != texture.image || entry.content != content) {
-    entry = {make_image(device, scene.images()[texture.image], is_color), texture.image, content};
+  const auto host = host_textures_.find(texture.image);
+  const bool is_host = host != host_textures_.end();
+  const std::uint64_t revision = is_host ? host->second.revision : 0;
+  if (!entry.texture || entry.handle != texture.image || entry.content != content || entry.host_revision != revision) {
+    const scene::Image &image = scene.images()[texture.image];
+    entry = {is_host ? device.create_texture(gpu::texture_desc(image.name, host->second.texture))
+                     : make_image(device, image, is_color),
+             texture.image, content, revision};
   }
-  return {entry.texture, sampler(device, texture)};
+  // A host's texture of one level is incomplete for a sampler that reads others, and looked up as black.
+  return {entry.texture, sampler(device, texture, !is_host || host->second.texture.has_mip_levels)};
 }
 
-const gpu::Sampler &Images::sampler(gpu::Device &device, const scene::Texture &texture)
+void Images::set_host_texture(scene::Handle<scene::Image> handle, const std::optional<gpu::HostTexture> &texture)
 {
+  host_revision_++;
+  if (texture) {
+    host_textures_[handle] = {*texture, host_revision_};
+  }
+  else {
+    host_textures_.erase(handle);
+  }
+}
+
+std::uint64_t Images::host_revision(scene::Handle<scene::Image> handle) const
+{
+  const auto found = host_textures_.find(handle);
+  return found == host_textures_.end() ? 0 : found->second.revision;
+}
+
+const gpu::Sampler &Images::sampler(gpu::Device &device, const scene::Texture &texture, bool has_mip_levels)
+{
+  const scene::MipFilter mip = has_mip_levels ? texture.mip : scene::MipFilter::None;
   const std::uint32_t key = std::uint32_t(texture.magnified) | std::uint32_t(texture.minified) << 4U |
-                            std::uint32_t(texture.mip) << 8U | std::uint32_t(texture.wrap_u) << 12U |
+                            std::uint32_t(mip) << 8U | std::uint32_t(texture.wrap_u) << 12U |
                             std::uint32_t(texture.wrap_v) << 16U;
   gpu::Sampler &sampler = samplers_[key];
   if (!sampler) {
@@ -98,10 +123,10 @@ const gpu::Sampler &Images::sampler(gpu::Device &device, const scene::Texture &t
     sampler = device.create_sampler({.name = "texture_sampler",
                                      .filter = gpu_filter(texture.magnified),
                                      .minified = gpu_filter(texture.minified),
-                                     .mip = gpu_mip_filter(texture.mip),
+                                     .mip = gpu_mip_filter(mip),
                                      .wrap_u = gpu_wrap(texture.wrap_u),
                                      .wrap_v = gpu_wrap(texture.wrap_v),
-                                     .anisotropy = anisotropy(device.limits(), texture)});
+                                     .anisotropy = has_mip_levels ? anisotropy(device.limits(), texture) : 1});
   }
   return sampler;
 }
@@ -125,6 +150,7 @@ std::size_t Images::count() const
 
 void Images::free_removed(const scene::Pool<scene::Image> &images)
 {
+  std::erase_if(host_textures_, [&](const auto &entry) { return !images.is_live(entry.first); });
   for (std::vector<Entry> &entries : entries_) {
     for (Entry &entry : entries) {
       if (entry.texture && !images.is_live(entry.handle)) {

@@ -7,13 +7,15 @@
 
 #include <array>
 #include <map>
+#include <optional>
 
 namespace gnomon::render_scene {
 
 /**
  * The images and samplers of a scene on one device. An image is uploaded, with mip levels, when a pass first reads it,
  * and again after its content has changed. An image that is used both for colours and for data has one texture for each
- * use. Textures with the same sampling settings share a sampler.
+ * use. Textures with the same sampling settings share a sampler. An image that has a texture of the host is not
+ * uploaded.
  */
 class Images {
  public:
@@ -32,19 +34,36 @@ class Images {
   [[nodiscard]] const gpu::Texture *find(scene::Handle<scene::Image> handle, bool is_color = true) const;
   /** Number of textures that images have on the device. */
   [[nodiscard]] std::size_t count() const;
+  /** \see RenderScene::set_host_texture */
+  void set_host_texture(scene::Handle<scene::Image> handle, const std::optional<gpu::HostTexture> &texture);
+  /** Increases with each set_host_texture of the image; 0: there was none. */
+  [[nodiscard]] std::uint64_t host_revision(scene::Handle<scene::Image> handle) const;
+  /** Of all images: increases with each set_host_texture. */
+  [[nodiscard]] std::uint64_t host_revision() const
+  {
+    return host_revision_;
+  }
   /** Free the textures of images that were removed from the scene. */
   void free_removed(const scene::Pool<scene::Image> &images);
 
  private:
-  const gpu::Sampler &sampler(gpu::Device &device, const scene::Texture &texture);
+  /** \a has_mip_levels: whether the sampled image has any. */
+  const gpu::Sampler &sampler(gpu::Device &device, const scene::Texture &texture, bool has_mip_levels);
 
   struct Entry {
     gpu::Texture texture;
     scene::Handle<scene::Image> handle;
     scene::Revision content = 0;
+    std::uint64_t host_revision = 0;
+  };
+  struct Host {
+    gpu::HostTexture texture;
+    std::uint64_t revision = 0;
   };
   /** Indexed by is_color and Handle::index. */
   std::array<std::vector<Entry>, 2> entries_;
+  std::map<scene::Handle<scene::Image>, Host> host_textures_;
+  std::uint64_t host_revision_ = 0;
   gpu::Texture white_;
   /** By the sampler's settings, packed into a number. */
   std::map<std::uint32_t, gpu::Sampler> samplers_;

@@ -42,7 +42,7 @@ bool is_blended(const scene::Scene &scene, const scene::Mesh &mesh)
     return false;
   }
   const scene::Handle<scene::Texture> texture = material.base_color_texture.texture;
-  return material.alpha < 1.0F || !mesh.colors.empty() || has_surface_function(scene, material) ||
+  return material.alpha < 1.0F || mesh.has_colors() || has_surface_function(scene, material) ||
          (is_drawable(scene, texture) && !scene.images()[scene.textures()[texture].image].is_opaque);
 }
 
@@ -76,7 +76,7 @@ float transmitted_part(const scene::Material &material)
 
 bool is_drawable(const scene::Scene &scene, const scene::Mesh &mesh, const scene::TextureSlot &slot)
 {
-  return is_drawable(scene, slot.texture) && !mesh.uv_set(slot.uv_set).empty();
+  return is_drawable(scene, slot.texture) && mesh.has_uvs(slot.uv_set);
 }
 
 MaterialClass material_class(const scene::Scene &scene, const scene::Mesh &mesh)
@@ -85,7 +85,7 @@ MaterialClass material_class(const scene::Scene &scene, const scene::Mesh &mesh)
   if (material.has_transmission()) {
     return MaterialClass::Transmissive;
   }
-  if (material.has_coat() || material.has_sheen() || (material.has_anisotropy() && !mesh.tangents.empty())) {
+  if (material.has_coat() || material.has_sheen() || (material.has_anisotropy() && mesh.has_tangents())) {
     return MaterialClass::Layered;
   }
   const scene::TextureSlot &base_color = material.base_color_texture;
@@ -98,9 +98,9 @@ MaterialClass material_class(const scene::Scene &scene, const scene::Mesh &mesh)
     if (input.slot == &scene::Material::base_color_texture) {
       return slot.uv_set != 0 || slot.is_transformed() || material.is_unlit;
     }
-    return input.slot != &scene::Material::normal_texture || !mesh.tangents.empty();
+    return input.slot != &scene::Material::normal_texture || mesh.has_tangents();
   });
-  if (is_full || !mesh.colors.empty() || is_blended(scene, mesh) || has_surface_function(scene, material)) {
+  if (is_full || mesh.has_colors() || is_blended(scene, mesh) || has_surface_function(scene, material)) {
     return MaterialClass::Full;
   }
   return is_drawable(scene, mesh, base_color) ? MaterialClass::BaseColor : MaterialClass::Plain;
@@ -113,7 +113,7 @@ bool is_masked(const scene::Scene &scene, const scene::Mesh &mesh)
     return false;
   }
   return has_surface_function(scene, material) ||
-         (is_drawable(material) && (is_drawable(scene, mesh, material.base_color_texture) || !mesh.colors.empty()));
+         (is_drawable(material) && (is_drawable(scene, mesh, material.base_color_texture) || mesh.has_colors()));
 }
 
 shared::MaterialData material_data(const scene::Material &material)

@@ -52,11 +52,13 @@ const gpu::Batch &Meshes::get(gpu::Device &device, const scene::Pool<scene::Mesh
     entries_.resize(meshes.index_end());
   }
   Entry &entry = entries_[handle.index];
-  const bool is_same = entry.batch && entry.handle == handle && entry.shape == shape;
+  const std::uint64_t host = host_revision(handle);
+  const bool is_same = entry.batch && entry.handle == handle && entry.shape == shape && entry.host_revision == host;
   if (!is_same || streams > entry.streams) {
     // Keep the streams that were uploaded before, because other viewports may read them.
     const MeshStreams all = is_same ? std::max(streams, entry.streams) : streams;
-    entry = {make_batch(device, mesh, all), handle, shape, all};
+    entry = mesh.host_shape ? Entry{make_host_batch(device, handle, mesh), handle, shape, host, MeshStreams::All}
+                            : Entry{make_batch(device, mesh, all), handle, shape, host, all};
   }
   return entry.batch;
 }
@@ -68,8 +70,45 @@ const gpu::Batch *Meshes::find(scene::Handle<scene::Mesh> handle) const
   return is_made ? &entries_[handle.index].batch : nullptr;
 }
 
+void Meshes::set_host_batch(scene::Handle<scene::Mesh> handle, const std::optional<gpu::HostBatch> &batch)
+{
+  if (batch) {
+    host_batches_[handle] = {*batch, ++host_revision_};
+  }
+  else {
+    host_batches_.erase(handle);
+  }
+}
+
+std::uint64_t Meshes::host_revision(scene::Handle<scene::Mesh> handle) const
+{
+  const auto found = host_batches_.find(handle);
+  return found == host_batches_.end() ? 0 : found->second.revision;
+}
+
+gpu::Batch Meshes::make_host_batch(gpu::Device &device, scene::Handle<scene::Mesh> handle,
+                                   const scene::Mesh &mesh) const
+{
+  const gpu::HostBatch &batch = host_batches_.at(handle).batch;
+  const auto check_stream = [&](bool is_needed, gpu::VertexStream stream) {
+    if (is_needed && batch.stream(stream).buffer == 0) {
+      throw gpu::Error("mesh '{}': its shape has {}, and the host's batch has none", mesh.name, to_string(stream));
+    }
+  };
+  check_stream(mesh.has_uvs(0), gpu::VertexStream::Uv);
+  check_stream(mesh.has_uvs(1), gpu::VertexStream::SecondUv);
+  check_stream(mesh.has_tangents(), gpu::VertexStream::Tangent);
+  check_stream(mesh.has_colors(), gpu::VertexStream::Color);
+  if (batch.index_count % index_count_of(mesh.topology) != 0) {
+    throw gpu::Error("mesh '{}': the {} indices of the host's batch are no multiple of {}", mesh.name,
+                     batch.index_count, index_count_of(mesh.topology));
+  }
+  return device.create_batch(mesh.name, batch);
+}
+
 void Meshes::free_removed(const scene::Pool<scene::Mesh> &meshes)
 {
+  std::erase_if(host_batches_, [&](const auto &entry) { return !meshes.is_live(entry.first); });
   for (Entry &entry : entries_) {
     if (entry.batch && !meshes.is_live(entry.handle)) {
       entry = {};

@@ -5,6 +5,9 @@
 
 #include "gpu_device.hh"
 
+#include <map>
+#include <optional>
+
 namespace gnomon::render_scene {
 
 /** The vertex streams that a pass reads. Each value includes the streams of the values before it. */
@@ -19,20 +22,30 @@ enum class MeshStreams : std::uint8_t {
 
 /**
  * The meshes of a scene on one device. A mesh is uploaded when it is first drawn, and again after its shape has changed
- * or when a pass reads more of its streams.
+ * or when a pass reads more of its streams. Shapes in buffers of the host are drawn from these.
  */
 class Meshes {
  public:
   /**
    * The triangles of the mesh \a handle on the device, with at least \a streams. The reference is valid until the next
    * get() of this mesh, until the next get() after meshes were added to the scene, or until free_removed().
-   * \throws gpu::Error if the device cannot create the batch; the previous batch of the mesh then stays
+   * \throws gpu::Error if the device cannot create the batch; the previous batch of the mesh then stays. Also if the
+   * batch of the host has not the streams or the elements of the mesh.
    * \throws scene::StaleHandle
    */
   const gpu::Batch &get(gpu::Device &device, const scene::Pool<scene::Mesh> &meshes, scene::Handle<scene::Mesh> handle,
                         MeshStreams streams);
   /** The batch of a mesh; nullptr if the mesh is not on the device. */
   [[nodiscard]] const gpu::Batch *find(scene::Handle<scene::Mesh> handle) const;
+  /** \see RenderScene::set_host_batch */
+  void set_host_batch(scene::Handle<scene::Mesh> handle, const std::optional<gpu::HostBatch> &batch);
+  /** Whether the device has, or can be given, the shape of \a mesh. */
+  [[nodiscard]] bool has_shape(scene::Handle<scene::Mesh> handle, const scene::Mesh &mesh) const
+  {
+    return !mesh.host_shape || host_batches_.contains(handle);
+  }
+  /** Increases with each set_host_batch of the mesh; 0: there was none. */
+  [[nodiscard]] std::uint64_t host_revision(scene::Handle<scene::Mesh> handle) const;
   /** Free the batches of meshes that were removed from the scene. */
   void free_removed(const scene::Pool<scene::Mesh> &meshes);
 
@@ -41,10 +54,19 @@ class Meshes {
     gpu::Batch batch;
     scene::Handle<scene::Mesh> handle;
     scene::Revision shape = 0;
+    std::uint64_t host_revision = 0;
     MeshStreams streams = MeshStreams::Shape;
   };
+  struct Host {
+    gpu::HostBatch batch;
+    std::uint64_t revision = 0;
+  };
+  gpu::Batch make_host_batch(gpu::Device &device, scene::Handle<scene::Mesh> handle, const scene::Mesh &mesh) const;
+
   /** Indexed by Handle::index. */
   std::vector<Entry> entries_;
+  std::map<scene::Handle<scene::Mesh>, Host> host_batches_;
+  std::uint64_t host_revision_ = 0;
 };
 
 }  // namespace gnomon::render_scene

@@ -8,6 +8,7 @@
 
 #include "draw_objects.hh"
 
+#include <optional>
 #include <span>
 
 /**
@@ -46,10 +47,10 @@ class RenderScene {
 
   /** Update objects, lamps, materials and revisions for all edits of the scene since the last call. */
   void update();
-  /** Whether the scene and the origin are unchanged since the last update(). */
+  /** Whether the scene, the origin and the host's resources are unchanged since the last update(). */
   [[nodiscard]] bool is_up_to_date() const
   {
-    return seen_ == scene_.revision() && !is_origin_changed_;
+    return seen_ == scene_.revision() && !is_origin_changed_ && !is_host_changed_;
   }
   /**
    * Set the origin, in metres and the scene's world space, and call update() afterwards. A new origin changes all
@@ -64,6 +65,30 @@ class RenderScene {
   {
     return origin_ws_;
   }
+
+  /**
+   * Draw the mesh \a handle from buffers that the host has on the device, without a copy. Call it again after their
+   * content has changed, and before the buffers are deleted, with other ones or with std::nullopt: the mesh is then not
+   * drawn. Until the first call it is not drawn either. Takes effect with the next update(). That and the next sync of
+   * an engine are made on one thread, and only they use the names.
+   *
+   * \throws scene::StaleHandle
+   * \throws gpu::Error if the mesh has no Mesh::host_shape. Nothing changes then. What is wrong with the buffers, such
+   * as a size, is thrown by the sync or the draw that first needs them.
+   */
+  void set_host_batch(scene::Handle<scene::Mesh> handle, const std::optional<gpu::HostBatch> &batch);
+  /**
+   * Look up the image \a handle in a texture that the host has on the device, without a copy. Call it again after its
+   * texels have changed, and before the texture is deleted, with another one or with std::nullopt: the image's own
+   * texels are then looked up. Takes effect with the next update().
+   *
+   * v = 0 is the first row of the texture, which is the lowest one of a picture that OpenGL has drawn;
+   * scene::TextureSlot can turn it. Colours must be in an sRGB format, or linear. Image::texels stand for the texture
+   * where the CPU reads them: in the reference, light of emissive surfaces and files, and Image::is_opaque.
+   *
+   * \throws scene::StaleHandle
+   */
+  void set_host_texture(scene::Handle<scene::Image> handle, const std::optional<gpu::HostTexture> &texture);
 
   [[nodiscard]] const scene::Scene &scene() const
   {
@@ -100,8 +125,8 @@ class RenderScene {
   }
   /**
    * Increases when update() finds a change after which passes must be built again: the shape or material of a mesh, the
-   * coverage or textures of a material, an image, a surface function, or the settings of a texture. For objects, see
-   * draw::ObjectBuffer::revision.
+   * coverage or textures of a material, an image, a surface function, the settings of a texture, or resources of the
+   * host. For objects, see draw::ObjectBuffer::revision.
    */
   [[nodiscard]] std::uint64_t passes_revision() const
   {
@@ -175,6 +200,8 @@ class RenderScene {
   const scene::Scene &scene_;
   glm::dvec3 origin_ws_{0.0};
   bool is_origin_changed_ = true;
+  /** set_host_batch or set_host_texture was called since the last update. */
+  bool is_host_changed_ = false;
   /** Scene::revision of the last update. */
   scene::Revision seen_ = 0;
   draw::ObjectBuffer objects_;

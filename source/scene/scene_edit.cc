@@ -4,6 +4,8 @@
 #include "internal/scene_changes.hh"
 #include "memory_pages.hh"
 
+#include <glm/vector_relational.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,8 +20,23 @@ template <typename... Args>
   throw InvalidEdit(fmt::format("{} '{}': {}", kind, name, fmt::format(reason, std::forward<Args>(args)...)));
 }
 
+bool is_finite(const glm::vec3 &value)
+{
+  return std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z);
+}
+
 void check(const Mesh &mesh)
 {
+  if (mesh.host_shape) {
+    const Bounds &bounds = mesh.host_shape->bounds;
+    if (!is_finite(bounds.min) || !is_finite(bounds.max) || !glm::all(glm::lessThanEqual(bounds.min, bounds.max))) {
+      refuse("mesh", mesh.name, "the bounds of its shape in the host's buffers are empty or not finite");
+    }
+    if (!mesh.positions.empty() || !mesh.indices.empty()) {
+      refuse("mesh", mesh.name, "{} positions and {} indices beside a shape in the host's buffers",
+             mesh.positions.size(), mesh.indices.size());
+    }
+  }
   const std::size_t count = mesh.positions.size();
   if (mesh.normals.size() != count) {
     refuse("mesh", mesh.name, "{} normals for {} positions", mesh.normals.size(), count);
@@ -41,9 +58,7 @@ void check(const Mesh &mesh)
   if (beyond != mesh.indices.end()) {
     refuse("mesh", mesh.name, "index {} is beyond its {} positions", *beyond, count);
   }
-  const auto infinite = std::ranges::find_if(mesh.positions, [](const glm::vec3 &position) {
-    return !(std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(position.z));
-  });
+  const auto infinite = std::ranges::find_if_not(mesh.positions, is_finite);
   if (infinite != mesh.positions.end()) {
     refuse("mesh", mesh.name, "position {} is not finite", infinite - mesh.positions.begin());
   }
@@ -105,6 +120,9 @@ bool is_opaque(const Image &image)
 
 Bounds bounds_of(const Mesh &mesh)
 {
+  if (mesh.host_shape) {
+    return mesh.host_shape->bounds;
+  }
   Bounds bounds;
   for (const glm::vec3 &position : mesh.positions) {
     bounds.extend(position);

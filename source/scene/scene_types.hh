@@ -41,6 +41,7 @@ struct Bounds {
   [[nodiscard]] float radius() const;
   void extend(const glm::vec3 &point);
   void extend(const Bounds &other);
+  bool operator==(const Bounds &) const = default;
 };
 
 /** The box around \a bounds after a transform; an empty box stays empty. */
@@ -295,6 +296,23 @@ enum class Topology { Triangles, Lines, Points };
   return topology == Topology::Triangles ? 3 : topology == Topology::Lines ? 2 : 1;
 }
 
+/**
+ * A shape in vertex buffers of a host, whose elements only the device knows: render_scene::RenderScene::set_host_batch
+ * names the buffers on a device. It is drawn and casts shadows. The reference, light of emissive surfaces, poses and
+ * files leave it out.
+ */
+struct HostShape {
+  /** A box around all positions: finite and not empty. Object space, metres. What is outside of it may be missing. */
+  Bounds bounds{};
+  /** The streams that the buffers have beside positions and normals, as those of Mesh. */
+  bool has_uvs = false;
+  bool has_second_uvs = false;
+  bool has_tangents = false;
+  bool has_colors = false;
+
+  bool operator==(const HostShape &) const = default;
+};
+
 /** Indexed triangles, lines or points of one material (a glTF primitive). Object space, metres. */
 struct Mesh {
   static constexpr std::string_view kind_name = "mesh";
@@ -323,9 +341,23 @@ struct Mesh {
   Topology topology = Topology::Triangles;
   /** An invalid or stale handle stands for the default material. */
   Handle<Material> material{};
+  /** Present: the shape is in buffers of a host, and the vectors above are empty. */
+  std::optional<HostShape> host_shape{};
   /** The box around all positions. Scene::add and Scene::replace compute it. */
   Bounds bounds{};
 
+  [[nodiscard]] bool has_uvs(int set) const
+  {
+    return host_shape ? (set == 0 ? host_shape->has_uvs : host_shape->has_second_uvs) : !uv_set(set).empty();
+  }
+  [[nodiscard]] bool has_tangents() const
+  {
+    return host_shape ? host_shape->has_tangents : !tangents.empty();
+  }
+  [[nodiscard]] bool has_colors() const
+  {
+    return host_shape ? host_shape->has_colors : !colors.empty();
+  }
   /** By TextureSlot::uv_set. */
   [[nodiscard]] const std::vector<glm::vec2> &uv_set(int set) const
   {

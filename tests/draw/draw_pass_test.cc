@@ -20,6 +20,83 @@ TEST(Pass, SerializesEveryKindOfBindingAndCall)
   EXPECT_EQ(everything.pass.serialize(*device), test::EverythingPass::TEXT);
 }
 
+TEST(Pass, CallsOfHostBatchesFollowTheOthersAndShareCommands)
+{
+  const auto device = gpu::create_null_device();
+  const gpu::Shader shader = make_shader(*device, "calls", R"(
+#include "draw/draw_object_lib.glsl"
+void main()
+{
+  gl_Position = vec4(vertex_position_ws().xyz, 1);
+})",
+                                         R"(
+layout(location = 0) out vec4 result;
+void main()
+{
+  result = vec4(1);
+})");
+  const gpu::Batch shared = test::full_triangle(*device, 0.0F);
+  const gpu::HostBatch host{.positions = {1, 0, 12}, .vertex_count = 3, .index_buffer = 2, .index_count = 3};
+  const gpu::Batch first = device->create_batch("first", host);
+  const gpu::Batch second = device->create_batch("second", host);
+  ObjectBuffer objects;
+  // The last one is outside of the view.
+  for (const float x : {0.0F, 0.1F, 0.2F, 0.3F, 100.0F}) {
+    objects.add(glm::translate(glm::mat4(1), {x, 0, 0}), 0, {{x, 0, 0}, 0.1F});
+  }
+  objects.upload(*device);
+  Pass pass("pass", gpu::State::WriteColor, &objects);
+  ShadingGroup &group = pass.group(shader);
+  group.call(first, 1);
+  group.call(first, 2);
+  group.call(second, 3);
+  group.call(shared, 4);
+  group.call(first, 5);
+  const gpu::Texture picture = device->create_texture({.name = "picture"});
+  const gpu::Framebuffer framebuffer = device->create_framebuffer({"picture", {{&picture}}, {}});
+  gpu::CommandList list;
+  list.begin_pass("pass", framebuffer, {});
+  const RecordCounts counts = pass.record(View(), list);
+  list.end_pass();
+  EXPECT_EQ(counts.drawn, 4U);
+  EXPECT_EQ(counts.culled, 1U);
+  const std::string text = list.serialize(*device);
+  EXPECT_EQ(text.substr(text.find("  instances")), R"(  instances of object_block
+  draw 1 triangles x1, instances from 4
+  batch first of the host
+  instances of object_block
+  draw 1 triangles x2, instances from 1
+  batch second of the host
+  instances of object_block
+  draw 1 triangles x1, instances from 3
+  shared batches
+end
+)");
+  device->submit(list);
+  test::expect_contains(pass.serialize(*device), "call 1 triangles from 0 of the host's, object 3");
+}
+
+TEST(Pass, AGroupWhoseHostBatchesAreAllCulledRecordsNothing)
+{
+  const auto device = gpu::create_null_device();
+  const gpu::Shader shader = make_shader(*device, "everything", test::EVERYTHING_VERT, test::EVERYTHING_FRAG);
+  const gpu::Batch batch = device->create_batch(
+      "host", gpu::HostBatch{.positions = {1, 0, 12}, .vertex_count = 3, .index_buffer = 2, .index_count = 3});
+  ObjectBuffer objects;
+  objects.add(glm::mat4(1), 0, {{100, 0, 0}, 0.1F});
+  objects.upload(*device);
+  Pass pass("pass", gpu::State::WriteColor, &objects);
+  ShadingGroup &group = pass.group(shader);
+  group.call(batch, 1);
+  InstanceCall &instances = group.instances(batch);
+  gpu::CommandList list;
+  EXPECT_EQ(pass.record(View(), list).culled, 1U);
+  EXPECT_TRUE(list.commands().empty());
+  instances.add(1);
+  EXPECT_EQ(pass.record(View(), list).drawn, 1U);
+  EXPECT_EQ(list.draws.size(), 1U);
+}
+
 TEST(Pass, DrawsItsGroupsInTheOrderThatIsSet)
 {
   const auto device = gpu::create_null_device();

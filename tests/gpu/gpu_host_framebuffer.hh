@@ -26,10 +26,10 @@ struct Pixels {
 };
 
 /** A host's framebuffer of a colour texture and a depth buffer, filled with a pattern that differs in every pixel. */
-class HostTexture {
+class HostPicture {
  public:
   /** \a samples: 0 for a texture that is not multisampled. */
-  HostTexture(glm::ivec2 size_px, GLenum format, int samples) : size_px_(size_px), format_(format), samples_(samples)
+  HostPicture(glm::ivec2 size_px, GLenum format, int samples) : size_px_(size_px), format_(format), samples_(samples)
   {
     glCreateFramebuffers(1, &name_);
     glCreateTextures(samples > 0 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D, 1, &texture_);
@@ -46,14 +46,14 @@ class HostTexture {
     glNamedFramebufferRenderbuffer(name_, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
     fill();
   }
-  ~HostTexture()
+  ~HostPicture()
   {
     glDeleteFramebuffers(1, &name_);
     glDeleteTextures(1, &texture_);
     glDeleteRenderbuffers(1, &depth_);
   }
-  HostTexture(const HostTexture &) = delete;
-  HostTexture &operator=(const HostTexture &) = delete;
+  HostPicture(const HostPicture &) = delete;
+  HostPicture &operator=(const HostPicture &) = delete;
 
   [[nodiscard]] gpu::HostFramebuffer framebuffer() const
   {
@@ -71,7 +71,7 @@ class HostTexture {
   [[nodiscard]] Pixels pixels() const
   {
     if (samples_ > 0) {
-      const HostTexture resolved(size_px_, format_, 0);
+      const HostPicture resolved(size_px_, format_, 0);
       glBlitNamedFramebuffer(name_, resolved.name_, 0, 0, size_px_.x, size_px_.y, 0, 0, size_px_.x, size_px_.y,
                              GL_COLOR_BUFFER_BIT, GL_NEAREST);
       return resolved.pixels();

@@ -14,7 +14,7 @@ namespace {
 using test::append_draw;
 using test::error_of;
 using test::expect_contains;
-using test::HostTexture;
+using test::HostPicture;
 using test::make_shader;
 using test::Pixels;
 using test::push_constants;
@@ -37,7 +37,7 @@ class HostFramebufferTest : public test::HostFramebufferTest {
       full = test::full_triangle(*device, 0.25F);
     }
   }
-  void draw(const HostTexture &host, const glm::vec4 &color, const PassActions &actions, State state)
+  void draw(const HostPicture &host, const glm::vec4 &color, const PassActions &actions, State state)
   {
     CommandList list;
     list.begin_pass("host", host.framebuffer(), actions);
@@ -65,7 +65,7 @@ class HostFramebufferTest : public test::HostFramebufferTest {
 TEST_P(HostFramebufferTest, OnlyTheRectangleChanges)
 {
   for (const int samples : {0, 4}) {
-    const HostTexture host(size_px, GL_RGBA8, samples);
+    const HostPicture host(size_px, GL_RGBA8, samples);
     const Pixels before = host.pixels();
     draw(host, {1, 0, 0.2F, 0.6F}, {.color_load = LoadAction::Load, .viewport = part, .scissor = part},
          State::WriteColor);
@@ -82,7 +82,7 @@ TEST_P(HostFramebufferTest, OnlyTheRectangleChanges)
 TEST_P(HostFramebufferTest, AnSrgbFormatEncodesOnlyWhereItIsAskedTo)
 {
   const auto encoded = [](double v) { return int(std::lround(255.0 * (1.055 * std::pow(v, 1.0 / 2.4) - 0.055))); };
-  const HostTexture host(size_px, GL_SRGB8_ALPHA8, 4);
+  const HostPicture host(size_px, GL_SRGB8_ALPHA8, 4);
   const Pixels before = host.pixels();
   PassActions actions{.color_load = LoadAction::Load, .viewport = part, .scissor = part};
   draw(host, {0.2F, 0.4F, 0.8F, 0.4F}, actions, State::WriteColor);
@@ -99,7 +99,7 @@ TEST_P(HostFramebufferTest, AnSrgbFormatEncodesOnlyWhereItIsAskedTo)
 
 TEST_P(HostFramebufferTest, OverBlendsPremultipliedColours)
 {
-  const HostTexture host(size_px, GL_RGBA8, 0);
+  const HostPicture host(size_px, GL_RGBA8, 0);
   const Pixels before = host.pixels();
   draw(host, {0.4F, 0, 0, 0.5F}, {.color_load = LoadAction::Load}, State::WriteColor | State::BlendOver);
   const Pixels pixels = host.pixels();
@@ -111,7 +111,7 @@ TEST_P(HostFramebufferTest, OverBlendsPremultipliedColours)
 
 TEST_P(HostFramebufferTest, DepthIsTestedByTheHostsConvention)
 {
-  const HostTexture host(size_px, GL_RGBA8, 0);
+  const HostPicture host(size_px, GL_RGBA8, 0);
   const Pixels before = host.pixels();
   const PassActions keep{.color_load = LoadAction::Load, .depth_load = LoadAction::Load};
   // The triangle's depth is 0.25.
@@ -132,8 +132,8 @@ TEST_P(HostFramebufferTest, DepthIsTestedByTheHostsConvention)
 
 TEST_P(HostFramebufferTest, OtherDrawBuffersKeepTheirContent)
 {
-  const HostTexture host(size_px, GL_RGBA8, 0);
-  const HostTexture other(size_px, GL_RGBA8, 0);
+  const HostPicture host(size_px, GL_RGBA8, 0);
+  const HostPicture other(size_px, GL_RGBA8, 0);
   const Pixels before = other.pixels();
   const GLuint name = host.framebuffer().name;
   glNamedFramebufferTexture(name, GL_COLOR_ATTACHMENT1, other.texture(), 0);
@@ -146,7 +146,7 @@ TEST_P(HostFramebufferTest, OtherDrawBuffersKeepTheirContent)
 
 TEST_P(HostFramebufferTest, TheHostsStateIsUnchanged)
 {
-  const HostTexture target(size_px, GL_SRGB8_ALPHA8, 4);
+  const HostPicture target(size_px, GL_SRGB8_ALPHA8, 4);
   const test::HostObjects objects;
   test::set_unusual_state(objects);
   const std::vector<test::StateItem> table = test::state_table();
@@ -159,7 +159,7 @@ TEST_P(HostFramebufferTest, TheHostsStateIsUnchanged)
 #ifndef NDEBUG
 TEST_P(HostFramebufferTest, WhatCannotBeDrawnIntoIsRefusedByName)
 {
-  const HostTexture host(size_px, GL_RGBA8, 0);
+  const HostPicture host(size_px, GL_RGBA8, 0);
   const auto message_of = [&](const HostFramebuffer &framebuffer, const PassActions &actions) {
     CommandList list;
     list.begin_pass("host", framebuffer, actions);

@@ -137,6 +137,7 @@ inline std::vector<glm::vec4> decoded_texels(gpu::Device &device, const gpu::Tex
       case gpu::Format::R16F: values.emplace_back(glm::unpackHalf1x16(as(std::uint16_t())), 0, 0, 0); break;
       case gpu::Format::RG32F: values.emplace_back(as(glm::vec2()), 0, 0); break;
       case gpu::Format::Depth16: values.emplace_back(float(as(std::uint16_t())) / 65535.0F, 0, 0, 0); break;
+      case gpu::Format::Host: ADD_FAILURE() << "a texture of the host cannot be read"; break;
       case gpu::Format::R32F:
       case gpu::Format::Depth32F: values.emplace_back(as(float()), 0, 0, 0); break;
     }

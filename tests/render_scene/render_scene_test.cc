@@ -249,6 +249,107 @@ TEST_F(RenderSceneTest, AFailedUploadLeavesWhatWasThere)
   EXPECT_EQ(on_small.texture(texture, true).image.desc().width, 1);
 }
 
+/** A mesh in buffers of the host, of the size of a square. */
+scene::Mesh host_mesh(scene::Handle<scene::Material> material)
+{
+  return {.name = "terrain", .material = material, .host_shape = scene::HostShape{.bounds = {{-1, -1, 0}, {1, 1, 0}}}};
+}
+
+constexpr gpu::HostBatch host_batch{.positions = {1, 0, 12}, .vertex_count = 4, .index_buffer = 2, .index_count = 6};
+
+TEST_F(RenderSceneTest, AHostsMeshIsDrawnFromItsBuffersWithoutAnUpload)
+{
+  const scene::Handle<scene::Mesh> terrain = scene.add(host_mesh(material));
+  add_object(scene, terrain, at({1, 2, 3}));
+  render_scene.update();
+  EXPECT_EQ(object_count(), 0U) << "without buffers";
+  const std::uint64_t passes = render_scene.passes_revision();
+  render_scene.set_host_batch(terrain, host_batch);
+  EXPECT_FALSE(render_scene.is_up_to_date());
+  render_scene.update();
+  EXPECT_TRUE(render_scene.is_up_to_date());
+  EXPECT_EQ(object_count(), 1U);
+  EXPECT_GT(render_scene.passes_revision(), passes);
+  EXPECT_EQ(render_scene.bounds(), (scene::Bounds{{0, 1, 3}, {2, 3, 3}}));
+  EXPECT_EQ(uploads_of_batch(terrain, MeshStreams::All), 0U);
+  const gpu::ResourceId first = render_scene.meshes().find(terrain)->id();
+  EXPECT_EQ(render_scene.batch(terrain, MeshStreams::Shape).id(), first);
+  // Other content, and then no buffers.
+  render_scene.set_host_batch(terrain, host_batch);
+  render_scene.update();
+  EXPECT_NE(render_scene.batch(terrain, MeshStreams::Shape).id(), first);
+  render_scene.set_host_batch(terrain, std::nullopt);
+  render_scene.update();
+  EXPECT_EQ(object_count(), 0U);
+}
+
+TEST_F(RenderSceneTest, AHostsMeshInThePlaceOfARemovedOneHasNoBuffers)
+{
+  const scene::Handle<scene::Mesh> terrain = scene.add(host_mesh(material));
+  const scene::Handle<scene::Node> node = add_object(scene, terrain, at({}));
+  render_scene.set_host_batch(terrain, host_batch);
+  render_scene.update();
+  EXPECT_EQ(object_count(), 1U);
+  scene.remove(node);
+  scene.remove(terrain);
+  add_object(scene, scene.add(host_mesh(material)), at({}));
+  render_scene.update();
+  EXPECT_EQ(object_count(), 0U);
+  EXPECT_THROW(render_scene.set_host_batch(terrain, host_batch), scene::StaleHandle);
+}
+
+TEST_F(RenderSceneTest, BuffersThatDoNotFitTheMeshAreRefusedByName)
+{
+  const auto message_of = [](const auto &action) { return test::error_of(action); };
+  test::expect_contains(message_of([&] { render_scene.set_host_batch(mesh, host_batch); }),
+                        "mesh 'square': it has no shape in buffers of a host");
+  scene::Mesh textured = host_mesh(material);
+  textured.host_shape->has_uvs = true;
+  const scene::Handle<scene::Mesh> terrain = scene.add(textured);
+  const auto batch_error = [&](const gpu::HostBatch &batch) {
+    render_scene.set_host_batch(terrain, batch);
+    return message_of([&] { static_cast<void>(render_scene.batch(terrain, MeshStreams::All)); });
+  };
+  test::expect_contains(batch_error(host_batch), "mesh 'terrain': its shape has uvs, and the host's batch has none");
+  gpu::HostBatch with_uvs = host_batch;
+  with_uvs.uvs = {3, 0, 8};
+  EXPECT_EQ(batch_error(with_uvs), "");
+  with_uvs.index_count = 4;
+  test::expect_contains(batch_error(with_uvs),
+                        "mesh 'terrain': the 4 indices of the host's batch are no multiple of 3");
+}
+
+TEST_F(RenderSceneTest, AHostsTextureIsLookedUpWithoutAnUploadUntilItIsTakenBack)
+{
+  const scene::Handle<scene::Texture> texture = add_texture(scene, 1, {1, 2, 3, 255});
+  const scene::Handle<scene::Image> image = scene.textures()[texture].image;
+  scene.edit(texture, [](scene::Texture &value) { value.mip = scene::MipFilter::Linear; });
+  render_scene.update();
+  const std::uint64_t passes = render_scene.passes_revision();
+  const std::uint64_t uploads = device->counters().upload_bytes;
+  const std::uint64_t made = device->counters().textures_made;
+  render_scene.set_host_texture(image, gpu::HostTexture{7, {64, 32}});
+  render_scene.update();
+  EXPECT_GT(render_scene.passes_revision(), passes);
+  const Images::Lookup of_host = render_scene.texture(texture, true);
+  EXPECT_EQ(of_host.image.desc().host_name, 7U);
+  EXPECT_EQ(of_host.image.desc().width, 64);
+  const auto mip_of = [&](const gpu::Sampler &sampler) {
+    return std::get<gpu::SamplerDesc>(device->find(gpu::ResourceKind::Sampler, sampler.id())->desc).mip;
+  };
+  EXPECT_EQ(mip_of(of_host.sampler), gpu::MipFilter::None) << "it has one level";
+  render_scene.set_host_texture(image, gpu::HostTexture{7, {64, 32}, true});
+  render_scene.update();
+  EXPECT_EQ(mip_of(render_scene.texture(texture, true).sampler), gpu::MipFilter::Linear);
+  EXPECT_EQ(device->counters().upload_bytes, uploads);
+  EXPECT_EQ(device->counters().textures_made, made);
+  EXPECT_EQ(device->memory_bytes(), 0U);
+  render_scene.set_host_texture(image, std::nullopt);
+  render_scene.update();
+  EXPECT_EQ(render_scene.texture(texture, true).image.desc().width, 1);
+  EXPECT_GT(device->counters().upload_bytes, uploads);
+}
+
 TEST_F(RenderSceneTest, HiddenNodesHaveNoObjectAndNoLamp)
 {
   const auto parent = scene.add(scene::Node());

@@ -664,6 +664,16 @@ TEST(SceneEdit, InvalidValuesAreRefused)
                                     {"index 4294967295", [](Mesh &mesh) { mesh.indices[2] = 0xFFFFFFFFU; }},
                                     {"position 1 is not finite", [](Mesh &mesh) { mesh.positions[1].y = float(nan); }},
                                     {"position 2", [](Mesh &mesh) { mesh.positions[2].z = float(-infinity); }}});
+  const auto of_host = [](const Bounds &bounds) { return HostShape{.bounds = bounds}; };
+  const Mesh host_mesh{.name = "host", .host_shape = of_host({{-1, 0, 0}, {1, 0, 2}})};
+  expect_refused<Mesh>(host_mesh, {{"bounds", [](Mesh &mesh) { mesh.host_shape->bounds = {}; }},
+                                   {"bounds", [](Mesh &mesh) { mesh.host_shape->bounds.max.x = float(infinity); }},
+                                   {"bounds", [](Mesh &mesh) { mesh.host_shape->bounds.min.y = float(nan); }},
+                                   {"3 positions and 3 indices beside a shape in the host's buffers", [&](Mesh &mesh) {
+                                      mesh.positions = triangle().positions;
+          mesh.normals = triangle().normals;
+          mesh.indices = triangle().indices;
+                                                                }}});
   expect_refused<Image>(texel(), {{"4 bytes for 2x1", [](Image &image) { image.width = 2; }},
                                   {"3 bytes", [](Image &image) { image.texels.pop_back(); }},
                                   {"0 bytes for 0x0",

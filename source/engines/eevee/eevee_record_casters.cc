@@ -44,12 +44,14 @@ std::uint64_t mesh_fingerprint(const render_scene::RenderScene &render_scene, sc
   struct {
     std::uint64_t mesh;
     scene::Revision shape;
+    std::uint64_t host_shape;
     std::uint64_t is_double_sided;
     std::uint64_t alpha_mode;
     std::uint64_t texture;
     scene::Revision image_of_texture;
     scene::Revision sampler;
     scene::Revision content;
+    std::uint64_t host_content;
     glm::vec2 uv_offset;
     glm::vec2 uv_scale;
     float uv_rotation;
@@ -60,10 +62,12 @@ std::uint64_t mesh_fingerprint(const render_scene::RenderScene &render_scene, sc
     /** The surface function, the revision of all that it may read, and the origin of its positions. */
     std::uint64_t function;
     scene::Revision function_inputs;
+    std::uint64_t host_inputs;
     glm::dvec3 origin_ws;
   } key{};
   key.mesh = handle.key();
   key.shape = scene.meshes().revision(handle, scene::Mesh::Aspect::Shape);
+  key.host_shape = render_scene.meshes().host_revision(handle);
   key.is_double_sided = material.is_double_sided ? 1 : 0;
   if (render_scene::is_masked(scene, mesh) || render_scene::lets_light_through(scene, mesh)) {
     key.alpha_mode = std::uint64_t(material.alpha_mode);
@@ -72,7 +76,9 @@ std::uint64_t mesh_fingerprint(const render_scene::RenderScene &render_scene, sc
       key.texture = slot.texture.key();
       key.image_of_texture = scene.textures().revision(slot.texture, scene::Texture::Aspect::Image);
       key.sampler = scene.textures().revision(slot.texture, scene::Texture::Aspect::Sampler);
-      key.content = scene.images().revision(scene.textures()[slot.texture].image, scene::Image::Aspect::Content);
+      const scene::Handle<scene::Image> image = scene.textures()[slot.texture].image;
+      key.content = scene.images().revision(image, scene::Image::Aspect::Content);
+      key.host_content = render_scene.images().host_revision(image);
       key.uv_offset = slot.offset;
       key.uv_scale = slot.scale;
       key.uv_rotation = slot.rotation;
@@ -86,6 +92,7 @@ std::uint64_t mesh_fingerprint(const render_scene::RenderScene &render_scene, sc
     key.function = alpha_function_of(scene, material).key;
     if (key.function != 0) {
       key.function_inputs = std::max({scene.materials().latest(), scene.textures().latest(), scene.images().latest()});
+      key.host_inputs = render_scene.images().host_revision();
       key.origin_ws = render_scene.origin_ws();
     }
   }
@@ -191,9 +198,10 @@ void Engine::add_casters(Data &data)
   SharedData &shared = *data.shared;
   const draw::ObjectBuffer &objects = scene_.objects();
   for (CasterKind &kind : shared.caster_kinds) {
-    kind.mesh = &scene_.scene().meshes()[kind.handle];
+    const scene::Mesh &mesh = scene_.scene().meshes()[kind.handle];
+    kind.mesh = mesh.host_shape ? nullptr : &mesh;
     kind.fingerprint = mesh_fingerprint(scene_, kind.handle);
-    kind.is_blended = render_scene::lets_light_through(scene_.scene(), *kind.mesh);
+    kind.is_blended = render_scene::lets_light_through(scene_.scene(), mesh);
   }
   for (const draw::ObjectIndex index : data.stl.objects) {
     const std::uint32_t number = shared.caster_kind_of[index];

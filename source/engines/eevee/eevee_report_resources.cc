@@ -137,6 +137,9 @@ FrameNode block_nodes(const ReportSource &source)
 std::string element_count(const scene::Mesh &mesh)
 {
   constexpr std::array<const char *, 3> names = {"triangles", "lines", "points"};
+  if (mesh.host_shape) {
+    return fmt::format("{} of the host", names[std::size_t(mesh.topology)]);
+  }
   return fmt::format("{} {}", mesh.indices.size() / index_count_of(mesh.topology), names[std::size_t(mesh.topology)]);
 }
 
@@ -152,11 +155,12 @@ FrameNode mesh_nodes(const ReportSource &source)
   for (const auto &[handle, mesh] : scene.meshes()) {
     const gpu::Batch *made = source.render_scene.meshes().find(handle);
     const gpu::Batch &batch = made ? *made : none;
-    FrameNode &node = meshes.emplace_back(resource_node(source, batch, mesh.name, element_count(mesh),
-                                                        !used.contains(handle) ? "no object has it"
-                                                        : !render_scene::is_drawable(scene, scene.material_of(mesh))
-                                                            ? "its material is cut out everywhere"
-                                                            : nothing_seen));
+    FrameNode &node = meshes.emplace_back(resource_node(
+        source, batch, mesh.name, element_count(mesh),
+        !used.contains(handle)                                       ? "no object has it"
+        : !source.render_scene.meshes().has_shape(handle, mesh)      ? "the host has named no buffers of it"
+        : !render_scene::is_drawable(scene, scene.material_of(mesh)) ? "its material is cut out everywhere"
+                                                                     : nothing_seen));
     if (batch) {
       node.upload_bytes = source.device().live(batch).upload_bytes;
     }

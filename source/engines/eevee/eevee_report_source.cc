@@ -49,12 +49,12 @@ std::set<std::pair<scene::Handle<scene::Image>, bool>> read_images(const ReportS
 
 std::string why_no_texture(const scene::Mesh &mesh, const scene::TextureInput &input, const scene::TextureSlot &slot)
 {
-  if (slot && mesh.uv_set(slot.uv_set).empty()) {
+  if (slot && !mesh.has_uvs(slot.uv_set)) {
     return fmt::format("it has no {}uvs", slot.uv_set == 0 ? "" : "second ");
   }
   const bool needs_tangents =
       input.slot == &scene::Material::normal_texture || input.slot == &scene::Material::coat_normal_texture;
-  return slot && needs_tangents && mesh.tangents.empty() ? "it has no tangents" : "";
+  return slot && needs_tangents && !mesh.has_tangents() ? "it has no tangents" : "";
 }
 
 std::string why_no_feature(const ReportSource &source, Feature feature)

@@ -105,7 +105,9 @@ GlDevice::~GlDevice()
   free_live_resources();
   stream_.destroy();
   glDeleteBuffers(GLsizei(pool_.size()), pool_.data());
-  glDeleteVertexArrays(1, &vertex_array_);
+  glDeleteBuffers(1, &absent_streams_);
+  glDeleteVertexArrays(1, &shared_array_.name);
+  glDeleteVertexArrays(1, &host_array_.name);
   glDeleteVertexArrays(1, &empty_vertex_array_);
   for (const auto &dummies : dummies_) {
     for (const Dummy &one : dummies) {
@@ -121,26 +123,34 @@ GlDevice::~GlDevice()
   }
 }
 
-void GlDevice::create_vertex_arrays()
+GlVertexType gl_vertex_type(VertexType type)
 {
-  glCreateVertexArrays(1, &vertex_array_);
-  // grow_pools() enables the attribute of a stream when the first batch has that stream.
-  for (const VertexFormat &format : vertex_formats()) {
-    const GLenum type = format.type == VertexFormat::Type::Float     ? GL_FLOAT
-                        : format.type == VertexFormat::Type::Snorm16 ? GL_SHORT
-                                                                     : GL_UNSIGNED_SHORT;
-    const GLboolean is_normalized = format.type == VertexFormat::Type::Float ? GL_FALSE : GL_TRUE;
-    glVertexArrayAttribFormat(vertex_array_, format.attribute, format.component_count, type, is_normalized, 0);
-    glVertexArrayAttribBinding(vertex_array_, format.attribute, format.attribute);
+  switch (type) {
+    case VertexType::Float: return {GL_FLOAT, GL_FALSE};
+    case VertexType::Half: return {GL_HALF_FLOAT, GL_FALSE};
+    case VertexType::Snorm8: return {GL_BYTE, GL_TRUE};
+    case VertexType::Unorm8: return {GL_UNSIGNED_BYTE, GL_TRUE};
+    case VertexType::Snorm16: return {GL_SHORT, GL_TRUE};
+    case VertexType::Unorm16: return {GL_UNSIGNED_SHORT, GL_TRUE};
   }
-  glEnableVertexArrayAttrib(vertex_array_, ATTRIBUTE_DRAW_INSTANCE);
-  glVertexArrayAttribIFormat(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, 2, GL_UNSIGNED_INT, 0);
-  glVertexArrayAttribBinding(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, ATTRIBUTE_DRAW_INSTANCE);
-  glVertexArrayBindingDivisor(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, 1);
+  return {};
+}
+
+GlDevice::VertexArray GlDevice::create_instanced_array()
+{
+  GLuint array = 0;
+  glCreateVertexArrays(1, &array);
+  for (const VertexFormat &format : vertex_formats()) {
+    glVertexArrayAttribBinding(array, format.attribute, format.attribute);
+  }
+  glEnableVertexArrayAttrib(array, ATTRIBUTE_DRAW_INSTANCE);
+  glVertexArrayAttribIFormat(array, ATTRIBUTE_DRAW_INSTANCE, 2, GL_UNSIGNED_INT, 0);
+  glVertexArrayAttribBinding(array, ATTRIBUTE_DRAW_INSTANCE, ATTRIBUTE_DRAW_INSTANCE);
+  glVertexArrayBindingDivisor(array, ATTRIBUTE_DRAW_INSTANCE, 1);
   // bind_instances() enables the attributes of an object.
   const auto of_object = [&](GLuint attribute, GLint component_count, std::size_t offset_bytes) {
-    glVertexArrayAttribFormat(vertex_array_, attribute, component_count, GL_FLOAT, GL_FALSE, GLuint(offset_bytes));
-    glVertexArrayAttribBinding(vertex_array_, attribute, ATTRIBUTE_WORLD_FROM_OBJECT);
+    glVertexArrayAttribFormat(array, attribute, component_count, GL_FLOAT, GL_FALSE, GLuint(offset_bytes));
+    glVertexArrayAttribBinding(array, attribute, ATTRIBUTE_WORLD_FROM_OBJECT);
   };
   for (GLuint column = 0; column < 4; column++) {
     of_object(ATTRIBUTE_WORLD_FROM_OBJECT + column, 4,
@@ -149,10 +159,20 @@ void GlDevice::create_vertex_arrays()
   of_object(ATTRIBUTE_OBJECT_NORMAL_X, 3, offsetof(shared::ObjectData, normal_x));
   of_object(ATTRIBUTE_OBJECT_NORMAL_Y, 3, offsetof(shared::ObjectData, normal_y));
   of_object(ATTRIBUTE_OBJECT_NORMAL_Z, 3, offsetof(shared::ObjectData, normal_z));
-  glVertexArrayAttribIFormat(vertex_array_, ATTRIBUTE_OBJECT_VALUE, 1, GL_UNSIGNED_INT,
-                             offsetof(shared::ObjectData, value));
-  glVertexArrayAttribBinding(vertex_array_, ATTRIBUTE_OBJECT_VALUE, ATTRIBUTE_WORLD_FROM_OBJECT);
-  glVertexArrayBindingDivisor(vertex_array_, ATTRIBUTE_WORLD_FROM_OBJECT, 1);
+  glVertexArrayAttribIFormat(array, ATTRIBUTE_OBJECT_VALUE, 1, GL_UNSIGNED_INT, offsetof(shared::ObjectData, value));
+  glVertexArrayAttribBinding(array, ATTRIBUTE_OBJECT_VALUE, ATTRIBUTE_WORLD_FROM_OBJECT);
+  glVertexArrayBindingDivisor(array, ATTRIBUTE_WORLD_FROM_OBJECT, 1);
+  return {array};
+}
+
+void GlDevice::create_vertex_arrays()
+{
+  shared_array_ = create_instanced_array();
+  // grow_pools() enables the attribute of a stream when the first batch has that stream.
+  for (const VertexFormat &format : vertex_formats()) {
+    const auto [type, is_normalized] = gl_vertex_type(format.type);
+    glVertexArrayAttribFormat(shared_array_.name, format.attribute, format.component_count, type, is_normalized, 0);
+  }
   // Procedural draws need a vertex array, too, but one that does not read the attributes of batches.
   glCreateVertexArrays(1, &empty_vertex_array_);
 }

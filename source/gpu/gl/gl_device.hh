@@ -54,6 +54,12 @@ class IdTable {
   std::vector<std::pair<ResourceId, T>> entries_;
 };
 
+struct GlVertexType {
+  GLenum type = GL_NONE;
+  GLboolean is_normalized = GL_FALSE;
+};
+[[nodiscard]] GlVertexType gl_vertex_type(VertexType type);
+
 class GlDevice final : public Device {
  public:
   GlDevice(std::unique_ptr<GlContext> context, const GlDeviceDesc &desc);
@@ -93,6 +99,12 @@ class GlDevice final : public Device {
     /** Texture target: GL_TEXTURE_2D, GL_TEXTURE_2D_ARRAY or GL_TEXTURE_BUFFER. */
     GLenum target = GL_NONE;
     bool is_comparison = false;
+  };
+  /** A vertex array, and the instances that its draws read. */
+  struct VertexArray {
+    GLuint name = 0;
+    /** \see CommandList::bind_instances */
+    ResourceId objects = 0;
   };
   struct GlProgram {
     GLuint name = 0;
@@ -135,6 +147,7 @@ class GlDevice final : public Device {
   void buffer_create(ResourceId id, const BufferDesc &desc) override;
   void batch_create(const BatchDesc &desc, const BatchRange &range, std::uint32_t vertex_capacity,
                     std::uint32_t index_capacity) override;
+  void host_batch_create(ResourceId id, const std::string &name, const HostBatch &batch) override;
   void shader_create(const Operation::CreateShader &create, std::vector<std::byte> &compiled) override;
   void timer_query_create(ResourceId id, const std::string &name) override;
   void resource_destroy(ResourceKind kind, ResourceId id) override;
@@ -148,6 +161,10 @@ class GlDevice final : public Device {
   std::optional<double> seconds_between_marks(ResourceId query) override;
 
   void create_vertex_arrays();
+  /** A vertex array whose attributes of instances are set up, and those of vertices are not. */
+  static VertexArray create_instanced_array();
+  /** \throws Error if the texture of the host that \a desc names cannot be looked up */
+  void check_host_texture(const TextureDesc &desc);
   /** Attaches a texture to \a framebuffer at \a point. If this needs a texture view, appends it to \a views. */
   void attach(GLuint framebuffer, GLenum point, const AttachmentLayout &attachment, std::vector<GLuint> &views);
   void grow_pools(const BatchDesc &desc, const PoolSizes &sizes);
@@ -171,8 +188,14 @@ class GlDevice final : public Device {
   void set_state(State state);
   void bind_range(const Command &command);
   void bind_texture(const Command &command);
-  /** \a objects: 0: the instances of the list. */
-  void bind_instances(ResourceId objects);
+  /** Lets \a array read the instances of `objects_`. */
+  void bind_instances(VertexArray &array);
+  /** Lets `host_array_` read the vertices and indices of \a batch. */
+  void bind_host_buffers(const HostBatch &batch);
+  /** Binds the vertex array of the following draws. */
+  void bind_vertex_array();
+  /** So that buffers which the list has read can be freed. */
+  void release_buffers();
   /** Binds dummies to the samplers of the current program that the list has not bound. */
   void complete_textures();
 
@@ -193,14 +216,20 @@ class GlDevice final : public Device {
   IdTable<GLuint> samplers_{ResourceKind::Sampler};
   IdTable<GlFramebuffer> framebuffers_{ResourceKind::Framebuffer};
   IdTable<GlBuffer> buffers_{ResourceKind::Buffer};
+  IdTable<HostBatch> host_batches_{ResourceKind::Batch};
   IdTable<GlProgram> programs_{ResourceKind::Shader};
   IdTable<std::array<GLuint, 2>> timers_{ResourceKind::TimerQuery};
 
   /** Indexed by target (2D, 2D array) and by whether the sampler compares depths. */
   std::array<std::array<Dummy, 2>, 3> dummies_{};
 
-  GLuint vertex_array_ = 0;
+  /** Reads the shared buffers. */
+  VertexArray shared_array_;
+  /** Reads the buffers of one batch of the host; made when the first such batch is made. */
+  VertexArray host_array_;
   GLuint empty_vertex_array_ = 0;
+  /** For streams that a batch of the host has not: four zeros, and four ones. */
+  GLuint absent_streams_ = 0;
   PoolBuffers pool_{};
   /** Sizes of the pools in bytes. */
   PoolSizes pool_size_{};
@@ -209,7 +238,9 @@ class GlDevice final : public Device {
   std::size_t instances_offset_ = 0;
   std::size_t draws_offset_ = 0;
   /** \see CommandList::bind_instances */
-  ResourceId bound_objects_ = 0;
+  ResourceId objects_ = 0;
+  /** \see CommandList::bind_host_batch; nullptr: the shared buffers */
+  const HostBatch *host_batch_ = nullptr;
 
   UsedSlots used_slots_;
   /** The open pass; nullptr outside of passes. */

@@ -69,6 +69,7 @@ GlFormat gl_format(Format format)
     case Format::RG32F: return {GL_RG32F, GL_RG, GL_FLOAT};
     case Format::Depth32F: return {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT};
     case Format::Depth16: return {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT, GL_UNSIGNED_SHORT};
+    case Format::Host: break;
   }
   return {};
 }
@@ -77,6 +78,11 @@ void GlDevice::texture_create(ResourceId id, const TextureDesc &desc)
 {
   const trace::Span span("create texture", desc.name);
   const Entry entry(*this);
+  if (desc.format == Format::Host) {
+    check_host_texture(desc);
+    textures_.insert(id, {desc.host_name, desc, 0});
+    return;
+  }
   GLuint texture = 0;
   GLuint buffer = 0;
   glCreateTextures(gl_target(desc.kind), 1, &texture);
@@ -98,6 +104,49 @@ void GlDevice::texture_create(ResourceId id, const TextureDesc &desc)
     glDeleteBuffers(1, &buffer);
   });
   textures_.insert(id, {texture, desc, buffer});
+}
+
+void GlDevice::check_host_texture(const TextureDesc &desc)
+{
+  const GLuint name = desc.host_name;
+  const auto refuse = [&](std::string_view why) {
+    throw Error("texture '{}': texture {} of the host {}", desc.name, name, why);
+  };
+  if (!glIsTexture(name)) {
+    refuse("does not exist in the current context");
+  }
+  const auto parameter = [&](GLenum what) {
+    GLint value = 0;
+    glGetTextureParameteriv(name, what, &value);
+    return value;
+  };
+  const auto of_level = [&](GLint level, GLenum what) {
+    GLint value = 0;
+    glGetTextureLevelParameteriv(name, level, what, &value);
+    return value;
+  };
+  if (parameter(GL_TEXTURE_TARGET) != GL_TEXTURE_2D) {
+    refuse("is not of the target GL_TEXTURE_2D");
+  }
+  if (parameter(GL_TEXTURE_BASE_LEVEL) != 0) {
+    refuse("has another base level than 0");
+  }
+  const glm::ivec2 size_px{of_level(0, GL_TEXTURE_WIDTH), of_level(0, GL_TEXTURE_HEIGHT)};
+  if (size_px != glm::ivec2(desc.width, desc.height)) {
+    refuse(fmt::format("has {}x{} texels, not {}x{}", size_px.x, size_px.y, desc.width, desc.height));
+  }
+  const GLint type = of_level(0, GL_TEXTURE_RED_TYPE);
+  if (type != GL_FLOAT && type != GL_UNSIGNED_NORMALIZED && type != GL_SIGNED_NORMALIZED) {
+    refuse("has no channel red of floats or of normalised integers");
+  }
+  const GLint last = std::min(desc.mip_levels - 1, parameter(GL_TEXTURE_MAX_LEVEL));
+  for (GLint level = 1; level <= last; level++) {
+    if (of_level(level, GL_TEXTURE_WIDTH) != std::max(desc.width >> level, 1) ||
+        of_level(level, GL_TEXTURE_HEIGHT) != std::max(desc.height >> level, 1)) {
+      refuse(fmt::format("has no mip level {}", level));
+    }
+  }
+  check(fmt::format("texture '{}'", desc.name));
 }
 
 void GlDevice::sampler_create(ResourceId id, const SamplerDesc &desc)
@@ -201,11 +250,11 @@ void GlDevice::grow_pools(const BatchDesc &desc, const PoolSizes &sizes)
   for (std::size_t i = 0; i < vertex_stream_count; i++) {
     const VertexFormat &format = vertex_formats()[i];
     if (pool_[i] != 0) {
-      glEnableVertexArrayAttrib(vertex_array_, format.attribute);
-      glVertexArrayVertexBuffer(vertex_array_, format.attribute, pool_[i], 0, GLsizei(format.size_bytes));
+      glEnableVertexArrayAttrib(shared_array_.name, format.attribute);
+      glVertexArrayVertexBuffer(shared_array_.name, format.attribute, pool_[i], 0, GLsizei(format.size_bytes));
     }
   }
-  glVertexArrayElementBuffer(vertex_array_, pool_[index_pool]);
+  glVertexArrayElementBuffer(shared_array_.name, pool_[index_pool]);
   glDeleteBuffers(GLsizei(grown.size()), grown.data());
 }
 
@@ -241,6 +290,44 @@ void GlDevice::batch_create(const BatchDesc &desc, const BatchRange &range, std:
   check(fmt::format("batch '{}'", desc.name));
 }
 
+void GlDevice::host_batch_create(ResourceId id, const std::string &name, const HostBatch &batch)
+{
+  const Entry entry(*this);
+  const auto check_size = [&](std::string_view what, GLuint buffer, std::size_t end) {
+    if (!glIsBuffer(buffer)) {
+      throw Error("batch '{}': buffer {} of the host, with its {}, does not exist in the current context", name, buffer,
+                  what);
+    }
+    GLint64 size = 0;
+    glGetNamedBufferParameteri64v(buffer, GL_BUFFER_SIZE, &size);
+    if (end > std::size_t(size)) {
+      throw Error("batch '{}': buffer {} of the host has {} bytes, and its {} end at byte {}", name, buffer, size, what,
+                  end);
+    }
+  };
+  for (std::size_t i = 0; i < vertex_stream_count; i++) {
+    const HostStream &stream = batch.stream(VertexStream(i));
+    if (stream.buffer != 0) {
+      const std::size_t vertex_bytes = std::size_t(vertex_formats()[i].component_count) * gpu::size_bytes(stream.type);
+      check_size(to_string(VertexStream(i)), stream.buffer,
+                 stream.offset_bytes + std::size_t(batch.vertex_count - 1) * stream.stride_bytes + vertex_bytes);
+    }
+  }
+  check_size("indices", batch.index_buffer,
+             batch.index_offset_bytes + std::size_t(batch.index_count) * batch.index_size_bytes());
+  if (host_array_.name == 0) {
+    host_array_ = create_instanced_array();
+    for (const VertexFormat &format : vertex_formats()) {
+      glEnableVertexArrayAttrib(host_array_.name, format.attribute);
+    }
+    constexpr std::array<float, 8> values = {0, 0, 0, 0, 1, 1, 1, 1};
+    glCreateBuffers(1, &absent_streams_);
+    glNamedBufferStorage(absent_streams_, sizeof(values), values.data(), 0);
+  }
+  check(fmt::format("batch '{}'", name));
+  host_batches_.insert(id, batch);
+}
+
 void GlDevice::timer_query_create(ResourceId id, const std::string & /*name*/)
 {
   const Entry entry(*this);
@@ -252,8 +339,10 @@ void GlDevice::resource_destroy(ResourceKind kind, ResourceId id)
   const Entry entry(*this);
   switch (kind) {
     case ResourceKind::Texture:
-      glDeleteTextures(1, &textures_.at(id).name);
-      glDeleteBuffers(1, &textures_.at(id).buffer);
+      if (textures_.at(id).desc.format != Format::Host) {
+        glDeleteTextures(1, &textures_.at(id).name);
+        glDeleteBuffers(1, &textures_.at(id).buffer);
+      }
       textures_.erase(id);
       break;
     case ResourceKind::Sampler:
@@ -279,7 +368,7 @@ void GlDevice::resource_destroy(ResourceKind kind, ResourceId id)
       glDeleteQueries(2, timers_.at(id).data());
       timers_.erase(id);
       break;
-    case ResourceKind::Batch: break;
+    case ResourceKind::Batch: host_batches_.erase(id); break;
   }
 }
 

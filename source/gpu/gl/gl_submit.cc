@@ -67,12 +67,11 @@ void GlDevice::list_submit(const CommandList &list)
       if (pass_) {
         end_pass();
       }
-      bind_instances(0);
+      release_buffers();
       stream_.end();
       throw;
     }
-    // So that the buffer of the objects can be freed.
-    bind_instances(0);
+    release_buffers();
     stream_.end();
   }
   check("submit");
@@ -83,6 +82,8 @@ void GlDevice::execute(const CommandList &list)
   write_stream(list);
   set_draw_defaults();
   program_ = nullptr;
+  objects_ = 0;
+  host_batch_ = nullptr;
   bound_textures_.clear();
   const auto written = [&](const Command &command) {
     return stream_.write(std::span(list.bytes()).subspan(command.first, command.count),
@@ -104,16 +105,24 @@ void GlDevice::execute(const CommandList &list)
       case CommandKind::BindUniform:
       case CommandKind::BindStorage: bind_range(command); break;
       case CommandKind::BindTexture: bind_texture(command); break;
-      case CommandKind::BindInstances: bind_instances(command.id); break;
+      case CommandKind::BindInstances: objects_ = command.id; break;
+      case CommandKind::BindHostBatch:
+        host_batch_ = command.id == 0 ? nullptr : &host_batches_.at(command.id);
+        if (host_batch_) {
+          bind_host_buffers(*host_batch_);
+        }
+        break;
       case CommandKind::PushConstants:
         glBindBufferRange(GL_UNIFORM_BUFFER, command.slot, stream_.buffer(), GLintptr(written(command)),
                           GLsizeiptr(command.count));
         break;
       case CommandKind::Draw:
         complete_textures();
-        glBindVertexArray(vertex_array_);
+        bind_vertex_array();
         glMultiDrawElementsIndirect(
-            primitive_, GL_UNSIGNED_INT,
+            primitive_,
+            host_batch_ && host_batch_->index_type == HostBatch::IndexType::Uint16 ? GL_UNSIGNED_SHORT
+                                                                                   : GL_UNSIGNED_INT,
             reinterpret_cast<const void *>(draws_offset_ + command.first * sizeof(DrawIndirect)),
             GLsizei(command.count), sizeof(DrawIndirect));
         break;
@@ -144,31 +153,77 @@ void GlDevice::write_stream(const CommandList &list)
   stream_.begin(size + part_count * alignment);
   instances_offset_ = stream_.write(std::as_bytes(std::span(list.instances)), alignment);
   draws_offset_ = stream_.write(std::as_bytes(std::span(list.draws)), alignment);
-  glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, stream_.buffer(), GLintptr(instances_offset_),
-                            sizeof(DrawInstance));
+  for (const VertexArray &array : {shared_array_, host_array_}) {
+    if (array.name != 0) {
+      glVertexArrayVertexBuffer(array.name, ATTRIBUTE_DRAW_INSTANCE, stream_.buffer(), GLintptr(instances_offset_),
+                                sizeof(DrawInstance));
+    }
+  }
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, stream_.buffer());
 }
 
-void GlDevice::bind_instances(ResourceId objects)
+void GlDevice::bind_instances(VertexArray &array)
 {
-  if (objects == bound_objects_) {
+  if (array.objects == objects_) {
     return;
   }
-  const bool is_list = objects == 0;
-  const GLuint buffer = is_list ? 0 : buffers_.at(objects).name;
-  glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, is_list ? stream_.buffer() : buffer,
+  const bool is_list = objects_ == 0;
+  const GLuint buffer = is_list ? 0 : buffers_.at(objects_).name;
+  glVertexArrayVertexBuffer(array.name, ATTRIBUTE_DRAW_INSTANCE, is_list ? stream_.buffer() : buffer,
                             GLintptr(is_list ? instances_offset_ : offsetof(shared::ObjectData, index)),
                             GLsizei(is_list ? sizeof(DrawInstance) : sizeof(shared::ObjectData)));
-  glVertexArrayVertexBuffer(vertex_array_, ATTRIBUTE_WORLD_FROM_OBJECT, buffer, 0, sizeof(shared::ObjectData));
+  glVertexArrayVertexBuffer(array.name, ATTRIBUTE_WORLD_FROM_OBJECT, buffer, 0, sizeof(shared::ObjectData));
   // The value of an instance is 0 in calls: the default of a component that is not in the buffer.
-  glVertexArrayAttribIFormat(vertex_array_, ATTRIBUTE_DRAW_INSTANCE, is_list ? 2 : 1, GL_UNSIGNED_INT, 0);
+  glVertexArrayAttribIFormat(array.name, ATTRIBUTE_DRAW_INSTANCE, is_list ? 2 : 1, GL_UNSIGNED_INT, 0);
   // An enabled attribute must have a buffer, even if no shader reads it.
-  if (is_list != (bound_objects_ == 0)) {
+  if (is_list != (array.objects == 0)) {
     for (GLuint attribute = ATTRIBUTE_WORLD_FROM_OBJECT; attribute <= ATTRIBUTE_OBJECT_VALUE; attribute++) {
-      (is_list ? glDisableVertexArrayAttrib : glEnableVertexArrayAttrib)(vertex_array_, attribute);
+      (is_list ? glDisableVertexArrayAttrib : glEnableVertexArrayAttrib)(array.name, attribute);
     }
   }
-  bound_objects_ = objects;
+  array.objects = objects_;
+}
+
+void GlDevice::bind_host_buffers(const HostBatch &batch)
+{
+  const GLuint array = host_array_.name;
+  for (std::size_t i = 0; i < vertex_stream_count; i++) {
+    const VertexFormat &format = vertex_formats()[i];
+    const HostStream &stream = batch.stream(VertexStream(i));
+    if (stream.buffer != 0) {
+      const auto [type, is_normalized] = gl_vertex_type(stream.type);
+      glVertexArrayAttribFormat(array, format.attribute, format.component_count, type, is_normalized, 0);
+      glVertexArrayVertexBuffer(array, format.attribute, stream.buffer, GLintptr(stream.offset_bytes),
+                                GLsizei(stream.stride_bytes));
+    }
+    else {
+      // Each vertex reads the same four floats.
+      const bool is_one = VertexStream(i) == VertexStream::Color;
+      glVertexArrayAttribFormat(array, format.attribute, format.component_count, GL_FLOAT, GL_FALSE, 0);
+      glVertexArrayVertexBuffer(array, format.attribute, absent_streams_, is_one ? sizeof(glm::vec4) : 0, 0);
+    }
+  }
+  glVertexArrayElementBuffer(array, batch.index_buffer);
+}
+
+void GlDevice::bind_vertex_array()
+{
+  VertexArray &array = host_batch_ ? host_array_ : shared_array_;
+  bind_instances(array);
+  glBindVertexArray(array.name);
+}
+
+void GlDevice::release_buffers()
+{
+  objects_ = 0;
+  bind_instances(shared_array_);
+  if (host_array_.name != 0) {
+    bind_instances(host_array_);
+    for (const VertexFormat &format : vertex_formats()) {
+      glVertexArrayVertexBuffer(host_array_.name, format.attribute, absent_streams_, 0, 0);
+    }
+    glVertexArrayElementBuffer(host_array_.name, 0);
+  }
 }
 
 const GlDevice::GlFramebuffer &GlDevice::framebuffer_of(const CommandList::PassInfo &pass)

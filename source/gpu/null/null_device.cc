@@ -51,6 +51,10 @@ class NullDevice final : public Device {
   {
     before("create batch");
   }
+  void host_batch_create(ResourceId /*id*/, const std::string & /*name*/, const HostBatch & /*batch*/) override
+  {
+    before("create host batch");
+  }
   void shader_create(const Operation::CreateShader & /*create*/, std::vector<std::byte> & /*compiled*/) override
   {
     before("create shader");

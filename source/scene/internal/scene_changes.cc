@@ -33,7 +33,8 @@ Changes changes(const Mesh &a, const Mesh &b)
   const bool same_shape = same_elements(a.positions, b.positions) && same_elements(a.normals, b.normals) &&
                           same_elements(a.uvs, b.uvs) && same_elements(a.second_uvs, b.second_uvs) &&
                           same_elements(a.tangents, b.tangents) && same_elements(a.colors, b.colors) &&
-                          same_elements(a.indices, b.indices) && a.topology == b.topology;
+                          same_elements(a.indices, b.indices) && a.topology == b.topology &&
+                          a.host_shape == b.host_shape;
   return bit_if(a.name != b.name, Name) | bit_if(!same_shape, Shape) | bit_if(a.material != b.material, Material);
 }
 

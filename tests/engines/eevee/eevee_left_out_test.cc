@@ -296,6 +296,32 @@ const FrameNode &node_at(const FrameNode &root, const std::vector<std::string> &
   return *node;
 }
 
+TEST(LeftOutOfTheHost, TheTreeNamesAMeshWhoseBuffersTheHostHasNotNamed)
+{
+  scene::Scene scene;
+  const auto material = test::add_material(scene, glm::vec3(0.5F));
+  test::add_object(scene, test::add_square_mesh(scene, material), glm::dmat4(1));
+  const auto terrain = scene.add(scene::Mesh{
+      .name = "terrain", .material = material, .host_shape = scene::HostShape{.bounds = {{-1, -1, -1}, {1, 1, 1}}}});
+  test::add_object(scene, terrain, glm::dmat4(1));
+  const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  SceneRenderer renderer(*device, scene, {16, 16}, {.sample_count = 1});
+  const auto node = [&] {
+    renderer.sync();
+    renderer.draw(test::camera_at({0, -5, 4}, {0, 0, 0}, 0.6F));
+    return node_at(renderer.inspect().report().tree, {"meshes", "terrain"});
+  };
+  const FrameNode without = node();
+  EXPECT_FALSE(without.is_made);
+  EXPECT_EQ(without.why, "the host has named no buffers of it");
+  renderer.render_scene().set_host_batch(
+      terrain, gpu::HostBatch{.positions = {1, 0, 12}, .vertex_count = 3, .index_buffer = 2, .index_count = 3});
+  const FrameNode with = node();
+  EXPECT_TRUE(with.is_made);
+  EXPECT_EQ(with.bytes, 0U);
+  EXPECT_EQ(with.upload_bytes, 0U);
+}
+
 TEST_F(LeftOut, TheTreeGivesTheReason)
 {
   const auto expect_reason = [](const std::string &name, const std::vector<std::string> &path,

@@ -14,7 +14,7 @@
 namespace gnomon::eevee {
 namespace {
 
-using test::HostTexture;
+using test::HostPicture;
 using test::Pixels;
 
 constexpr glm::ivec2 target_size_px(24, 18);
@@ -38,7 +38,7 @@ class TargetGpuTest : public test::HostFramebufferTest {
     const glm::ivec2 pixel = glm::ivec2(x, y) - origin_px;
     return pixel.x >= 0 && pixel.y >= 0 && pixel.x < target_size_px.x && pixel.y < target_size_px.y;
   }
-  static draw::Target target_of(const HostTexture &host, draw::Encoding encoding)
+  static draw::Target target_of(const HostPicture &host, draw::Encoding encoding)
   {
     draw::Target target;
     target.framebuffer = host.framebuffer();
@@ -96,9 +96,9 @@ TEST_P(TargetGpuTest, AFramebufferThatChangesEveryFrameGetsThePictureAndKeepsThe
   ASSERT_GT(truth.at(target_size_px.x / 2, 2)[0], 100);
   SceneRenderer renderer(*device, scene, target_size_px, settings);
   renderer.sync();
-  std::vector<std::unique_ptr<HostTexture>> hosts;
+  std::vector<std::unique_ptr<HostPicture>> hosts;
   for (int frame = 0; frame < 6; frame++) {
-    const HostTexture &host = *hosts.emplace_back(std::make_unique<HostTexture>(host_size_px, GL_SRGB8_ALPHA8, 4));
+    const HostPicture &host = *hosts.emplace_back(std::make_unique<HostPicture>(host_size_px, GL_SRGB8_ALPHA8, 4));
     const Pixels before = host.pixels();
     const auto encoding = frame % 2 == 0 ? draw::Encoding::SrgbFormat : draw::Encoding::Display;
     const bool is_complete = renderer.draw_sample(camera, target_of(host, encoding));
@@ -210,7 +210,7 @@ TEST_P(TargetGpuTest, TheHostsGeometryIsHiddenByWhatIsNearer)
     const draw::HostDepth depth{
         .clip_from_view = is_reversed ? reversed : glm::perspectiveRH_NO(angle, aspect, 0.5, 1000.0),
         .is_zero_to_one = is_reversed};
-    const HostTexture host(host_size_px, GL_RGBA8, 0);
+    const HostPicture host(host_size_px, GL_RGBA8, 0);
     host.clear_depth(is_reversed ? 0.0F : 1.0F);
     draw::Target target = target_of(host, draw::Encoding::Display);
     target.depth = depth;
@@ -258,12 +258,12 @@ TEST_P(TargetGpuTest, OverLiesOnTheHostsContentWhereItIsNearer)
 {
   SceneRenderer renderer(*device, scene, target_size_px, settings);
   renderer.sync();
-  const HostTexture replaced(host_size_px, GL_RGBA8, 0);
+  const HostPicture replaced(host_size_px, GL_RGBA8, 0);
   const draw::Target target = target_of(replaced, draw::Encoding::Display);
   renderer.draw(camera, {}, target);
   const Pixels picture = replaced.pixels();
 
-  const HostTexture host(host_size_px, GL_RGBA8, 0);
+  const HostPicture host(host_size_px, GL_RGBA8, 0);
   const Pixels before = host.pixels();
   draw::Target over = target_of(host, draw::Encoding::Display);
   over.composition = draw::Composition::Over;
@@ -339,10 +339,10 @@ TEST_P(TargetGpuTest, BlendedSurfacesLieOverTheHostsContentAndChangeNoDepth)
   test::add_object(scene, test::add_square_mesh(scene, glass), glm::scale(glm::dmat4(1), glm::dvec3(200)));
   SceneRenderer renderer(*device, scene, target_size_px, settings);
   renderer.sync();
-  const HostTexture replaced(host_size_px, GL_RGBA8, 0);
+  const HostPicture replaced(host_size_px, GL_RGBA8, 0);
   renderer.draw(camera, {}, target_of(replaced, draw::Encoding::Display));
   const Pixels picture = replaced.pixels();
-  const HostTexture host(host_size_px, GL_RGBA8, 0);
+  const HostPicture host(host_size_px, GL_RGBA8, 0);
   const Pixels before = host.pixels();
   host.clear_depth(0.25F);
   draw::Target over = target_of(host, draw::Encoding::Display);

@@ -1,0 +1,454 @@
+// SPDX-License-Identifier: MIT
+// Draws from textures and vertex buffers of the host.
+#include "gpu/gpu_gl_state_table.hh"
+#include "gpu/gpu_host_framebuffer.hh"
+#include "gpu/gpu_testing.hh"
+
+#include "gpu_device.hh"
+
+#include <glm/gtc/packing.hpp>
+
+#include <functional>
+
+namespace gnomon::gpu {
+namespace {
+
+using test::append_draw;
+using test::error_of;
+using test::expect_contains;
+using test::make_shader;
+
+constexpr int edge_px = 16;
+
+/** A buffer of the host. */
+class HostBuffer {
+ public:
+  explicit HostBuffer(std::span<const std::byte> bytes)
+  {
+    glCreateBuffers(1, &name);
+    glNamedBufferData(name, GLsizeiptr(bytes.size()), bytes.data(), GL_STATIC_DRAW);
+  }
+  template <typename T>
+  explicit HostBuffer(const std::vector<T> &values) : HostBuffer(std::as_bytes(std::span(values)))
+  {
+  }
+  ~HostBuffer()
+  {
+    glDeleteBuffers(1, &name);
+  }
+  HostBuffer(const HostBuffer &) = delete;
+  HostBuffer &operator=(const HostBuffer &) = delete;
+
+  GLuint name = 0;
+};
+
+/** A texture of the host of 2x2 texels: red, green, blue, white from the first row on. */
+class HostTexels {
+ public:
+  explicit HostTexels(GLenum format = GL_RGBA8, int levels = 1)
+  {
+    glCreateTextures(GL_TEXTURE_2D, 1, &name);
+    glTextureStorage2D(name, levels, format, 2, 2);
+    constexpr std::array<std::uint8_t, 16> texels = {255, 0, 0,   255, 0,   255, 0,   255,
+                                                     0,   0, 255, 255, 255, 255, 255, 255};
+    glTextureSubImage2D(name, 0, 0, 0, 2, 2, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+  }
+  ~HostTexels()
+  {
+    glDeleteTextures(1, &name);
+  }
+  HostTexels(const HostTexels &) = delete;
+  HostTexels &operator=(const HostTexels &) = delete;
+
+  GLuint name = 0;
+};
+
+/** Writes all streams of a vertex to the picture, one after the other from left to right. */
+constexpr const char *streams_vert = R"(
+layout(location = ATTRIBUTE_POSITION) in vec3 position;
+layout(location = ATTRIBUTE_NORMAL) in vec3 normal;
+layout(location = ATTRIBUTE_UV) in vec2 uv;
+layout(location = ATTRIBUTE_SECOND_UV) in vec2 second_uv;
+layout(location = ATTRIBUTE_TANGENT) in vec4 tangent;
+layout(location = ATTRIBUTE_COLOR) in vec4 color;
+layout(location = ATTRIBUTE_DRAW_INSTANCE) in uvec2 draw_instance;
+layout(location = 0) flat out mat4 values;
+layout(location = 4) flat out vec4 more;
+void main()
+{
+  gl_Position = vec4(position, 1.0);
+  values = mat4(vec4(normal, float(draw_instance.y)), vec4(uv, second_uv), tangent, color);
+  more = vec4(position.z);
+})";
+constexpr const char *streams_frag = R"(
+layout(location = 0) flat in mat4 values;
+layout(location = 4) flat in vec4 more;
+layout(location = 0) out vec4 result;
+void main()
+{
+  const int column = int(gl_FragCoord.x) % 5;
+  result = column < 4 ? values[column] : more;
+})";
+
+class HostResourcesTest : public test::HostFramebufferTest {
+ protected:
+  void SetUp() override
+  {
+    test::HostFramebufferTest::SetUp();
+    if (IsSkipped() || HasFailure()) {
+      return;
+    }
+    picture =
+        device->create_texture({.name = "picture", .format = Format::RGBA32F, .width = edge_px, .height = edge_px});
+    framebuffer = device->create_framebuffer({"picture", {{&picture}}, {}});
+    shader = make_shader(*device, "streams", streams_vert, streams_frag);
+  }
+  std::vector<glm::vec4> drawn(const std::function<void(CommandList &)> &draw)
+  {
+    CommandList list;
+    list.begin_pass("picture", framebuffer, {.clear_color = glm::vec4(-1)});
+    list.set_shader(shader.id());
+    list.set_state(State::WriteColor);
+    draw(list);
+    list.end_pass();
+    device->submit(list);
+    return read_as<glm::vec4>(*device, picture);
+  }
+  static void append_host_draw(CommandList &list, const Batch &batch, std::uint32_t count = 1)
+  {
+    list.bind_host_batch(batch.id());
+    append_draw(list, batch, count);
+  }
+
+  Texture picture;
+  Framebuffer framebuffer;
+  Shader shader;
+};
+
+INSTANTIATE_TEST_SUITE_P(, HostResourcesTest, testing::Values(test::HostKind::Egl, test::HostKind::Glx),
+                         test::name_of_host);
+
+/** Three vertices that cover the target; the last one of a triangle gives the values of flat inputs. */
+struct Vertices {
+  std::vector<glm::vec3> positions{{-1, -1, 0.25F}, {3, -1, 0.25F}, {-1, 3, 0.25F}};
+  std::vector<glm::vec3> normals{3, glm::vec3(0.25F, -0.5F, 1.0F)};
+  std::vector<glm::vec2> uvs{3, glm::vec2(2.0F, -3.0F)};
+  std::vector<glm::vec2> second_uvs{3, glm::vec2(0.5F, 0.125F)};
+  std::vector<glm::vec4> tangents{3, glm::vec4(1.0F, 0.0F, 0.0F, -1.0F)};
+  std::vector<glm::vec4> colors{3, glm::vec4(0.0F, 1.0F, 0.0F, 1.0F)};
+  std::vector<std::uint32_t> indices{0, 1, 2};
+};
+
+TEST_P(HostResourcesTest, InterleavedBuffersOfAnyTypeDrawWhatABatchDraws)
+{
+  const Vertices vertices;
+  std::vector<glm::i16vec4> tangents;
+  std::vector<glm::u16vec4> colors;
+  for (std::size_t i = 0; i < 3; i++) {
+    tangents.push_back(glm::packSnorm<glm::int16>(vertices.tangents[i]));
+    colors.push_back(glm::packUnorm<glm::uint16>(vertices.colors[i]));
+  }
+  const Batch copy = device->create_batch({.name = "copy",
+                                           .positions = vertices.positions,
+                                           .normals = vertices.normals,
+                                           .indices = vertices.indices,
+                                           .uvs = vertices.uvs,
+                                           .second_uvs = vertices.second_uvs,
+                                           .tangents = tangents,
+                                           .colors = colors});
+  const std::vector<glm::vec4> truth = drawn([&](CommandList &list) { append_draw(list, copy); });
+  EXPECT_EQ(truth[1], glm::vec4(2.0F, -3.0F, 0.5F, 0.125F));
+
+  // One unused word before the first vertex, as a host has that draws several meshes from a buffer.
+  struct Vertex {
+    glm::vec3 position;
+    glm::uint64 normal;
+    std::uint32_t uv;
+    glm::vec2 second_uv;
+    std::uint32_t tangent;
+    std::uint32_t color;
+    std::uint32_t unused;
+  };
+  std::vector<std::byte> bytes(8);
+  std::vector<std::uint16_t> indices = {7, 7};
+  std::uint32_t stride = 0;
+  const auto append = [&](const auto &value) {
+    const auto value_bytes = std::as_bytes(std::span(&value, 1));
+    bytes.insert(bytes.end(), value_bytes.begin(), value_bytes.end());
+  };
+  for (std::size_t i = 0; i < 3; i++) {
+    const std::size_t first = bytes.size();
+    append(vertices.positions[i]);
+    append(glm::packHalf4x16(glm::vec4(vertices.normals[i], 0)));
+    append(glm::packHalf2x16(vertices.uvs[i]));
+    append(vertices.second_uvs[i]);
+    append(glm::packSnorm4x8(vertices.tangents[i]));
+    append(glm::packUnorm4x8(vertices.colors[i]));
+    append(std::uint32_t(0xdeadbeef));
+    stride = std::uint32_t(bytes.size() - first);
+    indices.push_back(std::uint16_t(i));
+  }
+  const HostBuffer vertex_buffer(bytes);
+  const HostBuffer index_buffer(indices);
+  const auto at = [&](std::uint32_t offset, VertexType type) {
+    return HostStream{vertex_buffer.name, 8 + offset, stride, type};
+  };
+  const HostBatch host{.positions = at(0, VertexType::Float),
+                       .normals = at(12, VertexType::Half),
+                       .uvs = at(20, VertexType::Half),
+                       .second_uvs = at(24, VertexType::Float),
+                       .tangents = at(32, VertexType::Snorm8),
+                       .colors = at(36, VertexType::Unorm8),
+                       .vertex_count = 3,
+                       .index_buffer = index_buffer.name,
+                       .index_offset_bytes = 4,
+                       .index_count = 3,
+                       .index_type = HostBatch::IndexType::Uint16};
+  const std::uint64_t uploads = device->counters().upload_bytes;
+  Batch batch = device->create_batch("triangle", host);
+  EXPECT_EQ(device->counters().upload_bytes, uploads);
+  EXPECT_EQ(device->live(batch).size_bytes, 0U);
+  EXPECT_EQ(drawn([&](CommandList &list) { append_host_draw(list, batch); }), truth);
+  // The host's buffers are not freed with the batch.
+  batch = Batch();
+  EXPECT_TRUE(glIsBuffer(vertex_buffer.name) && glIsBuffer(index_buffer.name));
+  EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+}
+
+TEST_P(HostResourcesTest, AbsentStreamsAreZerosAndWhite)
+{
+  const Vertices vertices;
+  const HostBuffer positions(vertices.positions);
+  const HostBuffer indices(vertices.indices);
+  const Batch batch = device->create_batch(
+      "triangle",
+      {.positions = {positions.name, 0, 12}, .vertex_count = 3, .index_buffer = indices.name, .index_count = 3});
+  const std::vector<glm::vec4> values = drawn([&](CommandList &list) { append_host_draw(list, batch); });
+  EXPECT_EQ(values[0], glm::vec4(0));
+  EXPECT_EQ(values[1], glm::vec4(0));
+  EXPECT_EQ(values[2], glm::vec4(0));
+  EXPECT_EQ(values[3], glm::vec4(1));
+  EXPECT_EQ(values[4], glm::vec4(0.25F));
+}
+
+TEST_P(HostResourcesTest, DrawsOfBothKindsFollowEachOtherInOneList)
+{
+  const Vertices vertices;
+  std::vector<glm::vec3> nearer = vertices.positions;
+  for (glm::vec3 &position : nearer) {
+    position.z = 0.75F;
+  }
+  const HostBuffer first_positions(vertices.positions);
+  const HostBuffer second_positions(nearer);
+  const HostBuffer indices(vertices.indices);
+  const auto make = [&](const HostBuffer &positions) {
+    return device->create_batch(
+        "host",
+        HostBatch{
+            .positions = {positions.name, 0, 12}, .vertex_count = 3, .index_buffer = indices.name, .index_count = 3});
+  };
+  const Batch first = make(first_positions);
+  const Batch second = make(second_positions);
+  const Batch shared = test::full_triangle(*device, 0.5F);
+  const auto depth_after = [&](const std::function<void(CommandList &)> &draw) { return drawn(draw)[4].x; };
+  const auto draw_shared = [&](CommandList &list) {
+    list.bind_host_batch(0);
+    append_draw(list, shared);
+  };
+  EXPECT_EQ(depth_after([&](CommandList &list) {
+              append_host_draw(list, first);
+              draw_shared(list);
+            }),
+            0.5F);
+  EXPECT_EQ(depth_after([&](CommandList &list) {
+              draw_shared(list);
+              append_host_draw(list, first);
+              append_host_draw(list, second, 3);
+            }),
+            0.75F);
+  // The value of the last of three instances.
+  EXPECT_EQ(drawn([&](CommandList &list) {
+              append_host_draw(list, second);
+              append_host_draw(list, first, 3);
+            })[0],
+            glm::vec4(0, 0, 0, 2));
+}
+
+TEST_P(HostResourcesTest, ADeletedBufferIsFreedAlthoughItWasDrawn)
+{
+  const Vertices vertices;
+  const HostBuffer indices(vertices.indices);
+  GLuint positions = 0;
+  glCreateBuffers(1, &positions);
+  glNamedBufferData(positions, 36, vertices.positions.data(), GL_STATIC_DRAW);
+  Batch batch = device->create_batch(
+      "triangle", {.positions = {positions, 0, 12}, .vertex_count = 3, .index_buffer = indices.name, .index_count = 3});
+  EXPECT_EQ(drawn([&](CommandList &list) { append_host_draw(list, batch); })[4].x, 0.25F);
+  glDeleteBuffers(1, &positions);
+  EXPECT_FALSE(glIsBuffer(positions));
+  batch = Batch();
+  const Batch shared = test::full_triangle(*device, 0.5F);
+  EXPECT_EQ(drawn([&](CommandList &list) { append_draw(list, shared); })[4].x, 0.5F);
+}
+
+TEST_P(HostResourcesTest, BatchesThatDoNotFitAreRefusedByName)
+{
+  const Vertices vertices;
+  const HostBuffer positions(vertices.positions);
+  const HostBuffer indices(vertices.indices);
+  const HostBatch valid{
+      .positions = {positions.name, 0, 12}, .vertex_count = 3, .index_buffer = indices.name, .index_count = 3};
+  const auto message_of = [&](const std::function<void(HostBatch &)> &change) {
+    HostBatch batch = valid;
+    change(batch);
+    return error_of([&] { static_cast<void>(device->create_batch("terrain", batch)); });
+  };
+  const std::size_t live = device->live().size();
+  EXPECT_EQ(message_of([](HostBatch & /*batch*/) {}), "");
+  expect_contains(message_of([](HostBatch &batch) { batch.positions.buffer = 0; }),
+                  "batch 'terrain' of the host: it has no buffer of positions or of indices");
+  expect_contains(message_of([](HostBatch &batch) { batch.index_count = 0; }), "no vertices or no indices");
+  expect_contains(message_of([](HostBatch &batch) { batch.positions.stride_bytes = 0; }),
+                  "the positions have a stride of 0 bytes, not of 1 to 2048");
+  expect_contains(message_of([](HostBatch &batch) { batch.index_offset_bytes = 2; }), "no multiple of 4");
+  expect_contains(message_of([](HostBatch &batch) { batch.positions.buffer = 4321; }),
+                  "batch 'terrain': buffer 4321 of the host, with its positions, does not exist");
+  expect_contains(message_of([](HostBatch &batch) { batch.vertex_count = 4; }),
+                  "has 36 bytes, and its positions end at byte 48");
+  expect_contains(message_of([](HostBatch &batch) { batch.index_count = 6; }),
+                  "has 12 bytes, and its indices end at byte 24");
+  expect_contains(message_of([&](HostBatch &batch) {
+                    batch.colors = {positions.name, 24, 12};
+                  }),
+                  "its colours end at byte 64");
+  EXPECT_EQ(device->live().size(), live);
+  EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+#ifndef NDEBUG
+  const Batch batch = device->create_batch("terrain", valid);
+  CommandList list;
+  const Batch shared = test::full_triangle(*device, 0.5F);
+  list.bind_host_batch(shared.id());
+  expect_contains(error_of([&] { device->submit(list); }), "batch 'full' is not in buffers of the host");
+#endif
+}
+
+TEST_P(HostResourcesTest, TexturesAreLookedUpInTheirOwnFormatAndStayTheHosts)
+{
+  const Shader lookup = make_shader(*device, "lookup", test::CLIP_SPACE_VERT, R"(
+layout(binding = 16) uniform sampler2D image;
+layout(location = 0) out vec4 result;
+void main()
+{
+  result = textureLod(image, gl_FragCoord.xy / 16.0, 3.0);
+})");
+  const Batch full = test::full_triangle(*device, 0.5F);
+  const Sampler nearest = device->create_sampler({.name = "nearest"});
+  const auto looked_up = [&](const HostTexels &host, bool has_mip_levels) {
+    const Texture texture = device->create_texture(texture_desc("screen", {host.name, {2, 2}, has_mip_levels}));
+    EXPECT_EQ(texture.desc().size_bytes(), 0U);
+    return drawn([&](CommandList &list) {
+      list.set_shader(lookup.id());
+      list.bind_texture(16, texture.id(), nearest.id());
+      append_draw(list, full);
+    });
+  };
+  const HostTexels linear;
+  const std::vector<glm::vec4> values = looked_up(linear, false);
+  EXPECT_EQ(values[0], glm::vec4(1, 0, 0, 1));
+  EXPECT_EQ(values[edge_px - 1], glm::vec4(0, 1, 0, 1));
+  EXPECT_EQ(values[edge_px * (edge_px - 1)], glm::vec4(0, 0, 1, 1));
+  EXPECT_TRUE(glIsTexture(linear.name));
+  // Grey 128 of an sRGB format is decoded.
+  const HostTexels encoded(GL_SRGB8_ALPHA8, 2);
+  constexpr std::array<std::uint8_t, 4> grey = {128, 128, 128, 128};
+  glClearTexImage(encoded.name, 0, GL_RGBA, GL_UNSIGNED_BYTE, grey.data());
+  glGenerateTextureMipmap(encoded.name);
+  // OpenGL allows an error of half a step of eight bits for a decoded value.
+  EXPECT_NEAR(looked_up(encoded, true)[0].x, std::pow((128.0 / 255.0 + 0.055) / 1.055, 2.4), 0.5 / 255.0);
+  EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+}
+
+TEST_P(HostResourcesTest, TexturesThatCannotBeLookedUpAreRefusedByName)
+{
+  const HostTexels texels;
+  const HostTexels integers(GL_RGBA8UI);
+  GLuint array = 0;
+  glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &array);
+  glTextureStorage3D(array, 1, GL_RGBA8, 2, 2, 1);
+  // A mutable texture of one level, which a sampler of mip levels would find incomplete.
+  GLuint one_level = 0;
+  glCreateTextures(GL_TEXTURE_2D, 1, &one_level);
+  glBindTexture(GL_TEXTURE_2D, one_level);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 2, 2, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+  glBindTexture(GL_TEXTURE_2D, 0);
+  while (glGetError() != GL_NO_ERROR) {
+  }
+  const auto message_of = [&](const HostTexture &texture) {
+    return error_of([&] { static_cast<void>(device->create_texture(texture_desc("screen", texture))); });
+  };
+  EXPECT_EQ(message_of({texels.name, {2, 2}}), "");
+  EXPECT_EQ(message_of({one_level, {2, 2}}), "");
+  expect_contains(message_of({9876, {2, 2}}), "texture 'screen': texture 9876 of the host does not exist");
+  expect_contains(message_of({texels.name, {4, 2}}), "has 2x2 texels, not 4x2");
+  expect_contains(message_of({array, {2, 2}}), "is not of the target GL_TEXTURE_2D");
+  expect_contains(message_of({integers.name, {2, 2}}), "of floats or of normalised integers");
+  expect_contains(message_of({one_level, {2, 2}, true}), "has no mip level 1");
+  EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+  glDeleteTextures(1, &array);
+  glDeleteTextures(1, &one_level);
+}
+
+TEST_P(HostResourcesTest, TheHostsStateIsUnchanged)
+{
+  const Vertices vertices;
+  const HostBuffer positions(vertices.positions);
+  const HostBuffer indices(vertices.indices);
+  const HostTexels texels;
+  const test::HostObjects objects;
+  test::set_unusual_state(objects);
+  const std::vector<test::StateItem> table = test::state_table();
+  const test::StateSnapshot before(table);
+  const Batch batch = device->create_batch(
+      "triangle",
+      {.positions = {positions.name, 0, 12}, .vertex_count = 3, .index_buffer = indices.name, .index_count = 3});
+  const Texture texture = device->create_texture(texture_desc("screen", {texels.name, {2, 2}}));
+  static_cast<void>(drawn([&](CommandList &list) { append_host_draw(list, batch); }));
+  EXPECT_EQ(before.differences(), std::vector<std::string>());
+}
+
+TEST_P(HostResourcesTest, ARecordedBatchExistsAfterItsSubmission)
+{
+  const Vertices vertices;
+  const HostBuffer positions(vertices.positions);
+  const HostBuffer indices(vertices.indices);
+  const HostBatch host{
+      .positions = {positions.name, 0, 12}, .vertex_count = 3, .index_buffer = indices.name, .index_count = 3};
+  Packet packet;
+  Batch batch;
+  {
+    const Recording recording(*device, packet);
+    batch = device->create_batch("recorded", host);
+  }
+  device->submit(packet);
+  EXPECT_EQ(drawn([&](CommandList &list) { append_host_draw(list, batch); })[4].x, 0.25F);
+  // One that cannot be made is lost with its packet.
+  Batch wrong;
+  {
+    const Recording recording(*device, packet);
+    wrong = device->create_batch(
+        "wrong",
+        HostBatch{
+            .positions = {positions.name, 0, 12}, .vertex_count = 100, .index_buffer = indices.name, .index_count = 3});
+  }
+  expect_contains(error_of([&] { device->submit(packet); }), "batch 'wrong': buffer");
+  {
+    const Recording recording(*device, packet);
+    EXPECT_FALSE(wrong);
+    batch = Batch();
+  }
+  device->submit(packet);
+  EXPECT_EQ(device->live_resources().size(), 3U);
+}
+
+}  // namespace
+}  // namespace gnomon::gpu
