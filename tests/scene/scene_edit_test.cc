@@ -671,9 +671,9 @@ TEST(SceneEdit, InvalidValuesAreRefused)
                                    {"bounds", [](Mesh &mesh) { mesh.host_shape->bounds.min.y = float(nan); }},
                                    {"3 positions and 3 indices beside a shape in the host's buffers", [&](Mesh &mesh) {
                                       mesh.positions = triangle().positions;
-          mesh.normals = triangle().normals;
-          mesh.indices = triangle().indices;
-                                                                }}});
+                                      mesh.normals = triangle().normals;
+                                      mesh.indices = triangle().indices;
+                                    }}});
   expect_refused<Image>(texel(), {{"4 bytes for 2x1", [](Image &image) { image.width = 2; }},
                                   {"3 bytes", [](Image &image) { image.texels.pop_back(); }},
                                   {"0 bytes for 0x0",
