@@ -84,14 +84,17 @@ struct HostStream {
 };
 
 /**
- * Triangles, lines or points in buffers that the host created. Requires ContextKind::Host. This is plain data, which
- * gives nothing to Gnomon: the host may write the buffers between calls, and deletes them after the last call that
- * draws them.
+ * Triangles, lines or points in buffers that the host created. Requires ContextKind::Host. This is plain data, and the
+ * host keeps the ownership. The buffers must live until the last submission of a list that draws them. The host may
+ * write them between calls.
  */
 struct HostBatch {
-  /** Not absent. Object space, metres. */
+  /** Required. Object space, metres. */
   HostStream positions;
-  /** Streams as in a BatchDesc. If one is absent, shaders read zeros, and white for colours. */
+  /**
+   * Streams as in a BatchDesc. If one is absent, shaders read zeros, and white for colours. A mesh of a scene requires
+   * normals.
+   */
   HostStream normals{};
   HostStream uvs{};
   HostStream second_uvs{};
@@ -102,6 +105,7 @@ struct HostBatch {
   std::uint32_t index_buffer = 0;
   /** A multiple of the size of an index. */
   std::uint32_t index_offset_bytes = 0;
+  /** 0: nothing is drawn. */
   std::uint32_t index_count = 0;
   enum class IndexType : std::uint8_t { Uint16, Uint32 } index_type = IndexType::Uint32;
 

@@ -53,8 +53,10 @@ Texture Device::create_texture(const TextureDesc &desc)
            is_buffer ? 1 : int(std::bit_width(unsigned(std::max(desc.width, desc.height)))));
   GNOMON_ASSERT(!is_buffer || (!is_depth(desc.format) && desc.format != Format::SRGB8A8),
                 "texture '{}' of texels in a buffer has the format {}", desc.name, to_string(desc.format));
-  GNOMON_ASSERT((desc.format == Format::Host) == (desc.host_name != 0), "texture '{}' of format {}: host's name {}",
-                desc.name, to_string(desc.format), desc.host_name);
+  if ((desc.format == Format::Host) != (desc.host_name != 0)) {
+    throw Error("texture '{}' of format {}: the name of the host's texture is {}", desc.name, to_string(desc.format),
+                desc.host_name);
+  }
   GNOMON_ASSERT(desc.format != Format::Host || desc.kind == TextureKind::Flat, "texture '{}' of the host", desc.name);
   const std::string detail =
       fmt::format("{}x{}{} {}", desc.width, desc.height, desc.layers > 1 ? fmt::format("x{}", desc.layers) : "",
@@ -205,8 +207,8 @@ Batch Device::create_batch(const std::string &name, const HostBatch &batch)
   if (batch.positions.buffer == 0 || batch.index_buffer == 0) {
     refuse("it has no buffer of positions or of indices");
   }
-  if (batch.vertex_count == 0 || batch.index_count == 0) {
-    refuse("it has no vertices or no indices");
+  if (batch.vertex_count == 0 && batch.index_count > 0) {
+    refuse("it has indices, and no vertices");
   }
   for (std::size_t i = 0; i < vertex_stream_count; i++) {
     const HostStream &stream = batch.stream(VertexStream(i));

@@ -45,15 +45,18 @@ enum class Format : std::uint8_t {
 enum class TextureKind : std::uint8_t { Flat, Array, Buffer };
 
 /**
- * A texture that the host created. Requires ContextKind::Host. This is plain data, which gives nothing to Gnomon: the
- * host may write its texels between calls, and deletes it after the last call that looks it up.
+ * A texture that the host created. Requires ContextKind::Host. This is plain data, and the host keeps the ownership.
+ * The texture must live until the last submission of a list that looks it up. The host may write it between calls.
  */
 struct HostTexture {
   /** OpenGL name of a texture of the target GL_TEXTURE_2D whose channels are floats or normalised; not 0. */
   std::uint32_t name = 0;
   /** Texels of level 0, at least 1x1. */
   glm::ivec2 size_px{0};
-  /** The levels down to 1x1, or down to GL_TEXTURE_MAX_LEVEL, have texels, too. false: only level 0 is looked up. */
+  /**
+   * The texture is complete for filters between mip levels: all levels have texels, down to 1x1, GL_TEXTURE_MAX_LEVEL
+   * or the last one of immutable storage. false: only level 0 is looked up.
+   */
   bool has_mip_levels = false;
 
   bool operator==(const HostTexture &) const = default;

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
 #include <optional>
 #include <thread>
@@ -28,8 +27,11 @@ constexpr int warm_up_count = 30;
 constexpr std::chrono::milliseconds idle_time{2};
 /** Frames in which the camera stands still before it is moved again, so that pictures begin to refine. */
 constexpr int refining_count = 10;
-/** Frames of a moved lamp for each run of arithmetic. Each takes the time of a frame. */
+/** Frames of a moved lamp for each run of arithmetic. */
 constexpr int arithmetic_interval = 5;
+/** Memory of a core: for its first and its second cache on common machines. */
+constexpr std::size_t small_bytes = std::size_t(16) << 10U;
+constexpr std::size_t large_bytes = std::size_t(512) << 10U;
 
 /** Until the device is done. */
 template <typename Work>
@@ -42,37 +44,38 @@ double seconds_of(gpu::Device &device, Work &&work)
   return now(Clock::Wall) - start;
 }
 
-/** Dependent multiplications in registers, the same number on each core at the same time. */
+/** Multiplications of numbers in memory, as many on each core at the same time. */
 class Arithmetic {
  public:
-  /** A run takes about \a seconds. \a seconds must be positive. */
-  explicit Arithmetic(double seconds)
+  /** A run takes about \a seconds, which must be positive. \a bytes: memory of one core */
+  Arithmetic(std::size_t bytes, double seconds)
+      : values_(std::max(1U, std::thread::hardware_concurrency()), std::vector<float>(bytes / sizeof(float), 1.0F))
   {
+    // The first run brings the memory into the caches.
+    run();
     const double start = now(Clock::Wall);
     run();
-    step_count_ = std::int64_t(double(step_count_) * seconds / (now(Clock::Wall) - start));
+    round_count_ = std::max(1, int(double(round_count_) * seconds / (now(Clock::Wall) - start)));
   }
 
-  void run() const
+  void run()
   {
-    std::vector<std::jthread> threads(std::max(1U, std::thread::hardware_concurrency()));
-    for (std::jthread &thread : threads) {
-      thread = std::jthread([this] { multiply(); });
+    std::vector<std::jthread> threads;
+    for (std::vector<float> &values : values_) {
+      threads.emplace_back([this, &values] {
+        for (int round = 0; round < round_count_; round++) {
+          for (float &value : values) {
+            value = value * 0.5F + 0.5F;
+          }
+        }
+      });
     }
   }
 
  private:
-  void multiply() const
-  {
-    double value = 1.0;
-    for (std::int64_t i = 0; i < step_count_; i++) {
-      value = value * 1.0000001 + 1e-9;
-    }
-    // Without a use of the result, the compiler may leave the loop out.
-    [[maybe_unused]] const volatile double result = value;
-  }
-
-  std::int64_t step_count_ = 1'000'000;
+  /** For each core. */
+  std::vector<std::vector<float>> values_;
+  int round_count_ = 100;
 };
 
 gpu::Counters between(const gpu::Counters &before, const gpu::Counters &after)
@@ -123,7 +126,8 @@ class Frames {
     const glm::dmat4 start = scene_.nodes()[node].parent_from_node;
     eevee::SceneRenderer renderer(device_, scene_, settings_.size_px, {.sample_count = 1});
     std::vector<double> warm_up;
-    std::optional<Arithmetic> arithmetic;
+    std::optional<Arithmetic> small;
+    std::optional<Arithmetic> large;
     for (int i = -warm_up_count; i < settings_.frame_count; i++) {
       const double control = seconds_of(device_, [&] { clear(); });
       const double frame = seconds_of(device_, [&] {
@@ -141,10 +145,12 @@ class Frames {
       times.control.push_back(control);
       times.moved_lamp.push_back(frame);
       if (i == 0) {
-        arithmetic.emplace(percentile(warm_up, 0.5));
+        small.emplace(small_bytes, percentile(warm_up, 0.5));
+        large.emplace(large_bytes, percentile(warm_up, 0.5));
       }
       if (i % arithmetic_interval == 0) {
-        times.arithmetic.push_back(seconds_of(device_, [&] { arithmetic->run(); }));
+        times.small_arithmetic.push_back(seconds_of(device_, [&] { small->run(); }));
+        times.large_arithmetic.push_back(seconds_of(device_, [&] { large->run(); }));
       }
     }
     scene_.set_transform(node, start);

@@ -31,10 +31,11 @@ struct FrameTimes {
   /** One lamp is moved, and a whole sample is drawn. Empty: the scene has no lamp. */
   std::vector<double> moved_lamp;
   /**
-   * Multiplications on all cores that use no memory and take about as long as a frame of moved_lamp, after every fifth
-   * of them: the least that the machine adds to work of that length.
+   * Multiplications that take about as long as a frame of moved_lamp, on all cores, after every fifth frame: the least
+   * that the machine adds to work of that length. Of numbers in 16 KiB for each core, and in 512 KiB.
    */
-  std::vector<double> arithmetic;
+  std::vector<double> small_arithmetic;
+  std::vector<double> large_arithmetic;
   /** The camera is moved, and a picture is drawn within the budget. */
   std::vector<double> moved_camera;
   /** A still picture is refined within the budget: without the first frame after the camera has moved. */

@@ -81,34 +81,15 @@ Images::Lookup Images::get(gpu::Device &device, const scene::Scene &scene, scene
     entries.resize(scene.images().index_end());
   }
   Entry &entry = entries[texture.image.index];
-  const auto host = host_textures_.find(texture.image);
-  const bool is_host = host != host_textures_.end();
-  const std::uint64_t revision = is_host ? host->second.revision : 0;
-  if (!entry.texture || entry.handle != texture.image || entry.content != content || entry.host_revision != revision) {
+  const gpu::HostTexture *host = host_textures_.find(texture.image);
+  const std::uint64_t resource = host_textures_.resource_revision(texture.image);
+  if (!entry.texture || entry.handle != texture.image || entry.content != content || entry.host_resource != resource) {
     const scene::Image &image = scene.images()[texture.image];
-    entry = {is_host ? device.create_texture(gpu::texture_desc(image.name, host->second.texture))
-                     : make_image(device, image, is_color),
-             texture.image, content, revision};
+    entry = {host ? device.create_texture(gpu::texture_desc(image.name, *host)) : make_image(device, image, is_color),
+             texture.image, content, resource};
   }
   // A host's texture of one level is incomplete for a sampler that reads others, and looked up as black.
-  return {entry.texture, sampler(device, texture, !is_host || host->second.texture.has_mip_levels)};
-}
-
-void Images::set_host_texture(scene::Handle<scene::Image> handle, const std::optional<gpu::HostTexture> &texture)
-{
-  host_revision_++;
-  if (texture) {
-    host_textures_[handle] = {*texture, host_revision_};
-  }
-  else {
-    host_textures_.erase(handle);
-  }
-}
-
-std::uint64_t Images::host_revision(scene::Handle<scene::Image> handle) const
-{
-  const auto found = host_textures_.find(handle);
-  return found == host_textures_.end() ? 0 : found->second.revision;
+  return {entry.texture, sampler(device, texture, !host || host->has_mip_levels)};
 }
 
 const gpu::Sampler &Images::sampler(gpu::Device &device, const scene::Texture &texture, bool has_mip_levels)
@@ -148,16 +129,19 @@ std::size_t Images::count() const
   return count;
 }
 
-void Images::free_removed(const scene::Pool<scene::Image> &images)
+HostChanges Images::update(const scene::Pool<scene::Image> &images)
 {
-  std::erase_if(host_textures_, [&](const auto &entry) { return !images.is_live(entry.first); });
+  const HostChanges changes =
+      host_textures_.update([&](scene::Handle<scene::Image> handle) { return images.is_live(handle); });
   for (std::vector<Entry> &entries : entries_) {
     for (Entry &entry : entries) {
-      if (entry.texture && !images.is_live(entry.handle)) {
+      if (entry.texture &&
+          (!images.is_live(entry.handle) || (entry.host_resource != 0 && !host_textures_.find(entry.handle)))) {
         entry = {};
       }
     }
   }
+  return changes;
 }
 
 bool is_drawable(const scene::Scene &scene, scene::Handle<scene::Texture> handle)

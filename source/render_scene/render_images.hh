@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "render_host_resources.hh"
+
 #include "scene.hh"
 
 #include "gpu_device.hh"
 
 #include <array>
 #include <map>
-#include <optional>
 
 namespace gnomon::render_scene {
 
@@ -25,7 +26,7 @@ class Images {
   };
   /**
    * Image and sampler of the texture \a handle; a white texel if the texture is not drawable. The references are valid
-   * until the next get() after an edit of the scene's images, or until free_removed().
+   * until the next get() after an edit of the scene's images, or until update().
    * \a is_color: \see scene::TextureInput
    * \throws gpu::Error if the device cannot create the image
    */
@@ -35,16 +36,19 @@ class Images {
   /** Number of textures that images have on the device. */
   [[nodiscard]] std::size_t count() const;
   /** \see RenderScene::set_host_texture */
-  void set_host_texture(scene::Handle<scene::Image> handle, const std::optional<gpu::HostTexture> &texture);
-  /** Increases with each set_host_texture of the image; 0: there was none. */
-  [[nodiscard]] std::uint64_t host_revision(scene::Handle<scene::Image> handle) const;
-  /** Of all images: increases with each set_host_texture. */
-  [[nodiscard]] std::uint64_t host_revision() const
+  [[nodiscard]] HostResources<scene::Image, gpu::HostTexture> &host_textures()
   {
-    return host_revision_;
+    return host_textures_;
   }
-  /** Free the textures of images that were removed from the scene. */
-  void free_removed(const scene::Pool<scene::Image> &images);
+  [[nodiscard]] const HostResources<scene::Image, gpu::HostTexture> &host_textures() const
+  {
+    return host_textures_;
+  }
+  /**
+   * Apply the changes of the host's textures, and free the textures of images that were removed from the scene or were
+   * looked up in a texture that the host has taken back.
+   */
+  HostChanges update(const scene::Pool<scene::Image> &images);
 
  private:
   /** \a has_mip_levels: whether the sampled image has any. */
@@ -54,16 +58,12 @@ class Images {
     gpu::Texture texture;
     scene::Handle<scene::Image> handle;
     scene::Revision content = 0;
-    std::uint64_t host_revision = 0;
-  };
-  struct Host {
-    gpu::HostTexture texture;
-    std::uint64_t revision = 0;
+    /** Of `host_textures_`; 0: the image was uploaded. */
+    std::uint64_t host_resource = 0;
   };
   /** Indexed by is_color and Handle::index. */
   std::array<std::vector<Entry>, 2> entries_;
-  std::map<scene::Handle<scene::Image>, Host> host_textures_;
-  std::uint64_t host_revision_ = 0;
+  HostResources<scene::Image, gpu::HostTexture> host_textures_;
   gpu::Texture white_;
   /** By the sampler's settings, packed into a number. */
   std::map<std::uint32_t, gpu::Sampler> samplers_;

@@ -41,60 +41,14 @@ gpu::Batch make_batch(gpu::Device &device, const scene::Mesh &mesh, MeshStreams 
   return device.create_batch(desc);
 }
 
-}  // namespace
-
-const gpu::Batch &Meshes::get(gpu::Device &device, const scene::Pool<scene::Mesh> &meshes,
-                              scene::Handle<scene::Mesh> handle, MeshStreams streams)
+gpu::Batch make_host_batch(gpu::Device &device, const scene::Mesh &mesh, const gpu::HostBatch &batch)
 {
-  const scene::Mesh &mesh = meshes[handle];
-  const scene::Revision shape = meshes.revision(handle, scene::Mesh::Aspect::Shape);
-  if (entries_.size() <= handle.index) {
-    entries_.resize(meshes.index_end());
-  }
-  Entry &entry = entries_[handle.index];
-  const std::uint64_t host = host_revision(handle);
-  const bool is_same = entry.batch && entry.handle == handle && entry.shape == shape && entry.host_revision == host;
-  if (!is_same || streams > entry.streams) {
-    // Keep the streams that were uploaded before, because other viewports may read them.
-    const MeshStreams all = is_same ? std::max(streams, entry.streams) : streams;
-    entry = mesh.host_shape ? Entry{make_host_batch(device, handle, mesh), handle, shape, host, MeshStreams::All}
-                            : Entry{make_batch(device, mesh, all), handle, shape, host, all};
-  }
-  return entry.batch;
-}
-
-const gpu::Batch *Meshes::find(scene::Handle<scene::Mesh> handle) const
-{
-  const bool is_made =
-      handle.index < entries_.size() && entries_[handle.index].handle == handle && entries_[handle.index].batch;
-  return is_made ? &entries_[handle.index].batch : nullptr;
-}
-
-void Meshes::set_host_batch(scene::Handle<scene::Mesh> handle, const std::optional<gpu::HostBatch> &batch)
-{
-  if (batch) {
-    host_batches_[handle] = {*batch, ++host_revision_};
-  }
-  else {
-    host_batches_.erase(handle);
-  }
-}
-
-std::uint64_t Meshes::host_revision(scene::Handle<scene::Mesh> handle) const
-{
-  const auto found = host_batches_.find(handle);
-  return found == host_batches_.end() ? 0 : found->second.revision;
-}
-
-gpu::Batch Meshes::make_host_batch(gpu::Device &device, scene::Handle<scene::Mesh> handle,
-                                   const scene::Mesh &mesh) const
-{
-  const gpu::HostBatch &batch = host_batches_.at(handle).batch;
   const auto check_stream = [&](bool is_needed, gpu::VertexStream stream) {
     if (is_needed && batch.stream(stream).buffer == 0) {
       throw gpu::Error("mesh '{}': its shape has {}, and the host's batch has none", mesh.name, to_string(stream));
     }
   };
+  check_stream(true, gpu::VertexStream::Normal);
   check_stream(mesh.has_uvs(0), gpu::VertexStream::Uv);
   check_stream(mesh.has_uvs(1), gpu::VertexStream::SecondUv);
   check_stream(mesh.has_tangents(), gpu::VertexStream::Tangent);
@@ -106,14 +60,54 @@ gpu::Batch Meshes::make_host_batch(gpu::Device &device, scene::Handle<scene::Mes
   return device.create_batch(mesh.name, batch);
 }
 
-void Meshes::free_removed(const scene::Pool<scene::Mesh> &meshes)
+}  // namespace
+
+const gpu::Batch &Meshes::get(gpu::Device &device, const scene::Pool<scene::Mesh> &meshes,
+                              scene::Handle<scene::Mesh> handle, MeshStreams streams)
 {
-  std::erase_if(host_batches_, [&](const auto &entry) { return !meshes.is_live(entry.first); });
+  const scene::Mesh &mesh = meshes[handle];
+  const scene::Revision shape = meshes.revision(handle, scene::Mesh::Aspect::Shape);
+  if (entries_.size() <= handle.index) {
+    entries_.resize(meshes.index_end());
+  }
+  Entry &entry = entries_[handle.index];
+  const bool is_same = entry.batch && entry.handle == handle && entry.shape == shape;
+  if (mesh.host_shape) {
+    const gpu::HostBatch *host = host_batches_.find(handle);
+    GNOMON_ASSERT(host, "mesh '{}': the host has named no buffers of it", mesh.name);
+    const std::uint64_t resource = host_batches_.resource_revision(handle);
+    if (!is_same || entry.host_resource != resource) {
+      entry = {make_host_batch(device, mesh, *host), handle, shape, resource, MeshStreams::All};
+    }
+  }
+  else if (!is_same || streams > entry.streams) {
+    // Keep the streams that were uploaded before, because other viewports may read them.
+    const MeshStreams all = is_same ? std::max(streams, entry.streams) : streams;
+    entry = {make_batch(device, mesh, all), handle, shape, 0, all};
+  }
+  return entry.batch;
+}
+
+const gpu::Batch *Meshes::find(scene::Handle<scene::Mesh> handle) const
+{
+  const bool is_made =
+      handle.index < entries_.size() && entries_[handle.index].handle == handle && entries_[handle.index].batch;
+  return is_made ? &entries_[handle.index].batch : nullptr;
+}
+
+HostChanges Meshes::update(const scene::Pool<scene::Mesh> &meshes)
+{
+  const HostChanges changes = host_batches_.update([&](scene::Handle<scene::Mesh> handle) {
+    const scene::Mesh *mesh = meshes.find(handle);
+    return mesh && mesh->host_shape;
+  });
   for (Entry &entry : entries_) {
-    if (entry.batch && !meshes.is_live(entry.handle)) {
+    if (entry.batch &&
+        (!meshes.is_live(entry.handle) || (entry.host_resource != 0 && !host_batches_.find(entry.handle)))) {
       entry = {};
     }
   }
+  return changes;
 }
 
 }  // namespace gnomon::render_scene

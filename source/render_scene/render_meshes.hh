@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "render_host_resources.hh"
+
 #include "scene.hh"
 
 #include "gpu_device.hh"
-
-#include <map>
-#include <optional>
 
 namespace gnomon::render_scene {
 
@@ -28,9 +27,9 @@ class Meshes {
  public:
   /**
    * The triangles of the mesh \a handle on the device, with at least \a streams. The reference is valid until the next
-   * get() of this mesh, until the next get() after meshes were added to the scene, or until free_removed().
+   * get() of this mesh, until the next get() after meshes were added to the scene, or until update().
    * \throws gpu::Error if the device cannot create the batch; the previous batch of the mesh then stays. Also if the
-   * batch of the host has not the streams or the elements of the mesh.
+   * batch of the host does not have the streams or the elements of the mesh.
    * \throws scene::StaleHandle
    */
   const gpu::Batch &get(gpu::Device &device, const scene::Pool<scene::Mesh> &meshes, scene::Handle<scene::Mesh> handle,
@@ -38,35 +37,37 @@ class Meshes {
   /** The batch of a mesh; nullptr if the mesh is not on the device. */
   [[nodiscard]] const gpu::Batch *find(scene::Handle<scene::Mesh> handle) const;
   /** \see RenderScene::set_host_batch */
-  void set_host_batch(scene::Handle<scene::Mesh> handle, const std::optional<gpu::HostBatch> &batch);
+  [[nodiscard]] HostResources<scene::Mesh, gpu::HostBatch> &host_batches()
+  {
+    return host_batches_;
+  }
+  [[nodiscard]] const HostResources<scene::Mesh, gpu::HostBatch> &host_batches() const
+  {
+    return host_batches_;
+  }
   /** Whether the device has, or can be given, the shape of \a mesh. */
   [[nodiscard]] bool has_shape(scene::Handle<scene::Mesh> handle, const scene::Mesh &mesh) const
   {
-    return !mesh.host_shape || host_batches_.contains(handle);
+    return !mesh.host_shape || host_batches_.find(handle);
   }
-  /** Increases with each set_host_batch of the mesh; 0: there was none. */
-  [[nodiscard]] std::uint64_t host_revision(scene::Handle<scene::Mesh> handle) const;
-  /** Free the batches of meshes that were removed from the scene. */
-  void free_removed(const scene::Pool<scene::Mesh> &meshes);
+  /**
+   * Apply the changes of the host's batches, and free the batches of meshes that were removed from the scene or are no
+   * longer in buffers of the host.
+   */
+  HostChanges update(const scene::Pool<scene::Mesh> &meshes);
 
  private:
   struct Entry {
     gpu::Batch batch;
     scene::Handle<scene::Mesh> handle;
     scene::Revision shape = 0;
-    std::uint64_t host_revision = 0;
+    /** Of `host_batches_`; 0: the mesh was uploaded. */
+    std::uint64_t host_resource = 0;
     MeshStreams streams = MeshStreams::Shape;
   };
-  struct Host {
-    gpu::HostBatch batch;
-    std::uint64_t revision = 0;
-  };
-  gpu::Batch make_host_batch(gpu::Device &device, scene::Handle<scene::Mesh> handle, const scene::Mesh &mesh) const;
-
   /** Indexed by Handle::index. */
   std::vector<Entry> entries_;
-  std::map<scene::Handle<scene::Mesh>, Host> host_batches_;
-  std::uint64_t host_revision_ = 0;
+  HostResources<scene::Mesh, gpu::HostBatch> host_batches_;
 };
 
 }  // namespace gnomon::render_scene

@@ -36,32 +36,32 @@ void RenderScene::update()
   if (is_up_to_date()) {
     return;
   }
-  meshes_.free_removed(scene_.meshes());
-  images_.free_removed(scene_.images());
+  host_batch_changes_ = meshes_.update(scene_.meshes());
+  host_texture_changes_ = images_.update(scene_.images());
   materials_.update(scene_);
   update_objects();
   update_lamps();
   update_revisions();
   seen_ = scene_.revision();
   is_origin_changed_ = false;
-  is_host_changed_ = false;
+  has_host_calls_ = false;
 }
 
 void RenderScene::set_host_batch(scene::Handle<scene::Mesh> handle, const std::optional<gpu::HostBatch> &batch)
 {
   const scene::Mesh &mesh = scene_.meshes()[handle];
-  if (!mesh.host_shape) {
+  if (batch && !mesh.host_shape) {
     throw gpu::Error("mesh '{}': it has no shape in buffers of a host (Mesh::host_shape)", mesh.name);
   }
-  meshes_.set_host_batch(handle, batch);
-  is_host_changed_ = true;
+  meshes_.host_batches().set(handle, batch);
+  has_host_calls_ = true;
 }
 
 void RenderScene::set_host_texture(scene::Handle<scene::Image> handle, const std::optional<gpu::HostTexture> &texture)
 {
   [[maybe_unused]] const scene::Image &image = scene_.images()[handle];
-  images_.set_host_texture(handle, texture);
-  is_host_changed_ = true;
+  images_.host_textures().set(handle, texture);
+  has_host_calls_ = true;
 }
 
 void RenderScene::remove_objects(NodeObjects &entry)
@@ -82,7 +82,7 @@ void RenderScene::update_objects()
       std::max(scene_.materials().latest(scene::Material::Aspect::Coverage), scene_.surface_functions().latest());
   const scene::Revision latest = std::max({nodes.latest(Transform), nodes.latest(Content), nodes.latest(Visibility),
                                            nodes.latest(Shadow), meshes, materials});
-  if (latest <= seen_ && !is_origin_changed_ && !is_host_changed_) {
+  if (latest <= seen_ && !is_origin_changed_ && !host_batch_changes_.resources) {
     return;
   }
   for (NodeObjects &entry : node_objects_) {
@@ -99,7 +99,7 @@ void RenderScene::update_objects()
   }
   node_objects_.resize(nodes.index_end());
   // Update every node if a mesh or material was edited, because any node may use it. Such edits are rare.
-  const bool is_anew = is_origin_changed_ || is_host_changed_ || std::max(meshes, materials) > seen_;
+  const bool is_anew = is_origin_changed_ || host_batch_changes_.resources || std::max(meshes, materials) > seen_;
   for (const auto &[handle, node] : nodes) {
     if (is_anew || nodes.revision(handle, Transform) > seen_ || nodes.revision(handle, Content) > seen_ ||
         nodes.revision(handle, Visibility) > seen_ || nodes.revision(handle, Shadow) > seen_) {
@@ -214,7 +214,9 @@ void RenderScene::update_revisions()
        materials.latest(Material::Coverage), materials.latest(Material::Textures), scene_.textures().latest(),
        scene_.images().latest(scene::Image::Aspect::Content),
        scene_.surface_functions().latest(scene::SurfaceFunction::Aspect::Text)});
-  passes_revision_ += passes > seen_ || is_host_changed_ ? 1 : 0;
+  const bool are_resources_new = host_batch_changes_.resources || host_texture_changes_.resources;
+  passes_revision_ += passes > seen_ || are_resources_new ? 1 : 0;
+  host_content_revision_ += host_batch_changes_.content || host_texture_changes_.content ? 1 : 0;
   materials_revision_ += materials.latest(Material::Surface) > seen_ ? 1 : 0;
 }
 

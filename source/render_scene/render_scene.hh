@@ -50,7 +50,7 @@ class RenderScene {
   /** Whether the scene, the origin and the host's resources are unchanged since the last update(). */
   [[nodiscard]] bool is_up_to_date() const
   {
-    return seen_ == scene_.revision() && !is_origin_changed_ && !is_host_changed_;
+    return seen_ == scene_.revision() && !is_origin_changed_ && !has_host_calls_;
   }
   /**
    * Set the origin, in metres and the scene's world space, and call update() afterwards. A new origin changes all
@@ -67,24 +67,28 @@ class RenderScene {
   }
 
   /**
-   * Draw the mesh \a handle from buffers that the host has on the device, without a copy. Call it again after their
-   * content has changed, and before the buffers are deleted, with other ones or with std::nullopt: the mesh is then not
-   * drawn. Until the first call it is not drawn either. Takes effect with the next update(). That and the next sync of
-   * an engine are made on one thread, and only they use the names.
+   * Draw the mesh \a handle from buffers that the host has on the device, without a copy. Before the first call, and
+   * after a call with std::nullopt, the mesh is not drawn. Call it again after the content of the buffers has changed:
+   * shadows are then drawn again, and pictures restart. If \a batch is the same, nothing else is done.
+   *
+   * Takes effect with the next update(). Functions that update(), sync or draw may use the old names until all
+   * viewports are synced after it, so the buffers must live until then, and until the submission of packets that were
+   * recorded before. Removal of the mesh from the scene takes the buffers back, too. Call it on the thread of update().
    *
    * \throws scene::StaleHandle
-   * \throws gpu::Error if the mesh has no Mesh::host_shape. Nothing changes then. What is wrong with the buffers, such
-   * as a size, is thrown by the sync or the draw that first needs them.
+   * \throws gpu::Error if \a batch is present and the mesh has no Mesh::host_shape. Nothing changes then. Errors in the
+   * buffers, such as a wrong size, are thrown by the sync or draw that first uses them; during a recording, by the
+   * submission of its packet.
    */
   void set_host_batch(scene::Handle<scene::Mesh> handle, const std::optional<gpu::HostBatch> &batch);
   /**
-   * Look up the image \a handle in a texture that the host has on the device, without a copy. Call it again after its
-   * texels have changed, and before the texture is deleted, with another one or with std::nullopt: the image's own
-   * texels are then looked up. Takes effect with the next update().
+   * Look up the image \a handle in a texture that the host has on the device, without a copy. After a call with
+   * std::nullopt, the image's own texels are looked up. Otherwise as set_host_batch.
    *
    * v = 0 is the first row of the texture, which is the lowest one of a picture that OpenGL has drawn;
-   * scene::TextureSlot can turn it. Colours must be in an sRGB format, or linear. Image::texels stand for the texture
-   * where the CPU reads them: in the reference, light of emissive surfaces and files, and Image::is_opaque.
+   * scene::TextureSlot can turn it. For colours, the texture must have an sRGB format, or linear values; for data
+   * (scene::TextureInput), no sRGB format. Image::texels stand for the texture where the CPU reads them: in the
+   * reference, light of emissive surfaces and files, and for Image::is_opaque.
    *
    * \throws scene::StaleHandle
    */
@@ -125,12 +129,17 @@ class RenderScene {
   }
   /**
    * Increases when update() finds a change after which passes must be built again: the shape or material of a mesh, the
-   * coverage or textures of a material, an image, a surface function, the settings of a texture, or resources of the
-   * host. For objects, see draw::ObjectBuffer::revision.
+   * coverage or textures of a material, an image, a surface function, the settings of a texture, or names, layouts
+   * and sizes of the host's resources. For objects, see draw::ObjectBuffer::revision.
    */
   [[nodiscard]] std::uint64_t passes_revision() const
   {
     return passes_revision_;
+  }
+  /** Increases when update() finds that resources of the host may have other content. */
+  [[nodiscard]] std::uint64_t host_content_revision() const
+  {
+    return host_content_revision_;
   }
   /** Increases when update() finds that a factor of a material has changed. */
   [[nodiscard]] std::uint64_t materials_revision() const
@@ -201,7 +210,11 @@ class RenderScene {
   glm::dvec3 origin_ws_{0.0};
   bool is_origin_changed_ = true;
   /** set_host_batch or set_host_texture was called since the last update. */
-  bool is_host_changed_ = false;
+  bool has_host_calls_ = false;
+  /** What the current update() has found. */
+  HostChanges host_batch_changes_;
+  HostChanges host_texture_changes_;
+  std::uint64_t host_content_revision_ = 0;
   /** Scene::revision of the last update. */
   scene::Revision seen_ = 0;
   draw::ObjectBuffer objects_;

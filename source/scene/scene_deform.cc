@@ -163,7 +163,8 @@ void set_morph_weights(Scene &scene, Handle<Node> node, std::span<const double> 
 void deform_meshes(Scene &scene)
 {
   for (DeformedMesh &deformed : scene.deformed_meshes) {
-    if (scene.meshes().is_live(deformed.mesh) && scene.nodes().is_live(deformed.node)) {
+    const Mesh *mesh = scene.meshes().find(deformed.mesh);
+    if (mesh && !mesh->host_shape && scene.nodes().is_live(deformed.node)) {
       deform(scene, deformed);
     }
   }

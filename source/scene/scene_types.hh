@@ -297,12 +297,12 @@ enum class Topology { Triangles, Lines, Points };
 }
 
 /**
- * A shape in vertex buffers of a host, whose elements only the device knows: render_scene::RenderScene::set_host_batch
- * names the buffers on a device. It is drawn and casts shadows. The reference, light of emissive surfaces, poses and
- * files leave it out.
+ * A shape in vertex buffers that a host has on a device. RenderScene::set_host_batch names the buffers. The CPU does not
+ * know the triangles: they are drawn and cast shadows, but the reference, light of emissive surfaces, poses and files
+ * leave them out.
  */
 struct HostShape {
-  /** A box around all positions: finite and not empty. Object space, metres. What is outside of it may be missing. */
+  /** A box around all positions: finite and not empty. Object space, metres. Parts outside of it may be missing. */
   Bounds bounds{};
   /** The streams that the buffers have beside positions and normals, as those of Mesh. */
   bool has_uvs = false;

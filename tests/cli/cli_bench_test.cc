@@ -122,7 +122,8 @@ TEST_F(BenchTest, FramesOfAStillPictureDrawAndUploadNothing)
   const json bench = json::parse(read("bench.json"));
   ASSERT_EQ(bench["rows"].size(), 1U);
   const json &row = bench["rows"][0];
-  for (const char *what : {"control", "moved_lamp", "arithmetic", "moved_camera", "refined"}) {
+  for (const char *what :
+       {"control", "moved_lamp", "small_arithmetic", "large_arithmetic", "moved_camera", "refined"}) {
     EXPECT_LE(row[what]["p50"], row[what]["p95"]) << what;
     EXPECT_LE(row[what]["p95"], row[what]["longest"]) << what;
   }

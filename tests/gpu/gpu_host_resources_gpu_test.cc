@@ -274,21 +274,34 @@ TEST_P(HostResourcesTest, DrawsOfBothKindsFollowEachOtherInOneList)
             glm::vec4(0, 0, 0, 2));
 }
 
-TEST_P(HostResourcesTest, ADeletedBufferIsFreedAlthoughItWasDrawn)
+TEST_P(HostResourcesTest, NoVertexArrayKeepsTheHostsBuffersAfterADraw)
 {
   const Vertices vertices;
+  const HostBuffer positions(vertices.positions);
   const HostBuffer indices(vertices.indices);
-  GLuint positions = 0;
-  glCreateBuffers(1, &positions);
-  glNamedBufferData(positions, 36, vertices.positions.data(), GL_STATIC_DRAW);
-  Batch batch = device->create_batch(
-      "triangle", {.positions = {positions, 0, 12}, .vertex_count = 3, .index_buffer = indices.name, .index_count = 3});
+  const Batch batch = device->create_batch(
+      "triangle",
+      {.positions = {positions.name, 0, 12}, .vertex_count = 3, .index_buffer = indices.name, .index_count = 3});
   EXPECT_EQ(drawn([&](CommandList &list) { append_host_draw(list, batch); })[4].x, 0.25F);
-  glDeleteBuffers(1, &positions);
-  EXPECT_FALSE(glIsBuffer(positions));
-  batch = Batch();
-  const Batch shared = test::full_triangle(*device, 0.5F);
-  EXPECT_EQ(drawn([&](CommandList &list) { append_draw(list, shared); })[4].x, 0.5F);
+  // A buffer that a vertex array names is not freed when its host deletes it.
+  int array_count = 0;
+  for (GLuint array = 1; array < 100; array++) {
+    if (!glIsVertexArray(array)) {
+      continue;
+    }
+    array_count++;
+    glBindVertexArray(array);
+    GLint element_buffer = 0;
+    glGetIntegerv(GL_ELEMENT_ARRAY_BUFFER_BINDING, &element_buffer);
+    EXPECT_NE(GLuint(element_buffer), indices.name);
+    for (GLuint binding = 0; binding < 16; binding++) {
+      GLint buffer = 0;
+      glGetIntegeri_v(GL_VERTEX_BINDING_BUFFER, binding, &buffer);
+      EXPECT_NE(GLuint(buffer), positions.name) << binding;
+    }
+  }
+  glBindVertexArray(0);
+  EXPECT_GE(array_count, 3);
 }
 
 TEST_P(HostResourcesTest, BatchesThatDoNotFitAreRefusedByName)
@@ -307,7 +320,8 @@ TEST_P(HostResourcesTest, BatchesThatDoNotFitAreRefusedByName)
   EXPECT_EQ(message_of([](HostBatch & /*batch*/) {}), "");
   expect_contains(message_of([](HostBatch &batch) { batch.positions.buffer = 0; }),
                   "batch 'terrain' of the host: it has no buffer of positions or of indices");
-  expect_contains(message_of([](HostBatch &batch) { batch.index_count = 0; }), "no vertices or no indices");
+  expect_contains(message_of([](HostBatch &batch) { batch.vertex_count = 0; }), "it has indices, and no vertices");
+  EXPECT_EQ(message_of([](HostBatch &batch) { batch.vertex_count = batch.index_count = 0; }), "");
   expect_contains(message_of([](HostBatch &batch) { batch.positions.stride_bytes = 0; }),
                   "the positions have a stride of 0 bytes, not of 1 to 2048");
   expect_contains(message_of([](HostBatch &batch) { batch.index_offset_bytes = 2; }), "no multiple of 4");
@@ -343,12 +357,13 @@ void main()
 })");
   const Batch full = test::full_triangle(*device, 0.5F);
   const Sampler nearest = device->create_sampler({.name = "nearest"});
+  const Sampler of_levels = device->create_sampler({.name = "of_levels", .mip = MipFilter::Nearest});
   const auto looked_up = [&](const HostTexels &host, bool has_mip_levels) {
     const Texture texture = device->create_texture(texture_desc("screen", {host.name, {2, 2}, has_mip_levels}));
     EXPECT_EQ(texture.desc().size_bytes(), 0U);
     return drawn([&](CommandList &list) {
       list.set_shader(lookup.id());
-      list.bind_texture(16, texture.id(), nearest.id());
+      list.bind_texture(16, texture.id(), has_mip_levels ? of_levels.id() : nearest.id());
       append_draw(list, full);
     });
   };
@@ -358,13 +373,15 @@ void main()
   EXPECT_EQ(values[edge_px - 1], glm::vec4(0, 1, 0, 1));
   EXPECT_EQ(values[edge_px * (edge_px - 1)], glm::vec4(0, 0, 1, 1));
   EXPECT_TRUE(glIsTexture(linear.name));
-  // Grey 128 of an sRGB format is decoded.
-  const HostTexels encoded(GL_SRGB8_ALPHA8, 2);
+  // Grey 128 of an sRGB format is decoded. OpenGL allows an error of half a step of eight bits.
+  const HostTexels encoded(GL_SRGB8_ALPHA8);
   constexpr std::array<std::uint8_t, 4> grey = {128, 128, 128, 128};
   glClearTexImage(encoded.name, 0, GL_RGBA, GL_UNSIGNED_BYTE, grey.data());
-  glGenerateTextureMipmap(encoded.name);
-  // OpenGL allows an error of half a step of eight bits for a decoded value.
-  EXPECT_NEAR(looked_up(encoded, true)[0].x, std::pow((128.0 / 255.0 + 0.055) / 1.055, 2.4), 0.5 / 255.0);
+  EXPECT_NEAR(looked_up(encoded, false)[0].x, std::pow((128.0 / 255.0 + 0.055) / 1.055, 2.4), 0.5 / 255.0);
+  // Level 1 is read where the texture is said to have it.
+  const HostTexels levels(GL_RGBA8, 2);
+  glClearTexImage(levels.name, 1, GL_RGBA, GL_UNSIGNED_BYTE, grey.data());
+  EXPECT_NEAR(looked_up(levels, true)[0].y, 128.0 / 255.0, 1e-4);
   EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
 }
 
@@ -388,6 +405,8 @@ TEST_P(HostResourcesTest, TexturesThatCannotBeLookedUpAreRefusedByName)
   };
   EXPECT_EQ(message_of({texels.name, {2, 2}}), "");
   EXPECT_EQ(message_of({one_level, {2, 2}}), "");
+  // Immutable storage is complete with fewer levels.
+  EXPECT_EQ(message_of({texels.name, {2, 2}, true}), "");
   expect_contains(message_of({9876, {2, 2}}), "texture 'screen': texture 9876 of the host does not exist");
   expect_contains(message_of({texels.name, {4, 2}}), "has 2x2 texels, not 4x2");
   expect_contains(message_of({array, {2, 2}}), "is not of the target GL_TEXTURE_2D");
@@ -396,6 +415,7 @@ TEST_P(HostResourcesTest, TexturesThatCannotBeLookedUpAreRefusedByName)
   EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
   glDeleteTextures(1, &array);
   glDeleteTextures(1, &one_level);
+  expect_contains(message_of({0, {2, 2}}), "the name of the host's texture is 0");
 }
 
 TEST_P(HostResourcesTest, TheHostsStateIsUnchanged)

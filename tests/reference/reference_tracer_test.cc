@@ -142,6 +142,12 @@ TEST(Tracer, SurfaceFunctionsLinesAndPointsThatItDoesNotTraceAreNamed)
                 "mesh 'mesh of lines': the reference does not trace lines; the errors include this difference"}));
   scene.edit(hidden, [](scene::Node &node) { node.is_visible = false; });
   EXPECT_EQ(untraced_parts(scene).size(), 1U);
+  const auto of_host =
+      scene.add(scene::Mesh{.name = "terrain", .host_shape = scene::HostShape{.bounds = {{-1, -1, -1}, {1, 1, 1}}}});
+  scene.add(scene::Node{.meshes = {of_host}});
+  EXPECT_EQ(untraced_parts(scene).back(),
+            "mesh 'terrain': the reference does not trace buffers of a host; the errors include this difference");
+  EXPECT_FALSE(Tracer(scene).closest({{-0.5, -0.5, 5}, {0, 0, -1}}, Faces::All));
 }
 
 TEST(Tracer, RaysDoNotSlipBetweenTrianglesThatShareAnEdge)

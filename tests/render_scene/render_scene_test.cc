@@ -255,7 +255,8 @@ scene::Mesh host_mesh(scene::Handle<scene::Material> material)
   return {.name = "terrain", .material = material, .host_shape = scene::HostShape{.bounds = {{-1, -1, 0}, {1, 1, 0}}}};
 }
 
-constexpr gpu::HostBatch host_batch{.positions = {1, 0, 12}, .vertex_count = 4, .index_buffer = 2, .index_count = 6};
+constexpr gpu::HostBatch host_batch{
+    .positions = {1, 0, 12}, .normals = {2, 0, 12}, .vertex_count = 4, .index_buffer = 3, .index_count = 6};
 
 TEST_F(RenderSceneTest, AHostsMeshIsDrawnFromItsBuffersWithoutAnUpload)
 {
@@ -266,6 +267,7 @@ TEST_F(RenderSceneTest, AHostsMeshIsDrawnFromItsBuffersWithoutAnUpload)
   const std::uint64_t passes = render_scene.passes_revision();
   render_scene.set_host_batch(terrain, host_batch);
   EXPECT_FALSE(render_scene.is_up_to_date());
+  EXPECT_FALSE(render_scene.meshes().has_shape(terrain, scene.meshes()[terrain])) << "before the update";
   render_scene.update();
   EXPECT_TRUE(render_scene.is_up_to_date());
   EXPECT_EQ(object_count(), 1U);
@@ -274,13 +276,39 @@ TEST_F(RenderSceneTest, AHostsMeshIsDrawnFromItsBuffersWithoutAnUpload)
   EXPECT_EQ(uploads_of_batch(terrain, MeshStreams::All), 0U);
   const gpu::ResourceId first = render_scene.meshes().find(terrain)->id();
   EXPECT_EQ(render_scene.batch(terrain, MeshStreams::Shape).id(), first);
-  // Other content, and then no buffers.
-  render_scene.set_host_batch(terrain, host_batch);
-  render_scene.update();
-  EXPECT_NE(render_scene.batch(terrain, MeshStreams::Shape).id(), first);
   render_scene.set_host_batch(terrain, std::nullopt);
+  EXPECT_EQ(render_scene.batch(terrain, MeshStreams::Shape).id(), first) << "before the update";
   render_scene.update();
   EXPECT_EQ(object_count(), 0U);
+  EXPECT_EQ(render_scene.meshes().find(terrain), nullptr);
+  EXPECT_TRUE(device->live_resources().empty());
+}
+
+TEST_F(RenderSceneTest, OtherContentOfTheHostBuildsNoPassAgain)
+{
+  const scene::Handle<scene::Mesh> terrain = scene.add(host_mesh(material));
+  add_object(scene, terrain, at({}));
+  render_scene.set_host_batch(terrain, host_batch);
+  render_scene.update();
+  const gpu::ResourceId first = render_scene.batch(terrain, MeshStreams::Shape).id();
+  const std::uint64_t passes = render_scene.passes_revision();
+  std::uint64_t content = render_scene.host_content_revision();
+  EXPECT_TRUE(changed_by([&] { render_scene.set_host_batch(terrain, host_batch); }).empty());
+  EXPECT_EQ(render_scene.batch(terrain, MeshStreams::Shape).id(), first);
+  EXPECT_EQ(render_scene.passes_revision(), passes);
+  EXPECT_GT(render_scene.host_content_revision(), content);
+  content = render_scene.host_content_revision();
+  gpu::HostBatch shorter = host_batch;
+  shorter.index_count = 3;
+  render_scene.set_host_batch(terrain, shorter);
+  render_scene.update();
+  EXPECT_NE(render_scene.batch(terrain, MeshStreams::Shape).id(), first);
+  EXPECT_GT(render_scene.passes_revision(), passes);
+  EXPECT_GT(render_scene.host_content_revision(), content);
+  content = render_scene.host_content_revision();
+  render_scene.set_host_batch(mesh, std::nullopt);
+  render_scene.update();
+  EXPECT_EQ(render_scene.host_content_revision(), content) << "it had none";
 }
 
 TEST_F(RenderSceneTest, AHostsMeshInThePlaceOfARemovedOneHasNoBuffers)
@@ -298,6 +326,23 @@ TEST_F(RenderSceneTest, AHostsMeshInThePlaceOfARemovedOneHasNoBuffers)
   EXPECT_THROW(render_scene.set_host_batch(terrain, host_batch), scene::StaleHandle);
 }
 
+TEST_F(RenderSceneTest, AMeshThatWasUploadedMeanwhileHasNoBuffersOfTheHost)
+{
+  const scene::Handle<scene::Mesh> terrain = scene.add(host_mesh(material));
+  add_object(scene, terrain, at({}));
+  render_scene.set_host_batch(terrain, host_batch);
+  render_scene.update();
+  const scene::Mesh before = scene.meshes()[terrain];
+  scene.replace(terrain, scene.meshes()[mesh]);
+  render_scene.update();
+  EXPECT_EQ(object_count(), 1U);
+  EXPECT_GT(uploads_of_batch(terrain), 0U);
+  render_scene.set_host_batch(terrain, std::nullopt);
+  scene.replace(terrain, before);
+  render_scene.update();
+  EXPECT_EQ(object_count(), 0U) << "the host may have deleted its buffers";
+}
+
 TEST_F(RenderSceneTest, BuffersThatDoNotFitTheMeshAreRefusedByName)
 {
   const auto message_of = [](const auto &action) { return test::error_of(action); };
@@ -308,6 +353,7 @@ TEST_F(RenderSceneTest, BuffersThatDoNotFitTheMeshAreRefusedByName)
   const scene::Handle<scene::Mesh> terrain = scene.add(textured);
   const auto batch_error = [&](const gpu::HostBatch &batch) {
     render_scene.set_host_batch(terrain, batch);
+    render_scene.update();
     return message_of([&] { static_cast<void>(render_scene.batch(terrain, MeshStreams::All)); });
   };
   test::expect_contains(batch_error(host_batch), "mesh 'terrain': its shape has uvs, and the host's batch has none");
@@ -317,6 +363,10 @@ TEST_F(RenderSceneTest, BuffersThatDoNotFitTheMeshAreRefusedByName)
   with_uvs.index_count = 4;
   test::expect_contains(batch_error(with_uvs),
                         "mesh 'terrain': the 4 indices of the host's batch are no multiple of 3");
+  with_uvs.index_count = 0;
+  EXPECT_EQ(batch_error(with_uvs), "");
+  with_uvs.normals = {};
+  test::expect_contains(batch_error(with_uvs), "its shape has normals");
 }
 
 TEST_F(RenderSceneTest, AHostsTextureIsLookedUpWithoutAnUploadUntilItIsTakenBack)
@@ -346,8 +396,13 @@ TEST_F(RenderSceneTest, AHostsTextureIsLookedUpWithoutAnUploadUntilItIsTakenBack
   EXPECT_EQ(device->memory_bytes(), 0U);
   render_scene.set_host_texture(image, std::nullopt);
   render_scene.update();
+  EXPECT_EQ(render_scene.images().find(image), nullptr);
   EXPECT_EQ(render_scene.texture(texture, true).image.desc().width, 1);
   EXPECT_GT(device->counters().upload_bytes, uploads);
+  render_scene.set_host_texture(image, gpu::HostTexture{0, {64, 32}});
+  render_scene.update();
+  test::expect_contains(test::error_of([&] { static_cast<void>(render_scene.texture(texture, true)); }),
+                        "the name of the host's texture is 0");
 }
 
 TEST_F(RenderSceneTest, HiddenNodesHaveNoObjectAndNoLamp)

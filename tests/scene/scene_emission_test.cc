@@ -231,6 +231,14 @@ TEST_F(EmissiveSurfacesTest, DeformedMeshesEmitFromTheirPose)
   deform_meshes(scene);
   EXPECT_NE(emission_state(scene), rest);
   EXPECT_NEAR(EmissiveSurfaces(scene, scene.objects()).at({0.5, 0.5, 0.5}).position.z, 5.0, 1e-6);
+  // A pose of a mesh that a host deforms on the device is left out, and so is its light.
+  scene.replace(deformed, Mesh{.name = "of the host",
+                               .material = scene.meshes()[deformed].material,
+                               .host_shape = HostShape{.bounds = {{-1, -1, -1}, {1, 1, 1}}}});
+  scene.deformed_meshes.front().weights = {0.5};
+  deform_meshes(scene);
+  EXPECT_TRUE(scene.meshes()[deformed].positions.empty());
+  EXPECT_TRUE(EmissiveSurfaces(scene, scene.objects()).empty());
 }
 
 }  // namespace

@@ -102,9 +102,9 @@ void Engine::sync_lamps(SharedData &shared, const gpu::Limits &device_limits)
 {
   const int emissive_count = settings_.planned_sample_count() > 1 ? settings_.emissive_point_count : 0;
   shared.emission.update(scene_, emissive_count > 0);
-  const ShadowsKey key{scene_.lamps_revision(),   scene_.objects().revision(), scene_.passes_revision(),
-                       settings_revision_,        shaders_->revision(),        shared.shadows.viewports_revision(),
-                       shared.emission.revision()};
+  const ShadowsKey key{scene_.lamps_revision(),    scene_.objects().revision(),   scene_.passes_revision(),
+                       settings_revision_,         shaders_->revision(),          shared.shadows.viewports_revision(),
+                       shared.emission.revision(), scene_.host_content_revision()};
   if (shared.synced == key) {
     return;
   }
@@ -209,8 +209,9 @@ void Engine::cache_finish(draw::Viewport &viewport)
   data.stl.is_collecting = false;
   sync_lamps(*data.shared, viewport.device().limits());
   follow_lamps(data);
-  const PictureKey picture{scene_.objects().revision(), scene_.lamps_revision(), scene_.passes_revision(),
-                           scene_.materials_revision(), settings_revision_,      shaders_->revision()};
+  const PictureKey picture{scene_.objects().revision(),   scene_.lamps_revision(), scene_.passes_revision(),
+                           scene_.materials_revision(),   settings_revision_,      shaders_->revision(),
+                           scene_.host_content_revision()};
   if (data.stl.synced_picture != picture) {
     viewport.restart();
     data.depth_feedback.forget();

@@ -153,6 +153,7 @@ struct ShadowsKey {
   std::uint64_t shaders = 0;
   std::uint64_t viewports = 0;
   std::uint64_t emission = 0;
+  std::uint64_t host_content = 0;
 
   bool operator==(const ShadowsKey &) const = default;
 };
@@ -165,6 +166,7 @@ struct PictureKey {
   std::uint64_t materials = 0;
   std::uint64_t settings = 0;
   std::uint64_t shaders = 0;
+  std::uint64_t host_content = 0;
 
   bool operator==(const PictureKey &) const = default;
 };

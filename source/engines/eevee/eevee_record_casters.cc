@@ -67,7 +67,7 @@ std::uint64_t mesh_fingerprint(const render_scene::RenderScene &render_scene, sc
   } key{};
   key.mesh = handle.key();
   key.shape = scene.meshes().revision(handle, scene::Mesh::Aspect::Shape);
-  key.host_shape = render_scene.meshes().host_revision(handle);
+  key.host_shape = render_scene.meshes().host_batches().content_revision(handle);
   key.is_double_sided = material.is_double_sided ? 1 : 0;
   if (render_scene::is_masked(scene, mesh) || render_scene::lets_light_through(scene, mesh)) {
     key.alpha_mode = std::uint64_t(material.alpha_mode);
@@ -78,7 +78,7 @@ std::uint64_t mesh_fingerprint(const render_scene::RenderScene &render_scene, sc
       key.sampler = scene.textures().revision(slot.texture, scene::Texture::Aspect::Sampler);
       const scene::Handle<scene::Image> image = scene.textures()[slot.texture].image;
       key.content = scene.images().revision(image, scene::Image::Aspect::Content);
-      key.host_content = render_scene.images().host_revision(image);
+      key.host_content = render_scene.images().host_textures().content_revision(image);
       key.uv_offset = slot.offset;
       key.uv_scale = slot.scale;
       key.uv_rotation = slot.rotation;
@@ -92,7 +92,7 @@ std::uint64_t mesh_fingerprint(const render_scene::RenderScene &render_scene, sc
     key.function = alpha_function_of(scene, material).key;
     if (key.function != 0) {
       key.function_inputs = std::max({scene.materials().latest(), scene.textures().latest(), scene.images().latest()});
-      key.host_inputs = render_scene.images().host_revision();
+      key.host_inputs = render_scene.images().host_textures().revision();
       key.origin_ws = render_scene.origin_ws();
     }
   }

@@ -138,7 +138,7 @@ std::string element_count(const scene::Mesh &mesh)
 {
   constexpr std::array<const char *, 3> names = {"triangles", "lines", "points"};
   if (mesh.host_shape) {
-    return fmt::format("{} of the host", names[std::size_t(mesh.topology)]);
+    return names[std::size_t(mesh.topology)];
   }
   return fmt::format("{} {}", mesh.indices.size() / index_count_of(mesh.topology), names[std::size_t(mesh.topology)]);
 }

@@ -38,8 +38,12 @@ void update_view_block(gpu::Device &device, const gpu::Buffer &block, const draw
 
 static PictureKey picture_key(render_scene::RenderScene &scene, std::uint64_t settings)
 {
-  return {scene.objects().revision(), scene.lamps_revision(), scene.passes_revision(), scene.materials_revision(),
-          settings};
+  return {scene.objects().revision(),
+          scene.lamps_revision(),
+          scene.passes_revision(),
+          scene.materials_revision(),
+          settings,
+          scene.host_content_revision()};
 }
 
 Engine::Engine(render_scene::RenderScene &scene, const Settings &settings) : scene_(scene), settings_(settings) {}
@@ -155,7 +159,8 @@ void Engine::draw_sample(draw::Viewport &viewport, Data &data, const draw::View 
       data.objects, [&](draw::ObjectIndex object) { return view.touches(scene_.objects().volume(object)); });
   gpu::CommandList list;
   gpu::FramebufferStack stack(list);
-  DepthKey depth{scene_.objects().revision(), scene_.passes_revision(), device.loss_count(), {}};
+  DepthKey depth{
+      scene_.objects().revision(), scene_.passes_revision(), device.loss_count(), scene_.host_content_revision(), {}};
   bool is_depth_drawn = false;
   if (data.is_seen) {
     update_depth_camera(device, data.objects);

@@ -64,6 +64,7 @@ struct PictureKey {
   std::uint64_t passes = 0;
   std::uint64_t materials = 0;
   std::uint64_t settings = 0;
+  std::uint64_t host_content = 0;
 
   bool operator==(const PictureKey &) const = default;
 };
@@ -73,6 +74,7 @@ struct DepthKey {
   std::uint64_t objects = 0;
   std::uint64_t passes = 0;
   std::uint64_t losses = 0;
+  std::uint64_t host_content = 0;
   draw::View view;
 
   bool operator==(const DepthKey &) const = default;

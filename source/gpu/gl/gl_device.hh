@@ -228,7 +228,7 @@ class GlDevice final : public Device {
   /** Reads the buffers of one batch of the host; made when the first such batch is made. */
   VertexArray host_array_;
   GLuint empty_vertex_array_ = 0;
-  /** For streams that a batch of the host has not: four zeros, and four ones. */
+  /** For streams that a batch of the host does not have: four zeros, and four ones. */
   GLuint absent_streams_ = 0;
   PoolBuffers pool_{};
   /** Sizes of the pools in bytes. */
@@ -241,6 +241,8 @@ class GlDevice final : public Device {
   ResourceId objects_ = 0;
   /** \see CommandList::bind_host_batch; nullptr: the shared buffers */
   const HostBatch *host_batch_ = nullptr;
+  /** The list has bound buffers of the host. */
+  bool has_host_buffers_ = false;
 
   UsedSlots used_slots_;
   /** The open pass; nullptr outside of passes. */

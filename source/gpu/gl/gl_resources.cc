@@ -112,6 +112,9 @@ void GlDevice::check_host_texture(const TextureDesc &desc)
   const auto refuse = [&](std::string_view why) {
     throw Error("texture '{}': texture {} of the host {}", desc.name, name, why);
   };
+  if (context_) {
+    refuse("is in another context than this device, which has one of its own");
+  }
   if (!glIsTexture(name)) {
     refuse("does not exist in the current context");
   }
@@ -139,7 +142,10 @@ void GlDevice::check_host_texture(const TextureDesc &desc)
   if (type != GL_FLOAT && type != GL_UNSIGNED_NORMALIZED && type != GL_SIGNED_NORMALIZED) {
     refuse("has no channel red of floats or of normalised integers");
   }
-  const GLint last = std::min(desc.mip_levels - 1, parameter(GL_TEXTURE_MAX_LEVEL));
+  GLint last = std::min(desc.mip_levels - 1, parameter(GL_TEXTURE_MAX_LEVEL));
+  if (parameter(GL_TEXTURE_IMMUTABLE_FORMAT) == GL_TRUE) {
+    last = std::min(last, parameter(GL_TEXTURE_IMMUTABLE_LEVELS) - 1);
+  }
   for (GLint level = 1; level <= last; level++) {
     if (of_level(level, GL_TEXTURE_WIDTH) != std::max(desc.width >> level, 1) ||
         of_level(level, GL_TEXTURE_HEIGHT) != std::max(desc.height >> level, 1)) {
@@ -293,6 +299,10 @@ void GlDevice::batch_create(const BatchDesc &desc, const BatchRange &range, std:
 void GlDevice::host_batch_create(ResourceId id, const std::string &name, const HostBatch &batch)
 {
   const Entry entry(*this);
+  if (context_) {
+    throw Error("batch '{}': the host's buffers are in another context than this device, which has one of its own",
+                name);
+  }
   const auto check_size = [&](std::string_view what, GLuint buffer, std::size_t end) {
     if (!glIsBuffer(buffer)) {
       throw Error("batch '{}': buffer {} of the host, with its {}, does not exist in the current context", name, buffer,
@@ -307,7 +317,7 @@ void GlDevice::host_batch_create(ResourceId id, const std::string &name, const H
   };
   for (std::size_t i = 0; i < vertex_stream_count; i++) {
     const HostStream &stream = batch.stream(VertexStream(i));
-    if (stream.buffer != 0) {
+    if (stream.buffer != 0 && batch.vertex_count > 0) {
       const std::size_t vertex_bytes = std::size_t(vertex_formats()[i].component_count) * gpu::size_bytes(stream.type);
       check_size(to_string(VertexStream(i)), stream.buffer,
                  stream.offset_bytes + std::size_t(batch.vertex_count - 1) * stream.stride_bytes + vertex_bytes);

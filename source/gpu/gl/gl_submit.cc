@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 namespace gnomon::gpu {
 
@@ -153,12 +154,8 @@ void GlDevice::write_stream(const CommandList &list)
   stream_.begin(size + part_count * alignment);
   instances_offset_ = stream_.write(std::as_bytes(std::span(list.instances)), alignment);
   draws_offset_ = stream_.write(std::as_bytes(std::span(list.draws)), alignment);
-  for (const VertexArray &array : {shared_array_, host_array_}) {
-    if (array.name != 0) {
-      glVertexArrayVertexBuffer(array.name, ATTRIBUTE_DRAW_INSTANCE, stream_.buffer(), GLintptr(instances_offset_),
-                                sizeof(DrawInstance));
-    }
-  }
+  glVertexArrayVertexBuffer(shared_array_.name, ATTRIBUTE_DRAW_INSTANCE, stream_.buffer(), GLintptr(instances_offset_),
+                            sizeof(DrawInstance));
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, stream_.buffer());
 }
 
@@ -187,6 +184,10 @@ void GlDevice::bind_instances(VertexArray &array)
 void GlDevice::bind_host_buffers(const HostBatch &batch)
 {
   const GLuint array = host_array_.name;
+  if (!std::exchange(has_host_buffers_, true)) {
+    glVertexArrayVertexBuffer(array, ATTRIBUTE_DRAW_INSTANCE, stream_.buffer(), GLintptr(instances_offset_),
+                              sizeof(DrawInstance));
+  }
   for (std::size_t i = 0; i < vertex_stream_count; i++) {
     const VertexFormat &format = vertex_formats()[i];
     const HostStream &stream = batch.stream(VertexStream(i));
@@ -217,7 +218,7 @@ void GlDevice::release_buffers()
 {
   objects_ = 0;
   bind_instances(shared_array_);
-  if (host_array_.name != 0) {
+  if (std::exchange(has_host_buffers_, false)) {
     bind_instances(host_array_);
     for (const VertexFormat &format : vertex_formats()) {
       glVertexArrayVertexBuffer(host_array_.name, format.attribute, absent_streams_, 0, 0);

@@ -3,67 +3,23 @@
 #include "eevee_scene_renderer.hh"
 #include "eevee_test_scene.hh"
 
+#include "engines/host_mesh.hh"
 #include "gpu/gpu_host_framebuffer.hh"
 #include "gpu/gpu_testing.hh"
 
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
+#include <memory>
 #include <thread>
 
 namespace gnomon::eevee {
 namespace {
 
+using test::HostMesh;
+using test::without_vertices;
+
 constexpr glm::ivec2 picture_size_px(48, 36);
-
-/** Buffers of the host with the shape of a mesh. */
-class HostMesh {
- public:
-  explicit HostMesh(const scene::Mesh &mesh)
-  {
-    glCreateBuffers(GLsizei(names_.size()), names_.data());
-    write(mesh);
-    const std::vector<std::uint16_t> indices(mesh.indices.begin(), mesh.indices.end());
-    glNamedBufferData(names_[3], GLsizeiptr(indices.size() * 2), indices.data(), GL_STATIC_DRAW);
-    batch = {.positions = {names_[0], 0, sizeof(glm::vec3)},
-             .normals = {names_[1], 0, sizeof(glm::vec3)},
-             .uvs = {mesh.uvs.empty() ? 0 : names_[2], 0, sizeof(glm::vec2)},
-             .vertex_count = std::uint32_t(mesh.positions.size()),
-             .index_buffer = names_[3],
-             .index_count = std::uint32_t(indices.size()),
-             .index_type = gpu::HostBatch::IndexType::Uint16};
-  }
-  ~HostMesh()
-  {
-    glDeleteBuffers(GLsizei(names_.size()), names_.data());
-  }
-  HostMesh(const HostMesh &) = delete;
-  HostMesh &operator=(const HostMesh &) = delete;
-  void write(const scene::Mesh &mesh) const
-  {
-    const auto data = [](GLuint name, const auto &values) {
-      const auto bytes = std::as_bytes(std::span(values));
-      glNamedBufferData(name, GLsizeiptr(bytes.size()), bytes.data(), GL_DYNAMIC_DRAW);
-    };
-    data(names_[0], mesh.positions);
-    data(names_[1], mesh.normals);
-    data(names_[2], mesh.uvs);
-  }
-
-  gpu::HostBatch batch;
-
- private:
-  /** Positions, normals, uvs, indices. */
-  std::array<GLuint, 4> names_{};
-};
-
-/** The mesh with its shape in buffers of the host. */
-scene::Mesh without_vertices(const scene::Mesh &mesh)
-{
-  return {.name = mesh.name,
-          .material = mesh.material,
-          .host_shape = scene::HostShape{.bounds = mesh.bounds, .has_uvs = !mesh.uvs.empty()}};
-}
 
 class EeveeHostResourcesTest : public test::HostFramebufferTest {
  protected:
@@ -173,11 +129,14 @@ TEST_P(EeveeHostResourcesTest, ATextureOfTheHostGivesThePictureOfAnUploadedImage
   const std::vector<glm::vec4> truth = drawn(scene);
   GLuint name = 0;
   glCreateTextures(GL_TEXTURE_2D, 1, &name);
-  glTextureStorage2D(name, 1, GL_SRGB8_ALPHA8, 2, 2);
-  glTextureSubImage2D(name, 0, 0, 0, 2, 2, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+  // One level of a texture that may have more is incomplete for a sampler that reads others.
+  glBindTexture(GL_TEXTURE_2D, name);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, 2, 2, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+  glBindTexture(GL_TEXTURE_2D, 0);
   scene::Scene host_scene = scene;
   const scene::Handle<scene::Image> image = scene.textures()[texture].image;
   host_scene.replace(image, scene::Image{"stand-in", 1, 1, {0, 0, 0, 255}});
+  host_scene.edit(texture, [](scene::Texture &value) { value.mip = scene::MipFilter::Linear; });
   SceneRenderer renderer(*device, host_scene, picture_size_px, settings);
   EXPECT_NE(drawn(renderer), truth);
   renderer.render_scene().set_host_texture(image, gpu::HostTexture{name, {2, 2}});
@@ -194,6 +153,61 @@ TEST_P(EeveeHostResourcesTest, ATextureOfTheHostGivesThePictureOfAnUploadedImage
   EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
 }
 
+TEST_P(EeveeHostResourcesTest, ShadowsFollowTheMaskInATextureOfTheHost)
+{
+  const auto set_mask = [&](const std::vector<std::uint8_t> &values) {
+    const scene::Handle<scene::Image> image = scene.textures()[texture].image;
+    scene.replace(image, scene::Image{"image", 2, 2, values});
+  };
+  const scene::Handle<scene::Material> painted = scene.meshes()[box].material;
+  scene.edit(painted, [](scene::Material &value) { value.alpha_mode = scene::AlphaMode::Mask; });
+  std::vector<std::uint8_t> left = texels;
+  left[7] = left[15] = 0;
+  std::vector<std::uint8_t> right = texels;
+  right[3] = right[11] = 0;
+  set_mask(left);
+  const std::vector<glm::vec4> left_truth = drawn(scene);
+  set_mask(right);
+  const std::vector<glm::vec4> right_truth = drawn(scene);
+  EXPECT_NE(left_truth, right_truth);
+
+  GLuint name = 0;
+  glCreateTextures(GL_TEXTURE_2D, 1, &name);
+  glTextureStorage2D(name, 1, GL_SRGB8_ALPHA8, 2, 2);
+  const auto write = [&](const std::vector<std::uint8_t> &values) {
+    glTextureSubImage2D(name, 0, 0, 0, 2, 2, GL_RGBA, GL_UNSIGNED_BYTE, values.data());
+  };
+  // The stand-in is transparent, so that the mask has an effect.
+  const scene::Handle<scene::Image> image = scene.textures()[texture].image;
+  scene.replace(image, scene::Image{"stand-in", 1, 1, {0, 0, 0, 0}});
+  SceneRenderer renderer(*device, scene, picture_size_px, settings);
+  const gpu::HostTexture host{name, {2, 2}};
+  write(left);
+  renderer.render_scene().set_host_texture(image, host);
+  EXPECT_EQ(drawn(renderer), left_truth);
+  write(right);
+  renderer.render_scene().set_host_texture(image, host);
+  EXPECT_EQ(drawn(renderer), right_truth);
+  glDeleteTextures(1, &name);
+}
+
+TEST_P(EeveeHostResourcesTest, ABudgetedPictureConvergesToTheWholeOne)
+{
+  const std::vector<glm::vec4> truth = drawn(scene);
+  const HostMesh host_box(scene.meshes()[box]);
+  scene::Scene host_scene = scene;
+  host_scene.replace(box, without_vertices(scene.meshes()[box]));
+  SceneRenderer renderer(*device, host_scene, picture_size_px, settings);
+  renderer.render_scene().set_host_batch(box, host_box.batch);
+  // The smallest budget draws a preview first.
+  int calls = 1;
+  while (!renderer.draw_within(1e-3, camera) && calls < 1000) {
+    calls++;
+  }
+  EXPECT_GT(calls, 1);
+  EXPECT_EQ(renderer.read_picture(), truth);
+}
+
 TEST_P(EeveeHostResourcesTest, BuffersThatAreTooSmallAreNamedAndTheNextSyncIsWhole)
 {
   const HostMesh host_box(scene.meshes()[box]);
@@ -208,26 +222,50 @@ TEST_P(EeveeHostResourcesTest, BuffersThatAreTooSmallAreNamedAndTheNextSyncIsWho
   EXPECT_EQ(drawn(renderer), drawn(scene));
 }
 
-TEST_P(EeveeHostResourcesTest, FramesThatAnotherThreadPreparesDrawThem)
+TEST_P(EeveeHostResourcesTest, FramesThatAnotherThreadPreparesDrawThemUntilTheirSubmission)
 {
   const std::vector<glm::vec4> truth = drawn(scene);
-  const HostMesh host_box(scene.meshes()[box]);
+  auto host_box = std::make_unique<HostMesh>(scene.meshes()[box]);
   scene::Scene host_scene = scene;
   host_scene.replace(box, without_vertices(scene.meshes()[box]));
   SceneRenderer renderer(*device, host_scene, picture_size_px, settings);
-  renderer.render_scene().set_host_batch(box, host_box.batch);
-  gpu::Packet packet;
-  bool is_complete = false;
-  // Fits that follow depths settle some frames later.
-  for (int frame = 0; frame < 40 && !is_complete; frame++) {
+  const auto prepare = [&](gpu::Packet &packet) {
+    bool is_complete = false;
     std::thread([&] { is_complete = renderer.prepare(packet, camera); }).join();
-    device->submit(packet);
-  }
-  EXPECT_TRUE(is_complete);
-  const std::vector<glm::vec4> picture = renderer.read_picture();
-  for (std::size_t i = 0; i < picture.size(); i++) {
-    ASSERT_LT(glm::distance(picture[i], truth[i]), 0.1F) << "pixel " << i;
-  }
+    return is_complete;
+  };
+  // Fits that follow depths settle some frames later.
+  const auto settled = [&] {
+    gpu::Packet packet;
+    bool is_complete = false;
+    for (int frame = 0; frame < 40 && !is_complete; frame++) {
+      is_complete = prepare(packet);
+      device->submit(packet);
+    }
+    EXPECT_TRUE(is_complete);
+    return renderer.read_picture();
+  };
+  const auto largest_difference = [](const std::vector<glm::vec4> &a, const std::vector<glm::vec4> &b) {
+    float largest = 0.0F;
+    for (std::size_t i = 0; i < a.size(); i++) {
+      largest = std::max(largest, glm::distance(a[i], b[i]));
+    }
+    return largest;
+  };
+  const std::vector<glm::vec4> without = settled();
+  renderer.render_scene().set_host_batch(box, host_box->batch);
+  EXPECT_LT(largest_difference(settled(), truth), 0.1F);
+  // The packet that was prepared before the buffers were taken back draws them.
+  gpu::Packet before;
+  gpu::Packet after;
+  prepare(before);
+  renderer.render_scene().set_host_batch(box, std::nullopt);
+  prepare(after);
+  device->submit(before);
+  host_box.reset();
+  device->submit(after);
+  EXPECT_LT(largest_difference(settled(), without), 0.1F);
+  EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
 }
 
 }  // namespace

@@ -315,7 +315,9 @@ TEST(LeftOutOfTheHost, TheTreeNamesAMeshWhoseBuffersTheHostHasNotNamed)
   EXPECT_FALSE(without.is_made);
   EXPECT_EQ(without.why, "the host has named no buffers of it");
   renderer.render_scene().set_host_batch(
-      terrain, gpu::HostBatch{.positions = {1, 0, 12}, .vertex_count = 3, .index_buffer = 2, .index_count = 3});
+      terrain,
+      gpu::HostBatch{
+          .positions = {1, 0, 12}, .normals = {2, 0, 12}, .vertex_count = 3, .index_buffer = 3, .index_count = 3});
   const FrameNode with = node();
   EXPECT_TRUE(with.is_made);
   EXPECT_EQ(with.bytes, 0U);
