@@ -87,14 +87,20 @@ void ShadingGroup::call(const gpu::Batch &batch, const glm::mat4 &world_from_obj
   call(batch, objects_->add(world_from_object));
 }
 
-void ShadingGroup::add_call(const Call &call)
+void ShadingGroup::add_call(const gpu::BatchRange &batch, ObjectIndex object, std::uint32_t volume)
 {
-  (call.batch.host_batch == 0 ? calls_ : host_calls_).push_back(call);
+  const Call call{batch.first_index, batch.index_count, batch.base_vertex, object, volume};
+  if (batch.host_batch == 0) {
+    calls_.push_back(call);
+  }
+  else {
+    host_calls_.push_back({call, batch.host_batch});
+  }
 }
 
 void ShadingGroup::call(const gpu::Batch &batch, ObjectIndex object)
 {
-  add_call({batch.range(), object});
+  add_call(batch.range(), object, object_volume);
 }
 
 void ShadingGroup::call(const gpu::Batch &batch, ObjectIndex object, const CullingVolume &volume)
@@ -103,7 +109,7 @@ void ShadingGroup::call(const gpu::Batch &batch, ObjectIndex object, const Culli
     call(batch, object);
     return;
   }
-  add_call({batch.range(), object, std::uint32_t(volumes_.size())});
+  add_call(batch.range(), object, std::uint32_t(volumes_.size()));
   volumes_.push_back(volume);
 }
 
@@ -147,7 +153,7 @@ void ShadingGroup::record_bindings(gpu::CommandList &list) const
   }
 }
 
-void ShadingGroup::append(const Call &call, bool may_extend, gpu::CommandList &list) const
+inline void ShadingGroup::append(const Call &call, bool may_extend, gpu::CommandList &list) const
 {
   std::uint32_t instance = call.object;
   if (!objects_) {
@@ -157,12 +163,12 @@ void ShadingGroup::append(const Call &call, bool may_extend, gpu::CommandList &l
   // The next instance of the same batch is added to the last draw. Compare the counts too, because an empty batch has
   // the same first index as the batch after it.
   gpu::DrawIndirect *const last = may_extend ? &list.draws.back() : nullptr;
-  if (last && last->first_index == call.batch.first_index && last->index_count == call.batch.index_count &&
+  if (last && last->first_index == call.first_index && last->index_count == call.index_count &&
       last->first_instance + last->instance_count == instance) {
     last->instance_count++;
   }
   else {
-    list.draws.push_back({call.batch.index_count, 1, call.batch.first_index, call.batch.base_vertex, instance});
+    list.draws.push_back({call.index_count, 1, call.first_index, call.base_vertex, instance});
   }
 }
 
@@ -207,7 +213,7 @@ void ShadingGroup::record_draws(std::size_t first, std::size_t end, gpu::Resourc
 
 bool ShadingGroup::has_host_draws(const View &view, const VisibleObjects &visible) const
 {
-  return std::ranges::any_of(host_calls_, [&](const Call &call) { return is_visible(call, view, visible); }) ||
+  return std::ranges::any_of(host_calls_, [&](const HostCall &host) { return is_visible(host.call, view, visible); }) ||
          std::ranges::any_of(host_instance_calls_, [](const InstanceCall &call) { return !call.instances_.empty(); });
 }
 
@@ -226,12 +232,12 @@ RecordCounts ShadingGroup::record_host_calls(const View &view, const VisibleObje
       bound = host_batch;
     }
   };
-  for (const Call &call : host_calls_) {
+  for (const auto &[call, host_batch] : host_calls_) {
     if (!is_visible(call, view, visible)) {
       counts.culled++;
       continue;
     }
-    bind(call.batch.host_batch, object_buffer());
+    bind(host_batch, object_buffer());
     append(call, list.draws.size() > first, list);
     counts.drawn++;
   }
@@ -319,9 +325,8 @@ RecordCounts Pass::record(const View &view, VisibleObjects &visible, gpu::Comman
 std::string Pass::serialize(const gpu::Device &device) const
 {
   std::string text = fmt::format("{} [{}]\n", name_, gpu::to_string(state_));
-  const auto batch_text = [](const gpu::BatchRange &batch) {
-    return fmt::format("{} triangles from {}{}", batch.index_count / 3, batch.first_index,
-                       batch.host_batch == 0 ? "" : " of the host's");
+  const auto batch_text = [](std::uint32_t first_index, std::uint32_t index_count, gpu::ResourceId host_batch) {
+    return fmt::format("{} triangles from {}{}", index_count / 3, first_index, host_batch == 0 ? "" : " of the host's");
   };
   for (const ShadingGroup &group : groups_) {
     text += fmt::format("  group {}", group.shader_.name());
@@ -342,15 +347,22 @@ std::string Pass::serialize(const gpu::Device &device) const
     for (const ShadingGroup::Constant &constant : group.constants_) {
       text += fmt::format("    constant {}{}\n", constant.name, constant.reference ? " by reference" : "");
     }
-    for (const auto *calls : {&group.calls_, &group.host_calls_}) {
-      for (const ShadingGroup::Call &call : *calls) {
-        text += fmt::format("    call {}, object {}", batch_text(call.batch), call.object);
-        text += call.volume == ShadingGroup::object_volume ? "\n" : ", culled\n";
-      }
+    const auto add_call_text = [&](const ShadingGroup::Call &call, gpu::ResourceId host_batch) {
+      text += fmt::format("    call {}, object {}", batch_text(call.first_index, call.index_count, host_batch),
+                          call.object);
+      text += call.volume == ShadingGroup::object_volume ? "\n" : ", culled\n";
+    };
+    for (const ShadingGroup::Call &call : group.calls_) {
+      add_call_text(call, 0);
+    }
+    for (const auto &[call, host_batch] : group.host_calls_) {
+      add_call_text(call, host_batch);
     }
     for (const auto *calls : {&group.instance_calls_, &group.host_instance_calls_}) {
       for (const InstanceCall &call : *calls) {
-        text += fmt::format("    instances {} x{}\n", batch_text(call.batch_), call.instances_.size());
+        const gpu::BatchRange &batch = call.batch_;
+        text += fmt::format("    instances {} x{}\n",
+                            batch_text(batch.first_index, batch.index_count, batch.host_batch), call.instances_.size());
       }
     }
     for (const ShadingGroup::ProceduralCall &call : group.procedural_calls_) {

@@ -141,11 +141,18 @@ class ShadingGroup {
     /** nullptr: the value is in constant_bytes_. */
     const void *reference = nullptr;
   };
+  /** As small as possible, because the time of a record is that of reading the calls. */
   struct Call {
-    gpu::BatchRange batch;
+    std::uint32_t first_index = 0;
+    std::uint32_t index_count = 0;
+    std::int32_t base_vertex = 0;
     ObjectIndex object = object_identity;
     /** Index in volumes_. */
     std::uint32_t volume = object_volume;
+  };
+  struct HostCall {
+    Call call;
+    gpu::ResourceId host_batch = 0;
   };
   /** Call::volume of a call that is culled with the volume of its object. */
   static constexpr std::uint32_t object_volume = ~std::uint32_t(0);
@@ -161,7 +168,7 @@ class ShadingGroup {
   /** The entry of the constant \a name, created by the first call; nullptr if the shader has no such constant. */
   [[nodiscard]] Constant *constant_entry(std::string_view name, std::size_t size_bytes);
   void record_bindings(gpu::CommandList &list) const;
-  void add_call(const Call &call);
+  void add_call(const gpu::BatchRange &batch, ObjectIndex object, std::uint32_t volume);
   [[nodiscard]] bool is_visible(const Call &call, const View &view, const VisibleObjects &visible) const
   {
     return call.volume == object_volume ? !objects_ || visible.contains(call.object)
@@ -194,7 +201,7 @@ class ShadingGroup {
   std::vector<std::byte> constant_bytes_;
   std::vector<Call> calls_;
   /** Calls of batches in buffers of the host. */
-  std::vector<Call> host_calls_;
+  std::vector<HostCall> host_calls_;
   /** Volumes that were given with calls. */
   std::vector<CullingVolume> volumes_;
   /** A deque, because callers hold references to its elements. */

@@ -51,11 +51,17 @@ class Arithmetic {
   Arithmetic(std::size_t bytes, double seconds)
       : values_(std::max(1U, std::thread::hardware_concurrency()), std::vector<float>(bytes / sizeof(float), 1.0F))
   {
-    // The first run brings the memory into the caches.
-    run();
-    const double start = now(Clock::Wall);
-    run();
-    round_count_ = std::max(1, int(double(round_count_) * seconds / (now(Clock::Wall) - start)));
+    const auto seconds_of_run = [this] {
+      const double start = now(Clock::Wall);
+      run();
+      return now(Clock::Wall) - start;
+    };
+    // Longer than the start of the threads. The first runs also bring the memory into the caches.
+    double measured = seconds_of_run();
+    for (; measured < 0.5 * seconds; measured = seconds_of_run()) {
+      round_count_ *= 2;
+    }
+    round_count_ = std::max(1, int(double(round_count_) * seconds / measured));
   }
 
   void run()
@@ -75,7 +81,7 @@ class Arithmetic {
  private:
   /** For each core. */
   std::vector<std::vector<float>> values_;
-  int round_count_ = 100;
+  int round_count_ = 1;
 };
 
 gpu::Counters between(const gpu::Counters &before, const gpu::Counters &after)

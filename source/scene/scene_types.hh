@@ -297,9 +297,9 @@ enum class Topology { Triangles, Lines, Points };
 }
 
 /**
- * A shape in vertex buffers that a host has on a device. RenderScene::set_host_batch names the buffers. The CPU does not
- * know the triangles: they are drawn and cast shadows, but the reference, light of emissive surfaces, poses and files
- * leave them out.
+ * A shape in vertex buffers that a host has on a device. RenderScene::set_host_batch names the buffers. The CPU does
+ * not know the triangles: they are drawn and cast shadows, but the reference, light of emissive surfaces, poses and
+ * files leave them out.
  */
 struct HostShape {
   /** A box around all positions: finite and not empty. Object space, metres. Parts outside of it may be missing. */
