@@ -6,6 +6,8 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <array>
+#include <cstdlib>
 #include <optional>
 
 namespace gnomon::test {
