@@ -38,7 +38,8 @@ eevee::PcfKernel parse_pcf(const std::string &text)
   return {.width = 0, .taps = taps};
 }
 
-eevee::ShadowSettings shadow_settings(const RenderOptions &options)
+/** Sets what the options say in \a settings, which offline_settings has chosen. */
+void set_shadow_options(const RenderOptions &options, eevee::ShadowSettings &settings)
 {
   static const std::map<std::string, scene::ShadowKind> kinds = {{"none", scene::ShadowKind::None},
                                                                  {"hard", scene::ShadowKind::Hard},
@@ -53,17 +54,14 @@ eevee::ShadowSettings shadow_settings(const RenderOptions &options)
                                                                  {"layered", eevee::LayerPass::Layered}};
   static const std::map<std::string, eevee::CasterFaces> faces = {
       {"all", eevee::CasterFaces::All}, {"front", eevee::CasterFaces::Front}, {"back", eevee::CasterFaces::Back}};
-  eevee::ShadowSettings settings;
   settings.kind = kinds.at(options.shadow);
   settings.esm.kernel = kernels.at(options.esm);
   settings.pcf = parse_pcf(options.pcf);
   settings.cascades.count = options.cascades;
   settings.cascades.lambda = options.cascade_lambda;
-  // With this number of samples, most of the remaining error is at the edges of shadows. The time to read depths and to
-  // draw finer maps is spread over the samples.
-  constexpr int fine_shadow_samples = 16;
-  const bool is_fine = options.samples == 0 || options.samples >= fine_shadow_samples;
-  settings.is_fitted_to_depth = options.cascade_range == "auto" ? is_fine : options.cascade_range == "depth";
+  if (options.cascade_range != "auto") {
+    settings.is_fitted_to_depth = options.cascade_range == "depth";
+  }
   settings.layer_pass = passes.at(options.cube_pass);
   settings.caster_faces = faces.at(options.casters);
   settings.memory_bytes_max = std::size_t(options.shadow_memory) << 20U;
@@ -71,26 +69,8 @@ eevee::ShadowSettings shadow_settings(const RenderOptions &options)
     settings.cube_size_px = options.shadow_size;
     settings.map_size_px = options.shadow_size;
     settings.esm.size_px = std::clamp(options.shadow_size, 4, 8192);
+    settings.cascades.can_resize = false;
   }
-  else if (options.samples == 1) {
-    // Texels of about a pixel smooth the edges of shadows, which one sample leaves jagged: less error with less memory.
-    settings.cube_size_px = settings.cube_size_px * 3 / 4;
-    settings.map_size_px /= 2;
-  }
-  else if (is_fine) {
-    settings.cube_size_px *= 2;
-    settings.map_size_px *= 2;
-    settings.esm.size_px *= 2;
-  }
-  settings.cascades.can_resize = options.shadow_size == 0;
-  if (options.samples > 0) {
-    // Texels smaller than about the distance between the samples of a pixel do not reduce the error (decision 0023).
-    settings.cascades.texel_in_pixels_enlarged =
-        std::max(eevee::texel_in_pixels, 0.8 / std::sqrt(double(options.samples)));
-  }
-  // The error of these depths is far below that of one sample.
-  settings.can_have_short_maps = options.samples == 1;
-  return settings;
 }
 
 }  // namespace
@@ -211,8 +191,8 @@ void RenderOptions::check() const
 
 eevee::Settings RenderOptions::engine_settings() const
 {
-  eevee::Settings settings;
-  settings.shadow = shadow_settings(*this);
+  eevee::Settings settings = eevee::offline_settings(samples);
+  set_shadow_options(*this, settings.shadow);
   // The number of samples that fit into a time is not known beforehand.
   settings.sample_count = std::isfinite(seconds_max) ? 0 : samples;
   if (!sample_range.empty()) {

@@ -57,7 +57,7 @@ const Fields<Settings> settings_fields = {
         "Texels along an edge of a cube's face, for points and wide spots."),
     plain_field<Settings>(
         "map_size_px", [](auto &settings) -> auto & { return settings.shadow.map_size_px; },
-        "Texels along an edge of a map, for spots and suns."),
+        "Texels along an edge of a map, for spots and suns. Renderer.offline may choose other sizes for suns."),
     plain_field<Settings>(
         "esm_size_px", [](auto &settings) -> auto & { return settings.shadow.esm.size_px; },
         "Texels along an edge of an octahedral map, for ESM and EVSM, 4 to 8192."),
@@ -80,6 +80,14 @@ std::shared_ptr<Renderer> make_renderer(const std::shared_ptr<Device> &device, c
                                         const glm::ivec2 &size_px, const py::kwargs &values)
 {
   Settings settings{.sample_count = 16};
+  set_fields(settings_fields, "renderer", scene, settings, values);
+  return std::make_shared<Renderer>(device, scene, size_px, settings);
+}
+
+std::shared_ptr<Renderer> make_offline_renderer(const std::shared_ptr<Device> &device, const ScenePtr &scene,
+                                                const glm::ivec2 &size_px, int sample_count, const py::kwargs &values)
+{
+  Settings settings = eevee::offline_settings(sample_count);
   set_fields(settings_fields, "renderer", scene, settings, values);
   return std::make_shared<Renderer>(device, scene, size_px, settings);
 }
@@ -173,6 +181,13 @@ void define_renderer(py::module_ &module)
       "render(), which repeats only the work that depends on it.");
   renderer.def(py::init(&make_renderer), py::arg("device").none(false), py::arg("scene").none(false), py::arg("size"),
                "`size`: width and height, pixels. Further arguments set properties; sample_count is 16 without one.");
+  renderer.def_static(
+      "offline", &make_offline_renderer, py::arg("device").none(false), py::arg("scene").none(false), py::arg("size"),
+      py::arg("sample_count") = 16,
+      "A renderer of pictures for which there is time, with the shadows that `gnomon render` chooses for "
+      "`sample_count` "
+      "samples: with 16 or more, finer ones that are fitted to what the camera sees. Their edges move when the camera "
+      "moves. Further arguments set properties.");
   for (const Field<Settings> &field : settings_fields) {
     renderer.def_property(
         field.name.c_str(), [&field](const Renderer &owner) { return field.get(owner.scene(), owner.settings()); },

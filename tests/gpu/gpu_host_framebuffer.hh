@@ -25,9 +25,17 @@ struct Pixels {
   bool operator==(const Pixels &) const = default;
 };
 
+inline bool is_inside(const gpu::Rectangle &rectangle, int x, int y)
+{
+  const glm::ivec2 pixel = glm::ivec2(x, y) - rectangle.origin_px;
+  return pixel.x >= 0 && pixel.y >= 0 && pixel.x < rectangle.size_px.x && pixel.y < rectangle.size_px.y;
+}
+
 /** A host's framebuffer of a colour texture and a depth buffer, filled with a pattern that differs in every pixel. */
 class HostPicture {
  public:
+  static constexpr float filled_depth = 0.5F;
+
   /** \a samples: 0 for a texture that is not multisampled. */
   HostPicture(glm::ivec2 size_px, GLenum format, int samples) : size_px_(size_px), format_(format), samples_(samples)
   {
@@ -107,7 +115,7 @@ class HostPicture {
     glDisable(GL_SCISSOR_TEST);
     glClearColor(0, 0, 0, 0);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    clear_depth(0.5F);
+    clear_depth(filled_depth);
   }
 
   glm::ivec2 size_px_;
@@ -117,6 +125,45 @@ class HostPicture {
   GLuint texture_ = 0;
   GLuint depth_ = 0;
 };
+
+/** Outside of \a rectangle, \a pixels equal \a before. */
+inline void expect_equal_outside(const gpu::Rectangle &rectangle, const Pixels &pixels, const Pixels &before)
+{
+  for (int y = 0; y < before.size_px.y; y++) {
+    for (int x = 0; x < before.size_px.x; x++) {
+      if (!is_inside(rectangle, x, y)) {
+        ASSERT_EQ(pixels.at(x, y), before.at(x, y)) << x << ", " << y;
+      }
+    }
+  }
+}
+
+/** Within \a rectangle, at least nine tenths of \a pixels differ from \a before; few of a picture's equal the pattern.
+ */
+inline void expect_drawn_inside(const gpu::Rectangle &rectangle, const Pixels &pixels, const Pixels &before)
+{
+  int changed = 0;
+  for (int y = 0; y < rectangle.size_px.y; y++) {
+    for (int x = 0; x < rectangle.size_px.x; x++) {
+      const glm::ivec2 pixel = rectangle.origin_px + glm::ivec2(x, y);
+      changed += pixels.at(pixel.x, pixel.y) != before.at(pixel.x, pixel.y) ? 1 : 0;
+    }
+  }
+  EXPECT_GE(10 * changed, 9 * rectangle.size_px.x * rectangle.size_px.y);
+}
+
+/** Outside of \a rectangle, \a depths of \a size_px are those that HostPicture was filled with. */
+inline void expect_filled_depth_outside(const gpu::Rectangle &rectangle, const std::vector<float> &depths,
+                                        glm::ivec2 size_px)
+{
+  for (int y = 0; y < size_px.y; y++) {
+    for (int x = 0; x < size_px.x; x++) {
+      if (!is_inside(rectangle, x, y)) {
+        ASSERT_EQ(depths[std::size_t(y * size_px.x + x)], HostPicture::filled_depth) << x << ", " << y;
+      }
+    }
+  }
+}
 
 /** A host's context and a device on it. */
 class HostFramebufferTest : public HostContextTest {

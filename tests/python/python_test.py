@@ -309,6 +309,27 @@ class Pictures(unittest.TestCase):
         renderer.background = None
         self.assertTrue((renderer.render() != expected).any())
 
+    def test_offline_equals_the_files_of_the_program(self):
+        """With the sizes of shadows that the program chooses: smaller with one sample, larger and fitted with 16."""
+        scene = gnomon.load(PLAZA)
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "picture.exr")
+            for sample_count in (1, 2, 16):
+                subprocess.run([os.environ["GNOMON_PROGRAM"], "render", PLAZA, "-o", path, "--size", "96x54", "--samples",
+                                str(sample_count)], check=True, capture_output=True)
+                expected = read_exr(path)
+                offline = gnomon.Renderer.offline(self.device, scene, (96, 54), sample_count=sample_count)
+                self.assertTrue((offline.render() == expected).all(), sample_count)
+                plain = gnomon.Renderer(self.device, scene, (96, 54), sample_count=sample_count)
+                self.assertEqual(bool((plain.render() == expected).all()), sample_count == 2)
+            self.assertEqual((offline.sample_count, offline.cube_size_px, offline.map_size_px), (16, 2048, 4096))
+        with_values = gnomon.Renderer.offline(self.device, scene, (96, 54), 2, map_size_px=64, seed=3)
+        self.assertEqual((with_values.sample_count, with_values.map_size_px, with_values.seed), (2, 64, 3))
+        with self.assertRaisesRegex(TypeError, "no property 'power'"):
+            gnomon.Renderer.offline(self.device, scene, (96, 54), power=1)
+        with self.assertRaisesRegex(gnomon.DeviceError, "sample_count -1"):
+            gnomon.Renderer.offline(self.device, scene, (96, 54), -1).render()
+
     def test_settings_that_cannot_be_drawn(self):
         scene = square_scene()
         renderer = gnomon.Renderer(self.device, scene, (32, 18), **SMALL)

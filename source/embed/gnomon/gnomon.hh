@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "eevee_camera.hh"
 #include "eevee_scene_renderer.hh"
 #include "gltf_background_import.hh"
+#include "gltf_export.hh"
 #include "gltf_import.hh"
 #include "gpu_device.hh"
 #include "overlay.hh"
@@ -20,6 +22,7 @@
  *     renderer.sync();
  *     renderer.draw_sample(camera, {.framebuffer = gnomon::gpu::HostFramebuffer{.size_px = size_px}});
  *
- * Lifetimes: the device and the scene must outlive the renderer. Threads: all calls are made on the thread of the
- * host's OpenGL context, which must be current. Gnomon leaves the state of the context as it was.
+ * Lifetimes: the device and the scene must outlive the renderer. Threads: calls that use the device are made on the
+ * thread of the host's OpenGL context, which must be current. Another thread may edit the scene and call
+ * SceneRenderer::prepare, whose packets the device's thread submits. Gnomon leaves the state of the context as it was.
  */

@@ -32,6 +32,34 @@ std::optional<int> first_sun_with_maps(const Lamps &lamps)
 
 }  // namespace
 
+Settings offline_settings(int sample_count)
+{
+  Settings settings{.sample_count = sample_count};
+  ShadowSettings &shadow = settings.shadow;
+  // With this number of samples, most of the remaining error is at the edges of shadows. The time to read depths and to
+  // draw finer maps is spread over the samples.
+  constexpr int fine_shadow_samples = 16;
+  if (sample_count == 1) {
+    // Texels of about a pixel smooth the edges of shadows, which one sample leaves jagged: less error with less memory.
+    shadow.cube_size_px = shadow.cube_size_px * 3 / 4;
+    shadow.map_size_px /= 2;
+    // The error of these depths is far below that of one sample.
+    shadow.can_have_short_maps = true;
+  }
+  else if (sample_count == 0 || sample_count >= fine_shadow_samples) {
+    shadow.is_fitted_to_depth = true;
+    shadow.cube_size_px *= 2;
+    shadow.map_size_px *= 2;
+    shadow.esm.size_px *= 2;
+  }
+  shadow.cascades.can_resize = true;
+  if (sample_count > 0) {
+    // Texels smaller than about the distance between the samples of a pixel do not reduce the error (decision 0023).
+    shadow.cascades.texel_in_pixels_enlarged = std::max(texel_in_pixels, 0.8 / std::sqrt(double(sample_count)));
+  }
+  return settings;
+}
+
 /** Check all settings except those of shadows, which SceneShadows::sync checks. \throws gpu::Error */
 static void check(const Settings &settings)
 {

@@ -128,6 +128,14 @@ struct Settings {
   }
 };
 
+/**
+ * Settings of a picture for which there is time, as `gnomon render` draws it: \a sample_count samples, 0 for no limit,
+ * with shadow maps that are as fine as these samples show. For one sample they are smaller than those of Settings, and
+ * from 16 samples on larger, and fitted to the visible surfaces (ShadowSettings::is_fitted_to_depth). For views that
+ * move, Settings has shadows whose edges keep their place.
+ */
+[[nodiscard]] Settings offline_settings(int sample_count);
+
 struct CasterKind;
 struct Data;
 struct ObjectKind;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 namespace gnomon::eevee {
 namespace {
@@ -291,6 +292,31 @@ TEST_F(EngineTest, StaleHandlesAreNamed)
   renderer.draw(camera);
   const std::vector<std::string> warnings = renderer.inspect().report().warnings;
   EXPECT_EQ(warnings, std::vector<std::string>{"mesh 'square': its material was removed"});
+}
+
+/** Sizes as `gnomon render --help` and doc/shadows.md state them. */
+TEST(OfflineSettings, ShadowsAreAsFineAsTheSamplesShow)
+{
+  const auto sizes = [](int sample_count) {
+    const ShadowSettings shadow = offline_settings(sample_count).shadow;
+    return std::array{shadow.cube_size_px, shadow.map_size_px, shadow.esm.size_px};
+  };
+  EXPECT_EQ(sizes(1), (std::array{768, 1024, 512}));
+  EXPECT_EQ(sizes(2), (std::array{1024, 2048, 512}));
+  EXPECT_EQ(sizes(15), sizes(2));
+  EXPECT_EQ(sizes(16), (std::array{2048, 4096, 1024}));
+  EXPECT_EQ(sizes(0), sizes(16)) << "no limit";
+  for (const int count : {0, 1, 2, 15, 16, 64}) {
+    const Settings settings = offline_settings(count);
+    EXPECT_EQ(settings.sample_count, count);
+    EXPECT_EQ(settings.shadow.is_fitted_to_depth, count == 0 || count >= 16) << count;
+    EXPECT_EQ(settings.shadow.can_have_short_maps, count == 1) << count;
+    EXPECT_TRUE(settings.shadow.cascades.can_resize);
+  }
+  // Decision 0023: 0.8 pixels over the square root of the samples, and at least texel_in_pixels.
+  EXPECT_EQ(offline_settings(16).shadow.cascades.texel_in_pixels_enlarged, 0.2);
+  EXPECT_EQ(offline_settings(64).shadow.cascades.texel_in_pixels_enlarged, texel_in_pixels);
+  EXPECT_EQ(offline_settings(0).shadow.cascades.texel_in_pixels_enlarged, texel_in_pixels);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include <algorithm>
+#include <set>
 
 namespace gnomon::eevee {
 namespace {
@@ -20,6 +21,7 @@ using test::Pixels;
 constexpr glm::ivec2 target_size_px(24, 18);
 constexpr glm::ivec2 host_size_px(37, 29);
 constexpr glm::ivec2 origin_px(7, 5);
+constexpr gpu::Rectangle rectangle{origin_px, target_size_px};
 constexpr glm::dvec3 eye(0, -5, 4);
 
 class TargetGpuTest : public test::HostFramebufferTest {
@@ -32,11 +34,6 @@ class TargetGpuTest : public test::HostFramebufferTest {
     test::add_object(scene, test::add_box_mesh(scene, plain),
                      glm::scale(glm::translate(glm::dmat4(1), {0.3, 0, 0.5}), glm::dvec3(0.5)));
     test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 2}, {0.3F, 0.5F, -1}, 3.0F);
-  }
-  static bool is_inside(int x, int y)
-  {
-    const glm::ivec2 pixel = glm::ivec2(x, y) - origin_px;
-    return pixel.x >= 0 && pixel.y >= 0 && pixel.x < target_size_px.x && pixel.y < target_size_px.y;
   }
   static draw::Target target_of(const HostPicture &host, draw::Encoding encoding)
   {
@@ -54,17 +51,6 @@ class TargetGpuTest : public test::HostFramebufferTest {
     renderer.sync();
     renderer.draw(camera, {}, display.target());
     return {target_size_px, gpu::read_as<std::array<std::uint8_t, 4>>(*device, display.texture())};
-  }
-  /** Outside of the picture's rectangle, \a pixels equal \a before. */
-  static void expect_outside(const Pixels &pixels, const Pixels &before)
-  {
-    for (int y = 0; y < host_size_px.y; y++) {
-      for (int x = 0; x < host_size_px.x; x++) {
-        if (!is_inside(x, y)) {
-          ASSERT_EQ(pixels.at(x, y), before.at(x, y)) << x << ", " << y;
-        }
-      }
-    }
   }
   /** The largest difference of a byte within the rectangle. */
   static int difference(const Pixels &pixels, const Pixels &picture)
@@ -104,7 +90,7 @@ TEST_P(TargetGpuTest, AFramebufferThatChangesEveryFrameGetsThePictureAndKeepsThe
     const bool is_complete = renderer.draw_sample(camera, target_of(host, encoding));
     EXPECT_EQ(is_complete, frame >= 3);
     const Pixels pixels = host.pixels();
-    expect_outside(pixels, before);
+    test::expect_equal_outside(rectangle, pixels, before);
     if (is_complete) {
       // The driver's sRGB table and the shader's formula differ by one step of 255.
       EXPECT_LE(difference(pixels, truth), encoding == draw::Encoding::Display ? 0 : 1) << "frame " << frame;
@@ -118,6 +104,43 @@ TEST_P(TargetGpuTest, AFramebufferThatChangesEveryFrameGetsThePictureAndKeepsThe
     }
   }
   EXPECT_NE(hosts[0]->framebuffer().name, hosts[5]->framebuffer().name);
+}
+
+TEST_P(TargetGpuTest, PreviewsAndPartsWithinABudgetKeepTheRest)
+{
+  const Pixels truth = offline();
+  SceneRenderer renderer(*device, scene, target_size_px, settings);
+  std::unique_ptr<HostPicture> last;
+  std::set<BudgetReport::Kind> kinds;
+  bool is_complete = false;
+  for (int frame = 0; !is_complete && frame < 300; frame++) {
+    const bool is_srgb = frame % 2 == 0;
+    // The last one is deleted after the next is made, so that it has another name.
+    auto host = is_srgb ? std::make_unique<HostPicture>(host_size_px, GL_SRGB8_ALPHA8, 4)
+                        : std::make_unique<HostPicture>(host_size_px, GL_RGBA8, 0);
+    ASSERT_TRUE(!last || host->framebuffer().name != last->framebuffer().name);
+    const Pixels before = host->pixels();
+    draw::Target target = target_of(*host, is_srgb ? draw::Encoding::SrgbFormat : draw::Encoding::Display);
+    target.depth = draw::HostDepth{.clip_from_view = glm::perspectiveRH_NO(0.6, 4.0 / 3.0, 0.5, 1000.0)};
+    // The least time, until the preview has given way to the first sample. Then all that is left, in one call.
+    const bool is_refining = kinds.contains(BudgetReport::Kind::Refining);
+    is_complete =
+        renderer.draw_within(is_refining ? BudgetController::budget_max : BudgetController::budget_min, camera, target);
+    kinds.insert(renderer.budget_report().kind);
+    const Pixels pixels = host->pixels();
+    test::expect_equal_outside(rectangle, pixels, before);
+    test::expect_drawn_inside(rectangle, pixels, before);
+    if (!is_srgb) {
+      test::expect_filled_depth_outside(rectangle, host->depths(), host_size_px);
+    }
+    if (is_complete) {
+      // The driver's sRGB table and the shader's formula differ by one step of 255.
+      EXPECT_LE(difference(pixels, truth), is_srgb ? 1 : 0);
+    }
+    last = std::move(host);
+  }
+  EXPECT_TRUE(is_complete);
+  EXPECT_EQ(kinds.size(), 3U) << "previews, parts and the complete picture";
 }
 
 TEST_P(TargetGpuTest, SceneLinearIsTheRadiance)
@@ -225,7 +248,7 @@ TEST_P(TargetGpuTest, TheHostsGeometryIsHiddenByWhatIsNearer)
     glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     const Pixels composed = host.pixels();
-    expect_outside(composed, picture);
+    test::expect_equal_outside(rectangle, composed, picture);
     int hidden = 0;
     for (int y = 0; y < target_size_px.y; y++) {
       for (int x = 0; x < target_size_px.x; x++) {
@@ -274,11 +297,11 @@ TEST_P(TargetGpuTest, OverLiesOnTheHostsContentWhereItIsNearer)
   host.clear_depth(1.0F);
   renderer.draw_sample(camera, over);
   const Pixels pixels = host.pixels();
-  expect_outside(pixels, before);
+  test::expect_equal_outside(rectangle, pixels, before);
   int empty = 0;
   for (int y = 0; y < host_size_px.y; y++) {
     for (int x = 0; x < host_size_px.x; x++) {
-      if (!is_inside(x, y)) {
+      if (!test::is_inside(rectangle, x, y)) {
         continue;
       }
       const std::array<int, 4> drawn = picture.at(x, y);
@@ -350,7 +373,7 @@ TEST_P(TargetGpuTest, BlendedSurfacesLieOverTheHostsContentAndChangeNoDepth)
   over.depth = draw::HostDepth{.clip_from_view = glm::perspectiveRH_NO(0.6, 4.0 / 3.0, 0.5, 1000.0)};
   renderer.draw_sample(camera, over);
   const Pixels pixels = host.pixels();
-  expect_outside(pixels, before);
+  test::expect_equal_outside(rectangle, pixels, before);
   EXPECT_TRUE(std::ranges::all_of(host.depths(), [](float depth) { return std::abs(depth - 0.25F) < 1e-6F; }));
   for (int y = origin_px.y; y < origin_px.y + target_size_px.y; y++) {
     for (int x = origin_px.x; x < origin_px.x + target_size_px.x; x++) {

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// Included before the source of an example, whose calls of the library then have to leave the state of OpenGL as it
+// was.
+#pragma once
+
+#include <gnomon/gnomon.hh>
+
+#include <functional>
+#include <memory>
+#include <utility>
+
+namespace gnomon::test {
+
+/** Makes \a call. The program ends with status 1 if state of OpenGL differs after it; so it does if no call is made. */
+void expect_state_kept(const char *name, const std::function<void()> &call);
+/** As make_host_calls, with expect_state_kept, into the framebuffer of \a target. */
+void expect_state_kept_by_all_calls(const scene::Scene &scene, const draw::Target &target);
+
+}  // namespace gnomon::test
+
+namespace gnomon::gpu {
+
+inline std::unique_ptr<Device> create_checked_device(const GlDeviceDesc &desc)
+{
+  std::unique_ptr<Device> device;
+  test::expect_state_kept("create_gl_device", [&] { device = create_gl_device(desc); });
+  return device;
+}
+
+}  // namespace gnomon::gpu
+
+namespace gnomon::eevee {
+
+/** The functions of SceneRenderer that the examples call. All other calls are made before the first draw. */
+class CheckedRenderer {
+ public:
+  CheckedRenderer(gpu::Device &device, const scene::Scene &scene, glm::ivec2 size_px, const Settings &settings)
+      : scene_(scene)
+  {
+    test::expect_state_kept("SceneRenderer",
+                            [&] { renderer_ = std::make_unique<SceneRenderer>(device, scene, size_px, settings); });
+  }
+  ~CheckedRenderer()
+  {
+    test::expect_state_kept("~SceneRenderer", [&] { renderer_.reset(); });
+  }
+  CheckedRenderer(const CheckedRenderer &) = delete;
+  CheckedRenderer &operator=(const CheckedRenderer &) = delete;
+
+  void resize(glm::ivec2 size_px)
+  {
+    test::expect_state_kept("resize", [&] { renderer_->resize(size_px); });
+  }
+  void sync()
+  {
+    test::expect_state_kept("sync", [&] { renderer_->sync(); });
+  }
+  bool draw_sample(const scene::PlacedCamera &camera, const draw::Target &target)
+  {
+    if (!std::exchange(has_drawn_, true)) {
+      test::expect_state_kept_by_all_calls(scene_, target);
+    }
+    bool is_complete = false;
+    test::expect_state_kept("draw_sample", [&] { is_complete = renderer_->draw_sample(camera, target); });
+    return is_complete;
+  }
+
+ private:
+  const scene::Scene &scene_;
+  std::unique_ptr<SceneRenderer> renderer_;
+  bool has_drawn_ = false;
+};
+
+}  // namespace gnomon::eevee
+
+#define create_gl_device create_checked_device
+#define SceneRenderer CheckedRenderer
