@@ -175,7 +175,8 @@ class Frames {
 
   void measure_budget(FrameTimes &times)
   {
-    eevee::SceneRenderer renderer(device_, scene_, settings_.size_px, {.sample_count = 16});
+    // Those of `gnomon render`, which have the largest shadows.
+    eevee::SceneRenderer renderer(device_, scene_, settings_.size_px, eevee::offline_settings(16));
     const auto draw = [&](const scene::PlacedCamera &camera, const draw::Target &target) {
       return seconds_of(device_, [&] { renderer.draw_within(settings_.budget_seconds, camera, target); });
     };
