@@ -362,6 +362,7 @@ void App::update_document()
     message(std::move(text), false);
   }
   render_scene::RenderScene &render_scene = document_->render_scene();
+  active().follow(*document_);
   const glm::dvec3 eye(active().navigation.camera(0.0).world_from_camera[3]);
   render_scene.set_origin(render_scene::origin_near(eye, render_scene.origin_ws()));
   render_scene.update();

@@ -99,7 +99,7 @@ void look_through(App &app, Words words)
 {
   for (const scene::PlacedCamera &camera : document(app).scene().placed_cameras()) {
     if (camera.name == words[0]) {
-      app.active().navigation.look_through(camera, app.document()->scene().bounds());
+      app.active().look_through(*app.document(), camera);
       return;
     }
   }
@@ -171,37 +171,39 @@ void expect_selected(App &app, Words words)
   }
 }
 
-/** Of the selected node: its placement, flags, lamp or first material. \return whether it has the property */
+/** Set a property of \a thing, which may be absent. \return whether it has the property */
+template <typename T>
+bool set_of(Document &document, scene::Handle<T> thing, const std::string &name, Words values)
+{
+  const T *value = document.scene().pool<T>().find(thing);
+  if (!value) {
+    return false;
+  }
+  T edited = *value;
+  if (!set_property(edited, name, values)) {
+    return false;
+  }
+  document.edit(thing, [&](T &one) { one = edited; });
+  return true;
+}
+
+/** Of the selected node: its placement, flags, lamp, camera or first material. \return whether it has the property */
 bool set_of_selected(Document &document, const std::string &name, Words values)
 {
   const scene::Scene &scene = document.scene();
   if (!scene.nodes().is_live(document.selected)) {
     throw std::runtime_error("nothing is selected");
   }
-  scene::Node node = scene.nodes()[document.selected];
+  const scene::Node node = scene.nodes()[document.selected];
   Placement placement = placement_of(node.parent_from_node);
   if (set_property(placement, name, values)) {
-    node.parent_from_node = placed(node.parent_from_node, placement);
+    document.edit(document.selected,
+                  [&](scene::Node &one) { one.parent_from_node = placed(one.parent_from_node, placement); });
+    return true;
   }
-  else if (!set_property(node, name, values)) {
-    if (const scene::Lamp *lamp = scene.lamps().find(node.lamp)) {
-      scene::Lamp edited = *lamp;
-      const bool is_set = set_property(edited, name, values);
-      document.edit(node.lamp, [&](scene::Lamp &one) { one = edited; });
-      return is_set;
-    }
-    const scene::Mesh *mesh = node.meshes.empty() ? nullptr : scene.meshes().find(node.meshes.front());
-    const scene::Material *material = mesh ? scene.materials().find(mesh->material) : nullptr;
-    if (!material) {
-      return false;
-    }
-    scene::Material edited = *material;
-    const bool is_set = set_property(edited, name, values);
-    document.edit(mesh->material, [&](scene::Material &one) { one = edited; });
-    return is_set;
-  }
-  document.edit(document.selected, [&](scene::Node &one) { one = node; });
-  return true;
+  const scene::Mesh *mesh = node.meshes.empty() ? nullptr : scene.meshes().find(node.meshes.front());
+  return set_of(document, document.selected, name, values) || set_of(document, node.lamp, name, values) ||
+         set_of(document, node.camera, name, values) || (mesh && set_of(document, mesh->material, name, values));
 }
 
 /** "world.NAME", "render.NAME", or a property of the selected node. */

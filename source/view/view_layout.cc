@@ -64,7 +64,7 @@ void App::show_viewport_header(Viewport &viewport)
       // Names are not unique.
       ImGui::PushID(int(camera.node.index));
       if (ImGui::Selectable(camera.name.c_str())) {
-        viewport.navigation.look_through(camera, document_->scene().bounds());
+        viewport.look_through(*document_, camera);
       }
       ImGui::PopID();
     }

@@ -28,7 +28,7 @@ class SceneTree {
   char filter_[64] = "";
 };
 
-/** The selected node: its placement, flags, lamp and materials. */
+/** The selected node: its placement, flags, lamp, camera and materials. */
 void show_selection(Document &document);
 /** Light from everywhere. */
 void show_world(Document &document);

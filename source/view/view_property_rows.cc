@@ -88,9 +88,9 @@ bool show_number(const NumberProperty<T> &property, T &thing)
   const char *unit = property.unit(thing);
   const bool has_unit = *unit != 0 && fit(values, property.width, digits, unit);
   const std::string format = fmt::format("%.{}g{}{}", digits, has_unit ? " " : "", has_unit ? unit : "");
-  const bool is_changed =
-      ImGui::DragScalarN("", ImGuiDataType_Double, values.data(), property.width, speed, &property.min, &property.max,
-                         format.c_str(), ImGuiSliderFlags_AlwaysClamp);
+  const Limits limits = property.limits(thing);
+  const bool is_changed = ImGui::DragScalarN("", ImGuiDataType_Double, values.data(), property.width, speed,
+                                             &limits.min, &limits.max, format.c_str(), ImGuiSliderFlags_AlwaysClamp);
   if (*unit != 0 && !has_unit && ImGui::IsItemHovered()) {
     ImGui::SetTooltip("%s", unit);
   }
@@ -105,6 +105,39 @@ bool show_number(const NumberProperty<T> &property, T &thing)
     }
   }
   return true;
+}
+
+/** A box beside the number, without a tick where the number is absent. */
+template <typename T>
+bool show_optional_number(const NumberProperty<T> &property, T &thing)
+{
+  bool is_present = !property.is_absent(thing);
+  if (ImGui::Checkbox("##present", &is_present)) {
+    if (is_present) {
+      const Limits limits = property.limits(thing);
+      property.set(thing, 0, std::clamp(property.get(thing, 0), limits.min, limits.max));
+    }
+    else {
+      property.remove(thing);
+    }
+    return true;
+  }
+  ImGui::SameLine();
+  if (!is_present) {
+    ImGui::TextDisabled("%s", property.absent);
+    return false;
+  }
+  ImGui::SetNextItemWidth(-1.0F);
+  return show_number(property, thing);
+}
+
+template <typename T>
+bool show_row(const NumberProperty<T> &property, T &thing)
+{
+  if (property.absent) {
+    return show_optional_number(property, thing);
+  }
+  return property.is_color ? show_color(property, thing) : show_number(property, thing);
 }
 
 }  // namespace
@@ -130,7 +163,7 @@ bool show_properties(T &thing)
     show(property, [&] { return show_choice(property, thing); });
   }
   for (const NumberProperty<T> &property : properties<T>().numbers) {
-    show(property, [&] { return property.is_color ? show_color(property, thing) : show_number(property, thing); });
+    show(property, [&] { return show_row(property, thing); });
   }
   ImGui::EndTable();
   return is_changed;
@@ -139,6 +172,7 @@ bool show_properties(T &thing)
 template bool show_properties(Placement &);
 template bool show_properties(scene::Node &);
 template bool show_properties(scene::Lamp &);
+template bool show_properties(scene::Camera &);
 template bool show_properties(scene::Material &);
 template bool show_properties(scene::World &);
 template bool show_properties(Settings &);

@@ -128,6 +128,15 @@ void show_selection(Document &document)
     }
     ImGui::PopID();
   }
+  if (const scene::Camera *camera = scene.cameras().find(node.camera);
+      camera && header(fmt::format("Camera: {}###camera", camera->name))) {
+    ImGui::PushID("camera");
+    scene::Camera edited = *camera;
+    if (show_properties(edited)) {
+      document.edit(node.camera, [&](scene::Camera &one) { one = edited; });
+    }
+    ImGui::PopID();
+  }
   std::vector<scene::Handle<scene::Material>> shown;
   for (const scene::Handle<scene::Mesh> mesh : node.meshes) {
     const scene::Mesh *value = scene.meshes().find(mesh);

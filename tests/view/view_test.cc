@@ -29,6 +29,10 @@ TEST(ViewHistoryTest, EachGestureIsUndoneAndRedoneAsOneAndANewEditForgetsWhatWas
   history.set_world(scene, scene::World{.strength = 2.0F});
   history.edit(scene, node, [](scene::Node & /*edited*/) {});
   EXPECT_EQ(history.undo_count(), 4U);
+  const auto camera = scene.add(scene::Camera{.near = 1.0F});
+  history.edit(scene, camera, [](scene::Camera &edited) { edited.near = 2.0F; });
+  EXPECT_TRUE(history.undo(scene));
+  EXPECT_EQ(scene.cameras()[camera].near, 1.0F);
 
   EXPECT_TRUE(history.undo(scene));
   EXPECT_FALSE(scene.world());
@@ -233,6 +237,16 @@ TEST(ViewPropertiesTest, EveryNumberIsWhatWasSetWithinItsLimitsAndEveryChoiceToo
   const auto check = [](auto thing) {
     using T = decltype(thing);
     for (const auto &property : properties<T>().numbers) {
+      if (property.absent) {
+        property.remove(thing);
+        EXPECT_TRUE(property.is_absent(thing)) << property.name;
+        const double first = property.get(thing, 0);
+        EXPECT_TRUE(first >= property.min && first <= property.max) << property.name << ' ' << first;
+        property.set(thing, 0, first);
+        EXPECT_FALSE(property.is_absent(thing)) << property.name;
+        // A float.
+        EXPECT_NEAR(property.get(thing, 0), first, 1e-6 * first) << property.name;
+      }
       for (int i = 0; i < property.width; i++) {
         for (const double value : {property.min, property.max, 0.5 * property.min + 0.5 * property.max}) {
           property.set(thing, i, value);
@@ -248,6 +262,7 @@ TEST(ViewPropertiesTest, EveryNumberIsWhatWasSetWithinItsLimitsAndEveryChoiceToo
     }
   };
   check(scene::Lamp());
+  check(scene::Camera());
   check(scene::Material());
   check(scene::Node());
   check(scene::World());
@@ -281,6 +296,39 @@ TEST(ViewPropertiesTest, WordsSetAPropertyAndWrongOnesAreNamed)
     EXPECT_THROW(set(name, words), std::runtime_error) << name;
   }
   EXPECT_EQ(lamp, before);
+}
+
+TEST(ViewPropertiesTest, ACameraHasTheNumbersOfItsKindAndItsFarDistanceStaysBeyondTheNearOne)
+{
+  scene::Camera camera;
+  const auto set = [&](const std::string &name, const std::string &word) {
+    return set_property(camera, name, std::span(&word, 1));
+  };
+  EXPECT_TRUE(set("vertical_angle", "90"));
+  EXPECT_FLOAT_EQ(camera.vertical_angle, glm::radians(90.0F));
+  EXPECT_TRUE(set("aspect", "2"));
+  EXPECT_EQ(camera.aspect, 2.0F);
+  EXPECT_TRUE(set("aspect", "as the picture"));
+  EXPECT_EQ(camera.aspect, 0.0F);
+  EXPECT_TRUE(set("near", "5"));
+  EXPECT_THROW(set("near", "0"), std::runtime_error) << "in perspective";
+  EXPECT_THROW(set("far", "5"), std::runtime_error);
+  EXPECT_TRUE(set("far", "7"));
+  EXPECT_THROW(set("near", "7"), std::runtime_error);
+  EXPECT_TRUE(set("far", "infinite"));
+  EXPECT_EQ(camera.far, 0.0F);
+  EXPECT_FALSE(set("half_width", "3"));
+
+  EXPECT_TRUE(set("kind", "orthographic"));
+  EXPECT_GT(camera.far, camera.near) << "files of such cameras need one";
+  EXPECT_THROW(set("far", "infinite"), std::runtime_error);
+  EXPECT_TRUE(set("near", "0"));
+  EXPECT_TRUE(set("far", "0.01"));
+  EXPECT_TRUE(set("half_width", "3"));
+  EXPECT_EQ(camera.half_width, 3.0F);
+  EXPECT_FALSE(set("vertical_angle", "40"));
+  EXPECT_TRUE(set("kind", "perspective"));
+  EXPECT_TRUE(camera.near > 0.0F && camera.near < camera.far) << camera.near;
 }
 
 TEST(ViewScriptTest, WordsAreSeparatedBySpacesQuotesKeepThemAndCommentsEndALine)
