@@ -187,6 +187,20 @@ bool set_of(Document &document, scene::Handle<T> thing, const std::string &name,
   return true;
 }
 
+bool set_of_shadow(Document &document, scene::Handle<scene::Lamp> handle, const std::string &name, Words values)
+{
+  const scene::Lamp *lamp = document.scene().lamps().find(handle);
+  if (!lamp) {
+    return false;
+  }
+  ShadowOfLamp edited = document.shadow_of(*lamp);
+  if (!set_property(edited, name, values)) {
+    return false;
+  }
+  document.edit(handle, [&](scene::Lamp &one) { one.shadow = edited.shadow; });
+  return true;
+}
+
 /** Of the selected node: its placement, flags, lamp, camera or first material. \return whether it has the property */
 bool set_of_selected(Document &document, const std::string &name, Words values)
 {
@@ -203,7 +217,8 @@ bool set_of_selected(Document &document, const std::string &name, Words values)
   }
   const scene::Mesh *mesh = node.meshes.empty() ? nullptr : scene.meshes().find(node.meshes.front());
   return set_of(document, document.selected, name, values) || set_of(document, node.lamp, name, values) ||
-         set_of(document, node.camera, name, values) || (mesh && set_of(document, mesh->material, name, values));
+         set_of_shadow(document, node.lamp, name, values) || set_of(document, node.camera, name, values) ||
+         (mesh && set_of(document, mesh->material, name, values));
 }
 
 /** "world.NAME", "render.NAME", or a property of the selected node. */

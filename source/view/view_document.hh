@@ -3,6 +3,7 @@
 
 #include "view_additions.hh"
 #include "view_history.hh"
+#include "view_properties.hh"
 #include "view_settings.hh"
 #include "view_transform_operation.hh"
 
@@ -120,6 +121,11 @@ class Document {
     return settings_;
   }
   void set_settings(const Settings &settings);
+  /** With the settings of these viewports. */
+  [[nodiscard]] ShadowOfLamp shadow_of(const scene::Lamp &lamp) const
+  {
+    return {lamp.kind, settings_.eevee.shadow.kind, lamp.shadow};
+  }
   [[nodiscard]] std::uint64_t settings_revision() const
   {
     return settings_revision_;

@@ -14,7 +14,7 @@
 /** What the window shows beside the viewports. Each function draws items of the current window. */
 namespace gnomon::view {
 
-/** The rows of a table with \a thing's properties. \return whether the user changed \a thing */
+/** The rows of tables with \a thing's properties, some under headers. \return whether the user changed \a thing */
 template <typename T>
 bool show_properties(T &thing);
 

@@ -15,6 +15,10 @@ namespace gnomon::view {
 inline constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 /** A limit for lengths and powers that have none. */
 inline constexpr double endless = 1e9;
+/** What the engine takes of exponential shadows: eevee::EsmSettings. */
+inline constexpr double esm_size_min = 4.0;
+inline constexpr double esm_size_max = 8192.0;
+inline constexpr double esm_filter_degrees_max = 28.6;
 
 inline const std::vector<const char *> off_on = {"off", "on"};
 inline const std::vector<const char *> shadow_kinds = {"none", "hard", "pcf", "esm", "evsm"};

@@ -8,6 +8,9 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace gnomon::view {
 
@@ -140,10 +143,62 @@ bool show_row(const NumberProperty<T> &property, T &thing)
   return property.is_color ? show_color(property, thing) : show_number(property, thing);
 }
 
-}  // namespace
+/** Calls \a function with each property of the group, choices first, that applies to \a thing. */
+template <typename T, typename Function>
+void for_each_property(const T &thing, std::string_view group, Function &&function)
+{
+  const auto visit = [&](const auto &property) {
+    if (property.group == group && (!property.applies || property.applies(thing))) {
+      function(property);
+    }
+  };
+  std::ranges::for_each(properties<T>().choices, visit);
+  std::ranges::for_each(properties<T>().numbers, visit);
+}
+
+/** In the order in which they first appear. */
+template <typename T>
+std::vector<std::string_view> groups()
+{
+  std::vector<std::string_view> found;
+  const auto note = [&](const auto &property) {
+    if (*property.group != 0 && std::ranges::find(found, property.group) == found.end()) {
+      found.emplace_back(property.group);
+    }
+  };
+  std::ranges::for_each(properties<T>().choices, note);
+  std::ranges::for_each(properties<T>().numbers, note);
+  return found;
+}
 
 template <typename T>
-bool show_properties(T &thing)
+bool is_default(const ChoiceProperty<T> &property, const T &thing)
+{
+  return property.get(thing) == property.get(T());
+}
+
+template <typename T>
+bool is_default(const NumberProperty<T> &property, const T &thing)
+{
+  if (property.absent && property.is_absent(thing) != property.is_absent(T())) {
+    return false;
+  }
+  for (int i = 0; i < property.width; i++) {
+    if (property.get(thing, i) != property.get(T(), i)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+template <typename T>
+bool show_row(const ChoiceProperty<T> &property, T &thing)
+{
+  return show_choice(property, thing);
+}
+
+template <typename T>
+bool show_rows(T &thing, std::string_view group)
 {
   if (!ImGui::BeginTable("properties", 2)) {
     return false;
@@ -151,27 +206,43 @@ bool show_properties(T &thing)
   ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 8.0F * ImGui::GetFontSize());
   ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
   bool is_changed = false;
-  const auto show = [&](const auto &property, auto &&item) {
-    if (!property.applies || property.applies(thing)) {
-      ImGui::PushID(property.name);
-      begin_row(property.label);
-      is_changed |= item();
-      ImGui::PopID();
-    }
-  };
-  for (const ChoiceProperty<T> &property : properties<T>().choices) {
-    show(property, [&] { return show_choice(property, thing); });
-  }
-  for (const NumberProperty<T> &property : properties<T>().numbers) {
-    show(property, [&] { return show_row(property, thing); });
-  }
+  for_each_property(thing, group, [&](const auto &property) {
+    ImGui::PushID(property.name);
+    begin_row(property.label);
+    is_changed |= show_row(property, thing);
+    ImGui::PopID();
+  });
   ImGui::EndTable();
+  return is_changed;
+}
+
+}  // namespace
+
+template <typename T>
+bool show_properties(T &thing)
+{
+  bool is_changed = show_rows(thing, "");
+  for (const std::string_view group : groups<T>()) {
+    bool has_rows = false;
+    bool is_used = false;
+    for_each_property(std::as_const(thing), group, [&](const auto &property) {
+      has_rows = true;
+      is_used |= !is_default(property, thing);
+    });
+    // What is as usual is folded at first.
+    if (has_rows && ImGui::TreeNodeEx(group.data(), ImGuiTreeNodeFlags_SpanAvailWidth |
+                                                        (is_used ? ImGuiTreeNodeFlags_DefaultOpen : 0))) {
+      is_changed |= show_rows(thing, group);
+      ImGui::TreePop();
+    }
+  }
   return is_changed;
 }
 
 template bool show_properties(Placement &);
 template bool show_properties(scene::Node &);
 template bool show_properties(scene::Lamp &);
+template bool show_properties(ShadowOfLamp &);
 template bool show_properties(scene::Camera &);
 template bool show_properties(scene::Material &);
 template bool show_properties(scene::World &);

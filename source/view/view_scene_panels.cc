@@ -126,6 +126,12 @@ void show_selection(Document &document)
     if (show_properties(edited)) {
       document.edit(node.lamp, [&](scene::Lamp &one) { one = edited; });
     }
+    ImGui::PushID("shadow");
+    ShadowOfLamp shadow = document.shadow_of(edited);
+    if (edited.kind != scene::LampKind::Hemi && show_properties(shadow)) {
+      document.edit(node.lamp, [&](scene::Lamp &one) { one.shadow = shadow.shadow; });
+    }
+    ImGui::PopID();
     ImGui::PopID();
   }
   if (const scene::Camera *camera = scene.cameras().find(node.camera);

@@ -2,6 +2,7 @@
 #include "view_property_makers.hh"
 
 #include "scene_units.hh"
+#include "shadows/shadow_plan.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,18 @@
 namespace gnomon::view {
 
 namespace {
+
+constexpr const char *as_the_scene = "as the scene";
+
+/** The next float. */
+double below(float value)
+{
+  return double(std::nextafter(value, 0.0F));
+}
+double above(float value)
+{
+  return double(std::nextafter(value, std::numeric_limits<float>::infinity()));
+}
 
 Properties<scene::Lamp> make_lamp_properties()
 {
@@ -20,14 +33,6 @@ Properties<scene::Lamp> make_lamp_properties()
   ChoiceProperty<Lamp> shape = choice("area_shape", "Shape", {"rectangle", "ellipse"}, &Lamp::area_shape);
   shape.applies = [](const Lamp &lamp) { return lamp.kind == Area; };
   made.choices.push_back(std::move(shape));
-  ChoiceProperty<Lamp> shadow{"shadow", "Shadow", {"as the scene"},
-                              {},       {},       [](const Lamp &lamp) { return lamp.kind != Hemi; }};
-  shadow.options.insert(shadow.options.end(), shadow_kinds.begin(), shadow_kinds.end());
-  shadow.get = [](const Lamp &lamp) { return lamp.shadow.kind ? int(*lamp.shadow.kind) + 1 : 0; };
-  shadow.set = [](Lamp &lamp, int value) {
-    lamp.shadow.kind = value == 0 ? std::nullopt : std::optional(scene::ShadowKind(value - 1));
-  };
-  made.choices.push_back(std::move(shadow));
 
   made.numbers.push_back(color<Lamp>("color", "Color", &Lamp::color));
   NumberProperty<Lamp> power = number("power", "Power", "", &Lamp::intensity, 0.0, endless);
@@ -41,6 +46,100 @@ Properties<scene::Lamp> make_lamp_properties()
   made.numbers.push_back(only(number("range", "Range", "m", &Lamp::range, 0.0, endless), Point, Spot));
   made.numbers.push_back(only(number("size_x", "Size X", "m", &Lamp::area_size_x, 1e-3, 1e4), Area));
   made.numbers.push_back(only(number("size_y", "Size Y", "m", &Lamp::area_size_y, 1e-3, 1e4), Area));
+  return made;
+}
+
+/** "as the scene" for no value of its own, and then \a options, which count as the values do. */
+template <typename Value>
+ChoiceProperty<ShadowOfLamp> shadow_choice(const char *name, const char *label, std::vector<const char *> options,
+                                           std::optional<Value> scene::LampShadow::*member)
+{
+  options.insert(options.begin(), as_the_scene);
+  return {name,
+          label,
+          std::move(options),
+          [=](const ShadowOfLamp &of) { return of.shadow.*member ? int(*(of.shadow.*member)) + 1 : 0; },
+          [=](ShadowOfLamp &of, int value) {
+            of.shadow.*member = value == 0 ? std::nullopt : std::optional(Value(value - 1));
+          },
+          {}};
+}
+
+/** \a first: where there was none. */
+template <typename Value>
+NumberProperty<ShadowOfLamp> shadow_number(const char *name, const char *label, const char *unit,
+                                           std::optional<Value> scene::LampShadow::*member, double min, double max,
+                                           double first, double factor = 1.0)
+{
+  NumberProperty<ShadowOfLamp> property{
+      .name = name,
+      .label = label,
+      .unit = [unit](const ShadowOfLamp &) { return unit; },
+      .width = 1,
+      .min = min,
+      .max = max,
+      .get = [=](const ShadowOfLamp &of,
+                 int) { return of.shadow.*member ? double(*(of.shadow.*member)) * factor : first; },
+      .set = [=](ShadowOfLamp &of, int, double value) { of.shadow.*member = stored<Value>(value / factor); }};
+  property.absent = as_the_scene;
+  property.is_absent = [=](const ShadowOfLamp &of) { return !(of.shadow.*member); };
+  property.remove = [=](ShadowOfLamp &of) { (of.shadow.*member).reset(); };
+  property.group = "Shadow";
+  return property;
+}
+
+scene::ShadowKind kind_of(const ShadowOfLamp &of)
+{
+  return eevee::shadow_kind(of.lamp, of.shadow.kind, {.kind = of.scene_kind});
+}
+
+bool is_exponential(const ShadowOfLamp &of)
+{
+  return kind_of(of) == scene::ShadowKind::Esm || kind_of(of) == scene::ShadowKind::Evsm;
+}
+
+Properties<ShadowOfLamp> make_shadow_properties()
+{
+  using scene::LampShadow;
+  Properties<ShadowOfLamp> made;
+  made.choices.push_back(shadow_choice("shadow", "Shadow", shadow_kinds, &LampShadow::kind));
+  made.choices.back().applies = [](const ShadowOfLamp &of) { return of.lamp != scene::LampKind::Hemi; };
+  ChoiceProperty<ShadowOfLamp> format =
+      shadow_choice("esm_format", "Layer format", {"16f", "32f"}, &LampShadow::esm_format);
+  format.applies = [](const ShadowOfLamp &of) { return kind_of(of) == scene::ShadowKind::Esm; };
+  format.group = "Shadow";
+  made.choices.push_back(std::move(format));
+
+  const auto add = [&](NumberProperty<ShadowOfLamp> property, bool (*applies)(const ShadowOfLamp &)) {
+    property.applies = applies;
+    made.numbers.push_back(std::move(property));
+  };
+  const auto has_shadow = [](const ShadowOfLamp &of) { return kind_of(of) != scene::ShadowKind::None; };
+  // A sun is at no distance.
+  const auto has_distances = [](const ShadowOfLamp &of) {
+    return kind_of(of) != scene::ShadowKind::None && of.lamp != scene::LampKind::Sun;
+  };
+  add(shadow_number("shadow_size", "Size", "px", &LampShadow::size, 1.0, 16384.0, 1024.0), has_shadow);
+  add(shadow_number("bias", "Bias", "", &LampShadow::bias, 0.0, 100.0, 1.0), has_shadow);
+  NumberProperty<ShadowOfLamp> start =
+      shadow_number("clip_start", "Clip start", "m", &LampShadow::clip_start, 1e-5, endless, 0.1);
+  start.narrowed = [](const ShadowOfLamp &of) {
+    return Limits{1e-5, of.shadow.clip_end ? below(*of.shadow.clip_end) : endless};
+  };
+  add(std::move(start), has_distances);
+  NumberProperty<ShadowOfLamp> end =
+      shadow_number("clip_end", "Clip end", "m", &LampShadow::clip_end, 1e-5, endless, 100.0);
+  end.narrowed = [](const ShadowOfLamp &of) {
+    return Limits{of.shadow.clip_start ? above(*of.shadow.clip_start) : 1e-5, endless};
+  };
+  add(std::move(end), has_distances);
+  add(shadow_number("exponent", "Exponent", "1/m", &LampShadow::exponent, 0.01, 1e4, 10.0), is_exponential);
+  // Files may have wider filters, and layers of other sizes, than the engine takes.
+  add(shadow_number("filter_radius", "Filter radius", "°", &LampShadow::filter_radius, 0.0, esm_filter_degrees_max, 1.0,
+                    degrees_per_radian),
+      is_exponential);
+  add(shadow_number("esm_size", "Layer size", "px", &LampShadow::esm_size, esm_size_min, esm_size_max, 512.0),
+      is_exponential);
   return made;
 }
 
@@ -77,14 +176,12 @@ Properties<scene::Camera> make_camera_properties()
       only(number("half_height", "Half height", "m", &Camera::half_height, 1e-4, endless), Orthographic));
   NumberProperty<Camera> near = number("near", "Near", "m", &Camera::near, 0.0, endless);
   near.narrowed = [](const Camera &camera) {
-    const double far = camera.far > 0.0F ? double(std::nextafter(camera.far, 0.0F)) : endless;
+    const double far = camera.far > 0.0F ? below(camera.far) : endless;
     return Limits{camera.kind == Perspective ? near_min : 0.0, far};
   };
   made.numbers.push_back(std::move(near));
   NumberProperty<Camera> far = number("far", "Far", "m", &Camera::far, near_min, endless);
-  far.narrowed = [](const Camera &camera) {
-    return Limits{double(std::nextafter(camera.near, std::numeric_limits<float>::infinity())), endless};
-  };
+  far.narrowed = [](const Camera &camera) { return Limits{above(camera.near), endless}; };
   made.numbers.push_back(only(far, Orthographic));
   made.numbers.push_back(only(zero_is("infinite", 1000.0, far), Perspective));
   return made;
@@ -116,6 +213,13 @@ template <>
 const Properties<scene::Lamp> &properties()
 {
   static const Properties<scene::Lamp> made = make_lamp_properties();
+  return made;
+}
+
+template <>
+const Properties<ShadowOfLamp> &properties()
+{
+  static const Properties<ShadowOfLamp> made = make_shadow_properties();
   return made;
 }
 

@@ -9,6 +9,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <random>
+#include <set>
 
 namespace gnomon::view {
 namespace {
@@ -262,6 +263,7 @@ TEST(ViewPropertiesTest, EveryNumberIsWhatWasSetWithinItsLimitsAndEveryChoiceToo
     }
   };
   check(scene::Lamp());
+  check(ShadowOfLamp());
   check(scene::Camera());
   check(scene::Material());
   check(scene::Node());
@@ -281,8 +283,6 @@ TEST(ViewPropertiesTest, WordsSetAPropertyAndWrongOnesAreNamed)
   EXPECT_FLOAT_EQ(lamp.spot_outer_angle, glm::radians(45.0F));
   EXPECT_TRUE(set("color", {"1", "0.5", "0"}));
   EXPECT_EQ(lamp.color, glm::vec3(1, 0.5F, 0));
-  EXPECT_TRUE(set("shadow", {"none"}));
-  EXPECT_EQ(lamp.shadow.kind, scene::ShadowKind::None);
   EXPECT_FALSE(set("angle", {"1"})) << "of a sun";
   EXPECT_FALSE(set("sweetness", {"1"}));
   const scene::Lamp before = lamp;
@@ -296,6 +296,69 @@ TEST(ViewPropertiesTest, WordsSetAPropertyAndWrongOnesAreNamed)
     EXPECT_THROW(set(name, words), std::runtime_error) << name;
   }
   EXPECT_EQ(lamp, before);
+}
+
+TEST(ViewPropertiesTest, AShadowHasTheSettingsThatHaveAnEffectForItsKindAndEachMayBeAsTheScene)
+{
+  const std::vector<std::string> depths = {"shadow_size", "bias", "clip_start", "clip_end"};
+  const std::vector<std::string> exponential = {"exponent", "filter_radius", "esm_size"};
+  const auto applying = [](const ShadowOfLamp &of) {
+    std::set<std::string> names;
+    for (const auto &property : properties<ShadowOfLamp>().choices) {
+      if (property.applies(of)) {
+        names.insert(property.name);
+      }
+    }
+    for (const auto &property : properties<ShadowOfLamp>().numbers) {
+      if (property.applies(of)) {
+        names.insert(property.name);
+      }
+    }
+    return names;
+  };
+  using enum scene::ShadowKind;
+  ShadowOfLamp of{scene::LampKind::Point, Pcf};
+  std::set<std::string> expected(depths.begin(), depths.end());
+  expected.insert("shadow");
+  EXPECT_EQ(applying(of), expected);
+  of.shadow.kind = Evsm;
+  expected.insert(exponential.begin(), exponential.end());
+  EXPECT_EQ(applying(of), expected);
+  of.shadow.kind = std::nullopt;
+  of.scene_kind = Esm;
+  expected.insert("esm_format");
+  EXPECT_EQ(applying(of), expected);
+  // Suns have no exponential shadows, and no distances.
+  of.lamp = scene::LampKind::Sun;
+  EXPECT_EQ(applying(of), (std::set<std::string>{"shadow", "shadow_size", "bias"}));
+  of.shadow.kind = None;
+  EXPECT_EQ(applying(of), std::set<std::string>{"shadow"});
+  of = {scene::LampKind::Point, None, {.kind = Hard}};
+  EXPECT_EQ(applying(of), std::set<std::string>{"shadow"}) << "the scene has none";
+  of.lamp = scene::LampKind::Hemi;
+  EXPECT_TRUE(applying(of).empty());
+
+  of = {scene::LampKind::Spot, Esm};
+  const auto set = [&](const std::string &name, const std::string &word) {
+    return set_property(of, name, std::span(&word, 1));
+  };
+  EXPECT_TRUE(set("shadow_size", "300"));
+  EXPECT_EQ(of.shadow.size, 300);
+  EXPECT_TRUE(set("filter_radius", "9"));
+  EXPECT_FLOAT_EQ(*of.shadow.filter_radius, glm::radians(9.0F));
+  EXPECT_TRUE(set("esm_format", "32f"));
+  EXPECT_EQ(of.shadow.esm_format, scene::EsmFormat::Float);
+  EXPECT_TRUE(set("clip_start", "2"));
+  EXPECT_THROW(set("clip_end", "2"), std::runtime_error);
+  EXPECT_TRUE(set("clip_end", "2.5"));
+  EXPECT_THROW(set("clip_start", "2.5"), std::runtime_error);
+  EXPECT_TRUE(set("clip_start", "as the scene"));
+  EXPECT_FALSE(of.shadow.clip_start);
+  EXPECT_TRUE(set("clip_end", "0.001"));
+  for (const char *name : {"shadow", "shadow_size", "filter_radius", "esm_format", "clip_end"}) {
+    EXPECT_TRUE(set(name, "as the scene"));
+  }
+  EXPECT_EQ(of.shadow, scene::LampShadow());
 }
 
 TEST(ViewPropertiesTest, ACameraHasTheNumbersOfItsKindAndItsFarDistanceStaysBeyondTheNearOne)
