@@ -6,6 +6,7 @@
 #include <glm/gtx/euler_angles.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -49,6 +50,25 @@ glm::dmat4 placed(const glm::dmat4 &parent_from_node, const Placement &placement
   }
   moved[3] = glm::dvec4(placement.position, 1.0);
   return moved;
+}
+
+std::vector<TextureLine> texture_lines(const scene::Scene &scene, const scene::Material &material)
+{
+  std::vector<TextureLine> lines;
+  for (const scene::TextureInput &input : scene::texture_inputs) {
+    const scene::Texture *texture = scene.textures().find((material.*input.slot).texture);
+    const scene::Image *image = texture ? scene.images().find(texture->image) : nullptr;
+    if (!image) {
+      continue;
+    }
+    // "coat_normal_texture" becomes "Coat normal".
+    std::string slot(input.name.substr(0, input.name.rfind('_')));
+    std::ranges::replace(slot, '_', ' ');
+    slot[0] = char(std::toupper(slot[0]));
+    lines.push_back(
+        {slot, fmt::format("{}{}{}x{}", image->name, image->name.empty() ? "" : ", ", image->width, image->height)});
+  }
+  return lines;
 }
 
 namespace {

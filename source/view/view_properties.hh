@@ -93,6 +93,15 @@ struct ShadowOfLamp {
   scene::LampShadow shadow{};
 };
 
+/** A texture of a material, as text. */
+struct TextureLine {
+  std::string slot;
+  std::string image;
+
+  bool operator==(const TextureLine &) const = default;
+};
+[[nodiscard]] std::vector<TextureLine> texture_lines(const scene::Scene &scene, const scene::Material &material);
+
 /** For Placement, scene::Node, scene::Lamp, ShadowOfLamp, scene::Camera, scene::Material, scene::World and Settings. */
 template <typename T>
 [[nodiscard]] const Properties<T> &properties();

@@ -28,6 +28,28 @@ bool contains(const std::string &text, const char *part)
   return !std::ranges::search(text, wanted, is_same).empty() || wanted.empty();
 }
 
+/** Which images a material has, for reading. */
+void show_textures(const scene::Scene &scene, const scene::Material &material)
+{
+  const std::vector<TextureLine> lines = texture_lines(scene, material);
+  if (lines.empty() || !ImGui::TreeNodeEx("Textures", ImGuiTreeNodeFlags_SpanAvailWidth)) {
+    return;
+  }
+  if (ImGui::BeginTable("textures", 2)) {
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 8.0F * ImGui::GetFontSize());
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
+    for (const TextureLine &line : lines) {
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(line.slot.c_str());
+      ImGui::TableNextColumn();
+      ImGui::TextWrapped("%s", line.image.c_str());
+    }
+    ImGui::EndTable();
+  }
+  ImGui::TreePop();
+}
+
 bool header(const std::string &text)
 {
   return ImGui::CollapsingHeader(text.c_str(), ImGuiTreeNodeFlags_DefaultOpen);
@@ -157,6 +179,7 @@ void show_selection(Document &document)
       if (show_properties(edited)) {
         document.edit(value->material, [&](scene::Material &one) { one = edited; });
       }
+      show_textures(scene, edited);
     }
     ImGui::PopID();
   }

@@ -202,8 +202,37 @@ Properties<scene::Material> make_material_properties()
   made.numbers.push_back(number("metallic", "Metallic", "", &Material::metallic, 0.0, 1.0));
   made.numbers.push_back(number("roughness", "Roughness", "", &Material::roughness, 0.0, 1.0));
   made.numbers.push_back(number("specular", "Specular", "", &Material::specular, 0.0, 1.0));
+  // Dielectrics reflect 0.04 of the light at normal incidence: a factor of 25 makes it all.
+  made.numbers.push_back(color<Material>("specular_color", "Specular color", &Material::specular_color, 25.0));
   made.numbers.push_back(number("emissive", "Emission", "W/(sr m²)", &Material::emissive, 0.0, 1e6));
   made.numbers.push_back(number("normal_scale", "Normal scale", "", &Material::normal_scale, -10.0, 10.0));
+  NumberProperty<Material> occlusion =
+      number("occlusion_strength", "Occlusion", "", &Material::occlusion_strength, 0.0, 1.0);
+  occlusion.applies = [](const Material &material) { return bool(material.occlusion_texture); };
+  made.numbers.push_back(std::move(occlusion));
+
+  const auto add = [&](const char *group, NumberProperty<Material> property) {
+    property.group = group;
+    made.numbers.push_back(std::move(property));
+  };
+  add("Coat", number("coat", "Coat", "", &Material::coat, 0.0, 1.0));
+  add("Coat", number("coat_roughness", "Roughness", "", &Material::coat_roughness, 0.0, 1.0));
+  NumberProperty<Material> coat_normal =
+      number("coat_normal_scale", "Normal scale", "", &Material::coat_normal_scale, -10.0, 10.0);
+  coat_normal.applies = [](const Material &material) { return bool(material.coat_normal_texture); };
+  add("Coat", std::move(coat_normal));
+  add("Sheen", color<Material>("sheen_color", "Color", &Material::sheen_color));
+  add("Sheen", number("sheen_roughness", "Roughness", "", &Material::sheen_roughness, 0.0, 1.0));
+  add("Anisotropy", number("anisotropy", "Strength", "", &Material::anisotropy, 0.0, 1.0));
+  add("Anisotropy", number("anisotropy_rotation", "Rotation", "°", &Material::anisotropy_rotation, -360.0, 360.0,
+                           degrees_per_radian));
+  add("Transmission", number("transmission", "Transmission", "", &Material::transmission, 0.0, 1.0));
+  add("Transmission", number("thickness", "Thickness", "m", &Material::thickness, 0.0, 1e4));
+  add("Transmission", number("ior", "Index of refraction", "", &Material::ior, 1.0, 10.0));
+  add("Transmission",
+      zero_is("no absorption", 1.0,
+              number("attenuation_distance", "Attenuation", "m", &Material::attenuation_distance, 1e-6, endless)));
+  add("Transmission", color<Material>("attenuation_color", "Attenuation color", &Material::attenuation_color));
   return made;
 }
 

@@ -361,6 +361,58 @@ TEST(ViewPropertiesTest, AShadowHasTheSettingsThatHaveAnEffectForItsKindAndEachM
   EXPECT_EQ(of.shadow, scene::LampShadow());
 }
 
+TEST(ViewPropertiesTest, EveryFactorOfAMaterialIsAPropertyOfItsOwn)
+{
+  scene::Material material;
+  const std::vector<std::pair<std::string, std::vector<std::string>>> values = {
+      {"specular_color", {"2", "1", "0.5"}},
+      {"coat", {"0.25"}},
+      {"coat_roughness", {"0.5"}},
+      {"sheen_color", {"0.1", "0.2", "0.3"}},
+      {"sheen_roughness", {"0.7"}},
+      {"anisotropy", {"0.8"}},
+      {"anisotropy_rotation", {"90"}},
+      {"transmission", {"0.9"}},
+      {"thickness", {"3"}},
+      {"ior", {"1.33"}},
+      {"attenuation_distance", {"4"}},
+      {"attenuation_color", {"0.4", "0.5", "0.6"}}};
+  for (const auto &[name, words] : values) {
+    EXPECT_TRUE(set_property(material, name, std::span(words))) << name;
+  }
+  EXPECT_EQ(material.specular_color, glm::vec3(2.0F, 1.0F, 0.5F));
+  EXPECT_EQ(material.coat, 0.25F);
+  EXPECT_EQ(material.coat_roughness, 0.5F);
+  EXPECT_EQ(material.sheen_color, glm::vec3(0.1F, 0.2F, 0.3F));
+  EXPECT_EQ(material.sheen_roughness, 0.7F);
+  EXPECT_EQ(material.anisotropy, 0.8F);
+  EXPECT_FLOAT_EQ(material.anisotropy_rotation, glm::radians(90.0F));
+  EXPECT_EQ(material.transmission, 0.9F);
+  EXPECT_EQ(material.thickness, 3.0F);
+  EXPECT_EQ(material.ior, 1.33F);
+  EXPECT_EQ(material.attenuation_distance, 4.0F);
+  EXPECT_EQ(material.attenuation_color, glm::vec3(0.4F, 0.5F, 0.6F));
+  const std::vector<std::string> none = {"no absorption"};
+  EXPECT_TRUE(set_property(material, "attenuation_distance", std::span(none)));
+  EXPECT_EQ(material.attenuation_distance, 0.0F);
+  // Occlusion is in a texture.
+  const std::vector<std::string> half = {"0.5"};
+  EXPECT_FALSE(set_property(material, "occlusion_strength", std::span(half)));
+  scene::Scene scene;
+  const auto image =
+      scene.add(scene::Image{.name = "cracks", .width = 1, .height = 2, .texels = std::vector<std::uint8_t>(8)});
+  const auto unnamed = scene.add(scene::Image{.width = 1, .height = 1, .texels = std::vector<std::uint8_t>(4)});
+  const auto removed = scene.add(scene::Texture{.image = unnamed});
+  material.occlusion_texture = scene.add(scene::Texture{.image = image});
+  material.coat_normal_texture = scene.add(scene::Texture{.image = unnamed});
+  material.emissive_texture = removed;
+  scene.remove(removed);
+  EXPECT_TRUE(set_property(material, "occlusion_strength", std::span(half)));
+  EXPECT_EQ(material.occlusion_strength, 0.5F);
+  EXPECT_EQ(texture_lines(scene, material),
+            (std::vector<TextureLine>{{"Occlusion", "cracks, 1x2"}, {"Coat normal", "1x1"}}));
+}
+
 TEST(ViewPropertiesTest, ACameraHasTheNumbersOfItsKindAndItsFarDistanceStaysBeyondTheNearOne)
 {
   scene::Camera camera;
