@@ -413,6 +413,42 @@ TEST(ViewPropertiesTest, EveryFactorOfAMaterialIsAPropertyOfItsOwn)
             (std::vector<TextureLine>{{"Occlusion", "cracks, 1x2"}, {"Coat normal", "1x1"}}));
 }
 
+TEST(ViewPropertiesTest, ShadowSettingsOfAllLampsAreThoseOfTheCommandLine)
+{
+  Settings settings;
+  const eevee::ShadowSettings &shadow = settings.eevee.shadow;
+  const auto set = [&](const std::string &name, const std::string &word) {
+    return set_property(settings, name, std::span(&word, 1));
+  };
+  EXPECT_FALSE(set("pcf_lookups", "9")) << "of a square kernel";
+  EXPECT_TRUE(set("pcf", "5x5"));
+  EXPECT_EQ(shadow.pcf.width, 5);
+  EXPECT_TRUE(set("pcf", "disk"));
+  EXPECT_TRUE(set("pcf_lookups", "9"));
+  EXPECT_EQ(shadow.pcf, (eevee::PcfKernel{0, 9}));
+  EXPECT_TRUE(set("esm", "separable"));
+  EXPECT_EQ(shadow.esm.kernel, eevee::EsmKernel::Separable);
+  EXPECT_TRUE(set("esm_size", "64"));
+  EXPECT_EQ(shadow.esm.size_px, 64);
+  EXPECT_TRUE(set("exponent", "20"));
+  EXPECT_EQ(shadow.esm.exponent, 20.0F);
+  EXPECT_TRUE(set("filter_radius", "2"));
+  EXPECT_FLOAT_EQ(*shadow.esm.filter_angle, glm::radians(2.0F));
+  EXPECT_TRUE(set("exponent", "automatic"));
+  EXPECT_TRUE(set("filter_radius", "automatic"));
+  EXPECT_FALSE(shadow.esm.exponent || shadow.esm.filter_angle);
+  EXPECT_TRUE(set("cascade_count", "3"));
+  EXPECT_EQ(shadow.cascades.count, 3);
+  EXPECT_TRUE(set("cascade_lambda", "0.5"));
+  EXPECT_EQ(shadow.cascades.lambda, 0.5F);
+  EXPECT_TRUE(set("cascade_range", "depth"));
+  EXPECT_TRUE(shadow.is_fitted_to_depth);
+  EXPECT_TRUE(set("casters", "back"));
+  EXPECT_EQ(shadow.caster_faces, eevee::CasterFaces::Back);
+  EXPECT_TRUE(set("shadow_memory", "64"));
+  EXPECT_EQ(shadow.memory_bytes_max, std::size_t(64) << 20U);
+}
+
 TEST(ViewPropertiesTest, ACameraHasTheNumbersOfItsKindAndItsFarDistanceStaysBeyondTheNearOne)
 {
   scene::Camera camera;
