@@ -5,6 +5,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <thread>
 #include <utility>
@@ -112,6 +113,38 @@ bool App::open(const std::filesystem::path &path)
 void App::begin_open(const std::filesystem::path &path)
 {
   opening_ = std::make_unique<gltf::BackgroundImport>(path, gltf::ImportOptions{.read_picture = read_picture_});
+}
+
+void App::drop(const std::filesystem::path &path)
+{
+  std::string suffix = path.extension().string();
+  std::ranges::transform(suffix, suffix.begin(), [](unsigned char letter) { return char(std::tolower(letter)); });
+  if (suffix == ".hdr" || suffix == ".exr") {
+    set_world_picture(path);
+  }
+  else {
+    begin_open(path);
+  }
+}
+
+bool App::set_world_picture(const std::filesystem::path &path)
+{
+  if (!document_) {
+    message("No scene is open", false);
+    return false;
+  }
+  try {
+    document_->set_world_picture(std::make_shared<const scene::WorldPicture>(read_picture_(path)));
+    message(fmt::format("{} lights the scene", path.string()), false);
+    return true;
+  }
+  catch (const scene::InvalidEdit &fault) {
+    message(fmt::format("{}: {}", path.string(), fault.what()), true);
+  }
+  catch (const std::exception &error) {
+    report(error);
+  }
+  return false;
 }
 
 void App::cancel_open()
@@ -331,6 +364,12 @@ void App::ask_save()
   ask("Save as glTF", default_path(".edited.glb"), [this](const std::string &path) { save(path); });
 }
 
+void App::ask_world_picture()
+{
+  ask("Light by an HDR or EXR picture", default_path(".hdr"),
+      [this](const std::string &path) { set_world_picture(path); });
+}
+
 void App::take_events()
 {
   const bool is_asking = question_ || is_addition_asked_ || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
@@ -340,7 +379,7 @@ void App::take_events()
     }
   }
   for (const std::filesystem::path &path : window_.take_dropped()) {
-    begin_open(path);
+    drop(path);
   }
   for (const std::string &text : window_.take_driver_messages()) {
     driver_error_count_++;

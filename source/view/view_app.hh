@@ -49,6 +49,13 @@ class App {
   bool open(const std::filesystem::path &path);
   /** The same in the background, while the window shows how far it is. An earlier one that is not done is cancelled. */
   void begin_open(const std::filesystem::path &path);
+  /** A file that was dropped on the window: a picture lights the scene, others are opened in the background. */
+  void drop(const std::filesystem::path &path);
+  /**
+   * Light the scene by an equirectangular picture. One that cannot be read is an error message, and the world stays.
+   * \return whether it was read
+   */
+  bool set_world_picture(const std::filesystem::path &path);
   [[nodiscard]] bool is_opening() const
   {
     return opening_ != nullptr;
@@ -114,6 +121,7 @@ class App {
   void ask_addition();
   void ask_open();
   void ask_save();
+  void ask_world_picture();
 
   /** 1, 2 or 4. */
   void set_viewport_count(int count);

@@ -50,7 +50,7 @@ void open(App &app, Words words)
 
 void drop(App &app, Words words)
 {
-  app.begin_open(words[0]);
+  app.drop(words[0]);
 }
 
 void cancel_open(App &app, Words /*words*/)
@@ -221,6 +221,19 @@ bool set_of_selected(Document &document, const std::string &name, Words values)
          (mesh && set_of(document, mesh->material, name, values));
 }
 
+/** A file, or none. */
+void set_world_picture(App &app, Words values)
+{
+  if (values.size() != 1) {
+    throw std::runtime_error("world.picture: takes a file, or none");
+  }
+  if (values[0] == "none") {
+    document(app).set_world_picture(nullptr);
+    return;
+  }
+  require(app, app.set_world_picture(values[0]));
+}
+
 /** "world.NAME", "render.NAME", or a property of the selected node. */
 void set(App &app, Words words)
 {
@@ -228,7 +241,11 @@ void set(App &app, Words words)
   const std::string &name = words[0];
   const Words values = words.subspan(1);
   bool is_set = false;
-  if (name.starts_with("world.")) {
+  if (name == "world.picture") {
+    set_world_picture(app, values);
+    is_set = true;
+  }
+  else if (name.starts_with("world.")) {
     scene::World world = edited.scene().world().value_or(scene::World{});
     is_set = set_property(world, name.substr(6), values);
     edited.set_world(world);

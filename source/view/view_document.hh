@@ -50,6 +50,11 @@ class Document {
   {
     history_.set_world(scene_, std::move(world));
   }
+  /**
+   * Light the scene by a picture, as the picture before it did if there is one. nullptr: by the world's colour alone.
+   * \throws scene::InvalidEdit; nothing changes
+   */
+  void set_world_picture(std::shared_ptr<const scene::WorldPicture> picture);
   /** A node that comes back is selected. */
   bool undo();
   bool redo();

@@ -164,7 +164,9 @@ void App::show_tabs()
         show_selection(*document_);
       }
       else if (tab == "World") {
-        show_world(*document_);
+        if (show_world(*document_)) {
+          ask_world_picture();
+        }
       }
       else if (tab == "Render") {
         show_settings(*document_);

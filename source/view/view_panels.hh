@@ -30,8 +30,8 @@ class SceneTree {
 
 /** The selected node: its placement, flags, lamp, camera and materials. */
 void show_selection(Document &document);
-/** Light from everywhere. */
-void show_world(Document &document);
+/** Light from everywhere. \return whether the user wants to choose a picture */
+[[nodiscard]] bool show_world(Document &document);
 /** Settings of all viewports. */
 void show_settings(Document &document);
 

@@ -5,6 +5,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <memory>
 
 namespace gnomon::view {
 
@@ -185,22 +186,37 @@ void show_selection(Document &document)
   }
 }
 
-void show_world(Document &document)
+bool show_world(Document &document)
 {
   const bool has_world = document.scene().world().has_value();
   bool is_on = has_world;
   if (ImGui::Checkbox("Light from everywhere", &is_on) && is_on != has_world) {
     document.set_world(is_on ? std::optional(scene::World{}) : std::nullopt);
-    return;
+    return false;
   }
-  if (has_world) {
-    scene::World world = *document.scene().world();
-    ImGui::TextDisabled("%s",
-                        world.picture ? "A picture, turned around the vertical axis" : "The same from everywhere");
-    if (show_properties(world)) {
-      document.set_world(world);
+  const bool is_asked = ImGui::Button("Picture...");
+  if (!has_world) {
+    return is_asked;
+  }
+  scene::World world = *document.scene().world();
+  if (const std::shared_ptr<const scene::WorldPicture> picture = world.picture) {
+    ImGui::SameLine();
+    if (ImGui::Button("No picture")) {
+      document.set_world_picture(nullptr);
+      return false;
     }
+    ImGui::TextWrapped("%s",
+                       fmt::format("{}, {}x{}", picture->path.empty() ? "A picture without a file" : picture->path,
+                                   picture->width, picture->height)
+                           .c_str());
   }
+  else {
+    ImGui::TextDisabled("The same from everywhere");
+  }
+  if (show_properties(world)) {
+    document.set_world(world);
+  }
+  return is_asked;
 }
 
 void show_settings(Document &document)
