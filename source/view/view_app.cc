@@ -20,6 +20,14 @@ constexpr int settling_frames = 3;
 constexpr int context_attempts = 5;
 constexpr std::chrono::milliseconds context_pause{500};
 
+/** Whether it is named as a picture that lights scenes. */
+bool is_picture(const std::filesystem::path &path)
+{
+  std::string suffix = path.extension().string();
+  std::ranges::transform(suffix, suffix.begin(), [](unsigned char letter) { return char(std::tolower(letter)); });
+  return suffix == ".hdr" || suffix == ".exr";
+}
+
 constexpr Side sides[] = {Side::Front, Side::Right, Side::Top, Side::Front};
 
 }  // namespace
@@ -117,9 +125,7 @@ void App::begin_open(const std::filesystem::path &path)
 
 void App::drop(const std::filesystem::path &path)
 {
-  std::string suffix = path.extension().string();
-  std::ranges::transform(suffix, suffix.begin(), [](unsigned char letter) { return char(std::tolower(letter)); });
-  if (suffix == ".hdr" || suffix == ".exr") {
+  if (is_picture(path)) {
     set_world_picture(path);
   }
   else {
@@ -342,6 +348,18 @@ void App::ask(std::string title, std::string path, std::function<void(const std:
   path.resize(4096);
   question_ = PathQuestion{std::move(title), std::move(path), std::move(answer)};
   is_question_new_ = true;
+  leaving_ = nullptr;
+}
+
+void App::leave(std::function<void()> action)
+{
+  if (!document_ || document_->is_saved()) {
+    action();
+    return;
+  }
+  leaving_ = std::move(action);
+  is_leaving_new_ = true;
+  question_.reset();
 }
 
 std::string App::default_path(const char *suffix) const
@@ -352,16 +370,46 @@ std::string App::default_path(const char *suffix) const
 
 void App::ask_open()
 {
-  ask("Open", default_path(".glb"), [this](const std::string &path) { begin_open(path); });
+  ask("Open", default_path(".glb"), [this](const std::string &path) { leave([this, path] { begin_open(path); }); });
 }
 
-void App::ask_save()
+void App::ask_save(std::function<void()> then)
 {
   if (!document_) {
     return;
   }
   // The file that was opened is not replaced by chance: the export leaves out what the import did not take.
-  ask("Save as glTF", default_path(".edited.glb"), [this](const std::string &path) { save(path); });
+  ask("Save as glTF", default_path(".edited.glb"), [this, then = std::move(then)](const std::string &path) {
+    if (save(path) && then) {
+      then();
+    }
+  });
+}
+
+void App::ask_screenshot()
+{
+  ask("Save the window as PNG", default_path(".png"), [this](const std::string &path) {
+    screenshot_ = {.path = path, .frames = 1, .is_asked = true};
+    frames_to_draw_ = std::max(frames_to_draw_, 2);
+  });
+}
+
+void App::write_screenshot()
+{
+  const Screenshot screenshot = *std::exchange(screenshot_, std::nullopt);
+  try {
+    writers_.png(screenshot.path, window_.size_px(), window_.read_pixels());
+  }
+  catch (const std::exception &error) {
+    if (!screenshot.is_asked) {
+      throw;
+    }
+    report(error);
+    return;
+  }
+  if (screenshot.is_asked) {
+    message(fmt::format("{} is written", screenshot.path.string()), false);
+  }
 }
 
 void App::ask_world_picture()
@@ -372,14 +420,24 @@ void App::ask_world_picture()
 
 void App::take_events()
 {
-  const bool is_asking = question_ || is_addition_asked_ || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
+  const bool is_asking =
+      question_ || leaving_ || is_addition_asked_ || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
   for (const KeyPress &press : window_.take_keys()) {
     if (!is_asking) {
       take_key(press);
     }
   }
   for (const std::filesystem::path &path : window_.take_dropped()) {
-    drop(path);
+    if (is_picture(path)) {
+      drop(path);
+    }
+    else {
+      leave([this, path] { drop(path); });
+    }
+  }
+  if (window_.is_closed() && document_ && !document_->is_saved()) {
+    window_.set_closed(false);
+    leave([this] { quit(); });
   }
   for (const std::string &text : window_.take_driver_messages()) {
     driver_error_count_++;
@@ -441,9 +499,8 @@ void App::draw_frame(bool may_wait)
     make_context_anew();
     return;
   }
-  if (!screenshot_.empty()) {
-    const std::filesystem::path path = std::exchange(screenshot_, {});
-    writers_.png(path, window_.size_px(), window_.read_pixels());
+  if (screenshot_ && screenshot_->frames-- == 0) {
+    write_screenshot();
   }
   window_.swap();
 }

@@ -397,6 +397,11 @@ void stay(App &app, Words /*words*/)
   app.stay();
 }
 
+void close(App &app, Words /*words*/)
+{
+  app.close();
+}
+
 void quit(App &app, Words /*words*/)
 {
   app.quit();
@@ -447,6 +452,7 @@ constexpr std::array commands = std::to_array<Command>({
     {"screenshot", "FILE", 1, 1, Need::Frame, save_screenshot},
     {"picture", "FILE", 1, 1, Need::Nothing, save_picture},
     {"stay", "", 0, 0, Need::Nothing, stay},
+    {"close", "", 0, 0, Need::Frame, close},
     {"quit", "", 0, 0, Need::Frame, quit},
 });
 

@@ -42,6 +42,8 @@ struct NumberProperty {
   const char *absent = nullptr;
   std::function<bool(const T &)> is_absent{};
   std::function<void(T &)> remove{};
+  /** It is a slider with a logarithmic scale, and this stands for 0 at its lower end; nullptr: it is none. */
+  const char *slider_zero = nullptr;
   /** A header that the panel shows it under. Empty: none. */
   const char *group = "";
 

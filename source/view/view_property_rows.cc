@@ -16,6 +16,9 @@ namespace gnomon::view {
 
 namespace {
 
+/** A slider below shows 0. */
+constexpr double slider_min = 1e-4;
+
 /** The label in the first column; the next item fills the second. */
 void begin_row(const char *label)
 {
@@ -110,6 +113,22 @@ bool show_number(const NumberProperty<T> &property, T &thing)
   return true;
 }
 
+template <typename T>
+bool show_slider(const NumberProperty<T> &property, T &thing)
+{
+  double value = property.get(thing, 0);
+  // The smallest value above 0 has as many decimals.
+  const std::string format = value == 0.0 ? property.slider_zero : fmt::format("%.4f {}", property.unit(thing));
+  if (!ImGui::SliderScalar(
+          "", ImGuiDataType_Double, &value, &property.min, &property.max, format.c_str(),
+          ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat)) {
+    return false;
+  }
+  // Where the slider's scale ends.
+  property.set(thing, 0, value < slider_min ? 0.0 : value);
+  return true;
+}
+
 /** A box beside the number, without a tick where the number is absent. */
 template <typename T>
 bool show_optional_number(const NumberProperty<T> &property, T &thing)
@@ -139,6 +158,9 @@ bool show_row(const NumberProperty<T> &property, T &thing)
 {
   if (property.absent) {
     return show_optional_number(property, thing);
+  }
+  if (property.slider_zero) {
+    return show_slider(property, thing);
   }
   return property.is_color ? show_color(property, thing) : show_number(property, thing);
 }

@@ -162,6 +162,7 @@ Properties<Settings> make_settings_properties()
                             shadow_of(settings).cube_size_px = std::max(1, int(value) / 2);
                           }});
   made.numbers.push_back(number("error", "Maximum error", "RMSE", &Settings::error_max, 0.0, 1.0));
+  made.numbers.back().slider_zero = "no limit";
   made.numbers.push_back(number("seconds", "Time limit", "s", &Settings::seconds_max, 0.0, 3600.0));
   made.numbers.push_back(number("budget", "Time budget", "ms a frame", &Settings::budget_ms, 0.0, 1000.0));
   made.numbers.push_back(number("exposure", "Exposure", "stops", &Settings::exposure, -20.0, 20.0));
