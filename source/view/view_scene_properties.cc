@@ -84,7 +84,7 @@ NumberProperty<ShadowOfLamp> shadow_number(const char *name, const char *label, 
   property.absent = as_the_scene;
   property.is_absent = [=](const ShadowOfLamp &of) { return !(of.shadow.*member); };
   property.remove = [=](ShadowOfLamp &of) { (of.shadow.*member).reset(); };
-  property.group = "Shadow";
+  property.group = "Shadow settings";
   return property;
 }
 
@@ -107,7 +107,7 @@ Properties<ShadowOfLamp> make_shadow_properties()
   ChoiceProperty<ShadowOfLamp> format =
       shadow_choice("esm_format", "Layer format", {"16f", "32f"}, &LampShadow::esm_format);
   format.applies = [](const ShadowOfLamp &of) { return kind_of(of) == scene::ShadowKind::Esm; };
-  format.group = "Shadow";
+  format.group = "Shadow settings";
   made.choices.push_back(std::move(format));
 
   const auto add = [&](NumberProperty<ShadowOfLamp> property, bool (*applies)(const ShadowOfLamp &)) {

@@ -14,7 +14,7 @@ void add_shadow_properties(Properties<Settings> &made)
 {
   using eevee::ShadowSettings;
   constexpr double bytes_per_mib = 0x1p20;
-  constexpr const char *group = "Shadows";
+  constexpr const char *group = "Shadow settings";
   const auto add_choice = [&](const char *name, const char *label, std::vector<const char *> options,
                               int (*get)(const ShadowSettings &), void (*set)(ShadowSettings &, int)) {
     made.choices.push_back({.name = name,
