@@ -357,6 +357,9 @@ void App::leave(std::function<void()> action)
     action();
     return;
   }
+  // They have the pointer, which the question needs.
+  end_fly(true);
+  end_transform(true);
   leaving_ = std::move(action);
   is_leaving_new_ = true;
   question_.reset();

@@ -33,7 +33,8 @@ bool contains(const std::string &text, const char *part)
 void show_textures(const scene::Scene &scene, const scene::Material &material)
 {
   const std::vector<TextureLine> lines = texture_lines(scene, material);
-  if (lines.empty() || !ImGui::TreeNodeEx("Textures", ImGuiTreeNodeFlags_SpanAvailWidth)) {
+  if (lines.empty() ||
+      !ImGui::TreeNodeEx("Textures", ImGuiTreeNodeFlags_SpanAvailWidth | ImGuiTreeNodeFlags_DefaultOpen)) {
     return;
   }
   if (ImGui::BeginTable("textures", 2)) {
