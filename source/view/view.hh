@@ -31,7 +31,7 @@ struct Options {
   std::filesystem::path shaders{};
   glm::ivec2 size_px{1440, 860};
   ImageWriters writers{};
-  /** For ImportOptions::read_picture. */
+  /** Reads the picture of a world. */
   gltf::ReadPicture read_picture{};
 };
 

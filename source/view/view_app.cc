@@ -5,6 +5,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <thread>
 #include <utility>
@@ -18,6 +19,14 @@ constexpr int settling_frames = 3;
 /** To make a new context after one was lost. */
 constexpr int context_attempts = 5;
 constexpr std::chrono::milliseconds context_pause{500};
+
+/** Whether it is named as a picture that lights scenes. */
+bool is_picture(const std::filesystem::path &path)
+{
+  std::string suffix = path.extension().string();
+  std::ranges::transform(suffix, suffix.begin(), [](unsigned char letter) { return char(std::tolower(letter)); });
+  return suffix == ".hdr" || suffix == ".exr";
+}
 
 constexpr Side sides[] = {Side::Front, Side::Right, Side::Top, Side::Front};
 
@@ -112,6 +121,36 @@ bool App::open(const std::filesystem::path &path)
 void App::begin_open(const std::filesystem::path &path)
 {
   opening_ = std::make_unique<gltf::BackgroundImport>(path, gltf::ImportOptions{.read_picture = read_picture_});
+}
+
+void App::drop(const std::filesystem::path &path)
+{
+  if (is_picture(path)) {
+    set_world_picture(path);
+  }
+  else {
+    begin_open(path);
+  }
+}
+
+bool App::set_world_picture(const std::filesystem::path &path)
+{
+  if (!document_) {
+    message("No scene is open", false);
+    return false;
+  }
+  try {
+    document_->set_world_picture(std::make_shared<const scene::WorldPicture>(read_picture_(path)));
+    message(fmt::format("{} lights the scene", path.string()), false);
+    return true;
+  }
+  catch (const scene::InvalidEdit &fault) {
+    message(fmt::format("{}: {}", path.string(), fault.what()), true);
+  }
+  catch (const std::exception &error) {
+    report(error);
+  }
+  return false;
 }
 
 void App::cancel_open()
@@ -309,6 +348,21 @@ void App::ask(std::string title, std::string path, std::function<void(const std:
   path.resize(4096);
   question_ = PathQuestion{std::move(title), std::move(path), std::move(answer)};
   is_question_new_ = true;
+  leaving_ = nullptr;
+}
+
+void App::leave(std::function<void()> action)
+{
+  if (!document_ || document_->is_saved()) {
+    action();
+    return;
+  }
+  // They have the pointer, which the question needs.
+  end_fly(true);
+  end_transform(true);
+  leaving_ = std::move(action);
+  is_leaving_new_ = true;
+  question_.reset();
 }
 
 std::string App::default_path(const char *suffix) const
@@ -319,28 +373,74 @@ std::string App::default_path(const char *suffix) const
 
 void App::ask_open()
 {
-  ask("Open", default_path(".glb"), [this](const std::string &path) { begin_open(path); });
+  ask("Open", default_path(".glb"), [this](const std::string &path) { leave([this, path] { begin_open(path); }); });
 }
 
-void App::ask_save()
+void App::ask_save(std::function<void()> then)
 {
   if (!document_) {
     return;
   }
   // The file that was opened is not replaced by chance: the export leaves out what the import did not take.
-  ask("Save as glTF", default_path(".edited.glb"), [this](const std::string &path) { save(path); });
+  ask("Save as glTF", default_path(".edited.glb"), [this, then = std::move(then)](const std::string &path) {
+    if (save(path) && then) {
+      then();
+    }
+  });
+}
+
+void App::ask_screenshot()
+{
+  ask("Save the window as PNG", default_path(".png"), [this](const std::string &path) {
+    screenshot_ = {.path = path, .frames = 1, .is_asked = true};
+    frames_to_draw_ = std::max(frames_to_draw_, 2);
+  });
+}
+
+void App::write_screenshot()
+{
+  const Screenshot screenshot = *std::exchange(screenshot_, std::nullopt);
+  try {
+    writers_.png(screenshot.path, window_.size_px(), window_.read_pixels());
+  }
+  catch (const std::exception &error) {
+    if (!screenshot.is_asked) {
+      throw;
+    }
+    report(error);
+    return;
+  }
+  if (screenshot.is_asked) {
+    message(fmt::format("{} is written", screenshot.path.string()), false);
+  }
+}
+
+void App::ask_world_picture()
+{
+  ask("Light by an HDR or EXR picture", default_path(".hdr"),
+      [this](const std::string &path) { set_world_picture(path); });
 }
 
 void App::take_events()
 {
-  const bool is_asking = question_ || is_addition_asked_ || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
+  const bool is_asking =
+      question_ || leaving_ || is_addition_asked_ || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
   for (const KeyPress &press : window_.take_keys()) {
     if (!is_asking) {
       take_key(press);
     }
   }
   for (const std::filesystem::path &path : window_.take_dropped()) {
-    begin_open(path);
+    if (is_picture(path)) {
+      drop(path);
+    }
+    else {
+      leave([this, path] { drop(path); });
+    }
+  }
+  if (window_.is_closed() && document_ && !document_->is_saved()) {
+    window_.set_closed(false);
+    leave([this] { quit(); });
   }
   for (const std::string &text : window_.take_driver_messages()) {
     driver_error_count_++;
@@ -362,6 +462,7 @@ void App::update_document()
     message(std::move(text), false);
   }
   render_scene::RenderScene &render_scene = document_->render_scene();
+  active().follow(*document_);
   const glm::dvec3 eye(active().navigation.camera(0.0).world_from_camera[3]);
   render_scene.set_origin(render_scene::origin_near(eye, render_scene.origin_ws()));
   render_scene.update();
@@ -401,9 +502,8 @@ void App::draw_frame(bool may_wait)
     make_context_anew();
     return;
   }
-  if (!screenshot_.empty()) {
-    const std::filesystem::path path = std::exchange(screenshot_, {});
-    writers_.png(path, window_.size_px(), window_.read_pixels());
+  if (screenshot_ && screenshot_->frames-- == 0) {
+    write_screenshot();
   }
   window_.swap();
 }

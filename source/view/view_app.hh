@@ -49,6 +49,13 @@ class App {
   bool open(const std::filesystem::path &path);
   /** The same in the background, while the window shows how far it is. An earlier one that is not done is cancelled. */
   void begin_open(const std::filesystem::path &path);
+  /** A file that was dropped on the window: a picture lights the scene, others are opened in the background. */
+  void drop(const std::filesystem::path &path);
+  /**
+   * Light the scene by an equirectangular picture. One that cannot be read is an error message, and the world stays.
+   * \return whether it was read
+   */
+  bool set_world_picture(const std::filesystem::path &path);
   [[nodiscard]] bool is_opening() const
   {
     return opening_ != nullptr;
@@ -66,10 +73,10 @@ class App {
   bool save(const std::filesystem::path &path);
   /** The active viewport's picture: EXR is scene-linear, PNG the window's pixels of it. \throws std::runtime_error */
   void save_picture(const std::filesystem::path &path);
-  /** The window, at the end of the next frame. */
+  /** Write the window at the end of the next frame, whose draw_frame throws std::runtime_error if that fails. */
   void request_screenshot(const std::filesystem::path &path)
   {
-    screenshot_ = path;
+    screenshot_ = {.path = path};
     frames_to_draw_ = std::max(frames_to_draw_, 1);
   }
   /**
@@ -80,6 +87,11 @@ class App {
   void quit()
   {
     is_quit_ = true;
+  }
+  /** As the button that closes the window: asks if edits are not saved. */
+  void close()
+  {
+    window_.set_closed(true);
   }
   /** Keep the window open after the script. */
   void stay()
@@ -113,7 +125,10 @@ class App {
   /** Show a menu, or a window that asks for a path. */
   void ask_addition();
   void ask_open();
-  void ask_save();
+  /** \a then: what follows once it is saved */
+  void ask_save(std::function<void()> then = {});
+  void ask_screenshot();
+  void ask_world_picture();
 
   /** 1, 2 or 4. */
   void set_viewport_count(int count);
@@ -161,6 +176,17 @@ class App {
     std::string path;
     std::function<void(const std::string &)> answer;
   };
+  /** Of the window. */
+  struct Screenshot {
+    std::filesystem::path path;
+    /** To be drawn before, until the question for the path is closed. */
+    int frames = 0;
+    /** A user has asked for it, so that a failure is a message. */
+    bool is_asked = false;
+  };
+  /** Do what gives up the scene. If it has edits that are not saved, the user is asked before. */
+  void leave(std::function<void()> action);
+  void write_screenshot();
   /** Wait for what is opened in the background, and show it. \return whether it is open */
   bool finish_open();
   void finish_measurement();
@@ -195,6 +221,7 @@ class App {
   void show_tabs();
   void show_status();
   void show_question();
+  void show_leaving();
   void try_draw(Viewport &viewport);
 
   ImageWriters writers_;
@@ -216,11 +243,14 @@ class App {
   bool is_staying_ = false;
   std::vector<Message> messages_;
   int driver_error_count_ = 0;
-  std::filesystem::path screenshot_;
+  std::optional<Screenshot> screenshot_;
   /** Nothing: those of the build. */
   std::optional<ShaderWatch> shader_watch_;
   std::optional<PathQuestion> question_;
   bool is_question_new_ = false;
+  /** What gives up the scene, while the user is asked; empty: nothing. */
+  std::function<void()> leaving_;
+  bool is_leaving_new_ = false;
   bool is_addition_asked_ = false;
 
   SceneTree scene_tree_;

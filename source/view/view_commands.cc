@@ -50,7 +50,7 @@ void open(App &app, Words words)
 
 void drop(App &app, Words words)
 {
-  app.begin_open(words[0]);
+  app.drop(words[0]);
 }
 
 void cancel_open(App &app, Words /*words*/)
@@ -99,7 +99,7 @@ void look_through(App &app, Words words)
 {
   for (const scene::PlacedCamera &camera : document(app).scene().placed_cameras()) {
     if (camera.name == words[0]) {
-      app.active().navigation.look_through(camera, app.document()->scene().bounds());
+      app.active().look_through(*app.document(), camera);
       return;
     }
   }
@@ -171,37 +171,67 @@ void expect_selected(App &app, Words words)
   }
 }
 
-/** Of the selected node: its placement, flags, lamp or first material. \return whether it has the property */
+/** Set a property of \a thing, which may be absent. \return whether it has the property */
+template <typename T>
+bool set_of(Document &document, scene::Handle<T> thing, const std::string &name, Words values)
+{
+  const T *value = document.scene().pool<T>().find(thing);
+  if (!value) {
+    return false;
+  }
+  T edited = *value;
+  if (!set_property(edited, name, values)) {
+    return false;
+  }
+  document.edit(thing, [&](T &one) { one = edited; });
+  return true;
+}
+
+bool set_of_shadow(Document &document, scene::Handle<scene::Lamp> handle, const std::string &name, Words values)
+{
+  const scene::Lamp *lamp = document.scene().lamps().find(handle);
+  if (!lamp) {
+    return false;
+  }
+  ShadowOfLamp edited = document.shadow_of(*lamp);
+  if (!set_property(edited, name, values)) {
+    return false;
+  }
+  document.edit(handle, [&](scene::Lamp &one) { one.shadow = edited.shadow; });
+  return true;
+}
+
+/** Of the selected node: its placement, flags, lamp, camera or first material. \return whether it has the property */
 bool set_of_selected(Document &document, const std::string &name, Words values)
 {
   const scene::Scene &scene = document.scene();
   if (!scene.nodes().is_live(document.selected)) {
     throw std::runtime_error("nothing is selected");
   }
-  scene::Node node = scene.nodes()[document.selected];
+  const scene::Node node = scene.nodes()[document.selected];
   Placement placement = placement_of(node.parent_from_node);
   if (set_property(placement, name, values)) {
-    node.parent_from_node = placed(node.parent_from_node, placement);
+    document.edit(document.selected,
+                  [&](scene::Node &one) { one.parent_from_node = placed(one.parent_from_node, placement); });
+    return true;
   }
-  else if (!set_property(node, name, values)) {
-    if (const scene::Lamp *lamp = scene.lamps().find(node.lamp)) {
-      scene::Lamp edited = *lamp;
-      const bool is_set = set_property(edited, name, values);
-      document.edit(node.lamp, [&](scene::Lamp &one) { one = edited; });
-      return is_set;
-    }
-    const scene::Mesh *mesh = node.meshes.empty() ? nullptr : scene.meshes().find(node.meshes.front());
-    const scene::Material *material = mesh ? scene.materials().find(mesh->material) : nullptr;
-    if (!material) {
-      return false;
-    }
-    scene::Material edited = *material;
-    const bool is_set = set_property(edited, name, values);
-    document.edit(mesh->material, [&](scene::Material &one) { one = edited; });
-    return is_set;
+  const scene::Mesh *mesh = node.meshes.empty() ? nullptr : scene.meshes().find(node.meshes.front());
+  return set_of(document, document.selected, name, values) || set_of(document, node.lamp, name, values) ||
+         set_of_shadow(document, node.lamp, name, values) || set_of(document, node.camera, name, values) ||
+         (mesh && set_of(document, mesh->material, name, values));
+}
+
+/** A file, or none. */
+void set_world_picture(App &app, Words values)
+{
+  if (values.size() != 1) {
+    throw std::runtime_error("world.picture: takes a file, or none");
   }
-  document.edit(document.selected, [&](scene::Node &one) { one = node; });
-  return true;
+  if (values[0] == "none") {
+    document(app).set_world_picture(nullptr);
+    return;
+  }
+  require(app, app.set_world_picture(values[0]));
 }
 
 /** "world.NAME", "render.NAME", or a property of the selected node. */
@@ -211,7 +241,11 @@ void set(App &app, Words words)
   const std::string &name = words[0];
   const Words values = words.subspan(1);
   bool is_set = false;
-  if (name.starts_with("world.")) {
+  if (name == "world.picture") {
+    set_world_picture(app, values);
+    is_set = true;
+  }
+  else if (name.starts_with("world.")) {
     scene::World world = edited.scene().world().value_or(scene::World{});
     is_set = set_property(world, name.substr(6), values);
     edited.set_world(world);
@@ -363,6 +397,11 @@ void stay(App &app, Words /*words*/)
   app.stay();
 }
 
+void close(App &app, Words /*words*/)
+{
+  app.close();
+}
+
 void quit(App &app, Words /*words*/)
 {
   app.quit();
@@ -413,6 +452,7 @@ constexpr std::array commands = std::to_array<Command>({
     {"screenshot", "FILE", 1, 1, Need::Frame, save_screenshot},
     {"picture", "FILE", 1, 1, Need::Nothing, save_picture},
     {"stay", "", 0, 0, Need::Nothing, stay},
+    {"close", "", 0, 0, Need::Frame, close},
     {"quit", "", 0, 0, Need::Frame, quit},
 });
 

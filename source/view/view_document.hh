@@ -3,6 +3,7 @@
 
 #include "view_additions.hh"
 #include "view_history.hh"
+#include "view_properties.hh"
 #include "view_settings.hh"
 #include "view_transform_operation.hh"
 
@@ -49,6 +50,11 @@ class Document {
   {
     history_.set_world(scene_, std::move(world));
   }
+  /**
+   * Light the scene by a picture, as the picture before it did if there is one. nullptr: by the world's colour alone.
+   * \throws scene::InvalidEdit; nothing changes
+   */
+  void set_world_picture(std::shared_ptr<const scene::WorldPicture> picture);
   /** A node that comes back is selected. */
   bool undo();
   bool redo();
@@ -120,6 +126,11 @@ class Document {
     return settings_;
   }
   void set_settings(const Settings &settings);
+  /** With the settings of these viewports. */
+  [[nodiscard]] ShadowOfLamp shadow_of(const scene::Lamp &lamp) const
+  {
+    return {lamp.kind, settings_.eevee.shadow.kind, lamp.shadow};
+  }
   [[nodiscard]] std::uint64_t settings_revision() const
   {
     return settings_revision_;

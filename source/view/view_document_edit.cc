@@ -2,7 +2,21 @@
 // Edits of what is selected.
 #include "view_document.hh"
 
+#include <utility>
+
 namespace gnomon::view {
+
+void Document::set_world_picture(std::shared_ptr<const scene::WorldPicture> picture)
+{
+  if (!picture && !scene_.world()) {
+    return;
+  }
+  // A colour that was the light itself would tint the picture.
+  const bool is_kept = scene_.world() && (scene_.world()->picture || !picture);
+  scene::World world = is_kept ? *scene_.world() : scene::World();
+  world.picture = std::move(picture);
+  set_world(std::move(world));
+}
 
 bool Document::undo()
 {

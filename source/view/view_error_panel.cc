@@ -131,9 +131,8 @@ void ErrorPanel::begin(const Document &document, const Viewport &viewport)
   clear();
   key_ = key_of(document);
   size_px_ = viewport.size_px();
-  measurement_ = std::make_unique<ErrorMeasurement>(
-      document.scene(), viewport.navigation.camera(double(document.scene().bounds().radius())), size_px_,
-      document.settings().eevee);
+  measurement_ = std::make_unique<ErrorMeasurement>(document.scene(), viewport.camera(document), size_px_,
+                                                    document.settings().eevee);
 }
 
 void ErrorPanel::clear()

@@ -11,9 +11,9 @@
 namespace gnomon::view {
 
 /**
- * Edits of one scene that can be undone: of nodes, lamps, materials and the world, and nodes that are added and
- * removed. Each keeps the values before and after it, so that undoing is an edit like any other. Nodes may be added and
- * removed only by this class; lamps, cameras, meshes and materials may not be removed.
+ * Edits of one scene that can be undone: of nodes, lamps, cameras, materials and the world, and nodes that are added
+ * and removed. Each keeps the values before and after it, so that undoing is an edit like any other. Nodes may be added
+ * and removed only by this class; lamps, cameras, meshes and materials may not be removed.
  */
 class History {
  public:
@@ -92,8 +92,8 @@ class History {
     /** The change added them; otherwise it removed them. */
     bool is_addition = false;
   };
-  using Change = std::variant<ThingChange<scene::Node>, ThingChange<scene::Lamp>, ThingChange<scene::Material>,
-                              WorldChange, SubtreeChange>;
+  using Change = std::variant<ThingChange<scene::Node>, ThingChange<scene::Lamp>, ThingChange<scene::Camera>,
+                              ThingChange<scene::Material>, WorldChange, SubtreeChange>;
 
   /** The last change, if it is of that kind and of the same gesture; otherwise nullptr. */
   template <typename Kind>

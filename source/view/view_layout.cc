@@ -64,7 +64,7 @@ void App::show_viewport_header(Viewport &viewport)
       // Names are not unique.
       ImGui::PushID(int(camera.node.index));
       if (ImGui::Selectable(camera.name.c_str())) {
-        viewport.navigation.look_through(camera, document_->scene().bounds());
+        viewport.look_through(*document_, camera);
       }
       ImGui::PopID();
     }
@@ -164,7 +164,9 @@ void App::show_tabs()
         show_selection(*document_);
       }
       else if (tab == "World") {
-        show_world(*document_);
+        if (show_world(*document_)) {
+          ask_world_picture();
+        }
       }
       else if (tab == "Render") {
         show_settings(*document_);
@@ -268,6 +270,41 @@ void App::show_question()
   }
 }
 
+void App::show_leaving()
+{
+  constexpr const char *title = "Edits are not saved";
+  if (!leaving_) {
+    return;
+  }
+  if (std::exchange(is_leaving_new_, false)) {
+    ImGui::OpenPopup(title);
+  }
+  ImGui::SetNextWindowSize({420.0F, 0.0F});
+  if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_NoResize)) {
+    return;
+  }
+  ImGui::TextWrapped("%s has edits that are not saved.", document_->scene().path.c_str());
+  const bool is_saved = ImGui::Button("Save...", {90.0F, 0.0F});
+  ImGui::SameLine();
+  const bool is_discarded = ImGui::Button("Discard", {90.0F, 0.0F});
+  ImGui::SameLine();
+  const bool is_cancelled =
+      ImGui::Button("Cancel", {90.0F, 0.0F}) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+  if (is_saved || is_discarded || is_cancelled) {
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+  if (is_saved || is_discarded || is_cancelled) {
+    std::function<void()> action = std::exchange(leaving_, nullptr);
+    if (is_saved) {
+      ask_save(std::move(action));
+    }
+    else if (is_discarded) {
+      action();
+    }
+  }
+}
+
 void App::show_window()
 {
   const glm::vec2 size(window_.size_px());
@@ -290,6 +327,7 @@ void App::show_window()
   ImGui::EndChild();
   show_status();
   show_question();
+  show_leaving();
   show_addition_popup();
   ImGui::End();
   ImGui::PopStyleVar();

@@ -135,8 +135,11 @@ void App::show_menu()
         }
       });
     }
+    if (ImGui::MenuItem("Screenshot...")) {
+      ask_screenshot();
+    }
     if (ImGui::MenuItem("Quit")) {
-      quit();
+      leave([this] { quit(); });
     }
     ImGui::EndMenu();
   }

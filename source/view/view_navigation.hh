@@ -15,6 +15,8 @@ enum class Side { Front, Back, Left, Right, Top, Bottom };
 /** The camera of a viewport: it looks at a point from a distance, and turns around it. Radians, metres. */
 class Navigation {
  public:
+  bool operator==(const Navigation &) const = default;
+
   /** Look as \a camera does, at what is in the middle of \a bounds. */
   void look_through(const scene::PlacedCamera &camera, const scene::Bounds &bounds);
   void look_from(Side side);

@@ -14,7 +14,7 @@
 /** What the window shows beside the viewports. Each function draws items of the current window. */
 namespace gnomon::view {
 
-/** The rows of a table with \a thing's properties. \return whether the user changed \a thing */
+/** The rows of tables with \a thing's properties, some under headers. \return whether the user changed \a thing */
 template <typename T>
 bool show_properties(T &thing);
 
@@ -28,10 +28,10 @@ class SceneTree {
   char filter_[64] = "";
 };
 
-/** The selected node: its placement, flags, lamp and materials. */
+/** The selected node: its placement, flags, lamp, camera and materials. */
 void show_selection(Document &document);
-/** Light from everywhere. */
-void show_world(Document &document);
+/** Light from everywhere. \return whether the user wants to choose a picture */
+[[nodiscard]] bool show_world(Document &document);
 /** Settings of all viewports. */
 void show_settings(Document &document);
 

@@ -13,6 +13,11 @@
 /** What can be edited of a thing, as tables: panels show them, and scripts set them by name. */
 namespace gnomon::view {
 
+struct Limits {
+  double min = 0.0;
+  double max = 0.0;
+};
+
 /** One or three numbers, in the units in which they are shown. */
 template <typename T>
 struct NumberProperty {
@@ -28,6 +33,24 @@ struct NumberProperty {
   bool is_color = false;
   /** Empty: always. */
   std::function<bool(const T &)> applies{};
+  /** Narrower limits that other values of a thing leave; empty: min and max. */
+  std::function<Limits(const T &)> narrowed{};
+  /**
+   * What a thing without the number has instead, in panels and in scripts; nullptr: things always have it. `get` is the
+   * number to begin with where a thing has none.
+   */
+  const char *absent = nullptr;
+  std::function<bool(const T &)> is_absent{};
+  std::function<void(T &)> remove{};
+  /** It is a slider with a logarithmic scale, and this stands for 0 at its lower end; nullptr: it is none. */
+  const char *slider_zero = nullptr;
+  /** A header that the panel shows it under. Empty: none. */
+  const char *group = "";
+
+  [[nodiscard]] Limits limits(const T &thing) const
+  {
+    return narrowed ? narrowed(thing) : Limits{min, max};
+  }
 };
 
 /** One of several. With two options, "off" and "on", a check box. */
@@ -39,6 +62,7 @@ struct ChoiceProperty {
   std::function<int(const T &)> get;
   std::function<void(T &, int)> set;
   std::function<bool(const T &)> applies{};
+  const char *group = "";
 };
 
 template <typename T>
@@ -63,14 +87,32 @@ struct Placement {
 /** \a parent_from_node with another placement. Only another rotation or scale removes its shear. */
 [[nodiscard]] glm::dmat4 placed(const glm::dmat4 &parent_from_node, const Placement &placement);
 
-/** For Placement, scene::Node, scene::Lamp, scene::Material, scene::World and Settings. */
+/** The shadow of a lamp, and what decides which of its settings have an effect. */
+struct ShadowOfLamp {
+  scene::LampKind lamp = scene::LampKind::Point;
+  /** Of lamps without a kind of their own. */
+  scene::ShadowKind scene_kind = scene::ShadowKind::Hard;
+  scene::LampShadow shadow{};
+};
+
+/** A texture of a material, as text. */
+struct TextureLine {
+  std::string slot;
+  std::string image;
+
+  bool operator==(const TextureLine &) const = default;
+};
+[[nodiscard]] std::vector<TextureLine> texture_lines(const scene::Scene &scene, const scene::Material &material);
+
+/** For Placement, scene::Node, scene::Lamp, ShadowOfLamp, scene::Camera, scene::Material, scene::World and Settings. */
 template <typename T>
 [[nodiscard]] const Properties<T> &properties();
 
 /**
  * Set the property \a name of \a thing to what \a words say, as scripts do.
  * \return false: \a T has no such property, or it does not apply
- * \throws std::runtime_error where the words are not as many numbers within the limits, or none of the options
+ * \throws std::runtime_error where the words are neither as many numbers within the limits nor the text for
+ * their absence, or none of the options
  */
 template <typename T>
 bool set_property(T &thing, const std::string &name, std::span<const std::string> words);

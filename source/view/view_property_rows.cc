@@ -8,10 +8,16 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace gnomon::view {
 
 namespace {
+
+/** A slider below shows 0. */
+constexpr double slider_min = 1e-4;
 
 /** The label in the first column; the next item fills the second. */
 void begin_row(const char *label)
@@ -88,9 +94,9 @@ bool show_number(const NumberProperty<T> &property, T &thing)
   const char *unit = property.unit(thing);
   const bool has_unit = *unit != 0 && fit(values, property.width, digits, unit);
   const std::string format = fmt::format("%.{}g{}{}", digits, has_unit ? " " : "", has_unit ? unit : "");
-  const bool is_changed =
-      ImGui::DragScalarN("", ImGuiDataType_Double, values.data(), property.width, speed, &property.min, &property.max,
-                         format.c_str(), ImGuiSliderFlags_AlwaysClamp);
+  const Limits limits = property.limits(thing);
+  const bool is_changed = ImGui::DragScalarN("", ImGuiDataType_Double, values.data(), property.width, speed,
+                                             &limits.min, &limits.max, format.c_str(), ImGuiSliderFlags_AlwaysClamp);
   if (*unit != 0 && !has_unit && ImGui::IsItemHovered()) {
     ImGui::SetTooltip("%s", unit);
   }
@@ -107,10 +113,114 @@ bool show_number(const NumberProperty<T> &property, T &thing)
   return true;
 }
 
-}  // namespace
+template <typename T>
+bool show_slider(const NumberProperty<T> &property, T &thing)
+{
+  double value = property.get(thing, 0);
+  // The smallest value above 0 has as many decimals.
+  const std::string format = value == 0.0 ? property.slider_zero : fmt::format("%.4f {}", property.unit(thing));
+  if (!ImGui::SliderScalar(
+          "", ImGuiDataType_Double, &value, &property.min, &property.max, format.c_str(),
+          ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat)) {
+    return false;
+  }
+  // Where the slider's scale ends.
+  property.set(thing, 0, value < slider_min ? 0.0 : value);
+  return true;
+}
+
+/** A box beside the number, without a tick where the number is absent. */
+template <typename T>
+bool show_optional_number(const NumberProperty<T> &property, T &thing)
+{
+  bool is_present = !property.is_absent(thing);
+  if (ImGui::Checkbox("##present", &is_present)) {
+    if (is_present) {
+      const Limits limits = property.limits(thing);
+      property.set(thing, 0, std::clamp(property.get(thing, 0), limits.min, limits.max));
+    }
+    else {
+      property.remove(thing);
+    }
+    return true;
+  }
+  ImGui::SameLine();
+  if (!is_present) {
+    ImGui::TextDisabled("%s", property.absent);
+    return false;
+  }
+  ImGui::SetNextItemWidth(-1.0F);
+  return show_number(property, thing);
+}
 
 template <typename T>
-bool show_properties(T &thing)
+bool show_row(const NumberProperty<T> &property, T &thing)
+{
+  if (property.absent) {
+    return show_optional_number(property, thing);
+  }
+  if (property.slider_zero) {
+    return show_slider(property, thing);
+  }
+  return property.is_color ? show_color(property, thing) : show_number(property, thing);
+}
+
+/** Calls \a function with each property of the group, choices first, that applies to \a thing. */
+template <typename T, typename Function>
+void for_each_property(const T &thing, std::string_view group, Function &&function)
+{
+  const auto visit = [&](const auto &property) {
+    if (property.group == group && (!property.applies || property.applies(thing))) {
+      function(property);
+    }
+  };
+  std::ranges::for_each(properties<T>().choices, visit);
+  std::ranges::for_each(properties<T>().numbers, visit);
+}
+
+/** In the order in which they first appear. */
+template <typename T>
+std::vector<std::string_view> groups()
+{
+  std::vector<std::string_view> found;
+  const auto note = [&](const auto &property) {
+    if (*property.group != 0 && std::ranges::find(found, property.group) == found.end()) {
+      found.emplace_back(property.group);
+    }
+  };
+  std::ranges::for_each(properties<T>().choices, note);
+  std::ranges::for_each(properties<T>().numbers, note);
+  return found;
+}
+
+template <typename T>
+bool is_default(const ChoiceProperty<T> &property, const T &thing)
+{
+  return property.get(thing) == property.get(T());
+}
+
+template <typename T>
+bool is_default(const NumberProperty<T> &property, const T &thing)
+{
+  if (property.absent && property.is_absent(thing) != property.is_absent(T())) {
+    return false;
+  }
+  for (int i = 0; i < property.width; i++) {
+    if (property.get(thing, i) != property.get(T(), i)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+template <typename T>
+bool show_row(const ChoiceProperty<T> &property, T &thing)
+{
+  return show_choice(property, thing);
+}
+
+template <typename T>
+bool show_rows(T &thing, std::string_view group)
 {
   if (!ImGui::BeginTable("properties", 2)) {
     return false;
@@ -118,27 +228,44 @@ bool show_properties(T &thing)
   ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 8.0F * ImGui::GetFontSize());
   ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
   bool is_changed = false;
-  const auto show = [&](const auto &property, auto &&item) {
-    if (!property.applies || property.applies(thing)) {
-      ImGui::PushID(property.name);
-      begin_row(property.label);
-      is_changed |= item();
-      ImGui::PopID();
-    }
-  };
-  for (const ChoiceProperty<T> &property : properties<T>().choices) {
-    show(property, [&] { return show_choice(property, thing); });
-  }
-  for (const NumberProperty<T> &property : properties<T>().numbers) {
-    show(property, [&] { return property.is_color ? show_color(property, thing) : show_number(property, thing); });
-  }
+  for_each_property(thing, group, [&](const auto &property) {
+    ImGui::PushID(property.name);
+    begin_row(property.label);
+    is_changed |= show_row(property, thing);
+    ImGui::PopID();
+  });
   ImGui::EndTable();
+  return is_changed;
+}
+
+}  // namespace
+
+template <typename T>
+bool show_properties(T &thing)
+{
+  bool is_changed = show_rows(thing, "");
+  for (const std::string_view group : groups<T>()) {
+    bool has_rows = false;
+    bool is_used = false;
+    for_each_property(std::as_const(thing), group, [&](const auto &property) {
+      has_rows = true;
+      is_used |= !is_default(property, thing);
+    });
+    // What is as usual is folded at first.
+    if (has_rows && ImGui::TreeNodeEx(group.data(), ImGuiTreeNodeFlags_SpanAvailWidth |
+                                                        (is_used ? ImGuiTreeNodeFlags_DefaultOpen : 0))) {
+      is_changed |= show_rows(thing, group);
+      ImGui::TreePop();
+    }
+  }
   return is_changed;
 }
 
 template bool show_properties(Placement &);
 template bool show_properties(scene::Node &);
 template bool show_properties(scene::Lamp &);
+template bool show_properties(ShadowOfLamp &);
+template bool show_properties(scene::Camera &);
 template bool show_properties(scene::Material &);
 template bool show_properties(scene::World &);
 template bool show_properties(Settings &);

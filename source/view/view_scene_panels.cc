@@ -5,6 +5,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <memory>
 
 namespace gnomon::view {
 
@@ -26,6 +27,29 @@ bool contains(const std::string &text, const char *part)
   const std::string_view wanted(part);
   const auto is_same = [](char a, char b) { return std::tolower(a) == std::tolower(b); };
   return !std::ranges::search(text, wanted, is_same).empty() || wanted.empty();
+}
+
+/** Which images a material has, for reading. */
+void show_textures(const scene::Scene &scene, const scene::Material &material)
+{
+  const std::vector<TextureLine> lines = texture_lines(scene, material);
+  if (lines.empty() ||
+      !ImGui::TreeNodeEx("Textures", ImGuiTreeNodeFlags_SpanAvailWidth | ImGuiTreeNodeFlags_DefaultOpen)) {
+    return;
+  }
+  if (ImGui::BeginTable("textures", 2)) {
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 8.0F * ImGui::GetFontSize());
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
+    for (const TextureLine &line : lines) {
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(line.slot.c_str());
+      ImGui::TableNextColumn();
+      ImGui::TextWrapped("%s", line.image.c_str());
+    }
+    ImGui::EndTable();
+  }
+  ImGui::TreePop();
 }
 
 bool header(const std::string &text)
@@ -126,6 +150,21 @@ void show_selection(Document &document)
     if (show_properties(edited)) {
       document.edit(node.lamp, [&](scene::Lamp &one) { one = edited; });
     }
+    ImGui::PushID("shadow");
+    ShadowOfLamp shadow = document.shadow_of(edited);
+    if (edited.kind != scene::LampKind::Hemi && show_properties(shadow)) {
+      document.edit(node.lamp, [&](scene::Lamp &one) { one.shadow = shadow.shadow; });
+    }
+    ImGui::PopID();
+    ImGui::PopID();
+  }
+  if (const scene::Camera *camera = scene.cameras().find(node.camera);
+      camera && header(fmt::format("Camera: {}###camera", camera->name))) {
+    ImGui::PushID("camera");
+    scene::Camera edited = *camera;
+    if (show_properties(edited)) {
+      document.edit(node.camera, [&](scene::Camera &one) { one = edited; });
+    }
     ImGui::PopID();
   }
   std::vector<scene::Handle<scene::Material>> shown;
@@ -142,27 +181,43 @@ void show_selection(Document &document)
       if (show_properties(edited)) {
         document.edit(value->material, [&](scene::Material &one) { one = edited; });
       }
+      show_textures(scene, edited);
     }
     ImGui::PopID();
   }
 }
 
-void show_world(Document &document)
+bool show_world(Document &document)
 {
   const bool has_world = document.scene().world().has_value();
   bool is_on = has_world;
   if (ImGui::Checkbox("Light from everywhere", &is_on) && is_on != has_world) {
     document.set_world(is_on ? std::optional(scene::World{}) : std::nullopt);
-    return;
+    return false;
   }
-  if (has_world) {
-    scene::World world = *document.scene().world();
-    ImGui::TextDisabled("%s",
-                        world.picture ? "A picture, turned around the vertical axis" : "The same from everywhere");
-    if (show_properties(world)) {
-      document.set_world(world);
+  const bool is_asked = ImGui::Button("Picture...");
+  if (!has_world) {
+    return is_asked;
+  }
+  scene::World world = *document.scene().world();
+  if (const std::shared_ptr<const scene::WorldPicture> picture = world.picture) {
+    ImGui::SameLine();
+    if (ImGui::Button("No picture")) {
+      document.set_world_picture(nullptr);
+      return false;
     }
+    ImGui::TextWrapped("%s",
+                       fmt::format("{}, {}x{}", picture->path.empty() ? "A picture without a file" : picture->path,
+                                   picture->width, picture->height)
+                           .c_str());
   }
+  else {
+    ImGui::TextDisabled("The same from everywhere");
+  }
+  if (show_properties(world)) {
+    document.set_world(world);
+  }
+  return is_asked;
 }
 
 void show_settings(Document &document)

@@ -35,13 +35,47 @@ void Viewport::close()
 
 void Viewport::look_at(const Document &document)
 {
-  const scene::Bounds bounds = document.scene().bounds();
   const std::vector<scene::PlacedCamera> cameras = document.scene().placed_cameras();
   if (cameras.empty()) {
-    navigation.frame(bounds);
+    looked_through_.reset();
+    navigation.frame(document.scene().bounds());
     return;
   }
-  navigation.look_through(cameras.front(), bounds);
+  look_through(document, cameras.front());
+}
+
+void Viewport::look_through(const Document &document, const scene::PlacedCamera &camera)
+{
+  navigation.look_through(camera, document.scene().bounds());
+  looked_through_ = {camera.node, navigation};
+}
+
+std::optional<scene::PlacedCamera> Viewport::looked_through(const Document &document) const
+{
+  if (!looked_through_ || !(looked_through_->navigation == navigation)) {
+    return std::nullopt;
+  }
+  const scene::Scene &scene = document.scene();
+  const scene::Handle<scene::Node> handle = looked_through_->node;
+  const scene::Node *node = scene.nodes().find(handle);
+  const scene::Camera *camera = node ? scene.cameras().find(node->camera) : nullptr;
+  if (!camera) {
+    return std::nullopt;
+  }
+  return scene::PlacedCamera{*camera, handle, scene::frame_of(scene.world_from_node(handle))};
+}
+
+void Viewport::follow(const Document &document)
+{
+  if (const std::optional<scene::PlacedCamera> camera = looked_through(document)) {
+    look_through(document, *camera);
+  }
+}
+
+scene::PlacedCamera Viewport::camera(const Document &document) const
+{
+  const std::optional<scene::PlacedCamera> camera = looked_through(document);
+  return camera ? *camera : navigation.camera(double(document.scene().bounds().radius()));
 }
 
 Viewport::OverlayKey Viewport::overlay_key(Document &document) const
@@ -79,8 +113,8 @@ bool Viewport::draw(Document &document, double budget_seconds)
   const Key key{document.scene().revision(), document.settings_revision(), engine, size_px_, render_scene.origin_ws()};
   const bool is_same = viewport_ && key == synced_;
   const bool is_synced = is_same && !has_failed_;
-  const scene::PlacedCamera camera = navigation.camera(double(document.scene().bounds().radius()));
-  const draw::View view = render_scene::view_of(camera, size_px_, render_scene.origin_ws());
+  follow(document);
+  const draw::View view = render_scene::view_of(camera(document), size_px_, render_scene.origin_ws());
   const OverlayKey overlays = overlay_key(document);
   if (is_same && is_complete_ && view == drawn_view_ && overlaid_ == overlays) {
     return true;

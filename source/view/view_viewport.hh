@@ -25,6 +25,12 @@ class Viewport {
   void close();
   /** Look through the scene's first camera. */
   void look_at(const Document &document);
+  /** Show what \a camera sees, also after edits of it and its node, until the view is moved. */
+  void look_through(const Document &document, const scene::PlacedCamera &camera);
+  /** Move to the scene's camera that is looked through, if one is. */
+  void follow(const Document &document);
+  /** The camera of the picture: that of the scene that is looked through, or that of `navigation`. */
+  [[nodiscard]] scene::PlacedCamera camera(const Document &document) const;
 
   /**
    * Draw the next sample, if the picture needs more. \a budget_seconds: \see eevee::BudgetedPicture; 0: no budget
@@ -119,6 +125,8 @@ class Viewport {
     bool operator==(const OverlayKey &) const = default;
   };
   [[nodiscard]] OverlayKey overlay_key(Document &document) const;
+  /** Nothing: none is looked through. */
+  [[nodiscard]] std::optional<scene::PlacedCamera> looked_through(const Document &document) const;
   /** Draw with \a used, within the budget if there is one and it can. */
   void draw_picture(Document &document, draw::Engine &used, double budget_seconds, const draw::Target &target);
   /** End a picture whose time is over. */
@@ -139,7 +147,14 @@ class Viewport {
   /** Where a point is in the picture, as pick counts; nothing: not in it. */
   [[nodiscard]] std::optional<glm::vec2> place_of(const glm::dvec3 &position_ws) const;
 
+  /** A node with a camera that is looked through while `navigation` is as that camera has set it. */
+  struct LookedThrough {
+    scene::Handle<scene::Node> node;
+    Navigation navigation;
+  };
+
   Canvas canvas_;
+  std::optional<LookedThrough> looked_through_;
   std::unique_ptr<draw::Viewport> viewport_;
   /** Of viewport_. Created by the first draw with a budget. */
   std::optional<eevee::BudgetedPicture> budgeted_;

@@ -236,6 +236,11 @@ bool Window::is_closed() const
   return glfwWindowShouldClose(window_) == GLFW_TRUE;
 }
 
+void Window::set_closed(bool is_closed)
+{
+  glfwSetWindowShouldClose(window_, is_closed ? GLFW_TRUE : GLFW_FALSE);
+}
+
 glm::ivec2 Window::size_px() const
 {
   glm::ivec2 size(0);

@@ -58,7 +58,10 @@ class Window {
    */
   static void inject_context_loss(int failures);
 
+  /** Whether the user has closed it. */
   [[nodiscard]] bool is_closed() const;
+  /** Close it as the user does, or keep it open after that. */
+  void set_closed(bool is_closed);
   [[nodiscard]] glm::ivec2 size_px() const;
   void resize(glm::ivec2 size_px);
   void set_title(const std::string &title);

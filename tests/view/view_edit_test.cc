@@ -567,6 +567,39 @@ TEST(ViewDocumentTest, ASurfaceFunctionIsReadAgainWhenItsFileIsWrittenWhichIsNoE
   fs::remove(file);
 }
 
+TEST(ViewDocumentTest, APictureOfTheWorldKeepsHowThePictureBeforeLitAndCanBeUndone)
+{
+  const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  Document document(*device, scene::Scene(), default_settings());
+  const auto picture = [](float radiance) {
+    return std::make_shared<const scene::WorldPicture>(scene::WorldPicture{1, 1, {glm::vec3(radiance)}});
+  };
+  document.set_world(scene::World{.color = {0, 0, 1}, .strength = 0.1F});
+  document.history().end_gesture();
+  document.set_world_picture(picture(1.0F));
+  EXPECT_EQ(document.scene().world()->color, glm::vec3(1.0F)) << "the colour was the light itself";
+  EXPECT_EQ(document.scene().world()->strength, 1.0F);
+  document.history().end_gesture();
+  scene::World turned = *document.scene().world();
+  turned.rotation = 0.5F;
+  document.set_world(turned);
+  document.history().end_gesture();
+  document.set_world_picture(picture(2.0F));
+  EXPECT_EQ(document.scene().world()->rotation, 0.5F);
+  EXPECT_EQ(document.scene().world()->picture->texels[0].x, 2.0F);
+  document.history().end_gesture();
+  EXPECT_THROW(document.set_world_picture(picture(-1.0F)), scene::InvalidEdit);
+  EXPECT_EQ(document.scene().world()->picture->texels[0].x, 2.0F);
+  document.set_world_picture(nullptr);
+  EXPECT_FALSE(document.scene().world()->picture);
+  EXPECT_TRUE(document.undo());
+  EXPECT_TRUE(document.undo());
+  EXPECT_EQ(document.scene().world()->picture->texels[0].x, 1.0F);
+  EXPECT_TRUE(document.undo());
+  EXPECT_TRUE(document.undo());
+  EXPECT_EQ(document.scene().world()->color, glm::vec3(0, 0, 1));
+}
+
 TEST(ViewKeysTest, KeysAreNamedAsMenusShowThem)
 {
   EXPECT_EQ(key_of("g"), (KeyPress{'G', 0}));

@@ -9,6 +9,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <random>
+#include <set>
 
 namespace gnomon::view {
 namespace {
@@ -29,6 +30,10 @@ TEST(ViewHistoryTest, EachGestureIsUndoneAndRedoneAsOneAndANewEditForgetsWhatWas
   history.set_world(scene, scene::World{.strength = 2.0F});
   history.edit(scene, node, [](scene::Node & /*edited*/) {});
   EXPECT_EQ(history.undo_count(), 4U);
+  const auto camera = scene.add(scene::Camera{.near = 1.0F});
+  history.edit(scene, camera, [](scene::Camera &edited) { edited.near = 2.0F; });
+  EXPECT_TRUE(history.undo(scene));
+  EXPECT_EQ(scene.cameras()[camera].near, 1.0F);
 
   EXPECT_TRUE(history.undo(scene));
   EXPECT_FALSE(scene.world());
@@ -233,6 +238,16 @@ TEST(ViewPropertiesTest, EveryNumberIsWhatWasSetWithinItsLimitsAndEveryChoiceToo
   const auto check = [](auto thing) {
     using T = decltype(thing);
     for (const auto &property : properties<T>().numbers) {
+      if (property.absent) {
+        property.remove(thing);
+        EXPECT_TRUE(property.is_absent(thing)) << property.name;
+        const double first = property.get(thing, 0);
+        EXPECT_TRUE(first >= property.min && first <= property.max) << property.name << ' ' << first;
+        property.set(thing, 0, first);
+        EXPECT_FALSE(property.is_absent(thing)) << property.name;
+        // A float.
+        EXPECT_NEAR(property.get(thing, 0), first, 1e-6 * first) << property.name;
+      }
       for (int i = 0; i < property.width; i++) {
         for (const double value : {property.min, property.max, 0.5 * property.min + 0.5 * property.max}) {
           property.set(thing, i, value);
@@ -248,6 +263,8 @@ TEST(ViewPropertiesTest, EveryNumberIsWhatWasSetWithinItsLimitsAndEveryChoiceToo
     }
   };
   check(scene::Lamp());
+  check(ShadowOfLamp());
+  check(scene::Camera());
   check(scene::Material());
   check(scene::Node());
   check(scene::World());
@@ -266,8 +283,6 @@ TEST(ViewPropertiesTest, WordsSetAPropertyAndWrongOnesAreNamed)
   EXPECT_FLOAT_EQ(lamp.spot_outer_angle, glm::radians(45.0F));
   EXPECT_TRUE(set("color", {"1", "0.5", "0"}));
   EXPECT_EQ(lamp.color, glm::vec3(1, 0.5F, 0));
-  EXPECT_TRUE(set("shadow", {"none"}));
-  EXPECT_EQ(lamp.shadow.kind, scene::ShadowKind::None);
   EXPECT_FALSE(set("angle", {"1"})) << "of a sun";
   EXPECT_FALSE(set("sweetness", {"1"}));
   const scene::Lamp before = lamp;
@@ -281,6 +296,190 @@ TEST(ViewPropertiesTest, WordsSetAPropertyAndWrongOnesAreNamed)
     EXPECT_THROW(set(name, words), std::runtime_error) << name;
   }
   EXPECT_EQ(lamp, before);
+}
+
+TEST(ViewPropertiesTest, AShadowHasTheSettingsThatHaveAnEffectForItsKindAndEachMayBeAsTheScene)
+{
+  const std::vector<std::string> depths = {"shadow_size", "bias", "clip_start", "clip_end"};
+  const std::vector<std::string> exponential = {"exponent", "filter_radius", "esm_size"};
+  const auto applying = [](const ShadowOfLamp &of) {
+    std::set<std::string> names;
+    for (const auto &property : properties<ShadowOfLamp>().choices) {
+      if (property.applies(of)) {
+        names.insert(property.name);
+      }
+    }
+    for (const auto &property : properties<ShadowOfLamp>().numbers) {
+      if (property.applies(of)) {
+        names.insert(property.name);
+      }
+    }
+    return names;
+  };
+  using enum scene::ShadowKind;
+  ShadowOfLamp of{scene::LampKind::Point, Pcf};
+  std::set<std::string> expected(depths.begin(), depths.end());
+  expected.insert("shadow");
+  EXPECT_EQ(applying(of), expected);
+  of.shadow.kind = Evsm;
+  expected.insert(exponential.begin(), exponential.end());
+  EXPECT_EQ(applying(of), expected);
+  of.shadow.kind = std::nullopt;
+  of.scene_kind = Esm;
+  expected.insert("esm_format");
+  EXPECT_EQ(applying(of), expected);
+  // Suns have no exponential shadows, and no distances.
+  of.lamp = scene::LampKind::Sun;
+  EXPECT_EQ(applying(of), (std::set<std::string>{"shadow", "shadow_size", "bias"}));
+  of.shadow.kind = None;
+  EXPECT_EQ(applying(of), std::set<std::string>{"shadow"});
+  of = {scene::LampKind::Point, None, {.kind = Hard}};
+  EXPECT_EQ(applying(of), std::set<std::string>{"shadow"}) << "the scene has none";
+  of.lamp = scene::LampKind::Hemi;
+  EXPECT_TRUE(applying(of).empty());
+
+  of = {scene::LampKind::Spot, Esm};
+  const auto set = [&](const std::string &name, const std::string &word) {
+    return set_property(of, name, std::span(&word, 1));
+  };
+  EXPECT_TRUE(set("shadow_size", "300"));
+  EXPECT_EQ(of.shadow.size, 300);
+  EXPECT_TRUE(set("filter_radius", "9"));
+  EXPECT_FLOAT_EQ(*of.shadow.filter_radius, glm::radians(9.0F));
+  EXPECT_TRUE(set("esm_format", "32f"));
+  EXPECT_EQ(of.shadow.esm_format, scene::EsmFormat::Float);
+  EXPECT_TRUE(set("clip_start", "2"));
+  EXPECT_THROW(set("clip_end", "2"), std::runtime_error);
+  EXPECT_TRUE(set("clip_end", "2.5"));
+  EXPECT_THROW(set("clip_start", "2.5"), std::runtime_error);
+  EXPECT_TRUE(set("clip_start", "as the scene"));
+  EXPECT_FALSE(of.shadow.clip_start);
+  EXPECT_TRUE(set("clip_end", "0.001"));
+  for (const char *name : {"shadow", "shadow_size", "filter_radius", "esm_format", "clip_end"}) {
+    EXPECT_TRUE(set(name, "as the scene"));
+  }
+  EXPECT_EQ(of.shadow, scene::LampShadow());
+}
+
+TEST(ViewPropertiesTest, EveryFactorOfAMaterialIsAPropertyOfItsOwn)
+{
+  scene::Material material;
+  const std::vector<std::pair<std::string, std::vector<std::string>>> values = {
+      {"specular_color", {"2", "1", "0.5"}},
+      {"coat", {"0.25"}},
+      {"coat_roughness", {"0.5"}},
+      {"sheen_color", {"0.1", "0.2", "0.3"}},
+      {"sheen_roughness", {"0.7"}},
+      {"anisotropy", {"0.8"}},
+      {"anisotropy_rotation", {"90"}},
+      {"transmission", {"0.9"}},
+      {"thickness", {"3"}},
+      {"ior", {"1.33"}},
+      {"attenuation_distance", {"4"}},
+      {"attenuation_color", {"0.4", "0.5", "0.6"}}};
+  for (const auto &[name, words] : values) {
+    EXPECT_TRUE(set_property(material, name, std::span(words))) << name;
+  }
+  EXPECT_EQ(material.specular_color, glm::vec3(2.0F, 1.0F, 0.5F));
+  EXPECT_EQ(material.coat, 0.25F);
+  EXPECT_EQ(material.coat_roughness, 0.5F);
+  EXPECT_EQ(material.sheen_color, glm::vec3(0.1F, 0.2F, 0.3F));
+  EXPECT_EQ(material.sheen_roughness, 0.7F);
+  EXPECT_EQ(material.anisotropy, 0.8F);
+  EXPECT_FLOAT_EQ(material.anisotropy_rotation, glm::radians(90.0F));
+  EXPECT_EQ(material.transmission, 0.9F);
+  EXPECT_EQ(material.thickness, 3.0F);
+  EXPECT_EQ(material.ior, 1.33F);
+  EXPECT_EQ(material.attenuation_distance, 4.0F);
+  EXPECT_EQ(material.attenuation_color, glm::vec3(0.4F, 0.5F, 0.6F));
+  const std::vector<std::string> none = {"no absorption"};
+  EXPECT_TRUE(set_property(material, "attenuation_distance", std::span(none)));
+  EXPECT_EQ(material.attenuation_distance, 0.0F);
+  // Occlusion is in a texture.
+  const std::vector<std::string> half = {"0.5"};
+  EXPECT_FALSE(set_property(material, "occlusion_strength", std::span(half)));
+  scene::Scene scene;
+  const auto image =
+      scene.add(scene::Image{.name = "cracks", .width = 1, .height = 2, .texels = std::vector<std::uint8_t>(8)});
+  const auto unnamed = scene.add(scene::Image{.width = 1, .height = 1, .texels = std::vector<std::uint8_t>(4)});
+  const auto removed = scene.add(scene::Texture{.image = unnamed});
+  material.occlusion_texture = scene.add(scene::Texture{.image = image});
+  material.coat_normal_texture = scene.add(scene::Texture{.image = unnamed});
+  material.emissive_texture = removed;
+  scene.remove(removed);
+  EXPECT_TRUE(set_property(material, "occlusion_strength", std::span(half)));
+  EXPECT_EQ(material.occlusion_strength, 0.5F);
+  EXPECT_EQ(texture_lines(scene, material),
+            (std::vector<TextureLine>{{"Occlusion", "cracks, 1x2"}, {"Coat normal", "1x1"}}));
+}
+
+TEST(ViewPropertiesTest, ShadowSettingsOfAllLampsAreThoseOfTheCommandLine)
+{
+  Settings settings;
+  const eevee::ShadowSettings &shadow = settings.eevee.shadow;
+  const auto set = [&](const std::string &name, const std::string &word) {
+    return set_property(settings, name, std::span(&word, 1));
+  };
+  EXPECT_FALSE(set("pcf_lookups", "9")) << "of a square kernel";
+  EXPECT_TRUE(set("pcf", "5x5"));
+  EXPECT_EQ(shadow.pcf.width, 5);
+  EXPECT_TRUE(set("pcf", "disk"));
+  EXPECT_TRUE(set("pcf_lookups", "9"));
+  EXPECT_EQ(shadow.pcf, (eevee::PcfKernel{0, 9}));
+  EXPECT_TRUE(set("esm", "separable"));
+  EXPECT_EQ(shadow.esm.kernel, eevee::EsmKernel::Separable);
+  EXPECT_TRUE(set("esm_size", "64"));
+  EXPECT_EQ(shadow.esm.size_px, 64);
+  EXPECT_TRUE(set("exponent", "20"));
+  EXPECT_EQ(shadow.esm.exponent, 20.0F);
+  EXPECT_TRUE(set("filter_radius", "2"));
+  EXPECT_FLOAT_EQ(*shadow.esm.filter_angle, glm::radians(2.0F));
+  EXPECT_TRUE(set("exponent", "automatic"));
+  EXPECT_TRUE(set("filter_radius", "automatic"));
+  EXPECT_FALSE(shadow.esm.exponent || shadow.esm.filter_angle);
+  EXPECT_TRUE(set("cascade_count", "3"));
+  EXPECT_EQ(shadow.cascades.count, 3);
+  EXPECT_TRUE(set("cascade_lambda", "0.5"));
+  EXPECT_EQ(shadow.cascades.lambda, 0.5F);
+  EXPECT_TRUE(set("cascade_range", "depth"));
+  EXPECT_TRUE(shadow.is_fitted_to_depth);
+  EXPECT_TRUE(set("casters", "back"));
+  EXPECT_EQ(shadow.caster_faces, eevee::CasterFaces::Back);
+  EXPECT_TRUE(set("shadow_memory", "64"));
+  EXPECT_EQ(shadow.memory_bytes_max, std::size_t(64) << 20U);
+}
+
+TEST(ViewPropertiesTest, ACameraHasTheNumbersOfItsKindAndItsFarDistanceStaysBeyondTheNearOne)
+{
+  scene::Camera camera;
+  const auto set = [&](const std::string &name, const std::string &word) {
+    return set_property(camera, name, std::span(&word, 1));
+  };
+  EXPECT_TRUE(set("vertical_angle", "90"));
+  EXPECT_FLOAT_EQ(camera.vertical_angle, glm::radians(90.0F));
+  EXPECT_TRUE(set("aspect", "2"));
+  EXPECT_EQ(camera.aspect, 2.0F);
+  EXPECT_TRUE(set("aspect", "as the picture"));
+  EXPECT_EQ(camera.aspect, 0.0F);
+  EXPECT_TRUE(set("near", "5"));
+  EXPECT_THROW(set("near", "0"), std::runtime_error) << "in perspective";
+  EXPECT_THROW(set("far", "5"), std::runtime_error);
+  EXPECT_TRUE(set("far", "7"));
+  EXPECT_THROW(set("near", "7"), std::runtime_error);
+  EXPECT_TRUE(set("far", "infinite"));
+  EXPECT_EQ(camera.far, 0.0F);
+  EXPECT_FALSE(set("half_width", "3"));
+
+  EXPECT_TRUE(set("kind", "orthographic"));
+  EXPECT_GT(camera.far, camera.near) << "files of such cameras need one";
+  EXPECT_THROW(set("far", "infinite"), std::runtime_error);
+  EXPECT_TRUE(set("near", "0"));
+  EXPECT_TRUE(set("far", "0.01"));
+  EXPECT_TRUE(set("half_width", "3"));
+  EXPECT_EQ(camera.half_width, 3.0F);
+  EXPECT_FALSE(set("vertical_angle", "40"));
+  EXPECT_TRUE(set("kind", "perspective"));
+  EXPECT_TRUE(camera.near > 0.0F && camera.near < camera.far) << camera.near;
 }
 
 TEST(ViewScriptTest, WordsAreSeparatedBySpacesQuotesKeepThemAndCommentsEndALine)
