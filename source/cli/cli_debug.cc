@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace gnomon::cli {
@@ -14,6 +15,7 @@ namespace gnomon::cli {
 DebugView parse_debug(const std::string &text)
 {
   constexpr std::string_view shadow = "shadow:";
+  constexpr std::string_view density = "density:";
   if (text.empty()) {
     return {};
   }
@@ -21,6 +23,10 @@ DebugView parse_debug(const std::string &text)
     return {.kind = DebugView::Kind::Cascades, .lamp = {}, .layer = {}};
   }
   DebugView view{.kind = DebugView::Kind::Shadow, .lamp = {}, .layer = {}};
+  if (text.starts_with(density)) {
+    view.kind = DebugView::Kind::Density;
+    view.lamp = text.substr(density.size());
+  }
   if (text.starts_with(shadow)) {
     view.lamp = text.substr(shadow.size());
     // Names may contain colons, so the last one separates the layer.
@@ -30,50 +36,56 @@ DebugView parse_debug(const std::string &text)
       view.lamp.resize(colon);
       const bool is_number =
           !view.layer.empty() && std::ranges::all_of(view.layer, [](char c) { return c >= '0' && c <= '9'; });
-      if (!is_number && view.layer != "octahedral" && view.layer != "all") {
+      constexpr std::array names = {"all", "octahedral", "map", "+X", "-X", "+Y", "-Y", "+Z", "-Z"};
+      if (!is_number && std::ranges::find(names, view.layer) == names.end()) {
         view.lamp.clear();
       }
     }
     view.layer = view.layer == "all" ? "" : view.layer;
   }
   if (view.lamp.empty()) {
-    throw UsageError(fmt::format(
-        "--debug '{}' is neither cascades nor shadow:LAMP[:LAYER] with a number, octahedral or all as LAYER", text));
+    throw UsageError(
+        fmt::format("--debug '{}' is neither cascades nor density:LAMP nor shadow:LAMP[:LAYER], where LAYER "
+                    "is a number, an axis as in +X or -Z, map, octahedral or all",
+                    text));
   }
   return view;
 }
 
-const gpu::Texture &shadow_picture(const DebugView &view, const scene::Scene &scene,
-                                   const eevee::Inspection &inspection)
+std::size_t shadowed_lamp(const DebugView &view, const scene::Scene &scene, const eevee::Inspection &inspection)
 {
   std::vector<std::string> with_layers;
   bool is_lamp = false;
   const std::vector<scene::PlacedLamp> lamps = scene.placed_lamps();
   for (std::size_t i = 0; i < lamps.size(); i++) {
-    const std::vector<std::string> layers = inspection.shadow_layers(i);
-    if (!layers.empty()) {
+    const bool has_layers = !inspection.shadow_layers(i).empty();
+    if (has_layers && lamps[i].name == view.lamp) {
+      return i;
+    }
+    if (has_layers) {
       with_layers.push_back(lamps[i].name);
     }
-    if (lamps[i].name != view.lamp) {
-      continue;
-    }
-    is_lamp = true;
-    if (layers.empty()) {
-      continue;
-    }
-    if (view.layer.empty()) {
-      return inspection.shadow_picture(i);
-    }
-    const auto layer = std::ranges::find(layers, view.layer);
-    if (layer == layers.end()) {
-      throw std::runtime_error(fmt::format("{}: the shadow of lamp '{}' has no layer '{}'; it has: {}", scene.path,
-                                           view.lamp, view.layer, fmt::join(layers, ", ")));
-    }
-    return inspection.shadow_picture(i, std::size_t(layer - layers.begin()));
+    is_lamp |= lamps[i].name == view.lamp;
   }
   throw std::runtime_error(fmt::format("{}: {} '{}'{}; lamps with a visible shadow: {}", scene.path,
                                        is_lamp ? "lamp" : "no lamp", view.lamp, is_lamp ? " has no visible shadow" : "",
                                        with_layers.empty() ? "none" : fmt::format("{}", fmt::join(with_layers, ", "))));
+}
+
+const gpu::Texture &shadow_picture(const DebugView &view, const scene::Scene &scene,
+                                   const eevee::Inspection &inspection)
+{
+  const std::size_t lamp = shadowed_lamp(view, scene, inspection);
+  if (view.layer.empty()) {
+    return inspection.shadow_picture(lamp);
+  }
+  const std::vector<std::string> layers = inspection.shadow_layers(lamp);
+  const std::optional<std::size_t> layer = eevee::find_layer(layers, view.layer);
+  if (!layer) {
+    throw std::runtime_error(fmt::format("{}: the shadow of lamp '{}' has no layer '{}'; it has, from 0: {}",
+                                         scene.path, view.lamp, view.layer, fmt::join(layers, ", ")));
+  }
+  return inspection.shadow_picture(lamp, layer);
 }
 
 std::vector<std::uint8_t> to_bytes(std::span<const float> rgba)

@@ -16,15 +16,24 @@ struct DebugView {
     Shadow,
     /** The picture, tinted by cascades. */
     Cascades,
+    /** The picture, coloured by the texel density of a lamp's shadow. */
+    Density,
   };
   Kind kind = Kind::None;
   std::string lamp;
-  /** Name from eevee::Inspection::shadow_layers; empty for all layers. */
+  /** As for eevee::find_layer; empty for all layers. */
   std::string layer;
 };
 
-/** Parses `cascades` or `shadow:LAMP[:LAYER]`; empty: none. \throws UsageError */
+/** Parses `cascades`, `shadow:LAMP[:LAYER]` or `density:LAMP`; empty: none. \throws UsageError */
 [[nodiscard]] DebugView parse_debug(const std::string &text);
+
+/**
+ * Index of the lamp of \a view in the view that was drawn last: the first of that name that has a visible shadow.
+ * \throws std::runtime_error naming the scene and its lamps if there is none
+ */
+[[nodiscard]] std::size_t shadowed_lamp(const DebugView &view, const scene::Scene &scene,
+                                        const eevee::Inspection &inspection);
 
 /**
  * The picture of \a view for the view that was drawn last. \pre \a view has Kind::Shadow. \see eevee::ShadowPicture

@@ -12,6 +12,7 @@
 #include "cli_trace.hh"
 
 #include "eevee_scene_renderer.hh"
+#include "eevee_texel_density.hh"
 #include "eevee_world.hh"
 #include "gpu_read.hh"
 #include "trace.hh"
@@ -78,9 +79,9 @@ std::optional<draw::TargetTexture> make_display(const RenderOptions &options, gp
 /** Pictures without a background are written with alpha. */
 Alpha alpha_of(const RenderOptions &options, eevee::SceneRenderer &renderer)
 {
-  return options.is_shadow_shown() || eevee::has_background(renderer.settings(), renderer.render_scene())
-             ? Alpha::Dropped
-             : Alpha::Written;
+  const bool is_picture = !options.is_shadow_shown() && (!options.is_density_shown() || options.is_png());
+  return !is_picture || eevee::has_background(renderer.settings(), renderer.render_scene()) ? Alpha::Dropped
+                                                                                            : Alpha::Written;
 }
 
 void render_frames(const RenderOptions &options, const scene::PlacedCamera &camera, eevee::SceneRenderer &renderer,
@@ -155,11 +156,22 @@ std::size_t count_non_finite(const RenderOptions &options, std::string_view what
   return found.count;
 }
 
+/** What the values of the output are. */
+std::string units_of(const RenderOptions &options)
+{
+  if (options.is_png()) {
+    return fmt::format("display-referred, {}", options.is_shadow_shown() ? "raw" : options.view);
+  }
+  return options.is_shadow_shown()    ? "metres, 0 where nothing was drawn"
+         : options.is_density_shown() ? "shadow texels along the edge of a pixel, 0 where there is no shadow"
+                                      : "scene-linear radiance, W/(sr m^2)";
+}
+
 /** \return Status::Done, or Status::NonFinite if the picture has non-finite values; it is then not written */
 Status write_picture(const RenderOptions &options, const scene::Camera &camera, gpu::Device &device,
                      std::span<const glm::vec4> pixels, glm::ivec2 size_px,
-                     const std::optional<draw::TargetTexture> &display, Alpha alpha, const AovLayers &aov,
-                     double sample_share, const Metadata &frame_metadata, RenderResult &result)
+                     const std::optional<draw::TargetTexture> &display, std::span<const float> density, Alpha alpha,
+                     const AovLayers &aov, double sample_share, const Metadata &frame_metadata, RenderResult &result)
 {
   const trace::Span span("write picture");
   const bool is_shadow = options.is_shadow_shown();
@@ -182,14 +194,16 @@ Status write_picture(const RenderOptions &options, const scene::Camera &camera, 
   if (!options.debug.empty()) {
     metadata.emplace_back("gnomon:debug", options.debug);
   }
+  metadata.emplace_back("gnomon:units", units_of(options));
   if (options.is_png()) {
-    metadata.emplace_back("gnomon:units", fmt::format("display-referred, {}", is_shadow ? "raw" : options.view));
-    write_png(options.output, size_px,
-              display ? gpu::read_as<std::uint8_t>(device, display->texture()) : to_bytes(values), metadata, alpha);
+    std::vector<std::uint8_t> bytes =
+        display ? gpu::read_as<std::uint8_t>(device, display->texture()) : to_bytes(values);
+    if (!density.empty()) {
+      eevee::show_texel_density(bytes, density);
+    }
+    write_png(options.output, size_px, bytes, metadata, alpha);
   }
   else {
-    metadata.emplace_back("gnomon:units",
-                          is_shadow ? "metres, 0 where nothing was drawn" : "scene-linear radiance, W/(sr m^2)");
     if (options.is_part()) {
       write_part(options, pixels, alpha, sample_share, std::move(metadata));
       return Status::Done;
@@ -271,10 +285,15 @@ Status render_sequence(RenderOptions options, const FrameSequence &frames, const
       renderer.sync();
     }
     render_frames(options, camera, renderer, display, result);
-    // Also called for the null backend, because shadow_picture reports layers that do not exist.
+    // Also called for the null backend, because both report lamps and layers that do not exist.
     const gpu::Texture *shadow = nullptr;
     if (options.is_shadow_shown()) {
       shadow = &shadow_picture(options.debug_view, scene, renderer.inspect());
+    }
+    std::vector<float> density;
+    if (options.is_density_shown()) {
+      const std::size_t lamp = shadowed_lamp(options.debug_view, scene, renderer.inspect());
+      density = renderer.inspect().texel_density(renderer.view_of(camera), lamp).value();
     }
     if (!aov.empty()) {
       // The layers draw other pictures.
@@ -285,14 +304,17 @@ Status render_sequence(RenderOptions options, const FrameSequence &frames, const
     if (options.has_picture()) {
       const gpu::Rectangle region = renderer.viewport().region();
       const glm::ivec2 written_px = shadow ? glm::ivec2(shadow->desc().width, shadow->desc().height) : region.size_px;
-      const std::vector<glm::vec4> picture =
+      std::vector<glm::vec4> picture =
           shadow ? gpu::read_as<glm::vec4>(device, *shadow) : gpu::cropped(renderer.read_picture(), size_px.x, region);
+      if (options.is_density_shown() && !options.is_png()) {
+        std::ranges::transform(density, picture.begin(), [](float value) { return glm::vec4(value); });
+      }
       const double sample_share = renderer.engine().sample_share(renderer.viewport());
       const Clock::time_point layers_start = Clock::now();
       const AovLayers layers = aov.render(renderer, camera, result.samples_drawn);
       layer_seconds = seconds_since(layers_start);
-      status = write_picture(options, camera, device, picture, written_px, display, alpha_of(options, renderer), layers,
-                             sample_share, frames.metadata(i), result);
+      status = write_picture(options, camera, device, picture, written_px, display, density,
+                             alpha_of(options, renderer), layers, sample_share, frames.metadata(i), result);
     }
     result.layer_seconds += layer_seconds;
     result.output_seconds += seconds_since(output_start) - layer_seconds;

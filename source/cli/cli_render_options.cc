@@ -206,6 +206,7 @@ eevee::Settings RenderOptions::engine_settings() const
   settings.emissive_point_count = emissive_points;
   settings.noise_threshold = noise_threshold;
   settings.has_cascade_tint = debug_view.kind == DebugView::Kind::Cascades;
+  settings.has_surfaces = is_density_shown();
   settings.is_timed = !json.empty() || is_explained;
   return settings;
 }
@@ -332,9 +333,12 @@ void add_render_options(CLI::App &command, RenderOptions &options)
                   "Points of emissive surfaces that light other surfaces in each of several samples; 0: none do")
       ->capture_default_str()
       ->check(CLI::Range(0, eevee::emissive_point_max));
-  command.add_option("--debug", options.debug,
-                     "shadow:LAMP[:LAYER]: distances in the layers of a shadow (a cube face, a cascade, octahedral, "
-                     "all) instead of the picture; cascades: the picture, tinted by the cascade that a pixel reads");
+  command.add_option(
+      "--debug", options.debug,
+      "shadow:LAMP[:LAYER]: distances in the layers of a shadow (the face of a cube: 0 to 5 or +X, -X, "
+      "..., a cascade from 0, octahedral, all) instead of the picture; cascades: the picture, tinted by "
+      "the cascade that a pixel reads; density:LAMP: the picture, coloured by the size of shadow texels, "
+      "from red (as large as 4 pixels) over green (a pixel) to blue (a quarter)");
   command
       .add_option("--aov", options.aov,
                   fmt::format("Layers of the EXR beside the picture, separated by commas: {}", aov_names()))

@@ -79,6 +79,10 @@ struct RenderOptions {
   {
     return debug_view.kind == DebugView::Kind::Shadow;
   }
+  [[nodiscard]] bool is_density_shown() const
+  {
+    return debug_view.kind == DebugView::Kind::Density;
+  }
   /** Pixels. \throws UsageError where `size` is not a size */
   [[nodiscard]] glm::ivec2 size_px() const;
   /** Whether only a part of the picture is rendered, to be joined with the others by `gnomon merge`. */

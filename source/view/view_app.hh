@@ -155,6 +155,12 @@ class App {
   }
   /** Show the tab of that name on the right. \return false: there is none */
   bool show_tab(const std::string &name);
+  /** Show a layer in the tab Shadow. \pre a document \see ShadowPanel::select */
+  void show_layer(const std::string &name)
+  {
+    shadow_panel_.select(*document_, active(), name);
+    frames_to_draw_ = 3;
+  }
 
   void message(std::string text, bool is_error);
   /** A message about what could not be done. After gpu::DeviceLost, the context is made anew before the next frame. */

@@ -359,6 +359,12 @@ void show_tab(App &app, Words words)
   }
 }
 
+void show_layer(App &app, Words words)
+{
+  drawn_viewport(app);
+  app.show_layer(words[0]);
+}
+
 void measure_error(App &app, Words words)
 {
   constexpr std::array actions = {"cancel"};
@@ -445,6 +451,7 @@ constexpr std::array commands = std::to_array<Command>({
     {"shaders", "FOLDER", 1, 1, Need::Nothing, use_shaders},
     {"lose_context", "[FAILURES]", 0, 1, Need::Frame, lose_context},
     {"tab", "NAME", 1, 1, Need::Frame, show_tab},
+    {"layer", "NAME|INDEX|all", 1, 1, Need::Frame, show_layer},
     {"measure", "[cancel]", 0, 1, Need::Nothing, measure_error},
     {"message", "TEXT", 1, 1, Need::Nothing, expect_message},
     {"wait", "", 0, 0, Need::Pictures, wait},

@@ -109,6 +109,11 @@ class ShadowPanel {
  public:
   /** \a device: of the document. \throws gpu::Error */
   void show(Document &document, Viewport &viewport, gpu::Device &device);
+  /**
+   * Show the layer \a text of the selected lamp's shadow: "all", or as eevee::find_layer.
+   * \throws std::runtime_error naming its layers if there is none
+   */
+  void select(Document &document, Viewport &viewport, const std::string &text);
   /** Forget the picture, before its OpenGL context is destroyed. */
   void close();
 

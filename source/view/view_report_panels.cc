@@ -5,10 +5,13 @@
 #include "gpu_read.hh"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <stdexcept>
 
 namespace gnomon::view {
 
@@ -66,6 +69,23 @@ void show_part(const eevee::FrameNode &node)
   }
 }
 
+/** The selected lamp in RenderScene::lamps. Empty: none, or eevee does not draw the picture of \a viewport. */
+std::optional<std::size_t> selected_lamp(Document &document, Viewport &viewport)
+{
+  const auto lamps = document.render_scene().lamps();
+  const auto lamp = std::ranges::find(lamps, document.selected, &scene::PlacedLamp::node);
+  const bool is_drawn = document.eevee() && viewport.viewport() && viewport.engine == "eevee";
+  return is_drawn && lamp != lamps.end() ? std::optional(std::size_t(lamp - lamps.begin())) : std::nullopt;
+}
+
+void show_density_box(Document &document)
+{
+  Settings settings = document.settings();
+  if (ImGui::Checkbox("Texel density over the picture", &settings.has_texel_density)) {
+    document.set_settings(settings);
+  }
+}
+
 void show_lines(const char *title, const std::vector<std::string> &lines)
 {
   if (!lines.empty() && ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen)) {
@@ -109,17 +129,16 @@ void FramePanel::show(Document &document, Viewport &viewport)
 
 void ShadowPanel::show(Document &document, Viewport &viewport, gpu::Device &device)
 {
-  eevee::Engine *engine = document.eevee();
-  const auto lamps = document.render_scene().lamps();
-  const auto lamp = std::ranges::find(lamps, document.selected, &scene::PlacedLamp::node);
-  if (!engine || !viewport.viewport() || viewport.engine != "eevee" || lamp == lamps.end()) {
+  show_density_box(document);
+  const std::optional<std::size_t> index = selected_lamp(document, viewport);
+  if (!index) {
     ImGui::TextDisabled("Select a lamp, in a viewport that eevee draws.");
     return;
   }
-  const auto index = std::size_t(lamp - lamps.begin());
-  std::vector<std::string> layers = eevee::Inspection(*engine, *viewport.viewport()).shadow_layers(index);
+  eevee::Engine *engine = document.eevee();
+  std::vector<std::string> layers = eevee::Inspection(*engine, *viewport.viewport()).shadow_layers(*index);
   if (layers.empty()) {
-    ImGui::TextDisabled("'%s' has no shadow that is seen.", lamp->name.c_str());
+    ImGui::TextDisabled("'%s' has no shadow that is seen.", document.render_scene().lamps()[*index].name.c_str());
     return;
   }
   layers.insert(layers.begin(), "all");
@@ -134,7 +153,7 @@ void ShadowPanel::show(Document &document, Viewport &viewport, gpu::Device &devi
   }
   const PanelKey key = key_of(document, viewport, layer_);
   if (key != shown_ && (is_worth_showing(viewport) || key.selected != shown_.selected || layer_ != shown_.layer)) {
-    read(*engine, viewport, index, device);
+    read(*engine, viewport, *index, device);
     shown_ = key;
   }
   const glm::vec2 size_px(canvas_.size_px());
@@ -142,6 +161,27 @@ void ShadowPanel::show(Document &document, Viewport &viewport, gpu::Device &devi
   const glm::vec2 room(space.x, std::max(100.0F, space.y - ImGui::GetTextLineHeightWithSpacing()));
   canvas_.show(size_px * std::min(room.x / size_px.x, room.y / size_px.y));
   ImGui::TextDisabled("Near is dark, far is bright; %.0fx%.0f px", double(size_px.x), double(size_px.y));
+}
+
+void ShadowPanel::select(Document &document, Viewport &viewport, const std::string &text)
+{
+  const std::optional<std::size_t> lamp = selected_lamp(document, viewport);
+  if (!lamp) {
+    throw std::runtime_error("no lamp is selected in a viewport that eevee draws");
+  }
+  if (text == "all") {
+    layer_ = 0;
+    return;
+  }
+  const std::vector<std::string> layers =
+      eevee::Inspection(*document.eevee(), *viewport.viewport()).shadow_layers(*lamp);
+  const std::optional<std::size_t> layer = eevee::find_layer(layers, text);
+  if (!layer) {
+    throw std::runtime_error(fmt::format("the shadow of '{}' has no layer '{}'; it has: {}",
+                                         document.render_scene().lamps()[*lamp].name, text,
+                                         layers.empty() ? "none" : fmt::format("{}", fmt::join(layers, ", "))));
+  }
+  layer_ = int(*layer) + 1;
 }
 
 void ShadowPanel::close()

@@ -21,6 +21,8 @@ struct Settings {
    * 0: each frame draws one whole sample.
    */
   float budget_ms = 33.0F;
+  /** Colour the pictures by the texel density of the selected lamp's shadow. */
+  bool has_texel_density = false;
 };
 
 /** What the window starts with. */
@@ -38,6 +40,7 @@ struct Settings {
 [[nodiscard]] inline eevee::Settings engine_settings(const Settings &settings)
 {
   eevee::Settings drawn = settings.eevee;
+  drawn.has_surfaces = settings.has_texel_density;
   drawn.sample_count = settings.error_max > 0.0F ? 0 : drawn.sample_count;
   return drawn;
 }

@@ -142,6 +142,7 @@ Properties<Settings> make_settings_properties()
                           [](const Settings &settings) { return int(settings.eevee.has_cascade_tint); },
                           [](Settings &settings, int value) { settings.eevee.has_cascade_tint = value == 1; },
                           {}});
+  made.choices.push_back(choice("density", "Show texel density", off_on, &Settings::has_texel_density));
   made.choices.push_back({"times",
                           "Measure times",
                           off_on,

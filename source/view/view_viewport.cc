@@ -15,7 +15,6 @@ namespace gnomon::view {
 namespace {
 
 constexpr glm::vec4 outline_color(1.0F, 0.55F, 0.1F, 1.0F);
-constexpr glm::vec4 backdrop(0.22F, 0.22F, 0.23F, 1.0F);
 
 }  // namespace
 
@@ -27,6 +26,7 @@ void Viewport::close()
   overlay_.reset();
   canvas_.free();
   synced_ = {};
+  density_key_ = {};
   error_.restart();
   is_complete_ = false;
   is_transforming_ = false;
@@ -81,7 +81,9 @@ scene::PlacedCamera Viewport::camera(const Document &document) const
 Viewport::OverlayKey Viewport::overlay_key(Document &document) const
 {
   if (!has_overlays) {
-    return {};
+    OverlayKey hidden;
+    hidden.selected = document.settings().has_texel_density ? document.selected : hidden.selected;
+    return hidden;
   }
   OverlayKey key{true, document.selected, document.gizmo, document.orientation, pointed_, {}};
   if (document.operation()) {
@@ -150,10 +152,13 @@ bool Viewport::draw(Document &document, double budget_seconds)
     started_ = now;
     error_.restart();
   }
-  draw_overlays(document, target);
   auto *eevee = dynamic_cast<eevee::Engine *>(one);
   // While a preview is shown, the viewport may still have the picture of another view.
   const bool is_preview = has_budget_ && budgeted_->report().kind == eevee::BudgetReport::Kind::Preview;
+  if (eevee && !is_preview && document.settings().has_texel_density) {
+    draw_density(document, *eevee, target);
+  }
+  draw_overlays(document, target);
   if (eevee) {
     limit_time(document, *eevee);
     if (!is_preview) {

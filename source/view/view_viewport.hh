@@ -15,6 +15,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace gnomon::view {
 
@@ -103,6 +104,9 @@ class Viewport {
   bool has_overlays = true;
 
  private:
+  /** Behind the picture. */
+  static constexpr glm::vec4 backdrop{0.22F, 0.22F, 0.23F, 1.0F};
+
   /** All that a picture depends on. */
   struct Key {
     scene::Revision scene = 0;
@@ -124,6 +128,17 @@ class Viewport {
 
     bool operator==(const OverlayKey &) const = default;
   };
+  /** All that the texel density over the picture depends on. */
+  struct DensityKey {
+    /** draw::Viewport::restart_count. */
+    std::uint64_t picture = 0;
+    glm::ivec2 size_px{0};
+    /** The density is that of the last sample, which shows another point of a lamp with an extent than the first. */
+    bool is_last = false;
+    scene::Handle<scene::Node> lamp{};
+
+    bool operator==(const DensityKey &) const = default;
+  };
   [[nodiscard]] OverlayKey overlay_key(Document &document) const;
   /** Nothing: none is looked through. */
   [[nodiscard]] std::optional<scene::PlacedCamera> looked_through(const Document &document) const;
@@ -136,6 +151,13 @@ class Viewport {
   /** \a write: writes a picture to a target */
   [[nodiscard]] std::vector<float> read_written(gpu::Device &device,
                                                 const std::function<void(const draw::Target &)> &write) const;
+  // view_viewport_density.cc
+  /** Colour the picture by the texel density of the selected lamp's shadow, if there is one. \pre no preview is shown
+   */
+  void draw_density(Document &document, eevee::Engine &eevee, const draw::Target &target);
+  /** The scale of its colours, and whose shadow it is; or why there is none. */
+  void show_density_scale(Document &document, glm::vec2 corner, glm::vec2 size) const;
+
   void draw_overlays(Document &document, const draw::Target &target);
   void show_lamps(Document &document, glm::vec2 corner, glm::vec2 size);
   void take_pointer(Document &document, glm::vec2 corner);
@@ -172,6 +194,10 @@ class Viewport {
   /** Of the same picture. */
   ErrorEstimate error_;
   OverlayKey overlaid_;
+  /** Of density_. */
+  DensityKey density_key_;
+  /** \see eevee::Inspection::texel_density */
+  std::optional<std::vector<float>> density_;
   bool is_complete_ = false;
   /** The last draw threw. */
   bool has_failed_ = false;

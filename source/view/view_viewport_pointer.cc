@@ -198,6 +198,9 @@ bool Viewport::show(Document &document, glm::vec2 size, bool is_active)
     if (has_overlays) {
       show_lamps(document, corner, size);
     }
+    if (document.settings().has_texel_density && engine == "eevee") {
+      show_density_scale(document, corner, size);
+    }
     if (is_transforming_ && document.operation()) {
       const std::string text = document.operation()->text();
       ImGui::GetWindowDrawList()->AddText({at.x + 9.0F, at.y + 7.0F}, IM_COL32(0, 0, 0, 200), text.c_str());

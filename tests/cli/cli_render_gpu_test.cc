@@ -110,6 +110,34 @@ TEST_F(CliRenderTest, AShadowsPictureIsGreyAndColouredAndItsExrIsInMetres)
   EXPECT_GT(metres[3 * (256 * 160 + 96)], 0.0F);
 }
 
+TEST_F(CliRenderTest, TexelDensityColoursAPngAndIsTheValueOfAnExr)
+{
+  const std::string render = "render " + example("plaza") + " --size 64x36 --shadow-size 64 --debug density:POINT -o ";
+  ASSERT_EQ(run(render + "out.png").status, 0);
+  ASSERT_EQ(run(render + "out.exr").status, 0);
+  const auto png = OIIO::ImageInput::open((folder / "out.png").string());
+  const auto exr = OIIO::ImageInput::open((folder / "out.exr").string());
+  ASSERT_TRUE(png && exr);
+  EXPECT_EQ(exr->spec().get_string_attribute("gnomon:units"),
+            "shadow texels along the edge of a pixel, 0 where there is no shadow");
+  EXPECT_EQ(exr->spec().nchannels, 3);
+  constexpr std::size_t count = std::size_t(64) * 36;
+  std::vector<unsigned char> shown(3 * count);
+  std::vector<float> density(3 * count);
+  ASSERT_TRUE(png->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, shown.data()));
+  ASSERT_TRUE(exr->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, density.data()));
+  std::size_t covered = 0;
+  for (std::size_t i = 0; i < count; i++) {
+    const bool is_grey = shown[3 * i] == shown[3 * i + 1] && shown[3 * i] == shown[3 * i + 2];
+    EXPECT_EQ(is_grey, density[3 * i] == 0.0F) << i;
+    // Far below the scale's end, it is red.
+    EXPECT_TRUE(density[3 * i] == 0.0F || density[3 * i] > 0.2F || shown[3 * i] > 2 * shown[3 * i + 1]) << i;
+    covered += density[3 * i] > 0.0F;
+  }
+  EXPECT_GT(covered, count / 3);
+  EXPECT_LT(covered, count);
+}
+
 TEST_F(CliRenderTest, EqualSeedsGiveEqualPictures)
 {
   for (const std::string name : {"a", "b"}) {

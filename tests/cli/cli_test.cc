@@ -177,7 +177,7 @@ TEST_F(CliTest, UnknownVariantIsWrongUsage)
 TEST_F(CliTest, InvalidDebugViewIsWrongUsage)
 {
   for (const std::string view : {"depth", "shadow", "shadow:", "shadow::1", "shadow:SUN:", "shadow:SUN:first",
-                                 "shadow:SUN:-1", "cascades:SUN"}) {
+                                 "shadow:SUN:-1", "cascades:SUN", "density", "density:", "shadow:POINT:+x"}) {
     const Finished finished = run("render " + example("plaza") + " --backend null --debug " + view);
     EXPECT_EQ(finished.status, 2) << view;
     EXPECT_NE(finished.err.find("--debug '" + view + "'"), std::string::npos) << finished.err;
@@ -196,13 +196,18 @@ TEST_F(CliTest, UnknownDebugViewNamesTheExistingOnes)
     EXPECT_NE(err.find(text), std::string::npos) << err;
   };
   expect_error(example("plaza") + " --debug shadow:LAMP", "no lamp 'LAMP'; lamps with a visible shadow: POINT, SUN");
-  expect_error(example("plaza") + " --debug shadow:POINT:6", "no layer '6'; it has: 0, 1, 2, 3, 4, 5");
-  expect_error(example("plaza") + " --debug shadow:SUN:octahedral --cascades 2", "no layer 'octahedral'; it has: 0");
-  expect_error(example("plaza") + " --debug shadow:POINT:0 --shadow esm", "no layer '0'; it has: octahedral");
+  expect_error(example("plaza") + " --debug shadow:POINT:6", "no layer '6'; it has, from 0: +X, -X, +Y, -Y, +Z, -Z");
+  expect_error(example("plaza") + " --debug shadow:SUN:octahedral --cascades 2",
+               "no layer 'octahedral'; it has, from 0: cascade 0 of 2, cascade 1 of 2");
+  expect_error(example("plaza") + " --debug shadow:POINT:1 --shadow esm", "no layer '1'; it has, from 0: octahedral");
   expect_error(example("plaza") + " --debug shadow:SUN --shadow none",
                "lamp 'SUN' has no visible shadow; lamps with a visible shadow: none");
   expect_error(example("spots") + " --debug cascades", "no sun has a shadow");
-  for (const std::string view : {"shadow:SUN:0", "shadow:SUN:all", "shadow:POINT:5", "cascades"}) {
+  expect_error(example("plaza") + " --debug density:LAMP", "no lamp 'LAMP'; lamps with a visible shadow: POINT, SUN");
+  expect_error(example("plaza") + " --debug density:SUN --shadow none",
+               "lamp 'SUN' has no visible shadow; lamps with a visible shadow: none");
+  for (const std::string view : {"shadow:SUN:0", "shadow:SUN:all", "shadow:POINT:5", "shadow:POINT:-Z", "cascades",
+                                 "density:SUN", "density:POINT"}) {
     const Finished finished =
         run("render " + example("plaza") + " --backend null --size 64x36 --shadow-size 64 --debug " + view);
     EXPECT_EQ(finished.status, 0) << view << ": " << finished.err;

@@ -272,6 +272,15 @@ TEST(ViewPropertiesTest, EveryNumberIsWhatWasSetWithinItsLimitsAndEveryChoiceToo
   check(Settings());
 }
 
+TEST(ViewPropertiesTest, SurfacesAreDrawnOnlyForTexelDensity)
+{
+  Settings settings = default_settings();
+  EXPECT_FALSE(engine_settings(settings).has_surfaces);
+  const std::vector<std::string> on = {"on"};
+  EXPECT_TRUE(set_property(settings, "density", std::span(on)));
+  EXPECT_TRUE(engine_settings(settings).has_surfaces);
+}
+
 TEST(ViewPropertiesTest, WordsSetAPropertyAndWrongOnesAreNamed)
 {
   scene::Lamp lamp;

@@ -4,9 +4,15 @@
 #include "eevee_engine_data.hh"
 #include "eevee_frame.hh"
 
+#include "shadows/shadow_cube.hh"
+
 #include "gpu_read.hh"
 
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -121,7 +127,74 @@ double Inspection::shadow_texel_size(std::size_t lamp, const glm::dvec3 &positio
 {
   const Data &data = engine_data();
   const std::optional<std::size_t> light = light_of(data, lamp);
-  return light ? data.stl.shadows->texel_size(data.shared->lamps.lights[*light], position_ws) : 0.0;
+  if (!light) {
+    return 0.0;
+  }
+  const auto texel_size = data.stl.shadows->texel_size_of(data.shared->lamps.lights[*light]);
+  return texel_size ? texel_size(position_ws) : 0.0;
+}
+
+/** Whether a surface gets light from the centre of \a light, if nothing is in between. \pre \a light has a shadow */
+static bool is_lit(const shared::LightData &light, const shared::LightShape &shape, const glm::vec3 &position_ws,
+                   const glm::vec3 &normal_ws)
+{
+  if (light.kind == LIGHT_SUN) {
+    return glm::dot(normal_ws, light.forward_ws) < 0.0F;
+  }
+  const glm::vec3 from_light = position_ws - light.position_ws;
+  const float distance_sq = glm::dot(from_light, from_light);
+  if (!(glm::dot(normal_ws, from_light) < 0.0F) || distance_sq * light.range_inv_sq >= 1.0F) {
+    return false;
+  }
+  const glm::vec3 direction = from_light / std::sqrt(distance_sq);
+  switch (light.kind) {
+    case LIGHT_SPOT:
+      return shared::elliptic_drop(direction, light.forward_ws, shape.axis_x_ws, shape.axis_y_ws) <
+             light.spot_drop_outer;
+    case LIGHT_RECTANGLE:
+    case LIGHT_ELLIPSE: return glm::dot(direction, light.forward_ws) > 0.0F;
+    default: return true;
+  }
+}
+
+std::optional<std::vector<float>> Inspection::texel_density(const draw::View &picture_view, std::size_t lamp) const
+{
+  const Data &data = engine_data();
+  const std::optional<std::size_t> index = light_of(data, lamp);
+  if (!index) {
+    return std::nullopt;
+  }
+  const shared::LightData &light = data.shared->lamps.lights[*index];
+  const shared::LightShape &shape = data.shared->lamps.shapes[*index];
+  const auto texel_size = data.stl.shadows->texel_size_of(light);
+  const std::optional<Surfaces> seen = texel_size ? surfaces(picture_view) : std::nullopt;
+  if (!seen) {
+    return std::nullopt;
+  }
+  const scene::Scene &scene = engine_.scene_.scene();
+  const double pixel = double(pixel_size(viewport_.drawn_view(picture_view), viewport_));
+  std::vector<float> density(seen->position_depth.size(), 0.0F);
+  draw::ObjectIndex object = draw::object_identity;
+  bool is_receiver = false;
+  for (std::size_t i = 0; i < density.size(); i++) {
+    // Neighbours are mostly of one object.
+    const auto seen_object = draw::ObjectIndex(seen->normal_object[i].w);
+    if (std::exchange(object, seen_object) != seen_object) {
+      is_receiver = false;
+      if (object != draw::object_identity) {
+        const render_scene::RenderObject &one = engine_.scene_.object(object);
+        is_receiver = one.receives_shadow && !scene.material_of(scene.meshes()[one.mesh]).is_unlit;
+      }
+    }
+    const glm::vec3 position_ws(seen->position_depth[i]);
+    if (!is_receiver || !is_lit(light, shape, position_ws, glm::vec3(seen->normal_object[i]))) {
+      continue;
+    }
+    const double depth = picture_view.is_perspective() ? double(seen->position_depth[i].w) : 1.0;
+    const double texel = texel_size(glm::dvec3(position_ws));
+    density[i] = texel > 0.0 ? float(pixel * depth / texel) : 0.0F;
+  }
+  return density;
 }
 
 const Shadows &Inspection::shadows() const
@@ -168,11 +241,30 @@ static std::optional<ShadowLayers> layers_of(const Data &data, std::size_t lamp)
 std::vector<std::string> Inspection::shadow_layers(std::size_t lamp) const
 {
   const std::optional<ShadowLayers> layers = layers_of(engine_data(), lamp);
+  if (!layers || layers->count == 0) {
+    return {};
+  }
+  if (layers->is_cube) {
+    return {cube_face_names.begin(), cube_face_names.end()};
+  }
+  if (layers->projection != PROJECTION_ORTHOGRAPHIC) {
+    return {layers->esm_format >= 0 ? "octahedral" : "map"};
+  }
   std::vector<std::string> names;
-  for (int i = 0; layers && i < layers->count; i++) {
-    names.push_back(layers->esm_format >= 0 ? "octahedral" : std::to_string(i));
+  for (int i = 0; i < layers->count; i++) {
+    names.push_back(fmt::format("cascade {} of {}", i, layers->count));
   }
   return names;
+}
+
+std::optional<std::size_t> find_layer(std::span<const std::string> names, std::string_view text)
+{
+  for (std::size_t i = 0; i < names.size(); i++) {
+    if (text == names[i] || text == std::to_string(i)) {
+      return i;
+    }
+  }
+  return std::nullopt;
 }
 
 const gpu::Texture &Inspection::shadow_picture(std::size_t lamp, std::optional<std::size_t> layer) const

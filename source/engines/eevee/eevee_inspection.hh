@@ -5,7 +5,9 @@
 #include "eevee_frame_tree.hh"
 
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gnomon::eevee {
@@ -47,6 +49,9 @@ struct Report {
   /** Number of recordings of the passes since the first sync of the viewport. */
   std::uint64_t pass_recordings = 0;
 };
+
+/** Index of the layer \a text among \a names of Inspection::shadow_layers: a name, or the index as a number. */
+[[nodiscard]] std::optional<std::size_t> find_layer(std::span<const std::string> names, std::string_view text);
 
 /**
  * Observes an engine in one viewport, for reports, tests, measurements and the shadow inspector of an editor. No
@@ -92,8 +97,18 @@ class Inspection {
    */
   [[nodiscard]] double shadow_texel_size(std::size_t lamp, const glm::dvec3 &position_ws) const;
   /**
-   * Names of the layers of the lamp's shadow in the last picture: "0" to "5" for faces of a cube in OpenGL's order,
-   * "0" and up for cascades of a sun from the finest, "0" for a spot, "octahedral". Empty where the lamp has no shadow.
+   * Texels of the lamp's shadow along the edge of a pixel, at the opaque surface at the centre of each pixel: below 1
+   * where texels are larger than pixels. The edge of a texel is shadow_texel_size, that of a pixel is measured parallel
+   * to the picture at the depth of the surface. 0 where the lamp has no shadow or, without casters, would give no
+   * light: without a surface, on surfaces that are unlit, receive no shadows or face away from the lamp's centre, and
+   * outside of its cone and range. Rows from the bottom. Empty if the lamp gives no light or has no shadow, or there
+   * are no objects. \pre Settings::has_surfaces
+   */
+  [[nodiscard]] std::optional<std::vector<float>> texel_density(const draw::View &picture_view, std::size_t lamp) const;
+  /**
+   * Names of the layers of the lamp's shadow in the last picture: "+X", "-X", "+Y", "-Y", "+Z", "-Z" for the faces of a
+   * cube by their axes in the world, "cascade 0 of 4" and so on for cascades of a sun from the finest, "map" for a
+   * spot, "octahedral". Empty where the lamp has no shadow. \see find_layer
    */
   [[nodiscard]] std::vector<std::string> shadow_layers(std::size_t lamp) const;
   /**

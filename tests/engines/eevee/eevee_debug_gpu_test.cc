@@ -124,6 +124,16 @@ TEST_F(DebugViewGpuTest, ACubeUnfoldsToACross)
   EXPECT_NEAR(middle_of(2, 1).a, 1.0F, 1e-4F) << "+X";
   EXPECT_NEAR(middle_of(3, 1).a, 6.0F, 1e-4F) << "-Z";
   EXPECT_TRUE(is_red(middle_of(1, 0))) << "-Y has no caster and was not drawn";
+  const std::vector<std::string> names = renderer.inspect().shadow_layers(0);
+  const auto nearest_of = [&](const std::string &name) {
+    const Picture face = shadow(renderer, find_layer(names, name));
+    return face.at(face.size_px.x / 2, face.size_px.y / 2).a;
+  };
+  EXPECT_NEAR(nearest_of("+X"), 1.0F, 1e-4F);
+  EXPECT_NEAR(nearest_of("-X"), 2.0F, 1e-4F);
+  EXPECT_NEAR(nearest_of("+Y"), 3.0F, 1e-4F);
+  EXPECT_NEAR(nearest_of("+Z"), 5.0F, 1e-4F);
+  EXPECT_NEAR(nearest_of("-Z"), 6.0F, 1e-4F);
   for (const auto &[column, row] : {std::pair{0, 0}, {0, 2}, {2, 0}, {3, 0}, {2, 2}, {3, 2}}) {
     EXPECT_EQ(middle_of(column, row), glm::vec4(0.0F)) << column << ", " << row;
   }
@@ -141,8 +151,9 @@ TEST_F(DebugViewGpuTest, CascadesHoldDistancesAlongTheLightFromOnePlane)
   settings.shadow.cascades.count = 3;
   Renderer renderer(*device, scene, {64, 64}, settings);
   renderer.draw(test::camera_at({0, -6, 3}, {0, 10, 0}));
-  const std::size_t count = renderer.inspect().shadow_layers(0).size();
-  ASSERT_EQ(count, 3U);
+  const std::vector<std::string> names = {"cascade 0 of 3", "cascade 1 of 3", "cascade 2 of 3"};
+  ASSERT_EQ(renderer.inspect().shadow_layers(0), names);
+  const std::size_t count = names.size();
   const Picture all = shadow(renderer, std::nullopt);
   ASSERT_EQ(all.size_px, glm::ivec2(3 * 128, 128));
   std::vector<float> nearest;

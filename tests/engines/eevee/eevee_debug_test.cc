@@ -41,7 +41,34 @@ TEST_F(DebugViewTest, NothingIsCreatedWithoutARequest)
   renderer.draw(camera);
   EXPECT_FALSE(has_live("shadow_picture"));
   EXPECT_FALSE(has_live("eevee_debug"));
+  EXPECT_FALSE(has_live("surface_"));
+  EXPECT_FALSE(has_live("eevee_surfaces"));
   EXPECT_FALSE(renderer.inspect().tinted_sun());
+}
+
+TEST_F(DebugViewTest, TexelDensityTakesOneProgramAndThreeTexturesAndDrawsNoShadowAgain)
+{
+  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 4}, {0, 0, -1}, 1.0F);
+  Renderer plain(*device, scene, {16, 16}, settings);
+  gpu::Counters before = device->counters();
+  plain.draw(camera);
+  const std::uint64_t plain_shaders = device->counters().shaders_made - before.shaders_made;
+  const std::uint64_t plain_textures = device->counters().textures_made - before.textures_made;
+  settings.has_surfaces = true;
+  Renderer renderer(*device, scene, {16, 16}, settings);
+  before = device->counters();
+  renderer.draw(camera);
+  EXPECT_EQ(device->counters().shaders_made - before.shaders_made, plain_shaders + 1);
+  EXPECT_EQ(device->counters().textures_made - before.textures_made, plain_textures + 3);
+  const draw::View view = view_of(camera, {16, 16}, renderer.render_scene.origin_ws());
+  before = device->counters();
+  for (int i = 0; i < 2; i++) {
+    EXPECT_TRUE(renderer.inspect().texel_density(view, 0));
+  }
+  EXPECT_EQ(device->counters().shaders_made, before.shaders_made);
+  EXPECT_EQ(device->counters().textures_made, before.textures_made);
+  EXPECT_EQ(device->counters().passes, before.passes + 4) << "depths and surfaces, twice";
+  EXPECT_EQ(renderer.inspect().report().shadow_counters.lamps_updated, 1U);
 }
 
 TEST_F(DebugViewTest, APictureOfAShadowTakesOneProgramAndOneTexture)
@@ -75,7 +102,7 @@ TEST_F(DebugViewTest, LayersLargerThanAScreenAreThinned)
 TEST_F(DebugViewTest, LayerNamesFollowTheLampsTechnique)
 {
   using Names = std::vector<std::string>;
-  const Names cube = {"0", "1", "2", "3", "4", "5"};
+  const Names cube = {"+X", "-X", "+Y", "-Y", "+Z", "-Z"};
   test::add_lamp(scene, scene::LampKind::Point, {0, 0, 4}, {0, 0, -1}, 1.0F);
   scene.edit(test::add_lamp(scene, scene::LampKind::Point, {0, 0, 4}, {0, 0, -1}, 1.0F),
              [](scene::Lamp &lamp) { lamp.shadow.kind = scene::ShadowKind::None; });
@@ -93,8 +120,18 @@ TEST_F(DebugViewTest, LayerNamesFollowTheLampsTechnique)
   EXPECT_EQ(names(1), Names{});
   EXPECT_EQ(names(2), Names{"octahedral"});
   EXPECT_EQ(names(3), Names{}) << "gives no light";
-  EXPECT_EQ(names(4), Names{"0"});
+  EXPECT_EQ(names(4), Names{"map"});
   EXPECT_EQ(names(5), cube) << "too wide for a map";
+  test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 4}, {0, 0.2F, -1}, 1.0F);
+  renderer.sync();
+  renderer.draw(camera);
+  EXPECT_EQ(names(6), Names{"cascade 0 of 1"}) << "one map covers all that the square darkens";
+  EXPECT_EQ(find_layer(cube, "-Y"), std::optional<std::size_t>(3));
+  EXPECT_EQ(find_layer(cube, "5"), std::optional<std::size_t>(5));
+  EXPECT_EQ(find_layer(names(6), "cascade 0 of 1"), std::optional<std::size_t>(0));
+  for (const char *unknown : {"6", "-1", "+x", "", "00", "+X "}) {
+    EXPECT_FALSE(find_layer(cube, unknown)) << unknown;
+  }
 }
 
 TEST_F(DebugViewTest, TheTintIsOfTheFirstSunWithAShadow)

@@ -9,6 +9,8 @@ namespace gnomon::eevee {
 
 /** Rotations from world space to the view space of each face, in OpenGL's order: +X, -X, +Y, -Y, +Z, -Z. */
 extern const std::array<glm::mat4, 6> cubefacemat;
+/** The axis of each face, away from the lamp. */
+inline constexpr std::array<const char *, 6> cube_face_names = {"+X", "-X", "+Y", "-Y", "+Z", "-Z"};
 
 /**
  * The six views of a cube around \a position_ws, each with a border of CUBE_BORDER_TEXELS. \a near: distance of the

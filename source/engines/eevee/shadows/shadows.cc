@@ -253,10 +253,15 @@ ShadowInspection Shadows::inspection(const ShadowSlot &slot) const
   return {block_, scene_.octahedral_, scene_.array(slot.place.given.array), scene_.casters_.bounds_ws()};
 }
 
-double Shadows::texel_size(const shared::LightData &light, const glm::dvec3 &position_ws) const
+std::function<double(const glm::dvec3 &position_ws)> Shadows::texel_size_of(const shared::LightData &light) const
 {
   const ShadowSlot *slot = slot_of(light);
-  return slot ? slot->place.technique->texel_size(*slot, inspection(*slot), position_ws) : 0.0;
+  if (!slot) {
+    return {};
+  }
+  return [slot, inspection = inspection(*slot)](const glm::dvec3 &position_ws) {
+    return slot->place.technique->texel_size(*slot, inspection, position_ws);
+  };
 }
 
 std::optional<ShadowLayers> Shadows::layers(const shared::LightData &light) const

@@ -5,6 +5,7 @@
 
 #include "eevee_lamp_points.hh"
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -103,8 +104,12 @@ class Shadows {
   {
     return block_;
   }
-  /** Edge of a texel of a light's shadow at a position, perpendicular to the light, metres; 0 if there is none. */
-  [[nodiscard]] double texel_size(const shared::LightData &light, const glm::dvec3 &position_ws) const;
+  /**
+   * A function that returns the edge of a texel of \a light's shadow at a position, perpendicular to the light, metres;
+   * 0 if there is none. Empty if the light has no shadow. Valid until the next sync or update.
+   */
+  [[nodiscard]] std::function<double(const glm::dvec3 &position_ws)> texel_size_of(
+      const shared::LightData &light) const;
   /** The layers of \a light after the last update. Nothing if the light has no shadow. */
   [[nodiscard]] std::optional<ShadowLayers> layers(const shared::LightData &light) const;
   /** The state of each light with a shadow, in the order of the lights. */
