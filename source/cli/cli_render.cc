@@ -292,6 +292,7 @@ Status render_sequence(RenderOptions options, const FrameSequence &frames, const
     }
     std::vector<float> density;
     if (options.is_density_shown()) {
+      const trace::Span span("texel density");
       const std::size_t lamp = shadowed_lamp(options.debug_view, scene, renderer.inspect());
       density = renderer.inspect().texel_density(renderer.view_of(camera), lamp).value();
     }
