@@ -20,6 +20,18 @@ nlohmann::json print_times(const char *what, const std::vector<double> &seconds)
   return {{"p50", at(0.5)}, {"p95", at(0.95)}, {"p99", at(0.99)}, {"longest", at(1.0)}};
 }
 
+void print_budget(const measure::BudgetTimes &times, nlohmann::json &json)
+{
+  json["moved_camera"] = print_times("the camera is moved, budget", times.moved_camera);
+  json["refined"] = print_times("refining, budget", times.refined);
+  fmt::print("  complete and still: {} draws, {} bytes uploaded\n", times.still.draws, times.still.upload_bytes);
+  fmt::print("  the refined picture: RMS {:.6f}; of its difference to one without a budget {:.3g}\n", times.picture_rms,
+             times.difference_rms);
+  json["picture_rms"] = times.picture_rms;
+  json["difference_rms"] = times.difference_rms;
+  json["still"] = {{"draws", times.still.draws}, {"upload_bytes", times.still.upload_bytes}};
+}
+
 nlohmann::json print_scene(gpu::Device &device, const BenchOptions &options, const std::string &path)
 {
   scene::Scene scene = import_scene(path);
@@ -40,14 +52,9 @@ nlohmann::json print_scene(gpu::Device &device, const BenchOptions &options, con
                1e3 * spread(times.moved_lamp), 1e3 * spread(times.control), 1e3 * spread(times.small_arithmetic),
                1e3 * spread(times.large_arithmetic));
   }
-  json["moved_camera"] = print_times("the camera is moved, budget", times.moved_camera);
-  json["refined"] = print_times("refining, budget", times.refined);
-  fmt::print("  complete and still: {} draws, {} bytes uploaded\n", times.still.draws, times.still.upload_bytes);
-  fmt::print("  the refined picture: RMS {:.6f}; of its difference to one without a budget {:.3g}\n", times.picture_rms,
-             times.difference_rms);
-  json["picture_rms"] = times.picture_rms;
-  json["difference_rms"] = times.difference_rms;
-  json["still"] = {{"draws", times.still.draws}, {"upload_bytes", times.still.upload_bytes}};
+  print_budget(times.moving, json);
+  fmt::print("  with the shadows of gnomon render\n");
+  print_budget(times.offline, json["offline"]);
   return json;
 }
 

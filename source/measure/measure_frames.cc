@@ -27,6 +27,7 @@ constexpr int warm_up_count = 30;
 constexpr std::chrono::milliseconds idle_time{2};
 /** Frames in which the camera stands still before it is moved again, so that pictures begin to refine. */
 constexpr int refining_count = 10;
+constexpr int budget_samples = 16;
 /** Frames of a moved lamp for each run of arithmetic. */
 constexpr int arithmetic_interval = 5;
 /** Memory of a core: for its first and its second cache on common machines. */
@@ -108,7 +109,8 @@ class Frames {
   {
     FrameTimes times;
     measure_lamp(times);
-    measure_budget(times);
+    measure_budget({.sample_count = budget_samples}, times.moving);
+    measure_budget(eevee::offline_settings(budget_samples), times.offline);
     return times;
   }
 
@@ -173,10 +175,9 @@ class Frames {
     return camera;
   }
 
-  void measure_budget(FrameTimes &times)
+  void measure_budget(const eevee::Settings &settings, BudgetTimes &times)
   {
-    // Those of `gnomon render`, which have the largest shadows.
-    eevee::SceneRenderer renderer(device_, scene_, settings_.size_px, eevee::offline_settings(16));
+    eevee::SceneRenderer renderer(device_, scene_, settings_.size_px, settings);
     const auto draw = [&](const scene::PlacedCamera &camera, const draw::Target &target) {
       return seconds_of(device_, [&] { renderer.draw_within(settings_.budget_seconds, camera, target); });
     };
@@ -206,13 +207,13 @@ class Frames {
       renderer.draw_within(settings_.budget_seconds, camera);
     }
     times.still = between(before, device_.counters());
-    eevee::SceneRenderer whole(device_, scene_, settings_.size_px, renderer.settings());
+    eevee::SceneRenderer whole(device_, scene_, settings_.size_px, settings);
     whole.sync();
     whole.draw(camera);
     compare(renderer.read_picture(), whole.read_picture(), times);
   }
 
-  static void compare(const std::vector<glm::vec4> &refined, const std::vector<glm::vec4> &whole, FrameTimes &times)
+  static void compare(const std::vector<glm::vec4> &refined, const std::vector<glm::vec4> &whole, BudgetTimes &times)
   {
     double square = 0.0;
     double difference_square = 0.0;
