@@ -294,7 +294,12 @@ Status render_sequence(RenderOptions options, const FrameSequence &frames, const
     if (options.is_density_shown()) {
       const trace::Span span("texel density");
       const std::size_t lamp = shadowed_lamp(options.debug_view, scene, renderer.inspect());
-      density = renderer.inspect().texel_density(renderer.view_of(camera), lamp).value();
+      const auto values = renderer.inspect().texel_density(renderer.view_of(camera), lamp);
+      if (!values) {
+        throw std::runtime_error(fmt::format("{}: no object is drawn, on which the shadow of lamp '{}' could be seen",
+                                             scene.path, options.debug_view.lamp));
+      }
+      density = *values;
     }
     if (!aov.empty()) {
       // The layers draw other pictures.

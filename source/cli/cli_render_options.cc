@@ -338,7 +338,7 @@ void add_render_options(CLI::App &command, RenderOptions &options)
       "shadow:LAMP[:LAYER]: distances in the layers of a shadow (the face of a cube: 0 to 5 or +X, -X, "
       "..., a cascade from 0, octahedral, all) instead of the picture; cascades: the picture, tinted by "
       "the cascade that a pixel reads; density:LAMP: the picture, coloured by the size of shadow texels, "
-      "from red (as large as 4 pixels) over green (a pixel) to blue (a quarter)");
+      "from red (as large as 4 pixels) through green (a pixel) to blue (a quarter)");
   command
       .add_option("--aov", options.aov,
                   fmt::format("Layers of the EXR beside the picture, separated by commas: {}", aov_names()))

@@ -139,6 +139,9 @@ bool App::set_world_picture(const std::filesystem::path &path)
     message("No scene is open", false);
     return false;
   }
+  // A transform that goes on would undo the picture with itself.
+  end_transform(true);
+  document_->history().end_gesture();
   try {
     document_->set_world_picture(std::make_shared<const scene::WorldPicture>(read_picture_(path)));
     message(fmt::format("{} lights the scene", path.string()), false);

@@ -273,7 +273,7 @@ void App::show_question()
 void App::show_leaving()
 {
   constexpr const char *title = "Edits are not saved";
-  if (!leaving_) {
+  if (!leaving_ || !document_) {
     return;
   }
   if (std::exchange(is_leaving_new_, false)) {

@@ -5,6 +5,7 @@
 
 #include "scene.hh"
 
+#include <algorithm>
 #include <functional>
 #include <span>
 #include <string>
@@ -49,7 +50,10 @@ struct NumberProperty {
 
   [[nodiscard]] Limits limits(const T &thing) const
   {
-    return narrowed ? narrowed(thing) : Limits{min, max};
+    Limits limits = narrowed ? narrowed(thing) : Limits{min, max};
+    // Other values may leave nothing between them.
+    limits.max = std::max(limits.min, limits.max);
+    return limits;
   }
 };
 

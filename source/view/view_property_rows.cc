@@ -251,9 +251,11 @@ bool show_properties(T &thing)
       has_rows = true;
       is_used |= !is_default(property, thing);
     });
-    // What is as usual is folded at first.
-    if (has_rows && ImGui::TreeNodeEx(group.data(), ImGuiTreeNodeFlags_SpanAvailWidth |
-                                                        (is_used ? ImGuiTreeNodeFlags_DefaultOpen : 0))) {
+    // What is as usual is folded at first. Later, only a click folds it, and no drag to the usual value.
+    if (is_used) {
+      ImGui::SetNextItemOpen(true, ImGuiCond_Once);
+    }
+    if (has_rows && ImGui::TreeNodeEx(group.data(), ImGuiTreeNodeFlags_SpanAvailWidth)) {
       is_changed |= show_rows(thing, group);
       ImGui::TreePop();
     }

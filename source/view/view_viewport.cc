@@ -155,16 +155,17 @@ bool Viewport::draw(Document &document, double budget_seconds)
   auto *eevee = dynamic_cast<eevee::Engine *>(one);
   // While a preview is shown, the viewport may still have the picture of another view.
   const bool is_preview = has_budget_ && budgeted_->report().kind == eevee::BudgetReport::Kind::Preview;
-  if (eevee && !is_preview && document.settings().has_texel_density) {
-    draw_density(document, *eevee, target);
-  }
-  draw_overlays(document, target);
   if (eevee) {
     limit_time(document, *eevee);
     if (!is_preview) {
       limit_error(document, *eevee);
     }
   }
+  // After the limits, so that a picture which they end has its own density.
+  if (eevee && !is_preview && document.settings().has_texel_density) {
+    draw_density(document, *eevee, target);
+  }
+  draw_overlays(document, target);
   has_failed_ = false;
   is_complete_ = !eevee || (!is_preview && eevee->is_complete(*viewport_));
   return is_complete_;

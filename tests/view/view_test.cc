@@ -307,6 +307,25 @@ TEST(ViewPropertiesTest, WordsSetAPropertyAndWrongOnesAreNamed)
   EXPECT_EQ(lamp, before);
 }
 
+TEST(PropertyLimits, AreNotInvertedByOtherValues)
+{
+  const auto check = [](const auto &thing) {
+    for (const auto &number : properties<std::decay_t<decltype(thing)>>().numbers) {
+      const Limits limits = number.limits(thing);
+      EXPECT_LE(limits.min, limits.max) << number.name;
+    }
+  };
+  for (const float distance : {1e-12F, 1e12F}) {
+    check(scene::Camera{.near = distance, .far = distance});
+    ShadowOfLamp of;
+    of.shadow.clip_start = distance;
+    check(of);
+    of.shadow = {};
+    of.shadow.clip_end = distance;
+    check(of);
+  }
+}
+
 TEST(ViewPropertiesTest, AShadowHasTheSettingsThatHaveAnEffectForItsKindAndEachMayBeAsTheScene)
 {
   const std::vector<std::string> depths = {"shadow_size", "bias", "clip_start", "clip_end"};
