@@ -87,7 +87,7 @@ class Viewport {
   static constexpr int no_rows_max = std::numeric_limits<int>::max();
   /**
    * Draw what a sample needs before its rows in parts, too: a draw with 0 rows draws at most this number of units of
-   * it, which the engine chooses. Eevee's are layers of shadows; depth is drawn with the first part. No limit at first.
+   * it, which the engine chooses. Eevee's are parts of shadows; depth is drawn with the first part. No limit at first.
    * \pre \a units is at least 0
    */
   void set_setup_max(int units)

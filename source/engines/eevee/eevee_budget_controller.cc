@@ -28,21 +28,6 @@ double within_limits(double budget)
 
 }  // namespace
 
-void RecentCost::add(double seconds)
-{
-  constexpr double most = 1000.0;
-  costs_[std::size_t(count_ % int(costs_.size()))] = seconds > 0.0 ? std::min(seconds, most) : 0.0;
-  count_ = count_ + 1 < 2 * int(costs_.size()) ? count_ + 1 : int(costs_.size());
-}
-
-std::optional<double> RecentCost::value() const
-{
-  if (count_ == 0) {
-    return std::nullopt;
-  }
-  return *std::max_element(costs_.begin(), costs_.begin() + std::min(count_, int(costs_.size())));
-}
-
 glm::ivec2 BudgetController::size_at(int level, glm::ivec2 size_px)
 {
   return glm::max(glm::ivec2(glm::round(glm::dvec2(size_px) * std::exp2(-0.5 * level))), 1);
@@ -124,16 +109,16 @@ bool BudgetController::fits_beginning(double budget, double spent) const
   return beginning && spent + *beginning + write_.value().value_or(0.0) <= later_share * within_limits(budget);
 }
 
-int BudgetController::plan_layers(double budget, double spent, bool must_advance) const
+int BudgetController::plan_shadow_parts(double budget, double spent, bool must_advance) const
 {
   const int least = must_advance ? 1 : 0;
   const double left = later_share * within_limits(budget) - spent - write_.value().value_or(0.0);
-  const std::optional<double> layer = layer_.value();
-  if (!layer || !(left > 0.0)) {
-    return layer ? least : 1;
+  const std::optional<double> part = shadow_part_.value();
+  if (!part || !(left > 0.0)) {
+    return part ? least : 1;
   }
   constexpr double most = 1e6;
-  return std::max(least, int(std::min(left / std::max(*layer, 1e-9), most)));
+  return std::max(least, int(std::min(left / std::max(*part, 1e-9), most)));
 }
 
 int BudgetController::plan_rows(double budget, double spent, int row_px, int row_count, bool must_advance) const
@@ -170,9 +155,9 @@ void BudgetController::add_beginning(double seconds)
   beginning_.add(seconds);
 }
 
-void BudgetController::add_layers(double seconds, int layer_count)
+void BudgetController::add_shadow_parts(double seconds, int part_count)
 {
-  layer_.add(seconds / double(std::max(layer_count, 1)));
+  shadow_part_.add(seconds / double(std::max(part_count, 1)));
 }
 
 void BudgetController::add_rows(double seconds, std::int64_t pixel_count)

@@ -3,22 +3,33 @@
 
 #include <glm/vec2.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
 
 namespace gnomon::eevee {
 
-/** The largest of the last four costs, so that a plan follows a rise at once and a fall after four calls. */
+/** The largest of the last \a Count costs, so that a plan follows a rise at once and a fall after \a Count costs. */
+template <int Count>
 class RecentCost {
  public:
   /** \a seconds: NaN and less than 0 are 0; at most 1000. */
-  void add(double seconds);
+  void add(double seconds)
+  {
+    constexpr double most = 1000.0;
+    costs_[std::size_t(count_ % Count)] = seconds > 0.0 ? std::min(seconds, most) : 0.0;
+    count_ = count_ + 1 < 2 * Count ? count_ + 1 : Count;
+  }
   /** Empty before the first add. */
-  [[nodiscard]] std::optional<double> value() const;
+  [[nodiscard]] std::optional<double> value() const
+  {
+    return count_ == 0 ? std::nullopt
+                       : std::optional(*std::max_element(costs_.begin(), costs_.begin() + std::min(count_, Count)));
+  }
 
  private:
-  std::array<double, 4> costs_{};
+  std::array<double, Count> costs_{};
   int count_ = 0;
 };
 
@@ -40,7 +51,7 @@ class RecentCost {
  * shadows of twice the edge take at most four times as long.
  *
  * Later calls draw the picture in parts that fit into 0.85 B: the set-up of a sample, or its depth and then as many
- * layers of its shadows as fit; then as many rows as fit.
+ * parts of its shadows as fit; then as many rows as fit.
  */
 class BudgetController {
  public:
@@ -66,13 +77,13 @@ class BudgetController {
   [[nodiscard]] std::optional<double> whole_seconds(std::int64_t pixel_count) const;
   /** Whether the set-up of a sample is expected to fit into the rest of a call. */
   [[nodiscard]] bool fits_setup(double budget, double spent, bool is_first) const;
-  /** Whether the part of the set-up before its layers is expected to fit into the rest of a call. */
+  /** Whether the part of the set-up before its shadows is expected to fit into the rest of a call. */
   [[nodiscard]] bool fits_beginning(double budget, double spent) const;
   /**
-   * Layers of shadows that are expected to fit into the rest of a call: at least one if \a must_advance. One as long as
+   * Parts of shadows that are expected to fit into the rest of a call: at least one if \a must_advance. One as long as
    * no time is known.
    */
-  [[nodiscard]] int plan_layers(double budget, double spent, bool must_advance) const;
+  [[nodiscard]] int plan_shadow_parts(double budget, double spent, bool must_advance) const;
   /**
    * Rows that are expected to fit into the rest of a call: up to \a row_count, of \a row_px pixels each. At least one
    * sixteenth of them if \a must_advance, so that a sample always ends. An eighth as long as no time is known.
@@ -85,7 +96,7 @@ class BudgetController {
   /** \a is_first: of the first sample after an edit. */
   void add_setup(double setup, bool is_first);
   void add_beginning(double seconds);
-  void add_layers(double seconds, int layer_count);
+  void add_shadow_parts(double seconds, int part_count);
   void add_rows(double seconds, std::int64_t pixel_count);
   void add_write(double seconds);
 
@@ -102,14 +113,15 @@ class BudgetController {
   bool is_whole_ = false;
   /** The next times of a preview are those of its creation. */
   bool is_new_ = true;
-  RecentCost preview_setup_;
-  RecentCost preview_pixel_;
-  RecentCost first_setup_;
-  RecentCost later_setup_;
-  RecentCost beginning_;
-  RecentCost layer_;
-  RecentCost pixel_;
-  RecentCost write_;
+  RecentCost<4> preview_setup_;
+  RecentCost<4> preview_pixel_;
+  RecentCost<4> first_setup_;
+  RecentCost<4> later_setup_;
+  RecentCost<4> beginning_;
+  /** A call draws several, of lamps with different costs. */
+  RecentCost<16> shadow_part_;
+  RecentCost<4> pixel_;
+  RecentCost<4> write_;
 };
 
 }  // namespace gnomon::eevee

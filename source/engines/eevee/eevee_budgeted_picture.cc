@@ -210,7 +210,7 @@ void BudgetedPicture::draw_part(const draw::View &view, int rows, double spent_b
     setup_seconds_ = seconds + (has_begun ? setup_seconds_ : spent_before);
     // Where something transmits light, all rows were lit, too.
     if (has_begun && !is_whole) {
-      controller_.add_layers(seconds, viewport_.setup_count());
+      controller_.add_shadow_parts(seconds, viewport_.setup_count());
     }
     else if (viewport_.has_open_setup()) {
       controller_.add_beginning(seconds);
@@ -226,10 +226,10 @@ void BudgetedPicture::draw_part(const draw::View &view, int rows, double spent_b
 
 bool BudgetedPicture::draw_setup(const draw::View &view, bool has_drawn)
 {
-  int layers = draw::Viewport::no_setup_max;
+  int parts = draw::Viewport::no_setup_max;
   if (viewport_.has_open_setup() && is_of(view)) {
-    layers = controller_.plan_layers(budget_, spent(), !has_drawn);
-    if (layers == 0) {
+    parts = controller_.plan_shadow_parts(budget_, spent(), !has_drawn);
+    if (parts == 0) {
       return false;
     }
   }
@@ -237,9 +237,9 @@ bool BudgetedPicture::draw_setup(const draw::View &view, bool has_drawn)
     if (has_drawn && !controller_.fits_beginning(budget_, spent())) {
       return false;
     }
-    layers = 0;
+    parts = 0;
   }
-  viewport_.set_setup_max(layers);
+  viewport_.set_setup_max(parts);
   draw_part(view, 0);
   viewport_.set_setup_max(draw::Viewport::no_setup_max);
   return true;

@@ -48,7 +48,8 @@ struct BudgetReport {
  *
  * Later calls draw the samples of the picture, in parts. Until the first is whole, they show the preview again. The
  * complete picture is bit for bit that of draw::Viewport::draw. A sample in which something transmits light is lit in
- * one call, whatever its time. The set-up of a sample is divided into its depth and layers of shadows.
+ * one call, whatever its time. The set-up of a sample is divided into its depth and parts of shadows: layers, or
+ * rows of large layers. The layers of one exponential shadow are drawn in one call.
  *
  * Each call waits for the device, whose time it measures. One viewport, one object, the device's thread, no recording.
  */

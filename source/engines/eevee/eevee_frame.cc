@@ -118,11 +118,11 @@ void record_shadows(const FrameStep & /*step*/, FrameSample &sample, gpu::Comman
   shared.sample_index = sample.data.sample_index;
   shared.sample_seed = int(sample.settings.seed);
   // Two viewports that draw parts in turn would never have all layers, which are one sample's, so that one draws all.
-  const int layers_max = part.is_first || !is_disturbed ? part.setup_max : draw::Viewport::no_setup_max;
+  const int parts_max = part.is_first || !is_disturbed ? part.setup_max : draw::Viewport::no_setup_max;
   const UpdatedLayers updated = stl.shadows->update(
       sample.viewport.device(), sample.view, pixel_size(sample.view, sample.viewport), shared.shadow_pass, list,
-      stl.lamp_points, sample.data.depth_feedback.picture(sample.viewport.drawn_size_px()), layers_max);
-  sample.viewport.set_setup(updated.count, updated.is_all);
+      stl.lamp_points, sample.data.depth_feedback.picture(sample.viewport.drawn_size_px()), parts_max);
+  sample.viewport.set_setup(updated.part_count, updated.is_all);
 }
 
 void record_deferred_lit(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)

@@ -69,7 +69,7 @@ double cost(const Machine &machine, const BudgetController::FirstPlan &plan)
 
 TEST(BudgetControllerTest, TheCostIsTheLargestOfTheLastFour)
 {
-  RecentCost recent;
+  RecentCost<4> recent;
   EXPECT_FALSE(recent.value());
   std::vector<double> added;
   for (int i = 0; i < 40; i++) {
@@ -79,7 +79,7 @@ TEST(BudgetControllerTest, TheCostIsTheLargestOfTheLastFour)
   }
   for (const auto &[added_seconds, expected] :
        {std::pair(nan, 0.0), {-infinite, 0.0}, {-1.0, 0.0}, {infinite, 1000.0}}) {
-    RecentCost stiff;
+    RecentCost<4> stiff;
     stiff.add(added_seconds);
     EXPECT_EQ(stiff.value(), expected) << added_seconds;
   }
@@ -223,23 +223,23 @@ TEST(BudgetControllerTest, TheRowsOfACallFitIntoItsRest)
   EXPECT_EQ(controller.plan_rows(10.0, 0.0, 640, 360, false), 360);
 }
 
-TEST(BudgetControllerTest, TheLayersOfACallFitIntoItsRest)
+TEST(BudgetControllerTest, ThePartsOfShadowsOfACallFitIntoItsRest)
 {
   BudgetController controller;
   EXPECT_FALSE(controller.fits_beginning(0.01, 0.0)) << "its time is not known";
-  EXPECT_EQ(controller.plan_layers(0.01, 0.0, false), 1) << "the time of a layer is not known";
+  EXPECT_EQ(controller.plan_shadow_parts(0.01, 0.0, false), 1) << "the time of a part is not known";
   controller.add_beginning(0.004);
-  controller.add_layers(0.006, 3);
+  controller.add_shadow_parts(0.006, 3);
   controller.add_write(0.001);
   // 0.85 of the budget, without the writing: 7.5 ms.
   EXPECT_TRUE(controller.fits_beginning(0.01, 0.0034));
   EXPECT_FALSE(controller.fits_beginning(0.01, 0.0036));
-  EXPECT_EQ(controller.plan_layers(0.01, 0.0001, false), 3);
-  EXPECT_EQ(controller.plan_layers(0.01, 0.0034, false), 2);
-  EXPECT_EQ(controller.plan_layers(0.01, 0.0074, false), 0);
-  EXPECT_EQ(controller.plan_layers(0.01, 0.0074, true), 1);
-  EXPECT_EQ(controller.plan_layers(0.01, 1.0, true), 1);
-  EXPECT_EQ(controller.plan_layers(0.01, 1.0, false), 0);
+  EXPECT_EQ(controller.plan_shadow_parts(0.01, 0.0001, false), 3);
+  EXPECT_EQ(controller.plan_shadow_parts(0.01, 0.0034, false), 2);
+  EXPECT_EQ(controller.plan_shadow_parts(0.01, 0.0074, false), 0);
+  EXPECT_EQ(controller.plan_shadow_parts(0.01, 0.0074, true), 1);
+  EXPECT_EQ(controller.plan_shadow_parts(0.01, 1.0, true), 1);
+  EXPECT_EQ(controller.plan_shadow_parts(0.01, 1.0, false), 0);
 }
 
 TEST(BudgetControllerTest, SizesAreThoseOfTheLevelsAndNeverEmpty)

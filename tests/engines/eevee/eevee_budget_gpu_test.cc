@@ -127,6 +127,37 @@ TEST_F(BudgetGpuTest, TheRefinedPictureIsBitForBitThatWithoutABudget)
   compare("glass", false);
 }
 
+TEST_F(BudgetGpuTest, LayersInSeveralPartsAreBitForBitThoseOfOnePart)
+{
+  settings.sample_count = 1;
+  const auto moved = test::add_object(scene, box, glm::dmat4(1));
+  render_scene::RenderScene render_scene(*device, scene);
+  Engine engine(render_scene, settings);
+  const auto calls_with = [&](int size_px) {
+    settings.shadow.cube_size_px = settings.shadow.map_size_px = size_px;
+    engine.set_settings(settings);
+    // Each part takes longer than the budget, so that a call has one.
+    Budgeted budgeted(render_scene, engine, 2.0 * budget);
+    const int calls = budgeted.refine(camera);
+    EXPECT_EQ(budgeted.pixels(), without_budget(settings)) << size_px;
+    return calls;
+  };
+  const int calls = calls_with(1024);
+  EXPECT_GT(calls_with(1448), calls) << "two parts for each layer";
+  EXPECT_GT(calls_with(2000), calls) << "four parts for each layer";
+  // Rows that were drawn before an edit are drawn again.
+  Budgeted edited(render_scene, engine, 2.0 * budget);
+  for (int edit_after = 1; edit_after < 12; edit_after++) {
+    for (int call = 0; call < edit_after; call++) {
+      edited.draw(camera);
+    }
+    scene.set_transform(moved, glm::translate(glm::dmat4(1), {0.1 * edit_after, -0.5, 0.9}));
+    edited.refine(camera);
+    EXPECT_EQ(edited.pixels(), without_budget(settings)) << edit_after;
+    camera.world_from_camera[3][0] += 0.01;
+  }
+}
+
 TEST_F(BudgetGpuTest, PartsOfSeveralViewportsDoNotDisturbEachOther)
 {
   // Points of the lamp, its shadow and the shadow of the blended box belong to one sample at a time.

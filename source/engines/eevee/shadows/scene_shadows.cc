@@ -78,6 +78,7 @@ static void take_over(ShadowSlot &slot, std::vector<ShadowSlot> &before)
   slot.fits = std::move(old.fits);
   slot.drawn = old.drawn;
   slot.up_to_date = old.up_to_date;
+  slot.partial = old.partial;
 }
 
 template <typename Action>
@@ -151,7 +152,7 @@ void SceneShadows::resize(gpu::Device &device, ShadowArrayId id, int layers)
     if (slot.place.given.array == id) {
       size_px = std::max(size_px, slot.size_px);
       // The distance cube is temporary: its texels are not needed after the octahedral layer was filtered.
-      has_content = has_content || (slot.drawn != 0 && id != ShadowArrayId::DistanceCube);
+      has_content = has_content || ((slot.drawn != 0 || slot.partial) && id != ShadowArrayId::DistanceCube);
     }
   });
   LayerArray &array = arrays_[std::size_t(id)];

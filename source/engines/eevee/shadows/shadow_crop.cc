@@ -133,18 +133,22 @@ MapCrop united(const MapCrop &a, const MapCrop &b)
   return {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.z, b.z), std::max(a.w, b.w)};
 }
 
-draw::View cropped_view(const draw::View &view, const MapCrop &crop)
+draw::View cropped_view(const draw::View &view, const glm::vec2 &center_ndc, const glm::vec2 &scale)
 {
   glm::mat4 clip_from_view = view.clip_from_view();
-  const glm::vec2 scale = 1.0F / extent_of(crop);
-  const glm::vec2 center(float(crop.x + crop.z) / 255.0F - 1.0F, float(crop.y + crop.w) / 255.0F - 1.0F);
   for (int axis = 0; axis < 2; axis++) {
     for (int column = 0; column < 4; column++) {
       clip_from_view[column][axis] =
-          scale[axis] * (clip_from_view[column][axis] - center[axis] * clip_from_view[column][3]);
+          scale[axis] * (clip_from_view[column][axis] - center_ndc[axis] * clip_from_view[column][3]);
     }
   }
   return {view.view_from_world(), clip_from_view};
+}
+
+draw::View cropped_view(const draw::View &view, const MapCrop &crop)
+{
+  const glm::vec2 center(float(crop.x + crop.z) / 255.0F - 1.0F, float(crop.y + crop.w) / 255.0F - 1.0F);
+  return cropped_view(view, center, 1.0F / extent_of(crop));
 }
 
 }  // namespace gnomon::eevee

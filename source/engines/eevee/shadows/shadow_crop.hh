@@ -44,6 +44,12 @@ inline constexpr MapCrop whole_map(0, 0, 255, 255);
 [[nodiscard]] std::optional<MapCrop> map_crop(const draw::View &view, double inner, int size_px,
                                               std::span<const VisibleBox> boxes);
 
+/**
+ * \a view restricted to a part of its picture.
+ * \a center_ndc: of the part, in normalized device coordinates. \a scale: width and height of the picture, divided by
+ * those of the part.
+ */
+[[nodiscard]] draw::View cropped_view(const draw::View &view, const glm::vec2 &center_ndc, const glm::vec2 &scale);
 /** \a view restricted to \a crop. */
 [[nodiscard]] draw::View cropped_view(const draw::View &view, const MapCrop &crop);
 

@@ -148,10 +148,10 @@ class CubeTechnique final : public ShadowTechnique {
     data.size_px = size_px;
   }
 
-  void record(ShadowSlot &slot, LayerMask missing, const ShadowRecording &recording) const override
+  void record(ShadowSlot &slot, const LayerPart &part, const ShadowRecording &recording) const override
   {
     // Faces without a caster are not cleared, because lookups skip them. \see ShadowCubeData::faces_and_filter
-    record_depths(slot, missing, false, recording);
+    record_depths(slot, part, false, recording);
   }
 
   double texel_size(const ShadowSlot &slot, const ShadowInspection &inspection,

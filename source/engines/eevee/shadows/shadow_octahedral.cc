@@ -92,9 +92,15 @@ class OctahedralTechnique final : public ShadowTechnique {
     // The octahedral store writes its own block, `esm_block`.
   }
 
-  void record(ShadowSlot &slot, LayerMask missing, const ShadowRecording &recording) const override
+  bool has_divisible_layers() const override
   {
-    const LayerMask drawn = record_depths(slot, missing, false, recording);
+    // All faces and the filter must follow each other without those of another lamp.
+    return false;
+  }
+
+  void record(ShadowSlot &slot, const LayerPart &part, const ShadowRecording &recording) const override
+  {
+    const LayerMask drawn = record_depths(slot, part, false, recording);
     const int size_px = slot.place.given.size_px;
     recording.octahedral.record(recording.list, std::size_t(slot.place.entry),
                                 {.texture = recording.array.texture(),

@@ -154,10 +154,10 @@ class SpotTechnique final : public ShadowTechnique {
     write_map_data(slot, block);
   }
 
-  void record(ShadowSlot &slot, LayerMask missing, const ShadowRecording &recording) const override
+  void record(ShadowSlot &slot, const LayerPart &part, const ShadowRecording &recording) const override
   {
     // A map without a caster is not cleared, because lookups skip it. \see ShadowMapData::cascade_count
-    record_depths(slot, missing, false, recording);
+    record_depths(slot, part, false, recording);
   }
 
   double texel_size(const ShadowSlot &slot, const ShadowInspection &inspection,

@@ -109,10 +109,10 @@ class SunTechnique final : public ShadowTechnique {
     write_map_data(slot, block);
   }
 
-  void record(ShadowSlot &slot, LayerMask missing, const ShadowRecording &recording) const override
+  void record(ShadowSlot &slot, const LayerPart &part, const ShadowRecording &recording) const override
   {
     // Lookups read cascades without a caster, too, so that they must be cleared.
-    record_depths(slot, missing, true, recording);
+    record_depths(slot, part, true, recording);
   }
 
   double texel_size(const ShadowSlot &slot, const ShadowInspection &inspection,

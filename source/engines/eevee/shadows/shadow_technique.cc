@@ -117,6 +117,24 @@ void crop_views(ShadowSlot &slot, const VisibleRange &visible)
   }
 }
 
+/** \a view restricted to \a rows of a layer with an edge of \a size_px texels, and a texel on each side. */
+static draw::View view_of_rows(const draw::View &view, const LayerRows &rows, int size_px)
+{
+  const float center = 2.0F * (float(rows.first) + 0.5F * float(rows.count)) / float(size_px) - 1.0F;
+  return cropped_view(view, {0.0F, center}, {1.0F, float(size_px) / float(rows.count + 2)});
+}
+
+/** Remove casters that touch no texel of \a rows from those of the recording, which are of the one \a layer. */
+static void keep_casters_of_rows(const ShadowSlot &slot, int layer, const LayerRows &rows,
+                                 const ShadowRecording &recording)
+{
+  const draw::View view = view_of_rows(slot.views[std::size_t(layer)], rows, slot.size_px);
+  draw::test_volumes(view.culling_planes(), recording.casters.volumes(), recording.is_touching);
+  for (std::size_t i = 0; i < recording.is_touching.size(); i++) {
+    recording.caster_layers[i] = recording.is_touching[i] != 0 ? recording.caster_layers[i] : std::uint8_t(0);
+  }
+}
+
 /** Write the layers of \a missing that each caster touches to the recording. \return those that one of them touches */
 static LayerMask find_caster_layers(const ShadowSlot &slot, LayerMask missing, const ShadowRecording &recording)
 {
@@ -151,12 +169,37 @@ static LayerMask find_caster_layers(const ShadowSlot &slot, LayerMask missing, c
   return all;
 }
 
-LayerMask record_depths(ShadowSlot &slot, LayerMask missing, bool is_empty_drawn, const ShadowRecording &recording)
+/** Note in \a slot what the recording of \a part leaves, of which \a drawn are drawn, and count it. */
+static void note_recorded(ShadowSlot &slot, const LayerPart &part, LayerMask drawn, ShadowCounters &counters)
 {
+  const int next_row = part.rows ? part.rows->first + part.rows->count : slot.size_px;
+  if (drawn != 0 && next_row < slot.size_px) {
+    slot.recorded_partial = {std::countr_zero(part.layers), next_row};
+    return;
+  }
+  if (part.rows) {
+    slot.recorded_partial.reset();
+  }
+  slot.recorded_drawn |= drawn;
+  slot.recorded_up_to_date |= part.layers;
+  if (drawn != 0) {
+    counters.lamps_updated++;
+    counters.faces_drawn += std::uint64_t(std::popcount(drawn));
+    counters.faces_skipped += std::uint64_t(std::popcount(slot.all_layers() & ~drawn));
+  }
+}
+
+LayerMask record_depths(ShadowSlot &slot, const LayerPart &part, bool is_empty_drawn, const ShadowRecording &recording)
+{
+  const LayerMask missing = part.layers;
   gpu::CommandList &list = recording.list;
   const std::vector<Caster> &casters = recording.casters.list();
   const std::vector<std::uint8_t> &caster_layers = recording.caster_layers;
   const LayerMask with_casters = find_caster_layers(slot, missing, recording);
+  const LayerMask drawn = is_empty_drawn ? missing : with_casters;
+  if (part.rows) {
+    keep_casters_of_rows(slot, std::countr_zero(missing), *part.rows, recording);
+  }
 
   shared::ShadowRenderBlock block{};
   for (std::size_t i = 0; i < slot.views.size(); i++) {
@@ -189,10 +232,12 @@ LayerMask record_depths(ShadowSlot &slot, LayerMask missing, bool is_empty_drawn
   };
   const ShadowRequest &given = slot.place.given;
   const std::string_view layer_name = given.array == ShadowArrayId::Maps ? "map" : "face";
-  const gpu::PassActions clear{.viewport = {.size_px = glm::ivec2(slot.size_px)}};
+  gpu::PassActions clear{.viewport = {.size_px = glm::ivec2(slot.size_px)}};
+  if (part.rows) {
+    clear.scissor = {{0, part.rows->first}, {slot.size_px, part.rows->count}};
+  }
   gpu::PassActions keep = clear;
   keep.depth_load = gpu::LoadAction::Load;
-  const LayerMask drawn = is_empty_drawn ? missing : with_casters;
   const bool is_one_pass = recording.layer_pass != LayerPass::Single && with_casters != 0;
   // One clear of all layers is cheaper than one clear for each layer, but must not clear valid layers.
   const bool is_cleared_at_once = is_one_pass && drawn == slot.all_layers();
@@ -212,13 +257,7 @@ LayerMask record_depths(ShadowSlot &slot, LayerMask missing, bool is_empty_drawn
     record_instances(missing);
     list.end_pass();
   }
-  slot.recorded_drawn = drawn;
-  slot.recorded_up_to_date = missing;
-  if (drawn != 0) {
-    recording.counters.lamps_updated++;
-    recording.counters.faces_drawn += std::uint64_t(std::popcount(drawn));
-    recording.counters.faces_skipped += std::uint64_t(std::popcount(slot.all_layers() & ~drawn));
-  }
+  note_recorded(slot, part, drawn, recording.counters);
   return drawn;
 }
 

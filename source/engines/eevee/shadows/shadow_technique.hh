@@ -71,6 +71,12 @@ struct ShadowTexelKey {
   bool operator==(const ShadowTexelKey &) const = default;
 };
 
+/** A layer of which the rows below `next_row` were drawn and are still valid. */
+struct PartialLayer {
+  int layer = 0;
+  int next_row = 0;
+};
+
 /** The shadow of a lamp: its planned resources and the state of its layers. */
 struct ShadowSlot {
   ShadowLamp lamp{};
@@ -105,9 +111,12 @@ struct ShadowSlot {
   LayerMask drawn = 0;
   /** Layers that need not be drawn: those of `drawn`, and layers without a caster. */
   LayerMask up_to_date = 0;
-  /** Layers that the submission of the last command list adds to `drawn` and `up_to_date`. */
+  /** Empty: no layer was drawn in part. */
+  std::optional<PartialLayer> partial{};
+  /** Layers that the submission of the last command list adds to `drawn` and `up_to_date`, and its `partial`. */
   LayerMask recorded_drawn = 0;
   LayerMask recorded_up_to_date = 0;
+  std::optional<PartialLayer> recorded_partial{};
 
   [[nodiscard]] LayerMask all_layers() const
   {
@@ -118,7 +127,29 @@ struct ShadowSlot {
   {
     drawn &= ~layers;
     up_to_date &= ~layers;
+    if (partial && (layers >> partial->layer & 1U) != 0) {
+      partial.reset();
+    }
   }
+  /** Forget what was recorded and not submitted. */
+  void discard_recorded()
+  {
+    recorded_drawn = recorded_up_to_date = 0;
+    recorded_partial = partial;
+  }
+};
+
+/** Rows of texels of a layer. */
+struct LayerRows {
+  int first = 0;
+  int count = 0;
+};
+
+/** The layers that are recorded at once. */
+struct LayerPart {
+  LayerMask layers = 0;
+  /** Only these rows of the one layer. Empty: all rows. */
+  std::optional<LayerRows> rows{};
 };
 
 /** Arguments of ShadowTechnique::record. */
@@ -220,8 +251,13 @@ class ShadowTechnique {
 
   // Recording.
 
-  /** Record the drawing of the layers \a missing. Sets recorded_drawn and recorded_up_to_date of \a slot. */
-  virtual void record(ShadowSlot &slot, LayerMask missing, const ShadowRecording &recording) const = 0;
+  /** Whether the rows of a layer can be recorded one after the other. */
+  [[nodiscard]] virtual bool has_divisible_layers() const
+  {
+    return true;
+  }
+  /** Record the drawing of \a part. Updates recorded_drawn, recorded_up_to_date and recorded_partial of \a slot. */
+  virtual void record(ShadowSlot &slot, const LayerPart &part, const ShadowRecording &recording) const = 0;
 
   // Inspection.
 
@@ -253,12 +289,12 @@ void crop_views(ShadowSlot &slot, const VisibleRange &visible);
 void update_for_casters(ShadowSlot &slot, ShadowCasters &casters);
 
 /**
- * Record the passes that draw casters into the layers \a missing of the slot's array.
+ * Record the passes that draw casters into \a part of the slot's layers.
  *
  * \a is_empty_drawn: whether layers without a caster are cleared. Otherwise they are not drawn.
  * \return the layers that are drawn.
  */
-LayerMask record_depths(ShadowSlot &slot, LayerMask missing, bool is_empty_drawn, const ShadowRecording &recording);
+LayerMask record_depths(ShadowSlot &slot, const LayerPart &part, bool is_empty_drawn, const ShadowRecording &recording);
 
 /** The members of ShadowLayers that are the same for all techniques with layers of depths. */
 [[nodiscard]] ShadowLayers depth_layers(const ShadowSlot &slot, const ShadowInspection &inspection);

@@ -142,28 +142,59 @@ void Shadows::write_block(gpu::Device &device)
   }
 }
 
-/** The first \a count layers of \a missing, and those that change with them. */
-static LayerMask first_layers(const ShadowTechnique &technique, LayerMask missing, int count)
+/** The first \a count layers of \a layers. */
+static LayerMask first_layers(LayerMask layers, int count)
 {
-  LayerMask rest = missing;
+  LayerMask rest = layers;
   for (int i = 0; i < count && rest != 0; i++) {
     rest &= rest - 1;
   }
-  const LayerMask first = missing & ~rest;
-  return first == 0 ? 0 : technique.changed_layers(first) & missing;
+  return layers & ~rest;
+}
+
+static int rows_of_part(int size_px)
+{
+  return std::clamp(layer_part_texels / size_px, 1, size_px);
+}
+
+/** What is recorded next of the layers \a missing: at most \a parts_max parts. */
+static LayerPart next_part(const ShadowSlot &slot, LayerMask missing, int parts_max)
+{
+  if (parts_max == Shadows::no_parts_max || !slot.place.technique->has_divisible_layers()) {
+    return {missing};
+  }
+  const int part_rows = rows_of_part(slot.size_px);
+  const int layer_parts = (slot.size_px + part_rows - 1) / part_rows;
+  const std::optional<PartialLayer> &partial = slot.recorded_partial;
+  const bool has_begun = partial && (missing >> partial->layer & 1U) != 0;
+  if (!has_begun && parts_max >= layer_parts) {
+    return {first_layers(missing, parts_max / layer_parts)};
+  }
+  const int layer = has_begun ? partial->layer : std::countr_zero(missing);
+  const int row = has_begun ? partial->next_row : 0;
+  // No more than the rest, and without an overflow.
+  const int rows = std::min(parts_max, layer_parts) * part_rows;
+  return {1U << layer, LayerRows{row, std::min(rows, slot.size_px - row)}};
+}
+
+static int part_count(const ShadowSlot &slot, const LayerPart &part)
+{
+  const int part_rows = slot.place.technique->has_divisible_layers() ? rows_of_part(slot.size_px) : slot.size_px;
+  const int rows = part.rows ? part.rows->count : slot.size_px;
+  return std::popcount(part.layers) * ((rows + part_rows - 1) / part_rows);
 }
 
 UpdatedLayers Shadows::update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
                               gpu::CommandList &list, std::span<const LampPoint> points, const PictureDepths &depths,
-                              int layers_max)
+                              int parts_max)
 {
   UpdatedLayers updated;
   // Discard the records of lists that were not submitted.
   recorded_counters_ = {};
-  for_each_slot([](ShadowSlot &slot) { slot.recorded_drawn = slot.recorded_up_to_date = 0; });
   place_lamps(points);
   fit(device, view, pixel_size, depths);
   std::ranges::for_each(scene_.slots_, [&](ShadowSlot &slot) { crop_views(slot, visible_); });
+  for_each_slot([](ShadowSlot &slot) { slot.discard_recorded(); });
   // Lamps are recorded array by array. The lamps of the distance cube use the same layers one after the other.
   for (std::size_t id = 0; id < shadow_array_count; id++) {
     for_each_slot([&](ShadowSlot &slot) {
@@ -171,17 +202,18 @@ UpdatedLayers Shadows::update(gpu::Device &device, const draw::View &view, float
         return;
       }
       const ShadowTechnique &technique = *slot.place.technique;
-      const LayerMask missing =
-          technique.layers_needed(slot, visible_) & slot.looked_up & slot.all_layers() & ~slot.up_to_date;
-      const LayerMask now = first_layers(technique, missing, layers_max - updated.count);
-      updated.count += std::popcount(now);
-      updated.is_all &= now == missing;
-      if (now != 0) {
+      const LayerMask needed = technique.layers_needed(slot, visible_) & slot.looked_up & slot.all_layers();
+      const auto missing = [&] { return needed & ~slot.up_to_date & ~slot.recorded_up_to_date; };
+      while (missing() != 0 && updated.part_count < parts_max) {
+        const int left = parts_max == no_parts_max ? no_parts_max : parts_max - updated.part_count;
+        const LayerPart part = next_part(slot, missing(), left);
         technique.record(
-            slot, now,
+            slot, part,
             {device, pass, list, scene_.casters_, scene_.arrays_[id], scene_.octahedral_, scene_.render_buffer_,
              scene_.render_block_, scene_.layer_pass_, recorded_counters_, caster_layers_, is_touching_});
+        updated.part_count += part_count(slot, part);
       }
+      updated.is_all &= missing() == 0;
     });
   }
   write_block(device);
@@ -216,7 +248,8 @@ void Shadows::submitted()
     }
     slot.drawn |= slot.recorded_drawn;
     slot.up_to_date |= slot.recorded_up_to_date;
-    slot.recorded_drawn = slot.recorded_up_to_date = 0;
+    slot.partial = slot.recorded_partial;
+    slot.discard_recorded();
   });
   const ShadowCounters recorded = std::exchange(recorded_counters_, {});
   counters_.lamps_updated += recorded.lamps_updated;

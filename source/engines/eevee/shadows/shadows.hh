@@ -35,11 +35,14 @@ struct ShadowState {
 
 /** Result of Shadows::update. */
 struct UpdatedLayers {
-  /** Layers that were recorded, or have no caster. */
-  int count = 0;
+  /** Parts of layers that were recorded, or have no caster. */
+  int part_count = 0;
   /** No layer that is needed is out of date after the submission. */
   bool is_all = true;
 };
+
+/** Texels of a part of a layer: whole rows, at least one. */
+inline constexpr int layer_part_texels = 1 << 20;
 
 /**
  * The part of SceneShadows that belongs to one viewport: the visible range, the layers that are fitted to the view, and
@@ -69,12 +72,13 @@ class Shadows {
    * \a pixel_size: see fit_sun. \a pass: draws the instances of the casters. \a points: points of lamps with an extent;
    * the shadow of these lamps is cast from the point. After a sync, all updates must have points of the same lamps.
    * \a depths: of \a view or of a recent view; may be empty. They are used if reads_depths(). The caller must call
-   * fit_again when they change. \a layers_max: most layers to record, or those of one exponential shadow, which change
-   * together.
+   * fit_again when they change. \a parts_max: most parts of layers to record, of layer_part_texels each. The layers of
+   * an exponential shadow are recorded together, and each counts as one part.
    */
   UpdatedLayers update(gpu::Device &device, const draw::View &view, float pixel_size, const draw::Pass &pass,
                        gpu::CommandList &list, std::span<const LampPoint> points = {}, const PictureDepths &depths = {},
-                       int layers_max = std::numeric_limits<int>::max());
+                       int parts_max = no_parts_max);
+  static constexpr int no_parts_max = std::numeric_limits<int>::max();
   /** Draw the layers that blended casters touch again: they hold one sample of them. */
   void invalidate_blended();
   /** Whether maps of suns are fitted to depths, or maps of other lamps are cropped to them. */
