@@ -121,6 +121,7 @@ bool App::open(const std::filesystem::path &path)
 void App::begin_open(const std::filesystem::path &path)
 {
   opening_ = std::make_unique<gltf::BackgroundImport>(path, gltf::ImportOptions{.read_picture = read_picture_});
+  opening_revision_ = document_ ? document_->scene().revision() : 0;
 }
 
 void App::drop(const std::filesystem::path &path)
@@ -167,7 +168,13 @@ bool App::finish_open()
 {
   const std::unique_ptr<gltf::BackgroundImport> opened = std::move(opening_);
   try {
-    show_document(Document::completed(opened->take()));
+    scene::Scene scene = Document::completed(opened->take());
+    if (!document_ || document_->scene().revision() == opening_revision_) {
+      show_document(std::move(scene));
+    }
+    else {
+      leave([this, opened_scene = std::make_shared<scene::Scene>(std::move(scene))] { next_scene_ = opened_scene; });
+    }
     return true;
   }
   catch (const gltf::ImportCancelled &cancelled) {
@@ -304,12 +311,23 @@ void App::undo()
   if (document_ && !document_->undo()) {
     message("There is nothing to undo", false);
   }
+  follow_restored();
 }
 
 void App::redo()
 {
   if (document_ && !document_->redo()) {
     message("There is nothing to redo", false);
+  }
+  follow_restored();
+}
+
+void App::follow_restored()
+{
+  for (const std::unique_ptr<Viewport> &viewport : viewports_) {
+    if (document_) {
+      viewport->follow_restored(document_->history());
+    }
   }
 }
 
@@ -486,8 +504,11 @@ void App::draw_frame(bool may_wait)
                                                               : 0.0);
   frames_to_draw_ = waits ? settling_frames : std::max(0, frames_to_draw_ - 1);
   take_events();
-  if (opening_ && opening_->is_done()) {
+  if (opening_ && opening_->is_done() && !leaving_ && !question_) {
     finish_open();
+  }
+  if (const std::shared_ptr<scene::Scene> next = std::move(next_scene_)) {
+    show_document(std::move(*next));
   }
   if (error_panel_.has_ended()) {
     finish_measurement();

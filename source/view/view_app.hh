@@ -193,10 +193,15 @@ class App {
   /** Do what gives up the scene. If it has edits that are not saved, the user is asked before. */
   void leave(std::function<void()> action);
   void write_screenshot();
-  /** Wait for what is opened in the background, and show it. \return whether it is open */
+  /**
+   * Wait for what is opened in the background, and show it. If the scene was edited meanwhile, the user is asked
+   * before. \return false: it could not be read
+   */
   bool finish_open();
   void finish_measurement();
   void show_document(scene::Scene scene);
+  /** Look through cameras again that an undo or a redo has brought back. */
+  void follow_restored();
   void make_device();
   /**
    * Replace the lost context, the device on it and all that is on the device. \throws std::runtime_error if that fails
@@ -237,6 +242,10 @@ class App {
   std::unique_ptr<Document> document_;
   /** nullptr: nothing is being opened. */
   std::unique_ptr<gltf::BackgroundImport> opening_;
+  /** scene::Scene::revision of the document when the opening began: later edits are not given up without a question. */
+  scene::Revision opening_revision_ = 0;
+  /** To be shown by the next frame: the window of this one still uses the pictures of the scene that is open. */
+  std::shared_ptr<scene::Scene> next_scene_;
   /** After the document, which they show. */
   std::vector<std::unique_ptr<Viewport>> viewports_;
   std::size_t active_ = 0;

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "view_history.hh"
 
+#include <algorithm>
 #include <ranges>
 
 namespace gnomon::view {
 
 using scene::Handle;
 using scene::Node;
+
+Handle<Node> History::renamed(Handle<Node> node) const
+{
+  const auto found = std::ranges::find(renamed_, node, &std::pair<Handle<Node>, Handle<Node>>::first);
+  return found == renamed_.end() ? node : found->second;
+}
 
 void History::set_world(scene::Scene &scene, std::optional<scene::World> world)
 {
@@ -60,8 +67,9 @@ void History::remove_members(scene::Scene &scene, const SubtreeChange &change)
   }
 }
 
-void History::rename(Handle<Node> old_node, Handle<Node> node)
+void History::note_renamed(Handle<Node> old_node, Handle<Node> node)
 {
+  renamed_.emplace_back(old_node, node);
   for (Change &change : changes_) {
     if (auto *edited = std::get_if<ThingChange<Node>>(&change); edited && edited->thing == old_node) {
       edited->thing = node;
@@ -82,13 +90,12 @@ void History::add_members(scene::Scene &scene, std::size_t index)
   for (std::size_t i = 0; i < count; i++) {
     // Renaming changes the parents of the next ones, too.
     const SubtreeChange::Member member = std::get<SubtreeChange>(changes_[index]).members[i];
-    rename(member.node, scene.add(member.value, member.parent));
+    note_renamed(member.node, scene.add(member.value, member.parent));
   }
   const SubtreeChange &change = std::get<SubtreeChange>(changes_[index]);
-  restored_ = change.members.front().node;
   // It is the last child now. What was behind it before moves behind it again.
   const Handle<Node> parent = change.members.front().parent;
-  for (Handle<Node> child = change.next; parent && child && child != restored_;) {
+  for (Handle<Node> child = change.next; parent && child && child != restored();) {
     const Handle<Node> following = scene.next_sibling(child);
     scene.set_parent(child, parent);
     child = following;
@@ -139,7 +146,7 @@ void History::revert_gesture(scene::Scene &scene)
 
 bool History::undo(scene::Scene &scene)
 {
-  restored_ = {};
+  renamed_.clear();
   if (done_count_ == 0) {
     return false;
   }
@@ -151,7 +158,7 @@ bool History::undo(scene::Scene &scene)
 
 bool History::redo(scene::Scene &scene)
 {
-  restored_ = {};
+  renamed_.clear();
   if (done_count_ == changes_.size()) {
     return false;
   }

@@ -5,6 +5,7 @@
 
 #include <concepts>
 #include <deque>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -54,11 +55,13 @@ class History {
   /** \return whether there was anything to undo, or to redo */
   bool undo(scene::Scene &scene);
   bool redo(scene::Scene &scene);
-  /** The node that the last undo or redo brought back; an invalid handle: none. */
+  /** The node that the last undo or redo brought back, with its descendants; an invalid handle: none. */
   [[nodiscard]] scene::Handle<scene::Node> restored() const
   {
-    return restored_;
+    return renamed_.empty() ? scene::Handle<scene::Node>() : renamed_.front().second;
   }
+  /** The handle of \a node after the last undo or redo, which gives another to nodes that it brings back. */
+  [[nodiscard]] scene::Handle<scene::Node> renamed(scene::Handle<scene::Node> node) const;
   [[nodiscard]] std::size_t undo_count() const
   {
     return done_count_;
@@ -108,13 +111,14 @@ class History {
   static void remove_members(scene::Scene &scene, const SubtreeChange &change);
   void add_members(scene::Scene &scene, std::size_t index);
   /** A node that was removed has another handle once it is brought back. */
-  void rename(scene::Handle<scene::Node> old_node, scene::Handle<scene::Node> node);
+  void note_renamed(scene::Handle<scene::Node> old_node, scene::Handle<scene::Node> node);
 
   std::deque<Change> changes_;
   /** The others were undone. */
   std::size_t done_count_ = 0;
   bool is_in_gesture_ = false;
-  scene::Handle<scene::Node> restored_{};
+  /** Old and new handles of the nodes that the last undo or redo brought back; their root is the first. */
+  std::vector<std::pair<scene::Handle<scene::Node>, scene::Handle<scene::Node>>> renamed_;
 };
 
 }  // namespace gnomon::view

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "view_properties.hh"
 
+#include "view_property_makers.hh"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <glm/gtx/euler_angles.hpp>
@@ -10,11 +12,8 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace gnomon::view {
-
-static constexpr double degree = 180.0 / std::numbers::pi;
 
 Placement placement_of(const glm::dmat4 &parent_from_node)
 {
@@ -33,7 +32,7 @@ Placement placement_of(const glm::dmat4 &parent_from_node)
     frame[1] = glm::dvec4(glm::cross(z, glm::dvec3(frame[0])), 0.0);
   }
   glm::extractEulerAngleZYX(frame, placement.rotation.z, placement.rotation.y, placement.rotation.x);
-  placement.rotation *= degree;
+  placement.rotation *= degrees_per_radian;
   return placement;
 }
 
@@ -42,7 +41,7 @@ glm::dmat4 placed(const glm::dmat4 &parent_from_node, const Placement &placement
   const Placement before = placement_of(parent_from_node);
   glm::dmat4 moved = parent_from_node;
   if (placement.rotation != before.rotation || placement.scale != before.scale) {
-    const glm::dvec3 angles = placement.rotation / degree;
+    const glm::dvec3 angles = placement.rotation / degrees_per_radian;
     moved = glm::eulerAngleZYX(angles.z, angles.y, angles.x);
     for (int axis = 0; axis < 3; axis++) {
       moved[axis] *= placement.scale[axis];

@@ -149,9 +149,10 @@ Properties<Settings> make_settings_properties()
                           [](const Settings &settings) { return int(settings.eevee.is_timed); },
                           [](Settings &settings, int value) { settings.eevee.is_timed = value == 1; },
                           {}});
-  made.numbers.push_back({"samples", "Samples", [](const Settings &) { return "per pixel"; }, 1, 1.0, 65536.0,
-                          [](const Settings &settings, int) { return double(settings.eevee.sample_count); },
-                          [](Settings &settings, int, double value) { settings.eevee.sample_count = int(value); }});
+  made.numbers.push_back(
+      {"samples", "Samples", [](const Settings &) { return "per pixel"; }, 1, 1.0, 65536.0,
+       [](const Settings &settings, int) { return double(settings.eevee.sample_count); },
+       [](Settings &settings, int, double value) { settings.eevee.sample_count = stored<int>(value); }});
   made.numbers.push_back(
       {"noise", "Noise threshold", [](const Settings &) { return ""; }, 1, 0.0, 1.0,
        [](const Settings &settings, int) { return double(settings.eevee.noise_threshold); },
@@ -159,8 +160,8 @@ Properties<Settings> make_settings_properties()
   made.numbers.push_back({"shadow_size", "Shadow size", [](const Settings &) { return "px"; }, 1, 16.0, 8192.0,
                           [=](const Settings &settings, int) { return double(shadow_of(settings).map_size_px); },
                           [=](Settings &settings, int, double value) {
-                            shadow_of(settings).map_size_px = int(value);
-                            shadow_of(settings).cube_size_px = std::max(1, int(value) / 2);
+                            shadow_of(settings).map_size_px = stored<int>(value);
+                            shadow_of(settings).cube_size_px = std::max(1, stored<int>(value) / 2);
                           }});
   made.numbers.push_back(number("error", "Maximum error", "RMSE", &Settings::error_max, 0.0, 1.0));
   made.numbers.back().slider_zero = "no limit";
