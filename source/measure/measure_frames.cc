@@ -30,9 +30,10 @@ constexpr int refining_count = 10;
 constexpr int budget_samples = 16;
 /** Frames of a moved lamp for each run of arithmetic. */
 constexpr int arithmetic_interval = 5;
-/** Memory of a core: for its first and its second cache on common machines. */
+/** Memory of a core: for its first and its second cache on common machines, and for neither. */
 constexpr std::size_t small_bytes = std::size_t(16) << 10U;
 constexpr std::size_t large_bytes = std::size_t(512) << 10U;
+constexpr std::size_t uncached_bytes = std::size_t(16) << 20U;
 
 /** Until the device is done. */
 template <typename Work>
@@ -141,6 +142,7 @@ class Frames {
     std::vector<double> warm_up;
     std::optional<Arithmetic> small;
     std::optional<Arithmetic> large;
+    std::optional<Arithmetic> uncached;
     for (int i = -warm_up_count; i < settings_.frame_count; i++) {
       const double control = seconds_of(device_, [&] { clear(); });
       const double frame = seconds_of(device_, [&] {
@@ -160,10 +162,12 @@ class Frames {
       if (i == 0) {
         small.emplace(small_bytes, percentile(warm_up, 0.5));
         large.emplace(large_bytes, percentile(warm_up, 0.5));
+        uncached.emplace(uncached_bytes, percentile(warm_up, 0.5));
       }
       if (i % arithmetic_interval == 0) {
         times.small_arithmetic.push_back(seconds_of(device_, [&] { small->run(); }));
         times.large_arithmetic.push_back(seconds_of(device_, [&] { large->run(); }));
+        times.uncached_arithmetic.push_back(seconds_of(device_, [&] { uncached->run(); }));
       }
     }
     scene_.set_transform(node, start);

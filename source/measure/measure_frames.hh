@@ -45,10 +45,12 @@ struct FrameTimes {
   std::vector<double> moved_lamp;
   /**
    * Multiplications that take about as long as a frame of moved_lamp, on all cores, after every fifth frame: the least
-   * that the machine adds to work of that length. Of numbers in 16 KiB for each core, and in 512 KiB.
+   * that the machine adds to work of that length. Of numbers in 16 KiB for each core, in 512 KiB, and in 16 MiB, which
+   * caches do not keep.
    */
   std::vector<double> small_arithmetic;
   std::vector<double> large_arithmetic;
+  std::vector<double> uncached_arithmetic;
   /** With the default settings of views that move. */
   BudgetTimes moving;
   /** With the shadows of `gnomon render`. \see eevee::offline_settings */
