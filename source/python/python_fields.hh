@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,16 @@ template <typename T, typename Access>
       [=](const ScenePtr & /*scene*/, T &value, py::handle set) { std::invoke(access, value) = set.cast<Value>(); }};
 }
 
+/** \throws py::value_error if \a number is not from \a low to \a high */
+inline void check_range(double number, double low, double high)
+{
+  // The negated condition also refuses NaN.
+  if (!(number >= low && number <= high)) {
+    throw py::value_error(high < float_max ? fmt::format("{:g} is not from {:g} to {:g}", number, low, high)
+                                           : fmt::format("{:g} is not a number of at least {:g}", number, low));
+  }
+}
+
 /** A number from \a low to \a high, or a vector of such numbers. */
 template <typename T, typename Access>
 [[nodiscard]] Field<T> number_field(std::string name, Access access, double low, double high, std::string doc)
@@ -50,19 +61,12 @@ template <typename T, typename Access>
   Field<T> field = plain_field<T>(std::move(name), access, std::move(doc));
   field.set = [=](const ScenePtr & /*scene*/, T &value, py::handle set) {
     const auto number = set.cast<Value>();
-    const auto check = [&](double component) {
-      // The negated condition also refuses NaN.
-      if (!(component >= low && component <= high)) {
-        throw py::value_error(high < float_max ? fmt::format("{:g} is not from {:g} to {:g}", component, low, high)
-                                               : fmt::format("{:g} is not a number of at least {:g}", component, low));
-      }
-    };
     if constexpr (std::is_arithmetic_v<Value>) {
-      check(double(number));
+      check_range(double(number), low, high);
     }
     else {
       for (glm::length_t i = 0; i < Value::length(); i++) {
-        check(double(number[i]));
+        check_range(double(number[i]), low, high);
       }
     }
     std::invoke(access, value) = number;
@@ -80,6 +84,23 @@ template <typename T>
 [[nodiscard]] inline std::string label_of(const scene::Texture & /*value*/)
 {
   return "texture";
+}
+
+/** A number from \a low to \a high that may be missing: None. */
+template <typename T, typename Access>
+[[nodiscard]] Field<T> optional_field(std::string name, Access access, double low, double high, std::string doc)
+{
+  using Value = typename std::decay_t<std::invoke_result_t<Access, T &>>::value_type;
+  Field<T> field = plain_field<T>(std::move(name), access, std::move(doc));
+  field.set = [=](const ScenePtr & /*scene*/, T &value, py::handle set) {
+    std::optional<Value> number;
+    if (!set.is_none()) {
+      number = set.cast<Value>();
+      check_range(double(*number), low, high);
+    }
+    std::invoke(access, value) = number;
+  };
+  return field;
 }
 
 /** The handle of \a thing. \throws scene::StaleHandle; scene::InvalidEdit if it is not one of \a scene */
@@ -130,6 +151,9 @@ void set_fields(const Fields<T> &fields, const std::string &label, const ScenePt
     // Thrown for None, and not a cast_error.
     catch (const py::reference_cast_error & /*error*/) {
       throw py::type_error(fmt::format("{}: {} cannot be {}", label, name, std::string(py::repr(set))));
+    }
+    catch (const py::type_error &error) {
+      throw py::type_error(fmt::format("{}: {} {}", label, name, error.what()));
     }
     catch (const py::value_error &error) {
       throw scene::InvalidEdit(fmt::format("{}: {} {}", label, name, error.what()));

@@ -127,7 +127,9 @@ Fields<Material> with_textures(Fields<Material> fields)
 
 void add_tangents(scene::Mesh &mesh)
 {
-  const bool is_whole = mesh.uvs.size() == mesh.positions.size() && mesh.normals.size() == mesh.positions.size() &&
+  mesh.tangents.clear();
+  const bool is_whole = !mesh.uvs.empty() && mesh.uvs.size() == mesh.positions.size() &&
+                        mesh.normals.size() == mesh.positions.size() &&
                         std::ranges::all_of(mesh.indices, [&](auto index) { return index < mesh.positions.size(); });
   // Scene::add refuses a mesh whose arrays have different lengths.
   if (is_whole) {

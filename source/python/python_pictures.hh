@@ -9,7 +9,10 @@ namespace gnomon::python {
 /** \a fields, and one for each of a material's textures. */
 [[nodiscard]] Fields<scene::Material> with_textures(Fields<scene::Material> fields);
 
-/** Mesh::tangents for its uvs, unless its arrays do not fit to each other. */
+/**
+ * Mesh::tangents for its uvs, as a material that needs them may come later. None without uvs, or while its arrays do
+ * not fit to each other.
+ */
 void add_tangents(scene::Mesh &mesh);
 
 /** Adds Texture, and what a Scene has of textures and its world. */

@@ -41,9 +41,27 @@ const Fields<Lamp> lamp_fields = {
     plain_field<Lamp>(
         "shadow_kind", [](auto &lamp) -> auto & { return lamp.shadow.kind; },
         "A ShadowKind. None: that of the renderer."),
-    plain_field<Lamp>(
-        "shadow_size_px", [](auto &lamp) -> auto & { return lamp.shadow.size; },
+    optional_field<Lamp>(
+        "shadow_size_px", [](auto &lamp) -> auto & { return lamp.shadow.size; }, 1, 16384,
         "Texels along an edge of the depth map or of a cube's face, 1 to 16384. None: that of the renderer."),
+    optional_field<Lamp>(
+        "shadow_bias", [](auto &lamp) -> auto & { return lamp.shadow.bias; }, 0, 100,
+        "Factor of the bias that is derived from the texel size, 0 to 100. None: 1."),
+    optional_field<Lamp>(
+        "shadow_clip_start", [](auto &lamp) -> auto & { return lamp.shadow.clip_start; }, 1e-9, float_max,
+        "Casters that are nearer to the lamp cast no shadow, m, above 0. None: all cast one."),
+    optional_field<Lamp>(
+        "shadow_clip_end", [](auto &lamp) -> auto & { return lamp.shadow.clip_end; }, 1e-9, float_max,
+        "Casters that are farther from the lamp cast no shadow, m, above shadow_clip_start. None: all cast one."),
+    optional_field<Lamp>(
+        "shadow_exponent", [](auto &lamp) -> auto & { return lamp.shadow.exponent; }, 0.01, 1e4,
+        "ESM and EVSM: exponent, 1/m, 0.01 to 1e4. None: it follows the size and the lamp's range."),
+    optional_field<Lamp>(
+        "shadow_filter_angle", [](auto &lamp) -> auto & { return lamp.shadow.filter_radius; }, 0, 0.25 * pi,
+        "ESM and EVSM: half the opening angle of the filter, rad, 0 to π/4. None: that of a texel."),
+    optional_field<Lamp>(
+        "shadow_esm_size_px", [](auto &lamp) -> auto & { return lamp.shadow.esm_size; }, 1, 16384,
+        "ESM and EVSM: texels along an edge of the octahedral map, 1 to 16384. None: that of the renderer."),
 };
 
 const Fields<SurfaceFunction> surface_function_fields = {
@@ -99,6 +117,16 @@ const Fields<Material> material_fields = with_textures({
                                            "A SurfaceFunction that edits the surface at each point, or None."),
 });
 
+/** \a what: \see rows_of */
+void set_triangles(Mesh &mesh, const py::array &triangles, const std::string &what)
+{
+  mesh.topology = scene::Topology::Triangles;
+  mesh.indices.clear();
+  for (const glm::uvec3 &triangle : rows_of<glm::uvec3>(triangles, what)) {
+    mesh.indices.insert(mesh.indices.end(), {triangle.x, triangle.y, triangle.z});
+  }
+}
+
 /** Far beyond any use, and within what a projection in single precision can hold. */
 constexpr double camera_length_max = 1e9;
 constexpr double camera_length_min = 1e-9;
@@ -119,8 +147,37 @@ const Fields<Camera> camera_fields = {
     number_field<Camera>("far", &Camera::far, 0, float_max, "Distance of the far plane, m. 0: infinite."),
 };
 
+/** Vectors, one for each position. */
+template <typename Vector>
+Field<Mesh> rows_field(std::string name, std::vector<Vector> Mesh::*member, std::string doc)
+{
+  return {std::move(name), std::move(doc),
+          [=](const ScenePtr & /*scene*/, const Mesh &mesh) {
+            const std::vector<Vector> &rows = mesh.*member;
+            const float *numbers = rows.empty() ? nullptr : &rows.front().x;
+            return py::object(array_of_rows(std::span(numbers, rows.size() * Vector::length()), Vector::length()));
+          },
+          [=](const ScenePtr & /*scene*/, Mesh &mesh, py::handle set) {
+            mesh.*member = rows_of<Vector>(set.cast<py::array>(), {});
+          }};
+}
+
 const Fields<Mesh> mesh_fields = {
     plain_field<Mesh>("name", &Mesh::name, "For messages and files."),
+    rows_field<glm::vec3>("positions", &Mesh::positions,
+                          "N x 3 float32, m. Read-only; assign another array. edit() changes several arrays at once."),
+    rows_field<glm::vec3>("normals", &Mesh::normals, "N x 3 float32, unit vectors. Read-only; assign another array."),
+    rows_field<glm::vec2>("uvs", &Mesh::uvs,
+                          "N x 2 float32, where the positions are in textures, or 0 x 2. (0, 0) is the upper left "
+                          "corner, (1, 1) the lower right. Read-only; assign another array."),
+    {"triangles",
+     "M x 3 uint32, indices of positions, counter-clockwise as seen from the front. Read-only; assign another array. "
+     "Meshes of lines or points from files have none.",
+     [](const ScenePtr & /*scene*/, const Mesh &mesh) {
+       const bool is_triangles = mesh.topology == scene::Topology::Triangles;
+       return py::object(array_of_rows(std::span(mesh.indices).first(is_triangles ? mesh.indices.size() : 0), 3));
+     },
+     [](const ScenePtr & /*scene*/, Mesh &mesh, py::handle set) { set_triangles(mesh, set.cast<py::array>(), {}); }},
     thing_field<Mesh, Material>("material", &Mesh::material, "A Material. None: the default material."),
 };
 
@@ -158,16 +215,36 @@ const Fields<Node> node_fields = {
     plain_field<Node>("receives_shadow", &Node::receives_shadow, "Whether the node's meshes receive shadows."),
 };
 
-/** What no single field can check. */
+/** Checks and sets what depends on several fields. \a values: those that were set */
 template <typename T>
-void check(const T & /*value*/)
+void finish(T & /*value*/, const py::dict & /*values*/)
 {
 }
 
-void check(const Camera &camera)
+void finish(Camera &camera, const py::dict & /*values*/)
 {
   if (camera.kind == scene::CameraKind::Perspective && camera.near < camera_length_min) {
     throw scene::InvalidEdit(fmt::format("camera '{}': near {} is not above 0", camera.name, camera.near));
+  }
+}
+
+void finish(Lamp &lamp, const py::dict & /*values*/)
+{
+  const scene::LampShadow &shadow = lamp.shadow;
+  if (shadow.clip_start && shadow.clip_end && *shadow.clip_end <= *shadow.clip_start) {
+    throw scene::InvalidEdit(fmt::format("lamp '{}': shadow_clip_end {} is not above shadow_clip_start {}", lamp.name,
+                                         *shadow.clip_end, *shadow.clip_start));
+  }
+}
+
+void finish(Mesh &mesh, const py::dict &values)
+{
+  // Tangents split vertices, so that they must wait for all arrays.
+  for (const char *shape : {"positions", "normals", "uvs", "triangles"}) {
+    if (values.contains(shape)) {
+      add_tangents(mesh);
+      return;
+    }
   }
 }
 
@@ -176,7 +253,7 @@ void edit(const Fields<T> &fields, const Thing<T> &thing, const py::dict &values
 {
   T value = thing.value();
   set_fields(fields, label_of(value), thing.scene, value, values);
-  check(value);
+  finish(value, values);
   thing.scene->edited().replace(thing.handle, std::move(value));
 }
 
@@ -185,7 +262,7 @@ template <typename T>
 T made(const Fields<T> &fields, const ScenePtr &scene, const py::dict &values, T value = {})
 {
   set_fields(fields, std::string(T::kind_name), scene, value, values);
-  check(value);
+  finish(value, values);
   return value;
 }
 
@@ -245,14 +322,11 @@ Thing<Mesh> add_mesh(const ScenePtr &scene, const py::array &positions, const py
   Mesh mesh;
   mesh.positions = rows_of<glm::vec3>(positions, "positions");
   mesh.normals = rows_of<glm::vec3>(normals, "normals");
-  for (const glm::uvec3 &triangle : rows_of<glm::uvec3>(triangles, "triangles")) {
-    mesh.indices.insert(mesh.indices.end(), {triangle.x, triangle.y, triangle.z});
-  }
+  set_triangles(mesh, triangles, "triangles");
   if (uvs) {
     mesh.uvs = rows_of<glm::vec2>(*uvs, "uvs");
-    // A material that needs them may come later.
-    add_tangents(mesh);
   }
+  add_tangents(mesh);
   mesh = made(mesh_fields, scene, values, std::move(mesh));
   return {scene, scene->edited().add(std::move(mesh))};
 }

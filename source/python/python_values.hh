@@ -8,6 +8,8 @@
 
 #include <pybind11/numpy.h>
 
+#include <span>
+#include <string>
 #include <vector>
 
 /** Values in Python: vectors are tuples, matrices and pictures are numpy arrays. */
@@ -83,7 +85,7 @@ namespace gnomon::python {
 namespace py = pybind11;
 
 /**
- * The rows of \a array as vectors. \a what: names it in messages
+ * The rows of \a array as vectors. \a what: names it in messages; empty: the caller does
  * \throws py::type_error for another type of numbers, as a hidden conversion would copy it; py::value_error for another
  * shape
  */
@@ -91,12 +93,13 @@ template <typename Vector, typename Number = typename Vector::value_type>
 [[nodiscard]] std::vector<Vector> rows_of(const py::array &array, const std::string &what)
 {
   constexpr py::ssize_t width = Vector::length();
+  const std::string subject = what.empty() ? "" : what + ": ";
   if (!array.dtype().equal(py::dtype::of<Number>())) {
-    throw py::type_error(what + ": is an array of " + std::string(py::str(array.dtype())) + ", not of " +
+    throw py::type_error(subject + "is an array of " + std::string(py::str(array.dtype())) + ", not of " +
                          std::string(py::str(py::dtype::of<Number>())));
   }
   if (array.ndim() != 2 || array.shape(1) != width) {
-    throw py::value_error(what + ": is not an array of rows of " + std::to_string(width) + " numbers");
+    throw py::value_error(subject + "is not an array of rows of " + std::to_string(width) + " numbers");
   }
   const auto numbers = py::array_t<Number>(array).template unchecked<2>();
   std::vector<Vector> rows(std::size_t(array.shape(0)));
@@ -106,6 +109,15 @@ template <typename Vector, typename Number = typename Vector::value_type>
     }
   }
   return rows;
+}
+
+/** \a numbers as rows of \a width numbers, in a new array that is read-only. */
+template <typename Number>
+[[nodiscard]] py::array_t<Number> array_of_rows(std::span<const Number> numbers, int width)
+{
+  py::array_t<Number> array({py::ssize_t(numbers.size()) / width, py::ssize_t(width)}, numbers.data());
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
 }
 
 /**

@@ -7,6 +7,7 @@ import inspect
 import math
 import os
 import re
+import shutil
 import signal
 import subprocess
 import tempfile
@@ -134,6 +135,53 @@ class Scenes(unittest.TestCase):
                 scene.add_mesh(*arrays)
         self.assertEqual(scene.meshes, [])
 
+    def test_arrays_of_meshes_are_read_and_replaced(self):
+        scene = square_scene()
+        mesh = scene.meshes[0]
+        self.assertEqual((mesh.positions.shape, mesh.normals.shape, mesh.uvs.shape), ((4, 3), (4, 3), (0, 2)))
+        self.assertEqual(mesh.triangles.tolist(), [[0, 1, 2], [0, 2, 3]])
+        self.assertEqual((mesh.positions.dtype, mesh.triangles.dtype), (numpy.float32, numpy.uint32))
+        with self.assertRaisesRegex(ValueError, "read-only"):
+            mesh.positions[0, 0] = 1
+        mesh.positions = 2 * mesh.positions
+        self.assertEqual(scene.bounds, ((-18, -18, 0), (18, 18, 0)))
+        # Both triangles mirror the image in other ways, so that their tangents split vertices. The arrays stay those that were set.
+        uvs = numpy.array([(0, 0), (1, 0), (1, 1), (2, 0)], numpy.float32)
+        mesh.edit(uvs=uvs, triangles=mesh.triangles[::-1], positions=mesh.positions, normals=mesh.normals)
+        corners = mesh.positions[mesh.triangles]
+        self.assertEqual(corners.tolist(), numpy.array(
+            [[(-18, -18, 0), (18, 18, 0), (-18, 18, 0)], [(-18, -18, 0), (18, -18, 0), (18, 18, 0)]]).tolist())
+        self.assertEqual(mesh.uvs[mesh.triangles].tolist(), uvs[[(0, 2, 3), (0, 1, 2)]].tolist())
+        for error, text, arrays in ((TypeError, "mesh '': positions is an array of float64, not of float32",
+                                     {"positions": mesh.positions.astype(float)}),
+                                    (TypeError, "triangles is an array of int64, not of uint32", {"triangles": 3}),
+                                    (gnomon.InvalidEdit, "uvs is not an array of rows of 2 numbers", {"uvs": mesh.normals}),
+                                    (gnomon.InvalidEdit, "normals", {"normals": mesh.normals[:3]})):
+            with self.assertRaisesRegex(error, text):
+                mesh.edit(**arrays)
+        plaza = gnomon.load(PLAZA)
+        torus = max(plaza.meshes, key=lambda each: len(each.positions))
+        self.assertGreater(len(torus.triangles), 100)
+        lengths = numpy.linalg.norm(torus.normals, axis=1)
+        self.assertLess(abs(lengths - 1).max(), 1e-5)
+
+    def test_settings_of_shadows_of_lamps(self):
+        scene = square_scene()
+        lamp = scene.lamps[0]
+        for name, value in (("size_px", 64), ("bias", 2), ("clip_start", 0.5), ("clip_end", 9), ("exponent", 40),
+                            ("filter_angle", 0.25), ("esm_size_px", 32)):
+            name = f"shadow_{name}"
+            self.assertIsNone(getattr(lamp, name))
+            setattr(lamp, name, value)
+            self.assertEqual(getattr(lamp, name), value)
+            with self.assertRaisesRegex(gnomon.InvalidEdit, f"lamp 'sun': {name} .* is not"):
+                setattr(lamp, name, -1)
+            self.assertEqual(getattr(lamp, name), value)
+        with self.assertRaisesRegex(gnomon.InvalidEdit, "shadow_clip_end 0.25 is not above shadow_clip_start 0.5"):
+            lamp.shadow_clip_end = 0.25
+        lamp.edit(shadow_clip_end=None, shadow_bias=None)
+        self.assertEqual((lamp.shadow_clip_end, lamp.shadow_bias, lamp.shadow_clip_start), (None, None, 0.5))
+
     def test_files(self):
         with tempfile.TemporaryDirectory() as folder:
             broken = os.path.join(folder, "broken.glb")
@@ -172,6 +220,16 @@ class Pictures(unittest.TestCase):
     def tearDownClass(cls):
         del cls.device
         gc.collect()
+
+    def test_replaced_arrays_are_drawn(self):
+        scene = square_scene()
+        renderer = gnomon.Renderer(self.device, scene, (16, 16), **SMALL)
+        whole = renderer.render()
+        self.assertGreater(whole[:, :, 3].min(), 0.9999)
+        mesh = scene.meshes[0]
+        mesh.triangles = mesh.triangles[:1]
+        half = renderer.render()
+        self.assertAlmostEqual(half[:, :, 3].mean(), 0.5, delta=0.05)
 
     def test_radiance_is_that_of_the_closed_form(self):
         renderer = gnomon.Renderer(self.device, square_scene(), (32, 18), **SMALL)
@@ -475,7 +533,10 @@ class Stub(unittest.TestCase):
         with open("source/python/gnomon/__init__.pyi", encoding="utf-8") as file:
             body = ast.parse(file.read()).body
         stub = {}
+        properties = {}
         for node in body:
+            if isinstance(node, ast.ClassDef) and node.name.endswith("Properties"):
+                properties[node.name] = {member.target.id for member in node.body}
             if isinstance(node, ast.FunctionDef):
                 stub[node.name] = None
             elif isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
@@ -498,6 +559,39 @@ class Stub(unittest.TestCase):
                         self.assertTrue(inspect.getdoc(member), f"{name}.{each}")
                 module[name] = set(own)
         self.assertEqual(stub, module)
+        # The message for an argument that does not exist names those that do.
+        scene = square_scene()
+        scene.add_surface_function(name="plain", text="void surface(SurfaceInputs inputs, inout StandardSurface result) {}")
+        things = (scene.nodes, scene.meshes, scene.materials, scene.surface_functions, scene.lamps, scene.cameras)
+        for thing in [each[0] for each in things]:
+            with self.assertRaises(TypeError) as raised:
+                thing.edit(nonsense=1)
+            taken = set(str(raised.exception).split("it has: ")[1].split(", "))
+            self.assertEqual(properties.pop(f"_{type(thing).__name__}Properties"), taken)
+        own = {each for each, member in vars(gnomon.Renderer).items() if isinstance(member, property)}
+        self.assertEqual(properties, {"_RendererProperties": {"sample_count"},
+                                      "_OfflineProperties": own - {"size", "sample_count"}})
+
+    @unittest.skipUnless(shutil.which("mypy"), "mypy is not installed")
+    def test_types(self):
+        """The examples of the documentation have the types of the stub, which find mistakes."""
+        with open("doc/python.md", encoding="utf-8") as file:
+            examples = "".join(re.findall(r"^```python\n(.*?)^```$", file.read(), re.M | re.S))
+        mistakes = ["gnomon.Scene().add_lamp(intensty=1)", "gnomon.Scene().add_lamp(kind=3)", "gnomon.load(3)",
+                    "gnomon.Scene().meshes[0].edit(positions=[(0, 0, 0)])", "gnomon.Scene().lamps[0].power = 3"]
+        with tempfile.TemporaryDirectory() as folder:
+            def checked(text):
+                path = os.path.join(folder, "example.py")
+                with open(path, "w", encoding="utf-8") as file:
+                    file.write(text)
+                # Packages on the path that have a stub are checked, numpy and others are not.
+                finished = subprocess.run(
+                    ["mypy", "--enable-incomplete-feature=Unpack", "--follow-imports=silent", "--cache-dir", folder, path],
+                    env={**os.environ, "MYPYPATH": "source/python"}, capture_output=True, text=True)
+                return finished.stdout + finished.stderr
+            self.assertIn("Success", checked(examples))
+            for mistake in mistakes:
+                self.assertIn("Found 1 error", checked(f"import gnomon\n{mistake}\n"), mistake)
 
 
 if __name__ == "__main__":
