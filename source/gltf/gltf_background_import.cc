@@ -36,6 +36,9 @@ void BackgroundImport::run()
 
 scene::Scene BackgroundImport::take()
 {
+  if (!thread_.joinable()) {
+    throw ImportError(path_.string() + ": was taken before");
+  }
   thread_.join();
   if (error_) {
     std::rethrow_exception(std::exchange(error_, nullptr));

@@ -34,6 +34,13 @@ using scene::Scene;
 
 namespace {
 
+/** Whether two cameras have the same lens. */
+bool is_same(const Camera &a, const Camera &b)
+{
+  return a.kind == b.kind && a.vertical_angle == b.vertical_angle && a.aspect == b.aspect &&
+         a.half_width == b.half_width && a.half_height == b.half_height && a.near == b.near && a.far == b.far;
+}
+
 class SceneWriter {
  public:
   /** \a folder: that of the file */
@@ -102,7 +109,7 @@ class SceneWriter {
   /** Parents before their children. */
   std::vector<Handle<Node>> order_;
 
-  /** Whether the importer added the node to a file without a camera or a lamp. */
+  /** Whether the importer would add the node again: it added it to a file without a camera or a lamp, and as it is. */
   [[nodiscard]] bool is_made_up(Handle<Node> handle, const Node &node) const
   {
     if (node.name != default_name || !node.meshes.empty() || scene_.parent(handle) || scene_.first_child(handle)) {
@@ -110,8 +117,16 @@ class SceneWriter {
     }
     const Camera *camera = scene_.cameras().find(node.camera);
     const Lamp *lamp = scene_.lamps().find(node.lamp);
-    return (scene_.is_camera_default && camera != nullptr && lamp == nullptr && camera->name == default_name) ||
-           (scene_.is_lamp_default && lamp != nullptr && camera == nullptr && lamp->name == default_name);
+    if (scene_.is_camera_default && camera != nullptr && lamp == nullptr) {
+      const scene::PlacedCamera added = default_camera(scene_.bounds());
+      return node.parent_from_node == added.world_from_camera && is_same(*camera, added);
+    }
+    const std::vector<scene::PlacedCamera> cameras = scene_.placed_cameras();
+    if (scene_.is_lamp_default && lamp != nullptr && camera == nullptr && !cameras.empty()) {
+      const scene::PlacedLamp added = default_sun(cameras.front());
+      return node.parent_from_node == added.world_from_lamp && *lamp == added;
+    }
+    return false;
   }
 
   void number_nodes()

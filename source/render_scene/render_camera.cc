@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "render_camera.hh"
 
+#include "gpu_error.hh"
+
+#include <fmt/format.h>
 #include <glm/matrix.hpp>
 
 #include <algorithm>
@@ -9,8 +12,35 @@
 
 namespace gnomon::render_scene {
 
+void check(const scene::PlacedCamera &camera)
+{
+  const auto refuse = [&](std::string_view what) { throw gpu::Error("camera '{}': its {}", camera.name, what); };
+  const glm::dvec3 position_ws(camera.world_from_camera[3]);
+  if (!std::isfinite(position_ws.x + position_ws.y + position_ws.z)) {
+    refuse("position is not finite");
+  }
+  // The negated conditions are also true for NaN.
+  if (camera.kind == scene::CameraKind::Perspective) {
+    if (!(camera.vertical_angle > 0.0F && camera.vertical_angle <= 3.1415927F)) {
+      refuse(fmt::format("vertical angle {} is not above 0 and below pi", camera.vertical_angle));
+    }
+    if (!(camera.near > 0.0F && camera.near <= std::numeric_limits<float>::max())) {
+      refuse(fmt::format("near plane {} is not above 0", camera.near));
+    }
+  }
+  else if (!(camera.half_width > 0.0F && camera.half_height > 0.0F && std::isfinite(camera.half_width) &&
+             std::isfinite(camera.half_height))) {
+    refuse(fmt::format("half size {}x{} is not above 0", camera.half_width, camera.half_height));
+  }
+  if (!(std::isfinite(camera.near) && !std::isnan(camera.far) && camera.aspect >= 0.0F)) {
+    refuse(fmt::format("near plane {}, far plane {} or aspect ratio {} is not a number that can be drawn", camera.near,
+                       camera.far, camera.aspect));
+  }
+}
+
 draw::View view_of(const scene::PlacedCamera &camera, glm::ivec2 size_px, const glm::dvec3 &origin_ws)
 {
+  check(camera);
   const bool is_perspective = camera.kind == scene::CameraKind::Perspective;
   const float image_aspect = float(size_px.x) / float(size_px.y);
   // The float nearest to π exceeds π, so the tangent of its half would be negative.
@@ -23,6 +53,9 @@ draw::View view_of(const scene::PlacedCamera &camera, glm::ivec2 size_px, const 
     half_height *= frame_aspect / image_aspect;
   }
   const float half_width = half_height * image_aspect;
+  if (!(half_width > 0.0F && half_height > 0.0F)) {
+    throw gpu::Error("camera '{}': its frame of {}x{} is too small", camera.name, half_width, half_height);
+  }
   constexpr float infinite = std::numeric_limits<float>::infinity();
   const float far = camera.far > camera.near ? camera.far : infinite;
   glm::mat4 clip_from_view;

@@ -253,7 +253,7 @@ void Engine::begin_draw(draw::Viewport &viewport)
 {
   Data &data = viewport.engine_data<Data>(*this);
   if (!data.is_synced) {
-    throw gpu::Error("eevee: nothing to draw, as the last sync of the viewport failed");
+    throw gpu::Error("eevee: nothing to draw: the viewport was not synced, or its last sync failed");
   }
   take_losses(viewport);
   follow_lamps(data);

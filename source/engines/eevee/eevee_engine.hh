@@ -231,7 +231,7 @@ class Engine final : public draw::Engine {
 
   /** Create the film and its framebuffer. */
   void make_film(draw::Viewport &viewport);
-  /** Start of a draw. \throws gpu::Error if the last sync of the viewport failed; another sync is then required. */
+  /** Start of a draw. \throws gpu::Error if the viewport was not synced, or its last sync failed. */
   void begin_draw(draw::Viewport &viewport);
   /** If submitted work was lost, invalidate all results that it may have contained. */
   void take_losses(draw::Viewport &viewport);

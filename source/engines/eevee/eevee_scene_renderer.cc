@@ -41,6 +41,8 @@ bool SceneRenderer::prepare(gpu::Packet &packet, const scene::PlacedCamera &came
 
 void SceneRenderer::follow(const scene::PlacedCamera &camera)
 {
+  // Before the scene takes its position.
+  render_scene::check(camera);
   const glm::dvec3 origin_ws =
       render_scene::origin_near(glm::dvec3(camera.world_from_camera[3]), render_scene_.origin_ws());
   if (origin_ws != render_scene_.origin_ws()) {

@@ -80,7 +80,8 @@ class SceneRenderer {
   /** What the last draw_within drew. \pre draw_within was called */
   [[nodiscard]] const BudgetReport &budget_report() const
   {
-    return budgeted_->report();
+    static const BudgetReport none;
+    return budgeted_ ? budgeted_->report() : none;
   }
   /**
    * Draw a picture anew, until it is complete or \a limits end it, and write the mean of its samples to \a target.

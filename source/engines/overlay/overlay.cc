@@ -49,7 +49,7 @@ draw::View view_of_pixel(const draw::View &view, glm::ivec2 size_px, glm::ivec2 
 void Overlay::check_up_to_date() const
 {
   if (!scene_.is_up_to_date()) {
-    throw gpu::Error("overlay: the scene or resources of the host were changed since its last update");
+    throw gpu::Error("overlay: the scene is not up to date: call sync, or RenderScene::update, after edits");
   }
 }
 

@@ -239,10 +239,8 @@ const GlDevice::GlFramebuffer &GlDevice::framebuffer_of(const CommandList::PassI
   return host_framebuffer_;
 }
 
-void GlDevice::check_host_framebuffer([[maybe_unused]] std::string_view pass_name,
-                                      [[maybe_unused]] const CommandList::PassInfo &pass)
+void GlDevice::check_host_framebuffer(std::string_view pass_name, const CommandList::PassInfo &pass)
 {
-#ifndef NDEBUG
   const GLuint name = pass.host_framebuffer->name;
   const auto refuse = [&](std::string_view why) {
     throw Error("pass '{}': framebuffer {} of the host {}", pass_name, name, why);
@@ -267,7 +265,6 @@ void GlDevice::check_host_framebuffer([[maybe_unused]] std::string_view pass_nam
       refuse("has no attachment of an sRGB format, which would encode the colours");
     }
   }
-#endif
 }
 
 void GlDevice::begin_pass(std::string_view name, const CommandList::PassInfo &pass)

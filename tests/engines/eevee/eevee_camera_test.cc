@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_camera.hh"
 
+#include "eevee_scene_renderer.hh"
+#include "eevee_test_scene.hh"
+#include "gpu/gpu_testing.hh"
+
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <tuple>
 
 namespace gnomon::eevee {
 namespace {
@@ -89,6 +95,52 @@ TEST(CameraView, StaysFiniteForExtremeCameras)
         }
       }
     }
+  }
+}
+
+TEST(CameraView, NamesALensThatCannotBeDrawn)
+{
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float infinite = std::numeric_limits<float>::infinity();
+  using Change = std::function<void(scene::PlacedCamera &)>;
+  for (const auto &[part, change] : std::initializer_list<std::pair<const char *, Change>>{
+           {"vertical angle 0", [](auto &camera) { camera.vertical_angle = 0.0F; }},
+           {"vertical angle 9", [](auto &camera) { camera.vertical_angle = 9.0F; }},
+           {"vertical angle nan", [](auto &camera) { camera.vertical_angle = nan; }},
+           {"too small", [](auto &camera) { camera.vertical_angle = 1e-45F; }},
+           {"near plane 0", [](auto &camera) { camera.near = 0.0F; }},
+           {"near plane inf", [](auto &camera) { camera.near = infinite; }},
+           {"far plane nan", [](auto &camera) { camera.far = nan; }},
+           {"aspect ratio -1", [](auto &camera) { camera.aspect = -1.0F; }},
+           {"position is not finite", [](auto &camera) { camera.world_from_camera[3].y = nan; }},
+           {"half size 0x1", [](auto &camera) {
+              camera.kind = scene::CameraKind::Orthographic;
+              camera.half_width = 0.0F;
+            }}}) {
+    scene::PlacedCamera camera;
+    camera.name = "eye";
+    change(camera);
+    test::expect_contains(test::error_of([&] { std::ignore = view_of(camera, {64, 64}); }), "camera 'eye': its ");
+    test::expect_contains(test::error_of([&] { std::ignore = view_of(camera, {64, 64}); }), part);
+  }
+}
+
+TEST(CameraView, ACameraThatCannotBeDrawnLeavesTheRendererAsItWas)
+{
+  const std::unique_ptr<gpu::Device> device = gpu::create_null_device();
+  scene::Scene scene;
+  test::add_object(scene, test::add_square_mesh(scene, test::add_material(scene, glm::vec3(0.5F))), glm::dmat4(1));
+  test::add_lamp(scene, scene::LampKind::Point, {0, 0, 3}, {0, 0, -1}, 10.0F);
+  SceneRenderer renderer(*device, scene, {16, 16}, {.sample_count = 1});
+  EXPECT_EQ(renderer.budget_report().samples_drawn, 0) << "nothing was drawn yet";
+  const scene::PlacedCamera camera = test::camera_at({0, -2, 3}, {0, 0, 0});
+  for (const double position : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    scene::PlacedCamera lost = camera;
+    lost.world_from_camera[3].x = position;
+    test::expect_contains(test::error_of([&] { renderer.draw_within(0.033, lost); }), "position is not finite");
+    EXPECT_NO_THROW(while (!renderer.draw_within(0.033, camera)){});
+    test::expect_contains(test::error_of([&] { renderer.draw_sample(lost); }), "position is not finite");
+    EXPECT_TRUE(renderer.draw_sample(camera));
   }
 }
 
