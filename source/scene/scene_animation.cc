@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace gnomon::scene {
 
@@ -141,9 +142,22 @@ void pose_node(Scene &scene, const AnimatedNode &animated, double seconds)
   }
 }
 
+// A spline may exceed the range of its keys, and even that of float.
+constexpr double float_max = std::numeric_limits<float>::max();
+
 float unit_range(double value)
 {
   return float(std::clamp(value, 0.0, 1.0));
+}
+
+float at_least_zero(double value)
+{
+  return float(std::clamp(value, 0.0, float_max));
+}
+
+glm::vec3 at_least_zero(const glm::dvec4 &value)
+{
+  return {at_least_zero(value.x), at_least_zero(value.y), at_least_zero(value.z)};
 }
 
 void set_property(Material &material, AnimatedProperty property, const glm::dvec4 &value)
@@ -155,9 +169,11 @@ void set_property(Material &material, AnimatedProperty property, const glm::dvec
       break;
     case AnimatedProperty::Metallic: material.metallic = unit_range(value.x); break;
     case AnimatedProperty::Roughness: material.roughness = unit_range(value.x); break;
-    case AnimatedProperty::Emissive: material.emissive = glm::max(glm::vec3(value), glm::vec3(0.0F)); break;
+    case AnimatedProperty::Emissive: material.emissive = at_least_zero(value); break;
     case AnimatedProperty::AlphaCutoff: material.alpha_cutoff = unit_range(value.x); break;
-    case AnimatedProperty::NormalScale: material.normal_scale = float(value.x); break;
+    case AnimatedProperty::NormalScale:
+      material.normal_scale = float(std::clamp(value.x, -float_max, float_max));
+      break;
     case AnimatedProperty::OcclusionStrength: material.occlusion_strength = unit_range(value.x); break;
     default: break;
   }
@@ -166,16 +182,15 @@ void set_property(Material &material, AnimatedProperty property, const glm::dvec
 void set_property(Lamp &lamp, AnimatedProperty property, const glm::dvec4 &value)
 {
   switch (property) {
-    case AnimatedProperty::LampColor: lamp.color = glm::max(glm::vec3(value), glm::vec3(0.0F)); break;
-    case AnimatedProperty::LampIntensity: lamp.intensity = float(std::max(value.x, 0.0)); break;
-    case AnimatedProperty::LampRange: lamp.range = float(std::max(value.x, 0.0)); break;
+    case AnimatedProperty::LampColor: lamp.color = at_least_zero(value); break;
+    case AnimatedProperty::LampIntensity: lamp.intensity = at_least_zero(value.x); break;
+    case AnimatedProperty::LampRange: lamp.range = at_least_zero(value.x); break;
     default: break;
   }
 }
 
 void set_property(Camera &camera, AnimatedProperty property, const glm::dvec4 &value)
 {
-  // Clamp the values, because a spline may exceed the range of its keys.
   constexpr double angle_min = 1e-5;
   constexpr double angle_max = 3.1415;
   constexpr double length_min = 1e-12;
@@ -183,8 +198,8 @@ void set_property(Camera &camera, AnimatedProperty property, const glm::dvec4 &v
     case AnimatedProperty::VerticalAngle:
       camera.vertical_angle = float(std::clamp(value.x, angle_min, angle_max));
       break;
-    case AnimatedProperty::HalfWidth: camera.half_width = float(std::max(value.x, length_min)); break;
-    case AnimatedProperty::HalfHeight: camera.half_height = float(std::max(value.x, length_min)); break;
+    case AnimatedProperty::HalfWidth: camera.half_width = float(std::clamp(value.x, length_min, float_max)); break;
+    case AnimatedProperty::HalfHeight: camera.half_height = float(std::clamp(value.x, length_min, float_max)); break;
     default: break;
   }
 }

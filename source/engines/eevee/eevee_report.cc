@@ -265,6 +265,14 @@ Report Inspection::report() const
       }
     }
   }
+  meshes.clear();
+  for (const scene::Object &object : scene.scene().objects()) {
+    const scene::Mesh *mesh = scene.scene().meshes().find(object.mesh);
+    if (mesh && !scene.meshes().has_shape(object.mesh, *mesh) && meshes.insert(object.mesh).second) {
+      report.warnings.push_back(
+          fmt::format("mesh '{}': the host has named no buffers of it, so that it is not drawn", mesh->name));
+    }
+  }
   report.limits = lamps.limits;
   report.limits.insert(report.limits.end(), shadows.limits().begin(), shadows.limits().end());
   if (stl.blend_ordered && stl.blend_ordered->visible.size() > render_scene::blend_order_exact_max) {

@@ -314,12 +314,16 @@ TEST(LeftOutOfTheHost, TheTreeNamesAMeshWhoseBuffersTheHostHasNotNamed)
   const FrameNode without = node();
   EXPECT_FALSE(without.is_made);
   EXPECT_EQ(without.why, "the host has named no buffers of it");
+  const auto warnings = [&] { return renderer.inspect().report().warnings; };
+  EXPECT_EQ(warnings(),
+            std::vector<std::string>{"mesh 'terrain': the host has named no buffers of it, so that it is not drawn"});
   renderer.render_scene().set_host_batch(
       terrain,
       gpu::HostBatch{
           .positions = {1, 0, 12}, .normals = {2, 0, 12}, .vertex_count = 3, .index_buffer = 3, .index_count = 3});
   const FrameNode with = node();
   EXPECT_TRUE(with.is_made);
+  EXPECT_TRUE(warnings().empty());
   EXPECT_EQ(with.bytes, 0U);
   EXPECT_EQ(with.upload_bytes, 0U);
 }

@@ -4,6 +4,8 @@
 
 #include <gnomon/gnomon.hh>
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include "shader_check_files.hh"
 #include "shader_check_reflection.hh"
 
@@ -19,6 +21,7 @@ using namespace gnomon;
 struct Vertex {
   glm::vec3 position;
   glm::vec3 normal;
+  glm::vec2 uv;
 };
 
 void progress_bar(double part);
@@ -26,12 +29,12 @@ void status(const std::string &text);
 void show(const gpu::Texture &texture, double texel);
 
 /** Of a function around each piece. */
-#define GUIDE_NAMES                                                                                               \
-  std::unique_ptr<gpu::Device> &device, scene::Scene &scene, eevee::SceneRenderer &renderer, glm::ivec2 size_px,  \
-      const scene::PlacedCamera &camera, const scene::PlacedCamera &right_camera, const draw::Target &target,     \
-      const draw::Target &right_target, const draw::View &view, render_scene::RenderScene &shared,                \
-      draw::Viewport &viewport, const draw::Engine &former, scene::Handle<scene::Lamp> lamp,                      \
-      scene::Handle<scene::Node> node, scene::Handle<scene::Node> selected, scene::Handle<scene::Material> paint, \
-      scene::Handle<scene::Image> image, const glm::dmat4 &parent_from_node, const glm::dvec3 &position_ws,       \
-      std::size_t lamp_index, unsigned vertices, unsigned indices, unsigned texture, std::uint32_t vertex_count,  \
-      std::uint32_t index_count, int x, int y, bool is_cancel_pressed
+#define GUIDE_NAMES                                                                                              \
+  std::unique_ptr<gpu::Device> &device, scene::Scene &scene, eevee::SceneRenderer &renderer, glm::ivec2 size_px, \
+      const scene::PlacedCamera &camera, const scene::PlacedCamera &right_camera, const draw::Target &target,    \
+      const draw::Target &right_target, const draw::View &view, render_scene::RenderScene &shared,               \
+      draw::Viewport &viewport, const draw::Engine &former, scene::Handle<scene::Lamp> lamp,                     \
+      scene::Handle<scene::Node> node, scene::Handle<scene::Node> selected, const glm::dmat4 &parent_from_node,  \
+      const glm::dvec3 &position_ws, std::size_t lamp_index, unsigned framebuffer, unsigned vertices,            \
+      unsigned indices, unsigned texture, std::uint32_t vertex_count, std::uint32_t index_count, int x, int y,   \
+      bool is_cancel_pressed
