@@ -23,8 +23,8 @@ struct ExportError : std::runtime_error {
  * the written file refers to it (ImportOptions::read_picture).
  *
  * Not written: things that no node uses, meshes without triangles, references to removed things, and the camera and
- * lamp that the importer added to a file without one, unless they were edited; animations of properties of area lamps; shear of nodes that an
- * animation moves. A lamp or camera of several nodes is read as one for each node.
+ * lamp that the importer added to a file without one, unless they were edited; animations of properties of area lamps;
+ * shear of nodes that an animation moves. A lamp or camera of several nodes is read as one for each node.
  *
  * An existing file is replaced only after the new one is complete.
  *
