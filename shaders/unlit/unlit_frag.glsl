@@ -36,7 +36,10 @@ float shadow()
   vec2 slope = vec2(across.z * up.y - up.z * across.y, up.z * across.x - across.z * up.x);
   vec2 to_middle = floor(texel) + 0.5 - texel;
   // If the plane is seen edge-on, its depth at the centre of the texel is undefined.
-  float depth = place.z + (area != 0.0 ? dot(slope / area, to_middle) : 0.0);
+  vec2 depth_of_texel = area != 0.0 ? slope / area : vec2(0.0);
+  // Rasterisers move the corners of triangles to a grid of 1/256 texel, and the plane of the stored depths with them.
+  float moved = (abs(depth_of_texel.x) + abs(depth_of_texel.y)) / 256.0;
+  float depth = place.z + dot(depth_of_texel, to_middle) + moved;
   float stored = texelFetch(depth_texture, ivec2(texel), 0).r;
   // Depths are reversed: a nearer surface has a greater depth.
   return stored > depth + depth_tolerance.x * place.z + depth_tolerance.y ? 1.0 : 0.0;

@@ -343,15 +343,22 @@ TEST_F(TransmissionGpuTest, HostileValuesStayFinite)
   add_plate(at_height(1.0));
   test::add_object(scene, test::add_box_mesh(scene, glass), at_height(0.5, {0.5, 0.5, 0.0}));
   Renderer renderer(*device, scene, square_size_px);
-  const auto expect_finite = [&](const auto &change) {
-    const scene::Material kept = scene.materials()[glass];
-    edit(change);
-    renderer.sync();
-    EXPECT_EQ(renderer.picture(camera).non_finite_count(), 0U);
-    edit([&](scene::Material &value) { value = kept; });
-  };
-  for (const float extreme : {0.0F, -1.0F, std::numeric_limits<float>::denorm_min(), 1e-30F, 1e30F, infinity, nan}) {
+  constexpr float largest = std::numeric_limits<float>::max();
+  for (const float extreme :
+       {0.0F, -1.0F, std::numeric_limits<float>::denorm_min(), 1e-30F, 1e30F, largest, infinity, nan}) {
     SCOPED_TRACE(extreme);
+    const auto expect_finite = [&](const auto &change) {
+      // Also false for NaN.
+      if (!(extreme >= 0.0F && extreme <= largest)) {
+        EXPECT_THROW(edit(change), scene::InvalidEdit);
+        return;
+      }
+      const scene::Material kept = scene.materials()[glass];
+      edit(change);
+      renderer.sync();
+      EXPECT_EQ(renderer.picture(camera).non_finite_count(), 0U);
+      edit([&](scene::Material &value) { value = kept; });
+    };
     expect_finite([&](scene::Material &value) {
       value.ior = extreme;
       value.thickness = 1.0F;

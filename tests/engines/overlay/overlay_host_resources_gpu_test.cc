@@ -57,7 +57,7 @@ TEST_P(OverlayHostResourcesTest, MeshesInTheHostsBuffersArePickedAndHideLines)
   test::expect_contains(test::error_of([&] {
                           static_cast<void>(overlay.pick(view, size_px, {0, 0}));
                         }),
-                        "resources of the host were changed");
+                        "the scene is not up to date");
   EXPECT_EQ(picked(), node);
   EXPECT_EQ(seen_pixels(), 0);
   // With other content, the square hides nothing.

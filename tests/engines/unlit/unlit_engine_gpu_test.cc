@@ -73,6 +73,33 @@ class UnlitGpuTest : public test::GpuDeviceTest {
   std::optional<draw::Viewport> viewport;
 };
 
+TEST_F(UnlitGpuTest, ATiltedSurfaceCastsNoShadowOnItself)
+{
+  const auto node =
+      test::add_object(scene, test::add_square_mesh(scene, test::add_material(scene, ground_color)), glm::dmat4(1));
+  const glm::dvec3 from_sun(0.9, 0.4, -1);
+  test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 2}, from_sun, 1.0F);
+  Engine engine(*render_scene);
+  int covered = 0;
+  for (int step = 0; step < 60; step++) {
+    const double angle = 0.02 * step;
+    const glm::dmat4 tilted = glm::rotate(glm::dmat4(1), angle, {std::sin(step), std::cos(step), 0.2});
+    scene.set_transform(node, glm::scale(tilted, glm::dvec3(2)));
+    // Seen edge-on, it has no depth at the centres of texels.
+    const auto facing = [&](const glm::dvec3 &way) {
+      return std::abs(glm::dot(glm::normalize(way), glm::dvec3(tilted[2])));
+    };
+    if (facing(from_sun) < 0.1 || facing({0, -5, 6}) < 0.1) {
+      continue;
+    }
+    for (const glm::vec4 &pixel : picture(engine).pixels) {
+      covered += pixel.a > 0.0F ? 1 : 0;
+      ASSERT_TRUE(pixel.a == 0.0F || pixel == glm::vec4(ground_color, 1)) << angle;
+    }
+  }
+  EXPECT_GT(covered, 30000);
+}
+
 TEST_F(UnlitGpuTest, TheGroundIsItsColorAndBlackWhereTheCasterHidesItFromTheDepthCamera)
 {
   add_ground();
