@@ -133,13 +133,13 @@ TEST_F(BudgetGpuTest, LayersInSeveralPartsAreBitForBitThoseOfOnePart)
   const auto moved = test::add_object(scene, box, glm::dmat4(1));
   render_scene::RenderScene render_scene(*device, scene);
   Engine engine(render_scene, settings);
-  const auto calls_with = [&](int size_px) {
-    settings.shadow.cube_size_px = settings.shadow.map_size_px = size_px;
+  const auto calls_with = [&](int shadow_size_px) {
+    settings.shadow.cube_size_px = settings.shadow.map_size_px = shadow_size_px;
     engine.set_settings(settings);
     // Each part takes longer than the budget, so that a call has one.
     Budgeted budgeted(render_scene, engine, 2.0 * budget);
     const int calls = budgeted.refine(camera);
-    EXPECT_EQ(budgeted.pixels(), without_budget(settings)) << size_px;
+    EXPECT_EQ(budgeted.pixels(), without_budget(settings)) << shadow_size_px;
     return calls;
   };
   const int calls = calls_with(1024);
