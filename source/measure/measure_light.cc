@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "measure_light.hh"
 
-#include "eevee_ltc_table.hh"
-#include "eevee_multiscatter_table.hh"
-
 #include "eevee_area_shared.h"
 #include "eevee_multiscatter_shared.h"
 #include "eevee_shape_shared.h"
+#include "eevee_tables.hh"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

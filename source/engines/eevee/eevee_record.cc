@@ -4,12 +4,11 @@
 #include "eevee_engine_data.hh"
 
 #include "draw_view_shared.h"
-#include "eevee_ltc_table.hh"
 #include "eevee_material_variants.hh"
 #include "eevee_multiscatter_shared.h"
-#include "eevee_multiscatter_table.hh"
 #include "eevee_shape_shared.h"
 #include "eevee_surface_functions.hh"
+#include "eevee_tables.hh"
 
 #include <algorithm>
 #include <cmath>
