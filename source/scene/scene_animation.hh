@@ -14,6 +14,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -68,32 +69,14 @@ struct AnimatedNode {
   SharedTrack weights_track;
 };
 
-/** A property of a material, lamp or camera that can be animated (KHR_animation_pointer). */
-enum class AnimatedProperty {
-  /** Material::base_color and Material::alpha. */
-  BaseColor,
-  Metallic,
-  Roughness,
-  Emissive,
-  AlphaCutoff,
-  NormalScale,
-  OcclusionStrength,
-  LampColor,
-  LampIntensity,
-  LampRange,
-  /** Camera::vertical_angle. */
-  VerticalAngle,
-  HalfWidth,
-  HalfHeight,
-};
-
-/** Number of components of a property: 4 for BaseColor, 3 for other colours, otherwise 1. */
-[[nodiscard]] std::size_t width_of(AnimatedProperty property);
+/** Number of components of a property that can be animated: 4 for base_color, which has alpha as the last one. */
+[[nodiscard]] std::size_t width_of(std::string_view property);
 
 /** A property of a material, lamp or camera, and the track that animates it. */
 struct AnimatedValue {
   std::variant<Handle<Material>, Handle<Lamp>, Handle<Camera>> target;
-  AnimatedProperty property = AnimatedProperty::BaseColor;
+  /** Name of a row of the target with Description::is_animated. */
+  std::string_view property;
   /** Factors of the first three numbers of the track, for the conversion of units. */
   glm::dvec3 factor{1.0};
   SharedTrack track;

@@ -30,10 +30,16 @@ static std::string fault_of(const WorldPicture &picture)
 
 std::string fault_of(const World &world)
 {
-  const auto is_factor = [](float value) { return value >= 0.0F && value <= 1e30F; };
-  if (!is_factor(world.color.r) || !is_factor(world.color.g) || !is_factor(world.color.b) ||
-      !is_factor(world.strength) || !std::isfinite(world.rotation)) {
-    return "its colour and strength must be numbers of at least 0, and its rotation a number";
+  std::string number_fault;
+  World::for_each_property([&](const auto &row) {
+    for_each_number(world.*row.member, [&](double value) {
+      if (!row.allows(value)) {
+        number_fault = fmt::format("its {} is {:g}, and must be {}", row.name, value, range_text(row));
+      }
+    });
+  });
+  if (!number_fault.empty()) {
+    return number_fault;
   }
   if (!world.picture) {
     return {};

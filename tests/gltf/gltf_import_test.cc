@@ -891,7 +891,7 @@ TEST(GltfLamp, ShadowExtrasAreAbsentOrRead)
   const json point = {{"type", "point"}};
   const scene::LampShadow none = import_lamp(point).shadow;
   EXPECT_FALSE(none.kind || none.size || none.exponent || none.bias || none.clip_start || none.clip_end ||
-               none.filter_radius || none.esm_size || none.esm_format);
+               none.filter_angle || none.esm_size || none.esm_format);
   // Blender writes whole numbers both as integers and as floats.
   const scene::LampShadow all = import_lamp(point, {{"gnomon_shadow", "esm"},
                                                     {"gnomon_shadow_size", 1024},
@@ -909,8 +909,8 @@ TEST(GltfLamp, ShadowExtrasAreAbsentOrRead)
   EXPECT_EQ(all.bias, 0.5F);
   EXPECT_EQ(all.clip_start, 0.25F);
   EXPECT_EQ(all.clip_end, 40.0F);
-  ASSERT_TRUE(all.filter_radius);
-  EXPECT_FLOAT_EQ(*all.filter_radius, float(pi / 4));
+  ASSERT_TRUE(all.filter_angle);
+  EXPECT_FLOAT_EQ(*all.filter_angle, float(pi / 4));
   EXPECT_EQ(all.esm_size, 512);
   EXPECT_EQ(all.esm_format, scene::EsmFormat::Half);
   const auto kind = [&](const char *word) { return import_lamp(point, {{"gnomon_shadow", word}}).shadow.kind; };

@@ -19,7 +19,6 @@
 namespace gnomon::gltf {
 
 using scene::AnimatedNode;
-using scene::AnimatedProperty;
 using scene::AnimatedValue;
 using scene::Handle;
 using scene::Interpolation;
@@ -121,13 +120,24 @@ class AnimationImporter {
       import_node_channel(sampler, parts->index, std::string(parts->path), node_places, animation);
       return;
     }
-    const auto *const pointer = std::ranges::find_if(pointers, [&](const Pointer &one) {
-      return parts && one.collection == parts->collection && one.path == parts->path;
-    });
-    if (pointer == pointers.end()) {
+    const std::string_view property = parts ? animated_property(*parts) : "";
+    if (property.empty()) {
       throw Fault("pointer", "'" + printable(channel.pointer) + "' is not played");
     }
-    import_value_channel(sampler, *parts, *pointer, animation);
+    import_value_channel(sampler, *parts, property, animation);
+  }
+
+  /** Name of the property that the pointer animates; empty: none. */
+  static std::string_view animated_property(const PointerParts &parts)
+  {
+    std::string_view property;
+    for_each_animated([&](std::string_view collection, const scene::Description &row) {
+      const bool is_it = row.path == parts.path || (row.name == "emissive" && parts.path == strength_path);
+      if (collection == parts.collection && is_it) {
+        property = row.name;
+      }
+    });
+    return property;
   }
 
   void import_node_channel(const Model::AnimationSampler &sampler, int node, const std::string &path,
@@ -183,17 +193,17 @@ class AnimationImporter {
     }
   }
 
-  void import_value_channel(const Model::AnimationSampler &sampler, const PointerParts &parts, const Pointer &pointer,
-                            scene::Animation &animation)
+  void import_value_channel(const Model::AnimationSampler &sampler, const PointerParts &parts,
+                            std::string_view property, scene::Animation &animation)
   {
     constexpr std::array<Model::ElementType, 5> types = {Model::ElementType::Scalar, Model::ElementType::Scalar,
                                                          Model::ElementType::Vec2, Model::ElementType::Vec3,
                                                          Model::ElementType::Vec4};
     AnimatedValue value;
-    value.property = pointer.property;
+    value.property = property;
     // emissiveStrength is one number, which is multiplied by the three numbers of emissiveFactor.
-    const bool is_strength = pointer.path.ends_with("emissiveStrength");
-    const std::size_t width = is_strength ? 1 : width_of(pointer.property);
+    const bool is_strength = parts.path == strength_path;
+    const std::size_t width = is_strength ? 1 : scene::width_of(property);
     value.track = track(sampler, width, types[width]);
     bool has_target = false;
     const auto add = [&](auto handle, const glm::dvec3 &factor) {
@@ -206,13 +216,13 @@ class AnimationImporter {
       if (const auto found = things_.materials.find(parts.index); found != things_.materials.end()) {
         const Model::Material &source = file_.model.materials[std::size_t(parts.index)];
         const glm::dvec3 emissive(source.emissive[0], source.emissive[1], source.emissive[2]);
-        add(found->second, is_strength                                      ? emissive
-                           : pointer.property == AnimatedProperty::Emissive ? glm::dvec3(source.emissive_strength)
-                                                                            : glm::dvec3(1.0));
+        add(found->second, is_strength              ? emissive
+                           : property == "emissive" ? glm::dvec3(source.emissive_strength)
+                                                    : glm::dvec3(1.0));
       }
     }
     else if (parts.collection == "lights") {
-      const bool is_intensity = pointer.property == AnimatedProperty::LampIntensity;
+      const bool is_intensity = property == "intensity";
       if (const auto found = things_.lamps.find(parts.index); found != things_.lamps.end()) {
         for (const Handle<scene::Lamp> lamp : found->second) {
           add(lamp, glm::dvec3(is_intensity ? 1.0 / lumen_per_watt : 1.0));

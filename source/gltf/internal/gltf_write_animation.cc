@@ -22,7 +22,6 @@
 namespace gnomon::gltf {
 
 using scene::AnimatedNode;
-using scene::AnimatedProperty;
 using scene::AnimatedValue;
 using scene::Handle;
 using scene::Interpolation;
@@ -130,13 +129,12 @@ class AnimationWriter {
 
   void add_value(const AnimatedValue &value)
   {
-    const auto *const pointer = std::ranges::find(pointers, value.property, &Pointer::property);
     const std::optional<int> index = index_of(value);
     if (!index) {
       return;
     }
     // The importer multiplies the numbers in the file by the unit. A strength has one number, and its property three.
-    const std::size_t width = width_of(value.property);
+    const std::size_t width = scene::width_of(value.property);
     const std::vector<float> &source = value.track->values;
     const double unit = unit_of(value);
     std::vector<float> values;
@@ -145,9 +143,13 @@ class AnimationWriter {
       const std::size_t place = value.track->width == width ? i : i / width;
       values.push_back(float(source[place] * (component < 3 ? value.factor[int(component)] / unit : 1.0)));
     }
-    const std::string prefix = pointer->collection == "lights" ? std::string(light_pointer_prefix) : "";
-    const std::string path = prefix + '/' + std::string(pointer->collection) + '/' + std::to_string(*index) + '/' +
-                             std::string(pointer->path);
+    std::string path;
+    for_each_animated([&](std::string_view collection, const scene::Description &row) {
+      if (row.name == value.property) {
+        path = (collection == "lights" ? std::string(light_pointer_prefix) : "") + '/' + std::string(collection) + '/' +
+               std::to_string(*index) + '/' + std::string(row.path);
+      }
+    });
     add_channel(*value.track, output(values, width),
                 R"({"path":"pointer","extensions":{"KHR_animation_pointer":{"pointer":")" + path + "\"}}}");
     has_pointers = true;
@@ -177,10 +179,10 @@ class AnimationWriter {
   /** The importer's factor for the values of the written file. */
   [[nodiscard]] double unit_of(const AnimatedValue &value) const
   {
-    if (value.property == AnimatedProperty::LampIntensity) {
+    if (value.property == "intensity") {
       return 1.0 / lumen_per_watt;
     }
-    if (value.property == AnimatedProperty::Emissive) {
+    if (value.property == "emissive") {
       return double(emissive_strength(scene_.materials()[std::get<Handle<scene::Material>>(value.target)].emissive));
     }
     return 1.0;
