@@ -383,11 +383,11 @@ Scene import_gltf(const std::filesystem::path &path, const ImportOptions &option
   try {
     Progress progress(options.progress);
     progress.begin_phase(1, 0.2F);
-    File file = load_file(path);
+    Warnings warnings;
+    File file = load_file(path, warnings);
     if (!options.variant.empty()) {
       select_variant(file.model, options.variant);
     }
-    Warnings warnings;
     progress.begin_phase(file.model.buffer_views.size() + primitive_count(file.model), 0.4F);
     decompress(file, progress, warnings);
     Scene scene = Importer(file, options, progress, std::move(warnings)).import();

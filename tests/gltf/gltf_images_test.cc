@@ -208,7 +208,7 @@ TEST(GltfImage, UnreadableImagesAreNamedAndLeaveTheFactor)
 {
   EXPECT_HAS(reason({{"name", "leaf"}, {"uri", data_uri({1, 2, 3})}}), "image 'leaf': is none of PNG, JPEG and WebP");
   EXPECT_HAS(reason({{"uri", "data:image/png;base64,"}}), "image 0: is empty");
-  EXPECT_HAS(reason({{"uri", "data:image/png,abc"}}), "image 0: its data URI is not base64");
+  EXPECT_HAS(reason({{"uri", "data:image/png,abc"}}), "image 0: is none of PNG, JPEG and WebP");
   EXPECT_HAS(reason({{"uri", "absent.png"}}), "image 0 'absent.png': there is no such file");
   EXPECT_HAS(reason({{"uri", "/etc/passwd"}}), "is not a file beside the scene");
   EXPECT_HAS(reason(json::object()), "image 0: bufferView: is missing");

@@ -85,10 +85,7 @@ TEST(GltfFile, BuffersAreChecked)
   EXPECT_HAS(error_with({{"byteLength", 36}, {"uri", "/etc/passwd"}}), "is not a file beside the scene");
   EXPECT_HAS(error_with({{"byteLength", 36}, {"uri", "http://a/b.bin"}}), "is not a file beside the scene");
   EXPECT_HAS(error_with({{"byteLength", 36}, {"uri", "$(touch x)`touch y`"}}), "there is no such file");
-  EXPECT_HAS(error_with({{"byteLength", 36}, {"uri", "data:text/plain,hello"}}),
-             "buffer 0: its data URI is not base64");
-  EXPECT_HAS(error_with({{"byteLength", 36}, {"uri", "data:a/b;base64,????"}}),
-             "buffer 0: its data URI cannot be decoded");
+  EXPECT_HAS(error_with({{"byteLength", 36}, {"uri", "data:a/b;base64,????"}}), "buffer 0: its data URI is not base64");
   EXPECT_HAS(error_with({{"byteLength", 36}, {"uri", "data:a/b;base64,AAAA"}}),
              "buffer 0: is cut off: it says 36 bytes, but has 3");
   EXPECT_HAS(error_with({{"byteLength", -1}, {"uri", "x"}}), "buffers[0].byteLength: is -1");

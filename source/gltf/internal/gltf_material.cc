@@ -49,7 +49,6 @@ class MaterialReader {
     read_textures();
     result_.is_double_sided = source_.is_double_sided;
     result_.is_unlit = source_.is_unlit;
-    warn_extensions();
     return result_;
   }
 
@@ -249,21 +248,6 @@ class MaterialReader {
     result.rotation = limited("rotation", slot.rotation);
     result.scale = {limited("scale", slot.scale[0]), limited("scale", slot.scale[1])};
     return result;
-  }
-
-  void warn_extensions()
-  {
-    constexpr std::array read_or_without_effect{
-        "KHR_materials_anisotropy", "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
-        "KHR_materials_ior",        "KHR_materials_sheen",     "KHR_materials_pbrSpecularGlossiness",
-        "KHR_materials_specular",   "KHR_materials_unlit",     "KHR_materials_transmission",
-        "KHR_materials_variants",   "KHR_materials_volume"};
-    for (const std::string &name : source_.extensions) {
-      if (std::find(read_or_without_effect.begin(), read_or_without_effect.end(), name) ==
-          read_or_without_effect.end()) {
-        warnings_.add(what_, printable(name) + " is not drawn");
-      }
-    }
   }
 
   /** Upper limit for factors without one in glTF. Products of a few such numbers are finite in float. */

@@ -198,8 +198,6 @@ struct Model {
     double alpha_cutoff = 0.5;
     bool is_double_sided = false;
     bool is_unlit = false;
-    /** Names of all extensions, sorted. */
-    std::vector<std::string> extensions;
   };
   struct Texture {
     std::string name;
