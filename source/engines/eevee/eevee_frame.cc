@@ -95,9 +95,9 @@ void read_depths(FrameSample &sample)
 
 void record_lamp_points(const FrameStep & /*step*/, FrameSample &sample, gpu::CommandList &list)
 {
-  sample.data.stl.lamp_points =
+  sample.lamp_points =
       sample.data.shared->lamp_points.sample(std::uint32_t(sample.data.sample_index), sample.settings.seed);
-  write_lamp_points(sample.data, sample.viewport.device(), list);
+  write_lamp_points(sample.data, sample.lamp_points, sample.viewport.device(), list);
 }
 
 void record_light_clusters(const FrameStep & /*step*/, FrameSample &sample, gpu::CommandList &list)
@@ -121,7 +121,7 @@ void record_shadows(const FrameStep & /*step*/, FrameSample &sample, gpu::Comman
   const int parts_max = part.is_first || !is_disturbed ? part.setup_max : draw::Viewport::no_setup_max;
   const UpdatedLayers updated = stl.shadows->update(
       sample.viewport.device(), sample.view, pixel_size(sample.view, sample.viewport), shared.shadow_pass, list,
-      stl.lamp_points, sample.data.depth_feedback.picture(sample.viewport.drawn_size_px()), parts_max);
+      sample.lamp_points.points, sample.data.depth_feedback.picture(sample.viewport.drawn_size_px()), parts_max);
   sample.viewport.set_setup(updated.part_count, updated.is_all);
 }
 

@@ -214,10 +214,6 @@ void Engine::update_depth_camera(gpu::Device &device, std::span<const draw::Obje
   }
   DepthCamera &camera = *depth_camera_;
   camera.view = *view;
-  camera.clip_from_world = view->clip_from_world();
-  // A perspective depth is near / distance, and its rounding error is relative to the depth. The error of an
-  // orthographic depth is relative to the depth range.
-  camera.tolerance = view->is_perspective() ? glm::vec2(1e-5F, 0.0F) : glm::vec2(0.0F, 1e-6F);
   const glm::ivec2 size_px = settings_.depth_size_px;
   if (!camera.texture || camera.texture.desc().width != size_px.x || camera.texture.desc().height != size_px.y) {
     camera.drawn.reset();
