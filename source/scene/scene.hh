@@ -71,10 +71,12 @@ struct PlacedCamera : Camera {
  * target_from_source.
  *
  * Every edit gives the changed aspects a new revision. A consumer compares them with the revisions that it has already
- * processed, and repeats only the dependent work. Setting an equal value changes nothing.
+ * processed, and repeats only the dependent work. Setting an equal value changes nothing. Constructing, copying, moving
+ * and assigning a scene are edits of all that it holds, so that a consumer that keeps a reference to it, such as a
+ * renderer, shows the new content. A scene that was moved from can be assigned and destroyed.
  *
  * Removing a thing does not edit the things that refer to it: their handles become stale and are treated as absent, or
- * as the default material. stale_references() lists them.
+ * as the default material. stale_references() lists them. restore() undoes a removal: the handles are valid again.
  *
  * Threads: reading is safe from several threads; an edit needs exclusive access.
  */
@@ -149,10 +151,10 @@ class Scene {
   [[nodiscard]] Handle<Node> first_child(Handle<Node> node) const;
   [[nodiscard]] Handle<Node> next_sibling(Handle<Node> node) const;
 
-  /** Revision of the last edit; 0 before the first. */
+  /** Revision of the last edit; that of the construction or assignment of the scene before the first. Above 0. */
   [[nodiscard]] Revision revision() const
   {
-    return revision_;
+    return first_revision_.or_later(revision_);
   }
 
   /** The light of distant surroundings; std::nullopt: there is none. */
@@ -160,10 +162,10 @@ class Scene {
   {
     return world_;
   }
-  /** Revision of the last set_world that changed the world; 0: there was none. */
+  /** Revision of the last change of the world. */
   [[nodiscard]] Revision world_revision() const
   {
-    return world_revision_;
+    return first_revision_.or_later(world_revision_);
   }
   /** \throws InvalidEdit with the reason of fault_of; nothing changes. */
   void set_world(std::optional<World> world);
@@ -181,7 +183,13 @@ class Scene {
   /** Avoids copies while \a count nodes are added. */
   void reserve_nodes(std::size_t count);
 
-  /** Sets a thing's value. \throws StaleHandle or InvalidEdit; the scene is then unchanged. */
+  /**
+   * Sets a thing's value. \throws StaleHandle or InvalidEdit; the scene is then unchanged.
+   *
+   * A mesh in deformed_meshes is edited as it stands: its rest shape changes so that the current joints and weights
+   * deform it to \a mesh. With another number of positions, it no longer fits its rest shape; pose() then throws until
+   * the host replaces the entry of deformed_meshes, or removes it.
+   */
   void replace(Handle<Mesh> handle, Mesh mesh);
   void replace(Handle<Image> handle, Image image);
   void replace(Handle<Texture> handle, const Texture &texture);
@@ -210,6 +218,20 @@ class Scene {
    */
   void set_parent(Handle<Node> node, Handle<Node> parent);
 
+  /**
+   * Adds a thing again that was removed, under its old handle, so that all that names it has it again. \a value may be
+   * another value than before. \throws InvalidEdit if the value is invalid, if the scene never had the thing or has it,
+   * or if another thing has its index: undo additions that followed the removal first. The scene is then unchanged.
+   */
+  template <typename T>
+  requires(!std::same_as<T, Node>) void restore(Handle<T> handle, T value);
+  /**
+   * The same for a node. It becomes a child of \a parent, before the child \a next, or the last child if \a next is an
+   * invalid handle; a root if \a parent is one. \throws StaleHandle; InvalidEdit if \a next is not a child of \a
+   * parent.
+   */
+  void restore(Handle<Node> handle, Node node, Handle<Node> parent = {}, Handle<Node> next = {});
+
   /** Removes a thing. All copies of its handle become stale. \throws StaleHandle */
   template <typename T>
   void remove(Handle<T> handle)
@@ -219,7 +241,7 @@ class Scene {
       remove_subtree(handle);
     }
     else {
-      writable_pool<T>().remove(handle, ++revision_);
+      writable_pool<T>().remove(handle, edited());
     }
   }
 
@@ -274,10 +296,23 @@ class Scene {
   /** Calls \a visit with the node, the mesh and the world matrix of each of objects(). */
   template <typename Visit>
   void for_each_object(const Visit &visit) const;
+  friend void deform_meshes(Scene &scene);
+  /** Begins an edit. \return its revision */
+  Revision edited()
+  {
+    return revision_ = next_revision();
+  }
+  template <typename T>
+  Handle<T> add_value(T value);
   template <typename T>
   void replace_value(Handle<T> handle, T value);
+  template <typename T>
+  void restore_value(Handle<T> handle, T value);
+  /** Replaces a mesh in deformed_meshes, whose rest shape does not change. */
+  void replace_deformed(Handle<Mesh> handle, Mesh mesh);
   void remove_subtree(Handle<Node> node);
-  void link(Handle<Node> node, Handle<Node> parent);
+  /** \a next: the child of \a parent that follows; an invalid handle: none. */
+  void link(Handle<Node> node, Handle<Node> parent, Handle<Node> next = {});
   void unlink(Handle<Node> node);
   /** Updates world matrices and visibility of \a node and its descendants. Changed ones get \a revision. */
   void update_subtree(Handle<Node> node, Revision revision);
@@ -303,6 +338,8 @@ class Scene {
   Pool<Material> materials_;
   Pool<Lamp> lamps_;
   Pool<Camera> cameras_;
+  /** The last member: not below those of the pools. */
+  FirstRevision first_revision_;
 };
 
 }  // namespace gnomon::scene

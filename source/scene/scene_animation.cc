@@ -175,6 +175,7 @@ void set_property(Thing &thing, std::string_view property, const glm::dvec4 &val
 
 void pose(Scene &scene, const Animation &animation, double seconds)
 {
+  check_deformed_meshes(scene);
   for (const AnimatedNode &node : animation.nodes) {
     pose_node(scene, node, seconds);
   }

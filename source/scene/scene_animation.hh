@@ -115,7 +115,8 @@ struct JointWeights {
 };
 
 /**
- * The rest shape of a mesh that is deformed by morph targets or joints. Only one node uses the mesh. The CPU deforms
+ * The rest shape of a mesh that is deformed by morph targets or joints. Only one node uses the mesh; others may show it
+ * as it stands. Edits of the mesh change the rest shape (Scene::replace). The CPU deforms
  * the vertices once for each pose with linear blend skinning (glTF 2.0, section 3.7.3). Shadows, culling, picking and
  * the reference renderer read the deformed mesh.
  */
@@ -135,7 +136,10 @@ struct DeformedMesh {
   /** `joint_sets` consecutive entries for each vertex. */
   std::vector<JointWeights> joint_weights;
   std::size_t joint_sets = 0;
-  /** Joint matrices and weights of the last deformation. deform_meshes() skips the mesh if they are unchanged. */
+  /**
+   * Joint matrices and weights of the last deformation; empty: the mesh has its rest shape. deform_meshes() skips the
+   * mesh if they are unchanged.
+   */
   std::vector<glm::dmat4> deformed_by_joints;
   std::vector<double> deformed_by_weights;
 };
@@ -145,13 +149,21 @@ class Scene;
 /**
  * Set all values that \a animation animates to their values at \a seconds, and deform the meshes. Skips nodes,
  * materials, lamps and cameras that were removed. A value that does not change is not an edit of the scene.
+ * \throws InvalidEdit as deform_meshes(), before anything changes
  */
 void pose(Scene &scene, const Animation &animation, double seconds);
 
 /** Set the morph weights of all meshes of \a node. Missing weights are 0. Call deform_meshes() afterwards. */
 void set_morph_weights(Scene &scene, Handle<Node> node, std::span<const double> weights);
 
-/** Deform all meshes in Scene::deformed_meshes. Call this after joints have moved or weights have changed. */
+/** \throws InvalidEdit that names the mesh if one of Scene::deformed_meshes does not fit its mesh and its skin. */
+void check_deformed_meshes(const Scene &scene);
+
+/**
+ * Deform all meshes in Scene::deformed_meshes. Call this after joints have moved or weights have changed. Skips meshes
+ * that were removed, or that are in buffers of a host. \throws InvalidEdit as check_deformed_meshes(), before anything
+ * changes; or if a vertex names a joint that its skin does not have, or is deformed beyond the range of float
+ */
 void deform_meshes(Scene &scene);
 
 }  // namespace gnomon::scene

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene_animation.hh"
 
+#include "internal/scene_rest_shape.hh"
 #include "scene.hh"
 
 #include <glm/geometric.hpp>
@@ -8,6 +9,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
 
 namespace gnomon::scene {
 
@@ -27,24 +32,61 @@ struct Shape {
   std::vector<glm::dvec3> tangents;
 };
 
-Shape morphed(const DeformedMesh &deformed)
+/** Adds the differences of the morph targets at \a weights. */
+void morph(const DeformedMesh &deformed, std::span<const double> weights, Shape &shape)
 {
-  Shape shape{{deformed.positions.begin(), deformed.positions.end()},
-              {deformed.normals.begin(), deformed.normals.end()},
-              {deformed.tangents.begin(), deformed.tangents.end()}};
   const auto add = [](std::vector<glm::dvec3> &sum, const std::vector<glm::vec3> &differences, double weight) {
     for (std::size_t i = 0; i < std::min(sum.size(), differences.size()); i++) {
       sum[i] += weight * glm::dvec3(differences[i]);
     }
   };
-  for (std::size_t i = 0; i < deformed.targets.size(); i++) {
-    if (deformed.weights[i] != 0.0) {
-      add(shape.positions, deformed.targets[i].positions, deformed.weights[i]);
-      add(shape.normals, deformed.targets[i].normals, deformed.weights[i]);
-      add(shape.tangents, deformed.targets[i].tangents, deformed.weights[i]);
+  for (std::size_t i = 0; i < std::min(deformed.targets.size(), weights.size()); i++) {
+    if (weights[i] != 0.0) {
+      add(shape.positions, deformed.targets[i].positions, weights[i]);
+      add(shape.normals, deformed.targets[i].normals, weights[i]);
+      add(shape.tangents, deformed.targets[i].tangents, weights[i]);
     }
   }
-  return shape;
+}
+
+/** The reason why \a mesh cannot be deformed; empty if it can. */
+std::string fault_of(const Scene &scene, const DeformedMesh &deformed, const Mesh &mesh)
+{
+  const std::size_t count = deformed.positions.size();
+  if (mesh.positions.size() != count) {
+    return fmt::format("it has {} positions, and its rest shape in Scene::deformed_meshes has {}",
+                       mesh.positions.size(), count);
+  }
+  if (deformed.normals.size() != count || (!deformed.tangents.empty() && deformed.tangents.size() != count)) {
+    return fmt::format("its rest shape has {} positions, {} normals and {} tangents", count, deformed.normals.size(),
+                       deformed.tangents.size());
+  }
+  if (deformed.weights.size() != deformed.targets.size()) {
+    return fmt::format("it has {} morph targets and {} weights", deformed.targets.size(), deformed.weights.size());
+  }
+  if (deformed.skin < 0) {
+    return {};
+  }
+  if (std::size_t(deformed.skin) >= scene.skins.size()) {
+    return fmt::format("skin {} is beyond the {} of the scene", deformed.skin, scene.skins.size());
+  }
+  const Skin &skin = scene.skins[std::size_t(deformed.skin)];
+  if (skin.joints.size() != skin.joint_from_mesh.size()) {
+    return fmt::format("skin '{}' has {} joints and {} matrices", skin.name, skin.joints.size(),
+                       skin.joint_from_mesh.size());
+  }
+  if (deformed.joint_weights.size() != count * deformed.joint_sets) {
+    return fmt::format("its rest shape has {} positions and {} joint weights, which is not {} for each", count,
+                       deformed.joint_weights.size(), deformed.joint_sets);
+  }
+  return {};
+}
+
+/** The mesh that a deformation writes; nullptr if \a deformed takes no part in it. */
+const Mesh *mesh_of(const Scene &scene, const DeformedMesh &deformed)
+{
+  const Mesh *mesh = scene.meshes().find(deformed.mesh);
+  return mesh && !mesh->host_shape && scene.nodes().is_live(deformed.node) ? mesh : nullptr;
 }
 
 /**
@@ -73,18 +115,31 @@ glm::dmat3 normal_matrix(const glm::dmat3 &m)
   return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
 }
 
-void skin_vertices(const DeformedMesh &deformed, const std::vector<glm::dmat4> &joints, Shape &shape)
+/** The weighted sum of the matrices of a vertex. \throws InvalidEdit that names \a mesh if it has no such joint */
+glm::dmat4 vertex_matrix(const DeformedMesh &deformed, const std::vector<glm::dmat4> &joints, std::size_t vertex,
+                         const Mesh &mesh)
 {
-  for (std::size_t vertex = 0; vertex < shape.positions.size(); vertex++) {
-    glm::dmat4 matrix(0.0);
-    for (std::size_t set = 0; set < deformed.joint_sets; set++) {
-      const JointWeights &influence = deformed.joint_weights[vertex * deformed.joint_sets + set];
-      for (int i = 0; i < 4; i++) {
-        if (influence.weights[i] != 0.0F) {
-          matrix += double(influence.weights[i]) * joints[influence.joints[std::size_t(i)]];
+  glm::dmat4 matrix(0.0);
+  for (std::size_t set = 0; set < deformed.joint_sets; set++) {
+    const JointWeights &influence = deformed.joint_weights[vertex * deformed.joint_sets + set];
+    for (int i = 0; i < 4; i++) {
+      if (influence.weights[i] != 0.0F) {
+        const std::size_t joint = influence.joints[std::size_t(i)];
+        if (joint >= joints.size()) {
+          throw InvalidEdit(fmt::format("mesh '{}': vertex {} has joint {}, and its skin has {}", mesh.name, vertex,
+                                        joint, joints.size()));
         }
+        matrix += double(influence.weights[i]) * joints[joint];
       }
     }
+  }
+  return matrix;
+}
+
+void skin_vertices(const DeformedMesh &deformed, const std::vector<glm::dmat4> &joints, const Mesh &mesh, Shape &shape)
+{
+  for (std::size_t vertex = 0; vertex < shape.positions.size(); vertex++) {
+    const glm::dmat4 matrix = vertex_matrix(deformed, joints, vertex, mesh);
     shape.positions[vertex] = glm::dvec3(matrix * glm::dvec4(shape.positions[vertex], 1.0));
     const glm::dmat3 linear(matrix);
     // The cofactors of a mirroring matrix reverse normals. Reverse them again.
@@ -107,21 +162,16 @@ void make_flat_normals(Shape &shape, const std::vector<std::uint32_t> &indices)
   }
 }
 
-void deform(Scene &scene, DeformedMesh &deformed)
+/** The mesh with its vertices deformed by \a joints; empty if it does not change. */
+std::optional<Mesh> deformed_mesh(const DeformedMesh &deformed, const std::vector<glm::dmat4> &joints,
+                                  const Mesh &current)
 {
-  std::vector<glm::dmat4> joints;
+  Shape shape{{deformed.positions.begin(), deformed.positions.end()},
+              {deformed.normals.begin(), deformed.normals.end()},
+              {deformed.tangents.begin(), deformed.tangents.end()}};
+  morph(deformed, deformed.weights, shape);
   if (deformed.skin >= 0) {
-    joints = joint_matrices(scene, scene.skins[std::size_t(deformed.skin)], deformed.node);
-  }
-  if (joints == deformed.deformed_by_joints && deformed.weights == deformed.deformed_by_weights) {
-    return;
-  }
-  deformed.deformed_by_joints = std::move(joints);
-  deformed.deformed_by_weights = deformed.weights;
-  const Mesh &current = scene.meshes()[deformed.mesh];
-  Shape shape = morphed(deformed);
-  if (deformed.skin >= 0) {
-    skin_vertices(deformed, deformed.deformed_by_joints, shape);
+    skin_vertices(deformed, joints, current, shape);
   }
   if (deformed.has_flat_normals) {
     make_flat_normals(shape, current.indices);
@@ -138,16 +188,99 @@ void deform(Scene &scene, DeformedMesh &deformed)
   }
   // Do not edit the mesh if it does not change, so that it is not uploaded and shadows are not drawn again.
   if (positions == current.positions && normals == current.normals && tangents == current.tangents) {
-    return;
+    return std::nullopt;
   }
-  scene.edit(deformed.mesh, [&](Mesh &mesh) {
-    mesh.positions = std::move(positions);
-    mesh.normals = std::move(normals);
-    mesh.tangents = std::move(tangents);
-  });
+  Mesh mesh = current;
+  mesh.positions = std::move(positions);
+  mesh.normals = std::move(normals);
+  mesh.tangents = std::move(tangents);
+  return mesh;
+}
+
+/** A vector whose sum with \a difference has the direction of \a sum; of length 1 if there is one. */
+glm::dvec3 without_difference(const glm::dvec3 &sum, const glm::dvec3 &difference)
+{
+  const double along = glm::dot(sum, difference);
+  const double square = along * along - glm::dot(difference, difference) + 1.0;
+  return (along + std::sqrt(std::max(0.0, square))) * sum - difference;
+}
+
+/** Whether the normals of \a mesh are those of its triangles. */
+bool has_flat_normals(const Mesh &mesh)
+{
+  Shape flat{{mesh.positions.begin(), mesh.positions.end()}, {mesh.normals.begin(), mesh.normals.end()}, {}};
+  make_flat_normals(flat, mesh.indices);
+  constexpr float tolerance = 1e-5F;
+  for (std::size_t i = 0; i < mesh.normals.size(); i++) {
+    if (glm::distance(unit_or(flat.normals[i], mesh.normals[i]), mesh.normals[i]) > tolerance) {
+      return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace
+
+std::optional<RestShape> edited_rest_shape(const Scene &scene, const DeformedMesh &deformed, const Mesh &before,
+                                           const Mesh &after)
+{
+  if (after.host_shape || !fault_of(scene, deformed, after).empty()) {
+    return std::nullopt;
+  }
+  // An edit that did not fit has changed all vertices.
+  const std::size_t count = deformed.positions.size();
+  const auto is_same = [&](const auto &a, const auto &b, std::size_t i) { return a.size() == count && a[i] == b[i]; };
+  RestShape rest{deformed.positions, deformed.normals, deformed.tangents,
+                 deformed.has_flat_normals && (before.normals == after.normals || has_flat_normals(after))};
+  rest.tangents.resize(after.tangents.size());
+  // The differences of the morph targets alone.
+  Shape morphs{std::vector<glm::dvec3>(count), std::vector<glm::dvec3>(count),
+               std::vector<glm::dvec3>(rest.tangents.size())};
+  morph(deformed, deformed.deformed_by_weights, morphs);
+  for (std::size_t i = 0; i < count; i++) {
+    const bool is_moved = !is_same(before.positions, after.positions, i);
+    const bool is_turned = !is_same(before.normals, after.normals, i);
+    const bool has_new_tangent =
+        i < rest.tangents.size() && (deformed.tangents.empty() || !is_same(before.tangents, after.tangents, i));
+    if (!is_moved && !is_turned && !has_new_tangent) {
+      continue;
+    }
+    const glm::dmat4 matrix = deformed.deformed_by_joints.empty()
+                                  ? glm::dmat4(1.0)
+                                  : vertex_matrix(deformed, deformed.deformed_by_joints, i, after);
+    const glm::dmat3 inverse = glm::inverse(glm::dmat3(matrix));
+    if (is_moved) {
+      rest.positions[i] = inverse * (glm::dvec3(after.positions[i]) - glm::dvec3(matrix[3])) - morphs.positions[i];
+      // The negated condition also refuses NaN.
+      if (!(glm::length(glm::dvec3(rest.positions[i])) <= double(std::numeric_limits<float>::max()))) {
+        throw InvalidEdit(
+            fmt::format("mesh '{}': vertex {} cannot be edited, because its joints flatten it", after.name, i));
+      }
+    }
+    if (is_turned) {
+      // The inverse of the cofactor matrix, which transforms normals, without its factor.
+      const glm::vec3 normal =
+          unit_or(glm::transpose(glm::dmat3(matrix)) * glm::dvec3(after.normals[i]), after.normals[i]);
+      rest.normals[i] = unit_or(without_difference(normal, morphs.normals[i]), normal);
+    }
+    if (has_new_tangent) {
+      const glm::vec3 direction(after.tangents[i]);
+      const glm::vec3 tangent = unit_or(inverse * glm::dvec3(direction), direction);
+      rest.tangents[i] = {unit_or(without_difference(tangent, morphs.tangents[i]), tangent), after.tangents[i].w};
+    }
+  }
+  return rest;
+}
+
+void check_deformed_meshes(const Scene &scene)
+{
+  for (const DeformedMesh &deformed : scene.deformed_meshes) {
+    const Mesh *mesh = mesh_of(scene, deformed);
+    if (const std::string fault = mesh ? fault_of(scene, deformed, *mesh) : std::string(); !fault.empty()) {
+      throw InvalidEdit(fmt::format("mesh '{}': it cannot be deformed: {}", mesh->name, fault));
+    }
+  }
+}
 
 void set_morph_weights(Scene &scene, Handle<Node> node, std::span<const double> weights)
 {
@@ -162,11 +295,24 @@ void set_morph_weights(Scene &scene, Handle<Node> node, std::span<const double> 
 
 void deform_meshes(Scene &scene)
 {
+  check_deformed_meshes(scene);
   for (DeformedMesh &deformed : scene.deformed_meshes) {
-    const Mesh *mesh = scene.meshes().find(deformed.mesh);
-    if (mesh && !mesh->host_shape && scene.nodes().is_live(deformed.node)) {
-      deform(scene, deformed);
+    const Mesh *mesh = mesh_of(scene, deformed);
+    if (!mesh) {
+      continue;
     }
+    std::vector<glm::dmat4> joints;
+    if (deformed.skin >= 0) {
+      joints = joint_matrices(scene, scene.skins[std::size_t(deformed.skin)], deformed.node);
+    }
+    if (joints == deformed.deformed_by_joints && deformed.weights == deformed.deformed_by_weights) {
+      continue;
+    }
+    if (std::optional<Mesh> changed = deformed_mesh(deformed, joints, *mesh)) {
+      scene.replace_deformed(deformed.mesh, std::move(*changed));
+    }
+    deformed.deformed_by_joints = std::move(joints);
+    deformed.deformed_by_weights = deformed.weights;
   }
 }
 

@@ -2,12 +2,16 @@
 #include "scene.hh"
 
 #include "internal/scene_changes.hh"
+#include "internal/scene_rest_shape.hh"
 #include "memory_pages.hh"
 
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 namespace gnomon::scene {
 
@@ -164,13 +168,10 @@ Bounds bounds_of(const Mesh &mesh)
   return bounds;
 }
 
-}  // namespace
-
+/** Checks \a value and computes its derived members. \throws InvalidEdit */
 template <typename T>
-void Scene::replace_value(Handle<T> handle, T value)
+void prepare(T &value)
 {
-  Pool<T> &things = writable_pool<T>();
-  const Changes changed = changes(things[handle], value);
   check(value);
   if constexpr (std::same_as<T, Mesh>) {
     value.bounds = bounds_of(value);
@@ -178,11 +179,34 @@ void Scene::replace_value(Handle<T> handle, T value)
   if constexpr (std::same_as<T, Image>) {
     value.is_opaque = is_opaque(value);
   }
+}
+
+}  // namespace
+
+Revision next_revision()
+{
+  static std::atomic<Revision> last{0};
+  return ++last;
+}
+
+template <typename T>
+Handle<T> Scene::add_value(T value)
+{
+  prepare(value);
+  return writable_pool<T>().add(std::move(value), edited());
+}
+
+template <typename T>
+void Scene::replace_value(Handle<T> handle, T value)
+{
+  Pool<T> &things = writable_pool<T>();
+  const Changes changed = changes(things[handle], value);
+  prepare(value);
   things.writable(handle) = std::move(value);
   if (changed == 0) {
     return;
   }
-  revision_++;
+  edited();
   for (unsigned aspect = 0; aspect < unsigned(T::Aspect::Count); aspect++) {
     if ((changed >> aspect & 1U) != 0) {
       things.touch(handle, typename T::Aspect(aspect), revision_);
@@ -190,47 +214,54 @@ void Scene::replace_value(Handle<T> handle, T value)
   }
 }
 
+template <typename T>
+void Scene::restore_value(Handle<T> handle, T value)
+{
+  Pool<T> &things = writable_pool<T>();
+  prepare(value);
+  if (!things.is_restorable(handle)) {
+    throw InvalidEdit(fmt::format("the {} of handle {}.{} cannot be restored: {}", T::kind_name, handle.index,
+                                  handle.generation,
+                                  things.is_live(handle)     ? "it is in the scene"
+                                  : things.was_added(handle) ? "another one has its index"
+                                                             : "the scene never had it"));
+  }
+  things.restore(handle, std::move(value), edited());
+}
+
 Handle<Mesh> Scene::add(Mesh mesh)
 {
-  check(mesh);
-  mesh.bounds = bounds_of(mesh);
-  return meshes_.add(std::move(mesh), ++revision_);
+  return add_value(std::move(mesh));
 }
 
 Handle<Image> Scene::add(Image image)
 {
-  check(image);
-  image.is_opaque = is_opaque(image);
-  return images_.add(std::move(image), ++revision_);
+  return add_value(std::move(image));
 }
 
 Handle<Texture> Scene::add(const Texture &texture)
 {
-  return textures_.add(texture, ++revision_);
+  return add_value(texture);
 }
 
 Handle<SurfaceFunction> Scene::add(SurfaceFunction function)
 {
-  check(function);
-  return surface_functions_.add(std::move(function), ++revision_);
+  return add_value(std::move(function));
 }
 
 Handle<Material> Scene::add(Material material)
 {
-  check(material);
-  return materials_.add(std::move(material), ++revision_);
+  return add_value(std::move(material));
 }
 
 Handle<Lamp> Scene::add(Lamp lamp)
 {
-  check(lamp);
-  return lamps_.add(std::move(lamp), ++revision_);
+  return add_value(std::move(lamp));
 }
 
 Handle<Camera> Scene::add(Camera camera)
 {
-  check(camera);
-  return cameras_.add(std::move(camera), ++revision_);
+  return add_value(std::move(camera));
 }
 
 void Scene::reserve_nodes(std::size_t count)
@@ -241,20 +272,65 @@ void Scene::reserve_nodes(std::size_t count)
 
 Handle<Node> Scene::add(Node node, Handle<Node> parent)
 {
-  check(node);
   if (parent) {
     nodes_[parent];
   }
   // Before the node, because it may throw. Unlike reserve, resize grows geometrically.
   links_.resize(std::max(links_.size(), nodes_.index_end() + 1));
-  const Handle<Node> handle = nodes_.add(std::move(node), ++revision_);
+  const Handle<Node> handle = add_value(std::move(node));
   links(handle) = {};
   link(handle, parent);
   update_subtree(handle, revision_);
   return handle;
 }
 
+template <typename T>
+requires(!std::same_as<T, Node>) void Scene::restore(Handle<T> handle, T value)
+{
+  restore_value(handle, std::move(value));
+}
+template void Scene::restore(Handle<Mesh> handle, Mesh value);
+template void Scene::restore(Handle<Image> handle, Image value);
+template void Scene::restore(Handle<Texture> handle, Texture value);
+template void Scene::restore(Handle<SurfaceFunction> handle, SurfaceFunction value);
+template void Scene::restore(Handle<Material> handle, Material value);
+template void Scene::restore(Handle<Lamp> handle, Lamp value);
+template void Scene::restore(Handle<Camera> handle, Camera value);
+
+void Scene::restore(Handle<Node> handle, Node node, Handle<Node> parent, Handle<Node> next)
+{
+  if (parent) {
+    nodes_[parent];
+  }
+  if (next && (!parent || std::as_const(*this).links(next).parent != parent)) {
+    refuse("node", node.name, "node '{}' cannot follow it, because it is not a child of the same parent",
+           nodes_[next].name);
+  }
+  restore_value(handle, std::move(node));
+  links(handle) = {};
+  link(handle, parent, next);
+  update_subtree(handle, revision_);
+}
+
 void Scene::replace(Handle<Mesh> handle, Mesh mesh)
+{
+  const auto deformed = std::ranges::find(deformed_meshes, handle, &DeformedMesh::mesh);
+  if (deformed == deformed_meshes.end()) {
+    replace_value(handle, std::move(mesh));
+    return;
+  }
+  check(mesh);
+  std::optional<RestShape> rest = edited_rest_shape(*this, *deformed, meshes_[handle], mesh);
+  replace_value(handle, std::move(mesh));
+  if (rest) {
+    deformed->positions = std::move(rest->positions);
+    deformed->normals = std::move(rest->normals);
+    deformed->tangents = std::move(rest->tangents);
+    deformed->has_flat_normals = rest->has_flat_normals;
+  }
+}
+
+void Scene::replace_deformed(Handle<Mesh> handle, Mesh mesh)
 {
   replace_value(handle, std::move(mesh));
 }
@@ -295,7 +371,7 @@ void Scene::replace(Handle<Node> handle, Node node)
                         nodes_[handle].is_visible != node.is_visible;
   replace_value(handle, std::move(node));
   if (is_moved) {
-    update_subtree(handle, ++revision_);
+    update_subtree(handle, edited());
   }
 }
 
@@ -305,7 +381,7 @@ void Scene::set_transform(Handle<Node> node, const glm::dmat4 &parent_from_node)
   check_transform(written.name, parent_from_node);
   if (!same_bytes(written.parent_from_node, parent_from_node)) {
     written.parent_from_node = parent_from_node;
-    update_subtree(node, ++revision_);
+    update_subtree(node, edited());
   }
 }
 
@@ -323,10 +399,10 @@ void Scene::set_parent(Handle<Node> node, Handle<Node> parent)
   }
   unlink(node);
   link(node, parent);
-  update_subtree(node, ++revision_);
+  update_subtree(node, edited());
 }
 
-void Scene::link(Handle<Node> node, Handle<Node> parent)
+void Scene::link(Handle<Node> node, Handle<Node> parent, Handle<Node> next)
 {
   NodeLinks &own = links(node);
   own.parent = parent;
@@ -334,9 +410,11 @@ void Scene::link(Handle<Node> node, Handle<Node> parent)
     return;
   }
   NodeLinks &above = links(parent);
-  own.previous_sibling = above.last_child;
-  (above.last_child ? links(above.last_child).next_sibling : above.first_child) = node;
-  above.last_child = node;
+  Handle<Node> &previous = next ? links(next).previous_sibling : above.last_child;
+  own.previous_sibling = previous;
+  own.next_sibling = next;
+  (previous ? links(previous).next_sibling : above.first_child) = node;
+  previous = node;
 }
 
 void Scene::unlink(Handle<Node> node)
@@ -353,7 +431,7 @@ void Scene::unlink(Handle<Node> node)
 void Scene::remove_subtree(Handle<Node> node)
 {
   unlink(node);
-  revision_++;
+  edited();
   // Leaves first. No recursion: the tree may be deeper than the stack.
   Handle<Node> at = node;
   while (at) {
@@ -407,7 +485,7 @@ void Scene::set_world(std::optional<World> world)
   }
   if (world != world_) {
     world_ = std::move(world);
-    world_revision_ = ++revision_;
+    world_revision_ = edited();
   }
 }
 

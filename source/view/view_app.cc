@@ -311,23 +311,12 @@ void App::undo()
   if (document_ && !document_->undo()) {
     message("There is nothing to undo", false);
   }
-  follow_restored();
 }
 
 void App::redo()
 {
   if (document_ && !document_->redo()) {
     message("There is nothing to redo", false);
-  }
-  follow_restored();
-}
-
-void App::follow_restored()
-{
-  for (const std::unique_ptr<Viewport> &viewport : viewports_) {
-    if (document_) {
-      viewport->follow_restored(document_->history());
-    }
   }
 }
 

@@ -200,8 +200,6 @@ class App {
   bool finish_open();
   void finish_measurement();
   void show_document(scene::Scene scene);
-  /** Look through cameras again that an undo or a redo has brought back. */
-  void follow_restored();
   void make_device();
   /**
    * Replace the lost context, the device on it and all that is on the device. \throws std::runtime_error if that fails

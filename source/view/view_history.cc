@@ -9,12 +9,6 @@ namespace gnomon::view {
 using scene::Handle;
 using scene::Node;
 
-Handle<Node> History::renamed(Handle<Node> node) const
-{
-  const auto found = std::ranges::find(renamed_, node, &std::pair<Handle<Node>, Handle<Node>>::first);
-  return found == renamed_.end() ? node : found->second;
-}
-
 void History::set_world(scene::Scene &scene, std::optional<scene::World> world)
 {
   const std::optional<scene::World> before = scene.world();
@@ -67,38 +61,11 @@ void History::remove_members(scene::Scene &scene, const SubtreeChange &change)
   }
 }
 
-void History::note_renamed(Handle<Node> old_node, Handle<Node> node)
+void History::restore_members(scene::Scene &scene, const SubtreeChange &change)
 {
-  renamed_.emplace_back(old_node, node);
-  for (Change &change : changes_) {
-    if (auto *edited = std::get_if<ThingChange<Node>>(&change); edited && edited->thing == old_node) {
-      edited->thing = node;
-    }
-    if (auto *moved = std::get_if<SubtreeChange>(&change)) {
-      for (SubtreeChange::Member &member : moved->members) {
-        member.node = member.node == old_node ? node : member.node;
-        member.parent = member.parent == old_node ? node : member.parent;
-      }
-      moved->next = moved->next == old_node ? node : moved->next;
-    }
-  }
-}
-
-void History::add_members(scene::Scene &scene, std::size_t index)
-{
-  const std::size_t count = std::get<SubtreeChange>(changes_[index]).members.size();
-  for (std::size_t i = 0; i < count; i++) {
-    // Renaming changes the parents of the next ones, too.
-    const SubtreeChange::Member member = std::get<SubtreeChange>(changes_[index]).members[i];
-    note_renamed(member.node, scene.add(member.value, member.parent));
-  }
-  const SubtreeChange &change = std::get<SubtreeChange>(changes_[index]);
-  // It is the last child now. What was behind it before moves behind it again.
-  const Handle<Node> parent = change.members.front().parent;
-  for (Handle<Node> child = change.next; parent && child && child != restored();) {
-    const Handle<Node> following = scene.next_sibling(child);
-    scene.set_parent(child, parent);
-    child = following;
+  restored_ = change.members.front().node;
+  for (const SubtreeChange::Member &member : change.members) {
+    scene.restore(member.node, member.value, member.parent, member.node == restored_ ? change.next : Handle<Node>());
   }
 }
 
@@ -120,7 +87,7 @@ void History::apply(scene::Scene &scene, std::size_t index, bool is_undone)
       remove_members(scene, *subtree);
     }
     else {
-      add_members(scene, index);
+      restore_members(scene, *subtree);
     }
     return;
   }
@@ -146,7 +113,7 @@ void History::revert_gesture(scene::Scene &scene)
 
 bool History::undo(scene::Scene &scene)
 {
-  renamed_.clear();
+  restored_ = {};
   if (done_count_ == 0) {
     return false;
   }
@@ -158,7 +125,7 @@ bool History::undo(scene::Scene &scene)
 
 bool History::redo(scene::Scene &scene)
 {
-  renamed_.clear();
+  restored_ = {};
   if (done_count_ == changes_.size()) {
     return false;
   }

@@ -13,8 +13,9 @@ namespace gnomon::view {
 
 /**
  * Edits of one scene that can be undone: of nodes, lamps, cameras, materials and the world, and nodes that are added
- * and removed. Each keeps the values before and after it, so that undoing is an edit like any other. Nodes may be added
- * and removed only by this class; lamps, cameras, meshes and materials may not be removed.
+ * and removed. Each keeps the values before and after it, so that undoing is an edit like any other. What comes back
+ * has its old handle, so that animations, skins and other edits name it again. Nodes may be added and removed only by
+ * this class; lamps, cameras, meshes and materials may not be removed.
  */
 class History {
  public:
@@ -58,10 +59,8 @@ class History {
   /** The node that the last undo or redo brought back, with its descendants; an invalid handle: none. */
   [[nodiscard]] scene::Handle<scene::Node> restored() const
   {
-    return renamed_.empty() ? scene::Handle<scene::Node>() : renamed_.front().second;
+    return restored_;
   }
-  /** The handle of \a node after the last undo or redo, which gives another to nodes that it brings back. */
-  [[nodiscard]] scene::Handle<scene::Node> renamed(scene::Handle<scene::Node> node) const;
   [[nodiscard]] std::size_t undo_count() const
   {
     return done_count_;
@@ -109,16 +108,13 @@ class History {
   void apply(scene::Scene &scene, std::size_t index, bool is_undone);
   [[nodiscard]] static SubtreeChange subtree(const scene::Scene &scene, scene::Handle<scene::Node> root);
   static void remove_members(scene::Scene &scene, const SubtreeChange &change);
-  void add_members(scene::Scene &scene, std::size_t index);
-  /** A node that was removed has another handle once it is brought back. */
-  void note_renamed(scene::Handle<scene::Node> old_node, scene::Handle<scene::Node> node);
+  void restore_members(scene::Scene &scene, const SubtreeChange &change);
 
   std::deque<Change> changes_;
   /** The others were undone. */
   std::size_t done_count_ = 0;
   bool is_in_gesture_ = false;
-  /** Old and new handles of the nodes that the last undo or redo brought back; their root is the first. */
-  std::vector<std::pair<scene::Handle<scene::Node>, scene::Handle<scene::Node>>> renamed_;
+  scene::Handle<scene::Node> restored_{};
 };
 
 }  // namespace gnomon::view

@@ -30,13 +30,6 @@ class Viewport {
   void look_through(const Document &document, const scene::PlacedCamera &camera);
   /** Move to the scene's camera that is looked through, if one is. */
   void follow(const Document &document);
-  /** Call it after an undo or a redo: the camera that is looked through may have another handle. */
-  void follow_restored(const History &history)
-  {
-    if (looked_through_) {
-      looked_through_->node = history.renamed(looked_through_->node);
-    }
-  }
   /** The camera of the picture: that of the scene that is looked through, or that of `navigation`. */
   [[nodiscard]] scene::PlacedCamera camera(const Document &document) const;
 

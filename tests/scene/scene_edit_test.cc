@@ -9,8 +9,11 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
+#include <optional>
 #include <random>
+#include <ranges>
 #include <set>
 
 namespace gnomon::scene {
@@ -117,6 +120,133 @@ TEST(SceneHandle, RemovedThingsAreDetected)
   expect_handles_of(Lamp());
   expect_handles_of(Camera());
   expect_handles_of(Node());
+}
+
+/** Tests the restoring of removed things for one type of thing. */
+template <typename T>
+void expect_restored(const T &value)
+{
+  const std::string kind(T::kind_name);
+  const auto refusal = [&](Scene &scene, Handle<T> handle) {
+    return message_of<InvalidEdit>([&] { scene.restore(handle, value); });
+  };
+  Scene scene;
+  const Pool<T> &pool = scene.pool<T>();
+  const Handle<T> a = scene.add(value);
+  const Handle<T> b = scene.add(value);
+  EXPECT_NE(refusal(scene, a).find("it is in the scene"), std::string::npos) << kind;
+  scene.remove(a);
+  EXPECT_NE(refusal(scene, {a.index, a.generation + 1}).find("never had it"), std::string::npos) << kind;
+  EXPECT_NE(refusal(scene, {}).find("never had it"), std::string::npos) << kind;
+  EXPECT_NE(refusal(scene, {7, 1}).find("never had it"), std::string::npos) << kind;
+
+  // What took its place is removed first, and can be restored itself after that.
+  const Handle<T> c = scene.add(value);
+  EXPECT_EQ(c.index, a.index) << kind;
+  EXPECT_NE(refusal(scene, a).find("another one has its index"), std::string::npos) << kind;
+  scene.remove(c);
+  const Revision before = scene.revision();
+  scene.restore(a, value);
+  EXPECT_TRUE(pool.is_live(a) && pool.is_live(b) && !pool.is_live(c)) << kind;
+  EXPECT_EQ(pool.size(), 2U) << kind;
+  EXPECT_EQ(pool.first(), a) << kind << ": at its old place";
+  for (std::size_t aspect = 0; aspect < std::size_t(T::Aspect::Count); aspect++) {
+    EXPECT_GT(pool.revision(a, typename T::Aspect(aspect)), before) << kind;
+    EXPECT_LE(pool.revision(b, typename T::Aspect(aspect)), before) << kind;
+    EXPECT_EQ(pool.latest(typename T::Aspect(aspect)), scene.revision()) << kind;
+  }
+  // The handle that another thing has had is given to no third one.
+  scene.remove(a);
+  const Handle<T> d = scene.add(value);
+  EXPECT_EQ(d.index, a.index) << kind;
+  EXPECT_TRUE(d != a && d != c) << kind;
+  scene.remove(d);
+  scene.restore(c, value);
+  EXPECT_TRUE(pool.is_live(c) && !pool.is_live(a) && !pool.is_live(d)) << kind;
+}
+
+TEST(SceneHandle, RemovedThingsAreRestoredUnderTheirHandles)
+{
+  expect_restored(triangle());
+  expect_restored(texel());
+  expect_restored(Texture());
+  expect_restored(SurfaceFunction());
+  expect_restored(Material());
+  expect_restored(Lamp());
+  expect_restored(Camera());
+  expect_restored(Node());
+}
+
+TEST(SceneHandle, ARestoredNodeHasItsPlaceInTheTree)
+{
+  Scene scene;
+  const auto parent = scene.add(at({1, 0, 0}, "parent"));
+  const auto first = scene.add(named("first"), parent);
+  const auto middle = scene.add(at({0, 2, 0}, "middle"), parent);
+  const auto last = scene.add(named("last"), parent);
+  const auto other = scene.add(named("other"));
+  const Node value = scene.nodes()[middle];
+  const auto children = [&] {
+    std::string names;
+    for (Handle<Node> child = scene.first_child(parent); child; child = scene.next_sibling(child)) {
+      names += scene.nodes()[child].name + ' ';
+    }
+    return names;
+  };
+  scene.remove(middle);
+  for (const auto next : {first, last, Handle<Node>()}) {
+    scene.restore(middle, value, parent, next);
+    EXPECT_EQ(children(), next == first  ? "middle first last "
+                          : next == last ? "first middle last "
+                                         : "first last middle ");
+    EXPECT_EQ(scene.world_from_node(middle)[3], glm::dvec4(1, 2, 0, 1));
+    scene.remove(middle);
+    EXPECT_EQ(children(), "first last ");
+  }
+  const Revision before = scene.revision();
+  EXPECT_THROW(scene.restore(middle, value, {}, first), InvalidEdit);
+  EXPECT_THROW(scene.restore(middle, value, parent, other), InvalidEdit);
+  EXPECT_THROW(scene.restore(middle, value, parent, middle), StaleHandle);
+  EXPECT_THROW(scene.restore(middle, value, middle), StaleHandle);
+  Node invalid = value;
+  invalid.parent_from_node[0][0] = nan;
+  EXPECT_THROW(scene.restore(middle, invalid, parent), InvalidEdit);
+  EXPECT_EQ(scene.revision(), before);
+  EXPECT_EQ(children(), "first last ");
+}
+
+// Iterators of pools are those of the standard library.
+static_assert(std::forward_iterator<Pool<Node>::Iterator>);
+static_assert(std::ranges::forward_range<const Pool<Mesh>>);
+static_assert(std::ranges::common_range<Pool<Lamp>>);
+
+TEST(SceneHandle, AlgorithmsOfTheStandardLibraryTakePools)
+{
+  Scene scene;
+  std::vector<Handle<Node>> handles;
+  for (const char *name : {"a", "b", "c", "d"}) {
+    handles.push_back(scene.add(named(name)));
+  }
+  scene.remove(handles[1]);
+  const Pool<Node> &nodes = scene.nodes();
+  EXPECT_EQ(std::next(nodes.begin())->handle, handles[2]) << "removed things are skipped";
+  EXPECT_EQ(std::next(nodes.begin(), 3), nodes.end());
+  EXPECT_EQ(std::distance(nodes.begin(), nodes.end()), 3);
+  const auto is_d = [](const Pool<Node>::Item &item) { return item.value.name == "d"; };
+  EXPECT_EQ((*std::find_if(nodes.begin(), nodes.end(), is_d)).handle, handles[3]);
+  EXPECT_EQ(std::ranges::find(nodes, handles[2], &Pool<Node>::Item::handle)->value.name, "c");
+  EXPECT_EQ(std::count_if(nodes.begin(), nodes.end(), is_d), 1);
+  std::string names;
+  for (const Pool<Node>::Item item : nodes | std::views::filter(std::not_fn(is_d)) | std::views::take(5)) {
+    names += item.value.name;
+  }
+  EXPECT_EQ(names, "ac");
+  Pool<Node>::Iterator at = nodes.begin();
+  EXPECT_EQ((at++)->value.name, "a");
+  EXPECT_EQ(at->value.name, "c");
+  std::vector<Pool<Node>::Item> items(nodes.begin(), nodes.end());
+  EXPECT_EQ(items.size(), 3U);
+  EXPECT_EQ(Pool<Node>::Iterator(), Pool<Node>::Iterator());
 }
 
 TEST(SceneHandle, NodeFunctionsThrowForStaleHandles)
@@ -592,8 +722,9 @@ TEST(SceneRevision, MovingAParentChangesTheTransformsBelowAlone)
 TEST(SceneRevision, AddingAndRemovingChangesThePoolAndNotTheOthers)
 {
   Scene scene;
-  EXPECT_EQ(scene.revision(), 0U);
-  EXPECT_EQ(scene.lamps().latest(), 0U);
+  const Revision constructed = scene.revision();
+  EXPECT_GT(constructed, 0U);
+  EXPECT_LE(scene.lamps().latest(), constructed);
   const auto lamp = scene.add(Lamp());
   const Revision added = scene.revision();
   EXPECT_EQ(scene.lamps().latest(), added);
@@ -608,10 +739,101 @@ TEST(SceneRevision, AddingAndRemovingChangesThePoolAndNotTheOthers)
     EXPECT_EQ(scene.lamps().latest(aspect), scene.revision());
     EXPECT_EQ(scene.lamps().revision(lamp, aspect), added);
   }
-  EXPECT_EQ(scene.materials().latest(), 0U) << "another kind of thing";
+  EXPECT_LE(scene.materials().latest(), constructed) << "another kind of thing";
   const auto third = scene.add(Lamp());
   EXPECT_EQ(third.index, second.index);
   EXPECT_EQ(scene.lamps().revision(third, Lamp::Aspect::Name), scene.revision());
+}
+
+/** Expects that all that \a scene holds has changed after \a seen, and nothing after its own last revision. */
+void expect_all_changed(const Scene &scene, Revision seen, const char *how)
+{
+  EXPECT_GT(scene.revision(), seen) << how;
+  EXPECT_GT(scene.world_revision(), seen) << how;
+  EXPECT_LE(scene.world_revision(), scene.revision()) << how;
+  const auto check = [&](const auto &pool) {
+    using Aspect = typename std::decay_t<decltype(pool)>::Aspect;
+    for (std::size_t aspect = 0; aspect < std::size_t(Aspect::Count); aspect++) {
+      EXPECT_GT(pool.latest(Aspect(aspect)), seen) << how;
+      EXPECT_LE(pool.latest(Aspect(aspect)), scene.revision()) << how;
+      for (const auto &item : pool) {
+        EXPECT_GT(pool.revision(item.handle, Aspect(aspect)), seen) << how;
+        EXPECT_LE(pool.revision(item.handle, Aspect(aspect)), pool.latest(Aspect(aspect))) << how;
+      }
+    }
+  };
+  check(scene.nodes());
+  check(scene.meshes());
+  check(scene.images());
+  check(scene.textures());
+  check(scene.surface_functions());
+  check(scene.materials());
+  check(scene.lamps());
+  check(scene.cameras());
+}
+
+TEST(SceneRevision, AnotherContentUnderAReferenceHasLaterRevisions)
+{
+  const auto filled = [](float intensity) {
+    Scene scene;
+    scene.add(at({1, 2, 3}));
+    scene.add(triangle());
+    scene.add(Lamp{.intensity = intensity});
+    scene.set_world(World());
+    return scene;
+  };
+  Scene other = filled(2.0F);
+  Scene scene = filled(1.0F);
+  // A consumer that keeps a reference to the scene has seen all until here.
+  Revision seen = scene.revision();
+  const auto expect_seen = [&](const char *how) {
+    expect_all_changed(scene, seen, how);
+    seen = scene.revision();
+    EXPECT_EQ(scene.revision(), seen);
+    scene.add(Material());
+    EXPECT_GT(scene.revision(), seen) << how;
+    EXPECT_LE(scene.lamps().latest(), seen) << how << ": only materials have changed";
+    seen = scene.revision();
+  };
+  // The other was edited before, so that it had lower revisions.
+  scene = other;
+  expect_seen("copied");
+  const Scene snapshot = scene;
+  scene.edit(scene.lamps().first(), [](Lamp &lamp) { lamp.intensity = 3.0F; });
+  seen = scene.revision();
+  scene = snapshot;
+  expect_seen("undone by a copy");
+  std::swap(scene, other);
+  expect_seen("swapped");
+  expect_all_changed(other, snapshot.revision(), "the other of the swap");
+  scene = std::move(other);
+  expect_seen("moved");
+  scene = filled(4.0F);
+  expect_seen("made anew");
+  scene = Scene();
+  expect_seen("emptied");
+  const Scene moved = std::move(scene);
+  expect_all_changed(scene, seen, "moved from");
+  expect_all_changed(moved, seen, "constructed by a move");
+  // NOLINTNEXTLINE(bugprone-use-after-move)
+  EXPECT_TRUE(scene.nodes().empty() && scene.nodes().begin() == scene.nodes().end());
+  const Scene &self = moved;
+  scene = self;
+  EXPECT_EQ(scene.materials().size(), 1U);
+  // In the same place, as std::optional::emplace makes one.
+  std::optional<Scene> place(snapshot);
+  seen = place->revision();
+  expect_all_changed(place.emplace(), seen, "constructed in place");
+}
+
+TEST(SceneRevision, EditsOfDifferentScenesHaveDifferentRevisions)
+{
+  Scene a;
+  Scene b = a;
+  a.add(triangle());
+  b.add(triangle());
+  EXPECT_NE(a.revision(), b.revision());
+  EXPECT_NE(a.meshes().latest(), b.meshes().latest());
 }
 
 TEST(SceneRevision, MeshBoundsFollowThePositions)

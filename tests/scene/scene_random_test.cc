@@ -49,7 +49,7 @@ class Editor {
  public:
   void edit()
   {
-    switch (below(14)) {
+    switch (below(16)) {
       case 0:
       case 1: add_node(); break;
       case 2: add_lamp(); break;
@@ -62,6 +62,8 @@ class Editor {
       case 9: change_node([&](Node &node) { node.lamp = any(model.lamps); }); break;
       case 10: change_node([&](Node &node) { node.meshes.assign(below(3), any(model.meshes)); }); break;
       case 11: change_lamp(); break;
+      case 12: restore_node(); break;
+      case 13: restore_lamp(); break;
       default: set_transform(); break;
     }
   }
@@ -176,6 +178,52 @@ class Editor {
       model.nodes.erase(handle);
       model.removed_nodes.push_back(handle);
     }
+  }
+  /** A handle that was removed and whose index is free; seldom, one that cannot be restored. */
+  template <typename T>
+  Handle<T> take_removed(std::vector<Handle<T>> &removed, const T &value)
+  {
+    if (removed.empty()) {
+      return {};
+    }
+    const auto taken = removed.begin() + std::ptrdiff_t(below(removed.size()));
+    const Handle<T> handle = *taken;
+    if (!scene.pool<T>().is_restorable(handle)) {
+      EXPECT_THROW(scene.restore(handle, value), InvalidEdit);
+      return {};
+    }
+    removed.erase(taken);
+    return handle;
+  }
+  void restore_lamp()
+  {
+    Lamp lamp;
+    lamp.intensity = float(below(1000));
+    if (const Handle<Lamp> handle = take_removed(model.removed_lamps, lamp)) {
+      scene.restore(handle, lamp);
+      EXPECT_TRUE(model.lamps.emplace(handle, lamp).second);
+    }
+  }
+  /** At a random place among the children of a random parent. */
+  void restore_node()
+  {
+    Node node;
+    node.name = "restored";
+    node.parent_from_node = matrix();
+    node.lamp = any(model.lamps);
+    const Handle<Node> handle = take_removed(model.removed_nodes, node);
+    if (!handle) {
+      return;
+    }
+    const Handle<Node> parent = any(model.nodes);
+    Handle<Node> next;
+    for (Handle<Node> child = parent ? scene.first_child(parent) : parent; child && !next;
+         child = scene.next_sibling(child)) {
+      next = below(3) == 0 ? child : next;
+    }
+    scene.restore(handle, node, parent, next);
+    EXPECT_TRUE(model.nodes.emplace(handle, Model::ModelNode{node, parent}).second);
+    EXPECT_EQ(scene.next_sibling(handle), next);
   }
   void set_parent()
   {

@@ -281,9 +281,10 @@ TEST(ViewHistoryTest, WhatWasRemovedComesBackWithItsEditsWhereItWasAndCanBeEdite
 
   EXPECT_TRUE(history.undo(scene));
   EXPECT_EQ(names(), edited);
-  EXPECT_EQ(scene.nodes()[history.restored()].name, "root");
+  EXPECT_EQ(history.restored(), root) << "what names it names it again";
   // The edit from before the removal is undone on the node that came back.
   const auto restored_child = scene.first_child(history.restored());
+  EXPECT_EQ(restored_child, child);
   EXPECT_FALSE(scene.nodes()[restored_child].is_visible);
   EXPECT_TRUE(history.undo(scene));
   EXPECT_EQ(names(), before);
@@ -311,7 +312,6 @@ TEST(ViewHistoryTest, AChildComesBackBetweenItsSiblings)
     }
     return text;
   };
-  // The second is removed after its neighbour, which has another handle when it is back.
   history.remove(scene, children[2]);
   history.remove(scene, children[1]);
   EXPECT_EQ(names(), "14");
