@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace gnomon::eevee {
 
@@ -329,6 +330,7 @@ bool Engine::draw_sample(draw::Viewport &viewport, const draw::View &view)
   // unless the means of converged pixels must follow.
   if (is_sample_seen || viewport.samples_drawn() == 0 || data.adaptive.is_active) {
     draw_steps(sample, FrameStep::When::EachSample);
+    data.stl.lamp_points_memory = std::move(sample.lamp_points);
   }
   if (sample.is_for_feedback) {
     return false;

@@ -311,6 +311,8 @@ struct StorageList {
   std::vector<draw::ObjectIndex> objects;
   /** True between cache_init and cache_finish. */
   bool is_collecting = false;
+  /** Memory of FrameSample::lamp_points between two samples. Its content has no meaning. */
+  SampledLampPoints lamp_points_memory;
   /** Temporary memory of write_lamp_points. */
   std::vector<shared::LightData> sampled_lights;
   /** Empty without Feature::LightClusters. */

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace gnomon::eevee {
 
@@ -95,8 +96,8 @@ void read_depths(FrameSample &sample)
 
 void record_lamp_points(const FrameStep & /*step*/, FrameSample &sample, gpu::CommandList &list)
 {
-  sample.lamp_points =
-      sample.data.shared->lamp_points.sample(std::uint32_t(sample.data.sample_index), sample.settings.seed);
+  sample.lamp_points = sample.data.shared->lamp_points.sample(
+      std::uint32_t(sample.data.sample_index), sample.settings.seed, std::move(sample.data.stl.lamp_points_memory));
   write_lamp_points(sample.data, sample.lamp_points, sample.viewport.device(), list);
 }
 

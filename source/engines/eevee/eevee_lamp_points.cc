@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace gnomon::eevee {
 
@@ -191,9 +192,11 @@ void LampPoints::add_sun_points(const Sized &sized, std::uint32_t index, std::ui
   }
 }
 
-SampledLampPoints LampPoints::sample(std::uint32_t index, std::uint32_t seed) const
+SampledLampPoints LampPoints::sample(std::uint32_t index, std::uint32_t seed, SampledLampPoints memory) const
 {
-  SampledLampPoints sampled;
+  SampledLampPoints sampled = std::move(memory);
+  sampled.points.clear();
+  sampled.sun_points.clear();
   sampled.points.reserve(sized_.size());
   for (const Sized &sized : sized_) {
     if (sized.is_emission) {

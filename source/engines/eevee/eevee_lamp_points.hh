@@ -83,8 +83,8 @@ class LampPoints {
   {
     return sized_.size();
   }
-  /** The points of the \a index-th sample. Deterministic. */
-  [[nodiscard]] SampledLampPoints sample(std::uint32_t index, std::uint32_t seed) const;
+  /** The points of the \a index-th sample. Deterministic. \a memory: an earlier result, whose memory is used again */
+  [[nodiscard]] SampledLampPoints sample(std::uint32_t index, std::uint32_t seed, SampledLampPoints memory = {}) const;
   /** The centres of the lamps. */
   [[nodiscard]] SampledLampPoints centers() const;
 
