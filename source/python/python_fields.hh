@@ -8,10 +8,12 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <concepts>
 #include <functional>
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gnomon::python {
@@ -25,12 +27,69 @@ struct Field {
   std::string name;
   std::string doc;
   std::function<py::object(const ScenePtr &scene, const T &value)> get;
-  /** \throws py::cast_error for a value of another type; py::value_error with the reason for one out of range */
+  /** \throws py::type_error for a value of another type, py::value_error for one out of range, with the reason */
   std::function<void(const ScenePtr &scene, T &value, py::handle set)> set;
 };
 
 template <typename T>
 using Fields = std::vector<Field<T>>;
+
+/** What a value in Python must be to be converted to a Value. */
+template <typename Value>
+[[nodiscard]] std::string form_of()
+{
+  if constexpr (std::same_as<Value, bool>) {
+    return "True or False";
+  }
+  else if constexpr (std::integral<Value>) {
+    return "an integer";
+  }
+  else if constexpr (std::floating_point<Value>) {
+    return "a number";
+  }
+  else if constexpr (std::same_as<Value, std::string>) {
+    return "a text";
+  }
+  else if constexpr (std::same_as<Value, glm::dmat4>) {
+    return "an array of 4x4 numbers";
+  }
+  else if constexpr (std::same_as<Value, py::array>) {
+    return "a numpy array";
+  }
+  else if constexpr (requires { Value::length(); }) {
+    return fmt::format("{} numbers", Value::length());
+  }
+  else if constexpr (requires(Value value) { value.has_value(); }) {
+    return form_of<typename Value::value_type>() + " or None";
+  }
+  else if constexpr (requires(Value value) { value.front(); }) {
+    return "a list, of which each is " + form_of<typename Value::value_type>();
+  }
+  else {
+    return "a gnomon." + std::string(py::str(py::type::of<Value>().attr("__name__")));
+  }
+}
+
+/** \a set as a Value. \a also: what else it may be, which the caller has found that it is not. \throws py::type_error
+ */
+template <typename Value>
+[[nodiscard]] Value cast_to(py::handle set, std::string_view also = "")
+{
+  const auto fault = [&] {
+    return py::type_error(
+        fmt::format("cannot be {}: it is not {}{}", std::string(py::repr(set)), form_of<Value>(), also));
+  };
+  try {
+    return set.cast<Value>();
+  }
+  catch (const py::cast_error & /*error*/) {
+    throw fault();
+  }
+  // Thrown for None, and not a cast_error.
+  catch (const py::reference_cast_error & /*error*/) {
+    throw fault();
+  }
+}
 
 /** In the constructors below, \a access is a member of T, or a function that returns a reference to a part of a T. */
 template <typename T, typename Access>
@@ -40,7 +99,7 @@ template <typename T, typename Access>
   return {
       std::move(name), std::move(doc),
       [=](const ScenePtr & /*scene*/, const T &value) { return py::cast(std::invoke(access, value)); },
-      [=](const ScenePtr & /*scene*/, T &value, py::handle set) { std::invoke(access, value) = set.cast<Value>(); }};
+      [=](const ScenePtr & /*scene*/, T &value, py::handle set) { std::invoke(access, value) = cast_to<Value>(set); }};
 }
 
 /** \throws py::value_error if \a number is not from \a low to \a high */
@@ -60,7 +119,7 @@ template <typename T, typename Access>
   using Value = std::decay_t<std::invoke_result_t<Access, T &>>;
   Field<T> field = plain_field<T>(std::move(name), access, std::move(doc));
   field.set = [=](const ScenePtr & /*scene*/, T &value, py::handle set) {
-    const auto number = set.cast<Value>();
+    const auto number = cast_to<Value>(set);
     if constexpr (std::is_arithmetic_v<Value>) {
       check_range(double(number), low, high);
     }
@@ -95,7 +154,7 @@ template <typename T, typename Access>
   field.set = [=](const ScenePtr & /*scene*/, T &value, py::handle set) {
     std::optional<Value> number;
     if (!set.is_none()) {
-      number = set.cast<Value>();
+      number = cast_to<Value>(set, " or None");
       check_range(double(*number), low, high);
     }
     std::invoke(access, value) = number;
@@ -124,7 +183,7 @@ template <typename T, typename U>
             return is_there ? py::cast(Thing<U>{scene, value.*member}) : py::object(py::none());
           },
           [=](const ScenePtr &scene, T &value, py::handle set) {
-            value.*member = set.is_none() ? scene::Handle<U>() : handle_of(scene, set.cast<const Thing<U> &>());
+            value.*member = set.is_none() ? scene::Handle<U>() : handle_of(scene, cast_to<Thing<U>>(set, " or None"));
           }};
 }
 
@@ -144,13 +203,6 @@ void set_fields(const Fields<T> &fields, const std::string &label, const ScenePt
     }
     try {
       field->set(scene, value, set);
-    }
-    catch (const py::cast_error & /*error*/) {
-      throw py::type_error(fmt::format("{}: {} cannot be {}", label, name, std::string(py::repr(set))));
-    }
-    // Thrown for None, and not a cast_error.
-    catch (const py::reference_cast_error & /*error*/) {
-      throw py::type_error(fmt::format("{}: {} cannot be {}", label, name, std::string(py::repr(set))));
     }
     catch (const py::type_error &error) {
       throw py::type_error(fmt::format("{}: {} {}", label, name, error.what()));

@@ -51,6 +51,12 @@ void set_texels(Image &image, const py::array &texels)
 
 Image read_image(const std::filesystem::path &path)
 {
+  // Opening a pipe might never end.
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    throw gltf::ImportError(path.string() + (std::filesystem::exists(path, error) ? ": is not a PNG, JPEG or WebP file"
+                                                                                  : ": there is no such file"));
+  }
   std::ifstream file(path, std::ios::binary);
   const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
   if (!file) {
@@ -64,8 +70,8 @@ Image read_image(const std::filesystem::path &path)
     }
     return {path.filename().string(), decoder->width(), decoder->height(), decoder->read_rgba8()};
   }
-  catch (const image::Error &error) {
-    throw gltf::ImportError(path.string() + ": " + error.what());
+  catch (const image::Error &fault) {
+    throw gltf::ImportError(path.string() + ": " + fault.what());
   }
 }
 
@@ -118,8 +124,9 @@ Fields<Material> with_textures(Fields<Material> fields)
                                                                         : py::object(py::none());
                       },
                       [slot](const ScenePtr &scene, Material &material, py::handle set) {
-                        (material.*slot).texture = set.is_none() ? scene::Handle<Texture>()
-                                                                 : handle_of(scene, set.cast<const Thing<Texture> &>());
+                        (material.*slot).texture = set.is_none()
+                                                       ? scene::Handle<Texture>()
+                                                       : handle_of(scene, cast_to<Thing<Texture>>(set, " or None"));
                       }});
   }
   return fields;

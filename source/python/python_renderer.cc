@@ -7,17 +7,47 @@
 
 namespace gnomon::python {
 
-Device::Device() : device_(gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()})) {}
+namespace {
+
+/** \throws gpu::Error if this process is not \a process, from which it was forked */
+void check_process(pid_t process)
+{
+  if (::getpid() != process) {
+    throw gpu::Error(
+        "this process was forked from one that had made a device, whose driver does not work in a forked "
+        "child: start processes by spawn, as multiprocessing.get_context(\"spawn\") does");
+  }
+}
+
+std::unique_ptr<gpu::Device> make_device()
+{
+  // Before the device, because a driver starts threads also where it fails.
+  static const pid_t first_process = ::getpid();
+  check_process(first_process);
+  return gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()});
+}
+
+}  // namespace
+
+Device::Device() : device_(make_device()) {}
 
 Device::~Device()
 {
-  if (std::this_thread::get_id() != thread_) {
-    // Its context cannot be current here. Not to free it is the lesser harm.
+  if (is_at_home()) {
+    return;
+  }
+  // Its context cannot be current here. Not to free it is the lesser harm, and none in a forked child.
+  if (::getpid() == process_) {
     std::fputs("gnomon: a device is not freed, because the last reference to it is dropped on another thread\n",
                stderr);
-    static_cast<void>(device_.release());
-    static_cast<void>(new std::vector<std::shared_ptr<void>>(std::move(left_)));
   }
+  static_cast<void>(device_.release());
+  static_cast<void>(new std::vector<std::shared_ptr<void>>(std::move(left_)));
+}
+
+bool Device::is_at_home() const
+{
+  return std::this_thread::get_id() == thread_ && ::getpid() == process_;
 }
 
 /** Sets Device::is_drawing as long as it exists. */
@@ -40,6 +70,7 @@ class Drawing {
 
 gpu::Device &Device::use()
 {
+  check_process(process_);
   if (std::this_thread::get_id() != thread_) {
     throw gpu::Error("the device was made on another thread, and can be used only there");
   }
@@ -53,7 +84,7 @@ gpu::Device &Device::use()
 
 void Device::dispose(std::shared_ptr<void> resources)
 {
-  if (std::this_thread::get_id() != thread_ || is_drawing) {
+  if (!is_at_home() || is_drawing) {
     const std::lock_guard lock(mutex_);
     left_.push_back(std::move(resources));
   }

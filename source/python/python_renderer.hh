@@ -8,22 +8,25 @@
 #include <mutex>
 #include <thread>
 
+#include <unistd.h>
+
 namespace gnomon::python {
 
 /**
  * A device with a context of its own. Its thread is the one that constructs it, and all others get an error. Python may
  * drop the last reference to an object on any thread; what belongs to the device is then freed by the next call on its
- * thread.
+ * thread. A driver's threads do not exist in a forked child, which would wait for them for ever: there all functions
+ * throw, and nothing is freed.
  */
 class Device {
  public:
-  /** \throws gpu::Error */
+  /** \throws gpu::Error; also in a child of a process that made a device before the fork */
   Device();
   ~Device();
   Device(const Device &) = delete;
   Device &operator=(const Device &) = delete;
 
-  /** \throws gpu::Error on other threads, and during a draw */
+  /** \throws gpu::Error on other threads, in forked children, and during a draw */
   gpu::Device &use();
   /** Destroys \a resources on the device's thread. */
   void dispose(std::shared_ptr<void> resources);
@@ -31,7 +34,11 @@ class Device {
   bool is_drawing = false;
 
  private:
+  /** Whether this is the thread and the process that made the device. */
+  [[nodiscard]] bool is_at_home() const;
+
   const std::thread::id thread_ = std::this_thread::get_id();
+  const pid_t process_ = ::getpid();
   std::unique_ptr<gpu::Device> device_;
   std::mutex mutex_;
   /** What was left on other threads. */

@@ -158,7 +158,7 @@ Field<Mesh> rows_field(std::string name, std::vector<Vector> Mesh::*member, std:
             return py::object(array_of_rows(std::span(numbers, rows.size() * Vector::length()), Vector::length()));
           },
           [=](const ScenePtr & /*scene*/, Mesh &mesh, py::handle set) {
-            mesh.*member = rows_of<Vector>(set.cast<py::array>(), {});
+            mesh.*member = rows_of<Vector>(cast_to<py::array>(set), {});
           }};
 }
 
@@ -177,7 +177,7 @@ const Fields<Mesh> mesh_fields = {
        const bool is_triangles = mesh.topology == scene::Topology::Triangles;
        return py::object(array_of_rows(std::span(mesh.indices).first(is_triangles ? mesh.indices.size() : 0), 3));
      },
-     [](const ScenePtr & /*scene*/, Mesh &mesh, py::handle set) { set_triangles(mesh, set.cast<py::array>(), {}); }},
+     [](const ScenePtr & /*scene*/, Mesh &mesh, py::handle set) { set_triangles(mesh, cast_to<py::array>(set), {}); }},
     thing_field<Mesh, Material>("material", &Mesh::material, "A Material. None: the default material."),
 };
 
@@ -188,7 +188,7 @@ const Fields<Node> node_fields = {
     {"position", "Position relative to the parent, m: column 3 of parent_from_node.",
      [](const ScenePtr & /*scene*/, const Node &node) { return py::cast(glm::dvec3(node.parent_from_node[3])); },
      [](const ScenePtr & /*scene*/, Node &node, py::handle set) {
-       node.parent_from_node[3] = glm::dvec4(set.cast<glm::dvec3>(), 1.0);
+       node.parent_from_node[3] = glm::dvec4(cast_to<glm::dvec3>(set), 1.0);
      }},
     {"meshes", "A list of the meshes at the node. Assign another list to change it.",
      [](const ScenePtr &scene, const Node &node) {
@@ -202,7 +202,7 @@ const Fields<Node> node_fields = {
      },
      [](const ScenePtr &scene, Node &node, py::handle set) {
        std::vector<scene::Handle<Mesh>> meshes;
-       for (const Thing<Mesh> &mesh : set.cast<std::vector<Thing<Mesh>>>()) {
+       for (const Thing<Mesh> &mesh : cast_to<std::vector<Thing<Mesh>>>(set)) {
          meshes.push_back(handle_of(scene, mesh));
        }
        node.meshes = std::move(meshes);

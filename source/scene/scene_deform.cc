@@ -231,7 +231,8 @@ std::optional<RestShape> edited_rest_shape(const Scene &scene, const DeformedMes
   const std::size_t count = deformed.positions.size();
   const auto is_same = [&](const auto &a, const auto &b, std::size_t i) { return a.size() == count && a[i] == b[i]; };
   RestShape rest{deformed.positions, deformed.normals, deformed.tangents,
-                 deformed.has_flat_normals && (before.normals == after.normals || has_flat_normals(after))};
+                 deformed.has_flat_normals && has_flat_normals(after)};
+  const bool were_flat = deformed.has_flat_normals && !rest.has_flat_normals;
   rest.tangents.resize(after.tangents.size());
   // The differences of the morph targets alone.
   Shape morphs{std::vector<glm::dvec3>(count), std::vector<glm::dvec3>(count),
@@ -239,7 +240,7 @@ std::optional<RestShape> edited_rest_shape(const Scene &scene, const DeformedMes
   morph(deformed, deformed.deformed_by_weights, morphs);
   for (std::size_t i = 0; i < count; i++) {
     const bool is_moved = !is_same(before.positions, after.positions, i);
-    const bool is_turned = !is_same(before.normals, after.normals, i);
+    const bool is_turned = were_flat || !is_same(before.normals, after.normals, i);
     const bool has_new_tangent =
         i < rest.tangents.size() && (deformed.tangents.empty() || !is_same(before.tangents, after.tangents, i));
     if (!is_moved && !is_turned && !has_new_tangent) {
@@ -272,12 +273,17 @@ std::optional<RestShape> edited_rest_shape(const Scene &scene, const DeformedMes
   return rest;
 }
 
+std::string fault_of(const Scene &scene, const DeformedMesh &deformed)
+{
+  const Mesh *mesh = mesh_of(scene, deformed);
+  return mesh ? fault_of(scene, deformed, *mesh) : std::string();
+}
+
 void check_deformed_meshes(const Scene &scene)
 {
   for (const DeformedMesh &deformed : scene.deformed_meshes) {
-    const Mesh *mesh = mesh_of(scene, deformed);
-    if (const std::string fault = mesh ? fault_of(scene, deformed, *mesh) : std::string(); !fault.empty()) {
-      throw InvalidEdit(fmt::format("mesh '{}': it cannot be deformed: {}", mesh->name, fault));
+    if (const std::string fault = fault_of(scene, deformed); !fault.empty()) {
+      throw InvalidEdit(fmt::format("mesh '{}': it cannot be deformed: {}", scene.meshes()[deformed.mesh].name, fault));
     }
   }
 }

@@ -5,6 +5,7 @@ import ast
 import gc
 import inspect
 import math
+import multiprocessing
 import os
 import re
 import shutil
@@ -109,6 +110,15 @@ class Scenes(unittest.TestCase):
                 (gnomon.InvalidEdit, "lamp 'sun': color nan is not", lambda: lamp.edit(angle=0.1, color=(1, math.nan, 1))),
                 (TypeError, "lamp 'sun': intensity cannot be 'much'", lambda: lamp.edit(angle=0.1, intensity="much")),
                 (TypeError, r"lamp 'sun': color cannot be \(1, 2\)", lambda: lamp.edit(angle=0.1, color=(1, 2))),
+                (TypeError, "lamp 'sun': intensity cannot be None: it is not a number$", lambda: lamp.edit(intensity=None)),
+                (TypeError, "color cannot be 'red': it is not 3 numbers$", lambda: lamp.edit(color="red")),
+                (TypeError, "kind cannot be 1: it is not a gnomon.LampKind$", lambda: lamp.edit(kind=1)),
+                (TypeError, "shadow_kind cannot be 1: it is not a gnomon.ShadowKind or None$", lambda: lamp.edit(shadow_kind=1)),
+                (TypeError, "shadow_bias cannot be '': it is not a number or None$", lambda: lamp.edit(shadow_bias="")),
+                (TypeError, "name cannot be 3: it is not a text$", lambda: lamp.edit(name=3)),
+                (TypeError, "lamp cannot be .*: it is not a gnomon.Lamp or None$", lambda: node.edit(lamp=node)),
+                (TypeError, "meshes cannot be .*: it is not a list, of which each is a gnomon.Mesh$", lambda: node.edit(meshes=node)),
+                (TypeError, "is_visible cannot be 'yes': it is not True or False$", lambda: node.edit(is_visible="yes")),
                 (TypeError, "lamp 'sun' has no property 'power'; it has: name, kind", lambda: lamp.edit(angle=0.1, power=1)),
                 (gnomon.InvalidEdit, "camera 'eye': near -1 is not above 0", lambda: setattr(camera, "near", -1)),
                 (gnomon.InvalidEdit, "camera 'eye': vertical_angle 4 ", lambda: setattr(camera, "vertical_angle", 4)),
@@ -300,7 +310,7 @@ class Pictures(unittest.TestCase):
             scene.save(saved)
             kept = [one.base_color_texture for one in gnomon.load(saved).materials if one.base_color_texture]
             self.assertEqual([one.texels[0, 0].tolist() for one in kept], [[128, 128, 128, 255]])
-            for wrong in (saved, os.path.join(folder, "none.png")):
+            for wrong in (saved, folder, os.path.join(folder, "none.png")):
                 with self.assertRaisesRegex(gnomon.FileError, re.escape(wrong)):
                     scene.add_texture(wrong)
         # A normal that leans towards the right, on a square that has tangents.
@@ -439,6 +449,49 @@ class Pictures(unittest.TestCase):
         thread.start()
         thread.join()
         self.assertLess(self.device.memory_bytes, before)
+
+    def test_forked_children_get_an_error(self):
+        renderer = gnomon.Renderer(self.device, square_scene(), (32, 18), **SMALL)
+        picture = renderer.render()
+        held = [renderer, gnomon.Renderer(self.device, square_scene(), (32, 18), **SMALL)]
+        del renderer
+
+        def child(results):
+            texts = []
+            for use in (gnomon.Device, held[0].render, held[0].report, lambda: self.device.description,
+                        lambda: gnomon.Renderer(self.device, square_scene(), (8, 8)),
+                        lambda: setattr(held[0], "sample_count", 3), lambda: setattr(held[0], "size", (9, 9))):
+                try:
+                    use()
+                    texts.append("no error")
+                except gnomon.DeviceError as error:
+                    texts.append(str(error))
+            held.clear()
+            # What needs no device works.
+            scene = gnomon.load("examples/scenes/full.gltf")
+            results.put((texts, len(scene.nodes)))
+
+        context = multiprocessing.get_context("fork")
+        results = context.Queue()
+        process = context.Process(target=child, args=(results,))
+        process.start()
+        try:
+            texts, node_count = results.get(timeout=60)
+            process.join(60)
+            self.assertEqual(process.exitcode, 0)
+        finally:
+            process.kill()
+        self.assertEqual(len(texts), 7)
+        for text in texts:
+            self.assertIn("forked", text)
+            self.assertIn("spawn", text)
+        self.assertGreater(node_count, 5)
+        # The parent draws on.
+        numpy.testing.assert_array_equal(held[0].render(), picture)
+        spawned = multiprocessing.get_context("spawn").Process(target=gnomon.Device)
+        spawned.start()
+        spawned.join(60)
+        self.assertEqual(spawned.exitcode, 0)
 
     def test_others_run_while_one_draws(self):
         scene = square_scene()

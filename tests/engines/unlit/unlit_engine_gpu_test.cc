@@ -100,6 +100,51 @@ TEST_F(UnlitGpuTest, ATiltedSurfaceCastsNoShadowOnItself)
   EXPECT_GT(covered, 30000);
 }
 
+/** Both scenes are made by the same edits, so that their handles are equal. */
+TEST_F(UnlitGpuTest, AnotherSceneUnderTheReferenceIsDrawnAndARestoredNodeIsBack)
+{
+  const auto fill = [&](const glm::vec3 &color, double height) {
+    scene = {};
+    test::add_object(scene, test::add_square_mesh(scene, test::add_material(scene, color)),
+                     glm::scale(glm::dmat4(1), glm::dvec3(2)));
+    const auto caster = test::add_object(scene, test::add_square_mesh(scene, test::add_material(scene, {0, 0, 1})),
+                                         glm::scale(glm::translate(glm::dmat4(1), {0, 0, height}), glm::dvec3(0.5)));
+    test::add_lamp(scene, scene::LampKind::Sun, {0, 0, 2}, {0.9, 0.4, -1}, 1.0F);
+    return caster;
+  };
+  Engine engine(*render_scene);
+  const auto pixels = [&] { return picture(engine).pixels; };
+  fill({1, 0, 0}, 0.5);
+  const auto first = pixels();
+  const scene::Scene red = scene;
+  const auto caster = fill({0, 1, 0}, 1.0);
+  const auto second = pixels();
+  EXPECT_NE(first, second);
+  scene::Scene green = scene;
+  scene = red;
+  EXPECT_EQ(pixels(), first);
+  std::swap(scene, green);
+  EXPECT_EQ(pixels(), second);
+  // An edit that is undone by a copy, and then made otherwise.
+  const scene::Scene snapshot = scene;
+  scene.set_transform(caster, glm::dmat4(1));
+  pixels();
+  scene = snapshot;
+  EXPECT_EQ(pixels(), second);
+  const scene::Node value = scene.nodes()[caster];
+  scene.remove(caster);
+  EXPECT_NE(pixels(), second);
+  scene.restore(caster, value);
+  EXPECT_EQ(pixels(), second);
+  scene.remove(caster);
+  scene.restore(caster, value);
+  EXPECT_EQ(pixels(), second) << "removed and restored between two pictures";
+  scene = {};
+  for (const glm::vec4 &pixel : pixels()) {
+    ASSERT_EQ(pixel, glm::vec4(0.0F));
+  }
+}
+
 TEST_F(UnlitGpuTest, TheGroundIsItsColorAndBlackWhereTheCasterHidesItFromTheDepthCamera)
 {
   add_ground();
