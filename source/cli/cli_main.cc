@@ -1,7 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "cli.hh"
 
+#include "output_roles.hh"
+
 #include <fmt/format.h>
+
+#include <fcntl.h>
+#include <unistd.h>
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <iostream>
+#include <string>
+#include <vector>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -25,6 +38,34 @@ static void keep_freed_memory()
 #endif
 }
 
+/**
+ * Opens the standard streams that are closed, because the next file would otherwise take the place of one and get what
+ * is printed. What is printed to a closed output fails.
+ */
+static void open_standard_streams()
+{
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(stream, F_GETFD) < 0) {
+      // It takes the smallest free number, which is this one.
+      static_cast<void>(open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY));
+    }
+  }
+}
+
+/** \return \a status, or Status::Failed if what was printed did not get to stdout */
+static Status finish_output(Status status)
+{
+  errno = 0;
+  std::cout.flush();
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) {
+    return status;
+  }
+  // The reason of an earlier failure is not kept.
+  print_message("gnomon: standard output: cannot be written{}\n",
+                errno == 0 ? "" : fmt::format(": {}", std::strerror(errno)));
+  return status == Status::Done ? Status::Failed : status;
+}
+
 static Status run(int argc, char **argv)
 {
   CLI::App app("gnomon " GNOMON_VERSION ": lights a glTF scene with an EEVEE-style draw-manager engine", "gnomon");
@@ -42,7 +83,15 @@ static Status run(int argc, char **argv)
   add_bench(app, status);
   add_view(app);
   try {
-    app.parse(argc, argv);
+    // Compilers have these names of more than one letter after one dash, and CLI11 has not.
+    std::vector<std::string> arguments(argv + 1, argv + argc);
+    for (std::string &argument : arguments) {
+      if (argument == "-MD" || argument == "-MF" || argument == "-MT") {
+        argument.insert(0, 1, '-');
+      }
+    }
+    std::ranges::reverse(arguments);
+    app.parse(std::move(arguments));
     return status;
   }
   catch (const CLI::ParseError &error) {
@@ -50,11 +99,18 @@ static Status run(int argc, char **argv)
     return app.exit(error) == 0 ? Status::Done : Status::Usage;
   }
   catch (const UsageError &error) {
-    fmt::print(stderr, "gnomon: {}\n", error.what());
+    print_message("gnomon: {}\n", error.what());
+    return Status::Usage;
+  }
+  catch (const output::Conflict &error) {
+    print_message("gnomon: {}\n", error.what());
     return Status::Usage;
   }
   catch (const std::exception &error) {
-    fmt::print(stderr, "gnomon: {}\n", error.what());
+    // finish_output says that stdout failed.
+    if (std::ferror(stdout) == 0) {
+      print_message("gnomon: {}\n", error.what());
+    }
     return Status::Failed;
   }
 }
@@ -63,6 +119,9 @@ static Status run(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
+  gnomon::cli::open_standard_streams();
+  // Printing beyond the limit of the size of files fails instead.
+  static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
   gnomon::cli::keep_freed_memory();
-  return int(gnomon::cli::run(argc, argv));
+  return int(gnomon::cli::finish_output(gnomon::cli::run(argc, argv)));
 }

@@ -1,22 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "internal/cli_exr_file.hh"
-#include "internal/cli_picture_formats.hh"
 
-#include "cli_output.hh"
+#include "output_file.hh"
 
 #include <fmt/format.h>
 
+#include <IexBaseExc.h>
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfInputFile.h>
+#include <ImfIO.h>
 #include <ImfOutputFile.h>
-#include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
-#include <ImfTestFile.h>
 #include <ImfThreading.h>
 
-#include <fstream>
 #include <stdexcept>
 #include <thread>
 
@@ -45,6 +42,32 @@ static void add_channels(Imf::FrameBuffer &buffer, const Names &names, std::size
   }
 }
 
+namespace {
+
+/** Where OpenEXR writes. */
+class ExrStream : public Imf::OStream {
+ public:
+  ExrStream(output::Stream &stream, const fs::path &path) : OStream(path.c_str()), stream_(stream) {}
+
+  void write(const char *bytes, int size) override
+  {
+    stream_.write(bytes, std::size_t(size));
+  }
+  std::uint64_t tellp() override
+  {
+    return stream_.position();
+  }
+  void seekp(std::uint64_t position) override
+  {
+    stream_.seek(position);
+  }
+
+ private:
+  output::Stream &stream_;
+};
+
+}  // namespace
+
 void write_exr_file(const fs::path &path, Imf::Header header, const Imf::FrameBuffer &pixels, const Metadata &metadata)
 {
   header.insert("Software", Imf::StringAttribute("gnomon " GNOMON_VERSION));
@@ -56,24 +79,14 @@ void write_exr_file(const fs::path &path, Imf::Header header, const Imf::FrameBu
   // Blocks of rows are compressed side by side: two threads take 0.55 of the time of one.
   Imf::setGlobalThreadCount(int(std::thread::hardware_concurrency()));
   const Imath::Box2i &window = header.dataWindow();
-  write_atomically(path, [&](const fs::path &beside) {
+  output::write_file(path, [&](output::Stream &stream) {
     try {
-      std::ofstream file(beside, std::ios::binary);
-      if (!file) {
-        throw std::runtime_error("the file cannot be created");
-      }
-      {
-        Imf::StdOFStream stream(file, beside.c_str());
-        Imf::OutputFile output(stream, header);
-        output.setFrameBuffer(pixels);
-        output.writePixels(window.max.y - window.min.y + 1);
-      }
-      // The destructor of the output writes, too.
-      if (!file.flush()) {
-        throw std::runtime_error("the disk may be full");
-      }
+      ExrStream exr_stream(stream, path);
+      Imf::OutputFile output(exr_stream, header);
+      output.setFrameBuffer(pixels);
+      output.writePixels(window.max.y - window.min.y + 1);
     }
-    catch (const std::exception &error) {
+    catch (const Iex::BaseExc &error) {
       throw std::runtime_error(fmt::format("{}: cannot be written: {}", path.string(), error.what()));
     }
   });
@@ -101,37 +114,6 @@ void write_exr(const fs::path &path, glm::ivec2 size_px, std::span<const float> 
     add(names, names.size(), layer.values);
   }
   write_exr_file(path, std::move(header), buffer, metadata);
-}
-
-std::optional<Picture> read_exr_picture(const fs::path &path)
-{
-  if (!Imf::isOpenExrFile(path.c_str())) {
-    return std::nullopt;
-  }
-  Imf::InputFile input(path.c_str());
-  const Imath::Box2i window = input.header().dataWindow();
-  const auto edge = [](int min, int max) { return std::int64_t(max) - min + 1; };
-  check_edges(edge(window.min.x, window.max.x), edge(window.min.y, window.max.y));
-  const Names names = {"R", "G", "B"};
-  for (const std::string &name : names) {
-    const Imf::Channel *channel = input.header().channels().findChannel(name);
-    if (channel == nullptr) {
-      throw std::runtime_error("has no channels R, G and B");
-    }
-    if (channel->xSampling != 1 || channel->ySampling != 1) {
-      throw std::runtime_error(fmt::format("channel {} has fewer pixels than the picture", name));
-    }
-  }
-  if (!input.isComplete()) {
-    throw std::runtime_error("is cut off");
-  }
-  Picture picture{{edge(window.min.x, window.max.x), edge(window.min.y, window.max.y)}, {}};
-  picture.pixels.assign(std::size_t(picture.size_px.x) * std::size_t(picture.size_px.y), glm::vec4(1.0F));
-  Imf::FrameBuffer buffer;
-  add_channels(buffer, names, 4, reinterpret_cast<char *>(picture.pixels.data()), picture.size_px, window.min);
-  input.setFrameBuffer(buffer);
-  input.readPixels(window.min.y, window.max.y);
-  return picture;
 }
 
 }  // namespace gnomon::cli

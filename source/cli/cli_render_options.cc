@@ -135,11 +135,12 @@ std::string RenderOptions::settings_text() const
   return fmt::format(
       "--shadow {} --shadow-size {} --pcf {} --esm {} --cascades {} --cascade-lambda {} --cascade-range {} --cube-pass "
       "{} "
-      "--casters {} --shadow-memory {} --specular {} --world '{}' --world-strength {} --world-rotation {} --background "
+      "--casters {} --shadow-memory {} --specular {} --world '{}' --world-layer '{}' --world-strength {} "
+      "--world-rotation {} --background "
       "'{}' --animation '{}' --fps {} --light-threshold {} "
       "--emissive-points {} --noise-threshold {}",
       shadow, shadow_size, pcf, esm, cascades, cascade_lambda, cascade_range, cube_pass, casters, shadow_memory,
-      specular, world.world, world.strength, world.rotation_degrees, background, frames.animation,
+      specular, world.world, world.layer, world.strength, world.rotation_degrees, background, frames.animation,
       frames.frames_per_second, light_threshold, emissive_points, noise_threshold);
 }
 
@@ -233,6 +234,7 @@ void add_render_options(CLI::App &command, RenderOptions &options)
       .add_option("--texture-size-max", options.texture_size_max,
                   "Most texels along an edge of a texture; larger ones are reduced (default: no limit)")
       ->check(CLI::Range(1, 1 << 20));
+  add_only_below_option(command, options.only_below);
   CLI::Option *samples = command.add_option("--samples", options.samples, "Samples per pixel")
                              ->capture_default_str()
                              ->check(CLI::Range(1, 65536));

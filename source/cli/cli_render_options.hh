@@ -25,6 +25,8 @@ struct RenderOptions {
   std::string variant;
   /** 0: no limit. */
   std::uint32_t texture_size_max = 0;
+  /** Empty: the scene's files may be anywhere. */
+  std::filesystem::path only_below;
   int samples = 16;
   /** Seconds for each picture; infinity without --time-limit, otherwise `samples` may be 0: no limit. */
   double seconds_max = std::numeric_limits<double>::infinity();

@@ -21,6 +21,7 @@ void add_view(CLI::App &app)
                       "Write the window to a PNG when its pictures are complete, then end");
   command->add_option("--shaders", o->shaders,
                       "Folder with the engine's shaders, which are compiled again when a file changes");
+  add_only_below_option(*command, o->only_below);
   command->callback([o] {
     o->writers.png = [](const auto &path, glm::ivec2 size_px, std::span<const std::uint8_t> rgba) {
       write_png(path, size_px, rgba, {});
@@ -28,7 +29,11 @@ void add_view(CLI::App &app)
     o->writers.exr = [](const auto &path, glm::ivec2 size_px, std::span<const float> rgba) {
       write_exr(path, size_px, rgba, {{"gnomon:units", "scene-linear radiance, W/(sr m^2)"}}, Alpha::Written);
     };
-    o->read_picture = read_world_picture;
+    o->read_picture = [](const std::filesystem::path &path) {
+      scene::WorldPicture picture = read_world_picture(path);
+      static_cast<void>(clamp_radiances(picture));
+      return picture;
+    };
     view::run(*o);
   });
 }

@@ -3,6 +3,7 @@
 
 #include "eevee_engine.hh"
 #include "gltf_import.hh"
+#include "output_roles.hh"
 
 #include <CLI/App.hpp>
 
@@ -19,6 +20,8 @@ struct WorldOptions {
    * lamps nor a world.
    */
   std::string world;
+  /** Of the file; empty: \see read_picture. */
+  std::string layer;
   /** Factor of the world's radiance. */
   float strength = 1.0F;
   float rotation_degrees = 0.0F;
@@ -31,14 +34,26 @@ void add_world_options(CLI::App &command, WorldOptions &options);
 /** Adds `--background`: "none", "world" or a radiance R,G,B. Empty: not given. */
 void add_background_option(CLI::App &command, std::string &background);
 
+/** Adds `--only-below`, for all commands that import scenes. */
+void add_only_below_option(CLI::App &command, std::filesystem::path &folder);
+
+/**
+ * Adds the files of \a scene, and that of \a options, to \a roles. \throws output::Conflict where an output would
+ * replace one
+ */
+void add_inputs(output::Roles &roles, const scene::Scene &scene, const WorldOptions &options);
+
 /**
  * Imports a scene, with the picture of its own world: ImportOptions::read_picture is replaced.
  * \throws gltf::ImportError, and UsageError if there is no such variant
  */
 [[nodiscard]] scene::Scene import_scene(const std::string &path, const gltf::ImportOptions &options = {});
 
-/** An equirectangular picture. \throws std::runtime_error naming \a path, as read_picture */
-[[nodiscard]] scene::WorldPicture read_world_picture(const std::filesystem::path &path);
+/**
+ * An equirectangular picture, whose texels may be negative or infinite (scene::clamp_radiances). \a layer: \see
+ * read_picture. \throws std::runtime_error naming \a path
+ */
+[[nodiscard]] scene::WorldPicture read_world_picture(const std::filesystem::path &path, const std::string &layer = {});
 
 /** One line for people: its picture, or its radiance. */
 [[nodiscard]] std::string world_text(const scene::World &world);

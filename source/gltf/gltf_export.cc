@@ -9,10 +9,11 @@
 #include "internal/gltf_write_json.hh"
 #include "internal/gltf_write_lamp.hh"
 #include "internal/gltf_write_mesh.hh"
+#include "internal/gltf_write_skin_copy.hh"
 #include "internal/gltf_write_world.hh"
+#include "output_file.hh"
 
 #include <array>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <new>
@@ -21,8 +22,6 @@
 #include <string_view>
 #include <utility>
 #include <vector>
-
-#include <unistd.h>
 
 namespace gnomon::gltf {
 
@@ -53,6 +52,7 @@ class SceneWriter {
   JsonText document()
   {
     number_nodes();
+    find_copies();
     JsonText nodes;
     JsonText roots;
     for (const Handle<Node> handle : order_) {
@@ -61,7 +61,10 @@ class SceneWriter {
         roots.add(std::to_string(indices_.nodes.at(handle)));
       }
     }
-    const JsonText skins = skins_json(scene_, indices_, nodes, buffer_);
+    for (const SkinCopy &copy : copies_) {
+      add_copied_joints(copy, nodes);
+    }
+    const JsonText skins = skins_json(scene_, indices_, copies_, nodes, buffer_);
     indices_.materials = meshes_.material_indices();
     bool has_pointers = false;
     const JsonText animations = animations_json(scene_, indices_, buffer_, has_pointers);
@@ -108,6 +111,9 @@ class SceneWriter {
   std::map<Handle<Node>, const scene::AnimatedNode *> moved_;
   /** Parents before their children. */
   std::vector<Handle<Node>> order_;
+  std::vector<SkinCopy> copies_;
+  /** Index in copies_; -1: the mesh of the node is written as it stands, because its joints cannot be copied. */
+  std::map<Handle<Node>, int> copy_of_;
 
   /** Whether the importer would add the node again: it added it to a file without a camera or a lamp, and as it is. */
   [[nodiscard]] bool is_made_up(Handle<Node> handle, const Node &node) const
@@ -150,6 +156,61 @@ class SceneWriter {
     }
   }
 
+  /** Finds the nodes that show deformed meshes of other nodes, and numbers the nodes that they need. */
+  void find_copies()
+  {
+    std::size_t index = order_.size();
+    for (const Handle<Node> handle : order_) {
+      const scene::DeformedMesh *const deformed = meshes_.deformed_of(scene_.nodes()[handle].meshes);
+      if (deformed == nullptr || deformed->node == handle) {
+        continue;
+      }
+      if (deformed->skin >= 0) {
+        std::optional<SkinCopy> copy = skin_copy(scene_, *deformed);
+        copy_of_.emplace(handle, copy ? int(copies_.size()) : -1);
+        if (!copy) {
+          continue;
+        }
+        copy->first_index = int(index);
+        for (const Handle<Node> joint : copy->nodes) {
+          indices_.moved_copies.emplace(joint, *copy->index_of(joint));
+        }
+        index += 1 + copy->nodes.size();
+        copies_.push_back(std::move(*copy));
+      }
+      indices_.morphed_copies.emplace(deformed->node, indices_.nodes.at(handle));
+    }
+  }
+
+  void add_copied_joints(const SkinCopy &copy, JsonText &nodes)
+  {
+    const auto children_json = [&](Handle<Node> parent) {
+      JsonText children;
+      for (const Handle<Node> joint : copy.nodes) {
+        if (scene_.parent(joint) == parent) {
+          children.add(std::to_string(*copy.index_of(joint)));
+        }
+      }
+      return children;
+    };
+    const auto add = [&](Handle<Node> original, JsonText json) {
+      if (const JsonText children = children_json(original); !children.empty()) {
+        json.add("children", children.array());
+      }
+      nodes.add(json.object());
+    };
+    JsonText base;
+    add_matrix(copy.node_from_base, "joints of a copy", base);
+    add(copy.base, std::move(base));
+    for (const Handle<Node> joint : copy.nodes) {
+      const Node &node = scene_.nodes()[joint];
+      const std::string what = "node '" + printable(node.name) + '\'';
+      JsonText json;
+      add_place(joint, what, json);
+      add(joint, std::move(json));
+    }
+  }
+
   std::string scene_json(const JsonText &roots)
   {
     JsonText json;
@@ -177,22 +238,20 @@ class SceneWriter {
     for (Handle<Node> child = scene_.first_child(handle); child; child = scene_.next_sibling(child)) {
       children.add(std::to_string(indices_.nodes.at(child)));
     }
+    const auto copy = copy_of_.find(handle);
+    const bool is_frozen = copy != copy_of_.end() && copy->second < 0;
+    if (copy != copy_of_.end() && !is_frozen) {
+      children.add(std::to_string(copies_[std::size_t(copy->second)].first_index));
+    }
     if (!children.empty()) {
       json.add("children", children.array());
     }
-    if (const auto moved = moved_.find(handle); moved != moved_.end()) {
-      add_transform(node.parent_from_node, *moved->second, what, json);
-    }
-    else if (node.parent_from_node != glm::dmat4(1.0)) {
-      JsonText matrix;
-      for (int i = 0; i < 16; i++) {
-        matrix.add(json_number(node.parent_from_node[i / 4][i % 4], what));
-      }
-      json.add("matrix", matrix.array());
-    }
-    if (const int mesh = meshes_.index_of(node.meshes); mesh >= 0) {
+    add_place(handle, what, json);
+    if (const int mesh = meshes_.index_of(node.meshes, !is_frozen); mesh >= 0) {
       json.add("mesh", std::to_string(mesh));
-      add_deformation(node, what, json);
+      if (!is_frozen) {
+        add_deformation(node, copy == copy_of_.end() ? -1 : int(scene_.skins.size()) + copy->second, what, json);
+      }
     }
     add_flags(node, extras);
     add_camera(node, json, extras);
@@ -203,14 +262,39 @@ class SceneWriter {
     return json.object();
   }
 
-  void add_deformation(const Node &node, const std::string &what, JsonText &json) const
+  /** Adds the transform of the node. */
+  void add_place(Handle<Node> handle, const std::string &what, JsonText &json) const
+  {
+    const glm::dmat4 &matrix = scene_.nodes()[handle].parent_from_node;
+    if (const auto moved = moved_.find(handle); moved != moved_.end()) {
+      add_transform(matrix, *moved->second, what, json);
+    }
+    else {
+      add_matrix(matrix, what, json);
+    }
+  }
+
+  static void add_matrix(const glm::dmat4 &matrix, const std::string &what, JsonText &json)
+  {
+    if (matrix == glm::dmat4(1.0)) {
+      return;
+    }
+    JsonText numbers;
+    for (int i = 0; i < 16; i++) {
+      numbers.add(json_number(matrix[i / 4][i % 4], what));
+    }
+    json.add("matrix", numbers.array());
+  }
+
+  /** \a copied_skin: index of the skin of a copy; -1: the node has that of its mesh. */
+  void add_deformation(const Node &node, int copied_skin, const std::string &what, JsonText &json) const
   {
     const scene::DeformedMesh *const deformed = meshes_.deformed_of(node.meshes);
     if (deformed == nullptr) {
       return;
     }
     if (deformed->skin >= 0) {
-      json.add("skin", std::to_string(deformed->skin));
+      json.add("skin", std::to_string(copied_skin >= 0 ? copied_skin : deformed->skin));
     }
     JsonText weights;
     for (const double weight : deformed->weights) {
@@ -327,32 +411,6 @@ std::string file_of(const Scene &scene, const std::filesystem::path &folder, boo
   return is_binary ? glb_of(document.object(), writer.bytes()) : document.object() + '\n';
 }
 
-/**
- * Writes a temporary file in the same folder and renames it, so that an existing file is replaced only by a complete
- * one.
- */
-void write_file(const std::filesystem::path &path, const std::string &content)
-{
-  std::filesystem::path part = path;
-  part += ".part" + std::to_string(::getpid());
-  std::error_code error;
-  {
-    std::ofstream stream(part, std::ios::binary | std::ios::trunc);
-    stream.write(content.data(), static_cast<std::streamsize>(content.size()));
-    stream.close();
-    if (!stream) {
-      std::filesystem::remove(part, error);
-      throw Fault("file", "cannot be written");
-    }
-  }
-  std::filesystem::rename(part, path, error);
-  if (error) {
-    const std::string reason = error.message();
-    std::filesystem::remove(part, error);
-    throw Fault("file", "cannot be replaced: " + reason);
-  }
-}
-
 }  // namespace
 
 void export_gltf(const Scene &scene, const std::filesystem::path &path)
@@ -365,10 +423,13 @@ void export_gltf(const Scene &scene, const std::filesystem::path &path)
     throw failed("the name ends neither in .gltf nor in .glb");
   }
   try {
-    write_file(path, file_of(scene, path.parent_path(), extension == ".glb"));
+    output::write_file(path, file_of(scene, path.parent_path(), extension == ".glb"));
   }
   catch (const Fault &fault) {
     throw failed(fault.what());
+  }
+  catch (const output::Error &error) {
+    throw ExportError(error.what());
   }
   catch (const std::bad_alloc &) {
     throw failed("there is not enough memory for it");

@@ -22,6 +22,10 @@ struct ExportError : std::runtime_error {
  * as extras (`gnomon_*`, see `doc/conventions.md`). The picture of a world that was read from a file stays there, and
  * the written file refers to it (ImportOptions::read_picture).
  *
+ * A node that shows the deformed mesh of another node is read with joints of its own below it, because glTF ignores the
+ * transform of a node with a skin. A mesh that does not fit its rest shape (scene::fault_of), or whose node was
+ * removed, is written as it stands.
+ *
  * Not written: things that no node uses, meshes without triangles, references to removed things, and the camera and
  * lamp that the importer added to a file without one, unless they were edited; animations of properties of area lamps;
  * shear of nodes that an animation moves. A lamp or camera of several nodes is read as one for each node.

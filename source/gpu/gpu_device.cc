@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 namespace gnomon::gpu {
 
@@ -24,6 +25,7 @@ Device::~Device() = default;
 
 void Device::free_live_resources()
 {
+  trim_shared_shaders(0);
   for (const std::string &resource : live_resources()) {
     message(fmt::format("{} is destroyed with its device; its owner should be destroyed first", resource));
   }
@@ -62,11 +64,22 @@ static std::size_t layer_size_bytes(const TextureDesc &desc)
   return std::size_t(desc.width) * std::size_t(desc.height) * std::size_t(texel_size_bytes(desc.format));
 }
 
+static std::size_t level_sizes_bytes(const TextureDesc &desc)
+{
+  std::size_t size = 0;
+  for (int level = 0; level < desc.mip_levels; level++) {
+    size += std::size_t(std::max(desc.width >> level, 1)) * std::size_t(std::max(desc.height >> level, 1)) *
+            std::size_t(texel_size_bytes(desc.format));
+  }
+  return size;
+}
+
 void Device::upload(const Texture &texture, int layer, std::span<const std::byte> texels)
 {
   const TextureDesc &desc = texture.desc();
+  const bool has_all_levels = desc.kind == TextureKind::Flat && texels.size() == level_sizes_bytes(desc);
   const bool has_size = desc.kind == TextureKind::Buffer ? texels.size() <= layer_size_bytes(desc)
-                                                         : texels.size() == layer_size_bytes(desc);
+                                                         : texels.size() == layer_size_bytes(desc) || has_all_levels;
   GNOMON_ASSERT(texture && desc.format != Format::Host && layer >= 0 && layer < desc.layers && has_size,
                 "texture '{}' of format {}: {} bytes to layer {}", desc.name, to_string(desc.format), texels.size(),
                 layer);
@@ -104,6 +117,7 @@ std::vector<std::byte> Device::read(const Texture &texture, int layer)
   GNOMON_ASSERT(!recording_, "a read of texture '{}' during a recording", desc.name);
   GNOMON_ASSERT(texture && desc.format != Format::Host && layer >= 0 && layer < desc.layers,
                 "texture '{}' of format {} has no layer {}", desc.name, to_string(desc.format), layer);
+  check_can_execute();
   std::vector<std::byte> texels(layer_size_bytes(desc));
   texture_read(texture.id(), layer, texels);
   return texels;
@@ -188,10 +202,17 @@ bool Device::has_batch_data(std::uint32_t first_index, std::uint32_t index_count
 
 std::vector<LiveResource> Device::live() const
 {
+  std::set<ResourceId> unused_shaders;
+  for (const auto &[key, kept] : shared_shaders_) {
+    if (kept.shared.use_count() == 1) {
+      unused_shaders.insert(kept.shared->shader.id());
+    }
+  }
   std::vector<LiveResource> resources;
   for (std::size_t kind = 0; kind < kind_count; kind++) {
     for (const Slot &slot : slots_[kind]) {
-      if (slot.is_live) {
+      const bool is_unused = ResourceKind(kind) == ResourceKind::Shader && unused_shaders.contains(slot.id);
+      if (slot.is_live && !is_unused) {
         resources.push_back({ResourceKind(kind), slot.info.name, slot.detail, slot.size_bytes, slot.upload_bytes});
       }
     }

@@ -21,7 +21,7 @@
 
 namespace gnomon::gpu {
 
-/** Measures the time between two marks on the device. \see Device::time_begin */
+/** Measures the times between pairs of marks on the device. \see Device::time_begin */
 class TimerQuery : public Resource {
  public:
   TimerQuery() = default;
@@ -83,6 +83,16 @@ class Device {
    */
   [[nodiscard]] Shader create_shader(const ShaderDesc &desc, const ShaderFiles &files,
                                      const ShaderReflection &reflection, const ShaderFiles &stand_in = {});
+  /**
+   * The program of \a desc, which all users on this device share. If the device has none, or lost the packet that
+   * created it, \a make creates it. \a text: what the program depends on besides \a desc, such as the text of a
+   * function; equal arguments must mean equal programs.
+   *
+   * A program without users is kept for the next one: the device keeps the unused_shader_max that were asked for last.
+   */
+  [[nodiscard]] std::shared_ptr<SharedShader> shared_shader(const ShaderDesc &desc, std::string_view text,
+                                                            const std::function<void(SharedShader &made)> &make);
+  static constexpr std::size_t unused_shader_max = 64;
   [[nodiscard]] TimerQuery create_timer_query(std::string name);
 
   /** Write \a bytes to \a buffer. Lists submitted later read the new content; lists submitted before do not. */
@@ -94,7 +104,8 @@ class Device {
   }
   /**
    * Write level 0 of one layer. \a texels: rows from the bottom, tightly packed. TextureKind::Buffer: the first texels;
-   * the rest keep their content. \pre not a texture of the host, here and in the functions below
+   * the rest keep their content. TextureKind::Flat: also all mip levels, one after the other.
+   * \pre not a texture of the host, here and in the functions below
    */
   void upload(const Texture &texture, int layer, std::span<const std::byte> texels);
   /**
@@ -124,7 +135,7 @@ class Device {
 
   /**
    * Execute \a packet. Device's thread. Packets must be submitted in the order in which they were recorded. Waits for
-   * the device if the packet contains a read_back or a timer query.
+   * the device if the packet contains a read_back.
    *
    * \throws Error if an operation fails, or if an earlier packet was lost after the recording of this one began. The
    * packet is then lost: the resources that it creates do not exist, the content of resources that it writes is
@@ -159,16 +170,16 @@ class Device {
   /** Wait until all submitted work is done. Device's thread. */
   virtual void finish() = 0;
 
-  /** Set the begin mark and the end mark of \a query, between submissions. Queries must not overlap. */
+  /** Set the begin mark and the end mark of \a query, between submissions. Queries must not overlap. Does not wait. */
   void time_begin(const TimerQuery &query);
   void time_end(const TimerQuery &query);
   /**
-   * Seconds between the marks. Waits for the device. Empty if the device has no timer (null backend). For marks in a
-   * packet, use the packet's Feedback instead.
+   * Seconds between all pairs of marks of \a query that were executed since the last call; 0: there were none. Waits
+   * for the device. Empty if the device has no timer (null backend). Device's thread.
    */
-  [[nodiscard]] std::optional<double> elapsed_seconds(const TimerQuery &query)
+  [[nodiscard]] std::optional<double> take_seconds(const TimerQuery &query)
   {
-    return seconds_between_marks(query.id());
+    return seconds_take(query.id());
   }
 
   [[nodiscard]] const Limits &limits() const
@@ -201,7 +212,7 @@ class Device {
   /** Whether live batches own all indices of the range and the vertex \a base_vertex. */
   [[nodiscard]] bool has_batch_data(std::uint32_t first_index, std::uint32_t index_count,
                                     std::int32_t base_vertex) const;
-  /** All live resources, sorted by kind and then by index. */
+  /** All live resources but shared programs without users, sorted by kind and then by index. */
   [[nodiscard]] std::vector<LiveResource> live() const;
   /** Description of \a resource. \pre it belongs to this device and is not empty */
   [[nodiscard]] LiveResource live(const Resource &resource) const;
@@ -214,9 +225,34 @@ class Device {
   /** \a shader_cache_folder: see ShaderDiskCache. */
   Device(const Limits &limits, MessageSink sink, std::filesystem::path shader_cache_folder = {});
 
+  /** Whether the backend functions may be called on this thread now. */
+  [[nodiscard]] virtual bool can_execute() const
+  {
+    return true;
+  }
+  /** \throws Error unless can_execute() */
+  void check_can_execute() const;
   /** Must be called by the destructor of the most derived class, whose backend functions free the resources. */
   void free_live_resources();
   void message(std::string_view text) const;
+
+  /** A scope whose calls are one call for the owner of the context. Scopes may be nested. */
+  class Calls {
+   public:
+    explicit Calls(Device &device) : device_(device)
+    {
+      device.calls_begin();
+    }
+    ~Calls()
+    {
+      device_.calls_end();
+    }
+    Calls(const Calls &) = delete;
+    Calls &operator=(const Calls &) = delete;
+
+   private:
+    Device &device_;
+  };
 
   // Functions implemented by a backend. They run on the device's thread and must not read the base class's tables,
   // which the recording thread may be changing.
@@ -248,13 +284,21 @@ class Device {
   virtual void texture_read(ResourceId id, int layer, std::span<std::byte> texels) = 0;
   virtual void list_submit(const CommandList &list) = 0;
   virtual void time_mark(ResourceId query, bool is_end) = 0;
-  [[nodiscard]] virtual std::optional<double> seconds_between_marks(ResourceId query) = 0;
+  /** The begin and the end of a scope. \see Calls */
+  virtual void calls_begin() {}
+  virtual void calls_end() {}
+  [[nodiscard]] virtual std::optional<double> seconds_take(ResourceId query) = 0;
 
  private:
   friend class Packet;
   friend class Recording;
   friend class Resource;
 
+  struct KeptShader {
+    std::shared_ptr<SharedShader> shared;
+    /** Increases with each request. */
+    std::uint64_t asked = 0;
+  };
   struct Slot {
     /** Id of the resource that uses this index now, or used it last. */
     ResourceId id = 0;
@@ -287,6 +331,8 @@ class Device {
   {
     return recording_ ? recording_->memory_.copy(values) : values;
   }
+  /** Destroys shared programs without users until at most \a count_max of them exist. */
+  void trim_shared_shaders(std::size_t count_max);
   BatchRange allocate_range(const BatchDesc &desc);
   void free_range(const BatchRange &range);
   void count_upload(ResourceKind kind, ResourceId id, std::size_t bytes);
@@ -337,6 +383,9 @@ class Device {
   std::array<std::vector<ResourceId>, kind_count> free_ids_;
   RangeAllocator vertices_;
   RangeAllocator indices_;
+  /** By description and text. */
+  std::map<std::string, KeptShader, std::less<>> shared_shaders_;
+  std::uint64_t shared_shaders_asked_ = 0;
   Packet *recording_ = nullptr;
   std::uint64_t serial_ = 0;
   std::vector<InFlight> in_flight_;
@@ -396,6 +445,9 @@ enum class ContextKind {
    * The device uses the host's context, which must be current on this thread now and in every later call. Each call
    * saves the OpenGL state that it changes and restores it before it returns or throws.
    *
+   * A name that the host has deleted while it was bound is left unbound if OpenGL does not bind it again. So is the
+   * current program if it is flagged for deletion and no other context uses it.
+   *
    * A call reads pending OpenGL errors before it starts, so that an error of the host is not reported as an error of
    * the device, and raises them again before it returns. Errors other than GL_INVALID_ENUM, GL_INVALID_VALUE and
    * GL_INVALID_OPERATION cannot be raised again and are reported to the message sink.
@@ -405,7 +457,6 @@ enum class ContextKind {
    * - an active query other than GL_TIME_ELAPSED,
    * - conditional rendering,
    * - active transform feedback that is not paused.
-   * The current program must not be flagged for deletion.
    */
   Host,
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene_animation.hh"
 
+#include "internal/scene_rest_shape.hh"
 #include "scene.hh"
 
 #include <glm/gtc/matrix_transform.hpp>

@@ -137,6 +137,11 @@ struct DeformedMesh {
   std::vector<JointWeights> joint_weights;
   std::size_t joint_sets = 0;
   /**
+   * Triangles of the mesh whose second and third index the last deformation has swapped, because the joints mirror
+   * them: in the mesh, the front of each triangle agrees with its normals. Empty: none.
+   */
+  std::vector<bool> reversed_triangles;
+  /**
    * Joint matrices and weights of the last deformation; empty: the mesh has its rest shape. deform_meshes() skips the
    * mesh if they are unchanged.
    */
@@ -156,13 +161,20 @@ void pose(Scene &scene, const Animation &animation, double seconds);
 /** Set the morph weights of all meshes of \a node. Missing weights are 0. Call deform_meshes() afterwards. */
 void set_morph_weights(Scene &scene, Handle<Node> node, std::span<const double> weights);
 
-/** \throws InvalidEdit that names the mesh if one of Scene::deformed_meshes does not fit its mesh and its skin. */
-void check_deformed_meshes(const Scene &scene);
+/** The indices of \a mesh in the order of the rest shape. \see DeformedMesh::reversed_triangles */
+[[nodiscard]] std::vector<std::uint32_t> rest_indices(const Mesh &mesh, const DeformedMesh &deformed);
+
+/**
+ * Why \a deformed does not fit its mesh and its skin, so that deform_meshes() throws. Empty if it fits, and if it takes
+ * no part in deformations, because its mesh or its node was removed or its mesh is in buffers of a host.
+ */
+[[nodiscard]] std::string fault_of(const Scene &scene, const DeformedMesh &deformed);
 
 /**
  * Deform all meshes in Scene::deformed_meshes. Call this after joints have moved or weights have changed. Skips meshes
- * that were removed, or that are in buffers of a host. \throws InvalidEdit as check_deformed_meshes(), before anything
- * changes; or if a vertex names a joint that its skin does not have, or is deformed beyond the range of float
+ * that were removed, or that are in buffers of a host. \throws InvalidEdit that names a mesh with the reason of
+ * fault_of(), before anything changes; or if a vertex names a joint that its skin does not have, or is deformed beyond
+ * the range of float
  */
 void deform_meshes(Scene &scene);
 

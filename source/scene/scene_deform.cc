@@ -9,10 +9,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace gnomon::scene {
 
@@ -30,6 +32,8 @@ struct Shape {
   std::vector<glm::dvec3> positions;
   std::vector<glm::dvec3> normals;
   std::vector<glm::dvec3> tangents;
+  /** Vertices that joints mirror. Empty: none. */
+  std::vector<bool> is_mirrored{};
 };
 
 /** Adds the differences of the morph targets at \a weights. */
@@ -142,11 +146,41 @@ void skin_vertices(const DeformedMesh &deformed, const std::vector<glm::dmat4> &
     const glm::dmat4 matrix = vertex_matrix(deformed, joints, vertex, mesh);
     shape.positions[vertex] = glm::dvec3(matrix * glm::dvec4(shape.positions[vertex], 1.0));
     const glm::dmat3 linear(matrix);
+    const bool is_mirrored = glm::determinant(linear) < 0.0;
+    if (is_mirrored && shape.is_mirrored.empty()) {
+      shape.is_mirrored.resize(shape.positions.size(), false);
+    }
+    if (is_mirrored) {
+      shape.is_mirrored[vertex] = true;
+    }
     // The cofactors of a mirroring matrix reverse normals. Reverse them again.
-    const double side = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
-    shape.normals[vertex] = side * (normal_matrix(linear) * shape.normals[vertex]);
+    shape.normals[vertex] = (is_mirrored ? -1.0 : 1.0) * (normal_matrix(linear) * shape.normals[vertex]);
     if (!shape.tangents.empty()) {
       shape.tangents[vertex] = linear * shape.tangents[vertex];
+    }
+  }
+}
+
+/** The triangles of which joints mirror at least two corners. Empty: none. */
+std::vector<bool> mirrored_triangles(const Shape &shape, const Mesh &mesh)
+{
+  std::vector<bool> result;
+  if (shape.is_mirrored.empty() || mesh.topology != Topology::Triangles) {
+    return result;
+  }
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const auto is_mirrored = [&](std::size_t corner) { return shape.is_mirrored[mesh.indices[i + corner]] ? 1 : 0; };
+    result.push_back(is_mirrored(0) + is_mirrored(1) + is_mirrored(2) >= 2);
+  }
+  return result;
+}
+
+/** Swaps two indices of each triangle of \a reversed, which may be shorter. */
+void reverse(const std::vector<bool> &reversed, std::vector<std::uint32_t> &indices)
+{
+  for (std::size_t i = 0; i < std::min(reversed.size(), indices.size() / 3); i++) {
+    if (reversed[i]) {
+      std::swap(indices[3 * i + 1], indices[3 * i + 2]);
     }
   }
 }
@@ -162,8 +196,14 @@ void make_flat_normals(Shape &shape, const std::vector<std::uint32_t> &indices)
   }
 }
 
+struct Deformed {
+  Mesh mesh;
+  /** \see DeformedMesh::reversed_triangles */
+  std::vector<bool> reversed_triangles;
+};
+
 /** The mesh with its vertices deformed by \a joints; empty if it does not change. */
-std::optional<Mesh> deformed_mesh(const DeformedMesh &deformed, const std::vector<glm::dmat4> &joints,
+std::optional<Deformed> deformed_mesh(const DeformedMesh &deformed, const std::vector<glm::dmat4> &joints,
                                   const Mesh &current)
 {
   Shape shape{{deformed.positions.begin(), deformed.positions.end()},
@@ -173,8 +213,15 @@ std::optional<Mesh> deformed_mesh(const DeformedMesh &deformed, const std::vecto
   if (deformed.skin >= 0) {
     skin_vertices(deformed, joints, current, shape);
   }
+  std::vector<bool> reversed = mirrored_triangles(shape, current);
+  const bool is_reordered = reversed != deformed.reversed_triangles;
+  std::vector<std::uint32_t> reordered;
+  if (is_reordered) {
+    reordered = rest_indices(current, deformed);
+    reverse(reversed, reordered);
+  }
   if (deformed.has_flat_normals) {
-    make_flat_normals(shape, current.indices);
+    make_flat_normals(shape, is_reordered ? reordered : current.indices);
   }
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;
@@ -183,18 +230,24 @@ std::optional<Mesh> deformed_mesh(const DeformedMesh &deformed, const std::vecto
     positions.emplace_back(shape.positions[i]);
     normals.push_back(unit_or(shape.normals[i], deformed.normals[i]));
     if (!shape.tangents.empty()) {
-      tangents.emplace_back(unit_or(shape.tangents[i], glm::vec3(deformed.tangents[i])), deformed.tangents[i].w);
+      const bool is_mirrored = !shape.is_mirrored.empty() && shape.is_mirrored[i];
+      tangents.emplace_back(unit_or(shape.tangents[i], glm::vec3(deformed.tangents[i])),
+                            (is_mirrored ? -1.0F : 1.0F) * deformed.tangents[i].w);
     }
   }
   // Do not edit the mesh if it does not change, so that it is not uploaded and shadows are not drawn again.
-  if (positions == current.positions && normals == current.normals && tangents == current.tangents) {
+  if (positions == current.positions && normals == current.normals && tangents == current.tangents && !is_reordered) {
     return std::nullopt;
   }
-  Mesh mesh = current;
+  Deformed result{.mesh = current, .reversed_triangles = std::move(reversed)};
+  Mesh &mesh = result.mesh;
   mesh.positions = std::move(positions);
   mesh.normals = std::move(normals);
   mesh.tangents = std::move(tangents);
-  return mesh;
+  if (is_reordered) {
+    mesh.indices = std::move(reordered);
+  }
+  return result;
 }
 
 /** A vector whose sum with \a difference has the direction of \a sum; of length 1 if there is one. */
@@ -231,7 +284,8 @@ std::optional<RestShape> edited_rest_shape(const Scene &scene, const DeformedMes
   const std::size_t count = deformed.positions.size();
   const auto is_same = [&](const auto &a, const auto &b, std::size_t i) { return a.size() == count && a[i] == b[i]; };
   RestShape rest{deformed.positions, deformed.normals, deformed.tangents,
-                 deformed.has_flat_normals && (before.normals == after.normals || has_flat_normals(after))};
+                 deformed.has_flat_normals && has_flat_normals(after)};
+  const bool were_flat = deformed.has_flat_normals && !rest.has_flat_normals;
   rest.tangents.resize(after.tangents.size());
   // The differences of the morph targets alone.
   Shape morphs{std::vector<glm::dvec3>(count), std::vector<glm::dvec3>(count),
@@ -239,7 +293,7 @@ std::optional<RestShape> edited_rest_shape(const Scene &scene, const DeformedMes
   morph(deformed, deformed.deformed_by_weights, morphs);
   for (std::size_t i = 0; i < count; i++) {
     const bool is_moved = !is_same(before.positions, after.positions, i);
-    const bool is_turned = !is_same(before.normals, after.normals, i);
+    const bool is_turned = were_flat || !is_same(before.normals, after.normals, i);
     const bool has_new_tangent =
         i < rest.tangents.size() && (deformed.tangents.empty() || !is_same(before.tangents, after.tangents, i));
     if (!is_moved && !is_turned && !has_new_tangent) {
@@ -272,12 +326,17 @@ std::optional<RestShape> edited_rest_shape(const Scene &scene, const DeformedMes
   return rest;
 }
 
+std::string fault_of(const Scene &scene, const DeformedMesh &deformed)
+{
+  const Mesh *mesh = mesh_of(scene, deformed);
+  return mesh ? fault_of(scene, deformed, *mesh) : std::string();
+}
+
 void check_deformed_meshes(const Scene &scene)
 {
   for (const DeformedMesh &deformed : scene.deformed_meshes) {
-    const Mesh *mesh = mesh_of(scene, deformed);
-    if (const std::string fault = mesh ? fault_of(scene, deformed, *mesh) : std::string(); !fault.empty()) {
-      throw InvalidEdit(fmt::format("mesh '{}': it cannot be deformed: {}", mesh->name, fault));
+    if (const std::string fault = fault_of(scene, deformed); !fault.empty()) {
+      throw InvalidEdit(fmt::format("mesh '{}': it cannot be deformed: {}", scene.meshes()[deformed.mesh].name, fault));
     }
   }
 }
@@ -291,6 +350,13 @@ void set_morph_weights(Scene &scene, Handle<Node> node, std::span<const double> 
       }
     }
   }
+}
+
+std::vector<std::uint32_t> rest_indices(const Mesh &mesh, const DeformedMesh &deformed)
+{
+  std::vector<std::uint32_t> indices = mesh.indices;
+  reverse(deformed.reversed_triangles, indices);
+  return indices;
 }
 
 void deform_meshes(Scene &scene)
@@ -308,8 +374,9 @@ void deform_meshes(Scene &scene)
     if (joints == deformed.deformed_by_joints && deformed.weights == deformed.deformed_by_weights) {
       continue;
     }
-    if (std::optional<Mesh> changed = deformed_mesh(deformed, joints, *mesh)) {
-      scene.replace_deformed(deformed.mesh, std::move(*changed));
+    if (std::optional<Deformed> changed = deformed_mesh(deformed, joints, *mesh)) {
+      scene.replace_deformed(deformed.mesh, std::move(changed->mesh));
+      deformed.reversed_triangles = std::move(changed->reversed_triangles);
     }
     deformed.deformed_by_joints = std::move(joints);
     deformed.deformed_by_weights = deformed.weights;

@@ -78,6 +78,27 @@ bool reads_object(const glslang::TProgram &program)
   return false;
 }
 
+/** ShaderInterface::varying_locations. */
+int varying_locations(const glslang::TProgram &program)
+{
+  int count = 0;
+  for (const EShLanguage stage : {EShLangVertex, EShLangGeometry}) {
+    const glslang::TIntermediate *intermediate = program.getIntermediate(stage);
+    if (intermediate == nullptr || intermediate->getTreeRoot() == nullptr) {
+      continue;
+    }
+    for (const TIntermNode *node : intermediate->findLinkerObjects()->getSequence()) {
+      const glslang::TIntermSymbol *symbol = root_symbol(node);
+      const glslang::TQualifier *output = symbol ? &symbol->getQualifier() : nullptr;
+      if (output && output->isPipeOutput() && output->hasLocation()) {
+        const int size = glslang::TIntermediate::computeTypeLocationSize(symbol->getType(), stage);
+        count = std::max(count, int(output->layoutLocation) + size);
+      }
+    }
+  }
+  return count;
+}
+
 }  // namespace
 
 gpu::ShaderInterface interface_of(glslang::TProgram &program)
@@ -86,6 +107,7 @@ gpu::ShaderInterface interface_of(glslang::TProgram &program)
                           EShReflectionStrictArraySuffix);
   gpu::ShaderInterface interface;
   interface.reads_object = reads_object(program);
+  interface.varying_locations = varying_locations(program);
   const int variable_count = program.getNumUniformVariables();
   const auto variable = [&](int i) -> const glslang::TObjectReflection & { return program.getUniform(i); };
   for (int i = 0; i < program.getNumUniformBlocks(); i++) {
@@ -159,9 +181,11 @@ gpu::ShaderInterface reflect(std::string_view name, const std::vector<gpu::Shade
 {
   gpu::ShaderInterface interface;
   with_large_stack([&] {
+    // The program refers to the sources until it is destroyed.
+    std::vector<std::unique_ptr<StageSource>> sources;
     GlslangProgram glslang;
     for (const gpu::ShaderSource &stage : stages) {
-      if (!glslang.add(stage, GlslangTarget::OpenGl)) {
+      if (!glslang.add(*sources.emplace_back(std::make_unique<StageSource>(stage)), CheckTarget::OpenGl)) {
         throw gpu::Error("shader '{}', {} stage:\n{}", name, to_string(stage.stage),
                          bounded_lines(stage.name_files(glslang.log())));
       }
@@ -182,7 +206,7 @@ StageVariables stage_variables(const gpu::ShaderDesc &desc, const gpu::ShaderFil
     Compilation compilation;
     compile(desc, files, compilation);
     if (!compilation.facts.empty()) {
-      const bool is_geometry = compilation.sources.front().stage == gpu::ShaderStage::Geometry;
+      const bool is_geometry = compilation.sources.front()->stage() == Stage::Geometry;
       result.inputs = variables(compilation.facts.front().inputs, is_geometry);
       result.outputs = variables(compilation.facts.back().outputs, false);
     }

@@ -45,6 +45,7 @@ class Document {
   void edit(scene::Handle<T> thing, Change &&change)
   {
     history_.edit(scene_, thing, change);
+    deform();
   }
   void set_world(std::optional<scene::World> world)
   {
@@ -146,6 +147,9 @@ class Document {
   [[nodiscard]] scene::Handle<scene::Node> find(const std::string &name) const;
 
  private:
+  /** Deforms meshes whose joints an edit has moved, removed or brought back. */
+  void deform();
+
   scene::Scene scene_;
   History history_;
   /** Nothing: the document has left its device. */

@@ -18,9 +18,21 @@ void Document::set_world_picture(std::shared_ptr<const scene::WorldPicture> pict
   set_world(std::move(world));
 }
 
+void Document::deform()
+{
+  try {
+    scene::deform_meshes(scene_);
+  }
+  catch (const scene::InvalidEdit & /*fault*/) {
+    // Joints that are scaled beyond the range of float leave their mesh as it was, until an edit or undo scales them
+    // back. The edit of the joints itself is valid.
+  }
+}
+
 bool Document::undo()
 {
   const bool is_undone = history_.undo(scene_);
+  deform();
   selected = history_.restored() ? history_.restored() : selected;
   return is_undone;
 }
@@ -28,6 +40,7 @@ bool Document::undo()
 bool Document::redo()
 {
   const bool is_redone = history_.redo(scene_);
+  deform();
   selected = history_.restored() ? history_.restored() : selected;
   return is_redone;
 }
@@ -44,6 +57,7 @@ bool Document::remove_selected()
     return false;
   }
   history_.remove(scene_, selected);
+  deform();
   selected = {};
   return true;
 }
@@ -87,6 +101,7 @@ void Document::end_transform(bool is_kept)
   }
   else {
     history_.revert_gesture(scene_);
+    deform();
   }
 }
 

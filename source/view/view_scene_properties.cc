@@ -205,7 +205,10 @@ Properties<scene::Material> make_material_properties()
   // Dielectrics reflect 0.04 of the light at normal incidence: a factor of 25 makes it all.
   made.numbers.push_back(color<Material>("specular_color", "Specular color", &Material::specular_color, 25.0));
   made.numbers.push_back(number("emissive", "Emission", "W/(sr m²)", &Material::emissive, 0.0, 1e6));
-  made.numbers.push_back(number("normal_scale", "Normal scale", "", &Material::normal_scale, -10.0, 10.0));
+  NumberProperty<Material> normal_scale =
+      number("normal_scale", "Normal scale", "", &Material::normal_scale, -10.0, 10.0);
+  normal_scale.applies = [](const Material &material) { return bool(material.normal_texture); };
+  made.numbers.push_back(std::move(normal_scale));
   NumberProperty<Material> occlusion =
       number("occlusion_strength", "Occlusion", "", &Material::occlusion_strength, 0.0, 1.0);
   occlusion.applies = [](const Material &material) { return bool(material.occlusion_texture); };

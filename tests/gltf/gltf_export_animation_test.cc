@@ -6,7 +6,9 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace gnomon::test {
 namespace {
@@ -17,8 +19,13 @@ using scene::Scene;
 /** The largest difference between coordinates of the vertices of all objects in world space, metres. */
 double difference(const Scene &a, const Scene &b)
 {
-  const std::vector<scene::Object> first = a.objects();
-  const std::vector<scene::Object> second = b.objects();
+  const auto objects_by_name = [](const Scene &scene) {
+    std::vector<scene::Object> objects = scene.objects();
+    std::ranges::stable_sort(objects, {}, [&](const scene::Object &object) { return scene.nodes()[object.node].name; });
+    return objects;
+  };
+  const std::vector<scene::Object> first = objects_by_name(a);
+  const std::vector<scene::Object> second = objects_by_name(b);
   EXPECT_EQ(first.size(), second.size());
   double largest = 0.0;
   for (std::size_t i = 0; i < std::min(first.size(), second.size()); i++) {
@@ -118,6 +125,112 @@ TEST_F(GltfExportAnimation, ARemovedJointStaysAtRest)
   scene::deform_meshes(scene);
   Scene copy = read_back(scene);
   expect_same_motion(scene, copy);
+}
+
+/**
+ * Nodes that show the deformed mesh of another node, in all places that a tree has: beside it, below it, below a joint,
+ * and with children of their own. What the other node's ancestors and the joints have in common may move.
+ */
+TEST_F(GltfExportAnimation, CopiesOfASkinnedNodeKeepTheirPlaceAndTheirMotion)
+{
+  for (const bool is_below_an_armature : {false, true}) {
+    SCOPED_TRACE(is_below_an_armature);
+    GltfBuilder builder = skinned_triangle();
+    builder.document["nodes"][0]["translation"] = {0.5, -1, 2};
+    builder.document["nodes"][0]["rotation"] = {0, 0.6, 0, 0.8};
+    builder.document["nodes"][0]["scale"] = {1, 2, 0.5};
+    builder.node({{"name", "foot"}, {"translation", {0, 0, 1}}});
+    builder.document["nodes"][2]["children"] = {3};
+    builder.document["nodes"][1]["children"] = {2};
+    builder.document["scenes"] = {{{"nodes", {0, 1}}}};
+    builder.document["skins"][0]["joints"] = {1, 3};
+    add_channel(builder, {{"node", 2}, {"path", "translation"}}, {0, 1}, {1, 0, 0, 1, 0, 2}, "VEC3");
+    add_channel(builder, {{"node", 1}, {"path", "rotation"}}, {0, 2}, {0, 0, 0, 1, 0, 0, 0.6F, 0.8F}, "VEC4");
+    if (is_below_an_armature) {
+      const int armature = builder.node({{"name", "armature"}, {"children", {0, 1}}, {"scale", {2, 1, 1}}});
+      const int world = builder.node({{"name", "world"}, {"children", {armature}}, {"translation", {7, 0, 0}}});
+      builder.document["scenes"] = {{{"nodes", {world}}}};
+      add_channel(builder, {{"node", armature}, {"path", "translation"}}, {0, 1.5F}, {0, 0, 0, 0, 5, 0}, "VEC3");
+    }
+    Scene scene = import(builder);
+    const auto find = [&](const std::string &name) {
+      return std::ranges::find_if(scene.nodes(), [&](const auto &item) { return item.value.name == name; })->handle;
+    };
+    const scene::DeformedMesh &deformed = scene.deformed_meshes.at(0);
+    const auto original = deformed.node;
+    const auto joint = find("foot");
+    const auto place = [](const glm::dvec3 &way) {
+      return glm::rotate(glm::translate(glm::dmat4(1.0), way), 0.7, glm::dvec3(0, 1, 0));
+    };
+    scene::Node copy = scene.nodes()[original];
+    for (const auto parent : {Handle<scene::Node>(), original, joint, scene.parent(original)}) {
+      copy.name += '+';
+      copy.parent_from_node = place({5.0 + double(copy.name.size()), 0, 0});
+      scene.add(scene::Node{.name = "child"}, scene.add(copy, parent));
+    }
+    scene::pose(scene, scene.animations[0], 0.4);
+    Scene read = read_back(scene);
+    EXPECT_LT(glm::length(read.bounds().max - scene.bounds().max), 1e-5F);
+    EXPECT_EQ(read.deformed_meshes.size(), 5U);
+    expect_same_motion(scene, read);
+    Scene again = read_back(read, "again.gltf");
+    expect_same_motion(read, again);
+    // Without the original, the copies stand still, as they do in the scene.
+    scene.remove(find("foot"));
+    scene.remove(original);
+    Scene still = read_back(scene);
+    EXPECT_TRUE(still.deformed_meshes.empty());
+    expect_same_motion(scene, still);
+  }
+}
+
+TEST_F(GltfExportAnimation, ACopyOfANodeWithoutVolumeIsWrittenAsItStands)
+{
+  GltfBuilder builder = skinned_triangle();
+  builder.document["nodes"][0]["scale"] = {1, 0, 1};
+  Scene scene = import(builder);
+  scene::Node copy = scene.nodes()[scene.deformed_meshes.at(0).node];
+  copy.parent_from_node = glm::translate(glm::dmat4(1.0), {5, 0, 0});
+  scene.add(copy);
+  const Scene read = read_back(scene);
+  EXPECT_EQ(read.deformed_meshes.size(), 1U);
+  EXPECT_LT(difference(scene, read), 1e-6);
+}
+
+TEST_F(GltfExportAnimation, ACopyOfAMorphedNodeFollowsTheSameWeights)
+{
+  GltfBuilder builder = triangle_scene();
+  const int up = builder.positions({0, 0, 1, 0, 0, 1, 0, 0, 1});
+  builder.document["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", up}}};
+  add_channel(builder, {{"node", 0}, {"path", "weights"}}, {0, 1}, {0.5F, 2}, "SCALAR");
+  Scene scene = import(builder);
+  scene::Node copy = scene.nodes()[scene.deformed_meshes.at(0).node];
+  copy.parent_from_node = glm::translate(glm::dmat4(1.0), {5, 0, 0});
+  scene.add(copy);
+  Scene read = read_back(scene);
+  expect_same_motion(scene, read);
+}
+
+TEST_F(GltfExportAnimation, EditsOfDeformedMeshesReadBack)
+{
+  GltfBuilder builder = skinned_triangle();
+  add_channel(builder, {{"node", 2}, {"path", "translation"}}, {0, 1}, {1, 0, 0, 1, 0, 2}, "VEC3");
+  Scene scene = import(builder);
+  scene::pose(scene, scene.animations[0], 0.5);
+  const auto mesh = scene.deformed_meshes[0].mesh;
+  scene.edit(mesh, [](scene::Mesh &edited) { edited.positions[2] = {3, 3, 3}; });
+  Scene read = read_back(scene);
+  expect_same_motion(scene, read);
+  EXPECT_GT(read.bounds().max.y, 2.0F);
+  // With more vertices than its rest shape it is written as it stands.
+  scene.edit(mesh, [](scene::Mesh &edited) {
+    edited.positions.push_back({9, 9, 9});
+    edited.normals.push_back({0, 0, 1});
+    edited.indices.insert(edited.indices.end(), {0, 1, 3});
+  });
+  const Scene still = read_back(scene);
+  EXPECT_TRUE(still.deformed_meshes.empty());
+  EXPECT_EQ(still.bounds().max, scene.bounds().max);
 }
 
 TEST_F(GltfExportAnimation, MorphTargetsReadBackWithTheirWeights)

@@ -54,14 +54,17 @@ const gpu::Shader &Engine::shader(gpu::Device &device, ShaderId id, Feature feat
 {
   const ShaderDeclaration &declaration = shader_declarations()[std::size_t(id)];
   const Feature variant = features & declaration.features;
-  gpu::Shader &shader = shaders_[{id, variant}];
-  if (!shader) {
-    shader = device.create_shader(shader_desc(declaration, variant), shaders::file,
-                                  [&](std::string_view, const std::vector<gpu::ShaderSource> &) {
-                                    return interface_tables()[std::size_t(id)].interface_of(std::uint32_t(variant));
-                                  });
+  std::shared_ptr<gpu::SharedShader> &shared = shaders_[{id, variant}];
+  if (!shared || !shared->shader) {
+    const gpu::ShaderDesc desc = shader_desc(declaration, variant);
+    shared = device.shared_shader(desc, {}, [&](gpu::SharedShader &made) {
+      made.shader =
+          device.create_shader(desc, shaders::file, [&](std::string_view, const std::vector<gpu::ShaderSource> &) {
+            return interface_tables()[std::size_t(id)].interface_of(std::uint32_t(variant));
+          });
+    });
   }
-  return shader;
+  return shared->shader;
 }
 
 void Engine::init(draw::Viewport &viewport)
@@ -107,6 +110,16 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
   Data &data = viewport.engine_data<Data>(*this);
   if (!data.synced_picture) {
     throw gpu::Error("unlit: nothing to draw, as the viewport was not synced");
+  }
+  if (!scene_.is_up_to_date()) {
+    throw gpu::Error(
+        "unlit: the scene was edited since the last update: call RenderScene::update and "
+        "draw::Viewport::sync before draw");
+  }
+  if (data.synced_picture != picture_key(scene_, settings_revision_)) {
+    throw gpu::Error(
+        "unlit: the scene or the settings changed since the last sync of the viewport: call "
+        "draw::Viewport::sync before draw");
   }
   if (viewport.samples_drawn() == 0) {
     draw_sample(viewport, data, view);
@@ -261,7 +274,9 @@ void Engine::update_depth_camera(gpu::Device &device, std::span<const draw::Obje
 const gpu::Texture &Engine::radiance(draw::Viewport &viewport) const
 {
   const Data &data = viewport.engine_data<Data>(*this);
-  GNOMON_ASSERT(data.radiance, "unlit: the viewport was never drawn");
+  if (!data.radiance) {
+    throw gpu::Error("unlit: the viewport has no picture: call draw::Viewport::draw before radiance");
+  }
   return data.radiance;
 }
 

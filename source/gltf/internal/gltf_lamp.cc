@@ -125,15 +125,10 @@ class LampReader : private ExtraReader {
     return value ? std::optional(static_cast<float>(*value)) : std::nullopt;
   }
 
-  std::optional<int> texels(const char *key) const
-  {
-    return whole_if_any(key, {1.0, 16384.0});
-  }
-
   void read_shadow(LampShadow &shadow) const
   {
     shadow.kind = word<ShadowKind>("gnomon_shadow", {"none", "hard", "pcf", "esm", "evsm"});
-    shadow.size = texels("gnomon_shadow_size");
+    shadow.size = whole_if_any("gnomon_shadow_size", {1.0, 16384.0});
     shadow.exponent = float_if_any("gnomon_exponent", {0.01, 1e4});
     shadow.bias = float_if_any("gnomon_bias", {0.0, 100.0});
     shadow.clip_start = float_if_any("gnomon_clip_start", length_range);
@@ -144,7 +139,7 @@ class LampReader : private ExtraReader {
     if (const std::optional<double> degrees = number_if_any("gnomon_filter_radius", {0.0, 45.0})) {
       shadow.filter_angle = static_cast<float>(*degrees * pi / 180.0);
     }
-    shadow.esm_size = texels("gnomon_esm_size");
+    shadow.esm_size = whole_if_any("gnomon_esm_size", {4.0, 8192.0});
     shadow.esm_format = word<EsmFormat>("gnomon_esm_format", {"16f", "32f"});
   }
 

@@ -105,26 +105,40 @@ class AnimationWriter {
     if (found == indices_.nodes.end()) {
       return;
     }
-    const auto add = [&](const SharedTrack &track, std::string_view path, bool is_scalar) {
-      if (track) {
-        const auto [place, is_new] = output_of_.try_emplace({track.get(), is_scalar}, 0);
-        if (is_new) {
-          place->second = output(track->values, is_scalar ? 1 : track->width);
-        }
-        add_channel(*track, place->second,
-                    "{\"node\":" + std::to_string(found->second) + ",\"path\":\"" + std::string(path) + "\"}");
-      }
-    };
-    add(node.translation_track, "translation", false);
-    add(node.rotation_track, "rotation", false);
-    add(node.scale_track, "scale", false);
+    add_transform_channels(node, found->second);
+    const auto moved = indices_.moved_copies.equal_range(node.node);
+    std::for_each(moved.first, moved.second, [&](const auto &copy) { add_transform_channels(node, copy.second); });
     const bool has_targets = std::ranges::any_of(scene_.deformed_meshes, [&](const scene::DeformedMesh &deformed) {
       return deformed.node == node.node &&
              deformed.targets.size() == (node.weights_track ? node.weights_track->width : 0);
     });
     if (has_targets) {
-      add(node.weights_track, "weights", true);
+      add_channel_of(node.weights_track, found->second, "weights", true);
+      const auto morphed = indices_.morphed_copies.equal_range(node.node);
+      std::for_each(morphed.first, morphed.second,
+                    [&](const auto &copy) { add_channel_of(node.weights_track, copy.second, "weights", true); });
     }
+  }
+
+  void add_transform_channels(const AnimatedNode &node, int index)
+  {
+    add_channel_of(node.translation_track, index, "translation", false);
+    add_channel_of(node.rotation_track, index, "rotation", false);
+    add_channel_of(node.scale_track, index, "scale", false);
+  }
+
+  /** \a track: null if there is none */
+  void add_channel_of(const SharedTrack &track, int node, std::string_view path, bool is_scalar)
+  {
+    if (!track) {
+      return;
+    }
+    const auto [place, is_new] = output_of_.try_emplace({track.get(), is_scalar}, 0);
+    if (is_new) {
+      place->second = output(track->values, is_scalar ? 1 : track->width);
+    }
+    add_channel(*track, place->second,
+                "{\"node\":" + std::to_string(node) + ",\"path\":\"" + std::string(path) + "\"}");
   }
 
   void add_value(const AnimatedValue &value)
@@ -251,16 +265,16 @@ void add_transform(const glm::dmat4 &matrix, const AnimatedNode &moved, const st
   add("scale", {scale.x, scale.y, scale.z});
 }
 
-JsonText skins_json(const scene::Scene &scene, const WrittenIndices &indices, JsonText &nodes, WrittenBuffer &buffer)
+JsonText skins_json(const scene::Scene &scene, const WrittenIndices &indices, const std::vector<SkinCopy> &copies,
+                    JsonText &nodes, WrittenBuffer &buffer)
 {
   JsonText skins;
-  for (const scene::Skin &skin : scene.skins) {
+  const auto add = [&](const scene::Skin &skin, const auto &index_of) {
     const std::string what = what_of("skin", skin.name);
     JsonText joints;
     for (const Handle<scene::Node> joint : skin.joints) {
-      const auto found = indices.nodes.find(joint);
-      joints.add(
-          std::to_string(found == indices.nodes.end() ? nodes.add(R"({"name":"removed joint"})") : found->second));
+      const std::optional<int> index = index_of(joint);
+      joints.add(std::to_string(index ? *index : nodes.add(R"({"name":"removed joint"})")));
     }
     const std::vector<glm::mat4> matrices(skin.joint_from_mesh.begin(), skin.joint_from_mesh.end());
     JsonText json;
@@ -270,6 +284,15 @@ JsonText skins_json(const scene::Scene &scene, const WrittenIndices &indices, Js
     json.add("joints", joints.array());
     json.add("inverseBindMatrices", std::to_string(buffer.add_accessor(matrices, Model::Float, "MAT4")));
     skins.add(json.object());
+  };
+  for (const scene::Skin &skin : scene.skins) {
+    add(skin, [&](Handle<scene::Node> joint) {
+      const auto found = indices.nodes.find(joint);
+      return found == indices.nodes.end() ? std::nullopt : std::optional(found->second);
+    });
+  }
+  for (const SkinCopy &copy : copies) {
+    add(scene.skins[std::size_t(copy.skin)], [&](Handle<scene::Node> joint) { return copy.index_of(joint); });
   }
   return skins;
 }

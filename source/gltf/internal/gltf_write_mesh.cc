@@ -87,7 +87,9 @@ MeshWriter::MeshWriter(const scene::Scene &scene, WrittenBuffer &buffer, std::fi
     : scene_(scene), buffer_(buffer), folder_(std::move(folder))
 {
   for (const scene::DeformedMesh &deformed : scene.deformed_meshes) {
-    deformed_of_.emplace(deformed.mesh, &deformed);
+    if (scene.nodes().is_live(deformed.node) && scene::fault_of(scene, deformed).empty()) {
+      deformed_of_.emplace(deformed.mesh, &deformed);
+    }
   }
 }
 
@@ -101,7 +103,7 @@ const scene::DeformedMesh *MeshWriter::deformed_of(const std::vector<Handle<Mesh
   return nullptr;
 }
 
-int MeshWriter::index_of(const std::vector<Handle<Mesh>> &node_meshes)
+int MeshWriter::index_of(const std::vector<Handle<Mesh>> &node_meshes, bool is_deformed)
 {
   std::vector<Handle<Mesh>> drawn;
   std::copy_if(node_meshes.begin(), node_meshes.end(), std::back_inserter(drawn), [this](Handle<Mesh> handle) {
@@ -111,7 +113,7 @@ int MeshWriter::index_of(const std::vector<Handle<Mesh>> &node_meshes)
   if (drawn.empty()) {
     return -1;
   }
-  const auto [place, is_new] = mesh_of_.try_emplace(drawn, 0);
+  const auto [place, is_new] = mesh_of_.try_emplace({drawn, is_deformed}, 0);
   if (!is_new) {
     return place->second;
   }
@@ -123,7 +125,7 @@ int MeshWriter::index_of(const std::vector<Handle<Mesh>> &node_meshes)
   JsonText primitives;
   for (std::size_t i = 0; i < drawn.size(); i++) {
     const Mesh &mesh = scene_.meshes()[drawn[i]];
-    JsonText json = primitive(drawn[i]);
+    JsonText json = primitive(drawn[i], is_deformed);
     if (mesh.name != derived_name(name, i, drawn.size())) {
       json.add("extras", "{\"gnomon_name\":" + json_string(mesh.name, what_of("mesh", mesh.name)) + '}');
     }
@@ -136,16 +138,16 @@ int MeshWriter::index_of(const std::vector<Handle<Mesh>> &node_meshes)
   return place->second;
 }
 
-const JsonText &MeshWriter::primitive(Handle<Mesh> handle)
+const JsonText &MeshWriter::primitive(Handle<Mesh> handle, bool is_deformed)
 {
-  const auto [place, is_new] = primitive_of_.try_emplace(handle);
+  const auto [place, is_new] = primitive_of_.try_emplace({handle, is_deformed});
   if (!is_new) {
     return place->second;
   }
   const Mesh &mesh = scene_.meshes()[handle];
   const std::string what = what_of("mesh", mesh.name);
   const auto found = deformed_of_.find(handle);
-  const scene::DeformedMesh *const deformed = found == deformed_of_.end() ? nullptr : found->second;
+  const scene::DeformedMesh *const deformed = is_deformed && found != deformed_of_.end() ? found->second : nullptr;
   JsonText attributes;
   const auto add = [&](std::string_view key, const auto &values, std::string_view type, const std::string &more) {
     attributes.add(key, std::to_string(buffer_.add_accessor(values, Model::Float, type, more)));
@@ -174,7 +176,9 @@ const JsonText &MeshWriter::primitive(Handle<Mesh> handle)
   if (mesh.topology != scene::Topology::Triangles) {
     place->second.add("mode", std::to_string(mesh.topology == scene::Topology::Lines ? Model::Lines : Model::Points));
   }
-  place->second.add("indices", std::to_string(buffer_.add_accessor(mesh.indices, Model::UnsignedInt, "SCALAR")));
+  place->second.add("indices",
+                    std::to_string(buffer_.add_accessor(deformed ? rest_indices(mesh, *deformed) : mesh.indices,
+                                                        Model::UnsignedInt, "SCALAR")));
   if (scene_.materials().is_live(mesh.material)) {
     place->second.add("material", std::to_string(material(mesh.material)));
   }
@@ -261,7 +265,13 @@ int MeshWriter::material(Handle<Material> handle)
     add_slot(specular, "specularColorTexture", material.specular_color_texture, what);
     add_extension("KHR_materials_specular", specular.object());
   }
-  if (material.coat > 0.0F) {
+  // Values that have no effect now are kept, too: another value may give them one.
+  const auto differs = [&](auto... members) {
+    static const Material plain;
+    return (!(material.*members == plain.*members) || ...);
+  };
+  if (differs(&Material::coat, &Material::coat_roughness) || material.coat_texture || material.coat_roughness_texture ||
+      material.coat_normal_texture) {
     JsonText coat;
     coat.add("clearcoatFactor", json_number(material.coat, what));
     coat.add("clearcoatRoughnessFactor", json_number(material.coat_roughness, what));
@@ -271,7 +281,8 @@ int MeshWriter::material(Handle<Material> handle)
              ",\"scale\":" + json_number(material.coat_normal_scale, what));
     add_extension("KHR_materials_clearcoat", coat.object());
   }
-  if (material.sheen_color != glm::vec3(0.0F)) {
+  if (differs(&Material::sheen_color, &Material::sheen_roughness) || material.sheen_color_texture ||
+      material.sheen_roughness_texture) {
     JsonText sheen;
     sheen.add("sheenColorFactor", json_numbers(material.sheen_color, what));
     sheen.add("sheenRoughnessFactor", json_number(material.sheen_roughness, what));
@@ -279,20 +290,21 @@ int MeshWriter::material(Handle<Material> handle)
     add_slot(sheen, "sheenRoughnessTexture", material.sheen_roughness_texture, what);
     add_extension("KHR_materials_sheen", sheen.object());
   }
-  if (material.anisotropy > 0.0F) {
+  if (differs(&Material::anisotropy, &Material::anisotropy_rotation) || material.anisotropy_texture) {
     JsonText anisotropy;
     anisotropy.add("anisotropyStrength", json_number(material.anisotropy, what));
     anisotropy.add("anisotropyRotation", json_number(material.anisotropy_rotation, what));
     add_slot(anisotropy, "anisotropyTexture", material.anisotropy_texture, what);
     add_extension("KHR_materials_anisotropy", anisotropy.object());
   }
-  if (material.transmission > 0.0F) {
+  if (differs(&Material::transmission) || material.transmission_texture) {
     JsonText transmission;
     transmission.add("transmissionFactor", json_number(material.transmission, what));
     add_slot(transmission, "transmissionTexture", material.transmission_texture, what);
     add_extension("KHR_materials_transmission", transmission.object());
   }
-  if (material.thickness > 0.0F || material.attenuation_distance > 0.0F) {
+  if (differs(&Material::thickness, &Material::attenuation_distance, &Material::attenuation_color) ||
+      material.thickness_texture) {
     JsonText volume;
     volume.add("thicknessFactor", json_number(material.thickness, what));
     add_slot(volume, "thicknessTexture", material.thickness_texture, what);

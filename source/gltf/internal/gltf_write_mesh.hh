@@ -26,10 +26,16 @@ class MeshWriter {
   /** All references must outlive the writer. \a folder: of the written file. */
   MeshWriter(const scene::Scene &scene, WrittenBuffer &buffer, std::filesystem::path folder);
 
-  /** Index of the glTF mesh whose primitives are \a meshes; -1 if none of them has triangles. */
-  [[nodiscard]] int index_of(const std::vector<scene::Handle<scene::Mesh>> &meshes);
+  /**
+   * Index of the glTF mesh whose primitives are \a meshes; -1 if none of them has triangles. \a is_deformed: deformed
+   * meshes are written with their rest shapes, otherwise as they stand.
+   */
+  [[nodiscard]] int index_of(const std::vector<scene::Handle<scene::Mesh>> &meshes, bool is_deformed);
 
-  /** The rest shape of the first of \a node_meshes that is deformed; nullptr if none is. */
+  /**
+   * The rest shape of the first of \a node_meshes that is deformed; nullptr if none is. A rest shape that does not fit
+   * its mesh, or whose node was removed, does not count.
+   */
   [[nodiscard]] const scene::DeformedMesh *deformed_of(
       const std::vector<scene::Handle<scene::Mesh>> &node_meshes) const;
   /** Indices of the materials that were added. */
@@ -51,15 +57,16 @@ class MeshWriter {
   WrittenBuffer &buffer_;
   std::filesystem::path folder_;
   std::map<scene::Handle<scene::Mesh>, const scene::DeformedMesh *> deformed_of_;
-  std::map<std::vector<scene::Handle<scene::Mesh>>, int> mesh_of_;
-  /** Members of a primitive, without its name. */
-  std::map<scene::Handle<scene::Mesh>, JsonText> primitive_of_;
+  /** By the meshes and whether they are deformed. */
+  std::map<std::pair<std::vector<scene::Handle<scene::Mesh>>, bool>, int> mesh_of_;
+  /** Members of a primitive, without its name; by its mesh and whether that is deformed. */
+  std::map<std::pair<scene::Handle<scene::Mesh>, bool>, JsonText> primitive_of_;
   std::map<scene::Handle<scene::Material>, int> material_of_;
   std::map<scene::Handle<scene::Texture>, int> texture_of_;
   std::map<scene::Handle<scene::Image>, int> image_of_;
   std::map<std::string, int> sampler_of_;
 
-  const JsonText &primitive(scene::Handle<scene::Mesh> handle);
+  const JsonText &primitive(scene::Handle<scene::Mesh> handle, bool is_deformed);
   void add_positions(std::string_view key, const std::vector<glm::vec3> &positions, const std::string &what,
                      JsonText &attributes);
   /** Adds joints, weights and morph targets. */

@@ -25,4 +25,7 @@ struct RestShape {
 [[nodiscard]] std::optional<RestShape> edited_rest_shape(const Scene &scene, const DeformedMesh &deformed,
                                                          const Mesh &before, const Mesh &after);
 
+/** \throws InvalidEdit that names the mesh if one of Scene::deformed_meshes has a fault. */
+void check_deformed_meshes(const Scene &scene);
+
 }  // namespace gnomon::scene

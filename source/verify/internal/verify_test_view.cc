@@ -36,80 +36,10 @@ TestView placed(TestView test_view, const glm::dmat4 &moved, double scale)
   return test_view;
 }
 
-/** Removes all things of a type, the last first, so that slots are reused in order. */
-template <typename T>
-static void clear(scene::Scene &scene)
-{
-  std::vector<scene::Handle<T>> handles;
-  for (const auto &thing : scene.pool<T>()) {
-    handles.push_back(thing.handle);
-  }
-  for (auto handle = handles.rbegin(); handle != handles.rend(); ++handle) {
-    // Removing a node also removes its descendants.
-    if (scene.pool<T>().is_live(*handle)) {
-      scene.remove(*handle);
-    }
-  }
-}
-
-/**
- * Makes the content and order of \a scene equal to \a other. All things are added anew: assigning the scene would reuse
- * handles and revisions that the engine has already seen for other things. \pre all nodes of \a other are roots
- */
-static void become(scene::Scene &scene, const scene::Scene &other)
-{
-  clear<scene::Node>(scene);
-  clear<scene::Mesh>(scene);
-  clear<scene::Material>(scene);
-  clear<scene::Texture>(scene);
-  clear<scene::Image>(scene);
-  clear<scene::Lamp>(scene);
-  scene.path = other.path;
-  // An invalid handle is not a key and is kept.
-  std::map<scene::Handle<scene::Image>, scene::Handle<scene::Image>> images;
-  for (const auto &[handle, image] : other.images()) {
-    images[handle] = scene.add(image);
-  }
-  std::map<scene::Handle<scene::Texture>, scene::Handle<scene::Texture>> textures;
-  for (const auto &[handle, texture] : other.textures()) {
-    scene::Texture added = texture;
-    added.image = images[texture.image];
-    textures[handle] = scene.add(added);
-  }
-  std::map<scene::Handle<scene::Material>, scene::Handle<scene::Material>> materials;
-  for (const auto &[handle, material] : other.materials()) {
-    scene::Material added = material;
-    for (const scene::TextureInput &input : scene::texture_inputs) {
-      scene::TextureSlot &slot = added.*input.slot;
-      slot.texture = textures[slot.texture];
-    }
-    materials[handle] = scene.add(std::move(added));
-  }
-  std::map<scene::Handle<scene::Mesh>, scene::Handle<scene::Mesh>> meshes;
-  for (const auto &[handle, mesh] : other.meshes()) {
-    scene::Mesh added = mesh;
-    added.material = materials[mesh.material];
-    meshes[handle] = scene.add(std::move(added));
-  }
-  std::map<scene::Handle<scene::Lamp>, scene::Handle<scene::Lamp>> lamps;
-  for (const auto &[handle, lamp] : other.lamps()) {
-    lamps[handle] = scene.add(lamp);
-  }
-  for (const auto &[handle, node] : other.nodes()) {
-    scene::Node added = node;
-    for (scene::Handle<scene::Mesh> &mesh : added.meshes) {
-      mesh = meshes[mesh];
-    }
-    added.lamp = lamps[node.lamp];
-    added.camera = {};
-    scene.add(std::move(added));
-  }
-}
-
 Picture TestViewRenderer::draw(const TestView &test_view, const DrawSettings &settings)
 {
   Stage &stage = stages_[settings];
-  become(stage.scene, test_view.scene);
+  stage.scene = test_view.scene;
   if (!stage.renderer) {
     eevee::Settings engine;
     engine.sample_count = settings.sample_count;
