@@ -153,7 +153,7 @@ void add(Hasher &hash, const scene::PlacedLamp &lamp)
   hash.add(lamp.shadow.bias);
   hash.add(lamp.shadow.clip_start);
   hash.add(lamp.shadow.clip_end);
-  hash.add(lamp.shadow.filter_radius);
+  hash.add(lamp.shadow.filter_angle);
   hash.add(lamp.shadow.esm_size);
   hash.add(lamp.shadow.esm_format);
 }

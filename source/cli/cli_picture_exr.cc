@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "internal/cli_exr_file.hh"
-#include "internal/cli_picture_formats.hh"
 
 #include "cli_output.hh"
 
@@ -9,11 +8,9 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
-#include <ImfTestFile.h>
 #include <ImfThreading.h>
 
 #include <fstream>
@@ -101,37 +98,6 @@ void write_exr(const fs::path &path, glm::ivec2 size_px, std::span<const float> 
     add(names, names.size(), layer.values);
   }
   write_exr_file(path, std::move(header), buffer, metadata);
-}
-
-std::optional<Picture> read_exr_picture(const fs::path &path)
-{
-  if (!Imf::isOpenExrFile(path.c_str())) {
-    return std::nullopt;
-  }
-  Imf::InputFile input(path.c_str());
-  const Imath::Box2i window = input.header().dataWindow();
-  const auto edge = [](int min, int max) { return std::int64_t(max) - min + 1; };
-  check_edges(edge(window.min.x, window.max.x), edge(window.min.y, window.max.y));
-  const Names names = {"R", "G", "B"};
-  for (const std::string &name : names) {
-    const Imf::Channel *channel = input.header().channels().findChannel(name);
-    if (channel == nullptr) {
-      throw std::runtime_error("has no channels R, G and B");
-    }
-    if (channel->xSampling != 1 || channel->ySampling != 1) {
-      throw std::runtime_error(fmt::format("channel {} has fewer pixels than the picture", name));
-    }
-  }
-  if (!input.isComplete()) {
-    throw std::runtime_error("is cut off");
-  }
-  Picture picture{{edge(window.min.x, window.max.x), edge(window.min.y, window.max.y)}, {}};
-  picture.pixels.assign(std::size_t(picture.size_px.x) * std::size_t(picture.size_px.y), glm::vec4(1.0F));
-  Imf::FrameBuffer buffer;
-  add_channels(buffer, names, 4, reinterpret_cast<char *>(picture.pixels.data()), picture.size_px, window.min);
-  input.setFrameBuffer(buffer);
-  input.readPixels(window.min.y, window.max.y);
-  return picture;
 }
 
 }  // namespace gnomon::cli

@@ -135,11 +135,12 @@ std::string RenderOptions::settings_text() const
   return fmt::format(
       "--shadow {} --shadow-size {} --pcf {} --esm {} --cascades {} --cascade-lambda {} --cascade-range {} --cube-pass "
       "{} "
-      "--casters {} --shadow-memory {} --specular {} --world '{}' --world-strength {} --world-rotation {} --background "
+      "--casters {} --shadow-memory {} --specular {} --world '{}' --world-layer '{}' --world-strength {} "
+      "--world-rotation {} --background "
       "'{}' --animation '{}' --fps {} --light-threshold {} "
       "--emissive-points {} --noise-threshold {}",
       shadow, shadow_size, pcf, esm, cascades, cascade_lambda, cascade_range, cube_pass, casters, shadow_memory,
-      specular, world.world, world.strength, world.rotation_degrees, background, frames.animation,
+      specular, world.world, world.layer, world.strength, world.rotation_degrees, background, frames.animation,
       frames.frames_per_second, light_threshold, emissive_points, noise_threshold);
 }
 

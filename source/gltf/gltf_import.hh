@@ -41,7 +41,11 @@ using ReadPicture = std::function<scene::WorldPicture(const std::filesystem::pat
 struct ImportOptions {
   /** Name of the variant whose materials are imported (KHR_materials_variants); empty: the materials of no variant. */
   std::string variant{};
-  /** Most texels along an edge of an image of a material; larger ones are reduced (scene::reduced). 0: no limit. */
+  /**
+   * Most texels along an edge of an image of a material; larger ones are reduced (scene::reduced). 0: no limit. After
+   * the reduction an edge may have 16384 texels, and all images together 2^29. Before it, an image may have 2^28 texels,
+   * and all together 2^32. Images beyond are replaced by stand-ins, with a warning.
+   */
   std::uint32_t texture_size_max = 0;
   /** For worlds whose picture is a file. Without it, they are left out, with a warning. */
   ReadPicture read_picture{};

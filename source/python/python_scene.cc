@@ -57,7 +57,7 @@ const Fields<Lamp> lamp_fields = {
         "shadow_exponent", [](auto &lamp) -> auto & { return lamp.shadow.exponent; }, 0.01, 1e4,
         "ESM and EVSM: exponent, 1/m, 0.01 to 1e4. None: it follows the size and the lamp's range."),
     optional_field<Lamp>(
-        "shadow_filter_angle", [](auto &lamp) -> auto & { return lamp.shadow.filter_radius; }, 0, 0.25 * pi,
+        "shadow_filter_angle", [](auto &lamp) -> auto & { return lamp.shadow.filter_angle; }, 0, 0.25 * pi,
         "ESM and EVSM: half the opening angle of the filter, rad, 0 to π/4. None: that of a texel."),
     optional_field<Lamp>(
         "shadow_esm_size_px", [](auto &lamp) -> auto & { return lamp.shadow.esm_size; }, 1, 16384,

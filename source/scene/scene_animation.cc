@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace gnomon::scene {
 
@@ -84,14 +83,21 @@ glm::dquat Track::evaluate_rotation(double seconds) const
   return length > 0.0 ? rotation / length : glm::dquat(1.0, 0.0, 0.0, 0.0);
 }
 
-std::size_t width_of(AnimatedProperty property)
+/** A colour whose fourth number is the alpha, as in glTF. */
+static constexpr std::string_view with_alpha = "base_color";
+
+std::size_t width_of(std::string_view property)
 {
-  switch (property) {
-    case AnimatedProperty::BaseColor: return 4;
-    case AnimatedProperty::Emissive:
-    case AnimatedProperty::LampColor: return 3;
-    default: return 1;
-  }
+  std::size_t width = 0;
+  const auto find = [&](const auto &row) {
+    if (row.is_animated && row.name == property) {
+      width = std::is_same_v<typename std::decay_t<decltype(row)>::Value, glm::vec3> ? 3 : 1;
+    }
+  };
+  Material::for_each_property(find);
+  Lamp::for_each_property(find);
+  Camera::for_each_property(find);
+  return property == with_alpha ? 4 : width;
 }
 
 double Animation::duration() const
@@ -108,6 +114,7 @@ double Animation::duration() const
   }
   for (const AnimatedValue &value : values) {
     extend(value.track);
+    extend(value.strength_track);
   }
   return seconds;
 }
@@ -142,65 +149,32 @@ void pose_node(Scene &scene, const AnimatedNode &animated, double seconds)
   }
 }
 
-// A spline may exceed the range of its keys, and even that of float.
-constexpr double float_max = std::numeric_limits<float>::max();
-
-float unit_range(double value)
+/** A spline may exceed the range of its keys. */
+template <typename Thing>
+void set_property(Thing &thing, std::string_view property, const glm::dvec4 &value)
 {
-  return float(std::clamp(value, 0.0, 1.0));
-}
-
-float at_least_zero(double value)
-{
-  return float(std::clamp(value, 0.0, float_max));
-}
-
-glm::vec3 at_least_zero(const glm::dvec4 &value)
-{
-  return {at_least_zero(value.x), at_least_zero(value.y), at_least_zero(value.z)};
-}
-
-void set_property(Material &material, AnimatedProperty property, const glm::dvec4 &value)
-{
-  switch (property) {
-    case AnimatedProperty::BaseColor:
-      material.base_color = {unit_range(value.x), unit_range(value.y), unit_range(value.z)};
-      material.alpha = unit_range(value.w);
-      break;
-    case AnimatedProperty::Metallic: material.metallic = unit_range(value.x); break;
-    case AnimatedProperty::Roughness: material.roughness = unit_range(value.x); break;
-    case AnimatedProperty::Emissive: material.emissive = at_least_zero(value); break;
-    case AnimatedProperty::AlphaCutoff: material.alpha_cutoff = unit_range(value.x); break;
-    case AnimatedProperty::NormalScale:
-      material.normal_scale = float(std::clamp(value.x, -float_max, float_max));
-      break;
-    case AnimatedProperty::OcclusionStrength: material.occlusion_strength = unit_range(value.x); break;
-    default: break;
-  }
-}
-
-void set_property(Lamp &lamp, AnimatedProperty property, const glm::dvec4 &value)
-{
-  switch (property) {
-    case AnimatedProperty::LampColor: lamp.color = at_least_zero(value); break;
-    case AnimatedProperty::LampIntensity: lamp.intensity = at_least_zero(value.x); break;
-    case AnimatedProperty::LampRange: lamp.range = at_least_zero(value.x); break;
-    default: break;
-  }
-}
-
-void set_property(Camera &camera, AnimatedProperty property, const glm::dvec4 &value)
-{
-  constexpr double angle_min = 1e-5;
-  constexpr double angle_max = 3.1415;
-  constexpr double length_min = 1e-12;
-  switch (property) {
-    case AnimatedProperty::VerticalAngle:
-      camera.vertical_angle = float(std::clamp(value.x, angle_min, angle_max));
-      break;
-    case AnimatedProperty::HalfWidth: camera.half_width = float(std::clamp(value.x, length_min, float_max)); break;
-    case AnimatedProperty::HalfHeight: camera.half_height = float(std::clamp(value.x, length_min, float_max)); break;
-    default: break;
+  Thing::for_each_property([&](const auto &row) {
+    using Value = typename std::decay_t<decltype(row)>::Value;
+    if (row.name != property) {
+      return;
+    }
+    if constexpr (std::is_same_v<Value, float>) {
+      thing.*row.member = row.nearest(value.x);
+    }
+    else if constexpr (std::is_same_v<Value, glm::vec3>) {
+      thing.*row.member = {row.nearest(value.x), row.nearest(value.y), row.nearest(value.z)};
+    }
+    else if constexpr (std::is_same_v<Value, glm::vec2>) {
+      thing.*row.member = {row.nearest(value.x), row.nearest(value.y)};
+    }
+    else if constexpr (std::is_same_v<Value, bool>) {
+      thing.*row.member = value.x >= 0.5;
+    }
+  });
+  if constexpr (std::is_same_v<Thing, Material>) {
+    if (property == with_alpha) {
+      set_property(thing, "alpha", glm::dvec4(value.w));
+    }
   }
 }
 
@@ -220,10 +194,25 @@ void pose(Scene &scene, const Animation &animation, double seconds)
       value = glm::dvec4(value.x);
     }
     value = glm::dvec4(animated.factor * glm::dvec3(value), value.w);
+    if (animated.strength_track) {
+      double strength = 1.0;
+      animated.strength_track->evaluate(seconds, {&strength, 1});
+      value *= strength;
+    }
     std::visit(
         [&]<typename T>(Handle<T> handle) {
           if (scene.pool<T>().is_live(handle)) {
-            scene.edit(handle, [&](T &thing) { set_property(thing, animated.property, value); });
+            scene.edit(handle, [&](T &thing) {
+              if constexpr (std::is_same_v<T, Material>) {
+                for (const TextureInput &input : texture_inputs) {
+                  if (input.name == animated.slot) {
+                    set_property(thing.*input.slot, animated.property, value);
+                    return;
+                  }
+                }
+              }
+              set_property(thing, animated.property, value);
+            });
           }
         },
         animated.target);

@@ -8,6 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 namespace gnomon::scene {
 
@@ -25,13 +28,15 @@ struct Shape {
   std::vector<glm::dvec3> positions;
   std::vector<glm::dvec3> normals;
   std::vector<glm::dvec3> tangents;
+  /** Vertices that joints mirror. Empty: none. */
+  std::vector<bool> is_mirrored{};
 };
 
 Shape morphed(const DeformedMesh &deformed)
 {
-  Shape shape{{deformed.positions.begin(), deformed.positions.end()},
-              {deformed.normals.begin(), deformed.normals.end()},
-              {deformed.tangents.begin(), deformed.tangents.end()}};
+  Shape shape{.positions = {deformed.positions.begin(), deformed.positions.end()},
+              .normals = {deformed.normals.begin(), deformed.normals.end()},
+              .tangents = {deformed.tangents.begin(), deformed.tangents.end()}};
   const auto add = [](std::vector<glm::dvec3> &sum, const std::vector<glm::vec3> &differences, double weight) {
     for (std::size_t i = 0; i < std::min(sum.size(), differences.size()); i++) {
       sum[i] += weight * glm::dvec3(differences[i]);
@@ -87,11 +92,41 @@ void skin_vertices(const DeformedMesh &deformed, const std::vector<glm::dmat4> &
     }
     shape.positions[vertex] = glm::dvec3(matrix * glm::dvec4(shape.positions[vertex], 1.0));
     const glm::dmat3 linear(matrix);
+    const bool is_mirrored = glm::determinant(linear) < 0.0;
+    if (is_mirrored && shape.is_mirrored.empty()) {
+      shape.is_mirrored.resize(shape.positions.size(), false);
+    }
+    if (is_mirrored) {
+      shape.is_mirrored[vertex] = true;
+    }
     // The cofactors of a mirroring matrix reverse normals. Reverse them again.
-    const double side = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
-    shape.normals[vertex] = side * (normal_matrix(linear) * shape.normals[vertex]);
+    shape.normals[vertex] = (is_mirrored ? -1.0 : 1.0) * (normal_matrix(linear) * shape.normals[vertex]);
     if (!shape.tangents.empty()) {
       shape.tangents[vertex] = linear * shape.tangents[vertex];
+    }
+  }
+}
+
+/** The triangles of which joints mirror at least two corners. Empty: none. */
+std::vector<bool> mirrored_triangles(const Shape &shape, const Mesh &mesh)
+{
+  std::vector<bool> result;
+  if (shape.is_mirrored.empty() || mesh.topology != Topology::Triangles) {
+    return result;
+  }
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const auto is_mirrored = [&](std::size_t corner) { return shape.is_mirrored[mesh.indices[i + corner]] ? 1 : 0; };
+    result.push_back(is_mirrored(0) + is_mirrored(1) + is_mirrored(2) >= 2);
+  }
+  return result;
+}
+
+/** Swaps two indices of each triangle of \a reversed, which may be shorter. */
+void reverse(const std::vector<bool> &reversed, std::vector<std::uint32_t> &indices)
+{
+  for (std::size_t i = 0; i < std::min(reversed.size(), indices.size() / 3); i++) {
+    if (reversed[i]) {
+      std::swap(indices[3 * i + 1], indices[3 * i + 2]);
     }
   }
 }
@@ -123,8 +158,16 @@ void deform(Scene &scene, DeformedMesh &deformed)
   if (deformed.skin >= 0) {
     skin_vertices(deformed, deformed.deformed_by_joints, shape);
   }
+  std::vector<bool> reversed = mirrored_triangles(shape, current);
+  const bool is_reordered = reversed != deformed.reversed_triangles;
+  std::vector<std::uint32_t> reordered;
+  if (is_reordered) {
+    reordered = rest_indices(current, deformed);
+    reverse(reversed, reordered);
+    deformed.reversed_triangles = std::move(reversed);
+  }
   if (deformed.has_flat_normals) {
-    make_flat_normals(shape, current.indices);
+    make_flat_normals(shape, is_reordered ? reordered : current.indices);
   }
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;
@@ -133,17 +176,22 @@ void deform(Scene &scene, DeformedMesh &deformed)
     positions.emplace_back(shape.positions[i]);
     normals.push_back(unit_or(shape.normals[i], deformed.normals[i]));
     if (!shape.tangents.empty()) {
-      tangents.emplace_back(unit_or(shape.tangents[i], glm::vec3(deformed.tangents[i])), deformed.tangents[i].w);
+      const bool is_mirrored = !shape.is_mirrored.empty() && shape.is_mirrored[i];
+      tangents.emplace_back(unit_or(shape.tangents[i], glm::vec3(deformed.tangents[i])),
+                            (is_mirrored ? -1.0F : 1.0F) * deformed.tangents[i].w);
     }
   }
   // Do not edit the mesh if it does not change, so that it is not uploaded and shadows are not drawn again.
-  if (positions == current.positions && normals == current.normals && tangents == current.tangents) {
+  if (positions == current.positions && normals == current.normals && tangents == current.tangents && !is_reordered) {
     return;
   }
   scene.edit(deformed.mesh, [&](Mesh &mesh) {
     mesh.positions = std::move(positions);
     mesh.normals = std::move(normals);
     mesh.tangents = std::move(tangents);
+    if (is_reordered) {
+      mesh.indices = std::move(reordered);
+    }
   });
 }
 
@@ -158,6 +206,13 @@ void set_morph_weights(Scene &scene, Handle<Node> node, std::span<const double> 
       }
     }
   }
+}
+
+std::vector<std::uint32_t> rest_indices(const Mesh &mesh, const DeformedMesh &deformed)
+{
+  std::vector<std::uint32_t> indices = mesh.indices;
+  reverse(deformed.reversed_triangles, indices);
+  return indices;
 }
 
 void deform_meshes(Scene &scene)

@@ -102,98 +102,43 @@ void check(const Node &node)
   check_transform(node.name, node.parent_from_node);
 }
 
-/** A number of a thing, and what it may be. */
-struct Number {
-  std::string_view name;
-  float value;
-  enum class Limit { Finite, AtLeastZero, AboveZero } limit = Limit::AtLeastZero;
-};
-
-/** What no engine could draw. Importers and editors have narrower ranges, each its own. */
-template <typename Thing>
-void check_numbers(const Thing &thing, std::initializer_list<Number> numbers)
+/**
+ * Checks the properties of \a part, which is \a thing or a part of it. Those that its kind does not have must be
+ * finite.
+ */
+template <typename Thing, typename Part>
+void check_properties(const Thing &thing, const Part &part)
 {
-  for (const Number &number : numbers) {
-    if (!std::isfinite(number.value)) {
-      refuse(Thing::kind_name, thing.name, "{} is not finite", number.name);
-    }
-    const bool is_low = number.limit == Number::Limit::AboveZero     ? number.value <= 0.0F
-                        : number.limit == Number::Limit::AtLeastZero ? number.value < 0.0F
-                                                                     : false;
-    if (is_low) {
-      refuse(Thing::kind_name, thing.name, "{} {} is not {} 0", number.name, number.value,
-             number.limit == Number::Limit::AboveZero ? "above" : "at least");
-    }
-  }
-}
-
-template <typename Thing>
-void check_color(const Thing &thing, std::string_view name, const glm::vec3 &color)
-{
-  check_numbers(thing, {{name, color.r}, {name, color.g}, {name, color.b}});
+  Part::for_each_property([&](const auto &row) {
+    for_each_number(part.*row.member, [&](double value) {
+      if (!std::isfinite(value)) {
+        refuse(Thing::kind_name, thing.name, "{} is not finite", row.name);
+      }
+      if (row.has_kind(kind_of(thing)) && !row.allows(value)) {
+        refuse(Thing::kind_name, thing.name, "{} {:g} is not {}", row.name, value, range_text(row));
+      }
+    });
+  });
 }
 
 void check(const Texture & /*texture*/) {}
 
 void check(const Material &material)
 {
-  check_color(material, "base colour", material.base_color);
-  check_color(material, "specular colour", material.specular_color);
-  check_color(material, "sheen colour", material.sheen_color);
-  check_color(material, "attenuation colour", material.attenuation_color);
-  check_color(material, "emission", material.emissive);
-  check_numbers(material, {{"alpha", material.alpha},
-                           {"alpha cutoff", material.alpha_cutoff},
-                           {"metallic", material.metallic},
-                           {"roughness", material.roughness},
-                           {"normal scale", material.normal_scale, Number::Limit::Finite},
-                           {"occlusion strength", material.occlusion_strength},
-                           {"specular", material.specular},
-                           {"coat", material.coat},
-                           {"coat roughness", material.coat_roughness},
-                           {"coat normal scale", material.coat_normal_scale, Number::Limit::Finite},
-                           {"sheen roughness", material.sheen_roughness},
-                           {"anisotropy", material.anisotropy},
-                           {"anisotropy rotation", material.anisotropy_rotation, Number::Limit::Finite},
-                           {"transmission", material.transmission},
-                           {"thickness", material.thickness},
-                           {"index of refraction", material.ior},
-                           {"attenuation distance", material.attenuation_distance}});
+  check_properties(material, material);
 }
 
 void check(const Lamp &lamp)
 {
-  check_color(lamp, "colour", lamp.color);
-  check_numbers(lamp, {{"intensity", lamp.intensity},
-                       {"radius", lamp.radius},
-                       {"angle", lamp.angle},
-                       {"spot angle", lamp.spot_outer_angle},
-                       {"spot blend", lamp.spot_blend},
-                       {"range", lamp.range},
-                       {"area size", lamp.area_size_x},
-                       {"area size", lamp.area_size_y},
-                       // The engine's sync checks their ranges, with those of its own settings.
-                       {"shadow exponent", lamp.shadow.exponent.value_or(0.0F), Number::Limit::Finite},
-                       {"shadow bias", lamp.shadow.bias.value_or(0.0F), Number::Limit::Finite},
-                       {"shadow clip start", lamp.shadow.clip_start.value_or(0.0F), Number::Limit::Finite},
-                       {"shadow clip end", lamp.shadow.clip_end.value_or(0.0F), Number::Limit::Finite},
-                       {"shadow filter radius", lamp.shadow.filter_radius.value_or(0.0F), Number::Limit::Finite}});
+  check_properties(lamp, lamp);
+  check_properties(lamp, lamp.shadow);
 }
 
 void check(const Camera &camera)
 {
-  constexpr float angle_end = 3.1415927F;
-  const bool is_perspective = camera.kind == CameraKind::Perspective;
-  const Number::Limit lens = is_perspective ? Number::Limit::AboveZero : Number::Limit::Finite;
-  const Number::Limit frame = is_perspective ? Number::Limit::Finite : Number::Limit::AboveZero;
-  check_numbers(camera, {{"vertical angle", camera.vertical_angle, lens},
-                         {"aspect ratio", camera.aspect},
-                         {"half width", camera.half_width, frame},
-                         {"half height", camera.half_height, frame},
-                         {"near plane", camera.near, lens},
-                         {"far plane", camera.far, Number::Limit::Finite}});
-  if (is_perspective && camera.vertical_angle > angle_end) {
-    refuse(Camera::kind_name, camera.name, "vertical angle {} is not below pi", camera.vertical_angle);
+  check_properties(camera, camera);
+  if (camera.kind == CameraKind::Perspective && !(camera.near > 0.0F)) {
+    refuse(Camera::kind_name, camera.name, "near {:g} is not above 0", camera.near);
   }
 }
 

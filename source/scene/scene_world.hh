@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "scene_property.hh"
+
 #include <glm/vec3.hpp>
 
 #include <cstddef>
@@ -32,16 +34,44 @@ struct WorldPicture {
 
 /** Light from infinitely distant surroundings. The radiance is `color` · `strength` · `picture`. */
 struct World {
-  /** Linear colour. */
+  static constexpr std::string_view kind_name = "world";
+
   glm::vec3 color{1.0F};
   float strength = 1.0F;
-  /** Rotation of the picture around the y axis, radians. A rotation by π/2 moves the texel at +x to -z. */
   float rotation = 0.0F;
   /** nullptr: the radiance is the same in all directions, `color` · `strength`. */
   std::shared_ptr<const WorldPicture> picture{};
 
   bool operator==(const World &) const = default;
+
+  /** All but the picture. */
+  template <typename Visit>
+  static constexpr void for_each_property(Visit &&visit);
 };
+
+template <typename Visit>
+constexpr void World::for_each_property(Visit &&visit)
+{
+  constexpr double factor_max = 1e30;
+  visit(property(&World::color, {.name = "color",
+                                 .label = "Color",
+                                 .max = factor_max,
+                                 .sentence = "Linear red, green and blue; factors of the picture."}));
+  visit(property(&World::strength,
+                 {.name = "strength", .label = "Strength", .max = factor_max, .sentence = "Factor of the colour."}));
+  visit(property(&World::rotation,
+                 {.name = "rotation",
+                  .label = "Rotation",
+                  .unit = "rad",
+                  .min = -float_max,
+                  .sentence = "Of the picture around the y axis. By π/2, the texel at +x moves to -z."}));
+}
+
+/**
+ * Makes all texels radiances: negative and undefined values become 0, infinite ones the largest finite value of their
+ * channel. \return what was changed, with the number and the first place of each kind, for a warning; empty: nothing.
+ */
+[[nodiscard]] std::string clamp_radiances(WorldPicture &picture);
 
 /** Why Scene::set_world refuses \a world; empty: it does not. */
 [[nodiscard]] std::string fault_of(const World &world);

@@ -215,7 +215,7 @@ void add_host_lamp_inputs(std::vector<StabilityCase> &cases)
       [](scene::LampShadow &shadow, double v) { shadow.exponent = float(v); });
   add("lamp's filter", "rad", "lamp 'lamp0': filter angle", scene::ShadowKind::Evsm,
       inputs({0, 0.5}, Expected::Accepted) + inputs({-1, 0.51, 1e38}, rejected),
-      [](scene::LampShadow &shadow, double v) { shadow.filter_radius = float(v); });
+      [](scene::LampShadow &shadow, double v) { shadow.filter_angle = float(v); });
   // The importer's length_range.
   add("lamp's clip distances", "m", "", scene::ShadowKind::Hard,
       inputs({1e-12, 1e-6, 1.0, 1e6, 1e12}, Expected::Accepted), [](scene::LampShadow &shadow, double v) {

@@ -135,7 +135,7 @@ Properties<ShadowOfLamp> make_shadow_properties()
   add(std::move(end), has_distances);
   add(shadow_number("exponent", "Exponent", "1/m", &LampShadow::exponent, 0.01, 1e4, 10.0), is_exponential);
   // Files may have wider filters, and layers of other sizes, than the engine takes.
-  add(shadow_number("filter_radius", "Filter radius", "°", &LampShadow::filter_radius, 0.0, esm_filter_degrees_max, 1.0,
+  add(shadow_number("filter_radius", "Filter radius", "°", &LampShadow::filter_angle, 0.0, esm_filter_degrees_max, 1.0,
                     degrees_per_radian),
       is_exponential);
   add(shadow_number("esm_size", "Layer size", "px", &LampShadow::esm_size, esm_size_min, esm_size_max, 512.0),

@@ -162,7 +162,7 @@ class Description {
          l.area_size_y);
     line("  shadow {} {} {} {} {} {} {} {} {}", l.shadow.kind ? int(*l.shadow.kind) : -1, optional(l.shadow.size),
          optional(l.shadow.exponent), optional(l.shadow.bias), optional(l.shadow.clip_start),
-         optional(l.shadow.clip_end), optional(l.shadow.filter_radius), optional(l.shadow.esm_size),
+         optional(l.shadow.clip_end), optional(l.shadow.filter_angle), optional(l.shadow.esm_size),
          l.shadow.esm_format ? int(*l.shadow.esm_format) : -1);
   }
 };

@@ -220,7 +220,7 @@ TEST(GltfWorld, ExtrasOfTheWrongTypeOrOutOfRangeAreErrors)
              "scene: gnomon_world_strength is 'a', and must be a number");
   EXPECT_HAS(error_with({{"gnomon_world", {1, 1, 1}}, {"gnomon_world_strength", 1e31}}), "gnomon_world_strength is");
   EXPECT_HAS(error_with({{"gnomon_world", {1, 1, 1}}, {"gnomon_world_rotation", 1e39}}), "gnomon_world_rotation is");
-  EXPECT_HAS(error_with({{"gnomon_world", {1e30, 1, 1}}, {"gnomon_world_color", {1e30, 1, 1}}}), "world: its colour");
+  EXPECT_HAS(error_with({{"gnomon_world", {1e30, 1, 1}}, {"gnomon_world_color", {1e30, 1, 1}}}), "world: its color");
   EXPECT_HAS(error_with({{"gnomon_world_accessor", 0}}),
              "gnomon_world_width is absent, and must be present where gnomon_world_accessor is");
   EXPECT_HAS(error_with({{"gnomon_world_accessor", 0.5}, {"gnomon_world_width", 1}}), "must be a whole number");

@@ -686,7 +686,7 @@ TEST(GltfMaterial, CoatAndSheenAreRead)
   EXPECT_EQ(material.sheen_color, glm::vec3(0.1F, 0.2F, 0.3F));
   EXPECT_EQ(material.sheen_roughness, 0.4F);
   EXPECT_WARNING(scene, "material 'paint': clearcoatRoughnessFactor is 2, clamped to 1");
-  EXPECT_NO_WARNING(scene, "is not drawn");
+  EXPECT_NO_WARNING(scene, "is not read");
 }
 
 TEST(GltfMaterial, AnisotropyIsReadAndItsTextureOnlyWithIt)
@@ -704,7 +704,7 @@ TEST(GltfMaterial, AnisotropyIsReadAndItsTextureOnlyWithIt)
   EXPECT_EQ(material.anisotropy_rotation, 0.25F);
   EXPECT_WARNING(scene, "material 'paint': anisotropyStrength is 2, clamped to 1");
   EXPECT_WARNING(scene, "material 'paint': its anisotropyTexture is drawn as the factor alone: ");
-  EXPECT_NO_WARNING(scene, "KHR_materials_anisotropy is not drawn");
+  EXPECT_NO_WARNING(scene, "KHR_materials_anisotropy is not read");
   const auto [bare, bare_scene] = import_anisotropy(0);
   EXPECT_FALSE(bare.has_anisotropy() || bare.anisotropy_texture);
   EXPECT_NO_WARNING(bare_scene, "material 'paint'");
@@ -739,8 +739,8 @@ TEST(GltfMaterial, ForeignModelsAreNamed)
 {
   const auto [material, scene] = import_material(
       {{"extensions", {{"KHR_materials_iridescence", json::object()}, {"KHR_materials_dispersion", {{"a", {1, 2}}}}}}});
-  EXPECT_WARNING(scene, "material 'paint': KHR_materials_iridescence is not drawn");
-  EXPECT_WARNING(scene, "material 'paint': KHR_materials_dispersion is not drawn");
+  EXPECT_WARNING(scene, "material 'paint': KHR_materials_iridescence is not read");
+  EXPECT_WARNING(scene, "material 'paint': KHR_materials_dispersion is not read");
 }
 
 TEST(GltfMaterial, TransmissionAndVolumeAreRead)
@@ -891,7 +891,7 @@ TEST(GltfLamp, ShadowExtrasAreAbsentOrRead)
   const json point = {{"type", "point"}};
   const scene::LampShadow none = import_lamp(point).shadow;
   EXPECT_FALSE(none.kind || none.size || none.exponent || none.bias || none.clip_start || none.clip_end ||
-               none.filter_radius || none.esm_size || none.esm_format);
+               none.filter_angle || none.esm_size || none.esm_format);
   // Blender writes whole numbers both as integers and as floats.
   const scene::LampShadow all = import_lamp(point, {{"gnomon_shadow", "esm"},
                                                     {"gnomon_shadow_size", 1024},
@@ -909,8 +909,8 @@ TEST(GltfLamp, ShadowExtrasAreAbsentOrRead)
   EXPECT_EQ(all.bias, 0.5F);
   EXPECT_EQ(all.clip_start, 0.25F);
   EXPECT_EQ(all.clip_end, 40.0F);
-  ASSERT_TRUE(all.filter_radius);
-  EXPECT_FLOAT_EQ(*all.filter_radius, float(pi / 4));
+  ASSERT_TRUE(all.filter_angle);
+  EXPECT_FLOAT_EQ(*all.filter_angle, float(pi / 4));
   EXPECT_EQ(all.esm_size, 512);
   EXPECT_EQ(all.esm_format, scene::EsmFormat::Half);
   const auto kind = [&](const char *word) { return import_lamp(point, {{"gnomon_shadow", word}}).shadow.kind; };

@@ -85,10 +85,7 @@ TEST(GltfFile, BuffersAreChecked)
   EXPECT_HAS(error_with({{"byteLength", 36}, {"uri", "/etc/passwd"}}), "is not a file beside the scene");
   EXPECT_HAS(error_with({{"byteLength", 36}, {"uri", "http://a/b.bin"}}), "is not a file beside the scene");
   EXPECT_HAS(error_with({{"byteLength", 36}, {"uri", "$(touch x)`touch y`"}}), "there is no such file");
-  EXPECT_HAS(error_with({{"byteLength", 36}, {"uri", "data:text/plain,hello"}}),
-             "buffer 0: its data URI is not base64");
-  EXPECT_HAS(error_with({{"byteLength", 36}, {"uri", "data:a/b;base64,????"}}),
-             "buffer 0: its data URI cannot be decoded");
+  EXPECT_HAS(error_with({{"byteLength", 36}, {"uri", "data:a/b;base64,????"}}), "buffer 0: its data URI is not base64");
   EXPECT_HAS(error_with({{"byteLength", 36}, {"uri", "data:a/b;base64,AAAA"}}),
              "buffer 0: is cut off: it says 36 bytes, but has 3");
   EXPECT_HAS(error_with({{"byteLength", -1}, {"uri", "x"}}), "buffers[0].byteLength: is -1");
@@ -238,7 +235,6 @@ TEST(GltfAccessor, IncompleteElementsAreErrors)
   expect_left_out([](json &d) { d["accessors"][1]["type"] = "VEC2"; }, "accessor 1: must be a VEC3");
   expect_left_out([](json &d) { d["accessors"][2]["type"] = "VEC2"; }, "accessor 2: must be a SCALAR");
   expect_left_out([](json &d) { d["accessors"][2]["componentType"] = 5120; }, "indices: are not unsigned integers");
-  expect_left_out([](json &d) { d["accessors"][1].erase("bufferView"); }, "POSITION: holds no data");
   expect_left_out(
       [](json &d) {
         d["accessors"][1].erase("bufferView");
@@ -251,6 +247,9 @@ TEST(GltfAccessor, IncompleteElementsAreErrors)
 
 TEST(GltfAccessor, NoElementsMakeNoTriangles)
 {
+  // Zeros (glTF 2.0, 3.6.2.1).
+  EXPECT_WARNING(import_beside([](json &d) { d["accessors"][1].erase("bufferView"); }),
+                 "mesh 'bad': triangle left out: it has no area");
   const Scene scene = import_beside([](json &d) { d["accessors"][1]["count"] = 0; });
   EXPECT_EQ(scene.objects().size(), 1U);
   EXPECT_WARNING(scene, "mesh 'bad': triangle left out: a vertex index is out of range");

@@ -696,26 +696,26 @@ TEST(SceneEdit, InvalidValuesAreRefused)
   expect_refused<Lamp>({.name = "l"},
                        {{"intensity is not finite", [](Lamp &lamp) { lamp.intensity = float(nan); }},
                         {"intensity -30 is not at least 0", [](Lamp &lamp) { lamp.intensity = -30.0F; }},
-                        {"colour is not finite", [](Lamp &lamp) { lamp.color.g = float(infinity); }},
-                        {"colour -1", [](Lamp &lamp) { lamp.color.b = -1.0F; }},
+                        {"color is not finite", [](Lamp &lamp) { lamp.color.g = float(infinity); }},
+                        {"color -1 is not at least 0", [](Lamp &lamp) { lamp.color.b = -1.0F; }},
                         {"radius -1", [](Lamp &lamp) { lamp.radius = -1.0F; }},
-                        {"spot angle is not finite", [](Lamp &lamp) { lamp.spot_outer_angle = float(nan); }},
-                        {"shadow bias is not finite", [](Lamp &lamp) { lamp.shadow.bias = float(nan); }}});
+                        {"spot_outer_angle is not finite", [](Lamp &lamp) { lamp.spot_outer_angle = float(nan); }},
+                        {"shadow_bias is not finite", [](Lamp &lamp) { lamp.shadow.bias = float(nan); }}});
   expect_refused<Material>(
-      {.name = "m"}, {{"base colour is not finite", [](Material &material) { material.base_color.b = float(nan); }},
-                      {"base colour -1", [](Material &material) { material.base_color.r = -1.0F; }},
+      {.name = "m"}, {{"base_color is not finite", [](Material &material) { material.base_color.b = float(nan); }},
+                      {"base_color -1 is not from 0 to 1", [](Material &material) { material.base_color.r = -1.0F; }},
                       {"roughness -5", [](Material &material) { material.roughness = -5.0F; }},
-                      {"emission is not finite", [](Material &material) { material.emissive.r = float(infinity); }},
-                      {"normal scale is not", [](Material &material) { material.normal_scale = float(nan); }}});
+                      {"emissive is not finite", [](Material &material) { material.emissive.r = float(infinity); }},
+                      {"normal_scale is not", [](Material &material) { material.normal_scale = float(nan); }}});
   Material turned;
   turned.normal_scale = turned.anisotropy_rotation = -3.0F;
   Scene().add(turned);
   expect_refused<Camera>({.name = "c"},
-                         {{"vertical angle 0 is not above 0", [](Camera &camera) { camera.vertical_angle = 0.0F; }},
-                          {"vertical angle 9 is not below pi", [](Camera &camera) { camera.vertical_angle = 9.0F; }},
-                          {"near plane 0 is not above 0", [](Camera &camera) { camera.near = 0.0F; }},
-                          {"far plane is not finite", [](Camera &camera) { camera.far = float(nan); }},
-                          {"half height 0 is not above 0", [](Camera &camera) {
+                         {{"vertical_angle 0 is not from", [](Camera &camera) { camera.vertical_angle = 0.0F; }},
+                          {"vertical_angle 9 is not from", [](Camera &camera) { camera.vertical_angle = 9.0F; }},
+                          {"near 0 is not above 0", [](Camera &camera) { camera.near = 0.0F; }},
+                          {"far is not finite", [](Camera &camera) { camera.far = float(nan); }},
+                          {"half_height 0 is not at least", [](Camera &camera) {
                              camera.kind = CameraKind::Orthographic;
                              camera.half_height = 0.0F;
                            }}});

@@ -373,7 +373,7 @@ TEST(ViewPropertiesTest, AShadowHasTheSettingsThatHaveAnEffectForItsKindAndEachM
   EXPECT_TRUE(set("shadow_size", "300"));
   EXPECT_EQ(of.shadow.size, 300);
   EXPECT_TRUE(set("filter_radius", "9"));
-  EXPECT_FLOAT_EQ(*of.shadow.filter_radius, glm::radians(9.0F));
+  EXPECT_FLOAT_EQ(*of.shadow.filter_angle, glm::radians(9.0F));
   EXPECT_TRUE(set("esm_format", "32f"));
   EXPECT_EQ(of.shadow.esm_format, scene::EsmFormat::Float);
   EXPECT_TRUE(set("clip_start", "2"));

@@ -52,13 +52,13 @@ constexpr std::array<ShaderDeclaration, 27> declarations = {{
     {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl", alpha_features,
      Feature::None, "depth of what is seen, so that each pixel is lit once"},
     {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
-     caster_features, Feature::None, "depth of what a lamp sees, a layer a pass"},
+     caster_features, Feature::None, "depth of what a lamp sees, a layer a pass", "WITHOUT_VIEW"},
     {ShaderId::ShadowLayered, "eevee_shadow_layered", "eevee/eevee_shadow_layered_vert.glsl", "",
      "eevee/eevee_depth_frag.glsl", caster_features, Feature::None,
-     "depth of what a lamp sees, all layers in one pass"},
+     "depth of what a lamp sees, all layers in one pass", "WITHOUT_VIEW"},
     {ShaderId::ShadowGeometry, "eevee_shadow_geometry", "eevee/eevee_shadow_geometry_vert.glsl",
      "eevee/eevee_shadow_geometry_geom.glsl", "eevee/eevee_depth_frag.glsl", caster_features, Feature::None,
-     "the same where vertex shaders cannot choose a layer"},
+     "the same where vertex shaders cannot choose a layer", "WITHOUT_VIEW"},
     {ShaderId::Lit, "eevee_lit", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_lit_frag.glsl",
      light_features | Feature::BaseColorTexture | Feature::FullMaterial | Feature::Layers | Feature::Transmission,
      Feature::None, "light that surfaces send to the viewer"},
@@ -259,10 +259,6 @@ gpu::ShaderDesc with_surface_function(gpu::ShaderDesc desc, const ShaderDeclarat
 {
   if (declaration.id != ShaderId::DepthFunction) {
     desc.defines.emplace_back("USE_SURFACE_FUNCTION");
-  }
-  if (declaration.id == ShaderId::Shadow || declaration.id == ShaderId::ShadowLayered ||
-      declaration.id == ShaderId::ShadowGeometry) {
-    desc.defines.emplace_back("WITHOUT_VIEW");
   }
   return desc;
 }

@@ -4,6 +4,7 @@
 #include "internal/gltf_accessor.hh"
 #include "internal/gltf_node.hh"
 #include "internal/gltf_pointer.hh"
+#include "internal/gltf_slots.hh"
 #include "internal/gltf_units.hh"
 
 #include <glm/geometric.hpp>
@@ -19,7 +20,6 @@
 namespace gnomon::gltf {
 
 using scene::AnimatedNode;
-using scene::AnimatedProperty;
 using scene::AnimatedValue;
 using scene::Handle;
 using scene::Interpolation;
@@ -117,17 +117,76 @@ class AnimationImporter {
       return;
     }
     const std::optional<PointerParts> parts = parts_of(channel.pointer);
+    if (parts && parts->collection == "nodes" && parts->path == visibility_path) {
+      import_visibility_channel(sampler, parts->index, animation);
+      return;
+    }
+    if (parts && parts->collection == "materials" && import_transform_channel(sampler, *parts, animation)) {
+      return;
+    }
     if (parts && parts->collection == "nodes") {
       import_node_channel(sampler, parts->index, std::string(parts->path), node_places, animation);
       return;
     }
-    const auto *const pointer = std::ranges::find_if(pointers, [&](const Pointer &one) {
-      return parts && one.collection == parts->collection && one.path == parts->path;
-    });
-    if (pointer == pointers.end()) {
+    const std::string_view property = parts ? animated_property(*parts) : "";
+    if (property.empty()) {
       throw Fault("pointer", "'" + printable(channel.pointer) + "' is not played");
     }
-    import_value_channel(sampler, *parts, *pointer, animation);
+    import_value_channel(sampler, *parts, property, animation);
+  }
+
+  void import_visibility_channel(const Model::AnimationSampler &sampler, int node, scene::Animation &animation)
+  {
+    if (std::size_t(node) >= things_.nodes.size() || !things_.nodes[std::size_t(node)]) {
+      throw Fault("pointer", "its target is not in the scene");
+    }
+    AnimatedValue value;
+    value.target = things_.nodes[std::size_t(node)];
+    value.property = "is_visible";
+    value.track = track(sampler, 1, Model::ElementType::Scalar);
+    animation.values.push_back(value);
+  }
+
+  /** \return false if the pointer is not that of a transform of a texture. */
+  bool import_transform_channel(const Model::AnimationSampler &sampler, const PointerParts &parts,
+                                scene::Animation &animation)
+  {
+    const std::size_t split = parts.path.find(transform_path);
+    if (split == parts.path.npos) {
+      return false;
+    }
+    const std::string_view property = parts.path.substr(split + transform_path.size());
+    const std::string_view slot_path = parts.path.substr(0, split);
+    const auto *const name =
+        std::ranges::find_if(slot_names, [&](const SlotName &one) { return slot_path == path_of(one); });
+    if (name == slot_names.end() || (property != "offset" && property != "rotation" && property != "scale")) {
+      return false;
+    }
+    const auto found = things_.materials.find(parts.index);
+    if (found == things_.materials.end()) {
+      throw Fault("pointer", "its target is not in the scene");
+    }
+    AnimatedValue value;
+    value.target = found->second;
+    value.property = property == "offset" ? "offset" : property == "scale" ? "scale" : "rotation";
+    value.slot = scene::texture_inputs[std::size_t(name - slot_names.begin())].name;
+    value.track = property == "rotation" ? track(sampler, 1, Model::ElementType::Scalar)
+                                         : track(sampler, 2, Model::ElementType::Vec2);
+    animation.values.push_back(value);
+    return true;
+  }
+
+  /** Name of the property that the pointer animates; empty: none. */
+  static std::string_view animated_property(const PointerParts &parts)
+  {
+    std::string_view property;
+    for_each_animated([&](std::string_view collection, const scene::Description &row) {
+      const bool is_it = row.path == parts.path || (row.name == "emissive" && parts.path == strength_path);
+      if (collection == parts.collection && is_it) {
+        property = row.name;
+      }
+    });
+    return property;
   }
 
   void import_node_channel(const Model::AnimationSampler &sampler, int node, const std::string &path,
@@ -183,36 +242,46 @@ class AnimationImporter {
     }
   }
 
-  void import_value_channel(const Model::AnimationSampler &sampler, const PointerParts &parts, const Pointer &pointer,
-                            scene::Animation &animation)
+  void import_value_channel(const Model::AnimationSampler &sampler, const PointerParts &parts,
+                            std::string_view property, scene::Animation &animation)
   {
     constexpr std::array<Model::ElementType, 5> types = {Model::ElementType::Scalar, Model::ElementType::Scalar,
                                                          Model::ElementType::Vec2, Model::ElementType::Vec3,
                                                          Model::ElementType::Vec4};
     AnimatedValue value;
-    value.property = pointer.property;
+    value.property = property;
     // emissiveStrength is one number, which is multiplied by the three numbers of emissiveFactor.
-    const bool is_strength = pointer.path.ends_with("emissiveStrength");
-    const std::size_t width = is_strength ? 1 : width_of(pointer.property);
+    const bool is_strength = parts.path == strength_path;
+    const std::size_t width = is_strength ? 1 : scene::width_of(property);
     value.track = track(sampler, width, types[width]);
     bool has_target = false;
     const auto add = [&](auto handle, const glm::dvec3 &factor) {
       value.target = handle;
       value.factor = factor;
-      animation.values.push_back(value);
       has_target = true;
+      for (AnimatedValue &other : animation.values) {
+        const bool is_product = property == "emissive" && other.target == value.target && other.property == property &&
+                                !other.strength_track && other.track->width != value.track->width;
+        if (is_product) {
+          other.strength_track = is_strength ? value.track : other.track;
+          other.track = is_strength ? other.track : value.track;
+          other.factor = glm::dvec3(1.0);
+          return;
+        }
+      }
+      animation.values.push_back(value);
     };
     if (parts.collection == "materials") {
       if (const auto found = things_.materials.find(parts.index); found != things_.materials.end()) {
         const Model::Material &source = file_.model.materials[std::size_t(parts.index)];
         const glm::dvec3 emissive(source.emissive[0], source.emissive[1], source.emissive[2]);
-        add(found->second, is_strength                                      ? emissive
-                           : pointer.property == AnimatedProperty::Emissive ? glm::dvec3(source.emissive_strength)
-                                                                            : glm::dvec3(1.0));
+        add(found->second, is_strength              ? emissive
+                           : property == "emissive" ? glm::dvec3(source.emissive_strength)
+                                                    : glm::dvec3(1.0));
       }
     }
     else if (parts.collection == "lights") {
-      const bool is_intensity = pointer.property == AnimatedProperty::LampIntensity;
+      const bool is_intensity = property == "intensity";
       if (const auto found = things_.lamps.find(parts.index); found != things_.lamps.end()) {
         for (const Handle<scene::Lamp> lamp : found->second) {
           add(lamp, glm::dvec3(is_intensity ? 1.0 / lumen_per_watt : 1.0));
@@ -275,6 +344,7 @@ class AnimationImporter {
     }
     for (std::size_t i = 0; i < output.count(); i++) {
       const glm::vec4 value = type == Model::ElementType::Scalar ? glm::vec4(output.scalar(i))
+                              : type == Model::ElementType::Vec2 ? glm::vec4(output.vec2(i), 0.0F, 0.0F)
                               : type == Model::ElementType::Vec3 ? glm::vec4(output.vec3(i), 0.0F)
                                                                  : output.vec4(i);
       for (std::size_t k = 0; k < width / elements_of_value; k++) {

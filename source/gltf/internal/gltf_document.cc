@@ -5,6 +5,7 @@
 #include "internal/gltf_document_extras.hh"
 #include "internal/gltf_document_shading.hh"
 #include "internal/gltf_json.hh"
+#include "internal/gltf_json_fault.hh"
 #include "memory_pages.hh"
 
 #include <algorithm>
@@ -26,14 +27,16 @@ std::size_t size_of(const JsonArray &array)
 /** Fills a model from a document. */
 class DocumentReader {
  public:
-  explicit DocumentReader(const JsonValue &document)
+  DocumentReader(const JsonValue &document, Warnings &warnings) : document_{.warnings = &warnings}
   {
     JsonObject root;
     if (document.get(root) != simdjson::SUCCESS) {
       throw Fault("JSON", "the document is not an object");
     }
     for (const auto [key, value] : root) {
-      root_.insert_or_assign(key, value);
+      if (!root_.insert_or_assign(key, value).second) {
+        at_root(key).warn("stands twice in the document; the last counts");
+      }
     }
   }
 
@@ -44,11 +47,11 @@ class DocumentReader {
          {"scenes", "nodes", "meshes", "skins", "accessors", "bufferViews", "buffers", "materials", "cameras",
           "textures", "samplers", "images", "extensionsRequired"}) {
       if (const JsonValue *value = root(key)) {
-        indices_.set_size(key, size_of(array_at({nullptr, key}, *value)));
+        indices_.set_size(key, size_of(array_at(at_root(key), *value)));
       }
     }
     if (const JsonValue *value = root("scene")) {
-      model_.scene = indices_.index_into("scenes", {nullptr, "scene"}, *value);
+      model_.scene = indices_.index_into("scenes", at_root("scene"), *value);
     }
     read_extensions();
     read_array("scenes", model_.scenes,
@@ -79,9 +82,15 @@ class DocumentReader {
   /** Stands for the array of EXT_lights_image_based among the arrays of the document. */
   static constexpr std::string_view image_lights = "image-based lights";
 
+  const Place document_;
   std::map<std::string_view, JsonValue> root_;
   DocumentIndices indices_;
   Model model_;
+
+  [[nodiscard]] Place at_root(std::string_view key) const
+  {
+    return {&document_, key};
+  }
 
   [[nodiscard]] const JsonValue *root(std::string_view key) const
   {
@@ -97,7 +106,8 @@ class DocumentReader {
     elements.reserve(size_of(array));
     memory::prefer_large_pages(elements.data(), elements.capacity() * sizeof(Element));
     for (const JsonValue value : array) {
-      const Place at{place.outer, place.key, elements.size()};
+      const bool is_of_document = place.outer->outer == nullptr;
+      const Place at{place.outer, place.key, elements.size(), is_of_document ? &value : nullptr};
       read_one(at, value, elements.emplace_back());
     }
   }
@@ -106,7 +116,7 @@ class DocumentReader {
   void read_array(std::string_view key, std::vector<Element> &elements, const Read &read_one)
   {
     if (const JsonValue *value = root(key)) {
-      const Place place{nullptr, key};
+      const Place place = at_root(key);
       read_elements(place, array_at(place, *value), elements, read_one);
     }
   }
@@ -128,7 +138,7 @@ class DocumentReader {
       throw Fault("asset", "is missing: this is not a glTF 2.0 file");
     }
     std::string version;
-    read_members({nullptr, "asset"}, *asset, into("version", version));
+    read_members(at_root("asset"), *asset, into("version", version));
     if (!version.starts_with("2.")) {
       throw Fault("asset.version", "is '" + printable(version) + "', and only glTF 2.0 is read");
     }
@@ -180,6 +190,10 @@ class DocumentReader {
                  Member{"KHR_lights_punctual",
                         [&](const Place &at, const JsonValue &extension) {
                           read_members(at, extension, indices_.into_index("light", node.light, "lights"));
+                        }},
+                 Member{"KHR_node_visibility",
+                        [&](const Place &at, const JsonValue &extension) {
+                          read_members(at, extension, into("visible", node.is_visible));
                         }},
                  Member{"EXT_mesh_gpu_instancing", [&](const Place &at, const JsonValue &extension) {
                           Model::Instances &instances = node.instances.emplace();
@@ -233,8 +247,9 @@ class DocumentReader {
       else if (name == "KHR_materials_variants") {
         read_members(at, extension, Member{"mappings", read_variants});
       }
-      else if (name.find("compression") != name.npos) {
-        primitive.compression = name;
+      else {
+        warn_unread_extension(*at.outer, name);
+        primitive.compression = name.find("compression") != name.npos ? name : primitive.compression;
       }
     };
     read_members(
@@ -353,7 +368,7 @@ class DocumentReader {
           at, array_at(at, variants), model_.variants,
           [](const Place &in, const JsonValue &one, std::string &name) { read_members(in, one, into_name(name)); });
     };
-    read_members({nullptr, "extensions"}, *extensions,
+    read_members(at_root(extensions_key), *extensions,
                  Member{"KHR_lights_punctual",
                         [&](const Place &at, const JsonValue &punctual) {
                           read_members(at, punctual, Member{"lights", read_array_of_lights});
@@ -376,7 +391,7 @@ std::string reason_of(simdjson::error_code error)
 {
   const std::string_view message = simdjson::error_message(error);
   const std::size_t prefix_end = message.find(": ");
-  return "parse error: " + printable(prefix_end == message.npos ? message : message.substr(prefix_end + 2));
+  return printable(prefix_end == message.npos ? message : message.substr(prefix_end + 2));
 }
 
 /** Allocates what the parser writes for a text of this size, which is several times as much as the text. */
@@ -400,16 +415,22 @@ std::size_t document_padding()
   return simdjson::SIMDJSON_PADDING;
 }
 
-Model parse_document(std::span<const unsigned char> json)
+Model parse_document(std::span<const unsigned char> json, Warnings &warnings)
 {
-  constexpr std::array<unsigned char, 3> byte_order_mark{0xEF, 0xBB, 0xBF};
-  if (json.size() >= byte_order_mark.size() &&
-      std::equal(byte_order_mark.begin(), byte_order_mark.end(), json.begin())) {
-    json = json.subspan(byte_order_mark.size());
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  std::string_view whole(reinterpret_cast<const char *>(json.data()), json.size());
+  if (whole.ends_with('\0') && whole.find_last_not_of('\0') != whole.npos) {
+    const std::size_t size = whole.find_last_not_of('\0') + 1;
+    warnings.add("JSON", "zero bytes at its end are dropped: " + std::to_string(whole.size() - size));
+    whole = whole.substr(0, size);
+  }
+  std::string_view text = whole;
+  if (text.starts_with(byte_order_mark)) {
+    warnings.add("JSON", "begins with a byte-order mark, which glTF does not allow");
+    text.remove_prefix(byte_order_mark.size());
   }
   simdjson::dom::parser parser;
   JsonValue document;
-  std::string_view text(reinterpret_cast<const char *>(json.data()), json.size());
   const auto parse = [&] { return parser.parse(text.data(), text.size(), false).get(document); };
   simdjson::error_code error = allocate(parser, text.size());
   error = error == simdjson::SUCCESS ? parse() : error;
@@ -428,9 +449,10 @@ Model parse_document(std::span<const unsigned char> json)
     throw std::bad_alloc();
   }
   if (error != simdjson::SUCCESS) {
-    throw Fault("JSON", reason_of(error));
+    const std::string found = json_fault(whole);
+    throw Fault("JSON", "parse error: " + (found.empty() ? reason_of(error) : found));
   }
-  return DocumentReader(document).read();
+  return DocumentReader(document, warnings).read();
 }
 
 }  // namespace gnomon::gltf

@@ -126,8 +126,13 @@ void read_buffer_view(const Place &place, const JsonValue &value, const Document
 
 void read_buffer(const Place &place, const JsonValue &value, Model::Buffer &buffer)
 {
+  // A fallback without bytes is not read, as the buffer views name the compressed bytes.
+  const auto skip = [](const Place &, const JsonValue &) {};
   read_members(place, value, into("byteLength", buffer.byte_length),
-               Member{"uri", [&](const Place &at, const JsonValue &uri) { buffer.uri = string_at(at, uri); }});
+               Member{"uri", [&](const Place &at, const JsonValue &uri) { buffer.uri = string_at(at, uri); }},
+               Member{"extensions", [&](const Place &at, const JsonValue &extensions) {
+                        read_members(at, extensions, Member{"EXT_meshopt_compression", skip});
+                      }});
 }
 
 }  // namespace gnomon::gltf

@@ -9,7 +9,7 @@ namespace gnomon::gltf {
 
 namespace {
 
-/** \a factor: a member of the slot named \a factor_key; nullptr if it has none. */
+/** \a factor: a member of the slot named \a factor_key; nullptr, and an empty name, if it has none. */
 void read_slot(const Place &place, const JsonValue &value, Model::TextureSlot &slot, std::string_view factor_key = "",
                double *factor = nullptr)
 {
@@ -19,14 +19,13 @@ void read_slot(const Place &place, const JsonValue &value, Model::TextureSlot &s
     read_members(at, transform, into("offset", slot.offset), into("rotation", slot.rotation), into("scale", slot.scale),
                  into("texCoord", transformed_set));
   };
+  double unused = 0.0;
   read_members(place, value, into("index", slot.index), into("texCoord", slot.set),
+               into(factor_key, factor != nullptr ? *factor : unused),
                Member{"extensions", [&](const Place &at, const JsonValue &extensions) {
                         read_members(at, extensions, Member{"KHR_texture_transform", read_transform});
                       }});
   slot.set = transformed_set < 0 ? slot.set : transformed_set;
-  if (factor != nullptr) {
-    read_members(place, value, into(factor_key, *factor));
-  }
 }
 
 auto into_slot(std::string_view key, Model::TextureSlot &slot, std::string_view factor_key = "",
@@ -122,7 +121,6 @@ void read_material_extensions(const Place &place, const JsonValue &value, Model:
                               std::optional<SpecularGlossiness> &specular_glossiness)
 {
   for_members(place, value, [&](std::string_view name, const Place &at, const JsonValue &extension) {
-    material.extensions.emplace_back(name);
     if (name == "KHR_materials_specular") {
       read_specular(at, extension, material);
     }
@@ -157,8 +155,10 @@ void read_material_extensions(const Place &place, const JsonValue &value, Model:
       static_cast<void>(object_at(at, extension));
       material.is_unlit = true;
     }
+    else {
+      warn_unread_extension(place, name);
+    }
   });
-  std::sort(material.extensions.begin(), material.extensions.end());
 }
 
 /** Reads the numbers of a camera. All of \a required must be present. */
@@ -174,6 +174,9 @@ void read_lens(const Place &place, const JsonValue &value, const std::map<std::s
     if (const auto found = numbers.find(key); found != numbers.end()) {
       required_count += required.count(key);
       *found->second = number_at(at, number);
+    }
+    else if (key == extensions_key) {
+      skip_member(place, at, number);
     }
   });
   if (required_count < required.size()) {
@@ -241,7 +244,8 @@ void read_image(const Place &place, const JsonValue &value, Model::Image &image)
 void read_camera(const Place &place, const JsonValue &value, Model::Camera &camera)
 {
   std::string type;
-  read_members(place, value, into_name(camera.name), into("type", type));
+  const auto later = [](const Place &, const JsonValue &) {};
+  read_members(place, value, into_name(camera.name), into("type", type), Member{"extensions", later});
   if (type != "perspective" && type != "orthographic") {
     throw Fault("glTF", "Invalid camera type of " + place.text() + ": '" + printable(type) + "'");
   }

@@ -83,8 +83,11 @@ bool is_glb(ByteSpan bytes)
   return bytes.size() >= glb_magic.size() && std::equal(glb_magic.begin(), glb_magic.end(), bytes.begin());
 }
 
-/** The JSON and BIN chunks of a .glb. Others are skipped, as glTF requires. */
-Chunks split_glb(ByteSpan bytes)
+/**
+ * The JSON and BIN chunks of a .glb, in any order. Others are skipped, as glTF requires. Warns about what glTF forbids
+ * and does no harm.
+ */
+Chunks split_glb(ByteSpan bytes, Warnings &warnings)
 {
   constexpr std::size_t file_header_size = 12;
   constexpr std::size_t chunk_header_size = 8;
@@ -101,28 +104,43 @@ Chunks split_glb(ByteSpan bytes)
     throw Fault("GLB header", "the file is cut off: it says " + std::to_string(length) + " bytes, but has " +
                                   std::to_string(bytes.size()));
   }
-  Chunks chunks;
+  if (length < bytes.size()) {
+    warnings.add("GLB header", "it says " + std::to_string(length) + " bytes, and the file has " +
+                                   std::to_string(bytes.size()) + ": the bytes at the end are not read");
+  }
+  std::optional<ByteSpan> json;
+  std::optional<ByteSpan> binary;
   std::size_t offset = file_header_size;
   while (length >= offset && length - offset >= chunk_header_size) {
     const std::size_t chunk_size = read_u32(bytes, offset);
     const std::uint32_t type = read_u32(bytes, offset + 4);
+    const std::string what = "GLB chunk at byte " + std::to_string(offset);
     offset += chunk_header_size;
     if (chunk_size > length - offset) {
       throw Fault("GLB chunk", "runs past the end of the file");
     }
-    const ByteSpan content = bytes.subspan(offset, chunk_size);
-    if (type == json_type && chunks.json.empty()) {
-      chunks.json = content;
+    if (chunk_size % 4 != 0) {
+      warnings.add(what, "its length " + std::to_string(chunk_size) + " is not a multiple of 4");
     }
-    else if (type == binary_type && chunks.binary.empty()) {
-      chunks.binary = content;
+    std::optional<ByteSpan> *chunk = type == json_type ? &json : type == binary_type ? &binary : nullptr;
+    if (chunk != nullptr && chunk->has_value()) {
+      warnings.add(what, std::string("is a second ") + (chunk == &json ? "JSON" : "BIN") + " chunk, which is not read");
+    }
+    else if (chunk != nullptr) {
+      *chunk = bytes.subspan(offset, chunk_size);
+      if (chunk == &json && offset != file_header_size + chunk_header_size) {
+        warnings.add(what, "is the JSON chunk, which must be the first");
+      }
     }
     offset += chunk_size;
   }
-  if (chunks.json.empty()) {
+  if (!json) {
     throw Fault("GLB", "has no JSON chunk");
   }
-  return chunks;
+  if (offset < length) {
+    warnings.add("GLB", "bytes after the last chunk are not read: " + std::to_string(length - offset));
+  }
+  return {*json, binary.value_or(ByteSpan())};
 }
 
 /** The value of two hexadecimal digits; negative for other characters. */
@@ -151,33 +169,40 @@ std::string percent_decoded(std::string_view uri)
   return result;
 }
 
-/** Empty if the text is not base64. Padding at the end is optional; white space is not allowed. */
+/**
+ * Empty if the text is not base64, of the alphabet for files or that for URLs (RFC 4648). Padding at the end is
+ * optional. White space is skipped.
+ */
 std::optional<Bytes> base64_decoded(std::string_view text)
 {
   constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   constexpr std::uint8_t none = 64;
+  constexpr std::uint8_t space = 65;
   static const std::array<std::uint8_t, 256> value_of = [&] {
     std::array<std::uint8_t, 256> values;
     values.fill(none);
     for (std::size_t i = 0; i < digits.size(); i++) {
       values[static_cast<unsigned char>(digits[i])] = static_cast<std::uint8_t>(i);
     }
+    values['-'] = 62;
+    values['_'] = 63;
+    for (const unsigned char white : {' ', '\t', '\r', '\n', '\f', '\v'}) {
+      values[white] = space;
+    }
     return values;
   }();
-  while (!text.empty() && text.back() == '=') {
-    text.remove_suffix(1);
-  }
-  if (text.size() % 4 == 1) {
-    return std::nullopt;
-  }
+  text = text.substr(0, text.find_last_not_of("= \t\r\n\f\v") + 1);
   Bytes bytes;
   bytes.reserve(3 * text.size() / 4);
   std::uint32_t bits = 0;
   unsigned bit_count = 0;
   for (const char character : text) {
     const std::uint8_t value = value_of[static_cast<unsigned char>(character)];
-    if (value == none) {
-      return std::nullopt;
+    if (value >= none) {
+      if (value == none) {
+        return std::nullopt;
+      }
+      continue;
     }
     bits = bits << 6U | value;
     bit_count += 6;
@@ -186,19 +211,42 @@ std::optional<Bytes> base64_decoded(std::string_view text)
       bytes.push_back(static_cast<unsigned char>(bits >> bit_count));
     }
   }
-  return bytes;
+  // One digit alone is no byte.
+  return bit_count == 6 ? std::nullopt : std::optional(std::move(bytes));
 }
 
-Bytes bytes_of_data_uri(const std::string &what, const std::string &uri)
+/** Whether the texts are equal but for the case of letters of ASCII. \a lower has none in upper case. */
+bool is_equal_without_case(std::string_view text, std::string_view lower)
+{
+  return std::ranges::equal(text, lower, [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a | 0x20 : a) == b; });
+}
+
+/** RFC 2397: `data:[type][;parameter]...[;base64],data`. */
+Bytes bytes_of_data_uri(const std::string &what, std::string_view uri)
 {
   const std::size_t comma = uri.find(',');
-  constexpr std::string_view suffix = ";base64";
-  if (comma == uri.npos || comma < suffix.size() || uri.compare(comma - suffix.size(), suffix.size(), suffix) != 0) {
-    throw Fault(what, "its data URI is not base64");
+  if (comma == uri.npos) {
+    throw Fault(what, "its data URI has no comma before the data");
   }
-  std::optional<Bytes> bytes = base64_decoded(std::string_view(uri).substr(comma + 1));
+  bool is_base64 = false;
+  for (std::string_view parameters = uri.substr(0, comma); parameters.find(';') != parameters.npos;) {
+    parameters.remove_prefix(parameters.find(';') + 1);
+    std::string_view one = parameters.substr(0, parameters.find(';'));
+    one.remove_prefix(std::min(one.find_first_not_of(' '), one.size()));
+    is_base64 = is_base64 || is_equal_without_case(one.substr(0, one.find_last_not_of(' ') + 1), "base64");
+  }
+  std::string_view data = uri.substr(comma + 1);
+  std::string decoded;
+  if (data.find('%') != data.npos) {
+    decoded = percent_decoded(data);
+    data = decoded;
+  }
+  if (!is_base64) {
+    return {data.begin(), data.end()};
+  }
+  std::optional<Bytes> bytes = base64_decoded(data);
   if (!bytes) {
-    throw Fault(what, "its data URI cannot be decoded");
+    throw Fault(what, "its data URI is not base64");
   }
   return std::move(*bytes);
 }
@@ -278,10 +326,10 @@ class BufferLoader {
 
 bool is_data_uri(const std::string &uri)
 {
-  return uri.rfind("data:", 0) == 0;
+  return is_equal_without_case(std::string_view(uri).substr(0, 5), "data:");
 }
 
-File load_file(const std::filesystem::path &path)
+File load_file(const std::filesystem::path &path, Warnings &warnings)
 {
   const trace::Span span("read and parse");
   File file;
@@ -290,8 +338,8 @@ File load_file(const std::filesystem::path &path)
   const std::size_t size = storage.size();
   storage.resize(size + document_padding());
   const ByteSpan bytes = ByteSpan(storage).first(size);
-  const Chunks chunks = is_glb(bytes) ? split_glb(bytes) : Chunks{bytes, {}};
-  file.model = parse_document(chunks.json);
+  const Chunks chunks = is_glb(bytes) ? split_glb(bytes, warnings) : Chunks{bytes, {}};
+  file.model = parse_document(chunks.json, warnings);
   file.folder = path.parent_path();
   BufferLoader buffer_loader(file, chunks.binary);
   for (const Model::Buffer &buffer : file.model.buffers) {

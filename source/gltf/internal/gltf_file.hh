@@ -49,7 +49,7 @@ const auto &element(const Elements &elements, int index, const std::string &what
 /** Largest size of a .glb, which is also the limit for other files. */
 inline constexpr std::uintmax_t file_size_max = std::uintmax_t(4) << 30U;
 
-/** Whether a URI contains its data instead of the name of a file. */
+/** Whether a URI contains its data instead of the name of a file (RFC 2397). */
 [[nodiscard]] bool is_data_uri(const std::string &uri);
 
 /**
@@ -61,6 +61,6 @@ inline constexpr std::uintmax_t file_size_max = std::uintmax_t(4) << 30U;
                                                       const std::string &uri, std::uintmax_t size_max = file_size_max);
 
 /** \throws Fault; std::bad_alloc */
-[[nodiscard]] File load_file(const std::filesystem::path &path);
+[[nodiscard]] File load_file(const std::filesystem::path &path, Warnings &warnings);
 
 }  // namespace gnomon::gltf

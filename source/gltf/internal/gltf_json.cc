@@ -2,14 +2,62 @@
 #include "internal/gltf_json.hh"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 namespace gnomon::gltf {
 
 std::string Place::text() const
 {
-  std::string result = outer == nullptr ? "" : outer->text() + '.';
+  const bool is_in_document = outer == nullptr || outer->outer == nullptr;
+  std::string result = is_in_document ? "" : outer->text() + '.';
   result += key;
   return index == no_index ? result : result + '[' + std::to_string(index) + ']';
+}
+
+std::string Place::label() const
+{
+  if (element == nullptr) {
+    return text();
+  }
+  // "meshes", and others that end with s.
+  std::string_view kind = key;
+  kind.remove_suffix(kind.ends_with("shes") ? 2 : kind.ends_with('s') ? 1 : 0);
+  std::string_view name;
+  if (element->at_key("name").get(name) != simdjson::SUCCESS) {
+    name = {};
+  }
+  return gltf::label(kind, name, index);
+}
+
+void Place::warn(std::string_view reason) const
+{
+  const Place *document = this;
+  while (document->outer != nullptr) {
+    document = document->outer;
+  }
+  document->warnings->add_counted(label(), 1, reason);
+}
+
+void warn_unread_extension(const Place &extensions, std::string_view name)
+{
+  const Place &owner = *extensions.outer;
+  const bool is_document = owner.outer == nullptr;
+  (is_document ? extensions : owner).warn(printable(name) + " is not read");
+}
+
+void skip_member(const Place &place, const Place &at, const JsonValue &member)
+{
+  if (place.key == extensions_key) {
+    warn_unread_extension(place, at.key);
+    return;
+  }
+  JsonObject extensions;
+  if (at.key == extensions_key && member.get(extensions) == simdjson::SUCCESS) {
+    for (const auto [name, value] : extensions) {
+      warn_unread_extension(at, name);
+    }
+  }
 }
 
 std::string with_long_numbers_as_floats(std::string_view json, std::size_t padding)
@@ -111,22 +159,39 @@ double number_at(const Place &place, const JsonValue &value)
   return number;
 }
 
+/** The whole number of \a value, at least 0; empty if it is none. */
+static std::optional<std::uint64_t> whole_number(const Place &place, const JsonValue &value)
+{
+  // Larger floats have lost digits.
+  constexpr double exact_max = 9007199254740992.0;
+  std::uint64_t number = 0;
+  if (value.get(number) == simdjson::SUCCESS) {
+    return number;
+  }
+  double real = 0.0;
+  if (value.get(real) != simdjson::SUCCESS || !(real >= 0.0 && real <= exact_max) || std::trunc(real) != real) {
+    return std::nullopt;
+  }
+  place.warn("a whole number is written as a float");
+  return static_cast<std::uint64_t>(real);
+}
+
 std::uint64_t size_at(const Place &place, const JsonValue &value)
 {
-  std::uint64_t size = 0;
-  if (value.get(size) != simdjson::SUCCESS) {
+  const std::optional<std::uint64_t> size = whole_number(place, value);
+  if (!size) {
     fail(place, value, "a whole number, not negative");
   }
-  return size;
+  return *size;
 }
 
 int index_at(const Place &place, const JsonValue &value)
 {
-  std::uint64_t index = 0;
-  if (value.get(index) != simdjson::SUCCESS || index > std::uint64_t(std::numeric_limits<int>::max())) {
+  const std::optional<std::uint64_t> index = whole_number(place, value);
+  if (!index || *index > std::uint64_t(std::numeric_limits<int>::max())) {
     fail(place, value, "an index");
   }
-  return static_cast<int>(index);
+  return static_cast<int>(*index);
 }
 
 }  // namespace gnomon::gltf

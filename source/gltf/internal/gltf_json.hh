@@ -16,21 +16,31 @@
 /** Values of a JSON document with their types checked. Internal to source/gltf. */
 namespace gnomon::gltf {
 
-/** A place in the document. It links to the enclosing place, so that a text is created only for messages. */
+using JsonValue = simdjson::dom::element;
+using JsonObject = simdjson::dom::object;
+using JsonArray = simdjson::dom::array;
+
+/**
+ * A place in the document. It links to the enclosing place, so that a text is created only for messages. The outermost
+ * place is the document, which alone has `warnings`.
+ */
 struct Place {
   static constexpr std::size_t no_index = std::numeric_limits<std::size_t>::max();
 
   const Place *outer = nullptr;
   std::string_view key = {};
   std::size_t index = no_index;
+  /** An element of one of the document's arrays; otherwise nullptr. */
+  const JsonValue *element = nullptr;
+  Warnings *warnings = nullptr;
 
   /** For example "nodes[3].mesh". */
   [[nodiscard]] std::string text() const;
+  /** For example "node 'wheel'" for an element of one of the document's arrays; otherwise text(). */
+  [[nodiscard]] std::string label() const;
+  /** Adds a warning about the place. Equal reasons are counted. */
+  void warn(std::string_view reason) const;
 };
-
-using JsonValue = simdjson::dom::element;
-using JsonObject = simdjson::dom::object;
-using JsonArray = simdjson::dom::array;
 
 /**
  * Appends ".0" to whole numbers that may exceed 64 bits, which JSON allows and simdjson refuses, and \a padding bytes
@@ -56,7 +66,7 @@ using JsonArray = simdjson::dom::array;
 [[nodiscard]] std::string name_at(const Place &place, const JsonValue &value);
 [[nodiscard]] bool boolean_at(const Place &place, const JsonValue &value);
 [[nodiscard]] double number_at(const Place &place, const JsonValue &value);
-/** A whole number, at least 0. */
+/** A whole number, at least 0. One that is written as a float ("5126.0") is read with a warning. */
 [[nodiscard]] std::uint64_t size_at(const Place &place, const JsonValue &value);
 /** A whole number in [0, INT_MAX]. */
 [[nodiscard]] int index_at(const Place &place, const JsonValue &value);
@@ -122,16 +132,38 @@ inline auto into_name(std::string &name)
   return Member{"name", [&name](const Place &place, const JsonValue &value) { name = name_at(place, value); }};
 }
 
+/** Warns that the importer does not read the extension \a name of the object at \a extensions.outer. */
+void warn_unread_extension(const Place &extensions, std::string_view name);
+
+/** The key of extensions in all objects of glTF. */
+inline constexpr std::string_view extensions_key = "extensions";
+
+/** A member that read_members did not look for. Names the extensions that it has. */
+void skip_member(const Place &place, const Place &at, const JsonValue &member);
+
 /**
- * Reads those of \a members that the object has. \throws Fault if \a value is not an object, and what the members
+ * Reads those of \a members that the object has. Extensions without a member are named in warnings, and so are members
+ * that the object has twice, of which the last counts. \throws Fault if \a value is not an object, and what the members
  * throw.
  */
 template <typename... Read>
 void read_members(const Place &place, const JsonValue &value, const Member<Read> &...members)
 {
+  static_assert(sizeof...(Read) <= 64);
+  std::uint64_t read = 0;
   for (const auto [key, member] : object_at(place, value)) {
     const Place at{&place, key};
-    static_cast<void>(((members.key == key && (members.read(at, member), true)) || ...));
+    std::uint64_t bit = 1;
+    const bool is_read = ((members.key == key ? (members.read(at, member), true) : (bit <<= 1U, false)) || ...);
+    if (!is_read) {
+      if (key == extensions_key || place.key == extensions_key) {
+        skip_member(place, at, member);
+      }
+    }
+    else if ((read & bit) != 0) {
+      at.warn("stands twice in the object; the last counts");
+    }
+    read |= bit;
   }
 }
 

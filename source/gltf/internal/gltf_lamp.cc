@@ -142,7 +142,7 @@ class LampReader : private ExtraReader {
       fail("gnomon_clip_end", text(*shadow.clip_end), "above gnomon_clip_start, " + text(*shadow.clip_start));
     }
     if (const std::optional<double> degrees = number_if_any("gnomon_filter_radius", {0.0, 45.0})) {
-      shadow.filter_radius = static_cast<float>(*degrees * pi / 180.0);
+      shadow.filter_angle = static_cast<float>(*degrees * pi / 180.0);
     }
     shadow.esm_size = texels("gnomon_esm_size");
     shadow.esm_format = word<EsmFormat>("gnomon_esm_format", {"16f", "32f"});

@@ -43,6 +43,7 @@ void read_flags(const Model::Node &source, int index, scene::Node &node)
     }
   };
   read("gnomon_visible", node.is_visible);
+  node.is_visible = node.is_visible && source.is_visible;
   read("gnomon_casts_shadow", node.casts_shadow);
   read("gnomon_receives_shadow", node.receives_shadow);
 }

@@ -4,6 +4,7 @@
 #include "internal/gltf_model.hh"
 #include "internal/gltf_pointer.hh"
 #include "internal/gltf_report.hh"
+#include "internal/gltf_slots.hh"
 #include "internal/gltf_units.hh"
 #include "internal/gltf_write_mesh.hh"
 
@@ -22,7 +23,6 @@
 namespace gnomon::gltf {
 
 using scene::AnimatedNode;
-using scene::AnimatedProperty;
 using scene::AnimatedValue;
 using scene::Handle;
 using scene::Interpolation;
@@ -71,8 +71,9 @@ class AnimationWriter {
       const AnimatedValue &value = animation.values[i];
       // scene::pose sets a property to the last of its values; glTF allows one.
       const bool is_last = std::none_of(
-          animation.values.begin() + std::ptrdiff_t(i) + 1, animation.values.end(),
-          [&](const AnimatedValue &later) { return later.target == value.target && later.property == value.property; });
+          animation.values.begin() + std::ptrdiff_t(i) + 1, animation.values.end(), [&](const AnimatedValue &later) {
+            return later.target == value.target && later.property == value.property && later.slot == value.slot;
+          });
       if (is_last) {
         add_value(value);
       }
@@ -130,13 +131,36 @@ class AnimationWriter {
 
   void add_value(const AnimatedValue &value)
   {
-    const auto *const pointer = std::ranges::find(pointers, value.property, &Pointer::property);
     const std::optional<int> index = index_of(value);
     if (!index) {
       return;
     }
+    if (std::holds_alternative<Handle<scene::Node>>(value.target)) {
+      std::vector<std::uint8_t> flags;
+      for (const float number : value.track->values) {
+        flags.push_back(number >= 0.5F ? 1 : 0);
+      }
+      add_pointer(*value.track, buffer_.add_accessor(flags, Model::UnsignedByte, "SCALAR"),
+                  "/nodes/" + std::to_string(*index) + '/' + std::string(visibility_path));
+      return;
+    }
+    if (!value.slot.empty()) {
+      const auto *const input = std::ranges::find(scene::texture_inputs, value.slot, &scene::TextureInput::name);
+      const SlotName &slot = slot_names[std::size_t(input - scene::texture_inputs.begin())];
+      add_pointer(*value.track, output(value.track->values, value.track->width),
+                  "/materials/" + std::to_string(*index) + '/' + path_of(slot) + std::string(transform_path) +
+                      std::string(value.property));
+      return;
+    }
+    if (value.strength_track) {
+      const std::string material = "/materials/" + std::to_string(*index) + '/';
+      add_pointer(*value.track, output(value.track->values, 3), material + "emissiveFactor");
+      add_pointer(*value.strength_track, output(value.strength_track->values, 1),
+                  material + std::string(strength_path));
+      return;
+    }
     // The importer multiplies the numbers in the file by the unit. A strength has one number, and its property three.
-    const std::size_t width = width_of(value.property);
+    const std::size_t width = scene::width_of(value.property);
     const std::vector<float> &source = value.track->values;
     const double unit = unit_of(value);
     std::vector<float> values;
@@ -145,10 +169,19 @@ class AnimationWriter {
       const std::size_t place = value.track->width == width ? i : i / width;
       values.push_back(float(source[place] * (component < 3 ? value.factor[int(component)] / unit : 1.0)));
     }
-    const std::string prefix = pointer->collection == "lights" ? std::string(light_pointer_prefix) : "";
-    const std::string path = prefix + '/' + std::string(pointer->collection) + '/' + std::to_string(*index) + '/' +
-                             std::string(pointer->path);
-    add_channel(*value.track, output(values, width),
+    std::string path;
+    for_each_animated([&](std::string_view collection, const scene::Description &row) {
+      if (row.name == value.property) {
+        path = (collection == "lights" ? std::string(light_pointer_prefix) : "") + '/' + std::string(collection) + '/' +
+               std::to_string(*index) + '/' + std::string(row.path);
+      }
+    });
+    add_pointer(*value.track, output(values, width), path);
+  }
+
+  void add_pointer(const scene::Track &track, int output, const std::string &path)
+  {
+    add_channel(track, output,
                 R"({"path":"pointer","extensions":{"KHR_animation_pointer":{"pointer":")" + path + "\"}}}");
     has_pointers = true;
   }
@@ -167,6 +200,9 @@ class AnimationWriter {
           else if constexpr (std::is_same_v<decltype(handle), Handle<scene::Lamp>>) {
             return find_in(indices_.lights);
           }
+          else if constexpr (std::is_same_v<decltype(handle), Handle<scene::Node>>) {
+            return find_in(indices_.nodes);
+          }
           else {
             return find_in(indices_.cameras);
           }
@@ -177,10 +213,10 @@ class AnimationWriter {
   /** The importer's factor for the values of the written file. */
   [[nodiscard]] double unit_of(const AnimatedValue &value) const
   {
-    if (value.property == AnimatedProperty::LampIntensity) {
+    if (value.property == "intensity") {
       return 1.0 / lumen_per_watt;
     }
-    if (value.property == AnimatedProperty::Emissive) {
+    if (value.property == "emissive") {
       return double(emissive_strength(scene_.materials()[std::get<Handle<scene::Material>>(value.target)].emissive));
     }
     return 1.0;
@@ -189,6 +225,7 @@ class AnimationWriter {
   int output(const std::vector<float> &values, std::size_t width)
   {
     switch (width) {
+      case 2: return buffer_.add_accessor(grouped<glm::vec2>(values), Model::Float, "VEC2");
       case 3: return buffer_.add_accessor(grouped<glm::vec3>(values), Model::Float, "VEC3");
       case 4: return buffer_.add_accessor(grouped<glm::vec4>(values), Model::Float, "VEC4");
       default: return buffer_.add_accessor(values, Model::Float, "SCALAR");

@@ -54,9 +54,9 @@ void add_shadow_extras(const LampShadow &shadow, const std::string &what, JsonTe
   add("gnomon_bias", shadow.bias);
   add("gnomon_clip_start", shadow.clip_start);
   add("gnomon_clip_end", shadow.clip_end);
-  if (shadow.filter_radius) {
+  if (shadow.filter_angle) {
     // π/4 in float is above 45 degrees.
-    const double degrees = double(*shadow.filter_radius) * 180.0 / pi;
+    const double degrees = double(*shadow.filter_angle) * 180.0 / pi;
     extras.add("gnomon_filter_radius", json_number(degrees > 45.0 && degrees < 45.00001 ? 45.0 : degrees, what));
   }
   add("gnomon_esm_size", as_double(shadow.esm_size));

@@ -151,7 +151,7 @@ void check_lamp(const scene::Lamp &lamp, Checker &checker)
   // Decimal values may be rounded in either direction.
   check_range(shadow.exponent, 0.00999F, 1.0001e4F, "of an exponent from 0.01 to 1e4");
   check_range(shadow.bias, 0.0F, 100.0F, "of a bias from 0 to 100");
-  check_range(shadow.filter_radius, 0.0F, 0.25F * pi, "of a filter from 0 to 45 degrees");
+  check_range(shadow.filter_angle, 0.0F, 0.25F * pi, "of a filter from 0 to 45 degrees");
   check_range(shadow.clip_start, 1e-20F, 1e30F, "of a clip start above 0");
   check_range(shadow.clip_end, shadow.clip_start.value_or(1e-20F), 1e30F, "of a clip end beyond the start");
 }

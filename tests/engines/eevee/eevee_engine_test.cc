@@ -246,11 +246,11 @@ TEST_F(EngineTest, DrawAfterAFailedSyncIsAnErrorUntilASyncSucceeds)
   const auto lamp = test::handle_at(scene.lamps(), 1);
   scene.edit(lamp, [](scene::Lamp &value) {
     value.shadow.kind = scene::ShadowKind::Esm;
-    value.shadow.filter_radius = 0.7F;
+    value.shadow.filter_angle = 0.7F;
   });
   EXPECT_THROW(renderer.sync(), gpu::Error);
   EXPECT_THROW(renderer.draw(camera), gpu::Error);
-  scene.edit(lamp, [](scene::Lamp &value) { value.shadow.filter_radius = 0.1F; });
+  scene.edit(lamp, [](scene::Lamp &value) { value.shadow.filter_angle = 0.1F; });
   renderer.sync();
   renderer.draw(camera);
 }

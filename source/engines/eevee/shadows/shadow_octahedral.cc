@@ -27,7 +27,7 @@ EsmLamp esm_lamp(const ShadowLamp &lamp, const ShadowPlace &place, const scene::
   result.settings.method = place.kind == scene::ShadowKind::Evsm ? EsmMethod::Evsm : EsmMethod::Esm;
   result.settings.exponent = asked.exponent ? asked.exponent : settings.esm.exponent;
   result.settings.bias = asked.bias.value_or(settings.esm.bias);
-  result.settings.filter_angle = asked.filter_radius ? asked.filter_radius : settings.esm.filter_angle;
+  result.settings.filter_angle = asked.filter_angle ? asked.filter_angle : settings.esm.filter_angle;
   result.settings.size_px = place.given.octahedral_px;
   if (asked.esm_format) {
     result.settings.format = *asked.esm_format == scene::EsmFormat::Half ? EsmFormat::Half : EsmFormat::Float;
