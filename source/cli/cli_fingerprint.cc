@@ -75,6 +75,17 @@ class Hasher {
   std::unique_ptr<XXH3_state_t, Free> state_{XXH3_createState()};
 };
 
+/** All properties but the name. */
+template <typename Thing>
+void add_properties(Hasher &hash, const Thing &thing)
+{
+  Thing::for_each_property([&](const auto &row) {
+    if (row.name != "name") {
+      hash.add(thing.*row.member);
+    }
+  });
+}
+
 void add(Hasher &hash, const scene::Scene &scene, const scene::TextureSlot &slot)
 {
   const scene::Texture *texture = scene.textures().find(slot.texture);
@@ -82,10 +93,7 @@ void add(Hasher &hash, const scene::Scene &scene, const scene::TextureSlot &slot
   if (!texture) {
     return;
   }
-  hash.add(slot.uv_set);
-  hash.add(slot.offset);
-  hash.add(slot.rotation);
-  hash.add(slot.scale);
+  add_properties(hash, slot);
   hash.add(texture->wrap_u);
   hash.add(texture->wrap_v);
   hash.add(texture->magnified);
@@ -96,31 +104,7 @@ void add(Hasher &hash, const scene::Scene &scene, const scene::TextureSlot &slot
 
 void add(Hasher &hash, const scene::Scene &scene, const scene::Material &material)
 {
-  hash.add(material.base_color);
-  hash.add(material.alpha);
-  hash.add(material.metallic);
-  hash.add(material.roughness);
-  hash.add(material.specular);
-  hash.add(material.specular_color);
-  hash.add(material.emissive);
-  hash.add(material.alpha_mode);
-  hash.add(material.alpha_cutoff);
-  hash.add(material.is_double_sided);
-  hash.add(material.normal_scale);
-  hash.add(material.occlusion_strength);
-  hash.add(material.is_unlit);
-  hash.add(material.coat);
-  hash.add(material.coat_roughness);
-  hash.add(material.coat_normal_scale);
-  hash.add(material.sheen_color);
-  hash.add(material.sheen_roughness);
-  hash.add(material.anisotropy);
-  hash.add(material.anisotropy_rotation);
-  hash.add(material.transmission);
-  hash.add(material.thickness);
-  hash.add(material.ior);
-  hash.add(material.attenuation_distance);
-  hash.add(material.attenuation_color);
+  add_properties(hash, material);
   const scene::SurfaceFunction *function = scene.surface_functions().find(material.surface_function);
   hash.add(function != nullptr);
   if (function) {
@@ -136,39 +120,15 @@ void add(Hasher &hash, const scene::PlacedLamp &lamp)
   hash.add(lamp.name);
   hash.add(lamp.world_from_lamp);
   hash.add(lamp.scale);
-  hash.add(lamp.kind);
-  hash.add(lamp.color);
-  hash.add(lamp.intensity);
-  hash.add(lamp.radius);
-  hash.add(lamp.angle);
-  hash.add(lamp.spot_outer_angle);
-  hash.add(lamp.spot_blend);
-  hash.add(lamp.range);
-  hash.add(lamp.area_shape);
-  hash.add(lamp.area_size_x);
-  hash.add(lamp.area_size_y);
-  hash.add(lamp.shadow.kind);
-  hash.add(lamp.shadow.size);
-  hash.add(lamp.shadow.exponent);
-  hash.add(lamp.shadow.bias);
-  hash.add(lamp.shadow.clip_start);
-  hash.add(lamp.shadow.clip_end);
-  hash.add(lamp.shadow.filter_angle);
-  hash.add(lamp.shadow.esm_size);
-  hash.add(lamp.shadow.esm_format);
+  add_properties(hash, lamp);
+  add_properties(hash, lamp.shadow);
 }
 
 void add(Hasher &hash, const scene::PlacedCamera &camera)
 {
   hash.add(camera.name);
   hash.add(camera.world_from_camera);
-  hash.add(camera.kind);
-  hash.add(camera.vertical_angle);
-  hash.add(camera.aspect);
-  hash.add(camera.half_width);
-  hash.add(camera.half_height);
-  hash.add(camera.near);
-  hash.add(camera.far);
+  add_properties(hash, camera);
 }
 
 }  // namespace
@@ -195,17 +155,13 @@ std::string scene_fingerprint(const scene::Scene &scene)
   for (const scene::Object &object : scene.objects()) {
     hash.add(object.mesh.index);
     hash.add(object.world_from_object);
-    const scene::Node &node = scene.nodes()[object.node];
-    hash.add(node.casts_shadow);
-    hash.add(node.receives_shadow);
+    add_properties(hash, scene.nodes()[object.node]);
   }
   for (const scene::PlacedLamp &lamp : scene.placed_lamps()) {
     add(hash, lamp);
   }
   if (const std::optional<scene::World> &world = scene.world()) {
-    hash.add(world->color);
-    hash.add(world->strength);
-    hash.add(world->rotation);
+    add_properties(hash, *world);
     if (world->picture) {
       hash.add(world->picture->width);
       hash.add(world->picture->texels);

@@ -24,6 +24,7 @@ const Fields<Settings> settings_fields = {
                           "Microfacets reflect light more than once, so that rough surfaces lose none. False: once, as "
                           "glTF's model has it."),
     {"background", "What is seen without a surface: None (transparent), 'world', or a radiance (r, g, b), W/(sr m²).",
+     "Background",
      [](const ScenePtr & /*scene*/, const Settings &settings) -> py::object {
        switch (settings.background.kind) {
          case Background::Kind::None: return py::none();
@@ -198,6 +199,7 @@ void define_renderer(py::module_ &module)
         },
         field.doc.c_str());
   }
+  annotate(renderer, settings_fields);
   renderer.def_property(
       "size", &Renderer::size_px, [](Renderer &owner, const glm::ivec2 &size_px) { owner.use().resize(size_px); },
       "Width and height of the picture, pixels.");

@@ -136,6 +136,11 @@ void check(const Lamp &lamp)
 {
   check_properties(lamp, lamp);
   check_properties(lamp, lamp.shadow);
+  const LampShadow &shadow = lamp.shadow;
+  if (shadow.clip_start && shadow.clip_end && *shadow.clip_end <= *shadow.clip_start) {
+    refuse(Lamp::kind_name, lamp.name, "shadow_clip_end {:g} is not above shadow_clip_start {:g}", *shadow.clip_end,
+           *shadow.clip_start);
+  }
 }
 
 void check(const Camera &camera)

@@ -349,7 +349,7 @@ constexpr void Camera::for_each_property(Visit &&visit)
                                            .label = "Vertical angle",
                                            .unit = "rad",
                                            .min = 1e-6,
-                                           .max = 3.1415,
+                                           .max = 3.1415925,
                                            .kinds = bits(Perspective),
                                            .path = "perspective/yfov",
                                            .is_animated = true,

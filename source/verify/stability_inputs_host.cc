@@ -205,15 +205,15 @@ void add_host_lamp_inputs(std::vector<StabilityCase> &cases)
                                        }));
   };
   add("lamp's shadow size", "texels", "'lamp0'", scene::ShadowKind::Hard,
-      inputs({1, 16, 1024}, Expected::Accepted) + inputs({-1, 0}, rejected) + inputs({16385}, Expected::Reported),
+      inputs({1, 16, 1024, 16384}, Expected::Accepted) + inputs({-1, 0, 16385}, rejected),
       [](scene::LampShadow &shadow, double v) { shadow.size = int(v); });
-  add("lamp's octahedral size", "texels", "lamp 'lamp0': size", scene::ShadowKind::Esm,
+  add("lamp's octahedral size", "texels", "lamp 'lamp0': shadow_esm_size_px", scene::ShadowKind::Esm,
       inputs({4, 64}, Expected::Accepted) + inputs({-1, 0, 3, 8193}, rejected),
       [](scene::LampShadow &shadow, double v) { shadow.esm_size = int(v); });
-  add("lamp's exponent", "1/m", "lamp 'lamp0': exponent", scene::ShadowKind::Esm,
+  add("lamp's exponent", "1/m", "lamp 'lamp0': shadow_exponent", scene::ShadowKind::Esm,
       inputs({0.01, 1e4}, Expected::Accepted) + inputs({-1, 0, 1e-40, 10001, 1e38}, rejected),
       [](scene::LampShadow &shadow, double v) { shadow.exponent = float(v); });
-  add("lamp's filter", "rad", "lamp 'lamp0': filter angle", scene::ShadowKind::Evsm,
+  add("lamp's filter", "rad", "lamp 'lamp0': ", scene::ShadowKind::Evsm,
       inputs({0, 0.5}, Expected::Accepted) + inputs({-1, 0.51, 1e38}, rejected),
       [](scene::LampShadow &shadow, double v) { shadow.filter_angle = float(v); });
   // The importer's length_range.

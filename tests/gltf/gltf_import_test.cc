@@ -1043,7 +1043,7 @@ TEST(GltfLamp, BadValuesAreErrorsThatNameLampKeyAndValue)
   EXPECT_HAS(lamp_error(point, {{"gnomon_esm_format", "8"}}), "gnomon_esm_format is '8', and must be '16f' or '32f'");
   EXPECT_HAS(lamp_error(point, {{"gnomon_shadow_size", 0}}), "gnomon_shadow_size is 0, and must be from 1 to 16384");
   EXPECT_HAS(lamp_error(sun, {{"gnomon_shadow_size", 16385}}), "gnomon_shadow_size is 16385");
-  EXPECT_HAS(lamp_error(point, {{"gnomon_esm_size", 1.5}}), "gnomon_esm_size is 1.5, and must be a whole number");
+  EXPECT_HAS(lamp_error(point, {{"gnomon_esm_size", 5.5}}), "gnomon_esm_size is 5.5, and must be a whole number");
   EXPECT_HAS(lamp_error(point, {{"gnomon_exponent", 0}}), "gnomon_exponent is 0, and must be from 0.01 to 10000");
   EXPECT_HAS(lamp_error(point, {{"gnomon_bias", -1}}), "gnomon_bias is -1, and must be from 0 to 100");
   EXPECT_HAS(lamp_error(point, {{"gnomon_clip_start", 0}}), "gnomon_clip_start is 0");

@@ -12,9 +12,6 @@ namespace gnomon::verify {
 
 namespace {
 
-/** π, rounded up. */
-constexpr float pi = 3.1415927F;
-
 bool is_finite(const glm::vec3 &v)
 {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -107,66 +104,43 @@ void check_mesh(const scene::Scene &scene, const scene::Mesh &mesh, Checker &che
       "with unit normals");
 }
 
+/** The properties of \a part, which is \a thing or a part of it, are within their limits. */
+template <typename Thing, typename Part>
+void check_properties(const Thing &thing, const Part &part, Checker &checker)
+{
+  Part::for_each_property([&](const auto &row) {
+    scene::for_each_number(part.*row.member, [&](double value) {
+      const bool is_allowed = row.has_kind(scene::kind_of(thing)) ? row.allows(value) : std::isfinite(value);
+      checker.check(is_allowed, fmt::format("of a {} {}", row.name, range_text(row)).c_str());
+    });
+  });
+}
+
 void check_material(const scene::Scene &scene, const scene::Material &material, Checker &checker)
 {
-  for (const float factor :
-       {material.base_color.x, material.base_color.y, material.base_color.z, material.alpha, material.metallic,
-        material.roughness, material.specular, material.alpha_cutoff, material.coat, material.coat_roughness,
-        material.sheen_color.x, material.sheen_color.y, material.sheen_color.z, material.sheen_roughness,
-        material.anisotropy, material.transmission, material.attenuation_color.x, material.attenuation_color.y,
-        material.attenuation_color.z}) {
-    checker.check(factor >= 0.0F && factor <= 1.0F, "with factors in [0, 1]");
-  }
-  for (const float value : {material.thickness, material.ior - 1.0F, material.attenuation_distance}) {
-    checker.check(std::isfinite(value) && value >= 0.0F, "with a finite thickness, index and distance in range");
-  }
-  checker.check(std::isfinite(material.anisotropy_rotation), "with a finite rotation");
-  checker.check(is_finite(material.specular_color) && is_finite(material.emissive), "of finite colours");
+  check_properties(material, material, checker);
   for (const scene::TextureInput &input : scene::texture_inputs) {
     const scene::TextureSlot &slot = material.*input.slot;
     checker.check(!slot || scene.textures().is_live(slot.texture), "of a texture that is there");
-    checker.check(slot.uv_set == 0 || slot.uv_set == 1, "with textures on one of two sets of coordinates");
+    check_properties(slot, slot, checker);
   }
 }
 
 void check_lamp(const scene::Lamp &lamp, Checker &checker)
 {
-  checker.check(is_finite(lamp.color) && lamp.color.x >= 0.0F && lamp.color.y >= 0.0F && lamp.color.z >= 0.0F,
-                "of a finite colour of at least 0");
-  for (const float value : {lamp.intensity, lamp.radius, lamp.angle, lamp.range}) {
-    checker.check(std::isfinite(value) && value >= 0.0F,
-                  "of a finite intensity, radius, angle and range of at least 0");
-  }
-  checker.check(lamp.spot_outer_angle > 0.0F && lamp.spot_outer_angle <= 0.5F * pi, "a cone");
-  checker.check(lamp.spot_blend >= 0.0F && lamp.spot_blend <= 1.0F, "of a blend in [0, 1]");
-  checker.check(std::isfinite(lamp.area_size_x) && lamp.area_size_x > 0.0F && std::isfinite(lamp.area_size_y) &&
-                    lamp.area_size_y > 0.0F,
-                "of an area");
-  const auto check_range = [&](const auto &value, auto low, auto high, const char *promise) {
-    checker.check(!value || (*value >= low && *value <= high), promise);
-  };
   const scene::LampShadow &shadow = lamp.shadow;
-  check_range(shadow.size, 1, 16384, "of a shadow size from 1 to 16384");
-  check_range(shadow.esm_size, 1, 16384, "of an exponential map from 1 to 16384");
-  // Decimal values may be rounded in either direction.
-  check_range(shadow.exponent, 0.00999F, 1.0001e4F, "of an exponent from 0.01 to 1e4");
-  check_range(shadow.bias, 0.0F, 100.0F, "of a bias from 0 to 100");
-  check_range(shadow.filter_angle, 0.0F, 0.25F * pi, "of a filter from 0 to 45 degrees");
-  check_range(shadow.clip_start, 1e-20F, 1e30F, "of a clip start above 0");
-  check_range(shadow.clip_end, shadow.clip_start.value_or(1e-20F), 1e30F, "of a clip end beyond the start");
+  check_properties(lamp, lamp, checker);
+  check_properties(lamp, shadow, checker);
+  checker.check(!shadow.clip_start || !shadow.clip_end || *shadow.clip_end > *shadow.clip_start,
+                "of a clip end beyond the start");
 }
 
 void check_camera(const scene::Camera &camera, Checker &checker)
 {
   const bool is_perspective = camera.kind == scene::CameraKind::Perspective;
-  checker.check(camera.vertical_angle > 0.0F && camera.vertical_angle < pi, "of an angle in (0, pi)");
-  checker.check(std::isfinite(camera.aspect) && camera.aspect >= 0.0F, "of a finite aspect of at least 0");
-  checker.check(std::isfinite(camera.half_width) && camera.half_width > 0.0F && std::isfinite(camera.half_height) &&
-                    camera.half_height > 0.0F,
-                "of a frame");
-  checker.check(std::isfinite(camera.near) && (is_perspective ? camera.near > 0.0F : camera.near >= 0.0F),
-                "of a near distance");
-  checker.check(std::isfinite(camera.far) && (camera.far > camera.near || (is_perspective && camera.far == 0.0F)),
+  check_properties(camera, camera, checker);
+  checker.check(is_perspective ? camera.near > 0.0F : camera.near >= 0.0F, "of a near distance");
+  checker.check(camera.far > camera.near || (is_perspective && camera.far == 0.0F),
                 "of a far distance beyond the near one");
 }
 
