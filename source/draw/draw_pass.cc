@@ -100,7 +100,12 @@ void ShadingGroup::add_call(const gpu::BatchRange &batch, ObjectIndex object, st
 
 void ShadingGroup::call(const gpu::Batch &batch, ObjectIndex object)
 {
-  add_call(batch.range(), object, object_volume);
+  call(batch.range(), object);
+}
+
+void ShadingGroup::call(const gpu::BatchRange &batch, ObjectIndex object)
+{
+  add_call(batch, object, object_volume);
 }
 
 void ShadingGroup::call(const gpu::Batch &batch, ObjectIndex object, const CullingVolume &volume)

@@ -111,6 +111,8 @@ class ShadingGroup {
    * object has at that time.
    */
   void call(const gpu::Batch &batch, ObjectIndex object = object_identity);
+  /** The same, of Batch::range(). */
+  void call(const gpu::BatchRange &batch, ObjectIndex object);
   /**
    * Draw the batch once. Pass::record culls the call with \a volume instead of the object's volume, unless the radius
    * of \a volume is negative.

@@ -4,6 +4,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace gnomon::render_scene {
 
@@ -83,7 +84,11 @@ const gpu::Batch &Meshes::get(gpu::Device &device, const scene::Pool<scene::Mesh
   else if (!is_same || streams > entry.streams) {
     // Keep the streams that were uploaded before, because other viewports may read them.
     const MeshStreams all = is_same ? std::max(streams, entry.streams) : streams;
-    entry = {make_batch(device, mesh, all), handle, shape, 0, all};
+    gpu::Batch batch = make_batch(device, mesh, all);
+    if (is_same) {
+      outgrown_.push_back(std::move(entry.batch));
+    }
+    entry = {std::move(batch), handle, shape, 0, all};
   }
   return entry.batch;
 }
@@ -93,6 +98,11 @@ const gpu::Batch *Meshes::find(scene::Handle<scene::Mesh> handle) const
   const bool is_made =
       handle.index < entries_.size() && entries_[handle.index].handle == handle && entries_[handle.index].batch;
   return is_made ? &entries_[handle.index].batch : nullptr;
+}
+
+bool Meshes::free_outgrown()
+{
+  return !std::exchange(outgrown_, {}).empty();
 }
 
 HostChanges Meshes::update(const scene::Pool<scene::Mesh> &meshes)

@@ -55,6 +55,11 @@ class Meshes {
    * longer in buffers of the host.
    */
   HostChanges update(const scene::Pool<scene::Mesh> &meshes);
+  /**
+   * Free the batches that get() replaced by ones with more streams. Passes that were recorded before draw them until
+   * then. \return whether there were any, so that passes must be built again
+   */
+  bool free_outgrown();
 
  private:
   struct Entry {
@@ -67,6 +72,8 @@ class Meshes {
   };
   /** Indexed by Handle::index. */
   std::vector<Entry> entries_;
+  /** \see free_outgrown */
+  std::vector<gpu::Batch> outgrown_;
   HostResources<scene::Mesh, gpu::HostBatch> host_batches_;
 };
 

@@ -7,6 +7,7 @@
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace gnomon::render_scene {
 
@@ -174,7 +175,9 @@ draw::ObjectIndex RenderScene::write_object(draw::ObjectIndex index, scene::Hand
   else {
     objects_.set(index, world_from_object, material, volume);
   }
-  render_objects_[index] = {handle, mesh, bounds, node.casts_shadow, node.receives_shadow};
+  const RenderObject before =
+      std::exchange(render_objects_[index], {handle, mesh, bounds, node.casts_shadow, node.receives_shadow});
+  are_flags_changed_ |= before.casts_shadow != node.casts_shadow || before.receives_shadow != node.receives_shadow;
   return index;
 }
 
@@ -214,8 +217,10 @@ void RenderScene::update_revisions()
        materials.latest(Material::Coverage), materials.latest(Material::Textures), scene_.textures().latest(),
        scene_.images().latest(scene::Image::Aspect::Content),
        scene_.surface_functions().latest(scene::SurfaceFunction::Aspect::Text)});
-  const bool are_resources_new = host_batch_changes_.resources || host_texture_changes_.resources;
-  passes_revision_ += passes > seen_ || are_resources_new ? 1 : 0;
+  const bool are_resources_new =
+      meshes_.free_outgrown() || host_batch_changes_.resources || host_texture_changes_.resources;
+  const bool are_flags_changed = std::exchange(are_flags_changed_, false);
+  passes_revision_ += passes > seen_ || are_resources_new || are_flags_changed ? 1 : 0;
   host_content_revision_ += host_batch_changes_.content || host_texture_changes_.content ? 1 : 0;
   materials_revision_ += materials.latest(Material::Surface) > seen_ ? 1 : 0;
 }

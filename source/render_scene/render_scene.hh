@@ -129,8 +129,9 @@ class RenderScene {
   }
   /**
    * Increases when update() finds a change after which passes must be built again: the shape or material of a mesh, the
-   * coverage or textures of a material, an image, a surface function, the settings of a texture, or names, layouts
-   * and sizes of the host's resources. For objects, see draw::ObjectBuffer::revision.
+   * coverage or textures of a material, an image, a surface function, the settings of a texture, whether an object
+   * casts or receives shadows, vertex streams on the device, or names, layouts and sizes of the host's resources.
+   * Other changes of objects: \see draw::ObjectBuffer::revision
    */
   [[nodiscard]] std::uint64_t passes_revision() const
   {
@@ -214,6 +215,8 @@ class RenderScene {
   /** What the current update() has found. */
   HostChanges host_batch_changes_;
   HostChanges host_texture_changes_;
+  /** An object casts or receives shadows, and did not before, or the reverse. */
+  bool are_flags_changed_ = false;
   std::uint64_t host_content_revision_ = 0;
   /** Scene::revision of the last update. */
   scene::Revision seen_ = 0;

@@ -184,7 +184,7 @@ struct CastersKey {
 
 /** What the recording of an object depends on, beside its index. All objects of a mesh are of one kind, or of few. */
 struct ObjectKind {
-  const gpu::Batch *batch = nullptr;
+  gpu::BatchRange batch{};
   /** The groups that have calls of the objects: no more than one in each of five passes. */
   std::array<draw::ShadingGroup *, 5> groups{};
   std::size_t group_count = 0;
@@ -197,9 +197,7 @@ struct CasterKind {
   scene::Handle<scene::Mesh> handle;
   /** The call in SharedData::shadow_pass; nullptr: the mesh casts no shadow, because it has no triangles. */
   draw::InstanceCall *instances = nullptr;
-  /** These change without a new recording. \see Caster */
-  const scene::Mesh *mesh = nullptr;
-  std::uint64_t fingerprint = 0;
+  /** \see Caster. It changes without a new recording. */
   bool is_blended = false;
 };
 
@@ -313,8 +311,6 @@ struct StorageList {
   std::vector<draw::ObjectIndex> objects;
   /** True between cache_init and cache_finish. */
   bool is_collecting = false;
-  /** Lamp points of the sample that is being drawn. */
-  std::span<const LampPoint> lamp_points;
   /** Temporary memory of write_lamp_points. */
   std::vector<shared::LightData> sampled_lights;
   /** Empty without Feature::LightClusters. */

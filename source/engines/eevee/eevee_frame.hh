@@ -2,6 +2,7 @@
 #pragma once
 
 #include "eevee_engine.hh"
+#include "eevee_lamp_points.hh"
 
 #include "draw_view_shared.h"
 
@@ -41,6 +42,8 @@ struct FrameSample {
   const draw::View &sample_view;
   /** If true, only the steps with `is_read_back` are drawn. */
   bool is_for_feedback = false;
+  /** Set by the step lamp_points. Empty where no lamp has a point of its own. */
+  SampledLampPoints lamp_points{};
 };
 
 /** A pass of a step. The passes of one step share a target and a timer. */

@@ -91,12 +91,12 @@ std::optional<Probe> Inspection::probe(const draw::View &picture_view, std::size
     shared.sample_seed = int(engine_.settings_.seed);
     stl.shadows->invalidate_blended();
   }
-  stl.lamp_points =
+  const SampledLampPoints sampled =
       sample ? shared.lamp_points.sample(std::uint32_t(*sample), engine_.settings_.seed) : shared.lamp_points.centers();
-  write_lamp_points(data, device, list);
-  write_light_entry(data, int(*light), probed_entry, list);
+  write_lamp_points(data, sampled, device, list);
+  write_light_entry(data, sampled, int(*light), probed_entry, list);
   const PictureDepths depths = sample ? data.depth_feedback.picture(viewport_.drawn_size_px()) : PictureDepths();
-  stl.shadows->update(device, view, pixel_size(view, viewport_), shared.shadow_pass, list, stl.lamp_points, depths);
+  stl.shadows->update(device, view, pixel_size(view, viewport_), shared.shadow_pass, list, sampled.points, depths);
   record_at_depths(data, sample_view, "probe", data.psl->probe_pass, data.fbl.probe_fb, list);
   device.submit(list);
   stl.shadows->submitted();
@@ -130,8 +130,8 @@ double Inspection::shadow_texel_size(std::size_t lamp, const glm::dvec3 &positio
   if (!light) {
     return 0.0;
   }
-  const auto texel_size = data.stl.shadows->texel_size_of(data.shared->lamps.lights[*light]);
-  return texel_size ? texel_size(position_ws) : 0.0;
+  const auto sizes = data.stl.shadows->texel_sizes(data.shared->lamps.lights[*light], std::span(&position_ws, 1));
+  return sizes ? sizes->front() : 0.0;
 }
 
 /** Whether a surface gets light from the centre of \a light, if nothing is in between. \pre \a light has a shadow */
@@ -164,16 +164,22 @@ std::optional<std::vector<float>> Inspection::texel_density(const draw::View &pi
   if (!index) {
     return std::nullopt;
   }
-  const shared::LightData &light = data.shared->lamps.lights[*index];
-  const shared::LightShape &shape = data.shared->lamps.shapes[*index];
-  const auto texel_size = data.stl.shadows->texel_size_of(light);
-  const std::optional<Surfaces> seen = texel_size ? surfaces(picture_view) : std::nullopt;
+  if (!data.stl.shadows->texel_sizes(data.shared->lamps.lights[*index], {})) {
+    return std::nullopt;
+  }
+  const std::optional<Surfaces> seen = surfaces(picture_view);
   if (!seen) {
     return std::nullopt;
   }
+  const shared::LightData &light = data.shared->lamps.lights[*index];
+  const shared::LightShape &shape = data.shared->lamps.shapes[*index];
   const scene::Scene &scene = engine_.scene_.scene();
   const double pixel = double(pixel_size(viewport_.drawn_view(picture_view), viewport_));
   std::vector<float> density(seen->position_depth.size(), 0.0F);
+  // The lit pixels, the places that they show, and the sizes of the pixels there, metres.
+  std::vector<std::size_t> receivers;
+  std::vector<glm::dvec3> positions_ws;
+  std::vector<double> pixel_sizes;
   draw::ObjectIndex object = draw::object_identity;
   bool is_receiver = false;
   for (std::size_t i = 0; i < density.size(); i++) {
@@ -191,8 +197,13 @@ std::optional<std::vector<float>> Inspection::texel_density(const draw::View &pi
       continue;
     }
     const double depth = picture_view.is_perspective() ? double(seen->position_depth[i].w) : 1.0;
-    const double texel = texel_size(glm::dvec3(position_ws));
-    density[i] = texel > 0.0 ? float(pixel * depth / texel) : 0.0F;
+    receivers.push_back(i);
+    positions_ws.emplace_back(position_ws);
+    pixel_sizes.push_back(pixel * depth);
+  }
+  const std::vector<double> texels = data.stl.shadows->texel_sizes(light, positions_ws).value();
+  for (std::size_t k = 0; k < receivers.size(); k++) {
+    density[receivers[k]] = texels[k] > 0.0 ? float(pixel_sizes[k] / texels[k]) : 0.0F;
   }
   return density;
 }

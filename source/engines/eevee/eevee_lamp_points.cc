@@ -175,35 +175,35 @@ LampPoint LampPoints::emission_point(const Sized &sized, std::uint32_t index, st
   return point;
 }
 
-void LampPoints::add_sun_points(const Sized &sized, std::uint32_t index, std::uint32_t seed)
+void LampPoints::add_sun_points(const Sized &sized, std::uint32_t index, std::uint32_t seed, SampledLampPoints &sampled)
 {
-  if (sun_points_.empty()) {
-    first_sun_ = sized.light;
+  if (sampled.sun_points.empty()) {
+    sampled.first_sun = sized.light;
   }
   // The complement is a stream of no lamp.
   const std::uint32_t stream = shared::mixed_bits(seed) + ~sized.stream;
   for (std::uint32_t i = 0; i < WORLD_SUN_POINTS; i++) {
     const render_scene::WorldDirection direction =
         sized.world->at(glm::dvec2(sobol_point(index * WORLD_SUN_POINTS + i, stream)));
-    shared::WorldSunPoint &point = sun_points_.emplace_back();
+    shared::WorldSunPoint &point = sampled.sun_points.emplace_back();
     point.to_world = glm::vec3(direction.to_world);
     point.irradiance = glm::vec3(direction.irradiance / double(WORLD_SUN_POINTS));
   }
 }
 
-std::span<const LampPoint> LampPoints::sample(std::uint32_t index, std::uint32_t seed)
+SampledLampPoints LampPoints::sample(std::uint32_t index, std::uint32_t seed) const
 {
-  points_.clear();
-  sun_points_.clear();
+  SampledLampPoints sampled;
+  sampled.points.reserve(sized_.size());
   for (const Sized &sized : sized_) {
     if (sized.is_emission) {
-      points_.push_back(emission_point(sized, index, seed));
+      sampled.points.push_back(emission_point(sized, index, seed));
       continue;
     }
     if (sized.world) {
-      points_.push_back(world_point(sized, index, seed));
+      sampled.points.push_back(world_point(sized, index, seed));
       if (sized.world != &world_->rest_directions) {
-        add_sun_points(sized, index, seed);
+        add_sun_points(sized, index, seed, sampled);
       }
       continue;
     }
@@ -213,20 +213,19 @@ std::span<const LampPoint> LampPoints::sample(std::uint32_t index, std::uint32_t
         sized.lamp.kind == scene::LampKind::Sun ? 2.0 / (1.0 + std::cos(half_angle(sized.lamp))) : 1.0;
     const glm::mat4 world_from_lamp = point_of(sized.lamp, place, toward_ws_);
     const glm::vec3 center_ws(sized.lamp.world_from_lamp[3]);
-    points_.push_back({sized.light, world_from_lamp, glm::distance(glm::vec3(world_from_lamp[3]), center_ws),
-                       float(weight) * sized.color, sized.radius_sq});
+    sampled.points.push_back({sized.light, world_from_lamp, glm::distance(glm::vec3(world_from_lamp[3]), center_ws),
+                              float(weight) * sized.color, sized.radius_sq});
   }
-  return points_;
+  return sampled;
 }
 
-std::span<const LampPoint> LampPoints::centers()
+SampledLampPoints LampPoints::centers() const
 {
-  points_.clear();
-  sun_points_.clear();
+  SampledLampPoints sampled;
   for (const Sized &sized : sized_) {
-    points_.push_back({sized.light, glm::mat4(sized.lamp.world_from_lamp), 0.0F, sized.color, sized.radius_sq});
+    sampled.points.push_back({sized.light, glm::mat4(sized.lamp.world_from_lamp), 0.0F, sized.color, sized.radius_sq});
   }
-  return points_;
+  return sampled;
 }
 
 shared::LightData light_at(shared::LightData light, const LampPoint &point)

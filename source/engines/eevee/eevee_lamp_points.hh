@@ -28,6 +28,19 @@ struct LampPoint {
   float radius_sq = 0.0F;
 };
 
+/** The points of one sample, which replace their lamps. It refers to nothing else. */
+struct SampledLampPoints {
+  /** In the order of the lights. */
+  std::vector<LampPoint> points{};
+  /**
+   * WORLD_SUN_POINTS points of each sun of the world. They differ from the one point that has a shadow. Empty for the
+   * centres of lamps.
+   */
+  std::vector<shared::WorldSunPoint> sun_points{};
+  /** Index in Lamps::lights of the first sun of the world, which the others follow. Undefined without sun_points. */
+  int first_sun = 0;
+};
+
 /** Whether \a lamp has an extent: a point or spot with a radius, a sun with an angle, or an area lamp. */
 [[nodiscard]] bool has_extent(const scene::Lamp &lamp);
 
@@ -70,23 +83,10 @@ class LampPoints {
   {
     return sized_.size();
   }
-  /** The points of the \a index-th sample, in the order of the lights. Deterministic. Valid until the next call. */
-  [[nodiscard]] std::span<const LampPoint> sample(std::uint32_t index, std::uint32_t seed);
-  /**
-   * WORLD_SUN_POINTS points of each sun of the world, for the sample of the last call of sample(). They differ from the
-   * one point that has a shadow. Empty after a call of centers().
-   */
-  [[nodiscard]] std::span<const shared::WorldSunPoint> sun_points() const
-  {
-    return sun_points_;
-  }
-  /** Index in Lamps::lights of the first sun of the world, which the others follow. \pre sun_points is not empty */
-  [[nodiscard]] int first_sun() const
-  {
-    return first_sun_;
-  }
-  /** The centres of the lamps, in the order of the lights. Valid until the next call. */
-  [[nodiscard]] std::span<const LampPoint> centers();
+  /** The points of the \a index-th sample. Deterministic. */
+  [[nodiscard]] SampledLampPoints sample(std::uint32_t index, std::uint32_t seed) const;
+  /** The centres of the lamps. */
+  [[nodiscard]] SampledLampPoints centers() const;
 
  private:
   struct Sized {
@@ -105,16 +105,13 @@ class LampPoints {
     std::uint32_t direction = 0;
     std::uint32_t direction_count = 1;
   };
-  void add_sun_points(const Sized &sized, std::uint32_t index, std::uint32_t seed);
+  static void add_sun_points(const Sized &sized, std::uint32_t index, std::uint32_t seed, SampledLampPoints &sampled);
   [[nodiscard]] LampPoint world_point(const Sized &sized, std::uint32_t index, std::uint32_t seed) const;
   [[nodiscard]] LampPoint emission_point(const Sized &sized, std::uint32_t index, std::uint32_t seed) const;
 
   std::shared_ptr<const render_scene::WorldLight> world_;
   std::shared_ptr<const scene::EmissiveSurfaces> emission_;
   std::vector<Sized> sized_;
-  std::vector<LampPoint> points_;
-  std::vector<shared::WorldSunPoint> sun_points_;
-  int first_sun_ = 0;
   int sample_count_ = 1;
   glm::vec3 toward_ws_{0.0F};
 };

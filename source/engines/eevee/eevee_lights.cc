@@ -37,7 +37,7 @@ std::span<glm::vec4, LIGHT_TEXELS> light_texels_of(SharedData &shared, std::size
 }
 
 /** The light \a point.light at \a point, as a sample draws it. */
-shared::LightData sampled(const SharedData &shared, const LampPoint &point)
+shared::LightData light_in_sample(const SharedData &shared, const LampPoint &point)
 {
   shared::LightData light = light_at(shared.lamps.lights[std::size_t(point.light)], point);
   if (shared.is_light_left_out[std::size_t(point.light)]) {
@@ -149,21 +149,21 @@ int light_entry(const Data &data, int light, int entry)
   return has(data.stl.features, Feature::LightClusters) ? entry : light;
 }
 
-void write_light_entry(const Data &data, int light, int entry, gpu::CommandList &list)
+void write_light_entry(const Data &data, const SampledLampPoints &sampled, int light, int entry, gpu::CommandList &list)
 {
   const SharedData &shared = *data.shared;
   if (!has(data.stl.features, Feature::LightClusters)) {
     return;
   }
-  const auto point = std::ranges::find(data.stl.lamp_points, light, &LampPoint::light);
+  const auto point = std::ranges::find(sampled.points, light, &LampPoint::light);
   const shared::LightData value =
-      point == data.stl.lamp_points.end() ? shared.lamps.lights[std::size_t(light)] : sampled(shared, *point);
+      point == sampled.points.end() ? shared.lamps.lights[std::size_t(light)] : light_in_sample(shared, *point);
   list.update(shared.light_block, offsetof(shared::LightBlock, lights) + std::size_t(entry) * sizeof(value),
               std::as_bytes(std::span(&value, 1)));
 }
 
 /** Write the members of `world_block` that change with each sample. */
-static void write_sun_points(const SharedData &shared, gpu::CommandList &list)
+static void write_sun_points(const SharedData &shared, const SampledLampPoints &sampled, gpu::CommandList &list)
 {
   struct {
     int first_sun = 0;
@@ -171,35 +171,35 @@ static void write_sun_points(const SharedData &shared, gpu::CommandList &list)
     std::array<shared::WorldSunPoint, std::size_t(WORLD_SUN_MAX) * WORLD_SUN_POINTS> points{};
   } values;
   static_assert(sizeof(values) == sizeof(shared::WorldBlock) - offsetof(shared::WorldBlock, first_sun));
-  const std::span<const shared::WorldSunPoint> points = shared.lamp_points.sun_points();
+  const std::vector<shared::WorldSunPoint> &points = sampled.sun_points;
   if (!shared.world.block || points.empty()) {
     return;
   }
-  values.first_sun = shared.lamp_points.first_sun();
+  values.first_sun = sampled.first_sun;
   const bool is_left_out = shared.is_light_left_out[std::size_t(values.first_sun)];
   values.sun_count = is_left_out ? 0 : int(points.size()) / WORLD_SUN_POINTS;
   std::ranges::copy(points, values.points.begin());
   list.update(shared.world.block, offsetof(shared::WorldBlock, first_sun), std::as_bytes(std::span(&values, 1)));
 }
 
-void write_lamp_points(Data &data, gpu::Device &device, gpu::CommandList &list)
+void write_lamp_points(Data &data, const SampledLampPoints &sampled, gpu::Device &device, gpu::CommandList &list)
 {
-  const std::span<const LampPoint> points = data.stl.lamp_points;
+  const std::vector<LampPoint> &points = sampled.points;
   if (points.empty()) {
     return;
   }
   SharedData &shared = *data.shared;
-  write_sun_points(shared, list);
+  write_sun_points(shared, sampled, list);
   if (has(data.stl.features, Feature::LightClusters)) {
     for (const LampPoint &point : points) {
       const auto light = std::size_t(point.light);
-      set_texels(light_texels_of(shared, light), sampled(shared, point), shared.lamps.shapes[light]);
+      set_texels(light_texels_of(shared, light), light_in_sample(shared, point), shared.lamps.shapes[light]);
     }
     // The points are in the order of the lights.
     const std::size_t end = LIGHT_TEXELS * (std::size_t(points.back().light) + 1);
     device.upload(shared.light_texture, 0, std::as_bytes(std::span(shared.light_texels).first(end)));
     if (shared.tinted_light) {
-      write_light_entry(data, *shared.tinted_light, tinted_entry, list);
+      write_light_entry(data, sampled, *shared.tinted_light, tinted_entry, list);
     }
     return;
   }
@@ -209,7 +209,7 @@ void write_lamp_points(Data &data, gpu::Device &device, gpu::CommandList &list)
   std::vector<shared::LightData> &lights = data.stl.sampled_lights;
   lights.assign(shared.lamps.lights.begin() + std::ptrdiff_t(first), shared.lamps.lights.begin() + std::ptrdiff_t(end));
   for (const LampPoint &point : points) {
-    lights[std::size_t(point.light) - first] = sampled(shared, point);
+    lights[std::size_t(point.light) - first] = light_in_sample(shared, point);
   }
   list.update(shared.light_block, offsetof(shared::LightBlock, lights) + first * sizeof(shared::LightData),
               std::as_bytes(std::span(lights)));

@@ -14,6 +14,7 @@
 namespace gnomon::eevee {
 
 struct Data;
+struct SampledLampPoints;
 struct Settings;
 
 /** Entries of `light_block` with Feature::LightClusters. \see SharedData::light_block */
@@ -48,10 +49,11 @@ void make_lights(Data &data, gpu::Device &device, const Settings &settings, Feat
 void bind_lights(draw::ShadingGroup &group, const Data &data);
 /** The entry in `light_block` of \a light, which is an index in Lamps::lights. \a entry: that with LightClusters. */
 [[nodiscard]] int light_entry(const Data &data, int light, int entry);
-/** With LightClusters, append a write of \a light to its entry in `light_block`, with its point in the sample. */
-void write_light_entry(const Data &data, int light, int entry, gpu::CommandList &list);
-/** Write the lights of StorageList::lamp_points. Entries of `light_block` are written by \a list. */
-void write_lamp_points(Data &data, gpu::Device &device, gpu::CommandList &list);
+/** With LightClusters, append a write of \a light to its entry in `light_block`, with its point in \a sampled. */
+void write_light_entry(const Data &data, const SampledLampPoints &sampled, int light, int entry,
+                       gpu::CommandList &list);
+/** Write the lights of \a sampled. Entries of `light_block` are written by \a list. */
+void write_lamp_points(Data &data, const SampledLampPoints &sampled, gpu::Device &device, gpu::CommandList &list);
 /** Make the lists for \a view, the view of the picture. Does nothing if they are up to date. */
 void update_light_clusters(Data &data, draw::Viewport &viewport, const draw::View &view, gpu::CommandList &list);
 

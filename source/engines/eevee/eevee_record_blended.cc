@@ -25,7 +25,7 @@ void Engine::record_blended(Data &data, draw::ObjectIndex object, const ObjectKi
     group.state_enable(culled | winding | render_scene::topology_state(mesh.topology));
     bind_lit(group, data);
     render_scene::bind_textures(group, scene_, material_class, textures);
-    group.call(*kind.batch, object);
+    group.call(kind.batch, object);
     blended.group_count++;
     stl.blended_group_count++;
   };

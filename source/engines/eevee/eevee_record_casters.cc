@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace gnomon::eevee {
@@ -197,10 +198,11 @@ void Engine::add_casters(Data &data)
 {
   SharedData &shared = *data.shared;
   const draw::ObjectBuffer &objects = scene_.objects();
+  std::vector<std::pair<const scene::Mesh *, std::uint64_t>> meshes;
+  meshes.reserve(shared.caster_kinds.size());
   for (CasterKind &kind : shared.caster_kinds) {
     const scene::Mesh &mesh = scene_.scene().meshes()[kind.handle];
-    kind.mesh = mesh.host_shape ? nullptr : &mesh;
-    kind.fingerprint = mesh_fingerprint(scene_, kind.handle);
+    meshes.emplace_back(mesh.host_shape ? nullptr : &mesh, mesh_fingerprint(scene_, kind.handle));
     kind.is_blended = render_scene::lets_light_through(scene_.scene(), mesh);
   }
   for (const draw::ObjectIndex index : data.stl.objects) {
@@ -209,10 +211,11 @@ void Engine::add_casters(Data &data)
       continue;
     }
     const CasterKind &kind = shared.caster_kinds[number - 1];
+    const auto &[mesh, mesh_print] = meshes[number - 1];
     const glm::mat4 &world_from_object = objects.world_from_object(index);
-    const std::uint64_t fingerprint = caster_fingerprint({world_from_object, kind.fingerprint});
-    shared.shadows.add_caster({scene_.object(index).bounds, index, kind.instances, fingerprint, kind.mesh,
-                               &world_from_object, kind.is_blended});
+    const std::uint64_t fingerprint = caster_fingerprint({world_from_object, mesh_print});
+    shared.shadows.add_caster(
+        {scene_.object(index).bounds, index, kind.instances, fingerprint, mesh, &world_from_object, kind.is_blended});
   }
   shared.shadows.finish();
   shared.has_casters = true;

@@ -37,7 +37,7 @@ void Engine::record_objects(draw::Viewport &viewport)
       record_blended(data, index, kind);
     }
     for (std::size_t i = 0; i < kind.group_count; i++) {
-      kind.groups[i]->call(*kind.batch, index);
+      kind.groups[i]->call(kind.batch, index);
     }
   }
 }
@@ -57,7 +57,7 @@ ObjectKind Engine::record_kind(draw::Viewport &viewport, draw::ObjectIndex first
   const bool is_colorless = material_class == MaterialClass::BaseColor && cut_out == MaterialClass::Plain &&
                             !has(stl.features, Feature::Light) && !settings_.has_surfaces;
   const MaterialClass surface = is_colorless ? MaterialClass::Plain : material_class;
-  ObjectKind kind{.batch = &scene_.batch(object.mesh, streams_of(surface))};
+  ObjectKind kind{.batch = scene_.batch(object.mesh, streams_of(surface)).range()};
   const State winding = stl.is_mirrored[first] ? State::FrontClockwise : State::None;
   const State fixed = winding | render_scene::topology_state(mesh.topology);
 

@@ -115,15 +115,15 @@ struct Data final : draw::EngineViewportData {
   std::vector<BlendedObject> blended;
   draw::Pass target{"target", gpu::State::WriteColor};
   draw::TargetPass target_pass;
+  /** Of the depth camera. The passes of surfaces read them by reference. \see unlit_depth_camera_lib.glsl */
+  glm::mat4 depth_clip_from_world{1.0F};
+  glm::vec2 depth_tolerance{0.0F};
   PassesKey recorded;
   std::optional<PictureKey> synced_picture;
 };
 
 struct Engine::DepthCamera {
   draw::View view;
-  glm::mat4 clip_from_world{1.0F};
-  /** \see unlit_depth_camera_lib.glsl */
-  glm::vec2 tolerance{0.0F};
   gpu::Texture texture;
   gpu::Framebuffer framebuffer;
   gpu::Buffer view_block;

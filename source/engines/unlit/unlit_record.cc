@@ -30,6 +30,11 @@ void Engine::record(Data &data, gpu::Device &device)
   data.blocks.update(scene_);
   if (depth_camera_) {
     depth_camera_->blocks.update(scene_);
+    const draw::View &view = depth_camera_->view;
+    data.depth_clip_from_world = view.clip_from_world();
+    // A perspective depth is near / distance, and its rounding error is relative to the depth. The error of an
+    // orthographic depth is relative to the depth range.
+    data.depth_tolerance = view.is_perspective() ? glm::vec2(1e-5F, 0.0F) : glm::vec2(0.0F, 1e-6F);
   }
 }
 
@@ -65,8 +70,8 @@ void Engine::record_surfaces(Data &data, gpu::Device &device)
       render_scene::bind_textures(group, scene_, surface, textures);
       if (is_receiver) {
         group.bind_texture("depth_texture", depth_camera_->texture, data.nearest);
-        group.constant_ref("clip_from_world", &depth_camera_->clip_from_world);
-        group.constant_ref("depth_tolerance", &depth_camera_->tolerance);
+        group.constant_ref("clip_from_world", &data.depth_clip_from_world);
+        group.constant_ref("depth_tolerance", &data.depth_tolerance);
       }
       return group;
     };

@@ -121,6 +121,7 @@ class GlDevice final : public Device {
    */
   class Entry {
    public:
+    /** \throws Error unless can_execute() */
     explicit Entry(GlDevice &device);
     ~Entry();
     Entry(const Entry &) = delete;
@@ -141,6 +142,10 @@ class GlDevice final : public Device {
   void check_host_state(std::string_view what);
   static void label(GLenum kind, GLuint name, const std::string &text);
 
+  [[nodiscard]] bool can_execute() const override
+  {
+    return entry_depth_ > 0 || current_context() == made_in_;
+  }
   void texture_create(ResourceId id, const TextureDesc &desc) override;
   void sampler_create(ResourceId id, const SamplerDesc &desc) override;
   void framebuffer_create(ResourceId id, const FramebufferLayout &layout) override;
@@ -206,6 +211,8 @@ class GlDevice final : public Device {
   bool is_debug_;
   std::vector<std::string> driver_errors_;
   int entry_depth_ = 0;
+  /** The objects in the context are not deleted, because it was not current when the device was destroyed. */
+  bool is_abandoned_ = false;
   bool is_lost_ = false;
   /** Bits of the GL_TIMESTAMP counter; 0: the driver has no timer. */
   GLint timestamp_bits_ = 0;

@@ -46,7 +46,7 @@ class RandomEditor {
 
   void edit()
   {
-    switch (below(14)) {
+    switch (below(15)) {
       case 0: add_object(); break;
       case 1: remove_one(objects_, 3); break;
       case 2: add_lamp(); break;
@@ -69,6 +69,9 @@ class RandomEditor {
       case 11: edit_mesh(); break;
       case 12: edit_image(); break;
       case 13: scene_.edit(pick(objects_), [&](scene::Node &node) { node.casts_shadow = !node.casts_shadow; }); break;
+      case 14:
+        scene_.edit(pick(objects_), [&](scene::Node &node) { node.receives_shadow = !node.receives_shadow; });
+        break;
       default: break;
     }
   }
@@ -194,29 +197,31 @@ double rms_difference(const std::vector<glm::vec4> &a, const std::vector<glm::ve
   return std::sqrt(sum / (3.0 * double(a.size())));
 }
 
+/**
+ * With many edits between pictures, one that others make known to the renderer hides one that it overlooks: nearly all
+ * intervals have edits after which all passes are built again. So most pictures are drawn after a single edit.
+ */
 TEST_F(RandomEdits, GiveThePictureOfASceneBuiltInTheFinalState)
 {
-  constexpr int edit_count = 10000;
-  constexpr int edits_between_pictures = 500;
-  scene::Scene scene;
-  RandomEditor editor(scene, 7);
-  SceneRenderer edited(*device, scene, size_px, settings());
-  for (int i = 1; i <= edit_count; i++) {
-    editor.edit();
-    // The renderer is synced for some of the intermediate states only.
-    if (i % 50 == 0) {
-      edited.sync();
-      edited.draw(camera);
+  for (const auto &[picture_count, edits_between_pictures] : {std::pair(200, 1), {20, 20}, {8, 1000}}) {
+    scene::Scene scene;
+    RandomEditor editor(scene, 7);
+    SceneRenderer edited(*device, scene, size_px, settings());
+    for (int i = 1; i <= picture_count * edits_between_pictures; i++) {
+      editor.edit();
+      // The renderer is synced for some of the intermediate states only.
+      if (i % 50 == 0) {
+        edited.sync();
+        edited.draw(camera);
+      }
+      if (i % edits_between_pictures != 0) {
+        continue;
+      }
+      const scene::Scene copy = scene;
+      SceneRenderer fresh(*device, copy, size_px, settings());
+      ASSERT_LE(rms_difference(picture_of(edited), picture_of(fresh)), 1e-4)
+          << "after " << i << " edits, " << edits_between_pictures << " between pictures";
     }
-    if (i % edits_between_pictures != 0) {
-      continue;
-    }
-    const scene::Scene copy = scene;
-    SceneRenderer fresh(*device, copy, size_px, settings());
-    const std::vector<glm::vec4> expected = picture_of(fresh);
-    EXPECT_LE(rms_difference(picture_of(edited), expected), 1e-4) << "after " << i << " edits";
-    SceneRenderer again(*device, copy, size_px, settings());
-    EXPECT_EQ(picture_of(again), expected) << "after " << i << " edits";
   }
 }
 

@@ -272,5 +272,45 @@ TEST_F(UnlitGpuTest, AViewportThatWasUnlitIsLitAsBefore)
   EXPECT_EQ(gpu::read_as<glm::vec4>(*device, lit.radiance(*viewport)), before);
 }
 
+/** Without light, eevee reads no uvs of opaque surfaces, which unlit does: the meshes are made again, with uvs. */
+TEST_F(UnlitGpuTest, AnEngineThatReadsMoreOfTheMeshesLeavesThePictureOfAnother)
+{
+  const auto material = test::add_material(scene, glm::vec3(1));
+  const auto texture = test::add_texture(scene, 1, {255, 0, 0, 255});
+  scene.edit(material, [&](scene::Material &one) { one.base_color_texture = texture; });
+  for (int i = 0; i < 6; i++) {
+    scene::Mesh mesh = scene.meshes()[test::add_square_mesh(scene, material)];
+    for (glm::vec3 &position : mesh.positions) {
+      position = 0.1F * float(i + 1) * position + glm::vec3(0.5F * float(i) - 1.5F, 0, 0);
+    }
+    test::add_object(scene, scene.add(std::move(mesh)), glm::dmat4(1));
+  }
+  eevee::Engine lit(*render_scene, {});
+  Engine unlit(*render_scene);
+  draw::Viewport other(*device, size_px);
+  draw::Viewport &first = *viewport;
+  const auto draw_in = [&](draw::Viewport &drawn, draw::Engine &engine) {
+    const std::array<draw::Engine *, 1> engines = {&engine};
+    drawn.sync(engines, render_scene->objects());
+    drawn.restart();
+    drawn.draw(engines, render_scene::view_of(camera, size_px));
+  };
+  render_scene->update();
+  draw_in(first, lit);
+  const auto before = gpu::read_as<glm::vec4>(*device, lit.radiance(first));
+  draw_in(other, unlit);
+  draw_in(first, lit);
+  EXPECT_EQ(gpu::read_as<glm::vec4>(*device, lit.radiance(first)), before);
+  // What is not drawn any more does not stay.
+  scene.edit(test::handle_at(scene.nodes(), 0), [](scene::Node &node) { node.name = "other"; });
+  render_scene->update();
+  draw_in(first, lit);
+  draw_in(other, unlit);
+  EXPECT_EQ(gpu::read_as<glm::vec4>(*device, lit.radiance(first)), before);
+  EXPECT_EQ(std::ranges::count_if(device->live(),
+                                  [](const gpu::LiveResource &live) { return live.kind == gpu::ResourceKind::Batch; }),
+            6);
+}
+
 }  // namespace
 }  // namespace gnomon::unlit

@@ -212,6 +212,7 @@ void SceneShadows::finish()
     positions_ws.push_back(slot.lamp.position_ws());
   });
   casters_.distances().keep_only(positions_ws, casters_.list());
+  casters_.forget_meshes();
 }
 
 /**

@@ -186,4 +186,12 @@ void ShadowCasters::finish()
   before_.clear();
 }
 
+void ShadowCasters::forget_meshes()
+{
+  for (Caster &caster : casters_) {
+    caster.mesh = nullptr;
+    caster.world_from_object = nullptr;
+  }
+}
+
 }  // namespace gnomon::eevee

@@ -26,8 +26,8 @@ struct Caster {
   /** Hash of everything that the shadow depends on. A shadow with the same fingerprint has the same texels. */
   std::uint64_t fingerprint = 0;
   /**
-   * Mesh for the distance to lamps that are inside the bounds. Must live until SceneShadows::finish returns. nullptr:
-   * the distance of these lamps is 0.
+   * Mesh for the distance to lamps that are inside the bounds. Both must live until SceneShadows::finish, which
+   * forgets them. nullptr: the distance of these lamps is 0.
    */
   const scene::Mesh *mesh = nullptr;
   const glm::mat4 *world_from_object = nullptr;
@@ -96,6 +96,8 @@ class ShadowCasters {
   }
   /** To be called after the last caster. */
   void finish();
+  /** Forget Caster::mesh and Caster::world_from_object of all casters, which others may change or remove. */
+  void forget_meshes();
 
   [[nodiscard]] const std::vector<Caster> &list() const
   {

@@ -132,8 +132,9 @@ SunFit fit_to(const LampBox &needed, const glm::dmat3 &lamp_from_world, int size
   fit.needed_min = needed.min;
   fit.needed_max = needed.max;
   const glm::dvec3 extent = needed.max - needed.min;
-  // The lower limit prevents an empty box.
-  const double size = std::max({extent.x, extent.y, extent.z, 1e-6});
+  // The lower limits prevent an empty box: of casters without an extent, and where rounding leaves none.
+  const glm::dvec3 reach = glm::max(glm::abs(needed.min), glm::abs(needed.max));
+  const double size = std::max({extent.x, extent.y, extent.z, 1e-6, 1e-9 * std::max({reach.x, reach.y, reach.z})});
   for (int axis = 0; axis < 2; axis++) {
     const double slack_factor = is_stable ? 1.0 + 2.0 * slack : 1.0;
     const double wanted = std::max(extent[axis] * slack_factor, 1e-4 * size) / inner_share(size_px);

@@ -213,7 +213,7 @@ UpdatedLayers Shadows::update(gpu::Device &device, const draw::View &view, float
              scene_.render_block_, scene_.layer_pass_, recorded_counters_, caster_layers_, is_touching_});
         updated.part_count += part_count(slot, part);
       }
-      updated.is_all &= missing() == 0;
+      updated.left_count += missing() != 0 ? part_count(slot, {missing()}) : 0;
     });
   }
   write_block(device);
@@ -286,15 +286,19 @@ ShadowInspection Shadows::inspection(const ShadowSlot &slot) const
   return {block_, scene_.octahedral_, scene_.array(slot.place.given.array), scene_.casters_.bounds_ws()};
 }
 
-std::function<double(const glm::dvec3 &position_ws)> Shadows::texel_size_of(const shared::LightData &light) const
+std::optional<std::vector<double>> Shadows::texel_sizes(const shared::LightData &light,
+                                                        std::span<const glm::dvec3> positions_ws) const
 {
   const ShadowSlot *slot = slot_of(light);
   if (!slot) {
-    return {};
+    return std::nullopt;
   }
-  return [slot, inspection = inspection(*slot)](const glm::dvec3 &position_ws) {
-    return slot->place.technique->texel_size(*slot, inspection, position_ws);
-  };
+  std::vector<double> sizes;
+  sizes.reserve(positions_ws.size());
+  for (const glm::dvec3 &position_ws : positions_ws) {
+    sizes.push_back(slot->place.technique->texel_size(*slot, inspection(*slot), position_ws));
+  }
+  return sizes;
 }
 
 std::optional<ShadowLayers> Shadows::layers(const shared::LightData &light) const

@@ -5,7 +5,6 @@
 
 #include "eevee_lamp_points.hh"
 
-#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -37,8 +36,8 @@ struct ShadowState {
 struct UpdatedLayers {
   /** Parts of layers that were recorded, or have no caster. */
   int part_count = 0;
-  /** No layer that is needed is out of date after the submission. */
-  bool is_all = true;
+  /** Parts of layers that are needed and out of date after the submission. 0: none. */
+  int left_count = 0;
 };
 
 /** Texels of a part of a layer: whole rows, at least one. */
@@ -109,11 +108,11 @@ class Shadows {
     return block_;
   }
   /**
-   * A function that returns the edge of a texel of \a light's shadow at a position, perpendicular to the light, metres;
-   * 0 if there is none. Empty if the light has no shadow. Valid until the next sync or update.
+   * The edge of a texel of \a light's shadow at each of \a positions_ws, perpendicular to the light, metres; 0 if there
+   * is none. Nothing if the light has no shadow.
    */
-  [[nodiscard]] std::function<double(const glm::dvec3 &position_ws)> texel_size_of(
-      const shared::LightData &light) const;
+  [[nodiscard]] std::optional<std::vector<double>> texel_sizes(const shared::LightData &light,
+                                                               std::span<const glm::dvec3> positions_ws) const;
   /** The layers of \a light after the last update. Nothing if the light has no shadow. */
   [[nodiscard]] std::optional<ShadowLayers> layers(const shared::LightData &light) const;
   /** The state of each light with a shadow, in the order of the lights. */
