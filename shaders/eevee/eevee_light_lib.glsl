@@ -73,28 +73,38 @@ LightShape shape_at(int index)
 #define LIGHTS_WITH_MAPS 2
 
 /**
- * Visibility of a light, 1 lit and 0 in shadow. \a lights: LIGHTS_…. \a to_light: unit vector. \a offset: 0 at the receiver,
- * \see ShadowPlace; ignored by SHADOW_ESM.
+ * x: visibility of a light, 1 lit and 0 in shadow, times y. y: 0 if nothing is known of it, else 1 or less. \a lights: LIGHTS_….
+ * \a to_light: unit vector. \a offset: 0 at the receiver, \see ShadowPlace; ignored by SHADOW_ESM.
+ * \a is_receiver: \see bilinear_texels.
  */
-float light_visibility(LightData light, const int lights, Surface surface, vec3 to_light, vec3 offset)
+vec2 known_light_visibility(LightData light, const int lights, Surface surface, vec3 to_light, vec3 offset, const bool is_receiver)
 {
 #ifdef USE_SHADOW_CUBE
   if (lights != LIGHTS_WITH_MAPS && light.shadow_kind == SHADOW_CUBE) {
-    return shadow_cube_visibility(light.shadow_index, surface, light, to_light, offset);
+    return shadow_cube_visibility(light.shadow_index, surface, light, to_light, offset, is_receiver);
   }
 #endif
 #ifdef USE_SHADOW_MAP
   if (lights != LIGHTS_WITH_CUBES && light.shadow_kind == SHADOW_MAP) {
-    return shadow_map_visibility(light.shadow_index, surface, to_light, offset);
+    return shadow_map_visibility(light.shadow_index, surface, to_light, offset, is_receiver);
   }
 #endif
 #ifdef USE_SHADOW_ESM
   if (light.shadow_kind == SHADOW_ESM) {
-    return shadow_esm_visibility(light.shadow_index, surface.position_ws - light.position_ws,
-                                 surface.geometric_normal_ws);
+    return vec2(shadow_esm_visibility(light.shadow_index, surface.position_ws - light.position_ws, surface.geometric_normal_ws), 1.0);
   }
 #endif
-  return 1.0;
+  return vec2(1.0);
+}
+
+/** Visibility of a light, 1 lit and 0 in shadow. Not valid while edge_pass is above 0. */
+float light_visibility(LightData light, const int lights, Surface surface, vec3 to_light)
+{
+#ifdef USE_SHADOW
+  return known_visibility(known_light_visibility(light, lights, surface, to_light, vec3(0.0), true));
+#else
+  return known_light_visibility(light, lights, surface, to_light, vec3(0.0), true).x;
+#endif
 }
 
 #if defined(USE_LAMP_SHAPE) && defined(USE_SHADOW)
@@ -255,7 +265,7 @@ vec3 point_radiance(int index, const int lights, MaterialData material, Surface 
   }
   material.diffuse *= bump_visibility(surface.smooth_normal_ws, surface.normal_ws, center.to_light);
 #endif
-  float visibility = light_visibility(light, lights, surface, center.to_light, vec3(0.0));
+  float visibility = light_visibility(light, lights, surface, center.to_light);
   if (visibility <= 0.0) {
     return vec3(0.0);
   }
@@ -328,16 +338,25 @@ vec3 lights_radiance(int first, int end, const int lights, MaterialData material
     // The test is at the end: for a test at the start, llvmpipe evaluates the body once more and discards the result.
     do {
       int index = light_index(i, lights);
+      vec3 radiance = vec3(0.0);
 #ifdef USE_LAMP_SHAPE
       if (shape_at(index).extent > 0.0) {
-        sum += shape_radiance(index, lights, material, surface);
+        radiance = shape_radiance(index, lights, material, surface);
       }
       else
 #endif
       {
-        sum += point_radiance(index, lights, material, surface);
+        radiance = point_radiance(index, lights, material, surface);
       }
-    } while (++i < end);
+#ifdef USE_SHADOW
+      // \see edge_pass
+      bool again = edge_pass > 0;
+#else
+      const bool again = false;
+#endif
+      sum += again ? vec3(0.0) : radiance;
+      i += again ? 0 : 1;
+    } while (i < end);
   }
   return sum;
 }

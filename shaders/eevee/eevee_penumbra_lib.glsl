@@ -87,14 +87,21 @@ float penumbra_visibility(LightData light, const int lights, Surface surface, ve
   // The harmonic mean is nearer to the gaps of near casters, whose shadows have the most visible edges.
   float gap = count / max(inverse_gaps, 1e-30);
   float sun_scale = gap * (1.0 - sun_drop) * inversesqrt(max(2.0 - sun_drop, 1.0));
-  float sum = 0.0;
+  // Lookups beyond the end of the receiver's surface do not see the light that reaches the receiver. They count as lit only where
+  // the receiver sees the middle of the lamp.
+  vec2 sum = vec2(0.0);
+  bool is_middle_seen = false;
   i = 0;
   do {
     vec2 point = complex_product(vogel_disk(i, PENUMBRA_TAPS), turn);
     // For a sun, points of equal solid angles: 1 - cos is proportional to the square of the radius.
     float drop = sun_drop * dot(point, point);
     point *= sun_scale * sqrt(max(2.0 - drop, 1.0)) / max(1.0 - drop, 1e-6);
-    sum += light_visibility(light, lights, surface, to_light, point.x * axis_x + point.y * axis_y);
+    vec2 lit_known = known_light_visibility(light, lights, surface, to_light, point.x * axis_x + point.y * axis_y, false);
+    // The first point is the one nearest to the middle.
+    is_middle_seen = is_middle_seen || (i == 0 && known_visibility(lit_known) > 0.0);
+    sum += lit_known;
   } while (++i < tap_count);
-  return sum / float(tap_count);
+  sum += is_middle_seen ? vec2(float(tap_count) - sum.y) : vec2(0.0);
+  return known_visibility(sum);
 }

@@ -20,6 +20,8 @@ struct ReceiverPlane {
   vec2 slope;
   /** Casters with smaller depths do not shadow the receiver, even if they are in front of the plane. */
   float least_depth;
+  /** Change of depth along the light over the width of a texel. */
+  float texel_depth;
 };
 
 /** Weighted sum of the lit ones of the four texels at \a corner. \a size_px: edge of the shadow within its layer. */
@@ -32,20 +34,110 @@ float four_texels(sampler2DArray depths, int layer, int size_px, ReceiverPlane p
   return weighted_texels(texels_lit(stored, max(depths_of_plane, vec4(plane.least_depth))), columns, rows);
 }
 
-/** Bilinear blend of the four texels around \a texel. */
-float bilinear_texels(sampler2DArray depths, int layer, int size_px, ReceiverPlane plane, vec2 texel)
+/** Error of a continued caster at the receiver, in texels. */
+const float CONTACT_ERROR_TEXELS = 0.1;
+/** A texel that is farther than the receiver's plane by more than this number of texels does not show the receiver's surface. */
+const float FAR_TEXELS = 2.0;
+
+/** Change of a caster's height from a texel inwards: the smaller one of that from \a beside and that to \a inner. 0: unknown. */
+vec4 caster_slope(vec4 height, vec4 beside, vec4 inner)
 {
-  vec2 corner = floor(texel);
-  vec2 fraction = texel - corner;
-  return four_texels(depths, layer, size_px, plane, corner, vec2(1.0 - fraction.x, fraction.x),
-                     vec2(1.0 - fraction.y, fraction.y));
+  vec4 from_beside = mix(vec4(0.0), height - beside, greaterThan(beside, vec4(0.0)));
+  vec4 to_inner = inner - height;
+  bvec4 is_inner = bvec4(uvec4(greaterThan(inner, vec4(0.0))) & uvec4(lessThan(abs(to_inner), abs(from_beside))));
+  return mix(from_beside, to_inner, is_inner);
 }
 
-float filtered_visibility(sampler2DArray depths, int layer, int size_px, int filter_kind, ReceiverPlane plane)
+/**
+ * 1 for each of four texels, in the order of textureGather, that does not shadow the receiver, else 0. \a height: depth of the texel
+ * minus that of the receiver's plane. \a lit: 1 where it is not above 0. \a beside_x, \a beside_y: heights at the texels beside the
+ * four, outwards. \a weights: of the columns and of the rows.
+ *
+ * A caster that touches the receiver ends between two texels, of which only one holds it. The other one holds what is beyond the
+ * contact, such as the outer part of a wall which passes through a floor, or nothing. It is not beside the receiver. Each caster is
+ * therefore continued from its texel to the receiver, along its own slope. Where it covers the receiver and ends at the receiver's
+ * plane, texels beyond its end are in shadow. Edges of casters in front of the plane are blended.
+ */
+vec4 lit_beside_contacts(vec4 height, vec4 lit, vec4 beside_x, vec4 beside_y, vec4 weights)
+{
+  vec4 slope_x = caster_slope(height, beside_x, height.yxwz);
+  vec4 slope_y = caster_slope(height, beside_y, height.wzyx);
+  // From the texels inwards to the receiver.
+  vec4 at_receiver = height + slope_x * weights.yxxy + slope_y * weights.zzww;
+  vec4 is_caster = 1.0 - lit;
+  vec4 covers = is_caster * step(vec4(1e-30), at_receiver);
+  vec4 to_x = covers * step(height + slope_x, vec4(0.0));
+  vec4 to_y = covers * step(height + slope_y, vec4(0.0));
+  vec4 to_both = covers * step(height + slope_x + slope_y, vec4(0.0));
+  vec4 closed = max(max(to_x.yxwz, to_y.wzyx), to_both.zwxy);
+  // Without such a caster, all of them are behind the receiver, which is on the lit side of a contact.
+  vec4 may_cover = is_caster * step(vec4(0.0), at_receiver + CONTACT_ERROR_TEXELS * (abs(slope_x) + abs(slope_y)));
+  return dot(may_cover, vec4(1.0)) > 0.0 ? lit * (1.0 - closed) : vec4(1.0);
+}
+
+/**
+ * Number of lookups of the texels beside an edge that the receiver's visibility still needs. Above 0: the last call of bilinear_texels
+ * for a receiver has no result yet, and the caller calls it again with the same arguments. The caller's own loop does so, because a
+ * loop in bilinear_texels takes llvmpipe half as long again, also where there is no edge.
+ */
+int edge_pass = 0;
+/** Of the calls since edge_pass was 0: the four texels, and those beside them in x and in y. */
+vec4 edge_texels = vec4(0.0);
+vec4 edge_beside_x = vec4(0.0);
+vec4 edge_beside_y = vec4(0.0);
+
+/**
+ * x: weighted sum of the lit ones of the four texels around \a texel. y: that of the texels that show the receiver's surface or a caster
+ * in front of it. The others are beyond the end of that surface, and do not tell whether it is lit. \a is_receiver: the lookup is at the
+ * receiver. Contacts are found there only, \see lit_beside_contacts.
+ */
+vec2 bilinear_texels(sampler2DArray depths, int layer, int size_px, ReceiverPlane plane, vec2 texel, const bool is_receiver)
+{
+  vec2 last = vec2(max(size_px - 2, 0));
+  vec2 corner = clamp(floor(texel), vec2(0.0), last);
+  vec2 fraction = clamp(texel - corner, vec2(0.0), vec2(1.0));
+  vec4 weights = vec4(1.0 - fraction.x, fraction.x, 1.0 - fraction.y, fraction.y);
+  vec2 slope = plane.slope;
+  vec4 receiver = max(plane_depths(plane.depth, slope, corner - plane.texel), vec4(max(plane.least_depth, 0.0)));
+  // The squares above the four texels to the left and to the right, and below them to the right and to the left. Each has the texels
+  // beside one of the four.
+  vec2 aside = vec2(edge_pass == 1 || edge_pass == 4 ? -1.0 : 1.0, edge_pass < 3 ? 1.0 : -1.0);
+  vec2 place = is_receiver && edge_pass > 0 ? clamp(corner + aside, vec2(0.0), last) : corner;
+  // Gather at the corner that the four texels share, so that rounding cannot select other texels.
+  vec4 stored = textureGather(depths, vec3((place + 1.0) / vec2(textureSize(depths, 0).xy), float(layer)));
+  vec4 texels = is_receiver && edge_pass > 0 ? edge_texels : stored;
+  vec4 height = texels - receiver;
+  vec4 lit = texels_lit(texels, receiver);
+  float far = FAR_TEXELS * (plane.texel_depth + abs(slope.x) + abs(slope.y));
+  vec4 is_known = step(vec4(-far), height);
+  if (is_receiver) {
+    bvec4 is_this = equal(ivec4(1, 2, 3, 4), ivec4(edge_pass));
+    edge_texels = texels;
+    edge_beside_x = mix(edge_beside_x, stored.wzyx, is_this);
+    edge_beside_y = mix(edge_beside_y, stored.yxwz, is_this);
+    vec4 beside_x = edge_beside_x - receiver - vec4(-slope.x, slope.x, slope.x, -slope.x);
+    vec4 beside_y = edge_beside_y - receiver - vec4(slope.y, slope.y, -slope.y, -slope.y);
+    float lit_count = dot(lit, vec4(1.0));
+    bool is_edge = lit_count > 0.0 && lit_count < 4.0;
+    lit = is_edge ? lit_beside_contacts(height, lit, beside_x, beside_y, weights) : lit;
+    edge_pass = is_edge && edge_pass < 4 ? edge_pass + 1 : 0;
+  }
+  lit *= is_known;
+  return vec2(weighted_texels(lit, weights.xy, weights.zw), weighted_texels(is_known, weights.xy, weights.zw));
+}
+
+/** The visibility from sums of bilinear_texels. Where nothing is known, the receiver is lit. */
+float known_visibility(vec2 lit_known)
+{
+  return lit_known.y > 1e-6 ? min(lit_known.x / lit_known.y, 1.0) : 1.0;
+}
+
+/** \see bilinear_texels */
+vec2 filtered_visibility(sampler2DArray depths, int layer, int size_px, int filter_kind, ReceiverPlane plane, const bool is_receiver)
 {
 #ifdef USE_SHADOW_PCF
   if (filter_kind == SHADOW_FILTER_PCF) {
-    float sum = 0.0;
+    vec2 sum = vec2(0.0);
     if (PCF_WIDTH > 0) {
       // A square of PCF_WIDTH texels around the lookup touches one more texel in each direction. The outer texels are weighted by
       // their covered fraction.
@@ -55,18 +147,18 @@ float filtered_visibility(sampler2DArray depths, int layer, int size_px, int fil
         vec2 rows = vec2(y == 0 ? 1.0 - fraction.y : 1.0, y == PCF_WIDTH - 1 ? fraction.y : 1.0);
         for (int x = 0; x < PCF_WIDTH; x += 2) {
           vec2 columns = vec2(x == 0 ? 1.0 - fraction.x : 1.0, x == PCF_WIDTH - 1 ? fraction.x : 1.0);
-          sum += four_texels(depths, layer, size_px, plane, first + vec2(x, y), columns, rows);
+          sum.x += four_texels(depths, layer, size_px, plane, first + vec2(x, y), columns, rows);
         }
       }
-      return sum / float(PCF_WIDTH * PCF_WIDTH);
+      return vec2(sum.x / float(PCF_WIDTH * PCF_WIDTH), 1.0);
     }
     for (int i = 0; i < PCF_TAPS; i++) {
-      sum += bilinear_texels(depths, layer, size_px, plane, plane.texel + PCF_DISK_RADIUS * vogel_disk(i, PCF_TAPS));
+      sum += bilinear_texels(depths, layer, size_px, plane, plane.texel + PCF_DISK_RADIUS * vogel_disk(i, PCF_TAPS), false);
     }
     return sum / float(PCF_TAPS);
   }
 #endif
-  return bilinear_texels(depths, layer, size_px, plane, plane.texel);
+  return bilinear_texels(depths, layer, size_px, plane, plane.texel, is_receiver);
 }
 
 /**
@@ -138,6 +230,7 @@ ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, ve
   place.plane.depth = place.receiver_depth + dot(surface.geometric_normal_ws, offset) * per_metre * per_z;
   place.plane.slope = n.xy * (per_metre / (uv_scale * size)) * extent;
   place.plane.least_depth = least_depth(place, offset, filter_of(cube));
+  place.plane.texel_depth = cube.texel_size * place.receiver_depth;
   place.layer = cube.layer + face;
   // Beyond the part of the face that its layer holds, there is no surface of the picture.
   bool is_in_crop = all(lessThanEqual(abs(uv - 0.5), vec2(0.5)));
@@ -145,12 +238,12 @@ ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, ve
   return place;
 }
 
-float shadow_cube_visibility(int index, Surface surface, LightData light, vec3 to_light, vec3 offset)
+vec2 shadow_cube_visibility(int index, Surface surface, LightData light, vec3 to_light, vec3 offset, const bool is_receiver)
 {
   ShadowCubeData cube = shadow.cubes[index];
   ShadowPlace place = cube_place(cube, surface, light, to_light, offset);
-  return place.is_covered ? filtered_visibility(shadow_cubes, place.layer, cube.size_px, filter_of(cube), place.plane)
-                          : 1.0;
+  return place.is_covered ? filtered_visibility(shadow_cubes, place.layer, cube.size_px, filter_of(cube), place.plane, is_receiver)
+                          : vec2(0.0);
 }
 
 /** \see shadow_gap */
@@ -172,6 +265,13 @@ vec2 shadow_cube_search(int index, Surface surface, LightData light)
 #endif
 
 #ifdef USE_SHADOW_MAP
+/** Change of depth for each metre towards a sun. */
+float depth_per_metre(ShadowMapData map, vec3 to_light)
+{
+  vec3 row = vec3(map.texco_from_world[0].z, map.texco_from_world[1].z, map.texco_from_world[2].z);
+  return max(dot(row, to_light), 1e-20);
+}
+
 /** \a offset: \see ShadowPlace. \a coverage: \see map_coverage. */
 ShadowPlace map_place(ShadowMapData map, Surface surface, vec3 to_light, vec3 offset, out float coverage)
 {
@@ -199,22 +299,18 @@ ShadowPlace map_place(ShadowMapData map, Surface surface, vec3 to_light, vec3 of
   place.plane.depth = texco.z + dot(slope, moved);
   place.plane.slope = slope / size;
   place.plane.least_depth = least_depth(place, offset, map.filter_kind);
+  // w is the same everywhere in a map of a sun.
+  bool is_distant = map.texco_from_world[0].w == 0.0 && map.texco_from_world[1].w == 0.0 && map.texco_from_world[2].w == 0.0;
+  place.plane.texel_depth = map.texel_size * (is_distant ? depth_per_metre(map, to_light) : place.receiver_depth);
   place.layer = map.layer;
   return place;
 }
 
 /** Visibility from one map. \a coverage: \see map_coverage. */
-float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, vec3 offset, out float coverage)
+vec2 one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, vec3 offset, out float coverage, const bool is_receiver)
 {
   ShadowPlace place = map_place(map, surface, to_light, offset, coverage);
-  return place.is_covered ? filtered_visibility(shadow_maps, place.layer, map.size_px, map.filter_kind, place.plane) : 1.0;
-}
-
-/** Change of depth for each metre towards a sun. */
-float depth_per_metre(ShadowMapData map, vec3 to_light)
-{
-  vec3 row = vec3(map.texco_from_world[0].z, map.texco_from_world[1].z, map.texco_from_world[2].z);
-  return max(dot(row, to_light), 1e-20);
+  return place.is_covered ? filtered_visibility(shadow_maps, place.layer, map.size_px, map.filter_kind, place.plane, is_receiver) : vec2(0.0);
 }
 
 /** \see shadow_gap. Uses the finest map that contains the lookup. */
@@ -255,10 +351,10 @@ vec2 shadow_map_search(int first, Surface surface, LightData light, vec3 to_ligh
 }
 
 /** Visibility from all maps of a light. \a first: the finest. \a offset: \see ShadowPlace. */
-float shadow_map_visibility(int first, Surface surface, vec3 to_light, vec3 offset)
+vec2 shadow_map_visibility(int first, Surface surface, vec3 to_light, vec3 offset, const bool is_receiver)
 {
   int count = shadow.maps[first].cascade_count;
-  float visibility = 0.0;
+  vec2 visibility = vec2(0.0);
   // Weight not used by finer cascades. Points outside all cascades are lit.
   float open = 1.0;
   int i = 0;
@@ -266,12 +362,16 @@ float shadow_map_visibility(int first, Surface surface, vec3 to_light, vec3 offs
     // The test is at the end as in lights_radiance.
     do {
       float coverage;
-      float lit = one_map_visibility(shadow.maps[first + i], surface, to_light, offset, coverage);
+      vec2 lit = one_map_visibility(shadow.maps[first + i], surface, to_light, offset, coverage, is_receiver);
+      // \see edge_pass
+      bool again = is_receiver && edge_pass > 0;
       float share = cascade_share(i == count - 1, coverage);
+      share = again ? 0.0 : share;
       visibility += open * share * lit;
       open *= 1.0 - share;
-    } while (++i < count && open > 0.0);
+      i += again ? 0 : 1;
+    } while (i < count && open > 0.0);
   }
-  return visibility + open;
+  return visibility;
 }
 #endif
