@@ -21,7 +21,7 @@
 
 namespace gnomon::gpu {
 
-/** Measures the time between two marks on the device. \see Device::time_begin */
+/** Measures the times between pairs of marks on the device. \see Device::time_begin */
 class TimerQuery : public Resource {
  public:
   TimerQuery() = default;
@@ -124,7 +124,7 @@ class Device {
 
   /**
    * Execute \a packet. Device's thread. Packets must be submitted in the order in which they were recorded. Waits for
-   * the device if the packet contains a read_back or a timer query.
+   * the device if the packet contains a read_back.
    *
    * \throws Error if an operation fails, or if an earlier packet was lost after the recording of this one began. The
    * packet is then lost: the resources that it creates do not exist, the content of resources that it writes is
@@ -159,16 +159,16 @@ class Device {
   /** Wait until all submitted work is done. Device's thread. */
   virtual void finish() = 0;
 
-  /** Set the begin mark and the end mark of \a query, between submissions. Queries must not overlap. */
+  /** Set the begin mark and the end mark of \a query, between submissions. Queries must not overlap. Does not wait. */
   void time_begin(const TimerQuery &query);
   void time_end(const TimerQuery &query);
   /**
-   * Seconds between the marks. Waits for the device. Empty if the device has no timer (null backend). For marks in a
-   * packet, use the packet's Feedback instead.
+   * Seconds between all pairs of marks of \a query that were executed since the last call; 0: there were none. Waits
+   * for the device. Empty if the device has no timer (null backend). Device's thread.
    */
-  [[nodiscard]] std::optional<double> elapsed_seconds(const TimerQuery &query)
+  [[nodiscard]] std::optional<double> take_seconds(const TimerQuery &query)
   {
-    return seconds_between_marks(query.id());
+    return seconds_take(query.id());
   }
 
   [[nodiscard]] const Limits &limits() const
@@ -218,6 +218,24 @@ class Device {
   void free_live_resources();
   void message(std::string_view text) const;
 
+  /** A scope whose calls are one call for the owner of the context. Scopes may be nested. */
+  class Calls {
+   public:
+    explicit Calls(Device &device) : device_(device)
+    {
+      device.calls_begin();
+    }
+    ~Calls()
+    {
+      device_.calls_end();
+    }
+    Calls(const Calls &) = delete;
+    Calls &operator=(const Calls &) = delete;
+
+   private:
+    Device &device_;
+  };
+
   // Functions implemented by a backend. They run on the device's thread and must not read the base class's tables,
   // which the recording thread may be changing.
   /** For a texture of the host, checks \a desc and creates nothing. */
@@ -248,7 +266,10 @@ class Device {
   virtual void texture_read(ResourceId id, int layer, std::span<std::byte> texels) = 0;
   virtual void list_submit(const CommandList &list) = 0;
   virtual void time_mark(ResourceId query, bool is_end) = 0;
-  [[nodiscard]] virtual std::optional<double> seconds_between_marks(ResourceId query) = 0;
+  /** The begin and the end of a scope. \see Calls */
+  virtual void calls_begin() {}
+  virtual void calls_end() {}
+  [[nodiscard]] virtual std::optional<double> seconds_take(ResourceId query) = 0;
 
  private:
   friend class Packet;
@@ -396,6 +417,9 @@ enum class ContextKind {
    * The device uses the host's context, which must be current on this thread now and in every later call. Each call
    * saves the OpenGL state that it changes and restores it before it returns or throws.
    *
+   * A name that the host has deleted while it was bound is left unbound if OpenGL does not bind it again. So is the
+   * current program if it is flagged for deletion and no other context uses it.
+   *
    * A call reads pending OpenGL errors before it starts, so that an error of the host is not reported as an error of
    * the device, and raises them again before it returns. Errors other than GL_INVALID_ENUM, GL_INVALID_VALUE and
    * GL_INVALID_OPERATION cannot be raised again and are reported to the message sink.
@@ -405,7 +429,6 @@ enum class ContextKind {
    * - an active query other than GL_TIME_ELAPSED,
    * - conditional rendering,
    * - active transform feedback that is not paused.
-   * The current program must not be flagged for deletion.
    */
   Host,
 };

@@ -8,6 +8,7 @@ void Device::submit(Packet &packet)
 {
   GNOMON_ASSERT(std::this_thread::get_id() == thread_, "a packet is submitted on another thread than the device's");
   GNOMON_ASSERT(packet.is_pending_ && packet.link_->device == this, "the packet is not recorded for this device");
+  const Calls calls(*this);
   packet.is_pending_ = false;
   try {
     if (packet.has_failed_) {
@@ -17,14 +18,6 @@ void Device::submit(Packet &packet)
       throw Error("the packet is not executed, because an earlier one was lost after its recording began");
     }
     execute_recorded(packet);
-    for (const Operation &operation : packet.operations_) {
-      const auto *mark = std::get_if<Operation::MarkTime>(&operation.call);
-      if (mark && mark->is_end) {
-        if (const std::optional<double> seconds = seconds_between_marks(mark->query)) {
-          packet.feedback_.times.push_back({mark->query, *seconds});
-        }
-      }
-    }
   }
   catch (...) {
     undo(packet);
@@ -44,6 +37,7 @@ void Device::execute_recorded(Packet &packet)
   if (packet.executed_count_ == 0) {
     packet.feedback_.clear();
   }
+  const Calls calls(*this);
   try {
     while (packet.executed_count_ < packet.operations_.size()) {
       execute(packet.operations_[packet.executed_count_++], &packet);

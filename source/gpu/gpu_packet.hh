@@ -17,8 +17,7 @@
 namespace gnomon::gpu {
 
 /**
- * Results of a submitted packet: read texels, measured times and shaders that did not compile, each in the order of
- * recording.
+ * Results of a submitted packet: read texels and shaders that did not compile, each in the order of recording.
  */
 struct Feedback {
   struct Texels {
@@ -28,10 +27,6 @@ struct Feedback {
     /** Rows from the bottom, tightly packed. */
     std::vector<std::byte> bytes;
   };
-  struct Time {
-    ResourceId query = 0;
-    double seconds = 0.0;
-  };
   /** A shader for which its stand-in was compiled. \see Device::create_shader */
   struct FailedShader {
     ResourceId shader = 0;
@@ -39,14 +34,11 @@ struct Feedback {
     std::string reason;
   };
   std::vector<Texels> texels;
-  /** Empty if the device has no timer. */
-  std::vector<Time> times;
   std::vector<FailedShader> failed_shaders;
 
   void clear()
   {
     texels.clear();
-    times.clear();
     failed_shaders.clear();
   }
 };

@@ -3,6 +3,7 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <string_view>
 
 namespace gnomon::test {
@@ -157,6 +158,17 @@ struct Binding {
   const char *name;
   GLenum value;
 };
+
+/** A deleted program exists while it is current. */
+GLboolean is_kept_program(GLuint name)
+{
+  GLint is_deleted = GL_TRUE;
+  if (glIsProgram(name)) {
+    glGetProgramiv(name, GL_DELETE_STATUS, &is_deleted);
+  }
+  return GLboolean(!is_deleted);
+}
+
 constexpr std::array<Binding, 11> TEXTURE_BINDINGS = {{
     {"GL_TEXTURE_BINDING_1D", GL_TEXTURE_BINDING_1D},
     {"GL_TEXTURE_BINDING_2D", GL_TEXTURE_BINDING_2D},
@@ -194,6 +206,35 @@ constexpr IndexedTarget INDEXED_TARGETS[] = {
 constexpr std::array<GLuint, 6> UNITS = {0, 3, 16, 17, 24, 31};
 constexpr GLuint DRAW_BUFFERS = 8;
 constexpr GLuint VIEWPORTS = 16;
+
+/** Function that says whether the object exists that is bound at \a binding; nullptr: \a binding is no name. */
+IsObject object_kind_of(GLenum binding)
+{
+  switch (binding) {
+    case GL_ARRAY_BUFFER_BINDING:
+    case GL_ATOMIC_COUNTER_BUFFER_BINDING:
+    case GL_COPY_READ_BUFFER_BINDING:
+    case GL_COPY_WRITE_BUFFER_BINDING:
+    case GL_DISPATCH_INDIRECT_BUFFER_BINDING:
+    case GL_DRAW_INDIRECT_BUFFER_BINDING:
+    case GL_ELEMENT_ARRAY_BUFFER_BINDING:
+    case GL_PIXEL_PACK_BUFFER_BINDING:
+    case GL_PIXEL_UNPACK_BUFFER_BINDING:
+    case GL_QUERY_BUFFER_BINDING:
+    case GL_SHADER_STORAGE_BUFFER_BINDING:
+    case GL_TEXTURE_BUFFER_BINDING:
+    case GL_TRANSFORM_FEEDBACK_BUFFER_BINDING:
+    case GL_UNIFORM_BUFFER_BINDING: return glIsBuffer;
+    case GL_CURRENT_PROGRAM: return is_kept_program;
+    case GL_PROGRAM_PIPELINE_BINDING: return glIsProgramPipeline;
+    case GL_DRAW_FRAMEBUFFER_BINDING:
+    case GL_READ_FRAMEBUFFER_BINDING: return glIsFramebuffer;
+    case GL_RENDERBUFFER_BINDING: return glIsRenderbuffer;
+    case GL_TRANSFORM_FEEDBACK_BINDING: return glIsTransformFeedback;
+    case GL_VERTEX_ARRAY_BINDING: return glIsVertexArray;
+    default: return nullptr;
+  }
+}
 
 std::vector<double> indexed_integers(GLenum name, GLuint index, std::size_t count)
 {
@@ -241,6 +282,9 @@ HostObjects::HostObjects()
   glCreateSamplers(1, &sampler);
   glCreateVertexArrays(1, &vertex_array);
   glVertexArrayElementBuffer(vertex_array, buffer);
+  for (GLuint i = 0; i < 4; i++) {
+    glVertexArrayVertexBuffer(vertex_array, i, buffer, 0, 16);
+  }
   program = compiled_program();
   glCreateProgramPipelines(1, &pipeline);
   glCreateFramebuffers(1, &draw_framebuffer);
@@ -258,16 +302,82 @@ HostObjects::~HostObjects()
   glDebugMessageCallback(nullptr, nullptr);
   glBindTransformFeedback(GL_TRANSFORM_FEEDBACK, 0);
   glUseProgram(0);
+  // Mesa's error for a deleted pipeline.
+  static_cast<void>(glGetError());
+  for (const Kind &kind : kinds()) {
+    (this->*kind.destroy)();
+  }
+}
+
+const std::vector<HostObjects::Kind> &HostObjects::kinds()
+{
+  static const std::vector<Kind> kinds = {
+      {"buffer", true, &HostObjects::delete_buffer},
+      {"textures", true, &HostObjects::delete_textures},
+      {"sampler", true, &HostObjects::delete_sampler},
+      {"renderbuffer", true, &HostObjects::delete_renderbuffer},
+      {"program", true, &HostObjects::delete_program},
+      {"vertex array", false, &HostObjects::delete_vertex_array},
+      {"pipeline", false, &HostObjects::delete_pipeline},
+      {"framebuffers", false, &HostObjects::delete_framebuffers},
+      {"transform feedback", false, &HostObjects::delete_transform_feedback},
+  };
+  return kinds;
+}
+
+void HostObjects::delete_buffer()
+{
   glDeleteBuffers(1, &buffer);
+  buffer = 0;
+}
+
+void HostObjects::delete_textures()
+{
   glDeleteTextures(GLsizei(textures.size()), textures.data());
+  textures = {};
+}
+
+void HostObjects::delete_sampler()
+{
   glDeleteSamplers(1, &sampler);
-  glDeleteVertexArrays(1, &vertex_array);
+  sampler = 0;
+}
+
+void HostObjects::delete_renderbuffer()
+{
+  glDeleteRenderbuffers(1, &renderbuffer);
+  renderbuffer = 0;
+}
+
+void HostObjects::delete_program()
+{
   glDeleteProgram(program);
+  program = 0;
+}
+
+void HostObjects::delete_vertex_array()
+{
+  glDeleteVertexArrays(1, &vertex_array);
+  vertex_array = 0;
+}
+
+void HostObjects::delete_pipeline()
+{
   glDeleteProgramPipelines(1, &pipeline);
+  pipeline = 0;
+}
+
+void HostObjects::delete_framebuffers()
+{
   glDeleteFramebuffers(1, &draw_framebuffer);
   glDeleteFramebuffers(1, &read_framebuffer);
-  glDeleteRenderbuffers(1, &renderbuffer);
+  draw_framebuffer = read_framebuffer = 0;
+}
+
+void HostObjects::delete_transform_feedback()
+{
   glDeleteTransformFeedbacks(1, &transform_feedback);
+  transform_feedback = 0;
 }
 
 std::vector<StateItem> state_table()
@@ -277,15 +387,18 @@ std::vector<StateItem> state_table()
     table.push_back({capability.name, [&] { return std::vector<double>{double(glIsEnabled(capability.value))}; }});
   }
   for (const Value &value : VALUES) {
-    table.push_back({value.name, [&] {
+    table.push_back({value.name,
+                     [&] {
                        std::array<GLdouble, 16> values{};
                        glGetDoublev(value.value, values.data());
                        return std::vector<double>(values.begin(), values.begin() + std::ptrdiff_t(value.count));
-                     }});
+                     },
+                     object_kind_of(value.value)});
   }
   for (const GLuint unit : UNITS) {
-    const auto of_unit = [&](const char *name, GLenum value) {
-      table.push_back({fmt::format("{}, unit {}", name, unit), [unit, value] {
+    const auto of_unit = [&](const char *name, GLenum value, IsObject is_object) {
+      table.push_back({fmt::format("{}, unit {}", name, unit),
+                       [unit, value] {
                          GLint active = 0;
                          glGetIntegerv(GL_ACTIVE_TEXTURE, &active);
                          glActiveTexture(GL_TEXTURE0 + unit);
@@ -293,16 +406,18 @@ std::vector<StateItem> state_table()
                          glGetIntegerv(value, &binding);
                          glActiveTexture(GLenum(active));
                          return std::vector<double>{double(binding)};
-                       }});
+                       },
+                       is_object});
     };
     for (const Binding &binding : TEXTURE_BINDINGS) {
-      of_unit(binding.name, binding.value);
+      of_unit(binding.name, binding.value, glIsTexture);
     }
-    of_unit("GL_SAMPLER_BINDING", GL_SAMPLER_BINDING);
+    of_unit("GL_SAMPLER_BINDING", GL_SAMPLER_BINDING, glIsSampler);
   }
   for (const IndexedTarget &target : INDEXED_TARGETS) {
     for (GLuint i = 0; i < target.count; i++) {
-      table.push_back({fmt::format("{} {}", target.name, i), [&target, i] {
+      table.push_back({fmt::format("{} {}", target.name, i),
+                       [&target, i] {
                          std::vector<double> values = indexed_integers(target.binding, i, 1);
                          for (const GLenum name : {target.start, target.size}) {
                            GLint64 value = 0;
@@ -310,7 +425,8 @@ std::vector<StateItem> state_table()
                            values.push_back(double(value));
                          }
                          return values;
-                       }});
+                       },
+                       glIsBuffer});
     }
   }
   for (GLuint i = 0; i < DRAW_BUFFERS; i++) {
@@ -349,8 +465,10 @@ std::vector<StateItem> state_table()
                        glGetVertexAttribdv(i, GL_CURRENT_VERTEX_ATTRIB, values.data());
                        return std::vector<double>(values.begin(), values.end());
                      }});
-    table.push_back(
-        {fmt::format("GL_IMAGE_BINDING_NAME {}", i), [i] { return indexed_integers(GL_IMAGE_BINDING_NAME, i, 1); }});
+    table.push_back({fmt::format("GL_IMAGE_BINDING_NAME {}", i),
+                     [i] { return indexed_integers(GL_IMAGE_BINDING_NAME, i, 1); }, glIsTexture});
+    table.push_back({fmt::format("GL_VERTEX_BINDING_BUFFER {}", i),
+                     [i] { return indexed_integers(GL_VERTEX_BINDING_BUFFER, i, 1); }, glIsBuffer});
   }
   table.push_back({"GL_SAMPLE_MASK_VALUE 0", [] { return indexed_integers(GL_SAMPLE_MASK_VALUE, 0, 1); }});
   for (const Binding &query : {Binding{"GL_SAMPLES_PASSED", GL_SAMPLES_PASSED},
@@ -491,7 +609,20 @@ StateSnapshot::StateSnapshot(const std::vector<StateItem> &table) : table_(table
 {
   for (const StateItem &item : table) {
     values_.push_back(item.read());
+    const double name = values_.back().front();
+    are_deleted_.push_back(item.is_object && name != 0 && !item.is_object(GLuint(name)));
   }
+}
+
+std::vector<std::string> StateSnapshot::deleted() const
+{
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < table_.size(); i++) {
+    if (are_deleted_[i]) {
+      names.push_back(table_[i].name);
+    }
+  }
+  return names;
 }
 
 std::vector<std::string> StateSnapshot::differences() const
@@ -499,7 +630,8 @@ std::vector<std::string> StateSnapshot::differences() const
   std::vector<std::string> found;
   for (std::size_t i = 0; i < table_.size(); i++) {
     const std::vector<double> now = table_[i].read();
-    if (now != values_[i]) {
+    const bool is_unbound = are_deleted_[i] && std::ranges::count(now, 0.0) == std::ptrdiff_t(now.size());
+    if (now != values_[i] && !is_unbound) {
       found.push_back(
           fmt::format("{}: was {}, is {}", table_[i].name, fmt::join(values_[i], " "), fmt::join(now, " ")));
     }

@@ -40,12 +40,37 @@ struct HostObjects {
   GLuint read_framebuffer = 0;
   GLuint renderbuffer = 0;
   GLuint transform_feedback = 0;
+
+  /** Objects of one kind, which a host may delete while they are bound. */
+  struct Kind {
+    const char *name;
+    /** Whether contexts share these objects, so that another context may delete them. */
+    bool is_shared;
+    void (HostObjects::*destroy)();
+  };
+  [[nodiscard]] static const std::vector<Kind> &kinds();
+
+ private:
+  void delete_buffer();
+  void delete_textures();
+  void delete_sampler();
+  void delete_renderbuffer();
+  void delete_program();
+  void delete_vertex_array();
+  void delete_pipeline();
+  void delete_framebuffers();
+  void delete_transform_feedback();
 };
+
+/** glIsBuffer and so on. */
+using IsObject = std::function<GLboolean(GLuint name)>;
 
 /** One queryable value of OpenGL 4.5 core state. */
 struct StateItem {
   std::string name;
   std::function<std::vector<double>()> read;
+  /** Of the name of an object, which is the first value; empty for other values. */
+  IsObject is_object{};
 };
 
 /** All values of the table. */
@@ -58,8 +83,13 @@ void set_unusual_state(const HostObjects &objects);
 class StateSnapshot {
  public:
   explicit StateSnapshot(const std::vector<StateItem> &table);
-  /** "NAME: was 1, is 2" for each item that has changed. */
+  /**
+   * "NAME: was 1, is 2" for each item that has changed. The name of an object that was deleted when the snapshot was
+   * taken may have become 0.
+   */
   [[nodiscard]] std::vector<std::string> differences() const;
+  /** Names of the items whose objects were deleted and still bound. */
+  [[nodiscard]] std::vector<std::string> deleted() const;
   [[nodiscard]] std::vector<double> value(std::size_t item) const
   {
     return values_[item];
@@ -68,6 +98,7 @@ class StateSnapshot {
  private:
   const std::vector<StateItem> &table_;
   std::vector<std::vector<double>> values_;
+  std::vector<bool> are_deleted_;
 };
 
 }  // namespace gnomon::test

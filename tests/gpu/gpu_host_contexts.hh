@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstdlib>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -27,11 +28,13 @@ class HostContext {
   HostContext &operator=(const HostContext &) = delete;
   virtual ~HostContext() = default;
   [[nodiscard]] virtual bool is_current() const = 0;
+  /** Calls \a work in another context, which shares objects with this one. \return false: there is none. */
+  [[nodiscard]] virtual bool in_shared_context(const std::function<void()> &work) = 0;
 };
 
 class EglHostContext final : public HostContext {
  public:
-  EglHostContext()
+  explicit EglHostContext(bool is_debug = false)
   {
     const auto get_display =
         reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
@@ -39,10 +42,8 @@ class EglHostContext final : public HostContext {
     if (display_ == EGL_NO_DISPLAY || !eglInitialize(display_, nullptr, nullptr) || !eglBindAPI(EGL_OPENGL_API)) {
       return;
     }
-    const std::array<EGLint, 7> wanted = {
-        EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
-    context_ = eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted.data());
+    wanted_[7] = is_debug ? EGL_TRUE : EGL_FALSE;
+    context_ = eglCreateContext(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted_.data());
     if (context_ != EGL_NO_CONTEXT) {
       make_current();
     }
@@ -62,8 +63,29 @@ class EglHostContext final : public HostContext {
   {
     return context_ != EGL_NO_CONTEXT && eglGetCurrentContext() == context_;
   }
+  [[nodiscard]] bool in_shared_context(const std::function<void()> &work) override
+  {
+    EGLContext shared = eglCreateContext(display_, EGL_NO_CONFIG_KHR, context_, wanted_.data());
+    const bool is_current =
+        shared != EGL_NO_CONTEXT && eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, shared);
+    if (is_current) {
+      work();
+    }
+    make_current();
+    eglDestroyContext(display_, shared);
+    return is_current;
+  }
 
  private:
+  std::array<EGLint, 9> wanted_ = {EGL_CONTEXT_MAJOR_VERSION,
+                                   4,
+                                   EGL_CONTEXT_MINOR_VERSION,
+                                   5,
+                                   EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                   EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                   EGL_CONTEXT_OPENGL_DEBUG,
+                                   EGL_FALSE,
+                                   EGL_NONE};
   EGLDisplay display_ = EGL_NO_DISPLAY;
   EGLContext context_ = EGL_NO_CONTEXT;
 };
@@ -153,6 +175,18 @@ class GlxHostContext final : public HostContext {
   {
     return window_ && glfwGetCurrentContext() == window_;
   }
+  [[nodiscard]] bool in_shared_context(const std::function<void()> &work) override
+  {
+    GLFWwindow *shared = glfwCreateWindow(16, 16, "shared", nullptr, window_);
+    if (!shared) {
+      return false;
+    }
+    glfwMakeContextCurrent(shared);
+    work();
+    glfwMakeContextCurrent(window_);
+    glfwDestroyWindow(shared);
+    return true;
+  }
   /** The reason for which there is no context; empty if there is one. */
   [[nodiscard]] const std::string &reason() const
   {
@@ -169,11 +203,11 @@ class GlxHostContext final : public HostContext {
   std::string reason_;
 };
 
-enum class HostKind { Egl, Glx };
+enum class HostKind { Egl, EglDebug, Glx };
 
 inline std::string name_of_host(const testing::TestParamInfo<HostKind> &parameter)
 {
-  return parameter.param == HostKind::Egl ? "Egl" : "Glx";
+  return parameter.param == HostKind::Egl ? "Egl" : parameter.param == HostKind::EglDebug ? "EglDebug" : "Glx";
 }
 
 /** Base of test cases that run in a host's context of each kind; skipped, or failed where CI is set and EGL has none.
@@ -183,8 +217,8 @@ class HostContextTest : public testing::TestWithParam<HostKind> {
   void SetUp() override
   {
     std::string reason = "EGL gives no surfaceless context";
-    if (GetParam() == HostKind::Egl) {
-      context = std::make_unique<EglHostContext>();
+    if (GetParam() != HostKind::Glx) {
+      context = std::make_unique<EglHostContext>(GetParam() == HostKind::EglDebug);
     }
     else {
       auto glx = std::make_unique<GlxHostContext>();
@@ -193,7 +227,7 @@ class HostContextTest : public testing::TestWithParam<HostKind> {
     }
     if (!context->is_current()) {
       const char *ci = std::getenv("CI");
-      if (GetParam() == HostKind::Egl && ci && *ci) {
+      if (GetParam() != HostKind::Glx && ci && *ci) {
         FAIL() << "CI is set and " << reason;
       }
       GTEST_SKIP() << reason;

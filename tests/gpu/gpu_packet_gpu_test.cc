@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include "gpu/gpu_gl_hook.hh"
 #include "gpu/gpu_testing.hh"
 #include "gpu_device_fixture.hh"
 
+#include <epoxy/gl.h>
+
+#include <optional>
 #include <thread>
 
 namespace gnomon::gpu {
@@ -108,17 +112,72 @@ void main() { out_color = texelFetch(image, ivec2(0), 0) * factor; }
   EXPECT_EQ(packet.feedback().texels[0].bytes, device->read(target));
 }
 
-TEST_F(PacketGpu, TimersOfAPacketAreInItsFeedback)
-{
-  const TimerQuery query = device->create_timer_query("query");
+/** The marks of a timestamp query. A driver may have them only when it has done the work before. */
+class TimersGpu : public test::GpuDeviceTest {
+ protected:
+  void SetUp() override
+  {
+    test::GpuDeviceTest::SetUp();
+    result_count = query_count = 0;
+    is_available = false;
+    query.emplace(device->create_timer_query("query"));
+    mark();
+    // Afterwards the function pointers are those of the driver.
+    EXPECT_GE(*device->take_seconds(*query), 0.0);
+  }
+  void TearDown() override
+  {
+    query.reset();
+    test::GpuDeviceTest::TearDown();
+  }
+  void mark()
+  {
+    device->run(packet, [&] {
+      device->time_begin(*query);
+      device->time_end(*query);
+    });
+  }
+
+  static inline int result_count = 0;
+  static inline int query_count = 0;
+  static inline bool is_available = false;
   Packet packet;
-  device->run(packet, [&] {
-    device->time_begin(query);
-    device->time_end(query);
-  });
-  ASSERT_EQ(packet.feedback().times.size(), 1U);
-  EXPECT_EQ(packet.feedback().times[0].query, query.id());
-  EXPECT_GE(packet.feedback().times[0].seconds, 0.0);
+  std::optional<TimerQuery> query;
+};
+
+TEST_F(TimersGpu, APacketWithTimesDoesNotWait)
+{
+  static const auto result = epoxy_glGetQueryObjectui64v;
+  static const auto create = epoxy_glCreateQueries;
+  const test::Hook results(
+      epoxy_glGetQueryObjectui64v, +[](GLuint name, GLenum what, GLuint64 *value) {
+        result_count++;
+        result(name, what, value);
+        // One microsecond a pair.
+        *value = what == GL_QUERY_RESULT ? GLuint64(result_count) * 1000 : *value;
+      });
+  const test::Hook availability(
+      epoxy_glGetQueryObjectuiv,
+      +[](GLuint /*name*/, GLenum /*what*/, GLuint *value) { *value = is_available ? GL_TRUE : GL_FALSE; });
+  const test::Hook creations(
+      epoxy_glCreateQueries, +[](GLenum target, GLsizei count, GLuint *names) {
+        query_count += count;
+        create(target, count, names);
+      });
+  for (int i = 0; i < 3; i++) {
+    mark();
+  }
+  EXPECT_EQ(result_count, 0) << "a submission asked for a time that the device did not have";
+  EXPECT_NEAR(*device->take_seconds(*query), 3e-6, 1e-12);
+  EXPECT_EQ(*device->take_seconds(*query), 0.0);
+  // Times that nobody takes need no more queries once the device has them.
+  is_available = true;
+  const int before = query_count;
+  for (int i = 0; i < 100; i++) {
+    mark();
+  }
+  EXPECT_EQ(query_count, before);
+  EXPECT_NEAR(*device->take_seconds(*query), 100e-6, 1e-12);
 }
 
 }  // namespace

@@ -375,9 +375,7 @@ struct Timing {
     gpu::TimerQuery query;
     /** The step was drawn since the last call of Inspection::take_step_times. */
     bool is_pending = false;
-    /** Empty if the backend measures no times (null backend). */
-    std::optional<double> seconds{};
-    /** The last result of Inspection::take_step_times. */
+    /** The last result of Inspection::take_step_times; empty if the backend measures no times (null backend). */
     std::optional<double> taken_seconds{};
   };
   std::vector<Step> steps;

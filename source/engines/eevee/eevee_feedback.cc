@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Feedback of the device about submitted work: losses, depths and times.
+// Feedback of the device about submitted work: losses, depths and programs that did not compile.
 #include "eevee_engine.hh"
 #include "eevee_engine_data.hh"
 
@@ -36,13 +36,6 @@ bool awaits_depths(const Data &data, const draw::View &view)
 bool Engine::take_feedback(draw::Viewport &viewport, const gpu::Feedback &feedback)
 {
   Data &data = viewport.engine_data<Data>(*this);
-  for (const gpu::Feedback::Time &time : feedback.times) {
-    const auto step = std::ranges::find_if(
-        data.timing.steps, [&](const Timing::Step &candidate) { return candidate.query.id() == time.query; });
-    if (step != data.timing.steps.end()) {
-      step->seconds = step->seconds.value_or(0.0) + time.seconds;
-    }
-  }
   shaders_->take_failures(feedback);
   DepthFeedback &depths = data.depth_feedback;
   bool is_final = true;

@@ -301,7 +301,7 @@ std::vector<StepTime> Inspection::take_step_times() const
   std::vector<StepTime> times;
   for (Timing::Step &step : engine_data().timing.steps) {
     if (std::exchange(step.is_pending, false)) {
-      step.taken_seconds = std::exchange(step.seconds, std::nullopt);
+      step.taken_seconds = step.query ? viewport_.device().take_seconds(step.query) : std::nullopt;
       times.push_back({step.name, step.taken_seconds.value_or(0.0)});
     }
   }

@@ -67,7 +67,9 @@ class Inspection {
 
   /** A report of the last picture; empty before the first sync. The cost is linear in the size of the scene. */
   [[nodiscard]] Report report() const;
-  /** Times of the samples whose feedback was taken since the last call. Empty unless Settings::is_timed. */
+  /**
+   * Times of the samples that were submitted since the last call, for which it waits. Empty unless Settings::is_timed.
+   */
   [[nodiscard]] std::vector<StepTime> take_step_times() const;
   /** The recorded passes as text. Empty before the first draw in which an object is visible. */
   [[nodiscard]] std::string serialize_passes() const;

@@ -56,40 +56,42 @@ std::uint64_t elapsed_ticks(std::uint64_t begin, std::uint64_t end, int bits)
   return (end - begin) & mask;
 }
 
-GlDevice::Entry::Entry(GlDevice &device) : device_(device)
+void GlDevice::calls_begin()
 {
 #ifndef NDEBUG
-  GNOMON_ASSERT(device.entry_depth_ > 0 || current_context() == device.made_in_,
+  GNOMON_ASSERT(calls_depth_ > 0 || current_context() == made_in_,
                 "the context in which the device was made is not current on this thread");
 #endif
-  if (device.entry_depth_++ == 0 && !device.context_) {
+  if (calls_depth_++ == 0 && !context_) {
     host_errors_ = take_gl_errors();
   }
 }
 
-GlDevice::Entry::~Entry()
+void GlDevice::calls_end()
 {
-  if (--device_.entry_depth_ > 0 || device_.context_) {
+  if (--calls_depth_ > 0 || context_) {
     return;
   }
+  host_state_.restore();
   // Clear the errors of this device, so that the host does not read them as its own.
   for (const GLenum error : take_gl_errors()) {
-    device_.message(fmt::format("the driver reports {}", gl_error_name(error)));
+    message(fmt::format("the driver reports {}", gl_error_name(error)));
   }
   for (const GLenum error : host_errors_) {
     if (!raise_gl_error(error)) {
-      device_.message(
-          fmt::format("an error of the host was pending and cannot be raised again: {}", gl_error_name(error)));
+      message(fmt::format("an error of the host was pending and cannot be raised again: {}", gl_error_name(error)));
     }
   }
+  host_errors_.clear();
 }
 
 GlDevice::GlDevice(std::unique_ptr<GlContext> context, const GlDeviceDesc &desc)
     : Device(query_limits(), desc.sink, desc.shader_cache_folder),
       context_(std::move(context)),
-      is_debug_(desc.is_debug && context_)
+      is_debug_(desc.is_debug && context_),
+      host_state_(!context_)
 {
-  const Entry entry(*this);
+  const Calls calls(*this);
   if (is_debug_) {
     glEnable(GL_DEBUG_OUTPUT);
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
@@ -101,7 +103,7 @@ GlDevice::GlDevice(std::unique_ptr<GlContext> context, const GlDeviceDesc &desc)
 
 GlDevice::~GlDevice()
 {
-  const Entry entry(*this);
+  const Calls calls(*this);
   free_live_resources();
   stream_.destroy();
   glDeleteBuffers(GLsizei(pool_.size()), pool_.data());
@@ -180,31 +182,67 @@ void GlDevice::create_vertex_arrays()
 void GlDevice::finish()
 {
   const trace::Span span("wait for the device");
-  const Entry entry(*this);
+  const Calls calls(*this);
   glFinish();
   check("finish");
 }
 
 void GlDevice::time_mark(ResourceId query, bool is_end)
 {
-  const Entry entry(*this);
-  glQueryCounter(timers_.at(query)[is_end ? 1 : 0], GL_TIMESTAMP);
+  const Calls calls(*this);
+  Timer &timer = timers_.at(query);
+  // A begin whose end was not executed, because a packet failed between them, is marked again.
+  if (!is_end && !std::exchange(timer.has_begun, true)) {
+    // So that they do not grow in number if nobody takes the times.
+    read_times(timer, false);
+    if (timer.unused.empty()) {
+      glCreateQueries(GL_TIMESTAMP, 2, timer.unused.emplace_back().data());
+    }
+    timer.pending.push_back(timer.unused.back());
+    timer.unused.pop_back();
+  }
+  if (timer.has_begun) {
+    glQueryCounter(timer.pending.back()[is_end ? 1 : 0], GL_TIMESTAMP);
+    timer.has_begun = !is_end;
+  }
 }
 
-std::optional<double> GlDevice::seconds_between_marks(ResourceId query)
+void GlDevice::read_times(Timer &timer, bool waits)
+{
+  if (timer.pending.empty()) {
+    return;
+  }
+  // If a buffer were bound to this target, the results would be written into that buffer.
+  host_state_.keep_buffer(GL_QUERY_BUFFER);
+  glBindBuffer(GL_QUERY_BUFFER, 0);
+  while (timer.pending.size() > (timer.has_begun ? 1 : 0)) {
+    const TimeMarks marks = timer.pending.front();
+    GLuint is_available = GL_TRUE;
+    if (!waits) {
+      glGetQueryObjectuiv(marks[1], GL_QUERY_RESULT_AVAILABLE, &is_available);
+    }
+    if (!is_available) {
+      return;
+    }
+    std::array<GLuint64, 2> nanoseconds{};
+    for (std::size_t i = 0; i < 2; i++) {
+      glGetQueryObjectui64v(marks[i], GL_QUERY_RESULT, &nanoseconds[i]);
+    }
+    timer.seconds += double(elapsed_ticks(nanoseconds[0], nanoseconds[1], timestamp_bits_)) * 1e-9;
+    timer.pending.erase(timer.pending.begin());
+    timer.unused.push_back(marks);
+  }
+}
+
+std::optional<double> GlDevice::seconds_take(ResourceId query)
 {
   if (timestamp_bits_ == 0) {
     return std::nullopt;
   }
-  const Entry entry(*this);
-  // If a buffer were bound to this target, the results would be written into that buffer.
-  const SavedBufferBinding saved(GL_QUERY_BUFFER);
-  glBindBuffer(GL_QUERY_BUFFER, 0);
-  std::array<GLuint64, 2> nanoseconds{};
-  for (std::size_t i = 0; i < 2; i++) {
-    glGetQueryObjectui64v(timers_.at(query)[i], GL_QUERY_RESULT, &nanoseconds[i]);
-  }
-  return double(elapsed_ticks(nanoseconds[0], nanoseconds[1], timestamp_bits_)) * 1e-9;
+  const Calls calls(*this);
+  Timer &timer = timers_.at(query);
+  read_times(timer, true);
+  return std::exchange(timer.seconds, 0.0);
 }
 
 std::string GlDevice::description() const

@@ -18,6 +18,8 @@ struct GlFormat {
   GLenum type;
 };
 [[nodiscard]] GlFormat gl_format(Format format);
+/** GL_TEXTURE_2D, GL_TEXTURE_2D_ARRAY or GL_TEXTURE_BUFFER. */
+[[nodiscard]] GLenum gl_target(TextureKind kind);
 
 /** Difference \a end - \a begin of a counter with \a bits bits that may have wrapped once; nanoseconds. */
 [[nodiscard]] std::uint64_t elapsed_ticks(std::uint64_t begin, std::uint64_t end, int bits);
@@ -110,25 +112,20 @@ class GlDevice final : public Device {
     GLuint name = 0;
     std::vector<DeclaredSampler> samplers;
   };
+  /** The names of two timestamp queries: at the begin and at the end. */
+  using TimeMarks = std::array<GLuint, 2>;
+  struct Timer {
+    /** Marked, oldest first, and not read yet. The last one may lack its end. */
+    std::vector<TimeMarks> pending;
+    std::vector<TimeMarks> unused;
+    bool has_begun = false;
+    /** Sum of the times that were read. */
+    double seconds = 0.0;
+  };
   /** A texture of one black texel with a sampler, for declared samplers to which a list binds no texture. */
   struct Dummy {
     GLuint texture = 0;
     GLuint sampler = 0;
-  };
-  /**
-   * Scope of a public call into a device that uses the host's context. The outermost scope takes the host's pending
-   * OpenGL errors and raises them again at its end. Nested scopes do nothing.
-   */
-  class Entry {
-   public:
-    explicit Entry(GlDevice &device);
-    ~Entry();
-    Entry(const Entry &) = delete;
-    Entry &operator=(const Entry &) = delete;
-
-   private:
-    GlDevice &device_;
-    std::vector<GLenum> host_errors_;
   };
 
   static void GLAPIENTRY receive_message(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
@@ -139,6 +136,8 @@ class GlDevice final : public Device {
   void check_or(std::string_view what, const std::function<void()> &destroy);
   /** In builds with assertions, \throws Error if the host's state cannot be saved. */
   void check_host_state(std::string_view what);
+  /** A buffer of \a size_bytes that was bound to \a target. */
+  GLuint create_buffer_of(GLenum target, std::size_t size_bytes);
   static void label(GLenum kind, GLuint name, const std::string &text);
 
   void texture_create(ResourceId id, const TextureDesc &desc) override;
@@ -158,8 +157,16 @@ class GlDevice final : public Device {
   void texture_read(ResourceId id, int layer, std::span<std::byte> texels) override;
   void list_submit(const CommandList &list) override;
   void time_mark(ResourceId query, bool is_end) override;
-  std::optional<double> seconds_between_marks(ResourceId query) override;
+  /**
+   * The outermost scope in a host's context takes the host's pending errors, and at its end restores the host's state
+   * and raises the errors again.
+   */
+  void calls_begin() override;
+  void calls_end() override;
+  std::optional<double> seconds_take(ResourceId query) override;
 
+  /** Reads the pending times of \a timer: those which the device has, or \a waits for all. */
+  void read_times(Timer &timer, bool waits);
   void create_vertex_arrays();
   /** A vertex array whose attributes of instances are set up, and those of vertices are not. */
   static VertexArray create_instanced_array();
@@ -175,7 +182,6 @@ class GlDevice final : public Device {
   static std::vector<DeclaredSampler> declared_samplers(GLuint program, const std::vector<std::string> &names);
   const Dummy &dummy(const DeclaredSampler &sampler);
 
-  void collect_slots(const CommandList &list);
   void execute(const CommandList &list);
   /** Begins a stream segment for \a list and copies its draws and instances into it. */
   void write_stream(const CommandList &list);
@@ -205,7 +211,10 @@ class GlDevice final : public Device {
   /** Whether the driver reports errors as debug messages. Always false in a host's context. */
   bool is_debug_;
   std::vector<std::string> driver_errors_;
-  int entry_depth_ = 0;
+  HostState host_state_;
+  /** Errors of OpenGL that the host had pending when the outermost scope began. */
+  std::vector<GLenum> host_errors_;
+  int calls_depth_ = 0;
   bool is_lost_ = false;
   /** Bits of the GL_TIMESTAMP counter; 0: the driver has no timer. */
   GLint timestamp_bits_ = 0;
@@ -218,7 +227,7 @@ class GlDevice final : public Device {
   IdTable<GlBuffer> buffers_{ResourceKind::Buffer};
   IdTable<HostBatch> host_batches_{ResourceKind::Batch};
   IdTable<GlProgram> programs_{ResourceKind::Shader};
-  IdTable<std::array<GLuint, 2>> timers_{ResourceKind::TimerQuery};
+  IdTable<Timer> timers_{ResourceKind::TimerQuery};
 
   /** Indexed by target (2D, 2D array) and by whether the sampler compares depths. */
   std::array<std::array<Dummy, 2>, 3> dummies_{};
@@ -244,7 +253,6 @@ class GlDevice final : public Device {
   /** The list has bound buffers of the host. */
   bool has_host_buffers_ = false;
 
-  UsedSlots used_slots_;
   /** The open pass; nullptr outside of passes. */
   const CommandList::PassInfo *pass_ = nullptr;
   /** Number of colour attachments of the pass. */

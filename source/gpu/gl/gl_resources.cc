@@ -10,30 +10,6 @@ namespace gnomon::gpu {
 
 namespace {
 
-GLenum gl_target(TextureKind kind)
-{
-  switch (kind) {
-    case TextureKind::Flat: return GL_TEXTURE_2D;
-    case TextureKind::Array: return GL_TEXTURE_2D_ARRAY;
-    case TextureKind::Buffer: return GL_TEXTURE_BUFFER;
-  }
-  return GL_TEXTURE_2D;
-}
-
-/**
- * A buffer of \a size_bytes. It is bound instead of using glNamedBufferData: llvmpipe delays updates until earlier
- * draws have finished only if it knows the buffer's target.
- */
-GLuint create_buffer_of(GLenum target, std::size_t size_bytes)
-{
-  GLuint buffer = 0;
-  glCreateBuffers(1, &buffer);
-  const SavedBufferBinding saved(target);
-  glBindBuffer(target, buffer);
-  glBufferData(target, GLsizeiptr(size_bytes), nullptr, GL_DYNAMIC_DRAW);
-  return buffer;
-}
-
 GLint gl_wrap(Wrap wrap)
 {
   switch (wrap) {
@@ -57,6 +33,16 @@ GLint gl_min_filter(Filter filter, MipFilter mip)
 
 }  // namespace
 
+GLenum gl_target(TextureKind kind)
+{
+  switch (kind) {
+    case TextureKind::Flat: return GL_TEXTURE_2D;
+    case TextureKind::Array: return GL_TEXTURE_2D_ARRAY;
+    case TextureKind::Buffer: return GL_TEXTURE_BUFFER;
+  }
+  return GL_TEXTURE_2D;
+}
+
 GlFormat gl_format(Format format)
 {
   switch (format) {
@@ -74,10 +60,22 @@ GlFormat gl_format(Format format)
   return {};
 }
 
+GLuint GlDevice::create_buffer_of(GLenum target, std::size_t size_bytes)
+{
+  GLuint buffer = 0;
+  glCreateBuffers(1, &buffer);
+  // Bound instead of using glNamedBufferData: llvmpipe delays updates until earlier draws have finished only if it
+  // knows the buffer's target.
+  host_state_.keep_buffer(target);
+  glBindBuffer(target, buffer);
+  glBufferData(target, GLsizeiptr(size_bytes), nullptr, GL_DYNAMIC_DRAW);
+  return buffer;
+}
+
 void GlDevice::texture_create(ResourceId id, const TextureDesc &desc)
 {
   const trace::Span span("create texture", desc.name);
-  const Entry entry(*this);
+  const Calls calls(*this);
   if (desc.format == Format::Host) {
     check_host_texture(desc);
     textures_.insert(id, {desc.host_name, desc, 0});
@@ -157,7 +155,7 @@ void GlDevice::check_host_texture(const TextureDesc &desc)
 
 void GlDevice::sampler_create(ResourceId id, const SamplerDesc &desc)
 {
-  const Entry entry(*this);
+  const Calls calls(*this);
   GLuint sampler = 0;
   glCreateSamplers(1, &sampler);
   glSamplerParameteri(sampler, GL_TEXTURE_MIN_FILTER, gl_min_filter(desc.minified.value_or(desc.filter), desc.mip));
@@ -196,7 +194,7 @@ void GlDevice::attach(GLuint framebuffer, GLenum point, const AttachmentLayout &
 
 void GlDevice::framebuffer_create(ResourceId id, const FramebufferLayout &layout)
 {
-  const Entry entry(*this);
+  const Calls calls(*this);
   GlFramebuffer framebuffer;
   glCreateFramebuffers(1, &framebuffer.name);
   std::vector<GLenum> buffers;
@@ -223,7 +221,7 @@ void GlDevice::framebuffer_create(ResourceId id, const FramebufferLayout &layout
 void GlDevice::buffer_create(ResourceId id, const BufferDesc &desc)
 {
   const trace::Span span("create buffer", desc.name);
-  const Entry entry(*this);
+  const Calls calls(*this);
   const GLuint buffer = create_buffer_of(
       desc.kind == BufferKind::Uniform ? GL_UNIFORM_BUFFER : GL_SHADER_STORAGE_BUFFER, desc.size_bytes);
   label(GL_BUFFER, buffer, desc.name);
@@ -268,7 +266,7 @@ void GlDevice::batch_create(const BatchDesc &desc, const BatchRange &range, std:
                             std::uint32_t index_capacity)
 {
   const trace::Span span("create batch", desc.name);
-  const Entry entry(*this);
+  const Calls calls(*this);
   // The pool of a stream is created for the first batch with that stream. Only batches with the stream grow it.
   PoolSizes sizes = pool_size_;
   const auto need = [&sizes](std::size_t pool, std::size_t bytes) { sizes[pool] = std::max(sizes[pool], bytes); };
@@ -298,7 +296,7 @@ void GlDevice::batch_create(const BatchDesc &desc, const BatchRange &range, std:
 
 void GlDevice::host_batch_create(ResourceId id, const std::string &name, const HostBatch &batch)
 {
-  const Entry entry(*this);
+  const Calls calls(*this);
   if (context_) {
     throw Error("batch '{}': the host's buffers are in another context than this device, which has one of its own",
                 name);
@@ -340,13 +338,12 @@ void GlDevice::host_batch_create(ResourceId id, const std::string &name, const H
 
 void GlDevice::timer_query_create(ResourceId id, const std::string & /*name*/)
 {
-  const Entry entry(*this);
-  glCreateQueries(GL_TIMESTAMP, 2, timers_.insert(id, {}).data());
+  timers_.insert(id, {});
 }
 
 void GlDevice::resource_destroy(ResourceKind kind, ResourceId id)
 {
-  const Entry entry(*this);
+  const Calls calls(*this);
   switch (kind) {
     case ResourceKind::Texture:
       if (textures_.at(id).desc.format != Format::Host) {
@@ -374,24 +371,29 @@ void GlDevice::resource_destroy(ResourceKind kind, ResourceId id)
       glDeleteProgram(programs_.at(id).name);
       programs_.erase(id);
       break;
-    case ResourceKind::TimerQuery:
-      glDeleteQueries(2, timers_.at(id).data());
+    case ResourceKind::TimerQuery: {
+      Timer &timer = timers_.at(id);
+      timer.unused.insert(timer.unused.end(), timer.pending.begin(), timer.pending.end());
+      for (const TimeMarks &marks : timer.unused) {
+        glDeleteQueries(2, marks.data());
+      }
       timers_.erase(id);
       break;
+    }
     case ResourceKind::Batch: host_batches_.erase(id); break;
   }
 }
 
 void GlDevice::buffer_update(ResourceId id, std::size_t offset_bytes, std::span<const std::byte> bytes)
 {
-  const Entry entry(*this);
+  const Calls calls(*this);
   glNamedBufferSubData(buffers_.at(id).name, GLintptr(offset_bytes), GLsizeiptr(bytes.size()), bytes.data());
 }
 
 void GlDevice::texture_upload(ResourceId id, int layer, std::span<const std::byte> texels)
 {
-  const Entry entry(*this);
-  const SavedPixelStore pixel_store(PixelTransfer::Unpack);
+  const Calls calls(*this);
+  host_state_.keep_pixel_store(PixelTransfer::Unpack);
   const auto &[name, desc, buffer] = textures_.at(id);
   const GlFormat format = gl_format(desc.format);
   switch (desc.kind) {
@@ -408,7 +410,7 @@ void GlDevice::texture_upload(ResourceId id, int layer, std::span<const std::byt
 
 void GlDevice::mipmaps_generate(ResourceId id)
 {
-  const Entry entry(*this);
+  const Calls calls(*this);
   const auto &[name, desc, buffer] = textures_.at(id);
   const std::string what = fmt::format("texture '{}'", desc.name);
   check_host_state(what);
@@ -418,7 +420,7 @@ void GlDevice::mipmaps_generate(ResourceId id)
 
 void GlDevice::layers_copy(ResourceId source, ResourceId target, glm::ivec2 size_px, int layers)
 {
-  const Entry entry(*this);
+  const Calls calls(*this);
   const GlTexture &from = textures_.at(source);
   const GlTexture &to = textures_.at(target);
   glCopyImageSubData(from.name, gl_target(from.desc.kind), 0, 0, 0, 0, to.name, gl_target(to.desc.kind), 0, 0, 0, 0,
@@ -428,8 +430,8 @@ void GlDevice::layers_copy(ResourceId source, ResourceId target, glm::ivec2 size
 
 void GlDevice::texture_read(ResourceId id, int layer, std::span<std::byte> texels)
 {
-  const Entry entry(*this);
-  const SavedPixelStore pixel_store(PixelTransfer::Pack);
+  const Calls calls(*this);
+  host_state_.keep_pixel_store(PixelTransfer::Pack);
   const auto &[name, desc, buffer] = textures_.at(id);
   if (desc.kind == TextureKind::Buffer) {
     glGetNamedBufferSubData(buffer, 0, GLsizeiptr(texels.size()), texels.data());

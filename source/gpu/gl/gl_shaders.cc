@@ -123,7 +123,7 @@ void GlDevice::shader_create(const Operation::CreateShader &create, std::vector<
 {
   const trace::Span span(compiled.empty() ? "compile program" : "load program",
                          fmt::format("{} {}", create.desc.name, fmt::join(create.desc.defines, " ")));
-  const Entry entry(*this);
+  const Calls calls(*this);
   GlProgram program{load_compiled(compiled), {}};
   if (program.name == 0) {
     program.name = compile(create.desc, create.stages);

@@ -9,7 +9,7 @@ namespace gnomon::gpu {
 
 namespace {
 
-/** Capabilities that set_draw_defaults() disables. Command lists enable some of them. */
+/** Capabilities that are disabled at the begin of a command list. Lists enable some of them. */
 constexpr std::array<GLenum, 27> used_capabilities = {
     GL_COLOR_LOGIC_OP,
     GL_CULL_FACE,
@@ -68,8 +68,18 @@ GLenum binding_of(GLenum buffer_target)
     case GL_UNIFORM_BUFFER: return GL_UNIFORM_BUFFER_BINDING;
     case GL_SHADER_STORAGE_BUFFER: return GL_SHADER_STORAGE_BUFFER_BINDING;
     case GL_TEXTURE_BUFFER: return GL_TEXTURE_BUFFER_BINDING;
+    case GL_DRAW_INDIRECT_BUFFER: return GL_DRAW_INDIRECT_BUFFER_BINDING;
     default: return GL_NONE;
   }
+}
+
+using IsObject = GLboolean (*)(GLuint name);
+
+/** The name that is bound at \a binding; 0 if there is no such object any more. \see HostState */
+GLuint bound_name(GLenum binding, IsObject is_object)
+{
+  const auto name = GLuint(integer(binding));
+  return name != 0 && is_object(name) == GL_TRUE ? name : 0;
 }
 
 void set_capability(GLenum capability, bool is_enabled)
@@ -80,6 +90,79 @@ void set_capability(GLenum capability, bool is_enabled)
   else {
     glDisable(capability);
   }
+}
+
+GLint program_parameter(GLuint program, GLenum name)
+{
+  GLint value = 0;
+  glGetProgramiv(program, name, &value);
+  return value;
+}
+
+/**
+ * Without a program, OpenGL uses the bound pipeline. Mesa fails to do so if the pipeline was deleted while a program
+ * was in use, and does not unbind it until another one is bound.
+ */
+void use_program(GLuint program)
+{
+  const auto pipeline = GLuint(integer(GL_PROGRAM_PIPELINE_BINDING));
+  if (program != 0 || pipeline == 0 || glIsProgramPipeline(pipeline) == GL_TRUE) {
+    glUseProgram(program);
+    return;
+  }
+  GLuint other = 0;
+  glCreateProgramPipelines(1, &other);
+  glBindProgramPipeline(other);
+  glUseProgram(0);
+  glBindProgramPipeline(0);
+  glDeleteProgramPipelines(1, &other);
+}
+
+GLenum texture_binding_of(GLenum texture_target)
+{
+  switch (texture_target) {
+    case GL_TEXTURE_2D: return GL_TEXTURE_BINDING_2D;
+    case GL_TEXTURE_2D_ARRAY: return GL_TEXTURE_BINDING_2D_ARRAY;
+    case GL_TEXTURE_BUFFER: return GL_TEXTURE_BINDING_BUFFER;
+    default: return GL_NONE;
+  }
+}
+
+bool is_of_target(GLuint texture, GLenum target)
+{
+  GLint value = 0;
+  glGetTextureParameteriv(texture, GL_TEXTURE_TARGET, &value);
+  return GLenum(value) == target;
+}
+
+const std::array<GLenum, 8> &pixel_parameters(PixelTransfer transfer)
+{
+  return transfer == PixelTransfer::Pack ? pack_parameters : unpack_parameters;
+}
+
+/** Tightly packed rows. */
+void set_pixel_store(PixelTransfer transfer)
+{
+  for (const GLenum parameter : pixel_parameters(transfer)) {
+    const bool is_alignment = parameter == GL_PACK_ALIGNMENT || parameter == GL_UNPACK_ALIGNMENT;
+    glPixelStorei(parameter, is_alignment ? 1 : 0);
+  }
+}
+
+/** Sets all state that affects draws and clears and that command lists do not set themselves. */
+void set_draw_defaults()
+{
+  for (const GLenum capability : used_capabilities) {
+    glDisable(capability);
+  }
+  // Disable the test for all viewports: if it is enabled for one of them, Mesa 22.3 drops draws into the others.
+  glDisable(GL_SCISSOR_TEST);
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  glDepthRangeIndexed(0, 0.0, 1.0);
+  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+  glLineWidth(1.0F);
+  glPointSize(1.0F);
+  glProvokingVertex(GL_LAST_VERTEX_CONVENTION);
 }
 
 }  // namespace
@@ -129,111 +212,57 @@ bool raise_gl_error(GLenum error)
   return is_raised;
 }
 
-SavedBufferBinding::SavedBufferBinding(GLenum target) : target_(target), buffer_(integer(binding_of(target))) {}
-
-SavedBufferBinding::~SavedBufferBinding()
+HostState::HostState(bool is_host) : is_host_(is_host)
 {
-  glBindBuffer(target_, GLuint(buffer_));
-}
-
-SavedPixelStore::SavedPixelStore(PixelTransfer transfer)
-    : transfer_(transfer), buffer_(transfer == PixelTransfer::Pack ? GL_PIXEL_PACK_BUFFER : GL_PIXEL_UNPACK_BUFFER)
-{
-  const bool is_pack = transfer == PixelTransfer::Pack;
-  glBindBuffer(is_pack ? GL_PIXEL_PACK_BUFFER : GL_PIXEL_UNPACK_BUFFER, 0);
-  const auto &parameters = is_pack ? pack_parameters : unpack_parameters;
-  for (std::size_t i = 0; i < parameters.size(); i++) {
-    values_[i] = integer(parameters[i]);
-    glPixelStorei(parameters[i], i == 0 ? 1 : 0);
+  if (is_host) {
+    viewport_count_ = integer(GL_MAX_VIEWPORTS);
+  }
+  else {
+    set_draw_defaults();
+    set_pixel_store(PixelTransfer::Pack);
+    set_pixel_store(PixelTransfer::Unpack);
   }
 }
 
-SavedPixelStore::~SavedPixelStore()
+void HostState::keep_draw_state()
 {
-  const auto &parameters = transfer_ == PixelTransfer::Pack ? pack_parameters : unpack_parameters;
-  for (std::size_t i = 0; i < parameters.size(); i++) {
-    glPixelStorei(parameters[i], values_[i]);
+  if (!is_host_ || draw_) {
+    return;
   }
-}
-
-void UsedSlots::add(std::vector<GLuint> &slots, GLuint slot)
-{
-  if (std::ranges::find(slots, slot) == slots.end()) {
-    slots.push_back(slot);
-  }
-}
-
-void UsedSlots::clear()
-{
-  uniform_slots.clear();
-  storage_slots.clear();
-  texture_units.clear();
-  color_count = 0;
-}
-
-void set_draw_defaults()
-{
-  for (const GLenum capability : used_capabilities) {
-    glDisable(capability);
-  }
-  // Disable the test for all viewports: if it is enabled for one of them, Mesa 22.3 drops draws into the others.
-  glDisable(GL_SCISSOR_TEST);
-  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-  glDepthRangeIndexed(0, 0.0, 1.0);
-  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-  glLineWidth(1.0F);
-  glPointSize(1.0F);
-  glProvokingVertex(GL_LAST_VERTEX_CONVENTION);
-}
-
-void SavedDrawState::save_indexed(GLenum target, GLenum start, GLenum size, const std::vector<GLuint> &slots)
-{
-  for (const GLuint slot : slots) {
-    IndexedBuffer &saved = indexed_buffers_.emplace_back(IndexedBuffer{target, slot, 0, 0, 0});
-    glGetIntegeri_v(binding_of(target), slot, &saved.buffer);
-    glGetInteger64i_v(start, slot, &saved.offset_bytes);
-    glGetInteger64i_v(size, slot, &saved.size_bytes);
-  }
-}
-
-SavedDrawState::SavedDrawState(const UsedSlots &slots)
-    : active_texture_(integer(GL_ACTIVE_TEXTURE)),
-      program_(integer(GL_CURRENT_PROGRAM)),
-      vertex_array_(integer(GL_VERTEX_ARRAY_BINDING)),
-      draw_framebuffer_(integer(GL_DRAW_FRAMEBUFFER_BINDING)),
-      indirect_buffer_(integer(GL_DRAW_INDIRECT_BUFFER_BINDING)),
-      uniform_buffer_(integer(GL_UNIFORM_BUFFER_BINDING)),
-      storage_buffer_(integer(GL_SHADER_STORAGE_BUFFER_BINDING)),
-      clip_origin_(integer(GL_CLIP_ORIGIN)),
-      clip_depth_(integer(GL_CLIP_DEPTH_MODE)),
-      depth_function_(integer(GL_DEPTH_FUNC)),
-      cull_face_(integer(GL_CULL_FACE_MODE)),
-      front_face_(integer(GL_FRONT_FACE)),
-      polygon_mode_(integer(GL_POLYGON_MODE)),
-      provoking_vertex_(integer(GL_PROVOKING_VERTEX))
-{
-  glGetBooleanv(GL_DEPTH_WRITEMASK, &depth_mask_);
-  glGetFloatv(GL_LINE_WIDTH, &line_width_);
-  glGetFloatv(GL_POINT_SIZE, &point_size_);
-  glGetFloati_v(GL_VIEWPORT, 0, viewport_.data());
-  glGetIntegeri_v(GL_SCISSOR_BOX, 0, scissor_box_.data());
-  glGetDoublei_v(GL_DEPTH_RANGE, 0, depth_range_.data());
-  const GLint viewport_count = integer(GL_MAX_VIEWPORTS);
-  for (GLint i = 0; i < viewport_count; i++) {
-    scissor_tests_.push_back(glIsEnabledi(GL_SCISSOR_TEST, GLuint(i)));
+  // A program may be deleted and still be in use.
+  const GLuint program = bound_name(GL_CURRENT_PROGRAM, glIsProgram);
+  DrawState &saved = draw_.emplace(DrawState{
+      .program = program != 0 && program_parameter(program, GL_LINK_STATUS) == GL_TRUE ? program : 0,
+      .is_program_deleted = program != 0 && program_parameter(program, GL_DELETE_STATUS) == GL_TRUE,
+      .vertex_array = bound_name(GL_VERTEX_ARRAY_BINDING, glIsVertexArray),
+      .draw_framebuffer = bound_name(GL_DRAW_FRAMEBUFFER_BINDING, glIsFramebuffer),
+      .clip_origin = integer(GL_CLIP_ORIGIN),
+      .clip_depth = integer(GL_CLIP_DEPTH_MODE),
+      .depth_function = integer(GL_DEPTH_FUNC),
+      .cull_face = integer(GL_CULL_FACE_MODE),
+      .front_face = integer(GL_FRONT_FACE),
+      .polygon_mode = integer(GL_POLYGON_MODE),
+      .provoking_vertex = integer(GL_PROVOKING_VERTEX),
+  });
+  keep_buffer(GL_DRAW_INDIRECT_BUFFER);
+  glGetBooleanv(GL_DEPTH_WRITEMASK, &saved.depth_mask);
+  glGetFloatv(GL_LINE_WIDTH, &saved.line_width);
+  glGetFloatv(GL_POINT_SIZE, &saved.point_size);
+  glGetFloati_v(GL_VIEWPORT, 0, saved.viewport.data());
+  glGetIntegeri_v(GL_SCISSOR_BOX, 0, saved.scissor_box.data());
+  glGetDoublei_v(GL_DEPTH_RANGE, 0, saved.depth_range.data());
+  for (GLint i = 0; i < viewport_count_; i++) {
+    saved.scissor_tests.push_back(glIsEnabledi(GL_SCISSOR_TEST, GLuint(i)));
   }
   for (const GLenum capability : used_capabilities) {
-    capabilities_.push_back(glIsEnabled(capability));
+    saved.capabilities.push_back(glIsEnabled(capability));
   }
-  save_indexed(GL_UNIFORM_BUFFER, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE, slots.uniform_slots);
-  save_indexed(GL_SHADER_STORAGE_BUFFER, GL_SHADER_STORAGE_BUFFER_START, GL_SHADER_STORAGE_BUFFER_SIZE,
-               slots.storage_slots);
-  for (const GLuint unit : slots.texture_units) {
-    glActiveTexture(GL_TEXTURE0 + unit);
-    texture_units_.push_back({unit, integer(GL_TEXTURE_BINDING_2D), integer(GL_TEXTURE_BINDING_2D_ARRAY),
-                              integer(GL_TEXTURE_BINDING_BUFFER), integer(GL_SAMPLER_BINDING)});
-  }
-  for (GLuint i = 0; i < slots.color_count; i++) {
+  set_draw_defaults();
+}
+
+void HostState::keep_color_buffers(GLuint count)
+{
+  for (auto i = GLuint(color_buffers_.size()); is_host_ && i < count; i++) {
     ColorBuffer &saved = color_buffers_.emplace_back();
     saved.is_blended = glIsEnabledi(GL_BLEND, i);
     glGetBooleani_v(GL_COLOR_WRITEMASK, i, saved.mask.data());
@@ -246,30 +275,70 @@ SavedDrawState::SavedDrawState(const UsedSlots &slots)
   }
 }
 
-SavedDrawState::~SavedDrawState()
+void HostState::keep_buffer(GLenum target)
 {
-  for (const TextureUnit &saved : texture_units_) {
-    glActiveTexture(GL_TEXTURE0 + saved.unit);
-    glBindTexture(GL_TEXTURE_2D, GLuint(saved.texture_2d));
-    glBindTexture(GL_TEXTURE_2D_ARRAY, GLuint(saved.texture_2d_array));
-    glBindTexture(GL_TEXTURE_BUFFER, GLuint(saved.texture_buffer));
-    glBindSampler(saved.unit, GLuint(saved.sampler));
+  if (is_host_ && std::ranges::find(buffers_, target, &Buffer::target) == buffers_.end()) {
+    buffers_.push_back({target, bound_name(binding_of(target), glIsBuffer)});
   }
-  glActiveTexture(GLenum(active_texture_));
-  for (const IndexedBuffer &saved : indexed_buffers_) {
-    // A size of 0 means that the whole buffer is bound, even if its size changes later.
-    if (saved.buffer == 0 || saved.size_bytes == 0) {
-      glBindBufferBase(saved.target, saved.slot, GLuint(saved.buffer));
-    }
-    else {
-      glBindBufferRange(saved.target, saved.slot, GLuint(saved.buffer), GLintptr(saved.offset_bytes),
-                        GLsizeiptr(saved.size_bytes));
+}
+
+void HostState::keep_indexed_buffer(GLenum target, GLuint slot)
+{
+  const auto is_kept = [&](const IndexedBuffer &kept) { return kept.target == target && kept.slot == slot; };
+  if (!is_host_ || std::ranges::any_of(indexed_buffers_, is_kept)) {
+    return;
+  }
+  // Binding an index changes the binding without an index, too.
+  keep_buffer(target);
+  GLint name = 0;
+  glGetIntegeri_v(binding_of(target), slot, &name);
+  IndexedBuffer &saved = indexed_buffers_.emplace_back(
+      IndexedBuffer{target, slot, name != 0 && glIsBuffer(GLuint(name)) == GL_TRUE ? GLuint(name) : 0, 0, 0});
+  if (saved.name != 0) {
+    const bool is_uniform = target == GL_UNIFORM_BUFFER;
+    glGetInteger64i_v(is_uniform ? GL_UNIFORM_BUFFER_START : GL_SHADER_STORAGE_BUFFER_START, slot, &saved.offset_bytes);
+    glGetInteger64i_v(is_uniform ? GL_UNIFORM_BUFFER_SIZE : GL_SHADER_STORAGE_BUFFER_SIZE, slot, &saved.size_bytes);
+  }
+}
+
+void HostState::keep_texture(GLuint unit, GLenum target)
+{
+  const auto is_kept = [&](const BoundTexture &kept) { return kept.unit == unit && kept.target == target; };
+  if (!is_host_ || std::ranges::any_of(textures_, is_kept)) {
+    return;
+  }
+  if (!active_texture_) {
+    active_texture_ = integer(GL_ACTIVE_TEXTURE);
+  }
+  glActiveTexture(GL_TEXTURE0 + unit);
+  const GLuint texture = bound_name(texture_binding_of(target), glIsTexture);
+  textures_.push_back({unit, target, texture != 0 && is_of_target(texture, target) ? texture : 0});
+  if (std::ranges::find(samplers_, unit, &BoundSampler::unit) == samplers_.end()) {
+    samplers_.push_back({unit, bound_name(GL_SAMPLER_BINDING, glIsSampler)});
+  }
+}
+
+void HostState::keep_pixel_store(PixelTransfer transfer)
+{
+  if (!is_host_ || std::ranges::find(pixel_stores_, transfer, &PixelStore::transfer) != pixel_stores_.end()) {
+    return;
+  }
+  const GLenum target = transfer == PixelTransfer::Pack ? GL_PIXEL_PACK_BUFFER : GL_PIXEL_UNPACK_BUFFER;
+  keep_buffer(target);
+  glBindBuffer(target, 0);
+  PixelStore &saved = pixel_stores_.emplace_back(PixelStore{transfer, {}});
+  std::ranges::transform(pixel_parameters(transfer), saved.values.begin(), integer);
+  set_pixel_store(transfer);
+}
+
+void HostState::restore()
+{
+  restore_bindings();
+  for (const PixelStore &saved : pixel_stores_) {
+    for (std::size_t i = 0; i < saved.values.size(); i++) {
+      glPixelStorei(pixel_parameters(saved.transfer)[i], saved.values[i]);
     }
   }
-  // Restore these after the indexed bindings, because binding an index changes them too.
-  glBindBuffer(GL_UNIFORM_BUFFER, GLuint(uniform_buffer_));
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, GLuint(storage_buffer_));
-  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, GLuint(indirect_buffer_));
   for (GLuint i = 0; i < color_buffers_.size(); i++) {
     const ColorBuffer &saved = color_buffers_[i];
     if (saved.is_blended) {
@@ -283,29 +352,76 @@ SavedDrawState::~SavedDrawState()
                          GLenum(saved.functions[3]));
     glBlendEquationSeparatei(i, GLenum(saved.equations[0]), GLenum(saved.equations[1]));
   }
-  for (std::size_t i = 0; i < used_capabilities.size(); i++) {
-    set_capability(used_capabilities[i], capabilities_[i] == GL_TRUE);
+  if (draw_) {
+    restore(*draw_);
   }
-  for (GLuint i = 0; i < scissor_tests_.size(); i++) {
-    if (scissor_tests_[i]) {
+  pixel_stores_.clear();
+  color_buffers_.clear();
+  draw_.reset();
+}
+
+void HostState::restore_bindings()
+{
+  for (const BoundTexture &saved : textures_) {
+    glActiveTexture(GL_TEXTURE0 + saved.unit);
+    glBindTexture(saved.target, saved.name);
+  }
+  for (const BoundSampler &saved : samplers_) {
+    glBindSampler(saved.unit, saved.name);
+  }
+  if (active_texture_) {
+    glActiveTexture(GLenum(*active_texture_));
+  }
+  for (const IndexedBuffer &saved : indexed_buffers_) {
+    // A size of 0 means that the whole buffer is bound, even if its size changes later.
+    if (saved.name == 0 || saved.size_bytes == 0) {
+      glBindBufferBase(saved.target, saved.slot, saved.name);
+    }
+    else {
+      glBindBufferRange(saved.target, saved.slot, saved.name, GLintptr(saved.offset_bytes),
+                        GLsizeiptr(saved.size_bytes));
+    }
+  }
+  // After the indexed bindings, which change these.
+  for (const Buffer &saved : buffers_) {
+    glBindBuffer(saved.target, saved.name);
+  }
+  textures_.clear();
+  samplers_.clear();
+  active_texture_.reset();
+  indexed_buffers_.clear();
+  buffers_.clear();
+}
+
+void HostState::restore(const DrawState &saved) const
+{
+  for (std::size_t i = 0; i < used_capabilities.size(); i++) {
+    set_capability(used_capabilities[i], saved.capabilities[i] == GL_TRUE);
+  }
+  for (GLuint i = 0; i < saved.scissor_tests.size(); i++) {
+    if (saved.scissor_tests[i]) {
       glEnablei(GL_SCISSOR_TEST, i);
     }
   }
-  glViewportIndexedfv(0, viewport_.data());
-  glScissorIndexedv(0, scissor_box_.data());
-  glDepthRangeIndexed(0, depth_range_[0], depth_range_[1]);
-  glClipControl(GLenum(clip_origin_), GLenum(clip_depth_));
-  glDepthFunc(GLenum(depth_function_));
-  glDepthMask(depth_mask_);
-  glCullFace(GLenum(cull_face_));
-  glFrontFace(GLenum(front_face_));
-  glPolygonMode(GL_FRONT_AND_BACK, GLenum(polygon_mode_));
-  glLineWidth(line_width_);
-  glPointSize(point_size_);
-  glProvokingVertex(GLenum(provoking_vertex_));
-  glUseProgram(GLuint(program_));
-  glBindVertexArray(GLuint(vertex_array_));
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(draw_framebuffer_));
+  glViewportIndexedfv(0, saved.viewport.data());
+  glScissorIndexedv(0, saved.scissor_box.data());
+  glDepthRangeIndexed(0, saved.depth_range[0], saved.depth_range[1]);
+  glClipControl(GLenum(saved.clip_origin), GLenum(saved.clip_depth));
+  glDepthFunc(GLenum(saved.depth_function));
+  glDepthMask(saved.depth_mask);
+  glCullFace(GLenum(saved.cull_face));
+  glFrontFace(GLenum(saved.front_face));
+  glPolygonMode(GL_FRONT_AND_BACK, GLenum(saved.polygon_mode));
+  glLineWidth(saved.line_width);
+  glPointSize(saved.point_size);
+  glProvokingVertex(GLenum(saved.provoking_vertex));
+  // A program that was flagged for deletion still exists if another context uses it. Otherwise it ended when it was
+  // replaced, and a program of the device may have its name now.
+  const bool exists = !saved.is_program_deleted || (glIsProgram(saved.program) == GL_TRUE &&
+                                                    program_parameter(saved.program, GL_DELETE_STATUS) == GL_TRUE);
+  use_program(exists ? saved.program : 0);
+  glBindVertexArray(saved.vertex_array);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, saved.draw_framebuffer);
 }
 
 std::string unsaveable_state(GLuint &probe_query)

@@ -4,6 +4,7 @@
 #include <epoxy/gl.h>
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,88 +23,65 @@ namespace gnomon::gpu {
  */
 bool raise_gl_error(GLenum error);
 
-/** Saves the non-indexed buffer binding of a target, and restores it on destruction. */
-class SavedBufferBinding {
- public:
-  explicit SavedBufferBinding(GLenum target);
-  ~SavedBufferBinding();
-  SavedBufferBinding(const SavedBufferBinding &) = delete;
-  SavedBufferBinding &operator=(const SavedBufferBinding &) = delete;
-
- private:
-  GLenum target_;
-  GLint buffer_ = 0;
-};
-
 enum class PixelTransfer { Pack, Unpack };
 
 /**
- * Sets up pixel transfers in one direction with tightly packed rows in client memory. Restores the previous state on
- * destruction.
+ * The state of a context that calls of a device change. In a host's context, each function keeps what the host has
+ * set, before the first change of it; restore() sets it again, and the next change is kept anew. In a context of the
+ * device, nothing is kept.
+ *
+ * A name that the host has deleted while it was bound, perhaps in a context that shares objects with this one, cannot
+ * be bound again. Neither can a program that is flagged for deletion, unless another context uses it, or one that did
+ * not link a second time. What cannot be bound again is left unbound. No call here makes an error of OpenGL for it.
+ *
+ * A name that is free again may be given to another object, therefore names are looked up before the device changes
+ * anything.
  */
-class SavedPixelStore {
+class HostState {
  public:
-  explicit SavedPixelStore(PixelTransfer transfer);
-  ~SavedPixelStore();
-  SavedPixelStore(const SavedPixelStore &) = delete;
-  SavedPixelStore &operator=(const SavedPixelStore &) = delete;
+  /** \a is_host: whether the current context is a host's. Otherwise sets the state that the functions below set. */
+  explicit HostState(bool is_host);
+
+  /**
+   * Before the first draw or clear: program, vertex array, draw framebuffer, indirect buffer, capabilities, depth,
+   * culling, viewport 0, scissor tests, clip control and the modes of polygons, lines and points. In a host's context,
+   * sets what a command list does not set itself.
+   */
+  void keep_draw_state();
+  /** Before changes of blending and colour masks of the draw buffers below \a count. */
+  void keep_color_buffers(GLuint count);
+  /** Before a binding of an index of \a target: GL_UNIFORM_BUFFER or GL_SHADER_STORAGE_BUFFER. */
+  void keep_indexed_buffer(GLenum target, GLuint slot);
+  /** Before a binding of \a target without an index. */
+  void keep_buffer(GLenum target);
+  /** Before a binding of a texture of \a target, and of a sampler, to \a unit. */
+  void keep_texture(GLuint unit, GLenum target);
+  /** Before a transfer of pixels from or to memory. In a host's context, sets tightly packed rows. */
+  void keep_pixel_store(PixelTransfer transfer);
+
+  void restore();
 
  private:
-  static constexpr std::size_t parameter_count = 8;
-  PixelTransfer transfer_;
-  SavedBufferBinding buffer_;
-  std::array<GLint, parameter_count> values_{};
-};
-
-/** Indices of the indexed state that a command list changes. */
-struct UsedSlots {
-  std::vector<GLuint> uniform_slots;
-  std::vector<GLuint> storage_slots;
-  std::vector<GLuint> texture_units;
-  /** Number of used draw buffers, beginning with draw buffer 0. */
-  GLuint color_count = 0;
-
-  /** Add \a slot to \a slots if it is not in it. */
-  static void add(std::vector<GLuint> &slots, GLuint slot);
-  void clear();
-};
-
-/** Set all state that affects draws and clears and that command lists do not set themselves. */
-void set_draw_defaults();
-
-/**
- * Saves all state of the current context that set_draw_defaults() and a command list change, and restores it on
- * destruction. A submission changes no other state. The saved state is:
- * - program, vertex array and draw framebuffer;
- * - bindings of the indirect, uniform and storage buffers, and the indexed bindings of the used slots;
- * - textures (2D, 2D array, buffer) and samplers of the used units, and the active texture unit;
- * - viewport, scissor box and depth range of viewport 0, and the scissor tests of all viewports;
- * - clip control, polygon mode and provoking vertex;
- * - the capabilities listed in gl_state.cc;
- * - blending and colour mask of the used draw buffers;
- * - depth function, depth mask, cull face and front face.
- */
-class SavedDrawState {
- public:
-  explicit SavedDrawState(const UsedSlots &slots);
-  ~SavedDrawState();
-  SavedDrawState(const SavedDrawState &) = delete;
-  SavedDrawState &operator=(const SavedDrawState &) = delete;
-
- private:
+  static constexpr std::size_t pixel_parameter_count = 8;
+  struct Buffer {
+    GLenum target;
+    GLuint name;
+  };
   struct IndexedBuffer {
     GLenum target;
     GLuint slot;
-    GLint buffer;
+    GLuint name;
     GLint64 offset_bytes;
     GLint64 size_bytes;
   };
-  struct TextureUnit {
+  struct BoundTexture {
     GLuint unit;
-    GLint texture_2d;
-    GLint texture_2d_array;
-    GLint texture_buffer;
-    GLint sampler;
+    GLenum target;
+    GLuint name;
+  };
+  struct BoundSampler {
+    GLuint unit;
+    GLuint name;
   };
   struct ColorBuffer {
     GLboolean is_blended;
@@ -111,34 +89,46 @@ class SavedDrawState {
     std::array<GLint, 4> functions;
     std::array<GLint, 2> equations;
   };
-  void save_indexed(GLenum target, GLenum start, GLenum size, const std::vector<GLuint> &slots);
+  struct PixelStore {
+    PixelTransfer transfer;
+    std::array<GLint, pixel_parameter_count> values;
+  };
+  struct DrawState {
+    GLuint program = 0;
+    bool is_program_deleted = false;
+    GLuint vertex_array = 0;
+    GLuint draw_framebuffer = 0;
+    /** In the order of used_capabilities in gl_state.cc. */
+    std::vector<GLboolean> capabilities{};
+    /** Indexed by viewport. */
+    std::vector<GLboolean> scissor_tests{};
+    std::array<GLfloat, 4> viewport{};
+    std::array<GLint, 4> scissor_box{};
+    std::array<GLdouble, 2> depth_range{};
+    GLint clip_origin = 0;
+    GLint clip_depth = 0;
+    GLint depth_function = 0;
+    GLboolean depth_mask = GL_FALSE;
+    GLint cull_face = 0;
+    GLint front_face = 0;
+    GLint polygon_mode = 0;
+    GLfloat line_width = 1.0F;
+    GLfloat point_size = 1.0F;
+    GLint provoking_vertex = 0;
+  };
+  void restore_bindings();
+  void restore(const DrawState &saved) const;
 
+  bool is_host_;
+  GLint viewport_count_ = 0;
+  std::optional<DrawState> draw_;
+  std::optional<GLint> active_texture_;
+  std::vector<Buffer> buffers_;
   std::vector<IndexedBuffer> indexed_buffers_;
-  std::vector<TextureUnit> texture_units_;
+  std::vector<BoundTexture> textures_;
+  std::vector<BoundSampler> samplers_;
   std::vector<ColorBuffer> color_buffers_;
-  std::vector<GLboolean> capabilities_;
-  /** Indexed by viewport. */
-  std::vector<GLboolean> scissor_tests_;
-  GLint active_texture_ = 0;
-  GLint program_ = 0;
-  GLint vertex_array_ = 0;
-  GLint draw_framebuffer_ = 0;
-  GLint indirect_buffer_ = 0;
-  GLint uniform_buffer_ = 0;
-  GLint storage_buffer_ = 0;
-  std::array<GLfloat, 4> viewport_{};
-  std::array<GLint, 4> scissor_box_{};
-  std::array<GLdouble, 2> depth_range_{};
-  GLint clip_origin_ = 0;
-  GLint clip_depth_ = 0;
-  GLint depth_function_ = 0;
-  GLboolean depth_mask_ = GL_FALSE;
-  GLint cull_face_ = 0;
-  GLint front_face_ = 0;
-  GLint polygon_mode_ = 0;
-  GLfloat line_width_ = 1.0F;
-  GLfloat point_size_ = 1.0F;
-  GLint provoking_vertex_ = 0;
+  std::vector<PixelStore> pixel_stores_;
 };
 
 /**

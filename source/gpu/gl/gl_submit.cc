@@ -25,63 +25,31 @@ void set_capability(GLenum capability, bool is_enabled)
 
 }  // namespace
 
-void GlDevice::collect_slots(const CommandList &list)
-{
-  used_slots_.clear();
-  for (const Command &command : list.commands()) {
-    switch (command.kind) {
-      case CommandKind::BeginPass:
-        // In a pass of a host framebuffer (id 0), begin_pass masks all draw buffers except for the first.
-        used_slots_.color_count =
-            std::max(used_slots_.color_count, command.id == 0 ? GLuint(limits().color_attachment_max)
-                                                              : framebuffers_.at(command.id).color_count);
-        break;
-      case CommandKind::SetShader:
-        for (const DeclaredSampler &sampler : programs_.at(command.id).samplers) {
-          UsedSlots::add(used_slots_.texture_units, sampler.unit);
-        }
-        break;
-      case CommandKind::BindUniform:
-      case CommandKind::PushConstants: UsedSlots::add(used_slots_.uniform_slots, command.slot); break;
-      case CommandKind::BindStorage: UsedSlots::add(used_slots_.storage_slots, command.slot); break;
-      case CommandKind::BindTexture: UsedSlots::add(used_slots_.texture_units, command.slot); break;
-      default: break;
-    }
-  }
-}
-
 void GlDevice::list_submit(const CommandList &list)
 {
   const trace::Span span("submit", list.passes().empty() ? std::string_view() : list.name_of(list.passes().front()));
-  const Entry entry(*this);
+  const Calls calls(*this);
   check_host_state("submit");
-  {
-    std::optional<SavedDrawState> saved;
-    if (!context_) {
-      collect_slots(list);
-      saved.emplace(used_slots_);
-    }
-    try {
-      execute(list);
-    }
-    catch (...) {
-      if (pass_) {
-        end_pass();
-      }
-      release_buffers();
-      stream_.end();
-      throw;
+  host_state_.keep_draw_state();
+  try {
+    execute(list);
+  }
+  catch (...) {
+    if (pass_) {
+      end_pass();
     }
     release_buffers();
     stream_.end();
+    throw;
   }
+  release_buffers();
+  stream_.end();
   check("submit");
 }
 
 void GlDevice::execute(const CommandList &list)
 {
   write_stream(list);
-  set_draw_defaults();
   program_ = nullptr;
   objects_ = 0;
   host_batch_ = nullptr;
@@ -114,6 +82,7 @@ void GlDevice::execute(const CommandList &list)
         }
         break;
       case CommandKind::PushConstants:
+        host_state_.keep_indexed_buffer(GL_UNIFORM_BUFFER, command.slot);
         glBindBufferRange(GL_UNIFORM_BUFFER, command.slot, stream_.buffer(), GLintptr(written(command)),
                           GLsizeiptr(command.count));
         break;
@@ -292,6 +261,7 @@ void GlDevice::begin_pass(std::string_view name, const CommandList::PassInfo &pa
   if (actions.reads_attachments) {
     glTextureBarrier();
   }
+  host_state_.keep_color_buffers(pass.host_framebuffer ? GLuint(limits().color_attachment_max) : color_count_);
   for (GLuint i = 1; pass.host_framebuffer && i < GLuint(limits().color_attachment_max); i++) {
     glColorMaski(i, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   }
@@ -378,6 +348,7 @@ void GlDevice::bind_range(const Command &command)
   const GlBuffer &buffer = buffers_.at(command.id);
   const std::size_t size = command.count > 0 ? command.count : buffer.size_bytes - command.first;
   const GLenum target = command.kind == CommandKind::BindUniform ? GL_UNIFORM_BUFFER : GL_SHADER_STORAGE_BUFFER;
+  host_state_.keep_indexed_buffer(target, command.slot);
   glBindBufferRange(target, command.slot, buffer.name, GLintptr(command.first), GLsizeiptr(size));
 }
 
@@ -391,7 +362,9 @@ void GlDevice::bind_texture(const Command &command)
     return;
   }
   bound_textures_[command.slot] = GL_TEXTURE;
-  glBindTextureUnit(command.slot, textures_.at(command.id).name);
+  const GlTexture &texture = textures_.at(command.id);
+  host_state_.keep_texture(command.slot, gl_target(texture.desc.kind));
+  glBindTextureUnit(command.slot, texture.name);
   glBindSampler(command.slot, command.first == 0 ? 0 : samplers_.at(command.first));
 }
 
@@ -404,6 +377,7 @@ void GlDevice::complete_textures()
     GLenum &bound = bound_textures_[sampler.unit];
     if (bound != GL_TEXTURE && bound != sampler.target) {
       const Dummy &one = dummy(sampler);
+      host_state_.keep_texture(sampler.unit, sampler.target);
       glBindTextureUnit(sampler.unit, one.texture);
       glBindSampler(sampler.unit, one.sampler);
       bound = sampler.target;

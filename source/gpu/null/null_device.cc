@@ -96,7 +96,7 @@ class NullDevice final : public Device {
   {
     before("mark time");
   }
-  std::optional<double> seconds_between_marks(ResourceId /*query*/) override
+  std::optional<double> seconds_take(ResourceId /*query*/) override
   {
     return std::nullopt;
   }
