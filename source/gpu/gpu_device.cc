@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 namespace gnomon::gpu {
 
@@ -24,6 +25,7 @@ Device::~Device() = default;
 
 void Device::free_live_resources()
 {
+  trim_shared_shaders(0);
   for (const std::string &resource : live_resources()) {
     message(fmt::format("{} is destroyed with its device; its owner should be destroyed first", resource));
   }
@@ -188,10 +190,17 @@ bool Device::has_batch_data(std::uint32_t first_index, std::uint32_t index_count
 
 std::vector<LiveResource> Device::live() const
 {
+  std::set<ResourceId> unused_shaders;
+  for (const auto &[key, kept] : shared_shaders_) {
+    if (kept.shared.use_count() == 1) {
+      unused_shaders.insert(kept.shared->shader.id());
+    }
+  }
   std::vector<LiveResource> resources;
   for (std::size_t kind = 0; kind < kind_count; kind++) {
     for (const Slot &slot : slots_[kind]) {
-      if (slot.is_live) {
+      const bool is_unused = ResourceKind(kind) == ResourceKind::Shader && unused_shaders.contains(slot.id);
+      if (slot.is_live && !is_unused) {
         resources.push_back({ResourceKind(kind), slot.info.name, slot.detail, slot.size_bytes, slot.upload_bytes});
       }
     }

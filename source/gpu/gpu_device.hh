@@ -83,6 +83,16 @@ class Device {
    */
   [[nodiscard]] Shader create_shader(const ShaderDesc &desc, const ShaderFiles &files,
                                      const ShaderReflection &reflection, const ShaderFiles &stand_in = {});
+  /**
+   * The program of \a desc, which all users on this device share. If the device has none, or lost the packet that
+   * created it, \a make creates it. \a text: what the program depends on besides \a desc, such as the text of a
+   * function; equal arguments must mean equal programs.
+   *
+   * A program without users is kept for the next one: the device keeps the unused_shader_max that were asked for last.
+   */
+  [[nodiscard]] std::shared_ptr<SharedShader> shared_shader(const ShaderDesc &desc, std::string_view text,
+                                                            const std::function<void(SharedShader &made)> &make);
+  static constexpr std::size_t unused_shader_max = 64;
   [[nodiscard]] TimerQuery create_timer_query(std::string name);
 
   /** Write \a bytes to \a buffer. Lists submitted later read the new content; lists submitted before do not. */
@@ -201,7 +211,7 @@ class Device {
   /** Whether live batches own all indices of the range and the vertex \a base_vertex. */
   [[nodiscard]] bool has_batch_data(std::uint32_t first_index, std::uint32_t index_count,
                                     std::int32_t base_vertex) const;
-  /** All live resources, sorted by kind and then by index. */
+  /** All live resources but shared programs without users, sorted by kind and then by index. */
   [[nodiscard]] std::vector<LiveResource> live() const;
   /** Description of \a resource. \pre it belongs to this device and is not empty */
   [[nodiscard]] LiveResource live(const Resource &resource) const;
@@ -276,6 +286,11 @@ class Device {
   friend class Recording;
   friend class Resource;
 
+  struct KeptShader {
+    std::shared_ptr<SharedShader> shared;
+    /** Increases with each request. */
+    std::uint64_t asked = 0;
+  };
   struct Slot {
     /** Id of the resource that uses this index now, or used it last. */
     ResourceId id = 0;
@@ -308,6 +323,8 @@ class Device {
   {
     return recording_ ? recording_->memory_.copy(values) : values;
   }
+  /** Destroys shared programs without users until at most \a count_max of them exist. */
+  void trim_shared_shaders(std::size_t count_max);
   BatchRange allocate_range(const BatchDesc &desc);
   void free_range(const BatchRange &range);
   void count_upload(ResourceKind kind, ResourceId id, std::size_t bytes);
@@ -358,6 +375,9 @@ class Device {
   std::array<std::vector<ResourceId>, kind_count> free_ids_;
   RangeAllocator vertices_;
   RangeAllocator indices_;
+  /** By description and text. */
+  std::map<std::string, KeptShader, std::less<>> shared_shaders_;
+  std::uint64_t shared_shaders_asked_ = 0;
   Packet *recording_ = nullptr;
   std::uint64_t serial_ = 0;
   std::vector<InFlight> in_flight_;

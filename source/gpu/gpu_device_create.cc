@@ -256,18 +256,26 @@ void Device::free_range(const BatchRange &range)
   indices_.free(range.first_index, range.index_count);
 }
 
-static void check_storage_blocks(std::string_view name, const ShaderInterface &interface, const Limits &limits)
+static void check_limits(std::string_view name, const ShaderInterface &interface, const Limits &limits)
 {
-  for (const auto &[stage, max] : {std::pair(ShaderStage::Vertex, limits.vertex_storage_block_max),
-                                   std::pair(ShaderStage::Geometry, limits.geometry_storage_block_max),
-                                   std::pair(ShaderStage::Fragment, limits.fragment_storage_block_max)}) {
-    const auto count = std::ranges::count_if(interface.bindings, [&](const ShaderInterface::Binding &binding) {
-      return binding.kind == BindingKind::StorageBlock && (binding.stages & (1U << unsigned(stage))) != 0;
-    });
-    if (count > max) {
-      throw Error("shader '{}': {} storage blocks in the {} stage, but this device supports {}", name, count,
-                  to_string(stage), max);
-    }
+  for (const ShaderStage stage : {ShaderStage::Vertex, ShaderStage::Geometry, ShaderStage::Fragment}) {
+    const auto check = [&](BindingKind kind, int max, std::string_view what) {
+      const auto count = std::ranges::count_if(interface.bindings, [&](const ShaderInterface::Binding &binding) {
+        return binding.kind == kind && (binding.stages & (1U << unsigned(stage))) != 0;
+      });
+      if (count > max) {
+        throw Error("shader '{}': {} {} in the {} stage, but this device supports {}", name, count, what,
+                    to_string(stage), max);
+      }
+    };
+    const Limits::Stage &most = limits.stages[std::size_t(stage)];
+    check(BindingKind::StorageBlock, most.storage_block_max, "storage blocks");
+    check(BindingKind::UniformBlock, most.uniform_block_max, "uniform blocks");
+    check(BindingKind::Texture, most.sampler_max, "samplers");
+  }
+  if (interface.varying_locations > limits.varying_location_max) {
+    throw Error("shader '{}': {} locations of values that a stage passes to the next, but this device supports {}",
+                name, interface.varying_locations, limits.varying_location_max);
   }
 }
 
@@ -277,7 +285,7 @@ Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files, c
   std::vector<ShaderSource> stages = preprocess(desc, files);
   std::vector<ShaderSource> stand_in_stages = stand_in ? preprocess(desc, stand_in) : std::vector<ShaderSource>();
   ShaderInterface interface = reflection(desc.name, stages);
-  check_storage_blocks(desc.name, interface, limits_);
+  check_limits(desc.name, interface, limits_);
   const std::string detail = fmt::format("{}", fmt::join(desc.defines, " "));
   Resource resource = make(ResourceKind::Shader, {desc.name, interface}, detail, 0, [&](ResourceId id) {
     std::vector<std::string> samplers;
@@ -289,6 +297,36 @@ Shader Device::create_shader(const ShaderDesc &desc, const ShaderFiles &files, c
     return Operation::CreateShader{id, desc, std::move(stages), std::move(samplers), std::move(stand_in_stages)};
   });
   return {std::move(resource), desc.name, std::move(interface)};
+}
+
+std::shared_ptr<SharedShader> Device::shared_shader(const ShaderDesc &desc, std::string_view text,
+                                                    const std::function<void(SharedShader &made)> &make)
+{
+  std::string key = fmt::format("{}\n{}\n{}\n{}\n{}\n{}", desc.name, desc.vertex_path, desc.geometry_path,
+                                desc.fragment_path, fmt::join(desc.defines, " "), text);
+  auto found = shared_shaders_.find(key);
+  if (found == shared_shaders_.end() || !found->second.shared->shader) {
+    const auto made = std::make_shared<SharedShader>();
+    make(*made);
+    trim_shared_shaders(unused_shader_max);
+    found = shared_shaders_.insert_or_assign(std::move(key), KeptShader{made}).first;
+  }
+  found->second.asked = ++shared_shaders_asked_;
+  return found->second.shared;
+}
+
+void Device::trim_shared_shaders(std::size_t count_max)
+{
+  std::vector<std::map<std::string, KeptShader, std::less<>>::iterator> unused;
+  for (auto kept = shared_shaders_.begin(); kept != shared_shaders_.end(); kept++) {
+    if (kept->second.shared.use_count() == 1) {
+      unused.push_back(kept);
+    }
+  }
+  std::ranges::sort(unused, {}, [](const auto &kept) { return kept->second.asked; });
+  for (std::size_t i = 0; i + count_max < unused.size(); i++) {
+    shared_shaders_.erase(unused[i]);
+  }
 }
 
 TimerQuery Device::create_timer_query(std::string name)

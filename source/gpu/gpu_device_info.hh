@@ -6,6 +6,7 @@
 #include "gpu_shader.hh"
 #include "gpu_texture.hh"
 
+#include <array>
 #include <string>
 #include <variant>
 #include <vector>
@@ -27,10 +28,19 @@ struct Limits {
   bool is_software = false;
   /** Alignment in bytes of BufferRange::offset_bytes, for uniform and storage blocks. */
   std::uint32_t uniform_offset_alignment = 256;
-  /** Maximum number of storage blocks in each stage. OpenGL guarantees 8 in the fragment stage and 0 in the others. */
-  int vertex_storage_block_max = 8;
-  int geometry_storage_block_max = 8;
-  int fragment_storage_block_max = 8;
+  /** Maximum numbers of what one stage of a program reads. */
+  struct Stage {
+    /** OpenGL guarantees 8 in the fragment stage and 0 in the others. */
+    int storage_block_max = 8;
+    /** OpenGL guarantees 14. */
+    int uniform_block_max = 14;
+    /** OpenGL guarantees 16, and common devices have 32. */
+    int sampler_max = 32;
+  };
+  /** Indexed by ShaderStage. */
+  std::array<Stage, 3> stages{};
+  /** Maximum of ShaderInterface::varying_locations. OpenGL guarantees 16, and common devices have 31 or 32. */
+  int varying_location_max = 31;
   /** Whether vertex shaders may write `gl_Layer` (GL_ARB_shader_viewport_layer_array). */
   bool has_vertex_layer = true;
 };

@@ -26,6 +26,7 @@ ShaderInterface InterfaceTable::interface_of(std::uint32_t key) const
   }
   ShaderInterface interface;
   interface.reads_object = variant->reads_object;
+  interface.varying_locations = variant->varying_locations;
   for (std::size_t i = 0; i < bindings.size(); i++) {
     if ((variant->bindings >> i & 1U) != 0) {
       const Binding &binding = bindings[i];

@@ -37,6 +37,8 @@ struct InterfaceTable {
     bool has_push_constants;
     /** As ShaderInterface::reads_object. */
     bool reads_object;
+    /** As ShaderInterface::varying_locations. */
+    int varying_locations;
 
     bool operator==(const Variant &) const = default;
   };

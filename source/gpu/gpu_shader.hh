@@ -81,6 +81,8 @@ struct ShaderInterface {
   int push_constant_slot = 0;
   /** Whether the vertex shader reads fields of the object of a call. \see CommandList::bind_instances */
   bool reads_object = false;
+  /** Number of locations, of four components each, up to the last one that a stage passes to the next. */
+  int varying_locations = 0;
 
   bool operator==(const ShaderInterface &) const = default;
 
@@ -124,6 +126,13 @@ class Shader : public Resource {
   }
   std::string name_;
   ShaderInterface interface_;
+};
+
+/** A program that its users on one device share. \see Device::shared_shader */
+struct SharedShader {
+  Shader shader;
+  /** The reason, for users, why the program is not the one that was asked for; empty: it is. */
+  std::string failure{};
 };
 
 enum class ShaderStage : std::uint8_t { Vertex, Geometry, Fragment };

@@ -127,7 +127,7 @@ class Merger {
       const bool is_read = interface.find(all.bindings[i].kind, all.bindings[i].name) != nullptr;
       bindings |= std::uint64_t(is_read) << i;
     }
-    return {key, bindings, interface.push_constant_size_bytes > 0, interface.reads_object};
+    return {key, bindings, interface.push_constant_size_bytes > 0, interface.reads_object, interface.varying_locations};
   }
 
   std::string name_;
@@ -215,8 +215,8 @@ std::string table_source(std::span<const VariantInterfaces> programs, std::strin
     }
     arrays += fmt::format("constexpr InterfaceTable::Variant variants_{}[] = {{\n", i);
     for (const gpu::InterfaceTable::Variant &variant : program.variants) {
-      arrays += fmt::format("    {{{:#x}, {:#x}, {}, {}}},\n", variant.key, variant.bindings,
-                            variant.has_push_constants, variant.reads_object);
+      arrays += fmt::format("    {{{:#x}, {:#x}, {}, {}, {}}},\n", variant.key, variant.bindings,
+                            variant.has_push_constants, variant.reads_object, variant.varying_locations);
     }
     arrays += "};\n";
     tables += fmt::format("    {{\"{}\", {}, {}, {}, {}, variants_{}}},\n", program.name,

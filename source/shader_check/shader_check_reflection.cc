@@ -78,6 +78,27 @@ bool reads_object(const glslang::TProgram &program)
   return false;
 }
 
+/** ShaderInterface::varying_locations. */
+int varying_locations(const glslang::TProgram &program)
+{
+  int count = 0;
+  for (const EShLanguage stage : {EShLangVertex, EShLangGeometry}) {
+    const glslang::TIntermediate *intermediate = program.getIntermediate(stage);
+    if (intermediate == nullptr || intermediate->getTreeRoot() == nullptr) {
+      continue;
+    }
+    for (const TIntermNode *node : intermediate->findLinkerObjects()->getSequence()) {
+      const glslang::TIntermSymbol *symbol = root_symbol(node);
+      const glslang::TQualifier *output = symbol ? &symbol->getQualifier() : nullptr;
+      if (output && output->isPipeOutput() && output->hasLocation()) {
+        const int size = glslang::TIntermediate::computeTypeLocationSize(symbol->getType(), stage);
+        count = std::max(count, int(output->layoutLocation) + size);
+      }
+    }
+  }
+  return count;
+}
+
 }  // namespace
 
 gpu::ShaderInterface interface_of(glslang::TProgram &program)
@@ -86,6 +107,7 @@ gpu::ShaderInterface interface_of(glslang::TProgram &program)
                           EShReflectionStrictArraySuffix);
   gpu::ShaderInterface interface;
   interface.reads_object = reads_object(program);
+  interface.varying_locations = varying_locations(program);
   const int variable_count = program.getNumUniformVariables();
   const auto variable = [&](int i) -> const glslang::TObjectReflection & { return program.getUniform(i); };
   for (int i = 0; i < program.getNumUniformBlocks(); i++) {

@@ -263,8 +263,8 @@ TEST(Device, CountsOfPassesDoNotGrowWithTheirNames)
 TEST(Device, RefusesShadersWithMoreStorageBlocksThanAStageHas)
 {
   Limits limits;
-  limits.vertex_storage_block_max = 0;
-  limits.fragment_storage_block_max = 1;
+  limits.stages[std::size_t(ShaderStage::Vertex)].storage_block_max = 0;
+  limits.stages[std::size_t(ShaderStage::Fragment)].storage_block_max = 1;
   const auto device = create_null_device(limits);
   const auto block = [](int slot) {
     return fmt::format("layout(std140, binding = {0}) readonly buffer block_{0} {{ vec4 v_{0}; }};\n", slot);
@@ -280,6 +280,52 @@ TEST(Device, RefusesShadersWithMoreStorageBlocksThanAStageHas)
                  {"shader 'v'", "1 storage blocks", "vertex stage", "supports 0"});
   expect_refused(*device, [&] { static_cast<void>(test::make_shader(*device, "f", plain_vert, two_frag)); },
                  {"shader 'f'", "2 storage blocks", "fragment stage", "supports 1"});
+}
+
+TEST(Device, RefusesShadersWithMoreSamplersBlocksOrVaryingsThanTheDeviceHas)
+{
+  const auto fragment = [](std::string_view declared, int count) {
+    std::string text;
+    std::string sum = "vec4(0)";
+    for (int i = 0; i < count; i++) {
+      text += fmt::format(fmt::runtime(declared), i);
+      sum += declared.find("sampler") == declared.npos ? fmt::format(" + v_{}", i)
+                                                       : fmt::format(" + texture(v_{}, vec2(0))", i);
+    }
+    return text + "layout(location = 0) out vec4 c;\nvoid main() { c = " + sum + "; }\n";
+  };
+  const auto passes = [](std::string_view type, int location) {
+    return std::pair(
+        fmt::format("layout(location = {}) out {} v;\nvoid main() {{ v = {}(1); gl_Position = vec4(0); }}\n", location,
+                    type, type),
+        fmt::format("layout(location = {}) in {} v;\nlayout(location = 0) out vec4 c;\n"
+                    "void main() {{ c = vec4(v[0], v[1]); }}\n",
+                    location, type));
+  };
+  const std::string plain_vert = "void main() { gl_Position = vec4(0); }\n";
+  const std::string_view sampler = "layout(binding = {0}) uniform sampler2D v_{0};\n";
+  const std::string_view block = "layout(std140, binding = {0}) uniform block_{0} {{ vec4 v_{0}; }};\n";
+  for (const int max : {3, 16, 17}) {
+    Limits limits;
+    limits.stages[std::size_t(ShaderStage::Fragment)].sampler_max = max;
+    limits.stages[std::size_t(ShaderStage::Fragment)].uniform_block_max = max - 1;
+    limits.varying_location_max = max;
+    const auto device = create_null_device(limits);
+    static_cast<void>(test::make_shader(*device, "s", plain_vert, fragment(sampler, max)));
+    expect_refused(
+        *device, [&] { static_cast<void>(test::make_shader(*device, "s", plain_vert, fragment(sampler, max + 1))); },
+        {"shader 's'", fmt::format("{} samplers", max + 1), "fragment stage", fmt::format("supports {}", max)});
+    static_cast<void>(test::make_shader(*device, "b", plain_vert, fragment(block, max - 1)));
+    expect_refused(
+        *device, [&] { static_cast<void>(test::make_shader(*device, "b", plain_vert, fragment(block, max))); },
+        {"shader 'b'", fmt::format("{} uniform blocks", max), "fragment stage", fmt::format("supports {}", max - 1)});
+    // A matrix takes a location for each column.
+    const auto [fitting_vert, fitting_frag] = passes("mat2", max - 2);
+    static_cast<void>(test::make_shader(*device, "v", fitting_vert, fitting_frag));
+    const auto [long_vert, long_frag] = passes("mat2", max - 1);
+    expect_refused(*device, [&] { static_cast<void>(test::make_shader(*device, "v", long_vert, long_frag)); },
+                   {"shader 'v'", fmt::format("{} locations", max + 1), fmt::format("supports {}", max)});
+  }
 }
 
 TEST(NullDevice, ReadsZerosAndTakesNoTime)

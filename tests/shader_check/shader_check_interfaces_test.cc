@@ -32,8 +32,14 @@ layout(std140, binding = 1) uniform a_block { vec4 a; vec4 more_a; };
 layout(std140, binding = 2) readonly buffer b_block { vec4 b; };
 layout(std140, binding = 8) uniform push_constant_block { vec4 pushed; };
 layout(binding = 3) uniform sampler2D picture;
+#ifdef B
+layout(location = 1) out mat2 passed;
+#endif
 void main()
 {
+#ifdef B
+  passed = mat2(1.0);
+#endif
   gl_Position = texture(picture, vec2(0.0));
 #ifdef A
   gl_Position += a;
@@ -71,7 +77,7 @@ TEST(VariantInterfaces, TheTableHoldsAllOfThem)
   expect_contains(text, R"({"a", 0, 16},)");
   expect_contains(text, R"({"more_a", 16, 16},)");
   expect_contains(text, R"({"b_block", BindingKind::StorageBlock, 2, 16, )");
-  expect_contains(text, "{0x2, 0x7, true, false},");
+  expect_contains(text, "{0x2, 0x7, true, false, 3},");
 }
 
 TEST(VariantInterfaces, OneNameHasOneSlot)
@@ -127,7 +133,7 @@ TEST(VariantInterfaces, AVariantThatDoesNotCompileIsAnErrorThatNamesTheLine)
 constexpr gpu::InterfaceTable::Member members[] = {{"a", 0, 16}, {"b", 16, 4}};
 constexpr gpu::InterfaceTable::Binding bindings[] = {{"a_block", gpu::BindingKind::UniformBlock, 3, 32, members},
                                                      {"picture", gpu::BindingKind::Texture, 17, 0, {}}};
-constexpr gpu::InterfaceTable::Variant variants[] = {{4, 0b11, true, true}, {6, 0b10, false, false}};
+constexpr gpu::InterfaceTable::Variant variants[] = {{4, 0b11, true, true, 3}, {6, 0b10, false, false, 0}};
 constexpr gpu::InterfaceTable table = {"test", bindings, members, 32, 8, variants};
 
 TEST(InterfaceTable, GivesTheInterfaceOfAVariant)
@@ -140,6 +146,7 @@ TEST(InterfaceTable, GivesTheInterfaceOfAVariant)
   EXPECT_EQ(all.push_constant_slot, 8);
   EXPECT_EQ(all.push_constant_members.size(), 2U);
   EXPECT_TRUE(all.reads_object);
+  EXPECT_EQ(all.varying_locations, 3);
 
   const gpu::ShaderInterface part = table.interface_of(6);
   ASSERT_EQ(part.bindings.size(), 1U);

@@ -64,6 +64,18 @@ TEST(Reflect, AnObjectIsReadWhereAnyOfItsFieldsIs)
   EXPECT_TRUE(reads_object("position, value"));
 }
 
+TEST(Reflect, VaryingsAreCountedUpToTheLastLocation)
+{
+  const auto locations = [](const std::string &declarations) {
+    return reflected(VERSION + declarations + "void main() { gl_Position = vec4(0); }\n").varying_locations;
+  };
+  EXPECT_EQ(locations(""), 0);
+  EXPECT_EQ(locations("layout(location = 0) out float a;\n"), 1);
+  EXPECT_EQ(locations("layout(location = 7) out vec4 a;\nlayout(location = 2) out vec2 b;\n"), 8);
+  EXPECT_EQ(locations("layout(location = 3) out mat3 a;\n"), 6);
+  EXPECT_EQ(locations("layout(location = 3) out vec2 a[5];\n"), 8);
+}
+
 /** Expects that the compile error of \a vertex names line \a line of \a path. */
 void expect_error_at(const std::string &vertex, const ShaderTexts &texts, const std::string &path_and_line)
 {

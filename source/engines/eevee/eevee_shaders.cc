@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <utility>
 
 namespace gnomon::eevee {
 
@@ -91,51 +92,66 @@ const gpu::Shader &ShaderCache::get(gpu::Device &device, ShaderId id, Feature fe
   const Key key(id, reachable & declaration.features, function.key);
   const auto found = shaders_.find(key);
   // The program is empty if the packet that contained its creation was lost.
-  if (found != shaders_.end() && found->second) {
-    return found->second;
+  if (found != shaders_.end() && found->second->shader) {
+    return found->second->shader;
   }
   if (function.key != 0) {
-    functions_.try_emplace(function.key, Function{std::string(function.text), std::string(function.file), {}});
+    functions_.try_emplace(function.key, Function{std::string(function.text), std::string(function.file)});
   }
-  return shaders_[key] = make(device, key);
+  return (shaders_[key] = make(device, key))->shader;
 }
 
-gpu::Shader ShaderCache::make(gpu::Device &device, const Key &key)
+std::shared_ptr<gpu::SharedShader> ShaderCache::make(gpu::Device &device, const Key &key) const
 {
   const auto &[id, features, function] = key;
   const ShaderDeclaration &declaration = shader_declarations()[std::size_t(id)];
-  const gpu::ShaderDesc desc = shader_desc(declaration, features, pcf_);
+  gpu::ShaderDesc desc = shader_desc(declaration, features, pcf_);
   const gpu::ShaderReflection reflection =
       reflection_ ? reflection_ : generated_reflection(id, features, function != 0);
-  if (function == 0) {
-    return device.create_shader(desc, files_, reflection);
+  std::string text;
+  if (function != 0) {
+    desc = with_surface_function(desc, declaration);
+    text = fmt::format("{}\n{}", functions_.at(function).file, functions_.at(function).text);
   }
-  return make_with(functions_.at(function), device, with_surface_function(desc, declaration), reflection);
+  const auto fill = [&](gpu::SharedShader &made) {
+    made = function == 0 ? gpu::SharedShader{device.create_shader(desc, files_, reflection)}
+                         : make_with(function, device, desc, reflection);
+  };
+  if (reflection_) {
+    // Files of a reload are known to this engine alone.
+    auto own = std::make_shared<gpu::SharedShader>();
+    fill(*own);
+    return own;
+  }
+  return device.shared_shader(desc, text, fill);
 }
 
-gpu::Shader ShaderCache::make_with(Function &function, gpu::Device &device, const gpu::ShaderDesc &desc,
-                                   const gpu::ShaderReflection &reflection) const
+gpu::SharedShader ShaderCache::make_with(std::uint64_t function_key, gpu::Device &device, const gpu::ShaderDesc &desc,
+                                         const gpu::ShaderReflection &reflection) const
 {
+  const Function &function = functions_.at(function_key);
   const auto files_with = [this](std::optional<std::string_view> text) {
     return [this, text](std::string_view path) { return path == surface_function_file ? text : files_(path); };
   };
   const gpu::ShaderFiles stand_in = files_with(files_("eevee/eevee_surface_stand_in.glsl"));
+  // Of another program with this function.
+  std::string known = failure(function_key);
   if (const auto fault = surface_function_fault(function.text)) {
-    function.failure = fmt::format("{}:{}: {}", function.file, fault->line, fault->reason);
+    known = fmt::format("{}:{}: {}", function.file, fault->line, fault->reason);
   }
   if (function.text.empty()) {
-    function.failure = fmt::format("{}: it has no text", function.file);
+    known = fmt::format("{}: it has no text", function.file);
   }
-  if (function.failure.empty()) {
+  if (known.empty()) {
     try {
       const std::string text = numbered(function.text);
-      return device.create_shader(desc, files_with(text), reflection, stand_in);
+      return {device.create_shader(desc, files_with(text), reflection, stand_in)};
     }
     catch (const gpu::Error &error) {
-      function.failure = failure_of(error.what(), function.file);
+      known = failure_of(error.what(), function.file);
     }
   }
-  return device.create_shader(desc, stand_in, reflection);
+  return {device.create_shader(desc, stand_in, reflection), known};
 }
 
 void ShaderCache::keep_functions(const std::set<std::uint64_t> &keys)
@@ -150,10 +166,10 @@ void ShaderCache::keep_functions(const std::set<std::uint64_t> &keys)
 void ShaderCache::take_failures(const gpu::Feedback &feedback)
 {
   for (const gpu::Feedback::FailedShader &failed : feedback.failed_shaders) {
-    for (const auto &[key, shader] : shaders_) {
+    for (const auto &[key, shared] : shaders_) {
       const auto function = functions_.find(std::get<2>(key));
-      if (shader.id() == failed.shader && function != functions_.end()) {
-        function->second.failure = failure_of(failed.reason, function->second.file);
+      if (shared->shader.id() == failed.shader && function != functions_.end()) {
+        shared->failure = failure_of(failed.reason, function->second.file);
       }
     }
   }
@@ -161,8 +177,12 @@ void ShaderCache::take_failures(const gpu::Feedback &feedback)
 
 std::string ShaderCache::failure(std::uint64_t function_key) const
 {
-  const auto function = functions_.find(function_key);
-  return function == functions_.end() ? std::string() : function->second.failure;
+  for (const auto &[key, shared] : shaders_) {
+    if (std::get<2>(key) == function_key && !shared->failure.empty()) {
+      return shared->failure;
+    }
+  }
+  return {};
 }
 
 std::vector<Feature> ShaderCache::made(ShaderId id) const
@@ -188,15 +208,15 @@ std::vector<std::string> ShaderCache::reload(gpu::Device &device, gpu::ShaderFil
   }
   files_ = std::move(files);
   reflection_ = std::move(reflection);
-  for (auto &[key, function] : functions_) {
-    function.failure.clear();
-  }
   std::vector<std::string> failures;
-  for (auto &[key, shader] : shaders_) {
+  // Meanwhile, failures of functions are those of their programs that were made again.
+  const std::map<Key, std::shared_ptr<gpu::SharedShader>> last = std::exchange(shaders_, {});
+  for (const auto &[key, shared] : last) {
     try {
-      shader = make(device, key);
+      shaders_[key] = make(device, key);
     }
     catch (const gpu::Error &error) {
+      shaders_[key] = shared;
       failures.emplace_back(error.what());
     }
   }

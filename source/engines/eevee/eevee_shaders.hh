@@ -6,6 +6,7 @@
 #include "gpu_device.hh"
 
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <tuple>
@@ -21,13 +22,16 @@ struct FunctionText {
   std::string_view file{};
 };
 
-/** Cache of the engine's programs. The first use of a program compiles it. Must be destroyed before its device. */
+/**
+ * The engine's programs. The first use of a program compiles it, unless the device has it from another engine. Must be
+ * destroyed before its device.
+ */
 class ShaderCache {
  public:
   /** Uses the shader files and interfaces that the build embedded in the library. */
   ShaderCache();
 
-  /** Set the kernel of percentage-closer filtering. Destroys programs with another kernel. */
+  /** Set the kernel of percentage-closer filtering. Lets programs with another kernel go. */
   void set_pcf(const PcfKernel &pcf);
   /**
    * The program \a id with \a features. Features without a variant of the program are ignored. If the program with
@@ -37,7 +41,7 @@ class ShaderCache {
    */
   const gpu::Shader &get(gpu::Device &device, ShaderId id, Feature features = Feature::None,
                          const FunctionText &function = {});
-  /** Destroys the programs of all functions but those with these keys. */
+  /** Lets the programs of all functions go but those with these keys. */
   void keep_functions(const std::set<std::uint64_t> &keys);
   /** Takes note of the programs of functions that did not compile when the packet was submitted. */
   void take_failures(const gpu::Feedback &feedback);
@@ -47,7 +51,7 @@ class ShaderCache {
    * Compile all programs again from \a files, and use \a files for programs that are compiled later. \a reflection
    * returns the interfaces of programs, for example shader_check::reflect from the library gnomon::shader_check. If it
    * is empty, nothing changes and the result contains a message about it. A program that does not compile keeps its
-   * last state. After a reload, all passes must be recorded again.
+   * last state. Other engines keep theirs. After a reload, all passes must be recorded again.
    *
    * \return one message with file, line and reason for each program that does not compile.
    */
@@ -70,19 +74,18 @@ class ShaderCache {
   struct Function {
     std::string text;
     std::string file;
-    std::string failure;
   };
 
-  [[nodiscard]] gpu::Shader make(gpu::Device &device, const Key &key);
-  [[nodiscard]] gpu::Shader make_with(Function &function, gpu::Device &device, const gpu::ShaderDesc &desc,
-                                      const gpu::ShaderReflection &reflection) const;
+  [[nodiscard]] std::shared_ptr<gpu::SharedShader> make(gpu::Device &device, const Key &key) const;
+  [[nodiscard]] gpu::SharedShader make_with(std::uint64_t function_key, gpu::Device &device,
+                                            const gpu::ShaderDesc &desc, const gpu::ShaderReflection &reflection) const;
 
   gpu::ShaderFiles files_;
   /** Empty before reload(); until then the interfaces come from the generated tables. */
   gpu::ShaderReflection reflection_;
   PcfKernel pcf_;
   std::uint64_t revision_ = 0;
-  std::map<Key, gpu::Shader> shaders_;
+  std::map<Key, std::shared_ptr<gpu::SharedShader>> shaders_;
   std::map<std::uint64_t, Function> functions_;
 };
 

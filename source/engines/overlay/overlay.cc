@@ -55,15 +55,18 @@ void Overlay::check_up_to_date() const
 
 const gpu::Shader &Overlay::shader(ShaderId id, Feature features)
 {
-  gpu::Shader &shader = shaders_[{id, features}];
-  if (!shader) {
-    shader = scene_.device().create_shader(
-        shader_desc(shader_declarations()[std::size_t(id)], features), shaders::file,
-        [&](std::string_view, const std::vector<gpu::ShaderSource> &) {
-          return interface_tables()[std::size_t(id)].interface_of(std::uint32_t(features));
-        });
+  std::shared_ptr<gpu::SharedShader> &shared = shaders_[{id, features}];
+  if (!shared || !shared->shader) {
+    gpu::Device &device = scene_.device();
+    const gpu::ShaderDesc desc = shader_desc(shader_declarations()[std::size_t(id)], features);
+    shared = device.shared_shader(desc, {}, [&](gpu::SharedShader &made) {
+      made.shader =
+          device.create_shader(desc, shaders::file, [&](std::string_view, const std::vector<gpu::ShaderSource> &) {
+            return interface_tables()[std::size_t(id)].interface_of(std::uint32_t(features));
+          });
+    });
   }
-  return shader;
+  return shared->shader;
 }
 
 const gpu::Sampler &Overlay::nearest()

@@ -10,6 +10,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -111,7 +112,7 @@ class Overlay {
   const gpu::Sampler &nearest();
 
   render_scene::RenderScene &scene_;
-  std::map<std::pair<ShaderId, Feature>, gpu::Shader> shaders_;
+  std::map<std::pair<ShaderId, Feature>, std::shared_ptr<gpu::SharedShader>> shaders_;
   gpu::Buffer view_block_;
   gpu::Sampler nearest_;
   ObjectsTarget pixel_;

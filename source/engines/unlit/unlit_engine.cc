@@ -54,14 +54,17 @@ const gpu::Shader &Engine::shader(gpu::Device &device, ShaderId id, Feature feat
 {
   const ShaderDeclaration &declaration = shader_declarations()[std::size_t(id)];
   const Feature variant = features & declaration.features;
-  gpu::Shader &shader = shaders_[{id, variant}];
-  if (!shader) {
-    shader = device.create_shader(shader_desc(declaration, variant), shaders::file,
-                                  [&](std::string_view, const std::vector<gpu::ShaderSource> &) {
-                                    return interface_tables()[std::size_t(id)].interface_of(std::uint32_t(variant));
-                                  });
+  std::shared_ptr<gpu::SharedShader> &shared = shaders_[{id, variant}];
+  if (!shared || !shared->shader) {
+    const gpu::ShaderDesc desc = shader_desc(declaration, variant);
+    shared = device.shared_shader(desc, {}, [&](gpu::SharedShader &made) {
+      made.shader =
+          device.create_shader(desc, shaders::file, [&](std::string_view, const std::vector<gpu::ShaderSource> &) {
+            return interface_tables()[std::size_t(id)].interface_of(std::uint32_t(variant));
+          });
+    });
   }
-  return shader;
+  return shared->shader;
 }
 
 void Engine::init(draw::Viewport &viewport)

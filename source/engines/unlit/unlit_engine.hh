@@ -82,7 +82,7 @@ class Engine final : public draw::Engine {
   render_scene::RenderScene &scene_;
   Settings settings_;
   std::uint64_t settings_revision_ = 1;
-  std::map<std::pair<ShaderId, Feature>, gpu::Shader> shaders_;
+  std::map<std::pair<ShaderId, Feature>, std::shared_ptr<gpu::SharedShader>> shaders_;
   /** Shared by all viewports; nullptr if there is none. */
   std::unique_ptr<DepthCamera> depth_camera_;
 };

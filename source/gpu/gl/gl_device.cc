@@ -38,9 +38,16 @@ Limits query_limits()
   }
   limits.uniform_offset_alignment =
       std::uint32_t(std::max(get(GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT), get(GL_SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT)));
-  limits.vertex_storage_block_max = get(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS);
-  limits.geometry_storage_block_max = get(GL_MAX_GEOMETRY_SHADER_STORAGE_BLOCKS);
-  limits.fragment_storage_block_max = get(GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS);
+  // In the order of ShaderStage.
+  limits.stages = {{{get(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS), get(GL_MAX_VERTEX_UNIFORM_BLOCKS),
+                     get(GL_MAX_VERTEX_TEXTURE_IMAGE_UNITS)},
+                    {get(GL_MAX_GEOMETRY_SHADER_STORAGE_BLOCKS), get(GL_MAX_GEOMETRY_UNIFORM_BLOCKS),
+                     get(GL_MAX_GEOMETRY_TEXTURE_IMAGE_UNITS)},
+                    {get(GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS), get(GL_MAX_FRAGMENT_UNIFORM_BLOCKS),
+                     get(GL_MAX_TEXTURE_IMAGE_UNITS)}}};
+  constexpr int components_of_location = 4;
+  limits.varying_location_max =
+      std::min(get(GL_MAX_VERTEX_OUTPUT_COMPONENTS), get(GL_MAX_FRAGMENT_INPUT_COMPONENTS)) / components_of_location;
   const GLubyte *renderer = glGetString(GL_RENDERER);
   const std::string_view name = renderer != nullptr ? reinterpret_cast<const char *>(renderer) : "";
   limits.is_software = name.starts_with("llvmpipe") || name.starts_with("softpipe");

@@ -49,16 +49,16 @@ TEST_F(DebugViewTest, NothingIsCreatedWithoutARequest)
 TEST_F(DebugViewTest, TexelDensityTakesOneProgramAndThreeTexturesAndDrawsNoShadowAgain)
 {
   test::add_lamp(scene, scene::LampKind::Point, {0, 0, 4}, {0, 0, -1}, 1.0F);
+  // The second renderer has the programs of the first.
   Renderer plain(*device, scene, {16, 16}, settings);
   gpu::Counters before = device->counters();
   plain.draw(camera);
-  const std::uint64_t plain_shaders = device->counters().shaders_made - before.shaders_made;
   const std::uint64_t plain_textures = device->counters().textures_made - before.textures_made;
   settings.has_surfaces = true;
   Renderer renderer(*device, scene, {16, 16}, settings);
   before = device->counters();
   renderer.draw(camera);
-  EXPECT_EQ(device->counters().shaders_made - before.shaders_made, plain_shaders + 1);
+  EXPECT_EQ(device->counters().shaders_made - before.shaders_made, 1U);
   EXPECT_EQ(device->counters().textures_made - before.textures_made, plain_textures + 3);
   const draw::View view = view_of(camera, {16, 16}, renderer.render_scene.origin_ws());
   before = device->counters();

@@ -97,6 +97,8 @@ TEST_F(SurfaceFunctionTest, OneIsCompiledIntoDepthAndShadowsIfItCanChangeAlpha)
   const std::size_t shader_count = device->counters().shaders_made;
   // Blended surfaces have no depth; their shadow is drawn by a variant of its own.
   const auto second = add_function();
+  // Functions of one text share programs.
+  scene.edit(second, [](scene::SurfaceFunction &function) { function.text += "// second\n"; });
   give(2, second, scene::AlphaMode::Blend);
   renderer.sync();
   renderer.draw(camera);
