@@ -35,5 +35,29 @@ TEST_P(HostsState, UnusualStateIsKeptByEveryCallOfEnginesAndOverlays)
   EXPECT_NE(picture.pixels(), before) << "nothing was drawn";
 }
 
+/** As after an end of a host's own work, whose objects another context of it has deleted. */
+TEST_P(HostsState, NamesThatTheHostHasDeletedAreLeftUnbound)
+{
+  const scene::Scene scene = gltf::import_gltf(GNOMON_SOURCE "/examples/scenes/spots.glb");
+  const HostPicture picture({48, 36}, GL_RGBA8, 0);
+  HostObjects objects;
+  set_unusual_state(objects);
+  ASSERT_TRUE(context->in_shared_context([&] {
+    for (const HostObjects::Kind &kind : HostObjects::kinds()) {
+      if (kind.is_shared) {
+        (objects.*kind.destroy)();
+      }
+    }
+  }));
+  const std::vector<StateItem> table = state_table();
+  EXPECT_GE(StateSnapshot(table).deleted().size(), 100U);
+  make_host_calls(scene, picture.framebuffer(), [&](const char *name, const std::function<void()> &call) {
+    const StateSnapshot state(table);
+    call();
+    EXPECT_EQ(state.differences(), std::vector<std::string>()) << name;
+    EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR)) << name;
+  });
+}
+
 }  // namespace
 }  // namespace gnomon::test
