@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
+#include <utility>
 
 namespace gnomon::eevee {
 namespace {
@@ -100,6 +102,69 @@ TEST_F(Frames, ThatFailAreFollowedByTheRightPicture)
     EXPECT_EQ(draw_after_failure(), expected[1]);
   }
   EXPECT_GT(failure_count, 3);
+}
+
+/** Allocations on the device up to the one that fails; negative: none fails. */
+int allocations_until_failure = -1;
+bool is_out_of_memory = false;
+
+/** \return whether the allocation that is about to be made fails */
+bool fails_to_allocate()
+{
+  const bool fails = allocations_until_failure >= 0 && allocations_until_failure-- == 0;
+  is_out_of_memory = is_out_of_memory || fails;
+  return fails;
+}
+
+/** Each allocation of a buffer or texture fails once, in a first picture with lamps and shadows of all kinds. */
+TEST_F(Frames, WhoseAllocationsFailOneAtATimeAreFollowedByTheRightPicture)
+{
+  // Afterwards the function pointers are those of the driver, and the device has the programs.
+  const Bytes expected = fresh_picture(*device, 1);
+  static const auto buffer_data = epoxy_glBufferData;
+  static const auto texture_2d = epoxy_glTextureStorage2D;
+  static const auto texture_3d = epoxy_glTextureStorage3D;
+  static const auto get_error = epoxy_glGetError;
+  const test::Hook buffers(
+      epoxy_glBufferData, +[](GLenum target, GLsizeiptr size, const void *data, GLenum usage) {
+        fails_to_allocate() ? void() : buffer_data(target, size, data, usage);
+      });
+  const test::Hook flat(
+      epoxy_glTextureStorage2D, +[](GLuint texture, GLsizei levels, GLenum format, GLsizei width, GLsizei height) {
+        fails_to_allocate() ? void() : texture_2d(texture, levels, format, width, height);
+      });
+  const test::Hook layered(
+      epoxy_glTextureStorage3D,
+      +[](GLuint texture, GLsizei levels, GLenum format, GLsizei width, GLsizei height, GLsizei layers) {
+        fails_to_allocate() ? void() : texture_3d(texture, levels, format, width, height, layers);
+      });
+  const test::Hook errors(
+      epoxy_glGetError,
+      +[]() -> GLenum { return std::exchange(is_out_of_memory, false) ? GLenum(GL_OUT_OF_MEMORY) : get_error(); });
+  FramesScene frames;
+  frames.edit(0);
+  int failure_count = 0;
+  for (bool has_failed = true; has_failed; failure_count += has_failed) {
+    SCOPED_TRACE(failure_count);
+    SceneRenderer renderer(*device, frames.scene, size_px, test::frames_settings());
+    allocations_until_failure = failure_count;
+    has_failed = false;
+    try {
+      renderer.sync();
+      renderer.draw(FramesScene::camera(0));
+    }
+    catch (const gpu::Error &error) {
+      has_failed = true;
+      EXPECT_NE(std::string_view(error.what()).find("the driver is out of memory"), std::string_view::npos)
+          << error.what();
+    }
+    allocations_until_failure = -1;
+    renderer.sync();
+    renderer.draw(FramesScene::camera(0));
+    ASSERT_EQ(device->read(renderer.engine().radiance(renderer.viewport())), expected);
+  }
+  EXPECT_GE(failure_count, 15);
+  EXPECT_TRUE(device->live_resources().empty());
 }
 
 }  // namespace

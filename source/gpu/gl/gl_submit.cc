@@ -40,6 +40,9 @@ void GlDevice::list_submit(const CommandList &list)
     }
     release_buffers();
     stream_.end();
+    // Errors of this list, which the next call must not report as its own.
+    driver_errors_.clear();
+    static_cast<void>(take_gl_errors());
     throw;
   }
   release_buffers();
