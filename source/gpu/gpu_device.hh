@@ -476,7 +476,7 @@ struct GlDeviceDesc {
 
 /**
  * The null backend calls this function on the device's thread before each operation, with the operation's name:
- * "create texture", "update", "upload", "submit", "destroy" and so on. The function may throw Error to make the
+ * "create texture", "update", "upload", "submit", "destroy texture" and so on. The function may throw Error to make the
  * operation fail.
  */
 using NullOperation = std::function<void(std::string_view operation)>;

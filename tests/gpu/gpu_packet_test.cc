@@ -16,10 +16,11 @@ class PacketTest : public testing::Test {
   /** Created resources that are not destroyed. */
   int existing() const
   {
+    const auto is_destroy = [](const std::string &operation) { return operation.starts_with("destroy"); };
     const auto is_create = [](const std::string &operation) {
       return operation.starts_with("create") && operation != "create batch";
     };
-    return int(std::ranges::count_if(operations, is_create) - std::ranges::count(operations, "destroy"));
+    return int(std::ranges::count_if(operations, is_create) - std::ranges::count_if(operations, is_destroy));
   }
 
   std::vector<std::string> operations;
@@ -124,7 +125,7 @@ TEST_F(PacketTest, ResourcesAreDestroyedAfterTheListsThatNameThem)
   EXPECT_EQ(existing(), 3);
   device->submit(packets[1]);
   EXPECT_EQ(existing(), 0);
-  EXPECT_EQ(operations.back(), "destroy");
+  EXPECT_TRUE(operations.back().starts_with("destroy"));
 }
 
 TEST_F(PacketTest, ResourcesReleasedWhileAPacketIsPendingAreFreedAfterIt)

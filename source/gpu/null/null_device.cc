@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gpu_device.hh"
 
+#include <fmt/format.h>
+
 namespace gnomon::gpu {
 
 namespace {
@@ -63,9 +65,9 @@ class NullDevice final : public Device {
   {
     before("create timer query");
   }
-  void resource_destroy(ResourceKind /*kind*/, ResourceId /*id*/) override
+  void resource_destroy(ResourceKind kind, ResourceId /*id*/) override
   {
-    before("destroy");
+    before(fmt::format("destroy {}", to_string(kind)));
   }
   void buffer_update(ResourceId /*id*/, std::size_t /*offset_bytes*/, std::span<const std::byte> /*bytes*/) override
   {
