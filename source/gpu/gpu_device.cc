@@ -106,6 +106,7 @@ std::vector<std::byte> Device::read(const Texture &texture, int layer)
   GNOMON_ASSERT(!recording_, "a read of texture '{}' during a recording", desc.name);
   GNOMON_ASSERT(texture && desc.format != Format::Host && layer >= 0 && layer < desc.layers,
                 "texture '{}' of format {} has no layer {}", desc.name, to_string(desc.format), layer);
+  check_can_execute();
   std::vector<std::byte> texels(layer_size_bytes(desc));
   texture_read(texture.id(), layer, texels);
   return texels;

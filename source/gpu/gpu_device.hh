@@ -224,6 +224,13 @@ class Device {
   /** \a shader_cache_folder: see ShaderDiskCache. */
   Device(const Limits &limits, MessageSink sink, std::filesystem::path shader_cache_folder = {});
 
+  /** Whether the backend functions may be called on this thread now. */
+  [[nodiscard]] virtual bool can_execute() const
+  {
+    return true;
+  }
+  /** \throws Error unless can_execute() */
+  void check_can_execute() const;
   /** Must be called by the destructor of the most derived class, whose backend functions free the resources. */
   void free_live_resources();
   void message(std::string_view text) const;

@@ -8,6 +8,7 @@ void Device::submit(Packet &packet)
 {
   GNOMON_ASSERT(std::this_thread::get_id() == thread_, "a packet is submitted on another thread than the device's");
   GNOMON_ASSERT(packet.is_pending_ && packet.link_->device == this, "the packet is not recorded for this device");
+  check_can_execute();
   const Calls calls(*this);
   packet.is_pending_ = false;
   try {
@@ -145,6 +146,7 @@ void Device::submit_now(const CommandList &list)
 {
   GNOMON_ASSERT(std::this_thread::get_id() == thread_, "a list is submitted on another thread than the device's");
   GNOMON_ASSERT(done_serial_ == serial_, "a submit outside of a recording, while a packet is pending");
+  check_can_execute();
   destroy_queued();
   try {
     execute_list(list);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
+#include <string>
 #include <string_view>
 
 namespace gnomon::gpu {
@@ -27,15 +28,48 @@ struct DeviceLost : Error {
   using Error::Error;
 };
 
-/** Print \a message and abort. \see GNOMON_ASSERT */
+/**
+ * Reports a violated precondition: an error in the library, or in the program that calls it. The message names the
+ * file, the line, the condition and its values. The scene is unchanged and can be saved. The engine, the viewport or
+ * the renderer that was called may be destroyed, and new ones be made on the same device.
+ */
+class InternalError : public std::logic_error {
+ public:
+  /** \a file: the path of a source file. */
+  InternalError(std::string_view file, int line, std::string_view condition, std::string_view message);
+
+  /** Name of the source file, without its folder. */
+  [[nodiscard]] const std::string &file() const
+  {
+    return file_;
+  }
+  [[nodiscard]] int line() const
+  {
+    return line_;
+  }
+  /** The text of the condition that does not hold. */
+  [[nodiscard]] const std::string &condition() const
+  {
+    return condition_;
+  }
+
+ private:
+  std::string file_;
+  int line_;
+  std::string condition_;
+};
+
+/** \throws InternalError \see GNOMON_ASSERT */
 [[noreturn]] void assertion_failed(const char *file, int line, const char *condition, std::string_view message);
 
 }  // namespace gnomon::gpu
 
 /**
- * Aborts if the condition is false. For preconditions that only a programming error can violate. The arguments after
- * the condition are an fmt format string and its values. The check is also compiled in release builds, so do not use it
- * in loops over draws.
+ * Throws gnomon::gpu::InternalError if the condition is false. For preconditions that only a programming error can
+ * violate; a call in the wrong order, which a host can make, is a gpu::Error that names the missing call. The arguments
+ * after the condition are an fmt format string and its values. The check is also compiled in release builds, so do not
+ * use it in loops over draws. Do not use it in destructors and in functions that are noexcept, which would end the
+ * program.
  */
 #define GNOMON_ASSERT(condition, ...) \
   ((condition) ? void(0) : ::gnomon::gpu::assertion_failed(__FILE__, __LINE__, #condition, fmt::format(__VA_ARGS__)))

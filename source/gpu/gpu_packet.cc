@@ -193,8 +193,18 @@ void Device::perform(Operation operation)
   GNOMON_ASSERT(std::this_thread::get_id() == thread_,
                 "a call outside of a recording, on another thread than the device's");
   GNOMON_ASSERT(done_serial_ == serial_, "a call outside of a recording, while a packet is pending");
+  check_can_execute();
   destroy_queued();
   execute(operation, nullptr);
+}
+
+void Device::check_can_execute() const
+{
+  if (!can_execute()) {
+    throw Error(
+        "the context in which the device was made is not current on this thread: make it current before calls "
+        "that use the device");
+  }
 }
 
 void Device::destroy_queued()
@@ -268,9 +278,10 @@ void Device::release(ResourceKind kind, ResourceId id)
   if (const auto *range = std::get_if<BatchRange>(&slot_of(kind, id).info.desc); range && range->host_batch == 0) {
     return;
   }
-  const bool is_idle = done_serial_ == serial_ && std::this_thread::get_id() == thread_;
+  // Destructors call this function, which must not throw. What cannot be destroyed now is destroyed by a later call.
+  const bool is_idle = done_serial_ == serial_ && std::this_thread::get_id() == thread_ && can_execute();
   if (recording_) {
-    perform({Operation::Destroy{{kind, id}}});
+    recording_->operations_.push_back({Operation::Destroy{{kind, id}}});
   }
   else if (is_idle) {
     destroy(kind, id);

@@ -5,6 +5,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
 
+#include "gpu/gpu_testing.hh"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -98,15 +100,15 @@ TEST(Orthographic, MatchesItsClosedForm)
   }
 }
 
-TEST(ProjectionDeathTest, DegenerateVolumeIsAnAssertionWithItsValues)
+TEST(ProjectionInternalErrorTest, DegenerateVolumeIsAnAssertionWithItsValues)
 {
   constexpr float NAN_VALUE = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_DEATH(static_cast<void>(perspective(1, 1, 0, 10)), "near 0.*far 10");
-  EXPECT_DEATH(static_cast<void>(perspective(1, 1, 2, 2)), "near 2.*far 2");
-  EXPECT_DEATH(static_cast<void>(perspective(0, 1, 1, 2)), "half size 0x1");
-  EXPECT_DEATH(static_cast<void>(perspective(1, NAN_VALUE, 1, 2)), "half size 1xnan");
-  EXPECT_DEATH(static_cast<void>(orthographic(1, 1, 3, 2)), "near 3.*far 2");
-  EXPECT_DEATH(static_cast<void>(orthographic(1, -1, 1, 2)), "half size 1x-1");
+  test::expect_internal_error([&] { static_cast<void>(perspective(1, 1, 0, 10)); }, "near 0.*far 10");
+  test::expect_internal_error([&] { static_cast<void>(perspective(1, 1, 2, 2)); }, "near 2.*far 2");
+  test::expect_internal_error([&] { static_cast<void>(perspective(0, 1, 1, 2)); }, "half size 0x1");
+  test::expect_internal_error([&] { static_cast<void>(perspective(1, NAN_VALUE, 1, 2)); }, "half size 1xnan");
+  test::expect_internal_error([&] { static_cast<void>(orthographic(1, 1, 3, 2)); }, "near 3.*far 2");
+  test::expect_internal_error([&] { static_cast<void>(orthographic(1, -1, 1, 2)); }, "half size 1x-1");
 }
 
 TEST(View, HasItsProjection)

@@ -8,8 +8,11 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 
 namespace gnomon::gpu {
 namespace {
@@ -117,21 +120,37 @@ TEST_F(HostContextGpu, DrawsAndStaysTheHosts)
   EXPECT_GE(major, 4) << "the context does not work any more";
 }
 
-#ifndef NDEBUG
-TEST_F(HostContextGpu, CallsInAnotherContextStopTheProgram)
+TEST_F(HostContextGpu, CallsInAnotherContextAreErrorsAndTouchNothingThere)
 {
-  const auto device = create_gl_device({.context = ContextKind::Host});
-  const char *message = "the context in which the device was made is not current";
+  const std::string message = "the context in which the device was made is not current on this thread";
+  auto device = create_gl_device({.context = ContextKind::Host});
+  std::optional<Texture> texture = device->create_texture({.name = "t"});
+  std::vector<std::string> messages;
+  auto other_device = create_gl_device(
+      {.context = ContextKind::Host, .sink = [&](std::string_view text) { messages.emplace_back(text); }});
+  const Texture left = other_device->create_texture({.name = "left"});
   {
     const test::EglHostContext other;
     ASSERT_TRUE(other.is_current());
-    EXPECT_DEATH(static_cast<void>(device->create_texture({.name = "t"})), message);
+    // Names of the other context, which are those of the device's objects, too.
+    std::array<GLuint, 16> names{};
+    glCreateTextures(GL_TEXTURE_2D, GLsizei(names.size()), names.data());
+    expect_contains(error_of([&] { static_cast<void>(device->create_texture({.name = "u"})); }), message);
+    expect_contains(error_of([&] { device->finish(); }), message);
+    expect_contains(error_of([&] { device->submit(CommandList()); }), message);
+    expect_contains(error_of([&] { static_cast<void>(device->read(*texture)); }), message);
+    Packet packet;
+    expect_contains(error_of([&] { device->run(packet, [] {}); }), message);
+    texture.reset();
+    other_device.reset();
+    EXPECT_TRUE(std::ranges::all_of(names, [](GLuint name) { return glIsTexture(name) == GL_TRUE; }));
+    expect_contains(messages.empty() ? "" : messages.front(),
+                    "is not current on this thread: its objects are not deleted");
   }
-  EXPECT_DEATH(device->finish(), message);
+  expect_contains(error_of([&] { device->finish(); }), message);
   host.make_current();
   EXPECT_EQ(small_picture(*device), SMALL_PICTURE);
 }
-#endif
 
 GLint integer(GLenum name)
 {

@@ -14,6 +14,7 @@
 
 #include <cstring>
 #include <map>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,22 @@ std::string error_of(Action &&action)
     return error.what();
   }
   return {};
+}
+
+/** \a action throws a gpu::InternalError whose message has a match of the regular \a expression. */
+template <typename Action>
+void expect_internal_error(Action &&action, const std::string &expression)
+{
+  try {
+    action();
+    ADD_FAILURE() << "no internal error of '" << expression << "'";
+  }
+  catch (const gpu::InternalError &error) {
+    EXPECT_TRUE(std::regex_search(error.what(), std::regex(expression))) << error.what();
+    EXPECT_NE(std::string(error.what()).find(fmt::format("{}:{}: {}", error.file(), error.line(), error.condition())),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 inline void expect_contains(std::string_view text, std::string_view part)

@@ -65,10 +65,7 @@ std::uint64_t elapsed_ticks(std::uint64_t begin, std::uint64_t end, int bits)
 
 void GlDevice::calls_begin()
 {
-#ifndef NDEBUG
-  GNOMON_ASSERT(calls_depth_ > 0 || current_context() == made_in_,
-                "the context in which the device was made is not current on this thread");
-#endif
+  check_can_execute();
   if (calls_depth_++ == 0 && !context_) {
     host_errors_ = take_gl_errors();
   }
@@ -110,6 +107,15 @@ GlDevice::GlDevice(std::unique_ptr<GlContext> context, const GlDeviceDesc &desc)
 
 GlDevice::~GlDevice()
 {
+  if (!can_execute()) {
+    // The names of its objects may be those of others in the current context.
+    message(
+        "the device is destroyed while the context in which it was made is not current on this thread: its objects "
+        "are not deleted");
+    is_abandoned_ = true;
+    free_live_resources();
+    return;
+  }
   const Calls calls(*this);
   free_live_resources();
   stream_.destroy();

@@ -140,6 +140,10 @@ class GlDevice final : public Device {
   GLuint create_buffer_of(GLenum target, std::size_t size_bytes);
   static void label(GLenum kind, GLuint name, const std::string &text);
 
+  [[nodiscard]] bool can_execute() const override
+  {
+    return calls_depth_ > 0 || current_context() == made_in_;
+  }
   void texture_create(ResourceId id, const TextureDesc &desc) override;
   void sampler_create(ResourceId id, const SamplerDesc &desc) override;
   void framebuffer_create(ResourceId id, const FramebufferLayout &layout) override;
@@ -215,6 +219,8 @@ class GlDevice final : public Device {
   /** Errors of OpenGL that the host had pending when the outermost scope began. */
   std::vector<GLenum> host_errors_;
   int calls_depth_ = 0;
+  /** The objects in the context are not deleted, because it was not current when the device was destroyed. */
+  bool is_abandoned_ = false;
   bool is_lost_ = false;
   /** Bits of the GL_TIMESTAMP counter; 0: the driver has no timer. */
   GLint timestamp_bits_ = 0;

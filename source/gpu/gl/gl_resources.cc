@@ -343,6 +343,9 @@ void GlDevice::timer_query_create(ResourceId id, const std::string & /*name*/)
 
 void GlDevice::resource_destroy(ResourceKind kind, ResourceId id)
 {
+  if (is_abandoned_) {
+    return;
+  }
   const Calls calls(*this);
   switch (kind) {
     case ResourceKind::Texture:
