@@ -42,6 +42,7 @@ void Viewport::resize(glm::ivec2 size_px)
   restart();
   // Framebuffers must be destroyed before their textures.
   for (auto &[id, engine] : engines_) {
+    engine.is_synced = false;
     if (engine.data) {
       engine.data->resized();
     }
@@ -101,6 +102,7 @@ void Viewport::sync(std::span<Engine *const> engines, const ObjectBuffer &object
   for (Engine *engine : engines) {
     // Clear the revision until the sync is complete: if it fails, the engine may know only some of the objects.
     const std::optional<std::uint64_t> seen = std::exchange(engines_[engine->id()].synced_revision, std::nullopt);
+    engines_[engine->id()].is_synced = false;
     const bool is_anew = !seen || objects.structure_revision() > *seen;
     engine->init(*this);
     if (is_anew) {
@@ -115,11 +117,26 @@ void Viewport::sync(std::span<Engine *const> engines, const ObjectBuffer &object
     }
     engine->cache_finish(*this);
     engines_[engine->id()].synced_revision = objects.revision();
+    engines_[engine->id()].is_synced = true;
+  }
+}
+
+void Viewport::check_synced(std::span<Engine *const> engines) const
+{
+  for (const Engine *engine : engines) {
+    const auto found = engines_.find(engine->id());
+    if (found == engines_.end() || !found->second.is_synced) {
+      throw gpu::Error(
+          "viewport: {} was not synced since the viewport was made or resized, or its last sync failed: call "
+          "draw::Viewport::sync before draw",
+          engine->name());
+    }
   }
 }
 
 void Viewport::draw(std::span<Engine *const> engines, const View &view, const Target &target)
 {
+  check_synced(engines);
   if (!is_finite(view.clip_from_world()) || !is_finite(glm::mat4(glm::inverse(glm::dmat4(view.view_from_world()))))) {
     throw gpu::Error("the view's matrix, or its inverse, is not finite");
   }
@@ -156,6 +173,10 @@ void Viewport::check_region(const Target &target) const
 
 void Viewport::write(std::span<Engine *const> engines, const Target &target)
 {
+  check_synced(engines);
+  if (samples_drawn_ == 0) {
+    throw gpu::Error("viewport: there is no picture to write: call draw::Viewport::draw before write");
+  }
   check(target, size_px_);
   check_region(target);
   target_ = target;
@@ -202,14 +223,14 @@ void Viewport::begin_part(std::size_t engine_count)
            .row_count = count,
            .setup_max = engine_count == 1 && count == 0 ? setup_max_ : no_setup_max};
   setup_count_ = 0;
-  is_setup_open_ = false;
+  setup_left_ = 0;
 }
 
-void Viewport::set_setup(int unit_count, bool is_whole)
+void Viewport::set_setup(int unit_count, int left_count)
 {
   setup_count_ = unit_count;
-  is_setup_open_ = !is_whole;
-  if (!is_whole) {
+  setup_left_ = left_count;
+  if (left_count > 0) {
     part_.row_count = 0;
     part_.is_last = false;
   }

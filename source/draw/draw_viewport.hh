@@ -64,14 +64,14 @@ class Viewport {
    * recording, the commands become part of the recording. Otherwise they are submitted at once, and drawn a second time
    * if the feedback of the device changes the picture.
    *
-   * \throws gpu::Error if \a view or its inverse is not finite, if \a target cannot hold the picture, or if the
-   * submission fails. If drawing or submitting fails, the next draw starts the picture again.
+   * \throws gpu::Error if an engine was not synced since the viewport was made or resized, or its last sync failed; if
+   * the scene was edited since, as engines find; if \a view or its inverse is not finite, if \a target cannot hold the
+   * picture, or if the submission fails. If drawing or submitting fails, the next draw starts the picture again.
    */
   void draw(std::span<Engine *const> engines, const View &view, const Target &target = {});
   /**
    * Write the mean of the samples so far to \a target. Draws no sample. \a engines: of the last draw.
-   * \pre samples_drawn() is not 0
-   * \throws gpu::Error as draw()
+   * \throws gpu::Error as draw(), and if samples_drawn() is 0
    */
   void write(std::span<Engine *const> engines, const Target &target);
   /**
@@ -95,17 +95,22 @@ class Viewport {
     setup_max_ = units;
   }
   static constexpr int no_setup_max = std::numeric_limits<int>::max();
-  /** During draw_scene: the part has drawn \a unit_count units. Unless that is all, it lights no rows. */
-  void set_setup(int unit_count, bool is_whole);
+  /** During draw_scene: the part has drawn \a unit_count units. If \a left_count are left, it lights no rows. */
+  void set_setup(int unit_count, int left_count);
   /** Units that the last part has drawn. */
   [[nodiscard]] int setup_count() const
   {
     return setup_count_;
   }
+  /** Units that the sample that has begun needs before its rows. */
+  [[nodiscard]] int setup_left() const
+  {
+    return next_row_ ? setup_left_ : 0;
+  }
   /** Whether a sample has begun that needs more units before its rows. */
   [[nodiscard]] bool has_open_setup() const
   {
-    return next_row_.has_value() && is_setup_open_;
+    return setup_left() > 0;
   }
   /** During draw_scene: the part of the sample to be drawn. */
   [[nodiscard]] const SamplePart &part() const
@@ -116,6 +121,8 @@ class Viewport {
   void extend_part();
   /** The pixels of part(), as drawn_region(). Undefined if it has no rows. */
   [[nodiscard]] gpu::Rectangle part_region() const;
+  /** Rows of a sample: those of drawn_region(). */
+  [[nodiscard]] int row_count() const;
   /** Rows of the next sample that are not lit yet. */
   [[nodiscard]] int rows_left() const
   {
@@ -247,13 +254,13 @@ class Viewport {
  private:
   /** \throws gpu::Error if \a target cannot take a region */
   void check_region(const Target &target) const;
+  /** \throws gpu::Error if a call of sync() is missing */
+  void check_synced(std::span<Engine *const> engines) const;
   /** \a is_until_final: \see draws_until_final */
   void draw_sample(std::span<Engine *const> engines, bool is_until_final);
   void draw_until_final(std::span<Engine *const> engines);
   void begin_part(std::size_t engine_count);
   void end_part();
-  /** Rows of drawn_region(). */
-  [[nodiscard]] int row_count() const;
 
   gpu::Device &device_;
   glm::ivec2 size_px_;
@@ -270,7 +277,7 @@ class Viewport {
   int rows_max_ = no_rows_max;
   int setup_max_ = no_setup_max;
   int setup_count_ = 0;
-  bool is_setup_open_ = false;
+  int setup_left_ = 0;
   SamplePart part_;
   /** The first row of the next part of a sample that has begun. */
   std::optional<int> next_row_;
@@ -284,6 +291,8 @@ class Viewport {
     std::unique_ptr<EngineViewportData> data;
     /** ObjectBuffer::revision at the last sync; empty if there was none or if the last one failed. */
     std::optional<std::uint64_t> synced_revision;
+    /** The last sync succeeded, and the size is the same since. */
+    bool is_synced = false;
   };
   /** By Engine::id. */
   std::map<std::uint64_t, EngineState> engines_;

@@ -278,9 +278,11 @@ TEST_F(ViewportTest, APictureBeginsAnewWithItsViewItsSizeAFailureAndARestart)
   const View second(at(1), perspective(1, 1, 0.1F, 10));
   const auto samples_of = [&](const std::function<void()> &change, const View &view) {
     a.samples.clear();
+    viewport.sync(engines, objects);
     viewport.draw(engines, first);
     viewport.draw(engines, first);
     change();
+    viewport.sync(engines, objects);
     viewport.draw(engines, view);
     viewport.restart();
     return a.samples;
@@ -356,6 +358,8 @@ TEST_F(ViewportTest, PartsCoverEachRowOfASampleOnce)
   const std::vector<Engine *> engines = {&engine};
   const View view(glm::mat4(1), perspective(1, 1, 0.1F, 10));
   Viewport viewport(*device, {8, 11});
+  const std::vector<Engine *> both = {&engine, &a};
+  viewport.sync(both, objects);
   // 13 rows with the guard band.
   const auto draw = [&](int rows) {
     viewport.set_rows_max(rows);
@@ -400,7 +404,6 @@ TEST_F(ViewportTest, PartsCoverEachRowOfASampleOnce)
   EXPECT_EQ(engine.regions.back(), (gpu::Rectangle{{2, 8}, {6, 3}}));
   EXPECT_EQ(viewport.samples_drawn(), 1);
   // With several engines, each draw is a whole sample.
-  const std::vector<Engine *> both = {&engine, &a};
   viewport.draw(both, view);
   EXPECT_EQ(viewport.samples_drawn(), 1);
   EXPECT_TRUE(engine.parts.back().is_first && engine.parts.back().is_last);
@@ -414,6 +417,7 @@ TEST_F(ViewportTest, ARegionOfAPictureCannotBeScaled)
   const View view(glm::mat4(1), perspective(1, 1, 0.1F, 10));
   Target scaled = target.target();
   scaled.size_px = {16, 8};
+  viewport.sync(engines, objects);
   viewport.draw(engines, view, scaled);
   EXPECT_EQ(viewport.target().size_px, glm::ivec2(16, 8));
   viewport.set_region({{0, 0}, {4, 4}});

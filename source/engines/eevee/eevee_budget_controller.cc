@@ -109,31 +109,38 @@ bool BudgetController::fits_beginning(double budget, double spent) const
   return beginning && spent + *beginning + write_.value().value_or(0.0) <= later_share * within_limits(budget);
 }
 
-int BudgetController::plan_shadow_parts(double budget, double spent, bool must_advance) const
+/** A sixteenth of \a count, rounded up. */
+static int least_of(int count, bool must_advance)
 {
-  const int least = must_advance ? 1 : 0;
+  return must_advance ? std::max((count + 15) / 16, 1) : 0;
+}
+
+int BudgetController::plan_shadow_parts(double budget, double spent, int part_count, bool must_advance) const
+{
+  const int least = least_of(part_count, must_advance);
   const double left = later_share * within_limits(budget) - spent - write_.value().value_or(0.0);
   const std::optional<double> part = shadow_part_.value();
   if (!part || !(left > 0.0)) {
-    return part ? least : 1;
+    return part ? least : std::max(least, 1);
   }
   constexpr double most = 1e6;
   return std::max(least, int(std::min(left / std::max(*part, 1e-9), most)));
 }
 
-int BudgetController::plan_rows(double budget, double spent, int row_px, int row_count, bool must_advance) const
+int BudgetController::plan_rows(double budget, double spent, int row_px, int rows_left, int row_count,
+                                bool must_advance) const
 {
-  const int least = must_advance ? (row_count + 15) / 16 : 0;
+  const int least = std::min(least_of(row_count, must_advance), rows_left);
   const std::optional<double> pixel = pixel_.value();
   if (!pixel) {
-    return std::max(least, (row_count + 7) / 8);
+    return std::min(std::max(least, (row_count + 7) / 8), rows_left);
   }
   const double left = later_share * within_limits(budget) - spent - write_.value().value_or(0.0);
   const double row = *pixel * double(row_px);
   if (!(left > 0.0)) {
     return least;
   }
-  return row * double(row_count) <= left ? row_count : std::max(least, int(left / row));
+  return row * double(rows_left) <= left ? rows_left : std::max(least, int(left / row));
 }
 
 void BudgetController::add_preview(double setup, double rows, std::int64_t pixel_count)

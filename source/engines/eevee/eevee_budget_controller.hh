@@ -51,7 +51,8 @@ class RecentCost {
  * shadows of twice the edge take at most four times as long.
  *
  * Later calls draw the picture in parts that fit into 0.85 B: the set-up of a sample, or its depth and then as many
- * parts of its shadows as fit; then as many rows as fit.
+ * parts of its shadows as fit; then as many rows as fit. However slow the machine is, a call draws at least a sixteenth
+ * of the parts or of the rows, so that a sample takes at most 33 calls.
  */
 class BudgetController {
  public:
@@ -80,19 +81,25 @@ class BudgetController {
   /** Whether the part of the set-up before its shadows is expected to fit into the rest of a call. */
   [[nodiscard]] bool fits_beginning(double budget, double spent) const;
   /**
-   * Parts of shadows that are expected to fit into the rest of a call: at least one if \a must_advance. One as long as
-   * no time is known.
+   * Parts of shadows that are expected to fit into the rest of a call: at least a sixteenth of the \a part_count of the
+   * set-up if \a must_advance. One as long as no time is known.
    */
-  [[nodiscard]] int plan_shadow_parts(double budget, double spent, bool must_advance) const;
+  [[nodiscard]] int plan_shadow_parts(double budget, double spent, int part_count, bool must_advance) const;
   /**
-   * Rows that are expected to fit into the rest of a call: up to \a row_count, of \a row_px pixels each. At least one
-   * sixteenth of them if \a must_advance, so that a sample always ends. An eighth as long as no time is known.
+   * Rows that are expected to fit into the rest of a call: up to \a rows_left, of \a row_px pixels each. At least one
+   * sixteenth of the \a row_count of the sample if \a must_advance. An eighth of those as long as no time is known.
    */
-  [[nodiscard]] int plan_rows(double budget, double spent, int row_px, int row_count, bool must_advance) const;
+  [[nodiscard]] int plan_rows(double budget, double spent, int row_px, int rows_left, int row_count,
+                              bool must_advance) const;
 
   /** Times of a preview as it was last planned. The first one after a change is not counted: it creates its textures.
    */
   void add_preview(double setup, double rows, std::int64_t pixel_count);
+  /** A preview was drawn that was not planned: the next one creates its textures. */
+  void skip_preview()
+  {
+    is_new_ = true;
+  }
   /** \a is_first: of the first sample after an edit. */
   void add_setup(double setup, bool is_first);
   void add_beginning(double seconds);

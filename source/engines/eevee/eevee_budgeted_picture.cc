@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 
 namespace gnomon::eevee {
 
@@ -104,9 +105,13 @@ bool BudgetedPicture::draw(const draw::View &view, const draw::Target &target)
   shown_.reset();
   try {
     if (is_shown || has_samples(view)) {
-      refine(view);
+      stalled_calls_ = has_samples(view) ? 0 : stalled_calls_ + 1;
+      if (stalled_calls_ <= stalled_calls_max || !draw_better(view)) {
+        refine(view);
+      }
     }
     else {
+      stalled_calls_ = 0;
       draw_first(view);
     }
     if (!has_samples(view) && !has_preview_) {
@@ -150,7 +155,7 @@ void BudgetedPicture::draw_first(const draw::View &view)
   const BudgetController::FirstPlan plan = controller_.plan_first(budget_, pixel_count(size_px));
   has_preview_ = !plan.is_whole;
   if (has_preview_) {
-    draw_preview(view, plan);
+    draw_preview(view, plan, true);
     return;
   }
   draw_part(view, 0, spent());
@@ -160,8 +165,32 @@ void BudgetedPicture::draw_first(const draw::View &view)
   }
 }
 
-void BudgetedPicture::draw_preview(const draw::View &view, const BudgetController::FirstPlan &plan)
+bool BudgetedPicture::draw_better(const draw::View &view)
 {
+  BudgetController::FirstPlan plan = preview_plan_;
+  if (plan.level > 0) {
+    plan.level--;
+  }
+  else if (plan.shadow_divisor > 1) {
+    plan.shadow_divisor /= 2;
+  }
+  else {
+    return false;
+  }
+  stalled_calls_ = 0;
+  const bool is_lit = viewport_.has_begun_sample() && !viewport_.has_open_setup() && is_of(view);
+  if (is_lit && viewport_.rows_left() <= int(viewport_.row_count() * std::exp2(-plan.level))) {
+    draw_part(view, viewport_.rows_left());
+  }
+  else {
+    draw_preview(view, plan, false);
+  }
+  return true;
+}
+
+void BudgetedPicture::draw_preview(const draw::View &view, const BudgetController::FirstPlan &plan, bool is_planned)
+{
+  preview_plan_ = plan;
   const glm::ivec2 size_px = BudgetController::size_at(plan.level, viewport_.size_px());
   std::array<draw::Engine *, 1> engines{};
   // The time of edits, which was spent before, is a part of the set-up.
@@ -190,7 +219,12 @@ void BudgetedPicture::draw_preview(const draw::View &view, const BudgetControlle
     preview_->set_rows_max(draw::Viewport::no_rows_max);
     preview_->draw(engines, view);
   });
-  controller_.add_preview(setup, rows, pixel_count(size_px));
+  if (is_planned) {
+    controller_.add_preview(setup, rows, pixel_count(size_px));
+  }
+  else {
+    controller_.skip_preview();
+  }
 }
 
 void BudgetedPicture::draw_part(const draw::View &view, int rows, double spent_before)
@@ -228,7 +262,7 @@ bool BudgetedPicture::draw_setup(const draw::View &view, bool has_drawn)
 {
   int parts = draw::Viewport::no_setup_max;
   if (viewport_.has_open_setup() && is_of(view)) {
-    parts = controller_.plan_shadow_parts(budget_, spent(), !has_drawn);
+    parts = controller_.plan_shadow_parts(budget_, spent(), setup_parts_, !has_drawn);
     if (parts == 0) {
       return false;
     }
@@ -239,8 +273,11 @@ bool BudgetedPicture::draw_setup(const draw::View &view, bool has_drawn)
     }
     parts = 0;
   }
+  const bool is_begun = viewport_.has_open_setup() && is_of(view);
   viewport_.set_setup_max(parts);
   draw_part(view, 0);
+  // Another viewport may have taken the layers of this sample.
+  setup_parts_ = is_begun ? std::max(setup_parts_, viewport_.setup_left()) : viewport_.setup_left();
   viewport_.set_setup_max(draw::Viewport::no_setup_max);
   return true;
 }
@@ -258,8 +295,8 @@ void BudgetedPicture::refine(const draw::View &view)
       has_drawn = true;
       continue;
     }
-    const int rows =
-        controller_.plan_rows(budget_, spent(), viewport_.drawn_size_px().x, viewport_.rows_left(), !has_drawn);
+    const int rows = controller_.plan_rows(budget_, spent(), viewport_.drawn_size_px().x, viewport_.rows_left(),
+                                           viewport_.row_count(), !has_drawn);
     if (rows == 0) {
       return;
     }

@@ -46,7 +46,10 @@ struct BudgetReport {
  * which each lamp is shaded as a whole; it is scaled to the target. Lamps with a shadow size of their own
  * (scene::LampShadow) keep it. The first preview creates the engine, which compiles its programs.
  *
- * Later calls draw the samples of the picture, in parts. Until the first is whole, they show the preview again. The
+ * Later calls draw the samples of the picture, in parts. Until the first is whole, they show the preview again; after
+ * stalled_calls_max calls that show the same preview, the next one draws the preview in the next larger size, or with
+ * shadows of twice the edge, or lights the rest of the sample if that is less, whatever its time. So a picture of which
+ * nothing changes gets better at any speed of the machine. The
  * complete picture is bit for bit that of draw::Viewport::draw. A sample in which something transmits light is lit in
  * one call, whatever its time. The set-up of a sample is divided into its depth and parts of shadows: layers, or
  * rows of large layers. The layers of one exponential shadow are drawn in one call.
@@ -57,6 +60,8 @@ class BudgetedPicture {
  public:
   /** Returns a time in seconds that never decreases. */
   using Clock = std::function<double()>;
+  /** Calls that show the same preview before a better one is drawn. */
+  static constexpr int stalled_calls_max = 4;
 
   /**
    * \a engine draws \a scene in \a viewport, and no other engine does. All three must outlive the object. \a clock:
@@ -94,7 +99,10 @@ class BudgetedPicture {
   [[nodiscard]] bool has_samples(const draw::View &view) const;
   /** Draw the first picture after an edit. */
   void draw_first(const draw::View &view);
-  void draw_preview(const draw::View &view, const BudgetController::FirstPlan &plan);
+  /** \a is_planned: \a plan is the controller's, which learns the times. */
+  void draw_preview(const draw::View &view, const BudgetController::FirstPlan &plan, bool is_planned);
+  /** Draw a better preview, or the rest of the sample. \return false: there is no better preview */
+  bool draw_better(const draw::View &view);
   /** Draw the next part of a sample: its set-up, or \a rows. \a spent_before: counted as a part of the set-up. */
   void draw_part(const draw::View &view, int rows, double spent_before = 0.0);
   /** Draw the set-up of a sample, or what fits of it. \return false: nothing fits beside what the call has drawn */
@@ -118,8 +126,13 @@ class BudgetedPicture {
   /** draw::Viewport::restart_count and view of the picture that was shown last. Empty: none. */
   std::optional<std::uint64_t> shown_;
   draw::View shown_view_;
-  /** preview_ shows this picture. */
+  /** preview_ shows this picture, as `preview_plan_` says. */
   bool has_preview_ = false;
+  BudgetController::FirstPlan preview_plan_;
+  /** Calls that have shown the same preview. */
+  int stalled_calls_ = 0;
+  /** Parts of shadows of the set-up that has begun. */
+  int setup_parts_ = 0;
   BudgetReport report_;
 };
 

@@ -232,15 +232,20 @@ void Engine::cache_populate(draw::Viewport &viewport, const draw::ObjectBuffer &
   }
 }
 
+PictureKey Engine::picture_key() const
+{
+  return {scene_.objects().revision(),   scene_.lamps_revision(), scene_.passes_revision(),
+          scene_.materials_revision(),   settings_revision_,      shaders_->revision(),
+          scene_.host_content_revision()};
+}
+
 void Engine::cache_finish(draw::Viewport &viewport)
 {
   Data &data = viewport.engine_data<Data>(*this);
   data.stl.is_collecting = false;
   sync_lamps(*data.shared, viewport.device().limits());
   follow_lamps(data);
-  const PictureKey picture{scene_.objects().revision(),   scene_.lamps_revision(), scene_.passes_revision(),
-                           scene_.materials_revision(),   settings_revision_,      shaders_->revision(),
-                           scene_.host_content_revision()};
+  const PictureKey picture = picture_key();
   if (data.stl.synced_picture != picture) {
     viewport.restart();
     data.depth_feedback.forget();
@@ -249,12 +254,25 @@ void Engine::cache_finish(draw::Viewport &viewport)
   data.is_synced = true;
 }
 
-/** Take note of changes since the sync that other viewports or the device made. */
+/**
+ * Take note of changes since the sync that other viewports or the device made.
+ * \throws gpu::Error if the scene, the settings or the programs changed since the sync
+ */
 void Engine::begin_draw(draw::Viewport &viewport)
 {
   Data &data = viewport.engine_data<Data>(*this);
   if (!data.is_synced) {
     throw gpu::Error("eevee: nothing to draw: the viewport was not synced, or its last sync failed");
+  }
+  if (!scene_.is_up_to_date()) {
+    throw gpu::Error(
+        "eevee: the scene was edited since the last update: call RenderScene::update and "
+        "draw::Viewport::sync before draw");
+  }
+  if (data.stl.synced_picture != picture_key()) {
+    throw gpu::Error(
+        "eevee: the scene, the settings or the programs changed since the last sync of the viewport: call "
+        "draw::Viewport::sync before draw");
   }
   take_losses(viewport);
   follow_lamps(data);
@@ -355,7 +373,11 @@ void Engine::draw_target(draw::Viewport &viewport, const draw::View &view)
 
 const gpu::Texture &Engine::radiance(draw::Viewport &viewport) const
 {
-  return viewport.engine_data<Data>(*this).txl.film;
+  const gpu::Texture &film = viewport.engine_data<Data>(*this).txl.film;
+  if (!film) {
+    throw gpu::Error("eevee: the viewport has no picture: call draw::Viewport::draw before radiance");
+  }
+  return film;
 }
 
 float Engine::sample_scale(const Data &data, int samples_drawn) const

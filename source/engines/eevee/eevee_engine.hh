@@ -139,6 +139,7 @@ struct Settings {
 struct CasterKind;
 struct Data;
 struct ObjectKind;
+struct PictureKey;
 struct SharedData;
 struct StorageList;
 
@@ -201,7 +202,7 @@ class Engine final : public draw::Engine {
 
   /**
    * The scene-linear picture, RGBA32F, to be multiplied by radiance_scale. Pixels outside of draw::Viewport::region are
-   * undefined.
+   * undefined. \throws gpu::Error if the viewport was not synced since it was made or resized
    */
   [[nodiscard]] const gpu::Texture &radiance(draw::Viewport &viewport) const;
   /** Factor from radiance to the mean of the samples so far. 1 if the picture has Settings::sample_count samples. */
@@ -233,6 +234,8 @@ class Engine final : public draw::Engine {
   void make_film(draw::Viewport &viewport);
   /** Start of a draw. \throws gpu::Error if the viewport was not synced, or its last sync failed. */
   void begin_draw(draw::Viewport &viewport);
+  /** Of the current state, for StorageList::synced_picture. */
+  [[nodiscard]] PictureKey picture_key() const;
   /** If submitted work was lost, invalidate all results that it may have contained. */
   void take_losses(draw::Viewport &viewport);
   void sync_lamps(SharedData &shared, const gpu::Limits &device_limits);

@@ -111,9 +111,10 @@ void record_shadows(const FrameStep & /*step*/, FrameSample &sample, gpu::Comman
   StorageList &stl = sample.data.stl;
   SharedData &shared = *sample.data.shared;
   const draw::SamplePart part = sample.viewport.part();
-  // Between two parts, another viewport may have drawn another sample.
-  const bool is_disturbed = shared.sample_index != sample.data.sample_index;
-  if (sample.settings.planned_sample_count() > 1 && (part.is_first || is_disturbed)) {
+  // Between two parts, another viewport may have drawn another sample. Before, the settings may have been others.
+  const bool is_disturbed =
+      shared.sample_index != sample.data.sample_index || shared.sample_seed != int(sample.settings.seed);
+  if (is_disturbed || (sample.settings.planned_sample_count() > 1 && part.is_first)) {
     stl.shadows->invalidate_blended();
   }
   shared.sample_index = sample.data.sample_index;
@@ -123,7 +124,7 @@ void record_shadows(const FrameStep & /*step*/, FrameSample &sample, gpu::Comman
   const UpdatedLayers updated = stl.shadows->update(
       sample.viewport.device(), sample.view, pixel_size(sample.view, sample.viewport), shared.shadow_pass, list,
       sample.lamp_points.points, sample.data.depth_feedback.picture(sample.viewport.drawn_size_px()), parts_max);
-  sample.viewport.set_setup(updated.part_count, updated.is_all);
+  sample.viewport.set_setup(updated.part_count, updated.left_count);
 }
 
 void record_deferred_lit(const FrameStep &step, FrameSample &sample, gpu::CommandList &list)

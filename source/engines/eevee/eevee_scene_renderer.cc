@@ -51,8 +51,19 @@ void SceneRenderer::follow(const scene::PlacedCamera &camera)
   }
 }
 
+void SceneRenderer::check_synced() const
+{
+  if (!is_synced_ || !render_scene_.is_up_to_date()) {
+    throw gpu::Error("eevee: {}: call SceneRenderer::sync before a draw",
+                     is_synced_ ? "the scene was edited since the last sync"
+                                : "the renderer was not synced, its settings or size changed since, or its last sync "
+                                  "failed");
+  }
+}
+
 bool SceneRenderer::draw_sample(const scene::PlacedCamera &camera, const draw::Target &target)
 {
+  check_synced();
   follow(camera);
   const std::array<draw::Engine *, 1> engines = {&engine_};
   viewport_.draw(engines, view_of(camera), target);
@@ -106,6 +117,9 @@ int SceneRenderer::draw(const scene::PlacedCamera &camera, const DrawLimits &lim
 
 std::vector<glm::vec4> SceneRenderer::read_picture()
 {
+  if (viewport_.samples_drawn() == 0) {
+    throw gpu::Error("eevee: there is no picture to read: call SceneRenderer::draw or draw_sample before read_picture");
+  }
   std::vector<glm::vec4> picture = gpu::read_as<glm::vec4>(viewport_.device(), engine_.radiance(viewport_));
   if (const float scale = engine_.radiance_scale(viewport_); scale != 1.0F) {
     std::ranges::transform(picture, picture.begin(), [&](const glm::vec4 &pixel) { return pixel * scale; });

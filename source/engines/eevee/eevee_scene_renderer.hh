@@ -67,6 +67,7 @@ class SceneRenderer {
    * Draw the next sample of the picture of \a camera, unless the picture is complete, and write the mean of its samples
    * to \a target. The picture restarts if the camera changes or if sync applies a change. A host calls this function
    * once per frame. \return whether the picture is complete, so that further calls would not change it
+   * \throws gpu::Error if a sync is missing: after the scene, the settings or the size changed, or after a sync failed
    */
   bool draw_sample(const scene::PlacedCamera &camera, const draw::Target &target = {});
   /**
@@ -91,7 +92,8 @@ class SceneRenderer {
   int draw(const scene::PlacedCamera &camera, const DrawLimits &limits = {}, const draw::Target &target = {});
   /**
    * The mean of the samples drawn so far: scene-linear RGBA, rows from the bottom. Waits for the device. Pixels outside
-   * of draw::Viewport::region are undefined. \pre a sample is drawn, which a preview of draw_within is not
+   * of draw::Viewport::region are undefined.
+   * \throws gpu::Error if no sample is drawn since the picture started; a preview of draw_within is no sample
    */
   [[nodiscard]] std::vector<glm::vec4> read_picture();
 
@@ -119,6 +121,8 @@ class SceneRenderer {
   }
 
  private:
+  /** \throws gpu::Error if a sync is missing */
+  void check_synced() const;
   /** Move the origin of the render scene near to \a camera, if it is far away. */
   void follow(const scene::PlacedCamera &camera);
 

@@ -111,6 +111,16 @@ void Engine::draw_scene(draw::Viewport &viewport, const draw::View &view)
   if (!data.synced_picture) {
     throw gpu::Error("unlit: nothing to draw, as the viewport was not synced");
   }
+  if (!scene_.is_up_to_date()) {
+    throw gpu::Error(
+        "unlit: the scene was edited since the last update: call RenderScene::update and "
+        "draw::Viewport::sync before draw");
+  }
+  if (data.synced_picture != picture_key(scene_, settings_revision_)) {
+    throw gpu::Error(
+        "unlit: the scene or the settings changed since the last sync of the viewport: call "
+        "draw::Viewport::sync before draw");
+  }
   if (viewport.samples_drawn() == 0) {
     draw_sample(viewport, data, view);
   }
@@ -264,7 +274,9 @@ void Engine::update_depth_camera(gpu::Device &device, std::span<const draw::Obje
 const gpu::Texture &Engine::radiance(draw::Viewport &viewport) const
 {
   const Data &data = viewport.engine_data<Data>(*this);
-  GNOMON_ASSERT(data.radiance, "unlit: the viewport was never drawn");
+  if (!data.radiance) {
+    throw gpu::Error("unlit: the viewport has no picture: call draw::Viewport::draw before radiance");
+  }
   return data.radiance;
 }
 

@@ -62,8 +62,10 @@ class Engine final : public draw::Engine {
   void cache_finish(draw::Viewport &viewport) override;
   void draw_scene(draw::Viewport &viewport, const draw::View &view) override;
 
-  /** The scene-linear picture and its guard band (draw::Viewport::drawn_size_px), RGBA16F. \pre the viewport was drawn
-   * at least once */
+  /**
+   * The scene-linear picture and its guard band (draw::Viewport::drawn_size_px), RGBA16F.
+   * \throws gpu::Error if the viewport was not drawn since it was made or resized
+   */
   [[nodiscard]] const gpu::Texture &radiance(draw::Viewport &viewport) const;
   /** The depth camera's render texture, Depth32F; nullptr if there is no depth camera. */
   [[nodiscard]] const gpu::Texture *depth_camera_texture() const;

@@ -189,7 +189,7 @@ TEST(BudgetControllerTest, StiffCostsAndBudgetsGivePlansWithinTheLimits)
           controller.add_write(i % 2 == 0 ? pixel : setup);
           for (const int row_count : {1, 7, 362}) {
             for (const bool must_advance : {false, true}) {
-              const int rows = controller.plan_rows(seconds, setup, 642, row_count, must_advance);
+              const int rows = controller.plan_rows(seconds, setup, 642, row_count, row_count, must_advance);
               ASSERT_GE(rows, must_advance ? 1 : 0);
               ASSERT_LE(rows, row_count);
             }
@@ -209,37 +209,40 @@ TEST(BudgetControllerTest, APictureThatTakesNoTimeIsDrawnWhole)
 TEST(BudgetControllerTest, TheRowsOfACallFitIntoItsRest)
 {
   BudgetController controller;
-  EXPECT_EQ(controller.plan_rows(budget, 0.0, 640, 360, false), 45) << "an eighth, as long as no time is known";
+  EXPECT_EQ(controller.plan_rows(budget, 0.0, 640, 360, 360, false), 45) << "an eighth, as long as no time is known";
   controller.add_write(0.001);
   controller.add_rows(0.072, 640 * 360);
   for (const double spent : {0.0, 0.01, 0.02, 0.025, 0.028, 0.0287, 0.05}) {
-    const int rows = controller.plan_rows(budget, spent, 640, 360, false);
+    const int rows = controller.plan_rows(budget, spent, 640, 360, 360, false);
     const double left = 0.85 * budget - spent - 0.001;
     EXPECT_LE(rows * 0.0002, std::max(left, 0.0) + 1e-12) << spent;
     EXPECT_TRUE(left < 0.0 || (rows + 1) * 0.0002 > left - 1e-12) << spent;
     // A sample ends after at most 16 calls.
-    EXPECT_GE(controller.plan_rows(budget, spent, 640, 360, true), 23) << spent;
+    EXPECT_GE(controller.plan_rows(budget, spent, 640, 360, 360, true), 23) << spent;
   }
-  EXPECT_EQ(controller.plan_rows(10.0, 0.0, 640, 360, false), 360);
+  EXPECT_EQ(controller.plan_rows(10.0, 0.0, 640, 360, 360, false), 360);
 }
 
 TEST(BudgetControllerTest, ThePartsOfShadowsOfACallFitIntoItsRest)
 {
   BudgetController controller;
   EXPECT_FALSE(controller.fits_beginning(0.01, 0.0)) << "its time is not known";
-  EXPECT_EQ(controller.plan_shadow_parts(0.01, 0.0, false), 1) << "the time of a part is not known";
+  EXPECT_EQ(controller.plan_shadow_parts(0.01, 0.0, 5, false), 1) << "the time of a part is not known";
   controller.add_beginning(0.004);
   controller.add_shadow_parts(0.006, 3);
   controller.add_write(0.001);
   // 0.85 of the budget, without the writing: 7.5 ms.
   EXPECT_TRUE(controller.fits_beginning(0.01, 0.0034));
   EXPECT_FALSE(controller.fits_beginning(0.01, 0.0036));
-  EXPECT_EQ(controller.plan_shadow_parts(0.01, 0.0001, false), 3);
-  EXPECT_EQ(controller.plan_shadow_parts(0.01, 0.0034, false), 2);
-  EXPECT_EQ(controller.plan_shadow_parts(0.01, 0.0074, false), 0);
-  EXPECT_EQ(controller.plan_shadow_parts(0.01, 0.0074, true), 1);
-  EXPECT_EQ(controller.plan_shadow_parts(0.01, 1.0, true), 1);
-  EXPECT_EQ(controller.plan_shadow_parts(0.01, 1.0, false), 0);
+  EXPECT_EQ(controller.plan_shadow_parts(0.01, 0.0001, 5, false), 3);
+  EXPECT_EQ(controller.plan_shadow_parts(0.01, 0.0034, 5, false), 2);
+  EXPECT_EQ(controller.plan_shadow_parts(0.01, 0.0074, 5, false), 0);
+  EXPECT_EQ(controller.plan_shadow_parts(0.01, 0.0074, 5, true), 1);
+  EXPECT_EQ(controller.plan_shadow_parts(0.01, 1.0, 5, true), 1);
+  EXPECT_EQ(controller.plan_shadow_parts(0.01, 1.0, 5, false), 0);
+  // Of many, a sixteenth.
+  EXPECT_EQ(controller.plan_shadow_parts(0.01, 1.0, 348, true), 22);
+  EXPECT_EQ(controller.plan_rows(0.01, 1.0, 640, 7, 360, true), 7);
 }
 
 TEST(BudgetControllerTest, SizesAreThoseOfTheLevelsAndNeverEmpty)

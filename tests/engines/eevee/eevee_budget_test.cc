@@ -6,6 +6,7 @@
 
 #include "gpu/gpu_testing.hh"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -156,6 +157,42 @@ TEST_F(BudgetTest, TheSetUpOfASampleIsDividedIntoLayersOfShadowsThatFit)
   }
   EXPECT_EQ(kind(), BudgetReport::Kind::Complete);
   EXPECT_EQ(faces_drawn(engine, viewport), all_faces);
+}
+
+/** Size of what is shown, and of its shadows; above all previews are samples. */
+std::array<int, 3> quality_of(const BudgetReport &report)
+{
+  return {report.samples_drawn, report.drawn_size_px.x * report.drawn_size_px.y, -report.shadow_divisor};
+}
+
+TEST_F(BudgetTest, APictureOfWhichNothingChangesGetsBetterAtAnySpeed)
+{
+  for (int i = 0; i < 30; i++) {
+    test::add_lamp(scene, scene::LampKind::Point, {float(i % 6) - 2.5F, float(i / 6) - 2.5F, 3}, {0, 0, -1}, 10.0F);
+  }
+  int previews = 0;
+  for (const double speed : {0.0, 1e-5, 1e-4, 1e-3, 4e-3, 0.02, 0.1, 1.0, 100.0}) {
+    part_seconds = speed;
+    scene.edit(test::handle_at(scene.lamps(), 0), [](scene::Lamp &lamp) { lamp.intensity += 1.0F; });
+    bool is_complete = draw(0.033);
+    std::array<int, 3> shown = quality_of(picture.report());
+    int calls = 0;
+    int unchanged = 0;
+    for (; !is_complete && calls < 1000; calls++) {
+      const bool was_preview = kind() == BudgetReport::Kind::Preview;
+      previews += was_preview ? 1 : 0;
+      is_complete = draw(0.033);
+      const std::array<int, 3> before = std::exchange(shown, quality_of(picture.report()));
+      ASSERT_GE(shown, before) << speed << " s a part";
+      unchanged = shown > before ? 0 : unchanged + 1;
+      // A sample takes its beginning, and 16 calls each for shadows and rows.
+      ASSERT_LE(unchanged, was_preview && shown[1] < 64 * 48 ? BudgetedPicture::stalled_calls_max : 33)
+          << speed << " s a part";
+    }
+    EXPECT_TRUE(is_complete) << speed;
+    EXPECT_LE(calls, 8 * 33 + 11) << speed;
+  }
+  EXPECT_GE(previews, 30);
 }
 
 TEST_F(BudgetTest, ThePreviewSharesThePrograms)

@@ -149,6 +149,7 @@ TEST_F(ViewportsTest, UnsyncedViewportUsesALampThatAnotherSynced)
   test::add_lamp(scene, scene::LampKind::Point, {2, 3, 4}, {0, 0, -1}, 10.0F);
   draw::Viewport second(*device, {16, 16});
   draw(second, beside);
+  first.sync(engines, render_scene->objects());
   first.draw(engines, view_of(render_scene->relative(above), first.size_px()));
   EXPECT_EQ(Inspection(*engine, first).shadows().states().size(), 5U);
 }

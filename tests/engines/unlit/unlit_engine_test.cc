@@ -178,5 +178,36 @@ TEST(UnlitPrograms, HaveAnInterfaceForEachVariant)
   }
 }
 
+TEST_F(UnlitTest, CallsInAWrongOrderAreErrorsThatNameTheMissingOne)
+{
+  const auto expect_error = [](auto &&call, const std::string &missing) {
+    try {
+      call();
+      ADD_FAILURE() << "no error: " << missing;
+    }
+    catch (const gpu::Error &error) {
+      EXPECT_NE(std::string(error.what()).find(missing), std::string::npos) << error.what();
+    }
+  };
+  const std::string no_sync = "call draw::Viewport::sync before draw";
+  draw::Viewport viewport(*device, {16, 12});
+  const std::array<draw::Engine *, 1> engines = {&engine};
+  const auto draw_only = [&] { viewport.draw(engines, view); };
+  expect_error(draw_only, no_sync);
+  expect_error([&] { static_cast<void>(engine.radiance(viewport)); }, "call draw::Viewport::draw before radiance");
+  draw(viewport);
+  scene.edit(test::handle_at(scene.materials(), 0), [](scene::Material &one) { one.base_color.r = 0.1F; });
+  expect_error(draw_only, "call RenderScene::update and draw::Viewport::sync before draw");
+  render_scene.update();
+  expect_error(draw_only, no_sync);
+  draw(viewport);
+  engine.set_settings({.has_shadow = false});
+  expect_error(draw_only, no_sync);
+  draw(viewport);
+  viewport.resize({8, 8});
+  expect_error(draw_only, no_sync);
+  draw(viewport);
+}
+
 }  // namespace
 }  // namespace gnomon::unlit

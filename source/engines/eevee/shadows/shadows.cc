@@ -213,7 +213,7 @@ UpdatedLayers Shadows::update(gpu::Device &device, const draw::View &view, float
              scene_.render_block_, scene_.layer_pass_, recorded_counters_, caster_layers_, is_touching_});
         updated.part_count += part_count(slot, part);
       }
-      updated.is_all &= missing() == 0;
+      updated.left_count += missing() != 0 ? part_count(slot, {missing()}) : 0;
     });
   }
   write_block(device);

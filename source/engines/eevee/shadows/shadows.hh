@@ -36,8 +36,8 @@ struct ShadowState {
 struct UpdatedLayers {
   /** Parts of layers that were recorded, or have no caster. */
   int part_count = 0;
-  /** No layer that is needed is out of date after the submission. */
-  bool is_all = true;
+  /** Parts of layers that are needed and out of date after the submission. 0: none. */
+  int left_count = 0;
 };
 
 /** Texels of a part of a layer: whole rows, at least one. */
