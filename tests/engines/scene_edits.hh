@@ -1,0 +1,682 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "engines/eevee/eevee_test_scene.hh"
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+/**
+ * Every edit of a scene: each property of each kind of thing, and each addition, removal, move and replacement. A
+ * renderer that follows each of them, alone and in any order, shows the picture of a renderer that is made after them.
+ */
+namespace gnomon::test {
+
+/** An edit, and the edit that takes it back. */
+struct SceneEdit {
+  std::string name;
+  std::function<void(scene::Scene &)> apply;
+  std::function<void(scene::Scene &)> undo;
+  /** After `undo` all is as before, and not in another order or with other handles. */
+  bool is_restored = true;
+};
+
+/** A scene and all edits of it. Edits refer to its things, and may follow each other in any order after an undo. */
+struct EditedScene {
+  std::string name;
+  scene::Scene scene;
+  std::vector<SceneEdit> edits;
+  /** Edits that the scene refuses, as their values have no sense with others. */
+  int refused_count = 0;
+};
+
+// Properties. \a visit is called with a name, a member and the least and greatest number.
+
+template <typename Visit>
+void for_each_property(const scene::Lamp & /*of*/, Visit &&visit)
+{
+  using scene::Lamp;
+  visit("name", &Lamp::name);
+  visit("kind", &Lamp::kind, 0, 4);
+  visit("color", &Lamp::color);
+  visit("intensity", &Lamp::intensity);
+  visit("radius", &Lamp::radius);
+  visit("angle", &Lamp::angle, 0, 3);
+  visit("spot_outer_angle", &Lamp::spot_outer_angle, 0.1, 1.5);
+  visit("spot_blend", &Lamp::spot_blend, 0, 1);
+  visit("range", &Lamp::range);
+  visit("area_shape", &Lamp::area_shape, 0, 1);
+  visit("area_size_x", &Lamp::area_size_x, 0.01, 10);
+  visit("area_size_y", &Lamp::area_size_y, 0.01, 10);
+}
+
+template <typename Visit>
+void for_each_property(const scene::LampShadow & /*of*/, Visit &&visit)
+{
+  using scene::LampShadow;
+  visit("shadow.kind", &LampShadow::kind, 0, 4);
+  visit("shadow.size", &LampShadow::size, 16, 100);
+  visit("shadow.exponent", &LampShadow::exponent, 0.01, 100);
+  visit("shadow.bias", &LampShadow::bias, 0, 20);
+  visit("shadow.clip_start", &LampShadow::clip_start, 0.5, 3);
+  visit("shadow.clip_end", &LampShadow::clip_end, 3.5, 5);
+  visit("shadow.filter_radius", &LampShadow::filter_radius, 0.01, 0.7);
+  visit("shadow.esm_size", &LampShadow::esm_size, 16, 100);
+  visit("shadow.esm_format", &LampShadow::esm_format, 0, 1);
+}
+
+template <typename Visit>
+void for_each_property(const scene::Material & /*of*/, Visit &&visit)
+{
+  using scene::Material;
+  visit("name", &Material::name);
+  visit("base_color", &Material::base_color, 0, 1);
+  visit("alpha", &Material::alpha, 0, 1);
+  visit("metallic", &Material::metallic, 0, 1);
+  visit("roughness", &Material::roughness, 0, 1);
+  visit("normal_scale", &Material::normal_scale, -2, 2);
+  visit("occlusion_strength", &Material::occlusion_strength, 0, 1);
+  visit("specular", &Material::specular, 0, 1);
+  visit("specular_color", &Material::specular_color, 0, 1);
+  visit("coat", &Material::coat, 0, 1);
+  visit("coat_roughness", &Material::coat_roughness, 0, 1);
+  visit("coat_normal_scale", &Material::coat_normal_scale, -2, 2);
+  visit("sheen_color", &Material::sheen_color, 0, 1);
+  visit("sheen_roughness", &Material::sheen_roughness, 0, 1);
+  visit("anisotropy", &Material::anisotropy, 0, 1);
+  visit("anisotropy_rotation", &Material::anisotropy_rotation, -3, 3);
+  visit("transmission", &Material::transmission, 0, 1);
+  visit("thickness", &Material::thickness);
+  visit("ior", &Material::ior, 1, 3);
+  visit("attenuation_distance", &Material::attenuation_distance);
+  visit("attenuation_color", &Material::attenuation_color, 0, 1);
+  visit("emissive", &Material::emissive);
+  visit("is_unlit", &Material::is_unlit);
+  visit("alpha_mode", &Material::alpha_mode, 0, 2);
+  visit("alpha_cutoff", &Material::alpha_cutoff, 0, 1);
+  visit("is_double_sided", &Material::is_double_sided);
+}
+
+template <typename Visit>
+void for_each_property(const scene::TextureSlot & /*of*/, Visit &&visit)
+{
+  using scene::TextureSlot;
+  visit("uv_set", &TextureSlot::uv_set, 0, 1);
+  visit("offset", &TextureSlot::offset);
+  visit("rotation", &TextureSlot::rotation, -3, 3);
+  visit("scale", &TextureSlot::scale);
+}
+
+template <typename Visit>
+void for_each_property(const scene::Texture & /*of*/, Visit &&visit)
+{
+  using scene::Texture;
+  visit("wrap_u", &Texture::wrap_u, 0, 2);
+  visit("wrap_v", &Texture::wrap_v, 0, 2);
+  visit("magnified", &Texture::magnified, 0, 1);
+  visit("minified", &Texture::minified, 0, 1);
+  visit("mip", &Texture::mip, 0, 2);
+}
+
+template <typename Visit>
+void for_each_property(const scene::Node & /*of*/, Visit &&visit)
+{
+  using scene::Node;
+  visit("name", &Node::name);
+  visit("is_visible", &Node::is_visible);
+  visit("casts_shadow", &Node::casts_shadow);
+  visit("receives_shadow", &Node::receives_shadow);
+}
+
+template <typename Visit>
+void for_each_property(const scene::Camera & /*of*/, Visit &&visit)
+{
+  using scene::Camera;
+  visit("name", &Camera::name);
+  visit("kind", &Camera::kind, 0, 1);
+  visit("vertical_angle", &Camera::vertical_angle, 0.1, 3);
+  visit("aspect", &Camera::aspect);
+  visit("half_width", &Camera::half_width, 0.1, 10);
+  visit("half_height", &Camera::half_height, 0.1, 10);
+  visit("near", &Camera::near, 0.01, 1);
+  visit("far", &Camera::far);
+}
+
+template <typename Visit>
+void for_each_property(const scene::World & /*of*/, Visit &&visit)
+{
+  using scene::World;
+  visit("color", &World::color);
+  visit("strength", &World::strength);
+  visit("rotation", &World::rotation, -3, 3);
+}
+
+/** Some values beside \a value within the limits; at least one. */
+template <typename Value>
+std::vector<Value> other_values(const Value &value, double min, double max)
+{
+  std::vector<Value> others;
+  const auto add = [&](const Value &other) {
+    if (other != value && std::ranges::find(others, other) == others.end()) {
+      others.push_back(other);
+    }
+  };
+  if constexpr (requires { value.has_value(); }) {
+    add(std::nullopt);
+    using Content = typename Value::value_type;
+    for (const Content &content : other_values<Content>(value.value_or(Content{}), min, max)) {
+      add(content);
+    }
+  }
+  else if constexpr (std::is_same_v<Value, bool>) {
+    add(!value);
+  }
+  else if constexpr (std::is_enum_v<Value>) {
+    for (int i = int(min); i <= int(max); i++) {
+      add(Value(i));
+    }
+  }
+  else if constexpr (std::is_same_v<Value, std::string>) {
+    add(value + " again");
+  }
+  else if constexpr (std::is_arithmetic_v<Value>) {
+    add(Value(min));
+    add(std::is_integral_v<Value> ? Value(max) : Value(std::clamp(0.4 * double(value) + 0.3, min, max)));
+  }
+  else {
+    // Vectors: all components 0, and one component.
+    add(Value(float(min)));
+    Value moved = value;
+    moved.x = float(std::clamp(0.4 * double(value.x) + 0.3, min, max));
+    add(moved);
+  }
+  return others;
+}
+
+/** Adds edits of all properties of \a part of the thing \a handle. \a part returns the part of a thing. */
+template <typename Thing, typename Part>
+void add_property_edits(EditedScene &edited, scene::Handle<Thing> handle, const std::string &name, Part &&part)
+{
+  const auto original = std::make_shared<const Thing>(edited.scene.pool<Thing>()[handle]);
+  Thing changed = *original;
+  for_each_property(part(changed), [&](std::string_view property, auto member, double min = 0, double max = 100) {
+    auto &value = part(changed).*member;
+    const auto before = value;
+    auto others = other_values(before, min, max);
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(part(changed))>, scene::TextureSlot>) {
+      // There are fifteen slots.
+      others.erase(others.begin(), others.end() - 1);
+    }
+    for (const auto &other : others) {
+      value = other;
+      const auto after = std::make_shared<const Thing>(changed);
+      try {
+        scene::Scene(edited.scene).replace(handle, changed);
+        edited.edits.push_back({name + ": " + std::string(property),
+                                [handle, after](scene::Scene &scene) { scene.replace(handle, *after); },
+                                [handle, original](scene::Scene &scene) { scene.replace(handle, *original); }});
+      }
+      catch (const scene::InvalidEdit &) {
+        edited.refused_count++;
+      }
+    }
+    value = before;
+  });
+}
+
+template <typename Thing>
+void add_property_edits(EditedScene &edited, scene::Handle<Thing> handle, const std::string &name)
+{
+  add_property_edits(edited, handle, name, [](Thing &thing) -> Thing & { return thing; });
+}
+
+/** Adds edits that replace \a handle by \a change of it. */
+template <typename Thing, std::invocable<Thing &> Change>
+void add_edit(EditedScene &edited, scene::Handle<Thing> handle, const std::string &name, Change &&change)
+{
+  const auto original = std::make_shared<const Thing>(edited.scene.pool<Thing>()[handle]);
+  Thing changed = *original;
+  change(changed);
+  edited.edits.push_back({name,
+                          [handle, after = std::make_shared<const Thing>(std::move(changed))](scene::Scene &scene) {
+                            scene.replace(handle, *after);
+                          },
+                          [handle, original](scene::Scene &scene) { scene.replace(handle, *original); }});
+}
+
+/** Ground, and boxes that cast shadows on it. */
+struct Ground {
+  explicit Ground(scene::Scene &scene)
+      : material(add_material(scene, glm::vec3(0.5F))),
+        mesh(add_square_mesh(scene, material)),
+        box_mesh(add_box_mesh(scene, material)),
+        ground(add_object(scene, mesh, glm::scale(glm::dmat4(1.0), glm::dvec3(4.0)))),
+        box(add_object(scene, box_mesh, glm::scale(glm::translate(glm::dmat4(1.0), {0.3, 0, 0.7}), glm::dvec3(0.4))))
+  {
+  }
+  scene::Handle<scene::Material> material;
+  scene::Handle<scene::Mesh> mesh;
+  scene::Handle<scene::Mesh> box_mesh;
+  scene::Handle<scene::Node> ground;
+  scene::Handle<scene::Node> box;
+};
+
+inline scene::Handle<scene::Lamp> add_lamp_of(scene::Scene &scene, scene::LampKind kind, const glm::vec3 &from)
+{
+  const bool is_far = kind == scene::LampKind::Sun || kind == scene::LampKind::Hemi;
+  const auto lamp = add_lamp(scene, kind, from, -from, is_far ? 1.0F : 20.0F);
+  scene.edit(lamp, [](scene::Lamp &one) {
+    one.radius = 0.2F;
+    one.angle = 0.1F;
+    one.spot_outer_angle = 0.6F;
+    one.spot_blend = 0.1F;
+    one.range = 20.0F;
+  });
+  return lamp;
+}
+
+/** Gives the shadow of \a lamp a near plane that does not follow casters: it may keep one that was made before. */
+inline void keep_near_plane(scene::Scene &scene, scene::Handle<scene::Lamp> lamp)
+{
+  scene.edit(lamp, [](scene::Lamp &one) { one.shadow.clip_start = 0.1F; });
+}
+
+/** A scene with one lamp of \a kind, all properties of which are edited, as are those of its shadow. */
+inline EditedScene lamp_scene(scene::LampKind kind, const std::string &name)
+{
+  EditedScene edited{name, {}, {}};
+  const Ground ground(edited.scene);
+  const auto lamp = add_lamp_of(edited.scene, kind, {-1.5F, -1, 3});
+  add_property_edits(edited, lamp, name);
+  add_property_edits(edited, lamp, name, [](scene::Lamp &one) -> scene::LampShadow & { return one.shadow; });
+  const auto node = edited.scene.placed_lamps().front().node;
+  add_property_edits(edited, node, name + "'s node");
+  add_edit(edited, node, name + " moves", [](scene::Node &one) { one.parent_from_node[3].x += 0.5; });
+  add_edit(edited, node, name + " turns", [](scene::Node &one) {
+    one.parent_from_node = glm::rotate(one.parent_from_node, 0.3, glm::dvec3(0.6, 0.8, 0));
+  });
+  add_edit(edited, node, name + " is stretched",
+           [](scene::Node &one) { one.parent_from_node = glm::scale(one.parent_from_node, glm::dvec3(2, 0.5, 1)); });
+  add_edit(edited, node, name + " leaves its node", [](scene::Node &one) { one.lamp = {}; });
+  return edited;
+}
+
+inline std::vector<std::uint8_t> some_texels(std::uint32_t size, std::uint32_t seed)
+{
+  std::vector<std::uint8_t> texels(std::size_t(4) * size * size);
+  for (std::size_t i = 0; i < texels.size(); i++) {
+    texels[i] = std::uint8_t((i * 37 + seed * 101 + i * i * 7) % 256);
+  }
+  return texels;
+}
+
+/** \a mesh with all streams. */
+inline void fill_streams(scene::Mesh &mesh)
+{
+  if (mesh.uvs.empty()) {
+    mesh.uvs.assign(mesh.positions.size(), glm::vec2(0.3F));
+  }
+  mesh.second_uvs = mesh.uvs;
+  for (glm::vec2 &uv : mesh.second_uvs) {
+    uv = glm::vec2(uv.y, 1.0F - uv.x);
+  }
+  mesh.tangents.clear();
+  mesh.colors.clear();
+  for (const glm::vec3 &normal : mesh.normals) {
+    const glm::vec3 across = std::abs(normal.x) < 0.9F ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+    mesh.tangents.emplace_back(glm::normalize(glm::cross(normal, across)), 1.0F);
+    mesh.colors.emplace_back(0.9F, 0.8F, 1.0F, 0.7F);
+  }
+}
+
+/**
+ * A scene of an object with one material, all properties of which are edited. \a is_rich: it has all texture slots, a
+ * coat and emission before; otherwise it has none of them.
+ */
+inline EditedScene material_scene(bool is_rich, const std::string &name)
+{
+  EditedScene edited{name, {}, {}};
+  scene::Scene &scene = edited.scene;
+  const Ground ground(scene);
+  // Neither a near plane that follows casters nor the maps of a sun keep anything of pictures before.
+  keep_near_plane(scene, add_lamp(scene, scene::LampKind::Spot, {-1.5F, -1, 3}, {1.5F, 1, -3}, 20.0F));
+  const auto texture = add_texture(scene, 4, some_texels(4, 1));
+  const auto other = add_texture(scene, 2, some_texels(2, 2));
+  const auto material = add_material(scene, {0.7F, 0.5F, 0.3F});
+  const auto function = scene.add(scene::SurfaceFunction{
+      "dim", "void surface(SurfaceInputs inputs, inout StandardSurface result)\n{\n  result.base_color *= 0.5;\n}\n"});
+  scene.edit(material, [&](scene::Material &one) {
+    one.specular_color = glm::vec3(1.0F);
+    one.roughness = 0.4F;
+    if (is_rich) {
+      for (const scene::TextureInput &input : scene::texture_inputs) {
+        one.*input.slot = texture;
+      }
+      one.coat = 0.5F;
+      one.emissive = glm::vec3(0.1F);
+      one.alpha_mode = scene::AlphaMode::Mask;
+    }
+  });
+  const auto mesh = add_box_mesh(scene, material);
+  scene.edit(mesh, [](scene::Mesh &one) { fill_streams(one); });
+  const auto node =
+      add_object(scene, mesh, glm::scale(glm::translate(glm::dmat4(1.0), {-1.2, 0.3, 1.0}), glm::dvec3(0.6, 0.5, 0.4)));
+  add_property_edits(edited, material, name);
+  for (const scene::TextureInput &input : scene::texture_inputs) {
+    const std::string slot = name + ": " + std::string(input.name);
+    add_edit(edited, material, slot + " on or off", [&](scene::Material &one) {
+      one.*input.slot = is_rich ? scene::TextureSlot() : scene::TextureSlot(texture);
+    });
+    if (is_rich) {
+      add_edit(edited, material, slot + ".texture", [&](scene::Material &one) { (one.*input.slot).texture = other; });
+      add_property_edits(edited, material, slot,
+                         [&](scene::Material &one) -> scene::TextureSlot & { return one.*input.slot; });
+    }
+  }
+  add_edit(edited, material, name + ": surface_function",
+           [&](scene::Material &one) { one.surface_function = function; });
+  if (is_rich) {
+    add_property_edits(edited, texture, "texture");
+    add_edit(edited, texture, "texture: image",
+             [&](scene::Texture &one) { one.image = scene.textures()[other].image; });
+    const auto image = scene.textures()[texture].image;
+    add_edit(edited, image, "image: a texel", [](scene::Image &one) { one.texels[5] ^= 0x80; });
+    add_edit(edited, image, "image: size", [](scene::Image &one) {
+      one.width = one.height = 3;
+      one.texels = some_texels(3, 7);
+    });
+    add_edit(edited, image, "image: name", [](scene::Image &one) { one.name = "other"; });
+  }
+  add_edit(edited, mesh, "mesh: material", [&](scene::Mesh &one) { one.material = ground.material; });
+  add_edit(edited, mesh, "mesh: no material", [](scene::Mesh &one) { one.material = {}; });
+  add_edit(edited, mesh, "mesh: a position", [](scene::Mesh &one) { one.positions[3].z += 0.5F; });
+  add_edit(edited, mesh, "mesh: normals",
+           [](scene::Mesh &one) { std::ranges::rotate(one.normals, one.normals.begin() + 4); });
+  add_edit(edited, mesh, "mesh: fewer triangles", [](scene::Mesh &one) { one.indices.resize(18); });
+  add_edit(edited, mesh, "mesh: more vertices", [](scene::Mesh &one) {
+    scene::for_each_stream(one, [](auto &stream) { stream.push_back(stream.back()); });
+    one.positions.back().z += 1.0F;
+    one.indices.insert(one.indices.end(), {0, 1, std::uint32_t(one.positions.size()) - 1});
+  });
+  add_edit(edited, mesh, "mesh: lines", [](scene::Mesh &one) { one.topology = scene::Topology::Lines; });
+  add_edit(edited, mesh, "mesh: points", [](scene::Mesh &one) { one.topology = scene::Topology::Points; });
+  add_edit(edited, mesh, "mesh: empty", [](scene::Mesh &one) {
+    scene::for_each_stream(one, [](auto &stream) { stream.clear(); });
+    one.indices.clear();
+  });
+  for (const auto &[stream, clear] :
+       {std::pair<const char *, void (*)(scene::Mesh &)>("uvs", [](scene::Mesh &one) { one.uvs.clear(); }),
+        {"second_uvs", [](scene::Mesh &one) { one.second_uvs.clear(); }},
+        {"tangents", [](scene::Mesh &one) { one.tangents.clear(); }},
+        {"colors", [](scene::Mesh &one) { one.colors.clear(); }}}) {
+    add_edit(edited, mesh, std::string("mesh: no ") + stream, clear);
+  }
+  add_edit(edited, mesh, "mesh: name", [](scene::Mesh &one) { one.name = "other"; });
+  add_property_edits(edited, node, "object");
+  return edited;
+}
+
+/** Adds an edit that adds a thing, with the node or handle that it needs, and removes it again. */
+template <typename Add>
+void add_addition(EditedScene &edited, const std::string &name, Add &&add)
+{
+  using Added = std::invoke_result_t<Add, scene::Scene &>;
+  const auto added = std::make_shared<Added>();
+  edited.edits.push_back({"add " + name, [added, add](scene::Scene &scene) { *added = add(scene); },
+                          [added](scene::Scene &scene) { scene.remove(*added); }, false});
+}
+
+/** Adds an edit that removes the thing \a handle, and adds it again; \a use gives the new handle to its users. */
+template <typename Thing, typename Use>
+void add_removal(EditedScene &edited, const std::string &name, scene::Handle<Thing> handle, Use &&use)
+{
+  const auto now = std::make_shared<scene::Handle<Thing>>(handle);
+  const auto value = std::make_shared<const Thing>(edited.scene.pool<Thing>()[handle]);
+  edited.edits.push_back({"remove " + name, [now](scene::Scene &scene) { scene.remove(*now); },
+                          [now, value, use](scene::Scene &scene) {
+                            *now = scene.add(*value);
+                            use(scene, *now);
+                          },
+                          false});
+}
+
+/** A scene of each kind of thing, which are added, removed, moved to other nodes and replaced. */
+inline EditedScene structure_scene(const std::string &name)
+{
+  EditedScene edited{name, {}, {}};
+  scene::Scene &scene = edited.scene;
+  const Ground ground(scene);
+  const auto sun = add_lamp_of(scene, scene::LampKind::Sun, {-1.5F, -1, 3});
+  const auto sun_node = scene.placed_lamps().back().node;
+  const auto area = add_lamp_of(scene, scene::LampKind::Area, {1, -1, 2});
+  const auto area_node = scene.placed_lamps().back().node;
+  keep_near_plane(scene, area);
+  const auto texture = add_texture(scene, 4, some_texels(4, 3));
+  const auto material = add_material(scene, glm::vec3(0.8F));
+  const auto function = scene.add(scene::SurfaceFunction{
+      "dim", "void surface(SurfaceInputs inputs, inout StandardSurface result)\n{\n  result.base_color *= 0.5;\n}\n"});
+  scene.edit(material, [&](scene::Material &one) {
+    one.base_color_texture = texture;
+    one.emissive = glm::vec3(0.5F);
+  });
+  const auto mesh = add_box_mesh(scene, material);
+  const auto node =
+      add_object(scene, mesh, glm::scale(glm::translate(glm::dmat4(1.0), {-1.2, 0.3, 1.0}), glm::dvec3(0.3)));
+  const auto group = scene.add(scene::Node{.name = "group"});
+  const auto child = scene.add(
+      scene::Node{.name = "child",
+                  .parent_from_node = glm::scale(glm::translate(glm::dmat4(1.0), {1.4, 0.8, 0.5}), glm::dvec3(0.3)),
+                  .meshes = {ground.box_mesh}},
+      group);
+  const auto camera = scene.add(scene::Camera{.name = "camera"});
+  const auto camera_node = scene.add(scene::Node{.name = "camera", .camera = camera});
+
+  add_addition(edited, "an object", [mesh](scene::Scene &to) {
+    return to.add(
+        scene::Node{.parent_from_node = glm::scale(glm::translate(glm::dmat4(1.0), {0.4, -1, 0.4}), glm::dvec3(0.2)),
+                    .meshes = {mesh}});
+  });
+  add_addition(edited, "an object that casts no shadow", [mesh](scene::Scene &to) {
+    return to.add(
+        scene::Node{.parent_from_node = glm::scale(glm::translate(glm::dmat4(1.0), {0.4, -1, 0.4}), glm::dvec3(0.2)),
+                    .meshes = {mesh},
+                    .casts_shadow = false,
+                    .receives_shadow = false});
+  });
+  add_addition(edited, "an object of a mesh that is removed", [ground](scene::Scene &to) {
+    const auto made = to.add(scene::Mesh(to.meshes()[ground.box_mesh]));
+    const auto at = to.add(scene::Node{.meshes = {made}});
+    to.remove(made);
+    return at;
+  });
+  for (const auto &[kind, text] : {std::pair(scene::LampKind::Point, "a point"),
+                                   {scene::LampKind::Sun, "a sun"},
+                                   {scene::LampKind::Spot, "a spot"},
+                                   {scene::LampKind::Hemi, "a hemi lamp"},
+                                   {scene::LampKind::Area, "an area lamp"}}) {
+    add_addition(edited, text, [kind](scene::Scene &to) {
+      keep_near_plane(to, add_lamp_of(to, kind, {1, 1.5F, 2.5F}));
+      return to.placed_lamps().back().node;
+    });
+  }
+  add_addition(edited, "a mesh",
+               [ground](scene::Scene &to) { return to.add(scene::Mesh(to.meshes()[ground.box_mesh])); });
+  add_addition(edited, "a material", [](scene::Scene &to) { return to.add(scene::Material{}); });
+  add_addition(edited, "an image", [](scene::Scene &to) {
+    return to.add(scene::Image{"more", 2, 2, some_texels(2, 9)});
+  });
+  add_addition(edited, "a texture", [](scene::Scene &to) { return to.add(scene::Texture{}); });
+  add_addition(edited, "a lamp without a node", [](scene::Scene &to) { return to.add(scene::Lamp{}); });
+  add_addition(edited, "a camera", [](scene::Scene &to) { return to.add(scene::Camera{}); });
+  add_addition(edited, "a function", [](scene::Scene &to) {
+    return to.add(
+        scene::SurfaceFunction{"more", "void surface(SurfaceInputs inputs, inout StandardSurface result)\n{\n}\n"});
+  });
+
+  edited.edits.push_back({"re-parent the object's group to the ground",
+                          [=](scene::Scene &to) { to.set_parent(group, ground.ground); },
+                          [=](scene::Scene &to) { to.set_parent(group, {}); }});
+  edited.edits.push_back({"re-parent the child to the ground",
+                          [=](scene::Scene &to) { to.set_parent(child, ground.ground); },
+                          [=](scene::Scene &to) { to.set_parent(child, group); }});
+  add_edit(edited, group, "the group moves", [](scene::Node &one) { one.parent_from_node[3].x = -0.5; });
+  add_edit(edited, group, "the group is mirrored",
+           [](scene::Node &one) { one.parent_from_node = glm::scale(one.parent_from_node, glm::dvec3(-1, 1, 1)); });
+  add_edit(edited, group, "the group is flat",
+           [](scene::Node &one) { one.parent_from_node = glm::scale(one.parent_from_node, glm::dvec3(1, 1, 0)); });
+  add_edit(edited, group, "the group is 10 km away", [](scene::Node &one) { one.parent_from_node[3].x = 1e4; });
+  edited.edits.push_back(
+      {"the child's transform",
+       [=](scene::Scene &to) {
+         to.set_transform(child, glm::scale(glm::translate(glm::dmat4(1.0), {1.0, -0.8, 0.6}), glm::dvec3(0.3)));
+       },
+       [=, value = scene.nodes()[child].parent_from_node](scene::Scene &to) { to.set_transform(child, value); }});
+  add_property_edits(edited, group, "group");
+  add_property_edits(edited, child, "child");
+  add_property_edits(edited, ground.ground, "ground");
+  add_edit(edited, child, "the child has two meshes", [=](scene::Node &one) {
+    one.meshes = {ground.box_mesh, ground.mesh};
+  });
+  add_edit(edited, child, "the child has another mesh", [=](scene::Node &one) { one.meshes = {ground.mesh}; });
+  add_edit(edited, child, "the child has no mesh", [](scene::Node &one) { one.meshes.clear(); });
+  add_edit(edited, child, "the child has a lamp", [=](scene::Node &one) { one.lamp = area; });
+  add_edit(edited, ground.box, "the box has a camera", [=](scene::Node &one) { one.camera = camera; });
+  add_property_edits(edited, camera, "camera");
+  edited.edits.push_back(
+      {"a world", [](scene::Scene &to) { to.set_world(scene::World{}); }, [](scene::Scene &to) { to.set_world({}); }});
+
+  // The last ones: other edits refer to these things.
+  const auto no_use = [](scene::Scene &, auto) {};
+  add_removal(edited, "the object", node, no_use);
+  add_removal(edited, "the sun's node", sun_node, no_use);
+  add_removal(edited, "the area lamp's node", area_node, no_use);
+  add_removal(edited, "the camera's node", camera_node, no_use);
+  add_removal(edited, "the camera", camera, [camera_node](scene::Scene &to, auto handle) {
+    if (to.nodes().is_live(camera_node)) {
+      to.edit(camera_node, [&](scene::Node &one) { one.camera = handle; });
+    }
+  });
+  // Nodes of things that other edits removed and added again have other handles.
+  const auto use_lamp = [](scene::Scene &to, scene::Handle<scene::Lamp> handle) {
+    for (const auto &[at, one] : to.nodes()) {
+      if (one.lamp && !to.lamps().is_live(one.lamp)) {
+        to.edit(at, [&](scene::Node &user) { user.lamp = handle; });
+        return;
+      }
+    }
+  };
+  add_removal(edited, "the sun", sun, use_lamp);
+  add_removal(edited, "the area lamp", area, use_lamp);
+  add_removal(edited, "the mesh", mesh, [](scene::Scene &to, scene::Handle<scene::Mesh> handle) {
+    for (const auto &[at, one] : to.nodes()) {
+      if (!one.meshes.empty() && !to.meshes().is_live(one.meshes.front())) {
+        to.edit(at, [&](scene::Node &user) { user.meshes = {handle}; });
+        return;
+      }
+    }
+  });
+  add_removal(edited, "the material", material, [](scene::Scene &to, scene::Handle<scene::Material> handle) {
+    for (const auto &[at, one] : to.meshes()) {
+      if (one.material && !to.materials().is_live(one.material)) {
+        to.edit(at, [&](scene::Mesh &user) { user.material = handle; });
+        return;
+      }
+    }
+  });
+  add_removal(edited, "the texture", texture, [](scene::Scene &to, scene::Handle<scene::Texture> handle) {
+    for (const auto &[at, one] : to.materials()) {
+      if (one.base_color_texture && !to.textures().is_live(one.base_color_texture.texture)) {
+        to.edit(at, [&](scene::Material &user) { user.base_color_texture.texture = handle; });
+        return;
+      }
+    }
+  });
+  add_removal(edited, "the image", scene.textures()[texture].image,
+              [](scene::Scene &to, scene::Handle<scene::Image> handle) {
+                for (const auto &[at, one] : to.textures()) {
+                  if (!to.images().is_live(one.image)) {
+                    to.edit(at, [&](scene::Texture &user) { user.image = handle; });
+                    return;
+                  }
+                }
+              });
+  add_removal(edited, "the unused function", function, no_use);
+  return edited;
+}
+
+/** A scene that a world alone lights, all properties of which are edited. \a has_picture: it has a picture with a sun.
+ */
+inline EditedScene world_scene(bool has_picture, const std::string &name)
+{
+  EditedScene edited{name, {}, {}};
+  const Ground ground(edited.scene);
+  const auto picture_of = [](float sun) {
+    scene::WorldPicture picture{16, 8, std::vector<glm::vec3>(128, glm::vec3(0.2F, 0.3F, 0.4F))};
+    picture.texels[35] = glm::vec3(sun);
+    return std::make_shared<const scene::WorldPicture>(std::move(picture));
+  };
+  scene::World world{.picture = has_picture ? picture_of(200.0F) : nullptr};
+  edited.scene.set_world(world);
+  const auto add = [&](const std::string &what, const std::optional<scene::World> &other) {
+    edited.edits.push_back({name + ": " + what, [other](scene::Scene &to) { to.set_world(other); },
+                            [world](scene::Scene &to) { to.set_world(world); }});
+  };
+  for_each_property(world, [&](std::string_view property, auto member, double min = 0, double max = 100) {
+    for (const auto &value : other_values(world.*member, min, max)) {
+      scene::World other = world;
+      other.*member = value;
+      add(std::string(property), other);
+    }
+  });
+  scene::World other = world;
+  other.picture = has_picture ? nullptr : picture_of(100.0F);
+  add("a picture or none", other);
+  other.picture = picture_of(0.1F);
+  add("another picture", other);
+  add("no world", std::nullopt);
+  return edited;
+}
+
+/** All scenes with all edits. */
+inline std::vector<EditedScene> edited_scenes()
+{
+  std::vector<EditedScene> scenes;
+  scenes.push_back(lamp_scene(scene::LampKind::Point, "point"));
+  scenes.push_back(lamp_scene(scene::LampKind::Sun, "sun"));
+  scenes.push_back(lamp_scene(scene::LampKind::Spot, "spot"));
+  scenes.push_back(lamp_scene(scene::LampKind::Hemi, "hemi"));
+  scenes.push_back(lamp_scene(scene::LampKind::Area, "area"));
+  scenes.push_back(material_scene(false, "plain material"));
+  scenes.push_back(material_scene(true, "rich material"));
+  scenes.push_back(structure_scene("structure"));
+  scenes.push_back(world_scene(false, "even world"));
+  scenes.push_back(world_scene(true, "world with a picture"));
+  return scenes;
+}
+
+/** Pixels that differ in at least one bit, and the root of the mean square of the differences. */
+struct PictureDifference {
+  std::size_t pixel_count = 0;
+  double rms = 0.0;
+};
+
+inline PictureDifference difference_of(const std::vector<glm::vec4> &a, const std::vector<glm::vec4> &b)
+{
+  PictureDifference difference;
+  for (std::size_t i = 0; i < a.size(); i++) {
+    difference.pixel_count += a[i] == b[i] ? 0 : 1;
+    const glm::dvec4 delta = glm::dvec4(a[i]) - glm::dvec4(b[i]);
+    difference.rms += glm::dot(delta, delta);
+  }
+  difference.rms = std::sqrt(difference.rms / (4.0 * double(a.size())));
+  return difference;
+}
+
+}  // namespace gnomon::test
