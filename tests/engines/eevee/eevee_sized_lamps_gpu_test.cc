@@ -372,6 +372,7 @@ TEST_F(PenumbraSceneTest, CastersBehindTheReceiverDoNotDarkenIt)
   test::Renderer renderer(*device, scene, {32, 32});
   const test::Picture with_wall = renderer.picture(camera);
   scene.remove(wall);
+  renderer.sync();
   const test::Picture without = renderer.picture(camera);
   float brightest = 0.0F;
   float darkest = 1e9F;
