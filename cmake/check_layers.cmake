@@ -8,12 +8,13 @@ cmake_minimum_required(VERSION 3.25)
 # The layers that each layer may use. A header belongs to the listed folder that contains it.
 set(source/trace "")
 set(source/memory "")
-set(source/gpu source/trace shaders)
+set(source/output "")
+set(source/gpu source/output source/trace shaders)
 set(source/shader_check source/gpu shaders)
 set(source/draw source/gpu source/memory shaders)
 set(source/scene source/memory)
 set(source/image "")
-set(source/gltf source/scene source/image source/memory source/trace)
+set(source/gltf source/scene source/image source/memory source/output source/trace)
 set(source/render_scene source/draw source/gpu source/memory source/scene shaders)
 set(source/engines/eevee source/render_scene source/draw source/gpu source/scene source/trace shaders)
 # A program that writes a table of the engine. The engine itself must not use the reference.
@@ -29,14 +30,14 @@ set(source/measure source/engines/eevee source/render_scene source/reference sou
 set(source/verify source/measure source/engines/eevee source/render_scene source/reference source/draw source/gpu source/gltf
   source/image source/scene shaders)
 set(source/cli source/view source/verify source/measure source/engines/eevee source/engines/unlit source/engines/overlay source/render_scene source/reference source/draw source/shader_check source/gpu
-  source/gltf source/image source/scene source/trace shaders)
+  source/gltf source/image source/output source/scene source/trace shaders)
 set(source/view source/measure source/reference source/engines/eevee source/engines/unlit source/engines/overlay source/render_scene source/draw source/shader_check source/gpu
-  source/gltf source/scene shaders)
+  source/gltf source/output source/scene shaders)
 set(source/python source/measure source/reference source/embed source/engines/eevee source/engines/unlit source/engines/overlay source/render_scene source/draw
   source/gpu source/gltf source/image source/scene shaders)
 set(shaders "")
 # A folder within another layer's folder comes after it.
-set(LAYERS source/trace source/memory source/gpu source/shader_check source/draw source/scene source/image source/gltf source/render_scene source/engines/eevee source/engines/eevee/multiscatter_tool
+set(LAYERS source/trace source/memory source/output source/gpu source/shader_check source/draw source/scene source/image source/gltf source/render_scene source/engines/eevee source/engines/eevee/multiscatter_tool
   source/engines/unlit source/engines/overlay source/engines/interface_tool source/embed source/reference source/measure source/verify source/view source/cli source/python shaders)
 
 set(VIOLATIONS 0)

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <cstdio>
 #include <stdexcept>
+#include <utility>
 
 namespace gnomon::cli {
 
@@ -23,6 +26,13 @@ enum class Status : int {
 struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+
+/** Prints to stderr as far as it can be written: a warning that is lost must not end the work. */
+template <typename... Arguments>
+void print_message(fmt::format_string<Arguments...> format, Arguments &&...arguments)
+{
+  static_cast<void>(std::fputs(fmt::format(format, std::forward<Arguments>(arguments)...).c_str(), stderr));
+}
 
 /** Each function adds a subcommand to \a app. When the subcommand runs, it sets \a status. */
 void add_render(CLI::App &app, Status &status);

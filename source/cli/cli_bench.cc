@@ -2,7 +2,6 @@
 #include "cli.hh"
 
 #include "cli_bench.hh"
-#include "cli_output.hh"
 
 #include "measure_bench.hh"
 #include "measure_edits.hh"
@@ -11,7 +10,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <fstream>
 #include <memory>
 
 namespace gnomon::cli {
@@ -30,20 +28,6 @@ nlohmann::json to_json(const measure::Spread &spread)
 std::string to_text(const measure::Spread &spread, double unit)
 {
   return fmt::format("{:9.2f} [{:.2f}, {:.2f}]", spread.median / unit, spread.low / unit, spread.high / unit);
-}
-
-void write_json(const std::string &path, const nlohmann::json &json)
-{
-  if (path.empty()) {
-    return;
-  }
-  write_atomically(path, [&](const std::filesystem::path &beside) {
-    std::ofstream file(beside);
-    file << json.dump(2) << "\n";
-    if (!file.flush()) {
-      throw std::runtime_error(fmt::format("{}: cannot be written", path));
-    }
-  });
 }
 
 namespace {
@@ -265,6 +249,17 @@ void bench_start(const BenchOptions &options)
                             {"rows", json}});
 }
 
+/** Before minutes of measuring. \throws output::Error where --json cannot be written, or would replace a scene */
+void check_files(const BenchOptions &options)
+{
+  output::Roles roles;
+  roles.add_input(options.scene, "the scene");
+  for (const std::string &scene : options.scenes) {
+    roles.add_input(scene, "the scene");
+  }
+  roles.add_output(options.json, "--json");
+}
+
 /** \a text: what each backend does. */
 void add_backend(CLI::App &bench, BenchOptions &options, const char *text)
 {
@@ -280,34 +275,61 @@ void add_bench(CLI::App &app, Status &status)
   auto o = std::make_shared<BenchOptions>();
   CLI::App *shadows = command->add_subcommand("shadows", "The methods of drawing a lamp's layers, side by side");
   add_backend(*shadows, *o, "gl: on the null backend and on the driver; null: without a driver");
-  shadows->callback([o] { bench_shadows(*o); });
+  shadows->callback([o] {
+    check_files(*o);
+    bench_shadows(*o);
+  });
   CLI::App *record = command->add_subcommand("record", "What a draw with its own matrix costs, without a driver");
-  record->callback([o] { bench_record(*o); });
+  record->callback([o] {
+    check_files(*o);
+    bench_record(*o);
+  });
   CLI::App *cull = command->add_subcommand("cull", "What the test of boxes against a frustum costs");
-  cull->callback([o] { bench_cull(*o); });
+  cull->callback([o] {
+    check_files(*o);
+    bench_cull(*o);
+  });
   CLI::App *imports = command->add_subcommand("import", "What the import of many nodes costs");
-  imports->callback([o] { bench_import(*o); });
+  imports->callback([o] {
+    check_files(*o);
+    bench_import(*o);
+  });
   CLI::App *sync = command->add_subcommand("sync", "What edits of lamps among many triangles cost, without a driver");
-  sync->callback([o] { bench_sync(*o); });
+  sync->callback([o] {
+    check_files(*o);
+    bench_sync(*o);
+  });
   CLI::App *left_out =
       command->add_subcommand("left-out", "What scenes that lack one thing each cost, beside a full one");
   add_backend(*left_out, *o, "gl, or null: without a driver");
-  left_out->callback([o] { bench_left_out(*o); });
+  left_out->callback([o] {
+    check_files(*o);
+    bench_left_out(*o);
+  });
   CLI::App *lamps = command->add_subcommand("lamps", "What few and many lamps cost in a frame");
   add_backend(*lamps, *o, "gl, or null: without a driver");
-  lamps->callback([o] { bench_lamps(*o); });
+  lamps->callback([o] {
+    check_files(*o);
+    bench_lamps(*o);
+  });
   CLI::App *growth =
       command->add_subcommand("growth", "How times grow with objects, casters, imported nodes, pixels and samples");
   add_backend(*growth, *o, "gl, or null: without pixels and samples");
   for (CLI::App *bench : {cull, imports, growth}) {
     bench->add_option("--count-max", o->count_max, "Leave out larger counts")->check(CLI::Range(1000, 1 << 30));
   }
-  growth->callback([o] { bench_growth(*o); });
+  growth->callback([o] {
+    check_files(*o);
+    bench_growth(*o);
+  });
   CLI::App *start = command->add_subcommand("start", "What starting the program costs, up to a first picture");
   start->add_option("scene", o->scene, "glTF 2.0 file (default: a scene made in place)");
   add_backend(*start, *o, "gl, or null: without a driver and a picture");
   add_world_options(*start, o->world);
-  start->callback([o] { bench_start(*o); });
+  start->callback([o] {
+    check_files(*o);
+    bench_start(*o);
+  });
   for (CLI::App *bench : {shadows, record, cull, imports, sync, left_out, lamps, growth, start}) {
     bench->add_option("--rounds", o->rounds, "Measured rounds, after one that warms up")
         ->capture_default_str()
@@ -325,24 +347,36 @@ void add_bench(CLI::App &app, Status &status)
   add_backend(*frames, *o, "gl, or null: without a driver");
   frames->add_option("--json", o->json, "Write the figures, in seconds");
   add_world_options(*frames, o->world);
-  frames->callback([o] { bench_frames(*o); });
+  frames->callback([o] {
+    check_files(*o);
+    bench_frames(*o);
+  });
   CLI::App *memory = command->add_subcommand("memory", "Device memory of a picture, beside that without shadows");
   memory->add_option("scenes", o->scenes, "glTF 2.0 files")->required();
   memory->add_option("--size", o->size, "WIDTHxHEIGHT, pixels")->capture_default_str();
   add_backend(*memory, *o, "gl, or null: without a driver, and without fits to the picture's depths");
   memory->add_option("--json", o->json, "Write the figures, in bytes");
   add_world_options(*memory, o->world);
-  memory->callback([o] { bench_memory(*o); });
+  memory->callback([o] {
+    check_files(*o);
+    bench_memory(*o);
+  });
   CLI::App *light = command->add_subcommand(
       "light", "Errors of the light of lamps with a size in one frame, against numerical integration");
   light->add_option("--points", o->points, "Points in each of the sets of an integral")
       ->capture_default_str()
       ->check(CLI::Range(1, 1 << 20));
   light->add_option("--json", o->json, "Write the errors");
-  light->callback([o, &status] { status = bench_light(*o); });
+  light->callback([o, &status] {
+    check_files(*o);
+    status = bench_light(*o);
+  });
   CLI::App *edits = command->add_subcommand("edits", "The work that each kind of edit of a large scene causes");
   edits->add_option("--json", o->json, "Write the figures");
-  edits->callback([o] { bench_edits(*o); });
+  edits->callback([o] {
+    check_files(*o);
+    bench_edits(*o);
+  });
 }
 
 }  // namespace gnomon::cli

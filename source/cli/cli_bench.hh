@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli.hh"
+#include "cli_output.hh"
 #include "cli_world.hh"
 
 #include "measure_bench.hh"
@@ -40,9 +41,6 @@ struct BenchOptions {
 [[nodiscard]] nlohmann::json to_json(const measure::Spread &spread);
 /** Median and quartiles, in units of \a unit seconds. */
 [[nodiscard]] std::string to_text(const measure::Spread &spread, double unit);
-/** Writes \a json to the file \a path, unless it is empty. \throws std::runtime_error that names the file */
-void write_json(const std::string &path, const nlohmann::json &json);
-
 void bench_cull(const BenchOptions &options);
 void bench_import(const BenchOptions &options);
 void bench_record(const BenchOptions &options);

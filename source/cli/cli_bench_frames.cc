@@ -35,6 +35,9 @@ void print_budget(const measure::BudgetTimes &times, nlohmann::json &json)
 nlohmann::json print_scene(gpu::Device &device, const BenchOptions &options, const std::string &path)
 {
   scene::Scene scene = import_scene(path);
+  output::Roles roles;
+  add_inputs(roles, scene, options.world);
+  roles.add_output(options.json, "--json");
   light_by_world(scene, scene.placed_cameras().front(), options.world);
   const measure::FrameTimes times = measure::measure_frame_times(
       device, std::move(scene), {.frame_count = options.frames, .budget_seconds = 1e-3 * options.budget_ms});

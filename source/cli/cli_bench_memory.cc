@@ -37,6 +37,9 @@ DeviceBytes device_bytes(gpu::Device &device, const scene::Scene &scene, const R
 nlohmann::json print_memory(gpu::Device &device, const BenchOptions &options, const std::string &path)
 {
   scene::Scene scene = import_scene(path);
+  output::Roles roles;
+  add_inputs(roles, scene, options.world);
+  roles.add_output(options.json, "--json");
   light_by_world(scene, scene.placed_cameras().front(), options.world);
   fmt::print("\n{:<44} {:>9} {:>9} {:>18}\n", path, "all, MiB", "shadows", "all/without shadows");
   nlohmann::json rows = nlohmann::json::array();

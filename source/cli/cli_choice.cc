@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli_choice.hh"
 
+#include "cli.hh"
 #include "cli_fingerprint.hh"
 #include "cli_origin.hh"
 
@@ -32,7 +33,7 @@ Chooser::Chooser(const ChoiceOptions &options, gpu::Device &device, const scene:
     requirement_.seconds_max = 1e-3 * options.milliseconds_max;
   }
   for (const std::string &line : reference::untraced_parts(scene)) {
-    fmt::print(stderr, "gnomon: warning: {}\n", line);
+    print_message("gnomon: warning: {}\n", line);
   }
   std::vector<measure::Model> models;
   if (!options.report_folder.empty()) {
@@ -63,7 +64,7 @@ std::vector<measure::Model> Chooser::models_of_report(const gpu::Device &device)
   }
   const auto found = std::ranges::find(run.scenes, scene_fingerprint(scene_), &measure::SceneReport::fingerprint);
   const auto unknown = [&](const std::string &why) {
-    fmt::print(stderr, "gnomon: warning: {}: {}; running a pilot instead\n", path.string(), why);
+    print_message("gnomon: warning: {}: {}; running a pilot instead\n", path.string(), why);
     return std::vector<measure::Model>();
   };
   if (found == run.scenes.end()) {

@@ -5,6 +5,7 @@
 #include "cli_picture.hh"
 
 #include "measure_image_error.hh"
+#include "output_roles.hh"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -58,7 +59,7 @@ void write_difference(const CompareOptions &options, const Picture &picture, con
   }
 }
 
-void write_json(const CompareOptions &options, const measure::ImageError &error)
+void write_errors(const CompareOptions &options, const measure::ImageError &error)
 {
   nlohmann::json json = {
       {"picture", options.picture}, {"reference", options.reference}, {"non_finite_count", error.non_finite_count}};
@@ -66,11 +67,16 @@ void write_json(const CompareOptions &options, const measure::ImageError &error)
     // JSON has no NaN: null stands for an error that non-finite values leave undefined.
     json[one.json_key] = error.*one.value;
   }
-  write_text(options.json, json.dump(2) + '\n');
+  write_json(options.json, json);
 }
 
 Status compare(const CompareOptions &options)
 {
+  output::Roles roles;
+  roles.add_input(options.picture, "the picture");
+  roles.add_input(options.reference, "the reference");
+  roles.add_output(options.json, "--json");
+  roles.add_output(options.difference, "--difference");
   const Picture picture = read_picture(options.picture);
   const Picture reference = read_picture(options.reference);
   if (picture.size_px != reference.size_px) {
@@ -83,12 +89,10 @@ Status compare(const CompareOptions &options)
   for (const NamedError &one : errors) {
     fmt::print("{:<13} {:.6g}\n", one.name, error.*one.value);
   }
-  if (!options.json.empty()) {
-    write_json(options, error);
-  }
+  write_errors(options, error);
   if (error.non_finite_count > 0) {
-    fmt::print(stderr, "gnomon: {}: {} values of the picture or the reference are NaN or infinite\n", options.picture,
-               error.non_finite_count);
+    print_message("gnomon: {}: {} values of the picture or the reference are NaN or infinite\n", options.picture,
+                  error.non_finite_count);
     return Status::NonFinite;
   }
   if (!options.difference.empty()) {
@@ -120,7 +124,9 @@ void add_compare(CLI::App &app, Status &status)
           "EXR, HDR: scene-linear; PNG, JPEG, WebP: decoded by the sRGB curve. Transparent pixels are compared as "
           "if over black")
       ->required();
-  command->add_option("reference", o->reference, "A picture of the same size")->required();
+  command
+      ->add_option("reference", o->reference, "A picture of the same size; of EXR files, display windows are compared")
+      ->required();
   for (std::size_t i = 0; i < errors.size(); i++) {
     command
         ->add_option(errors[i].option, o->maxima[i], fmt::format("{}; above it the status is 1", errors[i].description))

@@ -2,7 +2,7 @@
 #include "cli_frames.hh"
 
 #include "cli.hh"
-#include "cli_output.hh"
+#include "output_file.hh"
 
 #include <fmt/format.h>
 
@@ -83,7 +83,7 @@ void FrameSequence::remove_unfinished_files() const
   for (int i = 0; i < count(); i++) {
     names.insert(path(i).filename().string());
   }
-  remove_unfinished(output_.parent_path(), names);
+  output::remove_unfinished(output_.parent_path(), names);
 }
 
 void FrameSequence::pose(scene::Scene &scene, int index) const
@@ -112,8 +112,8 @@ void FrameSequence::show_progress(int index, int rendered_count, double rendered
   }
   const bool is_last = index + 1 == count();
   const double left = rendered_seconds / std::max(rendered_count, 1) * double(count() - index - 1);
-  fmt::print(stderr, "\r\033[Kframe {} ({}/{}), {:.0f} s left{}", number(index), index + 1, count(), left,
-             is_last ? "\r\033[K" : "");
+  print_message("\r\033[Kframe {} ({}/{}), {:.0f} s left{}", number(index), index + 1, count(), left,
+                is_last ? "\r\033[K" : "");
 }
 
 }  // namespace gnomon::cli

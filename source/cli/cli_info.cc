@@ -72,12 +72,14 @@ void add_info(CLI::App &app, Status &status)
   const auto path = std::make_shared<std::string>();
   const auto world = std::make_shared<WorldOptions>();
   command->add_option("scene", *path, "glTF 2.0 file")->required();
+  const auto only_below = std::make_shared<std::filesystem::path>();
   add_world_options(*command, *world);
-  command->callback([path, world, &status] {
-    scene::Scene scene = import_scene(*path);
+  add_only_below_option(*command, *only_below);
+  command->callback([path, world, only_below, &status] {
+    scene::Scene scene = import_scene(*path, {.only_below = *only_below});
     const bool is_world_default = light_by_world(scene, scene.placed_cameras().front(), *world);
     for (const std::string &warning : scene.warnings) {
-      fmt::print(stderr, "gnomon: warning: {}\n", warning);
+      print_message("gnomon: warning: {}\n", warning);
     }
     print_info(scene, is_world_default);
     status = Status::Done;

@@ -1,7 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "cli.hh"
 
+#include "output_roles.hh"
+
 #include <fmt/format.h>
+
+#include <fcntl.h>
+#include <unistd.h>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <iostream>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -23,6 +33,34 @@ static void keep_freed_memory()
   mallopt(M_MMAP_THRESHOLD, block_bytes_max);
   mallopt(M_TRIM_THRESHOLD, kept_bytes_max);
 #endif
+}
+
+/**
+ * Opens the standard streams that are closed, because the next file would otherwise take the place of one and get what
+ * is printed. What is printed to a closed output fails.
+ */
+static void open_standard_streams()
+{
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(stream, F_GETFD) < 0) {
+      // It takes the smallest free number, which is this one.
+      static_cast<void>(open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY));
+    }
+  }
+}
+
+/** \return \a status, or Status::Failed if what was printed did not get to stdout */
+static Status finish_output(Status status)
+{
+  errno = 0;
+  std::cout.flush();
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) {
+    return status;
+  }
+  // The reason of an earlier failure is not kept.
+  print_message("gnomon: standard output: cannot be written{}\n",
+                errno == 0 ? "" : fmt::format(": {}", std::strerror(errno)));
+  return status == Status::Done ? Status::Failed : status;
 }
 
 static Status run(int argc, char **argv)
@@ -50,11 +88,18 @@ static Status run(int argc, char **argv)
     return app.exit(error) == 0 ? Status::Done : Status::Usage;
   }
   catch (const UsageError &error) {
-    fmt::print(stderr, "gnomon: {}\n", error.what());
+    print_message("gnomon: {}\n", error.what());
+    return Status::Usage;
+  }
+  catch (const output::Conflict &error) {
+    print_message("gnomon: {}\n", error.what());
     return Status::Usage;
   }
   catch (const std::exception &error) {
-    fmt::print(stderr, "gnomon: {}\n", error.what());
+    // finish_output says that stdout failed.
+    if (std::ferror(stdout) == 0) {
+      print_message("gnomon: {}\n", error.what());
+    }
     return Status::Failed;
   }
 }
@@ -63,6 +108,9 @@ static Status run(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
+  gnomon::cli::open_standard_streams();
+  // Printing beyond the limit of the size of files fails instead.
+  static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
   gnomon::cli::keep_freed_memory();
-  return int(gnomon::cli::run(argc, argv));
+  return int(gnomon::cli::finish_output(gnomon::cli::run(argc, argv)));
 }

@@ -3,6 +3,8 @@
 
 #include "cli_exr_part.hh"
 
+#include "output_roles.hh"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -193,6 +195,11 @@ Status merge(const MergeOptions &options)
   if (std::filesystem::path(options.output).extension() != ".exr") {
     throw UsageError(fmt::format("-o '{}' does not end in .exr", options.output));
   }
+  output::Roles roles;
+  for (const std::string &part : options.parts) {
+    roles.add_input(part, "the part");
+  }
+  roles.add_output(options.output, "-o");
   // The headers are compared first, so that memory is only allocated for a picture whose pixels are all there.
   std::vector<ExrPart> headers;
   std::int64_t pixel_count = 0;
@@ -221,7 +228,7 @@ Status merge(const MergeOptions &options)
     non_finite_count += std::size_t(std::ranges::count_if(values, [](float value) { return !std::isfinite(value); }));
   }
   if (non_finite_count > 0) {
-    fmt::print(stderr, "gnomon: {} values of the merged picture are not finite; not written\n", non_finite_count);
+    print_message("gnomon: {} values of the merged picture are not finite; not written\n", non_finite_count);
     return Status::NonFinite;
   }
   write_exr_part(options.output, whole);

@@ -3,30 +3,13 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <cstddef>
 #include <filesystem>
-#include <functional>
-#include <set>
 #include <span>
-#include <string>
 
 namespace gnomon::cli {
-
-/**
- * Calls \a write for a temporary file in the same folder and renames it to \a path, so that \a path is complete or
- * unchanged. Exceptions of \a write are passed on, and the temporary file is removed.
- *
- * \throws std::runtime_error naming \a path if it cannot be written.
- */
-void write_atomically(const std::filesystem::path &path,
-                      const std::function<void(const std::filesystem::path &beside)> &write);
-
-/**
- * Removes the temporary files that write_atomically left in \a folder because its process was killed. Only those of
- * files in \a names, and none of a process that runs on this machine.
- */
-void remove_unfinished(const std::filesystem::path &folder, const std::set<std::string> &names);
 
 /** Non-finite values of a picture. */
 struct NonFinite {
@@ -46,7 +29,10 @@ struct NonFinite {
   return {reinterpret_cast<const float *>(pixels.data()), 4 * pixels.size()};
 }
 
-/** Writes the file atomically. \throws std::runtime_error naming \a path if it cannot be written. */
-void write_text(const std::filesystem::path &path, const std::string &text);
+/**
+ * Writes \a json by output::write_file, unless \a path is empty. Invalid UTF-8, as names of files may have it, becomes
+ * U+FFFD. \a indent: spaces
+ */
+void write_json(const std::filesystem::path &path, const nlohmann::json &json, int indent = 2);
 
 }  // namespace gnomon::cli

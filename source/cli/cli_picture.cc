@@ -4,11 +4,10 @@
 #include "internal/cli_picture_formats.hh"
 #include "internal/cli_picture_module.hh"
 
-#include "cli_output.hh"
-
 #include "image_decoder.hh"
 #include "image_png.hh"
 #include "image_radiance.hh"
+#include "output_file.hh"
 
 #include <fmt/format.h>
 #include <glm/vec3.hpp>
@@ -46,18 +45,13 @@ void write_png(const fs::path &path, glm::ivec2 size_px, std::span<const std::ui
 {
   Metadata all = {{"Software", "gnomon " GNOMON_VERSION}};
   all.insert(all.end(), metadata.begin(), metadata.end());
-  write_atomically(path, [&](const fs::path &beside) {
-    try {
-      const Bytes bytes = png_of(size_px, rgba, all, alpha);
-      std::ofstream file(beside, std::ios::binary);
-      if (!file.write(reinterpret_cast<const char *>(bytes.data()), std::streamsize(bytes.size())).flush()) {
-        throw image::Error("the disk may be full");
-      }
-    }
-    catch (const image::Error &error) {
-      throw std::runtime_error(fmt::format("{}: cannot be written: {}", path.string(), error.what()));
-    }
-  });
+  try {
+    const Bytes bytes = png_of(size_px, rgba, all, alpha);
+    output::write_file(path, {reinterpret_cast<const char *>(bytes.data()), bytes.size()});
+  }
+  catch (const image::Error &error) {
+    throw std::runtime_error(fmt::format("{}: cannot be written: {}", path.string(), error.what()));
+  }
 }
 
 std::vector<std::byte> png_bytes(glm::ivec2 size_px, std::span<const std::uint8_t> rgba)

@@ -2,21 +2,21 @@
 #include "internal/cli_exr_file.hh"
 #include "internal/cli_picture_formats.hh"
 
-#include "cli_output.hh"
+#include "output_file.hh"
 
 #include <fmt/format.h>
 
+#include <IexBaseExc.h>
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
-#include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 #include <ImfTestFile.h>
 #include <ImfThreading.h>
 
-#include <fstream>
 #include <stdexcept>
 #include <thread>
 
@@ -45,6 +45,32 @@ static void add_channels(Imf::FrameBuffer &buffer, const Names &names, std::size
   }
 }
 
+namespace {
+
+/** Where OpenEXR writes. */
+class ExrStream : public Imf::OStream {
+ public:
+  ExrStream(output::Stream &stream, const fs::path &path) : OStream(path.c_str()), stream_(stream) {}
+
+  void write(const char *bytes, int size) override
+  {
+    stream_.write(bytes, std::size_t(size));
+  }
+  std::uint64_t tellp() override
+  {
+    return stream_.position();
+  }
+  void seekp(std::uint64_t position) override
+  {
+    stream_.seek(position);
+  }
+
+ private:
+  output::Stream &stream_;
+};
+
+}  // namespace
+
 void write_exr_file(const fs::path &path, Imf::Header header, const Imf::FrameBuffer &pixels, const Metadata &metadata)
 {
   header.insert("Software", Imf::StringAttribute("gnomon " GNOMON_VERSION));
@@ -56,24 +82,14 @@ void write_exr_file(const fs::path &path, Imf::Header header, const Imf::FrameBu
   // Blocks of rows are compressed side by side: two threads take 0.55 of the time of one.
   Imf::setGlobalThreadCount(int(std::thread::hardware_concurrency()));
   const Imath::Box2i &window = header.dataWindow();
-  write_atomically(path, [&](const fs::path &beside) {
+  output::write_file(path, [&](output::Stream &stream) {
     try {
-      std::ofstream file(beside, std::ios::binary);
-      if (!file) {
-        throw std::runtime_error("the file cannot be created");
-      }
-      {
-        Imf::StdOFStream stream(file, beside.c_str());
-        Imf::OutputFile output(stream, header);
-        output.setFrameBuffer(pixels);
-        output.writePixels(window.max.y - window.min.y + 1);
-      }
-      // The destructor of the output writes, too.
-      if (!file.flush()) {
-        throw std::runtime_error("the disk may be full");
-      }
+      ExrStream exr_stream(stream, path);
+      Imf::OutputFile output(exr_stream, header);
+      output.setFrameBuffer(pixels);
+      output.writePixels(window.max.y - window.min.y + 1);
     }
-    catch (const std::exception &error) {
+    catch (const Iex::BaseExc &error) {
       throw std::runtime_error(fmt::format("{}: cannot be written: {}", path.string(), error.what()));
     }
   });

@@ -15,6 +15,7 @@
 #include "eevee_texel_density.hh"
 #include "eevee_world.hh"
 #include "gpu_read.hh"
+#include "output_roles.hh"
 #include "trace.hh"
 
 #include <fmt/format.h>
@@ -32,13 +33,20 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/** Checks that \a path can be written, before the program renders. */
-void check_folder(const fs::path &path)
+/** The outputs, and the inputs that are known before the scene is read. */
+output::Roles files_of(const RenderOptions &options, const FrameSequence &frames)
 {
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  if (!path.empty() && (!fs::is_directory(folder) || access(folder.c_str(), W_OK) != 0)) {
-    throw std::runtime_error(fmt::format("{}: the folder does not exist or cannot be written to", path.string()));
+  output::Roles roles;
+  roles.add_input(options.scene, "the scene");
+  if (!options.choice.report_folder.empty()) {
+    roles.add_input(fs::path(options.choice.report_folder) / "report.json", "--report");
   }
+  roles.add_output(options.json, "--json");
+  roles.add_output(options.trace, "--trace");
+  for (int i = 0; options.has_picture() && i < frames.count(); i++) {
+    roles.add_output(frames.path(i), "-o");
+  }
+  return roles;
 }
 
 scene::PlacedCamera find_camera(const scene::Scene &scene, const std::string &name)
@@ -56,14 +64,14 @@ scene::PlacedCamera find_camera(const scene::Scene &scene, const std::string &na
 void show_progress(int done, int count)
 {
   if (count != 1 && isatty(STDERR_FILENO)) {
-    fmt::print(stderr, "\r\033[K{}{} samples", done, count > 0 ? fmt::format("/{}", count) : "");
+    print_message("\r\033[K{}{} samples", done, count > 0 ? fmt::format("/{}", count) : "");
   }
 }
 
 void end_progress(int count)
 {
   if (count != 1 && isatty(STDERR_FILENO)) {
-    fmt::print(stderr, "\r\033[K");
+    print_message("\r\033[K");
   }
 }
 
@@ -125,7 +133,7 @@ void write_part(const RenderOptions &options, std::span<const glm::vec4> pixels,
   metadata.emplace_back(share_metadata, fmt::format("{}", sample_share));
   const glm::ivec2 range = options.sample_bounds();
   metadata.emplace_back(range_metadata, fmt::format("{}-{}", range.x, range.y));
-  metadata.emplace_back("gnomon:settings", options.settings_text());
+  metadata.emplace_back("gnomon:settings", options.settings_text);
   ExrPart part{whole_px,
                region.size_px,
                {region.origin_px.x, whole_px.y - region.origin_px.y - region.size_px.y},
@@ -150,8 +158,8 @@ std::size_t count_non_finite(const RenderOptions &options, std::string_view what
 {
   const NonFinite found = find_non_finite(size_px, values, channel_count);
   if (found.count > 0) {
-    fmt::print(stderr, "gnomon: {}: {} values of {} are not finite, the first at pixel ({}, {}); not written\n",
-               options.scene, found.count, what, found.first_px.x, found.first_px.y);
+    print_message("gnomon: {}: {} values of {} are not finite, the first at pixel ({}, {}); not written\n",
+                  options.scene, found.count, what, found.first_px.x, found.first_px.y);
   }
   return found.count;
 }
@@ -218,7 +226,7 @@ Status write_picture(const RenderOptions &options, const scene::Camera &camera, 
 void print_messages(std::string_view kind, const std::vector<std::string> &texts)
 {
   for (const std::string &text : texts) {
-    fmt::print(stderr, "gnomon: {}: {}\n", kind, text);
+    print_message("gnomon: {}: {}\n", kind, text);
   }
 }
 
@@ -243,7 +251,8 @@ Input create_device_and_import(const RenderOptions &options, RenderResult &resul
   std::future<scene::Scene> imported = std::async(std::launch::async, [&] {
     const Clock::time_point start = Clock::now();
     scene::Scene scene = import_scene(
-        options.scene, {.variant = options.variant, .texture_size_max = options.texture_size_max, .read_picture = {}});
+        options.scene,
+        {.variant = options.variant, .texture_size_max = options.texture_size_max, .only_below = options.only_below});
     result.import_seconds = seconds_since(start);
     return scene;
   });
@@ -336,14 +345,13 @@ Status render(RenderOptions options)
   options.check();
   options.debug_view = parse_debug(options.debug);
   const glm::ivec2 size_px = options.size_px();
-  check_folder(options.output);
-  check_folder(options.json);
-  check_folder(options.trace);
   const FrameSequence frames(options.frames, options.output);
+  output::Roles roles = files_of(options, frames);
   const Aov aov(options.aov);
   RenderResult result;
 
   auto [device, scene] = create_device_and_import(options, result);
+  add_inputs(roles, scene, options.world);
   frames.pose(scene, 0);
   const scene::PlacedCamera camera = find_camera(scene, options.camera);
   const bool is_default_studio = light_by_world(scene, camera, options.world);
@@ -388,7 +396,7 @@ Status render(RenderOptions options)
     result.report = inspection.report();
   }
   if (!options.has_picture()) {
-    fmt::print(stderr, "gnomon: the null backend draws nothing: no picture is written\n");
+    print_message("gnomon: the null backend draws nothing: no picture is written\n");
   }
   result.counters = device->counters();
   result.memory_bytes = device->memory_bytes();
@@ -399,10 +407,7 @@ Status render(RenderOptions options)
     print_messages("limit", limits);
     result.report.limits.insert(result.report.limits.end(), limits.begin(), limits.end());
   }
-  if (!options.json.empty()) {
-    const nlohmann::json json = to_json(options, scene, camera, result, chooser.get());
-    write_text(options.json, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-  }
+  write_json(options.json, to_json(options, scene, camera, result, chooser.get()));
   trace_file.write();
   if (status == Status::Done) {
     print_summary(options, result);

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 
 namespace gnomon::cli {
 
@@ -130,19 +131,6 @@ glm::ivec2 RenderOptions::sample_bounds() const
   return *bounds;
 }
 
-std::string RenderOptions::settings_text() const
-{
-  return fmt::format(
-      "--shadow {} --shadow-size {} --pcf {} --esm {} --cascades {} --cascade-lambda {} --cascade-range {} --cube-pass "
-      "{} "
-      "--casters {} --shadow-memory {} --specular {} --world '{}' --world-strength {} --world-rotation {} --background "
-      "'{}' --animation '{}' --fps {} --light-threshold {} "
-      "--emissive-points {} --noise-threshold {}",
-      shadow, shadow_size, pcf, esm, cascades, cascade_lambda, cascade_range, cube_pass, casters, shadow_memory,
-      specular, world.world, world.strength, world.rotation_degrees, background, frames.animation,
-      frames.frames_per_second, light_threshold, emissive_points, noise_threshold);
-}
-
 bool RenderOptions::is_png() const
 {
   return std::filesystem::path(output).extension() == ".png";
@@ -211,6 +199,35 @@ eevee::Settings RenderOptions::engine_settings() const
   return settings;
 }
 
+/**
+ * The options with their values, but for those that parts of one picture may differ in: what is written beside it,
+ * which part of it is drawn, and how it is checked. A new option is compared unless it is named here.
+ */
+static std::string settings_text(const CLI::App &command)
+{
+  static const std::set<std::string> not_compared = {
+      // Metadata of their own are compared: the scene's name without its folder, and the number of the frame.
+      "scene",    "--frames", "--help",           "--output", "--json",         "--trace",   "--explain",   "--strict",
+      "--resume", "--repeat", "--redraw-shadows", "--tile",   "--sample-range", "--backend", "--only-below"};
+  std::string text;
+  for (const CLI::Option *option : command.get_options()) {
+    const std::string name = option->get_name();
+    if (not_compared.contains(name)) {
+      continue;
+    }
+    std::string value = option->count() > 0 ? CLI::detail::join(option->results(), " ") : option->get_default_str();
+    // A number may be spelt in several ways.
+    double number = 0.0;
+    const char *end = value.data() + value.size();
+    if (const auto [after, error] = std::from_chars(value.data(), end, number); error == std::errc() && after == end) {
+      value = fmt::format("{}", number);
+    }
+    const bool is_word = !value.empty() && value.find_first_of(" '") == value.npos;
+    text += fmt::format("{}{} {}", text.empty() ? "" : " ", name, is_word ? value : fmt::format("'{}'", value));
+  }
+  return text;
+}
+
 void add_specular_option(CLI::App &command, std::string &specular)
 {
   command
@@ -233,6 +250,7 @@ void add_render_options(CLI::App &command, RenderOptions &options)
       .add_option("--texture-size-max", options.texture_size_max,
                   "Most texels along an edge of a texture; larger ones are reduced (default: no limit)")
       ->check(CLI::Range(1, 1 << 20));
+  add_only_below_option(command, options.only_below);
   CLI::Option *samples = command.add_option("--samples", options.samples, "Samples per pixel")
                              ->capture_default_str()
                              ->check(CLI::Range(1, 65536));
@@ -382,7 +400,8 @@ void add_render_options(CLI::App &command, RenderOptions &options)
                      "Folder of gnomon report to choose from (default: render a pilot)");
   command.add_flag("--strict", options.is_strict, "End with status 4 if a limit was hit");
   command.add_option("--seed", options.seed, "Seed of the sample pattern")->capture_default_str();
-  command.parse_complete_callback([&options, samples, time_limit] {
+  command.parse_complete_callback([&options, &command, samples, time_limit] {
+    options.settings_text = settings_text(command);
     if (time_limit->count() > 0 && samples->count() == 0) {
       options.samples = 0;
     }

@@ -25,6 +25,8 @@ struct RenderOptions {
   std::string variant;
   /** 0: no limit. */
   std::uint32_t texture_size_max = 0;
+  /** Empty: the scene's files may be anywhere. */
+  std::filesystem::path only_below;
   int samples = 16;
   /** Seconds for each picture; infinity without --time-limit, otherwise `samples` may be 0: no limit. */
   double seconds_max = std::numeric_limits<double>::infinity();
@@ -65,6 +67,8 @@ struct RenderOptions {
   WorldOptions world;
   /** "none", "world" or a radiance R,G,B. Empty: none, or light grey in a PNG that the default studio lights. */
   std::string background;
+  /** The options that parts of one picture must have in common, as text. */
+  std::string settings_text;
 
   /** \throws UsageError where an option's value is invalid, or does not go with another option */
   void check() const;
@@ -94,8 +98,6 @@ struct RenderOptions {
   [[nodiscard]] gpu::Rectangle region() const;
   /** The first and the last sample to draw. \throws UsageError where --sample-range is invalid */
   [[nodiscard]] glm::ivec2 sample_bounds() const;
-  /** The options that parts of one picture must have in common. */
-  [[nodiscard]] std::string settings_text() const;
   [[nodiscard]] draw::ViewTransform view_transform() const;
   /** Without the background, which depends on the scene. */
   [[nodiscard]] eevee::Settings engine_settings() const;

@@ -11,6 +11,7 @@
 
 #include "measure_reference.hh"
 #include "measure_report.hh"
+#include "output_roles.hh"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -38,6 +39,7 @@ struct ReportOptions {
   std::vector<std::string> techniques;
   WorldOptions world;
   std::string specular = "single";
+  fs::path only_below;
 };
 
 /** Shows a progress bar on a terminal; silent in a pipe. */
@@ -53,7 +55,7 @@ class Progress {
   void end() const
   {
     if (is_shown_) {
-      fmt::print(stderr, "\r\033[K");
+      print_message("\r\033[K");
     }
   }
 
@@ -63,8 +65,8 @@ class Progress {
     if (is_shown_) {
       constexpr std::size_t width = 30;
       const std::size_t filled = width * done_ / count_;
-      fmt::print(stderr, "\r\033[K[{}{}] {}/{}  {:.0f} s  {}", std::string(filled, '#'),
-                 std::string(width - filled, '.'), done_, count_, seconds_since(start_), what);
+      print_message("\r\033[K[{}{}] {}/{}  {:.0f} s  {}", std::string(filled, '#'), std::string(width - filled, '.'),
+                    done_, count_, seconds_since(start_), what);
       std::fflush(stderr);
     }
   }
@@ -159,6 +161,7 @@ Run::Run(gpu::Device &device, const ReportOptions &options)
   run_.has_multiscatter = options.specular == "multi";
   run_.size_px = {options.size[0], options.size[1]};
   const std::vector<measure::Technique> techniques = wanted_techniques(options.techniques);
+  output::Roles roles;
   for (const std::string &path : options.scenes) {
     const std::string name = fs::path(path).stem().string();
     if (std::ranges::find(run_.scenes, name, &measure::SceneReport::name) != run_.scenes.end()) {
@@ -168,6 +171,7 @@ Run::Run(gpu::Device &device, const ReportOptions &options)
     scene.name = name;
     scene.path = path;
     const scene::Scene lit = lit_scene(path);
+    add_inputs(roles, lit, options.world);
     scene.fingerprint = scene_fingerprint(lit);
     scene.world = lit.world() ? world_text(*lit.world()) : "";
     for (const measure::Technique &technique : techniques) {
@@ -179,12 +183,23 @@ Run::Run(gpu::Device &device, const ReportOptions &options)
     }
   }
   fs::create_directories(folder_);
+  for (const char *name : {"report.json", "report.csv", "report.txt", "index.html"}) {
+    roles.add_output(folder_ / name, "-o");
+  }
+  for (const measure::SceneReport &scene : run_.scenes) {
+    roles.add_output(folder_ / measure::reference_file(scene), "-o");
+    for (const measure::TechniqueReport &report : scene.techniques) {
+      for (const measure::PictureReport &picture : report.pictures) {
+        roles.add_output(folder_ / measure::picture_file(scene, report.technique, picture.sample_count), "-o");
+      }
+    }
+  }
   resume();
 }
 
 scene::Scene Run::lit_scene(const std::string &path) const
 {
-  scene::Scene scene = import_scene(path);
+  scene::Scene scene = import_scene(path, {.only_below = options_.only_below});
   light_by_world(scene, scene.placed_cameras().front(), options_.world);
   return scene;
 }
@@ -202,10 +217,10 @@ void Run::resume()
     if (before.build != run_.build || before.device != run_.device || before.machine != run_.machine ||
         before.size_px != run_.size_px || before.rounds != run_.rounds ||
         before.reference_samples != run_.reference_samples || before.has_multiscatter != run_.has_multiscatter) {
-      fmt::print(stderr,
-                 "gnomon: {}: has another build, machine, size, reference, --specular or number of rounds; starting "
-                 "again\n",
-                 path.string());
+      print_message(
+          "gnomon: {}: has another build, machine, size, reference, --specular or number of rounds; starting "
+          "again\n",
+          path.string());
       return;
     }
     for (measure::SceneReport &scene : run_.scenes) {
@@ -221,7 +236,7 @@ void Run::resume()
     seconds_before_ = before.seconds;
   }
   catch (const std::exception &error) {
-    fmt::print(stderr, "gnomon: {}: cannot be continued: {}; starting again\n", path.string(), error.what());
+    print_message("gnomon: {}: cannot be continued: {}; starting again\n", path.string(), error.what());
   }
 }
 
@@ -252,8 +267,7 @@ void Run::save() const
 {
   measure::RunReport run = run_;
   run.seconds = seconds_before_ + seconds_since(start_);
-  write_text(folder_ / "report.json",
-             measure::to_json(run).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  write_json(folder_ / "report.json", measure::to_json(run), 1);
 }
 
 void Run::make_reference(const scene::Scene &scene, const reference::Tracer &tracer, measure::SceneReport &report)
@@ -275,7 +289,7 @@ void Run::warn(measure::SceneReport &report, const std::string &warning) const
 {
   if (std::ranges::find(report.warnings, warning) == report.warnings.end()) {
     progress_->end();
-    fmt::print(stderr, "gnomon: warning: {}: {}\n", report.name, warning);
+    print_message("gnomon: warning: {}: {}\n", report.name, warning);
     report.warnings.push_back(warning);
   }
 }
@@ -362,9 +376,9 @@ std::size_t Run::measure_all()
   progress_->end();
   run_.seconds = seconds_before_ + seconds_since(start_);
   save();
-  write_text(folder_ / "report.csv", measure::to_csv(run_));
+  output::write_file(folder_ / "report.csv", measure::to_csv(run_));
   const auto read = [this](const std::string &file) { return read_exr(folder_ / file, run_.size_px); };
-  write_text(folder_ / "index.html", measure::to_html(run_, read, png_bytes));
+  output::write_file(folder_ / "index.html", measure::to_html(run_, read, png_bytes));
   std::size_t non_finite = 0;
   std::string text = fmt::format("{} ({}), {}, {}, {}, {}x{}, {} rounds, --specular {}, {:.0f} s\n", run_.program,
                                  run_.commit, run_.date, run_.machine, run_.device, run_.size_px.x, run_.size_px.y,
@@ -372,7 +386,7 @@ std::size_t Run::measure_all()
   for (const measure::SceneReport &scene : run_.scenes) {
     text += measure::to_text(scene);
   }
-  write_text(folder_ / "report.txt", text);
+  output::write_file(folder_ / "report.txt", text);
   fmt::print("{}", text);
   for (const measure::SceneReport &scene : run_.scenes) {
     for (const measure::TechniqueReport &technique : scene.techniques) {
@@ -381,7 +395,7 @@ std::size_t Run::measure_all()
         non_finite += picture.error.non_finite_count;
       }
       for (const std::string &limit : technique.limits) {
-        fmt::print(stderr, "gnomon: limit: {}, {}: {}\n", scene.name, measure::label(technique.technique), limit);
+        print_message("gnomon: limit: {}, {}: {}\n", scene.name, measure::label(technique.technique), limit);
       }
     }
   }
@@ -398,7 +412,7 @@ Status report(const ReportOptions &options)
       gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()});
   const std::size_t non_finite = Run(*device, options).measure_all();
   if (non_finite > 0) {
-    fmt::print(stderr, "gnomon: {} values of pictures and shadows are not finite\n", non_finite);
+    print_message("gnomon: {} values of pictures and shadows are not finite\n", non_finite);
   }
   return non_finite > 0 ? Status::NonFinite : Status::Done;
 }
@@ -431,6 +445,7 @@ void add_report(CLI::App &app, Status &status)
       ->capture_default_str()
       ->check(CLI::Range(2, 65536));
   add_world_options(*command, o->world);
+  add_only_below_option(*command, o->only_below);
   add_specular_option(*command, o->specular);
   command->callback([o, &status] { status = report(*o); });
 }

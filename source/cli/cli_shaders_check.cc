@@ -47,8 +47,8 @@ void show_progress(std::size_t done, std::size_t count)
 {
   constexpr std::size_t width = 40;
   const std::size_t full = done * width / std::max<std::size_t>(count, 1);
-  fmt::print(stderr, "\r[{}{}] {}/{}{}", std::string(full, '#'), std::string(width - full, ' '), done, count,
-             done == count ? "\r\033[K" : "");
+  print_message("\r[{}{}] {}/{}{}", std::string(full, '#'), std::string(width - full, ' '), done, count,
+                done == count ? "\r\033[K" : "");
 }
 
 /** Checks all of \a descs for all of \a targets, on all cores. */

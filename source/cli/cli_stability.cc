@@ -6,6 +6,7 @@
 
 #include "measure_page.hh"
 #include "measure_report.hh"
+#include "output_roles.hh"
 #include "verify_stability.hh"
 
 #include <fmt/format.h>
@@ -84,7 +85,7 @@ std::vector<CaseResult> run_all(std::vector<verify::StabilityCase> cases)
     results.push_back({std::move(one), std::move(result)});
     if (isatty(STDERR_FILENO)) {
       const bool is_last = results.size() == cases.size();
-      fmt::print(stderr, "\r{}/{} cases{}", results.size(), cases.size(), is_last ? "\r\033[K" : "");
+      print_message("\r{}/{} cases{}", results.size(), cases.size(), is_last ? "\r\033[K" : "");
     }
   }
   return results;
@@ -199,7 +200,7 @@ void print_failures(const std::vector<CaseResult> &results)
       reason += fmt::format(" {:.4g} {} at {} {:.6g}, bound {:.4g}", result.worst_error, one.unit, one.parameter,
                             result.worst_parameter, one.bound);
     }
-    fmt::print(stderr, "gnomon: failed: {}, {}: {}\n", one.group, one.name, reason);
+    print_message("gnomon: failed: {}, {}: {}\n", one.group, one.name, reason);
   }
 }
 
@@ -348,12 +349,16 @@ Status stability(const StabilityOptions &options)
   std::vector<verify::StabilityCase> cases = chosen_cases(options.group, device);
   const std::string driver = device ? device->description() : "no device";
   fs::create_directories(options.folder);
+  const fs::path folder(options.folder);
+  output::Roles roles;
+  for (const char *name : {"stability.csv", "stability.json", "index.html"}) {
+    roles.add_output(folder / name, "-o");
+  }
   const std::vector<CaseResult> results = run_all(std::move(cases));
   const Origin where = origin();
-  const fs::path folder(options.folder);
-  write_text(folder / "stability.csv", to_csv(results));
-  write_text(folder / "stability.json", to_json(results, where, driver).dump(1) + "\n");
-  write_text(folder / "index.html", to_html(results, where, driver));
+  output::write_file(folder / "stability.csv", to_csv(results));
+  write_json(folder / "stability.json", to_json(results, where, driver), 1);
+  output::write_file(folder / "index.html", to_html(results, where, driver));
   print(results);
   print_failures(results);
   const Summary summary = summary_of(results);

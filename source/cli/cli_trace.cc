@@ -44,9 +44,7 @@ void TraceFile::write() const
       events.back()["args"] = {{"of", event.detail}};
     }
   }
-  write_text(path_, nlohmann::json{{"traceEvents", std::move(events)}, {"displayTimeUnit", "ms"}}.dump(
-                        1, ' ', false, nlohmann::json::error_handler_t::replace) +
-                        "\n");
+  write_json(path_, {{"traceEvents", std::move(events)}, {"displayTimeUnit", "ms"}}, 1);
 }
 
 }  // namespace gnomon::cli

@@ -21,6 +21,7 @@ void add_view(CLI::App &app)
                       "Write the window to a PNG when its pictures are complete, then end");
   command->add_option("--shaders", o->shaders,
                       "Folder with the engine's shaders, which are compiled again when a file changes");
+  add_only_below_option(*command, o->only_below);
   command->callback([o] {
     o->writers.png = [](const auto &path, glm::ivec2 size_px, std::span<const std::uint8_t> rgba) {
       write_png(path, size_px, rgba, {});

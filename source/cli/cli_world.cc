@@ -78,6 +78,23 @@ scene::WorldPicture read_world_picture(const std::filesystem::path &path)
   return picture;
 }
 
+void add_only_below_option(CLI::App &command, std::filesystem::path &folder)
+{
+  command.add_option("--only-below", folder,
+                     "For scenes of strangers: read the files that the scene names only below this folder, after links "
+                     "are resolved (default: anywhere)");
+}
+
+void add_inputs(output::Roles &roles, const scene::Scene &scene, const WorldOptions &options)
+{
+  for (const std::string &file : scene.files) {
+    roles.add_input(file, file == scene.path ? "the scene" : "the scene's file");
+  }
+  if (!options.world.empty() && options.world != "none" && options.world != "studio" && !parse_color(options.world)) {
+    roles.add_input(options.world, "--world");
+  }
+}
+
 scene::Scene import_scene(const std::string &path, const gltf::ImportOptions &options)
 {
   try {

@@ -3,6 +3,7 @@
 
 #include "eevee_engine.hh"
 #include "gltf_import.hh"
+#include "output_roles.hh"
 
 #include <CLI/App.hpp>
 
@@ -30,6 +31,15 @@ void add_world_options(CLI::App &command, WorldOptions &options);
 
 /** Adds `--background`: "none", "world" or a radiance R,G,B. Empty: not given. */
 void add_background_option(CLI::App &command, std::string &background);
+
+/** Adds `--only-below`, for all commands that import scenes. */
+void add_only_below_option(CLI::App &command, std::filesystem::path &folder);
+
+/**
+ * Adds the files of \a scene, and that of \a options, to \a roles. \throws output::Conflict where an output would
+ * replace one
+ */
+void add_inputs(output::Roles &roles, const scene::Scene &scene, const WorldOptions &options);
 
 /**
  * Imports a scene, with the picture of its own world: ImportOptions::read_picture is replaced.

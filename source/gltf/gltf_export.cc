@@ -11,9 +11,9 @@
 #include "internal/gltf_write_mesh.hh"
 #include "internal/gltf_write_skin_copy.hh"
 #include "internal/gltf_write_world.hh"
+#include "output_file.hh"
 
 #include <array>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <new>
@@ -22,8 +22,6 @@
 #include <string_view>
 #include <utility>
 #include <vector>
-
-#include <unistd.h>
 
 namespace gnomon::gltf {
 
@@ -413,32 +411,6 @@ std::string file_of(const Scene &scene, const std::filesystem::path &folder, boo
   return is_binary ? glb_of(document.object(), writer.bytes()) : document.object() + '\n';
 }
 
-/**
- * Writes a temporary file in the same folder and renames it, so that an existing file is replaced only by a complete
- * one.
- */
-void write_file(const std::filesystem::path &path, const std::string &content)
-{
-  std::filesystem::path part = path;
-  part += ".part" + std::to_string(::getpid());
-  std::error_code error;
-  {
-    std::ofstream stream(part, std::ios::binary | std::ios::trunc);
-    stream.write(content.data(), static_cast<std::streamsize>(content.size()));
-    stream.close();
-    if (!stream) {
-      std::filesystem::remove(part, error);
-      throw Fault("file", "cannot be written");
-    }
-  }
-  std::filesystem::rename(part, path, error);
-  if (error) {
-    const std::string reason = error.message();
-    std::filesystem::remove(part, error);
-    throw Fault("file", "cannot be replaced: " + reason);
-  }
-}
-
 }  // namespace
 
 void export_gltf(const Scene &scene, const std::filesystem::path &path)
@@ -451,10 +423,13 @@ void export_gltf(const Scene &scene, const std::filesystem::path &path)
     throw failed("the name ends neither in .gltf nor in .glb");
   }
   try {
-    write_file(path, file_of(scene, path.parent_path(), extension == ".glb"));
+    output::write_file(path, file_of(scene, path.parent_path(), extension == ".glb"));
   }
   catch (const Fault &fault) {
     throw failed(fault.what());
+  }
+  catch (const output::Error &error) {
+    throw ExportError(error.what());
   }
   catch (const std::bad_alloc &) {
     throw failed("there is not enough memory for it");

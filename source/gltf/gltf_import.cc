@@ -384,7 +384,7 @@ Scene import_gltf(const std::filesystem::path &path, const ImportOptions &option
     Progress progress(options.progress);
     progress.begin_phase(1, 0.2F);
     Warnings warnings;
-    File file = load_file(path, warnings);
+    File file = load_file(path, options.only_below, warnings);
     if (!options.variant.empty()) {
       select_variant(file.model, options.variant);
     }
@@ -392,6 +392,13 @@ Scene import_gltf(const std::filesystem::path &path, const ImportOptions &option
     decompress(file, progress, warnings);
     Scene scene = Importer(file, options, progress, std::move(warnings)).import();
     scene.path = path.string();
+    scene.files.push_back(scene.path);
+    for (const std::filesystem::path &named : files_of(file)) {
+      scene.files.push_back(named.string());
+    }
+    if (scene.world() && scene.world()->picture && !scene.world()->picture->path.empty()) {
+      scene.files.push_back(scene.world()->picture->path);
+    }
     progress.finish();
     return scene;
   }

@@ -43,6 +43,11 @@ struct ImportOptions {
   std::string variant{};
   /** Most texels along an edge of an image of a material; larger ones are reduced (scene::reduced). 0: no limit. */
   std::uint32_t texture_size_max = 0;
+  /**
+   * Folder for scenes of strangers: buffers, images, pictures of worlds and surface functions are read only if they are
+   * below it, after links are resolved. The scene's own file may be elsewhere. Empty: files may be anywhere.
+   */
+  std::filesystem::path only_below{};
   /** For worlds whose picture is a file. Without it, they are left out, with a warning. */
   ReadPicture read_picture{};
   /**

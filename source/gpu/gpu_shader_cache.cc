@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "gpu_shader_cache.hh"
 
+#include "output_file.hh"
+
 #include <fmt/format.h>
 #include <xxhash.h>
 #include <nlohmann/json.hpp>
 
-#include <unistd.h>
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
@@ -93,31 +94,33 @@ void ShaderDiskCache::store(const std::string &key, const CachedShader &shader) 
   const std::uint64_t sum = checksum(body);
   std::error_code failed;
   fs::create_directories(folder_, failed);
-  // Write a temporary file and rename it, so that other processes never read an incomplete file.
-  const fs::path beside = folder_ / fmt::format("{}.{}", key, getpid());
-  std::ofstream file(beside, std::ios::binary);
-  file.write(magic.data(), std::streamsize(magic.size()));
-  file.write(reinterpret_cast<const char *>(&sum), sizeof(sum));
-  file.write(reinterpret_cast<const char *>(body.data()), std::streamsize(body.size()));
-  file.close();
-  if (file) {
-    fs::rename(beside, folder_ / key, failed);
+  // Other processes never read an incomplete file. After a loss of power, the checksum tells a damaged one.
+  try {
+    output::write_file(
+        folder_ / key,
+        [&](output::Stream &stream) {
+          stream.write(magic);
+          stream.write(&sum, sizeof(sum));
+          stream.write(body.data(), body.size());
+        },
+        output::Flush::None);
   }
-  if (!file || failed) {
-    fs::remove(beside, failed);
+  catch (const output::Error &) {
+    // The shader is compiled again by the next process.
   }
   trim(folder_ / key);
 }
 
 namespace {
 
-/** Whether \a name is a key (KEY), or the name of a temporary file of store() (KEY.PROCESS_ID). */
-bool is_cache_file(const std::string &name)
+/** Whether \a name is a key (KEY), or the name of a temporary file of store() (.KEY.NUMBERS). */
+bool is_cache_file(std::string_view name)
 {
   constexpr std::size_t key_size = 32;
-  const bool is_key = name.find_first_not_of("0123456789abcdef") >= key_size && name.size() >= key_size;
-  return is_key && (name.size() == key_size ||
-                    (name[key_size] == '.' && name.find_first_not_of("0123456789", key_size + 1) == name.npos));
+  const bool is_temporary = name.starts_with('.');
+  name.remove_prefix(is_temporary ? 1 : 0);
+  const std::size_t digits = std::min(name.find_first_not_of("0123456789abcdef"), name.size());
+  return digits == key_size && (is_temporary ? name.substr(digits).starts_with('.') : name.size() == digits);
 }
 
 }  // namespace

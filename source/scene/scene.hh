@@ -84,6 +84,8 @@ class Scene {
  public:
   /** Path of the file as given by the user, for messages. */
   std::string path;
+  /** The files that the importer has read, or that its file names: its own, buffers, images, pictures, functions. */
+  std::vector<std::string> files{};
   /** Whether the importer added a camera or a lamp because the file has none. */
   bool is_camera_default = false;
   bool is_lamp_default = false;

@@ -29,6 +29,8 @@ struct Options {
   std::filesystem::path screenshot{};
   /** A folder as the repository's `shaders`, whose files may be edited meanwhile. Empty: those of the build. */
   std::filesystem::path shaders{};
+  /** Of all scenes that are opened: gltf::ImportOptions::only_below. */
+  std::filesystem::path only_below{};
   glm::ivec2 size_px{1440, 860};
   ImageWriters writers{};
   /** Reads the picture of a world. */

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "view_app.hh"
 
+#include "output_roles.hh"
+
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -32,8 +34,7 @@ constexpr Side sides[] = {Side::Front, Side::Right, Side::Top, Side::Front};
 
 }  // namespace
 
-App::App(const Options &options)
-    : writers_(options.writers), read_picture_(options.read_picture), window_(options.size_px, !options.script.empty())
+App::App(const Options &options) : options_(options), window_(options.size_px, !options.script.empty())
 {
   make_device();
   viewports_.push_back(std::make_unique<Viewport>());
@@ -120,7 +121,8 @@ bool App::open(const std::filesystem::path &path)
 
 void App::begin_open(const std::filesystem::path &path)
 {
-  opening_ = std::make_unique<gltf::BackgroundImport>(path, gltf::ImportOptions{.read_picture = read_picture_});
+  opening_ = std::make_unique<gltf::BackgroundImport>(
+      path, gltf::ImportOptions{.only_below = options_.only_below, .read_picture = options_.read_picture});
   opening_revision_ = document_ ? document_->scene().revision() : 0;
 }
 
@@ -144,7 +146,7 @@ bool App::set_world_picture(const std::filesystem::path &path)
   end_transform(true);
   document_->history().end_gesture();
   try {
-    document_->set_world_picture(std::make_shared<const scene::WorldPicture>(read_picture_(path)));
+    document_->set_world_picture(std::make_shared<const scene::WorldPicture>(options_.read_picture(path)));
     message(fmt::format("{} lights the scene", path.string()), false);
     return true;
   }
@@ -255,16 +257,39 @@ bool App::save(const std::filesystem::path &path)
   }
 }
 
+void App::check_output(const std::filesystem::path &path) const
+{
+  namespace fs = std::filesystem;
+  output::Roles roles;
+  if (document_) {
+    for (const std::string &file : document_->scene().files) {
+      roles.add_input(file, "the scene's file");
+    }
+    const std::optional<scene::World> &world = document_->scene().world();
+    if (world && world->picture) {
+      roles.add_input(world->picture->path, "the world");
+    }
+  }
+  roles.add_input(options_.script, "--script");
+  std::error_code none;
+  const fs::path shaders = shader_watch_ ? shader_watch_->folder() : fs::path();
+  for (const fs::directory_entry &entry : fs::recursive_directory_iterator(shaders, none)) {
+    roles.add_input(entry.path(), "the shader");
+  }
+  roles.add_output(path, "the picture");
+}
+
 void App::save_picture(const std::filesystem::path &path)
 {
   if (!document_ || !active().viewport()) {
     throw std::runtime_error(fmt::format("{}: there is no picture to write", path.string()));
   }
+  check_output(path);
   if (path.extension() == ".exr") {
-    writers_.exr(path, active().size_px(), active().radiance(*document_));
+    options_.writers.exr(path, active().size_px(), active().radiance(*document_));
   }
   else if (path.extension() == ".png") {
-    writers_.png(path, active().size_px(), active().pixels());
+    options_.writers.png(path, active().size_px(), active().pixels());
   }
   else {
     throw std::runtime_error(fmt::format("{}: ends in neither .exr nor .png", path.string()));
@@ -411,7 +436,8 @@ void App::write_screenshot()
 {
   const Screenshot screenshot = *std::exchange(screenshot_, std::nullopt);
   try {
-    writers_.png(screenshot.path, window_.size_px(), window_.read_pixels());
+    check_output(screenshot.path);
+    options_.writers.png(screenshot.path, window_.size_px(), window_.read_pixels());
   }
   catch (const std::exception &error) {
     if (!screenshot.is_asked) {

@@ -221,6 +221,9 @@ class App {
   void show_view_menu();
   void show_additions();
   void show_addition_popup();
+  /** \throws output::Error where a picture cannot be written to \a path, or would replace a file that the window reads
+   */
+  void check_output(const std::filesystem::path &path) const;
   // view_layout.cc
   void show_window();
   void show_left(float height);
@@ -233,8 +236,7 @@ class App {
   void show_leaving();
   void try_draw(Viewport &viewport);
 
-  ImageWriters writers_;
-  gltf::ReadPicture read_picture_;
+  Options options_;
   Window window_;
   std::unique_ptr<gpu::Device> device_;
   std::unique_ptr<Document> document_;

@@ -89,8 +89,8 @@ TEST_F(FramesTest, ResumeRendersWhatIsMissingOrCutShort)
 TEST_F(FramesTest, ResumeRemovesTheFilesOfKilledProcesses)
 {
   // No process has this number: Linux has at most 4194304.
-  const std::string killed = ".4194999.exr";
-  const std::string running = "." + std::to_string(getpid()) + ".exr";
+  const std::string killed = ".exr.4194999-0";
+  const std::string running = ".exr." + std::to_string(getpid()) + "-0";
   for (const std::string &name : {".f1" + killed, ".f2" + killed, ".f2" + running, ".g2" + killed, ".f4" + killed}) {
     write(name, "part");
   }

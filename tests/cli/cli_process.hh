@@ -87,6 +87,21 @@ inline constexpr const char *rough_metal_gltf = R"({"asset":{"version":"2.0"},
   "nodes":[{"mesh":0},{"rotation":[-0.70710678,0,0,0.70710678],"extensions":{"KHR_lights_punctual":{"light":0}}}],
   "scenes":[{"nodes":[0,1]}],"scene":0})";
 
+/** The same plane with two variants of its material. */
+inline const std::string variants_gltf = [] {
+  std::string text = rough_metal_gltf;
+  const auto replace = [&text](const std::string &before, const std::string &after) {
+    text.replace(text.find(before), before.size(), after);
+  };
+  replace(R"("KHR_lights_punctual"])", R"("KHR_lights_punctual","KHR_materials_variants"])");
+  replace(R"("extensions":{"KHR)",
+          R"("extensions":{"KHR_materials_variants":{"variants":[{"name":"red"},{"name":"blue"}]},"KHR)");
+  replace(R"("material":0)", R"("material":0,"extensions":{"KHR_materials_variants":{"mappings":[
+    {"material":0,"variants":[0]},{"material":1,"variants":[1]}]}})");
+  replace(R"({"doubleSided":true})", R"({"doubleSided":true},{"pbrMetallicRoughness":{"baseColorFactor":[0,0,1,1]}})");
+  return text;
+}();
+
 /** A scene of the repository. */
 inline std::string example(const std::string &name)
 {

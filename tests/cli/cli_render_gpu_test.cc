@@ -8,6 +8,8 @@
 #include <OpenImageIO/imageio.h>
 
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <array>
 #include <set>
 
 namespace gnomon {
@@ -274,6 +276,74 @@ TEST_F(CliRenderTest, MergedRangesOfSamplesAreTheWholePictureToRounding)
   }
   EXPECT_LE(largest, 1e-5F);
   EXPECT_NE(values_of(folder / "low.exr"), whole);
+}
+
+TEST_F(CliRenderTest, PartsWithOtherSettingsAreNotMerged)
+{
+  write("metal.gltf", test::variants_gltf);
+  const std::string render = "render metal.gltf --size 16x16 --samples 2 ";
+  ASSERT_EQ(run(render + "-o low.exr --tile 1/2 --variant red --light-threshold 0").status, 0);
+  for (const std::string other :
+       {"--variant blue", "", "--variant red --texture-size-max 64", "--variant red --world 1,1,1",
+        "--variant red --shadow none", "--variant red --light-threshold 0.5", "--variant red --emissive-points 3",
+        "--variant red --exposure 1", "--variant red --casters back", "--variant red --background 1,0,0"}) {
+    ASSERT_EQ(run(render + "-o high.exr --tile 2/2 " + other).status, 0) << other;
+    const Finished merged = run("merge low.exr high.exr -o mixed.exr");
+    EXPECT_EQ(merged.status, 1) << other;
+    EXPECT_NE(merged.err.find("high.exr: not a part of the same picture as low.exr"), std::string::npos) << merged.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "mixed.exr"));
+  }
+  // Defaults that are given, other spellings of numbers, and what does not change the picture.
+  ASSERT_EQ(
+      run(render + "-o high.exr --tile 2/2 --variant red --shadow hard --light-threshold 0.00 --only-below . --explain "
+                   "--json run.json --strict --pcf 3x3")
+          .status,
+      0);
+  const Finished merged = run("merge low.exr high.exr -o whole.exr");
+  EXPECT_EQ(merged.status, 0) << merged.err;
+}
+
+TEST_F(CliRenderTest, OnlyBelowLeavesOutFilesElsewhere)
+{
+  std::filesystem::create_directories(folder / "scene" / "inner");
+  std::filesystem::create_directories(folder / "scenery");
+  const std::array<float, 9> triangle{-1, 0, -1, 1, 0, -1, 0, 0, 1};
+  const std::string positions(reinterpret_cast<const char *>(triangle.data()), sizeof(triangle));
+  for (const char *path : {"outside.bin", "scene/inside.bin", "scenery/beside.bin"}) {
+    write(path, positions);
+  }
+  std::filesystem::create_symlink("../outside.bin", folder / "scene" / "out_link.bin");
+  std::filesystem::create_symlink("../inside.bin", folder / "scene" / "inner" / "in_link.bin");
+  std::filesystem::create_directory_symlink("scene", folder / "alias");
+  const auto status = [&](const std::string &uri, const std::string &options) {
+    write("scene/s.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"uri":")" + uri + R"(","byteLength":36}],
+      "bufferViews":[{"buffer":0,"byteLength":36}],
+      "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[-1,0,-1],"max":[1,0,1]}],
+      "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0})");
+    const Finished finished = run("info scene/s.gltf " + options);
+    EXPECT_TRUE(finished.status == 0 || finished.err.find(uri) != std::string::npos) << finished.err;
+    return finished.status;
+  };
+  for (const char *uri : {"inside.bin", "inner/../inside.bin", "inner/in_link.bin", "../scene/inside.bin"}) {
+    EXPECT_EQ(status(uri, ""), 0) << uri;
+    EXPECT_EQ(status(uri, "--only-below scene"), 0) << uri;
+    EXPECT_EQ(status(uri, "--only-below alias"), 0) << uri;
+    EXPECT_EQ(status(uri, "--only-below '" + (folder / "scene").string() + "/'"), 0) << uri;
+  }
+  for (const char *uri : {"../outside.bin", "inner/../../outside.bin", "out_link.bin", "../scenery/beside.bin"}) {
+    EXPECT_EQ(status(uri, ""), 0) << uri;
+    EXPECT_EQ(status(uri, "--only-below scene"), 1) << uri;
+  }
+  EXPECT_EQ(status("../absent.bin", "--only-below scene"), 1);
+  EXPECT_EQ(run("info scene/s.gltf").err.find("is not below"), std::string::npos);
+  EXPECT_EQ(run("info scene/s.gltf --only-below absent").status, 1);
+  EXPECT_EQ(status("inside.bin", "--only-below scene/inner"), 1);
+  // What is not a regular file is never opened.
+  ASSERT_EQ(mkfifo((folder / "scene" / "fifo.bin").c_str(), 0666), 0);
+  std::filesystem::create_symlink("/dev/zero", folder / "scene" / "zero.bin");
+  for (const char *uri : {"fifo.bin", "zero.bin", "inner"}) {
+    EXPECT_EQ(status(uri, ""), 1) << uri;
+  }
 }
 
 TEST_F(CliRenderTest, BrightestAcceptedLampGivesAFinitePicture)

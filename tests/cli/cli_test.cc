@@ -404,25 +404,6 @@ TEST_F(CliTest, UnitsAreReadable)
   EXPECT_EQ(eevee::seconds_text(2.5), "2.50 s");
 }
 
-TEST_F(CliTest, FilesAreWrittenAtomically)
-{
-  const std::filesystem::path path = folder / "file.txt";
-  EXPECT_THROW(cli::write_atomically(path,
-                                     [](const std::filesystem::path &beside) {
-                                       std::ofstream(beside) << "half";
-                                       throw std::runtime_error("full disk");
-                                     }),
-               std::runtime_error);
-  EXPECT_EQ(file_count(), 0U);
-  cli::write_atomically(path, [](const std::filesystem::path &beside) { std::ofstream(beside) << "whole"; });
-  EXPECT_EQ(read("file.txt"), "whole");
-  // After a failure the old file is unchanged.
-  EXPECT_THROW(cli::write_atomically(path, [](const std::filesystem::path &) { throw std::runtime_error("no"); }),
-               std::runtime_error);
-  EXPECT_EQ(read("file.txt"), "whole");
-  EXPECT_EQ(file_count(), 1U);
-}
-
 TEST_F(CliTest, EveryNonFiniteValueIsCountedAndTheFirstFound)
 {
   std::vector<float> rgba(std::size_t(3) * 2 * 4, 1e30F);

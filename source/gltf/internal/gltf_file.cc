@@ -257,7 +257,12 @@ struct FileBeside {
   std::string what;
 };
 
-FileBeside file_beside(const std::filesystem::path &folder, const std::string &what, const std::string &uri)
+bool is_below(const std::filesystem::path &path, const std::filesystem::path &folder)
+{
+  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+}
+
+FileBeside file_beside(const UriBase &base, const std::string &what, const std::string &uri)
 {
   const std::string name = percent_decoded(uri);
   const std::string what_file = what + " '" + printable(name) + "'";
@@ -265,7 +270,17 @@ FileBeside file_beside(const std::filesystem::path &folder, const std::string &w
       std::filesystem::path(name).is_absolute()) {
     throw Fault(what_file, "is not a file beside the scene");
   }
-  return {folder / name, what_file};
+  if (base.only_below.empty()) {
+    return {base.folder / name, what_file};
+  }
+  // The path without links is the one that is read. A path to nothing is refused like one to something, so that a file
+  // cannot find out what there is.
+  std::error_code error;
+  std::filesystem::path path = std::filesystem::weakly_canonical(std::filesystem::absolute(base.folder / name), error);
+  if (error || !is_below(path, base.only_below)) {
+    throw Fault(what_file, "is not below the folder '" + base.only_below.string() + '\'');
+  }
+  return {std::move(path), what_file};
 }
 
 class BufferLoader {
@@ -308,7 +323,7 @@ class BufferLoader {
 
   ByteSpan from_file(const std::string &what, const std::string &uri)
   {
-    const auto [path, what_file] = file_beside(file_.folder, what, uri);
+    const auto [path, what_file] = file_beside(file_.base, what, uri);
     std::error_code error;
     std::filesystem::path key = std::filesystem::canonical(path, error);
     if (error) {
@@ -329,7 +344,32 @@ bool is_data_uri(const std::string &uri)
   return is_equal_without_case(std::string_view(uri).substr(0, 5), "data:");
 }
 
-File load_file(const std::filesystem::path &path, Warnings &warnings)
+std::vector<std::filesystem::path> files_of(const File &file)
+{
+  std::vector<std::filesystem::path> paths;
+  const auto add = [&](const std::string &uri) {
+    try {
+      if (!uri.empty() && !is_data_uri(uri)) {
+        paths.push_back(path_of_uri(file.base, "file", uri));
+      }
+    }
+    catch (const Fault &) {
+      // The element that needs it says so.
+    }
+  };
+  for (const Model::Buffer &buffer : file.model.buffers) {
+    add(buffer.uri.value_or(""));
+  }
+  for (const Model::Image &image : file.model.images) {
+    add(image.uri);
+  }
+  for (const Model::Material &material : file.model.materials) {
+    add(material.surface_uri);
+  }
+  return paths;
+}
+
+File load_file(const std::filesystem::path &path, const std::filesystem::path &only_below, Warnings &warnings)
 {
   const trace::Span span("read and parse");
   File file;
@@ -340,7 +380,14 @@ File load_file(const std::filesystem::path &path, Warnings &warnings)
   const ByteSpan bytes = ByteSpan(storage).first(size);
   const Chunks chunks = is_glb(bytes) ? split_glb(bytes, warnings) : Chunks{bytes, {}};
   file.model = parse_document(chunks.json, warnings);
-  file.folder = path.parent_path();
+  file.base.folder = path.parent_path();
+  if (!only_below.empty()) {
+    std::error_code error;
+    file.base.only_below = std::filesystem::canonical(only_below, error);
+    if (error || !std::filesystem::is_directory(file.base.only_below)) {
+      throw Fault("folder '" + only_below.string() + '\'', "does not exist, so that no file can be below it");
+    }
+  }
   BufferLoader buffer_loader(file, chunks.binary);
   for (const Model::Buffer &buffer : file.model.buffers) {
     buffer_loader.load(buffer);
@@ -348,23 +395,23 @@ File load_file(const std::filesystem::path &path, Warnings &warnings)
   return file;
 }
 
-std::filesystem::path path_of_uri(const std::filesystem::path &folder, const std::string &what, const std::string &uri)
+std::filesystem::path path_of_uri(const UriBase &base, const std::string &what, const std::string &uri)
 {
   if (is_data_uri(uri)) {
     throw Fault(what, "is a data URI, and must be the name of a file");
   }
-  FileBeside file = file_beside(folder, what, uri);
+  FileBeside file = file_beside(base, what, uri);
   static_cast<void>(size_of_file(file.path, file.what, file_size_max));
   return std::move(file.path);
 }
 
-std::vector<unsigned char> bytes_of_uri(const std::filesystem::path &folder, const std::string &what,
-                                        const std::string &uri, std::uintmax_t size_max)
+std::vector<unsigned char> bytes_of_uri(const UriBase &base, const std::string &what, const std::string &uri,
+                                        std::uintmax_t size_max)
 {
   if (is_data_uri(uri)) {
     return bytes_of_data_uri(what, uri);
   }
-  const FileBeside file = file_beside(folder, what, uri);
+  const FileBeside file = file_beside(base, what, uri);
   return read_bytes(file.path, file.what, size_max);
 }
 

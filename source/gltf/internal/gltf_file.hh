@@ -15,13 +15,20 @@
 /** Internal to source/gltf. */
 namespace gnomon::gltf {
 
+/** Where files beside a glTF file are. */
+struct UriBase {
+  /** Folder of the file, to which URIs are relative. */
+  std::filesystem::path folder;
+  /** Without links: files elsewhere are refused. Empty: files may be anywhere. */
+  std::filesystem::path only_below;
+};
+
 /** A glTF file in memory. Accessors are not yet checked against the bytes. */
 struct File {
   Model model;
   /** The bytes of each buffer; empty if an unsupported extension provides them. */
   std::vector<std::span<const unsigned char>> buffers;
-  /** Folder of the file, to which URIs are relative. */
-  std::filesystem::path folder;
+  UriBase base;
   /** Memory that `buffers` refers to. A list, because its elements do not move. */
   std::list<std::vector<unsigned char>> storage;
 };
@@ -39,12 +46,16 @@ const auto &element(const Elements &elements, int index, const std::string &what
 }
 
 /**
- * The path of the file, relative to \a folder, to which a URI refers.
+ * The path of the file to which a URI refers.
  *
- * \throws Fault that names \a what, if there is no such file, or if it is not regular or larger than 4 GiB.
+ * \throws Fault that names \a what, if there is no such file, or if it is not regular, larger than 4 GiB or not below
+ * UriBase::only_below.
  */
-[[nodiscard]] std::filesystem::path path_of_uri(const std::filesystem::path &folder, const std::string &what,
-                                                const std::string &uri);
+[[nodiscard]] std::filesystem::path path_of_uri(const UriBase &base, const std::string &what, const std::string &uri);
+
+/** The regular files that a document names for buffers, images and surface functions, whether they can be read or not.
+ */
+[[nodiscard]] std::vector<std::filesystem::path> files_of(const File &file);
 
 /** Largest size of a .glb, which is also the limit for other files. */
 inline constexpr std::uintmax_t file_size_max = std::uintmax_t(4) << 30U;
@@ -53,14 +64,15 @@ inline constexpr std::uintmax_t file_size_max = std::uintmax_t(4) << 30U;
 [[nodiscard]] bool is_data_uri(const std::string &uri);
 
 /**
- * The bytes of a URI: a decoded data URI, or a file relative to \a folder with at most \a size_max bytes.
+ * The bytes of a URI: a decoded data URI, or a file, as path_of_uri, with at most \a size_max bytes.
  *
  * \throws Fault that names \a what.
  */
-[[nodiscard]] std::vector<unsigned char> bytes_of_uri(const std::filesystem::path &folder, const std::string &what,
+[[nodiscard]] std::vector<unsigned char> bytes_of_uri(const UriBase &base, const std::string &what,
                                                       const std::string &uri, std::uintmax_t size_max = file_size_max);
 
-/** \throws Fault; std::bad_alloc */
-[[nodiscard]] File load_file(const std::filesystem::path &path, Warnings &warnings);
+/** \a only_below: ImportOptions::only_below. \throws Fault; std::bad_alloc */
+[[nodiscard]] File load_file(const std::filesystem::path &path, const std::filesystem::path &only_below,
+                             Warnings &warnings);
 
 }  // namespace gnomon::gltf

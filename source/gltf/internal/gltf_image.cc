@@ -22,7 +22,7 @@ EncodedImage encoded_image(const File &file, const Model::Image &image, const st
 {
   EncodedImage encoded;
   if (!image.uri.empty()) {
-    encoded.storage = bytes_of_uri(file.folder, what, image.uri);
+    encoded.storage = bytes_of_uri(file.base, what, image.uri);
     encoded.bytes = encoded.storage;
   }
   else {

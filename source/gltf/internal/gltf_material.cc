@@ -325,9 +325,9 @@ Handle<scene::SurfaceFunction> MaterialImporter::surface_function(const std::str
   scene::SurfaceFunction function{.name = is_data_uri(uri) ? "surface of " + what : uri};
   try {
     const std::vector<unsigned char> bytes =
-        bytes_of_uri(file_.folder, "surface function", uri, scene::SurfaceFunction::text_bytes_max);
+        bytes_of_uri(file_.base, "surface function", uri, scene::SurfaceFunction::text_bytes_max);
     function.text.assign(bytes.begin(), bytes.end());
-    function.path = is_data_uri(uri) ? std::string() : path_of_uri(file_.folder, "surface function", uri).string();
+    function.path = is_data_uri(uri) ? std::string() : path_of_uri(file_.base, "surface function", uri).string();
     place->second = scene_.add(std::move(function));
   }
   catch (const std::exception &error) {

@@ -166,7 +166,7 @@ class WorldImporter {
 
   WorldPicture picture_of_file(const std::string &uri) const
   {
-    const std::filesystem::path path = path_of_uri(file_.folder, "picture", uri);
+    const std::filesystem::path path = path_of_uri(file_.base, "picture", uri);
     if (!read_picture_) {
       throw Fault("picture '" + printable(uri) + '\'', "this program reads no pictures of worlds");
     }

@@ -385,7 +385,10 @@ class Renderer:
     def report(self) -> Report: ...
 
 def load(
-    path: str | PathLike[str], variant: str = "", progress: Callable[[float], object] | None = None
+    path: str | PathLike[str],
+    variant: str = "",
+    progress: Callable[[float], object] | None = None,
+    only_below: str | PathLike[str] = "",
 ) -> Scene: ...
 
 # Where Gnomon is built with its reference.

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+/**
+ * Writing of files. All functions may be called on any thread.
+ *
+ * A path names what it leads to: symbolic links are followed, also to a file that does not exist yet. A regular file is
+ * replaced as a whole, and keeps its permissions and, as far as the process may set it, its owner. Another name of it
+ * (a hard link) keeps the old content. A pipe, a device or a descriptor of the process (`/dev/stdout`, `/dev/fd/3`) is
+ * written to.
+ */
+namespace gnomon::output {
+
+/** Thrown if a file cannot be written. The message names the file, as the caller spelt it, and the reason. */
+struct Error : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/** Content that is being written. Positions count bytes from 0. */
+class Stream {
+ public:
+  /** \a file stays the caller's. \a path: for messages */
+  Stream(std::FILE *file, const std::filesystem::path &path) : file_(file), path_(path) {}
+
+  /** \throws Error, also if an earlier call failed */
+  void write(const void *bytes, std::size_t size);
+  void write(std::string_view text)
+  {
+    write(text.data(), text.size());
+  }
+  /** 0 if it is unknown, which check() reports: destructors of writers ask for it. */
+  [[nodiscard]] std::uint64_t position();
+  /** Continues at \a position, which may be before the end: what is there is written over. \throws Error, as write */
+  void seek(std::uint64_t position);
+  /** For writers in which an exception was lost. \throws Error if a call failed */
+  void check() const;
+
+ private:
+  void fail();
+
+  std::FILE *file_;
+  const std::filesystem::path &path_;
+  /** The reason of the first failure, an error number of the system. */
+  int error_ = 0;
+};
+
+enum class Flush {
+  /** The content and its name are on the disk when the function returns. */
+  Disk,
+  /** For caches, whose readers recognise and discard damaged files. */
+  None,
+};
+
+/**
+ * Writes what \a write gives to a Stream. On any failure, and if the process ends at any moment, a regular file has its
+ * old content, or does not exist if it did not before. What \a write throws is passed on. Other outputs get no byte
+ * unless \a write returns.
+ *
+ * \throws Error also for an existing file or folder without permission to write
+ */
+void write_file(const std::filesystem::path &path, const std::function<void(Stream &stream)> &write,
+                Flush flush = Flush::Disk);
+void write_file(const std::filesystem::path &path, std::string_view content, Flush flush = Flush::Disk);
+
+/**
+ * Checks before long work that write_file will find a folder and a file, or another output, that it may write to.
+ * \throws Error
+ */
+void check_writable(const std::filesystem::path &path);
+
+/**
+ * Removes the temporary files that write_file left in \a folder because its process was killed, on file systems that
+ * have no files without a name. Only those of files in \a names, and none of a process that runs on this machine.
+ */
+void remove_unfinished(const std::filesystem::path &folder, const std::set<std::string> &names);
+
+/** What a path leads to, equal for all of its spellings, links and hard links. */
+struct FileId {
+  std::uint64_t device = 0;
+  std::uint64_t inode = 0;
+  /** Of a file that does not exist, whose folder the numbers are. */
+  std::string name;
+
+  std::strong_ordering operator<=>(const FileId &) const = default;
+};
+
+/** Empty where there is neither a file nor a folder for it, and for terminals, /dev/null and other character devices.
+ */
+[[nodiscard]] std::optional<FileId> file_id(const std::filesystem::path &path);
+
+}  // namespace gnomon::output
