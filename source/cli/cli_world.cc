@@ -80,9 +80,12 @@ scene::WorldPicture read_world_picture(const std::filesystem::path &path)
 
 void add_only_below_option(CLI::App &command, std::filesystem::path &folder)
 {
-  command.add_option("--only-below", folder,
-                     "For scenes of strangers: read the files that the scene names only below this folder, after links "
-                     "are resolved (default: anywhere)");
+  // An empty name, of a variable that is not set, is an error, too.
+  command
+      .add_option("--only-below", folder,
+                  "For scenes of strangers: read the files that the scene names only below this folder, after links "
+                  "are resolved (default: anywhere)")
+      ->check(CLI::ExistingDirectory);
 }
 
 void add_inputs(output::Roles &roles, const scene::Scene &scene, const WorldOptions &options)

@@ -23,6 +23,11 @@ const Fields<Settings> settings_fields = {
     plain_field<Settings>("has_multiscatter", &Settings::has_multiscatter,
                           "Microfacets reflect light more than once, so that rough surfaces lose none. False: once, as "
                           "glTF's model has it."),
+    number_field<Settings>("light_threshold", &Settings::light_threshold, 0, float_max,
+                           "Irradiance, W/m², that may be left out of the light of each point and spot lamp. 0: none."),
+    number_field<Settings>(
+        "emissive_point_count", &Settings::emissive_point_count, 0, eevee::emissive_point_max,
+        "Points of emissive surfaces that light other surfaces in each of several samples, 0 to 16."),
     {"background", "What is seen without a surface: None (transparent), 'world', or a radiance (r, g, b), W/(sr m²).",
      [](const ScenePtr & /*scene*/, const Settings &settings) -> py::object {
        switch (settings.background.kind) {

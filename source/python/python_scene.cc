@@ -333,7 +333,7 @@ Thing<Mesh> add_mesh(const ScenePtr &scene, const py::array &positions, const py
 
 /** \a progress: called with the part that is done; what it raises, and signals, end the import. */
 ScenePtr load(const std::filesystem::path &path, const std::string &variant, const py::object &progress,
-              const std::filesystem::path &only_below)
+              const std::optional<std::filesystem::path> &only_below)
 {
   const auto scene = std::make_shared<SharedScene>();
   // The importer would take it for an error of the file.
@@ -355,7 +355,10 @@ ScenePtr load(const std::filesystem::path &path, const std::string &variant, con
   };
   try {
     const py::gil_scoped_release unlocked;
-    scene->scene = gltf::import_gltf(path, {.variant = variant, .only_below = only_below, .progress = report});
+    scene->scene =
+        gltf::import_gltf(path, {.variant = variant,
+                                 .only_below = only_below && only_below->empty() ? "." : only_below.value_or(""),
+                                 .progress = report});
   }
   catch (const gltf::ImportCancelled &) {
     std::rethrow_exception(raised);
@@ -481,7 +484,7 @@ void define_scene(py::module_ &module)
       "Lowest and highest corner of the box around all visible meshes, m. None if there are none.");
   module.def(
       "load", &load, py::arg("path"), py::arg("variant") = "", py::arg("progress") = py::none(),
-      py::arg("only_below") = std::filesystem::path(),
+      py::arg("only_below") = py::none(),
       "Read a glTF 2.0 file. `variant`: name of a variant of its materials. `progress`: called on this thread with "
       "the part that is done, 0 to 1; what it raises ends the import. `only_below`: a folder; files that the scene "
       "names elsewhere are refused. Raises "

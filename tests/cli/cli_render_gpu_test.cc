@@ -336,7 +336,9 @@ TEST_F(CliRenderTest, OnlyBelowLeavesOutFilesElsewhere)
   }
   EXPECT_EQ(status("../absent.bin", "--only-below scene"), 1);
   EXPECT_EQ(run("info scene/s.gltf").err.find("is not below"), std::string::npos);
-  EXPECT_EQ(run("info scene/s.gltf --only-below absent").status, 1);
+  for (const char *folder_name : {"absent", "''", "outside.bin"}) {
+    EXPECT_EQ(run(std::string("info scene/s.gltf --only-below ") + folder_name).status, 2) << folder_name;
+  }
   EXPECT_EQ(status("inside.bin", "--only-below scene/inner"), 1);
   // What is not a regular file is never opened.
   ASSERT_EQ(mkfifo((folder / "scene" / "fifo.bin").c_str(), 0666), 0);

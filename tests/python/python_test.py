@@ -4,6 +4,7 @@
 import ast
 import gc
 import inspect
+import json
 import math
 import multiprocessing
 import os
@@ -14,6 +15,7 @@ import subprocess
 import tempfile
 import threading
 import unittest
+from pathlib import Path
 
 import gnomon
 import numpy
@@ -174,6 +176,27 @@ class Scenes(unittest.TestCase):
         self.assertGreater(len(torus.triangles), 100)
         lengths = numpy.linalg.norm(torus.normals, axis=1)
         self.assertLess(abs(lengths - 1).max(), 1e-5)
+
+    def test_files_elsewhere_can_be_refused(self):
+        triangle = numpy.float32([[-1, 0, -1], [1, 0, -1], [0, 0, 1]]).tobytes()
+        document = {"asset": {"version": "2.0"}, "buffers": [{"uri": "../a.bin", "byteLength": 36}],
+                    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+                    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                                   "min": [-1, 0, -1], "max": [1, 0, 1]}],
+                    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}],
+                    "scenes": [{"nodes": [0]}], "scene": 0}
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "a.bin").write_bytes(triangle)
+            (Path(folder) / "inner").mkdir()
+            path = Path(folder) / "inner" / "a.gltf"
+            path.write_text(json.dumps(document))
+            gnomon.load(path)
+            gnomon.load(path, only_below=folder)
+            with self.assertRaisesRegex(gnomon.FileError, "a.bin': is not below"):
+                gnomon.load(path, only_below=path.parent)
+            # As pathlib has it, and not "anywhere": a service's variable may be empty by mistake.
+            with self.assertRaisesRegex(gnomon.FileError, "a.bin': is not below"):
+                gnomon.load(path, only_below="")
 
     def test_settings_of_shadows_of_lamps(self):
         scene = square_scene()
@@ -411,6 +434,12 @@ class Pictures(unittest.TestCase):
                 renderer.render()
             for name, value in before.items():
                 setattr(renderer, name, value)
+        for name, good, bad in (("light_threshold", 0.25, (-1, float("nan"))), ("emissive_point_count", 16, (-1, 17))):
+            setattr(renderer, name, good)
+            for value in bad:
+                with self.assertRaisesRegex(gnomon.InvalidEdit, f"renderer: {name} .* is not"):
+                    setattr(renderer, name, value)
+            self.assertEqual(getattr(renderer, name), good)
         with self.assertRaisesRegex(gnomon.InvalidEdit, "renderer: background"):
             renderer.background = "sky"
         with self.assertRaisesRegex(gnomon.DeviceError, "0x5"):

@@ -351,6 +351,8 @@ class Report:
 class _OfflineProperties(TypedDict, total=False):
     seed: int
     noise_threshold: float
+    light_threshold: float
+    emissive_point_count: int
     has_multiscatter: bool
     background: Background
     shadow_kind: ShadowKind
@@ -367,6 +369,8 @@ class Renderer:
     sample_count: int
     seed: int
     noise_threshold: float
+    light_threshold: float
+    emissive_point_count: int
     has_multiscatter: bool
     background: Background
     shadow_kind: ShadowKind
@@ -388,7 +392,7 @@ def load(
     path: str | PathLike[str],
     variant: str = "",
     progress: Callable[[float], object] | None = None,
-    only_below: str | PathLike[str] = "",
+    only_below: str | PathLike[str] | None = None,
 ) -> Scene: ...
 
 # Where Gnomon is built with its reference.
