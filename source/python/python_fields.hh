@@ -8,24 +8,75 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <cctype>
 #include <concepts>
 #include <functional>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace gnomon::python {
 
 inline constexpr double infinite = std::numeric_limits<double>::infinity();
-inline constexpr double float_max = std::numeric_limits<float>::max();
+using scene::float_max;
+
+/** Name of an enumeration in Python. */
+template <typename Enum>
+inline constexpr const char *enum_name = nullptr;
+template <>
+inline constexpr const char *enum_name<scene::LampKind> = "LampKind";
+template <>
+inline constexpr const char *enum_name<scene::AreaShape> = "AreaShape";
+template <>
+inline constexpr const char *enum_name<scene::ShadowKind> = "ShadowKind";
+template <>
+inline constexpr const char *enum_name<scene::EsmFormat> = "EsmFormat";
+template <>
+inline constexpr const char *enum_name<scene::AlphaMode> = "AlphaMode";
+template <>
+inline constexpr const char *enum_name<scene::CameraKind> = "CameraKind";
+
+/** Name of a type in the stub, as it is read. */
+template <typename Value>
+[[nodiscard]] std::string type_name()
+{
+  if constexpr (requires {
+                  typename Value::value_type;
+                  std::declval<Value>().has_value();
+                }) {
+    return type_name<typename Value::value_type>() + " | None";
+  }
+  else if constexpr (std::is_enum_v<Value>) {
+    return enum_name<Value>;
+  }
+  else if constexpr (std::is_same_v<Value, bool>) {
+    return "bool";
+  }
+  else if constexpr (std::is_same_v<Value, std::string>) {
+    return "str";
+  }
+  else if constexpr (std::is_arithmetic_v<Value>) {
+    return std::is_floating_point_v<Value> ? "float" : "int";
+  }
+  else if constexpr (std::is_same_v<Value, glm::dmat4>) {
+    return "NDArray[np.float64]";
+  }
+  else {
+    static_assert(Value::length() == 3);
+    return "Vector";
+  }
+}
 
 /** A property in Python of values of type T. */
 template <typename T>
 struct Field {
   std::string name;
   std::string doc;
+  /** In the stub, as it is read. */
+  std::string type;
   std::function<py::object(const ScenePtr &scene, const T &value)> get;
   /** \throws py::type_error for a value of another type, py::value_error for one out of range, with the reason */
   std::function<void(const ScenePtr &scene, T &value, py::handle set)> set;
@@ -97,40 +148,96 @@ template <typename T, typename Access>
 {
   using Value = std::decay_t<std::invoke_result_t<Access, T &>>;
   return {
-      std::move(name), std::move(doc),
+      std::move(name), std::move(doc), type_name<Value>(),
       [=](const ScenePtr & /*scene*/, const T &value) { return py::cast(std::invoke(access, value)); },
       [=](const ScenePtr & /*scene*/, T &value, py::handle set) { std::invoke(access, value) = cast_to<Value>(set); }};
 }
 
-/** \throws py::value_error if \a number is not from \a low to \a high */
-inline void check_range(double number, double low, double high)
+/** A property whose numbers, if it has any, must be within the limits of \a description. */
+template <typename T, typename Access>
+[[nodiscard]] Field<T> limited_field(std::string name, Access access, const scene::Description &description,
+                                     std::string doc)
 {
-  // The negated condition also refuses NaN.
-  if (!(number >= low && number <= high)) {
-    throw py::value_error(high < float_max ? fmt::format("{:g} is not from {:g} to {:g}", number, low, high)
-                                           : fmt::format("{:g} is not a number of at least {:g}", number, low));
-  }
+  using Value = std::decay_t<std::invoke_result_t<Access, T &>>;
+  Field<T> field = plain_field<T>(std::move(name), access, std::move(doc));
+  field.set = [=](const ScenePtr & /*scene*/, T &value, py::handle set) {
+    const auto changed = cast_to<Value>(set);
+    scene::for_each_number(changed, [&](double number) {
+      if (!description.allows(number)) {
+        throw py::value_error(fmt::format("{:g} is not {}", number, range_text(description)));
+      }
+    });
+    std::invoke(access, value) = changed;
+  };
+  return field;
 }
 
 /** A number from \a low to \a high, or a vector of such numbers. */
 template <typename T, typename Access>
 [[nodiscard]] Field<T> number_field(std::string name, Access access, double low, double high, std::string doc)
 {
-  using Value = std::decay_t<std::invoke_result_t<Access, T &>>;
-  Field<T> field = plain_field<T>(std::move(name), access, std::move(doc));
-  field.set = [=](const ScenePtr & /*scene*/, T &value, py::handle set) {
-    const auto number = cast_to<Value>(set);
-    if constexpr (std::is_arithmetic_v<Value>) {
-      check_range(double(number), low, high);
+  return limited_field<T>(std::move(name), access, {.name = "", .min = low, .max = high}, std::move(doc));
+}
+
+/** What a property means, its unit and its limits. */
+template <typename Value>
+[[nodiscard]] std::string doc_of(const scene::Description &description, std::string_view kinds)
+{
+  std::string doc = (kinds.empty() ? "" : std::string(kinds) + ": ") + std::string(description.sentence);
+  Value value{};
+  if constexpr (requires { value.has_value(); }) {
+    value.emplace();
+  }
+  bool has_number = false;
+  scene::for_each_number(value, [&](double /*number*/) { has_number = true; });
+  if (has_number) {
+    doc += fmt::format(" {}{}{}.", description.unit, description.unit.empty() ? "" : ", ", range_text(description));
+  }
+  return doc;
+}
+
+/** The words of the kinds that have a property: "Point and spot". Empty: all kinds. */
+template <typename Kind>
+[[nodiscard]] std::string kinds_text(const scene::Description &description)
+{
+  std::vector<std::string_view> kinds;
+  for (std::size_t kind = 0; kind < scene::words<Kind>.size(); kind++) {
+    if (description.kinds != 0 && description.has_kind(unsigned(kind))) {
+      kinds.push_back(scene::words<Kind>[kind]);
     }
-    else {
-      for (glm::length_t i = 0; i < Value::length(); i++) {
-        check_range(double(number[i]), low, high);
-      }
+  }
+  std::string text = fmt::format("{}", fmt::join(kinds, " and "));
+  if (!text.empty()) {
+    text[0] = char(std::toupper(text[0]));
+  }
+  return text;
+}
+
+/** Adds a field for each row of \a Part. \a access: returns the part of a T that has the rows. */
+template <typename Part, typename T, typename Access>
+void add_property_fields(Fields<T> &fields, Access access)
+{
+  Part::for_each_property([&](const auto &row) {
+    using Value = typename std::decay_t<decltype(row)>::Value;
+    std::string kinds;
+    if constexpr (requires(T thing) { thing.kind; } && std::is_same_v<T, Part>) {
+      kinds = kinds_text<decltype(T::kind)>(row);
     }
-    std::invoke(access, value) = number;
-  };
-  return field;
+    const auto member = row.member;
+    fields.push_back(limited_field<T>(
+        std::string(row.name), [=](auto &thing) -> auto & { return access(thing).*member; }, row,
+        doc_of<Value>(row, kinds)));
+  });
+}
+
+/** A field for each row of T. */
+template <typename T>
+[[nodiscard]] Fields<T> property_fields()
+{
+  Fields<T> fields;
+  add_property_fields<T>(
+      fields, [](auto &thing) -> auto & { return thing; });
+  return fields;
 }
 
 template <typename T>
@@ -145,23 +252,6 @@ template <typename T>
   return "texture";
 }
 
-/** A number from \a low to \a high that may be missing: None. */
-template <typename T, typename Access>
-[[nodiscard]] Field<T> optional_field(std::string name, Access access, double low, double high, std::string doc)
-{
-  using Value = typename std::decay_t<std::invoke_result_t<Access, T &>>::value_type;
-  Field<T> field = plain_field<T>(std::move(name), access, std::move(doc));
-  field.set = [=](const ScenePtr & /*scene*/, T &value, py::handle set) {
-    std::optional<Value> number;
-    if (!set.is_none()) {
-      number = cast_to<Value>(set, " or None");
-      check_range(double(*number), low, high);
-    }
-    std::invoke(access, value) = number;
-  };
-  return field;
-}
-
 /** The handle of \a thing. \throws scene::StaleHandle; scene::InvalidEdit if it is not one of \a scene */
 template <typename U>
 [[nodiscard]] scene::Handle<U> handle_of(const ScenePtr &scene, const Thing<U> &thing)
@@ -173,11 +263,27 @@ template <typename U>
   return thing.handle;
 }
 
+/** Name of a thing's class in Python. */
+template <typename T>
+inline constexpr const char *thing_name = nullptr;
+template <>
+inline constexpr const char *thing_name<scene::Lamp> = "Lamp";
+template <>
+inline constexpr const char *thing_name<scene::Camera> = "Camera";
+template <>
+inline constexpr const char *thing_name<scene::Material> = "Material";
+template <>
+inline constexpr const char *thing_name<scene::Mesh> = "Mesh";
+template <>
+inline constexpr const char *thing_name<scene::Node> = "Node";
+template <>
+inline constexpr const char *thing_name<scene::SurfaceFunction> = "SurfaceFunction";
+
 /** Another thing of the scene, or None. */
 template <typename T, typename U>
 [[nodiscard]] Field<T> thing_field(std::string name, scene::Handle<U> T::*member, std::string doc)
 {
-  return {std::move(name), std::move(doc),
+  return {std::move(name), std::move(doc), std::string(thing_name<U>) + " | None",
           [=](const ScenePtr &scene, const T &value) {
             const bool is_there = scene->scene.pool<U>().is_live(value.*member);
             return is_there ? py::cast(Thing<U>{scene, value.*member}) : py::object(py::none());
@@ -185,6 +291,17 @@ template <typename T, typename U>
           [=](const ScenePtr &scene, T &value, py::handle set) {
             value.*member = set.is_none() ? scene::Handle<U>() : handle_of(scene, cast_to<Thing<U>>(set, " or None"));
           }};
+}
+
+/** Gives a class the types of its properties, from which the stub is made. */
+template <typename T>
+void annotate(const py::object &type, const Fields<T> &fields)
+{
+  py::dict types;
+  for (const Field<T> &field : fields) {
+    types[field.name.c_str()] = field.type;
+  }
+  type.attr("__annotations__") = types;
 }
 
 /** Sets the properties of \a value that \a values names. \a label: names the value in messages */

@@ -29,6 +29,7 @@ const Fields<Settings> settings_fields = {
         "emissive_point_count", &Settings::emissive_point_count, 0, eevee::emissive_point_max,
         "Points of emissive surfaces that light other surfaces in each of several samples, 0 to 16."),
     {"background", "What is seen without a surface: None (transparent), 'world', or a radiance (r, g, b), W/(sr m²).",
+     "Background",
      [](const ScenePtr & /*scene*/, const Settings &settings) -> py::object {
        switch (settings.background.kind) {
          case Background::Kind::None: return py::none();
@@ -203,6 +204,7 @@ void define_renderer(py::module_ &module)
         },
         field.doc.c_str());
   }
+  annotate(renderer, settings_fields);
   renderer.def_property(
       "size", &Renderer::size_px, [](Renderer &owner, const glm::ivec2 &size_px) { owner.use().resize(size_px); },
       "Width and height of the picture, pixels.");

@@ -118,6 +118,7 @@ Fields<Material> with_textures(Fields<Material> fields)
     fields.push_back({std::string(input.name),
                       input.is_color ? "A Texture, of which red, green and blue are encoded as sRGB, or None."
                                      : "A Texture of linear values, or None.",
+                      "Texture | None",
                       [slot](const ScenePtr &scene, const Material &material) {
                         const scene::Handle<Texture> texture = (material.*slot).texture;
                         return scene->scene.textures().is_live(texture) ? py::cast(Thing<Texture>{scene, texture})

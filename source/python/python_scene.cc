@@ -6,7 +6,7 @@
 
 #include <pybind11/stl/filesystem.h>
 
-#include <numbers>
+#include <cctype>
 
 namespace gnomon::python {
 
@@ -18,51 +18,13 @@ using scene::Material;
 using scene::Mesh;
 using scene::Node;
 using scene::SurfaceFunction;
-using std::numbers::pi;
 
-const Fields<Lamp> lamp_fields = {
-    plain_field<Lamp>("name", &Lamp::name, "For messages and files."),
-    plain_field<Lamp>("kind", &Lamp::kind, "A LampKind."),
-    number_field<Lamp>("color", &Lamp::color, 0, float_max, "Linear red, green and blue, at least 0."),
-    number_field<Lamp>(
-        "intensity", &Lamp::intensity, 0, float_max,
-        "Point and spot: radiant intensity, W/sr. Sun: irradiance on a surface that faces it, W/m²; hemi "
-        "the same, of a sky over the half space behind it. Area: power, W. At least 0."),
-    number_field<Lamp>("radius", &Lamp::radius, 0, 1e12, "Point and spot: radius, m, at least 0. 0: a hard shadow."),
-    number_field<Lamp>("angle", &Lamp::angle, 0, pi, "Sun: angular diameter, rad, 0 to π. 0: a hard shadow."),
-    number_field<Lamp>("spot_outer_angle", &Lamp::spot_outer_angle, 1e-9, 0.5 * pi + 1e-6,
-                       "Spot: half the opening angle, rad, above 0 to π/2."),
-    number_field<Lamp>("spot_blend", &Lamp::spot_blend, 0, 1, "Spot: width of the soft edge, 0 to 1. 0: a hard edge."),
-    number_field<Lamp>("range", &Lamp::range, 0, float_max,
-                       "Point and spot: no light beyond, m, at least 0. 0: no limit."),
-    plain_field<Lamp>("area_shape", &Lamp::area_shape, "Area: an AreaShape."),
-    number_field<Lamp>("area_size_x", &Lamp::area_size_x, 1e-9, 1e9, "Area: full edge length or diameter, m, above 0."),
-    number_field<Lamp>("area_size_y", &Lamp::area_size_y, 1e-9, 1e9, "Area: full edge length or diameter, m, above 0."),
-    plain_field<Lamp>(
-        "shadow_kind", [](auto &lamp) -> auto & { return lamp.shadow.kind; },
-        "A ShadowKind. None: that of the renderer."),
-    optional_field<Lamp>(
-        "shadow_size_px", [](auto &lamp) -> auto & { return lamp.shadow.size; }, 1, 16384,
-        "Texels along an edge of the depth map or of a cube's face, 1 to 16384. None: that of the renderer."),
-    optional_field<Lamp>(
-        "shadow_bias", [](auto &lamp) -> auto & { return lamp.shadow.bias; }, 0, 100,
-        "Factor of the bias that is derived from the texel size, 0 to 100. None: 1."),
-    optional_field<Lamp>(
-        "shadow_clip_start", [](auto &lamp) -> auto & { return lamp.shadow.clip_start; }, 1e-9, float_max,
-        "Casters that are nearer to the lamp cast no shadow, m, above 0. None: all cast one."),
-    optional_field<Lamp>(
-        "shadow_clip_end", [](auto &lamp) -> auto & { return lamp.shadow.clip_end; }, 1e-9, float_max,
-        "Casters that are farther from the lamp cast no shadow, m, above shadow_clip_start. None: all cast one."),
-    optional_field<Lamp>(
-        "shadow_exponent", [](auto &lamp) -> auto & { return lamp.shadow.exponent; }, 0.01, 1e4,
-        "ESM and EVSM: exponent, 1/m, 0.01 to 1e4. None: it follows the size and the lamp's range."),
-    optional_field<Lamp>(
-        "shadow_filter_angle", [](auto &lamp) -> auto & { return lamp.shadow.filter_angle; }, 0, 0.25 * pi,
-        "ESM and EVSM: half the opening angle of the filter, rad, 0 to π/4. None: that of a texel."),
-    optional_field<Lamp>(
-        "shadow_esm_size_px", [](auto &lamp) -> auto & { return lamp.shadow.esm_size; }, 1, 16384,
-        "ESM and EVSM: texels along an edge of the octahedral map, 1 to 16384. None: that of the renderer."),
-};
+const Fields<Lamp> lamp_fields = [] {
+  Fields<Lamp> fields = property_fields<Lamp>();
+  add_property_fields<scene::LampShadow>(
+      fields, [](auto &lamp) -> auto & { return lamp.shadow; });
+  return fields;
+}();
 
 const Fields<SurfaceFunction> surface_function_fields = {
     plain_field<SurfaceFunction>("name", &SurfaceFunction::name, "For messages."),
@@ -72,50 +34,13 @@ const Fields<SurfaceFunction> surface_function_fields = {
                                  "The file of the text, for messages and saved scenes; empty: none."),
 };
 
-const Fields<Material> material_fields = with_textures({
-    plain_field<Material>("name", &Material::name, "For messages and files."),
-    number_field<Material>("base_color", &Material::base_color, 0, 1, "Linear red, green and blue, 0 to 1."),
-    number_field<Material>("alpha", &Material::alpha, 0, 1, "0 to 1; has an effect by alpha_mode."),
-    plain_field<Material>("alpha_mode", &Material::alpha_mode, "An AlphaMode."),
-    number_field<Material>("alpha_cutoff", &Material::alpha_cutoff, 0, float_max,
-                           "AlphaMode.MASK: the surface is cut out where alpha is below."),
-    number_field<Material>("metallic", &Material::metallic, 0, 1, "0 to 1."),
-    number_field<Material>("roughness", &Material::roughness, 0, 1, "Perceptual, 0 to 1."),
-    number_field<Material>("normal_scale", &Material::normal_scale, -float_max, float_max,
-                           "Factor of the normal texture's red and green."),
-    number_field<Material>("occlusion_strength", &Material::occlusion_strength, 0, 1, "0: no occlusion; to 1."),
-    number_field<Material>("specular", &Material::specular, 0, 1,
-                           "Factor of dielectric reflection, 0 to 1. 0: a Lambertian surface."),
-    number_field<Material>("specular_color", &Material::specular_color, 0, float_max,
-                           "Tint of dielectric reflection, at least 0."),
-    number_field<Material>("coat", &Material::coat, 0, 1, "Part of the surface under a clear coat, 0 to 1."),
-    number_field<Material>("coat_roughness", &Material::coat_roughness, 0, 1, "Perceptual, 0 to 1."),
-    number_field<Material>("coat_normal_scale", &Material::coat_normal_scale, -float_max, float_max,
-                           "Factor of the coat's normal texture."),
-    number_field<Material>("sheen_color", &Material::sheen_color, 0, 1, "Reflectance of fibres, 0 to 1."),
-    number_field<Material>("sheen_roughness", &Material::sheen_roughness, 0, 1, "Perceptual, 0 to 1."),
-    number_field<Material>("anisotropy", &Material::anisotropy, 0, 1,
-                           "How much rougher the base is along one direction, 0 to 1. Meshes need tangents."),
-    number_field<Material>("anisotropy_rotation", &Material::anisotropy_rotation, -float_max, float_max,
-                           "Angle of that direction from the tangent, radians, counter-clockwise."),
-    number_field<Material>(
-        "transmission", &Material::transmission, 0, 1,
-        "Part of the light that passes the surface, 0 (opaque) to 1. The other values of glass need it."),
-    number_field<Material>(
-        "thickness", &Material::thickness, 0, float_max,
-        "Length of the light's way inside of the object, object space. 0: a thin wall, no refraction."),
-    number_field<Material>("ior", &Material::ior, 1, float_max,
-                           "Index of refraction of the volume, at least 1. It does not change the reflection."),
-    number_field<Material>("attenuation_distance", &Material::attenuation_distance, 0, float_max,
-                           "Metres after which attenuation_color is left of white light. 0: nothing is absorbed."),
-    number_field<Material>("attenuation_color", &Material::attenuation_color, 0, 1, "Red, green and blue, 0 to 1."),
-    number_field<Material>("emissive", &Material::emissive, 0, float_max,
-                           "Emitted radiance, W/(sr m²), red, green and blue, at least 0."),
-    plain_field<Material>("is_unlit", &Material::is_unlit, "The radiance is the base colour."),
-    plain_field<Material>("is_double_sided", &Material::is_double_sided, "False: back faces are not drawn."),
-    thing_field<Material, SurfaceFunction>("surface_function", &Material::surface_function,
-                                           "A SurfaceFunction that edits the surface at each point, or None."),
-});
+const Fields<Material> material_fields = [] {
+  Fields<Material> fields = property_fields<Material>();
+  fields.push_back(
+      thing_field<Material, SurfaceFunction>("surface_function", &Material::surface_function,
+                                             "A SurfaceFunction that edits the surface at each point, or None."));
+  return with_textures(std::move(fields));
+}();
 
 /** \a what: \see rows_of */
 void set_triangles(Mesh &mesh, const py::array &triangles, const std::string &what)
@@ -127,31 +52,13 @@ void set_triangles(Mesh &mesh, const py::array &triangles, const std::string &wh
   }
 }
 
-/** Far beyond any use, and within what a projection in single precision can hold. */
-constexpr double camera_length_max = 1e9;
-constexpr double camera_length_min = 1e-9;
-
-const Fields<Camera> camera_fields = {
-    plain_field<Camera>("name", &Camera::name, "For messages and files."),
-    plain_field<Camera>("kind", &Camera::kind, "A CameraKind."),
-    number_field<Camera>("vertical_angle", &Camera::vertical_angle, 1e-6, 3.1415,
-                         "Perspective: full vertical angle, rad, above 0 and below π."),
-    number_field<Camera>("aspect", &Camera::aspect, 0, 1e6,
-                         "Perspective: width / height of the frame. 0: that of the picture."),
-    number_field<Camera>("half_width", &Camera::half_width, camera_length_min, camera_length_max,
-                         "Orthographic: half the width of the frame, m, above 0."),
-    number_field<Camera>("half_height", &Camera::half_height, camera_length_min, camera_length_max,
-                         "Orthographic: half the height of the frame, m, above 0."),
-    number_field<Camera>("near", &Camera::near, -camera_length_max, camera_length_max,
-                         "Distance of the near plane, m; above 0 where perspective."),
-    number_field<Camera>("far", &Camera::far, 0, float_max, "Distance of the far plane, m. 0: infinite."),
-};
+const Fields<Camera> camera_fields = property_fields<Camera>();
 
 /** Vectors, one for each position. */
 template <typename Vector>
 Field<Mesh> rows_field(std::string name, std::vector<Vector> Mesh::*member, std::string doc)
 {
-  return {std::move(name), std::move(doc),
+  return {std::move(name), std::move(doc), "NDArray[np.float32]",
           [=](const ScenePtr & /*scene*/, const Mesh &mesh) {
             const std::vector<Vector> &rows = mesh.*member;
             const float *numbers = rows.empty() ? nullptr : &rows.front().x;
@@ -173,6 +80,7 @@ const Fields<Mesh> mesh_fields = {
     {"triangles",
      "M x 3 uint32, indices of positions, counter-clockwise as seen from the front. Read-only; assign another array. "
      "Meshes of lines or points from files have none.",
+     "NDArray[np.uint32]",
      [](const ScenePtr & /*scene*/, const Mesh &mesh) {
        const bool is_triangles = mesh.topology == scene::Topology::Triangles;
        return py::object(array_of_rows(std::span(mesh.indices).first(is_triangles ? mesh.indices.size() : 0), 3));
@@ -181,60 +89,45 @@ const Fields<Mesh> mesh_fields = {
     thing_field<Mesh, Material>("material", &Mesh::material, "A Material. None: the default material."),
 };
 
-const Fields<Node> node_fields = {
-    plain_field<Node>("name", &Node::name, "For messages and files."),
-    plain_field<Node>("parent_from_node", &Node::parent_from_node,
-                      "Matrix of 4x4 float64, [row, column], m: column 3 is the position. Read-only; assign another."),
-    {"position", "Position relative to the parent, m: column 3 of parent_from_node.",
-     [](const ScenePtr & /*scene*/, const Node &node) { return py::cast(glm::dvec3(node.parent_from_node[3])); },
-     [](const ScenePtr & /*scene*/, Node &node, py::handle set) {
-       node.parent_from_node[3] = glm::dvec4(cast_to<glm::dvec3>(set), 1.0);
-     }},
-    {"meshes", "A list of the meshes at the node. Assign another list to change it.",
-     [](const ScenePtr &scene, const Node &node) {
-       py::list meshes;
-       for (const scene::Handle<Mesh> mesh : node.meshes) {
-         if (scene->scene.meshes().is_live(mesh)) {
-           meshes.append(Thing<Mesh>{scene, mesh});
+const Fields<Node> node_fields = [] {
+  Fields<Node> fields = property_fields<Node>();
+  const Fields<Node> content = {
+      plain_field<Node>(
+          "parent_from_node", &Node::parent_from_node,
+          "Matrix of 4x4 float64, [row, column], m: column 3 is the position. Read-only; assign another."),
+      {"position", "Position relative to the parent, m: column 3 of parent_from_node.", "Vector",
+       [](const ScenePtr & /*scene*/, const Node &node) { return py::cast(glm::dvec3(node.parent_from_node[3])); },
+       [](const ScenePtr & /*scene*/, Node &node, py::handle set) {
+         node.parent_from_node[3] = glm::dvec4(cast_to<glm::dvec3>(set), 1.0);
+       }},
+      {"meshes", "A list of the meshes at the node. Assign another list to change it.", "list[Mesh]",
+       [](const ScenePtr &scene, const Node &node) {
+         py::list meshes;
+         for (const scene::Handle<Mesh> mesh : node.meshes) {
+           if (scene->scene.meshes().is_live(mesh)) {
+             meshes.append(Thing<Mesh>{scene, mesh});
+           }
          }
-       }
-       return py::object(std::move(meshes));
-     },
-     [](const ScenePtr &scene, Node &node, py::handle set) {
-       std::vector<scene::Handle<Mesh>> meshes;
-       for (const Thing<Mesh> &mesh : cast_to<std::vector<Thing<Mesh>>>(set)) {
-         meshes.push_back(handle_of(scene, mesh));
-       }
-       node.meshes = std::move(meshes);
-     }},
-    thing_field<Node, Lamp>("lamp", &Node::lamp, "A Lamp that shines along the node's -Z axis, or None."),
-    thing_field<Node, Camera>("camera", &Node::camera, "A Camera that looks along the node's -Z axis, or None."),
-    plain_field<Node>("is_visible", &Node::is_visible,
-                      "False: neither the node nor its descendants are drawn or shine."),
-    plain_field<Node>("casts_shadow", &Node::casts_shadow, "Whether the node's meshes cast shadows."),
-    plain_field<Node>("receives_shadow", &Node::receives_shadow, "Whether the node's meshes receive shadows."),
-};
+         return py::object(std::move(meshes));
+       },
+       [](const ScenePtr &scene, Node &node, py::handle set) {
+         std::vector<scene::Handle<Mesh>> meshes;
+         for (const Thing<Mesh> &mesh : cast_to<std::vector<Thing<Mesh>>>(set)) {
+           meshes.push_back(handle_of(scene, mesh));
+         }
+         node.meshes = std::move(meshes);
+       }},
+      thing_field<Node, Lamp>("lamp", &Node::lamp, "A Lamp that shines along the node's -Z axis, or None."),
+      thing_field<Node, Camera>("camera", &Node::camera, "A Camera that looks along the node's -Z axis, or None."),
+  };
+  fields.insert(fields.end(), content.begin(), content.end());
+  return fields;
+}();
 
 /** Checks and sets what depends on several fields. \a values: those that were set */
 template <typename T>
 void finish(T & /*value*/, const py::dict & /*values*/)
 {
-}
-
-void finish(Camera &camera, const py::dict & /*values*/)
-{
-  if (camera.kind == scene::CameraKind::Perspective && camera.near < camera_length_min) {
-    throw scene::InvalidEdit(fmt::format("camera '{}': near {} is not above 0", camera.name, camera.near));
-  }
-}
-
-void finish(Lamp &lamp, const py::dict & /*values*/)
-{
-  const scene::LampShadow &shadow = lamp.shadow;
-  if (shadow.clip_start && shadow.clip_end && *shadow.clip_end <= *shadow.clip_start) {
-    throw scene::InvalidEdit(fmt::format("lamp '{}': shadow_clip_end {} is not above shadow_clip_start {}", lamp.name,
-                                         *shadow.clip_end, *shadow.clip_start));
-  }
 }
 
 void finish(Mesh &mesh, const py::dict &values)
@@ -280,6 +173,7 @@ void define_thing(py::module_ &module, const char *name, const char *doc, const 
         },
         field.doc.c_str());
   }
+  annotate(type, fields);
   type.def(
       "edit", [&fields](const Thing<T> &thing, const py::kwargs &values) { edit(fields, thing, values); },
       "Set several properties in one edit: all of them, or none if one is invalid.");
@@ -373,35 +267,35 @@ void save(const ScenePtr &scene, const std::filesystem::path &path)
   gltf::export_gltf(scene->scene, path);
 }
 
+/** Its values have the words of the scene as names. */
+template <typename Enum>
+void define_enum(py::module_ &module, const char *doc)
+{
+  py::enum_<Enum> type(module, enum_name<Enum>, doc);
+  for (std::size_t value = 0; value < scene::words<Enum>.size(); value++) {
+    std::string name(scene::words<Enum>[value]);
+    std::ranges::transform(name, name.begin(), [](char letter) { return char(std::toupper(letter)); });
+    type.value(name.c_str(), Enum(value));
+  }
+}
+
 void define_enums(py::module_ &module)
 {
   using scene::AlphaMode;
   using scene::AreaShape;
   using scene::CameraKind;
+  using scene::EsmFormat;
   using scene::LampKind;
   using scene::ShadowKind;
-  py::enum_<LampKind>(module, "LampKind", "Kind of a lamp.")
-      .value("POINT", LampKind::Point)
-      .value("SUN", LampKind::Sun)
-      .value("SPOT", LampKind::Spot)
-      .value("HEMI", LampKind::Hemi)
-      .value("AREA", LampKind::Area);
-  py::enum_<AreaShape>(module, "AreaShape", "Shape of an area lamp.")
-      .value("RECTANGLE", AreaShape::Rectangle)
-      .value("ELLIPSE", AreaShape::Ellipse);
-  py::enum_<ShadowKind>(module, "ShadowKind", "Method of a lamp's shadow. doc/shadows.md explains them.")
-      .value("NONE", ShadowKind::None)
-      .value("HARD", ShadowKind::Hard)
-      .value("PCF", ShadowKind::Pcf)
-      .value("ESM", ShadowKind::Esm)
-      .value("EVSM", ShadowKind::Evsm);
-  py::enum_<AlphaMode>(module, "AlphaMode", "How a material's alpha is used.")
-      .value("OPAQUE", AlphaMode::Opaque)
-      .value("MASK", AlphaMode::Mask)
-      .value("BLEND", AlphaMode::Blend);
-  py::enum_<CameraKind>(module, "CameraKind", "Projection of a camera.")
-      .value("PERSPECTIVE", CameraKind::Perspective)
-      .value("ORTHOGRAPHIC", CameraKind::Orthographic);
+  define_enum<LampKind>(module, "Kind of a lamp.");
+  define_enum<AreaShape>(module, "Shape of an area lamp.");
+  define_enum<ShadowKind>(module, "Method of a lamp's shadow. doc/shadows.md explains them.");
+  define_enum<AlphaMode>(module, "How a material's alpha is used.");
+  define_enum<CameraKind>(module, "Projection of a camera.");
+  // Its words are no names in Python.
+  py::enum_<EsmFormat>(module, enum_name<EsmFormat>, "Numbers of the layer of an exponential shadow.")
+      .value("HALF", EsmFormat::Half)
+      .value("FLOAT", EsmFormat::Float);
 }
 
 }  // namespace

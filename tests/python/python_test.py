@@ -612,7 +612,7 @@ class Stub(unittest.TestCase):
     """The stub has what the module has, and all of it has a documentation."""
 
     def test_names(self):
-        with open("source/python/gnomon/__init__.pyi", encoding="utf-8") as file:
+        with open(os.path.join(os.path.dirname(gnomon.__file__), "__init__.pyi"), encoding="utf-8") as file:
             body = ast.parse(file.read()).body
         stub = {}
         properties = {}
@@ -669,7 +669,7 @@ class Stub(unittest.TestCase):
                 # Packages on the path that have a stub are checked, numpy and others are not.
                 finished = subprocess.run(
                     ["mypy", "--enable-incomplete-feature=Unpack", "--follow-imports=silent", "--cache-dir", folder, path],
-                    env={**os.environ, "MYPYPATH": "source/python"}, capture_output=True, text=True)
+                    env={**os.environ, "MYPYPATH": os.path.dirname(os.path.dirname(gnomon.__file__))}, capture_output=True, text=True)
                 return finished.stdout + finished.stderr
             self.assertIn("Success", checked(examples))
             for mistake in mistakes:
