@@ -32,7 +32,7 @@ void ExtraReader::fail(std::string_view key, const std::string &value, const std
   throw Fault(what_, std::string(key) + " is " + value + ", and must be " + wanted);
 }
 
-float ExtraReader::checked(const char *key, double value, const Range &range) const
+float ExtraReader::checked(std::string_view key, double value, const Range &range) const
 {
   if (!range.contains(value)) {
     fail(key, text(value), range.text());
@@ -46,7 +46,7 @@ const Model::Extra *ExtraReader::find(std::string_view key) const
   return found == extras_.end() ? nullptr : &found->second;
 }
 
-std::optional<double> ExtraReader::number_if_any(const char *key, const Range &range) const
+std::optional<double> ExtraReader::number_if_any(std::string_view key, const Range &range) const
 {
   const Model::Extra *extra = find(key);
   if (extra == nullptr) {
@@ -60,12 +60,12 @@ std::optional<double> ExtraReader::number_if_any(const char *key, const Range &r
   return *number;
 }
 
-float ExtraReader::number(const char *key, double fallback, const Range &range) const
+float ExtraReader::number(std::string_view key, double fallback, const Range &range) const
 {
   return static_cast<float>(number_if_any(key, range).value_or(fallback));
 }
 
-std::optional<int> ExtraReader::whole_if_any(const char *key, const Range &range) const
+std::optional<int> ExtraReader::whole_if_any(std::string_view key, const Range &range) const
 {
   const std::optional<double> value = number_if_any(key, range);
   if (value && *value != std::floor(*value)) {
@@ -74,7 +74,7 @@ std::optional<int> ExtraReader::whole_if_any(const char *key, const Range &range
   return value ? std::optional(static_cast<int>(*value)) : std::nullopt;
 }
 
-std::string ExtraReader::string(const char *key, const char *fallback) const
+std::string ExtraReader::string(std::string_view key, const char *fallback) const
 {
   const Model::Extra *extra = find(key);
   if (extra == nullptr) {
@@ -87,7 +87,7 @@ std::string ExtraReader::string(const char *key, const char *fallback) const
   return *text;
 }
 
-glm::vec3 ExtraReader::color(const char *key, const glm::vec3 &fallback, const Range &range) const
+glm::vec3 ExtraReader::color(std::string_view key, const glm::vec3 &fallback, const Range &range) const
 {
   const Model::Extra *extra = find(key);
   if (extra == nullptr) {

@@ -3,9 +3,12 @@
 
 #include "internal/gltf_model.hh"
 #include "internal/gltf_units.hh"
+#include "scene_properties.hh"
 
 #include <glm/vec3.hpp>
 
+#include <algorithm>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,20 +16,38 @@
 /** Internal to source/gltf. */
 namespace gnomon::gltf {
 
-/** Numbers from min to max. */
+/** Numbers from min to max, as they are stored in float. */
 struct Range {
   double min;
   double max;
 
   [[nodiscard]] bool contains(double value) const
   {
-    return value >= min && value <= max;
+    return scene::Description{.name = "", .min = min, .max = max}.allows(value);
   }
   [[nodiscard]] std::string text() const;
 };
 
 constexpr Range not_negative{0.0, large};
 constexpr Range length_range{length_min, large};
+
+/** Key of a property in the extras of files. */
+[[nodiscard]] inline std::string extra_key(const scene::Description &row)
+{
+  return "gnomon_" + std::string(row.key_or_name());
+}
+
+/** Unit of a property in the extras over its unit in the scene. */
+[[nodiscard]] inline double extra_factor(const scene::Description &row)
+{
+  return row.is_extra_in_degrees ? 180.0 / std::numbers::pi : 1.0;
+}
+
+/** The limits of a property in a file. \a factor: unit of the file over that of the scene */
+[[nodiscard]] inline Range range_of(const scene::Description &row, double factor = 1.0)
+{
+  return {std::max(row.min, -large) * factor, std::min(row.max, large) * factor};
+}
 
 /** The text of an extra for messages. */
 [[nodiscard]] std::string written(const Model::Extra &extra);
@@ -51,17 +72,17 @@ class ExtraReader {
   [[noreturn]] void fail(std::string_view key, const std::string &value, const std::string &wanted) const;
 
   /** \a value of any property, in float. */
-  [[nodiscard]] float checked(const char *key, double value, const Range &range) const;
+  [[nodiscard]] float checked(std::string_view key, double value, const Range &range) const;
 
   /** nullptr if the key is absent. */
   [[nodiscard]] const Model::Extra *find(std::string_view key) const;
-  [[nodiscard]] std::optional<double> number_if_any(const char *key, const Range &range) const;
-  [[nodiscard]] float number(const char *key, double fallback, const Range &range) const;
+  [[nodiscard]] std::optional<double> number_if_any(std::string_view key, const Range &range) const;
+  [[nodiscard]] float number(std::string_view key, double fallback, const Range &range) const;
   /** Blender may write whole numbers as floats. */
-  [[nodiscard]] std::optional<int> whole_if_any(const char *key, const Range &range) const;
-  [[nodiscard]] std::string string(const char *key, const char *fallback) const;
+  [[nodiscard]] std::optional<int> whole_if_any(std::string_view key, const Range &range) const;
+  [[nodiscard]] std::string string(std::string_view key, const char *fallback) const;
   /** Three numbers. */
-  [[nodiscard]] glm::vec3 color(const char *key, const glm::vec3 &fallback, const Range &range) const;
+  [[nodiscard]] glm::vec3 color(std::string_view key, const glm::vec3 &fallback, const Range &range) const;
 
  private:
   const Model::Extras &extras_;

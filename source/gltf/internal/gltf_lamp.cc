@@ -5,21 +5,18 @@
 #include "internal/gltf_node.hh"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <initializer_list>
 #include <numbers>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 namespace gnomon::gltf {
 
 using scene::AreaShape;
-using scene::EsmFormat;
 using scene::Lamp;
 using scene::LampKind;
 using scene::LampShadow;
-using scene::ShadowKind;
 
 namespace {
 
@@ -28,12 +25,6 @@ using std::numbers::pi;
 constexpr double angle_tolerance = 1e-6;
 /** Smallest half angle of a cone, rad. For smaller angles 1 - cos would underflow in float. */
 constexpr double cone_min = 1e-9;
-
-/** All supported extras, with the lamps to which they apply. */
-struct Extra {
-  std::string_view key;
-  std::initializer_list<LampKind> kinds;
-};
 
 /** Reads the lamp on one node; every message names it. */
 class LampReader : private ExtraReader {
@@ -54,17 +45,11 @@ class LampReader : private ExtraReader {
     lamp_.intensity = static_cast<float>(light.intensity / lumen_per_watt);
     if (lamp_.kind == LampKind::Point || lamp_.kind == LampKind::Spot) {
       lamp_.range = light.range == 0.0 ? 0.0F : checked("range", light.range, length_range);
-      lamp_.radius = number("gnomon_radius", 0.0, not_negative);
-    }
-    if (lamp_.kind == LampKind::Sun) {
-      lamp_.angle = number("gnomon_angle", 0.0, {0.0, pi});
     }
     if (lamp_.kind == LampKind::Spot) {
       read_cone(light);
     }
-    if (lamp_.kind != LampKind::Hemi) {
-      read_shadow(lamp_.shadow);
-    }
+    read_extras();
     warn_idle_extras();
     return lamp_;
   }
@@ -83,14 +68,10 @@ class LampReader : private ExtraReader {
     else if (shape != "square" && shape != "rectangle") {
       fail("gnomon_shape", '\'' + printable(shape) + '\'', "'square', 'rectangle', 'disk' or 'ellipse'");
     }
-    lamp_.area_size_x = number("gnomon_size_x", 1.0, length_range);
-    lamp_.area_size_y = number("gnomon_size_y", lamp_.area_size_x, length_range);
-    if (shape == "square" || shape == "disk") {
+    read_extras();
+    if (shape == "square" || shape == "disk" || find("gnomon_size_y") == nullptr) {
       lamp_.area_size_y = lamp_.area_size_x;
     }
-    lamp_.intensity = number("gnomon_power", 1.0, not_negative);
-    lamp_.color = color("gnomon_color", lamp_.color, not_negative);
-    read_shadow(lamp_.shadow);
     warn_idle_extras();
     return lamp_;
   }
@@ -99,48 +80,72 @@ class LampReader : private ExtraReader {
   Warnings &warnings_;
   Lamp lamp_;
 
-  /** The enumerator of \a Word at the index of the extra's value in \a words; empty if the key is absent. */
-  template <typename Word>
-  std::optional<Word> word(const char *key, std::initializer_list<std::string_view> words) const
+  /** Reads the extras of the lamp's kind that the file has. */
+  void read_extras()
   {
-    if (find(key) == nullptr) {
-      return std::nullopt;
+    const auto read_part = [&](auto &part) {
+      part.for_each_property([&](const auto &row) {
+        const std::string key = extra_key(row);
+        if (has_extra(row, lamp_.kind) && find(key) != nullptr) {
+          read_extra(row, key, part.*row.member);
+        }
+      });
+    };
+    read_part(lamp_);
+    read_part(lamp_.shadow);
+    const LampShadow &shadow = lamp_.shadow;
+    if (shadow.clip_start && shadow.clip_end && *shadow.clip_end <= *shadow.clip_start) {
+      fail("gnomon_clip_end", text(*shadow.clip_end), "above gnomon_clip_start, " + text(*shadow.clip_start));
     }
+  }
+
+  /** \pre the file has it */
+  template <typename Value>
+  void read_extra(const scene::Description &row, const std::string &key, Value &value) const
+  {
+    const double factor = extra_factor(row);
+    const Range range = range_of(row, factor);
+    if constexpr (requires { value.has_value(); }) {
+      read_extra(row, key, value.emplace());
+    }
+    else if constexpr (std::is_same_v<Value, AreaShape>) {
+      // It has more words than values.
+    }
+    else if constexpr (std::is_enum_v<Value>) {
+      value = word<Value>(key);
+    }
+    else if constexpr (std::is_same_v<Value, int>) {
+      value = *whole_if_any(key, range);
+    }
+    else if constexpr (std::is_same_v<Value, float>) {
+      value = static_cast<float>(*number_if_any(key, range) / factor);
+    }
+    else if constexpr (std::is_same_v<Value, glm::vec3>) {
+      value = color(key, value, range);
+    }
+  }
+
+  static bool has_extra(const scene::Description &row, LampKind kind)
+  {
+    return (row.extra_kinds & scene::bits(kind)) != 0;
+  }
+
+  /** The enumerator whose word is the extra's value. */
+  template <typename Word>
+  Word word(const std::string &key) const
+  {
+    constexpr auto &words = scene::words<Word>;
     const std::string value = string(key, "");
-    const auto *const found = std::find(words.begin(), words.end(), value);
+    const auto found = std::find(words.begin(), words.end(), value);
     if (found == words.end()) {
       std::string wanted;
-      for (const std::string_view &each : words) {
-        wanted += &each == words.begin() ? "" : &each == words.end() - 1 ? " or " : ", ";
-        wanted += '\'' + std::string(each) + '\'';
+      for (std::size_t i = 0; i < words.size(); i++) {
+        wanted += i == 0 ? "" : i + 1 == words.size() ? " or " : ", ";
+        wanted += '\'' + std::string(words[i]) + '\'';
       }
       fail(key, '\'' + printable(value) + '\'', wanted);
     }
     return static_cast<Word>(found - words.begin());
-  }
-
-  std::optional<float> float_if_any(const char *key, const Range &range) const
-  {
-    const std::optional<double> value = number_if_any(key, range);
-    return value ? std::optional(static_cast<float>(*value)) : std::nullopt;
-  }
-
-  void read_shadow(LampShadow &shadow) const
-  {
-    shadow.kind = word<ShadowKind>("gnomon_shadow", {"none", "hard", "pcf", "esm", "evsm"});
-    shadow.size = whole_if_any("gnomon_shadow_size", {1.0, 16384.0});
-    shadow.exponent = float_if_any("gnomon_exponent", {0.01, 1e4});
-    shadow.bias = float_if_any("gnomon_bias", {0.0, 100.0});
-    shadow.clip_start = float_if_any("gnomon_clip_start", length_range);
-    shadow.clip_end = float_if_any("gnomon_clip_end", length_range);
-    if (shadow.clip_start && shadow.clip_end && *shadow.clip_end <= *shadow.clip_start) {
-      fail("gnomon_clip_end", text(*shadow.clip_end), "above gnomon_clip_start, " + text(*shadow.clip_start));
-    }
-    if (const std::optional<double> degrees = number_if_any("gnomon_filter_radius", {0.0, 45.0})) {
-      shadow.filter_angle = static_cast<float>(*degrees * pi / 180.0);
-    }
-    shadow.esm_size = whole_if_any("gnomon_esm_size", {4.0, 8192.0});
-    shadow.esm_format = word<EsmFormat>("gnomon_esm_format", {"16f", "32f"});
   }
 
   [[nodiscard]] LampKind punctual_kind(const std::string &type) const
@@ -165,7 +170,7 @@ class LampReader : private ExtraReader {
     // glTF requires a smaller inner angle. Equal angles are accepted: Blender writes them for a hard edge.
     const double inner = checked("innerConeAngle", light.inner_cone_angle, {0.0, outer + angle_tolerance});
     lamp_.spot_outer_angle = static_cast<float>(std::min(outer, pi / 2));
-    lamp_.spot_blend = number("gnomon_spot_blend", derived_blend(std::min(inner, outer), outer), {0.0, 1.0});
+    lamp_.spot_blend = static_cast<float>(derived_blend(std::min(inner, outer), outer));
   }
 
   /** (cos inner - cos outer) / (1 - cos outer), computed from half angles without cancellation in narrow cones. */
@@ -179,41 +184,28 @@ class LampReader : private ExtraReader {
   /** Warns about misspelt and inapplicable extras, which would have no effect. */
   void warn_idle_extras() const
   {
-    static const std::initializer_list<LampKind> casts_shadow{LampKind::Point, LampKind::Sun, LampKind::Spot,
-                                                              LampKind::Area};
-    static const std::array<Extra, 18> known{{
-        {"gnomon_radius", {LampKind::Point, LampKind::Spot}},
-        {"gnomon_angle", {LampKind::Sun}},
-        {"gnomon_spot_blend", {LampKind::Spot}},
-        {"gnomon_lamp", {LampKind::Area, LampKind::Hemi}},
-        {"gnomon_shape", {LampKind::Area}},
-        {"gnomon_size_x", {LampKind::Area}},
-        {"gnomon_size_y", {LampKind::Area}},
-        {"gnomon_power", {LampKind::Area}},
-        {"gnomon_color", {LampKind::Area}},
-        {"gnomon_shadow", casts_shadow},
-        {"gnomon_shadow_size", casts_shadow},
-        {"gnomon_exponent", casts_shadow},
-        {"gnomon_bias", casts_shadow},
-        {"gnomon_clip_start", casts_shadow},
-        {"gnomon_clip_end", casts_shadow},
-        {"gnomon_filter_radius", casts_shadow},
-        {"gnomon_esm_size", casts_shadow},
-        {"gnomon_esm_format", casts_shadow},
-    }};
     for (const auto &[key, value] : extras()) {
       if (is_node_extra(key)) {
         continue;
       }
-      const std::string_view name = key;
-      const auto extra = std::find_if(known.begin(), known.end(), [&](const Extra &e) { return e.key == name; });
-      if (extra == known.end()) {
+      const unsigned kinds = kinds_of_extra(key);
+      if (kinds == 0) {
         warnings_.add(what(), "extra '" + printable(key) + "' is unknown");
       }
-      else if (std::find(extra->kinds.begin(), extra->kinds.end(), lamp_.kind) == extra->kinds.end()) {
+      else if ((kinds & scene::bits(lamp_.kind)) == 0) {
         warnings_.add(what(), "extra '" + key + "' does not apply to this kind of lamp");
       }
     }
+  }
+
+  /** The kinds of lamps that have the extra, as bits. 0: none. */
+  static unsigned kinds_of_extra(std::string_view key)
+  {
+    unsigned kinds = key == "gnomon_lamp" ? scene::bits(LampKind::Area, LampKind::Hemi) : 0U;
+    const auto find_in = [&](const scene::Description &row) { kinds |= extra_key(row) == key ? row.extra_kinds : 0U; };
+    Lamp::for_each_property(find_in);
+    LampShadow::for_each_property(find_in);
+    return kinds;
   }
 };
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "internal/gltf_write_lamp.hh"
 
+#include "internal/gltf_extra.hh"
 #include "internal/gltf_report.hh"
 #include "internal/gltf_units.hh"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
+#include <type_traits>
 
 namespace gnomon::gltf {
 
@@ -15,11 +15,8 @@ using scene::Camera;
 using scene::CameraKind;
 using scene::Lamp;
 using scene::LampKind;
-using scene::LampShadow;
 
 namespace {
-
-using std::numbers::pi;
 
 std::string quoted_word(std::string_view word)
 {
@@ -36,32 +33,24 @@ double inner_angle(const Lamp &lamp)
   return std::clamp(2.0 * std::asin(half_sine), 0.0, outer);
 }
 
-void add_shadow_extras(const LampShadow &shadow, const std::string &what, JsonText &extras)
+/** The value of a property in the extras; empty: absent. */
+template <typename Value>
+std::string extra_value(const scene::Description &row, const Value &value, const std::string &what)
 {
-  constexpr std::array<std::string_view, 5> kinds{"none", "hard", "pcf", "esm", "evsm"};
-  constexpr std::array<std::string_view, 2> formats{"16f", "32f"};
-  const auto add = [&](std::string_view key, const auto &value) {
-    if (value) {
-      extras.add(key, json_number(*value, what));
-    }
-  };
-  const auto as_double = [](const auto &value) { return value ? std::optional<double>(*value) : std::nullopt; };
-  if (shadow.kind) {
-    extras.add("gnomon_shadow", quoted_word(kinds.at(std::size_t(*shadow.kind))));
+  if constexpr (requires { value.has_value(); }) {
+    return value ? extra_value(row, *value, what) : "";
   }
-  add("gnomon_shadow_size", as_double(shadow.size));
-  add("gnomon_exponent", shadow.exponent);
-  add("gnomon_bias", shadow.bias);
-  add("gnomon_clip_start", shadow.clip_start);
-  add("gnomon_clip_end", shadow.clip_end);
-  if (shadow.filter_angle) {
-    // π/4 in float is above 45 degrees.
-    const double degrees = double(*shadow.filter_angle) * 180.0 / pi;
-    extras.add("gnomon_filter_radius", json_number(degrees > 45.0 && degrees < 45.00001 ? 45.0 : degrees, what));
+  else if constexpr (std::is_enum_v<Value>) {
+    return quoted_word(scene::words<Value>.at(std::size_t(value)));
   }
-  add("gnomon_esm_size", as_double(shadow.esm_size));
-  if (shadow.esm_format) {
-    extras.add("gnomon_esm_format", quoted_word(formats.at(std::size_t(*shadow.esm_format))));
+  else if constexpr (std::is_same_v<Value, glm::vec3>) {
+    return json_numbers(value, what);
+  }
+  else if constexpr (std::is_same_v<Value, float>) {
+    return row.is_extra_in_degrees ? json_number(double(value) * extra_factor(row), what) : json_number(value, what);
+  }
+  else {
+    return json_number(double(value), what);
   }
 }
 
@@ -119,32 +108,25 @@ std::string light_json(const Lamp &lamp)
 void add_lamp_extras(const Lamp &lamp, JsonText &extras)
 {
   const std::string what = what_of("lamp", lamp.name);
-  switch (lamp.kind) {
-    case LampKind::Spot: extras.add("gnomon_spot_blend", json_number(lamp.spot_blend, what)); [[fallthrough]];
-    case LampKind::Point:
-      if (lamp.radius != 0.0F) {
-        extras.add("gnomon_radius", json_number(lamp.radius, what));
-      }
-      break;
-    case LampKind::Sun:
-      if (lamp.angle != 0.0F) {
-        // π in float is above π.
-        extras.add("gnomon_angle", lamp.angle == float(pi) ? json_number(pi, what) : json_number(lamp.angle, what));
-      }
-      break;
-    case LampKind::Hemi: extras.add("gnomon_lamp", "\"hemi\""); break;
-    case LampKind::Area:
-      extras.add("gnomon_lamp", "\"area\"");
-      extras.add("gnomon_shape", lamp.area_shape == scene::AreaShape::Rectangle ? "\"rectangle\"" : "\"ellipse\"");
-      extras.add("gnomon_size_x", json_number(lamp.area_size_x, what));
-      extras.add("gnomon_size_y", json_number(lamp.area_size_y, what));
-      extras.add("gnomon_power", json_number(lamp.intensity, what));
-      extras.add("gnomon_color", json_numbers(lamp.color, what));
-      break;
+  if (lamp.kind == LampKind::Hemi || lamp.kind == LampKind::Area) {
+    extras.add("gnomon_lamp", quoted_word(scene::words<LampKind>.at(std::size_t(lamp.kind))));
   }
-  if (lamp.kind != LampKind::Hemi) {
-    add_shadow_extras(lamp.shadow, what, extras);
-  }
+  const auto add_part = [&](const auto &part) {
+    using Part = std::decay_t<decltype(part)>;
+    Part::for_each_property([&](const auto &row) {
+      if constexpr (!std::is_same_v<typename std::decay_t<decltype(row)>::Value, std::string>) {
+        // Without it, the importer has the default; but a blend follows from the cone, and an area's size y from x.
+        const bool is_implied =
+            lamp.kind != LampKind::Area && row.name != "spot_blend" && part.*row.member == Part().*row.member;
+        const std::string value = extra_value(row, part.*row.member, what);
+        if ((row.extra_kinds & scene::bits(lamp.kind)) != 0 && !is_implied && !value.empty()) {
+          extras.add(extra_key(row), value);
+        }
+      }
+    });
+  };
+  add_part(lamp);
+  add_part(lamp.shadow);
 }
 
 }  // namespace gnomon::gltf
