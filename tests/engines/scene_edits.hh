@@ -67,7 +67,7 @@ void for_each_property(const scene::LampShadow & /*of*/, Visit &&visit)
   visit("shadow.bias", &LampShadow::bias, 0, 20);
   visit("shadow.clip_start", &LampShadow::clip_start, 0.5, 3);
   visit("shadow.clip_end", &LampShadow::clip_end, 3.5, 5);
-  visit("shadow.filter_radius", &LampShadow::filter_radius, 0.01, 0.7);
+  visit("shadow.filter_angle", &LampShadow::filter_angle, 0.01, 0.7);
   visit("shadow.esm_size", &LampShadow::esm_size, 16, 100);
   visit("shadow.esm_format", &LampShadow::esm_format, 0, 1);
 }
