@@ -74,18 +74,18 @@ LightShape shape_at(int index)
 
 /**
  * Visibility of a light, 1 lit and 0 in shadow. \a lights: LIGHTS_…. \a to_light: unit vector. \a offset: 0 at the receiver,
- * \see ShadowPlace; ignored by SHADOW_ESM.
+ * \see ShadowPlace; \a least_gap: \see shadow_cube_visibility. Both are ignored by SHADOW_ESM.
  */
-float light_visibility(LightData light, const int lights, Surface surface, vec3 to_light, vec3 offset)
+float light_visibility(LightData light, const int lights, Surface surface, vec3 to_light, vec3 offset, float least_gap)
 {
 #ifdef USE_SHADOW_CUBE
   if (lights != LIGHTS_WITH_MAPS && light.shadow_kind == SHADOW_CUBE) {
-    return shadow_cube_visibility(light.shadow_index, surface, light, to_light, offset);
+    return shadow_cube_visibility(light.shadow_index, surface, light, to_light, offset, least_gap);
   }
 #endif
 #ifdef USE_SHADOW_MAP
   if (lights != LIGHTS_WITH_CUBES && light.shadow_kind == SHADOW_MAP) {
-    return shadow_map_visibility(light.shadow_index, surface, to_light, offset);
+    return shadow_map_visibility(light.shadow_index, surface, to_light, offset, least_gap);
   }
 #endif
 #ifdef USE_SHADOW_ESM
@@ -255,7 +255,7 @@ vec3 point_radiance(int index, const int lights, MaterialData material, Surface 
   }
   material.diffuse *= bump_visibility(surface.smooth_normal_ws, surface.normal_ws, center.to_light);
 #endif
-  float visibility = light_visibility(light, lights, surface, center.to_light, vec3(0.0));
+  float visibility = light_visibility(light, lights, surface, center.to_light, vec3(0.0), 0.0);
   if (visibility <= 0.0) {
     return vec3(0.0);
   }

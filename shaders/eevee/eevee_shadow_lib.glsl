@@ -145,10 +145,13 @@ ShadowPlace cube_place(ShadowCubeData cube, Surface surface, LightData light, ve
   return place;
 }
 
-float shadow_cube_visibility(int index, Surface surface, LightData light, vec3 to_light, vec3 offset)
+/** \a least_gap: of the casters that count; 0: all. Not for suns. \see eevee_penumbra_lib.glsl */
+float shadow_cube_visibility(int index, Surface surface, LightData light, vec3 to_light, vec3 offset, float least_gap)
 {
   ShadowCubeData cube = shadow.cubes[index];
   ShadowPlace place = cube_place(cube, surface, light, to_light, offset);
+  // A depth is the quotient of the near plane's distance and the caster's.
+  place.plane.least_depth = max(place.plane.least_depth, least_gap > 0.0 ? place.receiver_depth * (1.0 + least_gap) : 0.0);
   return place.is_covered ? filtered_visibility(shadow_cubes, place.layer, cube.size_px, filter_of(cube), place.plane)
                           : 1.0;
 }
@@ -203,10 +206,13 @@ ShadowPlace map_place(ShadowMapData map, Surface surface, vec3 to_light, vec3 of
   return place;
 }
 
-/** Visibility from one map. \a coverage: \see map_coverage. */
-float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, vec3 offset, out float coverage)
+/** Visibility from one map. \a coverage: \see map_coverage. \a least_gap: \see shadow_cube_visibility. */
+float one_map_visibility(ShadowMapData map, Surface surface, vec3 to_light, vec3 offset, float least_gap, out float coverage)
 {
   ShadowPlace place = map_place(map, surface, to_light, offset, coverage);
+  if (place.is_covered && least_gap > 0.0) {
+    place.plane.least_depth = max(place.plane.least_depth, place.receiver_depth * (1.0 + least_gap));
+  }
   return place.is_covered ? filtered_visibility(shadow_maps, place.layer, map.size_px, map.filter_kind, place.plane) : 1.0;
 }
 
@@ -254,8 +260,8 @@ vec2 shadow_map_search(int first, Surface surface, LightData light, vec3 to_ligh
              max(vec2(map.texel_size * receiver.w, receiver.w / receiver.z), vec2(0.0));
 }
 
-/** Visibility from all maps of a light. \a first: the finest. \a offset: \see ShadowPlace. */
-float shadow_map_visibility(int first, Surface surface, vec3 to_light, vec3 offset)
+/** Visibility from all maps of a light. \a first: the finest. \a offset: \see ShadowPlace. \a least_gap: \see shadow_cube_visibility. */
+float shadow_map_visibility(int first, Surface surface, vec3 to_light, vec3 offset, float least_gap)
 {
   int count = shadow.maps[first].cascade_count;
   float visibility = 0.0;
@@ -266,7 +272,7 @@ float shadow_map_visibility(int first, Surface surface, vec3 to_light, vec3 offs
     // The test is at the end as in lights_radiance.
     do {
       float coverage;
-      float lit = one_map_visibility(shadow.maps[first + i], surface, to_light, offset, coverage);
+      float lit = one_map_visibility(shadow.maps[first + i], surface, to_light, offset, least_gap, coverage);
       float share = cascade_share(i == count - 1, coverage);
       visibility += open * share * lit;
       open *= 1.0 - share;

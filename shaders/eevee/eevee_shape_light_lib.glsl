@@ -39,7 +39,7 @@ void shade_shapes(MaterialData material, Surface surface)
 float shape_visibility(LightData light, const int lights, LightShape shape, Surface surface, CenterLight center)
 {
   if (light.shadow_kind != SHADOW_CUBE && light.shadow_kind != SHADOW_MAP) {
-    return light_visibility(light, lights, surface, center.to_light, vec3(0.0));
+    return light_visibility(light, lights, surface, center.to_light, vec3(0.0), 0.0);
   }
   vec3 axis_x = shape.axis_x_ws;
   vec3 axis_y = shape.axis_y_ws;
@@ -150,7 +150,7 @@ vec3 shape_radiance(int index, const int lights, MaterialData material, Surface 
 #ifdef USE_SHADOW
   float visibility = shape_visibility(light, lights, shape, surface, center);
 #else
-  float visibility = light_visibility(light, lights, surface, center.to_light, vec3(0.0));
+  float visibility = light_visibility(light, lights, surface, center.to_light, vec3(0.0), 0.0);
 #endif
   if (visibility <= 0.0) {
     return vec3(0.0);
