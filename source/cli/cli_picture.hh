@@ -52,10 +52,10 @@ struct Picture {
 };
 
 /**
- * Reads R, G and B. The picture of an EXR file is that of its display window, black where it has no pixels. The format is that of the first bytes: EXR, PNG, JPEG, WebP or Radiance HDR, or another one that
- * OpenImageIO reads. Integer values are decoded by the sRGB curve. Those of a PNG with alpha are then
- * multiplied by it, so that transparent pixels are black. \throws std::runtime_error naming \a path if it cannot be
- * read, is cut off, or lacks R, G or B.
+ * Reads R, G and B. The picture of an EXR file is that of its display window, black where it has no pixels. The format
+ * is that of the first bytes: EXR, PNG, JPEG, WebP or Radiance HDR, or another one that OpenImageIO reads. Integer
+ * values are decoded by the sRGB curve. Those of a PNG with alpha are then multiplied by it, so that transparent pixels
+ * are black. \throws std::runtime_error naming \a path if it cannot be read, is cut off, or lacks R, G or B.
  */
 [[nodiscard]] Picture read_picture(const std::filesystem::path &path);
 /** The same for a picture whose size is known. \throws std::runtime_error also for another size. */

@@ -589,7 +589,8 @@ TEST(GltfExport, ErrorsNameTheFileAndLeaveTheOldOne)
   EXPECT_HAS(export_error(scene, path), "its name is longer than 1024 bytes");
   scene.edit(handle, [](scene::Node &edited) { edited.name = "node"; });
   EXPECT_HAS(export_error(scene, folder.path() / "scene.obj"), "the name ends neither in .gltf nor in .glb");
-  EXPECT_HAS(export_error(scene, folder.path() / "nowhere" / "scene.glb"), "scene.glb: cannot be written: No such file");
+  EXPECT_HAS(export_error(scene, folder.path() / "nowhere" / "scene.glb"),
+             "scene.glb: cannot be written: No such file");
   std::filesystem::create_directory(folder.path() / "folder.glb");
   EXPECT_HAS(export_error(scene, folder.path() / "folder.glb"), "folder.glb: cannot be written: Is a directory");
   EXPECT_EQ(content_of(path), "old");
