@@ -273,6 +273,10 @@ static void check_limits(std::string_view name, const ShaderInterface &interface
     check(BindingKind::UniformBlock, most.uniform_block_max, "uniform blocks");
     check(BindingKind::Texture, most.sampler_max, "samplers");
   }
+  if (interface.push_constant_size_bytes > limits.push_constant_bytes_max) {
+    throw Error("shader '{}': {} bytes of push constants, but this device supports {}", name,
+                interface.push_constant_size_bytes, limits.push_constant_bytes_max);
+  }
   if (interface.varying_locations > limits.varying_location_max) {
     throw Error("shader '{}': {} locations of values that a stage passes to the next, but this device supports {}",
                 name, interface.varying_locations, limits.varying_location_max);

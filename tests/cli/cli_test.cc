@@ -67,7 +67,7 @@ TEST_F(CliTest, WrongUsageHasStatusTwoAndAReason)
                                       "render x.glb -o x.png --shadow soft",
                                       "render x.glb -o x.png --specular double",
                                       "render x.glb -o x.png --what",
-                                      "render x.glb -o x.png --backend vulkan",
+                                      "render x.glb -o x.png --backend metal",
                                       "render x.glb -o x.png --shadow-size -4",
                                       "render x.glb -o x.png --cascade-lambda nan",
                                       "bench",

@@ -27,6 +27,8 @@ Limits query_limits()
   limits.buffer_texels_max = get(GL_MAX_TEXTURE_BUFFER_SIZE);
   limits.uniform_block_bytes_max = std::size_t(get(GL_MAX_UNIFORM_BLOCK_SIZE));
   limits.storage_block_bytes_max = std::size_t(get(GL_MAX_SHADER_STORAGE_BLOCK_SIZE));
+  // They are a uniform block.
+  limits.push_constant_bytes_max = limits.uniform_block_bytes_max;
   limits.color_attachment_max = std::min(get(GL_MAX_COLOR_ATTACHMENTS), get(GL_MAX_DRAW_BUFFERS));
   // OpenGL 4.6 has it; before, only extensions have.
   if (epoxy_gl_version() >= 46 || epoxy_has_gl_extension("GL_ARB_texture_filter_anisotropic") ||
@@ -56,12 +58,6 @@ Limits query_limits()
 }
 
 }  // namespace
-
-std::uint64_t elapsed_ticks(std::uint64_t begin, std::uint64_t end, int bits)
-{
-  const std::uint64_t mask = bits >= 64 ? ~std::uint64_t(0) : (std::uint64_t(1) << unsigned(bits)) - 1;
-  return (end - begin) & mask;
-}
 
 void GlDevice::calls_begin()
 {
@@ -298,7 +294,7 @@ void GlDevice::check(std::string_view what)
     throw DeviceLost("{}: the OpenGL context is lost; create a new device", what);
   }
   if (is_out_of_memory) {
-    throw Error("{}: the driver is out of memory", what);
+    throw TransientError("{}: the driver is out of memory", what);
   }
   if (!errors.empty()) {
     throw Error("{}: the driver reports: {}", what, fmt::join(errors, "; "));

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "gpu_create_device.hh"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace gnomon::gpu {
+
+namespace {
+
+std::unique_ptr<Device> create_vulkan(const DeviceDesc &desc)
+{
+  if (!desc.compile_spirv) {
+    throw Error("Vulkan: the program has no compiler of shaders for it");
+  }
+  return create_vulkan_device(
+      {.compile_spirv = desc.compile_spirv, .sink = desc.sink, .shader_cache_folder = desc.shader_cache_folder});
+}
+
+std::unique_ptr<Device> create_any(const DeviceDesc &desc)
+{
+  std::string reason;
+  try {
+    return create_gl_device({.sink = desc.sink, .shader_cache_folder = desc.shader_cache_folder});
+  }
+  catch (const Error &error) {
+    reason = error.what();
+  }
+  try {
+    std::unique_ptr<Device> device = create_vulkan(desc);
+    const std::string text =
+        fmt::format("backend: {}, because OpenGL does not start: {}", device->description(), reason);
+    if (desc.sink) {
+      desc.sink(text);
+    }
+    else {
+      fmt::print(stderr, "gnomon: {}\n", text);
+    }
+    return device;
+  }
+  catch (const Error &error) {
+    throw Error("{}; {}", reason, error.what());
+  }
+}
+
+}  // namespace
+
+Backend backend_of(std::string_view name)
+{
+  const auto found = std::ranges::find(backend_names, name);
+  if (found == backend_names.end()) {
+    throw Error("no backend '{}'; there are: {}", name, fmt::join(backend_names, ", "));
+  }
+  return Backend(found - backend_names.begin());
+}
+
+std::unique_ptr<Device> create_device(const DeviceDesc &desc)
+{
+  switch (desc.backend) {
+    case Backend::Auto: return create_any(desc);
+    case Backend::OpenGl: return create_gl_device({.sink = desc.sink, .shader_cache_folder = desc.shader_cache_folder});
+    case Backend::Vulkan: return create_vulkan(desc);
+    case Backend::Null: return create_null_device({}, desc.sink);
+  }
+  return nullptr;
+}
+
+}  // namespace gnomon::gpu
