@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // For fragment shaders: the base colour texture and vertex colours of a full material, and its alpha mask.
 #include "eevee/eevee_full_block_lib.glsl"
+#include "eevee/eevee_mask_lib.glsl"
 #include "eevee/eevee_material_lib.glsl"
 
 layout(location = 3) in vec2 surface_uv;
@@ -28,7 +29,7 @@ bool is_cut_out(float mask_cutoff)
   }
   float alpha = surface_color.a;
   if (has_input(INPUT_BASE_COLOR)) {
-    alpha *= textureLod(base_color_texture, surface_uv, 0.0).a;
+    alpha *= textureLod(base_color_texture, mask_uv(base_color_texture, surface_uv), 0.0).a;
   }
   return alpha < mask_cutoff;
 }

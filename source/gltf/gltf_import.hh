@@ -3,11 +3,34 @@
 
 #include "scene.hh"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+
+namespace gnomon::gltf {
+
+/** What the numbers of lamps of KHR_lights_punctual mean. */
+enum class LampUnits {
+  /** Candela and lux, as the extension says. A file that looks as if it meant Raw has a warning. */
+  Lumen,
+  /** W/sr and W/m², which exporters call "unitless". */
+  Raw,
+  /** Raw if the file looks like it, with a warning, otherwise Lumen. */
+  Auto,
+};
+
+}  // namespace gnomon::gltf
+
+namespace gnomon::scene {
+
+template <>
+inline constexpr std::array<std::string_view, 3> words<gltf::LampUnits>{"lumen", "raw", "auto"};
+
+}  // namespace gnomon::scene
 
 namespace gnomon::gltf {
 
@@ -18,6 +41,11 @@ struct ImportError : std::runtime_error {
 
 /** Thrown if a file has no variant of the name that ImportOptions asks for. The message lists those that it has. */
 struct UnknownVariant : ImportError {
+  using ImportError::ImportError;
+};
+
+/** Thrown if there is not enough memory for the scene. The message names the file. */
+struct ImportOutOfMemory : ImportError {
   using ImportError::ImportError;
 };
 
@@ -39,15 +67,20 @@ using ReportProgress = std::function<bool(float part)>;
 using ReadPicture = std::function<scene::WorldPicture(const std::filesystem::path &path)>;
 
 struct ImportOptions {
-  /** Name of the variant whose materials are imported (KHR_materials_variants); empty: the materials of no variant. */
   std::string variant{};
-  /** Most texels along an edge of an image of a material; larger ones are reduced (scene::reduced). 0: no limit. */
+  /**
+   * Most texels along an edge of an image of a material; larger ones are reduced (scene::reduced). 0: no limit. After
+   * the reduction an edge may have 16384 texels, and all images together 2^29. Before it, an image may have 2^28
+   * texels, and all together 2^32. Images beyond are replaced by stand-ins, with a warning.
+   */
   std::uint32_t texture_size_max = 0;
   /**
    * Folder for scenes of strangers: buffers, images, pictures of worlds and surface functions are read only if they are
    * below it, after links are resolved. The scene's own file may be elsewhere. Empty: files may be anywhere.
    */
   std::filesystem::path only_below{};
+  /** A file looks raw if it has no world and no other lamps, and all its lamps are far too dim to be seen. */
+  LampUnits lamp_units = LampUnits::Lumen;
   /** For worlds whose picture is a file. Without it, they are left out, with a warning. */
   ReadPicture read_picture{};
   /**
@@ -55,7 +88,35 @@ struct ImportOptions {
    * and images, each of which is read without a call. May be empty.
    */
   ReportProgress progress{};
+
+  /** The settings of an import; what a host gives to it, and on its own behalf, has no row. */
+  template <typename Visit>
+  static constexpr void for_each_property(Visit &&visit);
 };
+
+template <typename Visit>
+constexpr void ImportOptions::for_each_property(Visit &&visit)
+{
+  using scene::property;
+  visit(property(&ImportOptions::variant, {.name = "variant",
+                                           .option = "variant",
+                                           .sentence = "Name of the variant of materials (KHR_materials_variants). "
+                                                       "Empty: the materials of no variant."}));
+  visit(property(&ImportOptions::texture_size_max, {.name = "texture_size_max",
+                                                    .option = "texture-size-max",
+                                                    .unit = "px",
+                                                    .min = 1,
+                                                    .max = 1 << 20,
+                                                    .zero = "no limit",
+                                                    .sentence = "Most texels along an edge of an image of a material; "
+                                                                "larger ones are reduced. 0: no limit."}));
+  visit(
+      property(&ImportOptions::lamp_units,
+               {.name = "lamp_units",
+                .option = "lamp-units",
+                .sentence = "Numbers of lamps: lumen, candela and lux, as glTF says; raw, W/sr and W/m², of files that "
+                            "were exported unitless; auto, raw where all lamps are far too dim to be seen."}));
+}
 
 /**
  * Reads a glTF 2.0 file: `.gltf` with external files or data URIs, or `.glb`.
@@ -65,7 +126,7 @@ struct ImportOptions {
  * Scene::warnings. A camera is added if the file has none, and a lamp if it has neither a lamp nor a world.
  *
  * \throws ImportError if the file is missing, unreadable or malformed, or if nothing in it can be drawn.
- * \throws UnknownVariant, ImportCancelled
+ * \throws UnknownVariant, ImportCancelled, ImportOutOfMemory
  */
 [[nodiscard]] scene::Scene import_gltf(const std::filesystem::path &path, const ImportOptions &options = {});
 

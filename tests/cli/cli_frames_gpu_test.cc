@@ -69,6 +69,16 @@ TEST_F(FramesTest, EachFrameIsAFileOfItsTime)
   EXPECT_EQ(last->spec().get_string_attribute("gnomon:seconds"), "1");
 }
 
+TEST_F(FramesTest, APlaceForANumberNeedsFrames)
+{
+  for (const char *name : {"f_####.png", "f#.exr"}) {
+    const Finished finished = render(std::string("-o ") + name);
+    EXPECT_EQ(finished.status, 2) << finished.err;
+    EXPECT_NE(finished.err.find("needs --frames"), std::string::npos) << finished.err;
+  }
+  EXPECT_EQ(file_count(), 1U) << "the scene";
+}
+
 TEST_F(FramesTest, ResumeRendersWhatIsMissingOrCutShort)
 {
   const std::string frames = "-o f#.exr --frames 1-3 --fps 10 --json run.json";
@@ -89,8 +99,10 @@ TEST_F(FramesTest, ResumeRendersWhatIsMissingOrCutShort)
 TEST_F(FramesTest, ResumeRemovesTheFilesOfKilledProcesses)
 {
   // No process has this number: Linux has at most 4194304.
-  const std::string killed = ".exr.4194999-0";
-  const std::string running = ".exr." + std::to_string(getpid()) + "-0";
+  std::array<char, 65> host{};
+  ASSERT_EQ(gethostname(host.data(), host.size() - 1), 0);
+  const std::string killed = std::string(".exr.") + host.data() + ".4194999-0";
+  const std::string running = std::string(".exr.") + host.data() + "." + std::to_string(getpid()) + "-0";
   for (const std::string &name : {".f1" + killed, ".f2" + killed, ".f2" + running, ".g2" + killed, ".f4" + killed}) {
     write(name, "part");
   }

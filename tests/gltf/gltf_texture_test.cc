@@ -110,6 +110,29 @@ TEST(GltfUv, TwoSetsAreKeptAndAThirdIsNamed)
   EXPECT_WARNING(import(builder), "its occlusionTexture is drawn as no occlusion: texCoord: 5 is a third set");
 }
 
+TEST(GltfUv, SetsAreKeptByImportanceAndNotByNumber)
+{
+  GltfBuilder builder = textured_triangle();
+  json &attributes = builder.document["meshes"][0]["primitives"][0]["attributes"];
+  for (const char *name : {"TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_7"}) {
+    attributes[name] = builder.accessor(std::vector<float>{5, 5, 6, 6, 7, 7}, Float32, "VEC2");
+  }
+  json &material = builder.document["materials"][0];
+  slot(builder)["texCoord"] = 7;
+  material["normalTexture"] = {{"index", 0}, {"texCoord", 0}};
+  material["occlusionTexture"] = {{"index", 0}, {"texCoord", 1}};
+  const Scene lit = import(builder);
+  EXPECT_NO_WARNING(lit, "baseColorTexture");
+  EXPECT_NO_WARNING(lit, "normalTexture");
+  EXPECT_WARNING(lit, "its occlusionTexture is drawn as no occlusion: texCoord: 1 is a third set");
+  // A texture without an effect gives way.
+  material["extensions"]["KHR_materials_unlit"] = json::object();
+  EXPECT_NO_WARNING(import(builder), "baseColorTexture");
+  material["extensions"].erase("KHR_materials_unlit");
+  material["normalTexture"]["scale"] = 0;
+  EXPECT_WARNING(import(builder), "its normalTexture is drawn as a flat surface: texCoord: 0 is a third set");
+}
+
 TEST(GltfTangent, AreReadOrComputed)
 {
   GltfBuilder builder = textured_triangle();

@@ -52,13 +52,13 @@ constexpr std::array<ShaderDeclaration, 27> declarations = {{
     {ShaderId::Depth, "eevee_depth", "eevee/eevee_depth_vert.glsl", "", "eevee/eevee_depth_frag.glsl", alpha_features,
      Feature::None, "depth of what is seen, so that each pixel is lit once"},
     {ShaderId::Shadow, "eevee_shadow", "eevee/eevee_shadow_vert.glsl", "", "eevee/eevee_depth_frag.glsl",
-     caster_features, Feature::None, "depth of what a lamp sees, a layer a pass"},
+     caster_features, Feature::None, "depth of what a lamp sees, a layer a pass", "WITHOUT_VIEW"},
     {ShaderId::ShadowLayered, "eevee_shadow_layered", "eevee/eevee_shadow_layered_vert.glsl", "",
-     "eevee/eevee_depth_frag.glsl", caster_features, Feature::None,
-     "depth of what a lamp sees, all layers in one pass"},
+     "eevee/eevee_depth_frag.glsl", caster_features, Feature::None, "depth of what a lamp sees, all layers in one pass",
+     "WITHOUT_VIEW"},
     {ShaderId::ShadowGeometry, "eevee_shadow_geometry", "eevee/eevee_shadow_geometry_vert.glsl",
      "eevee/eevee_shadow_geometry_geom.glsl", "eevee/eevee_depth_frag.glsl", caster_features, Feature::None,
-     "the same where vertex shaders cannot choose a layer"},
+     "the same where vertex shaders cannot choose a layer", "WITHOUT_VIEW"},
     {ShaderId::Lit, "eevee_lit", "eevee/eevee_lit_vert.glsl", "", "eevee/eevee_lit_frag.glsl",
      light_features | Feature::BaseColorTexture | Feature::FullMaterial | Feature::Layers | Feature::Transmission,
      Feature::None, "light that surfaces send to the viewer"},
@@ -260,10 +260,6 @@ gpu::ShaderDesc with_surface_function(gpu::ShaderDesc desc, const ShaderDeclarat
   if (declaration.id != ShaderId::DepthFunction) {
     desc.defines.emplace_back("USE_SURFACE_FUNCTION");
   }
-  if (declaration.id == ShaderId::Shadow || declaration.id == ShaderId::ShadowLayered ||
-      declaration.id == ShaderId::ShadowGeometry) {
-    desc.defines.emplace_back("WITHOUT_VIEW");
-  }
   return desc;
 }
 
@@ -282,7 +278,7 @@ std::optional<SurfaceFunctionFault> surface_function_fault(std::string_view text
   return std::nullopt;
 }
 
-gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature features, const PcfKernel &pcf)
+gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature features, const ProgramConstants &constants)
 {
   gpu::ShaderDesc desc;
   desc.name = declaration.name;
@@ -298,8 +294,11 @@ gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature featur
     }
   }
   if (has(features & declaration.features, Feature::ShadowPcf)) {
-    desc.defines.push_back(fmt::format("SHADOW_PCF_WIDTH {}", pcf.width));
-    desc.defines.push_back(fmt::format("SHADOW_PCF_TAPS {}", pcf.taps));
+    desc.defines.push_back(fmt::format("SHADOW_PCF_WIDTH {}", constants.pcf.width));
+    desc.defines.push_back(fmt::format("SHADOW_PCF_TAPS {}", constants.pcf.taps));
+  }
+  if (has(features & declaration.features, Feature::LampShape)) {
+    desc.defines.push_back(fmt::format("HAS_LAMP_POINTS {}", int(constants.has_lamp_points)));
   }
   return desc;
 }
