@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gnomon::eevee {
@@ -84,6 +86,20 @@ struct PcfKernel {
   int taps = 16;
 
   bool operator==(const PcfKernel &) const = default;
+};
+
+/** The kernel that \a text names: 1, 3x3, 5x5, or disk:N with N lookups, 1 to 64. Empty for any other text. */
+[[nodiscard]] std::optional<PcfKernel> pcf_kernel_of(std::string_view text);
+/** The text of \a kernel for pcf_kernel_of. */
+[[nodiscard]] std::string text_of(const PcfKernel &kernel);
+
+/** Constants of programs that follow from the settings. */
+struct ProgramConstants {
+  PcfKernel pcf{};
+  /** Lamps with an extent are shaded as points (LampShading::Point), and not as a whole. */
+  bool has_lamp_points = false;
+
+  bool operator==(const ProgramConstants &) const = default;
 };
 
 /** A part of a frame, whether the engine made it, and the reason. */

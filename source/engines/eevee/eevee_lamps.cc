@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "eevee_lamps.hh"
 
+#include "eevee_lamp_points.hh"
 #include "shadows/shadow_cube.hh"
 #include "shadows/shadow_plan.hh"
 
@@ -199,6 +200,22 @@ Lamps make_lamps(std::span<const scene::PlacedLamp> placed, LampShading shading,
                                        dropped.size() + light_count_max, light_count_max, listed(dropped)));
   }
   return lamps;
+}
+
+void set_highlights(Lamps &lamps, std::span<const scene::PlacedLamp> placed, std::size_t end, int sample_count)
+{
+  for (std::size_t i = 0; i < lamps.shapes.size(); i++) {
+    const std::size_t index = lamps.lamp_index[i];
+    if (index >= end || !has_extent(placed[index])) {
+      continue;
+    }
+    const scene::PlacedLamp &lamp = placed[index];
+    shared::LightShape &shape = lamps.shapes[i];
+    shape.highlight_points_share = HIGHLIGHT_LOBE_POINTS / float(sample_count);
+    shape.center_ws = glm::vec3(lamp.world_from_lamp[lamp.kind == scene::LampKind::Sun ? 2 : 3]);
+    shape.highlight_extent = light_shape(lamp, LampShading::Whole).extent;
+    lamps.specular_features = Feature::LampShape;
+  }
 }
 
 void set_kind(Lamps &lamps, std::size_t first, std::size_t end, std::int32_t kind)

@@ -282,7 +282,7 @@ std::optional<SurfaceFunctionFault> surface_function_fault(std::string_view text
   return std::nullopt;
 }
 
-gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature features, const PcfKernel &pcf)
+gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature features, const ProgramConstants &constants)
 {
   gpu::ShaderDesc desc;
   desc.name = declaration.name;
@@ -298,8 +298,11 @@ gpu::ShaderDesc shader_desc(const ShaderDeclaration &declaration, Feature featur
     }
   }
   if (has(features & declaration.features, Feature::ShadowPcf)) {
-    desc.defines.push_back(fmt::format("SHADOW_PCF_WIDTH {}", pcf.width));
-    desc.defines.push_back(fmt::format("SHADOW_PCF_TAPS {}", pcf.taps));
+    desc.defines.push_back(fmt::format("SHADOW_PCF_WIDTH {}", constants.pcf.width));
+    desc.defines.push_back(fmt::format("SHADOW_PCF_TAPS {}", constants.pcf.taps));
+  }
+  if (has(features & declaration.features, Feature::LampShape)) {
+    desc.defines.push_back(fmt::format("HAS_LAMP_POINTS {}", int(constants.has_lamp_points)));
   }
   return desc;
 }

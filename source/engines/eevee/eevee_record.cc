@@ -175,8 +175,9 @@ void Engine::make_blocks(draw::Viewport &viewport)
       {glm::vec3(scene_.origin_ws()), settings_.light.has(LightPart::Kind::Emission) ? 1.0F : 0.0F});
   update_world_picture(shared.world, device, scene_, settings_);
   if (has(stl.features, Feature::Light)) {
-    stl.features = with_variant(shared.lamps.features | shared.shadows.features() |
-                                (stl.material_features & Feature::Specular) | asked_features());
+    const Feature specular = stl.material_features & Feature::Specular;
+    stl.features = with_variant(shared.lamps.features | shared.shadows.features() | specular | asked_features() |
+                                (has(specular, Feature::Specular) ? shared.lamps.specular_features : Feature::None));
   }
   // What the programs of some materials read, beyond those of the frame. It is the same for all viewports, as they
   // share the blocks.

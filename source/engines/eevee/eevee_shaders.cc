@@ -77,12 +77,12 @@ std::string failure_of(std::string_view message, const std::string &file)
 
 ShaderCache::ShaderCache() : files_(shaders::file) {}
 
-void ShaderCache::set_pcf(const PcfKernel &pcf)
+void ShaderCache::set_constants(const ProgramConstants &constants)
 {
-  if (pcf_ != pcf) {
-    std::erase_if(shaders_, [](const auto &entry) { return has(std::get<Feature>(entry.first), Feature::ShadowPcf); });
-    pcf_ = pcf;
-  }
+  const Feature of_pcf = constants_.pcf == constants.pcf ? Feature::None : Feature::ShadowPcf;
+  const Feature of_lamps = constants_.has_lamp_points == constants.has_lamp_points ? Feature::None : Feature::LampShape;
+  std::erase_if(shaders_, [&](const auto &entry) { return has(std::get<Feature>(entry.first), of_pcf | of_lamps); });
+  constants_ = constants;
 }
 
 const gpu::Shader &ShaderCache::get(gpu::Device &device, ShaderId id, Feature features, const FunctionText &function)
@@ -105,7 +105,7 @@ std::shared_ptr<gpu::SharedShader> ShaderCache::make(gpu::Device &device, const 
 {
   const auto &[id, features, function] = key;
   const ShaderDeclaration &declaration = shader_declarations()[std::size_t(id)];
-  gpu::ShaderDesc desc = shader_desc(declaration, features, pcf_);
+  gpu::ShaderDesc desc = shader_desc(declaration, features, constants_);
   const gpu::ShaderReflection reflection =
       reflection_ ? reflection_ : generated_reflection(id, features, function != 0);
   std::string text;

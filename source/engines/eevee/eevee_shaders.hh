@@ -31,8 +31,8 @@ class ShaderCache {
   /** Uses the shader files and interfaces that the build embedded in the library. */
   ShaderCache();
 
-  /** Set the kernel of percentage-closer filtering. Lets programs with another kernel go. */
-  void set_pcf(const PcfKernel &pcf);
+  /** Set the constants of programs. Lets programs with others go. */
+  void set_constants(const ProgramConstants &constants);
   /**
    * The program \a id with \a features. Features without a variant of the program are ignored. If the program with
    * \a function does not compile, it is made with a stand-in (eevee_surface_stand_in.glsl). \pre \a function is in no
@@ -83,7 +83,7 @@ class ShaderCache {
   gpu::ShaderFiles files_;
   /** Empty before reload(); until then the interfaces come from the generated tables. */
   gpu::ShaderReflection reflection_;
-  PcfKernel pcf_;
+  ProgramConstants constants_;
   std::uint64_t revision_ = 0;
   std::map<Key, std::shared_ptr<gpu::SharedShader>> shaders_;
   std::map<std::uint64_t, Function> functions_;

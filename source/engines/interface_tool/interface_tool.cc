@@ -23,7 +23,7 @@ Entries eevee_entries()
   for (const eevee::ShaderDeclaration &declaration : eevee::shader_declarations()) {
     for (const eevee::Feature features : eevee::shader_variants(declaration)) {
       for (const eevee::PcfKernel &kernel : kernels) {
-        gpu::ShaderDesc desc = eevee::shader_desc(declaration, features, kernel);
+        gpu::ShaderDesc desc = eevee::shader_desc(declaration, features, {.pcf = kernel});
         if (entries.empty() || entries.back().desc.name != desc.name || entries.back().desc.defines != desc.defines) {
           entries.push_back({std::uint32_t(features), std::move(desc)});
         }

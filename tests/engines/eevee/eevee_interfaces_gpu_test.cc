@@ -32,7 +32,7 @@ TEST_P(InterfaceTablesSlice, EqualsAFreshReflectionOfEachVariantWithAnyKernel)
         kernels.push_back({.width = 0, .taps = 1});
       }
       for (const PcfKernel &kernel : kernels) {
-        const gpu::ShaderDesc desc = shader_desc(declaration, features, kernel);
+        const gpu::ShaderDesc desc = shader_desc(declaration, features, {.pcf = kernel});
         EXPECT_EQ(generated, shader_check::reflect(desc.name, gpu::preprocess(desc, shaders::file)))
             << declaration.name << " " << std::uint32_t(features) << ", kernel " << kernel.width;
       }
