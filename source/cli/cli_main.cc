@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "cli.hh"
 
+#include "gltf_import.hh"
+#include "gpu_error.hh"
 #include "output_roles.hh"
 
 #include <fmt/format.h>
 
 #include <fcntl.h>
 #include <unistd.h>
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <iostream>
+#include <new>
+#include <string>
+#include <vector>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -63,6 +69,13 @@ static Status finish_output(Status status)
   return status == Status::Done ? Status::Failed : status;
 }
 
+/** \see Status::Transient */
+static bool is_transient(const std::exception &error)
+{
+  return dynamic_cast<const std::bad_alloc *>(&error) || dynamic_cast<const gpu::TransientError *>(&error) ||
+         dynamic_cast<const output::TransientError *>(&error) || dynamic_cast<const gltf::ImportOutOfMemory *>(&error);
+}
+
 static Status run(int argc, char **argv)
 {
   CLI::App app("gnomon " GNOMON_VERSION ": lights a glTF scene with an EEVEE-style draw-manager engine", "gnomon");
@@ -74,13 +87,22 @@ static Status run(int argc, char **argv)
   add_info(app, status);
   add_compare(app, status);
   add_merge(app, status);
+  add_plan(app, status);
   add_report(app, status);
   add_stability(app, status);
   add_shaders(app, status);
   add_bench(app, status);
   add_view(app);
   try {
-    app.parse(argc, argv);
+    // Compilers have these names of more than one letter after one dash, and CLI11 has not.
+    std::vector<std::string> arguments(argv + 1, argv + argc);
+    for (std::string &argument : arguments) {
+      if (argument == "-MD" || argument == "-MF" || argument == "-MT") {
+        argument.insert(0, 1, '-');
+      }
+    }
+    std::ranges::reverse(arguments);
+    app.parse(std::move(arguments));
     return status;
   }
   catch (const CLI::ParseError &error) {
@@ -100,7 +122,7 @@ static Status run(int argc, char **argv)
     if (std::ferror(stdout) == 0) {
       print_message("gnomon: {}\n", error.what());
     }
-    return Status::Failed;
+    return is_transient(error) ? Status::Transient : Status::Failed;
   }
 }
 

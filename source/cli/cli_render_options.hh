@@ -4,27 +4,29 @@
 #include "cli_choice.hh"
 #include "cli_debug.hh"
 #include "cli_frames.hh"
+#include "cli_setting_options.hh"
 #include "cli_world.hh"
 
-#include "draw_target.hh"
-#include "eevee_engine.hh"
+#include "render_display.hh"
 
 #include <CLI/App.hpp>
 
+#include <array>
 #include <limits>
+#include <string>
+#include <vector>
 
 namespace gnomon::cli {
 
 /** Options of `gnomon render`. Texts are checked by CLI11 or by check(). */
 struct RenderOptions {
+  /** Those of the command line; the others are of one of them. */
+  std::vector<std::string> scenes;
   std::string scene;
   std::string output;
   std::string size = "960x540";
   std::string camera;
-  /** Variant of the materials; empty: none. */
-  std::string variant;
-  /** 0: no limit. */
-  std::uint32_t texture_size_max = 0;
+  Changes<gltf::ImportOptions> import_changes;
   /** Empty: the scene's files may be anywhere. */
   std::filesystem::path only_below;
   int samples = 16;
@@ -36,39 +38,35 @@ struct RenderOptions {
   std::string tile;
   FrameOptions frames;
   int repeat = 1;
-  std::string shadow = "hard";
-  int shadow_size = 0;
-  std::string pcf = "3x3";
-  std::string esm = "4";
-  int cascades = 0;
-  float cascade_lambda = eevee::CascadeSettings().lambda;
-  std::string cascade_range = "auto";
-  std::string cube_pass = "best";
-  std::string casters = "all";
-  int shadow_memory = 1024;
-  float light_threshold = 0.0F;
-  float noise_threshold = 0.0F;
+  /** What options set in the settings that offline_settings chooses for `samples`. */
+  Changes<eevee::Settings> changes;
   bool redraws_shadows = false;
-  int emissive_points = eevee::Settings().emissive_point_count;
   std::string debug;
   DebugView debug_view;
   std::string aov;
-  std::string view = "pbr-neutral";
-  float exposure = 0.0F;
-  /** "single" or "multi". \see eevee::Settings::has_multiscatter */
-  std::string specular = "single";
+  Changes<render_scene::Display> display_changes;
   std::string backend = "gl";
   bool is_explained = false;
   std::string json;
   std::string trace;
   ChoiceOptions choice;
   bool is_strict = false;
-  std::uint32_t seed = 0;
+  /** "PLAN.json:K": the options are those of a part of a plan; empty: none. */
+  std::string part;
+  /** Time after which the work ends, s; infinity: none. */
+  double stop_seconds = std::numeric_limits<double>::infinity();
+  /** Whether an unfinished picture is written for `gnomon merge`. */
+  bool has_checkpoint = false;
+  bool has_progress_lines = false;
   WorldOptions world;
   /** "none", "world" or a radiance R,G,B. Empty: none, or light grey in a PNG that the default studio lights. */
   std::string background;
   /** The options that parts of one picture must have in common, as text. */
   std::string settings_text;
+  /** WorkPlan::id of --part; empty: none. */
+  std::string plan_id;
+  /** PlannedScene::fingerprint of --part. */
+  std::string planned_scene;
 
   /** \throws UsageError where an option's value is invalid, or does not go with another option */
   void check() const;
@@ -98,13 +96,19 @@ struct RenderOptions {
   [[nodiscard]] gpu::Rectangle region() const;
   /** The first and the last sample to draw. \throws UsageError where --sample-range is invalid */
   [[nodiscard]] glm::ivec2 sample_bounds() const;
-  [[nodiscard]] draw::ViewTransform view_transform() const;
+  [[nodiscard]] render_scene::Display display() const;
+  [[nodiscard]] gltf::ImportOptions import_options() const;
   /** Without the background, which depends on the scene. */
   [[nodiscard]] eevee::Settings engine_settings() const;
 };
 
-/** Adds `--specular`, for all commands that render. */
-void add_specular_option(CLI::App &command, std::string &specular);
+/** Settings of the engine that `gnomon render` has without options. */
+[[nodiscard]] std::vector<Defaults<eevee::Settings>> setting_defaults();
+
+/** Options of `gnomon render` that are no options of a plan: they are of one process, or say which part it renders. */
+inline constexpr std::array process_options = {
+    "--output", "--tile",    "--sample-range", "--resume",     "--repeat",     "--redraw-shadows", "--json",
+    "--trace",  "--explain", "--part",         "--stop-after", "--checkpoint", "--progress",       "--backend"};
 
 /** Adds the options to \a command, which fills \a options. Both must outlive the parsing. */
 void add_render_options(CLI::App &command, RenderOptions &options);

@@ -21,6 +21,11 @@ struct UnknownVariant : ImportError {
   using ImportError::ImportError;
 };
 
+/** Thrown if there is not enough memory for the scene. The message names the file. */
+struct ImportOutOfMemory : ImportError {
+  using ImportError::ImportError;
+};
+
 /** Thrown if ImportOptions::progress has ended an import. The message names the file. */
 struct ImportCancelled : ImportError {
   using ImportError::ImportError;
@@ -39,9 +44,8 @@ using ReportProgress = std::function<bool(float part)>;
 using ReadPicture = std::function<scene::WorldPicture(const std::filesystem::path &path)>;
 
 struct ImportOptions {
-  /** Name of the variant whose materials are imported (KHR_materials_variants); empty: the materials of no variant. */
   std::string variant{};
-  /** Most texels along an edge of an image of a material; larger ones are reduced (scene::reduced). 0: no limit. */
+  /** \see scene::reduced */
   std::uint32_t texture_size_max = 0;
   /**
    * Folder for scenes of strangers: buffers, images, pictures of worlds and surface functions are read only if they are
@@ -55,7 +59,29 @@ struct ImportOptions {
    * and images, each of which is read without a call. May be empty.
    */
   ReportProgress progress{};
+
+  /** The settings of an import; what a host gives to it, and on its own behalf, has no row. */
+  template <typename Visit>
+  static constexpr void for_each_property(Visit &&visit);
 };
+
+template <typename Visit>
+constexpr void ImportOptions::for_each_property(Visit &&visit)
+{
+  using scene::property;
+  visit(property(&ImportOptions::variant, {.name = "variant",
+                                           .option = "variant",
+                                           .sentence = "Name of the variant of materials (KHR_materials_variants). "
+                                                       "Empty: the materials of no variant."}));
+  visit(property(&ImportOptions::texture_size_max, {.name = "texture_size_max",
+                                                    .option = "texture-size-max",
+                                                    .unit = "px",
+                                                    .min = 1,
+                                                    .max = 1 << 20,
+                                                    .zero = "no limit",
+                                                    .sentence = "Most texels along an edge of an image of a material; "
+                                                                "larger ones are reduced. 0: no limit."}));
+}
 
 /**
  * Reads a glTF 2.0 file: `.gltf` with external files or data URIs, or `.glb`.
@@ -65,7 +91,7 @@ struct ImportOptions {
  * Scene::warnings. A camera is added if the file has none, and a lamp if it has neither a lamp nor a world.
  *
  * \throws ImportError if the file is missing, unreadable or malformed, or if nothing in it can be drawn.
- * \throws UnknownVariant, ImportCancelled
+ * \throws UnknownVariant, ImportCancelled, ImportOutOfMemory
  */
 [[nodiscard]] scene::Scene import_gltf(const std::filesystem::path &path, const ImportOptions &options = {});
 
