@@ -275,61 +275,34 @@ void add_bench(CLI::App &app, Status &status)
   auto o = std::make_shared<BenchOptions>();
   CLI::App *shadows = command->add_subcommand("shadows", "The methods of drawing a lamp's layers, side by side");
   add_backend(*shadows, *o, "gl: on the null backend and on the driver; null: without a driver");
-  shadows->callback([o] {
-    check_files(*o);
-    bench_shadows(*o);
-  });
+  shadows->callback([o] { bench_shadows(*o); });
   CLI::App *record = command->add_subcommand("record", "What a draw with its own matrix costs, without a driver");
-  record->callback([o] {
-    check_files(*o);
-    bench_record(*o);
-  });
+  record->callback([o] { bench_record(*o); });
   CLI::App *cull = command->add_subcommand("cull", "What the test of boxes against a frustum costs");
-  cull->callback([o] {
-    check_files(*o);
-    bench_cull(*o);
-  });
+  cull->callback([o] { bench_cull(*o); });
   CLI::App *imports = command->add_subcommand("import", "What the import of many nodes costs");
-  imports->callback([o] {
-    check_files(*o);
-    bench_import(*o);
-  });
+  imports->callback([o] { bench_import(*o); });
   CLI::App *sync = command->add_subcommand("sync", "What edits of lamps among many triangles cost, without a driver");
-  sync->callback([o] {
-    check_files(*o);
-    bench_sync(*o);
-  });
+  sync->callback([o] { bench_sync(*o); });
   CLI::App *left_out =
       command->add_subcommand("left-out", "What scenes that lack one thing each cost, beside a full one");
   add_backend(*left_out, *o, "gl, or null: without a driver");
-  left_out->callback([o] {
-    check_files(*o);
-    bench_left_out(*o);
-  });
+  left_out->callback([o] { bench_left_out(*o); });
   CLI::App *lamps = command->add_subcommand("lamps", "What few and many lamps cost in a frame");
   add_backend(*lamps, *o, "gl, or null: without a driver");
-  lamps->callback([o] {
-    check_files(*o);
-    bench_lamps(*o);
-  });
+  lamps->callback([o] { bench_lamps(*o); });
   CLI::App *growth =
       command->add_subcommand("growth", "How times grow with objects, casters, imported nodes, pixels and samples");
   add_backend(*growth, *o, "gl, or null: without pixels and samples");
   for (CLI::App *bench : {cull, imports, growth}) {
     bench->add_option("--count-max", o->count_max, "Leave out larger counts")->check(CLI::Range(1000, 1 << 30));
   }
-  growth->callback([o] {
-    check_files(*o);
-    bench_growth(*o);
-  });
+  growth->callback([o] { bench_growth(*o); });
   CLI::App *start = command->add_subcommand("start", "What starting the program costs, up to a first picture");
   start->add_option("scene", o->scene, "glTF 2.0 file (default: a scene made in place)");
   add_backend(*start, *o, "gl, or null: without a driver and a picture");
   add_world_options(*start, o->world);
-  start->callback([o] {
-    check_files(*o);
-    bench_start(*o);
-  });
+  start->callback([o] { bench_start(*o); });
   for (CLI::App *bench : {shadows, record, cull, imports, sync, left_out, lamps, growth, start}) {
     bench->add_option("--rounds", o->rounds, "Measured rounds, after one that warms up")
         ->capture_default_str()
@@ -347,36 +320,27 @@ void add_bench(CLI::App &app, Status &status)
   add_backend(*frames, *o, "gl, or null: without a driver");
   frames->add_option("--json", o->json, "Write the figures, in seconds");
   add_world_options(*frames, o->world);
-  frames->callback([o] {
-    check_files(*o);
-    bench_frames(*o);
-  });
+  frames->callback([o] { bench_frames(*o); });
   CLI::App *memory = command->add_subcommand("memory", "Device memory of a picture, beside that without shadows");
   memory->add_option("scenes", o->scenes, "glTF 2.0 files")->required();
   memory->add_option("--size", o->size, "WIDTHxHEIGHT, pixels")->capture_default_str();
   add_backend(*memory, *o, "gl, or null: without a driver, and without fits to the picture's depths");
   memory->add_option("--json", o->json, "Write the figures, in bytes");
   add_world_options(*memory, o->world);
-  memory->callback([o] {
-    check_files(*o);
-    bench_memory(*o);
-  });
+  memory->callback([o] { bench_memory(*o); });
   CLI::App *light = command->add_subcommand(
       "light", "Errors of the light of lamps with a size in one frame, against numerical integration");
   light->add_option("--points", o->points, "Points in each of the sets of an integral")
       ->capture_default_str()
       ->check(CLI::Range(1, 1 << 20));
   light->add_option("--json", o->json, "Write the errors");
-  light->callback([o, &status] {
-    check_files(*o);
-    status = bench_light(*o);
-  });
+  light->callback([o, &status] { status = bench_light(*o); });
   CLI::App *edits = command->add_subcommand("edits", "The work that each kind of edit of a large scene causes");
   edits->add_option("--json", o->json, "Write the figures");
-  edits->callback([o] {
-    check_files(*o);
-    bench_edits(*o);
-  });
+  edits->callback([o] { bench_edits(*o); });
+  for (CLI::App *bench : command->get_subcommands({})) {
+    bench->parse_complete_callback([o] { check_files(*o); });
+  }
 }
 
 }  // namespace gnomon::cli

@@ -29,8 +29,8 @@ namespace {
 }
 
 /**
- * As long as it exists, writing on this thread to a pipe without a reader, or beyond the limit of the size of files,
- * fails with a reason instead of ending the process by SIGPIPE or SIGXFSZ.
+ * Blocks SIGPIPE and SIGXFSZ on this thread during its lifetime. Writing to a pipe without a reader, or beyond the
+ * limit of the size of files, then fails with a reason and does not end the process.
  */
 class BlockedSignals {
  public:
@@ -129,7 +129,7 @@ int descriptor_of(const fs::path &path)
 /** Follows the links at the end of \a path. \return an error number of the system, or 0 */
 int find_place(const fs::path &path, Place &place)
 {
-  // As many as the system follows.
+  // Linux follows at most this many links.
   constexpr int link_count_max = 40;
   place.path = path;
   for (int links = 0;; links++) {
@@ -370,7 +370,7 @@ class Memory {
 void write_through(const Place &place, const fs::path &path, std::string_view content)
 {
   if (place.descriptor == STDOUT_FILENO) {
-    // What was printed comes before.
+    // Buffered text was printed earlier, so it is written first.
     std::fflush(stdout);
   }
   const Descriptor target(place.descriptor >= 0 ? ::fcntl(place.descriptor, F_DUPFD_CLOEXEC, 0)

@@ -85,11 +85,11 @@ void check_writable(const std::filesystem::path &path);
  */
 void remove_unfinished(const std::filesystem::path &folder, const std::set<std::string> &names);
 
-/** What a path leads to, equal for all of its spellings, links and hard links. */
+/** Identity of the file that a path leads to. All spellings, links and hard links of a file have the same identity. */
 struct FileId {
   std::uint64_t device = 0;
   std::uint64_t inode = 0;
-  /** Of a file that does not exist, whose folder the numbers are. */
+  /** Name of a file that does not exist; the numbers are then those of its folder. Empty for an existing file. */
   std::string name;
 
   std::strong_ordering operator<=>(const FileId &) const = default;

@@ -179,7 +179,7 @@ template <typename T, typename Access>
   return limited_field<T>(std::move(name), access, {.name = "", .min = low, .max = high}, std::move(doc));
 }
 
-/** What a property means, its unit and its limits. */
+/** Documentation of a property: its sentence, its unit and its limits. */
 template <typename Value>
 [[nodiscard]] std::string doc_of(const scene::Description &description, std::string_view kinds)
 {

@@ -381,8 +381,7 @@ void define_scene(py::module_ &module)
       py::arg("only_below") = py::none(),
       "Read a glTF 2.0 file. `variant`: name of a variant of its materials. `progress`: called on this thread with "
       "the part that is done, 0 to 1; what it raises ends the import. `only_below`: a folder; files that the scene "
-      "names elsewhere are refused. Raises "
-      "FileError.");
+      "names elsewhere are refused. Raises FileError.");
 }
 
 }  // namespace gnomon::python

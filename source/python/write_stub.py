@@ -6,7 +6,7 @@ Lines "# properties of CLASS [without NAME]" and "# values of ENUM" of the templ
 import re
 import sys
 
-# What is accepted for a type that is read; other types are accepted as they are read.
+# Types of values that may be assigned, by the type that is read. All other types are the same in both directions.
 ACCEPTED = {"Vector": "Sequence[float]", "list[Mesh]": "Sequence[Mesh]", "NDArray[np.float64]": "ArrayLike"}
 
 

@@ -234,7 +234,7 @@ class Engine final : public draw::Engine {
   void make_film(draw::Viewport &viewport);
   /** Start of a draw. \throws gpu::Error if the viewport was not synced, or its last sync failed. */
   void begin_draw(draw::Viewport &viewport);
-  /** Of the current state, for StorageList::synced_picture. */
+  /** The key of a picture of the current state, for StorageList::synced_picture. */
   [[nodiscard]] PictureKey picture_key() const;
   /** If submitted work was lost, invalidate all results that it may have contained. */
   void take_losses(draw::Viewport &viewport);
