@@ -33,12 +33,13 @@ set(source/cli source/view source/verify source/measure source/engines/eevee sou
   source/gltf source/image source/output source/scene source/trace shaders)
 set(source/view source/measure source/reference source/engines/eevee source/engines/unlit source/engines/overlay source/render_scene source/draw source/shader_check source/gpu
   source/gltf source/output source/scene shaders)
+set(source/description_tool source/view source/engines/eevee source/render_scene source/gltf source/scene)
 set(source/python source/measure source/reference source/embed source/engines/eevee source/engines/unlit source/engines/overlay source/render_scene source/draw
   source/gpu source/gltf source/image source/scene shaders)
 set(shaders "")
 # A folder within another layer's folder comes after it.
 set(LAYERS source/trace source/memory source/output source/gpu source/shader_check source/draw source/scene source/image source/gltf source/render_scene source/engines/eevee source/engines/eevee/multiscatter_tool
-  source/engines/unlit source/engines/overlay source/engines/interface_tool source/embed source/reference source/measure source/verify source/view source/cli source/python shaders)
+  source/engines/unlit source/engines/overlay source/engines/interface_tool source/embed source/reference source/measure source/verify source/view source/cli source/description_tool source/python shaders)
 
 set(VIOLATIONS 0)
 # violation(FILE INCLUDE WHY): reports a violation. INCLUDE: the text of the line.

@@ -48,7 +48,7 @@ nlohmann::json print_memory(gpu::Device &device, const BenchOptions &options, co
     picture.size = options.size;
     picture.samples = samples;
     const DeviceBytes bytes = device_bytes(device, scene, picture);
-    picture.shadow = "none";
+    picture.changes.emplace_back([](eevee::Settings &settings) { settings.shadow.kind = scene::ShadowKind::None; });
     const DeviceBytes without = device_bytes(device, scene, picture);
     const double ratio = double(bytes.all) / double(without.all);
     fmt::print("  {:<42} {:>9.1f} {:>9.1f} {:>18.2f}\n", fmt::format("{} samples", samples), double(bytes.all) / 0x1p20,

@@ -96,8 +96,9 @@ void render_frames(const RenderOptions &options, const scene::PlacedCamera &came
                    const std::optional<draw::TargetTexture> &display, RenderResult &result)
 {
   draw::Target target = display ? display->target() : draw::Target();
-  target.view_transform = options.view_transform();
-  target.exposure = options.exposure;
+  const render_scene::Display shown = options.display();
+  target.view_transform = shown.view_transform;
+  target.exposure = shown.exposure;
   target.composition = draw::Composition::ReplaceStraight;
 
   const int sample_count = options.sample_range.empty() ? options.samples : renderer.settings().drawn_sample_count();
@@ -168,7 +169,10 @@ std::size_t count_non_finite(const RenderOptions &options, std::string_view what
 std::string units_of(const RenderOptions &options)
 {
   if (options.is_png()) {
-    return fmt::format("display-referred, {}", options.is_shadow_shown() ? "raw" : options.view);
+    return fmt::format("display-referred, {}",
+                       options.is_shadow_shown()
+                           ? "raw"
+                           : scene::words<draw::ViewTransform>[std::size_t(options.display().view_transform)]);
   }
   return options.is_shadow_shown()    ? "metres, 0 where nothing was drawn"
          : options.is_density_shown() ? "shadow texels along the edge of a pixel, 0 where there is no shadow"
@@ -195,7 +199,7 @@ Status write_picture(const RenderOptions &options, const scene::Camera &camera, 
   Metadata metadata = {{"gnomon:scene", options.scene},
                        {"gnomon:camera", camera.name},
                        {"gnomon:samples", std::to_string(options.is_part() ? options.samples : result.samples_drawn)},
-                       {"gnomon:seed", std::to_string(options.seed)},
+                       {"gnomon:seed", std::to_string(options.engine_settings().seed)},
                        {"gnomon:device", result.device}};
   metadata.insert(metadata.end(), frame_metadata.begin(), frame_metadata.end());
   metadata.insert(metadata.end(), aov.metadata.begin(), aov.metadata.end());
@@ -250,9 +254,7 @@ Input create_device_and_import(const RenderOptions &options, RenderResult &resul
 {
   std::future<scene::Scene> imported = std::async(std::launch::async, [&] {
     const Clock::time_point start = Clock::now();
-    scene::Scene scene = import_scene(
-        options.scene,
-        {.variant = options.variant, .texture_size_max = options.texture_size_max, .only_below = options.only_below});
+    scene::Scene scene = import_scene(options.scene, options.import_options());
     result.import_seconds = seconds_since(start);
     return scene;
   });
@@ -364,7 +366,8 @@ Status render(RenderOptions options)
 
   std::unique_ptr<Chooser> chooser;
   if (options.choice.is_asked()) {
-    chooser = std::make_unique<Chooser>(options.choice, *device, scene, camera, size_px, options.specular == "multi");
+    chooser = std::make_unique<Chooser>(options.choice, *device, scene, camera, size_px,
+                                        options.engine_settings().has_multiscatter);
     chooser->print_choice();
     options.samples = chooser->choice().sample_count;
   }
@@ -407,7 +410,7 @@ Status render(RenderOptions options)
     print_messages("limit", limits);
     result.report.limits.insert(result.report.limits.end(), limits.begin(), limits.end());
   }
-  write_json(options.json, to_json(options, scene, camera, result, chooser.get()));
+  write_json(options.json, to_json(options, settings, scene, camera, result, chooser.get()));
   trace_file.write();
   if (status == Status::Done) {
     print_summary(options, result);

@@ -4,10 +4,10 @@
 #include "cli_choice.hh"
 #include "cli_debug.hh"
 #include "cli_frames.hh"
+#include "cli_setting_options.hh"
 #include "cli_world.hh"
 
-#include "draw_target.hh"
-#include "eevee_engine.hh"
+#include "render_display.hh"
 
 #include <CLI/App.hpp>
 
@@ -21,10 +21,7 @@ struct RenderOptions {
   std::string output;
   std::string size = "960x540";
   std::string camera;
-  /** Variant of the materials; empty: none. */
-  std::string variant;
-  /** 0: no limit. */
-  std::uint32_t texture_size_max = 0;
+  Changes<gltf::ImportOptions> import_changes;
   /** Empty: the scene's files may be anywhere. */
   std::filesystem::path only_below;
   int samples = 16;
@@ -36,34 +33,19 @@ struct RenderOptions {
   std::string tile;
   FrameOptions frames;
   int repeat = 1;
-  std::string shadow = "hard";
-  int shadow_size = 0;
-  std::string pcf = "3x3";
-  std::string esm = "4";
-  int cascades = 0;
-  float cascade_lambda = eevee::CascadeSettings().lambda;
-  std::string cascade_range = "auto";
-  std::string cube_pass = "best";
-  std::string casters = "all";
-  int shadow_memory = 1024;
-  float light_threshold = 0.0F;
-  float noise_threshold = 0.0F;
+  /** What options set in the settings that offline_settings chooses for `samples`. */
+  Changes<eevee::Settings> changes;
   bool redraws_shadows = false;
-  int emissive_points = eevee::Settings().emissive_point_count;
   std::string debug;
   DebugView debug_view;
   std::string aov;
-  std::string view = "pbr-neutral";
-  float exposure = 0.0F;
-  /** "single" or "multi". \see eevee::Settings::has_multiscatter */
-  std::string specular = "single";
+  Changes<render_scene::Display> display_changes;
   std::string backend = "gl";
   bool is_explained = false;
   std::string json;
   std::string trace;
   ChoiceOptions choice;
   bool is_strict = false;
-  std::uint32_t seed = 0;
   WorldOptions world;
   /** "none", "world" or a radiance R,G,B. Empty: none, or light grey in a PNG that the default studio lights. */
   std::string background;
@@ -98,13 +80,14 @@ struct RenderOptions {
   [[nodiscard]] gpu::Rectangle region() const;
   /** The first and the last sample to draw. \throws UsageError where --sample-range is invalid */
   [[nodiscard]] glm::ivec2 sample_bounds() const;
-  [[nodiscard]] draw::ViewTransform view_transform() const;
+  [[nodiscard]] render_scene::Display display() const;
+  [[nodiscard]] gltf::ImportOptions import_options() const;
   /** Without the background, which depends on the scene. */
   [[nodiscard]] eevee::Settings engine_settings() const;
 };
 
-/** Adds `--specular`, for all commands that render. */
-void add_specular_option(CLI::App &command, std::string &specular);
+/** Settings of the engine that `gnomon render` has without options. */
+[[nodiscard]] std::vector<Defaults<eevee::Settings>> setting_defaults();
 
 /** Adds the options to \a command, which fills \a options. Both must outlive the parsing. */
 void add_render_options(CLI::App &command, RenderOptions &options);

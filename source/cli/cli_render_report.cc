@@ -11,9 +11,56 @@
 
 namespace gnomon::cli {
 
-nlohmann::json to_json(const RenderOptions &options, const scene::Scene &scene, const scene::Camera &camera,
-                       const RenderResult &result, const Chooser *chooser)
+/** Numbers and switches are as in Python; enumerations are words. */
+template <typename Value>
+static nlohmann::json value_json(const Value &value)
 {
+  if constexpr (std::is_enum_v<Value>) {
+    return scene::words<Value>[std::size_t(value)];
+  }
+  else if constexpr (std::is_same_v<Value, eevee::PcfKernel>) {
+    return eevee::text_of(value);
+  }
+  else if constexpr (std::is_same_v<Value, eevee::Background>) {
+    switch (value.kind) {
+      case eevee::Background::Kind::None: return nullptr;
+      case eevee::Background::Kind::World: return "world";
+      case eevee::Background::Kind::Color: break;
+    }
+    return {value.color.r, value.color.g, value.color.b};
+  }
+  else {
+    return value;
+  }
+}
+
+/** The values of \a settings by their names. */
+template <typename Settings>
+static void add_settings(nlohmann::json &values, const Settings &settings)
+{
+  Settings::for_each_property([&](const auto &row) {
+    using Value = typename std::decay_t<decltype(row)>::Value;
+    const Value &value = row.access(settings);
+    nlohmann::json &entry = values[std::string(row.name)];
+    if constexpr (requires { value.has_value(); }) {
+      if (value) {
+        entry = value_json(*value);
+      }
+    }
+    else {
+      entry = value_json(value);
+    }
+  });
+}
+
+nlohmann::json to_json(const RenderOptions &options, const eevee::Settings &settings, const scene::Scene &scene,
+                       const scene::Camera &camera, const RenderResult &result, const Chooser *chooser)
+{
+  nlohmann::json values = nlohmann::json::object();
+  add_settings(values, settings);
+  add_settings(values, settings.shadow);
+  add_settings(values, options.display());
+  add_settings(values, options.import_options());
   nlohmann::json frames = nlohmann::json::array();
   for (std::size_t i = 0; i < result.frame_seconds.size(); i++) {
     nlohmann::json steps = nlohmann::json::object();
@@ -41,7 +88,8 @@ nlohmann::json to_json(const RenderOptions &options, const scene::Scene &scene, 
           {"camera", camera.name},
           {"size", options.size},
           {"samples", result.samples_drawn},
-          {"seed", options.seed},
+          {"seed", settings.seed},
+          {"settings", values},
           {"device", result.device},
           {"import_seconds", result.import_seconds},
           {"device_seconds", result.device_seconds},

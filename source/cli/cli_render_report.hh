@@ -34,9 +34,12 @@ struct RenderResult {
   eevee::Report report;
 };
 
-/** The content of --json. \a chooser: null without --max-error and --max-time */
-[[nodiscard]] nlohmann::json to_json(const RenderOptions &options, const scene::Scene &scene,
-                                     const scene::Camera &camera, const RenderResult &result, const Chooser *chooser);
+/**
+ * The content of --json. \a settings: those of the picture; \a chooser: null without --max-error and --max-time
+ */
+[[nodiscard]] nlohmann::json to_json(const RenderOptions &options, const eevee::Settings &settings,
+                                     const scene::Scene &scene, const scene::Camera &camera, const RenderResult &result,
+                                     const Chooser *chooser);
 
 /** Prints times, the parts that were made, and the path of the picture. */
 void print_summary(const RenderOptions &options, const RenderResult &result);

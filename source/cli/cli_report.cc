@@ -38,7 +38,8 @@ struct ReportOptions {
   /** Names or labels of techniques; empty for all. */
   std::vector<std::string> techniques;
   WorldOptions world;
-  std::string specular = "single";
+  /** has_multiscatter is used. */
+  Changes<eevee::Settings> changes;
   fs::path only_below;
 };
 
@@ -158,7 +159,7 @@ Run::Run(gpu::Device &device, const ReportOptions &options)
   run_.date = where.date;
   run_.rounds = options.rounds;
   run_.reference_samples = options.reference_samples;
-  run_.has_multiscatter = options.specular == "multi";
+  run_.has_multiscatter = changed(eevee::Settings(), options.changes).has_multiscatter;
   run_.size_px = {options.size[0], options.size[1]};
   const std::vector<measure::Technique> techniques = wanted_techniques(options.techniques);
   output::Roles roles;
@@ -446,7 +447,10 @@ void add_report(CLI::App &app, Status &status)
       ->check(CLI::Range(2, 65536));
   add_world_options(*command, o->world);
   add_only_below_option(*command, o->only_below);
-  add_specular_option(*command, o->specular);
+  SettingOptions<eevee::Settings> settings;
+  settings.take<eevee::Settings>(
+      [](auto &whole) -> auto & { return whole; }, [](std::string_view option) { return option == "specular"; });
+  settings.add_to(*command, "Options", o->changes);
   command->callback([o, &status] { status = report(*o); });
 }
 

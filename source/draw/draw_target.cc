@@ -43,8 +43,6 @@ void check(const Target &target, glm::ivec2 size_px)
     throw gpu::Error("target: a picture of {}x{} px at {},{} does not fit into its {}x{} px", size.x, size.y, first.x,
                      first.y, size_of(target).x, size_of(target).y);
   }
-  // Within this limit, 2^exposure is finite and not denormal.
-  constexpr float exposure_max = 120.0F;
   if (!(std::abs(target.exposure) <= exposure_max)) {
     throw gpu::Error("target: exposure {} is not in [{}, {}]", target.exposure, -exposure_max, exposure_max);
   }

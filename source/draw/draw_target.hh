@@ -68,6 +68,9 @@ struct HostDepth {
   glm::dvec2 range{0.0, 1.0};
 };
 
+/** Limit of exposures, stops. Within it, 2^exposure is finite and not denormal. */
+inline constexpr float exposure_max = 120.0F;
+
 /** The target of a draw. Plain data. With a default-constructed target, the viewport draws but writes no picture. */
 struct Target {
   /** A framebuffer of the device, which must outlive the draw, or a framebuffer of the host. */
@@ -82,7 +85,7 @@ struct Target {
   glm::ivec2 size_px{0};
   Encoding encoding = Encoding::Display;
   ViewTransform view_transform = ViewTransform::Standard;
-  /** Stops, in [-120, 120]. Radiance is multiplied by 2^exposure before the view transform. */
+  /** Stops, from -exposure_max to exposure_max. Radiance is multiplied by 2^exposure before the view transform. */
   float exposure = 0.0F;
   Composition composition = Composition::Replace;
   /** If set, the picture's depth is written to the framebuffer's depth attachment, too. */

@@ -3,6 +3,8 @@
 
 #include "image_base64.hh"
 #include "internal/gltf_camera.hh"
+#include "internal/gltf_extra.hh"
+#include "internal/gltf_node.hh"
 #include "internal/gltf_report.hh"
 #include "internal/gltf_write_animation.hh"
 #include "internal/gltf_write_buffer.hh"
@@ -307,14 +309,11 @@ class SceneWriter {
 
   static void add_flags(const Node &node, JsonText &extras)
   {
-    const auto add_if_false = [&extras](std::string_view key, bool flag) {
-      if (!flag) {
-        extras.add(key, "false");
+    for_each_flag([&](const auto &row) {
+      if (const bool flag = node.*row.member; flag != Node().*row.member) {
+        extras.add(extra_key(row), flag ? "true" : "false");
       }
-    };
-    add_if_false("gnomon_visible", node.is_visible);
-    add_if_false("gnomon_casts_shadow", node.casts_shadow);
-    add_if_false("gnomon_receives_shadow", node.receives_shadow);
+    });
   }
 
   void add_camera(const Node &node, JsonText &json, JsonText &extras)

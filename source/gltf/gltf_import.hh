@@ -39,9 +39,8 @@ using ReportProgress = std::function<bool(float part)>;
 using ReadPicture = std::function<scene::WorldPicture(const std::filesystem::path &path)>;
 
 struct ImportOptions {
-  /** Name of the variant whose materials are imported (KHR_materials_variants); empty: the materials of no variant. */
   std::string variant{};
-  /** Most texels along an edge of an image of a material; larger ones are reduced (scene::reduced). 0: no limit. */
+  /** \see scene::reduced */
   std::uint32_t texture_size_max = 0;
   /**
    * Folder for scenes of strangers: buffers, images, pictures of worlds and surface functions are read only if they are
@@ -55,7 +54,29 @@ struct ImportOptions {
    * and images, each of which is read without a call. May be empty.
    */
   ReportProgress progress{};
+
+  /** The settings of an import; what a host gives to it, and on its own behalf, has no row. */
+  template <typename Visit>
+  static constexpr void for_each_property(Visit &&visit);
 };
+
+template <typename Visit>
+constexpr void ImportOptions::for_each_property(Visit &&visit)
+{
+  using scene::property;
+  visit(property(&ImportOptions::variant, {.name = "variant",
+                                           .option = "variant",
+                                           .sentence = "Name of the variant of materials (KHR_materials_variants). "
+                                                       "Empty: the materials of no variant."}));
+  visit(property(&ImportOptions::texture_size_max, {.name = "texture_size_max",
+                                                    .option = "texture-size-max",
+                                                    .unit = "px",
+                                                    .min = 1,
+                                                    .max = 1 << 20,
+                                                    .zero = "no limit",
+                                                    .sentence = "Most texels along an edge of an image of a material; "
+                                                                "larger ones are reduced. 0: no limit."}));
+}
 
 /**
  * Reads a glTF 2.0 file: `.gltf` with external files or data URIs, or `.glb`.

@@ -23,7 +23,7 @@ namespace gnomon::python {
 inline constexpr double infinite = std::numeric_limits<double>::infinity();
 using scene::float_max;
 
-/** Name of an enumeration in Python. */
+/** Name of an enumeration in Python. nullptr: its values are texts there, its words. */
 template <typename Enum>
 inline constexpr const char *enum_name = nullptr;
 template <>
@@ -50,7 +50,8 @@ template <typename Value>
     return type_name<typename Value::value_type>() + " | None";
   }
   else if constexpr (std::is_enum_v<Value>) {
-    return enum_name<Value>;
+    return enum_name<Value> ? enum_name<Value>
+                            : fmt::format("Literal[\"{}\"]", fmt::join(scene::words<Value>, "\", \""));
   }
   else if constexpr (std::is_same_v<Value, bool>) {
     return "bool";
@@ -179,6 +180,26 @@ template <typename T, typename Access>
   return limited_field<T>(std::move(name), access, {.name = "", .min = low, .max = high}, std::move(doc));
 }
 
+/** A property of an enumeration whose values are texts in Python. */
+template <typename T, typename Access>
+[[nodiscard]] Field<T> word_field(std::string name, Access access, std::string doc)
+{
+  using Value = std::decay_t<std::invoke_result_t<Access, T &>>;
+  static constexpr auto &words = scene::words<Value>;
+  return {std::move(name), std::move(doc), type_name<Value>(),
+          [=](const ScenePtr & /*scene*/, const T &value) -> py::object {
+            return py::str(std::string(words[std::size_t(std::invoke(access, value))]));
+          },
+          [=](const ScenePtr & /*scene*/, T &value, py::handle set) {
+            const auto text = cast_to<std::string>(set);
+            const auto found = std::ranges::find(words, text);
+            if (found == words.end()) {
+              throw py::value_error(fmt::format("'{}' is none of '{}'", text, fmt::join(words, "', '")));
+            }
+            std::invoke(access, value) = Value(found - words.begin());
+          }};
+}
+
 /** Documentation of a property: its sentence, its unit and its limits. */
 template <typename Value>
 [[nodiscard]] std::string doc_of(const scene::Description &description, std::string_view kinds)
@@ -213,20 +234,36 @@ template <typename Kind>
   return text;
 }
 
+/** The field of a row. \a access: returns the value of a T; \a kinds: see doc_of */
+template <typename T, typename Row, typename Access>
+[[nodiscard]] Field<T> row_field(const Row &row, Access access, std::string_view kinds = {})
+{
+  using Value = typename Row::Value;
+  const std::string doc = doc_of<Value>(row, kinds);
+  if constexpr (std::is_enum_v<Value>) {
+    if constexpr (enum_name<Value> == nullptr) {
+      return word_field<T>(std::string(row.name), access, doc);
+    }
+    else {
+      return plain_field<T>(std::string(row.name), access, doc);
+    }
+  }
+  else {
+    return limited_field<T>(std::string(row.name), access, row, doc);
+  }
+}
+
 /** Adds a field for each row of \a Part. \a access: returns the part of a T that has the rows. */
 template <typename Part, typename T, typename Access>
 void add_property_fields(Fields<T> &fields, Access access)
 {
   Part::for_each_property([&](const auto &row) {
-    using Value = typename std::decay_t<decltype(row)>::Value;
     std::string kinds;
     if constexpr (requires(T thing) { thing.kind; } && std::is_same_v<T, Part>) {
       kinds = kinds_text<decltype(T::kind)>(row);
     }
-    const auto member = row.member;
-    fields.push_back(limited_field<T>(
-        std::string(row.name), [=](auto &thing) -> auto & { return access(thing).*member; }, row,
-        doc_of<Value>(row, kinds)));
+    fields.push_back(row_field<T>(
+        row, [=](auto &thing) -> auto & { return row.access(access(thing)); }, kinds));
   });
 }
 

@@ -2,6 +2,7 @@
 #include "python_fields.hh"
 #include "python_renderer.hh"
 
+#include "eevee_settings.hh"
 #include "gltf_export.hh"
 #include "gltf_import.hh"
 
@@ -12,68 +13,84 @@ namespace {
 using eevee::Background;
 using eevee::Settings;
 
-const Fields<Settings> settings_fields = {
-    plain_field<Settings>("sample_count", &Settings::sample_count,
-                          "Samples for each pixel. 0: as many as fit into the `seconds_max` of render()."),
-    plain_field<Settings>("seed", &Settings::seed, "Selects the random positions of the samples."),
-    plain_field<Settings>(
-        "noise_threshold", &Settings::noise_threshold,
-        "Pixels that differ from their neighbours by at most this after the first samples, relative to "
-        "the square root of their brightness, get no more. 0: all get all."),
-    plain_field<Settings>("has_multiscatter", &Settings::has_multiscatter,
-                          "Microfacets reflect light more than once, so that rough surfaces lose none. False: once, as "
-                          "glTF's model has it."),
-    number_field<Settings>("light_threshold", &Settings::light_threshold, 0, float_max,
-                           "Irradiance, W/m², that may be left out of the light of each point and spot lamp. 0: none."),
-    number_field<Settings>(
-        "emissive_point_count", &Settings::emissive_point_count, 0, eevee::emissive_point_max,
-        "Points of emissive surfaces that light other surfaces in each of several samples, 0 to 16."),
-    {"background", "What is seen without a surface: None (transparent), 'world', or a radiance (r, g, b), W/(sr m²).",
-     "Background",
-     [](const ScenePtr & /*scene*/, const Settings &settings) -> py::object {
-       switch (settings.background.kind) {
-         case Background::Kind::None: return py::none();
-         case Background::Kind::World: return py::str("world");
-         case Background::Kind::Color: break;
-       }
-       return py::cast(settings.background.color);
-     },
-     [](const ScenePtr & /*scene*/, Settings &settings, py::handle set) {
-       if (set.is_none()) {
-         settings.background = {};
-       }
-       else if (py::isinstance<py::str>(set)) {
-         if (set.cast<std::string>() != "world") {
-           throw py::value_error("is neither None, 'world' nor three numbers");
-         }
-         settings.background = {Background::Kind::World};
-       }
-       else {
-         Background background{Background::Kind::Color};
-         const Field<Background> color = number_field<Background>("color", &Background::color, 0, float_max, "");
-         color.set(nullptr, background, set);
-         settings.background = background;
-       }
-     }},
-    plain_field<Settings>(
-        "shadow_kind", [](auto &settings) -> auto & { return settings.shadow.kind; },
-        "ShadowKind of lamps without one of their own. NONE: no lamp has a shadow."),
-    plain_field<Settings>(
-        "cube_size_px", [](auto &settings) -> auto & { return settings.shadow.cube_size_px; },
-        "Texels along an edge of a cube's face, for points and wide spots."),
-    plain_field<Settings>(
-        "map_size_px", [](auto &settings) -> auto & { return settings.shadow.map_size_px; },
-        "Texels along an edge of a map, for spots and suns. Renderer.offline may choose other sizes for suns."),
-    plain_field<Settings>(
-        "esm_size_px", [](auto &settings) -> auto & { return settings.shadow.esm.size_px; },
-        "Texels along an edge of an octahedral map, for ESM and EVSM, 4 to 8192."),
-    plain_field<Settings>(
-        "cascade_count", [](auto &settings) -> auto & { return settings.shadow.cascades.count; },
-        "Maps of each sun, 1 to 4. 0: as many as are needed for texels no larger than pixels."),
-    plain_field<Settings>(
-        "shadow_bytes_max", [](auto &settings) -> auto & { return settings.shadow.memory_bytes_max; },
-        "Most memory of all shadow maps, bytes; their sizes are reduced to fit."),
-};
+Field<Settings> background_field()
+{
+  return {"background",
+          "What is seen without a surface: None (transparent), 'world', or a radiance (r, g, b), W/(sr m²).",
+          "Background",
+          [](const ScenePtr & /*scene*/, const Settings &settings) -> py::object {
+            switch (settings.background.kind) {
+              case Background::Kind::None: return py::none();
+              case Background::Kind::World: return py::str("world");
+              case Background::Kind::Color: break;
+            }
+            return py::cast(settings.background.color);
+          },
+          [](const ScenePtr & /*scene*/, Settings &settings, py::handle set) {
+            if (set.is_none()) {
+              settings.background = {};
+            }
+            else if (py::isinstance<py::str>(set)) {
+              if (set.cast<std::string>() != "world") {
+                throw py::value_error("is neither None, 'world' nor three numbers");
+              }
+              settings.background = {Background::Kind::World};
+            }
+            else {
+              Background background{Background::Kind::Color};
+              const Field<Background> color = number_field<Background>("color", &Background::color, 0, float_max, "");
+              color.set(nullptr, background, set);
+              settings.background = background;
+            }
+          }};
+}
+
+/** A field for each row on which pictures depend. */
+Fields<Settings> make_settings_fields()
+{
+  Fields<Settings> fields;
+  const auto add = [&](const auto &row, auto part) {
+    using Value = typename std::decay_t<decltype(row)>::Value;
+    const auto access = [ part, row ](auto &settings) -> auto &
+    {
+      return row.access(part(settings));
+    };
+    if (!row.makes_picture) {
+      return;
+    }
+    if constexpr (std::is_same_v<Value, Background>) {
+      fields.push_back(background_field());
+    }
+    else if constexpr (std::is_same_v<Value, eevee::PcfKernel>) {
+      fields.push_back({std::string(row.name), std::string(row.sentence), "str",
+                        [=](const ScenePtr & /*scene*/, const Settings &settings) -> py::object {
+                          return py::str(eevee::text_of(access(settings)));
+                        },
+                        [=](const ScenePtr & /*scene*/, Settings &settings, py::handle set) {
+                          const std::optional<eevee::PcfKernel> kernel =
+                              eevee::pcf_kernel_of(cast_to<std::string>(set));
+                          if (!kernel) {
+                            throw py::value_error("is none of '1', '3x3', '5x5' and 'disk:N' with N from 1 to 64");
+                          }
+                          access(settings) = *kernel;
+                        }});
+    }
+    else {
+      fields.push_back(row_field<Settings>(row, access));
+    }
+  };
+  Settings::for_each_property([&](const auto &row) {
+    add(
+        row, [](auto &whole) -> auto & { return whole; });
+  });
+  eevee::ShadowSettings::for_each_property([&](const auto &row) {
+    add(
+        row, [](auto &whole) -> auto & { return whole.shadow; });
+  });
+  return fields;
+}
+
+const Fields<Settings> settings_fields = make_settings_fields();
 
 void set_settings(Renderer &renderer, const py::dict &values)
 {

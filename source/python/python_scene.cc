@@ -227,8 +227,12 @@ Thing<Mesh> add_mesh(const ScenePtr &scene, const py::array &positions, const py
 
 /** \a progress: called with the part that is done; what it raises, and signals, end the import. */
 ScenePtr load(const std::filesystem::path &path, const std::string &variant, const py::object &progress,
-              const std::optional<std::filesystem::path> &only_below)
+              const std::optional<std::filesystem::path> &only_below, const py::kwargs &values)
 {
+  static const auto fields = property_fields<gltf::ImportOptions>();
+  gltf::ImportOptions options{.variant = variant,
+                              .only_below = only_below && only_below->empty() ? "." : only_below.value_or("")};
+  set_fields(fields, "load", nullptr, options, values);
   const auto scene = std::make_shared<SharedScene>();
   // The importer would take it for an error of the file.
   std::exception_ptr raised;
@@ -249,10 +253,8 @@ ScenePtr load(const std::filesystem::path &path, const std::string &variant, con
   };
   try {
     const py::gil_scoped_release unlocked;
-    scene->scene =
-        gltf::import_gltf(path, {.variant = variant,
-                                 .only_below = only_below && only_below->empty() ? "." : only_below.value_or(""),
-                                 .progress = report});
+    options.progress = report;
+    scene->scene = gltf::import_gltf(path, options);
   }
   catch (const gltf::ImportCancelled &) {
     std::rethrow_exception(raised);
@@ -381,7 +383,8 @@ void define_scene(py::module_ &module)
       py::arg("only_below") = py::none(),
       "Read a glTF 2.0 file. `variant`: name of a variant of its materials. `progress`: called on this thread with "
       "the part that is done, 0 to 1; what it raises ends the import. `only_below`: a folder; files that the scene "
-      "names elsewhere are refused. Raises FileError.");
+      "names elsewhere are refused. `texture_size_max`: most texels along an edge of an image of a material; larger "
+      "ones are reduced. Raises FileError.");
 }
 
 }  // namespace gnomon::python

@@ -171,6 +171,7 @@ constexpr void Lamp::for_each_property(Visit &&visit)
                                 .unit = "m",
                                 .min = smallest_length,
                                 .zero = "no limit",
+                                .first = 10,
                                 .kinds = bits(Point, Spot),
                                 .path = "range",
                                 .is_animated = true,

@@ -3,7 +3,16 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace gnomon::scene {
+
+ShownLimits shown_limits(const Description &description, bool is_whole)
+{
+  const double factor = shown_unit(description).factor;
+  const ShownLimits limits{factor * description.min, factor * description.max};
+  return is_whole ? ShownLimits{std::ceil(limits.min), std::floor(limits.max)} : limits;
+}
 
 std::string range_text(const Description &description, double factor)
 {
@@ -11,6 +20,11 @@ std::string range_text(const Description &description, double factor)
     return fmt::format("from {:g} to {:g}", factor * description.min, factor * description.max);
   }
   return description.min <= -float_max ? "a finite number" : fmt::format("at least {:g}", factor * description.min);
+}
+
+std::string range_fault(const Description &description, double value)
+{
+  return fmt::format("{} {:g} is not {}", description.name, value, range_text(description));
 }
 
 }  // namespace gnomon::scene

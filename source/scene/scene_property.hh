@@ -3,13 +3,15 @@
 
 #include <array>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <type_traits>
 
 /**
- * The type of the rows that describe properties: of things in scene_properties.hh. Checks, files, Python, the window
- * and the documentation read the rows, so that a property is described once.
+ * The type of the rows that describe properties of things (scene_properties.hh) and settings of engines, imports and
+ * pictures, which stand beside their types. Checks, files, options, Python, the window and the documentation read the
+ * rows, so that a property or a setting is described once.
  */
 namespace gnomon::scene {
 
@@ -28,12 +30,18 @@ struct Description {
   std::string_view name;
   /** In scripts of the window and, after a prefix, in extras of files. Empty: as `name`. */
   std::string_view key{};
-  /** In the window. */
+  /** On the command line, after two dashes. Rows with the same option are set together. Empty: there is none. */
+  std::string_view option{};
+  /** A word of the option for a value that is chosen automatically. Empty: there is none. */
+  std::string_view automatic{};
+  /** In the window. Empty: it does not show the property as a row of its own. */
   std::string_view label{};
   /** A header that the window shows the property under. */
   std::string_view group{};
-  /** Unit of the value. Angles are in "rad" here; the window shows degrees. */
+  /** Unit of the value. Options and the window have degrees for "rad" and MiB for "bytes": shown_unit. */
   std::string_view unit{};
+  /** The words for false and true, in options, scripts and the window. */
+  std::array<std::string_view, 2> switch_words{"off", "on"};
   /** Limits of a number, and of each component of a vector. */
   double min = 0.0;
   double max = float_max;
@@ -53,6 +61,8 @@ struct Description {
   bool is_animated = false;
   /** The aspect of the thing that the property belongs to. */
   unsigned aspect = 0;
+  /** Pictures depend on the setting, so that all parts of a picture must have the same value. */
+  bool makes_picture = true;
   std::string_view sentence{};
 
   [[nodiscard]] constexpr std::string_view key_or_name() const
@@ -83,11 +93,40 @@ struct Description {
   }
 };
 
+/** A unit that people read and write, and how many of it one unit of a value is. */
+struct ShownUnit {
+  std::string_view text{};
+  double factor = 1.0;
+};
+
+/** Degrees for radians and MiB for bytes; other units as they are. */
+[[nodiscard]] constexpr ShownUnit shown_unit(const Description &description)
+{
+  if (description.unit == "rad") {
+    return {"°", 180.0 / std::numbers::pi};
+  }
+  if (description.unit == "bytes") {
+    return {"MiB", 0x1p-20};
+  }
+  return {description.unit};
+}
+
+/** The least and the greatest number that people may write, in the shown unit. */
+struct ShownLimits {
+  double min = 0.0;
+  double max = 0.0;
+};
+
+/** \a is_whole: fractions cannot be written, so that the limits are whole numbers. */
+[[nodiscard]] ShownLimits shown_limits(const Description &description, bool is_whole);
+
 /**
  * The limits as text: "from 0 to 1", "at least 0", "a finite number". \a factor: of the limits, for another unit than
  * that of the value.
  */
 [[nodiscard]] std::string range_text(const Description &description, double factor = 1.0);
+/** That \a value is out of the limits: the name, the value and the limits. */
+[[nodiscard]] std::string range_fault(const Description &description, double value);
 
 /** Calls \a visit with each number of \a value as a double. Enumerations, bools, texts and absent values have none. */
 template <typename Value, typename Visit>
@@ -116,12 +155,35 @@ template <typename T, typename ValueType>
 struct Property : Description {
   using Value = ValueType;
   Value T::*member;
+
+  [[nodiscard]] constexpr const Value &access(const T &thing) const
+  {
+    return thing.*member;
+  }
+  [[nodiscard]] constexpr Value &access(T &thing) const
+  {
+    return thing.*member;
+  }
 };
 
 template <typename T, typename Value>
 [[nodiscard]] constexpr Property<T, Value> property(Value T::*member, const Description &description)
 {
   return {description, member};
+}
+
+/** A property of a part of a T, to which \a access returns a reference. */
+template <typename ValueType, typename Access>
+struct PartProperty : Description {
+  using Value = ValueType;
+  Access access;
+};
+
+/** \a access: takes a T, constant or not, as `[](auto &thing) -> auto & { return thing.part.member; }` */
+template <typename T, typename Access>
+[[nodiscard]] constexpr auto part_property(Access access, const Description &description)
+{
+  return PartProperty<std::decay_t<std::invoke_result_t<Access, T &>>, Access>{description, access};
 }
 
 /** The words for the values of an enumeration, in their order: in files, options and scripts. */

@@ -110,8 +110,7 @@ void add_settings_inputs(std::vector<StabilityCase> &cases)
   const double nan = std::numeric_limits<double>::quiet_NaN();
   // NaN has the parameter -1e9, because NaN cannot be plotted.
   const auto with_nan = [&](Numbers values) { return values + Numbers{{-1e9, nan, rejected}}; };
-  const Numbers sizes = inputs({1, 2, 16, 16384}, Expected::Accepted) + inputs({-1, 0}, rejected) +
-                        inputs({16385, 2147483647}, Expected::Reported);
+  const Numbers sizes = inputs({1, 2, 16, 16384}, Expected::Accepted) + inputs({-1, 0, 16385, 2147483647}, rejected);
   add("cube size", "texels", "size", sizes, [](eevee::Settings &s, double v) {
     s.shadow.cube_size_px = int(v);
     s.shadow.memory_bytes_max = std::size_t(1) << 40U;
@@ -129,7 +128,7 @@ void add_settings_inputs(std::vector<StabilityCase> &cases)
       },
       scene::ShadowKind::Esm);
   add("shadow memory", "bytes", "sizes are lowered",
-      inputs({1e9}, Expected::Accepted) + inputs({0, 1, 1000, 10000}, Expected::Reported),
+      inputs({1e9}, Expected::Accepted) + inputs({1, 1000, 10000}, Expected::Reported),
       [](eevee::Settings &s, double v) { s.shadow.memory_bytes_max = std::size_t(v); });
   add(
       "exponent", "1/m", "exponent",
@@ -137,13 +136,13 @@ void add_settings_inputs(std::vector<StabilityCase> &cases)
       [](eevee::Settings &s, double v) { s.shadow.esm.exponent = float(v); }, scene::ShadowKind::Esm);
   add(
       "bias of exponential maps", "", "bias",
-      with_nan(inputs({0, 1, 1e3}, Expected::Accepted) + inputs({-1, 1001, 1e38}, rejected)),
+      with_nan(inputs({0, 1, 100}, Expected::Accepted) + inputs({-1, 101, 1e38}, rejected)),
       [](eevee::Settings &s, double v) { s.shadow.esm.bias = float(v); }, scene::ShadowKind::Evsm);
   add(
-      "filter angle", "rad", "filter angle",
-      with_nan(inputs({0, 1e-40, 0.5}, Expected::Accepted) + inputs({-1, 0.51, 1e38}, rejected)),
+      "filter angle", "rad", "filter_angle",
+      with_nan(inputs({0, 1e-40, 0.785}, Expected::Accepted) + inputs({-1, 0.786, 1e38}, rejected)),
       [](eevee::Settings &s, double v) { s.shadow.esm.filter_angle = float(v); }, scene::ShadowKind::Esm);
-  add("cascades", "maps a sun", "cascades",
+  add("cascades", "maps a sun", "cascade_count",
       inputs({0, 1, 4}, Expected::Accepted) + inputs({-1, 5, 100, 1000000}, rejected),
       [](eevee::Settings &s, double v) { s.shadow.cascades.count = int(v); });
   add("cascade lambda", "", "lambda",
@@ -159,10 +158,10 @@ void add_settings_inputs(std::vector<StabilityCase> &cases)
       "pcf taps", "lookups", "pcf", inputs({1, 64}, Expected::Accepted) + inputs({-1, 0, 65, 1e6}, rejected),
       [](eevee::Settings &s, double v) { s.shadow.pcf = {.width = 0, .taps = int(v)}; }, scene::ShadowKind::Pcf);
   add("samples", "samples a pixel", "sample_count",
-      inputs({0, 1, 2, 64}, Expected::Accepted) + inputs({-1, -100}, rejected),
+      inputs({0, 1, 2, 64}, Expected::Accepted) + inputs({-1, -100, 65537}, rejected),
       [](eevee::Settings &s, double v) { s.sample_count = int(v); });
   add("noise threshold", "relative difference", "noise_threshold",
-      with_nan(inputs({0, 1e-45, 1, 1e38}, Expected::Accepted) + inputs({-1, -1e-30}, rejected)),
+      with_nan(inputs({0, 1e-45, 1, 1000}, Expected::Accepted) + inputs({-1, -1e-30, 1001, 1e38}, rejected)),
       [](eevee::Settings &s, double v) {
         s.sample_count = 8;
         s.noise_threshold = float(v);
@@ -214,7 +213,7 @@ void add_host_lamp_inputs(std::vector<StabilityCase> &cases)
       inputs({0.01, 1e4}, Expected::Accepted) + inputs({-1, 0, 1e-40, 10001, 1e38}, rejected),
       [](scene::LampShadow &shadow, double v) { shadow.exponent = float(v); });
   add("lamp's filter", "rad", "lamp 'lamp0': ", scene::ShadowKind::Evsm,
-      inputs({0, 0.5}, Expected::Accepted) + inputs({-1, 0.51, 1e38}, rejected),
+      inputs({0, 0.785}, Expected::Accepted) + inputs({-1, 0.786, 1e38}, rejected),
       [](scene::LampShadow &shadow, double v) { shadow.filter_angle = float(v); });
   // The importer's length_range.
   add("lamp's clip distances", "m", "", scene::ShadowKind::Hard,

@@ -42,6 +42,8 @@ struct NumberProperty {
    */
   const char *absent = nullptr;
   std::function<bool(const T &)> is_absent{};
+  /** Absence is stored as 0, and scripts may write 0 for it. */
+  bool is_zero_absent = false;
   std::function<void(T &)> remove{};
   /** It is a slider with a logarithmic scale, and this stands for 0 at its lower end; nullptr: it is none. */
   const char *slider_zero = nullptr;

@@ -3,25 +3,21 @@
 
 #include "view_properties.hh"
 
+#include "scene_property.hh"
+
+#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <numbers>
-#include <optional>
+#include <stdexcept>
+#include <string_view>
+#include <type_traits>
 #include <utility>
 
-/** Properties of members of a thing, for the tables. */
+/** Properties for the tables, from rows (scene_property.hh). */
 namespace gnomon::view {
 
 inline constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
-/** A limit for lengths and powers that have none. */
-inline constexpr double endless = 1e9;
-/** What the engine takes of exponential shadows: eevee::EsmSettings. */
-inline constexpr double esm_size_min = 4.0;
-inline constexpr double esm_size_max = 8192.0;
-inline constexpr double esm_filter_degrees_max = 28.6;
-
-inline const std::vector<const char *> off_on = {"off", "on"};
-inline const std::vector<const char *> shadow_kinds = {"none", "hard", "pcf", "esm", "evsm"};
 
 /** A value as it is stored. */
 template <typename Value>
@@ -35,73 +31,176 @@ Value stored(double value)
   }
 }
 
-/** A number or three of \a T that is a member. \a factor: shown = stored * factor. */
-template <typename T, typename Value>
-NumberProperty<T> number(const char *name, const char *label, const char *unit, Value T::*member, double min,
-                         double max, double factor = 1.0)
+/** A number or three of \a T. \a access: returns a reference to the value */
+template <typename T, typename Access>
+NumberProperty<T> number_property(const scene::Description &row, Access access)
 {
-  NumberProperty<T> property{.name = name,
-                             .label = label,
-                             .unit = [unit](const T &) { return unit; },
+  using Value = std::decay_t<std::invoke_result_t<Access, T &>>;
+  const scene::ShownUnit unit = scene::shown_unit(row);
+  const scene::ShownLimits limits = scene::shown_limits(row, std::integral<Value>);
+  NumberProperty<T> property{.name = row.key_or_name().data(),
+                             .label = row.label.data(),
+                             .unit = [text = unit.text](const T &) { return text.empty() ? "" : text.data(); },
                              .width = 1,
-                             .min = min,
-                             .max = max,
+                             .min = limits.min,
+                             .max = limits.max,
                              .get = {},
                              .set = {}};
+  property.group = row.group.empty() ? "" : row.group.data();
   if constexpr (requires(Value value) { value.x; }) {
     property.width = 3;
-    property.get = [=](const T &thing, int i) { return double((thing.*member)[i]) * factor; };
+    // Radiance has a unit, and colours have none.
+    property.is_color = row.unit.empty();
+    property.get = [=](const T &thing, int i) { return double(access(thing)[i]) * unit.factor; };
     property.set = [=](T &thing, int i, double value) {
-      (thing.*member)[i] = stored<typename Value::value_type>(value / factor);
+      access(thing)[i] = stored<typename Value::value_type>(value / unit.factor);
     };
   }
   else {
-    property.get = [=](const T &thing, int) { return double(thing.*member) * factor; };
-    property.set = [=](T &thing, int, double value) { thing.*member = stored<Value>(value / factor); };
+    property.get = [=](const T &thing, int) { return double(access(thing)) * unit.factor; };
+    property.set = [=](T &thing, int, double value) { access(thing) = stored<Value>(value / unit.factor); };
   }
   return property;
 }
 
-template <typename T>
-NumberProperty<T> color(const char *name, const char *label, glm::vec3 T::*member, double max = 1.0)
+/** A number that may be absent, which is shown as \a absent and then begins with the first of the row. */
+template <typename T, typename Access>
+NumberProperty<T> optional_number(const scene::Description &row, Access access, const char *absent)
 {
-  NumberProperty<T> property = number<T>(name, label, "", member, 0.0, max);
-  property.is_color = true;
-  return property;
-}
-
-/** A length whose absence is stored as 0. \a first: where there was none */
-template <typename T>
-NumberProperty<T> zero_is(const char *absent, double first, NumberProperty<T> property)
-{
+  const auto present = [=](auto &thing) -> auto &
+  {
+    return *access(thing);
+  };
+  NumberProperty<T> property = number_property<T>(row, present);
   property.absent = absent;
-  property.is_absent = [get = property.get](const T &thing) { return get(thing, 0) == 0.0; };
-  property.remove = [set = property.set](T &thing) { set(thing, 0, 0.0); };
-  property.get = [get = property.get, first](const T &thing, int i) {
-    const double value = get(thing, i);
-    return value == 0.0 ? first : value;
+  property.is_absent = [=](const T &thing) { return !access(thing); };
+  property.remove = [=](T &thing) { access(thing).reset(); };
+  property.get = [=, get = property.get](const T &thing, int i) {
+    return access(thing) ? get(thing, i) : row.first * scene::shown_unit(row).factor;
+  };
+  property.set = [=, set = property.set](T &thing, int i, double value) {
+    access(thing).emplace();
+    set(thing, i, value);
   };
   return property;
 }
 
-/** For kinds of things. */
-template <typename T, typename... Kinds>
-NumberProperty<T> only(NumberProperty<T> property, Kinds... kinds)
+/** A number whose absence is stored as 0, as the row says. */
+template <typename T>
+NumberProperty<T> zero_is_absent(const scene::Description &row, NumberProperty<T> property)
 {
-  property.applies = [=](const T &thing) { return ((thing.kind == kinds) || ...); };
+  property.absent = row.zero.data();
+  property.is_zero_absent = true;
+  property.is_absent = [get = property.get](const T &thing) { return get(thing, 0) == 0.0; };
+  property.remove = [set = property.set](T &thing) { set(thing, 0, 0.0); };
+  property.get = [get = property.get, first = row.first * scene::shown_unit(row).factor](const T &thing, int i) {
+    const double value = get(thing, i);
+    return value == 0.0 ? first : value;
+  };
+  // 0 is the absence.
+  property.min = property.min == 0.0 ? row.first : property.min;
   return property;
 }
 
-/** An enumeration or a bool, whose values count from 0 as the options do. */
-template <typename T, typename Value>
-ChoiceProperty<T> choice(const char *name, const char *label, std::vector<const char *> options, Value T::*member)
+/** Words, of which the first may be \a absent, which is for no value. */
+inline std::vector<const char *> options_of(const auto &words, const char *absent = nullptr)
 {
-  return {name,
-          label,
-          std::move(options),
-          [=](const T &thing) { return int(thing.*member); },
-          [=](T &thing, int value) { thing.*member = Value(value); },
-          {}};
+  std::vector<const char *> options;
+  if (absent) {
+    options.push_back(absent);
+  }
+  std::ranges::transform(words, std::back_inserter(options), [](std::string_view word) { return word.data(); });
+  return options;
+}
+
+/** An enumeration, a switch, or an enumeration that may be absent. */
+template <typename T, typename Access>
+ChoiceProperty<T> choice_property(const scene::Description &row, Access access, const char *absent)
+{
+  using Value = std::decay_t<std::invoke_result_t<Access, T &>>;
+  ChoiceProperty<T> property{
+      .name = row.key_or_name().data(), .label = row.label.data(), .options = {}, .get = {}, .set = {}};
+  property.group = row.group.empty() ? "" : row.group.data();
+  if constexpr (requires(Value value) { value.has_value(); }) {
+    using Inner = typename Value::value_type;
+    property.options = options_of(scene::words<Inner>, absent);
+    property.get = [=](const T &thing) { return access(thing) ? int(*access(thing)) + 1 : 0; };
+    property.set = [=](T &thing, int value) { access(thing) = value == 0 ? Value() : Value(Inner(value - 1)); };
+  }
+  else {
+    if constexpr (std::is_same_v<Value, bool>) {
+      property.options = options_of(row.switch_words);
+    }
+    else {
+      property.options = options_of(scene::words<Value>);
+    }
+    property.get = [=](const T &thing) { return int(access(thing)); };
+    property.set = [=](T &thing, int value) { access(thing) = Value(value); };
+  }
+  return property;
+}
+
+/**
+ * Adds the rows of \a Part that have a label and whose values are numbers or choices. \a part: returns a reference to
+ * the part of a T; \a absent: is shown for a value that is absent
+ */
+template <typename Part, typename T, typename PartAccess>
+void add_rows(Properties<T> &made, PartAccess part, const char *absent = nullptr)
+{
+  Part::for_each_property([&](const auto &row) {
+    if (row.label.empty()) {
+      return;
+    }
+    using Value = typename std::decay_t<decltype(row)>::Value;
+    const auto access = [ part, row ](auto &thing) -> auto &
+    {
+      return row.access(part(thing));
+    };
+    const auto set_kinds = [&](auto &property) {
+      if constexpr (requires(T thing) { thing.kind; }) {
+        if (row.kinds != 0) {
+          property.applies = [kinds = scene::Description(row)](const T &thing) {
+            return kinds.has_kind(unsigned(thing.kind));
+          };
+        }
+      }
+    };
+    const auto add_number = [&](NumberProperty<T> property) {
+      set_kinds(property);
+      made.numbers.push_back(std::move(property));
+    };
+    const auto add_choice = [&](ChoiceProperty<T> property) {
+      set_kinds(property);
+      made.choices.push_back(std::move(property));
+    };
+    if constexpr (std::is_enum_v<Value> || std::is_same_v<Value, bool>) {
+      add_choice(choice_property<T>(row, access, nullptr));
+    }
+    else if constexpr (requires(Value value) { value.has_value(); }) {
+      if constexpr (std::is_enum_v<typename Value::value_type>) {
+        add_choice(choice_property<T>(row, access, absent));
+      }
+      else {
+        add_number(optional_number<T>(row, access, absent));
+      }
+    }
+    else if constexpr (std::is_arithmetic_v<Value> || requires(Value value) { value.x; }) {
+      NumberProperty<T> property = number_property<T>(row, access);
+      add_number(row.zero.empty() ? std::move(property) : zero_is_absent(row, std::move(property)));
+    }
+  });
+}
+
+/** The property of \a properties with this name, for what its row does not say. */
+template <typename Property>
+Property &named(std::vector<Property> &properties, std::string_view name)
+{
+  const auto found =
+      std::ranges::find(properties, name, [](const Property &one) { return std::string_view(one.name); });
+  if (found == properties.end()) {
+    throw std::logic_error("no property " + std::string(name));
+  }
+  return *found;
 }
 
 }  // namespace gnomon::view

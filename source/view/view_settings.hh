@@ -1,29 +1,59 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "draw_target.hh"
 #include "eevee_engine.hh"
+#include "render_display.hh"
 
 namespace gnomon::view {
 
 /** Of all viewports. */
 struct Settings {
   eevee::Settings eevee{};
-  draw::ViewTransform view_transform = draw::ViewTransform::PbrNeutral;
-  /** Stops. */
-  float exposure = 0.0F;
-  /** A picture is complete once its RMSE is estimated to be at most this: \see ErrorEstimate. 0: no limit. */
+  render_scene::Display display{};
+  /** \see ErrorEstimate */
   float error_max = 0.0F;
-  /** A picture is complete once it has its samples, or after this time. 0: no limit. */
   float seconds_max = 0.0F;
-  /**
-   * Time that the viewports may take in each frame, milliseconds: they show a preview after an edit, and refine it.
-   * 0: each frame draws one whole sample.
-   */
   float budget_ms = 33.0F;
-  /** Colour the pictures by the texel density of the selected lamp's shadow. */
   bool has_texel_density = false;
+
+  /** Those of the window alone. */
+  template <typename Visit>
+  static constexpr void for_each_property(Visit &&visit);
 };
+
+template <typename Visit>
+constexpr void Settings::for_each_property(Visit &&visit)
+{
+  using scene::property;
+  visit(property(&Settings::error_max,
+                 {.name = "error_max",
+                  .key = "error",
+                  .label = "Maximum error",
+                  .unit = "RMSE",
+                  .max = 1,
+                  .sentence = "A picture is complete once its error is estimated to be at most this. 0: no limit."}));
+  visit(property(&Settings::seconds_max,
+                 {.name = "seconds_max",
+                  .key = "seconds",
+                  .label = "Time limit",
+                  .unit = "s",
+                  .max = 3600,
+                  .sentence = "A picture is complete once it has its samples, or after this time. 0: no limit."}));
+  visit(property(&Settings::budget_ms,
+                 {.name = "budget_ms",
+                  .key = "budget",
+                  .label = "Time budget",
+                  .unit = "ms a frame",
+                  .max = 1000,
+                  .makes_picture = false,
+                  .sentence = "Time that the viewports may take in each frame: they show a preview after an edit, and "
+                              "refine it. 0: each frame draws one whole sample."}));
+  visit(property(&Settings::has_texel_density,
+                 {.name = "has_texel_density",
+                  .key = "density",
+                  .label = "Show texel density",
+                  .sentence = "The pictures are coloured by the texel density of the selected lamp's shadow."}));
+}
 
 /** What the window starts with. */
 [[nodiscard]] inline Settings default_settings()

@@ -144,8 +144,8 @@ bool Viewport::draw(Document &document, double budget_seconds)
   }
   draw::Target target = canvas_.target();
   target.composition = draw::Composition::Over;
-  target.view_transform = document.settings().view_transform;
-  target.exposure = document.settings().exposure;
+  target.view_transform = document.settings().display.view_transform;
+  target.exposure = document.settings().display.exposure;
   const auto now = std::chrono::steady_clock::now();
   draw_picture(document, *one, budget_seconds, target);
   if (std::exchange(picture_, viewport_->restart_count()) != viewport_->restart_count()) {

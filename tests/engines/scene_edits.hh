@@ -3,7 +3,9 @@
 
 #include "engines/eevee/eevee_test_scene.hh"
 
+#include <algorithm>
 #include <array>
+#include <concepts>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -37,125 +39,54 @@ struct EditedScene {
   int refused_count = 0;
 };
 
-// Properties. \a visit is called with a name, a member and the least and greatest number.
+/** The least and the greatest number that edits set. */
+struct EditLimits {
+  double min = 0.0;
+  double max = 100.0;
+};
 
-template <typename Visit>
-void for_each_property(const scene::Lamp & /*of*/, Visit &&visit)
+/** The limits of a row, without numbers so large or small that the picture would show nothing. */
+inline EditLimits edit_limits(const scene::Description &row)
 {
-  using scene::Lamp;
-  visit("name", &Lamp::name);
-  visit("kind", &Lamp::kind, 0, 4);
-  visit("color", &Lamp::color);
-  visit("intensity", &Lamp::intensity);
-  visit("radius", &Lamp::radius);
-  visit("angle", &Lamp::angle, 0, 3);
-  visit("spot_outer_angle", &Lamp::spot_outer_angle, 0.1, 1.5);
-  visit("spot_blend", &Lamp::spot_blend, 0, 1);
-  visit("range", &Lamp::range);
-  visit("area_shape", &Lamp::area_shape, 0, 1);
-  visit("area_size_x", &Lamp::area_size_x, 0.01, 10);
-  visit("area_size_y", &Lamp::area_size_y, 0.01, 10);
+  // Ends of shadows are beyond their starts.
+  if (row.name == "shadow_clip_start") {
+    return {0.5, 3.0};
+  }
+  if (row.name == "shadow_clip_end") {
+    return {3.5, 5.0};
+  }
+  if (row.unit == "px") {
+    return {16.0, 100.0};
+  }
+  const double least = row.min > 0.0 ? std::max(row.min, 0.01) : std::max(row.min, -3.0);
+  return {std::min(least, row.max), std::min(row.max, 100.0)};
 }
 
-template <typename Visit>
-void for_each_property(const scene::LampShadow & /*of*/, Visit &&visit)
+/** Calls \a visit with the name of each property of a T, a function that accesses it, and the limits for edits. */
+template <typename T, typename Visit>
+void for_each_edited(Visit &&visit)
 {
-  using scene::LampShadow;
-  visit("shadow.kind", &LampShadow::kind, 0, 4);
-  visit("shadow.size", &LampShadow::size, 16, 100);
-  visit("shadow.exponent", &LampShadow::exponent, 0.01, 100);
-  visit("shadow.bias", &LampShadow::bias, 0, 20);
-  visit("shadow.clip_start", &LampShadow::clip_start, 0.5, 3);
-  visit("shadow.clip_end", &LampShadow::clip_end, 3.5, 5);
-  visit("shadow.filter_angle", &LampShadow::filter_angle, 0.01, 0.7);
-  visit("shadow.esm_size", &LampShadow::esm_size, 16, 100);
-  visit("shadow.esm_format", &LampShadow::esm_format, 0, 1);
+  T::for_each_property([&](const auto &row) {
+    const auto access = [row](auto &thing) -> auto &
+    {
+      return row.access(thing);
+    };
+    visit(row.name, access, edit_limits(row));
+  });
 }
 
-template <typename Visit>
-void for_each_property(const scene::Material & /*of*/, Visit &&visit)
+template <std::same_as<scene::Texture> T, typename Visit>
+void for_each_edited(Visit &&visit)
 {
-  using scene::Material;
-  visit("name", &Material::name);
-  visit("base_color", &Material::base_color, 0, 1);
-  visit("alpha", &Material::alpha, 0, 1);
-  visit("metallic", &Material::metallic, 0, 1);
-  visit("roughness", &Material::roughness, 0, 1);
-  visit("normal_scale", &Material::normal_scale, -2, 2);
-  visit("occlusion_strength", &Material::occlusion_strength, 0, 1);
-  visit("specular", &Material::specular, 0, 1);
-  visit("specular_color", &Material::specular_color, 0, 1);
-  visit("coat", &Material::coat, 0, 1);
-  visit("coat_roughness", &Material::coat_roughness, 0, 1);
-  visit("coat_normal_scale", &Material::coat_normal_scale, -2, 2);
-  visit("sheen_color", &Material::sheen_color, 0, 1);
-  visit("sheen_roughness", &Material::sheen_roughness, 0, 1);
-  visit("anisotropy", &Material::anisotropy, 0, 1);
-  visit("anisotropy_rotation", &Material::anisotropy_rotation, -3, 3);
-  visit("transmission", &Material::transmission, 0, 1);
-  visit("thickness", &Material::thickness);
-  visit("ior", &Material::ior, 1, 3);
-  visit("attenuation_distance", &Material::attenuation_distance);
-  visit("attenuation_color", &Material::attenuation_color, 0, 1);
-  visit("emissive", &Material::emissive);
-  visit("is_unlit", &Material::is_unlit);
-  visit("alpha_mode", &Material::alpha_mode, 0, 2);
-  visit("alpha_cutoff", &Material::alpha_cutoff, 0, 1);
-  visit("is_double_sided", &Material::is_double_sided);
-}
-
-template <typename Visit>
-void for_each_property(const scene::TextureSlot & /*of*/, Visit &&visit)
-{
-  using scene::TextureSlot;
-  visit("uv_set", &TextureSlot::uv_set, 0, 1);
-  visit("offset", &TextureSlot::offset);
-  visit("rotation", &TextureSlot::rotation, -3, 3);
-  visit("scale", &TextureSlot::scale);
-}
-
-template <typename Visit>
-void for_each_property(const scene::Texture & /*of*/, Visit &&visit)
-{
-  using scene::Texture;
-  visit("wrap_u", &Texture::wrap_u, 0, 2);
-  visit("wrap_v", &Texture::wrap_v, 0, 2);
-  visit("magnified", &Texture::magnified, 0, 1);
-  visit("minified", &Texture::minified, 0, 1);
-  visit("mip", &Texture::mip, 0, 2);
-}
-
-template <typename Visit>
-void for_each_property(const scene::Node & /*of*/, Visit &&visit)
-{
-  using scene::Node;
-  visit("name", &Node::name);
-  visit("is_visible", &Node::is_visible);
-  visit("casts_shadow", &Node::casts_shadow);
-  visit("receives_shadow", &Node::receives_shadow);
-}
-
-template <typename Visit>
-void for_each_property(const scene::Camera & /*of*/, Visit &&visit)
-{
-  using scene::Camera;
-  visit("name", &Camera::name);
-  visit("kind", &Camera::kind, 0, 1);
-  visit("vertical_angle", &Camera::vertical_angle, 0.1, 3);
-  visit("aspect", &Camera::aspect);
-  visit("half_width", &Camera::half_width, 0.1, 10);
-  visit("half_height", &Camera::half_height, 0.1, 10);
-  visit("near", &Camera::near, 0.01, 1);
-  visit("far", &Camera::far);
-}
-
-template <typename Visit>
-void for_each_property(const scene::World & /*of*/, Visit &&visit)
-{
-  using scene::World;
-  visit("color", &World::color);
-  visit("strength", &World::strength);
-  visit("rotation", &World::rotation, -3, 3);
+  const auto add = [&](std::string_view name, auto member, int last) {
+    visit(
+        name, [member](auto &texture) -> auto & { return texture.*member; }, EditLimits{0.0, double(last)});
+  };
+  add("wrap_u", &T::wrap_u, 2);
+  add("wrap_v", &T::wrap_v, 2);
+  add("magnified", &T::magnified, 1);
+  add("minified", &T::minified, 1);
+  add("mip", &T::mip, 2);
 }
 
 /** Some values beside \a value within the limits; at least one. */
@@ -179,7 +110,8 @@ std::vector<Value> other_values(const Value &value, double min, double max)
     add(!value);
   }
   else if constexpr (std::is_enum_v<Value>) {
-    for (int i = int(min); i <= int(max); i++) {
+    constexpr auto word_count = int(scene::words<Value>.size());
+    for (int i = 0; i < (word_count > 0 ? word_count : int(max) + 1); i++) {
       add(Value(i));
     }
   }
@@ -206,11 +138,12 @@ void add_property_edits(EditedScene &edited, scene::Handle<Thing> handle, const 
 {
   const auto original = std::make_shared<const Thing>(edited.scene.pool<Thing>()[handle]);
   Thing changed = *original;
-  for_each_property(part(changed), [&](std::string_view property, auto member, double min = 0, double max = 100) {
-    auto &value = part(changed).*member;
+  using Edited = std::remove_cvref_t<decltype(part(changed))>;
+  for_each_edited<Edited>([&](std::string_view property, auto access, EditLimits limits) {
+    auto &value = access(part(changed));
     const auto before = value;
-    auto others = other_values(before, min, max);
-    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(part(changed))>, scene::TextureSlot>) {
+    auto others = other_values(before, limits.min, limits.max);
+    if constexpr (std::is_same_v<Edited, scene::TextureSlot>) {
       // There are fifteen slots.
       others.erase(others.begin(), others.end() - 1);
     }
@@ -628,10 +561,10 @@ inline EditedScene world_scene(bool has_picture, const std::string &name)
     edited.edits.push_back({name + ": " + what, [other](scene::Scene &to) { to.set_world(other); },
                             [world](scene::Scene &to) { to.set_world(world); }});
   };
-  for_each_property(world, [&](std::string_view property, auto member, double min = 0, double max = 100) {
-    for (const auto &value : other_values(world.*member, min, max)) {
+  for_each_edited<scene::World>([&](std::string_view property, auto access, EditLimits limits) {
+    for (const auto &value : other_values(access(world), limits.min, limits.max)) {
       scene::World other = world;
-      other.*member = value;
+      access(other) = value;
       add(std::string(property), other);
     }
   });

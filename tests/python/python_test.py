@@ -421,20 +421,48 @@ class Pictures(unittest.TestCase):
         with self.assertRaisesRegex(gnomon.DeviceError, "sample_count -1"):
             gnomon.Renderer.offline(self.device, scene, (96, 54), -1).render()
 
+    def test_settings_are_those_of_the_program(self):
+        """Each setting on which pictures depend, by its name, with the value that the program reports."""
+        # Not of a renderer: display, import, and what changes no picture.
+        others = {"view_transform", "exposure", "variant", "texture_size_max", "is_timed", "layer_pass",
+                  "clustered_lamps_min"}
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "report.json")
+            for sample_count in (1, 2, 16):
+                subprocess.run([os.environ["GNOMON_PROGRAM"], "render", PLAZA, "--backend", "null", "--size", "16x8",
+                                "--samples", str(sample_count), "--json", path], check=True, capture_output=True)
+                with open(path, encoding="utf-8") as file:
+                    settings = json.load(file)["settings"]
+                offline = gnomon.Renderer.offline(self.device, square_scene(), (16, 8), sample_count=sample_count)
+                self.assertEqual(set(gnomon.Renderer.__annotations__), set(settings) - others)
+                for name in set(settings) - others:
+                    value = getattr(offline, name)
+                    words = value.name.lower() if isinstance(value, gnomon.ShadowKind) else value
+                    self.assertEqual(words, settings[name], name)
+                    setattr(offline, name, value)
+                    self.assertEqual(getattr(offline, name), value, name)
+        offline.pcf = "disk:9"
+        offline.caster_faces = "back"
+        offline.shadow_esm_format = gnomon.EsmFormat.HALF
+        for name, wrong in (("pcf", "7x7"), ("caster_faces", "side"), ("shadow_filter_angle", 1.0),
+                            ("cascade_count", 5), ("cube_size_px", 16385), ("shadow_bytes_max", 0),
+                            ("light_threshold", -1.0), ("exposure", 1)):
+            with self.assertRaises((gnomon.InvalidEdit, TypeError, AttributeError)):
+                gnomon.Renderer(self.device, square_scene(), (16, 8), **{name: wrong})
+        scene = gnomon.load(PLAZA, texture_size_max=1)
+        self.assertTrue(all(max(texture.texels.shape[:2]) == 1 for texture in scene.textures))
+        for wrong in ({"texture_size_max": -1}, {"texture_size_max": 2 ** 21}, {"texture_size": 4}):
+            with self.assertRaises((gnomon.InvalidEdit, TypeError)):
+                gnomon.load(PLAZA, **wrong)
+
     def test_settings_that_cannot_be_drawn(self):
         scene = square_scene()
         renderer = gnomon.Renderer(self.device, scene, (32, 18), **SMALL)
-        for error, text, values in ((gnomon.DeviceError, "sample_count -1", {"sample_count": -1}),
-                                    (gnomon.DeviceError, "map_size_px 0", {"map_size_px": 0}),
-                                    (gnomon.DeviceError, "sample_count nor seconds_max", {"sample_count": 0})):
-            before = {name: getattr(renderer, name) for name in values}
-            for name, value in values.items():
-                setattr(renderer, name, value)
-            with self.assertRaisesRegex(error, text):
-                renderer.render()
-            for name, value in before.items():
-                setattr(renderer, name, value)
-        for name, good, bad in (("light_threshold", 0.25, (-1, float("nan"))), ("emissive_point_count", 16, (-1, 17))):
+        renderer.sample_count = 0
+        with self.assertRaisesRegex(gnomon.DeviceError, "sample_count nor seconds_max"):
+            renderer.render()
+        for name, good, bad in (("light_threshold", 0.25, (-1, float("nan"))), ("emissive_point_count", 16, (-1, 17)),
+                                ("sample_count", 2, (-1, 65537)), ("map_size_px", 64, (0, 16385))):
             setattr(renderer, name, good)
             for value in bad:
                 with self.assertRaisesRegex(gnomon.InvalidEdit, f"renderer: {name} .* is not"):

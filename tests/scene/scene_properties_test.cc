@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "member_count.hh"
+
 #include "scene.hh"
 
 #include <gtest/gtest.h>
@@ -14,46 +16,8 @@ namespace {
 
 // ---- Each member has a row ----
 
-template <typename T>
-constexpr bool is_optional = false;
-template <typename T>
-constexpr bool is_optional<std::optional<T>> = true;
-
-/** Converts to each type, or to each optional one: an optional can also be made of what converts to its value. */
-template <bool IsOptional>
-struct AnyValue {
-  template <typename T>
-  requires(is_optional<T> == IsOptional) constexpr operator T() const;
-};
-
-template <typename T, bool IsOptional, std::size_t... I>
-constexpr bool has_members(std::index_sequence<I...> /*indices*/)
-{
-  return requires
-  {
-    T{(static_cast<void>(I), AnyValue<IsOptional>())...};
-  };
-}
-
-/** Number of members of an aggregate. */
-template <typename T, bool IsOptional = false, std::size_t Count = 64>
-constexpr std::size_t member_count()
-{
-  if constexpr (has_members<T, IsOptional>(std::make_index_sequence<Count>())) {
-    return Count;
-  }
-  else {
-    return member_count<T, IsOptional, Count - 1>();
-  }
-}
-
-template <typename T>
-constexpr std::size_t row_count()
-{
-  std::size_t count = 0;
-  T::for_each_property([&](const auto & /*row*/) { count++; });
-  return count;
-}
+using test::member_count;
+using test::row_count;
 
 // A member without a row is in none of the lists that read the rows: add one, or count it here and say why.
 // The shadow has rows of its own.

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
+#include "member_count.hh"
+
 #include "view_error_estimate.hh"
 #include "view_history.hh"
 #include "view_navigation.hh"
 #include "view_properties.hh"
 #include "view_script.hh"
+
+#include "eevee_settings.hh"
 
 #include <gtest/gtest.h>
 #include <glm/gtc/matrix_transform.hpp>
@@ -439,6 +443,48 @@ TEST(ViewPropertiesTest, EveryFactorOfAMaterialIsAPropertyOfItsOwn)
   EXPECT_EQ(material.occlusion_strength, 0.5F);
   EXPECT_EQ(texture_lines(scene, material),
             (std::vector<TextureLine>{{"Occlusion", "cracks, 1x2"}, {"Coat normal", "1x1"}}));
+}
+
+// The two parts, which have rows of their own.
+static_assert(test::member_count<Settings>() == test::row_count<Settings>() + 2);
+
+/** Checks that the window shows each row of \a Part with a label, within the same limits. */
+template <typename Part, typename T>
+void expect_rows(double factor_of_cone = 1.0)
+{
+  const Properties<T> &shown = properties<T>();
+  Part::for_each_property([&](const auto &row) {
+    if (row.label.empty()) {
+      return;
+    }
+    const auto is_it = [&](const auto &property) { return property.name == row.key_or_name(); };
+    const auto number = std::ranges::find_if(shown.numbers, is_it);
+    const bool is_choice = std::ranges::any_of(shown.choices, is_it);
+    EXPECT_TRUE(is_choice || number != shown.numbers.end()) << row.name;
+    if (number != shown.numbers.end()) {
+      const scene::ShownUnit unit = scene::shown_unit(row);
+      const double factor = row.name == "spot_outer_angle" ? factor_of_cone : 1.0;
+      EXPECT_NEAR(number->max, factor * unit.factor * row.max, 1e-9 * number->max) << row.name;
+      const bool is_rounded = row.unit == "bytes" || number->is_zero_absent;
+      EXPECT_TRUE(is_rounded || number->min == factor * unit.factor * row.min) << row.name;
+      EXPECT_EQ(number->label, row.label);
+      EXPECT_TRUE(row.name == "intensity" || number->unit(T()) == unit.text) << row.name;
+    }
+  });
+}
+
+TEST(ViewPropertiesTest, TheWindowShowsEachRowOfThingsAndSettingsWithinItsLimits)
+{
+  expect_rows<scene::Lamp, scene::Lamp>(2.0);
+  expect_rows<scene::LampShadow, ShadowOfLamp>();
+  expect_rows<scene::Camera, scene::Camera>();
+  expect_rows<scene::Material, scene::Material>();
+  expect_rows<scene::Node, scene::Node>();
+  expect_rows<scene::World, scene::World>();
+  expect_rows<Settings, Settings>();
+  expect_rows<eevee::Settings, Settings>();
+  expect_rows<eevee::ShadowSettings, Settings>();
+  expect_rows<render_scene::Display, Settings>();
 }
 
 TEST(ViewPropertiesTest, ShadowSettingsOfAllLampsAreThoseOfTheCommandLine)

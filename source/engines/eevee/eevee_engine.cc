@@ -6,6 +6,7 @@
 #include "eevee_film.hh"
 #include "eevee_frame.hh"
 #include "eevee_material_variants.hh"
+#include "eevee_settings.hh"
 
 #include "draw_view_shared.h"
 
@@ -64,21 +65,8 @@ Settings offline_settings(int sample_count)
 /** Check all settings except those of shadows, which SceneShadows::sync checks. \throws gpu::Error */
 static void check(const Settings &settings)
 {
-  if (settings.sample_count < 0) {
-    throw gpu::Error("eevee: sample_count {} is negative", settings.sample_count);
-  }
-  if (!(settings.light_threshold >= 0.0F) || std::isinf(settings.light_threshold)) {
-    throw gpu::Error("eevee: light_threshold {} is not a finite number of at least 0", settings.light_threshold);
-  }
-  if (settings.emissive_point_count < 0 || settings.emissive_point_count > emissive_point_max) {
-    throw gpu::Error("eevee: emissive_point_count {} is not in [0, {}]", settings.emissive_point_count,
-                     emissive_point_max);
-  }
-  if (settings.clustered_lamps_min < 1) {
-    throw gpu::Error("eevee: clustered_lamps_min {} is not at least 1", settings.clustered_lamps_min);
-  }
-  if (!(settings.noise_threshold >= 0.0F) || std::isinf(settings.noise_threshold)) {
-    throw gpu::Error("eevee: noise_threshold {} is not a finite number of at least 0", settings.noise_threshold);
+  if (const std::string fault = fault_of(settings); !fault.empty()) {
+    throw gpu::Error("eevee: {}", fault);
   }
   const bool is_whole = settings.sample_first == 0 && settings.sample_end == 0;
   if (!is_whole && (settings.sample_first < 0 || settings.drawn_sample_count() < 1 ||

@@ -55,6 +55,7 @@ inline constexpr int open_ended_sample_count = 256;
 /** Most points of emissive surfaces in a sample. \see Settings::emissive_point_count */
 inline constexpr int emissive_point_max = 16;
 
+/** Names, units and limits are in eevee_settings.hh. */
 struct Settings {
   ShadowSettings shadow{};
   Background background{};
@@ -121,6 +122,10 @@ struct Settings {
   {
     return sample_count == 0 ? open_ended_sample_count : sample_count;
   }
+  /** All but the shadow's. \see eevee_settings.hh */
+  template <typename Visit>
+  static constexpr void for_each_property(Visit &&visit);
+
   /** Number of samples that are drawn, of a picture with a known number of samples; otherwise 0. */
   [[nodiscard]] int drawn_sample_count() const
   {

@@ -15,8 +15,7 @@ namespace gnomon::gltf {
 
 namespace {
 
-constexpr std::array<std::string_view, 5> node_extras{"gnomon_visible", "gnomon_casts_shadow", "gnomon_receives_shadow",
-                                                      "gnomon_lamp_name", "gnomon_camera_name"};
+constexpr std::array<std::string_view, 2> name_extras{"gnomon_lamp_name", "gnomon_camera_name"};
 
 [[noreturn]] void fail_extra(const Model::Node &node, int index, const std::string &key, const char *wanted)
 {
@@ -28,23 +27,23 @@ constexpr std::array<std::string_view, 5> node_extras{"gnomon_visible", "gnomon_
 
 bool is_node_extra(std::string_view key)
 {
-  return is_world_extra(key) || std::find(node_extras.begin(), node_extras.end(), key) != node_extras.end();
+  bool is_flag = false;
+  for_each_flag([&](const auto &row) { is_flag |= extra_key(row) == key; });
+  return is_flag || is_world_extra(key) || std::find(name_extras.begin(), name_extras.end(), key) != name_extras.end();
 }
 
 void read_flags(const Model::Node &source, int index, scene::Node &node)
 {
-  const auto read = [&](const char *key, bool &flag) {
+  for_each_flag([&](const auto &row) {
+    const std::string key = extra_key(row);
     if (const auto found = source.extras.find(key); found != source.extras.end()) {
       const bool *value = std::get_if<bool>(&found->second);
       if (value == nullptr) {
         fail_extra(source, index, key, "true or false");
       }
-      flag = *value;
+      node.*row.member = *value;
     }
-  };
-  read("gnomon_visible", node.is_visible);
-  read("gnomon_casts_shadow", node.casts_shadow);
-  read("gnomon_receives_shadow", node.receives_shadow);
+  });
 }
 
 bool is_rotation(const glm::dvec4 &xyzw)

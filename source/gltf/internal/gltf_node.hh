@@ -10,6 +10,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 /** Reads properties of nodes except their lamps. Internal to source/gltf. */
 namespace gnomon::gltf {
@@ -17,7 +18,18 @@ namespace gnomon::gltf {
 /** Whether an extra applies to all nodes, not only to those with a lamp. */
 [[nodiscard]] bool is_node_extra(std::string_view key);
 
-/** The extras gnomon_visible, gnomon_casts_shadow and gnomon_receives_shadow. \throws Fault that names \a node. */
+/** Calls \a visit with each row of a node that is an extra: true or false. */
+template <typename Visit>
+void for_each_flag(Visit &&visit)
+{
+  scene::Node::for_each_property([&](const auto &row) {
+    if constexpr (std::is_same_v<typename std::decay_t<decltype(row)>::Value, bool>) {
+      visit(row);
+    }
+  });
+}
+
+/** The extras of for_each_flag. \throws Fault that names \a node. */
 void read_flags(const Model::Node &source, int index, scene::Node &node);
 
 /** Whether a quaternion can be normalised. */

@@ -103,12 +103,12 @@ TEST_F(OctahedralStoreTest, LampsPastTheLimitAreNamedAndTheOthersUnchanged)
 // hazards.md: fp16 storage of linear distance: format chosen by range and exponent, error reported.
 TEST_F(OctahedralStoreTest, FormatFollowsRangeAndExponentAndItsErrorIsReported)
 {
-  const auto with = [](float exponent, EsmFormat format) {
+  const auto with = [](float exponent, std::optional<EsmFormat> format) {
     return EsmSettings{.exponent = exponent, .size_px = 64, .format = format};
   };
   store.sync(
       *device, shaders,
-      {{lamp("near", 10.0F, with(5.0F, EsmFormat::Auto)), lamp("far", 40.0F, with(80.0F, EsmFormat::Auto)),
+      {{lamp("near", 10.0F, with(5.0F, std::nullopt)), lamp("far", 40.0F, with(80.0F, std::nullopt)),
         lamp("forced", 40.0F, with(80.0F, EsmFormat::Half)), lamp("asked", 1e3F, with(1e4F, EsmFormat::Float))}});
   EXPECT_EQ(store.data(0).format, ESM_HALF);
   EXPECT_EQ(store.data(1).format, ESM_FLOAT);
@@ -158,8 +158,8 @@ TEST_F(OctahedralStoreTest, BadSettingsAreRefusedByNameAndLeaveTheStoreAsItWas)
   for (const float exponent : {0.0F, 0.009F, 1.1e4F, nan}) {
     refused(lamp("bad", 10.0F, {.exponent = exponent}), "exponent");
   }
-  for (const float angle : {-0.1F, 0.6F, nan}) {
-    refused(lamp("bad", 10.0F, {.filter_angle = angle}), "filter angle");
+  for (const float angle : {-0.1F, 0.8F, nan}) {
+    refused(lamp("bad", 10.0F, {.filter_angle = angle}), "shadow_filter_angle");
   }
   for (const int size : {0, 3, 8193}) {
     refused(lamp("bad", 10.0F, {.size_px = size}), "size");

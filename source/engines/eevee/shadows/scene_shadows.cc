@@ -5,8 +5,9 @@
 #include "shadow_spot.hh"
 #include "shadows.hh"
 
+#include "eevee_settings.hh"
+
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace gnomon::eevee {
@@ -22,26 +23,15 @@ static LayerPass best_layer_pass(LayerPass asked, const gpu::Limits &limits)
   return limits.has_vertex_layer ? LayerPass::Layered : LayerPass::Geometry;
 }
 
-/** Check all settings except those of exponential maps, which OctahedralStore checks. \throws gpu::Error */
+/** \throws gpu::Error */
 static void check(const ShadowSettings &settings)
 {
-  const auto check_range = [](const char *setting, auto value, auto low, auto high) {
-    // The negated condition also rejects NaN.
-    if (!(value >= low && value <= high)) {
-      throw gpu::Error("shadow settings: {} {} is not in [{}, {}]", setting, value, low, high);
-    }
-  };
-  constexpr int most = std::numeric_limits<int>::max();
-  check_range("cube_size_px", settings.cube_size_px, 1, most);
-  check_range("map_size_px", settings.map_size_px, 1, most);
-  check_range("cascades.count", settings.cascades.count, 0, cascade_count_max);
-  check_range("cascades.lambda", settings.cascades.lambda, 0.0F, 1.0F);
-  const int width = settings.pcf.width;
-  if (width == 0) {
-    check_range("pcf.taps", settings.pcf.taps, 1, 64);
+  if (const std::string fault = fault_of(settings); !fault.empty()) {
+    throw gpu::Error("shadow settings: {}", fault);
   }
-  if (width != 0 && width != 1 && width != 3 && width != 5) {
-    throw gpu::Error("shadow settings: pcf.width {} is not 0, 1, 3 or 5", width);
+  if (!pcf_kernel_of(text_of(settings.pcf))) {
+    throw gpu::Error("shadow settings: pcf.width {} and pcf.taps {} are none of 1, 3x3, 5x5, and 0 with 1 to 64",
+                     settings.pcf.width, settings.pcf.taps);
   }
 }
 

@@ -30,7 +30,7 @@ EsmLamp esm_lamp(const ShadowLamp &lamp, const ShadowPlace &place, const scene::
   result.settings.filter_angle = asked.filter_angle ? asked.filter_angle : settings.esm.filter_angle;
   result.settings.size_px = place.given.octahedral_px;
   if (asked.esm_format) {
-    result.settings.format = *asked.esm_format == scene::EsmFormat::Half ? EsmFormat::Half : EsmFormat::Float;
+    result.settings.format = asked.esm_format;
   }
   return result;
 }

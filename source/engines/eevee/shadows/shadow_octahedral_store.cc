@@ -2,6 +2,7 @@
 #include "shadow_octahedral_store.hh"
 
 #include "eevee_lamps.hh"
+#include "eevee_settings.hh"
 
 #include <fmt/ranges.h>
 
@@ -37,27 +38,19 @@ int esm_cube_size_px(int size_px)
 
 namespace {
 
-/** \throws gpu::Error unless \a value is in [low, high]. NaN is out of range. */
-template <typename T>
-void check_range(const EsmLamp &lamp, const char *setting, T value, T low, T high, const char *unit)
-{
-  if (!(value >= low && value <= high)) {
-    throw gpu::Error("lamp '{}': {} {}{} of its shadow is not in [{}, {}]", lamp.name, setting, value, unit, low, high);
-  }
-}
-
 /** The entry of \a lamp in esm_block, without the layer. \throws gpu::Error if a setting is out of range */
 shared::EsmData make_data(const EsmLamp &lamp)
 {
   const EsmSettings &settings = lamp.settings;
-  check_range(lamp, "range", lamp.range, 1e-6F, 1e30F, " m");
-  check_range(lamp, "size", settings.size_px, 4, 8192, " px");
+  if (!(lamp.range >= 1e-6F && lamp.range <= 1e30F)) {
+    throw gpu::Error("lamp '{}': range {} m of its shadow is not in [1e-06, 1e+30]", lamp.name, lamp.range);
+  }
+  if (const std::string fault = fault_of(settings); !fault.empty()) {
+    throw gpu::Error("lamp '{}': {}", lamp.name, fault);
+  }
   const float filter_angle = settings.filter_angle.value_or(esm_filter_angle(settings.size_px));
-  check_range(lamp, "filter angle", filter_angle, 0.0F, 0.5F, " rad");
   const float exponent =
       settings.exponent.value_or(esm_exponent(settings.method, filter_angle, settings.size_px, lamp.range));
-  check_range(lamp, "exponent", exponent, 0.01F, 1e4F, "/m");
-  check_range(lamp, "bias", settings.bias, 0.0F, 1e3F, "");
 
   shared::EsmData data{};
   data.exponent = exponent;
@@ -66,8 +59,7 @@ shared::EsmData make_data(const EsmLamp &lamp)
   data.filter_angle = filter_angle;
   data.size = settings.size_px;
   const float half_error = shared::esm_visibility_error(exponent, shared::esm_format_error(lamp.range, ESM_HALF));
-  const bool is_half =
-      settings.format == EsmFormat::Half || (settings.format == EsmFormat::Auto && half_error <= esm_half_error_max);
+  const bool is_half = settings.format == EsmFormat::Half || (!settings.format && half_error <= esm_half_error_max);
   data.format = settings.method == EsmMethod::Evsm ? ESM_VARIANCE : is_half ? ESM_HALF : ESM_FLOAT;
   return data;
 }

@@ -8,6 +8,7 @@
 
 #include "draw_pass.hh"
 #include "eevee_esm_shared.h"
+#include "scene_properties.hh"
 
 #include <optional>
 
@@ -36,31 +37,33 @@ enum class EsmKernel {
   Separable,
 };
 
-enum class EsmFormat {
-  /** Half if its rounding changes visibilities by at most esm_half_error_max, otherwise Float. */
-  Auto,
-  Half,
-  Float,
-};
+using scene::EsmFormat;
 
 /** Maximum error of visibilities by 16-bit rounding. OctahedralStore::limits reports larger errors. */
 inline constexpr float esm_half_error_max = 0.02F;
 
-/** Settings of one lamp's exponential shadow map. */
+/** Settings of one lamp's exponential shadow map; names, units and limits are in eevee_settings.hh. */
 struct EsmSettings {
   EsmMethod method = EsmMethod::Esm;
-  /** Exponent, 1/m, 0.01 to 1e4. Default: esm_exponent. */
+  /** Exponent, 1/m. Default: esm_exponent. */
   std::optional<float> exponent{};
-  /** Factor of shared::esm_bias, 0 to 1e3. */
+  /** Factor of shared::esm_bias. */
   float bias = 1.0F;
-  /** Half the opening angle of the filter cone, radians, 0 to 0.5. Default: esm_filter_angle. */
+  /** Half the opening angle of the filter cone, radians. Default: esm_filter_angle. */
   std::optional<float> filter_angle{};
-  /** Edge of the map without its border, texels, 4 to 8192. */
+  /** Edge of the map without its border, texels. */
   int size_px = 512;
-  /** Format of EsmMethod::Esm. EsmMethod::Evsm always has 32 bits. */
-  EsmFormat format = EsmFormat::Auto;
+  /**
+   * Format of EsmMethod::Esm. EsmMethod::Evsm always has 32 bits. Default: Half if its rounding changes visibilities by
+   * at most esm_half_error_max, otherwise Float.
+   */
+  std::optional<EsmFormat> format{};
   /** With the default filter angle, Disk4 has the quality of Disk32 in a quarter of the time. */
   EsmKernel kernel = EsmKernel::Disk4;
+
+  /** All but the method. \see eevee_settings.hh */
+  template <typename Visit>
+  static constexpr void for_each_property(Visit &&visit);
 };
 
 /**

@@ -23,13 +23,14 @@ enum class LayerPass {
 /** The faces of one-sided casters that are drawn. Both faces of two-sided materials are always drawn. */
 enum class CasterFaces { All, Front, Back };
 
-/** Settings of shadows. Those of a lamp (scene::LampShadow) override them, except that `None` disables all shadows. */
+/** Settings of shadows; names, units and limits are in eevee_settings.hh. Those of a lamp (scene::LampShadow) override
+ * them, except that `None` disables all shadows. */
 struct ShadowSettings {
   /** Hard: bilinear blend of the four texels around a lookup. Pcf: percentage-closer filtering with `pcf`. */
   scene::ShadowKind kind = scene::ShadowKind::Hard;
-  /** Edge of a cube face, texels, at least 1. */
+  /** Edge of a cube face, texels. */
   int cube_size_px = 1024;
-  /** Edge of a planar map, texels, at least 1. */
+  /** Edge of a planar map, texels. */
   int map_size_px = 2048;
   PcfKernel pcf{};
   /** Settings of Esm and Evsm for all lamps except suns. EsmSettings::method is not used: `kind` selects the method. */
@@ -54,6 +55,10 @@ struct ShadowSettings {
   CasterFaces caster_faces = CasterFaces::All;
   /** Maximum device memory of all shadow layers, bytes. \see plan_shadows */
   std::size_t memory_bytes_max = std::size_t(1) << 30U;
+
+  /** Also those of `esm` and `cascades`. \see eevee_settings.hh */
+  template <typename Visit>
+  static constexpr void for_each_property(Visit &&visit);
 };
 
 }  // namespace gnomon::eevee

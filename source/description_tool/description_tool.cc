@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+// Prints doc/properties.md: the rows of all properties and settings. scripts/describe writes the file.
+#include "view_settings.hh"
+
+#include "eevee_settings.hh"
+#include "gltf_import.hh"
+
+#include "scene.hh"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace gnomon {
+
+namespace {
+
+template <typename Value>
+struct Content {
+  using Type = Value;
+};
+template <typename Value>
+struct Content<std::optional<Value>> {
+  using Type = Value;
+};
+
+/** Words for values of an enumeration, or limits of a number. */
+template <typename Value>
+std::string values_text(const scene::Description &row)
+{
+  if constexpr (requires(Value value) { value.has_value(); }) {
+    return values_text<typename Content<Value>::Type>(row) + ", or absent";
+  }
+  else if constexpr (std::is_enum_v<Value>) {
+    return fmt::format("{}", fmt::join(scene::words<Value>, ", "));
+  }
+  else if constexpr (std::is_same_v<Value, bool>) {
+    return fmt::format("{}", fmt::join(row.switch_words, ", "));
+  }
+  else {
+    bool has_number = false;
+    scene::for_each_number(Value(), [&](double) { has_number = true; });
+    return !has_number ? "" : range_text(row) + (row.zero.empty() ? "" : ", or 0");
+  }
+}
+
+/** The kinds that \a bits stand for. */
+template <typename Kind>
+std::string kinds_text(unsigned bits)
+{
+  std::vector<std::string_view> kinds;
+  for (std::size_t kind = 0; kind < scene::words<Kind>.size(); kind++) {
+    if ((bits >> kind & 1U) != 0) {
+      kinds.push_back(scene::words<Kind>[kind]);
+    }
+  }
+  return fmt::format("{}", fmt::join(kinds, ", "));
+}
+
+void print_row(const std::vector<std::string> &cells)
+{
+  fmt::print("| {} |\n", fmt::join(cells, " | "));
+}
+
+void print_header(std::string_view title, const std::vector<std::string> &columns)
+{
+  fmt::print("\n## {}\n\n", title);
+  print_row(columns);
+  print_row(std::vector<std::string>(columns.size(), "---"));
+}
+
+std::string code(std::string_view text)
+{
+  return text.empty() ? "" : fmt::format("`{}`", text);
+}
+
+/** The place of a property in files: in glTF, and as an extra. */
+std::string file_text(const scene::Description &row)
+{
+  std::string text = code(row.path);
+  if (row.extra_kinds != 0) {
+    text += fmt::format("{}`gnomon_{}`{}", text.empty() ? "" : ", ", row.key_or_name(),
+                        row.is_extra_in_degrees ? " in degrees" : "");
+  }
+  return text + (row.is_animated ? ", animated" : "");
+}
+
+template <typename Part, typename Kind = void>
+void print_properties(std::string_view title)
+{
+  print_header(title, {"Python", "script", "unit", "values", "kinds", "file", "meaning"});
+  Part::for_each_property([&](const auto &row) {
+    using Value = typename std::decay_t<decltype(row)>::Value;
+    std::string kinds;
+    if constexpr (!std::is_void_v<Kind>) {
+      kinds = row.kinds == 0 ? "" : kinds_text<Kind>(row.kinds);
+    }
+    const std::string script = row.label.empty() ? "" : code(row.key_or_name());
+    print_row({code(row.name), script, std::string(row.unit), values_text<Value>(row), kinds, file_text(row),
+               std::string(row.sentence)});
+  });
+}
+
+template <typename Part>
+void print_settings(std::string_view title, std::string_view script_prefix)
+{
+  print_header(title, {"name", "option", "script", "unit", "values", "meaning"});
+  Part::for_each_property([&](const auto &row) {
+    using Value = typename std::decay_t<decltype(row)>::Value;
+    const bool is_in_window = !row.label.empty() && !script_prefix.empty();
+    print_row({code(row.name), row.option.empty() ? "" : fmt::format("`--{}`", row.option),
+               is_in_window ? fmt::format("`{}{}`", script_prefix, row.key_or_name()) : "", std::string(row.unit),
+               values_text<Value>(row), std::string(row.sentence)});
+  });
+}
+
+void print_page()
+{
+  fmt::print(
+      "# Properties and settings\n\n"
+      "`scripts/describe` writes this page from the rows that the importer, the exporter, checks of edits, options, "
+      "Python "
+      "and the window read. A test compares both. Numbers are in the units of C++ and Python; options and the window "
+      "have "
+      "degrees for rad and MiB for bytes. Scripts are those of [the window](view.md); files are glTF with "
+      "[extras](conventions.md).\n");
+  print_properties<scene::Lamp, scene::LampKind>("Lamp");
+  print_properties<scene::LampShadow, scene::LampKind>("Shadow of a lamp");
+  print_properties<scene::Camera, scene::CameraKind>("Camera");
+  print_properties<scene::Material>("Material");
+  print_header("Textures of a material", {"Python", "colours"});
+  for (const scene::TextureInput &input : scene::texture_inputs) {
+    print_row({code(input.name), input.is_color ? "sRGB" : "linear"});
+  }
+  print_properties<scene::TextureSlot>("Texture slot");
+  print_properties<scene::Node>("Node");
+  print_properties<scene::World>("World");
+  print_settings<eevee::Settings>("Pictures", "render.");
+  print_settings<eevee::ShadowSettings>("Shadows of all lamps", "render.");
+  print_settings<render_scene::Display>("Display", "render.");
+  print_settings<gltf::ImportOptions>("Import", "");
+  print_settings<view::Settings>("The window alone", "render.");
+}
+
+}  // namespace
+
+}  // namespace gnomon
+
+int main()
+{
+  gnomon::print_page();
+  return 0;
+}
