@@ -40,6 +40,9 @@ install(FILES ${PROJECT_BINARY_DIR}/gnomon.pc DESTINATION ${CMAKE_INSTALL_LIBDIR
 if(GNOMON_PROGRAM)
   install(TARGETS gnomon)
   install(TARGETS gnomon_oiio DESTINATION ${CMAKE_INSTALL_LIBDIR}/gnomon)
+  # Debian's Blender finds it there if the prefix is /usr.
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/integrations/blender/render_gnomon DESTINATION ${CMAKE_INSTALL_DATADIR}/blender/scripts/addons
+    FILES_MATCHING PATTERN "*.py")
 endif()
 
 # cpack: a Debian package of all that is installed. Debian's tools find what it needs at run time. Programs that are linked with it need

@@ -1,0 +1,440 @@
+# SPDX-License-Identifier: MIT
+"""Gnomon in Blender: the exporter of glTF also writes what glTF has no word for. doc/from-blender.md describes it."""
+
+import copy
+import math
+import os
+import shlex
+
+import bpy
+import numpy
+
+from . import closed, lamps, materials, world
+
+bl_info = {
+    "name": "Gnomon",
+    "author": "The authors of Gnomon",
+    "version": (1, 0, 0),
+    "blender": (3, 4, 0),
+    "location": "File > Export > glTF 2.0",
+    "description": "Lamps, the world and the view of a scene in glTF files, as Gnomon reads them",
+    "category": "Import-Export",
+}
+
+VIEW_TRANSFORMS = {'Standard': 'standard', 'Raw': 'raw', 'AgX': 'agx', 'Khronos PBR Neutral': 'pbr-neutral'}
+# Kinds of objects that have no meaning in glTF.
+UNWRITTEN_OBJECTS = {'META', 'VOLUME', 'CURVES', 'POINTCLOUD', 'GPENCIL', 'GREASEPENCIL', 'LIGHT_PROBE'}
+DRAWN_OBJECTS = {'MESH', 'CURVE', 'SURFACE', 'FONT', 'LIGHT'}
+
+
+class Report:
+    """Sentences about what is not drawn or not as in Blender, each once, in the order of their things."""
+
+    def __init__(self):
+        self.lines = []
+
+    def add(self, what, remark):
+        line = f"{what}: {remark}"
+        if line not in self.lines:
+            self.lines.append(line)
+
+    def add_all(self, what, remarks):
+        for remark in remarks:
+            self.add(what, remark)
+
+
+def own_extras(thing):
+    """The custom properties of a thing that are meant for Gnomon."""
+    return {key: value if isinstance(value, (str, int, float)) else list(value)
+            for key, value in thing.items() if key.startswith('gnomon_') and key != 'gnomon_export'}
+
+
+def add_extras(element, extras):
+    """Adds to the extras of an element of the file; those of the user stay."""
+    if extras:
+        element.extras = {**extras, **(element.extras or {})}
+
+
+def rendered_objects(view_layer):
+    """The names of objects that a render of the view layer shows, apart from instances of collections."""
+    names = set()
+
+    def walk(layer):
+        if layer.exclude or layer.collection.hide_render:
+            return
+        names.update(thing.name_full for thing in layer.collection.objects if not thing.hide_render)
+        for child in layer.children:
+            walk(child)
+
+    walk(view_layer.layer_collection)
+    return names
+
+
+def view_of(scene, report):
+    """(view transform of Gnomon, exposure in stops)."""
+    view = scene.view_settings
+    transform = VIEW_TRANSFORMS.get(view.view_transform)
+    if transform is None:
+        transform = 'agx' if view.view_transform.startswith('Filmic') else 'standard'
+        report.add('colour management', f"the view transform '{view.view_transform}' is not drawn; --view {transform} takes its place")
+    if view.look not in ('', 'None'):
+        report.add('colour management', f"the look '{view.look}' is not drawn")
+    if view.gamma != 1.0:
+        report.add('colour management', f"the gamma of {view.gamma:.3g} is not drawn")
+    if view.use_curve_mapping:
+        report.add('colour management', "curves are not drawn")
+    exposure = view.exposure
+    if scene.render.engine == 'CYCLES' and scene.cycles.film_exposure > 0:
+        exposure += math.log2(scene.cycles.film_exposure)
+    return transform, exposure
+
+
+class Export:
+    """One run of the exporter."""
+
+    def __init__(self, scene, settings):
+        self.scene = scene
+        self.settings = settings
+        self.report = Report()
+        self.path = settings['gltf_filepath']
+        self.rendered = rendered_objects(bpy.context.view_layer)
+        self.volumes = {}
+        self.choose_options()
+        self.report_scene()
+        self.world_extras, remarks = world.extras_of(
+            scene.world, os.path.splitext(self.path)[0] + '_world.hdr', scene.gnomon_export.world_width, settings['gltf_yup'])
+        self.report.add_all('world', remarks)
+
+    def choose_options(self):
+        """Sets those options of the exporter without which the file would lack what Blender draws."""
+        settings = self.settings
+        settings['gltf_lights'] = settings['gltf_cameras'] = True
+        settings['gltf_lighting_mode'] = 'SPEC'
+        meshes = [thing for thing in self.scene.objects if thing.type == 'MESH' and thing.name_full in self.rendered]
+        if any(thing.data.shape_keys for thing in meshes):
+            if not settings['gltf_apply']:
+                modified = [thing.name for thing in meshes if any(m.type != 'ARMATURE' and m.show_render for m in thing.modifiers)]
+                if modified:
+                    self.report.add('modifiers', f"those of {', '.join(modified)} are not written, because shape keys could not be written then")
+        else:
+            settings['gltf_apply'] = True
+        if any(track.strips for thing in self.scene.objects if thing.animation_data for track in thing.animation_data.nla_tracks):
+            self.report.add('animation', "strips are written at their actions' own times")
+        else:
+            settings['gltf_nla_strips'] = False
+            settings['gltf_export_anim_single_armature'] = False
+            # 4.0 and later.
+            settings['gltf_animation_mode'] = 'ACTIVE_ACTIONS'
+
+    def report_scene(self):
+        scene, report = self.scene, self.report
+        if scene.render.use_motion_blur:
+            report.add('scene', "motion blur is not drawn")
+        if scene.use_nodes:
+            report.add('scene', "compositing nodes are not run")
+        instances = {}
+        for instance in bpy.context.evaluated_depsgraph_get().object_instances:
+            parent = instance.parent
+            if instance.is_instance and parent is not None and parent.instance_type == 'NONE':
+                instances[parent.name] = instances.get(parent.name, 0) + 1
+        for name, count in instances.items():
+            report.add(f"object '{name}'", f"its {count} instances of particles or geometry nodes are not written; make them real")
+        animated = [scene.world, *(thing.data for thing in scene.objects if thing.type in ('LIGHT', 'CAMERA'))]
+        for thing in scene.objects:
+            if thing.name_full not in self.rendered:
+                continue
+            what = f"object '{thing.name}'"
+            if thing.type in UNWRITTEN_OBJECTS:
+                report.add(what, f"objects of the kind {thing.type} are not written")
+            if thing.type == 'MESH':
+                for system in thing.particle_systems:
+                    if system.settings.type == 'HAIR' and system.settings.render_type == 'PATH':
+                        report.add(what, f"the hair '{system.name}' is not written; make a mesh of it")
+                if not thing.visible_camera:
+                    report.add(what, "it is hidden from the camera in Blender and is drawn")
+                if thing.is_holdout or thing.is_shadow_catcher:
+                    report.add(what, "holdouts and shadow catchers are drawn as surfaces")
+            animated += [slot.material for slot in thing.material_slots if slot.material]
+        for data in animated:
+            if data is not None and any(each is not None and each.animation_data and each.animation_data.action
+                                        for each in (data, data.node_tree if hasattr(data, 'node_tree') else None)):
+                report.add(f"{data.bl_rna.name.lower()} '{data.name}'", "its animation is not written, only that of objects, bones and shape keys")
+
+    def tag_tree(self, tree):
+        """Leaves out what a render does not show. What only carries others stays."""
+        def walk(uuid, is_in_instance, is_hidden):
+            node = tree.nodes[uuid]
+            thing = node.blender_object
+            is_bone = node.blender_bone is not None
+            if not is_bone:
+                is_instancer = thing.instance_type == 'COLLECTION'
+                is_own_hidden = thing.hide_render if is_in_instance else thing.name_full not in self.rendered
+                if is_hidden or (is_own_hidden and (is_instancer or thing.type in DRAWN_OBJECTS)):
+                    node.keep_tag = False
+                is_hidden = is_hidden or (is_own_hidden and is_instancer)
+                is_in_instance = is_in_instance or is_instancer
+            for child in node.children:
+                walk(child, is_in_instance, is_hidden)
+
+        for root in list(tree.roots):
+            walk(root, False, False)
+
+    def write_node(self, node, thing):
+        extras = own_extras(thing)
+        if thing.type == 'LIGHT':
+            extras = {**self.lamp_extras(node, thing), **extras}
+        elif thing.type == 'CAMERA':
+            self.report_camera(thing)
+        elif not thing.visible_shadow:
+            extras.setdefault('gnomon_casts_shadow', False)
+        add_extras(node, extras)
+
+    def lamp_extras(self, node, thing):
+        lamp, what = thing.data, f"lamp '{thing.name}'"
+        extras, remarks = lamps.extras_of(lamp)
+        self.report.add_all(what, remarks)
+        extension = (node.extensions or {}).get('KHR_lights_punctual')
+        if extension is not None:
+            light = extension.extension['light'].extension
+            light['color'], light['intensity'], remarks = lamps.punctual(lamp)
+            self.report.add_all(what, remarks)
+        casts = lamp.cycles.cast_shadow if self.scene.render.engine == 'CYCLES' and hasattr(lamp.cycles, 'cast_shadow') else lamp.use_shadow
+        # A lamp that is written without light has no extras.
+        if not casts and (extension is not None or extras):
+            extras['gnomon_shadow'] = 'none'
+        return extras
+
+    def report_camera(self, thing):
+        camera, what = thing.data, f"camera '{thing.name}'"
+        if camera.type == 'PANO':
+            self.report.add(what, "a panoramic camera is neither written nor drawn")
+        if camera.shift_x or camera.shift_y:
+            self.report.add(what, "its shift is not drawn")
+        if camera.dof.use_dof:
+            self.report.add(what, "its depth of field is not drawn")
+
+    def write_material(self, element, material):
+        self.report.add_all(f"material '{material.name}'", materials.remarks_of(material))
+        add_extras(element, own_extras(material))
+
+    def write_mesh(self, element, mesh, slots):
+        by_name = {material.name: material for material in slots if material is not None}
+        for primitive in element.primitives:
+            written = primitive.material
+            material = by_name.get(getattr(written, 'name', None))
+            if not materials.uses_color_attribute(material):
+                # glTF multiplies these by the base colour of any material.
+                for key in [key for key in primitive.attributes if key.startswith('COLOR_')]:
+                    del primitive.attributes[key]
+            extensions = getattr(written, 'extensions', None) or {}
+            if material is None or 'KHR_materials_transmission' not in extensions or 'KHR_materials_volume' in extensions:
+                continue
+            indices = [i for i, each in enumerate(slots) if each == material]
+            thickness = self.thickness(mesh, indices)
+            if thickness is None:
+                self.report.add(f"mesh '{mesh.name}'", f"its part of '{material.name}' is not closed; it is drawn as a thin wall")
+                continue
+            primitive.material = self.with_volume(written, material, thickness)
+
+    @staticmethod
+    def thickness(mesh, slot_indices):
+        """Of the closed body of the triangles in some material slots, metres; None if it is not closed."""
+        mesh.calc_loop_triangles()
+        positions = numpy.empty(3 * len(mesh.vertices), numpy.float32)
+        mesh.vertices.foreach_get('co', positions)
+        triangles = numpy.empty(3 * len(mesh.loop_triangles), numpy.int32)
+        mesh.loop_triangles.foreach_get('vertices', triangles)
+        slots = numpy.empty(len(mesh.loop_triangles), numpy.int32)
+        mesh.loop_triangles.foreach_get('material_index', slots)
+        return closed.mean_chord(positions.reshape(-1, 3), triangles.reshape(-1, 3)[numpy.isin(slots, slot_indices)])
+
+    def with_volume(self, written, material, thickness):
+        """A copy of a written material for bodies of a thickness; the same for the same arguments."""
+        key = (material.name_full, round(thickness, 6))
+        if key not in self.volumes:
+            volume = {'thicknessFactor': thickness}
+            color = materials.absorption(material)
+            if color is not None:
+                volume['attenuationColor'], volume['attenuationDistance'] = color
+            twin = copy.copy(written)
+            extension = type(written.extensions['KHR_materials_transmission'])
+            twin.extensions = {**written.extensions, 'KHR_materials_volume': extension('KHR_materials_volume', volume, False)}
+            self.volumes[key] = twin
+        return self.volumes[key]
+
+    def write_scene(self, element, scene):
+        add_extras(element, {**own_extras(scene), **({} if 'gnomon_world' in scene else self.world_extras)})
+        self.put_camera_first(element.nodes, scene)
+
+    @staticmethod
+    def put_camera_first(nodes, scene):
+        """Gnomon draws by the first camera, Blender by the scene's."""
+        def move(nodes):
+            for i, node in enumerate(nodes):
+                if (node.camera is not None and scene.camera and node.name == scene.camera.name) or move(node.children or []):
+                    nodes.insert(0, nodes.pop(i))
+                    return True
+            return False
+
+        move(nodes)
+
+    def join_animations(self, animations):
+        """Makes one animation of those that do not move the same thing; the others follow and are named."""
+        if len(animations) < 2:
+            return
+        first, others = animations[0], animations[1:]
+        moved = {(id(channel.target.node), channel.target.path) for channel in first.channels}
+        for animation in others:
+            targets = {(id(channel.target.node), channel.target.path) for channel in animation.channels}
+            if targets & moved:
+                self.report.add(f"animation '{animation.name}'", f"it moves things that '{first.name}' moves, and stays apart")
+                continue
+            moved |= targets
+            offset = len(first.samplers)
+            first.samplers += animation.samplers
+            for channel in animation.channels:
+                channel.sampler += offset
+                first.channels.append(channel)
+            animations.remove(animation)
+
+    def finish(self):
+        render = self.scene.render
+        transform, exposure = view_of(self.scene, self.report)
+        scale = render.resolution_percentage / 100
+        command = ['gnomon', 'render', os.path.basename(self.path), '-o', 'picture.png', '--size',
+                   f"{int(render.resolution_x * scale)}x{int(render.resolution_y * scale)}", '--view', transform,
+                   '--background', 'none' if render.film_transparent else 'world']
+        if exposure != 0:
+            command += ['--exposure', f"{exposure:.6g}"]
+        lines = [f"Gnomon: {line}" for line in self.report.lines] + [f"Gnomon: draw with: {shlex.join(command)}"]
+        print("\n".join(lines))
+        bpy.context.window_manager.gnomon_report = "\n".join(lines)
+
+
+def part_of_file(write):
+    """A hook of the exporter, which would only print an exception of it: the report names it, too."""
+    def hook(self, *arguments):
+        if self.export is not None:
+            try:
+                write(self, *arguments)
+            except Exception as error:
+                self.export.report.add('add-on', f"{write.__name__} failed: {error}")
+                raise
+
+    return hook
+
+
+class glTF2ExportUserExtension:
+    """Found by the exporter, which makes one for each file."""
+
+    def __init__(self):
+        self.export = None
+
+    @part_of_file
+    def gather_tree_filter_tag_hook(self, tree, settings):
+        self.export.tag_tree(tree)
+
+    @part_of_file
+    def gather_node_hook(self, node, thing, settings):
+        self.export.write_node(node, thing)
+
+    @part_of_file
+    def gather_material_hook(self, element, material, settings):
+        self.export.write_material(element, material)
+
+    @part_of_file
+    def gather_mesh_hook(self, element, mesh, *arguments):
+        self.export.write_mesh(element, mesh, arguments[-2])
+
+    @part_of_file
+    def gather_scene_hook(self, element, scene, settings):
+        self.export.write_scene(element, scene)
+
+    @part_of_file
+    def gather_gltf_hook(self, scene_index, scenes, animations, settings):
+        self.export.join_animations(animations)
+
+
+def extension_of(settings):
+    return next(each for each in settings['gltf_user_extensions'] if isinstance(each, glTF2ExportUserExtension))
+
+
+def glTF2_pre_export_callback(settings):
+    if bpy.context.scene.gnomon_export.is_on:
+        extension_of(settings).export = Export(bpy.context.scene, settings)
+
+
+def glTF2_post_export_callback(settings):
+    export = extension_of(settings).export
+    if export is not None:
+        export.finish()
+
+
+class GnomonExport(bpy.types.PropertyGroup):
+    is_on: bpy.props.BoolProperty(
+        name="For Gnomon", default=True,
+        description="Write lamps in physical units with their sizes, the world, cameras, modifiers, the thickness of closed glass and one "
+                    "animation; leave out what a render does not show")
+    world_width: bpy.props.IntProperty(
+        name="World Width", default=1024, min=64, max=world.PICTURE_WIDTH_MAX, subtype='PIXEL',
+        description="Width of the picture of a world that is not of one colour; at least that of its own pictures")
+
+
+def draw_export(context, layout):
+    """Called by the exporter of 4.2 and later, and by the panel of earlier ones."""
+    options = context.scene.gnomon_export
+    layout.use_property_split = True
+    layout.prop(options, 'is_on')
+    column = layout.column()
+    column.active = options.is_on
+    column.prop(options, 'world_width')
+
+
+class GNOMON_PT_export(bpy.types.Panel):
+    bl_space_type = 'FILE_BROWSER'
+    bl_region_type = 'TOOL_PROPS'
+    bl_label = "Gnomon"
+    bl_parent_id = 'GLTF_PT_export_user_extensions'
+
+    @classmethod
+    def poll(cls, context):
+        return context.space_data.active_operator.bl_idname == 'EXPORT_SCENE_OT_gltf'
+
+    def draw(self, context):
+        draw_export(context, self.layout)
+
+
+class GNOMON_PT_report(bpy.types.Panel):
+    bl_space_type = 'PROPERTIES'
+    bl_region_type = 'WINDOW'
+    bl_context = 'output'
+    bl_label = "Gnomon: Last Export"
+    bl_options = {'DEFAULT_CLOSED'}
+
+    @classmethod
+    def poll(cls, context):
+        return bool(context.window_manager.gnomon_report)
+
+    def draw(self, context):
+        for line in context.window_manager.gnomon_report.splitlines():
+            self.layout.label(text=line.removeprefix("Gnomon: "))
+
+
+def register_panel():
+    """Called by the exporter before 4.2 when its dialog opens. Returns what ends it."""
+    bpy.utils.register_class(GNOMON_PT_export)
+    return lambda: bpy.utils.unregister_class(GNOMON_PT_export)
+
+
+def register():
+    bpy.utils.register_class(GnomonExport)
+    bpy.utils.register_class(GNOMON_PT_report)
+    bpy.types.Scene.gnomon_export = bpy.props.PointerProperty(type=GnomonExport)
+    bpy.types.WindowManager.gnomon_report = bpy.props.StringProperty(options={'HIDDEN', 'SKIP_SAVE'})
+
+
+def unregister():
+    del bpy.types.WindowManager.gnomon_report
+    del bpy.types.Scene.gnomon_export
+    bpy.utils.unregister_class(GNOMON_PT_report)
+    bpy.utils.unregister_class(GnomonExport)

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: MIT
+"""What of Blender's materials does not reach a glTF file, and the volume of closed glass."""
+
+import math
+
+# Nodes of which the exporter of glTF makes something where they lead to a socket of the Principled BSDF.
+KNOWN_NODES = {'TEX_IMAGE', 'NORMAL_MAP', 'SEPARATE_COLOR', 'SEPRGB', 'MAPPING', 'UVMAP', 'TEX_COORD', 'VERTEX_COLOR', 'MIX',
+               'MIX_RGB', 'MATH', 'REROUTE', 'RGB', 'VALUE', 'ATTRIBUTE', 'GROUP_INPUT'}
+# Sockets that are not in glTF, with the value at which they have no effect. Names of 3.4, and of 4.0 and later.
+IDLE_VALUES = {'Subsurface': 0.0, 'Subsurface Weight': 0.0, 'Anisotropic': 0.0}
+
+
+def output_of(tree):
+    outputs = [node for node in tree.nodes if node.type == 'OUTPUT_MATERIAL']
+    return next((node for node in outputs if node.is_active_output), None)
+
+
+def source_of(socket):
+    """The node that a socket is linked to, beyond reroutes; None if it is not linked."""
+    while socket.is_linked:
+        node = socket.links[0].from_node
+        if node.type != 'REROUTE':
+            return node
+        socket = node.inputs[0]
+    return None
+
+
+def upstream(socket, seen):
+    node = source_of(socket)
+    if node is not None and node not in seen:
+        seen.append(node)
+        for each in node.inputs:
+            upstream(each, seen)
+    return seen
+
+
+def remarks_of(material):
+    """Sentences about what of a material is not drawn."""
+    if not material.use_nodes or material.node_tree is None:
+        return []
+    output = output_of(material.node_tree)
+    if output is None:
+        return ["it has no output, so that Blender draws it black"]
+    remarks = []
+    surface = source_of(output.inputs['Surface'])
+    if surface is None:
+        if not output.inputs['Volume'].is_linked:
+            remarks.append("its output has no surface")
+    elif surface.type == 'BSDF_PRINCIPLED':
+        for socket in surface.inputs:
+            unknown = sorted({node.name for node in upstream(socket, []) if node.type not in KNOWN_NODES})
+            if unknown:
+                remarks.append(f"'{socket.name}' comes from the nodes {', '.join(unknown)}, which are not drawn; bake them to a picture")
+            idle = IDLE_VALUES.get(socket.name)
+            if idle is not None and (socket.is_linked or socket.default_value != idle):
+                remarks.append(f"'{socket.name}' is not drawn")
+    # A file has these as unlit materials.
+    elif surface.type not in ('EMISSION', 'BACKGROUND'):
+        remarks.append(f"its surface is the node '{surface.name}', of which glTF's exporter writes a part at most; use a Principled BSDF")
+    if source_of(output.inputs['Displacement']) is not None:
+        remarks.append("its displacement is not drawn")
+    volume = source_of(output.inputs['Volume'])
+    if volume is not None and volume.type != 'VOLUME_ABSORPTION':
+        remarks.append(f"its volume, the node '{volume.name}', is not drawn")
+    return remarks
+
+
+def uses_color_attribute(material):
+    """Whether a material reads the colours of vertices."""
+    return material is not None and material.use_nodes and material.node_tree is not None and any(
+        node.type in ('VERTEX_COLOR', 'ATTRIBUTE', 'GROUP') for node in material.node_tree.nodes)
+
+
+def absorption(material):
+    """(attenuation colour, attenuation distance in metres) of a Volume Absorption at the output; None if there is none."""
+    output = output_of(material.node_tree) if material.use_nodes and material.node_tree else None
+    volume = source_of(output.inputs['Volume']) if output else None
+    if volume is None or volume.type != 'VOLUME_ABSORPTION':
+        return None
+    density, color = volume.inputs['Density'], volume.inputs['Color']
+    if density.is_linked or color.is_linked or density.default_value <= 0:
+        return None
+    # Blender: exp(-density · (1 - colour) · d). glTF: attenuation colour ^ (d / attenuation distance).
+    return [math.exp(min(c, 1.0) - 1.0) for c in color.default_value[:3]], 1.0 / density.default_value

@@ -1,0 +1,469 @@
+# SPDX-License-Identifier: MIT
+"""What the add-on writes into files. Run in Blender by check_blender: blender -b --factory-startup -P export_test.py -- FOLDER"""
+
+import json
+import math
+import os
+import sys
+import unittest
+
+import bpy
+from mathutils import Vector
+
+FOLDER = sys.argv[sys.argv.index('--') + 1]
+LUMEN_PER_WATT = 683
+
+
+def add(name, data, location=(0, 0, 0), collection=None):
+    thing = bpy.data.objects.new(name, data)
+    thing.location = location
+    (collection or bpy.context.scene.collection).objects.link(thing)
+    return thing
+
+
+def add_lamp(kind, energy=10.0, name='lamp', **properties):
+    lamp = bpy.data.lights.new(name, kind)
+    lamp.energy = energy
+    for key, value in properties.items():
+        setattr(lamp, key, value)
+    return add(name, lamp)
+
+
+def material(name='stuff', **inputs):
+    made = bpy.data.materials.new(name)
+    made.use_nodes = True
+    for key, value in inputs.items():
+        made.node_tree.nodes['Principled BSDF'].inputs[key.replace('_', ' ')].default_value = value
+    return made
+
+
+def add_box(name='box', size=1.0, stuff=None, **properties):
+    mesh = bpy.data.meshes.new(name)
+    h = size / 2
+    mesh.from_pydata([(x, y, z) for z in (-h, h) for y in (-h, h) for x in (-h, h)], [],
+                     [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)])
+    if stuff is not None:
+        mesh.materials.append(stuff)
+    return add(name, mesh, **properties)
+
+
+def data_blocks():
+    # The result of a render stays.
+    return {kind: sorted(each.name for each in getattr(bpy.data, kind))
+            for kind in ('scenes', 'objects', 'cameras', 'worlds', 'meshes', 'materials', 'lights')}
+
+
+class File:
+    """The scene as the exporter writes it."""
+
+    count = 0
+
+    def __init__(self, **options):
+        File.count += 1
+        self.path = f"{FOLDER}/file{File.count}.gltf"
+        before = data_blocks()
+        bpy.ops.export_scene.gltf(filepath=self.path, export_format='GLTF_SEPARATE', **options)
+        assert data_blocks() == before
+        with open(self.path, encoding='utf-8') as file:
+            self.json = json.load(file)
+        self.report = bpy.context.window_manager.gnomon_report
+
+    def node(self, name):
+        return next(node for node in self.json['nodes'] if node['name'] == name)
+
+    def names(self):
+        return {node['name'] for node in self.json['nodes']}
+
+    def extras(self, name):
+        return self.node(name).get('extras', {})
+
+    def light(self, name):
+        index = self.node(name)['extensions']['KHR_lights_punctual']['light']
+        return self.json['extensions']['KHR_lights_punctual']['lights'][index]
+
+    @property
+    def scene_extras(self):
+        return self.json['scenes'][0]['extras']
+
+
+class ExportTest(unittest.TestCase):
+    def setUp(self):
+        bpy.ops.wm.read_homefile(use_empty=True)
+        bpy.ops.preferences.addon_enable(module='render_gnomon')
+        self.scene = bpy.context.scene
+
+    def assertNear(self, a, b, places=5):
+        self.assertEqual(len(a), len(b))
+        for x, y in zip(a, b):
+            self.assertAlmostEqual(x, y, places)
+
+
+class Lamps(ExportTest):
+    def test_light_is_physical_in_each_mode_of_the_exporter(self):
+        add_lamp('SUN', 3.0, 'sun', angle=0.02)
+        add_lamp('POINT', 100.0, 'point', shadow_soft_size=0.25, color=(1, 0.5, 0.25))
+        add_lamp('SPOT', 50.0, 'spot', shadow_soft_size=0.0, spot_size=1.0, spot_blend=0.3)
+        for mode in ('SPEC', 'COMPAT', 'RAW'):
+            for export_lights in (False, True):
+                file = File(convert_lighting_mode=mode, export_lights=export_lights)
+                self.assertAlmostEqual(file.light('sun')['intensity'], 3 * LUMEN_PER_WATT, 3)
+                self.assertAlmostEqual(file.light('point')['intensity'], 100 / (4 * math.pi) * LUMEN_PER_WATT, 3)
+                self.assertNear(file.light('point')['color'], (1, 0.5, 0.25))
+                self.assertAlmostEqual(file.light('spot')['intensity'], 50 / (4 * math.pi) * LUMEN_PER_WATT, 3)
+                self.assertAlmostEqual(file.light('spot')['spot']['outerConeAngle'], 0.5, 5)
+        self.assertAlmostEqual(file.extras('sun')['gnomon_angle'], 0.02, 6)
+        self.assertAlmostEqual(file.extras('point')['gnomon_radius'], 0.25)
+        self.assertNotIn('gnomon_radius', file.extras('spot'))
+        self.assertAlmostEqual(file.extras('spot')['gnomon_spot_blend'], 0.3, 5)
+
+    def test_area_lamps(self):
+        for shape, height in (('SQUARE', 0.5), ('RECTANGLE', 2.0), ('DISK', 0.5), ('ELLIPSE', 2.0)):
+            add_lamp('AREA', 20.0, shape, shape=shape, size=0.5, size_y=2.0, color=(0.5, 1, 1))
+            self.assertEqual(File().extras(shape),
+                             {'gnomon_lamp': 'area', 'gnomon_shape': shape.lower(), 'gnomon_size_x': 0.5, 'gnomon_size_y': height,
+                              'gnomon_power': 20.0, 'gnomon_color': [0.5, 1.0, 1.0]})
+
+    def test_nodes_of_lamps_multiply_their_light(self):
+        for kind, per_watt in (('SUN', 1), ('POINT', 4 * math.pi)):
+            thing = add_lamp(kind, 10.0, kind, use_nodes=True, color=(1, 0.5, 1))
+            emission = thing.data.node_tree.nodes['Emission']
+            emission.inputs['Strength'].default_value = 3.0
+            emission.inputs['Color'].default_value = (0.5, 0.5, 1, 1)
+            light = File().light(kind)
+            self.assertAlmostEqual(light['intensity'], 30 / per_watt * LUMEN_PER_WATT, 2)
+            self.assertNear(light['color'], (0.5, 0.25, 1))
+
+    def test_what_is_not_drawn_is_named(self):
+        add_lamp('AREA', name='narrow', spread=math.radians(30))
+        add_lamp('AREA', name='none', size=0.0)
+        add_lamp('POINT', -5.0, name='dark')
+        textured = add_lamp('POINT', name='textured', use_nodes=True).data.node_tree
+        textured.links.new(textured.nodes.new('ShaderNodeTexNoise').outputs[0], textured.nodes['Emission'].inputs['Color'])
+        portal = add_lamp('AREA', name='portal')
+        portal.data.cycles.is_portal = True
+        add_lamp('POINT', name='dull', specular_factor=0.5)
+        file = File()
+        for text in ("lamp 'narrow': its spread of 30°", "lamp 'none': it has no area", "lamp 'dark': it takes light away",
+                     "lamp 'textured': the colour of its light comes from the node 'Noise Texture'", "lamp 'portal': it is a portal",
+                     "lamp 'dull': its specular factor of 0.5"):
+            self.assertIn(text, file.report)
+        self.assertEqual(file.light('dark').get('intensity', 1), 0)
+        self.assertEqual(file.extras('portal'), {})
+
+    def test_lamps_without_shadow(self):
+        for engine in ('BLENDER_EEVEE', 'CYCLES'):
+            self.scene.render.engine = engine
+            thing = add_lamp('POINT', name=engine)
+            self.assertNotIn('gnomon_shadow', File().extras(engine))
+            if engine == 'CYCLES':
+                thing.data.cycles.cast_shadow = False
+            else:
+                thing.data.use_shadow = False
+            self.assertEqual(File().extras(engine)['gnomon_shadow'], 'none')
+        add_box('ghost').visible_shadow = False
+        self.assertIs(File().extras('ghost')['gnomon_casts_shadow'], False)
+
+    def test_custom_properties_come_before_those_of_blender(self):
+        thing = add_lamp('POINT', shadow_soft_size=0.5)
+        thing['gnomon_radius'] = 0.125
+        thing['gnomon_shadow_size'] = 256
+        thing['other'] = 1
+        for export_extras in (False, True):
+            extras = File(export_extras=export_extras).extras('lamp')
+            self.assertEqual((extras['gnomon_radius'], extras['gnomon_shadow_size']), (0.125, 256))
+            self.assertEqual('other' in extras, export_extras)
+
+
+class Worlds(ExportTest):
+    def test_colours(self):
+        self.assertEqual(File().scene_extras['gnomon_world'], [0, 0, 0])
+        world = self.scene.world = bpy.data.worlds.new('world')
+        world.color = (0.5, 0.25, 0)
+        self.assertNear(File().scene_extras['gnomon_world'], (0.5, 0.25, 0))
+        world.use_nodes = True
+        background = world.node_tree.nodes['Background']
+        background.inputs['Color'].default_value = (0.5, 0.25, 1, 1)
+        background.inputs['Strength'].default_value = 3
+        self.assertNear(File().scene_extras['gnomon_world'], (1.5, 0.75, 3))
+        world.node_tree.links.clear()
+        self.assertEqual(File().scene_extras['gnomon_world'], [0, 0, 0])
+        self.scene['gnomon_world'] = 'my.hdr'
+        self.assertEqual(File().scene_extras['gnomon_world'], 'my.hdr')
+
+    def test_node_trees_are_baked_in_the_directions_of_the_file(self):
+        world = self.scene.world = bpy.data.worlds.new('world')
+        world.use_nodes = True
+        # (direction + 1) / 2 times the strength.
+        tree = world.node_tree
+        half = tree.nodes.new('ShaderNodeVectorMath')
+        half.operation = 'MULTIPLY_ADD'
+        half.inputs[1].default_value = half.inputs[2].default_value = (0.5, 0.5, 0.5)
+        tree.links.new(tree.nodes.new('ShaderNodeTexCoord').outputs['Generated'], half.inputs[0])
+        tree.links.new(half.outputs[0], tree.nodes['Background'].inputs['Color'])
+        tree.nodes['Background'].inputs['Strength'].default_value = 8
+        world.cycles_visibility.camera = False
+        self.scene.gnomon_export.world_width = 64
+        for is_y_up in (True, False):
+            file = File(export_yup=is_y_up)
+            self.assertEqual(file.scene_extras['gnomon_world'], f"file{File.count}_world.hdr")
+            self.assertIn("world: it is hidden from rays of the kinds camera", file.report)
+            image = bpy.data.images.load(f"{FOLDER}/{file.scene_extras['gnomon_world']}")
+            self.assertEqual(tuple(image.size), (64, 32))
+            pixels = list(image.pixels)
+            for row in (3, 11, 16, 28):
+                for column in (0, 9, 20, 31, 45, 63):
+                    v, u = math.pi * ((row + 0.5) / 32 - 0.5), 2 * math.pi * ((column + 0.5) / 64 - 0.5)
+                    # doc/conventions.md
+                    x, y, z = math.cos(u) * math.cos(v), math.sin(v), math.sin(u) * math.cos(v)
+                    blender = (x, -z, y) if is_y_up else (x, y, z)
+                    found = pixels[4 * (64 * row + column):][:3]
+                    # A texel is the mean over the pixel filter, and RGBE has steps of 1/128 of the largest channel.
+                    self.assertLess(max(abs(a - 4 * (b + 1)) for a, b in zip(found, blender)), 0.15)
+            bpy.data.images.remove(image)
+
+    def test_rays_are_named(self):
+        world = self.scene.world = bpy.data.worlds.new('world')
+        world.use_nodes = True
+        tree = world.node_tree
+        tree.links.new(tree.nodes.new('ShaderNodeLightPath').outputs[0], tree.nodes['Background'].inputs['Strength'])
+        self.scene.gnomon_export.world_width = 64
+        self.assertIn("world: it depends on the kind of ray", File().report)
+
+
+class Objects(ExportTest):
+    def test_what_a_render_hides_is_left_out(self):
+        shown, hidden, excluded, instanced = (bpy.data.collections.new(name) for name in ('shown', 'hidden', 'excluded', 'instanced'))
+        for collection in (shown, hidden, excluded):
+            self.scene.collection.children.link(collection)
+        hidden.hide_render = True
+        bpy.context.view_layer.layer_collection.children['excluded'].exclude = True
+        add_box('a', collection=shown)
+        parent = add_box('b', collection=shown)
+        parent.hide_render = True
+        add_box('child', collection=shown).parent = parent
+        add_box('c', collection=hidden)
+        add_box('d', collection=excluded)
+        add_box('e', collection=instanced)
+        add_box('f', collection=instanced).hide_render = True
+        for name, is_hidden in (('instance', False), ('hidden_instance', True)):
+            instance = add(name, None)
+            instance.instance_type, instance.instance_collection = 'COLLECTION', instanced
+            instance.hide_render = is_hidden
+        file = File()
+        self.assertEqual(file.names(), {'a', 'child', 'instance', 'e'})
+        self.assertEqual(sum('mesh' in node for node in file.json['nodes']), 3)
+
+    def test_modifiers_are_written_unless_there_are_shape_keys(self):
+        box = add_box()
+        box.modifiers.new('subdivision', 'SUBSURF').levels = 1
+        count = lambda file: file.json['accessors'][file.json['meshes'][0]['primitives'][0]['indices']]['count']
+        self.assertEqual(count(File()), 6 * 4 * 6)
+        keyed = add_box('keyed')
+        keyed.shape_key_add(name='base')
+        keyed.shape_key_add(name='other')
+        file = File()
+        self.assertIn("modifiers: those of box are not written", file.report)
+        self.assertEqual(len(file.json['meshes'][1]['primitives'][0]['targets']), 1)
+
+    def test_colours_of_vertices_are_written_for_materials_that_read_them(self):
+        plain, colored = material('plain'), material('colored')
+        tree = colored.node_tree
+        tree.links.new(tree.nodes.new('ShaderNodeVertexColor').outputs[0], tree.nodes['Principled BSDF'].inputs['Base Color'])
+        for stuff in (plain, colored):
+            add_box(stuff.name, stuff=stuff).data.color_attributes.new('Col', 'FLOAT_COLOR', 'POINT')
+        file = File()
+        for name, has in (('plain', False), ('colored', True)):
+            self.assertEqual('COLOR_0' in file.json['meshes'][file.node(name)['mesh']]['primitives'][0]['attributes'], has)
+
+    def test_instances_are_counted(self):
+        box = add_box()
+        emitter = add_box('emitter')
+        system = emitter.modifiers.new('particles', 'PARTICLE_SYSTEM').particle_system.settings
+        system.type, system.count, system.render_type, system.instance_object = 'HAIR', 12, 'OBJECT', box
+        self.assertIn("object 'emitter': its 12 instances", File().report)
+
+    def test_cameras(self):
+        for name in ('first', 'second', 'third'):
+            add(name, bpy.data.cameras.new(name))
+        parent = add('parent', None)
+        bpy.data.objects['third'].parent = parent
+        for name in ('second', 'third'):
+            self.scene.camera = bpy.data.objects[name]
+            file = File()
+            nodes, order = file.json['nodes'], []
+
+            def walk(indices):
+                for index in indices:
+                    order.extend([nodes[index]['name']] if 'camera' in nodes[index] else [])
+                    walk(nodes[index].get('children', []))
+
+            walk(file.json['scenes'][0]['nodes'])
+            self.assertEqual((order[0], len(order)), (name, 3))
+        camera = self.scene.camera.data
+        camera.shift_x, camera.dof.use_dof, camera.type = 0.1, True, 'PANO'
+        report = File().report
+        for text in ("its shift is not drawn", "its depth of field is not drawn", "a panoramic camera"):
+            self.assertIn(f"camera 'third': {text}", report)
+
+    def test_there_is_one_animation(self):
+        for i in range(3):
+            box = add_box(f'box{i}')
+            for frame in (1, 25):
+                box.location.x = frame
+                box.keyframe_insert('location', frame=frame)
+        lamp = add_lamp('POINT')
+        lamp.data.keyframe_insert('energy', frame=1)
+        file = File()
+        self.assertEqual([len(each['channels']) for each in file.json['animations']], [3])
+        self.assertIn("light 'lamp': its animation is not written", file.report)
+        # As strips, of which one moves what another moves.
+        for i in range(3):
+            data = bpy.data.objects[f'box{i}'].animation_data
+            action = data.action
+            data.action = None
+            data.nla_tracks.new().strips.new('strip', 1, action)
+        file = File()
+        self.assertEqual([len(each['channels']) for each in file.json['animations']], [3])
+
+
+class Materials(ExportTest):
+    def test_closed_glass_has_the_mean_chord_as_its_thickness(self):
+        glass = material('glass', Transmission=1.0)
+        bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, radius=0.5)
+        bpy.context.object.data.materials.append(glass)
+        bpy.context.object.name = 'ball'
+        add_box('box', 2.0, glass)
+        add_box('twin', 2.0, glass)
+        mesh = bpy.data.meshes.new('sheet')
+        mesh.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
+        mesh.materials.append(glass)
+        add('sheet', mesh)
+        file = File()
+        thickness = {}
+        for name in ('ball', 'box', 'twin', 'sheet'):
+            index = file.json['meshes'][file.node(name)['mesh']]['primitives'][0]['material']
+            volume = file.json['materials'][index]['extensions'].get('KHR_materials_volume', {})
+            thickness[name] = (index, volume.get('thicknessFactor'))
+        self.assertAlmostEqual(thickness['ball'][1], 4 / 3 * 0.5, 2)
+        self.assertAlmostEqual(thickness['box'][1], 4 * 8 / 24, 5)
+        self.assertEqual(thickness['box'], thickness['twin'])
+        self.assertIsNone(thickness['sheet'][1])
+        self.assertIn("mesh 'sheet': its part of 'glass' is not closed", file.report)
+
+    def test_absorption_is_that_of_blender(self):
+        glass = material('glass', Transmission=1.0)
+        tree = glass.node_tree
+        absorption = tree.nodes.new('ShaderNodeVolumeAbsorption')
+        absorption.inputs['Color'].default_value = (0.5, 0.25, 1, 1)
+        absorption.inputs['Density'].default_value = 2
+        tree.links.new(absorption.outputs[0], tree.nodes['Material Output'].inputs['Volume'])
+        add_box(stuff=glass)
+        volume = File().json['materials'][0]['extensions']['KHR_materials_volume']
+        for d in (0.1, 1.7):
+            for color, written in zip((0.5, 0.25, 1), volume['attenuationColor']):
+                self.assertAlmostEqual(written ** (d / volume['attenuationDistance']), math.exp(-2 * (1 - color) * d), 5)
+
+    def test_what_is_not_drawn_is_named(self):
+        noisy, mixed, deep = material('noisy'), material('mixed'), material('deep', Subsurface=0.5)
+        tree = noisy.node_tree
+        tree.links.new(tree.nodes.new('ShaderNodeTexNoise').outputs[0], tree.nodes['Principled BSDF'].inputs['Roughness'])
+        displacement = tree.nodes.new('ShaderNodeDisplacement')
+        tree.links.new(displacement.outputs[0], tree.nodes['Material Output'].inputs['Displacement'])
+        tree = mixed.node_tree
+        tree.links.new(tree.nodes.new('ShaderNodeMixShader').outputs[0], tree.nodes['Material Output'].inputs['Surface'])
+        for stuff in (noisy, mixed, deep, material('plain')):
+            add_box(stuff.name, stuff=stuff)
+        report = File().report
+        for text in ("material 'noisy': 'Roughness' comes from the nodes Noise Texture", "material 'noisy': its displacement",
+                     "material 'mixed': its surface is the node 'Mix Shader'", "material 'deep': 'Subsurface' is not drawn"):
+            self.assertIn(text, report)
+        self.assertNotIn("plain", report)
+
+
+class Options(ExportTest):
+    def test_without_the_option_a_file_is_as_without_the_add_on(self):
+        add_box(stuff=material('glass', Transmission=1.0)).modifiers.new('subdivision', 'SUBSURF')
+        add_lamp('AREA')
+        add_lamp('SUN', name='sun')
+        self.scene.gnomon_export.is_on = False
+        off = File(export_lights=True, convert_lighting_mode='COMPAT').json
+        bpy.ops.preferences.addon_disable(module='render_gnomon')
+        path = f"{FOLDER}/without.gltf"
+        bpy.ops.export_scene.gltf(filepath=path, export_format='GLTF_SEPARATE', export_lights=True, convert_lighting_mode='COMPAT')
+        with open(path, encoding='utf-8') as file:
+            without = json.load(file)
+        for each in (off, without):
+            each['buffers'][0].pop('uri')
+        self.assertEqual(off, without)
+
+    def test_the_report_has_the_command(self):
+        add_box()
+        view = self.scene.view_settings
+        view.exposure = 1.5
+        for transform, words in (('Standard', '--view standard'), ('Raw', '--view raw'), ('Filmic', '--view agx')):
+            view.view_transform = transform
+            report = File().report
+            self.assertIn(f"{words} --background world --exposure 1.5", report)
+            self.assertEqual("is not drawn" in report, transform == 'Filmic')
+        self.scene.render.film_transparent = True
+        self.scene.render.resolution_x, self.scene.render.resolution_y, self.scene.render.resolution_percentage = 1920, 1080, 50
+        self.assertIn("--size 960x540 --view agx --background none", File().report)
+
+    def test_scene_wide_effects_are_named(self):
+        add_box()
+        self.scene.render.use_motion_blur = self.scene.use_nodes = True
+        report = File().report
+        self.assertIn("scene: motion blur is not drawn", report)
+        self.assertIn("scene: compositing nodes are not run", report)
+
+
+def write_picture_scene():
+    """A scene with each kind of lamp and a baked world, and Cycles' picture of its direct light."""
+    bpy.ops.wm.read_homefile(use_empty=True)
+    bpy.ops.preferences.addon_enable(module='render_gnomon')
+    scene = bpy.context.scene
+    grey = material('grey', Base_Color=(0.6, 0.5, 0.4, 1), Specular=0.0)
+    add_box('floor', 8.0, grey, location=(0, 0, -4))
+    add_box('box', 1.0, grey, location=(-1, 0.3, 0.5)).rotation_euler.z = 0.5
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, radius=0.6, location=(0.9, 0, 0.6))
+    bpy.ops.object.shade_smooth()
+    bpy.context.object.data.materials.append(grey)
+    for kind, energy, location, properties in (
+            ('SUN', 0.5, (4, -2, 4), {'angle': 0.1}), ('POINT', 40, (-2.5, -1, 2), {'shadow_soft_size': 0.2}),
+            ('SPOT', 200, (2, -2, 3), {'shadow_soft_size': 0.1, 'spot_size': 0.9, 'spot_blend': 0.4, 'color': (1, 0.6, 0.4)}),
+            ('AREA', 60, (-1, 3, 2.5), {'shape': 'RECTANGLE', 'size': 0.7, 'size_y': 1.6, 'color': (0.4, 0.6, 1)}),
+            ('AREA', 30, (0, -1, 3), {'shape': 'DISK', 'size': 0.8})):
+        lamp = add_lamp(kind, energy, **properties)
+        lamp.location = location
+        lamp.rotation_euler = (-Vector(location)).to_track_quat('-Z', 'Y').to_euler()
+    camera = scene.camera = add('camera', bpy.data.cameras.new('camera'), (0.5, -6, 3))
+    camera.rotation_euler = (Vector((0, 0, 0.4)) - camera.location).to_track_quat('-Z', 'Y').to_euler()
+    world = scene.world = bpy.data.worlds.new('world')
+    world.use_nodes = True
+    tree = world.node_tree
+    gradient = tree.nodes.new('ShaderNodeTexGradient')
+    tree.links.new(tree.nodes.new('ShaderNodeTexCoord').outputs['Generated'], gradient.inputs[0])
+    tree.links.new(gradient.outputs['Color'], tree.nodes['Background'].inputs['Color'])
+    scene.gnomon_export.world_width = 256
+    bpy.ops.export_scene.gltf(filepath=f"{FOLDER}/picture.glb", convert_lighting_mode='COMPAT')
+
+    # Blender's Principled BSDF without specular reflection is not Lambertian.
+    tree = grey.node_tree
+    diffuse = tree.nodes.new('ShaderNodeBsdfDiffuse')
+    diffuse.inputs['Color'].default_value = tree.nodes['Principled BSDF'].inputs['Base Color'].default_value
+    tree.links.new(diffuse.outputs[0], tree.nodes['Material Output'].inputs['Surface'])
+    scene.render.engine = 'CYCLES'
+    cycles = scene.cycles
+    cycles.device, cycles.samples, cycles.max_bounces = 'CPU', 256, 0
+    cycles.use_adaptive_sampling = cycles.use_denoising = False
+    scene.render.filter_size = cycles.filter_width = 1.5
+    scene.render.resolution_x, scene.render.resolution_y = 160, 90
+    scene.render.image_settings.file_format = 'OPEN_EXR'
+    scene.render.filepath = f"{FOLDER}/cycles.exr"
+    bpy.ops.render.render(write_still=True)
+
+
+if unittest.main(argv=['export_test'], exit=False).result.wasSuccessful():
+    write_picture_scene()
+else:
+    sys.exit(1)

@@ -1,0 +1,65 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""The parts of the add-on for Blender that need no Blender, against mathematics. Argument: the folder of the add-on."""
+
+import importlib
+import math
+import sys
+import types
+import unittest
+
+import numpy
+
+sys.dont_write_bytecode = True
+# The package itself imports Blender's modules.
+package = types.ModuleType("render_gnomon")
+package.__path__ = [sys.argv[1]]
+sys.modules["render_gnomon"] = package
+closed = importlib.import_module("render_gnomon.closed")
+lamps = importlib.import_module("render_gnomon.lamps")
+
+BOX_TRIANGLES = numpy.array([(0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6), (0, 1, 5), (0, 5, 4), (2, 6, 7), (2, 7, 3), (0, 4, 6), (0, 6, 2),
+                             (1, 3, 7), (1, 7, 5)])
+
+
+def box(a, b, c, place=(0, 0, 0)):
+    return numpy.array([(x, y, z) for z in (0, c) for y in (0, b) for x in (0, a)]) + place
+
+
+class MeanChord(unittest.TestCase):
+    def test_of_boxes(self):
+        for a, b, c in ((1, 1, 1), (2, 1, 0.01), (1e-3, 1e-3, 2e-3), (300, 100, 200)):
+            for place in ((0, 0, 0), (1000, -500, 20)):
+                expected = 4 * a * b * c / (2 * (a * b + b * c + c * a))
+                for triangles in (BOX_TRIANGLES, BOX_TRIANGLES[:, ::-1]):
+                    self.assertAlmostEqual(closed.mean_chord(box(a, b, c, place), triangles) / expected, 1, 6)
+
+    def test_of_separate_corners(self):
+        """Each triangle with vertices of its own, as where normals are sharp."""
+        positions = box(1, 2, 3)[BOX_TRIANGLES].reshape(-1, 3).astype(numpy.float32)
+        positions += numpy.random.default_rng(1).uniform(-1e-7, 1e-7, positions.shape)
+        self.assertAlmostEqual(closed.mean_chord(positions, numpy.arange(36).reshape(-1, 3)), 4 * 6 / 22, 5)
+
+    def test_of_shells(self):
+        """A box within a box, turned inside out: the wall."""
+        positions = numpy.concatenate([box(1, 1, 1), box(0.5, 0.5, 0.5, (0.25, 0.25, 0.25))])
+        triangles = numpy.concatenate([BOX_TRIANGLES, BOX_TRIANGLES[:, ::-1] + 8])
+        self.assertAlmostEqual(closed.mean_chord(positions, triangles), 4 * (1 - 0.125) / (6 + 1.5), 6)
+
+    def test_is_none_where_nothing_is_closed(self):
+        for triangles in (BOX_TRIANGLES[:-1], BOX_TRIANGLES[:0], numpy.concatenate([BOX_TRIANGLES, BOX_TRIANGLES[:1]])):
+            self.assertIsNone(closed.mean_chord(box(1, 1, 1), triangles))
+        self.assertIsNone(closed.mean_chord(box(1, 1, 0), BOX_TRIANGLES))
+        self.assertIsNone(closed.mean_chord(numpy.zeros((3, 3)), numpy.array([(0, 1, 2)])))
+
+
+class Lamps(unittest.TestCase):
+    def test_temperature_and_exposure_of_later_versions(self):
+        lamp = types.SimpleNamespace(type='POINT', color=(1, 1, 0.5), energy=10.0, use_nodes=False, use_temperature=True,
+                                     temperature_color=(1, 0.5, 0.5), exposure=2.0)
+        color, intensity, remarks = lamps.punctual(lamp)
+        self.assertEqual((color, remarks), ([1, 0.5, 0.25], []))
+        self.assertAlmostEqual(intensity, 40 / (4 * math.pi) * 683)
+
+
+unittest.main(argv=["parts_test"])
