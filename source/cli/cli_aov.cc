@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <iterator>
 #include <set>
 
@@ -27,9 +26,6 @@ constexpr std::array<std::string_view, 2> lamp_names = {"light", "visibility"};
 /** Names of layers that show surfaces. */
 constexpr std::array<std::string_view, 8> surface_names = {
     "depth", "position", "normal", "albedo", "roughness", "visibility", "crypto_object", "crypto_material"};
-
-/** Depth of pixels without a surface, metres. Blender's value. */
-constexpr float no_depth = 1e10F;
 
 /** The name of a lamp's layer up to the dot; otherwise the whole name. */
 std::string_view layer_kind(std::string_view name)
@@ -179,15 +175,9 @@ void Aov::add_light(eevee::SceneRenderer &renderer, const scene::PlacedCamera &c
   const auto render_part = [&](const LightPart &part) {
     return eevee::render_light_layer(renderer, camera, sample_count, part);
   };
-  const auto lamps = renderer.render_scene().lamps();
-  for (const std::string &name : lamps_of("light", lamps)) {
-    std::vector<glm::vec4> sum;
-    for (const std::size_t lamp : lamps_named(lamps, name)) {
-      const std::vector<glm::vec4> light = render_part({LightPart::Kind::Lamp, lamp});
-      sum.resize(light.size(), glm::vec4(0.0F));
-      std::ranges::transform(sum, light, sum.begin(), std::plus<>());
-    }
-    layers.layers.push_back(layer_of("light." + name, "RGB", sum));
+  for (const std::string &name : lamps_of("light", renderer.render_scene().lamps())) {
+    layers.layers.push_back(
+        layer_of("light." + name, "RGB", eevee::render_lamp_layer(renderer, camera, sample_count, name)));
   }
   // The world comes last, because the layers before leave it out.
   if (has("emission")) {
@@ -213,15 +203,6 @@ void Aov::add_surfaces(eevee::SceneRenderer &renderer, const scene::PlacedCamera
     return;
   }
   eevee::SurfaceLayers surfaces = eevee::render_surface_layers(renderer, camera, sample_count, request);
-  const glm::vec4 origin_ws(glm::vec3(renderer.render_scene().origin_ws()), 0.0F);
-  for (std::size_t i = 0; i < surfaces.normal.size(); i++) {
-    if (surfaces.normal[i].w != float(draw::object_identity)) {
-      surfaces.position_depth[i] += origin_ws;
-    }
-    else {
-      surfaces.position_depth[i].w = no_depth;
-    }
-  }
   const auto add = [&](const char *name, const char *channels, std::span<const glm::vec4> pixels, int first = 0) {
     if (has(name)) {
       layers.layers.push_back(layer_of(name, channels, pixels, first));

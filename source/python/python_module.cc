@@ -6,6 +6,11 @@
 #include "gltf_export.hh"
 #include "gltf_import.hh"
 
+#include <array>
+#include <map>
+#include <span>
+#include <string_view>
+
 namespace gnomon::python {
 
 namespace {
@@ -115,29 +120,147 @@ std::shared_ptr<Renderer> make_offline_renderer(const std::shared_ptr<Device> &d
   return std::make_shared<Renderer>(device, scene, size_px, settings);
 }
 
-py::array_t<float> render(Renderer &renderer, const std::optional<Thing<scene::Node>> &camera, double seconds_max)
+/**
+ * Calls \a draw(camera, progress) without the interpreter's lock, and returns what it returns. A signal whose handler
+ * raises ends it.
+ */
+template <typename Draw>
+auto drawn_by(const Renderer &renderer, const std::optional<Thing<scene::Node>> &camera, const Draw &draw)
 {
   const scene::PlacedCamera placed = camera_at(renderer.scene(), camera);
-  if (!(seconds_max > 0.0)) {
-    throw py::value_error(fmt::format("render: seconds_max {} is not above 0", seconds_max));
-  }
-  const glm::ivec2 size_px = renderer.size_px();
   bool is_interrupted = false;
   const auto progress = [&](int /*samples_drawn*/) {
     const py::gil_scoped_acquire locked;
     is_interrupted = PyErr_CheckSignals() != 0;
     return !is_interrupted;
   };
-  std::vector<glm::vec4> pixels;
-  {
+  auto result = [&] {
     const Reading reading(renderer.scene());
     const py::gil_scoped_release unlocked;
-    pixels = renderer.render(placed, {.progress = progress, .seconds_max = seconds_max});
-  }
+    return draw(placed, progress);
+  }();
   if (is_interrupted) {
     throw py::error_already_set();
   }
-  return picture_array(std::move(pixels), size_px);
+  return result;
+}
+
+py::array_t<float> render(Renderer &renderer, const std::optional<Thing<scene::Node>> &camera, double seconds_max)
+{
+  if (!(seconds_max > 0.0)) {
+    throw py::value_error(fmt::format("render: seconds_max {} is not above 0", seconds_max));
+  }
+  const glm::ivec2 size_px = renderer.size_px();
+  return picture_array(drawn_by(renderer, camera,
+                                [&](const scene::PlacedCamera &placed, const auto &progress) {
+                                  return renderer.render(placed, {.progress = progress, .seconds_max = seconds_max});
+                                }),
+                       size_px);
+}
+
+constexpr std::array<std::string_view, 10> layer_names = {"combined",  "depth",    "position", "normal", "albedo",
+                                                          "roughness", "emission", "world",    "light",  "ids"};
+
+/** Channels of a picture_array, without a copy. A single one has no axis of its own. */
+py::object channels(const py::array_t<float> &array, int first, int count)
+{
+  const py::object picked = count == 1 ? py::object(py::int_(first)) : py::slice(first, first + count, 1);
+  return array[py::make_tuple(py::ellipsis(), picked)];
+}
+
+/** \a index_of: the number of an object's thing; -1 for none */
+template <typename IndexOf>
+py::array_t<std::int32_t> id_array(std::span<const glm::vec4> normal, glm::ivec2 size_px, const IndexOf &index_of)
+{
+  py::array_t<std::int32_t> ids({size_px.y, size_px.x});
+  auto values = ids.mutable_unchecked<2>();
+  for (int y = 0; y < size_px.y; y++) {
+    for (int x = 0; x < size_px.x; x++) {
+      const auto pixel = std::size_t(size_px.y - 1 - y) * std::size_t(size_px.x) + std::size_t(x);
+      const auto object = draw::ObjectIndex(normal[pixel].w);
+      values(y, x) = object == draw::object_identity ? -1 : index_of(object);
+    }
+  }
+  return ids;
+}
+
+/** Indices in the lists that the scene has in Python. */
+template <typename T>
+std::map<scene::Handle<T>, std::int32_t> indices_of(const scene::Scene &scene)
+{
+  std::map<scene::Handle<T>, std::int32_t> indices;
+  for (const auto &item : scene.pool<T>()) {
+    indices.emplace(item.handle, std::int32_t(indices.size()));
+  }
+  return indices;
+}
+
+void add_ids(Renderer &renderer, std::span<const glm::vec4> normal, glm::ivec2 size_px, py::dict &arrays)
+{
+  const scene::Scene &scene = renderer.scene()->scene;
+  const render_scene::RenderScene &drawn = renderer.use().render_scene();
+  const auto nodes = indices_of<scene::Node>(scene);
+  arrays["node_ids"] =
+      id_array(normal, size_px, [&](draw::ObjectIndex object) { return nodes.at(drawn.object(object).node); });
+  const auto materials = indices_of<scene::Material>(scene);
+  arrays["material_ids"] = id_array(normal, size_px, [&](draw::ObjectIndex object) {
+    const auto found = materials.find(scene.meshes()[drawn.object(object).mesh].material);
+    return found == materials.end() ? -1 : found->second;
+  });
+}
+
+py::dict layers(Renderer &renderer, const std::vector<std::string> &names,
+                const std::optional<Thing<scene::Node>> &camera)
+{
+  for (const std::string &name : names) {
+    if (std::ranges::find(layer_names, name) == layer_names.end()) {
+      throw py::value_error(
+          fmt::format("layers: there is no layer '{}'; there are: {}", name, fmt::join(layer_names, ", ")));
+    }
+  }
+  const auto has = [&](std::string_view name) { return std::ranges::find(names, name) != names.end(); };
+  const LayerRequest request{.surfaces = {.has_centers = has("depth") || has("position") || has("normal") || has("ids"),
+                                          .has_means = has("albedo") || has("roughness")},
+                             .has_light = has("light"),
+                             .has_emission = has("emission"),
+                             .has_world = has("world")};
+  const glm::ivec2 size_px = renderer.size_px();
+  Layers drawn = drawn_by(renderer, camera, [&](const scene::PlacedCamera &placed, const auto &progress) {
+    return renderer.render_layers(placed, {.progress = progress}, request);
+  });
+  py::dict arrays;
+  const auto add = [&](const char *name, const py::array_t<float> &array, int first, int count) {
+    if (has(name)) {
+      arrays[name] = channels(array, first, count);
+    }
+  };
+  const auto array_of = [&](std::vector<glm::vec4> &pixels) { return picture_array(std::move(pixels), size_px); };
+  if (has("combined")) {
+    arrays["combined"] = array_of(drawn.picture);
+  }
+  if (request.surfaces.has_centers) {
+    if (has("ids")) {
+      add_ids(renderer, drawn.surfaces.normal, size_px, arrays);
+    }
+    const py::array_t<float> place = array_of(drawn.surfaces.position_depth);
+    add("depth", place, 3, 1);
+    add("position", place, 0, 3);
+    add("normal", array_of(drawn.surfaces.normal), 0, 3);
+  }
+  if (request.surfaces.has_means) {
+    const py::array_t<float> means = array_of(drawn.surfaces.albedo_roughness);
+    add("albedo", means, 0, 3);
+    add("roughness", means, 3, 1);
+  }
+  for (const auto &[name, pixels] : {std::pair("emission", &drawn.emission), std::pair("world", &drawn.world)}) {
+    if (has(name)) {
+      add(name, array_of(*pixels), 0, 3);
+    }
+  }
+  for (auto &[name, pixels] : drawn.light) {
+    arrays[fmt::format("light.{}", name).c_str()] = channels(array_of(pixels), 0, 3);
+  }
+  return arrays;
 }
 
 /** Each message of these errors names the object or file and the reason. */
@@ -230,6 +353,17 @@ void define_renderer(py::module_ &module)
                "scene-linear radiance, W/(sr m²), multiplied by alpha; the top row is the first.\n\n"
                "`camera`: a node that has one; None: the first of the scene. `seconds_max`: end the picture with fewer "
                "samples, s. Other threads of the interpreter run meanwhile.");
+  renderer.def(
+      "layers", &layers, py::arg("names"), py::arg("camera") = py::none(),
+      "Draw a picture and layers of it, from the same samples: a dictionary of arrays, with the top row first, by "
+      "these names:\n\n"
+      "'combined': what render() returns. 'depth': m along the view's axis, 1e10 without a surface. 'position': m, "
+      "world "
+      "space. 'normal': unit vectors, world space. 'albedo', 'roughness': multiplied by the coverage of the pixel. "
+      "'light': light.NAME for each name of lamps, W/(sr m²). 'emission', 'world': the rest of the light. 'ids': "
+      "node_ids and material_ids, int32 indices in the scene's nodes and materials, -1 for none.\n\n"
+      "depth, position, normal and ids are those of the surface at the centre of a pixel. Blended surfaces are not in "
+      "them. Arrays of the same kind share their memory. Needs a sample_count and no noise_threshold.");
   renderer.def("report", &Renderer::report, "A Report on the last picture.");
 }
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 namespace gnomon::python {
 
@@ -122,6 +123,40 @@ std::vector<glm::vec4> Renderer::render(const scene::PlacedCamera &camera, const
   renderer.viewport().device().finish();
   frame_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return renderer.read_picture();
+}
+
+Layers Renderer::render_layers(const scene::PlacedCamera &camera, const eevee::DrawLimits &limits,
+                               const LayerRequest &request)
+{
+  const int sample_count = settings().sample_count;
+  if (sample_count == 0 || settings().noise_threshold != 0.0F) {
+    throw gpu::Error("renderer: layers need a sample_count other than 0 and a noise_threshold of 0");
+  }
+  Layers layers;
+  layers.picture = render(camera, limits);
+  if (samples_drawn_ < sample_count) {
+    return layers;
+  }
+  eevee::SceneRenderer &renderer = use();
+  const Drawing drawing(*device_);
+  if (request.has_light) {
+    std::set<std::string> names;
+    for (const scene::PlacedLamp &lamp : renderer.render_scene().lamps()) {
+      names.insert(lamp.name);
+    }
+    for (const std::string &name : names) {
+      layers.light.emplace_back(name, eevee::render_lamp_layer(renderer, camera, sample_count, name));
+    }
+  }
+  if (request.has_emission) {
+    layers.emission = eevee::render_light_layer(renderer, camera, sample_count, {eevee::LightPart::Kind::Emission});
+  }
+  // It comes after those that leave it out, as in the program.
+  if (request.has_world) {
+    layers.world = eevee::render_light_layer(renderer, camera, sample_count, {eevee::LightPart::Kind::World});
+  }
+  layers.surfaces = eevee::render_surface_layers(renderer, camera, sample_count, request.surfaces);
+  return layers;
 }
 
 Report Renderer::report()

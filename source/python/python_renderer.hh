@@ -3,7 +3,7 @@
 
 #include "python_scene.hh"
 
-#include "eevee_scene_renderer.hh"
+#include "eevee_picture_layers.hh"
 
 #include <mutex>
 #include <thread>
@@ -54,6 +54,24 @@ struct Report {
   std::size_t memory_bytes = 0;
 };
 
+/** Layers of a picture beside the picture itself. */
+struct LayerRequest {
+  eevee::SurfaceRequest surfaces;
+  bool has_light = false;
+  bool has_emission = false;
+  bool has_world = false;
+};
+
+/** Rows from the bottom. What was not asked for is empty. */
+struct Layers {
+  std::vector<glm::vec4> picture;
+  eevee::SurfaceLayers surfaces;
+  /** By the names of the lamps, each once. */
+  std::vector<std::pair<std::string, std::vector<glm::vec4>>> light;
+  std::vector<glm::vec4> emission;
+  std::vector<glm::vec4> world;
+};
+
 /** Draws one scene on one device. All functions are called on the device's thread. */
 class Renderer {
  public:
@@ -67,6 +85,11 @@ class Renderer {
    * scene exists. \a limits ends a picture of no known number of samples.
    */
   std::vector<glm::vec4> render(const scene::PlacedCamera &camera, const eevee::DrawLimits &limits);
+  /**
+   * The picture and \a layers of it. Called as render().
+   * \throws gpu::Error if the number of samples is not known, or not the same for all pixels
+   */
+  Layers render_layers(const scene::PlacedCamera &camera, const eevee::DrawLimits &limits, const LayerRequest &request);
   [[nodiscard]] Report report();
   /** \throws gpu::Error */
   eevee::SceneRenderer &use();

@@ -2,12 +2,14 @@
 """The module `gnomon`. GNOMON_SOURCE: the repository's root; GNOMON_PROGRAM: the program."""
 
 import ast
+import copy
 import gc
 import inspect
 import json
 import math
 import multiprocessing
 import os
+import pickle
 import re
 import shutil
 import signal
@@ -68,6 +70,52 @@ class Scenes(unittest.TestCase):
         self.assertEqual(child.position, (5, 6, 7))
         low, high = scene.bounds
         self.assertEqual((low, high), ((-9, -9, 0), (9, 9, 0)))
+
+    def test_matrices_of_directions(self):
+        random = numpy.random.default_rng(3)
+        for _ in range(20):
+            position, target, up = random.normal(size=(3, 3))
+            matrix = gnomon.look_at(position, target, up)
+            turn = matrix[:3, :3]
+            self.assertTrue(numpy.allclose(turn.T @ turn, numpy.eye(3)))
+            self.assertAlmostEqual(numpy.linalg.det(turn), 1)
+            self.assertTrue(numpy.allclose(-turn[:, 2], (target - position) / numpy.linalg.norm(target - position)))
+            self.assertAlmostEqual(turn[:, 0] @ up, 0)
+            self.assertGreater(turn[:, 1] @ up, 0)
+            self.assertEqual((matrix[:3, 3] == position).all() and matrix[3].tolist(), [0, 0, 0, 1])
+            angle = random.uniform(-4, 4)
+            turned = gnomon.rotation(up, angle)
+            self.assertTrue(numpy.allclose(turned @ gnomon.rotation(-up, angle), numpy.eye(4)))
+            self.assertTrue(numpy.allclose(turned[:3, :3] @ up, up))
+            self.assertAlmostEqual(numpy.trace(turned), 2 + 2 * math.cos(angle))
+        self.assertTrue(numpy.allclose(gnomon.rotation((0, 0, 5), math.pi / 2)[:3, 0], (0, 1, 0)))
+        for use in (lambda: gnomon.look_at((0, 0, 0), (0, 1, 0)), lambda: gnomon.look_at((1, 1, 1), (1, 1, 1)),
+                    lambda: gnomon.rotation((0, 0, 0), 1), lambda: gnomon.look_at((0, 0, 0), (math.nan, 0, 1))):
+            with self.assertRaises(ValueError):
+                use()
+
+    def test_scenes_are_pickled(self):
+        for scene in (square_scene(), gnomon.load(PLAZA), gnomon.Scene()):
+            for again in (pickle.loads(pickle.dumps(scene)), copy.deepcopy(scene)):
+                self.assertIsNot(again, scene)
+                self.assertEqual([node.name for node in again.nodes], [node.name for node in scene.nodes])
+                for a, b in zip(scene.nodes, again.nodes):
+                    self.assertTrue((a.world_from_node == b.world_from_node).all())
+                for a, b in zip(scene.meshes, again.meshes):
+                    self.assertTrue((a.positions == b.positions).all() and (a.triangles == b.triangles).all())
+                self.assertEqual([(lamp.name, lamp.kind, lamp.intensity) for lamp in again.lamps],
+                                 [(lamp.name, lamp.kind, lamp.intensity) for lamp in scene.lamps])
+                self.assertEqual(pickle.dumps(pickle.loads(pickle.dumps(again))), pickle.dumps(again))
+        scene = square_scene()
+        scene.remove(scene.lamps[0])
+        scene.remove(scene.cameras[0])
+        again = pickle.loads(pickle.dumps(scene))
+        self.assertEqual((again.lamps, again.cameras, len(again.nodes)), ([], [], 3))
+        scene.remove(scene.nodes[0])
+        with self.assertRaisesRegex(ValueError, "without a mesh"):
+            pickle.dumps(scene)
+        with self.assertRaises(TypeError):
+            pickle.dumps(square_scene().nodes[0])
 
     def test_every_property_takes_its_own_value(self):
         scene = square_scene()
@@ -400,6 +448,51 @@ class Pictures(unittest.TestCase):
         renderer.background = None
         self.assertTrue((renderer.render() != expected).any())
 
+    def test_layers_equal_the_files_of_the_program(self):
+        scene = gnomon.load(PLAZA)
+        # Far from the origin, where floats on the device are relative to another.
+        for node in scene.nodes:
+            if node.parent is None:
+                node.position = tuple(x + 3000 for x in node.position)
+        names = ["combined", "depth", "position", "normal", "albedo", "roughness", "emission", "world", "light"]
+        with tempfile.TemporaryDirectory() as folder:
+            scene.save(f"{folder}/scene.glb")
+            subprocess.run([os.environ["GNOMON_PROGRAM"], "render", f"{folder}/scene.glb", "-o", f"{folder}/layers.exr", "--size", "48x27",
+                            "--samples", "2", "--aov", ",".join(names), "--background", "none"], check=True, stdout=subprocess.DEVNULL)
+            file = OpenImageIO.ImageInput.open(f"{folder}/layers.exr")
+            values = dict(zip(file.spec().channelnames, numpy.moveaxis(file.read_image("float"), -1, 0)))
+        renderer = gnomon.Renderer.offline(self.device, scene, (48, 27), 2)
+        layers = renderer.layers(names)
+        compared = 0
+        for name, array in layers.items():
+            channels = numpy.moveaxis(array, -1, 0) if array.ndim == 3 else [array]
+            letters = "RGBA" if name == "combined" else {"depth": "Z", "roughness": "V"}.get(name, "XYZ" if name in ("position", "normal") else "RGB")
+            for letter, channel in zip(letters, channels):
+                own = [letter, f"combined.{letter}"] if name == "combined" else [f"{name}.{letter}"]
+                expected = next(values[each] for each in own if each in values)
+                self.assertTrue((channel == expected).all(), f"{name}.{letter}")
+                compared += 1
+        self.assertGreaterEqual(compared, 4 + 1 + 3 + 3 + 3 + 1 + 3 + 3 + 3)
+        self.assertTrue((renderer.render() == layers["combined"]).all())
+        for error, text, use in ((ValueError, "no layer 'color'; there are: combined, depth", lambda: renderer.layers(["color"])),
+                                 (gnomon.DeviceError, "noise_threshold", lambda: (setattr(renderer, "noise_threshold", 0.1), renderer.layers(["depth"])))):
+            with self.assertRaisesRegex(error, text):
+                use()
+
+    def test_ids_are_indices_in_the_lists_of_the_scene(self):
+        scene = square_scene()
+        first = scene.add_node(name="gone")
+        bare = scene.add_mesh(scene.meshes[0].positions * numpy.float32(0.1), scene.meshes[0].normals, scene.meshes[0].triangles)
+        scene.add_node(name="small", meshes=[bare], position=(0, 0, 1))
+        scene.remove(first)
+        scene.remove(scene.nodes[0])
+        renderer = gnomon.Renderer(self.device, scene, (32, 32), **SMALL)
+        layers = renderer.layers(["ids"])
+        self.assertEqual(set(layers), {"node_ids", "material_ids"})
+        names = {scene.nodes[i].name for i in set(layers["node_ids"].flat) - {-1}}
+        self.assertEqual(names, {"small"})
+        self.assertEqual(set(layers["material_ids"].flat), {-1})
+
     def test_offline_equals_the_files_of_the_program(self):
         """With the sizes of shadows that the program chooses: smaller with one sample, larger and fitted with 16."""
         scene = gnomon.load(PLAZA)
@@ -628,12 +721,48 @@ class Page(unittest.TestCase):
             self.assertTrue(numpy.isfinite(after).all())
             self.assertGreater(abs(before - after).max(), 1e-3)
         self.assertLess(names["error"].rmse, 0.02)
+        self.check_data_set(names, [len(each.strip().splitlines()) for each in examples if "samples = []" in each])
         built = gnomon.Renderer(names["device"], names["built"], (16, 16), **SMALL).render()
         self.assertAlmostEqual(float(built[8, 8, 0]), 0.5, 5)
         # Only one device can exist at a time.
         with self.assertRaisesRegex(gnomon.DeviceError, "already current"):
             gnomon.Device()
         names.clear()
+
+
+    def check_data_set(self, names, line_counts):
+        """Depth, normals and ids against the rays of a unit sphere at the origin and a floor at y = -1."""
+        self.assertEqual((len(line_counts), line_counts[0] <= 25), (1, True))
+        nodes = names["still"].nodes
+        for matrix, layers in names["samples"]:
+            height, width = layers["depth"].shape
+            slope = math.tan(0.35)
+            across = (2 * (numpy.arange(width) + 0.5) / width - 1) * slope * width / height
+            up = (1 - 2 * (numpy.arange(height) + 0.5) / height) * slope
+            x, y = numpy.meshgrid(across, up)
+            # With a depth of 1.
+            rays = numpy.stack([x, y, -numpy.ones_like(x)], axis=-1) @ matrix[:3, :3].T
+            eye = matrix[:3, 3]
+            a, b, c = (rays * rays).sum(-1), rays @ eye, eye @ eye - 1
+            with numpy.errstate(invalid="ignore"):
+                ball = (-b - numpy.sqrt(b * b - a * c)) / a
+                floor = (-1 - eye[1]) / rays[..., 1]
+            on_floor = eye + floor[..., None] * rays
+            floor = numpy.where((floor > 0) & (abs(on_floor[..., [0, 2]]).max(-1) < 10), floor, numpy.inf)
+            is_ball = numpy.nan_to_num(ball, nan=numpy.inf) < floor
+            # The sphere has flat triangles, and rims are not compared.
+            discriminant = (b * b - a * c) / a
+            sure = (abs(discriminant) > 0.05) & ((floor == numpy.inf) | (abs(on_floor[..., [0, 2]]).max(-1) < 9.5))
+            expected = numpy.where(is_ball, nodes.index(names["ball"]), numpy.where(floor < numpy.inf, nodes.index(names["floor"]), -1))
+            self.assertGreater((sure & is_ball).sum(), 100)
+            self.assertGreater((sure & ~is_ball & (floor < numpy.inf)).sum(), 100)
+            self.assertTrue((layers["node_ids"] == expected)[sure].all())
+            grey = names["still"].materials.index(names["grey"])
+            self.assertTrue((layers["material_ids"] == numpy.where(expected < 0, -1, grey))[sure].all())
+            depth = numpy.where(is_ball, ball, numpy.where(floor < numpy.inf, floor, 1e10))
+            self.assertLess(abs(layers["depth"] / depth - 1)[sure].max(), 1e-3)
+            normal = numpy.where(is_ball[..., None], eye + depth[..., None] * rays, numpy.array([0, 1, 0]))
+            self.assertLess(abs(layers["normal"] - normal)[sure & (expected >= 0)].max(), 0.02)
 
 
 class Stub(unittest.TestCase):

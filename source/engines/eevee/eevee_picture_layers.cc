@@ -6,10 +6,13 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <functional>
 
 namespace gnomon::eevee {
 
 namespace {
+
+constexpr glm::vec4 no_surface(0.0F, 0.0F, 0.0F, no_depth);
 
 /** Sets other settings until its end. */
 class OtherSettings {
@@ -81,6 +84,21 @@ std::vector<glm::vec4> render_light_layer(SceneRenderer &renderer, const scene::
   return picture;
 }
 
+std::vector<glm::vec4> render_lamp_layer(SceneRenderer &renderer, const scene::PlacedCamera &camera, int sample_count,
+                                         std::string_view lamp_name)
+{
+  std::vector<glm::vec4> sum;
+  for (std::size_t lamp = 0; lamp < renderer.render_scene().lamps().size(); lamp++) {
+    if (renderer.render_scene().lamps()[lamp].name == lamp_name) {
+      const std::vector<glm::vec4> light =
+          render_light_layer(renderer, camera, sample_count, {LightPart::Kind::Lamp, lamp});
+      sum.resize(light.size(), glm::vec4(0.0F));
+      std::ranges::transform(sum, light, sum.begin(), std::plus<>());
+    }
+  }
+  return sum;
+}
+
 /** Add what one sample of the picture sees to \a layers. */
 static void add_sample(SceneRenderer &renderer, const draw::View &view, int sample, double weight_sum,
                        const SurfaceRequest &request, SurfaceLayers &layers)
@@ -134,8 +152,13 @@ SurfaceLayers render_surface_layers(SceneRenderer &renderer, const scene::Placed
     if (const auto centers = request.has_centers ? renderer.inspect().surfaces(view) : std::nullopt) {
       layers.position_depth = centers->position_depth;
       layers.normal = centers->normal_object;
+      const glm::vec4 origin_ws(glm::vec3(renderer.render_scene().origin_ws()), 0.0F);
+      for (std::size_t i = 0; i < pixel_count; i++) {
+        const bool is_surface = layers.normal[i].w != float(draw::object_identity);
+        layers.position_depth[i] = is_surface ? layers.position_depth[i] + origin_ws : no_surface;
+      }
     }
-    layers.position_depth.resize(request.has_centers ? pixel_count : 0);
+    layers.position_depth.resize(request.has_centers ? pixel_count : 0, no_surface);
     layers.normal.resize(request.has_centers ? pixel_count : 0);
     layers.albedo_roughness.resize(request.has_means ? pixel_count : 0);
     layers.objects.resize(request.has_objects ? pixel_count : 0);

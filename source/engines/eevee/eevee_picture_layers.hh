@@ -3,6 +3,7 @@
 
 #include "eevee_scene_renderer.hh"
 
+#include <string_view>
 #include <utility>
 
 /**
@@ -27,10 +28,17 @@ struct SurfaceRequest {
 /** An object, and the part of a pixel that it covers. */
 using Coverage = std::pair<draw::ObjectIndex, float>;
 
+/** Depth of pixels without a surface, metres. Blender's value. */
+inline constexpr float no_depth = 1e10F;
+
 /** One entry for each pixel, rows from the bottom. Layers that were not asked for are empty. */
 struct SurfaceLayers {
-  /** Surfaces::position_depth and normal_object at the centre of the pixel: no mean of two surfaces is on either. */
+  /**
+   * Position in the scene's world space and depth, metres, at the centre of the pixel: no mean of two surfaces is on
+   * either. (0, 0, 0, no_depth) without a surface.
+   */
   std::vector<glm::vec4> position_depth;
+  /** Surfaces::normal_object at the centre of the pixel. */
   std::vector<glm::vec4> normal;
   /** Surfaces::albedo_roughness, filtered as the picture is: multiplied by the coverage of the pixel. */
   std::vector<glm::vec4> albedo_roughness;
@@ -42,11 +50,15 @@ struct SurfaceLayers {
 
 /**
  * The picture of \a camera with a part of its light. \a sample_count: samples of the picture.
- * Afterwards, the renderer is synced with its settings, and its picture begins anew. So are the next function's.
- * \pre Settings::noise_threshold is 0, here and in the next function: layers have all samples
+ * Afterwards, the renderer is synced with its settings, and its picture begins anew. So are the next functions'.
+ * \pre Settings::noise_threshold is 0, here and in the next functions: layers have all samples
  */
 [[nodiscard]] std::vector<glm::vec4> render_light_layer(SceneRenderer &renderer, const scene::PlacedCamera &camera,
                                                         int sample_count, const LightPart &light);
+
+/** The light of all lamps of a name. \see render_light_layer */
+[[nodiscard]] std::vector<glm::vec4> render_lamp_layer(SceneRenderer &renderer, const scene::PlacedCamera &camera,
+                                                       int sample_count, std::string_view lamp_name);
 
 [[nodiscard]] SurfaceLayers render_surface_layers(SceneRenderer &renderer, const scene::PlacedCamera &camera,
                                                   int sample_count, const SurfaceRequest &request);

@@ -178,7 +178,7 @@ TEST_F(PictureLayersGpuTest, SurfacesAreWhereTheyAreAndCoverWhatThePictureCovers
     const glm::vec4 &normal = layers.normal[pixel];
     const glm::vec3 position(layers.position_depth[pixel]);
     if (normal.w == 0.0F) {
-      EXPECT_EQ(layers.position_depth[pixel], glm::vec4(0.0F));
+      EXPECT_EQ(layers.position_depth[pixel], glm::vec4(0.0F, 0.0F, 0.0F, no_depth));
       continue;
     }
     EXPECT_NEAR(layers.position_depth[pixel].w, glm::dot(axis, position - eye), 1e-5F);
