@@ -447,6 +447,8 @@ def write_picture_scene():
     scene.gnomon_export.world_width = 256
     bpy.ops.export_scene.gltf(filepath=f"{FOLDER}/picture.glb", convert_lighting_mode='COMPAT')
 
+    bpy.ops.wm.save_as_mainfile(filepath=f"{FOLDER}/picture.blend")
+
     # Blender's Principled BSDF without specular reflection is not Lambertian.
     tree = grey.node_tree
     diffuse = tree.nodes.new('ShaderNodeBsdfDiffuse')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Gnomon in Blender: the exporter of glTF also writes what glTF has no word for. doc/from-blender.md describes it."""
+"""Gnomon in Blender: a render engine, and what the exporter of glTF has no word for. doc/from-blender.md describes both."""
 
 import copy
 import math
@@ -9,16 +9,16 @@ import shlex
 import bpy
 import numpy
 
-from . import closed, lamps, materials, world
+from . import closed, engine, lamps, materials, world
 
 bl_info = {
     "name": "Gnomon",
     "author": "The authors of Gnomon",
     "version": (1, 0, 0),
     "blender": (3, 4, 0),
-    "location": "File > Export > glTF 2.0",
-    "description": "Lamps, the world and the view of a scene in glTF files, as Gnomon reads them",
-    "category": "Import-Export",
+    "location": "Render properties > Render Engine; File > Export > glTF 2.0",
+    "description": "Draws by Gnomon, and writes lamps and worlds into glTF files as Gnomon reads them",
+    "category": "Render",
 }
 
 VIEW_TRANSFORMS = {'Standard': 'standard', 'Raw': 'raw', 'AgX': 'agx', 'Khronos PBR Neutral': 'pbr-neutral'}
@@ -101,9 +101,12 @@ class Export:
         self.volumes = {}
         self.choose_options()
         self.report_scene()
-        self.world_extras, remarks = world.extras_of(
-            scene.world, os.path.splitext(self.path)[0] + '_world.hdr', scene.gnomon_export.world_width, settings['gltf_yup'])
-        self.report.add_all('world', remarks)
+        self.world_extras = {}
+        # The scene's own extra comes first.
+        if 'gnomon_world' not in scene:
+            self.world_extras, remarks = world.extras_of(
+                scene.world, os.path.splitext(self.path)[0] + '_world.hdr', scene.gnomon_export.world_width, settings['gltf_yup'])
+            self.report.add_all('world', remarks)
 
     def choose_options(self):
         """Sets those options of the exporter without which the file would lack what Blender draws."""
@@ -263,7 +266,7 @@ class Export:
         return self.volumes[key]
 
     def write_scene(self, element, scene):
-        add_extras(element, {**own_extras(scene), **({} if 'gnomon_world' in scene else self.world_extras)})
+        add_extras(element, {**own_extras(scene), **self.world_extras})
         self.put_camera_first(element.nodes, scene)
 
     @staticmethod
@@ -306,8 +309,9 @@ class Export:
                    '--background', 'none' if render.film_transparent else 'world']
         if exposure != 0:
             command += ['--exposure', f"{exposure:.6g}"]
-        lines = [f"Gnomon: {line}" for line in self.report.lines] + [f"Gnomon: draw with: {shlex.join(command)}"]
-        print("\n".join(lines))
+        lines = self.report.lines + [f"draw with: {shlex.join(command)}"]
+        for line in lines:
+            print(f"Gnomon: {line}")
         bpy.context.window_manager.gnomon_report = "\n".join(lines)
 
 
@@ -408,7 +412,7 @@ class GNOMON_PT_report(bpy.types.Panel):
     bl_space_type = 'PROPERTIES'
     bl_region_type = 'WINDOW'
     bl_context = 'output'
-    bl_label = "Gnomon: Last Export"
+    bl_label = "Gnomon: Last Report"
     bl_options = {'DEFAULT_CLOSED'}
 
     @classmethod
@@ -417,7 +421,7 @@ class GNOMON_PT_report(bpy.types.Panel):
 
     def draw(self, context):
         for line in context.window_manager.gnomon_report.splitlines():
-            self.layout.label(text=line.removeprefix("Gnomon: "))
+            self.layout.label(text=line)
 
 
 def register_panel():
@@ -427,6 +431,7 @@ def register_panel():
 
 
 def register():
+    engine.register()
     bpy.utils.register_class(GnomonExport)
     bpy.utils.register_class(GNOMON_PT_report)
     bpy.types.Scene.gnomon_export = bpy.props.PointerProperty(type=GnomonExport)
@@ -438,3 +443,4 @@ def unregister():
     del bpy.types.Scene.gnomon_export
     bpy.utils.unregister_class(GNOMON_PT_report)
     bpy.utils.unregister_class(GnomonExport)
+    engine.unregister()

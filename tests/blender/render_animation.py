@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: MIT
+"""Run in Blender: -- FILE. Renders two frames by the engine of the add-on, with all of its passes."""
+
+import sys
+
+import bpy
+
+bpy.ops.preferences.addon_enable(module='render_gnomon')
+scene = bpy.context.scene
+scene.render.engine = 'GNOMON'
+scene.gnomon.sample_count = 8
+scene.render.resolution_x, scene.render.resolution_y = 160, 90
+layer = bpy.context.view_layer
+layer.use_pass_z = layer.use_pass_normal = layer.use_pass_diffuse_color = True
+scene.render.image_settings.file_format = 'OPEN_EXR_MULTILAYER'
+scene.render.image_settings.color_depth = '32'
+scene.render.filepath = sys.argv[-1]
+scene.frame_start, scene.frame_end = 1, 2
+bpy.ops.render.render(animation=True)
