@@ -20,6 +20,10 @@ enum class Status : int {
   NonFinite = 3,
   /** With --strict: a limit was reached, for example a lamp has no shadow. The result was written. */
   Limit = 4,
+  /** Failed for a reason that another attempt or another machine may not have: memory, the device, or the disk. */
+  Transient = 5,
+  /** Ended early by SIGTERM or --stop-after. */
+  Stopped = 6,
 };
 
 /** An invalid request on the command line: ends with Status::Usage. */
@@ -39,6 +43,7 @@ void add_render(CLI::App &app, Status &status);
 void add_info(CLI::App &app, Status &status);
 void add_compare(CLI::App &app, Status &status);
 void add_merge(CLI::App &app, Status &status);
+void add_plan(CLI::App &app, Status &status);
 void add_report(CLI::App &app, Status &status);
 void add_stability(CLI::App &app, Status &status);
 void add_shaders(CLI::App &app, Status &status);

@@ -173,6 +173,13 @@ std::string scene_fingerprint(const scene::Scene &scene)
   return hash.text();
 }
 
+std::string text_fingerprint(std::string_view text)
+{
+  Hasher hash;
+  hash.add(text);
+  return hash.text();
+}
+
 std::string program_fingerprint()
 {
   std::ifstream file("/proc/self/exe", std::ios::binary);

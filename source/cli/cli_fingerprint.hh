@@ -4,6 +4,7 @@
 #include "scene.hh"
 
 #include <string>
+#include <string_view>
 
 namespace gnomon::cli {
 
@@ -12,6 +13,8 @@ namespace gnomon::cli {
  * the paths nor on the encoding of the files.
  */
 [[nodiscard]] std::string scene_fingerprint(const scene::Scene &scene);
+
+[[nodiscard]] std::string text_fingerprint(std::string_view text);
 
 /** Hash of the running program; "" if the system does not provide it. */
 [[nodiscard]] std::string program_fingerprint();

@@ -2,14 +2,13 @@
 #include "cli_frames.hh"
 
 #include "cli.hh"
+#include "cli_exr_part.hh"
+#include "cli_work_plan.hh"
 #include "output_file.hh"
 
 #include <fmt/format.h>
 
-#include <unistd.h>
-#include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <set>
 #include <stdexcept>
 #include <vector>
@@ -38,18 +37,7 @@ FrameSequence::FrameSequence(FrameOptions options, std::filesystem::path output)
 
 std::filesystem::path FrameSequence::path(int index) const
 {
-  std::string name = output_.filename().string();
-  const std::size_t last = name.rfind('#');
-  if (!is_animated() || last == name.npos) {
-    return output_;
-  }
-  std::size_t first = last;
-  while (first > 0 && name[first - 1] == '#') {
-    first--;
-  }
-  const std::size_t width = last - first + 1;
-  name.replace(first, width, fmt::format("{:0{}}", number(index), width));
-  return output_.parent_path() / name;
+  return is_animated() ? std::filesystem::path(frame_name(output_.string(), number(index))) : output_;
 }
 
 Metadata FrameSequence::metadata(int index) const
@@ -59,14 +47,16 @@ Metadata FrameSequence::metadata(int index) const
                        : Metadata();
 }
 
-bool FrameSequence::is_done(int index, glm::ivec2 size_px) const
+bool FrameSequence::is_done(int index, glm::ivec2 size_px, const std::string &plan_id) const
 {
   const std::filesystem::path file = path(index);
   if (!options_.is_resumed || !std::filesystem::exists(file)) {
     return false;
   }
   try {
-    return read_picture(file).size_px == size_px;
+    return read_picture(file).size_px == size_px &&
+           (plan_id.empty() ||
+            metadata_value(read_exr_part(file, ExrContent::Header).metadata, plan_metadata) == plan_id);
   }
   catch (const std::runtime_error &) {
     // The file is incomplete, for example because the program was interrupted. Render it again.
@@ -76,7 +66,7 @@ bool FrameSequence::is_done(int index, glm::ivec2 size_px) const
 
 void FrameSequence::remove_unfinished_files() const
 {
-  if (!options_.is_resumed || !is_animated()) {
+  if (!options_.is_resumed) {
     return;
   }
   std::set<std::string> names;
@@ -103,17 +93,6 @@ void FrameSequence::pose(scene::Scene &scene, int index) const
       names.empty()
           ? fmt::format("{}: --frames needs an animation, and the scene has none", scene.path)
           : fmt::format("{}: no animation '{}'; it has: {}", scene.path, options_.animation, fmt::join(names, ", ")));
-}
-
-void FrameSequence::show_progress(int index, int rendered_count, double rendered_seconds) const
-{
-  if (!is_animated() || isatty(STDERR_FILENO) == 0) {
-    return;
-  }
-  const bool is_last = index + 1 == count();
-  const double left = rendered_seconds / std::max(rendered_count, 1) * double(count() - index - 1);
-  print_message("\r\033[Kframe {} ({}/{}), {:.0f} s left{}", number(index), index + 1, count(), left,
-                is_last ? "\r\033[K" : "");
 }
 
 }  // namespace gnomon::cli

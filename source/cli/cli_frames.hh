@@ -14,10 +14,12 @@ namespace gnomon::cli {
 /** Options of `gnomon render` for the frames of an animation. */
 struct FrameOptions {
   /** "A-B" or "A"; empty: one picture without an animation. */
-  std::string range;
+  std::string range{};
+  /** From one frame to the next, at least 1. */
+  int step = 1;
   double frames_per_second = 24.0;
   /** Name of the animation; empty: the scene's first. */
-  std::string animation;
+  std::string animation{};
   /** Whether to skip frames whose files are complete. */
   bool is_resumed = false;
 };
@@ -33,14 +35,22 @@ class FrameSequence {
   {
     return !options_.range.empty();
   }
+  [[nodiscard]] int first() const
+  {
+    return first_;
+  }
+  [[nodiscard]] int last() const
+  {
+    return last_;
+  }
   [[nodiscard]] int count() const
   {
-    return last_ - first_ + 1;
+    return (last_ - first_) / options_.step + 1;
   }
   /** Number of a frame. \a index: from 0 to count() - 1, also in the following functions */
   [[nodiscard]] int number(int index) const
   {
-    return first_ + index;
+    return first_ + index * options_.step;
   }
   /** Time of a frame. Frame number 0 is at 0 s. */
   [[nodiscard]] double seconds(int index) const
@@ -51,17 +61,17 @@ class FrameSequence {
   [[nodiscard]] std::filesystem::path path(int index) const;
   /** Frame number and time for the header of the picture; empty without an animation. */
   [[nodiscard]] Metadata metadata(int index) const;
-  /** Whether the frame can be skipped: --resume was given, and its file is readable and has the size \a size_px. */
-  [[nodiscard]] bool is_done(int index, glm::ivec2 size_px) const;
+  /**
+   * Whether the frame can be skipped: --resume was given, its file is readable and has the size \a size_px, and is of
+   * the plan \a plan_id, if that is not empty.
+   */
+  [[nodiscard]] bool is_done(int index, glm::ivec2 size_px, const std::string &plan_id) const;
 
   /** If --resume was given, removes temporary files of frames that a killed process left. */
   void remove_unfinished_files() const;
 
   /** Poses \a scene at the frame's time. \throws std::runtime_error if the scene does not have the animation */
   void pose(scene::Scene &scene, int index) const;
-
-  /** Prints the frame and an estimate of the remaining time, if stderr is a terminal. */
-  void show_progress(int index, int rendered_count, double rendered_seconds) const;
 
  private:
   FrameOptions options_;

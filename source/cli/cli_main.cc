@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli.hh"
 
+#include "gltf_import.hh"
+#include "gpu_error.hh"
 #include "output_roles.hh"
 
 #include <fmt/format.h>
@@ -12,6 +14,7 @@
 #include <cstdio>
 #include <cstring>
 #include <iostream>
+#include <new>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -63,6 +66,13 @@ static Status finish_output(Status status)
   return status == Status::Done ? Status::Failed : status;
 }
 
+/** \see Status::Transient */
+static bool is_transient(const std::exception &error)
+{
+  return dynamic_cast<const std::bad_alloc *>(&error) || dynamic_cast<const gpu::TransientError *>(&error) ||
+         dynamic_cast<const output::TransientError *>(&error) || dynamic_cast<const gltf::ImportOutOfMemory *>(&error);
+}
+
 static Status run(int argc, char **argv)
 {
   CLI::App app("gnomon " GNOMON_VERSION ": lights a glTF scene with an EEVEE-style draw-manager engine", "gnomon");
@@ -74,6 +84,7 @@ static Status run(int argc, char **argv)
   add_info(app, status);
   add_compare(app, status);
   add_merge(app, status);
+  add_plan(app, status);
   add_report(app, status);
   add_stability(app, status);
   add_shaders(app, status);
@@ -100,7 +111,7 @@ static Status run(int argc, char **argv)
     if (std::ferror(stdout) == 0) {
       print_message("gnomon: {}\n", error.what());
     }
-    return Status::Failed;
+    return is_transient(error) ? Status::Transient : Status::Failed;
   }
 }
 

@@ -2,6 +2,7 @@
 #include "cli.hh"
 
 #include "cli_exr_part.hh"
+#include "cli_work_plan.hh"
 
 #include "output_roles.hh"
 
@@ -14,6 +15,7 @@
 #include <filesystem>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <memory>
 #include <set>
 #include <stdexcept>
@@ -26,12 +28,16 @@ namespace {
 struct MergeOptions {
   std::vector<std::string> parts;
   std::string output;
+  /** Empty: the parts and the output are given. */
+  std::string plan;
+  /** Whether the parts of the plan are checked, and nothing is written. */
+  bool is_checked_only = false;
 };
 
 /** Metadata that may differ between the parts of one picture. */
 bool is_of_part(const std::string &name)
 {
-  return name == share_metadata || name == range_metadata || name == "gnomon:device";
+  return name == share_metadata || name == range_metadata || name == "gnomon:device" || name == plan_metadata;
 }
 
 /** \throws std::runtime_error naming \a path if it is not a part of the same picture as \a first */
@@ -190,24 +196,19 @@ class Merger {
   std::vector<double> shares_;
 };
 
-Status merge(const MergeOptions &options)
+/**
+ * The picture of \a paths. \throws std::runtime_error if they are not all parts of one picture, each once
+ */
+ExrPart merge_parts(const std::vector<std::string> &paths)
 {
-  if (std::filesystem::path(options.output).extension() != ".exr") {
-    throw UsageError(fmt::format("-o '{}' does not end in .exr", options.output));
-  }
-  output::Roles roles;
-  for (const std::string &part : options.parts) {
-    roles.add_input(part, "the part");
-  }
-  roles.add_output(options.output, "-o");
   // The headers are compared first, so that memory is only allocated for a picture whose pixels are all there.
   std::vector<ExrPart> headers;
   std::int64_t pixel_count = 0;
-  for (std::size_t i = 0; i < options.parts.size(); i++) {
-    headers.push_back(read_exr_part(options.parts[i], ExrContent::Header));
-    check_same_picture(options.parts[i], headers[i], options.parts.front(), headers.front());
+  for (std::size_t i = 0; i < paths.size(); i++) {
+    headers.push_back(read_exr_part(paths[i], ExrContent::Header));
+    check_same_picture(paths[i], headers[i], paths.front(), headers.front());
     for (std::size_t other = 0; other < i; other++) {
-      check_disjoint(options.parts[other], headers[other], options.parts[i], headers[i]);
+      check_disjoint(paths[other], headers[other], paths[i], headers[i]);
     }
     pixel_count += std::int64_t(headers[i].size_px.x) * headers[i].size_px.y;
   }
@@ -217,12 +218,18 @@ Status merge(const MergeOptions &options)
                                          pixel_count, first.whole_size_px.x, first.whole_size_px.y));
   }
   Merger merger(first);
-  for (const std::string &path : options.parts) {
+  for (const std::string &path : paths) {
     merger.add(path, read_exr_part(path));
   }
   ExrPart whole = merger.merged();
   std::ranges::copy_if(first.metadata, std::back_inserter(whole.metadata),
                        [](const auto &entry) { return !is_of_part(entry.first); });
+  return whole;
+}
+
+/** \return Status::NonFinite, with a message, if the picture has values that are not finite; it is then not written */
+Status write_merged(const std::string &path, const ExrPart &whole)
+{
   std::size_t non_finite_count = 0;
   for (const auto &[name, values] : whole.channels) {
     non_finite_count += std::size_t(std::ranges::count_if(values, [](float value) { return !std::isfinite(value); }));
@@ -231,8 +238,94 @@ Status merge(const MergeOptions &options)
     print_message("gnomon: {} values of the merged picture are not finite; not written\n", non_finite_count);
     return Status::NonFinite;
   }
-  write_exr_part(options.output, whole);
-  fmt::print("{}\n", std::filesystem::absolute(options.output).lexically_normal().string());
+  write_exr_part(path, whole);
+  return Status::Done;
+}
+
+Status merge(const MergeOptions &options)
+{
+  if (options.parts.empty() || options.output.empty()) {
+    throw UsageError("merge: parts and -o OUT.exr, or --plan PLAN.json, are required");
+  }
+  if (std::filesystem::path(options.output).extension() != ".exr") {
+    throw UsageError(fmt::format("-o '{}' does not end in .exr", options.output));
+  }
+  output::Roles roles;
+  for (const std::string &part : options.parts) {
+    roles.add_input(part, "the part");
+  }
+  roles.add_output(options.output, "-o");
+  const Status status = write_merged(options.output, merge_parts(options.parts));
+  if (status == Status::Done) {
+    fmt::print("{}\n", std::filesystem::absolute(options.output).lexically_normal().string());
+  }
+  return status;
+}
+
+/** The reason why \a path is not a complete file of the plan \a id; empty: it is one. */
+std::string fault_of(const std::string &path, const std::string &id)
+{
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) {
+    return path + ": is missing";
+  }
+  try {
+    const ExrPart part = read_exr_part(path);
+    return metadata_value(part.metadata, plan_metadata) == id ? "" : path + ": is not of this plan";
+  }
+  catch (const std::runtime_error &error) {
+    return error.what();
+  }
+}
+
+/** Checks all parts of a plan, and joins those of pictures that are divided. */
+Status merge_plan(const std::string &path, bool is_checked_only)
+{
+  const WorkPlan plan = read_plan(path);
+  std::filesystem::current_path(std::filesystem::absolute(path).parent_path() / plan.folder);
+  const std::string id = plan.id();
+  // The parts of each divided picture, and all pictures.
+  std::map<std::string, std::vector<std::string>> divided;
+  std::size_t picture_count = 0;
+  std::size_t fault_count = 0;
+  for (std::size_t i = 0; i < plan.parts.size(); i++) {
+    const std::vector<std::string> files = files_of(plan, plan.parts[i]);
+    const std::string picture = picture_of(plan, plan.parts[i]);
+    if (plan.parts[i].is_of_picture()) {
+      // A picture that was joined by an earlier merge does not need its parts.
+      if (!divided.contains(picture) && fault_of(picture, id).empty()) {
+        divided[picture];
+      }
+      if (divided.contains(picture) && divided[picture].empty()) {
+        continue;
+      }
+      divided[picture].push_back(files.front());
+    }
+    else {
+      picture_count += files.size();
+    }
+    for (const std::string &file : files) {
+      if (const std::string fault = fault_of(file, id); !fault.empty()) {
+        print_message("gnomon: part {}: {}\n", i, fault);
+        fault_count++;
+      }
+    }
+  }
+  if (fault_count > 0) {
+    print_message("gnomon: {}: {} files are missing or damaged; render their parts again\n", path, fault_count);
+    return Status::Failed;
+  }
+  for (const auto &[picture, files] : divided) {
+    if (files.empty() || is_checked_only) {
+      continue;
+    }
+    ExrPart whole = merge_parts(files);
+    whole.metadata.emplace_back(plan_metadata, id);
+    if (const Status status = write_merged(picture, whole); status != Status::Done) {
+      return status;
+    }
+  }
+  fmt::print("{}: {} pictures are complete\n", path, picture_count + divided.size());
   return Status::Done;
 }
 
@@ -243,9 +336,20 @@ void add_merge(CLI::App &app, Status &status)
   CLI::App *command =
       app.add_subcommand("merge", "Join the parts of one picture from `gnomon render --tile` and `--sample-range`");
   auto options = std::make_shared<MergeOptions>();
-  command->add_option("parts", options->parts, "EXR files of all parts")->required();
-  command->add_option("-o,--output", options->output, "OUT.exr: the whole picture")->required();
-  command->callback([options, &status] { status = merge(*options); });
+  CLI::Option *parts = command->add_option("parts", options->parts, "EXR files of all parts");
+  CLI::Option *output = command->add_option("-o,--output", options->output, "OUT.exr: the whole picture");
+  CLI::Option *plan =
+      command
+          ->add_option(
+              "--plan", options->plan,
+              "PLAN.json of `gnomon plan`: check that all its parts are there, and join those of divided pictures")
+          ->excludes(parts)
+          ->excludes(output);
+  command->add_flag("--check", options->is_checked_only, "Only name the parts of the plan that are missing or damaged")
+      ->needs(plan);
+  command->callback([options, &status] {
+    status = options->plan.empty() ? merge(*options) : merge_plan(options->plan, options->is_checked_only);
+  });
 }
 
 }  // namespace gnomon::cli

@@ -6,6 +6,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <sys/resource.h>
 #include <ctime>
 #include <fstream>
 #include <thread>
@@ -30,6 +31,19 @@ Origin origin()
   const std::string model = processor();
   return {"gnomon " GNOMON_VERSION, GNOMON_COMMIT, fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(std::time(nullptr))),
           fmt::format("{} cores{}{}", std::thread::hardware_concurrency(), model.empty() ? "" : ", ", model)};
+}
+
+std::string program_name()
+{
+  return "gnomon " GNOMON_VERSION ", " GNOMON_COMMIT;
+}
+
+std::uint64_t memory_bytes_max()
+{
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  // Linux counts KiB.
+  return std::uint64_t(usage.ru_maxrss) * 1024;
 }
 
 }  // namespace gnomon::cli

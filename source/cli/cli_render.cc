@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: MIT
-#include "cli.hh"
+#include "cli_render.hh"
 
+#include "cli.hh"
 #include "cli_aov.hh"
 #include "cli_explain.hh"
-#include "cli_exr_part.hh"
+#include "cli_fingerprint.hh"
+#include "cli_origin.hh"
 #include "cli_output.hh"
-#include "cli_picture.hh"
+#include "cli_progress.hh"
 #include "cli_render_options.hh"
+#include "cli_render_output.hh"
 #include "cli_render_report.hh"
+#include "cli_stop.hh"
 #include "cli_time.hh"
 #include "cli_trace.hh"
+#include "cli_work_plan.hh"
 
 #include "eevee_scene_renderer.hh"
-#include "eevee_texel_density.hh"
 #include "eevee_world.hh"
 #include "gpu_read.hh"
 #include "output_roles.hh"
@@ -23,6 +27,7 @@
 
 #include <unistd.h>
 #include <algorithm>
+#include <array>
 #include <future>
 #include <iterator>
 #include <optional>
@@ -33,20 +38,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/** The outputs, and the inputs that are known before the scene is read. */
-output::Roles files_of(const RenderOptions &options, const FrameSequence &frames)
+/** Adds the outputs, and the inputs that are known before the scene is read. */
+void add_files(const RenderOptions &options, const FrameSequence &frames, output::Roles &roles)
 {
-  output::Roles roles;
   roles.add_input(options.scene, "the scene");
   if (!options.choice.report_folder.empty()) {
     roles.add_input(fs::path(options.choice.report_folder) / "report.json", "--report");
   }
   roles.add_output(options.json, "--json");
-  roles.add_output(options.trace, "--trace");
   for (int i = 0; options.has_picture() && i < frames.count(); i++) {
     roles.add_output(frames.path(i), "-o");
   }
-  return roles;
 }
 
 scene::PlacedCamera find_camera(const scene::Scene &scene, const std::string &name)
@@ -59,20 +61,6 @@ scene::PlacedCamera find_camera(const scene::Scene &scene, const std::string &na
     names.push_back(camera.name);
   }
   throw std::runtime_error(fmt::format("{}: no camera '{}'; it has: {}", scene.path, name, fmt::join(names, ", ")));
-}
-
-void show_progress(int done, int count)
-{
-  if (count != 1 && isatty(STDERR_FILENO)) {
-    print_message("\r\033[K{}{} samples", done, count > 0 ? fmt::format("/{}", count) : "");
-  }
-}
-
-void end_progress(int count)
-{
-  if (count != 1 && isatty(STDERR_FILENO)) {
-    print_message("\r\033[K");
-  }
 }
 
 /** The texture for the display-referred picture of a PNG. Empty for other outputs and for --debug shadow. */
@@ -92,9 +80,21 @@ Alpha alpha_of(const RenderOptions &options, eevee::SceneRenderer &renderer)
                                                                                             : Alpha::Written;
 }
 
-void render_frames(const RenderOptions &options, const scene::PlacedCamera &camera, eevee::SceneRenderer &renderer,
-                   const std::optional<draw::TargetTexture> &display, RenderResult &result)
+/** One scene of the command. */
+struct SceneWork {
+  const RenderOptions &options;
+  const FrameSequence &frames;
+  const StopRequests &stops;
+  Progress &progress;
+  RenderResult &result;
+};
+
+/** \return whether the last picture has all samples that were asked for */
+bool render_frames(const SceneWork &work, int picture, const scene::PlacedCamera &camera,
+                   eevee::SceneRenderer &renderer, const std::optional<draw::TargetTexture> &display)
 {
+  const RenderOptions &options = work.options;
+  RenderResult &result = work.result;
   draw::Target target = display ? display->target() : draw::Target();
   const render_scene::Display shown = options.display();
   target.view_transform = shown.view_transform;
@@ -108,13 +108,14 @@ void render_frames(const RenderOptions &options, const scene::PlacedCamera &came
       renderer.inspect().invalidate_shadows();
     }
     const Clock::time_point start = Clock::now();
-    const auto progress = [&](int samples_drawn) {
-      show_progress(samples_drawn, sample_count);
-      return samples_drawn != sample_count;
+    bool is_stopped = false;
+    const auto go_on = [&](int samples_drawn) {
+      work.progress.drawn(picture, samples_drawn);
+      is_stopped = samples_drawn != sample_count && work.stops.is_stopped();
+      return samples_drawn != sample_count && !is_stopped;
     };
     const trace::Span span("picture");
-    result.samples_drawn = renderer.draw(camera, {.progress = progress, .seconds_max = options.seconds_max}, target);
-    end_progress(sample_count);
+    result.samples_drawn = renderer.draw(camera, {.progress = go_on, .seconds_max = options.seconds_max}, target);
     renderer.viewport().device().finish();
     result.frame_seconds.push_back(seconds_since(start));
     result.frame_steps.push_back(renderer.inspect().take_step_times());
@@ -122,108 +123,11 @@ void render_frames(const RenderOptions &options, const scene::PlacedCamera &came
     result.frame_shadows.push_back({now.lamps_updated - before.lamps_updated, now.faces_drawn - before.faces_drawn,
                                     now.faces_skipped - before.faces_skipped, now.caster_draws - before.caster_draws});
     before = now;
-  }
-}
-
-/** Writes the \a pixels of options.region() for `gnomon merge`. */
-void write_part(const RenderOptions &options, std::span<const glm::vec4> pixels, Alpha alpha, double sample_share,
-                Metadata metadata)
-{
-  const glm::ivec2 whole_px = options.size_px();
-  const gpu::Rectangle region = options.region();
-  metadata.emplace_back(share_metadata, fmt::format("{}", sample_share));
-  const glm::ivec2 range = options.sample_bounds();
-  metadata.emplace_back(range_metadata, fmt::format("{}-{}", range.x, range.y));
-  metadata.emplace_back("gnomon:settings", options.settings_text);
-  ExrPart part{whole_px,
-               region.size_px,
-               {region.origin_px.x, whole_px.y - region.origin_px.y - region.size_px.y},
-               {},
-               std::move(metadata)};
-  const std::string_view names = alpha == Alpha::Written ? "RGBA" : "RGB";
-  for (std::size_t i = 0; i < names.size(); i++) {
-    std::vector<float> &channel = part.channels[std::string(1, names[i])];
-    channel.reserve(pixels.size());
-    for (int y = region.size_px.y - 1; y >= 0; y--) {
-      const auto row = pixels.subspan(std::size_t(y) * std::size_t(region.size_px.x), std::size_t(region.size_px.x));
-      std::ranges::transform(row, std::back_inserter(channel),
-                             [&](const glm::vec4 &pixel) { return pixel[glm::length_t(i)]; });
+    if (is_stopped) {
+      return false;
     }
   }
-  write_exr_part(options.output, part);
-}
-
-/** Counts non-finite values of the picture or of a layer, and prints where the first is. */
-std::size_t count_non_finite(const RenderOptions &options, std::string_view what, glm::ivec2 size_px,
-                             std::span<const float> values, std::size_t channel_count)
-{
-  const NonFinite found = find_non_finite(size_px, values, channel_count);
-  if (found.count > 0) {
-    print_message("gnomon: {}: {} values of {} are not finite, the first at pixel ({}, {}); not written\n",
-                  options.scene, found.count, what, found.first_px.x, found.first_px.y);
-  }
-  return found.count;
-}
-
-/** What the values of the output are. */
-std::string units_of(const RenderOptions &options)
-{
-  if (options.is_png()) {
-    return fmt::format("display-referred, {}",
-                       options.is_shadow_shown()
-                           ? "raw"
-                           : scene::words<draw::ViewTransform>[std::size_t(options.display().view_transform)]);
-  }
-  return options.is_shadow_shown()    ? "metres, 0 where nothing was drawn"
-         : options.is_density_shown() ? "shadow texels along the edge of a pixel, 0 where there is no shadow"
-                                      : "scene-linear radiance, W/(sr m^2)";
-}
-
-/** \return Status::Done, or Status::NonFinite if the picture has non-finite values; it is then not written */
-Status write_picture(const RenderOptions &options, const scene::Camera &camera, gpu::Device &device,
-                     std::span<const glm::vec4> pixels, glm::ivec2 size_px,
-                     const std::optional<draw::TargetTexture> &display, std::span<const float> density, Alpha alpha,
-                     const AovLayers &aov, double sample_share, const Metadata &frame_metadata, RenderResult &result)
-{
-  const trace::Span span("write picture");
-  const bool is_shadow = options.is_shadow_shown();
-  const std::span<const float> values = floats(pixels);
-  result.non_finite_count = count_non_finite(options, "the picture", size_px, values, 4);
-  for (const Layer &layer : aov.layers) {
-    result.non_finite_count += count_non_finite(options, fmt::format("the layer '{}'", layer.name), size_px,
-                                                layer.values, layer.channels.size());
-  }
-  if (result.non_finite_count > 0) {
-    return Status::NonFinite;
-  }
-  Metadata metadata = {{"gnomon:scene", options.scene},
-                       {"gnomon:camera", camera.name},
-                       {"gnomon:samples", std::to_string(options.is_part() ? options.samples : result.samples_drawn)},
-                       {"gnomon:seed", std::to_string(options.engine_settings().seed)},
-                       {"gnomon:device", result.device}};
-  metadata.insert(metadata.end(), frame_metadata.begin(), frame_metadata.end());
-  metadata.insert(metadata.end(), aov.metadata.begin(), aov.metadata.end());
-  if (!options.debug.empty()) {
-    metadata.emplace_back("gnomon:debug", options.debug);
-  }
-  metadata.emplace_back("gnomon:units", units_of(options));
-  if (options.is_png()) {
-    std::vector<std::uint8_t> bytes =
-        display ? gpu::read_as<std::uint8_t>(device, display->texture()) : to_bytes(values);
-    if (!density.empty()) {
-      eevee::show_texel_density(bytes, density);
-    }
-    write_png(options.output, size_px, bytes, metadata, alpha);
-  }
-  else {
-    if (options.is_part()) {
-      write_part(options, pixels, alpha, sample_share, std::move(metadata));
-      return Status::Done;
-    }
-    const std::vector<float> distances = is_shadow ? alpha_in_all(values) : std::vector<float>();
-    write_exr(options.output, size_px, is_shadow ? distances : values, metadata, alpha, aov.layers);
-  }
-  return Status::Done;
+  return true;
 }
 
 /** Prints one line for each text. \a kind: "warning" or "limit" */
@@ -243,116 +147,144 @@ std::unique_ptr<gpu::Device> create_device(const RenderOptions &options)
   return gpu::create_gl_device({.shader_cache_folder = gpu::default_shader_cache_folder()});
 }
 
-struct Input {
-  std::unique_ptr<gpu::Device> device;
+struct ImportedScene {
   scene::Scene scene;
+  double seconds = 0.0;
 };
 
-/** Imports the scene on another thread while the device is created. Both must not fail; the scene's error is the first.
- */
-Input create_device_and_import(const RenderOptions &options, RenderResult &result)
+/** Imports on another thread. \a options and \a stops must outlive it. */
+std::future<ImportedScene> start_import(const RenderOptions &options, const StopRequests &stops)
 {
-  std::future<scene::Scene> imported = std::async(std::launch::async, [&] {
+  return std::async(std::launch::async, [&options, &stops] {
     const Clock::time_point start = Clock::now();
-    scene::Scene scene = import_scene(options.scene, options.import_options());
-    result.import_seconds = seconds_since(start);
-    return scene;
+    gltf::ImportOptions import_options = options.import_options();
+    import_options.progress = [&stops](float) { return !stops.is_stopped(); };
+    scene::Scene scene = import_scene(options.scene, import_options);
+    return ImportedScene{std::move(scene), seconds_since(start)};
   });
-  Input input;
-  try {
-    const Clock::time_point start = Clock::now();
-    input.device = create_device(options);
-    result.device = input.device->description();
-    result.device_seconds = seconds_since(start);
+}
+
+/** Takes the rendered picture, or what is shown in its place, and the layers beside it, from the device. */
+RenderedPicture take_picture(const SceneWork &work, const Aov &aov, const scene::Scene &scene,
+                             const scene::PlacedCamera &camera, eevee::SceneRenderer &renderer,
+                             const std::optional<draw::TargetTexture> &display, int index)
+{
+  const RenderOptions &options = work.options;
+  gpu::Device &device = renderer.viewport().device();
+  const glm::ivec2 size_px = renderer.viewport().size_px();
+  const gpu::Rectangle region = renderer.viewport().region();
+  RenderedPicture picture{.size_px = region.size_px,
+                          .alpha = alpha_of(options, renderer),
+                          .sample_count = work.result.samples_drawn,
+                          .sample_share = renderer.engine().sample_share(renderer.viewport()),
+                          .metadata = work.frames.metadata(index)};
+  picture.metadata.emplace_back("gnomon:camera", camera.name);
+  picture.metadata.emplace_back("gnomon:device", work.result.device);
+  if (!options.plan_id.empty()) {
+    picture.metadata.emplace_back(plan_metadata, options.plan_id);
   }
-  catch (...) {
-    static_cast<void>(imported.get());
-    throw;
+  // Also called for the null backend, because both report lamps and layers that do not exist.
+  const gpu::Texture *shadow = nullptr;
+  if (options.is_shadow_shown()) {
+    shadow = &shadow_picture(options.debug_view, scene, renderer.inspect());
+    picture.size_px = {shadow->desc().width, shadow->desc().height};
   }
-  input.scene = imported.get();
-  return input;
+  if (options.is_density_shown()) {
+    const trace::Span span("texel density");
+    const std::size_t lamp = shadowed_lamp(options.debug_view, scene, renderer.inspect());
+    const auto values = renderer.inspect().texel_density(renderer.view_of(camera), lamp);
+    if (!values) {
+      throw std::runtime_error(fmt::format("{}: no object is drawn, on which the shadow of lamp '{}' could be seen",
+                                           scene.path, options.debug_view.lamp));
+    }
+    picture.density = *values;
+  }
+  if (!aov.empty()) {
+    // The layers draw other pictures.
+    work.result.report = renderer.inspect().report();
+  }
+  if (!options.has_picture()) {
+    return picture;
+  }
+  picture.pixels =
+      shadow ? gpu::read_as<glm::vec4>(device, *shadow) : gpu::cropped(renderer.read_picture(), size_px.x, region);
+  if (options.is_density_shown() && !options.is_png()) {
+    std::ranges::transform(picture.density, picture.pixels.begin(), [](float value) { return glm::vec4(value); });
+  }
+  if (display) {
+    picture.display = gpu::read_as<std::uint8_t>(device, display->texture());
+  }
+  const Clock::time_point layers_start = Clock::now();
+  picture.aov = aov.render(renderer, camera, work.result.samples_drawn);
+  work.result.layer_seconds += seconds_since(layers_start);
+  return picture;
 }
 
 /** Renders and writes all frames of the sequence. */
-Status render_sequence(RenderOptions options, const FrameSequence &frames, const Aov &aov, scene::Scene &scene,
-                       scene::PlacedCamera camera, eevee::SceneRenderer &renderer, RenderResult &result)
+Status render_sequence(const SceneWork &work, const Aov &aov, scene::Scene &scene, scene::PlacedCamera camera,
+                       eevee::SceneRenderer &renderer)
 {
-  gpu::Device &device = renderer.viewport().device();
+  RenderOptions options = work.options;
+  RenderResult &result = work.result;
+  const FrameSequence &frames = work.frames;
   const glm::ivec2 size_px = renderer.viewport().size_px();
-  const std::optional<draw::TargetTexture> display = make_display(options, device, size_px);
-  Status status = Status::Done;
+  const std::optional<draw::TargetTexture> display = make_display(options, renderer.viewport().device(), size_px);
   const Clock::time_point start = Clock::now();
   int rendered_count = 0;
   frames.remove_unfinished_files();
-  for (int i = 0; i < frames.count() && status == Status::Done; i++) {
+  for (int i = 0; i < frames.count(); i++) {
     options.output = frames.path(i).string();
-    if (frames.is_done(i, size_px)) {
+    if (frames.is_done(i, size_px, options.plan_id)) {
       result.skipped_frame_count++;
       continue;
+    }
+    if (work.stops.is_stopped()) {
+      return Status::Stopped;
     }
     if (i > 0) {
       frames.pose(scene, i);
       camera = find_camera(scene, options.camera);
       renderer.sync();
     }
-    render_frames(options, camera, renderer, display, result);
-    // Also called for the null backend, because both report lamps and layers that do not exist.
-    const gpu::Texture *shadow = nullptr;
-    if (options.is_shadow_shown()) {
-      shadow = &shadow_picture(options.debug_view, scene, renderer.inspect());
-    }
-    std::vector<float> density;
-    if (options.is_density_shown()) {
-      const trace::Span span("texel density");
-      const std::size_t lamp = shadowed_lamp(options.debug_view, scene, renderer.inspect());
-      const auto values = renderer.inspect().texel_density(renderer.view_of(camera), lamp);
-      if (!values) {
-        throw std::runtime_error(fmt::format("{}: no object is drawn, on which the shadow of lamp '{}' could be seen",
-                                             scene.path, options.debug_view.lamp));
-      }
-      density = *values;
-    }
-    if (!aov.empty()) {
-      // The layers draw other pictures.
-      result.report = renderer.inspect().report();
+    const SceneWork frame_work{options, frames, work.stops, work.progress, result};
+    const bool is_complete = render_frames(frame_work, i, camera, renderer, display);
+    if (!is_complete && !options.has_checkpoint) {
+      return Status::Stopped;
     }
     const Clock::time_point output_start = Clock::now();
-    double layer_seconds = 0.0;
-    if (options.has_picture()) {
-      const gpu::Rectangle region = renderer.viewport().region();
-      const glm::ivec2 written_px = shadow ? glm::ivec2(shadow->desc().width, shadow->desc().height) : region.size_px;
-      std::vector<glm::vec4> picture =
-          shadow ? gpu::read_as<glm::vec4>(device, *shadow) : gpu::cropped(renderer.read_picture(), size_px.x, region);
-      if (options.is_density_shown() && !options.is_png()) {
-        std::ranges::transform(density, picture.begin(), [](float value) { return glm::vec4(value); });
-      }
-      const double sample_share = renderer.engine().sample_share(renderer.viewport());
-      const Clock::time_point layers_start = Clock::now();
-      const AovLayers layers = aov.render(renderer, camera, result.samples_drawn);
-      layer_seconds = seconds_since(layers_start);
-      status = write_picture(options, camera, device, picture, written_px, display, density,
-                             alpha_of(options, renderer), layers, sample_share, frames.metadata(i), result);
+    const double layer_seconds = result.layer_seconds;
+    const RenderedPicture picture = take_picture(frame_work, aov, scene, camera, renderer, display, i);
+    const trace::Span span("write picture");
+    if (!is_complete) {
+      const fs::path path = write_checkpoint(options, picture);
+      print_message("gnomon: {}: samples {} to {}\n", path.string(), options.sample_bounds().x,
+                    options.sample_bounds().x + picture.sample_count - 1);
+      return Status::Stopped;
     }
-    result.layer_seconds += layer_seconds;
-    result.output_seconds += seconds_since(output_start) - layer_seconds;
-    frames.show_progress(i, ++rendered_count, seconds_since(start));
+    if (options.has_picture()) {
+      result.non_finite_count = write_picture(options, picture);
+      if (result.non_finite_count > 0) {
+        return Status::NonFinite;
+      }
+      if (options.has_checkpoint) {
+        std::error_code ignored;
+        fs::remove(checkpoint_path(options), ignored);
+      }
+    }
+    result.output_seconds += seconds_since(output_start) - (result.layer_seconds - layer_seconds);
+    rendered_count++;
+    work.progress.written(i, seconds_since(start) / rendered_count * (frames.count() - i - 1));
   }
-  return status;
+  return Status::Done;
 }
 
-Status render(RenderOptions options)
+/** Renders the pictures of one scene. The result has the times of the import and of the device. */
+Status render_scene(RenderOptions options, gpu::Device &device, scene::Scene &scene, output::Roles &roles,
+                    const StopRequests &stops, Clock::time_point start, RenderResult &result)
 {
-  const Clock::time_point start = Clock::now();
-  const TraceFile trace_file(options.trace);
-  options.check();
-  options.debug_view = parse_debug(options.debug);
   const glm::ivec2 size_px = options.size_px();
   const FrameSequence frames(options.frames, options.output);
-  output::Roles roles = files_of(options, frames);
   const Aov aov(options.aov);
-  RenderResult result;
-
-  auto [device, scene] = create_device_and_import(options, result);
   add_inputs(roles, scene, options.world);
   frames.pose(scene, 0);
   const scene::PlacedCamera camera = find_camera(scene, options.camera);
@@ -366,7 +298,7 @@ Status render(RenderOptions options)
 
   std::unique_ptr<Chooser> chooser;
   if (options.choice.is_asked()) {
-    chooser = std::make_unique<Chooser>(options.choice, *device, scene, camera, size_px,
+    chooser = std::make_unique<Chooser>(options.choice, device, scene, camera, size_px,
                                         options.engine_settings().has_multiscatter);
     chooser->print_choice();
     options.samples = chooser->choice().sample_count;
@@ -382,7 +314,7 @@ Status render(RenderOptions options)
     // Draw only one sample. It draws the shadow maps with the same size as all further samples.
     options.samples = settings.sample_count = 1;
   }
-  eevee::SceneRenderer renderer(*device, scene, size_px, settings);
+  eevee::SceneRenderer renderer(device, scene, size_px, settings);
   renderer.sync();
   renderer.viewport().set_region(options.region());
   const eevee::Inspection inspection = renderer.inspect();
@@ -394,15 +326,16 @@ Status render(RenderOptions options)
   }
   result.sync_seconds = seconds_since(sync_start);
 
-  const Status status = render_sequence(options, frames, aov, scene, camera, renderer, result);
+  Progress progress(options.has_progress_lines, frames.count(), options.samples);
+  const Status status = render_sequence({options, frames, stops, progress, result}, aov, scene, camera, renderer);
   if (aov.empty()) {
     result.report = inspection.report();
   }
   if (!options.has_picture()) {
     print_message("gnomon: the null backend draws nothing: no picture is written\n");
   }
-  result.counters = device->counters();
-  result.memory_bytes = device->memory_bytes();
+  result.counters = device.counters();
+  result.memory_bytes = device.memory_bytes();
   result.total_seconds = seconds_since(start);
   if (chooser && status == Status::Done) {
     chooser->measure(renderer.read_picture(), result.frame_seconds.front());
@@ -411,8 +344,7 @@ Status render(RenderOptions options)
     result.report.limits.insert(result.report.limits.end(), limits.begin(), limits.end());
   }
   write_json(options.json, to_json(options, settings, scene, camera, result, chooser.get()));
-  trace_file.write();
-  if (status == Status::Done) {
+  if (status == Status::Done && options.part.empty()) {
     print_summary(options, result);
     if (chooser) {
       chooser->print_measured();
@@ -424,14 +356,241 @@ Status render(RenderOptions options)
   return status == Status::Done && options.is_strict && !result.report.limits.empty() ? Status::Limit : status;
 }
 
+/** The options of each scene. \throws UsageError where the names of their outputs would be the same */
+std::vector<RenderOptions> options_of_scenes(const RenderOptions &options)
+{
+  if (options.scenes.size() > 1) {
+    for (const auto &[option, path] : {std::pair("-o", &options.output), {"--json", &options.json}}) {
+      if (!path->empty() && path->find("{scene}") == path->npos) {
+        throw UsageError(fmt::format("{} '{}' has no {{scene}} for the names of the scenes", option, *path));
+      }
+    }
+  }
+  std::vector<RenderOptions> all;
+  for (const std::string &scene : options.scenes) {
+    RenderOptions &one = all.emplace_back(options);
+    one.scene = scene;
+    one.output = scene_name(options.output, scene);
+    one.json = scene_name(options.json, scene);
+  }
+  return all;
+}
+
+/** Whether the failure is of the device or of an output, so that other scenes would fail as well. */
+bool is_of_process(const std::exception &error)
+{
+  return dynamic_cast<const gpu::TransientError *>(&error) || dynamic_cast<const output::Error *>(&error) ||
+         dynamic_cast<const std::bad_alloc *>(&error) || dynamic_cast<const UsageError *>(&error);
+}
+
+/** Renders all scenes of the options on one device; the next is imported while one is drawn. */
+Status render_scenes(const RenderOptions &options, RenderResult &result)
+{
+  const Clock::time_point start = Clock::now();
+  const StopRequests stops(options.stop_seconds);
+  const std::vector<RenderOptions> scenes = options_of_scenes(options);
+  output::Roles roles;
+  roles.add_output(options.trace, "--trace");
+  for (const RenderOptions &one : scenes) {
+    add_files(one, FrameSequence(one.frames, one.output), roles);
+    static_cast<void>(Aov(one.aov));
+  }
+  // The import and the device are made at the same time. If both fail, the scene's error is the first.
+  std::future<ImportedScene> import = start_import(scenes.front(), stops);
+  std::unique_ptr<gpu::Device> device;
+  try {
+    device = create_device(options);
+    result.device = device->description();
+    result.device_seconds = seconds_since(start);
+  }
+  catch (...) {
+    static_cast<void>(import.get());
+    throw;
+  }
+  Status status = Status::Done;
+  Clock::time_point scene_start = start;
+  for (std::size_t i = 0; i < scenes.size() && (status == Status::Done || !stops.is_stopped()); i++) {
+    std::future<ImportedScene> next;
+    try {
+      ImportedScene imported = import.get();
+      if (!options.plan_id.empty() && scene_fingerprint(imported.scene) != options.planned_scene) {
+        throw std::runtime_error(fmt::format("{}: has changed since the plan was made", scenes[i].scene));
+      }
+      if (i + 1 < scenes.size()) {
+        next = start_import(scenes[i + 1], stops);
+      }
+      RenderResult scene_result;
+      scene_result.device = result.device;
+      scene_result.device_seconds = result.device_seconds;
+      scene_result.import_seconds = imported.seconds;
+      const Status scene_status =
+          render_scene(scenes[i], *device, imported.scene, roles, stops, scene_start, scene_result);
+      status = status == Status::Done ? scene_status : status;
+      result = std::move(scene_result);
+    }
+    catch (const gltf::ImportCancelled &) {
+      status = Status::Stopped;
+    }
+    catch (const std::exception &error) {
+      if (scenes.size() == 1 || is_of_process(error)) {
+        throw;
+      }
+      print_message("gnomon: {}\n", error.what());
+      status = Status::Failed;
+      if (!next.valid() && i + 1 < scenes.size()) {
+        next = start_import(scenes[i + 1], stops);
+      }
+    }
+    import = std::move(next);
+    scene_start = Clock::now();
+  }
+  if (status == Status::Stopped) {
+    print_message("gnomon: stopped by {}\n", stops.reason());
+  }
+  return status;
+}
+
+Status render(RenderOptions options, RenderResult &result)
+{
+  const TraceFile trace_file(options.trace);
+  if (options.scenes.empty()) {
+    throw UsageError("render: a scene is required");
+  }
+  options.check();
+  options.debug_view = parse_debug(options.debug);
+  const Status status = render_scenes(options, result);
+  trace_file.write();
+  return status;
+}
+
+/** The options that go with --part: those of the process. */
+constexpr std::array<std::string_view, 7> options_of_part_process = {
+    "--help", "--part", "--json", "--trace", "--stop-after", "--checkpoint", "--progress"};
+
+/** The options of the plan's part. \a given: those of the command line. \throws CLI::ParseError */
+RenderOptions options_of_part(const RenderOptions &given, const WorkPlan &plan, const WorkPart &part)
+{
+  const PlannedScene &scene = plan.scenes[part.scene];
+  std::vector<std::string> arguments = plan.arguments;
+  if (!part.frames.empty()) {
+    arguments.insert(arguments.end(), {"--step", fmt::format("{}", plan.frame_step)});
+  }
+  for (const auto &[name, value] : {std::pair("--frames", part.frames),
+                                    {"--tile", part.tile},
+                                    {"--sample-range", part.samples},
+                                    {"--output", part.output}}) {
+    if (!value.empty()) {
+      arguments.insert(arguments.end(), {name, value});
+    }
+  }
+  // After the options, because a name may begin with a dash.
+  arguments.insert(arguments.end(), {"--", scene.path});
+  CLI::App app;
+  RenderOptions options;
+  add_render_options(app, options);
+  std::ranges::reverse(arguments);
+  app.parse(std::move(arguments));
+  options.frames.is_resumed = true;
+  options.plan_id = plan.id();
+  options.planned_scene = scene.fingerprint;
+  options.part = given.part;
+  options.stop_seconds = given.stop_seconds;
+  options.has_checkpoint = given.has_checkpoint;
+  options.has_progress_lines = given.has_progress_lines;
+  const auto absolute = [](const std::string &path) { return path.empty() ? path : fs::absolute(path).string(); };
+  options.json = absolute(given.json);
+  options.trace = absolute(given.trace);
+  return options;
+}
+
+bool has_all_pictures(const RenderOptions &options)
+{
+  const FrameSequence frames(options.frames, options.output);
+  for (int i = 0; i < frames.count(); i++) {
+    if (!frames.is_done(i, options.size_px(), options.plan_id)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/** Renders a part of a plan, and prints a line about it. */
+Status render_part(const RenderOptions &given, const CLI::App &command)
+{
+  const Clock::time_point start = Clock::now();
+  for (const CLI::Option *option : command.get_options()) {
+    if (option->count() > 0 &&
+        std::ranges::find(options_of_part_process, option->get_name()) == options_of_part_process.end()) {
+      throw UsageError(
+          fmt::format("{} does not go with --part, whose options are those of the plan", option->get_name()));
+    }
+  }
+  const PartName name(given.part);
+  const WorkPlan plan = read_plan(name.plan);
+  if (name.index >= plan.parts.size()) {
+    throw UsageError(fmt::format("--part '{}': the plan has the parts 0 to {}", given.part, plan.parts.size() - 1));
+  }
+  if (plan.program != program_name()) {
+    throw std::runtime_error(
+        fmt::format("{}: is a plan of {}, and this is {}", name.plan.string(), plan.program, program_name()));
+  }
+  const RenderOptions options = options_of_part(given, plan, plan.parts[name.index]);
+  fs::current_path(fs::absolute(name.plan).parent_path() / plan.folder);
+  const bool is_skipped = has_all_pictures(options);
+  RenderResult result;
+  const Status status = is_skipped ? Status::Done : render(options, result);
+  std::array<char, 65> host{};
+  static_cast<void>(gethostname(host.data(), host.size() - 1));
+  const nlohmann::json line = {{"part", name.index},
+                               {"status", is_skipped                  ? "skipped"
+                                          : status == Status::Done    ? "done"
+                                          : status == Status::Stopped ? "stopped"
+                                                                      : "failed"},
+                               {"host", host.data()},
+                               {"seconds", seconds_since(start)},
+                               {"memory_bytes", memory_bytes_max()},
+                               {"pictures", result.frame_seconds.size()},
+                               {"samples", result.samples_drawn}};
+  fmt::print("{}\n", line.dump());
+  return status;
+}
+
 }  // namespace
+
+MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device)
+{
+  const Clock::time_point start = Clock::now();
+  const StopRequests stops;
+  scene::Scene scene = start_import(options, stops).get().scene;
+  MeasuredScene measured{scene_fingerprint(scene), {}};
+  const FrameSequence frames(options.frames, options.output);
+  frames.pose(scene, frames.count() / 2);
+  const scene::PlacedCamera camera = find_camera(scene, options.camera);
+  if (!device) {
+    return measured;
+  }
+  light_by_world(scene, camera, options.world);
+  eevee::SceneRenderer renderer(*device, scene, options.size_px(), options.engine_settings());
+  renderer.sync();
+  device->finish();
+  measured.cost.start_seconds = seconds_since(start);
+  const Clock::time_point draw_start = Clock::now();
+  constexpr int sample_count_max = 4;
+  const int sample_count = renderer.draw(camera, {.progress = [](int drawn) { return drawn < sample_count_max; }});
+  device->finish();
+  measured.cost.sample_seconds = seconds_since(draw_start) / sample_count;
+  return measured;
+}
 
 void add_render(CLI::App &app, Status &status)
 {
   auto options = std::make_shared<RenderOptions>();
   CLI::App *command = app.add_subcommand("render", "Light a scene and write the picture");
   add_render_options(*command, *options);
-  command->callback([options, &status] { status = render(*options); });
+  command->callback([options, command, &status] {
+    RenderResult result;
+    status = options->part.empty() ? render(*options, result) : render_part(*options, *command);
+  });
 }
 
 }  // namespace gnomon::cli

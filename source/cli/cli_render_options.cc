@@ -29,6 +29,10 @@ constexpr const char *noise_sentence =
 constexpr const char *part_sentence =
     "--tile and --sample-range write parts of a picture to OUT.exr, without --debug, --aov and --resume.";
 
+constexpr const char *checkpoint_sentence =
+    "--checkpoint writes a part of a picture to OUT.checkpoint.exr, without a PNG, --debug, --aov, --noise-threshold, "
+    "--time-limit, --max-error and --max-time.";
+
 std::vector<Exclusion> exclusions()
 {
   // What they choose, and what changes a picture so that its error cannot be measured.
@@ -51,11 +55,18 @@ std::vector<Exclusion> exclusions()
           {{"--debug"}, {"--aov"}, "--debug excludes --aov."}};
 }
 
+/** false also where the command does not have the option. */
+bool is_given(const CLI::App &command, const std::string &name)
+{
+  const CLI::Option *option = command.get_option_no_throw(name);
+  return option && option->count() > 0;
+}
+
 /** \throws UsageError */
 void check_exclusions(const CLI::App &command)
 {
   const auto given = [&](const std::vector<std::string> &names) {
-    return std::ranges::find_if(names, [&](const std::string &name) { return command.count(name) > 0; });
+    return std::ranges::find_if(names, [&](const std::string &name) { return is_given(command, name); });
   };
   for (const Exclusion &exclusion : exclusions()) {
     const auto first = given(exclusion.first);
@@ -72,7 +83,7 @@ std::string exclusions_text()
   for (const Exclusion &exclusion : exclusions()) {
     text += "\n  " + exclusion.sentence;
   }
-  return text + "\n  " + part_sentence + "\n  " + noise_sentence;
+  return text + "\n  " + part_sentence + "\n  " + checkpoint_sentence + "\n  " + noise_sentence;
 }
 
 }  // namespace
@@ -108,14 +119,14 @@ gpu::Rectangle RenderOptions::region() const
   if (tile.empty()) {
     return {{0, 0}, whole_px};
   }
-  const std::optional<glm::ivec2> part = parse_pair(tile, '/');
-  if (!part || part->x < 1 || part->x > part->y || part->y > whole_px.y) {
+  const std::optional<glm::ivec2> strip = parse_pair(tile, '/');
+  if (!strip || strip->x < 1 || strip->x > strip->y || strip->y > whole_px.y) {
     throw UsageError(fmt::format("--tile '{}' is not I/N with I from 1 to N and N up to the {} rows of the picture",
                                  tile, whole_px.y));
   }
-  const auto row_of = [&](int index) { return int(std::int64_t(whole_px.y) * index / part->y); };
-  const int top = row_of(part->x - 1);
-  const int end = row_of(part->x);
+  const auto row_of = [&](int index) { return int(std::int64_t(whole_px.y) * index / strip->y); };
+  const int top = row_of(strip->x - 1);
+  const int end = row_of(strip->x);
   return {{0, whole_px.y - end}, {whole_px.x, end - top}};
 }
 
@@ -161,8 +172,12 @@ void RenderOptions::check() const
   if (output.empty() && backend == "gl") {
     throw UsageError("-o OUT.exr or -o OUT.png is required");
   }
-  if (is_part() && (is_png() || !debug.empty() || !aov.empty() || frames.is_resumed)) {
+  if (is_part() && (is_png() || !debug.empty() || !aov.empty() || (frames.is_resumed && plan_id.empty()))) {
     throw UsageError(part_sentence);
+  }
+  if (has_checkpoint && (is_png() || !debug.empty() || !aov.empty() || engine_settings().noise_threshold > 0.0F ||
+                         choice.is_asked() || std::isfinite(seconds_max))) {
+    throw UsageError(checkpoint_sentence);
   }
   const bool is_whole = !is_part() && aov.empty() && !choice.is_asked();
   if (!is_whole && engine_settings().noise_threshold > 0.0F) {
@@ -197,10 +212,9 @@ eevee::Settings RenderOptions::engine_settings() const
  */
 static std::string settings_text(const CLI::App &command)
 {
-  std::set<std::string> not_compared = {
-      // Metadata of their own are compared: the scene's name without its folder, and the number of the frame.
-      "scene",    "--frames", "--help",           "--output", "--json",         "--trace",   "--explain",   "--strict",
-      "--resume", "--repeat", "--redraw-shadows", "--tile",   "--sample-range", "--backend", "--only-below"};
+  std::set<std::string> not_compared(process_options.begin(), process_options.end());
+  // Metadata of their own are compared: the scene's name without its folder, and the number of the frame.
+  not_compared.insert({"scene", "--frames", "--step", "--help", "--strict", "--only-below"});
   const auto add = [&](const auto &row) {
     if (!row.makes_picture) {
       not_compared.insert("--" + std::string(row.option));
@@ -254,20 +268,19 @@ void add_render_options(CLI::App &command, RenderOptions &options)
   {
     return settings;
   };
-  command.add_option("scene", options.scene, "glTF 2.0 file")->required();
+  command.add_option("scene", options.scenes, "glTF 2.0 file, or several whose pictures have {scene} in their names");
 
   command.option_defaults()->group("Picture");
   command.add_option("-o,--output", options.output,
-                     "OUT.exr: scene-linear floats; OUT.png: display colours after the view transform");
+                     "OUT.exr: scene-linear floats; OUT.png: display colours after the view transform; {scene} in the "
+                     "name is replaced by that of the scene");
   command.add_option("--size", options.size, "WIDTHxHEIGHT, pixels")->capture_default_str();
   command.add_option("--camera", options.camera, "Name of the camera (default: the first)");
   CLI::Option *samples = add_samples_option(command, options.samples);
-  CLI::Option *time_limit =
-      command
-          .add_option(
-              "--time-limit", options.seconds_max,
-              "Time for each picture, s: draw samples until it has passed; --samples, if given, is an upper limit")
-          ->check(CLI::Range(1e-3, 1e9));
+  command
+      .add_option("--time-limit", options.seconds_max,
+                  "Time for each picture, s: draw samples until it has passed; --samples, if given, is an upper limit")
+      ->check(CLI::Range(1e-3, 1e9));
   SettingOptions<eevee::Settings> settings(setting_defaults());
   settings.take<eevee::Settings>(whole, [](std::string_view option) { return option != "samples"; });
   settings.add_to(command, "Picture", options.changes);
@@ -299,6 +312,10 @@ void add_render_options(CLI::App &command, RenderOptions &options)
   CLI::Option *frames =
       command.add_option("--frames", options.frames.range,
                          "Frames A-B or A of an animation; the frame number replaces the # characters in -o");
+  command.add_option("--step", options.frames.step, "From one frame of --frames to the next")
+      ->needs(frames)
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000000));
   command.add_option("--fps", options.frames.frames_per_second, "Frames per second of an animation; frame 0 is at 0 s")
       ->needs(frames)
       ->capture_default_str()
@@ -345,14 +362,27 @@ void add_render_options(CLI::App &command, RenderOptions &options)
       ->capture_default_str()
       ->check(CLI::IsMember({"gl", "null"}));
 
+  command.option_defaults()->group("Farms");
+  command.add_option("--part", options.part,
+                     "PLAN.json:K: render part K of a plan of `gnomon plan`, unless it is complete, with the plan's "
+                     "scene and options; prints one line of JSON");
+  command
+      .add_option("--stop-after", options.stop_seconds,
+                  "Time after which the command ends after the current sample, as after SIGTERM, s")
+      ->check(CLI::Range(1e-3, 1e9));
+  command.add_flag(
+      "--checkpoint", options.has_checkpoint,
+      "If the command ends early, write the samples drawn so far to OUT.checkpoint.exr for `gnomon merge`");
+  command.add_flag("--progress", options.has_progress_lines, "Print lines such as PROGRESS 12.5% on stderr");
+
   command.footer(exclusions_text());
-  command.parse_complete_callback([&options, &command, samples, time_limit] {
+  command.parse_complete_callback([&options, &command, samples] {
     check_exclusions(command);
     options.settings_text = settings_text(command);
-    if (time_limit->count() > 0 && samples->count() == 0) {
+    if (is_given(command, "--time-limit") && samples->count() == 0) {
       options.samples = 0;
     }
-    if (command.count("--shadow-size") > 0) {
+    if (is_given(command, "--shadow-size")) {
       options.changes.emplace_back([](eevee::Settings &picture) { picture.shadow.cascades.can_resize = false; });
     }
   });

@@ -11,12 +11,17 @@
 
 #include <CLI/App.hpp>
 
+#include <array>
 #include <limits>
+#include <string>
+#include <vector>
 
 namespace gnomon::cli {
 
 /** Options of `gnomon render`. Texts are checked by CLI11 or by check(). */
 struct RenderOptions {
+  /** Those of the command line; the others are of one of them. */
+  std::vector<std::string> scenes;
   std::string scene;
   std::string output;
   std::string size = "960x540";
@@ -46,11 +51,22 @@ struct RenderOptions {
   std::string trace;
   ChoiceOptions choice;
   bool is_strict = false;
+  /** "PLAN.json:K": the options are those of a part of a plan; empty: none. */
+  std::string part;
+  /** Time after which the work ends, s; infinity: none. */
+  double stop_seconds = std::numeric_limits<double>::infinity();
+  /** Whether an unfinished picture is written for `gnomon merge`. */
+  bool has_checkpoint = false;
+  bool has_progress_lines = false;
   WorldOptions world;
   /** "none", "world" or a radiance R,G,B. Empty: none, or light grey in a PNG that the default studio lights. */
   std::string background;
   /** The options that parts of one picture must have in common, as text. */
   std::string settings_text;
+  /** WorkPlan::id of --part; empty: none. */
+  std::string plan_id;
+  /** PlannedScene::fingerprint of --part. */
+  std::string planned_scene;
 
   /** \throws UsageError where an option's value is invalid, or does not go with another option */
   void check() const;
@@ -88,6 +104,11 @@ struct RenderOptions {
 
 /** Settings of the engine that `gnomon render` has without options. */
 [[nodiscard]] std::vector<Defaults<eevee::Settings>> setting_defaults();
+
+/** Options of `gnomon render` that are no options of a plan: they are of one process, or say which part it renders. */
+inline constexpr std::array process_options = {
+    "--output", "--tile",    "--sample-range", "--resume",     "--repeat",     "--redraw-shadows", "--json",
+    "--trace",  "--explain", "--part",         "--stop-after", "--checkpoint", "--progress",       "--backend"};
 
 /** Adds the options to \a command, which fills \a options. Both must outlive the parsing. */
 void add_render_options(CLI::App &command, RenderOptions &options);

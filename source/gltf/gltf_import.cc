@@ -412,7 +412,7 @@ Scene import_gltf(const std::filesystem::path &path, const ImportOptions &option
     throw ImportCancelled(path.string() + ": the import was cancelled");
   }
   catch (const std::bad_alloc &) {
-    throw failed("there is not enough memory for it");
+    throw ImportOutOfMemory(path.string() + ": there is not enough memory for it");
   }
   catch (const std::exception &error) {
     // Libraries may throw exceptions of other types.

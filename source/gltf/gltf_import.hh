@@ -21,6 +21,11 @@ struct UnknownVariant : ImportError {
   using ImportError::ImportError;
 };
 
+/** Thrown if there is not enough memory for the scene. The message names the file. */
+struct ImportOutOfMemory : ImportError {
+  using ImportError::ImportError;
+};
+
 /** Thrown if ImportOptions::progress has ended an import. The message names the file. */
 struct ImportCancelled : ImportError {
   using ImportError::ImportError;
@@ -86,7 +91,7 @@ constexpr void ImportOptions::for_each_property(Visit &&visit)
  * Scene::warnings. A camera is added if the file has none, and a lamp if it has neither a lamp nor a world.
  *
  * \throws ImportError if the file is missing, unreadable or malformed, or if nothing in it can be drawn.
- * \throws UnknownVariant, ImportCancelled
+ * \throws UnknownVariant, ImportCancelled, ImportOutOfMemory
  */
 [[nodiscard]] scene::Scene import_gltf(const std::filesystem::path &path, const ImportOptions &options = {});
 

@@ -23,9 +23,14 @@ struct Error : std::runtime_error {
   }
 };
 
-/** Reports that the driver has lost the context. The device and its resources can then only be destroyed. */
-struct DeviceLost : Error {
+/** Reports a failure that another attempt or another machine may not have: no device, or no memory on it. */
+struct TransientError : Error {
   using Error::Error;
+};
+
+/** Reports that the driver has lost the context. The device and its resources can then only be destroyed. */
+struct DeviceLost : TransientError {
+  using TransientError::TransientError;
 };
 
 /**

@@ -9,6 +9,7 @@
 #include <sys/vfs.h>
 #include <unistd.h>
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -25,7 +26,19 @@ namespace {
 
 [[noreturn]] void fail(const fs::path &path, int error)
 {
-  throw Error(path.string() + ": cannot be written: " + std::strerror(error));
+  const std::string message = path.string() + ": cannot be written: " + std::strerror(error);
+  switch (error) {
+    case ENOSPC:
+    case EDQUOT:
+    case EIO:
+    case ENOMEM:
+    case EMFILE:
+    case ENFILE:
+    // Of folders on another machine.
+    case ESTALE:
+    case ETIMEDOUT: throw TransientError(message);
+    default: throw Error(message);
+  }
 }
 
 /**
@@ -191,12 +204,16 @@ Place writable_place(const fs::path &path)
   return place;
 }
 
-/** Names of temporary files begin with this, and continue with the process and a number: "12-3". */
+/** Names of temporary files begin with this, which names the machine, and continue with the process and a number:
+ * "12-3".
+ */
 std::string temporary_prefix(const std::string &name)
 {
-  // A name has at most 255 bytes.
-  constexpr std::size_t size_max = 200;
-  return '.' + name.substr(0, size_max) + '.';
+  // A name has at most 255 bytes, and that of a machine at most 64.
+  constexpr std::size_t size_max = 150;
+  std::array<char, 65> host{};
+  static_cast<void>(::gethostname(host.data(), host.size() - 1));
+  return '.' + name.substr(0, size_max) + '.' + host.data() + '.';
 }
 
 /** The new content of a regular file, which has a name in the same folder only where the system needs one. */

@@ -27,6 +27,12 @@ struct Error : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/** A failure that another attempt may not have: the disk is full or fails, or the system lacks memory or descriptors.
+ */
+struct TransientError : Error {
+  using Error::Error;
+};
+
 /** Content that is being written. Positions count bytes from 0. */
 class Stream {
  public:
@@ -81,7 +87,8 @@ void check_writable(const std::filesystem::path &path);
 
 /**
  * Removes the temporary files that write_file left in \a folder because its process was killed, on file systems that
- * have no files without a name. Only those of files in \a names, and none of a process that runs on this machine.
+ * have no files without a name. Only those of files in \a names that a process of this machine has begun and that no
+ * longer runs: other machines may write to the same folder.
  */
 void remove_unfinished(const std::filesystem::path &folder, const std::set<std::string> &names);
 

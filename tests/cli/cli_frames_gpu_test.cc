@@ -89,8 +89,10 @@ TEST_F(FramesTest, ResumeRendersWhatIsMissingOrCutShort)
 TEST_F(FramesTest, ResumeRemovesTheFilesOfKilledProcesses)
 {
   // No process has this number: Linux has at most 4194304.
-  const std::string killed = ".exr.4194999-0";
-  const std::string running = ".exr." + std::to_string(getpid()) + "-0";
+  std::array<char, 65> host{};
+  ASSERT_EQ(gethostname(host.data(), host.size() - 1), 0);
+  const std::string killed = std::string(".exr.") + host.data() + ".4194999-0";
+  const std::string running = std::string(".exr.") + host.data() + "." + std::to_string(getpid()) + "-0";
   for (const std::string &name : {".f1" + killed, ".f2" + killed, ".f2" + running, ".g2" + killed, ".f4" + killed}) {
     write(name, "part");
   }

@@ -245,16 +245,20 @@ TEST_F(OutputFileTest, EachWriteMayFailAndTheOldFileStays)
 TEST_F(OutputFileTest, UnfinishedFilesOfDeadProcessesAreRemoved)
 {
   // No process has this number: Linux has at most 4194304.
-  const std::string dead = ".4194999-0";
-  const std::string running = "." + std::to_string(getpid()) + "-0";
+  std::array<char, 65> host{};
+  ASSERT_EQ(gethostname(host.data(), host.size() - 1), 0);
+  const std::string dead = std::string(".") + host.data() + ".4194999-0";
+  const std::string running = std::string(".") + host.data() + "." + std::to_string(getpid()) + "-0";
+  const std::string elsewhere = ".another-machine.4194999-0";
   const std::string long_name(255, 'x');
-  for (const std::string &name :
-       {".a.exr" + dead, ".b.exr" + dead, ".a.exr" + running, ".c.exr" + dead, "." + long_name.substr(0, 200) + dead}) {
+  for (const std::string &name : {".a.exr" + dead, ".b.exr" + dead, ".a.exr" + running, ".c.exr" + dead,
+                                  ".a.exr" + elsewhere, "." + long_name.substr(0, 150) + dead}) {
     std::ofstream(folder / name) << "part";
   }
   remove_unfinished(folder, {"a.exr", "b.exr", long_name});
-  EXPECT_EQ(file_count(), 2U);
+  EXPECT_EQ(file_count(), 3U);
   EXPECT_TRUE(fs::exists(folder / (".a.exr" + running)));
+  EXPECT_TRUE(fs::exists(folder / (".a.exr" + elsewhere))) << "another machine may still write it";
   EXPECT_TRUE(fs::exists(folder / (".c.exr" + dead)));
 }
 

@@ -242,7 +242,7 @@ std::unique_ptr<GlContext> create_headless_context(bool is_debug)
       return context;
     }
   }
-  throw Error("no OpenGL 4.5 context: {}", fmt::join(attempts, "; "));
+  throw TransientError("no OpenGL 4.5 context: {}", fmt::join(attempts, "; "));
 }
 
 namespace {

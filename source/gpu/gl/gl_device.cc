@@ -298,7 +298,7 @@ void GlDevice::check(std::string_view what)
     throw DeviceLost("{}: the OpenGL context is lost; create a new device", what);
   }
   if (is_out_of_memory) {
-    throw Error("{}: the driver is out of memory", what);
+    throw TransientError("{}: the driver is out of memory", what);
   }
   if (!errors.empty()) {
     throw Error("{}: the driver reports: {}", what, fmt::join(errors, "; "));

@@ -36,7 +36,7 @@ void StreamRing::grow(std::size_t size_bytes)
   auto *mapped = static_cast<std::byte *>(glMapNamedBufferRange(grown, 0, total_bytes, access));
   if (!mapped) {
     glDeleteBuffers(1, &grown);
-    throw Error("submit: {} bytes of draws, instances and constants: the driver is out of memory", size_bytes);
+    throw TransientError("submit: {} bytes of draws, instances and constants: the driver is out of memory", size_bytes);
   }
   destroy();
   buffer_ = grown;

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "cli_render_options.hh"
+#include "cli_work_plan.hh"
+
+#include "gpu_device.hh"
+
+namespace gnomon::cli {
+
+/** An estimate for the pictures of a scene. */
+struct MeasuredScene {
+  std::string fingerprint;
+  PictureCost cost;
+};
+
+/**
+ * Imports the scene of \a options and, if \a device is not null, draws some samples of the middle frame on it.
+ * \throws std::runtime_error as `gnomon render`
+ */
+[[nodiscard]] MeasuredScene measure_scene(const RenderOptions &options, gpu::Device *device);
+
+}  // namespace gnomon::cli

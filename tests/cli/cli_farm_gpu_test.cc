@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+// Parts of plans, early ends, statuses for schedulers, and several scenes in one process.
+#include "cli_process.hh"
+#include "gltf/gltf_builder.hh"
+#include "gpu_device_fixture.hh"
+
+#include <nlohmann/json.hpp>
+
+#include <OpenImageIO/imageio.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <thread>
+
+namespace gnomon {
+namespace {
+
+namespace fs = std::filesystem;
+
+using test::Finished;
+using test::Float32;
+
+class FarmTest : public test::ProgramTest {
+ protected:
+  void SetUp() override
+  {
+    if (!test::testing_gl_device()) {
+      GTEST_SKIP() << "no device to render with";
+    }
+    test::GltfBuilder builder = test::triangle_scene();
+    builder.document["nodes"][0]["scale"] = {20, 20, 1};
+    builder.document["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};
+    builder.node({{"camera", 0}, {"translation", {5, 5, 3}}});
+    builder.light({{"type", "directional"}, {"intensity", 2000.0}});
+    const int input = builder.accessor(std::vector<float>{0, 1}, Float32, "SCALAR");
+    const int output = builder.accessor(std::vector<float>{0, 0, 0, 10, 3, 0}, Float32, "VEC3");
+    builder.document["animations"] = {
+        {{"samplers", {{{"input", input}, {"output", output}}}},
+         {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
+    write("moving.gltf", builder.gltf());
+  }
+
+  [[nodiscard]] std::vector<float> values_of(const std::string &name) const
+  {
+    const auto input = OIIO::ImageInput::open((folder / name).string());
+    if (!input) {
+      return {};
+    }
+    std::vector<float> values(input->spec().image_pixels() * std::size_t(input->spec().nchannels));
+    return input->read_image(0, 0, 0, input->spec().nchannels, OIIO::TypeDesc::FLOAT, values.data())
+               ? values
+               : std::vector<float>();
+  }
+  /** Renders a part, and returns the line about it. */
+  nlohmann::json render_part(int index, const std::string &options = "")
+  {
+    const Finished finished = run("render --part jobs.json:" + std::to_string(index) + options);
+    EXPECT_EQ(finished.status, 0) << finished.err;
+    return nlohmann::json::parse(finished.out, nullptr, false);
+  }
+  static constexpr const char *render = "render moving.gltf --size 32x18 --samples 3 ";
+  static constexpr const char *plan = "plan moving.gltf --size 32x18 --samples 3 -o jobs.json --fps 10 ";
+};
+
+TEST_F(FarmTest, PartsOfFramesAreThePicturesOfOneProcess)
+{
+  ASSERT_EQ(run(render + std::string("--frames 2-9 --step 2 --fps 10 -o whole_#.exr")).status, 0);
+  ASSERT_EQ(
+      run(plan + std::string("--frames 2-9 --step 2 --seconds-per-frame 1 --target-seconds 2.1 --pictures f_#.exr"))
+          .status,
+      0);
+  // In any order, and one twice.
+  EXPECT_EQ(render_part(1)["status"], "done");
+  const Finished incomplete = run("merge --plan jobs.json");
+  EXPECT_EQ(incomplete.status, 1);
+  EXPECT_NE(incomplete.err.find("part 0: f_2.exr: is missing"), std::string::npos) << incomplete.err;
+  EXPECT_NE(incomplete.err.find("part 0: f_4.exr: is missing"), std::string::npos) << incomplete.err;
+  const nlohmann::json line = render_part(0);
+  EXPECT_EQ(line["pictures"], 2);
+  EXPECT_EQ(line["samples"], 3);
+  EXPECT_GT(line["memory_bytes"], 1 << 20);
+  EXPECT_EQ(render_part(1)["status"], "skipped");
+  EXPECT_EQ(run("merge --plan jobs.json").status, 0);
+  for (const std::string frame : {"2", "4", "6", "8"}) {
+    EXPECT_EQ(values_of("f_" + frame + ".exr"), values_of("whole_" + frame + ".exr")) << frame;
+    EXPECT_FALSE(values_of("f_" + frame + ".exr").empty()) << frame;
+  }
+}
+
+TEST_F(FarmTest, DividedPicturesAreJoinedAndDamageIsNamed)
+{
+  ASSERT_EQ(run(render + std::string("--frames 3 --fps 10 -o whole_#.exr")).status, 0);
+  ASSERT_EQ(
+      run(plan + std::string("--frames 3 --tiles 2 --seconds-per-frame 10 --target-seconds 100 --pictures f_#.exr"))
+          .status,
+      0);
+  render_part(0);
+  render_part(1);
+  fs::resize_file(folder / "f_3.tile2of2.exr", fs::file_size(folder / "f_3.tile2of2.exr") - 40);
+  Finished damaged = run("merge --plan jobs.json");
+  EXPECT_EQ(damaged.status, 1);
+  EXPECT_NE(damaged.err.find("part 1: f_3.tile2of2.exr: "), std::string::npos) << damaged.err;
+  EXPECT_EQ(damaged.err.find("part 0"), std::string::npos) << damaged.err;
+  EXPECT_EQ(render_part(1)["status"], "done") << "a damaged part is rendered again";
+  // A part of the same place from other settings.
+  ASSERT_EQ(run(render + std::string("--seed 4 --frames 3 --fps 10 --tile 1/2 -o f_3.tile1of2.exr")).status, 0);
+  damaged = run("merge --plan jobs.json");
+  EXPECT_EQ(damaged.status, 1);
+  EXPECT_NE(damaged.err.find("part 0: f_3.tile1of2.exr: is not of this plan"), std::string::npos) << damaged.err;
+  EXPECT_EQ(render_part(0)["status"], "done");
+  ASSERT_EQ(run("merge --plan jobs.json").status, 0);
+  EXPECT_EQ(values_of("f_3.exr"), values_of("whole_3.exr"));
+  fs::remove(folder / "f_3.tile1of2.exr");
+  EXPECT_EQ(run("merge --plan jobs.json").status, 0) << "the picture is complete without its parts";
+}
+
+TEST_F(FarmTest, APlanIsOfOneSceneAndOneProgram)
+{
+  ASSERT_EQ(run(plan + std::string("--frames 0-1 --seconds-per-frame 1")).status, 0);
+  fs::create_directories(folder / "other");
+  const std::string program = std::string("'") + GNOMON_PROGRAM + "'";
+  EXPECT_EQ(run("render --part ../jobs.json:0", "/bin/sh' -c 'cd other && \"$0\" \"$@\"' '" GNOMON_PROGRAM).status, 0)
+      << "paths are relative to the plan";
+  EXPECT_EQ(run("render --part jobs.json:9").status, 2);
+  EXPECT_EQ(run("render --part jobs.json:0 --samples 4").status, 2);
+  EXPECT_EQ(run("render moving.gltf --part jobs.json:0").status, 2);
+  fs::remove(folder / "moving_0000.exr");
+  std::string text = read("moving.gltf");
+  text.replace(text.find("2000.0"), 6, "2001.0");
+  write("moving.gltf", text);
+  const Finished changed = run("render --part jobs.json:0");
+  EXPECT_EQ(changed.status, 1);
+  EXPECT_NE(changed.err.find("moving.gltf: has changed since the plan was made"), std::string::npos) << changed.err;
+}
+
+TEST_F(FarmTest, AnEarlyEndLeavesACheckpointThatIsJoinedWithTheRest)
+{
+  const std::string whole = "render moving.gltf --size 64x36 --samples 1000 ";
+  ASSERT_EQ(run(whole + "-o whole.exr").status, 0);
+  // The machine decides how long the start takes.
+  Finished stopped;
+  for (double seconds = 0.2; seconds < 100.0 && !fs::exists(folder / "f.checkpoint.exr"); seconds *= 1.5) {
+    stopped = run(whole + "-o f.exr --checkpoint --progress --stop-after " + std::to_string(seconds));
+    ASSERT_EQ(stopped.status, 6) << stopped.err;
+    EXPECT_NE(stopped.err.find("gnomon: stopped by --stop-after\n"), std::string::npos) << stopped.err;
+    EXPECT_FALSE(fs::exists(folder / "f.exr"));
+  }
+  EXPECT_EQ(stopped.err.rfind("PROGRESS 0.0%\nPROGRESS 0.1%\n", 0), 0U) << stopped.err;
+  const std::string samples = "f.checkpoint.exr: samples 0 to ";
+  const std::size_t at = stopped.err.find(samples);
+  ASSERT_NE(at, std::string::npos) << stopped.err;
+  const int next = std::stoi(stopped.err.substr(at + samples.size())) + 1;
+  ASSERT_EQ(run(whole + "-o rest.exr --sample-range " + std::to_string(next) + "-999").status, 0);
+  ASSERT_EQ(run("merge f.checkpoint.exr rest.exr -o joined.exr").status, 0);
+  const std::vector<float> expected = values_of("whole.exr");
+  const std::vector<float> joined = values_of("joined.exr");
+  ASSERT_EQ(joined.size(), expected.size());
+  for (std::size_t i = 0; i < joined.size(); i++) {
+    // Rounding of a thousand additions.
+    ASSERT_NEAR(joined[i], expected[i], 1e-4F * (std::abs(expected[i]) + 1e-3F)) << i;
+  }
+  ASSERT_EQ(run(whole + "-o f.exr --checkpoint").status, 0);
+  EXPECT_FALSE(fs::exists(folder / "f.checkpoint.exr")) << "the picture is complete";
+}
+
+TEST_F(FarmTest, SigtermEndsAfterTheSample)
+{
+  const std::string command =
+      "cd '" + folder.string() + "'; '" + GNOMON_PROGRAM +
+      "' render moving.gltf --size 640x360 --samples 65536 -o f.exr --progress 2> err.txt & p=$!; "
+      "until grep -qs 'PROGRESS 0.1' err.txt; do sleep 0.02; done; kill -TERM $p; wait $p";
+  const int status = std::system(command.c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 6);
+  EXPECT_NE(read("err.txt").find("gnomon: stopped by SIGTERM"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder / "f.exr"));
+}
+
+TEST_F(FarmTest, TransientFailuresHaveAStatusOfTheirOwn)
+{
+  const std::string render = "render moving.gltf --size 8x8 --samples 1 -o ";
+  fs::create_symlink("/dev/full", folder / "full.exr");
+  EXPECT_EQ(run(render + "full.exr").status, 5);
+  EXPECT_EQ(run(render + "missing/f.exr").status, 1);
+  EXPECT_EQ(run("render missing.gltf -o f.exr").status, 1);
+  setenv("MESA_GL_VERSION_OVERRIDE", "3.3", 1);
+  const Finished without_device = run(render + "f.exr");
+  unsetenv("MESA_GL_VERSION_OVERRIDE");
+  EXPECT_EQ(without_device.status, 5);
+  EXPECT_NE(without_device.err.find("no OpenGL 4.5 context"), std::string::npos) << without_device.err;
+}
+
+TEST_F(FarmTest, SeveralScenesAreThePicturesOfAProcessEach)
+{
+  write("metal.gltf", test::rough_metal_gltf);
+  write("broken.gltf", "{");
+  for (const std::string scene : {"moving", "metal"}) {
+    ASSERT_EQ(run("render " + scene + ".gltf --size 16x9 --samples 2 -o " + scene + "_alone.exr").status, 0);
+  }
+  const std::string several = "render moving.gltf broken.gltf metal.gltf moving.gltf --size 16x9 --samples 2 -o ";
+  EXPECT_EQ(run(several + "f.exr").status, 2);
+  EXPECT_EQ(run(several + "{scene}.exr").status, 2) << "two scenes of one name";
+  const Finished finished = run("render moving.gltf broken.gltf metal.gltf --size 16x9 --samples 2 -o {scene}_0.exr");
+  EXPECT_EQ(finished.status, 1) << "a scene cannot be read";
+  EXPECT_NE(finished.err.find("broken.gltf: "), std::string::npos) << finished.err;
+  for (const std::string scene : {"moving", "metal"}) {
+    EXPECT_EQ(values_of(scene + "_0.exr"), values_of(scene + "_alone.exr")) << scene;
+    EXPECT_FALSE(values_of(scene + "_0.exr").empty()) << scene;
+  }
+}
+
+}  // namespace
+}  // namespace gnomon
