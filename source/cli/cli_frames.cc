@@ -50,7 +50,7 @@ Metadata FrameSequence::metadata(int index) const
 bool FrameSequence::is_done(int index, glm::ivec2 size_px, const std::string &plan_id) const
 {
   const std::filesystem::path file = path(index);
-  if (!options_.is_resumed || !std::filesystem::exists(file)) {
+  if (!options_.is_resumed || !std::filesystem::is_regular_file(file)) {
     return false;
   }
   try {

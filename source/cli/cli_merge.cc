@@ -266,8 +266,8 @@ Status merge(const MergeOptions &options)
 std::string fault_of(const std::string &path, const std::string &id)
 {
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) {
-    return path + ": is missing";
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    return path + (std::filesystem::exists(path, ignored) ? ": is no regular file" : ": is missing");
   }
   try {
     const ExrPart part = read_exr_part(path);

@@ -81,6 +81,13 @@ TEST_F(FarmTest, PartsOfFramesAreThePicturesOfOneProcess)
   EXPECT_EQ(line["samples"], 3);
   EXPECT_GT(line["memory_bytes"], 1 << 20);
   EXPECT_EQ(render_part(1)["status"], "skipped");
+  // A device is not read, which might have no end.
+  fs::create_symlink("/dev/full", folder / "f_4.exr.link");
+  fs::rename(folder / "f_4.exr", folder / "f_4.kept");
+  fs::rename(folder / "f_4.exr.link", folder / "f_4.exr");
+  EXPECT_NE(run("merge --plan jobs.json").err.find("part 0: f_4.exr: is no regular file"), std::string::npos);
+  EXPECT_EQ(run("render --part jobs.json:0").status, 5);
+  fs::rename(folder / "f_4.kept", folder / "f_4.exr");
   EXPECT_EQ(run("merge --plan jobs.json").status, 0);
   for (const std::string frame : {"2", "4", "6", "8"}) {
     EXPECT_EQ(values_of("f_" + frame + ".exr"), values_of("whole_" + frame + ".exr")) << frame;
