@@ -827,14 +827,17 @@ constexpr void Node::for_each_property(Visit &&visit)
                  {.name = "is_visible",
                   .key = "visible",
                   .label = "Visible",
+                  .extra_kinds = 1,
                   .aspect = unsigned(Visibility),
                   .sentence = "false: neither the node nor its descendants are drawn, cast shadows or give light."}));
   visit(property(&Node::casts_shadow, {.name = "casts_shadow",
                                        .label = "Casts shadow",
+                                       .extra_kinds = 1,
                                        .aspect = unsigned(Shadow),
                                        .sentence = "Whether the node's own meshes cast shadows."}));
   visit(property(&Node::receives_shadow, {.name = "receives_shadow",
                                           .label = "Receives shadow",
+                                          .extra_kinds = 1,
                                           .aspect = unsigned(Shadow),
                                           .sentence = "Whether the node's own meshes receive shadows."}));
 }

@@ -150,6 +150,21 @@ constexpr void for_each_number(const Value &value, Visit &&visit)
   }
 }
 
+/** Where a number of \a settings is out of its limits: the row's name, the number and the limits. Empty: nowhere. */
+template <typename Settings>
+[[nodiscard]] std::string limit_fault(const Settings &settings)
+{
+  std::string fault;
+  Settings::for_each_property([&](const auto &row) {
+    for_each_number(row.access(settings), [&](double number) {
+      if (fault.empty() && !row.allows(number)) {
+        fault = range_fault(row, number);
+      }
+    });
+  });
+  return fault;
+}
+
 /** A property that is a member of a T. */
 template <typename T, typename ValueType>
 struct Property : Description {

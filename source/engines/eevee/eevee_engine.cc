@@ -6,7 +6,6 @@
 #include "eevee_film.hh"
 #include "eevee_frame.hh"
 #include "eevee_material_variants.hh"
-#include "eevee_settings.hh"
 
 #include "draw_view_shared.h"
 
@@ -65,7 +64,7 @@ Settings offline_settings(int sample_count)
 /** Check all settings except those of shadows, which SceneShadows::sync checks. \throws gpu::Error */
 static void check(const Settings &settings)
 {
-  if (const std::string fault = fault_of(settings); !fault.empty()) {
+  if (const std::string fault = scene::limit_fault(settings); !fault.empty()) {
     throw gpu::Error("eevee: {}", fault);
   }
   const bool is_whole = settings.sample_first == 0 && settings.sample_end == 0;

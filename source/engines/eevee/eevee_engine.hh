@@ -2,6 +2,7 @@
 #pragma once
 
 #include "eevee_features.hh"
+#include "eevee_settings.hh"
 #include "eevee_shaders.hh"
 #include "shadows/shadows.hh"
 
@@ -14,124 +15,6 @@
 #include <optional>
 
 namespace gnomon::eevee {
-
-/** What a picture shows where there is no surface. */
-struct Background {
-  enum class Kind {
-    /** Transparent black. */
-    None,
-    Color,
-    /** The world of the scene. The same as None if the scene has no world. */
-    World,
-  };
-  Kind kind = Kind::None;
-  /** Linear radiance of Kind::Color. */
-  glm::vec3 color{0.0F};
-};
-
-/** A part of the light of a picture. The parts of all lamps, of the world and of emission sum to the picture. */
-struct LightPart {
-  enum class Kind {
-    All,
-    /** One lamp. */
-    Lamp,
-    /** The world and the background. */
-    World,
-    /** Light that surfaces emit: what the camera sees of it, and what it gives to other surfaces. */
-    Emission,
-  };
-  Kind kind = Kind::All;
-  /** Index in RenderScene::lamps, for Kind::Lamp. */
-  std::size_t lamp = 0;
-
-  [[nodiscard]] bool has(Kind part) const
-  {
-    return kind == Kind::All || kind == part;
-  }
-};
-
-/** Number of samples for which pictures without a sample count are approximated. \see Settings::sample_count */
-inline constexpr int open_ended_sample_count = 256;
-/** Most points of emissive surfaces in a sample. \see Settings::emissive_point_count */
-inline constexpr int emissive_point_max = 16;
-
-/** Names, units and limits are in eevee_settings.hh. */
-struct Settings {
-  ShadowSettings shadow{};
-  Background background{};
-  /**
-   * Draw only this part of the light. Sample positions, shadows, points of lamps and blended surfaces remain those of
-   * the picture with all light.
-   */
-  LightPart light{};
-  /**
-   * Samples for each pixel of a complete picture. 0: no limit; the host ends the picture with Engine::finish.
-   * Approximations that depend on the number of samples then assume `open_ended_sample_count`.
-   */
-  int sample_count = 1;
-  /**
-   * Draw only the samples from `sample_first` to `sample_end` - 1 of the picture, for pictures that are drawn in parts;
-   * `sample_end` 0: to the last. \pre 0 <= sample_first < sample_end <= sample_count, or both are 0. \see sample_share
-   */
-  int sample_first = 0;
-  int sample_end = 0;
-  /** Selects the random sequence of sample positions and lamp points. */
-  std::uint32_t seed = 0;
-  /**
-   * Adaptive sampling: after the first samples (half of them, at most 4), only those pixels get further samples that
-   * differ from one of the eight around them by more than this, relative to the square root of their brightness, or in
-   * alpha. Thin objects that the first samples miss are lost. 0: all pixels get all samples. All pixels get them, too,
-   * in scenes with lamps with an extent, a world, emissive surfaces, surfaces that transmit light or blended objects
-   * that cast shadows, and where a part of the light or a region is drawn. \pre sample_first and sample_end are 0,
-   * unless this is 0
-   */
-  float noise_threshold = 0.0F;
-  /**
-   * Microfacets reflect light more than once, so that a rough surface loses none: a white one in a white world is
-   * white. Otherwise they reflect it once, as glTF's model has it. \see eevee_multiscatter_shared.h
-   */
-  bool has_multiscatter = false;
-  /**
-   * With several samples, each draws the light that this number of points of emissive surfaces give to other surfaces,
-   * with their shadows, up to `emissive_point_max`. 0, and pictures of one sample: emissive surfaces give no light to
-   * others.
-   */
-  int emissive_point_count = 4;
-  /** Measure the time of each step on the device. */
-  bool is_timed = false;
-  /**
-   * Irradiance, W/m², below which a lamp may be left out: the range of points and spots is lowered to the distance
-   * beyond which they give less. The irradiance of each lamp is too small by at most this. There is no bound for the
-   * highlights of smooth surfaces. 0: no light is left out.
-   */
-  float light_threshold = 0.0F;
-  /**
-   * The number of lamps with a range from which on pixels visit only the lamps that can reach them, by lists for the
-   * parts of the view. With more than LIGHT_MAX lamps it is always so. The picture does not depend on it, up to
-   * rounding. At least 1.
-   */
-  int clustered_lamps_min = 8;
-  /** Multiply the picture by a colour for each cascade of the first sun that has a shadow. */
-  bool has_cascade_tint = false;
-  /** Enables Inspection::probe, which needs additional targets and a pass. */
-  bool has_probe = false;
-  /** Enables Inspection::surfaces, which needs additional targets and a pass. */
-  bool has_surfaces = false;
-
-  [[nodiscard]] int planned_sample_count() const
-  {
-    return sample_count == 0 ? open_ended_sample_count : sample_count;
-  }
-  /** All but the shadow's. \see eevee_settings.hh */
-  template <typename Visit>
-  static constexpr void for_each_property(Visit &&visit);
-
-  /** Number of samples that are drawn, of a picture with a known number of samples; otherwise 0. */
-  [[nodiscard]] int drawn_sample_count() const
-  {
-    return (sample_end == 0 ? sample_count : sample_end) - sample_first;
-  }
-};
 
 /**
  * Settings of a picture for which there is time, as `gnomon render` draws it: \a sample_count samples, 0 for no limit,

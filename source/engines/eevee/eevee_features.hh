@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gnomon::eevee {
@@ -85,6 +87,11 @@ struct PcfKernel {
 
   bool operator==(const PcfKernel &) const = default;
 };
+
+/** The kernel that \a text names: 1, 3x3, 5x5, or disk:N with N lookups, 1 to 64. Empty for any other text. */
+[[nodiscard]] std::optional<PcfKernel> pcf_kernel_of(std::string_view text);
+/** The text of \a kernel for pcf_kernel_of. */
+[[nodiscard]] std::string text_of(const PcfKernel &kernel);
 
 /** A part of a frame, whether the engine made it, and the reason. */
 struct FramePart {

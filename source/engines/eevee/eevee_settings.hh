@@ -1,211 +1,140 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "eevee_engine.hh"
+#include "shadows/shadow_settings.hh"
 
 #include "scene_property.hh"
 
-#include <array>
+#include <glm/vec3.hpp>
+
+#include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <numbers>
-#include <optional>
-#include <string>
-#include <string_view>
 
 /**
- * The rows of the engine's settings. Checks of the engine, options, Python, the window, reports and the documentation
- * read them: add a setting here, and use it. A member of Settings, ShadowSettings or EsmSettings without a row is
- * refused by a test, unless the test says why it needs none. \see scene_property.hh
+ * The settings of the engine, with their rows (scene_property.hh). Checks of the engine, options, Python, the window,
+ * reports and the documentation read the rows: add a setting and its row here, or of shadows in shadow_settings.hh, and
+ * use it. A test refuses a member without a row, unless the test says why it needs none.
  */
-namespace gnomon::scene {
-
-template <>
-inline constexpr std::array<std::string_view, 3> words<eevee::EsmKernel>{"4", "32", "separable"};
-template <>
-inline constexpr std::array<std::string_view, 4> words<eevee::LayerPass>{"best", "six", "geometry", "layered"};
-template <>
-inline constexpr std::array<std::string_view, 3> words<eevee::CasterFaces>{"all", "front", "back"};
-
-}  // namespace gnomon::scene
-
 namespace gnomon::eevee {
 
-inline constexpr std::string_view shadow_settings_group = "Shadow settings";
+/** What a picture shows where there is no surface. */
+struct Background {
+  enum class Kind {
+    /** Transparent black. */
+    None,
+    Color,
+    /** The world of the scene. The same as None if the scene has no world. */
+    World,
+  };
+  Kind kind = Kind::None;
+  /** Linear radiance of Kind::Color. */
+  glm::vec3 color{0.0F};
+};
 
-/** The kernel that \a text names: 1, 3x3, 5x5, or disk:N with N lookups, 1 to 64. Empty for any other text. */
-[[nodiscard]] std::optional<PcfKernel> pcf_kernel_of(std::string_view text);
-/** The text of \a kernel for pcf_kernel_of. */
-[[nodiscard]] std::string text_of(const PcfKernel &kernel);
+/** A part of the light of a picture. The parts of all lamps, of the world and of emission sum to the picture. */
+struct LightPart {
+  enum class Kind {
+    All,
+    /** One lamp. */
+    Lamp,
+    /** The world and the background. */
+    World,
+    /** Light that surfaces emit: what the camera sees of it, and what it gives to other surfaces. */
+    Emission,
+  };
+  Kind kind = Kind::All;
+  /** Index in RenderScene::lamps, for Kind::Lamp. */
+  std::size_t lamp = 0;
 
-/** Where a number of \a settings is out of its limits: the row's name, the number and the limits. Empty: nowhere. */
-template <typename Settings>
-[[nodiscard]] std::string fault_of(const Settings &settings)
-{
-  std::string fault;
-  Settings::for_each_property([&](const auto &row) {
-    scene::for_each_number(row.access(settings), [&](double number) {
-      if (fault.empty() && !row.allows(number)) {
-        fault = scene::range_fault(row, number);
-      }
-    });
-  });
-  return fault;
-}
+  [[nodiscard]] bool has(Kind part) const
+  {
+    return kind == Kind::All || kind == part;
+  }
+};
 
-template <typename Visit>
-constexpr void EsmSettings::for_each_property(Visit &&visit)
-{
-  using scene::property;
-  visit(property(&EsmSettings::kernel, {.name = "esm_kernel",
-                                        .key = "esm",
-                                        .option = "esm",
-                                        .label = "ESM filter",
-                                        .group = shadow_settings_group,
-                                        .sentence = "Filter of ESM and EVSM: 4 or 32 taps, or separable."}));
-  visit(property(&EsmSettings::size_px,
-                 {.name = "esm_size_px",
-                  .key = "esm_size",
-                  .option = "shadow-size",
-                  .label = "ESM layer size",
-                  .group = shadow_settings_group,
-                  .unit = "px",
-                  .min = 4,
-                  .max = 8192,
-                  .sentence = "Texels along an edge of an octahedral layer, for ESM and EVSM of lamps except suns."}));
-  visit(property(&EsmSettings::exponent,
-                 {.name = "shadow_exponent",
-                  .key = "exponent",
-                  .label = "ESM exponent",
-                  .group = shadow_settings_group,
-                  .unit = "1/m",
-                  .min = 0.01,
-                  .max = 1e4,
-                  .first = 10,
-                  .sentence = "Exponential shadows: exponent. Absent: it follows the size and the lamp's range."}));
-  visit(property(&EsmSettings::filter_angle,
-                 {.name = "shadow_filter_angle",
-                  .key = "filter_radius",
-                  .label = "ESM filter radius",
-                  .group = shadow_settings_group,
-                  .unit = "rad",
-                  .max = std::numbers::pi / 4,
-                  .first = std::numbers::pi / 180,
-                  .sentence = "Exponential shadows: half the opening angle of the filter. Absent: that of a texel."}));
-  visit(property(&EsmSettings::bias, {.name = "shadow_bias",
-                                      .max = 100,
-                                      .sentence = "Exponential shadows: factor of the bias that is derived from the "
-                                                  "texel size."}));
-  visit(property(&EsmSettings::format,
-                 {.name = "shadow_esm_format",
-                  .sentence = "ESM: numbers of the octahedral layer. Absent: the smaller one that is accurate."}));
-}
+/** Number of samples for which pictures without a sample count are approximated. \see Settings::sample_count */
+inline constexpr int open_ended_sample_count = 256;
+/** Most points of emissive surfaces in a sample. \see Settings::emissive_point_count */
+inline constexpr int emissive_point_max = 16;
 
-template <typename Visit>
-constexpr void ShadowSettings::for_each_property(Visit &&visit)
-{
-  using scene::part_property;
-  using scene::property;
-  visit(property(&ShadowSettings::kind, {.name = "shadow_kind",
-                                         .key = "shadow",
-                                         .option = "shadow",
-                                         .label = "Shadows",
-                                         .sentence = "Method of the shadows of lamps without one of their own "
-                                                     "(gnomon_shadow). none: no lamp has a shadow."}));
-  visit(property(&ShadowSettings::cube_size_px,
-                 {.name = "cube_size_px",
-                  .option = "shadow-size",
-                  .unit = "px",
-                  .min = 1,
-                  .max = 16384,
-                  .sentence = "Texels along an edge of a cube's face, for points, area lamps and wide spots."}));
-  visit(property(&ShadowSettings::map_size_px,
-                 {.name = "map_size_px",
-                  .key = "shadow_size",
-                  .option = "shadow-size",
-                  .label = "Shadow size",
-                  .unit = "px",
-                  .min = 1,
-                  .max = 16384,
-                  .sentence = "Texels along an edge of a map, for spots and suns. Pictures for which there is time may "
-                              "have other sizes for suns."}));
-  visit(property(&ShadowSettings::pcf, {.name = "pcf",
-                                        .option = "pcf",
-                                        .label = "PCF kernel",
-                                        .group = shadow_settings_group,
-                                        .sentence = "Filter kernel of PCF: 1, 3x3, 5x5, or disk:N for N lookups on a "
-                                                    "disk, 1 to 64."}));
-  EsmSettings::for_each_property([&](const auto &row) {
-    visit(part_property<ShadowSettings>(
-        [access = row](auto &settings) -> auto & { return access.access(settings.esm); }, row));
-  });
-  visit(part_property<ShadowSettings>([](auto &settings) -> auto & { return settings.cascades.count; },
-                                      {.name = "cascade_count",
-                                       .option = "cascades",
-                                       .label = "Cascades",
-                                       .group = shadow_settings_group,
-                                       .max = cascade_count_max,
-                                       .zero = "automatic",
-                                       .first = 1,
-                                       .sentence = "Shadow maps of each sun. 0: as many as are needed for texels no "
-                                                   "larger than pixels."}));
-  visit(part_property<ShadowSettings>([](auto &settings) -> auto & { return settings.cascades.lambda; },
-                                      {.name = "cascade_lambda",
-                                       .option = "cascade-lambda",
-                                       .label = "Cascade lambda",
-                                       .group = shadow_settings_group,
-                                       .max = 1,
-                                       .sentence = "Distribution of the cascades over the distance. 0: even. 1: "
-                                                   "logarithmic."}));
-  visit(part_property<ShadowSettings>([](auto &settings) -> auto & { return settings.cascades.can_resize; },
-                                      {.name = "can_resize_cascades",
-                                       .sentence = "Cascades that are fitted to the visible surfaces have maps of "
-                                                   "other sizes than map_size_px where these are enough or needed."}));
-  visit(
-      part_property<ShadowSettings>([](auto &settings) -> auto & { return settings.cascades.texel_in_pixels_enlarged; },
-                                    {.name = "cascade_texel_max",
-                                     .unit = "px",
-                                     .min = texel_in_pixels,
-                                     .max = 1e6,
-                                     .sentence = "Edge of the texels of cascades, in pixels, above which "
-                                                 "can_resize_cascades makes maps larger."}));
-  visit(property(&ShadowSettings::is_fitted_to_depth,
-                 {.name = "is_fitted_to_depth",
-                  .key = "cascade_range",
-                  .option = "cascade-range",
-                  .automatic = "auto",
-                  .label = "Maps cover",
-                  .group = shadow_settings_group,
-                  .switch_words = {"view", "depth"},
-                  .sentence = "What shadow maps cover. view: the scene within the camera's frustum (cascades) or "
-                              "around the lamp. depth: the visible surfaces, so that edges of shadows move with the "
-                              "camera."}));
-  visit(property(&ShadowSettings::can_have_short_maps,
-                 {.name = "can_have_short_maps",
-                  .sentence = "Maps of suns and spots may have 16-bit depths where these are accurate."}));
-  visit(property(&ShadowSettings::layer_pass,
-                 {.name = "layer_pass",
-                  .option = "cube-pass",
-                  .makes_picture = false,
-                  .sentence = "Drawing of the layers of a lamp. six: one pass for each. geometry, layered: one pass "
-                              "for all. best: the best one that the device has."}));
-  visit(property(&ShadowSettings::caster_faces, {.name = "caster_faces",
-                                                 .key = "casters",
-                                                 .option = "casters",
-                                                 .label = "Faces of casters",
-                                                 .group = shadow_settings_group,
-                                                 .sentence = "Faces of one-sided materials that cast shadows."}));
-  visit(property(&ShadowSettings::memory_bytes_max,
-                 {.name = "shadow_bytes_max",
-                  .key = "shadow_memory",
-                  .option = "shadow-memory",
-                  .label = "Memory limit",
-                  .group = shadow_settings_group,
-                  .unit = "bytes",
-                  .min = 1,
-                  .max = 0x1p40,
-                  .sentence = "Most memory of all shadow layers; their sizes are reduced to fit."}));
-}
+/** Names, units and limits are in the rows below. */
+struct Settings {
+  ShadowSettings shadow{};
+  Background background{};
+  /**
+   * Draw only this part of the light. Sample positions, shadows, points of lamps and blended surfaces remain those of
+   * the picture with all light.
+   */
+  LightPart light{};
+  /**
+   * Samples for each pixel of a complete picture. 0: no limit; the host ends the picture with Engine::finish.
+   * Approximations that depend on the number of samples then assume `open_ended_sample_count`.
+   */
+  int sample_count = 1;
+  /**
+   * Draw only the samples from `sample_first` to `sample_end` - 1 of the picture, for pictures that are drawn in parts;
+   * `sample_end` 0: to the last. \pre 0 <= sample_first < sample_end <= sample_count, or both are 0. \see sample_share
+   */
+  int sample_first = 0;
+  int sample_end = 0;
+  /** Selects the random sequence of sample positions and lamp points. */
+  std::uint32_t seed = 0;
+  /**
+   * Adaptive sampling: after the first samples (half of them, at most 4), only those pixels get further samples that
+   * differ from one of the eight around them by more than this, relative to the square root of their brightness, or in
+   * alpha. Thin objects that the first samples miss are lost. 0: all pixels get all samples. All pixels get them, too,
+   * in scenes with lamps with an extent, a world, emissive surfaces, surfaces that transmit light or blended objects
+   * that cast shadows, and where a part of the light or a region is drawn. \pre sample_first and sample_end are 0,
+   * unless this is 0
+   */
+  float noise_threshold = 0.0F;
+  /**
+   * Microfacets reflect light more than once, so that a rough surface loses none: a white one in a white world is
+   * white. Otherwise they reflect it once, as glTF's model has it. \see eevee_multiscatter_shared.h
+   */
+  bool has_multiscatter = false;
+  /**
+   * With several samples, each draws the light that this number of points of emissive surfaces give to other surfaces,
+   * with their shadows, up to `emissive_point_max`. 0, and pictures of one sample: emissive surfaces give no light to
+   * others.
+   */
+  int emissive_point_count = 4;
+  /** Measure the time of each step on the device. */
+  bool is_timed = false;
+  /**
+   * Irradiance, W/m², below which a lamp may be left out: the range of points and spots is lowered to the distance
+   * beyond which they give less. The irradiance of each lamp is too small by at most this. There is no bound for the
+   * highlights of smooth surfaces. 0: no light is left out.
+   */
+  float light_threshold = 0.0F;
+  /**
+   * The number of lamps with a range from which on pixels visit only the lamps that can reach them, by lists for the
+   * parts of the view. With more than LIGHT_MAX lamps it is always so. The picture does not depend on it, up to
+   * rounding. At least 1.
+   */
+  int clustered_lamps_min = 8;
+  /** Multiply the picture by a colour for each cascade of the first sun that has a shadow. */
+  bool has_cascade_tint = false;
+  /** Enables Inspection::probe, which needs additional targets and a pass. */
+  bool has_probe = false;
+  /** Enables Inspection::surfaces, which needs additional targets and a pass. */
+  bool has_surfaces = false;
+
+  [[nodiscard]] int planned_sample_count() const
+  {
+    return sample_count == 0 ? open_ended_sample_count : sample_count;
+  }
+  /** All but the shadow's. */
+  template <typename Visit>
+  static constexpr void for_each_property(Visit &&visit);
+
+  /** Number of samples that are drawn, of a picture with a known number of samples; otherwise 0. */
+  [[nodiscard]] int drawn_sample_count() const
+  {
+    return (sample_end == 0 ? sample_count : sample_end) - sample_first;
+  }
+};
 
 template <typename Visit>
 constexpr void Settings::for_each_property(Visit &&visit)

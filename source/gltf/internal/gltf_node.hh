@@ -24,7 +24,9 @@ void for_each_flag(Visit &&visit)
 {
   scene::Node::for_each_property([&](const auto &row) {
     if constexpr (std::is_same_v<typename std::decay_t<decltype(row)>::Value, bool>) {
-      visit(row);
+      if (row.extra_kinds != 0) {
+        visit(row);
+      }
     }
   });
 }

@@ -62,7 +62,7 @@ TYPED_TEST_SUITE(SettingRows, WithRows);
 TYPED_TEST(SettingRows, HaveANameASentenceAndLimitsThatTheDefaultKeeps)
 {
   std::set<std::string_view> names;
-  EXPECT_EQ(fault_of(TypeParam()), "");
+  EXPECT_EQ(scene::limit_fault(TypeParam()), "");
   TypeParam::for_each_property([&](const auto &row) {
     EXPECT_TRUE(names.insert(row.name).second) << row.name;
     EXPECT_TRUE(row.sentence.ends_with('.')) << row.name;
@@ -71,13 +71,13 @@ TYPED_TEST(SettingRows, HaveANameASentenceAndLimitsThatTheDefaultKeeps)
     auto &value = row.access(settings);
     for (const double inside : {row.min, row.max}) {
       if (std::abs(inside) < 1e30 && set_setting(value, inside)) {
-        EXPECT_EQ(fault_of(settings), "") << row.name;
+        EXPECT_EQ(scene::limit_fault(settings), "") << row.name;
       }
     }
     const double step = 0.01 * std::max(100.0, std::max(std::abs(row.min), std::abs(row.max)));
     for (const double outside : {row.min - step, row.max + step, std::nan("")}) {
       if (row.max < 1e30 && set_setting(value, outside) && !row.allows(outside)) {
-        EXPECT_EQ(fault_of(settings).find(std::string(row.name) + ' '), 0U) << row.name << ' ' << outside;
+        EXPECT_EQ(scene::limit_fault(settings).find(std::string(row.name) + ' '), 0U) << row.name << ' ' << outside;
       }
     }
   });

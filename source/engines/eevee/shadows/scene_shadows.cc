@@ -5,8 +5,6 @@
 #include "shadow_spot.hh"
 #include "shadows.hh"
 
-#include "eevee_settings.hh"
-
 #include <algorithm>
 #include <utility>
 
@@ -26,7 +24,7 @@ static LayerPass best_layer_pass(LayerPass asked, const gpu::Limits &limits)
 /** \throws gpu::Error */
 static void check(const ShadowSettings &settings)
 {
-  if (const std::string fault = fault_of(settings); !fault.empty()) {
+  if (const std::string fault = scene::limit_fault(settings); !fault.empty()) {
     throw gpu::Error("shadow settings: {}", fault);
   }
   if (!pcf_kernel_of(text_of(settings.pcf))) {

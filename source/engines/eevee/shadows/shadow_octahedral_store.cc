@@ -2,7 +2,7 @@
 #include "shadow_octahedral_store.hh"
 
 #include "eevee_lamps.hh"
-#include "eevee_settings.hh"
+#include "shadow_settings.hh"
 
 #include <fmt/ranges.h>
 
@@ -45,7 +45,7 @@ shared::EsmData make_data(const EsmLamp &lamp)
   if (!(lamp.range >= 1e-6F && lamp.range <= 1e30F)) {
     throw gpu::Error("lamp '{}': range {} m of its shadow is not in [1e-06, 1e+30]", lamp.name, lamp.range);
   }
-  if (const std::string fault = fault_of(settings); !fault.empty()) {
+  if (const std::string fault = scene::limit_fault(settings); !fault.empty()) {
     throw gpu::Error("lamp '{}': {}", lamp.name, fault);
   }
   const float filter_angle = settings.filter_angle.value_or(esm_filter_angle(settings.size_px));

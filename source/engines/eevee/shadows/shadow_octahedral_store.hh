@@ -42,7 +42,7 @@ using scene::EsmFormat;
 /** Maximum error of visibilities by 16-bit rounding. OctahedralStore::limits reports larger errors. */
 inline constexpr float esm_half_error_max = 0.02F;
 
-/** Settings of one lamp's exponential shadow map; names, units and limits are in eevee_settings.hh. */
+/** Settings of one lamp's exponential shadow map; names, units and limits are in shadow_settings.hh. */
 struct EsmSettings {
   EsmMethod method = EsmMethod::Esm;
   /** Exponent, 1/m. Default: esm_exponent. */
@@ -61,7 +61,7 @@ struct EsmSettings {
   /** With the default filter angle, Disk4 has the quality of Disk32 in a quarter of the time. */
   EsmKernel kernel = EsmKernel::Disk4;
 
-  /** All but the method. \see eevee_settings.hh */
+  /** All but the method. \see shadow_settings.hh */
   template <typename Visit>
   static constexpr void for_each_property(Visit &&visit);
 };

@@ -6,6 +6,10 @@
 
 #include "scene.hh"
 
+#include <array>
+#include <numbers>
+#include <string_view>
+
 namespace gnomon::eevee {
 
 /** The method for drawing the layers of a lamp. All methods give the same texels. */
@@ -23,7 +27,7 @@ enum class LayerPass {
 /** The faces of one-sided casters that are drawn. Both faces of two-sided materials are always drawn. */
 enum class CasterFaces { All, Front, Back };
 
-/** Settings of shadows; names, units and limits are in eevee_settings.hh. Those of a lamp (scene::LampShadow) override
+/** Settings of shadows; names, units and limits are in the rows below. Those of a lamp (scene::LampShadow) override
  * them, except that `None` disables all shadows. */
 struct ShadowSettings {
   /** Hard: bilinear blend of the four texels around a lookup. Pcf: percentage-closer filtering with `pcf`. */
@@ -56,9 +60,181 @@ struct ShadowSettings {
   /** Maximum device memory of all shadow layers, bytes. \see plan_shadows */
   std::size_t memory_bytes_max = std::size_t(1) << 30U;
 
-  /** Also those of `esm` and `cascades`. \see eevee_settings.hh */
+  /** Also those of `esm` and `cascades`. */
   template <typename Visit>
   static constexpr void for_each_property(Visit &&visit);
 };
+
+}  // namespace gnomon::eevee
+
+namespace gnomon::scene {
+
+template <>
+inline constexpr std::array<std::string_view, 3> words<eevee::EsmKernel>{"4", "32", "separable"};
+template <>
+inline constexpr std::array<std::string_view, 4> words<eevee::LayerPass>{"best", "six", "geometry", "layered"};
+template <>
+inline constexpr std::array<std::string_view, 3> words<eevee::CasterFaces>{"all", "front", "back"};
+
+}  // namespace gnomon::scene
+
+namespace gnomon::eevee {
+
+/** The header of the window for settings of shadows. */
+inline constexpr std::string_view shadow_settings_group = "Shadow settings";
+
+template <typename Visit>
+constexpr void EsmSettings::for_each_property(Visit &&visit)
+{
+  using scene::property;
+  visit(property(&EsmSettings::kernel, {.name = "esm_kernel",
+                                        .key = "esm",
+                                        .option = "esm",
+                                        .label = "ESM filter",
+                                        .group = shadow_settings_group,
+                                        .sentence = "Filter of ESM and EVSM: 4 or 32 taps, or separable."}));
+  visit(property(&EsmSettings::size_px,
+                 {.name = "esm_size_px",
+                  .key = "esm_size",
+                  .option = "shadow-size",
+                  .label = "ESM layer size",
+                  .group = shadow_settings_group,
+                  .unit = "px",
+                  .min = 4,
+                  .max = 8192,
+                  .sentence = "Texels along an edge of an octahedral layer, for ESM and EVSM of lamps except suns."}));
+  visit(property(&EsmSettings::exponent,
+                 {.name = "shadow_exponent",
+                  .key = "exponent",
+                  .label = "ESM exponent",
+                  .group = shadow_settings_group,
+                  .unit = "1/m",
+                  .min = 0.01,
+                  .max = 1e4,
+                  .first = 10,
+                  .sentence = "Exponential shadows: exponent. Absent: it follows the size and the lamp's range."}));
+  visit(property(&EsmSettings::filter_angle,
+                 {.name = "shadow_filter_angle",
+                  .key = "filter_radius",
+                  .label = "ESM filter radius",
+                  .group = shadow_settings_group,
+                  .unit = "rad",
+                  .max = std::numbers::pi / 4,
+                  .first = std::numbers::pi / 180,
+                  .sentence = "Exponential shadows: half the opening angle of the filter. Absent: that of a texel."}));
+  visit(property(&EsmSettings::bias, {.name = "shadow_bias",
+                                      .max = 100,
+                                      .sentence = "Exponential shadows: factor of the bias that is derived from the "
+                                                  "texel size."}));
+  visit(property(&EsmSettings::format,
+                 {.name = "shadow_esm_format",
+                  .sentence = "ESM: numbers of the octahedral layer. Absent: the smaller one that is accurate."}));
+}
+
+template <typename Visit>
+constexpr void ShadowSettings::for_each_property(Visit &&visit)
+{
+  using scene::part_property;
+  using scene::property;
+  visit(property(&ShadowSettings::kind, {.name = "shadow_kind",
+                                         .key = "shadow",
+                                         .option = "shadow",
+                                         .label = "Shadows",
+                                         .sentence = "Method of the shadows of lamps without one of their own "
+                                                     "(gnomon_shadow). none: no lamp has a shadow."}));
+  visit(property(&ShadowSettings::cube_size_px,
+                 {.name = "cube_size_px",
+                  .option = "shadow-size",
+                  .unit = "px",
+                  .min = 1,
+                  .max = 16384,
+                  .sentence = "Texels along an edge of a cube's face, for points, area lamps and wide spots."}));
+  visit(property(&ShadowSettings::map_size_px,
+                 {.name = "map_size_px",
+                  .key = "shadow_size",
+                  .option = "shadow-size",
+                  .label = "Shadow size",
+                  .unit = "px",
+                  .min = 1,
+                  .max = 16384,
+                  .sentence = "Texels along an edge of a map, for spots and suns. Pictures for which there is time may "
+                              "have other sizes for suns."}));
+  visit(property(&ShadowSettings::pcf, {.name = "pcf",
+                                        .option = "pcf",
+                                        .label = "PCF kernel",
+                                        .group = shadow_settings_group,
+                                        .sentence = "Filter kernel of PCF: 1, 3x3, 5x5, or disk:N for N lookups on a "
+                                                    "disk, 1 to 64."}));
+  EsmSettings::for_each_property([&](const auto &row) {
+    visit(part_property<ShadowSettings>(
+        [access = row](auto &settings) -> auto & { return access.access(settings.esm); }, row));
+  });
+  visit(part_property<ShadowSettings>([](auto &settings) -> auto & { return settings.cascades.count; },
+                                      {.name = "cascade_count",
+                                       .option = "cascades",
+                                       .label = "Cascades",
+                                       .group = shadow_settings_group,
+                                       .max = cascade_count_max,
+                                       .zero = "automatic",
+                                       .first = 1,
+                                       .sentence = "Shadow maps of each sun. 0: as many as are needed for texels no "
+                                                   "larger than pixels."}));
+  visit(part_property<ShadowSettings>([](auto &settings) -> auto & { return settings.cascades.lambda; },
+                                      {.name = "cascade_lambda",
+                                       .option = "cascade-lambda",
+                                       .label = "Cascade lambda",
+                                       .group = shadow_settings_group,
+                                       .max = 1,
+                                       .sentence = "Distribution of the cascades over the distance. 0: even. 1: "
+                                                   "logarithmic."}));
+  visit(part_property<ShadowSettings>([](auto &settings) -> auto & { return settings.cascades.can_resize; },
+                                      {.name = "can_resize_cascades",
+                                       .sentence = "Cascades that are fitted to the visible surfaces have maps of "
+                                                   "other sizes than map_size_px where these are enough or needed."}));
+  visit(
+      part_property<ShadowSettings>([](auto &settings) -> auto & { return settings.cascades.texel_in_pixels_enlarged; },
+                                    {.name = "cascade_texel_max",
+                                     .unit = "px",
+                                     .min = texel_in_pixels,
+                                     .max = 1e6,
+                                     .sentence = "Edge of the texels of cascades, in pixels, above which "
+                                                 "can_resize_cascades makes maps larger."}));
+  visit(property(&ShadowSettings::is_fitted_to_depth,
+                 {.name = "is_fitted_to_depth",
+                  .key = "cascade_range",
+                  .option = "cascade-range",
+                  .automatic = "auto",
+                  .label = "Maps cover",
+                  .group = shadow_settings_group,
+                  .switch_words = {"view", "depth"},
+                  .sentence = "What shadow maps cover. view: the scene within the camera's frustum (cascades) or "
+                              "around the lamp. depth: the visible surfaces, so that edges of shadows move with the "
+                              "camera."}));
+  visit(property(&ShadowSettings::can_have_short_maps,
+                 {.name = "can_have_short_maps",
+                  .sentence = "Maps of suns and spots may have 16-bit depths where these are accurate."}));
+  visit(property(&ShadowSettings::layer_pass,
+                 {.name = "layer_pass",
+                  .option = "cube-pass",
+                  .makes_picture = false,
+                  .sentence = "Drawing of the layers of a lamp. six: one pass for each. geometry, layered: one pass "
+                              "for all. best: the best one that the device has."}));
+  visit(property(&ShadowSettings::caster_faces, {.name = "caster_faces",
+                                                 .key = "casters",
+                                                 .option = "casters",
+                                                 .label = "Faces of casters",
+                                                 .group = shadow_settings_group,
+                                                 .sentence = "Faces of one-sided materials that cast shadows."}));
+  visit(property(&ShadowSettings::memory_bytes_max,
+                 {.name = "shadow_bytes_max",
+                  .key = "shadow_memory",
+                  .option = "shadow-memory",
+                  .label = "Memory limit",
+                  .group = shadow_settings_group,
+                  .unit = "bytes",
+                  .min = 1,
+                  .max = 0x1p40,
+                  .sentence = "Most memory of all shadow layers; their sizes are reduced to fit."}));
+}
 
 }  // namespace gnomon::eevee

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "eevee_settings.hh"
+#include "eevee_features.hh"
 
 #include <fmt/format.h>
 
