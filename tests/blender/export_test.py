@@ -221,6 +221,29 @@ class Worlds(ExportTest):
                     self.assertLess(max(abs(a - 4 * (b + 1)) for a, b in zip(found, blender)), 0.15)
             bpy.data.images.remove(image)
 
+    def test_other_scenes_and_their_worlds_are_left_out(self):
+        add_box('box')
+        other = bpy.data.scenes.new('other')
+        other.world = bpy.data.worlds.new('other')
+        add('stranger', None, collection=other.collection)
+        file = File()
+        self.assertEqual((len(file.json['scenes']), file.names()), (1, {'box'}))
+
+    def test_without_cycles_a_world_is_named(self):
+        world = self.scene.world = bpy.data.worlds.new('world')
+        world.use_nodes = True
+        tree = world.node_tree
+        tree.links.new(tree.nodes.new('ShaderNodeTexSky').outputs[0], tree.nodes['Background'].inputs['Color'])
+        lamp = add_lamp('AREA')
+        bpy.ops.preferences.addon_disable(module='cycles')
+        try:
+            file = File()
+        finally:
+            bpy.ops.preferences.addon_enable(module='cycles')
+        self.assertEqual(file.scene_extras['gnomon_world'], [0, 0, 0])
+        self.assertIn("world: it is written black", file.report)
+        self.assertEqual(file.extras(lamp.name)['gnomon_lamp'], 'area')
+
     def test_rays_are_named(self):
         world = self.scene.world = bpy.data.worlds.new('world')
         world.use_nodes = True

@@ -45,8 +45,8 @@ class Report:
 
 def own_extras(thing):
     """The custom properties of a thing that are meant for Gnomon."""
-    return {key: value if isinstance(value, (str, int, float)) else list(value)
-            for key, value in thing.items() if key.startswith('gnomon_') and key != 'gnomon_export'}
+    values = {key: value.to_list() if hasattr(value, 'to_list') else value for key, value in thing.items() if key.startswith('gnomon_')}
+    return {key: value for key, value in values.items() if isinstance(value, (str, int, float, list))}
 
 
 def add_extras(element, extras):
@@ -111,6 +111,8 @@ class Export:
     def choose_options(self):
         """Sets those options of the exporter without which the file would lack what Blender draws."""
         settings = self.settings
+        # Gnomon reads one scene.
+        settings['gltf_active_scene'] = True
         settings['gltf_lights'] = settings['gltf_cameras'] = True
         settings['gltf_lighting_mode'] = 'SPEC'
         meshes = [thing for thing in self.scene.objects if thing.type == 'MESH' and thing.name_full in self.rendered]
@@ -201,7 +203,10 @@ class Export:
             light = extension.extension['light'].extension
             light['color'], light['intensity'], remarks = lamps.punctual(lamp)
             self.report.add_all(what, remarks)
-        casts = lamp.cycles.cast_shadow if self.scene.render.engine == 'CYCLES' and hasattr(lamp.cycles, 'cast_shadow') else lamp.use_shadow
+        # 4.2 and later have one option for both engines.
+        cycles = getattr(lamp, 'cycles', None)
+        is_of_cycles = self.scene.render.engine == 'CYCLES' and hasattr(cycles, 'cast_shadow')
+        casts = cycles.cast_shadow if is_of_cycles else lamp.use_shadow
         # A lamp that is written without light has no extras.
         if not casts and (extension is not None or extras):
             extras['gnomon_shadow'] = 'none'

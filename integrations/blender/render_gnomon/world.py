@@ -95,14 +95,18 @@ def extras_of(world, path, width, is_y_up):
         output = next((n for n in nodes if n.type == 'OUTPUT_WORLD' and n.is_active_output), None)
         if output and output.inputs['Volume'].is_linked:
             remarks.append("its volume is not drawn")
-        visible = world.cycles_visibility
-        hidden = [kind for kind in ('camera', 'diffuse', 'glossy', 'transmission') if not getattr(visible, kind)]
+        # Blender has it while the add-on of Cycles is on.
+        visible = getattr(world, 'cycles_visibility', None)
+        hidden = [kind for kind in ('camera', 'diffuse', 'glossy', 'transmission') if not getattr(visible, kind, True)]
         if hidden:
             remarks.append(f"it is hidden from rays of the kinds {', '.join(hidden)}, which is not drawn")
     if radiance is not None:
         if min(radiance) < 0:
             remarks.append("its negative light is written as 0")
         return {'gnomon_world': [max(c, 0.0) for c in radiance]}, remarks
+    if not hasattr(world, 'cycles_visibility'):
+        remarks.append("it is written black, because Cycles, whose add-on is off, would make its picture")
+        return {'gnomon_world': [0.0, 0.0, 0.0]}, remarks
     bake(world, path, picture_width(world, width), is_y_up)
     # The extra is a URI.
     return {'gnomon_world': urllib.parse.quote(os.path.basename(path))}, remarks
