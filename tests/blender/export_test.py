@@ -298,12 +298,46 @@ class Objects(ExportTest):
         for name, has in (('plain', False), ('colored', True)):
             self.assertEqual('COLOR_0' in file.json['meshes'][file.node(name)['mesh']]['primitives'][0]['attributes'], has)
 
-    def test_instances_are_counted(self):
+    def test_instances_of_particles_are_written(self):
         box = add_box()
-        emitter = add_box('emitter')
+        box.rotation_euler = (0.1, 0.2, 0.3)
+        emitter = add_box('emitter', location=(1, 2, 3))
         system = emitter.modifiers.new('particles', 'PARTICLE_SYSTEM').particle_system.settings
         system.type, system.count, system.render_type, system.instance_object = 'HAIR', 12, 'OBJECT', box
-        self.assertIn("object 'emitter': its 12 instances", File().report)
+        system.use_rotation_instance = True
+        places = sorted(tuple(each.matrix_world.translation) for each in bpy.context.evaluated_depsgraph_get().object_instances if each.is_instance)
+        self.assertEqual(len(places), 12)
+        for is_y_up in (True, False):
+            file = File(export_yup=is_y_up)
+            nodes = [node for node in file.json['nodes'] if node['name'] == 'emitter box']
+            self.assertEqual({node['mesh'] for node in nodes}, {file.node('box')['mesh']})
+            found = sorted((x, -z, y) if is_y_up else (x, y, z) for x, y, z in (node['matrix'][12:15] for node in nodes))
+            for a, b in zip(found, places):
+                self.assertNear(a, b, 4)
+            self.assertNotIn("instances", file.report)
+        box.hide_render = True
+        file = File()
+        self.assertIn("object 'emitter': 12 of its instances are not written", file.report)
+        self.assertEqual(file.names(), {'emitter'})
+
+    def test_instances_of_geometry_nodes(self):
+        box = add_box()
+        for name, kind in (('of_objects', 'GeometryNodeObjectInfo'), ('of_meshes', 'GeometryNodeMeshIcoSphere')):
+            tree = bpy.data.node_groups.new(name, 'GeometryNodeTree')
+            tree.outputs.new('NodeSocketGeometry', 'Geometry')
+            grid, instances, source, output = (tree.nodes.new(each) for each in (
+                'GeometryNodeMeshGrid', 'GeometryNodeInstanceOnPoints', kind, 'NodeGroupOutput'))
+            if name == 'of_objects':
+                source.inputs['Object'].default_value = box
+                source.inputs['As Instance'].default_value = True
+            tree.links.new(grid.outputs['Mesh'], instances.inputs['Points'])
+            tree.links.new(source.outputs['Geometry' if name == 'of_objects' else 'Mesh'], instances.inputs['Instance'])
+            tree.links.new(instances.outputs['Instances'], output.inputs[0])
+            add_box(name).modifiers.new('nodes', 'NODES').node_group = tree
+        file = File()
+        self.assertEqual([node['name'] for node in file.json['nodes'] if 'matrix' in node], ['of_objects box'] * 9)
+        self.assertIn("object 'of_meshes': 9 of its instances are not written", file.report)
+        self.assertNotIn("'of_objects'", file.report)
 
     def test_cameras(self):
         for name in ('first', 'second', 'third'):

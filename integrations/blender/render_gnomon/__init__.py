@@ -8,6 +8,7 @@ import shlex
 
 import bpy
 import numpy
+from mathutils import Matrix
 
 from . import closed, engine, lamps, materials, world
 
@@ -137,13 +138,6 @@ class Export:
             report.add('scene', "motion blur is not drawn")
         if scene.use_nodes:
             report.add('scene', "compositing nodes are not run")
-        instances = {}
-        for instance in bpy.context.evaluated_depsgraph_get().object_instances:
-            parent = instance.parent
-            if instance.is_instance and parent is not None and parent.instance_type == 'NONE':
-                instances[parent.name] = instances.get(parent.name, 0) + 1
-        for name, count in instances.items():
-            report.add(f"object '{name}'", f"its {count} instances of particles or geometry nodes are not written; make them real")
         animated = [scene.world, *(thing.data for thing in scene.objects if thing.type in ('LIGHT', 'CAMERA'))]
         for thing in scene.objects:
             if thing.name_full not in self.rendered:
@@ -273,6 +267,31 @@ class Export:
     def write_scene(self, element, scene):
         add_extras(element, {**own_extras(scene), **self.world_extras})
         self.put_camera_first(element.nodes, scene)
+        self.write_instances(element)
+
+    def write_instances(self, element):
+        """Nodes for the instances of particles and geometry nodes, which the exporter leaves out."""
+        sources = {node.blender_object: node.node for node in self.settings['vtree'].nodes.values()
+                   if node.blender_bone is None and node.node is not None and node.node.mesh is not None and node.node.skin is None}
+        file_from_blender = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1))) if self.settings['gltf_yup'] else Matrix()
+        unwritten = {}
+        for instance in bpy.context.evaluated_depsgraph_get().object_instances:
+            if not instance.is_instance or instance.parent is None:
+                continue
+            parent, thing = instance.parent.original, instance.object.original
+            # The exporter writes the others. Geometry that nodes have made has the object of the nodes.
+            if parent.instance_type != 'NONE' or parent.name_full not in self.rendered:
+                continue
+            source = sources.get(thing) if thing != parent else None
+            if source is None:
+                unwritten[parent.name] = unwritten.get(parent.name, 0) + 1
+                continue
+            matrix = file_from_blender @ instance.matrix_world @ file_from_blender.inverted()
+            element.nodes.append(type(source)(
+                camera=None, children=[], extensions=None, extras=source.extras, matrix=[x for column in matrix.col for x in column],
+                mesh=source.mesh, name=f"{parent.name} {thing.name}", rotation=None, scale=None, skin=None, translation=None, weights=None))
+        for name, count in unwritten.items():
+            self.report.add(f"object '{name}'", f"{count} of its instances are not written, because what they repeat is not; make them real")
 
     @staticmethod
     def put_camera_first(nodes, scene):
